@@ -1,0 +1,28 @@
+# Every third-party package, found once. Debian 12 names; `./do deps` installs them.
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(fmt REQUIRED)
+find_package(tl-expected REQUIRED)
+find_package(glm REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(TIFF REQUIRED)
+find_package(PNG REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(embree 3 REQUIRED)
+find_package(glfw3 3.3 REQUIRED)
+pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)
+pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
+pkg_check_modules(egl REQUIRED IMPORTED_TARGET egl)
+
+# HDF5: the serial C library by pkg-config, never the OpenMPI build that find_package may prefer.
+pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial)
+
+if(DUBSAR_TESTS)
+  find_package(GTest REQUIRED)
+endif()
+if(DUBSAR_BENCH)
+  find_package(benchmark REQUIRED)
+endif()

@@ -1,0 +1,46 @@
+# Compile rules shared by all rooms, and the two functions that declare a room and its tests.
+
+add_library(dubsar_options INTERFACE)
+target_include_directories(dubsar_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(dubsar_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-align
+  -Woverloaded-virtual -Wconversion -Wno-sign-conversion -Wno-psabi -Werror=return-type
+  -ffp-contract=off  # a*d-b*c must be symmetric: the asymptotic decider depends on it
+  -fstack-protector-strong)
+target_compile_definitions(dubsar_options INTERFACE $<$<CONFIG:Debug>:_GLIBCXX_ASSERTIONS>)
+if(DUBSAR_WERROR)
+  target_compile_options(dubsar_options INTERFACE -Werror)
+endif()
+if(DUBSAR_SANITIZE)
+  target_compile_options(dubsar_options INTERFACE -fsanitize=${DUBSAR_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(dubsar_options INTERFACE -fsanitize=${DUBSAR_SANITIZE})
+endif()
+
+# dubsar_library(name SOURCES a.cpp ... [DEPS public targets] [PRIVATE_DEPS third-party targets])
+# One static library per room. Only what stands in DEPS can be included: the link line is the wall.
+function(dubsar_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
+  if(NOT ARG_SOURCES)  # a room that is laid out but empty
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE dubsar_options ${ARG_DEPS})
+    return()
+  endif()
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC dubsar_options ${ARG_DEPS} PRIVATE ${ARG_PRIVATE_DEPS})
+endfunction()
+
+# dubsar_test(name SOURCES a_test.cpp ... DEPS rooms [LABEL unit|gl|device|slow] [TIMEOUT seconds])
+# One GoogleTest binary per room; every case becomes one ctest test.
+function(dubsar_test name)
+  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "SOURCES;DEPS" ${ARGN})
+  if(NOT ARG_LABEL)
+    set(ARG_LABEL unit)
+  endif()
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE dubsar_options ${ARG_DEPS} GTest::gtest GTest::gmock GTest::gtest_main)
+  include(GoogleTest)
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT})
+endfunction()

@@ -1,0 +1,68 @@
+#include "core/base/budget.h"
+
+#include <fstream>
+#include <limits>
+#include <string>
+
+namespace dubsar {
+namespace {
+constexpr double kMiB = 1024.0 * 1024.0;
+__extension__ using Uint128 = unsigned __int128;
+
+std::uint64_t read_number(const char* path, std::uint64_t otherwise) {
+  std::ifstream file(path);
+  std::uint64_t value = 0;
+  return file >> value ? value : otherwise;
+}
+}  // namespace
+
+std::uint64_t available_memory_bytes() {
+  std::uint64_t available = std::numeric_limits<std::uint64_t>::max();
+  std::ifstream meminfo("/proc/meminfo");
+  std::string key, unit;
+  for (std::uint64_t kib = 0; meminfo >> key >> kib;) {
+    std::getline(meminfo, unit);
+    if (key == "MemAvailable:") available = kib * 1024;
+  }
+  constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
+  const std::uint64_t limit = read_number("/sys/fs/cgroup/memory.max", kNone);
+  const std::uint64_t used = read_number("/sys/fs/cgroup/memory.current", 0);
+  if (limit != kNone && limit > used && limit - used < available) available = limit - used;
+  return available;
+}
+
+Result<std::int64_t> check_dims(std::string_view what, std::span<const std::uint64_t> dims,
+                                std::uint64_t element_bytes, const Budget& budget) {
+  Uint128 product = 1;
+  for (const std::uint64_t dim : dims) {
+    if (dim == 0) return fail(ErrorKind::kBadData, "{}: one dimension is 0, expected at least 1", what);
+    if (dim > budget.max_dimension)
+      return fail(ErrorKind::kBadData, "{}: dimension {} found, expected at most {}", what, dim, budget.max_dimension);
+    product *= dim;
+    if (product > budget.max_voxels)
+      return fail(ErrorKind::kBadData, "{}: more than 2^36 elements announced, expected at most {}", what,
+                  budget.max_voxels);
+  }
+  if (product * element_bytes > static_cast<Uint128>(std::numeric_limits<std::int64_t>::max()))
+    return fail(ErrorKind::kBadData, "{}: the size in bytes does not fit 63 bits", what);
+  return static_cast<std::int64_t>(product);
+}
+
+Result<void> check_count(std::string_view what, std::uint64_t count, std::uint64_t item_bytes,
+                         std::uint64_t bytes_left) {
+  if (static_cast<Uint128>(count) * item_bytes > bytes_left)
+    return fail(ErrorKind::kBadData, "{}: {} items of {} bytes announced, but only {} bytes are left in the file", what,
+                count, item_bytes, bytes_left);
+  return {};
+}
+
+Result<void> check_memory(std::string_view what, std::uint64_t bytes, const Budget& budget) {
+  const std::uint64_t limit =
+      budget.memory_bytes > 0 ? budget.memory_bytes : available_memory_bytes() / 10 * 8;
+  if (bytes > limit)
+    return fail(ErrorKind::kTryAgain, "{}: {:.0f} MiB of memory needed, {:.0f} MiB allowed; use --crop or --stride",
+                what, static_cast<double>(bytes) / kMiB, static_cast<double>(limit) / kMiB);
+  return {};
+}
+
+}  // namespace dubsar

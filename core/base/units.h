@@ -1,0 +1,17 @@
+#pragma once
+// Lengths with units. Inside dubsar a length is a double with its unit in the name.
+
+#include <optional>
+#include <string_view>
+
+#include "core/base/result.h"
+
+namespace dubsar {
+
+/// Millimetres in one unit: "m" "cm" "mm" "um" "µm" "micron" "micrometer" "nm" "inch" and spellings of these.
+std::optional<double> mm_per_unit(std::string_view unit);
+
+/// "38um", "0.038 mm", "3.8e-5m" to millimetres. A number without a unit is refused: units are never guessed.
+Result<double> parse_length_mm(std::string_view text);
+
+}  // namespace dubsar

@@ -1,0 +1,27 @@
+#pragma once
+// All that the volume says about its isosurface, and nothing more: signs, face decisions, quantised crossings. The
+// mesh (connectivity and unsmoothed positions) is a pure function of it, so it is what an EXA file stores.
+
+#include <cstdint>
+#include <vector>
+
+#include "core/surface/bit_volume.h"
+
+namespace dubsar {
+
+/// Canonical order of active edges and ambiguous faces: grid rows (z, then y); within a row all items of axis x in
+/// rising x, then axis y, then axis z. An edge of axis a starts at its grid point and ends one step along a; a face of
+/// axis a lies perpendicular to a and starts at its smallest corner.
+struct SurfaceSamples {
+  Dims dims;                            ///< grid points
+  float isovalue = 0.0f;
+  int offset_bits = 4;                  ///< N, 1..16
+  bool closed = true;                   ///< closed at the volume boundary (algorithms.md section 1.4), or open
+  BitVolume signs;                      ///< 1 = inside: value >= isovalue; NaN is outside
+  std::vector<std::uint8_t> joined;     ///< one per ambiguous face inside the grid: 1 = positives joined
+  std::vector<std::uint16_t> offsets;   ///< one per active edge inside the grid: min(2^N - 1, floor(t 2^N))
+
+  friend bool operator==(const SurfaceSamples&, const SurfaceSamples&) = default;
+};
+
+}  // namespace dubsar
