@@ -1,0 +1,26 @@
+#pragma once
+// Isosurface extraction: table-driven 2-manifold dual marching cubes (paper sections 3.2 and 3.3, algorithms.md
+// section 1). Two steps: sample the volume (signs, face decisions, crossings), then build the mesh from the samples.
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/surface/quad_mesh.h"
+#include "core/surface/surface_samples.h"
+#include "core/volume/slab_source.h"
+
+namespace dubsar {
+
+struct ExtractOptions {
+  float isovalue = 0.0f;
+  int offset_bits = 4;  ///< N, 1..16: crossings are stored with a largest error of 0.5 * 2^-N grid steps
+  bool closed = true;   ///< close the surface at the volume boundary with flat caps
+};
+
+/// Reads the volume once, in slabs. Deterministic for any thread count and slab height. Progress in voxels.
+Result<SurfaceSamples> sample_surface(SlabSource& source, const ExtractOptions& options, Progress& progress);
+
+/// Vertices, x-quads and incidence from the samples alone: a pure function, used after extraction and after reading an
+/// EXA file. kBadData when the samples contradict each other (wrong counts), kTryAgain beyond 2^32 - 2 vertices.
+Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, Progress& progress);
+
+}  // namespace dubsar
