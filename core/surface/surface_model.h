@@ -23,12 +23,14 @@ struct VertexAttributes {
   std::vector<std::uint8_t> ao;  ///< 0..63
 };
 
-/// Triangles that close a hole which segmentation cut. Made once and used by both parts, reversed for `reverse_part`,
-/// so that the parts mate exactly.
+/// Triangles that close a hole which segmentation cut. Made once and used by both partitions, reversed for
+/// `reverse_part`, so that the pieces mate exactly. A patch between two partitions of the same part (a membrane across a
+/// crack, where the envelope's outside meets its inside) closes each of the two when it stands alone, and is left out
+/// when they are shown together.
 struct FillPatch {
   static constexpr std::uint8_t kNoPart = 255;
-  std::uint8_t part = 0;                      ///< the triangles are oriented for this part
-  std::uint8_t reverse_part = kNoPart;        ///< and reversed for this one, if any
+  std::uint8_t part = 0;                      ///< id of the partition that the triangles are oriented for
+  std::uint8_t reverse_part = kNoPart;        ///< and of the one they are reversed for, if any
   std::vector<glm::vec3> extra_positions;     ///< vertices that the patch adds, grid coordinates
   std::vector<Triangle> triangles;            ///< id < vertex_count(): dual vertex; else extra_positions[id - count]
 };
@@ -45,13 +47,32 @@ struct SurfaceModel {
 };
 
 struct MeshOptions {
-  std::optional<int> partition;  ///< only this one
-  bool fill_holes = true;        ///< add the fill patches
+  std::optional<int> partition = std::nullopt;     ///< only this one
+  std::optional<std::string> part = std::nullopt;  ///< only the partitions of this part, e.g. "envelope"
+  bool fill_holes = true;                          ///< add the fill patches
 };
 
 /// The triangle mesh of a model (curvature-guided diagonals, algorithms.md section 1.2). Parts are separate: vertices
-/// on a cut are doubled, as are those where one part touches itself, so every closed part is a 2-manifold.
-/// Deterministic. The partition of a vertex is that of its triangles.
+/// on a cut are doubled, as are those where one part touches itself, so every closed part is a 2-manifold. Partitions of
+/// one part stay joined; a vertex between them takes the lower id, any other vertex that of its triangles. Vertices that
+/// fill patches and Steiner points add have averaged attributes; those of patches are flat. Deterministic.
+/// kUsage: no such partition or part. kBadData: arrays, partition ids or patches that contradict each other. kTryAgain:
+/// more than 2^31 vertices.
 Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& options = {});
+
+/// Area, signed volume (mm, through the frame, which may be anisotropic) and watertightness of a closed or open mesh.
+struct MeshMeasure {
+  double area_mm2 = 0.0;
+  double volume_mm3 = 0.0;
+  bool watertight = false;  ///< closed 2-manifold (mesh_check.h)
+};
+MeshMeasure measure_mesh(const TriMesh& mesh);
+
+/// Fills area, volume and watertight of every partition of the model, each measured alone with its fill patches.
+/// Cost: one make_tri_mesh and one check_mesh per partition.
+Result<void> measure_partitions(SurfaceModel& model);
+
+/// The same for whole parts ("tablet", "envelope"), in order of their first partition; id is the first partition's.
+Result<std::vector<Partition>> measure_parts(const SurfaceModel& model);
 
 }  // namespace dubsar

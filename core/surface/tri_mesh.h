@@ -14,10 +14,13 @@ namespace dubsar {
 
 using Triangle = std::array<std::uint32_t, 3>;  ///< counter-clockwise seen from the air
 
-/// One separated part, e.g. the tablet. Areas and volumes are those of the part's own closed or open surface.
+/// One labelled piece of surface. Partitions that bound the same body share a part: "envelope outside" and "envelope
+/// inside" are two partitions of the part "envelope". Figures are those of the partition's own surface with its fill
+/// patches, so a cavity wall such as "envelope inside" has a negative volume and the partitions of a part add up.
 struct Partition {
   int id = 0;                ///< 0..7
-  std::string name;          ///< "tablet", "envelope outside", "envelope inside", "envelope", "fragment 3", ...
+  std::string name;          ///< "tablet", "envelope outside", "envelope inside", "object", "fragment 1", "pores", ...
+  std::string part;          ///< "tablet", "envelope", ...; empty: the partition is a part of its own
   double area_mm2 = 0.0;
   double volume_mm3 = 0.0;   ///< signed volume enclosed; meaningful when watertight
   bool watertight = false;
