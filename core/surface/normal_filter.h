@@ -1,0 +1,27 @@
+#pragma once
+// Feature-preserving smoothing of face normals: iterated weighted vector median (paper section 3.4.1; the median by
+// the iterative method of Weiszfeld, which needs neither copies nor sorting).
+
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/surface/face_neighbours.h"
+
+namespace dubsar {
+
+struct NormalFilterOptions {
+  int iterations = 32;     ///< paper, Table 2
+  int median_steps = 2;    ///< Weiszfeld steps per iteration, starting from the face's own normal
+  float epsilon = 0.02f;   ///< chord length added to distances: keeps a normal from holding on to itself
+};
+
+/// Each iteration replaces all normals at once (Jacobi) by m <- normalise(sum_i w_i n_i / (|n_i - m| + epsilon)) over
+/// the face itself (w = 2 area) and its neighbours (w = shared vertices x area).
+/// `faces`: xyz unit normal (or 0 where there is none), w area; areas stay as they are. Progress is advanced by
+/// iterations x faces; the caller begins and ends the stage. Bit-identical for any thread count and SIMD width.
+Result<void> filter_normals(const FaceNeighbours& neighbours, const NormalFilterOptions& options,
+                            std::vector<glm::vec4>& faces, Progress& progress);
+
+}  // namespace dubsar
