@@ -48,6 +48,28 @@ std::vector<glm::vec4> normals_of(const QuadMesh& mesh, std::span<const glm::vec
   return faces;
 }
 
+/// sin(angle) / (|a| |b|) for the two edges of polygon `quad` that meet at `vertex`.
+float corner_weight(const QuadMesh& mesh, std::uint32_t quad, std::uint32_t vertex) {
+  std::uint32_t before = vertex, after = vertex;
+  const auto find_in = [&](const auto& ids, std::size_t size) {
+    for (std::size_t k = 0; k < size; ++k)
+      if (ids[k] == vertex) {
+        before = ids[(k + size - 1) % size];
+        after = ids[(k + 1) % size];
+        return;
+      }
+  };
+  if (!mesh.has_doubled(quad)) {
+    find_in(mesh.quads[quad], 4);
+  } else {
+    const Polygon polygon = mesh.polygon(quad);
+    find_in(polygon.vertex, static_cast<std::size_t>(polygon.size));
+  }
+  const glm::vec3 p = mesh.positions[vertex], a = mesh.positions[after] - p, b = mesh.positions[before] - p;
+  constexpr float kGuard = 1e-6f;  // both edges shorter than 0.03 grid steps: too short to trust
+  return glm::length(glm::cross(a, b)) / (glm::dot(a, a) * glm::dot(b, b) + kGuard);
+}
+
 struct AngleSum {
   double angle = 0.0;
   std::int64_t faces = 0;
@@ -135,16 +157,13 @@ std::vector<glm::vec4> face_normals(const QuadMesh& mesh) { return normals_of(me
 
 std::vector<glm::vec3> vertex_normals(const QuadMesh& mesh, std::span<const glm::vec4> faces) {
   DUBSAR_CHECK(faces.size() == mesh.quads.size());
-  std::vector<float> areas(faces.size());
-  parallel_for(mesh.quad_count(), kGrain, [&](std::int64_t f) {
-    areas[index(f)] = glm::length(area_vector(mesh, mesh.positions, index(f)));
-  });
   std::vector<glm::vec3> normals(mesh.positions.size());
-  parallel_for(mesh.vertex_count(), kGrain, [&](std::int64_t v) {
+  parallel_for(mesh.vertex_count(), kGrain, [&](std::int64_t i) {
+    const auto v = static_cast<std::uint32_t>(i);
     glm::vec3 sum{0.0f};
-    for (const std::uint32_t q : mesh.quads_of(static_cast<std::uint32_t>(v))) sum += areas[q] * glm::vec3(faces[q]);
+    for (const std::uint32_t q : mesh.quads_of(v)) sum += corner_weight(mesh, q, v) * glm::vec3(faces[q]);
     const float length = glm::length(sum);
-    normals[index(v)] = length > 1e-12f ? sum / length : glm::vec3(0.0f, 0.0f, 1.0f);
+    normals[v] = length > 1e-12f ? sum / length : glm::vec3(0.0f, 0.0f, 1.0f);
   });
   return normals;
 }
