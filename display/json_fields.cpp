@@ -1,0 +1,89 @@
+#include "display/json_fields.h"
+
+#include <cmath>
+
+namespace dubsar {
+using nlohmann::json;
+
+const json* JsonFields::find(const char* name) const {
+  if (!has(name)) return nullptr;
+  const json& value = object_->at(name);
+  return value.is_object() && value.contains("value") ? &value.at("value") : &value;
+}
+
+void JsonFields::complain(std::string sentence) {
+  if (complaint_.empty()) complaint_ = where_ + ": " + std::move(sentence);
+}
+
+double JsonFields::number(const char* name, double low, double high, const double* fallback) {
+  const json* const value = find(name);
+  if (value == nullptr) {
+    if (fallback != nullptr) return *fallback;
+    complain(fmt::format("{} is missing, expected a number of {} to {}", name, low, high));
+    return low;
+  }
+  if (!value->is_number()) {
+    complain(fmt::format("{} is {}, expected a number of {} to {}", name, value->type_name(), low, high));
+    return low;
+  }
+  const double found = value->get<double>();
+  if (!std::isfinite(found) || found < low || found > high) {
+    complain(fmt::format("{} is {}, expected {} to {}", name, found, low, high));
+    return low;
+  }
+  return found;
+}
+
+int JsonFields::integer(const char* name, int low, int high, const int* fallback) {
+  const double as_double = fallback != nullptr ? *fallback : 0.0;
+  const double found = number(name, low, high, fallback != nullptr ? &as_double : nullptr);
+  if (found != std::floor(found)) complain(fmt::format("{} is {}, expected a whole number", name, found));
+  return static_cast<int>(found);
+}
+
+bool JsonFields::flag(const char* name, bool fallback) {
+  const json* const value = find(name);
+  if (value == nullptr) return fallback;
+  if (value->is_boolean()) return value->get<bool>();
+  if (value->is_number()) return value->get<double>() >= 0.5;
+  complain(fmt::format("{} is {}, expected true, false, 0 or 1", name, value->type_name()));
+  return fallback;
+}
+
+std::string JsonFields::text(const char* name, const char* fallback) {
+  const json* const value = find(name);
+  if (value == nullptr) {
+    if (fallback != nullptr) return fallback;
+    complain(fmt::format("{} is missing, expected a text", name));
+    return {};
+  }
+  if (value->is_string()) return value->get<std::string>();
+  if (value->is_number()) return value->dump();
+  complain(fmt::format("{} is {}, expected a text", name, value->type_name()));
+  return {};
+}
+
+Result<void> JsonFields::finish() const {
+  if (!complaint_.empty()) return fail(ErrorKind::kConfig, "{}", complaint_);
+  return {};
+}
+
+Result<json> parse_json_text(std::string_view text, std::string_view source) {
+  if (text.size() > (std::size_t{1} << 20))
+    return fail(ErrorKind::kConfig, "{}: {} bytes of JSON, expected at most 1 MiB", source, text.size());
+  // nlohmann's parser keeps nesting on the heap; a depth limit keeps destruction from recursing too deep.
+  bool too_deep = false;
+  const auto guard = [&](int depth, json::parse_event_t, json&) {
+    too_deep = too_deep || depth > 32;
+    return depth <= 32;
+  };
+  try {
+    json parsed = json::parse(text, guard);
+    if (too_deep) return fail(ErrorKind::kConfig, "{}: JSON nested deeper than 32 levels", source);
+    return parsed;
+  } catch (const json::exception& e) {
+    return fail(ErrorKind::kConfig, "{}: not valid JSON: {}", source, e.what());
+  }
+}
+
+}  // namespace dubsar

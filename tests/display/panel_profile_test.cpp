@@ -1,0 +1,151 @@
+#include "display/panel_profile.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <numeric>
+
+#include "core/base/atomic_file.h"
+#include "display/optics.h"
+
+namespace dubsar {
+namespace {
+namespace fs = std::filesystem;
+
+const std::vector<PanelProfile>& built_in() {
+  static const std::vector<PanelProfile> profiles = load_profiles("/nonexistent").value();
+  return profiles;
+}
+
+TEST(PanelProfile, EveryLookingGlassModelHasItsQuilt) {
+  struct Row {
+    const char* name;
+    int width, height, columns, rows, quilt_width, quilt_height;
+  };
+  for (const Row& row : {Row{"looking-glass-8.9", 2560, 1600, 5, 9, 4096, 4096}, Row{"looking-glass-portrait", 1536, 2048, 8, 6, 3360, 3360},
+                         Row{"looking-glass-go", 1440, 2560, 11, 6, 4092, 4092}, Row{"looking-glass-65", 7680, 4320, 8, 9, 8192, 8192},
+                         Row{"looking-glass-16-gen3-portrait", 2160, 3840, 11, 6, 5995, 6000},
+                         Row{"looking-glass-16-gen3-landscape", 3840, 2160, 7, 7, 5999, 5999},
+                         Row{"looking-glass-32-gen3-landscape", 7680, 4320, 7, 7, 8190, 8190},
+                         Row{"looking-glass-32-gen2", 7680, 4320, 5, 9, 8192, 8192}}) {
+    const auto profile = find_profile(built_in(), row.name);
+    ASSERT_TRUE(profile) << row.name;
+    EXPECT_EQ(profile->width_px, row.width) << row.name;
+    EXPECT_EQ(profile->height_px, row.height) << row.name;
+    EXPECT_EQ(profile->quilt.columns, row.columns) << row.name;
+    EXPECT_EQ(profile->quilt.rows, row.rows) << row.name;
+    EXPECT_EQ(profile->quilt.width_px, row.quilt_width) << row.name;
+    EXPECT_EQ(profile->quilt.height_px, row.quilt_height) << row.name;
+  }
+  EXPECT_EQ(find_profile(built_in(), "looking-glass-portrait")->quilt.tile_width(), 420);
+  EXPECT_EQ(find_profile(built_in(), "looking-glass-go")->quilt.tile_height(), 682);
+}
+
+TEST(PanelProfile, AnUnknownNameListsTheKnownOnes) {
+  const auto profile = find_profile(built_in(), "nothing");
+  ASSERT_FALSE(profile);
+  EXPECT_EQ(profile.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(profile.error().message.find("spatiallabs-15.6"), std::string::npos);
+}
+
+TEST(PanelProfile, AUsersFileReplacesTheProfileOfTheSameName) {
+  const fs::path folder = fs::temp_directory_path() / fmt::format("dubsar_profiles_{}", ::getpid());
+  fs::create_directories(folder);
+  ASSERT_TRUE(write_file_atomically(folder / "mine.json", R"({"name": "lens-sheet-24-5-views", "kind": "lens_sheet",
+      "width_px": 1920, "height_px": 1080, "dpi": 90, "view_cone_deg": 22, "views": 7, "lens": {"pitch": 40, "slope": 5}})"));
+  const auto profiles = load_profiles(folder);
+  fs::remove_all(folder);
+  ASSERT_TRUE(profiles) << profiles.error().message;
+  EXPECT_EQ(profiles->size(), built_in().size());
+  EXPECT_EQ(find_profile(*profiles, "lens-sheet-24-5-views")->views, 7);
+}
+
+TEST(PanelProfile, ATrackedPanelSeparatesTheEyesAtItsDesignDistance) {
+  for (const char* name : {"spatiallabs-15.6", "sr-32"}) {
+    const PanelProfile profile = *find_profile(built_in(), name);
+    const TrackedPanel panel = panel_optics(profile, profile.design_distance_mm).value();
+    const double half = 0.5 * profile.ipd_mm, z = profile.design_distance_mm;
+    const EyePair eyes{{-half, 0, z}, {half, 0, z}};
+    EXPECT_LE(wrong_eye_light(panel, eyes, eyes, true, 64).worst(), 0.04) << name;
+  }
+}
+
+constexpr const char* kWrapped = R"({"configVersion": "1.0", "serial": "LKG-P00671", "pitch": {"value": 52.594383},
+  "slope": {"value": -7.211529}, "center": {"value": 0.5}, "viewCone": {"value": 40.0}, "invView": {"value": 1.0},
+  "verticalAngle": {"value": 0.0}, "DPI": {"value": 324.0}, "screenW": {"value": 1536.0}, "screenH": {"value": 2048.0},
+  "flipImageX": {"value": 0.0}, "flipImageY": {"value": 0.0}, "flipSubp": {"value": 0.0}})";
+
+TEST(Calibration, WrappedAndBareNumbersAreTheSame) {
+  const auto wrapped = parse_calibration(kWrapped, "visual.json");
+  ASSERT_TRUE(wrapped) << wrapped.error().message;
+  EXPECT_NEAR(lens_sheet(wrapped->figures).periods, 246.9732, 5e-4);
+  const auto bare = parse_calibration(
+      R"({"serial": "LKG-P00671", "pitch": 52.594383, "slope": -7.211529, "center": 0.5, "DPI": 324, "screenW": 1536, "screenH": 2048})", "b");
+  ASSERT_TRUE(bare) << bare.error().message;
+  EXPECT_DOUBLE_EQ(bare->figures.pitch, wrapped->figures.pitch);
+}
+
+TEST(Calibration, PicksTheModelBySerial) {
+  const auto profile = calibrated_profile(built_in(), *parse_calibration(kWrapped, "visual.json"));
+  ASSERT_TRUE(profile);
+  EXPECT_EQ(profile->name, "looking-glass-portrait");
+  EXPECT_EQ(profile->calibration, "visual.json");
+  EXPECT_NEAR(profile->width_mm, 120.415, 1e-3);
+}
+
+TEST(Calibration, CellsOfTheThirdGenerationAreRead) {
+  const auto read = parse_calibration(R"({"serial": "LKG-H1", "pitch": 44.72, "slope": -7.45, "DPI": 283, "screenW": 2160,
+    "screenH": 3840, "CellPatternMode": {"value": 4}, "subpixelCells": [
+      {"ROffsetX": -0.25, "ROffsetY": -0.31, "GOffsetX": -0.25, "GOffsetY": 0.28, "BOffsetX": 0.25, "BOffsetY": 0},
+      {"ROffsetX": 0.25, "ROffsetY": -0.31, "GOffsetX": 0.25, "GOffsetY": 0.28, "BOffsetX": -0.25, "BOffsetY": 0}]})", "h");
+  ASSERT_TRUE(read) << read.error().message;
+  const LensSheet sheet = lens_sheet(read->figures);
+  EXPECT_EQ(sheet.subpixels.pattern, CellPattern::kRows);
+  EXPECT_DOUBLE_EQ(sheet.subpixels.offset_px(7, 3, 0).x, 0.25);
+  EXPECT_DOUBLE_EQ(sheet.subpixels.offset_px(7, 2, 1).y, 0.28);
+  EXPECT_EQ(calibrated_profile(built_in(), *read)->name, "looking-glass-16-gen3-portrait");
+}
+
+TEST(Calibration, BadFiguresAreRefusedByNameAndRange) {
+  struct Case {
+    const char *json, *words;
+  };
+  for (const Case& c : {
+           Case{R"({"pitch": 0, "slope": 1, "DPI": 300, "screenW": 100, "screenH": 100})", "pitch is 0, expected 1 to 10000"},
+           Case{R"({"pitch": 50, "slope": 0, "DPI": 300, "screenW": 100, "screenH": 100})", "slope is 0"},
+           Case{R"({"pitch": 50, "slope": 5, "DPI": 300, "screenW": 20000, "screenH": 100})", "screenW is 20000, expected 1 to 16384"},
+           Case{R"({"pitch": 50, "slope": 5, "DPI": 300, "screenW": 10.5, "screenH": 100})", "screenW is 10.5, expected a whole number"},
+           Case{R"({"pitch": "fast", "slope": 5, "DPI": 300, "screenW": 10, "screenH": 100})", "pitch is string"},
+           Case{R"({"pitch": 50, "slope": 5, "screenW": 10, "screenH": 100})", "DPI is missing"},
+           Case{R"({"pitch": 1e999, "slope": 5, "DPI": 300, "screenW": 10, "screenH": 100})", "not valid JSON"},
+           Case{R"([1, 2])", "expected an object"}, Case{R"({"pitch": )", "not valid JSON"}, Case{"", "not valid JSON"},
+           Case{R"({"pitch": 50, "slope": 5, "DPI": 300, "screenW": 10, "screenH": 100, "CellPatternMode": 7})", "CellPatternMode is 7, expected 0 to 4"},
+       }) {
+    const auto read = parse_calibration(c.json, "bad.json");
+    ASSERT_FALSE(read) << c.json;
+    EXPECT_EQ(read.error().kind, ErrorKind::kConfig);
+    EXPECT_NE(read.error().message.find(c.words), std::string::npos) << read.error().message;
+  }
+}
+
+TEST(Calibration, DeepNestingAndEveryTruncationEndInASentence) {
+  EXPECT_FALSE(parse_calibration(std::string(60000, '['), "deep"));
+  const std::string whole = kWrapped;
+  for (std::size_t n = 0; n < whole.size(); ++n) EXPECT_FALSE(parse_calibration(whole.substr(0, n), "cut")) << n;
+}
+
+TEST(Calibration, IsFoundOnAMountedUnit) {
+  const fs::path root = fs::temp_directory_path() / fmt::format("dubsar_media_{}", ::getpid());
+  fs::create_directories(root / "LKG-P00671" / "LKG_calibration");
+  fs::create_directories(root / "OTHER");
+  ASSERT_TRUE(write_file_atomically(root / "LKG-P00671" / "LKG_calibration" / "visual.json", kWrapped));
+  const std::vector<fs::path> roots{root, "/nonexistent"};
+  const auto found = find_calibration_files(roots);
+  fs::remove_all(root);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].filename(), "visual.json");
+}
+
+}  // namespace
+}  // namespace dubsar
