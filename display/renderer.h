@@ -1,0 +1,39 @@
+#pragma once
+// Draws a mesh for any number of views into the layers of a view array.
+
+#include <span>
+
+#include "core/base/result.h"
+#include "display/gpu_mesh.h"
+#include "display/shading.h"
+#include "display/view.h"
+#include "display/view_array.h"
+
+namespace dubsar {
+
+class Renderer {
+ public:
+  /// Compiles the shaders. Everything happens in the thread of the current GL 4.5 context, and all objects go before
+  /// the context does.
+  static Result<Renderer> create();
+
+  /// Layer first_layer + i of `target` gets views[i] of `mesh`. `factor` x `factor` samples a pixel (1..8), averaged in
+  /// linear light. Pixels: the colour of a vertex is interpolated, light is computed per sample.
+  Result<void> render(const GpuMesh& mesh, const Shading& shading, std::span<const View> views, int factor,
+                      ViewArray& target, int first_layer = 0);
+
+ private:
+  struct Scratch {  ///< samples of one view: linear light, premultiplied
+    int width = 0, height = 0;
+    GlTexture color, depth;
+    GlFramebuffer framebuffer;
+  };
+  Result<void> use_scratch(int width, int height);
+
+  GlProgram mesh_program_, resolve_program_;
+  GlVertexArray no_vertices_;
+  GlFramebuffer layer_;
+  Scratch scratch_;
+};
+
+}  // namespace dubsar

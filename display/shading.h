@@ -1,0 +1,68 @@
+#pragma once
+// How the surface looks: colouring by shape class and ambient occlusion (paper sections 3.4.2 and 3.4.4, figure 14),
+// light, partition colours, background. Pure data and tables; no GL.
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <string_view>
+#include <vector>
+
+#include "core/base/result.h"
+
+namespace dubsar {
+
+using Rgb8 = std::array<std::uint8_t, 3>;  ///< sRGB-coded
+
+enum class ColorMap {
+  kPlain,       ///< base_color everywhere
+  kTable,       ///< one hue per shape class (figure 14a)
+  kBlackWhite,  ///< concave dark, convex light (14b)
+  kSkySun,      ///< sky-blue shadows, sun-orange lights (14c)
+};
+
+enum class BackFaces {
+  kShow,  ///< lit like front faces
+  kTint,  ///< in back_color, so that the inside of an open surface is told from its outside
+  kCull,
+};
+
+struct Shading {
+  ColorMap map = ColorMap::kBlackWhite;
+  double contrast = 1.0;         ///< of the map around base_color, 0..1; not for kTable
+  bool ambient_occlusion = true;
+  bool lit = true;               ///< false: the colours as they are, as in figure 14 a to e
+  Rgb8 base_color{203, 192, 178};
+
+  double light_azimuth_deg = 315;   ///< in the picture, clockwise from its upper side: 315 is from the upper left
+  double light_elevation_deg = 35;  ///< above the picture plane: 90 is a headlight, below 30 is raking light
+  double ambient = 0.25, key = 0.75, fill = 0.15, specular = 0.05;  ///< weights; fill comes from the eye
+  double shininess = 24;
+
+  BackFaces back_faces = BackFaces::kShow;
+  Rgb8 back_color{120, 60, 60};
+
+  std::uint8_t partitions = 0xff;  ///< bit p: partition p is drawn
+  std::array<Rgb8, 8> partition_colors{Rgb8{255, 255, 255}, {255, 255, 255}, {255, 255, 255}, {255, 255, 255},
+                                       {255, 255, 255},     {255, 255, 255}, {255, 255, 255}, {255, 255, 255}};
+
+  Rgb8 background{24, 24, 26};
+  bool transparent_background = false;  ///< alpha 0 where nothing is seen
+};
+
+/// Names of presets for the command line: "relief" (default), "phong", "table", "black-white", "sky-sun", "ao",
+/// "sky-sun-ao", "black-white-ao", "table-ao". kUsage, with the list, for another name.
+Result<Shading> shading_preset(std::string_view name);
+std::vector<std::string_view> shading_preset_names();
+
+/// Distinct colours for partitions 0 to 7, for when partitions shall be told apart; they differ in lightness too.
+std::array<Rgb8, 8> distinct_partition_colors();
+
+constexpr int kShapeRows = 128, kAoColumns = 64;
+/// Colour of shape class s (0..127) under ambient light a (0..63) at [a * 128 + s]: what the vertex shader looks up.
+std::vector<std::array<std::uint8_t, 4>> color_table(const Shading& shading);
+
+/// Unit vector towards the key light in the view frame (+X right, +Y up, +Z to the eye).
+glm::dvec3 light_direction(const Shading& shading);
+
+}  // namespace dubsar

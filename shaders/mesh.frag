@@ -1,0 +1,38 @@
+#version 450 core
+// Ambient, diffuse and specular light (Blinn-Phong) in linear colours, or the vertex colours as they are.
+
+struct ViewData {
+  mat4 view_from_unit;
+  mat4 clip_from_view;
+  mat4 view_from_normal;
+};
+layout(std430, binding = 0) readonly buffer Views { ViewData views[]; };
+layout(location = 0) uniform int view_index;
+
+layout(std140, binding = 1) uniform Style {
+  vec4 light;
+  vec4 weights;
+  vec4 back_color;
+  vec4 shininess;
+  vec4 partition_color[8];
+};
+
+in vec3 view_position;
+in vec3 view_normal;
+in vec3 albedo;
+layout(location = 0) out vec4 color;  // linear, premultiplied
+
+void main() {
+  vec3 base = gl_FrontFacing ? albedo : mix(albedo, back_color.rgb, back_color.a);
+  if (light.w == 0.0) {
+    color = vec4(base, 1.0);
+    return;
+  }
+  vec3 normal = normalize(view_normal);
+  if (!gl_FrontFacing) normal = -normal;
+  vec3 to_eye = mix(normalize(-view_position), vec3(0.0, 0.0, 1.0), views[view_index].view_from_normal[3][3]);
+  float key = max(dot(normal, light.xyz), 0.0);
+  float fill = max(dot(normal, to_eye), 0.0);
+  float gloss = key > 0.0 ? pow(max(dot(normal, normalize(light.xyz + to_eye)), 0.0), shininess.x) : 0.0;
+  color = vec4(base * (weights.x + weights.y * key + weights.z * fill) + vec3(weights.w * gloss), 1.0);
+}

@@ -1,0 +1,53 @@
+#version 450 core
+// One vertex of the surface: position in the unit cube of the mesh, packed attributes, octahedral normal.
+
+layout(location = 0) in vec3 unit_position;
+layout(location = 1) in uint packed_attributes;  // shape 7 bits, ambient light 6 bits, partition 3 bits
+layout(location = 2) in vec2 oct_normal;
+layout(location = 3) in vec4 foreign_color;  // sRGB-coded; (1, 1, 1) when the mesh has none
+
+struct ViewData {
+  mat4 view_from_unit;
+  mat4 clip_from_view;
+  mat4 view_from_normal;  // rotation; [3][3] is 1 for parallel projection
+};
+layout(std430, binding = 0) readonly buffer Views { ViewData views[]; };
+layout(location = 0) uniform int view_index;
+
+layout(std140, binding = 1) uniform Style {
+  vec4 light;              // xyz: unit direction to the key light in the view frame; w: 1 = lit
+  vec4 weights;            // ambient, key, fill (from the eye), specular
+  vec4 back_color;         // linear; a: how much of it back faces take
+  vec4 shininess;          // x
+  vec4 partition_color[8]; // linear
+};
+layout(binding = 0) uniform sampler2D color_table;  // sRGB-coded, x: shape, y: ambient light
+
+out vec3 view_position;
+out vec3 view_normal;
+out vec3 albedo;  // linear
+
+vec3 linear_from_srgb(vec3 c) {
+  return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
+}
+
+vec3 decode_octahedral(vec2 e) {
+  vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+  float t = max(-n.z, 0.0);
+  n.xy -= vec2(n.x >= 0.0 ? t : -t, n.y >= 0.0 ? t : -t);
+  return normalize(n);
+}
+
+void main() {
+  ViewData view = views[view_index];
+  uint shape = packed_attributes & 127u;
+  uint ao = (packed_attributes >> 7) & 63u;
+  uint part = packed_attributes >> 13;
+
+  vec4 position = view.view_from_unit * vec4(unit_position, 1.0);
+  view_position = position.xyz;
+  view_normal = mat3(view.view_from_normal) * decode_octahedral(oct_normal);
+  albedo = linear_from_srgb(texelFetch(color_table, ivec2(shape, ao), 0).rgb) *
+           linear_from_srgb(foreign_color.rgb) * partition_color[part].rgb;
+  gl_Position = view.clip_from_view * position;
+}

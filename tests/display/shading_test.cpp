@@ -1,0 +1,81 @@
+// Presets, the light, and the table of colours, without GL.
+
+#include "display/shading.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+namespace dubsar {
+namespace {
+
+TEST(Shading, EveryPresetHasItsNameAndOthersAreRefused) {
+  for (const auto name : shading_preset_names()) EXPECT_TRUE(shading_preset(name)) << name;
+  const auto other = shading_preset("shiny");
+  ASSERT_FALSE(other);
+  EXPECT_EQ(other.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(other.error().message.find("relief"), std::string::npos);
+}
+
+TEST(Shading, LightComesFromTheCompassPointOfThePicture) {
+  Shading s;
+  s.light_elevation_deg = 30;
+  const struct {
+    double azimuth;
+    int x, y;
+  } cases[] = {{0, 0, 1}, {90, 1, 0}, {180, 0, -1}, {270, -1, 0}, {315, -1, 1}};
+  for (const auto& c : cases) {
+    s.light_azimuth_deg = c.azimuth;
+    const glm::dvec3 l = light_direction(s);
+    EXPECT_NEAR(glm::length(l), 1, 1e-12);
+    EXPECT_NEAR(l.z, 0.5, 1e-12);
+    EXPECT_EQ(std::lround(l.x * 1.3), c.x) << c.azimuth;
+    EXPECT_EQ(std::lround(l.y * 1.3), c.y) << c.azimuth;
+  }
+}
+
+TEST(Shading, AmbientOcclusionScalesEveryColourOfTheTable) {
+  for (const ColorMap map : {ColorMap::kPlain, ColorMap::kTable, ColorMap::kBlackWhite, ColorMap::kSkySun}) {
+    Shading s;
+    s.map = map;
+    s.ambient_occlusion = true;
+    const auto table = color_table(s);
+    ASSERT_EQ(table.size(), 128u * 64u);
+    s.ambient_occlusion = false;
+    const auto open = color_table(s);
+    for (int shape = 0; shape < 128; ++shape) {
+      EXPECT_EQ(table[63 * 128 + shape], open[shape]);
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_EQ(table[shape][c], 0);
+        EXPECT_NEAR(table[21 * 128 + shape][c], open[shape][c] / 3.0, 0.51);
+        EXPECT_EQ(open[5 * 128 + shape][c], open[shape][c]);
+      }
+    }
+  }
+}
+
+TEST(Shading, ConcaveIsDarkAndConvexIsLight) {
+  Shading s;
+  s.ambient_occlusion = false;
+  for (const ColorMap map : {ColorMap::kBlackWhite, ColorMap::kSkySun}) {
+    s.map = map;
+    const auto table = color_table(s);
+    const auto red = [&](int curvedness, int shape) { return static_cast<int>(table[1 + 9 * curvedness + shape][0]); };
+    const int flat = table[0][0];
+    EXPECT_LT(red(13, 0), flat);                 // cup
+    EXPECT_LT(red(13, 2), flat);                 // rut
+    EXPECT_GT(red(13, 6), flat);                 // ridge
+    EXPECT_GT(red(13, 8), flat);                 // cap
+    EXPECT_LT(red(13, 0), red(6, 0));            // the sharper, the darker
+    EXPECT_GT(red(13, 8), red(6, 8));
+  }
+}
+
+TEST(Shading, PartitionColoursDifferInLightness) {
+  const auto colors = distinct_partition_colors();
+  for (int a = 0; a < 8; ++a)
+    for (int b = 0; b < a; ++b) EXPECT_NE(colors[a], colors[b]);
+}
+
+}  // namespace
+}  // namespace dubsar
