@@ -5,6 +5,7 @@ target_include_directories(dubsar_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(dubsar_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-align
   -Woverloaded-virtual -Wconversion -Wno-sign-conversion -Wno-psabi -Werror=return-type
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>  # g++ 12 cries wolf over std::optional at -O3
   -ffp-contract=off  # a*d-b*c must be symmetric: the asymptotic decider depends on it
   -fstack-protector-strong)
 target_compile_definitions(dubsar_options INTERFACE $<$<CONFIG:Debug>:_GLIBCXX_ASSERTIONS>)
