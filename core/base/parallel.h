@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace dubsar {
@@ -31,6 +32,7 @@ void parallel_for(std::int64_t count, std::int64_t grain, const Body& body) {
 /// bits for any number of threads, also for floating point.
 template <class T, class Map, class Combine>
 T parallel_reduce(std::int64_t count, std::int64_t grain, T init, const Map& map, const Combine& combine) {
+  static_assert(!std::is_same_v<T, bool>, "std::vector<bool> cannot be written by several threads");
   const std::int64_t step = std::max<std::int64_t>(grain, 1);
   std::vector<T> partial(static_cast<std::size_t>((count + step - 1) / step), init);
   parallel_chunks(count, step, [&](std::int64_t begin, std::int64_t end) {

@@ -1,6 +1,9 @@
 #include "core/surface/quad_mesh.h"
 
 #include <algorithm>
+#include <atomic>
+
+#include "core/base/parallel.h"
 
 namespace dubsar {
 
@@ -29,22 +32,34 @@ Polygon QuadMesh::polygon(std::uint32_t quad) const noexcept {
   return polygon;
 }
 
-void QuadMesh::build_incidence() {
+void QuadMesh::mark_doubled() {
   doubled_bits.assign((quads.size() + 63) / 64, 0);
   for (const DoubledCorner& d : doubled) doubled_bits[d.quad >> 6] |= std::uint64_t{1} << (d.quad & 63);
+}
+
+void QuadMesh::build_incidence() {
+  mark_doubled();
   first_incident.assign(positions.size() + 1, 0);
   const auto for_each = [&](const auto& visit) {
-    auto next = doubled.begin();
-    for (std::uint32_t q = 0; q < quads.size(); ++q) {
-      for (const std::uint32_t v : quads[q]) visit(v, q);
-      for (; next != doubled.end() && next->quad == q; ++next) visit(next->vertex, q);
-    }
+    parallel_for(quad_count(), 1 << 14, [&](std::int64_t q) {
+      for (const std::uint32_t v : quads[static_cast<std::size_t>(q)]) visit(v, static_cast<std::uint32_t>(q));
+    });
+    for (const DoubledCorner& d : doubled) visit(d.vertex, d.quad);
   };
-  for_each([&](std::uint32_t v, std::uint32_t) { ++first_incident[v + 1]; });
-  for (std::size_t v = 0; v < positions.size(); ++v) first_incident[v + 1] += first_incident[v];
-  incident.resize(first_incident.back());
-  std::vector<std::uint32_t> fill(first_incident.begin(), first_incident.end() - 1);
-  for_each([&](std::uint32_t v, std::uint32_t q) { incident[fill[v]++] = q; });
+  // first_incident[v] counts, then is the end of v's list while it is filled from behind, then its begin.
+  for_each([&](std::uint32_t v, std::uint32_t) {
+    std::atomic_ref(first_incident[v]).fetch_add(1, std::memory_order_relaxed);
+  });
+  std::uint32_t sum = 0;
+  for (std::uint32_t& count : first_incident) count = sum += count;
+  incident.resize(sum);
+  for_each([&](std::uint32_t v, std::uint32_t q) {
+    incident[std::atomic_ref(first_incident[v]).fetch_sub(1, std::memory_order_relaxed) - 1] = q;
+  });
+  parallel_for(vertex_count(), 1 << 14, [&](std::int64_t v) {
+    std::sort(incident.begin() + first_incident[static_cast<std::size_t>(v)],
+              incident.begin() + first_incident[static_cast<std::size_t>(v) + 1]);
+  });
 }
 
 }  // namespace dubsar

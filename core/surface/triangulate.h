@@ -1,6 +1,6 @@
 #pragma once
-// X-quads to triangles such that every edge stays simple, whatever the input (algorithms.md section 1.2): 4-gons take
-// either diagonal, 5- and 6-gons only diagonals between opposite corners, adjacent doubled corners a Steiner vertex.
+// X-quads to triangles such that every edge stays simple, whatever the input (docs/manifold.md): 4-gons take either
+// diagonal, 5- and 6-gons only diagonals between opposite corners, adjacent doubled corners a Steiner vertex.
 
 #include <span>
 
@@ -15,8 +15,11 @@ struct Triangulation {
   std::vector<glm::vec3> steiner;             ///< mean of the polygon's vertices
 };
 
-/// `vertex_normals` guide the diagonal (one per dual vertex, unit) or are empty: then face geometry decides.
-/// Deterministic for any thread count.
+/// `vertex_normals` guide the diagonal of 4-gons (one per dual vertex, unit) or are empty. With normals: the crease
+/// follows the curvature, i.e. the diagonal is taken that lies nearer to the surface estimated from normals and
+/// positions (paper section 3.3). Without: the pair of triangles that deviates least from the mean plane. Either way a
+/// 4-gon that is not convex in its mean plane is cut at its reflex corner; ties: the diagonal with the lowest vertex id.
+/// Deterministic for any thread count. About 60 ns a quad and thread.
 Triangulation triangulate(const QuadMesh& mesh, std::span<const glm::vec3> vertex_normals);
 
 }  // namespace dubsar
