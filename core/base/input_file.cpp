@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <utility>
 
+#include "core/base/budget.h"
+
 namespace dubsar {
 
 Result<InputFile> InputFile::open(const std::filesystem::path& path) {
@@ -52,6 +54,22 @@ Result<void> InputFile::read_at(std::int64_t offset, std::span<std::byte> out) c
     offset += count;
   }
   return {};
+}
+
+Result<std::string> read_bytes(const InputFile& file, std::int64_t offset, std::int64_t count) {
+  if (offset < 0 || count < 0 || offset > file.size() || count > file.size() - offset)
+    return fail(ErrorKind::kBadData, "{}: {} bytes wanted at {}, but the file has {}", file.path().string(), count,
+                offset, file.size());
+  constexpr std::int64_t kSmall = 64 << 20;  // below this the look at free memory is not worth it
+  if (count > kSmall) DUBSAR_TRY(check_memory(file.path().string(), static_cast<std::uint64_t>(count)));
+  std::string bytes(static_cast<std::size_t>(count), '\0');
+  DUBSAR_TRY(file.read_at(offset, std::as_writable_bytes(std::span(bytes.data(), bytes.size()))));
+  return bytes;
+}
+
+Result<std::string> read_file_bytes(const std::filesystem::path& path) {
+  DUBSAR_ASSIGN(const InputFile file, InputFile::open(path));
+  return read_bytes(file, 0, file.size());
 }
 
 }  // namespace dubsar

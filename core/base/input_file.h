@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 
 #include "core/base/result.h"
 
@@ -35,5 +36,12 @@ class InputFile {
   std::int64_t size_ = 0;
   std::filesystem::path path_;
 };
+
+/// `count` bytes from `offset`, for parsers that want a piece in memory. kBadData when the file is shorter, kTryAgain
+/// when memory is short.
+Result<std::string> read_bytes(const InputFile& file, std::int64_t offset, std::int64_t count);
+
+/// All bytes of a file of any size that fits in memory.
+Result<std::string> read_file_bytes(const std::filesystem::path& path);
 
 }  // namespace dubsar

@@ -1,0 +1,22 @@
+#pragma once
+// JSON from files that are not trusted: size and depth are limited before the parser sees a byte.
+
+#include <cstddef>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+#include "core/base/result.h"
+
+namespace dubsar {
+
+inline constexpr std::size_t kJsonMaxBytes = std::size_t{8} << 20;
+inline constexpr int kJsonMaxDepth = 32;
+
+/// Parses one JSON text (UTF-8, no comments). `what` names it in the error text. kBadData: too long, too deep, broken.
+Result<nlohmann::json> parse_json(std::string_view text, std::string_view what);
+
+/// One line of plain ASCII; characters that are not UTF-8 are replaced.
+std::string dump_json(const nlohmann::json& json);
+
+}  // namespace dubsar

@@ -1,0 +1,36 @@
+#pragma once
+// The formats behind the door. Parsers take bytes that nobody vouches for: they may refuse, never read outside.
+
+#include <filesystem>
+#include <string_view>
+
+#include "core/mesh_io/mesh_io.h"
+
+namespace dubsar {
+
+/// PLY 1.0: ascii, binary little and big endian; any order and type of properties; tristrips are refused.
+Result<TriMesh> parse_ply(std::string_view bytes, Progress& progress);
+/// Binary little endian: x y z [nx ny nz] [red green blue] [partition] [k_min k_max] [shape] [ao] [quality], where
+/// quality is the mean curvature; faces are uchar/int lists.
+Result<void> write_ply(const std::filesystem::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
+                       Progress& progress);
+
+/// STL, binary and ascii. Corners with equal coordinates become one vertex.
+Result<TriMesh> parse_stl(std::string_view bytes, Progress& progress);
+/// Binary; the 80-byte header names the unit and never starts with "solid".
+Result<void> write_stl(const std::filesystem::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
+                       Progress& progress);
+
+/// Wavefront OBJ: v (with optional colour), vn, f with positive and negative indices, polygons, line continuation.
+Result<TriMesh> parse_obj(std::string_view bytes, Progress& progress);
+/// v, vn and f a//a; one group per partition.
+Result<void> write_obj(const std::filesystem::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
+                       Progress& progress);
+
+/// glTF 2.0 binary: triangle meshes in the node tree, uncompressed, not sparse, all data in the file.
+Result<TriMesh> parse_glb(std::string_view bytes, Progress& progress);
+/// One named node, mesh and primitive per partition below a root node that turns millimetres, z up, into metres, y up.
+Result<void> write_glb(const std::filesystem::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
+                       Progress& progress);
+
+}  // namespace dubsar

@@ -1,0 +1,154 @@
+#include "core/mesh_io/mesh_io.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "core/base/input_file.h"
+#include "core/mesh_io/mesh_formats.h"
+#include "core/mesh_io/mesh_output.h"
+
+namespace dubsar {
+namespace {
+struct Format {
+  MeshFormat format;
+  std::string_view name, suffix;
+  Result<TriMesh> (*parse)(std::string_view, Progress&);
+  Result<void> (*write)(const std::filesystem::path&, const TriMesh&, const MeshWriteOptions&, Progress&);
+};
+
+constexpr std::array<Format, 4> kFormats{{{MeshFormat::kPly, "ply", ".ply", parse_ply, write_ply},
+                                          {MeshFormat::kStl, "stl", ".stl", parse_stl, write_stl},
+                                          {MeshFormat::kObj, "obj", ".obj", parse_obj, write_obj},
+                                          {MeshFormat::kGlb, "glb", ".glb", parse_glb, write_glb}}};
+
+const Format& row(MeshFormat format) { return kFormats[static_cast<std::size_t>(format)]; }
+
+/// By content where it is unmistakable, else by suffix: STL and OBJ have no magic number.
+Result<MeshFormat> recognise(const std::filesystem::path& path, std::string_view bytes) {
+  if (bytes.empty()) return fail(ErrorKind::kBadData, "{}: the file is empty", path.string());
+  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return MeshFormat::kPly;
+  if (bytes.starts_with("glTF")) return MeshFormat::kGlb;
+  if (bytes.starts_with("\x89HDF"))
+    return fail(ErrorKind::kBadData, "{}: this is an HDF5 volume, expected a mesh; use dubsar process", path.string());
+  if (const auto by_suffix = mesh_format_from_path(path)) return *by_suffix;
+  if (bytes.starts_with("solid")) return MeshFormat::kStl;
+  return fail(ErrorKind::kBadData, "{}: neither content nor suffix is that of a PLY, STL, OBJ or GLB file",
+              path.string());
+}
+
+struct Loaded {
+  MeshFormat format;
+  std::int64_t bytes;
+  TriMesh mesh;
+};
+
+Result<Loaded> load(const std::filesystem::path& path, Progress& progress) {
+  DUBSAR_ASSIGN(const std::string bytes, read_file_bytes(path));
+  DUBSAR_ASSIGN(const MeshFormat format, recognise(path, bytes));
+  try {
+    auto mesh = row(format).parse(bytes, progress);
+    if (!mesh) {
+      Error error = std::move(mesh).error();
+      if (error.kind == ErrorKind::kBadData) error.message = path.string() + ": " + error.message;
+      return tl::unexpected<Error>(std::move(error));
+    }
+    return Loaded{format, static_cast<std::int64_t>(bytes.size()), std::move(*mesh)};
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorKind::kTryAgain, "{}: out of memory while reading a mesh of {} bytes", path.string(),
+                bytes.size());
+  }
+}
+}  // namespace
+
+std::string_view mesh_format_name(MeshFormat format) noexcept { return row(format).name; }
+
+Result<MeshFormat> mesh_format_from_path(const std::filesystem::path& path) {
+  std::string suffix = path.extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  for (const Format& format : kFormats)
+    if (format.suffix == suffix) return format.format;
+  return fail(ErrorKind::kUsage, "{}: suffix \"{}\" found, expected .ply, .stl, .obj or .glb", path.string(), suffix);
+}
+
+Result<void> write_mesh(const std::filesystem::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
+                        Progress& progress) {
+  DUBSAR_ASSIGN(const MeshFormat format, mesh_format_from_path(path));
+  return row(format).write(path, mesh, options, progress);
+}
+
+Result<TriMesh> read_mesh(const std::filesystem::path& path, Progress& progress) {
+  DUBSAR_ASSIGN(Loaded loaded, load(path, progress));
+  return std::move(loaded.mesh);
+}
+
+Result<MeshInfo> mesh_info(const std::filesystem::path& path, Progress& progress) {
+  DUBSAR_ASSIGN(const Loaded loaded, load(path, progress));
+  const TriMesh& mesh = loaded.mesh;
+  MeshInfo info;
+  info.format = loaded.format;
+  info.bytes = loaded.bytes;
+  info.vertices = static_cast<std::int64_t>(mesh.positions.size());
+  info.triangles = static_cast<std::int64_t>(mesh.triangles.size());
+  info.unit = mesh.frame.input_voxel;
+  info.partitions = mesh.partitions;
+  info.provenance = mesh.provenance;
+  if (!mesh.triangles.empty()) {
+    info.min_mm = glm::dvec3(std::numeric_limits<double>::max());
+    info.max_mm = glm::dvec3(std::numeric_limits<double>::lowest());
+  }
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t) {
+      const glm::dvec3 p = mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[v]));
+      info.min_mm = glm::min(info.min_mm, p);
+      info.max_mm = glm::max(info.max_mm, p);
+    }
+  const auto note = [&](bool present, const char* name) {
+    if (present) info.attributes.emplace_back(name);
+  };
+  note(!mesh.normals.empty(), "normals");
+  note(!mesh.colors.empty(), "colors");
+  note(!mesh.partition.empty(), "partition");
+  note(!mesh.k_min.empty(), "k_min");
+  note(!mesh.k_max.empty(), "k_max");
+  note(!mesh.shape.empty(), "shape");
+  note(!mesh.ao.empty(), "ao");
+  return info;
+}
+
+TriMesh select_partition(const TriMesh& mesh, int partition) {
+  constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+  TriMesh part;
+  part.frame = mesh.frame;
+  part.provenance = mesh.provenance;
+  for (const Partition& row_of : mesh.partitions)
+    if (row_of.id == partition) part.partitions.push_back(row_of);
+  std::vector<std::uint32_t> moved(mesh.positions.size(), kUnused), kept;
+  for (const Triangle& t : mesh.triangles)
+    if (partition_of(mesh, t) == partition)
+      for (const std::uint32_t v : t) moved[v] = 0;
+  for (std::uint32_t v = 0; v < moved.size(); ++v)
+    if (moved[v] != kUnused) {
+      moved[v] = static_cast<std::uint32_t>(kept.size());
+      kept.push_back(v);
+    }
+  for (const Triangle& t : mesh.triangles)
+    if (partition_of(mesh, t) == partition) part.triangles.push_back({moved[t[0]], moved[t[1]], moved[t[2]]});
+  const auto copy = [&](const auto& from, auto& to) {
+    if (from.empty()) return;
+    to.reserve(kept.size());
+    for (const std::uint32_t v : kept) to.push_back(from[v]);
+  };
+  copy(mesh.positions, part.positions);
+  copy(mesh.normals, part.normals);
+  copy(mesh.k_min, part.k_min);
+  copy(mesh.k_max, part.k_max);
+  copy(mesh.shape, part.shape);
+  copy(mesh.partition, part.partition);
+  copy(mesh.ao, part.ao);
+  copy(mesh.colors, part.colors);
+  return part;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,60 @@
+#pragma once
+// The one door to mesh files: PLY, STL, OBJ and GLB, written from and read into a TriMesh.
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/surface/tri_mesh.h"
+
+namespace dubsar {
+
+enum class MeshFormat { kPly, kStl, kObj, kGlb };
+
+/// What the numbers in the file mean. kVox: coordinates of the input volume, voxel centres at integers. GLB is always
+/// in metres, as glTF demands.
+enum class MeshUnits { kMm, kVox };
+
+struct MeshWriteOptions {
+  MeshUnits units = MeshUnits::kMm;
+};
+
+struct MeshInfo {
+  MeshFormat format = MeshFormat::kPly;
+  std::int64_t bytes = 0, vertices = 0, triangles = 0;
+  glm::dvec3 min_mm{0.0}, max_mm{0.0};  ///< box of the vertices used by triangles
+  VoxelSize unit;                       ///< one file unit; unknown() when the file does not say
+  std::vector<std::string> attributes;  ///< "normals", "colors", "k_min", ... that the file carries
+  std::vector<Partition> partitions;
+  std::string provenance;               ///< JSON text, empty for foreign files
+};
+
+std::string_view mesh_format_name(MeshFormat format) noexcept;
+
+/// By the suffix, upper or lower case. kUsage for others; the text lists those that can be written.
+Result<MeshFormat> mesh_format_from_path(const std::filesystem::path& path);
+
+/// Writes the whole file or none; an old one stays until then. The suffix chooses the format. All parts go into one
+/// file: STL has no groups, so give it one part at a time (select_partition) where parts must stay watertight.
+/// Curvatures are written per file unit. Colours are those of the mesh, else shape colours shaded by ambient light.
+/// Errors: kUsage (suffix), kCannotCreate, kPermission, kIo, kCancelled, kInternal (arrays that contradict each other).
+Result<void> write_mesh(const std::filesystem::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
+                        Progress& progress);
+
+/// Recognises the format by content, by the suffix where content does not tell. Positions keep the file's numbers;
+/// the frame says what one unit is. Equal STL corners become one vertex; polygons become triangles.
+/// Errors: kNoInput, kPermission, kIo, kBadData (damaged or hostile; positions that are not finite), kTryAgain.
+Result<TriMesh> read_mesh(const std::filesystem::path& path, Progress& progress);
+
+/// Reads the file and describes it.
+Result<MeshInfo> mesh_info(const std::filesystem::path& path, Progress& progress);
+
+/// The triangles of one part and the vertices they use, in the old order.
+TriMesh select_partition(const TriMesh& mesh, int partition);
+
+}  // namespace dubsar

@@ -1,0 +1,28 @@
+#include "core/mesh_io/mesh_output.h"
+
+namespace dubsar {
+
+Result<void> check_tri_mesh(const TriMesh& mesh) {
+  const std::size_t count = mesh.positions.size();
+  const auto fits = [&](std::size_t size) { return size == 0 || size == count; };
+  if (!fits(mesh.normals.size()) || !fits(mesh.k_min.size()) || !fits(mesh.k_max.size()) || !fits(mesh.shape.size()) ||
+      !fits(mesh.partition.size()) || !fits(mesh.ao.size()) || !fits(mesh.colors.size()))
+    return fail(ErrorKind::kInternal, "mesh: vertex arrays of different lengths, expected {} entries each", count);
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t)
+      if (v >= count) return fail(ErrorKind::kInternal, "mesh: vertex {} named, but there are {}", v, count);
+  for (const glm::vec3& p : mesh.positions)
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      return fail(ErrorKind::kBadData, "mesh: a vertex position is not finite, so the mesh is not written");
+  return {};
+}
+
+VertexColors output_colors(const TriMesh& mesh) { return {mesh.colors, false}; }
+
+std::string partition_name(const TriMesh& mesh, int id) {
+  for (const Partition& partition : mesh.partitions)
+    if (partition.id == id && !partition.name.empty()) return partition.name;
+  return fmt::format("part {}", id);
+}
+
+}  // namespace dubsar

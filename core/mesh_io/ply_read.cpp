@@ -1,0 +1,292 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/base/budget.h"
+#include "core/base/bytes.h"
+#include "core/base/log.h"
+#include "core/mesh_io/mesh_formats.h"
+#include "core/mesh_io/ply_header.h"
+#include "core/mesh_io/polygon_soup.h"
+#include "core/mesh_io/text_scanner.h"
+
+namespace dubsar {
+namespace {
+constexpr std::uint64_t kStep = 1 << 14;  // items between looks at `progress`
+
+/// Values of a binary body; every type fits a double exactly.
+template <bool kBigEndian>
+class BinaryValues {
+ public:
+  explicit BinaryValues(std::string_view body) : reader_(body) {}
+  static std::size_t least_bytes(PlyScalar type) noexcept { return ply_scalar_bytes(type); }
+  double next(PlyScalar type) noexcept {
+    switch (type) {
+      case PlyScalar::kI8: return get<std::int8_t>();
+      case PlyScalar::kU8: return get<std::uint8_t>();
+      case PlyScalar::kI16: return get<std::int16_t>();
+      case PlyScalar::kU16: return get<std::uint16_t>();
+      case PlyScalar::kI32: return get<std::int32_t>();
+      case PlyScalar::kU32: return get<std::uint32_t>();
+      case PlyScalar::kF32: return static_cast<double>(get<float>());
+      case PlyScalar::kF64: break;
+    }
+    return get<double>();
+  }
+  void skip(PlyScalar type, std::uint64_t count) noexcept { reader_.take(count * ply_scalar_bytes(type)); }
+  std::uint64_t left() const noexcept { return reader_.left(); }
+  bool ok() const noexcept { return reader_.ok(); }
+
+ private:
+  template <class T>
+  T get() noexcept {
+    return kBigEndian ? reader_.big<T>() : reader_.little<T>();
+  }
+  ByteReader reader_;
+};
+
+class AsciiValues {
+ public:
+  explicit AsciiValues(std::string_view body) : scanner_(body) {}
+  static std::size_t least_bytes(PlyScalar) noexcept { return 1; }
+  double next(PlyScalar) noexcept {
+    double value = 0.0;
+    if (!scanner_.number(value)) ok_ = false;
+    return value;
+  }
+  void skip(PlyScalar type, std::uint64_t count) noexcept {
+    for (std::uint64_t i = 0; i < count && ok_; ++i) next(type);
+  }
+  std::uint64_t left() const noexcept { return scanner_.rest().size(); }
+  bool ok() const noexcept { return ok_; }
+
+ private:
+  TextScanner scanner_;
+  bool ok_ = true;
+};
+
+enum Slot { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kPart, kKMin, kKMax, kShape, kAo, kSlots };
+
+std::optional<Slot> slot_of(const PlyProperty& property, bool ours) {
+  static constexpr std::array<std::string_view, kSlots> kNames{
+      "x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "partition", "k_min", "k_max", "shape", "ao"};
+  for (int slot = 0; slot < kSlots; ++slot) {
+    if (property.name != kNames[static_cast<std::size_t>(slot)] || property.list) continue;
+    if (slot >= kPart && !ours) return std::nullopt;  // a foreign "ao" or "shape" means something else
+    return static_cast<Slot>(slot);
+  }
+  return std::nullopt;
+}
+
+double color_scale(PlyScalar type) {
+  if (!ply_is_integer(type)) return 255.0;
+  return type == PlyScalar::kU16 ? 1.0 / 257.0 : 1.0;
+}
+
+template <class T>
+Result<T> checked_byte(double value, int highest, std::string_view name) {
+  if (!(value >= 0.0 && value <= highest))
+    return fail(ErrorKind::kBadData, "ply: {} {} found, expected 0..{}", name, value, highest);
+  return static_cast<T>(value);
+}
+
+struct Parser {
+  const PlyHeader& header;
+  Progress& progress;
+  TriMesh mesh;
+  PolygonSoup soup;
+  std::uint64_t vertex_count = 0;
+  std::int64_t skipped = 0;
+
+  template <class Values>
+  Result<void> vertices(const PlyElement& element, Values& values) {
+    std::array<bool, kSlots> has{};
+    std::vector<int> slots;
+    std::array<double, kSlots> scale;
+    scale.fill(1.0);
+    for (const PlyProperty& property : element.properties) {
+      const auto slot = slot_of(property, header.text.ours());
+      slots.push_back(slot ? *slot : -1);
+      if (!slot) continue;
+      has[*slot] = true;
+      if (*slot >= kRed && *slot <= kBlue) scale[*slot] = color_scale(property.type);
+    }
+    if (!has[kX] || !has[kY] || !has[kZ])
+      return fail(ErrorKind::kBadData, "ply: vertices have no x, y, z properties");
+    const bool normals = has[kNx] && has[kNy] && has[kNz];
+    const bool colors = has[kRed] && has[kGreen] && has[kBlue] && !header.text.colors_derived();
+    const bool curvatures = has[kKMin] && has[kKMax];
+    const auto count = static_cast<std::size_t>(element.count);
+    DUBSAR_TRY(check_memory("ply", element.count * 48));
+    mesh.positions.resize(count);
+    if (normals) mesh.normals.resize(count);
+    if (colors) mesh.colors.resize(count);
+    if (curvatures) mesh.k_min.resize(count), mesh.k_max.resize(count);
+    if (has[kPart]) mesh.partition.resize(count);
+    if (has[kShape]) mesh.shape.resize(count);
+    if (has[kAo]) mesh.ao.resize(count);
+
+    std::array<double, kSlots> row{};
+    const auto point = [&](int first) {
+      return glm::vec3(static_cast<float>(row[first]), static_cast<float>(row[first + 1]),
+                       static_cast<float>(row[first + 2]));
+    };
+    for (std::size_t v = 0; v < count; ++v) {
+      for (std::size_t p = 0; p < slots.size(); ++p) {
+        const PlyProperty& property = element.properties[p];
+        if (property.list) {
+          DUBSAR_TRY(skip_list(property, values));
+        } else if (const double value = values.next(property.type); slots[p] >= 0) {
+          row[static_cast<std::size_t>(slots[p])] = value * scale[static_cast<std::size_t>(slots[p])];
+        }
+      }
+      if (!values.ok())
+        return fail(ErrorKind::kBadData, "ply: the file ends or has a broken number in vertex {} of {}", v, count);
+      const glm::vec3 position = point(kX);
+      if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z))
+        return fail(ErrorKind::kBadData, "ply: the position of vertex {} is not finite", v);
+      mesh.positions[v] = position;
+      if (normals) mesh.normals[v] = point(kNx);
+      if (colors)
+        for (int c = 0; c < 3; ++c)
+          mesh.colors[v][c] = static_cast<std::uint8_t>(std::clamp(std::round(row[kRed + c]), 0.0, 255.0));
+      if (curvatures) {
+        mesh.k_min[v] = static_cast<float>(row[kKMin]);
+        mesh.k_max[v] = static_cast<float>(row[kKMax]);
+      }
+      if (has[kPart]) {
+        DUBSAR_ASSIGN(mesh.partition[v], checked_byte<std::uint8_t>(row[kPart], 7, "partition"));
+      }
+      if (has[kShape]) {
+        DUBSAR_ASSIGN(mesh.shape[v], checked_byte<std::uint8_t>(row[kShape], 126, "shape"));
+      }
+      if (has[kAo]) {
+        DUBSAR_ASSIGN(mesh.ao[v], checked_byte<std::uint8_t>(row[kAo], 63, "ao"));
+      }
+      if (v % kStep == 0 && progress.cancelled()) return cancelled_error();
+    }
+    return {};
+  }
+
+  template <class Values>
+  Result<std::uint64_t> list_length(const PlyProperty& property, Values& values) {
+    const double length = values.next(property.count_type);
+    if (!values.ok()) return fail(ErrorKind::kBadData, "ply: the file ends inside element data");
+    if (!(length >= 0.0) || length != std::floor(length) || length > 4294967295.0)
+      return fail(ErrorKind::kBadData, "ply: a list of length {} found", length);
+    const auto count = static_cast<std::uint64_t>(length);
+    DUBSAR_TRY(check_count("ply: list", count, values.least_bytes(property.type), values.left()));
+    return count;
+  }
+
+  template <class Values>
+  Result<void> skip_list(const PlyProperty& property, Values& values) {
+    DUBSAR_ASSIGN(const std::uint64_t count, list_length(property, values));
+    values.skip(property.type, count);
+    return {};
+  }
+
+  template <class Values>
+  Result<void> corners(const PlyProperty& property, Values& values) {
+    DUBSAR_ASSIGN(const std::uint64_t count, list_length(property, values));
+    if (count < 3) {
+      ++skipped;
+      values.skip(property.type, count);
+      return {};
+    }
+    for (std::uint64_t c = 0; c < count; ++c) {
+      const double id = values.next(property.type);
+      if (!(id >= 0.0 && id < static_cast<double>(vertex_count)) || id != std::floor(id))
+        return fail(ErrorKind::kBadData, "ply: a face names vertex {}, but there are {} vertices", id, vertex_count);
+      soup.corners.push_back(static_cast<std::uint32_t>(id));
+    }
+    soup.sizes.push_back(static_cast<std::uint32_t>(count));
+    return {};
+  }
+
+  template <class Values>
+  Result<void> faces(const PlyElement& element, Values& values) {
+    for (std::uint64_t f = 0; f < element.count; ++f) {
+      for (const PlyProperty& property : element.properties) {
+        if (!property.list) {
+          values.next(property.type);
+        } else if (property.name == "vertex_indices" || property.name == "vertex_index") {
+          DUBSAR_TRY(corners(property, values));
+        } else {
+          DUBSAR_TRY(skip_list(property, values));
+        }
+      }
+      if (!values.ok())
+        return fail(ErrorKind::kBadData, "ply: the file ends or has a broken number in face {} of {}", f,
+                    element.count);
+      if (f % kStep == 0 && progress.cancelled()) return cancelled_error();
+    }
+    return {};
+  }
+
+  template <class Values>
+  Result<void> other(const PlyElement& element, Values& values) {
+    for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
+      for (const PlyProperty& property : element.properties) {
+        if (property.list) DUBSAR_TRY(skip_list(property, values));
+        else values.next(property.type);
+      }
+      if (!values.ok())
+        return fail(ErrorKind::kBadData, "ply: the file ends or has a broken number in element \"{}\"", element.name);
+      if (i % kStep == 0 && progress.cancelled()) return cancelled_error();
+    }
+    return {};
+  }
+
+  template <class Values>
+  Result<void> body(Values values) {
+    for (const PlyElement& element : header.elements) {
+      std::uint64_t least = 0;
+      for (const PlyProperty& p : element.properties)
+        least += values.least_bytes(p.list ? p.count_type : p.type);
+      DUBSAR_TRY(check_count("ply: " + element.name.substr(0, 40), element.count, least, values.left()));
+      progress.begin("read ply " + element.name.substr(0, 40), static_cast<std::int64_t>(element.count), "item");
+      if (element.name == "vertex") {
+        if (!mesh.positions.empty()) return fail(ErrorKind::kBadData, "ply: two vertex elements, expected one");
+        DUBSAR_TRY(vertices(element, values));
+      } else if (element.name == "face") {
+        DUBSAR_TRY(faces(element, values));
+      } else {
+        DUBSAR_TRY(other(element, values));
+      }
+      progress.end();
+    }
+    return {};
+  }
+};
+}  // namespace
+
+Result<TriMesh> parse_ply(std::string_view bytes, Progress& progress) {
+  DUBSAR_ASSIGN(const PlyHeader header, parse_ply_header(bytes));
+  Parser parser{header, progress, {}, {}};
+  bool has_vertices = false;
+  for (const PlyElement& element : header.elements) {
+    if (element.name == "tristrips")
+      return fail(ErrorKind::kBadData, "ply: triangle strips found, expected faces; convert the file");
+    if (element.name != "vertex") continue;
+    has_vertices = true;
+    parser.vertex_count = element.count;
+    if (element.count >= std::numeric_limits<std::uint32_t>::max())
+      return fail(ErrorKind::kBadData, "ply: {} vertices found, expected fewer than 2^32 - 1", element.count);
+  }
+  if (!has_vertices) return fail(ErrorKind::kBadData, "ply: no vertex element");
+  const std::string_view body = bytes.substr(header.body);
+  switch (header.encoding) {
+    case PlyEncoding::kAscii: DUBSAR_TRY(parser.body(AsciiValues(body))); break;
+    case PlyEncoding::kLittle: DUBSAR_TRY(parser.body(BinaryValues<false>(body))); break;
+    case PlyEncoding::kBig: DUBSAR_TRY(parser.body(BinaryValues<true>(body))); break;
+  }
+  if (parser.skipped > 0) log_warning("ply: {} faces with fewer than 3 corners left out", parser.skipped);
+  DUBSAR_ASSIGN(parser.mesh.triangles, triangulate_soup(parser.mesh.positions, parser.soup, "ply"));
+  DUBSAR_TRY(header.text.apply(parser.mesh));
+  return std::move(parser.mesh);
+}
+
+}  // namespace dubsar

@@ -1,0 +1,178 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/budget.h"
+#include "core/base/buffered_writer.h"
+#include "core/mesh_io/mesh_formats.h"
+#include "core/mesh_io/mesh_output.h"
+#include "core/mesh_io/text_scanner.h"
+#include "core/mesh_io/weld.h"
+
+namespace dubsar {
+namespace {
+constexpr std::size_t kHeaderBytes = 80, kFacetBytes = 50;
+constexpr std::size_t kStep = std::size_t{1} << 14;  // facets between looks at `progress`
+constexpr std::string_view kMaker = "dubsar STL, units ";
+
+bool finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+Result<TriMesh> parse_binary(std::string_view bytes, Progress& progress) {
+  ByteReader reader(bytes);
+  const std::string_view header = reader.take(kHeaderBytes);
+  const auto count = reader.little<std::uint32_t>();
+  if (!reader.ok() || reader.left() != std::size_t{count} * kFacetBytes)
+    return fail(ErrorKind::kBadData, "stl: {} triangles announced, so {} bytes expected, but the file has {}", count,
+                kHeaderBytes + 4 + std::size_t{count} * kFacetBytes, bytes.size());
+  DUBSAR_TRY(check_memory("stl", std::uint64_t{count} * 40));
+  progress.begin("read stl", count, "triangle");
+  TriMesh mesh;
+  PointWelder welder;
+  mesh.triangles.resize(count);
+  for (std::size_t t = 0; t < count; ++t) {
+    reader.take(12);
+    for (std::uint32_t& id : mesh.triangles[t]) {
+      glm::vec3 p;
+      for (int axis = 0; axis < 3; ++axis) p[axis] = reader.little<float>();
+      if (!finite(p)) return fail(ErrorKind::kBadData, "stl: a corner of triangle {} is not finite", t);
+      id = welder.id(p);
+    }
+    reader.take(2);
+    if ((t + 1) % kStep == 0) {
+      progress.advance(kStep);
+      if (progress.cancelled()) return cancelled_error();
+    }
+  }
+  mesh.positions = std::move(welder.points());
+  if (header.starts_with(kMaker)) {
+    const std::string_view rest = header.substr(kMaker.size());
+    if (rest.starts_with("mm;") && rest.find("unknown") == std::string_view::npos)
+      mesh.frame.input_voxel.provenance = "file unit mm";
+  }
+  progress.end();
+  return mesh;
+}
+
+Result<TriMesh> parse_ascii(std::string_view bytes, Progress& progress) {
+  TriMesh mesh;
+  PointWelder welder;
+  TextScanner scanner(bytes);
+  const auto broken = [&](std::string_view found, std::string_view expected) {
+    return fail(ErrorKind::kBadData, "stl: \"{}\" found in triangle {}, expected {}",
+                found.empty() ? std::string_view("end of file") : found.substr(0, 40), mesh.triangles.size(), expected);
+  };
+  progress.begin("read stl", 0, "triangle");
+  if (scanner.word() != "solid") return fail(ErrorKind::kBadData, "stl: the file does not start with \"solid\"");
+  scanner.line();
+  bool open = true;
+  while (true) {
+    std::string_view word = scanner.word();
+    if (!open) {
+      if (word.empty()) break;
+      if (word != "solid") return broken(word, "\"solid\" or the end of the file");
+      scanner.line();
+      open = true;
+      continue;
+    }
+    if (word == "endsolid") {
+      scanner.line();
+      open = false;
+      continue;
+    }
+    if (word != "facet") return broken(word, "\"facet\" or \"endsolid\"");
+    if (word = scanner.word(); word != "normal") return broken(word, "\"normal\"");
+    for (int i = 0; i < 3; ++i) scanner.word();  // often wrong, sometimes "nan": never used
+    if (word = scanner.word(); word != "outer") return broken(word, "\"outer loop\"");
+    if (word = scanner.word(); word != "loop") return broken(word, "\"outer loop\"");
+    Triangle triangle;
+    for (std::uint32_t& id : triangle) {
+      if (word = scanner.word(); word != "vertex") return broken(word, "\"vertex\"");
+      glm::vec3 p;
+      for (int axis = 0; axis < 3; ++axis) {
+        double value = 0.0;
+        if (word = scanner.word(); !TextScanner::parse(word, value)) return broken(word, "a number");
+        p[axis] = static_cast<float>(value);
+      }
+      if (!finite(p)) return broken("not finite", "a finite coordinate");
+      id = welder.id(p);
+    }
+    if (word = scanner.word(); word != "endloop") return broken(word, "\"endloop\"");
+    if (word = scanner.word(); word != "endfacet") return broken(word, "\"endfacet\"");
+    mesh.triangles.push_back(triangle);
+    if (mesh.triangles.size() % kStep == 0) {
+      progress.advance(kStep);
+      if (progress.cancelled()) return cancelled_error();
+    }
+  }
+  mesh.positions = std::move(welder.points());
+  progress.end();
+  return mesh;
+}
+}  // namespace
+
+Result<TriMesh> parse_stl(std::string_view bytes, Progress& progress) {
+  // Many binary files start with "solid" too: the announced count decides first.
+  if (bytes.size() >= kHeaderBytes + 4) {
+    ByteReader count(bytes.substr(kHeaderBytes, 4));
+    if (bytes.size() == kHeaderBytes + 4 + std::size_t{count.little<std::uint32_t>()} * kFacetBytes)
+      return parse_binary(bytes, progress);
+  }
+  const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+  if (first != std::string_view::npos && bytes.substr(first).starts_with("solid") &&
+      bytes.substr(0, 256).find('\0') == std::string_view::npos)
+    return parse_ascii(bytes, progress);
+  return parse_binary(bytes, progress);
+}
+
+Result<void> write_stl(const std::filesystem::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
+                       Progress& progress) {
+  DUBSAR_TRY(check_tri_mesh(mesh));
+  if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max())
+    return fail(ErrorKind::kUsage, "stl: {} triangles do not fit the 32-bit count; export one partition at a time",
+                mesh.triangles.size());
+  const VoxelSize& voxel = mesh.frame.input_voxel;
+  std::string header(kMaker);
+  if (options.units == MeshUnits::kMm) header += voxel.known() ? "mm; " : "mm; voxel size unknown, 1 voxel = 1 mm; ";
+  else header += "voxel; ";
+  if (!mesh.triangles.empty() && !mesh.partitions.empty()) {
+    const int id = partition_of(mesh, mesh.triangles.front());
+    const bool single = std::all_of(mesh.triangles.begin(), mesh.triangles.end(),
+                                    [&](const Triangle& t) { return partition_of(mesh, t) == id; });
+    header += single ? partition_name(mesh, id) : "all parts";
+  }
+  std::replace_if(header.begin(), header.end(), [](char c) { return c < 32 || c > 126; }, '?');
+  header.resize(kHeaderBytes, ' ');
+
+  const std::size_t bytes = kHeaderBytes + 4 + kFacetBytes * mesh.triangles.size();
+  DUBSAR_ASSIGN(AtomicFile file, AtomicFile::create(path, static_cast<std::int64_t>(bytes)));
+  BufferedWriter out(file);
+  out.text(header);
+  out.little(static_cast<std::uint32_t>(mesh.triangles.size()));
+  const OutputSpace space(mesh.frame, options.units);
+  progress.begin("write stl", static_cast<std::int64_t>(mesh.triangles.size()), "triangle");
+  std::string facet;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    std::array<glm::vec3, 4> rows;  // the normal, then the corners
+    for (std::size_t c = 0; c < 3; ++c) rows[c + 1] = space.position(mesh.positions[mesh.triangles[t][c]]);
+    const glm::dvec3 origin(rows[1]);
+    const glm::dvec3 normal = glm::cross(glm::dvec3(rows[2]) - origin, glm::dvec3(rows[3]) - origin);
+    const double length = glm::length(normal);
+    rows[0] = length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0.0f);
+    facet.clear();
+    for (const glm::vec3& row : rows)
+      for (int axis = 0; axis < 3; ++axis) append_little(facet, row[axis]);
+    append_little(facet, std::uint16_t{0});
+    out.text(facet);
+    if ((t + 1) % kStep == 0) {
+      progress.advance(kStep);
+      if (progress.cancelled()) return cancelled_error();
+      if (!out.ok()) return out.flush();
+    }
+  }
+  DUBSAR_TRY(out.flush());
+  DUBSAR_TRY(file.commit());
+  progress.end();
+  return {};
+}
+
+}  // namespace dubsar
