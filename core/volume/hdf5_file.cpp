@@ -258,7 +258,7 @@ void read_link_value(hid_t file, const std::string& path, const H5L_info_t& info
   }
 }
 
-void layout_facts(hid_t dataset, hid_t creation, Hdf5DatasetInfo& info) {
+void layout_facts(hid_t dataset, hid_t creation, bool open_sources, Hdf5DatasetInfo& info) {
   const H5D_layout_t layout = H5Pget_layout(creation);
   info.layout = layout == H5D_CHUNKED   ? Hdf5Layout::kChunked
                 : layout == H5D_COMPACT ? Hdf5Layout::kCompact
@@ -272,7 +272,7 @@ void layout_facts(hid_t dataset, hid_t creation, Hdf5DatasetInfo& info) {
     for (std::size_t i = 0; i < std::min(count, kMaxLinks); ++i)
       if (H5Pget_virtual_filename(creation, i, name.data(), name.size()) >= 0) files.insert(name.data());
     info.virtual_files.assign(files.begin(), files.end());
-    return;  // asking for the shape of a virtual dataset can open the files it is made of
+    if (!open_sources) return;
   }
   const int externals = layout == H5D_CONTIGUOUS ? H5Pget_external_count(creation) : 0;
   for (int i = 0; i < externals; ++i) {
@@ -322,7 +322,7 @@ struct OpenDataset {
   Hdf5DatasetInfo info;
 };
 
-Result<OpenDataset> open_with_info(hid_t file, const std::string& path, hid_t access) {
+Result<OpenDataset> open_with_info(hid_t file, const std::string& path, hid_t access, bool open_sources) {
   OpenDataset opened{Handle(H5Dopen2(file, path.c_str(), access), H5Dclose), {}};
   if (!opened.id.ok())
     return fail(ErrorKind::kBadData, "import_hdf5: dataset \"{}\" cannot be opened ({}); the file is damaged", path,
@@ -340,7 +340,7 @@ Result<OpenDataset> open_with_info(hid_t file, const std::string& path, hid_t ac
   opened.info.order = facts.order;
   H5O_info_t object;
   if (H5Oget_info2(opened.id.get(), &object, H5O_INFO_BASIC) >= 0) opened.info.address = object.addr;
-  layout_facts(opened.id.get(), creation.get(), opened.info);
+  layout_facts(opened.id.get(), creation.get(), open_sources, opened.info);
   return opened;
 }
 
@@ -614,18 +614,19 @@ Result<Hdf5Target> Hdf5File::resolve(const std::string& path) const {
   return target;
 }
 
-Result<Hdf5DatasetInfo> Hdf5File::inspect(const std::string& path) const {
+Result<Hdf5DatasetInfo> Hdf5File::inspect(const std::string& path, bool open_sources) const {
   const Library library;
   const Handle access = dataset_access();
-  DUBSAR_ASSIGN(OpenDataset opened, open_with_info(id_, path, access.get()));
+  DUBSAR_ASSIGN(OpenDataset opened, open_with_info(id_, path, access.get(), open_sources));
   return std::move(opened.info);
 }
 
-Result<Hdf5Dataset> Hdf5File::open_dataset(const std::string& path, std::uint64_t chunk_cache_bytes) const {
+Result<Hdf5Dataset> Hdf5File::open_dataset(const std::string& path, std::uint64_t chunk_cache_bytes,
+                                           bool open_sources) const {
   const Library library;
   const Handle access = dataset_access();
   H5Pset_chunk_cache(access.get(), 12421, chunk_cache_bytes, 1.0);
-  DUBSAR_ASSIGN(OpenDataset opened, open_with_info(id_, path, access.get()));
+  DUBSAR_ASSIGN(OpenDataset opened, open_with_info(id_, path, access.get(), open_sources));
   Hdf5Dataset dataset;
   dataset.info_ = std::move(opened.info);
   dataset.needs_plugin_ = std::any_of(dataset.info_.filters.begin(), dataset.info_.filters.end(),

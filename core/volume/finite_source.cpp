@@ -1,0 +1,58 @@
+#include "core/volume/finite_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/base/parallel.h"
+
+namespace dubsar {
+
+FiniteSource::FiniteSource(std::unique_ptr<SlabSource> source, std::optional<float> fill)
+    : source_(std::move(source)), fill_(fill), counted_(static_cast<std::size_t>(source_->dims().z), 0) {}
+
+Result<void> FiniteSource::read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) {
+  DUBSAR_TRY(source_->read(z_begin, z_end, out));
+  const Dims size = dims();
+  std::vector<std::int64_t> bad(static_cast<std::size_t>(z_end - z_begin), 0);
+  parallel_for(z_end - z_begin, 1, [&](std::int64_t k) {
+    const auto slice = out.subspan(static_cast<std::size_t>(k * size.slice()), static_cast<std::size_t>(size.slice()));
+    bad[static_cast<std::size_t>(k)] =
+        std::count_if(slice.begin(), slice.end(), [](float value) { return !std::isfinite(value); });
+  });
+  if (std::all_of(bad.begin(), bad.end(), [](std::int64_t n) { return n == 0; })) return {};
+  for (std::int64_t k = 0; k < z_end - z_begin; ++k)
+    if (std::exchange(counted_[static_cast<std::size_t>(z_begin + k)], std::uint8_t{1}) == 0)
+      count_ += bad[static_cast<std::size_t>(k)];
+  if (count_ > size.count() / 100)
+    return fail(ErrorKind::kBadData, "import: {} of {} voxels read so far are NaN or Inf, expected at most 1 %; repair the "
+                "volume, or crop to the part that is sound", count_, size.count());
+  if (!fill_) {
+    DUBSAR_ASSIGN(fill_, estimate_air());
+  }
+  parallel_for(z_end - z_begin, 1, [&](std::int64_t k) {
+    if (bad[static_cast<std::size_t>(k)] == 0) return;
+    const auto slice = out.subspan(static_cast<std::size_t>(k * size.slice()), static_cast<std::size_t>(size.slice()));
+    std::replace_if(slice.begin(), slice.end(), [](float value) { return !std::isfinite(value); }, *fill_);
+  });
+  return {};
+}
+
+Result<float> FiniteSource::estimate_air() {
+  constexpr std::int64_t kSlices = 9, kSamplesPerSlice = 1 << 16;
+  const Dims size = dims();
+  const auto step = static_cast<std::size_t>(std::max<std::int64_t>(1, size.slice() / kSamplesPerSlice));
+  std::vector<float> slice(static_cast<std::size_t>(size.slice())), values;
+  for (std::int64_t i = 0; i < std::min(kSlices, size.z); ++i) {
+    const std::int64_t z = (2 * i + 1) * size.z / (2 * std::min(kSlices, size.z));
+    DUBSAR_TRY(source_->read(z, z + 1, slice));
+    for (std::size_t at = 0; at < slice.size(); at += step)
+      if (std::isfinite(slice[at])) values.push_back(slice[at]);
+  }
+  if (values.empty()) return 0.0F;
+  const auto quantile = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 20);
+  std::nth_element(values.begin(), quantile, values.end());
+  return *quantile;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,101 @@
+#include "core/volume/flat_reader.h"
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+
+#include "core/base/parallel.h"
+
+namespace dubsar {
+namespace {
+
+constexpr std::int64_t kPieceBytes = 4 << 20;  // large enough for disks and network shares, small enough for threads
+
+class FlatReader final : public VoxelReader {
+ public:
+  explicit FlatReader(FlatLayout layout) : layout_(std::move(layout)) {}
+
+  Dims dims() const noexcept override { return layout_.dims; }
+
+  Result<void> read(const VoxelBox& box, std::span<float> out) override {
+    const Dims size = box.dims();
+    DUBSAR_CHECK(static_cast<std::int64_t>(out.size()) >= size.count());
+    const std::int64_t element = scalar_bytes(layout_.type);
+    const std::int64_t row = layout_.dims.x * element;
+    // Whole rows, and of them whole runs, are cheaper than many small reads unless most bytes would be thrown away.
+    const bool narrow = (box.x.end - box.x.begin) * 4 < layout_.dims.x;
+    const bool runs = box.y.step == 1 && !narrow;
+    const std::int64_t rows_at_once = runs ? std::clamp<std::int64_t>(kPieceBytes / row, 1, size.y) : 1;
+    const std::int64_t pieces_per_slice = (size.y + rows_at_once - 1) / rows_at_once;
+    const bool in_place = runs && layout_.type == ScalarType::kF32 && layout_.order == kNativeOrder &&
+                          layout_.map.identity() && size.x == layout_.dims.x;
+    std::mutex mutex;
+    Result<void> result;
+    parallel_chunks(size.z * pieces_per_slice, runs ? 1 : 256, [&](std::int64_t begin, std::int64_t end) {
+      std::vector<std::byte> buffer;
+      for (std::int64_t piece = begin; piece < end; ++piece) {
+        const std::int64_t k = piece / pieces_per_slice;
+        const std::int64_t j = piece % pieces_per_slice * rows_at_once;
+        const std::int64_t rows = std::min(rows_at_once, size.y - j);
+        const std::int64_t first_row = box.z.at(k) * layout_.dims.y + box.y.at(j);
+        const std::span<float> target =
+            out.subspan(static_cast<std::size_t>((k * size.y + j) * size.x), static_cast<std::size_t>(rows * size.x));
+        const std::int64_t skip = narrow ? box.x.begin * element : 0;
+        const std::int64_t bytes = narrow ? (box.x.end - box.x.begin) * element : rows * row;
+        if (!in_place) buffer.resize(static_cast<std::size_t>(bytes));
+        const auto read = fetch(first_row * row + skip, in_place ? std::as_writable_bytes(target) : std::span(buffer));
+        if (!read) {
+          const std::lock_guard lock(mutex);
+          result = read;
+          return;
+        }
+        if (in_place) continue;
+        const std::byte* from = buffer.data() + (narrow ? 0 : box.x.begin * element);
+        for (std::int64_t r = 0; r < rows; ++r)
+          store_row(from + r * row, layout_.type, layout_.order, layout_.map, box.x,
+                    target.subspan(static_cast<std::size_t>(r * size.x)));
+      }
+    });
+    return result;
+  }
+
+ private:
+  Result<void> fetch(std::int64_t at, std::span<std::byte> out) const {
+    for (const FlatSegment& segment : layout_.segments) {
+      if (out.empty()) break;
+      if (at >= segment.bytes) {
+        at -= segment.bytes;
+        continue;
+      }
+      const auto count = std::min(out.size(), static_cast<std::size_t>(segment.bytes - at));
+      DUBSAR_TRY(segment.file.read_at(segment.offset + at, out.first(count)));
+      out = out.subspan(count);
+      at = 0;
+    }
+    DUBSAR_CHECK(out.empty());
+    return {};
+  }
+
+  FlatLayout layout_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<VoxelReader>> make_flat_reader(FlatLayout layout) {
+  std::int64_t present = 0;
+  for (FlatSegment& segment : layout.segments) {
+    const std::int64_t left = segment.file.size() - segment.offset;
+    if (segment.offset < 0 || segment.bytes < 0 || left < segment.bytes)
+      return fail(ErrorKind::kBadData,
+                  "{} has {} bytes, expected at least {} from byte {} on: it is truncated, or its size was given wrong",
+                  segment.file.path().string(), segment.file.size(), segment.bytes, segment.offset);
+    present += segment.bytes;
+  }
+  const std::int64_t needed = layout.dims.count() * scalar_bytes(layout.type);
+  if (present < needed)
+    return fail(ErrorKind::kBadData, "{} bytes of voxels found, expected {} ({} x {} x {} of {})", present, needed,
+                layout.dims.x, layout.dims.y, layout.dims.z, scalar_name(layout.type));
+  return std::make_unique<FlatReader>(std::move(layout));
+}
+
+}  // namespace dubsar

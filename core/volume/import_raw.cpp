@@ -1,0 +1,44 @@
+#include "core/volume/import_raw.h"
+
+#include <utility>
+
+#include "core/volume/flat_reader.h"
+
+namespace dubsar {
+
+Result<OpenedVolume> open_raw(const ImportOptions& options) {
+  DUBSAR_CHECK(options.raw.has_value());
+  const RawSpec& raw = *options.raw;
+  DUBSAR_ASSIGN(InputFile file, InputFile::open(options.path));
+  const auto unsigned_of = [](std::int64_t n) { return static_cast<std::uint64_t>(n < 0 ? 0 : n); };
+  const std::array<std::uint64_t, 3> dims{unsigned_of(raw.dims[0]), unsigned_of(raw.dims[1]), unsigned_of(raw.dims[2])};
+  DUBSAR_ASSIGN(const std::int64_t count,
+                check_dims("import_raw: the size given", dims, unsigned_of(scalar_bytes(raw.type)), options.budget));
+  const std::int64_t bytes = count * scalar_bytes(raw.type);
+  const std::int64_t left = file.size() - raw.skip;
+  if (raw.skip < 0 || left < bytes)
+    return fail(ErrorKind::kBadData,
+                "import_raw: {} has {} bytes, expected {} ({} x {} x {} of {} behind {} skipped bytes); check --dims, --type "
+                "and --skip",
+                options.path.string(), file.size(), raw.skip + bytes, raw.dims[0], raw.dims[1], raw.dims[2],
+                scalar_name(raw.type), raw.skip);
+  OpenedVolume opened;
+  VolumeInfo& info = opened.info;
+  if (left > bytes)
+    info.warnings.push_back(fmt::format("{} bytes follow the voxels and are not read; check --dims, --type and --skip",
+                                        left - bytes));
+  info.format = "raw";
+  info.found_by = "named by the user";
+  info.file_dims = {raw.dims[0], raw.dims[1], raw.dims[2]};
+  info.dtype = scalar_name(raw.type);
+  info.byte_order = order_name(raw.order);
+  info.layout = "contiguous";
+  info.storage_bytes = info.logical_bytes = bytes;
+  info.may_have_nonfinite = is_float(raw.type);
+  std::vector<FlatSegment> segments;
+  segments.push_back({std::move(file), raw.skip, bytes});
+  DUBSAR_ASSIGN(opened.reader, make_flat_reader({info.file_dims, raw.type, raw.order, {}, std::move(segments)}));
+  return opened;
+}
+
+}  // namespace dubsar

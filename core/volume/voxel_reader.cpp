@@ -1,0 +1,14 @@
+#include "core/volume/voxel_reader.h"
+
+namespace dubsar {
+
+void store_row(const std::byte* from, ScalarType type, ByteOrder order, const ScalarMap& map, const AxisRange& x,
+               std::span<float> out) {
+  const auto count = static_cast<std::size_t>(x.count());
+  if (x.step == 1) return scalars_to_float(from, type, order, map, out.first(count));
+  const std::int64_t bytes = x.step * scalar_bytes(type);
+  for (std::size_t i = 0; i < count; ++i)
+    scalars_to_float(from + static_cast<std::int64_t>(i) * bytes, type, order, map, out.subspan(i, 1));
+}
+
+}  // namespace dubsar
