@@ -100,6 +100,7 @@ std::string partition_to_json(const Partition& partition) {
   nlohmann::ordered_json json;
   json["id"] = partition.id;
   json["name"] = partition.name;
+  if (!partition.part.empty()) json["part"] = partition.part;
   json["area_mm2"] = partition.area_mm2;
   json["volume_mm3"] = partition.volume_mm3;
   json["watertight"] = partition.watertight;
@@ -119,6 +120,7 @@ Result<Partition> partition_from_json(std::string_view text) {
   Partition partition;
   partition.id = static_cast<int>(id);
   partition.name = json["name"].get<std::string>();
+  if (json.contains("part") && json["part"].is_string()) partition.part = json["part"].get<std::string>();
   partition.area_mm2 = number("area_mm2");
   partition.volume_mm3 = number("volume_mm3");
   partition.watertight = json.contains("watertight") && json["watertight"].is_boolean() && json["watertight"].get<bool>();

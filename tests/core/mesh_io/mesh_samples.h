@@ -46,7 +46,7 @@ inline TriMesh sample_mesh(int around = 24, int across = 12) {
   mesh.frame.scale = {2.0, 2.0, 2.0};
   mesh.frame.origin_vox = {0.5, -3.0, 11.25};
   mesh.frame.input_voxel = {{0.038, 0.038, 0.038}, "/entry/data@pixel_size"};
-  mesh.partitions = {{0, "tablet", 1234.5, 678.25, true}, {3, "envelope inside", 0.1, 1e-3, false}};
+  mesh.partitions = {{0, "tablet", "", 1234.5, 678.25, true}, {3, "envelope inside", "envelope", 0.1, 1e-3, false}};
   mesh.provenance = R"({"program":"dubsar","text":"a \"quoted\" \u00e4 line"})";
   return mesh;
 }

@@ -39,6 +39,7 @@ TEST_F(Ply, MeshReadBackInVoxelsEqualsTheMeshWritten) {
   ASSERT_EQ(read->partitions.size(), 2u);
   EXPECT_EQ(read->partitions[1].id, 3);
   EXPECT_EQ(read->partitions[1].name, "envelope inside");
+  EXPECT_EQ(read->partitions[1].part, "envelope");
   EXPECT_EQ(read->partitions[0].area_mm2, 1234.5);
   EXPECT_EQ(read->partitions[0].volume_mm3, 678.25);
   EXPECT_TRUE(read->partitions[0].watertight);
