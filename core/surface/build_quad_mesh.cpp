@@ -9,12 +9,12 @@
 #include "core/surface/cell_kernels.h"
 #include "core/surface/extract.h"
 #include "core/surface/open_boundary.h"
+#include "core/surface/row_kernels.h"
 
 namespace dubsar {
 namespace {
 
 constexpr std::int64_t kMaxVertices = std::int64_t{std::numeric_limits<std::uint32_t>::max()} - 1;
-constexpr std::int64_t kRowsPerChunk = 64;
 
 }  // namespace
 
@@ -22,6 +22,7 @@ Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, Progress& progre
   DUBSAR_TRY(check_samples(samples));
   DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(samples));
   const Dims& dims = samples.dims;
+  const std::int64_t grain = rows_per_chunk(dims.x);
   const std::int64_t rows_y = dims.y + 1, rows = rows_y * (dims.z + 1);
   const auto row_of = [&](std::int64_t r) { return CellRow{r % rows_y, r / rows_y}; };
   std::atomic<std::int64_t> done{0};
@@ -33,7 +34,7 @@ Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, Progress& progre
   };
 
   std::vector<CellRowCounts> counts(static_cast<std::size_t>(rows));
-  parallel_chunks(rows, kRowsPerChunk, [&](std::int64_t begin, std::int64_t end) {
+  parallel_chunks(rows, grain, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) return;
     for (std::int64_t r = begin; r < end; ++r) {
       counts[static_cast<std::size_t>(r)] = count_cells(samples, index, row_of(r));
@@ -66,12 +67,12 @@ Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, Progress& progre
   mesh.first_incident.back() = static_cast<std::uint32_t>(incidences);
   mesh.incident.resize(static_cast<std::size_t>(incidences));
   std::vector<std::uint8_t> in_layer(samples.closed ? 0 : static_cast<std::size_t>(vertices));
-  std::vector<std::vector<DoubledCorner>> doubled(static_cast<std::size_t>((rows + kRowsPerChunk - 1) / kRowsPerChunk));
-  parallel_chunks(rows, kRowsPerChunk, [&](std::int64_t begin, std::int64_t end) {
+  std::vector<std::vector<DoubledCorner>> doubled(static_cast<std::size_t>((rows + grain - 1) / grain));
+  parallel_chunks(rows, grain, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) return;
     CellRowOutput output;
     output.mesh = &mesh;
-    output.doubled = &doubled[static_cast<std::size_t>(begin / kRowsPerChunk)];
+    output.doubled = &doubled[static_cast<std::size_t>(begin / grain)];
     output.in_layer = samples.closed ? nullptr : &in_layer;
     for (std::int64_t r = begin; r < end; ++r) {
       const CellRowCounts& start = counts[static_cast<std::size_t>(r)];

@@ -64,7 +64,7 @@ Result<EdgeIndex> EdgeIndex::create(const SurfaceSamples& samples) {
   const Dims& dims = samples.dims;
   const std::int64_t rows = dims.y * dims.z;
   index.starts_.resize(static_cast<std::size_t>(rows));
-  parallel_for(rows, 64, [&](std::int64_t r) {
+  parallel_for(rows, rows_per_chunk(dims.x), [&](std::int64_t r) {
     const std::int64_t y = r % dims.y, z = r / dims.y;
     const bool has_y = y + 1 < dims.y, has_z = z + 1 < dims.z;
     const BitVolume& signs = samples.signs;

@@ -2,10 +2,14 @@
 // Bit-plane work on one row of grid points: sign packing, counting and filling of active edges and ambiguous faces.
 // One word of 64 points at a time, the values of inactive points are read once (packing) and never again.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
 namespace dubsar {
+
+/// Rows that make a piece of work worth a thread, whatever the thread count.
+constexpr std::int64_t rows_per_chunk(std::int64_t nx) noexcept { return std::max<std::int64_t>(16, (1 << 17) / nx); }
 
 /// Sign rows of the points (y, z), (y + 1, z), (y, z + 1), (y + 1, z + 1); null where the grid ends.
 struct SignRows {

@@ -54,7 +54,7 @@ Result<SurfaceSamples> sample_surface(SlabSource& source, const ExtractOptions& 
     const auto value_row = [&](std::int64_t row_y, std::int64_t row_z) {
       return values.data() + (row_z - z + 1) * dims.slice() + row_y * dims.x;
     };
-    parallel_for((end - z) * dims.y, 64, [&](std::int64_t r) {
+    parallel_for((end - z) * dims.y, rows_per_chunk(dims.x), [&](std::int64_t r) {
       const std::int64_t y = r % dims.y, row_z = z + r / dims.y;
       pack_signs(value_row(y, row_z), dims.x, options.isovalue, samples.signs.row(y, row_z));
     });
@@ -71,7 +71,7 @@ Result<SurfaceSamples> sample_surface(SlabSource& source, const ExtractOptions& 
                       has_z ? samples.signs.row(y, row_z + 1) : nullptr,
                       has_y && has_z ? samples.signs.row(y + 1, row_z + 1) : nullptr};
     };
-    parallel_for(rows, 64, [&](std::int64_t r) {
+    parallel_for(rows, rows_per_chunk(dims.x), [&](std::int64_t r) {
       const auto i = static_cast<std::size_t>(r);
       items[i] = count_row(sign_rows(r % dims.y, first + r / dims.y), dims.x);
       edge_start[i] = std::int64_t{items[i].edges[0]} + items[i].edges[1] + items[i].edges[2];
@@ -80,7 +80,7 @@ Result<SurfaceSamples> sample_surface(SlabSource& source, const ExtractOptions& 
     const std::size_t edges_before = samples.offsets.size(), faces_before = samples.joined.size();
     samples.offsets.resize(edges_before + static_cast<std::size_t>(exclusive_scan(edge_start)));
     samples.joined.resize(faces_before + static_cast<std::size_t>(exclusive_scan(face_start)));
-    parallel_for(rows, 64, [&](std::int64_t r) {
+    parallel_for(rows, rows_per_chunk(dims.x), [&](std::int64_t r) {
       const auto i = static_cast<std::size_t>(r);
       const RowItems& row = items[i];
       if (row.edges[0] + row.edges[1] + row.edges[2] == 0) return;

@@ -10,7 +10,7 @@ namespace dubsar {
 SampleCounts count_samples(const BitVolume& signs) {
   const Dims& dims = signs.dims();
   return parallel_reduce<SampleCounts>(
-      dims.y * dims.z, 64, {},
+      dims.y * dims.z, rows_per_chunk(dims.x), {},
       [&](std::int64_t begin, std::int64_t end) {
         SampleCounts sum;
         for (std::int64_t r = begin; r < end; ++r) {

@@ -3,71 +3,22 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
+#include <random>
 
-#include "core/base/parallel.h"
-#include "core/surface/mesh_check.h"
-#include "core/surface/triangulate.h"
+#include "core/surface/row_kernels.h"
+#include "tests/core/surface/extract_help.h"
 #include "tests/core/surface/random_volume.h"
 
 namespace dubsar {
 namespace {
 
-/// f = -|x - c|, c = (n - 1) / 2, as the paper's table 1: values are made when they are asked for.
-class SphereSource final : public SlabSource {
- public:
-  explicit SphereSource(std::int64_t n) : n_(n) {}
-  Dims dims() const noexcept override { return {n_, n_, n_}; }
-  const GridFrame& frame() const noexcept override { return frame_; }
-  Result<void> read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) override {
-    const float c = 0.5f * static_cast<float>(n_ - 1);
-    parallel_for((z_end - z_begin) * n_, 64, [&](std::int64_t r) {
-      const float dy = static_cast<float>(r % n_) - c, dz = static_cast<float>(z_begin + r / n_) - c;
-      for (std::int64_t x = 0; x < n_; ++x) {
-        const float dx = static_cast<float>(x) - c;
-        out[static_cast<std::size_t>(r * n_ + x)] = -std::sqrt(dx * dx + dy * dy + dz * dz);
-      }
-    });
-    return {};
-  }
-
- private:
-  std::int64_t n_;
-  GridFrame frame_;
-};
-
-SurfaceSamples sample(SlabSource& source, float isovalue, bool closed = true, int bits = 4, std::int64_t slab = 0) {
-  SilentProgress progress;
-  auto samples = sample_surface(source, {isovalue, bits, closed, slab}, progress);
-  EXPECT_TRUE(samples.has_value()) << samples.error().message;
-  return std::move(*samples);
-}
-
-SurfaceSamples sample(const Volume<float>& volume, float isovalue, bool closed = true, int bits = 4,
-                      std::int64_t slab = 0) {
-  VolumeSource source(volume);
-  return sample(source, isovalue, closed, bits, slab);
-}
-
-QuadMesh build(const SurfaceSamples& samples) {
-  SilentProgress progress;
-  auto mesh = build_quad_mesh(samples, progress);
-  EXPECT_TRUE(mesh.has_value()) << mesh.error().message;
-  return std::move(*mesh);
-}
-
-MeshCheck check(const QuadMesh& mesh) {
-  const Triangulation cut = triangulate(mesh, {});
-  std::vector<glm::vec3> positions = mesh.positions;
-  positions.insert(positions.end(), cut.steiner.begin(), cut.steiner.end());
-  return check_mesh(positions, cut.triangles);
-}
-
 TEST(Extract, SpheresHaveThePapersVertexCounts) {
   for (const auto& [n, vertices] : {std::pair{256, 248426}, {512, 996842}}) {
     SphereSource source(n);
-    const QuadMesh mesh = build(sample(source, -0.9f * 0.5f * static_cast<float>(n - 1)));
+    const QuadMesh mesh = build(sample(source, source.isovalue()));
     EXPECT_EQ(mesh.vertex_count(), vertices);
     EXPECT_EQ(mesh.vertex_count() - mesh.quad_count(), 2);
     const MeshCheck found = check(mesh);
@@ -84,6 +35,7 @@ TEST(Extract, SpheresHaveThePapersVertexCounts) {
 }
 
 TEST(Extract, RandomVolumesGiveManifolds) {
+  set_thread_count(1);  // the work is too small for more
   int doubled = 0, steiner = 0;
   for (unsigned seed = 0; seed < 200; ++seed) {
     const Dims dims{24 + seed % 9, 24 + seed % 5, 24 + seed % 7};
@@ -91,8 +43,7 @@ TEST(Extract, RandomVolumesGiveManifolds) {
     const Volume<float> volume = random_volume(dims, seed, static_cast<int>(seed % 5));
     const QuadMesh mesh = build(sample(volume, 0.0f, closed));
     const Triangulation cut = triangulate(mesh, {});
-    std::vector<glm::vec3> positions = mesh.positions;
-    positions.insert(positions.end(), cut.steiner.begin(), cut.steiner.end());
+    const std::vector<glm::vec3> positions = all_positions(mesh, cut);
     const MeshCheck found = check_mesh(positions, cut.triangles);
     doubled += static_cast<int>(mesh.doubled.size());
     steiner += static_cast<int>(cut.steiner.size());
@@ -108,6 +59,7 @@ TEST(Extract, RandomVolumesGiveManifolds) {
       EXPECT_GT(found.boundary_edges, 0) << "seed " << seed;
     }
   }
+  set_thread_count(0);
   EXPECT_GT(doubled, 10000) << "the volumes do not reach the split cells";
   EXPECT_GT(steiner, 1000) << "the volumes do not reach the x-quads with neighbouring doubled corners";
 }
@@ -140,6 +92,158 @@ TEST(Extract, AnyThreadCountAndSlabHeightGiveTheSameBytes) {
     }
     set_thread_count(0);
   }
+}
+
+TEST(Extract, VertexCountAt1024IsThePapersWithoutAnyVolume) {
+  // The signs of the same sphere, row by row: inside where |dx| <= sqrt(r^2 - dy^2 - dz^2).
+  constexpr std::int64_t n = 1024;
+  const double c = 0.5 * (n - 1), radius = 0.9 * c;
+  SurfaceSamples samples;
+  samples.dims = {n, n, n};
+  samples.signs = BitVolume(samples.dims);
+  for (std::int64_t z = 0; z < n; ++z) {
+    for (std::int64_t y = 0; y < n; ++y) {
+      const double dy = static_cast<double>(y) - c, dz = static_cast<double>(z) - c;
+      const double square = radius * radius - dy * dy - dz * dz;
+      if (square < 0.25) continue;
+      const auto from = static_cast<std::int64_t>(std::ceil(c - std::sqrt(square))), to = n - 1 - from;
+      for (std::int64_t w = from / 64; w <= to / 64; ++w) {
+        const std::uint64_t low = w == from / 64 ? ~std::uint64_t{0} << (from % 64) : ~std::uint64_t{0};
+        const std::uint64_t high = w == to / 64 ? ~std::uint64_t{0} >> (63 - to % 64) : ~std::uint64_t{0};
+        samples.signs.row(y, z)[w] = low & high;
+      }
+    }
+  }
+  const SampleCounts counts = count_samples(samples.signs);
+  samples.offsets.assign(static_cast<std::size_t>(counts.edges), 8);
+  samples.joined.assign(static_cast<std::size_t>(counts.faces), 0);
+  const QuadMesh mesh = build(samples);
+  EXPECT_EQ(mesh.vertex_count(), 3994274);
+  EXPECT_EQ(mesh.vertex_count() - mesh.quad_count(), 2);
+}
+
+TEST(Extract, DeciderDoesNotDependOnTheOrderOfTheCorners) {
+  std::mt19937 bits(1);
+  int joined = 0, separate = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const auto value = [&] { return static_cast<float>(bits() >> 8) * 0x1p-24f + (i % 2 == 0 ? 0.0f : 0x1p-20f); };
+    const float tau = value() * 0.01f;
+    const float a = tau + value(), d = tau + value();
+    float b = tau - value(), c = tau - value();
+    if (i % 3 == 0) b = 2 * tau - a, c = 2 * tau - d;  // nearly a tie
+    if (!(a > tau && d > tau && b < tau && c < tau)) continue;
+    const bool first = joins_inside(a, b, c, d, tau);
+    for (const bool other : {joins_inside(d, b, c, a, tau), joins_inside(a, c, b, d, tau), joins_inside(d, c, b, a, tau),
+                             joins_inside(b, a, d, c, tau), joins_inside(c, a, d, b, tau),
+                             joins_inside(b, d, a, c, tau), joins_inside(c, d, a, b, tau)}) {
+      ASSERT_EQ(other, first);
+    }
+    const double saddle = (double{a} * d - double{b} * c) / (double{a} + d - b - c);
+    ASSERT_TRUE(std::abs(saddle - tau) < 1e-6 || first == (saddle > tau));
+    const bool inverse = joins_inside(-a, -b, -c, -d, -tau);
+    const double positive = (double{a} - tau) * (double{d} - tau), negative = (double{b} - tau) * (double{c} - tau);
+    ASSERT_EQ(inverse, positive == negative ? first : !first);
+    (first ? joined : separate) += 1;
+  }
+  EXPECT_GT(joined, 1000);
+  EXPECT_GT(separate, 1000);
+  EXPECT_FALSE(joins_inside(1, -1, -1, 1, 0));
+  EXPECT_FALSE(joins_inside(1, NAN, -1, 1, 0));
+  EXPECT_TRUE(joins_inside(INFINITY, -1, -1, 1, 0));
+  EXPECT_FALSE(joins_inside(INFINITY, -1, -1, 0, 0)) << "infinity times zero";
+}
+
+TEST(Extract, OffsetsErrByHalfAStepAtMost) {
+  std::mt19937 bits(2);
+  for (int n = 1; n <= 16; ++n) {
+    double worst = 0.0;
+    for (int i = 0; i < 2000; ++i) {
+      const double t = static_cast<double>(bits() >> 8) * 0x1p-24;
+      const auto v0 = static_cast<float>(t), v1 = static_cast<float>(t - 1.0);
+      const int q = quantise_crossing(v0, v1, 0.0f, n);
+      ASSERT_GE(q, 0);
+      ASSERT_LT(q, 1 << n);
+      worst = std::max(worst, std::abs((q + 0.5) / (1 << n) - t));
+    }
+    EXPECT_LE(worst, 0.5 / (1 << n) + 1e-7);
+    EXPECT_GE(worst, 0.49 / (1 << n)) << "the steps are finer than N bits";
+  }
+  EXPECT_EQ(quantise_crossing(0.0f, -1.0f, 0.0f, 4), 0);
+  EXPECT_EQ(quantise_crossing(-1.0f, 0.0f, 0.0f, 4), 15);
+  EXPECT_EQ(quantise_crossing(NAN, 1.0f, 0.0f, 4), 8);
+  EXPECT_EQ(quantise_crossing(INFINITY, -INFINITY, 0.0f, 4), 8);
+  EXPECT_EQ(quantise_crossing(1.0f, -INFINITY, 0.0f, 4), 0);
+}
+
+TEST(Extract, EqualIsInsideAndNanIsOutside) {
+  Volume<float> volume({70, 1, 1});
+  for (std::int64_t x = 0; x < 70; ++x) volume.voxels[x] = x % 7 == 0 ? 0.5f : x % 7 == 1 ? NAN : x % 7 == 2 ? INFINITY : 0.4f;
+  const SurfaceSamples samples = sample(volume, 0.5f);
+  for (std::int64_t x = 0; x < 70; ++x) EXPECT_EQ(samples.signs.get(x, 0, 0), x % 7 == 0 || x % 7 == 2) << x;
+  EXPECT_EQ(samples.signs.words().back() >> 6, 0u) << "padding bits";
+}
+
+TEST(Extract, SamplesThatContradictEachOtherAreRefused) {
+  const SurfaceSamples good = sample(random_volume({20, 9, 8}, 3, 0), 0.0f);
+  ASSERT_FALSE(good.joined.empty());
+  const auto refused = [&](auto damage) {
+    SurfaceSamples bad = good;
+    damage(bad);
+    SilentProgress progress;
+    const auto mesh = build_quad_mesh(bad, progress);
+    return !mesh && mesh.error().kind == ErrorKind::kBadData;
+  };
+  EXPECT_FALSE(refused([](SurfaceSamples&) {}));
+  EXPECT_TRUE(refused([](SurfaceSamples& s) { s.offsets.pop_back(); }));
+  EXPECT_TRUE(refused([](SurfaceSamples& s) { s.offsets.push_back(0); }));
+  EXPECT_TRUE(refused([](SurfaceSamples& s) { s.offsets[7] = 16; }));
+  EXPECT_TRUE(refused([](SurfaceSamples& s) { s.joined.pop_back(); }));
+  EXPECT_TRUE(refused([](SurfaceSamples& s) { s.joined.push_back(1); }));
+  EXPECT_TRUE(refused([](SurfaceSamples& s) { s.joined[0] = 2; }));
+  EXPECT_TRUE(refused([](SurfaceSamples& s) { s.offset_bits = 0; }));
+  EXPECT_TRUE(refused([](SurfaceSamples& s) { s.offset_bits = 17; }));
+  EXPECT_TRUE(refused([](SurfaceSamples& s) { s.dims.z = 9; }));
+  EXPECT_TRUE(refused([](SurfaceSamples& s) { s.dims = {}, s.signs = {}; }));
+  EXPECT_TRUE(refused([](SurfaceSamples& s) { s.signs.set(3, 3, 3, !s.signs.get(3, 3, 3)); s.offsets.push_back(0); }));
+  EXPECT_TRUE(refused([](SurfaceSamples& s) { s.signs.row(2, 2)[0] |= std::uint64_t{1} << 20; })) << "padding bit";
+}
+
+TEST(Extract, BadOptionsAreRefused) {
+  const Volume<float> volume = random_volume({4, 4, 4}, 1, 0);
+  VolumeSource source(volume);
+  SilentProgress progress;
+  for (const ExtractOptions& bad : {ExtractOptions{.isovalue = NAN}, ExtractOptions{.isovalue = INFINITY},
+                                    ExtractOptions{.offset_bits = 0}, ExtractOptions{.offset_bits = 17}}) {
+    const auto samples = sample_surface(source, bad, progress);
+    ASSERT_FALSE(samples.has_value());
+    EXPECT_EQ(samples.error().kind, ErrorKind::kUsage);
+  }
+}
+
+class CountingProgress final : public Progress {
+ public:
+  std::atomic<std::int64_t> seen{0};
+
+ private:
+  void on_advance(std::int64_t done) override {
+    for (std::int64_t old = seen; old < done && !seen.compare_exchange_weak(old, done);) {
+    }
+  }
+};
+
+TEST(Extract, ProgressEndsAtTheNumberOfVoxelsAndCancelStops) {
+  const Volume<float> volume = random_volume({40, 30, 20}, 1, 0);
+  VolumeSource source(volume);
+  CountingProgress sampling, building;
+  const auto samples = sample_surface(source, {}, sampling);
+  ASSERT_TRUE(samples.has_value());
+  EXPECT_EQ(sampling.seen, volume.dims.count());
+  ASSERT_TRUE(build_quad_mesh(*samples, building).has_value());
+  EXPECT_EQ(building.seen, volume.dims.count());
+  sampling.cancel();
+  building.cancel();
+  EXPECT_EQ(sample_surface(source, {}, sampling).error().kind, ErrorKind::kCancelled);
+  EXPECT_EQ(build_quad_mesh(*samples, building).error().kind, ErrorKind::kCancelled);
 }
 
 }  // namespace
