@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "core/base/parallel.h"
@@ -78,6 +79,42 @@ class VertexGroup {
   std::size_t count_ = 0;
 };
 
+std::uint64_t spread3(std::uint64_t x) {  // 21 bits to every third bit
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x1f00000000ffffULL;
+  x = (x | x << 16) & 0x1f0000ff0000ffULL;
+  x = (x | x << 8) & 0x100f00f00f00f00fULL;
+  x = (x | x << 4) & 0x10c30c30c30c30c3ULL;
+  return (x | x << 2) & 0x1249249249249249ULL;
+}
+
+/// Vertices `ids` in an order where neighbours lie in the same small box and look to the same side.
+void sort_by_place_and_side(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
+                            std::vector<std::uint32_t>& ids) {
+  constexpr float kBox_vox = 4.0f;
+  glm::vec3 low(INFINITY);
+  for (const std::uint32_t v : ids) low = glm::min(low, positions[v]);
+  struct Item {
+    std::uint64_t key;
+    std::uint32_t vertex;
+  };
+  std::vector<Item> items(ids.size());
+  parallel_for(static_cast<std::int64_t>(ids.size()), 1 << 14, [&](std::int64_t i) {
+    const std::uint32_t v = ids[static_cast<std::size_t>(i)];
+    const glm::vec3 box = glm::min((positions[v] - low) / kBox_vox, glm::vec3(1e6f)), n = normals[v];
+    const glm::vec3 size = glm::abs(n);
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const auto side = static_cast<std::uint64_t>(2 * axis + (n[axis] < 0.0f));
+    const std::uint64_t place = spread3(static_cast<std::uint64_t>(box.x)) | spread3(static_cast<std::uint64_t>(box.y)) << 1 |
+                                spread3(static_cast<std::uint64_t>(box.z)) << 2;
+    items[static_cast<std::size_t>(i)] = {(place << 3) | side, v};
+  });
+  std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
+    return a.key != b.key ? a.key < b.key : a.vertex < b.vertex;
+  });
+  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = items[i].vertex;
+}
+
 Result<void> check_indices(std::span<const Triangle> triangles, std::size_t vertices) {
   const std::uint32_t largest = parallel_reduce(
       static_cast<std::int64_t>(triangles.size()), 1 << 16, 0u,
@@ -126,6 +163,7 @@ Result<std::vector<float>> ambient_light(std::span<const glm::vec3> positions, s
   if (options.partition.empty()) used[0] = !positions.empty();
   for (const std::uint8_t id : options.partition) used[id] = true;
   std::vector<Triangle> own;
+  std::vector<std::uint32_t> ids;
   for (std::size_t id = 0; id < used.size(); ++id) {
     if (!used[id]) continue;
     std::span<const Triangle> part = triangles;
@@ -136,22 +174,29 @@ Result<std::vector<float>> ambient_light(std::span<const glm::vec3> positions, s
       part = own;
     }
     DUBSAR_ASSIGN(const auto scene, RayScene::build(*device, part, progress));
-    parallel_chunks(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    ids.clear();
+    std::int64_t skipped = 0;
+    for (std::uint32_t v = 0; v < positions.size(); ++v) {
+      if (!options.partition.empty() && options.partition[v] != id) continue;
+      if (finite(positions[v]) && finite(normals[v]))
+        ids.push_back(v);
+      else
+        ++skipped;
+    }
+    sort_by_place_and_side(positions, normals, ids);
+    parallel_chunks(static_cast<std::int64_t>(ids.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
       VertexGroup group(*scene, sky, options);
-      std::int64_t traced = 0;
-      for (auto v = static_cast<std::uint32_t>(begin); v < static_cast<std::uint32_t>(end); ++v) {
-        if (!options.partition.empty() && options.partition[v] != id) continue;
-        ++traced;
-        if (!finite(positions[v]) || !finite(normals[v])) continue;
+      for (std::int64_t i = begin; i < end; ++i) {
+        const std::uint32_t v = ids[static_cast<std::size_t>(i)];
         group.add(v, positions[v], normals[v]);
-        if (group.full()) {
+        if (group.full() || i + 1 == end) {
           if (progress.cancelled()) return;
           group.trace(light);
         }
       }
-      group.trace(light);
-      progress.advance(traced * options.rays);
+      progress.advance((end - begin) * options.rays);
     });
+    progress.advance(skipped * options.rays);
     if (progress.cancelled()) return cancelled_error();
   }
   progress.end();
