@@ -1,0 +1,49 @@
+#include "core/phantom/options.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/budget.h"
+
+namespace dubsar::phantom {
+namespace {
+// The paper's grid at 38 um: 71.1 x 38.0 x 65.5 mm around an object of 59 x 21 x 61 mm.
+constexpr double kFieldMm[3] = {1871 * 0.038, 999 * 0.038, 1723 * 0.038};
+}  // namespace
+
+Result<PhantomOptions> parse_preset(std::string_view name) {
+  PhantomOptions options;
+  if (name == "tiny")
+    options.dims = {96, 64, 96};
+  else if (name == "demo")
+    options.dims = {512, 272, 472};
+  else if (name == "paper")
+    options.dims = {1871, 999, 1723};
+  else
+    return fail(ErrorKind::kUsage, "phantom: preset \"{}\" is unknown, expected tiny, demo or paper", name);
+  return complete(options);
+}
+
+Result<PhantomOptions> complete(PhantomOptions options) {
+  const Dims d = options.dims;
+  if (std::min({d.x, d.y, d.z}) < 32 || std::max({d.x, d.y, d.z}) > 65535)
+    return fail(ErrorKind::kUsage, "phantom: size {}x{}x{} found, expected 32 to 65535 voxels along each axis", d.x,
+                d.y, d.z);
+  const std::array<std::uint64_t, 3> sizes{static_cast<std::uint64_t>(d.x), static_cast<std::uint64_t>(d.y),
+                                           static_cast<std::uint64_t>(d.z)};
+  if (sizes[0] * sizes[1] * sizes[2] > Budget{}.max_voxels)
+    return fail(ErrorKind::kUsage, "phantom: size {}x{}x{} is more than {} voxels", d.x, d.y, d.z,
+                Budget{}.max_voxels);
+  if (std::isnan(options.snr_db) || options.snr_db < 0.0 || (options.snr_db > 120.0 && !std::isinf(options.snr_db)))
+    return fail(ErrorKind::kUsage, "phantom: signal to noise ratio {} dB found, expected 0 to 120 or infinity",
+                options.snr_db);
+  if (options.voxel_mm == 0.0)
+    options.voxel_mm = std::max({kFieldMm[0] / static_cast<double>(d.x), kFieldMm[1] / static_cast<double>(d.y),
+                                 kFieldMm[2] / static_cast<double>(d.z)});
+  if (!(options.voxel_mm > 1e-4 && options.voxel_mm < 10.0))
+    return fail(ErrorKind::kUsage, "phantom: voxel edge {} mm found, expected 0.0001 to 10 mm", options.voxel_mm);
+  return options;
+}
+
+}  // namespace dubsar::phantom

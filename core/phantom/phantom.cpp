@@ -1,0 +1,209 @@
+#include "core/phantom/phantom.h"
+
+#include <cmath>
+
+namespace dubsar::phantom {
+namespace {
+
+constexpr float kFar = 1e4f;
+constexpr float kProjectionReach = 8.0f;  ///< kReach times the steepest slope
+
+float length(Float4 v) { return std::sqrt(dot(v, v)); }
+Dual far_away() { return {kFar, Float4{}}; }
+float metric(const Dual& d) { return d.v / std::max(length(d.g), 0.2f); }
+
+}  // namespace
+
+Phantom::Phantom(const PhantomOptions& options) : options_(options), grid_(options.dims) {}
+
+glm::dvec3 Phantom::grid_vector(Float4 model) const {
+  return {dot(axis_x_, model), dot(axis_y_, model), dot(axis_z_, model)};
+}
+glm::dvec3 Phantom::grid_point(Float4 model) const { return grid_vector(model - origin_); }
+
+Dual Phantom::impressions(const std::vector<Impression>& all, std::span<const std::uint32_t> ids,
+                          const Point& point, const Dual& depth) const {
+  Dual hollow = far_away();
+  for (const std::uint32_t id : ids) {
+    const Impression& impression = all[id];
+    const Float4 d = point.p - impression.middle;
+    if (dot(d, d) < impression.radius2)
+      hollow = smooth_min(hollow, impression.field.evaluate(point, depth), rim_rounding_);
+  }
+  return hollow;
+}
+
+Dual Phantom::carve(const Dual& body, const Dual& decor, const Dual& hollow) const {
+  Dual surface = body + decor;
+  if (hollow.v < lip_width_) {  // the stylus pushes up a low lip around the impression
+    const float t = 1.0f - std::max(hollow.v, 0.0f) / lip_width_;
+    surface = surface - Dual{lip_height_ * t * t,
+                             hollow.v > 0.0f ? hollow.g * (-2.0f * lip_height_ * t / lip_width_) : Float4{}};
+  }
+  return smooth_max(surface, -hollow, rim_rounding_);
+}
+
+Dual Phantom::gap(const Point& point) const {
+  const Dual q = (glue_field_.evaluate(point) - glue_threshold_) * (-1.0f / glue_ramp_);  // < 0: glued
+  Dual gap;
+  if (q.v >= 1.0f) {
+    gap = {gap_open_, Float4{}};
+  } else if (q.v >= 0.0f) {
+    const float t = 1.0f - q.v;
+    gap = {gap_open_ * (1.0f - t * t * t), q.g * (3.0f * gap_open_ * t * t)};
+  } else {
+    const float t = std::max(1.0f + q.v, 0.0f);
+    gap = {-overlap_ * (1.0f - t * t * t), q.g * (3.0f * overlap_ * t * t)};
+  }
+  if (gap.v <= 0.0f) return gap;
+  gap = gap * (gap_variation_.evaluate(point) + 1.0f);
+  for (const auto& touch : touches_)
+    gap = gap * (Dual{1.0f, Float4{}} - bump(point.distance2(touch.centre), touch.radius2) * touch.depth);
+  return gap;
+}
+
+Fields Phantom::fields(float x, float y, float z, float reach) const {
+  const Point point = model_point(x, y, z);
+  const std::int64_t cell = grid_.index(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
+  Fields f;
+  f.pore = f.organic = f.grain = f.crack = far_away();
+
+  const float outer_range = outer_relief_ + reach;
+  Dual decor;
+  const Dual outer_base = outer_.evaluate(point, &decor, outer_range);
+  if (outer_base.v > outer_range) {
+    f.outer = f.clay = outer_base - outer_relief_;
+    f.tablet = far_away();
+    f.wall = -f.tablet;
+    f.tablet_base = kFar;
+    return f;
+  }
+  if (outer_base.v < -outer_range)
+    f.outer = outer_base + outer_relief_;
+  else
+    f.outer = carve(outer_base, decor, impressions(outer_wedges_, outer_cells_[cell], point, -outer_base));
+
+  const float range = tablet_relief_ + reach;
+  Dual joint = far_away();
+  const Dual base = tablet_.evaluate(point, &decor, range);
+  f.tablet_base = base.v;
+  if (base.v > range) {  // in the shell
+    f.tablet = base - tablet_relief_;
+    f.wall = -f.tablet;
+  } else if (base.v < -range) {
+    f.tablet = base + tablet_relief_;
+    f.wall = -f.tablet;
+  } else {
+    const Dual hollow = impressions(tablet_wedges_, tablet_cells_[cell], point, -base);
+    f.tablet = carve(base, decor, hollow);
+    // The envelope was pressed on: its inner wall follows the tablet at the gap's width and sinks into the wedges.
+    const Dual followed = smooth_max(base, -(hollow + hint_), 2.0f * rim_rounding_);
+    const Dual width = gap(point);
+    f.wall = width - followed;
+    // Where both are one, neither's surface exists: the way out leads along the joint to where the gap opens.
+    joint = max(width, smooth_abs(base + 0.5f * overlap_, 1.0f) - 2.0f * overlap_);
+  }
+  Dual envelope = max(f.outer, f.wall);
+  if (crack_.radius2 > 0.0f) {
+    const Dual d2 = point.distance2(crack_.centre);
+    if (d2.v < crack_.radius2) {
+      const Dual sheet = point.along(crack_.centre, crack_.normal) + crack_.bend.evaluate(point);
+      f.crack = smooth_abs(sheet, 0.3f) - bump(d2, crack_.radius2) * crack_.half_width;
+      envelope = max(envelope, -f.crack);
+    }
+  }
+  f.clay = min(smooth_min(f.tablet, envelope, join_rounding_), joint);
+  for (const std::uint32_t id : pore_cells_[cell]) {
+    const Pore& pore = pores_[id];
+    Dual r2;
+    for (const Float4 axis : pore.axis) {
+      const Dual c = point.along(pore.centre, axis);
+      r2 = r2 + c * c;
+    }
+    f.pore = min(f.pore, (sqrt(r2) - 1.0f) * pore.smallest);
+  }
+  for (const std::uint32_t id : straw_cells_[cell]) {
+    const Straw& straw = straws_[id];
+    const Float4 d = straw.b - straw.a;
+    const float t = std::clamp(dot(point.p - straw.a, d) / dot(d, d), 0.0f, 1.0f);
+    f.organic = min(f.organic, sqrt(point.distance2(straw.a + d * t)) - straw.radius);
+  }
+  for (const std::uint32_t id : grain_cells_[cell])
+    f.grain = min(f.grain, sqrt(point.distance2(grains_[id].centre)) - grains_[id].radius);
+  f.clay = max(max(f.clay, -f.pore), -f.organic);
+  return f;
+}
+
+// Closest point on the zero of a field: Newton steps along the gradient bring the foot to the surface, tangential
+// steps bring it under the point (Hartmann 1999, foot points on implicit surfaces).
+template <class Field>
+double Phantom::project(const glm::dvec3& point, const Field& field) const {
+  const auto at = [&](Float4 p) { return field(p[0], p[1], p[2]); };
+  const Float4 start{static_cast<float>(point.x), static_cast<float>(point.y), static_cast<float>(point.z), 0.0f};
+  const auto to_grid = [&](Float4 g) { return Float4{dot(axis_x_, g), dot(axis_y_, g), dot(axis_z_, g), 0.0f}; };
+  Dual f = at(start);
+  const float first_order = metric(f);
+  if (std::abs(first_order) > 2.5f) return std::clamp(static_cast<double>(first_order), -kReach, kReach);
+  Float4 foot = start, last_slide{};
+  float relax = 0.8f, best = kFar;
+  for (int i = 0; i < 24; ++i) {
+    const float slope = std::max(length(f.g), 0.2f);
+    const Float4 normal = to_grid(f.g) * (1.0f / slope);
+    const Float4 aside = start - foot;
+    const Float4 slide = aside - normal * dot(aside, normal);
+    const float error = std::abs(f.v / slope), slid = length(slide);
+    if (error < 0.02f) best = std::min(best, length(aside) + error);
+    if (i > 0 && error < 2e-3f && slid < 2e-2f) break;
+    // Across an edge the slide turns back: halving it ends on the edge.
+    if (i > 1 && dot(slide, last_slide) < 0.0f) relax *= 0.5f;
+    last_slide = slide;
+    foot = foot - normal * (f.v / slope) + slide * std::min(relax, 1.0f / std::max(slid, 1e-6f));
+    f = at(foot);
+  }
+  const float distance = best < kFar ? best : std::abs(first_order);
+  return std::copysign(std::min(static_cast<double>(distance), kReach), first_order);
+}
+
+double Phantom::signed_distance(const glm::dvec3& point) const {
+  return project(point, [this](float x, float y, float z) { return fields(x, y, z, kProjectionReach).clay; });
+}
+double Phantom::tablet_distance(const glm::dvec3& point) const {
+  return project(point, [this](float x, float y, float z) { return fields(x, y, z, kProjectionReach).tablet; });
+}
+
+Label label_of(const Fields& f) {
+  if (f.pore.v < 0.0f) return Label::kPore;
+  if (f.organic.v < 0.0f) return Label::kOrganic;
+  const bool tablet = f.tablet.v < 0.0f;
+  const bool envelope = std::max({f.outer.v, f.wall.v, -f.crack.v}) < 0.0f;
+  if (tablet) return envelope ? Label::kGlue : Label::kTablet;
+  if (envelope) return Label::kEnvelope;
+  if (f.clay.v < 0.0f) return Label::kGlue;
+  return f.outer.v > 0.0f ? Label::kOutside : Label::kGap;
+}
+
+Label Phantom::label(const glm::dvec3& p) const {
+  return label_of(fields(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)));
+}
+
+bool Phantom::on_tablet_side(const glm::dvec3& p) const {
+  return tablet_.smooth(model_point(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z))).v < 0.0f;
+}
+
+double Phantom::gap_width(const glm::dvec3& p) const {
+  return static_cast<double>(
+      gap(model_point(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z))).v);
+}
+
+Part Phantom::nearest_part(const glm::dvec3& p) const {
+  const Fields f = fields(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
+  const std::array<std::pair<float, Part>, 6> candidates{{{std::abs(metric(f.tablet)), Part::kTablet},
+                                                          {std::abs(metric(f.outer)), Part::kEnvelopeOutside},
+                                                          {std::abs(metric(f.wall)), Part::kEnvelopeInside},
+                                                          {std::abs(metric(f.pore)), Part::kPore},
+                                                          {std::abs(metric(f.organic)), Part::kOrganic},
+                                                          {std::abs(metric(f.crack)), Part::kCrack}}};
+  return std::min_element(candidates.begin(), candidates.end())->second;
+}
+
+}  // namespace dubsar::phantom

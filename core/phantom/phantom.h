@@ -1,0 +1,165 @@
+#pragma once
+// An enclosed Old Assyrian tablet as an implicit model, evaluated at any point: what a scan of it should give, and the
+// truth a result is judged by.
+
+#include <array>
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/phantom/cell_lists.h"
+#include "core/phantom/clay_body.h"
+#include "core/phantom/dual.h"
+#include "core/phantom/options.h"
+#include "core/phantom/side.h"
+#include "core/phantom/stylus.h"
+
+namespace dubsar::phantom {
+
+enum class Label : std::uint8_t {
+  kOutside = 0,
+  kTablet = 1,    ///< clay
+  kEnvelope = 2,  ///< clay
+  kGap = 3,       ///< air between tablet and envelope, and in a crack of the envelope
+  kPore = 4,
+  kOrganic = 5,
+  kGlue = 6,      ///< clay of both: where tablet and envelope join; on_tablet_side() says whose it was
+};
+
+enum class Owner : std::uint8_t { kTablet, kEnvelope };
+
+/// One wedge, in input voxel coordinates.
+struct Wedge {
+  glm::dvec3 position;  ///< on the undisturbed surface, above the deepest point
+  glm::dvec3 outward;   ///< unit normal of that surface, towards the air
+  glm::dvec3 tail;      ///< unit direction of the tail
+  double depth = 0.0;   ///< voxels from `position` against `outward` to the clay, after all neighbours were written
+  double length = 0.0;  ///< of the tail, voxels; 0: Winkelhaken
+  double head_half_width = 0.0;
+  Side side = Side::kObverse;
+  Owner owner = Owner::kTablet;
+  std::int32_t sign = 0;  ///< running number of the sign it belongs to
+  bool open = true;       ///< air from `position` to the deepest point; false: filled with the envelope's clay
+};
+
+/// Fields at a point, in voxels, negative inside; metric to first order after division by their gradients near their
+/// zero. Farther from it than the `reach` they were asked for they keep their sign, and are only known to be beyond it.
+struct Fields {
+  Dual tablet, outer, wall;  ///< tablet with its wedges, envelope seen from outside, cavity (negative in envelope clay)
+  Dual pore, organic, grain;
+  Dual crack;
+  Dual clay;                 ///< all of it: negative in clay
+  float tablet_base = 0.0f;  ///< the tablet before it was written on
+};
+
+Label label_of(const Fields& fields);
+
+/// The nearest surface of a point, for judging a mesh.
+enum class Part : std::uint8_t { kTablet, kEnvelopeOutside, kEnvelopeInside, kPore, kOrganic, kCrack };
+
+class Phantom {
+ public:
+  /// Completes the options (see complete()) and builds the model: about 0.3 s, some MB. Errors: kUsage.
+  static Result<std::unique_ptr<const Phantom>> create(const PhantomOptions& options);
+
+  const PhantomOptions& options() const noexcept { return options_; }
+  const std::vector<Wedge>& wedges() const noexcept { return wedges_; }
+  /// Part of the tablet's surface where there is no air between it and the envelope, 0..1.
+  double glued_fraction() const noexcept { return glued_fraction_; }
+  bool cracked() const noexcept { return crack_.radius2 > 0.0f; }
+  int pore_count() const noexcept { return static_cast<int>(pores_.size()); }
+
+  // All points are in input voxel coordinates (voxel centres at integers). Any thread.
+
+  /// Largest distance that signed_distance() reports.
+  static constexpr double kReach = 4.0;
+  /// Distance in voxels to the surface of the clay, negative in clay, cut to -kReach..kReach. The foot point is found
+  /// by projection, so it is good to about 0.02 voxel within 2 voxels of the surface, except near edges that are
+  /// sharper than a voxel. About 2 us near the surface, 0.1 us elsewhere.
+  double signed_distance(const glm::dvec3& point) const;
+  /// The same to the tablet alone, as if it were unwrapped.
+  double tablet_distance(const glm::dvec3& point) const;
+
+  Label label(const glm::dvec3& point) const;
+  /// Inside the tablet as it was before the envelope was put on: tells the two sides of glued clay apart.
+  bool on_tablet_side(const glm::dvec3& point) const;
+  /// The surface nearest to the point. For points within some voxels of a surface.
+  Part nearest_part(const glm::dvec3& point) const;
+  /// Distance in voxels to where the tablet is glued to the envelope: how far the clay of one is from that of the
+  /// other, negative where they overlap.
+  double gap_width(const glm::dvec3& point) const;
+
+  /// All fields at a point. The smaller the reach, the faster: 0.1 to 0.4 us.
+  Fields fields(float x, float y, float z, float reach = 20.0f) const;
+
+ private:
+  explicit Phantom(const PhantomOptions& options);
+  friend class PhantomBuilder;
+
+  struct Impression {
+    WedgeField field;
+    Float4 middle;
+    float radius2;  ///< farther from the middle it changes nothing
+  };
+  struct Pore {
+    Float4 centre;
+    std::array<Float4, 3> axis;  ///< unit axes divided by the radii
+    float smallest;
+  };
+  struct Straw {
+    Float4 a, b;
+    float radius;
+  };
+  struct Grain {
+    Float4 centre;
+    float radius;
+  };
+  struct Crack {  ///< a bent sheet, thinner towards its rim
+    Float4 centre{}, normal{};
+    float radius2 = 0.0f, half_width = 0.0f;
+    Waves bend;
+  };
+
+  Point model_point(float x, float y, float z) const {
+    Point point;
+    point.p = origin_ + axis_x_ * x + axis_y_ * y + axis_z_ * z;
+    return point;
+  }
+  glm::dvec3 grid_point(Float4 model) const;
+  glm::dvec3 grid_vector(Float4 model) const;
+  /// Union of the impressions in `ids`: large when there are none.
+  Dual impressions(const std::vector<Impression>& all, std::span<const std::uint32_t> ids, const Point& point,
+                   const Dual& depth) const;
+  Dual carve(const Dual& body, const Dual& decor, const Dual& hollow) const;
+  Dual gap(const Point& point) const;
+  template <class Field>
+  double project(const glm::dvec3& point, const Field& field) const;
+
+  PhantomOptions options_;
+  float voxels_per_mm_ = 1.0f;
+  Float4 origin_{}, axis_x_{}, axis_y_{}, axis_z_{};
+  SealRelief seal_;
+  ClayBody tablet_, outer_;
+  // Gap between tablet and envelope (all in voxels).
+  Waves gap_variation_, glue_field_;
+  float glue_threshold_ = 0.0f, glue_ramp_ = 1.0f, gap_open_ = 1.0f, overlap_ = 1.0f;
+  std::vector<ClayBody::FingerMark> touches_;  ///< depth: share of the gap that closes
+  // Fine features.
+  float rim_rounding_ = 1.0f, join_rounding_ = 1.0f, lip_height_ = 0.0f, lip_width_ = 1.0f, hint_ = 0.0f;
+  std::vector<Impression> tablet_wedges_, outer_wedges_;
+  float tablet_relief_ = 0.0f, outer_relief_ = 0.0f;  ///< no decoration or impression is farther from the smooth surface
+  std::vector<Pore> pores_;
+  std::vector<Straw> straws_;
+  std::vector<Grain> grains_;
+  Crack crack_;
+  CellGrid grid_;
+  CellLists tablet_cells_, outer_cells_, pore_cells_, straw_cells_, grain_cells_;
+
+  std::vector<Wedge> wedges_;
+  double glued_fraction_ = 0.0;
+};
+
+}  // namespace dubsar::phantom

@@ -1,0 +1,112 @@
+#include "core/phantom/phantom_source.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "core/base/parallel.h"
+#include "core/phantom/write_phantom.h"
+#include "core/volume/resample.h"
+
+namespace dubsar::phantom {
+namespace {
+
+std::shared_ptr<const Phantom> make(Dims dims, std::uint64_t seed, double snr_db) {
+  PhantomOptions options;
+  options.dims = dims;
+  options.seed = seed;
+  options.snr_db = snr_db;
+  return Phantom::create(options).value();
+}
+
+Volume<float> scan(const std::shared_ptr<const Phantom>& phantom, std::int64_t slab) {
+  PhantomSource source(phantom);
+  SilentProgress progress;
+  return read_all(source, progress, slab).value();
+}
+
+TEST(PhantomScan, SameBytesForAnyThreadsAndSlabs) {
+  const auto phantom = make({83, 50, 71}, 6, 17.0);
+  set_thread_count(1);
+  const Volume<float> expected = scan(phantom, 71);
+  for (const auto& [threads, slab] : {std::pair{1, 5}, std::pair{2, 1}, std::pair{2, 40}, std::pair{7, 16}}) {
+    set_thread_count(threads);
+    const Volume<float> got = scan(phantom, slab);
+    EXPECT_EQ(0, std::memcmp(expected.voxels.data(), got.voxels.data(), static_cast<std::size_t>(got.dims.count()) * sizeof(float)))
+        << threads << " threads, slabs of " << slab;
+  }
+  set_thread_count(0);
+  PhantomSource source(phantom);  // backwards
+  std::vector<float> slice(static_cast<std::size_t>(expected.dims.slice()));
+  for (std::int64_t z = expected.dims.z - 1; z >= 0; z -= 7) {
+    ASSERT_TRUE(source.read(z, z + 1, slice));
+    EXPECT_EQ(0, std::memcmp(expected.row(0, z), slice.data(), slice.size() * sizeof(float)));
+  }
+}
+
+struct Statistics {
+  double clay_mean = 0, air_mean = 0, snr_db = 0;
+};
+
+// Mean and deviation of voxels at least 3 voxels of the scan away from any surface; `scale` and `origin` place the
+// volume's voxels in the scan.
+Statistics measure(const Volume<float>& volume, const Phantom& phantom, const GridFrame& frame) {
+  double sum[2] = {0, 0}, squares[2] = {0, 0}, count[2] = {0, 0};
+  for (std::int64_t z = 0; z < volume.dims.z; ++z)
+    for (std::int64_t y = 0; y < volume.dims.y; ++y)
+      for (std::int64_t x = 0; x < volume.dims.x; ++x) {
+        const glm::dvec3 p = frame.input_vox_from_grid({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+        const Fields f = phantom.fields(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
+        if (std::abs(f.clay.v) < 6.0f || f.grain.v < 6.0f) continue;
+        const int i = f.clay.v < 0.0f ? 0 : 1;
+        const auto value = static_cast<double>(volume.at(x, y, z));
+        sum[i] += value;
+        squares[i] += value * value;
+        count[i] += 1.0;
+      }
+  const double clay = sum[0] / count[0], air = sum[1] / count[1];
+  const double sigma = std::sqrt(squares[0] / count[0] - clay * clay);
+  return {clay, air, 20.0 * std::log10((clay - air) / sigma)};
+}
+
+TEST(PhantomScan, ClayAirAndNoiseAreThoseOfThePaper) {
+  const auto phantom = make({192, 102, 177}, 1, 17.0);
+  PhantomSource source(phantom);
+  SilentProgress progress;
+  const Volume<float> raw = read_all(source, progress).value();
+  const Statistics before = measure(raw, *phantom, source.frame());
+  EXPECT_NEAR(before.clay_mean, 0.0017, 0.0017 * 0.002);
+  EXPECT_NEAR(before.air_mean, 0.0, 0.0017 * 0.002);
+  EXPECT_NEAR(before.snr_db, 17.0, 0.3);
+  HalfResolutionSource half(source);
+  const Volume<float> resampled = read_all(half, progress).value();
+  EXPECT_NEAR(measure(resampled, *phantom, half.frame()).snr_db, 23.0, 0.7);
+}
+
+TEST(PhantomScan, EdgeSpreadIsThatOfVoxelAndPsf) {
+  // Without noise, voxels against signed distance: half the density at the surface, and the slope there of a blur with
+  // variance 1/3 + 1/12: 0.0017 / (sqrt(2 pi) 0.645).
+  const auto phantom = make({224, 119, 207}, 2, std::numeric_limits<double>::infinity());
+  const Volume<float> volume = scan(phantom, 32);
+  double n = 0, sd = 0, sv = 0, sdd = 0, sdv = 0;
+  for (std::int64_t z = 0; z < volume.dims.z; z += 2)
+    for (std::int64_t y = 0; y < volume.dims.y; y += 2)
+      for (std::int64_t x = 0; x < volume.dims.x; ++x) {
+        const Fields f = phantom->fields(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
+        // Only the smooth outside: wedges and relief have edges.
+        if (std::abs(f.clay.v) > 0.5f || std::abs(f.outer.v) > 0.5f) continue;
+        const double d = phantom->signed_distance({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+        if (std::abs(d) > 0.3) continue;
+        const auto v = static_cast<double>(volume.at(x, y, z)) / 0.0017;
+        n += 1, sd += d, sv += v, sdd += d * d, sdv += d * v;
+      }
+  ASSERT_GT(n, 1000);
+  const double slope = (n * sdv - sd * sv) / (n * sdd - sd * sd), at_zero = (sv - slope * sd) / n;
+  EXPECT_NEAR(at_zero, 0.5, 0.02);
+  EXPECT_NEAR(slope, -0.62, 0.06);
+}
+
+}  // namespace
+}  // namespace dubsar::phantom
