@@ -15,7 +15,8 @@ Result<void> FiniteSource::read(std::int64_t z_begin, std::int64_t z_end, std::s
   DUBSAR_TRY(source_->read(z_begin, z_end, out));
   const Dims size = dims();
   std::vector<std::int64_t> bad(static_cast<std::size_t>(z_end - z_begin), 0);
-  parallel_for(z_end - z_begin, 1, [&](std::int64_t k) {
+  const std::int64_t grain = std::max<std::int64_t>(1, (1 << 18) / size.slice());
+  parallel_for(z_end - z_begin, grain, [&](std::int64_t k) {
     const auto slice = out.subspan(static_cast<std::size_t>(k * size.slice()), static_cast<std::size_t>(size.slice()));
     bad[static_cast<std::size_t>(k)] =
         std::count_if(slice.begin(), slice.end(), [](float value) { return !std::isfinite(value); });
@@ -30,7 +31,7 @@ Result<void> FiniteSource::read(std::int64_t z_begin, std::int64_t z_end, std::s
   if (!fill_) {
     DUBSAR_ASSIGN(fill_, estimate_air());
   }
-  parallel_for(z_end - z_begin, 1, [&](std::int64_t k) {
+  parallel_for(z_end - z_begin, grain, [&](std::int64_t k) {
     if (bad[static_cast<std::size_t>(k)] == 0) return;
     const auto slice = out.subspan(static_cast<std::size_t>(k * size.slice()), static_cast<std::size_t>(size.slice()));
     std::replace_if(slice.begin(), slice.end(), [](float value) { return !std::isfinite(value); }, *fill_);

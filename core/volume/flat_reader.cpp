@@ -10,6 +10,7 @@ namespace dubsar {
 namespace {
 
 constexpr std::int64_t kPieceBytes = 4 << 20;  // large enough for disks and network shares, small enough for threads
+constexpr std::int64_t kGrainBytes = 1 << 20;  // less is not worth waking a thread for
 
 class FlatReader final : public VoxelReader {
  public:
@@ -31,7 +32,8 @@ class FlatReader final : public VoxelReader {
                           layout_.map.identity() && size.x == layout_.dims.x;
     std::mutex mutex;
     Result<void> result;
-    parallel_chunks(size.z * pieces_per_slice, runs ? 1 : 256, [&](std::int64_t begin, std::int64_t end) {
+    const std::int64_t grain = std::max<std::int64_t>(1, kGrainBytes / (rows_at_once * row));
+    parallel_chunks(size.z * pieces_per_slice, grain, [&](std::int64_t begin, std::int64_t end) {
       std::vector<std::byte> buffer;
       for (std::int64_t piece = begin; piece < end; ++piece) {
         const std::int64_t k = piece / pieces_per_slice;

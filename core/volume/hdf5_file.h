@@ -173,8 +173,8 @@ class Hdf5File {
 /// How Hdf5Writer stores a dataset.
 struct Hdf5Storage {
   ScalarType type = ScalarType::kF32;
-  std::vector<std::uint64_t> dims;   ///< slowest axis first
-  std::vector<std::uint64_t> chunk;  ///< empty: contiguous
+  std::vector<std::uint64_t> dims = {};   ///< slowest axis first
+  std::vector<std::uint64_t> chunk = {};  ///< empty: contiguous
   int deflate = 0;                   ///< 1..9, needs chunk
   bool shuffle = false;              ///< byte shuffle before deflate, needs chunk
   ByteOrder order = kNativeOrder;

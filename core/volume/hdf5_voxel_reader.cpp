@@ -59,7 +59,7 @@ class LibraryReader : public VoxelReader {
         DUBSAR_TRY(dataset_.read_doubles(offset, count, numbers));
         from = std::as_bytes(std::span(numbers)).data();
       }
-      parallel_for(size.y, 64, [&](std::int64_t j) {
+      parallel_for(size.y, std::max<std::int64_t>(64, (1 << 18) / row), [&](std::int64_t j) {
         store_row(from + j * box.y.step * row * scalar_bytes(type), type, order, map_, box.x,
                   out.subspan(static_cast<std::size_t>((k * size.y + j) * size.x), static_cast<std::size_t>(size.x)));
       });
@@ -89,7 +89,8 @@ class ChunkReader final : public LibraryReader {
     DUBSAR_ASSIGN(const std::vector<Hdf5Chunk> chunks, chunks_in(box));
     std::mutex mutex;
     Result<void> result;
-    parallel_chunks(static_cast<std::int64_t>(chunks.size()), 1, [&](std::int64_t begin, std::int64_t end) {
+    const std::int64_t grain = std::max<std::int64_t>(1, (1 << 17) / static_cast<std::int64_t>(chunk_bytes_ + 1));
+    parallel_chunks(static_cast<std::int64_t>(chunks.size()), grain, [&](std::int64_t begin, std::int64_t end) {
       ChunkScratch scratch;
       for (std::int64_t i = begin; i < end; ++i)
         if (auto done = decode(chunks[static_cast<std::size_t>(i)], box, out, scratch); !done) {

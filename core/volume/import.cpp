@@ -7,10 +7,13 @@
 
 #include "core/base/input_file.h"
 #include "core/base/log.h"
+#include "core/image_io/tiff_file.h"
 #include "core/volume/grid_source.h"
 #include "core/volume/hdf5_file.h"
 #include "core/volume/import_hdf5.h"
+#include "core/volume/import_nrrd.h"
 #include "core/volume/import_raw.h"
+#include "core/volume/import_tiff.h"
 
 namespace dubsar {
 namespace {
@@ -51,6 +54,9 @@ constexpr Magic kOthers[] = {
 
 Result<OpenedVolume> open_by_content(const ImportOptions& options) {
   if (options.raw) return open_raw(options);
+  std::error_code ignored;
+  const bool folder = fs::is_directory(options.path, ignored);
+  if (folder || (is_slice_pattern(options.path) && !fs::exists(options.path, ignored))) return open_tiff_stack(options);
   DUBSAR_ASSIGN(const InputFile file, InputFile::open(options.path));
   if (file.size() == 0)
     return fail(ErrorKind::kBadData, "import: {} is empty, expected a volume", options.path.string());
@@ -58,6 +64,8 @@ Result<OpenedVolume> open_by_content(const ImportOptions& options) {
   const auto bytes = static_cast<std::size_t>(std::min<std::int64_t>(file.size(), head.size()));
   DUBSAR_TRY(file.read_at(0, std::as_writable_bytes(std::span(head)).first(bytes)));
   const std::string_view text(head.data(), bytes);
+  if (is_nrrd(text)) return open_nrrd(options);
+  if (TiffFile::has_signature(options.path)) return open_tiff_stack(options);
   if (Hdf5File::has_signature(options.path)) return open_hdf5(options);
   std::string found = "no known format";
   for (const Magic& magic : kOthers)

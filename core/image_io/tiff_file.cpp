@@ -1,0 +1,243 @@
+#include "core/image_io/tiff_file.h"
+
+#include <tiffio.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+
+#include "core/base/atomic_file.h"
+#include "core/base/input_file.h"
+
+namespace dubsar {
+namespace {
+
+constexpr tmsize_t kMostAllocation = tmsize_t{1} << 30;
+constexpr std::size_t kMostPages = 65535;
+constexpr std::uint32_t kMostSide = 65535;
+
+int keep_error(TIFF*, void* text, const char*, const char* format, va_list arguments) {
+  std::array<char, 256> buffer{};
+  std::vsnprintf(buffer.data(), buffer.size(), format, arguments);
+  *static_cast<std::string*>(text) = buffer.data();
+  return 1;
+}
+
+int drop_warning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
+
+TIFF* open_tiff(const std::filesystem::path& path, const char* mode, std::string* message) {
+  TIFFOpenOptions* const options = TIFFOpenOptionsAlloc();
+  TIFFOpenOptionsSetMaxSingleMemAlloc(options, kMostAllocation);
+  TIFFOpenOptionsSetErrorHandlerExtR(options, keep_error, message);
+  TIFFOpenOptionsSetWarningHandlerExtR(options, drop_warning, nullptr);
+  TIFF* const tiff = TIFFOpenExt(path.c_str(), mode, options);
+  TIFFOpenOptionsFree(options);
+  return tiff;
+}
+
+std::string compression_name(std::uint16_t scheme) {
+  switch (scheme) {
+    case COMPRESSION_NONE: return "none";
+    case COMPRESSION_LZW: return "LZW";
+    case COMPRESSION_PACKBITS: return "PackBits";
+    case COMPRESSION_DEFLATE:
+    case COMPRESSION_ADOBE_DEFLATE: return "deflate";
+    case COMPRESSION_JPEG: return "JPEG";
+    default: return fmt::format("scheme {}", scheme);
+  }
+}
+
+template <class T>
+T field(TIFF* tiff, std::uint32_t tag, T otherwise) {
+  T value = otherwise;
+  return TIFFGetFieldDefaulted(tiff, tag, &value) == 1 ? value : otherwise;
+}
+
+void invert(std::span<std::byte> bytes) {
+  for (std::byte& byte : bytes) byte = ~byte;  // max - value, for any width
+}
+
+}  // namespace
+
+void TiffFile::Closer::operator()(void* tiff) const noexcept { TIFFClose(static_cast<TIFF*>(tiff)); }
+
+tl::unexpected<Error> TiffFile::damaged(const std::string& what) const {
+  return fail(ErrorKind::kBadData, "tiff: {}: {}{}", path_.string(), what,
+              library_says_->empty() ? "" : " (" + *library_says_ + ")");
+}
+
+bool TiffFile::has_signature(const std::filesystem::path& path) {
+  const auto file = InputFile::open(path);
+  std::array<char, 4> head{};
+  if (!file || file->size() < 8 || !file->read_at(0, std::as_writable_bytes(std::span(head)))) return false;
+  for (const char* magic : {"II*\0", "MM\0*", "II+\0", "MM\0+"})
+    if (std::memcmp(head.data(), magic, 4) == 0) return true;
+  return false;
+}
+
+Result<TiffFile> TiffFile::open(const std::filesystem::path& path) {
+  DUBSAR_TRY(InputFile::open(path));
+  TiffFile file;
+  file.path_ = path;
+  file.library_says_ = std::make_unique<std::string>();
+  file.tiff_.reset(open_tiff(path, "rm", file.library_says_.get()));
+  if (file.tiff_ == nullptr) return file.damaged("cannot be opened, it is damaged or no TIFF file");
+  return file;
+}
+
+Result<TiffPage> TiffFile::describe() {
+  TIFF* const tiff = static_cast<TIFF*>(tiff_.get());
+  TiffPage page;
+  const auto width = field<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH, 0);
+  const auto height = field<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH, 0);
+  if (width == 0 || height == 0 || width > kMostSide || height > kMostSide)
+    return damaged(fmt::format("a page of {} x {} pixels found, expected 1 to {} each way", width, height, kMostSide));
+  page.offset = TIFFCurrentDirOffset(tiff);
+  page.width = width;
+  page.height = height;
+  page.bits = field<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE, 1);
+  page.channels = field<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
+  page.palette = field<std::uint16_t>(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_PALETTE;
+  page.reduced = (field<std::uint32_t>(tiff, TIFFTAG_SUBFILETYPE, 0) & FILETYPE_REDUCEDIMAGE) != 0;
+  switch (field<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT)) {
+    case SAMPLEFORMAT_UINT: page.sample = TiffPage::Sample::kUnsigned; break;
+    case SAMPLEFORMAT_INT: page.sample = TiffPage::Sample::kSigned; break;
+    case SAMPLEFORMAT_IEEEFP: page.sample = TiffPage::Sample::kFloat; break;
+    default: page.sample = TiffPage::Sample::kOther; break;
+  }
+  const auto scheme = field<std::uint16_t>(tiff, TIFFTAG_COMPRESSION, COMPRESSION_NONE);
+  page.compression = compression_name(scheme);
+  float x = 0.0F, y = 0.0F;
+  if (TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &x) == 1) page.x_per_unit = static_cast<double>(x);
+  if (TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &y) == 1) page.y_per_unit = static_cast<double>(y);
+  const auto unit = field<std::uint16_t>(tiff, TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);
+  page.unit_mm = unit == RESUNIT_INCH ? 25.4 : unit == RESUNIT_CENTIMETER ? 10.0 : 0.0;
+  const char* text = nullptr;
+  if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text) == 1 && text != nullptr)
+    page.description = std::string(text).substr(0, 65536);
+  page.big_endian = TIFFIsBigEndian(tiff) != 0;
+  if (scheme == COMPRESSION_NONE && TIFFIsTiled(tiff) == 0 && TIFFNumberOfStrips(tiff) == 1)
+    page.data_offset = static_cast<std::int64_t>(TIFFGetStrileOffset(tiff, 0));
+  return page;
+}
+
+Result<std::vector<TiffPage>> TiffFile::pages() {
+  TIFF* const tiff = static_cast<TIFF*>(tiff_.get());
+  std::vector<TiffPage> all;
+  DUBSAR_ASSIGN(TiffPage page, select(0));
+  for (;;) {
+    all.push_back(page);
+    if (TIFFLastDirectory(tiff) != 0) return all;
+    if (all.size() >= kMostPages) return damaged(fmt::format("more than {} pages found, expected fewer", kMostPages));
+    library_says_->clear();
+    if (TIFFReadDirectory(tiff) != 1) return damaged(fmt::format("page {} cannot be read, the file is damaged", all.size() + 1));
+    DUBSAR_ASSIGN(page, describe());
+  }
+}
+
+Result<TiffPage> TiffFile::select(std::uint64_t offset) {
+  TIFF* const tiff = static_cast<TIFF*>(tiff_.get());
+  const bool good = offset == 0 ? TIFFSetDirectory(tiff, 0) == 1
+                                : TIFFCurrentDirOffset(tiff) == offset || TIFFSetSubDirectory(tiff, offset) == 1;
+  if (!good) return damaged("a page cannot be read, the file is damaged");
+  return describe();
+}
+
+Result<void> TiffFile::read_gray(std::span<std::byte> out) {
+  TIFF* const tiff = static_cast<TIFF*>(tiff_.get());
+  DUBSAR_ASSIGN(const TiffPage page, describe());
+  const std::int64_t row = page.width * page.bits / 8;
+  DUBSAR_CHECK(page.channels == 1 && page.bits % 8 == 0 && static_cast<std::int64_t>(out.size()) == row * page.height);
+  library_says_->clear();
+  const auto short_of = [&](const char* piece, std::uint32_t index) {
+    return damaged(fmt::format("{} {} cannot be decoded, the file is damaged or truncated", piece, index));
+  };
+  if (TIFFIsTiled(tiff) == 0) {
+    const std::uint32_t strips = TIFFNumberOfStrips(tiff);
+    std::size_t at = 0;
+    for (std::uint32_t strip = 0; strip < strips && at < out.size(); ++strip) {
+      const auto expected = std::min<std::uint64_t>(TIFFVStripSize64(tiff, std::min<std::uint32_t>(
+                                                        field<std::uint32_t>(tiff, TIFFTAG_ROWSPERSTRIP, UINT32_MAX),
+                                                        static_cast<std::uint32_t>(page.height))),
+                                                    out.size() - at);
+      const tmsize_t got = TIFFReadEncodedStrip(tiff, strip, out.data() + at, static_cast<tmsize_t>(expected));
+      if (got < 0 || static_cast<std::uint64_t>(got) != expected) return short_of("strip", strip);
+      at += expected;
+    }
+    if (at != out.size()) return damaged("fewer rows found than announced, the file is damaged");
+  } else {
+    const auto tile_width = static_cast<std::int64_t>(field<std::uint32_t>(tiff, TIFFTAG_TILEWIDTH, 0));
+    const auto tile_height = static_cast<std::int64_t>(field<std::uint32_t>(tiff, TIFFTAG_TILELENGTH, 0));
+    const std::int64_t sample = page.bits / 8;
+    const tmsize_t bytes = TIFFTileSize(tiff);
+    if (tile_width <= 0 || tile_height <= 0 || bytes != tile_width * tile_height * sample || bytes > kMostAllocation)
+      return damaged(fmt::format("tiles of {} x {} pixels found, expected smaller ones", tile_width, tile_height));
+    std::vector<std::byte> tile(static_cast<std::size_t>(bytes));
+    for (std::int64_t y = 0; y < page.height; y += tile_height)
+      for (std::int64_t x = 0; x < page.width; x += tile_width) {
+        const std::uint32_t index = TIFFComputeTile(tiff, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0, 0);
+        if (TIFFReadEncodedTile(tiff, index, tile.data(), bytes) != bytes) return short_of("tile", index);
+        const auto count = static_cast<std::size_t>(std::min(tile_width, page.width - x) * sample);
+        for (std::int64_t j = 0; j < std::min(tile_height, page.height - y); ++j)
+          std::memcpy(out.data() + (y + j) * row + x * sample, tile.data() + j * tile_width * sample, count);
+      }
+  }
+  if (page.sample == TiffPage::Sample::kUnsigned &&
+      field<std::uint16_t>(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_MINISWHITE)
+    invert(out);
+  return {};
+}
+
+Result<void> write_tiff(const std::filesystem::path& path, const Image& image, double dpi) {
+  DUBSAR_CHECK(image.width > 0 && image.height > 0 && (image.channels == 3 || image.channels == 4));
+  DUBSAR_CHECK(image.pixels.size() ==
+               static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
+                   static_cast<std::size_t>(image.channels));
+  DUBSAR_ASSIGN(AtomicFile file, AtomicFile::create(path));
+  std::string message;
+  const auto failed = [&] {
+    return fail(ErrorKind::kIo, "tiff: cannot write {} ({}); is the disk full?", path.string(), message);
+  };
+  const bool big = image.pixels.size() > (std::size_t{3} << 30);
+  TIFF* const tiff = open_tiff(file.temporary_path(), big ? "w8" : "w", &message);
+  if (tiff == nullptr) return failed();
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(image.width));
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(image.height));
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, image.channels);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB);
+  TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+  TIFFSetField(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
+  TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_LZW);
+  TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
+  TIFFSetField(tiff, TIFFTAG_SOFTWARE, "dubsar");
+  if (image.channels == 4) {
+    const std::uint16_t alpha = EXTRASAMPLE_UNASSALPHA;
+    TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &alpha);
+  }
+  if (dpi > 0.0) {
+    TIFFSetField(tiff, TIFFTAG_XRESOLUTION, dpi);
+    TIFFSetField(tiff, TIFFTAG_YRESOLUTION, dpi);
+    TIFFSetField(tiff, TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);
+  }
+  constexpr int kRowsPerStrip = 64;
+  TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, kRowsPerStrip);
+  const std::size_t row = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
+  std::vector<std::uint8_t> strip;  // libtiff changes the buffer it encodes
+  bool good = true;
+  for (int y = 0; y < image.height && good; y += kRowsPerStrip) {
+    const auto rows = static_cast<std::size_t>(std::min(kRowsPerStrip, image.height - y));
+    const auto from = image.pixels.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * row);
+    strip.assign(from, from + static_cast<std::ptrdiff_t>(rows * row));
+    good = TIFFWriteEncodedStrip(tiff, static_cast<std::uint32_t>(y / kRowsPerStrip), strip.data(),
+                                 static_cast<tmsize_t>(strip.size())) >= 0;
+  }
+  good = good && TIFFFlush(tiff) == 1;
+  TIFFClose(tiff);
+  if (!good) return failed();
+  return file.commit();
+}
+
+}  // namespace dubsar

@@ -1,0 +1,69 @@
+#pragma once
+// TIFF: gray pages of any size into memory, and 8-bit pictures to a file. tiff_file.cpp is the only source that includes
+// tiffio.h.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/image_io/image.h"
+
+namespace dubsar {
+
+/// Facts about one page.
+struct TiffPage {
+  enum class Sample { kUnsigned, kSigned, kFloat, kOther };
+  std::uint64_t offset = 0;  ///< of its directory, for TiffFile::select()
+  std::int64_t width = 0, height = 0;
+  int bits = 0;      ///< per sample
+  int channels = 1;  ///< samples per pixel
+  Sample sample = Sample::kUnsigned;
+  bool palette = false;         ///< colours by table
+  bool reduced = false;         ///< a thumbnail or a coarser level of another page
+  std::string compression;      ///< "none", "LZW", ...
+  double x_per_unit = 0.0, y_per_unit = 0.0;  ///< pixels per unit; 0: not stated
+  double unit_mm = 0.0;                       ///< length of that unit; 0: not stated
+  std::string description;
+  std::int64_t data_offset = -1;  ///< of uncompressed pixels that lie in one piece; -1: they do not
+  bool big_endian = false;        ///< byte order of the file
+};
+
+/// A TIFF or BigTIFF file, read without memory mapping. One thread per object; open the file several times to read
+/// pages in parallel. Damaged files end in kBadData; no single allocation by the library exceeds 1 GiB.
+class TiffFile {
+ public:
+  static Result<TiffFile> open(const std::filesystem::path& path);
+  /// "II*", "MM*" and their BigTIFF forms.
+  static bool has_signature(const std::filesystem::path& path);
+
+  /// All pages in order. kBadData beyond 65535 pages.
+  Result<std::vector<TiffPage>> pages();
+  /// Moves to the page whose directory lies at `offset`; 0 is the first page.
+  Result<TiffPage> select(std::uint64_t offset);
+  /// The selected page, which has one channel of whole bytes: height rows of width samples in the machine's byte order,
+  /// 0 black (unsigned white-is-zero pages are inverted). `out` has exactly that size.
+  Result<void> read_gray(std::span<std::byte> out);
+
+ private:
+  struct Closer {
+    void operator()(void* tiff) const noexcept;
+  };
+  TiffFile() = default;
+  Result<TiffPage> describe();
+  tl::unexpected<Error> damaged(const std::string& what) const;
+
+  std::filesystem::path path_;
+  std::unique_ptr<std::string> library_says_;  ///< last message of libtiff; outlives tiff_
+  std::unique_ptr<void, Closer> tiff_;
+};
+
+/// Writes an RGB or RGBA picture, LZW-compressed, with its resolution in dots per inch (0: none). The file appears whole
+/// or not at all. The same picture gives the same bytes. kCannotCreate, kPermission, kIo.
+Result<void> write_tiff(const std::filesystem::path& path, const Image& image, double dpi);
+
+}  // namespace dubsar
