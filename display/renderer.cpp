@@ -1,12 +1,13 @@
 #include "display/renderer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/gtc/matrix_inverse.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
 #include <vector>
+
+#include "display/srgb.h"
 
 namespace dubsar {
 namespace {
@@ -23,11 +24,7 @@ struct StyleData {  // std140, as in shaders/mesh.vert
   std::array<glm::vec4, kMaxPartitions> partition_color;
 };
 
-float linear_from_srgb(std::uint8_t coded) {
-  const double c = coded / 255.0;
-  return static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
-}
-glm::vec3 linear(const Rgb8& c) { return {linear_from_srgb(c[0]), linear_from_srgb(c[1]), linear_from_srgb(c[2])}; }
+glm::vec3 linear(const Rgb8& c) { return glm::vec3(glm::dvec3(linear_from_srgb(c[0]), linear_from_srgb(c[1]), linear_from_srgb(c[2]))); }
 
 ViewData view_data(const View& view, const Box& box) {
   glm::dmat4 world_from_unit(1.0);

@@ -6,18 +6,19 @@
 #include <string>
 #include <utility>
 
+#include "core/surface/shape_colors.h"
+
 namespace dubsar {
 namespace {
 
-Rgb8 shape_color(ColorMap map, int id) {
-  if (id == 0) return {128, 128, 128};
-  const double s = ((id - 1) % 9 - 4) / 4.0, w = ((id - 1) / 9 + 1) / 14.0;
-  const double v = s * w;
-  if (map == ColorMap::kBlackWhite) {
-    const auto g = static_cast<std::uint8_t>(std::lround(128 + 127 * v));
-    return {g, g, g};
+ShapeColors shape_colors_of(ColorMap map) {
+  switch (map) {
+    case ColorMap::kTable: return ShapeColors::kTable;
+    case ColorMap::kSkySun: return ShapeColors::kSkySun;
+    case ColorMap::kPlain:
+    case ColorMap::kBlackWhite: break;
   }
-  return {static_cast<std::uint8_t>(std::lround(128 + 127 * v)), 128, static_cast<std::uint8_t>(std::lround(128 - 127 * v))};
+  return ShapeColors::kBlackWhite;
 }
 
 struct Preset {
@@ -51,6 +52,10 @@ Result<Shading> shading_preset(std::string_view name) {
       shading.map = preset.map;
       shading.ambient_occlusion = preset.ambient_occlusion;
       shading.lit = preset.lit;
+      if (!preset.lit) {  // figure 14: the table's own colours; ambient light alone is white
+        shading.base_color = preset.map == ColorMap::kPlain ? Rgb8{255, 255, 255} : shape_color_table(shape_colors_of(preset.map))[0];
+        shading.contrast = 1.0;
+      }
       return shading;
     }
     known += known.empty() ? "" : ", ";
@@ -65,15 +70,19 @@ std::array<Rgb8, 8> distinct_partition_colors() {
 }
 
 std::vector<std::array<std::uint8_t, 4>> color_table(const Shading& shading) {
+  const auto& shapes = shape_color_table(shape_colors_of(shading.map));
+  const double contrast = shading.map == ColorMap::kPlain ? 0.0 : shading.contrast;
   std::vector<std::array<std::uint8_t, 4>> table;
   table.reserve(kShapeRows * kAoColumns);
   for (int ao = 0; ao < kAoColumns; ++ao)
     for (int shape = 0; shape < kShapeRows; ++shape) {
-      const double light = shading.ambient_occlusion ? ao / 63.0 : 1.0;
-      std::array<std::uint8_t, 4> entry{0, 0, 0, 255};
-      const Rgb8 mapped = shading.map == ColorMap::kPlain ? shading.base_color : shape_color(shading.map, shape);
-      for (int c = 0; c < 3; ++c) entry[c] = static_cast<std::uint8_t>(std::lround(mapped[c] * light));
-      table.push_back(entry);
+      Rgb8 color{};
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double accent = contrast * (shapes[static_cast<std::size_t>(shape)][c] - shapes[0][c]);
+        color[c] = static_cast<std::uint8_t>(std::lround(std::clamp(shading.base_color[c] + accent, 0.0, 255.0)));
+      }
+      if (shading.ambient_occlusion) color = shade(color, static_cast<std::uint8_t>(ao));
+      table.push_back({color[0], color[1], color[2], 255});
     }
   return table;
 }

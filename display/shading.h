@@ -29,7 +29,7 @@ enum class BackFaces {
 
 struct Shading {
   ColorMap map = ColorMap::kBlackWhite;
-  double contrast = 1.0;         ///< of the map around base_color, 0..1; not for kTable
+  double contrast = 0.6;         ///< of the map: its difference from its own flat colour is added to base_color
   bool ambient_occlusion = true;
   bool lit = true;               ///< false: the colours as they are, as in figure 14 a to e
   Rgb8 base_color{203, 192, 178};

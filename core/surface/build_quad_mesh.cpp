@@ -19,8 +19,9 @@ constexpr std::int64_t kMaxVertices = std::int64_t{std::numeric_limits<std::uint
 }  // namespace
 
 Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, Progress& progress) {
-  DUBSAR_TRY(check_samples(samples));
+  DUBSAR_TRY(check_signs(samples));
   DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(samples));
+  DUBSAR_TRY(check_samples(samples, index.counts()));
   const Dims& dims = samples.dims;
   const std::int64_t grain = rows_per_chunk(dims.x);
   const std::int64_t rows_y = dims.y + 1, rows = rows_y * (dims.z + 1);
@@ -55,17 +56,20 @@ Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, Progress& progre
                 "isovalue, denoise or crop the volume",
                 vertices, incidences, kMaxVertices);
   }
-  const std::int64_t quads = index.real_edges() + index.virtual_edges();
+  const std::int64_t quads = index.counts().edges + index.virtual_edges();
   DUBSAR_TRY(check_memory("the dual mesh", static_cast<std::uint64_t>(vertices) * 16 +
                                                static_cast<std::uint64_t>(quads) * 16 +
                                                static_cast<std::uint64_t>(incidences) * 4));
 
   QuadMesh mesh;
-  mesh.positions.resize(static_cast<std::size_t>(vertices));
-  mesh.quads.resize(static_cast<std::size_t>(quads));
-  mesh.first_incident.resize(static_cast<std::size_t>(vertices) + 1);
-  mesh.first_incident.back() = static_cast<std::uint32_t>(incidences);
-  mesh.incident.resize(static_cast<std::size_t>(incidences));
+  parallel_for(3, 1, [&](std::int64_t part) {  // page faults are half of the cost of memory
+    if (part == 0) mesh.quads.resize(static_cast<std::size_t>(quads));
+    if (part == 1) mesh.incident.resize(static_cast<std::size_t>(incidences));
+    if (part != 2) return;
+    mesh.positions.resize(static_cast<std::size_t>(vertices));
+    mesh.first_incident.resize(static_cast<std::size_t>(vertices) + 1);
+    mesh.first_incident.back() = static_cast<std::uint32_t>(incidences);
+  });
   std::vector<std::uint8_t> in_layer(samples.closed ? 0 : static_cast<std::size_t>(vertices));
   std::vector<std::vector<DoubledCorner>> doubled(static_cast<std::size_t>((rows + grain - 1) / grain));
   parallel_chunks(rows, grain, [&](std::int64_t begin, std::int64_t end) {

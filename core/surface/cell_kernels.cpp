@@ -18,14 +18,6 @@ HWY_INLINE std::uint32_t count_bits(std::uint64_t word) {
 // The eight corners of 64 cells: bit i of corner[c] is the sign of corner c of cell i.
 struct CornerWords {
   std::uint64_t corner[8];
-  HWY_INLINE std::uint64_t mixed() const {
-    std::uint64_t any = 0, all = ~std::uint64_t{0};
-    for (const std::uint64_t c : corner) {
-      any |= c;
-      all &= c;
-    }
-    return any & ~all;
-  }
   HWY_INLINE unsigned signs(unsigned i) const {
     unsigned signs = 0;
     for (unsigned c = 0; c < 8; ++c) signs |= static_cast<unsigned>(corner[c] >> i & 1u) << c;
@@ -33,28 +25,44 @@ struct CornerWords {
   }
 };
 
-// The four rows of points around a row of cells; rows outside the grid are null and read as 0.
-struct PointRows {
-  const std::uint64_t* row[4];
-  std::int64_t words;
-
-  HWY_INLINE PointRows(const SurfaceSamples& samples, const CellRow& cells) : words(samples.signs.words_per_row()) {
+// The four rows of points around a row of cells, word by word; rows outside the grid read as 0.
+class PointRows {
+ public:
+  HWY_INLINE PointRows(const SurfaceSamples& samples, const CellRow& cells) : words_(samples.signs.words_per_row()) {
     for (int r = 0; r < 4; ++r) {
       const std::int64_t y = cells.j - 1 + r % 2, z = cells.k - 1 + r / 2;
       const bool inside = y >= 0 && z >= 0 && y < samples.dims.y && z < samples.dims.z;
-      row[r] = inside ? samples.signs.row(y, z) : nullptr;
+      row_[r] = inside ? samples.signs.row(y, z) : nullptr;
     }
   }
-  HWY_INLINE CornerWords load(std::int64_t w) const {
+  // Moves to the next word and returns the cells of mixed sign.
+  HWY_INLINE std::uint64_t next() {
+    ++at_;
+    std::uint64_t any = 0, all = ~std::uint64_t{0};
+    for (int r = 0; r < 4; ++r) {
+      before_[r] = here_[r];
+      here_[r] = row_[r] != nullptr && at_ < words_ ? row_[r][at_] : 0;
+      any |= here_[r];
+      all &= here_[r];
+    }
+    const std::uint64_t mixed = (any | any << 1 | any_before_) & ~(all & (all << 1 | all_before_));
+    any_before_ = any >> 63;
+    all_before_ = all >> 63;
+    return mixed;
+  }
+  HWY_INLINE CornerWords corners() const {
     CornerWords c;
     for (int r = 0; r < 4; ++r) {
-      const std::uint64_t here = row[r] != nullptr && w < words ? row[r][w] : 0;
-      const std::uint64_t before = row[r] != nullptr && w > 0 ? row[r][w - 1] : 0;
-      c.corner[2 * r] = here << 1 | before >> 63;
-      c.corner[2 * r + 1] = here;
+      c.corner[2 * r] = here_[r] << 1 | before_[r] >> 63;
+      c.corner[2 * r + 1] = here_[r];
     }
     return c;
   }
+
+ private:
+  const std::uint64_t* row_[4];
+  std::int64_t words_, at_ = -1;
+  std::uint64_t here_[4] = {}, before_[4] = {}, any_before_ = 0, all_before_ = 0;
 };
 
 // Numbers of the ambiguous faces of a row of cells. Faces of axis x: on both sides of a cell; of axis y and z: one
@@ -106,14 +114,14 @@ struct FaceStreams {
 
 CellRowCounts count_cells(const SurfaceSamples& samples, const EdgeIndex& index, const CellRow& row) {
   const CellTable& table = CellTable::instance();
-  const PointRows points(samples, row);
+  PointRows points(samples, row);
   FaceStreams faces(samples, index, row);
   CellRowCounts counts;
   const std::int64_t words = samples.dims.x / 64 + 1;
   for (std::int64_t w = 0; w < words; ++w) {
-    const CornerWords corners = points.load(w);
-    std::uint64_t rest = corners.mixed();
+    std::uint64_t rest = points.next();
     if (rest == 0) continue;
+    const CornerWords corners = points.corners();
     faces.load(corners);
     for (; rest != 0; rest &= rest - 1) {
       const unsigned i = static_cast<unsigned>(__builtin_ctzll(rest));
@@ -170,26 +178,25 @@ struct EdgeStreams {
   }
 };
 
-// The edges of a cell in rising order of their real numbers.
-constexpr unsigned kRisingEdges[12] = {0, 4, 6, 8, 9, 1, 10, 11, 2, 5, 7, 3};
-
 void write_cells(const SurfaceSamples& samples, const EdgeIndex& index, const CellRow& row,
                  const CellRowOutput& output) {
   const CellTable& table = CellTable::instance();
   const Dims& dims = samples.dims;
-  const PointRows points(samples, row);
+  PointRows points(samples, row);
   FaceStreams faces(samples, index, row);
   const bool inside = row.j >= 1 && row.k >= 1 && row.j < dims.y && row.k < dims.z;
   EdgeStreams edges(index, row, inside);
   QuadMesh& mesh = *output.mesh;
   std::uint32_t vertex = output.first_vertex, incidence = output.first_incidence;
   const int step = 2 << samples.offset_bits;  // one grid step in half quanta
+  double inverse[13];
+  for (int n = 1; n <= 12; ++n) inverse[n] = 1.0 / (static_cast<double>(n) * step);
   const std::int64_t words = dims.x / 64 + 1;
 
   for (std::int64_t w = 0; w < words; ++w) {
-    const CornerWords corners = points.load(w);
-    std::uint64_t rest = corners.mixed();
+    std::uint64_t rest = points.next();
     if (rest == 0) continue;
+    const CornerWords corners = points.corners();
     faces.load(corners);
     if (inside) {
       const std::int64_t left = dims.x - 64 * w;  // cells 1 .. nx - 1 lie between two points
@@ -207,47 +214,38 @@ void write_cells(const SurfaceSamples& samples, const EdgeIndex& index, const Ce
       // X-quads of the edges, and crossings along them in half quanta from the low corner of the cell.
       const bool in_layer = !inside || cell == 0 || cell == dims.x;
       std::uint32_t quad[12];
-      int crossing[12];
+      int pinned[12];  // only of cells in the layer; negative: not pinned
       if (!in_layer) {
         edges.quads(i, quad);
-        for (unsigned active = config.active_edges; active != 0; active &= active - 1) {
-          const unsigned e = static_cast<unsigned>(__builtin_ctz(active));
-          crossing[e] = 2 * samples.offsets[quad[e]] + 1;
-        }
       } else {
         for (unsigned active = config.active_edges; active != 0; active &= active - 1) {
           const unsigned e = static_cast<unsigned>(__builtin_ctz(active)), low = edge_corners(e)[0];
           const int axis = static_cast<int>(e / 4);
           const std::int64_t x = cell - 1 + (low & 1u), y = row.j - 1 + (low >> 1 & 1u), z = row.k - 1 + (low >> 2);
           quad[e] = index.quad_of(axis, x, y, z);
-          const bool pinned = index.is_virtual(axis, x, y, z);
-          crossing[e] = !pinned ? 2 * samples.offsets[quad[e]] + 1 : signs >> low & 1u ? 0 : step;
-        }
-      }
-
-      for (unsigned active = config.active_edges; active != 0; active &= active - 1) {
-        const unsigned e = static_cast<unsigned>(__builtin_ctz(active));
-        const CellCorner& corner = config.corners[e];
-        mesh.quads[quad[e]][corner.corner] = vertex + corner.first;
-        if (corner.first != corner.second) {
-          output.doubled->push_back({quad[e], vertex + corner.second, corner.corner});
+          pinned[e] = !index.is_virtual(axis, x, y, z) ? -1 : signs >> low & 1u ? 0 : step;
         }
       }
 
       for (unsigned p = 0; p < config.vertices; ++p, ++vertex) {
-        int sum[3] = {0, 0, 0};
+        const CellPiece& piece = config.pieces[p];
+        int sum[3] = {piece.high[0] * step, piece.high[1] * step, piece.high[2] * step};
         mesh.first_incident[vertex] = incidence;
-        const std::uint32_t begin = incidence;
-        for (const unsigned e : kRisingEdges) {
-          if (!(config.piece_edges[p] >> e & 1u)) continue;
-          mesh.incident[incidence++] = quad[e];
-          const unsigned a = e / 4;
-          sum[a] += crossing[e];
-          if (e & 1u) sum[(a + 1) % 3] += step;
-          if (e & 2u) sum[(a + 2) % 3] += step;
+        std::uint32_t* incident = mesh.incident.data() + incidence;
+        for (unsigned n = 0; n < piece.count; ++n) {
+          const PieceEdge& edge = piece.edges[n];
+          const std::uint32_t q = quad[edge.edge];
+          incident[n] = q;
+          sum[edge.axis] += in_layer && pinned[edge.edge] >= 0 ? pinned[edge.edge] : 2 * samples.offsets[q] + 1;
+          if (!edge.is_second) {
+            mesh.quads[q][edge.corner] = vertex;
+          } else {
+            output.doubled->push_back({q, vertex, edge.corner});
+          }
         }
-        if (in_layer) std::sort(mesh.incident.begin() + begin, mesh.incident.begin() + incidence);
-        const double scale = 1.0 / (static_cast<double>(incidence - begin) * step);
+        incidence += piece.count;
+        if (in_layer) std::sort(incident, incident + piece.count);
+        const double scale = inverse[piece.count];
         mesh.positions[vertex] = {static_cast<float>(static_cast<double>(cell - 1) + sum[0] * scale),
                                   static_cast<float>(static_cast<double>(row.j - 1) + sum[1] * scale),
                                   static_cast<float>(static_cast<double>(row.k - 1) + sum[2] * scale)};

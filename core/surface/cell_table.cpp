@@ -230,6 +230,18 @@ CellConfig make_config(unsigned signs, const std::vector<CellCycle>& cycles, con
     config.corners[e].first = enters_across_v ? at_v : at_u;
     config.corners[e].second = enters_across_v ? at_u : at_v;
   }
+  constexpr std::array<std::uint8_t, 12> kRisingEdges = {0, 4, 6, 8, 9, 1, 10, 11, 2, 5, 7, 3};  // rows z, y; axis; x
+  for (unsigned p = 0; p < config.vertices; ++p) {
+    CellPiece& piece = config.pieces[p];
+    for (const std::uint8_t e : kRisingEdges) {
+      if (!bit(config.piece_edges[p], e)) continue;
+      const std::uint8_t axis = e / 4;
+      const CellCorner& corner = config.corners[e];
+      piece.edges[piece.count++] = {e, axis, corner.corner, corner.first != p};
+      if (e & 1u) ++piece.high[(axis + 1u) % 3];
+      if (e & 2u) ++piece.high[(axis + 2u) % 3];
+    }
+  }
   return config;
 }
 

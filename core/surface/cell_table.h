@@ -34,12 +34,28 @@ struct CellCorner {
   std::uint8_t second = 0;  ///< piece where it leaves; differs where the cell is split at this edge
 };
 
+/// One edge of a piece, in the order in which the x-quads of the edges are numbered.
+struct PieceEdge {
+  std::uint8_t edge = 0;
+  std::uint8_t axis = 0;
+  std::uint8_t corner = 0;  ///< of the x-quad
+  bool is_second = false;   ///< here the piece is the second vertex of a doubled corner
+};
+
+/// One dual vertex: its crossings and where they lie.
+struct CellPiece {
+  std::uint8_t count = 0;
+  std::array<std::uint8_t, 3> high{};  ///< per axis: edges across it on the high side of the cell
+  std::array<PieceEdge, 12> edges{};
+};
+
 struct CellConfig {
   std::uint16_t active_edges = 0;               ///< mask of 12
   std::uint8_t vertices = 0;                    ///< pieces = dual vertices, 0..4
   std::uint8_t incidences = 0;                  ///< sum of the popcounts of piece_edges
   std::array<std::uint16_t, 4> piece_edges{};   ///< edges whose crossing belongs to the piece, chord ends included
   std::array<CellCorner, 12> corners{};         ///< of active edges
+  std::array<CellPiece, 4> pieces{};            ///< the same, ready for writing
 };
 
 class CellTable {

@@ -1,6 +1,5 @@
 #include "core/surface/edge_index.h"
 
-#include <bit>
 #include <limits>
 
 #include "core/base/parallel.h"
@@ -10,34 +9,6 @@ namespace dubsar {
 namespace {
 
 constexpr std::int64_t kMaxItems = std::int64_t{std::numeric_limits<std::uint32_t>::max()} - 1;
-
-/// Set bits of a row at places below x.
-std::uint32_t rank(const std::uint64_t* row, std::int64_t x) {
-  std::uint32_t count = 0;
-  for (std::int64_t w = 0; w < x / 64; ++w) count += static_cast<std::uint32_t>(std::popcount(row[w]));
-  const std::uint64_t below = (std::uint64_t{1} << (x % 64)) - 1;
-  return below == 0 ? count : count + static_cast<std::uint32_t>(std::popcount(row[x / 64] & below));
-}
-
-/// Places below x where two rows differ.
-std::uint32_t rank_of_difference(const std::uint64_t* a, const std::uint64_t* b, std::int64_t x) {
-  std::uint32_t count = 0;
-  for (std::int64_t w = 0; w < x / 64; ++w) count += static_cast<std::uint32_t>(std::popcount(a[w] ^ b[w]));
-  const std::uint64_t below = (std::uint64_t{1} << (x % 64)) - 1;
-  return below == 0 ? count : count + static_cast<std::uint32_t>(std::popcount((a[x / 64] ^ b[x / 64]) & below));
-}
-
-/// Places below x where a row differs from its next point.
-std::uint32_t rank_of_changes(const std::uint64_t* row, std::int64_t x) {
-  std::uint32_t count = 0;
-  for (std::int64_t w = 0; 64 * w < x; ++w) {
-    const std::int64_t left = x - 64 * w;
-    const std::uint64_t here = row[w], next = here >> 1 | (left > 63 ? row[w + 1] << 63 : 0);
-    const std::uint64_t below = left >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << left) - 1;
-    count += static_cast<std::uint32_t>(std::popcount((here ^ next) & below));
-  }
-  return count;
-}
 
 }  // namespace
 
@@ -54,7 +25,7 @@ std::array<std::uint32_t, 3> EdgeIndex::count_virtual(std::int64_t y, std::int64
   }
   for (const int axis : {1, 2}) {
     const std::uint64_t* row = virtual_row(axis, y, z);
-    if (row != nullptr) counts[static_cast<std::size_t>(axis)] = rank(row, dims_.x);
+    if (row != nullptr) counts[static_cast<std::size_t>(axis)] = count_ones(row, dims_.x);
   }
   return counts;
 }
@@ -84,7 +55,7 @@ Result<EdgeIndex> EdgeIndex::create(const SurfaceSamples& samples) {
       faces += row_faces;
     }
   }
-  index.real_edges_ = edges;
+  index.counts_ = {edges, faces};
 
   std::int64_t virtual_edges = 0;
   index.virtual_starts_.resize(static_cast<std::size_t>((dims.y + 1) * (dims.z + 1)));
@@ -114,15 +85,15 @@ std::uint32_t EdgeIndex::quad_of(int axis, std::int64_t x, std::int64_t y, std::
   const BitVolume& signs = samples_->signs;
   if (!is_virtual(axis, x, y, z)) {
     const std::uint32_t start = starts(y, z).edges[static_cast<std::size_t>(axis)];
-    if (axis == 0) return start + rank_of_changes(signs.row(y, z), x);
-    return start + rank_of_difference(signs.row(y, z), axis == 1 ? signs.row(y + 1, z) : signs.row(y, z + 1), x);
+    if (axis == 0) return start + count_changes(signs.row(y, z), x);
+    return start + count_differences(signs.row(y, z), axis == 1 ? signs.row(y + 1, z) : signs.row(y, z + 1), x);
   }
   std::uint32_t number = virtual_starts_[static_cast<std::size_t>((z + 1) * (dims_.y + 1) + y + 1)];
   if (axis == 0) return number + (x >= 0 ? std::uint32_t{signs.get(0, y, z)} : 0u);
   const auto counts = count_virtual(y, z);
   number += counts[0];
   if (axis == 2) number += counts[1];
-  return number + rank(virtual_row(axis, y, z), x);
+  return number + count_ones(virtual_row(axis, y, z), x);
 }
 
 }  // namespace dubsar

@@ -22,7 +22,8 @@ class EdgeIndex {
   /// Cost: two passes over the bits. kTryAgain beyond 2^32 - 2 edges. Keeps a reference to `samples`.
   static Result<EdgeIndex> create(const SurfaceSamples& samples);
 
-  std::int64_t real_edges() const noexcept { return real_edges_; }
+  /// Active edges and ambiguous faces inside the grid.
+  const SampleCounts& counts() const noexcept { return counts_; }
   std::int64_t virtual_edges() const noexcept { return virtual_edges_; }
   /// Of a row inside the grid.
   const RowStarts& starts(std::int64_t y, std::int64_t z) const noexcept {
@@ -39,7 +40,8 @@ class EdgeIndex {
 
   const SurfaceSamples* samples_;
   Dims dims_;
-  std::int64_t real_edges_ = 0, virtual_edges_ = 0;
+  SampleCounts counts_;
+  std::int64_t virtual_edges_ = 0;
   std::vector<RowStarts> starts_;
   std::vector<std::uint32_t> virtual_starts_;  ///< per extended row, (y + 1) + (z + 1) (ny + 1)
 };

@@ -38,6 +38,31 @@ void pack_signs(const float* values, std::int64_t nx, float isovalue, std::uint6
   }
 }
 
+// Set bits of word(0), word(1), .. at places below x.
+template <class Word>
+HWY_INLINE std::uint32_t count_below(std::int64_t x, const Word& word) {
+  std::uint32_t count = 0;
+  std::int64_t w = 0;
+  for (; 64 * w + 64 <= x; ++w) count += static_cast<std::uint32_t>(__builtin_popcountll(word(w)));
+  const std::uint64_t below = (std::uint64_t{1} << (x % 64)) - 1;
+  return below == 0 ? count : count + static_cast<std::uint32_t>(__builtin_popcountll(word(w) & below));
+}
+
+std::uint32_t count_ones(const std::uint64_t* row, std::int64_t x) {
+  return count_below(x, [&](std::int64_t w) HWY_ATTR { return row[w]; });
+}
+
+std::uint32_t count_differences(const std::uint64_t* a, const std::uint64_t* b, std::int64_t x) {
+  return count_below(x, [&](std::int64_t w) HWY_ATTR { return a[w] ^ b[w]; });
+}
+
+std::uint32_t count_changes(const std::uint64_t* row, std::int64_t x) {
+  // The next point of bit 63 is only needed, and only sure to exist, when the whole word counts.
+  return count_below(x, [&](std::int64_t w) HWY_ATTR {
+    return row[w] ^ (row[w] >> 1 | (64 * w + 64 <= x ? row[w + 1] << 63 : 0));
+  });
+}
+
 // Active edges and ambiguous faces of 64 points.
 struct WordItems {
   std::uint64_t edges[3];
@@ -73,6 +98,7 @@ RowItems count_row(const SignRows& rows, std::int64_t nx) {
   const std::int64_t words = (nx + 63) / 64;
   for (std::int64_t w = 0; w < words; ++w) {
     const WordItems items = word_items(rows, w, words, nx);
+    if ((items.edges[0] | items.edges[1] | items.edges[2]) == 0) continue;
     for (std::size_t a = 0; a < 3; ++a) {
       counts.edges[a] += static_cast<std::uint32_t>(__builtin_popcountll(items.edges[a]));
       counts.faces[a] += static_cast<std::uint32_t>(__builtin_popcountll(items.faces[a]));
@@ -139,6 +165,9 @@ HWY_AFTER_NAMESPACE();
 namespace dubsar {
 namespace {
 HWY_EXPORT(pack_signs);
+HWY_EXPORT(count_ones);
+HWY_EXPORT(count_differences);
+HWY_EXPORT(count_changes);
 HWY_EXPORT(count_row);
 HWY_EXPORT(fill_row);
 HWY_EXPORT(quantise_crossing);
@@ -147,6 +176,15 @@ HWY_EXPORT(joins_inside);
 
 void pack_signs(const float* values, std::int64_t nx, float isovalue, std::uint64_t* words) {
   HWY_DYNAMIC_DISPATCH(pack_signs)(values, nx, isovalue, words);
+}
+std::uint32_t count_ones(const std::uint64_t* row, std::int64_t x) noexcept {
+  return HWY_DYNAMIC_DISPATCH(count_ones)(row, x);
+}
+std::uint32_t count_differences(const std::uint64_t* a, const std::uint64_t* b, std::int64_t x) noexcept {
+  return HWY_DYNAMIC_DISPATCH(count_differences)(a, b, x);
+}
+std::uint32_t count_changes(const std::uint64_t* row, std::int64_t x) noexcept {
+  return HWY_DYNAMIC_DISPATCH(count_changes)(row, x);
 }
 RowItems count_row(const SignRows& rows, std::int64_t nx) { return HWY_DYNAMIC_DISPATCH(count_row)(rows, nx); }
 void fill_row(const SignRows& rows, const ValueRows& values, std::int64_t nx, float isovalue, int offset_bits,

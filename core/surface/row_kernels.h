@@ -36,6 +36,11 @@ struct RowItems {
 /// words[x / 64] bit x % 64 = values[x] >= isovalue (NaN: 0); padding bits 0. Writes (nx + 63) / 64 words.
 void pack_signs(const float* values, std::int64_t nx, float isovalue, std::uint64_t* words);
 
+/// Among the points below x of a row: inside points; points where two rows differ; points that differ from their next.
+std::uint32_t count_ones(const std::uint64_t* row, std::int64_t x) noexcept;
+std::uint32_t count_differences(const std::uint64_t* a, const std::uint64_t* b, std::int64_t x) noexcept;
+std::uint32_t count_changes(const std::uint64_t* row, std::int64_t x) noexcept;
+
 RowItems count_row(const SignRows& rows, std::int64_t nx);
 
 /// Writes the quantised crossings and face decisions of one row in canonical order (surface_samples.h). `items` is

@@ -26,7 +26,7 @@ enum class VertexNormals {
 struct SmoothOptions {
   NormalFilterOptions normals;
   int vertex_iterations = 8;            ///< paper, Table 2
-  float max_displacement_vox = 0.5f;    ///< from the extracted position: keeps vertices in their cells
+  float max_displacement_vox = 0.25f;   ///< from the extracted position: keeps vertices in their cells, wedges deep
   float stop_angle_deg = 0.0f;          ///< stop moving vertices below this mean angle; 0: all iterations
   VertexNormals vertex_normals = VertexNormals::kFiltered;
 };

@@ -317,11 +317,11 @@ Numbering number_vertices(const Soup& soup, std::size_t first_copy,
   return numbering;
 }
 
-void fill_attributes(const SurfaceModel& model, const Soup& soup, const Numbering& numbering, TriMesh& out) {
+void fill_attributes(const SurfaceModel& model, const Soup& soup, const Numbering& numbering,
+                     const std::vector<Surroundings>& added, TriMesh& out) {
   const std::size_t dual = model.mesh.positions.size();
   const std::size_t count = numbering.source.size();
   const VertexAttributes& a = model.attributes;
-  const std::vector<Surroundings> added = average_around_added(model, soup);
   const auto gather = [&](const auto& from, auto& to, const auto& of_added) {
     if (from.empty() && dual > 0) return;
     to.resize(count);
@@ -356,12 +356,13 @@ Result<TriMesh> assemble(const SurfaceModel& model, Triangulation triangulation,
     return fail(ErrorKind::kTryAgain,
                 "surface_model: {} vertices found, expected at most 2^31; crop or resample the input",
                 first_copy);
+  const std::vector<Surroundings> added = average_around_added(model, soup);
   const std::vector<std::uint32_t> copies =
       split_fans(soup, find_border(model, selection), static_cast<std::uint32_t>(first_copy));
   const Numbering numbering = number_vertices(soup, first_copy, copies);
 
   TriMesh out;
-  fill_attributes(model, soup, numbering, out);
+  fill_attributes(model, soup, numbering, added, out);
   out.partition.assign(numbering.source.size(), FillPatch::kNoPart);
   for (std::size_t t = 0; t < soup.triangles.size(); ++t)
     for (std::uint32_t& v : soup.triangles[t]) {

@@ -32,7 +32,7 @@ SampleCounts count_samples(const BitVolume& signs) {
       });
 }
 
-Result<void> check_samples(const SurfaceSamples& samples) {
+Result<void> check_signs(const SurfaceSamples& samples) {
   const Dims& dims = samples.dims;
   if (dims.x < 1 || dims.y < 1 || dims.z < 1 || samples.signs.dims() != dims) {
     return fail(ErrorKind::kBadData,
@@ -56,7 +56,11 @@ Result<void> check_samples(const SurfaceSamples& samples) {
         [](std::uint64_t x, std::uint64_t y) { return x | y; });
     if (set != 0) return fail(ErrorKind::kBadData, "surface samples: padding bits of the signs are set, expected 0");
   }
-  const SampleCounts counts = count_samples(samples.signs);
+  return {};
+}
+
+Result<void> check_samples(const SurfaceSamples& samples, const SampleCounts& counts) {
+  DUBSAR_TRY(check_signs(samples));
   if (counts.edges != static_cast<std::int64_t>(samples.offsets.size())) {
     return fail(ErrorKind::kBadData, "surface samples: {} offsets found, the signs have {} active edges",
                 samples.offsets.size(), counts.edges);

@@ -37,7 +37,11 @@ struct SampleCounts {
 /// Cost: one pass over the bits, all threads.
 SampleCounts count_samples(const BitVolume& signs);
 
-/// kBadData when the samples contradict each other: sizes, counts, values out of range, padding bits set.
-Result<void> check_samples(const SurfaceSamples& samples);
+/// kBadData when the samples contradict each other: sizes, counts, values out of range, padding bits set. `counts` are
+/// those of samples.signs.
+Result<void> check_samples(const SurfaceSamples& samples, const SampleCounts& counts);
+
+/// The part of it that does not need the counts: sizes and padding bits of the signs.
+Result<void> check_signs(const SurfaceSamples& samples);
 
 }  // namespace dubsar

@@ -99,24 +99,28 @@ class FilterSource final : public SlabSource {
     guide_.hold(part);
   }
 
+  /// Row pointers of the window around row y of slice z, `rows[side * dz + dy]`.
+  void gather(SliceRing& ring, std::int64_t y, std::int64_t z, const float** rows) const {
+    for (std::int64_t dz = -radius_; dz <= radius_; ++dz) {
+      const SliceRing::Slice slice = ring.slice(z + dz);
+      for (std::int64_t dy = -radius_; dy <= radius_; ++dy) *rows++ = slice.row(y + dy);
+    }
+  }
+
   /// Bilateral filters and median: every output row sees the rows of a window.
   void window_filter(SliceRange slices, float* out) {
     const Dims d = dims();
-    const int side = options_.window;
     const std::int64_t tiles_x = (d.x + kTile - 1) / kTile, tiles_y = (d.y + kTileRows - 1) / kTileRows;
     parallel_for((slices.end - slices.begin) * tiles_x * tiles_y, 1, [&](std::int64_t tile) {
       const std::int64_t x0 = tile % tiles_x * kTile, y0 = tile / tiles_x % tiles_y * kTileRows;
-      const std::int64_t dz = tile / tiles_x / tiles_y;
+      const std::int64_t x1 = std::min(x0 + kTile, d.x), y1 = std::min(y0 + kTileRows, d.y);
+      const std::int64_t z = slices.begin + tile / tiles_x / tiles_y;
       std::array<const float*, 49> image{}, guide{};
-      for (std::int64_t y = y0; y < std::min(y0 + kTileRows, d.y); ++y) {
-        for (int k = 0; k < side * side; ++k) {
-          const std::int64_t at_y = y + k % side - radius_, at_z = slices.begin + dz + k / side - radius_;
-          image[static_cast<std::size_t>(k)] = image_.row(at_y, at_z);
-          if (uses_guide(options_.method)) guide[static_cast<std::size_t>(k)] = guide_.row(at_y, at_z);
-        }
-        const kernels::Window window{image.data(), guide.data(), static_cast<int>(radius_)};
-        float* to = out + dz * d.slice() + y * d.x;
-        const std::int64_t x1 = std::min(x0 + kTile, d.x);
+      const kernels::Window window{image.data(), guide.data(), static_cast<int>(radius_)};
+      for (std::int64_t y = y0; y < y1; ++y) {
+        gather(image_, y, z, image.data());
+        if (uses_guide(options_.method)) gather(guide_, y, z, guide.data());
+        float* to = out + (z - slices.begin) * d.slice() + y * d.x;
         if (options_.method == DenoiseMethod::kMedian) {
           kernels::median(window, x0, x1, to);
         } else if (options_.range == RangeWeight::kTukey) {
@@ -141,8 +145,7 @@ class FilterSource final : public SlabSource {
       std::array<const float*, 49> rows{};
       for (std::int64_t i = begin; i < end; ++i) {
         const std::int64_t y = i % d.y, z = slices.begin + i / d.y;
-        for (int k = 0; k < side * side; ++k)
-          rows[static_cast<std::size_t>(k)] = image_.row(y + k % side - radius_, z + k / side - radius_);
+        gather(image_, y, z, rows.data());
         if (side == 3) {
           kernels::gauss3_yz(rows.data(), d.x, line);
         } else {

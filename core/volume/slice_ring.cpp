@@ -6,6 +6,7 @@ namespace dubsar {
 namespace {
 
 constexpr std::int64_t kLine = 16;         // floats in a cache line
+constexpr std::int64_t kStaging = 1 << 18;  // floats; slices are copied on while they are in a second-level cache
 constexpr std::int64_t kLead = 2 * kLine;  // >= kPad, keeps rows aligned
 
 std::int64_t padded_pitch(std::int64_t nx) {
@@ -59,15 +60,18 @@ Result<void> SliceRing::load(SlabSource& source, SliceRange wanted) {
       z = end;
     }
   } else {
-    const std::int64_t count = part.end - part.begin;
-    if (staging_.size() < count * slice) staging_ = Buffer<float>(count * slice);
-    if (auto ok = source.read(part.begin, part.end, staging_.span()); !ok) return give_up(ok);
-    parallel_for(count * dims_.y, 64, [&](std::int64_t i) {
-      float* to = row(i % dims_.y, part.begin + i / dims_.y);
-      const float* from = staging_.data() + i * dims_.x;
-      std::copy(from, from + dims_.x, to);
-      pad_row(to);
-    });
+    const std::int64_t step = std::clamp<std::int64_t>(kStaging / slice, 1, part.end - part.begin);
+    if (staging_.size() < step * slice) staging_ = Buffer<float>(step * slice);
+    for (std::int64_t z = part.begin; z < part.end; z += step) {
+      const std::int64_t end = std::min(part.end, z + step);
+      if (auto ok = source.read(z, end, staging_.span()); !ok) return give_up(ok);
+      parallel_for((end - z) * dims_.y, 64, [&](std::int64_t i) {
+        float* to = row(i % dims_.y, z + i / dims_.y);
+        const float* from = staging_.data() + i * dims_.x;
+        std::copy(from, from + dims_.x, to);
+        pad_row(to);
+      });
+    }
   }
   hold(part);
   return {};

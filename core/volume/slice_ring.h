@@ -31,11 +31,19 @@ class SliceRing {
   std::int64_t capacity() const noexcept { return capacity_; }
   std::int64_t bytes() const noexcept { return slices_.size() * static_cast<std::int64_t>(sizeof(float)); }
 
-  /// Row y of slice z, both clamped to the volume; the slice must be held.
-  float* row(std::int64_t y, std::int64_t z) noexcept {
-    return slices_.data() + slot(std::clamp<std::int64_t>(z, 0, dims_.z - 1)) +
-           std::clamp<std::int64_t>(y, 0, dims_.y - 1) * pitch_ + lead_;
+  /// A held slice.
+  struct Slice {
+    float* first;  ///< first voxel
+    std::int64_t pitch, last_row;
+    /// Row y, clamped to the volume.
+    float* row(std::int64_t y) const noexcept { return first + std::clamp<std::int64_t>(y, 0, last_row) * pitch; }
+  };
+  /// Slice z, clamped to the volume; it must be held.
+  Slice slice(std::int64_t z) noexcept {
+    return {slices_.data() + std::clamp<std::int64_t>(z, 0, dims_.z - 1) % capacity_ * stride_ + lead_, pitch_,
+            dims_.y - 1};
   }
+  float* row(std::int64_t y, std::int64_t z) noexcept { return slice(z).row(y); }
 
   /// Fills the padding of a row from its first and last voxel.
   void pad_row(float* row) const noexcept;
@@ -50,8 +58,6 @@ class SliceRing {
   Result<void> load(SlabSource& source, SliceRange wanted);
 
  private:
-  std::int64_t slot(std::int64_t z) const noexcept { return (z % capacity_) * stride_; }
-
   Dims dims_;
   std::int64_t capacity_;
   std::int64_t lead_ = 0;    ///< floats before the first voxel of a row

@@ -6,6 +6,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/surface/shape_colors.h"
+
 namespace dubsar {
 namespace {
 
@@ -55,7 +57,7 @@ TEST(Shading, AmbientOcclusionScalesEveryColourOfTheTable) {
 }
 
 TEST(Shading, ConcaveIsDarkAndConvexIsLight) {
-  Shading s;
+  Shading s = shading_preset("relief").value();
   s.ambient_occlusion = false;
   for (const ColorMap map : {ColorMap::kBlackWhite, ColorMap::kSkySun}) {
     s.map = map;
@@ -68,6 +70,22 @@ TEST(Shading, ConcaveIsDarkAndConvexIsLight) {
     EXPECT_GT(red(13, 8), flat);                 // cap
     EXPECT_LT(red(13, 0), red(6, 0));            // the sharper, the darker
     EXPECT_GT(red(13, 8), red(6, 8));
+  }
+}
+
+TEST(Shading, UnlitPresetsAreTheTablesOfTheExporters) {
+  const struct {
+    const char* preset;
+    ShapeColors colors;
+  } cases[] = {{"table-ao", ShapeColors::kTable}, {"black-white-ao", ShapeColors::kBlackWhite}, {"sky-sun-ao", ShapeColors::kSkySun}};
+  for (const auto& c : cases) {
+    const auto table = color_table(shading_preset(c.preset).value());
+    for (int ao = 0; ao < 64; ++ao)
+      for (int shape = 0; shape < 127; ++shape) {
+        const ShapeRgb expected = shade(shape_color_table(c.colors)[shape], static_cast<std::uint8_t>(ao));
+        const auto& entry = table[ao * 128 + shape];
+        ASSERT_EQ((ShapeRgb{entry[0], entry[1], entry[2]}), expected) << c.preset << " " << shape << " " << ao;
+      }
   }
 }
 

@@ -49,19 +49,17 @@ Estimates estimates_of(const Volume<float>& v, const EstimateOptions& options = 
 }
 
 TEST(Estimate, TwoGaussiansAreFoundWithinTwoPercent) {
-  for (const double snr_db : {17.0, 23.0, 28.0, 35.0}) {
-    for (const double scale : {1.0, 0.0017, 30000.0}) {
-      const double sigma = std::pow(10.0, -snr_db / 20.0);
-      const Volume<float> v = mixture_volume({{0.6, 0.1 * scale, 0.8 * sigma * scale}, {0.4, 1.1 * scale, sigma * scale}}, 1);
-      const Estimates e = estimates_of(v);
-      EXPECT_NEAR(e.m_lo, 0.1 * scale, 0.01 * scale);
-      EXPECT_NEAR(e.m_hi, 1.1 * scale, 0.01 * scale);
-      EXPECT_NEAR(e.sigma, sigma * scale, 0.02 * sigma * scale) << snr_db << " dB, scale " << scale;
-      EXPECT_NEAR(e.snr_db, snr_db, 0.25);
-      EXPECT_NEAR(e.snr_alt_db, snr_db / 2.0, 0.15);
-      EXPECT_EQ(e.refusal, "");
-      EXPECT_THAT(e.path, HasSubstr("two peaks"));
-    }
+  for (const auto& [snr_db, scale] : {std::pair{17.0, 1.0}, {23.0, 0.0017}, {28.0, 30000.0}, {35.0, 1.0}}) {
+    const double sigma = std::pow(10.0, -snr_db / 20.0);
+    const Estimates e = estimates_of(
+        mixture_volume({{0.6, 0.1 * scale, 0.8 * sigma * scale}, {0.4, 1.1 * scale, sigma * scale}}, 1));
+    EXPECT_NEAR(e.m_lo, 0.1 * scale, 0.01 * scale);
+    EXPECT_NEAR(e.m_hi, 1.1 * scale, 0.01 * scale);
+    EXPECT_NEAR(e.sigma, sigma * scale, 0.02 * sigma * scale) << snr_db << " dB, scale " << scale;
+    EXPECT_NEAR(e.snr_db, snr_db, 0.25);
+    EXPECT_NEAR(e.snr_alt_db, snr_db / 2.0, 0.15);
+    EXPECT_EQ(e.refusal, "");
+    EXPECT_THAT(e.path, HasSubstr("two peaks"));
   }
 }
 
@@ -196,9 +194,8 @@ TEST(Estimate, HugeAndDenormalRangesGiveFiniteNumbers) {
   }
 }
 
-/// A flat wall across the x axis, blurred and noisy, through resampling and the default filter: mean distance of the
-/// isosurface from the wall in voxels of the resampled grid.
-double wall_bias(ThresholdMethod method) {
+TEST(Estimate, TheDefaultThresholdLiesOnTheSurface) {
+  // A flat wall across the x axis, blurred and noisy, through resampling and the default filter.
   const Dims raw{80, 100, 100};
   const double wall = 40.3, blur = 0.8;
   const Volume<float> noise = oracle::correlated_noise(raw, std::pow(10.0, -17.0 / 20.0), 14);
@@ -210,26 +207,26 @@ double wall_bias(ThresholdMethod method) {
   HalfResolutionSource half(source);
   Volume<float> v = oracle::read_in_slabs(half, 16);
   SilentProgress silent;
-  EXPECT_TRUE(denoise_in_place(v, {.sigma = estimates_of(v).sigma}, silent));
-  const double tau = estimates_of(v, {method}).threshold;
-  double sum = 0.0, count = 0.0;
-  for (std::int64_t z = 3; z < v.dims.z - 3; ++z)
-    for (std::int64_t y = 3; y < v.dims.y - 3; ++y)
-      for (std::int64_t x = 15; x < 30; ++x) {
-        const double a = v.at(x, y, z), b = v.at(x + 1, y, z);
-        if (!(a < tau && b >= tau)) continue;
-        const glm::dvec3 at =
-            half.frame().input_vox_from_grid({static_cast<double>(x) + (tau - a) / (b - a), y, z});
-        sum += (at.x - wall - 0.02 * at.y - 0.01 * at.z) / 2.0;
-        count += 1.0;
-      }
-  return sum / count;
-}
-
-TEST(Estimate, TheDefaultThresholdLiesOnTheSurface) {
-  EXPECT_NEAR(wall_bias(ThresholdMethod::kAuto), 0.0, 0.03);
-  EXPECT_NEAR(wall_bias(ThresholdMethod::kHalf), 0.0, 0.03);
-  EXPECT_GT(wall_bias(ThresholdMethod::kValley), 0.3);  // why the valley rule alone is not the default
+  ASSERT_TRUE(denoise_in_place(v, {.sigma = estimates_of(v).sigma}, silent));
+  // Mean distance of the isosurface from the wall in voxels of the resampled grid.
+  const auto bias = [&](ThresholdMethod method) {
+    const double tau = estimates_of(v, {method}).threshold;
+    double sum = 0.0, count = 0.0;
+    for (std::int64_t z = 3; z < v.dims.z - 3; ++z)
+      for (std::int64_t y = 3; y < v.dims.y - 3; ++y)
+        for (std::int64_t x = 15; x < 30; ++x) {
+          const double a = v.at(x, y, z), b = v.at(x + 1, y, z);
+          if (!(a < tau && b >= tau)) continue;
+          const glm::dvec3 at =
+              half.frame().input_vox_from_grid({static_cast<double>(x) + (tau - a) / (b - a), y, z});
+          sum += (at.x - wall - 0.02 * at.y - 0.01 * at.z) / 2.0;
+          count += 1.0;
+        }
+    return sum / count;
+  };
+  EXPECT_NEAR(bias(ThresholdMethod::kAuto), 0.0, 0.03);
+  EXPECT_NEAR(bias(ThresholdMethod::kHalf), 0.0, 0.03);
+  EXPECT_GT(bias(ThresholdMethod::kValley), 0.3);  // why the valley rule alone is not the default
 }
 
 TEST(Mixture, OtsuCutsAnEmptyValleyInTheMiddle) {

@@ -1,0 +1,107 @@
+#include "display/sinks/anaglyph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+#include <string>
+
+#include "display/compose_pass.h"
+#include "display/sinks/sink_options.h"
+#include "display/srgb.h"
+
+namespace dubsar {
+namespace {
+
+constexpr GLint kLeftLocation = 0, kRightLocation = 1;  // shaders/anaglyph.frag
+
+glm::dmat3 rows(glm::dvec3 r, glm::dvec3 g, glm::dvec3 b) { return glm::transpose(glm::dmat3(r, g, b)); }
+
+const glm::dvec3 kNone(0), kLuminance(0.2126, 0.7152, 0.0722);
+const glm::dvec3 kR(1, 0, 0), kG(0, 1, 0), kB(0, 0, 1);
+
+// Rows of the output; the matrices of Dubois are those he published for the usual glasses.
+const std::array<AnaglyphVariant, 14> kVariants{{
+    {"red_cyan_dubois", rows({.437, .449, .164}, {-.062, -.062, -.024}, {-.048, -.050, -.017}),
+     rows({-.011, -.032, -.007}, {.377, .761, .009}, {-.026, -.093, 1.234})},
+    {"green_magenta_dubois", rows({-.062, -.158, -.039}, {.284, .668, .143}, {-.015, -.027, .021}),
+     rows({.529, .705, .024}, {-.016, -.015, -.065}, {.009, .075, .937})},
+    {"amber_blue_dubois", rows({1.062, -.205, .299}, {-.026, .908, .068}, {-.038, -.173, .022}),
+     rows({-.016, -.123, -.017}, {.006, .062, -.017}, {.094, .185, .911})},
+    {"red_cyan_full", rows(kR, kNone, kNone), rows(kNone, kG, kB)},
+    {"green_magenta_full", rows(kNone, kG, kNone), rows(kR, kNone, kB)},
+    {"amber_blue_full", rows(kR, kG, kNone), rows(kNone, kNone, kB)},
+    {"red_cyan_half", rows(kLuminance, kNone, kNone), rows(kNone, kG, kB)},
+    {"green_magenta_half", rows(kNone, kLuminance, kNone), rows(kR, kNone, kB)},
+    {"amber_blue_half", rows(kLuminance, kLuminance, kNone), rows(kNone, kNone, kB)},
+    {"red_cyan_mono", rows(kLuminance, kNone, kNone), rows(kNone, kLuminance, kLuminance)},
+    {"green_magenta_mono", rows(kNone, kLuminance, kNone), rows(kLuminance, kNone, kLuminance)},
+    {"amber_blue_mono", rows(kLuminance, kLuminance, kNone), rows(kNone, kNone, kLuminance)},
+    {"red_green_mono", rows(kLuminance, kNone, kNone), rows(kNone, kLuminance, kNone)},
+    {"red_blue_mono", rows(kLuminance, kNone, kNone), rows(kNone, kNone, kLuminance)},
+}};
+
+class AnaglyphSink : public OutputSink {
+ public:
+  explicit AnaglyphSink(const AnaglyphVariant& variant) : variant_(variant) {}
+
+  SinkTraits traits() const noexcept override {
+    const PixelSize size{screen_.window_w, screen_.window_h};
+    return {.name = "anaglyph", .views = 2, .view = size, .output = size, .tracked = true};
+  }
+  Result<void> configure(const Screen& screen) override {
+    DUBSAR_TRY(check_screen(screen));
+    screen_ = screen;
+    return {};
+  }
+  std::span<const View> views(const Viewer& viewer) override { return views_ = stereo_views(screen_, viewer); }
+
+  Result<void> compose(const ViewArray& views, const Surface& target) override {
+    DUBSAR_TRY(pass_.begin(target, views.coded()));
+    const glm::mat3 left(variant_.left), right(variant_.right);
+    glUniformMatrix3fv(kLeftLocation, 1, GL_FALSE, glm::value_ptr(left));
+    glUniformMatrix3fv(kRightLocation, 1, GL_FALSE, glm::value_ptr(right));
+    return pass_.draw();
+  }
+
+ private:
+  AnaglyphVariant variant_;
+  Screen screen_;
+  std::array<View, 2> views_;
+  ComposePass pass_{"anaglyph.frag"};
+};
+
+}  // namespace
+
+std::span<const AnaglyphVariant> anaglyph_variants() { return kVariants; }
+
+Image anaglyph_views(const Image& left, const Image& right, const AnaglyphVariant& variant) {
+  Image out(left.width, left.height, 3);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x) {
+      const std::uint8_t *l = left.at(x, y), *r = right.at(x, y);
+      const glm::dvec3 sum =
+          variant.left * glm::dvec3(linear_from_srgb(l[0]), linear_from_srgb(l[1]), linear_from_srgb(l[2])) +
+          variant.right * glm::dvec3(linear_from_srgb(r[0]), linear_from_srgb(r[1]), linear_from_srgb(r[2]));
+      for (int c = 0; c < 3; ++c) out.at(x, y)[c] = srgb_from_linear(sum[c]);
+    }
+  return out;
+}
+
+Result<std::unique_ptr<OutputSink>> make_anaglyph_sink(const SinkConfig& given) {
+  SinkConfig config = given;
+  const AnaglyphVariant* variant = &kVariants[0];
+  std::string names;
+  for (const AnaglyphVariant& candidate : kVariants) {
+    names += names.empty() ? "" : ", ";
+    names += candidate.name;
+    if (!given.options.empty() && given.options.front() == std::pair<std::string, std::string>(candidate.name, "")) {
+      variant = &candidate;
+      config.options.erase(config.options.begin());
+    }
+  }
+  DUBSAR_TRY(expect_no_more(config, "anaglyph", "one of: " + names));
+  return std::make_unique<AnaglyphSink>(*variant);
+}
+
+}  // namespace dubsar

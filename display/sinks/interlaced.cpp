@@ -1,0 +1,74 @@
+#include "display/sinks/interlaced.h"
+
+#include "display/compose_pass.h"
+#include "display/sinks/sink_options.h"
+
+namespace dubsar {
+namespace {
+
+constexpr GLint kPatternLocation = 0, kPanelOriginLocation = 1, kFirstLocation = 2;  // shaders/interlaced.frag
+
+class InterlacedSink : public OutputSink {
+ public:
+  InterlacedSink(InterlacePattern pattern, bool right_first) : pattern_(pattern), right_first_(right_first) {}
+
+  SinkTraits traits() const noexcept override {
+    const PixelSize size{screen_.window_w, screen_.window_h};
+    return {.name = "interlaced", .views = 2, .view = size, .output = size, .tracked = true, .exact_pixels = true};
+  }
+  Result<void> configure(const Screen& screen) override {
+    DUBSAR_TRY(check_screen(screen));
+    screen_ = screen;
+    return {};
+  }
+  std::span<const View> views(const Viewer& viewer) override { return views_ = stereo_views(screen_, viewer); }
+
+  Result<void> compose(const ViewArray& views, const Surface& target) override {
+    DUBSAR_TRY(pass_.begin(target, views.coded()));
+    glUniform1i(kPatternLocation, static_cast<int>(pattern_));
+    glUniform3i(kPanelOriginLocation, screen_.window_x, screen_.window_y, screen_.window_h);
+    glUniform1i(kFirstLocation, right_first_ ? 1 : 0);
+    return pass_.draw();
+  }
+
+ private:
+  InterlacePattern pattern_;
+  bool right_first_;
+  Screen screen_;
+  std::array<View, 2> views_;
+  ComposePass pass_{"interlaced.frag"};
+};
+
+}  // namespace
+
+int interlace_parity(InterlacePattern pattern, int panel_x, int panel_y, int channel) noexcept {
+  switch (pattern) {
+    case InterlacePattern::kRows: return panel_y & 1;
+    case InterlacePattern::kColumns: return panel_x & 1;
+    case InterlacePattern::kCheckerboard: return (panel_x + panel_y) & 1;
+    case InterlacePattern::kSubpixels: return (3 * panel_x + channel) & 1;
+  }
+  return 0;
+}
+
+Image interlace_views(const Image& left, const Image& right, const Screen& screen, InterlacePattern pattern,
+                      bool right_first) {
+  Image out(screen.window_w, screen.window_h, 3);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x)
+      for (int k = 0; k < 3; ++k) {
+        const int parity = interlace_parity(pattern, screen.window_x + x, screen.window_y + y, k);
+        out.at(x, y)[k] = ((parity == 1) != right_first ? right : left).at(x, y)[k];
+      }
+  return out;
+}
+
+Result<std::unique_ptr<OutputSink>> make_interlaced_sink(const SinkConfig& given) {
+  SinkConfig config = given;
+  const bool right_first = take_choice(config, {"left_first", "right_first"}) == 1;
+  const auto pattern = static_cast<InterlacePattern>(take_choice(config, {"rows", "columns", "checkerboard", "subpixels"}));
+  DUBSAR_TRY(expect_no_more(config, "interlaced", "rows, columns, checkerboard or subpixels, left_first or right_first"));
+  return std::make_unique<InterlacedSink>(pattern, right_first);
+}
+
+}  // namespace dubsar

@@ -1,0 +1,21 @@
+#pragma once
+// Two views in alternate rows, columns, squares or subpixels, for polarised, shutter-row and barrier panels. Which eye a
+// pixel belongs to follows from its place on the panel, not in the window.
+
+#include "core/image_io/image.h"
+#include "display/output_sink.h"
+
+namespace dubsar {
+
+enum class InterlacePattern : int { kRows = 0, kColumns = 1, kCheckerboard = 2, kSubpixels = 3 };
+
+/// 0: the even place, 1: the odd one, for channel k of the panel pixel (x, y), counted from the panel's upper left.
+int interlace_parity(InterlacePattern pattern, int panel_x, int panel_y, int channel) noexcept;
+
+/// Reference: what compose() draws. Both views have the window's size. RGB.
+Image interlace_views(const Image& left, const Image& right, const Screen& screen, InterlacePattern pattern,
+                      bool right_first);
+
+Result<std::unique_ptr<OutputSink>> make_interlaced_sink(const SinkConfig& config);
+
+}  // namespace dubsar

@@ -1,0 +1,55 @@
+#include "display/sinks/mono.h"
+
+#include "display/compose_pass.h"
+#include "display/sinks/sink_options.h"
+
+namespace dubsar {
+namespace {
+
+constexpr GLint kLayerLocation = 0, kOriginLocation = 1;  // shaders/copy.frag
+
+class MonoSink : public OutputSink {
+ public:
+  explicit MonoSink(bool draws) : draws_(draws) {}
+
+  SinkTraits traits() const noexcept override {
+    const PixelSize size{screen_.window_w, screen_.window_h};
+    return {.name = draws_ ? "mono" : "null", .views = 1, .view = size, .output = size, .tracked = true};
+  }
+  Result<void> configure(const Screen& screen) override {
+    DUBSAR_TRY(check_screen(screen));
+    screen_ = screen;
+    return {};
+  }
+  std::span<const View> views(const Viewer& viewer) override {
+    view_ = viewer_view(screen_.window_rect(), viewer, camera_pair(viewer).centre_mm());
+    return {&view_, 1};
+  }
+  Result<void> compose(const ViewArray& views, const Surface& target) override {
+    if (!draws_) return {};
+    DUBSAR_TRY(copy_.begin(target, views.coded()));
+    glUniform1i(kLayerLocation, 0);
+    glUniform2i(kOriginLocation, 0, 0);
+    return copy_.draw();
+  }
+
+ private:
+  bool draws_;
+  Screen screen_;
+  View view_;
+  ComposePass copy_{"copy.frag"};
+};
+
+}  // namespace
+
+Result<std::unique_ptr<OutputSink>> make_mono_sink(const SinkConfig& config) {
+  DUBSAR_TRY(expect_no_more(config, "mono", "no options"));
+  return std::make_unique<MonoSink>(true);
+}
+
+Result<std::unique_ptr<OutputSink>> make_null_sink(const SinkConfig& config) {
+  DUBSAR_TRY(expect_no_more(config, "null", "no options"));
+  return std::make_unique<MonoSink>(false);
+}
+
+}  // namespace dubsar

@@ -1,0 +1,13 @@
+#pragma once
+// One view, from the middle between the eyes; and the sink that draws nothing.
+
+#include "display/output_sink.h"
+
+namespace dubsar {
+
+Result<std::unique_ptr<OutputSink>> make_mono_sink(const SinkConfig& config);
+
+/// Asks for the views of a mono sink and drops them: measures everything before compose().
+Result<std::unique_ptr<OutputSink>> make_null_sink(const SinkConfig& config);
+
+}  // namespace dubsar

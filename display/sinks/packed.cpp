@@ -1,0 +1,114 @@
+#include "display/sinks/packed.h"
+
+#include <algorithm>
+
+#include "display/compose_pass.h"
+#include "display/sinks/sink_options.h"
+
+namespace dubsar {
+namespace {
+
+constexpr int kGapFraction = 24;  // HDMI 1.4a, 3D frame packing: 45 lines for 1080, 30 for 720
+constexpr GLint kLayerLocation = 0, kOriginLocation = 1;  // shaders/copy.frag
+
+class PackedSink : public OutputSink {
+ public:
+  explicit PackedSink(const Packing& packing) : packing_(packing) {}
+
+  SinkTraits traits() const noexcept override {
+    return {.name = packing_.vertical ? "top_bottom" : "side_by_side",
+            .views = 2,
+            .view = packing_.view_size(window()),
+            .output = packing_.output_size(window()),
+            .tracked = true};
+  }
+  Result<void> configure(const Screen& screen) override {
+    DUBSAR_TRY(check_screen(screen));
+    if (!packing_.full && (packing_.vertical ? screen.window_h : screen.window_w) < 2)
+      return fail(ErrorKind::kUsage, "display {}: a window of {} x {} pixels cannot be halved", traits().name,
+                  screen.window_w, screen.window_h);
+    screen_ = screen;
+    return {};
+  }
+  std::span<const View> views(const Viewer& viewer) override { return views_ = stereo_views(screen_, viewer); }
+
+  Result<void> compose(const ViewArray& views, const Surface& target) override {
+    glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+    glDisable(GL_SCISSOR_TEST);
+    glClearColor(0, 0, 0, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    const PixelSize size = packing_.view_size(window());
+    for (int eye = 0; eye < 2; ++eye) {
+      const PixelSize corner = packing_.place(window(), eye);
+      const int bottom = target.height - corner.height - size.height;
+      DUBSAR_TRY(copy_.begin(target, views.coded()));
+      glViewport(corner.width, bottom, size.width, size.height);
+      glUniform1i(kLayerLocation, eye);
+      glUniform2i(kOriginLocation, corner.width, bottom);
+      DUBSAR_TRY(copy_.draw());
+    }
+    return {};
+  }
+
+ private:
+  PixelSize window() const noexcept { return {screen_.window_w, screen_.window_h}; }
+  Packing packing_;
+  Screen screen_;
+  std::array<View, 2> views_;
+  ComposePass copy_{"copy.frag"};
+};
+
+Result<std::unique_ptr<OutputSink>> make_packed(SinkConfig config, Packing packing, std::string_view name,
+                                                std::string_view known) {
+  packing.right_first = take_choice(config, {"left_first", "right_first"}) == 1;
+  const int size = packing.vertical ? take_choice(config, {"half", "full", "frame_packing"})
+                                    : take_choice(config, {"half", "full"});
+  packing.full = size >= 1;
+  packing.frame_packing = size == 2;
+  DUBSAR_TRY(expect_no_more(config, name, known));
+  if (packing.frame_packing && packing.right_first)
+    return fail(ErrorKind::kUsage, "display top_bottom: frame_packing with right_first found, expected left_first: the standard has the left view on top");
+  return std::make_unique<PackedSink>(packing);
+}
+
+}  // namespace
+
+PixelSize Packing::view_size(PixelSize window) const noexcept {
+  if (full) return window;
+  return vertical ? PixelSize{window.width, window.height / 2} : PixelSize{window.width / 2, window.height};
+}
+
+PixelSize Packing::output_size(PixelSize window) const noexcept {
+  if (!full) return window;
+  if (!vertical) return {2 * window.width, window.height};
+  return {window.width, 2 * window.height + (frame_packing ? window.height / kGapFraction : 0)};
+}
+
+PixelSize Packing::place(PixelSize window, int eye) const noexcept {
+  if ((eye == 1) == right_first) return {0, 0};
+  const PixelSize view = view_size(window), output = output_size(window);
+  // The second view is flush with the far side: an odd window leaves its spare line between the two.
+  return vertical ? PixelSize{0, output.height - view.height} : PixelSize{output.width - view.width, 0};
+}
+
+Image pack_views(const Image& left, const Image& right, PixelSize window, const Packing& packing) {
+  const PixelSize size = packing.output_size(window);
+  Image out(size.width, size.height, 3);
+  for (int eye = 0; eye < 2; ++eye) {
+    const Image& view = eye == 0 ? left : right;
+    const PixelSize corner = packing.place(window, eye);
+    for (int y = 0; y < view.height; ++y)
+      for (int x = 0; x < view.width; ++x) std::copy_n(view.at(x, y), 3, out.at(corner.width + x, corner.height + y));
+  }
+  return out;
+}
+
+Result<std::unique_ptr<OutputSink>> make_side_by_side_sink(const SinkConfig& config) {
+  return make_packed(config, {.vertical = false}, "side_by_side", "half or full, left_first or right_first");
+}
+
+Result<std::unique_ptr<OutputSink>> make_top_bottom_sink(const SinkConfig& config) {
+  return make_packed(config, {.vertical = true}, "top_bottom", "half, full or frame_packing, left_first or right_first");
+}
+
+}  // namespace dubsar

@@ -1,0 +1,183 @@
+#include "display/sinks/quilt.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "display/compose_pass.h"
+#include "display/sinks/sink_options.h"
+
+namespace dubsar {
+namespace {
+
+constexpr GLint kTileLocation = 0, kColumnsLocation = 1;  // shaders/quilt.frag
+constexpr int kMaxTiles = 100, kMinTilePx = 8, kMaxQuiltPx = 16384;
+constexpr double kMinAspect = 0.05, kMaxAspect = 20.0;
+constexpr double kFieldOfViewDeg = 14.0;  // vertical, at the place the maker expects the viewer (Looking Glass documentation)
+
+double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+
+struct QuiltSetup {
+  QuiltLayout layout;
+  double aspect = 0.0, cone_deg = 0.0;
+  double height_mm = 0.0, distance_mm = 0.0;  ///< 0: from the screen, from the field of view
+};
+
+class QuiltSink : public OutputSink {
+ public:
+  explicit QuiltSink(const QuiltSetup& setup) : setup_(setup) {}
+
+  SinkTraits traits() const noexcept override {
+    const QuiltLayout& layout = setup_.layout;
+    return {.name = "quilt",
+            .views = layout.views(),
+            .view = {layout.tile_width(), layout.tile_height()},
+            .output = {layout.width_px, layout.height_px},
+            .file_suffix = quilt_suffix(layout.columns, layout.rows, setup_.aspect)};
+  }
+  Result<void> configure(const Screen& screen) override {
+    DUBSAR_TRY(check_screen(screen));
+    screen_height_mm_ = screen.height_mm;
+    return {};
+  }
+  std::span<const View> views(const Viewer& viewer) override {
+    const double half_h = (setup_.height_mm > 0 ? setup_.height_mm : screen_height_mm_) / 2;
+    const double half_w = half_h * setup_.aspect;
+    const double distance =
+        setup_.distance_mm > 0 ? setup_.distance_mm : half_h / std::tan(radians(kFieldOfViewDeg) / 2);
+    const WindowRect window{{-half_w, -half_h, 0}, {half_w, -half_h, 0}, {-half_w, half_h, 0}};
+    views_.clear();
+    for (const glm::dvec3& eye : cone_eyes(setup_.layout.views(), radians(setup_.cone_deg), distance))
+      views_.push_back(viewer_view(window, viewer, eye));
+    return views_;
+  }
+  Result<void> compose(const ViewArray& views, const Surface& target) override {
+    DUBSAR_TRY(pass_.begin(target, views.coded()));
+    glUniform2i(kTileLocation, setup_.layout.tile_width(), setup_.layout.tile_height());
+    glUniform2i(kColumnsLocation, setup_.layout.columns, setup_.layout.rows);
+    return pass_.draw();
+  }
+
+ private:
+  QuiltSetup setup_;
+  double screen_height_mm_ = Screen().height_mm;
+  std::vector<View> views_;
+  ComposePass pass_{"quilt.frag"};
+};
+
+/// Reads key=value as a number into `target` and takes it out of the options.
+Result<void> take_number(SinkConfig& config, std::string_view key, double least, double most, double& target) {
+  for (auto option = config.options.begin(); option != config.options.end(); ++option) {
+    if (option->first != key) continue;
+    const std::string& text = option->second;
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !(value >= least && value <= most))
+      return fail(ErrorKind::kUsage, "display quilt: {}={} found, expected a number from {} to {}", key, text, least, most);
+    target = value;
+    config.options.erase(option);
+    return {};
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string quilt_suffix(int columns, int rows, double aspect) {
+  return fmt::format("_qs{}x{}a{:.5g}", columns, rows, aspect);
+}
+
+std::optional<QuiltName> parse_quilt_name(std::string_view file_name) {
+  const auto mark = file_name.rfind("_qs");
+  if (mark == std::string_view::npos) return std::nullopt;
+  const char* at = file_name.data() + mark + 3;
+  const char* const end = file_name.data() + file_name.size();
+  QuiltName name;
+  auto number = std::from_chars(at, end, name.columns);
+  if (number.ec != std::errc() || number.ptr == end || *number.ptr != 'x') return std::nullopt;
+  number = std::from_chars(number.ptr + 1, end, name.rows);
+  if (number.ec != std::errc()) return std::nullopt;
+  if (name.columns < 1 || name.rows < 1 || name.columns > kMaxTiles || name.rows > kMaxTiles) return std::nullopt;
+  if (number.ptr == end || *number.ptr != 'a') return name;
+  double aspect = 0;
+  // Fixed notation: an exponent would swallow the e of an extension.
+  number = std::from_chars(number.ptr + 1, end, aspect, std::chars_format::fixed);
+  if (number.ec != std::errc() || !(aspect >= kMinAspect && aspect <= kMaxAspect)) return std::nullopt;
+  name.aspect = aspect;
+  return name;
+}
+
+Result<QuiltLayout> quilt_layout_of(std::string_view file_name, const Image& quilt) {
+  const auto name = parse_quilt_name(file_name);
+  if (!name)
+    return fail(ErrorKind::kUsage, "quilt: \"{}\" does not say its layout, expected a name like tablet_qs8x6a0.75.png",
+                file_name);
+  const QuiltLayout layout{name->columns, name->rows, quilt.width, quilt.height};
+  if (layout.tile_width() < kMinTilePx || layout.tile_height() < kMinTilePx)
+    return fail(ErrorKind::kBadData, "quilt: \"{}\" says {} x {} tiles, but the picture has only {} x {} pixels", file_name,
+                layout.columns, layout.rows, quilt.width, quilt.height);
+  return layout;
+}
+
+PixelSize quilt_tile_corner(const QuiltLayout& layout, int view) noexcept {
+  return {view % layout.columns * layout.tile_width(), view / layout.columns * layout.tile_height()};
+}
+
+Image make_quilt(std::span<const Image> views, const QuiltLayout& layout) {
+  DUBSAR_CHECK(static_cast<int>(views.size()) == layout.views());
+  Image out(layout.width_px, layout.height_px, 3);
+  for (int i = 0; i < layout.views(); ++i) {
+    DUBSAR_CHECK(views[i].width == layout.tile_width() && views[i].height == layout.tile_height());
+    const PixelSize corner = quilt_tile_corner(layout, i);
+    const int top = layout.height_px - corner.height - layout.tile_height();
+    for (int y = 0; y < views[i].height; ++y)
+      for (int x = 0; x < views[i].width; ++x) std::copy_n(views[i].at(x, y), 3, out.at(corner.width + x, top + y));
+  }
+  return out;
+}
+
+std::vector<Image> split_quilt(const Image& quilt, const QuiltLayout& layout) {
+  std::vector<Image> views;
+  for (int i = 0; i < layout.views(); ++i) {
+    Image view(layout.tile_width(), layout.tile_height(), 3);
+    const PixelSize corner = quilt_tile_corner(layout, i);
+    const int top = layout.height_px - corner.height - layout.tile_height();
+    for (int y = 0; y < view.height; ++y)
+      for (int x = 0; x < view.width; ++x) std::copy_n(quilt.at(corner.width + x, top + y), 3, view.at(x, y));
+    views.push_back(std::move(view));
+  }
+  return views;
+}
+
+Result<std::unique_ptr<OutputSink>> make_quilt_sink(const SinkConfig& given) {
+  SinkConfig config = given;
+  QuiltSetup setup{{8, 6, 3360, 3360}, 0.75, 40.0};  // a Looking Glass Portrait
+  if (!config.options.empty() && config.options.front().second.empty()) {
+    DUBSAR_ASSIGN(const auto profiles, load_profiles(config.profile_folder));
+    DUBSAR_ASSIGN(const PanelProfile profile, find_profile(profiles, config.options.front().first));
+    if (profile.quilt.views() < 1)
+      return fail(ErrorKind::kUsage, "display quilt: panel \"{}\" takes no quilts, expected a Looking Glass", profile.name);
+    setup = {profile.quilt, profile.aspect, profile.view_cone_deg, profile.height_mm(), profile.design_distance_mm};
+    config.options.erase(config.options.begin());
+  }
+  double columns = setup.layout.columns, rows = setup.layout.rows;
+  double width = setup.layout.width_px, height = setup.layout.height_px;
+  DUBSAR_TRY(take_number(config, "columns", 1, kMaxTiles, columns));
+  DUBSAR_TRY(take_number(config, "rows", 1, kMaxTiles, rows));
+  DUBSAR_TRY(take_number(config, "width", kMinTilePx, kMaxQuiltPx, width));
+  DUBSAR_TRY(take_number(config, "height", kMinTilePx, kMaxQuiltPx, height));
+  DUBSAR_TRY(take_number(config, "aspect", kMinAspect, kMaxAspect, setup.aspect));
+  DUBSAR_TRY(take_number(config, "cone", 1, 170, setup.cone_deg));
+  DUBSAR_TRY(expect_no_more(config, "quilt", "a panel profile, columns=, rows=, width=, height=, aspect=, cone="));
+  for (const double whole : {columns, rows, width, height})
+    if (whole != std::floor(whole))
+      return fail(ErrorKind::kUsage, "display quilt: {} found, expected whole columns, rows and pixels", whole);
+  setup.layout = {static_cast<int>(columns), static_cast<int>(rows), static_cast<int>(width), static_cast<int>(height)};
+  if (setup.layout.tile_width() < kMinTilePx || setup.layout.tile_height() < kMinTilePx)
+    return fail(ErrorKind::kUsage, "display quilt: tiles of {} x {} pixels are too small, expected at least {} a side",
+                setup.layout.tile_width(), setup.layout.tile_height(), kMinTilePx);
+  return std::make_unique<QuiltSink>(setup);
+}
+
+}  // namespace dubsar

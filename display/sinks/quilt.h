@@ -1,0 +1,45 @@
+#pragma once
+// All views of a light field panel in one picture, as tiles: view 0, the leftmost camera, at the lower left, then to the
+// right, then upwards. The file's name carries the layout: NAME_qs8x6a0.75.png has 8 columns, 6 rows, aspect 0.75.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/image_io/image.h"
+#include "display/output_sink.h"
+#include "display/panel_profile.h"
+
+namespace dubsar {
+
+struct QuiltName {
+  int columns = 0, rows = 0;
+  std::optional<double> aspect;  ///< of the picture on the panel, not of the tile
+};
+
+/// "_qs8x6a0.75"
+std::string quilt_suffix(int columns, int rows, double aspect);
+
+/// Finds "_qs<columns>x<rows>[a<aspect>]" in a file's name; the last one counts. Nothing when there is none or it is
+/// out of range (1 to 100 a side, aspect 0.05 to 20).
+std::optional<QuiltName> parse_quilt_name(std::string_view file_name);
+
+/// The layout of a quilt file from its name, checked against the picture: each tile must have at least 8 x 8 pixels.
+/// kBadData with both when they do not agree, kUsage when the name does not say.
+Result<QuiltLayout> quilt_layout_of(std::string_view file_name, const Image& quilt);
+
+/// Lower left corner of a view's tile, from the lower left of the quilt. What does not divide is left black at the
+/// right and on top.
+PixelSize quilt_tile_corner(const QuiltLayout& layout, int view) noexcept;
+
+/// Reference: what compose() draws. layout.views() pictures of the tile's size. RGB.
+Image make_quilt(std::span<const Image> views, const QuiltLayout& layout);
+
+/// The tiles of a quilt as views, RGB.
+std::vector<Image> split_quilt(const Image& quilt, const QuiltLayout& layout);
+
+Result<std::unique_ptr<OutputSink>> make_quilt_sink(const SinkConfig& config);
+
+}  // namespace dubsar
