@@ -55,6 +55,7 @@ Result<Shading> shading_preset(std::string_view name) {
       if (!preset.lit) {  // figure 14: the table's own colours; ambient light alone is white
         shading.base_color = preset.map == ColorMap::kPlain ? Rgb8{255, 255, 255} : shape_color_table(shape_colors_of(preset.map))[0];
         shading.contrast = 1.0;
+        shading.occlusion_power = 1.0;
       }
       return shading;
     }
@@ -74,16 +75,20 @@ std::vector<std::array<std::uint8_t, 4>> color_table(const Shading& shading) {
   const double contrast = shading.map == ColorMap::kPlain ? 0.0 : shading.contrast;
   std::vector<std::array<std::uint8_t, 4>> table;
   table.reserve(kShapeRows * kAoColumns);
-  for (int ao = 0; ao < kAoColumns; ++ao)
-    for (int shape = 0; shape < kShapeRows; ++shape) {
+  for (int ao = 0; ao < kAoColumns; ++ao) {
+    const double open = std::pow(ao / (kAoColumns - 1.0), shading.occlusion_power) * (kAoColumns - 1);
+    for (const ShapeRgb& shape : shapes) {
+      std::array<double, 3> value{};
+      for (std::size_t c = 0; c < 3; ++c)
+        value[c] = shading.base_color[c] * std::max(1.0 + contrast * (shape[c] - shapes[0][c]) / shapes[0][c], 0.0);
+      // Too bright: darker rather than of another hue.
+      const double fit = std::min(1.0, 255.0 / std::max({value[0], value[1], value[2], 1.0}));
       Rgb8 color{};
-      for (std::size_t c = 0; c < 3; ++c) {
-        const double accent = contrast * (shapes[static_cast<std::size_t>(shape)][c] - shapes[0][c]);
-        color[c] = static_cast<std::uint8_t>(std::lround(std::clamp(shading.base_color[c] + accent, 0.0, 255.0)));
-      }
-      if (shading.ambient_occlusion) color = shade(color, static_cast<std::uint8_t>(ao));
+      for (std::size_t c = 0; c < 3; ++c) color[c] = static_cast<std::uint8_t>(std::lround(fit * value[c]));
+      if (shading.ambient_occlusion) color = shade(color, static_cast<std::uint8_t>(std::lround(open)));
       table.push_back({color[0], color[1], color[2], 255});
     }
+  }
   return table;
 }
 

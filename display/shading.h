@@ -29,14 +29,15 @@ enum class BackFaces {
 
 struct Shading {
   ColorMap map = ColorMap::kBlackWhite;
-  double contrast = 0.6;         ///< of the map: its difference from its own flat colour is added to base_color
+  double contrast = 1.6;         ///< how much of the map's relation to its own flat colour base_color takes on
   bool ambient_occlusion = true;
+  double occlusion_power = 1.3;  ///< ambient light to this power: 1 as it is, more for darker hollows
   bool lit = true;               ///< false: the colours as they are, as in figure 14 a to e
   Rgb8 base_color{203, 192, 178};
 
   double light_azimuth_deg = 315;   ///< in the picture, clockwise from its upper side: 315 is from the upper left
-  double light_elevation_deg = 35;  ///< above the picture plane: 90 is a headlight, below 30 is raking light
-  double ambient = 0.25, key = 0.75, fill = 0.15, specular = 0.05;  ///< weights; fill comes from the eye
+  double light_elevation_deg = 25;  ///< above the picture plane: 90 is a headlight, below 30 is raking light
+  double ambient = 0.12, key = 1.0, fill = 0.25, specular = 0.05;  ///< weights; fill comes from the eye
   double shininess = 24;
 
   BackFaces back_faces = BackFaces::kShow;

@@ -40,6 +40,7 @@ TEST(Shading, AmbientOcclusionScalesEveryColourOfTheTable) {
   for (const ColorMap map : {ColorMap::kPlain, ColorMap::kTable, ColorMap::kBlackWhite, ColorMap::kSkySun}) {
     Shading s;
     s.map = map;
+    s.occlusion_power = 1;
     s.ambient_occlusion = true;
     const auto table = color_table(s);
     ASSERT_EQ(table.size(), 128u * 64u);
@@ -57,11 +58,8 @@ TEST(Shading, AmbientOcclusionScalesEveryColourOfTheTable) {
 }
 
 TEST(Shading, ConcaveIsDarkAndConvexIsLight) {
-  Shading s = shading_preset("relief").value();
-  s.ambient_occlusion = false;
-  for (const ColorMap map : {ColorMap::kBlackWhite, ColorMap::kSkySun}) {
-    s.map = map;
-    const auto table = color_table(s);
+  for (const char* preset : {"black-white", "sky-sun"}) {
+    const auto table = color_table(shading_preset(preset).value());
     const auto red = [&](int curvedness, int shape) { return static_cast<int>(table[1 + 9 * curvedness + shape][0]); };
     const int flat = table[0][0];
     EXPECT_LT(red(13, 0), flat);                 // cup
@@ -87,6 +85,18 @@ TEST(Shading, UnlitPresetsAreTheTablesOfTheExporters) {
         ASSERT_EQ((ShapeRgb{entry[0], entry[1], entry[2]}), expected) << c.preset << " " << shape << " " << ao;
       }
   }
+}
+
+TEST(Shading, ReliefKeepsItsHueAndDarkensWedges) {
+  const Shading relief = shading_preset("relief").value();
+  const auto table = color_table(relief);
+  const auto& flat = table[63 * 128];
+  EXPECT_EQ((Rgb8{flat[0], flat[1], flat[2]}), relief.base_color);
+  const auto& wedge = table[48 * 128 + 1 + 9 * 9 + 2];  // a rut of 3 voxels' radius that sees 3/4 of the sky
+  EXPECT_LT(wedge[0], 0.6 * flat[0]);
+  for (const auto& color : table)
+    for (int c = 1; c < 3; ++c)
+      ASSERT_NEAR(color[c], color[0] * relief.base_color[c] / 203.0, 1.5) << "another hue";
 }
 
 TEST(Shading, PartitionColoursDifferInLightness) {
