@@ -1,6 +1,7 @@
 #pragma once
 // What the writers share: checks before the first byte, and the numbers of a mesh in the unit of the file.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -52,9 +53,11 @@ struct VertexColors {
 };
 VertexColors output_colors(const TriMesh& mesh);
 
-/// Part of a triangle: that of its vertices; 0 where the mesh has no parts.
+/// Partition of a triangle, 0 where the mesh has none: the highest of its vertices, because a vertex between two
+/// partitions that stay joined carries the lower id.
 inline int partition_of(const TriMesh& mesh, const Triangle& t) noexcept {
-  return mesh.partition.empty() ? 0 : mesh.partition[t[0]];
+  if (mesh.partition.empty()) return 0;
+  return std::max({mesh.partition[t[0]], mesh.partition[t[1]], mesh.partition[t[2]]});
 }
 
 /// Table name of a part, or "part 3".

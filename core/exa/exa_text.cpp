@@ -1,0 +1,175 @@
+#include "core/exa/exa_text.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/base/budget.h"
+#include "core/base/bytes.h"
+#include "core/base/json_text.h"
+#include "core/exa/container.h"
+
+namespace dubsar {
+namespace {
+using Json = nlohmann::json;
+
+Json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// Reads members of an object and remembers the first that is missing or of the wrong type.
+class Members {
+ public:
+  explicit Members(const Json& object) : object_(object) {}
+  const Json* get(const char* key, bool (Json::*test)() const noexcept) {
+    if (object_.is_object()) {
+      const auto found = object_.find(key);
+      if (found != object_.end() && ((*found).*test)()) return &*found;
+    }
+    if (wrong_.empty()) wrong_ = key;
+    return nullptr;
+  }
+  double number(const char* key) {
+    const Json* value = get(key, &Json::is_number);
+    return value ? value->get<double>() : 0.0;
+  }
+  std::int64_t count(const char* key) {
+    const Json* value = get(key, &Json::is_number_unsigned);
+    const std::uint64_t found = value ? value->get<std::uint64_t>() : 0;
+    if (found > (std::uint64_t{1} << 40)) wrong_ = key;
+    return static_cast<std::int64_t>(found);
+  }
+  bool flag(const char* key) {
+    const Json* value = get(key, &Json::is_boolean);
+    return value && value->get<bool>();
+  }
+  std::string text(const char* key) {
+    const Json* value = get(key, &Json::is_string);
+    return value ? value->get<std::string>() : std::string();
+  }
+  glm::dvec3 vector(const char* key) {
+    glm::dvec3 v(0.0);
+    const Json* value = get(key, &Json::is_array);
+    if (!value) return v;
+    if (value->size() != 3) wrong_ = key;
+    for (std::size_t a = 0; a < 3 && value->size() == 3; ++a) {
+      if (!(*value)[a].is_number()) wrong_ = key;
+      else v[static_cast<int>(a)] = (*value)[a].get<double>();
+    }
+    if (!finite(v)) wrong_ = key;
+    return v;
+  }
+  const std::string& wrong() const { return wrong_; }
+
+ private:
+  const Json& object_;
+  std::string wrong_;
+};
+}  // namespace
+
+Result<std::string> exa_header_json(const ExaHeader& header) {
+  if (!std::isfinite(header.isovalue) || !finite(header.frame.scale) || !finite(header.frame.origin_vox) ||
+      !finite(header.frame.input_voxel.mm))
+    return fail(ErrorKind::kBadData, "exa: isovalue, scale, origin and voxel size must be finite to be stored");
+  nlohmann::ordered_json json;
+  json["dims"] = {header.dims.x, header.dims.y, header.dims.z};
+  json["isovalue"] = static_cast<double>(header.isovalue);
+  json["offset_bits"] = header.offset_bits;
+  json["closed"] = header.closed;
+  json["vertices"] = header.vertices;
+  json["quads"] = header.quads;
+  json["mesh_xxh3"] = fmt::format("{:016x}", header.mesh_sum);
+  json["scale"] = vector_json(header.frame.scale);
+  json["origin_vox"] = vector_json(header.frame.origin_vox);
+  json["voxel_size_mm"] = vector_json(header.frame.input_voxel.mm);
+  json["voxel_size_from"] = header.frame.input_voxel.provenance;
+  return json.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+Result<ExaHeader> parse_exa_header(std::string_view text) {
+  DUBSAR_ASSIGN(const Json json, parse_json(text, "exa: header"));
+  Members members(json);
+  ExaHeader header;
+  const glm::dvec3 dims = members.vector("dims");
+  header.isovalue = static_cast<float>(members.number("isovalue"));
+  const std::int64_t bits = members.count("offset_bits");
+  header.closed = members.flag("closed");
+  header.vertices = members.count("vertices");
+  header.quads = members.count("quads");
+  const std::string sum = members.text("mesh_xxh3");
+  header.frame.scale = members.vector("scale");
+  header.frame.origin_vox = members.vector("origin_vox");
+  header.frame.input_voxel.mm = members.vector("voxel_size_mm");
+  header.frame.input_voxel.provenance = members.text("voxel_size_from");
+  if (!members.wrong().empty())
+    return fail(ErrorKind::kBadData, "exa: \"{}\" is missing or wrong in the header", members.wrong());
+  std::uint64_t size[3];
+  for (int a = 0; a < 3; ++a) {
+    if (!(dims[a] >= 1.0 && dims[a] <= 65535.0) || dims[a] != std::floor(dims[a]))
+      return fail(ErrorKind::kBadData, "exa: dimension {} found, expected 1..65535", dims[a]);
+    size[a] = static_cast<std::uint64_t>(dims[a]);
+  }
+  DUBSAR_TRY(check_dims("exa", size, 1));
+  header.dims = {static_cast<std::int64_t>(size[0]), static_cast<std::int64_t>(size[1]), static_cast<std::int64_t>(size[2])};
+  if (bits < 1 || bits > 16) return fail(ErrorKind::kBadData, "exa: {} offset bits found, expected 1..16", bits);
+  header.offset_bits = static_cast<int>(bits);
+  for (int a = 0; a < 3; ++a)
+    if (!(header.frame.scale[a] > 0.0) || !(header.frame.input_voxel.mm[a] > 0.0))
+      return fail(ErrorKind::kBadData, "exa: a scale or voxel size is not positive");
+  if (!std::isfinite(header.isovalue)) return fail(ErrorKind::kBadData, "exa: the isovalue is not finite");
+  std::size_t used = 0;
+  for (const char c : sum) {
+    const int digit = c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+    if (digit >= 0) header.mesh_sum = header.mesh_sum << 4 | static_cast<unsigned>(digit), ++used;
+  }
+  if (used != 16 || sum.size() != 16) return fail(ErrorKind::kBadData, "exa: the mesh checksum in the header is broken");
+  return header;
+}
+
+Result<std::string> exa_partitions_json(const std::vector<Partition>& partitions) {
+  nlohmann::ordered_json table = nlohmann::ordered_json::array();
+  for (const Partition& p : partitions) {
+    if (!std::isfinite(p.area_mm2) || !std::isfinite(p.volume_mm3))
+      return fail(ErrorKind::kBadData, "exa: area or volume of partition {} is not finite", p.id);
+    table.push_back({{"id", p.id}, {"name", p.name}, {"part", p.part}, {"area_mm2", p.area_mm2},
+                     {"volume_mm3", p.volume_mm3}, {"watertight", p.watertight}});
+  }
+  return table.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+Result<std::vector<Partition>> parse_exa_partitions(std::string_view text) {
+  DUBSAR_ASSIGN(const Json json, parse_json(text, "exa: partition table"));
+  if (!json.is_array() || json.size() > 256) return fail(ErrorKind::kBadData, "exa: the partition table is no table");
+  std::vector<Partition> partitions;
+  for (const Json& row : json) {
+    Members members(row);
+    Partition p;
+    const std::int64_t id = members.count("id");
+    p.name = members.text("name");
+    p.part = members.text("part");
+    p.area_mm2 = members.number("area_mm2");
+    p.volume_mm3 = members.number("volume_mm3");
+    p.watertight = members.flag("watertight");
+    if (!members.wrong().empty() || id > 7)
+      return fail(ErrorKind::kBadData, "exa: \"{}\" is missing or wrong in the partition table",
+                  members.wrong().empty() ? "id" : members.wrong());
+    p.id = static_cast<int>(id);
+    partitions.push_back(std::move(p));
+  }
+  return partitions;
+}
+
+std::uint64_t mesh_checksum(const QuadMesh& mesh) {
+  const auto sum_of = [](const auto& items) {
+    return exa_checksum({reinterpret_cast<const char*>(items.data()), items.size() * sizeof(items[0])});
+  };
+  std::string sums;
+  append_little(sums, sum_of(mesh.positions));
+  append_little(sums, sum_of(mesh.quads));
+  for (const DoubledCorner& d : mesh.doubled) {
+    append_little(sums, d.quad);
+    append_little(sums, d.vertex);
+    append_little(sums, d.corner);
+  }
+  return exa_checksum(sums);
+}
+
+}  // namespace dubsar
