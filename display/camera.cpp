@@ -25,22 +25,6 @@ double cos_deg(double degrees) {
 }
 double sin_deg(double degrees) { return cos_deg(degrees - 90.0); }
 
-/// Camera axes in world coordinates; `back` points from the object to the camera.
-struct CameraAxes {
-  glm::dvec3 right, up, back;
-};
-
-CameraAxes camera_axes(const ObjectFrame& object, const ViewDirection& d) {
-  const double ca = cos_deg(d.azimuth_deg), sa = sin_deg(d.azimuth_deg);
-  const double ce = cos_deg(d.elevation_deg), se = sin_deg(d.elevation_deg);
-  const glm::dvec3 level = ca * object.front + sa * object.right;
-  const glm::dvec3 back = ce * level + se * object.up;
-  const glm::dvec3 up = ce * object.up - se * level;
-  const glm::dvec3 right = ca * object.right - sa * object.front;
-  const double cr = cos_deg(d.roll_deg), sr = sin_deg(d.roll_deg);
-  return {cr * right + sr * up, cr * up - sr * right, back};
-}
-
 std::array<glm::dvec3, 8> corners(const Box& box) {
   std::array<glm::dvec3, 8> out;
   for (int i = 0; i < 8; ++i)
@@ -56,6 +40,17 @@ ObjectFrame object_frame(const Box& box) {
   if (s.z <= s.x && s.z <= s.y) return {x, y, z};
   if (s.y <= s.x) return {x, z, -y};
   return {y, z, x};
+}
+
+ObjectFrame picture_frame(const ObjectFrame& object, const ViewDirection& d) {
+  const double ca = cos_deg(d.azimuth_deg), sa = sin_deg(d.azimuth_deg);
+  const double ce = cos_deg(d.elevation_deg), se = sin_deg(d.elevation_deg);
+  const glm::dvec3 level = ca * object.front + sa * object.right;
+  const glm::dvec3 back = ce * level + se * object.up;
+  const glm::dvec3 up = ce * object.up - se * level;
+  const glm::dvec3 right = ca * object.right - sa * object.front;
+  const double cr = cos_deg(d.roll_deg), sr = sin_deg(d.roll_deg);
+  return {cr * right + sr * up, cr * up - sr * right, back};
 }
 
 Result<ViewDirection> parse_view_direction(std::string_view text) {
@@ -101,13 +96,13 @@ Result<Camera> fit_camera(const Box& box, const CameraOptions& options) {
     return fail(ErrorKind::kUsage, "camera: field of view {} degrees found, expected 1 to 120",
                 options.field_of_view_deg);
 
-  const CameraAxes axes = camera_axes(object_frame(box), options.direction);
+  const ObjectFrame axes = picture_frame(object_frame(box), options.direction);
   const glm::dvec3 centre = box.centre();
   std::array<glm::dvec3, 8> seen = corners(box);
   double half_x = 0, half_y = 0, near_z = -diagonal, far_z = diagonal;
   for (glm::dvec3& p : seen) {
     const glm::dvec3 d = p - centre;
-    p = {glm::dot(d, axes.right), glm::dot(d, axes.up), glm::dot(d, axes.back)};
+    p = {glm::dot(d, axes.right), glm::dot(d, axes.up), glm::dot(d, axes.front)};
     half_x = std::max(half_x, std::abs(p.x));
     half_y = std::max(half_y, std::abs(p.y));
     near_z = std::max(near_z, p.z);
@@ -141,7 +136,7 @@ Result<Camera> fit_camera(const Box& box, const CameraOptions& options) {
     for (const glm::dvec3& p : seen)
       distance = std::max({distance, p.z + std::abs(p.x) / (tan_x * used), p.z + std::abs(p.y) / (tan_y * used)});
     distance = std::max(distance, near_z + kDepthMargin * diagonal);
-    eye += distance * axes.back;
+    eye += distance * axes.front;
     const double near_plane = distance - near_z, far_plane = distance - far_z;
     camera.view.clip_from_view = glm::frustum(-near_plane * tan_x, near_plane * tan_x, -near_plane * tan_y,
                                               near_plane * tan_y, near_plane, far_plane);
@@ -152,7 +147,7 @@ Result<Camera> fit_camera(const Box& box, const CameraOptions& options) {
     camera.view.clip_from_view = glm::ortho(-x, x, -y, y, -near_z, -far_z);
   }
   glm::dmat4& m = camera.view.view_from_world;
-  const std::array<glm::dvec3, 3> rows{axes.right, axes.up, axes.back};
+  const std::array<glm::dvec3, 3> rows{axes.right, axes.up, axes.front};
   for (int r = 0; r < 3; ++r) {
     for (int c = 0; c < 3; ++c) m[c][r] = rows[r][c];
     m[3][r] = -glm::dot(rows[r], eye);

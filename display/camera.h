@@ -32,6 +32,9 @@ struct ViewDirection {
   double azimuth_deg = 0.0, elevation_deg = 0.0, roll_deg = 0.0;
 };
 
+/// Directions of the picture in world coordinates: to its right, up, and from the object to the camera.
+ObjectFrame picture_frame(const ObjectFrame& object, const ViewDirection& direction);
+
 /// "front" "back" (azimuth 180) "left" (-90) "right" (90) "top" (elevation 90, front side down) "bottom" (-90, front
 /// side up), or "orbit:AZIMUTH,ELEVATION[,ROLL]". kUsage for anything else.
 Result<ViewDirection> parse_view_direction(std::string_view text);
