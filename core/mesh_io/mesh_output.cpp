@@ -1,5 +1,7 @@
 #include "core/mesh_io/mesh_output.h"
 
+#include "core/surface/shape_colors.h"
+
 namespace dubsar {
 
 Result<void> check_tri_mesh(const TriMesh& mesh) {
@@ -17,7 +19,10 @@ Result<void> check_tri_mesh(const TriMesh& mesh) {
   return {};
 }
 
-VertexColors output_colors(const TriMesh& mesh) { return {mesh.colors, false}; }
+VertexColors output_colors(const TriMesh& mesh) {
+  if (!mesh.colors.empty() || (mesh.shape.empty() && mesh.ao.empty())) return {mesh.colors, false};
+  return {shape_vertex_colors(ShapeColors::kTable, mesh.shape, mesh.ao), true};
+}
 
 std::string partition_name(const TriMesh& mesh, int id) {
   for (const Partition& partition : mesh.partitions)

@@ -3,6 +3,7 @@
 #include "core/base/bytes.h"
 #include "core/base/input_file.h"
 #include "core/mesh_io/mesh_formats.h"
+#include "core/surface/shape_colors.h"
 #include "mesh_samples.h"
 
 namespace dubsar {
@@ -95,6 +96,21 @@ TEST_F(Ply, HeaderListsThePropertiesInTheOrderOfTheContract) {
   const auto k_min = first.little<float>(), k_max = first.little<float>();
   first.take(2);
   EXPECT_EQ(first.little<float>(), 0.5f * (k_min + k_max)) << "quality is the mean curvature";
+}
+
+TEST_F(Ply, ColoursAreThoseOfTheShapeTableAndAreNotReadBackAsForeign) {
+  TriMesh mesh = sample_mesh();
+  mesh.colors.clear();
+  SilentProgress progress;
+  ASSERT_TRUE(write_mesh(folder_ / "a.ply", mesh, {}, progress));
+  const std::string bytes = *read_file_bytes(folder_ / "a.ply");
+  const std::size_t body = bytes.find("end_header\n") + 11;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const auto expected = shade(shape_color_table(ShapeColors::kTable)[mesh.shape[v]], mesh.ao[v]);
+    for (std::size_t c = 0; c < 3; ++c)
+      ASSERT_EQ(static_cast<std::uint8_t>(bytes[body + 42 * v + 24 + c]), expected[c]);
+  }
+  EXPECT_TRUE(read_mesh(folder_ / "a.ply", progress)->colors.empty());
 }
 
 TEST_F(Ply, AllEncodingsOfOneTriangleReadTheSame) {
