@@ -93,7 +93,9 @@ void PhantomBuilder::shape_bodies() {
   }
   p_.outer_relief_ = mm(0.8);  // band and ruling below, figures above
   p_.tablet_relief_ = std::max(1.5f * p_.gap_open_, mm(0.6));
-  line_pitch_ = std::min(std::max(mm(3.6), 36.0f), 0.6f * tablet.half[2]);
+  // Wedges shallower than some 7 voxels do not survive: PSF, resampling and denoising take 1.2 voxels from a tip.
+  line_pitch_ = std::min(std::max(mm(3.6), 56.0f), 0.6f * tablet.half[2]);
+  tip_rounding_ = std::min(std::max(mm(0.08), 4.0f), 0.07f * line_pitch_);
   p_.rim_rounding_ = std::max(mm(0.05), 1.0f);
   p_.join_rounding_ = std::max(mm(0.04), 1.0f);
 }

@@ -38,7 +38,7 @@ class PhantomBuilder {
   std::uint64_t seed() const { return p_.options_.seed; }
 
   Phantom& p_;
-  float line_pitch_ = 0.0f;
+  float line_pitch_ = 0.0f, tip_rounding_ = 1.0f;
   std::vector<Ball> tablet_balls_, outer_balls_;
   int signs_ = 0;
 };

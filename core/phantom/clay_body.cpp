@@ -77,8 +77,8 @@ Dual ClayBody::decorate(const Point& point, const Dual& slab, const Faces& faces
   const SideFrame& frame = kSideFrames[side];
   const Dual right = coordinate(point, frame.right), up = coordinate(point, frame.up);
   Dual decor;
-  const Ruling& ruling = rulings[side];
-  if (ruling.count > 0 && std::abs(right.v) < ruling.half_length) {
+  for (const Ruling& ruling : rulings[side]) {
+    if (std::abs(right.v) >= ruling.half_length) continue;
     const float line = std::round((up.v - ruling.first) / ruling.pitch);
     const float k = std::clamp(line, 0.0f, static_cast<float>(ruling.count - 1));
     // No hand rules a straight line: each bends a little, differently.

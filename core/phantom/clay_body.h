@@ -55,14 +55,14 @@ struct ClayBody {
     float radius2, depth;
   };
   std::vector<FingerMark> finger_marks;
-  std::array<Ruling, kSides> rulings{};
+  std::array<std::vector<Ruling>, kSides> rulings;
   float ruling_depth = 0.0f, ruling_half_width = 1.0f;
   std::array<std::vector<SealBand>, kSides> bands;
   const SealRelief* seal = nullptr;
   float voxels_per_mm = 1.0f;
   float band_depth = 0.0f;
 
-  /// The slab before anybody wrote on it: metric to first order after division by its gradient (within 1 of 15 %).
+  /// The slab before anybody wrote on it: metric to first order after division by its gradient.
   Dual smooth(const Point& point) const { return evaluate(point, nullptr, 0.0f); }
   /// The slab, and in `decor` what ruling (+) and sealing (-) take from it: the surface is smooth + decor = 0. `decor`
   /// is left as it is farther than `range` from the slab's surface.

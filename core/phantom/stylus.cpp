@@ -7,16 +7,16 @@ WedgeSize stylus_wedge(float head_half_width, float tail_length, float rounding)
   size.head_half_width = head_half_width;
   size.rounding = rounding;
   if (tail_length > 0.0f) {
-    size.head_back = 0.55f * head_half_width;
+    size.head_back = 0.62f * head_half_width;
     size.head_front = 1.65f * head_half_width;
-    size.depth = 0.95f * head_half_width;
+    size.depth = 1.15f * head_half_width;
     size.tail_length = std::max(tail_length, 2.2f * head_half_width);
-    size.tail_half_width = 0.42f * head_half_width;
-    size.tail_depth = 0.60f * head_half_width;
+    size.tail_half_width = 0.46f * head_half_width;
+    size.tail_depth = 0.68f * head_half_width;
   } else {
     size.head_back = 0.75f * head_half_width;
     size.head_front = 1.25f * head_half_width;
-    size.depth = 0.95f * head_half_width;
+    size.depth = 1.10f * head_half_width;
   }
   return size;
 }

@@ -67,8 +67,8 @@ void PhantomBuilder::write_block(Owner owner, const TextBlock& block) {
   Random random(seed(), 0x100 + 16 * static_cast<std::uint64_t>(owner) + static_cast<std::uint64_t>(block.side) +
                             1000 * static_cast<std::uint64_t>(signs_));
   const float pitch = line_pitch_, sign_height = kSignHeight * pitch;
-  Ruling& ruling = body.rulings[static_cast<std::size_t>(block.side)];
-  if (ruling.count == 0) ruling = {block.top - static_cast<float>(block.lines) * pitch, pitch, block.lines + 1, block.half_length};
+  body.rulings[static_cast<std::size_t>(block.side)].push_back(
+      {block.top - static_cast<float>(block.lines) * pitch, pitch, block.lines + 1, block.half_length});
   for (int line = 0; line < block.lines; ++line) {
     if (random.uniform() >= block.fill) continue;
     const float base = block.top - static_cast<float>(line + 1) * pitch + kBaseLine * pitch;
@@ -91,12 +91,12 @@ void PhantomBuilder::press(Owner owner, Side side, float right, float up, const 
   const Dual surface = body.smooth(point);
   if (std::abs(surface.v) > 0.05f) return;  // past the edge of the clay
   const Float4 normal = unit(surface.g);
-  if (frame.normal.sign * normal[frame.normal.axis] < 0.6f) return;  // too far round the edge for this side
+  if (frame.normal.sign * normal[frame.normal.axis] < 0.72f) return;  // too far round the edge for this side
   Float4 along{};
   along[frame.right.axis] += frame.right.sign * stroke.tail_x;
   along[frame.up.axis] += frame.up.sign * stroke.tail_y;
   along = unit(along - normal * dot(along, normal));
-  const WedgeSize size = stylus_wedge(stroke.head * sign_height, stroke.length * sign_height, p_.rim_rounding_);
+  const WedgeSize size = stylus_wedge(stroke.head * sign_height, stroke.length * sign_height, tip_rounding_);
 
   auto& impressions = owner == Owner::kTablet ? p_.tablet_wedges_ : p_.outer_wedges_;
   auto& balls = owner == Owner::kTablet ? tablet_balls_ : outer_balls_;

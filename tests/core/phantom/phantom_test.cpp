@@ -137,10 +137,10 @@ TEST(PhantomModel, WedgeTableHoldsTheDepthOfTheClay) {
     // The deepest point is on the surface of the unwrapped tablet, and there is air above it.
     EXPECT_NEAR(phantom->tablet_distance(w.position - w.depth * w.outward), 0.0, 0.05);
     EXPECT_GT(phantom->tablet_distance(w.position - 0.6 * w.depth * w.outward), 0.0);
-    EXPECT_GT(w.depth, 2.0);
+    EXPECT_GT(w.depth, 4.0);
   }
   EXPECT_EQ(sides.size(), 6u);
-  EXPECT_GT(wedges, 600);
+  EXPECT_GT(wedges, 300);
   EXPECT_GT(open, wedges / 2);
 }
 
