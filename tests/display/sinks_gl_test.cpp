@@ -16,6 +16,7 @@
 #include "display/sinks/interlaced.h"
 #include "display/sinks/packed.h"
 #include "display/sinks/quilt.h"
+#include "display/weave.h"
 #include "tests/display/test_meshes.h"
 
 namespace dubsar {
@@ -122,6 +123,78 @@ TEST_F(SinksGl, QuiltsEqualTheReference) {
     const QuiltLayout layout{traits.views == 6 ? 3 : 5, traits.views == 6 ? 2 : 9, traits.output.width, traits.output.height};
     EXPECT_EQ(compose(*sink, views).pixels, make_quilt(views, layout).pixels) << spec;
   }
+}
+
+/// Share of subpixels that differ by more than a rounding step.
+double differing(const Image& a, const Image& b) {
+  EXPECT_EQ(a.pixels.size(), b.pixels.size());
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) differ += std::abs(a.pixels[i] - b.pixels[i]) > 1;
+  return static_cast<double>(differ) / static_cast<double>(a.pixels.size());
+}
+
+TEST_F(SinksGl, LensWeavesEqualTheReference) {
+  // Nearest views of noise: a subpixel that shows another view has another colour.
+  const auto profiles = load_profiles({}).value();
+  for (const char* name : {"looking-glass-portrait", "looking-glass-16-gen3-portrait", "lens-sheet-24-5-views"})
+    for (const char* filter : {"nearest", "linear", "gaussian3"}) {
+      if (std::string_view(name).find("gen3") != std::string_view::npos && filter != std::string_view("nearest")) continue;
+      const PanelProfile profile = find_profile(profiles, name).value();
+      auto sink = make_sink(std::string("lenticular:") + name + "," + filter).value();
+      // A window at the panel's far corner: the largest phases, and the panel's coordinates must count.
+      const Screen screen{.width_px = profile.width_px, .height_px = profile.height_px, .window_x = profile.width_px - 96,
+                          .window_y = 8, .window_w = 96, .window_h = 64};
+      ASSERT_TRUE(sink->configure(screen));
+      SinkTraits traits = sink->traits();
+      ASSERT_EQ(traits.output, (PixelSize{96, 64}));
+      std::vector<Image> views;  // one colour a view: sampling does not matter, the choice of the view does
+      for (int i = 0; i < traits.views; ++i) {
+        Image image(traits.view.width, traits.view.height, 4);
+        for (std::size_t j = 0; j < image.pixels.size(); ++j)
+          image.pixels[j] = static_cast<std::uint8_t>(j % 4 == 3 ? 255 : (i * 89 + 31 * (j % 4)) % 256);
+        views.push_back(std::move(image));
+      }
+      const Image out = compose(*sink, views);
+      const LensSheet sheet = lens_sheet(*profile.sheet);
+      Image expected(96, 64, 3);
+      const ViewFilter mode = std::string_view(filter) == "nearest"  ? ViewFilter::kNearest
+                              : std::string_view(filter) == "linear" ? ViewFilter::kLinear
+                                                                     : ViewFilter::kGaussian3;
+      for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 96; ++x)
+          for (int k = 0; k < 3; ++k) {
+            const double place = lens_position(sheet, profile.width_px - 96 + x, profile.height_px - 1 - (8 + y), k);
+            double sum = 0;
+            for (const auto& [view, weight] : view_weights(place, traits.views, mode)) sum += weight * views[view].at(0, 0)[k];
+            expected.at(x, y)[k] = static_cast<std::uint8_t>(std::lround(sum));
+          }
+      EXPECT_LE(differing(out, expected), 0.0005) << name << " " << filter;
+    }
+}
+
+TEST_F(SinksGl, WholePanelWeaveEqualsTheReferenceOnNoise) {
+  auto sink = make_sink("lenticular:lens-sheet-24-5-views,linear").value();
+  ASSERT_TRUE(sink->configure({}));
+  const auto profile = find_profile(load_profiles({}).value(), "lens-sheet-24-5-views").value();
+  const auto views = noise(sink->traits());
+  EXPECT_LE(differing(compose(*sink, views), weave_views(views, lens_sheet(*profile.sheet))), 0.0005);
+}
+
+TEST_F(SinksGl, TrackedWeaveEqualsTheReference) {
+  const auto profile = find_profile(load_profiles({}).value(), "spatiallabs-15.6").value();
+  auto sink = make_sink("lenticular:spatiallabs-15.6").value();
+  ASSERT_TRUE(sink->configure({}));
+  const SinkTraits traits = sink->traits();
+  Image white(traits.view.width, traits.view.height, 4), black = white;
+  std::fill(white.pixels.begin(), white.pixels.end(), std::uint8_t{255});
+  Viewer viewer;
+  viewer.left_mm = {88.5, 60, 500};
+  viewer.right_mm = {151.5, 55, 510};
+  sink->views(viewer);
+  const Image out = compose(*sink, {white, black});
+  const TrackedPanel panel = panel_optics(profile, profile.design_distance_mm).value();
+  const Image expected = weave_tracked(white, black, panel, {viewer.left_mm, viewer.right_mm});
+  EXPECT_LE(differing(out, expected), 0.0005);
 }
 
 TEST_F(SinksGl, ImageWritesNumberedFilesAndNullDrawsNothing) {

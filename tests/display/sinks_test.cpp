@@ -29,7 +29,9 @@ TEST(SinkRegistry, EverySinkIsMadeByItsNameAndAsksForWhatItSays) {
   std::set<std::string_view> names;
   for (const SinkBackend& backend : output_sinks()) {
     names.insert(backend.name);
-    const std::string spec = std::string(backend.name) + (backend.name == "image" ? ":path=/nowhere/a.png" : "");
+    const std::string spec = std::string(backend.name) + (backend.name == "image"        ? ":path=/nowhere/a.png"
+                                                          : backend.name == "lenticular" ? ":spatiallabs-15.6"
+                                                                                         : "");
     auto sink = make_sink(spec);
     ASSERT_TRUE(sink) << sink.error().message;
     Screen screen{.window_x = 5, .window_y = 7, .window_w = 64, .window_h = 48};
@@ -49,7 +51,8 @@ TEST(SinkRegistry, WrongNamesAndOptionsAreUsageErrorsThatSayWhatThereIs) {
   for (const char* bad : {"", "hologram", "mono:half", "side_by_side:frame_packing", "side_by_side:half,full",
                           "top_bottom:frame_packing,right_first", "interlaced:diagonal", "interlaced:rows=1", "anaglyph:pink",
                           "anaglyph:red_cyan_full,red_cyan_half", "quilt:no-such-panel", "quilt:columns=0", "quilt:columns=2.5",
-                          "quilt:columns=x", "quilt:width=40,columns=8", "image", "image:path=a.jpg", "image:path=a%%.png"}) {
+                          "quilt:columns=x", "quilt:width=40,columns=8", "image", "image:path=a.jpg", "image:path=a%%.png",
+                          "lenticular", "lenticular:no-such-panel", "lenticular:spatiallabs-15.6,blurred"}) {
     const auto sink = make_sink(bad);
     ASSERT_FALSE(sink) << bad;
     EXPECT_EQ(sink.error().kind, ErrorKind::kUsage) << bad;

@@ -1,0 +1,200 @@
+#include "display/sinks/lenticular.h"
+
+#include <array>
+#include <cmath>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/vec2.hpp>
+#include <numbers>
+#include <vector>
+
+#include "core/base/atomic_file.h"
+#include "display/compose_pass.h"
+#include "display/panel_profile.h"
+#include "display/sinks/sink_options.h"
+
+namespace dubsar {
+namespace {
+
+// shaders/lens_views.frag and shaders/lens_tracked.frag
+constexpr GLint kWindow = 0;
+constexpr GLint kSteps = 1, kStart = 2, kMode = 3, kSigma = 4, kCells = 5, kOffsets = 6;
+constexpr GLint kPanelPx = 1, kPixelMm = 2, kLens = 3, kPhase0 = 4, kEyes = 5, kTrackedOffsets = 7;
+constexpr std::size_t kMaxCells = 10;
+constexpr int kCoarseBits = 11;       // times a pixel number below 8192: 24 bits, exact in a float
+constexpr double kFieldOfViewDeg = 14.0;
+constexpr std::int64_t kMaxCalibrationBytes = 64 << 10;
+
+/// The panel's own screen: the given window when it is on such a panel, else all of it.
+Screen panel_screen(const PanelProfile& profile, const Screen& given) {
+  const bool same = given.width_px == profile.width_px && given.height_px == profile.height_px;
+  Screen screen = given;
+  screen.width_mm = profile.width_mm;
+  screen.height_mm = profile.height_mm();
+  screen.width_px = profile.width_px;
+  screen.height_px = profile.height_px;
+  if (!same) {
+    screen.window_x = screen.window_y = 0;
+    screen.window_w = profile.width_px;
+    screen.window_h = profile.height_px;
+  }
+  return screen;
+}
+
+void set_window(const Screen& s) {
+  glUniform4i(kWindow, s.window_x, s.height_px - s.window_y - s.window_h, s.window_w, s.window_h);
+}
+
+std::vector<glm::vec2> flat_offsets(const SubpixelLayout& layout) {
+  std::vector<glm::vec2> offsets;
+  for (const SubpixelCell& cell : layout.cells)
+    for (const glm::dvec2& offset : cell.offset_px) offsets.emplace_back(offset);
+  return offsets;
+}
+
+class ViewsSink : public OutputSink {
+ public:
+  ViewsSink(PanelProfile profile, ViewFilter filter)
+      : profile_(std::move(profile)), sheet_(lens_sheet(*profile_.sheet)), filter_(filter), screen_(panel_screen(profile_, {})) {}
+
+  SinkTraits traits() const noexcept override {
+    const PixelSize window{screen_.window_w, screen_.window_h};
+    const PixelSize tile{profile_.quilt.views() > 0 ? profile_.quilt.tile_width() : window.width,
+                         profile_.quilt.views() > 0 ? profile_.quilt.tile_height() : window.height};
+    return {.name = "lenticular", .views = profile_.views, .view = tile, .output = window, .exact_pixels = true};
+  }
+  Result<void> configure(const Screen& screen) override {
+    DUBSAR_TRY(check_screen(screen));
+    screen_ = panel_screen(profile_, screen);
+    return {};
+  }
+  std::span<const View> views(const Viewer& viewer) override {
+    const double distance = profile_.design_distance_mm > 0
+                                ? profile_.design_distance_mm
+                                : profile_.height_mm() / 2 / std::tan(kFieldOfViewDeg * std::numbers::pi / 360);
+    views_.clear();
+    for (const glm::dvec3& eye : cone_eyes(profile_.views, profile_.view_cone_deg * std::numbers::pi / 180, distance))
+      views_.push_back(viewer_view(screen_.window_rect(), viewer, eye));
+    return views_;
+  }
+  Result<void> compose(const ViewArray& views, const Surface& target) override {
+    const double right = sheet_.periods / sheet_.width_px, up = sheet_.periods * sheet_.tilt / sheet_.height_px;
+    const double start = 0.5 * right + 0.5 * up - sheet_.centre;
+    DUBSAR_TRY(pass_.begin(target, views.coded()));
+    set_window(screen_);
+    glUniform4f(kSteps, coarse(right), static_cast<float>(right - coarse(right)), coarse(up),
+                static_cast<float>(up - coarse(up)));
+    glUniform1f(kStart, static_cast<float>(start - std::floor(start)));
+    glUniform4i(kMode, profile_.views, static_cast<int>(filter_), sheet_.invert_views ? 1 : 0,
+                static_cast<int>(sheet_.subpixels.pattern));
+    glUniform1f(kSigma, static_cast<float>(WeaveOptions().gaussian_sigma * profile_.views));
+    const auto offsets = flat_offsets(sheet_.subpixels);
+    glUniform1i(kCells, static_cast<int>(sheet_.subpixels.cells.size()));
+    glUniform2fv(kOffsets, static_cast<GLsizei>(offsets.size()), glm::value_ptr(offsets[0]));
+    return pass_.draw();
+  }
+
+ private:
+  /// The leading bits of a step.
+  static float coarse(double step) {
+    int exponent = 0;
+    const double mantissa = std::frexp(step, &exponent);
+    return static_cast<float>(std::ldexp(std::round(std::ldexp(mantissa, kCoarseBits)), exponent - kCoarseBits));
+  }
+
+  PanelProfile profile_;
+  LensSheet sheet_;
+  ViewFilter filter_;
+  Screen screen_;
+  std::vector<View> views_;
+  ComposePass pass_{"lens_views.frag"};
+};
+
+class TrackedSink : public OutputSink {
+ public:
+  TrackedSink(PanelProfile profile, const TrackedPanel& panel)
+      : profile_(std::move(profile)), panel_(panel), screen_(panel_screen(profile_, {})) {}
+
+  SinkTraits traits() const noexcept override {
+    const PixelSize window{screen_.window_w, screen_.window_h};
+    // A lens shows each eye about half of the subpixels: half the panel's width is enough.
+    return {.name = "lenticular",
+            .views = 2,
+            .view = {(window.width + 1) / 2, window.height},
+            .output = window,
+            .tracked = true,
+            .exact_pixels = true};
+  }
+  Result<void> configure(const Screen& screen) override {
+    DUBSAR_TRY(check_screen(screen));
+    screen_ = panel_screen(profile_, screen);
+    return {};
+  }
+  std::span<const View> views(const Viewer& viewer) override {
+    eyes_ = {glm::vec3(viewer.left_mm), glm::vec3(viewer.right_mm)};  // light goes to the true eyes, whatever the factors
+    return views_ = stereo_views(screen_, viewer);
+  }
+  Result<void> compose(const ViewArray& views, const Surface& target) override {
+    const LensOptics& lens = panel_.lens;
+    DUBSAR_TRY(pass_.begin(target, views.coded()));
+    set_window(screen_);
+    glUniform2i(kPanelPx, panel_.width_px, panel_.height_px);
+    glUniform2f(kPixelMm, static_cast<float>(lens.pixel_mm.x), static_cast<float>(lens.pixel_mm.y));
+    glUniform4f(kLens, static_cast<float>(lens.pitch_mm), static_cast<float>(lens.tan_slant),
+                static_cast<float>(lens.reduced_gap_mm),
+                static_cast<float>(1.0 - 1.0 / (lens.refractive_index * lens.refractive_index)));
+    glUniform1f(kPhase0, static_cast<float>(lens.phase0));
+    glUniform3fv(kEyes, 2, glm::value_ptr(eyes_[0]));
+    const auto offsets = flat_offsets(panel_.subpixels);
+    glUniform2fv(kTrackedOffsets, 3, glm::value_ptr(offsets[0]));
+    return pass_.draw();
+  }
+
+ private:
+  PanelProfile profile_;
+  TrackedPanel panel_;
+  Screen screen_;
+  std::array<View, 2> views_;
+  std::array<glm::vec3, 2> eyes_{glm::vec3(Viewer().left_mm), glm::vec3(Viewer().right_mm)};
+  ComposePass pass_{"lens_tracked.frag"};
+};
+
+}  // namespace
+
+Result<std::unique_ptr<OutputSink>> make_lenticular_sink(const SinkConfig& given) {
+  constexpr std::string_view kKnown = "a panel profile or calibration=FILE, and nearest, linear, gaussian3 or gaussian10";
+  SinkConfig config = given;
+  constexpr std::array<ViewFilter, 4> kFilters{ViewFilter::kLinear, ViewFilter::kNearest, ViewFilter::kGaussian3,
+                                               ViewFilter::kGaussian10};
+  const auto filter = kFilters[static_cast<std::size_t>(take_choice(config, {"linear", "nearest", "gaussian3", "gaussian10"}))];
+  if (config.options.empty()) return fail(ErrorKind::kUsage, "display lenticular: no panel was named, expected {}", kKnown);
+  DUBSAR_ASSIGN(const auto profiles, load_profiles(config.profile_folder));
+  const auto [key, value] = config.options.front();
+  config.options.erase(config.options.begin());
+  PanelProfile profile;
+  if (key == "calibration") {
+    DUBSAR_ASSIGN(const std::string text, read_text_file(value, kMaxCalibrationBytes));
+    DUBSAR_ASSIGN(const Calibration calibration, parse_calibration(text, value));
+    DUBSAR_ASSIGN(profile, calibrated_profile(profiles, calibration));
+  } else {
+    DUBSAR_ASSIGN(profile, find_profile(profiles, key));
+    if (!value.empty()) config.options.insert(config.options.begin(), {key, value});
+  }
+  DUBSAR_TRY(expect_no_more(config, "lenticular", kKnown));
+  if (profile.kind == PanelKind::kTracked) {
+    DUBSAR_ASSIGN(const TrackedPanel panel, panel_optics(profile, profile.design_distance_mm));
+    if (panel.subpixels.cells.size() != 1)
+      return fail(ErrorKind::kConfig, "display lenticular: panel {} has {} subpixel cells, expected 1 for tracked eyes",
+                  profile.name, panel.subpixels.cells.size());
+    return std::make_unique<TrackedSink>(std::move(profile), panel);
+  }
+  if (!profile.sheet)
+    return fail(ErrorKind::kConfig, "display lenticular: no lens figures of panel {} are known, expected calibration=FILE",
+                profile.name);
+  if (profile.sheet->cells.size() > kMaxCells)
+    return fail(ErrorKind::kConfig, "display lenticular: {} subpixel cells found, expected at most {}",
+                profile.sheet->cells.size(), kMaxCells);
+  if (profile.quilt.views() > 0) profile.views = profile.quilt.views();
+  return std::make_unique<ViewsSink>(std::move(profile), filter);
+}
+
+}  // namespace dubsar

@@ -1,0 +1,14 @@
+#pragma once
+// Panels with a lens sheet: N views (Looking Glass and generic sheets), or two views woven for tracked eyes. The maths
+// and the CPU references are in display/lens.h and display/weave.h.
+
+#include "display/output_sink.h"
+
+namespace dubsar {
+
+/// Options: PROFILE (a panel's name), nearest, linear (default), gaussian3 or gaussian10, calibration=FILE (a Looking
+/// Glass unit's visual.json, instead of PROFILE). The window counts when the screen has the panel's pixels, else the
+/// picture is that of the whole panel.
+Result<std::unique_ptr<OutputSink>> make_lenticular_sink(const SinkConfig& config);
+
+}  // namespace dubsar
