@@ -82,12 +82,32 @@ class HoleFiller {
     return edges;
   }
 
+  /// Mean normal of the part's faces within some rings of a face: the very rim is rounded.
+  glm::vec3 normal_behind(std::uint32_t face) const {
+    constexpr std::size_t kMostFaces = 60;  // about 4 rings on one side of a border
+    std::vector<std::uint32_t> queue{face};
+    glm::vec3 sum(0.0f);
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+      const std::uint32_t f = queue[i];
+      sum += graph_.area[f] * graph_.normal[f];
+      for (std::uint32_t s = graph_.first_side[f]; s < graph_.first_side[f + 1] && queue.size() < kMostFaces;
+           ++s) {
+        const std::uint32_t g = graph_.neighbour[s];
+        if (g == FaceGraph::kNone || group_[model_.quad_partition[g]] != group_[model_.quad_partition[face]])
+          continue;
+        if (std::find(queue.begin(), queue.end(), g) == queue.end()) queue.push_back(g);
+      }
+    }
+    const float length = glm::length(sum);
+    return length > 0.0f ? sum / length : glm::vec3(0.0f);
+  }
+
   /// A hole is walked against the sense of the part's border, so that the patch continues the surface.
   Task make_task(const std::vector<BorderEdge>& edges, const std::vector<std::uint32_t>& loop) const {
     Task task;
     for (auto e = loop.rbegin(); e != loop.rend(); ++e) {
       task.vertices.push_back(edges[*e].to);
-      task.rim_normals.push_back(edges[*e].face == kNoFace ? glm::vec3(0.0f) : graph_.normal[edges[*e].face]);
+      task.rim_normals.push_back(edges[*e].face == kNoFace ? glm::vec3(0.0f) : normal_behind(edges[*e].face));
     }
     for (const glm::vec3& normal : task.rim_normals)
       if (normal == glm::vec3(0.0f)) {

@@ -171,6 +171,7 @@ Result<LoopFill> fill_loop(const Loop& loop, const LoopFillOptions& options, Pro
     Patch patch(loop, std::move(fill.triangles), std::move(fill.added));
     DUBSAR_TRY(patch.refine(options.growth, progress));
     DUBSAR_TRY(patch.relax(options.fairing_steps, progress));
+    DUBSAR_TRY(patch.continue_surface(options.fairing_steps, progress));
     std::move(patch).release(fill.triangles, fill.added);
   }
   const auto at = [&](std::uint32_t v) { return v < n ? loop.positions[v] : fill.added[v - n]; };

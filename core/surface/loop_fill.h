@@ -21,16 +21,17 @@ enum class LoopWeight {
 
 struct LoopFillOptions {
   LoopWeight weight = LoopWeight::kDihedralThenArea;
-  int exact_limit = 256;    ///< loops with more vertices are first cut down to a coarse loop of this many
-  bool refine = true;       ///< add vertices inside (Liepa section 4) ...
-  float growth = 1.15f;     ///< ... whose spacing grows by this factor with every generation
-  int fairing_steps = 200;  ///< at most, of relaxation to a membrane; 0: none
+  int exact_limit = 256;  ///< loops with more vertices are first cut down to a coarse loop of this many
+  bool refine = true;     ///< add vertices inside (Liepa section 4) ...
+  float growth = 1.15f;   ///< ... whose spacing grows by this factor with every generation
+  int fairing_steps =
+      200;  ///< at most, of each relaxation: to a membrane, then along the rim's normals; 0: none
 };
 
 struct Loop {
-  std::vector<glm::vec3> positions;  ///< triangles will run along positions[i] -> positions[i + 1]
-  std::vector<glm::vec3>
-      rim_normals;  ///< unit normal of the surface beyond edge i -> i + 1; empty: not known
+  std::vector<glm::vec3> positions;    ///< triangles will run along positions[i] -> positions[i + 1]
+  std::vector<glm::vec3> rim_normals;  ///< unit normal of the surface beyond edge i -> i + 1, which the fill
+                                       ///< should continue; empty: not known
   /// True when an edge between two loop vertices that are not neighbours in the loop exists elsewhere in the
   /// mesh and must not be made again. Empty: none does.
   std::function<bool(std::uint32_t, std::uint32_t)> forbidden;

@@ -11,6 +11,11 @@ constexpr int kMostRounds = 24;                 // each round can double the den
 constexpr std::size_t kMostVertices = 400'000;  // a bound for absurd loops
 constexpr float kDensity = 1.41421356f;         // Liepa's alpha
 
+glm::vec3 unit(const glm::vec3& v) {
+  const float length = glm::length(v);
+  return length > 1e-12f ? v / length : glm::vec3(0.0f);
+}
+
 float angle_between(const glm::vec3& a, const glm::vec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
@@ -136,15 +141,71 @@ Result<void> Patch::refine(float growth, Progress& progress) {
   return {};
 }
 
+/// Of each added vertex, its neighbours in no particular order.
+std::vector<std::vector<std::uint32_t>> Patch::inner_neighbours() const {
+  std::vector<std::vector<std::uint32_t>> neighbours(positions_.size() - rim_);
+  for (const Triangle& t : triangles_)
+    for (std::size_t i = 0; i < 3;
+         ++i)  // the next corner of every triangle around a vertex gives each neighbour once
+      if (t[i] >= rim_) neighbours[t[i] - rim_].push_back(t[(i + 1) % 3]);
+  return neighbours;
+}
+
+Result<void> Patch::continue_surface(int steps, Progress& progress) {
+  constexpr float kOverRelaxation = 1.6f, kRest = 1e-4f;
+  const std::size_t inner = positions_.size() - rim_;
+  if (inner == 0 || loop_.rim_normals.size() != rim_) return {};
+  const auto neighbours = inner_neighbours();
+  std::vector<glm::vec3> normals(positions_.size(), glm::vec3(0.0f));
+  glm::vec3 mean_normal(0.0f);
+  for (std::uint32_t i = 0; i < rim_; ++i) {
+    normals[i] = unit(loop_.rim_normals[i] + loop_.rim_normals[(i + rim_ - 1) % rim_]);
+    mean_normal += normals[i];
+  }
+  for (std::size_t i = rim_; i < normals.size(); ++i) normals[i] = mean_normal / static_cast<float>(rim_);
+  for (int step = 0; step < steps; ++step) {
+    if (progress.cancelled()) return cancelled_error();
+    float largest = 0.0f;
+    for (std::size_t i = 0; i < inner; ++i) {
+      glm::vec3 mean(0.0f);
+      for (const std::uint32_t v : neighbours[i]) mean += normals[v];
+      const glm::vec3 move =
+          kOverRelaxation * (mean / static_cast<float>(neighbours[i].size()) - normals[rim_ + i]);
+      normals[rim_ + i] += move;
+      largest = std::max(largest, glm::length(move));
+    }
+    if (largest < kRest) break;
+  }
+  for (glm::vec3& n : normals) n = unit(n);
+  for (int step = 0; step < steps; ++step) {
+    if (progress.cancelled()) return cancelled_error();
+    float largest = 0.0f;
+    for (std::size_t i = 0; i < inner; ++i) {
+      const glm::vec3 here = positions_[rim_ + i], normal = normals[rim_ + i];
+      glm::vec3 mean(0.0f);
+      float rise = 0.0f;
+      for (const std::uint32_t v : neighbours[i]) {
+        const glm::vec3 edge = positions_[v] - here;
+        mean += edge;
+        rise += glm::dot(edge, unit(normal + normals[v]));
+      }
+      const auto count = static_cast<float>(neighbours[i].size());
+      mean /= count;
+      const glm::vec3 move =
+          kOverRelaxation * rise / count * normal + 0.5f * (mean - normal * glm::dot(mean, normal));
+      positions_[rim_ + i] += move;
+      largest = std::max(largest, glm::length(move));
+    }
+    if (largest < kRest) break;
+  }
+  return {};
+}
+
 Result<void> Patch::relax(int steps, Progress& progress) {
   constexpr float kRest = 1e-4f, kOverRelaxation = 1.5f;
   const std::size_t inner = positions_.size() - rim_;
   if (inner == 0) return {};
-  std::vector<std::vector<std::uint32_t>> neighbours(inner);
-  for (const Triangle& t : triangles_)
-    for (std::size_t i = 0; i < 3;
-         ++i)  // the next corner of every triangle around a vertex: each neighbour once
-      if (t[i] >= rim_) neighbours[t[i] - rim_].push_back(t[(i + 1) % 3]);
+  const auto neighbours = inner_neighbours();
   for (int step = 0; step < steps; ++step) {
     if (progress.cancelled()) return cancelled_error();
     float largest = 0.0f;

@@ -26,6 +26,11 @@ class Patch {
   /// Moves added vertices to the mean of their neighbours until they rest (a membrane spanned by the loop).
   Result<void> relax(int steps, Progress& progress);
 
+  /// Bends the membrane so that it continues the surface beyond the rim: normals are interpolated
+  /// harmonically from the rim, then vertices move along them until edges lie across them. Without rim
+  /// normals nothing happens.
+  Result<void> continue_surface(int steps, Progress& progress);
+
   void release(std::vector<Triangle>& triangles, std::vector<glm::vec3>& added) &&;
 
  private:
@@ -33,6 +38,7 @@ class Patch {
   static std::uint64_t key(std::uint32_t a, std::uint32_t b) {
     return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
   }
+  std::vector<std::vector<std::uint32_t>> inner_neighbours() const;
   bool split(std::uint32_t triangle, float growth);
   bool flip_if_better(std::uint32_t triangle, std::size_t side);
   bool may_join(std::uint32_t a, std::uint32_t b) const;

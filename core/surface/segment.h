@@ -20,7 +20,8 @@ enum class SegmentMethod {
 
 struct SegmentOptions {
   SegmentMethod method = SegmentMethod::kNested;
-  float concavity = -0.3f;        ///< kConcavity: cut at k_min below this, per grid step
+  float concavity =
+      -0.2f;  ///< kConcavity: cut at k_min below this, per grid step; -0.1 to -0.3 work on phantoms
   int dilate_rings = 1;           ///< kConcavity: rings of vertices added to the cut; 0 leaks (design note)
   int largest_crack_radius = 8;   ///< widest crack in the envelope that can be closed is 2 r + 1 grid steps
   double smallest_area = 0.001;   ///< pieces below this share of the whole area are merged

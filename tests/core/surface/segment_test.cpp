@@ -28,7 +28,8 @@ struct Quality {
   double worst() const { return std::min({tablet_purity, tablet_recall, envelope_purity, envelope_recall}); }
 };
 
-/// Area-weighted by vertices of x-quads, pores left out.
+/// Counts x-quads on one of the three true surfaces: rims of contacts and walls of pores and cracks belong to
+/// none.
 Quality judge(const SurfaceModel& model, const Nested& scene) {
   double table[2][2] = {};
   for (std::uint32_t q = 0; q < model.mesh.quads.size(); ++q) {
@@ -36,6 +37,8 @@ Quality judge(const SurfaceModel& model, const Nested& scene) {
     for (const std::uint32_t v : model.mesh.quads[q]) c += 0.25f * model.mesh.positions[v];
     const std::string& part = model.partitions[model.quad_partition[q]].part;
     if (part != "tablet" && part != "envelope") continue;
+    if (std::min({std::abs(scene.tablet(c)), std::abs(scene.shell(c)), std::abs(scene.hollow(c))}) > 0.6f)
+      continue;
     ++table[scene.truth(c) == 0][part == "tablet"];
   }
   return {table[1][1] / (table[1][1] + table[0][1]), table[1][1] / (table[1][1] + table[1][0]),
