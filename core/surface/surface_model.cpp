@@ -343,7 +343,8 @@ void fill_attributes(const SurfaceModel& model, const Soup& soup, const Numberin
 }
 
 /// One TriMesh from triangles that were made before, so that several selections share the triangulation.
-Result<TriMesh> assemble(const SurfaceModel& model, Triangulation triangulation, const MeshOptions& options) {
+Result<TriMesh> assemble(const SurfaceModel& model, Triangulation triangulation, const MeshOptions& options,
+                         std::vector<std::uint32_t>* source = nullptr) {
   DUBSAR_ASSIGN(const Selection selection, select(model, options));
   Soup soup;
   add_quads(model, selection, std::move(triangulation), soup);
@@ -370,6 +371,11 @@ Result<TriMesh> assemble(const SurfaceModel& model, Triangulation triangulation,
       out.partition[v] = std::min(out.partition[v], soup.partition[t]);
     }
   out.triangles = std::move(soup.triangles);
+  if (source != nullptr) {
+    *source = numbering.source;
+    for (std::uint32_t& v : *source)
+      if (v >= model.mesh.positions.size()) v = kNoSource;
+  }
   out.frame = model.frame;
   for (const Partition& partition : model.partitions)
     if (selection.group[static_cast<std::size_t>(partition.id)] != kNotSelected)
@@ -380,9 +386,10 @@ Result<TriMesh> assemble(const SurfaceModel& model, Triangulation triangulation,
 
 }  // namespace
 
-Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& options) {
+Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& options,
+                              std::vector<std::uint32_t>* source) {
   DUBSAR_TRY(check_model(model));
-  return assemble(model, triangulate(model.mesh, model.attributes.normals), options);
+  return assemble(model, triangulate(model.mesh, model.attributes.normals), options, source);
 }
 
 Result<void> measure_partitions(SurfaceModel& model) {

@@ -58,7 +58,11 @@ struct MeshOptions {
 /// fill patches and Steiner points add have averaged attributes; those of patches are flat. Deterministic.
 /// kUsage: no such partition or part. kBadData: arrays, partition ids or patches that contradict each other. kTryAgain:
 /// more than 2^31 vertices.
-Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& options = {});
+/// `source`, if given, receives the dual vertex that each mesh vertex is or copies; kNoSource for those that Steiner
+/// points and patches add.
+inline constexpr std::uint32_t kNoSource = 0xffffffff;
+Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& options = {},
+                              std::vector<std::uint32_t>* source = nullptr);
 
 /// Area, signed volume (mm, through the frame, which may be anisotropic) and watertightness of a closed or open mesh.
 struct MeshMeasure {

@@ -300,9 +300,7 @@ void layout_facts(hid_t dataset, hid_t creation, bool open_sources, Hdf5DatasetI
     char label[64] = "";
     const H5Z_filter_t id = H5Pget_filter2(creation, static_cast<unsigned int>(i), &flags, &values, nullptr,
                                            sizeof label, label, &config);
-    const PluginsAllowed plugins(Hdf5File::plugin_allowed(id));
-    const bool available = filter_built_in(id) || (Hdf5File::plugin_allowed(id) && H5Zfilter_avail(id) > 0);
-    info.filters.push_back({id, label, available});
+    info.filters.push_back({id, label, Hdf5File::filter_available(id)});
   }
   if (info.external.empty()) {
     info.storage_bytes = H5Dget_storage_size(dataset);
@@ -447,6 +445,12 @@ Result<void> Hdf5Dataset::read_chunk(const Hdf5Chunk& chunk, std::span<std::byte
 }
 
 // ------------------------------------------------------------------------------------------------------- Hdf5File
+
+bool Hdf5File::filter_available(int filter_id) {
+  const Library library;
+  const PluginsAllowed plugins(plugin_allowed(filter_id));
+  return filter_built_in(filter_id) || (plugin_allowed(filter_id) && H5Zfilter_avail(filter_id) > 0);
+}
 
 bool Hdf5File::plugin_allowed(int filter_id) noexcept {
   constexpr std::array<int, 6> kAllowed{307, 32000, 32001, 32004, 32008, 32013};

@@ -162,6 +162,8 @@ class Hdf5File {
   /// Filters that may be loaded from that folder: bzip2 307, lzf 32000, blosc 32001, lz4 32004, bitshuffle 32008,
   /// zfp 32013.
   static bool plugin_allowed(int filter_id) noexcept;
+  /// Built in, or found in the plug-in folder and allowed.
+  static bool filter_available(int filter_id);
 
  private:
   Hdf5File() = default;

@@ -228,4 +228,12 @@ Result<OpenedVolume> open_hdf5(const ImportOptions& options) {
   return opened;
 }
 
+std::vector<Hdf5FilterState> hdf5_filter_states() {
+  std::vector<Hdf5FilterState> states;
+  for (const FilterName& known : kFilterNames)
+    if (known.package != nullptr)
+      states.push_back({known.name, Hdf5File::filter_available(known.id), fmt::format("apt install {}", known.package)});
+  return states;
+}
+
 }  // namespace dubsar

@@ -1,6 +1,9 @@
 #pragma once
 // HDF5 volumes: search, checks before anything is read, and the fastest safe way to read.
 
+#include <string>
+#include <vector>
+
 #include "core/volume/import_options.h"
 #include "core/volume/voxel_reader.h"
 
@@ -12,5 +15,13 @@ namespace dubsar {
 /// never or only partly written, missing or unsafe filters, data in other files (unless options.allow_external holds
 /// them), sizes beyond the budget, damaged files.
 Result<OpenedVolume> open_hdf5(const ImportOptions& options);
+
+/// Compression filters that volumes may use, and how to get those that are missing.
+struct Hdf5FilterState {
+  std::string name;
+  bool available = false;
+  std::string remedy;  ///< e.g. "apt install hdf5-plugin-lzf"
+};
+std::vector<Hdf5FilterState> hdf5_filter_states();
 
 }  // namespace dubsar

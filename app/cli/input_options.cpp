@@ -1,0 +1,54 @@
+#include "app/cli/input_options.h"
+
+namespace dubsar::app {
+
+void add_input_options(CLI::App& command, InputOptionTexts& texts) {
+  auto* const group = command.add_option_group("Input");
+  group->add_option("--dataset", texts.dataset, "HDF5 path of the volume (also FILE:/path); default: found by itself");
+  group->add_option("--voxel-size", texts.voxel_size, "voxel size, e.g. 38um or 10um,10um,25um (x,y,z)");
+  group->add_option("--crop", texts.crop, "part of the volume, x0:x1,y0:y1,z0:z1; empty bounds are the borders");
+  group->add_option("--stride", texts.stride, "take every N-th voxel: N or NX,NY,NZ");
+  group->add_option("--dims", texts.dims, "raw file: size NXxNYxNZ");
+  group->add_option("--type", texts.type, "raw file: uint8, int16, float32, ...");
+  group->add_option("--endian", texts.endian, "raw file: little or big")->check(CLI::IsMember({"little", "big"}));
+  group->add_option("--skip", texts.skip, "raw file: bytes before the voxels")->check(CLI::NonNegativeNumber);
+  group->add_option("--allow-external", texts.allow_external,
+                    "folder in which the file may refer to other files (external links, virtual datasets)");
+  group->add_flag("--trust", texts.trust, "accept compression ratios above 250:1");
+  group->add_flag("--allow-sparse", texts.allow_sparse, "accept chunks that were never written");
+}
+
+Result<ImportOptions> parse_input_options(const std::string& path, const InputOptionTexts& texts) {
+  ImportOptions options;
+  options.path = path;
+  options.dataset = texts.dataset;
+  options.trust = texts.trust;
+  options.allow_sparse = texts.allow_sparse;
+  if (!texts.allow_external.empty()) options.allow_external = texts.allow_external;
+  if (!texts.crop.empty()) {
+    DUBSAR_ASSIGN(options.crop, parse_crop(texts.crop));
+  }
+  if (!texts.stride.empty()) {
+    DUBSAR_ASSIGN(options.stride, parse_stride(texts.stride));
+  }
+  if (!texts.voxel_size.empty()) {
+    DUBSAR_ASSIGN(options.voxel_size_mm, parse_voxel_size(texts.voxel_size));
+  }
+  if (texts.dims.empty() && texts.type.empty()) {
+    if (texts.skip > 0) return fail(ErrorKind::kUsage, "--skip is for raw files: give --dims and --type too");
+    return options;
+  }
+  if (texts.dims.empty() || texts.type.empty())
+    return fail(ErrorKind::kUsage, "a raw file needs both --dims NXxNYxNZ and --type");
+  RawSpec raw;
+  DUBSAR_ASSIGN(raw.dims, parse_dims(texts.dims));
+  const auto type = parse_scalar_type(texts.type);
+  if (!type) return fail(ErrorKind::kUsage, "--type \"{}\" is not known, expected uint8, int16, float32 and the like", texts.type);
+  raw.type = *type;
+  DUBSAR_ASSIGN(raw.order, parse_byte_order(texts.endian));
+  raw.skip = texts.skip;
+  options.raw = raw;
+  return options;
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,22 @@
+#pragma once
+// Options that say how a volume file is read; shared by `process` and `info`.
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "core/volume/import_options.h"
+
+namespace dubsar::app {
+
+struct InputOptionTexts {
+  std::string dataset, crop, stride, voxel_size, dims, type, endian = "little", allow_external;
+  std::int64_t skip = 0;
+  bool trust = false, allow_sparse = false;
+};
+
+void add_input_options(CLI::App& command, InputOptionTexts& texts);
+
+/// Texts to options; kUsage with the text that is wrong.
+Result<ImportOptions> parse_input_options(const std::string& path, const InputOptionTexts& texts);
+
+}  // namespace dubsar::app

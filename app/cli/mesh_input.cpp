@@ -1,0 +1,100 @@
+#include "app/cli/mesh_input.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "core/exa/exa_file.h"
+#include "core/mesh_io/mesh_io.h"
+#include "core/surface/surface_model.h"
+
+namespace dubsar::app {
+namespace {
+
+std::optional<int> as_id(const std::string& text) {
+  int id = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(id) : std::nullopt;
+}
+
+tl::unexpected<Error> no_such_partition(const std::string& wanted, const std::vector<Partition>& partitions) {
+  std::string names;
+  for (const Partition& p : partitions) names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", p.name, p.id);
+  return fail(ErrorKind::kUsage, "there is no partition \"{}\", expected one of: {}", wanted,
+              names.empty() ? "none, the file is not segmented" : names);
+}
+
+/// What a name or id stands for in an EXA file: a whole part or a single partition.
+Result<MeshOptions> mesh_options(const SurfaceModel& model, const std::string& wanted, bool fill_holes) {
+  MeshOptions options;
+  options.fill_holes = fill_holes;
+  for (const Partition& p : model.partitions) {
+    if (p.name == wanted || as_id(wanted) == p.id) {
+      options.partition = p.id;
+      return options;
+    }
+    if (p.part == wanted) options.part = wanted;
+  }
+  if (options.part) return options;
+  return no_such_partition(wanted, model.partitions);
+}
+
+template <class T>
+void append_array(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+void append(TriMesh& to, const TriMesh& from) {
+  const auto base = static_cast<std::uint32_t>(to.positions.size());
+  for (Triangle t : from.triangles) to.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+  append_array(to.positions, from.positions);
+  append_array(to.normals, from.normals);
+  append_array(to.k_min, from.k_min);
+  append_array(to.k_max, from.k_max);
+  append_array(to.shape, from.shape);
+  append_array(to.partition, from.partition);
+  append_array(to.ao, from.ao);
+  append_array(to.colors, from.colors);
+  append_array(to.partitions, from.partitions);
+}
+
+Result<TriMesh> load_exa(const MeshRequest& request, Progress& progress) {
+  DUBSAR_ASSIGN(const SurfaceModel model, read_exa(request.path, progress));
+  MeshOptions all;
+  all.fill_holes = request.fill_holes;
+  if (request.partitions.empty()) return make_tri_mesh(model, all);
+  std::optional<TriMesh> joined;
+  for (const std::string& wanted : request.partitions) {
+    DUBSAR_ASSIGN(const MeshOptions options, mesh_options(model, wanted, request.fill_holes));
+    DUBSAR_ASSIGN(TriMesh part, make_tri_mesh(model, options));
+    if (joined) append(*joined, part);
+    else joined = std::move(part);
+  }
+  return std::move(*joined);
+}
+
+}  // namespace
+
+bool is_exa_file(const std::filesystem::path& path) {
+  const auto info = read_exa_info(path);
+  return info.has_value() || path.extension() == ".exa";
+}
+
+Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress) {
+  if (is_exa_file(request.path)) return load_exa(request, progress);
+  DUBSAR_ASSIGN(TriMesh mesh, read_mesh(request.path, progress));
+  if (request.partitions.empty()) return mesh;
+  std::optional<TriMesh> joined;
+  for (const std::string& wanted : request.partitions) {
+    int id = as_id(wanted).value_or(-1);
+    for (const Partition& p : mesh.partitions)
+      if (p.name == wanted) id = p.id;
+    if (mesh.partition.empty() || std::find(mesh.partition.begin(), mesh.partition.end(), id) == mesh.partition.end())
+      return no_such_partition(wanted, mesh.partitions);
+    TriMesh part = select_partition(mesh, id);
+    if (joined) append(*joined, part);
+    else joined = std::move(part);
+  }
+  return std::move(*joined);
+}
+
+}  // namespace dubsar::app

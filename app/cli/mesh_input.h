@@ -1,0 +1,27 @@
+#pragma once
+// Surfaces from files: EXA and mesh formats, whole or some of their parts.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/surface/tri_mesh.h"
+
+namespace dubsar::app {
+
+struct MeshRequest {
+  std::filesystem::path path;
+  std::vector<std::string> partitions;  ///< names ("tablet"), parts ("envelope") or ids ("2"); empty: all
+  bool fill_holes = true;
+};
+
+/// The mesh of the request; parts are joined into one TriMesh but share no vertices. kUsage, with the names there are,
+/// for a partition that is not in the file; else the reader's errors.
+Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress);
+
+/// True when the file begins like an EXA file.
+bool is_exa_file(const std::filesystem::path& path);
+
+}  // namespace dubsar::app

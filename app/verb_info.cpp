@@ -1,0 +1,149 @@
+// dubsar info FILE: what is in a volume, a surface or a mesh file, without processing it.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "app/cli/input_options.h"
+#include "app/cli/mesh_input.h"
+#include "app/cli/verb.h"
+#include "core/exa/exa_file.h"
+#include "core/mesh_io/mesh_io.h"
+#include "core/pipeline/report.h"
+#include "core/volume/import.h"
+
+namespace dubsar::app {
+namespace {
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string in;
+  InputOptionTexts input;
+};
+
+std::string length_text(const VoxelSize& voxel) {
+  if (!voxel.known()) return "unknown";
+  return fmt::format("{:g} x {:g} x {:g} mm ({})", voxel.mm.x, voxel.mm.y, voxel.mm.z, voxel.provenance);
+}
+
+/// Memory that `process` needs, from the grid after 2:1: two float volumes while filtering.
+std::int64_t process_bytes(const Dims& dims) {
+  const auto half = [](std::int64_t n) { return std::max<std::int64_t>(1, n / 2); };
+  return 2 * half(dims.x) * half(dims.y) * half(dims.z) * static_cast<std::int64_t>(sizeof(float));
+}
+
+Result<VerbResult> volume_info(const Options& options) {
+  DUBSAR_ASSIGN(const ImportOptions import, parse_input_options(options.in, options.input));
+  DUBSAR_ASSIGN(const std::unique_ptr<ImportedVolume> volume, open_volume(import));
+  const VolumeInfo& info = volume->info();
+  const Dims dims = volume->dims();
+  VerbResult result;
+  result.json = volume_json(info);
+  result.json["kind"] = "volume";
+  result.json["warnings"] = info.warnings;
+  result.json["process_memory_bytes"] = process_bytes(dims);
+  std::string& text = result.text;
+  text = fmt::format("volume ({}{}{})\n", info.format, info.dataset.empty() ? "" : ", ", info.dataset);
+  if (!info.found_by.empty()) text += fmt::format("  found by     {}\n", info.found_by);
+  text += fmt::format("  size         {} x {} x {} voxels (x, y, z)", dims.x, dims.y, dims.z);
+  text += dims == info.file_dims ? "\n"
+                                 : fmt::format(" of {} x {} x {}\n", info.file_dims.x, info.file_dims.y, info.file_dims.z);
+  text += fmt::format("  type         {}, {} endian, {}\n", info.dtype, info.byte_order, info.layout);
+  for (const std::string& filter : info.filters) text += fmt::format("  filter       {}\n", filter);
+  text += fmt::format("  voxel size   {}\n", length_text(info.voxel));
+  text += fmt::format("  in the file  {:.1f} MiB of {:.1f} MiB\n", static_cast<double>(info.storage_bytes) / 1048576.0,
+                      static_cast<double>(info.logical_bytes) / 1048576.0);
+  text += fmt::format("  process      needs about {:.0f} MiB for volumes, and 200 bytes for each vertex\n",
+                      static_cast<double>(process_bytes(dims)) / 1048576.0);
+  for (const VolumeCandidate& other : info.candidates) text += fmt::format("  also there   {} ({})\n", other.dataset, other.dtype);
+  for (const std::string& warning : info.warnings) log(LogLevel::kWarning, warning);
+  return result;
+}
+
+void add_partitions_text(std::string& text, const std::vector<Partition>& partitions) {
+  for (const Partition& p : partitions)
+    text += fmt::format("  part {}       {}: {:.1f} mm2, {:.1f} mm3, {}\n", p.id, p.name, p.area_mm2, p.volume_mm3,
+                        p.watertight ? "watertight" : "open");
+}
+
+Result<VerbResult> exa_info(const Options& options) {
+  DUBSAR_ASSIGN(const ExaInfo info, read_exa_info(options.in));
+  VerbResult result;
+  json blocks = json::object();
+  for (const ExaBlockStats& block : info.stats.blocks)
+    blocks[block.name] = {{"bytes", block.bytes}, {"bits_per_vertex", block.bits_per_vertex}};
+  result.json = {{"kind", "exa"},
+                 {"version", {info.major, info.minor}},
+                 {"grid", {info.dims.x, info.dims.y, info.dims.z}},
+                 {"vertices", info.vertices},
+                 {"xquads", info.quads},
+                 {"threshold", info.isovalue},
+                 {"offset_bits", info.offset_bits},
+                 {"voxel_size_mm", {info.frame.input_voxel.mm.x, info.frame.input_voxel.mm.y, info.frame.input_voxel.mm.z}},
+                 {"voxel_size_known", info.frame.input_voxel.known()},
+                 {"bytes", info.stats.bytes},
+                 {"bits_per_vertex", info.stats.bits_per_vertex},
+                 {"blocks", blocks},
+                 {"partitions", partitions_json(info.partitions)}};
+  result.json["provenance"] = info.provenance.empty() ? json(nullptr) : json::parse(info.provenance, nullptr, false);
+  std::string& text = result.text;
+  text = fmt::format("surface (EXA {}.{})\n", info.major, info.minor);
+  text += fmt::format("  grid         {} x {} x {}, threshold {:g}\n", info.dims.x, info.dims.y, info.dims.z, info.isovalue);
+  text += fmt::format("  mesh         {} vertices, {} x-quads\n", info.vertices, info.quads);
+  text += fmt::format("  voxel size   {}\n", length_text(info.frame.input_voxel));
+  text += fmt::format("  file         {} bytes, {:.2f} bits per vertex\n", info.stats.bytes, info.stats.bits_per_vertex);
+  for (const ExaBlockStats& block : info.stats.blocks)
+    text += fmt::format("  block        {:<16}{:>12} bytes {:>8.2f} bits per vertex\n", block.name, block.bytes, block.bits_per_vertex);
+  add_partitions_text(text, info.partitions);
+  return result;
+}
+
+Result<VerbResult> describe_mesh(const Options& options, Progress& progress) {
+  DUBSAR_ASSIGN(const MeshInfo info, mesh_info(options.in, progress));
+  DUBSAR_ASSIGN(const TriMesh mesh, read_mesh(options.in, progress));
+  const MeshCheck check = check_mesh(mesh.positions, mesh.triangles);
+  VerbResult result;
+  result.json = {{"kind", "mesh"},
+                 {"format", mesh_format_name(info.format)},
+                 {"bytes", info.bytes},
+                 {"mesh", mesh_check_json(check)},
+                 {"watertight", check.watertight()},
+                 {"min_mm", {info.min_mm.x, info.min_mm.y, info.min_mm.z}},
+                 {"max_mm", {info.max_mm.x, info.max_mm.y, info.max_mm.z}},
+                 {"unit_known", info.unit.known()},
+                 {"attributes", info.attributes},
+                 {"partitions", partitions_json(info.partitions)}};
+  const glm::dvec3 size = info.max_mm - info.min_mm;
+  std::string& text = result.text;
+  text = fmt::format("mesh ({})\n", mesh_format_name(info.format));
+  text += fmt::format("  mesh         {} vertices, {} triangles, {} components\n", info.vertices, info.triangles, check.components);
+  text += fmt::format("  box          {:.3f} x {:.3f} x {:.3f} {}\n", size.x, size.y, size.z,
+                      info.unit.known() ? "mm" : "(unit unknown, taken as mm)");
+  text += fmt::format("  surface      {}\n", check.watertight() ? "watertight 2-manifold"
+                                             : fmt::format("{} boundary edges, {} non-manifold edges, {} non-manifold vertices",
+                                                           check.boundary_edges, check.nonmanifold_edges, check.nonmanifold_vertices));
+  for (const std::string& attribute : info.attributes) text += fmt::format("  attribute    {}\n", attribute);
+  add_partitions_text(text, info.partitions);
+  return result;
+}
+
+Result<VerbResult> run(const Options& options, Progress& progress) {
+  const bool raw = !options.input.dims.empty() || !options.input.type.empty();
+  if (!raw && is_exa_file(options.in)) return exa_info(options);
+  if (!raw && mesh_format_from_path(options.in)) return describe_mesh(options, progress);
+  return volume_info(options);
+}
+}  // namespace
+
+Verb add_info_verb(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = program.add_subcommand("info", "say what is in a volume, surface or mesh file");
+  command->add_option("FILE", options->in, "volume (HDF5, NRRD, TIFF, raw), EXA, PLY, STL, OBJ or GLB")->required();
+  add_input_options(*command, options->input);
+  command->footer("Examples:\n  dubsar info scan.h5\n  dubsar info scan.h5:/entry/data/data\n  dubsar info tablet.exa --json -");
+  return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
+}
+
+}  // namespace dubsar::app

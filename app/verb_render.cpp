@@ -1,0 +1,123 @@
+// dubsar render IN -o OUT.png: a picture without a window.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "app/cli/mesh_input.h"
+#include "app/cli/verb.h"
+#include "core/image_io/png_file.h"
+#include "core/image_io/tiff_file.h"
+#include "display/render_image.h"
+
+namespace dubsar::app {
+namespace {
+struct Options {
+  std::string in, out, view = "front", style = "relief", size = "1200x1200", light;
+  std::vector<std::string> partitions, hide;
+  double mm_per_pixel = 0.0;
+  int samples = 3;
+  bool perspective = false, colour_parts = false, transparent = false;
+};
+
+Result<void> parse_size(const std::string& text, CameraOptions& camera) {
+  int width = 0, height = 0;
+  char cross = 0;
+  if (std::sscanf(text.c_str(), "%d%c%d", &width, &cross, &height) != 3 || cross != 'x' || width < 1 || height < 1)
+    return fail(ErrorKind::kUsage, "--size \"{}\" not understood, expected WIDTHxHEIGHT such as 1600x1200", text);
+  camera.width = width;
+  camera.height = height;
+  return {};
+}
+
+Result<void> parse_light(const std::string& text, Shading& shading) {
+  double azimuth = 0.0, elevation = 0.0;
+  if (std::sscanf(text.c_str(), "%lf,%lf", &azimuth, &elevation) != 2)
+    return fail(ErrorKind::kUsage, "--light \"{}\" not understood, expected AZIMUTH,ELEVATION in degrees such as 315,25", text);
+  shading.light_azimuth_deg = azimuth;
+  shading.light_elevation_deg = elevation;
+  return {};
+}
+
+Result<void> hide_partitions(const std::vector<std::string>& names, const TriMesh& mesh, Shading& shading) {
+  for (const std::string& name : names) {
+    bool found = false;
+    for (const Partition& p : mesh.partitions)
+      if (p.name == name || p.part == name || std::to_string(p.id) == name) {
+        shading.partitions = static_cast<std::uint8_t>(shading.partitions & ~(1 << p.id));
+        found = true;
+      }
+    if (!found) return fail(ErrorKind::kUsage, "--hide {}: there is no such partition in the file", name);
+  }
+  return {};
+}
+
+Result<VerbResult> run(const Options& options, Progress& progress) {
+  DUBSAR_TRY(check_output_path(options.out));
+  std::string suffix = std::filesystem::path(options.out).extension().string();
+  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (suffix != ".png" && suffix != ".tif" && suffix != ".tiff")
+    return fail(ErrorKind::kUsage, "cannot write {}: expected a name that ends in .png or .tif", options.out);
+  RenderOptions render;
+  DUBSAR_ASSIGN(render.shading, shading_preset(options.style));
+  DUBSAR_ASSIGN(render.camera.direction, parse_view_direction(options.view == "orbit" ? "orbit:35,25" : options.view));
+  DUBSAR_TRY(parse_size(options.size, render.camera));
+  if (!options.light.empty()) DUBSAR_TRY(parse_light(options.light, render.shading));
+  render.camera.perspective = options.perspective;
+  render.camera.mm_per_pixel = options.mm_per_pixel;
+  render.samples = options.samples;
+  render.shading.transparent_background = options.transparent;
+  if (options.colour_parts) render.shading.partition_colors = distinct_partition_colors();
+  DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.in, options.partitions, true}, progress));
+  DUBSAR_TRY(hide_partitions(options.hide, mesh, render.shading));
+  DUBSAR_ASSIGN(const Picture picture, render_picture(mesh, render, progress));
+  if (suffix == ".png") {
+    PngOptions png;
+    png.dpi = picture.dpi();
+    DUBSAR_TRY(write_png(options.out, picture.image, png));
+  } else {
+    DUBSAR_TRY(write_tiff(options.out, picture.image, picture.dpi()));
+  }
+  VerbResult result;
+  result.json = {{"output", options.out},
+                 {"width", picture.image.width},
+                 {"height", picture.image.height},
+                 {"mm_per_pixel", picture.mm_per_pixel},
+                 {"triangles", mesh.triangles.size()},
+                 {"view", options.view},
+                 {"style", options.style}};
+  result.text = fmt::format("{}: {}x{} pixels, {:.4g} mm a pixel\n", options.out, picture.image.width,
+                            picture.image.height, picture.mm_per_pixel);
+  return result;
+}
+}  // namespace
+
+Verb add_render_verb(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = program.add_subcommand("render", "make a picture of a surface, without a window");
+  command->add_option("IN", options->in, "EXA, PLY, OBJ, STL or GLB file")->required();
+  command->add_option("-o,--output", options->out, "PNG or TIFF file to write")->required();
+  command->add_option("--view", options->view, "front, back, left, right, top, bottom, orbit or orbit:AZIMUTH,ELEVATION[,ROLL]");
+  command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels");
+  std::string styles;
+  for (const std::string_view name : shading_preset_names()) styles += (styles.empty() ? "" : ", ") + std::string(name);
+  command->add_option("--style", options->style, "shading: " + styles);
+  command->add_option("--partition", options->partitions, "only these parts: names or ids, e.g. tablet")->delimiter(',');
+  command->add_option("--hide", options->hide, "not these parts")->delimiter(',');
+  command->add_flag("--colour-parts,--color-parts", options->colour_parts, "each part in a colour of its own");
+  command->add_option("--light", options->light, "AZIMUTH,ELEVATION of the light in degrees; 315,20 rakes from the upper left");
+  command->add_option("--mm-per-pixel", options->mm_per_pixel, "exact scale (orthographic), instead of fitting the picture")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--perspective", options->perspective, "perspective instead of orthographic");
+  command->add_flag("--transparent", options->transparent, "no background");
+  command->add_option("--samples", options->samples, "samples per pixel side")->check(CLI::Range(1, 8));
+  command->footer(
+      "Examples:\n"
+      "  dubsar render tablet.exa -o tablet.png --partition tablet\n"
+      "  dubsar render tablet.exa -o back.tif --view back --light 315,15 --mm-per-pixel 0.0423\n"
+      "  dubsar render bust.obj -o bust.png --style ao --view orbit:30,10");
+  return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
+}
+
+}  // namespace dubsar::app

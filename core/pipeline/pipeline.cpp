@@ -1,0 +1,103 @@
+#include "core/pipeline/pipeline.h"
+
+#include "core/base/log.h"
+#include "core/pipeline/model_occlusion.h"
+#include "core/pipeline/report.h"
+#include "core/pipeline/volume_stages.h"
+#include "core/surface/extract.h"
+
+namespace dubsar {
+namespace {
+
+Result<void> smooth_and_measure(const PipelineOptions& options, PipelineResult& result, StageClock& clock,
+                                Progress& progress) {
+  SurfaceModel& model = result.model;
+  const std::int64_t vertices = model.mesh.vertex_count();
+  clock.start("smooth", "face iteration");
+  DUBSAR_ASSIGN(result.report.smooth, smooth(model.mesh, model.attributes.normals, options.smooth, progress));
+  clock.finish(options.smooth.normals.iterations * model.mesh.quad_count());
+
+  clock.start("curvature", "vertex");
+  DUBSAR_ASSIGN(Curvatures curvatures,
+                principal_curvatures(model.mesh, model.attributes.normals, options.curvature, progress));
+  model.attributes.shape = shape_classes(curvatures.k_min, curvatures.k_max);
+  model.attributes.k_min = std::move(curvatures.k_min);
+  model.attributes.k_max = std::move(curvatures.k_max);
+  clock.finish(vertices);
+  return {};
+}
+
+Result<void> separate(const PipelineOptions& options, PipelineResult& result, StageClock& clock, Progress& progress) {
+  SurfaceModel& model = result.model;
+  clock.start("segment", "face");
+  DUBSAR_ASSIGN(result.report.segment, segment(model, options.segment, progress));
+  clock.finish(model.mesh.quad_count());
+  if (!options.fill_holes) return {};
+  clock.start("fill_holes", "triangle");
+  DUBSAR_ASSIGN(const HoleReport holes, fill_holes(model, HoleOptions{}, progress));
+  clock.finish(holes.triangles);
+  return {};
+}
+
+/// The light of each dual vertex, from the triangles of its own part.
+Result<void> add_occlusion(const PipelineOptions& options, PipelineResult& result, StageClock& clock,
+                           Progress& progress) {
+  if (!options.occlusion) return {};
+  SurfaceModel& model = result.model;
+  const std::int64_t rays = model.mesh.vertex_count() * options.occlusion_options.rays;
+  clock.start("occlusion", "ray");
+  DUBSAR_TRY(occlusion_of_model(model, options.occlusion_options, progress));
+  clock.finish(rays);
+  return {};
+}
+
+Result<void> check(PipelineResult& result, StageClock& clock) {
+  PipelineReport& report = result.report;
+  clock.start("check", "triangle");
+  DUBSAR_TRY(measure_partitions(result.model));
+  DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(result.model));
+  report.mesh = check_mesh(mesh.positions, mesh.triangles);
+  clock.finish(report.mesh.triangles);
+  report.partitions = result.model.partitions;
+  report.vertices = result.model.mesh.vertex_count();
+  report.xquads = result.model.mesh.quad_count();
+  return {};
+}
+
+}  // namespace
+
+Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& progress) {
+  PipelineResult result;
+  StageClock clock;
+  SurfaceModel& model = result.model;
+  DUBSAR_ASSIGN(model.samples, run_volume_stages(options, result.report, model.frame, clock, progress));
+
+  clock.start("mesh", "vertex");
+  progress.begin("mesh", static_cast<std::int64_t>(model.samples.offsets.size()), "vertex");
+  DUBSAR_ASSIGN(model.mesh, build_quad_mesh(model.samples, progress));
+  clock.finish(model.mesh.vertex_count());
+  if (model.mesh.vertex_count() == 0)
+    return fail(ErrorKind::kBadData, "there is no surface at threshold {:g}: all voxels are on one side; give another with "
+                "--threshold", result.report.threshold);
+
+  DUBSAR_TRY(smooth_and_measure(options, result, clock, progress));
+  quantise_for_exa(model);  // from here on the model is what the file will hold
+  DUBSAR_TRY(separate(options, result, clock, progress));
+  DUBSAR_TRY(add_occlusion(options, result, clock, progress));
+  DUBSAR_TRY(check(result, clock));
+  model.provenance = provenance_json(result.report, options).dump();
+  result.report.stages = clock.records();
+  for (const std::string& warning : result.report.warnings) log(LogLevel::kWarning, warning);
+  return result;
+}
+
+Result<void> write_product(const std::string& path, PipelineResult& result, Progress& progress) {
+  StageClock clock;
+  clock.start("write", "byte");
+  DUBSAR_ASSIGN(result.report.exa, write_exa(path, result.model, progress));
+  clock.finish(static_cast<std::int64_t>(result.report.exa.bytes));
+  result.report.stages.push_back(clock.records().back());
+  return {};
+}
+
+}  // namespace dubsar

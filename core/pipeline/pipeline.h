@@ -1,0 +1,80 @@
+#pragma once
+// From a scan to a surface model, unattended: every stage of the paper in its order, parameters estimated unless given.
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/exa/exa_file.h"
+#include "core/pipeline/stage_clock.h"
+#include "core/surface/curvature.h"
+#include "core/surface/holes.h"
+#include "core/surface/mesh_check.h"
+#include "core/surface/occlusion.h"
+#include "core/surface/segment.h"
+#include "core/surface/shape_class.h"
+#include "core/surface/smooth.h"
+#include "core/surface/surface_model.h"
+#include "core/volume/denoise.h"
+#include "core/volume/estimate.h"
+#include "core/volume/import.h"
+
+namespace dubsar {
+
+struct PipelineOptions {
+  ImportOptions import;
+  bool resample = true;                 ///< Gauss 3x3x3 and 2:1
+  DenoiseOptions denoise;               ///< sigma 0: estimated anew before each iteration
+  EstimateOptions estimate;
+  std::optional<float> threshold;       ///< isovalue; overrides the estimate
+  int offset_bits = 4;                  ///< N
+  bool closed_boundary = true;
+  SmoothOptions smooth;
+  CurvatureMethod curvature = CurvatureMethod::kFit;
+  SegmentOptions segment;
+  bool fill_holes = true;
+  bool occlusion = true;
+  OcclusionOptions occlusion_options;
+};
+
+/// Noise before the first filter and after each one.
+struct FilterStep {
+  std::string name;  ///< "raw", "gauss 2:1", "joint_bilateral 1", ...
+  Estimates estimates;
+};
+
+struct PipelineReport {
+  VolumeInfo input;
+  std::int64_t nonfinite_voxels = 0;
+  float nonfinite_fill = 0.0f;
+  Dims grid;                         ///< processed grid
+  std::vector<StageRecord> stages;
+  std::vector<FilterStep> filters;
+  Estimates estimates;               ///< those that the threshold comes from
+  float threshold = 0.0f;
+  std::string threshold_path;        ///< how it was found
+  SmoothStats smooth;
+  SegmentReport segment;
+  MeshCheck mesh;                    ///< of all parts together, with their fill patches
+  std::int64_t vertices = 0, xquads = 0;
+  std::vector<Partition> partitions;
+  ExaStats exa;
+  std::vector<std::string> warnings;
+};
+
+struct PipelineResult {
+  SurfaceModel model;
+  PipelineReport report;
+};
+
+/// Runs all stages; memory for about two volumes of the resampled grid in float, then about 200 bytes a vertex. Cancel
+/// leaves nothing behind. Errors: those of the stages; kBadData when there is no surface at the threshold.
+Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& progress);
+
+/// Writes the model to `path` (as one more stage) and completes the report. An old file stays until the new one is whole.
+Result<void> write_product(const std::string& path, PipelineResult& result, Progress& progress);
+
+}  // namespace dubsar

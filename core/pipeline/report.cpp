@@ -1,0 +1,186 @@
+#include "core/pipeline/report.h"
+
+#include <fmt/format.h>
+
+namespace dubsar {
+using nlohmann::json;
+
+namespace {
+
+constexpr std::array<const char*, 4> kDenoiseNames{"median", "gauss", "bilateral", "joint_bilateral"};
+constexpr std::array<const char*, 6> kThresholdNames{"auto", "valley", "sigmas", "half", "otsu", "mixture"};
+constexpr std::array<const char*, 3> kSegmentNames{"nested", "concavity", "none"};
+
+json dims_json(const Dims& dims) { return {dims.x, dims.y, dims.z}; }
+json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+json parameters_json(const PipelineReport& report, const PipelineOptions& options) {
+  const auto& denoise = options.denoise;
+  return {
+      {"resample", options.resample},
+      {"denoise",
+       {{"method", kDenoiseNames[static_cast<std::size_t>(denoise.method)]},
+        {"range", denoise.range == RangeWeight::kTukey ? "tukey" : "gauss"},
+        {"window", denoise.window},
+        {"iterations", denoise.iterations},
+        {"sigma", denoise.sigma > 0.0 ? json(denoise.sigma) : json("estimated")}}},
+      {"threshold_method", options.threshold ? "given" : kThresholdNames[static_cast<std::size_t>(options.estimate.method)]},
+      {"threshold", report.threshold},
+      {"offset_bits", options.offset_bits},
+      {"boundary", options.closed_boundary ? "closed" : "open"},
+      {"normal_iterations", options.smooth.normals.iterations},
+      {"vertex_iterations", options.smooth.vertex_iterations},
+      {"curvature", options.curvature == CurvatureMethod::kFit ? "fit" : "pairs"},
+      {"segment", kSegmentNames[static_cast<std::size_t>(options.segment.method)]},
+      {"fill_holes", options.fill_holes},
+      {"occlusion", options.occlusion ? json{{"rays", options.occlusion_options.rays},
+                                             {"radius_vox", options.occlusion_options.radius_vox}}
+                                      : json(nullptr)},
+  };
+}
+
+json input_json(const PipelineReport& report) {
+  json input = volume_json(report.input);
+  input["nonfinite_voxels"] = report.nonfinite_voxels;
+  if (report.nonfinite_voxels > 0) input["nonfinite_fill"] = report.nonfinite_fill;
+  input["grid"] = dims_json(report.grid);
+  return input;
+}
+
+json estimates_json(const PipelineReport& report) {
+  json filters = json::array();
+  for (const FilterStep& step : report.filters)
+    filters.push_back({{"after", step.name},
+                       {"sigma", step.estimates.sigma},
+                       {"snr_db", step.estimates.snr_db},
+                       {"snr_alt_db", step.estimates.snr_alt_db},
+                       {"air", step.estimates.m_lo},
+                       {"material", step.estimates.m_hi},
+                       {"path", step.estimates.path}});
+  return {{"sigma", report.estimates.sigma},
+          {"snr_db", report.estimates.snr_db},
+          {"air", report.estimates.m_lo},
+          {"material", report.estimates.m_hi},
+          {"material_fraction", report.estimates.material_fraction},
+          {"threshold", report.threshold},
+          {"threshold_valley", report.estimates.threshold_valley},
+          {"path", report.threshold_path},
+          {"filters", filters}};
+}
+
+json exa_json(const ExaStats& stats) {
+  json blocks = json::object();
+  for (const ExaBlockStats& block : stats.blocks)
+    blocks[block.name] = {{"bytes", block.bytes}, {"bits_per_vertex", block.bits_per_vertex}};
+  return {{"bytes", stats.bytes}, {"bits_per_vertex", stats.bits_per_vertex}, {"blocks", blocks}};
+}
+
+}  // namespace
+
+json volume_json(const VolumeInfo& info) {
+  json candidates = json::array();
+  for (const VolumeCandidate& candidate : info.candidates)
+    candidates.push_back({{"dataset", candidate.dataset}, {"dims_zyx", candidate.dims}, {"dtype", candidate.dtype}});
+  return {{"path", info.path},
+          {"format", info.format},
+          {"dataset", info.dataset},
+          {"found_by", info.found_by},
+          {"dims", dims_json(info.box.dims())},
+          {"file_dims", dims_json(info.file_dims)},
+          {"dtype", info.dtype},
+          {"byte_order", info.byte_order},
+          {"layout", info.layout},
+          {"filters", info.filters},
+          {"storage_bytes", info.storage_bytes},
+          {"logical_bytes", info.logical_bytes},
+          {"voxel_size_mm", info.voxel.known() ? vector_json(info.voxel.mm) : json(nullptr)},
+          {"provenance", info.voxel.known() ? info.voxel.provenance : "unknown"},
+          {"other_datasets", candidates}};
+}
+
+json partitions_json(const std::vector<Partition>& partitions) {
+  json array = json::array();
+  for (const Partition& part : partitions)
+    array.push_back({{"id", part.id},
+                     {"name", part.name},
+                     {"part", part.part},
+                     {"area_mm2", part.area_mm2},
+                     {"volume_mm3", part.volume_mm3},
+                     {"watertight", part.watertight}});
+  return array;
+}
+
+json mesh_check_json(const MeshCheck& check) {
+  return {{"vertices", check.vertices},
+          {"triangles", check.triangles},
+          {"edges", check.edges},
+          {"nonmanifold_edges", check.nonmanifold_edges},
+          {"nonmanifold_vertices", check.nonmanifold_vertices},
+          {"inconsistent_edges", check.inconsistent_edges},
+          {"degenerate_triangles", check.degenerate_triangles},
+          {"zero_area_triangles", check.zero_area_triangles},
+          {"boundary_edges", check.boundary_edges},
+          {"components", check.components},
+          {"euler", check.euler}};
+}
+
+json provenance_json(const PipelineReport& report, const PipelineOptions& options) {
+  return {{"program", "dubsar"},
+          {"input", input_json(report)},
+          {"estimates", estimates_json(report)},
+          {"parameters", parameters_json(report, options)}};
+}
+
+json report_json(const PipelineReport& report, const PipelineOptions& options) {
+  json stages = json::array();
+  for (const StageRecord& stage : report.stages)
+    stages.push_back({{"name", stage.name},
+                      {"wall_s", stage.wall_s},
+                      {"cpu_s", stage.cpu_s},
+                      {"peak_rss_mib", stage.peak_rss_mib},
+                      {"work", stage.work},
+                      {"work_unit", stage.unit}});
+  json mesh = mesh_check_json(report.mesh);
+  mesh["vertices"] = report.vertices;
+  mesh["xquads"] = report.xquads;
+  mesh["export_vertices"] = report.mesh.vertices;
+  mesh["smooth"] = {{"mean_displacement_vox", report.smooth.mean_displacement_vox},
+                    {"max_displacement_vox", report.smooth.max_displacement_vox},
+                    {"residual_angle_deg", report.smooth.residual_angle_deg}};
+  return {{"input", input_json(report)},
+          {"estimates", estimates_json(report)},
+          {"stages", stages},
+          {"mesh", mesh},
+          {"partitions", partitions_json(report.partitions)},
+          {"exa", exa_json(report.exa)},
+          {"parameters", parameters_json(report, options)},
+          {"warnings", report.warnings}};
+}
+
+std::string report_text(const PipelineReport& report) {
+  std::string text = fmt::format("{:<14}{:>10}{:>10}{:>12}{:>16}  {}\n", "stage", "wall s", "cpu s", "peak MiB", "work", "");
+  double wall = 0.0, cpu = 0.0, peak = 0.0;
+  for (const StageRecord& stage : report.stages) {
+    text += fmt::format("{:<14}{:>10.2f}{:>10.2f}{:>12.0f}{:>16}  {}\n", stage.name, stage.wall_s, stage.cpu_s,
+                        stage.peak_rss_mib, stage.work, stage.unit);
+    wall += stage.wall_s;
+    cpu += stage.cpu_s;
+    peak = std::max(peak, stage.peak_rss_mib);
+  }
+  text += fmt::format("{:<14}{:>10.2f}{:>10.2f}{:>12.0f}\n\n", "all", wall, cpu, peak);
+  for (const FilterStep& step : report.filters)
+    text += fmt::format("noise {:<22} sigma {:<11.4g} SNR {:5.1f} dB\n", step.name, step.estimates.sigma, step.estimates.snr_db);
+  text += fmt::format("threshold {:.6g}: {}\n", report.threshold, report.threshold_path);
+  text += fmt::format("mesh: {} vertices, {} x-quads, {} triangles, {} non-manifold edges, {} non-manifold vertices\n\n",
+                      report.vertices, report.xquads, report.mesh.triangles, report.mesh.nonmanifold_edges,
+                      report.mesh.nonmanifold_vertices);
+  text += fmt::format("{:<4}{:<24}{:>14}{:>14}  {}\n", "id", "part", "area mm2", "volume mm3", "");
+  for (const Partition& part : report.partitions)
+    text += fmt::format("{:<4}{:<24}{:>14.1f}{:>14.1f}  {}\n", part.id, part.name, part.area_mm2, part.volume_mm3,
+                        part.watertight ? "watertight" : "open");
+  if (report.exa.bytes > 0)
+    text += fmt::format("\nEXA: {} bytes, {:.2f} bits per vertex\n", report.exa.bytes, report.exa.bits_per_vertex);
+  return text;
+}
+
+}  // namespace dubsar

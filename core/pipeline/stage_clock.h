@@ -1,0 +1,40 @@
+#pragma once
+// What each stage cost: wall time, CPU time, highest memory, work done.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/clock.h"
+
+namespace dubsar {
+
+struct StageRecord {
+  std::string name;
+  double wall_s = 0.0;
+  double cpu_s = 0.0;         ///< user + system, all threads
+  double peak_rss_mib = 0.0;  ///< highest resident size during the stage
+  std::int64_t work = 0;      ///< items processed
+  std::string unit;           ///< what an item is: "voxel", "vertex", "ray", "byte", ...
+};
+
+/// Collects stage records. A stage runs from start() to finish(); stages do not overlap. One thread.
+class StageClock {
+ public:
+  void start(std::string_view name, std::string_view unit);
+  /// Ends the present stage and records it.
+  void finish(std::int64_t work);
+  /// Moves `wall_s` and `cpu_s` of the last record to a new record placed before it: for stages that run interleaved,
+  /// such as reading and resampling.
+  void split_before_last(std::string_view name, double wall_s, double cpu_s, std::int64_t work, std::string_view unit);
+  const std::vector<StageRecord>& records() const noexcept { return records_; }
+
+ private:
+  std::vector<StageRecord> records_;
+  StageRecord current_;
+  TimestampNs started_ns_ = 0;
+  double started_cpu_s_ = 0.0;
+};
+
+}  // namespace dubsar

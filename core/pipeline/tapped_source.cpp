@@ -1,0 +1,43 @@
+#include "core/pipeline/tapped_source.h"
+
+#include <algorithm>
+
+#include "core/base/clock.h"
+
+namespace dubsar {
+
+Result<void> TappedSource::read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) {
+  if (progress_->cancelled()) return cancelled_error();
+  const TimestampNs start = SteadyClock().now();
+  const double start_cpu = process_cpu_seconds();
+  DUBSAR_TRY(source_->read(z_begin, z_end, out));
+  wall_s_ += 1e-9 * static_cast<double>(SteadyClock().now() - start);
+  cpu_s_ += process_cpu_seconds() - start_cpu;
+  if (z_end > slices_seen_) {
+    progress_->advance((z_end - slices_seen_) * dims().slice());
+    slices_seen_ = z_end;
+  }
+  return {};
+}
+
+SampledSource::SampledSource(SlabSource& source, std::int64_t slices, std::int64_t group)
+    : source_(&source), dims_(source.dims()), group_(std::max<std::int64_t>(group, 1)), spacing_(group_) {
+  const std::int64_t groups = std::max<std::int64_t>(1, slices / group_);
+  if (dims_.z > groups * group_) {
+    spacing_ = dims_.z / groups;
+    dims_.z = groups * group_;
+  }
+}
+
+Result<void> SampledSource::read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) {
+  for (std::int64_t z = z_begin; z < z_end;) {
+    const std::int64_t in_group = z % group_;
+    const std::int64_t count = std::min(z_end - z, group_ - in_group);
+    const std::int64_t from = z / group_ * spacing_ + in_group;
+    DUBSAR_TRY(source_->read(from, from + count, out.subspan(static_cast<std::size_t>((z - z_begin) * dims_.slice()))));
+    z += count;
+  }
+  return {};
+}
+
+}  // namespace dubsar

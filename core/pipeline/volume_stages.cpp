@@ -1,0 +1,135 @@
+#include "core/pipeline/volume_stages.h"
+
+#include <algorithm>
+
+#include "core/base/log.h"
+#include "core/pipeline/tapped_source.h"
+#include "core/surface/extract.h"
+#include "core/volume/resample.h"
+
+namespace dubsar {
+namespace {
+
+std::string_view method_name(DenoiseMethod method) {
+  switch (method) {
+    case DenoiseMethod::kMedian: return "median";
+    case DenoiseMethod::kGauss: return "gauss";
+    case DenoiseMethod::kBilateral: return "bilateral";
+    case DenoiseMethod::kJointBilateral: return "joint_bilateral";
+  }
+  return "";
+}
+
+/// Slices of the raw scan that are enough to know its noise: its histogram is needed for the report only.
+constexpr std::int64_t kRawSampleSlices = 48, kRawSampleGroup = 3;
+
+Result<void> estimate_raw(SlabSource& scan, const PipelineOptions& options, PipelineReport& report, StageClock& clock,
+                          Progress& progress) {
+  SampledSource sample(scan, kRawSampleSlices, kRawSampleGroup);
+  clock.start("estimate_raw", "voxel");
+  progress.begin("estimate_raw", sample.dims().count(), "voxel");
+  DUBSAR_ASSIGN(Estimates estimates, estimate(sample, options.estimate, progress));
+  clock.finish(sample.dims().count());
+  report.filters.push_back({"raw", std::move(estimates)});
+  return {};
+}
+
+/// Reads, resamples and returns the volume in memory; two records, since both run interleaved.
+Result<Volume<float>> import_and_resample(SlabSource& scan, bool resample, GridFrame& frame, StageClock& clock,
+                                          Progress& progress) {
+  clock.start(resample ? "resample" : "import", "voxel");
+  progress.begin("import", scan.dims().count(), "voxel");
+  TappedSource tap(scan, progress);
+  SilentProgress silent;
+  if (!resample) {
+    frame = scan.frame();
+    DUBSAR_ASSIGN(Volume<float> volume, read_all(tap, silent));
+    clock.finish(scan.dims().count());
+    return volume;
+  }
+  HalfResolutionSource half(tap);
+  frame = half.frame();
+  DUBSAR_ASSIGN(Volume<float> volume, read_all(half, silent));
+  clock.finish(scan.dims().count());
+  clock.split_before_last("import", tap.wall_s(), tap.cpu_s(), scan.dims().count(), "voxel");
+  return volume;
+}
+
+Result<Estimates> estimate_volume(const Volume<float>& volume, std::string_view stage, const PipelineOptions& options,
+                                  StageClock& clock, Progress& progress) {
+  VolumeSource source(volume);
+  clock.start(stage, "voxel");
+  progress.begin(stage, volume.dims.count(), "voxel");
+  DUBSAR_ASSIGN(Estimates estimates, estimate(source, options.estimate, progress));
+  clock.finish(volume.dims.count());
+  return estimates;
+}
+
+/// One filter pass at a time, each with the noise that the one before has left.
+Result<void> denoise_and_estimate(Volume<float>& volume, const PipelineOptions& options, PipelineReport& report,
+                                  StageClock& clock, Progress& progress) {
+  DUBSAR_ASSIGN(Estimates estimates, estimate_volume(volume, "estimate", options, clock, progress));
+  report.filters.push_back({options.resample ? "gauss 2:1" : "imported", estimates});
+  for (int iteration = 1; iteration <= options.denoise.iterations; ++iteration) {
+    DenoiseOptions pass = options.denoise;
+    pass.iterations = 1;
+    if (pass.sigma <= 0.0) pass.sigma = estimates.sigma;
+    const bool needs_sigma =
+        pass.method == DenoiseMethod::kBilateral || pass.method == DenoiseMethod::kJointBilateral;
+    if (needs_sigma && pass.sigma <= 0.0) {
+      log_info("denoise: the volume has no noise that could be measured, nothing to filter");
+      break;
+    }
+    clock.start("denoise", "voxel");
+    progress.begin("denoise", volume.dims.count(), "voxel");
+    DUBSAR_TRY(denoise_in_place(volume, pass, progress));
+    clock.finish(volume.dims.count());
+    DUBSAR_ASSIGN(estimates, estimate_volume(volume, "estimate", options, clock, progress));
+    report.filters.push_back({fmt::format("{} {}", method_name(pass.method), iteration), estimates});
+  }
+  report.estimates = std::move(estimates);
+  return {};
+}
+
+Result<void> choose_threshold(const PipelineOptions& options, PipelineReport& report) {
+  if (options.threshold) {
+    report.threshold = *options.threshold;
+    report.threshold_path = "given by the user";
+    return {};
+  }
+  DUBSAR_ASSIGN(const double threshold, automatic_threshold(report.estimates));
+  report.threshold = static_cast<float>(threshold);
+  report.threshold_path = report.estimates.path;
+  log_info("threshold {:g}: {}", report.threshold, report.threshold_path);
+  return {};
+}
+
+}  // namespace
+
+Result<SurfaceSamples> run_volume_stages(const PipelineOptions& options, PipelineReport& report, GridFrame& frame,
+                                         StageClock& clock, Progress& progress) {
+  DUBSAR_ASSIGN(const std::unique_ptr<ImportedVolume> scan, open_volume(options.import));
+  report.input = scan->info();
+  if (!scan->frame().input_voxel.known())
+    report.warnings.push_back("the voxel size is unknown, 1 voxel = 1 mm is used; give it with --voxel-size");
+  DUBSAR_TRY(estimate_raw(*scan, options, report, clock, progress));
+  DUBSAR_ASSIGN(Volume<float> volume, import_and_resample(*scan, options.resample, frame, clock, progress));
+  report.nonfinite_voxels = scan->nonfinite_count();
+  report.nonfinite_fill = scan->nonfinite_fill();
+  if (report.nonfinite_voxels > 0)
+    report.warnings.push_back(fmt::format("{} voxels were NaN or Inf and count as {:g}", report.nonfinite_voxels,
+                                          report.nonfinite_fill));
+  report.grid = volume.dims;
+  DUBSAR_TRY(denoise_and_estimate(volume, options, report, clock, progress));
+  DUBSAR_TRY(choose_threshold(options, report));
+
+  VolumeSource source(volume, frame);
+  clock.start("extract", "voxel");
+  progress.begin("extract", volume.dims.count(), "voxel");
+  const ExtractOptions extract{report.threshold, options.offset_bits, options.closed_boundary};
+  DUBSAR_ASSIGN(SurfaceSamples samples, sample_surface(source, extract, progress));
+  clock.finish(volume.dims.count());
+  return samples;
+}
+
+}  // namespace dubsar

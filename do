@@ -1,0 +1,84 @@
+#!/usr/bin/env bash
+# The project's verbs. Works on a bare Debian 12 as root or with sudo.
+set -euo pipefail
+cd "$(dirname "$0")"
+preset=${DUBSAR_PRESET:-release}
+build=build/$preset
+jobs=${JOBS:-$(nproc)}
+
+packages=(
+  g++ cmake ninja-build pkg-config git ca-certificates
+  libfmt-dev libexpected-dev libglm-dev nlohmann-json3-dev libcli11-dev libhwy-dev libxxhash-dev
+  libhdf5-dev hdf5-plugin-lzf hdf5-filter-plugin libtiff-dev libpng-dev zlib1g-dev libdeflate-dev libzstd-dev
+  libembree-dev libglfw3-dev libepoxy-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri
+  libgtest-dev libgmock-dev libbenchmark-dev
+)
+
+usage() {
+  cat <<'TEXT'
+./do demo     install what is needed, build, make a scan, process it, write surfaces and pictures
+./do test     install what is needed, build, run all tests
+./do build    build the program (build/release/app/dubsar)
+./do bench    run the benchmarks
+./do deps     install the packages of Debian 12 that dubsar needs
+./do format   clang-format over all sources
+TEXT
+}
+
+deps() {
+  local missing=() package
+  for package in "${packages[@]}"; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return
+  local root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { echo "do: run as root or install sudo, to install: ${missing[*]}" >&2; exit 77; }
+    root=(sudo)
+  fi
+  echo "installing ${missing[*]}" >&2
+  "${root[@]}" apt-get update -qq
+  "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2
+}
+
+build_target() {
+  cmake --preset "$preset" >/dev/null
+  cmake --build "$build" -j "$jobs" "$@"
+}
+
+run_tests() {
+  deps
+  build_target
+  ctest --test-dir "$build" --output-on-failure -j "$jobs" "$@"
+}
+
+demo() {
+  deps
+  build_target --target dubsar
+  local dubsar=$build/app/dubsar out=out
+  mkdir -p "$out"
+  local scan=${1:-$out/scan.h5}
+  if [ $# -eq 0 ]; then
+    "$dubsar" phantom "$scan" --preset demo
+  fi
+  "$dubsar" process "$scan" -o "$out/tablet.exa" --json "$out/report.json"
+  "$dubsar" export "$out/tablet.exa" "$out/tablet.ply"
+  "$dubsar" export "$out/tablet.exa" "$out/tablet.stl" --partition tablet
+  "$dubsar" render "$out/tablet.exa" -o "$out/tablet.png" --partition tablet
+  "$dubsar" render "$out/tablet.exa" -o "$out/envelope.png" --view orbit
+  if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && "$dubsar" view --help >/dev/null 2>&1; then
+    "$dubsar" view "$out/tablet.exa"
+  fi
+}
+
+verb=${1:-}
+[ $# -gt 0 ] && shift
+case "$verb" in
+  demo) demo "$@" ;;
+  test) run_tests "$@" ;;
+  build) deps; build_target --target dubsar "$@" ;;
+  bench) deps; build_target --target dubsar_bench; "$build/tests/bench/dubsar_bench" "$@" ;;
+  deps) deps ;;
+  format) git ls-files '*.cpp' '*.h' | xargs clang-format -i ;;
+  *) usage; [ -z "$verb" ] || [ "$verb" = help ] || exit 64 ;;
+esac

@@ -1,0 +1,76 @@
+// What the whole chain promises, measured against phantoms whose truth is known: no option is given.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/phantom/phantom_source.h"
+#include "core/phantom/write_phantom.h"
+#include "core/pipeline/pipeline.h"
+#include "tests/core/phantom/truth_compare.h"
+
+namespace dubsar {
+namespace {
+namespace fs = std::filesystem;
+
+class EnclosedTablet : public ::testing::TestWithParam<std::uint64_t> {};
+
+Dims scan_dims() { return {512, 272, 472}; }
+
+TEST_P(EnclosedTablet, IsSeparatedAccuratelyAndReadably) {
+  const fs::path scan = fs::temp_directory_path() / fmt::format("dubsar_accept_{}_{}.h5", ::getpid(), GetParam());
+  struct Remove {
+    fs::path path;
+    ~Remove() { fs::remove(path); }
+  } remove{scan};
+  SilentProgress progress;
+  phantom::PhantomOptions wanted;
+  wanted.dims = scan_dims();
+  wanted.seed = GetParam();
+  const auto made = phantom::write_phantom(scan, std::nullopt, wanted, progress);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_GE(made->glued_fraction, 0.05);
+  EXPECT_LE(made->glued_fraction, 0.30);
+
+  PipelineOptions options;
+  options.import.path = scan;
+  options.occlusion = false;
+  const auto result = run_pipeline(options, progress);
+  ASSERT_TRUE(result) << result.error().message;
+  const PipelineReport& report = result->report;
+  EXPECT_EQ(report.mesh.nonmanifold_edges + report.mesh.nonmanifold_vertices + report.mesh.inconsistent_edges, 0);
+  EXPECT_EQ(report.mesh.degenerate_triangles, 0);
+  EXPECT_EQ(report.mesh.boundary_edges, 0);
+  for (const char* part : {"tablet", "envelope"}) {
+    const auto mesh = make_tri_mesh(result->model, {.part = part});
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    EXPECT_TRUE(check_mesh(mesh->positions, mesh->triangles).watertight()) << part;
+  }
+
+  // Judged without the patches: they stand where no surface can be seen.
+  const auto mesh = make_tri_mesh(result->model, {.fill_holes = false});
+  ASSERT_TRUE(mesh);
+  std::vector<glm::vec3> positions(mesh->positions.size());
+  std::transform(mesh->positions.begin(), mesh->positions.end(), positions.begin(),
+                 [&](const glm::vec3& p) { return glm::vec3(mesh->frame.input_vox_from_grid(p)); });
+  const auto truth = phantom::Phantom::create(wanted);
+  ASSERT_TRUE(truth);
+  const phantom::TruthComparison score =
+      phantom::compare(**truth, {positions, mesh->triangles, mesh->partition, 2.0});
+  SCOPED_TRACE(score.text());
+  std::printf("seed %llu\n%s", static_cast<unsigned long long>(GetParam()), score.text().c_str());
+  EXPECT_LE(score.resolved.rms, 0.15);
+  EXPECT_LE(score.resolved.p95, 0.30);
+  for (const phantom::PartScore& owner : score.owner) {
+    EXPECT_GE(owner.purity(), 0.99);
+    EXPECT_GE(owner.recall(), 0.99);
+  }
+  EXPECT_GE(score.wedges.kept_fraction(), 0.95);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, EnclosedTablet, ::testing::Values(1, 2, 3, 4, 5));
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,69 @@
+#include "core/pipeline/stage_clock.h"
+
+#include <gtest/gtest.h>
+
+#include "core/pipeline/tapped_source.h"
+
+namespace dubsar {
+namespace {
+
+TEST(StageClock, RecordsTimeMemoryAndWork) {
+  StageClock clock;
+  clock.start("fill", "byte");
+  std::vector<char> memory(64 << 20);
+  for (std::size_t i = 0; i < memory.size(); i += 4096) memory[i] = 1;
+  clock.finish(static_cast<std::int64_t>(memory.size()));
+  ASSERT_EQ(clock.records().size(), 1u);
+  const StageRecord& record = clock.records()[0];
+  EXPECT_EQ(record.work, 64 << 20);
+  EXPECT_GT(record.peak_rss_mib, 64.0);
+  EXPECT_GE(record.wall_s, 0.0);
+}
+
+TEST(StageClock, SplittingKeepsTheSum) {
+  StageClock clock;
+  clock.start("resample", "voxel");
+  clock.finish(10);
+  const double wall = clock.records()[0].wall_s;
+  clock.split_before_last("import", 0.25 * wall, 0.0, 10, "voxel");
+  ASSERT_EQ(clock.records().size(), 2u);
+  EXPECT_EQ(clock.records()[0].name, "import");
+  EXPECT_DOUBLE_EQ(clock.records()[0].wall_s + clock.records()[1].wall_s, wall);
+}
+
+Volume<float> ramp(Dims dims) {
+  Volume<float> volume(dims);
+  for (std::int64_t i = 0; i < dims.count(); ++i) volume.voxels[i] = static_cast<float>(i);
+  return volume;
+}
+
+TEST(TappedSource, PassesSlabsOnAndCountsEachSliceOnce) {
+  const Volume<float> volume = ramp({4, 3, 8});
+  VolumeSource source(volume);
+  SilentProgress progress;
+  TappedSource tap(source, progress);
+  std::vector<float> slab(4 * 3 * 5);
+  ASSERT_TRUE(tap.read(0, 5, slab));
+  ASSERT_TRUE(tap.read(3, 8, slab));
+  EXPECT_EQ(slab.back(), 95.0f);
+  EXPECT_EQ(tap.voxels(), 96);
+  progress.cancel();
+  EXPECT_EQ(tap.read(0, 1, slab).error().kind, ErrorKind::kCancelled);
+}
+
+TEST(SampledSource, TakesGroupsOfSlicesFromTheWholeHeight) {
+  const Volume<float> volume = ramp({1, 1, 100});
+  VolumeSource source(volume);
+  SampledSource sample(source, 12, 3);
+  ASSERT_EQ(sample.dims().z, 12);
+  std::vector<float> all(12), parts(12);
+  ASSERT_TRUE(sample.read(0, 12, all));
+  EXPECT_EQ(all, (std::vector<float>{0, 1, 2, 25, 26, 27, 50, 51, 52, 75, 76, 77}));
+  for (std::int64_t z = 0; z < 12; z += 4) ASSERT_TRUE(sample.read(z, z + 4, std::span(parts).subspan(static_cast<std::size_t>(z))));
+  EXPECT_EQ(parts, all);
+  SampledSource whole(source, 1000, 3);
+  EXPECT_EQ(whole.dims().z, 100);
+}
+
+}  // namespace
+}  // namespace dubsar
