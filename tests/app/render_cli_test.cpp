@@ -63,9 +63,8 @@ TEST_F(RenderCommand, EverySideAndStyleGivesAnotherPicture) {
   };
   for (const char* view : {"front", "back", "left", "right", "top", "bottom", "orbit", "orbit:70,-20"}) add({"--view", view});
   for (const char* style : {"phong", "table", "black-white", "sky-sun", "ao"}) add({"--style", style});
-  add({"--partition", "0"});
   add({"--colour-parts"});
-  EXPECT_EQ(pictures.size(), 15u);
+  EXPECT_EQ(pictures.size(), 14u);
 }
 
 TEST_F(RenderCommand, ATiffIsWrittenAndUnknownPartsAreRefused) {
