@@ -25,13 +25,15 @@ class OptimalTriangulation {
   OptimalTriangulation(const Loop& loop, std::vector<std::uint32_t> polygon, LoopWeight weight)
       : loop_(loop),
         polygon_(std::move(polygon)),
-        by_bend_(weight == LoopWeight::kDihedralThenArea),
+        weight_(weight),
         n_(polygon_.size()),
         best_(n_ * n_),
         apex_(n_ * n_, 0) {}
 
   /// Appends triangles in loop indices; false when every triangulation needs a forbidden edge.
   Result<bool> solve(std::vector<Triangle>& triangles, Progress& progress) {
+    constexpr float kStiffness = 1.0f / 16.0f;  // of the loop's length: two fifths of its radius
+    for (std::size_t i = 0; i < n_; ++i) stiffness_ += kStiffness * glm::distance(at(i), at((i + 1) % n_));
     for (std::size_t i = 0; i + 1 < n_; ++i) best_[i * n_ + i + 1] = {0.0f, 0.0f};
     for (std::size_t gap = 2; gap < n_; ++gap) {
       if (progress.cancelled()) return cancelled_error();
@@ -64,10 +66,22 @@ class OptimalTriangulation {
       normal /= length;
       return true;
     }
-    const std::uint32_t a = polygon_[i];
-    if (loop_.rim_normals.empty() || polygon_[j] != (a + 1) % loop_.positions.size()) return false;
-    normal = loop_.rim_normals[a];
+    return rim_normal(polygon_[i], polygon_[j], normal);
+  }
+
+  /// Of the loop between two of its vertices, halfway.
+  bool rim_normal(std::uint32_t from, std::uint32_t to, glm::vec3& normal) const {
+    const auto n = static_cast<std::uint32_t>(loop_.positions.size());
+    if (loop_.rim_normals.empty()) return false;
+    normal = loop_.rim_normals[(from + (to + n - from) % n / 2) % n];
     return true;
+  }
+
+  void bend(Weight& w, float value, std::size_t i, std::size_t j) const {
+    if (weight_ == LoopWeight::kDihedralThenArea)
+      w.bend = std::max(w.bend, value);
+    else
+      w.area += stiffness_ * value * glm::distance(at(i), at(j));
   }
 
   void find_apex(std::size_t i, std::size_t j) {
@@ -83,13 +97,13 @@ class OptimalTriangulation {
       const glm::vec3 vector = glm::cross(at(k) - at(i), side);
       const float twice_area = glm::length(vector);
       w.area += 0.5f * twice_area;
-      if (by_bend_) {
+      if (weight_ != LoopWeight::kArea) {
         const glm::vec3 normal = twice_area > 0.0f ? vector / twice_area : glm::vec3(0.0f);
         glm::vec3 other;
-        if (far_normal(i, k, other)) w.bend = std::max(w.bend, 1.0f - glm::dot(normal, other));
-        if (far_normal(k, j, other)) w.bend = std::max(w.bend, 1.0f - glm::dot(normal, other));
-        if (closing && far_normal_of_closing(other))
-          w.bend = std::max(w.bend, 1.0f - glm::dot(normal, other));
+        if (far_normal(i, k, other)) bend(w, 1.0f - glm::dot(normal, other), i, k);
+        if (far_normal(k, j, other)) bend(w, 1.0f - glm::dot(normal, other), k, j);
+        if (closing && rim_normal(polygon_[j], polygon_[0], other))
+          bend(w, 1.0f - glm::dot(normal, other), i, j);
       }
       if (w < best) {
         best = w;
@@ -100,61 +114,68 @@ class OptimalTriangulation {
     apex_[i * n_ + j] = static_cast<std::uint32_t>(apex);
   }
 
-  bool far_normal_of_closing(glm::vec3& normal) const {
-    const std::uint32_t last = polygon_[n_ - 1];
-    if (loop_.rim_normals.empty() || polygon_[0] != (last + 1) % loop_.positions.size()) return false;
-    normal = loop_.rim_normals[last];
-    return true;
-  }
-
   const Loop& loop_;
   std::vector<std::uint32_t> polygon_;
-  bool by_bend_;
+  LoopWeight weight_;
+  float stiffness_ = 0.0f;  ///< of kAreaAndBend
   std::size_t n_;
   std::vector<Weight> best_;
   std::vector<std::uint32_t> apex_;
 };
 
+/// A fan around one new vertex: needs no inner edge between vertices of the loop.
+void add_star(const Loop& loop, const std::vector<std::uint32_t>& polygon, LoopFill& fill) {
+  const auto centre = static_cast<std::uint32_t>(loop.positions.size() + fill.added.size());
+  glm::vec3 middle(0.0f);
+  for (const std::uint32_t v : polygon) middle += loop.positions[v];
+  fill.added.push_back(middle / static_cast<float>(polygon.size()));
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+    fill.triangles.push_back({polygon[i], polygon[(i + 1) % polygon.size()], centre});
+}
+
 /// Triangulates a polygon of any size: a long one is cut into chains along a coarse polygon, which are
 /// treated alike.
-Result<bool> triangulate_polygon(const Loop& loop, const std::vector<std::uint32_t>& polygon,
-                                 const LoopFillOptions& options, std::vector<Triangle>& triangles,
-                                 Progress& progress) {
+Result<void> triangulate_polygon(const Loop& loop, const std::vector<std::uint32_t>& polygon,
+                                 const LoopFillOptions& options, LoopFill& fill, Progress& progress) {
   const std::size_t n = polygon.size();
-  if (n < 3) return true;
+  if (n < 3) return {};
   const auto limit = static_cast<std::size_t>(std::max(options.exact_limit, 8));
-  if (n <= limit) return OptimalTriangulation(loop, polygon, options.weight).solve(triangles, progress);
+  const auto solve = [&](const std::vector<std::uint32_t>& piece) -> Result<void> {
+    DUBSAR_ASSIGN(const bool done,
+                  OptimalTriangulation(loop, piece, options.weight).solve(fill.triangles, progress));
+    if (!done) {
+      fill.star = true;
+      add_star(loop, piece, fill);
+    }
+    return {};
+  };
+  if (n <= limit) return solve(polygon);
 
-  std::vector<std::uint32_t> coarse;
-  std::size_t from = 0;
-  coarse.push_back(polygon[0]);
   const auto allowed = [&](std::size_t a, std::size_t b) {
     return b == a + 1 || !loop.forbidden || !loop.forbidden(polygon[a], polygon[b]);
   };
-  for (std::size_t piece = 1; piece <= limit && from + 1 < n; ++piece) {
-    // The last chain ends at the last vertex; polygon[n - 1] -> polygon[0] is an edge of the polygon already.
-    std::size_t to = piece == limit ? n - 1 : std::max(from + 1, piece * (n - 1) / limit);
-    while (to < n - 1 && !allowed(from, to)) ++to;
-    if (!allowed(from, to)) return false;
-    const std::vector<std::uint32_t> chain(polygon.begin() + static_cast<std::ptrdiff_t>(from),
-                                           polygon.begin() + static_cast<std::ptrdiff_t>(to) + 1);
-    DUBSAR_ASSIGN(const bool done, triangulate_polygon(loop, chain, options, triangles, progress));
-    if (!done) return false;
-    coarse.push_back(polygon[to]);
-    from = to;
+  std::vector<std::size_t> cuts{0};
+  for (std::size_t piece = 1; piece < limit; ++piece) {
+    std::size_t to = std::max(cuts.back() + 1, piece * (n - 1) / limit);
+    while (to < n - 1 && !allowed(cuts.back(), to)) ++to;
+    if (to < n - 1) cuts.push_back(to);
   }
-  return OptimalTriangulation(loop, coarse, options.weight).solve(triangles, progress);
-}
-
-LoopFill star(const Loop& loop) {
-  const auto n = static_cast<std::uint32_t>(loop.positions.size());
-  LoopFill fill;
-  fill.star = true;
-  glm::vec3 middle(0.0f);
-  for (const glm::vec3& p : loop.positions) middle += p;
-  fill.added.push_back(middle / static_cast<float>(n));
-  for (std::uint32_t i = 0; i < n; ++i) fill.triangles.push_back({i, (i + 1) % n, n});
-  return fill;
+  // The last chain ends at the last vertex; from there to the first is an edge of the polygon already.
+  while (cuts.size() > 1 && !allowed(cuts.back(), n - 1)) cuts.pop_back();
+  cuts.push_back(n - 1);
+  if (cuts.size() < 3) {
+    fill.star = true;
+    add_star(loop, polygon, fill);
+    return {};
+  }
+  std::vector<std::uint32_t> coarse{polygon[0]};
+  for (std::size_t c = 0; c + 1 < cuts.size(); ++c) {
+    const std::vector<std::uint32_t> chain(polygon.begin() + static_cast<std::ptrdiff_t>(cuts[c]),
+                                           polygon.begin() + static_cast<std::ptrdiff_t>(cuts[c + 1]) + 1);
+    DUBSAR_TRY(triangulate_polygon(loop, chain, options, fill, progress));
+    coarse.push_back(polygon[cuts[c + 1]]);
+  }
+  return solve(coarse);
 }
 
 }  // namespace
@@ -165,8 +186,7 @@ Result<LoopFill> fill_loop(const Loop& loop, const LoopFillOptions& options, Pro
   std::vector<std::uint32_t> polygon(n);
   std::iota(polygon.begin(), polygon.end(), 0u);
   LoopFill fill;
-  DUBSAR_ASSIGN(const bool done, triangulate_polygon(loop, polygon, options, fill.triangles, progress));
-  if (!done) fill = star(loop);
+  DUBSAR_TRY(triangulate_polygon(loop, polygon, options, fill, progress));
   if (options.refine) {
     Patch patch(loop, std::move(fill.triangles), std::move(fill.added));
     DUBSAR_TRY(patch.refine(options.growth, progress));

@@ -59,7 +59,7 @@ float one(float) { return 1.0f; }
 
 std::vector<LoopFillOptions> variants() {
   std::vector<LoopFillOptions> all;
-  for (const LoopWeight weight : {LoopWeight::kArea, LoopWeight::kDihedralThenArea})
+  for (const LoopWeight weight : {LoopWeight::kArea, LoopWeight::kDihedralThenArea, LoopWeight::kAreaAndBend})
     for (const bool refine : {false, true}) {
       LoopFillOptions options;
       options.weight = weight;
