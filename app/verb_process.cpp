@@ -16,7 +16,7 @@ struct Options {
   std::string in, out;
   InputOptionTexts input;
   PipelineOptions pipeline;
-  double threshold = 0.0, radius = 64.0;
+  double threshold = 0.0, sharpen = 1.0, radius = 64.0;
   int rays = 160;
   bool no_resample = false, no_holes = false, no_ao = false, open_boundary = false;
 };
@@ -46,6 +46,8 @@ void add_filter_options(CLI::App& command, Options& options) {
   group->add_option("--iterations", p.denoise.iterations, "passes of the filter, 0: none")->check(CLI::Range(0, 32));
   group->add_option("--sigma", p.denoise.sigma, "noise in grey values (default: estimated before each pass)")
       ->check(CLI::PositiveNumber);
+  group->add_option("--sharpen", options.sharpen, "give edges back what 2:1 took: 0 off, 1 default where the noise allows it")
+      ->check(CLI::Range(0.0, 4.0));
   group->add_option("--threshold", options.threshold, "isovalue in grey values (default: estimated)");
   add_choice<ThresholdMethod>(*group, "--threshold-method", p.estimate.method,
                               {{"auto", ThresholdMethod::kAuto},
@@ -92,6 +94,7 @@ Result<VerbResult> run(Options options, const CLI::App& command, const CommonOpt
   p.occlusion = !options.no_ao;
   p.occlusion_options.rays = options.rays;
   p.occlusion_options.radius_vox = static_cast<float>(options.radius);
+  if (command.count("--sharpen") > 0) p.sharpen = static_cast<float>(options.sharpen);
   if (command.count("--threshold") > 0) p.threshold = static_cast<float>(options.threshold);
   DUBSAR_ASSIGN(PipelineResult result, run_pipeline(p, progress));
   DUBSAR_TRY(write_product(options.out, result, progress));

@@ -28,6 +28,7 @@ struct PipelineOptions {
   ImportOptions import;
   bool resample = true;                 ///< Gauss 3x3x3 and 2:1
   DenoiseOptions denoise;               ///< sigma 0: estimated anew before each iteration
+  std::optional<float> sharpen;         ///< amount (sharpen.h); default: 1 where the noise allows it, see volume_stages.cpp
   EstimateOptions estimate;
   std::optional<float> threshold;       ///< isovalue; overrides the estimate
   int offset_bits = 4;                  ///< N
@@ -51,6 +52,7 @@ struct PipelineReport {
   std::int64_t nonfinite_voxels = 0;
   float nonfinite_fill = 0.0f;
   Dims grid;                         ///< processed grid
+  float sharpen = 0.0f;              ///< amount that was used
   std::vector<StageRecord> stages;
   std::vector<FilterStep> filters;
   Estimates estimates;               ///< those that the threshold comes from

@@ -24,6 +24,7 @@ json parameters_json(const PipelineReport& report, const PipelineOptions& option
         {"window", denoise.window},
         {"iterations", denoise.iterations},
         {"sigma", denoise.sigma > 0.0 ? json(denoise.sigma) : json("estimated")}}},
+      {"sharpen", report.sharpen},
       {"threshold_method", options.threshold ? "given" : kThresholdNames[static_cast<std::size_t>(options.estimate.method)]},
       {"threshold", report.threshold},
       {"offset_bits", options.offset_bits},
