@@ -58,7 +58,6 @@ Result<VerbResult> volume_info(const Options& options) {
   text += fmt::format("  process      needs about {:.0f} MiB for volumes, and 200 bytes for each vertex\n",
                       static_cast<double>(process_bytes(dims)) / 1048576.0);
   for (const VolumeCandidate& other : info.candidates) text += fmt::format("  also there   {} ({})\n", other.dataset, other.dtype);
-  for (const std::string& warning : info.warnings) log(LogLevel::kWarning, warning);
   return result;
 }
 

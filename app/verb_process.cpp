@@ -75,8 +75,9 @@ void add_surface_options(CLI::App& command, Options& options) {
   add_choice<SegmentMethod>(*group, "--segment", p.segment.method,
                             {{"nested", SegmentMethod::kNested},
                              {"concavity", SegmentMethod::kConcavity},
+                             {"bodies", SegmentMethod::kBodies},
                              {"none", SegmentMethod::kNone}},
-                            "how parts are separated: nested (default), the paper's concavity threshold, or none");
+                            "how parts are separated: nested (default), the paper's concavity threshold, closed bodies, or none");
   group->add_option("--concavity", p.segment.concavity, "k_min per grid step below which --segment concavity cuts");
   group->add_flag("--no-fill-holes", options.no_holes, "leave the holes that segmentation cuts");
   group->add_flag("--no-ao", options.no_ao, "skip ambient occlusion");

@@ -27,16 +27,31 @@ Result<void> smooth_and_measure(const PipelineOptions& options, PipelineResult& 
   return {};
 }
 
-Result<void> separate(const PipelineOptions& options, PipelineResult& result, StageClock& clock, Progress& progress) {
+Result<void> separate_with(const SegmentOptions& segment_options, bool fill, PipelineResult& result, StageClock& clock,
+                           Progress& progress) {
   SurfaceModel& model = result.model;
   clock.start("segment", "face");
-  DUBSAR_ASSIGN(result.report.segment, segment(model, options.segment, progress));
+  DUBSAR_ASSIGN(result.report.segment, segment(model, segment_options, progress));
   clock.finish(model.mesh.quad_count());
-  if (!options.fill_holes) return {};
   clock.start("fill_holes", "triangle");
-  DUBSAR_ASSIGN(const HoleReport holes, fill_holes(model, HoleOptions{}, progress));
-  clock.finish(holes.triangles);
+  std::int64_t triangles = 0;
+  if (fill) {
+    DUBSAR_ASSIGN(const HoleReport holes, fill_holes(model, HoleOptions{}, progress));
+    triangles = holes.triangles;
+  } else {
+    DUBSAR_TRY(measure_partitions(model));
+  }
+  clock.finish(triangles);
   return {};
+}
+
+Result<void> separate(const PipelineOptions& options, PipelineResult& result, StageClock& clock, Progress& progress) {
+  DUBSAR_TRY(separate_with(options.segment, options.fill_holes, result, clock, progress));
+  if (options.segment.method != SegmentMethod::kNested || plausible_enclosure(result.model.partitions)) return {};
+  log_info("segment: the inner body does not fill a cavity as an enclosed tablet would; the bodies stay whole");
+  SegmentOptions bodies = options.segment;
+  bodies.method = SegmentMethod::kBodies;
+  return separate_with(bodies, options.fill_holes, result, clock, progress);
 }
 
 /// The light of each dual vertex, from the triangles of its own part.
@@ -54,7 +69,6 @@ Result<void> add_occlusion(const PipelineOptions& options, PipelineResult& resul
 Result<void> check(PipelineResult& result, StageClock& clock) {
   PipelineReport& report = result.report;
   clock.start("check", "triangle");
-  DUBSAR_TRY(measure_partitions(result.model));
   DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(result.model));
   report.mesh = check_mesh(mesh.positions, mesh.triangles);
   clock.finish(report.mesh.triangles);
@@ -87,7 +101,6 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   DUBSAR_TRY(check(result, clock));
   model.provenance = provenance_json(result.report, options).dump();
   result.report.stages = clock.records();
-  for (const std::string& warning : result.report.warnings) log(LogLevel::kWarning, warning);
   return result;
 }
 

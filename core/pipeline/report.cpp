@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::array<const char*, 4> kDenoiseNames{"median", "gauss", "bilateral", "joint_bilateral"};
 constexpr std::array<const char*, 6> kThresholdNames{"auto", "valley", "sigmas", "half", "otsu", "mixture"};
-constexpr std::array<const char*, 3> kSegmentNames{"nested", "concavity", "none"};
+constexpr std::array<const char*, 4> kSegmentNames{"nested", "concavity", "bodies", "none"};
 
 json dims_json(const Dims& dims) { return {dims.x, dims.y, dims.z}; }
 json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }

@@ -119,15 +119,16 @@ Result<SurfaceSamples> run_volume_stages(const PipelineOptions& options, Pipelin
                                          StageClock& clock, Progress& progress) {
   DUBSAR_ASSIGN(const std::unique_ptr<ImportedVolume> scan, open_volume(options.import));
   report.input = scan->info();
-  if (!scan->frame().input_voxel.known())
-    report.warnings.push_back("the voxel size is unknown, 1 voxel = 1 mm is used; give it with --voxel-size");
+  report.warnings = report.input.warnings;
   DUBSAR_TRY(estimate_raw(*scan, options, report, clock, progress));
   DUBSAR_ASSIGN(Volume<float> volume, import_and_resample(*scan, options.resample, frame, clock, progress));
   report.nonfinite_voxels = scan->nonfinite_count();
   report.nonfinite_fill = scan->nonfinite_fill();
-  if (report.nonfinite_voxels > 0)
+  if (report.nonfinite_voxels > 0) {
     report.warnings.push_back(fmt::format("{} voxels were NaN or Inf and count as {:g}", report.nonfinite_voxels,
                                           report.nonfinite_fill));
+    log(LogLevel::kWarning, report.warnings.back());
+  }
   report.grid = volume.dims;
   DUBSAR_TRY(denoise_and_estimate(volume, options, report, clock, progress));
   DUBSAR_TRY(choose_threshold(options, report));

@@ -261,6 +261,14 @@ Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options
     progress.end();
     return report;
   }
+  if (options.method == SegmentMethod::kBodies) {
+    Partitioning partitioning(whole, options);
+    partitioning.add_bodies("object");
+    report.small_pieces = partitioning.add_rest();
+    std::move(partitioning).store(model);
+    progress.end();
+    return report;
+  }
   DUBSAR_ASSIGN(std::vector<FaceRole> roles, options.method == SegmentMethod::kNested
                                                  ? roles_by_cut(model, scene, options, progress)
                                                  : roles_by_concavity(model, scene, options, progress));
@@ -293,6 +301,20 @@ Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options
   progress.advance(1);
   progress.end();
   return report;
+}
+
+bool plausible_enclosure(const std::vector<Partition>& partitions) {
+  constexpr double kLeastFilling = 0.5;
+  const Partition *tablet = nullptr, *outside = nullptr, *inside = nullptr;
+  for (const Partition& p : partitions) {
+    if (p.name == "tablet") tablet = &p;
+    if (p.name == "envelope outside") outside = &p;
+    if (p.name == "envelope inside") inside = &p;
+  }
+  if (tablet == nullptr || outside == nullptr || inside == nullptr) return true;
+  const double cavity = -inside->volume_mm3;
+  return tablet->volume_mm3 > kLeastFilling * cavity && cavity > 0.0 && tablet->volume_mm3 < cavity &&
+         cavity < outside->volume_mm3;
 }
 
 }  // namespace dubsar

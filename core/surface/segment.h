@@ -15,6 +15,7 @@ enum class SegmentMethod {
   kNested,     ///< exterior and depth of the air, then an exact minimum cut along concave creases
   kConcavity,  ///< the paper's: cut where the smallest principal curvature falls below a threshold, take
                ///< components
+  kBodies,     ///< closed bodies as they are, nothing is separated
   kNone,       ///< one partition
 };
 
@@ -45,5 +46,10 @@ struct SegmentReport {
 /// Deterministic for any thread count. kCancelled. Cost: about 1.5 us a face on one core; memory about 150
 /// bytes a face and 2 bits a grid point.
 Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options, Progress& progress);
+
+/// Are measured partitions named "tablet" and "envelope inside" an enclosed tablet? An envelope was pressed on around its
+/// tablet, so that the tablet fills at least half of the cavity (0.84 on phantoms); a brain in its skull, fibres and
+/// foams fill less, or have walls that enclose nothing. True for anything that does not claim to be one.
+bool plausible_enclosure(const std::vector<Partition>& partitions);
 
 }  // namespace dubsar

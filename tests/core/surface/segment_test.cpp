@@ -248,6 +248,21 @@ TEST(Segment, ResultDoesNotDependOnThreads) {
   EXPECT_EQ(patches[0], patches[2]);
 }
 
+TEST(Segment, ATabletThatRattlesInItsCavityIsNotBelieved) {
+  std::vector<Partition> parts{{0, "tablet", "tablet", 1.0, 84.0, true},
+                               {1, "envelope outside", "envelope", 1.0, 200.0, true},
+                               {2, "envelope inside", "envelope", 1.0, -100.0, true}};
+  EXPECT_TRUE(plausible_enclosure(parts));
+  parts[0].volume_mm3 = 39.0;  // a brain in its skull
+  EXPECT_FALSE(plausible_enclosure(parts));
+  parts[0].volume_mm3 = -84.0;  // walls that enclose nothing
+  EXPECT_FALSE(plausible_enclosure(parts));
+  parts[0].volume_mm3 = 84.0;
+  parts[2].volume_mm3 = 100.0;
+  EXPECT_FALSE(plausible_enclosure(parts));
+  EXPECT_TRUE(plausible_enclosure({{0, "object", "object", 1.0, 1.0, true}}));
+}
+
 TEST(Segment, CancelStopsIt) {
   SurfaceModel model = scene::extract_model({96, 64, 96}, Nested{});
   SilentProgress progress;
