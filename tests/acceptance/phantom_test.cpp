@@ -15,20 +15,24 @@ namespace dubsar {
 namespace {
 namespace fs = std::filesystem;
 
-class EnclosedTablet : public ::testing::TestWithParam<std::uint64_t> {};
+struct Scan {
+  std::uint64_t seed;
+  double snr_db;  ///< of the raw scan
+};
 
-Dims scan_dims() { return {512, 272, 472}; }
+class EnclosedTablet : public ::testing::TestWithParam<Scan> {};
 
 TEST_P(EnclosedTablet, IsSeparatedAccuratelyAndReadably) {
-  const fs::path scan = fs::temp_directory_path() / fmt::format("dubsar_accept_{}_{}.h5", ::getpid(), GetParam());
+  const fs::path scan = fs::temp_directory_path() / fmt::format("dubsar_accept_{}_{}.h5", ::getpid(), GetParam().seed);
   struct Remove {
     fs::path path;
     ~Remove() { fs::remove(path); }
   } remove{scan};
   SilentProgress progress;
   phantom::PhantomOptions wanted;
-  wanted.dims = scan_dims();
-  wanted.seed = GetParam();
+  wanted.dims = {512, 272, 472};
+  wanted.seed = GetParam().seed;
+  wanted.snr_db = GetParam().snr_db;
   const auto made = phantom::write_phantom(scan, std::nullopt, wanted, progress);
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_GE(made->glued_fraction, 0.05);
@@ -60,7 +64,7 @@ TEST_P(EnclosedTablet, IsSeparatedAccuratelyAndReadably) {
   const phantom::TruthComparison score =
       phantom::compare(**truth, {positions, mesh->triangles, mesh->partition, 2.0});
   SCOPED_TRACE(score.text());
-  std::printf("seed %llu\n%s", static_cast<unsigned long long>(GetParam()), score.text().c_str());
+  fmt::print("seed {}, {} dB\n{}", GetParam().seed, GetParam().snr_db, score.text());
   EXPECT_LE(score.resolved.rms, 0.15);
   EXPECT_LE(score.resolved.p95, 0.30);
   for (const phantom::PartScore& owner : score.owner) {
@@ -70,7 +74,11 @@ TEST_P(EnclosedTablet, IsSeparatedAccuratelyAndReadably) {
   EXPECT_GE(score.wedges.kept_fraction(), 0.95);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, EnclosedTablet, ::testing::Values(1, 2, 3, 4, 5));
+INSTANTIATE_TEST_SUITE_P(Seeds, EnclosedTablet, ::testing::Values(Scan{1, 17.0}, Scan{2, 17.0}, Scan{3, 17.0}, Scan{4, 17.0},
+                                           Scan{5, 17.0}, Scan{6, 23.0}),
+                         [](const auto& info) {
+                           return fmt::format("seed{}at{:.0f}dB", info.param.seed, info.param.snr_db);
+                         });
 
 }  // namespace
 }  // namespace dubsar

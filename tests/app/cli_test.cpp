@@ -166,6 +166,17 @@ TEST(CommandLine, EachPartAsStlIsWatertight) {
   }
 }
 
+TEST(CommandLine, SimplifyingKeepsAPartWatertightWithFewerTriangles) {
+  const auto triangles = [](const std::vector<std::string>& extra) {
+    std::vector<std::string> arguments{"export", tablet(), in_folder("s.ply"), "--partition", "0", "--json", "-"};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    const json result = json::parse(run_dubsar(arguments).out);
+    EXPECT_TRUE(result["watertight"].get<bool>());
+    return result["mesh"]["triangles"].get<int>();
+  };
+  EXPECT_LT(triangles({"--simplify", "--simplify-distance", "0.3", "--simplify-angle", "30"}), 0.8 * triangles({}));
+}
+
 TEST(CommandLine, OneThreadAndSevenGiveTheSameBytes) {
   const auto bytes = [](const char* name, const char* threads) {
     const std::string file = in_folder(name);
