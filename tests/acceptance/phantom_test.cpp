@@ -76,8 +76,8 @@ TEST_P(EnclosedTablet, IsSeparatedAccuratelyAndReadably) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, EnclosedTablet, ::testing::Values(Scan{1, 17.0}, Scan{2, 17.0}, Scan{3, 17.0}, Scan{4, 17.0},
                                            Scan{5, 17.0}, Scan{6, 23.0}),
-                         [](const auto& info) {
-                           return fmt::format("seed{}at{:.0f}dB", info.param.seed, info.param.snr_db);
+                         [](const auto& instance) {
+                           return fmt::format("seed{}at{:.0f}dB", instance.param.seed, instance.param.snr_db);
                          });
 
 }  // namespace
