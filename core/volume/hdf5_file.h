@@ -1,6 +1,6 @@
 #pragma once
-// HDF5 files through our own small types. hdf5_file.cpp is the only source that includes hdf5.h; it serialises every
-// call into the library with one mutex, so that all functions here may be called from any thread.
+// HDF5 files through our own small types. Only hdf5_api.h includes hdf5.h; every call into the library holds one mutex,
+// so that all functions here may be called from any thread.
 
 #include <array>
 #include <cstddef>
