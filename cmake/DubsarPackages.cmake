@@ -18,12 +18,14 @@ pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
 pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(egl REQUIRED IMPORTED_TARGET egl)
+pkg_check_modules(libusb REQUIRED IMPORTED_TARGET libusb-1.0)
 
 # HDF5: the serial C library by pkg-config, never the OpenMPI build that find_package may prefer.
 pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial)
 
 if(DUBSAR_TESTS)
   find_package(GTest REQUIRED)
+  pkg_check_modules(umockdev IMPORTED_TARGET umockdev-1.0)  # device tests on simulated kernel interfaces
 endif()
 if(DUBSAR_BENCH)
   find_package(benchmark REQUIRED)

@@ -1,0 +1,153 @@
+#include "devices/leap/lmc1_driver.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <thread>
+
+#include "devices/leap/lmc1_simulator.h"
+
+namespace dubsar {
+namespace {
+
+using std::chrono::steady_clock;
+
+Lmc1Options quick() {
+  Lmc1Options options;
+  options.calibration_settle = milliseconds(0);
+  return options;
+}
+
+template <class Condition>
+bool eventually(const Condition& condition) {
+  const auto until = steady_clock::now() + std::chrono::seconds(10);
+  while (steady_clock::now() < until) {
+    if (condition()) return true;
+    std::this_thread::yield();
+  }
+  return condition();
+}
+
+PosedHand hand_above() {
+  HandPose pose;
+  pose.palm.position_m = {0.0, 0.25, 0.0};
+  return pose_hand(pose);
+}
+
+std::ptrdiff_t threads_now() {
+  return std::distance(std::filesystem::directory_iterator("/proc/self/task"), std::filesystem::directory_iterator());
+}
+
+TEST(Lmc1Driver, DeliversTheFramesThatTheDeviceRendered) {
+  Lmc1SimulatorOptions device;
+  device.frame_limit = 3;
+  device.hands = [](std::uint64_t) { return std::vector{hand_above()}; };
+  Lmc1Simulator simulator(device);
+  SteadyClock clock;
+  auto driver = make_lmc1_driver([&] { return simulator.open(); }, quick(), clock);
+  ASSERT_TRUE(driver->start());
+  EXPECT_EQ(driver->calibration(), device.calibration);
+  EXPECT_TRUE(simulator.led_on(lmc1::Switch::kLedCentre));
+  EXPECT_EQ(simulator.exposure_us(), 200);
+  ASSERT_TRUE(eventually([&] { return driver->counters().frames == 3; }));
+  Frame frame;
+  ASSERT_TRUE(driver->poll(frame));
+  EXPECT_FALSE(driver->poll(frame));
+  EXPECT_EQ(frame.sequence, 3U);
+  EXPECT_EQ(frame.views, 2);
+  EXPECT_EQ(frame.exposure_us, 200);
+  EXPECT_FALSE(frame.dark);
+  EXPECT_GT(frame.time, 0);
+
+  HandRenderOptions render = device.render;
+  std::vector<std::uint8_t> left(640 * 240), right(640 * 240);
+  const PosedHand hand = hand_above();
+  HandRenderer(device.calibration, render).render({&hand, 1}, device.seed + 2, left, right);
+  const auto without_metadata = [](std::span<const std::uint8_t> view) { return view.first(view.size() - 6); };
+  EXPECT_TRUE(std::ranges::equal(without_metadata(frame.view(0)), without_metadata(left)));
+  EXPECT_TRUE(std::ranges::equal(without_metadata(frame.view(1)), without_metadata(right)));
+  driver->stop();
+  EXPECT_EQ(driver->state(), FrameSourceState::kStopped);
+  EXPECT_FALSE(simulator.led_on(lmc1::Switch::kLedCentre));
+}
+
+TEST(Lmc1Driver, UnpluggedIsAStateAndReplugStartsAgain) {
+  Lmc1SimulatorOptions device;
+  device.paced = true;
+  Lmc1Simulator simulator(device);
+  SteadyClock clock;
+  auto driver = make_lmc1_driver([&] { return simulator.open(); }, quick(), clock);
+  ASSERT_TRUE(driver->start());
+  ASSERT_TRUE(eventually([&] { return driver->counters().frames > 0; }));
+  simulator.unplug();
+  ASSERT_TRUE(eventually([&] { return driver->state() == FrameSourceState::kLost; }));
+  EXPECT_THAT(driver->reason(), testing::HasSubstr("unplugged"));
+  EXPECT_EQ(driver->start().error().kind, ErrorKind::kUnavailable);
+  simulator.plug();
+  ASSERT_TRUE(driver->start());
+  Frame frame;
+  EXPECT_TRUE(eventually([&] { return driver->poll(frame); }));
+  EXPECT_EQ(driver->state(), FrameSourceState::kRunning);
+}
+
+TEST(Lmc1Driver, HundredCyclesOfPlugAndUnplugLeaveNoThread) {
+  Lmc1SimulatorOptions device;
+  device.frame_limit = 1;
+  Lmc1Simulator simulator(device);
+  SteadyClock clock;
+  const auto before = threads_now();
+  for (int i = 0; i < 100; ++i) {
+    auto driver = make_lmc1_driver([&] { return simulator.open(); }, quick(), clock);
+    ASSERT_TRUE(driver->start());
+    simulator.unplug();
+    if (i % 2 == 0) {
+      ASSERT_TRUE(eventually([&] { return driver->state() == FrameSourceState::kLost; }));
+    }
+    driver.reset();
+    simulator.plug();
+  }
+  EXPECT_EQ(threads_now(), before);
+}
+
+TEST(Lmc1Driver, SettingsReachTheDeviceWhileItRuns) {
+  Lmc1SimulatorOptions device;
+  device.paced = true;
+  Lmc1Simulator simulator(device);
+  SteadyClock clock;
+  auto driver = make_lmc1_driver([&] { return simulator.open(); }, quick(), clock);
+  EXPECT_EQ(driver->set_exposure(100).error().kind, ErrorKind::kUsage);
+  ASSERT_TRUE(driver->start());
+  ASSERT_TRUE(driver->set_exposure(333));
+  EXPECT_FALSE(driver->set_exposure(5));
+  EXPECT_TRUE(eventually([&] { return simulator.exposure_us() == 333; }));
+  ASSERT_TRUE(driver->set_dark_frame_interval(2));
+  Frame frame;
+  EXPECT_TRUE(eventually([&] { return driver->poll(frame) && frame.dark; }));
+  EXPECT_TRUE(eventually([&] { return driver->poll(frame) && !frame.dark; }));
+}
+
+TEST(Lmc1Driver, ADeviceThatStallsItsCalibrationIsRefusedInOneSentence) {
+  Lmc1SimulatorOptions device;
+  device.calibration.baseline_mm = 0.0F;
+  Lmc1Simulator simulator(device);
+  SteadyClock clock;
+  auto driver = make_lmc1_driver([&] { return simulator.open(); }, quick(), clock);
+  const auto started = driver->start();
+  ASSERT_FALSE(started);
+  EXPECT_EQ(started.error().kind, ErrorKind::kBadData);
+  EXPECT_THAT(started.error().message, testing::HasSubstr("baseline of 0 mm"));
+  EXPECT_EQ(driver->state(), FrameSourceState::kStopped);
+}
+
+TEST(Lmc1Driver, UnknownModesAreRefused) {
+  Lmc1Simulator simulator(Lmc1SimulatorOptions{});
+  SteadyClock clock;
+  Lmc1Options options = quick();
+  options.width = 320;
+  auto driver = make_lmc1_driver([&] { return simulator.open(); }, options, clock);
+  EXPECT_EQ(driver->start().error().kind, ErrorKind::kUsage);
+}
+
+}  // namespace
+}  // namespace dubsar
