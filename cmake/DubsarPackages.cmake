@@ -18,6 +18,7 @@ pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
 pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(egl REQUIRED IMPORTED_TARGET egl)
+pkg_check_modules(hidapi REQUIRED IMPORTED_TARGET hidapi-hidraw)
 pkg_check_modules(libusb REQUIRED IMPORTED_TARGET libusb-1.0)
 
 # HDF5: the serial C library by pkg-config, never the OpenMPI build that find_package may prefer.

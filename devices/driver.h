@@ -1,0 +1,93 @@
+#pragma once
+// Joins a transport that may be lost and a protocol that knows only bytes.
+
+#include <array>
+#include <concepts>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/base/clock.h"
+#include "devices/reconnector.h"
+
+namespace dubsar {
+
+/// A protocol: start() after every opening, keep_up() in every poll (keep-alives), accept() per report (false: not a
+/// valid one), newest() gives what has changed since it was asked last.
+template <class P>
+concept DeviceProtocol = requires(P protocol, Transport& transport, std::span<const std::byte> bytes, TimestampNs now) {
+  typename P::Sample;
+  { protocol.start(transport, now) } -> std::same_as<Result<void>>;
+  { protocol.keep_up(transport, now) } -> std::same_as<Result<void>>;
+  { protocol.accept(bytes, now) } -> std::same_as<bool>;
+  { protocol.newest() } -> std::same_as<std::optional<typename P::Sample>>;
+};
+
+struct DriverCounts {
+  std::uint64_t accepted = 0, refused = 0, losses = 0;
+};
+
+/// Reads all that has come, newest wins. A lost device is a state: poll() then gives nothing and tries to open it
+/// again (Reconnector). A device that sends kMaxRefusedInARow invalid reports in a row is opened again too. One thread.
+template <DeviceProtocol Protocol>
+class Driver {
+ public:
+  using Sample = typename Protocol::Sample;
+  static constexpr int kMaxRefusedInARow = 1000;
+  static constexpr int kMaxReportsPerPoll = 1024;  ///< a flood cannot hold the caller
+  static constexpr std::size_t kBufferBytes = 4096;
+
+  Driver(OpenTransport open, Protocol protocol) : reconnector_(std::move(open)), protocol_(std::move(protocol)) {}
+
+  /// Waits at most `timeout` for the first report, then takes those that are there.
+  std::optional<Sample> poll(TimestampNs now, milliseconds timeout = milliseconds(0)) {
+    const int opened_before = reconnector_.times_opened();
+    Transport* const transport = reconnector_.transport(now);
+    if (!transport) return std::nullopt;
+    if (reconnector_.times_opened() != opened_before) {
+      refused_in_a_row_ = 0;
+      if (auto started = protocol_.start(*transport, now); !started) return lose(started.error(), now);
+    }
+    if (auto kept = protocol_.keep_up(*transport, now); !kept && kept.error().kind == ErrorKind::kUnavailable)
+      return lose(kept.error(), now);
+    for (int i = 0; i < kMaxReportsPerPoll; ++i) {
+      const auto length = transport->read(buffer_, i == 0 ? timeout : milliseconds(0));
+      if (!length) {
+        if (length.error().kind == ErrorKind::kUnavailable) lose(length.error(), now);
+        break;
+      }
+      if (*length == 0) break;
+      if (protocol_.accept(std::span<const std::byte>(buffer_).first(*length), now)) {
+        ++counts_.accepted;
+        refused_in_a_row_ = 0;
+        continue;
+      }
+      ++counts_.refused;
+      if (++refused_in_a_row_ < kMaxRefusedInARow) continue;
+      lose({ErrorKind::kUnavailable, "the device has sent 1000 invalid reports in a row and is opened again"}, now);
+      break;
+    }
+    return protocol_.newest();
+  }
+
+  void wake() noexcept { reconnector_.wake(); }
+  bool connected() const noexcept { return reconnector_.connected(); }
+  const std::string& reason() const noexcept { return reconnector_.reason(); }
+  const DriverCounts& counts() const noexcept { return counts_; }
+  Protocol& protocol() noexcept { return protocol_; }
+
+ private:
+  std::nullopt_t lose(const Error& error, TimestampNs now) {
+    ++counts_.losses;
+    reconnector_.lost(error, now);
+    return std::nullopt;
+  }
+  Reconnector reconnector_;
+  Protocol protocol_;
+  std::array<std::byte, kBufferBytes> buffer_{};
+  DriverCounts counts_;
+  int refused_in_a_row_ = 0;
+};
+
+}  // namespace dubsar

@@ -1,0 +1,22 @@
+#pragma once
+// Which devices are here, and why those that cannot be used cannot.
+
+#include <string>
+#include <vector>
+
+#include "devices/device_info.h"
+#include "devices/hid_transport.h"
+
+namespace dubsar {
+
+/// What a HID interface is to us: the driver's name, or nothing for devices that no driver knows.
+/// `permission`: 0, or the errno that opening it for reading and writing would give.
+std::vector<DeviceInfo> known_hid_devices(const std::vector<HidNode>& nodes, int (*permission)(const std::string& path));
+
+/// All HID devices that a driver knows, on this machine. Opens none. Any thread.
+std::vector<DeviceInfo> list_hid_devices();
+
+/// The spacenavd daemon's socket, when it is there. It holds its SpaceMouse, which then should be used through it.
+std::vector<DeviceInfo> list_spacenavd(const std::string& socket_path);
+
+}  // namespace dubsar

@@ -1,0 +1,253 @@
+#include "devices/socket_transport.h"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace dubsar {
+namespace {
+
+class Socket {
+ public:
+  explicit Socket(int descriptor) noexcept : descriptor_(descriptor) {}
+  Socket(Socket&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  Socket& operator=(Socket&&) = delete;
+  ~Socket() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  int get() const noexcept { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+struct Address {
+  sockaddr_storage storage{};
+  socklen_t length = sizeof(sockaddr_storage);
+  sockaddr* get() noexcept { return reinterpret_cast<sockaddr*>(&storage); }
+  const sockaddr* get() const noexcept { return reinterpret_cast<const sockaddr*>(&storage); }
+  /// Same family, address and port.
+  bool operator==(const Address& other) const noexcept {
+    if (storage.ss_family != other.storage.ss_family) return false;
+    if (storage.ss_family == AF_INET) {
+      const auto& a = reinterpret_cast<const sockaddr_in&>(storage);
+      const auto& b = reinterpret_cast<const sockaddr_in&>(other.storage);
+      return a.sin_port == b.sin_port && a.sin_addr.s_addr == b.sin_addr.s_addr;
+    }
+    const auto& a = reinterpret_cast<const sockaddr_in6&>(storage);
+    const auto& b = reinterpret_cast<const sockaddr_in6&>(other.storage);
+    return a.sin6_port == b.sin6_port && std::memcmp(&a.sin6_addr, &b.sin6_addr, sizeof a.sin6_addr) == 0;
+  }
+};
+
+Result<Address> parse_address(const std::string& text, std::uint16_t port) {
+  Address address;
+  auto& four = reinterpret_cast<sockaddr_in&>(address.storage);
+  auto& six = reinterpret_cast<sockaddr_in6&>(address.storage);
+  if (::inet_pton(AF_INET, text.c_str(), &four.sin_addr) == 1) {
+    four.sin_family = AF_INET;
+    four.sin_port = htons(port);
+    address.length = sizeof(sockaddr_in);
+  } else if (::inet_pton(AF_INET6, text.c_str(), &six.sin6_addr) == 1) {
+    six.sin6_family = AF_INET6;
+    six.sin6_port = htons(port);
+    address.length = sizeof(sockaddr_in6);
+  } else {
+    return fail(ErrorKind::kUsage, "socket: \"{}\" found, expected an address in numbers such as 127.0.0.1 or ::1", text);
+  }
+  return address;
+}
+
+bool is_loopback(const Address& address) {
+  if (address.storage.ss_family == AF_INET)
+    return ntohl(reinterpret_cast<const sockaddr_in&>(address.storage).sin_addr.s_addr) >> 24 == 127;
+  return IN6_IS_ADDR_LOOPBACK(&reinterpret_cast<const sockaddr_in6&>(address.storage).sin6_addr) != 0;
+}
+
+/// Waits until the socket can be read (or written); false when the time is over.
+bool wait_for(const Socket& socket, short events, std::int64_t timeout_ms) {
+  pollfd waiting{socket.get(), events, 0};
+  return ::poll(&waiting, 1, static_cast<int>(std::clamp<std::int64_t>(timeout_ms, 0, 3'600'000))) > 0;
+}
+
+class UdpListener final : public UdpTransport {
+ public:
+  UdpListener(Socket socket, const UdpOptions& options, std::uint16_t bound_port, const Clock& clock)
+      : socket_(std::move(socket)), options_(options), port_(bound_port), clock_(&clock), refilled_(clock.now()) {}
+
+  Result<std::size_t> read(std::span<std::byte> report, milliseconds timeout) override {
+    if (timeout.count() > 0) wait_for(socket_, POLLIN, timeout.count());
+    for (int looked = 0; looked < kMaxDatagramsPerRead; ++looked) {
+      Address sender;
+      const ::ssize_t length =
+          ::recvfrom(socket_.get(), report.data(), report.size(), MSG_TRUNC, sender.get(), &sender.length);
+      if (length < 0) {
+        if (errno == EAGAIN || errno == EINTR || errno == ECONNREFUSED) return std::size_t{0};
+        return fail(ErrorKind::kUnavailable, "udp: port {}: {}", port_, std::strerror(errno));
+      }
+      const TimestampNs now = clock_->now();
+      const bool whole = static_cast<std::size_t>(length) <= report.size();
+      if (!whole || length == 0 ||
+          (options_.accept && !options_.accept(report.first(static_cast<std::size_t>(length))))) {
+        ++counts_.refused;
+        continue;
+      }
+      if (peer_ && now - heard_ < options_.lock_ns && *peer_ != sender) {
+        ++counts_.foreign;
+        continue;
+      }
+      if (!take_token(now)) {
+        ++counts_.too_fast;
+        continue;
+      }
+      peer_ = sender;
+      heard_ = now;
+      ++counts_.taken;
+      return static_cast<std::size_t>(length);
+    }
+    return std::size_t{0};
+  }
+
+  Result<void> write(std::span<const std::byte> report) override {
+    if (!peer_) return fail(ErrorKind::kIo, "udp: port {}: nobody to answer yet", port_);
+    if (::sendto(socket_.get(), report.data(), report.size(), MSG_NOSIGNAL, peer_->get(), peer_->length) < 0)
+      return fail_errno(errno, fmt::format("udp: port {}: cannot answer", port_));
+    return {};
+  }
+
+  std::uint16_t port() const noexcept override { return port_; }
+  UdpCounts counts() const noexcept override { return counts_; }
+
+ private:
+  static constexpr int kMaxDatagramsPerRead = 256;  ///< a flood of rubbish cannot hold the reader
+  static constexpr double kBurst = 50.0;
+
+  bool take_token(TimestampNs now) {
+    tokens_ = std::min(kBurst, tokens_ + static_cast<double>(now - refilled_) * 1e-9 * options_.max_rate_hz);
+    refilled_ = now;
+    if (tokens_ < 1.0) return false;
+    tokens_ -= 1.0;
+    return true;
+  }
+
+  Socket socket_;
+  UdpOptions options_;
+  std::uint16_t port_;
+  const Clock* clock_;
+  std::optional<Address> peer_;
+  TimestampNs heard_ = 0;
+  TimestampNs refilled_;
+  double tokens_ = kBurst;
+  UdpCounts counts_;
+};
+
+class StreamTransport final : public Transport {
+ public:
+  StreamTransport(Socket socket, std::string name) : socket_(std::move(socket)), name_(std::move(name)) {}
+
+  Result<std::size_t> read(std::span<std::byte> report, milliseconds timeout) override {
+    if (lost_) return gone();
+    if (timeout.count() > 0) wait_for(socket_, POLLIN, timeout.count());
+    const ::ssize_t length = ::recv(socket_.get(), report.data(), report.size(), MSG_DONTWAIT);
+    if (length > 0) return static_cast<std::size_t>(length);
+    if (length < 0 && (errno == EAGAIN || errno == EINTR)) return std::size_t{0};
+    lost_ = !report.empty();
+    if (lost_) return gone();
+    return std::size_t{0};
+  }
+
+  Result<void> write(std::span<const std::byte> report) override {
+    while (!lost_ && !report.empty()) {
+      const ::ssize_t sent = ::send(socket_.get(), report.data(), report.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+      if (sent >= 0)
+        report = report.subspan(static_cast<std::size_t>(sent));
+      else if (errno == EAGAIN)
+        lost_ = !wait_for(socket_, POLLOUT, kWriteTimeoutMs);
+      else if (errno != EINTR)
+        lost_ = true;
+    }
+    if (lost_) return gone();
+    return {};
+  }
+
+ private:
+  static constexpr std::int64_t kWriteTimeoutMs = 1000;
+  tl::unexpected<Error> gone() const {
+    return fail(ErrorKind::kUnavailable, "{}: the other side has closed the connection", name_);
+  }
+  Socket socket_;
+  std::string name_;
+  bool lost_ = false;
+};
+
+/// Connects without blocking for longer than `timeout`.
+Result<void> connect_within(const Socket& socket, const sockaddr* address, socklen_t length, milliseconds timeout,
+                            const std::string& name) {
+  if (::connect(socket.get(), address, length) == 0) return {};
+  int error = errno;
+  if (error == EINPROGRESS) {
+    error = ETIMEDOUT;
+    if (wait_for(socket, POLLOUT, timeout.count())) {
+      socklen_t size = sizeof error;
+      if (::getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &error, &size) != 0) error = errno;
+    }
+  }
+  if (error == 0) return {};
+  if (error == EACCES || error == EPERM) return fail_errno(error, "cannot connect to " + name);
+  return fail(ErrorKind::kUnavailable, "{}: cannot connect: {}", name, std::strerror(error));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<UdpTransport>> open_udp(const UdpOptions& options, const Clock& clock) {
+  DUBSAR_ASSIGN(Address address, parse_address(options.address, options.port));
+  if (!options.allow_remote && !is_loopback(address))
+    return fail(ErrorKind::kUsage, "udp: {} can be reached from other machines; say so explicitly to allow it",
+                options.address);
+  Socket socket(::socket(address.storage.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (socket.get() < 0) return fail_errno(errno, "udp: cannot make a socket");
+  if (::bind(socket.get(), address.get(), address.length) != 0)
+    return fail(ErrorKind::kUnavailable, "udp: cannot listen on {} port {}: {}; another program may use it",
+                options.address, options.port, std::strerror(errno));
+  Address bound;
+  if (::getsockname(socket.get(), bound.get(), &bound.length) != 0) return fail_errno(errno, "udp: getsockname");
+  const std::uint16_t port = ntohs(reinterpret_cast<const sockaddr_in&>(bound.storage).sin_port);
+  return std::make_unique<UdpListener>(std::move(socket), options, port, clock);
+}
+
+Result<std::unique_ptr<Transport>> open_unix_stream(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.empty() || path.size() >= sizeof address.sun_path)
+    return fail(ErrorKind::kUsage, "socket: path of {} bytes, expected 1 to {}", path.size(),
+                sizeof address.sun_path - 1);
+  path.copy(address.sun_path, path.size());
+  Socket socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (socket.get() < 0) return fail_errno(errno, "socket: cannot make a socket");
+  DUBSAR_TRY(connect_within(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address, milliseconds(0), path));
+  return std::make_unique<StreamTransport>(std::move(socket), path);
+}
+
+Result<std::unique_ptr<Transport>> open_tcp_stream(const std::string& address_text, std::uint16_t port,
+                                                   milliseconds timeout) {
+  DUBSAR_ASSIGN(const Address address, parse_address(address_text, port));
+  Socket socket(::socket(address.storage.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (socket.get() < 0) return fail_errno(errno, "socket: cannot make a socket");
+  const int on = 1;
+  ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  const std::string name = fmt::format("{} port {}", address_text, port);
+  DUBSAR_TRY(connect_within(socket, address.get(), address.length, timeout, name));
+  return std::make_unique<StreamTransport>(std::move(socket), name);
+}
+
+}  // namespace dubsar
