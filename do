@@ -12,7 +12,7 @@ packages=(
   libhdf5-dev hdf5-plugin-lzf hdf5-filter-plugin libtiff-dev libpng-dev zlib1g-dev libdeflate-dev libzstd-dev
   libembree-dev libglfw3-dev libepoxy-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri
   libhidapi-dev libusb-1.0-0-dev
-  libgtest-dev libgmock-dev libbenchmark-dev libumockdev-dev umockdev
+  libgtest-dev libgmock-dev libbenchmark-dev libumockdev-dev umockdev xvfb
 )
 
 usage() {
@@ -20,7 +20,7 @@ usage() {
 ./do demo     install what is needed, build, make a scan, process it, write surfaces and pictures
 ./do test     install what is needed, build, run all tests
 ./do build    build the program (build/release/app/dubsar)
-./do bench    run the benchmarks
+./do bench    run the benchmarks; ./do bench displays: only those of many views
 ./do deps     install the packages of Debian 12 that dubsar needs
 ./do format   clang-format over all sources
 TEXT
@@ -53,6 +53,17 @@ run_tests() {
   ctest --test-dir "$build" --output-on-failure -j "$jobs" "$@"
 }
 
+bench() {
+  deps
+  build_target --target dubsar_bench
+  local filter=()
+  if [ "${1:-}" = displays ]; then
+    filter=(--benchmark_filter='^Display')
+    shift
+  fi
+  "$build/tests/bench/dubsar_bench" "${filter[@]}" "$@"
+}
+
 demo() {
   deps
   build_target --target dubsar
@@ -78,7 +89,7 @@ case "$verb" in
   demo) demo "$@" ;;
   test) run_tests "$@" ;;
   build) deps; build_target --target dubsar "$@" ;;
-  bench) deps; build_target --target dubsar_bench; "$build/tests/bench/dubsar_bench" "$@" ;;
+  bench) bench "$@" ;;
   deps) deps ;;
   format) git ls-files '*.cpp' '*.h' | xargs clang-format -i ;;
   *) usage; [ -z "$verb" ] || [ "$verb" = help ] || exit 64 ;;

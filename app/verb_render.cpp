@@ -7,6 +7,7 @@
 
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
+#include "app/display_picture.h"
 #include "core/image_io/png_file.h"
 #include "core/image_io/tiff_file.h"
 #include "display/render_image.h"
@@ -14,10 +15,11 @@
 namespace dubsar::app {
 namespace {
 struct Options {
-  std::string in, out, view = "front", style = "relief", size = "1200x1200", light;
+  std::string in, out, view = "front", style = "relief", size, light;
   std::vector<std::string> partitions, hide;
   double mm_per_pixel = 0.0;
-  int samples = 3;
+  int samples = 0;  ///< 0: enough for one picture, fewer for the many of a display
+  DisplayRequest display;
   bool perspective = false, colour_parts = false, transparent = false;
 };
 
@@ -53,24 +55,56 @@ Result<void> hide_partitions(const std::vector<std::string>& names, const TriMes
   return {};
 }
 
+/// Options that make no sense together; said before any work.
+Result<void> check_display_options(const Options& options) {
+  const DisplayRequest& request = options.display;
+  if (request.display.empty()) {
+    if (request.pattern || !request.see_from.empty() || !request.viewer.empty() || !request.screen_mm.empty() || request.magnification > 0)
+      return fail(ErrorKind::kUsage, "--pattern, --see-from, --viewer, --screen-mm and --magnification are for displays, expected --display NAME too");
+    if (options.in.empty()) return fail(ErrorKind::kUsage, "IN is missing, expected a surface to draw");
+    return {};
+  }
+  if (options.perspective || options.mm_per_pixel > 0 || options.transparent)
+    return fail(ErrorKind::kUsage, "--perspective, --mm-per-pixel and --transparent are not for displays: the viewer's place and --magnification say how large things are");
+  if (options.in.empty() != request.pattern)
+    return fail(ErrorKind::kUsage, "{} found with --display, expected a surface or --pattern", request.pattern ? "both IN and --pattern" : "neither IN nor --pattern");
+  return {};
+}
+
 Result<VerbResult> run(const Options& options, Progress& progress) {
   DUBSAR_TRY(check_output_path(options.out));
   std::string suffix = std::filesystem::path(options.out).extension().string();
   for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (suffix != ".png" && suffix != ".tif" && suffix != ".tiff")
     return fail(ErrorKind::kUsage, "cannot write {}: expected a name that ends in .png or .tif", options.out);
+  DUBSAR_TRY(check_display_options(options));
   RenderOptions render;
   DUBSAR_ASSIGN(render.shading, shading_preset(options.style));
   DUBSAR_ASSIGN(render.camera.direction, parse_view_direction(options.view == "orbit" ? "orbit:35,25" : options.view));
-  DUBSAR_TRY(parse_size(options.size, render.camera));
+  if (!options.size.empty()) DUBSAR_TRY(parse_size(options.size, render.camera));
   if (!options.light.empty()) DUBSAR_TRY(parse_light(options.light, render.shading));
   render.camera.perspective = options.perspective;
   render.camera.mm_per_pixel = options.mm_per_pixel;
-  render.samples = options.samples;
+  if (options.samples > 0) render.samples = options.samples;
   render.shading.transparent_background = options.transparent;
   if (options.colour_parts) render.shading.partition_colors = distinct_partition_colors();
-  DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.in, options.partitions, true}, progress));
+  TriMesh mesh;
+  if (!options.in.empty()) {
+    DUBSAR_ASSIGN(mesh, load_mesh({options.in, options.partitions, true}, progress));
+  }
   DUBSAR_TRY(hide_partitions(options.hide, mesh, render.shading));
+  if (!options.display.display.empty()) {
+    DisplayOptions shown;
+    if (!options.size.empty()) {
+      shown.screen.width_px = render.camera.width;
+      shown.screen.height_px = render.camera.height;
+    }
+    DUBSAR_TRY(read_display_options(options.display, shown));
+    shown.direction = render.camera.direction;
+    shown.shading = render.shading;
+    if (options.samples > 0) shown.samples = options.samples;
+    return render_to_display(options.display, shown, mesh, options.out, progress);
+  }
   DUBSAR_ASSIGN(const Picture picture, render_picture(mesh, render, progress));
   if (suffix == ".png") {
     PngOptions png;
@@ -96,10 +130,10 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 Verb add_render_verb(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* const command = program.add_subcommand("render", "make a picture of a surface, without a window");
-  command->add_option("IN", options->in, "EXA, PLY, OBJ, STL or GLB file")->required();
+  command->add_option("IN", options->in, "EXA, PLY, OBJ, STL or GLB file");
   command->add_option("-o,--output", options->out, "PNG or TIFF file to write")->required();
   command->add_option("--view", options->view, "front, back, left, right, top, bottom, orbit or orbit:AZIMUTH,ELEVATION[,ROLL]");
-  command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels");
+  command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels (1200x1200; of a display 1920x1080, or the panel's own)");
   std::string styles;
   for (const std::string_view name : shading_preset_names()) styles += (styles.empty() ? "" : ", ") + std::string(name);
   command->add_option("--style", options->style, "shading: " + styles);
@@ -111,12 +145,17 @@ Verb add_render_verb(CLI::App& program) {
       ->check(CLI::PositiveNumber);
   command->add_flag("--perspective", options->perspective, "perspective instead of orthographic");
   command->add_flag("--transparent", options->transparent, "no background");
-  command->add_option("--samples", options->samples, "samples per pixel side")->check(CLI::Range(1, 8));
+  command->add_option("--samples", options->samples, "samples per pixel side (3; of displays 2)")->check(CLI::Range(1, 8));
+  add_display_options(*command, options->display);
   command->footer(
       "Examples:\n"
       "  dubsar render tablet.exa -o tablet.png --partition tablet\n"
       "  dubsar render tablet.exa -o back.tif --view back --light 315,15 --mm-per-pixel 0.0423\n"
-      "  dubsar render bust.obj -o bust.png --style ao --view orbit:30,10");
+      "  dubsar render bust.obj -o bust.png --style ao --view orbit:30,10\n"
+      "  dubsar render tablet.exa -o anaglyph.png --display anaglyph --size 1280x800\n"
+      "  dubsar render tablet.exa -o go.png --display lenticular:looking-glass-go\n"
+      "  dubsar render tablet.exa -o seen.png --display lenticular:spatiallabs-15.6 --see-from 31.5,0,600\n"
+      "  dubsar render --pattern -o pattern.png --display lenticular:calibration=visual.json");
   return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
 }
 

@@ -1,5 +1,6 @@
 #include "display/gl_objects.h"
 
+#include <array>
 #include <string>
 
 #include "display/embedded_shaders.h"
@@ -21,12 +22,14 @@ struct Shader {
   GLuint name;
 };
 
-Result<void> compile(const Shader& shader, std::string_view file) {
+Result<void> compile(const Shader& shader, std::string_view file, std::string_view lines = {}) {
   const std::string_view source = shader_source(file);
   DUBSAR_CHECK(!source.empty());
-  const GLchar* text = source.data();
-  const auto length = static_cast<GLint>(source.size());
-  glShaderSource(shader.name, 1, &text, &length);
+  const std::size_t version = source.find('\n') + 1;  // #version has to be the first line
+  const std::array<const GLchar*, 3> texts{source.data(), lines.empty() ? "" : lines.data(), source.data() + version};
+  const std::array<GLint, 3> lengths{static_cast<GLint>(version), static_cast<GLint>(lines.size()),
+                                     static_cast<GLint>(source.size() - version)};
+  glShaderSource(shader.name, 3, texts.data(), lengths.data());
   glCompileShader(shader.name);
   GLint good = GL_FALSE;
   glGetShaderiv(shader.name, GL_COMPILE_STATUS, &good);
@@ -66,9 +69,9 @@ GlTexture make_texture(GLenum target) {
   return GlTexture(name);
 }
 
-Result<GlProgram> make_program(std::string_view vertex_name, std::string_view fragment_name) {
+Result<GlProgram> make_program(std::string_view vertex_name, std::string_view fragment_name, std::string_view vertex_lines) {
   const Shader vertex(GL_VERTEX_SHADER), fragment(GL_FRAGMENT_SHADER);
-  DUBSAR_TRY(compile(vertex, vertex_name));
+  DUBSAR_TRY(compile(vertex, vertex_name, vertex_lines));
   DUBSAR_TRY(compile(fragment, fragment_name));
   GlProgram program(glCreateProgram());
   glAttachShader(program, vertex.name);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
 #include <limits>
 
 #include "core/base/parallel.h"
@@ -42,6 +44,19 @@ std::vector<glm::vec3> vertex_normals_mm(const TriMesh& mesh, const std::vector<
   return normals;
 }
 
+/// False only when all of the box lies outside of one plane of the frustum.
+bool may_be_seen(const glm::dmat4& clip_from_world, const Box& box) {
+  const glm::dmat4 rows = glm::transpose(clip_from_world);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double sign : {-1.0, 1.0}) {
+      const glm::dvec4 plane = rows[3] + sign * rows[axis];  // inside: plane . (p, 1) >= 0
+      double most = plane.w;
+      for (int a = 0; a < 3; ++a) most += std::max(plane[a] * box.min[a], plane[a] * box.max[a]);
+      if (most < 0) return false;
+    }
+  return true;
+}
+
 std::int16_t snorm16(double value) { return static_cast<std::int16_t>(std::lround(std::clamp(value, -1.0, 1.0) * 32767)); }
 
 std::uint16_t unorm16(double value) {
@@ -60,6 +75,15 @@ std::array<std::int16_t, 2> encode_octahedral(const glm::dvec3& unit) {
     x = folded_x;
   }
   return {snorm16(x), snorm16(y)};
+}
+
+glm::dvec3 decode_octahedral(const std::array<std::int16_t, 2>& code) {
+  glm::dvec3 n(std::max(code[0] / 32767.0, -1.0), std::max(code[1] / 32767.0, -1.0), 0.0);
+  n.z = 1.0 - std::abs(n.x) - std::abs(n.y);
+  const double fold = std::max(-n.z, 0.0);
+  n.x -= n.x >= 0 ? fold : -fold;
+  n.y -= n.y >= 0 ? fold : -fold;
+  return glm::normalize(n);
 }
 
 Box PackedMesh::box_of(std::uint8_t partitions) const {
@@ -145,6 +169,7 @@ Result<GpuMesh> GpuMesh::upload(const PackedMesh& mesh) {
   out.box_mm_ = mesh.box_mm;
   out.first_triangle_ = mesh.first_triangle;
   out.mirrored_ = mesh.mirrored;
+  out.chunks_ = mesh.chunks;
   out.vertices_ = make_buffer(std::as_bytes(std::span(mesh.vertices)));
   out.indices_ = make_buffer(std::as_bytes(std::span(mesh.triangles)));
   out.vertex_array_ = make_vertex_array();
@@ -166,6 +191,23 @@ Result<GpuMesh> GpuMesh::upload(const PackedMesh& mesh) {
     glVertexArrayAttribFormat(vao, 3, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0);
   }
   DUBSAR_TRY(check_gl("uploading the mesh"));
+  return out;
+}
+
+std::vector<std::pair<std::int64_t, std::int64_t>> GpuMesh::visible_ranges(std::uint8_t partitions,
+                                                                           std::span<const View> views) const {
+  if (chunks_.empty()) return ranges(partitions);
+  std::vector<glm::dmat4> clips;
+  for (const View& view : views) clips.push_back(view.clip_from_world());
+  std::vector<std::pair<std::int64_t, std::int64_t>> out;
+  for (const TriangleChunk& chunk : chunks_) {
+    if ((partitions >> chunk.partition & 1) == 0) continue;
+    if (std::none_of(clips.begin(), clips.end(), [&](const glm::dmat4& clip) { return may_be_seen(clip, chunk.box_mm); })) continue;
+    if (!out.empty() && out.back().first + out.back().second == chunk.first)
+      out.back().second += chunk.count;
+    else
+      out.emplace_back(chunk.first, chunk.count);
+  }
   return out;
 }
 

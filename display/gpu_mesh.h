@@ -3,12 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/base/result.h"
 #include "core/surface/tri_mesh.h"
 #include "display/camera.h"
 #include "display/gl_objects.h"
+#include "display/view.h"
 
 namespace dubsar {
 
@@ -22,6 +24,13 @@ static_assert(sizeof(PackedVertex) == 12);
 
 constexpr int kMaxPartitions = 8;
 
+/// A run of triangles of one partition that lie close together.
+struct TriangleChunk {
+  std::int64_t first = 0, count = 0;
+  int partition = 0;
+  Box box_mm;
+};
+
 /// The mesh in the form the renderer wants; pure CPU work, so that it can be tested and made in any thread.
 struct PackedMesh {
   Box box_mm;  ///< of all finite vertices that triangles use
@@ -30,6 +39,7 @@ struct PackedMesh {
   std::vector<Triangle> triangles;                   ///< sorted by partition, order kept within one
   std::array<std::int64_t, kMaxPartitions + 1> first_triangle{};  ///< of each partition
   std::array<Box, kMaxPartitions> partition_box_mm{};
+  std::vector<TriangleChunk> chunks;  ///< all triangles, or none (display/lod.h makes them)
   bool has_shape = false, has_ao = false;
   bool mirrored = false;  ///< the frame turns counter-clockwise into clockwise
 
@@ -45,6 +55,7 @@ Result<PackedMesh> pack_mesh(const TriMesh& mesh);
 
 /// Octahedral code of a unit vector (Cigolle et al. 2014); (0, 0) decodes to +z.
 std::array<std::int16_t, 2> encode_octahedral(const glm::dvec3& unit);
+glm::dvec3 decode_octahedral(const std::array<std::int16_t, 2>& code);
 
 /// The packed mesh in buffers of the current context.
 class GpuMesh {
@@ -56,12 +67,15 @@ class GpuMesh {
   bool mirrored() const noexcept { return mirrored_; }
   /// Index ranges (first triangle, count) to draw for the partitions whose bit is set, neighbours joined.
   std::vector<std::pair<std::int64_t, std::int64_t>> ranges(std::uint8_t partitions) const;
+  /// The same without the chunks that none of the views can see.
+  std::vector<std::pair<std::int64_t, std::int64_t>> visible_ranges(std::uint8_t partitions, std::span<const View> views) const;
 
  private:
   GlVertexArray vertex_array_;
   GlBuffer vertices_, colors_, indices_;
   Box box_mm_;
   std::array<std::int64_t, kMaxPartitions + 1> first_triangle_{};
+  std::vector<TriangleChunk> chunks_;
   bool mirrored_ = false;
 };
 

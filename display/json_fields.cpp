@@ -68,22 +68,4 @@ Result<void> JsonFields::finish() const {
   return {};
 }
 
-Result<json> parse_json_text(std::string_view text, std::string_view source) {
-  if (text.size() > (std::size_t{1} << 20))
-    return fail(ErrorKind::kConfig, "{}: {} bytes of JSON, expected at most 1 MiB", source, text.size());
-  // nlohmann's parser keeps nesting on the heap; a depth limit keeps destruction from recursing too deep.
-  bool too_deep = false;
-  const auto guard = [&](int depth, json::parse_event_t, json&) {
-    too_deep = too_deep || depth > 32;
-    return depth <= 32;
-  };
-  try {
-    json parsed = json::parse(text, guard);
-    if (too_deep) return fail(ErrorKind::kConfig, "{}: JSON nested deeper than 32 levels", source);
-    return parsed;
-  } catch (const json::exception& e) {
-    return fail(ErrorKind::kConfig, "{}: not valid JSON: {}", source, e.what());
-  }
-}
-
 }  // namespace dubsar

@@ -32,7 +32,4 @@ class JsonFields {
   std::string where_, complaint_;
 };
 
-/// Parses at most 1 MiB of JSON; kConfig with the position of the fault.
-Result<nlohmann::json> parse_json_text(std::string_view text, std::string_view source);
-
 }  // namespace dubsar

@@ -98,6 +98,21 @@ std::vector<double> view_shares(const LensSheet& sheet, const TrackedPanel& pane
   return shares;
 }
 
+EyeLight light_at(const PanelLight& light, const glm::dvec3& eye_mm, int step_px) {
+  EyeLight out;
+  if (light.sheet) {
+    out.shares = view_shares(*light.sheet, light.panel, light.views, eye_mm, step_px);
+  } else {
+    const Crosstalk wrong = wrong_eye_light(light.panel, light.woven_for, {eye_mm, eye_mm}, true, step_px);
+    out.shares = {1.0 - wrong.left, wrong.left};
+  }
+  out.main_view = static_cast<int>(std::max_element(out.shares.begin(), out.shares.end()) - out.shares.begin());
+  const int reach = light.views > 2 ? 1 : 0;
+  for (int view = 0; view < light.views; ++view)
+    if (std::abs(view - out.main_view) > reach) out.crosstalk += out.shares[static_cast<std::size_t>(view)];
+  return out;
+}
+
 TrackedPanel optics_of_sheet(const LensSheet& sheet, double width_mm, double view_cone_rad, double distance_mm,
                              double refractive_index, double spot_sigma_periods) {
   TrackedPanel panel;

@@ -3,6 +3,7 @@
 // of it was meant for the other? The acceptance test of every sink and a tool for users (`render --see-from X,Y,Z`).
 
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 #include "core/image_io/image.h"
@@ -19,7 +20,6 @@ double visibility(const LensOptics& lens, double phase) noexcept;
 /// it (one lens period to either side, in its row), weighted by visibility.
 Image see(const Image& panel_image, const TrackedPanel& panel, const glm::dvec3& eye_mm);
 
-
 /// Share of wrong-eye light (0..1) that each eye gets at its true place when the panel was woven for `woven_for`.
 struct Crosstalk {
   double left = 0.0, right = 0.0;
@@ -32,6 +32,21 @@ Crosstalk wrong_eye_light(const TrackedPanel& panel, const EyePair& woven_for, c
 /// view a subpixel shows; `lens` describes the same sheet in millimetres.
 std::vector<double> view_shares(const LensSheet& sheet, const TrackedPanel& panel, int views, const glm::dvec3& eye_mm,
                                 int step_px = 16);
+
+/// A panel's lenses, and which view each of its subpixels shows.
+struct PanelLight {
+  TrackedPanel panel;
+  std::optional<LensSheet> sheet;  ///< N views; none: two views (0 left, 1 right) woven for `woven_for`
+  EyePair woven_for;
+  int views = 2;
+};
+
+struct EyeLight {
+  std::vector<double> shares;  ///< of each view, sum 1
+  int main_view = 0;           ///< the one with the greatest share
+  double crosstalk = 0.0;      ///< share of the others; with more than two views, of those not next to main_view
+};
+EyeLight light_at(const PanelLight& light, const glm::dvec3& eye_mm, int step_px = 16);
 
 /// The same sheet as optics. Pitch and slant follow from the sheet and the panel's size; the reduced gap from the view
 /// cone (an eye that crosses the cone at `distance_mm` crosses one lens period); the lens pitch is a little finer than

@@ -8,12 +8,13 @@
 #include "display/sinks/lenticular.h"
 #include "display/sinks/mono.h"
 #include "display/sinks/packed.h"
+#include "display/sinks/quad_buffer.h"
 #include "display/sinks/quilt.h"
 
 namespace dubsar {
 namespace {
 
-constexpr std::array<SinkBackend, 9> kSinks{{
+constexpr std::array<SinkBackend, 10> kSinks{{
     {"mono", "one view for any monitor", true, make_mono_sink},
     {"side_by_side", "two views beside each other: half (default), full; left_first (default), right_first", false,
      make_side_by_side_sink},
@@ -22,8 +23,10 @@ constexpr std::array<SinkBackend, 9> kSinks{{
     {"interlaced", "two views in alternate rows (default), columns, checkerboard or subpixels; left_first, right_first",
      false, make_interlaced_sink},
     {"anaglyph", "two views for coloured glasses: red_cyan_dubois (default) and 13 others", false, make_anaglyph_sink},
-    {"lenticular", "lens sheets: PROFILE or calibration=FILE; linear (default), nearest, gaussian3, gaussian10", false,
+    {"lenticular", "lens sheets: PROFILE and/or calibration=FILE; linear (default), nearest, gaussian3, gaussian10", false,
      make_lenticular_sink},
+    {"quad_buffer", "two views in a quad-buffered window (shutter glasses, zSpace); side_by_side where there is no stereo visual",
+     false, make_quad_buffer_sink},
     {"quilt", "all views of a Looking Glass panel as tiles: PROFILE or columns=,rows=,width=,height=,aspect=,cone=", false,
      make_quilt_sink},
     {"image", "one view into files: path=FILE.png, or path=NAME-%.png for numbered ones", false, make_image_sink},

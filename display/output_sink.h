@@ -3,8 +3,10 @@
 // array, the sink puts them together for its panel. The order of calls: configure (again whenever the window or the
 // screen changes), views (every frame), compose (every frame, GL thread).
 
+#include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,6 +16,7 @@
 #include "core/base/registry.h"
 #include "core/base/result.h"
 #include "display/off_axis.h"
+#include "display/optics.h"
 #include "display/view.h"
 
 namespace dubsar {
@@ -40,6 +43,9 @@ struct SinkTraits {
 struct Surface {
   unsigned framebuffer = 0;
   int width = 0, height = 0;
+  /// Draw buffers of the left and the right eye (GL_BACK_LEFT and GL_BACK_RIGHT, or two colour attachments); 0: the
+  /// surface holds one picture.
+  std::array<unsigned, 2> eye_buffers{0, 0};
 };
 
 class OutputSink {
@@ -53,6 +59,8 @@ class OutputSink {
   virtual std::span<const View> views(const Viewer& viewer) = 0;
   /// Draws the panel's picture from the layers. GL thread, with the context current that the sink is destroyed in.
   virtual Result<void> compose(const ViewArray& views, const Surface& target) = 0;
+  /// Where the panel's lenses send the light of what was composed last; nothing for displays without lenses.
+  virtual std::optional<PanelLight> light() const { return std::nullopt; }
 };
 
 /// What the part after "NAME:" said, and where to look for data.

@@ -4,10 +4,12 @@
 #include <numbers>
 
 #include "core/base/atomic_file.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "display/embedded_profiles.h"
 #include "display/json_fields.h"
 #include "display/optics.h"
+#include "display/panel_adjust.h"
 
 namespace dubsar {
 namespace fs = std::filesystem;
@@ -17,7 +19,16 @@ namespace {
 
 constexpr int kMaxSide = 16384;
 constexpr double kMmPerInch = 25.4;
+constexpr double kFieldOfViewDeg = 14.0;  // a Looking Glass Portrait at 36 inches
+constexpr std::int64_t kMaxCalibrationBytes = 64 << 10;
 constexpr std::size_t kMaxCells = 10;  // the vendor's shaders hold 60 floats
+
+/// A wrong profile or calibration is a wrong configuration, whatever is wrong with it.
+Result<json> parse_config(std::string_view text, std::string_view source) {
+  auto parsed = parse_json(text, source);
+  if (!parsed) return fail(ErrorKind::kConfig, "{}", parsed.error().message);
+  return parsed;
+}
 
 /// The fields that sheets have in profiles and in calibrations, under their respective names.
 void read_sheet(JsonFields& fields, LookingGlassFigures& sheet, const char* invert_name, const char* pattern_name) {
@@ -127,7 +138,7 @@ Result<PanelProfile> parse_profile(const json& object, std::string_view source) 
 }  // namespace
 
 Result<std::vector<PanelProfile>> parse_profiles(std::string_view json_text, std::string_view source) {
-  DUBSAR_ASSIGN(const json parsed, parse_json_text(json_text, source));
+  DUBSAR_ASSIGN(const json parsed, parse_config(json_text, source));
   std::vector<PanelProfile> profiles;
   if (!parsed.is_array()) {
     DUBSAR_ASSIGN(profiles.emplace_back(), parse_profile(parsed, source));
@@ -157,9 +168,12 @@ Result<std::vector<PanelProfile>> load_profiles(const fs::path& user_folder) {
     if (entry.path().extension() == ".json") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
+    if (is_adjustment_file(file)) continue;
     DUBSAR_ASSIGN(const std::string text, read_text_file(file, 1 << 20));
     DUBSAR_TRY(add(text, file.string()));
   }
+  for (const fs::path& file : files)
+    if (is_adjustment_file(file)) DUBSAR_TRY(load_adjustment(file, profiles));
   return profiles;
 }
 
@@ -175,7 +189,7 @@ Result<PanelProfile> find_profile(std::span<const PanelProfile> profiles, std::s
 Result<Calibration> parse_calibration(std::string_view json_text, std::string_view source) {
   if (json_text.size() > (std::size_t{1} << 16))
     return fail(ErrorKind::kConfig, "calibration {}: {} bytes, expected at most 64 KiB", source, json_text.size());
-  DUBSAR_ASSIGN(const json object, parse_json_text(json_text, fmt::format("calibration {}", source)));
+  DUBSAR_ASSIGN(const json object, parse_config(json_text, fmt::format("calibration {}", source)));
   Calibration calibration;
   calibration.source = source;
   JsonFields fields(object, fmt::format("calibration {}", source));
@@ -197,11 +211,20 @@ Result<Calibration> parse_calibration(std::string_view json_text, std::string_vi
   return calibration;
 }
 
-Result<PanelProfile> calibrated_profile(std::span<const PanelProfile> profiles, const Calibration& calibration) {
+Result<PanelProfile> calibrated_profile(std::span<const PanelProfile> profiles, const Calibration& calibration,
+                                        std::string_view model) {
   const LookingGlassFigures& figures = calibration.figures;
   const PanelProfile* best = nullptr;
+  PanelProfile named;
+  if (!model.empty()) {
+    DUBSAR_ASSIGN(named, find_profile(profiles, model));
+    if (named.kind == PanelKind::kTracked)
+      return fail(ErrorKind::kConfig, "calibration {}: panel {} is a tracked panel, expected one with many views",
+                  calibration.source, model);
+    best = &named;
+  }
   for (const PanelProfile& profile : profiles)
-    if (!profile.serial_prefix.empty() && calibration.serial.rfind(profile.serial_prefix, 0) == 0 &&
+    if (model.empty() && !profile.serial_prefix.empty() && calibration.serial.rfind(profile.serial_prefix, 0) == 0 &&
         (best == nullptr || profile.serial_prefix.size() > best->serial_prefix.size()))
       best = &profile;
   for (const PanelProfile& profile : profiles)
@@ -218,7 +241,16 @@ Result<PanelProfile> calibrated_profile(std::span<const PanelProfile> profiles, 
   profile.width_mm = figures.screen_width / figures.dpi * kMmPerInch;
   profile.view_cone_deg = calibration.view_cone_deg;
   profile.calibration = calibration.source;
+  DUBSAR_TRY(apply_adjustment(profile.adjustment, profile));
   return profile;
+}
+
+Result<PanelProfile> choose_panel(const fs::path& user_folder, std::string_view name, const fs::path& calibration_file) {
+  DUBSAR_ASSIGN(const auto profiles, load_profiles(user_folder));
+  if (calibration_file.empty()) return find_profile(profiles, name);
+  DUBSAR_ASSIGN(const std::string text, read_text_file(calibration_file, kMaxCalibrationBytes));
+  DUBSAR_ASSIGN(const Calibration calibration, parse_calibration(text, calibration_file.string()));
+  return calibrated_profile(profiles, calibration, name);
 }
 
 std::vector<fs::path> find_calibration_files(std::span<const fs::path> roots) {
@@ -231,6 +263,11 @@ std::vector<fs::path> find_calibration_files(std::span<const fs::path> roots) {
     }
   std::sort(found.begin(), found.end());
   return found;
+}
+
+double viewing_distance_mm(const PanelProfile& profile) noexcept {
+  if (profile.design_distance_mm > 0) return profile.design_distance_mm;
+  return profile.height_mm() / 2 / std::tan(kFieldOfViewDeg * std::numbers::pi / 360);
 }
 
 Result<TrackedPanel> panel_optics(const PanelProfile& profile, double distance_mm) {

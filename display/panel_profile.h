@@ -29,6 +29,13 @@ struct QuiltLayout {
   int tile_height() const noexcept { return height_px / rows; }
 };
 
+/// Lens figures that the user found by eye with the numbered-view pattern; they replace those of the profile and those of
+/// a calibration. Of a tracked panel pitch is in mm, slope is the tangent of the slant and center its phase.
+struct PanelAdjustment {
+  std::optional<double> pitch, slope, center;
+  bool empty() const noexcept { return !pitch && !slope && !center; }
+};
+
 struct PanelProfile {
   std::string name, title, note;
   PanelKind kind = PanelKind::kLookingGlass;
@@ -43,6 +50,7 @@ struct PanelProfile {
   std::optional<LensOptics> optics;          ///< kTracked
   double design_distance_mm = 0.0, ipd_mm = 63.0;
   std::string calibration;          ///< where the lens figures come from; empty: those of the profile
+  PanelAdjustment adjustment;       ///< the user's corrections; applied already
   double height_mm() const noexcept { return width_mm * height_px / width_px; }
 };
 
@@ -51,7 +59,7 @@ struct PanelProfile {
 Result<std::vector<PanelProfile>> parse_profiles(std::string_view json_text, std::string_view source);
 
 /// The profiles of the program (embedded) followed by those of *.json in `user_folder` (may be missing); a user's profile
-/// replaces one of the same name. Errors as parse_profiles.
+/// replaces one of the same name. Adjustments (display/panel_adjust.h) are applied last. Errors as parse_profiles.
 Result<std::vector<PanelProfile>> load_profiles(const std::filesystem::path& user_folder);
 
 /// kUsage with the names there are.
@@ -69,11 +77,20 @@ struct Calibration {
 /// 1..10000, slope not 0, screen 1..16384, DPI 10..2000, viewCone 1..170, at most 10 subpixel cells, all finite.
 Result<Calibration> parse_calibration(std::string_view json_text, std::string_view source);
 
-/// The profile with the calibration's lens figures and size; picks the model by serial, else by size.
-Result<PanelProfile> calibrated_profile(std::span<const PanelProfile> profiles, const Calibration& calibration);
+/// The profile with the calibration's lens figures and size, then the profile's adjustment; picks the model by name if one
+/// is given, else by serial, else by size.
+Result<PanelProfile> calibrated_profile(std::span<const PanelProfile> profiles, const Calibration& calibration,
+                                        std::string_view model = {});
+
+/// The panel that options name: a profile's name, a calibration file, or both (both empty: kUsage).
+Result<PanelProfile> choose_panel(const std::filesystem::path& user_folder, std::string_view name,
+                                  const std::filesystem::path& calibration_file);
 
 /// Calibration files on mounted units: <root>/*/LKG_calibration/visual.json under each root, e.g. /media/$USER.
 std::vector<std::filesystem::path> find_calibration_files(std::span<const std::filesystem::path> roots);
+
+/// How far away the middle of the viewing zone is: the profile's figure, else 14 degrees of field of view over its height.
+double viewing_distance_mm(const PanelProfile& profile) noexcept;
 
 /// The panel as optics: from its own figures (kTracked), or derived from its sheet for an eye `distance_mm` away.
 Result<TrackedPanel> panel_optics(const PanelProfile& profile, double distance_mm);

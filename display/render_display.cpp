@@ -12,6 +12,7 @@
 #include "display/gpu_mesh.h"
 #include "display/output_sink.h"
 #include "display/renderer.h"
+#include "display/test_pattern.h"
 #include "display/view_array.h"
 
 namespace dubsar {
@@ -38,6 +39,37 @@ glm::dvec2 window_mm(const View& view) {
   return {2.0 / (ndc({1, 0, 0}) - origin).x, 2.0 / (ndc({0, 1, 0}) - origin).y};
 }
 
+struct Stage {  // destroyed from the bottom to the top: the sink's GL objects go before the context
+  std::unique_ptr<EglContext> context;
+  std::unique_ptr<OutputSink> sink;
+};
+
+Result<Stage> open_stage(std::string_view display, const DisplayOptions& options) {
+  Stage stage;
+  DUBSAR_ASSIGN(stage.context, EglContext::create());
+  DUBSAR_ASSIGN(stage.sink, make_sink(display, options.profile_folder));
+  DUBSAR_TRY(stage.sink->configure(options.screen));
+  const SinkTraits traits = stage.sink->traits();
+  if (traits.stereo_visual)
+    return fail(ErrorKind::kUnavailable, "display {}: needs a window with a stereo visual, expected a display that makes one picture",
+                traits.name);
+  DUBSAR_TRY(check_memory("display", kBytesPerViewPixel * static_cast<std::uint64_t>(traits.view.width) *
+                                         static_cast<std::uint64_t>(traits.view.height) * static_cast<std::uint64_t>(traits.views)));
+  return stage;
+}
+
+Result<DisplayPicture> compose_picture(const Stage& stage, const ViewArray& array) {
+  const SinkTraits traits = stage.sink->traits();
+  DisplayPicture out;
+  out.views = traits.views;
+  out.file_suffix = traits.file_suffix;
+  DUBSAR_ASSIGN(const OffscreenSurface surface, OffscreenSurface::create(traits.output));
+  DUBSAR_TRY(stage.sink->compose(array, surface.surface()));
+  DUBSAR_ASSIGN(out.image, surface.read());
+  out.light = stage.sink->light();
+  return out;
+}
+
 }  // namespace
 
 glm::dmat4 place_object(const Box& box, const ViewDirection& direction, const glm::dvec3& place_mm,
@@ -60,36 +92,26 @@ Result<DisplayPicture> render_display(const TriMesh& mesh, std::string_view disp
   DUBSAR_ASSIGN(const PackedMesh packed, pack_mesh(mesh));
   if (packed.triangles_of(options.shading.partitions) == 0)
     return fail(ErrorKind::kUsage, "display: none of the partitions asked for has triangles, so there is nothing to draw");
-  DUBSAR_ASSIGN(const auto context, EglContext::create());  // before the sink, whose GL objects go first
-  DUBSAR_ASSIGN(const auto sink, make_sink(display, options.profile_folder));
-  DUBSAR_TRY(sink->configure(options.screen));
-  const SinkTraits traits = sink->traits();
-  if (traits.stereo_visual)
-    return fail(ErrorKind::kUnavailable, "display {}: needs a window with a stereo visual, expected a display that makes one picture",
-                traits.name);
-  DUBSAR_TRY(check_memory("display", kBytesPerViewPixel * static_cast<std::uint64_t>(traits.view.width) *
-                                         static_cast<std::uint64_t>(traits.view.height) * static_cast<std::uint64_t>(traits.views)));
+  DUBSAR_ASSIGN(const Stage stage, open_stage(display, options));
+  const SinkTraits traits = stage.sink->traits();
 
   const Box box = packed.box_of(options.shading.partitions);
   const glm::dvec3 extents = picture_extents(box, options.direction);
-  DisplayPicture out;
-  out.views = traits.views;
-  out.file_suffix = traits.file_suffix;
-  out.magnification = options.magnification;
-  if (out.magnification == 0) {
-    const glm::dvec2 window = window_mm(sink->views(Viewer())[0]) * (1.0 - 2.0 * options.margin);
-    out.magnification = std::min(window.x / std::max(extents.x, 1e-9), window.y / std::max(extents.y, 1e-9));
+  double magnification = options.magnification;
+  if (magnification == 0) {
+    const glm::dvec2 window = window_mm(stage.sink->views(Viewer())[0]) * (1.0 - 2.0 * options.margin);
+    magnification = std::min(window.x / std::max(extents.x, 1e-9), window.y / std::max(extents.y, 1e-9));
   }
   Viewer viewer = options.viewer;
-  const double half_depth = (0.5 + kDepthMargin) * out.magnification * extents.z + 1.0;
+  const double half_depth = (0.5 + kDepthMargin) * magnification * extents.z + 1.0;
   viewer.front_mm = options.place_mm.z + half_depth;
   viewer.back_mm = options.place_mm.z - half_depth;
-  const glm::dmat4 screen_from_model = place_object(box, options.direction, options.place_mm, out.magnification);
+  const glm::dmat4 screen_from_model = place_object(box, options.direction, options.place_mm, magnification);
 
   DUBSAR_ASSIGN(const GpuMesh gpu, GpuMesh::upload(packed));
   DUBSAR_ASSIGN(Renderer renderer, Renderer::create());
   DUBSAR_ASSIGN(ViewArray array, ViewArray::create(traits.view.width, traits.view.height, traits.views));
-  const std::span<const View> views = sink->views(viewer);
+  const std::span<const View> views = stage.sink->views(viewer);
   progress.begin("render", traits.views, "view");
   for (int i = 0; i < traits.views; ++i) {
     if (progress.cancelled()) return cancelled_error();
@@ -98,11 +120,33 @@ Result<DisplayPicture> render_display(const TriMesh& mesh, std::string_view disp
     DUBSAR_TRY(renderer.render(gpu, options.shading, std::span(&view, 1), options.samples, array, i));
     progress.advance(1);
   }
-  DUBSAR_ASSIGN(const OffscreenSurface surface, OffscreenSurface::create(traits.output));
-  DUBSAR_TRY(sink->compose(array, surface.surface()));
-  DUBSAR_ASSIGN(out.image, surface.read());
+  DUBSAR_ASSIGN(DisplayPicture out, compose_picture(stage, array));
+  out.magnification = magnification;
   progress.end();
   return out;
+}
+
+Result<DisplayPicture> render_pattern(std::string_view display, const DisplayOptions& options) {
+  DUBSAR_ASSIGN(const Stage stage, open_stage(display, options));
+  const SinkTraits traits = stage.sink->traits();
+  DUBSAR_ASSIGN(ViewArray array, ViewArray::create(traits.view.width, traits.view.height, traits.views));
+  stage.sink->views(options.viewer);
+  for (int i = 0; i < traits.views; ++i)
+    DUBSAR_TRY(array.write_layer(i, numbered_view(traits.view.width, traits.view.height, i, traits.views)));
+  return compose_picture(stage, array);
+}
+
+Result<Image> see_display(const DisplayPicture& picture, const glm::dvec3& eye_mm) {
+  if (!picture.light)
+    return fail(ErrorKind::kUsage, "display: this display has no lenses, so every eye sees its picture as it is; expected display lenticular");
+  if (!std::isfinite(glm::dot(eye_mm, eye_mm)) || eye_mm.z < kNearestEyeMm)
+    return fail(ErrorKind::kUsage, "display: an eye at {}, {}, {} mm found, expected one at least {} mm before the panel (third number)",
+                eye_mm.x, eye_mm.y, eye_mm.z, kNearestEyeMm);
+  const TrackedPanel& panel = picture.light->panel;
+  if (picture.image.width != panel.width_px || picture.image.height != panel.height_px)
+    return fail(ErrorKind::kUsage, "display: a picture of {} x {} pixels found, expected the whole panel of {} x {}",
+                picture.image.width, picture.image.height, panel.width_px, panel.height_px);
+  return see(picture.image, panel, eye_mm);
 }
 
 }  // namespace dubsar

@@ -3,6 +3,7 @@
 // chains from the viewer to the panel's picture.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -12,6 +13,7 @@
 #include "core/surface/tri_mesh.h"
 #include "display/camera.h"
 #include "display/off_axis.h"
+#include "display/optics.h"
 #include "display/shading.h"
 
 namespace dubsar {
@@ -35,12 +37,21 @@ struct DisplayPicture {
   int views = 0;
   double magnification = 0.0;
   std::string file_suffix;     ///< for the file's name, e.g. "_qs8x6a0.75"
+  std::optional<PanelLight> light;  ///< for displays with lenses: see() and light_at() say what eyes see of the image
 };
 
 /// `display` is a sink as make_sink() reads it. Errors: kUsage (no such sink, bad options, nothing to draw),
 /// kUnavailable without GL 4.5, kTryAgain (memory), kCancelled. Cost: all views, one after the other.
 Result<DisplayPicture> render_display(const TriMesh& mesh, std::string_view display, const DisplayOptions& options,
                                       Progress& progress);
+
+/// The numbered-view test pattern (display/test_pattern.h) as the display shows it. Uses the screen, the viewer and the
+/// profile folder of `options`. Errors as render_display.
+Result<DisplayPicture> render_pattern(std::string_view display, const DisplayOptions& options);
+
+/// What an eye (screen frame, mm) sees of the picture, of the panel's size. kUsage for displays without lenses, and for eyes
+/// that are not before the panel.
+Result<Image> see_display(const DisplayPicture& picture, const glm::dvec3& eye_mm);
 
 /// screen_from_model: turns the object as `direction` says, scales it and puts the centre of `box` at `place_mm`.
 glm::dmat4 place_object(const Box& box, const ViewDirection& direction, const glm::dvec3& place_mm, double magnification);

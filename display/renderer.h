@@ -22,18 +22,36 @@ class Renderer {
   Result<void> render(const GpuMesh& mesh, const Shading& shading, std::span<const View> views, int factor,
                       ViewArray& target, int first_layer = 0);
 
+  /// Layer layers[i] of `target` gets views[i], with one sample a pixel, in one instanced draw; other layers of the target
+  /// are lost. Where the driver cannot choose layers in vertex shaders (ARB_shader_viewport_layer_array), one after the
+  /// other. Transparent backgrounds are drawn opaque. Quick, for things that move.
+  Result<void> render_layers(const GpuMesh& mesh, const Shading& shading, std::span<const View> views,
+                             std::span<const int> layers, ViewArray& target);
+
  private:
   struct Scratch {  ///< samples of one view: linear light, premultiplied
     int width = 0, height = 0;
     GlTexture color, depth;
     GlFramebuffer framebuffer;
   };
+  struct LayerDepth {
+    int width = 0, height = 0, layers = 0;
+    GlTexture depth;
+    GlFramebuffer framebuffer;
+  };
+  struct Inputs {  ///< what the mesh shaders read; bound while it lives
+    GlBuffer views, style;
+    GlTexture table;
+  };
   Result<void> use_scratch(int width, int height);
+  Result<void> use_layer_depth(const ViewArray& target);
+  Inputs bind_inputs(const GpuMesh& mesh, const Shading& shading, std::span<const View> views, std::span<const int> layers);
 
-  GlProgram mesh_program_, resolve_program_;
+  GlProgram mesh_program_, resolve_program_, layered_program_;
   GlVertexArray no_vertices_;
   GlFramebuffer layer_;
   Scratch scratch_;
+  LayerDepth layer_depth_;
 };
 
 }  // namespace dubsar

@@ -7,7 +7,6 @@ struct ViewData {
   mat4 view_from_normal;
 };
 layout(std430, binding = 0) readonly buffer Views { ViewData views[]; };
-layout(location = 0) uniform int view_index;
 
 layout(std140, binding = 1) uniform Style {
   vec4 light;
@@ -17,6 +16,7 @@ layout(std140, binding = 1) uniform Style {
   vec4 partition_color[8];
 };
 
+flat in int view_of_vertex;
 in vec3 view_position;
 in vec3 view_normal;
 in vec3 albedo;
@@ -30,7 +30,7 @@ void main() {
   }
   vec3 normal = normalize(view_normal);
   if (!gl_FrontFacing) normal = -normal;
-  vec3 to_eye = mix(normalize(-view_position), vec3(0.0, 0.0, 1.0), views[view_index].view_from_normal[3][3]);
+  vec3 to_eye = mix(normalize(-view_position), vec3(0.0, 0.0, 1.0), views[view_of_vertex].view_from_normal[3][3]);
   float key = max(dot(normal, light.xyz), 0.0);
   float fill = max(dot(normal, to_eye), 0.0);
   float gloss = key > 0.0 ? pow(max(dot(normal, normalize(light.xyz + to_eye)), 0.0), shininess.x) : 0.0;

@@ -1,5 +1,6 @@
 #version 450 core
-// One vertex of the surface: position in the unit cube of the mesh, packed attributes, octahedral normal.
+// One vertex of the surface: position in the unit cube of the mesh, packed attributes, octahedral normal. With LAYERED
+// each instance draws one view into its own layer.
 
 layout(location = 0) in vec3 unit_position;
 layout(location = 1) in uint packed_attributes;  // shape 7 bits, ambient light 6 bits, partition 3 bits
@@ -9,7 +10,7 @@ layout(location = 3) in vec4 foreign_color;  // sRGB-coded; (1, 1, 1) when the m
 struct ViewData {
   mat4 view_from_unit;
   mat4 clip_from_view;
-  mat4 view_from_normal;  // rotation; [3][3] is 1 for parallel projection
+  mat4 view_from_normal;  // rotation; [3][3] is 1 for parallel projection, [3][0] the layer
 };
 layout(std430, binding = 0) readonly buffer Views { ViewData views[]; };
 layout(location = 0) uniform int view_index;
@@ -23,6 +24,7 @@ layout(std140, binding = 1) uniform Style {
 };
 layout(binding = 0) uniform sampler2D color_table;  // sRGB-coded, x: shape, y: ambient light
 
+flat out int view_of_vertex;
 out vec3 view_position;
 out vec3 view_normal;
 out vec3 albedo;  // linear
@@ -39,7 +41,12 @@ vec3 decode_octahedral(vec2 e) {
 }
 
 void main() {
-  ViewData view = views[view_index];
+#ifdef LAYERED
+  view_of_vertex = gl_InstanceID;
+#else
+  view_of_vertex = view_index;
+#endif
+  ViewData view = views[view_of_vertex];
   uint shape = packed_attributes & 127u;
   uint ao = (packed_attributes >> 7) & 63u;
   uint part = packed_attributes >> 13;
@@ -50,4 +57,7 @@ void main() {
   albedo = linear_from_srgb(texelFetch(color_table, ivec2(shape, ao), 0).rgb) *
            linear_from_srgb(foreign_color.rgb) * partition_color[part].rgb;
   gl_Position = view.clip_from_view * position;
+#ifdef LAYERED
+  gl_Layer = int(view.view_from_normal[3][0]);
+#endif
 }

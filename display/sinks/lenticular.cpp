@@ -7,7 +7,6 @@
 #include <numbers>
 #include <vector>
 
-#include "core/base/atomic_file.h"
 #include "display/compose_pass.h"
 #include "display/panel_profile.h"
 #include "display/sinks/sink_options.h"
@@ -21,8 +20,6 @@ constexpr GLint kSteps = 1, kStart = 2, kMode = 3, kSigma = 4, kCells = 5, kOffs
 constexpr GLint kPanelPx = 1, kPixelMm = 2, kLens = 3, kPhase0 = 4, kEyes = 5, kTrackedOffsets = 7;
 constexpr std::size_t kMaxCells = 10;
 constexpr int kCoarseBits = 11;       // times a pixel number below 8192: 24 bits, exact in a float
-constexpr double kFieldOfViewDeg = 14.0;
-constexpr std::int64_t kMaxCalibrationBytes = 64 << 10;
 
 /// The panel's own screen: the given window when it is on such a panel, else all of it.
 Screen panel_screen(const PanelProfile& profile, const Screen& given) {
@@ -68,9 +65,7 @@ class ViewsSink : public OutputSink {
     return {};
   }
   std::span<const View> views(const Viewer& viewer) override {
-    const double distance = profile_.design_distance_mm > 0
-                                ? profile_.design_distance_mm
-                                : profile_.height_mm() / 2 / std::tan(kFieldOfViewDeg * std::numbers::pi / 360);
+    const double distance = viewing_distance_mm(profile_);
     views_.clear();
     for (const glm::dvec3& eye : cone_eyes(profile_.views, profile_.view_cone_deg * std::numbers::pi / 180, distance))
       views_.push_back(viewer_view(screen_.window_rect(), viewer, eye));
@@ -91,6 +86,12 @@ class ViewsSink : public OutputSink {
     glUniform1i(kCells, static_cast<int>(sheet_.subpixels.cells.size()));
     glUniform2fv(kOffsets, static_cast<GLsizei>(offsets.size()), glm::value_ptr(offsets[0]));
     return pass_.draw();
+  }
+
+  std::optional<PanelLight> light() const override {
+    const auto optics = panel_optics(profile_, viewing_distance_mm(profile_));
+    if (!optics) return std::nullopt;
+    return PanelLight{*optics, sheet_, {}, profile_.views};
   }
 
  private:
@@ -148,6 +149,9 @@ class TrackedSink : public OutputSink {
     glUniform2fv(kTrackedOffsets, 3, glm::value_ptr(offsets[0]));
     return pass_.draw();
   }
+  std::optional<PanelLight> light() const override {
+    return PanelLight{panel_, std::nullopt, {glm::dvec3(eyes_[0]), glm::dvec3(eyes_[1])}, 2};
+  }
 
  private:
   PanelProfile profile_;
@@ -161,25 +165,15 @@ class TrackedSink : public OutputSink {
 }  // namespace
 
 Result<std::unique_ptr<OutputSink>> make_lenticular_sink(const SinkConfig& given) {
-  constexpr std::string_view kKnown = "a panel profile or calibration=FILE, and nearest, linear, gaussian3 or gaussian10";
+  constexpr std::string_view kKnown = "panel=PROFILE and/or calibration=FILE, and nearest, linear, gaussian3 or gaussian10";
   SinkConfig config = given;
   constexpr std::array<ViewFilter, 4> kFilters{ViewFilter::kLinear, ViewFilter::kNearest, ViewFilter::kGaussian3,
                                                ViewFilter::kGaussian10};
   const auto filter = kFilters[static_cast<std::size_t>(take_choice(config, {"linear", "nearest", "gaussian3", "gaussian10"}))];
-  if (config.options.empty()) return fail(ErrorKind::kUsage, "display lenticular: no panel was named, expected {}", kKnown);
-  DUBSAR_ASSIGN(const auto profiles, load_profiles(config.profile_folder));
-  const auto [key, value] = config.options.front();
-  config.options.erase(config.options.begin());
-  PanelProfile profile;
-  if (key == "calibration") {
-    DUBSAR_ASSIGN(const std::string text, read_text_file(value, kMaxCalibrationBytes));
-    DUBSAR_ASSIGN(const Calibration calibration, parse_calibration(text, value));
-    DUBSAR_ASSIGN(profile, calibrated_profile(profiles, calibration));
-  } else {
-    DUBSAR_ASSIGN(profile, find_profile(profiles, key));
-    if (!value.empty()) config.options.insert(config.options.begin(), {key, value});
-  }
+  DUBSAR_ASSIGN(auto panel_choice, take_panel(config));
   DUBSAR_TRY(expect_no_more(config, "lenticular", kKnown));
+  if (!panel_choice) return fail(ErrorKind::kUsage, "display lenticular: no panel was named, expected {}", kKnown);
+  PanelProfile profile = *std::move(panel_choice);
   if (profile.kind == PanelKind::kTracked) {
     DUBSAR_ASSIGN(const TrackedPanel panel, panel_optics(profile, profile.design_distance_mm));
     if (panel.subpixels.cells.size() != 1)

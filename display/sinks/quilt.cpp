@@ -153,13 +153,12 @@ std::vector<Image> split_quilt(const Image& quilt, const QuiltLayout& layout) {
 Result<std::unique_ptr<OutputSink>> make_quilt_sink(const SinkConfig& given) {
   SinkConfig config = given;
   QuiltSetup setup{{8, 6, 3360, 3360}, 0.75, 40.0};  // a Looking Glass Portrait
-  if (!config.options.empty() && config.options.front().second.empty()) {
-    DUBSAR_ASSIGN(const auto profiles, load_profiles(config.profile_folder));
-    DUBSAR_ASSIGN(const PanelProfile profile, find_profile(profiles, config.options.front().first));
+  DUBSAR_ASSIGN(const auto panel, take_panel(config));
+  if (panel) {
+    const PanelProfile& profile = *panel;
     if (profile.quilt.views() < 1)
       return fail(ErrorKind::kUsage, "display quilt: panel \"{}\" takes no quilts, expected a Looking Glass", profile.name);
     setup = {profile.quilt, profile.aspect, profile.view_cone_deg, profile.height_mm(), profile.design_distance_mm};
-    config.options.erase(config.options.begin());
   }
   double columns = setup.layout.columns, rows = setup.layout.rows;
   double width = setup.layout.width_px, height = setup.layout.height_px;
@@ -169,7 +168,7 @@ Result<std::unique_ptr<OutputSink>> make_quilt_sink(const SinkConfig& given) {
   DUBSAR_TRY(take_number(config, "height", kMinTilePx, kMaxQuiltPx, height));
   DUBSAR_TRY(take_number(config, "aspect", kMinAspect, kMaxAspect, setup.aspect));
   DUBSAR_TRY(take_number(config, "cone", 1, 170, setup.cone_deg));
-  DUBSAR_TRY(expect_no_more(config, "quilt", "a panel profile, columns=, rows=, width=, height=, aspect=, cone="));
+  DUBSAR_TRY(expect_no_more(config, "quilt", "panel=PROFILE, calibration=FILE, columns=, rows=, width=, height=, aspect=, cone="));
   for (const double whole : {columns, rows, width, height})
     if (whole != std::floor(whole))
       return fail(ErrorKind::kUsage, "display quilt: {} found, expected whole columns, rows and pixels", whole);

@@ -14,6 +14,20 @@ int take_choice(SinkConfig& config, std::initializer_list<std::string_view> choi
   return 0;
 }
 
+Result<std::optional<PanelProfile>> take_panel(SinkConfig& config) {
+  std::string name, file;
+  std::erase_if(config.options, [&](const auto& option) {
+    const auto& [key, value] = option;
+    std::string* const place = key == "calibration" ? &file : key == "panel" || value.empty() ? &name : nullptr;
+    if (place == nullptr || !place->empty() || (key == "calibration" && value.empty())) return false;
+    *place = value.empty() ? key : value;
+    return true;
+  });
+  if (name.empty() && file.empty()) return std::nullopt;
+  DUBSAR_ASSIGN(PanelProfile profile, choose_panel(config.profile_folder, name, file));
+  return profile;
+}
+
 Result<void> expect_no_more(const SinkConfig& config, std::string_view sink, std::string_view known) {
   if (config.options.empty()) return {};
   const auto& [key, value] = config.options.front();

@@ -10,6 +10,7 @@
 
 #include "display/output_sink.h"
 #include "display/sinks/quilt.h"
+#include "display/test_pattern.h"
 #include "tests/display/test_meshes.h"
 
 namespace dubsar {
@@ -126,6 +127,50 @@ TEST(RenderDisplay, ObjectsAreTurnedAsTheViewSays) {
   EXPECT_EQ(at({0, 0, 0}), glm::dvec3(1, 2, 3));
   EXPECT_EQ(at({-20, 0, 0}), glm::dvec3(1, 2, 43)) << "the left side faces the viewer";
   EXPECT_EQ(at({0, 0, 5}), glm::dvec3(11, 2, 3)) << "the front is at the right";
+}
+
+TEST(RenderDisplay, EachEyeSeesItsOwnPatternThroughTheLenses) {
+  DisplayOptions options;
+  const auto picture = render_pattern("lenticular:lens-sheet-24-5-views,nearest", options);
+  ASSERT_TRUE(picture) << picture.error().message;
+  ASSERT_TRUE(picture->light);
+  // Eyes in the middle of each view's cone, at the distance the panel is made for; 0 is the leftmost.
+  const double distance = 298.8 / 2 / std::tan(7.0 * 3.14159265358979 / 180);
+  for (int view = 0; view < 5; ++view) {
+    const double angle = 20.0 * ((view + 0.5) / 5 - 0.5) * 3.14159265358979 / 180;
+    const glm::dvec3 eye(distance * std::tan(angle), 0, distance);
+    const EyeLight light = light_at(*picture->light, eye, 64);
+    EXPECT_EQ(light.main_view, view);
+    EXPECT_LT(light.crosstalk, view == 0 || view == 4 ? 0.08 : 0.05) << "view " << view << "; the outer two leak into each other";
+    if (view != 1) continue;
+    const Image seen = see_display(*picture, eye).value();
+    const Rgb8 expected = pattern_color(1, 5);  // yellow-green
+    const std::uint8_t* ground = seen.at(1920 / 4, 1080 / 3);
+    EXPECT_NEAR(ground[0], expected[0] / 2, 45);
+    EXPECT_NEAR(ground[1], expected[1] / 2, 45);
+    EXPECT_NEAR(ground[2], expected[2] / 2, 45);
+  }
+  EXPECT_EQ(see_display(*picture, {0, 0, -100}).error().kind, ErrorKind::kUsage);
+}
+
+TEST(RenderDisplay, TrackedWeaveIsSeenByTheEyesItWasWovenFor) {
+  DisplayOptions options;
+  options.viewer.left_mm = {-51.5, 10, 580};
+  options.viewer.right_mm = {11.5, 10, 580};
+  const auto picture = render_pattern("lenticular:spatiallabs-15.6", options);
+  ASSERT_TRUE(picture && picture->light);
+  const EyeLight left = light_at(*picture->light, options.viewer.left_mm, 64);
+  const EyeLight right = light_at(*picture->light, options.viewer.right_mm, 64);
+  EXPECT_EQ(left.main_view, 0);
+  EXPECT_EQ(right.main_view, 1);
+  EXPECT_LT(left.crosstalk, 0.05);
+  EXPECT_LT(right.crosstalk, 0.05);
+}
+
+TEST(RenderDisplay, SeeingIsForDisplaysWithLenses) {
+  const auto picture = render_pattern("anaglyph", DisplayOptions());
+  ASSERT_TRUE(picture) << picture.error().message;
+  EXPECT_EQ(see_display(*picture, {0, 0, 600}).error().kind, ErrorKind::kUsage);
 }
 
 TEST(RenderDisplay, WrongRequestsAreUsageErrors) {

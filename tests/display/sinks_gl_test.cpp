@@ -244,5 +244,32 @@ TEST_F(SinksGl, AMeshThroughARowInterlacedPanelShowsEachEyeItsView) {
       for (int c = 0; c < 3; ++c) ASSERT_EQ(out.at(x, y)[c], (y % 2 == 0 ? left : right).at(x, y)[c]);
 }
 
+TEST_F(SinksGl, QuadBufferPutsEachViewIntoItsOwnBufferOfAStandIn) {
+  // A frame buffer with two colour attachments stands in for the left and the right back buffer.
+  auto sink = make_sink("quad_buffer").value();
+  ASSERT_TRUE(sink->configure({.width_px = 31, .height_px = 17, .window_w = 31, .window_h = 17}));
+  ASSERT_TRUE(sink->traits().stereo_visual);
+  const auto views = noise(sink->traits());
+  auto array = ViewArray::create(31, 17, 2);
+  for (int eye = 0; eye < 2; ++eye) ASSERT_TRUE(array->write_layer(eye, views[eye]));
+  std::array<GlTexture, 2> pictures;
+  const GlFramebuffer buffers = make_framebuffer();
+  for (int eye = 0; eye < 2; ++eye) {
+    pictures[eye] = make_texture(GL_TEXTURE_2D);
+    glTextureStorage2D(pictures[eye], 1, GL_RGBA8, 31, 17);
+    glNamedFramebufferTexture(buffers, GL_COLOR_ATTACHMENT0 + eye, pictures[eye], 0);
+  }
+  const auto done = sink->compose(*array, {buffers, 31, 17, {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1}});
+  ASSERT_TRUE(done) << done.error().message;
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  for (int eye = 0; eye < 2; ++eye) {
+    Image read(31, 17, 4);
+    glGetTextureImage(pictures[eye], 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(read.pixels.size()), read.pixels.data());
+    for (int y = 0; y < 17; ++y)
+      for (int x = 0; x < 31; ++x)
+        for (int c = 0; c < 3; ++c) ASSERT_EQ(read.at(x, 16 - y)[c], views[eye].at(x, y)[c]) << "eye " << eye;
+  }
+}
+
 }  // namespace
 }  // namespace dubsar

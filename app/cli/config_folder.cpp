@@ -1,0 +1,33 @@
+#include "app/cli/config_folder.h"
+
+#include <cstdlib>
+
+namespace dubsar::app {
+namespace fs = std::filesystem;
+
+namespace {
+fs::path from_environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value != nullptr ? fs::path(value) : fs::path();
+}
+}  // namespace
+
+fs::path config_folder() {
+  if (const fs::path xdg = from_environment("XDG_CONFIG_HOME"); xdg.is_absolute()) return xdg / "dubsar";
+  const fs::path home = from_environment("HOME");
+  return home.empty() ? fs::path() : home / ".config" / "dubsar";
+}
+
+fs::path panel_folder() {
+  const fs::path config = config_folder();
+  return config.empty() ? config : config / "panels";
+}
+
+std::vector<fs::path> mount_folders() {
+  fs::path user = from_environment("USER");
+  if (user.empty()) user = from_environment("LOGNAME");
+  if (user.empty()) return {};
+  return {"/media" / user, "/run/media" / user};
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,18 @@
+#pragma once
+// Where the user's own files of the program are.
+
+#include <filesystem>
+#include <vector>
+
+namespace dubsar::app {
+
+/// $XDG_CONFIG_HOME/dubsar, else $HOME/.config/dubsar; empty when neither variable is set.
+std::filesystem::path config_folder();
+
+/// Panel profiles and adjustments: config_folder() / "panels".
+std::filesystem::path panel_folder();
+
+/// Where desktops mount USB storage of the user: /media/$USER and /run/media/$USER.
+std::vector<std::filesystem::path> mount_folders();
+
+}  // namespace dubsar::app

@@ -1,0 +1,55 @@
+#include "display/sinks/quad_buffer.h"
+
+#include <algorithm>
+
+#include "display/compose_pass.h"
+#include "display/sinks/sink_options.h"
+
+namespace dubsar {
+namespace {
+
+constexpr GLint kLayerLocation = 0, kOriginLocation = 1;  // shaders/copy.frag
+
+class QuadBufferSink : public OutputSink {
+ public:
+  SinkTraits traits() const noexcept override {
+    const PixelSize size{screen_.window_w, screen_.window_h};
+    return {.name = "quad_buffer", .views = 2, .view = size, .output = size, .tracked = true, .stereo_visual = true};
+  }
+  Result<void> configure(const Screen& screen) override {
+    DUBSAR_TRY(check_screen(screen));
+    screen_ = screen;
+    return {};
+  }
+  std::span<const View> views(const Viewer& viewer) override { return views_ = stereo_views(screen_, viewer); }
+
+  Result<void> compose(const ViewArray& views, const Surface& target) override {
+    if (std::count(target.eye_buffers.begin(), target.eye_buffers.end(), 0u) != 0)
+      return fail(ErrorKind::kUnavailable, "display quad_buffer: this window has one buffer, expected one for each eye (a stereo visual)");
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+      DUBSAR_TRY(copy_.begin(target, views.coded()));
+      glDrawBuffer(target.eye_buffers[eye]);
+      glUniform1i(kLayerLocation, static_cast<GLint>(eye));
+      glUniform2i(kOriginLocation, 0, 0);
+      DUBSAR_TRY(copy_.draw());
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+    glDrawBuffer(target.framebuffer == 0 ? GL_BACK : target.eye_buffers[0]);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    return check_gl("composing for two eyes");
+  }
+
+ private:
+  Screen screen_;
+  std::array<View, 2> views_;
+  ComposePass copy_{"copy.frag"};
+};
+
+}  // namespace
+
+Result<std::unique_ptr<OutputSink>> make_quad_buffer_sink(const SinkConfig& config) {
+  DUBSAR_TRY(expect_no_more(config, "quad_buffer", "no options"));
+  return std::make_unique<QuadBufferSink>();
+}
+
+}  // namespace dubsar
