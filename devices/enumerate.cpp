@@ -86,6 +86,22 @@ std::vector<DeviceInfo> known_hid_devices(const std::vector<HidNode>& nodes, int
 
 std::vector<DeviceInfo> list_hid_devices() { return known_hid_devices(list_hid_nodes(), can_open); }
 
+Result<std::unique_ptr<Transport>> open_hid_device(std::string_view driver, const Clock& clock) {
+  Error error{ErrorKind::kUnavailable, fmt::format("{}: no such device is plugged in", driver)};
+  for (const DeviceInfo& info : list_hid_devices()) {
+    if (info.driver != driver || info.state == DeviceState::kIgnored) continue;
+    if (info.state == DeviceState::kUsable) {
+      auto opened = open_hid(info.path, clock);
+      if (opened) return opened;
+      error = std::move(opened).error();
+    } else {
+      error = {info.state == DeviceState::kNoPermission ? ErrorKind::kPermission : ErrorKind::kUnavailable,
+               fmt::format("{}: {}; {}", driver, info.reason, info.remedy)};
+    }
+  }
+  return tl::unexpected<Error>(std::move(error));
+}
+
 std::vector<DeviceInfo> list_spacenavd(const std::string& socket_path) {
   if (::access(socket_path.c_str(), F_OK) != 0) return {};
   DeviceInfo info;

@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::size_t kHeaderBytes = 4;
 constexpr std::size_t kLengthBytes = 4;
-constexpr milliseconds kReadTimeout{50};
-constexpr int kReadsPerRequest = 16;       // then the page is asked for again
+constexpr milliseconds kReadTimeout{30};
+constexpr int kReadsPerRequest = 64;         // then the page is asked for again
 constexpr int kMaxReadsWithoutClock = 8192;  // ends also when the clock stands still
 
 /// Puts 64 + 4 byte pieces together; a piece of 68 stands for itself.
@@ -17,17 +17,26 @@ class Reports {
  public:
   explicit Reports(Transport& transport) : transport_(&transport) {}
 
-  Result<std::optional<LookingGlassPage>> next() {
+  struct Piece {
+    bool silent = false;  ///< nothing came in time
+    std::optional<LookingGlassPage> page;
+  };
+
+  Result<Piece> next() {
     std::array<std::byte, kLookingGlassReportBytes + 1> piece;
     DUBSAR_ASSIGN(const std::size_t length, transport_->read(piece, kReadTimeout));
-    const auto bytes = std::span<const std::byte>(piece).first(length);
-    if (length == kLookingGlassReportBytes) {
+    return Piece{length == 0, add(std::span<const std::byte>(piece).first(length))};
+  }
+
+ private:
+  std::optional<LookingGlassPage> add(std::span<const std::byte> bytes) {
+    if (bytes.size() == kLookingGlassReportBytes) {
       first_.clear();
       return parse_looking_glass(bytes);
     }
-    if (length == kLookingGlassPageBytes) {
+    if (bytes.size() == kLookingGlassPageBytes) {
       first_.assign(bytes.begin(), bytes.end());
-    } else if (length == kHeaderBytes && first_.size() == kLookingGlassPageBytes) {
+    } else if (bytes.size() == kHeaderBytes && first_.size() == kLookingGlassPageBytes) {
       first_.insert(first_.end(), bytes.begin(), bytes.end());
       const auto page = parse_looking_glass(first_);
       first_.clear();
@@ -36,7 +45,6 @@ class Reports {
     return std::nullopt;
   }
 
- private:
   Transport* transport_;
   std::vector<std::byte> first_;
 };
@@ -52,8 +60,9 @@ class PageReader {
       for (int i = 0; i < kReadsPerRequest; ++i) {
         if (clock_->now() >= deadline_ || ++reads_ > kMaxReadsWithoutClock)
           return fail(ErrorKind::kUnavailable, "looking glass: no answer to the request of calibration page {}", number);
-        DUBSAR_ASSIGN(const auto found, reports_.next());
-        if (found && found->number == number) return *found;
+        DUBSAR_ASSIGN(const auto piece, reports_.next());
+        if (piece.page && piece.page->number == number) return *piece.page;
+        if (piece.silent) break;
       }
     }
   }

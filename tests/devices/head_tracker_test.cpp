@@ -1,0 +1,287 @@
+// Head trackers: opentrack, VRPN, Rift, XREAL, and what holds them level.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numbers>
+
+#include "devices/head_tracker/head_tracker.h"
+#include "devices/head_tracker/imu_sim.h"
+#include "devices/head_tracker/opentrack_protocol.h"
+#include "devices/head_tracker/vrpn_protocol.h"
+#include "tests/devices/device_bytes.h"
+
+namespace dubsar {
+namespace {
+
+constexpr TimestampNs kSecond = 1'000'000'000;
+constexpr double kDeg = std::numbers::pi / 180.0;
+
+double angle_between(const glm::dquat& a, const glm::dquat& b) {
+  return 2.0 * std::acos(std::min(1.0, std::abs(glm::dot(a, b))));
+}
+
+TEST(Opentrack, GoldenDatagramInCentimetresAndDegrees) {
+  // 10, -5, 60 cm, yaw 90, pitch 0, roll 0 degrees as little-endian doubles
+  const auto bytes = from_hex(
+      "0000000000002440 00000000000014c0 0000000000004e40 0000000000805640 0000000000000000 0000000000000000");
+  const auto packet = parse_opentrack(bytes);
+  ASSERT_TRUE(packet);
+  EXPECT_EQ(*packet, (OpentrackPacket{10, -5, 60, 90, 0, 0}));
+  EXPECT_EQ(to_hex(format_opentrack(*packet)), to_hex(bytes));
+  const Pose pose = opentrack_pose(*packet);
+  EXPECT_NEAR(pose.position_m.x, 0.10, 1e-12);
+  EXPECT_NEAR(pose.position_m.z, 0.60, 1e-12);
+  const glm::dvec3 gaze = pose.rotation * glm::dvec3(0, 0, -1);
+  EXPECT_NEAR(gaze.x, 1.0, 1e-12);  // yaw on the wire counts to the right
+  EXPECT_NEAR((opentrack_pose(*packet, {false, false, false, true, false, false}).rotation * glm::dvec3(0, 0, -1)).x,
+              -1.0, 1e-12);
+}
+
+TEST(Opentrack, PoseAndPacketAreInverse) {
+  for (double yaw = -170; yaw <= 170; yaw += 34)
+    for (double pitch = -80; pitch <= 80; pitch += 20)
+      for (double roll = -170; roll <= 170; roll += 34) {
+        const OpentrackPacket back = opentrack_packet(opentrack_pose({1, 2, 3, yaw, pitch, roll}));
+        ASSERT_NEAR(back.yaw_deg, yaw, 1e-9);
+        ASSERT_NEAR(back.pitch_deg, pitch, 1e-9);
+        ASSERT_NEAR(back.roll_deg, roll, 1e-9);
+      }
+}
+
+TEST(Opentrack, RefusesOtherLengthsAndValuesThatNoHeadHas) {
+  const auto good = format_opentrack({1, 2, 3, 4, 5, 6});
+  std::vector<std::byte> longer(good.begin(), good.end());
+  longer.push_back({});
+  EXPECT_FALSE(parse_opentrack(longer));
+  for (std::size_t length = 0; length < 48; ++length) EXPECT_FALSE(parse_opentrack(std::span(good).first(length)));
+  for (std::size_t field = 0; field < 6; ++field)
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -1e300,
+                             field < 3 ? 200.1 : 180.1}) {
+      auto bytes = good;
+      std::memcpy(bytes.data() + 8 * field, &bad, 8);
+      EXPECT_FALSE(parse_opentrack(bytes)) << field << " " << bad;
+    }
+}
+
+TEST(HeadGate, AJumpIsFollowedAtFiveMetresPerSecond) {
+  HeadGate gate;
+  gate.pass({0, {{0, 0, 0.6}, {1, 0, 0, 0}}, true, true});
+  const auto jumped = gate.pass({kSecond / 100, {{1.0, 0, 0.6}, {1, 0, 0, 0}}, true, true});
+  ASSERT_TRUE(jumped);
+  EXPECT_NEAR(jumped->pose.position_m.x, 0.05, 1e-12);
+  const auto later = gate.pass({kSecond, {{1.0, 0, 0.6}, {1, 0, 0, 0}}, true, true});
+  EXPECT_NEAR(later->pose.position_m.x, 1.0, 1e-12);  // after a gap the new place is believed
+  EXPECT_FALSE(gate.pass({kSecond, {{2.1, 0, 0}, {1, 0, 0, 0}}, true, true}));
+  EXPECT_FALSE(gate.pass({kSecond, {{0, 0, 0}, {0.5, 0, 0, 0}}, true, true}));
+}
+
+std::vector<std::byte> vrpn_session(const Pose& pose) {
+  std::vector<std::byte> stream;
+  const auto add = [&](std::span<const std::byte> bytes) { stream.insert(stream.end(), bytes.begin(), bytes.end()); };
+  add(vrpn_cookie());
+  add(format_vrpn(vrpn_name_message(-1, 4, "Tracker0")));
+  add(format_vrpn(vrpn_name_message(-2, 7, "vrpn_Tracker Pos_Quat")));
+  add(format_vrpn(vrpn_name_message(-2, 8, "vrpn_Button Change")));
+  add(format_vrpn({0, 0, 4, 8, from_hex("0000000000000001")}));
+  add(format_vrpn(vrpn_pose_message(4, 7, 0, pose)));
+  add(format_vrpn(vrpn_pose_message(4, 7, 1, {})));  // another sensor
+  return stream;
+}
+
+TEST(Vrpn, GoldenMessage) {
+  EXPECT_EQ(to_hex(vrpn_cookie()), "7672706e3a207665722e2030372e3338202030" "0000000000");
+  EXPECT_EQ(to_hex(format_vrpn(vrpn_name_message(-1, 4, "T"))),
+            "0000001e" "00000000" "00000000" "00000004" "ffffffff" "00000000" "00000002" "5400" "0000");
+  const auto pose = vrpn_pose_message(0, 0, 3, {{1.0, 0, 0}, {1, 0, 0, 0}});
+  EXPECT_EQ(to_hex(pose.payload), "0000000300000000" "3ff0000000000000" "0000000000000000" "0000000000000000"
+                                  "0000000000000000" "0000000000000000" "0000000000000000" "3ff0000000000000");
+}
+
+TEST(Vrpn, ThePoseIsFoundHoweverTheStreamIsCut) {
+  const Pose pose{{0.1, 0.2, 0.3}, glm::angleAxis(0.5, glm::dvec3(0, 1, 0))};
+  const auto stream = vrpn_session(pose);
+  for (std::size_t piece = 1; piece < stream.size(); piece += 1 + piece / 8) {
+    SimDevice device("vrpn", false);
+    Driver<VrpnProtocol> driver([&] { return device.open(); }, VrpnProtocol({"Tracker0", 0}));
+    driver.poll(0);
+    std::optional<HeadSample> sample;
+    for (std::size_t at = 0; at < stream.size(); at += piece)
+      device.send(std::span(stream).subspan(at, std::min(piece, stream.size() - at)));
+    sample = driver.poll(7);
+    ASSERT_TRUE(sample) << piece;
+    EXPECT_EQ(sample->pose.position_m, pose.position_m);
+    EXPECT_LT(angle_between(sample->pose.rotation, pose.rotation), 1e-7);
+    EXPECT_EQ(driver.counts().refused, 0U);
+  }
+}
+
+TEST(Vrpn, AnotherTrackersPosesAreNotTaken) {
+  SimDevice device("vrpn", false);
+  Driver<VrpnProtocol> driver([&] { return device.open(); }, VrpnProtocol({"Wand", 0}));
+  driver.poll(0);
+  device.send(vrpn_session({}));
+  EXPECT_FALSE(driver.poll(1));
+  EXPECT_TRUE(driver.connected());
+}
+
+TEST(Vrpn, AWrongVersionADamagedLengthAndAGoodbyeEndTheConnection) {
+  auto wrong = vrpn_session({});
+  wrong[12] = std::byte{'6'};
+  auto damaged = vrpn_session({});
+  damaged[24] = std::byte{0x7f};
+  std::vector<std::byte> goodbye = vrpn_session({});
+  const auto end = format_vrpn({0, 0, 0, -5, {}});
+  goodbye.insert(goodbye.end(), end.begin(), end.end());
+  for (const auto& stream : {wrong, damaged, goodbye}) {
+    SimDevice device("vrpn", false);
+    Driver<VrpnProtocol> driver([&] { return device.open(); }, VrpnProtocol());
+    driver.poll(0);
+    device.send(stream);
+    driver.poll(1);
+    driver.poll(2);
+    EXPECT_FALSE(driver.connected());
+    EXPECT_NE(driver.reason().find("vrpn: "), std::string::npos);
+  }
+}
+
+TEST(Rift, PackedVectorsAreThreeSigned21BitNumbersBigEndian) {
+  EXPECT_EQ(to_hex(pack_rift_vector({1, 0, 0})), "0000080000000000");
+  EXPECT_EQ(to_hex(pack_rift_vector({0, 1, 0})), "0000000000400000");
+  EXPECT_EQ(to_hex(pack_rift_vector({0, 0, 1})), "0000000000000002");
+  EXPECT_EQ(to_hex(pack_rift_vector({-1, 0, 0})), "fffff80000000000");
+  for (const std::array<std::int32_t, 3> v :
+       {std::array{1048575, -1048576, 0}, std::array{-1, 77777, -99999}, std::array{98100, -98100, 1}})
+    EXPECT_EQ(unpack_rift_vector(pack_rift_vector(v)), v);
+}
+
+TEST(Rift, GoldenReports) {
+  auto dk1 = from_hex("01 02 3412 0000 0000 0000000000400000");
+  dk1.resize(62);
+  auto parsed = parse_rift(dk1);
+  ASSERT_TRUE(parsed);
+  EXPECT_EQ(parsed->ticks, 0x1234U);
+  EXPECT_EQ(parsed->count, 2);
+  EXPECT_NEAR(parsed->samples[0].acceleration_m_s2.y, 1e-4, 1e-12);
+  auto dk2 = from_hex("0b 0000 05 ffff 0000 40e20100 0000080000000000 fffff80000000000");
+  dk2.resize(64);
+  parsed = parse_rift(dk2);
+  ASSERT_TRUE(parsed);
+  EXPECT_EQ(parsed->ticks, 123456U);
+  EXPECT_EQ(parsed->samples_since_last, 5);
+  EXPECT_EQ(parsed->count, 2);
+  EXPECT_NEAR(parsed->samples[0].turn_rate_rad_s.x, -1e-4, 1e-12);
+  for (std::size_t length = 0; length < 64; ++length) EXPECT_FALSE(parse_rift(std::span(dk2).first(length)));
+  dk2[3] = {};
+  EXPECT_FALSE(parse_rift(dk2));
+  EXPECT_EQ(to_hex(rift_keep_alive(10000)), "0800001027");
+}
+
+TEST(Rift, AQuarterTurnIsFollowedOnBothModels) {
+  for (const RiftModel model : {RiftModel::kDk1, RiftModel::kDk2}) {
+    RiftSim sim(model);
+    Driver<RiftProtocol> driver([&] { return sim.device().open(); }, RiftProtocol());
+    driver.poll(0);
+    std::optional<HeadSample> newest;
+    for (int i = 0; i < 500; ++i) {  // 1 s, two readings per report
+      sim.step({0, 90 * kDeg, 0}, 2);
+      if (const auto sample = driver.poll((i + 1) * 2'000'000)) newest = sample;
+    }
+    ASSERT_TRUE(newest);
+    EXPECT_FALSE(newest->has_position);
+    EXPECT_LT(angle_between(newest->pose.rotation, sim.motion().world_from_head()), 0.1 * kDeg);
+    EXPECT_NEAR((newest->pose.rotation * glm::dvec3(0, 0, -1)).x, -1.0, 1e-2);  // right-handed about up: to the left
+  }
+}
+
+TEST(Rift, StaysAwakeForAMinute) {
+  RiftSim sim(RiftModel::kDk1);
+  Driver<RiftProtocol> driver([&] { return sim.device().open(); }, RiftProtocol());
+  driver.poll(0);
+  for (int i = 1; i <= 3000; ++i) {
+    sim.step({}, 20);
+    ASSERT_FALSE(sim.silent()) << i;
+    ASSERT_TRUE(driver.poll(i * TimestampNs{20'000'000}));
+  }
+}
+
+TEST(ImuFusion, AStartAtASlantIsLevelAtOnceAndTiltErrorsFade) {
+  const glm::dquat tilted = glm::angleAxis(30 * kDeg, glm::dvec3(0, 0, 1));
+  ImuFusion fusion;
+  fusion.update({glm::conjugate(tilted) * glm::dvec3(0, 9.81, 0), {}}, 0.001);
+  EXPECT_LT(angle_between(fusion.world_from_head(), tilted), 1e-9);
+  for (int i = 0; i < 10000; ++i) fusion.update({{0, 9.81, 0}, {}}, 0.001);  // now level: 10 s, five time constants
+  EXPECT_LT(angle_between(fusion.world_from_head(), {1, 0, 0, 0}), 30 * kDeg * std::exp(-5.0) * 1.01);
+}
+
+TEST(ImuFusion, RecentringTakesTheHeadingAwayAndKeepsTheTilt) {
+  ImuFusion fusion;
+  HeadMotion head;
+  for (int i = 0; i < 1000; ++i) fusion.update(head.turn({0, 1.2, 0}, 1e-3), 1e-3);
+  for (int i = 0; i < 1000; ++i) fusion.update(head.turn({0.3, 0, 0}, 1e-3), 1e-3);
+  fusion.recentre();
+  EXPECT_LT(angle_between(fusion.world_from_head(), glm::angleAxis(0.3, glm::dvec3(1, 0, 0))), 1e-3);
+}
+
+TEST(Xreal, GoldenReportAndCommand) {
+  // 1.5 s; gyro 1/1000 degree per unit: 1000, 2000, -3000; accelerometer 1/100 g: 0, 0, 100
+  auto bytes = from_hex(
+      "0102 0000 002f685900000000 0100 e8030000 e80300 d00700 48f4ff 0100 64000000 000000 000000 640000");
+  bytes.resize(64);
+  const auto parsed = parse_xreal(bytes);
+  ASSERT_TRUE(parsed);
+  EXPECT_EQ(parsed->time_ns, 1'500'000'000U);
+  EXPECT_NEAR(parsed->sample.turn_rate_rad_s.x, -1 * kDeg, 1e-12);
+  EXPECT_NEAR(parsed->sample.turn_rate_rad_s.y, -3 * kDeg, 1e-12);
+  EXPECT_NEAR(parsed->sample.turn_rate_rad_s.z, 2 * kDeg, 1e-12);
+  EXPECT_NEAR(parsed->sample.acceleration_m_s2.y, 9.81, 1e-12);
+  for (std::size_t length = 0; length < 64; ++length) EXPECT_FALSE(parse_xreal(std::span(bytes).first(length)));
+  auto bad = bytes;
+  for (std::size_t i = 14; i < 18; ++i) bad[i] = {};
+  EXPECT_FALSE(parse_xreal(bad));
+  bad = bytes;
+  bad[26] = std::byte{0x7f};
+  EXPECT_FALSE(parse_xreal(bad));
+
+  const auto command = format_xreal_command({kXrealStream, {std::byte{1}}});
+  // CRC-32 of 04 00 19 01
+  EXPECT_EQ(to_hex(std::span(command).first(9)), "aa" "c5d12142" "040019" "01");
+  EXPECT_EQ(parse_xreal_command(command), (XrealCommand{kXrealStream, {std::byte{1}}}));
+  for (std::size_t i = 0; i < 9; ++i) {
+    auto broken = command;
+    broken[i] ^= std::byte{0x10};
+    EXPECT_FALSE(parse_xreal_command(broken)) << i;
+  }
+}
+
+TEST(Xreal, StreamsAfterItsCommandAndFollowsANod) {
+  XrealSim sim;
+  Driver<XrealProtocol> driver([&] { return sim.device().open(); }, XrealProtocol());
+  driver.poll(0);
+  EXPECT_TRUE(sim.streaming());
+  std::optional<HeadSample> newest;
+  for (int i = 1; i <= 1000; ++i) {
+    sim.step({20 * kDeg, 0, 0}, 1e-3);
+    if (const auto sample = driver.poll(i * 1'000'000)) newest = sample;
+  }
+  ASSERT_TRUE(newest);
+  EXPECT_LT(angle_between(newest->pose.rotation, glm::angleAxis(20 * kDeg, glm::dvec3(1, 0, 0))), 0.1 * kDeg);
+  EXPECT_EQ(driver.counts().refused, 0U);
+}
+
+TEST(HeadTrackers, EveryBackendIsMadeByItsNameAndOnlyRealDevicesAreChosenUnasked) {
+  SimDevice device("sim");
+  HeadTrackerConfig config;
+  config.open = [&] { return device.open(); };
+  for (const char* name : {"opentrack", "vrpn", "rift", "xreal"}) {
+    const auto backend = find_backend(head_tracker_backends(), name, "head tracker");
+    ASSERT_TRUE(backend) << name;
+    EXPECT_TRUE((*backend)->create(config)) << name;
+    EXPECT_EQ((*backend)->create({}).error().kind, ErrorKind::kUsage);
+  }
+}
+
+}  // namespace
+}  // namespace dubsar
