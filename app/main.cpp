@@ -24,7 +24,7 @@ void add_common_options(CLI::App& command, CommonOptions& common) {
   group->add_option("--json", common.json_path, "write the result as JSON to FILE (- for stdout)")->type_name("FILE");
   group->add_option("--progress", common.console.progress, "how progress is shown on stderr")
       ->transform(CLI::CheckedTransformer(styles, CLI::ignore_case))
-      ->type_name("auto|bar|json|none");
+      ->option_text("auto|bar|json|none");
   group->add_option("--threads", common.threads, "number of threads (0: all cores)")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");

@@ -54,7 +54,7 @@ Verb add_export_verb(CLI::App& program) {
   command->add_option("--partition", options->partitions, "only these parts: names or ids, e.g. tablet")->delimiter(',');
   command->add_option("--units", options->write.units, "mm, or vox: coordinates of the input volume")
       ->transform(CLI::CheckedTransformer(std::map<std::string, MeshUnits>{{"mm", MeshUnits::kMm}, {"vox", MeshUnits::kVox}}))
-      ->type_name("mm|vox");
+      ->option_text("mm|vox");
   command->add_flag("--no-fill-holes", options->no_holes, "leave out the patches that close the parts");
   command->add_flag("--simplify", options->simplify, "fewer triangles where the surface is flat (adaptive vertex clustering)");
   command->add_option("--simplify-angle", options->simplify_angle_deg, "largest angle in degrees between old and new triangles")

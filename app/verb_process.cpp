@@ -26,7 +26,7 @@ CLI::Option* add_choice(CLI::App& group, const std::string& name, T& target, con
                         const std::string& help) {
   std::string names;
   for (const auto& [text, value] : choices) names += (names.empty() ? "" : "|") + text;
-  return group.add_option(name, target, help)->transform(CLI::CheckedTransformer(choices))->type_name(names);
+  return group.add_option(name, target, help)->transform(CLI::CheckedTransformer(choices))->option_text(names);
 }
 
 void add_filter_options(CLI::App& command, Options& options) {
