@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/atomic_file.h"
+#include "core/base/json_fields.h"
 #include "core/base/json_text.h"
 #include "core/base/log.h"
-#include "display/json_fields.h"
 
 namespace dubsar {
 namespace fs = std::filesystem;

@@ -4,10 +4,10 @@
 #include <numbers>
 
 #include "core/base/atomic_file.h"
+#include "core/base/json_fields.h"
 #include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "display/embedded_profiles.h"
-#include "display/json_fields.h"
 #include "display/optics.h"
 #include "display/panel_adjust.h"
 

@@ -1,4 +1,4 @@
-#include "display/json_fields.h"
+#include "core/base/json_fields.h"
 
 #include <cmath>
 

@@ -1,0 +1,29 @@
+#pragma once
+// Things that happen once, as plain data: windows make them, scripts and recordings too.
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <string>
+
+#include "core/base/clock.h"
+
+namespace dubsar {
+
+enum class EventKind : std::uint8_t { kMotion, kButton, kWheel, kKey };
+
+/// Bits; a chord is a set of them.
+enum Modifier : std::uint8_t { kNoModifier = 0, kShift = 1, kControl = 2, kAlt = 4 };
+
+enum class MouseButton : std::uint8_t { kLeft, kMiddle, kRight };
+
+struct InputEvent {
+  TimestampNs time = 0;
+  EventKind kind = EventKind::kMotion;
+  glm::dvec2 motion{0.0};  ///< kMotion: pixels to the right and down; kWheel: notches in .y, positive away from the user
+  MouseButton button = MouseButton::kLeft;
+  bool down = false;       ///< kButton, kKey
+  std::uint8_t modifiers = kNoModifier;
+  std::string key{};       ///< kKey: "left", "up", "home", "space", "a", "1", "+", "f5" ...
+};
+
+}  // namespace dubsar

@@ -1,0 +1,84 @@
+#pragma once
+// The one interface behind which every input stands, what it delivers, and the ordered table of back ends.
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/base/clock.h"
+#include "core/base/registry.h"
+#include "core/base/result.h"
+#include "input/hand_frame.h"
+#include "input/input_event.h"
+#include "input/view_state.h"
+
+namespace dubsar {
+
+class WindowEvents;
+
+/// A head as trackers see it, in the screen frame (panel centre, metres). An eye that was not seen is missing.
+struct HeadFrame {
+  TimestampNs time = 0;
+  std::uint32_t id = 0;
+  bool tracked = false;  ///< measured now
+  double confidence = 0.0;
+  std::optional<glm::dvec3> left_eye_m, right_eye_m;
+};
+
+/// Deflection of a six-axis puck, -1..1 each, axes of the screen frame; it stays until the next report.
+struct PuckMotion {
+  TimestampNs time = 0;
+  glm::dvec3 push{0.0}, twist{0.0};
+};
+
+/// What a source knows at one moment. Poses are the newest ones; events are all since the last poll, oldest first.
+struct InputFrame {
+  TimestampNs time = 0;  ///< device time of the newest thing in here
+  std::vector<InputEvent> events;
+  std::optional<PuckMotion> puck;
+  std::vector<HandFrame> hands;  ///< screen frame, everybody's, at most kMaxHands
+  std::vector<HeadFrame> heads;  ///< everybody's
+};
+
+enum class Freshness {
+  kNew,        ///< something was measured since the last poll
+  kUnchanged,  ///< nothing new, the last frame still holds
+  kLost,       ///< the device is gone or silent; a state, not an error: it may come back
+};
+
+class InputSource {
+ public:
+  virtual ~InputSource() = default;
+  virtual std::string_view name() const noexcept = 0;
+  /// Opens the device; at most one reader thread, joined by the destructor. Errors: kUnavailable, kPermission with what
+  /// to do.
+  virtual Result<void> start() = 0;
+  /// Never blocks; the newest measurement wins and `newest` keeps its poses when there is none. Call it from one thread.
+  virtual Freshness poll(TimestampNs now, InputFrame& newest) noexcept = 0;
+  /// Scripts and recordings come to an end, live devices never do.
+  virtual bool has_end() const noexcept { return false; }
+  virtual bool finished() const noexcept { return false; }
+};
+
+struct InputConfig {
+  std::vector<std::pair<std::string, std::string>> options;  ///< "key=value"; a bare word has an empty value
+  WindowEvents* window = nullptr;          ///< where mouse and keyboard come from; none without a window
+  const ViewState* seen_view = nullptr;    ///< what a simulated visitor looks at; outlives the source
+};
+
+using InputBackend = Backend<InputSource, InputConfig>;
+
+/// All sources, in the order of their priority when several see hands or heads.
+std::span<const InputBackend> input_sources();
+
+/// Makes and starts the source that "NAME[:option,...]" names: kUsage with the names there are or what the options are. `base`
+/// holds what the text cannot say.
+Result<std::unique_ptr<InputSource>> make_input(std::string_view spec, const InputConfig& base = {});
+
+}  // namespace dubsar

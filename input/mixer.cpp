@@ -1,0 +1,66 @@
+#include "input/mixer.h"
+
+#include <algorithm>
+
+namespace dubsar {
+namespace {
+
+constexpr TimestampNs kKeeps = 300'000'000;
+constexpr std::size_t kMostEvents = 4096;
+
+template <class T>
+bool any_tracked(const std::vector<T>& things) {
+  return std::any_of(things.begin(), things.end(), [](const T& t) { return t.tracked; });
+}
+
+}  // namespace
+
+void InputMixer::add(std::unique_ptr<InputSource> source) { sources_.push_back({std::move(source), {}, Freshness::kLost}); }
+
+bool InputMixer::remove(std::string_view name) {
+  return std::erase_if(sources_, [&](const Entry& entry) { return entry.source->name() == name; }) > 0;
+}
+
+const InputFrame& InputMixer::poll(TimestampNs now) {
+  merged_ = {};
+  for (Entry& entry : sources_) {
+    entry.frame.events.clear();
+    entry.freshness = entry.source->poll(now, entry.frame);
+    const std::size_t room = kMostEvents - std::min(kMostEvents, merged_.events.size());
+    const auto count = static_cast<std::ptrdiff_t>(std::min(room, entry.frame.events.size()));
+    merged_.events.insert(merged_.events.end(), entry.frame.events.begin(), entry.frame.events.begin() + count);
+    if (entry.freshness == Freshness::kLost) continue;
+    merged_.time = std::max(merged_.time, entry.frame.time);
+    if (entry.frame.puck && !merged_.puck) merged_.puck = entry.frame.puck;
+  }
+  std::stable_sort(merged_.events.begin(), merged_.events.end(),
+                   [](const InputEvent& a, const InputEvent& b) { return a.time < b.time; });
+  const auto pick = [&](auto member, Owner& owner) {
+    for (const Entry& entry : sources_) {
+      if (entry.freshness == Freshness::kLost) continue;
+      const bool tracked = any_tracked(entry.frame.*member);
+      const bool owns = owner.source == entry.source.get() && now < owner.until;
+      if (!tracked && !owns) continue;
+      if (tracked) owner = {entry.source.get(), now + kKeeps};
+      merged_.*member = entry.frame.*member;
+      return;
+    }
+  };
+  pick(&InputFrame::hands, hands_);
+  pick(&InputFrame::heads, heads_);
+  return merged_;
+}
+
+std::vector<SourceState> InputMixer::states() const {
+  std::vector<SourceState> out;
+  for (const Entry& entry : sources_) out.push_back({std::string(entry.source->name()), entry.freshness, entry.frame.time});
+  return out;
+}
+
+bool InputMixer::finished() const noexcept {
+  const auto ends = [](const Entry& entry) { return entry.source->finished(); };
+  return std::any_of(sources_.begin(), sources_.end(), [](const Entry& e) { return e.source->has_end(); }) &&
+         std::all_of(sources_.begin(), sources_.end(), [&](const Entry& e) { return !e.source->has_end() || ends(e); });
+}
+
+}  // namespace dubsar

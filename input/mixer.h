@@ -1,0 +1,49 @@
+#pragma once
+// Several sources as one: the newest of each, hands and heads of the first source that sees any.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "input/input_source.h"
+
+namespace dubsar {
+
+struct SourceState {
+  std::string name;
+  Freshness freshness = Freshness::kLost;
+  TimestampNs newest = 0;  ///< device time of the newest measurement
+};
+
+class InputMixer {
+ public:
+  /// Adds a started source. Earlier ones have priority for hands, heads and puck; events of all are merged in time.
+  void add(std::unique_ptr<InputSource> source);
+  /// Takes the sources of this name out; false when there is none.
+  bool remove(std::string_view name);
+
+  /// Polls all sources. A lost source contributes nothing. Hands of two sources are never mixed: the first that has one
+  /// tracked wins, and keeps its right for 300 ms after its last hand. Bounded: at most 4096 events a call.
+  const InputFrame& poll(TimestampNs now);
+
+  std::vector<SourceState> states() const;
+  bool empty() const noexcept { return sources_.empty(); }
+  /// True when there is a source with an end and all of those have reached it.
+  bool finished() const noexcept;
+
+ private:
+  struct Entry {
+    std::unique_ptr<InputSource> source;
+    InputFrame frame;
+    Freshness freshness = Freshness::kLost;
+  };
+  struct Owner {
+    const InputSource* source = nullptr;
+    TimestampNs until = 0;
+  };
+  std::vector<Entry> sources_;
+  Owner hands_, heads_;
+  InputFrame merged_;
+};
+
+}  // namespace dubsar

@@ -1,0 +1,64 @@
+#pragma once
+// Who is tracked: the person who came first, nearest and most central, is kept; bystanders are ignored until that
+// person is gone.
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "input/hand_frame.h"
+#include "input/input_source.h"
+
+namespace dubsar {
+
+/// Keeps one head.
+class HeadKeeper {
+ public:
+  /// The kept head if it is in `heads`, else null. It is known again by its tracker's id, or, where the tracker gave a
+  /// new one, by its place (300 mm). When it has been away for `gone_ns`, the head with the least distance plus twice
+  /// its sideways offset takes over.
+  const HeadFrame* update(TimestampNs now, std::span<const HeadFrame> heads);
+  std::optional<glm::dvec3> place_m() const noexcept { return place_m_; }
+
+ private:
+  static constexpr TimestampNs kGone = 1'000'000'000;
+  std::optional<glm::dvec3> place_m_;
+  std::uint32_t id_ = 0;
+  TimestampNs seen_ = 0;
+};
+
+struct HandZone {
+  glm::dvec3 min_m{-0.35, -0.25, -0.2}, max_m{0.35, 0.35, 0.6};
+};
+
+/// Keeps up to two hands of one person, each in its slot.
+class HandKeeper {
+ public:
+  explicit HandKeeper(const HandZone& zone = {}) : zone_(zone) {}
+
+  /// The kept hands, null where a slot's hand is not seen now. A hand is let in when it first shows itself inside the
+  /// zone, points roughly at the screen, belongs to the kept head rather than to another one (where heads are known) and,
+  /// as the second hand, is the other hand of a plausible pair: not crossed, 60 to 700 mm apart, not 300 mm behind, and
+  /// both arms come from shoulders of one body (back along the fingers). A slot is free again when its hand has been away
+  /// for 1.5 s.
+  std::array<const HandFrame*, 2> update(TimestampNs now, std::span<const HandFrame> hands,
+                                         std::span<const HeadFrame> heads, std::optional<glm::dvec3> kept_head_m);
+
+ private:
+  static constexpr TimestampNs kGone = 1'500'000'000;
+  struct Slot {
+    bool taken = false;
+    std::uint32_t id = 0;
+    Chirality chirality = Chirality::kUnknown;
+    glm::dvec3 place_m{0.0}, shoulder_m{0.0};
+    TimestampNs seen = 0;
+    std::vector<std::uint32_t> strangers;  // seen beside this hand, so never it under a new id; the newest 16
+  };
+  bool may_enter(const HandFrame& hand, const Slot& other, std::span<const HeadFrame> heads,
+                 const std::optional<glm::dvec3>& kept_head_m) const;
+  HandZone zone_;
+  std::array<Slot, 2> slots_{};
+};
+
+}  // namespace dubsar

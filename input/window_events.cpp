@@ -1,0 +1,58 @@
+#include "input/window_events.h"
+
+#include <algorithm>
+
+namespace dubsar {
+namespace {
+
+constexpr std::size_t kMost = 4096;
+
+class WindowSource final : public InputSource {
+ public:
+  WindowSource(WindowEvents* window, bool keys) : window_(window), keys_(keys) {}
+  std::string_view name() const noexcept override { return keys_ ? "keyboard" : "mouse"; }
+  Result<void> start() override { return {}; }
+  Freshness poll(TimestampNs, InputFrame& newest) noexcept override {
+    newest.events = window_->take(keys_);
+    if (newest.events.empty()) return Freshness::kUnchanged;
+    newest.time = newest.events.back().time;
+    return Freshness::kNew;
+  }
+
+ private:
+  WindowEvents* window_;
+  bool keys_;
+};
+
+Result<std::unique_ptr<InputSource>> make(const InputConfig& config, bool keys) {
+  const std::string_view name = keys ? "keyboard" : "mouse";
+  if (!config.options.empty())
+    return fail(ErrorKind::kUsage, "input {}: option \"{}\" found, expected none", name, config.options.front().first);
+  if (config.window == nullptr)
+    return fail(ErrorKind::kUnavailable, "input {}: there is no window to get it from; use scripted or replay without a window", name);
+  return std::make_unique<WindowSource>(config.window, keys);
+}
+
+}  // namespace
+
+void WindowEvents::push(const InputEvent& event) {
+  auto& queue = event.kind == EventKind::kKey ? keys_ : mouse_;
+  if (event.kind == EventKind::kMotion && !queue.empty() && queue.back().kind == EventKind::kMotion &&
+      queue.back().modifiers == event.modifiers) {
+    queue.back().motion += event.motion;
+    queue.back().time = event.time;
+    return;
+  }
+  if (queue.size() >= kMost) {
+    const auto motion = std::find_if(queue.begin(), queue.end(), [](const InputEvent& e) { return e.kind == EventKind::kMotion; });
+    queue.erase(motion == queue.end() ? queue.begin() : motion);
+  }
+  queue.push_back(event);
+}
+
+std::vector<InputEvent> WindowEvents::take(bool keys) { return std::exchange(keys ? keys_ : mouse_, {}); }
+
+Result<std::unique_ptr<InputSource>> make_mouse_source(const InputConfig& config) { return make(config, false); }
+Result<std::unique_ptr<InputSource>> make_keyboard_source(const InputConfig& config) { return make(config, true); }
+
+}  // namespace dubsar

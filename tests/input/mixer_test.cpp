@@ -1,0 +1,126 @@
+#include "input/mixer.h"
+
+#include <gtest/gtest.h>
+
+#include "input/window_events.h"
+
+namespace dubsar {
+namespace {
+
+constexpr TimestampNs kMs = 1'000'000;
+
+/// Says what the test told it to.
+struct Told final : InputSource {
+  InputFrame frame;
+  Freshness freshness = Freshness::kNew;
+  std::string label;
+  explicit Told(std::string n) : label(std::move(n)) {}
+  std::string_view name() const noexcept override { return label; }
+  Result<void> start() override { return {}; }
+  Freshness poll(TimestampNs, InputFrame& newest) noexcept override {
+    newest = frame;
+    return freshness;
+  }
+};
+
+HandFrame hand(std::uint32_t id) {
+  HandFrame out;
+  out.id = id;
+  out.valid = out.tracked = true;
+  return out;
+}
+
+struct TwoTrackers {
+  InputMixer mixer;
+  Told* first = nullptr;
+  Told* second = nullptr;
+  TwoTrackers() {
+    auto a = std::make_unique<Told>("leap"), b = std::make_unique<Told>("webcam");
+    first = a.get();
+    second = b.get();
+    mixer.add(std::move(a));
+    mixer.add(std::move(b));
+  }
+};
+
+TEST(Mixer, HandsComeFromTheFirstSourceThatSeesAnyAndAreNeverMixed) {
+  TwoTrackers t;
+  t.second->frame.hands = {hand(20), hand(21)};
+  EXPECT_EQ(t.mixer.poll(0).hands.size(), 2u);
+  t.first->frame.hands = {hand(10)};
+  const InputFrame& frame = t.mixer.poll(10 * kMs);
+  ASSERT_EQ(frame.hands.size(), 1u);
+  EXPECT_EQ(frame.hands[0].id, 10u);
+}
+
+TEST(Mixer, AShortDropoutDoesNotHandOverToTheOtherTracker) {
+  TwoTrackers t;
+  t.first->frame.hands = {hand(10)};
+  t.second->frame.hands = {hand(20)};
+  (void)t.mixer.poll(0);
+  t.first->frame.hands.clear();
+  EXPECT_TRUE(t.mixer.poll(299 * kMs).hands.empty());
+  ASSERT_EQ(t.mixer.poll(300 * kMs).hands.size(), 1u);
+  EXPECT_EQ(t.mixer.poll(300 * kMs).hands[0].id, 20u);
+}
+
+TEST(Mixer, ALostSourceContributesNothingButItsLastEvents) {
+  TwoTrackers t;
+  t.first->frame.hands = {hand(10)};
+  t.first->freshness = Freshness::kLost;
+  t.second->frame.hands = {hand(20)};
+  EXPECT_EQ(t.mixer.poll(0).hands[0].id, 20u);
+  EXPECT_EQ(t.mixer.states()[0].freshness, Freshness::kLost);
+}
+
+TEST(Mixer, EventsOfAllSourcesComeInOrderOfTime) {
+  TwoTrackers t;
+  t.first->frame.events = {{5, EventKind::kKey, {}, {}, true, 0, "a"}, {9, EventKind::kKey, {}, {}, true, 0, "b"}};
+  t.second->frame.events = {{7, EventKind::kKey, {}, {}, true, 0, "c"}};
+  const InputFrame& frame = t.mixer.poll(10);
+  ASSERT_EQ(frame.events.size(), 3u);
+  EXPECT_EQ(frame.events[1].key, "c");
+}
+
+TEST(Mixer, SourcesCanBeTakenOutWhileItRuns) {
+  TwoTrackers t;
+  t.first->frame.hands = {hand(10)};
+  t.second->frame.hands = {hand(20)};
+  (void)t.mixer.poll(0);
+  EXPECT_TRUE(t.mixer.remove("leap"));
+  EXPECT_FALSE(t.mixer.remove("leap"));
+  EXPECT_EQ(t.mixer.poll(10 * kMs).hands[0].id, 20u);
+}
+
+TEST(WindowEvents, MotionsAreJoinedAndNothingElseIsLost) {
+  WindowEvents window;
+  InputConfig config;
+  config.window = &window;
+  const auto mouse = make_input("mouse", config).value(), keyboard = make_input("keyboard", config).value();
+  for (int i = 0; i < 100000; ++i) window.push({i, EventKind::kMotion, {1, -1}, {}, false, 0, {}});
+  window.push({100000, EventKind::kButton, {}, MouseButton::kRight, true, 0, {}});
+  window.push({100001, EventKind::kKey, {}, {}, true, 0, "home"});
+  InputFrame frame;
+  EXPECT_EQ(mouse->poll(0, frame), Freshness::kNew);
+  ASSERT_EQ(frame.events.size(), 2u);
+  EXPECT_EQ(frame.events[0].motion, glm::dvec2(100000, -100000));
+  EXPECT_EQ(mouse->poll(0, frame), Freshness::kUnchanged);
+  EXPECT_EQ(keyboard->poll(0, frame), Freshness::kNew);
+  EXPECT_EQ(frame.events[0].key, "home");
+}
+
+TEST(InputSources, AreNamedAndFakesAreNeverTakenByThemselves) {
+  for (const InputBackend& backend : input_sources())
+    EXPECT_EQ(backend.auto_select, backend.name == "mouse" || backend.name == "keyboard") << backend.name;
+  const auto unknown = make_input("kinect");
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(unknown.error().message.find("mouse, keyboard"), std::string::npos);
+  EXPECT_EQ(make_input("mouse").error().kind, ErrorKind::kUnavailable);
+  EXPECT_EQ(make_input("scripted").error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(make_input("scripted:/nowhere.json").error().kind, ErrorKind::kNoInput);
+  EXPECT_EQ(make_input("replay:a,b").error().kind, ErrorKind::kUsage);
+}
+
+}  // namespace
+}  // namespace dubsar
