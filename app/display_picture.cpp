@@ -9,6 +9,7 @@
 #include "core/image_io/png_file.h"
 #include "core/image_io/tiff_file.h"
 #include "display/output_sink.h"
+#include "display/plugin_sink.h"
 
 namespace dubsar::app {
 namespace fs = std::filesystem;
@@ -62,6 +63,7 @@ void add_display_options(CLI::App& command, DisplayRequest& request) {
   group->add_option("--eye-distance", request.eye_distance_mm, "distance of the viewer's eyes in mm")->check(CLI::Range(0.0, 100.0));
   group->add_option("--screen-mm", request.screen_mm, "WIDTHxHEIGHT of the screen in mm; panel profiles bring their own");
   group->add_option("--magnification", request.magnification, "1 for life size; default: as large as fits")->check(CLI::PositiveNumber);
+  group->add_option("--plugin", request.plugins, "a display from a shared library; loading it runs its code")->type_name("FILE.so");
   group->add_flag("--pattern", request.pattern, "numbered views instead of a surface (no IN)");
 }
 
@@ -82,6 +84,9 @@ Result<void> read_display_options(const DisplayRequest& request, DisplayOptions&
   options.viewer.right_mm = between + half;
   options.magnification = request.magnification;
   options.profile_folder = panel_folder();
+  for (const std::string& file : request.plugins) {
+    DUBSAR_ASSIGN(options.plugins.emplace_back(), SinkPlugin::load(file));
+  }
   return {};
 }
 

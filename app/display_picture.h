@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "app/cli/verb.h"
 #include "core/surface/tri_mesh.h"
@@ -16,6 +17,7 @@ struct DisplayRequest {
   std::string viewer;    ///< X,Y,Z in mm of the point between the eyes, or empty
   std::string screen_mm; ///< WIDTHxHEIGHT, or empty
   double eye_distance_mm = 63.0, magnification = 0.0;
+  std::vector<std::string> plugins;  ///< files
   bool pattern = false;
 };
 

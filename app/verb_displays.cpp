@@ -13,6 +13,7 @@
 #include "display/output_sink.h"
 #include "display/panel_adjust.h"
 #include "display/panel_profile.h"
+#include "display/plugin_sink.h"
 
 namespace dubsar::app {
 namespace fs = std::filesystem;
@@ -24,18 +25,25 @@ constexpr std::int64_t kMaxCalibrationBytes = 64 << 10;
 struct Options {
   std::vector<std::string> adjust;  ///< PANEL, figures or "reset"
   std::string calibration;
+  std::vector<std::string> plugins;
 };
 
 const char* kind_name(PanelKind kind) {
   return kind == PanelKind::kLookingGlass ? "looking_glass" : kind == PanelKind::kLensSheet ? "lens_sheet" : "tracked";
 }
 
-void add_sinks(VerbResult& result) {
+Result<void> add_sinks(const Options& options, VerbResult& result) {
   result.text += "displays (--display NAME[:options])\n";
   for (const SinkBackend& sink : output_sinks()) {
     result.json["displays"].push_back({{"name", sink.name}, {"summary", sink.summary}});
     result.text += fmt::format("  {:<14} {}\n", sink.name, sink.summary);
   }
+  for (const std::string& file : options.plugins) {
+    DUBSAR_ASSIGN(const auto plugin, SinkPlugin::load(file));
+    result.json["displays"].push_back({{"name", plugin->name()}, {"summary", plugin->summary()}, {"plugin", file}});
+    result.text += fmt::format("  {:<14} {} ({})\n", plugin->name(), plugin->summary(), file);
+  }
+  return {};
 }
 
 void add_panels(const std::vector<PanelProfile>& profiles, VerbResult& result) {
@@ -136,7 +144,7 @@ Result<VerbResult> run(const Options& options) {
   DUBSAR_ASSIGN(const auto profiles, load_profiles(panel_folder()));
   VerbResult result;
   result.json["panel_folder"] = panel_folder().string();
-  add_sinks(result);
+  DUBSAR_TRY(add_sinks(options, result));
   add_panels(profiles, result);
   result.text += fmt::format("  your own profiles and adjustments: {}\n", panel_folder().empty() ? "HOME is not set" : panel_folder().string());
   add_calibrations(options, profiles, result);
@@ -153,6 +161,7 @@ Verb add_displays_verb(CLI::App& program) {
       ->expected(2)
       ->type_name("PANEL FIGURES");
   command->add_option("--calibration", options->calibration, "also look at this calibration file")->type_name("FILE");
+  command->add_option("--plugin", options->plugins, "a display from a shared library; loading it runs its code")->type_name("FILE.so");
   command->footer(
       "Examples:\n"
       "  dubsar displays\n"

@@ -10,7 +10,7 @@
 namespace dubsar {
 namespace {
 
-constexpr int kFinestGrid = 1024, kCoarsestGrid = 64;
+constexpr double kFinestGrid = 1024, kCoarsestGrid = 63.9, kGridStep = 0.70710678118654752;  // half the triangles each
 constexpr double kWorthwhile = 0.75;  // of the triangles of the finer level
 
 }  // namespace
@@ -42,7 +42,7 @@ Result<MultiView> MultiView::create(PackedMesh mesh, const MultiViewOptions& opt
     return {};
   };
   DUBSAR_TRY(add(mesh, 0.0));
-  for (int grid = kFinestGrid; options.cell_px > 0 && grid >= kCoarsestGrid && longest > 0; grid /= 2) {
+  for (double grid = kFinestGrid; options.cell_px > 0 && grid >= kCoarsestGrid && longest > 0; grid *= kGridStep) {
     PackedMesh coarser = cluster_vertices(mesh, longest / grid);
     if (coarser.triangles.empty()) break;
     if (static_cast<double>(coarser.triangles.size()) > kWorthwhile * static_cast<double>(mesh.triangles.size())) continue;

@@ -10,14 +10,14 @@
 namespace dubsar {
 
 struct MultiViewOptions {
-  double cell_px = 1.5;  ///< moving: details smaller than this are merged; 0: all triangles
+  double cell_px = 2.5;  ///< moving: details smaller than this are merged; 0: all triangles
   int key_views = 12;    ///< moving: of more views, about this many are drawn and the others copied from the nearest
 };
 
 /// A mesh in several levels of detail in graphics memory. One GL thread.
 class MultiView {
  public:
-  /// Levels of the mesh: as it is, then by grids of 1/1024, 1/512, ... of its longest side, each only when it has less
+  /// Levels of the mesh: as it is, then by grids of 1/1024 to 1/64 of its longest side in steps of 1.41, each only when it has less
   /// than 3/4 of the triangles of the one before. Takes the triangles' order from `mesh`. Errors of GpuMesh::upload.
   static Result<MultiView> create(PackedMesh mesh, const MultiViewOptions& options = {});
 

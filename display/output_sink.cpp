@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "display/plugin_sink.h"
 #include "display/sinks/anaglyph.h"
 #include "display/sinks/image.h"
 #include "display/sinks/interlaced.h"
@@ -49,8 +50,12 @@ std::vector<std::pair<std::string, std::string>> parse_sink_options(std::string_
   return options;
 }
 
-Result<std::unique_ptr<OutputSink>> make_sink(std::string_view spec, const std::filesystem::path& profile_folder) {
+Result<std::unique_ptr<OutputSink>> make_sink(std::string_view spec, const std::filesystem::path& profile_folder,
+                                              std::span<const std::shared_ptr<SinkPlugin>> plugins) {
   const auto colon = spec.find(':');
+  for (const auto& plugin : plugins)
+    if (plugin->name() == spec.substr(0, colon))
+      return plugin->create(colon == std::string_view::npos ? std::string() : std::string(spec.substr(colon + 1)));
   DUBSAR_ASSIGN(const SinkBackend* backend, find_backend(output_sinks(), spec.substr(0, colon), "display"));
   const std::string_view options = colon == std::string_view::npos ? std::string_view() : spec.substr(colon + 1);
   return backend->create({parse_sink_options(options), profile_folder});

@@ -21,6 +21,7 @@
 
 namespace dubsar {
 
+class SinkPlugin;
 class ViewArray;
 
 struct PixelSize {
@@ -75,8 +76,9 @@ using SinkBackend = Backend<OutputSink, SinkConfig>;
 std::span<const SinkBackend> output_sinks();
 
 /// Makes the sink that "NAME[:word,key=value,...]" names. kUsage with the names there are, or with what the sink's
-/// options are.
-Result<std::unique_ptr<OutputSink>> make_sink(std::string_view spec, const std::filesystem::path& profile_folder = {});
+/// options are. Names of plug-ins (display/plugin_sink.h) count, too.
+Result<std::unique_ptr<OutputSink>> make_sink(std::string_view spec, const std::filesystem::path& profile_folder = {},
+                                              std::span<const std::shared_ptr<SinkPlugin>> plugins = {});
 
 /// Splits "word,key=value" (empty text: no options).
 std::vector<std::pair<std::string, std::string>> parse_sink_options(std::string_view text);

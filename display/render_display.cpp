@@ -47,7 +47,7 @@ struct Stage {  // destroyed from the bottom to the top: the sink's GL objects g
 Result<Stage> open_stage(std::string_view display, const DisplayOptions& options) {
   Stage stage;
   DUBSAR_ASSIGN(stage.context, EglContext::create());
-  DUBSAR_ASSIGN(stage.sink, make_sink(display, options.profile_folder));
+  DUBSAR_ASSIGN(stage.sink, make_sink(display, options.profile_folder, options.plugins));
   DUBSAR_TRY(stage.sink->configure(options.screen));
   const SinkTraits traits = stage.sink->traits();
   if (traits.stereo_visual)

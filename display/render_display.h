@@ -3,9 +3,11 @@
 // chains from the viewer to the panel's picture.
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
@@ -14,6 +16,7 @@
 #include "display/camera.h"
 #include "display/off_axis.h"
 #include "display/optics.h"
+#include "display/output_sink.h"
 #include "display/shading.h"
 
 namespace dubsar {
@@ -30,6 +33,7 @@ struct DisplayOptions {
   Shading shading{};
   int samples = 2;                     ///< samples x samples a pixel of a view, 1..8
   std::filesystem::path profile_folder{};
+  std::vector<std::shared_ptr<SinkPlugin>> plugins{};  ///< their names count as displays, too
 };
 
 struct DisplayPicture {

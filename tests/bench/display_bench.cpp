@@ -77,7 +77,7 @@ void DisplayNaive(benchmark::State& state) { naive(state); }
 /// As the program draws while things move.
 void DisplayMoving(benchmark::State& state) { with_options(state, {}); }
 /// All views drawn, with level of detail.
-void DisplayEveryViewCoarse(benchmark::State& state) { with_options(state, {.cell_px = 1.5, .key_views = 0}); }
+void DisplayEveryViewCoarse(benchmark::State& state) { with_options(state, {.key_views = 0}); }
 /// All views and all triangles in one instanced draw.
 void DisplayEveryViewInstanced(benchmark::State& state) { with_options(state, {.cell_px = 0, .key_views = 0}); }
 
