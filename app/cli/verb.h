@@ -36,6 +36,7 @@ Verb add_info_verb(CLI::App& program);
 Verb add_export_verb(CLI::App& program);
 Verb add_render_verb(CLI::App& program);
 Verb add_doctor_verb(CLI::App& program);
+Verb add_devices_verb(CLI::App& program);
 Verb add_displays_verb(CLI::App& program);
 
 /// Fails early, before hours of work, when an output cannot be created: kCannotCreate, kPermission.

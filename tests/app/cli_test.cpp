@@ -55,7 +55,7 @@ std::ptrdiff_t temporaries() {
 }
 
 TEST(CommandLine, EveryVerbHasHelpWithExamples) {
-  for (const char* verb : {"phantom", "process", "info", "export", "render", "doctor"}) {
+  for (const char* verb : {"phantom", "process", "info", "export", "render", "doctor", "devices"}) {
     const ProgramRun run = run_dubsar({verb, "--help"});
     EXPECT_EQ(run.exit_code, 0) << verb;
     EXPECT_NE(run.out.find("Example"), std::string::npos) << verb;
