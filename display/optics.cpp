@@ -107,9 +107,8 @@ EyeLight light_at(const PanelLight& light, const glm::dvec3& eye_mm, int step_px
     out.shares = {1.0 - wrong.left, wrong.left};
   }
   out.main_view = static_cast<int>(std::max_element(out.shares.begin(), out.shares.end()) - out.shares.begin());
-  const int reach = light.views > 2 ? 1 : 0;
   for (int view = 0; view < light.views; ++view)
-    if (std::abs(view - out.main_view) > reach) out.crosstalk += out.shares[static_cast<std::size_t>(view)];
+    if (std::abs(view - out.main_view) > light.own_views) out.crosstalk += out.shares[static_cast<std::size_t>(view)];
   return out;
 }
 

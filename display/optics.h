@@ -39,12 +39,13 @@ struct PanelLight {
   std::optional<LensSheet> sheet;  ///< N views; none: two views (0 left, 1 right) woven for `woven_for`
   EyePair woven_for;
   int views = 2;
+  int own_views = 0;  ///< views to either side of the main one that still belong to the same eye
 };
 
 struct EyeLight {
   std::vector<double> shares;  ///< of each view, sum 1
   int main_view = 0;           ///< the one with the greatest share
-  double crosstalk = 0.0;      ///< share of the others; with more than two views, of those not next to main_view
+  double crosstalk = 0.0;      ///< share of the views farther from main_view than PanelLight::own_views
 };
 EyeLight light_at(const PanelLight& light, const glm::dvec3& eye_mm, int step_px = 16);
 

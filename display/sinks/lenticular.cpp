@@ -1,5 +1,6 @@
 #include "display/sinks/lenticular.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
@@ -91,7 +92,10 @@ class ViewsSink : public OutputSink {
   std::optional<PanelLight> light() const override {
     const auto optics = panel_optics(profile_, viewing_distance_mm(profile_));
     if (!optics) return std::nullopt;
-    return PanelLight{*optics, sheet_, {}, profile_.views};
+    // Half the way to the other eye, in views.
+    const double eyes_deg = profile_.ipd_mm / viewing_distance_mm(profile_) * 180 / std::numbers::pi;
+    const int own = static_cast<int>(0.5 * eyes_deg / profile_.view_cone_deg * profile_.views);
+    return PanelLight{*optics, sheet_, {}, profile_.views, std::max(1, own)};
   }
 
  private:
@@ -150,7 +154,7 @@ class TrackedSink : public OutputSink {
     return pass_.draw();
   }
   std::optional<PanelLight> light() const override {
-    return PanelLight{panel_, std::nullopt, {glm::dvec3(eyes_[0]), glm::dvec3(eyes_[1])}, 2};
+    return PanelLight{panel_, std::nullopt, {glm::dvec3(eyes_[0]), glm::dvec3(eyes_[1])}, 2, 0};
   }
 
  private:
