@@ -85,8 +85,8 @@ int main(int argc, char** argv) {
       "74 I/O or disk full, 75 try again, 77 permission, 130 cancelled.");
   CommonOptions common;
   std::vector<Verb> verbs{add_phantom_verb(program), add_process_verb(program), add_info_verb(program),
-                          add_export_verb(program),  add_render_verb(program),  add_doctor_verb(program),
-                          add_displays_verb(program), add_devices_verb(program)};
+                          add_export_verb(program),  add_render_verb(program),  add_view_verb(program),
+                          add_doctor_verb(program),  add_displays_verb(program), add_devices_verb(program)};
   for (Verb& verb : verbs) add_common_options(*verb.command, common);
   try {
     program.parse(argc, argv);

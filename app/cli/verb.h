@@ -35,6 +35,7 @@ Verb add_process_verb(CLI::App& program);
 Verb add_info_verb(CLI::App& program);
 Verb add_export_verb(CLI::App& program);
 Verb add_render_verb(CLI::App& program);
+Verb add_view_verb(CLI::App& program);
 Verb add_doctor_verb(CLI::App& program);
 Verb add_devices_verb(CLI::App& program);
 Verb add_displays_verb(CLI::App& program);

@@ -1,0 +1,157 @@
+// dubsar view FILE --display SINK --input SOURCE,...: a session, offscreen.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "app/cli/config_folder.h"
+#include "app/cli/mesh_input.h"
+#include "app/cli/verb.h"
+#include "app/session/offscreen.h"
+#include "core/base/atomic_file.h"
+
+namespace dubsar::app {
+namespace {
+
+struct Options {
+  std::string in, display = "mono", script, mapping, view = "front", style = "relief", size = "960x540", frames, record;
+  std::vector<std::string> inputs, partitions;
+  double fps = 30.0, seconds = 60.0, display_delay_ms = 0.0;
+  int every = 1, samples = 1;
+  bool offscreen = false;
+};
+
+/// "scripted:a.json,replay:b,c" has two sources: a word that names no source belongs to the one before it.
+std::vector<std::string> split_sources(const std::vector<std::string>& texts) {
+  std::vector<std::string> out;
+  for (const std::string& text : texts)
+    for (std::size_t at = 0; at <= text.size();) {
+      const std::size_t comma = std::min(text.find(',', at), text.size());
+      const std::string word = text.substr(at, comma - at);
+      const std::string name = word.substr(0, word.find(':'));
+      const bool starts = at == 0 || word.find(':') != std::string::npos ||
+                          std::any_of(input_sources().begin(), input_sources().end(), [&](const InputBackend& b) { return b.name == name; });
+      if (starts) {
+        out.push_back(word);
+      } else {
+        out.back() += "," + word;
+      }
+      at = comma + 1;
+    }
+  return out;
+}
+
+Result<Screen> parse_screen(const std::string& text) {
+  int width = 0, height = 0;
+  char cross = 0;
+  if (std::sscanf(text.c_str(), "%d%c%d", &width, &cross, &height) != 3 || cross != 'x' || width < 16 || height < 16 || width > 16384 ||
+      height > 16384)
+    return fail(ErrorKind::kUsage, "--size \"{}\" not understood, expected WIDTHxHEIGHT of 16 to 16384 pixels such as 960x540", text);
+  Screen screen;
+  screen.width_px = screen.window_w = width;
+  screen.height_px = screen.window_h = height;
+  screen.height_mm = screen.width_mm * height / width;
+  return screen;
+}
+
+nlohmann::json latency_json(const std::vector<double>& ms) {
+  return {{"frames", ms.size()}, {"median_ms", quantile(ms, 0.5)}, {"p95_ms", quantile(ms, 0.95)}, {"worst_ms", quantile(ms, 1.0)}};
+}
+
+VerbResult describe(const Options& options, const OffscreenResult& done, std::size_t triangles) {
+  VerbResult out;
+  const glm::dvec3 turn = vector_of(done.view.rotation) * 180.0 / 3.14159265358979323846;
+  out.json = {{"display", options.display},
+              {"frames", done.frames},
+              {"pictures", done.written},
+              {"simulated_s", done.seconds},
+              {"triangles", triangles},
+              {"view",
+               {{"rotation_wxyz", {done.view.rotation.w, done.view.rotation.x, done.view.rotation.y, done.view.rotation.z}},
+                {"turned_deg", turn_between_deg(done.view.rotation, {1, 0, 0, 0})},
+                {"zoom", done.view.zoom},
+                {"pan", {done.view.pan.x, done.view.pan.y}},
+                {"light_azimuth_deg", done.view.light_azimuth_deg},
+                {"light_elevation_deg", done.view.light_elevation_deg}}},
+              {"largest_turn_in_a_frame_deg", done.largest_turn_deg},
+              {"input_age_at_cameras_simulated", latency_json(done.input_age_ms)},
+              {"frame_cpu", latency_json(done.frame_cpu_ms)}};
+  out.text = fmt::format(
+      "{} frames of {:.1f} s, {} pictures\n"
+      "turned by ({:.1f}, {:.1f}, {:.1f}) degrees about right, up, viewer; zoom {:.3f}; at most {:.2f} degrees a frame\n"
+      "device time to cameras (simulated clock): median {:.1f} ms, 95 % {:.1f} ms, worst {:.1f} ms over {} frames with new input\n"
+      "CPU time of a frame: median {:.1f} ms, worst {:.1f} ms\n",
+      done.frames, done.seconds, done.written, turn.x, turn.y, turn.z, done.view.zoom, done.largest_turn_deg,
+      quantile(done.input_age_ms, 0.5), quantile(done.input_age_ms, 0.95), quantile(done.input_age_ms, 1.0), done.input_age_ms.size(),
+      quantile(done.frame_cpu_ms, 0.5), quantile(done.frame_cpu_ms, 1.0));
+  return out;
+}
+
+Result<VerbResult> run(const Options& options, Progress& progress) {
+  if (!options.offscreen)
+    return fail(ErrorKind::kUnavailable, "view: windows are not in this version yet; add --offscreen for a simulated session that "
+                                         "writes pictures");
+  OffscreenOptions offscreen;
+  SessionOptions& session = offscreen.session;
+  session.display = options.display;
+  session.profile_folder = panel_folder();
+  session.samples = options.samples;
+  DUBSAR_ASSIGN(session.screen, parse_screen(options.size));
+  DUBSAR_ASSIGN(session.shading, shading_preset(options.style));
+  DUBSAR_ASSIGN(session.direction, parse_view_direction(options.view));
+  if (options.mapping.empty()) {
+    DUBSAR_ASSIGN(session.mapping, default_mapping());
+  } else {
+    DUBSAR_ASSIGN(const std::string text, read_text_file(options.mapping));
+    DUBSAR_ASSIGN(session.mapping, parse_mapping(text, options.mapping));
+  }
+  offscreen.inputs = split_sources(options.inputs);
+  if (!options.script.empty()) offscreen.inputs.push_back("scripted:path=" + options.script);
+  offscreen.fps = options.fps;
+  offscreen.longest_s = options.seconds;
+  offscreen.display_delay_s = 1e-3 * options.display_delay_ms;
+  offscreen.frames = options.frames;
+  offscreen.every = options.every;
+  offscreen.record = options.record;
+  if (!options.record.empty()) DUBSAR_TRY(check_output_path(options.record));
+  DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.in, options.partitions, true}, progress));
+  DUBSAR_ASSIGN(const OffscreenResult done, run_offscreen(mesh, offscreen, progress));
+  return describe(options, done, mesh.triangles.size());
+}
+
+}  // namespace
+
+Verb add_view_verb(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = program.add_subcommand("view", "turn a surface on a display with hands, head and mouse (offscreen so far)");
+  command->add_option("IN", options->in, "EXA, PLY, OBJ, STL or GLB file")->required();
+  std::string sinks, sources;
+  for (const SinkBackend& sink : output_sinks()) sinks += (sinks.empty() ? "" : ", ") + std::string(sink.name);
+  for (const InputBackend& source : input_sources()) sources += (sources.empty() ? "" : ", ") + std::string(source.name);
+  command->add_option("--display", options->display, "NAME[:options]: " + sinks);
+  command->add_option("--input", options->inputs, "NAME[:options],...: " + sources);
+  command->add_option("--script", options->script, "simulated people: the same as --input scripted:FILE")->type_name("FILE");
+  command->add_option("--mapping", options->mapping, "which gesture does what (docs/input.md)")->type_name("FILE");
+  command->add_flag("--offscreen", options->offscreen, "without a window, in simulated time");
+  command->add_option("--frames", options->frames, "folder for pictures of the frames")->type_name("DIR");
+  command->add_option("--every", options->every, "write only each N-th frame")->check(CLI::Range(1, 100000));
+  command->add_option("--record", options->record, "write the input for --input replay:FILE")->type_name("FILE");
+  command->add_option("--size", options->size, "WIDTHxHEIGHT of the window, where the display does not know it");
+  command->add_option("--fps", options->fps, "frames per simulated second")->check(CLI::Range(1.0, 240.0));
+  command->add_option("--seconds", options->seconds, "end after this time at the latest")->check(CLI::Range(0.1, 3600.0));
+  command->add_option("--display-delay-ms", options->display_delay_ms, "time from cameras to light, for the prediction of heads")
+      ->check(CLI::Range(0.0, 100.0));
+  command->add_option("--view", options->view, "the home view: front, back, left ... or orbit:AZIMUTH,ELEVATION[,ROLL]");
+  command->add_option("--style", options->style, "shading, as of render");
+  command->add_option("--partition", options->partitions, "only these parts: names or ids, e.g. tablet")->delimiter(',');
+  command->add_option("--samples", options->samples, "samples per pixel side")->check(CLI::Range(1, 8));
+  command->footer(
+      "Examples:\n"
+      "  dubsar view tablet.exa --offscreen --display quilt:looking-glass-portrait --script visitor.json --frames pictures\n"
+      "  dubsar view tablet.exa --offscreen --display lenticular:spatiallabs-15.6 --script scholar.json --frames pictures --every 15");
+  return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
+}
+
+}  // namespace dubsar::app
