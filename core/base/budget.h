@@ -11,7 +11,7 @@ namespace dubsar {
 
 struct Budget {
   std::uint64_t memory_bytes = 0;     ///< most that one object may take; 0: 80 % of MemAvailable
-  std::uint64_t max_dimension = 65535;  ///< trust.md section 4.2
+  std::uint64_t max_dimension = 65535;  ///< a scanner has 3072; more is a damaged header
   std::uint64_t max_voxels = std::uint64_t{1} << 36;
 };
 

@@ -52,7 +52,7 @@ class SilentProgress final : public Progress {};
 tl::unexpected<Error> cancelled_error();
 
 /// Remaining seconds of a stage from its progress so far; negative while it is too early to say (less than 5 % done
-/// and less than 3 s elapsed: product.md section 7).
+/// and less than 3 s elapsed).
 double estimate_remaining_s(std::int64_t done, std::int64_t total, double elapsed_s) noexcept;
 
 }  // namespace dubsar

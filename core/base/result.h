@@ -10,7 +10,7 @@
 
 namespace dubsar {
 
-/// What went wrong; the number is the exit code of the program (sysexits.h and product.md section 7).
+/// What went wrong; the number is the exit code of the program (after sysexits.h).
 enum class ErrorKind : int {
   kUsage = 64,         ///< a wrong option or argument
   kBadData = 65,       ///< the input is damaged, hostile or not what was asked for

@@ -1,6 +1,6 @@
 #pragma once
-// Isosurface extraction: table-driven 2-manifold dual marching cubes (paper sections 3.2 and 3.3, algorithms.md
-// section 1). Two steps: sample the volume (signs, face decisions, crossings), then build the mesh from the samples.
+// Isosurface extraction: table-driven 2-manifold dual marching cubes (paper sections 3.2 and 3.3;
+// docs/manifold.md). Two steps: sample the volume (signs, face decisions, crossings), then build the mesh from the samples.
 
 #include "core/base/progress.h"
 #include "core/base/result.h"

@@ -1,5 +1,5 @@
 #pragma once
-// Opens a closed mesh at the volume boundary (algorithms.md section 1.4).
+// Opens a closed mesh at the volume boundary.
 
 #include <cstdint>
 #include <span>

@@ -52,7 +52,7 @@ struct MeshOptions {
   bool fill_holes = true;                          ///< add the fill patches
 };
 
-/// The triangle mesh of a model (curvature-guided diagonals, algorithms.md section 1.2). Parts are separate: vertices
+/// The triangle mesh of a model (curvature-guided diagonals, docs/manifold.md). Parts are separate: vertices
 /// on a cut are doubled, as are those where one part touches itself, so every closed part is a 2-manifold. Partitions of
 /// one part stay joined; a vertex between them takes the lower id, any other vertex that of its triangles. Vertices that
 /// fill patches and Steiner points add have averaged attributes; those of patches are flat. Deterministic.

@@ -20,7 +20,7 @@ struct SurfaceSamples {
   Dims dims;                            ///< grid points
   float isovalue = 0.0f;
   int offset_bits = 4;                  ///< N, 1..16
-  bool closed = true;                   ///< closed at the volume boundary (algorithms.md section 1.4), or open
+  bool closed = true;                   ///< closed at the volume boundary with flat caps, or open
   BitVolume signs;                      ///< 1 = inside: value >= isovalue; NaN is outside
   std::vector<std::uint8_t> joined;     ///< one per ambiguous face inside the grid: 1 = positives joined, else 0
   std::vector<std::uint16_t> offsets;   ///< one per active edge inside the grid: min(2^N - 1, floor(t 2^N))

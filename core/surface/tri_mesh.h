@@ -32,7 +32,7 @@ struct TriMesh {
   std::vector<Triangle> triangles;
   std::vector<glm::vec3> normals;        ///< unit, towards the air
   std::vector<float> k_min, k_max;       ///< principal curvatures per grid step, k_min <= k_max, convex > 0
-  std::vector<std::uint8_t> shape;       ///< 0 flat, 1 + 9 i + s (algorithms.md section 4)
+  std::vector<std::uint8_t> shape;       ///< 0 flat, 1 + 9 i + s (shape_class.h)
   std::vector<std::uint8_t> partition;   ///< partition id 0..7
   std::vector<std::uint8_t> ao;          ///< ambient light, 0 (dark) .. 63 (open)
   std::vector<std::array<std::uint8_t, 3>> colors;  ///< only from foreign files that carry colours

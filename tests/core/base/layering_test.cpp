@@ -1,4 +1,4 @@
-// The walls of the house (architecture.md section 1): which room may include which, and that each third-party C
+// The walls of the house (README, Rooms): which room may include which, and that each third-party C
 // API is included by exactly one source file.
 
 #include <gtest/gtest.h>
