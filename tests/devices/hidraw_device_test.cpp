@@ -1,6 +1,9 @@
 // The real hidapi against a simulated hidraw node. Run with libumockdev-preload.
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <stdlib.h>
+#include <unistd.h>
 
 #include <thread>
 
@@ -20,6 +23,9 @@ class Hidraw : public ::testing::Test {
  protected:
   void SetUp() override {
     testbed_ = std::make_unique<HidrawTestbed>();
+    const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
+    if (terminal < 0) GTEST_SKIP() << "no pseudo-terminals here (mount /dev/pts): umockdev makes its nodes from them";
+    ::close(terminal);
     if (!umockdev_in_mock_environment()) GTEST_SKIP() << "run it under umockdev-wrapper (ctest does the same)";
     testbed_->plug();
   }
