@@ -101,8 +101,7 @@ Result<VerbResult> exa_info(const Options& options) {
 
 Result<VerbResult> describe_mesh(const Options& options, Progress& progress) {
   DUBSAR_ASSIGN(const MeshInfo info, mesh_info(options.in, progress));
-  DUBSAR_ASSIGN(const TriMesh mesh, read_mesh(options.in, progress));
-  const MeshCheck check = check_mesh(mesh.positions, mesh.triangles);
+  const MeshCheck& check = info.check;
   VerbResult result;
   result.json = {{"kind", "mesh"},
                  {"format", mesh_format_name(info.format)},

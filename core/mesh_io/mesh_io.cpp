@@ -91,6 +91,7 @@ Result<MeshInfo> mesh_info(const std::filesystem::path& path, Progress& progress
   info.bytes = loaded.bytes;
   info.vertices = static_cast<std::int64_t>(mesh.positions.size());
   info.triangles = static_cast<std::int64_t>(mesh.triangles.size());
+  info.check = check_mesh(mesh.positions, mesh.triangles);
   info.unit = mesh.frame.input_voxel;
   info.partitions = mesh.partitions;
   info.provenance = mesh.provenance;

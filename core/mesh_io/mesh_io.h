@@ -10,6 +10,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/surface/mesh_check.h"
 #include "core/surface/tri_mesh.h"
 
 namespace dubsar {
@@ -28,6 +29,7 @@ struct MeshInfo {
   MeshFormat format = MeshFormat::kPly;
   std::int64_t bytes = 0, vertices = 0, triangles = 0;
   glm::dvec3 min_mm{0.0}, max_mm{0.0};  ///< box of the vertices used by triangles
+  MeshCheck check;                      ///< is it a 2-manifold?
   VoxelSize unit;                       ///< one file unit; unknown() when the file does not say
   std::vector<std::string> attributes;  ///< "normals", "colors", "k_min", ... that the file carries
   std::vector<Partition> partitions;
