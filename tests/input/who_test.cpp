@@ -104,5 +104,15 @@ TEST(HandKeeper, ANewTrackerIdAtTheSamePlaceIsTheSameHand) {
   EXPECT_EQ(keeper.update(200 * kMs, hands, {}, {})[0]->id, 6u);
 }
 
+TEST(HandKeeper, AHandThatAppearsTooFarAwayTooSoonIsSomebodyElses) {
+  const std::vector<HandFrame> mine{hand_at(1, Chirality::kRight, {0.1, 0, 0.3})};
+  const std::vector<HandFrame> found{hand_at(2, Chirality::kRight, {0.17, 0, 0.3})};
+  HandKeeper keeper, later;
+  (void)keeper.update(0, mine, {}, {});
+  (void)later.update(0, mine, {}, {});
+  EXPECT_EQ(keeper.update(100 * kMs, found, {}, {})[0], nullptr);
+  EXPECT_NE(later.update(300 * kMs, found, {}, {})[0], nullptr);
+}
+
 }  // namespace
 }  // namespace dubsar
