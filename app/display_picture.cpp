@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "app/cli/config_folder.h"
+#include "app/panels/auto_panel.h"
 #include "core/image_io/png_file.h"
 #include "core/image_io/tiff_file.h"
 #include "display/output_sink.h"
@@ -64,6 +65,8 @@ void add_display_options(CLI::App& command, DisplayRequest& request) {
   group->add_option("--screen-mm", request.screen_mm, "WIDTHxHEIGHT of the screen in mm; panel profiles bring their own");
   group->add_option("--magnification", request.magnification, "1 for life size; default: as large as fits")->check(CLI::PositiveNumber);
   group->add_option("--plugin", request.plugins, "a display from a shared library; loading it runs its code")->type_name("FILE.so");
+  group->add_option("--bridge-port", request.bridge_port, "for panel auto: port of Looking Glass Bridge on this machine (33334); 0: leave it alone")
+      ->check(CLI::Range(0, 65535));
   group->add_flag("--pattern", request.pattern, "numbered views instead of a surface (no IN)");
 }
 
@@ -96,11 +99,12 @@ Result<VerbResult> render_to_display(const DisplayRequest& request, const Displa
   if (!request.see_from.empty()) {
     DUBSAR_ASSIGN(eye, parse_place(request.see_from, "--see-from"));
   }
+  DUBSAR_ASSIGN(const std::string display, resolve_display(request.display, request.bridge_port));
   DisplayPicture picture;
   if (request.pattern) {
-    DUBSAR_ASSIGN(picture, render_pattern(request.display, options));
+    DUBSAR_ASSIGN(picture, render_pattern(display, options));
   } else {
-    DUBSAR_ASSIGN(picture, render_display(mesh, request.display, options, progress));
+    DUBSAR_ASSIGN(picture, render_display(mesh, display, options, progress));
   }
   VerbResult result;
   Image image = picture.image;
@@ -114,7 +118,7 @@ Result<VerbResult> render_to_display(const DisplayRequest& request, const Displa
   result.json.update({{"output", path.string()},
                       {"width", image.width},
                       {"height", image.height},
-                      {"display", request.display},
+                      {"display", display},
                       {"views", picture.views},
                       {"magnification", picture.magnification},
                       {"pattern", request.pattern}});

@@ -7,6 +7,7 @@
 
 #include "app/cli/verb.h"
 #include "core/surface/tri_mesh.h"
+#include "devices/looking_glass/bridge_client.h"
 #include "display/render_display.h"
 
 namespace dubsar::app {
@@ -18,6 +19,7 @@ struct DisplayRequest {
   std::string screen_mm; ///< WIDTHxHEIGHT, or empty
   double eye_distance_mm = 63.0, magnification = 0.0;
   std::vector<std::string> plugins;  ///< files
+  int bridge_port = kBridgePort;     ///< for panel "auto"
   bool pattern = false;
 };
 

@@ -8,8 +8,10 @@
 
 #include "app/cli/config_folder.h"
 #include "app/cli/verb.h"
-#include "core/base/atomic_file.h"
+#include "app/panels/calibration_search.h"
+#include "devices/looking_glass/bridge_client.h"
 #include "display/context_glfw.h"
+#include "display/edid.h"
 #include "display/output_sink.h"
 #include "display/panel_adjust.h"
 #include "display/panel_profile.h"
@@ -20,11 +22,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::int64_t kMaxCalibrationBytes = 64 << 10;
-
 struct Options {
   std::vector<std::string> adjust;  ///< PANEL, figures or "reset"
   std::string calibration;
+  std::string edids = "/sys/class/drm";
+  int bridge_port = kBridgePort;
   std::vector<std::string> plugins;
 };
 
@@ -62,41 +64,65 @@ void add_panels(const std::vector<PanelProfile>& profiles, VerbResult& result) {
   }
 }
 
-void add_calibration(const fs::path& file, const std::vector<PanelProfile>& profiles, VerbResult& result) {
-  nlohmann::json entry{{"file", file.string()}};
-  std::string words;
-  const auto text = read_text_file(file, kMaxCalibrationBytes);
-  const auto read = text ? parse_calibration(*text, file.string()) : Result<Calibration>(tl::unexpect, text.error());
-  const auto profile = read ? calibrated_profile(profiles, *read) : Result<PanelProfile>(tl::unexpect, read.error());
-  if (profile) {
-    entry.update({{"serial", read->serial}, {"panel", profile->name}});
-    words = fmt::format("{} (serial {})", profile->name, read->serial.empty() ? "not given" : read->serial);
-  } else {
-    entry["problem"] = profile.error().message;
-    words = profile.error().message;
-  }
-  result.json["calibrations"].push_back(std::move(entry));
-  result.text += fmt::format("  {}: {}\n", file.string(), words);
-}
-
 void add_calibrations(const Options& options, const std::vector<PanelProfile>& profiles, VerbResult& result) {
   result.json["calibrations"] = nlohmann::json::array();
-  result.text += "calibrations\n";
-  const std::vector<fs::path> roots = mount_folders();
-  std::vector<fs::path> files = find_calibration_files(roots);
-  if (!options.calibration.empty()) files.emplace_back(options.calibration);
-  for (const fs::path& file : files) add_calibration(file, profiles, result);
-  if (!files.empty()) return;
-  std::string places;
-  for (const fs::path& root : roots) places += (places.empty() ? "" : ", ") + (root / "*/LKG_calibration/visual.json").string();
-  const std::string why = places.empty() ? "neither USER nor LOGNAME is set, so the folder of USB storage is not known" : "nothing at " + places;
-  result.json["calibrations_missing"] = why;
-  result.text += fmt::format("  none: {}; connect and mount the panel's USB storage, or use calibration=FILE\n", why);
+  result.text += "calibrations of Looking Glass units\n";
+  const SteadyClock clock;
+  CalibrationSearch search = search_this_machine(options.bridge_port, clock);
+  search.file = options.calibration;
+  const CalibrationReport report = find_calibrations(search, profiles, clock);
+  for (const FoundCalibration& found : report.found) {
+    nlohmann::json entry{{"route", found.route}, {"place", found.place}};
+    if (!found.serial.empty()) entry["serial"] = found.serial;
+    if (found.panel) entry["panel"] = found.panel->name;
+    else entry["problem"] = found.problem;
+    result.json["calibrations"].push_back(std::move(entry));
+    result.text += fmt::format("  {:<14} {}: {}\n", found.route, found.place,
+                               found.panel ? fmt::format("{} (serial {})", found.panel->name, found.serial.empty() ? "not given" : found.serial)
+                                           : found.problem);
+  }
+  for (const auto& [route, why] : report.missing) {
+    result.json["calibrations_missing"][route] = why;
+    result.text += fmt::format("  {:<14} none: {}\n", route, why);
+  }
 }
 
-void add_monitors(const std::vector<PanelProfile>& profiles, VerbResult& result) {
+nlohmann::json edid_json(const Edid& edid) {
+  return {{"manufacturer", edid.manufacturer}, {"product", edid.product}, {"name", edid.name}, {"serial", edid.serial},
+          {"width_px", edid.width_px}, {"height_px", edid.height_px}, {"width_mm", edid.width_mm}, {"height_mm", edid.height_mm}};
+}
+
+/// Which panel a monitor is, by its EDID.
+std::string add_identity(const Edid& edid, const Monitor& monitor, const std::vector<PanelProfile>& profiles, nlohmann::json& entry) {
+  entry["edid"] = edid_json(edid);
+  std::string words = fmt::format("; {} {} {}", edid.manufacturer, edid.product, edid.name.empty() ? "without a name" : edid.name);
+  entry["panels"] = nlohmann::json::array();
+  for (const PanelProfile* panel : panels_of_edid(profiles, edid)) {
+    words += (entry["panels"].empty() ? ": " : " or ") + panel->name;
+    entry["panels"].push_back(panel->name);
+  }
+  const bool own_mode = monitor.width_px == edid.width_px && monitor.height_px == edid.height_px;
+  if (!entry["panels"].empty() && !own_mode)
+    words += fmt::format(" (runs at {}x{}: a panel with lenses needs its own {}x{})", monitor.width_px, monitor.height_px, edid.width_px,
+                         edid.height_px);
+  return words;
+}
+
+void add_monitors(const Options& options, const std::vector<PanelProfile>& profiles, VerbResult& result) {
   result.json["monitors"] = nlohmann::json::array();
   result.text += "monitors\n";
+  const std::vector<ConnectedEdid> edids = read_connected_edids(options.edids);
+  result.json["edids"] = nlohmann::json::array();
+  for (const ConnectedEdid& each : edids) {
+    nlohmann::json entry = each.edid ? edid_json(*each.edid) : nlohmann::json{{"problem", each.edid.error().message}};
+    entry["connector"] = each.connector;
+    for (const PanelProfile* panel : each.edid ? panels_of_edid(profiles, *each.edid) : std::vector<const PanelProfile*>())
+      entry["panels"].push_back(panel->name);
+    result.json["edids"].push_back(std::move(entry));
+    result.text += fmt::format("  {:<14} EDID {}\n", each.connector,
+                               each.edid ? fmt::format("{} {} {}", each.edid->manufacturer, each.edid->product, each.edid->name)
+                                         : each.edid.error().message);
+  }
   const auto monitors = list_monitors();
   if (!monitors) {
     result.json["monitors_missing"] = monitors.error().message;
@@ -104,18 +130,12 @@ void add_monitors(const std::vector<PanelProfile>& profiles, VerbResult& result)
     return;
   }
   for (const Monitor& m : *monitors) {
-    // A monitor alone says too little to name a panel: makers' names and sizes make candidates.
-    nlohmann::json candidates = nlohmann::json::array();
+    nlohmann::json entry{{"name", m.name}, {"x", m.x}, {"y", m.y}, {"width_px", m.width_px}, {"height_px", m.height_px},
+                         {"width_mm", m.width_mm}, {"height_mm", m.height_mm}, {"refresh_hz", m.refresh_hz}, {"primary", m.primary}};
     std::string words;
-    for (const PanelProfile& p : profiles) {
-      const bool same_size = p.width_px == m.width_px && p.height_px == m.height_px;
-      if (!same_size || p.kind == PanelKind::kLensSheet || (p.kind == PanelKind::kLookingGlass && !m.name.starts_with("LKG"))) continue;
-      candidates.push_back(p.name);
-      words += (words.empty() ? "; could be " : ", ") + p.name;
-    }
-    result.json["monitors"].push_back({{"name", m.name}, {"x", m.x}, {"y", m.y}, {"width_px", m.width_px}, {"height_px", m.height_px},
-                                       {"width_mm", m.width_mm}, {"height_mm", m.height_mm}, {"refresh_hz", m.refresh_hz},
-                                       {"primary", m.primary}, {"panels", candidates}});
+    if (const Edid* const edid = edid_of(m, edids); edid != nullptr) words = add_identity(*edid, m, profiles, entry);
+    else words = "; no EDID of it was found";
+    result.json["monitors"].push_back(std::move(entry));
     result.text += fmt::format("  {:<14} {}x{} pixels at {},{}, {:.0f}x{:.0f} mm, {:.0f} Hz{}{}\n", m.name, m.width_px, m.height_px, m.x,
                                m.y, m.width_mm, m.height_mm, m.refresh_hz, m.primary ? ", primary" : "", words);
   }
@@ -148,7 +168,7 @@ Result<VerbResult> run(const Options& options) {
   add_panels(profiles, result);
   result.text += fmt::format("  your own profiles and adjustments: {}\n", panel_folder().empty() ? "HOME is not set" : panel_folder().string());
   add_calibrations(options, profiles, result);
-  add_monitors(profiles, result);
+  add_monitors(options, profiles, result);
   return result;
 }
 
@@ -161,6 +181,9 @@ Verb add_displays_verb(CLI::App& program) {
       ->expected(2)
       ->type_name("PANEL FIGURES");
   command->add_option("--calibration", options->calibration, "also look at this calibration file")->type_name("FILE");
+  command->add_option("--bridge-port", options->bridge_port, "port of Looking Glass Bridge on this machine (33334); 0: leave it alone")
+      ->check(CLI::Range(0, 65535));
+  command->add_option("--edids", options->edids, "folder with the kernel's connectors")->type_name("FOLDER");
   command->add_option("--plugin", options->plugins, "a display from a shared library; loading it runs its code")->type_name("FILE.so");
   command->footer(
       "Examples:\n"

@@ -66,6 +66,16 @@ void read_cells(const json& cells, JsonFields& fields, LookingGlassFigures& shee
   }
 }
 
+void read_edids(const json& list, JsonFields& fields, PanelProfile& profile) {
+  constexpr int kMostProduct = 65535;
+  for (const json& entry : list) {
+    if (!list.is_array() || !entry.is_array() || entry.size() != 2 || !entry[0].is_string() ||
+        entry[0].get_ref<const std::string&>().size() != 3 || !entry[1].is_number_integer() || entry[1] < 0 || entry[1] > kMostProduct)
+      return fields.complain(fmt::format("edid: expected pairs of a manufacturer's three letters and a product of 0 to {}", kMostProduct));
+    profile.edids.push_back({entry[0].get<std::string>(), entry[1].get<int>()});
+  }
+}
+
 Result<PanelProfile> parse_profile(const json& object, std::string_view source) {
   PanelProfile profile;
   JsonFields fields(object, fmt::format("panel profile in {}", source));
@@ -129,6 +139,7 @@ Result<PanelProfile> parse_profile(const json& object, std::string_view source) 
     profile.design_distance_mm = fields.number("design_distance_mm", 50.0, 10000.0);
     profile.ipd_mm = fields.number("ipd_mm", 40.0, 80.0);
   }
+  if (fields.has("edid")) read_edids(object.at("edid"), fields, profile);
   profile.serial_prefix = fields.text("serial_prefix", "");
   profile.hardware = fields.text("hardware", "");
   DUBSAR_TRY(fields.finish());
@@ -251,6 +262,28 @@ Result<PanelProfile> choose_panel(const fs::path& user_folder, std::string_view 
   DUBSAR_ASSIGN(const std::string text, read_text_file(calibration_file, kMaxCalibrationBytes));
   DUBSAR_ASSIGN(const Calibration calibration, parse_calibration(text, calibration_file.string()));
   return calibrated_profile(profiles, calibration, name);
+}
+
+std::vector<const PanelProfile*> panels_of_edid(std::span<const PanelProfile> profiles, const Edid& edid) {
+  constexpr double kWidthTolerance = 0.15;
+  const auto same_size = [&](const PanelProfile& p) {
+    return p.width_px == edid.width_px && p.height_px == edid.height_px &&
+           (edid.width_mm == 0 || std::abs(p.width_mm / edid.width_mm - 1.0) < kWidthTolerance);
+  };
+  const auto starts_like = [](const std::string& text, const std::string& prefix) { return !prefix.empty() && text.starts_with(prefix); };
+  std::vector<const PanelProfile*> by_serial, by_size, tracked;
+  for (const PanelProfile& p : profiles) {
+    if (!same_size(p)) continue;
+    if (p.kind == PanelKind::kLookingGlass && edid.name.starts_with("LKG")) {
+      by_size.push_back(&p);
+      if (starts_like(edid.name, p.serial_prefix) || starts_like(edid.serial, p.serial_prefix)) by_serial.push_back(&p);
+    }
+    if (std::any_of(p.edids.begin(), p.edids.end(),
+                    [&](const EdidId& id) { return id.manufacturer == edid.manufacturer && id.product == edid.product; }))
+      tracked.push_back(&p);
+  }
+  if (!by_serial.empty()) return by_serial;
+  return by_size.empty() ? tracked : by_size;
 }
 
 std::vector<fs::path> find_calibration_files(std::span<const fs::path> roots) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "display/edid.h"
 #include "display/lens.h"
 #include "display/weave.h"
 
@@ -36,6 +37,12 @@ struct PanelAdjustment {
   bool empty() const noexcept { return !pitch && !slope && !center; }
 };
 
+/// How a panel calls itself in its EDID.
+struct EdidId {
+  std::string manufacturer;  ///< three letters
+  int product = 0;
+};
+
 struct PanelProfile {
   std::string name, title, note;
   PanelKind kind = PanelKind::kLookingGlass;
@@ -46,6 +53,7 @@ struct PanelProfile {
   int views = 2;
   QuiltLayout quilt;                ///< Looking Glass only
   std::string serial_prefix, hardware;
+  std::vector<EdidId> edids;        ///< tracked panels; a Looking Glass is known by its monitor name
   std::optional<LookingGlassFigures> sheet;  ///< none: no lens figures are known, quilts only
   std::optional<LensOptics> optics;          ///< kTracked
   double design_distance_mm = 0.0, ipd_mm = 63.0;
@@ -85,6 +93,11 @@ Result<PanelProfile> calibrated_profile(std::span<const PanelProfile> profiles, 
 /// The panel that options name: a profile's name, a calibration file, or both (both empty: kUsage).
 Result<PanelProfile> choose_panel(const std::filesystem::path& user_folder, std::string_view name,
                                   const std::filesystem::path& calibration_file);
+
+/// The panels that a monitor with this EDID can be, by the profile's own pixels and, where the EDID tells it, the picture's
+/// width to 15 %: Looking Glasses when its name starts with "LKG" (only those whose serials start like its name or serial,
+/// if there are any), tracked panels by manufacturer and product.
+std::vector<const PanelProfile*> panels_of_edid(std::span<const PanelProfile> profiles, const Edid& edid);
 
 /// Calibration files on mounted units: <root>/*/LKG_calibration/visual.json under each root, e.g. /media/$USER.
 std::vector<std::filesystem::path> find_calibration_files(std::span<const std::filesystem::path> roots);

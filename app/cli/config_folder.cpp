@@ -23,6 +23,13 @@ fs::path panel_folder() {
   return config.empty() ? config : config / "panels";
 }
 
+fs::path calibration_cache() {
+  const fs::path below = fs::path("dubsar") / "calibrations";
+  if (const fs::path xdg = from_environment("XDG_CACHE_HOME"); xdg.is_absolute()) return xdg / below;
+  const fs::path home = from_environment("HOME");
+  return home.empty() ? fs::path() : home / ".cache" / below;
+}
+
 std::vector<fs::path> mount_folders() {
   fs::path user = from_environment("USER");
   if (user.empty()) user = from_environment("LOGNAME");

@@ -12,6 +12,10 @@ std::filesystem::path config_folder();
 /// Panel profiles and adjustments: config_folder() / "panels".
 std::filesystem::path panel_folder();
 
+/// Copies of calibrations that were read from devices: $XDG_CACHE_HOME/dubsar/calibrations, else below $HOME/.cache; empty
+/// when neither variable is set.
+std::filesystem::path calibration_cache();
+
 /// Where desktops mount USB storage of the user: /media/$USER and /run/media/$USER.
 std::vector<std::filesystem::path> mount_folders();
 

@@ -11,6 +11,8 @@
 #include "core/base/atomic_file.h"
 #include "core/image_io/png_file.h"
 #include "tests/app/run_program.h"
+#include "tests/devices/fake_bridge.h"
+#include "tests/display/made_edid.h"
 
 namespace dubsar::test {
 namespace {
@@ -38,7 +40,7 @@ class DisplaysCommand : public ::testing::Test {
 };
 
 TEST_F(DisplaysCommand, ListsWhatThereIsAndWhyMonitorsAreMissing) {
-  const auto found = json({"displays"});
+  const auto found = json({"displays", "--bridge-port", "0"});
   ASSERT_TRUE(found.is_object());
   EXPECT_EQ(found["displays"][0]["name"], "mono");
   const auto panel = [&](const char* name) {
@@ -51,7 +53,30 @@ TEST_F(DisplaysCommand, ListsWhatThereIsAndWhyMonitorsAreMissing) {
   EXPECT_EQ(panel("sr-32")["kind"], "tracked");
   EXPECT_EQ(found["monitors"].size(), 0u);
   EXPECT_NE(found["monitors_missing"].get<std::string>().find("DISPLAY"), std::string::npos);
-  EXPECT_TRUE(found["calibrations_missing"].is_string());
+  for (const char* route : {"usb_storage", "usb_hid"}) EXPECT_TRUE(found["calibrations_missing"][route].is_string()) << route;
+}
+
+TEST_F(DisplaysCommand, ACalibrationFromTheMakersServiceServesThePanelCalledAuto) {
+  ::setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
+  const std::string text = R"({"serial": "LKG-E42", "pitch": 80.1, "slope": -6.6, "DPI": 491, "screenW": 1440, "screenH": 2560})";
+  const FakeBridge bridge({{"LKG-E42", "go_p", text}});
+  const std::string port = std::to_string(bridge.port());
+  const auto found = json({"displays", "--bridge-port", port})["calibrations"];
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0]["route"], "bridge");
+  EXPECT_EQ(found[0]["panel"], "looking-glass-go");
+  const auto made = json({"render", file("card.obj"), "-o", file("auto.png"), "--display", "quilt:auto", "--bridge-port", port, "--samples", "1"});
+  EXPECT_EQ(made["display"], "quilt:panel=looking-glass-go,calibration=" + file("cache/dubsar/calibrations/LKG-E42.visual.json"));
+  EXPECT_EQ(run_dubsar({"render", "--pattern", "-o", file("none.png"), "--display", "lenticular:auto", "--bridge-port", "0"}).exit_code, 69);
+}
+
+TEST_F(DisplaysCommand, ConnectedPanelsAreNamedByTheirEdid) {
+  fs::create_directories(folder_ / "drm/card0-DP-2");
+  ASSERT_TRUE(write_file_atomically(folder_ / "drm/card0-DP-2/edid", made_edid({.manufacturer = "ACR", .product = 1, .name = "ASV15-1B"})));
+  const auto found = json({"displays", "--edids", file("drm"), "--bridge-port", "0"})["edids"];
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0]["connector"], "DP-2");
+  EXPECT_EQ(found[0]["panels"][0], "spatiallabs-15.6");
 }
 
 TEST_F(DisplaysCommand, CalibrationFilesAreReadAndProblemsNamed) {
