@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "input/leapc/leapc_source.h"
 #include "input/recording.h"
 #include "input/simulated/scripted_source.h"
 #include "input/window_events.h"
@@ -9,9 +10,11 @@
 namespace dubsar {
 namespace {
 
-constexpr std::array<InputBackend, 4> kSources{{
+constexpr std::array<InputBackend, 5> kSources{{
     {"mouse", "turn, shift or middle: move, ctrl or wheel: zoom, right: light", true, make_mouse_source},
     {"keyboard", "arrows turn, + and - zoom, home resets, backspace undoes", true, make_keyboard_source},
+    {"leapc", "hands from Ultraleap's tracking service: leapc[:library=FILE,mode=desktop,at=X/Y/Z,turn=X/Y/Z]", false,
+     make_leapc_source},
     {"scripted", "simulated people: scripted:FILE.json", false, make_scripted_source},
     {"replay", "a recording of any input: replay:FILE.jsonl", false, make_replay_source},
 }};

@@ -1,0 +1,83 @@
+#include "input/leapc/leapc_source.h"
+
+#include <optional>
+#include <utility>
+
+#include "input/leapc/leapc_hands.h"
+#include "input/placement.h"
+
+namespace dubsar {
+namespace {
+
+class LeapcSource final : public InputSource {
+ public:
+  LeapcSource(std::unique_ptr<leapc::Connection> connection, const Pose& screen_from_device)
+      : connection_(std::move(connection)), screen_from_device_(screen_from_device) {}
+
+  std::string_view name() const noexcept override { return "leapc"; }
+  Result<void> start() override {
+    heard_.reset();
+    return connection_->start();
+  }
+
+  Freshness poll(TimestampNs now, InputFrame& newest) noexcept override {
+    newest.events.clear();
+    const bool fresh = connection_->poll(frame_);
+    if (fresh || !heard_) heard_ = now;
+    if (connection_->state() != leapc::State::kTracking || now - *heard_ > kLeapcSilentNs) {
+      newest.hands.clear();
+      return Freshness::kLost;
+    }
+    if (!fresh) return Freshness::kUnchanged;
+    newest.time = frame_.time;
+    newest.hands.clear();
+    for (const leapc::Hand& hand : frame_.hands)
+      if (newest.hands.size() < kMaxHands)
+        newest.hands.push_back(moved(screen_from_device_, hand_from_leapc(hand, frame_.time)));
+    return Freshness::kNew;
+  }
+
+ private:
+  std::unique_ptr<leapc::Connection> connection_;
+  const Pose screen_from_device_;
+  leapc::Frame frame_;
+  std::optional<TimestampNs> heard_;  // when something fresh was polled, or the first poll
+};
+
+Result<leapc::Mode> mode_named(std::string_view name) {
+  if (name == "desktop") return leapc::Mode::kDesktop;
+  if (name == "screentop") return leapc::Mode::kScreenTop;
+  if (name == "headmounted") return leapc::Mode::kHeadMounted;
+  return fail(ErrorKind::kUsage, "input leapc: mode={} found, expected desktop, screentop or headmounted",
+              name);
+}
+
+}  // namespace
+
+std::unique_ptr<InputSource> leapc_source(std::unique_ptr<leapc::Connection> connection,
+                                          const Pose& screen_from_device) {
+  return std::make_unique<LeapcSource>(std::move(connection), screen_from_device);
+}
+
+Result<std::unique_ptr<InputSource>> make_leapc_source(const InputConfig& config) {
+  static const SteadyClock clock;
+  leapc::Options options;
+  Pose screen_from_device = table_placement();
+  for (const auto& [key, value] : config.options) {
+    if (key == "library" && !value.empty()) {
+      options.library = value;
+    } else if (key == "mode") {
+      DUBSAR_ASSIGN(options.mode, mode_named(value));
+    } else {
+      DUBSAR_ASSIGN(const bool placed, read_placement(key, value, screen_from_device));
+      if (!placed)
+        return fail(
+            ErrorKind::kUsage,
+            "input leapc: option \"{}\" found, expected library=FILE, mode=MODE, at=X/Y/Z or turn=X/Y/Z",
+            key);
+    }
+  }
+  return leapc_source(leapc::make_connection(options, clock), screen_from_device);
+}
+
+}  // namespace dubsar
