@@ -11,6 +11,7 @@
 #include "app/panels/calibration_search.h"
 #include "devices/looking_glass/bridge_client.h"
 #include "display/context_glfw.h"
+#include "display/crosstalk_curve.h"
 #include "display/edid.h"
 #include "display/output_sink.h"
 #include "display/panel_adjust.h"
@@ -24,7 +25,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> adjust;  ///< PANEL, figures or "reset"
-  std::string calibration;
+  std::string calibration, crosstalk;
   std::string edids = "/sys/class/drm";
   int bridge_port = kBridgePort;
   std::vector<std::string> plugins;
@@ -141,6 +142,42 @@ void add_monitors(const Options& options, const std::vector<PanelProfile>& profi
   }
 }
 
+/// The optical simulator's curves of a tracked panel.
+Result<VerbResult> crosstalk(const std::string& panel) {
+  DUBSAR_ASSIGN(const auto profiles, load_profiles(panel_folder()));
+  DUBSAR_ASSIGN(const PanelProfile profile, find_profile(profiles, panel));
+  DUBSAR_ASSIGN(const CrosstalkCurve curve, crosstalk_curve(profile));
+  VerbResult result;
+  result.json = {{"panel", profile.name},
+                 {"eye_distance_mm", curve.eye_distance_mm},
+                 {"design_distance_mm", curve.design_distance_mm},
+                 {"nominal_percent", 100 * curve.nominal},
+                 {"worst_sideways_percent", 100 * curve.worst_sideways}};
+  result.text = fmt::format("panel {}: light of the wrong eye at {:g} mm, eyes {:g} mm apart\n  woven for the true eyes {:.1f} %, anywhere {:g} mm to either side {:.1f} %\n",
+                            profile.name, curve.design_distance_mm, curve.eye_distance_mm, 100 * curve.nominal, curve.eye_distance_mm,
+                            100 * curve.worst_sideways);
+  result.text += "woven for where the head was: head speed down, latency across\n  mm/s  ";
+  const double first_speed = curve.lags.front().head_mm_s;
+  for (const auto& lag : curve.lags)
+    if (lag.head_mm_s == first_speed) result.text += fmt::format("{:>7g} ms", lag.latency_ms);
+  double speed = -1.0;
+  for (const auto& lag : curve.lags) {
+    if (lag.head_mm_s != speed) result.text += fmt::format("\n  {:<6g}", speed = lag.head_mm_s);
+    result.text += fmt::format("{:>8.1f} %", 100 * lag.wrong);
+    result.json["lags"].push_back({{"head_mm_s", lag.head_mm_s}, {"latency_ms", lag.latency_ms}, {"moved_mm", lag.moved_mm},
+                                   {"percent", 100 * lag.wrong}});
+  }
+  result.text += "\nwoven for the true eyes at other places: exact refraction, and the paraxial approximation\n";
+  for (const auto& place : curve.places) {
+    result.text += fmt::format("  ({:g}, {:g}, {:g}) mm  {:>5.1f} %  {:>5.1f} %\n", place.head_mm.x, place.head_mm.y, place.head_mm.z,
+                               100 * place.exact, 100 * place.paraxial);
+    result.json["places"].push_back({{"head_mm", {place.head_mm.x, place.head_mm.y, place.head_mm.z}},
+                                     {"exact_percent", 100 * place.exact},
+                                     {"paraxial_percent", 100 * place.paraxial}});
+  }
+  return result;
+}
+
 Result<VerbResult> adjust(const std::vector<std::string>& words) {
   const fs::path folder = panel_folder();
   if (folder.empty()) return fail(ErrorKind::kCannotCreate, "cannot save the adjustment: neither XDG_CONFIG_HOME nor HOME is set");
@@ -161,6 +198,7 @@ Result<VerbResult> adjust(const std::vector<std::string>& words) {
 
 Result<VerbResult> run(const Options& options) {
   if (!options.adjust.empty()) return adjust(options.adjust);
+  if (!options.crosstalk.empty()) return crosstalk(options.crosstalk);
   DUBSAR_ASSIGN(const auto profiles, load_profiles(panel_folder()));
   VerbResult result;
   result.json["panel_folder"] = panel_folder().string();
@@ -180,6 +218,8 @@ Verb add_displays_verb(CLI::App& program) {
   command->add_option("--adjust", options->adjust, "save lens figures found by eye: PANEL pitch=..,slope=..,center=.. (or PANEL reset)")
       ->expected(2)
       ->type_name("PANEL FIGURES");
+  command->add_option("--crosstalk", options->crosstalk, "how much light of the wrong eye a tracked panel lets through, against head speed and latency")
+      ->type_name("PANEL");
   command->add_option("--calibration", options->calibration, "also look at this calibration file")->type_name("FILE");
   command->add_option("--bridge-port", options->bridge_port, "port of Looking Glass Bridge on this machine (33334); 0: leave it alone")
       ->check(CLI::Range(0, 65535));
@@ -189,6 +229,7 @@ Verb add_displays_verb(CLI::App& program) {
       "Examples:\n"
       "  dubsar displays\n"
       "  dubsar displays --json -\n"
+      "  dubsar displays --crosstalk spatiallabs-15.6\n"
       "  dubsar render --pattern -o pattern.png --display lenticular:looking-glass-go\n"
       "  dubsar displays --adjust looking-glass-go pitch=80.74,center=0.31");
   return {command, [options](const CommonOptions&, Progress&) { return run(*options); }};

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/base/parallel.h"
+#include "display/srgb.h"
 
 namespace dubsar {
 namespace {
@@ -41,6 +42,7 @@ Image see(const Image& panel_image, const TrackedPanel& panel, const glm::dvec3&
   DUBSAR_CHECK(panel_image.width == panel.width_px && panel_image.height == panel.height_px);
   const int reach = std::max(1, static_cast<int>(std::ceil(panel.lens.pitch_mm / panel.lens.pixel_mm.x)));
   Image seen(panel_image.width, panel_image.height, 3);
+  const auto& linear = linear_of_byte();
   parallel_for(panel_image.height, 4, [&](std::int64_t row) {
     const int y = static_cast<int>(row);
     std::vector<double> light(static_cast<std::size_t>(panel_image.width));
@@ -51,10 +53,10 @@ Image see(const Image& panel_image, const TrackedPanel& panel, const glm::dvec3&
       for (int x = 0; x < panel_image.width; ++x) {
         double sum = 0.0, total = 0.0;
         for (int c = std::max(0, x - reach); c <= std::min(panel_image.width - 1, x + reach); ++c) {
-          sum += light[static_cast<std::size_t>(c)] * panel_image.at(c, y)[channel];
+          sum += light[static_cast<std::size_t>(c)] * linear[panel_image.at(c, y)[channel]];
           total += light[static_cast<std::size_t>(c)];
         }
-        seen.at(x, y)[channel] = static_cast<std::uint8_t>(total > 0.0 ? std::lround(sum / total) : 0);
+        seen.at(x, y)[channel] = srgb_from_linear(total > 0.0 ? sum / total : 0.0);
       }
     }
   });
@@ -65,21 +67,35 @@ Crosstalk wrong_eye_light(const TrackedPanel& panel, const EyePair& woven_for, c
                           bool exact_weave, int step_px) {
   // Whole lens periods are visited around each grid point, else the sample would favour some phases.
   const int run = 4 * std::max(1, static_cast<int>(std::ceil(panel.lens.pitch_mm / panel.lens.pixel_mm.x)));
-  std::array<double, 2> wrong{}, total{};
-  for (int y = step_px / 2; y < panel.height_px; y += step_px)
-    for (int x0 = step_px / 2; x0 < panel.width_px; x0 += std::max(step_px, run))
-      for (int x = x0; x < std::min(panel.width_px, x0 + run); ++x)
-        for (int channel = 0; channel < 3; ++channel) {
-          const glm::dvec2 point = subpixel_mm(panel, x, y, channel);
-          const int shown = subpixel_eye(panel, woven_for, point, exact_weave);
-          for (int eye = 0; eye < 2; ++eye) {
-            const glm::dvec3& place = eye == 0 ? true_eyes.left_mm : true_eyes.right_mm;
-            const double light = visibility(panel.lens, eye_phase(panel.lens, place, point));
-            total[static_cast<std::size_t>(eye)] += light;
-            if (shown != eye) wrong[static_cast<std::size_t>(eye)] += light;
+  struct Light {
+    std::array<double, 2> wrong{}, total{};
+  };
+  const auto of_rows = [&](std::int64_t begin, std::int64_t end) {
+    Light out;
+    for (std::int64_t row = begin; row < end; ++row) {
+      const int y = step_px / 2 + static_cast<int>(row) * step_px;
+      for (int x0 = step_px / 2; x0 < panel.width_px; x0 += std::max(step_px, run))
+        for (int x = x0; x < std::min(panel.width_px, x0 + run); ++x)
+          for (int channel = 0; channel < 3; ++channel) {
+            const glm::dvec2 point = subpixel_mm(panel, x, y, channel);
+            const int shown = subpixel_eye(panel, woven_for, point, exact_weave);
+            for (int eye = 0; eye < 2; ++eye) {
+              const glm::dvec3& place = eye == 0 ? true_eyes.left_mm : true_eyes.right_mm;
+              const double light = visibility(panel.lens, eye_phase(panel.lens, place, point));
+              out.total[static_cast<std::size_t>(eye)] += light;
+              if (shown != eye) out.wrong[static_cast<std::size_t>(eye)] += light;
+            }
           }
-        }
-  return {total[0] > 0.0 ? wrong[0] / total[0] : 0.0, total[1] > 0.0 ? wrong[1] / total[1] : 0.0};
+    }
+    return out;
+  };
+  const auto add = [](Light a, const Light& b) {
+    for (std::size_t eye = 0; eye < 2; ++eye) a.wrong[eye] += b.wrong[eye], a.total[eye] += b.total[eye];
+    return a;
+  };
+  const std::int64_t rows = std::max(0, (panel.height_px - step_px / 2 + step_px - 1) / step_px);
+  const Light sum = parallel_reduce(rows, 4, Light{}, of_rows, add);
+  return {sum.total[0] > 0.0 ? sum.wrong[0] / sum.total[0] : 0.0, sum.total[1] > 0.0 ? sum.wrong[1] / sum.total[1] : 0.0};
 }
 
 std::vector<double> view_shares(const LensSheet& sheet, const TrackedPanel& panel, int views, const glm::dvec3& eye_mm,

@@ -17,7 +17,7 @@ namespace dubsar {
 double visibility(const LensOptics& lens, double phase) noexcept;
 
 /// What an eye sees of a panel image, one output pixel a panel pixel: for each colour the mean of the subpixels around
-/// it (one lens period to either side, in its row), weighted by visibility.
+/// it (one lens period to either side, in its row), weighted by visibility, in linear light.
 Image see(const Image& panel_image, const TrackedPanel& panel, const glm::dvec3& eye_mm);
 
 /// Share of wrong-eye light (0..1) that each eye gets at its true place when the panel was woven for `woven_for`.

@@ -4,10 +4,15 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "display/srgb.h"
 
 namespace dubsar {
 
-double sample_channel(const Image& view, double u, double v, int channel) noexcept {
+namespace {
+
+/// Bilinear mean of value(x, y) around (u, v), v up, clamped to the edge.
+template <class Value>
+double bilinear(const Image& view, double u, double v, const Value& value) noexcept {
   const double x = u * view.width - 0.5;
   const double y = (1.0 - v) * view.height - 0.5;
   const double fx = x - std::floor(x), fy = y - std::floor(y);
@@ -15,9 +20,19 @@ double sample_channel(const Image& view, double u, double v, int channel) noexce
   const auto row = [&](double r) { return std::clamp(static_cast<int>(r), 0, view.height - 1); };
   const int x0 = column(std::floor(x)), x1 = column(std::floor(x) + 1.0);
   const int y0 = row(std::floor(y)), y1 = row(std::floor(y) + 1.0);
-  const auto value = [&](int c, int r) { return static_cast<double>(view.at(c, r)[channel]); };
   return (1.0 - fy) * ((1.0 - fx) * value(x0, y0) + fx * value(x1, y0)) +
          fy * ((1.0 - fx) * value(x0, y1) + fx * value(x1, y1));
+}
+
+}  // namespace
+
+double sample_channel(const Image& view, double u, double v, int channel) noexcept {
+  return bilinear(view, u, v, [&](int x, int y) { return static_cast<double>(view.at(x, y)[channel]); });
+}
+
+double sample_light(const Image& view, double u, double v, int channel) noexcept {
+  const auto& light = linear_of_byte();
+  return bilinear(view, u, v, [&](int x, int y) { return light[view.at(x, y)[channel]]; });
 }
 
 double subpixel_view(const LensSheet& sheet, int views, int column, int row_from_top, int channel) noexcept {
@@ -42,8 +57,8 @@ Image weave_views(std::span<const Image> views, const LensSheet& sheet, const We
         const double position = lens_position(sheet, column, sheet.height_px - 1 - row, channel);
         double sum = 0.0;
         for (const auto& [view, weight] : view_weights(position, count, options.filter, options.gaussian_sigma))
-          sum += weight * sample_channel(views[static_cast<std::size_t>(view)], u, v, channel);
-        panel.at(column, static_cast<int>(row))[channel] = to_byte(sum);
+          sum += weight * sample_light(views[static_cast<std::size_t>(view)], u, v, channel);
+        panel.at(column, static_cast<int>(row))[channel] = srgb_from_linear(sum);
       }
     }
   });

@@ -5,7 +5,7 @@
 
 const int kMaxCells = 10;
 
-layout(binding = 0) uniform sampler2DArray view_array;  // sRGB-coded bytes, 0 leftmost
+layout(binding = 0) uniform sampler2DArray view_array;  // linear light, 0 leftmost
 layout(location = 0) uniform ivec4 window;    // lower left corner on the panel (from its lower left), size
 layout(location = 1) uniform vec4 step_x;     // periods a pixel to the right: coarse, fine; upwards: coarse, fine
 layout(location = 2) uniform float start;     // phase of the middle of the panel's lower left pixel
@@ -14,6 +14,11 @@ layout(location = 4) uniform float sigma;     // of the wide Gaussian, in views
 layout(location = 5) uniform int cells;
 layout(location = 6) uniform vec2 offsets[3 * kMaxCells];  // pixels
 layout(location = 0) out vec4 color;
+
+vec3 srgb_from_linear(vec3 c) {
+  c = clamp(c, 0.0, 1.0);
+  return mix(c * 12.92, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
+}
 
 int cell_of(ivec2 p) {
   int index = mode.w == 1 ? (p.x + p.y) % 2 : mode.w == 2 ? p.x % 2 : mode.w == 3 ? (p.y + 2 * (p.x % 2)) % 4
@@ -65,5 +70,5 @@ void main() {
       result[k] = weights > 0.0 ? sum / weights : sample_view(near, k, corner, mixing);
     }
   }
-  color = vec4(result, 1.0);
+  color = vec4(srgb_from_linear(result), 1.0);
 }

@@ -75,7 +75,7 @@ class ViewsSink : public OutputSink {
   Result<void> compose(const ViewArray& views, const Surface& target) override {
     const double right = sheet_.periods / sheet_.width_px, up = sheet_.periods * sheet_.tilt / sheet_.height_px;
     const double start = 0.5 * right + 0.5 * up - sheet_.centre;
-    DUBSAR_TRY(pass_.begin(target, views.coded()));
+    DUBSAR_TRY(pass_.begin(target, views.linear()));
     set_window(screen_);
     glUniform4f(kSteps, coarse(right), static_cast<float>(right - coarse(right)), coarse(up),
                 static_cast<float>(up - coarse(up)));

@@ -79,6 +79,17 @@ TEST_F(DisplaysCommand, ConnectedPanelsAreNamedByTheirEdid) {
   EXPECT_EQ(found[0]["panels"][0], "spatiallabs-15.6");
 }
 
+TEST_F(DisplaysCommand, CrosstalkOfATrackedPanelIsToldAgainstSpeedAndLatency) {
+  const auto curve = json({"displays", "--crosstalk", "spatiallabs-15.6"});
+  EXPECT_LE(curve["nominal_percent"].get<double>(), 4.0);
+  EXPECT_LE(curve["worst_sideways_percent"].get<double>(), 5.0);
+  double of_8_mm = 0;
+  for (const auto& lag : curve["lags"])
+    if (lag["head_mm_s"] == 200 && lag["latency_ms"] == 40) of_8_mm = lag["percent"];
+  EXPECT_NEAR(of_8_mm, 6.5, 0.6);
+  EXPECT_EQ(run_dubsar({"displays", "--crosstalk", "looking-glass-go"}).exit_code, 78);
+}
+
 TEST_F(DisplaysCommand, CalibrationFilesAreReadAndProblemsNamed) {
   ASSERT_TRUE(write_file_atomically(file("visual.json"),
                                     R"({"serial": "LKG-E77", "pitch": 80.1, "slope": -6.6, "DPI": 491, "screenW": 1440, "screenH": 2560})"));

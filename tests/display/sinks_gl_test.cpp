@@ -16,6 +16,7 @@
 #include "display/sinks/interlaced.h"
 #include "display/sinks/packed.h"
 #include "display/sinks/quilt.h"
+#include "display/srgb.h"
 #include "display/weave.h"
 #include "tests/display/test_meshes.h"
 
@@ -137,7 +138,7 @@ TEST_F(SinksGl, LensWeavesEqualTheReference) {
   // Nearest views of noise: a subpixel that shows another view has another colour.
   const auto profiles = load_profiles({}).value();
   for (const char* name : {"looking-glass-portrait", "looking-glass-16-gen3-portrait", "lens-sheet-24-5-views"})
-    for (const char* filter : {"nearest", "linear", "gaussian3"}) {
+    for (const char* filter : {"nearest", "linear", "gaussian3", "gaussian10"}) {
       if (std::string_view(name).find("gen3") != std::string_view::npos && filter != std::string_view("nearest")) continue;
       const PanelProfile profile = find_profile(profiles, name).value();
       auto sink = make_sink(std::string("lenticular:") + name + "," + filter).value();
@@ -159,14 +160,15 @@ TEST_F(SinksGl, LensWeavesEqualTheReference) {
       Image expected(96, 64, 3);
       const ViewFilter mode = std::string_view(filter) == "nearest"  ? ViewFilter::kNearest
                               : std::string_view(filter) == "linear" ? ViewFilter::kLinear
-                                                                     : ViewFilter::kGaussian3;
+                              : std::string_view(filter) == "gaussian3" ? ViewFilter::kGaussian3
+                                                                        : ViewFilter::kGaussian10;
       for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 96; ++x)
           for (int k = 0; k < 3; ++k) {
             const double place = lens_position(sheet, profile.width_px - 96 + x, profile.height_px - 1 - (8 + y), k);
             double sum = 0;
-            for (const auto& [view, weight] : view_weights(place, traits.views, mode)) sum += weight * views[view].at(0, 0)[k];
-            expected.at(x, y)[k] = static_cast<std::uint8_t>(std::lround(sum));
+            for (const auto& [view, weight] : view_weights(place, traits.views, mode)) sum += weight * linear_from_srgb(views[view].at(0, 0)[k]);
+            expected.at(x, y)[k] = srgb_from_linear(sum);
           }
       EXPECT_LE(differing(out, expected), 0.0005) << name << " " << filter;
     }
