@@ -1,10 +1,6 @@
 #include "app/live_device.h"
 
-#include "devices/enumerate.h"
 #include "devices/head_tracker/head_tracker.h"
-#include "devices/head_tracker/opentrack_protocol.h"
-#include "devices/head_tracker/vrpn_protocol.h"
-#include "devices/socket_transport.h"
 #include "devices/spacemouse/spacenav_protocol.h"
 
 namespace dubsar::app {
@@ -63,31 +59,6 @@ class LiveHeadTracker final : public LiveDevice {
 
 }  // namespace
 
-Result<OpenTransport> device_opener(const DeviceChoice& choice, const Clock& clock) {
-  const auto port = [&](std::uint16_t usual) { return choice.port == 0 ? usual : static_cast<std::uint16_t>(choice.port); };
-  if (choice.driver == "spacemouse" || choice.driver == "rift" || choice.driver == "xreal")
-    return OpenTransport([driver = choice.driver, &clock] { return open_hid_device(driver, clock); });
-  if (choice.driver == "spacenav")
-    return OpenTransport([path = choice.socket.empty() ? kSpacenavSocket : choice.socket] { return open_unix_stream(path); });
-  if (choice.driver == "vrpn")
-    return OpenTransport([address = choice.address, number = port(kVrpnPort)] {
-      return open_tcp_stream(address, number, milliseconds(1000));
-    });
-  if (choice.driver == "opentrack") {
-    UdpOptions options;
-    options.address = choice.address;
-    options.port = port(kOpentrackPort);
-    options.allow_remote = choice.allow_remote;
-    options.accept = [](std::span<const std::byte> datagram) { return parse_opentrack(datagram).has_value(); };
-    return OpenTransport([options, &clock]() -> Result<std::unique_ptr<Transport>> {
-      DUBSAR_ASSIGN(auto listener, open_udp(options, clock));
-      return listener;
-    });
-  }
-  return fail(ErrorKind::kUsage,
-              "devices: \"{}\" found, expected spacemouse, spacenav, opentrack, vrpn, rift or xreal", choice.driver);
-}
-
 Result<std::unique_ptr<LiveDevice>> make_live_device(const DeviceChoice& choice, OpenTransport open) {
   if (choice.driver == "spacemouse")
     return std::make_unique<LiveDriver<SpaceMouseProtocol>>(std::move(open), SpaceMouseProtocol());
@@ -97,6 +68,8 @@ Result<std::unique_ptr<LiveDevice>> make_live_device(const DeviceChoice& choice,
   HeadTrackerConfig config;
   config.open = std::move(open);
   config.tracker = choice.tracker;
+  config.sensor = choice.sensor;
+  config.invert = choice.invert;
   DUBSAR_ASSIGN(auto tracker, backend->create(config));
   return std::make_unique<LiveHeadTracker>(std::move(tracker));
 }

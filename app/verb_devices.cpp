@@ -10,10 +10,10 @@
 #include "app/live_device.h"
 #include "devices/enumerate.h"
 #include "devices/looking_glass/calibration_pages.h"
+#include "devices/real/real_devices.h"
 #include "devices/record_transport.h"
 #include "devices/replay_transport.h"
 #include "devices/simulated_recording.h"
-#include "devices/spacemouse/spacenav_protocol.h"
 
 namespace dubsar::app {
 namespace {
@@ -29,13 +29,8 @@ struct Options {
            *simulate = nullptr;
 };
 
-std::string spacenav_socket(const DeviceChoice& device) {
-  return device.socket.empty() ? kSpacenavSocket : device.socket;
-}
-
 Result<VerbResult> list(const Options& options) {
-  std::vector<DeviceInfo> devices = list_hid_devices();
-  for (DeviceInfo& info : list_spacenavd(spacenav_socket(options.device))) devices.push_back(std::move(info));
+  const std::vector<DeviceInfo> devices = list_real_devices(options.device.socket);
   VerbResult result;
   result.json["devices"] = json::array();
   for (const DeviceInfo& d : devices) {
@@ -103,7 +98,7 @@ Result<VerbResult> probe_looking_glass(const Clock& clock) {
 
 Result<VerbResult> run_live(const Options& options, bool print, Progress& progress) {
   const SteadyClock clock;
-  DUBSAR_ASSIGN(OpenTransport open, device_opener(options.device, clock));
+  DUBSAR_ASSIGN(OpenTransport open, reach_real_device(options.device, clock));
   std::shared_ptr<RecordingWriter> writer;
   if (options.record->parsed()) {
     DUBSAR_TRY(check_output_path(options.file));

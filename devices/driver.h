@@ -38,7 +38,10 @@ class Driver {
   static constexpr int kMaxReportsPerPoll = 1024;  ///< a flood cannot hold the caller
   static constexpr std::size_t kBufferBytes = 4096;
 
-  Driver(OpenTransport open, Protocol protocol) : reconnector_(std::move(open)), protocol_(std::move(protocol)) {}
+  /// `stamps`: reports carry its time at which they were read, which matters when poll() waits; null: the time that poll()
+  /// was given. It outlives the driver.
+  Driver(OpenTransport open, Protocol protocol, const Clock* stamps = nullptr)
+      : reconnector_(std::move(open)), protocol_(std::move(protocol)), stamps_(stamps) {}
 
   /// Waits at most `timeout` for the first report, then takes those that are there.
   std::optional<Sample> poll(TimestampNs now, milliseconds timeout = milliseconds(0)) {
@@ -58,7 +61,7 @@ class Driver {
         break;
       }
       if (*length == 0) break;
-      if (protocol_.accept(std::span<const std::byte>(buffer_).first(*length), now)) {
+      if (protocol_.accept(std::span<const std::byte>(buffer_).first(*length), stamps_ ? stamps_->now() : now)) {
         ++counts_.accepted;
         refused_in_a_row_ = 0;
         continue;
@@ -85,6 +88,7 @@ class Driver {
   }
   Reconnector reconnector_;
   Protocol protocol_;
+  const Clock* stamps_;
   std::array<std::byte, kBufferBytes> buffer_{};
   DriverCounts counts_;
   int refused_in_a_row_ = 0;

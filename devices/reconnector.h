@@ -5,17 +5,15 @@
 #include <string>
 
 #include "core/base/clock.h"
+#include "devices/retry_pause.h"
 #include "devices/transport.h"
 
 namespace dubsar {
 
-/// Owns one Transport and the state "present or lost". Pauses between attempts grow 0.5, 1, 2, 4, 8, 10, 10 ... s;
-/// wake() ends the present pause, for example when a device node has appeared. One thread.
+/// Owns one Transport and the state "present or lost". Pauses between attempts are those of RetryPause;
+/// wake() ends the present one, for example when a device node has appeared. One thread.
 class Reconnector {
  public:
-  static constexpr TimestampNs kFirstPauseNs = 500'000'000;
-  static constexpr TimestampNs kLongestPauseNs = 10'000'000'000;
-
   explicit Reconnector(OpenTransport open) : open_(std::move(open)) {}
 
   /// The open transport, opening it when an attempt is due; null while the device is lost.
@@ -25,7 +23,7 @@ class Reconnector {
   void lost(const Error& error, TimestampNs now);
 
   /// Makes the next call of transport() try at once, and the pauses short again.
-  void wake() noexcept;
+  void wake() noexcept { retry_.wake(); }
 
   bool connected() const noexcept { return transport_ != nullptr; }
   /// Why there is no device now; empty while there is one.
@@ -37,9 +35,7 @@ class Reconnector {
   OpenTransport open_;
   std::unique_ptr<Transport> transport_;
   std::string reason_;
-  TimestampNs next_attempt_ = 0;
-  TimestampNs pause_ = kFirstPauseNs;
-  bool due_ = true;  ///< try at once, whatever next_attempt_ says
+  RetryPause retry_;
   int times_opened_ = 0;
 };
 

@@ -14,29 +14,29 @@ class RecordTransport final : public Transport {
  public:
   RecordTransport(std::unique_ptr<Transport> below, std::shared_ptr<RecordingWriter> writer)
       : below_(std::move(below)), writer_(std::move(writer)) {
-    writer_->add(EventKind::kOpened, {});
+    writer_->add(WireEventKind::kOpened, {});
   }
 
   Result<std::size_t> read(std::span<std::byte> report, milliseconds timeout) override {
     auto length = below_->read(report, timeout);
-    if (length && *length > 0) writer_->add(EventKind::kRead, report.first(*length));
+    if (length && *length > 0) writer_->add(WireEventKind::kRead, report.first(*length));
     note_loss(length);
     return length;
   }
   Result<void> write(std::span<const std::byte> report) override {
-    writer_->add(EventKind::kWritten, report);
+    writer_->add(WireEventKind::kWritten, report);
     auto done = below_->write(report);
     note_loss(done);
     return done;
   }
   Result<std::size_t> get_feature(std::uint8_t id, std::span<std::byte> out) override {
     auto length = below_->get_feature(id, out);
-    if (length && *length > 0) writer_->add(EventKind::kFeatureGot, out.first(*length));
+    if (length && *length > 0) writer_->add(WireEventKind::kFeatureGot, out.first(*length));
     note_loss(length);
     return length;
   }
   Result<void> set_feature(std::span<const std::byte> report) override {
-    writer_->add(EventKind::kFeatureSet, report);
+    writer_->add(WireEventKind::kFeatureSet, report);
     auto done = below_->set_feature(report);
     note_loss(done);
     return done;
@@ -44,7 +44,7 @@ class RecordTransport final : public Transport {
   Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data,
                               milliseconds timeout) override {
     auto length = below_->control(request, data, timeout);
-    if (length) writer_->add(EventKind::kControl, data.first(*length), request);
+    if (length) writer_->add(WireEventKind::kControl, data.first(*length), request);
     note_loss(length);
     return length;
   }
@@ -54,7 +54,7 @@ class RecordTransport final : public Transport {
   void note_loss(const Result<T>& result) {
     if (result || lost_ || result.error().kind != ErrorKind::kUnavailable) return;
     lost_ = true;
-    writer_->add(EventKind::kLost, {});
+    writer_->add(WireEventKind::kLost, {});
     writer_->flush();
   }
   std::unique_ptr<Transport> below_;
@@ -91,7 +91,7 @@ RecordingWriter::~RecordingWriter() {
   ::close(descriptor_);
 }
 
-void RecordingWriter::add(EventKind kind, std::span<const std::byte> bytes, const ControlRequest& request) {
+void RecordingWriter::add(WireEventKind kind, std::span<const std::byte> bytes, const ControlRequest& request) {
   const std::lock_guard lock(mutex_);
   if (!status_) return;
   pending_ += format_event({clock_->now() - start_, kind, request, {bytes.begin(), bytes.end()}});

@@ -22,7 +22,7 @@ class RecordingWriter {
   ~RecordingWriter();
 
   /// Adds one event at the present time.
-  void add(EventKind kind, std::span<const std::byte> bytes, const ControlRequest& request = {});
+  void add(WireEventKind kind, std::span<const std::byte> bytes, const ControlRequest& request = {});
   void flush();
   /// Writes what is left and tells the first error there was.
   Result<void> finish();

@@ -57,8 +57,8 @@ std::optional<RecordedEvent> parse_event(std::string_view line) {
   const std::string_view kind = take_word(line);
   if (!time || *time < 0 || kind.size() != 1 || kKinds.find(kind[0]) == std::string_view::npos) return std::nullopt;
   event.time = *time;
-  event.kind = static_cast<EventKind>(kind[0]);
-  if (event.kind == EventKind::kControl) {
+  event.kind = static_cast<WireEventKind>(kind[0]);
+  if (event.kind == WireEventKind::kControl) {
     const auto type = number<std::uint8_t>(take_word(line), 16, 2);
     const auto request = number<std::uint8_t>(take_word(line), 16, 2);
     const auto value = number<std::uint16_t>(take_word(line), 16, 4);
@@ -67,7 +67,7 @@ std::optional<RecordedEvent> parse_event(std::string_view line) {
     event.request = {*type, *request, *value, *index};
   }
   auto bytes = hex_bytes(line);
-  const bool bare = event.kind == EventKind::kOpened || event.kind == EventKind::kLost;
+  const bool bare = event.kind == WireEventKind::kOpened || event.kind == WireEventKind::kLost;
   if (!bytes || (bare && !bytes->empty())) return std::nullopt;
   event.bytes = std::move(*bytes);
   return event;
@@ -84,7 +84,7 @@ std::string one_line(std::string_view text) {
 
 std::string format_event(const RecordedEvent& event) {
   std::string line = fmt::format("{} {}", event.time, static_cast<char>(event.kind));
-  if (event.kind == EventKind::kControl) {
+  if (event.kind == WireEventKind::kControl) {
     const ControlRequest& r = event.request;
     line += fmt::format(" {:02x} {:02x} {:04x} {:04x}", r.request_type, r.request, r.value, r.index);
   }

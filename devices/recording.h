@@ -26,7 +26,7 @@
 
 namespace dubsar {
 
-enum class EventKind : char {
+enum class WireEventKind : char {
   kOpened = 'o',
   kLost = 'x',
   kRead = 'r',
@@ -38,7 +38,7 @@ enum class EventKind : char {
 
 struct RecordedEvent {
   TimestampNs time = 0;  ///< since the start of the recording
-  EventKind kind = EventKind::kRead;
+  WireEventKind kind = WireEventKind::kRead;
   ControlRequest request;  ///< for kControl
   std::vector<std::byte> bytes;
   bool operator==(const RecordedEvent&) const = default;

@@ -14,14 +14,14 @@ class ReplayTransport final : public Transport {
     const auto& events = session_->recording_.events;
     while (!lost_ && !session_->finished()) {
       const RecordedEvent& event = events[session_->next_];
-      if (event.kind != EventKind::kRead && event.kind != EventKind::kLost) {
+      if (event.kind != WireEventKind::kRead && event.kind != WireEventKind::kLost) {
         ++session_->next_;  // what the host did then is not done again
         continue;
       }
       if (!due(event.time, timeout)) return std::size_t{0};
       ++session_->next_;
       session_->last_time_ = event.time;
-      if (event.kind == EventKind::kLost) {
+      if (event.kind == WireEventKind::kLost) {
         lost_ = true;
         break;
       }
@@ -45,7 +45,7 @@ class ReplayTransport final : public Transport {
   Result<std::size_t> get_feature(std::uint8_t id, std::span<std::byte> out) override {
     if (lost_) return gone();
     const RecordedEvent* const event = answer(session_->next_feature_, [id](const RecordedEvent& e) {
-      return e.kind == EventKind::kFeatureGot && !e.bytes.empty() && std::to_integer<std::uint8_t>(e.bytes[0]) == id;
+      return e.kind == WireEventKind::kFeatureGot && !e.bytes.empty() && std::to_integer<std::uint8_t>(e.bytes[0]) == id;
     });
     if (!event) return fail(ErrorKind::kBadData, "replay: the recording has no more answers for feature report {}", id);
     return copy(*event, out);
@@ -55,7 +55,7 @@ class ReplayTransport final : public Transport {
     if (lost_) return gone();
     if (!request.to_host()) return data.size();
     const RecordedEvent* const event = answer(session_->next_control_, [&](const RecordedEvent& e) {
-      return e.kind == EventKind::kControl && e.request == request;
+      return e.kind == WireEventKind::kControl && e.request == request;
     });
     if (!event)
       return fail(ErrorKind::kBadData, "replay: the recording has no more answers for control request {:#04x} {:#06x}",

@@ -209,11 +209,21 @@ Result<void> connect_within(const Socket& socket, const sockaddr* address, sockl
 
 }  // namespace
 
+Result<void> check_address(const std::string& text) {
+  DUBSAR_TRY(parse_address(text, 0));
+  return {};
+}
+
+Result<void> check_listen_address(const std::string& text, bool allow_remote) {
+  DUBSAR_ASSIGN(const Address address, parse_address(text, 0));
+  if (!allow_remote && !is_loopback(address))
+    return fail(ErrorKind::kUsage, "udp: {} can be reached from other machines; say so explicitly to allow it", text);
+  return {};
+}
+
 Result<std::unique_ptr<UdpTransport>> open_udp(const UdpOptions& options, const Clock& clock) {
+  DUBSAR_TRY(check_listen_address(options.address, options.allow_remote));
   DUBSAR_ASSIGN(Address address, parse_address(options.address, options.port));
-  if (!options.allow_remote && !is_loopback(address))
-    return fail(ErrorKind::kUsage, "udp: {} can be reached from other machines; say so explicitly to allow it",
-                options.address);
   Socket socket(::socket(address.storage.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (socket.get() < 0) return fail_errno(errno, "udp: cannot make a socket");
   if (::bind(socket.get(), address.get(), address.length) != 0)

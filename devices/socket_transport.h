@@ -34,6 +34,10 @@ class UdpTransport : public Transport {
   virtual UdpCounts counts() const noexcept = 0;
 };
 
+/// kUsage: not an address in numbers, or for listening one that other machines reach without `allow_remote`.
+Result<void> check_listen_address(const std::string& address, bool allow_remote);
+Result<void> check_address(const std::string& address);
+
 /// kUsage: not a numeric address, or a remote one without allow_remote; kUnavailable: the port is taken.
 Result<std::unique_ptr<UdpTransport>> open_udp(const UdpOptions& options, const Clock& clock);
 

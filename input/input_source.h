@@ -14,6 +14,8 @@
 #include "core/base/clock.h"
 #include "core/base/registry.h"
 #include "core/base/result.h"
+#include "devices/device_choice.h"
+#include "devices/hotplug_bell.h"
 #include "input/hand_frame.h"
 #include "input/input_event.h"
 #include "input/view_state.h"
@@ -64,18 +66,31 @@ class InputSource {
   /// Scripts and recordings come to an end, live devices never do.
   virtual bool has_end() const noexcept { return false; }
   virtual bool finished() const noexcept { return false; }
+  /// One sentence for people: why the device is lost, or what its measurements lack; empty: nothing to say.
+  virtual std::string note() const { return {}; }
 };
 
 struct InputConfig {
   std::vector<std::pair<std::string, std::string>> options;  ///< "key=value"; a bare word has an empty value
   WindowEvents* window = nullptr;          ///< where mouse and keyboard come from; none without a window
   const ViewState* seen_view = nullptr;    ///< what a simulated visitor looks at; outlives the source
+  /// The session's clock, on which devices stamp what they measure; null: the steady clock. It outlives the source and may
+  /// be read in any thread.
+  const Clock* clock = nullptr;
+  /// The clock is moved by hand: devices are read in poll(), without a thread, so that the same script gives the same input.
+  bool simulated_time = false;
+  ReachDevice reach_device;                ///< how devices are reached; empty: the real ones
+  std::shared_ptr<HotplugBell> hotplug;    ///< shared by the sources of a session; null: lost devices come back by pauses
 };
 
 using InputBackend = Backend<InputSource, InputConfig>;
 
-/// All sources, in the order of their priority when several see hands or heads.
+/// All sources, in the order of their priority when several see hands or heads. Needs dubsar_input_sources.
 std::span<const InputBackend> input_sources();
+
+/// Specs for make_input() of the sources with auto_select whose real device is plugged in and can be used: "spacemouse",
+/// "head:rift" ...; not those of a window. Takes some milliseconds.
+std::vector<std::string> present_inputs();
 
 /// Makes and starts the source that "NAME[:option,...]" names: kUsage with the names there are or what the options are. `base`
 /// holds what the text cannot say.

@@ -53,7 +53,7 @@ const InputFrame& InputMixer::poll(TimestampNs now) {
 
 std::vector<SourceState> InputMixer::states() const {
   std::vector<SourceState> out;
-  for (const Entry& entry : sources_) out.push_back({std::string(entry.source->name()), entry.freshness, entry.frame.time});
+  for (const Entry& entry : sources_) out.push_back({std::string(entry.source->name()), entry.freshness, entry.frame.time, entry.source->note()});
   return out;
 }
 

@@ -13,6 +13,7 @@ struct SourceState {
   std::string name;
   Freshness freshness = Freshness::kLost;
   TimestampNs newest = 0;  ///< device time of the newest measurement
+  std::string note;        ///< InputSource::note()
 };
 
 class InputMixer {

@@ -44,22 +44,24 @@ Result<OffscreenResult> run_offscreen(const TriMesh& mesh, const OffscreenOption
                                       const std::function<void(const Image&, const FrameReport&)>& look) {
   DUBSAR_TRY(check(options));
   DUBSAR_ASSIGN(const auto context, EglContext::create());  // goes last
+  const auto step = static_cast<TimestampNs>(1e9 / options.fps);
+  ManualClock clock(step);  // outlives the sources
   DUBSAR_ASSIGN(const auto session, Session::create(mesh, options.session));
   InputConfig config;
   config.seen_view = &session->view();
+  config.clock = &clock;
+  config.simulated_time = true;
   for (const std::string& spec : options.inputs) {
     DUBSAR_ASSIGN(auto source, make_input(spec, config));
     session->input().add(std::move(source));
   }
   const SinkTraits traits = session->traits();
   DUBSAR_ASSIGN(const OffscreenSurface surface, OffscreenSurface::create(traits.output));
-  const auto step = static_cast<TimestampNs>(1e9 / options.fps);
   const auto delay = static_cast<TimestampNs>(1e9 * options.display_delay_s);
   const auto most = static_cast<int>(std::ceil(options.longest_s * options.fps));
   int left_after_end = static_cast<int>(std::ceil(kSettleS * options.fps));
   OffscreenResult out;
   std::string recording;
-  ManualClock clock(step);
   progress.begin("view", most, "frame");
   glm::dquat last_turn = session->view().rotation;
   for (; out.frames < most && left_after_end > 0; ++out.frames) {

@@ -1,6 +1,7 @@
 #pragma once
 // Time is an argument: whoever needs the time gets a Clock or a timestamp, and tests pass a ManualClock.
 
+#include <atomic>
 #include <cstdint>
 
 namespace dubsar {
@@ -19,16 +20,16 @@ class SteadyClock final : public Clock {
   TimestampNs now() const noexcept override;
 };
 
-/// A clock that a test moves by hand. One thread.
+/// A clock that a test moves by hand. Any thread.
 class ManualClock final : public Clock {
  public:
   explicit ManualClock(TimestampNs start = 0) : now_(start) {}
-  TimestampNs now() const noexcept override { return now_; }
+  TimestampNs now() const noexcept override { return now_.load(); }
   void advance(TimestampNs delta) { now_ += delta; }
   void set(TimestampNs now) { now_ = now; }
 
  private:
-  TimestampNs now_;
+  std::atomic<TimestampNs> now_;
 };
 
 /// CPU seconds (user + system, all threads) used by this process so far.

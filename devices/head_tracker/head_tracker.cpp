@@ -11,7 +11,8 @@ namespace {
 template <class Protocol>
 class DrivenTracker final : public HeadTracker {
  public:
-  DrivenTracker(OpenTransport open, Protocol protocol) : driver_(std::move(open), std::move(protocol)) {}
+  DrivenTracker(OpenTransport open, Protocol protocol, const Clock* stamps)
+      : driver_(std::move(open), std::move(protocol), stamps) {}
   std::optional<HeadSample> poll(TimestampNs now, milliseconds timeout) override { return driver_.poll(now, timeout); }
   bool connected() const noexcept override { return driver_.connected(); }
   const std::string& reason() const noexcept override { return driver_.reason(); }
@@ -28,7 +29,7 @@ class DrivenTracker final : public HeadTracker {
 template <class Protocol>
 Result<std::unique_ptr<HeadTracker>> make(const HeadTrackerConfig& config, Protocol protocol) {
   if (!config.open) return fail(ErrorKind::kUsage, "head tracker: no device to open was given");
-  return std::make_unique<DrivenTracker<Protocol>>(config.open, std::move(protocol));
+  return std::make_unique<DrivenTracker<Protocol>>(config.open, std::move(protocol), config.stamps);
 }
 
 constexpr HeadTrackerBackend kBackends[] = {

@@ -31,9 +31,13 @@ struct HeadTrackerConfig {
   std::array<bool, 6> invert{};     ///< opentrack: x, y, z, yaw, pitch, roll
   std::string tracker;              ///< vrpn: name of the tracker, empty: the first
   int sensor = 0;                   ///< vrpn
+  const Clock* stamps = nullptr;    ///< as of Driver
 };
 
 using HeadTrackerBackend = Backend<HeadTracker, HeadTrackerConfig>;
+
+/// Gives where the head looks, but not where it is.
+constexpr bool is_orientation_only(std::string_view tracker) noexcept { return tracker == "rift" || tracker == "xreal"; }
 
 /// opentrack, vrpn, rift, xreal.
 std::span<const HeadTrackerBackend> head_tracker_backends() noexcept;

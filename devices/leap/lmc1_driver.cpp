@@ -16,6 +16,7 @@ namespace {
 constexpr milliseconds kControlTimeout{1000};
 constexpr milliseconds kReadTimeout{50};  // how long stop() may have to wait
 constexpr int kMaxFailures = 100;         // transfers in a row
+constexpr int kMaxTransfersPerPoll = 4096;  // without a thread; about 200 frames
 
 Result<void> send(Transport& transport, const lmc1::ControlWrite& write) {
   auto data = write.data;
@@ -62,7 +63,16 @@ class Driver final : public Lmc1Driver {
       counters_ = {};
     }
     stopping_ = false;
-    thread_ = std::thread([this, mode] { read_loop(*mode); });
+    mode_ = mode;
+    assembler_.emplace(mode->frame_bytes());
+    transfer_.resize(lmc1::kMaxTransferBytes);
+    sequence_ = 0;
+    failures_ = 0;
+    if (!options_.own_thread) return {};
+    thread_ = std::thread([this] {
+      while (!stopping_ && read_once(kReadTimeout)) {
+      }
+    });
     return {};
   }
 
@@ -79,6 +89,11 @@ class Driver final : public Lmc1Driver {
   }
 
   bool poll(Frame& newest) override {
+    if (!options_.own_thread && state() == FrameSourceState::kRunning) {
+      idle_ = false;
+      for (int i = 0; i < kMaxTransfersPerPoll && !idle_ && read_once(milliseconds(0)); ++i) {
+      }
+    }
     const std::lock_guard lock(mutex_);
     if (!fresh_) return false;
     std::swap(newest, newest_);
@@ -126,38 +141,34 @@ class Driver final : public Lmc1Driver {
     return {};
   }
 
-  void read_loop(const lmc1::Mode& mode) {
-    UvcAssembler assembler(mode.frame_bytes());
-    std::vector<std::byte> transfer(lmc1::kMaxTransferBytes);
-    std::vector<lmc1::ControlWrite> writes;
-    Frame frame;
-    std::uint64_t sequence = 0;
-    int failures = 0;
-    while (!stopping_) {
-      {
-        const std::lock_guard lock(mutex_);
-        writes.swap(pending_);
-      }
-      for (const auto& write : writes)
-        if (auto sent = send(*transport_, write); !sent && sent.error().kind == ErrorKind::kUnavailable)
-          return lose(sent.error().message);
-      writes.clear();
-
-      const auto length = transport_->read(transfer, kReadTimeout);
-      if (!length) {
-        if (length.error().kind == ErrorKind::kUnavailable) return lose(length.error().message);
-        if (++failures >= kMaxFailures) return lose(length.error().message);
-        continue;  // concerns this transfer only: the frame will come out short and be dropped
-      }
-      failures = 0;
-      const bool complete = assembler.add(std::span(transfer).first(*length));
-      if (complete) unpack(assembler.frame(), mode, ++sequence, frame);
+  /// One transfer. False: the device is lost.
+  bool read_once(milliseconds timeout) {
+    {
       const std::lock_guard lock(mutex_);
-      counters_ = {assembler.frames(), assembler.dropped_frames(), assembler.bad_transfers()};
-      if (!complete) continue;
-      std::swap(frame, newest_);
-      fresh_ = true;
+      writes_.swap(pending_);
     }
+    for (const auto& write : writes_)
+      if (auto sent = send(*transport_, write); !sent && sent.error().kind == ErrorKind::kUnavailable)
+        return lose(sent.error().message);
+    writes_.clear();
+
+    const auto length = transport_->read(transfer_, timeout);
+    if (!length) {
+      if (length.error().kind == ErrorKind::kUnavailable) return lose(length.error().message);
+      if (++failures_ >= kMaxFailures) return lose(length.error().message);
+      return true;  // concerns this transfer only: the frame will come out short and be dropped
+    }
+    failures_ = 0;
+    idle_ = *length == 0;
+    if (idle_) return true;
+    const bool complete = assembler_->add(std::span(transfer_).first(*length));
+    if (complete) unpack(assembler_->frame(), *mode_, ++sequence_, working_);
+    const std::lock_guard lock(mutex_);
+    counters_ = {assembler_->frames(), assembler_->dropped_frames(), assembler_->bad_transfers()};
+    if (!complete) return true;
+    std::swap(working_, newest_);
+    fresh_ = true;
+    return true;
   }
 
   void unpack(std::span<const std::byte> bytes, const lmc1::Mode& mode, std::uint64_t sequence, Frame& frame) const {
@@ -175,10 +186,11 @@ class Driver final : public Lmc1Driver {
     lmc1::deinterleave(bytes, pixels.first(bytes.size() / 2), pixels.last(bytes.size() / 2));
   }
 
-  void lose(const std::string& why) {
+  bool lose(const std::string& why) {
     const std::lock_guard lock(mutex_);
     state_ = FrameSourceState::kLost;
     reason_ = why;
+    return false;
   }
 
   const OpenTransport open_;
@@ -188,6 +200,14 @@ class Driver final : public Lmc1Driver {
   // The reader thread's while it runs.
   std::unique_ptr<Transport> transport_;
   std::optional<lmc1::Calibration> calibration_;
+  const lmc1::Mode* mode_ = nullptr;
+  std::optional<UvcAssembler> assembler_;
+  std::vector<std::byte> transfer_;
+  std::vector<lmc1::ControlWrite> writes_;
+  Frame working_;
+  std::uint64_t sequence_ = 0;
+  int failures_ = 0;
+  bool idle_ = false;  ///< the last read found nothing
   std::thread thread_;
   std::atomic<bool> stopping_{false};
 

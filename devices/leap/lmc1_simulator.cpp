@@ -15,6 +15,10 @@ namespace dubsar {
 
 using std::chrono::steady_clock;
 
+namespace {
+constexpr std::chrono::microseconds kShortWait{200};  // rounding, and clocks that are moved by hand
+}  // namespace
+
 struct Lmc1Simulator::Device {
   explicit Device(Lmc1SimulatorOptions o) : options(std::move(o)), calibration(lmc1::encode(options.calibration)) {}
 
@@ -43,7 +47,11 @@ struct Lmc1Simulator::Device {
   std::size_t sent = 0;
   std::uint64_t begun = 0;
   bool frame_id = false;
-  steady_clock::time_point due{};
+  TimestampNs due = 0;  // of the next frame, when paced
+  TimestampNs now() const {
+    static const SteadyClock kSteady;
+    return options.clock ? options.clock->now() : kSteady.now();
+  }
 };
 
 Result<std::size_t> Lmc1Simulator::Device::unit_request(const ControlRequest& request, std::span<std::byte> data) {
@@ -101,7 +109,7 @@ Result<std::size_t> Lmc1Simulator::Device::stream_request(const ControlRequest& 
     renderer.emplace(options.calibration, render);
     frame.clear();
     sent = 0;
-    due = steady_clock::now();
+    due = now();
   }
   return data.size();
 }
@@ -151,8 +159,8 @@ std::size_t Lmc1Simulator::next_transfer(std::span<std::byte> transfer) {
   if (d.sent == d.frame.size()) {
     if (d.options.frame_limit != 0 && d.begun >= d.options.frame_limit) return 0;
     if (d.options.paced) {
-      if (steady_clock::now() < d.due) return 0;
-      d.due += std::chrono::nanoseconds(100LL * d.mode->interval_100ns);
+      if (d.now() < d.due) return 0;
+      d.due += 100LL * d.mode->interval_100ns;
     }
     d.begin_frame();
   }
@@ -217,7 +225,8 @@ class Lmc1SimulatedTransport final : public Transport {
       if (now >= until) return 0U;
       if (!device.plugged) continue;
       auto wake = until;
-      if (device.options.paced && device.mode != nullptr && device.due > now) wake = std::min(wake, device.due);
+      if (device.options.paced && device.mode != nullptr)
+        wake = std::min(wake, now + std::chrono::nanoseconds(std::max<TimestampNs>(device.due - device.now(), 0)) + kShortWait);
       device.changed.wait_until(lock, wake);
     }
   }

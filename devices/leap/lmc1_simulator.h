@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/clock.h"
 #include "devices/leap/hand_renderer.h"
 #include "devices/leap/lmc1_protocol.h"
 #include "devices/transport.h"
@@ -23,6 +24,7 @@ struct Lmc1SimulatorOptions {
   std::uint64_t seed = 1;
   std::uint64_t frame_limit = 0;  ///< sends no more frames than this; 0: no limit
   bool paced = false;             ///< frames come at the rate of the mode, not as fast as they are read
+  const Clock* clock = nullptr;   ///< of the pace; null: the steady clock. Outlives the simulator, any thread
 };
 
 /// Copies share one device, which outlives its transports. Any thread.

@@ -77,7 +77,7 @@ Result<std::unique_ptr<InputSource>> make_leapc_source(const InputConfig& config
             key);
     }
   }
-  return leapc_source(leapc::make_connection(options, clock), screen_from_device);
+  return leapc_source(leapc::make_connection(options, config.clock ? *config.clock : clock), screen_from_device);
 }
 
 }  // namespace dubsar

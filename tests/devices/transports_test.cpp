@@ -92,14 +92,14 @@ TEST(FaultTransport, RefusesScriptsItCannotRead) {
 
 TEST(Recording, EveryKindOfEventSurvivesTheFile) {
   Recording recording{"leap", "first light", {}, false};
-  recording.events = {{0, EventKind::kOpened, {}, {}},
-                      {5, EventKind::kRead, {}, from_hex("00ff10")},
-                      {6, EventKind::kWritten, {}, from_hex("0401")},
-                      {7, EventKind::kFeatureSet, {}, from_hex("02")},
-                      {7, EventKind::kFeatureGot, {}, from_hex("0203")},
-                      {9, EventKind::kControl, {0xa1, 0x81, 0x0300, 0x0500}, from_hex("4243")},
-                      {9, EventKind::kControl, {0x21, 0x01, 0x0300, 0x0500}, {}},
-                      {11, EventKind::kLost, {}, {}}};
+  recording.events = {{0, WireEventKind::kOpened, {}, {}},
+                      {5, WireEventKind::kRead, {}, from_hex("00ff10")},
+                      {6, WireEventKind::kWritten, {}, from_hex("0401")},
+                      {7, WireEventKind::kFeatureSet, {}, from_hex("02")},
+                      {7, WireEventKind::kFeatureGot, {}, from_hex("0203")},
+                      {9, WireEventKind::kControl, {0xa1, 0x81, 0x0300, 0x0500}, from_hex("4243")},
+                      {9, WireEventKind::kControl, {0x21, 0x01, 0x0300, 0x0500}, {}},
+                      {11, WireEventKind::kLost, {}, {}}};
   const std::string text = format_recording(recording);
   const auto read = parse_recording(text);
   ASSERT_TRUE(read) << read.error().message;
@@ -225,7 +225,7 @@ TEST(Reconnector, PausesGrowFromHalfASecondToTen) {
 TEST(HotplugWatch, SeesNodesComeAndGo) {
   const auto folder = std::filesystem::temp_directory_path() / ("dubsar_watch_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
-  auto watch = HotplugWatch::create(folder);
+  auto watch = HotplugWatch::create(std::vector{folder});
   ASSERT_TRUE(watch);
   EXPECT_FALSE(watch->changed());
   ASSERT_TRUE(write_file_atomically(folder / "hidraw0", std::string_view("x")));
@@ -234,7 +234,7 @@ TEST(HotplugWatch, SeesNodesComeAndGo) {
   std::filesystem::remove(folder / "hidraw0");
   EXPECT_TRUE(watch->changed());
   std::filesystem::remove_all(folder);
-  EXPECT_EQ(HotplugWatch::create("/no/such/folder").error().kind, ErrorKind::kUnavailable);
+  EXPECT_EQ(HotplugWatch::create(std::vector<std::filesystem::path>{"/no/such/folder"}).error().kind, ErrorKind::kUnavailable);
 }
 
 class UdpSender {

@@ -1,0 +1,86 @@
+#include "devices/real/real_devices.h"
+
+#include "devices/enumerate.h"
+#include "devices/head_tracker/opentrack_protocol.h"
+#include "devices/head_tracker/vrpn_protocol.h"
+#include "devices/leap/lmc1_protocol.h"
+#include "devices/socket_transport.h"
+#include "devices/spacemouse/spacenav_protocol.h"
+#include "devices/udev_rule.h"
+#include "devices/usb/usb_transport.h"
+
+namespace dubsar {
+namespace {
+
+constexpr milliseconds kConnectTimeout{1000};
+
+Result<std::unique_ptr<Transport>> open_leap() {
+  UsbOpenOptions options;
+  options.interfaces = {lmc1::kControlInterface, lmc1::kStreamInterface};
+  options.read_endpoint = lmc1::kBulkEndpoint;
+  options.transfer_bytes = lmc1::kMaxTransferBytes;
+  auto opened = open_usb_transport(lmc1::kVendorId, lmc1::kProductId, options);
+  if (!opened && opened.error().kind == ErrorKind::kNoInput)
+    return fail(ErrorKind::kUnavailable, "leap: no such device is plugged in");
+  return opened;
+}
+
+Result<OpenTransport> reach_opentrack(const DeviceChoice& choice, const Clock& clock) {
+  DUBSAR_TRY(check_listen_address(choice.address, choice.allow_remote));
+  UdpOptions options;
+  options.address = choice.address;
+  options.port = choice.port == 0 ? kOpentrackPort : static_cast<std::uint16_t>(choice.port);
+  options.allow_remote = choice.allow_remote;
+  options.accept = [](std::span<const std::byte> datagram) { return parse_opentrack(datagram).has_value(); };
+  return OpenTransport([options, &clock]() -> Result<std::unique_ptr<Transport>> {
+    DUBSAR_ASSIGN(auto listener, open_udp(options, clock));
+    return listener;
+  });
+}
+
+Result<OpenTransport> reach_vrpn(const DeviceChoice& choice) {
+  DUBSAR_TRY(check_address(choice.address));
+  const std::uint16_t port = choice.port == 0 ? kVrpnPort : static_cast<std::uint16_t>(choice.port);
+  return OpenTransport(
+      [address = choice.address, port] { return open_tcp_stream(address, port, kConnectTimeout); });
+}
+
+}  // namespace
+
+Result<OpenTransport> reach_real_device(const DeviceChoice& choice, const Clock& clock) {
+  if (choice.driver == "spacemouse" || choice.driver == "rift" || choice.driver == "xreal")
+    return OpenTransport([driver = choice.driver, &clock] { return open_hid_device(driver, clock); });
+  if (choice.driver == "spacenav")
+    return OpenTransport(
+        [path = choice.socket.empty() ? kSpacenavSocket : choice.socket] { return open_unix_stream(path); });
+  if (choice.driver == "vrpn") return reach_vrpn(choice);
+  if (choice.driver == "opentrack") return reach_opentrack(choice, clock);
+  if (choice.driver == "leap") return OpenTransport(open_leap);
+  return fail(ErrorKind::kUsage, "devices: \"{}\" found, expected one of: {}", choice.driver, kDeviceDrivers);
+}
+
+std::vector<DeviceInfo> list_real_devices(const std::string& spacenav_socket) {
+  std::vector<DeviceInfo> devices = list_hid_devices();
+  const auto usb = list_usb_devices();
+  for (const UsbDevice& device : usb ? *usb : std::vector<UsbDevice>{}) {
+    if (device.vendor_id != lmc1::kVendorId || device.product_id != lmc1::kProductId) continue;
+    DeviceInfo info;
+    info.driver = "leap";
+    info.path = device.path;
+    info.name = "Leap Motion Controller";
+    info.vendor_id = device.vendor_id;
+    info.product_id = device.product_id;
+    if (!device.accessible) {
+      info.state = DeviceState::kNoPermission;
+      info.reason = fmt::format("this user may not open {}", device.node);
+      info.remedy =
+          fmt::format("{}; the rule is: {}", kUdevRemedy, usb_udev_rule(device.vendor_id, device.product_id));
+    }
+    devices.push_back(std::move(info));
+  }
+  for (DeviceInfo& info : list_spacenavd(spacenav_socket.empty() ? kSpacenavSocket : spacenav_socket))
+    devices.push_back(std::move(info));
+  return devices;
+}
+
+}  // namespace dubsar

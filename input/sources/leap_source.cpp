@@ -1,0 +1,99 @@
+#include "input/sources/leap_source.h"
+
+#include <chrono>
+#include <thread>
+
+#include "devices/leap/lmc1_driver.h"
+#include "devices/retry_pause.h"
+#include "input/hand_tracking/hand_tracker.h"
+#include "input/placement.h"
+#include "input/sources/device_source.h"
+#include "input/sources/source_device.h"
+
+namespace dubsar {
+namespace {
+
+constexpr TimestampNs kSilentNs = 1'000'000'000;
+
+class LeapReader final : public DeviceReader {
+ public:
+  LeapReader(SourceDevice device, const Lmc1Options& options, const Clock& clock,
+             const Pose& screen_from_leap)
+      : driver_(make_lmc1_driver(std::move(device.open), options, clock)),
+        options_(options),
+        ended_(std::move(device.ended)),
+        screen_from_leap_(screen_from_leap) {}
+
+  bool read(TimestampNs now, milliseconds timeout, InputFrame& frame) override {
+    if (!tracker_ && !open(now)) return false;
+    const auto until = std::chrono::steady_clock::now() + timeout;
+    while (!driver_->poll(picture_)) {
+      if (driver_->state() == FrameSourceState::kLost) {
+        reason_ = driver_->reason();
+        driver_->stop();
+        tracker_.reset();
+        retry_.lost(now);
+        return false;
+      }
+      if (std::chrono::steady_clock::now() >= until) return false;
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    if (!tracker_->track(picture_, hands_)) return false;
+    frame.time = picture_.time;
+    frame.hands.clear();
+    for (const HandFrame& hand : hands_) frame.hands.push_back(moved(screen_from_leap_, hand));
+    return true;
+  }
+  bool connected() const override { return tracker_.has_value(); }
+  std::string reason() const override { return reason_; }
+  void wake() override { retry_.wake(); }
+  bool finished() const override { return ended_ && *ended_; }
+
+ private:
+  bool open(TimestampNs now) {
+    if (!retry_.due(now)) return false;
+    if (auto started = driver_->start(); !started) {
+      reason_ = std::move(started).error().message;
+      retry_.failed(now);
+      return false;
+    }
+    retry_.succeeded();
+    reason_.clear();
+    tracker_.emplace(stereo_lenses(*driver_->calibration(), options_.width, options_.height));
+    return true;
+  }
+
+  std::unique_ptr<Lmc1Driver> driver_;
+  Lmc1Options options_;
+  std::shared_ptr<const std::atomic<bool>> ended_;
+  Pose screen_from_leap_;
+  RetryPause retry_;
+  std::string reason_;
+  std::optional<HandTracker> tracker_;  ///< for the calibration of the device that is open
+  Frame picture_;
+  Hands hands_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<InputSource>> make_leap_source(const InputConfig& config) {
+  OptionReader options(config, "leap");
+  DeviceChoice choice;
+  choice.driver = "leap";
+  const Pose place = options.placement(table_placement());
+  Lmc1Options driver;
+  driver.exposure_us = options.integer("exposure_us", 10, 1000, driver.exposure_us);
+  driver.own_thread = !config.simulated_time;
+  DUBSAR_ASSIGN(SourceDevice device, source_device(choice, options, config));
+  DUBSAR_TRY(options.finish());
+  if (!device.real) driver.calibration_settle = milliseconds(0);
+  DeviceSourceTraits traits;
+  traits.name = "leap";
+  traits.has_end = device.ended != nullptr;
+  traits.silent_ns = kSilentNs;
+  return make_device_source(
+      std::move(traits),
+      std::make_unique<LeapReader>(std::move(device), driver, session_clock(config), place), config);
+}
+
+}  // namespace dubsar

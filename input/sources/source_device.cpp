@@ -1,0 +1,73 @@
+#include "input/sources/source_device.h"
+
+#include "devices/real/real_devices.h"
+#include "devices/replay_transport.h"
+#include "input/sources/device_source.h"
+
+namespace dubsar {
+namespace {
+
+struct Replay {
+  Replay(Recording recording, const Clock& clock, double speed)
+      : session(std::move(recording), clock, speed) {}
+  ReplaySession session;
+  std::atomic<bool> ended{false};
+};
+
+/// Keeps the session alive and notes its end.
+class ReplayedTransport final : public Transport {
+ public:
+  ReplayedTransport(std::shared_ptr<Replay> replay, std::unique_ptr<Transport> below)
+      : replay_(std::move(replay)), below_(std::move(below)) {}
+  Result<std::size_t> read(std::span<std::byte> report, milliseconds timeout) override {
+    auto length = below_->read(report, timeout);
+    if (!length && replay_->session.finished()) replay_->ended = true;
+    return length;
+  }
+  Result<void> write(std::span<const std::byte> report) override { return below_->write(report); }
+  Result<std::size_t> get_feature(std::uint8_t id, std::span<std::byte> out) override {
+    return below_->get_feature(id, out);
+  }
+  Result<void> set_feature(std::span<const std::byte> report) override { return below_->set_feature(report); }
+  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data,
+                              milliseconds timeout) override {
+    return below_->control(request, data, timeout);
+  }
+
+ private:
+  std::shared_ptr<Replay> replay_;
+  std::unique_ptr<Transport> below_;
+};
+
+}  // namespace
+
+Result<SourceDevice> replayed_device(std::string_view driver, const std::string& file, double speed,
+                                     const Clock& clock) {
+  DUBSAR_ASSIGN(Recording recording, read_recording(file));
+  if (recording.driver != driver)
+    return fail(ErrorKind::kBadData, "{}: a recording of \"{}\" found, expected one of \"{}\"", file,
+                recording.driver, driver);
+  auto replay = std::make_shared<Replay>(std::move(recording), clock, speed);
+  return SourceDevice{[replay]() -> Result<std::unique_ptr<Transport>> {
+                        auto opened = replay->session.open();
+                        if (!opened) {
+                          replay->ended = true;
+                          return opened;
+                        }
+                        return std::make_unique<ReplayedTransport>(replay, std::move(*opened));
+                      },
+                      std::shared_ptr<const std::atomic<bool>>(replay, &replay->ended), false};
+}
+
+Result<SourceDevice> source_device(const DeviceChoice& choice, OptionReader& options,
+                                   const InputConfig& config) {
+  const Clock& clock = session_clock(config);
+  const std::string file = options.text("replay");
+  const double speed = options.number("speed", 0.01, 1000.0, 1.0);
+  if (!file.empty()) return replayed_device(choice.driver, file, speed, clock);
+  DUBSAR_ASSIGN(OpenTransport open,
+                (config.reach_device ? config.reach_device : ReachDevice(reach_real_device))(choice, clock));
+  return SourceDevice{std::move(open), nullptr, !config.reach_device};
+}
+
+}  // namespace dubsar

@@ -1,0 +1,26 @@
+#pragma once
+// How a source gets its device: the real one, or by an option of the source a recording of one.
+
+#include <atomic>
+#include <memory>
+
+#include "input/sources/option_reader.h"
+
+namespace dubsar {
+
+struct SourceDevice {
+  OpenTransport open;
+  std::shared_ptr<const std::atomic<bool>> ended{};  ///< a recording or script is over; null: never
+  bool real = true;                                  ///< needs the pauses that real hardware needs
+};
+
+/// Takes the options replay=FILE and speed=FACTOR (recordings of `dubsar devices record`); without them the
+/// device that config.reach_device reaches. kUsage, kNoInput, kBadData: also a recording of another driver.
+Result<SourceDevice> source_device(const DeviceChoice& choice, OptionReader& options,
+                                   const InputConfig& config);
+
+/// A recording behind an opener; it may be opened again after each loss that it holds.
+Result<SourceDevice> replayed_device(std::string_view driver, const std::string& file, double speed,
+                                     const Clock& clock);
+
+}  // namespace dubsar
