@@ -74,7 +74,8 @@ class UsbTransport final : public Transport {
       else
         libusb_free_transfer(slot->transfer);
     }
-    for (const int interface : claimed_) libusb_release_interface(handle_, interface);
+    // Backwards: a kernel driver that gets the first interface again looks for the others at once (uvcvideo).
+    for (auto it = claimed_.rbegin(); it != claimed_.rend(); ++it) libusb_release_interface(handle_, *it);
     libusb_close(handle_);
   }
 

@@ -72,6 +72,39 @@ TEST(Lmc1Driver, DeliversTheFramesThatTheDeviceRendered) {
   EXPECT_FALSE(simulator.led_on(lmc1::Switch::kLedCentre));
 }
 
+/// Every third read finds nothing, as on a busy machine.
+class PausingTransport final : public Transport {
+ public:
+  explicit PausingTransport(std::unique_ptr<Transport> device) : device_(std::move(device)) {}
+  Result<std::size_t> read(std::span<std::byte> report, milliseconds timeout) override {
+    return ++reads_ % 3 == 0 ? Result<std::size_t>(0U) : device_->read(report, timeout);
+  }
+  Result<void> write(std::span<const std::byte> report) override { return device_->write(report); }
+  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data, milliseconds timeout) override {
+    return device_->control(request, data, timeout);
+  }
+
+ private:
+  std::unique_ptr<Transport> device_;
+  int reads_ = 0;
+};
+
+TEST(Lmc1Driver, PausesWithinAFrameDoNotLoseIt) {
+  Lmc1SimulatorOptions device;
+  device.frame_limit = 5;
+  Lmc1Simulator simulator(device);
+  SteadyClock clock;
+  auto driver = make_lmc1_driver(
+      [&]() -> Result<std::unique_ptr<Transport>> {
+        DUBSAR_ASSIGN(auto opened, simulator.open());
+        return std::make_unique<PausingTransport>(std::move(opened));
+      },
+      quick(), clock);
+  ASSERT_TRUE(driver->start());
+  ASSERT_TRUE(eventually([&] { return driver->counters().frames + driver->counters().dropped_frames == 5; }));
+  EXPECT_EQ(driver->counters().dropped_frames, 0U);
+}
+
 TEST(Lmc1Driver, UnpluggedIsAStateAndReplugStartsAgain) {
   Lmc1SimulatorOptions device;
   device.paced = true;

@@ -1,0 +1,156 @@
+// A Leap Motion Controller on a real USB bus (USB/IP): the kernel's camera driver takes it, unmodified libusb
+// takes it from there, our driver reads calibration and pictures, the tracker sees the hand.
+
+#include <filesystem>
+#include <fstream>
+
+#include "devices/hotplug_watch.h"
+#include "devices/leap/lmc1_driver.h"
+#include "devices/usb/usb_transport.h"
+#include "input/hand_tracking/hand_tracker.h"
+#include "tests/lab/lab_kernel.h"
+#include "tests/lab/leap_gadget.h"
+#include "tests/lab/usbip_port.h"
+
+namespace dubsar::lab {
+namespace {
+
+std::optional<UsbDevice> leap_on_the_bus() {
+  const auto devices = list_usb_devices();
+  if (!devices) return std::nullopt;
+  for (const UsbDevice& device : *devices)
+    if (device.vendor_id == lmc1::kVendorId && device.product_id == lmc1::kProductId) return device;
+  return std::nullopt;
+}
+
+/// The kernel's own driver (uvcvideo) has made a video node of it.
+bool is_a_camera() {
+  for (const auto& entry : std::filesystem::directory_iterator("/sys/class/video4linux")) {
+    std::string name;
+    std::getline(std::ifstream(entry.path() / "name"), name);
+    if (name.find(Lmc1Simulator::kProduct) != std::string::npos) return true;
+  }
+  return false;
+}
+
+Result<std::unique_ptr<Transport>> open_leap() {
+  UsbOpenOptions options;
+  options.interfaces = {lmc1::kControlInterface, lmc1::kStreamInterface};
+  options.read_endpoint = lmc1::kBulkEndpoint;
+  options.transfer_bytes = lmc1::kMaxTransferBytes;
+  return open_usb_transport(lmc1::kVendorId, lmc1::kProductId, options);
+}
+
+class LabLeap : public Lab {
+ protected:
+  static Lmc1SimulatorOptions a_hand() {
+    Lmc1SimulatorOptions options;
+    options.paced = true;
+    options.hands = [hand = [] {
+      HandPose pose;
+      pose.palm.position_m = {0.03, 0.3, 0.02};
+      return std::vector{pose_hand(pose)};
+    }()](std::uint64_t) { return hand; };
+    return options;
+  }
+  void plug() {
+    const auto plugged = port_.plug();
+    ASSERT_TRUE(plugged) << plugged.error().message;
+  }
+  void unplug() {
+    port_.unplug();
+    simulator_.unplug();
+    simulator_.plug();  // as one that has had no power
+  }
+
+  Lmc1Simulator simulator_{a_hand()};
+  LeapGadget gadget_{simulator_};
+  UsbipPort port_{gadget_};
+};
+
+TEST_F(LabLeap, ItsHandIsSeenThroughLibusbAndItComesBack) {
+  plug();
+  ASSERT_TRUE(eventually([] { return leap_on_the_bus().has_value(); }));
+  EXPECT_TRUE(leap_on_the_bus()->accessible);
+  ASSERT_TRUE(eventually([] { return is_a_camera(); }))
+      << "uvcvideo does not take it for a camera";
+
+  Lmc1Options options;
+  options.calibration_settle = milliseconds(0);
+  {
+    const auto driver = make_lmc1_driver(open_leap, options, clock_);
+    const auto started = driver->start();
+    ASSERT_TRUE(started) << started.error().message;
+    EXPECT_FALSE(is_a_camera());
+    EXPECT_EQ(driver->calibration(), Lmc1SimulatorOptions{}.calibration);
+    EXPECT_TRUE(simulator_.led_on(lmc1::Switch::kLedCentre));
+    EXPECT_EQ(simulator_.exposure_us(), options.exposure_us);
+
+    HandTracker tracker(stereo_lenses(*driver->calibration(), options.width, options.height));
+    Frame frame;
+    Hands hands;
+    for (int seen = 0; seen < 5; ++seen) {
+      ASSERT_TRUE(eventually([&] { return driver->poll(frame); })) << driver->reason();
+      ASSERT_TRUE(tracker.track(frame, hands));
+      ASSERT_EQ(hands.size(), 1U);
+      EXPECT_NEAR(hands[0].palm.position_m.x, 0.03, 0.004);
+      EXPECT_NEAR(hands[0].palm.position_m.y, 0.30, 0.006);
+      EXPECT_NEAR(hands[0].palm.position_m.z, 0.02, 0.008);
+    }
+    EXPECT_EQ(driver->counters().bad_transfers, 0U);
+    EXPECT_EQ(driver->counters().dropped_frames, 0U);
+
+    auto watch = HotplugWatch::create(std::filesystem::path(leap_on_the_bus()->node).parent_path());
+    ASSERT_TRUE(watch) << watch.error().message;
+    for (int i = 0; i < 1; ++i) {
+      unplug();
+      ASSERT_TRUE(eventually([&] { return driver->state() == FrameSourceState::kLost; }, milliseconds(1000)));
+      ASSERT_TRUE(eventually([] { return !leap_on_the_bus(); }));
+      EXPECT_EQ(driver->start().error().kind, ErrorKind::kNoInput);
+      watch->changed();
+      plug();
+      ASSERT_TRUE(eventually([&] { return watch->changed(); }));
+      const TimestampNs appeared = clock_.now();
+      ASSERT_TRUE(eventually([&] { return driver->start().has_value(); })) << driver->reason();
+      const TimestampNs ready = clock_.now();
+      ASSERT_TRUE(eventually([&] { return driver->poll(frame); })) << driver->reason();
+      std::printf(
+          "from the node to readiness (312 requests for the calibration): %.0f ms, to the first picture: "
+          "%.0f ms\n",
+          1e-6 * static_cast<double>(ready - appeared), 1e-6 * static_cast<double>(clock_.now() - appeared));
+    }
+  }
+  EXPECT_TRUE(eventually([] { return is_a_camera(); }))
+      << "it is given back to the kernel's driver";
+  unplug();
+  EXPECT_TRUE(eventually([] { return !leap_on_the_bus(); }));
+  EXPECT_EQ(open_descriptors(), descriptors_at_start());
+}
+
+TEST_F(LabLeap, AnotherProgramThatHoldsItIsNamedAsTheReason) {
+  plug();
+  ASSERT_TRUE(eventually([] { return leap_on_the_bus().has_value(); }));
+  const auto first = open_leap();
+  ASSERT_TRUE(first) << first.error().message;
+  const auto second = open_leap();
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().kind, ErrorKind::kUnavailable);
+  EXPECT_NE(second.error().message.find("leapd"), std::string::npos) << second.error().message;
+}
+
+TEST_F(LabLeap, ToAnotherUserItSaysThatPermissionIsMissingAndWhatToDo) {
+  plug();
+  ASSERT_TRUE(eventually([] { return leap_on_the_bus().has_value(); }));
+  const std::string told = as_nobody([] {
+    const auto opened = open_leap();
+    if (opened) return std::string("opened");
+    return fmt::format("{} {} {}", leap_on_the_bus()->accessible,
+                       opened.error().kind == ErrorKind::kPermission, opened.error().message);
+  });
+  EXPECT_EQ(told.rfind("false true ", 0), 0U) << told;
+  EXPECT_NE(told.find("70-dubsar.rules"), std::string::npos) << told;
+  EXPECT_NE(told.find(R"(ATTR{idVendor}=="f182")"), std::string::npos) << told;
+}
+
+}  // namespace
+}  // namespace dubsar::lab
