@@ -15,10 +15,14 @@ packages=(
   libgtest-dev libgmock-dev libbenchmark-dev libumockdev-dev umockdev xvfb
 )
 
+# The device lab runs in a kernel of its own; nothing else needs these.
+lab_packages=(qemu-system-x86 busybox-static cpio kmod)
+
 usage() {
   cat <<'TEXT'
 ./do demo     install what is needed, build, make a scan, process it, write surfaces and pictures
 ./do test     install what is needed, build, run all tests
+./do lab      boot Debian's kernel in qemu and test the drivers on virtual USB, HID and camera devices
 ./do build    build the program (build/release/app/dubsar)
 ./do bench    run the benchmarks; ./do bench displays: only those of many views
 ./do deps     install the packages of Debian 12 that dubsar needs
@@ -26,9 +30,10 @@ usage() {
 TEXT
 }
 
+# deps [PACKAGE...]: installs what dubsar needs, and these.
 deps() {
   local missing=() package
-  for package in "${packages[@]}"; do
+  for package in "${packages[@]}" "$@"; do
     dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
   done
   [ ${#missing[@]} -eq 0 ] && return
@@ -47,10 +52,24 @@ build_target() {
   cmake --build "$build" -j "$jobs" "$@"
 }
 
+# Without it the device lab is skipped and says why.
+lab_kernel() {
+  tests/lab/fetch_kernel.sh build/lab/kernel
+}
+
 run_tests() {
   deps
+  (deps "${lab_packages[@]}") || true
+  lab_kernel || true
   build_target
   ctest --test-dir "$build" --output-on-failure -j "$jobs" "$@"
+}
+
+lab() {
+  deps "${lab_packages[@]}"
+  lab_kernel || { echo "do lab: there is no kernel to boot" >&2; exit 69; }
+  build_target --target test_lab
+  tests/lab/run_in_kernel.sh "$PWD/$build/tests/lab/test_lab" "$@"
 }
 
 bench() {
@@ -88,6 +107,7 @@ verb=${1:-}
 case "$verb" in
   demo) demo "$@" ;;
   test) run_tests "$@" ;;
+  lab) lab "$@" ;;
   build) deps; build_target --target dubsar "$@" ;;
   bench) bench "$@" ;;
   deps) deps ;;

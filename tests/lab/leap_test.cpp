@@ -6,7 +6,7 @@
 
 #include "devices/hotplug_watch.h"
 #include "devices/leap/lmc1_driver.h"
-#include "devices/usb/usb_transport.h"
+#include "devices/real/real_devices.h"
 #include "input/hand_tracking/hand_tracker.h"
 #include "tests/lab/lab_kernel.h"
 #include "tests/lab/leap_gadget.h"
@@ -15,11 +15,9 @@
 namespace dubsar::lab {
 namespace {
 
-std::optional<UsbDevice> leap_on_the_bus() {
-  const auto devices = list_usb_devices();
-  if (!devices) return std::nullopt;
-  for (const UsbDevice& device : *devices)
-    if (device.vendor_id == lmc1::kVendorId && device.product_id == lmc1::kProductId) return device;
+std::optional<DeviceInfo> leap_on_the_bus() {
+  for (DeviceInfo& info : list_real_devices("/none"))
+    if (info.driver == "leap") return std::move(info);
   return std::nullopt;
 }
 
@@ -33,12 +31,10 @@ bool is_a_camera() {
   return false;
 }
 
-Result<std::unique_ptr<Transport>> open_leap() {
-  UsbOpenOptions options;
-  options.interfaces = {lmc1::kControlInterface, lmc1::kStreamInterface};
-  options.read_endpoint = lmc1::kBulkEndpoint;
-  options.transfer_bytes = lmc1::kMaxTransferBytes;
-  return open_usb_transport(lmc1::kVendorId, lmc1::kProductId, options);
+Result<std::unique_ptr<Transport>> open_leap(const Clock& clock) {
+  DeviceChoice choice;
+  choice.driver = "leap";
+  return reach_real_device(choice, clock).value()();
 }
 
 class LabLeap : public Lab {
@@ -71,14 +67,13 @@ class LabLeap : public Lab {
 TEST_F(LabLeap, ItsHandIsSeenThroughLibusbAndItComesBack) {
   plug();
   ASSERT_TRUE(eventually([] { return leap_on_the_bus().has_value(); }));
-  EXPECT_TRUE(leap_on_the_bus()->accessible);
-  ASSERT_TRUE(eventually([] { return is_a_camera(); }))
-      << "uvcvideo does not take it for a camera";
+  EXPECT_EQ(leap_on_the_bus()->state, DeviceState::kUsable);
+  ASSERT_TRUE(eventually([] { return is_a_camera(); })) << "uvcvideo does not take it for a camera";
 
   Lmc1Options options;
   options.calibration_settle = milliseconds(0);
   {
-    const auto driver = make_lmc1_driver(open_leap, options, clock_);
+    const auto driver = make_lmc1_driver([this] { return open_leap(clock_); }, options, clock_);
     const auto started = driver->start();
     ASSERT_TRUE(started) << started.error().message;
     EXPECT_FALSE(is_a_camera());
@@ -100,13 +95,13 @@ TEST_F(LabLeap, ItsHandIsSeenThroughLibusbAndItComesBack) {
     EXPECT_EQ(driver->counters().bad_transfers, 0U);
     EXPECT_EQ(driver->counters().dropped_frames, 0U);
 
-    auto watch = HotplugWatch::create(std::filesystem::path(leap_on_the_bus()->node).parent_path());
+    auto watch = HotplugWatch::create(HotplugWatch::device_folders());
     ASSERT_TRUE(watch) << watch.error().message;
     for (int i = 0; i < 1; ++i) {
       unplug();
       ASSERT_TRUE(eventually([&] { return driver->state() == FrameSourceState::kLost; }, milliseconds(1000)));
       ASSERT_TRUE(eventually([] { return !leap_on_the_bus(); }));
-      EXPECT_EQ(driver->start().error().kind, ErrorKind::kNoInput);
+      EXPECT_EQ(driver->start().error().kind, ErrorKind::kUnavailable);
       watch->changed();
       plug();
       ASSERT_TRUE(eventually([&] { return watch->changed(); }));
@@ -120,8 +115,7 @@ TEST_F(LabLeap, ItsHandIsSeenThroughLibusbAndItComesBack) {
           1e-6 * static_cast<double>(ready - appeared), 1e-6 * static_cast<double>(clock_.now() - appeared));
     }
   }
-  EXPECT_TRUE(eventually([] { return is_a_camera(); }))
-      << "it is given back to the kernel's driver";
+  EXPECT_TRUE(eventually([] { return is_a_camera(); })) << "it is given back to the kernel's driver";
   unplug();
   EXPECT_TRUE(eventually([] { return !leap_on_the_bus(); }));
   EXPECT_EQ(open_descriptors(), descriptors_at_start());
@@ -130,9 +124,9 @@ TEST_F(LabLeap, ItsHandIsSeenThroughLibusbAndItComesBack) {
 TEST_F(LabLeap, AnotherProgramThatHoldsItIsNamedAsTheReason) {
   plug();
   ASSERT_TRUE(eventually([] { return leap_on_the_bus().has_value(); }));
-  const auto first = open_leap();
+  const auto first = open_leap(clock_);
   ASSERT_TRUE(first) << first.error().message;
-  const auto second = open_leap();
+  const auto second = open_leap(clock_);
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().kind, ErrorKind::kUnavailable);
   EXPECT_NE(second.error().message.find("leapd"), std::string::npos) << second.error().message;
@@ -141,15 +135,16 @@ TEST_F(LabLeap, AnotherProgramThatHoldsItIsNamedAsTheReason) {
 TEST_F(LabLeap, ToAnotherUserItSaysThatPermissionIsMissingAndWhatToDo) {
   plug();
   ASSERT_TRUE(eventually([] { return leap_on_the_bus().has_value(); }));
-  const std::string told = as_nobody([] {
-    const auto opened = open_leap();
-    if (opened) return std::string("opened");
-    return fmt::format("{} {} {}", leap_on_the_bus()->accessible,
+  const std::string told = as_nobody([this] {
+    const auto opened = open_leap(clock_);
+    const auto info = leap_on_the_bus();
+    if (opened || !info) return std::string("opened");
+    return fmt::format("{}; {}; {}; {}", device_state_name(info->state), info->remedy,
                        opened.error().kind == ErrorKind::kPermission, opened.error().message);
   });
-  EXPECT_EQ(told.rfind("false true ", 0), 0U) << told;
-  EXPECT_NE(told.find("70-dubsar.rules"), std::string::npos) << told;
-  EXPECT_NE(told.find(R"(ATTR{idVendor}=="f182")"), std::string::npos) << told;
+  EXPECT_EQ(told.rfind("no permission; copy 70-dubsar.rules to ", 0), 0U) << told;
+  EXPECT_NE(told.find("; true; "), std::string::npos) << told;
+  EXPECT_NE(told.find(R"(ATTR{idVendor}=="f182", ATTR{idProduct}=="0003")"), std::string::npos) << told;
 }
 
 }  // namespace

@@ -117,7 +117,8 @@ bool UhidDevice::answer(Transport& simulator) {
       reply.type = UHID_GET_REPORT_REPLY;
       uhid_get_report_reply_req& answer = reply.u.get_report_reply;
       answer.id = asked.id;
-      const auto length = simulator.get_feature(asked.rnum, std::as_writable_bytes(std::span(+answer.data, UHID_DATA_MAX)));
+      const auto length =
+          simulator.get_feature(asked.rnum, std::as_writable_bytes(std::span(+answer.data, UHID_DATA_MAX)));
       answer.err = length ? 0 : EIO;
       answer.size = length ? static_cast<__u16>(*length) : __u16{0};
       (void)send_event(uhid_, reply);
