@@ -6,16 +6,8 @@
 namespace dubsar::lmc1 {
 namespace {
 
-constexpr std::uint8_t kClassToInterface = 0x21;
-constexpr std::uint8_t kClassFromInterface = 0xa1;
-
-ControlRequest unit_request(std::uint8_t type, std::uint8_t request, std::uint8_t unit, std::uint8_t interface,
-                            std::uint8_t selector) noexcept {
-  return {type, request, static_cast<std::uint16_t>(selector << 8), static_cast<std::uint16_t>(unit << 8 | interface)};
-}
-
 ControlWrite write_u16(std::uint8_t unit, std::uint8_t selector, int value) noexcept {
-  return {set_current(unit, selector), {std::byte(value & 0xff), std::byte(value >> 8 & 0xff)}};
+  return uvc::control_write(set_current(unit, selector), static_cast<std::uint32_t>(value), 2);
 }
 
 ControlWrite write_processing(Selector selector, int value) noexcept {
@@ -26,18 +18,6 @@ Result<void> check_range(const char* what, int value, int low, int high) {
   if (value < low || value > high)
     return fail(ErrorKind::kUsage, "leap: {} of {}, expected {} to {}", what, value, low, high);
   return {};
-}
-
-template <class T>
-void put(std::span<std::byte> bytes, std::size_t at, T value) noexcept {
-  std::memcpy(bytes.data() + at, &value, sizeof value);
-}
-
-template <class T>
-T get(std::span<const std::byte> bytes, std::size_t at) noexcept {
-  T value;
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  return value;
 }
 
 }  // namespace
@@ -55,16 +35,16 @@ const Mode* find_mode(std::uint8_t frame_index) noexcept {
 }
 
 ControlRequest set_current(std::uint8_t unit, std::uint8_t selector) noexcept {
-  return unit_request(kClassToInterface, kSetCurrent, unit, kControlInterface, selector);
+  return uvc::set_current(kControlInterface, unit, selector);
 }
 ControlRequest get_current(std::uint8_t unit, std::uint8_t selector) noexcept {
-  return unit_request(kClassFromInterface, kGetCurrent, unit, kControlInterface, selector);
+  return uvc::get_current(kControlInterface, unit, selector);
 }
 ControlRequest set_stream(std::uint8_t selector) noexcept {
-  return unit_request(kClassToInterface, kSetCurrent, 0, kStreamInterface, selector);
+  return uvc::set_current(kStreamInterface, 0, selector);
 }
 ControlRequest get_stream(std::uint8_t selector) noexcept {
-  return unit_request(kClassFromInterface, kGetCurrent, 0, kStreamInterface, selector);
+  return uvc::get_current(kStreamInterface, 0, selector);
 }
 
 Result<ControlWrite> exposure_us(int us) {
@@ -91,40 +71,6 @@ ControlWrite switch_on(Switch which, bool on) noexcept {
 Result<ControlWrite> dark_frame_interval(int n) {
   DUBSAR_TRY(check_range("dark frame interval", n, 0, 0x3fff));
   return write_processing(Selector::kWhiteBalance, n);
-}
-
-std::array<std::byte, kStreamBlockBytes> encode(const StreamBlock& block) noexcept {
-  std::array<std::byte, kStreamBlockBytes> bytes{};
-  put(bytes, 0, block.hint);
-  put(bytes, 2, block.format_index);
-  put(bytes, 3, block.frame_index);
-  put(bytes, 4, block.interval_100ns);
-  put(bytes, 8, block.key_frame_rate);
-  put(bytes, 10, block.p_frame_rate);
-  put(bytes, 12, block.compression_quality);
-  put(bytes, 14, block.compression_window);
-  put(bytes, 16, block.delay_ms);
-  put(bytes, 18, block.max_frame_bytes);
-  put(bytes, 22, block.max_transfer_bytes);
-  return bytes;
-}
-
-Result<StreamBlock> decode_stream_block(std::span<const std::byte> bytes) {
-  if (bytes.size() != kStreamBlockBytes)
-    return fail(ErrorKind::kBadData, "leap: video probe block of {} bytes, expected {}", bytes.size(), kStreamBlockBytes);
-  StreamBlock block;
-  block.hint = get<std::uint16_t>(bytes, 0);
-  block.format_index = get<std::uint8_t>(bytes, 2);
-  block.frame_index = get<std::uint8_t>(bytes, 3);
-  block.interval_100ns = get<std::uint32_t>(bytes, 4);
-  block.key_frame_rate = get<std::uint16_t>(bytes, 8);
-  block.p_frame_rate = get<std::uint16_t>(bytes, 10);
-  block.compression_quality = get<std::uint16_t>(bytes, 12);
-  block.compression_window = get<std::uint16_t>(bytes, 14);
-  block.delay_ms = get<std::uint16_t>(bytes, 16);
-  block.max_frame_bytes = get<std::uint32_t>(bytes, 18);
-  block.max_transfer_bytes = get<std::uint32_t>(bytes, 22);
-  return block;
 }
 
 StreamBlock request_mode(const Mode& mode) noexcept {

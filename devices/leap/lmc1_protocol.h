@@ -12,6 +12,7 @@
 
 #include "core/base/result.h"
 #include "devices/transport.h"
+#include "devices/uvc/uvc_protocol.h"
 
 namespace dubsar::lmc1 {
 
@@ -47,8 +48,8 @@ const Mode* find_mode(std::uint8_t frame_index) noexcept;
 
 // --- UVC requests ---
 
-inline constexpr std::uint8_t kSetCurrent = 0x01;
-inline constexpr std::uint8_t kGetCurrent = 0x81;
+using uvc::kGetCurrent;
+using uvc::kSetCurrent;
 inline constexpr std::uint8_t kCameraTerminal = 2;
 inline constexpr std::uint8_t kProcessingUnit = 5;
 
@@ -62,8 +63,8 @@ enum class Selector : std::uint8_t {
   kWhiteBalance = 0x0a,      ///< dark frame interval
 };
 inline constexpr std::uint8_t kZoomAbsolute = 0x0b;  ///< of the camera terminal: exposure in us
-inline constexpr std::uint8_t kProbeControl = 0x01;
-inline constexpr std::uint8_t kCommitControl = 0x02;
+using uvc::kCommitControl;
+using uvc::kProbeControl;
 
 /// Requests to unit `unit` of the control interface: wValue = selector << 8, wIndex = unit << 8 | interface.
 ControlRequest set_current(std::uint8_t unit, std::uint8_t selector) noexcept;
@@ -72,12 +73,7 @@ ControlRequest get_current(std::uint8_t unit, std::uint8_t selector) noexcept;
 ControlRequest set_stream(std::uint8_t selector) noexcept;
 ControlRequest get_stream(std::uint8_t selector) noexcept;
 
-/// A 2-byte setting and where it goes.
-struct ControlWrite {
-  ControlRequest request;
-  std::array<std::byte, 2> data{};
-  bool operator==(const ControlWrite&) const = default;
-};
+using uvc::ControlWrite;  ///< all settings have 2 bytes
 
 enum class Switch : std::uint8_t { kHdr = 0, kRotate180 = 1, kLedLeft = 2, kLedCentre = 3, kLedRight = 4 };
 
@@ -89,20 +85,10 @@ ControlWrite switch_on(Switch which, bool on) noexcept;  ///< switches 5 and 6 o
 /// 0: no dark frames, 1: only dark ones, n: every n-th. Up to 0x3fff.
 Result<ControlWrite> dark_frame_interval(int n);
 
-/// The 26-byte video probe and commit block of UVC 1.0.
-struct StreamBlock {
-  std::uint16_t hint = 0;
-  std::uint8_t format_index = 1;
-  std::uint8_t frame_index = kDefaultFrameIndex;
-  std::uint32_t interval_100ns = 0;
-  std::uint16_t key_frame_rate = 0, p_frame_rate = 0, compression_quality = 0, compression_window = 0, delay_ms = 0;
-  std::uint32_t max_frame_bytes = 0;
-  std::uint32_t max_transfer_bytes = 0;
-  bool operator==(const StreamBlock&) const = default;
-};
-inline constexpr std::size_t kStreamBlockBytes = 26;
-std::array<std::byte, kStreamBlockBytes> encode(const StreamBlock& block) noexcept;
-Result<StreamBlock> decode_stream_block(std::span<const std::byte> bytes);
+using uvc::decode_stream_block;
+using uvc::encode;
+using uvc::kStreamBlockBytes;
+using uvc::StreamBlock;
 
 /// The block that asks for `mode`.
 StreamBlock request_mode(const Mode& mode) noexcept;

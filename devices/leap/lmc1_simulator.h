@@ -1,6 +1,6 @@
 #pragma once
-// A Leap Motion Controller in memory, down to its descriptors, control requests, calibration bytes and bulk transfers.
-// Never chosen unless named.
+// A Leap Motion Controller in memory, down to its descriptors, control requests, calibration bytes and bulk
+// transfers. Never chosen unless named.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +12,7 @@
 #include "core/base/clock.h"
 #include "devices/leap/hand_renderer.h"
 #include "devices/leap/lmc1_protocol.h"
-#include "devices/transport.h"
+#include "devices/leap/uvc_simulator.h"
 
 namespace dubsar {
 
@@ -22,40 +22,27 @@ struct Lmc1SimulatorOptions {
   std::function<std::vector<PosedHand>(std::uint64_t n)> hands;
   HandRenderOptions render{};  ///< width and height are those of the mode that the host asks for
   std::uint64_t seed = 1;
-  std::uint64_t frame_limit = 0;  ///< sends no more frames than this; 0: no limit
-  bool paced = false;             ///< frames come at the rate of the mode, not as fast as they are read
-  const Clock* clock = nullptr;   ///< of the pace; null: the steady clock. Outlives the simulator, any thread
+  std::uint64_t frame_limit = 0;  ///< as in UvcSimulatorOptions, also the next two
+  bool paced = false;
+  const Clock* clock = nullptr;
 };
 
-/// Copies share one device, which outlives its transports. Any thread.
-class Lmc1Simulator {
+class Lmc1Simulator : public UvcSimulator {
  public:
-  explicit Lmc1Simulator(Lmc1SimulatorOptions options);
+  explicit Lmc1Simulator(const Lmc1SimulatorOptions& options);
 
   static std::span<const std::uint8_t> device_descriptor() noexcept;         ///< 18 bytes
   static std::span<const std::uint8_t> configuration_descriptor() noexcept;  ///< 355 bytes
   static constexpr const char* kManufacturer = "Leap Motion";
   static constexpr const char* kProduct = "Leap Motion Controller";
 
-  /// A class request to one of the interfaces; kBadData is a stall.
-  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data);
-  /// The next bulk transfer, or 0 when there is none now: not streaming, limit reached, or paced and not due.
-  std::size_t next_transfer(std::span<std::byte> transfer);
-
-  void unplug();
-  void plug();
-  bool plugged() const;
-  /// kUnavailable while unplugged. Lost for good once unplugged.
-  Result<std::unique_ptr<Transport>> open();
-
-  std::uint64_t frames_begun() const;
   bool led_on(lmc1::Switch led) const;
   int exposure_us() const;
 
  private:
-  struct Device;
-  std::shared_ptr<Device> device_;
-  friend class Lmc1SimulatedTransport;
+  class Model;
+  Lmc1Simulator(const Lmc1SimulatorOptions& options, std::shared_ptr<Model> model);
+  std::shared_ptr<Model> model_;
 };
 
 }  // namespace dubsar

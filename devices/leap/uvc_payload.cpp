@@ -54,6 +54,11 @@ bool UvcAssembler::add(std::span<const std::byte> transfer) {
   return true;
 }
 
+UvcPayloadSplitter::UvcPayloadSplitter(std::size_t payload_bytes, std::size_t buffer_bytes)
+    : payload_bytes_(payload_bytes == buffer_bytes ? 0 : payload_bytes), buffer_bytes_(buffer_bytes) {
+  held_.reserve(payload_bytes_);
+}
+
 std::size_t encode_uvc_transfer(const UvcHeader& header, std::span<const std::byte> data, std::span<std::byte> transfer) {
   if (transfer.size() < kUvcHeaderBytes) return 0;
   const std::size_t bytes = std::min(data.size(), transfer.size() - kUvcHeaderBytes);

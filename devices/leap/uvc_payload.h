@@ -37,6 +37,34 @@ class UvcAssembler {
   std::uint64_t frames_ = 0, dropped_ = 0, bad_transfers_ = 0;
 };
 
+/// Cuts what comes from a bulk endpoint into payloads: a payload ends with the device's announced size or with a transfer that
+/// does not fill the host's buffer, wherever the buffers end.
+class UvcPayloadSplitter {
+ public:
+  /// `payload_bytes`: dwMaxPayloadTransferSize that the device agreed to, 0: every transfer is a payload.
+  /// `buffer_bytes`: of one transfer.
+  UvcPayloadSplitter(std::size_t payload_bytes, std::size_t buffer_bytes);
+
+  /// Calls each(payload) for every payload that this transfer completes.
+  template <class Each>
+  void add(std::span<const std::byte> transfer, const Each& each) {
+    if (payload_bytes_ == 0) return each(transfer);
+    const bool last = transfer.size() < buffer_bytes_;
+    while (!transfer.empty()) {
+      const std::size_t count = payload_bytes_ - held_.size() < transfer.size() ? payload_bytes_ - held_.size() : transfer.size();
+      held_.insert(held_.end(), transfer.begin(), transfer.begin() + static_cast<std::ptrdiff_t>(count));
+      transfer = transfer.subspan(count);
+      if (held_.size() < payload_bytes_ && !(last && transfer.empty())) continue;
+      each(std::span<const std::byte>(held_));
+      held_.clear();
+    }
+  }
+
+ private:
+  std::size_t payload_bytes_, buffer_bytes_;
+  std::vector<std::byte> held_;
+};
+
 struct UvcHeader {
   bool frame_id = false;
   bool end_of_frame = false;

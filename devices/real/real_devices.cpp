@@ -3,7 +3,7 @@
 #include "devices/enumerate.h"
 #include "devices/head_tracker/opentrack_protocol.h"
 #include "devices/head_tracker/vrpn_protocol.h"
-#include "devices/leap/lmc1_protocol.h"
+#include "devices/leap/leap_camera.h"
 #include "devices/socket_transport.h"
 #include "devices/spacemouse/spacenav_protocol.h"
 #include "devices/udev_rule.h"
@@ -14,15 +14,23 @@ namespace {
 
 constexpr milliseconds kConnectTimeout{1000};
 
+/// The first of the Leap cameras that can be read over USB; those that cannot say what to use instead.
 Result<std::unique_ptr<Transport>> open_leap() {
-  UsbOpenOptions options;
-  options.interfaces = {lmc1::kControlInterface, lmc1::kStreamInterface};
-  options.read_endpoint = lmc1::kBulkEndpoint;
-  options.transfer_bytes = lmc1::kMaxTransferBytes;
-  auto opened = open_usb_transport(lmc1::kVendorId, lmc1::kProductId, options);
-  if (!opened && opened.error().kind == ErrorKind::kNoInput)
-    return fail(ErrorKind::kUnavailable, "leap: no such device is plugged in");
-  return opened;
+  std::string instead;
+  DUBSAR_ASSIGN(const auto present, list_usb_devices());
+  for (const LeapProduct& product : leap_products())
+    for (const UsbDevice& device : present) {
+      if (device.vendor_id != product.vendor_id || device.product_id != product.product_id) continue;
+      if (!product.by_usb) {
+        instead = fmt::format("leap: {}: {}; {}", product.name, kLeapServiceReason, kLeapServiceRemedy);
+        continue;
+      }
+      UsbOpenOptions options;
+      options.camera = true;
+      options.transfer_bytes = kStereoTransferBytes;
+      return open_usb_transport(product.vendor_id, product.product_id, options, device.path);
+    }
+  return fail(ErrorKind::kUnavailable, "{}", instead.empty() ? std::string("leap: no such device is plugged in") : instead);
 }
 
 Result<OpenTransport> reach_opentrack(const DeviceChoice& choice, const Clock& clock) {
@@ -63,14 +71,19 @@ std::vector<DeviceInfo> list_real_devices(const std::string& spacenav_socket) {
   std::vector<DeviceInfo> devices = list_hid_devices();
   const auto usb = list_usb_devices();
   for (const UsbDevice& device : usb ? *usb : std::vector<UsbDevice>{}) {
-    if (device.vendor_id != lmc1::kVendorId || device.product_id != lmc1::kProductId) continue;
+    const LeapProduct* const product = find_leap_product(device.vendor_id, device.product_id);
+    if (product == nullptr) continue;
     DeviceInfo info;
-    info.driver = "leap";
+    info.driver = product->by_usb ? "leap" : "leapc";
     info.path = device.path;
-    info.name = "Leap Motion Controller";
+    info.name = product->name;
     info.vendor_id = device.vendor_id;
     info.product_id = device.product_id;
-    if (!device.accessible) {
+    if (!product->by_usb) {
+      info.state = DeviceState::kIgnored;
+      info.reason = kLeapServiceReason;
+      info.remedy = kLeapServiceRemedy;
+    } else if (!device.accessible) {
       info.state = DeviceState::kNoPermission;
       info.reason = fmt::format("this user may not open {}", device.node);
       info.remedy =

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <deque>
 
+#include "devices/uvc/uvc_descriptors.h"
+
 namespace dubsar {
 namespace {
 
@@ -77,6 +79,14 @@ class UsbTransport final : public Transport {
     // Backwards: a kernel driver that gets the first interface again looks for the others at once (uvcvideo).
     for (auto it = claimed_.rbegin(); it != claimed_.rend(); ++it) libusb_release_interface(handle_, *it);
     libusb_close(handle_);
+  }
+
+  /// Takes interfaces and endpoint from the device's own description.
+  Result<void> find_camera() {
+    DUBSAR_ASSIGN(const uvc::Camera camera, uvc::read_camera(*this));
+    options_.interfaces = {camera.control_interface, camera.stream_interface};
+    options_.read_endpoint = camera.bulk_endpoint;
+    return {};
   }
 
   Result<void> claim() {
@@ -244,6 +254,7 @@ Result<std::unique_ptr<Transport>> open_usb_transport(std::uint16_t vendor_id, s
     return fail(ErrorKind::kNoInput, "usb: no device {:04x}:{:04x} {} is plugged in", vendor_id, product_id,
                 path.empty() ? std::string("of any path") : "at " + path);
   auto transport = std::make_unique<UsbTransport>(std::move(context), handle, std::move(name), options);
+  if (options.camera) DUBSAR_TRY(transport->find_camera());
   DUBSAR_TRY(transport->claim());
   return transport;
 }

@@ -25,6 +25,7 @@ struct UsbOpenOptions {
   std::vector<int> interfaces{0};     ///< claimed; a kernel driver is detached, and attached again on closing
   std::uint8_t read_endpoint = 0;     ///< to the host, bulk; 0: control requests only
   std::size_t transfer_bytes = 16384; ///< of one bulk transfer; read() returns one transfer
+  bool camera = false;  ///< interfaces and read_endpoint are those of the device's first camera, from its descriptors
   int transfers_in_flight = 8;        ///< so that no data is lost between two reads
 };
 

@@ -19,12 +19,18 @@ class LeapcSource final : public InputSource {
     heard_.reset();
     return connection_->start();
   }
+  std::string note() const override {
+    return silent_ ? "leapc: the device sends nothing: see Ultraleap's control panel, or plug it in again"
+                   : connection_->reason();
+  }
 
   Freshness poll(TimestampNs now, InputFrame& newest) noexcept override {
     newest.events.clear();
     const bool fresh = connection_->poll(frame_);
     if (fresh || !heard_) heard_ = now;
-    if (connection_->state() != leapc::State::kTracking || now - *heard_ > kLeapcSilentNs) {
+    const bool tracking = connection_->state() == leapc::State::kTracking;
+    silent_ = tracking && now - *heard_ > kLeapcSilentNs;
+    if (!tracking || silent_) {
       newest.hands.clear();
       return Freshness::kLost;
     }
@@ -41,6 +47,7 @@ class LeapcSource final : public InputSource {
   std::unique_ptr<leapc::Connection> connection_;
   const Pose screen_from_device_;
   leapc::Frame frame_;
+  bool silent_ = false;
   std::optional<TimestampNs> heard_;  // when something fresh was polled, or the first poll
 };
 
@@ -60,7 +67,7 @@ std::unique_ptr<InputSource> leapc_source(std::unique_ptr<leapc::Connection> con
 }
 
 Result<std::unique_ptr<InputSource>> make_leapc_source(const InputConfig& config) {
-  static const SteadyClock clock;
+  static const SteadyClock kSteady;
   leapc::Options options;
   Pose screen_from_device = table_placement();
   for (const auto& [key, value] : config.options) {
@@ -77,7 +84,8 @@ Result<std::unique_ptr<InputSource>> make_leapc_source(const InputConfig& config
             key);
     }
   }
-  return leapc_source(leapc::make_connection(options, config.clock ? *config.clock : clock), screen_from_device);
+  return leapc_source(leapc::make_connection(options, config.clock ? *config.clock : kSteady),
+                      screen_from_device);
 }
 
 }  // namespace dubsar

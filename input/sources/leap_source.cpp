@@ -3,7 +3,7 @@
 #include <chrono>
 #include <thread>
 
-#include "devices/leap/lmc1_driver.h"
+#include "devices/leap/leap_camera.h"
 #include "devices/retry_pause.h"
 #include "input/hand_tracking/hand_tracker.h"
 #include "input/placement.h"
@@ -17,10 +17,9 @@ constexpr TimestampNs kSilentNs = 1'000'000'000;
 
 class LeapReader final : public DeviceReader {
  public:
-  LeapReader(SourceDevice device, const Lmc1Options& options, const Clock& clock,
+  LeapReader(SourceDevice device, const LeapCameraOptions& options, const Clock& clock,
              const Pose& screen_from_leap)
-      : driver_(make_lmc1_driver(std::move(device.open), options, clock)),
-        options_(options),
+      : driver_(make_leap_camera(std::move(device.open), options, clock)),
         ended_(std::move(device.ended)),
         screen_from_leap_(screen_from_leap) {}
 
@@ -59,12 +58,11 @@ class LeapReader final : public DeviceReader {
     }
     retry_.succeeded();
     reason_.clear();
-    tracker_.emplace(stereo_lenses(*driver_->calibration(), options_.width, options_.height));
+    tracker_.emplace(stereo_lenses(*driver_->calibration(), driver_->width(), driver_->height()));
     return true;
   }
 
-  std::unique_ptr<Lmc1Driver> driver_;
-  Lmc1Options options_;
+  std::unique_ptr<StereoCamera> driver_;
   std::shared_ptr<const std::atomic<bool>> ended_;
   Pose screen_from_leap_;
   RetryPause retry_;
@@ -81,7 +79,7 @@ Result<std::unique_ptr<InputSource>> make_leap_source(const InputConfig& config)
   DeviceChoice choice;
   choice.driver = "leap";
   const Pose place = options.placement(table_placement());
-  Lmc1Options driver;
+  LeapCameraOptions driver;
   driver.exposure_us = options.integer("exposure_us", 10, 1000, driver.exposure_us);
   driver.own_thread = !config.simulated_time;
   DUBSAR_ASSIGN(SourceDevice device, source_device(choice, options, config));

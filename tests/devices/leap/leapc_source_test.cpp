@@ -126,6 +126,7 @@ TEST_F(LeapcSource, HandsComeInTheScreenFrameAndALostServiceTakesThemAway) {
   fake_leapc_set_service(false);
   ASSERT_TRUE(reaches(**source, Freshness::kLost, frame));
   EXPECT_TRUE(frame.hands.empty());
+  EXPECT_THAT((*source)->note(), HasSubstr("systemctl start"));
   fake_leapc_set_service(true);
   EXPECT_TRUE(reaches(**source, Freshness::kUnchanged, frame));
 }
@@ -176,7 +177,9 @@ TEST_F(LeapcSource, ADeviceThatFallsSilentIsLostAndTooManyHandsAreCut) {
   EXPECT_EQ(frame.hands.size(), kMaxHands);
   EXPECT_EQ(source->poll(1'000 + kLeapcSilentNs, frame), Freshness::kUnchanged);
   EXPECT_EQ(frame.hands.size(), kMaxHands);
+  EXPECT_EQ(source->note(), "");
   EXPECT_EQ(source->poll(1'001 + kLeapcSilentNs, frame), Freshness::kLost);
+  EXPECT_THAT(source->note(), HasSubstr("sends nothing"));
   EXPECT_TRUE(frame.hands.empty());
   connection.fresh = true;
   EXPECT_EQ(source->poll(9'000 + kLeapcSilentNs, frame), Freshness::kNew);

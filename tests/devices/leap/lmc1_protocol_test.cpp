@@ -96,7 +96,9 @@ TEST(Lmc1Lens, SeesAbout140DegreesAndBinningHalvesTheRows) {
 TEST(Lmc1Protocol, ControlWritesAreTheBytesOfTheManual) {
   const auto exposure = lmc1::exposure_us(0x0123);
   EXPECT_EQ(exposure->request, (ControlRequest{0x21, 0x01, 0x0b00, 0x0200}));
-  EXPECT_EQ(exposure->data, (std::array{std::byte{0x23}, std::byte{0x01}}));
+  EXPECT_EQ(exposure->bytes, 2U);
+  EXPECT_EQ(exposure->data[0], std::byte{0x23});
+  EXPECT_EQ(exposure->data[1], std::byte{0x01});
   EXPECT_EQ(lmc1::analog_gain(63)->request, (ControlRequest{0x21, 0x01, 0x0400, 0x0500}));
   EXPECT_EQ(lmc1::digital_gain(16)->request.value, 0x0200);
   EXPECT_EQ(lmc1::gamma(true).request.value, 0x0900);
