@@ -11,6 +11,7 @@ namespace dubsar {
 namespace {
 
 constexpr double kFinestGrid = 1024, kCoarsestGrid = 63.9, kGridStep = 0.70710678118654752;  // half the triangles each
+constexpr double kMostShiftPx = 16;   // between drawn views; more leaves wide holes
 constexpr double kWorthwhile = 0.75;  // of the triangles of the finer level
 
 }  // namespace
@@ -22,10 +23,11 @@ double mm_per_pixel_at(const View& view, const glm::dvec3& point, int width_px) 
   return 2.0 * std::abs(w) / (std::abs(view.clip_from_view[0][0]) * width_px * scale);
 }
 
-std::vector<int> key_view_of(int count, int key_views) {
-  const int step = key_views > 0 ? std::max(1, count / key_views) : 1;
-  std::vector<int> out(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) out[static_cast<std::size_t>(i)] = std::min(i / step * step + step / 2, count - 1);
+std::vector<int> key_views(int count, int keys) {
+  if (keys <= 0 || keys >= count) keys = count;
+  std::vector<int> out(static_cast<std::size_t>(keys));
+  for (int i = 0; i < keys; ++i)
+    out[static_cast<std::size_t>(i)] = keys == 1 ? count / 2 : static_cast<int>((2 * static_cast<std::int64_t>(i) * (count - 1) + keys - 1) / (2 * (keys - 1)));
   return out;
 }
 
@@ -33,6 +35,7 @@ Result<MultiView> MultiView::create(PackedMesh mesh, const MultiViewOptions& opt
   MultiView out;
   out.options_ = options;
   DUBSAR_ASSIGN(out.renderer_, Renderer::create());
+  DUBSAR_ASSIGN(out.reprojector_, Reprojector::create());
   const glm::dvec3 size = mesh.box_mm.size();
   const double longest = std::max({size.x, size.y, size.z});
   const auto add = [&](PackedMesh& level, double cell_mm) -> Result<void> {
@@ -63,24 +66,29 @@ Result<void> MultiView::draw_moving(const Shading& shading, std::span<const View
   DUBSAR_CHECK(static_cast<int>(views.size()) <= target.layers());
   coarse_ = static_cast<int>(views.size());
   if (views.empty()) return {};
-  const std::vector<int> keys = key_view_of(coarse_, options_.key_views);
-  std::vector<View> drawn;
-  std::vector<int> layers;
   const Box& box = levels_[0].mesh.box_mm();
+  const std::vector<int> layers = key_views(coarse_, keys_for(views, target, box));
+  std::vector<View> drawn;
   double finest = mm_per_pixel_at(views[0], box.centre(), target.width());
-  for (int i = 0; i < coarse_; ++i) {
-    if (keys[static_cast<std::size_t>(i)] != i) continue;
-    drawn.push_back(views[static_cast<std::size_t>(i)]);
-    layers.push_back(i);
+  for (const int layer : layers) {
+    drawn.push_back(views[static_cast<std::size_t>(layer)]);
     finest = std::min(finest, mm_per_pixel_at(drawn.back(), box.centre(), target.width()));
   }
   const Level& level = levels_[static_cast<std::size_t>(level_for(finest))];
   DUBSAR_TRY(renderer_.render_layers(level.mesh, shading, drawn, layers, target));
-  for (int i = 0; i < coarse_; ++i)
-    if (const int key = keys[static_cast<std::size_t>(i)]; key != i)
-      glCopyImageSubData(target.coded(), GL_TEXTURE_2D_ARRAY, 0, 0, 0, key, target.coded(), GL_TEXTURE_2D_ARRAY, 0, 0, 0, i,
-                         target.width(), target.height(), 1);
-  return check_gl("copying views");
+  if (static_cast<int>(layers.size()) == coarse_) return {};
+  return reprojector_.fill(target, renderer_.layer_depths(), views, layers, box);
+}
+
+int MultiView::keys_for(std::span<const View> views, const ViewArray& target, const Box& box) const {
+  const int all = static_cast<int>(views.size());
+  if (options_.key_views <= 0 || options_.key_views >= all) return all;
+  for (std::size_t i = 1; i < views.size(); ++i)
+    if (!row_shift(views[0], views[i], target.width(), target.height())) return all;
+  const DepthRange depth = depth_range(views[0], box);
+  const RowShift shift = *row_shift(views[0], views.back(), target.width(), target.height());
+  const double apart = std::abs(shift.at(depth.farthest) - shift.at(depth.nearest));
+  return std::min(all, std::max(options_.key_views, 1 + static_cast<int>(std::ceil(apart / kMostShiftPx))));
 }
 
 Result<int> MultiView::refine(const Shading& shading, std::span<const View> views, int samples, ViewArray& target, int most) {

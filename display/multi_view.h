@@ -6,12 +6,15 @@
 
 #include "core/base/result.h"
 #include "display/renderer.h"
+#include "display/reproject.h"
 
 namespace dubsar {
 
 struct MultiViewOptions {
-  double cell_px = 2.5;  ///< moving: details smaller than this are merged; 0: all triangles
-  int key_views = 12;    ///< moving: of more views, about this many are drawn and the others copied from the nearest
+  double cell_px = 1.5;  ///< moving: details smaller than this are merged; 0: all triangles
+  /// Moving: of more views in one row, about this many are drawn and the others reprojected from them (display/reproject.h);
+  /// more where the object would shift by more than 16 pixels from one drawn view to the next. 0: all are drawn.
+  int key_views = 8;
 };
 
 /// A mesh in several levels of detail in graphics memory. One GL thread.
@@ -22,7 +25,7 @@ class MultiView {
   static Result<MultiView> create(PackedMesh mesh, const MultiViewOptions& options = {});
 
   /// All layers of `target`, for views that changed: one sample a pixel, level of detail by the views' size, all key views
-  /// in one draw. world of `views` is the mesh's.
+  /// in one draw, the others reprojected. world of `views` is the mesh's.
   Result<void> draw_moving(const Shading& shading, std::span<const View> views, ViewArray& target);
 
   /// Makes up to `most` layers exact, from the middle of the views outwards, as Renderer::render() with all triangles.
@@ -41,8 +44,11 @@ class MultiView {
     double cell_mm = 0.0;
     std::int64_t triangles = 0;
   };
+  int keys_for(std::span<const View> views, const ViewArray& target, const Box& box) const;
+
   MultiViewOptions options_;
   Renderer renderer_;
+  Reprojector reprojector_;
   std::vector<Level> levels_;  ///< finest first
   int coarse_ = 0;             ///< views that refine() has to do yet
 };
@@ -50,7 +56,7 @@ class MultiView {
 /// How much of the world one pixel of the view shows at `point`, in mm.
 double mm_per_pixel_at(const View& view, const glm::dvec3& point, int width_px);
 
-/// Which view each of `count` views shows while things move: itself or its nearest key view.
-std::vector<int> key_view_of(int count, int key_views);
+/// `keys` of `count` views (fewer: all), from the first to the last, evenly.
+std::vector<int> key_views(int count, int keys);
 
 }  // namespace dubsar

@@ -70,13 +70,13 @@ void draw_ranges(const std::vector<std::pair<std::int64_t, std::int64_t>>& range
 
 }  // namespace
 
-Result<Renderer> Renderer::create() {
+Result<Renderer> Renderer::create(bool layered) {
   if (glGetString(GL_VERSION) == nullptr)
     return fail(ErrorKind::kUnavailable, "render: no OpenGL context is current, expected GL 4.5");
   Renderer out;
   DUBSAR_ASSIGN(out.mesh_program_, make_program("mesh.vert", "mesh.frag"));
   DUBSAR_ASSIGN(out.resolve_program_, make_program("fullscreen.vert", "resolve.frag"));
-  if (epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array")) {
+  if (layered && epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array")) {
     DUBSAR_ASSIGN(out.layered_program_,
                   make_program("mesh.vert", "mesh.frag", "#extension GL_ARB_shader_viewport_layer_array : require\n#define LAYERED\n"));
   }
@@ -120,7 +120,6 @@ Result<void> Renderer::use_layer_depth(const ViewArray& target) {
   made.depth = make_texture(GL_TEXTURE_2D_ARRAY);
   glTextureStorage3D(made.depth, 1, GL_DEPTH_COMPONENT32F, made.width, made.height, made.layers);
   made.framebuffer = make_framebuffer();
-  glNamedFramebufferTexture(made.framebuffer, GL_DEPTH_ATTACHMENT, made.depth, 0);
   DUBSAR_TRY(check_gl("making the layers' depth buffer"));
   layer_depth_ = std::move(made);
   return {};
@@ -160,28 +159,32 @@ Result<void> Renderer::render_layers(const GpuMesh& mesh, const Shading& shading
                                      std::span<const int> layers, ViewArray& target) {
   DUBSAR_CHECK(views.size() == layers.size());
   for (const int layer : layers) DUBSAR_CHECK(layer >= 0 && layer < target.layers());
-  if (layered_program_ == 0) {
-    for (std::size_t i = 0; i < views.size(); ++i) DUBSAR_TRY(render(mesh, shading, views.subspan(i, 1), 1, target, layers[i]));
-    return {};
-  }
   if (views.empty()) return {};
   DUBSAR_TRY(use_layer_depth(target));
+  const bool together = layered_program_ != 0;
   const Inputs inputs = bind_inputs(mesh, shading, views, layers);
   const GLuint framebuffer = layer_depth_.framebuffer;
   glNamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, target.linear(), 0);
+  glNamedFramebufferTexture(framebuffer, GL_DEPTH_ATTACHMENT, layer_depth_.depth, 0);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   glEnable(GL_FRAMEBUFFER_SRGB);  // the shader's linear light becomes sRGB bytes
   glViewport(0, 0, target.width(), target.height());
   glEnable(GL_DEPTH_TEST);
   cull_as(shading);
+  glUseProgram(together ? layered_program_ : mesh_program_);
+  glBindTextureUnit(0, inputs.table);
+  glBindVertexArray(mesh.vertex_array());
   const glm::vec4 background(linear(shading.background), 1.0f);
   const float far_depth = 1.0f;
   glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, &background[0]);
   glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &far_depth);
-  glUseProgram(layered_program_);
-  glBindTextureUnit(0, inputs.table);
-  glBindVertexArray(mesh.vertex_array());
-  draw_ranges(mesh.visible_ranges(shading.partitions, views), static_cast<GLsizei>(views.size()));
+  if (together) draw_ranges(mesh.visible_ranges(shading.partitions, views), static_cast<GLsizei>(views.size()));
+  for (std::size_t i = 0; i < views.size() && !together; ++i) {
+    glNamedFramebufferTextureLayer(framebuffer, GL_COLOR_ATTACHMENT0, target.linear(), 0, layers[i]);
+    glNamedFramebufferTextureLayer(framebuffer, GL_DEPTH_ATTACHMENT, layer_depth_.depth, 0, layers[i]);
+    glUniform1i(kViewIndexLocation, static_cast<GLint>(i));
+    draw_ranges(mesh.visible_ranges(shading.partitions, views.subspan(i, 1)), 1);
+  }
   glDisable(GL_FRAMEBUFFER_SRGB);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);

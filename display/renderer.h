@@ -15,18 +15,21 @@ class Renderer {
  public:
   /// Compiles the shaders. Everything happens in the thread of the current GL 4.5 context, and all objects go before
   /// the context does.
-  static Result<Renderer> create();
+  /// `layered` false: as on a driver that cannot choose layers in vertex shaders.
+  static Result<Renderer> create(bool layered = true);
 
   /// Layer first_layer + i of `target` gets views[i] of `mesh`. `factor` x `factor` samples a pixel (1..8), averaged in
   /// linear light. Pixels: the colour of a vertex is interpolated, light is computed per sample.
   Result<void> render(const GpuMesh& mesh, const Shading& shading, std::span<const View> views, int factor,
                       ViewArray& target, int first_layer = 0);
 
-  /// Layer layers[i] of `target` gets views[i], with one sample a pixel, in one instanced draw; other layers of the target
-  /// are lost. Where the driver cannot choose layers in vertex shaders (ARB_shader_viewport_layer_array), one after the
-  /// other. Transparent backgrounds are drawn opaque. Quick, for things that move.
+  /// Layer layers[i] of `target` gets views[i], with one sample a pixel, in one instanced draw; where the driver cannot choose
+  /// layers in vertex shaders (ARB_shader_viewport_layer_array), one after the other. All other layers become background.
+  /// Transparent backgrounds are drawn opaque. Quick, for things that move.
   Result<void> render_layers(const GpuMesh& mesh, const Shading& shading, std::span<const View> views,
                              std::span<const int> layers, ViewArray& target);
+  /// Depth buffers of the last render_layers(), the same layers as its target (GL_TEXTURE_2D_ARRAY); 1 is background.
+  GLuint layer_depths() const noexcept { return layer_depth_.depth; }
 
  private:
   struct Scratch {  ///< samples of one view: linear light, premultiplied

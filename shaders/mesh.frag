@@ -23,14 +23,16 @@ in vec3 albedo;
 layout(location = 0) out vec4 color;  // linear, premultiplied
 
 void main() {
-  vec3 base = gl_FrontFacing ? albedo : mix(albedo, back_color.rgb, back_color.a);
+  vec3 to_eye = mix(normalize(-view_position), vec3(0.0, 0.0, 1.0), views[view_of_vertex].view_from_normal[3][3]);
+  // A small triangle that folds over, as coarse levels have them, belongs to the front that its normals tell of.
+  bool from_behind = !gl_FrontFacing && dot(view_normal, to_eye) < 0.0;
+  vec3 base = from_behind ? mix(albedo, back_color.rgb, back_color.a) : albedo;
   if (light.w == 0.0) {
     color = vec4(base, 1.0);
     return;
   }
   vec3 normal = normalize(view_normal);
-  if (!gl_FrontFacing) normal = -normal;
-  vec3 to_eye = mix(normalize(-view_position), vec3(0.0, 0.0, 1.0), views[view_of_vertex].view_from_normal[3][3]);
+  if (from_behind) normal = -normal;
   float key = max(dot(normal, light.xyz), 0.0);
   float fill = max(dot(normal, to_eye), 0.0);
   float gloss = key > 0.0 ? pow(max(dot(normal, normalize(light.xyz + to_eye)), 0.0), shininess.x) : 0.0;

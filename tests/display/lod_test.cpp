@@ -107,15 +107,17 @@ TEST(Lod, OctahedralNormalsComeBack) {
   }
 }
 
-TEST(MultiView, KeyViewsAreTheirOwnAndNearToTheOthers) {
-  for (const int count : {1, 2, 5, 12, 45, 48, 66, 100}) {
-    const auto keys = key_view_of(count, 12);
-    for (int i = 0; i < count; ++i) {
-      EXPECT_EQ(keys[keys[i]], keys[i]);
-      EXPECT_LE(std::abs(keys[i] - i), count / 12 / 2 + 1);
-    }
+TEST(MultiView, KeyViewsGoEvenlyFromTheFirstToTheLast) {
+  for (const int count : {2, 5, 12, 45, 48, 66, 100}) {
+    const auto keys = key_views(count, 12);
+    EXPECT_EQ(keys.size(), static_cast<std::size_t>(std::min(count, 12)));
+    EXPECT_EQ(keys.front(), 0);
+    EXPECT_EQ(keys.back(), count - 1);
+    for (std::size_t i = 1; i < keys.size(); ++i) EXPECT_NEAR(keys[i] - keys[i - 1], (count - 1.0) / (static_cast<double>(keys.size()) - 1), 1.0);
   }
-  EXPECT_EQ(key_view_of(4, 0), (std::vector<int>{0, 1, 2, 3}));
+  EXPECT_EQ(key_views(4, 0), (std::vector<int>{0, 1, 2, 3}));
+  EXPECT_EQ(key_views(1, 12), std::vector<int>{0});
+  EXPECT_EQ(key_views(9, 1), std::vector<int>{4});
 }
 
 TEST(MultiView, PixelsHaveTheSizeThatTheWindowGivesThem) {

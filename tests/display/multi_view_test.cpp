@@ -86,7 +86,7 @@ TEST_F(MultiViewGl, CoarseWhileMovingExactWhenStill) {
   auto renderer = Renderer::create().value();
   ASSERT_TRUE(renderer.render(GpuMesh::upload(mesh).value(), shading, wanted, 2, exact));
   ASSERT_TRUE(multi->draw_moving(shading, wanted, array));
-  for (int i = 0; i < 12; ++i) {
+  for (int i = 0; i < 12; ++i) {  // levels of detail and reprojection together
     const double off = mean_difference(array.read_layer(i).value(), exact.read_layer(i).value());
     EXPECT_LT(off, 3.0) << "view " << i;
   }
