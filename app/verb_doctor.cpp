@@ -6,10 +6,13 @@
 #include <memory>
 #include <thread>
 
+#include "app/cli/config_folder.h"
 #include "app/cli/verb.h"
 #include "core/base/budget.h"
 #include "core/volume/import_hdf5.h"
+#include "devices/camera/capture.h"
 #include "display/context_egl.h"
+#include "input/vision/model_files.h"
 
 namespace dubsar::app {
 namespace {
@@ -47,10 +50,28 @@ std::vector<Finding> check_hdf5_filters() {
   return findings;
 }
 
+std::vector<Finding> check_models() {
+  std::vector<Finding> findings;
+  const std::filesystem::path folder = model_folder();
+  for (const ModelFile& file : model_files()) {
+    const bool here = model_is_here(folder, file);
+    findings.push_back({"network", here ? "ok" : "note", fmt::format("{} ({}{})", file.name, file.what, here ? "" : ": not here"),
+                        here ? "" : fmt::format("{} fetches it from {}", kModelCommand, file.package)});
+  }
+  return findings;
+}
+
+Finding check_cameras() {
+  if (auto module = load_capture(); !module) return {"webcam", "note", module.error().message, "apt install libopencv-videoio406"};
+  return {"webcam", "ok", "OpenCV's capture code can be loaded; cameras: dubsar devices list", ""};
+}
+
 Result<VerbResult> run() {
   std::vector<Finding> findings{check_gl(), check_memory_size(), check_disk(),
                                 {"processor", "ok", fmt::format("{} threads", std::thread::hardware_concurrency()), ""}};
   for (Finding& finding : check_hdf5_filters()) findings.push_back(std::move(finding));
+  for (Finding& finding : check_models()) findings.push_back(std::move(finding));
+  findings.push_back(check_cameras());
   VerbResult result;
   result.json["findings"] = nlohmann::json::array();
   for (const Finding& f : findings) {

@@ -8,6 +8,7 @@ find_package(glm REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(TIFF REQUIRED)
+find_package(JPEG REQUIRED)
 find_package(PNG REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(embree 3 REQUIRED)
@@ -23,6 +24,16 @@ pkg_check_modules(libusb REQUIRED IMPORTED_TARGET libusb-1.0)
 
 # HDF5: the serial C library by pkg-config, never the OpenMPI build that find_package may prefer.
 pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial)
+
+# OpenCV 4.6 by its libraries: Debian keeps OpenCVConfig.cmake in libopencv-dev, which pulls in every module and Qt's, VTK's
+# and MPI's libraries. Only these modules are used; --no-install-recommends keeps them small.
+find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
+foreach(module core dnn objdetect videoio)
+  find_library(OPENCV_${module}_LIBRARY opencv_${module} REQUIRED)
+  add_library(opencv_${module} UNKNOWN IMPORTED)
+  set_target_properties(opencv_${module} PROPERTIES
+    IMPORTED_LOCATION ${OPENCV_${module}_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${OPENCV_INCLUDE_DIR})
+endforeach()
 
 if(DUBSAR_TESTS)
   find_package(GTest REQUIRED)

@@ -30,6 +30,12 @@ fs::path calibration_cache() {
   return home.empty() ? fs::path() : home / ".cache" / below;
 }
 
+fs::path model_folder() {
+  if (const fs::path xdg = from_environment("XDG_DATA_HOME"); xdg.is_absolute()) return xdg / "dubsar" / "models";
+  const fs::path home = from_environment("HOME");
+  return home.empty() ? fs::path() : home / ".local" / "share" / "dubsar" / "models";
+}
+
 std::vector<fs::path> mount_folders() {
   fs::path user = from_environment("USER");
   if (user.empty()) user = from_environment("LOGNAME");

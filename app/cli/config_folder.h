@@ -16,6 +16,10 @@ std::filesystem::path panel_folder();
 /// when neither variable is set.
 std::filesystem::path calibration_cache();
 
+/// The networks that `./do models` fetched: $XDG_DATA_HOME/dubsar/models, else $HOME/.local/share/dubsar/models; empty when
+/// neither variable is set.
+std::filesystem::path model_folder();
+
 /// Where desktops mount USB storage of the user: /media/$USER and /run/media/$USER.
 std::vector<std::filesystem::path> mount_folders();
 

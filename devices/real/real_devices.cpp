@@ -1,5 +1,6 @@
 #include "devices/real/real_devices.h"
 
+#include "devices/camera/camera.h"
 #include "devices/enumerate.h"
 #include "devices/head_tracker/opentrack_protocol.h"
 #include "devices/head_tracker/vrpn_protocol.h"
@@ -93,6 +94,7 @@ std::vector<DeviceInfo> list_real_devices(const std::string& spacenav_socket) {
   }
   for (DeviceInfo& info : list_spacenavd(spacenav_socket.empty() ? kSpacenavSocket : spacenav_socket))
     devices.push_back(std::move(info));
+  for (DeviceInfo& info : list_cameras()) devices.push_back(std::move(info));
   return devices;
 }
 

@@ -15,7 +15,7 @@ namespace dubsar {
 /// the others. A remote address without allow_remote is kUsage here already.
 Result<OpenTransport> reach_real_device(const DeviceChoice& choice, const Clock& clock);
 
-/// All devices here that a driver knows, with the reason for those that cannot be used: HID, USB, and
+/// All devices here that a driver knows, with the reason for those that cannot be used: HID, USB, cameras, and
 /// spacenavd at `spacenav_socket` (empty: the usual path). Opens none; takes some milliseconds. Any thread.
 std::vector<DeviceInfo> list_real_devices(const std::string& spacenav_socket = {});
 

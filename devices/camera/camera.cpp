@@ -1,0 +1,126 @@
+#include "devices/camera/camera.h"
+
+#include <atomic>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+namespace dubsar {
+namespace {
+
+constexpr int kMostSilentReads = 3;  // of about a second each
+
+using Open = std::function<Result<std::unique_ptr<Capture>>(const std::string&, const CaptureFormat&)>;
+
+Result<std::string> first_usable_camera() {
+  Error error{ErrorKind::kUnavailable, "camera: none is plugged in"};
+  for (const DeviceInfo& info : list_cameras()) {
+    if (info.state == DeviceState::kUsable) return info.path;
+    if (info.state == DeviceState::kIgnored) continue;
+    error = {info.state == DeviceState::kNoPermission ? ErrorKind::kPermission : ErrorKind::kUnavailable,
+             fmt::format("camera {}: {}; {}", info.path, info.reason, info.remedy)};
+  }
+  return tl::unexpected<Error>(std::move(error));
+}
+
+class Camera final : public FrameSource {
+ public:
+  Camera(const CameraOptions& options, Open open, const Clock& clock)
+      : options_(options), open_(std::move(open)), clock_(clock) {}
+  ~Camera() override { Camera::stop(); }
+
+  Result<void> start() override {
+    stop();
+    std::string path = options_.path;
+    if (path.empty()) {
+      DUBSAR_ASSIGN(path, first_usable_camera());
+    }
+    DUBSAR_ASSIGN(capture_, open_(path, options_.format));
+    {
+      const std::lock_guard lock(mutex_);
+      state_ = FrameSourceState::kRunning;
+      reason_.clear();
+    }
+    stopping_ = false;
+    thread_ = std::thread([this] { read_loop(); });
+    return {};
+  }
+
+  void stop() noexcept override {
+    stopping_ = true;
+    if (thread_.joinable()) thread_.join();
+    capture_.reset();
+    const std::lock_guard lock(mutex_);
+    state_ = FrameSourceState::kStopped;
+    fresh_ = false;
+  }
+
+  bool poll(Frame& newest) override {
+    const std::lock_guard lock(mutex_);
+    if (!fresh_) return false;
+    std::swap(newest, newest_);
+    fresh_ = false;
+    return true;
+  }
+  FrameSourceState state() const override {
+    const std::lock_guard lock(mutex_);
+    return state_;
+  }
+  std::string reason() const override {
+    const std::lock_guard lock(mutex_);
+    return reason_;
+  }
+
+ private:
+  void read_loop() {
+    Frame frame;
+    int silent = 0;
+    while (!stopping_) {
+      const auto got = capture_->read(frame.pixels, frame.width, frame.height);
+      if (!got) return lose(got.error().message);
+      if (!*got) {
+        if (++silent >= kMostSilentReads) return lose("camera: no pictures for three seconds");
+        continue;
+      }
+      silent = 0;
+      frame.time = clock_.now();
+      frame.sequence = ++sequence_;
+      frame.views = 1;
+      frame.format = PixelFormat::kRgb8;
+      frame.exposure_us = 0;
+      frame.dark = false;
+      const std::lock_guard lock(mutex_);
+      std::swap(frame, newest_);
+      fresh_ = true;
+    }
+  }
+  void lose(std::string why) {
+    const std::lock_guard lock(mutex_);
+    state_ = FrameSourceState::kLost;
+    reason_ = std::move(why);
+  }
+
+  const CameraOptions options_;
+  const Open open_;
+  const Clock& clock_;
+
+  // The reader thread's while it runs.
+  std::unique_ptr<Capture> capture_;
+  std::uint64_t sequence_ = 0;
+  std::thread thread_;
+  std::atomic<bool> stopping_{false};
+
+  mutable std::mutex mutex_;
+  FrameSourceState state_ = FrameSourceState::kStopped;
+  std::string reason_;
+  Frame newest_;
+  bool fresh_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> make_camera(const CameraOptions& options, Open open, const Clock& clock) {
+  return std::make_unique<Camera>(options, std::move(open), clock);
+}
+
+}  // namespace dubsar
