@@ -1,5 +1,6 @@
 #include "devices/leap/lmc1_calibration.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
@@ -125,6 +126,26 @@ double Lens::radial_factor(double r2) const noexcept {
   return up / down;
 }
 
+/// Newton's method on a function that rises, kept between the bounds that are known so far.
+double Lens::image_radius(double ray_radius) const noexcept {
+  double low = 0.0, high = last_image_radius_, radius = std::min(ray_radius, high);
+  for (int i = 0; i < 60; ++i) {
+    const double r2 = radius * radius;
+    const double up = 1.0 + r2 * (radial_[0] + r2 * (radial_[1] + r2 * radial_[2]));
+    const double down = 1.0 + r2 * (radial_[3] + r2 * (radial_[4] + r2 * radial_[5]));
+    const double up_slope = radial_[0] + r2 * (2.0 * radial_[1] + r2 * 3.0 * radial_[2]);
+    const double down_slope = radial_[3] + r2 * (2.0 * radial_[4] + r2 * 3.0 * radial_[5]);
+    const double excess = radius * up / down - ray_radius;
+    (excess < 0.0 ? low : high) = radius;
+    const double slope = up / down + 2.0 * r2 * (up_slope * down - up * down_slope) / (down * down);
+    const double step = slope > 0.0 ? -excess / slope : high;
+    if (std::abs(step) < 1e-12) break;
+    const double next = radius + step;
+    radius = next > low && next < high ? next : 0.5 * (low + high);
+  }
+  return radius;
+}
+
 glm::dvec2 Lens::undistorted(const glm::dvec2& image) const noexcept {
   const double r2 = glm::dot(image, image), xy = 2.0 * image.x * image.y;
   const auto [p1, p2] = tangential_;
@@ -142,17 +163,12 @@ std::optional<glm::dvec2> Lens::pixel_from_ray(const glm::dvec2& ray) const noex
   const glm::dvec3 turned = glm::transpose(rig_from_eye_) * glm::dvec3(ray, 1.0);
   if (turned.z <= 0.0) return std::nullopt;
   const glm::dvec2 target = glm::dvec2(turned) / turned.z;
-  // The radial part by bisection (it rises), the small tangential part by correcting the target.
+  // The small tangential part by correcting the target of the radial one.
   glm::dvec2 image(0.0), radial_target = target;
   for (int pass = 0; pass < 4; ++pass) {
     const double wanted = glm::length(radial_target);
-    double low = 0.0, high = last_image_radius_;
-    if (high * radial_factor(high * high) < wanted) return std::nullopt;
-    for (int i = 0; i < 40; ++i) {
-      const double middle = 0.5 * (low + high);
-      (middle * radial_factor(middle * middle) < wanted ? low : high) = middle;
-    }
-    image = wanted > 0.0 ? radial_target * (low / wanted) : glm::dvec2(0.0);
+    if (last_image_radius_ * radial_factor(last_image_radius_ * last_image_radius_) < wanted) return std::nullopt;
+    image = wanted > 0.0 ? radial_target * (image_radius(wanted) / wanted) : glm::dvec2(0.0);
     if (tangential_[0] == 0.0 && tangential_[1] == 0.0) break;
     radial_target += target - undistorted(image);
   }

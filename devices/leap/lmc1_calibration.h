@@ -60,6 +60,7 @@ class Lens {
 
  private:
   double radial_factor(double r2) const noexcept;
+  double image_radius(double ray_radius) const noexcept;  ///< the inverse of r * radial_factor(r * r)
   glm::dvec2 undistorted(const glm::dvec2& image) const noexcept;
 
   double fx_, fy_, cx_, cy_;

@@ -77,22 +77,12 @@ class LabHid : public Lab {
       const auto sample = first_sample(driver, *watch, clock_);
       ASSERT_TRUE(sample) << driver.reason();
       longest_s = std::max(longest_s, 1e-9 * static_cast<double>(*sample - plugged));
-      longest_of_ours_s = std::max(longest_of_ours_s, age_s(listed(name)->path));
+      longest_of_ours_s = std::max(longest_of_ours_s, seconds_since_made(listed(name)->path));
     }
     std::printf(
         "first sample at most %.0f ms after plugging in, %.0f ms after the kernel has made the node\n",
         1e3 * longest_s, 1e3 * longest_of_ours_s);
     EXPECT_LT(longest_of_ours_s, 1.0);
-  }
-
- private:
-  /// How long ago a device node was made.
-  static double age_s(const std::string& path) {
-    struct stat status {};
-    timespec now{};
-    if (::stat(path.c_str(), &status) != 0 || ::clock_gettime(CLOCK_REALTIME, &now) != 0) return 1e9;
-    return static_cast<double>(now.tv_sec - status.st_ctim.tv_sec) +
-           1e-9 * static_cast<double>(now.tv_nsec - status.st_ctim.tv_nsec);
   }
 };
 

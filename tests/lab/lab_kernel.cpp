@@ -1,7 +1,9 @@
 #include "tests/lab/lab_kernel.h"
 
 #include <grp.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <array>
@@ -21,6 +23,20 @@ int open_descriptors() {
   int count = 0;
   for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) ++count;
   return count - 1;  // without the one that looked
+}
+
+int threads() {
+  int count = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator("/proc/self/task")) ++count;
+  return count;
+}
+
+double seconds_since_made(const std::string& node) {
+  struct stat status {};
+  timespec now{};
+  if (::stat(node.c_str(), &status) != 0 || ::clock_gettime(CLOCK_REALTIME, &now) != 0) return 1e9;
+  return static_cast<double>(now.tv_sec - status.st_ctim.tv_sec) +
+         1e-9 * static_cast<double>(now.tv_nsec - status.st_ctim.tv_nsec);
 }
 
 std::string as_nobody(const std::function<std::string()>& work) {

@@ -20,6 +20,12 @@ bool inside();
 /// File descriptors that this process has open.
 int open_descriptors();
 
+/// Threads of this process.
+int threads();
+
+/// How long ago the kernel made this device node; very long when it is not there.
+double seconds_since_made(const std::string& node);
+
 /// Runs `work` in a child process that is user and group "nobody", and returns what it returns; "" when it
 /// crashed.
 std::string as_nobody(const std::function<std::string()>& work);

@@ -3,6 +3,7 @@
 
 #include "devices/leap/lmc1_simulator.h"
 #include "tests/lab/usb_gadget.h"
+#include "tests/lab/usbip_port.h"
 
 namespace dubsar::lab {
 
@@ -34,6 +35,33 @@ class LeapGadget final : public UsbGadget {
 
  private:
   Lmc1Simulator simulator_;
+};
+
+/// With its connector, and a hand held still over it.
+class PluggedLeap {
+ public:
+  static constexpr glm::dvec3 kPalm_m{0.03, 0.3, 0.02};
+
+  Result<void> plug() { return port_.plug(); }
+  void unplug() {
+    port_.unplug();
+    simulator_.unplug();  // it loses its power and with it its settings
+    simulator_.plug();
+  }
+  Lmc1Simulator& simulator() noexcept { return simulator_; }
+
+ private:
+  static Lmc1SimulatorOptions hand_above() {
+    HandPose pose;
+    pose.palm.position_m = kPalm_m;
+    Lmc1SimulatorOptions options;
+    options.paced = true;
+    options.hands = [hands = std::vector{pose_hand(pose)}](std::uint64_t) { return hands; };
+    return options;
+  }
+  Lmc1Simulator simulator_{hand_above()};
+  LeapGadget gadget_{simulator_};
+  UsbipPort port_{gadget_};
 };
 
 }  // namespace dubsar::lab

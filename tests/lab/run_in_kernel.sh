@@ -51,7 +51,7 @@ boot() {
   mkfifo "$work/talk"  # qemu makes its stdout non-blocking, which must not be ours
   cat "$work/talk" &
   local reader=$!
-  limited qemu-system-x86_64 -accel "$1" -cpu "$2" -smp 2 -m 1536 -nodefaults -display none -no-reboot \
+  limited qemu-system-x86_64 -accel "$1" -cpu "$2" -smp "${LAB_CPUS:-2}" -m 1536 -nodefaults -display none -no-reboot \
     -kernel "$kernel/vmlinuz" -initrd "$work/ram.cpio" -append "console=ttyS0 panic=-1 quiet dubsar.lab" \
     -serial "file:$work/kernel.log" -chardev stdio,id=talk,signal=off -serial chardev:talk -serial "file:$work/status" \
     -virtfs local,path=/,mount_tag=host,security_model=none,readonly=on,multidevs=remap \

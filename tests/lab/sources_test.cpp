@@ -1,0 +1,115 @@
+// The sources of a session on real device nodes: plugged in while the session runs, unplugged, plugged in
+// again.
+
+#include <algorithm>
+
+#include "devices/real/real_devices.h"
+#include "devices/spacemouse/spacemouse_sim.h"
+#include "input/input_source.h"
+#include "tests/lab/lab_kernel.h"
+#include "tests/lab/leap_gadget.h"
+#include "tests/lab/report_descriptors.h"
+#include "tests/lab/uhid_device.h"
+#include "tests/lab/xreal_gadget.h"
+
+namespace dubsar::lab {
+namespace {
+
+std::string node_of(std::string_view driver) {
+  for (const DeviceInfo& info : list_real_devices("/none"))
+    if (info.driver == driver) return info.path;
+  return {};
+}
+
+class LabSources : public Lab {
+ protected:
+  void SetUp() override {
+    Lab::SetUp();
+    if (IsSkipped()) return;
+    config_.hotplug = HotplugBell::of_this_machine();
+  }
+
+  struct Running {
+    std::unique_ptr<InputSource> source;
+    InputFrame frame;
+    TimestampNs polled = 0;
+  };
+  Running start(const std::string& name) {
+    auto made = make_input(name, config_);
+    EXPECT_TRUE(made) << made.error().message;
+    return {made ? std::move(*made) : nullptr, {}, 0};
+  }
+  bool becomes(Running& running, Freshness wanted, milliseconds limit = milliseconds(30'000)) {
+    return eventually(
+        [&] { return (running.polled = running.source->poll(clock_.now(), running.frame)) == wanted; },
+        limit);
+  }
+
+  SpaceMouseSim puck_;
+  UhidDevice puck_plug_{{0x256f, 0xc635, "SpaceMouse Compact", "LAB1", kSpaceMouseReports},
+                        [this] { return puck_.device().open(); },
+                        [this] {
+                          puck_.move({350, 0, -175}, {0, 70, 0});
+                        },
+                        milliseconds(16)};
+  XrealGadget glasses_{{0.0, 0.0, 0.0}, 0};
+  UsbipPort glasses_plug_{glasses_};
+  PluggedLeap leap_;
+  InputConfig config_;
+};
+
+TEST_F(LabSources, PuckGlassesAndLeapComeGoAndComeBackWhileTheSessionRuns) {
+  const int threads_before = threads();
+  {
+    Running puck = start("spacemouse"), glasses = start("head:xreal"), leap = start("leap");
+    ASSERT_TRUE(puck.source && glasses.source && leap.source);
+    for (Running* running : {&puck, &glasses, &leap}) {
+      ASSERT_TRUE(becomes(*running, Freshness::kLost));
+      EXPECT_TRUE(eventually([&] { return running->source->note().find("plugged in") != std::string::npos; }))
+          << running->source->note();
+    }
+    for (int plugging = 0; plugging < 2; ++plugging) {
+      ASSERT_TRUE(puck_plug_.plug());
+      ASSERT_TRUE(becomes(puck, Freshness::kNew)) << puck.source->note();
+      const double puck_s = seconds_from_node(puck, "spacemouse");
+      ASSERT_TRUE(puck.frame.puck);
+      EXPECT_EQ(puck.frame.puck->push.x, 1.0);
+
+      ASSERT_TRUE(glasses_plug_.plug());
+      ASSERT_TRUE(becomes(glasses, Freshness::kNew)) << glasses.source->note();
+      const double glasses_s = seconds_from_node(glasses, "xreal");
+      ASSERT_EQ(glasses.frame.heads.size(), 1U);
+      EXPECT_NEAR(glasses.frame.heads[0].left_eye_m->x, -0.0315, 1e-3);
+      std::printf("after their nodes: SpaceMouse %.0f ms, glasses %.0f ms\n", 1e3 * puck_s, 1e3 * glasses_s);
+      EXPECT_LT(puck_s, 1.0);
+      EXPECT_LT(glasses_s, 1.0);
+
+      puck_plug_.unplug();
+      glasses_plug_.unplug();
+      glasses_.switch_off();
+      EXPECT_TRUE(becomes(puck, Freshness::kLost, milliseconds(2000)));
+      EXPECT_TRUE(becomes(glasses, Freshness::kLost, milliseconds(2000)));
+      EXPECT_FALSE(puck.frame.puck);
+    }
+    for (int plugging = 0; plugging < 2; ++plugging) {
+      ASSERT_TRUE(leap_.plug());
+      ASSERT_TRUE(eventually([] { return !node_of("leap").empty(); }));
+      const TimestampNs appeared = clock_.now();
+      ASSERT_TRUE(becomes(leap, Freshness::kNew)) << leap.source->note();
+      std::printf("Leap: first hands %.0f ms after its node\n",
+                  1e-6 * static_cast<double>(clock_.now() - appeared));
+      EXPECT_EQ(leap.frame.hands.size(), 1U);
+      const auto present = present_inputs();
+      EXPECT_EQ(std::count(present.begin(), present.end(), "leap"), 1);
+      leap_.unplug();
+      ASSERT_TRUE(becomes(leap, Freshness::kLost, milliseconds(2000)));
+      ASSERT_TRUE(eventually([] { return node_of("leap").empty(); }));
+    }
+  }
+  config_.hotplug.reset();
+  EXPECT_EQ(threads(), threads_before);
+  EXPECT_EQ(open_descriptors(), descriptors_at_start());
+}
+
+}  // namespace
+}  // namespace dubsar::lab
