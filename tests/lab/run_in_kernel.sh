@@ -4,7 +4,7 @@
 # usage: run_in_kernel.sh PROGRAM [ARGUMENT...]
 # exit: that of PROGRAM; 77 with the reason when the lab cannot run here; 70 when the kernel did not get to its end
 # environment: LAB_KERNEL (folder made by fetch_kernel.sh; build/lab/kernel), LAB_SECONDS (limit, 240),
-#              LAB_ACCEL (kvm or tcg; found out)
+#              LAB_ACCEL (kvm or tcg; found out), LAB_CPUS (1: emulated threads wait for each other least on one)
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 kernel=${LAB_KERNEL:-$(dirname "$(dirname "$here")")/build/lab/kernel}
@@ -51,7 +51,7 @@ boot() {
   mkfifo "$work/talk"  # qemu makes its stdout non-blocking, which must not be ours
   cat "$work/talk" &
   local reader=$!
-  limited qemu-system-x86_64 -accel "$1" -cpu "$2" -smp "${LAB_CPUS:-2}" -m 1536 -nodefaults -display none -no-reboot \
+  limited qemu-system-x86_64 -accel "$1" -cpu "$2" -smp "${LAB_CPUS:-1}" -m 1536 -nodefaults -display none -no-reboot \
     -kernel "$kernel/vmlinuz" -initrd "$work/ram.cpio" -append "console=ttyS0 panic=-1 quiet dubsar.lab" \
     -serial "file:$work/kernel.log" -chardev stdio,id=talk,signal=off -serial chardev:talk -serial "file:$work/status" \
     -virtfs local,path=/,mount_tag=host,security_model=none,readonly=on,multidevs=remap \

@@ -40,9 +40,16 @@ class LabSources : public Lab {
     return {made ? std::move(*made) : nullptr, {}, 0};
   }
   bool becomes(Running& running, Freshness wanted, milliseconds limit = milliseconds(30'000)) {
-    return eventually(
-        [&] { return (running.polled = running.source->poll(clock_.now(), running.frame)) == wanted; },
-        limit);
+    const auto is_so = [&] {
+      running.polled = clock_.now();
+      return running.source->poll(running.polled, running.frame) == wanted;
+    };
+    return eventually(is_so, limit);
+  }
+  /// How long after the kernel made the node the last poll of the source was.
+  double seconds_from_node(const Running& running, std::string_view driver) const {
+    const double age_s = seconds_since_made(node_of(driver));
+    return age_s - 1e-9 * static_cast<double>(clock_.now() - running.polled);
   }
 
   SpaceMouseSim puck_;
