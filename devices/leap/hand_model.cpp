@@ -31,36 +31,42 @@ glm::dvec3 mirrored(glm::dvec3 v, bool left) { return left ? glm::dvec3(-v.x, v.
 
 PosedHand pose_hand(const HandPose& pose) {
   PosedHand hand;
-  const auto place = [&](const glm::dvec3& local_mm) {
-    return transform(pose.palm, mirrored(local_mm, pose.left) * (kMm * pose.scale));
-  };
+  hand.cones.reserve(kHandConeCount);
+  const double unit = kMm * pose.scale, thickness = unit * pose.thickness;
+  const auto wide = [&](const glm::dvec3& local_mm) { return glm::dvec3(local_mm.x * pose.palm_width, local_mm.y, local_mm.z); };
+  const auto place = [&](const glm::dvec3& local_mm) { return transform(pose.palm, mirrored(local_mm, pose.left) * unit); };
   const auto cone = [&](const glm::dvec3& a, double radius_a, const glm::dvec3& b, double radius_b) {
-    hand.cones.push_back({place(a), place(b), radius_a * kMm * pose.scale, radius_b * kMm * pose.scale});
+    hand.cones.push_back({place(a), place(b), radius_a * thickness, radius_b * thickness});
   };
 
   for (std::size_t f = 0; f < 4; ++f) {
     const Finger& finger = kFingers[f];
-    cone(finger.carpal, 13.5, finger.knuckle, finger.metacarpal_radius * 0.85);
+    cone(wide(finger.carpal), 13.5, wide(finger.knuckle), finger.metacarpal_radius * 0.85);
+    hand.joints_m[f + 1][0] = place(wide(finger.carpal));
+    hand.radii_m[f + 1][0] = 13.5 * thickness;
     glm::dquat turn = glm::angleAxis(-finger.fan_degrees * pose.spread * (1.0 - 0.8 * pose.flexion[f + 1]) * kDegree,
                                      glm::dvec3(0, 1, 0));
-    glm::dvec3 joint = finger.knuckle;
+    glm::dvec3 joint = wide(finger.knuckle);
     for (std::size_t bone = 0; bone < 3; ++bone) {
+      hand.joints_m[f + 1][bone + 1] = place(joint);
+      hand.radii_m[f + 1][bone + 1] = finger.radii[bone] * thickness;
       // +X turns -Z towards... the palm side is -Y: a negative turn about X bends the finger to it.
       turn = turn * glm::angleAxis(-kFlexionDegrees[bone] * pose.flexion[f + 1] * kDegree, glm::dvec3(1, 0, 0));
-      const glm::dvec3 next = joint + turn * glm::dvec3(0, 0, -finger.bones[bone]);
+      const glm::dvec3 next = joint + turn * glm::dvec3(0, 0, -finger.bones[bone] * pose.finger_length);
       cone(joint, finger.radii[bone], next, finger.radii[bone + 1]);
       joint = next;
     }
-    hand.knuckles_m[f + 1] = place(finger.knuckle);
-    hand.tips_m[f + 1] = place(joint);
+    hand.knuckles_m[f + 1] = hand.joints_m[f + 1][1];
+    hand.tips_m[f + 1] = hand.joints_m[f + 1][4] = place(joint);
+    hand.radii_m[f + 1][4] = finger.radii[3] * thickness;
   }
   // The skin between the metacarpals, thumb side and outer side of the palm.
-  cone({-12, -3, 10}, 16, {-18, -2, -18}, 15);
-  cone({14, -4, 14}, 16, {22, -3, -12}, 14);
-  cone({2, -2, 20}, 16, {2, 0, -22}, 15);
+  cone(wide({-12, -3, 10}), 16, wide({-18, -2, -18}), 15);
+  cone(wide({14, -4, 14}), 16, wide({22, -3, -12}), 14);
+  cone(wide({2, -2, 20}), 16, wide({2, 0, -22}), 15);
 
   const double bent = pose.flexion[0];
-  const glm::dvec3 thumb_root(-17, -6, 34);
+  const glm::dvec3 thumb_root = wide({-17, -6, 34});
   const glm::dquat out = glm::angleAxis((52.0 - 22.0 * bent - 22.0 * (1.0 - pose.spread)) * kDegree, glm::dvec3(0, 1, 0)) *
                          glm::angleAxis((-14.0 - 18.0 * bent) * kDegree, glm::dvec3(1, 0, 0));
   glm::dvec3 joint = thumb_root;
@@ -69,19 +75,25 @@ PosedHand pose_hand(const HandPose& pose) {
   constexpr std::array<double, 4> kThumbRadii{15, 11.5, 10, 8.5};
   for (std::size_t bone = 0; bone < 3; ++bone) {
     turn = turn * glm::angleAxis(kThumbBend[bone] * bent * kDegree, glm::dvec3(0, 1, 0));
-    const glm::dvec3 next = joint + turn * glm::dvec3(0, 0, -kThumbBones[bone]);
+    const glm::dvec3 next = joint + turn * glm::dvec3(0, 0, -kThumbBones[bone] * pose.finger_length);
     cone(joint, kThumbRadii[bone], next, kThumbRadii[bone + 1]);
+    hand.joints_m[0][bone] = place(joint);
+    hand.radii_m[0][bone] = kThumbRadii[bone] * thickness;
     if (bone == 0) hand.knuckles_m[0] = place(next);
     joint = next;
   }
-  hand.tips_m[0] = place(joint);
+  hand.tips_m[0] = hand.joints_m[0][3] = hand.joints_m[0][4] = place(joint);
+  hand.radii_m[0][3] = hand.radii_m[0][4] = kThumbRadii[3] * thickness;
 
   // Wrist and forearm: two cones side by side, flatter than wide.
+  const glm::dvec3 wrist(0, 0, 52);
+  const glm::dquat arm = glm::angleAxis(pose.wrist_turn_rad, glm::dvec3(0, 1, 0));
   for (const double side : {-1.0, 1.0}) {
-    cone({13 * side, 0, 38}, 16, {13 * side, 0, 70}, 17);
-    cone({13 * side, 0, 70}, 17, {18 * side, 0, 280}, 27);
+    const glm::dvec3 near = wrist + arm * (wide({13 * side, 0, 70}) - wrist), far = wrist + arm * (wide({18 * side, 0, 280}) - wrist);
+    cone(wide({13 * side, 0, 38}), 16, near, 17);
+    cone(near, 17, far, 27);
   }
-  hand.wrist_m = place({0, 0, 52});
+  hand.wrist_m = place(wrist);
   hand.palm_m = place({0, 0, 0});
   return hand;
 }

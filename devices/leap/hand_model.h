@@ -15,7 +15,13 @@ struct HandPose {
   double spread = 1.0;              ///< 0: fingers together, 1: apart
   double scale = 1.0;               ///< 1: a hand 190 mm long and 86 mm wide
   bool left = false;
+  double wrist_turn_rad = 0.0;      ///< of the forearm against the hand, positive: the hand turned to its thumb's side
+  double finger_length = 1.0;       ///< of the fingers and the thumb, beyond what `scale` does
+  double palm_width = 1.0;          ///< across the palm, as well
+  double thickness = 1.0;           ///< of everything, as well
 };
+
+inline constexpr std::size_t kHandConeCount = 26;
 
 /// A round cone from a to b.
 struct Cone {
@@ -24,9 +30,12 @@ struct Cone {
 };
 
 struct PosedHand {
-  std::vector<Cone> cones;                 ///< in the device's frame, forearm included
+  std::vector<Cone> cones;                 ///< in the device's frame; the last four are wrist and forearm
   std::array<glm::dvec3, 5> tips_m{};      ///< thumb to little finger
   std::array<glm::dvec3, 5> knuckles_m{};  ///< proximal joints
+  /// Thumb: metacarpal, proximal, distal, tip, tip. Others: metacarpal, proximal, intermediate, distal, tip (OpenXR).
+  std::array<std::array<glm::dvec3, 5>, 5> joints_m{};
+  std::array<std::array<double, 5>, 5> radii_m{};  ///< there
   glm::dvec3 wrist_m{}, palm_m{};          ///< palm: the middle of the middle metacarpal
 };
 

@@ -22,7 +22,7 @@ void blur_121(GrayView in, std::span<std::uint8_t> out) {
   }
 }
 
-std::optional<int> skin_threshold(GrayView picture, double fraction, int margin) {
+std::optional<SkinThreshold> skin_threshold(GrayView picture, double fraction, int margin) {
   std::array<int, 256> histogram{};
   for (int i = 0; i < picture.width * picture.height; ++i) ++histogram[picture.pixels[i]];
   histogram[0] = 0;  // what the lens does not see
@@ -33,12 +33,12 @@ std::optional<int> skin_threshold(GrayView picture, double fraction, int margin)
   int level = 255;
   for (int seen = 0; level > background + margin; --level)
     if ((seen += histogram[static_cast<std::size_t>(level)]) > bright / 5) break;
-  return background + std::max(margin, static_cast<int>(fraction * (level - background)));
+  return SkinThreshold{background + std::max(margin, static_cast<int>(fraction * (level - background))), background};
 }
 
 std::vector<Region> find_regions(GrayView picture, int threshold, int min_area_px, int most, std::span<std::uint8_t> labels,
                                  std::vector<std::uint32_t>& stack) {
-  constexpr std::uint8_t kDropped = 255, kNew = 254;
+  constexpr std::uint8_t kNew = 254;
   const int w = picture.width, h = picture.height;
   std::fill(labels.begin(), labels.end(), std::uint8_t{0});
   std::vector<Region> regions;
@@ -71,7 +71,7 @@ std::vector<Region> find_regions(GrayView picture, int threshold, int min_area_p
     region.area_px = static_cast<int>(members.size());
     const bool keep = region.area_px >= min_area_px && regions.size() < 32;
     region.label = static_cast<std::uint8_t>(regions.size() + 1);
-    for (const std::uint32_t at : members) labels[at] = keep ? region.label : kDropped;
+    for (const std::uint32_t at : members) labels[at] = keep ? region.label : kDroppedRegion;
     if (keep) regions.push_back(region);
   }
   std::sort(regions.begin(), regions.end(), [](const Region& a, const Region& b) { return a.area_px > b.area_px; });

@@ -21,7 +21,10 @@ void blur_121(GrayView in, std::span<std::uint8_t> out);
 
 /// Grey level between background and hands lit from the camera: `fraction` of the way from the commonest level to that
 /// of bright skin, at least `margin` above it. Nothing: no pixel is that bright.
-std::optional<int> skin_threshold(GrayView picture, double fraction, int margin);
+struct SkinThreshold {
+  int grey = 0, background = 0;
+};
+std::optional<SkinThreshold> skin_threshold(GrayView picture, double fraction, int margin);
 
 struct Region {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< columns [x0, x1), rows [y0, y1)
@@ -29,8 +32,10 @@ struct Region {
   std::uint8_t label = 0;
 };
 
+inline constexpr std::uint8_t kDroppedRegion = 255;
+
 /// 4-connected regions of pixels >= threshold with at least `min_area_px`, the largest first, at most `most` (<= 8).
-/// `labels`, as large as the picture, gets the label of kept regions, 255 for dropped ones, else 0. Regions of less than 8
+/// `labels`, as large as the picture, gets the label of kept regions, kDroppedRegion, else 0. Regions of less than 8
 /// pixels in a row of their first line are found as well. `stack` is scratch.
 std::vector<Region> find_regions(GrayView picture, int threshold, int min_area_px, int most,
                                  std::span<std::uint8_t> labels, std::vector<std::uint32_t>& stack);

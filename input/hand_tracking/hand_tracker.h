@@ -1,15 +1,19 @@
 #pragma once
 // Hands from stereo infrared pictures, without networks and without the vendor's service: bright region, palm by the
-// distance to the outline, fingers by their reach from the palm, depth by correlation of both eyes.
+// distance to the outline, depth by correlation of both eyes; then a hand of cones is fitted to both silhouettes.
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "devices/frame_source.h"
 #include "input/hand_frame.h"
+#include "input/hand_tracking/eye_samples.h"
 #include "input/hand_tracking/hand_picture.h"
+#include "input/hand_tracking/hand_search.h"
+#include "input/hand_tracking/silhouette.h"
 #include "input/hand_tracking/stereo_rig.h"
 
 namespace dubsar {
@@ -24,8 +28,10 @@ struct HandTrackerOptions {
 /// Sees hands that are held over the device, palm down, the arm coming from the user's side (+Z). Frame of the result:
 /// origin midway between the eyes, x along the device, y out of it, z to the user; metres.
 ///
-/// Measured: palm position, turn of the hand about the vertical, finger tips that stick out, grab. Not measured: the tilt
-/// of the palm, joints of bent fingers (valid, not tracked), a pinch whose tips touch. One thread per object.
+/// No filter, no latency beyond the frame: what is carried on is identity, left or right, size and where the fit starts.
+/// Measured: palm position and rotation, joints of fingers that are in view, grab (mean bend of the four fingers). Not
+/// measured: joints of bent fingers (valid, not tracked). Where no hand fits the pictures, palm and grab come from the
+/// outline alone and the confidence is at most 0.3. One thread per object.
 class HandTracker {
  public:
   explicit HandTracker(const StereoLenses& lenses, const HandTrackerOptions& options = {});
@@ -37,33 +43,28 @@ class HandTracker {
   void reset();
 
  private:
-  struct Finger {
-    glm::dvec2 tip_px{};
-    double angle_rad = 0.0;  ///< from the hand's direction, positive to the right in the picture
-  };
-  struct Silhouette {
-    glm::dvec2 palm_px{};
-    double radius_px = 0.0;
-    glm::dvec2 forward{0.0, 1.0};  ///< unit, picture axes
-    double reach = 0.0;            ///< of the fingers, in palm radii
-    bool arm_seen = false;
-    std::vector<Finger> fingers;
-  };
   struct Known {
     std::uint32_t id = 0;
     glm::dvec3 palm_m{};
     TimestampNs time = 0;
-    int right_votes = 0;  ///< positive: right hand
+    HandMemory memory;
   };
 
-  std::optional<Silhouette> outline(const Region& region);
-  std::optional<HandFrame> measure(const Silhouette& silhouette, TimestampNs time);
-  void place_joints(const Silhouette& silhouette, double depth_m, double radius_m, Known& known, HandFrame& hand) const;
-  glm::dvec3 point_m(const glm::dvec2& pixel, double depth_m) const noexcept;
-  bool inside(const glm::dvec2& pixel, std::uint8_t label) const noexcept;
+  std::optional<HandGuess> guess(const Silhouette& silhouette, double& confidence) const;
+  void sample(int eye, const Region& region, const Silhouette& silhouette, double depth_m, int background,
+              EyeSamples& samples) const;
+  HandFrame measure(const Region& region, const Silhouette& silhouette, const HandGuess& guess, int background,
+                    TimestampNs time);
+  std::span<const std::uint8_t> eye_pixels(int eye) const noexcept {
+    return pixels_.subspan(static_cast<std::size_t>(eye) * rig_.device_pixels(), rig_.device_pixels());
+  }
 
   StereoRig rig_;
   HandTrackerOptions options_;
+  std::array<std::array<EyeRays, 2>, 2> rays_;  ///< [every column, every second][eye]
+  HandFit fit_;
+  std::array<EyeSamples, 2> samples_;
+  std::span<const std::uint8_t> pixels_;  ///< both eyes of the frame in work
   std::vector<std::uint8_t> dark_, lit_, left_, right_, blurred_, labels_;
   std::vector<std::uint32_t> stack_;
   std::vector<float> distance_;

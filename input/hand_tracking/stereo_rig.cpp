@@ -13,6 +13,8 @@ StereoLenses stereo_lenses(const lmc1::Calibration& calibration, int width, int 
   const lmc1::Lens left(calibration.left, width, height), right(calibration.right, width, height);
   lenses.pixel_from_ray[0] = [left](const glm::dvec2& ray) { return left.pixel_from_ray(ray); };
   lenses.pixel_from_ray[1] = [right](const glm::dvec2& ray) { return right.pixel_from_ray(ray); };
+  lenses.ray_from_pixel[0] = [left](const glm::dvec2& pixel) { return left.ray_from_pixel(pixel); };
+  lenses.ray_from_pixel[1] = [right](const glm::dvec2& pixel) { return right.ray_from_pixel(pixel); };
   return lenses;
 }
 

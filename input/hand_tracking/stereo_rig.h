@@ -18,6 +18,7 @@ struct StereoLenses {
   double focal_px = 134.0;  ///< of the ideal pictures
   /// Ray (x/z, y/z) to pixel of the device's picture; left, right. Nothing: not seen.
   std::function<std::optional<glm::dvec2>(const glm::dvec2&)> pixel_from_ray[2];
+  std::function<glm::dvec2(const glm::dvec2&)> ray_from_pixel[2];  ///< the way back
 };
 
 StereoLenses stereo_lenses(const lmc1::Calibration& calibration, int width, int height);

@@ -47,9 +47,9 @@ TEST(RigelHands, SimulatorDriverAndTrackerFollowOneHand) {
     EXPECT_EQ(hands[0].id, id);
     EXPECT_EQ(hands[0].chirality, Chirality::kRight);
     EXPECT_LT(hands[0].grab_strength, 0.3);
-    EXPECT_NEAR(hands[0].palm.position_m.x, palm.x, 0.004);
-    EXPECT_NEAR(hands[0].palm.position_m.y, palm.y, 0.006);
-    EXPECT_NEAR(hands[0].palm.position_m.z, palm.z, 0.010);
+    EXPECT_NEAR(hands[0].palm.position_m.x, palm.x, 0.002);
+    EXPECT_NEAR(hands[0].palm.position_m.y, palm.y, 0.003);
+    EXPECT_NEAR(hands[0].palm.position_m.z, palm.z, 0.002);
     ++tracked;
   }
   EXPECT_GE(tracked, 1);
@@ -82,9 +82,9 @@ TEST(RigelHands, OpenHandsAndFistsAt200To400MmAreWhereTheyAre) {
       const glm::dvec3 off_mm = 1e3 * (hands[0].palm.position_m - pose.palm.position_m);
       RecordProperty(fmt::format("off_mm_{}_{}", 1e3 * height_m, fist ? "fist" : "open"),
                      fmt::format("{:.1f} {:.1f} {:.1f}", off_mm.x, off_mm.y, off_mm.z));
-      EXPECT_NEAR(off_mm.x, 0.0, fist ? 15.0 : 4.0) << height_m << fist;
-      EXPECT_NEAR(off_mm.y, 0.0, fist ? 9.0 : 6.0) << height_m << fist;
-      EXPECT_NEAR(off_mm.z, 0.0, 12.0) << height_m << fist;
+      EXPECT_NEAR(off_mm.x, 0.0, 2.0) << height_m << fist;
+      EXPECT_NEAR(off_mm.y, 0.0, 5.0) << height_m << fist;
+      EXPECT_NEAR(off_mm.z, 0.0, 2.0) << height_m << fist;
       EXPECT_EQ(hands[0].grab_strength > 0.75, fist) << height_m;
     }
 }
