@@ -19,6 +19,7 @@ pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
 pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(egl REQUIRED IMPORTED_TARGET egl)
+pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)
 pkg_check_modules(hidapi REQUIRED IMPORTED_TARGET hidapi-hidraw)
 pkg_check_modules(libusb REQUIRED IMPORTED_TARGET libusb-1.0)
 
@@ -37,6 +38,7 @@ endforeach()
 
 if(DUBSAR_TESTS)
   find_package(GTest REQUIRED)
+  pkg_check_modules(xtest IMPORTED_TARGET xcb xcb-xtest)  # real mouse and key events for tests of windows
   pkg_check_modules(umockdev IMPORTED_TARGET umockdev-1.0)  # device tests on simulated kernel interfaces
 endif()
 if(DUBSAR_BENCH)

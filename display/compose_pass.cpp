@@ -55,4 +55,19 @@ Result<Image> OffscreenSurface::read() const {
   return image;
 }
 
+Result<void> fit_into(const Surface& picture, const Surface& target) {
+  const double scale = std::min(static_cast<double>(target.width) / picture.width, static_cast<double>(target.height) / picture.height);
+  const int width = std::max(1, static_cast<int>(scale * picture.width)), height = std::max(1, static_cast<int>(scale * picture.height));
+  const int x = (target.width - width) / 2, y = (target.height - height) / 2;
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_FRAMEBUFFER_SRGB);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, picture.framebuffer);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer);
+  glClearColor(0, 0, 0, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  glBlitFramebuffer(0, 0, picture.width, picture.height, x, y, x + width, y + height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  return check_gl("fitting a picture into the window");
+}
+
 }  // namespace dubsar

@@ -40,4 +40,7 @@ class OffscreenSurface {
   GlFramebuffer framebuffer_;
 };
 
+/// Copies a picture scaled into the middle of another, with black borders where the proportions differ.
+Result<void> fit_into(const Surface& picture, const Surface& target);
+
 }  // namespace dubsar

@@ -5,6 +5,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/log.h"
 
@@ -65,6 +66,67 @@ Result<GLFWmonitor*> choose_monitor(const std::string& part) {
   return fail(ErrorKind::kUsage, "window: no monitor's name contains \"{}\", expected one of: {}", part, names);
 }
 
+/// The monitor that holds the middle of the window, else the primary one; null when there is none.
+GLFWmonitor* monitor_of(GLFWwindow* window) {
+  int x = 0, y = 0, width = 0, height = 0;
+  glfwGetWindowPos(window, &x, &y);
+  glfwGetFramebufferSize(window, &width, &height);
+  for (GLFWmonitor* const handle : monitor_handles()) {
+    const Monitor candidate = describe(handle);
+    const int middle_x = x + width / 2 - candidate.x, middle_y = y + height / 2 - candidate.y;
+    if (middle_x >= 0 && middle_y >= 0 && middle_x < candidate.width_px && middle_y < candidate.height_px) return handle;
+  }
+  return glfwGetPrimaryMonitor();
+}
+
+/// Keys that type nothing; what others type comes from the layout.
+std::string key_name(int key) {
+  switch (key) {
+    case GLFW_KEY_LEFT: return "left";
+    case GLFW_KEY_RIGHT: return "right";
+    case GLFW_KEY_UP: return "up";
+    case GLFW_KEY_DOWN: return "down";
+    case GLFW_KEY_PAGE_UP: return "page_up";
+    case GLFW_KEY_PAGE_DOWN: return "page_down";
+    case GLFW_KEY_HOME: return "home";
+    case GLFW_KEY_END: return "end";
+    case GLFW_KEY_INSERT: return "insert";
+    case GLFW_KEY_DELETE: return "delete";
+    case GLFW_KEY_BACKSPACE: return "backspace";
+    case GLFW_KEY_TAB: return "tab";
+    case GLFW_KEY_ENTER:
+    case GLFW_KEY_KP_ENTER: return "enter";
+    case GLFW_KEY_ESCAPE: return "escape";
+    case GLFW_KEY_SPACE: return "space";
+    case GLFW_KEY_PAUSE: return "pause";
+    default: break;
+  }
+  return key >= GLFW_KEY_F1 && key <= GLFW_KEY_F25 ? fmt::format("f{}", key - GLFW_KEY_F1 + 1) : std::string();
+}
+
+std::string utf8(unsigned code) {
+  std::string out;
+  const auto put = [&](unsigned byte) { out += static_cast<char>(static_cast<unsigned char>(byte)); };
+  if (code < 0x80) {
+    put(code);
+  } else if (code < 0x800) {
+    put(0xC0 | code >> 6);
+    put(0x80 | (code & 0x3F));
+  } else if (code < 0x10000) {
+    put(0xE0 | code >> 12);
+    put(0x80 | (code >> 6 & 0x3F));
+    put(0x80 | (code & 0x3F));
+  } else {
+    put(0xF0 | code >> 18);
+    put(0x80 | (code >> 12 & 0x3F));
+    put(0x80 | (code >> 6 & 0x3F));
+    put(0x80 | (code & 0x3F));
+  }
+  return out;
+}
+
+constexpr std::size_t kMostEvents = 4096;
+
 void set_hints(const WindowOptions& options) {
   glfwDefaultWindowHints();
   glfwWindowHint(GLFW_CLIENT_API, GLFW_OPENGL_API);
@@ -86,6 +148,74 @@ void set_hints(const WindowOptions& options) {
 }
 
 }  // namespace
+
+struct GlfwWindow::Callbacks {
+  static GlfwWindow& of(GLFWwindow* handle) { return *static_cast<GlfwWindow*>(glfwGetWindowUserPointer(handle)); }
+
+  static void key(GLFWwindow* handle, int key, int, int action, int modifiers) {
+    WindowEvent event{.kind = WindowEvent::Kind::kKey, .down = action != GLFW_RELEASE, .key = key_name(key)};
+    if (!event.key.empty()) of(handle).push(std::move(event), modifiers);
+  }
+  static void character(GLFWwindow* handle, unsigned code) {
+    if (code <= ' ') return;
+    if (code >= 'A' && code <= 'Z') code += 'a' - 'A';
+    of(handle).push({.kind = WindowEvent::Kind::kKey, .down = true, .key = utf8(code)}, 0);
+  }
+  static void button(GLFWwindow* handle, int button, int action, int modifiers) {
+    const int ours = button == GLFW_MOUSE_BUTTON_LEFT     ? 0
+                     : button == GLFW_MOUSE_BUTTON_MIDDLE ? 1
+                     : button == GLFW_MOUSE_BUTTON_RIGHT  ? 2
+                                                          : -1;
+    if (ours >= 0) of(handle).push({.kind = WindowEvent::Kind::kButton, .button = ours, .down = action == GLFW_PRESS}, modifiers);
+  }
+  static void wheel(GLFWwindow* handle, double, double y) {
+    if (y != 0.0) of(handle).push({.kind = WindowEvent::Kind::kWheel, .y = y}, held_modifiers(handle));
+  }
+  static void cursor(GLFWwindow* handle, double x, double y) {
+    GlfwWindow& window = of(handle);
+    int width = 0, height = 0, pixels_x = 0, pixels_y = 0;  // a desktop may count in units of its own
+    glfwGetWindowSize(handle, &width, &height);
+    glfwGetFramebufferSize(handle, &pixels_x, &pixels_y);
+    x *= width > 0 ? static_cast<double>(pixels_x) / width : 1.0;
+    y *= height > 0 ? static_cast<double>(pixels_y) / height : 1.0;
+    if (window.cursor_)
+      window.push({.kind = WindowEvent::Kind::kMotion, .x = x - (*window.cursor_)[0], .y = y - (*window.cursor_)[1]}, held_modifiers(handle));
+    window.cursor_ = std::array<double, 2>{x, y};
+  }
+  static void enter(GLFWwindow* handle, int) {
+    for (const int button : {GLFW_MOUSE_BUTTON_LEFT, GLFW_MOUSE_BUTTON_MIDDLE, GLFW_MOUSE_BUTTON_RIGHT})
+      if (glfwGetMouseButton(handle, button) == GLFW_PRESS) return;  // a drag goes on outside
+    of(handle).cursor_.reset();
+  }
+  static void moved(GLFWwindow* handle, int, int) { of(handle).place_changed_ = true; }
+  static int held_modifiers(GLFWwindow* handle) {
+    const auto held = [&](int left, int right) { return glfwGetKey(handle, left) == GLFW_PRESS || glfwGetKey(handle, right) == GLFW_PRESS; };
+    return (held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT) ? GLFW_MOD_SHIFT : 0) |
+           (held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL) ? GLFW_MOD_CONTROL : 0) |
+           (held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT) ? GLFW_MOD_ALT : 0);
+  }
+  static void install(GlfwWindow& window) {
+    GLFWwindow* const handle = as_window(window.window_);
+    glfwSetWindowUserPointer(handle, &window);
+    glfwSetKeyCallback(handle, key);
+    glfwSetCharCallback(handle, character);
+    glfwSetMouseButtonCallback(handle, button);
+    glfwSetScrollCallback(handle, wheel);
+    glfwSetCursorPosCallback(handle, cursor);
+    glfwSetCursorEnterCallback(handle, enter);
+    glfwSetWindowPosCallback(handle, moved);
+    glfwSetFramebufferSizeCallback(handle, moved);
+  }
+};
+
+void GlfwWindow::push(WindowEvent event, int modifiers) {
+  event.time = SteadyClock().now();
+  event.shift = (modifiers & GLFW_MOD_SHIFT) != 0;
+  event.control = (modifiers & GLFW_MOD_CONTROL) != 0;
+  event.alt = (modifiers & GLFW_MOD_ALT) != 0;
+  if (events_.size() >= kMostEvents) events_.erase(events_.begin());
+  events_.push_back(std::move(event));
+}
 
 Result<std::vector<Monitor>> list_monitors() {
   DUBSAR_TRY(start_glfw());
@@ -110,6 +240,9 @@ Result<std::unique_ptr<GlfwWindow>> GlfwWindow::create(const WindowOptions& opti
     return fail(ErrorKind::kUnavailable, "window: the driver has no {}OpenGL 4.5 window ({})", options.stereo ? "quad-buffered (stereo) " : "",
                 last_error());
   std::unique_ptr<GlfwWindow> window(new GlfwWindow(handle));
+  Callbacks::install(*window);
+  window->windowed_ = {place.x + std::max(0, (place.width_px - options.width) / 2), place.y + std::max(0, (place.height_px - options.height) / 2),
+                       options.width, options.height};
   if (!options.fullscreen && (options.x || !options.monitor.empty()))
     glfwSetWindowPos(handle, place.x + options.x.value_or(0), place.y + options.y.value_or(0));
   glfwMakeContextCurrent(handle);
@@ -151,14 +284,8 @@ Screen GlfwWindow::screen(const Screen& fallback) const {
   int x = 0, y = 0;
   glfwGetWindowPos(as_window(window_), &x, &y);
   const PixelSize pixels = size();
-  Monitor on;
-  for (GLFWmonitor* const handle : monitor_handles()) {
-    const Monitor candidate = describe(handle);
-    const int middle_x = x + pixels.width / 2 - candidate.x, middle_y = y + pixels.height / 2 - candidate.y;
-    const bool holds = middle_x >= 0 && middle_y >= 0 && middle_x < candidate.width_px && middle_y < candidate.height_px;
-    if (holds || (candidate.primary && on.width_px == 0)) on = candidate;
-    if (holds) break;
-  }
+  GLFWmonitor* const monitor = monitor_of(as_window(window_));
+  const Monitor on = monitor != nullptr ? describe(monitor) : Monitor();
   Screen out = fallback;
   if (on.width_px > 0 && on.height_px > 0) {
     out.width_px = on.width_px;
@@ -177,6 +304,39 @@ Screen GlfwWindow::screen(const Screen& fallback) const {
 
 void GlfwWindow::present() { glfwSwapBuffers(as_window(window_)); }
 void GlfwWindow::poll_events() { glfwPollEvents(); }
+void GlfwWindow::wait_events(double timeout_s) { glfwWaitEventsTimeout(std::max(timeout_s, 1e-4)); }
+std::vector<WindowEvent> GlfwWindow::take_events() { return std::exchange(events_, {}); }
+bool GlfwWindow::take_place_changed() { return std::exchange(place_changed_, false); }
+void GlfwWindow::close() { glfwSetWindowShouldClose(as_window(window_), GLFW_TRUE); }
+bool GlfwWindow::fullscreen() const { return glfwGetWindowMonitor(as_window(window_)) != nullptr; }
+
+double GlfwWindow::refresh_hz() const {
+  GLFWmonitor* const monitor = monitor_of(as_window(window_));
+  return monitor != nullptr ? describe(monitor).refresh_hz : 0.0;
+}
+
+Result<void> GlfwWindow::set_fullscreen(const std::string& monitor) {
+  GLFWmonitor* target = monitor_of(as_window(window_));
+  if (!monitor.empty()) {
+    DUBSAR_ASSIGN(target, choose_monitor(monitor));
+  }
+  if (target == nullptr) return fail(ErrorKind::kUnavailable, "window: the display server has no monitor");
+  if (!fullscreen()) {
+    glfwGetWindowPos(as_window(window_), &windowed_.x, &windowed_.y);
+    glfwGetWindowSize(as_window(window_), &windowed_.width, &windowed_.height);
+  }
+  const Monitor place = describe(target);
+  glfwSetWindowMonitor(as_window(window_), target, 0, 0, place.width_px, place.height_px, GLFW_DONT_CARE);
+  place_changed_ = true;
+  return {};
+}
+
+void GlfwWindow::set_windowed() {
+  if (!fullscreen()) return;
+  glfwSetWindowMonitor(as_window(window_), nullptr, windowed_.x, windowed_.y, windowed_.width, windowed_.height, GLFW_DONT_CARE);
+  place_changed_ = true;
+}
+
 bool GlfwWindow::should_close() const { return glfwWindowShouldClose(as_window(window_)) == GLFW_TRUE; }
 
 Result<Image> GlfwWindow::read(int eye) const {

@@ -1,11 +1,13 @@
 #pragma once
 // Windows and monitors through GLFW; the only source that includes it. All of this belongs to the main thread.
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/base/clock.h"
 #include "core/base/result.h"
 #include "core/image_io/image.h"
 #include "display/gl_context.h"
@@ -36,6 +38,20 @@ struct WindowOptions {
   bool stereo = false;                    ///< a quad-buffered visual, or the call fails
 };
 
+/// Something that happened in a window, as plain data.
+struct WindowEvent {
+  enum class Kind { kMotion, kButton, kWheel, kKey };
+  TimestampNs time = 0;    ///< steady clock, when the window heard of it
+  Kind kind = Kind::kMotion;
+  double x = 0.0, y = 0.0; ///< kMotion: pixels to the right and down; kWheel: notches in y, positive away from the user
+  int button = 0;          ///< kButton: 0 left, 1 middle, 2 right
+  bool down = false;       ///< kButton, kKey; a key that is held repeats
+  bool shift = false, control = false, alt = false;
+  /// kKey: "left", "page_up", "escape", "f5", "space" ... for keys that type nothing, and what the keyboard's layout types
+  /// ("a", "+", "?"), which only goes down.
+  std::string key{};
+};
+
 /// A window with a current GL 4.5 core context and vertical synchronisation.
 class GlfwWindow final : public GlContext {
  public:
@@ -55,7 +71,21 @@ class GlfwWindow final : public GlContext {
 
   void present();  ///< swaps buffers
   void poll_events();
+  /// Returns when something happens in the window, at the latest after `timeout_s`.
+  void wait_events(double timeout_s);
+  /// Events since the last call, in order; at most 4096 are kept, the newest.
+  std::vector<WindowEvent> take_events();
+  /// True when the window was moved, resized or put on another monitor since the last call.
+  bool take_place_changed();
   bool should_close() const;
+  void close();  ///< as if the user had closed it
+
+  /// Covers the monitor whose name contains `monitor` (empty: the one that holds the window's middle), or goes back to
+  /// where the window was. kUsage when there is no such monitor.
+  Result<void> set_fullscreen(const std::string& monitor = {});
+  void set_windowed();
+  bool fullscreen() const;
+  double refresh_hz() const;  ///< of the monitor the window is on; 0 when it does not say
   /// RGB, top row first: what was drawn since the last present(). `eye` 1 reads the right buffer of a stereo window.
   Result<Image> read(int eye = 0) const;
 
@@ -64,8 +94,18 @@ class GlfwWindow final : public GlContext {
 
  private:
   explicit GlfwWindow(void* window) : window_(window) {}
+  struct Callbacks;
+  struct Place {
+    int x = 0, y = 0, width = 0, height = 0;
+  };
+  void push(WindowEvent event, int modifiers);
+
   void* window_;
   bool stereo_ = false;
+  std::vector<WindowEvent> events_;
+  std::optional<std::array<double, 2>> cursor_;  // none: the next place is no movement
+  bool place_changed_ = false;
+  Place windowed_;                               // where it was before it covered the monitor
 };
 
 }  // namespace dubsar

@@ -102,4 +102,9 @@ Result<int> MultiView::refine(const Shading& shading, std::span<const View> view
   return coarse_;
 }
 
+Result<void> MultiView::draw_exact(const Shading& shading, std::span<const View> views, int samples, ViewArray& target) {
+  coarse_ = 0;
+  return renderer_.render(levels_[0].mesh, shading, views, samples, target);
+}
+
 }  // namespace dubsar

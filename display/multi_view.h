@@ -32,6 +32,9 @@ class MultiView {
   /// Returns how many are still coarse. Views, shading and target must be those of the last draw_moving().
   Result<int> refine(const Shading& shading, std::span<const View> views, int samples, ViewArray& target, int most);
 
+  /// All layers of `target` exact, as Renderer::render() with all triangles.
+  Result<void> draw_exact(const Shading& shading, std::span<const View> views, int samples, ViewArray& target);
+
   int levels() const noexcept { return static_cast<int>(levels_.size()); }
   /// Triangles of a level, 0 the finest.
   std::int64_t triangles(int level) const { return levels_[static_cast<std::size_t>(level)].triangles; }

@@ -32,6 +32,8 @@ class HeadFollower {
  public:
   explicit HeadFollower(const HeadFollowOptions& options = {});
 
+  /// Where the eyes go when nobody is seen, from now on.
+  void set_rest(const glm::dvec3& rest_m) { options_.rest_m = rest_m; }
   /// The kept head, when it was seen. Samples whose time does not advance are ignored.
   void add(const HeadFrame& head);
   /// Eyes at `display_time`; `now` decides how old the last measurement is.

@@ -15,7 +15,14 @@ bool any_tracked(const std::vector<T>& things) {
 
 }  // namespace
 
-void InputMixer::add(std::unique_ptr<InputSource> source) { sources_.push_back({std::move(source), {}, Freshness::kLost}); }
+void InputMixer::add(std::unique_ptr<InputSource> source, int rank) {
+  const auto after = std::find_if(sources_.begin(), sources_.end(), [&](const Entry& entry) { return entry.rank > rank; });
+  sources_.insert(after, {std::move(source), {}, Freshness::kLost, rank});
+}
+
+bool InputMixer::remove(const InputSource* source) {
+  return std::erase_if(sources_, [&](const Entry& entry) { return entry.source.get() == source; }) > 0;
+}
 
 bool InputMixer::remove(std::string_view name) {
   return std::erase_if(sources_, [&](const Entry& entry) { return entry.source->name() == name; }) > 0;
@@ -51,10 +58,20 @@ const InputFrame& InputMixer::poll(TimestampNs now) {
   return merged_;
 }
 
+SourceState InputMixer::describe(const Entry& entry) {
+  return {std::string(entry.source->name()), entry.freshness, entry.frame.time, entry.source->note()};
+}
+
 std::vector<SourceState> InputMixer::states() const {
   std::vector<SourceState> out;
-  for (const Entry& entry : sources_) out.push_back({std::string(entry.source->name()), entry.freshness, entry.frame.time, entry.source->note()});
+  for (const Entry& entry : sources_) out.push_back(describe(entry));
   return out;
+}
+
+std::optional<SourceState> InputMixer::state_of(const InputSource* source) const {
+  for (const Entry& entry : sources_)
+    if (entry.source.get() == source) return describe(entry);
+  return std::nullopt;
 }
 
 bool InputMixer::finished() const noexcept {

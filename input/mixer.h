@@ -2,6 +2,7 @@
 // Several sources as one: the newest of each, hands and heads of the first source that sees any.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,11 @@ struct SourceState {
 
 class InputMixer {
  public:
-  /// Adds a started source. Earlier ones have priority for hands, heads and puck; events of all are merged in time.
-  void add(std::unique_ptr<InputSource> source);
+  /// Adds a started source. Lower ranks, and earlier ones of the same rank, have priority for hands, heads and puck; events
+  /// of all are merged in time.
+  void add(std::unique_ptr<InputSource> source, int rank = 0);
+  /// Takes this source out; false when it is not there.
+  bool remove(const InputSource* source);
   /// Takes the sources of this name out; false when there is none.
   bool remove(std::string_view name);
 
@@ -28,6 +32,8 @@ class InputMixer {
   const InputFrame& poll(TimestampNs now);
 
   std::vector<SourceState> states() const;
+  /// None when the source is not here.
+  std::optional<SourceState> state_of(const InputSource* source) const;
   bool empty() const noexcept { return sources_.empty(); }
   /// True when there is a source with an end and all of those have reached it.
   bool finished() const noexcept;
@@ -37,7 +43,9 @@ class InputMixer {
     std::unique_ptr<InputSource> source;
     InputFrame frame;
     Freshness freshness = Freshness::kLost;
+    int rank = 0;
   };
+  static SourceState describe(const Entry& entry);
   struct Owner {
     const InputSource* source = nullptr;
     TimestampNs until = 0;

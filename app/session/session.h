@@ -23,7 +23,16 @@
 #include "input/mixer.h"
 #include "input/view_state.h"
 
+namespace dubsar {
+class ViewArray;
+}
+
 namespace dubsar::app {
+
+enum class Quality {
+  kExact,     ///< all triangles and samples in every picture
+  kAdaptive,  ///< coarse views while things move, where exact ones take longer than budget_ms; exact ones at rest
+};
 
 struct SessionOptions {
   std::string display = "mono";            ///< as make_sink() reads it
@@ -35,6 +44,17 @@ struct SessionOptions {
   double margin = 0.08;                    ///< free border around the object at zoom 1
   int samples = 1;                         ///< samples x samples a pixel
   Mapping mapping{};
+  Quality quality = Quality::kExact;
+  double budget_ms = 14.0;                 ///< kAdaptive: for the views of one picture
+  bool stereo_window = false;              ///< the target has a left and a right buffer
+};
+
+/// Draws over all views before they are composed, so that it stands at the same place for both eyes: on the panel's plane.
+class LayerPainter {
+ public:
+  virtual ~LayerPainter() = default;
+  /// `window_mm` is what the panel shows across; pixels of a layer need not be square on it.
+  virtual Result<void> paint(ViewArray& layers, const glm::dvec2& window_mm) = 0;
 };
 
 /// What went into one frame. Times are those of the clock that draw() is called with.
@@ -43,6 +63,7 @@ struct FrameReport {
   Viewer viewer{};                         ///< the eyes that cameras were made for
   Presence head = Presence::kOff;
   Control control = Control::kNone;
+  bool moving = false;                     ///< the view, the eyes or the light are not where they were painted last
   std::optional<TimestampNs> input_age;    ///< device time of the newest measurement to the cameras; none: nothing new
   std::optional<PanelLight> light;         ///< where the panel's lenses send this picture, for displays with lenses
   std::optional<glm::dvec3> selected_m;    ///< a dwelling hand chose this place
@@ -62,9 +83,23 @@ class Session {
   Result<void> set_screen(const Screen& screen);
   SinkTraits traits() const;
 
-  /// Polls the input at `now`, moves the view on, makes the cameras for `display_time` (when the picture will be seen),
-  /// renders all views and composes them on `target`.
+  /// Polls the input at `now` and moves the view on; cameras are for `display_time`, when the picture will be seen. Cheap: no
+  /// GL.
+  FrameReport poll(TimestampNs now, TimestampNs display_time);
+  /// True when paint() would make another picture than it did last: something moved by more than 0.05 mm of an eye, the
+  /// overlay or the display changed, or views are still coarse and things rest.
+  bool needs_paint() const noexcept;
+  /// Renders the views of the last poll() and composes them on `target`.
+  Result<void> paint(const Surface& target);
+  /// Where the panel's lenses send what was painted last.
+  std::optional<PanelLight> light() const;
+  /// poll() and paint(), whatever changed.
   Result<FrameReport> draw(TimestampNs now, TimestampNs display_time, const Surface& target);
+
+  /// Drawn over the views from the next paint() on; call it again when it looks different. Null: nothing. It outlives the
+  /// session or is taken away.
+  void set_overlay(LayerPainter* painter);
+  int coarse_views() const noexcept;  ///< of the last picture; 0: all are exact
 
   /// The newest view; a simulated visitor looks at it. The reference is good as long as the session.
   const ViewState& view() const noexcept;
@@ -78,8 +113,8 @@ class Session {
 };
 
 /// screen_from_model for a view: the object fitted by `magnification`, turned, zoomed and moved; pan counts heights of
-/// the window, `window_height_mm`.
+/// the window, `window_height_mm`, from `middle_mm`, the place of the window's middle on the panel.
 glm::dmat4 screen_from_model(const Box& box, const ViewDirection& direction, const ViewState& view, double magnification,
-                             double window_height_mm);
+                             double window_height_mm, const glm::dvec2& middle_mm = {0.0, 0.0});
 
 }  // namespace dubsar::app

@@ -1,0 +1,469 @@
+#include "app/session/live.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <system_error>
+
+#include "app/session/display_clock.h"
+#include "app/session/session_keys.h"
+#include "app/session/window_input.h"
+#include "app/ui/overlay.h"
+#include "core/base/atomic_file.h"
+#include "core/base/log.h"
+#include "core/image_io/png_file.h"
+#include "display/compose_pass.h"
+#include "display/panel_profile.h"
+#include "display/sink_window.h"
+#include "input/recording.h"
+#include "input/window_events.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr double kIdleS = 0.008;  // how long input may wait while nothing moves
+constexpr TimestampNs kSecond = 1'000'000'000;
+constexpr TimestampNs kNoticeNs = 6 * kSecond, kFadeNs = kSecond, kHelpRefreshNs = kSecond / 2,
+                      kSettleNs = kSecond;
+constexpr std::size_t kRecent = 300;  // measurements that the figures on the help page come from
+constexpr int kMostFailures = 3;
+
+Result<void> check(const LiveOptions& options) {
+  if (!(options.longest_s >= 0 && options.longest_s <= 86400 * 7) || options.every < 1 ||
+      !(options.display_delay_s >= 0 && options.display_delay_s <= 0.1))
+    return fail(ErrorKind::kUsage,
+                "view: {} s with a display delay of {} s found, expected up to a week and 0 to 0.1 s",
+                options.longest_s, options.display_delay_s);
+  if (options.frames.empty()) return {};
+  std::error_code error;
+  std::filesystem::create_directories(options.frames, error);
+  if (error || !std::filesystem::is_directory(options.frames))
+    return fail(ErrorKind::kCannotCreate, "view: cannot create the folder {}: {}", options.frames.string(),
+                error.message());
+  return {};
+}
+
+std::string_view presence_words(Presence presence) {
+  switch (presence) {
+    case Presence::kTracked:
+      return "followed";
+    case Presence::kHeld:
+      return "out of sight, held";
+    case Presence::kEasing:
+      return "out of sight, going to the middle";
+    case Presence::kOff:
+      break;
+  }
+  return "nobody is followed";
+}
+
+/// Long sentences are on the terminal in full.
+std::string shortened(std::string text) {
+  constexpr std::size_t kMost = 150;
+  if (text.size() > kMost) text.replace(text.rfind(' ', kMost), std::string::npos, " ...");
+  return text;
+}
+
+std::string_view health_words(SourceHealth health) {
+  switch (health) {
+    case SourceHealth::kPresent:
+      return "present";
+    case SourceHealth::kLost:
+      return "lost";
+    case SourceHealth::kMissing:
+      return "not available";
+    case SourceHealth::kOff:
+      break;
+  }
+  return "off";
+}
+
+/// Where the window goes: its own monitor for panels.
+Result<void> choose_place(const LiveOptions& options, WindowOptions& window) {
+  DUBSAR_ASSIGN(const auto sink, make_sink(options.session.display, options.session.profile_folder));
+  const SinkTraits traits = sink->traits();
+  window.fullscreen = options.fullscreen.value_or(false);
+  if (options.fullscreen || !traits.exact_pixels) return {};
+  if (traits.name != "lenticular" || !window.monitor.empty()) {
+    window.fullscreen = true;
+    return {};
+  }
+  DUBSAR_ASSIGN(const auto monitors, list_monitors());
+  for (const Monitor& monitor : monitors)
+    if (monitor.width_px == traits.output.width && monitor.height_px == traits.output.height &&
+        (window.monitor.empty() || !monitor.primary)) {
+      window.monitor = monitor.name;
+      window.fullscreen = true;
+    }
+  return {};
+}
+
+class Live {
+ public:
+  Live(const LiveOptions& options, Progress& progress) : options_(options), progress_(progress) {}
+  Result<LiveResult> run(const TriMesh& mesh, const std::function<void(const LiveMoment&)>& look);
+
+ private:
+  Result<void> open(const TriMesh& mesh);
+  Result<void> place_changed();
+  void use_window_events();
+  void obey(SessionCommand command);
+  void use_key(const std::string& key);
+  void switch_display(int step);
+  void toggle_fullscreen();
+  void notice(std::string text, TimestampNs now);
+  void update_overlay(TimestampNs now);
+  std::vector<HelpSection> help() const;
+  Result<void> show(TimestampNs begun);
+  bool over(TimestampNs now);
+  void wait();
+
+  const LiveOptions& options_;
+  Progress& progress_;
+  SteadyClock clock_;
+  std::unique_ptr<GlfwWindow> window_;  // goes last: all else has GL objects
+  std::unique_ptr<Session> session_;
+  std::unique_ptr<Overlay> overlay_;
+  std::optional<OffscreenSurface> whole_;  // the composed picture, where the window has another size
+  WindowEvents events_;
+  std::unique_ptr<SourceSet> sources_;
+  DisplayClock display_clock_;
+  std::vector<std::string> displays_;
+  std::size_t display_ = 0;
+  Mapping mapping_;
+  FrameReport report_;
+  LiveResult out_;
+  TimestampNs start_ = 0, last_presented_ = -1, all_over_since_ = -1, help_made_ = -1, notice_since_ = -1;
+  std::string notice_;
+  bool help_open_ = false, drawn_ = false;
+  std::deque<double> recent_age_ms_, recent_interval_ms_;
+  std::vector<double> intervals_ms_;
+  int failures_ = 0;
+};
+
+Result<void> Live::open(const TriMesh& mesh) {
+  WindowOptions place = options_.window;
+  DUBSAR_TRY(choose_place(options_, place));
+  SessionOptions wanted = options_.session;
+  std::string note;
+  {
+    DUBSAR_ASSIGN(SinkWindow shown, open_sink_window(wanted.display, place, wanted.profile_folder));
+    const std::string_view name = shown.sink->traits().name;
+    if (!wanted.display.starts_with(name)) wanted.display = name;
+    note = shown.note;
+    shown.sink.reset();
+    window_ = std::move(shown.window);
+  }
+  wanted.screen = window_->screen(wanted.screen);
+  wanted.stereo_window = window_->stereo();
+  DUBSAR_ASSIGN(session_, Session::create(mesh, wanted));
+  DUBSAR_ASSIGN(overlay_, Overlay::create());
+  displays_ = {wanted.display};
+  if (options_.displays.empty()) {
+    displays_ = displays_for_window(wanted.display, wanted.screen, window_->stereo(), wanted.profile_folder);
+  } else {
+    displays_.insert(displays_.end(), options_.displays.begin(), options_.displays.end());
+  }
+  mapping_ = wanted.mapping;
+  InputConfig config;
+  config.window = &events_;
+  config.seen_view = &session_->view();
+  sources_ = std::make_unique<SourceSet>(session_->input(), config, options_.make_input);
+  DUBSAR_TRY(sources_->start(options_.inputs.empty() ? std::vector<std::string>{"mouse", "keyboard"}
+                                                     : options_.inputs));
+  DUBSAR_TRY(place_changed());
+  if (!note.empty()) {
+    log_warning("{}", note);
+    notice(note, clock_.now());
+  } else {
+    notice("F1: help    Esc: end", clock_.now());
+  }
+  return {};
+}
+
+/// The window is somewhere else, or the display is another one.
+Result<void> Live::place_changed() {
+  static_cast<void>(window_->take_place_changed());
+  const PixelSize size = window_->size();
+  if (size.width < 1 || size.height < 1) return {};  // minimised
+  DUBSAR_TRY(session_->set_screen(window_->screen(options_.session.screen)));
+  display_clock_.set_refresh(window_->refresh_hz());
+  const SinkTraits traits = session_->traits();
+  whole_.reset();
+  if (!traits.exact_pixels && traits.output != size && traits.output.width > 0 && traits.output.height > 0) {
+    DUBSAR_ASSIGN(whole_, OffscreenSurface::create(traits.output));
+  }
+  return {};
+}
+
+void Live::notice(std::string text, TimestampNs now) {
+  if (!options_.notices) return;
+  notice_ = std::move(text);
+  notice_since_ = now;
+}
+
+void Live::switch_display(int step) {
+  const std::size_t count = displays_.size();
+  for (std::size_t tried = 1; tried <= count; ++tried) {
+    const std::size_t next = (display_ + (step > 0 ? tried : tried * (count - 1))) % count;
+    auto done = session_->set_display(displays_[next]);
+    if (done) done = place_changed();
+    if (done) {
+      display_ = next;
+      notice("display " + displays_[next], clock_.now());
+      log_info("display {}", displays_[next]);
+      return;
+    }
+    log_warning("{}", done.error().message);
+  }
+}
+
+void Live::toggle_fullscreen() {
+  if (window_->fullscreen()) {
+    window_->set_windowed();
+  } else if (auto done = window_->set_fullscreen(); !done) {
+    notice(done.error().message, clock_.now());
+  }
+}
+
+void Live::obey(SessionCommand command) {
+  switch (command) {
+    case SessionCommand::kHelp:
+      help_open_ = !help_open_;
+      break;
+    case SessionCommand::kNextDisplay:
+      switch_display(1);
+      break;
+    case SessionCommand::kPreviousDisplay:
+      switch_display(-1);
+      break;
+    case SessionCommand::kRetrySources:
+      sources_->retry_now();
+      break;
+    case SessionCommand::kFullscreen:
+      toggle_fullscreen();
+      break;
+    case SessionCommand::kEnd:
+      if (!help_open_) window_->close();
+      help_open_ = false;
+      break;
+  }
+  help_made_ = -1;
+}
+
+/// A key that went down, in the window or in a script.
+void Live::use_key(const std::string& key) {
+  if (const auto command = session_command(key)) return obey(*command);
+  if (help_open_ && key.size() == 1 && key[0] >= '1' && key[0] <= '9' &&
+      sources_->toggle(static_cast<std::size_t>(key[0] - '1')))
+    help_made_ = -1;
+}
+
+void Live::use_window_events() {
+  for (const WindowEvent& event : window_->take_events()) {
+    const bool key = event.kind == WindowEvent::Kind::kKey;
+    if (key && (session_command(event.key) || help_open_)) {
+      if (event.down) use_key(event.key);
+      if (session_command(event.key)) continue;
+    }
+    events_.push(to_input_event(event));
+  }
+}
+
+std::vector<HelpSection> Live::help() const {
+  HelpSection sources{"Sources", {}};
+  int number = 1;
+  for (const SourceRow& row : sources_->rows())
+    sources.rows.push_back({fmt::format("{} {}", number++, row.spec),
+                            row.reason.empty()
+                                ? std::string(health_words(row.health))
+                                : fmt::format("{}: {}", health_words(row.health), shortened(row.reason))});
+  const auto ages = std::vector<double>(recent_age_ms_.begin(), recent_age_ms_.end());
+  const auto intervals = std::vector<double>(recent_interval_ms_.begin(), recent_interval_ms_.end());
+  const SinkTraits traits = session_->traits();
+  const glm::dvec3 eyes = report_.viewer.centre_mm();
+  HelpSection state{"Now", {}};
+  state.rows.push_back({"display", displays_[display_]});
+  state.rows.push_back(
+      {"picture", fmt::format("{} x {} pixels, {} view{}", traits.output.width, traits.output.height,
+                              traits.views, traits.views == 1 ? "" : "s")});
+  state.rows.push_back({"head", fmt::format("{}; eyes at {:.0f}, {:.0f}, {:.0f} mm",
+                                            presence_words(report_.head), eyes.x, eyes.y, eyes.z)});
+  state.rows.push_back(
+      {"frames a second", intervals.empty() ? "nothing moves"
+                                            : fmt::format("{:.0f} while things move",
+                                                          1e3 / std::max(quantile(intervals, 0.5), 1e-3))});
+  state.rows.push_back({"device to cameras", ages.empty()
+                                                 ? "no input yet"
+                                                 : fmt::format("median {:.1f} ms, 95 % {:.1f} ms",
+                                                               quantile(ages, 0.5), quantile(ages, 0.95))});
+  std::vector<HelpSection> out{std::move(state), std::move(sources)};
+  for (HelpSection& section : help_page(mapping_)) out.push_back(std::move(section));
+  return out;
+}
+
+void Live::update_overlay(TimestampNs now) {
+  OverlayText text = overlay_->text();
+  if (!help_open_) {
+    text.help.clear();
+  } else if (help_made_ < 0 || now - help_made_ >= kHelpRefreshNs) {
+    text.help = help();
+    help_made_ = now;
+  }
+  const TimestampNs age = now - notice_since_;
+  if (notice_since_ < 0 || age >= kNoticeNs) {
+    text.notice.clear();
+    text.notice_opacity = 1.0;
+  } else {
+    text.notice = notice_;
+    text.notice_opacity =
+        std::clamp(static_cast<double>(kNoticeNs - age) / static_cast<double>(kFadeNs), 0.0, 1.0);
+  }
+  if (text == overlay_->text()) return;
+  overlay_->set(std::move(text));
+  session_->set_overlay(overlay_->text().empty() ? nullptr : overlay_.get());
+}
+
+/// Draws and presents; figures are kept, files written.
+Result<void> Live::show(TimestampNs begun) {
+  const double cpu = process_cpu_seconds();
+  const Surface target = window_->surface();
+  DUBSAR_TRY(session_->paint(whole_ ? whole_->surface() : target));
+  if (whole_) DUBSAR_TRY(fit_into(whole_->surface(), target));
+  if (!options_.frames.empty() && out_.frames % options_.every == 0) {
+    DUBSAR_ASSIGN(const Image picture, window_->read());
+    DUBSAR_TRY(write_png(
+        (options_.frames / fmt::format("frame-{:05}{}.png", out_.frames, session_->traits().file_suffix))
+            .string(),
+        picture));
+    ++out_.written;
+  }
+  const TimestampNs drawn = clock_.now();
+  window_->present();
+  const TimestampNs presented = clock_.now();
+  display_clock_.presented(begun, drawn, presented);
+  const auto keep = [](std::deque<double>& values, double value) {
+    values.push_back(value);
+    if (values.size() > kRecent) values.pop_front();
+  };
+  if (report_.moving && last_presented_ >= 0 && presented - last_presented_ < kSecond / 4) {
+    const double interval = 1e-6 * static_cast<double>(presented - last_presented_);
+    intervals_ms_.push_back(interval);
+    keep(recent_interval_ms_, interval);
+  }
+  if (report_.input_age) keep(recent_age_ms_, 1e-6 * static_cast<double>(*report_.input_age));
+  last_presented_ = presented;
+  ++out_.frames;
+  drawn_ = true;
+  out_.frame_cpu_ms.push_back(1e3 * (process_cpu_seconds() - cpu));
+  return {};
+}
+
+/// Scripts and recordings end a session that has no other input.
+bool Live::over(TimestampNs now) {
+  if (options_.longest_s > 0 && now - start_ >= static_cast<TimestampNs>(1e9 * options_.longest_s))
+    return true;
+  const bool waits_for_people =
+      options_.inputs.empty() ||
+      std::any_of(options_.inputs.begin(), options_.inputs.end(), [](const std::string& spec) {
+        return !spec.starts_with("scripted") && !spec.starts_with("replay");
+      });
+  if (waits_for_people || !session_->input().finished()) {
+    all_over_since_ = -1;
+    return false;
+  }
+  if (all_over_since_ < 0) all_over_since_ = now;
+  return now - all_over_since_ >= kSettleNs;
+}
+
+/// Until the next picture is due, or while nothing moves until something happens.
+void Live::wait() {
+  if (!session_->needs_paint() && !report_.moving) return window_->wait_events(kIdleS);
+  for (TimestampNs now = clock_.now(); now < display_clock_.next_start() && !window_->should_close();
+       now = clock_.now())
+    window_->wait_events(1e-9 * static_cast<double>(display_clock_.next_start() - now));
+}
+
+Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const LiveMoment&)>& look) {
+  DUBSAR_TRY(check(options_));
+  DUBSAR_TRY(open(mesh));
+  progress_.begin("view", 0, "frame");
+  std::string recording;
+  start_ = clock_.now();
+  glm::dquat last_turn = session_->view().rotation;
+  const auto delay = static_cast<TimestampNs>(1e9 * options_.display_delay_s);
+  while (!window_->should_close() && !over(clock_.now())) {
+    if (progress_.cancelled()) return cancelled_error();
+    window_->poll_events();
+    use_window_events();
+    if (window_->take_place_changed())
+      if (auto done = place_changed(); !done) log_warning("{}", done.error().message);
+    const TimestampNs now = clock_.now();
+    sources_->tick(now);
+    report_ = session_->poll(now, display_clock_.light(now) + delay);
+    for (const InputEvent& event :
+         session_->last_input().events)  // of scripts: the window's own do not come this way
+      if (event.kind == EventKind::kKey && event.down && session_command(event.key)) use_key(event.key);
+    if (report_.input_age) out_.input_age_ms.push_back(1e-6 * static_cast<double>(*report_.input_age));
+    out_.largest_turn_deg =
+        std::max(out_.largest_turn_deg, turn_between_deg(last_turn, report_.view.rotation));
+    last_turn = report_.view.rotation;
+    if (!options_.record.empty()) recording += record_line({now - start_, session_->last_input()}) + "\n";
+    update_overlay(now);
+    drawn_ = false;
+    const PixelSize size = window_->size();
+    if (session_->needs_paint() && size.width > 0 && size.height > 0) {
+      auto shown = show(now);
+      failures_ = shown ? 0 : failures_ + 1;
+      if (!shown && failures_ == 1) log_warning("{}; the session goes on", shown.error().message);
+      if (failures_ >= kMostFailures) return tl::unexpected<Error>(shown.error());
+      if (shown) report_.light = session_->light();
+      progress_.advance(1);
+    }
+    if (look)
+      look({.report = report_,
+            .drawn = drawn_,
+            .frames = out_.frames,
+            .help = help_open_,
+            .display = displays_[display_],
+            .sources = sources_->rows(),
+            .session = *session_,
+            .window = *window_});
+    wait();
+  }
+  progress_.end();
+  out_.seconds = 1e-9 * static_cast<double>(clock_.now() - start_);
+  out_.fps = intervals_ms_.empty() ? 0.0 : 1e3 / std::max(quantile(intervals_ms_, 0.5), 1e-3);
+  out_.view = session_->view();
+  out_.display = displays_[display_];
+  out_.rows = sources_->rows();
+  out_.sources = session_->input().states();
+  if (!options_.record.empty()) DUBSAR_TRY(write_file_atomically(options_.record, recording));
+  return std::move(out_);
+}
+
+}  // namespace
+
+std::vector<std::string> displays_for_window(const std::string& first, const Screen& screen, bool stereo,
+                                             const std::filesystem::path& profile_folder) {
+  std::vector<std::string> out{first};
+  const auto add = [&](std::string name) {
+    if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(std::move(name));
+  };
+  for (const char* name : {"mono", "anaglyph", "side_by_side", "top_bottom", "interlaced"}) add(name);
+  if (stereo) add("quad_buffer");
+  if (const auto profiles = load_profiles(profile_folder))
+    for (const PanelProfile& panel : *profiles)
+      if (panel.width_px == screen.width_px && panel.height_px == screen.height_px &&
+          (panel.sheet || panel.optics))
+        add("lenticular:" + panel.name);
+  return out;
+}
+
+Result<LiveResult> run_live(const TriMesh& mesh, const LiveOptions& options, Progress& progress,
+                            const std::function<void(const LiveMoment&)>& look) {
+  Live live(options, progress);
+  return live.run(mesh, look);
+}
+
+}  // namespace dubsar::app

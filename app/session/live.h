@@ -1,0 +1,68 @@
+#pragma once
+// A session in a window, in real time: the newest input is read when a picture is begun, cameras are made for
+// the moment its light reaches the eye, and nothing is drawn while nothing changes.
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/session/offscreen.h"
+#include "app/session/session.h"
+#include "app/session/source_set.h"
+#include "core/base/progress.h"
+#include "display/context_glfw.h"
+
+namespace dubsar::app {
+
+struct LiveOptions {
+  SessionOptions session{};
+  std::vector<std::string> inputs;  ///< none: mouse and keyboard
+  WindowOptions window{};
+  /// Whether the window covers a monitor. None: displays that need exact pixels do, on the monitor of
+  /// `window.monitor`, else the one that has the panel's pixels; others do not.
+  std::optional<bool> fullscreen;
+  std::vector<std::string>
+      displays;            ///< what the keys go through besides session.display; none: what fits the window
+  double longest_s = 0.0;  ///< 0: until somebody ends it
+  double display_delay_s =
+      0.0;  ///< from the presentation of a picture to its light, beyond the monitor's scan
+  std::filesystem::path frames{};  ///< folder for frame-00000.png ..., what the window showed; empty: none
+  int every = 1;                   ///< only each n-th frame becomes a file
+  std::filesystem::path record{};  ///< recording of the input; empty: none
+  bool notices = true;  ///< a line for some seconds: how to get help and leave, which display this is now
+  MakeInput make_input = dubsar::make_input;
+};
+
+struct LiveResult : OffscreenResult {  ///< times are real
+  double fps = 0.0;     ///< of frames while things moved: from one presented picture to the next
+  std::string display;  ///< shown at the end
+  std::vector<SourceRow> rows;
+};
+
+/// What a test or a recorder sees after each turn of the loop.
+struct LiveMoment {
+  const FrameReport& report;
+  bool drawn = false;  ///< a picture was presented in this turn
+  int frames = 0;
+  bool help = false;
+  const std::string& display;
+  std::vector<SourceRow> sources;
+  const Session& session;
+  GlfwWindow& window;
+};
+
+/// Runs until the window is closed, a script or recording was the only input and is over (plus 1 s), or
+/// longest_s. Mouse and keyboard need not be among the inputs for the session's own keys (session_keys.h).
+/// Errors: those of the window, of Session::create, of SourceSet::start; kCancelled; a picture that cannot be
+/// drawn three times in a row. Main thread.
+Result<LiveResult> run_live(const TriMesh& mesh, const LiveOptions& options, Progress& progress,
+                            const std::function<void(const LiveMoment&)>& look = {});
+
+/// Displays that a window on this screen can show, as make_sink() reads them: `first`, those for any monitor,
+/// panels of exactly this size, and quad_buffer in a stereo window.
+std::vector<std::string> displays_for_window(const std::string& first, const Screen& screen, bool stereo,
+                                             const std::filesystem::path& profile_folder);
+
+}  // namespace dubsar::app

@@ -1,0 +1,68 @@
+#pragma once
+// Somebody at the desk of a test's X server: real mouse and key events through the XTEST extension, so that
+// they take the way of a user's.
+
+#include <xcb/xcb.h>
+#include <xcb/xtest.h>
+
+#include <string>
+
+namespace dubsar::testing {
+
+class XPerson {
+ public:
+  /// Uses DISPLAY. X11 key codes are those of Xvfb's default (US) layout, by name: see key().
+  XPerson() : connection_(xcb_connect(nullptr, nullptr)) {
+    if (xcb_connection_has_error(connection_) == 0)
+      root_ = xcb_setup_roots_iterator(xcb_get_setup(connection_)).data->root;
+  }
+  ~XPerson() { xcb_disconnect(connection_); }
+  XPerson(const XPerson&) = delete;
+  XPerson& operator=(const XPerson&) = delete;
+  bool here() const { return root_ != 0; }
+
+  /// Keys go to the window under the pointer from now on, as there is no window manager that gives it the
+  /// focus.
+  void type_where_the_pointer_is() {
+    xcb_set_input_focus(connection_, XCB_INPUT_FOCUS_POINTER_ROOT, XCB_INPUT_FOCUS_POINTER_ROOT,
+                        XCB_CURRENT_TIME);
+    xcb_flush(connection_);
+  }
+  void point(int x, int y) { fake(XCB_MOTION_NOTIFY, 0, x, y); }  ///< on the screen
+  void press(int button) {
+    fake(XCB_BUTTON_PRESS, button);
+  }  ///< 1 left, 2 middle, 3 right, 4 and 5 the wheel
+  void release(int button) { fake(XCB_BUTTON_RELEASE, button); }
+  void hold(const std::string& name) { fake(XCB_KEY_PRESS, code(name)); }
+  void let_go(const std::string& name) { fake(XCB_KEY_RELEASE, code(name)); }
+  void key(const std::string& name) {
+    hold(name);
+    let_go(name);
+  }
+
+ private:
+  static int code(const std::string& name) {  // evdev codes + 8
+    if (name == "escape") return 9;
+    if (name == "1") return 10;
+    if (name == "2") return 11;
+    if (name == "slash") return 61;
+    if (name == "shift") return 50;
+    if (name == "control") return 37;
+    if (name == "f1") return 67;
+    if (name == "f2") return 68;
+    if (name == "f11") return 95;
+    if (name == "right") return 114;
+    if (name == "home") return 110;
+    return 0;
+  }
+  void fake(int type, int detail, int x = 0, int y = 0) {
+    xcb_test_fake_input(connection_, static_cast<std::uint8_t>(type), static_cast<std::uint8_t>(detail),
+                        XCB_CURRENT_TIME, root_, static_cast<std::int16_t>(x), static_cast<std::int16_t>(y),
+                        0);
+    xcb_flush(connection_);
+  }
+  xcb_connection_t* connection_;
+  xcb_window_t root_ = 0;
+};
+
+}  // namespace dubsar::testing
