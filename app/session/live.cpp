@@ -128,7 +128,7 @@ class Live {
   WindowEvents events_;
   std::unique_ptr<SourceSet> sources_;
   DisplayClock display_clock_;
-  std::vector<std::string> displays_;
+  std::vector<std::string> displays_, inputs_;
   std::size_t display_ = 0;
   Mapping mapping_;
   FrameReport report_;
@@ -168,9 +168,14 @@ Result<void> Live::open(const TriMesh& mesh) {
   InputConfig config;
   config.window = &events_;
   config.seen_view = &session_->view();
+  config.hotplug = HotplugBell::of_this_machine();
   sources_ = std::make_unique<SourceSet>(session_->input(), config, options_.make_input);
-  DUBSAR_TRY(sources_->start(options_.inputs.empty() ? std::vector<std::string>{"mouse", "keyboard"}
-                                                     : options_.inputs));
+  inputs_ = options_.inputs;
+  if (inputs_.empty()) {
+    inputs_ = {"mouse", "keyboard"};
+    for (std::string& spec : present_inputs()) inputs_.push_back(std::move(spec));
+  }
+  DUBSAR_TRY(sources_->start(inputs_));
   DUBSAR_TRY(place_changed());
   if (!note.empty()) {
     log_warning("{}", note);
@@ -363,11 +368,9 @@ Result<void> Live::show(TimestampNs begun) {
 bool Live::over(TimestampNs now) {
   if (options_.longest_s > 0 && now - start_ >= static_cast<TimestampNs>(1e9 * options_.longest_s))
     return true;
-  const bool waits_for_people =
-      options_.inputs.empty() ||
-      std::any_of(options_.inputs.begin(), options_.inputs.end(), [](const std::string& spec) {
-        return !spec.starts_with("scripted") && !spec.starts_with("replay");
-      });
+  const bool waits_for_people = std::any_of(inputs_.begin(), inputs_.end(), [](const std::string& spec) {
+    return !spec.starts_with("scripted") && !spec.starts_with("replay");
+  });
   if (waits_for_people || !session_->input().finished()) {
     all_over_since_ = -1;
     return false;

@@ -18,7 +18,7 @@ namespace dubsar::app {
 
 struct LiveOptions {
   SessionOptions session{};
-  std::vector<std::string> inputs;  ///< none: mouse and keyboard
+  std::vector<std::string> inputs;  ///< none: mouse, keyboard, and the devices that are plugged in
   WindowOptions window{};
   /// Whether the window covers a monitor. None: displays that need exact pixels do, on the monitor of
   /// `window.monitor`, else the one that has the panel's pixels; others do not.

@@ -101,8 +101,8 @@ std::vector<SourceRow> SourceSet::rows() const {
       row.health = SourceHealth::kOff;
     } else if (state) {
       row.health = state->freshness == Freshness::kLost ? SourceHealth::kLost : SourceHealth::kPresent;
-      row.reason =
-          row.health == SourceHealth::kLost ? "silent or unplugged; it is used again when it comes back" : "";
+      row.reason = state->note;
+      if (row.reason.empty() && row.health == SourceHealth::kLost) row.reason = "silent; it is used again when it comes back";
     }
     out.push_back(std::move(row));
   }

@@ -24,7 +24,7 @@ enum class SourceHealth {
 struct SourceRow {
   std::string spec;
   SourceHealth health = SourceHealth::kMissing;
-  std::string reason;  ///< of kMissing and kLost
+  std::string reason;  ///< of kMissing and kLost; what a present source wants to say
 };
 
 using MakeInput =

@@ -48,6 +48,7 @@ class Live : public ::testing::Test {
     options_.window.y = kY;
     options_.window.decorated = false;
     options_.fullscreen = false;
+    options_.inputs = {"mouse", "keyboard"};  // not what the machine of the test has
     options_.notices = false;
     options_.longest_s = 20;  // a test that waits for something that never comes
   }
