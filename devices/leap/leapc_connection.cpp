@@ -20,6 +20,7 @@ using std::chrono::steady_clock;
 constexpr const char* kNoServiceText =
     "leapc: Ultraleap's tracking service does not answer: start it with \"sudo systemctl start "
     "ultraleap-hand-tracking-service\" (its log: journalctl -u ultraleap-hand-tracking-service)";
+constexpr const char* kConnectingText = "leapc: connecting to Ultraleap's tracking service";
 constexpr const char* kNoDeviceText =
     "leapc: the tracking service runs, but no device is plugged in: plug it into a port of the machine "
     "itself";
@@ -71,10 +72,11 @@ class LibraryConnection final : public Connection {
     DUBSAR_ASSIGN(Handle handle, Handle::open(*library_));
     std::unique_lock lock(mutex_);
     state_ = State::kNoService;
-    reason_ = kNoServiceText;
+    reason_ = kConnectingText;
     counters_ = {};
     fresh_ = stopping_ = false;
     thread_ = std::thread([this, owned = std::move(handle)]() mutable { run(std::move(owned)); });
+    if (options_.patience == milliseconds(0)) return {};
     if (changed_.wait_for(lock, options_.patience, [&] { return counters_.connections > 0; })) return {};
     lock.unlock();
     stop();
@@ -123,6 +125,7 @@ class LibraryConnection final : public Connection {
     ClockMap times;
     TimestampNs sampled = 0;
     bool connected = false;
+    bool said_so = false;  // that there is no service
     std::set<std::uint32_t> devices;
     std::string trouble;     // of the device that failed last
     bool right_mode = true;  // false: somebody has switched the device to another mode
@@ -133,7 +136,7 @@ class LibraryConnection final : public Connection {
   void run(Handle handle) {
     Session session(std::move(handle));
     while (!stopping()) {
-      if (!session.connected && steady_clock::now() - session.silent_since > options_.reopen) reopen(session);
+      if (!session.connected) wait_for_service(session);
       // Newer libraries may write more than the 20 bytes that we know.
       alignas(8) std::array<std::byte, 256> message{};
       const std::uint32_t code = library_->poll_connection(
@@ -174,8 +177,14 @@ class LibraryConnection final : public Connection {
     ++counters_.refused;
   }
 
-  void reopen(Session& session) {
-    session.silent_since = steady_clock::now();
+  void wait_for_service(Session& session) {
+    const auto now = steady_clock::now();
+    if (!session.said_so && now - session.silent_since > options_.connecting) {
+      session.said_so = true;
+      tell(State::kNoService, kNoServiceText);
+    }
+    if (now - session.silent_since <= options_.reopen) return;
+    session.silent_since = now;
     if (auto again = Handle::open(*library_)) session.handle = std::move(*again);
   }
 

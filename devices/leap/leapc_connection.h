@@ -17,9 +17,10 @@ namespace dubsar::leapc {
 struct Options {
   std::string library;  ///< a file; empty: looked for where the vendor puts it
   Mode mode = Mode::kDesktop;
-  milliseconds poll{25};        ///< one wait for a message; how long stop() may take
-  milliseconds patience{2000};  ///< how long start() waits for the service
-  milliseconds reopen{5000};    ///< a connection that stays without service so long is made anew
+  milliseconds poll{25};          ///< one wait for a message; how long stop() may take
+  milliseconds patience{2000};    ///< how long start() waits for the service; 0: it does not wait, nor fail
+  milliseconds connecting{1000};  ///< so long a service that has not answered yet may still be about to
+  milliseconds reopen{5000};      ///< a connection that stays without service so long is made anew
 };
 
 /// Everything the service saw at one moment, in the device's frame (leapc_protocol.h).

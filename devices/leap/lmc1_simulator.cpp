@@ -77,7 +77,8 @@ class Lmc1Simulator::Model final : public UvcCameraModel {
     HandRenderOptions render = options_.render;
     render.width = size.width;
     render.height = size.height;
-    renderer_.emplace(options_.calibration, render);
+    if (!renderer_ || renderer_->options().width != size.width || renderer_->options().height != size.height)
+      renderer_.emplace(options_.calibration, render);
     left_.resize(size.frame_bytes() / 2);
     right_.resize(left_.size());
   }

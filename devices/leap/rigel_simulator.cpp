@@ -85,9 +85,10 @@ class RigelSimulator::Model final : public UvcCameraModel {
     HandRenderOptions render = options_.render;
     render.width = size.width;
     render.height = size.height;
-    renderer_.reset();
-    if (size.width == 640)
-      renderer_.emplace(options_.calibration, render);  // how other sizes are cropped is not known
+    const bool known = size.width == 640;  // how other sizes are cropped is not known
+    if (!known) renderer_.reset();
+    if (known && (!renderer_ || renderer_->options().height != size.height))
+      renderer_.emplace(options_.calibration, render);
     left_.assign(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height), 0);
     right_ = left_;
   }

@@ -102,7 +102,8 @@ bool UvcSimulator::Device::begin_payload() {
     if (options.frame_limit != 0 && begun >= options.frame_limit) return false;
     if (options.paced) {
       if (now() < due) return false;
-      due += 100LL * size->interval_100ns;
+      const TimestampNs interval = 100LL * size->interval_100ns;
+      due += options.clock != nullptr ? interval * (1 + (now() - due) / interval) : interval;
     }
     frame.resize(size->frame_bytes());
     model->make_frame(begun, frame);

@@ -38,7 +38,9 @@ class UvcCameraModel {
 struct UvcSimulatorOptions {
   std::uint64_t frame_limit = 0;  ///< sends no more frames than this; 0: no limit
   bool paced = false;             ///< frames come at the rate of the mode, not as fast as they are read
-  const Clock* clock = nullptr;   ///< of the pace; null: the steady clock. Outlives the simulator, any thread
+  /// Of the pace, frames that nobody read in time are left out; null: the steady clock. Outlives the
+  /// simulator, any thread.
+  const Clock* clock = nullptr;
 };
 
 /// Copies share one device, which outlives its transports. Any thread.

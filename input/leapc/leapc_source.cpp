@@ -69,6 +69,7 @@ std::unique_ptr<InputSource> leapc_source(std::unique_ptr<leapc::Connection> con
 Result<std::unique_ptr<InputSource>> make_leapc_source(const InputConfig& config) {
   static const SteadyClock kSteady;
   leapc::Options options;
+  options.patience = milliseconds(0);
   Pose screen_from_device = table_placement();
   for (const auto& [key, value] : config.options) {
     if (key == "library" && !value.empty()) {

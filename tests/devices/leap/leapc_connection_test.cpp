@@ -120,6 +120,19 @@ TEST_F(LeapcConnection, WithoutTheServiceStartSaysHowToStartIt) {
   EXPECT_TRUE(make_connection(options, clock)->start());
 }
 
+TEST_F(LeapcConnection, WithoutPatienceStartNeitherWaitsNorFailsAndSaysSoLater) {
+  fake_leapc_set_service(false);
+  options.patience = milliseconds(0);
+  options.connecting = milliseconds(30);
+  auto connection = make_connection(options, clock);
+  ASSERT_TRUE(connection->start());
+  EXPECT_EQ(connection->state(), State::kNoService);
+  EXPECT_THAT(connection->reason(), HasSubstr("connecting"));
+  EXPECT_TRUE(eventually([&] { return connection->reason().find("systemctl start") != std::string::npos; }));
+  fake_leapc_set_service(true);
+  EXPECT_TRUE(reaches(*connection, State::kTracking));
+}
+
 TEST_F(LeapcConnection, ALostServiceIsAStateAndComesBackByItself) {
   auto connection = make_connection(options, clock);
   ASSERT_TRUE(connection->start());

@@ -131,6 +131,18 @@ TEST_F(LeapcSource, HandsComeInTheScreenFrameAndALostServiceTakesThemAway) {
   EXPECT_TRUE(reaches(**source, Freshness::kUnchanged, frame));
 }
 
+TEST_F(LeapcSource, StartsBeforeTheServiceDoesAndSaysWhatItWaitsFor) {
+  fake_leapc_set_service(false);
+  auto source = make_input(spec);
+  ASSERT_TRUE(source) << source.error().message;
+  InputFrame frame;
+  ASSERT_TRUE(reaches(**source, Freshness::kLost, frame));
+  EXPECT_THAT((*source)->note(), HasSubstr("connecting"));
+  fake_leapc_set_service(true);
+  ASSERT_TRUE(reaches(**source, Freshness::kUnchanged, frame));
+  EXPECT_EQ((*source)->note(), "");
+}
+
 TEST_F(LeapcSource, IsNeverTakenUnlessNamedAndSaysWhatIsMissing) {
   const auto row = find_backend(input_sources(), "leapc", "input");
   ASSERT_TRUE(row);
