@@ -101,6 +101,7 @@ Result<SessionOptions> session_options(const Options& options) {
   SessionOptions session;
   DUBSAR_ASSIGN(session.display, resolve_display(options.display, options.bridge_port));
   session.profile_folder = panel_folder();
+  session.model_folder = model_folder();
   DUBSAR_ASSIGN(session.shading, shading_preset(options.style));
   DUBSAR_ASSIGN(session.direction, parse_view_direction(options.view));
   if (options.mapping.empty()) {

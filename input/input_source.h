@@ -1,7 +1,9 @@
 #pragma once
 // The one interface behind which every input stands, what it delivers, and the ordered table of back ends.
 
+#include <filesystem>
 #include <glm/gtc/quaternion.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -80,6 +82,8 @@ struct InputConfig {
   /// The clock is moved by hand: devices are read in poll(), without a thread, so that the same script gives the same input.
   bool simulated_time = false;
   ReachDevice reach_device;                ///< how devices are reached; empty: the real ones
+  std::filesystem::path model_folder;      ///< networks that ./do models fetched; empty: none
+  glm::dvec2 panel_m{0.344, 0.194};        ///< width and height of the whole panel; a webcam sits on its top edge
   std::shared_ptr<HotplugBell> hotplug;    ///< shared by the sources of a session; null: lost devices come back by pauses
 };
 

@@ -169,6 +169,8 @@ Result<void> Live::open(const TriMesh& mesh) {
   config.window = &events_;
   config.seen_view = &session_->view();
   config.hotplug = HotplugBell::of_this_machine();
+  config.model_folder = options_.session.model_folder;
+  config.panel_m = 1e-3 * glm::dvec2(options_.session.screen.width_mm, options_.session.screen.height_mm);
   sources_ = std::make_unique<SourceSet>(session_->input(), config, options_.make_input);
   inputs_ = options_.inputs;
   if (inputs_.empty()) {

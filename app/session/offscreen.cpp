@@ -51,6 +51,8 @@ Result<OffscreenResult> run_offscreen(const TriMesh& mesh, const OffscreenOption
   config.seen_view = &session->view();
   config.clock = &clock;
   config.simulated_time = true;
+  config.model_folder = options.session.model_folder;
+  config.panel_m = 1e-3 * glm::dvec2(options.session.screen.width_mm, options.session.screen.height_mm);
   for (const std::string& spec : options.inputs) {
     DUBSAR_ASSIGN(auto source, make_input(spec, config));
     session->input().add(std::move(source));

@@ -36,6 +36,7 @@ enum class Quality {
 
 struct SessionOptions {
   std::string display = "mono";            ///< as make_sink() reads it
+  std::filesystem::path model_folder{};  ///< networks of the webcam source; empty: none
   std::filesystem::path profile_folder{};
   Screen screen{};                         ///< in an offscreen session, what the sink does not know better
   Viewer viewer{};                         ///< where the eyes are while no head is tracked

@@ -9,12 +9,13 @@
 #include "input/sources/head_source.h"
 #include "input/sources/leap_source.h"
 #include "input/sources/puck_sources.h"
+#include "input/sources/webcam_source.h"
 #include "input/window_events.h"
 
 namespace dubsar {
 namespace {
 
-constexpr std::array<InputBackend, 9> kSources{{
+constexpr std::array<InputBackend, 10> kSources{{
     {"mouse", "turn, shift or middle: move, ctrl or wheel: zoom, right: light", true, make_mouse_source},
     {"keyboard", "arrows turn, + and - zoom, home resets, backspace undoes", true, make_keyboard_source},
     {"spacemouse", "a 3Dconnexion puck turns, moves and zooms", true, make_spacemouse_source},
@@ -23,6 +24,8 @@ constexpr std::array<InputBackend, 9> kSources{{
     {"leapc", "hands from Ultraleap's tracking service: leapc[:library=FILE,mode=desktop,at=X/Y/Z,turn=X/Y/Z]", false,
      make_leapc_source},
     {"head", "a tracked head: head:opentrack, head:vrpn, head:rift, head:xreal", true, make_head_source},
+    {"webcam", "a head, from the face before a camera: webcam[:device=/dev/video0,hfov=60,ipd=63,at=X/Y/Z,tilt=0]", false,
+     make_webcam_source},
     {"scripted", "simulated people: scripted:FILE.json", false, make_scripted_source},
     {"replay", "a recording of any input: replay:FILE.jsonl", false, make_replay_source},
 }};

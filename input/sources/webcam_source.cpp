@@ -1,0 +1,181 @@
+#include "input/sources/webcam_source.h"
+
+#include <chrono>
+#include <cstdio>
+#include <numbers>
+#include <thread>
+
+#include "devices/camera/camera.h"
+#include "devices/camera/capture.h"
+#include "devices/camera/picture_frames.h"
+#include "devices/retry_pause.h"
+#include "input/face_tracking/face_tracker.h"
+#include "input/sources/device_source.h"
+#include "input/sources/option_reader.h"
+#include "input/vision/model_files.h"
+
+namespace dubsar {
+namespace {
+
+constexpr const char* kCascade = "/usr/share/opencv4/haarcascades/haarcascade_frontalface_default.xml";
+constexpr double kAbovePanelM = 0.01;
+constexpr double kRadians = std::numbers::pi / 180.0;
+constexpr TimestampNs kSilentNs = 2'000'000'000;
+
+class WebcamReader final : public DeviceReader {
+ public:
+  WebcamReader(WebcamFrames frames, FaceTracker tracker)
+      : frames_(std::move(frames)), tracker_(std::move(tracker)) {}
+
+  bool read(TimestampNs now, milliseconds timeout, InputFrame& frame) override {
+    if (!open_ && !open(now)) return false;
+    const auto until = std::chrono::steady_clock::now() + timeout;
+    while (!frames_.source->poll(picture_)) {
+      if (frames_.source->state() == FrameSourceState::kLost) {
+        lose(frames_.source->reason(), now);
+        return false;
+      }
+      if (std::chrono::steady_clock::now() >= until) return false;
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    if (auto tracked = tracker_.track(picture_, frame.heads); !tracked) {
+      lose(tracked.error().message, now);
+      return false;
+    }
+    frame.time = picture_.time;
+    return true;
+  }
+  bool connected() const override { return open_; }
+  std::string reason() const override { return reason_; }
+  void wake() override { retry_.wake(); }
+  bool finished() const override { return frames_.ended && frames_.ended(); }
+
+ private:
+  bool open(TimestampNs now) {
+    if (!retry_.due(now) || finished()) return false;
+    if (auto started = frames_.source->start(); !started) {
+      reason_ = std::move(started).error().message;
+      retry_.failed(now);
+      return false;
+    }
+    retry_.succeeded();
+    reason_.clear();
+    return open_ = true;
+  }
+  void lose(std::string why, TimestampNs now) {
+    reason_ = std::move(why);
+    frames_.source->stop();
+    open_ = false;
+    retry_.lost(now);
+  }
+
+  WebcamFrames frames_;
+  FaceTracker tracker_;
+  RetryPause retry_;
+  std::string reason_;
+  bool open_ = false;
+  Frame picture_;
+};
+
+Result<std::unique_ptr<FaceDetector>> make_detector(const std::filesystem::path& models) {
+  auto network = make_network_face_detector(models / kFaceModel);
+  if (network || network.error().kind != ErrorKind::kNoInput) return network;
+  auto cascade = make_cascade_face_detector(kCascade);
+  if (cascade) return cascade;
+  return fail(ErrorKind::kUnavailable,
+              "input webcam: no face network in {} ({} fetches it) and no cascade: {}", models.string(),
+              kModelCommand, cascade.error().message);
+}
+
+struct WebcamOptions {
+  CameraOptions camera;
+  std::string replay;
+  FaceTrackerOptions tracking;
+  std::filesystem::path models;
+};
+
+Result<WebcamOptions> read_options(const InputConfig& config, bool with_camera) {
+  OptionReader options(config, "webcam");
+  WebcamOptions read;
+  std::string size = "640x480";
+  if (with_camera) {
+    read.camera.path = options.text("device");
+    read.camera.format.fps = options.number("fps", 1.0, 240.0, 30.0);
+    size = options.text("size", size);
+    read.replay = options.text("replay");
+  }
+  const glm::dvec3 top_mm(0.0, 1e3 * (0.5 * config.panel_m.y + kAbovePanelM), 0.0);
+  read.tracking.camera.horizontal_field_rad = kRadians * options.number("hfov", 20.0, 150.0, 60.0);
+  read.tracking.camera.at_m = 1e-3 * options.triple("at", 10'000.0, top_mm);
+  read.tracking.camera.tilt_rad = kRadians * options.number("tilt", -90.0, 90.0, 0.0);
+  read.tracking.ipd_m = 1e-3 * options.number("ipd", 40.0, 90.0, 63.0);
+  read.models = options.text("models", config.model_folder.string());
+  DUBSAR_TRY(options.finish());
+  CaptureFormat& format = read.camera.format;
+  char cross = 0, rest = 0;
+  if (std::sscanf(size.c_str(), "%d%c%d%c", &format.width, &cross, &format.height, &rest) != 3 ||
+      cross != 'x' || format.width < 160 || format.width > 4096 || format.height < 120 ||
+      format.height > 4096)
+    return fail(ErrorKind::kUsage, "input webcam: size is \"{}\", expected WIDTHxHEIGHT such as 640x480",
+                size);
+  return read;
+}
+
+Result<std::unique_ptr<InputSource>> make_source(WebcamFrames frames, const WebcamOptions& options,
+                                                 const InputConfig& config) {
+  DUBSAR_ASSIGN(auto detector, make_detector(options.models));
+  DeviceSourceTraits traits;
+  traits.name = "webcam";
+  traits.has_end = frames.ended != nullptr;
+  traits.silent_ns = traits.has_end ? 0 : kSilentNs;
+  if (detector->name() != "network")
+    traits.note =
+        fmt::format("webcam: faces without their network: depth is coarse; {} fetches it", kModelCommand);
+  return make_device_source(
+      std::move(traits),
+      std::make_unique<WebcamReader>(std::move(frames), FaceTracker(std::move(detector), options.tracking)),
+      config);
+}
+
+/// Pictures that two hold: the reader, and whoever asks whether they are over.
+class SharedPictures final : public FrameSource {
+ public:
+  explicit SharedPictures(std::shared_ptr<PictureFrames> pictures) : pictures_(std::move(pictures)) {}
+  Result<void> start() override { return pictures_->start(); }
+  void stop() noexcept override { pictures_->stop(); }
+  bool poll(Frame& newest) override { return pictures_->poll(newest); }
+  FrameSourceState state() const override { return pictures_->state(); }
+  std::string reason() const override { return pictures_->reason(); }
+
+ private:
+  std::shared_ptr<PictureFrames> pictures_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<InputSource>> make_webcam_source_over(WebcamFrames frames, const InputConfig& config) {
+  DUBSAR_ASSIGN(const WebcamOptions options, read_options(config, false));
+  return make_source(std::move(frames), options, config);
+}
+
+Result<std::unique_ptr<InputSource>> make_webcam_source(const InputConfig& config) {
+  DUBSAR_ASSIGN(const WebcamOptions options, read_options(config, true));
+  WebcamFrames frames;
+  if (!options.replay.empty()) {
+    std::shared_ptr<PictureFrames> pictures =
+        make_picture_frames(options.replay, options.camera.format.fps, session_clock(config));
+    DUBSAR_TRY(pictures->start());  // says now what is wrong with the folder
+    frames.ended = [pictures] { return pictures->finished(); };
+    frames.source = std::make_unique<SharedPictures>(std::move(pictures));
+  } else {
+    if (config.simulated_time)
+      return fail(
+          ErrorKind::kUsage,
+          "input webcam: a camera cannot run in simulated time, expected replay=FOLDER with pictures");
+    DUBSAR_ASSIGN(const OpenCapture open, load_capture());
+    frames.source = make_camera(options.camera, open, session_clock(config));
+  }
+  return make_source(std::move(frames), options, config);
+}
+
+}  // namespace dubsar
