@@ -30,6 +30,7 @@ XvfbServer::XvfbServer() {
     const int nothing = ::open("/dev/null", O_RDWR);
     ::dup2(nothing, 1);
     ::dup2(nothing, 2);
+    ::unsetenv("LD_PRELOAD");  // VirtualGL is for the client
     const std::string descriptor = std::to_string(pipe_ends[1]);
     ::execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", "1920x1200x24", "-nolisten", "tcp", "-fbdir", folder_.c_str(), nullptr);
     ::_exit(127);
