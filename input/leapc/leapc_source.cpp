@@ -11,8 +11,11 @@ namespace {
 
 class LeapcSource final : public InputSource {
  public:
-  LeapcSource(std::unique_ptr<leapc::Connection> connection, const Pose& screen_from_device)
-      : connection_(std::move(connection)), screen_from_device_(screen_from_device) {}
+  LeapcSource(std::unique_ptr<leapc::Connection> connection, const Pose& screen_from_device,
+              bool simulated_time)
+      : connection_(std::move(connection)),
+        screen_from_device_(screen_from_device),
+        simulated_time_(simulated_time) {}
 
   std::string_view name() const noexcept override { return "leapc"; }
   Result<void> start() override {
@@ -29,23 +32,24 @@ class LeapcSource final : public InputSource {
     const bool fresh = connection_->poll(frame_);
     if (fresh || !heard_) heard_ = now;
     const bool tracking = connection_->state() == leapc::State::kTracking;
-    silent_ = tracking && now - *heard_ > kLeapcSilentNs;
+    silent_ = tracking && !simulated_time_ && now - *heard_ > kLeapcSilentNs;
     if (!tracking || silent_) {
       newest.hands.clear();
       return Freshness::kLost;
     }
     if (!fresh) return Freshness::kUnchanged;
-    newest.time = frame_.time;
+    newest.time = simulated_time_ ? now : frame_.time;
     newest.hands.clear();
     for (const leapc::Hand& hand : frame_.hands)
       if (newest.hands.size() < kMaxHands)
-        newest.hands.push_back(moved(screen_from_device_, hand_from_leapc(hand, frame_.time)));
+        newest.hands.push_back(moved(screen_from_device_, hand_from_leapc(hand, newest.time)));
     return Freshness::kNew;
   }
 
  private:
   std::unique_ptr<leapc::Connection> connection_;
   const Pose screen_from_device_;
+  const bool simulated_time_;
   leapc::Frame frame_;
   bool silent_ = false;
   std::optional<TimestampNs> heard_;  // when something fresh was polled, or the first poll
@@ -62,8 +66,8 @@ Result<leapc::Mode> mode_named(std::string_view name) {
 }  // namespace
 
 std::unique_ptr<InputSource> leapc_source(std::unique_ptr<leapc::Connection> connection,
-                                          const Pose& screen_from_device) {
-  return std::make_unique<LeapcSource>(std::move(connection), screen_from_device);
+                                          const Pose& screen_from_device, bool simulated_time) {
+  return std::make_unique<LeapcSource>(std::move(connection), screen_from_device, simulated_time);
 }
 
 Result<std::unique_ptr<InputSource>> make_leapc_source(const InputConfig& config) {
@@ -86,7 +90,7 @@ Result<std::unique_ptr<InputSource>> make_leapc_source(const InputConfig& config
     }
   }
   return leapc_source(leapc::make_connection(options, config.clock ? *config.clock : kSteady),
-                      screen_from_device);
+                      screen_from_device, config.simulated_time);
 }
 
 }  // namespace dubsar

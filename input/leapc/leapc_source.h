@@ -15,9 +15,11 @@ namespace dubsar {
 Result<std::unique_ptr<InputSource>> make_leapc_source(const InputConfig& config);
 
 /// The source over a connection that is not started yet; hands are moved from the device's frame to the
-/// screen's. A device that sends nothing for kLeapcSilentNs is lost.
+/// screen's. A device that sends nothing for kLeapcSilentNs is lost. `simulated_time`: the service measures
+/// on a clock that has nothing to do with the session's, so that hands bear the time at which they are
+/// polled, and silence means nothing.
 std::unique_ptr<InputSource> leapc_source(std::unique_ptr<leapc::Connection> connection,
-                                          const Pose& screen_from_device);
+                                          const Pose& screen_from_device, bool simulated_time = false);
 inline constexpr TimestampNs kLeapcSilentNs = 1'000'000'000;
 
 }  // namespace dubsar

@@ -199,5 +199,19 @@ TEST_F(LeapcSource, ADeviceThatFallsSilentIsLostAndTooManyHandsAreCut) {
   EXPECT_EQ(source->poll(9'001 + kLeapcSilentNs, frame), Freshness::kLost);
 }
 
+TEST_F(LeapcSource, InSimulatedTimeHandsBearTheTimeOfThePollAndSilenceMeansNothing) {
+  auto owned = std::make_unique<ScriptedConnection>();
+  ScriptedConnection& connection = *owned;
+  const auto source = leapc_source(std::move(owned), Pose{}, true);
+  InputFrame frame;
+  connection.frame.time = 5;
+  connection.frame.hands.resize(1);
+  connection.fresh = true;
+  EXPECT_EQ(source->poll(1'000, frame), Freshness::kNew);
+  EXPECT_EQ(frame.time, 1'000);
+  EXPECT_EQ(frame.hands.at(0).time, 1'000);
+  EXPECT_EQ(source->poll(9 * kLeapcSilentNs, frame), Freshness::kUnchanged);
+}
+
 }  // namespace
 }  // namespace dubsar
