@@ -1,7 +1,11 @@
 #include "app/live_device.h"
 
+#include <chrono>
+#include <thread>
+
 #include "devices/head_tracker/head_tracker.h"
 #include "devices/spacemouse/spacenav_protocol.h"
+#include "input/input_source.h"
 
 namespace dubsar::app {
 namespace {
@@ -24,21 +28,38 @@ json to_json(const HeadSample& sample) {
   return out;
 }
 
+json to_json(const InputFrame& frame) {
+  json out = {{"time_s", 1e-9 * static_cast<double>(frame.time)}, {"hands", json::array()}};
+  for (const HandFrame& hand : frame.hands)
+    out["hands"].push_back({{"id", hand.id},
+                            {"side", hand.chirality == Chirality::kLeft    ? "left"
+                                     : hand.chirality == Chirality::kRight ? "right"
+                                                                           : "unknown"},
+                            {"palm_m", numbers(hand.palm.position_m)},
+                            {"grab", hand.grab_strength},
+                            {"pinch_m", hand.pinch_distance_m},
+                            {"confidence", hand.confidence}});
+  return out;
+}
+
 template <class Protocol>
 class LiveDriver final : public LiveDevice {
  public:
-  LiveDriver(OpenTransport open, Protocol protocol) : driver_(std::move(open), std::move(protocol)) {}
+  LiveDriver(OpenTransport open, const Clock& clock) : driver_(std::move(open), Protocol(), &clock) {}
   std::optional<json> poll(TimestampNs now, milliseconds timeout) override {
     const auto sample = driver_.poll(now, timeout);
     if (!sample) return std::nullopt;
+    newest_ = sample->time;
     return to_json(*sample);
   }
   bool connected() const override { return driver_.connected(); }
-  const std::string& reason() const override { return driver_.reason(); }
-  const DriverCounts& counts() const override { return driver_.counts(); }
+  std::string reason() const override { return driver_.reason(); }
+  DriverCounts counts() const override { return driver_.counts(); }
+  TimestampNs newest() const override { return newest_; }
 
  private:
   Driver<Protocol> driver_;
+  TimestampNs newest_ = 0;
 };
 
 class LiveHeadTracker final : public LiveDevice {
@@ -47,29 +68,70 @@ class LiveHeadTracker final : public LiveDevice {
   std::optional<json> poll(TimestampNs now, milliseconds timeout) override {
     const auto sample = tracker_->poll(now, timeout);
     if (!sample) return std::nullopt;
+    newest_ = sample->time;
     return to_json(*sample);
   }
   bool connected() const override { return tracker_->connected(); }
-  const std::string& reason() const override { return tracker_->reason(); }
-  const DriverCounts& counts() const override { return tracker_->counts(); }
+  std::string reason() const override { return tracker_->reason(); }
+  DriverCounts counts() const override { return tracker_->counts(); }
+  TimestampNs newest() const override { return newest_; }
 
  private:
   std::unique_ptr<HeadTracker> tracker_;
+  TimestampNs newest_ = 0;
+};
+
+/// Hands in the device's own frame.
+class LiveHands final : public LiveDevice {
+ public:
+  LiveHands(std::unique_ptr<InputSource> source, bool threaded) : source_(std::move(source)), threaded_(threaded) {}
+  std::optional<json> poll(TimestampNs now, milliseconds timeout) override {
+    const auto until = std::chrono::steady_clock::now() + timeout;
+    for (;;) {
+      freshness_ = source_->poll(now, frame_);
+      if (freshness_ == Freshness::kNew) {
+        ++counts_.accepted;
+        return to_json(frame_);
+      }
+      if (std::chrono::steady_clock::now() >= until) return std::nullopt;
+      std::this_thread::sleep_for(milliseconds(1));
+      if (!threaded_) return std::nullopt;
+    }
+  }
+  bool connected() const override { return freshness_ != Freshness::kLost; }
+  std::string reason() const override { return connected() ? std::string() : source_->note(); }
+  DriverCounts counts() const override { return counts_; }
+  TimestampNs newest() const override { return frame_.time; }
+
+ private:
+  std::unique_ptr<InputSource> source_;
+  const bool threaded_;
+  Freshness freshness_ = Freshness::kLost;
+  InputFrame frame_;
+  DriverCounts counts_;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<LiveDevice>> make_live_device(const DeviceChoice& choice, OpenTransport open) {
-  if (choice.driver == "spacemouse")
-    return std::make_unique<LiveDriver<SpaceMouseProtocol>>(std::move(open), SpaceMouseProtocol());
-  if (choice.driver == "spacenav")
-    return std::make_unique<LiveDriver<SpacenavProtocol>>(std::move(open), SpacenavProtocol());
+Result<std::unique_ptr<LiveDevice>> make_live_device(const DeviceChoice& choice, OpenTransport open, const Clock& clock,
+                                                     bool threaded) {
+  if (choice.driver == "spacemouse") return std::make_unique<LiveDriver<SpaceMouseProtocol>>(std::move(open), clock);
+  if (choice.driver == "spacenav") return std::make_unique<LiveDriver<SpacenavProtocol>>(std::move(open), clock);
+  if (choice.driver == "leap") {
+    InputConfig config;
+    config.clock = &clock;
+    config.simulated_time = !threaded;
+    config.reach_device = [open = std::move(open)](const DeviceChoice&, const Clock&) -> Result<OpenTransport> { return open; };
+    DUBSAR_ASSIGN(auto source, make_input("leap:at=0/0/0", config));
+    return std::make_unique<LiveHands>(std::move(source), threaded);
+  }
   DUBSAR_ASSIGN(const auto* const backend, find_backend(head_tracker_backends(), choice.driver, "device driver"));
   HeadTrackerConfig config;
   config.open = std::move(open);
   config.tracker = choice.tracker;
   config.sensor = choice.sensor;
   config.invert = choice.invert;
+  config.stamps = &clock;
   DUBSAR_ASSIGN(auto tracker, backend->create(config));
   return std::make_unique<LiveHeadTracker>(std::move(tracker));
 }

@@ -18,11 +18,14 @@ class LiveDevice {
   virtual ~LiveDevice() = default;
   virtual std::optional<nlohmann::json> poll(TimestampNs now, milliseconds timeout) = 0;
   virtual bool connected() const = 0;
-  virtual const std::string& reason() const = 0;
-  virtual const DriverCounts& counts() const = 0;
+  virtual std::string reason() const = 0;
+  virtual DriverCounts counts() const = 0;
+  virtual TimestampNs newest() const = 0;  ///< when the last sample was measured
 };
 
-/// The driver over any transport, real or replayed. kUsage: no such driver.
-Result<std::unique_ptr<LiveDevice>> make_live_device(const DeviceChoice& choice, OpenTransport open);
+/// The driver over any transport, real or replayed; `clock`, that of the times it is polled with, stamps what is read and
+/// outlives it. A Leap needs `threaded` where its pictures come in real time. kUsage: no such driver.
+Result<std::unique_ptr<LiveDevice>> make_live_device(const DeviceChoice& choice, OpenTransport open, const Clock& clock,
+                                                     bool threaded);
 
 }  // namespace dubsar::app

@@ -1,30 +1,44 @@
 // dubsar devices: what is plugged in, whether it works, and recordings of it.
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "app/cli/verb.h"
 #include "app/live_device.h"
+#include "app/live_view.h"
+#include "app/session/offscreen.h"
 #include "devices/enumerate.h"
 #include "devices/looking_glass/calibration_pages.h"
 #include "devices/real/real_devices.h"
 #include "devices/record_transport.h"
 #include "devices/replay_transport.h"
-#include "devices/simulated_recording.h"
+#include "input/placement.h"
+#include "input/simulated/live_wire.h"
+#include "input/simulated/simulated_recording.h"
+#include "input/source_options.h"
+#include "input/sources/head_source.h"
 
 namespace dubsar::app {
 namespace {
 using nlohmann::json;
 
+constexpr std::size_t kMostAges = 1'000'000;
+
 struct Options {
   DeviceChoice device;
-  std::string file;
+  std::string file, script, udp, invert;
+  bool live = false;
+  std::optional<double> duration;
   double seconds = 10.0;
   double speed = 1.0;
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;
   CLI::App *list = nullptr, *probe = nullptr, *monitor = nullptr, *record = nullptr, *replay = nullptr,
            *simulate = nullptr;
 };
@@ -58,10 +72,14 @@ template <class Over, class Each>
 Result<VerbResult> watch(LiveDevice& device, const Clock& clock, Progress& progress, const Over& over,
                          const Each& each) {
   std::int64_t samples = 0;
+  std::vector<double> ages_ms;
   while (!progress.cancelled() && !over()) {
-    const auto sample = device.poll(clock.now(), milliseconds(20));
+    auto sample = device.poll(clock.now(), milliseconds(20));
     if (sample) {
       ++samples;
+      const double age_ms = 1e-6 * static_cast<double>(clock.now() - device.newest());
+      if (ages_ms.size() < kMostAges) ages_ms.push_back(age_ms);
+      (*sample)["age_ms"] = age_ms;
       each(*sample);
     } else if (!device.connected()) {
       std::this_thread::sleep_for(milliseconds(20));
@@ -74,6 +92,11 @@ Result<VerbResult> watch(LiveDevice& device, const Clock& clock, Progress& progr
                  {"reason", device.reason()}};
   result.text = fmt::format("{} samples from {} reports, {} refused, lost {} times\n", samples, counts.accepted,
                             counts.refused, counts.losses);
+  if (!ages_ms.empty()) {
+    const double median = quantile(ages_ms, 0.5), worst = quantile(ages_ms, 1.0);
+    result.json["age_ms"] = {{"median", median}, {"worst", worst}};
+    result.text += fmt::format("age when read: median {:.2f} ms, worst {:.2f} ms\n", median, worst);
+  }
   if (counts.accepted == 0) {
     result.failed = true;
     result.failure = ErrorKind::kUnavailable;
@@ -82,10 +105,30 @@ Result<VerbResult> watch(LiveDevice& device, const Clock& clock, Progress& progr
   return result;
 }
 
-void print_sample(const json& sample) {
-  fmt::print("{}\n", sample.dump());
-  std::fflush(stdout);
-}
+/// Shows samples on standard output: drawn over and over in a terminal, else one line each.
+class SamplePrinter {
+ public:
+  explicit SamplePrinter(const Clock& clock) : clock_(clock), terminal_(::isatty(STDOUT_FILENO) == 1) {}
+  void operator()(const json& sample) {
+    const TimestampNs now = clock_.now();
+    if (!terminal_) {
+      fmt::print("{}\n", sample.dump());
+    } else if (now - drawn_ >= kDrawNs) {
+      drawn_ = now;
+      const std::string view = live_view(sample);
+      fmt::print("{}{}", lines_ > 0 ? fmt::format("\x1b[{}A\x1b[J", lines_) : "", view);
+      lines_ = std::count(view.begin(), view.end(), '\n');
+    }
+    std::fflush(stdout);
+  }
+
+ private:
+  static constexpr TimestampNs kDrawNs = 50'000'000;
+  const Clock& clock_;
+  const bool terminal_;
+  TimestampNs drawn_ = -kDrawNs;
+  std::ptrdiff_t lines_ = 0;
+};
 
 Result<VerbResult> probe_looking_glass(const Clock& clock) {
   DUBSAR_ASSIGN(const auto transport, open_hid_device("looking_glass", clock));
@@ -108,11 +151,12 @@ Result<VerbResult> run_live(const Options& options, bool print, Progress& progre
       return make_record_transport(std::move(transport), writer);
     };
   }
-  DUBSAR_ASSIGN(const auto device, make_live_device(options.device, std::move(open)));
+  DUBSAR_ASSIGN(const auto device, make_live_device(options.device, std::move(open), clock, true));
   const TimestampNs end = clock.now() + static_cast<TimestampNs>(options.seconds * 1e9);
   const auto over = [&] { return clock.now() >= end; };
+  SamplePrinter printer(clock);
   const auto each = [&](const json& sample) {
-    if (print) print_sample(sample);
+    if (print) printer(sample);
   };
   DUBSAR_ASSIGN(VerbResult result, watch(*device, clock, progress, over, each));
   if (writer) {
@@ -129,11 +173,63 @@ Result<VerbResult> run_replay(const Options& options, bool print, Progress& prog
   DeviceChoice choice = options.device;
   choice.driver = recording.driver;
   ReplaySession session(std::move(recording), clock, options.speed);
-  DUBSAR_ASSIGN(const auto device, make_live_device(choice, [&] { return session.open(); }));
+  DUBSAR_ASSIGN(const auto device, make_live_device(choice, [&] { return session.open(); }, session.recorded_clock(), false));
   const auto over = [&] { return session.finished(); };
+  SamplePrinter printer(clock);
   return watch(*device, session.recorded_clock(), progress, over, [&](const json& sample) {
-    if (print) print_sample(sample);
+    if (print) printer(sample);
   });
+}
+
+/// A script, or somebody; where the device stands is where its source expects it.
+Result<WireOptions> wire_options(const Options& options) {
+  WireOptions wire;
+  if (options.script.empty()) {
+    wire.script = somebody(options.seed.value_or(1), options.duration.value_or(10.0));
+  } else {
+    DUBSAR_ASSIGN(const std::string text, read_source_text(options.script));
+    DUBSAR_ASSIGN(wire.script, parse_script(text, options.script));
+    if (options.seed) wire.script.seed = *options.seed;
+    if (options.duration) wire.script.duration_s = *options.duration;
+  }
+  wire.screen_from_device = options.device.driver == "leap" ? table_placement() : Pose{usual_place_m(options.device.driver)};
+  return wire;
+}
+
+Result<VerbResult> run_simulate(const Options& options, bool print, Progress& progress) {
+  DUBSAR_ASSIGN(WireOptions wire, wire_options(options));
+  VerbResult result;
+  const bool live = options.live || !options.udp.empty();
+  if (live != options.file.empty())
+    return fail(ErrorKind::kUsage, "devices simulate: expected either a file to write, or --live or --udp HOST:PORT");
+  if (!live) {
+    DUBSAR_TRY(check_output_path(options.file));
+    DUBSAR_ASSIGN(const std::int64_t events, write_simulated_recording(options.device.driver, options.file, std::move(wire)));
+    result.json = {{"events", events}, {"file", options.file}};
+    result.text = fmt::format("{} events in {}\n", events, options.file);
+    return result;
+  }
+  DeviceChoice choice = options.device;
+  if (!options.udp.empty()) {
+    const std::size_t colon = options.udp.rfind(':');
+    if (colon == std::string::npos || choice.driver != "opentrack")
+      return fail(ErrorKind::kUsage, "devices simulate: --udp \"{}\" found, expected HOST:PORT, for opentrack", options.udp);
+    choice.address = options.udp.substr(0, colon);
+    choice.port = std::atoi(options.udp.c_str() + colon + 1);
+    if (choice.port < 1 || choice.port > 65535)
+      return fail(ErrorKind::kUsage, "devices simulate: --udp \"{}\" found, expected a port of 1 to 65535", options.udp);
+  }
+  const SteadyClock clock;
+  DUBSAR_ASSIGN(const auto person, make_wire_person(choice.driver, std::move(wire), clock));
+  const auto ready = [&](int port) {
+    if (!print) return;
+    fmt::print("simulated {} at {}\n", choice.driver, choice.driver == "spacenav" ? choice.socket : fmt::format("{}:{}", choice.address, port));
+    std::fflush(stdout);
+  };
+  DUBSAR_ASSIGN(const LiveWireResult served, serve_live_wire(*person, choice, clock, [&] { return progress.cancelled(); }, ready));
+  result.json = {{"messages", served.messages}, {"clients", served.clients}};
+  result.text = fmt::format("{} messages sent\n", served.messages);
+  return result;
 }
 
 Result<VerbResult> run(const Options& options, const CommonOptions& common, Progress& progress) {
@@ -141,27 +237,36 @@ Result<VerbResult> run(const Options& options, const CommonOptions& common, Prog
   if (options.list->parsed()) return list(options);
   if (options.probe->parsed() && options.device.driver == "looking_glass") return probe_looking_glass(SteadyClock());
   if (options.replay->parsed()) return run_replay(options, print, progress);
-  if (options.simulate->parsed()) {
-    DUBSAR_TRY(check_output_path(options.file));
-    DUBSAR_ASSIGN(const std::int64_t events,
-                  write_simulated_recording(options.device.driver, options.file, options.seconds, options.seed));
-    VerbResult result;
-    result.json = {{"events", events}, {"file", options.file}};
-    result.text = fmt::format("{} events in {}\n", events, options.file);
-    return result;
-  }
+  if (options.simulate->parsed()) return run_simulate(options, print, progress);
   Options chosen = options;
+  DUBSAR_ASSIGN(chosen.device.invert, parse_axes(options.invert));
   if (options.probe->parsed()) chosen.seconds = 2.0;
   return run_live(chosen, print && options.monitor->parsed(), progress);
 }
 
 void add_device_options(CLI::App& command, Options& options) {
-  command.add_option("driver", options.device.driver, "spacemouse, spacenav, opentrack, vrpn, rift, xreal")->required();
+  command.add_option("driver", options.device.driver, std::string(kDeviceDrivers))->required();
   command.add_option("--address", options.device.address, "opentrack: to listen on; vrpn: of the server");
   command.add_option("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given")->check(CLI::Range(0, 65535));
   command.add_flag("--allow-remote", options.device.allow_remote, "opentrack: listen to other machines too");
   command.add_option("--tracker", options.device.tracker, "vrpn: name of the tracker (the first)");
+  command.add_option("--sensor", options.device.sensor, "vrpn: which of its sensors")->check(CLI::Range(0, 1000));
+  command.add_option("--invert", options.invert, "opentrack: axes that count the other way, e.g. x+yaw")->type_name("AXES");
   command.add_option("--socket", options.device.socket, "spacenav: path of the daemon's socket");
+}
+
+void add_simulate_options(CLI::App& command, Options& options) {
+  command.add_option("driver", options.device.driver, "whose bytes: " + std::string(kDeviceDrivers))->required();
+  command.add_option("file", options.file, "the recording to write")->type_name("FILE");
+  command.add_option("--script", options.script, "what the person does (docs/input.md); else looks about and turns things")->type_name("FILE");
+  command.add_option("--seed", options.seed, "another person");
+  command.add_option("--seconds", options.duration, "how long, instead of the script's time")->check(CLI::Range(0.1, 3600.0))->type_name("S");
+  command.add_flag("--live", options.live, "in real time on sockets: opentrack, vrpn, spacenav");
+  command.add_option("--udp", options.udp, "opentrack: live, to this receiver")->type_name("HOST:PORT");
+  command.add_option("--address", options.device.address, "opentrack: of the receiver; vrpn: to serve on");
+  command.add_option("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given")->check(CLI::Range(0, 65535));
+  command.add_flag("--allow-remote", options.device.allow_remote, "vrpn: serve other machines too");
+  command.add_option("--socket", options.device.socket, "spacenav: the socket to serve");
 }
 
 }  // namespace
@@ -171,7 +276,8 @@ Verb add_devices_verb(CLI::App& program) {
   command->require_subcommand(1);
   command->footer(
       "Examples:\n  dubsar devices list\n  dubsar devices monitor opentrack --seconds 30\n"
-      "  dubsar devices simulate spacemouse turn.txt\n  dubsar devices replay turn.txt");
+      "  dubsar devices simulate spacemouse turn.txt\n  dubsar devices replay turn.txt\n"
+      "  dubsar devices simulate opentrack --script scholar.json --udp 127.0.0.1:4242");
   auto options = std::make_shared<Options>();
   const auto add = [&](const char* name, const char* what) {
     CLI::App* const sub = command->add_subcommand(name, what);
@@ -184,17 +290,16 @@ Verb add_devices_verb(CLI::App& program) {
   options->list = add("list", "devices that are here, and why one cannot be used");
   options->list->add_option("--socket", options->device.socket, "path of spacenavd's socket");
   options->probe = add("probe", "open a device and see whether it answers (also looking_glass: its calibration)");
-  options->monitor = add("monitor", "print what a device says, one JSON line per sample");
+  options->monitor = add("monitor", "show what a device says: bars in a terminal, else one JSON line per sample");
   options->record = add("record", "write what a device says to a file");
   for (CLI::App* const sub : {options->probe, options->monitor, options->record}) add_device_options(*sub, *options);
   options->replay = add("replay", "play a recording through its driver");
   options->replay->add_option("--speed", options->speed, "2: twice as fast")->check(CLI::Range(0.01, 1000.0));
-  options->simulate = add("simulate", "write a recording of a scripted person: spacemouse, opentrack, rift or xreal");
-  options->simulate->add_option("driver", options->device.driver, "whose bytes")->required();
-  options->simulate->add_option("--seed", options->seed, "another person");
-  for (CLI::App* const sub : {options->record, options->replay, options->simulate})
+  for (CLI::App* const sub : {options->record, options->replay})
     sub->add_option("file", options->file, "the recording")->required()->type_name("FILE");
-  for (CLI::App* const sub : {options->monitor, options->record, options->simulate}) seconds(sub);
+  for (CLI::App* const sub : {options->monitor, options->record}) seconds(sub);
+  options->simulate = add("simulate", "a scripted person as bytes: a recording of any driver, or live on sockets");
+  add_simulate_options(*options->simulate, *options);
   return {command, [options](const CommonOptions& common, Progress& progress) { return run(*options, common, progress); }};
 }
 

@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kGravity_m_s2 = 9.81;
 constexpr double kLevelTime_s = 2.0;
+constexpr double kMeanTime_s = 0.3, kStillTime_s = 1.0, kBiasTime_s = 1.0;
+constexpr double kStill_rad_s = 0.01, kMostBias_rad_s = 0.035, kStillForce = 0.05;
 
 /// `share` of the smallest turn that takes the unit vector `from` to the unit vector `to`.
 glm::dquat turn_towards(const glm::dvec3& from, const glm::dvec3& to, double share) {
@@ -22,9 +24,10 @@ glm::dquat turn_towards(const glm::dvec3& from, const glm::dvec3& to, double sha
 
 void ImuFusion::update(const ImuSample& sample, double dt_s) noexcept {
   dt_s = std::clamp(dt_s, 0.0, 0.1);
-  const double rate = glm::length(sample.turn_rate_rad_s);
-  if (rate * dt_s > 1e-12)
-    world_from_head_ = world_from_head_ * glm::angleAxis(rate * dt_s, sample.turn_rate_rad_s / rate);
+  learn_bias(sample, dt_s);
+  const glm::dvec3 turn_rad_s = sample.turn_rate_rad_s - bias_rad_s_;
+  const double rate = glm::length(turn_rad_s);
+  if (rate * dt_s > 1e-12) world_from_head_ = world_from_head_ * glm::angleAxis(rate * dt_s, turn_rad_s / rate);
   const double force = glm::length(sample.acceleration_m_s2);
   if (std::abs(force - kGravity_m_s2) < 0.1 * kGravity_m_s2) {
     const glm::dvec3 up = world_from_head_ * (sample.acceleration_m_s2 / force);
@@ -33,6 +36,18 @@ void ImuFusion::update(const ImuSample& sample, double dt_s) noexcept {
     levelled_ = true;
   }
   world_from_head_ = glm::normalize(world_from_head_);
+}
+
+void ImuFusion::learn_bias(const ImuSample& sample, double dt_s) noexcept {
+  const double share = 1.0 - std::exp(-dt_s / kMeanTime_s);
+  const glm::dvec3 off = sample.turn_rate_rad_s - mean_rad_s_;
+  mean_rad_s_ += share * off;
+  variance_ += share * (glm::dot(off, off) - variance_);
+  const double force = glm::length(sample.acceleration_m_s2);
+  const bool still = variance_ < kStill_rad_s * kStill_rad_s && glm::length(mean_rad_s_) < kMostBias_rad_s &&
+                     std::abs(force - kGravity_m_s2) < kStillForce * kGravity_m_s2;
+  still_s_ = still ? still_s_ + dt_s : 0.0;
+  if (still_s_ >= kStillTime_s) bias_rad_s_ += (1.0 - std::exp(-dt_s / kBiasTime_s)) * (mean_rad_s_ - bias_rad_s_);
 }
 
 void ImuFusion::recentre() noexcept {

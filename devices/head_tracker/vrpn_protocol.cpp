@@ -164,7 +164,9 @@ bool VrpnProtocol::handle(const VrpnMessage& message, TimestampNs now) {
     if (!first_sender_) first_sender_ = message.sender;
     if (*first_sender_ != message.sender) return true;
   }
-  const auto passed = gate_.pass({now, {{v[0], v[1], v[2]}, glm::dquat(v[6], v[3], v[4], v[5])}, true, true});
+  const TimestampNs said = 1'000'000'000 * TimestampNs{message.seconds} + 1000 * TimestampNs{message.microseconds};
+  const TimestampNs time = said > 0 ? timeline_.host_time(said, now) : now;
+  const auto passed = gate_.pass({time, {{v[0], v[1], v[2]}, glm::dquat(v[6], v[3], v[4], v[5])}, true, true});
   if (passed) newest_ = passed;
   return passed.has_value();
 }

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "devices/device_timeline.h"
 #include "devices/head_tracker/head_sample.h"
 #include "devices/transport.h"
 
@@ -75,6 +76,7 @@ class VrpnProtocol {
   std::optional<std::int32_t> first_sender_;
   bool goodbye_ = false;
   HeadGate gate_;
+  DeviceTimeline timeline_;
   std::optional<Sample> newest_;
 };
 

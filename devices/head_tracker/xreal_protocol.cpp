@@ -143,6 +143,7 @@ Result<void> XrealProtocol::start(Transport& transport, TimestampNs) {
   fusion_.reset();
   newest_.reset();
   last_ns_.reset();
+  timeline_ = {};
   return transport.write(format_xreal_command({kXrealStream, {std::byte{1}}}));
 }
 
@@ -153,7 +154,8 @@ bool XrealProtocol::accept(std::span<const std::byte> report, TimestampNs now) {
   const double dt_s = last_ns_ && in_order ? 1e-9 * static_cast<double>(parsed->time_ns - *last_ns_) : 0.0;
   last_ns_ = parsed->time_ns;
   fusion_.update(parsed->sample, dt_s);
-  newest_ = HeadSample{now, {{}, fusion_.world_from_head()}, false, true};
+  const TimestampNs time = timeline_.host_time(static_cast<TimestampNs>(parsed->time_ns & 0x7FFFFFFFFFFFFFFFU), now);
+  newest_ = HeadSample{time, {{}, fusion_.world_from_head()}, false, true};
   return true;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "devices/device_timeline.h"
 #include "devices/head_tracker/head_sample.h"
 #include "devices/head_tracker/imu_fusion.h"
 #include "devices/transport.h"
@@ -55,6 +56,7 @@ class XrealProtocol {
   ImuFusion fusion_;
   std::optional<Sample> newest_;
   std::optional<std::uint64_t> last_ns_;
+  DeviceTimeline timeline_;
 };
 
 }  // namespace dubsar

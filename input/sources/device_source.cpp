@@ -9,6 +9,7 @@ namespace dubsar {
 namespace {
 
 constexpr milliseconds kReadTimeout{20};  // how long the destructor may have to wait
+constexpr milliseconds kIdle{2};          // between looks at a bell while the device is lost
 constexpr std::size_t kMostEvents = 4096;
 
 class DeviceSource final : public InputSource {
@@ -38,6 +39,7 @@ class DeviceSource final : public InputSource {
   }
 
   Freshness poll(TimestampNs now, InputFrame& newest) noexcept override {
+    if (traits_.before_poll) traits_.before_poll();
     if (!threaded_) read_once(now, milliseconds(0));
     newest.events.clear();
     const std::lock_guard lock(mutex_);
@@ -104,7 +106,7 @@ class DeviceSource final : public InputSource {
       events_.insert(events_.end(), working_.events.begin(), working_.events.begin() + count);
     }
     if (timeout.count() > 0 && !any && !connected_)
-      stop_.wait_for(lock, kReadTimeout, [this] { return stopping_; });
+      stop_.wait_for(lock, kIdle, [this] { return stopping_; });
     return !stopping_;
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 // A device as an input source: its reader runs on one thread, or in poll() where time is simulated.
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -30,6 +31,7 @@ struct DeviceSourceTraits {
   TimestampNs stale_ns = 300'000'000;
   /// Connected, but without a measurement for this long: lost. 0: a device that may be silent.
   TimestampNs silent_ns = 0;
+  std::function<void()> before_poll{};  ///< in the session's thread
   TimestampNs retry_ns = 0;  ///< not 0: tries at least this often to open it (servers that no node announces)
 };
 

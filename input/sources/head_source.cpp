@@ -87,7 +87,7 @@ Result<std::unique_ptr<InputSource>> make_head_source(const InputConfig& config)
   placement.screen_from_tracker = options.placement(Pose{usual_place_m(choice.driver)});
   placement.eyes_m = 1e-3 * options.triple("eyes", 500.0, glm::dvec3(0.0));
   placement.ipd_m = 1e-3 * options.number("ipd", 40.0, 90.0, 63.0);
-  DUBSAR_ASSIGN(SourceDevice device, source_device(choice, options, config));
+  DUBSAR_ASSIGN(SourceDevice device, source_device(choice, options, config, placement.screen_from_tracker));
   DUBSAR_TRY(options.finish());
 
   HeadTrackerConfig tracker_config;
@@ -100,6 +100,7 @@ Result<std::unique_ptr<InputSource>> make_head_source(const InputConfig& config)
   DeviceSourceTraits traits;
   traits.name = "head:" + choice.driver;
   traits.has_end = device.ended != nullptr;
+  traits.before_poll = device.before_poll;
   traits.silent_ns = kSilentNs;
   if (is_orientation_only(choice.driver))
     traits.note =

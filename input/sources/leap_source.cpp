@@ -24,13 +24,13 @@ class LeapReader final : public DeviceReader {
         screen_from_leap_(screen_from_leap) {}
 
   bool read(TimestampNs now, milliseconds timeout, InputFrame& frame) override {
-    if (!tracker_ && !open(now)) return false;
+    if (!open_ && !open(now)) return false;
     const auto until = std::chrono::steady_clock::now() + timeout;
     while (!driver_->poll(picture_)) {
       if (driver_->state() == FrameSourceState::kLost) {
         reason_ = driver_->reason();
         driver_->stop();
-        tracker_.reset();
+        open_ = false;
         retry_.lost(now);
         return false;
       }
@@ -43,7 +43,7 @@ class LeapReader final : public DeviceReader {
     for (const HandFrame& hand : hands_) frame.hands.push_back(moved(screen_from_leap_, hand));
     return true;
   }
-  bool connected() const override { return tracker_.has_value(); }
+  bool connected() const override { return open_; }
   std::string reason() const override { return reason_; }
   void wake() override { retry_.wake(); }
   bool finished() const override { return ended_ && *ended_; }
@@ -58,7 +58,13 @@ class LeapReader final : public DeviceReader {
     }
     retry_.succeeded();
     reason_.clear();
-    tracker_.emplace(stereo_lenses(*driver_->calibration(), driver_->width(), driver_->height()));
+    if (tracker_ && calibration_ == driver_->calibration()) {
+      tracker_->reset();  // the same device: its lenses are known, which took a tenth of a second
+    } else {
+      calibration_ = driver_->calibration();
+      tracker_.emplace(stereo_lenses(*calibration_, driver_->width(), driver_->height()));
+    }
+    open_ = true;
     return true;
   }
 
@@ -67,7 +73,9 @@ class LeapReader final : public DeviceReader {
   Pose screen_from_leap_;
   RetryPause retry_;
   std::string reason_;
-  std::optional<HandTracker> tracker_;  ///< for the calibration of the device that is open
+  bool open_ = false;
+  decltype(driver_->calibration()) calibration_;
+  std::optional<HandTracker> tracker_;  ///< for `calibration_`
   Frame picture_;
   Hands hands_;
 };
@@ -82,12 +90,13 @@ Result<std::unique_ptr<InputSource>> make_leap_source(const InputConfig& config)
   LeapCameraOptions driver;
   driver.exposure_us = options.integer("exposure_us", 10, 1000, driver.exposure_us);
   driver.own_thread = !config.simulated_time;
-  DUBSAR_ASSIGN(SourceDevice device, source_device(choice, options, config));
+  DUBSAR_ASSIGN(SourceDevice device, source_device(choice, options, config, place));
   DUBSAR_TRY(options.finish());
   if (!device.real) driver.calibration_settle = milliseconds(0);
   DeviceSourceTraits traits;
   traits.name = "leap";
   traits.has_end = device.ended != nullptr;
+  traits.before_poll = device.before_poll;
   traits.silent_ns = kSilentNs;
   return make_device_source(
       std::move(traits),

@@ -68,6 +68,7 @@ Result<std::unique_ptr<InputSource>> make(const DeviceChoice& choice, OptionRead
   DeviceSourceTraits traits;
   traits.name = choice.driver;
   traits.has_end = device.ended != nullptr;
+  traits.before_poll = device.before_poll;
   traits.retry_ns = retry_ns;
   return make_device_source(std::move(traits),
                             std::make_unique<PuckReader<Protocol>>(std::move(device), session_clock(config)),

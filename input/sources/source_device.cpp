@@ -2,6 +2,8 @@
 
 #include "devices/real/real_devices.h"
 #include "devices/replay_transport.h"
+#include "input/simulated/wire_person.h"
+#include "input/source_options.h"
 #include "input/sources/device_source.h"
 
 namespace dubsar {
@@ -39,6 +41,21 @@ class ReplayedTransport final : public Transport {
   std::unique_ptr<Transport> below_;
 };
 
+/// The person acts on the session's clock and sees the session's view.
+Result<SourceDevice> simulated_device(std::string_view driver, WireOptions wire, const InputConfig& config) {
+  std::function<void()> before_poll;
+  if (config.seen_view) {
+    auto seen = std::make_shared<SeenView>();
+    before_poll = [seen, view = config.seen_view] { seen->show(*view); };
+    wire.seen = std::move(seen);
+  }
+  DUBSAR_ASSIGN(std::shared_ptr<WirePerson> person,
+                make_wire_person(driver, std::move(wire), session_clock(config)));
+  auto ended = person->ended();
+  return SourceDevice{reach_wire_person(std::move(person), session_clock(config)), std::move(ended),
+                      std::move(before_poll), false};
+}
+
 }  // namespace
 
 Result<SourceDevice> replayed_device(std::string_view driver, const std::string& file, double speed,
@@ -56,18 +73,32 @@ Result<SourceDevice> replayed_device(std::string_view driver, const std::string&
                         }
                         return std::make_unique<ReplayedTransport>(replay, std::move(*opened));
                       },
-                      std::shared_ptr<const std::atomic<bool>>(replay, &replay->ended), false};
+                      std::shared_ptr<const std::atomic<bool>>(replay, &replay->ended),
+                      {},
+                      false};
 }
 
 Result<SourceDevice> source_device(const DeviceChoice& choice, OptionReader& options,
-                                   const InputConfig& config) {
+                                   const InputConfig& config, const Pose& screen_from_device) {
   const Clock& clock = session_clock(config);
-  const std::string file = options.text("replay");
-  const double speed = options.number("speed", 0.01, 1000.0, 1.0);
+  const std::string file = options.text("replay"), script = options.text("simulate");
+  const double speed = options.number("speed", 0.01, 1000.0, 1.0),
+               seed = options.number("seed", -1.0, 9e15, -1.0);
+  if (!file.empty() && !script.empty())
+    return fail(ErrorKind::kUsage, "input {}: replay and simulate found, expected one of them",
+                choice.driver);
   if (!file.empty()) return replayed_device(choice.driver, file, speed, clock);
+  if (!script.empty()) {
+    WireOptions wire;
+    DUBSAR_ASSIGN(const std::string text, read_source_text(script));
+    DUBSAR_ASSIGN(wire.script, parse_script(text, script));
+    if (seed >= 0) wire.script.seed = static_cast<std::uint64_t>(seed);
+    wire.screen_from_device = screen_from_device;
+    return simulated_device(choice.driver, std::move(wire), config);
+  }
   DUBSAR_ASSIGN(OpenTransport open,
                 (config.reach_device ? config.reach_device : ReachDevice(reach_real_device))(choice, clock));
-  return SourceDevice{std::move(open), nullptr, !config.reach_device};
+  return SourceDevice{std::move(open), nullptr, {}, !config.reach_device};
 }
 
 }  // namespace dubsar

@@ -25,7 +25,7 @@ std::string file_text(const fs::path& path) {
 TEST(DevicesCommand, ASimulatedRecordingReplaysThroughItsDriverAndDependsOnItsSeedOnly) {
   const fs::path folder = fs::temp_directory_path() / fmt::format("dubsar_devices_{}", ::getpid());
   fs::create_directories(folder);
-  for (const char* driver : {"spacemouse", "opentrack", "rift", "xreal"}) {
+  for (const char* driver : {"spacemouse", "spacenav", "opentrack", "vrpn", "rift", "xreal"}) {
     const std::string first = (folder / "first.txt").string(), second = (folder / "second.txt").string();
     ASSERT_EQ(run_dubsar({"devices", "simulate", driver, first, "--seconds", "1", "--seed", "4"}).exit_code, 0);
     ASSERT_EQ(run_dubsar({"devices", "simulate", driver, second, "--seconds", "1", "--seed", "4"}).exit_code, 0);
@@ -52,9 +52,25 @@ TEST(DevicesCommand, SaysWhatIsMissing) {
   EXPECT_EQ(vrpn.exit_code, 69);
   EXPECT_NE(vrpn.out.find("127.0.0.1 port 1: cannot connect"), std::string::npos) << vrpn.out;
   EXPECT_EQ(run_dubsar({"devices", "monitor", "melt"}).exit_code, 64);
-  EXPECT_EQ(run_dubsar({"devices", "simulate", "vrpn", "/tmp/never.txt"}).exit_code, 64);
+  EXPECT_EQ(run_dubsar({"devices", "simulate", "melt", "/tmp/never.txt"}).exit_code, 64);
+  EXPECT_EQ(run_dubsar({"devices", "simulate", "opentrack"}).exit_code, 64);  // neither a file nor --live
+  EXPECT_EQ(run_dubsar({"devices", "simulate", "rift", "--live"}).exit_code, 64);
+  EXPECT_EQ(run_dubsar({"devices", "simulate", "leap", "/tmp/never.txt", "--seconds", "60"}).exit_code, 64);
+  EXPECT_EQ(run_dubsar({"devices", "monitor", "opentrack", "--invert", "up"}).exit_code, 64);
   EXPECT_EQ(run_dubsar({"devices", "replay", "/no/such/file"}).exit_code, 66);
   EXPECT_EQ(run_dubsar({"devices", "monitor", "opentrack", "--address", "0.0.0.0", "--seconds", "0.1"}).exit_code, 64);
+}
+
+TEST(DevicesCommand, HandsOfARecordedLeapAreShown) {
+  const fs::path file = fs::temp_directory_path() / fmt::format("dubsar_leap_{}", ::getpid());
+  ASSERT_EQ(run_dubsar({"devices", "simulate", "leap", file.string(), "--seconds", "0.1"}).exit_code, 0);
+  const ProgramRun run = run_dubsar({"devices", "replay", file.string(), "--speed", "0.5"});
+  fs::remove(file);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json first = json::parse(run.out.substr(0, run.out.find('\n')));
+  ASSERT_EQ(first["hands"].size(), 1u) << run.out;
+  EXPECT_NEAR(first["hands"][0]["palm_m"][1].get<double>(), 0.2, 0.08);  // above the device, as somebody() holds it
+  EXPECT_NE(run.out.find("age when read: median"), std::string::npos);
 }
 
 }  // namespace

@@ -225,6 +225,65 @@ TEST(ImuFusion, RecentringTakesTheHeadingAwayAndKeepsTheTilt) {
   EXPECT_LT(angle_between(fusion.world_from_head(), glm::angleAxis(0.3, glm::dvec3(1, 0, 0))), 1e-3);
 }
 
+TEST(ImuFusion, ABiasIsLearntAtRestAndTakenOffAndAHeadThatTurnsTeachesNone) {
+  const glm::dvec3 bias(0.01, -0.02, 0.005);
+  const auto heading = [](const ImuFusion& fusion) {
+    const glm::dvec3 back = fusion.world_from_head() * glm::dvec3(0, 0, 1);
+    return std::atan2(back.x, back.z);
+  };
+  ImuFusion fusion;
+  for (int ms = 0; ms < 8000; ++ms) fusion.update({{0.0, 9.81, 0.0}, bias}, 1e-3);
+  EXPECT_LE(glm::length(fusion.bias_rad_s() - bias), 1e-4);
+  const double before = heading(fusion);
+  for (int ms = 0; ms < 60000; ++ms) fusion.update({{0.0, 9.81, 0.0}, bias}, 1e-3);
+  EXPECT_LE(std::abs(heading(fusion) - before), 0.2 * kDeg);  // 69 degrees without
+
+  ImuFusion turning;  // 5 degrees a second, and a nod to and fro
+  for (int ms = 0; ms < 10000; ++ms)
+    turning.update({{0.0, 9.81, 0.0}, {0.05 * std::sin(2e-3 * ms), 5 * kDeg, 0.0}}, 1e-3);
+  EXPECT_EQ(turning.bias_rad_s(), glm::dvec3(0.0));
+  EXPECT_NEAR(heading(turning), 50 * kDeg, 1 * kDeg);
+}
+
+TEST(DeviceTimeline, AReportThatWasHeldUpHasTheTimeOfItsMeasurement) {
+  DeviceTimeline timeline;
+  constexpr TimestampNs kMs = 1'000'000, kOrigin = 77 * kSecond;  // of the device's clock
+  for (int i = 0; i < 100; ++i)
+    EXPECT_LE(std::abs(timeline.host_time(i * 10 * kMs + kOrigin, i * 10 * kMs + 2 * kMs) - (i * 10 * kMs + 2 * kMs)), 1000);
+  // 40 ms late
+  EXPECT_LE(std::abs(timeline.host_time(kSecond + kOrigin, kSecond + 42 * kMs) - (kSecond + 2 * kMs)), kMs / 5);
+  // never in the future
+  EXPECT_EQ(timeline.host_time(2 * kSecond + kOrigin, 2 * kSecond + kMs), 2 * kSecond + kMs);
+  // a clock that runs 50 us/s fast is followed
+  TimestampNs worst = 0;
+  for (int i = 0; i < 100; ++i) {
+    const TimestampNs arrived = (3 + i) * kSecond;
+    worst = std::max(worst, arrived - timeline.host_time(arrived + kOrigin - i * 50'000, arrived));
+  }
+  EXPECT_LE(worst, 2 * kMs);
+  // a device that was started anew
+  EXPECT_EQ(timeline.host_time(5, 500 * kSecond), 500 * kSecond);
+}
+
+TEST(Vrpn, PosesHaveTheTimeOfTheServersMeasurement) {
+  SimDevice server("vrpn", false);
+  Driver<VrpnProtocol> driver([&] { return server.open(); }, VrpnProtocol());
+  driver.poll(0);
+  server.send(vrpn_cookie());
+  server.send(format_vrpn(vrpn_name_message(-1, 0, "Tracker0")));
+  server.send(format_vrpn(vrpn_name_message(-2, 4, "vrpn_Tracker Pos_Quat")));
+  const auto measured = [&](std::uint32_t ms) {
+    VrpnMessage message = vrpn_pose_message(0, 4, 0, {{0, 0, 0.6}, {1, 0, 0, 0}});
+    message.seconds = 1'700'000'000U + ms / 1000;
+    message.microseconds = 1000 * (ms % 1000);
+    server.send(format_vrpn(message));
+  };
+  measured(10);
+  EXPECT_EQ(driver.poll(kSecond)->time, kSecond);
+  measured(20);
+  EXPECT_NEAR(static_cast<double>(driver.poll(kSecond + 50'000'000)->time), kSecond + 10e6, 1e4);  // 40 ms on its way
+}
+
 TEST(Xreal, GoldenReportAndCommand) {
   // 1.5 s; gyro 1/1000 degree per unit: 1000, 2000, -3000; accelerometer 1/100 g: 0, 0, 100
   auto bytes = from_hex(
