@@ -39,19 +39,16 @@ printf 'cd %q && exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_AL
   >"$work/ram/command"
 (cd "$work/ram" && find . | cpio -o -H newc --quiet >"$work/ram.cpio")
 
-# Ends with us, however we end; the limit covers a kernel that hangs. An abort of qemu is not for bash to announce.
-limited() {
-  setpriv --pdeathsig TERM timeout --kill-after=5 "$seconds" setpriv --pdeathsig KILL "$@" || true
-}
-
-# boot ACCELERATOR CPU SECONDS_TO_START: runs it all; not 0 when the kernel has not even started in that time.
+# boot ACCELERATOR CPU SECONDS_TO_START: runs it all; not 0 when the kernel has not even started in that time. qemu ends
+# with us, however we end; the limit covers a kernel that hangs.
 boot() {
   : >"$work/status"
   rm -f "$work/talk"
   mkfifo "$work/talk"  # qemu makes its stdout non-blocking, which must not be ours
   cat "$work/talk" &
   local reader=$!
-  limited qemu-system-x86_64 -accel "$1" -cpu "$2" -smp "${LAB_CPUS:-1}" -m 1536 -nodefaults -display none -no-reboot \
+  setpriv --pdeathsig TERM timeout --kill-after=5 "$seconds" setpriv --pdeathsig KILL \
+    qemu-system-x86_64 -accel "$1" -cpu "$2" -smp "${LAB_CPUS:-1}" -m 1536 -nodefaults -display none -no-reboot \
     -kernel "$kernel/vmlinuz" -initrd "$work/ram.cpio" -append "console=ttyS0 panic=-1 quiet dubsar.lab" \
     -serial "file:$work/kernel.log" -chardev stdio,id=talk,signal=off -serial chardev:talk -serial "file:$work/status" \
     -virtfs local,path=/,mount_tag=host,security_model=none,readonly=on,multidevs=remap \
@@ -69,11 +66,11 @@ boot() {
 
 # Nested virtualisation is often there and broken: then everything is emulated.
 accel=${LAB_ACCEL:-}
-if [ "$accel" != tcg ] && [ -w /dev/kvm ] && boot kvm host 20; then
+if [ "$accel" != tcg ] && [ -w /dev/kvm ] && boot kvm host 20 2>/dev/null; then  # bash announces aborts
   accel=kvm
 elif [ "$accel" != kvm ]; then
   accel=tcg
-  boot tcg max "$seconds" || true
+  boot tcg max "$seconds" 2>/dev/null || true
 fi
 
 status=$(sed -n 's/^exit //p' "$work/status" | tr -d '\r')
