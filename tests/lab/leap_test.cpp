@@ -64,7 +64,7 @@ TEST_F(LabLeap, IsTakenFromTheKernelsCameraDriverAndShowsAHand) {
     HandTracker tracker(stereo_lenses(*driver->calibration(), options.width, options.height));
     Frame frame;
     Hands hands;
-    for (int seen = 0; seen < 5; ++seen) {
+    for (int seen = 0; seen < 3; ++seen) {
       ASSERT_TRUE(eventually([&] { return driver->poll(frame); })) << driver->reason();
       ASSERT_TRUE(tracker.track(frame, hands));
       ASSERT_EQ(hands.size(), 1U);
