@@ -1,5 +1,6 @@
 #include "tests/lab/lab_kernel.h"
 
+#include <fmt/format.h>
 #include <grp.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -37,6 +38,31 @@ double seconds_since_made(const std::string& node) {
   if (::stat(node.c_str(), &status) != 0 || ::clock_gettime(CLOCK_REALTIME, &now) != 0) return 1e9;
   return static_cast<double>(now.tv_sec - status.st_ctim.tv_sec) +
          1e-9 * static_cast<double>(now.tv_nsec - status.st_ctim.tv_nsec);
+}
+
+bool is_a_camera(std::uint16_t vendor_id, std::uint16_t product_id) {
+  const auto read = [](const std::filesystem::path& file) {
+    std::string text;
+    std::getline(std::ifstream(file), text);
+    return text;
+  };
+  for (const auto& entry : std::filesystem::directory_iterator("/sys/class/video4linux")) {
+    const auto usb = entry.path() / "device" / "..";
+    if (read(usb / "idVendor") == fmt::format("{:04x}", vendor_id) &&
+        read(usb / "idProduct") == fmt::format("{:04x}", product_id))
+      return true;
+  }
+  return false;
+}
+
+bool all_unplugged() {
+  if (std::filesystem::directory_iterator("/sys/class/hidraw") != std::filesystem::directory_iterator())
+    return false;
+  for (const auto& entry : std::filesystem::directory_iterator("/sys/bus/usb/devices"))
+    if (std::filesystem::exists(entry.path() / "idVendor") &&
+        entry.path().filename().string().rfind("usb", 0) != 0)
+      return false;  // "1-1"; "usb1" are root hubs, "1-0:1.0" interfaces
+  return true;
 }
 
 std::string as_nobody(const std::function<std::string()>& work) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <thread>
@@ -26,6 +27,12 @@ int threads();
 /// How long ago the kernel made this device node; very long when it is not there.
 double seconds_since_made(const std::string& node);
 
+/// The kernel's camera driver (uvcvideo) has made a video node of a USB device with these ids.
+bool is_a_camera(std::uint16_t vendor_id, std::uint16_t product_id);
+
+/// No device of an earlier test is still about to leave: no HID device, nothing on the USB/IP buses.
+bool all_unplugged();
+
 /// Runs `work` in a child process that is user and group "nobody", and returns what it returns; "" when it
 /// crashed.
 std::string as_nobody(const std::function<std::string()>& work);
@@ -45,6 +52,7 @@ class Lab : public testing::Test {
  protected:
   void SetUp() override {
     if (!inside()) GTEST_SKIP() << "runs only in the device lab's kernel: ./do lab";
+    ASSERT_TRUE(eventually(all_unplugged));
     descriptors_ = open_descriptors();
   }
   /// So many descriptors were open when the test began.

@@ -1,9 +1,6 @@
 // A Leap Motion Controller on a real USB bus (USB/IP): the kernel's camera driver takes it, unmodified libusb
 // takes it from there, our driver reads calibration and pictures, the tracker sees the hand.
 
-#include <filesystem>
-#include <fstream>
-
 #include "devices/leap/lmc1_driver.h"
 #include "devices/real/real_devices.h"
 #include "input/hand_tracking/hand_tracker.h"
@@ -19,15 +16,7 @@ std::optional<DeviceInfo> leap_on_the_bus() {
   return std::nullopt;
 }
 
-/// The kernel's own driver (uvcvideo) has made a video node of it.
-bool is_a_camera() {
-  for (const auto& entry : std::filesystem::directory_iterator("/sys/class/video4linux")) {
-    std::string name;
-    std::getline(std::ifstream(entry.path() / "name"), name);
-    if (name.find(Lmc1Simulator::kProduct) != std::string::npos) return true;
-  }
-  return false;
-}
+bool kernel_has_it() { return is_a_camera(lmc1::kVendorId, lmc1::kProductId); }
 
 Result<std::unique_ptr<Transport>> open_leap(const Clock& clock) {
   DeviceChoice choice;
@@ -48,7 +37,7 @@ class LabLeap : public Lab {
 TEST_F(LabLeap, IsTakenFromTheKernelsCameraDriverAndShowsAHand) {
   plug();
   EXPECT_EQ(leap_on_the_bus()->state, DeviceState::kUsable);
-  ASSERT_TRUE(eventually([] { return is_a_camera(); })) << "uvcvideo does not take it for a camera";
+  ASSERT_TRUE(eventually([] { return kernel_has_it(); })) << "uvcvideo does not take it for a camera";
 
   Lmc1Options options;
   options.calibration_settle = milliseconds(0);
@@ -56,7 +45,7 @@ TEST_F(LabLeap, IsTakenFromTheKernelsCameraDriverAndShowsAHand) {
     const auto driver = make_lmc1_driver([this] { return open_leap(clock_); }, options, clock_);
     const auto started = driver->start();
     ASSERT_TRUE(started) << started.error().message;
-    EXPECT_FALSE(is_a_camera());
+    EXPECT_FALSE(kernel_has_it());
     EXPECT_EQ(driver->calibration(), Lmc1SimulatorOptions{}.calibration);
     EXPECT_TRUE(leap_.simulator().led_on(lmc1::Switch::kLedCentre));
     EXPECT_EQ(leap_.simulator().exposure_us(), options.exposure_us);
@@ -87,16 +76,16 @@ TEST_F(LabLeap, IsTakenFromTheKernelsCameraDriverAndShowsAHand) {
 
 TEST_F(LabLeap, IsRefusedWhileAnotherProgramHoldsItAndGivenBackToTheKernelAfterwards) {
   plug();
-  ASSERT_TRUE(eventually([] { return is_a_camera(); }));
+  ASSERT_TRUE(eventually([] { return kernel_has_it(); }));
   auto first = open_leap(clock_);
   ASSERT_TRUE(first) << first.error().message;
-  EXPECT_FALSE(is_a_camera());
+  EXPECT_FALSE(kernel_has_it());
   const auto second = open_leap(clock_);
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().kind, ErrorKind::kUnavailable);
   EXPECT_NE(second.error().message.find("leapd"), std::string::npos) << second.error().message;
   first->reset();
-  EXPECT_TRUE(eventually([] { return is_a_camera(); }, milliseconds(5000)));
+  EXPECT_TRUE(eventually([] { return kernel_has_it(); }, milliseconds(5000)));
 }
 
 TEST_F(LabLeap, ToAnotherUserItSaysThatPermissionIsMissingAndWhatToDo) {

@@ -53,7 +53,7 @@ class LabSources : public Lab {
     EXPECT_TRUE(made) << made.error().message;
     return {&clock, made ? std::move(*made) : nullptr, {}, 0};
   }
-  bool becomes(Running& running, Freshness wanted, milliseconds limit = milliseconds(30'000)) {
+  bool becomes(Running& running, Freshness wanted, milliseconds limit = milliseconds(60'000)) {
     const auto is_so = [&] {
       running.polled = clock_.now();
       return running.source->poll(running.clock->now(), running.frame) == wanted;
