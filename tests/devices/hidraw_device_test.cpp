@@ -10,6 +10,7 @@
 #include "devices/driver.h"
 #include "devices/enumerate.h"
 #include "devices/hid_transport.h"
+#include "devices/looking_glass/calibration_pages.h"
 #include "devices/spacemouse/spacemouse_protocol.h"
 #include "tests/devices/device_bytes.h"
 #include "tests/devices/hidraw_testbed.h"
@@ -22,13 +23,14 @@ constexpr milliseconds kSoon{1000};
 class Hidraw : public ::testing::Test {
  protected:
   void SetUp() override {
-    testbed_ = std::make_unique<HidrawTestbed>();
+    testbed_ = std::make_unique<HidrawTestbed>(identity());
     const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
     if (terminal < 0) GTEST_SKIP() << "no pseudo-terminals here (mount /dev/pts): umockdev makes its nodes from them";
     ::close(terminal);
     if (!umockdev_in_mock_environment()) GTEST_SKIP() << "run it under umockdev-wrapper (ctest does the same)";
     testbed_->plug();
   }
+  virtual HidIdentity identity() const { return {}; }
   std::unique_ptr<HidrawTestbed> testbed_;
   SteadyClock clock_;
 };
@@ -91,6 +93,39 @@ TEST_F(Hidraw, TheDriverComesBackAfterUnpluggingWithinASecond) {
     EXPECT_TRUE(sample);
     EXPECT_LT(clock_.now() - replugged, 1'000'000'000);
   }
+}
+
+/// A Looking Glass of the first generation: report 0, 68 bytes each way.
+class HidrawLookingGlass : public Hidraw {
+ protected:
+  HidIdentity identity() const override {
+    return {kLookingGlassVendor, kLookingGlassProduct, "Looking Glass Factory", "HoloPlay", "LKG-4K-00017",
+            {0x06, 0x00, 0xff, 0x09, 0x01, 0xa1, 0x01, 0x15, 0x00, 0x26, 0xff, 0x00, 0x75, 0x08, 0x95, 0x44, 0x09, 0x01, 0x81, 0x02,
+             0x95, 0x44, 0x09, 0x02, 0xb1, 0x02, 0xc0}};
+  }
+};
+
+TEST_F(HidrawLookingGlass, ItsCalibrationComesThroughHidapi) {
+  std::string json = R"({"serial": "LKG-4K-00017", "pitch": {"value": 50.07}, "note": ")";
+  while (json.size() < 700) json += static_cast<char>('a' + json.size() % 26);
+  json += "\"}";
+  std::string memory{'\0', '\0', static_cast<char>(json.size() >> 8), static_cast<char>(json.size() & 255)};
+  memory += json;
+  testbed_->on_feature_set([&](std::span<const std::byte> request) {
+    LookingGlassPage page;
+    page.number = static_cast<std::uint16_t>(std::to_integer<unsigned>(request[2]) << 8 | std::to_integer<unsigned>(request[3]));
+    for (std::size_t i = 0; i < page.data.size() && page.number * page.data.size() + i < memory.size(); ++i)
+      page.data[i] = static_cast<std::byte>(memory[page.number * page.data.size() + i]);
+    const auto report = format_looking_glass(page);
+    testbed_->send(std::span(report).first(64));  // the kernel hands it on in two pieces
+    testbed_->send(std::span(report).subspan(64));
+  });
+  const auto listed = list_hid_devices();
+  ASSERT_EQ(listed.size(), 1U);
+  EXPECT_EQ(listed[0].driver, "looking_glass");
+  auto transport = open_hid_device("looking_glass", clock_);
+  ASSERT_TRUE(transport) << transport.error().message;
+  EXPECT_EQ(read_looking_glass_calibration(**transport, clock_).value(), json);
 }
 
 TEST_F(Hidraw, AMissingNodeIsUnavailable) {

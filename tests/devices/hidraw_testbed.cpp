@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -16,37 +15,7 @@
 namespace dubsar {
 namespace {
 
-// Generic Desktop, Multi-axis Controller; input report 1 of 12 bytes, feature report 2 of 6 bytes
-constexpr std::array<std::uint8_t, 31> kDescriptor = {0x05, 0x01, 0x09, 0x08, 0xa1, 0x01, 0x85, 0x01, 0x15, 0x00, 0x26,
-                                                      0xff, 0x00, 0x75, 0x08, 0x95, 0x0c, 0x09, 0x01, 0x81, 0x02, 0x85,
-                                                      0x02, 0x95, 0x06, 0x09, 0x02, 0xb1, 0x02, 0xc0, 0x00};
-constexpr std::size_t kDescriptorBytes = 30;
 constexpr const char* kUsb = "/devices/pci0000:00/usb1/1-1";
-
-/// Sysfs folder of the HID device; every plugging makes a new one, as the kernel does.
-std::string hid_folder(int plugging) { return fmt::format("{}/1-1:1.0/0003:256F:C635.{:04X}", kUsb, plugging + 1); }
-
-std::string description(int plugging) {
-  const std::string usb = kUsb, hid = hid_folder(plugging);
-  const std::string usb_number = fmt::format("{:03}", plugging + 2), node = fmt::format("hidraw{}", plugging);
-  std::string descriptor;
-  for (std::size_t i = 0; i < kDescriptorBytes; ++i) {
-    descriptor += "0123456789ABCDEF"[kDescriptor[i] >> 4];
-    descriptor += "0123456789ABCDEF"[kDescriptor[i] & 15];
-  }
-  return "P: " + usb +
-         "\nN: bus/usb/001/" + usb_number + "\nE: DEVNAME=/dev/bus/usb/001/" + usb_number + "\nE: DEVTYPE=usb_device\nE: SUBSYSTEM=usb\nE: BUSNUM=001\n"
-         "E: DEVNUM=" + usb_number + "\nA: idVendor=256f\\n\nA: idProduct=c635\\n\nA: manufacturer=3Dconnexion\\n\n"
-         "A: product=SpaceMouse Compact\\n\nA: serial=SIM1\\n\nA: bcdDevice=0100\\n\nA: busnum=1\\n\nA: devnum=2\\n\n\n"
-         "P: " + usb + "/1-1:1.0\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\nA: bInterfaceNumber=00\\n\n\n"
-         "P: " + hid +
-         "\nE: SUBSYSTEM=hid\nE: HID_ID=0003:0000256F:0000C635\nE: HID_NAME=3Dconnexion SpaceMouse Compact\n"
-         "E: HID_PHYS=usb-1/input0\nE: HID_UNIQ=SIM1\nH: report_descriptor=" + descriptor + "\n\n"
-         "P: " + hid +
-         "/hidraw/" + node + "\nN: " + node + "\nE: DEVNAME=/dev/" + node +
-         "\nE: SUBSYSTEM=hidraw\nE: MAJOR=240\nE: MINOR=" + std::to_string(plugging) + "\nA: dev=240:" +
-         std::to_string(plugging) + "\\n\nL: device=../../../" + hid.substr(hid.rfind('/') + 1) + "\n\n";
-}
 
 std::vector<std::byte> bytes_of(const guint8* data, std::size_t size) {
   const auto* const first = reinterpret_cast<const std::byte*>(data);
@@ -55,7 +24,34 @@ std::vector<std::byte> bytes_of(const guint8* data, std::size_t size) {
 
 }  // namespace
 
-HidrawTestbed::HidrawTestbed() : testbed_(umockdev_testbed_new()), handler_(umockdev_ioctl_base_new()) {
+/// Sysfs folder of the HID device; every plugging makes a new one, as the kernel does.
+std::string HidrawTestbed::hid_folder() const {
+  return fmt::format("{}/1-1:1.0/0003:{:04X}:{:04X}.{:04X}", kUsb, identity_.vendor, identity_.product, plugging_ + 1);
+}
+
+std::string HidrawTestbed::description() const {
+  const std::string usb = kUsb, hid = hid_folder();
+  const std::string usb_number = fmt::format("{:03}", plugging_ + 2), node = fmt::format("hidraw{}", plugging_);
+  std::string descriptor;
+  for (const std::uint8_t byte : identity_.descriptor) descriptor += fmt::format("{:02X}", byte);
+  return "P: " + usb + "\nN: bus/usb/001/" + usb_number + "\nE: DEVNAME=/dev/bus/usb/001/" + usb_number +
+         "\nE: DEVTYPE=usb_device\nE: SUBSYSTEM=usb\nE: BUSNUM=001\nE: DEVNUM=" + usb_number +
+         fmt::format("\nA: idVendor={:04x}\\n\nA: idProduct={:04x}\\n\nA: manufacturer={}\\n\nA: product={}\\n\nA: serial={}\\n\n",
+                     identity_.vendor, identity_.product, identity_.manufacturer, identity_.name, identity_.serial) +
+         "A: bcdDevice=0100\\n\nA: busnum=1\\n\nA: devnum=2\\n\n\n"
+         "P: " + usb + "/1-1:1.0\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\nA: bInterfaceNumber=00\\n\n\n"
+         "P: " + hid +
+         fmt::format("\nE: SUBSYSTEM=hid\nE: HID_ID=0003:{:08X}:{:08X}\nE: HID_NAME={} {}\nE: HID_PHYS=usb-1/input0\nE: HID_UNIQ={}\n",
+                     identity_.vendor, identity_.product, identity_.manufacturer, identity_.name, identity_.serial) +
+         "H: report_descriptor=" + descriptor + "\n\n"
+         "P: " + hid +
+         "/hidraw/" + node + "\nN: " + node + "\nE: DEVNAME=/dev/" + node + "\nE: SUBSYSTEM=hidraw\nE: MAJOR=240\nE: MINOR=" +
+         std::to_string(plugging_) + "\nA: dev=240:" + std::to_string(plugging_) + "\\n\nL: device=../../../" +
+         hid.substr(hid.rfind('/') + 1) + "\n\n";
+}
+
+HidrawTestbed::HidrawTestbed(HidIdentity identity)
+    : identity_(std::move(identity)), testbed_(umockdev_testbed_new()), handler_(umockdev_ioctl_base_new()) {
   g_signal_connect(handler_, "handle-ioctl", reinterpret_cast<GCallback>(on_ioctl), this);
   g_signal_connect(handler_, "handle-write", reinterpret_cast<GCallback>(on_write), this);
 }
@@ -69,7 +65,7 @@ HidrawTestbed::~HidrawTestbed() {
 void HidrawTestbed::plug() {
   GError* error = nullptr;
   ++plugging_;
-  if (!umockdev_testbed_add_from_string(testbed_, description(plugging_).c_str(), &error)) throw std::runtime_error(error->message);
+  if (!umockdev_testbed_add_from_string(testbed_, description().c_str(), &error)) throw std::runtime_error(error->message);
   if (!umockdev_testbed_attach_ioctl(testbed_, node().c_str(), handler_, &error))
     throw std::runtime_error(error->message);
   attached_ = true;
@@ -87,7 +83,7 @@ void HidrawTestbed::unplug() {
   if (attached_) umockdev_testbed_detach_ioctl(testbed_, node().c_str(), nullptr);
   attached_ = false;
   // leaves first: removing a parent alone leaves its children's links in /sys/bus behind
-  const std::string usb = std::string("/sys") + kUsb, hid = "/sys" + hid_folder(plugging_);
+  const std::string usb = std::string("/sys") + kUsb, hid = "/sys" + hid_folder();
   const std::string leaf = fmt::format("{}/hidraw/hidraw{}", hid, plugging_);
   umockdev_testbed_uevent(testbed_, leaf.c_str(), "remove");
   for (const std::string& path : {leaf, hid, usb + "/1-1:1.0", usb})
@@ -133,13 +129,13 @@ gboolean HidrawTestbed::on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client
     return TRUE;
   };
   if (request == HIDIOCGRDESCSIZE) {
-    const int bytes = kDescriptorBytes;
+    const int bytes = static_cast<int>(self->identity_.descriptor.size());
     return answer(&bytes, sizeof bytes, 0);
   }
   if (request == HIDIOCGRDESC) {
     hidraw_report_descriptor descriptor{};
-    descriptor.size = kDescriptorBytes;
-    std::copy_n(kDescriptor.begin(), kDescriptorBytes, descriptor.value);
+    descriptor.size = static_cast<__u32>(self->identity_.descriptor.size());
+    std::copy(self->identity_.descriptor.begin(), self->identity_.descriptor.end(), descriptor.value);
     return answer(&descriptor, sizeof descriptor, 0);
   }
   if (_IOC_NR(request) == 6 || _IOC_NR(request) == 7) {  // set and get feature
@@ -147,8 +143,11 @@ gboolean HidrawTestbed::on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client
     std::vector<std::byte> bytes = bytes_of(memory->data, size);
     g_object_unref(memory);
     if (_IOC_NR(request) == 6) {
-      const std::lock_guard lock(self->mutex_);
-      self->features_set_.push_back(bytes);
+      {
+        const std::lock_guard lock(self->mutex_);
+        self->features_set_.push_back(bytes);
+      }
+      if (self->answer_) self->answer_(bytes);
       umockdev_ioctl_client_complete(client, static_cast<glong>(size), 0);
       return TRUE;
     }

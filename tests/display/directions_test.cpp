@@ -182,7 +182,8 @@ class Directions : public ::testing::Test {
     const int views = sink_->traits().views;
     const double half_cone = 0.5 * profile.view_cone_deg * std::numbers::pi / 180,
                  z = viewing_distance_mm(profile);
-    for (int k = filter == "linear" ? 2 : 1; k < views - 1; ++k) {  // the outer ones mix with each other
+    for (int k = filter == "linear" ? 2 : 1;
+         k<views - 1; k += views> 6 ? 3 : 1) {  // the outer ones mix with each other
       const double place = (k + (filter == "linear" ? 0.0 : 0.5)) / views;  // 0..1 across the cone
       const glm::dvec3 eye(z * std::tan(half_cone) * (2 * place - 1), 0.0, z);
       expect_view(k, mean_light(see(picture, light->panel, eye), 20), std::sqrt(3.0) * 0.5 / (views + 1.0),
