@@ -39,8 +39,8 @@ printf 'cd %q && exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_AL
   >"$work/ram/command"
 (cd "$work/ram" && find . | cpio -o -H newc --quiet >"$work/ram.cpio")
 
-# boot ACCELERATOR CPU SECONDS_TO_START: runs it all; not 0 when the kernel has not even started in that time. qemu ends
-# with us, however we end; the limit covers a kernel that hangs.
+# boot ACCELERATOR CPU SECONDS_TO_START: runs it all, or gives up when the kernel has not even started in that time. qemu
+# ends with us, however we end; the limit covers a kernel that hangs.
 boot() {
   : >"$work/status"
   rm -f "$work/talk"
@@ -56,27 +56,29 @@ boot() {
   qemu=$!
   local until=$((SECONDS + $3))
   until grep -q up "$work/status" || ! kill -0 "$qemu" 2>/dev/null || [ "$SECONDS" -ge "$until" ]; do sleep 0.3; done
-  local started=0
-  grep -q up "$work/status" || { started=1; kill "$qemu" 2>/dev/null || true; }
+  grep -q up "$work/status" || kill "$qemu" 2>/dev/null || true
   wait "$qemu" 2>/dev/null || true
   wait "$reader" || true
   qemu=
-  return "$started"
 }
 
-# Nested virtualisation is often there and broken: then everything is emulated.
+exit_status() { sed -n 's/^exit //p' "$work/status" | tr -d '\r'; }
+
+# Nested virtualisation is often there and broken, at once or later: then everything is emulated.
 accel=${LAB_ACCEL:-}
-if [ "$accel" != tcg ] && [ -w /dev/kvm ] && boot kvm host 20 2>/dev/null; then  # bash announces aborts
-  accel=kvm
-elif [ "$accel" != kvm ]; then
-  accel=tcg
-  boot tcg max "$seconds" 2>/dev/null || true
+status=
+if [ "$accel" != tcg ] && [ -w /dev/kvm ]; then
+  boot kvm host 20 2>/dev/null  # bash announces aborts
+  status=$(exit_status)
+fi
+if [ -z "$status" ] && [ "$accel" != kvm ]; then
+  boot tcg max "$seconds" 2>/dev/null
+  status=$(exit_status)
 fi
 
-status=$(sed -n 's/^exit //p' "$work/status" | tr -d '\r')
 if [ -z "$status" ]; then
   {
-    echo "device lab: the kernel did not get to its end within $seconds s ($accel)"
+    echo "device lab: the kernel did not get to its end within $seconds s"
     tail -n 5 "$work/qemu.log"
     tail -n 30 "$work/kernel.log"
   } >&2 || true
