@@ -98,5 +98,35 @@ TEST(Bridge, AnswersOfAnotherShapeAreRefused) {
     EXPECT_EQ(parse_bridge_devices(text).error().kind, ErrorKind::kBadData) << text;
 }
 
+TEST(Bridge, RandomBytesInTheAnswersNeverDoMoreThanFail) {
+  const std::string listed = R"({"payload": {"value": {"0": {"value": {"hwid": {"value": "LKG-P1"}, "calibration": {"value": "{}"}}}}}})";
+  const std::string chunked = "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n6;x=1\r\nhello \r\n5\r\nworld\r\n0\r\n\r\n";
+  std::uint32_t state = 1;
+  const auto next = [&] { return (state = state * 1664525u + 1013904223u) >> 8; };
+  const auto damaged = [&](std::string text) {
+    for (std::uint32_t changes = 1 + next() % 4; changes > 0; --changes) {
+      const std::size_t at = next() % text.size();
+      if (next() % 3 == 0) text.erase(at, 1 + next() % 5);
+      else text[at] = static_cast<char>(next());
+      if (text.empty()) text.push_back('x');
+    }
+    return text;
+  };
+  int refused = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const auto reply = parse_http_reply(damaged(chunked), i % 2 == 0);
+    if (reply && *reply) {
+      EXPECT_LE((*reply)->body.size(), chunked.size());
+    }
+    refused += !reply;
+    const auto devices = parse_bridge_devices(damaged(listed));
+    if (devices) {
+      EXPECT_LE(devices->size(), 2u);
+    }
+    refused += !devices;
+  }
+  EXPECT_GT(refused, 5000);
+}
+
 }  // namespace
 }  // namespace dubsar
