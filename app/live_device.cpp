@@ -125,6 +125,13 @@ Result<std::unique_ptr<LiveDevice>> make_live_device(const DeviceChoice& choice,
     DUBSAR_ASSIGN(auto source, make_input("leap:at=0/0/0", config));
     return std::make_unique<LiveHands>(std::move(source), threaded);
   }
+  if (choice.driver == "leapc") {
+    InputConfig config;
+    config.clock = &clock;
+    if (!choice.library.empty()) config.options.emplace_back("library", choice.library);
+    DUBSAR_ASSIGN(auto source, make_input("leapc:at=0/0/0", config));
+    return std::make_unique<LiveHands>(std::move(source), true);
+  }
   DUBSAR_ASSIGN(const auto* const backend, find_backend(head_tracker_backends(), choice.driver, "device driver"));
   HeadTrackerConfig config;
   config.open = std::move(open);

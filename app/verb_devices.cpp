@@ -63,7 +63,7 @@ Result<VerbResult> list(const Options& options) {
     if (!d.reason.empty()) result.text += fmt::format("               {}; {}\n", d.reason, d.remedy);
   }
   if (devices.empty())
-    result.text = "no SpaceMouse, headset or Looking Glass found; opentrack and vrpn trackers are reached by name\n";
+    result.text = "no SpaceMouse, headset, Leap or Looking Glass found; opentrack and vrpn trackers are reached by name\n";
   return result;
 }
 
@@ -141,7 +141,13 @@ Result<VerbResult> probe_looking_glass(const Clock& clock) {
 
 Result<VerbResult> run_live(const Options& options, bool print, Progress& progress) {
   const SteadyClock clock;
-  DUBSAR_ASSIGN(OpenTransport open, reach_real_device(options.device, clock));
+  OpenTransport open;
+  if (options.device.driver != "leapc") {
+    DUBSAR_ASSIGN(open, reach_real_device(options.device, clock));
+  } else if (options.record->parsed()) {
+    return fail(ErrorKind::kUsage, "devices: leapc is a service and sends no bytes of a device: record its hands with dubsar "
+                                   "view --input leapc --record FILE");
+  }
   std::shared_ptr<RecordingWriter> writer;
   if (options.record->parsed()) {
     DUBSAR_TRY(check_output_path(options.file));
@@ -245,7 +251,7 @@ Result<VerbResult> run(const Options& options, const CommonOptions& common, Prog
 }
 
 void add_device_options(CLI::App& command, Options& options) {
-  command.add_option("driver", options.device.driver, std::string(kDeviceDrivers))->required();
+  command.add_option("driver", options.device.driver, std::string(kDeviceDrivers) + "; probe and monitor: leapc")->required();
   command.add_option("--address", options.device.address, "opentrack: to listen on; vrpn: of the server");
   command.add_option("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given")->check(CLI::Range(0, 65535));
   command.add_flag("--allow-remote", options.device.allow_remote, "opentrack: listen to other machines too");
@@ -253,6 +259,7 @@ void add_device_options(CLI::App& command, Options& options) {
   command.add_option("--sensor", options.device.sensor, "vrpn: which of its sensors")->check(CLI::Range(0, 1000));
   command.add_option("--invert", options.invert, "opentrack: axes that count the other way, e.g. x+yaw")->type_name("AXES");
   command.add_option("--socket", options.device.socket, "spacenav: path of the daemon's socket");
+  command.add_option("--library", options.device.library, "leapc: Ultraleap's libLeapC.so")->type_name("FILE");
 }
 
 void add_simulate_options(CLI::App& command, Options& options) {

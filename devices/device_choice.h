@@ -13,7 +13,7 @@ namespace dubsar {
 /// A device by its driver's name, with what that driver has to know to find it. Fields that a driver does not
 /// know are ignored.
 struct DeviceChoice {
-  std::string driver;                 ///< spacemouse, spacenav, opentrack, vrpn, rift, xreal, leap
+  std::string driver;                 ///< spacemouse, spacenav, opentrack, vrpn, rift, xreal, leap, leapc
   std::string address = "127.0.0.1";  ///< opentrack: to listen on; vrpn: of the server
   int port = 0;                       ///< 0: the protocol's own
   bool allow_remote = false;          ///< opentrack: listen to other machines too
@@ -21,6 +21,7 @@ struct DeviceChoice {
   std::string tracker;                ///< vrpn: its name; empty: the first
   int sensor = 0;                     ///< vrpn
   std::string socket;                 ///< spacenav; empty: the usual one
+  std::string library;                ///< leapc: the file of Ultraleap's library; empty: where it is usually installed
 };
 
 /// Finds out how the chosen device is opened; opens nothing yet. kUsage: no such driver, an impossible

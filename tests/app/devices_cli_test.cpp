@@ -51,6 +51,10 @@ TEST(DevicesCommand, SaysWhatIsMissing) {
   const ProgramRun vrpn = run_dubsar({"devices", "monitor", "vrpn", "--port", "1", "--seconds", "0.1"});
   EXPECT_EQ(vrpn.exit_code, 69);
   EXPECT_NE(vrpn.out.find("127.0.0.1 port 1: cannot connect"), std::string::npos) << vrpn.out;
+  const ProgramRun leapc = run_dubsar({"devices", "probe", "leapc", "--library", "/no/such/libLeapC.so"});
+  EXPECT_EQ(leapc.exit_code, 69);
+  EXPECT_NE(leapc.err.find("/no/such/libLeapC.so"), std::string::npos) << leapc.err;
+  EXPECT_EQ(run_dubsar({"devices", "record", "leapc", "/tmp/never.txt"}).exit_code, 64);
   EXPECT_EQ(run_dubsar({"devices", "monitor", "melt"}).exit_code, 64);
   EXPECT_EQ(run_dubsar({"devices", "simulate", "melt", "/tmp/never.txt"}).exit_code, 64);
   EXPECT_EQ(run_dubsar({"devices", "simulate", "opentrack"}).exit_code, 64);  // neither a file nor --live
