@@ -24,8 +24,8 @@ constexpr std::array<InputBackend, 10> kSources{{
     {"leapc", "hands from Ultraleap's tracking service: leapc[:library=FILE,mode=desktop,at=X/Y/Z,turn=X/Y/Z]", false,
      make_leapc_source},
     {"head", "a tracked head: head:opentrack, head:vrpn, head:rift, head:xreal", true, make_head_source},
-    {"webcam", "a head, from the face before a camera: webcam[:device=/dev/video0,hfov=60,ipd=63,at=X/Y/Z,tilt=0]", false,
-     make_webcam_source},
+    {"webcam", "the head from a face, with :hands hands too: webcam[:hands,device=/dev/video0,hfov=60,ipd=63,at=X/Y/Z,tilt=0]",
+     false, make_webcam_source},
     {"scripted", "simulated people: scripted:FILE.json", false, make_scripted_source},
     {"replay", "a recording of any input: replay:FILE.jsonl", false, make_replay_source},
 }};

@@ -13,6 +13,7 @@
 #include "input/sources/device_source.h"
 #include "input/sources/option_reader.h"
 #include "input/vision/model_files.h"
+#include "input/webcam_hands/webcam_hand_tracker.h"
 
 namespace dubsar {
 namespace {
@@ -24,8 +25,8 @@ constexpr TimestampNs kSilentNs = 2'000'000'000;
 
 class WebcamReader final : public DeviceReader {
  public:
-  WebcamReader(WebcamFrames frames, FaceTracker tracker)
-      : frames_(std::move(frames)), tracker_(std::move(tracker)) {}
+  WebcamReader(WebcamFrames frames, FaceTracker faces, std::optional<WebcamHandTracker> hands)
+      : frames_(std::move(frames)), faces_(std::move(faces)), hands_(std::move(hands)) {}
 
   bool read(TimestampNs now, milliseconds timeout, InputFrame& frame) override {
     if (!open_ && !open(now)) return false;
@@ -38,7 +39,9 @@ class WebcamReader final : public DeviceReader {
       if (std::chrono::steady_clock::now() >= until) return false;
       std::this_thread::sleep_for(milliseconds(1));
     }
-    if (auto tracked = tracker_.track(picture_, frame.heads); !tracked) {
+    Result<void> tracked = faces_.track(picture_, frame.heads);
+    if (tracked && hands_) tracked = hands_->track(picture_, frame.hands);
+    if (!tracked) {
       lose(tracked.error().message, now);
       return false;
     }
@@ -70,7 +73,8 @@ class WebcamReader final : public DeviceReader {
   }
 
   WebcamFrames frames_;
-  FaceTracker tracker_;
+  FaceTracker faces_;
+  std::optional<WebcamHandTracker> hands_;
   RetryPause retry_;
   std::string reason_;
   bool open_ = false;
@@ -91,6 +95,8 @@ struct WebcamOptions {
   CameraOptions camera;
   std::string replay;
   FaceTrackerOptions tracking;
+  bool hands = false;
+  double hand_size = 1.0;
   std::filesystem::path models;
 };
 
@@ -109,6 +115,8 @@ Result<WebcamOptions> read_options(const InputConfig& config, bool with_camera) 
   read.tracking.camera.at_m = 1e-3 * options.triple("at", 10'000.0, top_mm);
   read.tracking.camera.tilt_rad = kRadians * options.number("tilt", -90.0, 90.0, 0.0);
   read.tracking.ipd_m = 1e-3 * options.number("ipd", 40.0, 90.0, 63.0);
+  read.hands = options.flag("hands");
+  read.hand_size = options.number("hand", 0.5, 1.5, 1.0);
   read.models = options.text("models", config.model_folder.string());
   DUBSAR_TRY(options.finish());
   CaptureFormat& format = read.camera.format;
@@ -124,17 +132,26 @@ Result<WebcamOptions> read_options(const InputConfig& config, bool with_camera) 
 Result<std::unique_ptr<InputSource>> make_source(WebcamFrames frames, const WebcamOptions& options,
                                                  const InputConfig& config) {
   DUBSAR_ASSIGN(auto detector, make_detector(options.models));
+  std::optional<WebcamHandTracker> hands;
+  if (options.hands) {
+    auto networks = make_hand_networks(options.models);
+    if (!networks && networks.error().kind == ErrorKind::kNoInput)
+      return fail(ErrorKind::kUnavailable, "input webcam: hands need their networks, which are not in {}; {} fetches them",
+                  options.models.string(), kModelCommand);
+    if (!networks) return tl::unexpected<Error>(std::move(networks).error());
+    WebcamHandOptions tracking;
+    tracking.camera = options.tracking.camera;
+    tracking.hand_size = options.hand_size;
+    hands.emplace(*std::move(networks), tracking);
+  }
   DeviceSourceTraits traits;
   traits.name = "webcam";
   traits.has_end = frames.ended != nullptr;
   traits.silent_ns = traits.has_end ? 0 : kSilentNs;
   if (detector->name() != "network")
-    traits.note =
-        fmt::format("webcam: faces without their network: depth is coarse; {} fetches it", kModelCommand);
-  return make_device_source(
-      std::move(traits),
-      std::make_unique<WebcamReader>(std::move(frames), FaceTracker(std::move(detector), options.tracking)),
-      config);
+    traits.note = fmt::format("webcam: faces without their network: depth is coarse; {} fetches it", kModelCommand);
+  auto reader = std::make_unique<WebcamReader>(std::move(frames), FaceTracker(std::move(detector), options.tracking), std::move(hands));
+  return make_device_source(std::move(traits), std::move(reader), config);
 }
 
 /// Pictures that two hold: the reader, and whoever asks whether they are over.

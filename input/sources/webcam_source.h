@@ -1,5 +1,5 @@
 #pragma once
-// A webcam as an input: the head from the face before it.
+// A webcam as an input: the head from the face before it, hands when asked for.
 
 #include <functional>
 #include <memory>
