@@ -10,6 +10,7 @@
 #include <optional>
 #include <thread>
 
+#include "app/camera_pictures.h"
 #include "app/cli/verb.h"
 #include "app/live_device.h"
 #include "app/live_view.h"
@@ -244,6 +245,8 @@ Result<VerbResult> run(const Options& options, const CommonOptions& common, Prog
   if (options.probe->parsed() && options.device.driver == "looking_glass") return probe_looking_glass(SteadyClock());
   if (options.replay->parsed()) return run_replay(options, print, progress);
   if (options.simulate->parsed()) return run_simulate(options, print, progress);
+  if (options.device.driver == "webcam" && !options.monitor->parsed())
+    return watch_camera(options.file, options.probe->parsed() ? 2.0 : options.seconds, progress);
   Options chosen = options;
   DUBSAR_ASSIGN(chosen.device.invert, parse_axes(options.invert));
   if (options.probe->parsed()) chosen.seconds = 2.0;
@@ -251,7 +254,7 @@ Result<VerbResult> run(const Options& options, const CommonOptions& common, Prog
 }
 
 void add_device_options(CLI::App& command, Options& options) {
-  command.add_option("driver", options.device.driver, std::string(kDeviceDrivers) + "; probe and monitor: leapc")->required();
+  command.add_option("driver", options.device.driver, std::string(kDeviceDrivers) + "; probe and monitor: leapc; probe and record: webcam")->required();
   command.add_option("--address", options.device.address, "opentrack: to listen on; vrpn: of the server");
   command.add_option("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given")->check(CLI::Range(0, 65535));
   command.add_flag("--allow-remote", options.device.allow_remote, "opentrack: listen to other machines too");

@@ -136,7 +136,8 @@ Result<std::unique_ptr<InputSource>> make_source(WebcamFrames frames, const Webc
   if (options.hands) {
     auto networks = make_hand_networks(options.models);
     if (!networks && networks.error().kind == ErrorKind::kNoInput)
-      return fail(ErrorKind::kUnavailable, "input webcam: hands need their networks, which are not in {}; {} fetches them",
+      return fail(ErrorKind::kUnavailable,
+                  "input webcam: hands need their networks, which are not in {}; {} fetches them",
                   options.models.string(), kModelCommand);
     if (!networks) return tl::unexpected<Error>(std::move(networks).error());
     WebcamHandOptions tracking;
@@ -149,8 +150,10 @@ Result<std::unique_ptr<InputSource>> make_source(WebcamFrames frames, const Webc
   traits.has_end = frames.ended != nullptr;
   traits.silent_ns = traits.has_end ? 0 : kSilentNs;
   if (detector->name() != "network")
-    traits.note = fmt::format("webcam: faces without their network: depth is coarse; {} fetches it", kModelCommand);
-  auto reader = std::make_unique<WebcamReader>(std::move(frames), FaceTracker(std::move(detector), options.tracking), std::move(hands));
+    traits.note =
+        fmt::format("webcam: faces without their network: depth is coarse; {} fetches it", kModelCommand);
+  auto reader = std::make_unique<WebcamReader>(
+      std::move(frames), FaceTracker(std::move(detector), options.tracking), std::move(hands));
   return make_device_source(std::move(traits), std::move(reader), config);
 }
 

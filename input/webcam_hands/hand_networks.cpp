@@ -13,13 +13,16 @@ namespace dubsar {
 namespace {
 
 constexpr int kPalmInput = 192, kHandInput = 224;
-constexpr std::size_t kPalmPoints = 7;  // wrist, knuckles of index, middle, ring and little finger, two of the thumb
+constexpr std::size_t kPalmPoints =
+    7;  // wrist, knuckles of index, middle, ring and little finger, two of the thumb
 constexpr double kLeastScore = 0.5, kMostOverlap = 0.3;
 // the square about a hand, from its palm's box and from its landmarks: what the networks were trained with
 constexpr double kPalmSides = 2.6, kPalmShift = 0.5, kHandSides = 2.0, kHandShift = 0.1;
 
 /// Turn of a square whose upper edge is where this direction points.
-double turn_towards(const glm::dvec2& direction) { return 0.5 * std::numbers::pi - std::atan2(-direction.y, direction.x); }
+double turn_towards(const glm::dvec2& direction) {
+  return 0.5 * std::numbers::pi - std::atan2(-direction.y, direction.x);
+}
 
 glm::dvec2 up_of(double turn_rad) { return {std::sin(turn_rad), -std::cos(turn_rad)}; }
 
@@ -36,14 +39,17 @@ class Networks final : public HandNetworks {
     const SquareCrop whole = whole_picture(picture);
     sampler_.sample(picture, whole, kPalmInput, 1.0f / 255.0f, 0.0f, palm_planes_);
     DUBSAR_TRY(palm_.run(palm_planes_, outputs_));
-    if (outputs_.size() != 2 || outputs_[0].size() != anchors_.size() * (4 + 2 * kPalmPoints) || outputs_[1].size() != anchors_.size())
+    if (outputs_.size() != 2 || outputs_[0].size() != anchors_.size() * (4 + 2 * kPalmPoints) ||
+        outputs_[1].size() != anchors_.size())
       return fail(ErrorKind::kBadData, "palm network: its outputs are not those of palm_detection_lite");
     std::vector<SquareCrop> crops;
-    for (const SsdDetection& palm :
-         merge_overlapping(decode_ssd(outputs_[0], outputs_[1], anchors_, kPalmPoints, kPalmInput, kLeastScore), kMostOverlap)) {
+    for (const SsdDetection& palm : merge_overlapping(
+             decode_ssd(outputs_[0], outputs_[1], anchors_, kPalmPoints, kPalmInput, kLeastScore),
+             kMostOverlap)) {
       const double side_px = whole.side_px * std::max(palm.width(), palm.most.y - palm.least.y);
       const double turn = turn_towards(palm.points[2] - palm.points[0]);
-      crops.push_back({whole.to_picture(palm.centre()) + kPalmShift * side_px * up_of(turn), kPalmSides * side_px, turn});
+      crops.push_back(
+          {whole.to_picture(palm.centre()) + kPalmShift * side_px * up_of(turn), kPalmSides * side_px, turn});
     }
     return crops;
   }
@@ -51,8 +57,8 @@ class Networks final : public HandNetworks {
   Result<HandSeen> place_landmarks(const PictureView& picture, const SquareCrop& crop) override {
     sampler_.sample(picture, crop, kHandInput, 1.0f / 255.0f, 0.0f, hand_planes_);
     DUBSAR_TRY(hand_.run(hand_planes_, outputs_));
-    if (outputs_.size() != 4 || outputs_[0].size() != 3 * kLandmarks || outputs_[1].size() != 1 || outputs_[2].size() != 1 ||
-        outputs_[3].size() != 3 * kLandmarks)
+    if (outputs_.size() != 4 || outputs_[0].size() != 3 * kLandmarks || outputs_[1].size() != 1 ||
+        outputs_[2].size() != 1 || outputs_[3].size() != 3 * kLandmarks)
       return fail(ErrorKind::kBadData, "hand network: its outputs are not those of hand_landmark_lite");
     HandSeen hand;
     hand.presence = outputs_[1][0];
@@ -96,9 +102,10 @@ SquareCrop HandSeen::next_crop() const noexcept {
 Result<std::unique_ptr<HandNetworks>> make_hand_networks(const std::filesystem::path& folder) {
   DUBSAR_ASSIGN(Network palm, Network::read(folder / kPalmModel));
   DUBSAR_ASSIGN(Network hand, Network::read(folder / kHandModel));
-  if (palm.rows() != kPalmInput || palm.columns() != kPalmInput || palm.channels() != 3 || hand.rows() != kHandInput ||
-      hand.columns() != kHandInput || hand.channels() != 3)
-    return fail(ErrorKind::kBadData, "{}: networks for {} and {} pixels, expected 192 and 224", folder.string(), palm.rows(), hand.rows());
+  if (palm.rows() != kPalmInput || palm.columns() != kPalmInput || palm.channels() != 3 ||
+      hand.rows() != kHandInput || hand.columns() != kHandInput || hand.channels() != 3)
+    return fail(ErrorKind::kBadData, "{}: networks for {} and {} pixels, expected 192 and 224",
+                folder.string(), palm.rows(), hand.rows());
   return std::make_unique<Networks>(std::move(palm), std::move(hand));
 }
 

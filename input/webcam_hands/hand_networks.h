@@ -1,5 +1,6 @@
 #pragma once
-// Hands in a picture by two networks (MediaPipe hands; Zhang et al. 2020): one finds palms, one places 21 landmarks.
+// Hands in a picture by two networks (MediaPipe hands; Zhang et al. 2020): one finds palms, one places 21
+// landmarks.
 
 #include <array>
 #include <filesystem>
@@ -18,11 +19,12 @@ namespace dubsar {
 inline constexpr std::size_t kLandmarks = 21;
 
 struct HandSeen {
-  double presence = 0.0;     ///< 0 to 1: that this is a hand at all
-  double right = 0.0;        ///< 0 to 1: that it is a right one, in a picture that is not mirrored
-  SquareCrop crop;           ///< where it was looked for
+  double presence = 0.0;  ///< 0 to 1: that this is a hand at all
+  double right = 0.0;     ///< 0 to 1: that it is a right one, in a picture that is not mirrored
+  SquareCrop crop;        ///< where it was looked for
   std::array<glm::dvec2, kLandmarks> points_px{};  ///< in the picture
-  /// Metres about the hand's middle for a hand of usual size; x right and y down in the picture, z away from the camera.
+  /// Metres about the hand's middle for a hand of usual size; x right and y down in the picture, z away from
+  /// the camera.
   std::array<glm::dvec3, kLandmarks> shape_m{};
 
   /// Where to look for this hand in the next picture.

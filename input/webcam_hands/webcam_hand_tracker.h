@@ -16,18 +16,23 @@ namespace dubsar {
 
 struct WebcamHandOptions {
   CameraView camera;
-  double hand_size = 1.0;  ///< of the usual one: a hand 10 % larger than it is taken for is placed 10 % too near
+  double hand_size =
+      1.0;  ///< of the usual one: a hand 10 % larger than it is taken for is placed 10 % too near
   int most_hands = 2;
-  int look_around_frames = 15;  ///< with one hand followed, another one is looked for in every so manieth frame
+  int look_around_frames =
+      15;  ///< with one hand followed, another one is looked for in every so manieth frame
   OneEuroOptions place_filter{2.0, 20.0, 2.0};
 };
 
-/// Where the hand's middle is for its landmarks to appear where they do (least squares over all of them); camera frame of
-/// CameraView. Nothing for shapes without extent and places nearer than 5 cm or farther than 3 m.
-std::optional<glm::dvec3> place_hand(const HandSeen& hand, int width, int height, const CameraView& camera, double hand_size);
+/// Where the hand's middle is for its landmarks to appear where they do (least squares over all of them);
+/// camera frame of CameraView. Nothing for shapes without extent and places nearer than 5 cm or farther than
+/// 3 m.
+std::optional<glm::dvec3> place_hand(const HandSeen& hand, int width, int height, const CameraView& camera,
+                                     double hand_size);
 
-/// All 26 joints in the screen frame from landmarks in the screen frame (metres, order of kLandmarks). The joints inside the
-/// palm, which have no landmark, are valid and not tracked. Also palm, grab strength and pinch distance.
+/// All 26 joints in the screen frame from landmarks in the screen frame (metres, order of kLandmarks). The
+/// joints inside the palm, which have no landmark, are valid and not tracked. Also palm, grab strength and
+/// pinch distance.
 HandFrame hand_from_landmarks(const std::array<glm::dvec3, kLandmarks>& landmarks_m, Chirality chirality);
 
 /// One thread.
@@ -35,8 +40,8 @@ class WebcamHandTracker {
  public:
   WebcamHandTracker(std::unique_ptr<HandNetworks> networks, const WebcamHandOptions& options);
 
-  /// RGB frames of one view. `hands` becomes all hands seen in this frame, screen frame. Cost: 10 ms for each followed hand;
-  /// 30 ms more when none is followed and in look-around frames. kBadData: not such a frame.
+  /// RGB frames of one view. `hands` becomes all hands seen in this frame, screen frame. Cost: 10 ms for each
+  /// followed hand; 30 ms more when none is followed and in look-around frames. kBadData: not such a frame.
   Result<void> track(const Frame& frame, Hands& hands);
 
  private:

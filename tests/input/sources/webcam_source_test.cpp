@@ -102,6 +102,27 @@ TEST_F(WebcamOfAPhotograph, WithoutTheNetworkTheCascadeSeesTheHeadAndSaysSo) {
   EXPECT_NE(source->note().find("./do models"), std::string::npos) << source->note();
 }
 
+TEST_F(WebcamOfAPhotograph, HandsAreFollowedWhenAskedForAndNeedTheirNetworks) {
+  if (!std::filesystem::exists(model_folder() / kHandModel)) GTEST_SKIP() << kNoModels;
+  std::filesystem::copy_file(photograph_folder() / "sample2.jpg", folder_ / "1.jpg");
+  std::filesystem::copy_file(photograph_folder() / "sample2.jpg", folder_ / "2.jpg");
+  const std::string spec = fmt::format("webcam:hands,fps=10,replay={}", folder_.string());
+  const auto source = bench_.make(spec);
+  ASSERT_TRUE(source);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(bench_.poll(*source), Freshness::kNew);
+    ASSERT_FALSE(bench_.frame.hands.empty());
+    EXPECT_EQ(bench_.frame.hands[0].id, 1U);
+    EXPECT_EQ(bench_.frame.hands[0].chirality, Chirality::kLeft);
+    EXPECT_EQ(bench_.frame.hands[0].time, bench_.clock.now());
+    bench_.clock.advance(100 * kMs);
+  }
+  const auto without = make_input(spec + ",models=/nonexistent", bench_.config);
+  ASSERT_FALSE(without);
+  EXPECT_EQ(without.error().kind, ErrorKind::kUnavailable);
+  EXPECT_NE(without.error().message.find("./do models"), std::string::npos) << without.error().message;
+}
+
 TEST(WebcamSourceOver, ALostCameraIsAStateAndComesBack) {
   if (!std::filesystem::exists(model_folder() / kFaceModel)) GTEST_SKIP() << kNoModels;
   struct Played final : FrameSource {

@@ -15,7 +15,8 @@
 namespace dubsar {
 namespace {
 
-/// Places looked up by eye, pixels of the photograph. All three are left hands with their backs to the camera.
+/// Places looked up by eye, pixels of the photograph. All three are left hands with their backs to the
+/// camera.
 struct KnownHand {
   const char* photograph;
   glm::dvec2 wrist, index_tip, little_tip;
@@ -52,8 +53,8 @@ class HandPhotographs : public testing::Test {
     frame.pixels.resize(frame.view_bytes());
     for (int i = 0; i < 640 * 480; ++i)
       for (int c = 0; c < 3; ++c)
-        frame.pixels[static_cast<std::size_t>(3 * i + c)] =
-            static_cast<std::uint8_t>(std::clamp(planes[static_cast<std::size_t>(c * 640 * 640 + 80 * 640 + i)] + noise(random_), 0.0f, 255.0f));
+        frame.pixels[static_cast<std::size_t>(3 * i + c)] = static_cast<std::uint8_t>(std::clamp(
+            planes[static_cast<std::size_t>(c * 640 * 640 + 80 * 640 + i)] + noise(random_), 0.0f, 255.0f));
     return frame;
   }
   std::unique_ptr<HandNetworks> networks_;
@@ -74,7 +75,8 @@ TEST_F(HandPhotographs, LandmarksLieOnTheFingersThatAPersonSees) {
       ASSERT_TRUE(hand);
       if (hand->presence < 0.5) continue;
       EXPECT_LT(hand->right, 0.5) << known.photograph;
-      best = std::min(best, std::max({glm::length(hand->points_px[0] - known.wrist), glm::length(hand->points_px[8] - known.index_tip),
+      best = std::min(best, std::max({glm::length(hand->points_px[0] - known.wrist),
+                                      glm::length(hand->points_px[8] - known.index_tip),
                                       glm::length(hand->points_px[20] - known.little_tip)}));
     }
     EXPECT_LT(best, 15.0) << known.photograph << ": pixels, of hands that are 200 long";
@@ -85,7 +87,8 @@ TEST_F(HandPhotographs, PicturesWithoutHandsShowNone) {
   const Image photo = photograph("sample6.jpg");
   WebcamHandTracker tracker(std::move(networks_), {});
   Hands hands;
-  for (const glm::dvec2& at : {glm::dvec2(150, 150), glm::dvec2(800, 500), glm::dvec2(1280, 430)}) {  // blinds, two faces
+  for (const glm::dvec2& at :
+       {glm::dvec2(150, 150), glm::dvec2(800, 500), glm::dvec2(1280, 430)}) {  // blinds, two faces
     ASSERT_TRUE(tracker.track(webcam(photo, at, 1.0, 4.0f), hands));
     EXPECT_TRUE(hands.empty()) << at.x;
   }
@@ -109,13 +112,16 @@ TEST_F(HandPhotographs, ARestingHandStaysWhereItIsAndItsBackFacesTheCamera) {
       cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC);
       const HandFrame* middle = nullptr;
       for (const HandFrame& hand : hands)
-        if (std::abs(hand.palm.position_m.x) < 0.08 && std::abs(hand.palm.position_m.y) < 0.08) middle = &hand;
+        if (std::abs(hand.palm.position_m.x) < 0.08 && std::abs(hand.palm.position_m.y) < 0.08)
+          middle = &hand;
       ASSERT_NE(middle, nullptr) << i;
       EXPECT_EQ(middle->chirality, Chirality::kLeft);
-      // it hangs over a knee: its back up and to the camera, which looks along +Z, knuckles nearer than the wrist, tips down
+      // it hangs over a knee: its back up and to the camera, which looks along +Z, knuckles nearer than the
+      // wrist, tips down
       EXPECT_LT((middle->palm.rotation * glm::dvec3(0, 1, 0)).z, -0.1);
       EXPECT_LT((middle->palm.rotation * glm::dvec3(0, 0, -1)).z, -0.5);
-      EXPECT_LT(middle->joint(HandJoint::kMiddleTip).pose.position_m.y, middle->joint(HandJoint::kWrist).pose.position_m.y - 0.05);
+      EXPECT_LT(middle->joint(HandJoint::kMiddleTip).pose.position_m.y,
+                middle->joint(HandJoint::kWrist).pose.position_m.y - 0.05);
       EXPECT_LT(middle->grab_strength, 0.7) << "a hand that rests does not grab";
       if (i < 10) continue;
       x.push_back(1e3 * middle->palm.position_m.x);
@@ -124,17 +130,22 @@ TEST_F(HandPhotographs, ARestingHandStaysWhereItIsAndItsBackFacesTheCamera) {
     const auto spread = [](std::vector<double>& v) {
       double sum = 0, squares = 0;
       for (const double value : v) sum += value;
-      for (const double value : v) squares += (value - sum / static_cast<double>(v.size())) * (value - sum / static_cast<double>(v.size()));
+      for (const double value : v)
+        squares +=
+            (value - sum / static_cast<double>(v.size())) * (value - sum / static_cast<double>(v.size()));
       return std::sqrt(squares / static_cast<double>(v.size() - 1));
     };
     for (const double value : z) depth_m[half] += 1e-3 * value / static_cast<double>(z.size());
-    std::printf("hand at %.2f m: sd of the palm %.1f mm sideways, %.1f mm in depth\n", depth_m[half], spread(x), spread(z));
+    std::printf("hand at %.2f m: sd of the palm %.1f mm sideways, %.1f mm in depth\n", depth_m[half],
+                spread(x), spread(z));
     EXPECT_LT(spread(x), 3.0);
     EXPECT_LT(spread(z), 15.0);
   }
-  EXPECT_NEAR(depth_m[1] / depth_m[0], 1.0 / 0.6, 0.15) << "a hand of 0.6 times the size is that much further away";
+  EXPECT_NEAR(depth_m[1] / depth_m[0], 1.0 / 0.6, 0.15)
+      << "a hand of 0.6 times the size is that much further away";
   std::sort(cpu_ms.begin(), cpu_ms.end());
-  std::printf("CPU of a frame: median %.1f ms, worst (with the palm network) %.1f ms\n", cpu_ms[cpu_ms.size() / 2], cpu_ms.back());
+  std::printf("CPU of a frame: median %.1f ms, worst (with the palm network) %.1f ms\n",
+              cpu_ms[cpu_ms.size() / 2], cpu_ms.back());
 }
 
 }  // namespace

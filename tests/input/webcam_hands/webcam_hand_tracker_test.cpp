@@ -12,10 +12,12 @@ namespace {
 constexpr int kWidth = 640, kHeight = 480;
 using Landmarks = std::array<glm::dvec3, kLandmarks>;
 
-/// A right hand, palm down, fingers to -Z, wrist at the origin; `bend_rad`: of each finger joint. Screen axes, metres.
+/// A right hand, palm down, fingers to -Z, wrist at the origin; `bend_rad`: of each finger joint. Screen
+/// axes, metres.
 Landmarks right_hand(double bend_rad) {
   Landmarks at{};
-  const auto chain = [&](std::size_t first, glm::dvec3 from, glm::dvec3 direction, const glm::dvec3& axis, double length, double bend) {
+  const auto chain = [&](std::size_t first, glm::dvec3 from, glm::dvec3 direction, const glm::dvec3& axis,
+                         double length, double bend) {
     at[first] = from;
     for (std::size_t i = first; i < first + 3; ++i) {
       direction = glm::angleAxis(bend, axis) * direction;
@@ -67,7 +69,8 @@ HandSeen seen_at(const Landmarks& shape_m, const glm::dvec3& place_m, const Came
   hand.presence = 0.9;
   const double f = camera.focal_px(kWidth);
   for (std::size_t i = 0; i < kLandmarks; ++i) {
-    const glm::dvec3 p = size * shape_m[i] + place_m;  // camera frame: +Z away from the camera, +X to the picture's left
+    const glm::dvec3 p =
+        size * shape_m[i] + place_m;  // camera frame: +Z away from the camera, +X to the picture's left
     hand.points_px[i] = {0.5 * kWidth - f * p.x / p.z, 0.5 * kHeight - f * p.y / p.z};
     hand.shape_m[i] = {-shape_m[i].x, -shape_m[i].y, shape_m[i].z};
   }
@@ -76,9 +79,11 @@ HandSeen seen_at(const Landmarks& shape_m, const glm::dvec3& place_m, const Came
 
 TEST(PlaceHand, TheLandmarksOfAHandInPerspectiveSayExactlyWhereItIs) {
   CameraView camera;
-  for (const glm::dvec3& place : {glm::dvec3(0, 0, 0.5), glm::dvec3(0.2, -0.1, 0.4), glm::dvec3(-0.3, 0.15, 1.0)})
+  for (const glm::dvec3& place :
+       {glm::dvec3(0, 0, 0.5), glm::dvec3(0.2, -0.1, 0.4), glm::dvec3(-0.3, 0.15, 1.0)})
     for (const double size : {1.0, 0.85}) {
-      const auto found = place_hand(seen_at(right_hand(0.3), place, camera, size), kWidth, kHeight, camera, size);
+      const auto found =
+          place_hand(seen_at(right_hand(0.3), place, camera, size), kWidth, kHeight, camera, size);
       ASSERT_TRUE(found);
       EXPECT_LT(glm::length(*found - place), 1e-9);
     }
@@ -86,7 +91,8 @@ TEST(PlaceHand, TheLandmarksOfAHandInPerspectiveSayExactlyWhereItIs) {
 
 TEST(PlaceHand, AHandTakenForALargerOneIsPlacedThatMuchFurther) {
   CameraView camera;
-  const auto found = place_hand(seen_at(right_hand(0.0), {0, 0, 0.5}, camera, 1.0), kWidth, kHeight, camera, 1.1);
+  const auto found =
+      place_hand(seen_at(right_hand(0.0), {0, 0, 0.5}, camera, 1.0), kWidth, kHeight, camera, 1.1);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->z, 0.55, 1e-9);
 }
@@ -123,7 +129,9 @@ class PlayedNetworks final : public HandNetworks {
         const double f = camera.focal_px(kWidth);
         Landmarks shape = right_hand(0.1);
         for (glm::dvec3& p : shape) p = {p.x, -p.z, 0.0};  // held up to the camera
-        HandSeen seen = seen_at(shape, {-(hand.at_px.x - 320) * 0.6 / f, -(hand.at_px.y - 240) * 0.6 / f - 0.07, 0.6}, camera, 1.0);
+        HandSeen seen =
+            seen_at(shape, {-(hand.at_px.x - 320) * 0.6 / f, -(hand.at_px.y - 240) * 0.6 / f - 0.07, 0.6},
+                    camera, 1.0);
         seen.right = hand.right;
         return seen;
       }
