@@ -193,9 +193,10 @@ class GraphCheck {
     return sum == out.shape[static_cast<std::size_t>(axis)] ? nullptr : "the output has the wrong size";
   }
   const char* check_mean(const NetOp& op) const {
-    const NetTensor &in = input(op, 0), &out = output(op), &axes = input(op, 1);
-    if (!picture(in) || axes.integers.size() != 2 || axes.integers[0] + axes.integers[1] != 3 ||
-        std::abs(axes.integers[0] - axes.integers[1]) != 1 || out.shape.empty() || out.shape[0] != 1 ||
+    using Axes = std::vector<std::int32_t>;
+    const NetTensor &in = input(op, 0), &out = output(op);
+    const Axes& axes = input(op, 1).integers;
+    if (!picture(in) || (axes != Axes{1, 2} && axes != Axes{2, 1}) || out.shape.empty() || out.shape[0] != 1 ||
         (out.shape.size() != 2 && out.shape.size() != 4) || out.shape.back() != in.shape[3] ||
         out.count() != in.shape[3])
       return "a mean over rows and columns expected";

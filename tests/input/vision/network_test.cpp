@@ -155,6 +155,19 @@ TEST(NetGraph, ShapesThatDoNotFitAreRefused) {
   }
 }
 
+TEST(NetGraph, AxesAndPaddingsThatAreNoneAreRefused) {
+  const NetGraph good = tiny_net();
+  for (std::size_t i = 0; i < good.ops.size(); ++i)
+    for (const std::int32_t wrong : {-1157615616, 2147483647, -2147483647 - 1, 3}) {
+      if (good.ops[i].inputs.size() < 2) continue;
+      NetGraph bad = good;
+      NetTensor& second = bad.tensors[static_cast<std::size_t>(bad.ops[i].inputs[1])];
+      if (second.integers.empty()) continue;
+      std::fill(second.integers.begin(), second.integers.end(), wrong);
+      EXPECT_FALSE(check_graph(bad, "test")) << "operation " << i << " with " << wrong;
+    }
+}
+
 TEST(Network, FilesThatAreNoNetworksAreRefusedInOneSentence) {
   EXPECT_EQ(Network::read("/nonexistent.tflite").error().kind, ErrorKind::kNoInput);
   EXPECT_EQ(Network::read("/dev").error().kind, ErrorKind::kBadData);
