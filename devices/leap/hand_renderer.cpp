@@ -116,9 +116,15 @@ void HandRenderer::render_eye(const Eye& eye, std::span<const PosedHand> hands, 
           const double t = hit(c, d, 1.0 / length, nearest, std::min<double>(farthest, depth[at]), normal);
           if (!(t < static_cast<double>(depth[at]))) continue;
           depth[at] = static_cast<float>(t);
-          const double range = t * length;
-          const double facing = std::max(0.0, -glm::dot(normal, d) / length);
-          light[at] = static_cast<float>(facing * (0.2 / range) * (0.2 / range));
+          const auto lit_from = [&](const glm::dvec3& place) {
+            const glm::dvec3 from = d * t - place;
+            const double range = glm::length(from);
+            return std::max(0.0, -glm::dot(normal, from) / range) * (0.2 / range) * (0.2 / range);
+          };
+          double sum = options_.light_x_m.empty() ? lit_from({0.0, 0.0, 0.0}) : 0.0;
+          for (const double x_m : options_.light_x_m)
+            sum += lit_from({x_m - eye.x_m, 0.0, 0.0}) / static_cast<double>(options_.light_x_m.size());
+          light[at] = static_cast<float>(sum);
         }
     }
   }

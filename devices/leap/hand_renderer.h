@@ -17,6 +17,9 @@ struct HandRenderOptions {
   double ambient = 6.0;           ///< grey levels everywhere, also without the device's light
   double reflected = 210.0;       ///< grey level of skin that faces the light at 200 mm
   bool lights_on = true;
+  /// Where the lights sit along the device; about so in a Leap Motion Controller. None: one at each eye, so that each sees
+  /// the hand shaded in its own way.
+  std::vector<double> light_x_m{-0.035, 0.0, 0.035};
 };
 
 /// Renders many frames through the same lenses. One thread per object.

@@ -12,7 +12,7 @@ EyeRays::EyeRays(const std::function<glm::dvec2(const glm::dvec2&)>& ray_from_pi
   for (int y0 = 0; y0 + kRows <= height; y0 += kRows)
     for (int x0 = 0; x0 + kColumns * step <= width; x0 += kColumns * step) {
       Tile tile;
-      tile.box = {{1e9F, 1e9F}, {-1e9F, -1e9F}};
+      RayBox box{{1e9F, 1e9F}, {-1e9F, -1e9F}};
       bool seen = true;
       for (int i = 0; i < kColumns * kRows; ++i) {
         const int x = x0 + (i % kColumns) * step, y = y0 + i / kColumns;
@@ -25,10 +25,12 @@ EyeRays::EyeRays(const std::function<glm::dvec2(const glm::dvec2&)>& ray_from_pi
         tile.y[lane] = static_cast<float>(ray.y * inverse_length);
         tile.z[lane] = static_cast<float>(inverse_length);
         tile.pixel[lane] = static_cast<std::uint32_t>(y * width + x);
-        tile.box.low = glm::min(tile.box.low, glm::vec2(ray));
-        tile.box.high = glm::max(tile.box.high, glm::vec2(ray));
+        box.low = glm::min(box.low, glm::vec2(ray));
+        box.high = glm::max(box.high, glm::vec2(ray));
       }
-      if (seen) tiles_.push_back(tile);
+      if (!seen) continue;
+      tiles_.push_back(tile);
+      boxes_.push_back(box);
     }
 }
 

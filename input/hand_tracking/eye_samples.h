@@ -34,12 +34,13 @@ class EyeRays {
   struct Tile {
     alignas(64) std::array<float, kLanes> x, y, z;
     std::array<std::uint32_t, kLanes> pixel;
-    RayBox box;
   };
   const std::vector<Tile>& tiles() const noexcept { return tiles_; }
+  const std::vector<RayBox>& boxes() const noexcept { return boxes_; }  ///< of the tiles
 
  private:
   std::vector<Tile> tiles_;
+  std::vector<RayBox> boxes_;
 };
 
 /// How much of each pixel of the tiles around a hand is skin, by its brightness: 0 background, 1 skin.
@@ -53,6 +54,8 @@ struct EyeSamples {
   int samples = 0;            ///< with a weight
   double noise = 0.0;         ///< standard deviation of the skin shares where there is only background
   double eye_x_m = 0.0;
+  double light_x_m = 0.0;   ///< from the eye
+  double half_skin = 0.25;  ///< brightness of a half skin share, 1: skin that faces the light
 };
 
 }  // namespace dubsar

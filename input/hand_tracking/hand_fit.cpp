@@ -10,9 +10,6 @@ namespace {
 
 constexpr std::size_t kN = HandFit::kParameters;
 constexpr std::size_t kCones = kHandConeCount;
-// Skin that faces the device less than this, of what faces it fully, counts as background: a cone's outline
-// appears at this part of its radius when samples are cut at half of `kFullSkin` (hand_tracker.cpp).
-constexpr double kOutline = 0.968;
 constexpr double kSampleSd = 0.35;
 
 /// p: 0-2 position, 3-5 turn about the palm in the device's axes, 6 log size, 7-11 flexion, 12 spread, 13
@@ -97,8 +94,8 @@ void HandFit::assemble(std::span<const EyeSamples> eyes, const HandPrior& prior,
       v.bx[j] = slope(to.b_m.x, from.b_m.x);
       v.by[j] = -slope(to.b_m.z, from.b_m.z);
       v.bz[j] = slope(to.b_m.y, from.b_m.y);
-      v.outline_a[j] = slope(kOutline * to.radius_a_m, kOutline * from.radius_a_m);
-      v.outline_b[j] = slope(kOutline * to.radius_b_m, kOutline * from.radius_b_m);
+      v.radius_a[j] = slope(to.radius_a_m, from.radius_a_m);
+      v.radius_b[j] = slope(to.radius_b_m, from.radius_b_m);
     }
   }
 
@@ -117,6 +114,7 @@ void HandFit::assemble(std::span<const EyeSamples> eyes, const HandPrior& prior,
                                tile.skin.data(),    tile.weight.data(),  best_[t].depth.data(),
                                best_[t].cone.data()};
     };
+    const kernels::Outline outline{static_cast<float>(eye.half_skin), static_cast<float>(eye.light_x_m)};
     std::array<kernels::ConeTerms, kCones> terms;
     for (std::size_t c = 0; c < kCones; ++c) {
       const Cone& cone = hand.cones[c];
@@ -134,16 +132,16 @@ void HandFit::assemble(std::span<const EyeSamples> eyes, const HandPrior& prior,
                   f(glm::dot(a, e)),
                   f(ee),
                   f(0.5 * (cone.radius_a_m + cone.radius_b_m) * change / ee),
-                  f(kOutline * cone.radius_a_m),
-                  f(kOutline * change)};
+                  f(cone.radius_a_m),
+                  f(change)};
       if (a.z < 0.03 || b.z < 0.03) continue;
       const RayBox box = box_of(a, cone.radius_a_m + blur_m, b, cone.radius_b_m + blur_m);
       for (std::size_t t = 0; t < eye.tiles.size(); t += how.stride)
-        if (eye.boxes[t].meets(box)) kernels::deepen(terms[c], static_cast<float>(c), view(t));
+        if (eye.boxes[t].meets(box)) kernels::deepen(terms[c], static_cast<float>(c), outline, view(t));
     }
     for (std::size_t t = 0; t < eye.tiles.size(); t += how.stride)
-      squares += static_cast<double>(
-          kernels::add_samples(terms.data(), slopes_.data(), view(t), static_cast<float>(blur_m), sums));
+      squares += static_cast<double>(kernels::add_samples(terms.data(), slopes_.data(), outline, view(t),
+                                                          static_cast<float>(blur_m), sums));
     normal.samples += eye.samples;
   }
   const double inverse_variance = static_cast<double>(how.stride) / (kSampleSd * kSampleSd);

@@ -17,7 +17,7 @@ namespace dubsar {
 struct HandPrior {
   HandPose pose{};
   double scale_sd = 0.1, tilt_sd_rad = 0.14, flexion_sd = 0.15, spread_sd = 0.3, wrist_sd_rad = 0.1,
-         shape_sd = 0.06;
+         shape_sd = 0.04;
 };
 
 struct HandFitResult {

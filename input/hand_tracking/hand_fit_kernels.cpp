@@ -15,7 +15,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::CappedTag<float, kHandLanes>;
 
-void Deepen(const ConeTerms& cone, float id, const TileView& tile) {
+void Deepen(const ConeTerms& cone, float id, const Outline& outline, const TileView& tile) {
   const Tag d;
   const auto set = [&](float value) HWY_ATTR { return hn::Set(d, value); };
   const auto zero = hn::Zero(d), one = set(1.0F);
@@ -29,16 +29,22 @@ void Deepen(const ConeTerms& cone, float id, const TileView& tile) {
     const auto ee = hn::Max(hn::NegMulAdd(ed, ed, set(cone.ee)), least);
     const auto s = hn::Min(one, hn::Max(zero, hn::Sub(set(cone.shift), hn::Div(ae, ee))));
     const auto square = hn::MulAdd(s, hn::MulAdd(s, ee, hn::Add(ae, ae)), aa);
-    const auto depth = hn::Sub(hn::MulAdd(s, set(cone.outline_change), set(cone.outline_a)),
-                               hn::Sqrt(hn::Max(zero, square)));
+    const auto rho = hn::Sqrt(hn::Max(square, set(1e-12F)));
+    // Away from the axis, towards the light: what the rim is turned to the light more than to the eye.
+    const auto along = hn::MulAdd(s, ed, ad);
+    const auto out_x = hn::NegMulAdd(s, set(cone.ex), hn::MulAdd(along, x, set(-cone.ax)));
+    const auto turned = hn::Div(hn::Mul(out_x, set(outline.light_x_m)), hn::Mul(rho, along));
+    const auto dark = hn::Min(set(0.7F), hn::Max(zero, hn::Sub(set(outline.half), turned)));
+    const auto part = hn::Sqrt(hn::NegMulAdd(dark, dark, one));
+    const auto depth = hn::MulSub(part, hn::MulAdd(s, set(cone.radius_change), set(cone.radius_a)), rho);
     const auto before = hn::Load(d, tile.depth + i);
     hn::Store(hn::IfThenElse(hn::Gt(depth, before), set(id), hn::Load(d, tile.cone + i)), d, tile.cone + i);
     hn::Store(hn::Max(depth, before), d, tile.depth + i);
   }
 }
 
-float AddSamples(const ConeTerms* cones, const ConeSlopes* slopes, const TileView& tile, float blur,
-                 NormalSums& sums) {
+float AddSamples(const ConeTerms* cones, const ConeSlopes* slopes, const Outline& outline,
+                 const TileView& tile, float blur, NormalSums& sums) {
   const Tag d;
   const std::size_t lanes = hn::Lanes(d);
   float squares = 0.0F;
@@ -65,14 +71,19 @@ float AddSamples(const ConeTerms* cones, const ConeSlopes* slopes, const TileVie
     const float ox = c.ax + s * c.ex - along * x, oy = c.ay + s * c.ey - along * y,
                 oz = c.az + s * c.ez - along * z;
     const float inverse = 1.0F / std::max(1e-6F, std::sqrt(ox * ox + oy * oy + oz * oz));
+    const float turned = -ox * inverse * outline.light_x_m / along;
+    const float dark = std::min(0.7F, std::max(0.0F, outline.half - turned));
+    const auto part = hn::Set(d, std::sqrt(1.0F - dark * dark));
     const auto sv = hn::Set(d, s), rest = hn::Set(d, 1.0F - s);
     const auto nx = hn::Set(d, ox * inverse), ny = hn::Set(d, oy * inverse), nz = hn::Set(d, oz * inverse);
     for (std::size_t j = 0; j < kHandLanes; j += lanes) {
       const auto at = [&](const float* p) HWY_ATTR { return hn::Load(d, p + j); };
-      const auto a = hn::NegMulAdd(nx, at(v.ax),
-                                   hn::NegMulAdd(ny, at(v.ay), hn::NegMulAdd(nz, at(v.az), at(v.outline_a))));
-      const auto b = hn::NegMulAdd(nx, at(v.bx),
-                                   hn::NegMulAdd(ny, at(v.by), hn::NegMulAdd(nz, at(v.bz), at(v.outline_b))));
+      const auto a = hn::NegMulAdd(
+          nx, at(v.ax),
+          hn::NegMulAdd(ny, at(v.ay), hn::NegMulAdd(nz, at(v.az), hn::Mul(part, at(v.radius_a)))));
+      const auto b = hn::NegMulAdd(
+          nx, at(v.bx),
+          hn::NegMulAdd(ny, at(v.by), hn::NegMulAdd(nz, at(v.bz), hn::Mul(part, at(v.radius_b)))));
       hn::Store(hn::MulAdd(rest, a, hn::Mul(sv, b)), d, rows + count * kHandLanes + j);
     }
     first[count] = weight * slope * residual;
@@ -103,12 +114,12 @@ namespace dubsar::kernels {
 HWY_EXPORT(Deepen);
 HWY_EXPORT(AddSamples);
 
-void deepen(const ConeTerms& cone, float id, const TileView& tile) {
-  HWY_DYNAMIC_DISPATCH(Deepen)(cone, id, tile);
+void deepen(const ConeTerms& cone, float id, const Outline& outline, const TileView& tile) {
+  HWY_DYNAMIC_DISPATCH(Deepen)(cone, id, outline, tile);
 }
-float add_samples(const ConeTerms* cones, const ConeSlopes* slopes, const TileView& tile, float blur,
-                  NormalSums& sums) {
-  return HWY_DYNAMIC_DISPATCH(AddSamples)(cones, slopes, tile, blur, sums);
+float add_samples(const ConeTerms* cones, const ConeSlopes* slopes, const Outline& outline,
+                  const TileView& tile, float blur, NormalSums& sums) {
+  return HWY_DYNAMIC_DISPATCH(AddSamples)(cones, slopes, outline, tile, blur, sums);
 }
 
 }  // namespace dubsar::kernels

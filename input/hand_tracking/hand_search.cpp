@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <utility>
 
 namespace dubsar {
 namespace {
@@ -13,8 +14,8 @@ namespace {
 constexpr double kRadiusAtScale1 = 0.043;  // of the palm's circle
 constexpr double kSideFist = 0.15;         // the thumb of a fist shifts that circle, in radii
 constexpr double kOpenFlexion = 0.05, kFistFlexion = 0.95;
-// Misfit of the coarse fit that needs no other start, and of the final fit that is no hand.
-constexpr double kFits = 0.13, kNoHand = 0.18;
+// Misfit of a coarse fit that may do, of a final one that needs no other start, and of one that is no hand.
+constexpr double kFits = 0.13, kFitsWell = 0.095, kNoHand = 0.18;
 constexpr int kSureVotes = 3, kMostVotes = 10;
 
 /// Turn that makes directions of tips fit a spread hand, and how badly they do.
@@ -104,7 +105,7 @@ FoundHand search_hand(HandFit& fit, std::span<const EyeSamples> eyes, const Hand
   };
   const std::array<Alignment, 2> alignment{align_fingers(guess.finger_rad, false),
                                            align_fingers(guess.finger_rad, true)};
-  const auto guessed = [&](bool left, double turn, double forward, double grab) {
+  const auto start_of = [&](bool left, double turn, double forward, double grab) {
     HandPrior prior = prior_of(memory, grab);
     prior.pose.left = left;
     prior.pose.palm.rotation = glm::angleAxis(
@@ -114,6 +115,10 @@ FoundHand search_hand(HandFit& fit, std::span<const EyeSamples> eyes, const Hand
         guess.palm_m + guess.radius_m * (start.palm.rotation *
                                          glm::dvec3((left ? -kSideFist : kSideFist) * grab, 0.0, -forward));
     if (memory.frames == 0) start.scale = std::clamp(guess.radius_m / kRadiusAtScale1, 0.85, 1.15);
+    return std::pair(prior, start);
+  };
+  const auto guessed = [&](bool left) {
+    const auto [prior, start] = start_of(left, 0.0, 0.0, guess.grab);
     return attempt(prior, start, coarse);
   };
 
@@ -130,25 +135,38 @@ FoundHand search_hand(HandFit& fit, std::span<const EyeSamples> eyes, const Hand
   const bool sure = std::abs(memory.right_votes) >= kSureVotes;
   const bool first = memory.right_votes != 0 ? memory.right_votes < 0 : alignment[1].cost < alignment[0].cost;
   if (!fits || !sure) {
-    if (!fits || !memory.last) fits = guessed(first, 0.0, 0.0, guess.grab);
+    if (!fits || !memory.last) fits = guessed(first);
     // Open hands that fit are told left from right by their thumb; fists are looked at both ways.
-    if (!fits || (guess.grab > 0.5 && !sure)) fits = guessed(!first, 0.0, 0.0, guess.grab) || fits;
+    if (!fits || (guess.grab > 0.5 && !sure)) fits = guessed(!first) || fits;
   }
-  struct Start {
-    double turn, forward, grab;
+  const auto finish = [&] {
+    const bool left = best[1].result.cost < best[0].result.cost;
+    const HandFitResult result = fit.fit(eyes, best[left].prior, best[left].result.pose, fine);
+    return FoundHand{result.pose, misfit(result, eyes), false};
   };
-  const double other = guess.grab > 0.5 ? 0.0 : 1.0;
-  for (const Start& s : {Start{0.0, -0.6, guess.grab},
-                         {0.0, 0.0, other},
-                         {0.25, 0.0, guess.grab},
-                         {-0.25, 0.0, guess.grab},
-                         {0.0, 0.5, guess.grab}})
-    for (const bool left : {first, !first})
-      if (!fits) fits = guessed(left, s.turn, s.forward, s.grab);
-
-  const bool left = best[1].result.cost < best[0].result.cost;
-  const HandFitResult result = fit.fit(eyes, best[left].prior, best[left].result.pose, fine);
-  FoundHand found{result.pose, misfit(result, eyes), false};
+  FoundHand found = finish();
+  if (found.misfit > kFitsWell) {
+    // The first, cheap step from every other start, the rest from the best two of them.
+    struct Start {
+      double turn, forward, grab;
+    };
+    const double other = guess.grab > 0.5 ? 0.0 : 1.0;
+    const std::array<Start, 4> starts{
+        {{0.0, -0.6, guess.grab}, {0.0, 0.0, other}, {0.25, 0.0, guess.grab}, {-0.25, 0.0, guess.grab}}};
+    std::vector<Try> tries;
+    for (const Start& s : starts)
+      for (const bool left : {false, true}) {
+        const auto [prior, start] = start_of(left, s.turn, s.forward, s.grab);
+        tries.push_back({fit.fit(eyes, prior, start, std::span(coarse).first(1)), prior});
+      }
+    std::partial_sort(tries.begin(), tries.begin() + 2, tries.end(),
+                      [](const Try& a, const Try& b) { return a.result.cost < b.result.cost; });
+    const double before = std::min(best[0].result.cost, best[1].result.cost);
+    for (const std::size_t i : {0U, 1U}) attempt(tries[i].prior, tries[i].result.pose, near);
+    if (std::min(best[0].result.cost, best[1].result.cost) < before)
+      if (const FoundHand again = finish(); again.misfit < found.misfit) found = again;
+  }
+  const bool left = found.pose.left;
   found.fits = found.misfit < kNoHand;
   if (found.fits) {
     const bool clear = best[left].result.cost < 0.85 * best[!left].result.cost;

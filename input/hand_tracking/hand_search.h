@@ -40,8 +40,8 @@ struct FoundHand {
   bool fits = false;    ///< a hand explains both pictures; otherwise `pose` is no more than the guess
 };
 
-/// Tries starts until one fits: where the hand was, then left and right as guessed, then turned, shifted,
-/// opened or closed. `memory` is brought up to date. About 1 ms if the first start fits, at most about 10.
+/// Tries starts until one fits: where the hand was, then left and right as guessed, then turned, shifted, opened or closed.
+/// `memory` is brought up to date. About 1 ms if the first start fits, at most about 6.
 FoundHand search_hand(HandFit& fit, std::span<const EyeSamples> eyes, const HandGuess& guess,
                       HandMemory& memory);
 

@@ -118,13 +118,23 @@ std::optional<HandGuess> HandTracker::guess(const Silhouette& s, double& confide
   const int d_min = std::max(1, static_cast<int>(fb / options_.farthest_m) - 1);
   const int d_max = static_cast<int>(std::ceil(fb / options_.nearest_m)) + 1;
   const auto match = match_disk(left, right, s.palm_px, 1.25 * s.radius_px, 1, d_min, d_max, 0.6);
-  if (!match) return std::nullopt;
   HandGuess g;
-  g.depth_m = fb / match->disparity_px;
+  if (match) {
+    g.depth_m = fb / match->disparity_px;
+  } else {
+    // As far as a hand of the last frame that was seen in this place.
+    const auto here = std::find_if(previous_.begin(), previous_.end(), [&](const Known& known) {
+      const glm::dvec3& palm = known.palm_m;
+      const glm::dvec2 seen((palm.x + 0.5 * rig_.baseline_m()) / palm.y, -palm.z / palm.y);
+      return glm::distance(seen, rig_.ray(s.palm_px)) < s.radius_px / rig_.focal_px();
+    });
+    if (here == previous_.end()) return std::nullopt;
+    g.depth_m = here->palm_m.y;
+  }
   g.pixel_m = g.depth_m / rig_.focal_px();
   g.radius_m = s.radius_px * g.pixel_m;
   if (g.radius_m < 0.02 || g.radius_m > 0.09) return std::nullopt;  // not a hand
-  confidence = std::clamp((match->score - 0.6) / 0.35, 0.0, 1.0) * (s.arm_seen ? 1.0 : 0.5);
+  confidence = std::clamp(((match ? match->score : 0.7) - 0.6) / 0.35, 0.0, 1.0) * (s.arm_seen ? 1.0 : 0.5);
   g.grab = 1.0 - smooth_step((s.reach - kReachFist) / (kReachOpen - kReachFist));
   g.finger_rad = s.finger_rad;
   const glm::dvec3 to_fingers(s.forward.x, 0.0, -s.forward.y);
@@ -150,15 +160,19 @@ void HandTracker::sample(int eye, const Region& region, const Silhouette& s, dou
   samples.boxes.clear();
   samples.samples = 0;
   samples.eye_x_m = (eye == 0 ? -0.5 : 0.5) * rig_.baseline_m();
+  samples.light_x_m = -samples.eye_x_m;  // the middle of the lights is the middle of the device
+  samples.half_skin = 0.5 * kFullSkin;
   const glm::dvec2 centre(0.5 * (rig_.width() - 1), 0.5 * (rig_.height() - 1));
   std::vector<float> palm;
   double dark_squares = 0.0;
   int dark = 0;
-  for (const EyeRays::Tile& rays : rays_[depth_m < kManyPixels ? 1 : 0][static_cast<std::size_t>(eye)].tiles()) {
-    if (!rays.box.meets(box)) continue;
+  const EyeRays& set = rays_[depth_m < kManyPixels ? 1 : 0][static_cast<std::size_t>(eye)];
+  for (std::size_t t = 0; t < set.tiles().size(); ++t) {
+    if (!set.boxes()[t].meets(box)) continue;
+    const EyeRays::Tile& rays = set.tiles()[t];
     EyeSamples::Tile& tile = samples.tiles.emplace_back();
     tile.rays = &rays;
-    samples.boxes.push_back(rays.box);
+    samples.boxes.push_back(set.boxes()[t]);
     for (std::size_t i = 0; i < EyeRays::kLanes; ++i) {
       const double z = static_cast<double>(rays.z[i]);
       const glm::dvec2 at = glm::dvec2(static_cast<double>(rays.x[i]), static_cast<double>(rays.y[i])) / z * f + centre + shift;

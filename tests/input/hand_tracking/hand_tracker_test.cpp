@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <thread>
 
 #include "core/base/clock.h"
@@ -25,6 +26,49 @@ TEST(HandTracker, ADarkRoomWithoutHandsHasNone) {
   Frame wrong;
   Hands hands;
   EXPECT_FALSE(tracker.track(wrong, hands));
+}
+
+TEST(HandTracker, TwoHandsAreFoundEachWithItsOwnSideAndGrab) {
+  const auto calibration = example_calibration(true);
+  const HandRenderer renderer(calibration, {});
+  HandTracker tracker(stereo_lenses(calibration, 640, 240));
+  HandPose left, right;
+  left.left = true;
+  left.palm.position_m = {-0.11, 0.28, 0.01};
+  right.palm.position_m = {0.12, 0.33, -0.02};
+  right.flexion.fill(0.97);
+  const std::array<PosedHand, 2> posed{pose_hand(left), pose_hand(right)};
+  Hands hands;
+  for (std::uint64_t i = 1; i <= 3; ++i) {
+    Frame frame = render_frame(renderer, posed, i);
+    frame.time = static_cast<TimestampNs>(i) * 10'000'000;
+    ASSERT_TRUE(tracker.track(frame, hands));
+    ASSERT_EQ(hands.size(), 2U);
+    for (const HandFrame& hand : hands) {
+      const HandPose& truth = hand.palm.position_m.x < 0.0 ? left : right;
+      EXPECT_EQ(hand.chirality == Chirality::kLeft, truth.left);
+      EXPECT_EQ(hand.grab_strength > 0.5, truth.flexion[1] > 0.5);
+      EXPECT_LT(std::hypot(hand.palm.position_m.x - truth.palm.position_m.x,
+                           hand.palm.position_m.z - truth.palm.position_m.z),
+                0.002);
+      EXPECT_NEAR(hand.palm.position_m.y, truth.palm.position_m.y, 0.005);
+    }
+  }
+}
+
+TEST(HandTracker, ABrightThingThatIsNoHandIsNotTrusted) {
+  const auto calibration = example_calibration(true);
+  const HandRenderer renderer(calibration, {});
+  HandTracker tracker(stereo_lenses(calibration, 640, 240));
+  PosedHand ball;  // 120 mm across
+  ball.cones.push_back({{0.0, 0.3, 0.0}, {0.0, 0.301, 0.0}, 0.06, 0.06});
+  for (std::uint64_t i = 1; i <= 3; ++i) {
+    Frame frame = render_frame(renderer, {&ball, 1}, i);
+    frame.time = static_cast<TimestampNs>(i) * 10'000'000;
+    Hands hands;
+    ASSERT_TRUE(tracker.track(frame, hands));
+    for (const HandFrame& hand : hands) EXPECT_LE(hand.confidence, 0.5);
+  }
 }
 
 TEST(HandTracker, SimulatorDriverAndTrackerTogetherFollowOneHand) {

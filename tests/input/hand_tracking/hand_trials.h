@@ -17,6 +17,8 @@ struct HandKind {
   double proportions =
       0.0;  ///< up to which part finger length, palm width and thickness differ, each on its own
   double wrist_turn_rad = 0.0;  ///< up to
+  bool lit_from_eyes = false;   ///< a light at each eye instead of three along the device
+  bool soft = false;            ///< out of focus: 1 2 1 over the pictures in both directions
   bool sleeve = false;          ///< nothing of the arm from 18 mm behind the wrist on
 };
 
