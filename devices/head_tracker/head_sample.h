@@ -18,10 +18,10 @@ struct HeadSample {
 };
 
 /// Largest distance from the tracker's origin along any axis that is believed, and largest speed.
-inline constexpr double kHeadBox_m = 2.0;
-inline constexpr double kHeadSpeed_m_s = 5.0;
+inline constexpr double kHeadBoxM = 2.0;
+inline constexpr double kHeadSpeedMps = 5.0;
 
-/// Limits the speed of the position to kHeadSpeed_m_s; a gap of more than 0.5 s starts afresh. Refuses positions outside
+/// Limits the speed of the position to kHeadSpeedMps; a gap of more than 0.5 s starts afresh. Refuses positions outside
 /// the box, rotations that are no unit quaternions within 1 % (they are renormalised), values that are not finite.
 class HeadGate {
  public:

@@ -18,7 +18,7 @@ std::optional<OpentrackPacket> parse_opentrack(std::span<const std::byte> datagr
   std::array<double, 6> v;
   std::memcpy(v.data(), datagram.data(), sizeof v);
   for (std::size_t i = 0; i < 6; ++i)
-    if (!(std::abs(v[i]) <= (i < 3 ? 100.0 * kHeadBox_m : 180.0))) return std::nullopt;  // NaN fails too
+    if (!(std::abs(v[i]) <= (i < 3 ? 100.0 * kHeadBoxM : 180.0))) return std::nullopt;  // NaN fails too
   return OpentrackPacket{v[0], v[1], v[2], v[3], v[4], v[5]};
 }
 

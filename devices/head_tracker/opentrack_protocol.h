@@ -22,7 +22,7 @@ struct OpentrackPacket {
   bool operator==(const OpentrackPacket&) const = default;
 };
 
-/// Exactly 48 bytes, all finite, positions within kHeadBox_m, angles within 180 degrees; otherwise nothing.
+/// Exactly 48 bytes, all finite, positions within kHeadBoxM, angles within 180 degrees; otherwise nothing.
 std::optional<OpentrackPacket> parse_opentrack(std::span<const std::byte> datagram) noexcept;
 std::array<std::byte, kOpentrackBytes> format_opentrack(const OpentrackPacket& packet) noexcept;
 
