@@ -9,8 +9,8 @@ namespace {
 
 constexpr int kWidth = 320;  // of the picture that is searched: 26 ms instead of 59 at 640
 constexpr int kLeastFace = 40;
-// where the eyes are in the cascade's box; means over the faces of photographs where the network saw the eyes
-// as well
+// where the pupils are in the cascade's box: means over six photographed faces at eleven sizes each, pupils
+// 40 to 90 pixels apart; the distance had a sd of 0.021
 constexpr double kEyeHeight = 0.39, kEyeDistance = 0.38;
 
 class CascadeFaceDetector final : public FaceDetector {

@@ -196,9 +196,9 @@ class GraphCheck {
     using Axes = std::vector<std::int32_t>;
     const NetTensor &in = input(op, 0), &out = output(op);
     const Axes& axes = input(op, 1).integers;
-    if (!picture(in) || (axes != Axes{1, 2} && axes != Axes{2, 1}) || out.shape.empty() || out.shape[0] != 1 ||
-        (out.shape.size() != 2 && out.shape.size() != 4) || out.shape.back() != in.shape[3] ||
-        out.count() != in.shape[3])
+    if (!picture(in) || (axes != Axes{1, 2} && axes != Axes{2, 1}) || out.shape.empty() ||
+        out.shape[0] != 1 || (out.shape.size() != 2 && out.shape.size() != 4) ||
+        out.shape.back() != in.shape[3] || out.count() != in.shape[3])
       return "a mean over rows and columns expected";
     return nullptr;
   }

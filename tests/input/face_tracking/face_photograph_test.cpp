@@ -123,7 +123,7 @@ TEST_F(FacePhotographs, TheCascadeFindsTheSameFacesCoarsely) {
           return worst_pupil_error(a, pupils) < worst_pupil_error(b, pupils);
         });
     ASSERT_NE(best, faces->end());
-    EXPECT_LT(worst_pupil_error(*best, pupils), 40.0);
+    EXPECT_LT(worst_pupil_error(*best, pupils), 25.0);
     EXPECT_NEAR(glm::length(best->left_eye_px - best->right_eye_px), glm::length(pupils.left - pupils.right),
                 25.0);
   }

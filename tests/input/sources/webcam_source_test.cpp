@@ -98,7 +98,7 @@ TEST_F(WebcamOfAPhotograph, WithoutTheNetworkTheCascadeSeesTheHeadAndSaysSo) {
   ASSERT_TRUE(source);
   EXPECT_EQ(bench_.poll(*source), Freshness::kNew);
   ASSERT_EQ(bench_.frame.heads.size(), 1U);
-  EXPECT_NEAR(0.5 * (bench_.frame.heads[0].left_eye_m->z + bench_.frame.heads[0].right_eye_m->z), 0.5, 0.12);
+  EXPECT_NEAR(0.5 * (bench_.frame.heads[0].left_eye_m->z + bench_.frame.heads[0].right_eye_m->z), 0.5, 0.08);
   EXPECT_NE(source->note().find("./do models"), std::string::npos) << source->note();
 }
 
