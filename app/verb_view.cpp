@@ -23,7 +23,7 @@ namespace {
 struct Options {
   std::string in, display = "mono", script, mapping, view = "front", style = "relief", size, monitor, frames, record;
   std::vector<std::string> inputs, partitions;
-  double fps = 30.0, seconds = 0.0, display_delay_ms = 0.0;
+  double fps = 0.0, seconds = 0.0, display_delay_ms = 0.0;
   int every = 1, samples = 0, bridge_port = kBridgePort;
   bool offscreen = false, fullscreen = false, windowed = false;
 };
@@ -122,7 +122,7 @@ Result<VerbResult> run_offscreen_verb(const Options& options, Progress& progress
   offscreen.session.samples = std::max(1, options.samples);
   offscreen.inputs = split_sources(options.inputs);
   if (!options.script.empty()) offscreen.inputs.push_back("scripted:path=" + options.script);
-  offscreen.fps = options.fps;
+  if (options.fps > 0) offscreen.fps = options.fps;
   if (options.seconds > 0) offscreen.longest_s = options.seconds;
   offscreen.display_delay_s = 1e-3 * options.display_delay_ms;
   offscreen.frames = options.frames;
@@ -154,6 +154,7 @@ Result<VerbResult> run_window_verb(const Options& options, Progress& progress) {
     live.window.height = screen.window_h;
   }
   if (options.fullscreen || options.windowed || !options.size.empty()) live.fullscreen = options.fullscreen;
+  live.simulated_fps = options.fps;
   live.longest_s = options.seconds;
   live.display_delay_s = 1e-3 * options.display_delay_ms;
   live.frames = options.frames;
@@ -164,7 +165,7 @@ Result<VerbResult> run_window_verb(const Options& options, Progress& progress) {
   DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.in, options.partitions, true}, progress));
   log_info("view: F1 shows help; Escape, closing the window or Ctrl-C end it");
   DUBSAR_ASSIGN(const LiveResult done, run_live(mesh, live, progress));
-  VerbResult out = describe(done.display, done, mesh.triangles.size(), false);
+  VerbResult out = describe(done.display, done, mesh.triangles.size(), options.fps > 0);
   out.json["frames_per_s_while_moving"] = done.fps;
   out.json["sources"] = nlohmann::json::array();
   out.text += fmt::format("frames a second while things moved: {:.1f}\n", done.fps);
@@ -201,7 +202,7 @@ Verb add_view_verb(CLI::App& program) {
   command->add_option("--monitor", options->monitor, "part of the name of the monitor to use (dubsar displays lists them)");
   command->add_flag("--fullscreen", options->fullscreen, "cover the monitor; displays that need exact pixels do so by themselves");
   command->add_flag("--windowed", options->windowed, "never cover the monitor");
-  command->add_option("--fps", options->fps, "with --offscreen: frames per simulated second")->check(CLI::Range(1.0, 240.0));
+  command->add_option("--fps", options->fps, "simulated time: N frames a second however long they take (offscreen 30; a window: real time)")->check(CLI::Range(1.0, 240.0));
   command->add_option("--seconds", options->seconds, "end after this time at the latest (offscreen 60, a window stays open)")
       ->check(CLI::Range(0.1, 3600.0));
   command->add_option("--bridge-port", options->bridge_port, "of Looking Glass Bridge, for panel auto")->check(CLI::Range(0, 65535));

@@ -74,6 +74,10 @@ std::optional<SourceState> InputMixer::state_of(const InputSource* source) const
   return std::nullopt;
 }
 
+bool InputMixer::endless() const noexcept {
+  return std::any_of(sources_.begin(), sources_.end(), [](const Entry& e) { return !e.source->has_end(); });
+}
+
 bool InputMixer::finished() const noexcept {
   const auto ends = [](const Entry& entry) { return entry.source->finished(); };
   return std::any_of(sources_.begin(), sources_.end(), [](const Entry& e) { return e.source->has_end(); }) &&

@@ -35,6 +35,8 @@ class InputMixer {
   /// None when the source is not here.
   std::optional<SourceState> state_of(const InputSource* source) const;
   bool empty() const noexcept { return sources_.empty(); }
+  /// True when a source is here that has no end, such as a device.
+  bool endless() const noexcept;
   /// True when there is a source with an end and all of those have reached it.
   bool finished() const noexcept;
 

@@ -29,6 +29,8 @@ constexpr std::size_t kRecent = 300;  // measurements that the figures on the he
 constexpr int kMostFailures = 3;
 
 Result<void> check(const LiveOptions& options) {
+  if (options.simulated_fps != 0 && !(options.simulated_fps >= 1 && options.simulated_fps <= 240))
+    return fail(ErrorKind::kUsage, "view: {} frames a second found, expected 1 to 240", options.simulated_fps);
   if (!(options.longest_s >= 0 && options.longest_s <= 86400 * 7) || options.every < 1 ||
       !(options.display_delay_s >= 0 && options.display_delay_s <= 0.1))
     return fail(ErrorKind::kUsage,
@@ -118,9 +120,13 @@ class Live {
   bool over(TimestampNs now);
   void wait();
 
+  bool simulated() const noexcept { return options_.simulated_fps > 0; }
+  TimestampNs now() const { return simulated() ? manual_.now() : clock_.now(); }
+
   const LiveOptions& options_;
   Progress& progress_;
   SteadyClock clock_;
+  ManualClock manual_;  // of simulated time; outlives the sources
   std::unique_ptr<GlfwWindow> window_;  // goes last: all else has GL objects
   std::unique_ptr<Session> session_;
   std::unique_ptr<Overlay> overlay_;
@@ -128,7 +134,7 @@ class Live {
   WindowEvents events_;
   std::unique_ptr<SourceSet> sources_;
   DisplayClock display_clock_;
-  std::vector<std::string> displays_, inputs_;
+  std::vector<std::string> displays_;
   std::size_t display_ = 0;
   Mapping mapping_;
   FrameReport report_;
@@ -156,6 +162,7 @@ Result<void> Live::open(const TriMesh& mesh) {
   }
   wanted.screen = window_->screen(wanted.screen);
   wanted.stereo_window = window_->stereo();
+  if (simulated()) wanted.quality = Quality::kExact;
   DUBSAR_ASSIGN(session_, Session::create(mesh, wanted));
   DUBSAR_ASSIGN(overlay_, Overlay::create());
   displays_ = {wanted.display};
@@ -168,22 +175,27 @@ Result<void> Live::open(const TriMesh& mesh) {
   InputConfig config;
   config.window = &events_;
   config.seen_view = &session_->view();
+  if (simulated()) {
+    manual_.set(static_cast<TimestampNs>(1e9 / options_.simulated_fps));
+    config.clock = &manual_;
+    config.simulated_time = true;
+  }
   config.hotplug = HotplugBell::of_this_machine();
   config.model_folder = options_.session.model_folder;
   config.panel_m = 1e-3 * glm::dvec2(options_.session.screen.width_mm, options_.session.screen.height_mm);
   sources_ = std::make_unique<SourceSet>(session_->input(), config, options_.make_input);
-  inputs_ = options_.inputs;
-  if (inputs_.empty()) {
-    inputs_ = {"mouse", "keyboard"};
-    for (std::string& spec : present_inputs()) inputs_.push_back(std::move(spec));
+  std::vector<std::string> inputs = options_.inputs;
+  if (inputs.empty()) {
+    inputs = {"mouse", "keyboard"};
+    for (std::string& spec : present_inputs()) inputs.push_back(std::move(spec));
   }
-  DUBSAR_TRY(sources_->start(inputs_));
+  DUBSAR_TRY(sources_->start(inputs));
   DUBSAR_TRY(place_changed());
   if (!note.empty()) {
     log_warning("{}", note);
-    notice(note, clock_.now());
+    notice(note, now());
   } else {
-    notice("F1: help    Esc: end", clock_.now());
+    notice("F1: help    Esc: end", now());
   }
   return {};
 }
@@ -217,7 +229,7 @@ void Live::switch_display(int step) {
     if (done) done = place_changed();
     if (done) {
       display_ = next;
-      notice("display " + displays_[next], clock_.now());
+      notice("display " + displays_[next], now());
       log_info("display {}", displays_[next]);
       return;
     }
@@ -229,7 +241,7 @@ void Live::toggle_fullscreen() {
   if (window_->fullscreen()) {
     window_->set_windowed();
   } else if (auto done = window_->set_fullscreen(); !done) {
-    notice(done.error().message, clock_.now());
+    notice(done.error().message, now());
   }
 }
 
@@ -267,7 +279,8 @@ void Live::use_key(const std::string& key) {
 }
 
 void Live::use_window_events() {
-  for (const WindowEvent& event : window_->take_events()) {
+  for (WindowEvent& event : window_->take_events()) {
+    if (simulated()) event.time = now();
     const bool key = event.kind == WindowEvent::Kind::kKey;
     if (key && (session_command(event.key) || help_open_)) {
       if (event.down) use_key(event.key);
@@ -337,7 +350,7 @@ Result<void> Live::show(TimestampNs begun) {
   const Surface target = window_->surface();
   DUBSAR_TRY(session_->paint(whole_ ? whole_->surface() : target));
   if (whole_) DUBSAR_TRY(fit_into(whole_->surface(), target));
-  if (!options_.frames.empty() && out_.frames % options_.every == 0) {
+  if (!options_.frames.empty() && (simulated() || out_.frames % options_.every == 0)) {
     DUBSAR_ASSIGN(const Image picture, window_->read());
     DUBSAR_TRY(write_png(
         (options_.frames / fmt::format("frame-{:05}{}.png", out_.frames, session_->traits().file_suffix))
@@ -370,9 +383,10 @@ Result<void> Live::show(TimestampNs begun) {
 bool Live::over(TimestampNs now) {
   if (options_.longest_s > 0 && now - start_ >= static_cast<TimestampNs>(1e9 * options_.longest_s))
     return true;
-  const bool waits_for_people = std::any_of(inputs_.begin(), inputs_.end(), [](const std::string& spec) {
-    return !spec.starts_with("scripted") && !spec.starts_with("replay");
-  });
+  const auto rows = sources_->rows();
+  const bool waits_for_people =
+      session_->input().endless() ||
+      std::any_of(rows.begin(), rows.end(), [](const SourceRow& row) { return row.health == SourceHealth::kMissing; });
   if (waits_for_people || !session_->input().finished()) {
     all_over_since_ = -1;
     return false;
@@ -383,6 +397,7 @@ bool Live::over(TimestampNs now) {
 
 /// Until the next picture is due, or while nothing moves until something happens.
 void Live::wait() {
+  if (simulated()) return manual_.advance(static_cast<TimestampNs>(1e9 / options_.simulated_fps));
   if (!session_->needs_paint() && !report_.moving) return window_->wait_events(kIdleS);
   for (TimestampNs now = clock_.now(); now < display_clock_.next_start() && !window_->should_close();
        now = clock_.now())
@@ -393,19 +408,19 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
   DUBSAR_TRY(check(options_));
   DUBSAR_TRY(open(mesh));
   progress_.begin("view", 0, "frame");
-  std::string recording;
-  start_ = clock_.now();
+  std::string recording, last_line;
+  start_ = now();
   glm::dquat last_turn = session_->view().rotation;
   const auto delay = static_cast<TimestampNs>(1e9 * options_.display_delay_s);
-  while (!window_->should_close() && !over(clock_.now())) {
+  for (std::int64_t steps = 0; !window_->should_close() && !over(now()); ++steps) {
     if (progress_.cancelled()) return cancelled_error();
     window_->poll_events();
     use_window_events();
     if (window_->take_place_changed())
       if (auto done = place_changed(); !done) log_warning("{}", done.error().message);
-    const TimestampNs now = clock_.now();
-    sources_->tick(now);
-    report_ = session_->poll(now, display_clock_.light(now) + delay);
+    const TimestampNs at = now();
+    sources_->tick(at);
+    report_ = session_->poll(at, (simulated() ? at : display_clock_.light(at)) + delay);
     for (const InputEvent& event :
          session_->last_input().events)  // of scripts: the window's own do not come this way
       if (event.kind == EventKind::kKey && event.down && session_command(event.key)) use_key(event.key);
@@ -413,12 +428,17 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
     out_.largest_turn_deg =
         std::max(out_.largest_turn_deg, turn_between_deg(last_turn, report_.view.rotation));
     last_turn = report_.view.rotation;
-    if (!options_.record.empty()) recording += record_line({now - start_, session_->last_input()}) + "\n";
-    update_overlay(now);
+    if (!options_.record.empty()) {
+      std::string line = record_line({0, session_->last_input()});  // most turns of an idle loop bring nothing new
+      if (line != last_line) recording += record_line({at, session_->last_input()}) + "\n";
+      last_line = std::move(line);
+    }
+    update_overlay(at);
     drawn_ = false;
     const PixelSize size = window_->size();
-    if (session_->needs_paint() && size.width > 0 && size.height > 0) {
-      auto shown = show(now);
+    const bool due = simulated() ? steps % options_.every == 0 : session_->needs_paint();
+    if (due && size.width > 0 && size.height > 0) {
+      auto shown = show(clock_.now());
       failures_ = shown ? 0 : failures_ + 1;
       if (!shown && failures_ == 1) log_warning("{}; the session goes on", shown.error().message);
       if (failures_ >= kMostFailures) return tl::unexpected<Error>(shown.error());
@@ -437,7 +457,7 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
     wait();
   }
   progress_.end();
-  out_.seconds = 1e-9 * static_cast<double>(clock_.now() - start_);
+  out_.seconds = 1e-9 * static_cast<double>(now() - start_);
   out_.fps = intervals_ms_.empty() ? 0.0 : 1e3 / std::max(quantile(intervals_ms_, 0.5), 1e-3);
   out_.view = session_->view();
   out_.display = displays_[display_];

@@ -25,6 +25,9 @@ struct LiveOptions {
   std::optional<bool> fullscreen;
   std::vector<std::string>
       displays;            ///< what the keys go through besides session.display; none: what fits the window
+  /// 0: real time. Else simulated time: this many steps a second, however long they take, exact views, and a picture at each
+  /// `every`-th step; the same script gives the same pictures on every machine.
+  double simulated_fps = 0.0;
   double longest_s = 0.0;  ///< 0: until somebody ends it
   double display_delay_s =
       0.0;  ///< from the presentation of a picture to its light, beyond the monitor's scan
@@ -35,7 +38,7 @@ struct LiveOptions {
   MakeInput make_input = dubsar::make_input;
 };
 
-struct LiveResult : OffscreenResult {  ///< times are real
+struct LiveResult : OffscreenResult {  ///< times are real, or simulated
   double fps = 0.0;     ///< of frames while things moved: from one presented picture to the next
   std::string display;  ///< shown at the end
   std::vector<SourceRow> rows;

@@ -311,7 +311,11 @@ TEST_F(Live, ALostSourceIsNamedAndUsedAgainAndAMissingOneIsTriedAgain) {
        }},
       {[&] { device->plugged = false; }, health(1, SourceHealth::kLost)},
       {[&] { device->plugged = true; }, health(1, SourceHealth::kPresent)},
-      {[&] { second_is_there = true; }, health(2, SourceHealth::kPresent)},
+      {[&] {
+         second_is_there = true;
+         person_->key("f5");
+       },
+       health(2, SourceHealth::kPresent)},
       {[&] {
          person_->key("f1");
          person_->key("2");

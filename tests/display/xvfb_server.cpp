@@ -16,7 +16,7 @@ namespace {
 constexpr int kStartTimeoutMs = 20000;
 }
 
-XvfbServer::XvfbServer() {
+XvfbServer::XvfbServer(int width, int height) {
   folder_ = std::filesystem::temp_directory_path() / ("dubsar_xvfb_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder_);
   std::array<int, 2> pipe_ends{};
@@ -31,8 +31,9 @@ XvfbServer::XvfbServer() {
     ::dup2(nothing, 1);
     ::dup2(nothing, 2);
     ::unsetenv("LD_PRELOAD");  // VirtualGL is for the client
+    const std::string screen = std::to_string(width) + "x" + std::to_string(height) + "x24";
     const std::string descriptor = std::to_string(pipe_ends[1]);
-    ::execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", "1920x1200x24", "-nolisten", "tcp", "-fbdir", folder_.c_str(), nullptr);
+    ::execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", screen.c_str(), "-nolisten", "tcp", "-fbdir", folder_.c_str(), nullptr);
     ::_exit(127);
   }
   ::close(pipe_ends[1]);

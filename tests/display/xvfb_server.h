@@ -10,11 +10,11 @@
 
 namespace dubsar::testing {
 
-/// Starts Xvfb on a display of its own (one screen, 1920 x 1200) and puts it into DISPLAY; ended by the destructor. Never
+/// Starts Xvfb on a display of its own (one screen) and puts it into DISPLAY; ended by the destructor. Never
 /// uses a display that is there already: tests must not open windows on somebody's desk.
 class XvfbServer {
  public:
-  XvfbServer();
+  explicit XvfbServer(int width = 1920, int height = 1200);
   ~XvfbServer();
   XvfbServer(const XvfbServer&) = delete;
   XvfbServer& operator=(const XvfbServer&) = delete;
