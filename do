@@ -29,6 +29,7 @@ usage() {
 ./do bench    run the benchmarks; ./do bench displays: only those of many views
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
 ./do deps     install the packages of Debian 12 that dubsar needs
+./do strips   make the strips of pictures in docs/ again (minutes)
 ./do format   clang-format over all sources
 TEXT
 }
@@ -111,6 +112,18 @@ demo() {
   fi
 }
 
+strips() {
+  deps
+  cmake --preset "$preset" >/dev/null
+  cmake --build "$build" -j "$jobs" --target dubsar make_strips
+  local dubsar=$build/app/dubsar work=$build/strips
+  mkdir -p "$work"
+  [ -f "$work/scan.h5" ] || "$dubsar" phantom "$work/scan.h5" --preset demo
+  [ -f "$work/tablet.exa" ] || "$dubsar" process "$work/scan.h5" -o "$work/tablet.exa"
+  "$dubsar" export "$work/tablet.exa" "$work/tablet.ply" --partition tablet
+  "$build/tests/app/make_strips" "$work/tablet.ply" docs/scripts docs "$@"
+}
+
 verb=${1:-}
 [ $# -gt 0 ] && shift
 case "$verb" in
@@ -121,6 +134,7 @@ case "$verb" in
   bench) bench "$@" ;;
   models) models "$@" ;;
   deps) deps ;;
+  strips) strips "$@" ;;
   format) git ls-files '*.cpp' '*.h' | xargs clang-format -i ;;
   *) usage; [ -z "$verb" ] || [ "$verb" = help ] || exit 64 ;;
 esac

@@ -111,6 +111,7 @@ class Live {
   void use_window_events();
   void obey(SessionCommand command);
   void use_key(const std::string& key);
+  bool ask(const std::string& key);
   void switch_display(int step);
   void toggle_fullscreen();
   void notice(std::string text, TimestampNs now);
@@ -278,6 +279,18 @@ void Live::use_key(const std::string& key) {
     help_made_ = -1;
 }
 
+/// True when the program took the key.
+bool Live::ask(const std::string& key) {
+  KeyAnswer answer = options_.keys(key);
+  if (answer.display_changed) {
+    auto done = session_->set_display(displays_[display_]);
+    if (done) done = place_changed();
+    if (!done) answer.notice = done.error().message;
+  }
+  if (!answer.notice.empty()) notice(std::move(answer.notice), now());
+  return answer.taken;
+}
+
 void Live::use_window_events() {
   for (WindowEvent& event : window_->take_events()) {
     if (simulated()) event.time = now();
@@ -286,6 +299,7 @@ void Live::use_window_events() {
       if (event.down) use_key(event.key);
       if (session_command(event.key)) continue;
     }
+    if (key && event.down && options_.keys && ask(event.key)) continue;
     events_.push(to_input_event(event));
   }
 }

@@ -16,6 +16,13 @@
 
 namespace dubsar::app {
 
+/// What became of a key that a program of its own was asked about.
+struct KeyAnswer {
+  bool taken = false;            ///< it does not steer the view
+  bool display_changed = false;  ///< the display's figures are others now: it is made again
+  std::string notice;            ///< one line over the picture; empty: none
+};
+
 struct LiveOptions {
   SessionOptions session{};
   std::vector<std::string> inputs;  ///< none: mouse, keyboard, and the devices that are plugged in
@@ -35,6 +42,7 @@ struct LiveOptions {
   int every = 1;                   ///< only each n-th frame becomes a file
   std::filesystem::path record{};  ///< recording of the input; empty: none
   bool notices = true;  ///< a line for some seconds: how to get help and leave, which display this is now
+  std::function<KeyAnswer(const std::string& key)> keys;  ///< for keys that go down, but the session's own
   MakeInput make_input = dubsar::make_input;
 };
 

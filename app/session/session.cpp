@@ -9,6 +9,7 @@
 #include "display/multi_view.h"
 #include "display/render_display.h"
 #include "display/renderer.h"
+#include "display/test_pattern.h"
 #include "display/view_array.h"
 #include "input/navigation.h"
 
@@ -110,6 +111,9 @@ Result<void> Session::Parts::prepare(OutputSink& next) {
   DUBSAR_TRY(check_memory("display", kBytesPerViewPixel * static_cast<std::uint64_t>(traits.view.width) *
                                          static_cast<std::uint64_t>(traits.view.height) * static_cast<std::uint64_t>(traits.views)));
   DUBSAR_ASSIGN(ViewArray layers, ViewArray::create(traits.view.width, traits.view.height, traits.views));
+  if (options.pattern)
+    for (int i = 0; i < traits.views; ++i)
+      DUBSAR_TRY(layers.write_layer(i, numbered_view(traits.view.width, traits.view.height, i, traits.views)));
   array = std::move(layers);
   overlaid.reset();
   painted.reset();
@@ -117,6 +121,7 @@ Result<void> Session::Parts::prepare(OutputSink& next) {
   const ShownRect shown = shown_mm(next.views(Viewer())[0]);
   window = shown.size;
   middle = shown.middle;
+  if (options.magnification > 0) magnification = options.magnification;
   // A window on a plain monitor is looked at straight; before a panel of lenses people are where the panel wants them.
   aside_mm = traits.exact_pixels ? glm::dvec3(0.0) : glm::dvec3(middle, 0.0);
   head.set_rest(1e-3 * (options.viewer.centre_mm() + aside_mm));
@@ -148,11 +153,13 @@ Result<std::unique_ptr<Session>> Session::create(const TriMesh& mesh, const Sess
   if (!(options.margin >= 0 && options.margin <= 0.45) || options.samples < 1 || options.samples > 8)
     return fail(ErrorKind::kUsage, "view: margin {} and {} samples found, expected 0 to 0.45 and 1 to 8", options.margin, options.samples);
   DUBSAR_ASSIGN(PackedMesh packed, pack_mesh(mesh));
-  if (packed.triangles_of(options.shading.partitions) == 0)
+  if (!options.pattern && packed.triangles_of(options.shading.partitions) == 0)
     return fail(ErrorKind::kUsage, "view: none of the partitions asked for has triangles, so there is nothing to draw");
   auto parts = std::make_unique<Parts>(options);
-  parts->box = packed.box_of(options.shading.partitions);
-  if (options.quality == Quality::kAdaptive) {
+  if (!options.pattern) parts->box = packed.box_of(options.shading.partitions);
+  if (options.pattern) {
+    // nothing to draw
+  } else if (options.quality == Quality::kAdaptive) {
     DUBSAR_ASSIGN(parts->multi, MultiView::create(std::move(packed)));
   } else {
     DUBSAR_ASSIGN(parts->mesh, GpuMesh::upload(packed));
@@ -236,6 +243,7 @@ Result<void> Session::Parts::paint_moved() {
   painted = {seen, viewer};
   moved_at = now;
   coarse = 0;
+  if (options.pattern) return {};
   if (!multi) return renderer->render(mesh, shading, views, options.samples, *array);
   if (exact_view_ms * static_cast<double>(views.size()) > options.budget_ms) {
     coarse = static_cast<int>(views.size());

@@ -48,6 +48,8 @@ struct SessionOptions {
   Quality quality = Quality::kExact;
   double budget_ms = 14.0;                 ///< kAdaptive: for the views of one picture
   bool stereo_window = false;              ///< the target has a left and a right buffer
+  double magnification = 0.0;              ///< 1: life size at zoom 1; 0: as large as fits
+  bool pattern = false;                    ///< numbered views (display/test_pattern.h) in place of the mesh
 };
 
 /// Draws over all views before they are composed, so that it stands at the same place for both eyes: on the panel's plane.

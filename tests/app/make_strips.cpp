@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 
 #include "core/base/atomic_file.h"
@@ -32,7 +33,7 @@ Image scaled(const Image& image, int width, int height) {
         for (int v = y0; v < y1; ++v)
           for (int u = x0; u < x1; ++u) sum += image.at(u, v)[c];
         const int mean = sum / ((x1 - x0) * (y1 - y0));
-        out.at(x, y)[c] = static_cast<std::uint8_t>(std::min(255, (mean + 2) / 4 * 4));  // smaller files
+        out.at(x, y)[c] = static_cast<std::uint8_t>(std::min(255, (mean + 4) / 8 * 8));  // smaller files
       }
     }
   return out;
@@ -62,10 +63,39 @@ Image sheet(const std::vector<std::vector<Image>>& rows) {
   return out;
 }
 
-std::vector<SessionMoment> spread(const std::vector<SessionMoment>& moments, std::size_t count) {
+Image cut(const Image& image, int left, int top, int width, int height) {
+  Image out(width, height, 3);
+  for (int y = 0; y < height; ++y) std::copy_n(image.at(left, top + y), 3 * width, out.at(0, y));
+  return out;
+}
+
+Image middle_square(const Image& image) {
+  return cut(image, (image.width - image.height) / 2, 0, image.height, image.height);
+}
+
+/// Pixels of the panel, each as a square.
+Image magnified(const Image& image, int times) {
+  Image out(times * image.width, times * image.height, 3);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x) std::copy_n(image.at(x / times, y / times), 3, out.at(x, y));
+  return out;
+}
+
+/// The first moment, and those at which something has changed since the one before; the last of them when
+/// there are too many.
+std::vector<SessionMoment> changed(const std::vector<SessionMoment>& moments, std::size_t most) {
   std::vector<SessionMoment> out;
-  for (std::size_t i = 0; i < count && !moments.empty(); ++i)
-    out.push_back(moments[i * (moments.size() - 1) / (count - 1)]);
+  for (const SessionMoment& moment : moments) {
+    const ViewState& now = moment.report.view;
+    if (!out.empty() && turn_between_deg(out.back().report.view.rotation, now.rotation) < 4.0 &&
+        std::abs(out.back().report.view.zoom - now.zoom) < 0.04)
+      continue;
+    if (out.size() < most) {
+      out.push_back(moment);
+    } else {
+      out.back() = moment;
+    }
+  }
   return out;
 }
 
@@ -76,11 +106,11 @@ Result<void> visitor(const TriMesh& mesh, const fs::path& scripts, const fs::pat
   const Stage stage{.display = "quilt:looking-glass-portrait,width=1680,height=1680",
                     .width = 1680,
                     .height = 1680,
-                    .every = 90};
+                    .every = 45};
   DUBSAR_ASSIGN(const StagedSession session,
                 play(server, mesh, stage, {"scripted:" + (scripts / "visitor.json").string()}));
   std::vector<std::vector<Image>> rows(2);
-  for (const SessionMoment& moment : spread(session.moments, 6)) {
+  for (const SessionMoment& moment : changed(session.moments, 6)) {
     fmt::print("visitor {:.1f} s: turned {:.1f} degrees, zoom {:.2f}\n", moment.time_s,
                turn_between_deg(moment.report.view.rotation, {1, 0, 0, 0}), moment.report.view.zoom);
     rows[0].push_back(scaled(moment.window, 180, 180));
@@ -114,6 +144,7 @@ Result<void> scholar(const TriMesh& mesh, const fs::path& scripts, const fs::pat
   const Stage stage{.display = "lenticular:quarter",
                     .width = 1920,
                     .height = 1080,
+                    .view = "orbit:25,20",
                     .every = 54,
                     .longest_s = 4.8,
                     .profile_folder = panels.path};
@@ -131,9 +162,9 @@ Result<void> scholar(const TriMesh& mesh, const fs::path& scripts, const fs::pat
         "right\n",
         moment.time_s, 1e3 * head->x, 1e3 * head->y, 1e3 * head->z, 100 * seen.left_light.crosstalk,
         100 * seen.right_light.crosstalk);
-    rows[0].push_back(scaled(moment.window, 240, 135));
-    rows[1].push_back(scaled(seen.left, 240, 135));
-    rows[2].push_back(scaled(seen.right, 240, 135));
+    rows[0].push_back(magnified(cut(moment.window, 900, 640, 90, 48), 2));
+    rows[1].push_back(scaled(middle_square(seen.left), 180, 180));
+    rows[2].push_back(scaled(middle_square(seen.right), 180, 180));
   }
   return write_png((folder / "strip_scholar.png").string(), sheet(rows));
 }
@@ -145,13 +176,14 @@ Result<void> developer(const TriMesh& mesh, const fs::path& scripts, const fs::p
   const Stage stage{.display = "lenticular:quarter",
                     .width = 1920,
                     .height = 1080,
+                    .view = "orbit:25,20",
                     .every = 70,
                     .longest_s = 5.9,
                     .profile_folder = panels.path};
   const std::string file = (scripts / "developer.json").string();
   const fs::path recording = folder / "developer.jsonl";
   DUBSAR_ASSIGN(const StagedSession live,
-                play(server, mesh, stage, {"spacemouse:simulate=" + file, "head:opentrack,simulate=" + file},
+                play(server, mesh, stage, {"leap:simulate=" + file, "head:opentrack,simulate=" + file},
                      recording));
   DUBSAR_ASSIGN(const StagedSession replayed, play(server, mesh, stage, {"replay:" + recording.string()}));
   fs::remove(recording);
@@ -164,7 +196,7 @@ Result<void> developer(const TriMesh& mesh, const fs::path& scripts, const fs::p
       fmt::print("developer ({}) {:.1f} s: eyes at {:.0f}, {:.0f}, {:.0f} mm, turned {:.1f} degrees\n",
                  session == &live ? "simulated devices" : "recording", moment.time_s, eyes.x, eyes.y, eyes.z,
                  turn_between_deg(moment.report.view.rotation, {1, 0, 0, 0}));
-      rows[session == &live ? 0 : 1].push_back(scaled(seen.left, 240, 135));
+      rows[session == &live ? 0 : 1].push_back(scaled(middle_square(seen.left), 180, 180));
     }
   return write_png((folder / "strip_developer.png").string(), sheet(rows));
 }

@@ -16,6 +16,7 @@ Result<StagedSession> play(const XvfbServer& server, const TriMesh& mesh, const 
   options.session.profile_folder = stage.profile_folder;
   options.session.samples = 2;
   DUBSAR_ASSIGN(options.session.mapping, default_mapping());
+  DUBSAR_ASSIGN(options.session.direction, parse_view_direction(stage.view));
   DUBSAR_ASSIGN(options.session.shading, shading_preset("relief"));
   options.window.width = stage.width;
   options.window.height = stage.height;

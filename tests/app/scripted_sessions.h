@@ -25,7 +25,8 @@ struct StagedSession {
 
 struct Stage {
   std::string display;
-  int width = 0, height = 0;  ///< of the window, at the screen's corner
+  int width = 0, height = 0;   ///< of the window, at the screen's corner
+  std::string view = "front";  ///< the home view
   double fps = 60.0;
   int every = 1;  ///< a picture at each n-th step
   double longest_s = 60.0;
