@@ -28,6 +28,7 @@ usage() {
 ./do build    build the program (build/release/app/dubsar)
 ./do bench    run the benchmarks; ./do bench displays: only those of many views
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
+./do tsan     devices and inputs under ThreadSanitizer (clang)
 ./do deps     install the packages of Debian 12 that dubsar needs
 ./do strips   make the strips of pictures in docs/ again (minutes)
 ./do format   clang-format over all sources
@@ -82,6 +83,20 @@ lab() {
   tests/lab/run_in_kernel.sh "$PWD/$build/tests/lab/test_lab" "$@"
 }
 
+tsan() {
+  deps
+  if ! command -v clang++ >/dev/null; then
+    echo "skipped: clang is missing: apt install clang" >&2
+    return
+  fi
+  preset=tsan build=build/tsan
+  build_target --target test_devices test_leap test_input_sources
+  local test
+  for test in devices/test_devices devices/leap/test_leap input/sources/test_input_sources; do
+    TSAN_OPTIONS="halt_on_error=1 ${TSAN_OPTIONS:-}" "$build/tests/$test" --gtest_brief=1
+  done
+}
+
 bench() {
   deps
   build_target --target dubsar_bench
@@ -132,6 +147,7 @@ case "$verb" in
   lab) lab "$@" ;;
   build) deps; build_target --target dubsar "$@" ;;
   bench) bench "$@" ;;
+  tsan) tsan ;;
   models) models "$@" ;;
   deps) deps ;;
   strips) strips "$@" ;;

@@ -8,6 +8,10 @@
 #include <numbers>
 
 #include "app/session/offscreen.h"
+#include "devices/head_tracker/vrpn_protocol.h"
+#include "devices/sim_transport.h"
+#include "display/compose_pass.h"
+#include "display/context_egl.h"
 #include "input/simulated/script.h"
 #include "tests/display/test_meshes.h"
 
@@ -127,6 +131,61 @@ TEST_F(SessionTest, RefusesWhatCannotRun) {
   EXPECT_EQ(kind([](OffscreenOptions& o) { o.session.display = "hologram"; }), "64");
   EXPECT_EQ(kind([](OffscreenOptions& o) { o.fps = 0; }), "64");
   EXPECT_EQ(kind([](OffscreenOptions& o) { o.frames = "/proc/nowhere/x"; }), "73");
+}
+
+TEST_F(SessionTest, AVisitorsHandsInInfraredPicturesTurnAndZoomTheObject) {
+  options_.session.screen.width_px = options_.session.screen.window_w = 64;
+  options_.session.screen.height_px = options_.session.screen.window_h = 64;
+  // The script's hands are rendered, sent as USB transfers, found again by the hand tracker, and steer the view.
+  options_.inputs = {"leap:simulate=" + file("visitor.json", R"({"seed": 1, "duration_s": 40, "rate_hz": 115,
+      "visitor": {"yaw_deg": -50, "pitch_deg": 10, "zoom": 1.3}})")};
+  options_.longest_s = 45;
+  const OffscreenResult done = run_offscreen(testing::lettered_box(), options_, progress_).value();
+  EXPECT_LE(turn_between_deg(done.view.rotation, turn_of({10 * kRad, 0, 0}) * turn_of({0, -50 * kRad, 0})), 5.0);
+  EXPECT_NEAR(done.view.zoom, 1.3, 0.065);
+  EXPECT_LE(done.largest_turn_deg, 2.0);
+  EXPECT_LT(done.seconds, 40.0);  // the visitor was content
+}
+
+TEST_F(SessionTest, TheAgeOfTheInputIsTheTimeFromItsMeasurementToTheCameras) {
+  constexpr TimestampNs kMs = 1'000'000, kServerOrigin = 1'700'000'000'000'000'000;  // the server's clock counts from 1970
+  const auto context = EglContext::create().value();
+  ManualClock clock(1000 * kMs);
+  SimDevice server("simulated VRPN server", false);
+  SessionOptions options = options_.session;
+  options.screen.width_px = options.screen.window_w = 64;
+  options.screen.height_px = options.screen.window_h = 64;
+  const auto session = Session::create(testing::lettered_box(), options).value();
+  InputConfig config;
+  config.clock = &clock;
+  config.simulated_time = true;
+  config.reach_device = [&](const DeviceChoice&, const Clock&) -> Result<OpenTransport> {
+    return OpenTransport([&] { return server.open(); });
+  };
+  session->input().add(make_input("head:vrpn", config).value());
+  const OffscreenSurface surface = OffscreenSurface::create(session->traits().output).value();
+  const auto draw = [&] { return session->draw(clock.now(), clock.now(), surface.surface()).value(); };
+  const auto send_pose_measured = [&](TimestampNs time) {
+    VrpnMessage message = vrpn_pose_message(0, 4, 0, {{0.02, 0.0, 0.6}, {1, 0, 0, 0}});
+    message.seconds = static_cast<std::uint32_t>((kServerOrigin + time) / 1'000'000'000);
+    message.microseconds = static_cast<std::uint32_t>((kServerOrigin + time) / 1000 % 1'000'000);
+    server.send(format_vrpn(message));
+  };
+  EXPECT_FALSE(draw().input_age);
+  server.send(vrpn_cookie());
+  server.send(format_vrpn(vrpn_name_message(-1, 0, "Tracker0")));
+  server.send(format_vrpn(vrpn_name_message(-2, 4, "vrpn_Tracker Pos_Quat")));
+  send_pose_measured(clock.now());  // the quickest there is
+  ASSERT_TRUE(draw().input_age);
+  for (const TimestampNs lag : {40, 25, 90}) {
+    clock.advance(200 * kMs);
+    send_pose_measured(clock.now() - lag * kMs);
+    const FrameReport report = draw();
+    ASSERT_TRUE(report.input_age);
+    EXPECT_NEAR(1e-6 * static_cast<double>(*report.input_age), static_cast<double>(lag), 0.1);
+    EXPECT_NEAR(report.viewer.right_mm.x - 31.5, 20.0, 1e-3);
+    EXPECT_FALSE(draw().input_age);  // nothing new
+  }
 }
 
 }  // namespace
