@@ -1,6 +1,7 @@
 // dubsar displays: what there is to show pictures on, what belongs to what, and why something is missing.
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -8,7 +9,9 @@
 
 #include "app/cli/config_folder.h"
 #include "app/cli/verb.h"
+#include "app/panels/adjust_window.h"
 #include "app/panels/calibration_search.h"
+#include "core/base/log.h"
 #include "devices/looking_glass/bridge_client.h"
 #include "display/context_glfw.h"
 #include "display/crosstalk_curve.h"
@@ -25,6 +28,8 @@ namespace {
 
 struct Options {
   std::vector<std::string> adjust;  ///< PANEL, figures or "reset"
+  bool window = false;              ///< adjust by eye
+  std::string monitor;
   std::string calibration, crosstalk;
   std::string edids = "/sys/class/drm";
   int bridge_port = kBridgePort;
@@ -178,7 +183,45 @@ Result<VerbResult> crosstalk(const std::string& panel) {
   return result;
 }
 
+/// A folder for one run.
+struct ScratchFolder {
+  fs::path path = fs::temp_directory_path() / fmt::format("dubsar_adjust_{}", ::getpid());
+  ScratchFolder() { fs::create_directories(path); }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+};
+
+Result<VerbResult> adjust_in_window(const Options& options, Progress& progress) {
+  const fs::path folder = panel_folder();
+  if (options.adjust.size() != 1) return fail(ErrorKind::kUsage, "--adjust: figures and --window found, expected one of them");
+  if (folder.empty()) return fail(ErrorKind::kCannotCreate, "cannot save the adjustment: neither XDG_CONFIG_HOME nor HOME is set");
+  const ScratchFolder scratch;
+  DUBSAR_ASSIGN(PanelTuner tuner, PanelTuner::create(folder, scratch.path, options.adjust[0], options.calibration));
+  LiveOptions live;
+  live.session.display = "lenticular:panel=" + options.adjust[0] + (options.calibration.empty() ? "" : ",calibration=" + options.calibration);
+  live.session.profile_folder = scratch.path;
+  live.session.pattern = true;
+  DUBSAR_ASSIGN(live.session.mapping, default_mapping());
+  live.inputs = {"keyboard"};
+  live.window.title = "dubsar: " + options.adjust[0];
+  live.window.monitor = options.monitor;
+  live.keys = [&](const std::string& key) { return tuner.key(key); };
+  log_info("one number should fill the panel: left and right move the views, up and down change the pitch, page up and page down the slope; "
+           "s saves, 0 goes back, Escape ends");
+  DUBSAR_ASSIGN(const LiveResult done, run_live(TriMesh(), live, progress));
+  VerbResult result;
+  result.json = {{"panel", options.adjust[0]}, {"figures", tuner.text()}, {"saved", tuner.saved()}, {"frames", done.frames}};
+  result.text = fmt::format("panel {}: {}{}\n", options.adjust[0], tuner.text(),
+                            tuner.saved() ? "; saved in " + tuner.file().string() : "; not saved");
+  return result;
+}
+
 Result<VerbResult> adjust(const std::vector<std::string>& words) {
+  if (words.size() != 2) return fail(ErrorKind::kUsage, "--adjust: no figures found, expected PANEL pitch=..,slope=..,center=.., PANEL reset, or --window");
   const fs::path folder = panel_folder();
   if (folder.empty()) return fail(ErrorKind::kCannotCreate, "cannot save the adjustment: neither XDG_CONFIG_HOME nor HOME is set");
   VerbResult result;
@@ -196,7 +239,9 @@ Result<VerbResult> adjust(const std::vector<std::string>& words) {
   return result;
 }
 
-Result<VerbResult> run(const Options& options) {
+Result<VerbResult> run(const Options& options, Progress& progress) {
+  if (options.window && options.adjust.empty()) return fail(ErrorKind::kUsage, "--window found, expected --adjust PANEL too");
+  if (options.window) return adjust_in_window(options, progress);
   if (!options.adjust.empty()) return adjust(options.adjust);
   if (!options.crosstalk.empty()) return crosstalk(options.crosstalk);
   DUBSAR_ASSIGN(const auto profiles, load_profiles(panel_folder()));
@@ -216,8 +261,10 @@ Verb add_displays_verb(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* const command = program.add_subcommand("displays", "what pictures can be shown on: displays, panels, calibrations, monitors");
   command->add_option("--adjust", options->adjust, "save lens figures found by eye: PANEL pitch=..,slope=..,center=.. (or PANEL reset)")
-      ->expected(2)
+      ->expected(1, 2)
       ->type_name("PANEL FIGURES");
+  command->add_flag("--window", options->window, "with --adjust PANEL: find the figures by eye, on the panel, with keys");
+  command->add_option("--monitor", options->monitor, "with --window: part of the panel's monitor name");
   command->add_option("--crosstalk", options->crosstalk, "how much light of the wrong eye a tracked panel lets through, against head speed and latency")
       ->type_name("PANEL");
   command->add_option("--calibration", options->calibration, "also look at this calibration file")->type_name("FILE");
@@ -231,8 +278,9 @@ Verb add_displays_verb(CLI::App& program) {
       "  dubsar displays --json -\n"
       "  dubsar displays --crosstalk spatiallabs-15.6\n"
       "  dubsar render --pattern -o pattern.png --display lenticular:looking-glass-go\n"
-      "  dubsar displays --adjust looking-glass-go pitch=80.74,center=0.31");
-  return {command, [options](const CommonOptions&, Progress&) { return run(*options); }};
+      "  dubsar displays --adjust looking-glass-go pitch=80.74,center=0.31\n"
+      "  dubsar displays --adjust spatiallabs-15.6 --window");
+  return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
 }
 
 }  // namespace dubsar::app

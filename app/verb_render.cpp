@@ -1,4 +1,4 @@
-// dubsar render IN -o OUT.png: a picture without a window.
+// dubsar render IN -o OUT.png: a picture in a file, or of a display in a window.
 
 #include <fmt/format.h>
 
@@ -8,6 +8,8 @@
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
 #include "app/display_picture.h"
+#include "app/panels/auto_panel.h"
+#include "app/session/live.h"
 #include "core/image_io/png_file.h"
 #include "core/image_io/tiff_file.h"
 #include "display/render_image.h"
@@ -20,7 +22,7 @@ struct Options {
   double mm_per_pixel = 0.0;
   int samples = 0;  ///< 0: enough for one picture, fewer for the many of a display
   DisplayRequest display;
-  bool perspective = false, colour_parts = false, transparent = false;
+  bool perspective = false, colour_parts = false, transparent = false, window = false;
 };
 
 Result<void> parse_size(const std::string& text, CameraOptions& camera) {
@@ -71,11 +73,50 @@ Result<void> check_display_options(const Options& options) {
   return {};
 }
 
-Result<VerbResult> run(const Options& options, Progress& progress) {
+/// The display's picture in a window, until it is closed; mouse and keyboard turn it.
+Result<VerbResult> show_in_window(const Options& options, const DisplayOptions& shown, const TriMesh& mesh, Progress& progress) {
+  const DisplayRequest& request = options.display;
+  if (!request.see_from.empty() || !request.plugins.empty())
+    return fail(ErrorKind::kUsage, "--see-from and --plugin make files, expected no --window");
+  LiveOptions live;
+  DUBSAR_ASSIGN(live.session.display, resolve_display(request.display, request.bridge_port));
+  live.session.profile_folder = shown.profile_folder;
+  live.session.viewer = shown.viewer;
+  live.session.shading = shown.shading;
+  live.session.direction = shown.direction;
+  live.session.margin = shown.margin;
+  live.session.magnification = shown.magnification;
+  live.session.samples = shown.samples;
+  live.session.pattern = request.pattern;
+  DUBSAR_ASSIGN(live.session.mapping, default_mapping());
+  live.inputs = {"mouse", "keyboard"};
+  live.window.title = "dubsar: " + (request.pattern ? request.display : options.in);
+  if (!options.size.empty()) {
+    live.window.width = shown.screen.width_px;
+    live.window.height = shown.screen.height_px;
+    live.fullscreen = false;
+  }
+  DUBSAR_ASSIGN(const LiveResult done, run_live(mesh, live, progress));
+  VerbResult result;
+  result.json = {{"display", done.display}, {"frames", done.frames}, {"pattern", request.pattern}};
+  result.text = fmt::format("{}: shown in a window, {} frames\n", done.display, done.frames);
+  return result;
+}
+
+Result<void> check_output(const Options& options) {
+  if (options.window && (!options.out.empty() || options.display.display.empty()))
+    return fail(ErrorKind::kUsage, "--window found {}", options.out.empty() ? "without --display NAME" : "with -o, expected one of them");
+  if (options.window) return {};
+  if (options.out.empty()) return fail(ErrorKind::kUsage, "-o is missing, expected a file to write, or --display NAME --window");
   DUBSAR_TRY(check_output_path(options.out));
+  return {};
+}
+
+Result<VerbResult> run(const Options& options, Progress& progress) {
+  DUBSAR_TRY(check_output(options));
   std::string suffix = std::filesystem::path(options.out).extension().string();
   for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (suffix != ".png" && suffix != ".tif" && suffix != ".tiff")
+  if (!options.window && suffix != ".png" && suffix != ".tif" && suffix != ".tiff")
     return fail(ErrorKind::kUsage, "cannot write {}: expected a name that ends in .png or .tif", options.out);
   DUBSAR_TRY(check_display_options(options));
   RenderOptions render;
@@ -103,6 +144,7 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
     shown.direction = render.camera.direction;
     shown.shading = render.shading;
     if (options.samples > 0) shown.samples = options.samples;
+    if (options.window) return show_in_window(options, shown, mesh, progress);
     return render_to_display(options.display, shown, mesh, options.out, progress);
   }
   DUBSAR_ASSIGN(const Picture picture, render_picture(mesh, render, progress));
@@ -129,9 +171,10 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 
 Verb add_render_verb(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* const command = program.add_subcommand("render", "make a picture of a surface, without a window");
+  CLI::App* const command = program.add_subcommand("render", "make a picture of a surface, or show what a display's panel shows");
   command->add_option("IN", options->in, "EXA, PLY, OBJ, STL or GLB file");
-  command->add_option("-o,--output", options->out, "PNG or TIFF file to write")->required();
+  command->add_option("-o,--output", options->out, "PNG or TIFF file to write");
+  command->add_flag("--window", options->window, "show the display's picture in a window instead of writing it");
   command->add_option("--view", options->view, "front, back, left, right, top, bottom, orbit or orbit:AZIMUTH,ELEVATION[,ROLL]");
   command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels (1200x1200; of a display 1920x1080, or the panel's own)");
   std::string styles;

@@ -3,12 +3,14 @@
 #include "app/session/live.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
+#include "app/panels/adjust_window.h"
 #include "app/session/display_clock.h"
 #include "app/session/session_keys.h"
 #include "app/ui/help_page.h"
@@ -260,6 +262,49 @@ TEST_F(Live, AnInterlacedWindowKeepsTheParityOfThePanel) {
   EXPECT_EQ(here.pixels, offscreen("interlaced", ViewState()).pixels);
   EXPECT_EQ(screen_.window_x, kX);
   EXPECT_EQ(screen_.window_y, kY);
+}
+
+TEST_F(Live, KeysOnAPanelChangeItsFiguresAndSaveThem) {
+  const auto root = std::filesystem::temp_directory_path() / ("dubsar_tuner_" + std::to_string(::getpid()));
+  const auto folder = root / "panels", scratch = root / "scratch";
+  std::filesystem::create_directories(scratch);
+  auto tuner = PanelTuner::create(folder, scratch, "lens-sheet-24-5-views");
+  ASSERT_TRUE(tuner) << tuner.error().message;
+  const std::string first = tuner->text();
+  options_.session.display = "lenticular:lens-sheet-24-5-views";
+  options_.session.profile_folder = scratch;
+  options_.session.pattern = true;
+  options_.displays = {"mono"};
+  std::string taken;
+  options_.keys = [&](const std::string& key) {
+    const KeyAnswer answer = tuner->key(key);
+    if (answer.taken) taken += key + " ";
+    return answer;
+  };
+  Image before, moved, back;
+  const auto took = [&](const char* keys) { return [&, keys](const LiveMoment&) { return taken == keys; }; };
+  const auto done = play({
+      look(before),
+      {[&] { person_->key("right"); }, took("right ")},
+      {[&] { person_->key("right"); }, took("right right ")},
+      look(moved),
+      {[&] { person_->key("s"); }, took("right right s ")},
+      {[&] { person_->key("0"); }, took("right right s 0 ")},
+      look(back),
+      end(),
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_GT(differing_share(before, moved), 0.001);
+  EXPECT_EQ(before.pixels, back.pixels);
+  EXPECT_EQ(tuner->text(), first);
+  EXPECT_TRUE(tuner->saved());
+  const auto profile = choose_panel(folder, "lens-sheet-24-5-views", "");
+  ASSERT_TRUE(profile) << profile.error().message;
+  ASSERT_TRUE(profile->adjustment.center);
+  const auto untouched = choose_panel({}, "lens-sheet-24-5-views", "");
+  EXPECT_NEAR(*profile->adjustment.center - untouched->sheet->center, 0.02, 1e-9);
+  EXPECT_EQ(turn_between_deg(done->view.rotation, {1, 0, 0, 0}), 0.0) << "the arrows belong to the panel";
+  std::filesystem::remove_all(root);
 }
 
 /// A device that a test plugs in and out; it pushes the object to the right while it is there.

@@ -45,6 +45,9 @@ class XPerson {
     if (name == "escape") return 9;
     if (name == "1") return 10;
     if (name == "2") return 11;
+    if (name == "0") return 19;
+    if (name == "s") return 39;
+    if (name == "f5") return 71;
     if (name == "slash") return 61;
     if (name == "shift") return 50;
     if (name == "control") return 37;
