@@ -16,19 +16,23 @@ bool any_tracked(const std::vector<T>& things) {
 }  // namespace
 
 void InputMixer::add(std::unique_ptr<InputSource> source, int rank) {
+  const std::scoped_lock lock(mutex_);
   const auto after = std::find_if(sources_.begin(), sources_.end(), [&](const Entry& entry) { return entry.rank > rank; });
   sources_.insert(after, {std::move(source), {}, Freshness::kLost, rank});
 }
 
 bool InputMixer::remove(const InputSource* source) {
+  const std::scoped_lock lock(mutex_);
   return std::erase_if(sources_, [&](const Entry& entry) { return entry.source.get() == source; }) > 0;
 }
 
 bool InputMixer::remove(std::string_view name) {
+  const std::scoped_lock lock(mutex_);
   return std::erase_if(sources_, [&](const Entry& entry) { return entry.source->name() == name; }) > 0;
 }
 
 const InputFrame& InputMixer::poll(TimestampNs now) {
+  const std::scoped_lock lock(mutex_);
   merged_ = {};
   for (Entry& entry : sources_) {
     entry.frame.events.clear();
@@ -63,22 +67,31 @@ SourceState InputMixer::describe(const Entry& entry) {
 }
 
 std::vector<SourceState> InputMixer::states() const {
+  const std::scoped_lock lock(mutex_);
   std::vector<SourceState> out;
   for (const Entry& entry : sources_) out.push_back(describe(entry));
   return out;
 }
 
 std::optional<SourceState> InputMixer::state_of(const InputSource* source) const {
+  const std::scoped_lock lock(mutex_);
   for (const Entry& entry : sources_)
     if (entry.source.get() == source) return describe(entry);
   return std::nullopt;
 }
 
-bool InputMixer::endless() const noexcept {
+bool InputMixer::empty() const {
+  const std::scoped_lock lock(mutex_);
+  return sources_.empty();
+}
+
+bool InputMixer::endless() const {
+  const std::scoped_lock lock(mutex_);
   return std::any_of(sources_.begin(), sources_.end(), [](const Entry& e) { return !e.source->has_end(); });
 }
 
-bool InputMixer::finished() const noexcept {
+bool InputMixer::finished() const {
+  const std::scoped_lock lock(mutex_);
   const auto ends = [](const Entry& entry) { return entry.source->finished(); };
   return std::any_of(sources_.begin(), sources_.end(), [](const Entry& e) { return e.source->has_end(); }) &&
          std::all_of(sources_.begin(), sources_.end(), [&](const Entry& e) { return !e.source->has_end() || ends(e); });

@@ -2,6 +2,7 @@
 // Several sources as one: the newest of each, hands and heads of the first source that sees any.
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ struct SourceState {
   std::string note;        ///< InputSource::note()
 };
 
+/// Any thread: what it calls of the sources is called by one at a time.
 class InputMixer {
  public:
   /// Adds a started source. Lower ranks, and earlier ones of the same rank, have priority for hands, heads and puck; events
@@ -28,17 +30,18 @@ class InputMixer {
   bool remove(std::string_view name);
 
   /// Polls all sources. A lost source contributes nothing. Hands of two sources are never mixed: the first that has one
-  /// tracked wins, and keeps its right for 300 ms after its last hand. Bounded: at most 4096 events a call.
+  /// tracked wins, and keeps its right for 300 ms after its last hand. Bounded: at most 4096 events a call. The frame stays
+  /// until the next call.
   const InputFrame& poll(TimestampNs now);
 
   std::vector<SourceState> states() const;
   /// None when the source is not here.
   std::optional<SourceState> state_of(const InputSource* source) const;
-  bool empty() const noexcept { return sources_.empty(); }
+  bool empty() const;
   /// True when a source is here that has no end, such as a device.
-  bool endless() const noexcept;
+  bool endless() const;
   /// True when there is a source with an end and all of those have reached it.
-  bool finished() const noexcept;
+  bool finished() const;
 
  private:
   struct Entry {
@@ -52,6 +55,7 @@ class InputMixer {
     const InputSource* source = nullptr;
     TimestampNs until = 0;
   };
+  mutable std::mutex mutex_;  // for all below
   std::vector<Entry> sources_;
   Owner hands_, heads_;
   InputFrame merged_;

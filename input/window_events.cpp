@@ -36,6 +36,7 @@ Result<std::unique_ptr<InputSource>> make(const InputConfig& config, bool keys) 
 }  // namespace
 
 void WindowEvents::push(const InputEvent& event) {
+  const std::scoped_lock lock(mutex_);
   auto& queue = event.kind == EventKind::kKey ? keys_ : mouse_;
   if (event.kind == EventKind::kMotion && !queue.empty() && queue.back().kind == EventKind::kMotion &&
       queue.back().modifiers == event.modifiers) {
@@ -50,7 +51,10 @@ void WindowEvents::push(const InputEvent& event) {
   queue.push_back(event);
 }
 
-std::vector<InputEvent> WindowEvents::take(bool keys) { return std::exchange(keys ? keys_ : mouse_, {}); }
+std::vector<InputEvent> WindowEvents::take(bool keys) {
+  const std::scoped_lock lock(mutex_);
+  return std::exchange(keys ? keys_ : mouse_, {});
+}
 
 Result<std::unique_ptr<InputSource>> make_mouse_source(const InputConfig& config) { return make(config, false); }
 Result<std::unique_ptr<InputSource>> make_keyboard_source(const InputConfig& config) { return make(config, true); }

@@ -2,13 +2,14 @@
 // Mouse and keyboard: a window puts plain events in, two sources take them out. No window library here.
 
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "input/input_source.h"
 
 namespace dubsar {
 
-/// Events of a window, in order. One thread: the window's. At most 4096 are kept; neighbouring motions are joined, and
+/// Events of a window, in order. Any thread. At most 4096 are kept; neighbouring motions are joined, and
 /// when it is full the oldest motion goes first.
 class WindowEvents {
  public:
@@ -17,6 +18,7 @@ class WindowEvents {
   std::vector<InputEvent> take(bool keys);
 
  private:
+  std::mutex mutex_;  // for both
   std::vector<InputEvent> mouse_, keys_;
 };
 

@@ -2,26 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <condition_variable>
 #include <deque>
+#include <mutex>
 #include <system_error>
+#include <thread>
 
 #include "app/session/display_clock.h"
+#include "app/session/input_log.h"
 #include "app/session/session_keys.h"
 #include "app/session/window_input.h"
 #include "app/ui/overlay.h"
+#include "app/ui/state_page.h"
 #include "core/base/atomic_file.h"
 #include "core/base/log.h"
 #include "core/image_io/png_file.h"
 #include "display/compose_pass.h"
-#include "display/panel_profile.h"
 #include "display/sink_window.h"
-#include "input/recording.h"
 #include "input/window_events.h"
 
 namespace dubsar::app {
 namespace {
 
 constexpr double kIdleS = 0.008;  // how long input may wait while nothing moves
+constexpr auto kSteerEvery = std::chrono::milliseconds(8);  // whatever a picture takes
 constexpr TimestampNs kSecond = 1'000'000'000;
 constexpr TimestampNs kNoticeNs = 6 * kSecond, kFadeNs = kSecond, kHelpRefreshNs = kSecond / 2,
                       kSettleNs = kSecond;
@@ -45,61 +49,6 @@ Result<void> check(const LiveOptions& options) {
   return {};
 }
 
-std::string_view presence_words(Presence presence) {
-  switch (presence) {
-    case Presence::kTracked:
-      return "followed";
-    case Presence::kHeld:
-      return "out of sight, held";
-    case Presence::kEasing:
-      return "out of sight, going to the middle";
-    case Presence::kOff:
-      break;
-  }
-  return "nobody is followed";
-}
-
-/// Long sentences are on the terminal in full.
-std::string shortened(std::string text) {
-  constexpr std::size_t kMost = 150;
-  if (text.size() > kMost) text.replace(text.rfind(' ', kMost), std::string::npos, " ...");
-  return text;
-}
-
-std::string_view health_words(SourceHealth health) {
-  switch (health) {
-    case SourceHealth::kPresent:
-      return "present";
-    case SourceHealth::kLost:
-      return "lost";
-    case SourceHealth::kMissing:
-      return "not available";
-    case SourceHealth::kOff:
-      break;
-  }
-  return "off";
-}
-
-/// Where the window goes: its own monitor for panels.
-Result<void> choose_place(const LiveOptions& options, WindowOptions& window) {
-  DUBSAR_ASSIGN(const auto sink, make_sink(options.session.display, options.session.profile_folder));
-  const SinkTraits traits = sink->traits();
-  window.fullscreen = options.fullscreen.value_or(false);
-  if (options.fullscreen || !traits.exact_pixels) return {};
-  if (traits.name != "lenticular" || !window.monitor.empty()) {
-    window.fullscreen = true;
-    return {};
-  }
-  DUBSAR_ASSIGN(const auto monitors, list_monitors());
-  for (const Monitor& monitor : monitors)
-    if (monitor.width_px == traits.output.width && monitor.height_px == traits.output.height &&
-        (window.monitor.empty() || !monitor.primary)) {
-      window.monitor = monitor.name;
-      window.fullscreen = true;
-    }
-  return {};
-}
-
 class Live {
  public:
   Live(const LiveOptions& options, Progress& progress) : options_(options), progress_(progress) {}
@@ -120,6 +69,7 @@ class Live {
   Result<void> show(TimestampNs begun);
   bool over(TimestampNs now);
   void wait();
+  void steer(const std::stop_token& stop);
 
   bool simulated() const noexcept { return options_.simulated_fps > 0; }
   TimestampNs now() const { return simulated() ? manual_.now() : clock_.now(); }
@@ -146,11 +96,13 @@ class Live {
   std::deque<double> recent_age_ms_, recent_interval_ms_;
   std::vector<double> intervals_ms_;
   int failures_ = 0;
+  InputLog log_;
+  std::jthread steering_;  // goes first
 };
 
 Result<void> Live::open(const TriMesh& mesh) {
   WindowOptions place = options_.window;
-  DUBSAR_TRY(choose_place(options_, place));
+  DUBSAR_TRY(choose_place(options_.session.display, options_.session.profile_folder, options_.fullscreen, place));
   SessionOptions wanted = options_.session;
   std::string note;
   {
@@ -184,6 +136,8 @@ Result<void> Live::open(const TriMesh& mesh) {
   config.hotplug = HotplugBell::of_this_machine();
   config.model_folder = options_.session.model_folder;
   config.panel_m = 1e-3 * glm::dvec2(options_.session.screen.width_mm, options_.session.screen.height_mm);
+  log_.record(!options_.record.empty());
+  session_->on_input([this](TimestampNs at, const InputFrame& frame) { log_.hear(at, frame); });
   sources_ = std::make_unique<SourceSet>(session_->input(), config, options_.make_input);
   std::vector<std::string> inputs = options_.inputs;
   if (inputs.empty()) {
@@ -305,33 +259,15 @@ void Live::use_window_events() {
 }
 
 std::vector<HelpSection> Live::help() const {
-  HelpSection sources{"Sources", {}};
-  int number = 1;
-  for (const SourceRow& row : sources_->rows())
-    sources.rows.push_back({fmt::format("{} {}", number++, row.spec),
-                            row.reason.empty()
-                                ? std::string(health_words(row.health))
-                                : fmt::format("{}: {}", health_words(row.health), shortened(row.reason))});
-  const auto ages = std::vector<double>(recent_age_ms_.begin(), recent_age_ms_.end());
-  const auto intervals = std::vector<double>(recent_interval_ms_.begin(), recent_interval_ms_.end());
-  const SinkTraits traits = session_->traits();
-  const glm::dvec3 eyes = report_.viewer.centre_mm();
-  HelpSection state{"Now", {}};
-  state.rows.push_back({"display", displays_[display_]});
-  state.rows.push_back(
-      {"picture", fmt::format("{} x {} pixels, {} view{}", traits.output.width, traits.output.height,
-                              traits.views, traits.views == 1 ? "" : "s")});
-  state.rows.push_back({"head", fmt::format("{}; eyes at {:.0f}, {:.0f}, {:.0f} mm",
-                                            presence_words(report_.head), eyes.x, eyes.y, eyes.z)});
-  state.rows.push_back(
-      {"frames a second", intervals.empty() ? "nothing moves"
-                                            : fmt::format("{:.0f} while things move",
-                                                          1e3 / std::max(quantile(intervals, 0.5), 1e-3))});
-  state.rows.push_back({"device to cameras", ages.empty()
-                                                 ? "no input yet"
-                                                 : fmt::format("median {:.1f} ms, 95 % {:.1f} ms",
-                                                               quantile(ages, 0.5), quantile(ages, 0.95))});
-  std::vector<HelpSection> out{std::move(state), std::move(sources)};
+  StateFigures state;
+  state.display = displays_[display_];
+  state.traits = session_->traits();
+  state.head = report_.head;
+  state.eyes_mm = report_.viewer.centre_mm();
+  state.interval_ms = {recent_interval_ms_.begin(), recent_interval_ms_.end()};
+  state.input_age_ms = {recent_age_ms_.begin(), recent_age_ms_.end()};
+  state.sources = sources_->rows();
+  std::vector<HelpSection> out = state_page(state);
   for (HelpSection& section : help_page(mapping_)) out.push_back(std::move(section));
   return out;
 }
@@ -418,14 +354,25 @@ void Live::wait() {
     window_->wait_events(1e-9 * static_cast<double>(display_clock_.next_start() - now));
 }
 
+/// The thread that keeps gestures going while a picture is made.
+void Live::steer(const std::stop_token& stop) {
+  std::mutex mutex;
+  std::condition_variable_any waiting;
+  std::unique_lock lock(mutex);
+  while (!stop.stop_requested()) {
+    session_->steer(clock_.now());
+    waiting.wait_for(lock, stop, kSteerEvery, [] { return false; });
+  }
+}
+
 Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const LiveMoment&)>& look) {
   DUBSAR_TRY(check(options_));
   DUBSAR_TRY(open(mesh));
   progress_.begin("view", 0, "frame");
-  std::string recording, last_line;
   start_ = now();
   glm::dquat last_turn = session_->view().rotation;
   const auto delay = static_cast<TimestampNs>(1e9 * options_.display_delay_s);
+  if (!simulated()) steering_ = std::jthread([this](const std::stop_token& stop) { steer(stop); });
   for (std::int64_t steps = 0; !window_->should_close() && !over(now()); ++steps) {
     if (progress_.cancelled()) return cancelled_error();
     window_->poll_events();
@@ -435,18 +382,11 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
     const TimestampNs at = now();
     sources_->tick(at);
     report_ = session_->poll(at, (simulated() ? at : display_clock_.light(at)) + delay);
-    for (const InputEvent& event :
-         session_->last_input().events)  // of scripts: the window's own do not come this way
-      if (event.kind == EventKind::kKey && event.down && session_command(event.key)) use_key(event.key);
+    for (const std::string& key : log_.take_keys()) use_key(key);
     if (report_.input_age) out_.input_age_ms.push_back(1e-6 * static_cast<double>(*report_.input_age));
     out_.largest_turn_deg =
         std::max(out_.largest_turn_deg, turn_between_deg(last_turn, report_.view.rotation));
     last_turn = report_.view.rotation;
-    if (!options_.record.empty()) {
-      std::string line = record_line({0, session_->last_input()});  // most turns of an idle loop bring nothing new
-      if (line != last_line) recording += record_line({at, session_->last_input()}) + "\n";
-      last_line = std::move(line);
-    }
     update_overlay(at);
     drawn_ = false;
     const PixelSize size = window_->size();
@@ -471,33 +411,18 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
     wait();
   }
   progress_.end();
+  steering_ = {};  // joined
   out_.seconds = 1e-9 * static_cast<double>(now() - start_);
   out_.fps = intervals_ms_.empty() ? 0.0 : 1e3 / std::max(quantile(intervals_ms_, 0.5), 1e-3);
   out_.view = session_->view();
   out_.display = displays_[display_];
   out_.rows = sources_->rows();
   out_.sources = session_->input().states();
-  if (!options_.record.empty()) DUBSAR_TRY(write_file_atomically(options_.record, recording));
+  if (!options_.record.empty()) DUBSAR_TRY(write_file_atomically(options_.record, log_.recording()));
   return std::move(out_);
 }
 
 }  // namespace
-
-std::vector<std::string> displays_for_window(const std::string& first, const Screen& screen, bool stereo,
-                                             const std::filesystem::path& profile_folder) {
-  std::vector<std::string> out{first};
-  const auto add = [&](std::string name) {
-    if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(std::move(name));
-  };
-  for (const char* name : {"mono", "anaglyph", "side_by_side", "top_bottom", "interlaced"}) add(name);
-  if (stereo) add("quad_buffer");
-  if (const auto profiles = load_profiles(profile_folder))
-    for (const PanelProfile& panel : *profiles)
-      if (panel.width_px == screen.width_px && panel.height_px == screen.height_px &&
-          (panel.sheet || panel.optics))
-        add("lenticular:" + panel.name);
-  return out;
-}
 
 Result<LiveResult> run_live(const TriMesh& mesh, const LiveOptions& options, Progress& progress,
                             const std::function<void(const LiveMoment&)>& look) {

@@ -11,6 +11,7 @@
 #include "app/session/offscreen.h"
 #include "app/session/session.h"
 #include "app/session/source_set.h"
+#include "app/session/window_place.h"
 #include "core/base/progress.h"
 #include "display/context_glfw.h"
 
@@ -70,10 +71,5 @@ struct LiveMoment {
 /// drawn three times in a row. Main thread.
 Result<LiveResult> run_live(const TriMesh& mesh, const LiveOptions& options, Progress& progress,
                             const std::function<void(const LiveMoment&)>& look = {});
-
-/// Displays that a window on this screen can show, as make_sink() reads them: `first`, those for any monitor,
-/// panels of exactly this size, and quad_buffer in a stereo window.
-std::vector<std::string> displays_for_window(const std::string& first, const Screen& screen, bool stereo,
-                                             const std::filesystem::path& profile_folder);
 
 }  // namespace dubsar::app

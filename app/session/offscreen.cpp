@@ -53,6 +53,9 @@ Result<OffscreenResult> run_offscreen(const TriMesh& mesh, const OffscreenOption
   config.simulated_time = true;
   config.model_folder = options.session.model_folder;
   config.panel_m = 1e-3 * glm::dvec2(options.session.screen.width_mm, options.session.screen.height_mm);
+  std::string recording;
+  if (!options.record.empty())
+    session->on_input([&](TimestampNs now, const InputFrame& frame) { recording += record_line({now, frame}) + "\n"; });
   for (const std::string& spec : options.inputs) {
     DUBSAR_ASSIGN(auto source, make_input(spec, config));
     session->input().add(std::move(source));
@@ -63,7 +66,6 @@ Result<OffscreenResult> run_offscreen(const TriMesh& mesh, const OffscreenOption
   const auto most = static_cast<int>(std::ceil(options.longest_s * options.fps));
   int left_after_end = static_cast<int>(std::ceil(kSettleS * options.fps));
   OffscreenResult out;
-  std::string recording;
   progress.begin("view", most, "frame");
   glm::dquat last_turn = session->view().rotation;
   for (; out.frames < most && left_after_end > 0; ++out.frames) {
@@ -84,7 +86,6 @@ Result<OffscreenResult> run_offscreen(const TriMesh& mesh, const OffscreenOption
     if (report.input_age) out.input_age_ms.push_back(1e-6 * static_cast<double>(*report.input_age));
     out.largest_turn_deg = std::max(out.largest_turn_deg, turn_between_deg(last_turn, report.view.rotation));
     last_turn = report.view.rotation;
-    if (!options.record.empty()) recording += record_line({clock.now(), session->last_input()}) + "\n";
     if (session->input().finished()) --left_after_end;
     clock.advance(step);
     progress.advance(1);

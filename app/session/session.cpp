@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <mutex>
 
 #include "core/base/budget.h"
 #include "display/gpu_mesh.h"
@@ -66,11 +67,14 @@ struct Session::Parts {
   glm::dvec3 aside_mm{0.0};             // from the panel's middle to where the eyes are thought to be level with
   double magnification = 1.0;
   InputMixer mixer;
+  std::function<void(TimestampNs, const InputFrame&)> told;
+  std::mutex steering;                  // for the five below, and for writing `seen`, which sources look at while they are polled
   Navigator navigator;
   HeadFollower head;
+  TimestampNs steered = 0, newest_input = 0;
+  std::optional<glm::dvec3> selected_m;  // since the last poll()
   ViewState seen;
-  InputFrame last_input;
-  TimestampNs newest_input = 0;
+  TimestampNs used_input = 0;
   TimestampNs now = 0, moved_at = 0;
   Viewer viewer;                                   // of the last poll()
   std::optional<std::pair<ViewState, Viewer>> painted;
@@ -94,6 +98,7 @@ struct Session::Parts {
     out.ipd_m = 1e-3 * glm::length(options.viewer.right_mm - options.viewer.left_mm);
     return out;
   }
+  void steer(TimestampNs now);  // `steering` is held
   Result<void> prepare(OutputSink& next);
   Viewer viewer_at(const FollowedEyes& eyes) const;
   bool moved() const;
@@ -121,13 +126,13 @@ Result<void> Session::Parts::prepare(OutputSink& next) {
   const ShownRect shown = shown_mm(next.views(Viewer())[0]);
   window = shown.size;
   middle = shown.middle;
-  if (options.magnification > 0) magnification = options.magnification;
   // A window on a plain monitor is looked at straight; before a panel of lenses people are where the panel wants them.
   aside_mm = traits.exact_pixels ? glm::dvec3(0.0) : glm::dvec3(middle, 0.0);
+  const std::scoped_lock lock(steering);
   head.set_rest(1e-3 * (options.viewer.centre_mm() + aside_mm));
   // The longest edge fits both ways, so that every side of the object does.
   const glm::dvec3 size = box.size();
-  magnification = (1.0 - 2.0 * options.margin) * std::min(window.x, window.y) / std::max({size.x, size.y, size.z, 1e-9});
+  magnification = options.magnification > 0 ? options.magnification : (1.0 - 2.0 * options.margin) * std::min(window.x, window.y) / std::max({size.x, size.y, size.z, 1e-9});
   return {};
 }
 
@@ -173,7 +178,6 @@ Result<std::unique_ptr<Session>> Session::create(const TriMesh& mesh, const Sess
 InputMixer& Session::input() noexcept { return parts_->mixer; }
 SinkTraits Session::traits() const { return parts_->sink->traits(); }
 const ViewState& Session::view() const noexcept { return parts_->seen; }
-const InputFrame& Session::last_input() const noexcept { return parts_->last_input; }
 
 Result<void> Session::set_display(std::string_view spec) {
   DUBSAR_ASSIGN(auto sink, make_sink(spec, parts_->options.profile_folder));
@@ -198,25 +202,44 @@ bool Session::Parts::moved() const {
          glm::distance(painted->second.right_mm, viewer.right_mm) > kEyeStepMm;
 }
 
+void Session::on_input(std::function<void(TimestampNs, const InputFrame&)> told) {
+  const std::scoped_lock lock(parts_->steering);
+  parts_->told = std::move(told);
+}
+
+void Session::Parts::steer(TimestampNs at) {
+  steered = std::max(steered, at);  // two threads may have read the clock in the other order
+  const InputFrame& frame = mixer.poll(steered);
+  if (told) told(steered, frame);
+  navigator.update(steered, frame);
+  if (navigator.kept_head()) head.add(*navigator.kept_head());
+  if (navigator.selected_m()) selected_m = navigator.selected_m();
+  newest_input = std::max(newest_input, frame.time);
+}
+
+void Session::steer(TimestampNs now) {
+  const std::scoped_lock lock(parts_->steering);
+  parts_->steer(now);
+}
+
 FrameReport Session::poll(TimestampNs now, TimestampNs display_time) {
   Parts& p = *parts_;
   FrameReport report;
+  const std::scoped_lock lock(p.steering);
+  p.steer(now);
   p.now = now;
-  p.last_input = p.mixer.poll(now);
-  p.navigator.update(now, p.last_input);
   p.seen = p.navigator.view();
-  if (p.navigator.kept_head()) p.head.add(*p.navigator.kept_head());
   const FollowedEyes eyes = p.head.eyes(now, display_time);
   p.viewer = p.viewer_at(eyes);
   report.view = p.seen;
   report.viewer = p.viewer;
   report.head = eyes.presence;
   report.control = p.navigator.control();
-  report.selected_m = p.navigator.selected_m();
+  report.selected_m = std::exchange(p.selected_m, std::nullopt);
   report.moving = p.moved();
-  if (p.last_input.time > p.newest_input) {
-    report.input_age = now - p.last_input.time;
-    p.newest_input = p.last_input.time;
+  if (p.newest_input > p.used_input) {
+    report.input_age = now - p.newest_input;
+    p.used_input = p.newest_input;
   }
   return report;
 }

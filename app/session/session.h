@@ -3,6 +3,7 @@
 // surface, without one there are pictures in memory.
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -72,7 +73,8 @@ struct FrameReport {
   std::optional<glm::dvec3> selected_m;    ///< a dwelling hand chose this place
 };
 
-/// One thread: that of the GL context, which must be current in every call and outlive the session.
+/// One thread: that of the GL context, which must be current in every call and outlive the session. Only steer() and input() may
+/// be called from another thread, too.
 class Session {
  public:
   /// kUnavailable without GL 4.5 or for a sink that needs a stereo visual; kUsage, kBadData, kTryAgain as pack_mesh(),
@@ -86,8 +88,12 @@ class Session {
   Result<void> set_screen(const Screen& screen);
   SinkTraits traits() const;
 
-  /// Polls the input at `now` and moves the view on; cameras are for `display_time`, when the picture will be seen. Cheap: no
-  /// GL.
+  /// Polls the input at `now` and moves the view on. Gestures want 60 and more of these a second, however long pictures take: a
+  /// session in real time calls it from a thread of its own. Cheap: no GL.
+  void steer(TimestampNs now);
+  /// Told all input that comes, in the thread and at the time of the poll. Set it before there are sources.
+  void on_input(std::function<void(TimestampNs now, const InputFrame& frame)> told);
+  /// steer(), and what the next picture shall show: cameras are for `display_time`, when it will be seen. Cheap: no GL.
   FrameReport poll(TimestampNs now, TimestampNs display_time);
   /// True when paint() would make another picture than it did last: something moved by more than 0.05 mm of an eye, the
   /// overlay or the display changed, or views are still coarse and things rest.
@@ -104,10 +110,8 @@ class Session {
   void set_overlay(LayerPainter* painter);
   int coarse_views() const noexcept;  ///< of the last picture; 0: all are exact
 
-  /// The newest view; a simulated visitor looks at it. The reference is good as long as the session.
+  /// The view of the last poll(); a simulated visitor looks at it. The reference is good as long as the session.
   const ViewState& view() const noexcept;
-  /// What draw() got from the input last, for recordings.
-  const InputFrame& last_input() const noexcept;
 
  private:
   struct Parts;

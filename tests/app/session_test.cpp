@@ -147,6 +147,33 @@ TEST_F(SessionTest, AVisitorsHandsInInfraredPicturesTurnAndZoomTheObject) {
   EXPECT_LT(done.seconds, 40.0);  // the visitor was content
 }
 
+TEST_F(SessionTest, HandsSteerThoughAPictureTakesAQuarterOfASecond) {
+  const auto context = EglContext::create().value();
+  options_.session.screen.width_px = options_.session.screen.window_w = 64;
+  options_.session.screen.height_px = options_.session.screen.window_h = 64;
+  const auto session = Session::create(testing::lettered_box(), options_.session).value();
+  ManualClock clock(1'000'000'000);
+  InputConfig config;
+  config.seen_view = &session->view();
+  config.clock = &clock;
+  config.simulated_time = true;
+  session->input().add(make_input("scripted:" + file("visitor.json", R"({"seed": 4, "duration_s": 90, "noise_mm": 0.5,
+      "visitor": {"yaw_deg": 40, "pitch_deg": 15, "zoom": 1.3}})"), config).value());
+  int heard = 0;
+  session->on_input([&](TimestampNs, const InputFrame& frame) { heard += frame.hands.empty() ? 0 : 1; });
+  for (int step = 0; step < 90 * 120 && !session->input().finished(); ++step, clock.advance(8'333'333)) {
+    if (step % 30 == 0) {
+      static_cast<void>(session->poll(clock.now(), clock.now()));  // what a picture every 250 ms would show
+    } else {
+      session->steer(clock.now());
+    }
+  }
+  EXPECT_GT(heard, 1000);
+  const ViewState seen = session->poll(clock.now(), clock.now()).view;
+  EXPECT_LE(turn_between_deg(seen.rotation, turn_of({15 * kRad, 0, 0}) * turn_of({0, 40 * kRad, 0})), 5.0);
+  EXPECT_NEAR(seen.zoom, 1.3, 0.065);
+}
+
 TEST_F(SessionTest, TheAgeOfTheInputIsTheTimeFromItsMeasurementToTheCameras) {
   constexpr TimestampNs kMs = 1'000'000, kServerOrigin = 1'700'000'000'000'000'000;  // the server's clock counts from 1970
   const auto context = EglContext::create().value();

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <set>
+#include <thread>
 
 #include "input/window_events.h"
 
@@ -109,6 +111,28 @@ TEST(WindowEvents, MotionsAreJoinedAndNothingElseIsLost) {
   EXPECT_EQ(mouse->poll(0, frame), Freshness::kUnchanged);
   EXPECT_EQ(keyboard->poll(0, frame), Freshness::kNew);
   EXPECT_EQ(frame.events[0].key, "home");
+}
+
+TEST(WindowEvents, ArePutInByOneThreadAndTakenOutThroughTheMixerByAnother) {
+  WindowEvents window;
+  InputConfig config;
+  config.window = &window;
+  InputMixer mixer;
+  mixer.add(make_mouse_source(config).value());
+  double moved = 0;
+  std::atomic<bool> done = false;
+  std::jthread polls([&] {
+    for (TimestampNs now = 0; !done; ++now)
+      for (const InputEvent& event : mixer.poll(now).events) moved += event.motion.x;
+  });
+  for (int i = 0; i < 20000; ++i) {
+    window.push({i, EventKind::kMotion, {1, 0}, {}, false, 0, {}});
+    ASSERT_TRUE(mixer.endless());
+  }
+  done = true;
+  polls.join();
+  for (const InputEvent& event : mixer.poll(0).events) moved += event.motion.x;
+  EXPECT_DOUBLE_EQ(moved, 20000);
 }
 
 TEST(InputSources, FakesServicesAndCamerasAreNeverTakenUnlessNamed) {
