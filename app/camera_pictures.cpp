@@ -15,8 +15,7 @@ Result<VerbResult> watch_camera(const std::string& folder, double seconds, Progr
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error || !std::filesystem::is_directory(folder))
-      return fail(ErrorKind::kCannotCreate, "devices: cannot create the folder {}: {}", folder,
-                  error.message());
+      return fail(ErrorKind::kCannotCreate, "devices: cannot create the folder {}: {}", folder, error.message());
   }
   const SteadyClock clock;
   DUBSAR_ASSIGN(const OpenCapture open, load_capture());
@@ -35,19 +34,16 @@ Result<VerbResult> watch_camera(const std::string& folder, double seconds, Progr
     if (!folder.empty()) DUBSAR_TRY(recorder.write(frame));
   }
   VerbResult result;
-  const double rate =
-      static_cast<double>(pictures) / std::max(1e-3, 1e-9 * static_cast<double>(clock.now() - start));
+  const double rate = static_cast<double>(pictures) / std::max(1e-3, 1e-9 * static_cast<double>(clock.now() - start));
   result.json = {{"pictures", pictures},          {"per_second", rate},
                  {"width", frame.width},          {"height", frame.height},
                  {"written", recorder.written()}, {"reason", camera->reason()}};
-  result.text =
-      fmt::format("{} pictures of {} x {}, {:.1f} a second\n", pictures, frame.width, frame.height, rate);
+  result.text = fmt::format("{} pictures of {} x {}, {:.1f} a second\n", pictures, frame.width, frame.height, rate);
   if (recorder.written() > 0) result.text += fmt::format("{} in {}\n", recorder.written(), folder);
   if (pictures == 0) {
     result.failed = true;
     result.failure = ErrorKind::kUnavailable;
-    result.text +=
-        camera->reason().empty() ? "the camera is open and sends nothing\n" : camera->reason() + "\n";
+    result.text += camera->reason().empty() ? "the camera is open and sends nothing\n" : camera->reason() + "\n";
   }
   return result;
 }

@@ -22,9 +22,11 @@ constexpr double kMmPerInch = 25.4;
 Result<glm::dvec3> parse_place(const std::string& text, const char* option) {
   glm::dvec3 out(0.0);
   int used = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &out.x, &out.y, &out.z, &used) != 3 || used != static_cast<int>(text.size()) ||
-      !std::isfinite(out.x) || !std::isfinite(out.y) || !std::isfinite(out.z))
-    return fail(ErrorKind::kUsage, "{} \"{}\" not understood, expected X,Y,Z in mm from the middle of the panel: right, up, towards the viewer, such as 30,0,600",
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &out.x, &out.y, &out.z, &used) != 3 ||
+      used != static_cast<int>(text.size()) || !std::isfinite(out.x) || !std::isfinite(out.y) || !std::isfinite(out.z))
+    return fail(ErrorKind::kUsage,
+                "{} \"{}\" not understood, expected X,Y,Z in mm from the middle of the panel: right, up, towards the "
+                "viewer, such as 30,0,600",
                 option, text);
   return out;
 }
@@ -46,9 +48,10 @@ Result<void> add_sight(const DisplayPicture& picture, const glm::dvec3& eye, Ima
   nlohmann::json shares = nlohmann::json::array();
   for (const double share : light.shares) shares.push_back(100.0 * share);
   result.json["view_percent"] = std::move(shares);
-  result.text += fmt::format("an eye at {:g}, {:g}, {:g} mm sees view {} of {} ({:.1f} % of its light), crosstalk {:.2f} %\n", eye.x, eye.y,
-                             eye.z, light.main_view, picture.views, 100.0 * light.shares[static_cast<std::size_t>(light.main_view)],
-                             100.0 * light.crosstalk);
+  result.text +=
+      fmt::format("an eye at {:g}, {:g}, {:g} mm sees view {} of {} ({:.1f} % of its light), crosstalk {:.2f} %\n",
+                  eye.x, eye.y, eye.z, light.main_view, picture.views,
+                  100.0 * light.shares[static_cast<std::size_t>(light.main_view)], 100.0 * light.crosstalk);
   return {};
 }
 
@@ -58,14 +61,22 @@ void add_display_options(CLI::App& command, DisplayRequest& request) {
   std::string names;
   for (const SinkBackend& backend : output_sinks()) names += (names.empty() ? "" : ", ") + std::string(backend.name);
   auto* const group = command.add_option_group("Displays");
-  group->add_option("--display", request.display, "the picture that a display's panel shows: NAME[:options]; `dubsar displays` explains " + names);
-  group->add_option("--see-from", request.see_from, "X,Y,Z of an eye in mm: write what it sees of a panel with lenses, and how much crosstalk");
+  group->add_option("--display", request.display,
+                    "the picture that a display's panel shows: NAME[:options]; `dubsar displays` explains " + names);
+  group->add_option("--see-from", request.see_from,
+                    "X,Y,Z of an eye in mm: write what it sees of a panel with lenses, and how much crosstalk");
   group->add_option("--viewer", request.viewer, "X,Y,Z in mm of the point between the viewer's eyes (0,0,600)");
-  group->add_option("--eye-distance", request.eye_distance_mm, "distance of the viewer's eyes in mm")->check(CLI::Range(0.0, 100.0));
-  group->add_option("--screen-mm", request.screen_mm, "WIDTHxHEIGHT of the screen in mm; panel profiles bring their own");
-  group->add_option("--magnification", request.magnification, "1 for life size; default: as large as fits")->check(CLI::PositiveNumber);
-  group->add_option("--plugin", request.plugins, "a display from a shared library; loading it runs its code")->type_name("FILE.so");
-  group->add_option("--bridge-port", request.bridge_port, "for panel auto: port of Looking Glass Bridge on this machine (33334); 0: leave it alone")
+  group->add_option("--eye-distance", request.eye_distance_mm, "distance of the viewer's eyes in mm")
+      ->check(CLI::Range(0.0, 100.0));
+  group->add_option("--screen-mm", request.screen_mm,
+                    "WIDTHxHEIGHT of the screen in mm; panel profiles bring their own");
+  group->add_option("--magnification", request.magnification, "1 for life size; default: as large as fits")
+      ->check(CLI::PositiveNumber);
+  group->add_option("--plugin", request.plugins, "a display from a shared library; loading it runs its code")
+      ->type_name("FILE.so");
+  group
+      ->add_option("--bridge-port", request.bridge_port,
+                   "for panel auto: port of Looking Glass Bridge on this machine (33334); 0: leave it alone")
       ->check(CLI::Range(0, 65535));
   group->add_flag("--pattern", request.pattern, "numbered views instead of a surface (no IN)");
 }
@@ -76,8 +87,10 @@ Result<void> read_display_options(const DisplayRequest& request, DisplayOptions&
   screen.window_h = screen.height_px;
   screen.height_mm = screen.width_mm * screen.height_px / screen.width_px;
   if (!request.screen_mm.empty() &&
-      (std::sscanf(request.screen_mm.c_str(), "%lfx%lf", &screen.width_mm, &screen.height_mm) != 2 || !(screen.width_mm > 0) || !(screen.height_mm > 0)))
-    return fail(ErrorKind::kUsage, "--screen-mm \"{}\" not understood, expected WIDTHxHEIGHT such as 344x194", request.screen_mm);
+      (std::sscanf(request.screen_mm.c_str(), "%lfx%lf", &screen.width_mm, &screen.height_mm) != 2 ||
+       !(screen.width_mm > 0) || !(screen.height_mm > 0)))
+    return fail(ErrorKind::kUsage, "--screen-mm \"{}\" not understood, expected WIDTHxHEIGHT such as 344x194",
+                request.screen_mm);
   glm::dvec3 between = options.viewer.nominal_mm;
   if (!request.viewer.empty()) {
     DUBSAR_ASSIGN(between, parse_place(request.viewer, "--viewer"));

@@ -13,10 +13,10 @@
 namespace dubsar::app {
 
 struct DisplayRequest {
-  std::string display;   ///< NAME[:options]; empty: no display
-  std::string see_from;  ///< X,Y,Z in mm, or empty
-  std::string viewer;    ///< X,Y,Z in mm of the point between the eyes, or empty
-  std::string screen_mm; ///< WIDTHxHEIGHT, or empty
+  std::string display;    ///< NAME[:options]; empty: no display
+  std::string see_from;   ///< X,Y,Z in mm, or empty
+  std::string viewer;     ///< X,Y,Z in mm of the point between the eyes, or empty
+  std::string screen_mm;  ///< WIDTHxHEIGHT, or empty
   double eye_distance_mm = 63.0, magnification = 0.0;
   std::vector<std::string> plugins;  ///< files
   int bridge_port = kBridgePort;     ///< for panel "auto"
@@ -25,10 +25,12 @@ struct DisplayRequest {
 
 void add_display_options(CLI::App& command, DisplayRequest& request);
 
-/// Fills screen, viewer and folder of `options`; its screen has the pixels already. kUsage for texts that cannot be read.
+/// Fills screen, viewer and folder of `options`; its screen has the pixels already. kUsage for texts that cannot be
+/// read.
 Result<void> read_display_options(const DisplayRequest& request, DisplayOptions& options);
 
-/// Renders (`mesh` is not looked at for the pattern) and writes `out`, whose name gets the display's suffix when it lacks it.
+/// Renders (`mesh` is not looked at for the pattern) and writes `out`, whose name gets the display's suffix when it
+/// lacks it.
 Result<VerbResult> render_to_display(const DisplayRequest& request, const DisplayOptions& options, const TriMesh& mesh,
                                      const std::filesystem::path& out, Progress& progress);
 

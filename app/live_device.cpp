@@ -121,7 +121,9 @@ Result<std::unique_ptr<LiveDevice>> make_live_device(const DeviceChoice& choice,
     InputConfig config;
     config.clock = &clock;
     config.simulated_time = !threaded;
-    config.reach_device = [open = std::move(open)](const DeviceChoice&, const Clock&) -> Result<OpenTransport> { return open; };
+    config.reach_device = [open = std::move(open)](const DeviceChoice&, const Clock&) -> Result<OpenTransport> {
+      return open;
+    };
     DUBSAR_ASSIGN(auto source, make_input("leap:at=0/0/0", config));
     return std::make_unique<LiveHands>(std::move(source), threaded);
   }

@@ -23,8 +23,8 @@ class LiveDevice {
   virtual TimestampNs newest() const = 0;  ///< when the last sample was measured
 };
 
-/// The driver over any transport, real or replayed; `clock`, that of the times it is polled with, stamps what is read and
-/// outlives it. A Leap needs `threaded` where its pictures come in real time. kUsage: no such driver.
+/// The driver over any transport, real or replayed; `clock`, that of the times it is polled with, stamps what is read
+/// and outlives it. A Leap needs `threaded` where its pictures come in real time. kUsage: no such driver.
 Result<std::unique_ptr<LiveDevice>> make_live_device(const DeviceChoice& choice, OpenTransport open, const Clock& clock,
                                                      bool threaded);
 

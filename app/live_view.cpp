@@ -24,8 +24,7 @@ std::string bar(std::string_view name, double value, double full, std::string_vi
   return fmt::format("{:<8}[{}|{}] {:+8.3f} {}\n", name, left, right, value, unit);
 }
 
-std::string bars(const json& values, std::array<std::string_view, 3> names, double full,
-                 std::string_view unit) {
+std::string bars(const json& values, std::array<std::string_view, 3> names, double full, std::string_view unit) {
   std::string out;
   for (std::size_t i = 0; i < 3; ++i) out += bar(names[i], values.at(i).get<double>(), full, unit);
   return out;
@@ -46,8 +45,8 @@ std::string hand_line(const json& hand) {
   const auto filled = static_cast<std::size_t>(std::lround(10.0 * grab));
   return fmt::format("{:<7} #{:<5} x {:+5.0f}  y {:+5.0f}  z {:+5.0f} mm   grab [{}{}]\n",
                      hand.at("side").get<std::string>(), hand.at("id").get<std::uint32_t>(),
-                     1e3 * palm.at(0).get<double>(), 1e3 * palm.at(1).get<double>(),
-                     1e3 * palm.at(2).get<double>(), std::string(filled, '#'), std::string(10 - filled, ' '));
+                     1e3 * palm.at(0).get<double>(), 1e3 * palm.at(1).get<double>(), 1e3 * palm.at(2).get<double>(),
+                     std::string(filled, '#'), std::string(10 - filled, ' '));
 }
 
 }  // namespace
@@ -62,8 +61,7 @@ std::string live_view(const json& sample) {
   if (sample.contains("position_m")) out += bars(sample["position_m"], {"x", "y", "z"}, 1.0, "m");
   if (sample.contains("rotation_wxyz")) {
     const auto turn = turns_deg(sample["rotation_wxyz"]);
-    out += bar("yaw", turn[0], 90.0, "deg") + bar("pitch", turn[1], 90.0, "deg") +
-           bar("roll", turn[2], 90.0, "deg");
+    out += bar("yaw", turn[0], 90.0, "deg") + bar("pitch", turn[1], 90.0, "deg") + bar("roll", turn[2], 90.0, "deg");
   }
   if (sample.contains("hands")) {
     for (const json& hand : sample["hands"]) out += hand_line(hand);

@@ -64,7 +64,8 @@ Result<VerbResult> list(const Options& options) {
     if (!d.reason.empty()) result.text += fmt::format("               {}; {}\n", d.reason, d.remedy);
   }
   if (devices.empty())
-    result.text = "no SpaceMouse, headset, Leap or Looking Glass found; opentrack and vrpn trackers are reached by name\n";
+    result.text =
+        "no SpaceMouse, headset, Leap or Looking Glass found; opentrack and vrpn trackers are reached by name\n";
   return result;
 }
 
@@ -88,9 +89,8 @@ Result<VerbResult> watch(LiveDevice& device, const Clock& clock, Progress& progr
   }
   VerbResult result;
   const DriverCounts& counts = device.counts();
-  result.json = {{"samples", samples},          {"reports", counts.accepted}, {"refused", counts.refused},
-                 {"losses", counts.losses},     {"connected", device.connected()},
-                 {"reason", device.reason()}};
+  result.json = {{"samples", samples},      {"reports", counts.accepted},      {"refused", counts.refused},
+                 {"losses", counts.losses}, {"connected", device.connected()}, {"reason", device.reason()}};
   result.text = fmt::format("{} samples from {} reports, {} refused, lost {} times\n", samples, counts.accepted,
                             counts.refused, counts.losses);
   if (!ages_ms.empty()) {
@@ -146,8 +146,9 @@ Result<VerbResult> run_live(const Options& options, bool print, Progress& progre
   if (options.device.driver != "leapc") {
     DUBSAR_ASSIGN(open, reach_real_device(options.device, clock));
   } else if (options.record->parsed()) {
-    return fail(ErrorKind::kUsage, "devices: leapc is a service and sends no bytes of a device: record its hands with dubsar "
-                                   "view --input leapc --record FILE");
+    return fail(ErrorKind::kUsage,
+                "devices: leapc is a service and sends no bytes of a device: record its hands with dubsar "
+                "view --input leapc --record FILE");
   }
   std::shared_ptr<RecordingWriter> writer;
   if (options.record->parsed()) {
@@ -180,7 +181,8 @@ Result<VerbResult> run_replay(const Options& options, bool print, Progress& prog
   DeviceChoice choice = options.device;
   choice.driver = recording.driver;
   ReplaySession session(std::move(recording), clock, options.speed);
-  DUBSAR_ASSIGN(const auto device, make_live_device(choice, [&] { return session.open(); }, session.recorded_clock(), false));
+  DUBSAR_ASSIGN(const auto device, make_live_device(
+                                       choice, [&] { return session.open(); }, session.recorded_clock(), false));
   const auto over = [&] { return session.finished(); };
   SamplePrinter printer(clock);
   return watch(*device, session.recorded_clock(), progress, over, [&](const json& sample) {
@@ -199,7 +201,8 @@ Result<WireOptions> wire_options(const Options& options) {
     if (options.seed) wire.script.seed = *options.seed;
     if (options.duration) wire.script.duration_s = *options.duration;
   }
-  wire.screen_from_device = options.device.driver == "leap" ? table_placement() : Pose{usual_place_m(options.device.driver)};
+  wire.screen_from_device =
+      options.device.driver == "leap" ? table_placement() : Pose{usual_place_m(options.device.driver)};
   return wire;
 }
 
@@ -211,7 +214,8 @@ Result<VerbResult> run_simulate(const Options& options, bool print, Progress& pr
     return fail(ErrorKind::kUsage, "devices simulate: expected either a file to write, or --live or --udp HOST:PORT");
   if (!live) {
     DUBSAR_TRY(check_output_path(options.file));
-    DUBSAR_ASSIGN(const std::int64_t events, write_simulated_recording(options.device.driver, options.file, std::move(wire)));
+    DUBSAR_ASSIGN(const std::int64_t events,
+                  write_simulated_recording(options.device.driver, options.file, std::move(wire)));
     result.json = {{"events", events}, {"file", options.file}};
     result.text = fmt::format("{} events in {}\n", events, options.file);
     return result;
@@ -220,20 +224,24 @@ Result<VerbResult> run_simulate(const Options& options, bool print, Progress& pr
   if (!options.udp.empty()) {
     const std::size_t colon = options.udp.rfind(':');
     if (colon == std::string::npos || choice.driver != "opentrack")
-      return fail(ErrorKind::kUsage, "devices simulate: --udp \"{}\" found, expected HOST:PORT, for opentrack", options.udp);
+      return fail(ErrorKind::kUsage, "devices simulate: --udp \"{}\" found, expected HOST:PORT, for opentrack",
+                  options.udp);
     choice.address = options.udp.substr(0, colon);
     choice.port = std::atoi(options.udp.c_str() + colon + 1);
     if (choice.port < 1 || choice.port > 65535)
-      return fail(ErrorKind::kUsage, "devices simulate: --udp \"{}\" found, expected a port of 1 to 65535", options.udp);
+      return fail(ErrorKind::kUsage, "devices simulate: --udp \"{}\" found, expected a port of 1 to 65535",
+                  options.udp);
   }
   const SteadyClock clock;
   DUBSAR_ASSIGN(const auto person, make_wire_person(choice.driver, std::move(wire), clock));
   const auto ready = [&](int port) {
     if (!print) return;
-    fmt::print("simulated {} at {}\n", choice.driver, choice.driver == "spacenav" ? choice.socket : fmt::format("{}:{}", choice.address, port));
+    fmt::print("simulated {} at {}\n", choice.driver,
+               choice.driver == "spacenav" ? choice.socket : fmt::format("{}:{}", choice.address, port));
     std::fflush(stdout);
   };
-  DUBSAR_ASSIGN(const LiveWireResult served, serve_live_wire(*person, choice, clock, [&] { return progress.cancelled(); }, ready));
+  DUBSAR_ASSIGN(const LiveWireResult served, serve_live_wire(
+                                                 *person, choice, clock, [&] { return progress.cancelled(); }, ready));
   result.json = {{"messages", served.messages}, {"clients", served.clients}};
   result.text = fmt::format("{} messages sent\n", served.messages);
   return result;
@@ -254,13 +262,18 @@ Result<VerbResult> run(const Options& options, const CommonOptions& common, Prog
 }
 
 void add_device_options(CLI::App& command, Options& options) {
-  command.add_option("driver", options.device.driver, std::string(kDeviceDrivers) + "; probe and monitor: leapc; probe and record: webcam")->required();
+  command
+      .add_option("driver", options.device.driver,
+                  std::string(kDeviceDrivers) + "; probe and monitor: leapc; probe and record: webcam")
+      ->required();
   command.add_option("--address", options.device.address, "opentrack: to listen on; vrpn: of the server");
-  command.add_option("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given")->check(CLI::Range(0, 65535));
+  command.add_option("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given")
+      ->check(CLI::Range(0, 65535));
   command.add_flag("--allow-remote", options.device.allow_remote, "opentrack: listen to other machines too");
   command.add_option("--tracker", options.device.tracker, "vrpn: name of the tracker (the first)");
   command.add_option("--sensor", options.device.sensor, "vrpn: which of its sensors")->check(CLI::Range(0, 1000));
-  command.add_option("--invert", options.invert, "opentrack: axes that count the other way, e.g. x+yaw")->type_name("AXES");
+  command.add_option("--invert", options.invert, "opentrack: axes that count the other way, e.g. x+yaw")
+      ->type_name("AXES");
   command.add_option("--socket", options.device.socket, "spacenav: path of the daemon's socket");
   command.add_option("--library", options.device.library, "leapc: Ultraleap's libLeapC.so")->type_name("FILE");
 }
@@ -268,13 +281,18 @@ void add_device_options(CLI::App& command, Options& options) {
 void add_simulate_options(CLI::App& command, Options& options) {
   command.add_option("driver", options.device.driver, "whose bytes: " + std::string(kDeviceDrivers))->required();
   command.add_option("file", options.file, "the recording to write")->type_name("FILE");
-  command.add_option("--script", options.script, "what the person does (docs/input.md); else looks about and turns things")->type_name("FILE");
+  command
+      .add_option("--script", options.script, "what the person does (docs/input.md); else looks about and turns things")
+      ->type_name("FILE");
   command.add_option("--seed", options.seed, "another person");
-  command.add_option("--seconds", options.duration, "how long, instead of the script's time")->check(CLI::Range(0.1, 3600.0))->type_name("S");
+  command.add_option("--seconds", options.duration, "how long, instead of the script's time")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->type_name("S");
   command.add_flag("--live", options.live, "in real time on sockets: opentrack, vrpn, spacenav");
   command.add_option("--udp", options.udp, "opentrack: live, to this receiver")->type_name("HOST:PORT");
   command.add_option("--address", options.device.address, "opentrack: of the receiver; vrpn: to serve on");
-  command.add_option("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given")->check(CLI::Range(0, 65535));
+  command.add_option("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given")
+      ->check(CLI::Range(0, 65535));
   command.add_flag("--allow-remote", options.device.allow_remote, "vrpn: serve other machines too");
   command.add_option("--socket", options.device.socket, "spacenav: the socket to serve");
 }
@@ -310,7 +328,8 @@ Verb add_devices_verb(CLI::App& program) {
   for (CLI::App* const sub : {options->monitor, options->record}) seconds(sub);
   options->simulate = add("simulate", "a scripted person as bytes: a recording of any driver, or live on sockets");
   add_simulate_options(*options->simulate, *options);
-  return {command, [options](const CommonOptions& common, Progress& progress) { return run(*options, common, progress); }};
+  return {command,
+          [options](const CommonOptions& common, Progress& progress) { return run(*options, common, progress); }};
 }
 
 }  // namespace dubsar::app

@@ -57,9 +57,14 @@ Result<void> add_sinks(const Options& options, VerbResult& result) {
 void add_panels(const std::vector<PanelProfile>& profiles, VerbResult& result) {
   result.text += "panels (--display lenticular:PANEL, quilt:PANEL)\n";
   for (const PanelProfile& p : profiles) {
-    nlohmann::json entry{{"name", p.name},           {"title", p.title},         {"kind", kind_name(p.kind)},
-                         {"width_px", p.width_px},   {"height_px", p.height_px}, {"views", p.views},
-                         {"lens_figures", p.sheet.has_value() || p.optics.has_value()}, {"note", p.note}};
+    nlohmann::json entry{{"name", p.name},
+                         {"title", p.title},
+                         {"kind", kind_name(p.kind)},
+                         {"width_px", p.width_px},
+                         {"height_px", p.height_px},
+                         {"views", p.views},
+                         {"lens_figures", p.sheet.has_value() || p.optics.has_value()},
+                         {"note", p.note}};
     if (p.adjustment.pitch) entry["adjusted"]["pitch"] = *p.adjustment.pitch;
     if (p.adjustment.slope) entry["adjusted"]["slope"] = *p.adjustment.slope;
     if (p.adjustment.center) entry["adjusted"]["center"] = *p.adjustment.center;
@@ -80,11 +85,14 @@ void add_calibrations(const Options& options, const std::vector<PanelProfile>& p
   for (const FoundCalibration& found : report.found) {
     nlohmann::json entry{{"route", found.route}, {"place", found.place}};
     if (!found.serial.empty()) entry["serial"] = found.serial;
-    if (found.panel) entry["panel"] = found.panel->name;
-    else entry["problem"] = found.problem;
+    if (found.panel)
+      entry["panel"] = found.panel->name;
+    else
+      entry["problem"] = found.problem;
     result.json["calibrations"].push_back(std::move(entry));
     result.text += fmt::format("  {:<14} {}: {}\n", found.route, found.place,
-                               found.panel ? fmt::format("{} (serial {})", found.panel->name, found.serial.empty() ? "not given" : found.serial)
+                               found.panel ? fmt::format("{} (serial {})", found.panel->name,
+                                                         found.serial.empty() ? "not given" : found.serial)
                                            : found.problem);
   }
   for (const auto& [route, why] : report.missing) {
@@ -94,14 +102,22 @@ void add_calibrations(const Options& options, const std::vector<PanelProfile>& p
 }
 
 nlohmann::json edid_json(const Edid& edid) {
-  return {{"manufacturer", edid.manufacturer}, {"product", edid.product}, {"name", edid.name}, {"serial", edid.serial},
-          {"width_px", edid.width_px}, {"height_px", edid.height_px}, {"width_mm", edid.width_mm}, {"height_mm", edid.height_mm}};
+  return {{"manufacturer", edid.manufacturer},
+          {"product", edid.product},
+          {"name", edid.name},
+          {"serial", edid.serial},
+          {"width_px", edid.width_px},
+          {"height_px", edid.height_px},
+          {"width_mm", edid.width_mm},
+          {"height_mm", edid.height_mm}};
 }
 
 /// Which panel a monitor is, by its EDID.
-std::string add_identity(const Edid& edid, const Monitor& monitor, const std::vector<PanelProfile>& profiles, nlohmann::json& entry) {
+std::string add_identity(const Edid& edid, const Monitor& monitor, const std::vector<PanelProfile>& profiles,
+                         nlohmann::json& entry) {
   entry["edid"] = edid_json(edid);
-  std::string words = fmt::format("; {} {} {}", edid.manufacturer, edid.product, edid.name.empty() ? "without a name" : edid.name);
+  std::string words =
+      fmt::format("; {} {} {}", edid.manufacturer, edid.product, edid.name.empty() ? "without a name" : edid.name);
   entry["panels"] = nlohmann::json::array();
   for (const PanelProfile* panel : panels_of_edid(profiles, edid)) {
     words += (entry["panels"].empty() ? ": " : " or ") + panel->name;
@@ -109,8 +125,8 @@ std::string add_identity(const Edid& edid, const Monitor& monitor, const std::ve
   }
   const bool own_mode = monitor.width_px == edid.width_px && monitor.height_px == edid.height_px;
   if (!entry["panels"].empty() && !own_mode)
-    words += fmt::format(" (runs at {}x{}: a panel with lenses needs its own {}x{})", monitor.width_px, monitor.height_px, edid.width_px,
-                         edid.height_px);
+    words += fmt::format(" (runs at {}x{}: a panel with lenses needs its own {}x{})", monitor.width_px,
+                         monitor.height_px, edid.width_px, edid.height_px);
   return words;
 }
 
@@ -122,12 +138,14 @@ void add_monitors(const Options& options, const std::vector<PanelProfile>& profi
   for (const ConnectedEdid& each : edids) {
     nlohmann::json entry = each.edid ? edid_json(*each.edid) : nlohmann::json{{"problem", each.edid.error().message}};
     entry["connector"] = each.connector;
-    for (const PanelProfile* panel : each.edid ? panels_of_edid(profiles, *each.edid) : std::vector<const PanelProfile*>())
+    for (const PanelProfile* panel :
+         each.edid ? panels_of_edid(profiles, *each.edid) : std::vector<const PanelProfile*>())
       entry["panels"].push_back(panel->name);
     result.json["edids"].push_back(std::move(entry));
-    result.text += fmt::format("  {:<14} EDID {}\n", each.connector,
-                               each.edid ? fmt::format("{} {} {}", each.edid->manufacturer, each.edid->product, each.edid->name)
-                                         : each.edid.error().message);
+    result.text +=
+        fmt::format("  {:<14} EDID {}\n", each.connector,
+                    each.edid ? fmt::format("{} {} {}", each.edid->manufacturer, each.edid->product, each.edid->name)
+                              : each.edid.error().message);
   }
   const auto monitors = list_monitors();
   if (!monitors) {
@@ -136,14 +154,24 @@ void add_monitors(const Options& options, const std::vector<PanelProfile>& profi
     return;
   }
   for (const Monitor& m : *monitors) {
-    nlohmann::json entry{{"name", m.name}, {"x", m.x}, {"y", m.y}, {"width_px", m.width_px}, {"height_px", m.height_px},
-                         {"width_mm", m.width_mm}, {"height_mm", m.height_mm}, {"refresh_hz", m.refresh_hz}, {"primary", m.primary}};
+    nlohmann::json entry{{"name", m.name},
+                         {"x", m.x},
+                         {"y", m.y},
+                         {"width_px", m.width_px},
+                         {"height_px", m.height_px},
+                         {"width_mm", m.width_mm},
+                         {"height_mm", m.height_mm},
+                         {"refresh_hz", m.refresh_hz},
+                         {"primary", m.primary}};
     std::string words;
-    if (const Edid* const edid = edid_of(m, edids); edid != nullptr) words = add_identity(*edid, m, profiles, entry);
-    else words = "; no EDID of it was found";
+    if (const Edid* const edid = edid_of(m, edids); edid != nullptr)
+      words = add_identity(*edid, m, profiles, entry);
+    else
+      words = "; no EDID of it was found";
     result.json["monitors"].push_back(std::move(entry));
-    result.text += fmt::format("  {:<14} {}x{} pixels at {},{}, {:.0f}x{:.0f} mm, {:.0f} Hz{}{}\n", m.name, m.width_px, m.height_px, m.x,
-                               m.y, m.width_mm, m.height_mm, m.refresh_hz, m.primary ? ", primary" : "", words);
+    result.text +=
+        fmt::format("  {:<14} {}x{} pixels at {},{}, {:.0f}x{:.0f} mm, {:.0f} Hz{}{}\n", m.name, m.width_px,
+                    m.height_px, m.x, m.y, m.width_mm, m.height_mm, m.refresh_hz, m.primary ? ", primary" : "", words);
   }
 }
 
@@ -158,9 +186,11 @@ Result<VerbResult> crosstalk(const std::string& panel) {
                  {"design_distance_mm", curve.design_distance_mm},
                  {"nominal_percent", 100 * curve.nominal},
                  {"worst_sideways_percent", 100 * curve.worst_sideways}};
-  result.text = fmt::format("panel {}: light of the wrong eye at {:g} mm, eyes {:g} mm apart\n  woven for the true eyes {:.1f} %, anywhere {:g} mm to either side {:.1f} %\n",
-                            profile.name, curve.design_distance_mm, curve.eye_distance_mm, 100 * curve.nominal, curve.eye_distance_mm,
-                            100 * curve.worst_sideways);
+  result.text = fmt::format(
+      "panel {}: light of the wrong eye at {:g} mm, eyes {:g} mm apart\n  woven for the true eyes {:.1f} %, anywhere "
+      "{:g} mm to either side {:.1f} %\n",
+      profile.name, curve.design_distance_mm, curve.eye_distance_mm, 100 * curve.nominal, curve.eye_distance_mm,
+      100 * curve.worst_sideways);
   result.text += "woven for where the head was: head speed down, latency across\n  mm/s  ";
   const double first_speed = curve.lags.front().head_mm_s;
   for (const auto& lag : curve.lags)
@@ -169,13 +199,15 @@ Result<VerbResult> crosstalk(const std::string& panel) {
   for (const auto& lag : curve.lags) {
     if (lag.head_mm_s != speed) result.text += fmt::format("\n  {:<6g}", speed = lag.head_mm_s);
     result.text += fmt::format("{:>8.1f} %", 100 * lag.wrong);
-    result.json["lags"].push_back({{"head_mm_s", lag.head_mm_s}, {"latency_ms", lag.latency_ms}, {"moved_mm", lag.moved_mm},
+    result.json["lags"].push_back({{"head_mm_s", lag.head_mm_s},
+                                   {"latency_ms", lag.latency_ms},
+                                   {"moved_mm", lag.moved_mm},
                                    {"percent", 100 * lag.wrong}});
   }
   result.text += "\nwoven for the true eyes at other places: exact refraction, and the paraxial approximation\n";
   for (const auto& place : curve.places) {
-    result.text += fmt::format("  ({:g}, {:g}, {:g}) mm  {:>5.1f} %  {:>5.1f} %\n", place.head_mm.x, place.head_mm.y, place.head_mm.z,
-                               100 * place.exact, 100 * place.paraxial);
+    result.text += fmt::format("  ({:g}, {:g}, {:g}) mm  {:>5.1f} %  {:>5.1f} %\n", place.head_mm.x, place.head_mm.y,
+                               place.head_mm.z, 100 * place.exact, 100 * place.paraxial);
     result.json["places"].push_back({{"head_mm", {place.head_mm.x, place.head_mm.y, place.head_mm.z}},
                                      {"exact_percent", 100 * place.exact},
                                      {"paraxial_percent", 100 * place.paraxial}});
@@ -197,12 +229,15 @@ struct ScratchFolder {
 
 Result<VerbResult> adjust_in_window(const Options& options, Progress& progress) {
   const fs::path folder = panel_folder();
-  if (options.adjust.size() != 1) return fail(ErrorKind::kUsage, "--adjust: figures and --window found, expected one of them");
-  if (folder.empty()) return fail(ErrorKind::kCannotCreate, "cannot save the adjustment: neither XDG_CONFIG_HOME nor HOME is set");
+  if (options.adjust.size() != 1)
+    return fail(ErrorKind::kUsage, "--adjust: figures and --window found, expected one of them");
+  if (folder.empty())
+    return fail(ErrorKind::kCannotCreate, "cannot save the adjustment: neither XDG_CONFIG_HOME nor HOME is set");
   const ScratchFolder scratch;
   DUBSAR_ASSIGN(PanelTuner tuner, PanelTuner::create(folder, scratch.path, options.adjust[0], options.calibration));
   LiveOptions live;
-  live.session.display = "lenticular:panel=" + options.adjust[0] + (options.calibration.empty() ? "" : ",calibration=" + options.calibration);
+  live.session.display = "lenticular:panel=" + options.adjust[0] +
+                         (options.calibration.empty() ? "" : ",calibration=" + options.calibration);
   live.session.profile_folder = scratch.path;
   live.session.pattern = true;
   DUBSAR_ASSIGN(live.session.mapping, default_mapping());
@@ -210,26 +245,33 @@ Result<VerbResult> adjust_in_window(const Options& options, Progress& progress) 
   live.window.title = "dubsar: " + options.adjust[0];
   live.window.monitor = options.monitor;
   live.keys = [&](const std::string& key) { return tuner.key(key); };
-  log_info("one number should fill the panel: left and right move the views, up and down change the pitch, page up and page down the slope; "
-           "s saves, 0 goes back, Escape ends");
+  log_info(
+      "one number should fill the panel: left and right move the views, up and down change the pitch, page up and page "
+      "down the slope; "
+      "s saves, 0 goes back, Escape ends");
   DUBSAR_ASSIGN(const LiveResult done, run_live(TriMesh(), live, progress));
   VerbResult result;
-  result.json = {{"panel", options.adjust[0]}, {"figures", tuner.text()}, {"saved", tuner.saved()}, {"frames", done.frames}};
+  result.json = {
+      {"panel", options.adjust[0]}, {"figures", tuner.text()}, {"saved", tuner.saved()}, {"frames", done.frames}};
   result.text = fmt::format("panel {}: {}{}\n", options.adjust[0], tuner.text(),
                             tuner.saved() ? "; saved in " + tuner.file().string() : "; not saved");
   return result;
 }
 
 Result<VerbResult> adjust(const std::vector<std::string>& words) {
-  if (words.size() != 2) return fail(ErrorKind::kUsage, "--adjust: no figures found, expected PANEL pitch=..,slope=..,center=.., PANEL reset, or --window");
+  if (words.size() != 2)
+    return fail(ErrorKind::kUsage,
+                "--adjust: no figures found, expected PANEL pitch=..,slope=..,center=.., PANEL reset, or --window");
   const fs::path folder = panel_folder();
-  if (folder.empty()) return fail(ErrorKind::kCannotCreate, "cannot save the adjustment: neither XDG_CONFIG_HOME nor HOME is set");
+  if (folder.empty())
+    return fail(ErrorKind::kCannotCreate, "cannot save the adjustment: neither XDG_CONFIG_HOME nor HOME is set");
   VerbResult result;
   result.json["panel"] = words[0];
   if (words[1] == "reset") {
     DUBSAR_ASSIGN(const bool removed, remove_adjustment(folder, words[0]));
     result.json["removed"] = removed;
-    result.text = fmt::format("panel {}: {}\n", words[0], removed ? "the adjustment was removed" : "there was no adjustment");
+    result.text =
+        fmt::format("panel {}: {}\n", words[0], removed ? "the adjustment was removed" : "there was no adjustment");
     return result;
   }
   DUBSAR_ASSIGN(const PanelAdjustment adjustment, parse_adjustment(words[1]));
@@ -240,7 +282,8 @@ Result<VerbResult> adjust(const std::vector<std::string>& words) {
 }
 
 Result<VerbResult> run(const Options& options, Progress& progress) {
-  if (options.window && options.adjust.empty()) return fail(ErrorKind::kUsage, "--window found, expected --adjust PANEL too");
+  if (options.window && options.adjust.empty())
+    return fail(ErrorKind::kUsage, "--window found, expected --adjust PANEL too");
   if (options.window) return adjust_in_window(options, progress);
   if (!options.adjust.empty()) return adjust(options.adjust);
   if (!options.crosstalk.empty()) return crosstalk(options.crosstalk);
@@ -249,7 +292,8 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
   result.json["panel_folder"] = panel_folder().string();
   DUBSAR_TRY(add_sinks(options, result));
   add_panels(profiles, result);
-  result.text += fmt::format("  your own profiles and adjustments: {}\n", panel_folder().empty() ? "HOME is not set" : panel_folder().string());
+  result.text += fmt::format("  your own profiles and adjustments: {}\n",
+                             panel_folder().empty() ? "HOME is not set" : panel_folder().string());
   add_calibrations(options, profiles, result);
   add_monitors(options, profiles, result);
   return result;
@@ -259,19 +303,28 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 
 Verb add_displays_verb(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* const command = program.add_subcommand("displays", "what pictures can be shown on: displays, panels, calibrations, monitors");
-  command->add_option("--adjust", options->adjust, "save lens figures found by eye: PANEL pitch=..,slope=..,center=.. (or PANEL reset)")
+  CLI::App* const command =
+      program.add_subcommand("displays", "what pictures can be shown on: displays, panels, calibrations, monitors");
+  command
+      ->add_option("--adjust", options->adjust,
+                   "save lens figures found by eye: PANEL pitch=..,slope=..,center=.. (or PANEL reset)")
       ->expected(1, 2)
       ->type_name("PANEL FIGURES");
-  command->add_flag("--window", options->window, "with --adjust PANEL: find the figures by eye, on the panel, with keys");
+  command->add_flag("--window", options->window,
+                    "with --adjust PANEL: find the figures by eye, on the panel, with keys");
   command->add_option("--monitor", options->monitor, "with --window: part of the panel's monitor name");
-  command->add_option("--crosstalk", options->crosstalk, "how much light of the wrong eye a tracked panel lets through, against head speed and latency")
+  command
+      ->add_option("--crosstalk", options->crosstalk,
+                   "how much light of the wrong eye a tracked panel lets through, against head speed and latency")
       ->type_name("PANEL");
   command->add_option("--calibration", options->calibration, "also look at this calibration file")->type_name("FILE");
-  command->add_option("--bridge-port", options->bridge_port, "port of Looking Glass Bridge on this machine (33334); 0: leave it alone")
+  command
+      ->add_option("--bridge-port", options->bridge_port,
+                   "port of Looking Glass Bridge on this machine (33334); 0: leave it alone")
       ->check(CLI::Range(0, 65535));
   command->add_option("--edids", options->edids, "folder with the kernel's connectors")->type_name("FOLDER");
-  command->add_option("--plugin", options->plugins, "a display from a shared library; loading it runs its code")->type_name("FILE.so");
+  command->add_option("--plugin", options->plugins, "a display from a shared library; loading it runs its code")
+      ->type_name("FILE.so");
   command->footer(
       "Examples:\n"
       "  dubsar displays\n"

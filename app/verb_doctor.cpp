@@ -55,20 +55,25 @@ std::vector<Finding> check_models() {
   const std::filesystem::path folder = model_folder();
   for (const ModelFile& file : model_files()) {
     const bool here = model_is_here(folder, file);
-    findings.push_back({"network", here ? "ok" : "note", fmt::format("{} ({}{})", file.name, file.what, here ? "" : ": not here"),
+    findings.push_back({"network", here ? "ok" : "note",
+                        fmt::format("{} ({}{})", file.name, file.what, here ? "" : ": not here"),
                         here ? "" : fmt::format("{} fetches it from {}", kModelCommand, file.package)});
   }
   return findings;
 }
 
 Finding check_cameras() {
-  if (auto module = load_capture(); !module) return {"webcam", "note", module.error().message, "apt install libopencv-videoio406"};
+  if (auto module = load_capture(); !module)
+    return {"webcam", "note", module.error().message, "apt install libopencv-videoio406"};
   return {"webcam", "ok", "OpenCV's capture code can be loaded; cameras: dubsar devices list", ""};
 }
 
 Result<VerbResult> run() {
-  std::vector<Finding> findings{check_gl(), check_memory_size(), check_disk(),
-                                {"processor", "ok", fmt::format("{} threads", std::thread::hardware_concurrency()), ""}};
+  std::vector<Finding> findings{
+      check_gl(),
+      check_memory_size(),
+      check_disk(),
+      {"processor", "ok", fmt::format("{} threads", std::thread::hardware_concurrency()), ""}};
   for (Finding& finding : check_hdf5_filters()) findings.push_back(std::move(finding));
   for (Finding& finding : check_models()) findings.push_back(std::move(finding));
   findings.push_back(check_cameras());
@@ -87,7 +92,8 @@ Result<VerbResult> run() {
 }  // namespace
 
 Verb add_doctor_verb(CLI::App& program) {
-  CLI::App* const command = program.add_subcommand("doctor", "check this machine: graphics, memory, disk, file filters");
+  CLI::App* const command =
+      program.add_subcommand("doctor", "check this machine: graphics, memory, disk, file filters");
   command->footer("Examples:\n  dubsar doctor\n  dubsar doctor --json -");
   return {command, [](const CommonOptions&, Progress&) { return run(); }};
 }

@@ -51,15 +51,22 @@ Verb add_export_verb(CLI::App& program) {
   CLI::App* const command = program.add_subcommand("export", "write surfaces as PLY, STL, OBJ or GLB");
   command->add_option("IN", options->in, "EXA file (or a mesh file, to convert it)")->required();
   command->add_option("OUT", options->out, "file to write; the suffix chooses the format")->required();
-  command->add_option("--partition", options->partitions, "only these parts: names or ids, e.g. tablet")->delimiter(',');
+  command->add_option("--partition", options->partitions, "only these parts: names or ids, e.g. tablet")
+      ->delimiter(',');
   command->add_option("--units", options->write.units, "mm, or vox: coordinates of the input volume")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, MeshUnits>{{"mm", MeshUnits::kMm}, {"vox", MeshUnits::kVox}}))
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, MeshUnits>{{"mm", MeshUnits::kMm}, {"vox", MeshUnits::kVox}}))
       ->option_text("mm|vox");
   command->add_flag("--no-fill-holes", options->no_holes, "leave out the patches that close the parts");
-  command->add_flag("--simplify", options->simplify, "fewer triangles where the surface is flat (adaptive vertex clustering)");
-  command->add_option("--simplify-angle", options->simplify_angle_deg, "largest angle in degrees between old and new triangles")
+  command->add_flag("--simplify", options->simplify,
+                    "fewer triangles where the surface is flat (adaptive vertex clustering)");
+  command
+      ->add_option("--simplify-angle", options->simplify_angle_deg,
+                   "largest angle in degrees between old and new triangles")
       ->check(CLI::Range(0.0, 90.0));
-  command->add_option("--simplify-distance", options->simplify_distance_vox, "largest distance of the surfaces in grid steps")
+  command
+      ->add_option("--simplify-distance", options->simplify_distance_vox,
+                   "largest distance of the surfaces in grid steps")
       ->check(CLI::Range(0.0, 100.0));
   command->footer(
       "Examples:\n"

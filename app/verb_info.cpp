@@ -48,8 +48,9 @@ Result<VerbResult> volume_info(const Options& options) {
   text = fmt::format("volume ({}{}{})\n", info.format, info.dataset.empty() ? "" : ", ", info.dataset);
   if (!info.found_by.empty()) text += fmt::format("  found by     {}\n", info.found_by);
   text += fmt::format("  size         {} x {} x {} voxels (x, y, z)", dims.x, dims.y, dims.z);
-  text += dims == info.file_dims ? "\n"
-                                 : fmt::format(" of {} x {} x {}\n", info.file_dims.x, info.file_dims.y, info.file_dims.z);
+  text += dims == info.file_dims
+              ? "\n"
+              : fmt::format(" of {} x {} x {}\n", info.file_dims.x, info.file_dims.y, info.file_dims.z);
   text += fmt::format("  type         {}, {} endian, {}\n", info.dtype, info.byte_order, info.layout);
   for (const std::string& filter : info.filters) text += fmt::format("  filter       {}\n", filter);
   text += fmt::format("  voxel size   {}\n", length_text(info.voxel));
@@ -57,7 +58,8 @@ Result<VerbResult> volume_info(const Options& options) {
                       static_cast<double>(info.logical_bytes) / 1048576.0);
   text += fmt::format("  process      needs about {:.0f} MiB for volumes, and 200 bytes for each vertex\n",
                       static_cast<double>(process_bytes(dims)) / 1048576.0);
-  for (const VolumeCandidate& other : info.candidates) text += fmt::format("  also there   {} ({})\n", other.dataset, other.dtype);
+  for (const VolumeCandidate& other : info.candidates)
+    text += fmt::format("  also there   {} ({})\n", other.dataset, other.dtype);
   return result;
 }
 
@@ -73,28 +75,32 @@ Result<VerbResult> exa_info(const Options& options) {
   json blocks = json::object();
   for (const ExaBlockStats& block : info.stats.blocks)
     blocks[block.name] = {{"bytes", block.bytes}, {"bits_per_vertex", block.bits_per_vertex}};
-  result.json = {{"kind", "exa"},
-                 {"version", {info.major, info.minor}},
-                 {"grid", {info.dims.x, info.dims.y, info.dims.z}},
-                 {"vertices", info.vertices},
-                 {"xquads", info.quads},
-                 {"threshold", info.isovalue},
-                 {"offset_bits", info.offset_bits},
-                 {"voxel_size_mm", {info.frame.input_voxel.mm.x, info.frame.input_voxel.mm.y, info.frame.input_voxel.mm.z}},
-                 {"voxel_size_known", info.frame.input_voxel.known()},
-                 {"bytes", info.stats.bytes},
-                 {"bits_per_vertex", info.stats.bits_per_vertex},
-                 {"blocks", blocks},
-                 {"partitions", partitions_json(info.partitions)}};
+  result.json = {
+      {"kind", "exa"},
+      {"version", {info.major, info.minor}},
+      {"grid", {info.dims.x, info.dims.y, info.dims.z}},
+      {"vertices", info.vertices},
+      {"xquads", info.quads},
+      {"threshold", info.isovalue},
+      {"offset_bits", info.offset_bits},
+      {"voxel_size_mm", {info.frame.input_voxel.mm.x, info.frame.input_voxel.mm.y, info.frame.input_voxel.mm.z}},
+      {"voxel_size_known", info.frame.input_voxel.known()},
+      {"bytes", info.stats.bytes},
+      {"bits_per_vertex", info.stats.bits_per_vertex},
+      {"blocks", blocks},
+      {"partitions", partitions_json(info.partitions)}};
   result.json["provenance"] = info.provenance.empty() ? json(nullptr) : json::parse(info.provenance, nullptr, false);
   std::string& text = result.text;
   text = fmt::format("surface (EXA {}.{})\n", info.major, info.minor);
-  text += fmt::format("  grid         {} x {} x {}, threshold {:g}\n", info.dims.x, info.dims.y, info.dims.z, info.isovalue);
+  text += fmt::format("  grid         {} x {} x {}, threshold {:g}\n", info.dims.x, info.dims.y, info.dims.z,
+                      info.isovalue);
   text += fmt::format("  mesh         {} vertices, {} x-quads\n", info.vertices, info.quads);
   text += fmt::format("  voxel size   {}\n", length_text(info.frame.input_voxel));
-  text += fmt::format("  file         {} bytes, {:.2f} bits per vertex\n", info.stats.bytes, info.stats.bits_per_vertex);
+  text +=
+      fmt::format("  file         {} bytes, {:.2f} bits per vertex\n", info.stats.bytes, info.stats.bits_per_vertex);
   for (const ExaBlockStats& block : info.stats.blocks)
-    text += fmt::format("  block        {:<16}{:>12} bytes {:>8.2f} bits per vertex\n", block.name, block.bytes, block.bits_per_vertex);
+    text += fmt::format("  block        {:<16}{:>12} bytes {:>8.2f} bits per vertex\n", block.name, block.bytes,
+                        block.bits_per_vertex);
   add_partitions_text(text, info.partitions);
   return result;
 }
@@ -116,12 +122,15 @@ Result<VerbResult> describe_mesh(const Options& options, Progress& progress) {
   const glm::dvec3 size = info.max_mm - info.min_mm;
   std::string& text = result.text;
   text = fmt::format("mesh ({})\n", mesh_format_name(info.format));
-  text += fmt::format("  mesh         {} vertices, {} triangles, {} components\n", info.vertices, info.triangles, check.components);
+  text += fmt::format("  mesh         {} vertices, {} triangles, {} components\n", info.vertices, info.triangles,
+                      check.components);
   text += fmt::format("  box          {:.3f} x {:.3f} x {:.3f} {}\n", size.x, size.y, size.z,
                       info.unit.known() ? "mm" : "(unit unknown, taken as mm)");
-  text += fmt::format("  surface      {}\n", check.watertight() ? "watertight 2-manifold"
-                                             : fmt::format("{} boundary edges, {} non-manifold edges, {} non-manifold vertices",
-                                                           check.boundary_edges, check.nonmanifold_edges, check.nonmanifold_vertices));
+  text += fmt::format("  surface      {}\n",
+                      check.watertight()
+                          ? "watertight 2-manifold"
+                          : fmt::format("{} boundary edges, {} non-manifold edges, {} non-manifold vertices",
+                                        check.boundary_edges, check.nonmanifold_edges, check.nonmanifold_vertices));
   for (const std::string& attribute : info.attributes) text += fmt::format("  attribute    {}\n", attribute);
   add_partitions_text(text, info.partitions);
   return result;
@@ -140,7 +149,8 @@ Verb add_info_verb(CLI::App& program) {
   CLI::App* const command = program.add_subcommand("info", "say what is in a volume, surface or mesh file");
   command->add_option("FILE", options->in, "volume (HDF5, NRRD, TIFF, raw), EXA, PLY, STL, OBJ or GLB")->required();
   add_input_options(*command, options->input);
-  command->footer("Examples:\n  dubsar info scan.h5\n  dubsar info scan.h5:/entry/data/data\n  dubsar info tablet.exa --json -");
+  command->footer(
+      "Examples:\n  dubsar info scan.h5\n  dubsar info scan.h5:/entry/data/data\n  dubsar info tablet.exa --json -");
   return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
 }
 

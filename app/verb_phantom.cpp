@@ -35,7 +35,8 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
   const phantom::PhantomOptions& made = report.options;
   VerbResult result;
   result.text = fmt::format(
-      "{}: {}x{}x{} voxels of {:.4f} mm, seed {}, SNR {:.1f} dB\n{} wedges on the tablet, {} on the envelope, {} pores, "
+      "{}: {}x{}x{} voxels of {:.4f} mm, seed {}, SNR {:.1f} dB\n{} wedges on the tablet, {} on the envelope, {} "
+      "pores, "
       "glued over {:.1f} % of the tablet{}\n",
       options.out, made.dims.x, made.dims.y, made.dims.z, made.voxel_mm, made.seed, made.snr_db, report.tablet_wedges,
       report.envelope_wedges, report.pores, 100.0 * report.glued_fraction, report.cracked ? ", envelope cracked" : "");
@@ -64,9 +65,12 @@ Verb add_phantom_verb(CLI::App& program) {
       ->check(CLI::IsMember({"tiny", "demo", "paper"}));
   command->add_option("--size", options->size, "size NXxNYxNZ in voxels, instead of a preset");
   command->add_option("--seed", options->seed, "another number, another tablet");
-  command->add_option("--snr", options->snr_db, "signal-to-noise ratio of the raw scan in dB")->check(CLI::Range(0.0, 120.0));
+  command->add_option("--snr", options->snr_db, "signal-to-noise ratio of the raw scan in dB")
+      ->check(CLI::Range(0.0, 120.0));
   command->add_option("--truth", options->truth, "HDF5 file for labels, signed distances and the table of wedges");
-  command->footer("Examples:\n  dubsar phantom scan.h5 --preset demo\n  dubsar phantom scan.h5 --size 512x512x512 --seed 7 --truth truth.h5");
+  command->footer(
+      "Examples:\n  dubsar phantom scan.h5 --preset demo\n  dubsar phantom scan.h5 --size 512x512x512 --seed 7 --truth "
+      "truth.h5");
   return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
 }
 

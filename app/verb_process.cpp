@@ -46,7 +46,9 @@ void add_filter_options(CLI::App& command, Options& options) {
   group->add_option("--iterations", p.denoise.iterations, "passes of the filter, 0: none")->check(CLI::Range(0, 32));
   group->add_option("--sigma", p.denoise.sigma, "noise in grey values (default: estimated before each pass)")
       ->check(CLI::PositiveNumber);
-  group->add_option("--sharpen", options.sharpen, "give edges back what 2:1 took: 0 off, 1 default where the noise allows it")
+  group
+      ->add_option("--sharpen", options.sharpen,
+                   "give edges back what 2:1 took: 0 off, 1 default where the noise allows it")
       ->check(CLI::Range(0.0, 4.0));
   group->add_option("--threshold", options.threshold, "isovalue in grey values (default: estimated)");
   add_choice<ThresholdMethod>(*group, "--threshold-method", p.estimate.method,
@@ -66,18 +68,20 @@ void add_surface_options(CLI::App& command, Options& options) {
   auto* const group = command.add_option_group("Surface");
   group->add_option("--offset-bits", p.offset_bits, "bits per edge crossing, N")->check(CLI::Range(1, 16));
   group->add_flag("--open-boundary", options.open_boundary, "leave the surface open at the border of the volume");
-  group->add_option("--smooth", p.smooth.normals.iterations, "iterations of the normal filter")->check(CLI::Range(0, 1000));
+  group->add_option("--smooth", p.smooth.normals.iterations, "iterations of the normal filter")
+      ->check(CLI::Range(0, 1000));
   group->add_option("--vertex-iterations", p.smooth.vertex_iterations, "iterations of the vertex update")
       ->check(CLI::Range(0, 1000));
   add_choice<CurvatureMethod>(*group, "--curvature", p.curvature,
                               {{"fit", CurvatureMethod::kFit}, {"pairs", CurvatureMethod::kPairs}},
                               "curvature estimate: fit (default) or the paper's opposite pairs");
-  add_choice<SegmentMethod>(*group, "--segment", p.segment.method,
-                            {{"nested", SegmentMethod::kNested},
-                             {"concavity", SegmentMethod::kConcavity},
-                             {"bodies", SegmentMethod::kBodies},
-                             {"none", SegmentMethod::kNone}},
-                            "how parts are separated: nested (default), the paper's concavity threshold, closed bodies, or none");
+  add_choice<SegmentMethod>(
+      *group, "--segment", p.segment.method,
+      {{"nested", SegmentMethod::kNested},
+       {"concavity", SegmentMethod::kConcavity},
+       {"bodies", SegmentMethod::kBodies},
+       {"none", SegmentMethod::kNone}},
+      "how parts are separated: nested (default), the paper's concavity threshold, closed bodies, or none");
   group->add_option("--concavity", p.segment.concavity, "k_min per grid step below which --segment concavity cuts");
   group->add_flag("--no-fill-holes", options.no_holes, "leave the holes that segmentation cuts");
   group->add_flag("--no-ao", options.no_ao, "skip ambient occlusion");
@@ -110,7 +114,8 @@ Result<VerbResult> run(Options options, const CLI::App& command, const CommonOpt
 
 Verb add_process_verb(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* const command = program.add_subcommand("process", "turn a CT scan into separated, watertight surfaces (EXA)");
+  CLI::App* const command =
+      program.add_subcommand("process", "turn a CT scan into separated, watertight surfaces (EXA)");
   command->add_option("IN", options->in, "HDF5, NRRD, TIFF (file or folder) or raw volume")->required();
   command->add_option("-o,--output", options->out, "EXA file to write")->required();
   add_input_options(*command, options->input);

@@ -38,7 +38,8 @@ Result<void> parse_size(const std::string& text, CameraOptions& camera) {
 Result<void> parse_light(const std::string& text, Shading& shading) {
   double azimuth = 0.0, elevation = 0.0;
   if (std::sscanf(text.c_str(), "%lf,%lf", &azimuth, &elevation) != 2)
-    return fail(ErrorKind::kUsage, "--light \"{}\" not understood, expected AZIMUTH,ELEVATION in degrees such as 315,25", text);
+    return fail(ErrorKind::kUsage,
+                "--light \"{}\" not understood, expected AZIMUTH,ELEVATION in degrees such as 315,25", text);
   shading.light_azimuth_deg = azimuth;
   shading.light_elevation_deg = elevation;
   return {};
@@ -61,20 +62,27 @@ Result<void> hide_partitions(const std::vector<std::string>& names, const TriMes
 Result<void> check_display_options(const Options& options) {
   const DisplayRequest& request = options.display;
   if (request.display.empty()) {
-    if (request.pattern || !request.see_from.empty() || !request.viewer.empty() || !request.screen_mm.empty() || request.magnification > 0)
-      return fail(ErrorKind::kUsage, "--pattern, --see-from, --viewer, --screen-mm and --magnification are for displays, expected --display NAME too");
+    if (request.pattern || !request.see_from.empty() || !request.viewer.empty() || !request.screen_mm.empty() ||
+        request.magnification > 0)
+      return fail(ErrorKind::kUsage,
+                  "--pattern, --see-from, --viewer, --screen-mm and --magnification are for displays, expected "
+                  "--display NAME too");
     if (options.in.empty()) return fail(ErrorKind::kUsage, "IN is missing, expected a surface to draw");
     return {};
   }
   if (options.perspective || options.mm_per_pixel > 0 || options.transparent)
-    return fail(ErrorKind::kUsage, "--perspective, --mm-per-pixel and --transparent are not for displays: the viewer's place and --magnification say how large things are");
+    return fail(ErrorKind::kUsage,
+                "--perspective, --mm-per-pixel and --transparent are not for displays: the viewer's place and "
+                "--magnification say how large things are");
   if (options.in.empty() != request.pattern)
-    return fail(ErrorKind::kUsage, "{} found with --display, expected a surface or --pattern", request.pattern ? "both IN and --pattern" : "neither IN nor --pattern");
+    return fail(ErrorKind::kUsage, "{} found with --display, expected a surface or --pattern",
+                request.pattern ? "both IN and --pattern" : "neither IN nor --pattern");
   return {};
 }
 
 /// The display's picture in a window, until it is closed; mouse and keyboard turn it.
-Result<VerbResult> show_in_window(const Options& options, const DisplayOptions& shown, const TriMesh& mesh, Progress& progress) {
+Result<VerbResult> show_in_window(const Options& options, const DisplayOptions& shown, const TriMesh& mesh,
+                                  Progress& progress) {
   const DisplayRequest& request = options.display;
   if (!request.see_from.empty() || !request.plugins.empty())
     return fail(ErrorKind::kUsage, "--see-from and --plugin make files, expected no --window");
@@ -105,9 +113,11 @@ Result<VerbResult> show_in_window(const Options& options, const DisplayOptions& 
 
 Result<void> check_output(const Options& options) {
   if (options.window && (!options.out.empty() || options.display.display.empty()))
-    return fail(ErrorKind::kUsage, "--window found {}", options.out.empty() ? "without --display NAME" : "with -o, expected one of them");
+    return fail(ErrorKind::kUsage, "--window found {}",
+                options.out.empty() ? "without --display NAME" : "with -o, expected one of them");
   if (options.window) return {};
-  if (options.out.empty()) return fail(ErrorKind::kUsage, "-o is missing, expected a file to write, or --display NAME --window");
+  if (options.out.empty())
+    return fail(ErrorKind::kUsage, "-o is missing, expected a file to write, or --display NAME --window");
   DUBSAR_TRY(check_output_path(options.out));
   return {};
 }
@@ -171,24 +181,32 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 
 Verb add_render_verb(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* const command = program.add_subcommand("render", "make a picture of a surface, or show what a display's panel shows");
+  CLI::App* const command =
+      program.add_subcommand("render", "make a picture of a surface, or show what a display's panel shows");
   command->add_option("IN", options->in, "EXA, PLY, OBJ, STL or GLB file");
   command->add_option("-o,--output", options->out, "PNG or TIFF file to write");
   command->add_flag("--window", options->window, "show the display's picture in a window instead of writing it");
-  command->add_option("--view", options->view, "front, back, left, right, top, bottom, orbit or orbit:AZIMUTH,ELEVATION[,ROLL]");
-  command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels (1200x1200; of a display 1920x1080, or the panel's own)");
+  command->add_option("--view", options->view,
+                      "front, back, left, right, top, bottom, orbit or orbit:AZIMUTH,ELEVATION[,ROLL]");
+  command->add_option("--size", options->size,
+                      "WIDTHxHEIGHT in pixels (1200x1200; of a display 1920x1080, or the panel's own)");
   std::string styles;
   for (const std::string_view name : shading_preset_names()) styles += (styles.empty() ? "" : ", ") + std::string(name);
   command->add_option("--style", options->style, "shading: " + styles);
-  command->add_option("--partition", options->partitions, "only these parts: names or ids, e.g. tablet")->delimiter(',');
+  command->add_option("--partition", options->partitions, "only these parts: names or ids, e.g. tablet")
+      ->delimiter(',');
   command->add_option("--hide", options->hide, "not these parts")->delimiter(',');
   command->add_flag("--colour-parts,--color-parts", options->colour_parts, "each part in a colour of its own");
-  command->add_option("--light", options->light, "AZIMUTH,ELEVATION of the light in degrees; 315,20 rakes from the upper left");
-  command->add_option("--mm-per-pixel", options->mm_per_pixel, "exact scale (orthographic), instead of fitting the picture")
+  command->add_option("--light", options->light,
+                      "AZIMUTH,ELEVATION of the light in degrees; 315,20 rakes from the upper left");
+  command
+      ->add_option("--mm-per-pixel", options->mm_per_pixel,
+                   "exact scale (orthographic), instead of fitting the picture")
       ->check(CLI::PositiveNumber);
   command->add_flag("--perspective", options->perspective, "perspective instead of orthographic");
   command->add_flag("--transparent", options->transparent, "no background");
-  command->add_option("--samples", options->samples, "samples per pixel side (3; of displays 2)")->check(CLI::Range(1, 8));
+  command->add_option("--samples", options->samples, "samples per pixel side (3; of displays 2)")
+      ->check(CLI::Range(1, 8));
   add_display_options(*command, options->display);
   command->footer(
       "Examples:\n"

@@ -37,7 +37,8 @@ std::vector<std::string> split_sources(const std::vector<std::string>& texts) {
       const std::string word = text.substr(at, comma - at);
       const std::string name = word.substr(0, word.find(':'));
       const bool starts = at == 0 || word.find(':') != std::string::npos ||
-                          std::any_of(input_sources().begin(), input_sources().end(), [&](const InputBackend& b) { return b.name == name; });
+                          std::any_of(input_sources().begin(), input_sources().end(),
+                                      [&](const InputBackend& b) { return b.name == name; });
       if (starts) {
         out.push_back(word);
       } else {
@@ -51,9 +52,10 @@ std::vector<std::string> split_sources(const std::vector<std::string>& texts) {
 Result<Screen> parse_screen(const std::string& text) {
   int width = 0, height = 0;
   char cross = 0;
-  if (std::sscanf(text.c_str(), "%d%c%d", &width, &cross, &height) != 3 || cross != 'x' || width < 16 || height < 16 || width > 16384 ||
-      height > 16384)
-    return fail(ErrorKind::kUsage, "--size \"{}\" not understood, expected WIDTHxHEIGHT of 16 to 16384 pixels such as 960x540", text);
+  if (std::sscanf(text.c_str(), "%d%c%d", &width, &cross, &height) != 3 || cross != 'x' || width < 16 || height < 16 ||
+      width > 16384 || height > 16384)
+    return fail(ErrorKind::kUsage,
+                "--size \"{}\" not understood, expected WIDTHxHEIGHT of 16 to 16384 pixels such as 960x540", text);
   Screen screen;
   screen.width_px = screen.window_w = width;
   screen.height_px = screen.window_h = height;
@@ -62,7 +64,10 @@ Result<Screen> parse_screen(const std::string& text) {
 }
 
 nlohmann::json latency_json(const std::vector<double>& ms) {
-  return {{"frames", ms.size()}, {"median_ms", quantile(ms, 0.5)}, {"p95_ms", quantile(ms, 0.95)}, {"worst_ms", quantile(ms, 1.0)}};
+  return {{"frames", ms.size()},
+          {"median_ms", quantile(ms, 0.5)},
+          {"p95_ms", quantile(ms, 0.95)},
+          {"worst_ms", quantile(ms, 1.0)}};
 }
 
 nlohmann::json view_json(const ViewState& view) {
@@ -88,12 +93,14 @@ VerbResult describe(const std::string& display, const OffscreenResult& done, std
               {"frame_cpu", latency_json(done.frame_cpu_ms)}};
   out.text = fmt::format(
       "{} frames of {:.1f} s, {} pictures\n"
-      "turned by ({:.1f}, {:.1f}, {:.1f}) degrees about right, up, viewer; zoom {:.3f}; at most {:.2f} degrees a frame\n"
+      "turned by ({:.1f}, {:.1f}, {:.1f}) degrees about right, up, viewer; zoom {:.3f}; at most {:.2f} degrees a "
+      "frame\n"
       "device time to cameras{}: median {:.1f} ms, 95 % {:.1f} ms, worst {:.1f} ms over {} frames with new input\n"
       "CPU time of a frame: median {:.1f} ms, worst {:.1f} ms\n",
       done.frames, done.seconds, done.written, turn.x, turn.y, turn.z, done.view.zoom, done.largest_turn_deg,
       simulated ? " (simulated clock)" : "", quantile(done.input_age_ms, 0.5), quantile(done.input_age_ms, 0.95),
-      quantile(done.input_age_ms, 1.0), done.input_age_ms.size(), quantile(done.frame_cpu_ms, 0.5), quantile(done.frame_cpu_ms, 1.0));
+      quantile(done.input_age_ms, 1.0), done.input_age_ms.size(), quantile(done.frame_cpu_ms, 0.5),
+      quantile(done.frame_cpu_ms, 1.0));
   return out;
 }
 
@@ -139,7 +146,8 @@ std::string_view health_name(SourceHealth health) {
 }
 
 Result<VerbResult> run_window_verb(const Options& options, Progress& progress) {
-  if (options.fullscreen && options.windowed) return fail(ErrorKind::kUsage, "--fullscreen and --windowed found, expected one of them");
+  if (options.fullscreen && options.windowed)
+    return fail(ErrorKind::kUsage, "--fullscreen and --windowed found, expected one of them");
   LiveOptions live;
   DUBSAR_ASSIGN(live.session, session_options(options));
   live.session.quality = Quality::kAdaptive;
@@ -171,7 +179,8 @@ Result<VerbResult> run_window_verb(const Options& options, Progress& progress) {
   out.text += fmt::format("frames a second while things moved: {:.1f}\n", done.fps);
   for (const SourceRow& row : done.rows) {
     out.json["sources"].push_back({{"source", row.spec}, {"state", health_name(row.health)}, {"reason", row.reason}});
-    out.text += fmt::format("source {}: {}{}{}\n", row.spec, health_name(row.health), row.reason.empty() ? "" : ", ", row.reason);
+    out.text += fmt::format("source {}: {}{}{}\n", row.spec, health_name(row.health), row.reason.empty() ? "" : ", ",
+                            row.reason);
   }
   return out;
 }
@@ -189,38 +198,57 @@ Verb add_view_verb(CLI::App& program) {
   command->add_option("IN", options->in, "EXA, PLY, OBJ, STL or GLB file")->required();
   std::string sinks, sources;
   for (const SinkBackend& sink : output_sinks()) sinks += (sinks.empty() ? "" : ", ") + std::string(sink.name);
-  for (const InputBackend& source : input_sources()) sources += (sources.empty() ? "" : ", ") + std::string(source.name);
+  for (const InputBackend& source : input_sources())
+    sources += (sources.empty() ? "" : ", ") + std::string(source.name);
   command->add_option("--display", options->display, "NAME[:options]: " + sinks);
   command->add_option("--input", options->inputs, "NAME[:options],...: " + sources);
-  command->add_option("--script", options->script, "simulated people: the same as --input scripted:FILE")->type_name("FILE");
+  command->add_option("--script", options->script, "simulated people: the same as --input scripted:FILE")
+      ->type_name("FILE");
   command->add_option("--mapping", options->mapping, "which gesture does what (docs/input.md)")->type_name("FILE");
   command->add_flag("--offscreen", options->offscreen, "without a window, in simulated time");
   command->add_option("--frames", options->frames, "folder for pictures of the frames")->type_name("DIR");
   command->add_option("--every", options->every, "write only each N-th frame")->check(CLI::Range(1, 100000));
   command->add_option("--record", options->record, "write the input for --input replay:FILE")->type_name("FILE");
-  command->add_option("--size", options->size, "WIDTHxHEIGHT of the window (1280x720; offscreen 960x540, or the panel's own)");
-  command->add_option("--monitor", options->monitor, "part of the name of the monitor to use (dubsar displays lists them)");
-  command->add_flag("--fullscreen", options->fullscreen, "cover the monitor; displays that need exact pixels do so by themselves");
+  command->add_option("--size", options->size,
+                      "WIDTHxHEIGHT of the window (1280x720; offscreen 960x540, or the panel's own)");
+  command->add_option("--monitor", options->monitor,
+                      "part of the name of the monitor to use (dubsar displays lists them)");
+  command->add_flag("--fullscreen", options->fullscreen,
+                    "cover the monitor; displays that need exact pixels do so by themselves");
   command->add_flag("--windowed", options->windowed, "never cover the monitor");
-  command->add_option("--fps", options->fps, "simulated time: N frames a second however long they take (offscreen 30; a window: real time)")->check(CLI::Range(1.0, 240.0));
-  command->add_option("--seconds", options->seconds, "end after this time at the latest (offscreen 60, a window stays open)")
+  command
+      ->add_option("--fps", options->fps,
+                   "simulated time: N frames a second however long they take (offscreen 30; a window: real time)")
+      ->check(CLI::Range(1.0, 240.0));
+  command
+      ->add_option("--seconds", options->seconds,
+                   "end after this time at the latest (offscreen 60, a window stays open)")
       ->check(CLI::Range(0.1, 3600.0));
-  command->add_option("--bridge-port", options->bridge_port, "of Looking Glass Bridge, for panel auto")->check(CLI::Range(0, 65535));
-  command->add_option("--display-delay-ms", options->display_delay_ms, "time from cameras to light, for the prediction of heads")
+  command->add_option("--bridge-port", options->bridge_port, "of Looking Glass Bridge, for panel auto")
+      ->check(CLI::Range(0, 65535));
+  command
+      ->add_option("--display-delay-ms", options->display_delay_ms,
+                   "time from cameras to light, for the prediction of heads")
       ->check(CLI::Range(0.0, 100.0));
-  command->add_option("--view", options->view, "the home view: front, back, left ... or orbit:AZIMUTH,ELEVATION[,ROLL]");
+  command->add_option("--view", options->view,
+                      "the home view: front, back, left ... or orbit:AZIMUTH,ELEVATION[,ROLL]");
   command->add_option("--style", options->style, "shading, as of render");
-  command->add_option("--partition", options->partitions, "only these parts: names or ids, e.g. tablet")->delimiter(',');
-  command->add_option("--samples", options->samples, "samples per pixel side (2; offscreen 1)")->check(CLI::Range(1, 8));
+  command->add_option("--partition", options->partitions, "only these parts: names or ids, e.g. tablet")
+      ->delimiter(',');
+  command->add_option("--samples", options->samples, "samples per pixel side (2; offscreen 1)")
+      ->check(CLI::Range(1, 8));
   command->footer(
-      "In the window: F1 shows what mouse, keys and hands do and how the sources are; F2 goes to the next display, F11 covers\n"
+      "In the window: F1 shows what mouse, keys and hands do and how the sources are; F2 goes to the next display, F11 "
+      "covers\n"
       "the monitor, Escape ends.\n"
       "Examples:\n"
       "  dubsar view tablet.exa\n"
       "  dubsar view tablet.exa --display anaglyph --partition tablet\n"
       "  dubsar view tablet.exa --display lenticular:auto --input mouse,keyboard,leapc\n"
-      "  dubsar view tablet.exa --offscreen --display quilt:looking-glass-portrait --script visitor.json --frames pictures\n"
-      "  dubsar view tablet.exa --offscreen --display lenticular:spatiallabs-15.6 --script scholar.json --frames pictures --every 15");
+      "  dubsar view tablet.exa --offscreen --display quilt:looking-glass-portrait --script visitor.json --frames "
+      "pictures\n"
+      "  dubsar view tablet.exa --offscreen --display lenticular:spatiallabs-15.6 --script scholar.json --frames "
+      "pictures --every 15");
   return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// What enumeration says about one device: which driver knows it, whether it can be used, and if not, why and what to do.
+// What enumeration says about one device: which driver knows it, whether it can be used, and if not, why and what to
+// do.
 
 #include <cstdint>
 #include <string>
@@ -17,11 +18,16 @@ enum class DeviceState {
 
 constexpr std::string_view device_state_name(DeviceState state) noexcept {
   switch (state) {
-    case DeviceState::kUsable: return "usable";
-    case DeviceState::kNoPermission: return "no permission";
-    case DeviceState::kBusy: return "busy";
-    case DeviceState::kIgnored: return "ignored";
-    case DeviceState::kBroken: return "broken";
+    case DeviceState::kUsable:
+      return "usable";
+    case DeviceState::kNoPermission:
+      return "no permission";
+    case DeviceState::kBusy:
+      return "busy";
+    case DeviceState::kIgnored:
+      return "ignored";
+    case DeviceState::kBroken:
+      return "broken";
   }
   return "broken";
 }

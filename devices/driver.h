@@ -38,8 +38,8 @@ class Driver {
   static constexpr int kMaxReportsPerPoll = 1024;  ///< a flood cannot hold the caller
   static constexpr std::size_t kBufferBytes = 4096;
 
-  /// `stamps`: reports carry its time at which they were read, which matters when poll() waits; null: the time that poll()
-  /// was given. It outlives the driver.
+  /// `stamps`: reports carry its time at which they were read, which matters when poll() waits; null: the time that
+  /// poll() was given. It outlives the driver.
   Driver(OpenTransport open, Protocol protocol, const Clock* stamps = nullptr)
       : reconnector_(std::move(open)), protocol_(std::move(protocol)), stamps_(stamps) {}
 

@@ -36,7 +36,8 @@ DeviceInfo recognise(const HidNode& node) {
       info.reason = "it is an ordinary mouse or keyboard";
       info.remedy = "none needed: the system uses it";
       break;
-    case SpaceMouseId::kUnknown: break;
+    case SpaceMouseId::kUnknown:
+      break;
   }
   if (node.vendor_id == kRiftVendor && (node.product_id == kRiftDk1 || node.product_id == kRiftDk2)) {
     info.driver = "rift";
@@ -68,8 +69,8 @@ std::vector<DeviceInfo> known_hid_devices(const std::vector<HidNode>& nodes, int
     if (error == EACCES || error == EPERM) {
       info.state = DeviceState::kNoPermission;
       info.reason = fmt::format("this user may not open {}", node.path);
-      info.remedy = fmt::format("{}; the rule is: {}", kUdevRemedy,
-                                udev_rule("hidraw", node.vendor_id, node.product_id));
+      info.remedy =
+          fmt::format("{}; the rule is: {}", kUdevRemedy, udev_rule("hidraw", node.vendor_id, node.product_id));
     } else if (error == EBUSY) {
       info.state = DeviceState::kBusy;
       info.reason = "another program holds it";

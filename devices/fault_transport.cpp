@@ -59,8 +59,7 @@ class FaultTransport final : public Transport {
     DUBSAR_TRY(check_plugged());
     return below_->set_feature(report);
   }
-  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data,
-                              milliseconds timeout) override {
+  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data, milliseconds timeout) override {
     DUBSAR_TRY(check_plugged());
     return below_->control(request, data, timeout);
   }

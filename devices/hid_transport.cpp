@@ -37,7 +37,7 @@ struct NodeIdentity {
 };
 
 std::optional<NodeIdentity> identity_of(const std::string& path) {
-  struct stat status{};
+  struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return std::nullopt;
   return NodeIdentity{status.st_dev, status.st_ino};
 }
@@ -51,8 +51,8 @@ class HidTransport final : public Transport {
   Result<std::size_t> read(std::span<std::byte> report, milliseconds timeout) override {
     DUBSAR_TRY(check_present());
     const int milliseconds_left = static_cast<int>(std::clamp<std::int64_t>(timeout.count(), 0, 3'600'000));
-    const int length = ::hid_read_timeout(device_, reinterpret_cast<unsigned char*>(report.data()), report.size(),
-                                          milliseconds_left);
+    const int length =
+        ::hid_read_timeout(device_, reinterpret_cast<unsigned char*>(report.data()), report.size(), milliseconds_left);
     if (length < 0) return lose(::hid_error(device_));
     const TimestampNs now = clock_->now();
     if (length > 0) {
@@ -66,8 +66,7 @@ class HidTransport final : public Transport {
 
   Result<void> write(std::span<const std::byte> report) override {
     DUBSAR_TRY(check_present());
-    const int written =
-        ::hid_write(device_, reinterpret_cast<const unsigned char*>(report.data()), report.size());
+    const int written = ::hid_write(device_, reinterpret_cast<const unsigned char*>(report.data()), report.size());
     if (written < 0) return refused("output report");
     return {};
   }
@@ -121,10 +120,14 @@ std::vector<HidNode> list_hid_nodes() {
   hid_device_info* const all = ::hid_enumerate(0, 0);
   for (const hid_device_info* info = all; info; info = info->next) {
     if (!info->path) continue;
-    HidNode node{info->path,      info->vendor_id,
-                 info->product_id, info->usage_page,
-                 info->usage,      info->interface_number,
-                 narrow(info->manufacturer_string), narrow(info->product_string),
+    HidNode node{info->path,
+                 info->vendor_id,
+                 info->product_id,
+                 info->usage_page,
+                 info->usage,
+                 info->interface_number,
+                 narrow(info->manufacturer_string),
+                 narrow(info->product_string),
                  narrow(info->serial_number)};
     // hidapi lists a node once per usage; the first, top-level one is enough
     if (std::none_of(nodes.begin(), nodes.end(), [&](const HidNode& n) { return n.path == node.path; }))

@@ -15,8 +15,7 @@ constexpr int kMaxSilentReads = 1000;  // ends also when the clock stands still
 char lower(char c) noexcept { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 bool same_word(std::string_view a, std::string_view b) noexcept {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](char x, char y) { return lower(x) == lower(y); });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
 }
 
 std::string_view trimmed(std::string_view text) noexcept {
@@ -44,20 +43,17 @@ Result<Head> parse_head(std::string_view text) {
   Head head;
   const std::string_view first = text.substr(0, text.find(kLineEnd));
   // "HTTP/1.1 200 OK"; the reason may be missing
-  if (first.size() < 12 || !first.starts_with("HTTP/1.") || first[8] != ' ' ||
-      (first.size() > 12 && first[12] != ' '))
+  if (first.size() < 12 || !first.starts_with("HTTP/1.") || first[8] != ' ' || (first.size() > 12 && first[12] != ' '))
     return fail(ErrorKind::kBadData, "http: the answer does not start like one of HTTP/1");
   const auto status = parse_size(first.substr(9, 3), 10);
-  if (!status || *status < 100)
-    return fail(ErrorKind::kBadData, "http: the answer has no status between 100 and 999");
+  if (!status || *status < 100) return fail(ErrorKind::kBadData, "http: the answer has no status between 100 and 999");
   head.status = static_cast<int>(*status);
   for (std::size_t at = first.size() + 2; at < text.size();) {
     const std::size_t end = std::min(text.find(kLineEnd, at), text.size());
     const std::string_view line = text.substr(at, end - at);
     at = end + kLineEnd.size();
     const std::size_t colon = line.find(':');
-    if (colon == std::string_view::npos)
-      return fail(ErrorKind::kBadData, "http: a header line without a colon");
+    if (colon == std::string_view::npos) return fail(ErrorKind::kBadData, "http: a header line without a colon");
     const std::string_view name = line.substr(0, colon), value = trimmed(line.substr(colon + 1));
     if (same_word(name, "transfer-encoding")) {
       if (!same_word(value, "chunked"))
@@ -66,13 +62,11 @@ Result<Head> parse_head(std::string_view text) {
     } else if (same_word(name, "content-length")) {
       const auto length = parse_size(value, 10);
       if (!length || (head.length && *head.length != *length))
-        return fail(ErrorKind::kBadData, "http: content length found that is not one number up to {}",
-                    kMaxHttpBytes);
+        return fail(ErrorKind::kBadData, "http: content length found that is not one number up to {}", kMaxHttpBytes);
       head.length = length;
     }
   }
-  if (head.chunked && head.length)
-    return fail(ErrorKind::kBadData, "http: both a length and chunks are announced");
+  if (head.chunked && head.length) return fail(ErrorKind::kBadData, "http: both a length and chunks are announced");
   return head;
 }
 
@@ -112,8 +106,7 @@ Result<std::optional<HttpReply>> parse_http_reply(std::string_view bytes, bool e
     return fail(ErrorKind::kBadData, "http: an answer of more than {} bytes", kMaxHttpBytes);
   const auto not_whole = [&]() -> Result<std::optional<HttpReply>> {
     if (ended)
-      return fail(ErrorKind::kBadData, "http: the answer ends after {} bytes, before it is whole",
-                  bytes.size());
+      return fail(ErrorKind::kBadData, "http: the answer ends after {} bytes, before it is whole", bytes.size());
     return std::nullopt;
   };
   const std::size_t head_end = bytes.find(kHeadEnd);
@@ -124,8 +117,7 @@ Result<std::optional<HttpReply>> parse_http_reply(std::string_view bytes, bool e
   }
   DUBSAR_ASSIGN(const Head head, parse_head(bytes.substr(0, head_end)));
   const std::string_view rest = bytes.substr(head_end + kHeadEnd.size());
-  if (head.status < 200)
-    return parse_http_reply(rest, ended);  // 100 Continue and the like come before the answer
+  if (head.status < 200) return parse_http_reply(rest, ended);  // 100 Continue and the like come before the answer
   if (head.chunked) {
     DUBSAR_ASSIGN(auto body, parse_chunks(rest));
     if (!body) return not_whole();
@@ -139,8 +131,8 @@ Result<std::optional<HttpReply>> parse_http_reply(std::string_view bytes, bool e
   return HttpReply{head.status, std::string(rest)};
 }
 
-Result<HttpReply> http_put(Transport& stream, std::string_view host, std::string_view path,
-                           std::string_view json, const Clock& clock, TimestampNs time_limit) {
+Result<HttpReply> http_put(Transport& stream, std::string_view host, std::string_view path, std::string_view json,
+                           const Clock& clock, TimestampNs time_limit) {
   const TimestampNs deadline = clock.now() + time_limit;
   const std::string request = format_http_put(host, path, json);
   DUBSAR_TRY(stream.write(std::as_bytes(std::span(request.data(), request.size()))));
@@ -160,8 +152,7 @@ Result<HttpReply> http_put(Transport& stream, std::string_view host, std::string
     DUBSAR_ASSIGN(auto reply, parse_http_reply(received, ended));
     if (reply) return *std::move(reply);
   }
-  return fail(ErrorKind::kUnavailable, "http: no whole answer to {} within {} ms", path,
-              time_limit / 1'000'000);
+  return fail(ErrorKind::kUnavailable, "http: no whole answer to {} within {} ms", path, time_limit / 1'000'000);
 }
 
 }  // namespace dubsar

@@ -28,7 +28,7 @@ Result<std::optional<HttpReply>> parse_http_reply(std::string_view bytes, bool e
 
 /// Sends the request and reads until the answer is whole. kUnavailable: nothing whole within `time_limit` of
 /// the clock. Blocks. Opens nothing: the stream is fresh and is used up.
-Result<HttpReply> http_put(Transport& stream, std::string_view host, std::string_view path,
-                           std::string_view json, const Clock& clock, TimestampNs time_limit);
+Result<HttpReply> http_put(Transport& stream, std::string_view host, std::string_view path, std::string_view json,
+                           const Clock& clock, TimestampNs time_limit);
 
 }  // namespace dubsar

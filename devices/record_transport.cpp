@@ -41,8 +41,7 @@ class RecordTransport final : public Transport {
     note_loss(done);
     return done;
   }
-  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data,
-                              milliseconds timeout) override {
+  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data, milliseconds timeout) override {
     auto length = below_->control(request, data, timeout);
     if (length) writer_->add(WireEventKind::kControl, data.first(*length), request);
     note_loss(length);

@@ -76,7 +76,8 @@ std::optional<RecordedEvent> parse_event(std::string_view line) {
 /// Text of one header line without what would end the line.
 std::string one_line(std::string_view text) {
   std::string out(text.substr(0, 400));
-  std::replace_if(out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 32; }, ' ');
+  std::replace_if(
+      out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 32; }, ' ');
   return out;
 }
 
@@ -140,7 +141,8 @@ Result<Recording> parse_recording(std::string_view text) {
       recording.events.push_back(std::move(*event));
     }
   }
-  if (line_number < 2) return fail(ErrorKind::kBadData, "recording: {} whole lines found, expected a header of two", line_number);
+  if (line_number < 2)
+    return fail(ErrorKind::kBadData, "recording: {} whole lines found, expected a header of two", line_number);
   return recording;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// What a device and the host said to each other, with times, as a text file: every bug report becomes a file, every file
-// a test.
+// What a device and the host said to each other, with times, as a text file: every bug report becomes a file, every
+// file a test.
 //
 //   dubsar-recording 1
 //   driver spacemouse
@@ -51,8 +51,8 @@ struct Recording {
   bool cut_off = false;  ///< the last line had no end (the program stopped while it was written) and was left out
 };
 
-/// kBadData: not a recording, another version, a broken line (its number is told), times that fall, an event longer than
-/// kMaxReportBytes.
+/// kBadData: not a recording, another version, a broken line (its number is told), times that fall, an event longer
+/// than kMaxReportBytes.
 Result<Recording> parse_recording(std::string_view text);
 std::string format_recording(const Recording& recording);
 

@@ -45,7 +45,8 @@ class ReplayTransport final : public Transport {
   Result<std::size_t> get_feature(std::uint8_t id, std::span<std::byte> out) override {
     if (lost_) return gone();
     const RecordedEvent* const event = answer(session_->next_feature_, [id](const RecordedEvent& e) {
-      return e.kind == WireEventKind::kFeatureGot && !e.bytes.empty() && std::to_integer<std::uint8_t>(e.bytes[0]) == id;
+      return e.kind == WireEventKind::kFeatureGot && !e.bytes.empty() &&
+             std::to_integer<std::uint8_t>(e.bytes[0]) == id;
     });
     if (!event) return fail(ErrorKind::kBadData, "replay: the recording has no more answers for feature report {}", id);
     return copy(*event, out);
@@ -68,8 +69,8 @@ class ReplayTransport final : public Transport {
   bool due(TimestampNs time, milliseconds timeout) const {
     const auto ahead = [&] { return time - session_->recorded_now(); };
     if (session_->factor_ == 0.0 || ahead() <= 0) return true;
-    const double wait_ns = std::min(static_cast<double>(ahead()) / session_->factor_,
-                                    static_cast<double>(timeout.count()) * 1e6);
+    const double wait_ns =
+        std::min(static_cast<double>(ahead()) / session_->factor_, static_cast<double>(timeout.count()) * 1e6);
     if (wait_ns > 0.0) std::this_thread::sleep_for(std::chrono::nanoseconds(std::llround(wait_ns)));
     return ahead() <= 0;
   }

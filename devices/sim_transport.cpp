@@ -68,8 +68,7 @@ class SimTransport final : public Transport {
     return behaviour->on_set_feature(report);
   }
 
-  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data,
-                              milliseconds timeout) override {
+  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data, milliseconds timeout) override {
     DUBSAR_ASSIGN(const auto behaviour, present());
     if (!behaviour->on_control) return Transport::control(request, data, timeout);
     return behaviour->on_control(request, data);
@@ -92,8 +91,7 @@ class SimTransport final : public Transport {
 
 }  // namespace
 
-SimDevice::SimDevice(std::string name, bool messages)
-    : shared_(std::make_shared<Shared>(std::move(name), messages)) {}
+SimDevice::SimDevice(std::string name, bool messages) : shared_(std::make_shared<Shared>(std::move(name), messages)) {}
 
 SimDevice::~SimDevice() { unplug(); }
 

@@ -63,8 +63,8 @@ inline Result<Address> parse_address(const std::string& text, std::uint16_t port
     six.sin6_port = htons(port);
     address.length = sizeof(sockaddr_in6);
   } else {
-    return fail(ErrorKind::kUsage,
-                "socket: \"{}\" found, expected an address in numbers such as 127.0.0.1 or ::1", text);
+    return fail(ErrorKind::kUsage, "socket: \"{}\" found, expected an address in numbers such as 127.0.0.1 or ::1",
+                text);
   }
   return address;
 }

@@ -13,10 +13,7 @@ using namespace socket_detail;
 class Listener final : public StreamServer {
  public:
   Listener(Socket socket, std::string name, std::uint16_t port, std::string unlink_path)
-      : socket_(std::move(socket)),
-        name_(std::move(name)),
-        port_(port),
-        unlink_path_(std::move(unlink_path)) {}
+      : socket_(std::move(socket)), name_(std::move(name)), port_(port), unlink_path_(std::move(unlink_path)) {}
   ~Listener() override {
     if (!unlink_path_.empty()) ::unlink(unlink_path_.c_str());
   }
@@ -70,8 +67,7 @@ Result<std::unique_ptr<StreamServer>> listen_unix(const std::string& path) {
   return std::make_unique<Listener>(std::move(socket), path, std::uint16_t{0}, path);
 }
 
-Result<std::unique_ptr<StreamServer>> listen_tcp(const std::string& text, std::uint16_t port,
-                                                 bool allow_remote) {
+Result<std::unique_ptr<StreamServer>> listen_tcp(const std::string& text, std::uint16_t port, bool allow_remote) {
   DUBSAR_TRY(check_listen_address(text, allow_remote));
   DUBSAR_ASSIGN(const Address address, parse_address(text, port));
   Socket socket(::socket(address.storage.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
@@ -79,14 +75,11 @@ Result<std::unique_ptr<StreamServer>> listen_tcp(const std::string& text, std::u
   const int on = 1;
   ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   if (::bind(socket.get(), address.get(), address.length) != 0 || ::listen(socket.get(), 4) != 0)
-    return fail(ErrorKind::kUnavailable, "socket: cannot listen on {} port {}: {}", text, port,
-                std::strerror(errno));
+    return fail(ErrorKind::kUnavailable, "socket: cannot listen on {} port {}: {}", text, port, std::strerror(errno));
   Address bound;
-  if (::getsockname(socket.get(), bound.get(), &bound.length) != 0)
-    return fail_errno(errno, "socket: getsockname");
+  if (::getsockname(socket.get(), bound.get(), &bound.length) != 0) return fail_errno(errno, "socket: getsockname");
   const std::uint16_t chosen = ntohs(reinterpret_cast<const sockaddr_in&>(bound.storage).sin_port);
-  return std::make_unique<Listener>(std::move(socket), fmt::format("{} port {}", text, chosen), chosen,
-                                    std::string());
+  return std::make_unique<Listener>(std::move(socket), fmt::format("{} port {}", text, chosen), chosen, std::string());
 }
 
 Result<std::unique_ptr<Transport>> open_udp_sender(const std::string& text, std::uint16_t port) {
@@ -94,8 +87,7 @@ Result<std::unique_ptr<Transport>> open_udp_sender(const std::string& text, std:
   Socket socket(::socket(address.storage.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (socket.get() < 0) return fail_errno(errno, "udp: cannot make a socket");
   if (::connect(socket.get(), address.get(), address.length) != 0)
-    return fail(ErrorKind::kUnavailable, "udp: cannot send to {} port {}: {}", text, port,
-                std::strerror(errno));
+    return fail(ErrorKind::kUnavailable, "udp: cannot send to {} port {}: {}", text, port, std::strerror(errno));
   return std::make_unique<UdpSender>(std::move(socket), fmt::format("{} port {}", text, port));
 }
 

@@ -26,8 +26,7 @@ Result<std::unique_ptr<StreamServer>> listen_unix(const std::string& path);
 
 /// TCP on an address in numbers; port 0: any free one. kUsage: an address that other machines reach without
 /// `allow_remote`; kUnavailable: the port is taken.
-Result<std::unique_ptr<StreamServer>> listen_tcp(const std::string& address, std::uint16_t port,
-                                                 bool allow_remote);
+Result<std::unique_ptr<StreamServer>> listen_tcp(const std::string& address, std::uint16_t port, bool allow_remote);
 
 /// Every write() is one datagram to an address in numbers; nobody needs to listen. kUsage.
 Result<std::unique_ptr<Transport>> open_udp_sender(const std::string& address, std::uint16_t port);

@@ -141,7 +141,8 @@ Result<std::unique_ptr<Transport>> open_unix_stream(const std::string& path) {
   path.copy(address.sun_path, path.size());
   Socket socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (socket.get() < 0) return fail_errno(errno, "socket: cannot make a socket");
-  DUBSAR_TRY(connect_within(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address, milliseconds(0), path));
+  DUBSAR_TRY(
+      connect_within(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address, milliseconds(0), path));
   return std::make_unique<StreamTransport>(std::move(socket), path);
 }
 

@@ -30,9 +30,9 @@ struct ControlRequest {
 
 /// One open device, used by one thread at a time.
 ///
-/// Errors of every call: kUnavailable means that the device is lost (unplugged, the peer has closed, the recording is at
-/// its end), and then every later call says so too: drop the object and open it again (see Reconnector). kBadData and
-/// kIo concern this one call. What the device cannot do at all (features of a socket) is kUsage.
+/// Errors of every call: kUnavailable means that the device is lost (unplugged, the peer has closed, the recording is
+/// at its end), and then every later call says so too: drop the object and open it again (see Reconnector). kBadData
+/// and kIo concern this one call. What the device cannot do at all (features of a socket) is kUsage.
 class Transport {
  public:
   Transport() = default;
@@ -56,8 +56,7 @@ class Transport {
 
   /// USB control transfer: `data` is filled (to host) or sent (to device). Returns the bytes moved. kBadData: the
   /// device stalled the request.
-  virtual Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data,
-                                      milliseconds timeout);
+  virtual Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data, milliseconds timeout);
 };
 
 /// Opens a device again and again, for Reconnector and the registries of drivers.

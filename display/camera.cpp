@@ -118,7 +118,8 @@ Result<Camera> fit_camera(const Box& box, const CameraOptions& options) {
     const double w = std::ceil(2.0 * (half_x + border) / options.mm_per_pixel);
     const double h = std::ceil(2.0 * (half_y + border) / options.mm_per_pixel);
     if (w > kMaxPictureSide || h > kMaxPictureSide)
-      return fail(ErrorKind::kUsage, "camera: {:.4g} mm per pixel makes a picture of {:.0f} x {:.0f} pixels, expected at most {}",
+      return fail(ErrorKind::kUsage,
+                  "camera: {:.4g} mm per pixel makes a picture of {:.0f} x {:.0f} pixels, expected at most {}",
                   options.mm_per_pixel, w, h, kMaxPictureSide);
     camera.width = std::max(1, static_cast<int>(w));
     camera.height = std::max(1, static_cast<int>(h));

@@ -33,8 +33,8 @@ Result<OffscreenSurface> OffscreenSurface::create(PixelSize size) {
   GLint max_side = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_side);
   if (size.width < 1 || size.height < 1 || size.width > max_side || size.height > max_side)
-    return fail(ErrorKind::kUsage, "display: a picture of {} x {} pixels asked for, expected 1 to {} a side", size.width,
-                size.height, max_side);
+    return fail(ErrorKind::kUsage, "display: a picture of {} x {} pixels asked for, expected 1 to {} a side",
+                size.width, size.height, max_side);
   OffscreenSurface out;
   out.size_ = size;
   out.color_ = make_texture(GL_TEXTURE_2D);
@@ -48,7 +48,8 @@ Result<OffscreenSurface> OffscreenSurface::create(PixelSize size) {
 Result<Image> OffscreenSurface::read() const {
   Image image(size_.width, size_.height, 3);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glGetTextureImage(color_, 0, GL_RGB, GL_UNSIGNED_BYTE, static_cast<GLsizei>(image.pixels.size()), image.pixels.data());
+  glGetTextureImage(color_, 0, GL_RGB, GL_UNSIGNED_BYTE, static_cast<GLsizei>(image.pixels.size()),
+                    image.pixels.data());
   DUBSAR_TRY(check_gl("reading the picture back"));
   for (int y = 0; y < size_.height / 2; ++y)
     std::swap_ranges(image.at(0, y), image.at(0, y) + 3 * size_.width, image.at(0, size_.height - 1 - y));
@@ -56,8 +57,10 @@ Result<Image> OffscreenSurface::read() const {
 }
 
 Result<void> fit_into(const Surface& picture, const Surface& target) {
-  const double scale = std::min(static_cast<double>(target.width) / picture.width, static_cast<double>(target.height) / picture.height);
-  const int width = std::max(1, static_cast<int>(scale * picture.width)), height = std::max(1, static_cast<int>(scale * picture.height));
+  const double scale =
+      std::min(static_cast<double>(target.width) / picture.width, static_cast<double>(target.height) / picture.height);
+  const int width = std::max(1, static_cast<int>(scale * picture.width)),
+            height = std::max(1, static_cast<int>(scale * picture.height));
   const int x = (target.width - width) / 2, y = (target.height - height) / 2;
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_FRAMEBUFFER_SRGB);

@@ -25,8 +25,8 @@ std::vector<Candidate> candidates() {
   std::vector<Candidate> out;
   const bool platforms = epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base");
   if (platforms && epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
-    out.push_back({"the surfaceless platform", eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA,
-                                                                        EGL_DEFAULT_DISPLAY, nullptr)});
+    out.push_back({"the surfaceless platform",
+                   eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)});
   if (platforms && epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device") &&
       epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration")) {
     std::array<EGLDeviceEXT, kMaxDevices> devices{};
@@ -57,10 +57,14 @@ EGLContext try_display(EGLDisplay display, std::string& reason) {
       return EGL_NO_CONTEXT;
     }
   }
-  constexpr std::array<EGLint, 9> kAttributes{EGL_CONTEXT_MAJOR_VERSION, 4,
-                                              EGL_CONTEXT_MINOR_VERSION, 5,
-                                              EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                              EGL_CONTEXT_OPENGL_DEBUG, EGL_FALSE,
+  constexpr std::array<EGLint, 9> kAttributes{EGL_CONTEXT_MAJOR_VERSION,
+                                              4,
+                                              EGL_CONTEXT_MINOR_VERSION,
+                                              5,
+                                              EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                              EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                              EGL_CONTEXT_OPENGL_DEBUG,
+                                              EGL_FALSE,
                                               EGL_NONE};
   const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, kAttributes.data());
   if (context == EGL_NO_CONTEXT) {
@@ -78,7 +82,8 @@ EGLContext try_display(EGLDisplay display, std::string& reason) {
 
 Result<std::unique_ptr<EglContext>> EglContext::create() {
   if (!epoxy_has_egl())
-    return fail(ErrorKind::kUnavailable, "gl: libEGL.so.1 was not found; install libegl1, libegl-mesa0 and libgl1-mesa-dri");
+    return fail(ErrorKind::kUnavailable,
+                "gl: libEGL.so.1 was not found; install libegl1, libegl-mesa0 and libgl1-mesa-dri");
   std::string reasons;
   for (const Candidate& candidate : candidates()) {
     std::string reason;
@@ -92,16 +97,16 @@ Result<std::unique_ptr<EglContext>> EglContext::create() {
     log_debug("gl: {} through {}", describe_gl(), candidate.name);
     return made;
   }
-  return fail(ErrorKind::kUnavailable,
-              "gl: no offscreen OpenGL 4.5 context could be made ({}); install libegl-mesa0 and libgl1-mesa-dri, or the "
-              "driver of your graphics card",
-              reasons.empty() ? "EGL offers neither the surfaceless platform nor a device" : reasons);
+  return fail(
+      ErrorKind::kUnavailable,
+      "gl: no offscreen OpenGL 4.5 context could be made ({}); install libegl-mesa0 and libgl1-mesa-dri, or the "
+      "driver of your graphics card",
+      reasons.empty() ? "EGL offers neither the surfaceless platform nor a device" : reasons);
 }
 
 // The EGLDisplay itself is shared by the whole process and stays initialised.
 EglContext::~EglContext() {
-  if (eglGetCurrentContext() == context_)
-    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  if (eglGetCurrentContext() == context_) eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   eglDestroyContext(display_, context_);
 }
 

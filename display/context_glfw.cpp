@@ -25,7 +25,8 @@ Result<void> start_glfw() {
   if (started) return {};
   glfwInitHint(GLFW_JOYSTICK_HAT_BUTTONS, GLFW_FALSE);
   if (glfwInit() != GLFW_TRUE)
-    return fail(ErrorKind::kUnavailable, "window: no display server can be reached ({}); expected DISPLAY or WAYLAND_DISPLAY of a session",
+    return fail(ErrorKind::kUnavailable,
+                "window: no display server can be reached ({}); expected DISPLAY or WAYLAND_DISPLAY of a session",
                 last_error());
   started = true;
   return {};
@@ -74,7 +75,8 @@ GLFWmonitor* monitor_of(GLFWwindow* window) {
   for (GLFWmonitor* const handle : monitor_handles()) {
     const Monitor candidate = describe(handle);
     const int middle_x = x + width / 2 - candidate.x, middle_y = y + height / 2 - candidate.y;
-    if (middle_x >= 0 && middle_y >= 0 && middle_x < candidate.width_px && middle_y < candidate.height_px) return handle;
+    if (middle_x >= 0 && middle_y >= 0 && middle_x < candidate.width_px && middle_y < candidate.height_px)
+      return handle;
   }
   return glfwGetPrimaryMonitor();
 }
@@ -82,24 +84,41 @@ GLFWmonitor* monitor_of(GLFWwindow* window) {
 /// Keys that type nothing; what others type comes from the layout.
 std::string key_name(int key) {
   switch (key) {
-    case GLFW_KEY_LEFT: return "left";
-    case GLFW_KEY_RIGHT: return "right";
-    case GLFW_KEY_UP: return "up";
-    case GLFW_KEY_DOWN: return "down";
-    case GLFW_KEY_PAGE_UP: return "page_up";
-    case GLFW_KEY_PAGE_DOWN: return "page_down";
-    case GLFW_KEY_HOME: return "home";
-    case GLFW_KEY_END: return "end";
-    case GLFW_KEY_INSERT: return "insert";
-    case GLFW_KEY_DELETE: return "delete";
-    case GLFW_KEY_BACKSPACE: return "backspace";
-    case GLFW_KEY_TAB: return "tab";
+    case GLFW_KEY_LEFT:
+      return "left";
+    case GLFW_KEY_RIGHT:
+      return "right";
+    case GLFW_KEY_UP:
+      return "up";
+    case GLFW_KEY_DOWN:
+      return "down";
+    case GLFW_KEY_PAGE_UP:
+      return "page_up";
+    case GLFW_KEY_PAGE_DOWN:
+      return "page_down";
+    case GLFW_KEY_HOME:
+      return "home";
+    case GLFW_KEY_END:
+      return "end";
+    case GLFW_KEY_INSERT:
+      return "insert";
+    case GLFW_KEY_DELETE:
+      return "delete";
+    case GLFW_KEY_BACKSPACE:
+      return "backspace";
+    case GLFW_KEY_TAB:
+      return "tab";
     case GLFW_KEY_ENTER:
-    case GLFW_KEY_KP_ENTER: return "enter";
-    case GLFW_KEY_ESCAPE: return "escape";
-    case GLFW_KEY_SPACE: return "space";
-    case GLFW_KEY_PAUSE: return "pause";
-    default: break;
+    case GLFW_KEY_KP_ENTER:
+      return "enter";
+    case GLFW_KEY_ESCAPE:
+      return "escape";
+    case GLFW_KEY_SPACE:
+      return "space";
+    case GLFW_KEY_PAUSE:
+      return "pause";
+    default:
+      break;
   }
   return key >= GLFW_KEY_F1 && key <= GLFW_KEY_F25 ? fmt::format("f{}", key - GLFW_KEY_F1 + 1) : std::string();
 }
@@ -166,7 +185,8 @@ struct GlfwWindow::Callbacks {
                      : button == GLFW_MOUSE_BUTTON_MIDDLE ? 1
                      : button == GLFW_MOUSE_BUTTON_RIGHT  ? 2
                                                           : -1;
-    if (ours >= 0) of(handle).push({.kind = WindowEvent::Kind::kButton, .button = ours, .down = action == GLFW_PRESS}, modifiers);
+    if (ours >= 0)
+      of(handle).push({.kind = WindowEvent::Kind::kButton, .button = ours, .down = action == GLFW_PRESS}, modifiers);
   }
   static void wheel(GLFWwindow* handle, double, double y) {
     if (y != 0.0) of(handle).push({.kind = WindowEvent::Kind::kWheel, .y = y}, held_modifiers(handle));
@@ -179,7 +199,8 @@ struct GlfwWindow::Callbacks {
     x *= width > 0 ? static_cast<double>(pixels_x) / width : 1.0;
     y *= height > 0 ? static_cast<double>(pixels_y) / height : 1.0;
     if (window.cursor_)
-      window.push({.kind = WindowEvent::Kind::kMotion, .x = x - (*window.cursor_)[0], .y = y - (*window.cursor_)[1]}, held_modifiers(handle));
+      window.push({.kind = WindowEvent::Kind::kMotion, .x = x - (*window.cursor_)[0], .y = y - (*window.cursor_)[1]},
+                  held_modifiers(handle));
     window.cursor_ = std::array<double, 2>{x, y};
   }
   static void enter(GLFWwindow* handle, int) {
@@ -189,7 +210,9 @@ struct GlfwWindow::Callbacks {
   }
   static void moved(GLFWwindow* handle, int, int) { of(handle).place_changed_ = true; }
   static int held_modifiers(GLFWwindow* handle) {
-    const auto held = [&](int left, int right) { return glfwGetKey(handle, left) == GLFW_PRESS || glfwGetKey(handle, right) == GLFW_PRESS; };
+    const auto held = [&](int left, int right) {
+      return glfwGetKey(handle, left) == GLFW_PRESS || glfwGetKey(handle, right) == GLFW_PRESS;
+    };
     return (held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT) ? GLFW_MOD_SHIFT : 0) |
            (held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL) ? GLFW_MOD_CONTROL : 0) |
            (held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT) ? GLFW_MOD_ALT : 0);
@@ -228,21 +251,23 @@ Result<std::unique_ptr<GlfwWindow>> GlfwWindow::create(const WindowOptions& opti
   DUBSAR_TRY(start_glfw());
   DUBSAR_CHECK(options.x.has_value() == options.y.has_value());
   if (options.width < 1 || options.height < 1 || options.width > 16384 || options.height > 16384)
-    return fail(ErrorKind::kUsage, "window: {} x {} pixels asked for, expected 1 to 16384 a side", options.width, options.height);
+    return fail(ErrorKind::kUsage, "window: {} x {} pixels asked for, expected 1 to 16384 a side", options.width,
+                options.height);
   DUBSAR_ASSIGN(GLFWmonitor* const monitor, choose_monitor(options.monitor));
   const Monitor place = describe(monitor);
   set_hints(options);
   const int width = options.fullscreen ? place.width_px : options.width;
   const int height = options.fullscreen ? place.height_px : options.height;
   static_cast<void>(glfwGetError(nullptr));
-  GLFWwindow* const handle = glfwCreateWindow(width, height, options.title.c_str(), options.fullscreen ? monitor : nullptr, nullptr);
+  GLFWwindow* const handle =
+      glfwCreateWindow(width, height, options.title.c_str(), options.fullscreen ? monitor : nullptr, nullptr);
   if (handle == nullptr)
-    return fail(ErrorKind::kUnavailable, "window: the driver has no {}OpenGL 4.5 window ({})", options.stereo ? "quad-buffered (stereo) " : "",
-                last_error());
+    return fail(ErrorKind::kUnavailable, "window: the driver has no {}OpenGL 4.5 window ({})",
+                options.stereo ? "quad-buffered (stereo) " : "", last_error());
   std::unique_ptr<GlfwWindow> window(new GlfwWindow(handle));
   Callbacks::install(*window);
-  window->windowed_ = {place.x + std::max(0, (place.width_px - options.width) / 2), place.y + std::max(0, (place.height_px - options.height) / 2),
-                       options.width, options.height};
+  window->windowed_ = {place.x + std::max(0, (place.width_px - options.width) / 2),
+                       place.y + std::max(0, (place.height_px - options.height) / 2), options.width, options.height};
   if (!options.fullscreen && (options.x || !options.monitor.empty()))
     glfwSetWindowPos(handle, place.x + options.x.value_or(0), place.y + options.y.value_or(0));
   glfwMakeContextCurrent(handle);
@@ -251,7 +276,8 @@ Result<std::unique_ptr<GlfwWindow>> GlfwWindow::create(const WindowOptions& opti
   glGetBooleanv(GL_STEREO, &two);
   window->stereo_ = two == GL_TRUE;
   if (options.stereo && !window->stereo_)
-    return fail(ErrorKind::kUnavailable, "window: the driver promised a quad-buffered (stereo) window and gave one with a single buffer");
+    return fail(ErrorKind::kUnavailable,
+                "window: the driver promised a quad-buffered (stereo) window and gave one with a single buffer");
   log_gl_messages();
   glfwSwapInterval(1);
   if (options.visible) glfwShowWindow(handle);
@@ -333,7 +359,8 @@ Result<void> GlfwWindow::set_fullscreen(const std::string& monitor) {
 
 void GlfwWindow::set_windowed() {
   if (!fullscreen()) return;
-  glfwSetWindowMonitor(as_window(window_), nullptr, windowed_.x, windowed_.y, windowed_.width, windowed_.height, GLFW_DONT_CARE);
+  glfwSetWindowMonitor(as_window(window_), nullptr, windowed_.x, windowed_.y, windowed_.width, windowed_.height,
+                       GLFW_DONT_CARE);
   place_changed_ = true;
 }
 

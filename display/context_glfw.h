@@ -17,9 +17,9 @@ namespace dubsar {
 
 struct Monitor {
   std::string name;
-  int x = 0, y = 0;                         ///< place on the desktop
-  int width_px = 0, height_px = 0;          ///< of its current mode
-  double width_mm = 0.0, height_mm = 0.0;   ///< 0 when the monitor does not say
+  int x = 0, y = 0;                        ///< place on the desktop
+  int width_px = 0, height_px = 0;         ///< of its current mode
+  double width_mm = 0.0, height_mm = 0.0;  ///< 0 when the monitor does not say
   double refresh_hz = 0.0;
   bool primary = false;
 };
@@ -29,25 +29,27 @@ Result<std::vector<Monitor>> list_monitors();
 
 struct WindowOptions {
   std::string title = "dubsar";
-  int width = 1280, height = 720;         ///< physical pixels of the drawing area
-  std::optional<int> x, y;                ///< upper left corner of the drawing area, from the monitor's; both or none
-  std::string monitor;                    ///< part of a monitor's name; empty: the primary one
-  bool fullscreen = false;                ///< the monitor's size and mode; width, height, x and y are not used
-  bool decorated = true;                  ///< false: no title bar and borders, as panels with lenses need it
+  int width = 1280, height = 720;  ///< physical pixels of the drawing area
+  std::optional<int> x, y;         ///< upper left corner of the drawing area, from the monitor's; both or none
+  std::string monitor;             ///< part of a monitor's name; empty: the primary one
+  bool fullscreen = false;         ///< the monitor's size and mode; width, height, x and y are not used
+  bool decorated = true;           ///< false: no title bar and borders, as panels with lenses need it
   bool visible = true;
-  bool stereo = false;                    ///< a quad-buffered visual, or the call fails
+  bool stereo = false;  ///< a quad-buffered visual, or the call fails
 };
 
 /// Something that happened in a window, as plain data.
 struct WindowEvent {
   enum class Kind { kMotion, kButton, kWheel, kKey };
-  TimestampNs time = 0;    ///< steady clock, when the window heard of it
+  TimestampNs time = 0;  ///< steady clock, when the window heard of it
   Kind kind = Kind::kMotion;
-  double x = 0.0, y = 0.0; ///< kMotion: pixels to the right and down; kWheel: notches in y, positive away from the user
-  int button = 0;          ///< kButton: 0 left, 1 middle, 2 right
-  bool down = false;       ///< kButton, kKey; a key that is held repeats
+  double x = 0.0,
+         y = 0.0;     ///< kMotion: pixels to the right and down; kWheel: notches in y, positive away from the user
+  int button = 0;     ///< kButton: 0 left, 1 middle, 2 right
+  bool down = false;  ///< kButton, kKey; a key that is held repeats
   bool shift = false, control = false, alt = false;
-  /// kKey: "left", "page_up", "escape", "f5", "space" ... for keys that type nothing, and what the keyboard's layout types
+  /// kKey: "left", "page_up", "escape", "f5", "space" ... for keys that type nothing, and what the keyboard's layout
+  /// types
   /// ("a", "+", "?"), which only goes down.
   std::string key{};
 };
@@ -65,8 +67,8 @@ class GlfwWindow final : public GlContext {
   /// True when the context has a left and a right back buffer.
   bool stereo() const noexcept { return stereo_; }
   PixelSize size() const;
-  /// The monitor that holds the middle of the window, and where the window is on it, as a sink wants to know. Sizes that
-  /// the monitor does not tell come from `fallback`.
+  /// The monitor that holds the middle of the window, and where the window is on it, as a sink wants to know. Sizes
+  /// that the monitor does not tell come from `fallback`.
   Screen screen(const Screen& fallback = {}) const;
 
   void present();  ///< swaps buffers
@@ -105,7 +107,7 @@ class GlfwWindow final : public GlContext {
   std::vector<WindowEvent> events_;
   std::optional<std::array<double, 2>> cursor_;  // none: the next place is no movement
   bool place_changed_ = false;
-  Place windowed_;                               // where it was before it covered the monitor
+  Place windowed_;  // where it was before it covered the monitor
 };
 
 }  // namespace dubsar

@@ -15,8 +15,7 @@ EyePair eyes_at(const glm::dvec3& head, double eye_distance_mm) {
 }
 
 std::vector<glm::dvec3> usual_places(double z) {
-  return {{0, 0, z},      {63, 0, z},  {0, 0, 0.75 * z}, {0, 0, 1.33 * z},
-          {120, 60, 500}, {200, 0, z}, {300, 100, z}};
+  return {{0, 0, z}, {63, 0, z}, {0, 0, 0.75 * z}, {0, 0, 1.33 * z}, {120, 60, 500}, {200, 0, z}, {300, 100, z}};
 }
 
 }  // namespace

@@ -83,8 +83,7 @@ Result<Edid> parse_edid(std::span<const std::byte> bytes) {
   edid.year = 1990 + byte_at(bytes, 17);
   edid.width_mm = 10 * byte_at(bytes, 21);
   edid.height_mm = 10 * byte_at(bytes, 22);
-  if (edid.width_mm == 0 || edid.height_mm == 0)
-    edid.width_mm = edid.height_mm = 0;  // one alone is an aspect ratio
+  if (edid.width_mm == 0 || edid.height_mm == 0) edid.width_mm = edid.height_mm = 0;  // one alone is an aspect ratio
   for (const std::size_t at : kDescriptors) {
     const bool is_timing = byte_at(bytes, at) != 0 || byte_at(bytes, at + 1) != 0;
     if (is_timing && edid.width_px == 0) read_timing(bytes, at, edid);
@@ -98,8 +97,7 @@ Result<Edid> parse_edid(std::span<const std::byte> bytes) {
 std::vector<ConnectedEdid> read_connected_edids(const fs::path& folder) {
   std::vector<fs::path> connectors;
   std::error_code ignored;
-  for (const auto& entry :
-       fs::directory_iterator(folder, fs::directory_options::skip_permission_denied, ignored)) {
+  for (const auto& entry : fs::directory_iterator(folder, fs::directory_options::skip_permission_denied, ignored)) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with("card") && name.find('-') != std::string::npos) connectors.push_back(entry.path());
   }

@@ -69,7 +69,8 @@ GlTexture make_texture(GLenum target) {
   return GlTexture(name);
 }
 
-Result<GlProgram> make_program(std::string_view vertex_name, std::string_view fragment_name, std::string_view vertex_lines) {
+Result<GlProgram> make_program(std::string_view vertex_name, std::string_view fragment_name,
+                               std::string_view vertex_lines) {
   const Shader vertex(GL_VERTEX_SHADER), fragment(GL_FRAGMENT_SHADER);
   DUBSAR_TRY(compile(vertex, vertex_name, vertex_lines));
   DUBSAR_TRY(compile(fragment, fragment_name));
@@ -95,8 +96,7 @@ Result<void> check_gl(std::string_view what) {
   if (error == GL_NO_ERROR) return {};
   while (glGetError() != GL_NO_ERROR) {
   }
-  if (error == GL_OUT_OF_MEMORY)
-    return fail(ErrorKind::kTryAgain, "gl: out of graphics memory while {}", what);
+  if (error == GL_OUT_OF_MEMORY) return fail(ErrorKind::kTryAgain, "gl: out of graphics memory while {}", what);
   return fail(ErrorKind::kInternal, "gl: error 0x{:04x} while {}", error, what);
 }
 

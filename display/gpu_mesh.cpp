@@ -57,7 +57,9 @@ bool may_be_seen(const glm::dmat4& clip_from_world, const Box& box) {
   return true;
 }
 
-std::int16_t snorm16(double value) { return static_cast<std::int16_t>(std::lround(std::clamp(value, -1.0, 1.0) * 32767)); }
+std::int16_t snorm16(double value) {
+  return static_cast<std::int16_t>(std::lround(std::clamp(value, -1.0, 1.0) * 32767));
+}
 
 std::uint16_t unorm16(double value) {
   return static_cast<std::uint16_t>(std::lround(std::clamp(value, 0.0, 1.0) * 65535));
@@ -127,8 +129,8 @@ Result<PackedMesh> pack_mesh(const TriMesh& mesh) {
   };
   for (const Triangle& t : mesh.triangles) {
     if (t[0] >= count || t[1] >= count || t[2] >= count)
-      return fail(ErrorKind::kBadData, "render: a triangle names vertex {}, but there are {}", std::max({t[0], t[1], t[2]}),
-                  count);
+      return fail(ErrorKind::kBadData, "render: a triangle names vertex {}, but there are {}",
+                  std::max({t[0], t[1], t[2]}), count);
     if (usable(t)) ++out.first_triangle[partition_of(t) + 1];
   }
   for (int p = 0; p < kMaxPartitions; ++p) out.first_triangle[p + 1] += out.first_triangle[p];
@@ -144,7 +146,8 @@ Result<PackedMesh> pack_mesh(const TriMesh& mesh) {
   out.box_mm = out.box_of(0xff);
 
   const bool compute_normals = mesh.normals.empty();
-  const std::vector<glm::vec3> computed = compute_normals ? vertex_normals_mm(mesh, out.triangles) : std::vector<glm::vec3>();
+  const std::vector<glm::vec3> computed =
+      compute_normals ? vertex_normals_mm(mesh, out.triangles) : std::vector<glm::vec3>();
   const glm::dvec3 inverse_size = 1.0 / glm::max(out.box_mm.size(), glm::dvec3(std::numeric_limits<double>::min()));
   out.vertices.resize(count);
   parallel_for(static_cast<std::int64_t>(count), kGrain, [&](std::int64_t i) {
@@ -164,7 +167,8 @@ Result<PackedMesh> pack_mesh(const TriMesh& mesh) {
 }
 
 Result<GpuMesh> GpuMesh::upload(const PackedMesh& mesh) {
-  if (mesh.triangles.empty()) return fail(ErrorKind::kBadData, "render: the mesh has no triangles, so there is nothing to draw");
+  if (mesh.triangles.empty())
+    return fail(ErrorKind::kBadData, "render: the mesh has no triangles, so there is nothing to draw");
   GpuMesh out;
   out.box_mm_ = mesh.box_mm;
   out.first_triangle_ = mesh.first_triangle;
@@ -202,7 +206,9 @@ std::vector<std::pair<std::int64_t, std::int64_t>> GpuMesh::visible_ranges(std::
   std::vector<std::pair<std::int64_t, std::int64_t>> out;
   for (const TriangleChunk& chunk : chunks_) {
     if ((partitions >> chunk.partition & 1) == 0) continue;
-    if (std::none_of(clips.begin(), clips.end(), [&](const glm::dmat4& clip) { return may_be_seen(clip, chunk.box_mm); })) continue;
+    if (std::none_of(clips.begin(), clips.end(),
+                     [&](const glm::dmat4& clip) { return may_be_seen(clip, chunk.box_mm); }))
+      continue;
     if (!out.empty() && out.back().first + out.back().second == chunk.first)
       out.back().second += chunk.count;
     else

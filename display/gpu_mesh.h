@@ -35,8 +35,8 @@ struct TriangleChunk {
 struct PackedMesh {
   Box box_mm;  ///< of all finite vertices that triangles use
   std::vector<PackedVertex> vertices;
-  std::vector<std::array<std::uint8_t, 4>> colors;   ///< only when the mesh has foreign colours
-  std::vector<Triangle> triangles;                   ///< sorted by partition, order kept within one
+  std::vector<std::array<std::uint8_t, 4>> colors;                ///< only when the mesh has foreign colours
+  std::vector<Triangle> triangles;                                ///< sorted by partition, order kept within one
   std::array<std::int64_t, kMaxPartitions + 1> first_triangle{};  ///< of each partition
   std::array<Box, kMaxPartitions> partition_box_mm{};
   std::vector<TriangleChunk> chunks;  ///< all triangles, or none (display/lod.h makes them)
@@ -68,7 +68,8 @@ class GpuMesh {
   /// Index ranges (first triangle, count) to draw for the partitions whose bit is set, neighbours joined.
   std::vector<std::pair<std::int64_t, std::int64_t>> ranges(std::uint8_t partitions) const;
   /// The same without the chunks that none of the views can see.
-  std::vector<std::pair<std::int64_t, std::int64_t>> visible_ranges(std::uint8_t partitions, std::span<const View> views) const;
+  std::vector<std::pair<std::int64_t, std::int64_t>> visible_ranges(std::uint8_t partitions,
+                                                                    std::span<const View> views) const;
 
  private:
   GlVertexArray vertex_array_;

@@ -31,11 +31,21 @@ LensSheet lens_sheet(const LookingGlassFigures& figures) {
 int cell_index(CellPattern pattern, int cells, std::int64_t x, std::int64_t y) noexcept {
   std::int64_t index = 0;
   switch (pattern) {
-    case CellPattern::kUniform: index = 0; break;
-    case CellPattern::kCheckerboard: index = (x + y) % 2; break;
-    case CellPattern::kColumns: index = x % 2; break;
-    case CellPattern::kShiftedRows: index = (y + 2 * (x % 2)) % 4; break;
-    case CellPattern::kRows: index = y % 2; break;
+    case CellPattern::kUniform:
+      index = 0;
+      break;
+    case CellPattern::kCheckerboard:
+      index = (x + y) % 2;
+      break;
+    case CellPattern::kColumns:
+      index = x % 2;
+      break;
+    case CellPattern::kShiftedRows:
+      index = (y + 2 * (x % 2)) % 4;
+      break;
+    case CellPattern::kRows:
+      index = y % 2;
+      break;
   }
   return static_cast<int>(index % cells);
 }
@@ -93,7 +103,8 @@ glm::dvec2 paraxial_shift_mm(const LensOptics& lens, const glm::dvec3& eye_mm, c
 }
 
 double eye_phase(const LensOptics& lens, const glm::dvec3& eye_mm, const glm::dvec2& point_mm, bool exact) noexcept {
-  const glm::dvec2 shift = exact ? refraction_shift_mm(lens, eye_mm, point_mm) : paraxial_shift_mm(lens, eye_mm, point_mm);
+  const glm::dvec2 shift =
+      exact ? refraction_shift_mm(lens, eye_mm, point_mm) : paraxial_shift_mm(lens, eye_mm, point_mm);
   const glm::dvec2 at_lens = point_mm + shift;
   const double phase = (at_lens.x + lens.tan_slant * at_lens.y) / lens.pitch_mm - lens.phase0;
   return phase - std::round(phase);

@@ -82,13 +82,13 @@ std::vector<ViewWeight> view_weights(double position, int views, ViewFilter filt
 /// A sheet in the terms of optics, for eyes at known places (millimetres, panel frame: centre, x right, y up, z to
 /// the viewer).
 struct LensOptics {
-  double pitch_mm = 0.0;           ///< horizontal distance of lenses
-  double tan_slant = 0.0;          ///< lens axis dx/dy; phase = (x + tan_slant * y) / pitch - phase0
-  double reduced_gap_mm = 0.0;     ///< lens height over the subpixels divided by its refractive index, d/n
+  double pitch_mm = 0.0;        ///< horizontal distance of lenses
+  double tan_slant = 0.0;       ///< lens axis dx/dy; phase = (x + tan_slant * y) / pitch - phase0
+  double reduced_gap_mm = 0.0;  ///< lens height over the subpixels divided by its refractive index, d/n
   double refractive_index = 1.5;
-  double phase0 = 0.0;             ///< periods
-  double spot_sigma_periods = 0.0; ///< blur of the lens focus on the subpixel plane (aberration), Gaussian
-  glm::dvec2 pixel_mm{0.0, 0.0};   ///< pixel pitch
+  double phase0 = 0.0;              ///< periods
+  double spot_sigma_periods = 0.0;  ///< blur of the lens focus on the subpixel plane (aberration), Gaussian
+  glm::dvec2 pixel_mm{0.0, 0.0};    ///< pixel pitch
 };
 
 /// Where the light that leaves a subpixel at (x, y) towards the eye crosses the lens surface: exact refraction.

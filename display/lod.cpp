@@ -14,7 +14,9 @@ constexpr int kChunksPerAxis = 8;
 constexpr double kUnit = 65535.0;  // PackedVertex positions
 constexpr std::int64_t kGrain = 1 << 16;
 
-glm::dvec3 unit_position(const PackedVertex& v) { return glm::dvec3(v.position[0], v.position[1], v.position[2]) / kUnit; }
+glm::dvec3 unit_position(const PackedVertex& v) {
+  return glm::dvec3(v.position[0], v.position[1], v.position[2]) / kUnit;
+}
 
 int main_direction(const glm::dvec3& normal) {
   const glm::dvec3 size = glm::abs(normal);
@@ -35,11 +37,14 @@ std::vector<Keyed> keyed_vertices(const PackedMesh& mesh, double cell_mm) {
     const PackedVertex& v = mesh.vertices[static_cast<std::size_t>(i)];
     const glm::dvec3 cell = glm::floor(unit_position(v) * mesh.box_mm.size() / cell_mm);
     std::uint64_t key = static_cast<std::uint64_t>(cell.x);
-    key = key + static_cast<std::uint64_t>(cells.x) * (static_cast<std::uint64_t>(cell.y) + static_cast<std::uint64_t>(cells.y) * static_cast<std::uint64_t>(cell.z));
+    key = key + static_cast<std::uint64_t>(cells.x) *
+                    (static_cast<std::uint64_t>(cell.y) +
+                     static_cast<std::uint64_t>(cells.y) * static_cast<std::uint64_t>(cell.z));
     key = key * 6 + static_cast<std::uint64_t>(main_direction(decode_octahedral(v.normal)));
     out[static_cast<std::size_t>(i)] = {key << 3 | (v.attributes >> 13), static_cast<std::uint32_t>(i)};
   });
-  std::sort(out.begin(), out.end(), [](const Keyed& a, const Keyed& b) { return a.key != b.key ? a.key < b.key : a.vertex < b.vertex; });
+  std::sort(out.begin(), out.end(),
+            [](const Keyed& a, const Keyed& b) { return a.key != b.key ? a.key < b.key : a.vertex < b.vertex; });
   return out;
 }
 
@@ -57,7 +62,8 @@ PackedVertex merged(const PackedMesh& mesh, const Keyed* first, const Keyed* las
     if (glm::dot(d, d) < nearest) nearest = glm::dot(d, d), representative = k->vertex;
   }
   PackedVertex out = mesh.vertices[representative];
-  for (int a = 0; a < 3; ++a) out.position[static_cast<std::size_t>(a)] = static_cast<std::uint16_t>(std::lround(position[a] * kUnit));
+  for (int a = 0; a < 3; ++a)
+    out.position[static_cast<std::size_t>(a)] = static_cast<std::uint16_t>(std::lround(position[a] * kUnit));
   if (glm::dot(normal, normal) > 0) out.normal = encode_octahedral(glm::normalize(normal));
   return out;
 }
@@ -105,7 +111,8 @@ void sort_into_chunks(PackedMesh& mesh) {
   const auto block_of = [&](const Triangle& t) {
     int block = 0;
     for (std::size_t a = 3; a-- > 0;) {
-      const unsigned sum = 0u + mesh.vertices[t[0]].position[a] + mesh.vertices[t[1]].position[a] + mesh.vertices[t[2]].position[a];
+      const unsigned sum =
+          0u + mesh.vertices[t[0]].position[a] + mesh.vertices[t[1]].position[a] + mesh.vertices[t[2]].position[a];
       block = block * kChunksPerAxis + static_cast<int>(sum * kChunksPerAxis / (3u * 65536u));
     }
     return block;
@@ -115,7 +122,8 @@ void sort_into_chunks(PackedMesh& mesh) {
   for (int p = 0; p < kMaxPartitions; ++p) {
     const std::int64_t begin = mesh.first_triangle[p], end = mesh.first_triangle[p + 1];
     std::vector<std::int64_t> next(kBlocks + 1, 0);
-    for (std::int64_t t = begin; t < end; ++t) ++next[static_cast<std::size_t>(block_of(mesh.triangles[static_cast<std::size_t>(t)]) + 1)];
+    for (std::int64_t t = begin; t < end; ++t)
+      ++next[static_cast<std::size_t>(block_of(mesh.triangles[static_cast<std::size_t>(t)]) + 1)];
     for (std::size_t b = 0; b < kBlocks; ++b) next[b + 1] += next[b];
     const std::vector<std::int64_t> first = next;
     for (std::int64_t t = begin; t < end; ++t) {

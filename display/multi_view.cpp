@@ -27,7 +27,9 @@ std::vector<int> key_views(int count, int keys) {
   if (keys <= 0 || keys >= count) keys = count;
   std::vector<int> out(static_cast<std::size_t>(keys));
   for (int i = 0; i < keys; ++i)
-    out[static_cast<std::size_t>(i)] = keys == 1 ? count / 2 : static_cast<int>((2 * static_cast<std::int64_t>(i) * (count - 1) + keys - 1) / (2 * (keys - 1)));
+    out[static_cast<std::size_t>(i)] =
+        keys == 1 ? count / 2
+                  : static_cast<int>((2 * static_cast<std::int64_t>(i) * (count - 1) + keys - 1) / (2 * (keys - 1)));
   return out;
 }
 
@@ -48,7 +50,8 @@ Result<MultiView> MultiView::create(PackedMesh mesh, const MultiViewOptions& opt
   for (double grid = kFinestGrid; options.cell_px > 0 && grid >= kCoarsestGrid && longest > 0; grid *= kGridStep) {
     PackedMesh coarser = cluster_vertices(mesh, longest / grid);
     if (coarser.triangles.empty()) break;
-    if (static_cast<double>(coarser.triangles.size()) > kWorthwhile * static_cast<double>(mesh.triangles.size())) continue;
+    if (static_cast<double>(coarser.triangles.size()) > kWorthwhile * static_cast<double>(mesh.triangles.size()))
+      continue;
     DUBSAR_TRY(add(coarser, longest / grid));
     mesh = std::move(coarser);
   }
@@ -91,18 +94,21 @@ int MultiView::keys_for(std::span<const View> views, const ViewArray& target, co
   return std::min(all, std::max(options_.key_views, 1 + static_cast<int>(std::ceil(apart / kMostShiftPx))));
 }
 
-Result<int> MultiView::refine(const Shading& shading, std::span<const View> views, int samples, ViewArray& target, int most) {
+Result<int> MultiView::refine(const Shading& shading, std::span<const View> views, int samples, ViewArray& target,
+                              int most) {
   const int count = static_cast<int>(views.size());
   DUBSAR_CHECK(coarse_ <= count && count <= target.layers());
   for (; most > 0 && coarse_ > 0; --most, --coarse_) {
     const int done = count - coarse_;  // 0, 1, 2, 3 are the middle, one to the right, one to the left, ...
     const int index = (count - 1) / 2 + (done % 2 == 1 ? (done + 1) / 2 : -(done / 2));
-    DUBSAR_TRY(renderer_.render(levels_[0].mesh, shading, views.subspan(static_cast<std::size_t>(index), 1), samples, target, index));
+    DUBSAR_TRY(renderer_.render(levels_[0].mesh, shading, views.subspan(static_cast<std::size_t>(index), 1), samples,
+                                target, index));
   }
   return coarse_;
 }
 
-Result<void> MultiView::draw_exact(const Shading& shading, std::span<const View> views, int samples, ViewArray& target) {
+Result<void> MultiView::draw_exact(const Shading& shading, std::span<const View> views, int samples,
+                                   ViewArray& target) {
   coarse_ = 0;
   return renderer_.render(levels_[0].mesh, shading, views, samples, target);
 }

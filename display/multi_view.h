@@ -12,20 +12,22 @@ namespace dubsar {
 
 struct MultiViewOptions {
   double cell_px = 1.5;  ///< moving: details smaller than this are merged; 0: all triangles
-  /// Moving: of more views in one row, about this many are drawn and the others reprojected from them (display/reproject.h);
-  /// more where the object would shift by more than 16 pixels from one drawn view to the next. 0: all are drawn.
+  /// Moving: of more views in one row, about this many are drawn and the others reprojected from them
+  /// (display/reproject.h); more where the object would shift by more than 16 pixels from one drawn view to the next.
+  /// 0: all are drawn.
   int key_views = 8;
 };
 
 /// A mesh in several levels of detail in graphics memory. One GL thread.
 class MultiView {
  public:
-  /// Levels of the mesh: as it is, then by grids of 1/1024 to 1/64 of its longest side in steps of 1.41, each only when it has less
-  /// than 3/4 of the triangles of the one before. Takes the triangles' order from `mesh`. Errors of GpuMesh::upload.
+  /// Levels of the mesh: as it is, then by grids of 1/1024 to 1/64 of its longest side in steps of 1.41, each only when
+  /// it has less than 3/4 of the triangles of the one before. Takes the triangles' order from `mesh`. Errors of
+  /// GpuMesh::upload.
   static Result<MultiView> create(PackedMesh mesh, const MultiViewOptions& options = {});
 
-  /// All layers of `target`, for views that changed: one sample a pixel, level of detail by the views' size, all key views
-  /// in one draw, the others reprojected. world of `views` is the mesh's.
+  /// All layers of `target`, for views that changed: one sample a pixel, level of detail by the views' size, all key
+  /// views in one draw, the others reprojected. world of `views` is the mesh's.
   Result<void> draw_moving(const Shading& shading, std::span<const View> views, ViewArray& target);
 
   /// Makes up to `most` layers exact, from the middle of the views outwards, as Renderer::render() with all triangles.

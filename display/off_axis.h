@@ -31,14 +31,14 @@ Result<void> check_screen(const Screen& screen);
 
 /// Who looks, and how deep the picture shall be.
 struct Viewer {
-  glm::dvec3 left_mm{-31.5, 0.0, 600.0};   ///< eyes in the screen frame
+  glm::dvec3 left_mm{-31.5, 0.0, 600.0};  ///< eyes in the screen frame
   glm::dvec3 right_mm{31.5, 0.0, 600.0};
   glm::dvec3 nominal_mm{0.0, 0.0, 600.0};  ///< where the viewer is expected; centre for parallax_factor
-  double ipd_factor = 1.0;       ///< scales the eyes' distance about their centre; 0: both see the same
-  double parallax_factor = 1.0;  ///< 1: full look-around, 0: the head's place does not matter
-  double depth_factor = 1.0;     ///< scales the scene's depth about the panel
-  double zero_parallax_mm = 0.0; ///< world z that appears in the panel's plane
-  double front_mm = 300.0;       ///< world z of the nearest and the farthest thing to show
+  double ipd_factor = 1.0;                 ///< scales the eyes' distance about their centre; 0: both see the same
+  double parallax_factor = 1.0;            ///< 1: full look-around, 0: the head's place does not matter
+  double depth_factor = 1.0;               ///< scales the scene's depth about the panel
+  double zero_parallax_mm = 0.0;           ///< world z that appears in the panel's plane
+  double front_mm = 300.0;                 ///< world z of the nearest and the farthest thing to show
   double back_mm = -600.0;
 
   glm::dvec3 centre_mm() const { return 0.5 * (left_mm + right_mm); }
@@ -57,7 +57,8 @@ constexpr double kNearestEyeMm = 20.0;  ///< an eye nearer to the window's plane
 /// in the window's plane is seen at the same place by every eye.
 View off_axis_view(const WindowRect& window, const glm::dvec3& eye_mm, double near_mm, double far_mm);
 
-/// The same for a viewer's scene: clip planes around front_mm and back_mm, depth factor and zero-parallax plane applied.
+/// The same for a viewer's scene: clip planes around front_mm and back_mm, depth factor and zero-parallax plane
+/// applied.
 View viewer_view(const WindowRect& window, const Viewer& viewer, const glm::dvec3& eye_mm);
 
 /// Eyes of an N-view panel: camera i looks from angle cone * ((i + 1/2) / count - 1/2) off the normal at `distance_mm`,

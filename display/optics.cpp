@@ -95,7 +95,8 @@ Crosstalk wrong_eye_light(const TrackedPanel& panel, const EyePair& woven_for, c
   };
   const std::int64_t rows = std::max(0, (panel.height_px - step_px / 2 + step_px - 1) / step_px);
   const Light sum = parallel_reduce(rows, 4, Light{}, of_rows, add);
-  return {sum.total[0] > 0.0 ? sum.wrong[0] / sum.total[0] : 0.0, sum.total[1] > 0.0 ? sum.wrong[1] / sum.total[1] : 0.0};
+  return {sum.total[0] > 0.0 ? sum.wrong[0] / sum.total[0] : 0.0,
+          sum.total[1] > 0.0 ? sum.wrong[1] / sum.total[1] : 0.0};
 }
 
 std::vector<double> view_shares(const LensSheet& sheet, const TrackedPanel& panel, int views, const glm::dvec3& eye_mm,
@@ -142,8 +143,7 @@ TrackedPanel optics_of_sheet(const LensSheet& sheet, double width_mm, double vie
   // Half a period of shift at half the cone, by exact refraction.
   const double tangent = std::tan(0.5 * view_cone_rad);
   const double n = refractive_index;
-  lens.reduced_gap_mm =
-      0.5 * pattern_pitch_mm * std::sqrt(1.0 + (1.0 - 1.0 / (n * n)) * tangent * tangent) / tangent;
+  lens.reduced_gap_mm = 0.5 * pattern_pitch_mm * std::sqrt(1.0 + (1.0 - 1.0 / (n * n)) * tangent * tangent) / tangent;
   lens.pitch_mm = pattern_pitch_mm * (1.0 - lens.reduced_gap_mm / distance_mm);
   lens.tan_slant = sheet.tilt * sheet.width_px / sheet.height_px;
   const double phase_at_centre = 0.5 * (1.0 + sheet.tilt) * sheet.periods - sheet.centre;

@@ -37,7 +37,7 @@ struct SinkTraits {
   bool tracked = false;        ///< follows the viewer's eyes
   bool exact_pixels = false;   ///< works only unscaled, at a known place on the panel
   bool stereo_visual = false;  ///< needs a quad-buffered context
-  std::string file_suffix{};    ///< what files of this picture carry before the extension, e.g. "_qs8x6a0.75"
+  std::string file_suffix{};   ///< what files of this picture carry before the extension, e.g. "_qs8x6a0.75"
 };
 
 /// Where compose() draws: a GL frame buffer (0: the window) of SinkTraits::output pixels. Bytes are sRGB-coded.

@@ -18,7 +18,9 @@ constexpr std::string_view kSuffix = ".adjust.json";
 constexpr double kFarCentre = 1e4, kSteepest = 1e4, kLeastSlope = 1e-3;
 constexpr std::int64_t kMaxBytes = 1 << 16;
 
-fs::path file_of(const fs::path& folder, std::string_view panel) { return folder / (std::string(panel) + std::string(kSuffix)); }
+fs::path file_of(const fs::path& folder, std::string_view panel) {
+  return folder / (std::string(panel) + std::string(kSuffix));
+}
 
 Result<void> check_figure(std::string_view panel, const char* name, double value, double low, double high) {
   if (std::isfinite(value) && value >= low && value <= high) return {};
@@ -35,17 +37,24 @@ Result<PanelAdjustment> parse_adjustment(std::string_view text) {
     rest.remove_prefix(std::min(rest.size(), word.size() + 1));
     const auto equals = word.find('=');
     const std::string_view key = word.substr(0, equals);
-    std::optional<double>* const place = key == "pitch" ? &out.pitch : key == "slope" ? &out.slope : key == "center" ? &out.center : nullptr;
+    std::optional<double>* const place = key == "pitch"    ? &out.pitch
+                                         : key == "slope"  ? &out.slope
+                                         : key == "center" ? &out.center
+                                                           : nullptr;
     double value = 0.0;
     const char* const end = word.data() + word.size();
     const bool read = equals != std::string_view::npos && place != nullptr && !*place &&
                       std::from_chars(word.data() + equals + 1, end, value).ptr == end && equals + 1 < word.size();
     if (!read)
-      return fail(ErrorKind::kUsage, "adjustment \"{}\" not understood at \"{}\", expected pitch=NUMBER,slope=NUMBER,center=NUMBER, each once at most",
+      return fail(ErrorKind::kUsage,
+                  "adjustment \"{}\" not understood at \"{}\", expected pitch=NUMBER,slope=NUMBER,center=NUMBER, each "
+                  "once at most",
                   text, word);
     *place = value;
   }
-  if (out.empty()) return fail(ErrorKind::kUsage, "adjustment \"{}\" is empty, expected pitch=NUMBER,slope=NUMBER,center=NUMBER", text);
+  if (out.empty())
+    return fail(ErrorKind::kUsage, "adjustment \"{}\" is empty, expected pitch=NUMBER,slope=NUMBER,center=NUMBER",
+                text);
   return out;
 }
 
@@ -54,11 +63,14 @@ Result<void> apply_adjustment(const PanelAdjustment& adjustment, PanelProfile& p
   const auto& [pitch, slope, center] = adjustment;
   const bool tracked = profile.optics.has_value();
   if (!tracked && !profile.sheet)
-    return fail(ErrorKind::kConfig, "adjustment of panel {}: it has no lens figures, give the unit's calibration file", profile.name);
+    return fail(ErrorKind::kConfig, "adjustment of panel {}: it has no lens figures, give the unit's calibration file",
+                profile.name);
   if (pitch) DUBSAR_TRY(check_figure(profile.name, "pitch", *pitch, tracked ? 0.01 : 1.0, tracked ? 10.0 : 1e4));
-  if (slope) DUBSAR_TRY(check_figure(profile.name, "slope", *slope, tracked ? -10.0 : -kSteepest, tracked ? 10.0 : kSteepest));
+  if (slope)
+    DUBSAR_TRY(check_figure(profile.name, "slope", *slope, tracked ? -10.0 : -kSteepest, tracked ? 10.0 : kSteepest));
   if (slope && !tracked && std::abs(*slope) < kLeastSlope)
-    return fail(ErrorKind::kConfig, "adjustment of panel {}: slope is {}, expected a number other than 0", profile.name, *slope);
+    return fail(ErrorKind::kConfig, "adjustment of panel {}: slope is {}, expected a number other than 0", profile.name,
+                *slope);
   if (center) DUBSAR_TRY(check_figure(profile.name, "center", *center, -kFarCentre, kFarCentre));
   double& pitch_of = tracked ? profile.optics->pitch_mm : profile.sheet->pitch;
   double& slope_of = tracked ? profile.optics->tan_slant : profile.sheet->slope;
@@ -79,7 +91,8 @@ Result<void> load_adjustment(const fs::path& file, std::span<PanelProfile> profi
   JsonFields fields(*object, fmt::format("adjustment {}", file.string()));
   const std::string panel = fields.text("adjusts", nullptr);
   PanelAdjustment adjustment;
-  for (const auto& [name, place] : {std::pair{"pitch", &adjustment.pitch}, {"slope", &adjustment.slope}, {"center", &adjustment.center}})
+  for (const auto& [name, place] :
+       {std::pair{"pitch", &adjustment.pitch}, {"slope", &adjustment.slope}, {"center", &adjustment.center}})
     if (fields.has(name)) *place = fields.number(name, -kFarCentre, kFarCentre);
   DUBSAR_TRY(fields.finish());
   for (PanelProfile& profile : profiles)

@@ -12,8 +12,8 @@ namespace dubsar {
 /// "pitch=52.6,slope=-7.21,center=0.43", any of the three. kUsage for anything else.
 Result<PanelAdjustment> parse_adjustment(std::string_view text);
 
-/// Replaces the profile's figures and remembers the adjustment in it. kConfig, by name and range, when a figure cannot be
-/// or when the panel has no lens figures to adjust. An empty adjustment changes nothing.
+/// Replaces the profile's figures and remembers the adjustment in it. kConfig, by name and range, when a figure cannot
+/// be or when the panel has no lens figures to adjust. An empty adjustment changes nothing.
 Result<void> apply_adjustment(const PanelAdjustment& adjustment, PanelProfile& profile);
 
 bool is_adjustment_file(const std::filesystem::path& file);

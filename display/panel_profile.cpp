@@ -34,7 +34,8 @@ Result<json> parse_config(std::string_view text, std::string_view source) {
 void read_sheet(JsonFields& fields, LookingGlassFigures& sheet, const char* invert_name, const char* pattern_name) {
   sheet.pitch = fields.number("pitch", 1.0, 1e4);
   sheet.slope = fields.number("slope", -1e4, 1e4);
-  if (std::abs(sheet.slope) < 1e-3) fields.complain(fmt::format("slope is {}, expected a number other than 0", sheet.slope));
+  if (std::abs(sheet.slope) < 1e-3)
+    fields.complain(fmt::format("slope is {}, expected a number other than 0", sheet.slope));
   const double zero = 0.0;
   sheet.center = fields.number("center", -1e4, 1e4, &zero);
   sheet.invert_views = fields.flag(invert_name, true);
@@ -70,8 +71,10 @@ void read_edids(const json& list, JsonFields& fields, PanelProfile& profile) {
   constexpr int kMostProduct = 65535;
   for (const json& entry : list) {
     if (!list.is_array() || !entry.is_array() || entry.size() != 2 || !entry[0].is_string() ||
-        entry[0].get_ref<const std::string&>().size() != 3 || !entry[1].is_number_integer() || entry[1] < 0 || entry[1] > kMostProduct)
-      return fields.complain(fmt::format("edid: expected pairs of a manufacturer's three letters and a product of 0 to {}", kMostProduct));
+        entry[0].get_ref<const std::string&>().size() != 3 || !entry[1].is_number_integer() || entry[1] < 0 ||
+        entry[1] > kMostProduct)
+      return fields.complain(
+          fmt::format("edid: expected pairs of a manufacturer's three letters and a product of 0 to {}", kMostProduct));
     profile.edids.push_back({entry[0].get<std::string>(), entry[1].get<int>()});
   }
 }
@@ -85,10 +88,14 @@ Result<PanelProfile> parse_profile(const json& object, std::string_view source) 
   profile.title = fields.text("title", profile.name.c_str());
   profile.note = fields.text("note", "");
   const std::string kind = fields.text("kind", nullptr);
-  if (kind == "looking_glass") profile.kind = PanelKind::kLookingGlass;
-  else if (kind == "lens_sheet") profile.kind = PanelKind::kLensSheet;
-  else if (kind == "tracked") profile.kind = PanelKind::kTracked;
-  else fields.complain(fmt::format("kind is \"{}\", expected looking_glass, lens_sheet or tracked", kind));
+  if (kind == "looking_glass")
+    profile.kind = PanelKind::kLookingGlass;
+  else if (kind == "lens_sheet")
+    profile.kind = PanelKind::kLensSheet;
+  else if (kind == "tracked")
+    profile.kind = PanelKind::kTracked;
+  else
+    fields.complain(fmt::format("kind is \"{}\", expected looking_glass, lens_sheet or tracked", kind));
   profile.width_px = fields.integer("width_px", 1, kMaxSide);
   profile.height_px = fields.integer("height_px", 1, kMaxSide);
   const double no_dpi = 0.0;
@@ -117,8 +124,8 @@ Result<PanelProfile> parse_profile(const json& object, std::string_view source) 
   if (profile.kind == PanelKind::kLookingGlass) {
     const json quilt_object = object.value("quilt", json::object());
     JsonFields quilt(quilt_object, fmt::format("panel profile {} in {}: quilt", profile.name, source));
-    profile.quilt = {quilt.integer("columns", 1, 32), quilt.integer("rows", 1, 32), quilt.integer("width_px", 1, kMaxSide),
-                     quilt.integer("height_px", 1, kMaxSide)};
+    profile.quilt = {quilt.integer("columns", 1, 32), quilt.integer("rows", 1, 32),
+                     quilt.integer("width_px", 1, kMaxSide), quilt.integer("height_px", 1, kMaxSide)};
     DUBSAR_TRY(quilt.finish());
     profile.views = profile.quilt.views();
   } else if (profile.kind == PanelKind::kLensSheet) {
@@ -166,9 +173,12 @@ Result<std::vector<PanelProfile>> load_profiles(const fs::path& user_folder) {
   const auto add = [&](std::string_view text, std::string_view source) -> Result<void> {
     DUBSAR_ASSIGN(auto more, parse_profiles(text, source));
     for (PanelProfile& profile : more) {
-      const auto same = std::find_if(profiles.begin(), profiles.end(), [&](const auto& p) { return p.name == profile.name; });
-      if (same == profiles.end()) profiles.push_back(std::move(profile));
-      else *same = std::move(profile);
+      const auto same =
+          std::find_if(profiles.begin(), profiles.end(), [&](const auto& p) { return p.name == profile.name; });
+      if (same == profiles.end())
+        profiles.push_back(std::move(profile));
+      else
+        *same = std::move(profile);
     }
     return {};
   };
@@ -243,7 +253,8 @@ Result<PanelProfile> calibrated_profile(std::span<const PanelProfile> profiles, 
         profile.height_px == figures.screen_height)
       best = &profile;
   if (best == nullptr)
-    return fail(ErrorKind::kConfig, "calibration {}: serial \"{}\" and {}x{} pixels match no known model; name one with panel=",
+    return fail(ErrorKind::kConfig,
+                "calibration {}: serial \"{}\" and {}x{} pixels match no known model; name one with panel=",
                 calibration.source, calibration.serial, figures.screen_width, figures.screen_height);
   PanelProfile profile = *best;
   profile.sheet = figures;
@@ -256,7 +267,8 @@ Result<PanelProfile> calibrated_profile(std::span<const PanelProfile> profiles, 
   return profile;
 }
 
-Result<PanelProfile> choose_panel(const fs::path& user_folder, std::string_view name, const fs::path& calibration_file) {
+Result<PanelProfile> choose_panel(const fs::path& user_folder, std::string_view name,
+                                  const fs::path& calibration_file) {
   DUBSAR_ASSIGN(const auto profiles, load_profiles(user_folder));
   if (calibration_file.empty()) return find_profile(profiles, name);
   DUBSAR_ASSIGN(const std::string text, read_text_file(calibration_file, kMaxCalibrationBytes));
@@ -270,7 +282,9 @@ std::vector<const PanelProfile*> panels_of_edid(std::span<const PanelProfile> pr
     return p.width_px == edid.width_px && p.height_px == edid.height_px &&
            (edid.width_mm == 0 || std::abs(p.width_mm / edid.width_mm - 1.0) < kWidthTolerance);
   };
-  const auto starts_like = [](const std::string& text, const std::string& prefix) { return !prefix.empty() && text.starts_with(prefix); };
+  const auto starts_like = [](const std::string& text, const std::string& prefix) {
+    return !prefix.empty() && text.starts_with(prefix);
+  };
   std::vector<const PanelProfile*> by_serial, by_size, tracked;
   for (const PanelProfile& p : profiles) {
     if (!same_size(p)) continue;
@@ -278,8 +292,9 @@ std::vector<const PanelProfile*> panels_of_edid(std::span<const PanelProfile> pr
       by_size.push_back(&p);
       if (starts_like(edid.name, p.serial_prefix) || starts_like(edid.serial, p.serial_prefix)) by_serial.push_back(&p);
     }
-    if (std::any_of(p.edids.begin(), p.edids.end(),
-                    [&](const EdidId& id) { return id.manufacturer == edid.manufacturer && id.product == edid.product; }))
+    if (std::any_of(p.edids.begin(), p.edids.end(), [&](const EdidId& id) {
+          return id.manufacturer == edid.manufacturer && id.product == edid.product;
+        }))
       tracked.push_back(&p);
   }
   if (!by_serial.empty()) return by_serial;
@@ -312,8 +327,10 @@ Result<TrackedPanel> panel_optics(const PanelProfile& profile, double distance_m
     return panel;
   }
   if (!profile.sheet)
-    return fail(ErrorKind::kConfig, "panel profile {}: no lens figures are known, give the unit's calibration file", profile.name);
-  return optics_of_sheet(lens_sheet(*profile.sheet), profile.width_mm, profile.view_cone_deg * std::numbers::pi / 180.0, distance_mm);
+    return fail(ErrorKind::kConfig, "panel profile {}: no lens figures are known, give the unit's calibration file",
+                profile.name);
+  return optics_of_sheet(lens_sheet(*profile.sheet), profile.width_mm, profile.view_cone_deg * std::numbers::pi / 180.0,
+                         distance_mm);
 }
 
 }  // namespace dubsar

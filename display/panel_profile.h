@@ -30,8 +30,8 @@ struct QuiltLayout {
   int tile_height() const noexcept { return height_px / rows; }
 };
 
-/// Lens figures that the user found by eye with the numbered-view pattern; they replace those of the profile and those of
-/// a calibration. Of a tracked panel pitch is in mm, slope is the tangent of the slant and center its phase.
+/// Lens figures that the user found by eye with the numbered-view pattern; they replace those of the profile and those
+/// of a calibration. Of a tracked panel pitch is in mm, slope is the tangent of the slant and center its phase.
 struct PanelAdjustment {
   std::optional<double> pitch, slope, center;
   bool empty() const noexcept { return !pitch && !slope && !center; }
@@ -48,17 +48,17 @@ struct PanelProfile {
   PanelKind kind = PanelKind::kLookingGlass;
   int width_px = 0, height_px = 0;
   double width_mm = 0.0;
-  double aspect = 0.0;              ///< of the picture, width / height
-  double view_cone_deg = 0.0;       ///< horizontal cone over all views (not of kTracked)
+  double aspect = 0.0;         ///< of the picture, width / height
+  double view_cone_deg = 0.0;  ///< horizontal cone over all views (not of kTracked)
   int views = 2;
-  QuiltLayout quilt;                ///< Looking Glass only
+  QuiltLayout quilt;  ///< Looking Glass only
   std::string serial_prefix, hardware;
-  std::vector<EdidId> edids;        ///< tracked panels; a Looking Glass is known by its monitor name
+  std::vector<EdidId> edids;                 ///< tracked panels; a Looking Glass is known by its monitor name
   std::optional<LookingGlassFigures> sheet;  ///< none: no lens figures are known, quilts only
   std::optional<LensOptics> optics;          ///< kTracked
   double design_distance_mm = 0.0, ipd_mm = 63.0;
-  std::string calibration;          ///< where the lens figures come from; empty: those of the profile
-  PanelAdjustment adjustment;       ///< the user's corrections; applied already
+  std::string calibration;     ///< where the lens figures come from; empty: those of the profile
+  PanelAdjustment adjustment;  ///< the user's corrections; applied already
   double height_mm() const noexcept { return width_mm * height_px / width_px; }
 };
 
@@ -66,8 +66,9 @@ struct PanelProfile {
 /// wrong type or out of range; the sentence has the field's name, the value found and the range.
 Result<std::vector<PanelProfile>> parse_profiles(std::string_view json_text, std::string_view source);
 
-/// The profiles of the program (embedded) followed by those of *.json in `user_folder` (may be missing); a user's profile
-/// replaces one of the same name. Adjustments (display/panel_adjust.h) are applied last. Errors as parse_profiles.
+/// The profiles of the program (embedded) followed by those of *.json in `user_folder` (may be missing); a user's
+/// profile replaces one of the same name. Adjustments (display/panel_adjust.h) are applied last. Errors as
+/// parse_profiles.
 Result<std::vector<PanelProfile>> load_profiles(const std::filesystem::path& user_folder);
 
 /// kUsage with the names there are.
@@ -85,8 +86,8 @@ struct Calibration {
 /// 1..10000, slope not 0, screen 1..16384, DPI 10..2000, viewCone 1..170, at most 10 subpixel cells, all finite.
 Result<Calibration> parse_calibration(std::string_view json_text, std::string_view source);
 
-/// The profile with the calibration's lens figures and size, then the profile's adjustment; picks the model by name if one
-/// is given, else by serial, else by size.
+/// The profile with the calibration's lens figures and size, then the profile's adjustment; picks the model by name if
+/// one is given, else by serial, else by size.
 Result<PanelProfile> calibrated_profile(std::span<const PanelProfile> profiles, const Calibration& calibration,
                                         std::string_view model = {});
 
@@ -94,15 +95,16 @@ Result<PanelProfile> calibrated_profile(std::span<const PanelProfile> profiles, 
 Result<PanelProfile> choose_panel(const std::filesystem::path& user_folder, std::string_view name,
                                   const std::filesystem::path& calibration_file);
 
-/// The panels that a monitor with this EDID can be, by the profile's own pixels and, where the EDID tells it, the picture's
-/// width to 15 %: Looking Glasses when its name starts with "LKG" (only those whose serials start like its name or serial,
-/// if there are any), tracked panels by manufacturer and product.
+/// The panels that a monitor with this EDID can be, by the profile's own pixels and, where the EDID tells it, the
+/// picture's width to 15 %: Looking Glasses when its name starts with "LKG" (only those whose serials start like its
+/// name or serial, if there are any), tracked panels by manufacturer and product.
 std::vector<const PanelProfile*> panels_of_edid(std::span<const PanelProfile> profiles, const Edid& edid);
 
 /// Calibration files on mounted units: <root>/*/LKG_calibration/visual.json under each root, e.g. /media/$USER.
 std::vector<std::filesystem::path> find_calibration_files(std::span<const std::filesystem::path> roots);
 
-/// How far away the middle of the viewing zone is: the profile's figure, else 14 degrees of field of view over its height.
+/// How far away the middle of the viewing zone is: the profile's figure, else 14 degrees of field of view over its
+/// height.
 double viewing_distance_mm(const PanelProfile& profile) noexcept;
 
 /// The panel as optics: from its own figures (kTracked), or derived from its sheet for an eye `distance_mm` away.

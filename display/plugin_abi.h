@@ -2,18 +2,20 @@
 #define DUBSAR_PLUGIN_ABI_H
 /* Displays from shared libraries: `dubsar render --plugin FILE.so --display NAME[:options]`. Plain C, no dependencies.
  *
- * A plug-in exports one function, dubsar_sink_plugin(). It is called once, after loading, with what the program offers, and
- * returns the plug-in's table, which has to stay valid; or NULL when it cannot work with this host.
+ * A plug-in exports one function, dubsar_sink_plugin(). It is called once, after loading, with what the program offers,
+ * and returns the plug-in's table, which has to stay valid; or NULL when it cannot work with this host.
  *
  * Versions: the program refuses a table whose `abi` is not DUBSAR_SINK_ABI. Within one version structures only grow at
  * their ends; `size` is what the side that filled the structure knows, so read no member beyond it.
  *
- * Frames: the screen frame is in millimetres with its origin in the middle of the panel, +X right, +Y up, +Z to the viewer.
- * Pixels count from the panel's upper left corner. Matrices are column-major, for column vectors, clip space as in OpenGL.
+ * Frames: the screen frame is in millimetres with its origin in the middle of the panel, +X right, +Y up, +Z to the
+ * viewer. Pixels count from the panel's upper left corner. Matrices are column-major, for column vectors, clip space as
+ * in OpenGL.
  *
- * Everything is called in one thread. compose(), and destroy() after a compose(), are called with the program's OpenGL 4.5
- * core context current; leave no program, vertex array or framebuffer of yours bound. Functions that return int return 0 for
- * success; else they write one sentence, NUL-terminated, into error[0 .. error_size - 1]. No exception may leave a function.
+ * Everything is called in one thread. compose(), and destroy() after a compose(), are called with the program's
+ * OpenGL 4.5 core context current; leave no program, vertex array or framebuffer of yours bound. Functions that return
+ * int return 0 for success; else they write one sentence, NUL-terminated, into error[0 .. error_size - 1]. No exception
+ * may leave a function.
  */
 
 #include <stddef.h>
@@ -31,7 +33,7 @@ typedef struct dubsar_sink_screen {
   int32_t width_px, height_px;                    /* of the panel */
   int32_t window_x, window_y, window_w, window_h; /* drawing area on the panel, physical pixels */
   int32_t reserved;
-  double width_mm, height_mm;                     /* of the panel */
+  double width_mm, height_mm; /* of the panel */
 } dubsar_sink_screen;
 
 typedef struct dubsar_sink_viewer {
@@ -47,12 +49,12 @@ typedef struct dubsar_sink_view {
 } dubsar_sink_view;
 
 enum {
-  DUBSAR_SINK_TRACKED = 1,      /* follows the viewer's eyes */
-  DUBSAR_SINK_EXACT_PIXELS = 2  /* works only unscaled, at a known place on the panel */
+  DUBSAR_SINK_TRACKED = 1,     /* follows the viewer's eyes */
+  DUBSAR_SINK_EXACT_PIXELS = 2 /* works only unscaled, at a known place on the panel */
 };
 
 typedef struct dubsar_sink_traits {
-  uint32_t size;              /* set by the program */
+  uint32_t size; /* set by the program */
   uint32_t flags;
   int32_t views;              /* 1 .. 2048 */
   int32_t view_w, view_h;     /* pixels of one view, 1 .. 16384 */
@@ -62,7 +64,7 @@ typedef struct dubsar_sink_traits {
 
 typedef struct dubsar_sink_frame {
   uint32_t size;
-  uint32_t view_array;  /* GL_TEXTURE_2D_ARRAY, GL_RGBA8, layer k is view k, bytes are sRGB-coded, row 0 at the bottom */
+  uint32_t view_array; /* GL_TEXTURE_2D_ARRAY, GL_RGBA8, layer k is view k, bytes are sRGB-coded, row 0 at the bottom */
   uint32_t framebuffer; /* draw here; sRGB-coded bytes */
   int32_t width, height;
 } dubsar_sink_frame;
@@ -84,7 +86,8 @@ typedef struct dubsar_sink_table {
   void* (*create)(const char* options, char* error, size_t error_size);
   void (*destroy)(void* sink);
   /* Called before the first views() and when the window changes; fills `traits`. */
-  int (*configure)(void* sink, const dubsar_sink_screen* screen, dubsar_sink_traits* traits, char* error, size_t error_size);
+  int (*configure)(void* sink, const dubsar_sink_screen* screen, dubsar_sink_traits* traits, char* error,
+                   size_t error_size);
   /* Fills `views`, as many as the traits say. */
   int (*views)(void* sink, const dubsar_sink_viewer* viewer, dubsar_sink_view* views, char* error, size_t error_size);
   int (*compose)(void* sink, const dubsar_sink_frame* frame, char* error, size_t error_size);

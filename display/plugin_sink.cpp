@@ -23,11 +23,22 @@ std::string sentence(ErrorText& text) {
 }
 
 dubsar_sink_screen abi_screen(const Screen& s) {
-  return {sizeof(dubsar_sink_screen), s.width_px, s.height_px, s.window_x, s.window_y, s.window_w, s.window_h, 0, s.width_mm, s.height_mm};
+  return {sizeof(dubsar_sink_screen),
+          s.width_px,
+          s.height_px,
+          s.window_x,
+          s.window_y,
+          s.window_w,
+          s.window_h,
+          0,
+          s.width_mm,
+          s.height_mm};
 }
 
-void host_off_axis_view(const dubsar_sink_screen* s, const dubsar_sink_viewer* v, const double* eye, dubsar_sink_view* out) {
-  const Screen screen{s->width_mm, s->height_mm, s->width_px, s->height_px, s->window_x, s->window_y, s->window_w, s->window_h};
+void host_off_axis_view(const dubsar_sink_screen* s, const dubsar_sink_viewer* v, const double* eye,
+                        dubsar_sink_view* out) {
+  const Screen screen{s->width_mm, s->height_mm, s->width_px, s->height_px,
+                      s->window_x, s->window_y,  s->window_w, s->window_h};
   Viewer viewer;
   viewer.left_mm = glm::make_vec3(v->left_mm);
   viewer.right_mm = glm::make_vec3(v->right_mm);
@@ -67,9 +78,13 @@ class PluginSink : public OutputSink {
     if (table_.configure(sink_, &given, &made, error.data(), error.size()) != 0)
       return fail(ErrorKind::kUsage, "display {}: {}", plugin_->name(), sentence(error));
     const auto side = [](int pixels) { return pixels >= 1 && pixels <= kMaxSide; };
-    if (made.views < 1 || made.views > kMaxViews || !side(made.view_w) || !side(made.view_h) || !side(made.output_w) || !side(made.output_h))
-      return fail(ErrorKind::kBadData, "display {}: its plug-in wants {} views of {} x {} pixels for a picture of {} x {}, expected 1 to {} views and 1 to {} pixels a side",
-                  plugin_->name(), made.views, made.view_w, made.view_h, made.output_w, made.output_h, kMaxViews, kMaxSide);
+    if (made.views < 1 || made.views > kMaxViews || !side(made.view_w) || !side(made.view_h) || !side(made.output_w) ||
+        !side(made.output_h))
+      return fail(ErrorKind::kBadData,
+                  "display {}: its plug-in wants {} views of {} x {} pixels for a picture of {} x {}, expected 1 to {} "
+                  "views and 1 to {} pixels a side",
+                  plugin_->name(), made.views, made.view_w, made.view_h, made.output_w, made.output_h, kMaxViews,
+                  kMaxSide);
     traits_ = made;
     return {};
   }
@@ -101,7 +116,8 @@ class PluginSink : public OutputSink {
   }
   Result<void> compose(const ViewArray& views, const Surface& target) override {
     if (!problem_.empty()) return fail(ErrorKind::kBadData, "display {}: {}", plugin_->name(), problem_);
-    const dubsar_sink_frame frame{sizeof(dubsar_sink_frame), views.coded(), target.framebuffer, target.width, target.height};
+    const dubsar_sink_frame frame{sizeof(dubsar_sink_frame), views.coded(), target.framebuffer, target.width,
+                                  target.height};
     ErrorText error{};
     if (table_.compose(sink_, &frame, error.data(), error.size()) != 0)
       return fail(ErrorKind::kUnavailable, "display {}: {}", plugin_->name(), sentence(error));
@@ -118,21 +134,26 @@ class PluginSink : public OutputSink {
 };
 
 Result<void> check_table(const std::string& file, const dubsar_sink_table* table) {
-  if (table == nullptr) return fail(ErrorKind::kBadData, "plug-in {}: it refuses to work with ABI version {}", file, DUBSAR_SINK_ABI);
+  if (table == nullptr)
+    return fail(ErrorKind::kBadData, "plug-in {}: it refuses to work with ABI version {}", file, DUBSAR_SINK_ABI);
   if (table->abi != DUBSAR_SINK_ABI)
-    return fail(ErrorKind::kBadData, "plug-in {}: ABI version {} found, expected {}; build it again with this program's plugin_abi.h", file,
+    return fail(ErrorKind::kBadData,
+                "plug-in {}: ABI version {} found, expected {}; build it again with this program's plugin_abi.h", file,
                 table->abi, DUBSAR_SINK_ABI);
   if (table->size < sizeof(dubsar_sink_table))
-    return fail(ErrorKind::kBadData, "plug-in {}: its table has {} bytes, expected at least {}", file, table->size, sizeof(dubsar_sink_table));
+    return fail(ErrorKind::kBadData, "plug-in {}: its table has {} bytes, expected at least {}", file, table->size,
+                sizeof(dubsar_sink_table));
   if (table->name == nullptr || table->summary == nullptr || table->create == nullptr || table->destroy == nullptr ||
       table->configure == nullptr || table->views == nullptr || table->compose == nullptr)
     return fail(ErrorKind::kBadData, "plug-in {}: its table has gaps, expected every entry", file);
   const std::string_view name(table->name);
   constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyz0123456789_";
   if (name.empty() || name.size() > kMaxName || name.find_first_not_of(kAllowed) != std::string_view::npos)
-    return fail(ErrorKind::kBadData, "plug-in {}: its name is \"{}\", expected 1 to {} of a-z, 0-9 and _", file, name.substr(0, 100), kMaxName);
+    return fail(ErrorKind::kBadData, "plug-in {}: its name is \"{}\", expected 1 to {} of a-z, 0-9 and _", file,
+                name.substr(0, 100), kMaxName);
   for (const SinkBackend& sink : output_sinks())
-    if (sink.name == name) return fail(ErrorKind::kBadData, "plug-in {}: its name {} is that of a built-in display", file, name);
+    if (sink.name == name)
+      return fail(ErrorKind::kBadData, "plug-in {}: its name {} is that of a built-in display", file, name);
   return {};
 }
 
@@ -140,14 +161,17 @@ Result<void> check_table(const std::string& file, const dubsar_sink_table* table
 
 Result<std::shared_ptr<SinkPlugin>> SinkPlugin::load(const std::filesystem::path& file) {
   std::error_code error;
-  const auto whole = std::filesystem::canonical(file, error);  // a bare name would be searched for in the system's folders
+  const auto whole =
+      std::filesystem::canonical(file, error);  // a bare name would be searched for in the system's folders
   if (error) return fail(ErrorKind::kNoInput, "plug-in {}: {}", file.string(), error.message());
   void* const library = ::dlopen(whole.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) return fail(ErrorKind::kUnavailable, "plug-in {}: it cannot be loaded: {}", whole.string(), ::dlerror());
+  if (library == nullptr)
+    return fail(ErrorKind::kUnavailable, "plug-in {}: it cannot be loaded: {}", whole.string(), ::dlerror());
   const auto entry = reinterpret_cast<dubsar_sink_entry>(::dlsym(library, DUBSAR_SINK_ENTRY));
   const dubsar_sink_table* const table = entry != nullptr ? entry(&kHost) : nullptr;
   auto good = entry != nullptr ? check_table(whole.string(), table)
-                               : fail(ErrorKind::kBadData, "plug-in {}: it has no function {}, so it is not a plug-in", whole.string(), DUBSAR_SINK_ENTRY);
+                               : fail(ErrorKind::kBadData, "plug-in {}: it has no function {}, so it is not a plug-in",
+                                      whole.string(), DUBSAR_SINK_ENTRY);
   if (!good) {
     ::dlclose(library);
     return tl::unexpected<Error>(good.error());

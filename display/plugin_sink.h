@@ -14,8 +14,8 @@ namespace dubsar {
 /// A loaded plug-in; the library stays loaded as long as this or a sink of it lives.
 class SinkPlugin : public std::enable_shared_from_this<SinkPlugin> {
  public:
-  /// kNoInput when there is no such file, kUnavailable when it cannot be loaded, kBadData, with what was found, when it is not
-  /// a plug-in of this ABI version, its table is incomplete or its name is one of the built-in displays.
+  /// kNoInput when there is no such file, kUnavailable when it cannot be loaded, kBadData, with what was found, when it
+  /// is not a plug-in of this ABI version, its table is incomplete or its name is one of the built-in displays.
   static Result<std::shared_ptr<SinkPlugin>> load(const std::filesystem::path& file);
   ~SinkPlugin();
   SinkPlugin(const SinkPlugin&) = delete;

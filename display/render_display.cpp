@@ -51,10 +51,12 @@ Result<Stage> open_stage(std::string_view display, const DisplayOptions& options
   DUBSAR_TRY(stage.sink->configure(options.screen));
   const SinkTraits traits = stage.sink->traits();
   if (traits.stereo_visual)
-    return fail(ErrorKind::kUnavailable, "display {}: needs a window with a stereo visual, expected a display that makes one picture",
+    return fail(ErrorKind::kUnavailable,
+                "display {}: needs a window with a stereo visual, expected a display that makes one picture",
                 traits.name);
   DUBSAR_TRY(check_memory("display", kBytesPerViewPixel * static_cast<std::uint64_t>(traits.view.width) *
-                                         static_cast<std::uint64_t>(traits.view.height) * static_cast<std::uint64_t>(traits.views)));
+                                         static_cast<std::uint64_t>(traits.view.height) *
+                                         static_cast<std::uint64_t>(traits.views)));
   return stage;
 }
 
@@ -86,12 +88,15 @@ glm::dmat4 place_object(const Box& box, const ViewDirection& direction, const gl
 
 Result<DisplayPicture> render_display(const TriMesh& mesh, std::string_view display, const DisplayOptions& options,
                                       Progress& progress) {
-  if (!(options.magnification >= 0) || !std::isfinite(options.magnification) || !(options.margin >= 0 && options.margin <= 0.45))
-    return fail(ErrorKind::kUsage, "display: magnification {} and margin {} found, expected above 0 (or 0 to fit) and 0 to 0.45",
+  if (!(options.magnification >= 0) || !std::isfinite(options.magnification) ||
+      !(options.margin >= 0 && options.margin <= 0.45))
+    return fail(ErrorKind::kUsage,
+                "display: magnification {} and margin {} found, expected above 0 (or 0 to fit) and 0 to 0.45",
                 options.magnification, options.margin);
   DUBSAR_ASSIGN(const PackedMesh packed, pack_mesh(mesh));
   if (packed.triangles_of(options.shading.partitions) == 0)
-    return fail(ErrorKind::kUsage, "display: none of the partitions asked for has triangles, so there is nothing to draw");
+    return fail(ErrorKind::kUsage,
+                "display: none of the partitions asked for has triangles, so there is nothing to draw");
   DUBSAR_ASSIGN(const Stage stage, open_stage(display, options));
   const SinkTraits traits = stage.sink->traits();
 
@@ -138,9 +143,12 @@ Result<DisplayPicture> render_pattern(std::string_view display, const DisplayOpt
 
 Result<Image> see_display(const DisplayPicture& picture, const glm::dvec3& eye_mm) {
   if (!picture.light)
-    return fail(ErrorKind::kUsage, "display: this display has no lenses, so every eye sees its picture as it is; expected display lenticular");
+    return fail(
+        ErrorKind::kUsage,
+        "display: this display has no lenses, so every eye sees its picture as it is; expected display lenticular");
   if (!std::isfinite(glm::dot(eye_mm, eye_mm)) || eye_mm.z < kNearestEyeMm)
-    return fail(ErrorKind::kUsage, "display: an eye at {}, {}, {} mm found, expected one at least {} mm before the panel (third number)",
+    return fail(ErrorKind::kUsage,
+                "display: an eye at {}, {}, {} mm found, expected one at least {} mm before the panel (third number)",
                 eye_mm.x, eye_mm.y, eye_mm.z, kNearestEyeMm);
   const TrackedPanel& panel = picture.light->panel;
   if (picture.image.width != panel.width_px || picture.image.height != panel.height_px)

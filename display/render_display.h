@@ -25,22 +25,22 @@ namespace dubsar {
 /// says.
 struct DisplayOptions {
   Screen screen{};
-  Viewer viewer{};                     ///< front_mm and back_mm are set from the object
+  Viewer viewer{};  ///< front_mm and back_mm are set from the object
   ViewDirection direction{};
   glm::dvec3 place_mm{0.0, 0.0, 0.0};
-  double magnification = 0.0;          ///< 1: life size; 0: as large as fits into the window
-  double margin = 0.05;                ///< free border when it is fitted, 0..0.45
+  double magnification = 0.0;  ///< 1: life size; 0: as large as fits into the window
+  double margin = 0.05;        ///< free border when it is fitted, 0..0.45
   Shading shading{};
-  int samples = 2;                     ///< samples x samples a pixel of a view, 1..8
+  int samples = 2;  ///< samples x samples a pixel of a view, 1..8
   std::filesystem::path profile_folder{};
   std::vector<std::shared_ptr<SinkPlugin>> plugins{};  ///< their names count as displays, too
 };
 
 struct DisplayPicture {
-  Image image;                 ///< what the sink composed, RGB
+  Image image;  ///< what the sink composed, RGB
   int views = 0;
   double magnification = 0.0;
-  std::string file_suffix;     ///< for the file's name, e.g. "_qs8x6a0.75"
+  std::string file_suffix;          ///< for the file's name, e.g. "_qs8x6a0.75"
   std::optional<PanelLight> light;  ///< for displays with lenses: see() and light_at() say what eyes see of the image
 };
 
@@ -53,11 +53,12 @@ Result<DisplayPicture> render_display(const TriMesh& mesh, std::string_view disp
 /// profile folder of `options`. Errors as render_display.
 Result<DisplayPicture> render_pattern(std::string_view display, const DisplayOptions& options);
 
-/// What an eye (screen frame, mm) sees of the picture, of the panel's size. kUsage for displays without lenses, and for eyes
-/// that are not before the panel.
+/// What an eye (screen frame, mm) sees of the picture, of the panel's size. kUsage for displays without lenses, and for
+/// eyes that are not before the panel.
 Result<Image> see_display(const DisplayPicture& picture, const glm::dvec3& eye_mm);
 
 /// screen_from_model: turns the object as `direction` says, scales it and puts the centre of `box` at `place_mm`.
-glm::dmat4 place_object(const Box& box, const ViewDirection& direction, const glm::dvec3& place_mm, double magnification);
+glm::dmat4 place_object(const Box& box, const ViewDirection& direction, const glm::dvec3& place_mm,
+                        double magnification);
 
 }  // namespace dubsar

@@ -21,7 +21,8 @@ void copy_tile(const Image& tile, Image& picture, int left, int top) {
 }
 
 bool only_background(const Image& image, const Shading& shading) {
-  const std::array<std::uint8_t, 4> background{shading.background[0], shading.background[1], shading.background[2], 255};
+  const std::array<std::uint8_t, 4> background{shading.background[0], shading.background[1], shading.background[2],
+                                               255};
   for (std::size_t i = 0; i < image.pixels.size(); i += static_cast<std::size_t>(image.channels)) {
     const std::uint8_t* pixel = image.pixels.data() + i;
     if (image.channels == 4 ? pixel[3] != 0 : !std::equal(pixel, pixel + 3, background.data())) return false;
@@ -64,9 +65,11 @@ Box PictureRenderer::box_mm(std::uint8_t partitions) const { return parts_->pack
 Result<Picture> PictureRenderer::render(const RenderOptions& options, Progress& progress) {
   const Shading& shading = options.shading;
   if (parts_->packed.triangles_of(shading.partitions) == 0)
-    return fail(ErrorKind::kUsage, "render: none of the partitions asked for has triangles, so there is nothing to draw");
+    return fail(ErrorKind::kUsage,
+                "render: none of the partitions asked for has triangles, so there is nothing to draw");
   if (options.samples < 1 || options.samples > 8)
-    return fail(ErrorKind::kUsage, "render: {0} x {0} samples a pixel asked for, expected 1 x 1 to 8 x 8", options.samples);
+    return fail(ErrorKind::kUsage, "render: {0} x {0} samples a pixel asked for, expected 1 x 1 to 8 x 8",
+                options.samples);
   if (shading.map != ColorMap::kPlain && !parts_->packed.has_shape)
     log_info("render: the mesh carries no shape classes, so it is drawn without curvature colouring");
   if (shading.ambient_occlusion && !parts_->packed.has_ao)
@@ -92,10 +95,11 @@ Result<Picture> PictureRenderer::render(const RenderOptions& options, Progress& 
     }
   progress.end();
   if (only_background(picture.image, shading))
-    return fail(ErrorKind::kUnavailable,
-                "render: nothing can be seen in the picture: the object is seen edge-on, or the graphics driver ({}) drew "
-                "nothing",
-                describe_gl());
+    return fail(
+        ErrorKind::kUnavailable,
+        "render: nothing can be seen in the picture: the object is seen edge-on, or the graphics driver ({}) drew "
+        "nothing",
+        describe_gl());
   return picture;
 }
 

@@ -17,7 +17,7 @@ namespace dubsar {
 struct RenderOptions {
   CameraOptions camera{};  ///< view, size, scale
   Shading shading{};       ///< colouring, light, partitions, background
-  int samples = 3;       ///< samples x samples a pixel, 1..8
+  int samples = 3;         ///< samples x samples a pixel, 1..8
 };
 
 struct Picture {

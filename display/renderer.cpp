@@ -24,7 +24,9 @@ struct StyleData {  // std140, as in shaders/mesh.vert
   std::array<glm::vec4, kMaxPartitions> partition_color;
 };
 
-glm::vec3 linear(const Rgb8& c) { return glm::vec3(glm::dvec3(linear_from_srgb(c[0]), linear_from_srgb(c[1]), linear_from_srgb(c[2]))); }
+glm::vec3 linear(const Rgb8& c) {
+  return glm::vec3(glm::dvec3(linear_from_srgb(c[0]), linear_from_srgb(c[1]), linear_from_srgb(c[2])));
+}
 
 ViewData view_data(const View& view, const Box& box, int layer) {
   glm::dmat4 world_from_unit(1.0);
@@ -65,7 +67,8 @@ void draw_ranges(const std::vector<std::pair<std::int64_t, std::int64_t>>& range
   for (auto [first, count] : ranges)
     for (; count > 0; first += kMostAtOnce, count -= kMostAtOnce)
       glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(3 * std::min(count, kMostAtOnce)), GL_UNSIGNED_INT,
-                              reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * sizeof(Triangle)), instances);
+                              reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * sizeof(Triangle)),
+                              instances);
 }
 
 }  // namespace
@@ -78,7 +81,8 @@ Result<Renderer> Renderer::create(bool layered) {
   DUBSAR_ASSIGN(out.resolve_program_, make_program("fullscreen.vert", "resolve.frag"));
   if (layered && epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array")) {
     DUBSAR_ASSIGN(out.layered_program_,
-                  make_program("mesh.vert", "mesh.frag", "#extension GL_ARB_shader_viewport_layer_array : require\n#define LAYERED\n"));
+                  make_program("mesh.vert", "mesh.frag",
+                               "#extension GL_ARB_shader_viewport_layer_array : require\n#define LAYERED\n"));
   }
   out.no_vertices_ = make_vertex_array();
   out.layer_ = make_framebuffer();
@@ -111,7 +115,9 @@ Result<void> Renderer::use_scratch(int width, int height) {
 }
 
 Result<void> Renderer::use_layer_depth(const ViewArray& target) {
-  if (layer_depth_.width == target.width() && layer_depth_.height == target.height() && layer_depth_.layers == target.layers()) return {};
+  if (layer_depth_.width == target.width() && layer_depth_.height == target.height() &&
+      layer_depth_.layers == target.layers())
+    return {};
   layer_depth_ = {};  // before the new one: both together may not fit
   LayerDepth made;
   made.width = target.width();
@@ -218,7 +224,8 @@ Result<void> Renderer::render(const GpuMesh& mesh, const Shading& shading, std::
     glBindVertexArray(mesh.vertex_array());
     draw_ranges(mesh.visible_ranges(shading.partitions, views.subspan(i, 1)), 1);
 
-    glNamedFramebufferTextureLayer(layer_, GL_COLOR_ATTACHMENT0, target.coded(), 0, first_layer + static_cast<GLint>(i));
+    glNamedFramebufferTextureLayer(layer_, GL_COLOR_ATTACHMENT0, target.coded(), 0,
+                                   first_layer + static_cast<GLint>(i));
     glBindFramebuffer(GL_FRAMEBUFFER, layer_);
     glViewport(0, 0, target.width(), target.height());
     glDisable(GL_DEPTH_TEST);

@@ -23,9 +23,9 @@ class Renderer {
   Result<void> render(const GpuMesh& mesh, const Shading& shading, std::span<const View> views, int factor,
                       ViewArray& target, int first_layer = 0);
 
-  /// Layer layers[i] of `target` gets views[i], with one sample a pixel, in one instanced draw; where the driver cannot choose
-  /// layers in vertex shaders (ARB_shader_viewport_layer_array), one after the other. All other layers become background.
-  /// Transparent backgrounds are drawn opaque. Quick, for things that move.
+  /// Layer layers[i] of `target` gets views[i], with one sample a pixel, in one instanced draw; where the driver cannot
+  /// choose layers in vertex shaders (ARB_shader_viewport_layer_array), one after the other. All other layers become
+  /// background. Transparent backgrounds are drawn opaque. Quick, for things that move.
   Result<void> render_layers(const GpuMesh& mesh, const Shading& shading, std::span<const View> views,
                              std::span<const int> layers, ViewArray& target);
   /// Depth buffers of the last render_layers(), the same layers as its target (GL_TEXTURE_2D_ARRAY); 1 is background.
@@ -48,7 +48,8 @@ class Renderer {
   };
   Result<void> use_scratch(int width, int height);
   Result<void> use_layer_depth(const ViewArray& target);
-  Inputs bind_inputs(const GpuMesh& mesh, const Shading& shading, std::span<const View> views, std::span<const int> layers);
+  Inputs bind_inputs(const GpuMesh& mesh, const Shading& shading, std::span<const View> views,
+                     std::span<const int> layers);
 
   GlProgram mesh_program_, resolve_program_, layered_program_;
   GlVertexArray no_vertices_;

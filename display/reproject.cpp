@@ -14,8 +14,8 @@ constexpr GLint kKey = 0, kShift = 1, kReach = 2, kFarDepth = 3;  // shaders/rep
 constexpr double kTolerancePx = 0.05;
 
 glm::dvec4 corner_of(const Box& box, int corner) {
-  return {corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-          corner & 4 ? box.max.z : box.min.z, 1.0};
+  return {corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y, corner & 4 ? box.max.z : box.min.z,
+          1.0};
 }
 
 /// Pixels of the drawn view in which the surface that lands on a pixel can be, from that pixel.
@@ -36,8 +36,7 @@ std::array<GLint, 4> pixels_of(const View& view, const Box& box, int width, int 
     high = glm::max(high, glm::dvec2(p) / p.w);
   }
   const auto pixel = [](double ndc, int size, double margin) {
-    return static_cast<int>(
-        std::clamp(std::floor(0.5 * (ndc + 1.0) * size + margin), 0.0, static_cast<double>(size)));
+    return static_cast<int>(std::clamp(std::floor(0.5 * (ndc + 1.0) * size + margin), 0.0, static_cast<double>(size)));
   };
   const int left = pixel(low.x, width, -1.0), right = pixel(high.x, width, 2.0);
   const int bottom = pixel(low.y, height, -1.0), top = pixel(high.y, height, 2.0);

@@ -13,10 +13,13 @@ namespace {
 
 ShapeColors shape_colors_of(ColorMap map) {
   switch (map) {
-    case ColorMap::kTable: return ShapeColors::kTable;
-    case ColorMap::kSkySun: return ShapeColors::kSkySun;
+    case ColorMap::kTable:
+      return ShapeColors::kTable;
+    case ColorMap::kSkySun:
+      return ShapeColors::kSkySun;
     case ColorMap::kPlain:
-    case ColorMap::kBlackWhite: break;
+    case ColorMap::kBlackWhite:
+      break;
   }
   return ShapeColors::kBlackWhite;
 }
@@ -53,7 +56,8 @@ Result<Shading> shading_preset(std::string_view name) {
       shading.ambient_occlusion = preset.ambient_occlusion;
       shading.lit = preset.lit;
       if (!preset.lit) {  // figure 14: the table's own colours; ambient light alone is white
-        shading.base_color = preset.map == ColorMap::kPlain ? Rgb8{255, 255, 255} : shape_color_table(shape_colors_of(preset.map))[0];
+        shading.base_color =
+            preset.map == ColorMap::kPlain ? Rgb8{255, 255, 255} : shape_color_table(shape_colors_of(preset.map))[0];
         shading.contrast = 1.0;
         shading.occlusion_power = 1.0;
       }
@@ -67,7 +71,8 @@ Result<Shading> shading_preset(std::string_view name) {
 
 std::array<Rgb8, 8> distinct_partition_colors() {
   // Paul Tol's bright scheme and two more, ordered so that neighbours differ in lightness.
-  return {Rgb8{240, 228, 66}, {68, 119, 170}, {230, 159, 0}, {34, 136, 51}, {204, 187, 68}, {170, 51, 119}, {187, 187, 187}, {102, 204, 238}};
+  return {Rgb8{240, 228, 66}, {68, 119, 170}, {230, 159, 0},   {34, 136, 51},
+          {204, 187, 68},     {170, 51, 119}, {187, 187, 187}, {102, 204, 238}};
 }
 
 std::vector<std::array<std::uint8_t, 4>> color_table(const Shading& shading) {

@@ -29,7 +29,7 @@ enum class BackFaces {
 
 struct Shading {
   ColorMap map = ColorMap::kBlackWhite;
-  double contrast = 1.6;         ///< how much of the map's relation to its own flat colour base_color takes on
+  double contrast = 1.6;  ///< how much of the map's relation to its own flat colour base_color takes on
   bool ambient_occlusion = true;
   double occlusion_power = 1.3;  ///< ambient light to this power: 1 as it is, more for darker hollows
   bool lit = true;               ///< false: the colours as they are, as in figure 14 a to e

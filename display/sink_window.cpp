@@ -26,9 +26,10 @@ Result<SinkWindow> open_sink_window(std::string_view display, WindowOptions opti
   DUBSAR_TRY(out.sink->configure(screen));
   const SinkTraits traits = out.sink->traits();
   if (out.note.empty() && (traits.output.width != screen.window_w || traits.output.height != screen.window_h))
-    out.note = fmt::format("display {} makes a picture of {} x {} pixels and the window has {} x {}: it will not look right; "
-                           "use the panel's own monitor, full screen",
-                           display, traits.output.width, traits.output.height, screen.window_w, screen.window_h);
+    out.note = fmt::format(
+        "display {} makes a picture of {} x {} pixels and the window has {} x {}: it will not look right; "
+        "use the panel's own monitor, full screen",
+        display, traits.output.width, traits.output.height, screen.window_w, screen.window_h);
   return out;
 }
 

@@ -11,7 +11,8 @@
 
 namespace dubsar {
 
-/// Destroyed from the bottom to the top: the sink's GL objects go before the window. (Assignment would go the other way.)
+/// Destroyed from the bottom to the top: the sink's GL objects go before the window. (Assignment would go the other
+/// way.)
 struct SinkWindow {
   SinkWindow() = default;
   SinkWindow(SinkWindow&&) = default;
@@ -22,8 +23,8 @@ struct SinkWindow {
 };
 
 /// Opens the window for `display` (as make_sink() reads it). Displays that need exact pixels get no borders. A display
-/// that needs a stereo visual and cannot have one becomes `fallback`, and the note says so. Errors: those of the window and
-/// of make_sink().
+/// that needs a stereo visual and cannot have one becomes `fallback`, and the note says so. Errors: those of the window
+/// and of make_sink().
 Result<SinkWindow> open_sink_window(std::string_view display, WindowOptions options,
                                     const std::filesystem::path& profile_folder = {},
                                     std::string_view fallback = "side_by_side");

@@ -11,20 +11,21 @@ namespace {
 constexpr int kGlyphWidth = 5, kGlyphHeight = 7, kGlyphStep = 6;
 // Rows from the top, five bits each, the leftmost pixel in bit 4.
 constexpr std::array<std::array<std::uint8_t, kGlyphHeight>, 10> kDigits{{{14, 17, 19, 21, 25, 17, 14},
-                                                                         {4, 12, 4, 4, 4, 4, 14},
-                                                                         {14, 17, 1, 2, 4, 8, 31},
-                                                                         {31, 2, 4, 2, 1, 17, 14},
-                                                                         {2, 6, 10, 18, 31, 2, 2},
-                                                                         {31, 16, 30, 1, 1, 17, 14},
-                                                                         {6, 8, 16, 30, 17, 17, 14},
-                                                                         {31, 1, 2, 4, 8, 8, 8},
-                                                                         {14, 17, 17, 14, 17, 17, 14},
-                                                                         {14, 17, 17, 15, 1, 2, 12}}};
+                                                                          {4, 12, 4, 4, 4, 4, 14},
+                                                                          {14, 17, 1, 2, 4, 8, 31},
+                                                                          {31, 2, 4, 2, 1, 17, 14},
+                                                                          {2, 6, 10, 18, 31, 2, 2},
+                                                                          {31, 16, 30, 1, 1, 17, 14},
+                                                                          {6, 8, 16, 30, 17, 17, 14},
+                                                                          {31, 1, 2, 4, 8, 8, 8},
+                                                                          {14, 17, 17, 14, 17, 17, 14},
+                                                                          {14, 17, 17, 15, 1, 2, 12}}};
 constexpr Rgb8 kInk{255, 255, 255};
 
 void fill(Image& image, int left, int top, int width, int height, const Rgb8& color) {
   for (int y = std::max(0, top); y < std::min(image.height, top + height); ++y)
-    for (int x = std::max(0, left); x < std::min(image.width, left + width); ++x) std::copy_n(color.data(), 3, image.at(x, y));
+    for (int x = std::max(0, left); x < std::min(image.width, left + width); ++x)
+      std::copy_n(color.data(), 3, image.at(x, y));
 }
 
 /// The number with its middle at (x, y), `scale` pixels a dot.

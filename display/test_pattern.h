@@ -1,6 +1,6 @@
 #pragma once
-// Numbered views: each view carries its number and a colour of its own, so that what an eye sees tells which view reaches
-// it. The aid for adjusting pitch, slope and centre of a lens sheet, and for finding swapped eyes.
+// Numbered views: each view carries its number and a colour of its own, so that what an eye sees tells which view
+// reaches it. The aid for adjusting pitch, slope and centre of a lens sheet, and for finding swapped eyes.
 
 #include "core/image_io/image.h"
 #include "display/shading.h"

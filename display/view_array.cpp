@@ -46,7 +46,8 @@ Result<Image> ViewArray::read_layer(int layer) const {
 }
 
 Result<void> ViewArray::write_layer(int layer, const Image& image) {
-  DUBSAR_CHECK(layer >= 0 && layer < layers_ && image.channels == 4 && image.width == width_ && image.height == height_);
+  DUBSAR_CHECK(layer >= 0 && layer < layers_ && image.channels == 4 && image.width == width_ &&
+               image.height == height_);
   Image flipped = image;
   for (int y = 0; y < height_; ++y) std::copy_n(image.at(0, y), 4 * width_, flipped.at(0, height_ - 1 - y));
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);

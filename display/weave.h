@@ -22,8 +22,8 @@ double sample_light(const Image& view, double u, double v, int channel) noexcept
 /// Which view, as a real number, each subpixel shows: lens_position * views. Row 0 of the panel image is the top.
 double subpixel_view(const LensSheet& sheet, int views, int column, int row_from_top, int channel) noexcept;
 
-/// N views (0 leftmost camera, all of one size) to a panel image of sheet.width_px x height_px, RGB. Views and their texels
-/// are mixed in linear light. Uses all threads.
+/// N views (0 leftmost camera, all of one size) to a panel image of sheet.width_px x height_px, RGB. Views and their
+/// texels are mixed in linear light. Uses all threads.
 Image weave_views(std::span<const Image> views, const LensSheet& sheet, const WeaveOptions& options = {});
 
 /// Panel geometry of a two-view weave.
@@ -42,9 +42,11 @@ struct EyePair {
 glm::dvec2 subpixel_mm(const TrackedPanel& panel, int column, int row_from_top, int channel) noexcept;
 
 /// 0: the left eye's image, 1: the right eye's: the eye for which |phase| is smaller. Ties go to the left.
-int subpixel_eye(const TrackedPanel& panel, const EyePair& eyes, const glm::dvec2& point_mm, bool exact = true) noexcept;
+int subpixel_eye(const TrackedPanel& panel, const EyePair& eyes, const glm::dvec2& point_mm,
+                 bool exact = true) noexcept;
 
-/// Left and right image (any size) to a panel image, RGB; coded values are interpolated. `exact` = false uses the paraxial shift, for comparison.
+/// Left and right image (any size) to a panel image, RGB; coded values are interpolated. `exact` = false uses the
+/// paraxial shift, for comparison.
 Image weave_tracked(const Image& left, const Image& right, const TrackedPanel& panel, const EyePair& eyes,
                     bool exact = true);
 

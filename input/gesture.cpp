@@ -5,7 +5,8 @@
 
 namespace dubsar {
 namespace {
-// A palm at rest is steadied to a few tenths of a millimetre, one at 200 mm/s lags 20 ms. Tuned on 1 mm of noise at 90 Hz.
+// A palm at rest is steadied to a few tenths of a millimetre, one at 200 mm/s lags 20 ms. Tuned on 1 mm of noise at 90
+// Hz.
 constexpr OneEuroOptions kPalmFilter{2.0, 30.0, 3.0};
 constexpr TimestampNs kVelocityWindow = 60'000'000;
 constexpr TimestampNs kRest = 100'000'000;
@@ -123,7 +124,8 @@ void GestureRecognizer::dwell(TimestampNs now) {
     dwelt_ = false;
     return;
   }
-  const double filled = static_cast<double>(now - *dwell_since_ - options_.dwell_start_ns) / static_cast<double>(options_.dwell_fill_ns);
+  const double filled =
+      static_cast<double>(now - *dwell_since_ - options_.dwell_start_ns) / static_cast<double>(options_.dwell_fill_ns);
   dwell_progress_ = dwelt_ ? 0.0 : std::clamp(filled, 0.0, 1.0);
   if (filled < 1.0 || dwelt_) return;
   dwelt_ = true;

@@ -44,7 +44,7 @@ class GestureRecognizer {
   bool pinching() const noexcept { return pinching_; }
   const glm::dvec3& position_m() const noexcept { return position_m_; }  ///< of the palm, filtered; stays while held
   const glm::dvec3& velocity_mps() const noexcept { return velocity_mps_; }
-  double dwell_progress() const noexcept { return dwell_progress_; }     ///< 0..1
+  double dwell_progress() const noexcept { return dwell_progress_; }  ///< 0..1
   /// Where the dwelling hand points, metres in the screen frame.
   const glm::dvec3& cursor_m() const noexcept { return cursor_m_; }
 

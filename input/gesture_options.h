@@ -1,18 +1,18 @@
 #pragma once
-// Figures of the gesture recogniser. Defaults are those of shipped systems: grab and swipe of Ultraleap TouchFree, pinch
-// of the Ultraleap Unity plug-in.
+// Figures of the gesture recogniser. Defaults are those of shipped systems: grab and swipe of Ultraleap TouchFree,
+// pinch of the Ultraleap Unity plug-in.
 
 #include "core/base/clock.h"
 
 namespace dubsar {
 
 struct GestureOptions {
-  double grab_on = 0.8, grab_off = 0.7;              ///< grab strength
-  double pinch_on_m = 0.025, pinch_off_m = 0.030;    ///< thumb tip to index tip
-  double drag_start_m = 0.010;                       ///< a grabbing hand moves this far before anything follows it
-  double roll_start_rad = 0.105;                     ///< two hands turn this far before the object rolls
-  TimestampNs cooldown_ns = 300'000'000;             ///< nothing begins for this long after a hand came
-  TimestampNs hold_ns = 100'000'000;                 ///< a hand missing longer than this has lost its gesture
+  double grab_on = 0.8, grab_off = 0.7;            ///< grab strength
+  double pinch_on_m = 0.025, pinch_off_m = 0.030;  ///< thumb tip to index tip
+  double drag_start_m = 0.010;                     ///< a grabbing hand moves this far before anything follows it
+  double roll_start_rad = 0.105;                   ///< two hands turn this far before the object rolls
+  TimestampNs cooldown_ns = 300'000'000;           ///< nothing begins for this long after a hand came
+  TimestampNs hold_ns = 100'000'000;               ///< a hand missing longer than this has lost its gesture
   double swipe_mps = 0.625, swipe_lateral_mps = 0.300, swipe_end_mps = 0.200, swipe_opposing_mps = 0.065;
   TimestampNs swipe_lockout_ns = 450'000'000;
   double swipe_travel_m = 0.010;

@@ -53,20 +53,20 @@ struct HandJointPose {
   bool tracked = false;   ///< measured in this very frame
 };
 
-/// Lengths in metres, right-handed, +X right, +Y up, +Z to the user. A tracker's own frame has its origin in the device;
-/// what an InputSource hands out is moved to the screen frame (panel centre). OpenXR axes: a joint's -Z points to the
-/// finger tip, +Y out of the back of the hand.
+/// Lengths in metres, right-handed, +X right, +Y up, +Z to the user. A tracker's own frame has its origin in the
+/// device; what an InputSource hands out is moved to the screen frame (panel centre). OpenXR axes: a joint's -Z points
+/// to the finger tip, +Y out of the back of the hand.
 struct HandFrame {
-  TimestampNs time = 0;                       ///< when the device measured it, monotonic clock
-  std::uint32_t id = 0;                       ///< stays the same while this hand is followed without a break
+  TimestampNs time = 0;  ///< when the device measured it, monotonic clock
+  std::uint32_t id = 0;  ///< stays the same while this hand is followed without a break
   Chirality chirality = Chirality::kUnknown;
-  bool valid = false;                         ///< palm, grab and pinch can be used
-  bool tracked = false;                       ///< measured now; false: held or predicted
-  double confidence = 0.0;                    ///< 0..1
-  Pose palm{};                                ///< centre of the palm; the same as joint kPalm
-  glm::dvec3 velocity_mps{0.0};               ///< of the palm
-  double grab_strength = 0.0;                 ///< 0: open hand, 1: fist
-  double pinch_distance_m = 0.1;              ///< thumb tip to index tip, surface to surface or centre to centre
+  bool valid = false;             ///< palm, grab and pinch can be used
+  bool tracked = false;           ///< measured now; false: held or predicted
+  double confidence = 0.0;        ///< 0..1
+  Pose palm{};                    ///< centre of the palm; the same as joint kPalm
+  glm::dvec3 velocity_mps{0.0};   ///< of the palm
+  double grab_strength = 0.0;     ///< 0: open hand, 1: fist
+  double pinch_distance_m = 0.1;  ///< thumb tip to index tip, surface to surface or centre to centre
   std::array<HandJointPose, kHandJointCount> joints{};
 
   const HandJointPose& joint(HandJoint which) const noexcept { return joints[static_cast<std::size_t>(which)]; }

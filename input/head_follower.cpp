@@ -35,7 +35,8 @@ FollowedEyes HeadFollower::eyes(TimestampNs now, TimestampNs display_time) const
     const TimestampNs target = std::min(display_time, now + options_.most_ahead_ns) + lag;
     last = history_.predict(target, options_.most_ahead_ns).value_or(history_.newest().position_m);
   }
-  const PresentPosition at = present_position(last, options_.rest_m, seen ? std::max<TimestampNs>(0, now - measured) : -1, options_.presence);
+  const PresentPosition at =
+      present_position(last, options_.rest_m, seen ? std::max<TimestampNs>(0, now - measured) : -1, options_.presence);
   const glm::dvec3 half = at.presence == Presence::kOff ? glm::dvec3(0.5 * options_.ipd_m, 0.0, 0.0) : half_m_;
   return {at.position_m - half, at.position_m + half, at.presence, measured};
 }

@@ -19,7 +19,7 @@ struct FollowedEyes {
 };
 
 struct HeadFollowOptions {
-  glm::dvec3 rest_m{0.0, 0.0, 0.6};         ///< where the eyes are when nobody is seen
+  glm::dvec3 rest_m{0.0, 0.0, 0.6};  ///< where the eyes are when nobody is seen
   double ipd_m = 0.063;
   OneEuroOptions filter{3.0, 60.0, 3.0};    ///< 12 ms of lag at 200 mm/s, which the prediction makes up for
   TimestampNs most_ahead_ns = 100'000'000;  ///< never predict further

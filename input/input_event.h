@@ -19,11 +19,12 @@ enum class MouseButton : std::uint8_t { kLeft, kMiddle, kRight };
 struct InputEvent {
   TimestampNs time = 0;
   EventKind kind = EventKind::kMotion;
-  glm::dvec2 motion{0.0};  ///< kMotion: pixels to the right and down; kWheel: notches in .y, positive away from the user
+  glm::dvec2 motion{
+      0.0};  ///< kMotion: pixels to the right and down; kWheel: notches in .y, positive away from the user
   MouseButton button = MouseButton::kLeft;
-  bool down = false;       ///< kButton, kKey
+  bool down = false;  ///< kButton, kKey
   std::uint8_t modifiers = kNoModifier;
-  std::string key{};       ///< kKey: "left", "up", "home", "space", "a", "1", "+", "f5" ...
+  std::string key{};  ///< kKey: "left", "up", "home", "space", "a", "1", "+", "f5" ...
 };
 
 }  // namespace dubsar

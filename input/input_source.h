@@ -63,7 +63,8 @@ class InputSource {
   /// Opens the device; at most one reader thread, joined by the destructor. Errors: kUnavailable, kPermission with what
   /// to do.
   virtual Result<void> start() = 0;
-  /// Never blocks; the newest measurement wins and `newest` keeps its poses when there is none. Call it from one thread.
+  /// Never blocks; the newest measurement wins and `newest` keeps its poses when there is none. Call it from one
+  /// thread.
   virtual Freshness poll(TimestampNs now, InputFrame& newest) noexcept = 0;
   /// Scripts and recordings come to an end, live devices never do.
   virtual bool has_end() const noexcept { return false; }
@@ -74,17 +75,18 @@ class InputSource {
 
 struct InputConfig {
   std::vector<std::pair<std::string, std::string>> options;  ///< "key=value"; a bare word has an empty value
-  WindowEvents* window = nullptr;          ///< where mouse and keyboard come from; none without a window
-  const ViewState* seen_view = nullptr;    ///< what a simulated visitor looks at; outlives the source
-  /// The session's clock, on which devices stamp what they measure; null: the steady clock. It outlives the source and may
-  /// be read in any thread.
+  WindowEvents* window = nullptr;        ///< where mouse and keyboard come from; none without a window
+  const ViewState* seen_view = nullptr;  ///< what a simulated visitor looks at; outlives the source
+  /// The session's clock, on which devices stamp what they measure; null: the steady clock. It outlives the source and
+  /// may be read in any thread.
   const Clock* clock = nullptr;
-  /// The clock is moved by hand: devices are read in poll(), without a thread, so that the same script gives the same input.
+  /// The clock is moved by hand: devices are read in poll(), without a thread, so that the same script gives the same
+  /// input.
   bool simulated_time = false;
-  ReachDevice reach_device;                ///< how devices are reached; empty: the real ones
-  std::filesystem::path model_folder;      ///< networks that ./do models fetched; empty: none
-  glm::dvec2 panel_m{0.344, 0.194};        ///< width and height of the whole panel; a webcam sits on its top edge
-  std::shared_ptr<HotplugBell> hotplug;    ///< shared by the sources of a session; null: lost devices come back by pauses
+  ReachDevice reach_device;              ///< how devices are reached; empty: the real ones
+  std::filesystem::path model_folder;    ///< networks that ./do models fetched; empty: none
+  glm::dvec2 panel_m{0.344, 0.194};      ///< width and height of the whole panel; a webcam sits on its top edge
+  std::shared_ptr<HotplugBell> hotplug;  ///< shared by the sources of a session; null: lost devices come back by pauses
 };
 
 using InputBackend = Backend<InputSource, InputConfig>;
@@ -92,12 +94,12 @@ using InputBackend = Backend<InputSource, InputConfig>;
 /// All sources, in the order of their priority when several see hands or heads. Needs dubsar_input_sources.
 std::span<const InputBackend> input_sources();
 
-/// Specs for make_input() of the sources with auto_select whose real device is plugged in and can be used: "spacemouse",
-/// "head:rift" ...; not those of a window. Takes some milliseconds.
+/// Specs for make_input() of the sources with auto_select whose real device is plugged in and can be used:
+/// "spacemouse", "head:rift" ...; not those of a window. Takes some milliseconds.
 std::vector<std::string> present_inputs();
 
-/// Makes and starts the source that "NAME[:option,...]" names: kUsage with the names there are or what the options are. `base`
-/// holds what the text cannot say.
+/// Makes and starts the source that "NAME[:option,...]" names: kUsage with the names there are or what the options are.
+/// `base` holds what the text cannot say.
 Result<std::unique_ptr<InputSource>> make_input(std::string_view spec, const InputConfig& base = {});
 
 }  // namespace dubsar

@@ -14,13 +14,14 @@ namespace {
 using nlohmann::json;
 
 constexpr std::array<std::string_view, 18> kActionNames{
-    "none",       "rotate",    "pan",       "zoom",      "zoom_and_roll", "light",      "next_side", "select",   "reset",
-    "undo",       "turn_left", "turn_right", "turn_up",  "turn_down",     "roll_left",  "roll_right", "zoom_in", "zoom_out"};
+    "none", "rotate",    "pan",        "zoom",    "zoom_and_roll", "light",     "next_side",  "select",  "reset",
+    "undo", "turn_left", "turn_right", "turn_up", "turn_down",     "roll_left", "roll_right", "zoom_in", "zoom_out"};
 constexpr std::array<std::string_view, 5> kControlNames{"none", "mouse", "keyboard", "puck", "hands"};
-constexpr std::initializer_list<Action> kDrags{Action::kNone, Action::kRotate, Action::kPan, Action::kZoom, Action::kLight};
+constexpr std::initializer_list<Action> kDrags{Action::kNone, Action::kRotate, Action::kPan, Action::kZoom,
+                                               Action::kLight};
 constexpr std::initializer_list<Action> kSteps{
-    Action::kNone,      Action::kNextSide, Action::kReset,    Action::kUndo,      Action::kTurnLeft, Action::kTurnRight, Action::kTurnUp,
-    Action::kTurnDown,  Action::kRollLeft, Action::kRollRight, Action::kZoomIn,   Action::kZoomOut};
+    Action::kNone,   Action::kNextSide, Action::kReset,    Action::kUndo,      Action::kTurnLeft, Action::kTurnRight,
+    Action::kTurnUp, Action::kTurnDown, Action::kRollLeft, Action::kRollRight, Action::kZoomIn,   Action::kZoomOut};
 
 TimestampNs from_ms(double ms) { return static_cast<TimestampNs>(ms * 1e6); }
 
@@ -39,7 +40,8 @@ glm::dvec3 read_vector(JsonFields& fields, const json& object, const char* name)
   glm::dvec3 out{0.0};
   const json* const value = fields.has(name) ? &object.at(name) : nullptr;
   if (value == nullptr || !value->is_array() || value->size() != 3 ||
-      !std::all_of(value->begin(), value->end(), [](const json& v) { return v.is_number() && std::abs(v.get<double>()) <= 5000; })) {
+      !std::all_of(value->begin(), value->end(),
+                   [](const json& v) { return v.is_number() && std::abs(v.get<double>()) <= 5000; })) {
     fields.complain(fmt::format("{} is not three numbers of -5000 to 5000", name));
     return out;
   }
@@ -128,14 +130,16 @@ Result<MouseMapping> read_mouse(const json& object, const std::string& where) {
   out.zoom_per_notch = f.number("zoom_per_notch", 1.001, 4);
   for (const auto& [name, value] : object.items()) {
     if (value.is_number()) {
-      if (name != "turn_deg_per_px" && name != "light_deg_per_px" && name != "zoom_per_100_px" && name != "zoom_per_notch")
+      if (name != "turn_deg_per_px" && name != "light_deg_per_px" && name != "zoom_per_100_px" &&
+          name != "zoom_per_notch")
         f.complain(fmt::format("\"{}\" is not known", name));
     } else if (is_chord(name)) {
       out.chords[name] = read_action(f, name, kDrags);
     } else {
-      f.complain(fmt::format("\"{}\" is no mouse chord, expected left, middle, right or wheel, after shift+, ctrl+ or alt+ "
-                             "in this order",
-                             name));
+      f.complain(
+          fmt::format("\"{}\" is no mouse chord, expected left, middle, right or wheel, after shift+, ctrl+ or alt+ "
+                      "in this order",
+                      name));
     }
   }
   DUBSAR_TRY(f.finish());
@@ -165,10 +169,12 @@ Result<Mapping> read_mapping(const json& object, const std::string& where) {
   out.handover_ns = from_ms(f.number("handover_ms", 0, 10000));
   const json& priority = object.at("priority");
   for (const json& name : priority) {
-    const auto* const found = name.is_string() ? std::find(kControlNames.begin() + 1, kControlNames.end(), name.get<std::string>())
-                                               : kControlNames.end();
+    const auto* const found = name.is_string()
+                                  ? std::find(kControlNames.begin() + 1, kControlNames.end(), name.get<std::string>())
+                                  : kControlNames.end();
     const auto control = static_cast<Control>(found - kControlNames.begin());
-    if (found == kControlNames.end() || std::find(out.priority.begin(), out.priority.end(), control) != out.priority.end()) {
+    if (found == kControlNames.end() ||
+        std::find(out.priority.begin(), out.priority.end(), control) != out.priority.end()) {
       f.complain("priority is not a list of mouse, keyboard, puck and hands, each at most once");
       break;
     }

@@ -17,12 +17,12 @@ namespace dubsar {
 
 enum class Action {
   kNone,
-  kRotate,       ///< drags and pucks: the object follows the hand
+  kRotate,  ///< drags and pucks: the object follows the hand
   kPan,
   kZoom,
   kZoomAndRoll,  ///< two hands
   kLight,
-  kNextSide,     ///< quarter turn to the next axis-parallel view
+  kNextSide,  ///< quarter turn to the next axis-parallel view
   kSelect,
   kReset,
   kUndo,

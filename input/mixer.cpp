@@ -17,7 +17,8 @@ bool any_tracked(const std::vector<T>& things) {
 
 void InputMixer::add(std::unique_ptr<InputSource> source, int rank) {
   const std::scoped_lock lock(mutex_);
-  const auto after = std::find_if(sources_.begin(), sources_.end(), [&](const Entry& entry) { return entry.rank > rank; });
+  const auto after =
+      std::find_if(sources_.begin(), sources_.end(), [&](const Entry& entry) { return entry.rank > rank; });
   sources_.insert(after, {std::move(source), {}, Freshness::kLost, rank});
 }
 

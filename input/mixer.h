@@ -21,8 +21,8 @@ struct SourceState {
 /// Any thread: what it calls of the sources is called by one at a time.
 class InputMixer {
  public:
-  /// Adds a started source. Lower ranks, and earlier ones of the same rank, have priority for hands, heads and puck; events
-  /// of all are merged in time.
+  /// Adds a started source. Lower ranks, and earlier ones of the same rank, have priority for hands, heads and puck;
+  /// events of all are merged in time.
   void add(std::unique_ptr<InputSource> source, int rank = 0);
   /// Takes this source out; false when it is not there.
   bool remove(const InputSource* source);
@@ -30,8 +30,8 @@ class InputMixer {
   bool remove(std::string_view name);
 
   /// Polls all sources. A lost source contributes nothing. Hands of two sources are never mixed: the first that has one
-  /// tracked wins, and keeps its right for 300 ms after its last hand. Bounded: at most 4096 events a call. The frame stays
-  /// until the next call.
+  /// tracked wins, and keeps its right for 300 ms after its last hand. Bounded: at most 4096 events a call. The frame
+  /// stays until the next call.
   const InputFrame& poll(TimestampNs now);
 
   std::vector<SourceState> states() const;

@@ -10,9 +10,9 @@ namespace {
 
 constexpr double kRad = std::numbers::pi / 180.0;
 constexpr std::size_t kUndoSteps = 200;
-constexpr double kMmPerWindow = 200.0;           // of a hand's way, when it pans by a window's height
-constexpr double kPixelsPerWindow = 900.0;       // the same for the mouse
-constexpr double kThrowDegPerS = 12.0;           // slower releases do not glide on
+constexpr double kMmPerWindow = 200.0;      // of a hand's way, when it pans by a window's height
+constexpr double kPixelsPerWindow = 900.0;  // the same for the mouse
+constexpr double kThrowDegPerS = 12.0;      // slower releases do not glide on
 constexpr double kRestDegPerS = 1.0;
 constexpr double kLongestStepS = 1.0 / 60.0;     // a late frame may not make up for its lateness in one jump
 constexpr double kMostPendingRad = 20.0 * kRad;  // a hand that is faster than the object slips on it
@@ -66,10 +66,15 @@ void Navigator::remember() {
 
 /// True when `control` may steer now. A higher one takes the view away from a lower one.
 bool Navigator::claim(Control control, TimestampNs now) {
-  const auto rank = [&](Control c) { return std::find(mapping_.priority.begin(), mapping_.priority.end(), c) - mapping_.priority.begin(); };
+  const auto rank = [&](Control c) {
+    return std::find(mapping_.priority.begin(), mapping_.priority.end(), c) - mapping_.priority.begin();
+  };
   if (rank(control) == static_cast<std::ptrdiff_t>(mapping_.priority.size())) return false;
-  const auto at_desk = [](Control c) { return c == Control::kMouse || c == Control::kKeyboard; };  // one person's two hands
-  if (control_ != Control::kNone && control_ != control && rank(control) > rank(control_) && !(at_desk(control) && at_desk(control_)))
+  const auto at_desk = [](Control c) {
+    return c == Control::kMouse || c == Control::kKeyboard;
+  };  // one person's two hands
+  if (control_ != Control::kNone && control_ != control && rank(control) > rank(control_) &&
+      !(at_desk(control) && at_desk(control_)))
     return false;
   fresh_claim_ = control_ != control;
   if (fresh_claim_ && control != Control::kHands) {  // what hands had in flight ends where it is
@@ -105,7 +110,8 @@ void Navigator::glide_to(const ViewState& target, TimestampNs now) {
 
 void Navigator::advance_glide(TimestampNs now) {
   if (!glide_) return;
-  const double t = std::clamp(static_cast<double>(now - glide_->start) / static_cast<double>(glide_->duration), 0.0, 1.0);
+  const double t =
+      std::clamp(static_cast<double>(now - glide_->start) / static_cast<double>(glide_->duration), 0.0, 1.0);
   const double s = t * t * (3.0 - 2.0 * t);
   const ViewState &a = glide_->from, &b = glide_->to;
   view_.rotation = glm::normalize(glm::slerp(a.rotation, b.rotation, s));
@@ -246,7 +252,8 @@ void Navigator::begin_or_end_hand_modes(TimestampNs now) {
         remember();
         turn_to_next_side(kAxes[static_cast<std::size_t>(event.direction)], now);
       }
-      if (event.kind == GestureKind::kDwell && mapping_.hands.dwell == Action::kSelect) selected_m_ = hands_[h].cursor_m();
+      if (event.kind == GestureKind::kDwell && mapping_.hands.dwell == Action::kSelect)
+        selected_m_ = hands_[h].cursor_m();
       if (event.kind == GestureKind::kDwell && mapping_.hands.dwell == Action::kReset && mode_ == HandMode::kNone &&
           claim(Control::kHands, now))
         reset(now);
@@ -264,14 +271,17 @@ void Navigator::begin_or_end_hand_modes(TimestampNs now) {
     needs_new_grab_ = true;
     wanted = HandMode::kNone;
   }
-  const auto leads = [&](std::size_t h) { return wanted == HandMode::kPinch ? hands_[h].pinching() : hands_[h].grabbing(); };
+  const auto leads = [&](std::size_t h) {
+    return wanted == HandMode::kPinch ? hands_[h].pinching() : hands_[h].grabbing();
+  };
   const bool same_hand = wanted == HandMode::kTwoGrabs || wanted == HandMode::kNone || leads(leading_);
   if (wanted == mode_ && same_hand) return;
   if (released && wanted == HandMode::kNone && mapping_.hands.grab == Action::kRotate && past_dead_zone_) {
     const glm::dvec3 v = hands_[leading_].velocity_mps() * 1e3 * mapping_.hands.turn_deg_per_mm;
     const double speed = std::hypot(v.x, v.y);
     if (speed > kThrowDegPerS && mapping_.hands.inertia_s > 0)
-      inertia_rad_per_s_ = kRad * std::min(1.0, mapping_.hands.fastest_turn_deg_per_s / speed) * glm::dvec3(-v.y, v.x, 0);
+      inertia_rad_per_s_ =
+          kRad * std::min(1.0, mapping_.hands.fastest_turn_deg_per_s / speed) * glm::dvec3(-v.y, v.x, 0);
   }
   mode_ = HandMode::kNone;
   past_dead_zone_ = rolls_ = zooms_ = false;

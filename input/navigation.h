@@ -74,13 +74,13 @@ class Navigator {
   std::optional<HeadFrame> kept_head_;
   std::array<GestureRecognizer, 2> hands_;
   HandMode mode_ = HandMode::kNone;
-  std::size_t leading_ = 0;             // the hand of one-handed modes
-  bool needs_new_grab_ = false;         // after two hands, a remaining fist does not turn the object
+  std::size_t leading_ = 0;      // the hand of one-handed modes
+  bool needs_new_grab_ = false;  // after two hands, a remaining fist does not turn the object
   bool past_dead_zone_ = false, rolls_ = false, zooms_ = false;
-  glm::dvec3 anchor_m_{0.0};            // of the leading hand, moves with it
+  glm::dvec3 anchor_m_{0.0};               // of the leading hand, moves with it
   double span_m_ = 0.0, angle_rad_ = 0.0;  // of the line between two hands, where it was last used
-  glm::dvec3 pending_turn_rad_{0.0};    // asked for by hands, spent at a bounded speed
-  double pending_zoom_ = 0.0;           // logarithm
+  glm::dvec3 pending_turn_rad_{0.0};       // asked for by hands, spent at a bounded speed
+  double pending_zoom_ = 0.0;              // logarithm
   glm::dvec3 inertia_rad_per_s_{0.0};
   bool moving_ = false;
   std::optional<glm::dvec3> selected_m_;

@@ -18,8 +18,8 @@ Result<glm::dvec3> three_numbers(std::string_view key, std::string_view value) {
     const auto [stop, error] = std::from_chars(at, end, numbers[i]);
     const bool separated = i < 2 ? stop != end && *stop == '/' : stop == end;
     if (error != std::errc{} || !separated || !(std::abs(numbers[i]) <= kFarthest))
-      return fail(ErrorKind::kUsage, "input: {}={} found, expected {}=X/Y/Z, three numbers within {:.0f}",
-                  key, value, key, kFarthest);
+      return fail(ErrorKind::kUsage, "input: {}={} found, expected {}=X/Y/Z, three numbers within {:.0f}", key, value,
+                  key, kFarthest);
     at = stop + (i < 2 ? 1 : 0);
   }
   return glm::dvec3(numbers[0], numbers[1], numbers[2]);

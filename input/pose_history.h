@@ -15,8 +15,8 @@ struct PositionSample {
   glm::dvec3 position_m{0.0};
 };
 
-/// Keeps the last 64 samples. Velocity is the slope of a least-squares line over `window_ns`, which is best for slow and
-/// medium head speeds (Bailer et al. 2015). One thread.
+/// Keeps the last 64 samples. Velocity is the slope of a least-squares line over `window_ns`, which is best for slow
+/// and medium head speeds (Bailer et al. 2015). One thread.
 class PositionHistory {
  public:
   explicit PositionHistory(TimestampNs window_ns = 100'000'000) : window_ns_(window_ns) {}

@@ -24,12 +24,23 @@ json hand_json(const HandFrame& hand) {
   json joints = json::array();
   for (std::size_t i = 0; i < hand.joints.size(); ++i)
     if (hand.joints[i].valid)
-      joints.push_back({{"j", i}, {"at", numbers(hand.joints[i].pose.position_m)}, {"q", numbers(hand.joints[i].pose.rotation)},
-                        {"r", hand.joints[i].radius_m}, {"tracked", hand.joints[i].tracked}});
-  return {{"t", hand.time}, {"id", hand.id}, {"side", static_cast<int>(hand.chirality)}, {"valid", hand.valid},
-          {"tracked", hand.tracked}, {"confidence", hand.confidence}, {"palm", numbers(hand.palm.position_m)},
-          {"q", numbers(hand.palm.rotation)}, {"v", numbers(hand.velocity_mps)}, {"grab", hand.grab_strength},
-          {"pinch", hand.pinch_distance_m}, {"joints", joints}};
+      joints.push_back({{"j", i},
+                        {"at", numbers(hand.joints[i].pose.position_m)},
+                        {"q", numbers(hand.joints[i].pose.rotation)},
+                        {"r", hand.joints[i].radius_m},
+                        {"tracked", hand.joints[i].tracked}});
+  return {{"t", hand.time},
+          {"id", hand.id},
+          {"side", static_cast<int>(hand.chirality)},
+          {"valid", hand.valid},
+          {"tracked", hand.tracked},
+          {"confidence", hand.confidence},
+          {"palm", numbers(hand.palm.position_m)},
+          {"q", numbers(hand.palm.rotation)},
+          {"v", numbers(hand.velocity_mps)},
+          {"grab", hand.grab_strength},
+          {"pinch", hand.pinch_distance_m},
+          {"joints", joints}};
 }
 
 json head_json(const HeadFrame& head) {
@@ -63,7 +74,8 @@ class LineReader {
     return 0.0;
   }
   std::int64_t whole(const json& value, const char* name, std::int64_t low, std::int64_t high) {
-    if (value.is_number_integer() && (!value.is_number_unsigned() || value.get<std::uint64_t>() <= std::uint64_t{9'000'000'000'000'000'000}) &&
+    if (value.is_number_integer() &&
+        (!value.is_number_unsigned() || value.get<std::uint64_t>() <= std::uint64_t{9'000'000'000'000'000'000}) &&
         value.get<std::int64_t>() >= low && value.get<std::int64_t>() <= high)
       return value.get<std::int64_t>();
     complain(fmt::format("{} is not a whole number of {} to {}", name, low, high));
@@ -131,7 +143,10 @@ HandFrame read_hand(LineReader& read, const json& object) {
   for (const json& item : read.list(object, "joints", kHandJointCount)) {
     HandJointPose& joint =
         hand.joints[static_cast<std::size_t>(read.whole(read.get(item, "j"), "j", 0, kHandJointCount - 1))];
-    joint = {{read.vector(item, "at"), read.turn(item, "q")}, read.real(read.get(item, "r"), "r"), true, read.truth(item, "tracked")};
+    joint = {{read.vector(item, "at"), read.turn(item, "q")},
+             read.real(read.get(item, "r"), "r"),
+             true,
+             read.truth(item, "tracked")};
   }
   return hand;
 }
@@ -156,7 +171,8 @@ InputEvent read_event(LineReader& read, const json& object) {
     const auto by = read.reals<2>(read.get(object, "by"), "by");
     event.motion = {by[0], by[1]};
   }
-  if (event.kind == EventKind::kButton) event.button = static_cast<MouseButton>(read.whole(read.get(object, "button"), "button", 0, 2));
+  if (event.kind == EventKind::kButton)
+    event.button = static_cast<MouseButton>(read.whole(read.get(object, "button"), "button", 0, 2));
   if (event.kind == EventKind::kButton || event.kind == EventKind::kKey) event.down = read.truth(object, "down");
   if (event.kind == EventKind::kKey) {
     const json& key = read.get(object, "key");
@@ -227,7 +243,8 @@ std::string record_line(const RecordedFrame& recorded) {
   for (const InputEvent& event : frame.events) out["events"].push_back(event_json(event));
   for (const HandFrame& hand : frame.hands) out["hands"].push_back(hand_json(hand));
   for (const HeadFrame& head : frame.heads) out["heads"].push_back(head_json(head));
-  if (frame.puck) out["puck"] = {{"t", frame.puck->time}, {"push", numbers(frame.puck->push)}, {"twist", numbers(frame.puck->twist)}};
+  if (frame.puck)
+    out["puck"] = {{"t", frame.puck->time}, {"push", numbers(frame.puck->push)}, {"twist", numbers(frame.puck->twist)}};
   return dump_json(out);
 }
 
@@ -240,7 +257,8 @@ Result<std::vector<RecordedFrame>> parse_recording(std::string_view text, std::s
     const std::string where = fmt::format("{}: line {}", source, line_number);
     auto object = parse_json(line, where);
     if (!object) return fail(ErrorKind::kConfig, "{}", object.error().message);
-    if (!object->is_object()) return fail(ErrorKind::kConfig, "{}: found {}, expected an object", where, object->type_name());
+    if (!object->is_object())
+      return fail(ErrorKind::kConfig, "{}: found {}, expected an object", where, object->type_name());
     if (frames.size() == kMostFrames) return fail(ErrorKind::kConfig, "{}: more than {} frames", where, kMostFrames);
     LineReader read;
     RecordedFrame frame = read_frame(read, *object);

@@ -19,6 +19,8 @@ inline Result<std::string> only_path_option(const InputConfig& config, std::stri
   return fail(ErrorKind::kUsage, "input {}: expected one file, as {}:FILE", source, source);
 }
 
-inline Result<std::string> read_source_text(const std::string& path) { return read_text_file(path, std::int64_t{8} << 20); }
+inline Result<std::string> read_source_text(const std::string& path) {
+  return read_text_file(path, std::int64_t{8} << 20);
+}
 
 }  // namespace dubsar

@@ -11,10 +11,10 @@ namespace dubsar {
 /// Axes of the screen: +X right, +Y up, +Z to the viewer.
 struct ViewState {
   glm::dquat rotation{1.0, 0.0, 0.0, 0.0};  ///< turns the object from its front view
-  double zoom = 1.0;                         ///< 1: as large as the display fits it
-  glm::dvec2 pan{0.0, 0.0};                  ///< of the object's centre, in window heights
-  double light_azimuth_deg = 315.0;          ///< clockwise from the upper side of the picture
-  double light_elevation_deg = 25.0;         ///< above the picture plane
+  double zoom = 1.0;                        ///< 1: as large as the display fits it
+  glm::dvec2 pan{0.0, 0.0};                 ///< of the object's centre, in window heights
+  double light_azimuth_deg = 315.0;         ///< clockwise from the upper side of the picture
+  double light_elevation_deg = 25.0;        ///< above the picture plane
 };
 
 /// Angle between two turns, 0..180 degrees.
@@ -25,7 +25,8 @@ inline double turn_between_deg(const glm::dquat& a, const glm::dquat& b) noexcep
 
 /// The turn of a rotation vector (axis times angle in radians).
 inline glm::dquat turn_of(const glm::dvec3& vector_rad) noexcept {
-  const double angle = std::sqrt(vector_rad.x * vector_rad.x + vector_rad.y * vector_rad.y + vector_rad.z * vector_rad.z);
+  const double angle =
+      std::sqrt(vector_rad.x * vector_rad.x + vector_rad.y * vector_rad.y + vector_rad.z * vector_rad.z);
   if (angle < 1e-12) return {1.0, 0.5 * vector_rad.x, 0.5 * vector_rad.y, 0.5 * vector_rad.z};
   const double s = std::sin(0.5 * angle) / angle;
   return {std::cos(0.5 * angle), s * vector_rad.x, s * vector_rad.y, s * vector_rad.z};

@@ -22,7 +22,9 @@ std::optional<glm::dvec3> place_of(const HeadFrame& head) {
   return head.left_eye_m ? head.left_eye_m : head.right_eye_m;
 }
 
-bool contains(const std::vector<std::uint32_t>& ids, std::uint32_t id) { return std::find(ids.begin(), ids.end(), id) != ids.end(); }
+bool contains(const std::vector<std::uint32_t>& ids, std::uint32_t id) {
+  return std::find(ids.begin(), ids.end(), id) != ids.end();
+}
 
 bool points_at_screen(const HandFrame& hand) {
   const glm::dvec3 fingers = hand.palm.rotation * glm::dvec3(0, 0, -1);
@@ -90,7 +92,8 @@ bool HandKeeper::may_enter(const HandFrame& hand, const Slot& other, std::span<c
   if (kept_head_m)
     for (const HeadFrame& head : heads) {
       const auto eyes = place_of(head);
-      if (eyes && glm::length(*eyes - *kept_head_m) > kSameHeadM && aside_m(hand, *eyes) + kHeadMarginM < aside_m(hand, *kept_head_m))
+      if (eyes && glm::length(*eyes - *kept_head_m) > kSameHeadM &&
+          aside_m(hand, *eyes) + kHeadMarginM < aside_m(hand, *kept_head_m))
         return false;
     }
   if (!other.taken) return true;
@@ -114,7 +117,12 @@ std::array<const HandFrame*, 2> HandKeeper::update(TimestampNs now, std::span<co
   for (const HandFrame& hand : hands)
     if (hand.valid && hand.tracked && count < left.size()) left[count++] = &hand;
   const auto take = [&](std::size_t slot, std::size_t i) {
-    slots_[slot] = {true, left[i]->id, left[i]->chirality, left[i]->palm.position_m, shoulder_of(*left[i]), now,
+    slots_[slot] = {true,
+                    left[i]->id,
+                    left[i]->chirality,
+                    left[i]->palm.position_m,
+                    shoulder_of(*left[i]),
+                    now,
                     std::move(slots_[slot].strangers)};
     kept[slot] = std::exchange(left[i], nullptr);
   };

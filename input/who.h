@@ -38,10 +38,10 @@ class HandKeeper {
   explicit HandKeeper(const HandZone& zone = {}) : zone_(zone) {}
 
   /// The kept hands, null where a slot's hand is not seen now. A hand is let in when it first shows itself inside the
-  /// zone, points roughly at the screen, belongs to the kept head rather than to another one (where heads are known) and,
-  /// as the second hand, is the other hand of a plausible pair: not crossed, 60 to 700 mm apart, not 300 mm behind, and
-  /// both arms come from shoulders of one body (back along the fingers). A slot is free again when its hand has been away
-  /// for 1.5 s.
+  /// zone, points roughly at the screen, belongs to the kept head rather than to another one (where heads are known)
+  /// and, as the second hand, is the other hand of a plausible pair: not crossed, 60 to 700 mm apart, not 300 mm
+  /// behind, and both arms come from shoulders of one body (back along the fingers). A slot is free again when its hand
+  /// has been away for 1.5 s.
   std::array<const HandFrame*, 2> update(TimestampNs now, std::span<const HandFrame> hands,
                                          std::span<const HeadFrame> heads, std::optional<glm::dvec3> kept_head_m);
 

@@ -29,7 +29,8 @@ Result<std::unique_ptr<InputSource>> make(const InputConfig& config, bool keys) 
   if (!config.options.empty())
     return fail(ErrorKind::kUsage, "input {}: option \"{}\" found, expected none", name, config.options.front().first);
   if (config.window == nullptr)
-    return fail(ErrorKind::kUnavailable, "input {}: there is no window to get it from; use scripted or replay without a window", name);
+    return fail(ErrorKind::kUnavailable,
+                "input {}: there is no window to get it from; use scripted or replay without a window", name);
   return std::make_unique<WindowSource>(config.window, keys);
 }
 
@@ -45,7 +46,8 @@ void WindowEvents::push(const InputEvent& event) {
     return;
   }
   if (queue.size() >= kMost) {
-    const auto motion = std::find_if(queue.begin(), queue.end(), [](const InputEvent& e) { return e.kind == EventKind::kMotion; });
+    const auto motion =
+        std::find_if(queue.begin(), queue.end(), [](const InputEvent& e) { return e.kind == EventKind::kMotion; });
     queue.erase(motion == queue.end() ? queue.begin() : motion);
   }
   queue.push_back(event);

@@ -116,8 +116,8 @@ void ConsoleProgress::print_line(bool finished) {
   const double rate = elapsed > 0.0 ? static_cast<double>(done) / elapsed : 0.0;
   const double eta = finished ? 0.0 : estimate_remaining_s(done, total_, elapsed);
   if (style_ == ProgressStyle::kJson) {
-    nlohmann::json line{{"stage", stage_},     {"done", done},   {"total", total_},
-                        {"unit", unit_},       {"percent", percent}, {"rate_per_s", rate},
+    nlohmann::json line{{"stage", stage_},      {"done", done},         {"total", total_},
+                        {"unit", unit_},        {"percent", percent},   {"rate_per_s", rate},
                         {"elapsed_s", elapsed}, {"finished", finished}, {"rss_mib", peak_rss_mib()}};
     line["eta_s"] = eta >= 0.0 ? nlohmann::json(eta) : nlohmann::json(nullptr);
     put(line.dump() + "\n");
@@ -128,7 +128,7 @@ void ConsoleProgress::print_line(bool finished) {
     const int filled = total_ > 0 ? static_cast<int>(kWidth * percent / 100.0) : 0;
     const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
                             std::string(static_cast<std::size_t>(kWidth - filled), '.');
-    const std::string tail = finished    ? fmt::format("{:.2f} s", elapsed)
+    const std::string tail = finished     ? fmt::format("{:.2f} s", elapsed)
                              : eta >= 0.0 ? "ETA " + duration(eta)
                                           : "ETA -:--";
     put(fmt::format("\r\x1b[K{:<12} [{}] {:3.0f} %  {}{}/s  {}", stage_, bar, percent, with_prefix(rate), unit_, tail));

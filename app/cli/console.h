@@ -45,11 +45,11 @@ class ConsoleProgress final : public Progress {
   bool quiet_;
   std::mutex mutex_;
   std::condition_variable_any changed_;
-  std::string stage_, unit_;        // guarded by mutex_
-  std::int64_t total_ = 0;          // guarded by mutex_
-  double started_s_ = 0.0;          // guarded by mutex_
-  bool active_ = false;             // guarded by mutex_
-  bool line_open_ = false;          // guarded by mutex_
+  std::string stage_, unit_;  // guarded by mutex_
+  std::int64_t total_ = 0;    // guarded by mutex_
+  double started_s_ = 0.0;    // guarded by mutex_
+  bool active_ = false;       // guarded by mutex_
+  bool line_open_ = false;    // guarded by mutex_
   std::atomic<std::int64_t> shown_done_{0};
   std::jthread refresher_;
 };

@@ -43,7 +43,9 @@ Result<ImportOptions> parse_input_options(const std::string& path, const InputOp
   RawSpec raw;
   DUBSAR_ASSIGN(raw.dims, parse_dims(texts.dims));
   const auto type = parse_scalar_type(texts.type);
-  if (!type) return fail(ErrorKind::kUsage, "--type \"{}\" is not known, expected uint8, int16, float32 and the like", texts.type);
+  if (!type)
+    return fail(ErrorKind::kUsage, "--type \"{}\" is not known, expected uint8, int16, float32 and the like",
+                texts.type);
   raw.type = *type;
   DUBSAR_ASSIGN(raw.order, parse_byte_order(texts.endian));
   raw.skip = texts.skip;

@@ -66,8 +66,10 @@ Result<TriMesh> load_exa(const MeshRequest& request, Progress& progress) {
   for (const std::string& wanted : request.partitions) {
     DUBSAR_ASSIGN(const MeshOptions options, mesh_options(model, wanted, request.fill_holes));
     DUBSAR_ASSIGN(TriMesh part, make_tri_mesh(model, options));
-    if (joined) append(*joined, part);
-    else joined = std::move(part);
+    if (joined)
+      append(*joined, part);
+    else
+      joined = std::move(part);
   }
   return std::move(*joined);
 }
@@ -91,8 +93,10 @@ Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress) {
     if (mesh.partition.empty() || std::find(mesh.partition.begin(), mesh.partition.end(), id) == mesh.partition.end())
       return no_such_partition(wanted, mesh.partitions);
     TriMesh part = select_partition(mesh, id);
-    if (joined) append(*joined, part);
-    else joined = std::move(part);
+    if (joined)
+      append(*joined, part);
+    else
+      joined = std::move(part);
   }
   return std::move(*joined);
 }

@@ -9,9 +9,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kCentreStep = 0.01;    // of a lens
-constexpr double kPitchStep = 5e-5;     // of the pitch: about a tenth of a view over a panel
-constexpr double kSlopeStep = 2e-3;     // of the slope
+constexpr double kCentreStep = 0.01;  // of a lens
+constexpr double kPitchStep = 5e-5;   // of the pitch: about a tenth of a view over a panel
+constexpr double kSlopeStep = 2e-3;   // of the slope
 
 }  // namespace
 
@@ -38,7 +38,9 @@ Result<PanelTuner> PanelTuner::create(const fs::path& folder, const fs::path& sc
   return out;
 }
 
-std::string PanelTuner::text() const { return fmt::format("pitch={:.7g},slope={:.6g},center={:.4f}", now_.pitch, now_.slope, now_.center); }
+std::string PanelTuner::text() const {
+  return fmt::format("pitch={:.7g},slope={:.6g},center={:.4f}", now_.pitch, now_.slope, now_.center);
+}
 
 Result<void> PanelTuner::use() {
   DUBSAR_TRY(save_adjustment(scratch_, panel_, {now_.pitch, now_.slope, now_.center}));

@@ -17,7 +17,8 @@ class PanelTuner {
   static Result<PanelTuner> create(const std::filesystem::path& folder, const std::filesystem::path& scratch,
                                    const std::string& panel, const std::filesystem::path& calibration = {});
 
-  /// left, right: centre; up, down: pitch; page_up, page_down: slope; "s" saves for the user; "0" goes back to what was there.
+  /// left, right: centre; up, down: pitch; page_up, page_down: slope; "s" saves for the user; "0" goes back to what was
+  /// there.
   KeyAnswer key(const std::string& name);
   std::string text() const;  ///< the figures, as `dubsar displays --adjust` reads them
   bool saved() const noexcept { return saved_; }

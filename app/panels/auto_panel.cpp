@@ -15,8 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 bool is_auto(const std::pair<std::string, std::string>& option) {
-  return (option.first == "auto" && option.second.empty()) ||
-         (option.first == "panel" && option.second == "auto");
+  return (option.first == "auto" && option.second.empty()) || (option.first == "panel" && option.second == "auto");
 }
 
 std::string file_name_of(const FoundCalibration& found) {
@@ -32,8 +31,7 @@ Result<fs::path> file_of(const FoundCalibration& found, const fs::path& cache_fo
   if (is_file && found.place.find(',') == std::string::npos) return fs::path(found.place);
   if (cache_folder.empty())
     return fail(ErrorKind::kCannotCreate,
-                "panel {}: its calibration cannot be kept, neither XDG_CACHE_HOME nor HOME is set",
-                found.panel->name);
+                "panel {}: its calibration cannot be kept, neither XDG_CACHE_HOME nor HOME is set", found.panel->name);
   std::error_code error;
   fs::create_directories(cache_folder, error);
   const fs::path file = cache_folder / file_name_of(found);
@@ -57,8 +55,7 @@ std::string reasons_of(const CalibrationReport& report) {
   std::string out;
   for (const FoundCalibration& found : report.found)
     if (!found.panel) out += fmt::format("{}{}: {}", out.empty() ? "" : "; ", found.route, found.problem);
-  for (const auto& [route, why] : report.missing)
-    out += fmt::format("{}{}: {}", out.empty() ? "" : "; ", route, why);
+  for (const auto& [route, why] : report.missing) out += fmt::format("{}{}: {}", out.empty() ? "" : "; ", route, why);
   return out;
 }
 
@@ -81,27 +78,22 @@ Result<std::string> choose_panel_options(const PanelFacts& facts, std::span<cons
     const auto same_unit = [&](const FoundCalibration* unit) {
       return !unit->serial.empty() && (unit->serial == each.edid->name || unit->serial == each.edid->serial);
     };
-    if (const auto own = std::find_if(units.begin(), units.end(), same_unit);
-        own != units.end() && units.size() > 1)
+    if (const auto own = std::find_if(units.begin(), units.end(), same_unit); own != units.end() && units.size() > 1)
       units = {*own};
   }
   if (units.size() + tracked.size() > 1) {
     std::string names;
     for (const FoundCalibration* unit : units)
       names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", unit->panel->name, unit->place);
-    for (const PanelProfile* panel : tracked)
-      names += fmt::format("{}{}", names.empty() ? "" : ", ", panel->name);
+    for (const PanelProfile* panel : tracked) names += fmt::format("{}{}", names.empty() ? "" : ", ", panel->name);
     return fail(ErrorKind::kUsage,
-                "several panels are here: {}; expected panel=NAME or calibration=FILE instead of auto",
-                names);
+                "several panels are here: {}; expected panel=NAME or calibration=FILE instead of auto", names);
   }
   if (!tracked.empty()) return "panel=" + tracked[0]->name;
   if (units.empty() && !looking_glass.empty())
-    return fail(ErrorKind::kUnavailable,
-                "a Looking Glass is connected ({}), but its calibration was not found: {}", looking_glass,
-                reasons_of(facts.calibrations));
-  if (units.empty())
-    return fail(ErrorKind::kUnavailable, "no panel was found: {}", reasons_of(facts.calibrations));
+    return fail(ErrorKind::kUnavailable, "a Looking Glass is connected ({}), but its calibration was not found: {}",
+                looking_glass, reasons_of(facts.calibrations));
+  if (units.empty()) return fail(ErrorKind::kUnavailable, "no panel was found: {}", reasons_of(facts.calibrations));
   DUBSAR_ASSIGN(const fs::path file, file_of(*units[0], cache_folder));
   return fmt::format("panel={},calibration={}", units[0]->panel->name, file.string());
 }

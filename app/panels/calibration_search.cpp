@@ -37,16 +37,14 @@ void search_storage(const CalibrationSearch& search, std::span<const PanelProfil
                     CalibrationReport& report) {
   const std::vector<fs::path> files = find_calibration_files(search.mounts);
   for (const fs::path& file : files)
-    report.found.push_back(
-        judge("usb_storage", file.string(), read_text_file(file, kMaxCalibrationBytes), profiles));
+    report.found.push_back(judge("usb_storage", file.string(), read_text_file(file, kMaxCalibrationBytes), profiles));
   if (!files.empty()) return;
   std::string places;
   for (const fs::path& root : search.mounts)
     places += (places.empty() ? "" : ", ") + (root / "*/LKG_calibration/visual.json").string();
   report.missing.emplace_back(
-      "usb_storage", places.empty()
-                         ? "neither USER nor LOGNAME is set, so the folder of USB storage is not known"
-                         : fmt::format("nothing at {}; connect and mount the panel's USB storage", places));
+      "usb_storage", places.empty() ? "neither USER nor LOGNAME is set, so the folder of USB storage is not known"
+                                    : fmt::format("nothing at {}; connect and mount the panel's USB storage", places));
 }
 
 void search_hid(const CalibrationSearch& search, std::span<const PanelProfile> profiles, const Clock& clock,
@@ -63,12 +61,11 @@ void search_hid(const CalibrationSearch& search, std::span<const PanelProfile> p
                                  profiles));
   }
   if (search.hid.empty())
-    report.missing.emplace_back("usb_hid",
-                                "no Looking Glass of the first generation (USB 04d8:ef7e) is plugged in");
+    report.missing.emplace_back("usb_hid", "no Looking Glass of the first generation (USB 04d8:ef7e) is plugged in");
 }
 
-void search_bridge(const CalibrationSearch& search, std::span<const PanelProfile> profiles,
-                   const Clock& clock, CalibrationReport& report) {
+void search_bridge(const CalibrationSearch& search, std::span<const PanelProfile> profiles, const Clock& clock,
+                   CalibrationReport& report) {
   if (!search.bridge) {
     report.missing.emplace_back("bridge", "not asked");
     return;
@@ -77,9 +74,8 @@ void search_bridge(const CalibrationSearch& search, std::span<const PanelProfile
   if (!devices) {
     report.missing.emplace_back(
         "bridge",
-        fmt::format(
-            "Looking Glass Bridge does not answer at {} ({}); it is not needed where another route works",
-            search.bridge_place, devices.error().message));
+        fmt::format("Looking Glass Bridge does not answer at {} ({}); it is not needed where another route works",
+                    search.bridge_place, devices.error().message));
     return;
   }
   int panels = 0;
@@ -92,9 +88,9 @@ void search_bridge(const CalibrationSearch& search, std::span<const PanelProfile
     report.found.push_back(std::move(found));
   }
   if (panels == 0)
-    report.missing.emplace_back(
-        "bridge", fmt::format("Looking Glass Bridge at {} knows {} displays, none with a calibration",
-                              search.bridge_place, devices->size()));
+    report.missing.emplace_back("bridge",
+                                fmt::format("Looking Glass Bridge at {} knows {} displays, none with a calibration",
+                                            search.bridge_place, devices->size()));
 }
 
 }  // namespace
@@ -104,8 +100,7 @@ CalibrationSearch search_this_machine(int bridge_port, const Clock& clock) {
   search.mounts = mount_folders();
   for (const DeviceInfo& info : list_hid_devices()) {
     if (info.driver != "looking_glass") continue;
-    CalibrationSearch::HidUnit unit{
-        info.path, [path = info.path, &clock] { return open_hid(path, clock); }, {}};
+    CalibrationSearch::HidUnit unit{info.path, [path = info.path, &clock] { return open_hid(path, clock); }, {}};
     if (info.state != DeviceState::kUsable) unit.problem = fmt::format("{}; {}", info.reason, info.remedy);
     search.hid.push_back(std::move(unit));
   }

@@ -16,7 +16,8 @@ class InputLog {
   void record(bool wanted);
   /// One poll's input.
   void hear(TimestampNs at, const InputFrame& frame);
-  /// The session's own keys that a script or a recording pressed since the last call; those of a window do not come this way.
+  /// The session's own keys that a script or a recording pressed since the last call; those of a window do not come
+  /// this way.
   std::vector<std::string> take_keys();
   /// Lines for the `replay` source.
   std::string recording() const;

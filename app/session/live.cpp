@@ -24,11 +24,10 @@
 namespace dubsar::app {
 namespace {
 
-constexpr double kIdleS = 0.008;  // how long input may wait while nothing moves
+constexpr double kIdleS = 0.008;                            // how long input may wait while nothing moves
 constexpr auto kSteerEvery = std::chrono::milliseconds(8);  // whatever a picture takes
 constexpr TimestampNs kSecond = 1'000'000'000;
-constexpr TimestampNs kNoticeNs = 6 * kSecond, kFadeNs = kSecond, kHelpRefreshNs = kSecond / 2,
-                      kSettleNs = kSecond;
+constexpr TimestampNs kNoticeNs = 6 * kSecond, kFadeNs = kSecond, kHelpRefreshNs = kSecond / 2, kSettleNs = kSecond;
 constexpr std::size_t kRecent = 300;  // measurements that the figures on the help page come from
 constexpr int kMostFailures = 3;
 
@@ -77,7 +76,7 @@ class Live {
   const LiveOptions& options_;
   Progress& progress_;
   SteadyClock clock_;
-  ManualClock manual_;  // of simulated time; outlives the sources
+  ManualClock manual_;                  // of simulated time; outlives the sources
   std::unique_ptr<GlfwWindow> window_;  // goes last: all else has GL objects
   std::unique_ptr<Session> session_;
   std::unique_ptr<Overlay> overlay_;
@@ -286,8 +285,7 @@ void Live::update_overlay(TimestampNs now) {
     text.notice_opacity = 1.0;
   } else {
     text.notice = notice_;
-    text.notice_opacity =
-        std::clamp(static_cast<double>(kNoticeNs - age) / static_cast<double>(kFadeNs), 0.0, 1.0);
+    text.notice_opacity = std::clamp(static_cast<double>(kNoticeNs - age) / static_cast<double>(kFadeNs), 0.0, 1.0);
   }
   if (text == overlay_->text()) return;
   overlay_->set(std::move(text));
@@ -303,8 +301,7 @@ Result<void> Live::show(TimestampNs begun) {
   if (!options_.frames.empty() && (simulated() || out_.frames % options_.every == 0)) {
     DUBSAR_ASSIGN(const Image picture, window_->read());
     DUBSAR_TRY(write_png(
-        (options_.frames / fmt::format("frame-{:05}{}.png", out_.frames, session_->traits().file_suffix))
-            .string(),
+        (options_.frames / fmt::format("frame-{:05}{}.png", out_.frames, session_->traits().file_suffix)).string(),
         picture));
     ++out_.written;
   }
@@ -331,8 +328,7 @@ Result<void> Live::show(TimestampNs begun) {
 
 /// Scripts and recordings end a session that has no other input.
 bool Live::over(TimestampNs now) {
-  if (options_.longest_s > 0 && now - start_ >= static_cast<TimestampNs>(1e9 * options_.longest_s))
-    return true;
+  if (options_.longest_s > 0 && now - start_ >= static_cast<TimestampNs>(1e9 * options_.longest_s)) return true;
   const auto rows = sources_->rows();
   const bool waits_for_people =
       session_->input().endless() ||
@@ -384,8 +380,7 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
     report_ = session_->poll(at, (simulated() ? at : display_clock_.light(at)) + delay);
     for (const std::string& key : log_.take_keys()) use_key(key);
     if (report_.input_age) out_.input_age_ms.push_back(1e-6 * static_cast<double>(*report_.input_age));
-    out_.largest_turn_deg =
-        std::max(out_.largest_turn_deg, turn_between_deg(last_turn, report_.view.rotation));
+    out_.largest_turn_deg = std::max(out_.largest_turn_deg, turn_between_deg(last_turn, report_.view.rotation));
     last_turn = report_.view.rotation;
     update_overlay(at);
     drawn_ = false;

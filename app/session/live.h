@@ -31,25 +31,23 @@ struct LiveOptions {
   /// Whether the window covers a monitor. None: displays that need exact pixels do, on the monitor of
   /// `window.monitor`, else the one that has the panel's pixels; others do not.
   std::optional<bool> fullscreen;
-  std::vector<std::string>
-      displays;            ///< what the keys go through besides session.display; none: what fits the window
-  /// 0: real time. Else simulated time: this many steps a second, however long they take, exact views, and a picture at each
-  /// `every`-th step; the same script gives the same pictures on every machine.
+  std::vector<std::string> displays;  ///< what the keys go through besides session.display; none: what fits the window
+  /// 0: real time. Else simulated time: this many steps a second, however long they take, exact views, and a picture at
+  /// each `every`-th step; the same script gives the same pictures on every machine.
   double simulated_fps = 0.0;
-  double longest_s = 0.0;  ///< 0: until somebody ends it
-  double display_delay_s =
-      0.0;  ///< from the presentation of a picture to its light, beyond the monitor's scan
+  double longest_s = 0.0;          ///< 0: until somebody ends it
+  double display_delay_s = 0.0;    ///< from the presentation of a picture to its light, beyond the monitor's scan
   std::filesystem::path frames{};  ///< folder for frame-00000.png ..., what the window showed; empty: none
   int every = 1;                   ///< only each n-th frame becomes a file
   std::filesystem::path record{};  ///< recording of the input; empty: none
-  bool notices = true;  ///< a line for some seconds: how to get help and leave, which display this is now
+  bool notices = true;             ///< a line for some seconds: how to get help and leave, which display this is now
   std::function<KeyAnswer(const std::string& key)> keys;  ///< for keys that go down, but the session's own
   MakeInput make_input = dubsar::make_input;
 };
 
 struct LiveResult : OffscreenResult {  ///< times are real, or simulated
-  double fps = 0.0;     ///< of frames while things moved: from one presented picture to the next
-  std::string display;  ///< shown at the end
+  double fps = 0.0;                    ///< of frames while things moved: from one presented picture to the next
+  std::string display;                 ///< shown at the end
   std::vector<SourceRow> rows;
 };
 

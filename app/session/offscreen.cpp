@@ -16,17 +16,21 @@ namespace {
 constexpr double kSettleS = 1.0;  // glides end after the last hand is down
 
 Result<void> check(const OffscreenOptions& options) {
-  if (!(options.fps >= 1 && options.fps <= 240) || !(options.longest_s > 0 && options.longest_s <= 3600) || options.every < 1 ||
-      !(options.display_delay_s >= 0 && options.display_delay_s <= 0.1))
-    return fail(ErrorKind::kUsage, "view: {} frames a second for {} s with a display delay of {} s found, expected 1 to 240, up to 3600 s and 0 to 0.1 s",
+  if (!(options.fps >= 1 && options.fps <= 240) || !(options.longest_s > 0 && options.longest_s <= 3600) ||
+      options.every < 1 || !(options.display_delay_s >= 0 && options.display_delay_s <= 0.1))
+    return fail(ErrorKind::kUsage,
+                "view: {} frames a second for {} s with a display delay of {} s found, expected 1 to 240, up to 3600 s "
+                "and 0 to 0.1 s",
                 options.fps, options.longest_s, options.display_delay_s);
   if (options.inputs.empty())
-    return fail(ErrorKind::kUsage, "view: no input, expected --script FILE or --input with scripted:FILE or replay:FILE");
+    return fail(ErrorKind::kUsage,
+                "view: no input, expected --script FILE or --input with scripted:FILE or replay:FILE");
   if (options.frames.empty()) return {};
   std::error_code error;
   std::filesystem::create_directories(options.frames, error);
   if (error || !std::filesystem::is_directory(options.frames))
-    return fail(ErrorKind::kCannotCreate, "view: cannot create the folder {}: {}", options.frames.string(), error.message());
+    return fail(ErrorKind::kCannotCreate, "view: cannot create the folder {}: {}", options.frames.string(),
+                error.message());
   return {};
 }
 
@@ -34,8 +38,8 @@ Result<void> check(const OffscreenOptions& options) {
 
 double quantile(std::vector<double> values, double p) {
   if (values.empty()) return 0.0;
-  const auto rank = static_cast<std::ptrdiff_t>(std::clamp(std::ceil(p * static_cast<double>(values.size())) - 1.0, 0.0,
-                                                           static_cast<double>(values.size() - 1)));
+  const auto rank = static_cast<std::ptrdiff_t>(
+      std::clamp(std::ceil(p * static_cast<double>(values.size())) - 1.0, 0.0, static_cast<double>(values.size() - 1)));
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   return values[static_cast<std::size_t>(rank)];
 }

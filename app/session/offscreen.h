@@ -13,22 +13,22 @@ namespace dubsar::app {
 
 struct OffscreenOptions {
   SessionOptions session{};
-  std::vector<std::string> inputs;         ///< as make_input() reads them; mouse and keyboard need a window
+  std::vector<std::string> inputs;  ///< as make_input() reads them; mouse and keyboard need a window
   double fps = 30.0;
-  double longest_s = 60.0;                 ///< ends here, or 1 s after the last script or recording is over
-  double display_delay_s = 0.0;            ///< from the cameras to the eye, for the prediction of heads
-  std::filesystem::path frames{};          ///< folder for frame-00000.png ...; empty: none
-  int every = 1;                           ///< only each n-th frame becomes a file
-  std::filesystem::path record{};          ///< recording of the input; empty: none
+  double longest_s = 60.0;         ///< ends here, or 1 s after the last script or recording is over
+  double display_delay_s = 0.0;    ///< from the cameras to the eye, for the prediction of heads
+  std::filesystem::path frames{};  ///< folder for frame-00000.png ...; empty: none
+  int every = 1;                   ///< only each n-th frame becomes a file
+  std::filesystem::path record{};  ///< recording of the input; empty: none
 };
 
 struct OffscreenResult {
   int frames = 0, written = 0;
-  double seconds = 0.0;                    ///< of simulated time
+  double seconds = 0.0;  ///< of simulated time
   ViewState view{};
-  std::vector<double> input_age_ms;        ///< one for every frame that had new input, simulated time
-  std::vector<double> frame_cpu_ms;        ///< CPU time of draw(), all threads
-  double largest_turn_deg = 0.0;           ///< between two frames
+  std::vector<double> input_age_ms;  ///< one for every frame that had new input, simulated time
+  std::vector<double> frame_cpu_ms;  ///< CPU time of draw(), all threads
+  double largest_turn_deg = 0.0;     ///< between two frames
   std::vector<SourceState> sources;
 };
 

@@ -18,9 +18,9 @@ namespace dubsar::app {
 namespace {
 
 constexpr std::uint64_t kBytesPerViewPixel = 4;
-constexpr double kEyeStepMm = 0.05;            // what an eye may move before there is a new picture
-constexpr TimestampNs kRestNs = 150'000'000;   // before coarse views are made exact
-constexpr double kForget = 0.3;                // of the mean time that a view takes
+constexpr double kEyeStepMm = 0.05;           // what an eye may move before there is a new picture
+constexpr TimestampNs kRestNs = 150'000'000;  // before coarse views are made exact
+constexpr double kForget = 0.3;               // of the mean time that a view takes
 
 bool same(const ViewState& a, const ViewState& b) {
   return a.rotation == b.rotation && a.zoom == b.zoom && a.pan == b.pan && a.light_azimuth_deg == b.light_azimuth_deg &&
@@ -46,8 +46,8 @@ ShownRect shown_mm(const View& view) {
 
 }  // namespace
 
-glm::dmat4 screen_from_model(const Box& box, const ViewDirection& direction, const ViewState& view, double magnification,
-                             double window_height_mm, const glm::dvec2& middle_mm) {
+glm::dmat4 screen_from_model(const Box& box, const ViewDirection& direction, const ViewState& view,
+                             double magnification, double window_height_mm, const glm::dvec2& middle_mm) {
   const glm::dmat4 moved = glm::translate(glm::dmat4(1.0), glm::dvec3(middle_mm + view.pan * window_height_mm, 0.0));
   const glm::dmat4 zoomed = glm::scale(glm::dmat4(1.0), glm::dvec3(view.zoom));
   return moved * zoomed * glm::mat4_cast(view.rotation) * place_object(box, direction, {0, 0, 0}, magnification);
@@ -68,7 +68,7 @@ struct Session::Parts {
   double magnification = 1.0;
   InputMixer mixer;
   std::function<void(TimestampNs, const InputFrame&)> told;
-  std::mutex steering;                  // for the five below, and for writing `seen`, which sources look at while they are polled
+  std::mutex steering;  // for the five below, and for writing `seen`, which sources look at while they are polled
   Navigator navigator;
   HeadFollower head;
   TimestampNs steered = 0, newest_input = 0;
@@ -76,12 +76,12 @@ struct Session::Parts {
   ViewState seen;
   TimestampNs used_input = 0;
   TimestampNs now = 0, moved_at = 0;
-  Viewer viewer;                                   // of the last poll()
+  Viewer viewer;  // of the last poll()
   std::optional<std::pair<ViewState, Viewer>> painted;
-  std::vector<View> views;                         // painted, of the object
-  Shading shading;                                 // painted
+  std::vector<View> views;  // painted, of the object
+  Shading shading;          // painted
   int coarse = 0;
-  double exact_view_ms = 0.0;                      // what one exact view takes; 0: not known yet
+  double exact_view_ms = 0.0;  // what one exact view takes; 0: not known yet
 
   explicit Parts(const SessionOptions& given)
       : options(given), navigator(given.mapping, home(given)), head(follow(given)), seen(navigator.view()) {}
@@ -114,7 +114,8 @@ Result<void> Session::Parts::prepare(OutputSink& next) {
   if (traits.stereo_visual && !options.stereo_window)
     return fail(ErrorKind::kUnavailable, "display {}: needs a window with a stereo visual", traits.name);
   DUBSAR_TRY(check_memory("display", kBytesPerViewPixel * static_cast<std::uint64_t>(traits.view.width) *
-                                         static_cast<std::uint64_t>(traits.view.height) * static_cast<std::uint64_t>(traits.views)));
+                                         static_cast<std::uint64_t>(traits.view.height) *
+                                         static_cast<std::uint64_t>(traits.views)));
   DUBSAR_ASSIGN(ViewArray layers, ViewArray::create(traits.view.width, traits.view.height, traits.views));
   if (options.pattern)
     for (int i = 0; i < traits.views; ++i)
@@ -132,7 +133,9 @@ Result<void> Session::Parts::prepare(OutputSink& next) {
   head.set_rest(1e-3 * (options.viewer.centre_mm() + aside_mm));
   // The longest edge fits both ways, so that every side of the object does.
   const glm::dvec3 size = box.size();
-  magnification = options.magnification > 0 ? options.magnification : (1.0 - 2.0 * options.margin) * std::min(window.x, window.y) / std::max({size.x, size.y, size.z, 1e-9});
+  magnification = options.magnification > 0 ? options.magnification
+                                            : (1.0 - 2.0 * options.margin) * std::min(window.x, window.y) /
+                                                  std::max({size.x, size.y, size.z, 1e-9});
   return {};
 }
 
@@ -156,7 +159,8 @@ Session::~Session() = default;
 
 Result<std::unique_ptr<Session>> Session::create(const TriMesh& mesh, const SessionOptions& options) {
   if (!(options.margin >= 0 && options.margin <= 0.45) || options.samples < 1 || options.samples > 8)
-    return fail(ErrorKind::kUsage, "view: margin {} and {} samples found, expected 0 to 0.45 and 1 to 8", options.margin, options.samples);
+    return fail(ErrorKind::kUsage, "view: margin {} and {} samples found, expected 0 to 0.45 and 1 to 8",
+                options.margin, options.samples);
   DUBSAR_ASSIGN(PackedMesh packed, pack_mesh(mesh));
   if (!options.pattern && packed.triangles_of(options.shading.partitions) == 0)
     return fail(ErrorKind::kUsage, "view: none of the partitions asked for has triangles, so there is nothing to draw");
@@ -303,8 +307,8 @@ Result<void> Session::paint(const Surface& target) {
   if (!p.overlaid) {
     DUBSAR_ASSIGN(p.overlaid, ViewArray::create(array.width(), array.height(), array.layers()));
   }
-  glCopyImageSubData(array.coded(), GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, p.overlaid->coded(), GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, array.width(),
-                     array.height(), array.layers());
+  glCopyImageSubData(array.coded(), GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, p.overlaid->coded(), GL_TEXTURE_2D_ARRAY, 0, 0, 0,
+                     0, array.width(), array.height(), array.layers());
   DUBSAR_TRY(p.overlay->paint(*p.overlaid, p.window));
   return p.sink->compose(*p.overlaid, target);
 }

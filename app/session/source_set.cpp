@@ -69,9 +69,8 @@ void SourceSet::tick(TimestampNs now) {
     const Entry& entry = entries_[next_index_];
     if (entry.source != nullptr || entry.off) continue;
     attempt_ = Attempt{next_index_++,
-                       std::async(std::launch::async, [make = make_, spec = entry.spec, config = config_] {
-                         return make(spec, config);
-                       })};
+                       std::async(std::launch::async,
+                                  [make = make_, spec = entry.spec, config = config_] { return make(spec, config); })};
     return;
   }
   next_index_ = 0;
@@ -102,7 +101,8 @@ std::vector<SourceRow> SourceSet::rows() const {
     } else if (state) {
       row.health = state->freshness == Freshness::kLost ? SourceHealth::kLost : SourceHealth::kPresent;
       row.reason = state->note;
-      if (row.reason.empty() && row.health == SourceHealth::kLost) row.reason = "silent; it is used again when it comes back";
+      if (row.reason.empty() && row.health == SourceHealth::kLost)
+        row.reason = "silent; it is used again when it comes back";
     }
     out.push_back(std::move(row));
   }

@@ -27,8 +27,7 @@ struct SourceRow {
   std::string reason;  ///< of kMissing and kLost; what a present source wants to say
 };
 
-using MakeInput =
-    std::function<Result<std::unique_ptr<InputSource>>(std::string_view spec, const InputConfig&)>;
+using MakeInput = std::function<Result<std::unique_ptr<InputSource>>(std::string_view spec, const InputConfig&)>;
 
 /// One thread, except that missing sources are tried again in another one: opening a device may take its
 /// time.

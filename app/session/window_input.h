@@ -24,12 +24,10 @@ inline InputEvent to_input_event(const WindowEvent& event) {
       break;
   }
   out.motion = {event.x, event.y};
-  out.button = event.button == 0   ? MouseButton::kLeft
-               : event.button == 1 ? MouseButton::kMiddle
-                                   : MouseButton::kRight;
+  out.button = event.button == 0 ? MouseButton::kLeft : event.button == 1 ? MouseButton::kMiddle : MouseButton::kRight;
   out.down = event.down;
-  out.modifiers = static_cast<std::uint8_t>((event.shift ? kShift : 0) | (event.control ? kControl : 0) |
-                                            (event.alt ? kAlt : 0));
+  out.modifiers =
+      static_cast<std::uint8_t>((event.shift ? kShift : 0) | (event.control ? kControl : 0) | (event.alt ? kAlt : 0));
   out.key = event.key;
   return out;
 }

@@ -7,8 +7,8 @@
 
 namespace dubsar::app {
 
-Result<void> choose_place(std::string_view display, const std::filesystem::path& profile_folder, std::optional<bool> fullscreen,
-                          WindowOptions& window) {
+Result<void> choose_place(std::string_view display, const std::filesystem::path& profile_folder,
+                          std::optional<bool> fullscreen, WindowOptions& window) {
   DUBSAR_ASSIGN(const auto sink, make_sink(display, profile_folder));
   const SinkTraits traits = sink->traits();
   window.fullscreen = fullscreen.value_or(false);
@@ -37,8 +37,7 @@ std::vector<std::string> displays_for_window(const std::string& first, const Scr
   if (stereo) add("quad_buffer");
   if (const auto profiles = load_profiles(profile_folder))
     for (const PanelProfile& panel : *profiles)
-      if (panel.width_px == screen.width_px && panel.height_px == screen.height_px &&
-          (panel.sheet || panel.optics))
+      if (panel.width_px == screen.width_px && panel.height_px == screen.height_px && (panel.sheet || panel.optics))
         add("lenticular:" + panel.name);
   return out;
 }

@@ -109,8 +109,7 @@ std::vector<HelpSection> help_page(const Mapping& mapping) {
   };
   std::erase_if(out, [&](const HelpSection& s) {
     return s.rows.empty() || (s.title == "Mouse" && !listens(Control::kMouse)) ||
-           (s.title == "Keys" && !listens(Control::kKeyboard)) ||
-           (s.title == "Hands" && !listens(Control::kHands)) ||
+           (s.title == "Keys" && !listens(Control::kKeyboard)) || (s.title == "Hands" && !listens(Control::kHands)) ||
            (s.title == "Puck" && !listens(Control::kPuck));
   });
   return out;

@@ -31,8 +31,7 @@ struct Layout {
 std::size_t lines_of(const HelpSection& section, std::size_t glyphs, std::size_t second) {
   std::size_t lines = 2;
   for (const HelpRow& row : section.rows) {
-    const std::size_t start = std::max(second, row.what.size() + 1),
-                      room = glyphs > start + 8 ? glyphs - start : 8;
+    const std::size_t start = std::max(second, row.what.size() + 1), room = glyphs > start + 8 ? glyphs - start : 8;
     lines += row.does.size() <= room ? 1 : row.does.size() / (room - 4) + 1;  // words are not cut
   }
   return lines;
@@ -68,8 +67,7 @@ Layout arrange(const std::vector<HelpSection>& help, float width, float height) 
       if (glyphs < best.second + 24) continue;
       std::vector<std::size_t> lines;
       for (const HelpSection& section : help) lines.push_back(lines_of(section, glyphs - 2, best.second));
-      if (auto starts =
-              fill(lines, columns, static_cast<std::size_t>((height - 4 * kMargin) / (kLineStepPx * scale))))
+      if (auto starts = fill(lines, columns, static_cast<std::size_t>((height - 4 * kMargin) / (kLineStepPx * scale))))
         return {scale, column_width, best.second, *std::move(starts)};
     }
   return best;
@@ -84,9 +82,8 @@ void draw_section(const HelpSection& section, float second, float width) {
   const float left = ImGui::GetCursorPosX(), column = ImGui::GetColumnOffset();  // of the window
   for (const HelpRow& row : section.rows) {
     ImGui::TextUnformatted(row.what.c_str());
-    ImGui::SameLine(
-        left - column +
-        std::max(second, ImGui::CalcTextSize((row.what + " ").c_str()).x));  // counts from the column
+    ImGui::SameLine(left - column +
+                    std::max(second, ImGui::CalcTextSize((row.what + " ").c_str()).x));  // counts from the column
     ImGui::PushTextWrapPos(left + width);
     ImGui::TextColored(ImVec4(0.85f, 0.88f, 0.9f, 1.0f), "%s", row.does.c_str());
     ImGui::PopTextWrapPos();
@@ -105,8 +102,7 @@ void draw_help(const std::vector<HelpSection>& help, float width, float height) 
   ImGui::SetWindowFontScale(layout.scale * kLinePx / kFontPx);
   ImGui::Columns(static_cast<int>(layout.starts.size()), "columns", false);
   for (std::size_t i = 0; i < help.size(); ++i) {
-    if (i > 0 && std::find(layout.starts.begin(), layout.starts.end(), i) != layout.starts.end())
-      ImGui::NextColumn();
+    if (i > 0 && std::find(layout.starts.begin(), layout.starts.end(), i) != layout.starts.end()) ImGui::NextColumn();
     draw_section(help[i], static_cast<float>(layout.second) * glyph, layout.column_width - 2 * glyph);
   }
   ImGui::Columns(1);
@@ -115,8 +111,7 @@ void draw_help(const std::vector<HelpSection>& help, float width, float height) 
 }
 
 void draw_notice(const std::string& notice, double opacity, float width, float height) {
-  const float scale =
-      std::min(1.4f, (width - 4 * kMargin) / (static_cast<float>(notice.size() + 2) * kGlyphPx));
+  const float scale = std::min(1.4f, (width - 4 * kMargin) / (static_cast<float>(notice.size() + 2) * kGlyphPx));
   ImGui::PushStyleVar(ImGuiStyleVar_Alpha, static_cast<float>(std::clamp(opacity, 0.0, 1.0)));
   ImGui::SetNextWindowPos(ImVec2(0.5f * width, height - kMargin), ImGuiCond_Always, ImVec2(0.5f, 1.0f));
   ImGui::SetNextWindowBgAlpha(0.7f);
@@ -168,8 +163,7 @@ Result<void> Overlay::paint(ViewArray& layers, const glm::dvec2& window_mm) {
   for (int pass = 0; pass < 2; ++pass) {  // sizes that follow from text are known in the second
     ImGui::NewFrame();
     if (!text_.help.empty()) draw_help(text_.help, io.DisplaySize.x, io.DisplaySize.y);
-    if (!text_.notice.empty())
-      draw_notice(text_.notice, text_.notice_opacity, io.DisplaySize.x, io.DisplaySize.y);
+    if (!text_.notice.empty()) draw_notice(text_.notice, text_.notice_opacity, io.DisplaySize.x, io.DisplaySize.y);
     ImGui::Render();
   }
   const GlFramebuffer target = make_framebuffer();

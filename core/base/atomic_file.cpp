@@ -31,8 +31,8 @@ Result<AtomicFile> AtomicFile::create(const fs::path& target, std::int64_t expec
   file.target_ = target;
   std::random_device random;
   for (int attempt = 0; attempt < 16 && file.descriptor_ < 0; ++attempt) {
-    file.temporary_ = target.parent_path() /
-                      fmt::format(".{}.tmp-{}-{:08x}", target.filename().string(), ::getpid(), random());
+    file.temporary_ =
+        target.parent_path() / fmt::format(".{}.tmp-{}-{:08x}", target.filename().string(), ::getpid(), random());
     file.descriptor_ = ::open(file.temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file.descriptor_ < 0 && errno != EEXIST) break;
   }
@@ -110,8 +110,7 @@ Result<std::string> read_text_file(const fs::path& path, std::int64_t max_bytes)
   } closer{descriptor};
   struct stat info {};
   if (::fstat(descriptor, &info) != 0) return fail_errno(errno, fmt::format("cannot inspect {}", path.string()));
-  if (!S_ISREG(info.st_mode))
-    return fail(ErrorKind::kBadData, "{} is not a regular file, expected one", path.string());
+  if (!S_ISREG(info.st_mode)) return fail(ErrorKind::kBadData, "{} is not a regular file, expected one", path.string());
   if (info.st_size > max_bytes)
     return fail(ErrorKind::kBadData, "{} has {} bytes, expected at most {}", path.string(), info.st_size, max_bytes);
   std::string text(static_cast<std::size_t>(info.st_size), '\0');

@@ -10,7 +10,7 @@
 namespace dubsar {
 
 struct Budget {
-  std::uint64_t memory_bytes = 0;     ///< most that one object may take; 0: 80 % of MemAvailable
+  std::uint64_t memory_bytes = 0;       ///< most that one object may take; 0: 80 % of MemAvailable
   std::uint64_t max_dimension = 65535;  ///< a scanner has 3072; more is a damaged header
   std::uint64_t max_voxels = std::uint64_t{1} << 36;
 };
@@ -20,8 +20,8 @@ std::uint64_t available_memory_bytes();
 
 /// Checks that `dims` are 1..max_dimension each and their product times `element_bytes` fits the voxel count limit.
 /// Returns the number of elements. `what` names the object in the error text.
-Result<std::int64_t> check_dims(std::string_view what, std::span<const std::uint64_t> dims,
-                                std::uint64_t element_bytes, const Budget& budget = {});
+Result<std::int64_t> check_dims(std::string_view what, std::span<const std::uint64_t> dims, std::uint64_t element_bytes,
+                                const Budget& budget = {});
 
 /// Checks that `count` items of `item_bytes` on disk can be there when `bytes_left` bytes are left in the file.
 Result<void> check_count(std::string_view what, std::uint64_t count, std::uint64_t item_bytes,

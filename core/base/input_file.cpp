@@ -18,8 +18,7 @@ Result<InputFile> InputFile::open(const std::filesystem::path& path) {
   file.descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file.descriptor_ < 0) return fail_errno(errno, fmt::format("cannot open {}", path.string()));
   struct stat info {};
-  if (::fstat(file.descriptor_, &info) != 0)
-    return fail_errno(errno, fmt::format("cannot inspect {}", path.string()));
+  if (::fstat(file.descriptor_, &info) != 0) return fail_errno(errno, fmt::format("cannot inspect {}", path.string()));
   if (!S_ISREG(info.st_mode))
     return fail(ErrorKind::kBadData, "{} is {}, expected a regular file", path.string(),
                 S_ISDIR(info.st_mode) ? "a folder" : "a pipe, socket or device");
@@ -48,8 +47,9 @@ Result<void> InputFile::read_at(std::int64_t offset, std::span<std::byte> out) c
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return fail_errno(errno, fmt::format("cannot read {}", path_.string()));
     if (count == 0)
-      return fail(ErrorKind::kBadData, "{} ends at byte {}, expected {} more bytes: it was cut or is still being written",
-                  path_.string(), offset, out.size());
+      return fail(ErrorKind::kBadData,
+                  "{} ends at byte {}, expected {} more bytes: it was cut or is still being written", path_.string(),
+                  offset, out.size());
     out = out.subspan(static_cast<std::size_t>(count));
     offset += count;
   }

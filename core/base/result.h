@@ -53,10 +53,10 @@ tl::unexpected<Error> fail_errno(int error_number, std::string_view what);
   ((condition) ? static_cast<void>(0) : ::dubsar::check_failed(#condition, __FILE__, __LINE__))
 
 /// Evaluates an expression of type Result<T>; returns its error from the enclosing function, if any.
-#define DUBSAR_TRY(expression)                                                                          \
-  do {                                                                                                  \
-    if (auto dubsar_result_ = (expression); !dubsar_result_)                                            \
-      return ::tl::unexpected<::dubsar::Error>(std::move(dubsar_result_).error());                      \
+#define DUBSAR_TRY(expression)                                                     \
+  do {                                                                             \
+    if (auto dubsar_result_ = (expression); !dubsar_result_)                       \
+      return ::tl::unexpected<::dubsar::Error>(std::move(dubsar_result_).error()); \
   } while (false)
 
 #define DUBSAR_CONCAT_INNER(a, b) a##b
@@ -64,9 +64,9 @@ tl::unexpected<Error> fail_errno(int error_number, std::string_view what);
 /// `DUBSAR_ASSIGN(auto volume, read_volume(path));`
 #define DUBSAR_ASSIGN(declaration, expression) \
   DUBSAR_ASSIGN_INNER(DUBSAR_CONCAT(dubsar_value_, __LINE__), declaration, expression)
-#define DUBSAR_ASSIGN_INNER(name, declaration, expression)                        \
-  auto name = (expression);                                                       \
-  if (!name) return ::tl::unexpected<::dubsar::Error>(std::move(name).error());   \
+#define DUBSAR_ASSIGN_INNER(name, declaration, expression)                      \
+  auto name = (expression);                                                     \
+  if (!name) return ::tl::unexpected<::dubsar::Error>(std::move(name).error()); \
   declaration = *std::move(name)
 
 }  // namespace dubsar

@@ -20,13 +20,13 @@ std::string lower_trimmed(std::string_view text) {
 
 std::optional<double> mm_per_unit(std::string_view unit) {
   static constexpr std::array<std::pair<std::string_view, double>, 34> kUnits{{
-      {"m", 1e3},           {"meter", 1e3},        {"meters", 1e3},      {"metre", 1e3},      {"metres", 1e3},
-      {"cm", 10.0},         {"centimeter", 10.0},  {"centimeters", 10.0},{"centimetre", 10.0},{"centimetres", 10.0},
-      {"mm", 1.0},          {"millimeter", 1.0},   {"millimeters", 1.0}, {"millimetre", 1.0}, {"millimetres", 1.0},
-      {"um", 1e-3},         {"\xc2\xb5m", 1e-3},   {"\xce\xbcm", 1e-3},  {"\xb5m", 1e-3},     {"micron", 1e-3},
-      {"microns", 1e-3},    {"micrometer", 1e-3},  {"micrometers", 1e-3},{"micrometre", 1e-3},{"micrometres", 1e-3},
-      {"\\u00b5m", 1e-3},   {"nm", 1e-6},          {"nanometer", 1e-6},  {"nanometers", 1e-6},{"nanometre", 1e-6},
-      {"nanometres", 1e-6}, {"in", 25.4},          {"inch", 25.4},       {"inches", 25.4},
+      {"m", 1e3},           {"meter", 1e3},       {"meters", 1e3},       {"metre", 1e3},       {"metres", 1e3},
+      {"cm", 10.0},         {"centimeter", 10.0}, {"centimeters", 10.0}, {"centimetre", 10.0}, {"centimetres", 10.0},
+      {"mm", 1.0},          {"millimeter", 1.0},  {"millimeters", 1.0},  {"millimetre", 1.0},  {"millimetres", 1.0},
+      {"um", 1e-3},         {"\xc2\xb5m", 1e-3},  {"\xce\xbcm", 1e-3},   {"\xb5m", 1e-3},      {"micron", 1e-3},
+      {"microns", 1e-3},    {"micrometer", 1e-3}, {"micrometers", 1e-3}, {"micrometre", 1e-3}, {"micrometres", 1e-3},
+      {"\\u00b5m", 1e-3},   {"nm", 1e-6},         {"nanometer", 1e-6},   {"nanometers", 1e-6}, {"nanometre", 1e-6},
+      {"nanometres", 1e-6}, {"in", 25.4},         {"inch", 25.4},        {"inches", 25.4},
   }};
   const std::string key = lower_trimmed(unit);
   for (const auto& [name, mm] : kUnits)
@@ -41,8 +41,8 @@ Result<double> parse_length_mm(std::string_view text) {
   const auto [end, error] = std::from_chars(compact.data(), last, value);
   const auto unit = mm_per_unit(std::string_view(end, static_cast<std::size_t>(last - end)));
   if (error != std::errc() || !unit || !std::isfinite(value))
-    return fail(ErrorKind::kUsage, "length \"{}\" not understood, expected a number with a unit such as 38um or 0.038mm",
-                text);
+    return fail(ErrorKind::kUsage,
+                "length \"{}\" not understood, expected a number with a unit such as 38um or 0.038mm", text);
   return value * *unit;
 }
 

@@ -13,7 +13,8 @@ class BitWriter {
   /// The lowest `bits` (1..32) bits of `value`.
   void put(std::uint32_t value, int bits) {
     pending_ |= std::uint64_t{value & static_cast<std::uint32_t>((std::uint64_t{1} << bits) - 1)} << filled_;
-    for (filled_ += bits; filled_ >= 8; filled_ -= 8, pending_ >>= 8) bytes_.push_back(static_cast<char>(pending_ & 255));
+    for (filled_ += bits; filled_ >= 8; filled_ -= 8, pending_ >>= 8)
+      bytes_.push_back(static_cast<char>(pending_ & 255));
   }
   /// The bytes so far; the last is filled up with 0 bits.
   std::string take() {

@@ -52,14 +52,15 @@ std::string exa_head(std::span<const ExaBlock> blocks, std::uint16_t major, std:
 
 Result<std::uint64_t> exa_head_bytes(std::string_view prelude, std::uint64_t file_bytes) {
   if (!prelude.starts_with(kExaMagic))
-    return fail(ErrorKind::kBadData, "exa: the file does not start with the EXA mark, expected a file that dubsar wrote");
+    return fail(ErrorKind::kBadData,
+                "exa: the file does not start with the EXA mark, expected a file that dubsar wrote");
   ByteReader reader(prelude.substr(kExaMagic.size()));
   const auto major = reader.little<std::uint16_t>();
   reader.little<std::uint16_t>();
   const auto blocks = reader.little<std::uint32_t>();
   const auto announced = reader.little<std::uint64_t>();
-  if (!reader.ok()) return fail(ErrorKind::kBadData, "exa: {} bytes found, the head alone needs {}", prelude.size(),
-                                kExaPreludeBytes);
+  if (!reader.ok())
+    return fail(ErrorKind::kBadData, "exa: {} bytes found, the head alone needs {}", prelude.size(), kExaPreludeBytes);
   if (major != kExaMajor)
     return fail(ErrorKind::kBadData, "exa: format version {} found, expected {}; it needs another dubsar", major,
                 kExaMajor);
@@ -107,7 +108,8 @@ Result<ExaTable> parse_exa_head(std::string_view head, std::uint64_t file_bytes)
 Result<std::string_view> exa_block(std::string_view file, const ExaRow& row) {
   const std::string_view bytes = file.substr(row.offset, row.length);
   if (bytes.size() != row.length || exa_checksum(bytes) != row.checksum)
-    return fail(ErrorKind::kBadData, "exa: the checksum of block \"{}\" is wrong: the file is damaged", shown(row.type));
+    return fail(ErrorKind::kBadData, "exa: the checksum of block \"{}\" is wrong: the file is damaged",
+                shown(row.type));
   return bytes;
 }
 

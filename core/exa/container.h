@@ -24,7 +24,10 @@
 
 namespace dubsar {
 
-inline constexpr std::string_view kExaMagic("\x89" "EXA\r\n\x1a\n", 8);
+inline constexpr std::string_view kExaMagic(
+    "\x89"
+    "EXA\r\n\x1a\n",
+    8);
 inline constexpr std::string_view kExaEnd = "EXA.END\n";
 inline constexpr std::uint16_t kExaMajor = 1, kExaMinor = 0;
 inline constexpr std::size_t kExaPreludeBytes = 24, kExaRowBytes = 32, kExaMaxBlocks = 256;
@@ -54,7 +57,8 @@ struct ExaTable {
 std::uint64_t exa_checksum(std::string_view bytes) noexcept;
 
 /// Head, table and its checksum for these blocks.
-std::string exa_head(std::span<const ExaBlock> blocks, std::uint16_t major = kExaMajor, std::uint16_t minor = kExaMinor);
+std::string exa_head(std::span<const ExaBlock> blocks, std::uint16_t major = kExaMajor,
+                     std::uint16_t minor = kExaMinor);
 
 /// Bytes of the head of a file that starts with `prelude` (kExaPreludeBytes of it). kBadData: not an EXA file, a later
 /// major version, too many blocks, a file of another size (truncated, appended to).

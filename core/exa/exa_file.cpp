@@ -79,8 +79,11 @@ Result<void> check_model(const SurfaceModel& model, const QuadMesh& rebuilt) {
   for (const glm::vec3& p : model.mesh.positions)
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       return fail(ErrorKind::kBadData, "exa: a vertex position is not finite, so the surface is not stored");
-  const auto largest = [](const std::vector<std::uint8_t>& v) { return v.empty() ? 0 : *std::max_element(v.begin(), v.end()); };
-  if (largest(a.shape) > kHighestShape || largest(a.ao) > kHighestAo || largest(model.quad_partition) > kHighestPartition)
+  const auto largest = [](const std::vector<std::uint8_t>& v) {
+    return v.empty() ? 0 : *std::max_element(v.begin(), v.end());
+  };
+  if (largest(a.shape) > kHighestShape || largest(a.ao) > kHighestAo ||
+      largest(model.quad_partition) > kHighestPartition)
     return fail(ErrorKind::kInternal, "exa: a shape class, ambient light or partition is out of range");
   for (const Partition& p : model.partitions)
     if (p.id < 0 || p.id > kHighestPartition)
@@ -136,7 +139,8 @@ Result<void> decode_attributes(const Blocks& blocks, SurfaceModel& model, Progre
   if (const ExaRow* row = blocks.row("KMAX")) {
     DUBSAR_ASSIGN(a.k_max, decode_curvatures(row->codec, blocks.bytes(*row), vertices, progress));
   }
-  const auto labels = [&](const char* type, std::size_t count, int highest, std::vector<std::uint8_t>& out) -> Result<void> {
+  const auto labels = [&](const char* type, std::size_t count, int highest,
+                          std::vector<std::uint8_t>& out) -> Result<void> {
     const ExaRow* row = blocks.row(type);
     if (!row) return {};
     DUBSAR_ASSIGN(out, decode_labels(row->codec, blocks.bytes(*row), count, highest, exa_block_name(type), progress));
@@ -168,7 +172,8 @@ std::string exa_block_name(std::string_view type) {
   for (const BlockName& block : kBlockNames)
     if (block.type == type) return std::string(block.name);
   std::string text(type);
-  std::replace_if(text.begin(), text.end(), [](char c) { return c < 32 || c > 126; }, '?');
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < 32 || c > 126; }, '?');
   return text;
 }
 
@@ -210,10 +215,10 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   add("SIGN", kExaRequired, {kCodecSigns, std::move(signs)});
   add("FACE", kExaRequired, encode_bits<std::uint8_t>(model.samples.joined, 1));
   add("OFFS", kExaRequired, encode_bits<std::uint16_t>(model.samples.offsets, model.samples.offset_bits));
-  const bool smoothed = exa_checksum({reinterpret_cast<const char*>(model.mesh.positions.data()),
-                                      model.mesh.positions.size() * sizeof(glm::vec3)}) !=
-                        exa_checksum({reinterpret_cast<const char*>(base.positions.data()),
-                                      base.positions.size() * sizeof(glm::vec3)});
+  const bool smoothed =
+      exa_checksum({reinterpret_cast<const char*>(model.mesh.positions.data()),
+                    model.mesh.positions.size() * sizeof(glm::vec3)}) !=
+      exa_checksum({reinterpret_cast<const char*>(base.positions.data()), base.positions.size() * sizeof(glm::vec3)});
   if (smoothed) {
     DUBSAR_ASSIGN(Encoded positions, encode_positions(model.mesh.positions, base.positions, progress));
     add("POSN", kExaRequired, std::move(positions));
@@ -335,14 +340,15 @@ Result<SurfaceModel> read_exa(const std::filesystem::path& path, Progress& progr
 Result<ExaInfo> read_exa_info(const std::filesystem::path& path) {
   DUBSAR_ASSIGN(const InputFile input, InputFile::open(path));
   const auto read = [&]() -> Result<ExaInfo> {
-    DUBSAR_ASSIGN(const std::string prelude, read_bytes(input, 0, std::min<std::int64_t>(input.size(), kExaPreludeBytes)));
+    DUBSAR_ASSIGN(const std::string prelude,
+                  read_bytes(input, 0, std::min<std::int64_t>(input.size(), kExaPreludeBytes)));
     const auto size = static_cast<std::uint64_t>(input.size());
     DUBSAR_ASSIGN(const std::uint64_t head_bytes, exa_head_bytes(prelude, size));
     DUBSAR_ASSIGN(const std::string head, read_bytes(input, 0, static_cast<std::int64_t>(head_bytes)));
     DUBSAR_ASSIGN(const ExaTable table, parse_exa_head(head, size));
     const auto text_of = [&](const ExaRow& row) -> Result<std::string> {
-      DUBSAR_ASSIGN(std::string bytes, read_bytes(input, static_cast<std::int64_t>(row.offset),
-                                                  static_cast<std::int64_t>(row.length)));
+      DUBSAR_ASSIGN(std::string bytes,
+                    read_bytes(input, static_cast<std::int64_t>(row.offset), static_cast<std::int64_t>(row.length)));
       DUBSAR_TRY(exa_block(bytes, {row.type, row.codec, row.flags, 0, row.length, row.checksum}));
       return bytes;
     };

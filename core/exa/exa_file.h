@@ -41,9 +41,9 @@ struct ExaInfo {
   ExaStats stats;
 };
 
-/// Rounds positions to 2^-10 grid steps, normals to 12 + 12 octahedral bits and curvatures to 2^-12 per grid step, which
-/// is what EXA stores compactly: call it before measuring or exporting what will be saved. Twice is the same as once.
-/// All threads.
+/// Rounds positions to 2^-10 grid steps, normals to 12 + 12 octahedral bits and curvatures to 2^-12 per grid step,
+/// which is what EXA stores compactly: call it before measuring or exporting what will be saved. Twice is the same as
+/// once. All threads.
 void quantise_for_exa(SurfaceModel& model);
 
 /// Writes the whole file or none; an old one stays until then. Errors: kInternal (arrays of wrong length, connectivity

@@ -51,8 +51,10 @@ class Members {
     if (!value) return v;
     if (value->size() != 3) wrong_ = key;
     for (std::size_t a = 0; a < 3 && value->size() == 3; ++a) {
-      if (!(*value)[a].is_number()) wrong_ = key;
-      else v[static_cast<int>(a)] = (*value)[a].get<double>();
+      if (!(*value)[a].is_number())
+        wrong_ = key;
+      else
+        v[static_cast<int>(a)] = (*value)[a].get<double>();
     }
     if (!finite(v)) wrong_ = key;
     return v;
@@ -108,7 +110,8 @@ Result<ExaHeader> parse_exa_header(std::string_view text) {
     size[a] = static_cast<std::uint64_t>(dims[a]);
   }
   DUBSAR_TRY(check_dims("exa", size, 1));
-  header.dims = {static_cast<std::int64_t>(size[0]), static_cast<std::int64_t>(size[1]), static_cast<std::int64_t>(size[2])};
+  header.dims = {static_cast<std::int64_t>(size[0]), static_cast<std::int64_t>(size[1]),
+                 static_cast<std::int64_t>(size[2])};
   if (bits < 1 || bits > 16) return fail(ErrorKind::kBadData, "exa: {} offset bits found, expected 1..16", bits);
   header.offset_bits = static_cast<int>(bits);
   for (int a = 0; a < 3; ++a)
@@ -120,7 +123,8 @@ Result<ExaHeader> parse_exa_header(std::string_view text) {
     const int digit = c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
     if (digit >= 0) header.mesh_sum = header.mesh_sum << 4 | static_cast<unsigned>(digit), ++used;
   }
-  if (used != 16 || sum.size() != 16) return fail(ErrorKind::kBadData, "exa: the mesh checksum in the header is broken");
+  if (used != 16 || sum.size() != 16)
+    return fail(ErrorKind::kBadData, "exa: the mesh checksum in the header is broken");
   return header;
 }
 
@@ -129,8 +133,12 @@ Result<std::string> exa_partitions_json(const std::vector<Partition>& partitions
   for (const Partition& p : partitions) {
     if (!std::isfinite(p.area_mm2) || !std::isfinite(p.volume_mm3))
       return fail(ErrorKind::kBadData, "exa: area or volume of partition {} is not finite", p.id);
-    table.push_back({{"id", p.id}, {"name", p.name}, {"part", p.part}, {"area_mm2", p.area_mm2},
-                     {"volume_mm3", p.volume_mm3}, {"watertight", p.watertight}});
+    table.push_back({{"id", p.id},
+                     {"name", p.name},
+                     {"part", p.part},
+                     {"area_mm2", p.area_mm2},
+                     {"volume_mm3", p.volume_mm3},
+                     {"watertight", p.watertight}});
   }
   return table.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
 }

@@ -15,7 +15,9 @@ namespace {
 constexpr std::int64_t kGrain = 1 << 14;
 constexpr int kNormalMax = (1 << kNormalBits) - 1;
 
-std::uint32_t zigzag(std::int32_t v) { return (static_cast<std::uint32_t>(v) << 1) ^ static_cast<std::uint32_t>(v >> 31); }
+std::uint32_t zigzag(std::int32_t v) {
+  return (static_cast<std::uint32_t>(v) << 1) ^ static_cast<std::uint32_t>(v >> 31);
+}
 std::int32_t unzigzag(std::uint32_t v) { return static_cast<std::int32_t>(v >> 1) ^ -static_cast<std::int32_t>(v & 1); }
 
 tl::unexpected<Error> unknown_codec(std::uint16_t codec, std::string_view what) {
@@ -53,9 +55,7 @@ bool same_bits(const glm::vec3& a, const glm::vec3& b) {
   return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
 }
 
-std::int64_t position_index(float coordinate) {
-  return std::llround(static_cast<double>(coordinate) / kPositionStep);
-}
+std::int64_t position_index(float coordinate) { return std::llround(static_cast<double>(coordinate) / kPositionStep); }
 float position_at(std::int64_t index) { return static_cast<float>(static_cast<double>(index) * kPositionStep); }
 
 constexpr float kLargestCurvature = 1024.0f;  // per grid step: far beyond any surface, keeps 23 bits
@@ -71,7 +71,8 @@ std::array<std::uint16_t, 2> octahedral(const glm::vec3& n) {
   if (!(sum > 0.0) || !std::isfinite(sum)) return {0, 0};
   p /= sum;
   if (p.z < 0.0)
-    p = glm::dvec3((1.0 - std::abs(p.y)) * (p.x < 0.0 ? -1.0 : 1.0), (1.0 - std::abs(p.x)) * (p.y < 0.0 ? -1.0 : 1.0), p.z);
+    p = glm::dvec3((1.0 - std::abs(p.y)) * (p.x < 0.0 ? -1.0 : 1.0), (1.0 - std::abs(p.x)) * (p.y < 0.0 ? -1.0 : 1.0),
+                   p.z);
   const auto index = [](double v) {
     return static_cast<std::uint16_t>(std::clamp<long>(std::lround((v * 0.5 + 0.5) * kNormalMax), 0, kNormalMax));
   };
@@ -82,7 +83,8 @@ glm::vec3 normal_at(const std::array<std::uint16_t, 2>& index) {
   glm::dvec3 p(index[0] * 2.0 / kNormalMax - 1.0, index[1] * 2.0 / kNormalMax - 1.0, 0.0);
   p.z = 1.0 - std::abs(p.x) - std::abs(p.y);
   if (p.z < 0.0)
-    p = glm::dvec3((1.0 - std::abs(p.y)) * (p.x < 0.0 ? -1.0 : 1.0), (1.0 - std::abs(p.x)) * (p.y < 0.0 ? -1.0 : 1.0), p.z);
+    p = glm::dvec3((1.0 - std::abs(p.y)) * (p.x < 0.0 ? -1.0 : 1.0), (1.0 - std::abs(p.x)) * (p.y < 0.0 ? -1.0 : 1.0),
+                   p.z);
   return glm::vec3(p / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z));
 }
 
@@ -171,7 +173,8 @@ Result<std::vector<glm::vec3>> decode_positions(std::uint16_t codec, std::string
   parallel_for(static_cast<std::int64_t>(base.size()), kGrain, [&](std::int64_t i) {
     const auto v = static_cast<std::size_t>(i);
     for (int axis = 0; axis < 3; ++axis)
-      positions[v][axis] = position_at(position_index(base[v][axis]) + unzigzag(differences[v][static_cast<std::size_t>(axis)]));
+      positions[v][axis] =
+          position_at(position_index(base[v][axis]) + unzigzag(differences[v][static_cast<std::size_t>(axis)]));
   });
   return positions;
 }
@@ -256,8 +259,7 @@ Result<std::vector<std::uint8_t>> decode_labels(std::uint16_t codec, std::string
   if (codec != kCodecExact) return unknown_codec(codec, what);
   DUBSAR_ASSIGN(std::vector<std::uint8_t> labels, unpacked<std::uint8_t>(bytes, count, progress));
   for (const std::uint8_t label : labels)
-    if (label > highest)
-      return fail(ErrorKind::kBadData, "exa: {} {} found, expected 0..{}", what, label, highest);
+    if (label > highest) return fail(ErrorKind::kBadData, "exa: {} {} found, expected 0..{}", what, label, highest);
   return labels;
 }
 

@@ -18,7 +18,7 @@ inline constexpr std::uint16_t kCodecBits = 1;   ///< numbers of N bits without 
 inline constexpr std::uint16_t kCodecExact = 2;  ///< the items themselves through the general entropy stage
 inline constexpr std::uint16_t kCodecFixed = 3;  ///< fixed-point differences through the general entropy stage
 
-inline constexpr double kPositionStep = 1.0 / 1024.0;  ///< grid steps; half of it is the largest error per axis
+inline constexpr double kPositionStep = 1.0 / 1024.0;   ///< grid steps; half of it is the largest error per axis
 inline constexpr double kCurvatureStep = 1.0 / 4096.0;  ///< per grid step; the flat class ends at 2^-6
 inline constexpr int kNormalBits = 12;                  ///< per octahedral coordinate: less than .06 degrees
 

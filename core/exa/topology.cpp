@@ -12,7 +12,7 @@
 
 namespace dubsar {
 namespace {
-constexpr int kTop = 5;  // spacing 32: raw signs of the top lattice cost 1/32768 bit per grid point
+constexpr int kTop = 5;              // spacing 32: raw signs of the top lattice cost 1/32768 bit per grid point
 constexpr std::size_t kStep = 4096;  // cells between looks at `progress`
 constexpr std::array<int, 7> kPhases{7, 6, 5, 3, 4, 2, 1};  // bit a: the point is new along axis a
 
@@ -140,8 +140,7 @@ class Walk {
   /// Number of corners that are inside, 0..8.
   int inside_corners(const Point& a, const Point& b) const {
     int count = 0;
-    for (int c = 0; c < 8; ++c)
-      count += sign({c & 1 ? b[0] : a[0], c & 2 ? b[1] : a[1], c & 4 ? b[2] : a[2]}) ? 1 : 0;
+    for (int c = 0; c < 8; ++c) count += sign({c & 1 ? b[0] : a[0], c & 2 ? b[1] : a[1], c & 4 ? b[2] : a[2]}) ? 1 : 0;
     return count;
   }
 
@@ -154,7 +153,8 @@ class Walk {
     if (cell[0] > 0) near += known.get(cell[0] - 1, cell[1], cell[2]) ? 1 : 0;
     if (cell[1] > 0) near += known.get(cell[0], cell[1] - 1, cell[2]) ? 1 : 0;
     if (cell[2] > 0) near += known.get(cell[0], cell[1], cell[2] - 1) ? 1 : 0;
-    if (coder_.flag(flag_models_[static_cast<std::size_t>(level * 8 + near * 2 + corners / 8)], cell, level)) return true;
+    if (coder_.flag(flag_models_[static_cast<std::size_t>(level * 8 + near * 2 + corners / 8)], cell, level))
+      return true;
     if (corners == 8) coder_.fill(a, b);
     return false;
   }
@@ -284,11 +284,15 @@ class Walk {
 
   std::size_t model(const Point& p, const Neighbours& n, int phase) const {
     std::size_t context = at(p, 0, n.before[0]) | at(p, 1, n.before[1]) << 1 | at(p, 2, n.before[2]) << 2;
-    const std::size_t base = static_cast<std::size_t>(std::min(level_, 2)) * (kCentreModels + 3 * kFaceModels + 3 * kEdgeModels);
+    const std::size_t base =
+        static_cast<std::size_t>(std::min(level_, 2)) * (kCentreModels + 3 * kFaceModels + 3 * kEdgeModels);
     if (phase == 7) {
       for (int c = 0; c < 8; ++c)
-        context = context << 1 | (sign({c & 1 ? n.above[0] : n.below[0], c & 2 ? n.above[1] : n.below[1],
-                                        c & 4 ? n.above[2] : n.below[2]}) ? 1u : 0u);
+        context =
+            context << 1 |
+            (sign({c & 1 ? n.above[0] : n.below[0], c & 2 ? n.above[1] : n.below[1], c & 4 ? n.above[2] : n.below[2]})
+                 ? 1u
+                 : 0u);
       return base + context;
     }
     if (std::popcount(static_cast<unsigned>(phase)) == 2) {
@@ -376,8 +380,8 @@ Result<std::string> encode_signs(const BitVolume& signs, Progress& progress) {
 }
 
 Result<BitVolume> decode_signs(std::string_view bytes, const Dims& dims, Progress& progress) {
-  const std::uint64_t top = top_coordinates(dims.x).size() * top_coordinates(dims.y).size() *
-                            top_coordinates(dims.z).size();
+  const std::uint64_t top =
+      top_coordinates(dims.x).size() * top_coordinates(dims.y).size() * top_coordinates(dims.z).size();
   const std::uint64_t top_bytes = packed_bytes(top, 1);
   if (top_bytes > bytes.size())
     return fail(ErrorKind::kBadData, "exa: {} bytes of signs for {}x{}x{} points, expected at least {}", bytes.size(),

@@ -12,8 +12,7 @@ struct Image {
   std::vector<std::uint8_t> pixels;
 
   Image() = default;
-  Image(int w, int h, int c = 4)
-      : width(w), height(h), channels(c), pixels(static_cast<std::size_t>(w) * h * c) {}
+  Image(int w, int h, int c = 4) : width(w), height(h), channels(c), pixels(static_cast<std::size_t>(w) * h * c) {}
   std::uint8_t* at(int x, int y) noexcept {
     return pixels.data() + (static_cast<std::size_t>(y) * width + x) * channels;
   }

@@ -39,13 +39,19 @@ TIFF* open_tiff(const std::filesystem::path& path, const char* mode, std::string
 
 std::string compression_name(std::uint16_t scheme) {
   switch (scheme) {
-    case COMPRESSION_NONE: return "none";
-    case COMPRESSION_LZW: return "LZW";
-    case COMPRESSION_PACKBITS: return "PackBits";
+    case COMPRESSION_NONE:
+      return "none";
+    case COMPRESSION_LZW:
+      return "LZW";
+    case COMPRESSION_PACKBITS:
+      return "PackBits";
     case COMPRESSION_DEFLATE:
-    case COMPRESSION_ADOBE_DEFLATE: return "deflate";
-    case COMPRESSION_JPEG: return "JPEG";
-    default: return fmt::format("scheme {}", scheme);
+    case COMPRESSION_ADOBE_DEFLATE:
+      return "deflate";
+    case COMPRESSION_JPEG:
+      return "JPEG";
+    default:
+      return fmt::format("scheme {}", scheme);
   }
 }
 
@@ -102,10 +108,18 @@ Result<TiffPage> TiffFile::describe() {
   page.palette = field<std::uint16_t>(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_PALETTE;
   page.reduced = (field<std::uint32_t>(tiff, TIFFTAG_SUBFILETYPE, 0) & FILETYPE_REDUCEDIMAGE) != 0;
   switch (field<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT)) {
-    case SAMPLEFORMAT_UINT: page.sample = TiffPage::Sample::kUnsigned; break;
-    case SAMPLEFORMAT_INT: page.sample = TiffPage::Sample::kSigned; break;
-    case SAMPLEFORMAT_IEEEFP: page.sample = TiffPage::Sample::kFloat; break;
-    default: page.sample = TiffPage::Sample::kOther; break;
+    case SAMPLEFORMAT_UINT:
+      page.sample = TiffPage::Sample::kUnsigned;
+      break;
+    case SAMPLEFORMAT_INT:
+      page.sample = TiffPage::Sample::kSigned;
+      break;
+    case SAMPLEFORMAT_IEEEFP:
+      page.sample = TiffPage::Sample::kFloat;
+      break;
+    default:
+      page.sample = TiffPage::Sample::kOther;
+      break;
   }
   const auto scheme = field<std::uint16_t>(tiff, TIFFTAG_COMPRESSION, COMPRESSION_NONE);
   page.compression = compression_name(scheme);
@@ -132,7 +146,8 @@ Result<std::vector<TiffPage>> TiffFile::pages() {
     if (TIFFLastDirectory(tiff) != 0) return all;
     if (all.size() >= kMostPages) return damaged(fmt::format("more than {} pages found, expected fewer", kMostPages));
     library_says_->clear();
-    if (TIFFReadDirectory(tiff) != 1) return damaged(fmt::format("page {} cannot be read, the file is damaged", all.size() + 1));
+    if (TIFFReadDirectory(tiff) != 1)
+      return damaged(fmt::format("page {} cannot be read, the file is damaged", all.size() + 1));
     DUBSAR_ASSIGN(page, describe());
   }
 }
@@ -158,10 +173,10 @@ Result<void> TiffFile::read_gray(std::span<std::byte> out) {
     const std::uint32_t strips = TIFFNumberOfStrips(tiff);
     std::size_t at = 0;
     for (std::uint32_t strip = 0; strip < strips && at < out.size(); ++strip) {
-      const auto expected = std::min<std::uint64_t>(TIFFVStripSize64(tiff, std::min<std::uint32_t>(
-                                                        field<std::uint32_t>(tiff, TIFFTAG_ROWSPERSTRIP, UINT32_MAX),
-                                                        static_cast<std::uint32_t>(page.height))),
-                                                    out.size() - at);
+      const auto expected = std::min<std::uint64_t>(
+          TIFFVStripSize64(tiff, std::min<std::uint32_t>(field<std::uint32_t>(tiff, TIFFTAG_ROWSPERSTRIP, UINT32_MAX),
+                                                         static_cast<std::uint32_t>(page.height))),
+          out.size() - at);
       const tmsize_t got = TIFFReadEncodedStrip(tiff, strip, out.data() + at, static_cast<tmsize_t>(expected));
       if (got < 0 || static_cast<std::uint64_t>(got) != expected) return short_of("strip", strip);
       at += expected;
@@ -177,7 +192,8 @@ Result<void> TiffFile::read_gray(std::span<std::byte> out) {
     std::vector<std::byte> tile(static_cast<std::size_t>(bytes));
     for (std::int64_t y = 0; y < page.height; y += tile_height)
       for (std::int64_t x = 0; x < page.width; x += tile_width) {
-        const std::uint32_t index = TIFFComputeTile(tiff, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0, 0);
+        const std::uint32_t index =
+            TIFFComputeTile(tiff, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0, 0);
         if (TIFFReadEncodedTile(tiff, index, tile.data(), bytes) != bytes) return short_of("tile", index);
         const auto count = static_cast<std::size_t>(std::min(tile_width, page.width - x) * sample);
         for (std::int64_t j = 0; j < std::min(tile_height, page.height - y); ++j)
@@ -192,9 +208,8 @@ Result<void> TiffFile::read_gray(std::span<std::byte> out) {
 
 Result<void> write_tiff(const std::filesystem::path& path, const Image& image, double dpi) {
   DUBSAR_CHECK(image.width > 0 && image.height > 0 && (image.channels == 3 || image.channels == 4));
-  DUBSAR_CHECK(image.pixels.size() ==
-               static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
-                   static_cast<std::size_t>(image.channels));
+  DUBSAR_CHECK(image.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
+                                          static_cast<std::size_t>(image.channels));
   DUBSAR_ASSIGN(AtomicFile file, AtomicFile::create(path));
   std::string message;
   const auto failed = [&] {

@@ -1,6 +1,6 @@
 #pragma once
-// TIFF: gray pages of any size into memory, and 8-bit pictures to a file. tiff_file.cpp is the only source that includes
-// tiffio.h.
+// TIFF: gray pages of any size into memory, and 8-bit pictures to a file. tiff_file.cpp is the only source that
+// includes tiffio.h.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,9 +23,9 @@ struct TiffPage {
   int bits = 0;      ///< per sample
   int channels = 1;  ///< samples per pixel
   Sample sample = Sample::kUnsigned;
-  bool palette = false;         ///< colours by table
-  bool reduced = false;         ///< a thumbnail or a coarser level of another page
-  std::string compression;      ///< "none", "LZW", ...
+  bool palette = false;                       ///< colours by table
+  bool reduced = false;                       ///< a thumbnail or a coarser level of another page
+  std::string compression;                    ///< "none", "LZW", ...
   double x_per_unit = 0.0, y_per_unit = 0.0;  ///< pixels per unit; 0: not stated
   double unit_mm = 0.0;                       ///< length of that unit; 0: not stated
   std::string description;
@@ -62,8 +62,8 @@ class TiffFile {
   std::unique_ptr<void, Closer> tiff_;
 };
 
-/// Writes an RGB or RGBA picture, LZW-compressed, with its resolution in dots per inch (0: none). The file appears whole
-/// or not at all. The same picture gives the same bytes. kCannotCreate, kPermission, kIo.
+/// Writes an RGB or RGBA picture, LZW-compressed, with its resolution in dots per inch (0: none). The file appears
+/// whole or not at all. The same picture gives the same bytes. kCannotCreate, kPermission, kIo.
 Result<void> write_tiff(const std::filesystem::path& path, const Image& image, double dpi);
 
 }  // namespace dubsar

@@ -51,7 +51,8 @@ bool read_numbers(const Json* array, double* out, std::size_t count) {
 
 std::uint8_t srgb_u8(double linear) {
   const double c = std::clamp(linear, 0.0, 1.0);
-  return static_cast<std::uint8_t>(std::lround(255.0 * (c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055)));
+  return static_cast<std::uint8_t>(
+      std::lround(255.0 * (c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055)));
 }
 
 struct Accessor {
@@ -66,18 +67,20 @@ struct Accessor {
       return static_cast<double>(value);
     };
     switch (component) {
-      case 5121: return read(std::uint8_t{});
-      case 5123: return read(std::uint16_t{});
-      case 5125: return read(std::uint32_t{});
-      default: return read(float{});
+      case 5121:
+        return read(std::uint8_t{});
+      case 5123:
+        return read(std::uint16_t{});
+      case 5125:
+        return read(std::uint32_t{});
+      default:
+        return read(float{});
     }
   }
   double scale() const { return component == 5121 ? 1.0 / 255.0 : component == 5123 ? 1.0 / 65535.0 : 1.0; }
 };
 
-tl::unexpected<Error> broken(std::string_view what) {
-  return fail(ErrorKind::kBadData, "glb: {}", what);
-}
+tl::unexpected<Error> broken(std::string_view what) { return fail(ErrorKind::kBadData, "glb: {}", what); }
 
 struct Parser {
   Json root;
@@ -104,7 +107,10 @@ struct Parser {
     result.count = *count;
     const std::string name = type->get<std::string>();
     result.parts = name == "SCALAR" ? 1 : name == "VEC3" ? 3 : name == "VEC4" ? 4 : 0;
-    const std::uint64_t part_bytes = *component == 5121 ? 1 : *component == 5123 ? 2 : *component == 5125 || *component == 5126 ? 4 : 0;
+    const std::uint64_t part_bytes = *component == 5121                         ? 1
+                                     : *component == 5123                       ? 2
+                                     : *component == 5125 || *component == 5126 ? 4
+                                                                                : 0;
     const std::uint64_t item_bytes = part_bytes * result.parts;
     if (item_bytes == 0) return broken("an accessor has a type that is not supported");
     const auto view_offset = number(*view, "byteOffset", 0), view_length = number(*view, "byteLength", std::nullopt);
@@ -283,8 +289,10 @@ Result<TriMesh> parse_glb(std::string_view bytes, Progress& progress) {
   TriMesh& mesh = parser.mesh;
   if (!parser.all_normals) mesh.normals.clear();
   if (!parser.all_colors || lines.colors_derived()) mesh.colors.clear();
-  if (parser.ours) DUBSAR_TRY(lines.apply(mesh));
-  else mesh.frame.input_voxel.provenance = "glTF is in metres";
+  if (parser.ours)
+    DUBSAR_TRY(lines.apply(mesh));
+  else
+    mesh.frame.input_voxel.provenance = "glTF is in metres";
   if (mesh.partitions.empty()) mesh.partition.clear();
   return std::move(mesh);
 }

@@ -65,10 +65,8 @@ class Layout {
   std::size_t add(std::size_t count, std::size_t item_bytes, int component, const char* type, int target) {
     Json view{{"buffer", 0}, {"byteOffset", bytes}, {"byteLength", count * item_bytes}, {"target", target}};
     if (target == kArrayBuffer) view["byteStride"] = item_bytes;
-    Json accessor{{"bufferView", json_["bufferViews"].size()},
-                  {"componentType", component},
-                  {"count", count},
-                  {"type", type}};
+    Json accessor{
+        {"bufferView", json_["bufferViews"].size()}, {"componentType", component}, {"count", count}, {"type", type}};
     if (component == kUshort) accessor["normalized"] = true;
     json_["bufferViews"].push_back(std::move(view));
     json_["accessors"].push_back(std::move(accessor));
@@ -101,7 +99,8 @@ Result<void> write_glb(const std::filesystem::path& path, const TriMesh& mesh, c
   json["scene"] = 0;
   json["scenes"] = Json::array({{{"nodes", {0}}}});
   // Grid millimetres with z up to metres with y up, as glTF wants; the data keep millimetres.
-  Json root{{"name", "scan"}, {"scale", {0.001, 0.001, 0.001}}, {"rotation", {-std::sqrt(0.5), 0.0, 0.0, std::sqrt(0.5)}}};
+  Json root{
+      {"name", "scan"}, {"scale", {0.001, 0.001, 0.001}}, {"rotation", {-std::sqrt(0.5), 0.0, 0.0, std::sqrt(0.5)}}};
   json["materials"] = Json::array({{{"name", "clay"},
                                     {"doubleSided", true},
                                     {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 0.9}}}}});
@@ -121,8 +120,7 @@ Result<void> write_glb(const std::filesystem::path& path, const TriMesh& mesh, c
     json["accessors"].back()["max"] = {high.x, high.y, high.z};
     if (!mesh.normals.empty())
       attributes["NORMAL"] = layout.add(part.vertices.size(), 12, kFloat, "VEC3", kArrayBuffer);
-    if (!colors.rgb.empty())
-      attributes["COLOR_0"] = layout.add(part.vertices.size(), 8, kUshort, "VEC4", kArrayBuffer);
+    if (!colors.rgb.empty()) attributes["COLOR_0"] = layout.add(part.vertices.size(), 8, kUshort, "VEC4", kArrayBuffer);
     const std::size_t indices = layout.add(part.triangles.size() * 3, 4, kUint, "SCALAR", kElementArrayBuffer);
     const std::string name = partition_name(mesh, part.id);
     json["meshes"].push_back(
@@ -131,8 +129,10 @@ Result<void> write_glb(const std::filesystem::path& path, const TriMesh& mesh, c
     root["children"].push_back(p + 1);
   }
   json["nodes"][0] = std::move(root);
-  if (parts.empty()) json.erase("accessors"), json.erase("bufferViews");
-  else json["buffers"] = Json::array({{{"byteLength", layout.bytes}}});
+  if (parts.empty())
+    json.erase("accessors"), json.erase("bufferViews");
+  else
+    json["buffers"] = Json::array({{{"byteLength", layout.bytes}}});
 
   std::string text = dump_json(json);
   text.resize((text.size() + 3) / 4 * 4, ' ');

@@ -33,7 +33,7 @@ struct MeshInfo {
   VoxelSize unit;                       ///< one file unit; unknown() when the file does not say
   std::vector<std::string> attributes;  ///< "normals", "colors", "k_min", ... that the file carries
   std::vector<Partition> partitions;
-  std::string provenance;               ///< JSON text, empty for foreign files
+  std::string provenance;  ///< JSON text, empty for foreign files
 };
 
 std::string_view mesh_format_name(MeshFormat format) noexcept;

@@ -22,7 +22,8 @@ constexpr std::size_t kPiece = 200;  // some readers keep lines in fixed buffers
 
 std::string one_line(std::string_view text) {
   std::string line(text);
-  std::replace_if(line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 32; }, ' ');
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 32; }, ' ');
   return line;
 }
 
@@ -123,7 +124,8 @@ Result<Partition> partition_from_json(std::string_view text) {
   if (json.contains("part") && json["part"].is_string()) partition.part = json["part"].get<std::string>();
   partition.area_mm2 = number("area_mm2");
   partition.volume_mm3 = number("volume_mm3");
-  partition.watertight = json.contains("watertight") && json["watertight"].is_boolean() && json["watertight"].get<bool>();
+  partition.watertight =
+      json.contains("watertight") && json["watertight"].is_boolean() && json["watertight"].get<bool>();
   return partition;
 }
 

@@ -47,7 +47,8 @@ struct Parser {
     if (count == 6) {
       std::array<std::uint8_t, 3> rgb{};
       for (std::size_t c = 0; c < 3; ++c)
-        rgb[c] = static_cast<std::uint8_t>(std::lround(std::clamp(std::isfinite(value[3 + c]) ? value[3 + c] : 0.0, 0.0, 1.0) * 255.0));
+        rgb[c] = static_cast<std::uint8_t>(
+            std::lround(std::clamp(std::isfinite(value[3 + c]) ? value[3 + c] : 0.0, 0.0, 1.0) * 255.0));
       mesh.colors.push_back(rgb);
     } else {
       vertices_without_color = true;
@@ -219,14 +220,17 @@ Result<void> write_obj(const std::filesystem::path& path, const TriMesh& mesh, c
       if (partition_of(mesh, t) != id) continue;
       if (!named) {
         std::string name = partition_name(mesh, id);
-        std::replace_if(name.begin(), name.end(), [](char c) { return c <= 32 || c > 126; }, '_');
+        std::replace_if(
+            name.begin(), name.end(), [](char c) { return c <= 32 || c > 126; }, '_');
         out.text(fmt::format("g part{}_{}\n", id, name));
         named = true;
       }
       const std::uint64_t a = std::uint64_t{t[0]} + 1, b = std::uint64_t{t[1]} + 1, c = std::uint64_t{t[2]} + 1;
       row.clear();
-      if (normals) fmt::format_to(std::back_inserter(row), "f {0}//{0} {1}//{1} {2}//{2}\n", a, b, c);
-      else fmt::format_to(std::back_inserter(row), "f {} {} {}\n", a, b, c);
+      if (normals)
+        fmt::format_to(std::back_inserter(row), "f {0}//{0} {1}//{1} {2}//{2}\n", a, b, c);
+      else
+        fmt::format_to(std::back_inserter(row), "f {} {} {}\n", a, b, c);
       emit();
       if (stopped()) return stop();
     }

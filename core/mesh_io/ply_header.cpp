@@ -14,14 +14,22 @@ std::optional<PlyScalar> scalar_of(std::string_view word) {
     std::string_view name;
     PlyScalar type;
   };
-  static constexpr std::array<Name, 16> kNames{{{"char", PlyScalar::kI8},     {"int8", PlyScalar::kI8},
-                                                {"uchar", PlyScalar::kU8},    {"uint8", PlyScalar::kU8},
-                                                {"short", PlyScalar::kI16},   {"int16", PlyScalar::kI16},
-                                                {"ushort", PlyScalar::kU16},  {"uint16", PlyScalar::kU16},
-                                                {"int", PlyScalar::kI32},     {"int32", PlyScalar::kI32},
-                                                {"uint", PlyScalar::kU32},    {"uint32", PlyScalar::kU32},
-                                                {"float", PlyScalar::kF32},   {"float32", PlyScalar::kF32},
-                                                {"double", PlyScalar::kF64},  {"float64", PlyScalar::kF64}}};
+  static constexpr std::array<Name, 16> kNames{{{"char", PlyScalar::kI8},
+                                                {"int8", PlyScalar::kI8},
+                                                {"uchar", PlyScalar::kU8},
+                                                {"uint8", PlyScalar::kU8},
+                                                {"short", PlyScalar::kI16},
+                                                {"int16", PlyScalar::kI16},
+                                                {"ushort", PlyScalar::kU16},
+                                                {"uint16", PlyScalar::kU16},
+                                                {"int", PlyScalar::kI32},
+                                                {"int32", PlyScalar::kI32},
+                                                {"uint", PlyScalar::kU32},
+                                                {"uint32", PlyScalar::kU32},
+                                                {"float", PlyScalar::kF32},
+                                                {"float32", PlyScalar::kF32},
+                                                {"double", PlyScalar::kF64},
+                                                {"float64", PlyScalar::kF64}}};
   for (const Name& entry : kNames)
     if (entry.name == word) return entry.type;
   return std::nullopt;
@@ -73,10 +81,14 @@ Result<PlyHeader> parse_ply_header(std::string_view bytes) {
       const std::string_view name = words.word();
       const std::string_view version = words.word();
       has_format = version == "1.0";
-      if (name == "ascii") header.encoding = PlyEncoding::kAscii;
-      else if (name == "binary_little_endian") header.encoding = PlyEncoding::kLittle;
-      else if (name == "binary_big_endian") header.encoding = PlyEncoding::kBig;
-      else has_format = false;
+      if (name == "ascii")
+        header.encoding = PlyEncoding::kAscii;
+      else if (name == "binary_little_endian")
+        header.encoding = PlyEncoding::kLittle;
+      else if (name == "binary_big_endian")
+        header.encoding = PlyEncoding::kBig;
+      else
+        has_format = false;
       if (!has_format)
         return fail(ErrorKind::kBadData,
                     "ply: \"{}\" found, expected format ascii, binary_little_endian or binary_big_endian 1.0",

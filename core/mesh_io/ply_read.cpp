@@ -24,14 +24,22 @@ class BinaryValues {
   static std::size_t least_bytes(PlyScalar type) noexcept { return ply_scalar_bytes(type); }
   double next(PlyScalar type) noexcept {
     switch (type) {
-      case PlyScalar::kI8: return get<std::int8_t>();
-      case PlyScalar::kU8: return get<std::uint8_t>();
-      case PlyScalar::kI16: return get<std::int16_t>();
-      case PlyScalar::kU16: return get<std::uint16_t>();
-      case PlyScalar::kI32: return get<std::int32_t>();
-      case PlyScalar::kU32: return get<std::uint32_t>();
-      case PlyScalar::kF32: return static_cast<double>(get<float>());
-      case PlyScalar::kF64: break;
+      case PlyScalar::kI8:
+        return get<std::int8_t>();
+      case PlyScalar::kU8:
+        return get<std::uint8_t>();
+      case PlyScalar::kI16:
+        return get<std::int16_t>();
+      case PlyScalar::kU16:
+        return get<std::uint16_t>();
+      case PlyScalar::kI32:
+        return get<std::int32_t>();
+      case PlyScalar::kU32:
+        return get<std::uint32_t>();
+      case PlyScalar::kF32:
+        return static_cast<double>(get<float>());
+      case PlyScalar::kF64:
+        break;
     }
     return get<double>();
   }
@@ -113,8 +121,7 @@ struct Parser {
       has[*slot] = true;
       if (*slot >= kRed && *slot <= kBlue) scale[*slot] = color_scale(property.type);
     }
-    if (!has[kX] || !has[kY] || !has[kZ])
-      return fail(ErrorKind::kBadData, "ply: vertices have no x, y, z properties");
+    if (!has[kX] || !has[kY] || !has[kZ]) return fail(ErrorKind::kBadData, "ply: vertices have no x, y, z properties");
     const bool normals = has[kNx] && has[kNy] && has[kNz];
     const bool colors = has[kRed] && has[kGreen] && has[kBlue] && !header.text.colors_derived();
     const bool curvatures = has[kKMin] && has[kKMax];
@@ -230,8 +237,10 @@ struct Parser {
   Result<void> other(const PlyElement& element, Values& values) {
     for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
       for (const PlyProperty& property : element.properties) {
-        if (property.list) DUBSAR_TRY(skip_list(property, values));
-        else values.next(property.type);
+        if (property.list)
+          DUBSAR_TRY(skip_list(property, values));
+        else
+          values.next(property.type);
       }
       if (!values.ok())
         return fail(ErrorKind::kBadData, "ply: the file ends or has a broken number in element \"{}\"", element.name);
@@ -244,8 +253,7 @@ struct Parser {
   Result<void> body(Values values) {
     for (const PlyElement& element : header.elements) {
       std::uint64_t least = 0;
-      for (const PlyProperty& p : element.properties)
-        least += values.least_bytes(p.list ? p.count_type : p.type);
+      for (const PlyProperty& p : element.properties) least += values.least_bytes(p.list ? p.count_type : p.type);
       DUBSAR_TRY(check_count("ply: " + element.name.substr(0, 40), element.count, least, values.left()));
       progress.begin("read ply " + element.name.substr(0, 40), static_cast<std::int64_t>(element.count), "item");
       if (element.name == "vertex") {
@@ -279,9 +287,15 @@ Result<TriMesh> parse_ply(std::string_view bytes, Progress& progress) {
   if (!has_vertices) return fail(ErrorKind::kBadData, "ply: no vertex element");
   const std::string_view body = bytes.substr(header.body);
   switch (header.encoding) {
-    case PlyEncoding::kAscii: DUBSAR_TRY(parser.body(AsciiValues(body))); break;
-    case PlyEncoding::kLittle: DUBSAR_TRY(parser.body(BinaryValues<false>(body))); break;
-    case PlyEncoding::kBig: DUBSAR_TRY(parser.body(BinaryValues<true>(body))); break;
+    case PlyEncoding::kAscii:
+      DUBSAR_TRY(parser.body(AsciiValues(body)));
+      break;
+    case PlyEncoding::kLittle:
+      DUBSAR_TRY(parser.body(BinaryValues<false>(body)));
+      break;
+    case PlyEncoding::kBig:
+      DUBSAR_TRY(parser.body(BinaryValues<true>(body)));
+      break;
   }
   if (parser.skipped > 0) log_warning("ply: {} faces with fewer than 3 corners left out", parser.skipped);
   DUBSAR_ASSIGN(parser.mesh.triangles, triangulate_soup(parser.mesh.positions, parser.soup, "ply"));

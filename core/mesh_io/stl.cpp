@@ -132,15 +132,18 @@ Result<void> write_stl(const std::filesystem::path& path, const TriMesh& mesh, c
                 mesh.triangles.size());
   const VoxelSize& voxel = mesh.frame.input_voxel;
   std::string header(kMaker);
-  if (options.units == MeshUnits::kMm) header += voxel.known() ? "mm; " : "mm; voxel size unknown, 1 voxel = 1 mm; ";
-  else header += "voxel; ";
+  if (options.units == MeshUnits::kMm)
+    header += voxel.known() ? "mm; " : "mm; voxel size unknown, 1 voxel = 1 mm; ";
+  else
+    header += "voxel; ";
   if (!mesh.triangles.empty() && !mesh.partitions.empty()) {
     const int id = partition_of(mesh, mesh.triangles.front());
     const bool single = std::all_of(mesh.triangles.begin(), mesh.triangles.end(),
                                     [&](const Triangle& t) { return partition_of(mesh, t) == id; });
     header += single ? partition_name(mesh, id) : "all parts";
   }
-  std::replace_if(header.begin(), header.end(), [](char c) { return c < 32 || c > 126; }, '?');
+  std::replace_if(
+      header.begin(), header.end(), [](char c) { return c < 32 || c > 126; }, '?');
   header.resize(kHeaderBytes, ' ');
 
   const std::size_t bytes = kHeaderBytes + 4 + kFacetBytes * mesh.triangles.size();

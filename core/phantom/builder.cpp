@@ -47,9 +47,9 @@ void PhantomBuilder::place_in_grid() {
   rotation = glm::rotate(rotation, turn(4.0), glm::dvec3(1, 0, 0));
   rotation = glm::rotate(rotation, turn(1.5), glm::dvec3(0, 1, 0));
   rotation = glm::rotate(rotation, turn(3.0), glm::dvec3(0, 0, 1));
-  const glm::dvec3 centre = 0.5 * glm::dvec3(static_cast<double>(d.x - 1), static_cast<double>(d.y - 1),
-                                             static_cast<double>(d.z - 1)) +
-                            glm::dvec3(turn(30.0), turn(30.0), turn(30.0));
+  const glm::dvec3 centre =
+      0.5 * glm::dvec3(static_cast<double>(d.x - 1), static_cast<double>(d.y - 1), static_cast<double>(d.z - 1)) +
+      glm::dvec3(turn(30.0), turn(30.0), turn(30.0));
   p_.axis_x_ = float4(glm::dvec3(rotation[0]));
   p_.axis_y_ = float4(glm::dvec3(rotation[1]));
   p_.axis_z_ = float4(glm::dvec3(rotation[2]));
@@ -112,7 +112,8 @@ void PhantomBuilder::shape_gap() {
     const auto somewhere = [&](int axis) {
       return static_cast<float>(random.uniform(-0.85, 0.85)) * p_.tablet_.half[static_cast<std::size_t>(axis)];
     };
-    const float right = somewhere(frame.right.axis), up = somewhere(frame.up.axis), radius = mm(random.uniform(1.2, 2.4));
+    const float right = somewhere(frame.right.axis), up = somewhere(frame.up.axis),
+                radius = mm(random.uniform(1.2, 2.4));
     p_.touches_.push_back({p_.tablet_.surface_point(side, right, up), radius * radius, 1.06f});
   }
 }
@@ -131,7 +132,8 @@ void PhantomBuilder::measure_glue() {
     for (int j = 0; j < kRaster; ++j)
       for (int i = 0; i < kRaster; ++i) {
         const auto at = [&](int k, int axis) {
-          return (2.0f * (static_cast<float>(k) + 0.5f) / kRaster - 1.0f) * p_.tablet_.half[static_cast<std::size_t>(axis)];
+          return (2.0f * (static_cast<float>(k) + 0.5f) / kRaster - 1.0f) *
+                 p_.tablet_.half[static_cast<std::size_t>(axis)];
         };
         Point point;
         point.p = p_.tablet_.surface_point(static_cast<Side>(s), at(i, frame.right.axis), at(j, frame.up.axis));
@@ -199,15 +201,15 @@ void PhantomBuilder::fill_clay() {
   };
   std::vector<Ball> taken, pores, straws, grains;
   const auto free_place = [&](const glm::dvec3& place, double radius) {
-    return std::none_of(taken.begin(), taken.end(), [&](const Ball& b) {
-      return glm::length(b.centre - place) < b.radius + radius + 4.0;
-    });
+    return std::none_of(taken.begin(), taken.end(),
+                        [&](const Ball& b) { return glm::length(b.centre - place) < b.radius + radius + 4.0; });
   };
   Random random(seed(), 6);
   for (int i = count(18.0); i > 0; --i) {
     const Float4 centre = somewhere(random);
     const float radius = std::max(mm(0.12 * std::pow(6.0, random.uniform() * random.uniform())), 1.6f);
-    const glm::dvec3 e0 = random.direction(), e1 = glm::normalize(glm::cross(e0, random.direction())), e2 = glm::cross(e0, e1);
+    const glm::dvec3 e0 = random.direction(), e1 = glm::normalize(glm::cross(e0, random.direction())),
+                     e2 = glm::cross(e0, e1);
     const std::array<double, 3> stretch{random.uniform(1.0, 1.6), 1.0, random.uniform(0.7, 1.0)};
     const glm::dvec3 place = p_.grid_point(centre);
     if (!buried(place, 1.6f * radius) || !free_place(place, 1.6 * static_cast<double>(radius))) continue;

@@ -28,7 +28,7 @@ class PhantomBuilder {
     Side side;
     float top, half_length;  ///< voxels along up and right
     int lines;
-    double fill;             ///< share of lines that are written
+    double fill;  ///< share of lines that are written
   };
   void write_block(Owner owner, const TextBlock& block);
   void press(Owner owner, Side side, float right, float up, const Stroke& stroke, int sign, float sign_height);

@@ -24,7 +24,8 @@ class CellLists {
   CellLists(Dims dims, std::span<const Ball> balls);
   std::span<const std::uint32_t> operator[](std::int64_t cell) const noexcept {
     if (first_.empty()) return {};
-    return {ids_.data() + first_[static_cast<std::size_t>(cell)], ids_.data() + first_[static_cast<std::size_t>(cell) + 1]};
+    return {ids_.data() + first_[static_cast<std::size_t>(cell)],
+            ids_.data() + first_[static_cast<std::size_t>(cell) + 1]};
   }
 
  private:
@@ -33,7 +34,8 @@ class CellLists {
 
 /// Cells cover the grid and one cell around it; places farther out use the nearest cell.
 struct CellGrid {
-  explicit CellGrid(Dims dims = {}) : nx(dims.x / kCellEdge + 3), ny(dims.y / kCellEdge + 3), nz(dims.z / kCellEdge + 3) {}
+  explicit CellGrid(Dims dims = {})
+      : nx(dims.x / kCellEdge + 3), ny(dims.y / kCellEdge + 3), nz(dims.z / kCellEdge + 3) {}
   std::int64_t nx, ny, nz;
   std::int64_t count() const noexcept { return nx * ny * nz; }
   std::int64_t index(double x, double y, double z) const noexcept;

@@ -41,7 +41,8 @@ Dual ClayBody::pillow(const Point& point, Faces& faces) const {
     const float sign = point.p[axis] < 0.0f ? -1.0f : 1.0f;
     const Side side = sign < 0.0f ? kNegative[axis] : kPositive[axis];
     // A sphere cap that rises by `bulge` over the larger of the two other half extents.
-    const float reach = std::max(half[static_cast<std::size_t>((axis + 1) % 3)], half[static_cast<std::size_t>((axis + 2) % 3)]);
+    const float reach =
+        std::max(half[static_cast<std::size_t>((axis + 1) % 3)], half[static_cast<std::size_t>((axis + 2) % 3)]);
     const float rise = bulge[static_cast<std::size_t>(side)];
     const float radius = (reach * reach + rise * rise) / (2.0f * rise);
     Float4 centre{};
@@ -61,7 +62,8 @@ Dual ClayBody::evaluate(const Point& point, Dual* decor, float range) const {
   Faces faces;
   const Dual slab = pillow(point, faces);
   Dual body = slab + undulation.evaluate(point);
-  for (const FingerMark& mark : finger_marks) body = body + bump(point.distance2(mark.centre), mark.radius2) * mark.depth;
+  for (const FingerMark& mark : finger_marks)
+    body = body + bump(point.distance2(mark.centre), mark.radius2) * mark.depth;
   if (decor && std::abs(body.v) <= range) *decor = decorate(point, slab, faces);
   return body;
 }
@@ -94,7 +96,8 @@ Dual ClayBody::decorate(const Point& point, const Dual& slab, const Faces& faces
       const float mm = 1.0f / voxels_per_mm;
       const Dual x = right * mm + band.phase_mm, y = (up - band.bottom) * mm;
       if (y.v <= -0.8f || y.v >= SealRelief::kHeightMm + 0.8f) continue;
-      const Dual inside = smooth_step(y, -0.8f, 0.4f) * smooth_step(-y, -SealRelief::kHeightMm - 0.8f, -SealRelief::kHeightMm + 0.4f);
+      const Dual inside =
+          smooth_step(y, -0.8f, 0.4f) * smooth_step(-y, -SealRelief::kHeightMm - 0.8f, -SealRelief::kHeightMm + 0.4f);
       decor = decor + inside * band_depth - seal->height(x, y) * voxels_per_mm;
     }
   return decor * mask;

@@ -43,7 +43,8 @@ void AddNoise(std::uint64_t row_key, std::int64_t x_first, float sigma, float* H
     const auto low = hn::Set(du, 0xffffu);
     const auto h1 = mix(du, hn::Add(hn::Mul(x, hn::Set(du, 0x9e3779b1u)), hn::Set(du, key0)), 0x7feb352du, 0x846ca68bu);
     const auto h2 = mix(du, hn::Add(h1, hn::Set(du, key1)), 0x2c1b3c6du, 0x297a2d39u);
-    const auto sum = hn::Add(hn::Add(hn::And(h1, low), hn::ShiftRight<16>(h1)), hn::Add(hn::And(h2, low), hn::ShiftRight<16>(h2)));
+    const auto sum =
+        hn::Add(hn::Add(hn::And(h1, low), hn::ShiftRight<16>(h1)), hn::Add(hn::And(h2, low), hn::ShiftRight<16>(h2)));
     const auto centred = hn::Sub(hn::ConvertTo(d, hn::BitCast(di, sum)), hn::Set(d, kMean));
     hn::StoreU(hn::Add(hn::LoadU(d, row + i), hn::Mul(centred, hn::Set(d, scale))), d, row + i);
   });

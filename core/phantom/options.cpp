@@ -33,8 +33,7 @@ Result<PhantomOptions> complete(PhantomOptions options) {
   const std::array<std::uint64_t, 3> sizes{static_cast<std::uint64_t>(d.x), static_cast<std::uint64_t>(d.y),
                                            static_cast<std::uint64_t>(d.z)};
   if (sizes[0] * sizes[1] * sizes[2] > Budget{}.max_voxels)
-    return fail(ErrorKind::kUsage, "phantom: size {}x{}x{} is more than {} voxels", d.x, d.y, d.z,
-                Budget{}.max_voxels);
+    return fail(ErrorKind::kUsage, "phantom: size {}x{}x{} is more than {} voxels", d.x, d.y, d.z, Budget{}.max_voxels);
   if (std::isnan(options.snr_db) || options.snr_db < 0.0 || (options.snr_db > 120.0 && !std::isinf(options.snr_db)))
     return fail(ErrorKind::kUsage, "phantom: signal to noise ratio {} dB found, expected 0 to 120 or infinity",
                 options.snr_db);

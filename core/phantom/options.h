@@ -19,8 +19,8 @@ struct PhantomOptions {
 /// "tiny" 96x64x96, "demo" 512x272x472, "paper" 1871x999x1723 (38 um). kUsage for any other name.
 Result<PhantomOptions> parse_preset(std::string_view name);
 
-/// Checks size (32 voxels to 65535 along each axis, and the memory budget's voxel limit), noise (0..120 dB or infinity) and voxel edge,
-/// and fills in voxel_mm when it is 0. kUsage.
+/// Checks size (32 voxels to 65535 along each axis, and the memory budget's voxel limit), noise (0..120 dB or infinity)
+/// and voxel edge, and fills in voxel_mm when it is 0. kUsage.
 Result<PhantomOptions> complete(PhantomOptions options);
 
 // Mass-attenuation-like grey values of the paper's scan (figures 6 to 8).

@@ -21,8 +21,8 @@ glm::dvec3 Phantom::grid_vector(Float4 model) const {
 }
 glm::dvec3 Phantom::grid_point(Float4 model) const { return grid_vector(model - origin_); }
 
-Dual Phantom::impressions(const std::vector<Impression>& all, std::span<const std::uint32_t> ids,
-                          const Point& point, const Dual& depth) const {
+Dual Phantom::impressions(const std::vector<Impression>& all, std::span<const std::uint32_t> ids, const Point& point,
+                          const Dual& depth) const {
   Dual hollow = far_away();
   for (const std::uint32_t id : ids) {
     const Impression& impression = all[id];
@@ -37,8 +37,8 @@ Dual Phantom::carve(const Dual& body, const Dual& decor, const Dual& hollow) con
   Dual surface = body + decor;
   if (hollow.v < lip_width_) {  // the stylus pushes up a low lip around the impression
     const float t = 1.0f - std::max(hollow.v, 0.0f) / lip_width_;
-    surface = surface - Dual{lip_height_ * t * t,
-                             hollow.v > 0.0f ? hollow.g * (-2.0f * lip_height_ * t / lip_width_) : Float4{}};
+    surface = surface -
+              Dual{lip_height_ * t * t, hollow.v > 0.0f ? hollow.g * (-2.0f * lip_height_ * t / lip_width_) : Float4{}};
   }
   return smooth_max(surface, -hollow, rim_rounding_);
 }
@@ -187,7 +187,8 @@ Label Phantom::label(const glm::dvec3& p) const {
 }
 
 bool Phantom::on_tablet_side(const glm::dvec3& p) const {
-  return tablet_.smooth(model_point(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z))).v < 0.0f;
+  return tablet_.smooth(model_point(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z))).v <
+         0.0f;
 }
 
 double Phantom::gap_width(const glm::dvec3& p) const {

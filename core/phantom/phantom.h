@@ -26,7 +26,7 @@ enum class Label : std::uint8_t {
   kGap = 3,       ///< air between tablet and envelope, and in a crack of the envelope
   kPore = 4,
   kOrganic = 5,
-  kGlue = 6,      ///< clay of both: where tablet and envelope join; on_tablet_side() says whose it was
+  kGlue = 6,  ///< clay of both: where tablet and envelope join; on_tablet_side() says whose it was
 };
 
 enum class Owner : std::uint8_t { kTablet, kEnvelope };
@@ -151,7 +151,8 @@ class Phantom {
   // Fine features.
   float rim_rounding_ = 1.0f, join_rounding_ = 1.0f, lip_height_ = 0.0f, lip_width_ = 1.0f, hint_ = 0.0f;
   std::vector<Impression> tablet_wedges_, outer_wedges_;
-  float tablet_relief_ = 0.0f, outer_relief_ = 0.0f;  ///< no decoration or impression is farther from the smooth surface
+  float tablet_relief_ = 0.0f,
+        outer_relief_ = 0.0f;  ///< no decoration or impression is farther from the smooth surface
   std::vector<Pore> pores_;
   std::vector<Straw> straws_;
   std::vector<Grain> grains_;

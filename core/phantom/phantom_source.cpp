@@ -20,8 +20,8 @@ float coverage(const Dual& field) {
 }
 
 float density(const Fields& f) {
-  return kAirDensity + (kClayDensity - kAirDensity) * coverage(f.clay) + (kOrganicDensity - kAirDensity) * coverage(f.organic) +
-         (kGrainDensity - kClayDensity) * coverage(f.grain);
+  return kAirDensity + (kClayDensity - kAirDensity) * coverage(f.clay) +
+         (kOrganicDensity - kAirDensity) * coverage(f.organic) + (kGrainDensity - kClayDensity) * coverage(f.grain);
 }
 
 }  // namespace
@@ -86,7 +86,8 @@ Result<void> PhantomSource::read(std::int64_t z_begin, std::int64_t z_end, std::
       const float* rows[9];
       for (std::int64_t k = 0; k < 9; ++k) rows[k] = raw_row(y + k % 3 - 1, z + k / 3 - 1);
       kernels::blur_yz(rows, sum);
-      kernels::blur_x(sum, out.subspan(static_cast<std::size_t>((z - z_begin) * d.slice() + y * d.x), static_cast<std::size_t>(d.x)));
+      kernels::blur_x(sum, out.subspan(static_cast<std::size_t>((z - z_begin) * d.slice() + y * d.x),
+                                       static_cast<std::size_t>(d.x)));
     });
   }
   return {};

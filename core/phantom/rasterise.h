@@ -16,14 +16,16 @@ struct VoxelBox {
 };
 
 inline constexpr std::int64_t kBrickEdge = 8;
-inline constexpr std::int64_t brick_of(std::int64_t voxel) { return voxel >= 0 ? voxel / kBrickEdge : -((kBrickEdge - 1 - voxel) / kBrickEdge); }
+inline constexpr std::int64_t brick_of(std::int64_t voxel) {
+  return voxel >= 0 ? voxel / kBrickEdge : -((kBrickEdge - 1 - voxel) / kBrickEdge);
+}
 
 /// No field grows faster than this per voxel near its surface (a test compares with voxel by voxel evaluation).
 inline constexpr float kSteepest = 1.8f;
 
 struct RasterRule {
-  float band;      ///< voxels from a surface within which every voxel is evaluated
-  bool interfaces; ///< also along the invisible border between tablet and envelope, for labels
+  float band;       ///< voxels from a surface within which every voxel is evaluated
+  bool interfaces;  ///< also along the invisible border between tablet and envelope, for labels
 };
 
 /// Calls constant(box, fields at its middle) or voxel(x, y, z, fields) for the part of a brick inside `clip`.
@@ -46,15 +48,16 @@ void visit_brick(const Phantom& phantom, const RasterRule& rule, std::array<std:
   }
   float nearest = std::min({std::abs(f.clay.v), std::abs(f.organic.v), std::abs(f.grain.v)});
   if (rule.interfaces)
-    nearest = std::min({nearest, std::abs(f.tablet.v), std::abs(f.outer.v), std::abs(f.wall.v), std::abs(f.pore.v), std::abs(f.crack.v)});
+    nearest = std::min({nearest, std::abs(f.tablet.v), std::abs(f.outer.v), std::abs(f.wall.v), std::abs(f.pore.v),
+                        std::abs(f.crack.v)});
   if (nearest > reach) {
     constant(box, f);
     return;
   }
   const std::int64_t half = edge / 2;
   for (std::int64_t k = 0; k < 8; ++k)
-    visit_brick(phantom, rule, {lo[0] + (k & 1) * half, lo[1] + (k >> 1 & 1) * half, lo[2] + (k >> 2) * half}, half, clip,
-                constant, voxel);
+    visit_brick(phantom, rule, {lo[0] + (k & 1) * half, lo[1] + (k >> 1 & 1) * half, lo[2] + (k >> 2) * half}, half,
+                clip, constant, voxel);
 }
 
 }  // namespace dubsar::phantom

@@ -38,7 +38,8 @@ WedgeField::WedgeField(const WedgeSize& size, Float4 place, Float4 along, Float4
 Dual WedgeField::evaluate(const Point& point, const Dual& depth_below_surface) const {
   const Dual u = point.along(place_, along_);
   const Dual v = smooth_abs(point.along(place_, across_), 0.5f * rounding_);
-  const Dual head = smooth_max(head_back_.at(u, v, depth_below_surface), head_flank_.at(u, v, depth_below_surface), rounding_);
+  const Dual head =
+      smooth_max(head_back_.at(u, v, depth_below_surface), head_flank_.at(u, v, depth_below_surface), rounding_);
   if (tail_length_ <= 0.0f) return head;
   // Beyond its tip the groove's flank would stay near the surface for long: it is cut off there.
   const Dual ends = max(-u, u - tail_length_);

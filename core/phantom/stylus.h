@@ -11,10 +11,10 @@ struct WedgeSize {
   float head_back = 0.0f;        ///< from that edge to the deepest point
   float head_front = 0.0f;       ///< from the deepest point to where the head's flanks meet
   float depth = 0.0f;
-  float tail_length = 0.0f;      ///< from the deepest point; 0: Winkelhaken, no tail
+  float tail_length = 0.0f;  ///< from the deepest point; 0: Winkelhaken, no tail
   float tail_half_width = 0.0f;
   float tail_depth = 0.0f;
-  float rounding = 0.0f;         ///< of inner edges
+  float rounding = 0.0f;  ///< of inner edges
 };
 
 /// The usual proportions for a head of the given half width (tuned by eye on shaded pictures and photographs of Old

@@ -75,8 +75,8 @@ void PhantomBuilder::write_block(Owner owner, const TextBlock& block) {
     const float length = 2.0f * block.half_length;
     for (const PlacedSign& sign : write_line(length / sign_height, random)) {
       for (const Stroke& stroke : sign.strokes)
-        press(owner, block.side, stroke.x * sign_height - block.half_length, base + stroke.y * sign_height, stroke, signs_,
-              sign_height);
+        press(owner, block.side, stroke.x * sign_height - block.half_length, base + stroke.y * sign_height, stroke,
+              signs_, sign_height);
       ++signs_;
     }
   }

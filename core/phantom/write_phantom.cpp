@@ -1,7 +1,8 @@
 #include "core/phantom/write_phantom.h"
 
-#include <cmath>
 #include <fmt/format.h>
+
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -72,8 +73,9 @@ Result<void> write_scan(const std::filesystem::path& path, const std::shared_ptr
 }
 
 Result<void> write_wedges(Hdf5Writer& file, const Phantom& phantom) {
-  const std::vector<std::string> columns{"x",      "y",      "z",      "out_x",           "out_y", "out_z", "tail_x", "tail_y",
-                                         "tail_z", "depth",  "length", "head_half_width", "side",  "owner", "sign",   "open"};
+  const std::vector<std::string> columns{"x",      "y",      "z",      "out_x", "out_y",  "out_z",
+                                         "tail_x", "tail_y", "tail_z", "depth", "length", "head_half_width",
+                                         "side",   "owner",  "sign",   "open"};
   std::vector<double> rows;
   for (const Wedge& w : phantom.wedges())
     rows.insert(rows.end(), {w.position.x, w.position.y, w.position.z, w.outward.x, w.outward.y, w.outward.z, w.tail.x,
@@ -90,9 +92,10 @@ Result<void> write_truth(const std::filesystem::path& path, const Phantom& phant
                                          static_cast<std::uint64_t>(std::min<std::int64_t>(64, d.y)),
                                          static_cast<std::uint64_t>(std::min<std::int64_t>(64, d.x))};
   const std::string label_path = "/truth/label", distance_path = "/truth/distance";
-  DUBSAR_TRY(file.create_dataset(label_path, {.type = ScalarType::kU8, .dims = shape(d), .chunk = chunk, .deflate = 1}));
-  DUBSAR_TRY(file.create_dataset(distance_path,
-                                 {.type = ScalarType::kI16, .dims = shape(d), .chunk = chunk, .deflate = 1, .shuffle = true}));
+  DUBSAR_TRY(
+      file.create_dataset(label_path, {.type = ScalarType::kU8, .dims = shape(d), .chunk = chunk, .deflate = 1}));
+  DUBSAR_TRY(file.create_dataset(
+      distance_path, {.type = ScalarType::kI16, .dims = shape(d), .chunk = chunk, .deflate = 1, .shuffle = true}));
   DUBSAR_TRY(describe(file, phantom, label_path));
   const std::vector<std::string> names{"outside", "tablet", "envelope", "gap", "pore", "organic", "glue"};
   DUBSAR_TRY(file.set_attribute(label_path, "names", std::span<const std::string>(names)));
@@ -143,14 +146,15 @@ void rasterise_truth(const Phantom& phantom, std::int64_t z_begin, std::int64_t 
           },
           [&](std::int64_t x, std::int64_t y, std::int64_t z, const Fields& f) {
             label[static_cast<std::size_t>(row(y, z) + x)] = static_cast<std::uint8_t>(label_of(f));
-            distance[static_cast<std::size_t>(row(y, z) + x)] =
-                quantise(phantom.signed_distance({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)}));
+            distance[static_cast<std::size_t>(row(y, z) + x)] = quantise(
+                phantom.signed_distance({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)}));
           });
   });
 }
 
-Result<PhantomReport> write_phantom(const std::filesystem::path& scan, const std::optional<std::filesystem::path>& truth,
-                                    const PhantomOptions& options, Progress& progress) {
+Result<PhantomReport> write_phantom(const std::filesystem::path& scan,
+                                    const std::optional<std::filesystem::path>& truth, const PhantomOptions& options,
+                                    Progress& progress) {
   DUBSAR_ASSIGN(std::shared_ptr<const Phantom> phantom, Phantom::create(options));
   DUBSAR_TRY(write_scan(scan, phantom, progress));
   if (truth) DUBSAR_TRY(write_truth(*truth, *phantom, progress));

@@ -24,8 +24,9 @@ struct PhantomReport {
 /// Both files appear only when complete. Streams slabs of 16 slices: memory is some slices. Advances `progress` by
 /// voxels (stages "phantom" and "truth").
 /// Errors: kUsage (options), kCannotCreate, kPermission, kIo, kCancelled.
-Result<PhantomReport> write_phantom(const std::filesystem::path& scan, const std::optional<std::filesystem::path>& truth,
-                                    const PhantomOptions& options, Progress& progress);
+Result<PhantomReport> write_phantom(const std::filesystem::path& scan,
+                                    const std::optional<std::filesystem::path>& truth, const PhantomOptions& options,
+                                    Progress& progress);
 
 /// Steps of stored distances per voxel.
 inline constexpr double kDistanceSteps = 256.0;

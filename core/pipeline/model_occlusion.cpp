@@ -12,7 +12,8 @@ std::array<std::uint8_t, 8> body_of_partition(const std::vector<Partition>& part
   for (std::size_t i = 0; i < partitions.size() && i < body.size(); ++i) {
     body[i] = static_cast<std::uint8_t>(i);
     for (std::size_t j = i; j-- > 0;)
-      if (!partitions[i].part.empty() && partitions[j].part == partitions[i].part) body[i] = static_cast<std::uint8_t>(j);
+      if (!partitions[i].part.empty() && partitions[j].part == partitions[i].part)
+        body[i] = static_cast<std::uint8_t>(j);
   }
   return body;
 }

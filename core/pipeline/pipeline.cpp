@@ -91,8 +91,10 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   DUBSAR_ASSIGN(model.mesh, build_quad_mesh(model.samples, progress));
   clock.finish(model.mesh.vertex_count());
   if (model.mesh.vertex_count() == 0)
-    return fail(ErrorKind::kBadData, "there is no surface at threshold {:g}: all voxels are on one side; give another with "
-                "--threshold", result.report.threshold);
+    return fail(ErrorKind::kBadData,
+                "there is no surface at threshold {:g}: all voxels are on one side; give another with "
+                "--threshold",
+                result.report.threshold);
 
   DUBSAR_TRY(smooth_and_measure(options, result, clock, progress));
   quantise_for_exa(model);  // from here on the model is what the file will hold

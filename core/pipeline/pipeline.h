@@ -26,12 +26,12 @@ namespace dubsar {
 
 struct PipelineOptions {
   ImportOptions import;
-  bool resample = true;                 ///< Gauss 3x3x3 and 2:1
-  DenoiseOptions denoise;               ///< sigma 0: estimated anew before each iteration
-  std::optional<float> sharpen;         ///< amount (sharpen.h); default: 1 where the noise allows it, see volume_stages.cpp
+  bool resample = true;          ///< Gauss 3x3x3 and 2:1
+  DenoiseOptions denoise;        ///< sigma 0: estimated anew before each iteration
+  std::optional<float> sharpen;  ///< amount (sharpen.h); default: 1 where the noise allows it, see volume_stages.cpp
   EstimateOptions estimate;
-  std::optional<float> threshold;       ///< isovalue; overrides the estimate
-  int offset_bits = 4;                  ///< N
+  std::optional<float> threshold;  ///< isovalue; overrides the estimate
+  int offset_bits = 4;             ///< N
   bool closed_boundary = true;
   SmoothOptions smooth;
   CurvatureMethod curvature = CurvatureMethod::kFit;
@@ -51,16 +51,16 @@ struct PipelineReport {
   VolumeInfo input;
   std::int64_t nonfinite_voxels = 0;
   float nonfinite_fill = 0.0f;
-  Dims grid;                         ///< processed grid
-  float sharpen = 0.0f;              ///< amount that was used
+  Dims grid;             ///< processed grid
+  float sharpen = 0.0f;  ///< amount that was used
   std::vector<StageRecord> stages;
   std::vector<FilterStep> filters;
-  Estimates estimates;               ///< those that the threshold comes from
+  Estimates estimates;  ///< those that the threshold comes from
   float threshold = 0.0f;
-  std::string threshold_path;        ///< how it was found
+  std::string threshold_path;  ///< how it was found
   SmoothStats smooth;
   SegmentReport segment;
-  MeshCheck mesh;                    ///< of all parts together, with their fill patches
+  MeshCheck mesh;  ///< of all parts together, with their fill patches
   std::int64_t vertices = 0, xquads = 0;
   std::vector<Partition> partitions;
   ExaStats exa;
@@ -76,7 +76,8 @@ struct PipelineResult {
 /// leaves nothing behind. Errors: those of the stages; kBadData when there is no surface at the threshold.
 Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& progress);
 
-/// Writes the model to `path` (as one more stage) and completes the report. An old file stays until the new one is whole.
+/// Writes the model to `path` (as one more stage) and completes the report. An old file stays until the new one is
+/// whole.
 Result<void> write_product(const std::string& path, PipelineResult& result, Progress& progress);
 
 }  // namespace dubsar

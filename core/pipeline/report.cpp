@@ -25,7 +25,8 @@ json parameters_json(const PipelineReport& report, const PipelineOptions& option
         {"iterations", denoise.iterations},
         {"sigma", denoise.sigma > 0.0 ? json(denoise.sigma) : json("estimated")}}},
       {"sharpen", report.sharpen},
-      {"threshold_method", options.threshold ? "given" : kThresholdNames[static_cast<std::size_t>(options.estimate.method)]},
+      {"threshold_method",
+       options.threshold ? "given" : kThresholdNames[static_cast<std::size_t>(options.estimate.method)]},
       {"threshold", report.threshold},
       {"offset_bits", options.offset_bits},
       {"boundary", options.closed_boundary ? "closed" : "open"},
@@ -159,7 +160,8 @@ json report_json(const PipelineReport& report, const PipelineOptions& options) {
 }
 
 std::string report_text(const PipelineReport& report) {
-  std::string text = fmt::format("{:<14}{:>10}{:>10}{:>12}{:>16}  {}\n", "stage", "wall s", "cpu s", "peak MiB", "work", "");
+  std::string text =
+      fmt::format("{:<14}{:>10}{:>10}{:>12}{:>16}  {}\n", "stage", "wall s", "cpu s", "peak MiB", "work", "");
   double wall = 0.0, cpu = 0.0, peak = 0.0;
   for (const StageRecord& stage : report.stages) {
     text += fmt::format("{:<14}{:>10.2f}{:>10.2f}{:>12.0f}{:>16}  {}\n", stage.name, stage.wall_s, stage.cpu_s,
@@ -170,11 +172,13 @@ std::string report_text(const PipelineReport& report) {
   }
   text += fmt::format("{:<14}{:>10.2f}{:>10.2f}{:>12.0f}\n\n", "all", wall, cpu, peak);
   for (const FilterStep& step : report.filters)
-    text += fmt::format("noise {:<22} sigma {:<11.4g} SNR {:5.1f} dB\n", step.name, step.estimates.sigma, step.estimates.snr_db);
+    text += fmt::format("noise {:<22} sigma {:<11.4g} SNR {:5.1f} dB\n", step.name, step.estimates.sigma,
+                        step.estimates.snr_db);
   text += fmt::format("threshold {:.6g}: {}\n", report.threshold, report.threshold_path);
-  text += fmt::format("mesh: {} vertices, {} x-quads, {} triangles, {} non-manifold edges, {} non-manifold vertices\n\n",
-                      report.vertices, report.xquads, report.mesh.triangles, report.mesh.nonmanifold_edges,
-                      report.mesh.nonmanifold_vertices);
+  text +=
+      fmt::format("mesh: {} vertices, {} x-quads, {} triangles, {} non-manifold edges, {} non-manifold vertices\n\n",
+                  report.vertices, report.xquads, report.mesh.triangles, report.mesh.nonmanifold_edges,
+                  report.mesh.nonmanifold_vertices);
   text += fmt::format("{:<4}{:<24}{:>14}{:>14}  {}\n", "id", "part", "area mm2", "volume mm3", "");
   for (const Partition& part : report.partitions)
     text += fmt::format("{:<4}{:<24}{:>14.1f}{:>14.1f}  {}\n", part.id, part.name, part.area_mm2, part.volume_mm3,

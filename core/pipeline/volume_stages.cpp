@@ -13,10 +13,14 @@ namespace {
 
 std::string_view method_name(DenoiseMethod method) {
   switch (method) {
-    case DenoiseMethod::kMedian: return "median";
-    case DenoiseMethod::kGauss: return "gauss";
-    case DenoiseMethod::kBilateral: return "bilateral";
-    case DenoiseMethod::kJointBilateral: return "joint_bilateral";
+    case DenoiseMethod::kMedian:
+      return "median";
+    case DenoiseMethod::kGauss:
+      return "gauss";
+    case DenoiseMethod::kBilateral:
+      return "bilateral";
+    case DenoiseMethod::kJointBilateral:
+      return "joint_bilateral";
   }
   return "";
 }
@@ -75,8 +79,7 @@ Result<void> denoise_and_estimate(Volume<float>& volume, const PipelineOptions& 
     DenoiseOptions pass = options.denoise;
     pass.iterations = 1;
     if (pass.sigma <= 0.0) pass.sigma = estimates.sigma;
-    const bool needs_sigma =
-        pass.method == DenoiseMethod::kBilateral || pass.method == DenoiseMethod::kJointBilateral;
+    const bool needs_sigma = pass.method == DenoiseMethod::kBilateral || pass.method == DenoiseMethod::kJointBilateral;
     if (needs_sigma && pass.sigma <= 0.0) {
       log_info("denoise: the volume has no noise that could be measured, nothing to filter");
       break;
@@ -125,8 +128,8 @@ Result<SurfaceSamples> run_volume_stages(const PipelineOptions& options, Pipelin
   report.nonfinite_voxels = scan->nonfinite_count();
   report.nonfinite_fill = scan->nonfinite_fill();
   if (report.nonfinite_voxels > 0) {
-    report.warnings.push_back(fmt::format("{} voxels were NaN or Inf and count as {:g}", report.nonfinite_voxels,
-                                          report.nonfinite_fill));
+    report.warnings.push_back(
+        fmt::format("{} voxels were NaN or Inf and count as {:g}", report.nonfinite_voxels, report.nonfinite_fill));
     log(LogLevel::kWarning, report.warnings.back());
   }
   report.grid = volume.dims;

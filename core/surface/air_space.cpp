@@ -266,8 +266,7 @@ Result<Exterior> find_exterior(const BitVolume& inside, int largest_radius, Prog
   // Enclosing 85 % of what the widest closing encloses: cracks give steps of tens of per cent, relief on the
   // outer wall that a wide closing bridges gives a few.
   constexpr double kEnough = 0.85;
-  const int margin =
-      largest_radius + 2;  // so that a dilated object near the border does not block the way around it
+  const int margin = largest_radius + 2;  // so that a dilated object near the border does not block the way around it
   const BitVolume padded = pad(inside, margin);
   std::vector<std::int64_t> faces;
   BitVolume blocked = padded;

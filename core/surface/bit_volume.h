@@ -13,7 +13,9 @@ class BitVolume {
  public:
   BitVolume() = default;
   explicit BitVolume(Dims dims)
-      : dims_(dims), words_per_row_((dims.x + 63) / 64), words_(static_cast<std::size_t>(words_per_row_ * dims.y * dims.z)) {}
+      : dims_(dims),
+        words_per_row_((dims.x + 63) / 64),
+        words_(static_cast<std::size_t>(words_per_row_ * dims.y * dims.z)) {}
 
   const Dims& dims() const noexcept { return dims_; }
   std::int64_t words_per_row() const noexcept { return words_per_row_; }

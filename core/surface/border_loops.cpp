@@ -6,8 +6,7 @@
 namespace dubsar {
 
 std::vector<std::vector<std::uint32_t>> join_loops(const std::vector<BorderEdge>& edges) {
-  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>
-      leaving;  // by vertex; last one is taken first
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> leaving;  // by vertex; last one is taken first
   for (auto e = static_cast<std::uint32_t>(edges.size()); e-- > 0;) leaving[edges[e].from].push_back(e);
   std::vector<bool> used(edges.size(), false);
   const auto take = [&](std::uint32_t vertex) {

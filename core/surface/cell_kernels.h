@@ -27,8 +27,8 @@ struct CellRowOutput {
   QuadMesh* mesh = nullptr;
   std::uint32_t first_vertex = 0;
   std::uint32_t first_incidence = 0;
-  std::vector<DoubledCorner>* doubled = nullptr;   ///< appended to, unsorted
-  std::vector<std::uint8_t>* in_layer = nullptr;   ///< per vertex, 1: of a cell that touches the layer; may be null
+  std::vector<DoubledCorner>* doubled = nullptr;  ///< appended to, unsorted
+  std::vector<std::uint8_t>* in_layer = nullptr;  ///< per vertex, 1: of a cell that touches the layer; may be null
 };
 
 CellRowCounts count_cells(const SurfaceSamples& samples, const EdgeIndex& index, const CellRow& row);

@@ -119,7 +119,9 @@ std::vector<int> piece_sizes(const CellCycle& cycle, const std::vector<unsigned>
 std::vector<ChordSet> cycle_splits(const CellCycle& cycle) {
   if (cycle.pinched == 0) return {{}};
   const std::size_t n = cycle.edges.size();
-  struct Span { std::size_t i, j; };
+  struct Span {
+    std::size_t i, j;
+  };
   std::vector<Span> spans;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 2; j < n && j - i + 2 <= n; ++j) spans.push_back({i, j});

@@ -50,12 +50,12 @@ struct CellPiece {
 };
 
 struct CellConfig {
-  std::uint16_t active_edges = 0;               ///< mask of 12
-  std::uint8_t vertices = 0;                    ///< pieces = dual vertices, 0..4
-  std::uint8_t incidences = 0;                  ///< sum of the popcounts of piece_edges
-  std::array<std::uint16_t, 4> piece_edges{};   ///< edges whose crossing belongs to the piece, chord ends included
-  std::array<CellCorner, 12> corners{};         ///< of active edges
-  std::array<CellPiece, 4> pieces{};            ///< the same, ready for writing
+  std::uint16_t active_edges = 0;              ///< mask of 12
+  std::uint8_t vertices = 0;                   ///< pieces = dual vertices, 0..4
+  std::uint8_t incidences = 0;                 ///< sum of the popcounts of piece_edges
+  std::array<std::uint16_t, 4> piece_edges{};  ///< edges whose crossing belongs to the piece, chord ends included
+  std::array<CellCorner, 12> corners{};        ///< of active edges
+  std::array<CellPiece, 4> pieces{};           ///< the same, ready for writing
 };
 
 class CellTable {
@@ -94,7 +94,7 @@ struct CellSymmetry {
   std::array<std::uint8_t, 8> corner;  ///< image of each corner
   std::array<std::uint8_t, 12> edge;
   std::array<std::uint8_t, 6> face;
-  bool axes_fixed = false;             ///< mirrors only: no axis is exchanged with another
+  bool axes_fixed = false;  ///< mirrors only: no axis is exchanged with another
   bool inverted = false;
 };
 

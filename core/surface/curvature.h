@@ -12,7 +12,7 @@
 namespace dubsar {
 
 enum class CurvatureMethod {
-  kFit,    ///< least-squares shape operator of all incident x-quads: also right where the quads lie across the curvature
+  kFit,  ///< least-squares shape operator of all incident x-quads: also right where the quads lie across the curvature
   kPairs,  ///< the paper's: extremes of the two diagonals of each x-quad, vector median over the incident x-quads
 };
 

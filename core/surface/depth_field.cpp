@@ -84,8 +84,7 @@ void each_line(const Dims& d, float* data, const MakeVisit& make_visit) {
 }  // namespace
 
 Result<DepthField> DepthField::make(const BitVolume& inside, int seal_radius, Progress& progress) {
-  constexpr std::int64_t kMostPoints =
-      24'000'000;  // 96 MB; the field is smooth, so steps of 2 or 3 lose nothing
+  constexpr std::int64_t kMostPoints = 24'000'000;  // 96 MB; the field is smooth, so steps of 2 or 3 lose nothing
   const Dims fine = inside.dims();
   std::int64_t step = 1;
   // One layer of exterior around the grid.
@@ -112,8 +111,8 @@ Result<DepthField> DepthField::make(const BitVolume& inside, int seal_radius, Pr
     for (std::int64_t y = 0; y < d.y; ++y)
       for (std::int64_t x = 0; x < d.x; ++x) {
         const std::int64_t fx = (x - 1) * step, fy = (y - 1) * step, fz = (z - 1) * step;
-        const bool outside = std::min({fx, fy, fz}) < 0 || fx >= fine.x || fy >= fine.y || fz >= fine.z ||
-                             exterior.get(fx, fy, fz);
+        const bool outside =
+            std::min({fx, fy, fz}) < 0 || fx >= fine.x || fy >= fine.y || fz >= fine.z || exterior.get(fx, fy, fz);
         field.depth_[static_cast<std::size_t>(z * d.slice() + y * d.x + x)] = outside ? 0.0f : kFar;
       }
   });
@@ -149,8 +148,7 @@ float DepthField::depth(const glm::vec3& p) const noexcept {
     const float* r = base + dz * dims_.slice() + dy * dims_.x;
     return r[0] + tx * (r[1] - r[0]);
   };
-  const float front = row(0, 0) + ty * (row(1, 0) - row(0, 0)),
-              back = row(0, 1) + ty * (row(1, 1) - row(0, 1));
+  const float front = row(0, 0) + ty * (row(1, 0) - row(0, 0)), back = row(0, 1) + ty * (row(1, 1) - row(0, 1));
   return front + tz * (back - front);
 }
 

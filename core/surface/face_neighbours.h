@@ -14,10 +14,10 @@ namespace dubsar {
 
 class FaceNeighbours {
  public:
-  static constexpr int kLanes = 16;                 ///< faces in a slice: a multiple of every SIMD width
+  static constexpr int kLanes = 16;  ///< faces in a slice: a multiple of every SIMD width
   static constexpr int kChunkFaces = 1024;
   static constexpr int kSlices = kChunkFaces / kLanes;
-  static constexpr std::uint32_t kIndexBits = 30;   ///< entry = weight << 30 | face
+  static constexpr std::uint32_t kIndexBits = 30;  ///< entry = weight << 30 | face
   static constexpr std::uint32_t kIndexMask = (1u << kIndexBits) - 1;
 
   /// Faces [1024 i, 1024 (i + 1)) of the mesh. Lane l of slice s treats face order[16 s + l]; its j-th neighbour is

@@ -51,9 +51,8 @@ class Sets {
 /// Two labels on the faces where active[f]. preference > 0: the face wants `true`, in units of area.
 /// Faces that clearly agree and meet without a crease are one node, which leaves a small graph with the same
 /// cut.
-Result<std::vector<bool>> cut_faces(const SurfaceModel& model, const FaceScene& scene,
-                                    const std::vector<bool>& active, const std::vector<float>& preference,
-                                    Progress& progress) {
+Result<std::vector<bool>> cut_faces(const SurfaceModel& model, const FaceScene& scene, const std::vector<bool>& active,
+                                    const std::vector<float>& preference, Progress& progress) {
   // Design note: crease weight exp(-(max(0, -k - 0.2) / 0.25)), lambda 2 to 4.
   constexpr float kLambda = 3.0f, kFlat = 0.2f, kFall = 0.25f;
   constexpr float kClear = 0.3f;    // preference per area
@@ -83,8 +82,7 @@ Result<std::vector<bool>> cut_faces(const SurfaceModel& model, const FaceScene& 
     if (active[f]) wish[node[f]] += static_cast<double>(preference[f]);
   MinCut cut(nodes);
   for (std::uint32_t n = 0; n < nodes; ++n) {
-    const auto cost =
-        static_cast<std::int32_t>(std::lround(std::clamp(wish[n] * kUnits, -kMostCost, kMostCost)));
+    const auto cost = static_cast<std::int32_t>(std::lround(std::clamp(wish[n] * kUnits, -kMostCost, kMostCost)));
     cut.add_node_cost(n, cost < 0 ? -cost : 0, cost > 0 ? cost : 0);
   }
   for (std::uint32_t f = 0; f < faces; ++f) {
@@ -95,8 +93,7 @@ Result<std::vector<bool>> cut_faces(const SurfaceModel& model, const FaceScene& 
       const float crease = std::exp(-std::max(0.0f, -graph.curvature(f, g) - kFlat) / kFall);
       const float length = side_length(model.mesh, f, s - graph.first_side[f]);
       cut.add_edge(node[f], node[g],
-                   1 + static_cast<std::int32_t>(
-                           std::lround(kUnits * static_cast<double>(kLambda * crease * length))));
+                   1 + static_cast<std::int32_t>(std::lround(kUnits * static_cast<double>(kLambda * crease * length))));
     }
   }
   DUBSAR_TRY(cut.solve(progress));
@@ -135,16 +132,13 @@ float side_length(const QuadMesh& mesh, std::uint32_t face, std::uint32_t side) 
                        mesh.positions[polygon.vertex[(side + 1) % static_cast<std::uint32_t>(polygon.size)]]);
 }
 
-Result<FaceScene> observe_faces(const SurfaceModel& model, const SegmentOptions& options,
-                                Progress& progress) {
+Result<FaceScene> observe_faces(const SurfaceModel& model, const SegmentOptions& options, Progress& progress) {
   FaceScene scene;
-  DUBSAR_ASSIGN(const Exterior exterior,
-                find_exterior(model.samples.signs, options.largest_crack_radius, progress));
+  DUBSAR_ASSIGN(const Exterior exterior, find_exterior(model.samples.signs, options.largest_crack_radius, progress));
   scene.crack_radius = exterior.crack_radius;
   const EnclosedAir enclosed(model.samples.signs, exterior.air);
-  DUBSAR_ASSIGN(
-      const DepthField depth,
-      DepthField::make(model.samples.signs, std::max(kSealRadius, exterior.crack_radius), progress));
+  DUBSAR_ASSIGN(const DepthField depth,
+                DepthField::make(model.samples.signs, std::max(kSealRadius, exterior.crack_radius), progress));
   DUBSAR_ASSIGN(scene.graph, FaceGraph::build(model.mesh, progress));
   const std::uint32_t faces = scene.graph.faces();
   scene.air.resize(faces);
@@ -203,9 +197,8 @@ FaceComponents find_components(const SurfaceModel& model, const FaceScene& scene
     if (components.info[c].area > 0.0) centre[c] /= components.info[c].area;
   for (std::uint32_t f = 0; f < faces; ++f) {
     const std::uint32_t c = components.of_face[f];
-    components.info[c].volume +=
-        glm::dot(glm::dvec3(graph.centre[f]) - centre[c], glm::dvec3(graph.normal[f])) *
-        static_cast<double>(graph.area[f]) / 3.0;
+    components.info[c].volume += glm::dot(glm::dvec3(graph.centre[f]) - centre[c], glm::dvec3(graph.normal[f])) *
+                                 static_cast<double>(graph.area[f]) / 3.0;
   }
   return components;
 }

@@ -21,7 +21,7 @@ struct FaceScene {
   FaceGraph graph;
   int crack_radius = 0;
   std::vector<std::uint32_t>
-      air;  ///< per face: kExterior, a component of enclosed air, or EnclosedAir::kNone (unknown)
+      air;                    ///< per face: kExterior, a component of enclosed air, or EnclosedAir::kNone (unknown)
   std::vector<float> inward;  ///< per face: cosine between its normal and the way inwards
   std::vector<float> depth;   ///< per face: below the sealed outside, grid steps
 };

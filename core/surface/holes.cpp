@@ -33,8 +33,7 @@ std::vector<std::uint8_t> groups_of(const std::vector<Partition>& partitions) {
 }
 
 /// Most frequent value, ties to the smaller.
-std::uint8_t majority(const std::vector<BorderEdge>& edges, const std::vector<std::uint32_t>& loop,
-                      bool left) {
+std::uint8_t majority(const std::vector<BorderEdge>& edges, const std::vector<std::uint32_t>& loop, bool left) {
   std::array<int, 256> count{};
   for (const std::uint32_t e : loop) ++count[left ? edges[e].left : edges[e].right];
   return static_cast<std::uint8_t>(std::max_element(count.begin(), count.end()) - count.begin());
@@ -43,11 +42,7 @@ std::uint8_t majority(const std::vector<BorderEdge>& edges, const std::vector<st
 class HoleFiller {
  public:
   HoleFiller(SurfaceModel& model, const FaceGraph& graph, const HoleOptions& options, Progress& progress)
-      : model_(model),
-        graph_(graph),
-        options_(options),
-        progress_(progress),
-        group_(groups_of(model.partitions)) {}
+      : model_(model), graph_(graph), options_(options), progress_(progress), group_(groups_of(model.partitions)) {}
 
   Result<HoleReport> run() {
     DUBSAR_TRY(fill_between_groups());
@@ -76,8 +71,8 @@ class HoleFiller {
         if (left == right || !differs(left, right)) continue;
         const Polygon polygon = model_.mesh.polygon(f);
         const auto i = static_cast<std::size_t>(s - graph_.first_side[f]);
-        edges.push_back({polygon.vertex[i], polygon.vertex[(i + 1) % static_cast<std::size_t>(polygon.size)],
-                         f, left, right});
+        edges.push_back(
+            {polygon.vertex[i], polygon.vertex[(i + 1) % static_cast<std::size_t>(polygon.size)], f, left, right});
       }
     return edges;
   }
@@ -90,11 +85,9 @@ class HoleFiller {
     for (std::size_t i = 0; i < queue.size(); ++i) {
       const std::uint32_t f = queue[i];
       sum += graph_.area[f] * graph_.normal[f];
-      for (std::uint32_t s = graph_.first_side[f]; s < graph_.first_side[f + 1] && queue.size() < kMostFaces;
-           ++s) {
+      for (std::uint32_t s = graph_.first_side[f]; s < graph_.first_side[f + 1] && queue.size() < kMostFaces; ++s) {
         const std::uint32_t g = graph_.neighbour[s];
-        if (g == FaceGraph::kNone || group_[model_.quad_partition[g]] != group_[model_.quad_partition[face]])
-          continue;
+        if (g == FaceGraph::kNone || group_[model_.quad_partition[g]] != group_[model_.quad_partition[face]]) continue;
         if (std::find(queue.begin(), queue.end(), g) == queue.end()) queue.push_back(g);
       }
     }
@@ -130,8 +123,7 @@ class HoleFiller {
         Task task = make_task(edges, loop);
         task.part = majority(edges, loop, true);
         const std::uint8_t beyond = group_[edges[loop.front()].right];
-        if (std::all_of(loop.begin(), loop.end(),
-                        [&](std::uint32_t e) { return group_[edges[e].right] == beyond; })) {
+        if (std::all_of(loop.begin(), loop.end(), [&](std::uint32_t e) { return group_[edges[e].right] == beyond; })) {
           task.reverse_part = majority(edges, loop, false);
           for (const std::uint32_t e : loop) shared.insert(key(edges[e].from, edges[e].to));
         } else {
@@ -222,8 +214,7 @@ class HoleFiller {
     const auto dual = static_cast<std::uint32_t>(model_.mesh.positions.size());
     for (std::size_t i = 0; i < tasks.size(); ++i) {
       const auto n = static_cast<std::uint32_t>(tasks[i].vertices.size());
-      FillPatch patch{tasks[i].part, tasks[i].reverse_part, std::move(fills[i].added),
-                      std::move(fills[i].triangles)};
+      FillPatch patch{tasks[i].part, tasks[i].reverse_part, std::move(fills[i].added), std::move(fills[i].triangles)};
       for (Triangle& t : patch.triangles)
         for (std::uint32_t& v : t) v = v < n ? tasks[i].vertices[v] : v - n + dual;
       model_.patches.push_back(std::move(patch));

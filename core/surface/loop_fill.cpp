@@ -102,8 +102,7 @@ class OptimalTriangulation {
         glm::vec3 other;
         if (far_normal(i, k, other)) bend(w, 1.0f - glm::dot(normal, other), i, k);
         if (far_normal(k, j, other)) bend(w, 1.0f - glm::dot(normal, other), k, j);
-        if (closing && rim_normal(polygon_[j], polygon_[0], other))
-          bend(w, 1.0f - glm::dot(normal, other), i, j);
+        if (closing && rim_normal(polygon_[j], polygon_[0], other)) bend(w, 1.0f - glm::dot(normal, other), i, j);
       }
       if (w < best) {
         best = w;
@@ -141,8 +140,7 @@ Result<void> triangulate_polygon(const Loop& loop, const std::vector<std::uint32
   if (n < 3) return {};
   const auto limit = static_cast<std::size_t>(std::max(options.exact_limit, 8));
   const auto solve = [&](const std::vector<std::uint32_t>& piece) -> Result<void> {
-    DUBSAR_ASSIGN(const bool done,
-                  OptimalTriangulation(loop, piece, options.weight).solve(fill.triangles, progress));
+    DUBSAR_ASSIGN(const bool done, OptimalTriangulation(loop, piece, options.weight).solve(fill.triangles, progress));
     if (!done) {
       fill.star = true;
       add_star(loop, piece, fill);

@@ -17,17 +17,16 @@ namespace dubsar {
 enum class LoopWeight {
   kArea,              ///< least total area (Barequet and Sharir)
   kDihedralThenArea,  ///< least largest dihedral angle, then least area (Liepa)
-  kAreaAndBend,  ///< least sum of area and, for every edge, length times (1 - cos dihedral) times a length
-                 ///< that grows with the loop: one sharp corner of the rim does not hide all other angles
+  kAreaAndBend,       ///< least sum of area and, for every edge, length times (1 - cos dihedral) times a length
+                      ///< that grows with the loop: one sharp corner of the rim does not hide all other angles
 };
 
 struct LoopFillOptions {
   LoopWeight weight = LoopWeight::kAreaAndBend;
-  int exact_limit = 256;  ///< loops with more vertices are first cut down to a coarse loop of this many
-  bool refine = true;     ///< add vertices inside (Liepa section 4) ...
-  float growth = 1.15f;   ///< ... whose spacing grows by this factor with every generation
-  int fairing_steps =
-      200;  ///< at most, of each relaxation: to a membrane, then along the rim's normals; 0: none
+  int exact_limit = 256;    ///< loops with more vertices are first cut down to a coarse loop of this many
+  bool refine = true;       ///< add vertices inside (Liepa section 4) ...
+  float growth = 1.15f;     ///< ... whose spacing grows by this factor with every generation
+  int fairing_steps = 200;  ///< at most, of each relaxation: to a membrane, then along the rim's normals; 0: none
 };
 
 struct Loop {
@@ -43,8 +42,7 @@ struct LoopFill {
   std::vector<Triangle> triangles;  ///< id < n: loop vertex; else added[id - n]
   std::vector<glm::vec3> added;
   double area = 0.0;
-  bool star =
-      false;  ///< somewhere every triangulation needs a forbidden edge: a fan around a new vertex there
+  bool star = false;  ///< somewhere every triangulation needs a forbidden edge: a fan around a new vertex there
 };
 
 /// Always succeeds for a loop of at least 3 distinct vertices: a disk with the loop as its border, every

@@ -122,7 +122,8 @@ MeshCheck check_mesh(std::span<const glm::vec3> positions, std::span<const Trian
       count, 1 << 16, {},
       [&](std::int64_t begin, std::int64_t end) {
         MeshCheck part;
-        for (const Triangle& t : triangles.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin))) {
+        for (const Triangle& t :
+             triangles.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin))) {
           DUBSAR_CHECK(t[0] < vertices && t[1] < vertices && t[2] < vertices);
           const bool degenerate = is_degenerate(t);
           part.degenerate_triangles += degenerate;

@@ -10,7 +10,7 @@
 namespace dubsar {
 
 struct MeshCheck {
-  std::int64_t vertices = 0;              ///< vertices used by triangles
+  std::int64_t vertices = 0;  ///< vertices used by triangles
   std::int64_t edges = 0;
   std::int64_t triangles = 0;
   std::int64_t boundary_edges = 0;        ///< one triangle

@@ -123,7 +123,8 @@ void filter_slice(const FaceNeighbours::Chunk& chunk, std::size_t slice, std::si
 
 }  // namespace
 
-void filter_chunk(const FaceNeighbours::Chunk& chunk, const float* from, float* to, const NormalFilterOptions& options) {
+void filter_chunk(const FaceNeighbours::Chunk& chunk, const float* from, float* to,
+                  const NormalFilterOptions& options) {
   for (std::size_t slice = 0; slice * FaceNeighbours::kLanes < static_cast<std::size_t>(chunk.faces); ++slice)
     for (std::size_t lane = 0; lane < FaceNeighbours::kLanes; lane += hn::Lanes(D()))
       filter_slice(chunk, slice, lane, from, to, options);

@@ -11,9 +11,10 @@
 
 namespace dubsar {
 
-/// The steps and epsilon are tuned on wedge impressions, 2 to 8 voxels deep, blurred, with noise, denoised and extracted.
-/// At 23 dB before denoising: mean normal error on flat clay 2.9 -> 0.6 degrees, among the wedges 6.4 -> 6.1. (2 steps
-/// and 0.02 round the small wedges away: 0.6 and 9.0.) For surfaces without denoising, noise of 0.3 voxel, 0.02 is better.
+/// The steps and epsilon are tuned on wedge impressions, 2 to 8 voxels deep, blurred, with noise, denoised and
+/// extracted. At 23 dB before denoising: mean normal error on flat clay 2.9 -> 0.6 degrees, among the wedges 6.4
+/// -> 6.1. (2 steps and 0.02 round the small wedges away: 0.6 and 9.0.) For surfaces without denoising, noise of 0.3
+/// voxel, 0.02 is better.
 struct NormalFilterOptions {
   int iterations = 32;     ///< paper, Table 2
   int median_steps = 1;    ///< Weiszfeld steps per iteration, starting from the face's own normal

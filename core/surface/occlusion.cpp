@@ -105,13 +105,13 @@ void sort_by_place_and_side(std::span<const glm::vec3> positions, std::span<cons
     const glm::vec3 size = glm::abs(n);
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const auto side = static_cast<std::uint64_t>(2 * axis + (n[axis] < 0.0f));
-    const std::uint64_t place = spread3(static_cast<std::uint64_t>(box.x)) | spread3(static_cast<std::uint64_t>(box.y)) << 1 |
+    const std::uint64_t place = spread3(static_cast<std::uint64_t>(box.x)) |
+                                spread3(static_cast<std::uint64_t>(box.y)) << 1 |
                                 spread3(static_cast<std::uint64_t>(box.z)) << 2;
     items[static_cast<std::size_t>(i)] = {(place << 3) | side, v};
   });
-  std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
-    return a.key != b.key ? a.key < b.key : a.vertex < b.vertex;
-  });
+  std::sort(items.begin(), items.end(),
+            [](const Item& a, const Item& b) { return a.key != b.key ? a.key < b.key : a.vertex < b.vertex; });
   for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = items[i].vertex;
 }
 

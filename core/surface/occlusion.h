@@ -13,8 +13,8 @@
 namespace dubsar {
 
 struct OcclusionOptions {
-  int rays = 160;             ///< per vertex (paper); 1..65536
-  float radius_vox = 64.0f;   ///< surfaces further away take no light (paper)
+  int rays = 160;            ///< per vertex (paper); 1..65536
+  float radius_vox = 64.0f;  ///< surfaces further away take no light (paper)
   /// Rays start this far above the vertex along its normal, so that neither rounding nor the roughness that the 4-bit
   /// offsets leave (0.03 voxel) shades a vertex. Costs at most offset / radius of the value: 0.004.
   float offset_vox = 0.25f;

@@ -108,8 +108,7 @@ bool Patch::flip_if_better(std::uint32_t triangle, std::size_t side) {
   if (angle_between(pa - pc, pb - pc) + angle_between(pa - pd, pb - pd) <= kHalfTurn + kMargin) return false;
   if (!may_join(c, d)) return false;
   const glm::vec3 mean = area_vector(a, b, c) + area_vector(b, a, d);
-  if (glm::dot(area_vector(c, d, b), mean) <= 0.0f || glm::dot(area_vector(d, c, a), mean) <= 0.0f)
-    return false;
+  if (glm::dot(area_vector(c, d, b), mean) <= 0.0f || glm::dot(area_vector(d, c, a), mean) <= 0.0f) return false;
   const std::uint32_t bc = across_[triangle][(side + 1) % 3], ca = across_[triangle][(side + 2) % 3];
   const std::uint32_t ad = across_[other][(back + 1) % 3], db = across_[other][(back + 2) % 3];
   triangles_[triangle] = {c, d, b};
@@ -145,8 +144,7 @@ Result<void> Patch::refine(float growth, Progress& progress) {
 std::vector<std::vector<std::uint32_t>> Patch::inner_neighbours() const {
   std::vector<std::vector<std::uint32_t>> neighbours(positions_.size() - rim_);
   for (const Triangle& t : triangles_)
-    for (std::size_t i = 0; i < 3;
-         ++i)  // the next corner of every triangle around a vertex gives each neighbour once
+    for (std::size_t i = 0; i < 3; ++i)  // the next corner of every triangle around a vertex gives each neighbour once
       if (t[i] >= rim_) neighbours[t[i] - rim_].push_back(t[(i + 1) % 3]);
   return neighbours;
 }
@@ -169,8 +167,7 @@ Result<void> Patch::continue_surface(int steps, Progress& progress) {
     for (std::size_t i = 0; i < inner; ++i) {
       glm::vec3 mean(0.0f);
       for (const std::uint32_t v : neighbours[i]) mean += normals[v];
-      const glm::vec3 move =
-          kOverRelaxation * (mean / static_cast<float>(neighbours[i].size()) - normals[rim_ + i]);
+      const glm::vec3 move = kOverRelaxation * (mean / static_cast<float>(neighbours[i].size()) - normals[rim_ + i]);
       normals[rim_ + i] += move;
       largest = std::max(largest, glm::length(move));
     }
@@ -191,8 +188,7 @@ Result<void> Patch::continue_surface(int steps, Progress& progress) {
       }
       const auto count = static_cast<float>(neighbours[i].size());
       mean /= count;
-      const glm::vec3 move =
-          kOverRelaxation * rise / count * normal + 0.5f * (mean - normal * glm::dot(mean, normal));
+      const glm::vec3 move = kOverRelaxation * rise / count * normal + 0.5f * (mean - normal * glm::dot(mean, normal));
       positions_[rim_ + i] += move;
       largest = std::max(largest, glm::length(move));
     }

@@ -39,7 +39,8 @@ tl::unexpected<Error> device_error(RTCDevice device, std::string_view what) {
   const RTCError code = rtcGetDeviceError(device);
   if (code == RTC_ERROR_CANCELLED) return cancelled_error();
   if (code == RTC_ERROR_OUT_OF_MEMORY)
-    return fail(ErrorKind::kTryAgain, "occlusion: not enough memory to {}: close programs or use a coarser volume", what);
+    return fail(ErrorKind::kTryAgain, "occlusion: not enough memory to {}: close programs or use a coarser volume",
+                what);
   return fail(code == RTC_ERROR_UNSUPPORTED_CPU ? ErrorKind::kUnavailable : ErrorKind::kInternal,
               "occlusion: Embree could not {} (error {})", what, static_cast<int>(code));
 }
@@ -95,8 +96,10 @@ Result<std::unique_ptr<RayScene>> RayScene::build(RayDevice& device, std::span<c
   if (progress.cancelled()) return cancelled_error();
   if (const RTCError code = rtcGetDeviceError(from.device); code != RTC_ERROR_NONE) {
     if (code == RTC_ERROR_OUT_OF_MEMORY)
-      return fail(ErrorKind::kTryAgain, "occlusion: not enough memory for the ray tree of {} triangles", triangles.size());
-    return fail(ErrorKind::kInternal, "occlusion: Embree could not build the ray tree (error {})", static_cast<int>(code));
+      return fail(ErrorKind::kTryAgain, "occlusion: not enough memory for the ray tree of {} triangles",
+                  triangles.size());
+    return fail(ErrorKind::kInternal, "occlusion: Embree could not build the ray tree (error {})",
+                static_cast<int>(code));
   }
   return std::unique_ptr<RayScene>(new RayScene(std::move(impl)));
 }
@@ -131,7 +134,8 @@ void RayScene::intersect(RayPacket& packet) const noexcept {
     packet.distance[i] = rays.ray.tfar[i];
     packet.from_behind[i] = packet.hit[i] && rays.hit.Ng_x[i] * packet.direction_x[i] +
                                                      rays.hit.Ng_y[i] * packet.direction_y[i] +
-                                                     rays.hit.Ng_z[i] * packet.direction_z[i] > 0.0f;
+                                                     rays.hit.Ng_z[i] * packet.direction_z[i] >
+                                                 0.0f;
   }
 }
 

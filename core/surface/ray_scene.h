@@ -18,10 +18,10 @@ struct RayPacket {
   static constexpr int kRays = 16;
   alignas(64) std::array<float, kRays> origin_x{}, origin_y{}, origin_z{};
   alignas(64) std::array<float, kRays> direction_x{}, direction_y{}, direction_z{};  ///< unit
-  alignas(64) std::array<float, kRays> distance{};   ///< in: the longest; out: of the nearest hit, if any
+  alignas(64) std::array<float, kRays> distance{};  ///< in: the longest; out: of the nearest hit, if any
   std::array<bool, kRays> active{};
-  std::array<bool, kRays> hit{};                     ///< out
-  std::array<bool, kRays> from_behind{};             ///< out: the hit triangle was met from its back
+  std::array<bool, kRays> hit{};          ///< out
+  std::array<bool, kRays> from_behind{};  ///< out: the hit triangle was met from its back
 };
 
 /// Holds the vertices once; scenes made from it share them. Not movable while scenes exist.

@@ -58,9 +58,8 @@ std::uint32_t count_differences(const std::uint64_t* a, const std::uint64_t* b, 
 
 std::uint32_t count_changes(const std::uint64_t* row, std::int64_t x) {
   // The next point of bit 63 is only needed, and only sure to exist, when the whole word counts.
-  return count_below(x, [&](std::int64_t w) HWY_ATTR {
-    return row[w] ^ (row[w] >> 1 | (64 * w + 64 <= x ? row[w + 1] << 63 : 0));
-  });
+  return count_below(
+      x, [&](std::int64_t w) HWY_ATTR { return row[w] ^ (row[w] >> 1 | (64 * w + 64 <= x ? row[w + 1] << 63 : 0)); });
 }
 
 // Active edges and ambiguous faces of 64 points.
@@ -73,9 +72,8 @@ HWY_INLINE WordItems word_items(const SignRows& rows, std::int64_t w, std::int64
   // Points with a neighbour at x + 1.
   const std::int64_t left = nx - 1 - 64 * w;
   const std::uint64_t with_next = left >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << left) - 1;
-  const auto shifted = [&](const std::uint64_t* row) HWY_ATTR {
-    return row[w] >> 1 | (w + 1 < words ? row[w + 1] << 63 : 0);
-  };
+  const auto shifted = [&](const std::uint64_t* row)
+                           HWY_ATTR { return row[w] >> 1 | (w + 1 < words ? row[w + 1] << 63 : 0); };
   WordItems items{};
   const std::uint64_t a = rows.here[w], ax = shifted(rows.here);
   items.edges[0] = (a ^ ax) & with_next;

@@ -21,8 +21,9 @@ std::int64_t slab_height(const Dims& dims) {
 Result<SurfaceSamples> sample_surface(SlabSource& source, const ExtractOptions& options, Progress& progress) {
   const Dims dims = source.dims();
   if (dims.x < 1 || dims.y < 1 || dims.z < 1) {
-    return fail(ErrorKind::kBadData, "extract: a volume of {}x{}x{} points found, at least one along each axis expected",
-                dims.x, dims.y, dims.z);
+    return fail(ErrorKind::kBadData,
+                "extract: a volume of {}x{}x{} points found, at least one along each axis expected", dims.x, dims.y,
+                dims.z);
   }
   if (options.offset_bits < 1 || options.offset_bits > 16) {
     return fail(ErrorKind::kUsage, "extract: {} offset bits asked for, 1 to 16 expected", options.offset_bits);
@@ -49,8 +50,8 @@ Result<SurfaceSamples> sample_surface(SlabSource& source, const ExtractOptions& 
     if (progress.cancelled()) return cancelled_error();
     const std::int64_t end = std::min(dims.z, z + height);
     const std::int64_t slab = (end - z) * dims.slice();
-    DUBSAR_TRY(source.read(z, end, values.span().subspan(static_cast<std::size_t>(dims.slice()),
-                                                         static_cast<std::size_t>(slab))));
+    DUBSAR_TRY(source.read(
+        z, end, values.span().subspan(static_cast<std::size_t>(dims.slice()), static_cast<std::size_t>(slab))));
     const auto value_row = [&](std::int64_t row_y, std::int64_t row_z) {
       return values.data() + (row_z - z + 1) * dims.slice() + row_y * dims.x;
     };

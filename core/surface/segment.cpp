@@ -22,8 +22,7 @@ using Infos = std::vector<FaceComponents::Info>;
 
 std::vector<std::uint8_t> as_labels(const std::vector<FaceRole>& roles) {
   std::vector<std::uint8_t> labels(roles.size());
-  std::transform(roles.begin(), roles.end(), labels.begin(),
-                 [](FaceRole r) { return static_cast<std::uint8_t>(r); });
+  std::transform(roles.begin(), roles.end(), labels.begin(), [](FaceRole r) { return static_cast<std::uint8_t>(r); });
   return labels;
 }
 
@@ -36,8 +35,7 @@ double total_area(const Infos& infos) {
 /// For each component the role of the neighbour with the longest common border; its own role where it has
 /// none.
 std::vector<FaceRole> strongest_neighbours(const SurfaceModel& model, const FaceScene& scene,
-                                           const FaceComponents& components,
-                                           const std::vector<FaceRole>& roles,
+                                           const FaceComponents& components, const std::vector<FaceRole>& roles,
                                            const std::vector<bool>& wanted) {
   std::vector<std::map<std::uint32_t, double>> border(components.info.size());
   const FaceGraph& graph = scene.graph;
@@ -47,8 +45,7 @@ std::vector<FaceRole> strongest_neighbours(const SurfaceModel& model, const Face
     for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
       const std::uint32_t g = graph.neighbour[s];
       if (g != FaceGraph::kNone && components.of_face[g] != c)
-        border[c][components.of_face[g]] +=
-            static_cast<double>(side_length(model.mesh, f, s - graph.first_side[f]));
+        border[c][components.of_face[g]] += static_cast<double>(side_length(model.mesh, f, s - graph.first_side[f]));
     }
   }
   std::vector<FaceRole> result(components.info.size());
@@ -67,8 +64,7 @@ std::vector<FaceRole> strongest_neighbours(const SurfaceModel& model, const Face
 /// Pieces that were cut off but are too small to be parts go to their strongest neighbour.
 void merge_small(const SurfaceModel& model, const FaceScene& scene, const SegmentOptions& options,
                  std::vector<FaceRole>& roles) {
-  constexpr int kRounds =
-      4;  // a merged piece may free its neighbour to be merged; more rounds never changed anything
+  constexpr int kRounds = 4;  // a merged piece may free its neighbour to be merged; more rounds never changed anything
   for (int round = 0; round < kRounds; ++round) {
     const FaceComponents components = find_components(model, scene, as_labels(roles));
     const double smallest = options.smallest_area * total_area(components.info);
@@ -93,8 +89,7 @@ bool contains(const FaceComponents::Info& outer, const FaceComponents::Info& inn
 /// Which core components are the hidden body. Walls of pores that look outwards enclose a negative volume,
 /// loose pieces a small one, and a body whose neighbours merely stand close has no wall around it. Empty
 /// result: nothing is nested.
-std::vector<bool> accept_core(const Infos& infos, const std::vector<FaceRole>& role,
-                              const SegmentOptions& options) {
+std::vector<bool> accept_core(const Infos& infos, const std::vector<FaceRole>& role, const SegmentOptions& options) {
   constexpr double kSmallestWall =
       0.4;  // share of the core's area that an inner wall has, glued places left out of both
   const double smallest_area = options.smallest_area * total_area(infos);
@@ -117,9 +112,8 @@ std::vector<bool> accept_core(const Infos& infos, const std::vector<FaceRole>& r
     // What the cut separated belongs to the body if it has substance; what touches nothing must be the body
     // itself.
     const bool attached = infos[c].border > 0.0;
-    accepted[c] =
-        c == largest || (role[c] == FaceRole::kCore && attached && infos[c].area >= smallest_area &&
-                         infos[c].volume >= 0.01 * infos[largest].volume && contains(infos[shell], infos[c]));
+    accepted[c] = c == largest || (role[c] == FaceRole::kCore && attached && infos[c].area >= smallest_area &&
+                                   infos[c].volume >= 0.01 * infos[largest].volume && contains(infos[shell], infos[c]));
     if (accepted[c]) core_area += infos[c].area;
   }
   if (wall_area < kSmallestWall * core_area) return {};
@@ -174,8 +168,7 @@ class Partitioning {
 
   void store(SurfaceModel& model) && {
     model.quad_partition.resize(components_.of_face.size());
-    for (std::size_t f = 0; f < components_.of_face.size(); ++f)
-      model.quad_partition[f] = id_[components_.of_face[f]];
+    for (std::size_t f = 0; f < components_.of_face.size(); ++f) model.quad_partition[f] = id_[components_.of_face[f]];
     model.partitions = std::move(partitions_);
   }
 
@@ -204,13 +197,11 @@ void store_nested(SurfaceModel& model, const FaceScene& scene, const SegmentOpti
   std::vector<std::uint32_t> tablet_air;
   for (std::size_t c = 0; c < infos.size(); ++c) {
     if (core[c]) partitioning.assign(c, tablet);
-    if (role[c] == FaceRole::kOutside && (shell == infos.size() || infos[c].volume > infos[shell].volume))
-      shell = c;
+    if (role[c] == FaceRole::kOutside && (shell == infos.size() || infos[c].volume > infos[shell].volume)) shell = c;
   }
   partitioning.assign(shell, outside);
   for (std::size_t f = 0; f < roles.size(); ++f)
-    if (core[components.of_face[f]] && scene.air[f] < FaceScene::kExterior)
-      tablet_air.push_back(scene.air[f]);
+    if (core[components.of_face[f]] && scene.air[f] < FaceScene::kExterior) tablet_air.push_back(scene.air[f]);
   std::sort(tablet_air.begin(), tablet_air.end());
   tablet_air.erase(std::unique(tablet_air.begin(), tablet_air.end()), tablet_air.end());
   // The inner wall: whatever was cut from the tablet or the outer wall, and walls around the tablet's air.
@@ -249,8 +240,7 @@ Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options
   progress.begin("segment", 3, "step");
   DUBSAR_ASSIGN(const FaceScene scene, observe_faces(model, options, progress));
   progress.advance(1);
-  const FaceComponents whole =
-      find_components(model, scene, std::vector<std::uint8_t>(scene.graph.faces(), 0));
+  const FaceComponents whole = find_components(model, scene, std::vector<std::uint8_t>(scene.graph.faces(), 0));
   report.components = static_cast<std::int64_t>(whole.info.size());
   report.crack_radius = scene.crack_radius;
 

@@ -21,8 +21,7 @@ enum class SegmentMethod {
 
 struct SegmentOptions {
   SegmentMethod method = SegmentMethod::kNested;
-  float concavity =
-      -0.2f;  ///< kConcavity: cut at k_min below this, per grid step; -0.1 to -0.3 work on phantoms
+  float concavity = -0.2f;        ///< kConcavity: cut at k_min below this, per grid step; -0.1 to -0.3 work on phantoms
   int dilate_rings = 1;           ///< kConcavity: rings of vertices added to the cut; 0 leaks (design note)
   int largest_crack_radius = 8;   ///< widest crack in the envelope that can be closed is 2 r + 1 grid steps
   double smallest_area = 0.001;   ///< pieces below this share of the whole area are merged
@@ -30,9 +29,8 @@ struct SegmentOptions {
 };
 
 struct SegmentReport {
-  bool nested =
-      false;  ///< a body was found inside another: partitions "tablet", "envelope outside", "... inside"
-  int crack_radius = 0;           ///< of the exterior that was used
+  bool nested = false;   ///< a body was found inside another: partitions "tablet", "envelope outside", "... inside"
+  int crack_radius = 0;  ///< of the exterior that was used
   std::int64_t components = 0;    ///< connected surfaces before segmentation
   std::int64_t small_pieces = 0;  ///< components in the partition "pores and crumbs"
   double cut_length = 0.0;        ///< length of the borders between parts, grid steps
@@ -47,9 +45,9 @@ struct SegmentReport {
 /// bytes a face and 2 bits a grid point.
 Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options, Progress& progress);
 
-/// Are measured partitions named "tablet" and "envelope inside" an enclosed tablet? An envelope was pressed on around its
-/// tablet, so that the tablet fills at least half of the cavity (0.84 on phantoms); a brain in its skull, fibres and
-/// foams fill less, or have walls that enclose nothing. True for anything that does not claim to be one.
+/// Are measured partitions named "tablet" and "envelope inside" an enclosed tablet? An envelope was pressed on around
+/// its tablet, so that the tablet fills at least half of the cavity (0.84 on phantoms); a brain in its skull, fibres
+/// and foams fill less, or have walls that enclose nothing. True for anything that does not claim to be one.
 bool plausible_enclosure(const std::vector<Partition>& partitions);
 
 }  // namespace dubsar

@@ -8,8 +8,8 @@
 
 namespace dubsar {
 
-constexpr int kShapes = 9;              ///< 0 cup, 1 trough, 2 rut, 3 saddle rut, 4 saddle, 5 saddle ridge, 6 ridge, 7 dome, 8 cap
-constexpr int kCurvednessSteps = 14;    ///< half octaves
+constexpr int kShapes = 9;  ///< 0 cup, 1 trough, 2 rut, 3 saddle rut, 4 saddle, 5 saddle ridge, 6 ridge, 7 dome, 8 cap
+constexpr int kCurvednessSteps = 14;  ///< half octaves
 constexpr int kShapeClasses = 1 + kShapes * kCurvednessSteps;
 constexpr float kSmallestCurvedness = 1.0f / 64.0f;  ///< per grid step, centre of step 0: a radius of 64 voxels
 
@@ -20,7 +20,9 @@ constexpr float kSmallestCurvedness = 1.0f / 64.0f;  ///< per grid step, centre 
 std::uint8_t shape_class(float k_min, float k_max) noexcept;
 
 /// s of a class, 0..8; -1 for flat.
-constexpr int shape_of(std::uint8_t shape_class) noexcept { return shape_class == 0 ? -1 : (shape_class - 1) % kShapes; }
+constexpr int shape_of(std::uint8_t shape_class) noexcept {
+  return shape_class == 0 ? -1 : (shape_class - 1) % kShapes;
+}
 /// i of a class, 0..13; -1 for flat.
 constexpr int curvedness_step_of(std::uint8_t shape_class) noexcept {
   return shape_class == 0 ? -1 : (shape_class - 1) / kShapes;

@@ -15,7 +15,8 @@ constexpr double kFlatLightness = 60.0;
 /// Linear RGB of a CIE L*C*h colour (D65); outside [0, 1] where the display cannot show it.
 glm::dvec3 linear_from_lch(double lightness, double chroma, double hue_deg) {
   const double hue = hue_deg * 0.017453292519943295;
-  const double fy = (lightness + 16) / 116, fx = fy + chroma * std::cos(hue) / 500, fz = fy - chroma * std::sin(hue) / 200;
+  const double fy = (lightness + 16) / 116, fx = fy + chroma * std::cos(hue) / 500,
+               fz = fy - chroma * std::sin(hue) / 200;
   const auto cube = [](double f) { return f > 6.0 / 29 ? f * f * f : (f - 16.0 / 116) * 3 * (6.0 / 29) * (6.0 / 29); };
   const double x = 0.95047 * cube(fx), y = cube(fy), z = 1.08883 * cube(fz);
   return {3.2404542 * x - 1.5371385 * y - 0.4985314 * z, -0.9692660 * x + 1.8760108 * y + 0.0415560 * z,
@@ -44,9 +45,11 @@ ShapeRgb color_of(ShapeColors colors, std::uint8_t shape_class) {
   switch (colors) {
     case ShapeColors::kTable: {
       constexpr std::array<double, kShapes> kHue_deg{300, 275, 250, 205, 155, 115, 88, 62, 38};
-      return srgb_from_lch(kFlatLightness + 22 * convexity, 8 + 62 * strength, kHue_deg[static_cast<std::size_t>(shape)]);
+      return srgb_from_lch(kFlatLightness + 22 * convexity, 8 + 62 * strength,
+                           kHue_deg[static_cast<std::size_t>(shape)]);
     }
-    case ShapeColors::kBlackWhite: break;
+    case ShapeColors::kBlackWhite:
+      break;
     case ShapeColors::kSkySun:
       return convexity < 0 ? srgb_from_lch(kFlatLightness + 38 * convexity, -52 * convexity, 265)
                            : srgb_from_lch(kFlatLightness + 27 * convexity, 62 * convexity, 72);

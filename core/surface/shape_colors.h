@@ -13,7 +13,7 @@
 namespace dubsar {
 
 enum class ShapeColors {
-  kTable,       ///< a hue per shape, from violet cups over green saddles to red caps; chroma grows with curvedness (14a)
+  kTable,  ///< a hue per shape, from violet cups over green saddles to red caps; chroma grows with curvedness (14a)
   kBlackWhite,  ///< concave dark, convex light (14b)
   kSkySun,      ///< concave in sky-blue shadow, convex in the orange of the sun (14c)
 };

@@ -133,7 +133,8 @@ class Simplifier {
     carry(mesh_.ao, out.ao);
     carry(mesh_.colors, out.colors);
     for (const Face& face : faces_) {
-      if (face.alive) out.triangles.push_back({renamed[face.vertex[0]], renamed[face.vertex[1]], renamed[face.vertex[2]]});
+      if (face.alive)
+        out.triangles.push_back({renamed[face.vertex[0]], renamed[face.vertex[1]], renamed[face.vertex[2]]});
     }
     out.frame = mesh_.frame;
     out.partitions = mesh_.partitions;
@@ -247,7 +248,8 @@ class Simplifier {
       const Triangle& t = faces_[f].vertex;
       const std::uint32_t a = t[(corner + 1) % 3], b = t[(corner + 2) % 3];
       for (const std::uint32_t w : {a, b}) {
-        holds = holds && (w == before || w == after || std::find(star_.ring.begin(), star_.ring.end(), w) == star_.ring.end());
+        holds = holds &&
+                (w == before || w == after || std::find(star_.ring.begin(), star_.ring.end(), w) == star_.ring.end());
       }
       if (n == 3) holds = holds && !((a == before && b == after) || (a == after && b == before));
     });
@@ -266,8 +268,8 @@ class Simplifier {
   /// are linear between their edges: the extreme is at the vertex or where an old edge crosses a new one.
   double deviation(std::size_t k) const {
     const std::size_t n = star_.ring.size();
-    const auto &at = star_.at;
-    const auto &height = star_.height;
+    const auto& at = star_.at;
+    const auto& height = star_.height;
     double worst = 0.0;
     for (std::size_t s = 1; s + 1 < n; ++s) {  // new triangle k, i, j: does it hold the origin?
       const std::size_t i = (k + s) % n, j = (k + s + 1) % n;
@@ -350,7 +352,7 @@ class Simplifier {
   std::vector<Face> faces_;
   std::vector<std::uint32_t> head_, next_;  ///< corners 3 f + k of a vertex, linked
   std::vector<std::uint8_t> locked_, removed_;
-  std::vector<std::uint8_t> idle_;          ///< nothing changed around it since it was last looked at
+  std::vector<std::uint8_t> idle_;  ///< nothing changed around it since it was last looked at
   std::vector<std::array<std::uint32_t, 3>> spokes_;
   std::vector<Cone> cones_;
   Star star_;

@@ -90,7 +90,9 @@ double mean_angle_deg(const QuadMesh& mesh, std::span<const glm::vec3> positions
         }
         return part;
       },
-      [](AngleSum a, AngleSum b) { return AngleSum{a.angle + b.angle, a.faces + b.faces}; });
+      [](AngleSum a, AngleSum b) {
+        return AngleSum{a.angle + b.angle, a.faces + b.faces};
+      });
   return sum.faces ? sum.angle / static_cast<double>(sum.faces) * 57.29577951308232 : 0.0;
 }
 

@@ -25,19 +25,19 @@ enum class VertexNormals {
 
 struct SmoothOptions {
   NormalFilterOptions normals;
-  int vertex_iterations = 8;            ///< paper, Table 2
+  int vertex_iterations = 8;           ///< paper, Table 2
   float max_displacement_vox = 0.08f;  ///< from the extracted position: about one sigma of what noise is left at 30 dB;
-                                        ///< 0.25 rounds wedges away (kept depth 0.85 against 0.88, phantom seeds 1 to 5)
-  float stop_angle_deg = 0.0f;          ///< stop moving vertices below this mean angle; 0: all iterations
+                                       ///< 0.25 rounds wedges away (kept depth 0.85 against 0.88, phantom seeds 1 to 5)
+  float stop_angle_deg = 0.0f;         ///< stop moving vertices below this mean angle; 0: all iterations
   VertexNormals vertex_normals = VertexNormals::kFiltered;
 };
 
 struct SmoothStats {
-  int vertex_iterations = 0;            ///< done
+  int vertex_iterations = 0;  ///< done
   double mean_displacement_vox = 0.0;
   double max_displacement_vox = 0.0;
-  double clamped_fraction = 0.0;        ///< of the vertices: stopped by max_displacement_vox
-  double residual_angle_deg = 0.0;      ///< mean angle between filtered normals and smoothed x-quads
+  double clamped_fraction = 0.0;    ///< of the vertices: stopped by max_displacement_vox
+  double residual_angle_deg = 0.0;  ///< mean angle between filtered normals and smoothed x-quads
 };
 
 /// Newell normal and area of each x-quad: xyz unit vector towards the air, 0 where the area vanishes; w area in grid

@@ -29,25 +29,20 @@ Result<void> check_model(const SurfaceModel& model) {
   if (!fits(a.normals.size()) || !fits(a.k_min.size()) || !fits(a.k_max.size()) || !fits(a.shape.size()) ||
       !fits(a.ao.size()))
     return fail(ErrorKind::kBadData,
-                "surface_model: an attribute array does not have one entry for each of {} vertices",
-                vertices);
+                "surface_model: an attribute array does not have one entry for each of {} vertices", vertices);
   if (!model.quad_partition.empty() && model.quad_partition.size() != model.mesh.quads.size())
-    return fail(ErrorKind::kBadData,
-                "surface_model: {} partition ids found, expected one for each of {} x-quads",
+    return fail(ErrorKind::kBadData, "surface_model: {} partition ids found, expected one for each of {} x-quads",
                 model.quad_partition.size(), model.mesh.quads.size());
   const std::size_t count = std::max<std::size_t>(model.partitions.size(), 1);
   if (model.partitions.size() > 8)
-    return fail(ErrorKind::kBadData, "surface_model: {} partitions found, expected at most 8",
-                model.partitions.size());
+    return fail(ErrorKind::kBadData, "surface_model: {} partitions found, expected at most 8", model.partitions.size());
   for (std::size_t i = 0; i < model.partitions.size(); ++i)
     if (model.partitions[i].id != static_cast<int>(i))
-      return fail(ErrorKind::kBadData,
-                  "surface_model: partition {} found at place {}, expected rising ids from 0",
+      return fail(ErrorKind::kBadData, "surface_model: partition {} found at place {}, expected rising ids from 0",
                   model.partitions[i].id, i);
   for (const std::uint8_t id : model.quad_partition)
     if (id >= count)
-      return fail(ErrorKind::kBadData, "surface_model: an x-quad has partition {}, expected less than {}", id,
-                  count);
+      return fail(ErrorKind::kBadData, "surface_model: an x-quad has partition {}, expected less than {}", id, count);
   for (const FillPatch& patch : model.patches) {
     if (patch.part >= count || (patch.reverse_part >= count && patch.reverse_part != FillPatch::kNoPart))
       return fail(ErrorKind::kBadData, "surface_model: a fill patch has partition {}, expected less than {}",
@@ -65,8 +60,8 @@ Result<Selection> select(const SurfaceModel& model, const MeshOptions& options) 
   Selection selection{std::vector<std::uint8_t>(count, kNotSelected)};
   if (options.partition) {
     if (*options.partition < 0 || static_cast<std::size_t>(*options.partition) >= count)
-      return fail(ErrorKind::kUsage, "surface_model: there is no partition {}, expected 0 to {}",
-                  *options.partition, count - 1);
+      return fail(ErrorKind::kUsage, "surface_model: there is no partition {}, expected 0 to {}", *options.partition,
+                  count - 1);
     selection.group[static_cast<std::size_t>(*options.partition)] = 0;
     return selection;
   }
@@ -86,8 +81,7 @@ Result<Selection> select(const SurfaceModel& model, const MeshOptions& options) 
       selection.group[i] = kNotSelected;
   }
   if (options.part && !found)
-    return fail(ErrorKind::kUsage, "surface_model: there is no part \"{}\", expected one of: {}",
-                *options.part, names);
+    return fail(ErrorKind::kUsage, "surface_model: there is no part \"{}\", expected one of: {}", *options.part, names);
   return selection;
 }
 
@@ -101,12 +95,11 @@ struct Soup {
   std::size_t first_patch_vertex = 0;  ///< an id
 };
 
-void add_quads(const SurfaceModel& model, const Selection& selection, Triangulation triangulation,
-               Soup& soup) {
+void add_quads(const SurfaceModel& model, const Selection& selection, Triangulation triangulation, Soup& soup) {
   const std::size_t quads = model.mesh.quads.size();
   soup.added = std::move(triangulation.steiner);
-  const bool everything = std::none_of(selection.group.begin(), selection.group.end(),
-                                       [](std::uint8_t g) { return g == kNotSelected; });
+  const bool everything =
+      std::none_of(selection.group.begin(), selection.group.end(), [](std::uint8_t g) { return g == kNotSelected; });
   std::size_t kept = 0;
   soup.partition.resize(triangulation.triangles.size());
   soup.group.resize(triangulation.triangles.size());
@@ -188,8 +181,8 @@ std::vector<std::uint32_t> split_fans(Soup& soup, const std::vector<bool>& borde
     const Triangle& triangle = soup.triangles[t];
     for (std::size_t c = 0; c < 3; ++c)
       if (triangle[c] < border.size() && border[triangle[c]])
-        corners.push_back({triangle[c], soup.group[t], static_cast<std::uint32_t>(t), triangle[(c + 1) % 3],
-                           triangle[(c + 2) % 3]});
+        corners.push_back(
+            {triangle[c], soup.group[t], static_cast<std::uint32_t>(t), triangle[(c + 1) % 3], triangle[(c + 2) % 3]});
   }
   std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
     return std::tie(a.vertex, a.group, a.triangle) < std::tie(b.vertex, b.group, b.triangle);
@@ -207,9 +200,7 @@ std::vector<std::uint32_t> split_fans(Soup& soup, const std::vector<bool>& borde
     bool original_taken = false;
     while (begin < corners.size() && corners[begin].vertex == vertex) {
       std::size_t end = begin;
-      while (end < corners.size() && corners[end].vertex == vertex &&
-             corners[end].group == corners[begin].group)
-        ++end;
+      while (end < corners.size() && corners[end].vertex == vertex && corners[end].group == corners[begin].group) ++end;
       const std::size_t count = end - begin;
       parent.resize(count);
       std::iota(parent.begin(), parent.end(), std::size_t{0});
@@ -231,9 +222,7 @@ std::vector<std::uint32_t> split_fans(Soup& soup, const std::vector<bool>& borde
           original_taken = true;
           id_of_fan.emplace_back(i, id);
         } else {
-          id = std::find_if(id_of_fan.begin(), id_of_fan.end(), [&](const auto& f) {
-                 return f.first == fan;
-               })->second;
+          id = std::find_if(id_of_fan.begin(), id_of_fan.end(), [&](const auto& f) { return f.first == fan; })->second;
         }
         Triangle& triangle = soup.triangles[corners[begin + i].triangle];
         for (std::uint32_t& v : triangle)
@@ -257,9 +246,7 @@ std::vector<Surroundings> average_around_added(const SurfaceModel& model, const 
   const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());
   const VertexAttributes& a = model.attributes;
   std::vector<Surroundings> result(soup.added.size());
-  const auto position = [&](std::uint32_t v) {
-    return v < dual ? model.mesh.positions[v] : soup.added[v - dual];
-  };
+  const auto position = [&](std::uint32_t v) { return v < dual ? model.mesh.positions[v] : soup.added[v - dual]; };
   for (std::size_t i = 0; i < soup.triangles.size(); ++i) {
     const Triangle& t = soup.triangles[i];
     const bool patch = i >= soup.first_patch_triangle;
@@ -303,8 +290,7 @@ struct Numbering {
   std::vector<std::uint32_t> new_id;
 };
 
-Numbering number_vertices(const Soup& soup, std::size_t first_copy,
-                          const std::vector<std::uint32_t>& copies) {
+Numbering number_vertices(const Soup& soup, std::size_t first_copy, const std::vector<std::uint32_t>& copies) {
   Numbering numbering;
   numbering.new_id.assign(first_copy + copies.size(), 0);
   for (const Triangle& t : soup.triangles)
@@ -355,8 +341,7 @@ Result<TriMesh> assemble(const SurfaceModel& model, Triangulation triangulation,
   const std::size_t first_copy = model.mesh.positions.size() + soup.added.size();
   if (first_copy > (std::size_t{1} << 31))
     return fail(ErrorKind::kTryAgain,
-                "surface_model: {} vertices found, expected at most 2^31; crop or resample the input",
-                first_copy);
+                "surface_model: {} vertices found, expected at most 2^31; crop or resample the input", first_copy);
   const std::vector<Surroundings> added = average_around_added(model, soup);
   const std::vector<std::uint32_t> copies =
       split_fans(soup, find_border(model, selection), static_cast<std::uint32_t>(first_copy));
@@ -378,8 +363,7 @@ Result<TriMesh> assemble(const SurfaceModel& model, Triangulation triangulation,
   }
   out.frame = model.frame;
   for (const Partition& partition : model.partitions)
-    if (selection.group[static_cast<std::size_t>(partition.id)] != kNotSelected)
-      out.partitions.push_back(partition);
+    if (selection.group[static_cast<std::size_t>(partition.id)] != kNotSelected) out.partitions.push_back(partition);
   out.provenance = model.provenance;
   return out;
 }

@@ -16,10 +16,10 @@ SampleCounts count_samples(const BitVolume& signs) {
         for (std::int64_t r = begin; r < end; ++r) {
           const std::int64_t y = r % dims.y, z = r / dims.y;
           const bool has_y = y + 1 < dims.y, has_z = z + 1 < dims.z;
-          const RowItems items = count_row({signs.row(y, z), has_y ? signs.row(y + 1, z) : nullptr,
-                                            has_z ? signs.row(y, z + 1) : nullptr,
-                                            has_y && has_z ? signs.row(y + 1, z + 1) : nullptr},
-                                           dims.x);
+          const RowItems items =
+              count_row({signs.row(y, z), has_y ? signs.row(y + 1, z) : nullptr, has_z ? signs.row(y, z + 1) : nullptr,
+                         has_y && has_z ? signs.row(y + 1, z + 1) : nullptr},
+                        dims.x);
           for (std::size_t a = 0; a < 3; ++a) {
             sum.edges += items.edges[a];
             sum.faces += items.faces[a];
@@ -40,7 +40,8 @@ Result<void> check_signs(const SurfaceSamples& samples) {
                 samples.signs.dims().x, samples.signs.dims().y, samples.signs.dims().z, dims.x, dims.y, dims.z);
   }
   if (samples.offset_bits < 1 || samples.offset_bits > 16) {
-    return fail(ErrorKind::kBadData, "surface samples: offsets of {} bits found, 1 to 16 expected", samples.offset_bits);
+    return fail(ErrorKind::kBadData, "surface samples: offsets of {} bits found, 1 to 16 expected",
+                samples.offset_bits);
   }
   if (dims.x % 64 != 0) {
     const std::uint64_t padding = ~std::uint64_t{0} << (dims.x % 64);

@@ -17,13 +17,13 @@ namespace dubsar {
 /// and the layer of outside points around the grid (x, y or z = -1 or n). They need no samples: their crossings lie at
 /// the grid point, and a face that touches the layer is never ambiguous.
 struct SurfaceSamples {
-  Dims dims;                            ///< grid points
+  Dims dims;  ///< grid points
   float isovalue = 0.0f;
-  int offset_bits = 4;                  ///< N, 1..16
-  bool closed = true;                   ///< closed at the volume boundary with flat caps, or open
-  BitVolume signs;                      ///< 1 = inside: value >= isovalue; NaN is outside
-  std::vector<std::uint8_t> joined;     ///< one per ambiguous face inside the grid: 1 = positives joined, else 0
-  std::vector<std::uint16_t> offsets;   ///< one per active edge inside the grid: min(2^N - 1, floor(t 2^N))
+  int offset_bits = 4;                 ///< N, 1..16
+  bool closed = true;                  ///< closed at the volume boundary with flat caps, or open
+  BitVolume signs;                     ///< 1 = inside: value >= isovalue; NaN is outside
+  std::vector<std::uint8_t> joined;    ///< one per ambiguous face inside the grid: 1 = positives joined, else 0
+  std::vector<std::uint16_t> offsets;  ///< one per active edge inside the grid: min(2^N - 1, floor(t 2^N))
 
   friend bool operator==(const SurfaceSamples&, const SurfaceSamples&) = default;
 };

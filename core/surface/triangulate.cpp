@@ -63,7 +63,8 @@ void cut_between_opposite_corners(const Polygon& polygon, Triangle* out) {
   // Walk both chains between the two ends of the strip: the single corners next to a doubled one.
   std::size_t start = 0;
   const auto is_single = [&](std::size_t i) {
-    return polygon.corner[i % n] != polygon.corner[(i + 1) % n] && polygon.corner[i % n] != polygon.corner[(i + n - 1) % n];
+    return polygon.corner[i % n] != polygon.corner[(i + 1) % n] &&
+           polygon.corner[i % n] != polygon.corner[(i + n - 1) % n];
   };
   const auto is_doubled = [&](std::size_t i) { return !is_single(i); };
   while (!(is_single(start) && is_doubled(start + 1))) ++start;
@@ -82,7 +83,8 @@ Triangulation triangulate(const QuadMesh& mesh, std::span<const glm::vec3> verte
   Triangulation result;
   const std::int64_t quads = mesh.quad_count();
   const std::int64_t chunks = (quads + kQuadsPerChunk - 1) / kQuadsPerChunk;
-  std::vector<std::int64_t> triangle_start(static_cast<std::size_t>(chunks)), steiner_start(static_cast<std::size_t>(chunks));
+  std::vector<std::int64_t> triangle_start(static_cast<std::size_t>(chunks)),
+      steiner_start(static_cast<std::size_t>(chunks));
   parallel_chunks(quads, kQuadsPerChunk, [&](std::int64_t begin, std::int64_t end) {
     std::int64_t triangles = 0, steiner = 0;
     for (std::int64_t i = begin; i < end; ++i) {

@@ -8,7 +8,9 @@
 #define HWY_TARGET_INCLUDE "core/volume/bilateral_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-#include <hwy/contrib/math/math-inl.h>
+// clang-format off
+#include <hwy/contrib/math/math-inl.h>  // after the target is known
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace dubsar::kernels {
@@ -80,8 +82,8 @@ struct Window3 {
     row<8>(x, centre, weights, values);
     const V own = hn::LoadU(d, image[4] + x), half = hn::Set(d, 0.5F), quarter = hn::Set(d, 0.25F),
             eighth = hn::Set(d, 0.125F);
-    const V weight = hn::MulAdd(eighth, weights[2],
-                                hn::MulAdd(quarter, weights[1], hn::MulAdd(half, weights[0], hn::Set(d, 1.0F))));
+    const V weight =
+        hn::MulAdd(eighth, weights[2], hn::MulAdd(quarter, weights[1], hn::MulAdd(half, weights[0], hn::Set(d, 1.0F))));
     const V value = hn::MulAdd(eighth, values[2], hn::MulAdd(quarter, values[1], hn::MulAdd(half, values[0], own)));
     return finite_or(hn::Div(value, weight), own);
   }
@@ -165,8 +167,8 @@ struct Median27 {
     return hn::LoadU(d, rows[kIndex / 3] + x + kIndex % 3 - 1);
   }
   HWY_INLINE V operator()(std::int64_t x) const {
-    V v[15] = {value<0>(x), value<1>(x),  value<2>(x),  value<3>(x),  value<4>(x),
-               value<5>(x), value<6>(x),  value<7>(x),  value<8>(x),  value<9>(x),
+    V v[15] = {value<0>(x),  value<1>(x),  value<2>(x),  value<3>(x),  value<4>(x),
+               value<5>(x),  value<6>(x),  value<7>(x),  value<8>(x),  value<9>(x),
                value<10>(x), value<11>(x), value<12>(x), value<13>(x), value<14>(x)};
     return select<15, 15>(x, v);
   }

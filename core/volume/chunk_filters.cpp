@@ -43,9 +43,7 @@ void unshuffle(std::span<const std::byte> from, std::size_t element, std::byte* 
 
 }  // namespace
 
-bool can_undo_filter(int id) noexcept {
-  return id == kDeflate || id == kShuffle || id == kFletcher32 || id == kLzf;
-}
+bool can_undo_filter(int id) noexcept { return id == kDeflate || id == kShuffle || id == kFletcher32 || id == kLzf; }
 
 std::optional<std::size_t> lzf_decode(std::span<const std::byte> from, std::span<std::byte> to) noexcept {
   std::size_t in = 0, out = 0;

@@ -30,8 +30,7 @@ bool uses_guide(DenoiseMethod method) {
 /// Factor on guide values that leaves a range weight of the difference alone.
 float guide_scale(const DenoiseOptions& options) {
   if (!uses_guide(options.method)) return 1.0F;
-  const double width =
-      options.sigma * (options.range == RangeWeight::kTukey ? kTukeyScale : std::numbers::sqrt2);
+  const double width = options.sigma * (options.range == RangeWeight::kTukey ? kTukeyScale : std::numbers::sqrt2);
   return static_cast<float>(std::min(1.0 / width, static_cast<double>(std::numeric_limits<float>::max())));
 }
 
@@ -46,9 +45,8 @@ class FilterSource final : public SlabSource {
         scale_(guide_scale(options)),
         batch_(batch_for(source.dims())),
         image_(source.dims(), batch_ + 2 * (radius_ + guide_radius_), SliceRing::Rows::kPadded),
-        guide_(uses_guide(options.method)
-                   ? SliceRing(source.dims(), batch_ + 2 * radius_, SliceRing::Rows::kPadded)
-                   : SliceRing({1, 1, 1}, 1, SliceRing::Rows::kPadded)) {}
+        guide_(uses_guide(options.method) ? SliceRing(source.dims(), batch_ + 2 * radius_, SliceRing::Rows::kPadded)
+                                          : SliceRing({1, 1, 1}, 1, SliceRing::Rows::kPadded)) {}
 
   Dims dims() const noexcept override { return source_->dims(); }
   const GridFrame& frame() const noexcept override { return source_->frame(); }
@@ -209,8 +207,8 @@ Result<void> check(const DenoiseOptions& options) {
   if (options.iterations < 0 || options.iterations > 100)
     return fail(ErrorKind::kUsage, "denoise: {} iterations, expected 0 to 100", options.iterations);
   if (uses_guide(options.method) && options.iterations > 0 && !(options.sigma > 0.0 && std::isfinite(options.sigma)))
-    return fail(ErrorKind::kUsage, "denoise: sigma is {}, a bilateral filter needs the noise's standard deviation (> 0)",
-                options.sigma);
+    return fail(ErrorKind::kUsage,
+                "denoise: sigma is {}, a bilateral filter needs the noise's standard deviation (> 0)", options.sigma);
   return {};
 }
 

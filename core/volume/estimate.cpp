@@ -14,14 +14,14 @@ namespace dubsar {
 namespace {
 
 // Where the cap stands. A ball in a shell with a gap of 0 to 4 voxels between them, blurred, 17 dB, Gauss and 2:1, two
-// joint bilateral iterations; distance of the isosurface from the true one in voxels (bias of the outer surface, its rms,
-// share of the gap of 0.5 to 1 voxel that is closed):
+// joint bilateral iterations; distance of the isosurface from the true one in voxels (bias of the outer surface, its
+// rms, share of the gap of 0.5 to 1 voxel that is closed):
 //     threshold of 0..1   0.50             0.55             0.60             0.70             0.85 (valley rule alone)
 //     bias, rms           -0.01, 0.07      -0.09, 0.11      -0.17, 0.19      -0.35, 0.36      -0.67, 0.68
 //     gap closed          88 %             70 %             51 %             20 %             0 %
-// A symmetric blur leaves the half level where the surface is. The valley rule follows the emptying valley up to the foot
-// of the material's peak as the filters take the noise away: it keeps gaps open and eats 0.7 voxel of everything else.
-// Surfaces count more, and glued parts are separated later by shape: the cap is the half level.
+// A symmetric blur leaves the half level where the surface is. The valley rule follows the emptying valley up to the
+// foot of the material's peak as the filters take the noise away: it keeps gaps open and eats 0.7 voxel of everything
+// else. Surfaces count more, and glued parts are separated later by shape: the cap is the half level.
 
 // Of the design note (denoising and automatic parameters), tried on phantoms and on public scans.
 constexpr double kBandwidth = 0.004;       // of the histogram's range: finds peaks
@@ -214,8 +214,8 @@ bool from_peaks(const Histogram& h, const EstimateOptions& options, Estimates& e
   const double m_lo = h.centre(lower->bin), m_hi = h.centre(upper->bin), contrast = m_hi - m_lo;
   set_modes(e, m_lo, m_hi, upper->sigma * h.width);
   const double factor = options.factor;
-  e.threshold_valley = valley_rule(
-      h, pd, *pair, options.method == ThresholdMethod::kSigmas || factor <= 0.0 ? 2.0 : factor);
+  e.threshold_valley =
+      valley_rule(h, pd, *pair, options.method == ThresholdMethod::kSigmas || factor <= 0.0 ? 2.0 : factor);
   const std::string sigma_text = upper->outer ? ", sigma from its outer slope" : "";
   switch (options.method) {
     case ThresholdMethod::kValley:
@@ -237,8 +237,8 @@ bool from_peaks(const Histogram& h, const EstimateOptions& options, Estimates& e
       const char* how = e.threshold_valley > high  ? "capped from above"
                         : e.threshold_valley < low ? "capped from below"
                                                    : "as it is";
-      e.path = fmt::format("two peaks{}; threshold by the valley rule ({:.6g}), {}", sigma_text, e.threshold_valley,
-                           how);
+      e.path =
+          fmt::format("two peaks{}; threshold by the valley rule ({:.6g}), {}", sigma_text, e.threshold_valley, how);
     }
   }
   e.material_fraction = share_above(h, e.threshold);

@@ -25,15 +25,15 @@ struct EstimateOptions {
 };
 
 struct Estimates {
-  double m_lo = 0.0, m_hi = 0.0;  ///< grey values of air and material (modes)
-  double sigma = 0.0;             ///< standard deviation of the noise in the material
-  double snr_db = 0.0;            ///< 20 log10((m_hi - m_lo) / sigma)
-  double snr_alt_db = 0.0;        ///< 10 log10((m_hi - m_lo) / sigma), the other reading of the paper's figures
-  double threshold = 0.0;         ///< isovalue; meaningless with a refusal
-  double threshold_valley = 0.0;  ///< what the paper's rule alone says; 0 without two peaks
+  double m_lo = 0.0, m_hi = 0.0;   ///< grey values of air and material (modes)
+  double sigma = 0.0;              ///< standard deviation of the noise in the material
+  double snr_db = 0.0;             ///< 20 log10((m_hi - m_lo) / sigma)
+  double snr_alt_db = 0.0;         ///< 10 log10((m_hi - m_lo) / sigma), the other reading of the paper's figures
+  double threshold = 0.0;          ///< isovalue; meaningless with a refusal
+  double threshold_valley = 0.0;   ///< what the paper's rule alone says; 0 without two peaks
   double material_fraction = 0.0;  ///< of all voxels, above the threshold
-  std::string path;               ///< which way was taken and why, one sentence
-  std::string refusal;            ///< why no threshold can be given; empty when there is one
+  std::string path;                ///< which way was taken and why, one sentence
+  std::string refusal;             ///< why no threshold can be given; empty when there is one
 };
 
 /// Cap of the valley rule, in parts of the way from m_lo to m_hi: within 0.1 voxel of the true surface, where the rule

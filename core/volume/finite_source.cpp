@@ -26,15 +26,18 @@ Result<void> FiniteSource::read(std::int64_t z_begin, std::int64_t z_end, std::s
     if (std::exchange(counted_[static_cast<std::size_t>(z_begin + k)], std::uint8_t{1}) == 0)
       count_ += bad[static_cast<std::size_t>(k)];
   if (count_ > size.count() / 100)
-    return fail(ErrorKind::kBadData, "import: {} of {} voxels read so far are NaN or Inf, expected at most 1 %; repair the "
-                "volume, or crop to the part that is sound", count_, size.count());
+    return fail(ErrorKind::kBadData,
+                "import: {} of {} voxels read so far are NaN or Inf, expected at most 1 %; repair the "
+                "volume, or crop to the part that is sound",
+                count_, size.count());
   if (!fill_) {
     DUBSAR_ASSIGN(fill_, estimate_air());
   }
   parallel_for(z_end - z_begin, grain, [&](std::int64_t k) {
     if (bad[static_cast<std::size_t>(k)] == 0) return;
     const auto slice = out.subspan(static_cast<std::size_t>(k * size.slice()), static_cast<std::size_t>(size.slice()));
-    std::replace_if(slice.begin(), slice.end(), [](float value) { return !std::isfinite(value); }, *fill_);
+    std::replace_if(
+        slice.begin(), slice.end(), [](float value) { return !std::isfinite(value); }, *fill_);
   });
   return {};
 }

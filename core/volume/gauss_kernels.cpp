@@ -61,8 +61,7 @@ void Gauss3XHalf(const float* HWY_RESTRICT in, std::int64_t n, float* HWY_RESTRI
   }
 }
 
-void WeightedRows(const float* const* rows, const float* weights, int count, std::int64_t n,
-                  float* HWY_RESTRICT out) {
+void WeightedRows(const float* const* rows, const float* weights, int count, std::int64_t n, float* HWY_RESTRICT out) {
   for_lanes(n, [&](std::int64_t x, auto d) HWY_ATTR {
     auto sum = hn::Zero(d);
     for (int k = 0; k < count; ++k) sum = hn::MulAdd(hn::Set(d, weights[k]), hn::LoadU(d, rows[k] + x), sum);
@@ -74,8 +73,7 @@ void WeightedTaps(const float* HWY_RESTRICT in, const float* weights, int taps, 
                   float* HWY_RESTRICT out) {
   for_lanes(n, [&](std::int64_t x, auto d) HWY_ATTR {
     auto sum = hn::Zero(d);
-    for (int k = 0; k < taps; ++k)
-      sum = hn::MulAdd(hn::Set(d, weights[k]), hn::LoadU(d, in + x + k - taps / 2), sum);
+    for (int k = 0; k < taps; ++k) sum = hn::MulAdd(hn::Set(d, weights[k]), hn::LoadU(d, in + x + k - taps / 2), sum);
     hn::StoreU(sum, d, out + x);
   });
 }
@@ -93,15 +91,11 @@ HWY_EXPORT(Gauss3XHalf);
 HWY_EXPORT(WeightedRows);
 HWY_EXPORT(WeightedTaps);
 
-void gauss3_yz(const float* const rows[9], std::int64_t n, float* out) {
-  HWY_DYNAMIC_DISPATCH(Gauss3Yz)(rows, n, out);
-}
+void gauss3_yz(const float* const rows[9], std::int64_t n, float* out) { HWY_DYNAMIC_DISPATCH(Gauss3Yz)(rows, n, out); }
 void gauss3_x(const float* in, std::int64_t n, float scale, float* out) {
   HWY_DYNAMIC_DISPATCH(Gauss3X)(in, n, scale, out);
 }
-void gauss3_x_half(const float* in, std::int64_t n, float* out) {
-  HWY_DYNAMIC_DISPATCH(Gauss3XHalf)(in, n, out);
-}
+void gauss3_x_half(const float* in, std::int64_t n, float* out) { HWY_DYNAMIC_DISPATCH(Gauss3XHalf)(in, n, out); }
 void weighted_rows(const float* const* rows, const float* weights, int count, std::int64_t n, float* out) {
   HWY_DYNAMIC_DISPATCH(WeightedRows)(rows, weights, count, n, out);
 }

@@ -27,7 +27,7 @@ class GridSource final : public SlabSource {
   VoxelBox box_;
   Dims dims_;
   GridFrame frame_;
-  std::vector<float> layer_;             ///< slices [layer_begin_, layer_end_) of the grid
+  std::vector<float> layer_;  ///< slices [layer_begin_, layer_end_) of the grid
   std::int64_t layer_begin_ = 0, layer_end_ = 0;
 };
 

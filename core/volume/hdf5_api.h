@@ -1,6 +1,6 @@
 #pragma once
-// The one place that includes hdf5.h, for the two sources that speak to the library: hdf5_file.cpp reads, hdf5_writer.cpp
-// writes. Nothing else includes this header.
+// The one place that includes hdf5.h, for the two sources that speak to the library: hdf5_file.cpp reads,
+// hdf5_writer.cpp writes. Nothing else includes this header.
 
 #include <hdf5.h>
 
@@ -115,17 +115,28 @@ inline Handle dataset_access() { return access_list(H5P_DATASET_ACCESS); }
 inline hid_t file_type(ScalarType type, ByteOrder order) {
   const bool big = order == ByteOrder::kBig;
   switch (type) {
-    case ScalarType::kU8: return H5T_STD_U8LE;
-    case ScalarType::kI8: return H5T_STD_I8LE;
-    case ScalarType::kU16: return big ? H5T_STD_U16BE : H5T_STD_U16LE;
-    case ScalarType::kI16: return big ? H5T_STD_I16BE : H5T_STD_I16LE;
-    case ScalarType::kU32: return big ? H5T_STD_U32BE : H5T_STD_U32LE;
-    case ScalarType::kI32: return big ? H5T_STD_I32BE : H5T_STD_I32LE;
-    case ScalarType::kU64: return big ? H5T_STD_U64BE : H5T_STD_U64LE;
-    case ScalarType::kI64: return big ? H5T_STD_I64BE : H5T_STD_I64LE;
-    case ScalarType::kF32: return big ? H5T_IEEE_F32BE : H5T_IEEE_F32LE;
-    case ScalarType::kF64: return big ? H5T_IEEE_F64BE : H5T_IEEE_F64LE;
-    case ScalarType::kF16: break;
+    case ScalarType::kU8:
+      return H5T_STD_U8LE;
+    case ScalarType::kI8:
+      return H5T_STD_I8LE;
+    case ScalarType::kU16:
+      return big ? H5T_STD_U16BE : H5T_STD_U16LE;
+    case ScalarType::kI16:
+      return big ? H5T_STD_I16BE : H5T_STD_I16LE;
+    case ScalarType::kU32:
+      return big ? H5T_STD_U32BE : H5T_STD_U32LE;
+    case ScalarType::kI32:
+      return big ? H5T_STD_I32BE : H5T_STD_I32LE;
+    case ScalarType::kU64:
+      return big ? H5T_STD_U64BE : H5T_STD_U64LE;
+    case ScalarType::kI64:
+      return big ? H5T_STD_I64BE : H5T_STD_I64LE;
+    case ScalarType::kF32:
+      return big ? H5T_IEEE_F32BE : H5T_IEEE_F32LE;
+    case ScalarType::kF64:
+      return big ? H5T_IEEE_F64BE : H5T_IEEE_F64LE;
+    case ScalarType::kF16:
+      break;
   }
   return -1;
 }
@@ -135,7 +146,7 @@ struct Selection {
 };
 
 inline std::optional<Selection> select(hid_t dataset, std::span<const std::uint64_t> offset,
-                                std::span<const std::uint64_t> count) {
+                                       std::span<const std::uint64_t> count) {
   const std::vector<hsize_t> start(offset.begin(), offset.end());
   const std::vector<hsize_t> size(count.begin(), count.end());
   Selection selection{Handle(H5Dget_space(dataset), H5Sclose),

@@ -47,15 +47,33 @@ TypeFacts type_facts(hid_t type) {
       facts.text = facts.scalar ? std::string(scalar_name(*facts.scalar)) : fmt::format("float of {} bytes", size);
       break;
     }
-    case H5T_STRING: facts.text = "string"; break;
-    case H5T_COMPOUND: facts.text = "compound"; break;
-    case H5T_ENUM: facts.text = "enum"; break;
-    case H5T_BITFIELD: facts.text = "bit field"; break;
-    case H5T_OPAQUE: facts.text = "opaque"; break;
-    case H5T_REFERENCE: facts.text = "reference"; break;
-    case H5T_VLEN: facts.text = "variable-length"; break;
-    case H5T_ARRAY: facts.text = "array element"; break;
-    default: facts.text = "unknown"; break;
+    case H5T_STRING:
+      facts.text = "string";
+      break;
+    case H5T_COMPOUND:
+      facts.text = "compound";
+      break;
+    case H5T_ENUM:
+      facts.text = "enum";
+      break;
+    case H5T_BITFIELD:
+      facts.text = "bit field";
+      break;
+    case H5T_OPAQUE:
+      facts.text = "opaque";
+      break;
+    case H5T_REFERENCE:
+      facts.text = "reference";
+      break;
+    case H5T_VLEN:
+      facts.text = "variable-length";
+      break;
+    case H5T_ARRAY:
+      facts.text = "array element";
+      break;
+    default:
+      facts.text = "unknown";
+      break;
   }
   return facts;
 }
@@ -120,9 +138,7 @@ std::vector<std::string> path_parts(const std::string& path) {
   return parts;
 }
 
-std::string join(const std::string& group, const std::string& name) {
-  return (group == "/" ? "" : group) + "/" + name;
-}
+std::string join(const std::string& group, const std::string& name) { return (group == "/" ? "" : group) + "/" + name; }
 
 // Soft and external link values.
 void read_link_value(hid_t file, const std::string& path, const H5L_info_t& info, std::string& target_file,
@@ -183,8 +199,8 @@ void layout_facts(hid_t dataset, hid_t creation, bool open_sources, Hdf5DatasetI
     unsigned int flags = 0, config = 0;
     std::size_t values = 0;
     char label[64] = "";
-    const H5Z_filter_t id = H5Pget_filter2(creation, static_cast<unsigned int>(i), &flags, &values, nullptr,
-                                           sizeof label, label, &config);
+    const H5Z_filter_t id =
+        H5Pget_filter2(creation, static_cast<unsigned int>(i), &flags, &values, nullptr, sizeof label, label, &config);
     info.filters.push_back({id, label, Hdf5File::filter_available(id)});
   }
   if (info.external.empty()) {
@@ -250,7 +266,8 @@ Result<void> Hdf5Dataset::read_stored(std::span<const std::uint64_t> offset, std
   const PluginsAllowed plugins(needs_plugin_);
   const Handle type(H5Dget_type(id_), H5Tclose);
   const auto selection = select(id_, offset, count);
-  if (!selection || H5Dread(id_, type.get(), selection->memory.get(), selection->file.get(), H5P_DEFAULT, out.data()) < 0)
+  if (!selection ||
+      H5Dread(id_, type.get(), selection->memory.get(), selection->file.get(), H5P_DEFAULT, out.data()) < 0)
     return fail(ErrorKind::kBadData, "import_hdf5: dataset \"{}\" cannot be read ({}); the file is damaged", info_.path,
                 reason());
   return {};
@@ -264,8 +281,8 @@ Result<void> Hdf5Dataset::read_doubles(std::span<const std::uint64_t> offset, st
   const Library library;
   const PluginsAllowed plugins(needs_plugin_);
   const auto selection = select(id_, offset, count);
-  if (!selection || H5Dread(id_, H5T_NATIVE_DOUBLE, selection->memory.get(), selection->file.get(), H5P_DEFAULT,
-                            out.data()) < 0)
+  if (!selection ||
+      H5Dread(id_, H5T_NATIVE_DOUBLE, selection->memory.get(), selection->file.get(), H5P_DEFAULT, out.data()) < 0)
     return fail(ErrorKind::kBadData, "import_hdf5: dataset \"{}\" cannot be read ({}); the file is damaged", info_.path,
                 reason());
   return {};
@@ -387,10 +404,13 @@ Result<std::vector<Hdf5Link>> Hdf5File::list(const std::string& group) const {
   std::vector<Hdf5Link> links;
   std::set<haddr_t> entered;
   const auto too_much = [&] {
-    return fail(ErrorKind::kBadData, "import_hdf5: {} has more than {} links or {} levels of groups, expected fewer; "
-                "name the volume with --dataset", path_.string(), kMaxLinks, kMaxLevels);
+    return fail(ErrorKind::kBadData,
+                "import_hdf5: {} has more than {} links or {} levels of groups, expected fewer; "
+                "name the volume with --dataset",
+                path_.string(), kMaxLinks, kMaxLevels);
   };
-  const std::function<Result<void>(const std::string&, int)> walk = [&](const std::string& at, int level) -> Result<void> {
+  const std::function<Result<void>(const std::string&, int)> walk = [&](const std::string& at,
+                                                                        int level) -> Result<void> {
     const Handle id(H5Gopen2(id_, at.c_str(), access.get()), H5Gclose);
     H5O_info_t self;
     if (!id.ok() || H5Oget_info2(id.get(), &self, H5O_INFO_BASIC) < 0)
@@ -528,8 +548,7 @@ std::optional<std::vector<std::string>> Hdf5File::strings(const std::string& obj
   if (!id.ok()) return std::nullopt;
   const Handle type(H5Aget_type(id.get()), H5Tclose);
   const Handle space(H5Aget_space(id.get()), H5Sclose);
-  return read_strings(type.get(), space.get(),
-                      [&](hid_t memory, void* out) { return H5Aread(id.get(), memory, out); });
+  return read_strings(type.get(), space.get(), [&](hid_t memory, void* out) { return H5Aread(id.get(), memory, out); });
 }
 
 std::optional<std::string> Hdf5File::string(const std::string& object, const std::string& attribute) const {

@@ -25,8 +25,8 @@ enum class Hdf5Layout { kCompact, kContiguous, kChunked, kVirtual };
 
 struct Hdf5Filter {
   int id = 0;
-  std::string name;               ///< as stored in the file
-  bool available = false;         ///< built in, or found in the plug-in folder
+  std::string name;        ///< as stored in the file
+  bool available = false;  ///< built in, or found in the plug-in folder
 };
 
 /// A part of a dataset that lies in another file (H5Pset_external).
@@ -39,16 +39,16 @@ struct Hdf5ExternalPart {
 /// What is known of a dataset without reading it.
 struct Hdf5DatasetInfo {
   std::string path;
-  std::vector<std::uint64_t> dims;    ///< slowest axis first; empty for a scalar, and for a virtual dataset
-  std::string type_text;              ///< "uint16", "float32", "compound", "string", "enum", ...
-  std::optional<ScalarType> scalar;   ///< set for integers and floats of 8 to 64 bits
-  bool plain_scalar = false;          ///< all bits used, IEEE float, little or big endian: bytes can be decoded by us
+  std::vector<std::uint64_t> dims;   ///< slowest axis first; empty for a scalar, and for a virtual dataset
+  std::string type_text;             ///< "uint16", "float32", "compound", "string", "enum", ...
+  std::optional<ScalarType> scalar;  ///< set for integers and floats of 8 to 64 bits
+  bool plain_scalar = false;         ///< all bits used, IEEE float, little or big endian: bytes can be decoded by us
   ByteOrder order = ByteOrder::kLittle;
   Hdf5Layout layout = Hdf5Layout::kContiguous;
-  std::vector<std::uint64_t> chunk;   ///< only for kChunked
-  std::vector<Hdf5Filter> filters;    ///< in the order of writing
-  std::uint64_t storage_bytes = 0;    ///< bytes allocated in the file
-  std::int64_t file_offset = -1;      ///< of a contiguous dataset from the first byte of the file; -1: none
+  std::vector<std::uint64_t> chunk;  ///< only for kChunked
+  std::vector<Hdf5Filter> filters;   ///< in the order of writing
+  std::uint64_t storage_bytes = 0;   ///< bytes allocated in the file
+  std::int64_t file_offset = -1;     ///< of a contiguous dataset from the first byte of the file; -1: none
   double fill_value = 0.0;
   std::vector<Hdf5ExternalPart> external;
   std::vector<std::string> virtual_files;  ///< source files of a virtual dataset
@@ -177,8 +177,8 @@ struct Hdf5Storage {
   ScalarType type = ScalarType::kF32;
   std::vector<std::uint64_t> dims = {};   ///< slowest axis first
   std::vector<std::uint64_t> chunk = {};  ///< empty: contiguous
-  int deflate = 0;                   ///< 1..9, needs chunk
-  bool shuffle = false;              ///< byte shuffle before deflate, needs chunk
+  int deflate = 0;                        ///< 1..9, needs chunk
+  bool shuffle = false;                   ///< byte shuffle before deflate, needs chunk
   ByteOrder order = kNativeOrder;
 };
 
@@ -224,8 +224,7 @@ class Hdf5Writer {
   Result<void> set_attribute(const std::string& object, const std::string& name, double value);
   Result<void> set_attribute(const std::string& object, const std::string& name, std::int64_t value);
   Result<void> set_attribute(const std::string& object, const std::string& name, std::span<const double> values);
-  Result<void> set_attribute(const std::string& object, const std::string& name,
-                             std::span<const std::string> texts);
+  Result<void> set_attribute(const std::string& object, const std::string& name, std::span<const std::string> texts);
 
   /// Closes the file and puts it in its place. Nothing may be written afterwards.
   Result<void> commit();

@@ -49,8 +49,8 @@ class Search {
       Result<std::vector<std::string>> (Search::*paths)();
     };
     static constexpr Convention kConventions[] = {
-        {"NeXus default", &Search::nexus_default},   {"NeXus NXtomoproc", &Search::nexus_tomoproc},
-        {"nabu reconstruction", &Search::nabu},      {"Data Exchange", &Search::data_exchange},
+        {"NeXus default", &Search::nexus_default}, {"NeXus NXtomoproc", &Search::nexus_tomoproc},
+        {"nabu reconstruction", &Search::nabu},    {"Data Exchange", &Search::data_exchange},
         {"VTKHDF ImageData", &Search::vtkhdf},
     };
     for (const Convention& convention : kConventions) {
@@ -92,13 +92,15 @@ class Search {
         continue;
       }
       if (target.kind != Kind::kDataset)
-        return fail(ErrorKind::kBadData, "import_hdf5: \"{}\" is {}, expected a dataset; dubsar info lists what {} holds",
-                    named, target.kind == Kind::kMissing ? "not in the file" : "not a dataset", file_->path().string());
+        return fail(ErrorKind::kBadData,
+                    "import_hdf5: \"{}\" is {}, expected a dataset; dubsar info lists what {} holds", named,
+                    target.kind == Kind::kMissing ? "not in the file" : "not a dataset", file_->path().string());
       DUBSAR_ASSIGN(Hdf5DatasetInfo info, file->inspect(target.path));
       if (info.layout == Hdf5Layout::kVirtual) DUBSAR_TRY(open_virtual(*file, info));
       return Hdf5Volume{file, std::move(info), file_, named, "", {}};
     }
-    return fail(ErrorKind::kBadData, "import_hdf5: more than 4 external links on the way to \"{}\", expected fewer", named);
+    return fail(ErrorKind::kBadData, "import_hdf5: more than 4 external links on the way to \"{}\", expected fewer",
+                named);
   }
 
   // A virtual dataset is opened when all its parts lie in the same file or are plain files of the allowed folder.
@@ -108,16 +110,20 @@ class Search {
       const std::string what = fmt::format("import_hdf5: virtual dataset \"{}\"", info.path);
       DUBSAR_ASSIGN(const std::filesystem::path part, allowed_file(what, file.path(), name, options_.allow_external));
       if (name.find('%') != std::string::npos)
-        return fail(ErrorKind::kBadData, "{} names its files by the pattern \"{}\", expected plain names; copy it with "
-                    "h5repack", what, name);
+        return fail(ErrorKind::kBadData,
+                    "{} names its files by the pattern \"{}\", expected plain names; copy it with "
+                    "h5repack",
+                    what, name);
       DUBSAR_ASSIGN(const Hdf5File source, Hdf5File::open(part));
       DUBSAR_ASSIGN(const auto links, source.list());
       for (const Hdf5Link& link : links) {
         if (link.kind != Hdf5Link::Kind::kDataset) continue;
         DUBSAR_ASSIGN(const Hdf5DatasetInfo inner, source.inspect(link.path));
         if (!inner.virtual_files.empty() || !inner.external.empty())
-          return fail(ErrorKind::kBadData, "{} is made of \"{}\", which refers to further files, expected plain data; "
-                      "copy it with h5repack", what, name);
+          return fail(ErrorKind::kBadData,
+                      "{} is made of \"{}\", which refers to further files, expected plain data; "
+                      "copy it with h5repack",
+                      what, name);
       }
     }
     DUBSAR_ASSIGN(info, file.inspect(info.path, true));
@@ -159,10 +165,11 @@ class Search {
       return target && target->kind == Kind::kDataset;
     };
     const auto refusal = [&](const std::string& why) {
-      return Error{ErrorKind::kBadData,
-                   fmt::format("import_hdf5: \"{}\" holds projections ({}), expected a reconstructed volume; reconstruct "
-                               "it first, e.g. with nabu or tomopy",
-                               path, why)};
+      return Error{
+          ErrorKind::kBadData,
+          fmt::format("import_hdf5: \"{}\" holds projections ({}), expected a reconstructed volume; reconstruct "
+                      "it first, e.g. with nabu or tomopy",
+                      path, why)};
     };
     for (const char* key : {"image_key", "image_key_control"})
       if (is_dataset(child(group, key))) return refusal(fmt::format("\"{}\" lies beside it", child(group, key)));
@@ -175,8 +182,8 @@ class Search {
     if (said.rfind("theta", 0) == 0) return refusal("its first axis is theta");
     if (said.rfind("z:", 0) == 0 || said.find("recon") != std::string::npos) return std::nullopt;
     const auto theta = file.inspect(child(group, "theta"));
-    const bool one_each = theta && !theta->dims.empty() && !volume.info.dims.empty() &&
-                          theta->dims.front() == volume.info.dims.front();
+    const bool one_each =
+        theta && !theta->dims.empty() && !volume.info.dims.empty() && theta->dims.front() == volume.info.dims.front();
     if (insisted && !one_each) return std::nullopt;
     return refusal(fmt::format("\"{}\" lies beside it", child(group, "theta")));
   }
@@ -267,8 +274,10 @@ class Search {
       const auto front = std::mismatch(path.begin(), path.end(), fine.begin(), fine.end());
       if (front.first == path.end() || !digit(*front.first) || front.second == fine.end() || !digit(*front.second))
         continue;
-      const std::string_view a(path.data() + (front.first - path.begin()), static_cast<std::size_t>(path.end() - front.first));
-      const std::string_view b(fine.data() + (front.second - fine.begin()), static_cast<std::size_t>(fine.end() - front.second));
+      const std::string_view a(path.data() + (front.first - path.begin()),
+                               static_cast<std::size_t>(path.end() - front.first));
+      const std::string_view b(fine.data() + (front.second - fine.begin()),
+                               static_cast<std::size_t>(fine.end() - front.second));
       const auto rest_a = a.substr(static_cast<std::size_t>(std::find_if_not(a.begin(), a.end(), digit) - a.begin()));
       const auto rest_b = b.substr(static_cast<std::size_t>(std::find_if_not(b.begin(), b.end(), digit) - b.begin()));
       if (rest_a != rest_b || other.info.dims.size() != volume.info.dims.size()) continue;
@@ -286,9 +295,8 @@ class Search {
     for (const Hdf5Volume& volume : found)
       if (!coarser_level(volume, found) && seen.insert({volume.file.get(), volume.info.address}).second)
         levels.push_back(volume);
-    std::stable_sort(levels.begin(), levels.end(), [](const Hdf5Volume& a, const Hdf5Volume& b) {
-      return count_of(a.info) > count_of(b.info);
-    });
+    std::stable_sort(levels.begin(), levels.end(),
+                     [](const Hdf5Volume& a, const Hdf5Volume& b) { return count_of(a.info) > count_of(b.info); });
     if (levels.size() > 1 && count_of(levels[1].info) >= count_of(levels[0].info) / 2) {
       std::vector<std::string> names;
       for (const Hdf5Volume& volume : levels)
@@ -329,9 +337,10 @@ class Search {
     if (!biggest)
       return fail(ErrorKind::kBadData, "import_hdf5: {} holds no dataset, expected an array of rank 3",
                   file_->path().string());
-    return fail(ErrorKind::kBadData,
-                "import_hdf5: {} holds no volume: its largest dataset \"{}\" is {} of rank {}, expected numbers of rank 3",
-                file_->path().string(), biggest->path, describe_array(*biggest), biggest->dims.size());
+    return fail(
+        ErrorKind::kBadData,
+        "import_hdf5: {} holds no volume: its largest dataset \"{}\" is {} of rank {}, expected numbers of rank 3",
+        file_->path().string(), biggest->path, describe_array(*biggest), biggest->dims.size());
   }
 
   std::shared_ptr<Hdf5File> file_;

@@ -14,8 +14,8 @@
 namespace dubsar {
 
 struct Hdf5Volume {
-  std::shared_ptr<Hdf5File> file;  ///< the file that holds it: another one behind an allowed external link
-  Hdf5DatasetInfo info;            ///< of the dataset in that file
+  std::shared_ptr<Hdf5File> file;        ///< the file that holds it: another one behind an allowed external link
+  Hdf5DatasetInfo info;                  ///< of the dataset in that file
   std::shared_ptr<Hdf5File> named_file;  ///< the file that was asked for
   std::string named;                     ///< the path in that file
   std::string found_by;

@@ -129,8 +129,10 @@ class ChunkReader final : public LibraryReader {
     const auto& info = dataset_.info();
     // A chunk that could not be shrunk is a little larger than its numbers.
     if (chunk.bytes > 2 * chunk_bytes_ + 1024)
-      return fail(ErrorKind::kBadData, "import_hdf5: a chunk of \"{}\" has {} bytes for {} bytes of voxels; the file is "
-                  "damaged", info.path, chunk.bytes, chunk_bytes_);
+      return fail(ErrorKind::kBadData,
+                  "import_hdf5: a chunk of \"{}\" has {} bytes for {} bytes of voxels; the file is "
+                  "damaged",
+                  info.path, chunk.bytes, chunk_bytes_);
     scratch.packed.resize(chunk.bytes);
     // The library does not always count a user block in.
     DUBSAR_TRY(file_->user_block() == 0 ? bytes_.read_at(chunk.file_offset, scratch.packed)
@@ -138,8 +140,10 @@ class ChunkReader final : public LibraryReader {
     const auto numbers = undo_filters(filters_, chunk.filter_mask, static_cast<std::size_t>(scalar_bytes(*info.scalar)),
                                       chunk_bytes_, scratch);
     if (!numbers)
-      return fail(ErrorKind::kBadData, "import_hdf5: a chunk of \"{}\" at byte {} cannot be decoded; the file is damaged, "
-                  "copy it again", info.path, chunk.file_offset);
+      return fail(ErrorKind::kBadData,
+                  "import_hdf5: a chunk of \"{}\" at byte {} cannot be decoded; the file is damaged, "
+                  "copy it again",
+                  info.path, chunk.file_offset);
     return *numbers;
   }
 
@@ -169,8 +173,8 @@ class ChunkReader final : public LibraryReader {
           std::fill(row.begin(), row.end(), fill);
           continue;
         }
-        const std::int64_t at = ((box.z.at(k) - origin[0]) * chunk_[1] + (box.y.at(j) - origin[1])) * chunk_[2] +
-                                x.begin - origin[2];
+        const std::int64_t at =
+            ((box.z.at(k) - origin[0]) * chunk_[1] + (box.y.at(j) - origin[1])) * chunk_[2] + x.begin - origin[2];
         store_row(bytes.data() + at * scalar_bytes(type), type, dataset_.info().order, map_, x, row);
       }
     return {};
@@ -199,7 +203,8 @@ Result<std::unique_ptr<VoxelReader>> make_hdf5_reader(std::shared_ptr<Hdf5File> 
   constexpr std::uint64_t kMostCache = std::uint64_t{512} << 20;
   std::uint64_t layer = info.element_bytes();
   for (std::size_t axis = 0; axis < info.chunk.size(); ++axis)
-    layer *= axis == axes[0] ? info.chunk[axis] : (info.dims[axis] + info.chunk[axis] - 1) / info.chunk[axis] * info.chunk[axis];
+    layer *= axis == axes[0] ? info.chunk[axis]
+                             : (info.dims[axis] + info.chunk[axis] - 1) / info.chunk[axis] * info.chunk[axis];
   const std::uint64_t cache = direct ? 0 : std::min(layer, kMostCache);
   DUBSAR_ASSIGN(Hdf5Dataset dataset, file->open_dataset(info.path, cache, info.layout == Hdf5Layout::kVirtual));
   if (!direct) return std::make_unique<LibraryReader>(std::move(file), std::move(dataset), axes, map);

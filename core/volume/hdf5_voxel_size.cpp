@@ -38,9 +38,7 @@ std::optional<double> length_unit(std::string text) {
   return mm_per_unit(text);
 }
 
-bool positive(const glm::dvec3& v) {
-  return v.x > 0.0 && v.y > 0.0 && v.z > 0.0 && std::isfinite(v.x + v.y + v.z);
-}
+bool positive(const glm::dvec3& v) { return v.x > 0.0 && v.y > 0.0 && v.z > 0.0 && std::isfinite(v.x + v.y + v.z); }
 
 class Finder {
  public:
@@ -98,8 +96,8 @@ class Finder {
       mm[2 - i] = *spacing;
     }
     if (!positive(mm)) return false;
-    size = {mm, fmt::format("{} axes {}, {}, {}", group, (*names)[(*axes)[0]], (*names)[(*axes)[1]],
-                            (*names)[(*axes)[2]])};
+    size = {mm,
+            fmt::format("{} axes {}, {}, {}", group, (*names)[(*axes)[0]], (*names)[(*axes)[1]], (*names)[(*axes)[2]])};
     return true;
   }
 
@@ -116,16 +114,28 @@ class Finder {
     bool x_first;  ///< order of three values
   };
   static constexpr std::array<Name, 15> kNames{{
-      {"element_size_um", 1e-3, false}, {"element_size_mm", 1.0, false}, {"pixelResolution", 0.0, true},
-      {"voxel_size", 0.0, false},       {"voxelsize", 0.0, false},       {"voxel_size_mm", 1.0, false},
-      {"voxel_size_um", 1e-3, false},   {"voxel_size_m", 1e3, false},    {"voxel_size_cm", 10.0, false},
-      {"pixel_size", 0.0, false},       {"pixel_size_mm", 1.0, false},   {"pixel_size_um", 1e-3, false},
-      {"pixel_size_m", 1e3, false},     {"pixel_size_cm", 10.0, false},  {"pixelsize", 0.0, false},
+      {"element_size_um", 1e-3, false},
+      {"element_size_mm", 1.0, false},
+      {"pixelResolution", 0.0, true},
+      {"voxel_size", 0.0, false},
+      {"voxelsize", 0.0, false},
+      {"voxel_size_mm", 1.0, false},
+      {"voxel_size_um", 1e-3, false},
+      {"voxel_size_m", 1e3, false},
+      {"voxel_size_cm", 10.0, false},
+      {"pixel_size", 0.0, false},
+      {"pixel_size_mm", 1.0, false},
+      {"pixel_size_um", 1e-3, false},
+      {"pixel_size_m", 1e3, false},
+      {"pixel_size_cm", 10.0, false},
+      {"pixelsize", 0.0, false},
   }};
 
   bool accept(const std::vector<double>& values, const Name& name, std::optional<std::string> unit_text,
               const std::string& where, VoxelSize& size) {
-    const auto unit = name.mm > 0.0 ? std::optional<double>(name.mm) : unit_text ? length_unit(*unit_text) : std::nullopt;
+    const auto unit = name.mm > 0.0 ? std::optional<double>(name.mm)
+                      : unit_text   ? length_unit(*unit_text)
+                                    : std::nullopt;
     const auto mm = in_order(values, name.x_first);
     if (!unit || !mm || !positive(*mm)) {
       warnings_.push_back(fmt::format("\"{}\" is not used as voxel size: it has {}", where,
@@ -170,7 +180,8 @@ class Finder {
         const std::string path = child(group, fmt::format("{}_{}", "xyz"[axis], kind));
         const auto values = file.number_dataset(path);
         const auto unit = file.string(path, "units");
-        if (values && values->size() == 1 && unit && length_unit(*unit)) mm[axis] = values->front() * *length_unit(*unit);
+        if (values && values->size() == 1 && unit && length_unit(*unit))
+          mm[axis] = values->front() * *length_unit(*unit);
       }
       if (!positive(mm)) continue;
       size = {mm, fmt::format("{} x_{}, y_{}, z_{}", group, kind, kind, kind)};

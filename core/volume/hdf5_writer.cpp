@@ -39,8 +39,7 @@ Result<Hdf5Writer> Hdf5Writer::create(const std::filesystem::path& path) {
   Hdf5Writer writer(std::move(file));
   const Library library;
   writer.id_ = H5Fcreate(writer.file_.temporary_path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  if (writer.id_ < 0)
-    return fail(ErrorKind::kCannotCreate, "hdf5: cannot create {} ({})", path.string(), reason());
+  if (writer.id_ < 0) return fail(ErrorKind::kCannotCreate, "hdf5: cannot create {} ({})", path.string(), reason());
   return writer;
 }
 

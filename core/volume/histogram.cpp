@@ -17,9 +17,7 @@ std::uint32_t key_of(float value) {
   return (bits & kSign) != 0 ? ~bits : bits | kSign;
 }
 
-double value_of(std::uint32_t key) {
-  return std::bit_cast<float>((key & kSign) != 0 ? key ^ kSign : ~key);
-}
+double value_of(std::uint32_t key) { return std::bit_cast<float>((key & kSign) != 0 ? key ^ kSign : ~key); }
 
 /// Adds `mass`, spread evenly over [begin, end), to the bins.
 void spread(Histogram& h, double begin, double end, double mass) {

@@ -14,8 +14,9 @@
 
 namespace dubsar {
 
-/// Counts of floats by the upper 24 bits of their order-preserving bit pattern: relative precision 2^-15, no range to be
-/// known before, no floating-point sums. Memory: 2 KiB per 256 neighbouring patterns that occur, a few MiB for a scan.
+/// Counts of floats by the upper 24 bits of their order-preserving bit pattern: relative precision 2^-15, no range to
+/// be known before, no floating-point sums. Memory: 2 KiB per 256 neighbouring patterns that occur, a few MiB for a
+/// scan.
 class ValueCounts {
  public:
   /// NaN and infinities are counted apart.

@@ -69,11 +69,14 @@ Result<OpenedVolume> open_by_content(const ImportOptions& options) {
   if (Hdf5File::has_signature(options.path)) return open_hdf5(options);
   std::string found = "no known format";
   for (const Magic& magic : kOthers)
-    if (text.size() >= magic.offset + magic.bytes.size() && text.substr(magic.offset, magic.bytes.size()) == magic.bytes)
+    if (text.size() >= magic.offset + magic.bytes.size() &&
+        text.substr(magic.offset, magic.bytes.size()) == magic.bytes)
       found = magic.what;
-  return fail(ErrorKind::kBadData,
-              "import: {} is {}, expected an HDF5, NRRD or TIFF volume or a folder of TIFF slices; for a raw volume give "
-              "--dims and --type", options.path.string(), found);
+  return fail(
+      ErrorKind::kBadData,
+      "import: {} is {}, expected an HDF5, NRRD or TIFF volume or a folder of TIFF slices; for a raw volume give "
+      "--dims and --type",
+      options.path.string(), found);
 }
 
 Result<VoxelBox> box_of(const Dims& file, const ImportOptions& options) {
@@ -87,8 +90,8 @@ Result<VoxelBox> box_of(const Dims& file, const ImportOptions& options) {
       if (options.crop->end[axis] >= 0) range.end = options.crop->end[axis];
     }
     if (range.begin < 0 || range.begin >= range.end || range.end > sizes[axis])
-      return fail(ErrorKind::kUsage, "import: crop {}:{} along {} found, expected a part of 0:{}", range.begin, range.end,
-                  "xyz"[axis], sizes[axis]);
+      return fail(ErrorKind::kUsage, "import: crop {}:{} along {} found, expected a part of 0:{}", range.begin,
+                  range.end, "xyz"[axis], sizes[axis]);
     if (range.step < 1 || range.count() < 2)
       return fail(ErrorKind::kUsage, "import: crop {}:{} with stride {} leaves {} voxels along {}, expected at least 2",
                   range.begin, range.end, range.step, range.count(), "xyz"[axis]);
@@ -106,8 +109,10 @@ void check_voxel_size(VolumeInfo& info) {
   constexpr double kLeast = 0.0005, kMost = 1.0;
   const auto [least, most] = std::minmax({mm.x, mm.y, mm.z});
   if (least < kLeast || most > kMost)
-    info.warnings.push_back(fmt::format("voxel size {:g} x {:g} x {:g} mm ({}) found, expected 0.0005 to 1 mm: is the unit "
-                                        "right? --voxel-size overrides it", mm.x, mm.y, mm.z, info.voxel.provenance));
+    info.warnings.push_back(
+        fmt::format("voxel size {:g} x {:g} x {:g} mm ({}) found, expected 0.0005 to 1 mm: is the unit "
+                    "right? --voxel-size overrides it",
+                    mm.x, mm.y, mm.z, info.voxel.provenance));
 }
 
 }  // namespace

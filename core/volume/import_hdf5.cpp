@@ -58,27 +58,33 @@ Result<void> check_filters(const Hdf5DatasetInfo& info) {
   for (const Hdf5Filter& filter : info.filters) {
     const std::string name = filter_text(filter);
     if (filter.id == 5 || filter.id == 6)
-      return fail(ErrorKind::kBadData,
-                  "import_hdf5: dataset \"{}\" is stored with filter {} ({}), which is not read because its decoder can be "
-                  "attacked; rewrite the file with: h5repack -f GZIP=4 IN OUT",
-                  info.path, filter.id, name);
+      return fail(
+          ErrorKind::kBadData,
+          "import_hdf5: dataset \"{}\" is stored with filter {} ({}), which is not read because its decoder can be "
+          "attacked; rewrite the file with: h5repack -f GZIP=4 IN OUT",
+          info.path, filter.id, name);
     if (filter.available) continue;
     const FilterName* known = filter_name(filter.id);
     if (known != nullptr && known->package != nullptr)
-      return fail(ErrorKind::kBadData, "import_hdf5: dataset \"{}\" needs filter {} ({}), which is missing; "
-                  "apt install {}", info.path, filter.id, name, known->package);
-    return fail(ErrorKind::kBadData,
-                "import_hdf5: dataset \"{}\" needs filter {} ({}), for which there is no Debian package; rewrite the file "
-                "where it was made, with gzip compression",
-                info.path, filter.id, name);
+      return fail(ErrorKind::kBadData,
+                  "import_hdf5: dataset \"{}\" needs filter {} ({}), which is missing; "
+                  "apt install {}",
+                  info.path, filter.id, name, known->package);
+    return fail(
+        ErrorKind::kBadData,
+        "import_hdf5: dataset \"{}\" needs filter {} ({}), for which there is no Debian package; rewrite the file "
+        "where it was made, with gzip compression",
+        info.path, filter.id, name);
   }
   return {};
 }
 
 Result<void> check_shape(const Hdf5DatasetInfo& info, const Budget& budget) {
   if (!info.scalar)
-    return fail(ErrorKind::kBadData, "import_hdf5: dataset \"{}\" has the type {}, expected integers or floats of 8 to 64 "
-                "bits{}", info.path, info.type_text,
+    return fail(ErrorKind::kBadData,
+                "import_hdf5: dataset \"{}\" has the type {}, expected integers or floats of 8 to 64 "
+                "bits{}",
+                info.path, info.type_text,
                 info.type_text == "compound" ? "; write one component to a dataset of its own" : "");
   for (const std::uint64_t n : info.dims)
     if (n == 0)
@@ -86,14 +92,19 @@ Result<void> check_shape(const Hdf5DatasetInfo& info, const Budget& budget) {
                   describe_array(info));
   const auto axes = volume_axes(info.dims);
   if (!axes)
-    return fail(ErrorKind::kBadData, "import_hdf5: dataset \"{}\" has rank {} ({}), expected 3, or more with axes of "
-                "length 1{}", info.path, info.dims.size(), describe_array(info),
+    return fail(ErrorKind::kBadData,
+                "import_hdf5: dataset \"{}\" has rank {} ({}), expected 3, or more with axes of "
+                "length 1{}",
+                info.path, info.dims.size(), describe_array(info),
                 info.dims.size() == 2 ? "; for a folder of pictures give the folder of TIFF slices" : "");
   for (const std::size_t axis : *axes)
     if (info.dims[axis] < 2)
-      return fail(ErrorKind::kBadData, "import_hdf5: dataset \"{}\" is a single picture ({}), expected at least 2 voxels "
-                  "along each axis", info.path, describe_array(info));
-  DUBSAR_TRY(check_dims(fmt::format("import_hdf5: dataset \"{}\"", info.path), info.dims, info.element_bytes(), budget));
+      return fail(ErrorKind::kBadData,
+                  "import_hdf5: dataset \"{}\" is a single picture ({}), expected at least 2 voxels "
+                  "along each axis",
+                  info.path, describe_array(info));
+  DUBSAR_TRY(
+      check_dims(fmt::format("import_hdf5: dataset \"{}\"", info.path), info.dims, info.element_bytes(), budget));
   return {};
 }
 
@@ -114,22 +125,27 @@ Result<void> check_storage(const Hdf5Volume& volume, const ImportOptions& option
   constexpr std::uint64_t kMostChunk = std::uint64_t{256} << 20;
   for (std::size_t axis = 0; axis < info.chunk.size(); ++axis) {
     if (info.chunk[axis] == 0 || info.chunk[axis] > kMostChunk || (chunk_bytes *= info.chunk[axis]) > kMostChunk)
-      return fail(ErrorKind::kBadData, "import_hdf5: dataset \"{}\" has chunks of {}, expected at most 256 MiB each; "
-                  "rewrite it with: h5repack -l CHUNK=64x64x64 IN OUT", info.path, fmt::join(info.chunk, "x"));
+      return fail(ErrorKind::kBadData,
+                  "import_hdf5: dataset \"{}\" has chunks of {}, expected at most 256 MiB each; "
+                  "rewrite it with: h5repack -l CHUNK=64x64x64 IN OUT",
+                  info.path, fmt::join(info.chunk, "x"));
     chunks *= (info.dims[axis] + info.chunk[axis] - 1) / info.chunk[axis];
   }
   // Below 64 MiB a bomb does no harm.
   if (logical > (std::uint64_t{64} << 20) && logical / info.storage_bytes > 250 && !options.trust)
-    return fail(ErrorKind::kBadData,
-                "import_hdf5: dataset \"{}\" unpacks {} bytes to {} ({}:1, expected at most 250:1); give --trust if you "
-                "know the file", info.path, info.storage_bytes, logical, logical / info.storage_bytes);
+    return fail(
+        ErrorKind::kBadData,
+        "import_hdf5: dataset \"{}\" unpacks {} bytes to {} ({}:1, expected at most 250:1); give --trust if you "
+        "know the file",
+        info.path, info.storage_bytes, logical, logical / info.storage_bytes);
   DUBSAR_ASSIGN(const Hdf5Dataset dataset, volume.file->open_dataset(info.path));
   DUBSAR_ASSIGN(const std::uint64_t written, dataset.written_chunks());
   if (static_cast<double>(written) < 0.99 * static_cast<double>(chunks) && !options.allow_sparse)
-    return fail(ErrorKind::kBadData,
-                "import_hdf5: dataset \"{}\" is sparse or was not written to its end: {} of {} chunks are missing; give "
-                "--allow-sparse to read them as {}", info.path, chunks - std::min(written, chunks), chunks,
-                info.fill_value);
+    return fail(
+        ErrorKind::kBadData,
+        "import_hdf5: dataset \"{}\" is sparse or was not written to its end: {} of {} chunks are missing; give "
+        "--allow-sparse to read them as {}",
+        info.path, chunks - std::min(written, chunks), chunks, info.fill_value);
   return {};
 }
 
@@ -146,8 +162,10 @@ Result<ScalarMap> scalar_map(const Hdf5Volume& volume) {
   map.scale = scale.value_or(1.0);
   map.offset = offset ? *offset : scale ? number({"offset"}).value_or(0.0) : 0.0;
   if (!std::isfinite(map.scale) || !std::isfinite(map.offset) || map.scale == 0.0)
-    return fail(ErrorKind::kBadData, "import_hdf5: dataset \"{}\" has the scale factor {} and offset {}, expected finite "
-                "numbers and a factor other than 0", volume.info.path, map.scale, map.offset);
+    return fail(ErrorKind::kBadData,
+                "import_hdf5: dataset \"{}\" has the scale factor {} and offset {}, expected finite "
+                "numbers and a factor other than 0",
+                volume.info.path, map.scale, map.offset);
   return map;
 }
 
@@ -175,10 +193,14 @@ Result<std::vector<FlatSegment>> segments_of(const Hdf5Volume& volume, const Imp
 
 std::string layout_text(const Hdf5DatasetInfo& info, const std::array<std::size_t, 3>& axes) {
   switch (info.layout) {
-    case Hdf5Layout::kCompact: return "compact";
-    case Hdf5Layout::kContiguous: return info.external.empty() ? "contiguous" : "contiguous in other files";
-    case Hdf5Layout::kVirtual: return "virtual";
-    case Hdf5Layout::kChunked: break;
+    case Hdf5Layout::kCompact:
+      return "compact";
+    case Hdf5Layout::kContiguous:
+      return info.external.empty() ? "contiguous" : "contiguous in other files";
+    case Hdf5Layout::kVirtual:
+      return "virtual";
+    case Hdf5Layout::kChunked:
+      break;
   }
   return fmt::format("chunked {}x{}x{}", info.chunk[axes[0]], info.chunk[axes[1]], info.chunk[axes[2]]);
 }
@@ -187,8 +209,7 @@ std::string layout_text(const Hdf5DatasetInfo& info, const std::array<std::size_
 
 Result<OpenedVolume> open_hdf5(const ImportOptions& options) {
   DUBSAR_ASSIGN(Hdf5File opened_file, Hdf5File::open(options.path));
-  DUBSAR_ASSIGN(const Hdf5Volume volume,
-                find_hdf5_volume(std::make_shared<Hdf5File>(std::move(opened_file)), options));
+  DUBSAR_ASSIGN(const Hdf5Volume volume, find_hdf5_volume(std::make_shared<Hdf5File>(std::move(opened_file)), options));
   const Hdf5DatasetInfo& info = volume.info;
   DUBSAR_TRY(check_shape(info, options.budget));
   DUBSAR_TRY(check_filters(info));
@@ -199,8 +220,8 @@ Result<OpenedVolume> open_hdf5(const ImportOptions& options) {
   const std::int64_t logical = opened.info.file_dims.count() * static_cast<std::int64_t>(info.element_bytes());
   const bool flat = info.layout == Hdf5Layout::kContiguous && info.plain_scalar;
   if (!info.external.empty() && !flat)
-    return fail(ErrorKind::kBadData, "import_hdf5: dataset \"{}\" keeps odd numbers in other files, expected plain ones",
-                info.path);
+    return fail(ErrorKind::kBadData,
+                "import_hdf5: dataset \"{}\" keeps odd numbers in other files, expected plain ones", info.path);
   std::vector<FlatSegment> segments;
   if (flat && (!info.external.empty() || info.file_offset >= 0)) {
     DUBSAR_ASSIGN(segments, segments_of(volume, options, logical));
@@ -232,7 +253,8 @@ std::vector<Hdf5FilterState> hdf5_filter_states() {
   std::vector<Hdf5FilterState> states;
   for (const FilterName& known : kFilterNames)
     if (known.package != nullptr)
-      states.push_back({known.name, Hdf5File::filter_available(known.id), fmt::format("apt install {}", known.package)});
+      states.push_back(
+          {known.name, Hdf5File::filter_available(known.id), fmt::format("apt install {}", known.package)});
   return states;
 }
 

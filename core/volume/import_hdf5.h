@@ -10,10 +10,10 @@
 namespace dubsar {
 
 /// Opens the volume of an HDF5 file (see hdf5_search.h for which one). Contiguous plain numbers are read with pread,
-/// chunks stored plain or with shuffle and deflate are decoded by all threads, everything else goes through the library.
-/// Refused in one sentence (kBadData): projections, pictures, compound and string types, empty arrays, arrays that were
-/// never or only partly written, missing or unsafe filters, data in other files (unless options.allow_external holds
-/// them), sizes beyond the budget, damaged files.
+/// chunks stored plain or with shuffle and deflate are decoded by all threads, everything else goes through the
+/// library. Refused in one sentence (kBadData): projections, pictures, compound and string types, empty arrays, arrays
+/// that were never or only partly written, missing or unsafe filters, data in other files (unless
+/// options.allow_external holds them), sizes beyond the budget, damaged files.
 Result<OpenedVolume> open_hdf5(const ImportOptions& options);
 
 /// Compression filters that volumes may use, and how to get those that are missing.

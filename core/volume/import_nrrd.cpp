@@ -179,12 +179,12 @@ VoxelSize voxel_size(const Header& header, const std::array<std::size_t, 3>& axe
     if (at < units.size()) unit[i] = mm_per_unit(units[at]).value_or(0.0);
   }
   if (!(size.x > 0.0 && size.y > 0.0 && size.z > 0.0) || !std::isfinite(size.x + size.y + size.z)) return {};
-  if (unit.x > 0.0 && unit.y > 0.0 && unit.z > 0.0)
-    return {size * unit, "NRRD " + where};
+  if (unit.x > 0.0 && unit.y > 0.0 && unit.z > 0.0) return {size * unit, "NRRD " + where};
   const std::string space = lower(header.text("space"));
-  if (space.find("left") != std::string::npos || space.find("right") != std::string::npos || space.starts_with("scanner") ||
-      space == "las" || space == "lps" || space == "ras") {
-    warnings.push_back(fmt::format("the NRRD {} have no unit, millimetres are taken as usual in the space \"{}\"", where, space));
+  if (space.find("left") != std::string::npos || space.find("right") != std::string::npos ||
+      space.starts_with("scanner") || space == "las" || space == "lps" || space == "ras") {
+    warnings.push_back(
+        fmt::format("the NRRD {} have no unit, millimetres are taken as usual in the space \"{}\"", where, space));
     return {size, fmt::format("NRRD {} (unit taken as mm)", where)};
   }
   warnings.push_back(fmt::format("the NRRD {} have no unit of length and are not used as voxel size", where));
@@ -220,8 +220,8 @@ Result<OpenedVolume> open_nrrd(const ImportOptions& options) {
 
   const auto type = parse_scalar_type(header.text("type"));
   if (!type)
-    return fail(ErrorKind::kBadData, "import_nrrd: {} has the type \"{}\", expected integers or floats of 8 to 64 bits", path,
-                header.text("type"));
+    return fail(ErrorKind::kBadData, "import_nrrd: {} has the type \"{}\", expected integers or floats of 8 to 64 bits",
+                path, header.text("type"));
   std::vector<std::uint64_t> sizes;
   for (const std::string& word : words(header.text("sizes"))) {
     const auto size = to_number(word);
@@ -234,8 +234,9 @@ Result<OpenedVolume> open_nrrd(const ImportOptions& options) {
   for (std::size_t axis = 0; axis < sizes.size(); ++axis)
     if (sizes.size() == 3 || sizes[axis] != 1) axes.push_back(axis);
   if (axes.size() != 3 || to_number(header.text("dimension")) != static_cast<double>(sizes.size()))
-    return fail(ErrorKind::kBadData, "import_nrrd: {} has dimension \"{}\" and sizes \"{}\", expected 3 axes of a scalar volume",
-                path, header.text("dimension"), header.text("sizes"));
+    return fail(ErrorKind::kBadData,
+                "import_nrrd: {} has dimension \"{}\" and sizes \"{}\", expected 3 axes of a scalar volume", path,
+                header.text("dimension"), header.text("sizes"));
   DUBSAR_ASSIGN(const std::int64_t count, check_dims(fmt::format("import_nrrd: {}", path), sizes,
                                                      static_cast<std::uint64_t>(scalar_bytes(*type)), options.budget));
 
@@ -245,7 +246,8 @@ Result<OpenedVolume> open_nrrd(const ImportOptions& options) {
   info.file_dims = {size_of(0), size_of(1), size_of(2)};
   info.logical_bytes = count * scalar_bytes(*type);
   const std::string endian = lower(header.text("endian"));
-  if (endian.empty() && scalar_bytes(*type) > 1) info.warnings.emplace_back("the NRRD header states no endian, little is taken");
+  if (endian.empty() && scalar_bytes(*type) > 1)
+    info.warnings.emplace_back("the NRRD header states no endian, little is taken");
   const ByteOrder order = endian == "big" ? ByteOrder::kBig : ByteOrder::kLittle;
 
   DUBSAR_ASSIGN(Data data, find_data(options, std::move(header_file), header));
@@ -253,8 +255,8 @@ Result<OpenedVolume> open_nrrd(const ImportOptions& options) {
   const double skip = to_number(header.text("byte skip", "byteskip")).value_or(0.0);
   const double lines = to_number(header.text("line skip", "lineskip")).value_or(0.0);
   if (lines != 0.0 || skip < -1.0 || skip > 1e15 || skip != std::floor(skip))
-    return fail(ErrorKind::kBadData, "import_nrrd: {} skips {} lines and {} bytes, expected no lines and whole bytes", path, lines,
-                skip);
+    return fail(ErrorKind::kBadData, "import_nrrd: {} skips {} lines and {} bytes, expected no lines and whole bytes",
+                path, lines, skip);
   info.storage_bytes = std::max<std::int64_t>(0, data.file.size() - data.offset);
   if (encoding == "raw") {
     const std::int64_t offset =
@@ -264,15 +266,21 @@ Result<OpenedVolume> open_nrrd(const ImportOptions& options) {
     segments.push_back({std::move(data.file), offset, info.logical_bytes});
     DUBSAR_ASSIGN(opened.reader, make_flat_reader({info.file_dims, *type, order, {}, std::move(segments)}));
   } else if ((encoding == "gzip" || encoding == "gz") && skip == 0.0) {
-    if (info.logical_bytes > (std::int64_t{64} << 20) && info.logical_bytes / 250 > info.storage_bytes && !options.trust)
-      return fail(ErrorKind::kBadData, "import_nrrd: {} unpacks {} bytes to {}, expected at most 250:1; give --trust if you know "
-                  "the file", path, info.storage_bytes, info.logical_bytes);
+    if (info.logical_bytes > (std::int64_t{64} << 20) && info.logical_bytes / 250 > info.storage_bytes &&
+        !options.trust)
+      return fail(ErrorKind::kBadData,
+                  "import_nrrd: {} unpacks {} bytes to {}, expected at most 250:1; give --trust if you know "
+                  "the file",
+                  path, info.storage_bytes, info.logical_bytes);
     info.layout = "stream";
     info.filters = {"gzip"};
-    opened.reader = std::make_unique<GzipReader>(GzipStream(std::move(data.file), data.offset), info.file_dims, *type, order);
+    opened.reader =
+        std::make_unique<GzipReader>(GzipStream(std::move(data.file), data.offset), info.file_dims, *type, order);
   } else {
-    return fail(ErrorKind::kBadData, "import_nrrd: {} has the encoding \"{}\", expected raw or gzip; convert it with: unu save -f "
-                "nrrd -e gzip", path, header.text("encoding"));
+    return fail(ErrorKind::kBadData,
+                "import_nrrd: {} has the encoding \"{}\", expected raw or gzip; convert it with: unu save -f "
+                "nrrd -e gzip",
+                path, header.text("encoding"));
   }
   info.format = "nrrd";
   info.found_by = "header";

@@ -29,9 +29,9 @@ std::optional<std::int64_t> whole_number(std::string_view text) {
 
 Result<CropRange> parse_crop(std::string_view text) {
   const auto wrong = [&] {
-    return fail(ErrorKind::kUsage,
-                "crop \"{}\" not understood, expected x0:x1,y0:y1,z0:z1 with 0 <= x0 < x1; an empty bound is the border",
-                text);
+    return fail(
+        ErrorKind::kUsage,
+        "crop \"{}\" not understood, expected x0:x1,y0:y1,z0:z1 with 0 <= x0 < x1; an empty bound is the border", text);
   };
   const auto axes = split(text, ',');
   if (axes.size() != 3) return wrong();
@@ -54,16 +54,15 @@ Result<std::array<std::int64_t, 3>> parse_stride(std::string_view text) {
   for (std::size_t axis = 0; axis < 3 && (parts.size() == 1 || parts.size() == 3); ++axis)
     stride[axis] = whole_number(parts[parts.size() == 1 ? 0 : axis]).value_or(0);
   if (stride[0] < 1 || stride[1] < 1 || stride[2] < 1)
-    return fail(ErrorKind::kUsage, "stride \"{}\" not understood, expected one whole number or three (x,y,z), at least 1",
-                text);
+    return fail(ErrorKind::kUsage,
+                "stride \"{}\" not understood, expected one whole number or three (x,y,z), at least 1", text);
   return stride;
 }
 
 Result<std::array<std::int64_t, 3>> parse_dims(std::string_view text) {
   std::array<std::int64_t, 3> dims{};
   const auto parts = split(text, 'x');
-  for (std::size_t axis = 0; axis < 3 && parts.size() == 3; ++axis)
-    dims[axis] = whole_number(parts[axis]).value_or(0);
+  for (std::size_t axis = 0; axis < 3 && parts.size() == 3; ++axis) dims[axis] = whole_number(parts[axis]).value_or(0);
   if (dims[0] < 1 || dims[1] < 1 || dims[2] < 1)
     return fail(ErrorKind::kUsage, "size \"{}\" not understood, expected XxYxZ such as 512x512x300", text);
   return dims;

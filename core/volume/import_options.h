@@ -33,12 +33,12 @@ struct ImportOptions {
   std::filesystem::path path;  ///< a file, a folder of TIFF slices, or FILE:/dataset
   std::string dataset;         ///< HDF5 path of the volume, or of a group that holds it; empty: found by itself
   std::optional<CropRange> crop;
-  std::array<std::int64_t, 3> stride{1, 1, 1};       ///< x, y, z
-  std::optional<glm::dvec3> voxel_size_mm;           ///< x, y, z; overrides what the file says
-  std::optional<RawSpec> raw;                        ///< set: the file is read as raw, whatever it holds
+  std::array<std::int64_t, 3> stride{1, 1, 1};          ///< x, y, z
+  std::optional<glm::dvec3> voxel_size_mm;              ///< x, y, z; overrides what the file says
+  std::optional<RawSpec> raw;                           ///< set: the file is read as raw, whatever it holds
   std::optional<std::filesystem::path> allow_external;  ///< folder in which other files may be opened
-  bool trust = false;         ///< accept compression ratios above 250
-  bool allow_sparse = false;  ///< accept chunks that were never written (read as the fill value)
+  bool trust = false;                                   ///< accept compression ratios above 250
+  bool allow_sparse = false;            ///< accept chunks that were never written (read as the fill value)
   std::optional<float> nonfinite_fill;  ///< replaces NaN and Inf; default: air, see finite_source.h
   Budget budget;
 };

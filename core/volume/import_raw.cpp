@@ -17,16 +17,17 @@ Result<OpenedVolume> open_raw(const ImportOptions& options) {
   const std::int64_t bytes = count * scalar_bytes(raw.type);
   const std::int64_t left = file.size() - raw.skip;
   if (raw.skip < 0 || left < bytes)
-    return fail(ErrorKind::kBadData,
-                "import_raw: {} has {} bytes, expected {} ({} x {} x {} of {} behind {} skipped bytes); check --dims, --type "
-                "and --skip",
-                options.path.string(), file.size(), raw.skip + bytes, raw.dims[0], raw.dims[1], raw.dims[2],
-                scalar_name(raw.type), raw.skip);
+    return fail(
+        ErrorKind::kBadData,
+        "import_raw: {} has {} bytes, expected {} ({} x {} x {} of {} behind {} skipped bytes); check --dims, --type "
+        "and --skip",
+        options.path.string(), file.size(), raw.skip + bytes, raw.dims[0], raw.dims[1], raw.dims[2],
+        scalar_name(raw.type), raw.skip);
   OpenedVolume opened;
   VolumeInfo& info = opened.info;
   if (left > bytes)
-    info.warnings.push_back(fmt::format("{} bytes follow the voxels and are not read; check --dims, --type and --skip",
-                                        left - bytes));
+    info.warnings.push_back(
+        fmt::format("{} bytes follow the voxels and are not read; check --dims, --type and --skip", left - bytes));
   info.format = "raw";
   info.found_by = "named by the user";
   info.file_dims = {raw.dims[0], raw.dims[1], raw.dims[2]};

@@ -63,9 +63,7 @@ class SliceReader final : public VoxelReader {
  public:
   SliceReader(std::vector<Slice> slices, TiffPage like) : slices_(std::move(slices)), like_(std::move(like)) {}
 
-  Dims dims() const noexcept override {
-    return {like_.width, like_.height, static_cast<std::int64_t>(slices_.size())};
-  }
+  Dims dims() const noexcept override { return {like_.width, like_.height, static_cast<std::int64_t>(slices_.size())}; }
 
   Result<void> read(const VoxelBox& box, std::span<float> out) override {
     const Dims size = box.dims();
@@ -86,8 +84,8 @@ class SliceReader final : public VoxelReader {
           return;
         }
         for (std::int64_t j = 0; j < size.y; ++j)
-          store_row(page.data() + (box.y.at(j) * like_.width + box.x.begin) * scalar_bytes(type), type, kNativeOrder, {},
-                    box.x,
+          store_row(page.data() + (box.y.at(j) * like_.width + box.x.begin) * scalar_bytes(type), type, kNativeOrder,
+                    {}, box.x,
                     out.subspan(static_cast<std::size_t>((k * size.y + j) * size.x), static_cast<std::size_t>(size.x)));
       }
     });
@@ -106,7 +104,8 @@ class SliceReader final : public VoxelReader {
     DUBSAR_ASSIGN(const TiffPage found, file->select(slice.page));
     if (found.width != like_.width || found.height != like_.height || found.bits != like_.bits ||
         found.channels != like_.channels || found.sample != like_.sample)
-      return fail(ErrorKind::kBadData, "import_tiff: {} changed since it was opened, expected {} x {} pixels of {} bits",
+      return fail(ErrorKind::kBadData,
+                  "import_tiff: {} changed since it was opened, expected {} x {} pixels of {} bits",
                   slice.file.string(), like_.width, like_.height, like_.bits);
     return file->read_gray(page);
   }
@@ -149,8 +148,10 @@ VoxelSize voxel_size(const TiffPage& page, std::vector<std::string>& warnings) {
       return {{mm.x, mm.y, std::abs(spacing) * unit_mm}, "TIFF resolution tags and ImageJ spacing"};
   for (const double default_dpi : {72.0, 96.0, 100.0, 150.0, 300.0, 600.0})
     if (!unit && std::abs(25.4 / mm.x - default_dpi) < 0.01) {
-      warnings.push_back(fmt::format("the TIFF resolution of {} dpi is a habit of picture programs and is not used as voxel "
-                                     "size", default_dpi));
+      warnings.push_back(
+          fmt::format("the TIFF resolution of {} dpi is a habit of picture programs and is not used as voxel "
+                      "size",
+                      default_dpi));
       return {};
     }
   warnings.emplace_back("the TIFF files state no slice distance, that of the pixels in x is taken");
@@ -180,8 +181,10 @@ Result<std::vector<fs::path>> files_of(const ImportOptions& options) {
       files.push_back(entry.path());
   }
   if (files.empty())
-    return fail(folder ? ErrorKind::kBadData : ErrorKind::kNoInput, "import_tiff: {} holds no TIFF files{}, expected the "
-                "slices of a volume", parent.string(), folder ? "" : fmt::format(" called {}", pattern));
+    return fail(folder ? ErrorKind::kBadData : ErrorKind::kNoInput,
+                "import_tiff: {} holds no TIFF files{}, expected the "
+                "slices of a volume",
+                parent.string(), folder ? "" : fmt::format(" called {}", pattern));
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return natural_less(a.filename().string(), b.filename().string());
   });
@@ -190,11 +193,14 @@ Result<std::vector<fs::path>> files_of(const ImportOptions& options) {
 
 Result<void> check_page(const fs::path& file, const TiffPage& page) {
   if (page.channels != 1 || page.palette)
-    return fail(ErrorKind::kBadData, "import_tiff: {} is a colour picture ({} channels), expected gray values of one channel",
-                file.string(), page.palette ? 3 : page.channels);
+    return fail(ErrorKind::kBadData,
+                "import_tiff: {} is a colour picture ({} channels), expected gray values of one channel", file.string(),
+                page.palette ? 3 : page.channels);
   if (!type_of(page))
-    return fail(ErrorKind::kBadData, "import_tiff: {} has samples of {} bits, expected whole numbers or floats of 8, 16, 32 or "
-                "64 bits", file.string(), page.bits);
+    return fail(ErrorKind::kBadData,
+                "import_tiff: {} has samples of {} bits, expected whole numbers or floats of 8, 16, 32 or "
+                "64 bits",
+                file.string(), page.bits);
   return {};
 }
 
@@ -220,11 +226,12 @@ Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
       DUBSAR_TRY(check_page(path, page));
       if (!first) first = page;
       if (page.width != first->width || page.height != first->height || type_of(page) != type_of(*first))
-        return fail(ErrorKind::kBadData,
-                    "import_tiff: {} has {} x {} pixels of {}, but the slices before it {} x {} of {}: expected slices of one "
-                    "size; name them with a pattern such as slice_*.tif",
-                    path.string(), page.width, page.height, scalar_name(*type_of(page)), first->width, first->height,
-                    scalar_name(*type_of(*first)));
+        return fail(
+            ErrorKind::kBadData,
+            "import_tiff: {} has {} x {} pixels of {}, but the slices before it {} x {} of {}: expected slices of one "
+            "size; name them with a pattern such as slice_*.tif",
+            path.string(), page.width, page.height, scalar_name(*type_of(page)), first->width, first->height,
+            scalar_name(*type_of(*first)));
       slices.push_back({path, page.offset});
     }
   }
@@ -237,8 +244,10 @@ Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
   const std::int64_t behind = slices.size() == 1 ? imagej_slices_behind(*first) : 1;
   const std::int64_t depth = std::max(behind, static_cast<std::int64_t>(slices.size()));
   if (depth < 2)
-    return fail(ErrorKind::kBadData, "import_tiff: {} is a single picture, expected a stack; give the folder of the slices or "
-                "a pattern such as slice_*.tif", options.path.string());
+    return fail(ErrorKind::kBadData,
+                "import_tiff: {} is a single picture, expected a stack; give the folder of the slices or "
+                "a pattern such as slice_*.tif",
+                options.path.string());
   OpenedVolume opened;
   VolumeInfo& info = opened.info;
   info.file_dims = {first->width, first->height, depth};
@@ -249,8 +258,10 @@ Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
   info.logical_bytes = count * scalar_bytes(type);
   for (const fs::path& path : files) info.storage_bytes += static_cast<std::int64_t>(fs::file_size(path, ignored));
   if (info.logical_bytes > (std::int64_t{64} << 20) && info.logical_bytes / 250 > info.storage_bytes && !options.trust)
-    return fail(ErrorKind::kBadData, "import_tiff: {} unpacks {} bytes to {}, expected at most 250:1; give --trust if you know "
-                "the files", options.path.string(), info.storage_bytes, info.logical_bytes);
+    return fail(ErrorKind::kBadData,
+                "import_tiff: {} unpacks {} bytes to {}, expected at most 250:1; give --trust if you know "
+                "the files",
+                options.path.string(), info.storage_bytes, info.logical_bytes);
   info.format = "tiff";
   info.found_by = files.size() > 1 ? fmt::format("{} files", files.size()) : "pages of one file";
   info.dtype = scalar_name(type);

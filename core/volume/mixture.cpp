@@ -18,8 +18,7 @@ Mixture::Component moments(const Histogram& h, std::size_t begin, std::size_t en
     sum += h.mass[i] * x;
   }
   const double mean = mass > 0.0 ? sum / mass : h.centre(static_cast<double>(begin));
-  for (std::size_t i = begin; i < end; ++i)
-    squares += h.mass[i] * std::pow(h.centre(static_cast<double>(i)) - mean, 2);
+  for (std::size_t i = begin; i < end; ++i) squares += h.mass[i] * std::pow(h.centre(static_cast<double>(i)) - mean, 2);
   return {mass, mean, std::max(mass > 0.0 ? std::sqrt(squares / mass) : 0.0, 0.5 * h.width)};
 }
 
@@ -57,8 +56,8 @@ OtsuSplit otsu_split(const Histogram& h) {
 Mixture fit_mixture(const Histogram& h, int count) {
   const std::size_t bins = h.mass.size();
   const OtsuSplit split = otsu_split(h);
-  const auto cut = std::clamp<std::size_t>(
-      static_cast<std::size_t>(std::lround((split.threshold - h.low) / h.width)), 1, bins - 1);
+  const auto cut =
+      std::clamp<std::size_t>(static_cast<std::size_t>(std::lround((split.threshold - h.low) / h.width)), 1, bins - 1);
   const Mixture::Component low = moments(h, 0, cut), high = moments(h, cut, bins);
   const double total = low.weight + high.weight;
 
@@ -66,8 +65,8 @@ Mixture fit_mixture(const Histogram& h, int count) {
   m.plateau = 0.05;
   for (int k = 0; k < count; ++k) {
     const double t = count > 1 ? static_cast<double>(k) / (count - 1) : 0.5;
-    m.components.push_back({0.95 / count, low.mean + t * (high.mean - low.mean),
-                            (1.0 - t) * low.sigma + t * high.sigma});
+    m.components.push_back(
+        {0.95 / count, low.mean + t * (high.mean - low.mean), (1.0 - t) * low.sigma + t * high.sigma});
   }
   std::vector<double> weight(m.components.size()), sum(weight), squares(weight), at(weight);
   for (int step = 0; step < kSteps; ++step) {
@@ -99,8 +98,7 @@ Mixture fit_mixture(const Histogram& h, int count) {
       c.sigma = std::max(std::sqrt(std::max(squares[k] / weight[k] - shift * shift, 0.0)), 0.5 * h.width);
     }
     m.plateau = plateau / total;
-    std::sort(m.components.begin(), m.components.end(),
-              [](const auto& a, const auto& b) { return a.mean < b.mean; });
+    std::sort(m.components.begin(), m.components.end(), [](const auto& a, const auto& b) { return a.mean < b.mean; });
   }
   return m;
 }

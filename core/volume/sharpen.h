@@ -1,5 +1,6 @@
 #pragma once
-// Gives edges back what the low-pass before 2:1 resampling took (paper section 3.1), once denoising has made room for it.
+// Gives edges back what the low-pass before 2:1 resampling took (paper section 3.1), once denoising has made room for
+// it.
 
 #include <memory>
 

@@ -5,9 +5,9 @@
 namespace dubsar {
 namespace {
 
-constexpr std::int64_t kLine = 16;         // floats in a cache line
+constexpr std::int64_t kLine = 16;          // floats in a cache line
 constexpr std::int64_t kStaging = 1 << 18;  // floats; slices are copied on while they are in a second-level cache
-constexpr std::int64_t kLead = 2 * kLine;  // >= kPad, keeps rows aligned
+constexpr std::int64_t kLead = 2 * kLine;   // >= kPad, keeps rows aligned
 
 std::int64_t padded_pitch(std::int64_t nx) {
   std::int64_t lines = (kLead + nx + SliceRing::kPad + kLine - 1) / kLine;
@@ -17,8 +17,7 @@ std::int64_t padded_pitch(std::int64_t nx) {
 
 }  // namespace
 
-SliceRing::SliceRing(Dims dims, std::int64_t capacity, Rows rows)
-    : dims_(dims), capacity_(std::min(capacity, dims.z)) {
+SliceRing::SliceRing(Dims dims, std::int64_t capacity, Rows rows) : dims_(dims), capacity_(std::min(capacity, dims.z)) {
   DUBSAR_CHECK(dims.count() > 0 && capacity > 0);
   if (rows == Rows::kPadded) {
     lead_ = kLead;

@@ -35,9 +35,9 @@ class Buffer {
  public:
   Buffer() = default;
   explicit Buffer(std::int64_t count)
-      : data_(count > 0 ? static_cast<T*>(::operator new(static_cast<std::size_t>(count) * sizeof(T),
-                                                         std::align_val_t{64}))
-                        : nullptr),
+      : data_(count > 0
+                  ? static_cast<T*>(::operator new (static_cast<std::size_t>(count) * sizeof(T), std::align_val_t{64}))
+                  : nullptr),
         count_(count) {
     static_assert(std::is_trivially_copyable_v<T>);
   }
@@ -51,7 +51,7 @@ class Buffer {
 
  private:
   struct Free {
-    void operator()(T* p) const noexcept { ::operator delete(p, std::align_val_t{64}); }
+    void operator()(T* p) const noexcept { ::operator delete (p, std::align_val_t{64}); }
   };
   std::unique_ptr<T, Free> data_;
   std::int64_t count_ = 0;

@@ -49,19 +49,19 @@ struct VolumeCandidate {
 /// What is known of a volume in a file, for the report and `dubsar info`.
 struct VolumeInfo {
   std::string path;
-  std::string format;   ///< "hdf5", "raw", "nrrd", "tiff"
-  std::string dataset;  ///< HDF5 path, empty for other formats
-  std::string found_by; ///< how the volume was found: "named by the user", "NeXus default", ...
-  Dims file_dims;       ///< of the stored array
-  std::string dtype;    ///< "uint8" ... "float64"
+  std::string format;    ///< "hdf5", "raw", "nrrd", "tiff"
+  std::string dataset;   ///< HDF5 path, empty for other formats
+  std::string found_by;  ///< how the volume was found: "named by the user", "NeXus default", ...
+  Dims file_dims;        ///< of the stored array
+  std::string dtype;     ///< "uint8" ... "float64"
   std::string byte_order;
-  std::string layout;   ///< "contiguous", "chunked 32x32x32" (z, y, x), ...
+  std::string layout;  ///< "contiguous", "chunked 32x32x32" (z, y, x), ...
   std::vector<std::string> filters;
-  ScalarMap map;        ///< applied to the stored numbers
+  ScalarMap map;  ///< applied to the stored numbers
   VoxelSize voxel;
-  std::int64_t storage_bytes = 0;  ///< in the file, compressed
-  std::int64_t logical_bytes = 0;  ///< of the whole array
-  VoxelBox box;                    ///< crop and stride that are read
+  std::int64_t storage_bytes = 0;           ///< in the file, compressed
+  std::int64_t logical_bytes = 0;           ///< of the whole array
+  VoxelBox box;                             ///< crop and stride that are read
   std::vector<VolumeCandidate> candidates;  ///< other volumes in the file
   std::vector<std::string> warnings;        ///< for people, one sentence each
   bool may_have_nonfinite = true;           ///< a float type

@@ -24,8 +24,7 @@ struct CameraOptions {
 /// start(). The clock outlives the source and can be used from the reader thread.
 std::unique_ptr<FrameSource> make_camera(
     const CameraOptions& options,
-    std::function<Result<std::unique_ptr<Capture>>(const std::string&, const CaptureFormat&)> open,
-    const Clock& clock);
+    std::function<Result<std::unique_ptr<Capture>>(const std::string&, const CaptureFormat&)> open, const Clock& clock);
 
 /// All Video4Linux nodes that deliver pictures, and why one cannot be used. Asks each for its name, starts
 /// none. The Leap's own camera is left to its driver. Any thread.

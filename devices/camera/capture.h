@@ -24,8 +24,7 @@ class Capture {
 };
 
 /// Opens a device node. It may give another size and rate than asked for. kUnavailable, kPermission.
-using OpenCapture = Result<std::unique_ptr<Capture>> (*)(const std::string& path,
-                                                         const CaptureFormat& format);
+using OpenCapture = Result<std::unique_ptr<Capture>> (*)(const std::string& path, const CaptureFormat& format);
 
 /// What the module with OpenCV's capture code exports under the name "dubsar_capture".
 struct CaptureModule {

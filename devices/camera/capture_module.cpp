@@ -27,8 +27,8 @@ Result<OpenCapture> load() {
     why = path.string() + " belongs to another version";
     ::dlclose(library);
   }
-  return fail(ErrorKind::kUnavailable,
-              "camera: {} cannot be loaded ({}); build it, and install libopencv-videoio406", kFile, why);
+  return fail(ErrorKind::kUnavailable, "camera: {} cannot be loaded ({}); build it, and install libopencv-videoio406",
+              kFile, why);
 }
 
 }  // namespace

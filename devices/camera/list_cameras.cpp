@@ -68,13 +68,12 @@ std::optional<DeviceInfo> ask(const std::string& node) {
     info.remedy = "plug the camera in again";
     return info;
   }
-  const std::uint32_t can = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0 ? capability.device_caps
-                                                                                  : capability.capabilities;
+  const std::uint32_t can =
+      (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0 ? capability.device_caps : capability.capabilities;
   if ((can & V4L2_CAP_VIDEO_CAPTURE) == 0 || (can & V4L2_CAP_STREAMING) == 0) return std::nullopt;
   const auto* const card = reinterpret_cast<const char*>(capability.card);
   info.name.assign(card, ::strnlen(card, sizeof capability.card));
-  if ((info.vendor_id == kLeapVendor && info.product_id == kLeapProduct) ||
-      info.vendor_id == kUltraleapVendor) {
+  if ((info.vendor_id == kLeapVendor && info.product_id == kLeapProduct) || info.vendor_id == kUltraleapVendor) {
     info.state = DeviceState::kIgnored;
     info.reason = "its infrared pictures show no faces";
     info.remedy = "none needed: the leap driver uses it";
@@ -90,8 +89,7 @@ std::vector<DeviceInfo> list_cameras() {
   for (const auto& entry : fs::directory_iterator("/dev", error)) {
     const std::string name = entry.path().filename();
     if (name.rfind("video", 0) != 0 || name.size() == 5 ||
-        !std::all_of(name.begin() + 5, name.end(), [](char c) { return c >= '0' && c <= '9'; }) ||
-        name.size() > 9)
+        !std::all_of(name.begin() + 5, name.end(), [](char c) { return c >= '0' && c <= '9'; }) || name.size() > 9)
       continue;
     numbers.push_back(std::atoi(name.c_str() + 5));
   }

@@ -20,8 +20,7 @@ constexpr int kLargestSize = 8192;
 
 class OpenCvCapture final : public Capture {
  public:
-  OpenCvCapture(std::string path, cv::VideoCapture capture)
-      : path_(std::move(path)), captures_{std::move(capture)} {}
+  OpenCvCapture(std::string path, cv::VideoCapture capture) : path_(std::move(path)), captures_{std::move(capture)} {}
 
   Result<bool> read(std::vector<std::uint8_t>& rgb, int& width, int& height) override {
     try {
@@ -34,11 +33,10 @@ class OpenCvCapture final : public Capture {
       return gone();
     }
     streaming_ = true;
-    if (picture_.type() != CV_8UC3 || picture_.cols < 1 || picture_.rows < 1 ||
-        picture_.cols > kLargestSize || picture_.rows > kLargestSize)
-      return fail(ErrorKind::kUnavailable,
-                  "camera {}: a picture of {} x {} and type {}, expected 8-bit colour", path_, picture_.cols,
-                  picture_.rows, picture_.type());
+    if (picture_.type() != CV_8UC3 || picture_.cols < 1 || picture_.rows < 1 || picture_.cols > kLargestSize ||
+        picture_.rows > kLargestSize)
+      return fail(ErrorKind::kUnavailable, "camera {}: a picture of {} x {} and type {}, expected 8-bit colour", path_,
+                  picture_.cols, picture_.rows, picture_.type());
     width = picture_.cols;
     height = picture_.rows;
     rgb.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
@@ -57,8 +55,7 @@ class OpenCvCapture final : public Capture {
  private:
   bool still_there() const { return ::access(path_.c_str(), F_OK) == 0; }
   tl::unexpected<Error> gone() const {
-    return fail(ErrorKind::kUnavailable, "camera {}: no more pictures: it was unplugged or has stopped",
-                path_);
+    return fail(ErrorKind::kUnavailable, "camera {}: no more pictures: it was unplugged or has stopped", path_);
   }
   std::string path_;
   std::vector<cv::VideoCapture> captures_;  // one; waitAny() wants it so
@@ -75,8 +72,7 @@ Result<void> check_node(const std::string& path) {
     return fail(ErrorKind::kPermission,
                 "camera {}: this user may not open it; usermod -aG video $USER and log in again", path);
   if (error == EBUSY)
-    return fail(ErrorKind::kUnavailable, "camera {}: another program holds it; end that program (lsof {})",
-                path, path);
+    return fail(ErrorKind::kUnavailable, "camera {}: another program holds it; end that program (lsof {})", path, path);
   if (error != 0) return fail(ErrorKind::kUnavailable, "camera {}: {}", path, std::strerror(error));
   return {};
 }
@@ -92,8 +88,7 @@ Result<std::unique_ptr<Capture>> open_opencv_capture(const std::string& path, co
     cv::VideoCapture capture(path, cv::CAP_V4L2);
     if (!capture.isOpened())
       return fail(ErrorKind::kUnavailable,
-                  "camera {}: not a camera that delivers pictures, or another program holds it (lsof {})",
-                  path, path);
+                  "camera {}: not a camera that delivers pictures, or another program holds it (lsof {})", path, path);
     capture.set(cv::CAP_PROP_FOURCC, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'));
     capture.set(cv::CAP_PROP_FRAME_WIDTH, format.width);
     capture.set(cv::CAP_PROP_FRAME_HEIGHT, format.height);

@@ -24,8 +24,7 @@ struct Picture {
 
 class Pictures final : public PictureFrames {
  public:
-  Pictures(fs::path folder, double fps, const Clock& clock)
-      : folder_(std::move(folder)), fps_(fps), clock_(clock) {}
+  Pictures(fs::path folder, double fps, const Clock& clock) : folder_(std::move(folder)), fps_(fps), clock_(clock) {}
 
   Result<void> start() override {
     pictures_.clear();
@@ -35,10 +34,8 @@ class Pictures final : public PictureFrames {
       if (kind == ".png" || kind == ".jpg" || kind == ".jpeg") pictures_.push_back({entry.path(), 0});
     }
     if (error) return fail(ErrorKind::kNoInput, "pictures: {}: {}", folder_.string(), error.message());
-    if (pictures_.empty())
-      return fail(ErrorKind::kNoInput, "pictures: no PNG or JPEG file in {}", folder_.string());
-    std::sort(pictures_.begin(), pictures_.end(),
-              [](const Picture& a, const Picture& b) { return a.path < b.path; });
+    if (pictures_.empty()) return fail(ErrorKind::kNoInput, "pictures: no PNG or JPEG file in {}", folder_.string());
+    std::sort(pictures_.begin(), pictures_.end(), [](const Picture& a, const Picture& b) { return a.path < b.path; });
     const bool timed = std::all_of(pictures_.begin(), pictures_.end(), [](const Picture& picture) {
       const std::string name = picture.path.stem();
       return name.size() == kTimeDigits &&
@@ -65,8 +62,7 @@ class Pictures final : public PictureFrames {
     auto image = read_picture(picture.path);
     if (!image || image->channels != 3) {
       state_ = FrameSourceState::kLost;
-      reason_ = image ? picture.path.string() + " has transparent parts, expected a photograph"
-                      : image.error().message;
+      reason_ = image ? picture.path.string() + " has transparent parts, expected a photograph" : image.error().message;
       return false;
     }
     newest.time = start_ + picture.time;

@@ -20,8 +20,7 @@ class PictureFrames : public FrameSource {
 /// since the first picture, as FrameRecorder writes it; all others follow at `fps`. Pictures are read when
 /// their time comes; one that cannot be read makes the source lost with the reason. start() begins anew:
 /// kNoInput without pictures. No thread. The clock outlives it.
-std::unique_ptr<PictureFrames> make_picture_frames(const std::filesystem::path& folder, double fps,
-                                                   const Clock& clock);
+std::unique_ptr<PictureFrames> make_picture_frames(const std::filesystem::path& folder, double fps, const Clock& clock);
 
 /// Writes RGB frames as PNG files into a folder that is there. Only what somebody asked for is ever written.
 class FrameRecorder {

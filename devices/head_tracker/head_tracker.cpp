@@ -36,7 +36,9 @@ constexpr HeadTrackerBackend kBackends[] = {
     {"opentrack", "opentrack, AITrack and others by UDP", false,
      [](const HeadTrackerConfig& config) { return make(config, OpentrackProtocol(config.invert)); }},
     {"vrpn", "a VRPN server by TCP", false,
-     [](const HeadTrackerConfig& config) { return make(config, VrpnProtocol({config.tracker, config.sensor})); }},
+     [](const HeadTrackerConfig& config) {
+       return make(config, VrpnProtocol({config.tracker, config.sensor}));
+     }},
     {"rift", "Oculus Rift DK1 and DK2, orientation only", true,
      [](const HeadTrackerConfig& config) { return make(config, RiftProtocol()); }},
     {"xreal", "XREAL Air glasses, orientation only", true,

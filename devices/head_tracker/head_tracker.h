@@ -22,22 +22,25 @@ class HeadTracker {
   virtual bool connected() const noexcept = 0;
   virtual const std::string& reason() const noexcept = 0;  ///< why there is no device; empty while there is one
   virtual const DriverCounts& counts() const noexcept = 0;
-  virtual void wake() noexcept = 0;      ///< a device node has appeared
-  virtual void recentre() noexcept = 0;  ///< the present heading is "straight on", where the tracker has no absolute one
+  virtual void wake() noexcept = 0;  ///< a device node has appeared
+  virtual void
+  recentre() noexcept = 0;  ///< the present heading is "straight on", where the tracker has no absolute one
 };
 
 struct HeadTrackerConfig {
-  OpenTransport open;               ///< how the device is reached
-  std::array<bool, 6> invert{};     ///< opentrack: x, y, z, yaw, pitch, roll
-  std::string tracker;              ///< vrpn: name of the tracker, empty: the first
-  int sensor = 0;                   ///< vrpn
-  const Clock* stamps = nullptr;    ///< as of Driver
+  OpenTransport open;             ///< how the device is reached
+  std::array<bool, 6> invert{};   ///< opentrack: x, y, z, yaw, pitch, roll
+  std::string tracker;            ///< vrpn: name of the tracker, empty: the first
+  int sensor = 0;                 ///< vrpn
+  const Clock* stamps = nullptr;  ///< as of Driver
 };
 
 using HeadTrackerBackend = Backend<HeadTracker, HeadTrackerConfig>;
 
 /// Gives where the head looks, but not where it is.
-constexpr bool is_orientation_only(std::string_view tracker) noexcept { return tracker == "rift" || tracker == "xreal"; }
+constexpr bool is_orientation_only(std::string_view tracker) noexcept {
+  return tracker == "rift" || tracker == "xreal";
+}
 
 /// opentrack, vrpn, rift, xreal.
 std::span<const HeadTrackerBackend> head_tracker_backends() noexcept;

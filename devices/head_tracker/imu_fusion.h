@@ -12,10 +12,10 @@ struct ImuSample {
   glm::dvec3 turn_rate_rad_s{0.0};
 };
 
-/// Integrates the turn rate exactly over each step and turns the result towards gravity with time constant 2 s while the
-/// force is within 10 % of 9.81 m/s^2 (complementary filter, after Mahony et al. 2008). The gyroscope's bias is learnt while the
-/// head is at rest: turn rate steady within 0.01 rad/s for 1 s and below 0.035 rad/s (2 degrees/s). The heading still
-/// drifts, as nothing measures it; recentre() makes the present one zero.
+/// Integrates the turn rate exactly over each step and turns the result towards gravity with time constant 2 s while
+/// the force is within 10 % of 9.81 m/s^2 (complementary filter, after Mahony et al. 2008). The gyroscope's bias is
+/// learnt while the head is at rest: turn rate steady within 0.01 rad/s for 1 s and below 0.035 rad/s (2 degrees/s).
+/// The heading still drifts, as nothing measures it; recentre() makes the present one zero.
 class ImuFusion {
  public:
   void update(const ImuSample& sample, double dt_s) noexcept;

@@ -6,8 +6,7 @@ namespace dubsar {
 
 ImuSample HeadMotion::turn(const glm::dvec3& rate_rad_s, double dt_s) noexcept {
   const double rate = glm::length(rate_rad_s);
-  if (rate > 0.0)
-    world_from_head_ = glm::normalize(world_from_head_ * glm::angleAxis(rate * dt_s, rate_rad_s / rate));
+  if (rate > 0.0) world_from_head_ = glm::normalize(world_from_head_ * glm::angleAxis(rate * dt_s, rate_rad_s / rate));
   return {glm::conjugate(world_from_head_) * glm::dvec3(0.0, 9.81, 0.0), rate_rad_s};
 }
 
@@ -35,14 +34,15 @@ void RiftSim::step(const glm::dvec3& rate_rad_s, int count) {
     if (i >= count - held) report.samples[static_cast<std::size_t>(report.count++)] = sample;
   }
   power_->now_ms += count;
-  report.ticks = static_cast<std::uint32_t>(model_ == RiftModel::kDk1 ? power_->now_ms & 0xFFFF
-                                                                      : power_->now_ms * 1000);
+  report.ticks =
+      static_cast<std::uint32_t>(model_ == RiftModel::kDk1 ? power_->now_ms & 0xFFFF : power_->now_ms * 1000);
   if (!silent()) device_.send(format_rift(report));
 }
 
 XrealSim::XrealSim() {
   SimBehaviour behaviour;
-  behaviour.on_write = [streaming = streaming_, device = device_.get()](std::span<const std::byte> report) -> Result<void> {
+  behaviour.on_write = [streaming = streaming_,
+                        device = device_.get()](std::span<const std::byte> report) -> Result<void> {
     const auto command = parse_xreal_command(report);
     if (!command) return fail(ErrorKind::kIo, "simulated XREAL: not a command");
     if (command->number == kXrealStream && command->data.size() == 1) *streaming = command->data[0] == std::byte{1};

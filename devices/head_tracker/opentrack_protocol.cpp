@@ -43,8 +43,12 @@ OpentrackPacket opentrack_packet(const Pose& pose) noexcept {
   const double pitch = std::asin(std::clamp(2.0 * (q.w * q.x - q.y * q.z), -1.0, 1.0));
   const double yaw = std::atan2(2.0 * (q.x * q.z + q.w * q.y), 1.0 - 2.0 * (q.x * q.x + q.y * q.y));
   const double roll = std::atan2(2.0 * (q.x * q.y + q.w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z));
-  return {pose.position_m.x * 100.0, pose.position_m.y * 100.0, pose.position_m.z * 100.0,
-          -yaw / kDeg,               -pitch / kDeg,             roll / kDeg};
+  return {pose.position_m.x * 100.0,
+          pose.position_m.y * 100.0,
+          pose.position_m.z * 100.0,
+          -yaw / kDeg,
+          -pitch / kDeg,
+          roll / kDeg};
 }
 
 bool OpentrackProtocol::accept(std::span<const std::byte> datagram, TimestampNs now) {

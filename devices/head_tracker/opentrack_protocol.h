@@ -29,7 +29,8 @@ std::array<std::byte, kOpentrackBytes> format_opentrack(const OpentrackPacket& p
 /// Which of x, y, z, yaw, pitch, roll are turned round; senders differ.
 using OpentrackInvert = std::array<bool, 6>;
 
-/// On the wire yaw counts to the right and pitch downwards; here all turns are right-handed: R_y(yaw) R_x(pitch) R_z(roll).
+/// On the wire yaw counts to the right and pitch downwards; here all turns are right-handed: R_y(yaw) R_x(pitch)
+/// R_z(roll).
 Pose opentrack_pose(const OpentrackPacket& packet, const OpentrackInvert& invert = {}) noexcept;
 OpentrackPacket opentrack_packet(const Pose& pose) noexcept;
 

@@ -120,7 +120,8 @@ Result<void> VrpnProtocol::start(Transport& transport, TimestampNs) {
 }
 
 Result<void> VrpnProtocol::keep_up(Transport&, TimestampNs) {
-  if (stream_.broken()) return fail(ErrorKind::kUnavailable, "vrpn: the server does not speak version 07, or the stream is damaged");
+  if (stream_.broken())
+    return fail(ErrorKind::kUnavailable, "vrpn: the server does not speak version 07, or the stream is damaged");
   if (goodbye_) return fail(ErrorKind::kUnavailable, "vrpn: the server has ended the connection");
   return {};
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Client side of VRPN over TCP: poses of "vrpn_Tracker Pos_Quat". Facts: vrpn/vrpn vrpn_Connection.C, checked against its
-// own server 07.38.
+// Client side of VRPN over TCP: poses of "vrpn_Tracker Pos_Quat". Facts: vrpn/vrpn vrpn_Connection.C, checked against
+// its own server 07.38.
 
 #include <array>
 #include <cstdint>
@@ -38,7 +38,8 @@ std::vector<std::byte> format_vrpn(const VrpnMessage& message);
 VrpnMessage vrpn_name_message(std::int32_t type, std::int32_t number, std::string_view name);
 VrpnMessage vrpn_pose_message(std::int32_t sender, std::int32_t type, std::int32_t sensor, const Pose& pose);
 
-/// Cuts a byte stream into messages. A wrong cookie, or a length below 24 or above kVrpnMaxMessageBytes, ends it for good.
+/// Cuts a byte stream into messages. A wrong cookie, or a length below 24 or above kVrpnMaxMessageBytes, ends it for
+/// good.
 class VrpnStream {
  public:
   void feed(std::span<const std::byte> bytes);

@@ -33,8 +33,12 @@ PosedHand pose_hand(const HandPose& pose) {
   PosedHand hand;
   hand.cones.reserve(kHandConeCount);
   const double unit = kMm * pose.scale, thickness = unit * pose.thickness;
-  const auto wide = [&](const glm::dvec3& local_mm) { return glm::dvec3(local_mm.x * pose.palm_width, local_mm.y, local_mm.z); };
-  const auto place = [&](const glm::dvec3& local_mm) { return transform(pose.palm, mirrored(local_mm, pose.left) * unit); };
+  const auto wide = [&](const glm::dvec3& local_mm) {
+    return glm::dvec3(local_mm.x * pose.palm_width, local_mm.y, local_mm.z);
+  };
+  const auto place = [&](const glm::dvec3& local_mm) {
+    return transform(pose.palm, mirrored(local_mm, pose.left) * unit);
+  };
   const auto cone = [&](const glm::dvec3& a, double radius_a, const glm::dvec3& b, double radius_b) {
     hand.cones.push_back({place(a), place(b), radius_a * thickness, radius_b * thickness});
   };
@@ -67,8 +71,9 @@ PosedHand pose_hand(const HandPose& pose) {
 
   const double bent = pose.flexion[0];
   const glm::dvec3 thumb_root = wide({-17, -6, 34});
-  const glm::dquat out = glm::angleAxis((52.0 - 22.0 * bent - 22.0 * (1.0 - pose.spread)) * kDegree, glm::dvec3(0, 1, 0)) *
-                         glm::angleAxis((-14.0 - 18.0 * bent) * kDegree, glm::dvec3(1, 0, 0));
+  const glm::dquat out =
+      glm::angleAxis((52.0 - 22.0 * bent - 22.0 * (1.0 - pose.spread)) * kDegree, glm::dvec3(0, 1, 0)) *
+      glm::angleAxis((-14.0 - 18.0 * bent) * kDegree, glm::dvec3(1, 0, 0));
   glm::dvec3 joint = thumb_root;
   glm::dquat turn = out;
   constexpr std::array<double, 3> kThumbBones{44, 32, 22}, kThumbBend{0.0, -50.0, -60.0};
@@ -89,7 +94,8 @@ PosedHand pose_hand(const HandPose& pose) {
   const glm::dvec3 wrist(0, 0, 52);
   const glm::dquat arm = glm::angleAxis(pose.wrist_turn_rad, glm::dvec3(0, 1, 0));
   for (const double side : {-1.0, 1.0}) {
-    const glm::dvec3 near = wrist + arm * (wide({13 * side, 0, 70}) - wrist), far = wrist + arm * (wide({18 * side, 0, 280}) - wrist);
+    const glm::dvec3 near = wrist + arm * (wide({13 * side, 0, 70}) - wrist),
+                     far = wrist + arm * (wide({18 * side, 0, 280}) - wrist);
     cone(wide({13 * side, 0, 38}), 16, near, 17);
     cone(near, 17, far, 27);
   }

@@ -15,10 +15,10 @@ struct HandPose {
   double spread = 1.0;              ///< 0: fingers together, 1: apart
   double scale = 1.0;               ///< 1: a hand 190 mm long and 86 mm wide
   bool left = false;
-  double wrist_turn_rad = 0.0;      ///< of the forearm against the hand, positive: the hand turned to its thumb's side
-  double finger_length = 1.0;       ///< of the fingers and the thumb, beyond what `scale` does
-  double palm_width = 1.0;          ///< across the palm, as well
-  double thickness = 1.0;           ///< of everything, as well
+  double wrist_turn_rad = 0.0;  ///< of the forearm against the hand, positive: the hand turned to its thumb's side
+  double finger_length = 1.0;   ///< of the fingers and the thumb, beyond what `scale` does
+  double palm_width = 1.0;      ///< across the palm, as well
+  double thickness = 1.0;       ///< of everything, as well
 };
 
 inline constexpr std::size_t kHandConeCount = 26;
@@ -36,7 +36,7 @@ struct PosedHand {
   /// Thumb: metacarpal, proximal, distal, tip, tip. Others: metacarpal, proximal, intermediate, distal, tip (OpenXR).
   std::array<std::array<glm::dvec3, 5>, 5> joints_m{};
   std::array<std::array<double, 5>, 5> radii_m{};  ///< there
-  glm::dvec3 wrist_m{}, palm_m{};          ///< palm: the middle of the middle metacarpal
+  glm::dvec3 wrist_m{}, palm_m{};                  ///< palm: the middle of the middle metacarpal
 };
 
 /// Proportions after Greiner's hand anthropometry (NATICK/TR-92/011), rounded; joint ranges 85, 100, 60 degrees.

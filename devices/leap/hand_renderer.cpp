@@ -17,7 +17,8 @@ struct EyeCone {
 glm::dvec3 eye_from_device(const glm::dvec3& p, double eye_x_m) { return {p.x - eye_x_m, -p.z, p.y}; }
 
 /// First hit of the ray t * d (d.z = 1) with a round cone, by sphere tracing its distance, which never oversteps.
-double hit(const EyeCone& cone, const glm::dvec3& d, double inverse_length, double t, double t_end, glm::dvec3& normal) {
+double hit(const EyeCone& cone, const glm::dvec3& d, double inverse_length, double t, double t_end,
+           glm::dvec3& normal) {
   for (int step = 0; step < 64 && t < t_end; ++step) {
     const glm::dvec3 ap = d * t - cone.a;
     const double s = std::clamp(glm::dot(ap, cone.ab) / cone.length2, 0.0, 1.0);
@@ -109,7 +110,8 @@ void HandRenderer::render_eye(const Eye& eye, std::span<const PosedHand> hands, 
       if (behind) continue;  // nearer than 20 mm: the device sees nothing useful there
       for (int y = std::max(y0, 0); y <= std::min(y1, height - 1); ++y)
         for (int x = std::max(x0, 0); x <= std::min(x1, width - 1); ++x) {
-          const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+          const std::size_t at =
+              static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
           const glm::dvec3 d(eye.rays[2 * at], eye.rays[2 * at + 1], 1.0);
           const double length = glm::length(d);
           glm::dvec3 normal;
@@ -137,7 +139,8 @@ void HandRenderer::render_eye(const Eye& eye, std::span<const PosedHand> hands, 
     const std::uint64_t bits = next_random(state);
     double noise = -2.0 * 65535.0;
     for (int k = 0; k < 4; ++k) noise += static_cast<double>(bits >> 16 * k & 0xffffU);
-    const double grey = options_.ambient + light_level * static_cast<double>(light[i]) + options_.noise_sd * kScale * noise;
+    const double grey =
+        options_.ambient + light_level * static_cast<double>(light[i]) + options_.noise_sd * kScale * noise;
     picture[i] = static_cast<std::uint8_t>(std::clamp(grey + 0.5, 0.0, 255.0));
   }
 }

@@ -17,8 +17,8 @@ struct HandRenderOptions {
   double ambient = 6.0;           ///< grey levels everywhere, also without the device's light
   double reflected = 210.0;       ///< grey level of skin that faces the light at 200 mm
   bool lights_on = true;
-  /// Where the lights sit along the device; about so in a Leap Motion Controller. None: one at each eye, so that each sees
-  /// the hand shaded in its own way.
+  /// Where the lights sit along the device; about so in a Leap Motion Controller. None: one at each eye, so that each
+  /// sees the hand shaded in its own way.
   std::vector<double> light_x_m{-0.035, 0.0, 0.035};
 };
 
@@ -27,8 +27,8 @@ class HandRenderer {
  public:
   HandRenderer(const lmc1::Calibration& calibration, const HandRenderOptions& options);
 
-  /// Frame of the device: origin midway between the eyes, x along the device to the right eye, y out of the device, z to
-  /// the user. Both pictures are 8-bit, options.width x options.height. The same seed gives the same noise.
+  /// Frame of the device: origin midway between the eyes, x along the device to the right eye, y out of the device, z
+  /// to the user. Both pictures are 8-bit, options.width x options.height. The same seed gives the same noise.
   void render(std::span<const PosedHand> hands, std::uint64_t seed, std::span<std::uint8_t> left,
               std::span<std::uint8_t> right) const;
   const HandRenderOptions& options() const noexcept { return options_; }

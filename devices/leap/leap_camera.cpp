@@ -41,20 +41,16 @@ class AnyLeapKind final : public StereoCameraKind {
   Result<std::unique_ptr<StereoCameraKind>> recognise(Transport& transport) const {
     std::array<std::byte, 18> device{};
     const auto length = transport.control(uvc::kGetDevice, device, kTimeout);
-    if (!length && length.error().kind == ErrorKind::kUnavailable)
-      return tl::unexpected<Error>(length.error());
+    if (!length && length.error().kind == ErrorKind::kUnavailable) return tl::unexpected<Error>(length.error());
     const auto u16 = [&](std::size_t at) {
-      return static_cast<std::uint16_t>(static_cast<unsigned>(device[at]) |
-                                        static_cast<unsigned>(device[at + 1]) << 8);
+      return static_cast<std::uint16_t>(static_cast<unsigned>(device[at]) | static_cast<unsigned>(device[at + 1]) << 8);
     };
     const LeapProduct* const product =
         length && *length == device.size() ? find_leap_product(u16(8), u16(10)) : kProducts.data();
     if (product == nullptr)
-      return fail(ErrorKind::kBadData, "leap: the device is {:04x}:{:04x}, which is no Leap camera", u16(8),
-                  u16(10));
+      return fail(ErrorKind::kBadData, "leap: the device is {:04x}:{:04x}, which is no Leap camera", u16(8), u16(10));
     if (!product->by_usb)
-      return fail(ErrorKind::kUnavailable, "leap: {}: {}; {}", product->name, kLeapServiceReason,
-                  kLeapServiceRemedy);
+      return fail(ErrorKind::kUnavailable, "leap: {}: {}; {}", product->name, kLeapServiceReason, kLeapServiceRemedy);
     if (product->vendor_id == lmc1::kVendorId) {
       Lmc1Options lmc1;
       lmc1.exposure_us = options_.exposure_us;
@@ -86,8 +82,7 @@ const LeapProduct* find_leap_product(std::uint16_t vendor_id, std::uint16_t prod
 
 std::unique_ptr<StereoCamera> make_leap_camera(OpenTransport open, const LeapCameraOptions& options,
                                                const Clock& clock) {
-  return make_stereo_camera(std::move(open), std::make_unique<AnyLeapKind>(options), options.own_thread,
-                            clock);
+  return make_stereo_camera(std::move(open), std::make_unique<AnyLeapKind>(options), options.own_thread, clock);
 }
 
 }  // namespace dubsar

@@ -14,8 +14,7 @@ namespace dubsar {
 struct LeapProduct {
   std::uint16_t vendor_id = 0, product_id = 0;
   std::string_view name;
-  bool by_usb =
-      true;  ///< false: how its pictures are sent is not public, only the maker's service reaches it
+  bool by_usb = true;  ///< false: how its pictures are sent is not public, only the maker's service reaches it
 };
 
 /// In the order in which they are taken when several are plugged in.

@@ -32,16 +32,13 @@ class Handle {
     Library::Connection connection = nullptr;
     std::uint32_t code = library.create_connection(nullptr, &connection);
     if (code != kSuccess || connection == nullptr)
-      return fail(ErrorKind::kUnavailable, "leapc: {} cannot make a connection: {}", library.path(),
-                  result_text(code));
+      return fail(ErrorKind::kUnavailable, "leapc: {} cannot make a connection: {}", library.path(), result_text(code));
     Handle handle(library, connection);
     if (code = library.open_connection(connection); code != kSuccess)
-      return fail(ErrorKind::kUnavailable, "leapc: {} cannot open a connection: {}", library.path(),
-                  result_text(code));
+      return fail(ErrorKind::kUnavailable, "leapc: {} cannot open a connection: {}", library.path(), result_text(code));
     return handle;
   }
-  Handle(Handle&& other) noexcept
-      : library_(other.library_), connection_(std::exchange(other.connection_, nullptr)) {}
+  Handle(Handle&& other) noexcept : library_(other.library_), connection_(std::exchange(other.connection_, nullptr)) {}
   Handle& operator=(Handle&& other) noexcept {
     std::swap(library_, other.library_);
     std::swap(connection_, other.connection_);
@@ -55,8 +52,7 @@ class Handle {
   Library::Connection get() const noexcept { return connection_; }
 
  private:
-  Handle(const Library& library, Library::Connection connection)
-      : library_(&library), connection_(connection) {}
+  Handle(const Library& library, Library::Connection connection) : library_(&library), connection_(connection) {}
   const Library* library_;
   Library::Connection connection_;
 };
@@ -199,9 +195,8 @@ class LibraryConnection final : public Connection {
     if (!session.connected) return;
     if (!session.devices.empty() && session.right_mode) return tell(State::kTracking, {});
     if (!session.right_mode)
-      return tell(
-          State::kNoDevice,
-          "leapc: another program has switched the device to another mounting: end it, or name its mode");
+      return tell(State::kNoDevice,
+                  "leapc: another program has switched the device to another mounting: end it, or name its mode");
     tell(State::kNoDevice, session.trouble.empty() ? kNoDeviceText : "leapc: " + session.trouble);
   }
 
@@ -278,8 +273,8 @@ class LibraryConnection final : public Connection {
     session.devices.clear();
     session.times = {};
     // Hands also when our window has no focus; nothing that we do not read.
-    std::uint32_t code = library_->set_policy_flags(session.handle.get(), kPolicyBackgroundFrames,
-                                                    kPolicyImages | kPolicyMapPoints);
+    std::uint32_t code =
+        library_->set_policy_flags(session.handle.get(), kPolicyBackgroundFrames, kPolicyImages | kPolicyMapPoints);
     if (const std::uint32_t mode =
             library_->set_tracking_mode(session.handle.get(), static_cast<std::uint32_t>(options_.mode));
         mode != kSuccess)
@@ -303,8 +298,7 @@ class LibraryConnection final : public Connection {
     for (std::uint32_t i = 0; i < tracking->hands; ++i) {
       // The only address that is followed without a length beside it: the library's array of hands.
       std::array<std::byte, kHandBytes> bytes{};
-      std::memcpy(bytes.data(), reinterpret_cast<const void*>(tracking->hands_at + i * kHandBytes),
-                  kHandBytes);
+      std::memcpy(bytes.data(), reinterpret_cast<const void*>(tracking->hands_at + i * kHandBytes), kHandBytes);
       if (auto hand = decode_hand(bytes))
         session.frame.hands.push_back(*hand);
       else
@@ -316,8 +310,7 @@ class LibraryConnection final : public Connection {
       session.times.add(now, theirs, clock_.now());
       session.sampled = now;
     }
-    session.frame.time =
-        std::min(session.times.ours(tracking->time_us), now);  // the future is the clocks' error
+    session.frame.time = std::min(session.times.ours(tracking->time_us), now);  // the future is the clocks' error
     session.frame.number = tracking->frame;
     session.frame.frames_per_s = tracking->frames_per_s;
     if (session.devices.empty()) {  // its greeting was missed

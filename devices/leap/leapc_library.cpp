@@ -18,9 +18,7 @@ constexpr std::array<std::string_view, 6> kFolders{"/usr/lib/ultraleap-hand-trac
                                                    "/usr/lib"};
 constexpr std::array<std::string_view, 3> kNames{"libLeapC.so.6", "libLeapC.so.5", "libLeapC.so"};
 
-void* open_library(const std::string& path) {
-  return ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
-}
+void* open_library(const std::string& path) { return ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE); }
 
 template <class Function>
 bool find(void* handle, const char* symbol, Function& function) {
@@ -79,11 +77,10 @@ Result<std::shared_ptr<const Library>> Library::load(const std::string& path) {
   need("LeapSetPolicyFlags", library->set_policy_flags);
   need("LeapSetTrackingMode", library->set_tracking_mode);  // since version 5
   if (missing != nullptr)
-    return fail(
-        ErrorKind::kUnavailable,
-        "leapc: {} has no function {}: it is not LeapC or older than version 5; install Ultraleap Gemini or "
-        "Hyperion (versions 5 and 6)",
-        found, missing);
+    return fail(ErrorKind::kUnavailable,
+                "leapc: {} has no function {}: it is not LeapC or older than version 5; install Ultraleap Gemini or "
+                "Hyperion (versions 5 and 6)",
+                found, missing);
   return library;
 }
 

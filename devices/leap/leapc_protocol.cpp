@@ -153,8 +153,7 @@ Result<Tracking> decode_tracking(std::span<const std::byte, kTrackingBytes> byte
   tracking.hands_at = get<std::uintptr_t>(bytes, 36);
   tracking.frames_per_s = double{get<float>(bytes, 44)};
   if (tracking.hands > kMostHands)
-    return fail(ErrorKind::kBadData, "leapc: a frame with {} hands, expected at most {}", tracking.hands,
-                kMostHands);
+    return fail(ErrorKind::kBadData, "leapc: a frame with {} hands, expected at most {}", tracking.hands, kMostHands);
   if (tracking.hands > 0 && tracking.hands_at == 0)
     return fail(ErrorKind::kBadData, "leapc: a frame with {} hands and no address of them", tracking.hands);
   if (tracking.time_us < -kLatestUs || tracking.time_us > kLatestUs)
@@ -185,8 +184,7 @@ std::string device_trouble(std::uint32_t status) {
     default:
       break;
   }
-  if ((status & 0xffff0000U) == 0xe8010000U)
-    return fmt::format("the device has failed (status {:#010x})", status);
+  if ((status & 0xffff0000U) == 0xe8010000U) return fmt::format("the device has failed (status {:#010x})", status);
   if ((status & 0x2U) != 0) return "tracking is paused: resume it in Ultraleap's control panel";
   return {};
 }

@@ -55,8 +55,7 @@ inline constexpr std::size_t kVectorBytes = 12, kQuaternionBytes = 16;
 inline constexpr std::size_t kBoneBytes = 2 * kVectorBytes + 4 + kQuaternionBytes;
 inline constexpr std::size_t kDigitBytes = 4 + 4 * kBoneBytes + 4;
 inline constexpr std::size_t kPalmBytes = 4 * kVectorBytes + 4 + kVectorBytes + kQuaternionBytes;
-inline constexpr std::size_t kPalmAt = 40, kDigitsAt = kPalmAt + kPalmBytes,
-                             kArmAt = kDigitsAt + 5 * kDigitBytes;
+inline constexpr std::size_t kPalmAt = 40, kDigitsAt = kPalmAt + kPalmBytes, kArmAt = kDigitsAt + 5 * kDigitBytes;
 inline constexpr std::size_t kHandBytes = kArmAt + kBoneBytes;
 static_assert(kBoneBytes == 44 && kDigitBytes == 184 && kPalmBytes == 80);
 static_assert(kDigitsAt == 120 && kArmAt == 1040 && kHandBytes == 1084);
@@ -84,8 +83,7 @@ struct Hand {
   glm::dvec3 palm_mm{}, velocity_mmps{}, normal{}, direction{};
   double palm_width_mm = 0;
   glm::dquat palm_rotation{1, 0, 0, 0};
-  std::array<std::array<Bone, 4>, 5>
-      digits{};  ///< thumb to little; metacarpal (of no length in the thumb) to distal
+  std::array<std::array<Bone, 4>, 5> digits{};  ///< thumb to little; metacarpal (of no length in the thumb) to distal
   Bone arm{};
 };
 

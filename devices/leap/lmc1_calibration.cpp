@@ -44,18 +44,20 @@ Result<EyeCalibration> decode_eye(std::span<const std::byte> bytes, std::size_t 
     finite = finite && std::isfinite(field);
     at += sizeof(float);
   });
-  if (!finite) return fail(ErrorKind::kBadData, "leap: calibration of the {} eye has a number that is not finite", name);
+  if (!finite)
+    return fail(ErrorKind::kBadData, "leap: calibration of the {} eye has a number that is not finite", name);
   if (eye.focal_px < 50.0F || eye.focal_px > 500.0F)
-    return fail(ErrorKind::kBadData, "leap: calibration of the {} eye has a focal length of {} px, expected 50 to 500", name,
-                eye.focal_px);
+    return fail(ErrorKind::kBadData, "leap: calibration of the {} eye has a focal length of {} px, expected 50 to 500",
+                name, eye.focal_px);
   if (std::abs(eye.offset_x_px) > 100.0F || std::abs(eye.offset_y_px) > 100.0F)
-    return fail(ErrorKind::kBadData, "leap: calibration of the {} eye has its centre {} x {} px off, expected at most 100",
-                name, eye.offset_x_px, eye.offset_y_px);
+    return fail(ErrorKind::kBadData,
+                "leap: calibration of the {} eye has its centre {} x {} px off, expected at most 100", name,
+                eye.offset_x_px, eye.offset_y_px);
   return eye;
 }
 
-// Rotation of Cayley parameters c: (I + [c]) (I - [c])^-1. Which way the device means it is not checked; real values turn
-// by less than a degree.
+// Rotation of Cayley parameters c: (I + [c]) (I - [c])^-1. Which way the device means it is not checked; real values
+// turn by less than a degree.
 glm::dmat3 rotation_of(const std::array<float, 3>& cayley) {
   const double x = cayley[0], y = cayley[1], z = cayley[2];
   const glm::dmat3 cross(0, z, -y, -z, 0, x, y, -x, 0);  // column by column
@@ -149,8 +151,8 @@ double Lens::image_radius(double ray_radius) const noexcept {
 glm::dvec2 Lens::undistorted(const glm::dvec2& image) const noexcept {
   const double r2 = glm::dot(image, image), xy = 2.0 * image.x * image.y;
   const auto [p1, p2] = tangential_;
-  return image * radial_factor(r2) + glm::dvec2(p1 * xy + p2 * (r2 + 2.0 * image.x * image.x),
-                                                p2 * xy + p1 * (r2 + 2.0 * image.y * image.y));
+  return image * radial_factor(r2) +
+         glm::dvec2(p1 * xy + p2 * (r2 + 2.0 * image.x * image.x), p2 * xy + p1 * (r2 + 2.0 * image.y * image.y));
 }
 
 glm::dvec2 Lens::ray_from_pixel(const glm::dvec2& pixel) const noexcept {

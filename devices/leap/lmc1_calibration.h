@@ -20,11 +20,11 @@ inline constexpr int kCalibrationAddress = 100;
 inline constexpr std::size_t kCalibrationBytes = 156;
 
 struct EyeCalibration {
-  float focal_px = 0;                     ///< at 640x480
-  float offset_x_px = 0, offset_y_px = 0; ///< principal point minus (320, 240)
+  float focal_px = 0;                      ///< at 640x480
+  float offset_x_px = 0, offset_y_px = 0;  ///< principal point minus (320, 240)
   std::array<float, 2> tangential{};
-  /// Numerator, then denominator of the radial factor, in powers of r^2. The stored function goes from the picture to the
-  /// ray, the inverse of OpenCV's model.
+  /// Numerator, then denominator of the radial factor, in powers of r^2. The stored function goes from the picture to
+  /// the ray, the inverse of OpenCV's model.
   std::array<float, 6> radial{};
   float old_focal_px = 0, old_centre_x_px = 0, old_centre_y_px = 0;
   std::array<float, 3> cayley{};  ///< rotation of the eye
@@ -46,8 +46,8 @@ struct Calibration {
 Result<Calibration> decode_calibration(std::span<const std::byte> bytes);
 std::array<std::byte, kCalibrationBytes> encode(const Calibration& calibration) noexcept;
 
-/// One eye in a given video mode: pixels to rays and back. Rays are (x/z, y/z) in the frame of both eyes together: x to the
-/// right eye, y down the picture, z out of the device.
+/// One eye in a given video mode: pixels to rays and back. Rays are (x/z, y/z) in the frame of both eyes together: x to
+/// the right eye, y down the picture, z out of the device.
 class Lens {
  public:
   /// `height` 240 and 120 are binned vertically; the width must be 640 (the wide modes are cropped differently, not

@@ -1,6 +1,6 @@
-// USB descriptors of the LMC1, composed from a public `lsusb -v` listing: video control 0x50 bytes, video streaming 0xdd
-// bytes, in all 0x163. Five of them the listing does not show: they are taken as the class-specific interrupt endpoint
-// that UVC 1.0 demands.
+// USB descriptors of the LMC1, composed from a public `lsusb -v` listing: video control 0x50 bytes, video streaming
+// 0xdd bytes, in all 0x163. Five of them the listing does not show: they are taken as the class-specific interrupt
+// endpoint that UVC 1.0 demands.
 
 #include <algorithm>
 #include <array>
@@ -11,8 +11,8 @@
 namespace dubsar {
 namespace {
 
-constexpr std::array<std::uint8_t, 18> kDevice{18,   1, 0x00, 0x02, 0xef, 2, 1, 64, 0x82, 0xf1,
-                                               0x03, 0, 0x00, 0x00, 1,    2, 0, 1};
+constexpr std::array<std::uint8_t, 18> kDevice{18,   1,    0x00, 0x02, 0xef, 2, 1, 64, 0x82,
+                                               0xf1, 0x03, 0,    0x00, 0x00, 1, 2, 0,  1};
 
 constexpr std::size_t kConfigurationBytes = 0x163;
 
@@ -52,7 +52,8 @@ constexpr auto kConfiguration = [] {
   w.bytes({5, 37, 3, 64, 0});
   w.bytes({9, 4, 1, 0, 1, 14, 2, 0, 0});  // video streaming
   w.bytes({14, 36, 1, 1, 0xdd, 0x00, 0x83, 0, 3, 0, 0, 0, 1, 0});
-  w.bytes({27, 36, 4, 1, 6, 0x59, 0x55, 0x59, 0x32, 0, 0, 0x10, 0, 0x80, 0, 0, 0xaa, 0, 0x38, 0x9b, 0x71, 16, 4, 0, 0, 0, 0});
+  w.bytes({27, 36, 4,    1, 6,    0x59, 0x55, 0x59, 0x32, 0, 0, 0x10, 0, 0x80,
+           0,  0,  0xaa, 0, 0x38, 0x9b, 0x71, 16,   4,    0, 0, 0,    0});
   for (std::size_t i = 0; i < lmc1::kModes.size(); ++i) {
     const lmc1::Mode& mode = lmc1::kModes[i];
     w.bytes({30, 36, 5, mode.frame_index, 0});

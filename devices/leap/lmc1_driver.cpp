@@ -24,11 +24,9 @@ class Lmc1Kind final : public StereoCameraKind {
     DUBSAR_ASSIGN(const auto exposure, lmc1::exposure_us(options_.exposure_us));
     DUBSAR_ASSIGN(const auto gain, lmc1::analog_gain(options_.analog_gain_sixteenths));
     DUBSAR_ASSIGN(const auto dark, lmc1::dark_frame_interval(options_.dark_frame_interval));
-    for (const auto& write :
-         {lmc1::switch_on(lmc1::Switch::kHdr, false), lmc1::gamma(false), exposure, gain, dark})
+    for (const auto& write : {lmc1::switch_on(lmc1::Switch::kHdr, false), lmc1::gamma(false), exposure, gain, dark})
       DUBSAR_TRY(uvc::send(transport, write));
-    for (const lmc1::Switch led : kLeds)
-      DUBSAR_TRY(uvc::send(transport, lmc1::switch_on(led, options_.leds)));
+    for (const lmc1::Switch led : kLeds) DUBSAR_TRY(uvc::send(transport, lmc1::switch_on(led, options_.leds)));
     return Stream{mode->width, mode->height, mode->frame_bytes(), 0};
   }
 
@@ -62,26 +60,20 @@ Result<lmc1::Calibration> read_lmc1_calibration(Transport& transport, millisecon
   const auto saturation = static_cast<std::uint8_t>(lmc1::Selector::kSaturation);
   std::array<std::byte, lmc1::kCalibrationBytes> blob{};
   for (std::size_t i = 0; i < blob.size(); ++i) {
-    std::array<std::byte, 2> data{std::byte(static_cast<std::size_t>(lmc1::kCalibrationAddress) + i),
-                                  std::byte{0}};
+    std::array<std::byte, 2> data{std::byte(static_cast<std::size_t>(lmc1::kCalibrationAddress) + i), std::byte{0}};
     DUBSAR_TRY(transport.control(lmc1::set_current(lmc1::kProcessingUnit, sharpness), data, kControlTimeout));
     if (settle > milliseconds{0}) std::this_thread::sleep_for(settle);
-    DUBSAR_ASSIGN(
-        const std::size_t length,
-        transport.control(lmc1::get_current(lmc1::kProcessingUnit, saturation), data, kControlTimeout));
-    if (length != 2)
-      return fail(ErrorKind::kBadData, "leap: calibration answer of {} bytes, expected 2", length);
+    DUBSAR_ASSIGN(const std::size_t length,
+                  transport.control(lmc1::get_current(lmc1::kProcessingUnit, saturation), data, kControlTimeout));
+    if (length != 2) return fail(ErrorKind::kBadData, "leap: calibration answer of {} bytes, expected 2", length);
     blob[i] = data[0];
   }
   return lmc1::decode_calibration(blob);
 }
 
-std::unique_ptr<StereoCameraKind> lmc1_kind(const Lmc1Options& options) {
-  return std::make_unique<Lmc1Kind>(options);
-}
+std::unique_ptr<StereoCameraKind> lmc1_kind(const Lmc1Options& options) { return std::make_unique<Lmc1Kind>(options); }
 
-std::unique_ptr<StereoCamera> make_lmc1_driver(OpenTransport open, const Lmc1Options& options,
-                                               const Clock& clock) {
+std::unique_ptr<StereoCamera> make_lmc1_driver(OpenTransport open, const Lmc1Options& options, const Clock& clock) {
   return make_stereo_camera(std::move(open), lmc1_kind(options), options.own_thread, clock);
 }
 

@@ -25,8 +25,7 @@ struct Lmc1Options {
 
 /// start() opens, reads the calibration (0.7 s on a device), commits the mode and lights the LEDs. Every
 /// 640x240 pair is one Frame with two views.
-std::unique_ptr<StereoCamera> make_lmc1_driver(OpenTransport open, const Lmc1Options& options,
-                                               const Clock& clock);
+std::unique_ptr<StereoCamera> make_lmc1_driver(OpenTransport open, const Lmc1Options& options, const Clock& clock);
 std::unique_ptr<StereoCameraKind> lmc1_kind(const Lmc1Options& options);
 
 /// Calibration by the sharpness and saturation knock. `settle` as in Lmc1Options.

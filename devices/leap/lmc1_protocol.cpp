@@ -40,12 +40,8 @@ ControlRequest set_current(std::uint8_t unit, std::uint8_t selector) noexcept {
 ControlRequest get_current(std::uint8_t unit, std::uint8_t selector) noexcept {
   return uvc::get_current(kControlInterface, unit, selector);
 }
-ControlRequest set_stream(std::uint8_t selector) noexcept {
-  return uvc::set_current(kStreamInterface, 0, selector);
-}
-ControlRequest get_stream(std::uint8_t selector) noexcept {
-  return uvc::get_current(kStreamInterface, 0, selector);
-}
+ControlRequest set_stream(std::uint8_t selector) noexcept { return uvc::set_current(kStreamInterface, 0, selector); }
+ControlRequest get_stream(std::uint8_t selector) noexcept { return uvc::get_current(kStreamInterface, 0, selector); }
 
 Result<ControlWrite> exposure_us(int us) {
   DUBSAR_TRY(check_range("exposure in us", us, 10, 65535));

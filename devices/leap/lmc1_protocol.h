@@ -54,13 +54,13 @@ inline constexpr std::uint8_t kCameraTerminal = 2;
 inline constexpr std::uint8_t kProcessingUnit = 5;
 
 enum class Selector : std::uint8_t {
-  kBrightness = 0x02,        ///< digital gain
-  kContrast = 0x03,          ///< switches: HDR, rotation, LEDs
-  kGain = 0x04,              ///< analog gain
-  kSaturation = 0x07,        ///< read: the byte chosen by sharpness
-  kSharpness = 0x08,         ///< address of a calibration byte
-  kGamma = 0x09,             ///< 0 or 1, about a square root
-  kWhiteBalance = 0x0a,      ///< dark frame interval
+  kBrightness = 0x02,    ///< digital gain
+  kContrast = 0x03,      ///< switches: HDR, rotation, LEDs
+  kGain = 0x04,          ///< analog gain
+  kSaturation = 0x07,    ///< read: the byte chosen by sharpness
+  kSharpness = 0x08,     ///< address of a calibration byte
+  kGamma = 0x09,         ///< 0 or 1, about a square root
+  kWhiteBalance = 0x0a,  ///< dark frame interval
 };
 inline constexpr std::uint8_t kZoomAbsolute = 0x0b;  ///< of the camera terminal: exposure in us
 using uvc::kCommitControl;
@@ -77,11 +77,12 @@ using uvc::ControlWrite;  ///< all settings have 2 bytes
 
 enum class Switch : std::uint8_t { kHdr = 0, kRotate180 = 1, kLedLeft = 2, kLedCentre = 3, kLedRight = 4 };
 
-Result<ControlWrite> exposure_us(int us);            ///< 10..65535
-Result<ControlWrite> analog_gain(int sixteenths);    ///< 16..63: gain 1 to 3.94
-Result<ControlWrite> digital_gain(int quarters);     ///< 0..16
+Result<ControlWrite> exposure_us(int us);          ///< 10..65535
+Result<ControlWrite> analog_gain(int sixteenths);  ///< 16..63: gain 1 to 3.94
+Result<ControlWrite> digital_gain(int quarters);   ///< 0..16
 ControlWrite gamma(bool square_root) noexcept;
-ControlWrite switch_on(Switch which, bool on) noexcept;  ///< switches 5 and 6 of the device crash it and do not exist here
+ControlWrite switch_on(Switch which,
+                       bool on) noexcept;  ///< switches 5 and 6 of the device crash it and do not exist here
 /// 0: no dark frames, 1: only dark ones, n: every n-th. Up to 0x3fff.
 Result<ControlWrite> dark_frame_interval(int n);
 

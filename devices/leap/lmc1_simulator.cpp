@@ -24,9 +24,7 @@ class Lmc1Simulator::Model final : public UvcCameraModel {
   explicit Model(Lmc1SimulatorOptions options)
       : options_(std::move(options)), calibration_(lmc1::encode(options_.calibration)) {}
 
-  std::span<const std::uint8_t> device_descriptor() const override {
-    return Lmc1Simulator::device_descriptor();
-  }
+  std::span<const std::uint8_t> device_descriptor() const override { return Lmc1Simulator::device_descriptor(); }
   std::span<const std::uint8_t> configuration_descriptor() const override {
     return Lmc1Simulator::configuration_descriptor();
   }
@@ -43,10 +41,9 @@ class Lmc1Simulator::Model final : public UvcCameraModel {
       return unit == lmc1::kProcessingUnit && selector == static_cast<std::uint8_t>(s);
     };
     const bool known = (unit == lmc1::kCameraTerminal && selector == lmc1::kZoomAbsolute) ||
-                       is(lmc1::Selector::kBrightness) || is(lmc1::Selector::kContrast) ||
-                       is(lmc1::Selector::kGain) || is(lmc1::Selector::kSaturation) ||
-                       is(lmc1::Selector::kSharpness) || is(lmc1::Selector::kGamma) ||
-                       is(lmc1::Selector::kWhiteBalance);
+                       is(lmc1::Selector::kBrightness) || is(lmc1::Selector::kContrast) || is(lmc1::Selector::kGain) ||
+                       is(lmc1::Selector::kSaturation) || is(lmc1::Selector::kSharpness) ||
+                       is(lmc1::Selector::kGamma) || is(lmc1::Selector::kWhiteBalance);
     if (!known || data.size() != 2)
       return fail(ErrorKind::kBadData, "leap simulator: stall of request {:#06x}", request.value);
     if (request.request == lmc1::kSetCurrent && !request.to_host()) {

@@ -13,8 +13,7 @@ constexpr std::uint32_t kDarkLabel = 1;  // as on the LMC1; not checked on a dev
 
 class RigelKind final : public StereoCameraKind {
  public:
-  explicit RigelKind(const RigelOptions& options)
-      : options_(options), dark_interval_(options.dark_frame_interval) {}
+  explicit RigelKind(const RigelOptions& options) : options_(options), dark_interval_(options.dark_frame_interval) {}
 
   Result<Stream> prepare(Transport& transport) override {
     DUBSAR_ASSIGN(const uvc::Camera camera, uvc::read_camera(transport));
@@ -33,8 +32,7 @@ class RigelKind final : public StereoCameraKind {
     block.frame_index = size.frame_index;
     block.interval_100ns = size.interval_100ns;
     block.max_frame_bytes = static_cast<std::uint32_t>(size.frame_bytes());
-    DUBSAR_ASSIGN(const uvc::StreamBlock agreed,
-                  uvc::commit_stream(transport, camera.stream_interface, block));
+    DUBSAR_ASSIGN(const uvc::StreamBlock agreed, uvc::commit_stream(transport, camera.stream_interface, block));
 
     DUBSAR_ASSIGN(const auto exposure, rigel::exposure_us(units_, options_.exposure_us));
     DUBSAR_ASSIGN(const auto gain, rigel::gain(units_, options_.gain_step));
@@ -80,19 +78,17 @@ class RigelKind final : public StereoCameraKind {
     std::string sizes;
     for (const uvc::FrameSize& size : camera.frames) {
       // Two grey pixels pose as one of 16 bits, so that the advertised width is one eye's.
-      if (size.bits_per_pixel == 16 && size.width == options_.width && size.height == options_.height)
-        return size;
+      if (size.bits_per_pixel == 16 && size.width == options_.width && size.height == options_.height) return size;
       sizes += fmt::format("{}{}x{}", sizes.empty() ? "" : ", ", size.width, size.height);
     }
-    return fail(ErrorKind::kBadData, "rigel: no pictures of {}x{} with 16 bits, the device offers {}",
-                options_.width, options_.height, sizes);
+    return fail(ErrorKind::kBadData, "rigel: no pictures of {}x{} with 16 bits, the device offers {}", options_.width,
+                options_.height, sizes);
   }
 
   Result<lmc1::Calibration> read_calibration(Transport& transport) const {
     std::array<std::byte, lmc1::kCalibrationBytes> blob{};
-    DUBSAR_ASSIGN(
-        const std::size_t length,
-        transport.control(rigel::get_extension(units_, rigel::Selector::kCalibration), blob, kTimeout));
+    DUBSAR_ASSIGN(const std::size_t length,
+                  transport.control(rigel::get_extension(units_, rigel::Selector::kCalibration), blob, kTimeout));
     return lmc1::decode_calibration(std::span(blob).first(std::min(length, blob.size())));
   }
 
@@ -117,8 +113,7 @@ std::unique_ptr<StereoCameraKind> rigel_kind(const RigelOptions& options) {
   return std::make_unique<RigelKind>(options);
 }
 
-std::unique_ptr<StereoCamera> make_rigel_driver(OpenTransport open, const RigelOptions& options,
-                                                const Clock& clock) {
+std::unique_ptr<StereoCamera> make_rigel_driver(OpenTransport open, const RigelOptions& options, const Clock& clock) {
   return make_stereo_camera(std::move(open), rigel_kind(options), options.own_thread, clock);
 }
 

@@ -20,8 +20,7 @@ struct RigelOptions {
 /// start() opens, reads the descriptors and the calibration, commits the mode and lights the LEDs.
 /// kUnavailable: the pictures come isochronously. kBadData: another camera, or no such size (lists those
 /// there are). The last line of a picture, where the device writes numbers, is a copy of the one above.
-std::unique_ptr<StereoCamera> make_rigel_driver(OpenTransport open, const RigelOptions& options,
-                                                const Clock& clock);
+std::unique_ptr<StereoCamera> make_rigel_driver(OpenTransport open, const RigelOptions& options, const Clock& clock);
 
 std::unique_ptr<StereoCameraKind> rigel_kind(const RigelOptions& options);
 

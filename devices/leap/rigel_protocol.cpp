@@ -21,8 +21,7 @@ constexpr std::array<Field, 4> kFields{{{4, &EmbeddedLine::frame_label, &Metadat
                                         {8, &EmbeddedLine::gain, &Metadata::gain},
                                         {14, &EmbeddedLine::frame_count, &Metadata::frame_count}}};
 
-uvc::ControlWrite write(const Units& units, Selector selector, std::uint32_t value,
-                        std::size_t bytes) noexcept {
+uvc::ControlWrite write(const Units& units, Selector selector, std::uint32_t value, std::size_t bytes) noexcept {
   return uvc::control_write(set_extension(units, selector), value, bytes);
 }
 
@@ -54,8 +53,7 @@ ControlRequest get_extension(const Units& units, Selector selector) noexcept {
 }
 
 Result<uvc::ControlWrite> exposure_us(const Units& units, int us) {
-  if (us < 10 || us > 4000)
-    return fail(ErrorKind::kUsage, "rigel: exposure of {} us, expected 10 to 4000", us);
+  if (us < 10 || us > 4000) return fail(ErrorKind::kUsage, "rigel: exposure of {} us, expected 10 to 4000", us);
   return write(units, Selector::kExposure, static_cast<std::uint32_t>(us), 2);
 }
 
@@ -64,8 +62,7 @@ Result<uvc::ControlWrite> gain(const Units& units, int step) {
   if (units.processing == 0)
     return fail(ErrorKind::kBadData, "rigel: the camera has no processing unit, which sets the gain");
   const auto value = static_cast<std::uint32_t>(step == 0 ? 0 : step + 15);
-  return uvc::control_write(uvc::set_current(units.control_interface, units.processing, kGainSelector), value,
-                            2);
+  return uvc::control_write(uvc::set_current(units.control_interface, units.processing, kGainSelector), value, 2);
 }
 
 Result<uvc::ControlWrite> dark_frame_interval(const Units& units, int n) {
@@ -104,11 +101,9 @@ std::optional<EmbeddedLine> decode_embedded_line(std::span<const std::byte> byte
 
 std::array<std::byte, kEmbeddedLineBytes> encode(const EmbeddedLine& line) noexcept {
   std::array<std::byte, kEmbeddedLineBytes> bytes{std::byte{kLastLineFormat}};
-  for (std::size_t at = 2; at < bytes.size(); at += 2)
-    std::memcpy(bytes.data() + at, &kNotPresent, sizeof kNotPresent);
+  for (std::size_t at = 2; at < bytes.size(); at += 2) std::memcpy(bytes.data() + at, &kNotPresent, sizeof kNotPresent);
   for (const Field& field : kFields)
-    if (const auto offset = line.*field.offset)
-      std::memcpy(bytes.data() + field.offset_at, &*offset, sizeof *offset);
+    if (const auto offset = line.*field.offset) std::memcpy(bytes.data() + field.offset_at, &*offset, sizeof *offset);
   return bytes;
 }
 
@@ -120,8 +115,7 @@ Metadata decode_metadata(const EmbeddedLine& where, std::span<const std::byte> l
   return metadata;
 }
 
-void encode_metadata(const Metadata& metadata, const EmbeddedLine& where,
-                     std::span<std::byte> line) noexcept {
+void encode_metadata(const Metadata& metadata, const EmbeddedLine& where, std::span<std::byte> line) noexcept {
   for (const Field& field : kFields)
     if (const auto offset = where.*field.offset; offset && *offset + sizeof(std::uint32_t) <= line.size())
       std::memcpy(line.data() + *offset, &(metadata.*field.value), sizeof(std::uint32_t));

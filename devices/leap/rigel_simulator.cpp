@@ -56,7 +56,7 @@ class RigelSimulator::Model final : public UvcCameraModel {
                selector = static_cast<std::uint8_t>(request.value >> 8);
     const bool set = request.request == uvc::kSetCurrent && !request.to_host();
     const bool get = request.request == uvc::kGetCurrent && request.to_host();
-    const std::size_t bytes = unit == rigel::kUsualExtensionUnit ? control_bytes(selector)
+    const std::size_t bytes = unit == rigel::kUsualExtensionUnit                            ? control_bytes(selector)
                               : unit == kProcessingUnit && selector == rigel::kGainSelector ? 2U
                                                                                             : 0U;
     if (bytes == 0 || data.size() != bytes || (!set && !get)) return stall(unit, selector);
@@ -120,9 +120,7 @@ class RigelSimulator::Model final : public UvcCameraModel {
     gain_ = 0;
   }
 
-  bool lights_on() const {
-    return setting(Selector::kStrobeControl) != 0 && setting(Selector::kLedCharge) != 0;
-  }
+  bool lights_on() const { return setting(Selector::kStrobeControl) != 0 && setting(Selector::kLedCharge) != 0; }
   std::uint32_t setting(Selector selector) const {
     const auto found = settings_.find(static_cast<std::uint8_t>(selector));
     return found == settings_.end() ? 0 : found->second;

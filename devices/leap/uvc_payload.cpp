@@ -59,7 +59,8 @@ UvcPayloadSplitter::UvcPayloadSplitter(std::size_t payload_bytes, std::size_t bu
   held_.reserve(payload_bytes_);
 }
 
-std::size_t encode_uvc_transfer(const UvcHeader& header, std::span<const std::byte> data, std::span<std::byte> transfer) {
+std::size_t encode_uvc_transfer(const UvcHeader& header, std::span<const std::byte> data,
+                                std::span<std::byte> transfer) {
   if (transfer.size() < kUvcHeaderBytes) return 0;
   const std::size_t bytes = std::min(data.size(), transfer.size() - kUvcHeaderBytes);
   std::fill_n(transfer.begin(), kUvcHeaderBytes, std::byte{0});

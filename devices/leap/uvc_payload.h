@@ -22,8 +22,8 @@ class UvcAssembler {
   std::uint32_t presentation_time() const noexcept { return presentation_time_; }  ///< device ticks; 0: none came
 
   std::uint64_t frames() const noexcept { return frames_; }
-  std::uint64_t dropped_frames() const noexcept { return dropped_; }      ///< wrong length, error flag, cut short
-  std::uint64_t bad_transfers() const noexcept { return bad_transfers_; } ///< header missing or impossible
+  std::uint64_t dropped_frames() const noexcept { return dropped_; }       ///< wrong length, error flag, cut short
+  std::uint64_t bad_transfers() const noexcept { return bad_transfers_; }  ///< header missing or impossible
 
  private:
   void begin() noexcept;
@@ -37,8 +37,8 @@ class UvcAssembler {
   std::uint64_t frames_ = 0, dropped_ = 0, bad_transfers_ = 0;
 };
 
-/// Cuts what comes from a bulk endpoint into payloads: a payload ends with the device's announced size or with a transfer that
-/// does not fill the host's buffer, wherever the buffers end.
+/// Cuts what comes from a bulk endpoint into payloads: a payload ends with the device's announced size or with a
+/// transfer that does not fill the host's buffer, wherever the buffers end.
 class UvcPayloadSplitter {
  public:
   /// `payload_bytes`: dwMaxPayloadTransferSize that the device agreed to, 0: every transfer is a payload.
@@ -51,7 +51,8 @@ class UvcPayloadSplitter {
     if (payload_bytes_ == 0) return each(transfer);
     const bool last = transfer.size() < buffer_bytes_;
     while (!transfer.empty()) {
-      const std::size_t count = payload_bytes_ - held_.size() < transfer.size() ? payload_bytes_ - held_.size() : transfer.size();
+      const std::size_t count =
+          payload_bytes_ - held_.size() < transfer.size() ? payload_bytes_ - held_.size() : transfer.size();
       held_.insert(held_.end(), transfer.begin(), transfer.begin() + static_cast<std::ptrdiff_t>(count));
       transfer = transfer.subspan(count);
       if (held_.size() < payload_bytes_ && !(last && transfer.empty())) continue;
@@ -74,6 +75,7 @@ struct UvcHeader {
 inline constexpr std::size_t kUvcHeaderBytes = 12;  ///< with presentation time and source clock
 
 /// Writes header and as much of `data` as fits into `transfer`; returns the length of the transfer.
-std::size_t encode_uvc_transfer(const UvcHeader& header, std::span<const std::byte> data, std::span<std::byte> transfer);
+std::size_t encode_uvc_transfer(const UvcHeader& header, std::span<const std::byte> data,
+                                std::span<std::byte> transfer);
 
 }  // namespace dubsar

@@ -19,9 +19,7 @@ constexpr std::chrono::microseconds kShortWait{200};  // rounding, and clocks th
 }  // namespace
 
 struct UvcSimulator::Device {
-  Device(std::shared_ptr<UvcCameraModel> m, const UvcSimulatorOptions& o) : model(std::move(m)), options(o) {
-    reset();
-  }
+  Device(std::shared_ptr<UvcCameraModel> m, const UvcSimulatorOptions& o) : model(std::move(m)), options(o) { reset(); }
 
   void reset() {
     model->power_on();
@@ -69,8 +67,7 @@ struct UvcSimulator::Device {
   TimestampNs due = 0;  // of the next frame, when paced
 };
 
-Result<std::size_t> UvcSimulator::Device::stream_request(const ControlRequest& request,
-                                                         std::span<std::byte> data) {
+Result<std::size_t> UvcSimulator::Device::stream_request(const ControlRequest& request, std::span<std::byte> data) {
   const auto selector = static_cast<std::uint8_t>(request.value >> 8);
   if (selector != uvc::kProbeControl && selector != uvc::kCommitControl)
     return fail(ErrorKind::kBadData, "camera simulator: stall of stream selector {}", selector);
@@ -135,8 +132,8 @@ Result<std::size_t> UvcSimulator::control(const ControlRequest& request, std::sp
   Result<std::size_t> moved =
       fail(ErrorKind::kBadData, "camera simulator: stall of request type {:#x}", request.request_type);
   if (request == uvc::kGetConfiguration || request == uvc::kGetDevice) {
-    const auto bytes = std::as_bytes(request == uvc::kGetDevice ? d.model->device_descriptor()
-                                                                : d.model->configuration_descriptor());
+    const auto bytes =
+        std::as_bytes(request == uvc::kGetDevice ? d.model->device_descriptor() : d.model->configuration_descriptor());
     const std::size_t count = std::min(bytes.size(), data.size());
     std::copy_n(bytes.begin(), count, data.begin());
     moved = count;
@@ -209,16 +206,14 @@ class UvcSimulatedTransport final : public Transport {
       auto wake = until;
       if (device.options.paced && device.size)
         wake = std::min(
-            wake,
-            now + std::chrono::nanoseconds(std::max<TimestampNs>(device.due - device.now(), 0)) + kShortWait);
+            wake, now + std::chrono::nanoseconds(std::max<TimestampNs>(device.due - device.now(), 0)) + kShortWait);
       device.changed.wait_until(guard, wake);
     }
   }
   Result<void> write(std::span<const std::byte>) override {
     return fail(ErrorKind::kUsage, "camera simulator: the device has no endpoint to write to");
   }
-  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data,
-                              milliseconds) override {
+  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data, milliseconds) override {
     if (lost()) return fail(ErrorKind::kUnavailable, "camera simulator: unplugged");
     return simulator_.control(request, data);
   }

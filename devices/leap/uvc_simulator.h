@@ -22,8 +22,7 @@ class UvcCameraModel {
   virtual std::span<const std::uint8_t> device_descriptor() const = 0;
   virtual std::span<const std::uint8_t> configuration_descriptor() const = 0;
   virtual std::span<const uvc::FrameSize> sizes() const = 0;
-  virtual std::uint8_t default_frame()
-      const = 0;  ///< of those sizes, taken where the host asks for none of them
+  virtual std::uint8_t default_frame() const = 0;   ///< of those sizes, taken where the host asks for none of them
   virtual std::uint32_t payload_bytes() const = 0;  ///< of one payload, its header included
   virtual std::uint8_t stream_interface() const = 0;
   /// A request to a unit or terminal of the control interface; kBadData is a stall.

@@ -31,14 +31,14 @@ Result<json> payload_of(std::string_view text) {
   return std::move(answer["payload"]["value"]);
 }
 
-Result<std::string> ask(const OpenTransport& open, std::string_view endpoint, const json& body,
-                        const Clock& clock, TimestampNs deadline) {
+Result<std::string> ask(const OpenTransport& open, std::string_view endpoint, const json& body, const Clock& clock,
+                        TimestampNs deadline) {
   DUBSAR_ASSIGN(const auto stream, open());
   DUBSAR_ASSIGN(HttpReply reply,
                 http_put(*stream, "localhost", endpoint, dump_json(body), clock, deadline - clock.now()));
   if (reply.status != 200)
-    return fail(ErrorKind::kBadData, "looking glass bridge: {} was answered with status {}, expected 200",
-                endpoint, reply.status);
+    return fail(ErrorKind::kBadData, "looking glass bridge: {} was answered with status {}, expected 200", endpoint,
+                reply.status);
   return std::move(reply.body);
 }
 
@@ -47,8 +47,7 @@ Result<std::string> ask(const OpenTransport& open, std::string_view endpoint, co
 Result<std::string> parse_bridge_token(std::string_view text) {
   DUBSAR_ASSIGN(const json value, payload_of(text));
   if (!value.is_string() || value.get_ref<const std::string&>().empty())
-    return fail(ErrorKind::kBadData,
-                "looking glass bridge: enter_orchestration was answered without a token");
+    return fail(ErrorKind::kBadData, "looking glass bridge: enter_orchestration was answered without a token");
   return value.get<std::string>();
 }
 
@@ -57,8 +56,8 @@ Result<std::vector<BridgeDevice>> parse_bridge_devices(std::string_view text) {
   std::vector<BridgeDevice> devices;
   if (value.is_null() || (value.is_string() && value.get_ref<const std::string&>().empty())) return devices;
   if (!value.is_object() || value.size() > kMaxDevices)
-    return fail(ErrorKind::kBadData,
-                "looking glass bridge: the list of displays is not an object of at most {}", kMaxDevices);
+    return fail(ErrorKind::kBadData, "looking glass bridge: the list of displays is not an object of at most {}",
+                kMaxDevices);
   for (const auto& [index, entry] : value.items()) {
     if (!entry.is_object() || !entry.contains("value") || !entry.at("value").is_object())
       return fail(ErrorKind::kBadData, "looking glass bridge: display \"{}\" has no value", index);
@@ -72,13 +71,11 @@ Result<std::vector<BridgeDevice>> parse_bridge_devices(std::string_view text) {
 Result<std::vector<BridgeDevice>> read_bridge_devices(const OpenTransport& open, const Clock& clock,
                                                       TimestampNs time_limit) {
   const TimestampNs deadline = clock.now() + time_limit;
-  DUBSAR_ASSIGN(const std::string entered,
-                ask(open, "enter_orchestration", {{"name", "dubsar"}}, clock, deadline));
+  DUBSAR_ASSIGN(const std::string entered, ask(open, "enter_orchestration", {{"name", "dubsar"}}, clock, deadline));
   DUBSAR_ASSIGN(const std::string token, parse_bridge_token(entered));
   const json with_token{{"orchestration", token}};
   DUBSAR_ASSIGN(const std::string listed, ask(open, "available_output_devices", with_token, clock, deadline));
-  static_cast<void>(
-      ask(open, "exit_orchestration", with_token, clock, deadline));  // politeness; the answer is here
+  static_cast<void>(ask(open, "exit_orchestration", with_token, clock, deadline));  // politeness; the answer is here
   return parse_bridge_devices(listed);
 }
 

@@ -59,7 +59,8 @@ class PageReader {
       DUBSAR_TRY(transport_->set_feature(looking_glass_request(number)));
       for (int i = 0; i < kReadsPerRequest; ++i) {
         if (clock_->now() >= deadline_ || ++reads_ > kMaxReadsWithoutClock)
-          return fail(ErrorKind::kUnavailable, "looking glass: no answer to the request of calibration page {}", number);
+          return fail(ErrorKind::kUnavailable, "looking glass: no answer to the request of calibration page {}",
+                      number);
         DUBSAR_ASSIGN(const auto piece, reports_.next());
         if (piece.page && piece.page->number == number) return *piece.page;
         if (piece.silent) break;
@@ -88,8 +89,8 @@ std::optional<LookingGlassPage> parse_looking_glass(std::span<const std::byte> r
   if (report.size() != kLookingGlassReportBytes || report[1] != std::byte{0}) return std::nullopt;
   LookingGlassPage page;
   page.buttons = std::to_integer<std::uint8_t>(report[0]);
-  page.number = static_cast<std::uint16_t>(std::to_integer<unsigned>(report[2]) << 8 |
-                                           std::to_integer<unsigned>(report[3]));
+  page.number =
+      static_cast<std::uint16_t>(std::to_integer<unsigned>(report[2]) << 8 | std::to_integer<unsigned>(report[3]));
   std::copy(report.begin() + kHeaderBytes, report.end(), page.data.begin());
   return page;
 }

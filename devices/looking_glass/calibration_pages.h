@@ -1,6 +1,6 @@
 #pragma once
-// The calibration that older Looking Glass displays (8.9", 15.6", 8K) keep behind their HID interface: JSON text in pages
-// of 64 bytes. Facts: lonetech/LookingGlass, newhouseb/linuxholoplayjs, surf-visualization/looking-glass.
+// The calibration that older Looking Glass displays (8.9", 15.6", 8K) keep behind their HID interface: JSON text in
+// pages of 64 bytes. Facts: lonetech/LookingGlass, newhouseb/linuxholoplayjs, surf-visualization/looking-glass.
 
 #include <array>
 #include <cstddef>
@@ -31,9 +31,9 @@ std::array<std::byte, kLookingGlassReportBytes> looking_glass_request(std::uint1
 std::optional<LookingGlassPage> parse_looking_glass(std::span<const std::byte> report) noexcept;
 std::array<std::byte, kLookingGlassReportBytes> format_looking_glass(const LookingGlassPage& page) noexcept;
 
-/// Reads the whole JSON text; it is not parsed here. Reports may come in one piece of 68 bytes or in two of 64 and 4, with
-/// stale pages and button presses between. kBadData: blank memory or an impossible length; kUnavailable: the device is
-/// lost, or has not answered within `time_limit` of the clock in all. Blocks.
+/// Reads the whole JSON text; it is not parsed here. Reports may come in one piece of 68 bytes or in two of 64 and 4,
+/// with stale pages and button presses between. kBadData: blank memory or an impossible length; kUnavailable: the
+/// device is lost, or has not answered within `time_limit` of the clock in all. Blocks.
 Result<std::string> read_looking_glass_calibration(Transport& transport, const Clock& clock,
                                                    TimestampNs time_limit = 2'000'000'000);
 

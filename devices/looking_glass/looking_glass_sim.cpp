@@ -35,8 +35,8 @@ LookingGlassSim::LookingGlassSim(std::string json, LookingGlassManners manners) 
       return fail(ErrorKind::kIo, "simulated Looking Glass: feature report of {} bytes refused", request.size());
     if (state->manners.ignored_requests-- > 0) return {};
     LookingGlassPage page;
-    page.number = static_cast<std::uint16_t>(std::to_integer<unsigned>(request[2]) << 8 |
-                                             std::to_integer<unsigned>(request[3]));
+    page.number =
+        static_cast<std::uint16_t>(std::to_integer<unsigned>(request[2]) << 8 | std::to_integer<unsigned>(request[3]));
     page.data.fill(std::byte{0xFF});
     const std::size_t from = std::size_t{page.number} * kLookingGlassPageBytes;
     for (std::size_t i = 0; i < kLookingGlassPageBytes && from + i < state->memory.size(); ++i)

@@ -10,10 +10,10 @@
 namespace dubsar {
 
 struct LookingGlassManners {
-  bool split = true;        ///< reports arrive as 64 and 4 bytes, as through hidraw
-  int stale_pages = 0;      ///< so many copies of the page asked for before come first
+  bool split = true;         ///< reports arrive as 64 and 4 bytes, as through hidraw
+  int stale_pages = 0;       ///< so many copies of the page asked for before come first
   int ignored_requests = 0;  ///< the first requests are not answered
-  bool blank = false;       ///< memory never written: all ones
+  bool blank = false;        ///< memory never written: all ones
 };
 
 class LookingGlassSim {

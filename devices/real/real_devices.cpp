@@ -31,7 +31,8 @@ Result<std::unique_ptr<Transport>> open_leap() {
       options.transfer_bytes = kStereoTransferBytes;
       return open_usb_transport(product.vendor_id, product.product_id, options, device.path);
     }
-  return fail(ErrorKind::kUnavailable, "{}", instead.empty() ? std::string("leap: no such device is plugged in") : instead);
+  return fail(ErrorKind::kUnavailable, "{}",
+              instead.empty() ? std::string("leap: no such device is plugged in") : instead);
 }
 
 Result<OpenTransport> reach_opentrack(const DeviceChoice& choice, const Clock& clock) {
@@ -50,8 +51,7 @@ Result<OpenTransport> reach_opentrack(const DeviceChoice& choice, const Clock& c
 Result<OpenTransport> reach_vrpn(const DeviceChoice& choice) {
   DUBSAR_TRY(check_address(choice.address));
   const std::uint16_t port = choice.port == 0 ? kVrpnPort : static_cast<std::uint16_t>(choice.port);
-  return OpenTransport(
-      [address = choice.address, port] { return open_tcp_stream(address, port, kConnectTimeout); });
+  return OpenTransport([address = choice.address, port] { return open_tcp_stream(address, port, kConnectTimeout); });
 }
 
 }  // namespace
@@ -87,8 +87,7 @@ std::vector<DeviceInfo> list_real_devices(const std::string& spacenav_socket) {
     } else if (!device.accessible) {
       info.state = DeviceState::kNoPermission;
       info.reason = fmt::format("this user may not open {}", device.node);
-      info.remedy =
-          fmt::format("{}; the rule is: {}", kUdevRemedy, usb_udev_rule(device.vendor_id, device.product_id));
+      info.remedy = fmt::format("{}; the rule is: {}", kUdevRemedy, usb_udev_rule(device.vendor_id, device.product_id));
     }
     devices.push_back(std::move(info));
   }

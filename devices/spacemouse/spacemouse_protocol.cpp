@@ -12,15 +12,15 @@ constexpr std::byte kTranslationId{1}, kRotationId{2}, kButtonsId{3}, kBatteryId
 
 constexpr std::uint16_t kLogitech = 0x046d, k3Dconnexion = 0x256f;
 constexpr std::array<std::uint16_t, 11> kLogitechSpaceMice = {0xc603, 0xc605, 0xc606, 0xc621, 0xc623, 0xc625,
-                                                             0xc626, 0xc627, 0xc628, 0xc629, 0xc62b};
+                                                              0xc626, 0xc627, 0xc628, 0xc629, 0xc62b};
 constexpr std::array<std::uint16_t, 10> k3DconnexionSpaceMice = {0xc62e, 0xc62f, 0xc631, 0xc632, 0xc633,
-                                                                0xc635, 0xc636, 0xc638, 0xc63a, 0xc652};
+                                                                 0xc635, 0xc636, 0xc638, 0xc63a, 0xc652};
 constexpr std::array<std::uint16_t, 11> k3DconnexionOrdinary = {0xc650, 0xc651, 0xc654, 0xc655, 0xc656, 0xc657,
-                                                               0xc658, 0xc664, 0xc665, 0xc667, 0xc668};
+                                                                0xc658, 0xc664, 0xc665, 0xc667, 0xc668};
 
 int axis_at(std::span<const std::byte> report, std::size_t at) noexcept {
-  return static_cast<std::int16_t>(std::to_integer<unsigned>(report[at]) |
-                                   std::to_integer<unsigned>(report[at + 1]) << 8);
+  return static_cast<std::int16_t>(std::to_integer<unsigned>(report[at]) | std::to_integer<unsigned>(report[at + 1])
+                                                                               << 8);
 }
 
 std::optional<glm::ivec3> axes_at(std::span<const std::byte> report, std::size_t at) noexcept {
@@ -62,8 +62,7 @@ std::optional<SpaceMouseReport> parse_spacemouse(std::span<const std::byte> repo
   }
   if (report[0] == kButtonsId && report.size() <= 9) {
     std::uint64_t bits = 0;
-    for (std::size_t i = 1; i < report.size(); ++i)
-      bits |= std::to_integer<std::uint64_t>(report[i]) << (8 * (i - 1));
+    for (std::size_t i = 1; i < report.size(); ++i) bits |= std::to_integer<std::uint64_t>(report[i]) << (8 * (i - 1));
     parsed.buttons = bits;
     return parsed;
   }

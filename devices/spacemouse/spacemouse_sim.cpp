@@ -6,7 +6,8 @@ SpaceMouseSim::SpaceMouseSim(bool combined) : combined_(combined) {
   SimBehaviour behaviour;
   behaviour.on_write = [light = light_](std::span<const std::byte> report) -> Result<void> {
     if (report.size() != 2 || report[0] != std::byte{4})
-      return fail(ErrorKind::kIo, "simulated SpaceMouse: output report {} refused, it knows only the light", report.size());
+      return fail(ErrorKind::kIo, "simulated SpaceMouse: output report {} refused, it knows only the light",
+                  report.size());
     *light = report[1] != std::byte{0};
     return {};
   };

@@ -45,8 +45,14 @@ std::vector<std::byte> format_spacenav(const SpacenavEvent& event) {
   Words words{};
   words[0] = static_cast<std::int32_t>(event.kind);
   if (event.kind == SpacenavEvent::Kind::kMotion)
-    words = {0,          event.translation.x, event.translation.y, event.translation.z, event.rotation.x,
-             event.rotation.y, event.rotation.z,    event.period_ms};
+    words = {0,
+             event.translation.x,
+             event.translation.y,
+             event.translation.z,
+             event.rotation.x,
+             event.rotation.y,
+             event.rotation.z,
+             event.period_ms};
   else
     words[1] = event.button;
   std::vector<std::byte> bytes(kSpacenavEventBytes);
@@ -99,8 +105,7 @@ void SpacenavProtocol::apply(const SpacenavEvent& event, TimestampNs now) {
     sample_.rotation = {share(event.rotation.x), share(event.rotation.y), share(-event.rotation.z)};
   } else if (event.button < 64) {
     const std::uint64_t bit = std::uint64_t{1} << event.button;
-    sample_.buttons =
-        event.kind == SpacenavEvent::Kind::kPress ? sample_.buttons | bit : sample_.buttons & ~bit;
+    sample_.buttons = event.kind == SpacenavEvent::Kind::kPress ? sample_.buttons | bit : sample_.buttons & ~bit;
   }
   sample_.time = now;
   changed_ = true;

@@ -94,17 +94,21 @@ class UsbTransport final : public Transport {
     for (const int interface : options_.interfaces) {
       const int error = libusb_claim_interface(handle_, interface);
       if (error == LIBUSB_ERROR_BUSY)
-        return fail(ErrorKind::kUnavailable, "usb: interface {} of {} is in use by another program: stop it (for a Leap "
-                                             "Motion that is leapd) and try again", interface, name_);
+        return fail(ErrorKind::kUnavailable,
+                    "usb: interface {} of {} is in use by another program: stop it (for a Leap "
+                    "Motion that is leapd) and try again",
+                    interface, name_);
       if (error != 0)
-        return fail(ErrorKind::kIo, "usb: cannot claim interface {} of {}: {}", interface, name_, libusb_strerror(error));
+        return fail(ErrorKind::kIo, "usb: cannot claim interface {} of {}: {}", interface, name_,
+                    libusb_strerror(error));
       claimed_.push_back(interface);
     }
     return {};
   }
 
   Result<std::size_t> read(std::span<std::byte> report, milliseconds timeout) override {
-    if (options_.read_endpoint == 0) return fail(ErrorKind::kUsage, "usb: {} was opened without an endpoint to read", name_);
+    if (options_.read_endpoint == 0)
+      return fail(ErrorKind::kUsage, "usb: {} was opened without an endpoint to read", name_);
     if (slots_.empty()) DUBSAR_TRY(start_reading());
     const auto until = steady_clock::now() + timeout;
     while (done_.empty()) {
@@ -121,8 +125,10 @@ class UsbTransport final : public Transport {
     if (status == LIBUSB_TRANSFER_NO_DEVICE || status == LIBUSB_TRANSFER_CANCELLED) lost_ = true;
     if (lost_) return lost();
     if (status == LIBUSB_TRANSFER_STALL) libusb_clear_halt(handle_, options_.read_endpoint);
-    if (const int error = submit(slot); error == LIBUSB_ERROR_NO_DEVICE) lost_ = true;
-    else if (error != 0) return fail(ErrorKind::kIo, "usb: cannot ask {} for more: {}", name_, libusb_strerror(error));
+    if (const int error = submit(slot); error == LIBUSB_ERROR_NO_DEVICE)
+      lost_ = true;
+    else if (error != 0)
+      return fail(ErrorKind::kIo, "usb: cannot ask {} for more: {}", name_, libusb_strerror(error));
     if (status != LIBUSB_TRANSFER_COMPLETED)
       return fail(ErrorKind::kIo, "usb: a transfer from {} failed (libusb status {})", name_, static_cast<int>(status));
     return length;
@@ -134,11 +140,12 @@ class UsbTransport final : public Transport {
 
   Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data, milliseconds timeout) override {
     if (lost_) return lost();
-    if (data.size() > 4096) return fail(ErrorKind::kUsage, "usb: control transfer of {} bytes, at most 4096", data.size());
-    const int moved = libusb_control_transfer(handle_, request.request_type, request.request, request.value, request.index,
-                                              reinterpret_cast<unsigned char*>(data.data()),
-                                              static_cast<std::uint16_t>(data.size()),
-                                              static_cast<unsigned>(std::max<std::int64_t>(timeout.count(), 1)));
+    if (data.size() > 4096)
+      return fail(ErrorKind::kUsage, "usb: control transfer of {} bytes, at most 4096", data.size());
+    const int moved =
+        libusb_control_transfer(handle_, request.request_type, request.request, request.value, request.index,
+                                reinterpret_cast<unsigned char*>(data.data()), static_cast<std::uint16_t>(data.size()),
+                                static_cast<unsigned>(std::max<std::int64_t>(timeout.count(), 1)));
     if (moved >= 0) return static_cast<std::size_t>(moved);
     if (moved == LIBUSB_ERROR_NO_DEVICE) {
       lost_ = true;
@@ -202,9 +209,7 @@ class UsbTransport final : public Transport {
   bool any_in_flight() const {
     return std::any_of(slots_.begin(), slots_.end(), [](const auto& slot) { return slot->in_flight; });
   }
-  Result<std::size_t> lost() const {
-    return fail(ErrorKind::kUnavailable, "usb: {} is gone (unplugged?)", name_);
-  }
+  Result<std::size_t> lost() const { return fail(ErrorKind::kUnavailable, "usb: {} is gone (unplugged?)", name_); }
 
   Context context_;
   libusb_device_handle* handle_;
@@ -243,9 +248,10 @@ Result<std::unique_ptr<Transport>> open_usb_transport(std::uint16_t vendor_id, s
       name = fmt::format("{:04x}:{:04x} at {}", vendor_id, product_id, found.node);
       const int error = libusb_open(device, &handle);
       if (error == LIBUSB_ERROR_ACCESS)
-        return fail(ErrorKind::kPermission, "usb: not allowed to open {}: put the line {} into "
-                                            "/etc/udev/rules.d/70-dubsar.rules and plug the device in again", name,
-                    usb_udev_rule(vendor_id, product_id));
+        return fail(ErrorKind::kPermission,
+                    "usb: not allowed to open {}: put the line {} into "
+                    "/etc/udev/rules.d/70-dubsar.rules and plug the device in again",
+                    name, usb_udev_rule(vendor_id, product_id));
       if (error != 0) return fail(ErrorKind::kIo, "usb: cannot open {}: {}", name, libusb_strerror(error));
       break;
     }
@@ -260,8 +266,9 @@ Result<std::unique_ptr<Transport>> open_usb_transport(std::uint16_t vendor_id, s
 }
 
 std::string usb_udev_rule(std::uint16_t vendor_id, std::uint16_t product_id) {
-  return fmt::format("SUBSYSTEM==\"usb\", ATTR{{idVendor}}==\"{:04x}\", ATTR{{idProduct}}==\"{:04x}\", TAG+=\"uaccess\"",
-                     vendor_id, product_id);
+  return fmt::format(
+      "SUBSYSTEM==\"usb\", ATTR{{idVendor}}==\"{:04x}\", ATTR{{idProduct}}==\"{:04x}\", TAG+=\"uaccess\"", vendor_id,
+      product_id);
 }
 
 }  // namespace dubsar

@@ -22,11 +22,11 @@ struct UsbDevice {
 Result<std::vector<UsbDevice>> list_usb_devices();
 
 struct UsbOpenOptions {
-  std::vector<int> interfaces{0};     ///< claimed; a kernel driver is detached, and attached again on closing
-  std::uint8_t read_endpoint = 0;     ///< to the host, bulk; 0: control requests only
-  std::size_t transfer_bytes = 16384; ///< of one bulk transfer; read() returns one transfer
+  std::vector<int> interfaces{0};      ///< claimed; a kernel driver is detached, and attached again on closing
+  std::uint8_t read_endpoint = 0;      ///< to the host, bulk; 0: control requests only
+  std::size_t transfer_bytes = 16384;  ///< of one bulk transfer; read() returns one transfer
   bool camera = false;  ///< interfaces and read_endpoint are those of the device's first camera, from its descriptors
-  int transfers_in_flight = 8;        ///< so that no data is lost between two reads
+  int transfers_in_flight = 8;  ///< so that no data is lost between two reads
 };
 
 /// The first device with these ids, or the one at `path` when it is not empty. kNoInput: none is there. kPermission,

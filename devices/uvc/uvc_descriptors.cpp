@@ -82,15 +82,13 @@ Result<Camera> parse_configuration(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const auto length = static_cast<std::size_t>(bytes[0]);
     if (length < 2 || length > bytes.size())
-      return fail(ErrorKind::kBadData, "uvc: a descriptor of {} bytes where {} are left", length,
-                  bytes.size());
+      return fail(ErrorKind::kBadData, "uvc: a descriptor of {} bytes where {} are left", length, bytes.size());
     const Descriptor d(bytes.first(length));
     bytes = bytes.subspan(length);
     if (d.type() == kInterface) {
       subclass = d.u8(5) == kVideo ? d.u8(6) : std::uint8_t{0};
       const bool first_setting = d.u8(3) == 0;
-      if (subclass == kControlSubclass && first_setting && ++controls == 1)
-        camera.control_interface = d.u8(2);
+      if (subclass == kControlSubclass && first_setting && ++controls == 1) camera.control_interface = d.u8(2);
       if (subclass == kStreamSubclass && first_setting && ++streams == 1) camera.stream_interface = d.u8(2);
     } else if (subclass == kControlSubclass && controls == 1 && d.type() == kClassInterface) {
       read_control(d, camera);
@@ -114,8 +112,8 @@ Result<Camera> read_camera(Transport& transport) {
   DUBSAR_ASSIGN(const std::size_t head_bytes, transport.control(kGetConfiguration, head, kTimeout));
   const std::size_t total = Descriptor(head).u16(2);
   if (head_bytes < head.size() || total < head.size() || total > kLongest)
-    return fail(ErrorKind::kBadData, "uvc: configuration descriptor of {} bytes that says {}, expected {} to {}", head_bytes,
-                total, head.size(), kLongest);
+    return fail(ErrorKind::kBadData, "uvc: configuration descriptor of {} bytes that says {}, expected {} to {}",
+                head_bytes, total, head.size(), kLongest);
   std::vector<std::byte> bytes(total);
   DUBSAR_ASSIGN(const std::size_t length, transport.control(kGetConfiguration, bytes, kTimeout));
   return parse_configuration(std::span(bytes).first(std::min(length, total)));

@@ -11,8 +11,7 @@ constexpr milliseconds kTimeout{1000};
 
 ControlRequest request(std::uint8_t type, std::uint8_t code, std::uint8_t interface, std::uint8_t unit,
                        std::uint8_t selector) noexcept {
-  return {type, code, static_cast<std::uint16_t>(selector << 8),
-          static_cast<std::uint16_t>(unit << 8 | interface)};
+  return {type, code, static_cast<std::uint16_t>(selector << 8), static_cast<std::uint16_t>(unit << 8 | interface)};
 }
 
 // Calls visit(offset, field) for the fields of a block in the order of the class definition, table 4-47.
@@ -42,16 +41,14 @@ ControlRequest get_current(std::uint8_t interface, std::uint8_t unit, std::uint8
 
 ControlWrite control_write(const ControlRequest& to, std::uint32_t value, std::size_t bytes) noexcept {
   ControlWrite write{to, {}, bytes};
-  for (std::size_t i = 0; i < bytes && i < write.data.size(); ++i)
-    write.data[i] = std::byte(value >> 8 * i & 0xffU);
+  for (std::size_t i = 0; i < bytes && i < write.data.size(); ++i) write.data[i] = std::byte(value >> 8 * i & 0xffU);
   return write;
 }
 
 std::array<std::byte, kStreamBlockBytes> encode(const StreamBlock& block) noexcept {
   std::array<std::byte, kStreamBlockBytes> bytes{};
-  for_each_field(block, [&](std::size_t at, const auto& field) {
-    std::memcpy(bytes.data() + at, &field, sizeof field);
-  });
+  for_each_field(block,
+                 [&](std::size_t at, const auto& field) { std::memcpy(bytes.data() + at, &field, sizeof field); });
   return bytes;
 }
 
@@ -60,13 +57,11 @@ Result<StreamBlock> decode_stream_block(std::span<const std::byte> bytes) {
     return fail(ErrorKind::kBadData, "uvc: video probe block of {} bytes, expected {}", bytes.size(),
                 kStreamBlockBytes);
   StreamBlock block;
-  for_each_field(block,
-                 [&](std::size_t at, auto& field) { std::memcpy(&field, bytes.data() + at, sizeof field); });
+  for_each_field(block, [&](std::size_t at, auto& field) { std::memcpy(&field, bytes.data() + at, sizeof field); });
   return block;
 }
 
-Result<StreamBlock> commit_stream(Transport& transport, std::uint8_t stream_interface,
-                                  const StreamBlock& asked) {
+Result<StreamBlock> commit_stream(Transport& transport, std::uint8_t stream_interface, const StreamBlock& asked) {
   auto block = encode(asked);
   DUBSAR_TRY(transport.control(set_current(stream_interface, 0, kProbeControl), block, kTimeout));
   DUBSAR_ASSIGN(const std::size_t length,

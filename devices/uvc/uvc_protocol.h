@@ -42,8 +42,7 @@ struct StreamBlock {
   std::uint8_t format_index = 1;
   std::uint8_t frame_index = 1;
   std::uint32_t interval_100ns = 0;
-  std::uint16_t key_frame_rate = 0, p_frame_rate = 0, compression_quality = 0, compression_window = 0,
-                delay_ms = 0;
+  std::uint16_t key_frame_rate = 0, p_frame_rate = 0, compression_quality = 0, compression_window = 0, delay_ms = 0;
   std::uint32_t max_frame_bytes = 0;
   std::uint32_t max_transfer_bytes = 0;
   bool operator==(const StreamBlock&) const = default;
@@ -54,8 +53,7 @@ Result<StreamBlock> decode_stream_block(std::span<const std::byte> bytes);
 
 /// Probe, read back, commit. Returns what the device agreed to; kBadData when it is another frame than the
 /// one asked for.
-Result<StreamBlock> commit_stream(Transport& transport, std::uint8_t stream_interface,
-                                  const StreamBlock& asked);
+Result<StreamBlock> commit_stream(Transport& transport, std::uint8_t stream_interface, const StreamBlock& asked);
 
 Result<void> send(Transport& transport, const ControlWrite& write);
 

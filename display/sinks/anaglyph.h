@@ -12,8 +12,8 @@
 namespace dubsar {
 
 struct AnaglyphVariant {
-  std::string_view name;      ///< e.g. "red_cyan_dubois"
-  glm::dmat3 left, right;     ///< for column vectors (r, g, b)
+  std::string_view name;   ///< e.g. "red_cyan_dubois"
+  glm::dmat3 left, right;  ///< for column vectors (r, g, b)
 };
 
 /// Red-cyan, green-magenta and amber-blue, each as dubois, full, half and mono; red_green and red_blue as mono.

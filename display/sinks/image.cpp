@@ -48,8 +48,10 @@ Result<std::unique_ptr<OutputSink>> make_image_sink(const SinkConfig& given) {
     config.options.erase(config.options.begin());
   }
   DUBSAR_TRY(expect_no_more(config, "image", "path=FILE.png"));
-  if (path.empty() || std::filesystem::path(path).extension() != ".png" || std::count(path.begin(), path.end(), '%') > 1)
-    return fail(ErrorKind::kUsage, "display image: path \"{}\" found, expected path=FILE.png with at most one % for the frame number",
+  if (path.empty() || std::filesystem::path(path).extension() != ".png" ||
+      std::count(path.begin(), path.end(), '%') > 1)
+    return fail(ErrorKind::kUsage,
+                "display image: path \"{}\" found, expected path=FILE.png with at most one % for the frame number",
                 path);
   DUBSAR_ASSIGN(auto mono, make_mono_sink({}));
   return std::make_unique<ImageSink>(path, std::move(mono));

@@ -43,10 +43,14 @@ class InterlacedSink : public OutputSink {
 
 int interlace_parity(InterlacePattern pattern, int panel_x, int panel_y, int channel) noexcept {
   switch (pattern) {
-    case InterlacePattern::kRows: return panel_y & 1;
-    case InterlacePattern::kColumns: return panel_x & 1;
-    case InterlacePattern::kCheckerboard: return (panel_x + panel_y) & 1;
-    case InterlacePattern::kSubpixels: return (3 * panel_x + channel) & 1;
+    case InterlacePattern::kRows:
+      return panel_y & 1;
+    case InterlacePattern::kColumns:
+      return panel_x & 1;
+    case InterlacePattern::kCheckerboard:
+      return (panel_x + panel_y) & 1;
+    case InterlacePattern::kSubpixels:
+      return (3 * panel_x + channel) & 1;
   }
   return 0;
 }
@@ -66,8 +70,10 @@ Image interlace_views(const Image& left, const Image& right, const Screen& scree
 Result<std::unique_ptr<OutputSink>> make_interlaced_sink(const SinkConfig& given) {
   SinkConfig config = given;
   const bool right_first = take_choice(config, {"left_first", "right_first"}) == 1;
-  const auto pattern = static_cast<InterlacePattern>(take_choice(config, {"rows", "columns", "checkerboard", "subpixels"}));
-  DUBSAR_TRY(expect_no_more(config, "interlaced", "rows, columns, checkerboard or subpixels, left_first or right_first"));
+  const auto pattern =
+      static_cast<InterlacePattern>(take_choice(config, {"rows", "columns", "checkerboard", "subpixels"}));
+  DUBSAR_TRY(
+      expect_no_more(config, "interlaced", "rows, columns, checkerboard or subpixels, left_first or right_first"));
   return std::make_unique<InterlacedSink>(pattern, right_first);
 }
 

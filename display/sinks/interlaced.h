@@ -1,6 +1,6 @@
 #pragma once
-// Two views in alternate rows, columns, squares or subpixels, for polarised, shutter-row and barrier panels. Which eye a
-// pixel belongs to follows from its place on the panel, not in the window.
+// Two views in alternate rows, columns, squares or subpixels, for polarised, shutter-row and barrier panels. Which eye
+// a pixel belongs to follows from its place on the panel, not in the window.
 
 #include "core/image_io/image.h"
 #include "display/output_sink.h"

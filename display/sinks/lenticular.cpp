@@ -20,7 +20,7 @@ constexpr GLint kWindow = 0;
 constexpr GLint kSteps = 1, kStart = 2, kMode = 3, kSigma = 4, kCells = 5, kOffsets = 6;
 constexpr GLint kPanelPx = 1, kPixelMm = 2, kLens = 3, kPhase0 = 4, kEyes = 5, kTrackedOffsets = 7;
 constexpr std::size_t kMaxCells = 10;
-constexpr int kCoarseBits = 11;       // times a pixel number below 8192: 24 bits, exact in a float
+constexpr int kCoarseBits = 11;  // times a pixel number below 8192: 24 bits, exact in a float
 
 /// The panel's own screen: the given window when it is on such a panel, else all of it.
 Screen panel_screen(const PanelProfile& profile, const Screen& given) {
@@ -52,7 +52,10 @@ std::vector<glm::vec2> flat_offsets(const SubpixelLayout& layout) {
 class ViewsSink : public OutputSink {
  public:
   ViewsSink(PanelProfile profile, ViewFilter filter)
-      : profile_(std::move(profile)), sheet_(lens_sheet(*profile_.sheet)), filter_(filter), screen_(panel_screen(profile_, {})) {}
+      : profile_(std::move(profile)),
+        sheet_(lens_sheet(*profile_.sheet)),
+        filter_(filter),
+        screen_(panel_screen(profile_, {})) {}
 
   SinkTraits traits() const noexcept override {
     const PixelSize window{screen_.window_w, screen_.window_h};
@@ -135,7 +138,8 @@ class TrackedSink : public OutputSink {
     return {};
   }
   std::span<const View> views(const Viewer& viewer) override {
-    eyes_ = {glm::vec3(viewer.left_mm), glm::vec3(viewer.right_mm)};  // light goes to the true eyes, whatever the factors
+    eyes_ = {glm::vec3(viewer.left_mm),
+             glm::vec3(viewer.right_mm)};  // light goes to the true eyes, whatever the factors
     return views_ = stereo_views(screen_, viewer);
   }
   Result<void> compose(const ViewArray& views, const Surface& target) override {
@@ -169,11 +173,13 @@ class TrackedSink : public OutputSink {
 }  // namespace
 
 Result<std::unique_ptr<OutputSink>> make_lenticular_sink(const SinkConfig& given) {
-  constexpr std::string_view kKnown = "panel=PROFILE and/or calibration=FILE, and nearest, linear, gaussian3 or gaussian10";
+  constexpr std::string_view kKnown =
+      "panel=PROFILE and/or calibration=FILE, and nearest, linear, gaussian3 or gaussian10";
   SinkConfig config = given;
   constexpr std::array<ViewFilter, 4> kFilters{ViewFilter::kLinear, ViewFilter::kNearest, ViewFilter::kGaussian3,
                                                ViewFilter::kGaussian10};
-  const auto filter = kFilters[static_cast<std::size_t>(take_choice(config, {"linear", "nearest", "gaussian3", "gaussian10"}))];
+  const auto filter =
+      kFilters[static_cast<std::size_t>(take_choice(config, {"linear", "nearest", "gaussian3", "gaussian10"}))];
   DUBSAR_ASSIGN(auto panel_choice, take_panel(config));
   DUBSAR_TRY(expect_no_more(config, "lenticular", kKnown));
   if (!panel_choice) return fail(ErrorKind::kUsage, "display lenticular: no panel was named, expected {}", kKnown);
@@ -186,8 +192,8 @@ Result<std::unique_ptr<OutputSink>> make_lenticular_sink(const SinkConfig& given
     return std::make_unique<TrackedSink>(std::move(profile), panel);
   }
   if (!profile.sheet)
-    return fail(ErrorKind::kConfig, "display lenticular: no lens figures of panel {} are known, expected calibration=FILE",
-                profile.name);
+    return fail(ErrorKind::kConfig,
+                "display lenticular: no lens figures of panel {} are known, expected calibration=FILE", profile.name);
   if (profile.sheet->cells.size() > kMaxCells)
     return fail(ErrorKind::kConfig, "display lenticular: {} subpixel cells found, expected at most {}",
                 profile.sheet->cells.size(), kMaxCells);

@@ -7,8 +7,8 @@
 namespace dubsar {
 
 /// Options: PROFILE or panel=PROFILE (a panel's name), nearest, linear (default), gaussian3 or gaussian10,
-/// calibration=FILE (a Looking Glass unit's visual.json; names the model too, unless PROFILE does). The window counts when the screen has the panel's pixels, else the
-/// picture is that of the whole panel.
+/// calibration=FILE (a Looking Glass unit's visual.json; names the model too, unless PROFILE does). The window counts
+/// when the screen has the panel's pixels, else the picture is that of the whole panel.
 Result<std::unique_ptr<OutputSink>> make_lenticular_sink(const SinkConfig& config);
 
 }  // namespace dubsar

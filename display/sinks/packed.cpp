@@ -8,7 +8,7 @@
 namespace dubsar {
 namespace {
 
-constexpr int kGapFraction = 24;  // HDMI 1.4a, 3D frame packing: 45 lines for 1080, 30 for 720
+constexpr int kGapFraction = 24;                          // HDMI 1.4a, 3D frame packing: 45 lines for 1080, 30 for 720
 constexpr GLint kLayerLocation = 0, kOriginLocation = 1;  // shaders/copy.frag
 
 class PackedSink : public OutputSink {
@@ -61,13 +61,15 @@ class PackedSink : public OutputSink {
 Result<std::unique_ptr<OutputSink>> make_packed(SinkConfig config, Packing packing, std::string_view name,
                                                 std::string_view known) {
   packing.right_first = take_choice(config, {"left_first", "right_first"}) == 1;
-  const int size = packing.vertical ? take_choice(config, {"half", "full", "frame_packing"})
-                                    : take_choice(config, {"half", "full"});
+  const int size =
+      packing.vertical ? take_choice(config, {"half", "full", "frame_packing"}) : take_choice(config, {"half", "full"});
   packing.full = size >= 1;
   packing.frame_packing = size == 2;
   DUBSAR_TRY(expect_no_more(config, name, known));
   if (packing.frame_packing && packing.right_first)
-    return fail(ErrorKind::kUsage, "display top_bottom: frame_packing with right_first found, expected left_first: the standard has the left view on top");
+    return fail(ErrorKind::kUsage,
+                "display top_bottom: frame_packing with right_first found, expected left_first: the standard has the "
+                "left view on top");
   return std::make_unique<PackedSink>(packing);
 }
 
@@ -108,7 +110,8 @@ Result<std::unique_ptr<OutputSink>> make_side_by_side_sink(const SinkConfig& con
 }
 
 Result<std::unique_ptr<OutputSink>> make_top_bottom_sink(const SinkConfig& config) {
-  return make_packed(config, {.vertical = true}, "top_bottom", "half, full or frame_packing, left_first or right_first");
+  return make_packed(config, {.vertical = true}, "top_bottom",
+                     "half, full or frame_packing, left_first or right_first");
 }
 
 }  // namespace dubsar

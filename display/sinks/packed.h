@@ -9,7 +9,7 @@
 namespace dubsar {
 
 struct Packing {
-  bool vertical = false;     ///< top and bottom instead of side by side
+  bool vertical = false;  ///< top and bottom instead of side by side
   bool full = false;
   bool frame_packing = false;
   bool right_first = false;  ///< the right eye's view is at the left, or on top

@@ -25,7 +25,8 @@ class QuadBufferSink : public OutputSink {
 
   Result<void> compose(const ViewArray& views, const Surface& target) override {
     if (std::count(target.eye_buffers.begin(), target.eye_buffers.end(), 0u) != 0)
-      return fail(ErrorKind::kUnavailable, "display quad_buffer: this window has one buffer, expected one for each eye (a stereo visual)");
+      return fail(ErrorKind::kUnavailable,
+                  "display quad_buffer: this window has one buffer, expected one for each eye (a stereo visual)");
     for (std::size_t eye = 0; eye < 2; ++eye) {
       DUBSAR_TRY(copy_.begin(target, views.coded()));
       glDrawBuffer(target.eye_buffers[eye]);

@@ -14,7 +14,8 @@ namespace {
 constexpr GLint kTileLocation = 0, kColumnsLocation = 1;  // shaders/quilt.frag
 constexpr int kMaxTiles = 100, kMinTilePx = 8, kMaxQuiltPx = 16384;
 constexpr double kMinAspect = 0.05, kMaxAspect = 20.0;
-constexpr double kFieldOfViewDeg = 14.0;  // vertical, at the place the maker expects the viewer (Looking Glass documentation)
+constexpr double kFieldOfViewDeg =
+    14.0;  // vertical, at the place the maker expects the viewer (Looking Glass documentation)
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
@@ -74,7 +75,8 @@ Result<void> take_number(SinkConfig& config, std::string_view key, double least,
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || !(value >= least && value <= most))
-      return fail(ErrorKind::kUsage, "display quilt: {}={} found, expected a number from {} to {}", key, text, least, most);
+      return fail(ErrorKind::kUsage, "display quilt: {}={} found, expected a number from {} to {}", key, text, least,
+                  most);
     target = value;
     config.options.erase(option);
     return {};
@@ -115,8 +117,8 @@ Result<QuiltLayout> quilt_layout_of(std::string_view file_name, const Image& qui
                 file_name);
   const QuiltLayout layout{name->columns, name->rows, quilt.width, quilt.height};
   if (layout.tile_width() < kMinTilePx || layout.tile_height() < kMinTilePx)
-    return fail(ErrorKind::kBadData, "quilt: \"{}\" says {} x {} tiles, but the picture has only {} x {} pixels", file_name,
-                layout.columns, layout.rows, quilt.width, quilt.height);
+    return fail(ErrorKind::kBadData, "quilt: \"{}\" says {} x {} tiles, but the picture has only {} x {} pixels",
+                file_name, layout.columns, layout.rows, quilt.width, quilt.height);
   return layout;
 }
 
@@ -157,7 +159,8 @@ Result<std::unique_ptr<OutputSink>> make_quilt_sink(const SinkConfig& given) {
   if (panel) {
     const PanelProfile& profile = *panel;
     if (profile.quilt.views() < 1)
-      return fail(ErrorKind::kUsage, "display quilt: panel \"{}\" takes no quilts, expected a Looking Glass", profile.name);
+      return fail(ErrorKind::kUsage, "display quilt: panel \"{}\" takes no quilts, expected a Looking Glass",
+                  profile.name);
     setup = {profile.quilt, profile.aspect, profile.view_cone_deg, profile.height_mm(), profile.design_distance_mm};
   }
   double columns = setup.layout.columns, rows = setup.layout.rows;
@@ -168,7 +171,8 @@ Result<std::unique_ptr<OutputSink>> make_quilt_sink(const SinkConfig& given) {
   DUBSAR_TRY(take_number(config, "height", kMinTilePx, kMaxQuiltPx, height));
   DUBSAR_TRY(take_number(config, "aspect", kMinAspect, kMaxAspect, setup.aspect));
   DUBSAR_TRY(take_number(config, "cone", 1, 170, setup.cone_deg));
-  DUBSAR_TRY(expect_no_more(config, "quilt", "panel=PROFILE, calibration=FILE, columns=, rows=, width=, height=, aspect=, cone="));
+  DUBSAR_TRY(expect_no_more(config, "quilt",
+                            "panel=PROFILE, calibration=FILE, columns=, rows=, width=, height=, aspect=, cone="));
   for (const double whole : {columns, rows, width, height})
     if (whole != std::floor(whole))
       return fail(ErrorKind::kUsage, "display quilt: {} found, expected whole columns, rows and pixels", whole);

@@ -1,6 +1,6 @@
 #pragma once
-// All views of a light field panel in one picture, as tiles: view 0, the leftmost camera, at the lower left, then to the
-// right, then upwards. The file's name carries the layout: NAME_qs8x6a0.75.png has 8 columns, 6 rows, aspect 0.75.
+// All views of a light field panel in one picture, as tiles: view 0, the leftmost camera, at the lower left, then to
+// the right, then upwards. The file's name carries the layout: NAME_qs8x6a0.75.png has 8 columns, 6 rows, aspect 0.75.
 
 #include <optional>
 #include <span>

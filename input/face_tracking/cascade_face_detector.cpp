@@ -36,8 +36,7 @@ class CascadeFaceDetector final : public FaceDetector {
       face.left_eye_px = between + half;
       faces.push_back(face);
     }
-    std::sort(faces.begin(), faces.end(),
-              [](const FaceSeen& a, const FaceSeen& b) { return a.size_px > b.size_px; });
+    std::sort(faces.begin(), faces.end(), [](const FaceSeen& a, const FaceSeen& b) { return a.size_px > b.size_px; });
     return faces;
   }
   /// The cascade has no second look: the whole picture is searched again.
@@ -56,10 +55,10 @@ class CascadeFaceDetector final : public FaceDetector {
       for (int x = 0; x < width; ++x) {
         int sum = 0;
         for (int dy = 0; dy < factor; ++dy) {
-          const std::uint8_t* pixel = picture.rgb + (static_cast<std::size_t>(y * factor + dy) *
-                                                         static_cast<std::size_t>(picture.width) +
-                                                     static_cast<std::size_t>(x * factor)) *
-                                                        3;
+          const std::uint8_t* pixel =
+              picture.rgb + (static_cast<std::size_t>(y * factor + dy) * static_cast<std::size_t>(picture.width) +
+                             static_cast<std::size_t>(x * factor)) *
+                                3;
           for (int dx = 0; dx < factor; ++dx, pixel += 3)
             sum += 77 * pixel[0] + 150 * pixel[1] + 29 * pixel[2];  // Rec. 601
         }

@@ -31,16 +31,15 @@ EyesPlaced place_eyes(const FaceSeen& face, int width, int height, const FaceTra
   EyesPlaced placed;
   if (face.nose_px) {
     const double offset = glm::dot(*face.nose_px - between, unit) / distance_px;
-    placed.yaw_rad =
-        std::clamp(std::atan(offset / kNoseDepth) - std::atan(beside), -kLargestYaw, kLargestYaw);
+    placed.yaw_rad = std::clamp(std::atan(offset / kNoseDepth) - std::atan(beside), -kLargestYaw, kLargestYaw);
   }
   const double seen_share = std::max(0.2, std::cos(placed.yaw_rad) - beside * std::sin(placed.yaw_rad));
   const double depth_m = std::clamp(f * options.ipd_m * seen_share / distance_px, kNearestM, kFarthestM);
   const glm::dvec3 centre_m = options.camera.point_m(between, width, height, depth_m);
   // from the right eye to the left one; a head turned to its left has its left eye further away
-  const glm::dvec3 half_m = 0.5 * options.ipd_m *
-                            glm::dvec3(-unit.x * std::cos(placed.yaw_rad), -unit.y * std::cos(placed.yaw_rad),
-                                       std::sin(placed.yaw_rad));
+  const glm::dvec3 half_m =
+      0.5 * options.ipd_m *
+      glm::dvec3(-unit.x * std::cos(placed.yaw_rad), -unit.y * std::cos(placed.yaw_rad), std::sin(placed.yaw_rad));
   const Pose screen_from_camera = options.camera.screen_from_camera();
   placed.left_m = transform(screen_from_camera, centre_m + half_m);
   placed.right_m = transform(screen_from_camera, centre_m - half_m);
@@ -66,14 +65,13 @@ void FaceTracker::take(const FaceSeen& face, TimestampNs time) {
 Result<void> FaceTracker::track(const Frame& frame, std::vector<HeadFrame>& heads) {
   if (frame.format != PixelFormat::kRgb8 || frame.width < 1 || frame.height < 1 ||
       frame.pixels.size() < frame.view_bytes())
-    return fail(ErrorKind::kBadData, "face tracker: a frame of {} x {} and {} bytes, expected colour",
-                frame.width, frame.height, frame.pixels.size());
+    return fail(ErrorKind::kBadData, "face tracker: a frame of {} x {} and {} bytes, expected colour", frame.width,
+                frame.height, frame.pixels.size());
   const PictureView picture{frame.pixels.data(), frame.width, frame.height};
   std::erase_if(people_, [&](const Person& person) { return frame.time - person.seen > kForgotten; });
   // whoever is followed has the first look of every frame, however large others are
   const auto rank = [&](const Person& person) { return person.id == kept_id_ ? 1e9 : person.face.size_px; };
-  std::stable_sort(people_.begin(), people_.end(),
-                   [&](const Person& a, const Person& b) { return rank(a) > rank(b); });
+  std::stable_sort(people_.begin(), people_.end(), [&](const Person& a, const Person& b) { return rank(a) > rank(b); });
   int refined = 0;
   bool all_here = !people_.empty();
   for (Person& person : people_) {

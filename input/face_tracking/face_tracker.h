@@ -17,8 +17,7 @@ struct FaceTrackerOptions {
   CameraView camera;
   double ipd_m = 0.063;        ///< between the pupils; somebody with 58 mm is placed 9 % too far away
   int look_around_frames = 5;  ///< newcomers are looked for in every so manieth frame
-  int most_refined =
-      1;  ///< faces with a second pass in a frame, the kept and then the largest ones: bounds the time
+  int most_refined = 1;  ///< faces with a second pass in a frame, the kept and then the largest ones: bounds the time
   int most_faces = 6;
 };
 

@@ -28,8 +28,7 @@ class EyeRays {
   static constexpr std::size_t kLanes = kernels::kHandLanes;  ///< 8 columns of 2 rows
 
   /// `ray_from_pixel`: where a pixel of the device's picture looks, in the frame of the eye (x/z, y/z).
-  EyeRays(const std::function<glm::dvec2(const glm::dvec2&)>& ray_from_pixel, int width, int height,
-          int step);
+  EyeRays(const std::function<glm::dvec2(const glm::dvec2&)>& ray_from_pixel, int width, int height, int step);
 
   struct Tile {
     alignas(64) std::array<float, kLanes> x, y, z;

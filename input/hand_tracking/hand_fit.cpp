@@ -41,8 +41,7 @@ RayBox box_of(const glm::dvec3& a, double radius_a, const glm::dvec3& b, double 
     const auto r = static_cast<float>(end ? radius_b : radius_a);
     const float front = std::max(0.02F, c.z - r), back = c.z + r;
     box.low = glm::min(box.low, {(c.x - r) / (c.x > r ? back : front), (c.y - r) / (c.y > r ? back : front)});
-    box.high =
-        glm::max(box.high, {(c.x + r) / (c.x < -r ? back : front), (c.y + r) / (c.y < -r ? back : front)});
+    box.high = glm::max(box.high, {(c.x + r) / (c.x < -r ? back : front), (c.y + r) / (c.y < -r ? back : front)});
   }
   return box;
 }
@@ -110,9 +109,8 @@ void HandFit::assemble(std::span<const EyeSamples> eyes, const HandPrior& prior,
     }
     const auto view = [&](std::size_t t) {
       const EyeSamples::Tile& tile = eye.tiles[t];
-      return kernels::TileView{tile.rays->x.data(), tile.rays->y.data(), tile.rays->z.data(),
-                               tile.skin.data(),    tile.weight.data(),  best_[t].depth.data(),
-                               best_[t].cone.data()};
+      return kernels::TileView{tile.rays->x.data(), tile.rays->y.data(),   tile.rays->z.data(), tile.skin.data(),
+                               tile.weight.data(),  best_[t].depth.data(), best_[t].cone.data()};
     };
     const kernels::Outline outline{static_cast<float>(eye.half_skin), static_cast<float>(eye.light_x_m)};
     std::array<kernels::ConeTerms, kCones> terms;
@@ -140,8 +138,8 @@ void HandFit::assemble(std::span<const EyeSamples> eyes, const HandPrior& prior,
         if (eye.boxes[t].meets(box)) kernels::deepen(terms[c], static_cast<float>(c), outline, view(t));
     }
     for (std::size_t t = 0; t < eye.tiles.size(); t += how.stride)
-      squares += static_cast<double>(kernels::add_samples(terms.data(), slopes_.data(), outline, view(t),
-                                                          static_cast<float>(blur_m), sums));
+      squares += static_cast<double>(
+          kernels::add_samples(terms.data(), slopes_.data(), outline, view(t), static_cast<float>(blur_m), sums));
     normal.samples += eye.samples;
   }
   const double inverse_variance = static_cast<double>(how.stride) / (kSampleSd * kSampleSd);
@@ -150,8 +148,7 @@ void HandFit::assemble(std::span<const EyeSamples> eyes, const HandPrior& prior,
   for (std::size_t j = 0; j < kN; ++j) {
     normal.gradient[j] = inverse_variance * static_cast<double>(sums.gradient[j]);
     for (std::size_t k = 0; k <= j; ++k)
-      normal.matrix[j * kN + k] =
-          inverse_variance * static_cast<double>(sums.matrix[j * kernels::kHandLanes + k]);
+      normal.matrix[j * kN + k] = inverse_variance * static_cast<double>(sums.matrix[j * kernels::kHandLanes + k]);
   }
 
   const auto believe = [&](double difference, double sd, std::size_t j) {
@@ -161,8 +158,7 @@ void HandFit::assemble(std::span<const EyeSamples> eyes, const HandPrior& prior,
     normal.matrix[j * kN + j] += weight;
   };
   believe(std::log(pose.scale / prior.pose.scale), prior.scale_sd, 6);
-  for (std::size_t f = 0; f < 5; ++f)
-    believe(pose.flexion[f] - prior.pose.flexion[f], prior.flexion_sd, 7 + f);
+  for (std::size_t f = 0; f < 5; ++f) believe(pose.flexion[f] - prior.pose.flexion[f], prior.flexion_sd, 7 + f);
   believe(pose.spread - prior.pose.spread, prior.spread_sd, 12);
   believe(pose.wrist_turn_rad - prior.pose.wrist_turn_rad, prior.wrist_sd_rad, 13);
   believe(std::log(pose.finger_length / prior.pose.finger_length), prior.shape_sd, 14);
@@ -178,8 +174,7 @@ void HandFit::assemble(std::span<const EyeSamples> eyes, const HandPrior& prior,
     for (int j = 0; j < 3; ++j) {
       normal.gradient[static_cast<std::size_t>(3 + j)] += w * row[j] * difference[axis];
       for (int k = 0; k <= j; ++k)
-        normal.matrix[static_cast<std::size_t>(3 + j) * kN + static_cast<std::size_t>(3 + k)] +=
-            w * row[j] * row[k];
+        normal.matrix[static_cast<std::size_t>(3 + j) * kN + static_cast<std::size_t>(3 + k)] += w * row[j] * row[k];
     }
   }
 }

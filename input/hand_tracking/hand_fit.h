@@ -16,8 +16,7 @@ namespace dubsar {
 /// What is believed before the picture is looked at: `pose` with these standard deviations.
 struct HandPrior {
   HandPose pose{};
-  double scale_sd = 0.1, tilt_sd_rad = 0.14, flexion_sd = 0.15, spread_sd = 0.3, wrist_sd_rad = 0.1,
-         shape_sd = 0.04;
+  double scale_sd = 0.1, tilt_sd_rad = 0.14, flexion_sd = 0.15, spread_sd = 0.3, wrist_sd_rad = 0.1, shape_sd = 0.04;
 };
 
 struct HandFitResult {
@@ -51,8 +50,8 @@ class HandFit {
     std::array<double, kParameters * kParameters> matrix{};
     Vector gradient{};
   };
-  void assemble(std::span<const EyeSamples> eyes, const HandPrior& prior, const HandPose& pose,
-                const HandFitStep& step, Normal& normal);
+  void assemble(std::span<const EyeSamples> eyes, const HandPrior& prior, const HandPose& pose, const HandFitStep& step,
+                Normal& normal);
 
   struct Best {
     alignas(64) std::array<float, EyeRays::kLanes> depth;

@@ -43,8 +43,8 @@ void Deepen(const ConeTerms& cone, float id, const Outline& outline, const TileV
   }
 }
 
-float AddSamples(const ConeTerms* cones, const ConeSlopes* slopes, const Outline& outline,
-                 const TileView& tile, float blur, NormalSums& sums) {
+float AddSamples(const ConeTerms* cones, const ConeSlopes* slopes, const Outline& outline, const TileView& tile,
+                 float blur, NormalSums& sums) {
   const Tag d;
   const std::size_t lanes = hn::Lanes(d);
   float squares = 0.0F;
@@ -65,11 +65,9 @@ float AddSamples(const ConeTerms* cones, const ConeSlopes* slopes, const Outline
     const ConeSlopes& v = slopes[which];
     const float x = tile.x[i], y = tile.y[i], z = tile.z[i];
     const float ad = c.ax * x + c.ay * y + c.az * z, ed = c.ex * x + c.ey * y + c.ez * z;
-    const float s =
-        std::min(1.0F, std::max(0.0F, c.shift - (c.ae - ad * ed) / std::max(c.ee - ed * ed, 1e-3F * c.ee)));
+    const float s = std::min(1.0F, std::max(0.0F, c.shift - (c.ae - ad * ed) / std::max(c.ee - ed * ed, 1e-3F * c.ee)));
     const float along = ad + s * ed;
-    const float ox = c.ax + s * c.ex - along * x, oy = c.ay + s * c.ey - along * y,
-                oz = c.az + s * c.ez - along * z;
+    const float ox = c.ax + s * c.ex - along * x, oy = c.ay + s * c.ey - along * y, oz = c.az + s * c.ez - along * z;
     const float inverse = 1.0F / std::max(1e-6F, std::sqrt(ox * ox + oy * oy + oz * oz));
     const float turned = -ox * inverse * outline.light_x_m / along;
     const float dark = std::min(0.7F, std::max(0.0F, outline.half - turned));
@@ -79,11 +77,9 @@ float AddSamples(const ConeTerms* cones, const ConeSlopes* slopes, const Outline
     for (std::size_t j = 0; j < kHandLanes; j += lanes) {
       const auto at = [&](const float* p) HWY_ATTR { return hn::Load(d, p + j); };
       const auto a = hn::NegMulAdd(
-          nx, at(v.ax),
-          hn::NegMulAdd(ny, at(v.ay), hn::NegMulAdd(nz, at(v.az), hn::Mul(part, at(v.radius_a)))));
+          nx, at(v.ax), hn::NegMulAdd(ny, at(v.ay), hn::NegMulAdd(nz, at(v.az), hn::Mul(part, at(v.radius_a)))));
       const auto b = hn::NegMulAdd(
-          nx, at(v.bx),
-          hn::NegMulAdd(ny, at(v.by), hn::NegMulAdd(nz, at(v.bz), hn::Mul(part, at(v.radius_b)))));
+          nx, at(v.bx), hn::NegMulAdd(ny, at(v.by), hn::NegMulAdd(nz, at(v.bz), hn::Mul(part, at(v.radius_b)))));
       hn::Store(hn::MulAdd(rest, a, hn::Mul(sv, b)), d, rows + count * kHandLanes + j);
     }
     first[count] = weight * slope * residual;
@@ -97,8 +93,7 @@ float AddSamples(const ConeTerms* cones, const ConeSlopes* slopes, const Outline
     for (std::size_t k = 0; k < kHandParameters; ++k) {
       auto sum = hn::Load(d, sums.matrix + k * kHandLanes + j);
       for (std::size_t i = 0; i < count; ++i)
-        sum = hn::MulAdd(hn::Set(d, second[i] * rows[i * kHandLanes + k]),
-                         hn::Load(d, rows + i * kHandLanes + j), sum);
+        sum = hn::MulAdd(hn::Set(d, second[i] * rows[i * kHandLanes + k]), hn::Load(d, rows + i * kHandLanes + j), sum);
       hn::Store(sum, d, sums.matrix + k * kHandLanes + j);
     }
   }
@@ -117,8 +112,8 @@ HWY_EXPORT(AddSamples);
 void deepen(const ConeTerms& cone, float id, const Outline& outline, const TileView& tile) {
   HWY_DYNAMIC_DISPATCH(Deepen)(cone, id, outline, tile);
 }
-float add_samples(const ConeTerms* cones, const ConeSlopes* slopes, const Outline& outline,
-                  const TileView& tile, float blur, NormalSums& sums) {
+float add_samples(const ConeTerms* cones, const ConeSlopes* slopes, const Outline& outline, const TileView& tile,
+                  float blur, NormalSums& sums) {
   return HWY_DYNAMIC_DISPATCH(AddSamples)(cones, slopes, outline, tile, blur, sums);
 }
 

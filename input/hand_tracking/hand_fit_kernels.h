@@ -18,8 +18,8 @@ struct ConeTerms {
 
 /// How a cone's ends and radii move with each parameter; unused parameters 0.
 struct ConeSlopes {
-  alignas(64) float ax[kHandLanes], ay[kHandLanes], az[kHandLanes], bx[kHandLanes], by[kHandLanes],
-      bz[kHandLanes], radius_a[kHandLanes], radius_b[kHandLanes];
+  alignas(64) float ax[kHandLanes], ay[kHandLanes], az[kHandLanes], bx[kHandLanes], by[kHandLanes], bz[kHandLanes],
+      radius_a[kHandLanes], radius_b[kHandLanes];
 };
 
 /// Skin counts from half of `full` on, a part of the brightness of skin that faces the light. A cone lit from
@@ -46,7 +46,7 @@ void deepen(const ConeTerms& cone, float id, const Outline& outline, const TileV
 
 /// Adds the samples whose depth is less than `blur` from the outline; returns the sum of weighted squares of
 /// all samples.
-float add_samples(const ConeTerms* cones, const ConeSlopes* slopes, const Outline& outline,
-                  const TileView& tile, float blur, NormalSums& sums);
+float add_samples(const ConeTerms* cones, const ConeSlopes* slopes, const Outline& outline, const TileView& tile,
+                  float blur, NormalSums& sums);
 
 }  // namespace dubsar::kernels

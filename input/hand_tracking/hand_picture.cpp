@@ -13,7 +13,8 @@ void blur_121(GrayView in, std::span<std::uint8_t> out) {
   std::vector<std::uint16_t> column(static_cast<std::size_t>(w));
   for (int y = 1; y + 1 < h; ++y) {
     const std::uint8_t* p = in.pixels + y * w;
-    for (int x = 0; x < w; ++x) column[static_cast<std::size_t>(x)] = static_cast<std::uint16_t>(p[x - w] + 2 * p[x] + p[x + w]);
+    for (int x = 0; x < w; ++x)
+      column[static_cast<std::size_t>(x)] = static_cast<std::uint16_t>(p[x - w] + 2 * p[x] + p[x + w]);
     std::uint8_t* to = out.data() + y * w;
     for (int x = 1; x + 1 < w; ++x) {
       const auto i = static_cast<std::size_t>(x);
@@ -36,8 +37,8 @@ std::optional<SkinThreshold> skin_threshold(GrayView picture, double fraction, i
   return SkinThreshold{background + std::max(margin, static_cast<int>(fraction * (level - background))), background};
 }
 
-std::vector<Region> find_regions(GrayView picture, int threshold, int min_area_px, int most, std::span<std::uint8_t> labels,
-                                 std::vector<std::uint32_t>& stack) {
+std::vector<Region> find_regions(GrayView picture, int threshold, int min_area_px, int most,
+                                 std::span<std::uint8_t> labels, std::vector<std::uint32_t>& stack) {
   constexpr std::uint8_t kNew = 254;
   const int w = picture.width, h = picture.height;
   std::fill(labels.begin(), labels.end(), std::uint8_t{0});
@@ -82,7 +83,8 @@ std::vector<Region> find_regions(GrayView picture, int threshold, int min_area_p
 namespace {
 
 /// Lower envelope of parabolas: squared distances along one line, `stride` apart.
-void transform_line(float* values, int count, int stride, std::vector<float>& f, std::vector<int>& v, std::vector<float>& z) {
+void transform_line(float* values, int count, int stride, std::vector<float>& f, std::vector<int>& v,
+                    std::vector<float>& z) {
   for (int i = 0; i < count; ++i) f[static_cast<std::size_t>(i)] = values[i * stride];
   int k = 0;
   v[0] = 0;
@@ -167,7 +169,8 @@ std::optional<Match> match_disk(GrayView left, GrayView right, const glm::dvec2&
       energy += r * r;
     }
     const double variance = static_cast<double>(energy) - static_cast<double>(total) * static_cast<double>(total) / n;
-    scores.push_back(variance > 0.0 && left_energy > 0.0 ? static_cast<double>(cross) / std::sqrt(variance * left_energy) : 0.0);
+    scores.push_back(
+        variance > 0.0 && left_energy > 0.0 ? static_cast<double>(cross) / std::sqrt(variance * left_energy) : 0.0);
   }
   const auto best = static_cast<std::size_t>(std::max_element(scores.begin(), scores.end()) - scores.begin());
   if (best == 0 || best + 1 >= scores.size() || scores[best] < min_score) return std::nullopt;

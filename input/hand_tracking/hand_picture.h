@@ -40,8 +40,8 @@ inline constexpr std::uint8_t kDroppedRegion = 255;
 std::vector<Region> find_regions(GrayView picture, int threshold, int min_area_px, int most,
                                  std::span<std::uint8_t> labels, std::vector<std::uint32_t>& stack);
 
-/// Exact Euclidean distance in pixels to the nearest pixel with another label, for the region's box with a border of one
-/// pixel (Felzenszwalb, Huttenlocher 2012). Row by row, (x1 - x0 + 2) x (y1 - y0 + 2). O(pixels).
+/// Exact Euclidean distance in pixels to the nearest pixel with another label, for the region's box with a border of
+/// one pixel (Felzenszwalb, Huttenlocher 2012). Row by row, (x1 - x0 + 2) x (y1 - y0 + 2). O(pixels).
 void distance_inside(std::span<const std::uint8_t> labels, int width, int height, const Region& region,
                      std::vector<float>& distance);
 

@@ -81,8 +81,7 @@ void remember(const HandPose& pose, const HandGuess& guess, HandMemory& memory) 
 
 }  // namespace
 
-FoundHand search_hand(HandFit& fit, std::span<const EyeSamples> eyes, const HandGuess& guess,
-                      HandMemory& memory) {
+FoundHand search_hand(HandFit& fit, std::span<const EyeSamples> eyes, const HandGuess& guess, HandMemory& memory) {
   std::size_t tiles = 0;
   for (const EyeSamples& eye : eyes) tiles += eye.tiles.size();
   const std::array<HandFitStep, 2> coarse{
@@ -97,8 +96,7 @@ FoundHand search_hand(HandFit& fit, std::span<const EyeSamples> eyes, const Hand
   };
   std::array<Try, 2> best;  // right, left
   best[0].result.cost = best[1].result.cost = 1e9;
-  const auto attempt = [&](const HandPrior& prior, const HandPose& start,
-                           std::span<const HandFitStep> steps) {
+  const auto attempt = [&](const HandPrior& prior, const HandPose& start, std::span<const HandFitStep> steps) {
     const HandFitResult result = fit.fit(eyes, prior, start, steps);
     if (result.cost < best[start.left].result.cost) best[start.left] = {result, prior};
     return misfit(result, eyes) < kFits;
@@ -108,12 +106,12 @@ FoundHand search_hand(HandFit& fit, std::span<const EyeSamples> eyes, const Hand
   const auto start_of = [&](bool left, double turn, double forward, double grab) {
     HandPrior prior = prior_of(memory, grab);
     prior.pose.left = left;
-    prior.pose.palm.rotation = glm::angleAxis(
-        guess.turn_rad + turn + (grab < 0.5 ? alignment[left].turn_rad : 0.0), glm::dvec3(0, 1, 0));
+    prior.pose.palm.rotation =
+        glm::angleAxis(guess.turn_rad + turn + (grab < 0.5 ? alignment[left].turn_rad : 0.0), glm::dvec3(0, 1, 0));
     HandPose start = prior.pose;
     start.palm.position_m =
-        guess.palm_m + guess.radius_m * (start.palm.rotation *
-                                         glm::dvec3((left ? -kSideFist : kSideFist) * grab, 0.0, -forward));
+        guess.palm_m +
+        guess.radius_m * (start.palm.rotation * glm::dvec3((left ? -kSideFist : kSideFist) * grab, 0.0, -forward));
     if (memory.frames == 0) start.scale = std::clamp(guess.radius_m / kRadiusAtScale1, 0.85, 1.15);
     return std::pair(prior, start);
   };

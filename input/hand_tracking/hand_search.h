@@ -14,12 +14,11 @@ namespace dubsar {
 struct HandGuess {
   glm::dvec3 palm_m{};
   double depth_m = 0.0;
-  double radius_m = 0.0;  ///< of the largest circle in the palm
-  double turn_rad = 0.0;  ///< about +Y, 0: fingers to -Z
-  double grab = 0.0;      ///< 0: open hand, 1: fist
-  double pixel_m = 0.0;   ///< size of a pixel at that depth
-  std::vector<double>
-      finger_rad;  ///< directions of fingers that stick out, from the hand's, rising, positive about +Y
+  double radius_m = 0.0;           ///< of the largest circle in the palm
+  double turn_rad = 0.0;           ///< about +Y, 0: fingers to -Z
+  double grab = 0.0;               ///< 0: open hand, 1: fist
+  double pixel_m = 0.0;            ///< size of a pixel at that depth
+  std::vector<double> finger_rad;  ///< directions of fingers that stick out, from the hand's, rising, positive about +Y
 };
 
 /// What is known of one hand from the frames before.
@@ -40,9 +39,8 @@ struct FoundHand {
   bool fits = false;    ///< a hand explains both pictures; otherwise `pose` is no more than the guess
 };
 
-/// Tries starts until one fits: where the hand was, then left and right as guessed, then turned, shifted, opened or closed.
-/// `memory` is brought up to date. About 1 ms if the first start fits, at most about 6.
-FoundHand search_hand(HandFit& fit, std::span<const EyeSamples> eyes, const HandGuess& guess,
-                      HandMemory& memory);
+/// Tries starts until one fits: where the hand was, then left and right as guessed, then turned, shifted, opened or
+/// closed. `memory` is brought up to date. About 1 ms if the first start fits, at most about 6.
+FoundHand search_hand(HandFit& fit, std::span<const EyeSamples> eyes, const HandGuess& guess, HandMemory& memory);
 
 }  // namespace dubsar

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// First guess, in units of the palm radius R, the largest circle in the silhouette of the palm: how far before its centre
-// and how much deeper than what correlation finds the centre of the palm lies, open hand and fist.
+// First guess, in units of the palm radius R, the largest circle in the silhouette of the palm: how far before its
+// centre and how much deeper than what correlation finds the centre of the palm lies, open hand and fist.
 constexpr double kForwardOpen = 0.0, kForwardFist = -0.06;
 constexpr double kDeeperOpen = 0.11, kDeeperFist = 1.0;
 
@@ -21,7 +21,7 @@ constexpr double kReachFist = 1.55, kReachOpen = 2.45;
 
 // Part of the brightness of the palm from which on a pixel is skin and nothing else. Half of it is the outline.
 constexpr double kFullSkin = 0.5;
-constexpr double kBehindPalm = 1.3;  // R: what lies farther to the arm is not looked at: it may be a sleeve
+constexpr double kBehindPalm = 1.3;   // R: what lies farther to the arm is not looked at: it may be a sleeve
 constexpr double kManyPixels = 0.27;  // metres: nearer than this every second column is enough
 
 double smooth_step(double t) { return t = std::clamp(t, 0.0, 1.0), t * t * (3.0 - 2.0 * t); }
@@ -42,7 +42,8 @@ void set_joints(const HandPose& pose, bool fits, HandFrame& hand) {
   for (std::size_t finger = 0; finger < 5; ++finger) {
     const bool seen = fits && pose.flexion[finger] < 0.5 && hand.grab_strength < 0.5;
     const std::size_t count = finger == 0 ? 4 : 5;
-    const int first = static_cast<int>(HandJoint::kThumbMetacarpal) + (finger == 0 ? 0 : 4 + 5 * (static_cast<int>(finger) - 1));
+    const int first =
+        static_cast<int>(HandJoint::kThumbMetacarpal) + (finger == 0 ? 0 : 4 + 5 * (static_cast<int>(finger) - 1));
     for (std::size_t i = 0; i < count; ++i)
       put(static_cast<HandJoint>(first + static_cast<int>(i)), posed.joints_m[finger][i], posed.radii_m[finger][i],
           seen || (fits && i + 3 < count));
@@ -93,8 +94,8 @@ bool HandTracker::track(const Frame& frame, Hands& hands) {
   if (!threshold) return true;
   // The palm of a small hand at the far end of the range, and no less.
   const double palm_px = 0.035 * rig_.focal_px() / options_.farthest_m;
-  const auto regions = find_regions(picture, threshold->grey, static_cast<int>(kPi * palm_px * palm_px), options_.most_hands,
-                                    labels_, stack_);
+  const auto regions = find_regions(picture, threshold->grey, static_cast<int>(kPi * palm_px * palm_px),
+                                    options_.most_hands, labels_, stack_);
   const int d_max = static_cast<int>(std::ceil(rig_.focal_px() * rig_.baseline_m() / options_.nearest_m)) + 1;
   for (const Region& region : regions) {
     const auto silhouette = outline(labels_, width, height, region, distance_);
@@ -175,7 +176,8 @@ void HandTracker::sample(int eye, const Region& region, const Silhouette& s, dou
     samples.boxes.push_back(set.boxes()[t]);
     for (std::size_t i = 0; i < EyeRays::kLanes; ++i) {
       const double z = static_cast<double>(rays.z[i]);
-      const glm::dvec2 at = glm::dvec2(static_cast<double>(rays.x[i]), static_cast<double>(rays.y[i])) / z * f + centre + shift;
+      const glm::dvec2 at =
+          glm::dvec2(static_cast<double>(rays.x[i]), static_cast<double>(rays.y[i])) / z * f + centre + shift;
       // Light falls with the square of the distance: compared with skin of the same depth in the middle.
       tile.skin[i] = static_cast<float>(static_cast<double>(picture[rays.pixel[i]] - background) / (z * z));
       const int x = static_cast<int>(std::lround(at.x)), y = static_cast<int>(std::lround(at.y));
@@ -200,7 +202,8 @@ void HandTracker::sample(int eye, const Region& region, const Silhouette& s, dou
   for (EyeSamples::Tile& tile : samples.tiles)
     for (float& skin : tile.skin) skin = std::clamp(skin * scale, -0.5F, 1.0F);
   // Only the background shows it: skin is cut at 1.
-  samples.noise = samples.samples > 0 ? static_cast<double>(scale) * std::sqrt(2.0 * dark_squares / samples.samples) : 0.0;
+  samples.noise =
+      samples.samples > 0 ? static_cast<double>(scale) * std::sqrt(2.0 * dark_squares / samples.samples) : 0.0;
 }
 
 HandFrame HandTracker::measure(const Region& region, const Silhouette& s, const HandGuess& guess, int background,
@@ -215,7 +218,8 @@ HandFrame HandTracker::measure(const Region& region, const Silhouette& s, const 
   } else {
     known.id = next_id_++;
   }
-  for (const int eye : {0, 1}) sample(eye, region, s, guess.depth_m, background, samples_[static_cast<std::size_t>(eye)]);
+  for (const int eye : {0, 1})
+    sample(eye, region, s, guess.depth_m, background, samples_[static_cast<std::size_t>(eye)]);
   const FoundHand found = search_hand(fit_, samples_, guess, known.memory);
 
   HandFrame hand;

@@ -28,16 +28,16 @@ struct HandTrackerOptions {
 /// Sees hands that are held over the device, palm down, the arm coming from the user's side (+Z). Frame of the result:
 /// origin midway between the eyes, x along the device, y out of it, z to the user; metres.
 ///
-/// No filter, no latency beyond the frame: what is carried on is identity, left or right, size and where the fit starts.
-/// Measured: palm position and rotation, joints of fingers that are in view, grab (mean bend of the four fingers). Not
-/// measured: joints of bent fingers (valid, not tracked). Where no hand fits the pictures, palm and grab come from the
-/// outline alone and the confidence is at most 0.3. One thread per object.
+/// No filter, no latency beyond the frame: what is carried on is identity, left or right, size and where the fit
+/// starts. Measured: palm position and rotation, joints of fingers that are in view, grab (mean bend of the four
+/// fingers). Not measured: joints of bent fingers (valid, not tracked). Where no hand fits the pictures, palm and grab
+/// come from the outline alone and the confidence is at most 0.3. One thread per object.
 class HandTracker {
  public:
   explicit HandTracker(const StereoLenses& lenses, const HandTrackerOptions& options = {});
 
-  /// False: the frame cannot be used (wrong size, or a dark one, which is kept and subtracted from the next ones), `hands`
-  /// stays. Hands that are not seen are not in `hands`: what to do about a lost hand is decided later.
+  /// False: the frame cannot be used (wrong size, or a dark one, which is kept and subtracted from the next ones),
+  /// `hands` stays. Hands that are not seen are not in `hands`: what to do about a lost hand is decided later.
   bool track(const Frame& frame, Hands& hands);
   /// Forgets identities, handedness and the dark frame.
   void reset();

@@ -19,8 +19,8 @@ glm::dvec2 rotated(const glm::dvec2& v, double angle) {
 
 }  // namespace
 
-std::optional<Silhouette> outline(std::span<const std::uint8_t> labels, int width, int height,
-                                  const Region& region, std::vector<float>& distance) {
+std::optional<Silhouette> outline(std::span<const std::uint8_t> labels, int width, int height, const Region& region,
+                                  std::vector<float>& distance) {
   const auto inside = [&](const glm::dvec2& pixel) {
     const int x = static_cast<int>(std::lround(pixel.x)), y = static_cast<int>(std::lround(pixel.y));
     return x >= 0 && y >= 0 && x < width && y < height &&
@@ -81,8 +81,7 @@ std::optional<Silhouette> outline(std::span<const std::uint8_t> labels, int widt
     double best = 0.0;
     glm::dvec2 best_direction(0.0);
     for (int i = 0; i < kDirections; ++i) {
-      if (!in[static_cast<std::size_t>(i)] ||
-          in[static_cast<std::size_t>((i + kDirections - 1) % kDirections)])
+      if (!in[static_cast<std::size_t>(i)] || in[static_cast<std::size_t>((i + kDirections - 1) % kDirections)])
         continue;
       int length = 0;
       while (length < kDirections && in[static_cast<std::size_t>((i + length) % kDirections)]) ++length;
@@ -120,8 +119,7 @@ std::optional<Silhouette> outline(std::span<const std::uint8_t> labels, int widt
     std::size_t low = at, high = at;
     bool is_top = true;
     while (low > 0 && reach[low - 1] > 0.85 * reach[at]) is_top = (reach[--low] < reach[at]) && is_top;
-    while (high + 1 < kRays && reach[high + 1] > 0.85 * reach[at])
-      is_top = (reach[++high] <= reach[at]) && is_top;
+    while (high + 1 < kRays && reach[high + 1] > 0.85 * reach[at]) is_top = (reach[++high] <= reach[at]) && is_top;
     if (!is_top || low == 0 || high + 1 == kRays) continue;
     s.finger_rad.push_back((static_cast<double>(low + high) - 120.0) * kDegree);
   }

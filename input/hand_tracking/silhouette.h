@@ -18,13 +18,12 @@ struct Silhouette {
   glm::dvec2 forward{0.0, 1.0};  ///< unit, picture axes: away from the arm
   double reach = 0.0;            ///< of the fingers from the palm, in radii
   bool arm_seen = false;
-  std::vector<double>
-      finger_rad;  ///< directions of fingers that stick out, rising, from forward, positive from x to y
+  std::vector<double> finger_rad;  ///< directions of fingers that stick out, rising, from forward, positive from x to y
 };
 
 /// For hands held palm down whose arm comes from the top of the picture. `distance` is scratch. Nothing: too
 /// small.
-std::optional<Silhouette> outline(std::span<const std::uint8_t> labels, int width, int height,
-                                  const Region& region, std::vector<float>& distance);
+std::optional<Silhouette> outline(std::span<const std::uint8_t> labels, int width, int height, const Region& region,
+                                  std::vector<float>& distance);
 
 }  // namespace dubsar

@@ -30,7 +30,8 @@ StereoRig::StereoRig(const StereoLenses& lenses)
     for (int y = 0; y < height_; ++y)
       for (int x = 0; x < width_; ++x) {
         const auto pixel = lenses.pixel_from_ray[eye](ray({x, y}));
-        if (!pixel || pixel->x < 0.0 || pixel->y < 0.0 || pixel->x >= lenses.width - 1 || pixel->y >= lenses.height - 1) {
+        if (!pixel || pixel->x < 0.0 || pixel->y < 0.0 || pixel->x >= lenses.width - 1 ||
+            pixel->y >= lenses.height - 1) {
           taps_[eye].push_back({kUnseen, 0, 0});
           continue;
         }
@@ -47,7 +48,8 @@ void StereoRig::rectify(int eye, std::span<const std::uint8_t> picture, int x0, 
                         std::span<std::uint8_t> out) const noexcept {
   for (int y = y0; y < y1; ++y)
     for (int x = x0; x < x1; ++x) {
-      const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+      const std::size_t at =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
       const Tap tap = taps_[eye][at];
       if (tap.offset == kUnseen) {
         out[at] = 0;
@@ -55,7 +57,8 @@ void StereoRig::rectify(int eye, std::span<const std::uint8_t> picture, int x0, 
       }
       const std::uint8_t* p = picture.data() + tap.offset;
       const unsigned top = p[0] * (256U - tap.weight_x) + p[1] * static_cast<unsigned>(tap.weight_x);
-      const unsigned low = p[device_width_] * (256U - tap.weight_x) + p[device_width_ + 1] * static_cast<unsigned>(tap.weight_x);
+      const unsigned low =
+          p[device_width_] * (256U - tap.weight_x) + p[device_width_ + 1] * static_cast<unsigned>(tap.weight_x);
       out[at] = static_cast<std::uint8_t>((top * (256U - tap.weight_y) + low * tap.weight_y + 32768U) >> 16);
     }
 }

@@ -45,7 +45,7 @@ class StereoRig {
 
  private:
   struct Tap {
-    std::uint32_t offset;          // of the upper left pixel; kUnseen
+    std::uint32_t offset;              // of the upper left pixel; kUnseen
     std::uint16_t weight_x, weight_y;  // of the right and lower one, /256
   };
   static constexpr std::uint32_t kUnseen = 0xffffffffU;

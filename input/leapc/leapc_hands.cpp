@@ -85,8 +85,7 @@ HandFrame hand_from_leapc(const leapc::Hand& hand, TimestampNs time) {
                           true};
   };
   for (const JointSource& from : kJoints) {
-    const leapc::Bone& bone =
-        hand.digits[static_cast<std::size_t>(from.digit)][static_cast<std::size_t>(from.bone)];
+    const leapc::Bone& bone = hand.digits[static_cast<std::size_t>(from.digit)][static_cast<std::size_t>(from.bone)];
     place(from.joint, from.end ? bone.end_mm : bone.base_mm, bone);
   }
   place(HandJoint::kWrist, hand.arm.end_mm, hand.arm);

@@ -11,11 +11,8 @@ namespace {
 
 class LeapcSource final : public InputSource {
  public:
-  LeapcSource(std::unique_ptr<leapc::Connection> connection, const Pose& screen_from_device,
-              bool simulated_time)
-      : connection_(std::move(connection)),
-        screen_from_device_(screen_from_device),
-        simulated_time_(simulated_time) {}
+  LeapcSource(std::unique_ptr<leapc::Connection> connection, const Pose& screen_from_device, bool simulated_time)
+      : connection_(std::move(connection)), screen_from_device_(screen_from_device), simulated_time_(simulated_time) {}
 
   std::string_view name() const noexcept override { return "leapc"; }
   Result<void> start() override {
@@ -59,14 +56,13 @@ Result<leapc::Mode> mode_named(std::string_view name) {
   if (name == "desktop") return leapc::Mode::kDesktop;
   if (name == "screentop") return leapc::Mode::kScreenTop;
   if (name == "headmounted") return leapc::Mode::kHeadMounted;
-  return fail(ErrorKind::kUsage, "input leapc: mode={} found, expected desktop, screentop or headmounted",
-              name);
+  return fail(ErrorKind::kUsage, "input leapc: mode={} found, expected desktop, screentop or headmounted", name);
 }
 
 }  // namespace
 
-std::unique_ptr<InputSource> leapc_source(std::unique_ptr<leapc::Connection> connection,
-                                          const Pose& screen_from_device, bool simulated_time) {
+std::unique_ptr<InputSource> leapc_source(std::unique_ptr<leapc::Connection> connection, const Pose& screen_from_device,
+                                          bool simulated_time) {
   return std::make_unique<LeapcSource>(std::move(connection), screen_from_device, simulated_time);
 }
 
@@ -83,14 +79,12 @@ Result<std::unique_ptr<InputSource>> make_leapc_source(const InputConfig& config
     } else {
       DUBSAR_ASSIGN(const bool placed, read_placement(key, value, screen_from_device));
       if (!placed)
-        return fail(
-            ErrorKind::kUsage,
-            "input leapc: option \"{}\" found, expected library=FILE, mode=MODE, at=X/Y/Z or turn=X/Y/Z",
-            key);
+        return fail(ErrorKind::kUsage,
+                    "input leapc: option \"{}\" found, expected library=FILE, mode=MODE, at=X/Y/Z or turn=X/Y/Z", key);
     }
   }
-  return leapc_source(leapc::make_connection(options, config.clock ? *config.clock : kSteady),
-                      screen_from_device, config.simulated_time);
+  return leapc_source(leapc::make_connection(options, config.clock ? *config.clock : kSteady), screen_from_device,
+                      config.simulated_time);
 }
 
 }  // namespace dubsar

@@ -18,8 +18,8 @@ Result<std::unique_ptr<InputSource>> make_leapc_source(const InputConfig& config
 /// screen's. A device that sends nothing for kLeapcSilentNs is lost. `simulated_time`: the service measures
 /// on a clock that has nothing to do with the session's, so that hands bear the time at which they are
 /// polled, and silence means nothing.
-std::unique_ptr<InputSource> leapc_source(std::unique_ptr<leapc::Connection> connection,
-                                          const Pose& screen_from_device, bool simulated_time = false);
+std::unique_ptr<InputSource> leapc_source(std::unique_ptr<leapc::Connection> connection, const Pose& screen_from_device,
+                                          bool simulated_time = false);
 inline constexpr TimestampNs kLeapcSilentNs = 1'000'000'000;
 
 }  // namespace dubsar

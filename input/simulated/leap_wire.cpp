@@ -14,8 +14,7 @@ PosedHand posed(const HandFrame& hand, const Pose& device_from_screen) {
   HandPose pose;
   pose.palm = compose(device_from_screen, hand.palm);
   pose.flexion.fill(hand.grab_strength);
-  const double pinch =
-      std::clamp((kOpenPinch_m - hand.pinch_distance_m) / (kOpenPinch_m - kClosedPinch_m), 0.0, 1.0);
+  const double pinch = std::clamp((kOpenPinch_m - hand.pinch_distance_m) / (kOpenPinch_m - kClosedPinch_m), 0.0, 1.0);
   for (const std::size_t finger : {0U, 1U})
     pose.flexion[finger] = std::max(pose.flexion[finger], kPinchFlexion * pinch);
   pose.left = hand.chirality == Chirality::kLeft;
@@ -25,9 +24,7 @@ PosedHand posed(const HandFrame& hand, const Pose& device_from_screen) {
 class LeapWire final : public WirePerson {
  public:
   LeapWire(WireOptions options, const Clock& clock)
-      : clock_(clock),
-        device_from_screen_(inverse(options.screen_from_device)),
-        seen_(std::move(options.seen)) {
+      : clock_(clock), device_from_screen_(inverse(options.screen_from_device)), seen_(std::move(options.seen)) {
     options.script.latency_s = 0.0;  // the pictures have their own way to go
     Lmc1SimulatorOptions device;
     device.seed = options.script.seed;

@@ -37,8 +37,7 @@ bool listen_to(Transport& device, Transport& client) {
 }  // namespace
 
 Result<LiveWireResult> serve_live_wire(WirePerson& person, const DeviceChoice& choice, const Clock& clock,
-                                       const std::function<bool()>& over,
-                                       const std::function<void(int)>& ready) {
+                                       const std::function<bool()>& over, const std::function<void(int)>& ready) {
   LiveWireResult result;
   const auto port = [&](std::uint16_t usual) {
     return choice.port == 0 ? usual : static_cast<std::uint16_t>(choice.port);
@@ -50,15 +49,14 @@ Result<LiveWireResult> serve_live_wire(WirePerson& person, const DeviceChoice& c
     for (; !person.finished() && !over(); std::this_thread::sleep_for(kTick)) {
       person.advance(clock.now());
       if (!pass_on(*device, *receiver, result))
-        return fail(ErrorKind::kIo, "simulate: cannot send to {} port {}", choice.address,
-                    port(kOpentrackPort));
+        return fail(ErrorKind::kIo, "simulate: cannot send to {} port {}", choice.address, port(kOpentrackPort));
     }
     return result;
   }
   std::unique_ptr<StreamServer> server;
   if (choice.driver == "vrpn") {
-    DUBSAR_ASSIGN(server, listen_tcp(choice.address, choice.port < 0 ? std::uint16_t{0} : port(kVrpnPort),
-                                     choice.allow_remote));
+    DUBSAR_ASSIGN(
+        server, listen_tcp(choice.address, choice.port < 0 ? std::uint16_t{0} : port(kVrpnPort), choice.allow_remote));
   } else if (choice.driver == "spacenav") {
     if (choice.socket.empty())
       return fail(ErrorKind::kUsage, "simulate spacenav: expected the path of the socket to serve");

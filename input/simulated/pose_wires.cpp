@@ -13,11 +13,9 @@ namespace {
 /// The first head of the script in the tracker's frame, facing along the screen's axis; nothing while an eye
 /// is not seen.
 std::optional<Pose> tracked_head(const InputFrame& frame, const Pose& screen_from_tracker) {
-  const auto head =
-      std::find_if(frame.heads.begin(), frame.heads.end(), [](const HeadFrame& h) { return h.id == 0; });
+  const auto head = std::find_if(frame.heads.begin(), frame.heads.end(), [](const HeadFrame& h) { return h.id == 0; });
   if (head == frame.heads.end() || !head->left_eye_m || !head->right_eye_m) return std::nullopt;
-  return compose(inverse(screen_from_tracker),
-                 {0.5 * (*head->left_eye_m + *head->right_eye_m), {1, 0, 0, 0}});
+  return compose(inverse(screen_from_tracker), {0.5 * (*head->left_eye_m + *head->right_eye_m), {1, 0, 0, 0}});
 }
 
 class OpentrackWire final : public ScriptedWire {
@@ -27,8 +25,7 @@ class OpentrackWire final : public ScriptedWire {
 
  private:
   void say(const InputFrame& frame) override {
-    if (const auto pose = tracked_head(frame, place_))
-      device_.send(format_opentrack(opentrack_packet(*pose)));
+    if (const auto pose = tracked_head(frame, place_)) device_.send(format_opentrack(opentrack_packet(*pose)));
   }
   Pose place_;
   SimDevice device_{"simulated opentrack"};
@@ -39,8 +36,7 @@ class VrpnWire final : public ScriptedWire {
   explicit VrpnWire(WireOptions options) : ScriptedWire(options), place_(options.screen_from_device) {
     SimBehaviour behaviour;
     behaviour.on_write = [this](std::span<const std::byte> cookie) -> Result<void> {
-      if (!vrpn_cookie_fits(cookie))
-        return fail(ErrorKind::kBadData, "simulated VRPN: not a client of version 07");
+      if (!vrpn_cookie_fits(cookie)) return fail(ErrorKind::kBadData, "simulated VRPN: not a client of version 07");
       device_.send(vrpn_cookie());
       device_.send(format_vrpn(vrpn_name_message(-1, kSender, "Tracker0")));
       device_.send(format_vrpn(vrpn_name_message(-2, kType, "vrpn_Tracker Pos_Quat")));

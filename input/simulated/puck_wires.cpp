@@ -12,8 +12,7 @@ namespace dubsar {
 namespace {
 
 constexpr double kFullDeflection_m = 0.05, kGrab = 0.8;
-constexpr double kContent_rad = std::numbers::pi / 180.0, kContentZoom = 0.01, kFullTurn_rad = 0.5,
-                 kFullZoom = 0.5;
+constexpr double kContent_rad = std::numbers::pi / 180.0, kContentZoom = 0.01, kFullTurn_rad = 0.5, kFullZoom = 0.5;
 constexpr double kDeadZone = 0.05, kRest = 0.01;
 
 struct Deflection {
@@ -29,8 +28,7 @@ class PuckWire : public ScriptedWire {
   virtual void send(const Deflection& cap) = 0;
 
  private:
-  PuckWire(WireOptions& options, const std::optional<VisitorGoal>& goal)
-      : ScriptedWire(without_visitor(options)) {
+  PuckWire(WireOptions& options, const std::optional<VisitorGoal>& goal) : ScriptedWire(without_visitor(options)) {
     if (!goal) return;
     constexpr double kRad = std::numbers::pi / 180.0;
     goal_ = *goal;
@@ -57,13 +55,11 @@ class PuckWire : public ScriptedWire {
       return {};
     }
     return {{0.0, 0.0, pressed(zoom / kFullZoom)},
-            {pressed(error.x / kFullTurn_rad), pressed(error.y / kFullTurn_rad),
-             pressed(error.z / kFullTurn_rad)}};
+            {pressed(error.x / kFullTurn_rad), pressed(error.y / kFullTurn_rad), pressed(error.z / kFullTurn_rad)}};
   }
   /// Nobody presses less than it takes for something to happen.
   static double pressed(double wanted) {
-    return std::abs(wanted) < kRest ? 0.0
-                                    : std::copysign(std::min(1.0, kDeadZone + std::abs(wanted)), wanted);
+    return std::abs(wanted) < kRest ? 0.0 : std::copysign(std::min(1.0, kDeadZone + std::abs(wanted)), wanted);
   }
 
   Deflection held(const Hands& hands) {
@@ -83,9 +79,7 @@ class PuckWire : public ScriptedWire {
   Deflection last_;
 };
 
-glm::ivec3 raw(const glm::dvec3& share) {
-  return glm::ivec3(glm::round(share * double{kSpaceMouseFullScale}));
-}
+glm::ivec3 raw(const glm::dvec3& share) { return glm::ivec3(glm::round(share * double{kSpaceMouseFullScale})); }
 
 class SpaceMouseWire final : public PuckWire {
  public:

@@ -46,7 +46,9 @@ void only(JsonFields& fields, const json& object, std::initializer_list<std::str
       fields.complain(fmt::format("\"{}\" is not known, expected one of: {}", item.key(), fmt::join(known, ", ")));
 }
 
-double real(JsonFields& f, const char* name, double low, double high, double fallback) { return f.number(name, low, high, &fallback); }
+double real(JsonFields& f, const char* name, double low, double high, double fallback) {
+  return f.number(name, low, high, &fallback);
+}
 
 glm::dvec3 place(JsonFields& f, const json& object, const char* name, const glm::dvec3& fallback_m) {
   if (!f.has(name)) return fallback_m;
@@ -132,8 +134,8 @@ Result<InputEvent> read_event(const json& object, const std::string& where, doub
   only(f, object, {"t", "key", "button", "down", "move_px", "wheel", "shift", "ctrl", "alt"});
   out.time = static_cast<TimestampNs>(1e9 * f.number("t", 0, duration_s));
   out.down = f.flag("down", true);
-  out.modifiers = static_cast<std::uint8_t>((f.flag("shift", false) ? kShift : 0) | (f.flag("ctrl", false) ? kControl : 0) |
-                                            (f.flag("alt", false) ? kAlt : 0));
+  out.modifiers = static_cast<std::uint8_t>((f.flag("shift", false) ? kShift : 0) |
+                                            (f.flag("ctrl", false) ? kControl : 0) | (f.flag("alt", false) ? kAlt : 0));
   if (f.has("key") + f.has("button") + f.has("move_px") + f.has("wheel") != 1)
     f.complain("expected exactly one of key, button, move_px and wheel");
   if (f.has("key")) {
@@ -142,7 +144,8 @@ Result<InputEvent> read_event(const json& object, const std::string& where, doub
   } else if (f.has("button")) {
     out.kind = EventKind::kButton;
     const std::string name = f.text("button", "");
-    if (name != "left" && name != "middle" && name != "right") f.complain(fmt::format("button is \"{}\", expected left, middle or right", name));
+    if (name != "left" && name != "middle" && name != "right")
+      f.complain(fmt::format("button is \"{}\", expected left, middle or right", name));
     out.button = name == "right" ? MouseButton::kRight : name == "middle" ? MouseButton::kMiddle : MouseButton::kLeft;
   } else if (f.has("wheel")) {
     out.kind = EventKind::kWheel;
@@ -186,7 +189,8 @@ std::optional<HandFrame> sample_hand(const HandTrack& track, double t_s) {
   set_joint(hand, HandJoint::kIndexProximal, {0.02 * thumb_side, 0, -0.04});
   set_joint(hand, HandJoint::kMiddleProximal, {0, 0, -0.042});
   set_joint(hand, HandJoint::kIndexTip, {0.02 * thumb_side, 0, -0.04 - 0.07 * (1.0 - hand.grab_strength)});
-  set_joint(hand, HandJoint::kThumbTip, {0.02 * thumb_side, -hand.pinch_distance_m, -0.04 - 0.07 * (1.0 - hand.grab_strength)});
+  set_joint(hand, HandJoint::kThumbTip,
+            {0.02 * thumb_side, -hand.pinch_distance_m, -0.04 - 0.07 * (1.0 - hand.grab_strength)});
   return hand;
 }
 
@@ -204,8 +208,9 @@ Result<Script> parse_script(std::string_view json_text, std::string_view source)
   const std::string where(source);
   JsonFields f(object, where);
   Script out;
-  only(f, object, {"seed", "duration_s", "rate_hz", "latency_ms", "noise_mm", "hand_dropouts", "eye_dropouts", "hands", "heads",
-                   "events", "visitor", "bystanders", "bystander_heads"});
+  only(f, object,
+       {"seed", "duration_s", "rate_hz", "latency_ms", "noise_mm", "hand_dropouts", "eye_dropouts", "hands", "heads",
+        "events", "visitor", "bystanders", "bystander_heads"});
   DUBSAR_TRY(f.finish());
   out.seed = static_cast<std::uint64_t>(real(f, "seed", 0, 9e15, 1));
   out.duration_s = real(f, "duration_s", 0.01, 3600, 10);
@@ -216,31 +221,37 @@ Result<Script> parse_script(std::string_view json_text, std::string_view source)
   out.bystanders = f.integer("bystanders", 0, 3, &none);
   out.bystander_heads = f.flag("bystander_heads", true);
   if (f.has("hand_dropouts")) {
-    DUBSAR_ASSIGN(out.hand_dropouts, read_dropouts(object.at("hand_dropouts"), where + ": hand_dropouts", out.hand_dropouts));
+    DUBSAR_ASSIGN(out.hand_dropouts,
+                  read_dropouts(object.at("hand_dropouts"), where + ": hand_dropouts", out.hand_dropouts));
   }
   if (f.has("eye_dropouts")) {
-    DUBSAR_ASSIGN(out.eye_dropouts, read_dropouts(object.at("eye_dropouts"), where + ": eye_dropouts", out.eye_dropouts));
+    DUBSAR_ASSIGN(out.eye_dropouts,
+                  read_dropouts(object.at("eye_dropouts"), where + ": eye_dropouts", out.eye_dropouts));
   }
   for (const json& item : list(f, object, "hands")) {
-    DUBSAR_ASSIGN(HandTrack hand, read_hand(item, where + ": hand " + std::to_string(out.hands.size()), out.duration_s));
+    DUBSAR_ASSIGN(HandTrack hand,
+                  read_hand(item, where + ": hand " + std::to_string(out.hands.size()), out.duration_s));
     out.hands.push_back(std::move(hand));
   }
   if (out.hands.size() > 4) f.complain("hands has more than 4 things");
   for (const json& item : list(f, object, "heads")) {
-    DUBSAR_ASSIGN(HeadTrack head, read_head(item, where + ": head " + std::to_string(out.heads.size()), out.duration_s));
+    DUBSAR_ASSIGN(HeadTrack head,
+                  read_head(item, where + ": head " + std::to_string(out.heads.size()), out.duration_s));
     out.heads.push_back(std::move(head));
   }
   for (const json& item : list(f, object, "events")) {
-    DUBSAR_ASSIGN(InputEvent event, read_event(item, where + ": event " + std::to_string(out.events.size()), out.duration_s));
+    DUBSAR_ASSIGN(InputEvent event,
+                  read_event(item, where + ": event " + std::to_string(out.events.size()), out.duration_s));
     out.events.push_back(std::move(event));
   }
-  std::stable_sort(out.events.begin(), out.events.end(), [](const InputEvent& a, const InputEvent& b) { return a.time < b.time; });
+  std::stable_sort(out.events.begin(), out.events.end(),
+                   [](const InputEvent& a, const InputEvent& b) { return a.time < b.time; });
   if (f.has("visitor")) {
     const json& visitor = object.at("visitor");
     JsonFields v(visitor, where + ": visitor");
     only(v, visitor, {"yaw_deg", "pitch_deg", "zoom", "patience_s"});
-    out.visitor = VisitorGoal{real(v, "yaw_deg", -180, 180, 0), real(v, "pitch_deg", -90, 90, 0), real(v, "zoom", 0.25, 8, 1),
-                              real(v, "patience_s", 1, 3600, 60)};
+    out.visitor = VisitorGoal{real(v, "yaw_deg", -180, 180, 0), real(v, "pitch_deg", -90, 90, 0),
+                              real(v, "zoom", 0.25, 8, 1), real(v, "patience_s", 1, 3600, 60)};
     DUBSAR_TRY(v.finish());
   }
   DUBSAR_TRY(f.finish());

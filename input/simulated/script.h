@@ -18,7 +18,9 @@ namespace dubsar {
 class ScriptRandom {
  public:
   explicit ScriptRandom(std::uint64_t seed) : engine_(seed) {}
-  double uniform(double low, double high) { return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53; }
+  double uniform(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+  }
   /// Sum of 12 uniforms: mean 0, standard deviation 1, at most 6.
   double normal();
 
@@ -65,7 +67,7 @@ struct Script {
   std::vector<InputEvent> events;  ///< time counts from the script's start
   std::optional<VisitorGoal> visitor;
   int bystanders = 0;
-  bool bystander_heads = true;     ///< a camera sees heads; false: hands only
+  bool bystander_heads = true;  ///< a camera sees heads; false: hands only
 };
 
 /// Reads a script (format: docs/input.md). kConfig by name and range; unknown names are refused; at most 10000 keys.

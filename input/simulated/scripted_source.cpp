@@ -42,12 +42,14 @@ class DropoutClock {
 
 class ScriptedSource final : public InputSource {
  public:
-  ScriptedSource(Script script, const ViewState* seen_view) : script_(std::move(script)), seen_(seen_view), noise_(script_.seed + 101) {
+  ScriptedSource(Script script, const ViewState* seen_view)
+      : script_(std::move(script)), seen_(seen_view), noise_(script_.seed + 101) {
     add_bystanders(script_);
     if (script_.visitor) visitor_.emplace(*script_.visitor, script_.seed);
     const std::size_t hands = script_.hands.size() + 2;
     for (std::size_t i = 0; i < hands; ++i) hand_clocks_.emplace_back(script_.hand_dropouts, script_.seed * 1009 + i);
-    for (std::size_t i = 0; i < 2 * script_.heads.size(); ++i) eye_clocks_.emplace_back(script_.eye_dropouts, script_.seed * 2003 + i);
+    for (std::size_t i = 0; i < 2 * script_.heads.size(); ++i)
+      eye_clocks_.emplace_back(script_.eye_dropouts, script_.seed * 2003 + i);
   }
 
   std::string_view name() const noexcept override { return "scripted"; }

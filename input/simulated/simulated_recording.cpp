@@ -44,14 +44,13 @@ Result<std::int64_t> write_simulated_recording(std::string_view driver, const st
                                                WireOptions options) {
   const double seconds = options.script.duration_s;
   if (driver == "leap" && seconds > kLongestLeap_s)
-    return fail(ErrorKind::kUsage, "simulate leap: {} s found, expected at most {} s (70 MB a second)",
-                seconds, kLongestLeap_s);
+    return fail(ErrorKind::kUsage, "simulate leap: {} s found, expected at most {} s (70 MB a second)", seconds,
+                kLongestLeap_s);
   ManualClock clock;
   DUBSAR_ASSIGN(std::shared_ptr<WirePerson> person, make_wire_person(driver, std::move(options), clock));
-  DUBSAR_ASSIGN(const auto writer,
-                RecordingWriter::create(path, driver, "made by a simulator, no device", clock));
-  const OpenTransport open =
-      [writer, below = reach_wire_person(person, clock)]() -> Result<std::unique_ptr<Transport>> {
+  DUBSAR_ASSIGN(const auto writer, RecordingWriter::create(path, driver, "made by a simulator, no device", clock));
+  const OpenTransport open = [writer,
+                              below = reach_wire_person(person, clock)]() -> Result<std::unique_ptr<Transport>> {
     DUBSAR_ASSIGN(auto transport, below());
     return make_record_transport(std::move(transport), writer);
   };

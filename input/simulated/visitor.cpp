@@ -89,7 +89,8 @@ void SimulatedVisitor::two_hands(double zoom_error, double roll_error_rad) {
   hold(0.1);
   double to = span;
   if (zooms) to = (span + std::copysign(kDeadZoneM, zoom_error)) * std::exp(std::clamp(zoom_error, -0.8, 0.8));
-  const double angle = rolls ? std::clamp(roll_error_rad, -0.7, 0.7) + std::copysign(kRollDeadRad, roll_error_rad) : 0.0;
+  const double angle =
+      rolls ? std::clamp(roll_error_rad, -0.7, 0.7) + std::copysign(kRollDeadRad, roll_error_rad) : 0.0;
   const glm::dvec3 half = 0.5 * to * glm::dvec3(std::cos(angle), std::sin(angle), 0);
   const double seconds = std::max({0.5, std::abs(to - span) / 0.15, std::abs(angle) / 0.7});
   move(kRight, middle + half, seconds);
@@ -125,7 +126,8 @@ void SimulatedVisitor::look(double t_s, const ViewState& seen) {
   busy_until_s_ = t_s;
   hold(random_.uniform(0.2, 0.35));  // thinking
   // A large turn first: what it leaves over as roll and zoom goes to both hands.
-  if (std::hypot(error.x, error.y) > 15.0 * kRad || (!turned && std::abs(error.z) <= kContentRollRad && std::abs(zoom_error) <= kContentZoom)) {
+  if (std::hypot(error.x, error.y) > 15.0 * kRad ||
+      (!turned && std::abs(error.z) <= kContentRollRad && std::abs(zoom_error) <= kContentZoom)) {
     stroke(error);
   } else {
     two_hands(zoom_error, error.z);
@@ -140,12 +142,15 @@ void add_bystanders(Script& script) {
   for (int b = 0; b < script.bystanders; ++b) {
     const double side = (b % 2 == 0) == (script.seed % 2 == 0) ? 1.0 : -1.0;
     const glm::dvec3 head{side * random.uniform(0.4, 0.65), random.uniform(-0.05, 0.2), random.uniform(0.75, 1.1)};
-    if (script.bystander_heads) script.heads.push_back({0.063, {{1.0, head}, {script.duration_s, head + glm::dvec3(-0.05 * side, 0, -0.1)}}});
+    if (script.bystander_heads)
+      script.heads.push_back({0.063, {{1.0, head}, {script.duration_s, head + glm::dvec3(-0.05 * side, 0, -0.1)}}});
     for (double t = random.uniform(2.5, 4.0); t + 4.0 < script.duration_s; t += random.uniform(3.0, 6.0)) {
       HandTrack hand;
       hand.chirality = random.uniform(0, 1) < 0.5 ? Chirality::kLeft : Chirality::kRight;
       hand.shoulder_m = head + glm::dvec3(hand.chirality == Chirality::kLeft ? -0.2 : 0.2, -0.25, 0);
-      const auto spot = [&] { return glm::dvec3(side * random.uniform(-0.05, 0.3), random.uniform(-0.1, 0.1), random.uniform(0.15, 0.4)); };
+      const auto spot = [&] {
+        return glm::dvec3(side * random.uniform(-0.05, 0.3), random.uniform(-0.1, 0.1), random.uniform(0.15, 0.4));
+      };
       HandKey key{t, spot() + glm::dvec3(0.2 * side, -0.1, 0.15)};
       hand.keys.push_back(key);
       for (int i = 0; i < 6; ++i) {

@@ -18,7 +18,7 @@ class SimulatedVisitor {
   const std::array<HandTrack, 2>& hands() const noexcept { return hands_; }  ///< right, left
 
  private:
-  void hold(double seconds);                         ///< both hands stay as they are
+  void hold(double seconds);  ///< both hands stay as they are
   void move(std::size_t hand, const glm::dvec3& to, double seconds);
   void close(double seconds, bool both, double grab);
   void stroke(const glm::dvec3& error_rad);

@@ -28,8 +28,7 @@ class PersonTransport final : public Transport {
     return below_->get_feature(id, out);
   }
   Result<void> set_feature(std::span<const std::byte> report) override { return below_->set_feature(report); }
-  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data,
-                              milliseconds timeout) override {
+  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data, milliseconds timeout) override {
     return below_->control(request, data, timeout);
   }
 
@@ -41,21 +40,18 @@ class PersonTransport final : public Transport {
 
 }  // namespace
 
-Result<std::unique_ptr<WirePerson>> make_wire_person(std::string_view driver, WireOptions options,
-                                                     const Clock& clock) {
+Result<std::unique_ptr<WirePerson>> make_wire_person(std::string_view driver, WireOptions options, const Clock& clock) {
   const Script& script = options.script;
   const bool hands = !script.hands.empty() || script.visitor || script.bystanders > 0;
   const bool puck = driver == "spacemouse" || driver == "spacenav";
   const bool head = driver == "opentrack" || driver == "vrpn" || driver == "rift" || driver == "xreal";
   if (!puck && !head && driver != "leap")
     return fail(ErrorKind::kUsage,
-                "simulate: \"{}\" found, expected spacemouse, spacenav, opentrack, vrpn, rift, xreal or leap",
-                driver);
+                "simulate: \"{}\" found, expected spacemouse, spacenav, opentrack, vrpn, rift, xreal or leap", driver);
   if (script.visitor && !options.seen && !head)
-    return fail(ErrorKind::kUsage,
-                "simulate {}: the script has a visitor, who needs a view to look at (dubsar view)", driver);
-  if (head && script.heads.empty())
-    return fail(ErrorKind::kUsage, "simulate {}: the script has no head", driver);
+    return fail(ErrorKind::kUsage, "simulate {}: the script has a visitor, who needs a view to look at (dubsar view)",
+                driver);
+  if (head && script.heads.empty()) return fail(ErrorKind::kUsage, "simulate {}: the script has no head", driver);
   if (!head && !hands) return fail(ErrorKind::kUsage, "simulate {}: the script has no hands", driver);
   if (head) options.script.visitor.reset();
   if (driver == "spacemouse") return make_spacemouse_wire(std::move(options));
@@ -82,8 +78,7 @@ Script somebody(std::uint64_t seed, double seconds) {
   ScriptRandom random(seed);
   HeadTrack head;
   for (double t = 0.0; t < seconds; t += random.uniform(0.6, 1.5))
-    head.keys.push_back(
-        {t, {random.uniform(-0.12, 0.12), random.uniform(-0.03, 0.06), random.uniform(0.5, 0.7)}});
+    head.keys.push_back({t, {random.uniform(-0.12, 0.12), random.uniform(-0.03, 0.06), random.uniform(0.5, 0.7)}});
   head.keys.push_back({seconds, head.keys.back().at_m});
   script.heads.push_back(std::move(head));
   HandTrack hand;

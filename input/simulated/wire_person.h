@@ -62,8 +62,7 @@ class WirePerson {
 /// spacemouse, spacenav, opentrack, vrpn, rift, xreal, leap. kUsage: another driver, a visitor who sees
 /// nothing, a device for heads and a script without one, and the like. `clock` outlives it and may be read in
 /// any thread.
-Result<std::unique_ptr<WirePerson>> make_wire_person(std::string_view driver, WireOptions options,
-                                                     const Clock& clock);
+Result<std::unique_ptr<WirePerson>> make_wire_person(std::string_view driver, WireOptions options, const Clock& clock);
 
 /// The simulated device as a way to open it: reading lets the person act up to the clock's time.
 OpenTransport reach_wire_person(std::shared_ptr<WirePerson> person, const Clock& clock);

@@ -105,8 +105,7 @@ class DeviceSource final : public InputSource {
       const auto count = static_cast<std::ptrdiff_t>(std::min(room, working_.events.size()));
       events_.insert(events_.end(), working_.events.begin(), working_.events.begin() + count);
     }
-    if (timeout.count() > 0 && !any && !connected_)
-      stop_.wait_for(lock, kIdle, [this] { return stopping_; });
+    if (timeout.count() > 0 && !any && !connected_) stop_.wait_for(lock, kIdle, [this] { return stopping_; });
     return !stopping_;
   }
 
@@ -138,8 +137,7 @@ const Clock& session_clock(const InputConfig& config) {
   return config.clock ? *config.clock : kSteady;
 }
 
-std::unique_ptr<InputSource> make_device_source(DeviceSourceTraits traits,
-                                                std::unique_ptr<DeviceReader> reader,
+std::unique_ptr<InputSource> make_device_source(DeviceSourceTraits traits, std::unique_ptr<DeviceReader> reader,
                                                 const InputConfig& config) {
   return std::make_unique<DeviceSource>(std::move(traits), std::move(reader), config);
 }

@@ -35,8 +35,7 @@ struct DeviceSourceTraits {
   TimestampNs retry_ns = 0;  ///< not 0: tries at least this often to open it (servers that no node announces)
 };
 
-std::unique_ptr<InputSource> make_device_source(DeviceSourceTraits traits,
-                                                std::unique_ptr<DeviceReader> reader,
+std::unique_ptr<InputSource> make_device_source(DeviceSourceTraits traits, std::unique_ptr<DeviceReader> reader,
                                                 const InputConfig& config);
 
 /// config.clock, or the steady clock.

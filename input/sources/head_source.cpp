@@ -44,8 +44,7 @@ glm::dvec3 usual_place_m(std::string_view tracker) noexcept {
 
 std::optional<HeadFrame> head_frame(const HeadSample& sample, const HeadPlacement& placement) {
   const Pose& place = placement.screen_from_tracker;
-  const glm::dquat turn =
-      place.rotation * (sample.has_orientation ? sample.pose.rotation : glm::dquat(1, 0, 0, 0));
+  const glm::dquat turn = place.rotation * (sample.has_orientation ? sample.pose.rotation : glm::dquat(1, 0, 0, 0));
   glm::dvec3 middle{0.0};
   if (sample.has_position) {
     middle = transform(place, sample.pose.position_m) + turn * placement.eyes_m;
@@ -103,12 +102,10 @@ Result<std::unique_ptr<InputSource>> make_head_source(const InputConfig& config)
   traits.before_poll = device.before_poll;
   traits.silent_ns = kSilentNs;
   if (is_orientation_only(choice.driver))
-    traits.note =
-        traits.name + ": measures where the head looks, not where it is; its place is that of a neck model";
+    traits.note = traits.name + ": measures where the head looks, not where it is; its place is that of a neck model";
   if (vrpn || opentrack) traits.retry_ns = kServerRetryNs;
   return make_device_source(
-      std::move(traits), std::make_unique<HeadReader>(std::move(tracker), std::move(device.ended), placement),
-      config);
+      std::move(traits), std::make_unique<HeadReader>(std::move(tracker), std::move(device.ended), placement), config);
 }
 
 }  // namespace dubsar

@@ -1,8 +1,7 @@
-#include "input/input_source.h"
-
 #include <array>
 
 #include "devices/real/real_devices.h"
+#include "input/input_source.h"
 #include "input/leapc/leapc_source.h"
 #include "input/recording.h"
 #include "input/simulated/scripted_source.h"
@@ -24,7 +23,8 @@ constexpr std::array<InputBackend, 10> kSources{{
     {"leapc", "hands from Ultraleap's tracking service: leapc[:library=FILE,mode=desktop,at=X/Y/Z,turn=X/Y/Z]", false,
      make_leapc_source},
     {"head", "a tracked head: head:opentrack, head:vrpn, head:rift, head:xreal", true, make_head_source},
-    {"webcam", "the head from a face, with :hands hands too: webcam[:hands,device=/dev/video0,hfov=60,ipd=63,at=X/Y/Z,tilt=0]",
+    {"webcam",
+     "the head from a face, with :hands hands too: webcam[:hands,device=/dev/video0,hfov=60,ipd=63,at=X/Y/Z,tilt=0]",
      false, make_webcam_source},
     {"scripted", "simulated people: scripted:FILE.json", false, make_scripted_source},
     {"replay", "a recording of any input: replay:FILE.jsonl", false, make_replay_source},
@@ -57,7 +57,8 @@ Result<std::unique_ptr<InputSource>> make_input(std::string_view spec, const Inp
   while (!options.empty()) {
     const std::string_view word = options.substr(0, options.find(','));
     const auto equals = word.find('=');
-    config.options.emplace_back(word.substr(0, equals), equals == std::string_view::npos ? std::string_view() : word.substr(equals + 1));
+    config.options.emplace_back(word.substr(0, equals),
+                                equals == std::string_view::npos ? std::string_view() : word.substr(equals + 1));
     options.remove_prefix(std::min(options.size(), word.size() + 1));
   }
   DUBSAR_ASSIGN(auto source, backend->create(config));

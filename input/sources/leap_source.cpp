@@ -17,8 +17,7 @@ constexpr TimestampNs kSilentNs = 1'000'000'000;
 
 class LeapReader final : public DeviceReader {
  public:
-  LeapReader(SourceDevice device, const LeapCameraOptions& options, const Clock& clock,
-             const Pose& screen_from_leap)
+  LeapReader(SourceDevice device, const LeapCameraOptions& options, const Clock& clock, const Pose& screen_from_leap)
       : driver_(make_leap_camera(std::move(device.open), options, clock)),
         ended_(std::move(device.ended)),
         screen_from_leap_(screen_from_leap) {}
@@ -99,8 +98,7 @@ Result<std::unique_ptr<InputSource>> make_leap_source(const InputConfig& config)
   traits.before_poll = device.before_poll;
   traits.silent_ns = kSilentNs;
   return make_device_source(
-      std::move(traits),
-      std::make_unique<LeapReader>(std::move(device), driver, session_clock(config), place), config);
+      std::move(traits), std::make_unique<LeapReader>(std::move(device), driver, session_clock(config), place), config);
 }
 
 }  // namespace dubsar

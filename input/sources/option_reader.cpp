@@ -79,8 +79,8 @@ glm::dvec3 OptionReader::triple(std::string_view name, double limit, const glm::
     const std::string_view word = rest.substr(0, i < 2 ? rest.find('/') : std::string_view::npos);
     const auto parsed = number_of(word);
     if (!parsed || std::abs(*parsed) > limit) {
-      complain(fmt::format("{} is \"{}\", expected three numbers of {} to {} such as 0/-250/250", name,
-                           *value, -limit, limit));
+      complain(fmt::format("{} is \"{}\", expected three numbers of {} to {} such as 0/-250/250", name, *value, -limit,
+                           limit));
       return fallback;
     }
     out[i] = *parsed;

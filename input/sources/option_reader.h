@@ -17,8 +17,7 @@ namespace dubsar {
 
 class OptionReader {
  public:
-  OptionReader(const InputConfig& config, std::string source)
-      : left_(config.options), source_(std::move(source)) {}
+  OptionReader(const InputConfig& config, std::string source) : left_(config.options), source_(std::move(source)) {}
 
   /// A bare word that stands first, such as a tracker's name; empty when there is none.
   std::string first_word();

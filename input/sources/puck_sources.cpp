@@ -61,8 +61,8 @@ class PuckReader final : public DeviceReader {
 };
 
 template <class Protocol>
-Result<std::unique_ptr<InputSource>> make(const DeviceChoice& choice, OptionReader& options,
-                                          const InputConfig& config, TimestampNs retry_ns) {
+Result<std::unique_ptr<InputSource>> make(const DeviceChoice& choice, OptionReader& options, const InputConfig& config,
+                                          TimestampNs retry_ns) {
   DUBSAR_ASSIGN(SourceDevice device, source_device(choice, options, config));
   DUBSAR_TRY(options.finish());
   DeviceSourceTraits traits;
@@ -71,8 +71,7 @@ Result<std::unique_ptr<InputSource>> make(const DeviceChoice& choice, OptionRead
   traits.before_poll = device.before_poll;
   traits.retry_ns = retry_ns;
   return make_device_source(std::move(traits),
-                            std::make_unique<PuckReader<Protocol>>(std::move(device), session_clock(config)),
-                            config);
+                            std::make_unique<PuckReader<Protocol>>(std::move(device), session_clock(config)), config);
 }
 
 }  // namespace

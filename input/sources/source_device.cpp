@@ -10,8 +10,7 @@ namespace dubsar {
 namespace {
 
 struct Replay {
-  Replay(Recording recording, const Clock& clock, double speed)
-      : session(std::move(recording), clock, speed) {}
+  Replay(Recording recording, const Clock& clock, double speed) : session(std::move(recording), clock, speed) {}
   ReplaySession session;
   std::atomic<bool> ended{false};
 };
@@ -31,8 +30,7 @@ class ReplayedTransport final : public Transport {
     return below_->get_feature(id, out);
   }
   Result<void> set_feature(std::span<const std::byte> report) override { return below_->set_feature(report); }
-  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data,
-                              milliseconds timeout) override {
+  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data, milliseconds timeout) override {
     return below_->control(request, data, timeout);
   }
 
@@ -49,8 +47,7 @@ Result<SourceDevice> simulated_device(std::string_view driver, WireOptions wire,
     before_poll = [seen, view = config.seen_view] { seen->show(*view); };
     wire.seen = std::move(seen);
   }
-  DUBSAR_ASSIGN(std::shared_ptr<WirePerson> person,
-                make_wire_person(driver, std::move(wire), session_clock(config)));
+  DUBSAR_ASSIGN(std::shared_ptr<WirePerson> person, make_wire_person(driver, std::move(wire), session_clock(config)));
   auto ended = person->ended();
   return SourceDevice{reach_wire_person(std::move(person), session_clock(config)), std::move(ended),
                       std::move(before_poll), false};
@@ -62,8 +59,8 @@ Result<SourceDevice> replayed_device(std::string_view driver, const std::string&
                                      const Clock& clock) {
   DUBSAR_ASSIGN(Recording recording, read_recording(file));
   if (recording.driver != driver)
-    return fail(ErrorKind::kBadData, "{}: a recording of \"{}\" found, expected one of \"{}\"", file,
-                recording.driver, driver);
+    return fail(ErrorKind::kBadData, "{}: a recording of \"{}\" found, expected one of \"{}\"", file, recording.driver,
+                driver);
   auto replay = std::make_shared<Replay>(std::move(recording), clock, speed);
   return SourceDevice{[replay]() -> Result<std::unique_ptr<Transport>> {
                         auto opened = replay->session.open();
@@ -78,15 +75,13 @@ Result<SourceDevice> replayed_device(std::string_view driver, const std::string&
                       false};
 }
 
-Result<SourceDevice> source_device(const DeviceChoice& choice, OptionReader& options,
-                                   const InputConfig& config, const Pose& screen_from_device) {
+Result<SourceDevice> source_device(const DeviceChoice& choice, OptionReader& options, const InputConfig& config,
+                                   const Pose& screen_from_device) {
   const Clock& clock = session_clock(config);
   const std::string file = options.text("replay"), script = options.text("simulate");
-  const double speed = options.number("speed", 0.01, 1000.0, 1.0),
-               seed = options.number("seed", -1.0, 9e15, -1.0);
+  const double speed = options.number("speed", 0.01, 1000.0, 1.0), seed = options.number("seed", -1.0, 9e15, -1.0);
   if (!file.empty() && !script.empty())
-    return fail(ErrorKind::kUsage, "input {}: replay and simulate found, expected one of them",
-                choice.driver);
+    return fail(ErrorKind::kUsage, "input {}: replay and simulate found, expected one of them", choice.driver);
   if (!file.empty()) return replayed_device(choice.driver, file, speed, clock);
   if (!script.empty()) {
     WireOptions wire;

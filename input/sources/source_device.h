@@ -21,8 +21,8 @@ struct SourceDevice {
 /// and seed=N (a scripted person before a simulated device that stands at `screen_from_device`); without them
 /// the device that config.reach_device reaches. kUsage, kNoInput, kConfig, kBadData: also a recording of
 /// another driver.
-Result<SourceDevice> source_device(const DeviceChoice& choice, OptionReader& options,
-                                   const InputConfig& config, const Pose& screen_from_device = {});
+Result<SourceDevice> source_device(const DeviceChoice& choice, OptionReader& options, const InputConfig& config,
+                                   const Pose& screen_from_device = {});
 
 /// A recording behind an opener; it may be opened again after each loss that it holds.
 Result<SourceDevice> replayed_device(std::string_view driver, const std::string& file, double speed,

@@ -86,9 +86,8 @@ Result<std::unique_ptr<FaceDetector>> make_detector(const std::filesystem::path&
   if (network || network.error().kind != ErrorKind::kNoInput) return network;
   auto cascade = make_cascade_face_detector(kCascade);
   if (cascade) return cascade;
-  return fail(ErrorKind::kUnavailable,
-              "input webcam: no face network in {} ({} fetches it) and no cascade: {}", models.string(),
-              kModelCommand, cascade.error().message);
+  return fail(ErrorKind::kUnavailable, "input webcam: no face network in {} ({} fetches it) and no cascade: {}",
+              models.string(), kModelCommand, cascade.error().message);
 }
 
 struct WebcamOptions {
@@ -121,11 +120,9 @@ Result<WebcamOptions> read_options(const InputConfig& config, bool with_camera) 
   DUBSAR_TRY(options.finish());
   CaptureFormat& format = read.camera.format;
   char cross = 0, rest = 0;
-  if (std::sscanf(size.c_str(), "%d%c%d%c", &format.width, &cross, &format.height, &rest) != 3 ||
-      cross != 'x' || format.width < 160 || format.width > 4096 || format.height < 120 ||
-      format.height > 4096)
-    return fail(ErrorKind::kUsage, "input webcam: size is \"{}\", expected WIDTHxHEIGHT such as 640x480",
-                size);
+  if (std::sscanf(size.c_str(), "%d%c%d%c", &format.width, &cross, &format.height, &rest) != 3 || cross != 'x' ||
+      format.width < 160 || format.width > 4096 || format.height < 120 || format.height > 4096)
+    return fail(ErrorKind::kUsage, "input webcam: size is \"{}\", expected WIDTHxHEIGHT such as 640x480", size);
   return read;
 }
 
@@ -150,10 +147,9 @@ Result<std::unique_ptr<InputSource>> make_source(WebcamFrames frames, const Webc
   traits.has_end = frames.ended != nullptr;
   traits.silent_ns = traits.has_end ? 0 : kSilentNs;
   if (detector->name() != "network")
-    traits.note =
-        fmt::format("webcam: faces without their network: depth is coarse; {} fetches it", kModelCommand);
-  auto reader = std::make_unique<WebcamReader>(
-      std::move(frames), FaceTracker(std::move(detector), options.tracking), std::move(hands));
+    traits.note = fmt::format("webcam: faces without their network: depth is coarse; {} fetches it", kModelCommand);
+  auto reader = std::make_unique<WebcamReader>(std::move(frames), FaceTracker(std::move(detector), options.tracking),
+                                               std::move(hands));
   return make_device_source(std::move(traits), std::move(reader), config);
 }
 
@@ -189,9 +185,8 @@ Result<std::unique_ptr<InputSource>> make_webcam_source(const InputConfig& confi
     frames.source = std::make_unique<SharedPictures>(std::move(pictures));
   } else {
     if (config.simulated_time)
-      return fail(
-          ErrorKind::kUsage,
-          "input webcam: a camera cannot run in simulated time, expected replay=FOLDER with pictures");
+      return fail(ErrorKind::kUsage,
+                  "input webcam: a camera cannot run in simulated time, expected replay=FOLDER with pictures");
     DUBSAR_ASSIGN(const OpenCapture open, load_capture());
     frames.source = make_camera(options.camera, open, session_clock(config));
   }

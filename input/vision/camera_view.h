@@ -25,9 +25,7 @@ struct CameraView {
     const double f = focal_px(width);
     return {-(pixel.x - 0.5 * width) * depth_m / f, -(pixel.y - 0.5 * height) * depth_m / f, depth_m};
   }
-  Pose screen_from_camera() const noexcept {
-    return {at_m, glm::angleAxis(tilt_rad, glm::dvec3(1.0, 0.0, 0.0))};
-  }
+  Pose screen_from_camera() const noexcept { return {at_m, glm::angleAxis(tilt_rad, glm::dvec3(1.0, 0.0, 0.0))}; }
 };
 
 }  // namespace dubsar

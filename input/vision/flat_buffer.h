@@ -79,8 +79,7 @@ class FlatBuffer {
       ok_ = false;
       return {};
     }
-    Table table{at, static_cast<std::uint64_t>(vtable),
-                number<std::uint16_t>(static_cast<std::uint64_t>(vtable))};
+    Table table{at, static_cast<std::uint64_t>(vtable), number<std::uint16_t>(static_cast<std::uint64_t>(vtable))};
     if (table.vtable_bytes < 4 || !inside(table.vtable, table.vtable_bytes)) {
       ok_ = false;
       return {};

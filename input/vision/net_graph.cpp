@@ -9,7 +9,7 @@ namespace dubsar {
 namespace {
 
 constexpr std::int64_t kMostElements = std::int64_t{1} << 24;  // of one tensor: 64 MiB
-constexpr std::int64_t kMostWork = 10'000'000'000;  // multiplications; palms and hands take less than 1
+constexpr std::int64_t kMostWork = 10'000'000'000;             // multiplications; palms and hands take less than 1
 constexpr int kLargestSize = 1 << 14;
 constexpr int kLargestFilter = 64;
 
@@ -32,8 +32,7 @@ class GraphCheck {
         return fail(ErrorKind::kBadData, "{}: operation {} of {}: {}", source_, i, graph_.ops.size(), wrong);
     if (graph_.outputs.empty()) return fail(ErrorKind::kBadData, "{}: no outputs", source_);
     for (const int output : graph_.outputs)
-      if (!exists(output) || !known_[index(output)] || graph_.tensors[index(output)].constant ||
-          output == graph_.input)
+      if (!exists(output) || !known_[index(output)] || graph_.tensors[index(output)].constant || output == graph_.input)
         return fail(ErrorKind::kBadData, "{}: output {} is made by no operation", source_, output);
     return {};
   }
@@ -48,8 +47,8 @@ class GraphCheck {
     for (const int size : tensor.shape) {
       if (size < 1 || size > kLargestSize || count * size > kMostElements)
         return fail(ErrorKind::kBadData,
-                    "{}: tensor {} has a size of {}, expected 1 to {} and 16 million elements at most",
-                    source_, i, size, kLargestSize);
+                    "{}: tensor {} has a size of {}, expected 1 to {} and 16 million elements at most", source_, i,
+                    size, kLargestSize);
       count *= size;
     }
     if (tensor.constant && static_cast<std::int64_t>(tensor.numbers.size() + tensor.integers.size()) != count)
@@ -114,8 +113,7 @@ class GraphCheck {
   }
 
   const char* same_shapes(const NetOp& op, std::array<std::size_t, 2> which) const {
-    const bool same =
-        input(op, which[0]).shape == output(op).shape && input(op, which[1]).shape == output(op).shape;
+    const bool same = input(op, which[0]).shape == output(op).shape && input(op, which[1]).shape == output(op).shape;
     return same ? nullptr : "operands and output differ in shape";
   }
 
@@ -136,28 +134,23 @@ class GraphCheck {
     const int channels = weights.shape[depthwise ? 3 : 0];
     if (depthwise ? weights.shape[0] != 1 || channels % in.shape[3] != 0 : weights.shape[3] != in.shape[3])
       return "weights do not fit the channels";
-    if (weights.shape[1] > kLargestFilter || weights.shape[2] > kLargestFilter)
-      return "the filter is too large";
+    if (weights.shape[1] > kLargestFilter || weights.shape[2] > kLargestFilter) return "the filter is too large";
     if (bias.count() != channels) return "one bias for each channel expected";
     work_ += output(op).count() * (weights.count() / channels);
-    if (work_ > kMostWork)
-      return "more than 10 billion multiplications by now, expected a network for live pictures";
+    if (work_ > kMostWork) return "more than 10 billion multiplications by now, expected a network for live pictures";
     return check_window(op, weights.shape[1], weights.shape[2], channels);
   }
   const char* check_pool(const NetOp& op) const {
-    return check_window(op, op.filter_rows, op.filter_columns,
-                        picture(input(op, 0)) ? input(op, 0).shape[3] : 0);
+    return check_window(op, op.filter_rows, op.filter_columns, picture(input(op, 0)) ? input(op, 0).shape[3] : 0);
   }
   const char* check_prelu(const NetOp& op) const {
-    if (!picture(input(op, 0)) ||
-        input(op, 1).numbers.size() != static_cast<std::size_t>(input(op, 0).shape[3]))
+    if (!picture(input(op, 0)) || input(op, 1).numbers.size() != static_cast<std::size_t>(input(op, 0).shape[3]))
       return "one slope for each channel expected";
     return same_shapes(op, {0, 0});
   }
   const char* check_pad(const NetOp& op) const {
     const NetTensor &in = input(op, 0), &out = output(op), &by = input(op, 1);
-    if (!picture(in) || !picture(out) || by.integers.size() != 8)
-      return "pictures and eight paddings expected";
+    if (!picture(in) || !picture(out) || by.integers.size() != 8) return "pictures and eight paddings expected";
     for (std::size_t i = 0; i < 4; ++i) {
       const std::int64_t before = by.integers[2 * i], after = by.integers[2 * i + 1];
       if (before < 0 || after < 0 || in.shape[i] + before + after != out.shape[i])
@@ -196,9 +189,9 @@ class GraphCheck {
     using Axes = std::vector<std::int32_t>;
     const NetTensor &in = input(op, 0), &out = output(op);
     const Axes& axes = input(op, 1).integers;
-    if (!picture(in) || (axes != Axes{1, 2} && axes != Axes{2, 1}) || out.shape.empty() ||
-        out.shape[0] != 1 || (out.shape.size() != 2 && out.shape.size() != 4) ||
-        out.shape.back() != in.shape[3] || out.count() != in.shape[3])
+    if (!picture(in) || (axes != Axes{1, 2} && axes != Axes{2, 1}) || out.shape.empty() || out.shape[0] != 1 ||
+        (out.shape.size() != 2 && out.shape.size() != 4) || out.shape.back() != in.shape[3] ||
+        out.count() != in.shape[3])
       return "a mean over rows and columns expected";
     return nullptr;
   }
@@ -226,8 +219,6 @@ NetPadding same_padding(int size, int filter, int stride) noexcept {
   return {both / 2, both - both / 2};
 }
 
-Result<void> check_graph(const NetGraph& graph, std::string_view source) {
-  return GraphCheck(graph, source).run();
-}
+Result<void> check_graph(const NetGraph& graph, std::string_view source) { return GraphCheck(graph, source).run(); }
 
 }  // namespace dubsar

@@ -46,8 +46,7 @@ struct NetOp {
   NetOpKind kind = NetOpKind::kAdd;
   std::vector<int> inputs;  ///< tensors
   int output = 0;
-  bool same_padding =
-      true;  ///< output size is input size / stride, rounded up; the odd pixel of padding comes last
+  bool same_padding = true;  ///< output size is input size / stride, rounded up; the odd pixel of padding comes last
   int stride_rows = 1, stride_columns = 1;
   int filter_rows = 1, filter_columns = 1;
   int axis = 0;

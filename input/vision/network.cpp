@@ -87,9 +87,9 @@ class Builder {
         return finish(op, "Eltwise", params);
       case NetOpKind::kPrelu: {
         const NetTensor& slopes = tensor(op.inputs[1]);
-        params.blobs.emplace_back(cv::Mat(1, static_cast<int>(slopes.numbers.size()), CV_32F,
-                                          const_cast<float*>(slopes.numbers.data()))
-                                      .clone());
+        params.blobs.emplace_back(
+            cv::Mat(1, static_cast<int>(slopes.numbers.size()), CV_32F, const_cast<float*>(slopes.numbers.data()))
+                .clone());
         return finish(op, "PReLU", params);
       }
       case NetOpKind::kRelu:
@@ -106,8 +106,7 @@ class Builder {
       case NetOpKind::kMaxPool:
         params.set("pool", "max");
         params.set("ceil_mode", false);
-        set_window(op, op.filter_rows, op.filter_columns, padding_of(op, op.filter_rows, op.filter_columns),
-                   params);
+        set_window(op, op.filter_rows, op.filter_columns, padding_of(op, op.filter_rows, op.filter_columns), params);
         return finish(op, "Pooling", params);
       case NetOpKind::kResizeBilinear:
         params.set("interpolation", "bilinear");
@@ -130,8 +129,8 @@ class Builder {
         params.set("pool", "ave");
         params.set("global_pooling", true);
         if (tensor(op.output).shape.size() == 4) return finish(op, "Pooling", params);
-        const int mean = layer(name_of(op.output) + "_mean", "Pooling", params,
-                               {layers_[static_cast<std::size_t>(op.inputs[0])]});
+        const int mean =
+            layer(name_of(op.output) + "_mean", "Pooling", params, {layers_[static_cast<std::size_t>(op.inputs[0])]});
         LayerParams flat;
         flat.set("axis", 1);
         return finish_from(op, "Flatten", flat, {mean});
@@ -139,15 +138,14 @@ class Builder {
       case NetOpKind::kFullyConnected: {
         LayerParams flat;
         flat.set("axis", 1);
-        const int row = layer(name_of(op.output) + "_row", "Flatten", flat,
-                              {layers_[static_cast<std::size_t>(op.inputs[0])]});
+        const int row =
+            layer(name_of(op.output) + "_row", "Flatten", flat, {layers_[static_cast<std::size_t>(op.inputs[0])]});
         const NetTensor &weights = tensor(op.inputs[1]), &bias = tensor(op.inputs[2]);
         params.set("axis", 1);
         params.set("num_output", weights.shape[0]);
         params.set("bias_term", true);
         params.blobs.emplace_back(
-            cv::Mat(weights.shape[0], weights.shape[1], CV_32F, const_cast<float*>(weights.numbers.data()))
-                .clone());
+            cv::Mat(weights.shape[0], weights.shape[1], CV_32F, const_cast<float*>(weights.numbers.data())).clone());
         params.blobs.emplace_back(
             cv::Mat(1, weights.shape[0], CV_32F, const_cast<float*>(bias.numbers.data())).clone());
         return finish_from(op, "InnerProduct", params, {row});
@@ -162,8 +160,7 @@ class Builder {
   Padding padding_of(const NetOp& op, int filter_rows, int filter_columns) const {
     const auto& in = tensor(op.inputs[0]).shape;
     if (!op.same_padding) return {};
-    return {same_padding(in[1], filter_rows, op.stride_rows),
-            same_padding(in[2], filter_columns, op.stride_columns)};
+    return {same_padding(in[1], filter_rows, op.stride_rows), same_padding(in[2], filter_columns, op.stride_columns)};
   }
 
   static void set_window(const NetOp& op, int filter_rows, int filter_columns, const Padding& padding,
@@ -190,16 +187,16 @@ class Builder {
       for (int i = 0; i < in; ++i)
         for (int y = 0; y < filter_rows; ++y)
           for (int x = 0; x < filter_columns; ++x) {
-            const int at = depthwise ? (y * filter_columns + x) * out + o
-                                     : ((o * filter_rows + y) * filter_columns + x) * in + i;
+            const int at =
+                depthwise ? (y * filter_columns + x) * out + o : ((o * filter_rows + y) * filter_columns + x) * in + i;
             *to++ = weights.numbers[static_cast<std::size_t>(at)];
           }
     Padding padding = padding_of(op, filter_rows, filter_columns);
     int from = layers_[static_cast<std::size_t>(op.inputs[0])];
     if (!padding.symmetric()) {  // OpenCV's convolution knows only symmetric padding
       LayerParams around;
-      around.set("paddings", list({0, 0, 0, 0, padding.rows.before, padding.rows.after,
-                                   padding.columns.before, padding.columns.after}));
+      around.set("paddings", list({0, 0, 0, 0, padding.rows.before, padding.rows.after, padding.columns.before,
+                                   padding.columns.after}));
       from = layer(name_of(op.output) + "_padded", "Padding", around, {from});
       padding = {};
     }
@@ -237,8 +234,7 @@ Result<Network> Network::build(const NetGraph& graph, std::string_view source) {
   for (const int output : graph.outputs) {
     const NetTensor& tensor = graph.tensors[static_cast<std::size_t>(output)];
     if (tensor.shape.size() == 4)
-      return fail(ErrorKind::kBadData, "{}: output {} is a picture, expected a row or a table", source,
-                  output);
+      return fail(ErrorKind::kBadData, "{}: output {} is a picture, expected a row or a table", source, output);
     impl->names.push_back(name_of(output));
     impl->counts.push_back(tensor.count());
   }
@@ -263,11 +259,10 @@ Result<Network> Network::build(const NetGraph& graph, std::string_view source) {
 Result<Network> Network::read(const std::filesystem::path& path) {
   DUBSAR_ASSIGN(const InputFile file, InputFile::open(path));
   if (file.size() > kMostBytes)
-    return fail(ErrorKind::kBadData, "{}: {} bytes, expected a network of at most {}", path.string(),
-                file.size(), kMostBytes);
+    return fail(ErrorKind::kBadData, "{}: {} bytes, expected a network of at most {}", path.string(), file.size(),
+                kMostBytes);
   DUBSAR_ASSIGN(const std::string bytes, read_bytes(file, 0, file.size()));
-  DUBSAR_ASSIGN(const NetGraph graph,
-                read_tflite(std::as_bytes(std::span(bytes.data(), bytes.size())), path.string()));
+  DUBSAR_ASSIGN(const NetGraph graph, read_tflite(std::as_bytes(std::span(bytes.data(), bytes.size())), path.string()));
   return build(graph, path.string());
 }
 

@@ -9,8 +9,7 @@ namespace dubsar {
 namespace {
 
 /// Mean of factor x factor pixels; a border that does not fill a block is left out.
-void reduce(const PictureView& from, int x0, int y0, int width, int height, int factor,
-            std::vector<std::uint8_t>& to) {
+void reduce(const PictureView& from, int x0, int y0, int width, int height, int factor, std::vector<std::uint8_t>& to) {
   to.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
   const unsigned area = static_cast<unsigned>(factor * factor);
   const unsigned inverse = (1u << 20) / area;  // sums are below 2^12 for factors up to 16: no overflow
@@ -19,10 +18,10 @@ void reduce(const PictureView& from, int x0, int y0, int width, int height, int 
     for (int x = 0; x < width; ++x, out += 3) {
       unsigned red = 0, green = 0, blue = 0;
       for (int dy = 0; dy < factor; ++dy) {
-        const std::uint8_t* pixel = from.rgb + (static_cast<std::size_t>(y0 + y * factor + dy) *
-                                                    static_cast<std::size_t>(from.width) +
-                                                static_cast<std::size_t>(x0 + x * factor)) *
-                                                   3;
+        const std::uint8_t* pixel =
+            from.rgb + (static_cast<std::size_t>(y0 + y * factor + dy) * static_cast<std::size_t>(from.width) +
+                        static_cast<std::size_t>(x0 + x * factor)) *
+                           3;
         for (int dx = 0; dx < factor; ++dx, pixel += 3) {
           red += pixel[0];
           green += pixel[1];
@@ -46,8 +45,8 @@ glm::dvec2 SquareCrop::to_picture(const glm::dvec2& unit) const noexcept {
   return centre_px + glm::dvec2(c * from_centre.x - s * from_centre.y, s * from_centre.x + c * from_centre.y);
 }
 
-void PictureSampler::sample(const PictureView& picture, const SquareCrop& crop, int size, float scale,
-                            float offset, std::span<float> planes) {
+void PictureSampler::sample(const PictureView& picture, const SquareCrop& crop, int size, float scale, float offset,
+                            std::span<float> planes) {
   const std::size_t plane = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
   DUBSAR_CHECK(planes.size() == 3 * plane && picture.width > 0 && picture.height > 0);
   std::fill(planes.begin(), planes.end(), offset);
@@ -58,8 +57,7 @@ void PictureSampler::sample(const PictureView& picture, const SquareCrop& crop, 
   // the part of the picture that the square touches
   const int factor = std::clamp(static_cast<int>(crop.side_px / size + 0.25), 1, 16);
   const double reach =
-      0.5 * crop.side_px * (std::abs(std::cos(crop.turn_rad)) + std::abs(std::sin(crop.turn_rad))) +
-      2.0 * factor;
+      0.5 * crop.side_px * (std::abs(std::cos(crop.turn_rad)) + std::abs(std::sin(crop.turn_rad))) + 2.0 * factor;
   const int x0 = std::max(0, static_cast<int>(std::floor(crop.centre_px.x - reach)));
   const int y0 = std::max(0, static_cast<int>(std::floor(crop.centre_px.y - reach)));
   const int x1 = std::min(picture.width, static_cast<int>(std::ceil(crop.centre_px.x + reach)));
@@ -74,11 +72,9 @@ void PictureSampler::sample(const PictureView& picture, const SquareCrop& crop, 
     origin = {x0, y0};
   }
 
-  const glm::dvec2 start =
-      (crop.to_picture({0.5 / size, 0.5 / size}) - origin) / static_cast<double>(factor) - 0.5;
+  const glm::dvec2 start = (crop.to_picture({0.5 / size, 0.5 / size}) - origin) / static_cast<double>(factor) - 0.5;
   const double step = crop.side_px / (size * factor);
-  const glm::dvec2 along(step * std::cos(crop.turn_rad), step * std::sin(crop.turn_rad)),
-      down(-along.y, along.x);
+  const glm::dvec2 along(step * std::cos(crop.turn_rad), step * std::sin(crop.turn_rad)), down(-along.y, along.x);
   const std::size_t stride = static_cast<std::size_t>(from.width) * 3;
   const std::uint8_t black[3] = {0, 0, 0};
   const auto pixel = [&](int x, int y) {
@@ -88,8 +84,7 @@ void PictureSampler::sample(const PictureView& picture, const SquareCrop& crop, 
   };
   for (int row = 0; row < size; ++row)
     for (int column = 0; column < size; ++column) {
-      const double x = start.x + column * along.x + row * down.x,
-                   y = start.y + column * along.y + row * down.y;
+      const double x = start.x + column * along.x + row * down.x, y = start.y + column * along.y + row * down.y;
       if (x <= -1.0 || y <= -1.0 || x >= from.width || y >= from.height) continue;
       const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
       const auto u = static_cast<float>(x - left), v = static_cast<float>(y - top);

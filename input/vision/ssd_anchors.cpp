@@ -12,8 +12,7 @@ std::vector<glm::dvec2> make_anchors(std::span<const AnchorGrid> grids) {
   for (const AnchorGrid& grid : grids)
     for (int y = 0; y < grid.cells; ++y)
       for (int x = 0; x < grid.cells; ++x)
-        for (int k = 0; k < grid.per_cell; ++k)
-          anchors.emplace_back((x + 0.5) / grid.cells, (y + 0.5) / grid.cells);
+        for (int k = 0; k < grid.per_cell; ++k) anchors.emplace_back((x + 0.5) / grid.cells, (y + 0.5) / grid.cells);
   return anchors;
 }
 
@@ -21,16 +20,13 @@ std::vector<SsdDetection> decode_ssd(std::span<const float> boxes, std::span<con
                                      std::span<const glm::dvec2> anchors, std::size_t points, double input_px,
                                      double least_score) {
   const std::size_t stride = 4 + 2 * points;
-  DUBSAR_CHECK(points <= kMostPoints && scores.size() == anchors.size() &&
-               boxes.size() == anchors.size() * stride);
+  DUBSAR_CHECK(points <= kMostPoints && scores.size() == anchors.size() && boxes.size() == anchors.size() * stride);
   const auto least_logit = static_cast<float>(std::log(least_score / (1.0 - least_score)));
   std::vector<SsdDetection> found;
   for (std::size_t i = 0; i < anchors.size(); ++i) {
     if (!(scores[i] >= least_logit)) continue;
     const std::span<const float> raw = boxes.subspan(i * stride, stride);
-    const auto point = [&](std::size_t at) {
-      return anchors[i] + glm::dvec2(raw[at], raw[at + 1]) / input_px;
-    };
+    const auto point = [&](std::size_t at) { return anchors[i] + glm::dvec2(raw[at], raw[at + 1]) / input_px; };
     SsdDetection detection;
     detection.score = 1.0 / (1.0 + std::exp(-static_cast<double>(scores[i])));
     const glm::dvec2 half = glm::dvec2(raw[2], raw[3]) / (2.0 * input_px);

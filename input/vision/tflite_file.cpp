@@ -14,8 +14,7 @@ using Table = FlatBuffer::Table;
 using Vector = FlatBuffer::Vector;
 
 constexpr std::uint32_t kMostTensors = 8192, kMostOps = 4096, kMostDimensions = 8;
-constexpr std::int64_t kMostConstants = std::int64_t{1}
-                                        << 25;  // all together; several tensors may name one buffer
+constexpr std::int64_t kMostConstants = std::int64_t{1} << 25;  // all together; several tensors may name one buffer
 
 enum TensorType : std::int8_t { kFloat32 = 0, kFloat16 = 1, kInt32 = 2 };
 
@@ -60,8 +59,7 @@ float widened(std::uint16_t half) {
   const int exponent = (half >> 10) & 31, mantissa = half & 1023;
   if (exponent == 0) return sign * std::ldexp(static_cast<float>(mantissa), -24);
   if (exponent == 31)
-    return mantissa == 0 ? sign * std::numeric_limits<float>::infinity()
-                         : std::numeric_limits<float>::quiet_NaN();
+    return mantissa == 0 ? sign * std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
   return sign * std::ldexp(static_cast<float>(mantissa + 1024), exponent - 25);
 }
 
@@ -74,17 +72,14 @@ class Reader {
     if (const auto version = file_.value<std::uint32_t>(model, 0, 0); !file_.ok() || version != 3)
       return fail(ErrorKind::kBadData, "{}: not a TensorFlow Lite model of version 3", source_);
     const Vector graphs = file_.vector(model, 2, 4);
-    if (graphs.count != 1)
-      return fail(ErrorKind::kBadData, "{}: {} graphs found, expected 1", source_, graphs.count);
+    if (graphs.count != 1) return fail(ErrorKind::kBadData, "{}: {} graphs found, expected 1", source_, graphs.count);
     const Table subgraph = file_.element_table(graphs, 0);
     DUBSAR_TRY(read_tensors(subgraph, file_.vector(model, 4, 4)));
     DUBSAR_TRY(read_ops(subgraph, file_.vector(model, 1, 4)));
     const std::vector<int> inputs = integers(file_.vector(subgraph, 1, 4));
     graph_.outputs = integers(file_.vector(subgraph, 2, 4));
-    if (!file_.ok())
-      return fail(ErrorKind::kBadData, "{}: damaged: something lies outside the file", source_);
-    if (inputs.size() != 1)
-      return fail(ErrorKind::kBadData, "{}: {} inputs found, expected 1", source_, inputs.size());
+    if (!file_.ok()) return fail(ErrorKind::kBadData, "{}: damaged: something lies outside the file", source_);
+    if (inputs.size() != 1) return fail(ErrorKind::kBadData, "{}: {} inputs found, expected 1", source_, inputs.size());
     graph_.input = inputs[0];
     DUBSAR_TRY(check_graph(graph_, source_));
     return std::move(graph_);
@@ -118,8 +113,7 @@ class Reader {
       if (file_.vector(file_.table(table, 6), 0, 4).count > 0)
         return fail(ErrorKind::kBadData, "{}: sparse weights are not known", source_);
       tensor.constant = true;
-      DUBSAR_TRY(
-          read_constant(i, file_.value<std::int8_t>(table, 1, kFloat32), file_.bytes_of(data), tensor));
+      DUBSAR_TRY(read_constant(i, file_.value<std::int8_t>(table, 1, kFloat32), file_.bytes_of(data), tensor));
     }
     return {};
   }
@@ -128,8 +122,8 @@ class Reader {
     const std::size_t width = type == kFloat16 ? 2 : 4;
     if (type != kFloat32 && type != kFloat16 && type != kInt32)
       return fail(ErrorKind::kBadData,
-                  "{}: tensor {} has numbers of type {}, expected 32- or 16-bit floats or 32-bit integers",
-                  source_, i, type);
+                  "{}: tensor {} has numbers of type {}, expected 32- or 16-bit floats or 32-bit integers", source_, i,
+                  type);
     const std::size_t count = bytes.size() / width;
     constants_ += static_cast<std::int64_t>(count);
     if (count * width != bytes.size() || constants_ > kMostConstants)
@@ -157,21 +151,19 @@ class Reader {
   Result<void> read_ops(const Table& subgraph, const Vector& codes) {
     const Vector ops = file_.vector(subgraph, 3, 4);
     if (ops.count > kMostOps)
-      return fail(ErrorKind::kBadData, "{}: {} operations found, expected at most {}", source_, ops.count,
-                  kMostOps);
+      return fail(ErrorKind::kBadData, "{}: {} operations found, expected at most {}", source_, ops.count, kMostOps);
     for (std::uint32_t i = 0; i < ops.count && file_.ok(); ++i) {
       const Table table = file_.element_table(ops, i);
       const auto which = file_.value<std::uint32_t>(table, 0, 0);
       if (which >= codes.count) return fail(ErrorKind::kBadData, "{}: operation {} has no code", source_, i);
       const Table code_table = file_.element_table(codes, which);
-      const int code = std::max<int>(file_.value<std::int8_t>(code_table, 0, 0),
-                                     file_.value<std::int32_t>(code_table, 3, 0));
+      const int code =
+          std::max<int>(file_.value<std::int8_t>(code_table, 0, 0), file_.value<std::int32_t>(code_table, 3, 0));
       NetOp op;
       op.inputs = integers(file_.vector(table, 1, 4));
       const std::vector<int> outputs = integers(file_.vector(table, 2, 4));
       if (outputs.size() != 1)
-        return fail(ErrorKind::kBadData, "{}: operation {} has {} outputs, expected 1", source_, i,
-                    outputs.size());
+        return fail(ErrorKind::kBadData, "{}: operation {} has {} outputs, expected 1", source_, i, outputs.size());
       op.output = outputs[0];
       if (code == kDequantize) {
         DUBSAR_TRY(widen(op, i));
@@ -179,8 +171,8 @@ class Reader {
       }
       const auto kind = kind_of(code);
       if (!kind)
-        return fail(ErrorKind::kBadData, "{}: operation {} has code {}, which is not one of the known ones",
-                    source_, i, code);
+        return fail(ErrorKind::kBadData, "{}: operation {} has code {}, which is not one of the known ones", source_, i,
+                    code);
       op.kind = *kind;
       DUBSAR_TRY(read_options(file_.table(table, 4), i, op));
       graph_.ops.push_back(std::move(op));
@@ -252,11 +244,10 @@ class Reader {
         break;
     }
     if (dilation != 1 || weights_format != 0)
-      return fail(ErrorKind::kBadData, "{}: operation {}: dilated or shuffled filters are not known", source_,
-                  i);
+      return fail(ErrorKind::kBadData, "{}: operation {}: dilated or shuffled filters are not known", source_, i);
     if (activation != 0 && activation != 1 && activation != 3)
-      return fail(ErrorKind::kBadData, "{}: operation {}: activation {} found, expected none, relu or relu6",
-                  source_, i, activation);
+      return fail(ErrorKind::kBadData, "{}: operation {}: activation {} found, expected none, relu or relu6", source_,
+                  i, activation);
     op.activation = activation == 0   ? NetActivation::kNone
                     : activation == 1 ? NetActivation::kRelu
                                       : NetActivation::kRelu6;

@@ -13,8 +13,7 @@ namespace dubsar {
 namespace {
 
 constexpr int kPalmInput = 192, kHandInput = 224;
-constexpr std::size_t kPalmPoints =
-    7;  // wrist, knuckles of index, middle, ring and little finger, two of the thumb
+constexpr std::size_t kPalmPoints = 7;  // wrist, knuckles of index, middle, ring and little finger, two of the thumb
 constexpr double kLeastScore = 0.5, kMostOverlap = 0.3;
 // the square about a hand, from its palm's box and from its landmarks: what the networks were trained with
 constexpr double kPalmSides = 2.6, kPalmShift = 0.5, kHandSides = 2.0, kHandShift = 0.1;
@@ -44,8 +43,7 @@ class Networks final : public HandNetworks {
       return fail(ErrorKind::kBadData, "palm network: its outputs are not those of palm_detection_lite");
     std::vector<SquareCrop> crops;
     for (const SsdDetection& palm : merge_overlapping(
-             decode_ssd(outputs_[0], outputs_[1], anchors_, kPalmPoints, kPalmInput, kLeastScore),
-             kMostOverlap)) {
+             decode_ssd(outputs_[0], outputs_[1], anchors_, kPalmPoints, kPalmInput, kLeastScore), kMostOverlap)) {
       const double side_px = whole.side_px * std::max(palm.width(), palm.most.y - palm.least.y);
       const double turn = turn_towards(palm.points[2] - palm.points[0]);
       crops.push_back(
@@ -102,10 +100,10 @@ SquareCrop HandSeen::next_crop() const noexcept {
 Result<std::unique_ptr<HandNetworks>> make_hand_networks(const std::filesystem::path& folder) {
   DUBSAR_ASSIGN(Network palm, Network::read(folder / kPalmModel));
   DUBSAR_ASSIGN(Network hand, Network::read(folder / kHandModel));
-  if (palm.rows() != kPalmInput || palm.columns() != kPalmInput || palm.channels() != 3 ||
-      hand.rows() != kHandInput || hand.columns() != kHandInput || hand.channels() != 3)
-    return fail(ErrorKind::kBadData, "{}: networks for {} and {} pixels, expected 192 and 224",
-                folder.string(), palm.rows(), hand.rows());
+  if (palm.rows() != kPalmInput || palm.columns() != kPalmInput || palm.channels() != 3 || hand.rows() != kHandInput ||
+      hand.columns() != kHandInput || hand.channels() != 3)
+    return fail(ErrorKind::kBadData, "{}: networks for {} and {} pixels, expected 192 and 224", folder.string(),
+                palm.rows(), hand.rows());
   return std::make_unique<Networks>(std::move(palm), std::move(hand));
 }
 

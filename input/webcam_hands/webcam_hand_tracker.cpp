@@ -14,27 +14,13 @@ constexpr double kSameHand = 0.35;  // of the square's side between two middles
 // reach of a finger's tip from the wrist, in lengths of its bones: stretched out, and in a fist
 constexpr double kOpenReach = 0.90, kFistReach = 0.55;
 
-constexpr std::array<HandJoint, kLandmarks> kJointOf{HandJoint::kWrist,
-                                                     HandJoint::kThumbMetacarpal,
-                                                     HandJoint::kThumbProximal,
-                                                     HandJoint::kThumbDistal,
-                                                     HandJoint::kThumbTip,
-                                                     HandJoint::kIndexProximal,
-                                                     HandJoint::kIndexIntermediate,
-                                                     HandJoint::kIndexDistal,
-                                                     HandJoint::kIndexTip,
-                                                     HandJoint::kMiddleProximal,
-                                                     HandJoint::kMiddleIntermediate,
-                                                     HandJoint::kMiddleDistal,
-                                                     HandJoint::kMiddleTip,
-                                                     HandJoint::kRingProximal,
-                                                     HandJoint::kRingIntermediate,
-                                                     HandJoint::kRingDistal,
-                                                     HandJoint::kRingTip,
-                                                     HandJoint::kLittleProximal,
-                                                     HandJoint::kLittleIntermediate,
-                                                     HandJoint::kLittleDistal,
-                                                     HandJoint::kLittleTip};
+constexpr std::array<HandJoint, kLandmarks> kJointOf{
+    HandJoint::kWrist,     HandJoint::kThumbMetacarpal, HandJoint::kThumbProximal,      HandJoint::kThumbDistal,
+    HandJoint::kThumbTip,  HandJoint::kIndexProximal,   HandJoint::kIndexIntermediate,  HandJoint::kIndexDistal,
+    HandJoint::kIndexTip,  HandJoint::kMiddleProximal,  HandJoint::kMiddleIntermediate, HandJoint::kMiddleDistal,
+    HandJoint::kMiddleTip, HandJoint::kRingProximal,    HandJoint::kRingIntermediate,   HandJoint::kRingDistal,
+    HandJoint::kRingTip,   HandJoint::kLittleProximal,  HandJoint::kLittleIntermediate, HandJoint::kLittleDistal,
+    HandJoint::kLittleTip};
 
 /// -Z along `forward`, +Y as near to `back` as that allows.
 glm::dquat orientation(const glm::dvec3& forward, const glm::dvec3& back) {
@@ -76,8 +62,7 @@ std::optional<glm::dvec3> place_hand(const HandSeen& hand, int width, int height
     right_z -= u * a + v * b;
   }
   constexpr auto n = static_cast<double>(kLandmarks);
-  const double determinant =
-      squares - (sum_u * sum_u + sum_v * sum_v) / n;  // zero when all landmarks are one pixel
+  const double determinant = squares - (sum_u * sum_u + sum_v * sum_v) / n;  // zero when all landmarks are one pixel
   if (!(determinant > 1e-9)) return std::nullopt;
   const double z = (right_z + (sum_u * right_x + sum_v * right_y) / n) / determinant;
   if (!(z >= kNearestM && z <= kFarthestM)) return std::nullopt;
@@ -90,8 +75,7 @@ HandFrame hand_from_landmarks(const std::array<glm::dvec3, kLandmarks>& at, Chir
   hand.chirality = chirality;
   const glm::dvec3 side = glm::cross(at[5] - at[0], at[17] - at[0]);
   const glm::dvec3 back = chirality == Chirality::kLeft ? side : -side;
-  const auto set = [&](HandJoint which, const glm::dvec3& position_m, const glm::dvec3& forward,
-                       bool tracked) {
+  const auto set = [&](HandJoint which, const glm::dvec3& position_m, const glm::dvec3& forward, bool tracked) {
     HandJointPose& joint = hand.joint(which);
     joint.pose = {position_m, orientation(forward, back)};
     joint.valid = true;
@@ -141,8 +125,7 @@ Result<std::optional<HandFrame>> WebcamHandTracker::look(const Frame& frame, Kno
   hand.id = known.id;
   hand.confidence = seen.presence;
   if (known.palm_m && frame.time > known.time)
-    hand.velocity_mps =
-        (hand.palm.position_m - *known.palm_m) / (1e-9 * static_cast<double>(frame.time - known.time));
+    hand.velocity_mps = (hand.palm.position_m - *known.palm_m) / (1e-9 * static_cast<double>(frame.time - known.time));
   known.palm_m = hand.palm.position_m;
   known.time = frame.time;
   return std::optional(hand);
@@ -151,17 +134,16 @@ Result<std::optional<HandFrame>> WebcamHandTracker::look(const Frame& frame, Kno
 Result<void> WebcamHandTracker::track(const Frame& frame, Hands& hands) {
   if (frame.format != PixelFormat::kRgb8 || frame.width < 1 || frame.height < 1 ||
       frame.pixels.size() < frame.view_bytes())
-    return fail(ErrorKind::kBadData, "hand tracker: a frame of {} x {} and {} bytes, expected colour",
-                frame.width, frame.height, frame.pixels.size());
+    return fail(ErrorKind::kBadData, "hand tracker: a frame of {} x {} and {} bytes, expected colour", frame.width,
+                frame.height, frame.pixels.size());
   hands.clear();
   const auto same = [](const SquareCrop& a, const SquareCrop& b) {
     return glm::length(a.centre_px - b.centre_px) < kSameHand * std::max(a.side_px, b.side_px);
   };
   for (std::size_t i = 0; i < known_.size();) {
     DUBSAR_ASSIGN(const auto hand, look(frame, known_[i]));
-    const bool twice =
-        hand && std::any_of(known_.begin(), known_.begin() + static_cast<std::ptrdiff_t>(i),
-                            [&](const Known& other) { return same(other.crop, known_[i].crop); });
+    const bool twice = hand && std::any_of(known_.begin(), known_.begin() + static_cast<std::ptrdiff_t>(i),
+                                           [&](const Known& other) { return same(other.crop, known_[i].crop); });
     if (!hand || twice) {
       known_.erase(known_.begin() + static_cast<std::ptrdiff_t>(i));
       continue;
@@ -175,8 +157,7 @@ Result<void> WebcamHandTracker::track(const Frame& frame, Hands& hands) {
   DUBSAR_ASSIGN(const auto palms, networks_->find_palms({frame.pixels.data(), frame.width, frame.height}));
   for (const SquareCrop& palm : palms) {
     if (known_.size() == static_cast<std::size_t>(options_.most_hands)) break;
-    if (std::any_of(known_.begin(), known_.end(), [&](const Known& known) { return same(known.crop, palm); }))
-      continue;
+    if (std::any_of(known_.begin(), known_.end(), [&](const Known& known) { return same(known.crop, palm); })) continue;
     Known known;
     known.id = next_id_;
     known.crop = palm;
@@ -185,8 +166,8 @@ Result<void> WebcamHandTracker::track(const Frame& frame, Hands& hands) {
     DUBSAR_ASSIGN(const auto first, look(frame, known));
     if (!first) continue;
     DUBSAR_ASSIGN(const auto hand, look(frame, known));
-    if (!hand || std::any_of(known_.begin(), known_.end(),
-                             [&](const Known& other) { return same(other.crop, known.crop); }))
+    if (!hand ||
+        std::any_of(known_.begin(), known_.end(), [&](const Known& other) { return same(other.crop, known.crop); }))
       continue;
     ++next_id_;
     known_.push_back(std::move(known));

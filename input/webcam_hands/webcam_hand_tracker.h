@@ -16,11 +16,9 @@ namespace dubsar {
 
 struct WebcamHandOptions {
   CameraView camera;
-  double hand_size =
-      1.0;  ///< of the usual one: a hand 10 % larger than it is taken for is placed 10 % too near
+  double hand_size = 1.0;  ///< of the usual one: a hand 10 % larger than it is taken for is placed 10 % too near
   int most_hands = 2;
-  int look_around_frames =
-      15;  ///< with one hand followed, another one is looked for in every so manieth frame
+  int look_around_frames = 15;  ///< with one hand followed, another one is looked for in every so manieth frame
   OneEuroOptions place_filter{2.0, 20.0, 2.0};
 };
 

@@ -61,8 +61,7 @@ TEST_P(EnclosedTablet, IsSeparatedAccuratelyAndReadably) {
                  [&](const glm::vec3& p) { return glm::vec3(mesh->frame.input_vox_from_grid(p)); });
   const auto truth = phantom::Phantom::create(wanted);
   ASSERT_TRUE(truth);
-  const phantom::TruthComparison score =
-      phantom::compare(**truth, {positions, mesh->triangles, mesh->partition, 2.0});
+  const phantom::TruthComparison score = phantom::compare(**truth, {positions, mesh->triangles, mesh->partition, 2.0});
   SCOPED_TRACE(score.text());
   fmt::print("seed {}, {} dB\n{}", GetParam().seed, GetParam().snr_db, score.text());
   EXPECT_LE(score.resolved.rms, 0.15);
@@ -74,8 +73,9 @@ TEST_P(EnclosedTablet, IsSeparatedAccuratelyAndReadably) {
   EXPECT_GE(score.wedges.kept_fraction(), 0.95);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, EnclosedTablet, ::testing::Values(Scan{1, 17.0}, Scan{2, 17.0}, Scan{3, 17.0}, Scan{4, 17.0},
-                                           Scan{5, 17.0}, Scan{6, 23.0}),
+INSTANTIATE_TEST_SUITE_P(Seeds, EnclosedTablet,
+                         ::testing::Values(Scan{1, 17.0}, Scan{2, 17.0}, Scan{3, 17.0}, Scan{4, 17.0}, Scan{5, 17.0},
+                                           Scan{6, 23.0}),
                          [](const auto& instance) {
                            return fmt::format("seed{}at{:.0f}dB", instance.param.seed, instance.param.snr_db);
                          });

@@ -50,8 +50,9 @@ const std::string& tablet() {
 }
 
 std::ptrdiff_t temporaries() {
-  return std::count_if(fs::directory_iterator(folder()), fs::directory_iterator(),
-                       [](const auto& entry) { return entry.path().filename().string().find(".tmp-") != std::string::npos; });
+  return std::count_if(fs::directory_iterator(folder()), fs::directory_iterator(), [](const auto& entry) {
+    return entry.path().filename().string().find(".tmp-") != std::string::npos;
+  });
 }
 
 TEST(CommandLine, EveryVerbHasHelpWithExamples) {
@@ -64,11 +65,16 @@ TEST(CommandLine, EveryVerbHasHelpWithExamples) {
 }
 
 TEST(CommandLine, UsageErrorsExitWith64) {
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{}, {"nonsense"}, {"process"}, {"process", "a.h5", "-o", "b.exa", "--nonsense"},
-        {"process", "a.h5", "-o", "b.exa", "--window", "4"}, {"info", "a.h5", "--threads", "-1"},
-        {"info", "a.h5", "--progress", "often"}, {"process", "a.h5", "-o", "b.exa", "--crop", "backwards"},
-        {"phantom", "x.h5", "--size", "7"}, {"render", "a.exa", "-o", "b.jpg"}}) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{},
+                                                    {"nonsense"},
+                                                    {"process"},
+                                                    {"process", "a.h5", "-o", "b.exa", "--nonsense"},
+                                                    {"process", "a.h5", "-o", "b.exa", "--window", "4"},
+                                                    {"info", "a.h5", "--threads", "-1"},
+                                                    {"info", "a.h5", "--progress", "often"},
+                                                    {"process", "a.h5", "-o", "b.exa", "--crop", "backwards"},
+                                                    {"phantom", "x.h5", "--size", "7"},
+                                                    {"render", "a.exa", "-o", "b.jpg"}}) {
     const ProgramRun run = run_dubsar(arguments);
     EXPECT_EQ(run.exit_code, 64) << (arguments.empty() ? "" : arguments[0]) << run.err;
     EXPECT_FALSE(run.err.empty());
@@ -107,12 +113,14 @@ TEST(CommandLine, DamagedInputExitsWith65AndLeavesTheOldOutput) {
 TEST(CommandLine, TheReportHasItsKeys) {
   tablet();
   const json report = json::parse(*read_text_file(in_folder("report.json")));
-  for (const char* key : {"stages", "estimates", "mesh", "partitions", "exa", "input"}) EXPECT_TRUE(report.contains(key)) << key;
+  for (const char* key : {"stages", "estimates", "mesh", "partitions", "exa", "input"})
+    EXPECT_TRUE(report.contains(key)) << key;
   for (const json& stage : report["stages"])
     for (const char* key : {"name", "wall_s", "cpu_s", "peak_rss_mib", "work"}) EXPECT_TRUE(stage.contains(key)) << key;
-  for (const char* key : {"sigma", "snr_db", "threshold", "path", "filters"}) EXPECT_TRUE(report["estimates"].contains(key)) << key;
-  for (const char* key : {"vertices", "xquads", "triangles", "nonmanifold_edges", "nonmanifold_vertices", "boundary_edges",
-                          "components", "euler"})
+  for (const char* key : {"sigma", "snr_db", "threshold", "path", "filters"})
+    EXPECT_TRUE(report["estimates"].contains(key)) << key;
+  for (const char* key : {"vertices", "xquads", "triangles", "nonmanifold_edges", "nonmanifold_vertices",
+                          "boundary_edges", "components", "euler"})
     EXPECT_TRUE(report["mesh"].contains(key)) << key;
   EXPECT_EQ(report["mesh"]["nonmanifold_edges"], 0);
   EXPECT_EQ(report["mesh"]["nonmanifold_vertices"], 0);
@@ -131,14 +139,16 @@ TEST(CommandLine, JsonOnStdoutIsNothingButJson) {
 }
 
 TEST(CommandLine, ProgressAsJsonHasStagePercentRateAndEstimate) {
-  const ProgramRun run = run_dubsar({"process", scan(), "-o", in_folder("progress.exa"), "--progress", "json", "--no-ao"});
+  const ProgramRun run =
+      run_dubsar({"process", scan(), "-o", in_folder("progress.exa"), "--progress", "json", "--no-ao"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   std::istringstream lines(run.err);
   int count = 0;
   for (std::string line; std::getline(lines, line);) {
     if (line.empty() || line[0] != '{') continue;
     const json state = json::parse(line);
-    for (const char* key : {"stage", "percent", "rate_per_s", "eta_s", "done", "total"}) EXPECT_TRUE(state.contains(key)) << key;
+    for (const char* key : {"stage", "percent", "rate_per_s", "eta_s", "done", "total"})
+      EXPECT_TRUE(state.contains(key)) << key;
     ++count;
   }
   EXPECT_GE(count, 10);
@@ -161,7 +171,8 @@ TEST(CommandLine, EachPartAsStlIsWatertight) {
   ASSERT_FALSE(info["partitions"].empty());
   for (const json& part : info["partitions"]) {
     const std::string file = in_folder("part.stl");
-    ASSERT_EQ(run_dubsar({"export", tablet(), file, "--partition", std::to_string(part["id"].get<int>())}).exit_code, 0);
+    ASSERT_EQ(run_dubsar({"export", tablet(), file, "--partition", std::to_string(part["id"].get<int>())}).exit_code,
+              0);
     EXPECT_TRUE(json::parse(run_dubsar({"info", file, "--json", "-"}).out)["watertight"].get<bool>()) << part.dump();
   }
 }

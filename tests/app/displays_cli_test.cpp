@@ -26,7 +26,8 @@ class DisplaysCommand : public ::testing::Test {
     ::setenv("XDG_CONFIG_HOME", (folder_ / "config").c_str(), 1);
     ::unsetenv("DISPLAY");
     ::unsetenv("WAYLAND_DISPLAY");
-    ASSERT_TRUE(write_file_atomically(folder_ / "card.obj", "v 0 0 0\nv 40 0 0\nv 40 20 0\nv 0 20 4\nf 1 2 3\nf 1 3 4\n"));
+    ASSERT_TRUE(
+        write_file_atomically(folder_ / "card.obj", "v 0 0 0\nv 40 0 0\nv 40 20 0\nv 0 20 4\nf 1 2 3\nf 1 3 4\n"));
   }
   static void TearDownTestSuite() { fs::remove_all(folder_); }
   static std::string file(const char* name) { return (folder_ / name).string(); }
@@ -53,26 +54,34 @@ TEST_F(DisplaysCommand, ListsWhatThereIsAndWhyMonitorsAreMissing) {
   EXPECT_EQ(panel("sr-32")["kind"], "tracked");
   EXPECT_EQ(found["monitors"].size(), 0u);
   EXPECT_NE(found["monitors_missing"].get<std::string>().find("DISPLAY"), std::string::npos);
-  for (const char* route : {"usb_storage", "usb_hid"}) EXPECT_TRUE(found["calibrations_missing"][route].is_string()) << route;
+  for (const char* route : {"usb_storage", "usb_hid"})
+    EXPECT_TRUE(found["calibrations_missing"][route].is_string()) << route;
 }
 
 TEST_F(DisplaysCommand, ACalibrationFromTheMakersServiceServesThePanelCalledAuto) {
   ::setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
-  const std::string text = R"({"serial": "LKG-E42", "pitch": 80.1, "slope": -6.6, "DPI": 491, "screenW": 1440, "screenH": 2560})";
+  const std::string text =
+      R"({"serial": "LKG-E42", "pitch": 80.1, "slope": -6.6, "DPI": 491, "screenW": 1440, "screenH": 2560})";
   const FakeBridge bridge({{"LKG-E42", "go_p", text}});
   const std::string port = std::to_string(bridge.port());
   const auto found = json({"displays", "--bridge-port", port})["calibrations"];
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0]["route"], "bridge");
   EXPECT_EQ(found[0]["panel"], "looking-glass-go");
-  const auto made = json({"render", file("card.obj"), "-o", file("auto.png"), "--display", "quilt:auto", "--bridge-port", port, "--samples", "1"});
-  EXPECT_EQ(made["display"], "quilt:panel=looking-glass-go,calibration=" + file("cache/dubsar/calibrations/LKG-E42.visual.json"));
-  EXPECT_EQ(run_dubsar({"render", "--pattern", "-o", file("none.png"), "--display", "lenticular:auto", "--bridge-port", "0"}).exit_code, 69);
+  const auto made = json({"render", file("card.obj"), "-o", file("auto.png"), "--display", "quilt:auto",
+                          "--bridge-port", port, "--samples", "1"});
+  EXPECT_EQ(made["display"],
+            "quilt:panel=looking-glass-go,calibration=" + file("cache/dubsar/calibrations/LKG-E42.visual.json"));
+  EXPECT_EQ(
+      run_dubsar({"render", "--pattern", "-o", file("none.png"), "--display", "lenticular:auto", "--bridge-port", "0"})
+          .exit_code,
+      69);
 }
 
 TEST_F(DisplaysCommand, ConnectedPanelsAreNamedByTheirEdid) {
   fs::create_directories(folder_ / "drm/card0-DP-2");
-  ASSERT_TRUE(write_file_atomically(folder_ / "drm/card0-DP-2/edid", made_edid({.manufacturer = "ACR", .product = 1, .name = "ASV15-1B"})));
+  ASSERT_TRUE(write_file_atomically(folder_ / "drm/card0-DP-2/edid",
+                                    made_edid({.manufacturer = "ACR", .product = 1, .name = "ASV15-1B"})));
   const auto found = json({"displays", "--edids", file("drm"), "--bridge-port", "0"})["edids"];
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0]["connector"], "DP-2");
@@ -91,8 +100,9 @@ TEST_F(DisplaysCommand, CrosstalkOfATrackedPanelIsToldAgainstSpeedAndLatency) {
 }
 
 TEST_F(DisplaysCommand, CalibrationFilesAreReadAndProblemsNamed) {
-  ASSERT_TRUE(write_file_atomically(file("visual.json"),
-                                    R"({"serial": "LKG-E77", "pitch": 80.1, "slope": -6.6, "DPI": 491, "screenW": 1440, "screenH": 2560})"));
+  ASSERT_TRUE(write_file_atomically(
+      file("visual.json"),
+      R"({"serial": "LKG-E77", "pitch": 80.1, "slope": -6.6, "DPI": 491, "screenW": 1440, "screenH": 2560})"));
   EXPECT_EQ(json({"displays", "--calibration", file("visual.json")})["calibrations"][0]["panel"], "looking-glass-go");
   ASSERT_TRUE(write_file_atomically(file("bad.json"), R"({"pitch": 80.1, "slope": 0})"));
   const auto bad = json({"displays", "--calibration", file("bad.json")})["calibrations"][0];
@@ -100,7 +110,8 @@ TEST_F(DisplaysCommand, CalibrationFilesAreReadAndProblemsNamed) {
 }
 
 TEST_F(DisplaysCommand, AnAdjustmentChangesThePictureUntilItIsReset) {
-  const std::vector<std::string> render{"render", "--pattern", "-o", file("p.png"), "--display", "lenticular:lens-sheet-24-5-views"};
+  const std::vector<std::string> render{"render",      "--pattern", "-o",
+                                        file("p.png"), "--display", "lenticular:lens-sheet-24-5-views"};
   const auto pixels = [&] {
     EXPECT_EQ(run_dubsar(render).exit_code, 0);
     return read_png(file("p.png"))->pixels;
@@ -116,18 +127,22 @@ TEST_F(DisplaysCommand, AnAdjustmentChangesThePictureUntilItIsReset) {
 }
 
 TEST_F(DisplaysCommand, EveryDisplayMakesItsPicture) {
-  for (const char* display : {"mono", "side_by_side:full", "top_bottom:frame_packing", "interlaced:subpixels", "anaglyph:amber_blue_dubois"}) {
-    const auto made = json({"render", file("card.obj"), "-o", file("d.png"), "--display", display, "--size", "320x240", "--samples", "1"});
+  for (const char* display : {"mono", "side_by_side:full", "top_bottom:frame_packing", "interlaced:subpixels",
+                              "anaglyph:amber_blue_dubois"}) {
+    const auto made = json(
+        {"render", file("card.obj"), "-o", file("d.png"), "--display", display, "--size", "320x240", "--samples", "1"});
     EXPECT_EQ(made["views"], std::string(display) == "mono" ? 1 : 2) << display;
     EXPECT_EQ(made["width"], std::string(display) == "side_by_side:full" ? 640 : 320) << display;
   }
-  const auto quilt = json({"render", file("card.obj"), "-o", file("q.png"), "--display", "quilt:columns=3,rows=2,width=300,height=200,aspect=0.75", "--samples", "1"});
+  const auto quilt = json({"render", file("card.obj"), "-o", file("q.png"), "--display",
+                           "quilt:columns=3,rows=2,width=300,height=200,aspect=0.75", "--samples", "1"});
   EXPECT_EQ(quilt["output"], file("q_qs3x2a0.75.png"));
   EXPECT_EQ(read_png(file("q_qs3x2a0.75.png"))->width, 300);
 }
 
 TEST_F(DisplaysCommand, WhatAnEyeSeesIsWrittenWithItsCrosstalk) {
-  const auto seen = json({"render", "--pattern", "-o", file("s.png"), "--display", "lenticular:lens-sheet-24-5-views,nearest", "--see-from", "0,0,1200"});
+  const auto seen = json({"render", "--pattern", "-o", file("s.png"), "--display",
+                          "lenticular:lens-sheet-24-5-views,nearest", "--see-from", "0,0,1200"});
   EXPECT_EQ(seen["main_view"], 2) << "the middle one of five";
   EXPECT_LT(seen["crosstalk_percent"].get<double>(), 5.0);
   EXPECT_EQ(seen["view_percent"].size(), 5u);

@@ -66,10 +66,8 @@ class Live : public ::testing::Test {
     std::size_t at = 0;
     bool acted = false;
     auto out = run_live(
-        testing::lettered_box(), options_, progress != nullptr ? *progress : silent,
-        [&](const LiveMoment& moment) {
-          if (at >= steps.size() || moment.drawn || moment.frames == 0 || moment.session.coarse_views() > 0)
-            return;
+        testing::lettered_box(), options_, progress != nullptr ? *progress : silent, [&](const LiveMoment& moment) {
+          if (at >= steps.size() || moment.drawn || moment.frames == 0 || moment.session.coarse_views() > 0) return;
           if (!acted && steps[at].act) steps[at].act();
           if (!acted) {
             acted = true;
@@ -151,8 +149,7 @@ TEST_F(Live, ARealMouseTurnsTheObjectAndTheWindowShowsWhatAnOffscreenSessionDraw
   ASSERT_TRUE(done) << done.error().message;
   // 100 pixels to the right at 0.4 degrees each, about the upright axis.
   EXPECT_LT(turn_between_deg(turned.rotation, turn_of({0, 40 * std::numbers::pi / 180, 0})), 0.01);
-  EXPECT_NE(before.at(kWidth / 2, kHeight / 2)[0], before.at(2, 2)[0])
-      << "the object is in the middle of the window";
+  EXPECT_NE(before.at(kWidth / 2, kHeight / 2)[0], before.at(2, 2)[0]) << "the object is in the middle of the window";
   EXPECT_GT(differing_share(before, after), 0.05);
   EXPECT_EQ(differing_share(before, back), 0.0);
   EXPECT_EQ(before.pixels, offscreen("mono", ViewState()).pixels);
@@ -221,15 +218,13 @@ TEST_F(Live, HelpIsShownInTheMiddleOfEveryDisplayAndGoesAgain) {
 }
 
 TEST_F(Live, DisplaysAreSwitchedWhileItRuns) {
-  options_.displays = {"anaglyph", "interlaced",
-                       "quilt:columns=4,rows=2,width=400,height=200,aspect=1.3,cone=40"};
+  options_.displays = {"anaglyph", "interlaced", "quilt:columns=4,rows=2,width=400,height=200,aspect=1.3,cone=40"};
   std::vector<std::string> shown;
   std::vector<Image> shots;
   std::vector<Step> steps;
   for (int i = 0; i < 5; ++i) {
     if (i > 0)
-      steps.push_back(
-          {[&] { person_->key("f2"); }, [&](const LiveMoment& m) { return m.display != shown.back(); }});
+      steps.push_back({[&] { person_->key("f2"); }, [&](const LiveMoment& m) { return m.display != shown.back(); }});
     steps.push_back({{}, [&](const LiveMoment& m) {
                        screen_ = m.window.screen();
                        shown.push_back(m.display);
@@ -240,8 +235,7 @@ TEST_F(Live, DisplaysAreSwitchedWhileItRuns) {
   steps.push_back(end());
   const auto done = play(steps);
   ASSERT_TRUE(done) << done.error().message;
-  ASSERT_EQ(shown,
-            (std::vector<std::string>{"mono", "anaglyph", "interlaced", options_.displays[2], "mono"}));
+  ASSERT_EQ(shown, (std::vector<std::string>{"mono", "anaglyph", "interlaced", options_.displays[2], "mono"}));
   for (const std::size_t i : {0u, 1u, 2u, 4u})
     EXPECT_EQ(shots[i].pixels, offscreen(shown[i], ViewState()).pixels) << shown[i];
   // A quilt has its own size: it is fitted into the window, with black above and below.
@@ -331,8 +325,7 @@ TEST_F(Live, ALostSourceIsNamedAndUsedAgainAndAMissingOneIsTriedAgain) {
   auto device = std::make_shared<FakeDevice>();
   std::atomic<bool> second_is_there{false};
   options_.inputs = {"mouse", "fake", "absent"};
-  options_.make_input = [&](std::string_view spec,
-                            const InputConfig& config) -> Result<std::unique_ptr<InputSource>> {
+  options_.make_input = [&](std::string_view spec, const InputConfig& config) -> Result<std::unique_ptr<InputSource>> {
     if (spec == "absent" && !second_is_there)
       return fail(ErrorKind::kUnavailable, "input absent: no such device is plugged in");
     if (spec == "absent" || spec == "fake") {
@@ -343,9 +336,7 @@ TEST_F(Live, ALostSourceIsNamedAndUsedAgainAndAMissingOneIsTriedAgain) {
   };
   std::string reason;
   const auto health = [](std::size_t index, SourceHealth wanted) {
-    return [index, wanted](const LiveMoment& m) {
-      return m.sources.size() == 3 && m.sources[index].health == wanted;
-    };
+    return [index, wanted](const LiveMoment& m) { return m.sources.size() == 3 && m.sources[index].health == wanted; };
   };
   const auto done = play({
       {{}, health(1, SourceHealth::kPresent)},

@@ -54,8 +54,7 @@ Image sheet(const std::vector<std::vector<Image>>& rows) {
   for (const auto& row : rows) {
     int left = kGap;
     for (const Image& image : row) {
-      for (int y = 0; y < image.height; ++y)
-        std::copy_n(image.at(0, y), 3 * image.width, out.at(left, top + y));
+      for (int y = 0; y < image.height; ++y) std::copy_n(image.at(0, y), 3 * image.width, out.at(left, top + y));
       left += image.width + kGap;
     }
     top += row.front().height + kGap;
@@ -103,10 +102,8 @@ Result<void> visitor(const TriMesh& mesh, const fs::path& scripts, const fs::pat
   const XvfbServer server(1712, 1712);
   if (!server.problem().empty()) return fail(ErrorKind::kUnavailable, "{}", server.problem());
   constexpr int kColumns = 8, kRows = 6;
-  const Stage stage{.display = "quilt:looking-glass-portrait,width=1680,height=1680",
-                    .width = 1680,
-                    .height = 1680,
-                    .every = 45};
+  const Stage stage{
+      .display = "quilt:looking-glass-portrait,width=1680,height=1680", .width = 1680, .height = 1680, .every = 45};
   DUBSAR_ASSIGN(const StagedSession session,
                 play(server, mesh, stage, {"scripted:" + (scripts / "visitor.json").string()}));
   std::vector<std::vector<Image>> rows(2);
@@ -183,8 +180,7 @@ Result<void> developer(const TriMesh& mesh, const fs::path& scripts, const fs::p
   const std::string file = (scripts / "developer.json").string();
   const fs::path recording = folder / "developer.jsonl";
   DUBSAR_ASSIGN(const StagedSession live,
-                play(server, mesh, stage, {"leap:simulate=" + file, "head:opentrack,simulate=" + file},
-                     recording));
+                play(server, mesh, stage, {"leap:simulate=" + file, "head:opentrack,simulate=" + file}, recording));
   DUBSAR_ASSIGN(const StagedSession replayed, play(server, mesh, stage, {"replay:" + recording.string()}));
   fs::remove(recording);
   std::vector<std::vector<Image>> rows(2);

@@ -36,11 +36,10 @@ class Panels : public ::testing::Test {
   }
   void plug_in(const std::string& text, LookingGlassManners manners) {
     units_.push_back(std::make_unique<LookingGlassSim>(text, manners));
-    search_.hid.push_back({"/dev/hidraw9",
-                           [unit = units_.back().get()]() -> Result<std::unique_ptr<Transport>> {
-                             return unit->device().open();
-                           },
-                           {}});
+    search_.hid.push_back(
+        {"/dev/hidraw9",
+         [unit = units_.back().get()]() -> Result<std::unique_ptr<Transport>> { return unit->device().open(); },
+         {}});
   }
   void ask(const test::FakeBridge& bridge) {
     search_.bridge = bridge_opener(bridge.port());
@@ -82,9 +81,7 @@ TEST_F(Panels, EveryRouteGivesTheSameFigures) {
 
 TEST_F(Panels, RoutesThatGiveNothingSayWhy) {
   search_.mounts = {folder_ / "nowhere"};
-  search_.bridge = [] {
-    return Result<std::unique_ptr<Transport>>(fail(ErrorKind::kUnavailable, "cannot connect"));
-  };
+  search_.bridge = [] { return Result<std::unique_ptr<Transport>>(fail(ErrorKind::kUnavailable, "cannot connect")); };
   search_.hid.push_back({"/dev/hidraw3", {}, "this user may not open it; copy the udev rule"});
   const CalibrationReport report = find();
   EXPECT_TRUE(report.found.empty());
@@ -125,8 +122,7 @@ TEST_F(Panels, AutoTakesTheOneUnitHoweverManyRoutesItHas) {
 TEST_F(Panels, AutoKeepsACalibrationThatIsNoFileAndSinksTakeIt) {
   plug_in(kLarge, {});
   const std::string options = choose().value();
-  EXPECT_EQ(options,
-            "panel=looking-glass-15.6,calibration=" + (folder_ / "cache/LKG-4K-00017.visual.json").string());
+  EXPECT_EQ(options, "panel=looking-glass-15.6,calibration=" + (folder_ / "cache/LKG-4K-00017.visual.json").string());
   const auto sink = make_sink("quilt:" + options);
   ASSERT_TRUE(sink) << sink.error().message;
   EXPECT_TRUE(make_sink("lenticular:" + options + ",nearest"));
@@ -145,8 +141,8 @@ TEST_F(Panels, AutoAmongSeveralUnitsGoesByTheMonitorsNameElseAsks) {
 
 TEST_F(Panels, AutoKnowsTrackedPanelsByTheirEdid) {
   EXPECT_EQ(choose({monitor({.manufacturer = "ACR", .product = 1})}).value(), "panel=spatiallabs-15.6");
-  const auto bare = choose({monitor(
-      {.width_px = 1536, .height_px = 2048, .width_mm = 120, .height_mm = 160, .name = "LKG-P00671"})});
+  const auto bare =
+      choose({monitor({.width_px = 1536, .height_px = 2048, .width_mm = 120, .height_mm = 160, .name = "LKG-P00671"})});
   EXPECT_NE(bare.error().message.find("LKG-P00671 at DP-1"), std::string::npos);
   store(kPortrait);
   EXPECT_EQ(choose({monitor({.manufacturer = "ACR", .product = 1})}).error().kind, ErrorKind::kUsage);
@@ -154,8 +150,7 @@ TEST_F(Panels, AutoKnowsTrackedPanelsByTheirEdid) {
 
 TEST_F(Panels, DisplaysWithoutAutoAreLeftAlone) {
   EXPECT_EQ(resolve_display("anaglyph", 0).value(), "anaglyph");
-  EXPECT_EQ(resolve_display("lenticular:looking-glass-go,nearest", 0).value(),
-            "lenticular:looking-glass-go,nearest");
+  EXPECT_EQ(resolve_display("lenticular:looking-glass-go,nearest", 0).value(), "lenticular:looking-glass-go,nearest");
 }
 
 }  // namespace

@@ -54,14 +54,16 @@ TEST_F(RenderCommand, ThePictureShowsTheObjectOnABackground) {
 TEST_F(RenderCommand, EverySideAndStyleGivesAnotherPicture) {
   std::set<std::string> pictures;
   const auto add = [&](const std::vector<std::string>& extra) {
-    std::vector<std::string> arguments{"render", file("tablet.exa"), "-o", file("b.png"), "--size", "160x160", "--samples", "1"};
+    std::vector<std::string> arguments{"render", file("tablet.exa"), "-o",        file("b.png"),
+                                       "--size", "160x160",          "--samples", "1"};
     arguments.insert(arguments.end(), extra.begin(), extra.end());
     const ProgramRun run = run_dubsar(arguments);
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const Image image = *read_png(file("b.png"));
     pictures.emplace(image.pixels.begin(), image.pixels.end());
   };
-  for (const char* view : {"front", "back", "left", "right", "top", "bottom", "orbit", "orbit:70,-20"}) add({"--view", view});
+  for (const char* view : {"front", "back", "left", "right", "top", "bottom", "orbit", "orbit:70,-20"})
+    add({"--view", view});
   for (const char* style : {"phong", "table", "black-white", "sky-sun", "ao"}) add({"--style", style});
   add({"--colour-parts"});
   EXPECT_EQ(pictures.size(), 14u);

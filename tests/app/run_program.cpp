@@ -15,12 +15,15 @@ bool drain(int descriptor, std::string& text) {
   char buffer[65536];
   for (;;) {
     const ssize_t count = ::read(descriptor, buffer, sizeof buffer);
-    if (count > 0) text.append(buffer, static_cast<std::size_t>(count));
-    else return count < 0;
+    if (count > 0)
+      text.append(buffer, static_cast<std::size_t>(count));
+    else
+      return count < 0;
   }
 }
 
-[[noreturn]] void become_program(const std::vector<std::string>& arguments, const RunOptions& options, int out, int err) {
+[[noreturn]] void become_program(const std::vector<std::string>& arguments, const RunOptions& options, int out,
+                                 int err) {
   ::dup2(out, STDOUT_FILENO);
   ::dup2(err, STDERR_FILENO);
   if (options.file_size_limit >= 0) {

@@ -33,13 +33,12 @@ Result<StagedSession> play(const XvfbServer& server, const TriMesh& mesh, const 
   SilentProgress progress;
   StagedSession out;
   int steps = 0;
-  DUBSAR_ASSIGN(
-      out.result, app::run_live(mesh, options, progress, [&](const app::LiveMoment& moment) {
-        const double time_s = steps++ / stage.fps;
-        if (!moment.drawn) return;
-        static_cast<void>(moment.window.screen());  // asks the server, so that it has done all before
-        out.moments.push_back({time_s, server.screen(0, 0, stage.width, stage.height), moment.report});
-      }));
+  DUBSAR_ASSIGN(out.result, app::run_live(mesh, options, progress, [&](const app::LiveMoment& moment) {
+                  const double time_s = steps++ / stage.fps;
+                  if (!moment.drawn) return;
+                  static_cast<void>(moment.window.screen());  // asks the server, so that it has done all before
+                  out.moments.push_back({time_s, server.screen(0, 0, stage.width, stage.height), moment.report});
+                }));
   return out;
 }
 
@@ -52,11 +51,8 @@ Image quilt_tile(const Image& quilt, int columns, int rows, int index) {
 }
 
 Result<SeenPair> seen_from(const SessionMoment& moment, const glm::dvec3& head_mm) {
-  DisplayPicture picture{.image = moment.window,
-                         .views = 2,
-                         .magnification = 0.0,
-                         .file_suffix = {},
-                         .light = moment.report.light};
+  DisplayPicture picture{
+      .image = moment.window, .views = 2, .magnification = 0.0, .file_suffix = {}, .light = moment.report.light};
   const glm::dvec3 half(kHalfIpdMm, 0.0, 0.0);
   SeenPair out;
   DUBSAR_ASSIGN(out.left, see_display(picture, head_mm - half));

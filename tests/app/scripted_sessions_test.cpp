@@ -35,9 +35,7 @@ class ScriptedSession : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
   static std::string script(const char* name) { return std::string(DUBSAR_SCRIPTS) + "/" + name; }
-  static Script parsed(const char* name) {
-    return parse_script(read_text_file(script(name)).value(), name).value();
-  }
+  static Script parsed(const char* name) { return parse_script(read_text_file(script(name)).value(), name).value(); }
 
   inline static std::unique_ptr<XvfbServer> server_;
   fs::path folder_;
@@ -65,17 +63,15 @@ TEST_F(ScriptedSession, AVisitorsHandsTurnAndZoomTheTabletOnAQuilt) {
   const auto session = play(*server_, lettered_box(), stage, {"scripted:" + script("visitor.json")});
   ASSERT_TRUE(session) << session.error().message;
   const Script wanted = parsed("visitor.json");
-  EXPECT_LE(
-      turn_between_deg(session->result.view.rotation, turn_of({wanted.visitor->pitch_deg * kRad, 0, 0}) *
-                                                          turn_of({0, wanted.visitor->yaw_deg * kRad, 0})),
-      5.0);
+  EXPECT_LE(turn_between_deg(session->result.view.rotation, turn_of({wanted.visitor->pitch_deg * kRad, 0, 0}) *
+                                                                turn_of({0, wanted.visitor->yaw_deg * kRad, 0})),
+            5.0);
   EXPECT_NEAR(session->result.view.zoom, wanted.visitor->zoom, 0.05 * wanted.visitor->zoom);
   EXPECT_LE(session->result.largest_turn_deg, 2.0);
   ASSERT_GT(session->moments.size(), 5u);
   for (const SessionMoment& moment : session->moments)
     for (int tile = 0; tile < 8; ++tile)
-      EXPECT_GT(lit_share(quilt_tile(moment.window, 4, 2, tile)), 0.1)
-          << "a blank view at " << moment.time_s << " s";
+      EXPECT_GT(lit_share(quilt_tile(moment.window, 4, 2, tile)), 0.1) << "a blank view at " << moment.time_s << " s";
   const Image& last = session->moments.back().window;
   EXPECT_GT(differing_share(session->moments.front().window, last), 0.1);
   EXPECT_GT(differing_share(quilt_tile(last, 4, 2, 0), quilt_tile(last, 4, 2, 7)), 0.03)
@@ -122,13 +118,12 @@ TEST_F(ScriptedSession, ADeveloperGetsTheSameFromSimulatedDevicesAndFromTheirRec
                     .longest_s = 5.9,
                     .profile_folder = folder_ / "panels"};
   const fs::path recording = folder_ / "developer.jsonl";
-  const auto live = play(*server_, lettered_box(), stage,
-                         {"spacemouse:simulate=" + script("developer.json"),
-                          "head:opentrack,simulate=" + script("developer.json")},
-                         recording);
+  const auto live =
+      play(*server_, lettered_box(), stage,
+           {"spacemouse:simulate=" + script("developer.json"), "head:opentrack,simulate=" + script("developer.json")},
+           recording);
   ASSERT_TRUE(live) << live.error().message;
-  EXPECT_GT(turn_between_deg(live->result.view.rotation, {1, 0, 0, 0}) +
-                std::abs(live->result.view.zoom - 1.0) * 100,
+  EXPECT_GT(turn_between_deg(live->result.view.rotation, {1, 0, 0, 0}) + std::abs(live->result.view.zoom - 1.0) * 100,
             10.0);
   const auto replayed = play(*server_, lettered_box(), stage, {"replay:" + recording.string()});
   ASSERT_TRUE(replayed) << replayed.error().message;
@@ -140,8 +135,7 @@ TEST_F(ScriptedSession, ADeveloperGetsTheSameFromSimulatedDevicesAndFromTheirRec
     const glm::dvec3 apart =
         live->moments[i].report.viewer.centre_mm() - replayed->moments[i].report.viewer.centre_mm();
     EXPECT_LT(glm::length(apart), 3.0) << live->moments[i].time_s;
-    EXPECT_LT(differing_share(live->moments[i].window, replayed->moments[i].window), 0.05)
-        << live->moments[i].time_s;
+    EXPECT_LT(differing_share(live->moments[i].window, replayed->moments[i].window), 0.05) << live->moments[i].time_s;
     tracked += live->moments[i].report.head == Presence::kTracked;
   }
   EXPECT_GE(tracked, 8);

@@ -48,15 +48,17 @@ double differing_share(const Image& a, const Image& b) {
 
 TEST_F(SessionTest, AVisitorsHandsTurnAndZoomTheObjectOnAQuilt) {
   options_.session.display = "quilt:columns=4,rows=2,width=256,height=128,aspect=1,cone=40";
-  options_.inputs = {"scripted:" + file("visitor.json", R"({"seed": 4, "duration_s": 60, "noise_mm": 0.5, "bystanders": 1,
+  options_.inputs = {"scripted:" +
+                     file("visitor.json", R"({"seed": 4, "duration_s": 60, "noise_mm": 0.5, "bystanders": 1,
       "hand_dropouts": {"per_s": 0.3}, "visitor": {"yaw_deg": 40, "pitch_deg": 15, "zoom": 1.3}})")};
   options_.longest_s = 70;
   options_.record = folder_ / "recording.jsonl";
   Image first, last;
-  const OffscreenResult done = run_offscreen(testing::lettered_box(), options_, progress_, [&](const Image& picture, const FrameReport&) {
-                                 if (first.pixels.empty()) first = picture;
-                                 last = picture;
-                               }).value();
+  const OffscreenResult done =
+      run_offscreen(testing::lettered_box(), options_, progress_, [&](const Image& picture, const FrameReport&) {
+        if (first.pixels.empty()) first = picture;
+        last = picture;
+      }).value();
   ASSERT_EQ(first.width, 256);
   EXPECT_GT(differing_share(first, last), 0.1);
   EXPECT_LE(turn_between_deg(done.view.rotation, turn_of({15 * kRad, 0, 0}) * turn_of({0, 40 * kRad, 0})), 5.0);
@@ -70,15 +72,18 @@ TEST_F(SessionTest, AVisitorsHandsTurnAndZoomTheObjectOnAQuilt) {
   options_.inputs = {"replay:" + options_.record.string()};
   options_.record.clear();
   Image replayed;
-  const OffscreenResult again = run_offscreen(testing::lettered_box(), options_, progress_,
-                                              [&](const Image& picture, const FrameReport&) { replayed = picture; }).value();
+  const OffscreenResult again =
+      run_offscreen(testing::lettered_box(), options_, progress_, [&](const Image& picture, const FrameReport&) {
+        replayed = picture;
+      }).value();
   EXPECT_LT(turn_between_deg(again.view.rotation, done.view.rotation), 0.05);
   EXPECT_LT(differing_share(last, replayed), 0.01);
 }
 
 TEST_F(SessionTest, EachEyeOfAMovingScholarSeesItsOwnViewInEveryFrame) {
   fs::create_directories(folder_ / "panels");
-  file("panels/panel.json", R"([{"name": "small-tracked", "title": "test", "kind": "tracked", "width_px": 480, "height_px": 270,
+  file("panels/panel.json",
+       R"([{"name": "small-tracked", "title": "test", "kind": "tracked", "width_px": 480, "height_px": 270,
       "width_mm": 43.2, "optics": {"pitch_mm": 0.200884, "tan_slant": 0.333333, "reduced_gap_mm": 0.956589,
       "refractive_index": 1.5, "phase0": 0.0, "spot_sigma_periods": 0.1}, "design_distance_mm": 600, "ipd_mm": 63}])");
   options_.session.profile_folder = folder_ / "panels";
@@ -158,7 +163,9 @@ TEST_F(SessionTest, HandsSteerThoughAPictureTakesAQuarterOfASecond) {
   config.clock = &clock;
   config.simulated_time = true;
   session->input().add(make_input("scripted:" + file("visitor.json", R"({"seed": 4, "duration_s": 90, "noise_mm": 0.5,
-      "visitor": {"yaw_deg": 40, "pitch_deg": 15, "zoom": 1.3}})"), config).value());
+      "visitor": {"yaw_deg": 40, "pitch_deg": 15, "zoom": 1.3}})"),
+                                  config)
+                           .value());
   int heard = 0;
   session->on_input([&](TimestampNs, const InputFrame& frame) { heard += frame.hands.empty() ? 0 : 1; });
   for (int step = 0; step < 90 * 120 && !session->input().finished(); ++step, clock.advance(8'333'333)) {
@@ -175,7 +182,8 @@ TEST_F(SessionTest, HandsSteerThoughAPictureTakesAQuarterOfASecond) {
 }
 
 TEST_F(SessionTest, TheAgeOfTheInputIsTheTimeFromItsMeasurementToTheCameras) {
-  constexpr TimestampNs kMs = 1'000'000, kServerOrigin = 1'700'000'000'000'000'000;  // the server's clock counts from 1970
+  constexpr TimestampNs kMs = 1'000'000,
+                        kServerOrigin = 1'700'000'000'000'000'000;  // the server's clock counts from 1970
   const auto context = EglContext::create().value();
   ManualClock clock(1000 * kMs);
   SimDevice server("simulated VRPN server", false);

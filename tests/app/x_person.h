@@ -24,14 +24,11 @@ class XPerson {
   /// Keys go to the window under the pointer from now on, as there is no window manager that gives it the
   /// focus.
   void type_where_the_pointer_is() {
-    xcb_set_input_focus(connection_, XCB_INPUT_FOCUS_POINTER_ROOT, XCB_INPUT_FOCUS_POINTER_ROOT,
-                        XCB_CURRENT_TIME);
+    xcb_set_input_focus(connection_, XCB_INPUT_FOCUS_POINTER_ROOT, XCB_INPUT_FOCUS_POINTER_ROOT, XCB_CURRENT_TIME);
     xcb_flush(connection_);
   }
   void point(int x, int y) { fake(XCB_MOTION_NOTIFY, 0, x, y); }  ///< on the screen
-  void press(int button) {
-    fake(XCB_BUTTON_PRESS, button);
-  }  ///< 1 left, 2 middle, 3 right, 4 and 5 the wheel
+  void press(int button) { fake(XCB_BUTTON_PRESS, button); }      ///< 1 left, 2 middle, 3 right, 4 and 5 the wheel
   void release(int button) { fake(XCB_BUTTON_RELEASE, button); }
   void hold(const std::string& name) { fake(XCB_KEY_PRESS, code(name)); }
   void let_go(const std::string& name) { fake(XCB_KEY_RELEASE, code(name)); }
@@ -60,8 +57,7 @@ class XPerson {
   }
   void fake(int type, int detail, int x = 0, int y = 0) {
     xcb_test_fake_input(connection_, static_cast<std::uint8_t>(type), static_cast<std::uint8_t>(detail),
-                        XCB_CURRENT_TIME, root_, static_cast<std::int16_t>(x), static_cast<std::int16_t>(y),
-                        0);
+                        XCB_CURRENT_TIME, root_, static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), 0);
     xcb_flush(connection_);
   }
   xcb_connection_t* connection_;

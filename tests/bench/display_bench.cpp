@@ -30,8 +30,10 @@ const PackedMesh& tablet(std::int64_t triangles) {
       const double theta = std::numbers::pi * (r + 0.5) / (rings + 1), phi = 2 * std::numbers::pi * s / segments;
       const auto rounded = [](double x) { return std::copysign(std::pow(std::abs(x), 0.5), x); };
       const double signs = 1.0 - 0.02 * std::max(0.0, std::sin(40 * theta) * std::sin(60 * phi));
-      mesh.positions.emplace_back(glm::dvec3(30 * rounded(std::sin(theta)) * rounded(std::cos(phi)), 40 * rounded(std::cos(theta)),
-                                             12 * rounded(std::sin(theta)) * rounded(std::sin(phi))) * signs);
+      mesh.positions.emplace_back(glm::dvec3(30 * rounded(std::sin(theta)) * rounded(std::cos(phi)),
+                                             40 * rounded(std::cos(theta)),
+                                             12 * rounded(std::sin(theta)) * rounded(std::sin(phi))) *
+                                  signs);
     }
   const auto id = [&](int r, int s) { return static_cast<std::uint32_t>(r * segments + s % segments); };
   for (int r = 0; r < rings; ++r)
@@ -43,9 +45,15 @@ const PackedMesh& tablet(std::int64_t triangles) {
 }
 
 std::vector<View> views_of_panel(int count) {
-  const Screen screen{.width_mm = kWidthMm, .height_mm = kHeightMm, .width_px = kWidth, .height_px = kHeight, .window_w = kWidth, .window_h = kHeight};
+  const Screen screen{.width_mm = kWidthMm,
+                      .height_mm = kHeightMm,
+                      .width_px = kWidth,
+                      .height_px = kHeight,
+                      .window_w = kWidth,
+                      .window_h = kHeight};
   std::vector<View> views;
-  for (const glm::dvec3& eye : cone_eyes(count, kConeRad, kDistanceMm)) views.push_back(viewer_view(screen.window_rect(), Viewer(), eye));
+  for (const glm::dvec3& eye : cone_eyes(count, kConeRad, kDistanceMm))
+    views.push_back(viewer_view(screen.window_rect(), Viewer(), eye));
   return views;
 }
 
@@ -55,7 +63,8 @@ void naive(benchmark::State& state) {
   auto renderer = Renderer::create().value();
   const auto views = views_of_panel(static_cast<int>(state.range(0)));
   auto array = ViewArray::create(kWidth, kHeight, static_cast<int>(views.size())).value();
-  if (!renderer.render(mesh, Shading(), std::span(views).first(1), 1, array)) state.SkipWithError("drawing failed");  // shaders
+  if (!renderer.render(mesh, Shading(), std::span(views).first(1), 1, array))
+    state.SkipWithError("drawing failed");  // shaders
   glFinish();
   for (auto _ : state) {
     if (!renderer.render(mesh, Shading(), views, 1, array)) state.SkipWithError("drawing failed");
@@ -85,17 +94,22 @@ void with_options(benchmark::State& state, const MultiViewOptions& options) {
     auto exact = ViewArray::create(kWidth, kHeight, 1).value();
     auto renderer = Renderer::create().value();
     const std::size_t middle = views.size() / 2;
-    if (!renderer.render(GpuMesh::upload(tablet(state.range(1) * 1000)).value(), Shading(), std::span(&views[middle], 1), 1, exact))
+    if (!renderer.render(GpuMesh::upload(tablet(state.range(1) * 1000)).value(), Shading(),
+                         std::span(&views[middle], 1), 1, exact))
       state.SkipWithError("drawing failed");
     const Image truth = exact.read_layer(0).value();
-    const auto of_layer = [&](std::size_t layer) { return psnr_db(array.read_layer(static_cast<int>(layer)).value(), truth); };
+    const auto of_layer = [&](std::size_t layer) {
+      return psnr_db(array.read_layer(static_cast<int>(layer)).value(), truth);
+    };
     state.counters["psnr_db"] = of_layer(middle);
     std::size_t nearest = 0;  // drawn view: what a copy of it would be
     for (const int key : key_views(static_cast<int>(views.size()), options.key_views))
-      if (std::abs(key - static_cast<int>(middle)) < std::abs(static_cast<int>(nearest) - static_cast<int>(middle))) nearest = static_cast<std::size_t>(key);
+      if (std::abs(key - static_cast<int>(middle)) < std::abs(static_cast<int>(nearest) - static_cast<int>(middle)))
+        nearest = static_cast<std::size_t>(key);
     state.counters["copy_psnr_db"] = of_layer(nearest);
   }
-  state.counters["triangles"] = static_cast<double>(multi.triangles(multi.level_for(mm_per_pixel_at(views[0], {0, 0, 0}, kWidth))));
+  state.counters["triangles"] =
+      static_cast<double>(multi.triangles(multi.level_for(mm_per_pixel_at(views[0], {0, 0, 0}, kWidth))));
 }
 
 void DisplayNaive(benchmark::State& state) { naive(state); }
@@ -115,7 +129,11 @@ void DisplayMakeLevels(benchmark::State& state) {
 void sizes(benchmark::internal::Benchmark* bench) {
   for (const int thousands : {100, 1000, 10000})
     for (const int views : {1, 2, 48, 100}) bench->Args({views, thousands});
-  bench->ArgNames({"views", "thousands"})->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime()->MinTime(0.05);
+  bench->ArgNames({"views", "thousands"})
+      ->Unit(benchmark::kMillisecond)
+      ->MeasureProcessCPUTime()
+      ->UseRealTime()
+      ->MinTime(0.05);
 }
 
 BENCHMARK(DisplayNaive)->Apply(sizes);

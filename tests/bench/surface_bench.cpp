@@ -38,8 +38,8 @@ Volume<float> make_gyroid() {
       const float x = kStep * static_cast<float>(i);
       noise = noise * 1664525u + 1013904223u;
       const float grain = static_cast<float>(noise >> 8) * 0x1p-24f - 0.5f;
-      volume.voxels[r * kSize + i] = std::sin(x) * std::cos(y) + std::sin(y) * std::cos(z) +
-                                     std::sin(z) * std::cos(x) + 0.06f * grain;
+      volume.voxels[r * kSize + i] =
+          std::sin(x) * std::cos(y) + std::sin(y) * std::cos(z) + std::sin(z) * std::cos(x) + 0.06f * grain;
     }
   });
   return volume;

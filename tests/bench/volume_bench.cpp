@@ -54,8 +54,8 @@ void VolumeDenoise(benchmark::State& state, DenoiseMethod method, RangeWeight ra
   if (!filter) return state.SkipWithError("options");
   read_through(state, **filter, kDims.count());
 }
-#define DUBSAR_BENCH_DENOISE(name, method, range, window)                                              \
-  BENCHMARK_CAPTURE(VolumeDenoise, name, DenoiseMethod::method, RangeWeight::range, window)            \
+#define DUBSAR_BENCH_DENOISE(name, method, range, window)                                   \
+  BENCHMARK_CAPTURE(VolumeDenoise, name, DenoiseMethod::method, RangeWeight::range, window) \
       ->Unit(benchmark::kMillisecond)
 DUBSAR_BENCH_DENOISE(joint_tukey_3, kJointBilateral, kTukey, 3);
 DUBSAR_BENCH_DENOISE(joint_gauss_3, kJointBilateral, kGauss, 3);

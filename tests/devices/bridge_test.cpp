@@ -46,8 +46,7 @@ TEST(HttpReply, WhatIsNotHttpOrContradictsItselfIsRefused) {
        {"SSH-2.0-OpenSSH\r\n\r\n", "HTTP/2 200 OK\r\n\r\n", "HTTP/1.1 abc OK\r\n\r\n",
         "HTTP/1.1 200 OK\r\nno colon\r\n\r\n", "HTTP/1.1 200 OK\r\nContent-Length: -1\r\n\r\n",
         "HTTP/1.1 200 OK\r\nContent-Length: 1\r\nContent-Length: 2\r\n\r\nab",
-        "HTTP/1.1 200 OK\r\nContent-Length: 99999999999\r\n\r\n",
-        "HTTP/1.1 200 OK\r\nTransfer-Encoding: gzip\r\n\r\n",
+        "HTTP/1.1 200 OK\r\nContent-Length: 99999999999\r\n\r\n", "HTTP/1.1 200 OK\r\nTransfer-Encoding: gzip\r\n\r\n",
         "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\nContent-Length: 1\r\n\r\n",
         "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n",
         "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n2\r\nabcd\r\n"})
@@ -58,8 +57,7 @@ TEST(HttpReply, WhatIsNotHttpOrContradictsItselfIsRefused) {
 }
 
 TEST(Bridge, DisplaysComeWithTheirCalibrationsHoweverTheServerSendsThem) {
-  for (const test::BridgeManners manners :
-       {test::BridgeManners{}, {.chunked = true}, {.until_close = true}}) {
+  for (const test::BridgeManners manners : {test::BridgeManners{}, {.chunked = true}, {.until_close = true}}) {
     test::FakeBridge bridge(two_devices(), manners);
     const auto devices = read_bridge_devices(bridge_opener(bridge.port()), SteadyClock());
     ASSERT_TRUE(devices) << devices.error().message;
@@ -68,8 +66,8 @@ TEST(Bridge, DisplaysComeWithTheirCalibrationsHoweverTheServerSendsThem) {
     EXPECT_EQ(devices->at(0).hardware, "portrait");
     EXPECT_EQ(devices->at(0).calibration, kCalibration);
     EXPECT_EQ(devices->at(1).calibration, "");
-    EXPECT_EQ(bridge.asked(), (std::vector<std::string>{"enter_orchestration", "available_output_devices",
-                                                        "exit_orchestration"}));
+    EXPECT_EQ(bridge.asked(),
+              (std::vector<std::string>{"enter_orchestration", "available_output_devices", "exit_orchestration"}));
   }
 }
 
@@ -89,8 +87,8 @@ TEST(Bridge, ServersThatAreNotThereSilentOrBrokenAreErrorsInTime) {
 
 TEST(Bridge, AnswersOfAnotherShapeAreRefused) {
   EXPECT_EQ(parse_bridge_token(R"({"payload": {"value": "abc"}})").value(), "abc");
-  for (const char* text : {"", "[]", "{}", R"({"payload": {}})", R"({"payload": {"value": ""}})",
-                           R"({"payload": {"value": 7}})"})
+  for (const char* text :
+       {"", "[]", "{}", R"({"payload": {}})", R"({"payload": {"value": ""}})", R"({"payload": {"value": 7}})"})
     EXPECT_EQ(parse_bridge_token(text).error().kind, ErrorKind::kBadData) << text;
   EXPECT_TRUE(parse_bridge_devices(R"({"payload": {"value": {}}})")->empty());
   for (const char* text : {R"({"payload": {"value": [1]}})", R"({"payload": {"value": {"0": {}}}})",
@@ -99,15 +97,19 @@ TEST(Bridge, AnswersOfAnotherShapeAreRefused) {
 }
 
 TEST(Bridge, RandomBytesInTheAnswersNeverDoMoreThanFail) {
-  const std::string listed = R"({"payload": {"value": {"0": {"value": {"hwid": {"value": "LKG-P1"}, "calibration": {"value": "{}"}}}}}})";
-  const std::string chunked = "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n6;x=1\r\nhello \r\n5\r\nworld\r\n0\r\n\r\n";
+  const std::string listed =
+      R"({"payload": {"value": {"0": {"value": {"hwid": {"value": "LKG-P1"}, "calibration": {"value": "{}"}}}}}})";
+  const std::string chunked =
+      "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n6;x=1\r\nhello \r\n5\r\nworld\r\n0\r\n\r\n";
   std::uint32_t state = 1;
   const auto next = [&] { return (state = state * 1664525u + 1013904223u) >> 8; };
   const auto damaged = [&](std::string text) {
     for (std::uint32_t changes = 1 + next() % 4; changes > 0; --changes) {
       const std::size_t at = next() % text.size();
-      if (next() % 3 == 0) text.erase(at, 1 + next() % 5);
-      else text[at] = static_cast<char>(next());
+      if (next() % 3 == 0)
+        text.erase(at, 1 + next() % 5);
+      else
+        text[at] = static_cast<char>(next());
       if (text.empty()) text.push_back('x');
     }
     return text;

@@ -31,8 +31,7 @@ bool readable(int descriptor, int stop) {
 
 }  // namespace
 
-FakeBridge::FakeBridge(const std::vector<FakeBridgeDevice>& devices, BridgeManners manners)
-    : manners_(manners) {
+FakeBridge::FakeBridge(const std::vector<FakeBridgeDevice>& devices, BridgeManners manners) : manners_(manners) {
   json list = json::object();
   for (std::size_t i = 0; i < devices.size(); ++i) {
     const json device{{"calibration", typed("CSTRING", devices[i].calibration)},
@@ -96,8 +95,7 @@ void FakeBridge::answer(int connection) {
     if (head_end != std::string::npos && at != std::string::npos)
       need = head_end + 4 + std::strtoul(request.c_str() + at + 16, nullptr, 10);
   }
-  const std::string endpoint =
-      request.starts_with("PUT /") ? request.substr(5, request.find(' ', 5) - 5) : "";
+  const std::string endpoint = request.starts_with("PUT /") ? request.substr(5, request.find(' ', 5) - 5) : "";
   {
     const std::lock_guard lock(mutex_);
     asked_.push_back(endpoint);
@@ -121,8 +119,7 @@ void FakeBridge::answer(int connection) {
     }
     reply += "0\r\n\r\n";
   } else {
-    reply +=
-        manners_.until_close ? "\r\n" + text : fmt::format("Content-Length: {}\r\n\r\n{}", text.size(), text);
+    reply += manners_.until_close ? "\r\n" + text : fmt::format("Content-Length: {}\r\n\r\n{}", text.size(), text);
   }
   if (manners_.cut_short) reply.resize(reply.size() - text.size() / 2);
   static_cast<void>(::send(connection, reply.data(), reply.size(), MSG_NOSIGNAL));

@@ -1,5 +1,7 @@
 // Head trackers: opentrack, VRPN, Rift, XREAL, and what holds them level.
 
+#include "devices/head_tracker/head_tracker.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +9,6 @@
 #include <limits>
 #include <numbers>
 
-#include "devices/head_tracker/head_tracker.h"
 #include "devices/head_tracker/imu_sim.h"
 #include "devices/head_tracker/opentrack_protocol.h"
 #include "devices/head_tracker/vrpn_protocol.h"
@@ -25,8 +26,8 @@ double angle_between(const glm::dquat& a, const glm::dquat& b) {
 
 TEST(Opentrack, GoldenDatagramInCentimetresAndDegrees) {
   // 10, -5, 60 cm, yaw 90, pitch 0, roll 0 degrees as little-endian doubles
-  const auto bytes = from_hex(
-      "0000000000002440 00000000000014c0 0000000000004e40 0000000000805640 0000000000000000 0000000000000000");
+  const auto bytes =
+      from_hex("0000000000002440 00000000000014c0 0000000000004e40 0000000000805640 0000000000000000 0000000000000000");
   const auto packet = parse_opentrack(bytes);
   ASSERT_TRUE(packet);
   EXPECT_EQ(*packet, (OpentrackPacket{10, -5, 60, 90, 0, 0}));
@@ -92,12 +93,29 @@ std::vector<std::byte> vrpn_session(const Pose& pose) {
 }
 
 TEST(Vrpn, GoldenMessage) {
-  EXPECT_EQ(to_hex(vrpn_cookie()), "7672706e3a207665722e2030372e3338202030" "0000000000");
+  EXPECT_EQ(to_hex(vrpn_cookie()),
+            "7672706e3a207665722e2030372e3338202030"
+            "0000000000");
   EXPECT_EQ(to_hex(format_vrpn(vrpn_name_message(-1, 4, "T"))),
-            "0000001e" "00000000" "00000000" "00000004" "ffffffff" "00000000" "00000002" "5400" "0000");
+            "0000001e"
+            "00000000"
+            "00000000"
+            "00000004"
+            "ffffffff"
+            "00000000"
+            "00000002"
+            "5400"
+            "0000");
   const auto pose = vrpn_pose_message(0, 0, 3, {{1.0, 0, 0}, {1, 0, 0, 0}});
-  EXPECT_EQ(to_hex(pose.payload), "0000000300000000" "3ff0000000000000" "0000000000000000" "0000000000000000"
-                                  "0000000000000000" "0000000000000000" "0000000000000000" "3ff0000000000000");
+  EXPECT_EQ(to_hex(pose.payload),
+            "0000000300000000"
+            "3ff0000000000000"
+            "0000000000000000"
+            "0000000000000000"
+            "0000000000000000"
+            "0000000000000000"
+            "0000000000000000"
+            "3ff0000000000000");
 }
 
 TEST(Vrpn, ThePoseIsFoundHoweverTheStreamIsCut) {
@@ -249,7 +267,8 @@ TEST(DeviceTimeline, AReportThatWasHeldUpHasTheTimeOfItsMeasurement) {
   DeviceTimeline timeline;
   constexpr TimestampNs kMs = 1'000'000, kOrigin = 77 * kSecond;  // of the device's clock
   for (int i = 0; i < 100; ++i)
-    EXPECT_LE(std::abs(timeline.host_time(i * 10 * kMs + kOrigin, i * 10 * kMs + 2 * kMs) - (i * 10 * kMs + 2 * kMs)), 1000);
+    EXPECT_LE(std::abs(timeline.host_time(i * 10 * kMs + kOrigin, i * 10 * kMs + 2 * kMs) - (i * 10 * kMs + 2 * kMs)),
+              1000);
   // 40 ms late
   EXPECT_LE(std::abs(timeline.host_time(kSecond + kOrigin, kSecond + 42 * kMs) - (kSecond + 2 * kMs)), kMs / 5);
   // never in the future
@@ -286,8 +305,8 @@ TEST(Vrpn, PosesHaveTheTimeOfTheServersMeasurement) {
 
 TEST(Xreal, GoldenReportAndCommand) {
   // 1.5 s; gyro 1/1000 degree per unit: 1000, 2000, -3000; accelerometer 1/100 g: 0, 0, 100
-  auto bytes = from_hex(
-      "0102 0000 002f685900000000 0100 e8030000 e80300 d00700 48f4ff 0100 64000000 000000 000000 640000");
+  auto bytes =
+      from_hex("0102 0000 002f685900000000 0100 e8030000 e80300 d00700 48f4ff 0100 64000000 000000 000000 640000");
   bytes.resize(64);
   const auto parsed = parse_xreal(bytes);
   ASSERT_TRUE(parsed);
@@ -306,7 +325,11 @@ TEST(Xreal, GoldenReportAndCommand) {
 
   const auto command = format_xreal_command({kXrealStream, {std::byte{1}}});
   // CRC-32 of 04 00 19 01
-  EXPECT_EQ(to_hex(std::span(command).first(9)), "aa" "c5d12142" "040019" "01");
+  EXPECT_EQ(to_hex(std::span(command).first(9)),
+            "aa"
+            "c5d12142"
+            "040019"
+            "01");
   EXPECT_EQ(parse_xreal_command(command), (XrealCommand{kXrealStream, {std::byte{1}}}));
   for (std::size_t i = 0; i < 9; ++i) {
     auto broken = command;

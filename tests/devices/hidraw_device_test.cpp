@@ -99,9 +99,13 @@ TEST_F(Hidraw, TheDriverComesBackAfterUnpluggingWithinASecond) {
 class HidrawLookingGlass : public Hidraw {
  protected:
   HidIdentity identity() const override {
-    return {kLookingGlassVendor, kLookingGlassProduct, "Looking Glass Factory", "HoloPlay", "LKG-4K-00017",
-            {0x06, 0x00, 0xff, 0x09, 0x01, 0xa1, 0x01, 0x15, 0x00, 0x26, 0xff, 0x00, 0x75, 0x08, 0x95, 0x44, 0x09, 0x01, 0x81, 0x02,
-             0x95, 0x44, 0x09, 0x02, 0xb1, 0x02, 0xc0}};
+    return {kLookingGlassVendor,
+            kLookingGlassProduct,
+            "Looking Glass Factory",
+            "HoloPlay",
+            "LKG-4K-00017",
+            {0x06, 0x00, 0xff, 0x09, 0x01, 0xa1, 0x01, 0x15, 0x00, 0x26, 0xff, 0x00, 0x75, 0x08,
+             0x95, 0x44, 0x09, 0x01, 0x81, 0x02, 0x95, 0x44, 0x09, 0x02, 0xb1, 0x02, 0xc0}};
   }
 };
 
@@ -113,7 +117,8 @@ TEST_F(HidrawLookingGlass, ItsCalibrationComesThroughHidapi) {
   memory += json;
   testbed_->on_feature_set([&](std::span<const std::byte> request) {
     LookingGlassPage page;
-    page.number = static_cast<std::uint16_t>(std::to_integer<unsigned>(request[2]) << 8 | std::to_integer<unsigned>(request[3]));
+    page.number =
+        static_cast<std::uint16_t>(std::to_integer<unsigned>(request[2]) << 8 | std::to_integer<unsigned>(request[3]));
     for (std::size_t i = 0; i < page.data.size() && page.number * page.data.size() + i < memory.size(); ++i)
       page.data[i] = static_cast<std::byte>(memory[page.number * page.data.size() + i]);
     const auto report = format_looking_glass(page);

@@ -36,18 +36,27 @@ std::string HidrawTestbed::description() const {
   for (const std::uint8_t byte : identity_.descriptor) descriptor += fmt::format("{:02X}", byte);
   return "P: " + usb + "\nN: bus/usb/001/" + usb_number + "\nE: DEVNAME=/dev/bus/usb/001/" + usb_number +
          "\nE: DEVTYPE=usb_device\nE: SUBSYSTEM=usb\nE: BUSNUM=001\nE: DEVNUM=" + usb_number +
-         fmt::format("\nA: idVendor={:04x}\\n\nA: idProduct={:04x}\\n\nA: manufacturer={}\\n\nA: product={}\\n\nA: serial={}\\n\n",
-                     identity_.vendor, identity_.product, identity_.manufacturer, identity_.name, identity_.serial) +
+         fmt::format(
+             "\nA: idVendor={:04x}\\n\nA: idProduct={:04x}\\n\nA: manufacturer={}\\n\nA: product={}\\n\nA: "
+             "serial={}\\n\n",
+             identity_.vendor, identity_.product, identity_.manufacturer, identity_.name, identity_.serial) +
          "A: bcdDevice=0100\\n\nA: busnum=1\\n\nA: devnum=2\\n\n\n"
-         "P: " + usb + "/1-1:1.0\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\nA: bInterfaceNumber=00\\n\n\n"
-         "P: " + hid +
-         fmt::format("\nE: SUBSYSTEM=hid\nE: HID_ID=0003:{:08X}:{:08X}\nE: HID_NAME={} {}\nE: HID_PHYS=usb-1/input0\nE: HID_UNIQ={}\n",
-                     identity_.vendor, identity_.product, identity_.manufacturer, identity_.name, identity_.serial) +
-         "H: report_descriptor=" + descriptor + "\n\n"
-         "P: " + hid +
-         "/hidraw/" + node + "\nN: " + node + "\nE: DEVNAME=/dev/" + node + "\nE: SUBSYSTEM=hidraw\nE: MAJOR=240\nE: MINOR=" +
-         std::to_string(plugging_) + "\nA: dev=240:" + std::to_string(plugging_) + "\\n\nL: device=../../../" +
-         hid.substr(hid.rfind('/') + 1) + "\n\n";
+         "P: " +
+         usb +
+         "/1-1:1.0\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\nA: bInterfaceNumber=00\\n\n\n"
+         "P: " +
+         hid +
+         fmt::format(
+             "\nE: SUBSYSTEM=hid\nE: HID_ID=0003:{:08X}:{:08X}\nE: HID_NAME={} {}\nE: HID_PHYS=usb-1/input0\nE: "
+             "HID_UNIQ={}\n",
+             identity_.vendor, identity_.product, identity_.manufacturer, identity_.name, identity_.serial) +
+         "H: report_descriptor=" + descriptor +
+         "\n\n"
+         "P: " +
+         hid + "/hidraw/" + node + "\nN: " + node + "\nE: DEVNAME=/dev/" + node +
+         "\nE: SUBSYSTEM=hidraw\nE: MAJOR=240\nE: MINOR=" + std::to_string(plugging_) +
+         "\nA: dev=240:" + std::to_string(plugging_) + "\\n\nL: device=../../../" + hid.substr(hid.rfind('/') + 1) +
+         "\n\n";
 }
 
 HidrawTestbed::HidrawTestbed(HidIdentity identity)
@@ -65,7 +74,8 @@ HidrawTestbed::~HidrawTestbed() {
 void HidrawTestbed::plug() {
   GError* error = nullptr;
   ++plugging_;
-  if (!umockdev_testbed_add_from_string(testbed_, description().c_str(), &error)) throw std::runtime_error(error->message);
+  if (!umockdev_testbed_add_from_string(testbed_, description().c_str(), &error))
+    throw std::runtime_error(error->message);
   if (!umockdev_testbed_attach_ioctl(testbed_, node().c_str(), handler_, &error))
     throw std::runtime_error(error->message);
   attached_ = true;
@@ -73,7 +83,8 @@ void HidrawTestbed::plug() {
   ::unlink(real.c_str());
   if (::mkfifo(real.c_str(), 0666) != 0) throw std::runtime_error("mkfifo");
   fifo_ = ::open(real.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-  if (fifo_ < 0 || ::fcntl(fifo_, F_SETFL, O_RDWR | O_NONBLOCK | O_DIRECT) != 0) throw std::runtime_error("packet FIFO");
+  if (fifo_ < 0 || ::fcntl(fifo_, F_SETFL, O_RDWR | O_NONBLOCK | O_DIRECT) != 0)
+    throw std::runtime_error("packet FIFO");
 }
 
 void HidrawTestbed::unplug() {

@@ -18,12 +18,13 @@ struct HidIdentity {
   std::uint16_t vendor = 0x256f, product = 0xc635;
   std::string manufacturer = "3Dconnexion", name = "SpaceMouse Compact", serial = "SIM1";
   /// Generic Desktop, Multi-axis Controller; input report 1 of 12 bytes, feature report 2 of 6 bytes
-  std::vector<std::uint8_t> descriptor{0x05, 0x01, 0x09, 0x08, 0xa1, 0x01, 0x85, 0x01, 0x15, 0x00, 0x26, 0xff, 0x00, 0x75, 0x08,
-                                       0x95, 0x0c, 0x09, 0x01, 0x81, 0x02, 0x85, 0x02, 0x95, 0x06, 0x09, 0x02, 0xb1, 0x02, 0xc0};
+  std::vector<std::uint8_t> descriptor{0x05, 0x01, 0x09, 0x08, 0xa1, 0x01, 0x85, 0x01, 0x15, 0x00,
+                                       0x26, 0xff, 0x00, 0x75, 0x08, 0x95, 0x0c, 0x09, 0x01, 0x81,
+                                       0x02, 0x85, 0x02, 0x95, 0x06, 0x09, 0x02, 0xb1, 0x02, 0xc0};
 };
 
-/// The node is a FIFO in packet mode, so that reports keep their boundaries; what the host sends is kept. The ioctls are
-/// answered in a thread of umockdev's own.
+/// The node is a FIFO in packet mode, so that reports keep their boundaries; what the host sends is kept. The ioctls
+/// are answered in a thread of umockdev's own.
 class HidrawTestbed {
  public:
   explicit HidrawTestbed(HidIdentity identity = {});

@@ -39,7 +39,8 @@ TEST(LookingGlass, GoldenRequestAndReply) {
 }
 
 TEST(LookingGlass, TheTextComesWholeWhateverTheManners) {
-  for (const std::size_t bytes : {std::size_t{30}, std::size_t{60}, std::size_t{61}, std::size_t{124}, std::size_t{700}})
+  for (const std::size_t bytes :
+       {std::size_t{30}, std::size_t{60}, std::size_t{61}, std::size_t{124}, std::size_t{700}})
     for (const bool split : {true, false})
       for (const int stale : {0, 1, 20})
         for (const int ignored : {0, bytes == 124 && stale == 1 ? 2 : 0}) {

@@ -107,7 +107,8 @@ TEST(Malformed, TwoMillionHeadsetReports) {
                 [](FastRandom& random, std::span<std::byte> out) -> std::size_t {
                   random.fill(out.first(72));
                   switch (random.below(4)) {
-                    case 0: return wrong_length(random, std::array<std::size_t, 2>{62, 64});
+                    case 0:
+                      return wrong_length(random, std::array<std::size_t, 2>{62, 64});
                     case 1:
                       out[0] = std::byte{0x33};
                       return random.below(2) == 0 ? 62 : 64;

@@ -1,10 +1,10 @@
 // Transports without devices: simulated, faulty, recorded, replayed, sockets; and reconnection.
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/un.h>
-#include <netinet/in.h>
-#include <arpa/inet.h>
 #include <unistd.h>
 
 #include <cstring>
@@ -234,7 +234,8 @@ TEST(HotplugWatch, SeesNodesComeAndGo) {
   std::filesystem::remove(folder / "hidraw0");
   EXPECT_TRUE(watch->changed());
   std::filesystem::remove_all(folder);
-  EXPECT_EQ(HotplugWatch::create(std::vector<std::filesystem::path>{"/no/such/folder"}).error().kind, ErrorKind::kUnavailable);
+  EXPECT_EQ(HotplugWatch::create(std::vector<std::filesystem::path>{"/no/such/folder"}).error().kind,
+            ErrorKind::kUnavailable);
 }
 
 class UdpSender {
@@ -312,8 +313,7 @@ TEST(Udp, ListensOnTheLoopbackUnlessToldOtherwise) {
 }
 
 TEST(UnixStream, CarriesBytesAndTellsTheEnd) {
-  const auto path =
-      (std::filesystem::temp_directory_path() / ("dubsar_stream_" + std::to_string(::getpid()))).string();
+  const auto path = (std::filesystem::temp_directory_path() / ("dubsar_stream_" + std::to_string(::getpid()))).string();
   EXPECT_EQ(open_unix_stream(path).error().kind, ErrorKind::kUnavailable);
   const int listener = ::socket(AF_UNIX, SOCK_STREAM, 0);
   sockaddr_un address{};

@@ -41,10 +41,11 @@ TEST(Camera, NamedViewsPutTheObjectsSidesWhereAViewerExpectsThem) {
   const struct {
     const char* name;
     glm::dvec3 right, up, near;
-  } cases[] = {{"front", {20, 0, 0}, {0, 15, 0}, {0, 0, 5}},   {"back", {-20, 0, 0}, {0, 15, 0}, {0, 0, -5}},
-               {"left", {0, 0, 5}, {0, 15, 0}, {-20, 0, 0}},   {"right", {0, 0, -5}, {0, 15, 0}, {20, 0, 0}},
-               {"top", {20, 0, 0}, {0, 0, -5}, {0, 15, 0}},    {"bottom", {20, 0, 0}, {0, 0, 5}, {0, -15, 0}},
-               {"orbit:90,0", {0, 0, -5}, {0, 15, 0}, {20, 0, 0}}, {"orbit:0,0,90", {0, 15, 0}, {-20, 0, 0}, {0, 0, 5}}};
+  } cases[] = {
+      {"front", {20, 0, 0}, {0, 15, 0}, {0, 0, 5}},       {"back", {-20, 0, 0}, {0, 15, 0}, {0, 0, -5}},
+      {"left", {0, 0, 5}, {0, 15, 0}, {-20, 0, 0}},       {"right", {0, 0, -5}, {0, 15, 0}, {20, 0, 0}},
+      {"top", {20, 0, 0}, {0, 0, -5}, {0, 15, 0}},        {"bottom", {20, 0, 0}, {0, 0, 5}, {0, -15, 0}},
+      {"orbit:90,0", {0, 0, -5}, {0, 15, 0}, {20, 0, 0}}, {"orbit:0,0,90", {0, 15, 0}, {-20, 0, 0}, {0, 0, 5}}};
   for (const auto& c : cases) {
     CameraOptions options;
     options.direction = direction(c.name);
@@ -145,8 +146,8 @@ TEST(Camera, ViewNamesAreReadStrictly) {
   EXPECT_EQ(d.elevation_deg, 20);
   EXPECT_EQ(d.roll_deg, 7);
   EXPECT_EQ(direction("orbit:1,2").roll_deg, 0);
-  for (const char* bad : {"", "Front", "orbit", "orbit:", "orbit:1", "orbit:1,", "orbit:1,2,", "orbit:1,2,3,4", "orbit:a,b",
-                          "orbit:1,nan", "orbit:1;2", "orbit:1e300,0"}) {
+  for (const char* bad : {"", "Front", "orbit", "orbit:", "orbit:1", "orbit:1,", "orbit:1,2,", "orbit:1,2,3,4",
+                          "orbit:a,b", "orbit:1,nan", "orbit:1;2", "orbit:1e300,0"}) {
     const auto result = parse_view_direction(bad);
     ASSERT_FALSE(result) << bad;
     EXPECT_EQ(result.error().kind, ErrorKind::kUsage);

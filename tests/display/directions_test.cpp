@@ -46,14 +46,11 @@ constexpr const char* kSmallPanels = R"([
 
 using Light = glm::dvec3;  ///< linear
 
-Light light_of(const Rgb8& c) {
-  return {linear_from_srgb(c[0]), linear_from_srgb(c[1]), linear_from_srgb(c[2])};
-}
+Light light_of(const Rgb8& c) { return {linear_from_srgb(c[0]), linear_from_srgb(c[1]), linear_from_srgb(c[2])}; }
 
 /// Mean light of the pixels that `chosen` names, top row first, without a border.
 Light mean_light(
-    const Image& image, int border,
-    const std::function<bool(int, int)>& chosen = [](int, int) { return true; }) {
+    const Image& image, int border, const std::function<bool(int, int)>& chosen = [](int, int) { return true; }) {
   Light sum(0.0);
   int count = 0;
   for (int y = border; y < image.height - border; ++y)
@@ -97,8 +94,7 @@ class Directions : public ::testing::Test {
     for (int k = 0; k < traits.views; ++k) {
       Image image(traits.view.width, traits.view.height, 4);
       const Rgb8 c = color(k);
-      for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        image.pixels[i] = i % 4 == 3 ? std::uint8_t{255} : c[i % 4];
+      for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = i % 4 == 3 ? std::uint8_t{255} : c[i % 4];
       EXPECT_TRUE(array.write_layer(k, image));
     }
     return array;
@@ -144,8 +140,7 @@ class Directions : public ::testing::Test {
     for (int eye = 0; eye < 2; ++eye) {
       Light sum(0.0);
       for (int c = 0; c < 3; ++c)  // a polariser passes subpixel by subpixel
-        sum[c] = mean_light(picture, 0,
-                            [&](int x, int y) { return interlace_parity(pattern, x, y, c) == eye; })[c];
+        sum[c] = mean_light(picture, 0, [&](int x, int y) { return interlace_parity(pattern, x, y, c) == eye; })[c];
       expect_view(eye, sum, 1e-9, spec);
     }
   }
@@ -180,10 +175,9 @@ class Directions : public ::testing::Test {
     ASSERT_TRUE(light);
     const PanelProfile profile = find_profile(load_profiles(folder_).value(), panel).value();
     const int views = sink_->traits().views;
-    const double half_cone = 0.5 * profile.view_cone_deg * std::numbers::pi / 180,
-                 z = viewing_distance_mm(profile);
+    const double half_cone = 0.5 * profile.view_cone_deg * std::numbers::pi / 180, z = viewing_distance_mm(profile);
     for (int k = filter == "linear" ? 2 : 1;
-         k<views - 1; k += views> 6 ? 3 : 1) {  // the outer ones mix with each other
+         k<views - 1; k += views> 6 ? 3 : 1) {                              // the outer ones mix with each other
       const double place = (k + (filter == "linear" ? 0.0 : 0.5)) / views;  // 0..1 across the cone
       const glm::dvec3 eye(z * std::tan(half_cone) * (2 * place - 1), 0.0, z);
       expect_view(k, mean_light(see(picture, light->panel, eye), 20), std::sqrt(3.0) * 0.5 / (views + 1.0),
@@ -238,11 +232,9 @@ TEST_F(Directions, EveryViewArrivesAtTheEyeItIsFor) {
          open("lenticular:small-tracked", viewer);
          const Image picture = composed();
          for (int eye = 0; eye < 2; ++eye)
-           expect_view(
-               eye,
-               mean_light(see(picture, sink_->light()->panel, eye == 0 ? viewer.left_mm : viewer.right_mm),
-                          20),
-               0.1, "tracked");
+           expect_view(eye,
+                       mean_light(see(picture, sink_->light()->panel, eye == 0 ? viewer.left_mm : viewer.right_mm), 20),
+                       0.1, "tracked");
        }},
       {"quad_buffer",
        [&] {
@@ -254,20 +246,19 @@ TEST_F(Directions, EveryViewArrivesAtTheEyeItIsFor) {
            glTextureStorage2D(pictures[eye], 1, GL_RGBA8, kWidth, kHeight);
            glNamedFramebufferTexture(buffers, GL_COLOR_ATTACHMENT0 + eye, pictures[eye], 0);
          }
-         ASSERT_TRUE(sink_->compose(
-             painted(), {buffers, kWidth, kHeight, {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1}}));
+         ASSERT_TRUE(
+             sink_->compose(painted(), {buffers, kWidth, kHeight, {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1}}));
          for (int eye = 0; eye < 2; ++eye) {
            Image read(kWidth, kHeight, 4);
-           glGetTextureImage(pictures[eye], 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                             static_cast<GLsizei>(read.pixels.size()), read.pixels.data());
+           glGetTextureImage(pictures[eye], 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(read.pixels.size()),
+                             read.pixels.data());
            expect_view(eye, mean_light(read, 0), 1e-9, "quad_buffer");
          }
        }},
       {"quilt", [&] {
          open("quilt:small-glass");
          const auto tiles = split_quilt(composed(), {4, 3, 160, 120});
-         for (int k = 0; k < 12; ++k)
-           expect_view(k, mean_light(tiles[static_cast<std::size_t>(k)], 0), 1e-9, "quilt");
+         for (int k = 0; k < 12; ++k) expect_view(k, mean_light(tiles[static_cast<std::size_t>(k)], 0), 1e-9, "quilt");
        }}};
   for (const SinkBackend& backend : output_sinks()) {
     const auto found = cases.find(backend.name);

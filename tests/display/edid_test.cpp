@@ -15,9 +15,7 @@ namespace fs = std::filesystem;
 using test::made_edid;
 using test::MadeEdid;
 
-Result<Edid> parse(std::string_view text) {
-  return parse_edid(std::as_bytes(std::span(text.data(), text.size())));
-}
+Result<Edid> parse(std::string_view text) { return parse_edid(std::as_bytes(std::span(text.data(), text.size()))); }
 
 TEST(Edid, TellsWhoMadeTheMonitorItsSizeNameAndSerial) {
   const auto edid = parse(made_edid({.manufacturer = "DEL",
@@ -30,8 +28,7 @@ TEST(Edid, TellsWhoMadeTheMonitorItsSizeNameAndSerial) {
                                      .serial = "ABC123"}));
   ASSERT_TRUE(edid) << edid.error().message;
   EXPECT_EQ(*edid, (Edid{"DEL", 16711, 42, "UP3218K", "ABC123", 1536, 2048, 698, 393, 2023}));
-  EXPECT_EQ(parse(made_edid({.name = "LKG-PORTRAIT1"}))->name, "LKG-PORTRAIT1")
-      << "thirteen characters need no end";
+  EXPECT_EQ(parse(made_edid({.name = "LKG-PORTRAIT1"}))->name, "LKG-PORTRAIT1") << "thirteen characters need no end";
 }
 
 TEST(Edid, EveryTruncationEveryWrongByteAndExtraBytes) {
@@ -81,8 +78,7 @@ TEST_F(Connectors, MonitorsFindTheirsByNameAndBySize) {
   connect("card0-HDMI-A-2", made_edid({.width_px = 1920, .height_px = 1080, .name = "C"}));
   const auto found = read_connected_edids(folder_);
   const auto name_of = [&](std::string_view name, int width, int height) {
-    const Edid* const edid =
-        edid_of({.name = std::string(name), .width_px = width, .height_px = height}, found);
+    const Edid* const edid = edid_of({.name = std::string(name), .width_px = width, .height_px = height}, found);
     return edid == nullptr ? "none" : edid->name;
   };
   EXPECT_EQ(name_of("DP-1", 3840, 2160), "A");
@@ -117,8 +113,7 @@ TEST(PanelsOfEdid, LookingGlassesByNameAndSizeTrackedOnesByMakerAndProduct) {
             "looking-glass-kiosk ");
   EXPECT_EQ(names({.width_px = 1536, .height_px = 2048, .width_mm = 120, .height_mm = 160, .name = "LKG"}),
             "looking-glass-portrait looking-glass-kiosk ");
-  EXPECT_EQ(names({.width_px = 1536, .height_px = 2048, .width_mm = 120, .height_mm = 160, .name = "iPad"}),
-            "");
+  EXPECT_EQ(names({.width_px = 1536, .height_px = 2048, .width_mm = 120, .height_mm = 160, .name = "iPad"}), "");
   EXPECT_EQ(names({.manufacturer = "ACR", .product = 1}), "spatiallabs-15.6 ");
   EXPECT_EQ(names({.manufacturer = "ACR", .product = 7}), "");
   EXPECT_EQ(names({.manufacturer = "ACR", .product = 1, .width_mm = 600, .height_mm = 340}), "")

@@ -81,7 +81,8 @@ TEST(SubpixelLayout, CellPatternsFollowTheVendorsNumbering) {
 }
 
 TEST(ViewWeights, SumToOneAndCentreOnTheView) {
-  for (const ViewFilter filter : {ViewFilter::kNearest, ViewFilter::kLinear, ViewFilter::kGaussian3, ViewFilter::kGaussian10})
+  for (const ViewFilter filter :
+       {ViewFilter::kNearest, ViewFilter::kLinear, ViewFilter::kGaussian3, ViewFilter::kGaussian10})
     for (const double position : {0.0, 0.001, 0.37, 0.5, 0.999}) {
       double sum = 0.0;
       for (const auto& [view, weight] : view_weights(position, 48, filter, 0.02)) {

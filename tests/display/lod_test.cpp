@@ -57,7 +57,8 @@ TEST(Lod, ThinWallsAndPartitionsKeepBothSides) {
   for (int i = 0; i < 20; ++i)
     for (int j = 0; j < 20; ++j) {
       const glm::vec3 corner(i, j, 0);
-      testing::add_rectangle(mesh, corner + glm::vec3(0, 0, 0.1f), {1, 0, 0}, {0, 1, 0}, static_cast<std::uint8_t>(i / 10));
+      testing::add_rectangle(mesh, corner + glm::vec3(0, 0, 0.1f), {1, 0, 0}, {0, 1, 0},
+                             static_cast<std::uint8_t>(i / 10));
       testing::add_rectangle(mesh, corner, {0, 1, 0}, {1, 0, 0}, static_cast<std::uint8_t>(i / 10));
     }
   const PackedMesh coarse = cluster_vertices(pack_mesh(mesh).value(), 5.0);
@@ -113,7 +114,8 @@ TEST(MultiView, KeyViewsGoEvenlyFromTheFirstToTheLast) {
     EXPECT_EQ(keys.size(), static_cast<std::size_t>(std::min(count, 12)));
     EXPECT_EQ(keys.front(), 0);
     EXPECT_EQ(keys.back(), count - 1);
-    for (std::size_t i = 1; i < keys.size(); ++i) EXPECT_NEAR(keys[i] - keys[i - 1], (count - 1.0) / (static_cast<double>(keys.size()) - 1), 1.0);
+    for (std::size_t i = 1; i < keys.size(); ++i)
+      EXPECT_NEAR(keys[i] - keys[i - 1], (count - 1.0) / (static_cast<double>(keys.size()) - 1), 1.0);
   }
   EXPECT_EQ(key_views(4, 0), (std::vector<int>{0, 1, 2, 3}));
   EXPECT_EQ(key_views(1, 12), std::vector<int>{0});
@@ -121,7 +123,8 @@ TEST(MultiView, KeyViewsGoEvenlyFromTheFirstToTheLast) {
 }
 
 TEST(MultiView, PixelsHaveTheSizeThatTheWindowGivesThem) {
-  const Screen screen{.width_mm = 200, .height_mm = 100, .width_px = 400, .height_px = 200, .window_w = 400, .window_h = 200};
+  const Screen screen{
+      .width_mm = 200, .height_mm = 100, .width_px = 400, .height_px = 200, .window_w = 400, .window_h = 200};
   View view = viewer_view(screen.window_rect(), Viewer(), {80, 30, 500});
   EXPECT_NEAR(mm_per_pixel_at(view, {0, 0, 0}, 400), 0.5, 1e-9) << "in the panel's plane";
   EXPECT_NEAR(mm_per_pixel_at(view, {0, 0, -500}, 400), 1.0, 1e-9) << "twice as far away";

@@ -43,8 +43,7 @@ inline std::string made_edid(const MadeEdid& of) {
   put(kTiming + 14, of.width_mm >> 8 << 4 | of.height_mm >> 8);
   const auto text = [&](std::size_t at, int kind, std::string_view words) {
     put(at + 3, kind);
-    for (std::size_t i = 0; i < 13; ++i)
-      put(at + 5 + i, i < words.size() ? words[i] : i == words.size() ? '\n' : ' ');
+    for (std::size_t i = 0; i < 13; ++i) put(at + 5 + i, i < words.size() ? words[i] : i == words.size() ? '\n' : ' ');
   };
   text(72, 0xFC, of.name);
   text(90, 0xFF, of.serial);

@@ -25,9 +25,11 @@ class MultiViewGl : public ::testing::Test {
     context_ = std::move(*made);
   }
   static std::vector<View> views(int count) {
-    const Screen screen{.width_mm = 90, .height_mm = 60, .width_px = 90, .height_px = 60, .window_w = 90, .window_h = 60};
+    const Screen screen{
+        .width_mm = 90, .height_mm = 60, .width_px = 90, .height_px = 60, .window_w = 90, .window_h = 60};
     std::vector<View> out;
-    for (const glm::dvec3& eye : cone_eyes(count, 40 * std::numbers::pi / 180, 300)) out.push_back(viewer_view(screen.window_rect(), Viewer(), eye));
+    for (const glm::dvec3& eye : cone_eyes(count, 40 * std::numbers::pi / 180, 300))
+      out.push_back(viewer_view(screen.window_rect(), Viewer(), eye));
     return out;
   }
   std::unique_ptr<EglContext> context_;
@@ -52,7 +54,8 @@ TEST_F(MultiViewGl, LayersInOneDrawEqualViewsDrawnOneByOne) {
     const Image a = together.read_layer(layers[i]).value(), b = single.read_layer(0).value();
     int far = 0;
     for (std::size_t k = 0; k < a.pixels.size(); ++k) far += std::abs(int{a.pixels[k]} - int{b.pixels[k]}) > 1;
-    EXPECT_LE(far, 12) << "view " << i;  // of 21600: two ways of coding sRGB round differently, edges may fall otherwise
+    EXPECT_LE(far, 12) << "view "
+                       << i;  // of 21600: two ways of coding sRGB round differently, edges may fall otherwise
   }
 }
 
@@ -108,9 +111,15 @@ TEST_F(MultiViewGl, AMillionTrianglesFrom48PlacesAreDrawnAtLeastFiveTimesFasterT
   PackedMesh mesh = pack_mesh(testing::sphere(25, 708, 708)).value();
   ASSERT_GE(mesh.triangles.size(), 1'000'000u);
   constexpr int kWidth = 420, kHeight = 560, kViews = 48, kSample = 4;
-  const Screen screen{.width_mm = 90, .height_mm = 120, .width_px = kWidth, .height_px = kHeight, .window_w = kWidth, .window_h = kHeight};
+  const Screen screen{.width_mm = 90,
+                      .height_mm = 120,
+                      .width_px = kWidth,
+                      .height_px = kHeight,
+                      .window_w = kWidth,
+                      .window_h = kHeight};
   std::vector<View> wanted;
-  for (const glm::dvec3& eye : cone_eyes(kViews, 40 * std::numbers::pi / 180, 490)) wanted.push_back(viewer_view(screen.window_rect(), Viewer(), eye));
+  for (const glm::dvec3& eye : cone_eyes(kViews, 40 * std::numbers::pi / 180, 490))
+    wanted.push_back(viewer_view(screen.window_rect(), Viewer(), eye));
   auto array = ViewArray::create(kWidth, kHeight, kViews).value();
   // CPU time of all threads: the machine may be busy with other things. The first draw compiles shaders.
   const auto seconds = [](const auto& draw) {
@@ -125,7 +134,8 @@ TEST_F(MultiViewGl, AMillionTrianglesFrom48PlacesAreDrawnAtLeastFiveTimesFasterT
   double loop = 0.0;
   {
     const GpuMesh gpu = GpuMesh::upload(mesh).value();
-    loop = seconds([&] { ASSERT_TRUE(renderer.render(gpu, Shading(), std::span(wanted).first(kSample), 1, array)); }) * kViews / kSample;
+    loop = seconds([&] { ASSERT_TRUE(renderer.render(gpu, Shading(), std::span(wanted).first(kSample), 1, array)); }) *
+           kViews / kSample;
   }
   auto multi = MultiView::create(std::move(mesh)).value();
   const double moving = seconds([&] { ASSERT_TRUE(multi.draw_moving(Shading(), wanted, array)); });

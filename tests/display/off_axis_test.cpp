@@ -13,8 +13,14 @@
 namespace dubsar {
 namespace {
 
-constexpr Screen kScreen{.width_mm = 400, .height_mm = 200, .width_px = 2000, .height_px = 1000, .window_x = 0,
-                         .window_y = 0, .window_w = 2000, .window_h = 1000};
+constexpr Screen kScreen{.width_mm = 400,
+                         .height_mm = 200,
+                         .width_px = 2000,
+                         .height_px = 1000,
+                         .window_x = 0,
+                         .window_y = 0,
+                         .window_w = 2000,
+                         .window_h = 1000};
 
 glm::dvec3 ndc(const View& view, const glm::dvec3& world) {
   const glm::dvec4 p = view.clip_from_world() * glm::dvec4(world, 1);

@@ -81,7 +81,9 @@ TEST(TrackedWeave, ExactRefractionBeatsParaxialOffTheAxis) {
 /// The figures of an independent simulation of the same panel (design note: displays, section 2.2), in percent.
 TEST(TrackedWeave, TheSimulatorAgreesWithPublishedFigures) {
   const auto percent = [](const glm::dvec3& woven, const glm::dvec3& true_head, bool exact) {
-    return 100 * wrong_eye_light(laptop(), eyes_at(woven.x, woven.y, woven.z), eyes_at(true_head.x, true_head.y, true_head.z), exact, 64).worst();
+    return 100 * wrong_eye_light(laptop(), eyes_at(woven.x, woven.y, woven.z),
+                                 eyes_at(true_head.x, true_head.y, true_head.z), exact, 64)
+                     .worst();
   };
   const glm::dvec3 front(0, 0, 600), aside(120, 60, 500);
   EXPECT_NEAR(percent(front, front, true), 3.8, 0.6);
@@ -118,7 +120,8 @@ TEST(TrackedWeave, EachEyeSeesItsOwnColour) {
 
 TEST(ViewSheet, AnEyeFurtherRightSeesAHigherView) {
   LookingGlassFigures f;
-  f.pitch = 52.594383, f.slope = -7.211529, f.dpi = 324.0, f.screen_width = 1536, f.screen_height = 2048, f.center = 0.3;
+  f.pitch = 52.594383, f.slope = -7.211529, f.dpi = 324.0, f.screen_width = 1536, f.screen_height = 2048,
+  f.center = 0.3;
   const LensSheet sheet = lens_sheet(f);
   const double cone = 40.0 * std::numbers::pi / 180.0, distance = 914.4;
   const TrackedPanel panel = optics_of_sheet(sheet, 1536 / 324.0 * 25.4, cone, distance);

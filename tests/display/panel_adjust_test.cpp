@@ -18,7 +18,9 @@ class PanelAdjust : public ::testing::Test {
  protected:
   void SetUp() override { fs::remove_all(folder_); }
   void TearDown() override { fs::remove_all(folder_); }
-  PanelProfile panel(std::string_view name) const { return find_profile(load_profiles(folder_ / "panels").value(), name).value(); }
+  PanelProfile panel(std::string_view name) const {
+    return find_profile(load_profiles(folder_ / "panels").value(), name).value();
+  }
   fs::path folder_ = fs::temp_directory_path() / fmt::format("dubsar_adjust_{}", ::getpid());
 };
 
@@ -43,7 +45,8 @@ TEST_F(PanelAdjust, ACalibrationIsAdjustedToo) {
   const fs::path panels = folder_ / "panels";
   ASSERT_TRUE(save_adjustment(panels, kGo, *parse_adjustment("slope=-6.5")));
   const auto calibration = parse_calibration(
-      R"({"serial": "LKG-E1", "pitch": 80.1, "slope": -6.6, "center": 0.25, "DPI": 491, "screenW": 1440, "screenH": 2560})", "v");
+      R"({"serial": "LKG-E1", "pitch": 80.1, "slope": -6.6, "center": 0.25, "DPI": 491, "screenW": 1440, "screenH": 2560})",
+      "v");
   const auto profile = calibrated_profile(load_profiles(panels).value(), *calibration);
   ASSERT_TRUE(profile);
   EXPECT_EQ(profile->sheet->slope, -6.5);
@@ -95,7 +98,8 @@ TEST_F(PanelAdjust, ADamagedFileIsNamed) {
 TEST_F(PanelAdjust, ACalibrationCanBeJoinedWithANamedModel) {
   fs::create_directories(folder_);
   const fs::path file = folder_ / "visual.json";
-  ASSERT_TRUE(write_file_atomically(file, R"({"serial": "X", "pitch": 48, "slope": -6, "DPI": 136, "screenW": 7680, "screenH": 4320})"));
+  ASSERT_TRUE(write_file_atomically(
+      file, R"({"serial": "X", "pitch": 48, "slope": -6, "DPI": 136, "screenW": 7680, "screenH": 4320})"));
   const auto named = choose_panel({}, "looking-glass-65", file);
   ASSERT_TRUE(named) << named.error().message;
   EXPECT_EQ(named->name, "looking-glass-65");

@@ -27,22 +27,23 @@ TEST(PanelProfile, EveryLookingGlassModelHasItsFigures) {
     int quilt_width, quilt_height, columns, rows;
     double aspect;
   };
-  const Row rows[] = {{"looking-glass-8.9", "LKG-2K", 2560, 1600, 338, 49.80, 5.48, 40, 4096, 4096, 5, 9, 1.6},
-                      {"looking-glass-8.9-legacy-quilt", "", 2560, 1600, 338, 49.80, 5.48, 40, 2048, 2048, 4, 8, 1.6},
-                      {"looking-glass-15.6", "LKG-4K", 3840, 2160, 283, 50.07, -7.7, 40, 4096, 4096, 5, 9, 1.7778},
-                      {"looking-glass-8k", "LKG-8K", 7680, 4320, 280, 38.05, -7.7, 40, 8192, 8192, 5, 9, 1.7778},
-                      {"looking-glass-portrait", "LKG-P", 1536, 2048, 324, 52, -7, 40, 3360, 3360, 8, 6, 0.75},
-                      {"looking-glass-16-gen2", "LKG-A", 3840, 2160, 283, 50, -7, 40, 4096, 4096, 5, 9, 1.7778},
-                      {"looking-glass-32-gen2", "LKG-B", 7680, 4320, 280, 42, -6, 40, 8192, 8192, 5, 9, 1.7778},
-                      {"looking-glass-65", "LKG-D", 7680, 4320, 136, 0, 0, 40, 8192, 8192, 8, 9, 1.7778},
-                      {"looking-glass-go", "LKG-E", 1440, 2560, 491, 80.7, -6.3, 54, 4092, 4092, 11, 6, 0.5625},
-                      {"looking-glass-kiosk", "LKG-F", 1536, 2048, 324, 52, -7, 40, 3360, 3360, 8, 6, 0.75},
-                      {"looking-glass-16-gen3-portrait", "LKG-H", 2160, 3840, 283, 44.72, -7.45, 50, 5995, 6000, 11, 6, 0.5625},
-                      {"looking-glass-16-gen3-landscape", "LKG-J", 3840, 2160, 283, 44.72, -6.9, 50, 5999, 5999, 7, 7, 1.7778},
-                      {"looking-glass-27-gen3-landscape", "", 3840, 2160, 163, 0, 0, 50, 7680, 4320, 8, 6, 1.7778},
-                      {"looking-glass-27-gen3-portrait", "", 2160, 3840, 163, 0, 0, 50, 7680, 4320, 12, 4, 0.5625},
-                      {"looking-glass-32-gen3-portrait", "LKG-K", 4320, 7680, 280, 0, 0, 54, 8184, 8184, 11, 6, 0.5625},
-                      {"looking-glass-32-gen3-landscape", "LKG-L", 7680, 4320, 280, 75, -7.2, 50, 8190, 8190, 7, 7, 1.7778}};
+  const Row rows[] = {
+      {"looking-glass-8.9", "LKG-2K", 2560, 1600, 338, 49.80, 5.48, 40, 4096, 4096, 5, 9, 1.6},
+      {"looking-glass-8.9-legacy-quilt", "", 2560, 1600, 338, 49.80, 5.48, 40, 2048, 2048, 4, 8, 1.6},
+      {"looking-glass-15.6", "LKG-4K", 3840, 2160, 283, 50.07, -7.7, 40, 4096, 4096, 5, 9, 1.7778},
+      {"looking-glass-8k", "LKG-8K", 7680, 4320, 280, 38.05, -7.7, 40, 8192, 8192, 5, 9, 1.7778},
+      {"looking-glass-portrait", "LKG-P", 1536, 2048, 324, 52, -7, 40, 3360, 3360, 8, 6, 0.75},
+      {"looking-glass-16-gen2", "LKG-A", 3840, 2160, 283, 50, -7, 40, 4096, 4096, 5, 9, 1.7778},
+      {"looking-glass-32-gen2", "LKG-B", 7680, 4320, 280, 42, -6, 40, 8192, 8192, 5, 9, 1.7778},
+      {"looking-glass-65", "LKG-D", 7680, 4320, 136, 0, 0, 40, 8192, 8192, 8, 9, 1.7778},
+      {"looking-glass-go", "LKG-E", 1440, 2560, 491, 80.7, -6.3, 54, 4092, 4092, 11, 6, 0.5625},
+      {"looking-glass-kiosk", "LKG-F", 1536, 2048, 324, 52, -7, 40, 3360, 3360, 8, 6, 0.75},
+      {"looking-glass-16-gen3-portrait", "LKG-H", 2160, 3840, 283, 44.72, -7.45, 50, 5995, 6000, 11, 6, 0.5625},
+      {"looking-glass-16-gen3-landscape", "LKG-J", 3840, 2160, 283, 44.72, -6.9, 50, 5999, 5999, 7, 7, 1.7778},
+      {"looking-glass-27-gen3-landscape", "", 3840, 2160, 163, 0, 0, 50, 7680, 4320, 8, 6, 1.7778},
+      {"looking-glass-27-gen3-portrait", "", 2160, 3840, 163, 0, 0, 50, 7680, 4320, 12, 4, 0.5625},
+      {"looking-glass-32-gen3-portrait", "LKG-K", 4320, 7680, 280, 0, 0, 54, 8184, 8184, 11, 6, 0.5625},
+      {"looking-glass-32-gen3-landscape", "LKG-L", 7680, 4320, 280, 75, -7.2, 50, 8190, 8190, 7, 7, 1.7778}};
   std::size_t models = 0;
   for (const PanelProfile& profile : built_in()) models += profile.kind == PanelKind::kLookingGlass;
   EXPECT_EQ(models, std::size(rows));
@@ -73,8 +74,10 @@ TEST(PanelProfile, EveryLookingGlassModelHasItsFigures) {
 
 TEST(PanelProfile, CellsOfTheThirdGenerationAreTheMakers) {
   const auto cells = [](const char* name) { return find_profile(built_in(), name)->sheet->cells; };
-  const SubpixelCell p0{{glm::dvec2{-.25, -.31}, {-.25, .28}, {.25, 0}}}, p1{{glm::dvec2{.25, -.31}, {.25, .28}, {-.25, 0}}};
-  const SubpixelCell l0{{glm::dvec2{-.31, .25}, {.28, .25}, {0, -.25}}}, l1{{glm::dvec2{-.31, -.25}, {.28, -.25}, {0, .25}}};
+  const SubpixelCell p0{{glm::dvec2{-.25, -.31}, {-.25, .28}, {.25, 0}}},
+      p1{{glm::dvec2{.25, -.31}, {.25, .28}, {-.25, 0}}};
+  const SubpixelCell l0{{glm::dvec2{-.31, .25}, {.28, .25}, {0, -.25}}},
+      l1{{glm::dvec2{-.31, -.25}, {.28, -.25}, {0, .25}}};
   EXPECT_EQ(cells("looking-glass-16-gen3-portrait"), (std::vector{p0, p1}));
   EXPECT_EQ(cells("looking-glass-16-gen3-landscape"), (std::vector{l0, l1}));
   EXPECT_EQ(find_profile(built_in(), "looking-glass-16-gen3-portrait")->sheet->pattern, CellPattern::kRows);
@@ -120,7 +123,8 @@ TEST(Calibration, WrappedAndBareNumbersAreTheSame) {
   ASSERT_TRUE(wrapped) << wrapped.error().message;
   EXPECT_NEAR(lens_sheet(wrapped->figures).periods, 246.9732, 5e-4);
   const auto bare = parse_calibration(
-      R"({"serial": "LKG-P00671", "pitch": 52.594383, "slope": -7.211529, "center": 0.5, "DPI": 324, "screenW": 1536, "screenH": 2048})", "b");
+      R"({"serial": "LKG-P00671", "pitch": 52.594383, "slope": -7.211529, "center": 0.5, "DPI": 324, "screenW": 1536, "screenH": 2048})",
+      "b");
   ASSERT_TRUE(bare) << bare.error().message;
   EXPECT_DOUBLE_EQ(bare->figures.pitch, wrapped->figures.pitch);
 }
@@ -134,10 +138,12 @@ TEST(Calibration, PicksTheModelBySerial) {
 }
 
 TEST(Calibration, CellsOfTheThirdGenerationAreRead) {
-  const auto read = parse_calibration(R"({"serial": "LKG-H1", "pitch": 44.72, "slope": -7.45, "DPI": 283, "screenW": 2160,
+  const auto read =
+      parse_calibration(R"({"serial": "LKG-H1", "pitch": 44.72, "slope": -7.45, "DPI": 283, "screenW": 2160,
     "screenH": 3840, "CellPatternMode": {"value": 4}, "subpixelCells": [
       {"ROffsetX": -0.25, "ROffsetY": -0.31, "GOffsetX": -0.25, "GOffsetY": 0.28, "BOffsetX": 0.25, "BOffsetY": 0},
-      {"ROffsetX": 0.25, "ROffsetY": -0.31, "GOffsetX": 0.25, "GOffsetY": 0.28, "BOffsetX": -0.25, "BOffsetY": 0}]})", "h");
+      {"ROffsetX": 0.25, "ROffsetY": -0.31, "GOffsetX": 0.25, "GOffsetY": 0.28, "BOffsetX": -0.25, "BOffsetY": 0}]})",
+                        "h");
   ASSERT_TRUE(read) << read.error().message;
   const LensSheet sheet = lens_sheet(read->figures);
   EXPECT_EQ(sheet.subpixels.pattern, CellPattern::kRows);
@@ -151,15 +157,22 @@ TEST(Calibration, BadFiguresAreRefusedByNameAndRange) {
     const char *json, *words;
   };
   for (const Case& c : {
-           Case{R"({"pitch": 0, "slope": 1, "DPI": 300, "screenW": 100, "screenH": 100})", "pitch is 0, expected 1 to 10000"},
+           Case{R"({"pitch": 0, "slope": 1, "DPI": 300, "screenW": 100, "screenH": 100})",
+                "pitch is 0, expected 1 to 10000"},
            Case{R"({"pitch": 50, "slope": 0, "DPI": 300, "screenW": 100, "screenH": 100})", "slope is 0"},
-           Case{R"({"pitch": 50, "slope": 5, "DPI": 300, "screenW": 20000, "screenH": 100})", "screenW is 20000, expected 1 to 16384"},
-           Case{R"({"pitch": 50, "slope": 5, "DPI": 300, "screenW": 10.5, "screenH": 100})", "screenW is 10.5, expected a whole number"},
+           Case{R"({"pitch": 50, "slope": 5, "DPI": 300, "screenW": 20000, "screenH": 100})",
+                "screenW is 20000, expected 1 to 16384"},
+           Case{R"({"pitch": 50, "slope": 5, "DPI": 300, "screenW": 10.5, "screenH": 100})",
+                "screenW is 10.5, expected a whole number"},
            Case{R"({"pitch": "fast", "slope": 5, "DPI": 300, "screenW": 10, "screenH": 100})", "pitch is string"},
            Case{R"({"pitch": 50, "slope": 5, "screenW": 10, "screenH": 100})", "DPI is missing"},
-           Case{R"({"pitch": 1e999, "slope": 5, "DPI": 300, "screenW": 10, "screenH": 100})", "the JSON text is broken"},
-           Case{R"([1, 2])", "expected an object"}, Case{R"({"pitch": )", "the JSON text is broken"}, Case{"", "the JSON text is broken"},
-           Case{R"({"pitch": 50, "slope": 5, "DPI": 300, "screenW": 10, "screenH": 100, "CellPatternMode": 7})", "CellPatternMode is 7, expected 0 to 4"},
+           Case{R"({"pitch": 1e999, "slope": 5, "DPI": 300, "screenW": 10, "screenH": 100})",
+                "the JSON text is broken"},
+           Case{R"([1, 2])", "expected an object"},
+           Case{R"({"pitch": )", "the JSON text is broken"},
+           Case{"", "the JSON text is broken"},
+           Case{R"({"pitch": 50, "slope": 5, "DPI": 300, "screenW": 10, "screenH": 100, "CellPatternMode": 7})",
+                "CellPatternMode is 7, expected 0 to 4"},
        }) {
     const auto read = parse_calibration(c.json, "bad.json");
     ASSERT_FALSE(read) << c.json;

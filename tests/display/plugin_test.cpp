@@ -16,7 +16,8 @@ std::filesystem::path broken(int how) { return fmt::format("{}/libbroken_plugin_
 
 DisplayOptions small_screen() {
   DisplayOptions options;
-  options.screen = {.width_mm = 160, .height_mm = 90, .width_px = 160, .height_px = 90, .window_w = 160, .window_h = 90};
+  options.screen = {
+      .width_mm = 160, .height_mm = 90, .width_px = 160, .height_px = 90, .window_w = 160, .window_h = 90};
   return options;
 }
 
@@ -33,7 +34,8 @@ TEST(Plugin, TheSampleMirrorsTheMonoPicture) {
     for (int y = 0; y < 90; ++y)
       for (int x = 0; x < 160; ++x)
         for (int c = 0; c < 3; ++c)
-          ASSERT_EQ(mirrored->image.at(x, y)[c], mono.at(upside_down ? x : 159 - x, upside_down ? 89 - y : y)[c]) << x << ", " << y;
+          ASSERT_EQ(mirrored->image.at(x, y)[c], mono.at(upside_down ? x : 159 - x, upside_down ? 89 - y : y)[c])
+              << x << ", " << y;
   }
 }
 
@@ -61,8 +63,12 @@ TEST(Plugin, OptionsItDoesNotKnowAreItsOwnSentence) {
 }
 
 TEST(Plugin, TablesThatDoNotFitAreRefusedWithWhatWasFound) {
-  constexpr std::array<const char*, 6> kWords{"ABI version 2 found, expected 1", "its table has 16 bytes", "gaps",
-                                              "built-in display", "\"No Name\"", "refuses to work"};
+  constexpr std::array<const char*, 6> kWords{"ABI version 2 found, expected 1",
+                                              "its table has 16 bytes",
+                                              "gaps",
+                                              "built-in display",
+                                              "\"No Name\"",
+                                              "refuses to work"};
   for (std::size_t how = 0; how < kWords.size(); ++how) {
     const auto plugin = SinkPlugin::load(broken(static_cast<int>(how) + 1));
     ASSERT_FALSE(plugin) << kWords[how];

@@ -16,8 +16,14 @@
 namespace dubsar {
 namespace {
 
-constexpr Screen kScreen{.width_mm = 100, .height_mm = 60, .width_px = 200, .height_px = 120, .window_x = 0, .window_y = 0,
-                         .window_w = 200, .window_h = 120};
+constexpr Screen kScreen{.width_mm = 100,
+                         .height_mm = 60,
+                         .width_px = 200,
+                         .height_px = 120,
+                         .window_x = 0,
+                         .window_y = 0,
+                         .window_w = 200,
+                         .window_h = 120};
 
 /// White on black, colours as they are.
 DisplayOptions white_options() {
@@ -87,7 +93,8 @@ TEST(RenderDisplay, DepthMovesTheEyesPicturesApartTheRightWay) {
         std::copy_n(image.at(200 + x, y), 3, right.at(x, y));
       }
     // Similar triangles: disparity = ipd * z / (z - distance) in mm, 2 pixels a mm.
-    EXPECT_NEAR(bright(right).first - bright(left).first, 2 * 63 * z / (z - 600), 1.01) << "half a pixel an eye; depth " << z;
+    EXPECT_NEAR(bright(right).first - bright(left).first, 2 * 63 * z / (z - 600), 1.01)
+        << "half a pixel an eye; depth " << z;
   }
 }
 
@@ -141,11 +148,13 @@ TEST(RenderDisplay, EachEyeSeesItsOwnPatternThroughTheLenses) {
     const glm::dvec3 eye(distance * std::tan(angle), 0, distance);
     const EyeLight light = light_at(*picture->light, eye, 64);
     EXPECT_EQ(light.main_view, view);
-    // A subpixel is a fifth of a lens wide and its slant adds a tenth: 6.25 % of an eye's light comes from beyond the edge of
-    // the view it is in. For the outer views that is the sheet's other side; inner neighbours belong to the same eye.
+    // A subpixel is a fifth of a lens wide and its slant adds a tenth: 6.25 % of an eye's light comes from beyond the
+    // edge of the view it is in. For the outer views that is the sheet's other side; inner neighbours belong to the
+    // same eye.
     if (view == 0 || view == 4) {
       EXPECT_NEAR(light.crosstalk, 0.0625, 0.005) << "view " << view;
-      EXPECT_NEAR(light.crosstalk, light.shares[static_cast<std::size_t>(4 - view)], 1e-9) << "all of it is the other outer view";
+      EXPECT_NEAR(light.crosstalk, light.shares[static_cast<std::size_t>(4 - view)], 1e-9)
+          << "all of it is the other outer view";
     } else {
       EXPECT_LT(light.crosstalk, 0.001) << "view " << view;
     }

@@ -14,7 +14,7 @@ namespace dubsar {
 namespace {
 
 constexpr Rgb8 kBlack{0, 0, 0};
-constexpr std::array<Rgb8, 8> kFaceColors{Rgb8{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 0},
+constexpr std::array<Rgb8, 8> kFaceColors{Rgb8{255, 0, 0}, {0, 255, 0},   {0, 0, 255},     {255, 255, 0},
                                           {255, 0, 255},   {0, 255, 255}, {255, 255, 255}, {128, 128, 128}};
 
 /// Vertex colours as they are.

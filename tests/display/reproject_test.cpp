@@ -31,15 +31,13 @@ View seen_from(const glm::dvec3& eye) { return viewer_view(kScreen.window_rect()
 
 std::vector<View> row_of_views(int count, double cone_deg = 40) {
   std::vector<View> out;
-  for (const glm::dvec3& eye : cone_eyes(count, cone_deg * std::numbers::pi / 180, 300))
-    out.push_back(seen_from(eye));
+  for (const glm::dvec3& eye : cone_eyes(count, cone_deg * std::numbers::pi / 180, 300)) out.push_back(seen_from(eye));
   return out;
 }
 
 glm::dvec3 pixel_of(const View& view, const glm::dvec3& p) {
   const glm::dvec4 clip = view.clip_from_world() * glm::dvec4(p, 1.0);
-  return {0.5 * kWidth * (clip.x / clip.w + 1), 0.5 * kHeight * (clip.y / clip.w + 1),
-          0.5 * (clip.z / clip.w + 1)};
+  return {0.5 * kWidth * (clip.x / clip.w + 1), 0.5 * kHeight * (clip.y / clip.w + 1), 0.5 * (clip.z / clip.w + 1)};
 }
 
 TEST(RowShift, MovesEveryPointWhereTheOtherViewSeesIt) {
@@ -98,8 +96,8 @@ class Reproject : public ::testing::Test {
     context_ = std::move(*made);
   }
   /// Layers `drawn` are drawn, the others made from them; exact ones beside.
-  void make(const TriMesh& mesh, const Shading& shading, const std::vector<View>& views,
-            const std::vector<int>& drawn, bool layered = true) {
+  void make(const TriMesh& mesh, const Shading& shading, const std::vector<View>& views, const std::vector<int>& drawn,
+            bool layered = true) {
     const GpuMesh gpu = GpuMesh::upload(pack_mesh(mesh).value()).value();
     auto renderer = Renderer::create(layered).value();
     auto reprojector = Reprojector::create().value();
@@ -190,8 +188,7 @@ TEST_F(Reproject, EyesThatDoNotStandInARowAreDrawn) {
   views[5] = seen_from({3, 40, 300});
   const PackedMesh mesh = pack_mesh(hills()).value();
   auto multi = MultiView::create(mesh, {.cell_px = 0, .key_views = 3}).value();
-  auto array = ViewArray::create(kWidth, kHeight, 12).value(),
-       exact = ViewArray::create(kWidth, kHeight, 12).value();
+  auto array = ViewArray::create(kWidth, kHeight, 12).value(), exact = ViewArray::create(kWidth, kHeight, 12).value();
   ASSERT_TRUE(multi.draw_moving(Shading(), views, array));
   auto renderer = Renderer::create().value();
   ASSERT_TRUE(renderer.render(GpuMesh::upload(mesh).value(), Shading(), views, 1, exact));

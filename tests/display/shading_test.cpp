@@ -62,11 +62,11 @@ TEST(Shading, ConcaveIsDarkAndConvexIsLight) {
     const auto table = color_table(shading_preset(preset).value());
     const auto red = [&](int curvedness, int shape) { return static_cast<int>(table[1 + 9 * curvedness + shape][0]); };
     const int flat = table[0][0];
-    EXPECT_LT(red(13, 0), flat);                 // cup
-    EXPECT_LT(red(13, 2), flat);                 // rut
-    EXPECT_GT(red(13, 6), flat);                 // ridge
-    EXPECT_GT(red(13, 8), flat);                 // cap
-    EXPECT_LT(red(13, 0), red(6, 0));            // the sharper, the darker
+    EXPECT_LT(red(13, 0), flat);       // cup
+    EXPECT_LT(red(13, 2), flat);       // rut
+    EXPECT_GT(red(13, 6), flat);       // ridge
+    EXPECT_GT(red(13, 8), flat);       // cap
+    EXPECT_LT(red(13, 0), red(6, 0));  // the sharper, the darker
     EXPECT_GT(red(13, 8), red(6, 8));
   }
 }
@@ -75,7 +75,9 @@ TEST(Shading, UnlitPresetsAreTheTablesOfTheExporters) {
   const struct {
     const char* preset;
     ShapeColors colors;
-  } cases[] = {{"table-ao", ShapeColors::kTable}, {"black-white-ao", ShapeColors::kBlackWhite}, {"sky-sun-ao", ShapeColors::kSkySun}};
+  } cases[] = {{"table-ao", ShapeColors::kTable},
+               {"black-white-ao", ShapeColors::kBlackWhite},
+               {"sky-sun-ao", ShapeColors::kSkySun}};
   for (const auto& c : cases) {
     const auto table = color_table(shading_preset(c.preset).value());
     for (int ao = 0; ao < 64; ++ao)
@@ -95,8 +97,7 @@ TEST(Shading, ReliefKeepsItsHueAndDarkensWedges) {
   const auto& wedge = table[48 * 128 + 1 + 9 * 9 + 2];  // a rut of 3 voxels' radius that sees 3/4 of the sky
   EXPECT_LT(wedge[0], 0.6 * flat[0]);
   for (const auto& color : table)
-    for (int c = 1; c < 3; ++c)
-      ASSERT_NEAR(color[c], color[0] * relief.base_color[c] / 203.0, 1.5) << "another hue";
+    for (int c = 1; c < 3; ++c) ASSERT_NEAR(color[c], color[0] * relief.base_color[c] / 203.0, 1.5) << "another hue";
 }
 
 TEST(Shading, PartitionColoursDifferInLightness) {

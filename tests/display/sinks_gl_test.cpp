@@ -36,7 +36,8 @@ class SinksGl : public ::testing::Test {
     std::vector<Image> views;
     for (int i = 0; i < traits.views; ++i) {
       Image image(traits.view.width, traits.view.height, 4);
-      for (auto& value : image.pixels) value = static_cast<std::uint8_t>((state_ = state_ * 1664525u + 1013904223u) >> 24);
+      for (auto& value : image.pixels)
+        value = static_cast<std::uint8_t>((state_ = state_ * 1664525u + 1013904223u) >> 24);
       views.push_back(std::move(image));
     }
     return views;
@@ -90,12 +91,14 @@ TEST_F(SinksGl, InterlacedPicturesEqualTheReference) {
   for (int pattern = 0; pattern < 4; ++pattern)
     for (const bool right_first : {false, true})
       for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {0, 1}, {101, 54}, {-3, -2}}) {
-        auto sink = make_sink(std::string("interlaced:") + names[pattern] + (right_first ? ",right_first" : "")).value();
+        auto sink =
+            make_sink(std::string("interlaced:") + names[pattern] + (right_first ? ",right_first" : "")).value();
         const Screen screen{.window_x = x, .window_y = y, .window_w = 31, .window_h = 22};
         ASSERT_TRUE(sink->configure(screen));
         const auto views = noise(sink->traits());
-        EXPECT_EQ(compose(*sink, views).pixels,
-                  interlace_views(views[0], views[1], screen, static_cast<InterlacePattern>(pattern), right_first).pixels)
+        EXPECT_EQ(
+            compose(*sink, views).pixels,
+            interlace_views(views[0], views[1], screen, static_cast<InterlacePattern>(pattern), right_first).pixels)
             << names[pattern] << " at " << x << ", " << y;
       }
 }
@@ -116,12 +119,14 @@ TEST_F(SinksGl, AnaglyphsEqualTheReferenceToOneStep) {
 }
 
 TEST_F(SinksGl, QuiltsEqualTheReference) {
-  for (const char* spec : {"quilt:columns=3,rows=2,width=61,height=43,aspect=1", "quilt:columns=5,rows=9,width=100,height=99"}) {
+  for (const char* spec :
+       {"quilt:columns=3,rows=2,width=61,height=43,aspect=1", "quilt:columns=5,rows=9,width=100,height=99"}) {
     auto sink = make_sink(spec).value();
     ASSERT_TRUE(sink->configure({}));
     const SinkTraits traits = sink->traits();
     const auto views = noise(traits);
-    const QuiltLayout layout{traits.views == 6 ? 3 : 5, traits.views == 6 ? 2 : 9, traits.output.width, traits.output.height};
+    const QuiltLayout layout{traits.views == 6 ? 3 : 5, traits.views == 6 ? 2 : 9, traits.output.width,
+                             traits.output.height};
     EXPECT_EQ(compose(*sink, views).pixels, make_quilt(views, layout).pixels) << spec;
   }
 }
@@ -139,12 +144,17 @@ TEST_F(SinksGl, LensWeavesEqualTheReference) {
   const auto profiles = load_profiles({}).value();
   for (const char* name : {"looking-glass-portrait", "looking-glass-16-gen3-portrait", "lens-sheet-24-5-views"})
     for (const char* filter : {"nearest", "linear", "gaussian3", "gaussian10"}) {
-      if (std::string_view(name).find("gen3") != std::string_view::npos && filter != std::string_view("nearest")) continue;
+      if (std::string_view(name).find("gen3") != std::string_view::npos && filter != std::string_view("nearest"))
+        continue;
       const PanelProfile profile = find_profile(profiles, name).value();
       auto sink = make_sink(std::string("lenticular:") + name + "," + filter).value();
       // A window at the panel's far corner: the largest phases, and the panel's coordinates must count.
-      const Screen screen{.width_px = profile.width_px, .height_px = profile.height_px, .window_x = profile.width_px - 96,
-                          .window_y = 8, .window_w = 96, .window_h = 64};
+      const Screen screen{.width_px = profile.width_px,
+                          .height_px = profile.height_px,
+                          .window_x = profile.width_px - 96,
+                          .window_y = 8,
+                          .window_w = 96,
+                          .window_h = 64};
       ASSERT_TRUE(sink->configure(screen));
       SinkTraits traits = sink->traits();
       ASSERT_EQ(traits.output, (PixelSize{96, 64}));
@@ -158,8 +168,8 @@ TEST_F(SinksGl, LensWeavesEqualTheReference) {
       const Image out = compose(*sink, views);
       const LensSheet sheet = lens_sheet(*profile.sheet);
       Image expected(96, 64, 3);
-      const ViewFilter mode = std::string_view(filter) == "nearest"  ? ViewFilter::kNearest
-                              : std::string_view(filter) == "linear" ? ViewFilter::kLinear
+      const ViewFilter mode = std::string_view(filter) == "nearest"     ? ViewFilter::kNearest
+                              : std::string_view(filter) == "linear"    ? ViewFilter::kLinear
                               : std::string_view(filter) == "gaussian3" ? ViewFilter::kGaussian3
                                                                         : ViewFilter::kGaussian10;
       for (int y = 0; y < 64; ++y)
@@ -167,7 +177,8 @@ TEST_F(SinksGl, LensWeavesEqualTheReference) {
           for (int k = 0; k < 3; ++k) {
             const double place = lens_position(sheet, profile.width_px - 96 + x, profile.height_px - 1 - (8 + y), k);
             double sum = 0;
-            for (const auto& [view, weight] : view_weights(place, traits.views, mode)) sum += weight * linear_from_srgb(views[view].at(0, 0)[k]);
+            for (const auto& [view, weight] : view_weights(place, traits.views, mode))
+              sum += weight * linear_from_srgb(views[view].at(0, 0)[k]);
             expected.at(x, y)[k] = srgb_from_linear(sum);
           }
       EXPECT_LE(differing(out, expected), 0.0005) << name << " " << filter;
@@ -200,7 +211,8 @@ TEST_F(SinksGl, TrackedWeaveEqualsTheReference) {
 }
 
 TEST_F(SinksGl, ImageWritesNumberedFilesAndNullDrawsNothing) {
-  const auto folder = std::filesystem::temp_directory_path() / fmt::format("dubsar_sink_{}", static_cast<int>(::getpid()));
+  const auto folder =
+      std::filesystem::temp_directory_path() / fmt::format("dubsar_sink_{}", static_cast<int>(::getpid()));
   std::filesystem::create_directories(folder);
   auto sink = make_sink("image:path=" + (folder / "f-%.png").string()).value();
   ASSERT_TRUE(sink->configure({.window_w = 20, .window_h = 10}));
@@ -228,7 +240,8 @@ TEST_F(SinksGl, AMeshThroughARowInterlacedPanelShowsEachEyeItsView) {
   auto gpu = GpuMesh::upload(pack_mesh(testing::lettered_box()).value()).value();
   auto renderer = Renderer::create().value();
   auto sink = make_sink("interlaced:rows").value();
-  const Screen screen{.width_mm = 60, .height_mm = 40, .width_px = 120, .height_px = 80, .window_w = 120, .window_h = 80};
+  const Screen screen{
+      .width_mm = 60, .height_mm = 40, .width_px = 120, .height_px = 80, .window_w = 120, .window_h = 80};
   ASSERT_TRUE(sink->configure(screen));
   Viewer viewer;
   viewer.front_mm = 10;
@@ -266,7 +279,8 @@ TEST_F(SinksGl, QuadBufferPutsEachViewIntoItsOwnBufferOfAStandIn) {
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   for (int eye = 0; eye < 2; ++eye) {
     Image read(31, 17, 4);
-    glGetTextureImage(pictures[eye], 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(read.pixels.size()), read.pixels.data());
+    glGetTextureImage(pictures[eye], 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(read.pixels.size()),
+                      read.pixels.data());
     for (int y = 0; y < 17; ++y)
       for (int x = 0; x < 31; ++x)
         for (int c = 0; c < 3; ++c) ASSERT_EQ(read.at(x, 16 - y)[c], views[eye].at(x, y)[c]) << "eye " << eye;

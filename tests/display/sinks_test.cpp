@@ -48,11 +48,27 @@ TEST(SinkRegistry, EverySinkIsMadeByItsNameAndAsksForWhatItSays) {
 }
 
 TEST(SinkRegistry, WrongNamesAndOptionsAreUsageErrorsThatSayWhatThereIs) {
-  for (const char* bad : {"", "hologram", "mono:half", "side_by_side:frame_packing", "side_by_side:half,full",
-                          "top_bottom:frame_packing,right_first", "interlaced:diagonal", "interlaced:rows=1", "anaglyph:pink",
-                          "anaglyph:red_cyan_full,red_cyan_half", "quilt:no-such-panel", "quilt:columns=0", "quilt:columns=2.5",
-                          "quilt:columns=x", "quilt:width=40,columns=8", "image", "image:path=a.jpg", "image:path=a%%.png",
-                          "lenticular", "lenticular:no-such-panel", "lenticular:spatiallabs-15.6,blurred"}) {
+  for (const char* bad : {"",
+                          "hologram",
+                          "mono:half",
+                          "side_by_side:frame_packing",
+                          "side_by_side:half,full",
+                          "top_bottom:frame_packing,right_first",
+                          "interlaced:diagonal",
+                          "interlaced:rows=1",
+                          "anaglyph:pink",
+                          "anaglyph:red_cyan_full,red_cyan_half",
+                          "quilt:no-such-panel",
+                          "quilt:columns=0",
+                          "quilt:columns=2.5",
+                          "quilt:columns=x",
+                          "quilt:width=40,columns=8",
+                          "image",
+                          "image:path=a.jpg",
+                          "image:path=a%%.png",
+                          "lenticular",
+                          "lenticular:no-such-panel",
+                          "lenticular:spatiallabs-15.6,blurred"}) {
     const auto sink = make_sink(bad);
     ASSERT_FALSE(sink) << bad;
     EXPECT_EQ(sink.error().kind, ErrorKind::kUsage) << bad;
@@ -77,9 +93,24 @@ TEST(Packed, SizesAndPlacesOfEveryKind) {
                {{.right_first = true}, {1920, 1080}, {960, 1080}, {1920, 1080}, {960, 0}, {0, 0}},
                {{.full = true}, {1920, 1080}, {1920, 1080}, {3840, 1080}, {0, 0}, {1920, 0}},
                {{.vertical = true}, {1920, 1080}, {1920, 540}, {1920, 1080}, {0, 0}, {0, 540}},
-               {{.vertical = true, .full = true, .right_first = true}, {1920, 1080}, {1920, 1080}, {1920, 2160}, {0, 1080}, {0, 0}},
-               {{.vertical = true, .full = true, .frame_packing = true}, {1920, 1080}, {1920, 1080}, {1920, 2205}, {0, 0}, {0, 1125}},
-               {{.vertical = true, .full = true, .frame_packing = true}, {1280, 720}, {1280, 720}, {1280, 1470}, {0, 0}, {0, 750}},
+               {{.vertical = true, .full = true, .right_first = true},
+                {1920, 1080},
+                {1920, 1080},
+                {1920, 2160},
+                {0, 1080},
+                {0, 0}},
+               {{.vertical = true, .full = true, .frame_packing = true},
+                {1920, 1080},
+                {1920, 1080},
+                {1920, 2205},
+                {0, 0},
+                {0, 1125}},
+               {{.vertical = true, .full = true, .frame_packing = true},
+                {1280, 720},
+                {1280, 720},
+                {1280, 1470},
+                {0, 0},
+                {0, 750}},
                {{}, {7, 3}, {3, 3}, {7, 3}, {0, 0}, {4, 0}}};
   for (const auto& c : cases) {
     EXPECT_EQ(c.packing.view_size(c.window), c.view);
@@ -133,8 +164,7 @@ TEST(Interlaced, NeighbouringSubpixelsBelongToDifferentEyes) {
   const Image image = interlace_views(white, black, screen, InterlacePattern::kSubpixels, false);
   EXPECT_EQ(image.at(0, 0)[0], 0) << "panel subpixel 9 is odd: the right eye's";
   for (int y = 0; y < 4; ++y)
-    for (int i = 1; i < 18; ++i)
-      EXPECT_EQ(image.at(i / 3, y)[i % 3], 255 - image.at((i - 1) / 3, y)[(i - 1) % 3]);
+    for (int i = 1; i < 18; ++i) EXPECT_EQ(image.at(i / 3, y)[i % 3], 255 - image.at((i - 1) / 3, y)[(i - 1) % 3]);
 }
 
 TEST(Anaglyph, FullColourKeepsTheChannelsOfEachEye) {
@@ -201,8 +231,8 @@ TEST(Quilt, NamesAreWrittenStrictlyAndReadTolerantly) {
     EXPECT_EQ(name->rows, g.rows);
     EXPECT_EQ(name->aspect.value_or(0), g.aspect);
   }
-  for (const char* bad : {"", "tablet.png", "tablet_qs.png", "tablet_qs8.png", "_qs8x.png", "_qsx6", "_qs0x6", "_qs-8x6",
-                          "_qs101x2", "_qs8x6a0", "_qs8x6ax", "_qs8x6a-1", "_qs99999999999x1"})
+  for (const char* bad : {"", "tablet.png", "tablet_qs.png", "tablet_qs8.png", "_qs8x.png", "_qsx6", "_qs0x6",
+                          "_qs-8x6", "_qs101x2", "_qs8x6a0", "_qs8x6ax", "_qs8x6a-1", "_qs99999999999x1"})
     EXPECT_FALSE(parse_quilt_name(bad)) << bad;
 }
 

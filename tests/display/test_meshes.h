@@ -51,12 +51,12 @@ inline TriMesh lettered_box() {
   struct Face {
     glm::vec3 right, up;
   };
-  const std::array<Face, 6> faces{{{{1, 0, 0}, {0, 1, 0}},     // front, seen from +z
-                                   {{-1, 0, 0}, {0, 1, 0}},    // back
-                                   {{0, 0, 1}, {0, 1, 0}},     // left, seen from -x
-                                   {{0, 0, -1}, {0, 1, 0}},    // right
-                                   {{1, 0, 0}, {0, 0, -1}},    // top, seen from +y, the front down
-                                   {{1, 0, 0}, {0, 0, 1}}}};   // bottom, the front up
+  const std::array<Face, 6> faces{{{{1, 0, 0}, {0, 1, 0}},    // front, seen from +z
+                                   {{-1, 0, 0}, {0, 1, 0}},   // back
+                                   {{0, 0, 1}, {0, 1, 0}},    // left, seen from -x
+                                   {{0, 0, -1}, {0, 1, 0}},   // right
+                                   {{1, 0, 0}, {0, 0, -1}},   // top, seen from +y, the front down
+                                   {{1, 0, 0}, {0, 0, 1}}}};  // bottom, the front up
   for (std::uint8_t f = 0; f < 6; ++f) {
     const glm::vec3 r = faces[f].right, u = faces[f].up, n = glm::cross(r, u);
     const float w = std::abs(glm::dot(half, r)), h = std::abs(glm::dot(half, u)), d = std::abs(glm::dot(half, n));

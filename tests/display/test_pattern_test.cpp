@@ -39,7 +39,8 @@ TEST(TestPattern, TheNumberIsWrittenUprightAndLeftToRight) {
 
 TEST(TestPattern, TheSmallestViewsDoNotWriteOutside) {
   for (const int w : {1, 2, 9})
-    for (const int h : {1, 3, 8}) EXPECT_EQ(numbered_view(w, h, 99, 100).pixels.size(), static_cast<std::size_t>(w * h * 4));
+    for (const int h : {1, 3, 8})
+      EXPECT_EQ(numbered_view(w, h, 99, 100).pixels.size(), static_cast<std::size_t>(w * h * 4));
 }
 
 }  // namespace

@@ -49,8 +49,8 @@ Image offscreen(std::string_view display, const Screen& screen) {
 }
 
 /// What GL says was drawn, and what is on the X server's screen after presenting it.
-void screenshot(std::string_view display, const WindowOptions& options, const testing::XvfbServer& server, Screen& screen,
-                Image& back, Image& front) {
+void screenshot(std::string_view display, const WindowOptions& options, const testing::XvfbServer& server,
+                Screen& screen, Image& back, Image& front) {
   auto shown = open_sink_window(display, options);
   ASSERT_TRUE(shown) << shown.error().message;
   EXPECT_EQ(shown->note, "") << display;
@@ -65,8 +65,8 @@ void screenshot(std::string_view display, const WindowOptions& options, const te
 }
 
 TEST_F(Window, ShowsWhatTheSinkDrawsOffscreen) {
-  for (const char* display : {"mono", "interlaced", "interlaced:checkerboard", "interlaced:columns,right_first", "anaglyph",
-                              "lenticular:lens-sheet-24-5-views"}) {
+  for (const char* display : {"mono", "interlaced", "interlaced:checkerboard", "interlaced:columns,right_first",
+                              "anaglyph", "lenticular:lens-sheet-24-5-views"}) {
     const bool whole_panel = std::string_view(display).starts_with("lenticular");
     WindowOptions options;
     options.width = whole_panel ? 1920 : 301;  // odd sizes and places: parity and padding mistakes show
@@ -136,7 +136,8 @@ TEST_F(Window, QuadBuffersAreUsedWhereTheyExistAndElseTheNoteSaysWhatIsShown) {
   auto shown = open_sink_window("quad_buffer", options);
   ASSERT_TRUE(shown) << shown.error().message;
   compose(*shown->sink, shown->window->surface());
-  EXPECT_TRUE(shown->window->stereo() || std::getenv("DUBSAR_EXPECT_STEREO") == nullptr) << "a stereo visual was promised";
+  EXPECT_TRUE(shown->window->stereo() || std::getenv("DUBSAR_EXPECT_STEREO") == nullptr)
+      << "a stereo visual was promised";
   if (shown->window->stereo()) {  // VirtualGL, or a professional card behind the test's server
     EXPECT_EQ(shown->note, "");
     for (int eye = 0; eye < 2; ++eye) {

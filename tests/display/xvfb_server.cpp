@@ -33,7 +33,8 @@ XvfbServer::XvfbServer(int width, int height) {
     ::unsetenv("LD_PRELOAD");  // VirtualGL is for the client
     const std::string screen = std::to_string(width) + "x" + std::to_string(height) + "x24";
     const std::string descriptor = std::to_string(pipe_ends[1]);
-    ::execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", screen.c_str(), "-nolisten", "tcp", "-fbdir", folder_.c_str(), nullptr);
+    ::execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", screen.c_str(), "-nolisten", "tcp",
+             "-fbdir", folder_.c_str(), nullptr);
     ::_exit(127);
   }
   ::close(pipe_ends[1]);
@@ -80,7 +81,8 @@ Image XvfbServer::screen(int x, int y, int width, int height) const {
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column)
       for (std::size_t c = 0; c < 3; ++c) {
-        const std::size_t at = start + line * static_cast<std::size_t>(y + row) + 4 * static_cast<std::size_t>(x + column);
+        const std::size_t at =
+            start + line * static_cast<std::size_t>(y + row) + 4 * static_cast<std::size_t>(x + column);
         image.at(column, row)[c] = static_cast<std::uint8_t>((*text)[at + (blue_first ? 2 - c : 1 + c)]);
       }
   return image;

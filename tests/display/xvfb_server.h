@@ -20,7 +20,8 @@ class XvfbServer {
   XvfbServer& operator=(const XvfbServer&) = delete;
   /// Empty: it runs; else why not.
   const std::string& problem() const { return problem_; }
-  /// What is on the screen, RGB, from the server's own frame buffer file (XWD); an image of no size when it cannot be read.
+  /// What is on the screen, RGB, from the server's own frame buffer file (XWD); an image of no size when it cannot be
+  /// read.
   Image screen(int x, int y, int width, int height) const;
 
  private:

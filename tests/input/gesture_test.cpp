@@ -37,7 +37,8 @@ struct Person {
     }
   }
   int count(GestureKind kind, GesturePhase phase) const {
-    return static_cast<int>(std::count_if(events.begin(), events.end(), [&](const GestureEvent& e) { return e.kind == kind && e.phase == phase; }));
+    return static_cast<int>(std::count_if(events.begin(), events.end(),
+                                          [&](const GestureEvent& e) { return e.kind == kind && e.phase == phase; }));
   }
 };
 
@@ -208,7 +209,8 @@ TEST(Gesture, SlowSlantedAndGrabbingHandsDoNotSwipe) {
     Person p;
     p.steps(40);
     p.move(velocity, 30);
-    EXPECT_EQ(p.count(GestureKind::kSwipe, GesturePhase::kDone), 0) << velocity.x << " " << velocity.y << " " << velocity.z;
+    EXPECT_EQ(p.count(GestureKind::kSwipe, GesturePhase::kDone), 0)
+        << velocity.x << " " << velocity.y << " " << velocity.z;
   }
   Person p;
   p.steps(40);
@@ -224,7 +226,7 @@ TEST(Gesture, TheWayBackAfterASwipeIsNoSwipe) {
   p.move({0.9, 0, 0}, 60);   // longer than the lock-out
   p.move({-0.9, 0, 0}, 60);  // straight back
   EXPECT_EQ(p.count(GestureKind::kSwipe, GesturePhase::kDone), 1);
-  p.steps(20);               // rest
+  p.steps(20);  // rest
   p.move({-0.9, 0, 0}, 20);
   EXPECT_EQ(p.count(GestureKind::kSwipe, GesturePhase::kDone), 2);
 }

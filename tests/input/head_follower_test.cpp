@@ -60,9 +60,7 @@ TEST(HeadFollower, A200MmPerSecondHeadSeen40MsLateIsFollowedWithin3Mm) {
   EXPECT_GT(held, 5.0);
 }
 
-TEST(HeadFollower, AHeadAtRestIsHeldStill) {
-  EXPECT_LE(rms_mm(0.0, 40 * kMs, true, 0.001), 1.5);
-}
+TEST(HeadFollower, AHeadAtRestIsHeldStill) { EXPECT_LE(rms_mm(0.0, 40 * kMs, true, 0.001), 1.5); }
 
 TEST(HeadFollower, KeepsBothEyesWhenOneIsNotSeen) {
   HeadFollower follower;

@@ -31,7 +31,10 @@ TEST(Mapping, DefaultHasThePapersMouseAndTheShippedGestureFigures) {
 }
 
 TEST(Mapping, OnlyWhatDiffersNeedsToBeSaid) {
-  const Mapping m = parse_mapping(R"({"hands": {"pinch": "none", "turn_deg_per_mm": 1.25}, "keys": {"home": null, "q": "undo"}})", "x").value();
+  const Mapping m =
+      parse_mapping(R"({"hands": {"pinch": "none", "turn_deg_per_mm": 1.25}, "keys": {"home": null, "q": "undo"}})",
+                    "x")
+          .value();
   EXPECT_EQ(m.hands.pinch, Action::kNone);
   EXPECT_EQ(m.hands.grab, Action::kRotate);
   EXPECT_DOUBLE_EQ(m.hands.turn_deg_per_mm, 1.25);
@@ -41,7 +44,8 @@ TEST(Mapping, OnlyWhatDiffersNeedsToBeSaid) {
 }
 
 TEST(Mapping, RefusesByNameAndRange) {
-  EXPECT_EQ(refusal(R"({"hands": {"turn_deg_per_mm": 11}})"), "museum.json: hands: turn_deg_per_mm is 11, expected 0.01 to 10");
+  EXPECT_EQ(refusal(R"({"hands": {"turn_deg_per_mm": 11}})"),
+            "museum.json: hands: turn_deg_per_mm is 11, expected 0.01 to 10");
   EXPECT_EQ(refusal(R"({"hands": {"pinch": "explode"}})"),
             "museum.json: hands: pinch is \"explode\", expected one of: none, rotate, pan, zoom, light");
   EXPECT_NE(refusal(R"({"hand": {}})").find("\"hand\" is not known"), std::string::npos);
@@ -71,7 +75,8 @@ TEST(Mapping, EveryTruncationIsRefusedAndNothingCrashes) {
 }
 
 TEST(Mapping, EveryFieldWithAWrongTypeIsRefused) {
-  for (const std::string field : {"key_step_deg", "key_zoom", "puck", "zoom_min", "zoom_max", "priority", "handover_ms", "hands", "gestures", "mouse", "keys"})
+  for (const std::string field : {"key_step_deg", "key_zoom", "puck", "zoom_min", "zoom_max", "priority", "handover_ms",
+                                  "hands", "gestures", "mouse", "keys"})
     for (const std::string value : {"\"text\"", "true", "null", "1e999", "[[]]"})
       EXPECT_NE(refusal("{\"" + field + "\": " + value + "}"), "accepted") << field << " " << value;
 }

@@ -136,7 +136,8 @@ TEST(WindowEvents, ArePutInByOneThreadAndTakenOutThroughTheMixerByAnother) {
 }
 
 TEST(InputSources, FakesServicesAndCamerasAreNeverTakenUnlessNamed) {
-  const std::set<std::string_view> only_named{"leapc", "webcam", "scripted", "replay"};  // a camera needs its owner's will
+  const std::set<std::string_view> only_named{"leapc", "webcam", "scripted",
+                                              "replay"};  // a camera needs its owner's will
   for (const InputBackend& backend : input_sources())
     EXPECT_EQ(backend.auto_select, !only_named.contains(backend.name)) << backend.name;
   const auto unknown = make_input("kinect");

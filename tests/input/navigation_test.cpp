@@ -19,7 +19,8 @@ struct Desk {
   TimestampNs now = 0;
   double largest_step_deg = 0.0;
 
-  explicit Desk(std::string_view changes = "{}") : mapping(parse_mapping(changes, "test").value()), navigator(mapping) {}
+  explicit Desk(std::string_view changes = "{}")
+      : mapping(parse_mapping(changes, "test").value()), navigator(mapping) {}
 
   void step() {
     now += kFrame;

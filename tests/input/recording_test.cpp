@@ -102,11 +102,15 @@ TEST(Recording, EveryTruncationAndEveryBrokenByteIsRefusedOrHarmless) {
 
 TEST(Recording, RefusesWhatCannotBe) {
   const auto refused = [](std::string_view text) { return parse_recording(text, "r.jsonl").error().message; };
-  EXPECT_EQ(refused("{\"polled\": 5, \"t\": 4}\n{\"polled\": 4, \"t\": 4}"), "r.jsonl: line 2: polled goes back in time");
-  EXPECT_EQ(refused("{\"polled\": -5, \"t\": 4}"), "r.jsonl: line 1: polled is not a whole number of 0 to 4000000000000000000");
+  EXPECT_EQ(refused("{\"polled\": 5, \"t\": 4}\n{\"polled\": 4, \"t\": 4}"),
+            "r.jsonl: line 2: polled goes back in time");
+  EXPECT_EQ(refused("{\"polled\": -5, \"t\": 4}"),
+            "r.jsonl: line 1: polled is not a whole number of 0 to 4000000000000000000");
   EXPECT_NE(refused("{\"t\": 4}").find("polled is missing"), std::string::npos);
   EXPECT_NE(refused("5").find("expected an object"), std::string::npos);
-  EXPECT_NE(refused("{\"polled\": 5, \"t\": 4, \"heads\": [{\"t\":1,\"id\":1,\"tracked\":true,\"confidence\":1,\"left\":[1e9,0,0]}]}").find("left"),
+  EXPECT_NE(refused("{\"polled\": 5, \"t\": 4, \"heads\": "
+                    "[{\"t\":1,\"id\":1,\"tracked\":true,\"confidence\":1,\"left\":[1e9,0,0]}]}")
+                .find("left"),
             std::string::npos);
 }
 

@@ -1,5 +1,7 @@
 // Whole sessions without pictures: simulated people before the navigation, hundreds of them.
 
+#include "input/simulated/visitor.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +12,6 @@
 #include "input/mixer.h"
 #include "input/navigation.h"
 #include "input/simulated/scripted_source.h"
-#include "input/simulated/visitor.h"
 
 namespace dubsar {
 namespace {
@@ -55,7 +56,8 @@ Script visit(std::uint64_t seed) {
   script.latency_s = random.uniform(0.01, 0.05);
   script.noise_m = 0.001;
   script.hand_dropouts = {0.4, 0.02, 0.7};  // some are bridged, some cancel the gesture
-  script.visitor = VisitorGoal{random.uniform(-90, 90), random.uniform(-40, 40), std::exp(random.uniform(-0.5, 0.8)), 100};
+  script.visitor =
+      VisitorGoal{random.uniform(-90, 90), random.uniform(-40, 40), std::exp(random.uniform(-0.5, 0.8)), 100};
   script.bystanders = 1 + static_cast<int>(seed % 2);
   script.bystander_heads = seed % 3 != 0;
   return script;
@@ -92,7 +94,9 @@ TEST(Visitor, BystandersHandsNeverMoveTheViewWhileTheVisitorsRestsInTheZone) {
     script.visitor.reset();
     script.duration_s = 20;
     script.hands = {{Chirality::kRight, {0.2, -0.2, 0.75}, {{0.0, {0.08, 0, 0.25}}, {22, {0.08, 0, 0.25}}}}};
-    script.heads = script.bystander_heads ? std::vector<HeadTrack>{{0.063, {{0.0, {0, 0.05, 0.65}}, {20, {0, 0.05, 0.65}}}}} : std::vector<HeadTrack>{};
+    script.heads = script.bystander_heads
+                       ? std::vector<HeadTrack>{{0.063, {{0.0, {0, 0.05, 0.65}}, {20, {0, 0.05, 0.65}}}}}
+                       : std::vector<HeadTrack>{};
     const Outcome outcome = run(script);
     EXPECT_LT(turn_between_deg(outcome.view.rotation, {1, 0, 0, 0}), 1e-9) << "seed " << seed;
     EXPECT_DOUBLE_EQ(outcome.view.zoom, 1.0) << "seed " << seed;

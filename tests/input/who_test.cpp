@@ -61,7 +61,11 @@ TEST(HandKeeper, TheOtherHandOfAPairIsLetInButNotACrossedFarOrDeepOne) {
     glm::dvec3 at;
     bool in;
   };
-  for (const Case& c : {Case{{-0.1, 0, 0.3}, true}, {{0.3, 0, 0.3}, false}, {{-0.5, 0, 0.3}, false}, {{-0.1, 0, 0.75}, false}, {{0.08, 0, 0.3}, false}}) {
+  for (const Case& c : {Case{{-0.1, 0, 0.3}, true},
+                        {{0.3, 0, 0.3}, false},
+                        {{-0.5, 0, 0.3}, false},
+                        {{-0.1, 0, 0.75}, false},
+                        {{0.08, 0, 0.3}, false}}) {
     HandKeeper keeper({{-1, -1, -1}, {1, 1, 1}});
     std::vector<HandFrame> hands{hand_at(1, Chirality::kRight, {0.1, 0, 0.3})};
     (void)keeper.update(0, hands, {}, {});

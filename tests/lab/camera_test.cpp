@@ -12,8 +12,7 @@ namespace {
 
 /// Takes the kernel's driver from the simulated webcam, or gives it back: its node goes and comes.
 bool set_plugged(bool plugged) {
-  std::ofstream file(plugged ? "/sys/bus/platform/drivers/vivid/bind"
-                             : "/sys/bus/platform/drivers/vivid/unbind");
+  std::ofstream file(plugged ? "/sys/bus/platform/drivers/vivid/bind" : "/sys/bus/platform/drivers/vivid/unbind");
   file << "vivid.0" << std::flush;
   return file.good();
 }
@@ -84,11 +83,9 @@ TEST_F(LabCamera, ToAnotherUserItSaysThatPermissionIsMissingAndWhatToDo) {
   const std::string told = as_nobody([] {
     const auto cameras = list_cameras();
     if (cameras.size() != 1) return fmt::format("{} cameras", cameras.size());
-    return fmt::format("{}; {}; {}", device_state_name(cameras[0].state), cameras[0].reason,
-                       cameras[0].remedy);
+    return fmt::format("{}; {}; {}", device_state_name(cameras[0].state), cameras[0].reason, cameras[0].remedy);
   });
-  EXPECT_EQ(told,
-            "no permission; this user may not open /dev/video0; usermod -aG video $USER and log in again");
+  EXPECT_EQ(told, "no permission; this user may not open /dev/video0; usermod -aG video $USER and log in again");
 }
 
 }  // namespace

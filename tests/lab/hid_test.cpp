@@ -79,9 +79,8 @@ class LabHid : public Lab {
       longest_s = std::max(longest_s, 1e-9 * static_cast<double>(*sample - plugged));
       longest_of_ours_s = std::max(longest_of_ours_s, seconds_since_made(listed(name)->path));
     }
-    std::printf(
-        "first sample at most %.0f ms after plugging in, %.0f ms after the kernel has made the node\n",
-        1e3 * longest_s, 1e3 * longest_of_ours_s);
+    std::printf("first sample at most %.0f ms after plugging in, %.0f ms after the kernel has made the node\n",
+                1e3 * longest_s, 1e3 * longest_of_ours_s);
     EXPECT_LT(longest_of_ours_s, 1.0);
   }
 };
@@ -108,8 +107,7 @@ TEST_F(LabSpaceMouse, IsListedSaysItsAxesLightsUpAndComesBack) {
   EXPECT_EQ(info.path.rfind("/dev/hidraw", 0), 0U) << info.path;
   EXPECT_EQ(info.state, DeviceState::kUsable) << info.reason;
   {
-    Driver<SpaceMouseProtocol> driver([this] { return open_hid_device("spacemouse", clock_); },
-                                      SpaceMouseProtocol());
+    Driver<SpaceMouseProtocol> driver([this] { return open_hid_device("spacemouse", clock_); }, SpaceMouseProtocol());
     std::optional<SpaceMouseSample> sample;
     ASSERT_TRUE(eventually([&] {
       if (auto newest = driver.poll(clock_.now(), milliseconds(20))) sample = newest;
@@ -148,13 +146,11 @@ TEST_F(LabSpaceMouse, ToAnotherUserItSaysThatPermissionIsMissingAndWhatToDo) {
   const std::string path = listed("spacemouse")->path;
   EXPECT_EQ(refused["state"], "no permission");
   EXPECT_EQ(refused["reason"], "this user may not open " + path);
-  EXPECT_NE(refused["remedy"].get<std::string>().find("70-dubsar.rules"), std::string::npos)
-      << refused["remedy"];
+  EXPECT_NE(refused["remedy"].get<std::string>().find("70-dubsar.rules"), std::string::npos) << refused["remedy"];
   EXPECT_NE(refused["remedy"].get<std::string>().find(R"(ATTRS{idVendor}=="256f")"), std::string::npos);
   EXPECT_EQ(refused["opened"], false);
   EXPECT_EQ(refused["kind"], static_cast<int>(ErrorKind::kPermission));
-  EXPECT_NE(refused["error"].get<std::string>().find("70-dubsar.rules"), std::string::npos)
-      << refused["error"];
+  EXPECT_NE(refused["error"].get<std::string>().find("70-dubsar.rules"), std::string::npos) << refused["error"];
 
   ASSERT_EQ(::chmod(path.c_str(), 0666), 0);  // the rule's effect
   const auto allowed = nlohmann::json::parse(told());

@@ -56,11 +56,9 @@ bool is_a_camera(std::uint16_t vendor_id, std::uint16_t product_id) {
 }
 
 bool all_unplugged() {
-  if (std::filesystem::directory_iterator("/sys/class/hidraw") != std::filesystem::directory_iterator())
-    return false;
+  if (std::filesystem::directory_iterator("/sys/class/hidraw") != std::filesystem::directory_iterator()) return false;
   for (const auto& entry : std::filesystem::directory_iterator("/sys/bus/usb/devices"))
-    if (std::filesystem::exists(entry.path() / "idVendor") &&
-        entry.path().filename().string().rfind("usb", 0) != 0)
+    if (std::filesystem::exists(entry.path() / "idVendor") && entry.path().filename().string().rfind("usb", 0) != 0)
       return false;  // "1-1"; "usb1" are root hubs, "1-0:1.0" interfaces
   return true;
 }
@@ -74,8 +72,7 @@ std::string as_nobody(const std::function<std::string()>& work) {
     ::close(ends[0]);
     if (::setgroups(0, nullptr) != 0 || ::setgid(kNobody) != 0 || ::setuid(kNobody) != 0) ::_exit(1);
     const std::string result = work();
-    const bool whole =
-        ::write(ends[1], result.data(), result.size()) == static_cast<::ssize_t>(result.size());
+    const bool whole = ::write(ends[1], result.data(), result.size()) == static_cast<::ssize_t>(result.size());
     ::_exit(whole ? 0 : 1);
   }
   ::close(ends[1]);

@@ -10,16 +10,12 @@ namespace dubsar::lab {
 class LeapGadget final : public UsbGadget {
  public:
   explicit LeapGadget(Lmc1Simulator simulator) : simulator_(std::move(simulator)) {}
-  std::span<const std::uint8_t> device_descriptor() const override {
-    return Lmc1Simulator::device_descriptor();
-  }
+  std::span<const std::uint8_t> device_descriptor() const override { return Lmc1Simulator::device_descriptor(); }
   std::span<const std::uint8_t> configuration_descriptor() const override {
     return Lmc1Simulator::configuration_descriptor();
   }
   std::string text(int string_index) const override {
-    return string_index == 1   ? Lmc1Simulator::kManufacturer
-           : string_index == 2 ? Lmc1Simulator::kProduct
-                               : "";
+    return string_index == 1 ? Lmc1Simulator::kManufacturer : string_index == 2 ? Lmc1Simulator::kProduct : "";
   }
   Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data) override {
     return simulator_.control(request, data);

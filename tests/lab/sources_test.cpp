@@ -119,8 +119,7 @@ TEST_F(LabSources, PuckGlassesAndLeapComeGoAndComeBackWhileTheSessionRuns) {
       ASSERT_TRUE(eventually([] { return !node_of("leap").empty(); }));
       const TimestampNs appeared = clock_.now();
       ASSERT_TRUE(becomes(leap, Freshness::kNew)) << leap.source->note();
-      std::printf("Leap: first hands %.0f ms after its node\n",
-                  1e-6 * static_cast<double>(clock_.now() - appeared));
+      std::printf("Leap: first hands %.0f ms after its node\n", 1e-6 * static_cast<double>(clock_.now() - appeared));
       EXPECT_EQ(leap.frame.hands.size(), 1U);
       const auto present = present_inputs();
       EXPECT_EQ(std::count(present.begin(), present.end(), "leap"), 1);

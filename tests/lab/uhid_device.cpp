@@ -22,18 +22,12 @@ void put_text(const std::string& text, __u8 (&field)[N]) {
   std::memcpy(field, text.data(), std::min(text.size(), N - 1));
 }
 
-bool send_event(int uhid, const uhid_event& event) {
-  return ::write(uhid, &event, sizeof event) == sizeof event;
-}
+bool send_event(int uhid, const uhid_event& event) { return ::write(uhid, &event, sizeof event) == sizeof event; }
 
 }  // namespace
 
-UhidDevice::UhidDevice(HidIdentity identity, OpenTransport simulator, std::function<void()> live,
-                       milliseconds period)
-    : identity_(std::move(identity)),
-      open_simulator_(std::move(simulator)),
-      live_(std::move(live)),
-      period_(period) {}
+UhidDevice::UhidDevice(HidIdentity identity, OpenTransport simulator, std::function<void()> live, milliseconds period)
+    : identity_(std::move(identity)), open_simulator_(std::move(simulator)), live_(std::move(live)), period_(period) {}
 
 Result<void> UhidDevice::plug() {
   unplug();

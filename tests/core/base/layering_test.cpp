@@ -45,7 +45,8 @@ TEST(Layering, RoomsIncludeOnlyWhatIsBelowThem) {
       {"core/surface/", {"core/phantom/", "core/exa/", "core/mesh_io/", "core/pipeline/"}},
       {"core/exa/", {"core/mesh_io/", "core/pipeline/"}},
       {"core/mesh_io/", {"core/pipeline/"}},
-      {"devices/", {"input/", "display/", "app/", "core/volume/", "core/surface/", "core/exa/", "core/mesh_io/", "core/pipeline/"}},
+      {"devices/",
+       {"input/", "display/", "app/", "core/volume/", "core/surface/", "core/exa/", "core/mesh_io/", "core/pipeline/"}},
       {"input/", {"display/", "app/", "core/volume/", "core/surface/", "core/exa/", "core/mesh_io/", "core/pipeline/"}},
       {"display/", {"input/", "app/", "devices/"}},
   };
@@ -54,13 +55,13 @@ TEST(Layering, RoomsIncludeOnlyWhatIsBelowThem) {
   for (const auto& [file, target] : includes)
     for (const auto& [room, targets] : forbidden)
       for (const char* wall : targets)
-        EXPECT_FALSE(starts_with(file, room.c_str()) && starts_with(target, wall))
-            << file << " includes " << target;
+        EXPECT_FALSE(starts_with(file, room.c_str()) && starts_with(target, wall)) << file << " includes " << target;
 }
 
 TEST(Layering, EachThirdPartyCApiIsIncludedByOneSourceFile) {
-  const std::vector<std::string> apis{"hdf5.h", "hidapi", "libusb", "GLFW/glfw3.h", "tiffio.h", "embree3/rtcore.h",
-                                      "opencv2/videoio.hpp", "opencv2/dnn.hpp", "png.h", "EGL/egl.h"};
+  const std::vector<std::string> apis{
+      "hdf5.h",          "hidapi", "libusb",   "GLFW/glfw3.h", "tiffio.h", "embree3/rtcore.h", "opencv2/videoio.hpp",
+      "opencv2/dnn.hpp", "png.h",  "EGL/egl.h"};
   for (const std::string& api : apis) {
     std::set<std::string> users;
     for (const auto& [file, target] : all_includes())

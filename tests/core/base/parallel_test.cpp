@@ -39,7 +39,10 @@ TEST(Parallel, FloatSumHasTheSameBitsForAnyThreadCount) {
 }
 
 TEST(Parallel, ExceptionsReachTheCaller) {
-  EXPECT_THROW(parallel_for(100, 1, [](std::int64_t i) { if (i == 42) throw std::runtime_error("42"); }),
+  EXPECT_THROW(parallel_for(100, 1,
+                            [](std::int64_t i) {
+                              if (i == 42) throw std::runtime_error("42");
+                            }),
                std::runtime_error);
 }
 

@@ -30,7 +30,10 @@ SurfaceModel sample_model(const Dims& dims, Kind kind, unsigned seed, bool close
     const auto x = static_cast<float>(i % dims.x), y = static_cast<float>(i / dims.x % dims.y),
                z = static_cast<float>(i / dims.slice());
     const float blob = std::sin(0.4f * x) + std::sin(0.31f * y + 1.0f) + std::sin(0.23f * z) - 0.3f;
-    volume.voxels[i] = kind == Kind::kNoise ? uniform(random) : kind == Kind::kBlob ? blob : kind == Kind::kFull ? 1.0f : -1.0f;
+    volume.voxels[i] = kind == Kind::kNoise  ? uniform(random)
+                       : kind == Kind::kBlob ? blob
+                       : kind == Kind::kFull ? 1.0f
+                                             : -1.0f;
   }
   VolumeSource source(volume);
   SilentProgress progress;
@@ -51,8 +54,10 @@ SurfaceModel sample_model(const Dims& dims, Kind kind, unsigned seed, bool close
   }
   for (std::size_t q = 0; q < model.mesh.quads.size(); ++q)
     model.quad_partition.push_back(static_cast<std::uint8_t>(q / 100 % 8));
-  model.partitions = {{0, "tablet", "", 12.5, 1.0 / 3.0, true}, {1, "envelope \"inside\"", "envelope", 1e-9, -2e5, false}};
-  for (int id = 2; id < 8; ++id) model.partitions.push_back({id, fmt::format("fragment {}", id), "", 0.1 * id, 0.0, false});
+  model.partitions = {{0, "tablet", "", 12.5, 1.0 / 3.0, true},
+                      {1, "envelope \"inside\"", "envelope", 1e-9, -2e5, false}};
+  for (int id = 2; id < 8; ++id)
+    model.partitions.push_back({id, fmt::format("fragment {}", id), "", 0.1 * id, 0.0, false});
   if (vertices > 3) {
     model.patches.resize(2);
     model.patches[0] = {0, 7, {{0.5f, 1.25f, -3.0f}}, {{0, 1, static_cast<std::uint32_t>(vertices)}, {1, 2, 3}}};
@@ -106,7 +111,8 @@ void expect_equal(const SurfaceModel& a, const SurfaceModel& b) {
   EXPECT_EQ(a.provenance, b.provenance);
 }
 
-std::string file_of(const std::vector<ExaBlock>& blocks, std::uint16_t major = kExaMajor, std::uint16_t minor = kExaMinor) {
+std::string file_of(const std::vector<ExaBlock>& blocks, std::uint16_t major = kExaMajor,
+                    std::uint16_t minor = kExaMinor) {
   std::string bytes = exa_head(blocks, major, minor);
   for (const ExaBlock& block : blocks) bytes += block.bytes;
   return bytes + std::string(kExaEnd);
@@ -122,8 +128,9 @@ std::vector<ExaBlock> encoded(const SurfaceModel& model) {
 class ExaFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / fmt::format("dubsar_exa_{}_{}",
-              ::testing::UnitTest::GetInstance()->current_test_info()->name(), ::getpid());
+    folder_ =
+        fs::temp_directory_path() /
+        fmt::format("dubsar_exa_{}_{}", ::testing::UnitTest::GetInstance()->current_test_info()->name(), ::getpid());
     fs::create_directories(folder_);
   }
   void TearDown() override { fs::remove_all(folder_); }
@@ -210,7 +217,8 @@ TEST_F(ExaFile, InfoAndStatsDescribeTheFile) {
   std::int64_t sum = 0;
   for (const ExaBlockStats& block : stats->blocks) {
     sum += block.bytes;
-    EXPECT_DOUBLE_EQ(block.bits_per_vertex, 8.0 * static_cast<double>(block.bytes) / static_cast<double>(stats->vertices));
+    EXPECT_DOUBLE_EQ(block.bits_per_vertex,
+                     8.0 * static_cast<double>(block.bytes) / static_cast<double>(stats->vertices));
     if (block.name == "offsets") {
       EXPECT_EQ(block.bytes, static_cast<std::int64_t>((model.samples.offsets.size() + 1) / 2));
     }
@@ -253,7 +261,8 @@ TEST_F(ExaFile, EveryTruncationBitFlipAndExtraByteIsRefused) {
 TEST_F(ExaFile, LaterVersionsAreRefusedOrSkippedAsTheirNumberSays) {
   SurfaceModel model = sample_model({12, 9, 10}, Kind::kBlob, 6);
   std::vector<ExaBlock> blocks = encoded(model);
-  EXPECT_THAT(decode_exa(file_of(blocks, 2), progress_).error().message, HasSubstr("format version 2 found, expected 1"));
+  EXPECT_THAT(decode_exa(file_of(blocks, 2), progress_).error().message,
+              HasSubstr("format version 2 found, expected 1"));
   blocks.push_back({"NEW1", 99, 0, "whatever"});
   const auto later = decode_exa(file_of(blocks, kExaMajor, 7), progress_);
   ASSERT_TRUE(later) << later.error().message;
@@ -268,8 +277,10 @@ TEST_F(ExaFile, LaterVersionsAreRefusedOrSkippedAsTheirNumberSays) {
     std::vector<ExaBlock> other = blocks;
     other[b].codec = 77;
     const auto read = decode_exa(file_of(other), progress_);
-    if (!read) EXPECT_THAT(read.error().message, HasSubstr("codec 77"));
-    else EXPECT_EQ(blocks[b].type, "none of the blocks may ignore its codec");
+    if (!read)
+      EXPECT_THAT(read.error().message, HasSubstr("codec 77"));
+    else
+      EXPECT_EQ(blocks[b].type, "none of the blocks may ignore its codec");
     if (b > 3) continue;
     other = blocks;
     other.erase(other.begin() + static_cast<std::ptrdiff_t>(b));
@@ -287,9 +298,15 @@ TEST_F(ExaFile, DamageBehindValidChecksumsNeverCrashes) {
     std::vector<ExaBlock> damaged = blocks;
     std::string& bytes = damaged[random() % damaged.size()].bytes;
     switch (round % 3) {
-      case 0: bytes[random() % bytes.size()] ^= static_cast<char>(1u << random() % 8); break;
-      case 1: bytes.resize(random() % bytes.size()); break;
-      default: bytes.insert(random() % bytes.size(), std::string(1 + random() % 9, static_cast<char>(random()))); break;
+      case 0:
+        bytes[random() % bytes.size()] ^= static_cast<char>(1u << random() % 8);
+        break;
+      case 1:
+        bytes.resize(random() % bytes.size());
+        break;
+      default:
+        bytes.insert(random() % bytes.size(), std::string(1 + random() % 9, static_cast<char>(random())));
+        break;
     }
     const auto read = decode_exa(file_of(damaged), progress_);
     if (!read) {

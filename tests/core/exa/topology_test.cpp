@@ -39,8 +39,9 @@ void expect_lossless(const BitVolume& signs) {
   EXPECT_TRUE(*decoded == signs) << signs.dims().x << "x" << signs.dims().y << "x" << signs.dims().z;
 }
 
-const Dims kShapes[] = {{1, 1, 1},   {2, 1, 1},   {1, 2, 3},    {1, 33, 70}, {64, 64, 1},  {65, 1, 65}, {3, 3, 3},
-                        {31, 33, 32}, {32, 32, 32}, {33, 33, 33}, {34, 63, 65}, {129, 5, 2}, {70, 40, 97}, {128, 64, 20}};
+const Dims kShapes[] = {{1, 1, 1},    {2, 1, 1},   {1, 2, 3},    {1, 33, 70},  {64, 64, 1},
+                        {65, 1, 65},  {3, 3, 3},   {31, 33, 32}, {32, 32, 32}, {33, 33, 33},
+                        {34, 63, 65}, {129, 5, 2}, {70, 40, 97}, {128, 64, 20}};
 
 TEST(ExaTopology, RandomVolumesOfAnyShapeAndDensityAreLossless) {
   std::mt19937 random(3);
@@ -100,8 +101,10 @@ TEST(ExaTopology, DamagedCodesAreRefusedOrGiveAnotherVolumeButNeverCrash) {
     std::string damaged = bytes;
     damaged[random() % damaged.size()] ^= static_cast<char>(1u << random() % 8);
     const auto decoded = decode_signs(damaged, dims, progress);
-    if (decoded) EXPECT_FALSE(*decoded == signs);
-    else EXPECT_EQ(decoded.error().kind, ErrorKind::kBadData);
+    if (decoded)
+      EXPECT_FALSE(*decoded == signs);
+    else
+      EXPECT_EQ(decoded.error().kind, ErrorKind::kBadData);
   }
   for (const Dims& other : kShapes) decode_signs(bytes, other, progress);
   EXPECT_EQ(decode_signs(bytes, {65535, 65535, 16}, progress).error().kind, ErrorKind::kBadData);

@@ -20,8 +20,7 @@ TEST(JpegFile, PixelsAreWithinSixLevelsOfWhatWasEncoded) {
     for (int x = 0; x < 24; ++x) {
       if (x == 15 || x == 16) continue;  // colours have half the resolution
       const int left[] = {200, 60, 30}, right[] = {20, 180, 220};
-      for (int c = 0; c < 3; ++c)
-        ASSERT_NEAR(image->at(x, y)[c], x < 16 ? left[c] : right[c], 6) << x << ' ' << y;
+      for (int c = 0; c < 3; ++c) ASSERT_NEAR(image->at(x, y)[c], x < 16 ? left[c] : right[c], 6) << x << ' ' << y;
     }
 }
 

@@ -15,7 +15,8 @@ class TiffFiles : public testing_tools::TempFolder {};
 TEST_F(TiffFiles, GrayPagesOfBothByteOrdersAndBigTiffAreRead) {
   for (const bool big_endian : {false, true})
     for (const bool big_tiff : {false, true}) {
-      testing_tools::TiffFixture fixture{.width = 3, .height = 2, .bits = 16, .big_endian = big_endian, .big_tiff = big_tiff};
+      testing_tools::TiffFixture fixture{
+          .width = 3, .height = 2, .bits = 16, .big_endian = big_endian, .big_tiff = big_tiff};
       fixture.x_pixels = 500;
       fixture.unit = 3;
       fixture.description = "a long description";

@@ -12,7 +12,7 @@ struct TiffFixture {
   int width = 0, height = 0, bits = 8;
   int sample_format = 1;  ///< 1 unsigned, 2 signed, 3 float
   int channels = 1;
-  int photometric = 1;    ///< 0 white is zero, 1 black is zero, 2 RGB
+  int photometric = 1;  ///< 0 white is zero, 1 black is zero, 2 RGB
   bool big_endian = false, big_tiff = false;
   std::uint32_t x_pixels = 0, unit = 2;  ///< resolution x_pixels / 1 per inch (2), centimetre (3), nothing (1)
   std::string description = {};

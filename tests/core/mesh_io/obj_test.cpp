@@ -32,8 +32,9 @@ TEST_F(Obj, MeshReadBackEqualsTheMeshWritten) {
 }
 
 TEST_F(Obj, NegativeIndicesPolygonsColoursAndContinuationsAreRead) {
-  const auto mesh = parse("mtllib x.mtl\nv 0 0 0 1 0 0.5\r\nv 1 0 0 0 1 2\nv 1 \\\n1 0 0 0 0\nv 0 1 0 0 0 0\nvt 0 0\n"
-                          "vn 0 0 2\nvn 0 0 1\nusemtl m\nf -4/1/-1 -3/1/2 3/1/2 \\\n 4/1/2\n");
+  const auto mesh = parse(
+      "mtllib x.mtl\nv 0 0 0 1 0 0.5\r\nv 1 0 0 0 1 2\nv 1 \\\n1 0 0 0 0\nv 0 1 0 0 0 0\nvt 0 0\n"
+      "vn 0 0 2\nvn 0 0 1\nusemtl m\nf -4/1/-1 -3/1/2 3/1/2 \\\n 4/1/2\n");
   ASSERT_TRUE(mesh) << mesh.error().message;
   EXPECT_EQ(mesh->triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
   EXPECT_EQ(mesh->colors[0], (std::array<std::uint8_t, 3>{255, 0, 128}));
@@ -42,7 +43,8 @@ TEST_F(Obj, NegativeIndicesPolygonsColoursAndContinuationsAreRead) {
 }
 
 TEST_F(Obj, VertexWithSeveralNormalsGetsTheirMeanDirection) {
-  const auto mesh = parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\nf 1//2 2//2 4//2\n");
+  const auto mesh =
+      parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\nf 1//2 2//2 4//2\n");
   ASSERT_TRUE(mesh) << mesh.error().message;
   EXPECT_NEAR(glm::distance(mesh->normals[0], glm::normalize(glm::vec3(0, 1, 1))), 0.0f, 1e-6f);
   EXPECT_EQ(mesh->normals[2], glm::vec3(0, 0, 1));

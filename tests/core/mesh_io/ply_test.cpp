@@ -64,7 +64,8 @@ TEST_F(Ply, MillimetresAreVoxelsTimesVoxelSize) {
   ASSERT_TRUE(read);
   EXPECT_TRUE(read->frame.input_voxel.known());
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    EXPECT_EQ(read->positions[v], glm::vec3((glm::dvec3(mesh.positions[v]) * 2.0 + glm::dvec3(0.5, -3.0, 11.25)) * 0.038));
+    EXPECT_EQ(read->positions[v],
+              glm::vec3((glm::dvec3(mesh.positions[v]) * 2.0 + glm::dvec3(0.5, -3.0, 11.25)) * 0.038));
     EXPECT_NEAR(read->k_max[v], mesh.k_max[v] / 0.076f, 1e-5f);
   }
 }
@@ -114,11 +115,12 @@ TEST_F(Ply, ColoursAreThoseOfTheShapeTableAndAreNotReadBackAsForeign) {
 }
 
 TEST_F(Ply, AllEncodingsOfOneTriangleReadTheSame) {
-  const std::string head = "format {} 1.0\nobj_info x\nelement camera 1\nproperty double f\nproperty list int short q\n"
-                           "element face 1\nproperty uchar flag\nproperty list ushort uint vertex_index\n"
-                           "element vertex 3\nproperty double z\nproperty short x\nproperty list uchar uchar junk\n"
-                           "property float y\nproperty ushort red\nproperty ushort green\nproperty ushort blue\n"
-                           "end_header\n";
+  const std::string head =
+      "format {} 1.0\nobj_info x\nelement camera 1\nproperty double f\nproperty list int short q\n"
+      "element face 1\nproperty uchar flag\nproperty list ushort uint vertex_index\n"
+      "element vertex 3\nproperty double z\nproperty short x\nproperty list uchar uchar junk\n"
+      "property float y\nproperty ushort red\nproperty ushort green\nproperty ushort blue\n"
+      "end_header\n";
   std::string ascii = "ply\r\n" + fmt::format(fmt::runtime(head), "ascii") +
                       "3.5 2 -1 7\n9 3\n2 1\n0\n1.5 -2 0 2.25 65535 257 0\n+4 5 2 1 2 6 0 0 0\n7 8 1 3 1e1 0 0 0";
   std::string little = "ply\n" + fmt::format(fmt::runtime(head), "binary_little_endian");
@@ -159,7 +161,8 @@ TEST_F(Ply, LiesAreRefusedWithASentence) {
   };
   const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
   const std::string face = "property list uchar int vertex_indices\nend_header\n";
-  const std::string three = "ply\nformat ascii 1.0\nelement vertex 3\n" + xyz + "element face 1\n" + face + "0 0 0\n1 0 0\n0 1 0\n";
+  const std::string three =
+      "ply\nformat ascii 1.0\nelement vertex 3\n" + xyz + "element face 1\n" + face + "0 0 0\n1 0 0\n0 1 0\n";
   EXPECT_EQ(says(three + "3 0 1 2\n"), "accepted");
   EXPECT_THAT(says(three + "3 0 1 3\n"), HasSubstr("names vertex 3"));
   EXPECT_THAT(says(three + "3 0 1 -1\n"), HasSubstr("names vertex -1"));
@@ -183,9 +186,10 @@ TEST_F(Ply, LiesAreRefusedWithASentence) {
 
 TEST_F(Ply, PolygonsBecomeTrianglesThatCoverThem) {
   // An L of area 3 whose fan from the first corner would lie outside, and a planar square.
-  const std::string head = "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
-                           "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
-                           "2 0 0\n2 1 0\n1 1 0\n1 2 0\n0 2 0\n0 0 0\n6 0 1 2 3 4 5\n4 5 0 1 2\n";
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+      "2 0 0\n2 1 0\n1 1 0\n1 2 0\n0 2 0\n0 0 0\n6 0 1 2 3 4 5\n4 5 0 1 2\n";
   const auto mesh = parse(head);
   ASSERT_TRUE(mesh) << mesh.error().message;
   ASSERT_EQ(mesh->triangles.size(), 6u);

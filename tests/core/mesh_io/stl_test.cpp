@@ -33,7 +33,8 @@ TEST_F(Stl, FacetsHaveMillimetresUnitNormalsAndTheRightCount) {
       for (int axis = 0; axis < 3; ++axis) v[axis] = reader.little<float>();
     EXPECT_EQ(reader.little<std::uint16_t>(), 0);
     for (int c = 0; c < 3; ++c)
-      EXPECT_EQ(row[c + 1], glm::vec3(mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[t[static_cast<std::size_t>(c)]]))));
+      EXPECT_EQ(row[c + 1],
+                glm::vec3(mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[t[static_cast<std::size_t>(c)]]))));
     EXPECT_NEAR(glm::length(row[0]), 1.0f, 1e-6f);
     const glm::vec3 mean = mesh.normals[t[0]] + mesh.normals[t[1]] + mesh.normals[t[2]];
     EXPECT_GT(glm::dot(row[0], mean), 2.5f) << "the facet looks away from the analytic normal";
@@ -69,7 +70,8 @@ TEST_F(Stl, UnknownVoxelSizeIsSaidInTheHeader) {
 }
 
 TEST_F(Stl, AsciiWithSeveralSolidsIsRead) {
-  const std::string facet = " facet normal nan 0 0\n outer loop\n vertex 0 0 0\n vertex +1.5 0 0\n vertex 0 1e0 -0\n endloop\n endfacet\n";
+  const std::string facet =
+      " facet normal nan 0 0\n outer loop\n vertex 0 0 0\n vertex +1.5 0 0\n vertex 0 1e0 -0\n endloop\n endfacet\n";
   const auto mesh = parse("\n solid a b c\n" + facet + "endsolid a b c\nsolid\n" + facet + "endsolid\n");
   ASSERT_TRUE(mesh) << mesh.error().message;
   EXPECT_EQ(mesh->positions.size(), 3u) << "+0 and -0 are one coordinate";

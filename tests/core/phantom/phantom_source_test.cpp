@@ -34,7 +34,8 @@ TEST(PhantomScan, SameBytesForAnyThreadsAndSlabs) {
   for (const auto& [threads, slab] : {std::pair{1, 5}, std::pair{2, 1}, std::pair{2, 40}, std::pair{7, 16}}) {
     set_thread_count(threads);
     const Volume<float> got = scan(phantom, slab);
-    EXPECT_EQ(0, std::memcmp(expected.voxels.data(), got.voxels.data(), static_cast<std::size_t>(got.dims.count()) * sizeof(float)))
+    EXPECT_EQ(0, std::memcmp(expected.voxels.data(), got.voxels.data(),
+                             static_cast<std::size_t>(got.dims.count()) * sizeof(float)))
         << threads << " threads, slabs of " << slab;
   }
   set_thread_count(0);
@@ -56,7 +57,8 @@ Statistics measure(const Volume<float>& volume, const Phantom& phantom, const Gr
   for (std::int64_t z = 0; z < volume.dims.z; z += stride)
     for (std::int64_t y = 0; y < volume.dims.y; y += stride)
       for (std::int64_t x = 0; x < volume.dims.x; ++x) {
-        const glm::dvec3 p = frame.input_vox_from_grid({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+        const glm::dvec3 p =
+            frame.input_vox_from_grid({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
         const Fields f = phantom.fields(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
         if (std::abs(f.clay.v) < 6.0f || f.grain.v < 6.0f) continue;
         const int i = f.clay.v < 0.0f ? 0 : 1;
@@ -96,7 +98,8 @@ TEST(PhantomScan, EdgeSpreadIsThatOfVoxelAndPsf) {
         const Fields f = phantom->fields(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
         // Only the smooth outside: wedges and relief have edges.
         if (std::abs(f.clay.v) > 0.5f || std::abs(f.outer.v) > 0.5f) continue;
-        const double d = phantom->signed_distance({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+        const double d =
+            phantom->signed_distance({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
         if (std::abs(d) > 0.3) continue;
         const auto v = static_cast<double>(volume.at(x, y, z)) / 0.0017;
         n += 1, sd += d, sv += v, sdd += d * d, sdv += d * v;

@@ -74,7 +74,8 @@ TEST(PhantomModel, GradientOfTheDistanceHasLengthOne) {
     for (int a = 0; a < 3; ++a) {
       glm::dvec3 step(0.0);
       step[a] = e;
-      gradient[a] = (phantom->signed_distance(near.point + step) - phantom->signed_distance(near.point - step)) / (2.0 * e);
+      gradient[a] =
+          (phantom->signed_distance(near.point + step) - phantom->signed_distance(near.point - step)) / (2.0 * e);
     }
     error.push_back(std::abs(glm::length(gradient) - 1.0));
   }
@@ -96,7 +97,8 @@ TEST(PhantomModel, BricksGiveWhatEachVoxelGives) {
         for (std::int64_t x = 0; x < d.x; ++x, ++i) {
           const glm::dvec3 p{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
           wrong_label += label[static_cast<std::size_t>(i)] != static_cast<std::uint8_t>(phantom->label(p));
-          wrong_distance += distance[static_cast<std::size_t>(i)] != std::lround(kDistanceSteps * phantom->signed_distance(p));
+          wrong_distance +=
+              distance[static_cast<std::size_t>(i)] != std::lround(kDistanceSteps * phantom->signed_distance(p));
         }
     EXPECT_EQ(wrong_label, 0);
     EXPECT_EQ(wrong_distance, 0);
@@ -184,7 +186,9 @@ TEST(PhantomModel, GluedFractionIsBetween5And30PercentForFiveSeeds) {
               }
           return c;
         },
-        [](Count a, Count b) { return Count{a.glued + b.glued, a.all + b.all}; });
+        [](Count a, Count b) {
+          return Count{a.glued + b.glued, a.all + b.all};
+        });
     EXPECT_NEAR(static_cast<double>(count.glued) / static_cast<double>(count.all), phantom->glued_fraction(), 0.04);
   }
 }

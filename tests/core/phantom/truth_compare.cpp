@@ -62,12 +62,14 @@ WedgeScore judge_wedges(const Phantom& phantom, const JudgedMesh& mesh) {
   balls.reserve(mesh.triangles.size());
   const auto corners = [&](std::size_t triangle) {
     const auto& t = mesh.triangles[triangle];
-    return std::array<glm::dvec3, 3>{glm::dvec3(mesh.positions[t[0]]), glm::dvec3(mesh.positions[t[1]]), glm::dvec3(mesh.positions[t[2]])};
+    return std::array<glm::dvec3, 3>{glm::dvec3(mesh.positions[t[0]]), glm::dvec3(mesh.positions[t[1]]),
+                                     glm::dvec3(mesh.positions[t[2]])};
   };
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto t = corners(i);
     const glm::dvec3 centre = (t[0] + t[1] + t[2]) / 3.0;
-    balls.push_back({centre, std::max({glm::length(t[0] - centre), glm::length(t[1] - centre), glm::length(t[2] - centre)})});
+    balls.push_back(
+        {centre, std::max({glm::length(t[0] - centre), glm::length(t[1] - centre), glm::length(t[2] - centre)})});
   }
   const CellGrid grid(phantom.options().dims);
   const CellLists cells(phantom.options().dims, balls);
@@ -134,8 +136,8 @@ TruthComparison compare(const Phantom& phantom, const JudgedMesh& mesh) {
   parallel_for(static_cast<std::int64_t>(truth.size()), 4096, [&](std::int64_t i) {
     const glm::dvec3 p(mesh.positions[static_cast<std::size_t>(i)]);
     const Fields f = phantom.fields(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
-    truth[static_cast<std::size_t>(i)] = {static_cast<float>(std::abs(phantom.signed_distance(p))), phantom.nearest_part(p),
-                                          in_slit(phantom, p, f, mesh.grid_step)};
+    truth[static_cast<std::size_t>(i)] = {static_cast<float>(std::abs(phantom.signed_distance(p))),
+                                          phantom.nearest_part(p), in_slit(phantom, p, f, mesh.grid_step)};
   });
   TruthComparison result;
   std::vector<float> all, resolved, pores;
@@ -162,7 +164,8 @@ TruthComparison compare(const Phantom& phantom, const JudgedMesh& mesh) {
 
 std::string TruthComparison::text() const {
   const auto line = [](const char* name, const DistanceScore& s) {
-    return fmt::format("{}: {} vertices, rms {:.3f}, 95 % {:.3f}, largest {:.2f} voxel\n", name, s.vertices, s.rms, s.p95, s.largest);
+    return fmt::format("{}: {} vertices, rms {:.3f}, 95 % {:.3f}, largest {:.2f} voxel\n", name, s.vertices, s.rms,
+                       s.p95, s.largest);
   };
   std::string text = line("all", all) + line("resolved", resolved) + line("pores", pores);
   text += fmt::format("set apart: straw {}, cracks {}, slits {}\n", at_straw, at_cracks, at_slits);

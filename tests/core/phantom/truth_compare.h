@@ -20,14 +20,16 @@ struct DistanceScore {
 
 struct PartScore {
   std::int64_t true_vertices = 0, found_vertices = 0, both = 0;
-  double purity() const { return found_vertices ? static_cast<double>(both) / static_cast<double>(found_vertices) : 0.0; }
+  double purity() const {
+    return found_vertices ? static_cast<double>(both) / static_cast<double>(found_vertices) : 0.0;
+  }
   double recall() const { return true_vertices ? static_cast<double>(both) / static_cast<double>(true_vertices) : 0.0; }
 };
 
 struct WedgeScore {
-  int wedges = 0;  ///< of the tablet, open and on one side only (see compare())
-  int kept = 0;    ///< depth within 20 %
-  int missing = 0; ///< no surface below the wedge's place
+  int wedges = 0;           ///< of the tablet, open and on one side only (see compare())
+  int kept = 0;             ///< depth within 20 %
+  int missing = 0;          ///< no surface below the wedge's place
   double mean_ratio = 0.0;  ///< measured over true depth, of those found
   double kept_fraction() const { return wedges ? static_cast<double>(kept) / wedges : 0.0; }
 };

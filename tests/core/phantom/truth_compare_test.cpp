@@ -95,9 +95,11 @@ TEST(TruthCompare, MeasuresWedgeDepthAlongItsDirection) {
       const glm::dvec3 across = glm::cross(w.outward, w.tail), middle = w.position - ratio * w.depth * w.outward;
       const auto first = static_cast<std::uint32_t>(positions.size());
       // A small triangle facing outwards at the depth, and one above it facing inwards that must not be taken.
-      for (const double turn : {0.0, 2.1, 4.2}) positions.emplace_back(middle + 0.05 * (std::cos(turn) * w.tail + std::sin(turn) * across));
+      for (const double turn : {0.0, 2.1, 4.2})
+        positions.emplace_back(middle + 0.05 * (std::cos(turn) * w.tail + std::sin(turn) * across));
       triangles.push_back({first, first + 1, first + 2});
-      for (int i = 0; i < 3; ++i) positions.emplace_back(glm::dvec3(positions[first + static_cast<std::uint32_t>(i)]) + 1.0 * w.outward);
+      for (int i = 0; i < 3; ++i)
+        positions.emplace_back(glm::dvec3(positions[first + static_cast<std::uint32_t>(i)]) + 1.0 * w.outward);
       triangles.push_back({first + 5, first + 4, first + 3});
     }
     const WedgeScore score = compare(*phantom, {positions, triangles, {}}).wedges;

@@ -1,10 +1,10 @@
 #include "core/phantom/write_phantom.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
-#include <unistd.h>
 
 #include "core/phantom/phantom_source.h"
 #include "core/volume/hdf5_file.h"

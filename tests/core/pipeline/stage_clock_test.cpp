@@ -59,7 +59,8 @@ TEST(SampledSource, TakesGroupsOfSlicesFromTheWholeHeight) {
   std::vector<float> all(12), parts(12);
   ASSERT_TRUE(sample.read(0, 12, all));
   EXPECT_EQ(all, (std::vector<float>{0, 1, 2, 25, 26, 27, 50, 51, 52, 75, 76, 77}));
-  for (std::int64_t z = 0; z < 12; z += 4) ASSERT_TRUE(sample.read(z, z + 4, std::span(parts).subspan(static_cast<std::size_t>(z))));
+  for (std::int64_t z = 0; z < 12; z += 4)
+    ASSERT_TRUE(sample.read(z, z + 4, std::span(parts).subspan(static_cast<std::size_t>(z))));
   EXPECT_EQ(parts, all);
   SampledSource whole(source, 1000, 3);
   EXPECT_EQ(whole.dims().z, 100);

@@ -9,8 +9,7 @@
 namespace dubsar {
 namespace {
 
-BitVolume make_bits(const Dims& dims,
-                    const std::function<bool(std::int64_t, std::int64_t, std::int64_t)>& set) {
+BitVolume make_bits(const Dims& dims, const std::function<bool(std::int64_t, std::int64_t, std::int64_t)>& set) {
   BitVolume bits(dims);
   for (std::int64_t z = 0; z < dims.z; ++z)
     for (std::int64_t y = 0; y < dims.y; ++y)

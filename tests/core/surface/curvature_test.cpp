@@ -142,9 +142,15 @@ TEST(Curvature, TorusHasDomesOutsideSaddleRidgesInsideAndRidgesOnTop) {
       worst = std::max({worst, std::abs(static_cast<double>(k.k_min[v]) - around),
                         std::abs(static_cast<double>(k.k_max[v]) - 1 / tube)});
       const int shape = shape_of(shape_class(k.k_min[v], k.k_max[v]));
-      if (j == 0) { EXPECT_EQ(shape, 7); }
-      if (j == nv / 2) { EXPECT_EQ(shape, 5); }
-      if (j == nv / 4) { EXPECT_EQ(shape, 6); }
+      if (j == 0) {
+        EXPECT_EQ(shape, 7);
+      }
+      if (j == nv / 2) {
+        EXPECT_EQ(shape, 5);
+      }
+      if (j == nv / 4) {
+        EXPECT_EQ(shape, 6);
+      }
     }
   EXPECT_LT(worst, 0.0006);
 }
@@ -218,8 +224,8 @@ TEST(Curvature, MinimumNeverExceedsMaximumAndThreadsDoNotMatter) {
 /// Fraction of vertices whose shape angle differs by less than 22.5 degrees (one class) from the true one, after
 /// extraction with 4-bit offsets and smoothing. `select` picks vertices away from open ends.
 double shape_agreement(int n, const std::function<double(glm::dvec3)>& field,
-                       const std::function<glm::dvec2(glm::dvec3)>& truth, const std::function<bool(glm::dvec3)>& select,
-                       Moments& out) {
+                       const std::function<glm::dvec2(glm::dvec3)>& truth,
+                       const std::function<bool(glm::dvec3)>& select, Moments& out) {
   QuadMesh mesh = dual_mesh(n, 4, field);
   std::vector<glm::vec3> normals;
   SilentProgress progress;
@@ -252,9 +258,14 @@ TEST(Curvature, ExtractedAndSmoothedSphereCylinderAndSaddleKeepTheirShape) {
   const glm::dvec3 axis = glm::normalize(glm::dvec3(0.3, 0.2, 1.0));
   const double good_cylinder = shape_agreement(
       60, [&](glm::dvec3 p) { return 10 - glm::length(glm::cross(p - c, axis)); },
-      [](glm::dvec3) { return glm::dvec2(0.0, 0.1); }, [&](glm::dvec3 p) { return std::abs(p.z - c.z) < 20; }, cylinder);
+      [](glm::dvec3) { return glm::dvec2(0.0, 0.1); }, [&](glm::dvec3 p) { return std::abs(p.z - c.z) < 20; },
+      cylinder);
   const double good_saddle = shape_agreement(
-      60, [&](glm::dvec3 p) { p -= c; return 0.025 * (p.x * p.x - p.y * p.y) - p.z; },
+      60,
+      [&](glm::dvec3 p) {
+        p -= c;
+        return 0.025 * (p.x * p.x - p.y * p.y) - p.z;
+      },
       [](glm::dvec3) { return glm::dvec2(-0.05, 0.05); },
       [&](glm::dvec3 p) { return inner(p) && std::hypot(p.x - c.x, p.y - c.y) < 6; }, saddle);
   std::printf("sphere %.4f (%.4f %.4f)  cylinder %.4f (%.4f %.4f)  saddle %.4f (%.4f %.4f)\n", good_sphere,
@@ -279,7 +290,8 @@ TEST(ShapeClass, CanonicalShapesHitTheCentresOfTheirClasses) {
   for (int s = 0; s <= 8; s += 2)
     for (const double shift : {-0.45, 0.45}) {
       const double phi = (std::clamp(22.5 * (s + shift), 0.0, 180.0) - 135) * kPi / 180;
-      EXPECT_EQ(shape_of(shape_class(static_cast<float>(0.2 * std::sin(phi)), static_cast<float>(0.2 * std::cos(phi)))), s);
+      EXPECT_EQ(shape_of(shape_class(static_cast<float>(0.2 * std::sin(phi)), static_cast<float>(0.2 * std::cos(phi)))),
+                s);
     }
 }
 

@@ -1,12 +1,12 @@
 #include "core/surface/extract.h"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstring>
-#include <hwy/targets.h>
 #include <random>
 
 #include "core/surface/row_kernels.h"
@@ -83,7 +83,8 @@ TEST(Extract, AnyThreadCountAndSlabHeightGiveTheSameBytes) {
     const Triangulation cut = triangulate(mesh, {});
     for (const int threads : {1, 2, 7}) {
       set_thread_count(threads);
-      for (const std::int64_t slab : {1, 2, 5, 28, 29, 1000}) EXPECT_EQ(sample(volume, 0.0f, closed, 4, slab), expected);
+      for (const std::int64_t slab : {1, 2, 5, 28, 29, 1000})
+        EXPECT_EQ(sample(volume, 0.0f, closed, 4, slab), expected);
       const QuadMesh again = build(expected);
       EXPECT_TRUE(same_bytes(again, mesh));
       EXPECT_EQ(triangulate(again, {}).triangles, cut.triangles);
@@ -149,9 +150,10 @@ TEST(Extract, DeciderDoesNotDependOnTheOrderOfTheCorners) {
     if (i % 3 == 0) b = 2 * tau - a, c = 2 * tau - d;  // nearly a tie
     if (!(a > tau && d > tau && b < tau && c < tau)) continue;
     const bool first = joins_inside(a, b, c, d, tau);
-    for (const bool other : {joins_inside(d, b, c, a, tau), joins_inside(a, c, b, d, tau), joins_inside(d, c, b, a, tau),
-                             joins_inside(b, a, d, c, tau), joins_inside(c, a, d, b, tau),
-                             joins_inside(b, d, a, c, tau), joins_inside(c, d, a, b, tau)}) {
+    for (const bool other :
+         {joins_inside(d, b, c, a, tau), joins_inside(a, c, b, d, tau), joins_inside(d, c, b, a, tau),
+          joins_inside(b, a, d, c, tau), joins_inside(c, a, d, b, tau), joins_inside(b, d, a, c, tau),
+          joins_inside(c, d, a, b, tau)}) {
       ASSERT_EQ(other, first);
     }
     const double saddle = (double{a} * d - double{b} * c) / (double{a} + d - b - c);
@@ -193,7 +195,8 @@ TEST(Extract, OffsetsErrByHalfAStepAtMost) {
 
 TEST(Extract, EqualIsInsideAndNanIsOutside) {
   Volume<float> volume({70, 1, 1});
-  for (std::int64_t x = 0; x < 70; ++x) volume.voxels[x] = x % 7 == 0 ? 0.5f : x % 7 == 1 ? NAN : x % 7 == 2 ? INFINITY : 0.4f;
+  for (std::int64_t x = 0; x < 70; ++x)
+    volume.voxels[x] = x % 7 == 0 ? 0.5f : x % 7 == 1 ? NAN : x % 7 == 2 ? INFINITY : 0.4f;
   const SurfaceSamples samples = sample(volume, 0.5f);
   for (std::int64_t x = 0; x < 70; ++x) EXPECT_EQ(samples.signs.get(x, 0, 0), x % 7 == 0 || x % 7 == 2) << x;
   EXPECT_EQ(samples.signs.words().back() >> 6, 0u) << "padding bits";
@@ -220,7 +223,10 @@ TEST(Extract, SamplesThatContradictEachOtherAreRefused) {
   EXPECT_TRUE(refused([](SurfaceSamples& s) { s.offset_bits = 17; }));
   EXPECT_TRUE(refused([](SurfaceSamples& s) { s.dims.z = 9; }));
   EXPECT_TRUE(refused([](SurfaceSamples& s) { s.dims = {}, s.signs = {}; }));
-  EXPECT_TRUE(refused([](SurfaceSamples& s) { s.signs.set(3, 3, 3, !s.signs.get(3, 3, 3)); s.offsets.push_back(0); }));
+  EXPECT_TRUE(refused([](SurfaceSamples& s) {
+    s.signs.set(3, 3, 3, !s.signs.get(3, 3, 3));
+    s.offsets.push_back(0);
+  }));
   EXPECT_TRUE(refused([](SurfaceSamples& s) { s.signs.row(2, 2)[0] |= std::uint64_t{1} << 20; })) << "padding bit";
 }
 

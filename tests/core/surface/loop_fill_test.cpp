@@ -44,8 +44,7 @@ void expect_disk(const Loop& loop, const LoopFill& filled) {
   for (std::uint32_t i = 0; i < n; ++i) EXPECT_EQ(sides.count({i, (i + 1) % n}), 1u) << i;
 }
 
-Loop circle(int n, float radius, const std::function<float(float)>& height,
-            const std::function<float(float)>& scale) {
+Loop circle(int n, float radius, const std::function<float(float)>& height, const std::function<float(float)>& scale) {
   Loop loop;
   for (int i = 0; i < n; ++i) {
     const float a = 2.0f * static_cast<float>(kPi) * static_cast<float>(i) / static_cast<float>(n);
@@ -101,8 +100,7 @@ TEST(LoopFill, BentQuadrilateralTakesTheSmallerOfItsTwoSurfaces) {
     const auto i = [](int k) { return static_cast<std::size_t>(k); };
     return 0.5 * static_cast<double>(glm::length(glm::cross(p[i(b)] - p[i(a)], p[i(c)] - p[i(a)])));
   };
-  EXPECT_NEAR(fill(loop, options).area,
-              std::min(area(0, 1, 2) + area(0, 2, 3), area(1, 2, 3) + area(1, 3, 0)), 1e-6);
+  EXPECT_NEAR(fill(loop, options).area, std::min(area(0, 1, 2) + area(0, 2, 3), area(1, 2, 3) + area(1, 3, 0)), 1e-6);
 }
 
 TEST(LoopFill, RimOfAHemisphereIsClosedByADisk) {
@@ -125,8 +123,7 @@ TEST(LoopFill, ForbiddenEdgesAreNeverMade) {
           24, 10.0f, [](float a) { return 2.0f * std::sin(3.0f * a); }, one);
       std::set<std::pair<std::uint32_t, std::uint32_t>> taken;
       for (int i = 0; i < 60; ++i) {
-        const auto a = static_cast<std::uint32_t>(random() % 24),
-                   b = static_cast<std::uint32_t>(random() % 24);
+        const auto a = static_cast<std::uint32_t>(random() % 24), b = static_cast<std::uint32_t>(random() % 24);
         taken.emplace(std::min(a, b), std::max(a, b));
       }
       loop.forbidden = [&](std::uint32_t a, std::uint32_t b) {
@@ -189,8 +186,7 @@ TEST(BorderLoops, FigureEightBecomesTwoLoopsThatVisitNoVertexTwice) {
   for (const auto& loop : loops) {
     EXPECT_EQ(loop.size(), 3u);
     used += loop.size();
-    for (std::size_t i = 0; i < loop.size(); ++i)
-      EXPECT_EQ(edges[loop[i]].to, edges[loop[(i + 1) % loop.size()]].from);
+    for (std::size_t i = 0; i < loop.size(); ++i) EXPECT_EQ(edges[loop[i]].to, edges[loop[(i + 1) % loop.size()]].from);
   }
   EXPECT_EQ(used, edges.size());
 }

@@ -7,8 +7,8 @@
 namespace dubsar {
 namespace {
 
-const std::vector<glm::vec3> kPoints = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1},
-                                        {2, 2, 2}};
+const std::vector<glm::vec3> kPoints = {{0, 0, 0},  {1, 0, 0},  {0, 1, 0},  {0, 0, 1},
+                                        {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {2, 2, 2}};
 const std::vector<Triangle> kTetrahedron = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
 
 std::vector<Triangle> with(std::vector<Triangle> triangles, const std::vector<Triangle>& more) {

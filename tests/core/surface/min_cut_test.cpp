@@ -65,8 +65,7 @@ TEST(MinCut, LongChainsAgreeWithDynamicProgramming) {
       link = static_cast<int>(random() % 80);
       problem.edges.push_back({i - 1, i, link});
     }
-    const std::int64_t s = std::min(source, sink + link) + as_source,
-                       t = std::min(sink, source + link) + as_sink;
+    const std::int64_t s = std::min(source, sink + link) + as_source, t = std::min(sink, source + link) + as_sink;
     source = i == 0 ? as_source : s;
     sink = i == 0 ? as_sink : t;
   }

@@ -179,7 +179,7 @@ TEST(Occlusion, PartitionsAreLitAloneAndOtherwiseTheEnclosedBodyIsDark) {
   const std::size_t body = mesh.positions.size();
   append(mesh, inside_out(cube_sphere(24, 23)));  // inner wall, gap of 3
   const std::size_t wall = mesh.positions.size();
-  append(mesh, cube_sphere(24, 30));              // outer wall
+  append(mesh, cube_sphere(24, 30));  // outer wall
   std::vector<std::uint8_t> partition(mesh.positions.size(), 1);
   std::fill_n(partition.begin(), body, std::uint8_t{2});
   OcclusionOptions options;

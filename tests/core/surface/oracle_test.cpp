@@ -27,13 +27,14 @@ struct NaiveSurface {
     long crossings = 0, segments = 0, curves = 0;
     auto operator<=>(const Component&) const = default;
   };
-  std::map<Edge, double> crossings;  // with t
+  std::map<Edge, double> crossings;               // with t
   std::multiset<std::array<long, 2>> components;  // {crossings = x-quads, Euler number}
   long curves = 0, pinches = 0;
 
   NaiveSurface(const Volume<float>& volume, float tau) {
     const auto inside_grid = [&](const Point& p) {
-      return p[0] >= 0 && p[1] >= 0 && p[2] >= 0 && p[0] < volume.dims.x && p[1] < volume.dims.y && p[2] < volume.dims.z;
+      return p[0] >= 0 && p[1] >= 0 && p[2] >= 0 && p[0] < volume.dims.x && p[1] < volume.dims.y &&
+             p[2] < volume.dims.z;
     };
     const auto value = [&](const Point& p) { return static_cast<long double>(volume.at(p[0], p[1], p[2])) - tau; };
     const auto inside = [&](const Point& p) { return inside_grid(p) && volume.at(p[0], p[1], p[2]) >= tau; };
@@ -198,8 +199,8 @@ TEST(ExtractOracle, XQuadsComeInTheStatedOrderAroundTheirEdges) {
               ++q[static_cast<std::size_t>(a)];
               const bool is_virtual = x < 0 || y < 0 || z < 0 || q[0] == dims.x || q[1] == dims.y || q[2] == dims.z;
               const auto at_face = [&](int axis, int c, std::int64_t n) { return axis != a && (c == 0 || c == n - 1); };
-              const bool dropped = !closed && (is_virtual || at_face(0, x, dims.x) || at_face(1, y, dims.y) ||
-                                               at_face(2, z, dims.z));
+              const bool dropped =
+                  !closed && (is_virtual || at_face(0, x, dims.x) || at_face(1, y, dims.y) || at_face(2, z, dims.z));
               const auto found = naive.crossings.find({{x, y, z}, q});
               if (is_virtual == virtual_edges && !dropped && found != naive.crossings.end()) expected.push_back(*found);
             }
@@ -210,7 +211,8 @@ TEST(ExtractOracle, XQuadsComeInTheStatedOrderAroundTheirEdges) {
     ASSERT_EQ(mesh.quads.size(), expected.size());
     for (std::uint32_t i = 0; i < mesh.quads.size(); ++i) {
       const auto& [edge, t] = expected[i];
-      const glm::dvec3 p(edge.first[0], edge.first[1], edge.first[2]), q(edge.second[0], edge.second[1], edge.second[2]);
+      const glm::dvec3 p(edge.first[0], edge.first[1], edge.first[2]),
+          q(edge.second[0], edge.second[1], edge.second[2]);
       const int a = q.x > p.x ? 0 : q.y > p.y ? 1 : 2, u = (a + 1) % 3, v = (a + 2) % 3;
       const auto air = [&](const Point& at) {
         const bool in_grid = std::ranges::min(at) >= 0 && at[0] < dims.x && at[1] < dims.y && at[2] < dims.z;
@@ -246,8 +248,8 @@ TEST(ExtractOracle, VerticesAreTheMeansOfTheirCrossings) {
     for (const auto& [edge, t] : naive.crossings) {
       const auto& [p, q] = edge;
       const int a = q[0] > p[0] ? 0 : q[1] > p[1] ? 1 : 2;
-      const bool is_virtual = std::ranges::min(p) < 0 || q[0] == volume.dims.x || q[1] == volume.dims.y ||
-                              q[2] == volume.dims.z;
+      const bool is_virtual =
+          std::ranges::min(p) < 0 || q[0] == volume.dims.x || q[1] == volume.dims.y || q[2] == volume.dims.z;
       glm::dvec3 at(p[0], p[1], p[2]);
       at[a] += t;
       if (is_virtual == virtual_edges) ordered[{p[2], p[1], a, p[0], 0}] = at;
@@ -266,8 +268,8 @@ TEST(ExtractOracle, VerticesAreTheMeansOfTheirCrossings) {
 /// Polygons by the places of their vertices, turned to start at the smallest. With 4-bit offsets the coordinates are
 /// whole multiples of 1 / (32 * 2520): 2520 can be divided by any number of crossings of a piece.
 std::multiset<std::vector<std::array<long, 3>>> polygons(const QuadMesh& mesh,
-                                                         const std::function<glm::dvec3(glm::dvec3)>& map,
-                                                         bool reverse, const std::set<Point>& without = {}) {
+                                                         const std::function<glm::dvec3(glm::dvec3)>& map, bool reverse,
+                                                         const std::set<Point>& without = {}) {
   std::multiset<std::vector<std::array<long, 3>>> all;
   for (std::uint32_t q = 0; q < mesh.quads.size(); ++q) {
     const Polygon polygon = mesh.polygon(q);
@@ -294,7 +296,8 @@ std::multiset<std::vector<std::array<long, 3>>> polygons(const QuadMesh& mesh,
   return all;
 }
 
-/// Low corners of the cells whose split cannot follow every symmetry (CellTable, SplitsFollowEverySymmetryWhereChordsCan).
+/// Low corners of the cells whose split cannot follow every symmetry (CellTable,
+/// SplitsFollowEverySymmetryWhereChordsCan).
 std::set<Point> cells_without_symmetry(const Volume<float>& volume, float tau) {
   const CellTable& table = CellTable::instance();
   std::set<int> ids;
@@ -365,10 +368,11 @@ TEST(ExtractOracle, MirroredAndTurnedVolumesGiveTheMirroredAndTurnedMesh) {
       std::array<bool, 3> flips;
       bool reverses;
     };
-    for (const Turn& turn : {Turn{{0, 1, 2}, {true, false, false}, true}, Turn{{0, 1, 2}, {false, true, false}, true},
-                             Turn{{0, 1, 2}, {false, false, true}, true}, Turn{{1, 0, 2}, {true, false, false}, false},
-                             Turn{{0, 2, 1}, {false, true, false}, false}, Turn{{1, 2, 0}, {false, false, false}, false},
-                             Turn{{2, 1, 0}, {false, false, true}, false}}) {
+    for (const Turn& turn :
+         {Turn{{0, 1, 2}, {true, false, false}, true}, Turn{{0, 1, 2}, {false, true, false}, true},
+          Turn{{0, 1, 2}, {false, false, true}, true}, Turn{{1, 0, 2}, {true, false, false}, false},
+          Turn{{0, 2, 1}, {false, true, false}, false}, Turn{{1, 2, 0}, {false, false, false}, false},
+          Turn{{2, 1, 0}, {false, false, true}, false}}) {
       const auto to_new = [&](const glm::dvec3& p) {
         glm::dvec3 image;
         for (std::size_t a = 0; a < 3; ++a) {
@@ -393,7 +397,8 @@ TEST(ExtractOracle, MirroredAndTurnedVolumesGiveTheMirroredAndTurnedMesh) {
       if (closed) {
         EXPECT_EQ(image.doubled.size(), mesh.doubled.size());
       }
-      const auto found = polygons(image, [](glm::dvec3 p) { return p; }, false, special_image);
+      const auto found = polygons(
+          image, [](glm::dvec3 p) { return p; }, false, special_image);
       const auto wanted = polygons(mesh, to_new, turn.reverses, special);
       EXPECT_GT(wanted.size(), 0.9 * static_cast<double>(mesh.quad_count()));
       EXPECT_TRUE(found == wanted) << "axes " << turn.axes[0] << turn.axes[1] << turn.axes[2];

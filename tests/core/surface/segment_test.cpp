@@ -37,8 +37,7 @@ Quality judge(const SurfaceModel& model, const Nested& scene) {
     for (const std::uint32_t v : model.mesh.quads[q]) c += 0.25f * model.mesh.positions[v];
     const std::string& part = model.partitions[model.quad_partition[q]].part;
     if (part != "tablet" && part != "envelope") continue;
-    if (std::min({std::abs(scene.tablet(c)), std::abs(scene.shell(c)), std::abs(scene.hollow(c))}) > 0.6f)
-      continue;
+    if (std::min({std::abs(scene.tablet(c)), std::abs(scene.shell(c)), std::abs(scene.hollow(c))}) > 0.6f) continue;
     ++table[scene.truth(c) == 0][part == "tablet"];
   }
   return {table[1][1] / (table[1][1] + table[0][1]), table[1][1] / (table[1][1] + table[1][0]),
@@ -74,8 +73,7 @@ void expect_all_closed(const SurfaceModel& model) {
 
 /// Three bridges of clay across the gap, two of them large.
 bool three_bridges(const glm::vec3& p) {
-  return scene::ball(p, {30.0f, 51.0f, 40.0f}, 12.0f) > 0.0f ||
-         scene::ball(p, {66.0f, 10.0f, 60.0f}, 9.0f) > 0.0f ||
+  return scene::ball(p, {30.0f, 51.0f, 40.0f}, 12.0f) > 0.0f || scene::ball(p, {66.0f, 10.0f, 60.0f}, 9.0f) > 0.0f ||
          scene::ball(p, {78.0f, 30.0f, 30.0f}, 8.0f) > 0.0f;
 }
 
@@ -164,8 +162,7 @@ TEST(Segment, SolidWithPoresIsOneObject) {
   const auto solid = [](const glm::vec3& p) {
     float v = scene::box(p, {31.2f, 31.7f, 31.4f}, glm::vec3(25.0f), 6.0f);
     for (int i = 0; i < 8; ++i)
-      v = std::min(
-          v, -scene::ball(p, {i & 1 ? 21.0f : 41.0f, i & 2 ? 22.0f : 42.0f, i & 4 ? 23.0f : 40.0f}, 7.0f));
+      v = std::min(v, -scene::ball(p, {i & 1 ? 21.0f : 41.0f, i & 2 ? 22.0f : 42.0f, i & 4 ? 23.0f : 40.0f}, 7.0f));
     return v;
   };
   SurfaceModel model = scene::extract_model({64, 64, 64}, solid);
@@ -191,10 +188,10 @@ TEST(Segment, SeparatePiecesAreNamedByFallingVolumeAndAtMostEight) {
   const auto pieces = [](const glm::vec3& p) {
     float v = -1.0f;
     for (int i = 0; i < 10; ++i)
-      v = std::max(v, scene::ball(p,
-                                  {12.0f + 20.0f * static_cast<float>(i % 4),
-                                   12.0f + 20.0f * static_cast<float>(i / 4), 12.3f},
-                                  9.0f - 0.6f * static_cast<float>((i * 7) % 10)));
+      v = std::max(
+          v,
+          scene::ball(p, {12.0f + 20.0f * static_cast<float>(i % 4), 12.0f + 20.0f * static_cast<float>(i / 4), 12.3f},
+                      9.0f - 0.6f * static_cast<float>((i * 7) % 10)));
     return v;
   };
   SurfaceModel model = scene::extract_model({88, 64, 25}, pieces);
@@ -203,8 +200,7 @@ TEST(Segment, SeparatePiecesAreNamedByFallingVolumeAndAtMostEight) {
   EXPECT_EQ(model.partitions[0].name, "object");
   EXPECT_EQ(model.partitions[6].name, "fragment 6");
   ASSERT_TRUE(measure_partitions(model).has_value());
-  for (std::size_t i = 1; i < 7; ++i)
-    EXPECT_LT(model.partitions[i].volume_mm3, model.partitions[i - 1].volume_mm3);
+  for (std::size_t i = 1; i < 7; ++i) EXPECT_LT(model.partitions[i].volume_mm3, model.partitions[i - 1].volume_mm3);
 }
 
 TEST(Segment, NothingAndEverythingAreNoProblem) {

@@ -98,7 +98,8 @@ TEST(ShapeColors, VertexColorsTakeWhatIsThere) {
   const auto& table = shape_color_table(ShapeColors::kTable);
   EXPECT_EQ(shape_vertex_colors(ShapeColors::kTable, shape, ao),
             (std::vector<ShapeRgb>{table[0], shade(table[60], 30), {0, 0, 0}}));
-  EXPECT_EQ(shape_vertex_colors(ShapeColors::kTable, shape, {}), (std::vector<ShapeRgb>{table[0], table[60], table[0]}));
+  EXPECT_EQ(shape_vertex_colors(ShapeColors::kTable, shape, {}),
+            (std::vector<ShapeRgb>{table[0], table[60], table[0]}));
   EXPECT_EQ(shape_vertex_colors(ShapeColors::kTable, {}, ao)[1], shade(table[0], 30));
   EXPECT_TRUE(shape_vertex_colors(ShapeColors::kTable, {}, {}).empty());
 }

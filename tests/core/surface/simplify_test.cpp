@@ -55,8 +55,8 @@ double one_way(const TriMesh& from, const TriMesh& to) {
   for (const glm::dvec3& p : samples) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const Triangle& t : to.triangles) {
-      nearest = std::min(nearest, distance_to_triangle(p, glm::dvec3(to.positions[t[0]]), glm::dvec3(to.positions[t[1]]),
-                                                       glm::dvec3(to.positions[t[2]])));
+      nearest = std::min(nearest, distance_to_triangle(p, glm::dvec3(to.positions[t[0]]),
+                                                       glm::dvec3(to.positions[t[1]]), glm::dvec3(to.positions[t[2]])));
     }
     worst = std::max(worst, nearest);
   }
@@ -74,7 +74,8 @@ TEST(Simplify, SphereStaysClosedAndWithinTheDistance) {
     EXPECT_LE(one_way(mesh, small), distance);
     EXPECT_LE(one_way(small, mesh), distance);
     // The best possible is an order of magnitude below: the bound on the distance adds up and is never exact.
-    EXPECT_LT(static_cast<double>(small.triangles.size()), (distance > 0.2 ? 0.25 : 0.6) * static_cast<double>(mesh.triangles.size()));
+    EXPECT_LT(static_cast<double>(small.triangles.size()),
+              (distance > 0.2 ? 0.25 : 0.6) * static_cast<double>(mesh.triangles.size()));
   }
 }
 
@@ -90,8 +91,9 @@ TEST(Simplify, FlatBoxCollapsesToFewTriangles) {
   EXPECT_LT(small.triangles.size(), 200u);
   double volume_enclosed = 0.0;
   for (const Triangle& t : small.triangles) {
-    volume_enclosed += glm::dot(glm::dvec3(small.positions[t[0]]), glm::cross(glm::dvec3(small.positions[t[1]]),
-                                                                             glm::dvec3(small.positions[t[2]]))) / 6.0;
+    volume_enclosed += glm::dot(glm::dvec3(small.positions[t[0]]),
+                                glm::cross(glm::dvec3(small.positions[t[1]]), glm::dvec3(small.positions[t[2]]))) /
+                       6.0;
   }
   EXPECT_NEAR(volume_enclosed, 23.0 * 19.0 * 15.0, 1e-6) << "edges or corners were cut";
 }
@@ -112,7 +114,8 @@ TEST(Simplify, TheNormalConeStopsItWhereTheDistanceDoesNot) {
 TEST(Simplify, ManifoldsStayManifoldsWithTheirTopology) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     const bool closed = seed % 2 == 0;
-    const TriMesh mesh = to_tri_mesh(build(sample(random_volume({14, 13, 12}, seed, static_cast<int>(seed % 5)), 0.0f, closed)));
+    const TriMesh mesh =
+        to_tri_mesh(build(sample(random_volume({14, 13, 12}, seed, static_cast<int>(seed % 5)), 0.0f, closed)));
     const TriMesh small = run(mesh, {.max_angle_rad = 1.5, .max_distance_vox = 0.5});
     const MeshCheck before = check_mesh(mesh.positions, mesh.triangles);
     const MeshCheck after = check_mesh(small.positions, small.triangles);

@@ -1,10 +1,10 @@
 #include "core/surface/smooth.h"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <cstring>
 #include <glm/vector_relational.hpp>
-#include <hwy/targets.h>
 #include <map>
 #include <random>
 
@@ -16,7 +16,8 @@ namespace {
 using namespace test;
 
 double angle_deg(glm::vec3 a, glm::vec3 b) {
-  return std::atan2(static_cast<double>(glm::length(glm::cross(a, b))), static_cast<double>(glm::dot(a, b))) * 180 / kPi;
+  return std::atan2(static_cast<double>(glm::length(glm::cross(a, b))), static_cast<double>(glm::dot(a, b))) * 180 /
+         kPi;
 }
 
 template <class T>
@@ -59,7 +60,8 @@ TEST(FaceNeighbours, CountSharedVerticesLikeABruteForceSearch) {
       const std::size_t slice = i / FaceNeighbours::kLanes, lane = i % FaceNeighbours::kLanes;
       for (std::uint32_t row = chunk.first_row[slice]; row < chunk.first_row[slice + 1]; ++row) {
         const std::uint32_t entry = chunk.entries[std::size_t{row} * FaceNeighbours::kLanes + lane];
-        if (entry >> FaceNeighbours::kIndexBits) found[entry & FaceNeighbours::kIndexMask] = entry >> FaceNeighbours::kIndexBits;
+        if (entry >> FaceNeighbours::kIndexBits)
+          found[entry & FaceNeighbours::kIndexMask] = entry >> FaceNeighbours::kIndexBits;
       }
       ASSERT_EQ(found, expected) << "face " << face;
     }
@@ -76,8 +78,8 @@ TEST(FaceNeighbours, RegularGridHasFourOfWeightTwoAndFourOfWeightOne) {
     for (int i = 0; i < chunk.faces; ++i)
       for (std::uint32_t row = 0; row < 8; ++row) {
         const auto lane = static_cast<std::size_t>(i);
-        const std::uint32_t entry =
-            chunk.entries[(chunk.first_row[lane / 16] + row) * std::size_t{16} + lane % 16] >> FaceNeighbours::kIndexBits;
+        const std::uint32_t entry = chunk.entries[(chunk.first_row[lane / 16] + row) * std::size_t{16} + lane % 16] >>
+                                    FaceNeighbours::kIndexBits;
         ones += entry == 1;
         twos += entry == 2;
       }
@@ -233,7 +235,8 @@ TEST(Smooth, FlattensNoisyClayAndKeepsTheDepthOfAWedge) {
   SilentProgress progress;
   ASSERT_TRUE(smooth(mesh, normals, {}, progress));
   const Figures after = measure(normals);
-  std::printf("flat %.2f -> %.2f deg, depth %.3f -> %.3f\n", before.flat_deg, after.flat_deg, before.depth, after.depth);
+  std::printf("flat %.2f -> %.2f deg, depth %.3f -> %.3f\n", before.flat_deg, after.flat_deg, before.depth,
+              after.depth);
   EXPECT_LT(after.flat_deg, 0.3 * before.flat_deg);
   EXPECT_GT(after.depth, before.depth - 0.15);
   EXPECT_GT(after.depth, 0.85 * 4);

@@ -78,8 +78,7 @@ TEST(SurfaceModel, PartitionsOfOnePartStayJoined) {
   EXPECT_TRUE(parts[0].watertight);
   ASSERT_TRUE(measure_partitions(model).has_value());
   EXPECT_FALSE(model.partitions[0].watertight);
-  EXPECT_NEAR(model.partitions[0].area_mm2 + model.partitions[1].area_mm2, parts[0].area_mm2,
-              1e-6 * parts[0].area_mm2);
+  EXPECT_NEAR(model.partitions[0].area_mm2 + model.partitions[1].area_mm2, parts[0].area_mm2, 1e-6 * parts[0].area_mm2);
 }
 
 /// Labels in a checkerboard: parts touch themselves at the corners, where a vertex has four fans.
@@ -99,8 +98,8 @@ TEST(SurfaceModel, PartsThatTouchThemselvesAreSplitIntoFans) {
 }
 
 TEST(SurfaceModel, MeasuresOfABallAreAnalyticInAnAnisotropicFrame) {
-  SurfaceModel model = scene::extract_model(
-      {48, 48, 48}, [](const glm::vec3& p) { return scene::ball(p, glm::vec3(23.5f), 20.0f); });
+  SurfaceModel model =
+      scene::extract_model({48, 48, 48}, [](const glm::vec3& p) { return scene::ball(p, glm::vec3(23.5f), 20.0f); });
   model.frame.input_voxel = {{0.1, 0.2, 0.3}, "test"};
   model.frame.scale = {2.0, 2.0, 2.0};
   model.partitions = {{.id = 0, .name = "ball", .part = ""}};

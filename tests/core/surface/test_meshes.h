@@ -27,7 +27,8 @@ inline QuadMesh parametric_grid(int nu, int nv, bool wrap_u, bool wrap_v,
   QuadMesh mesh;
   const int pu = wrap_u ? nu : nu + 1, pv = wrap_v ? nv : nv + 1;
   for (int j = 0; j < pv; ++j)
-    for (int i = 0; i < pu; ++i) mesh.positions.emplace_back(point(static_cast<double>(i) / nu, static_cast<double>(j) / nv));
+    for (int i = 0; i < pu; ++i)
+      mesh.positions.emplace_back(point(static_cast<double>(i) / nu, static_cast<double>(j) / nv));
   const auto id = [&](int i, int j) { return static_cast<std::uint32_t>((j % pv) * pu + i % pu); };
   for (int j = 0; j < nv; ++j)
     for (int i = 0; i < nu; ++i) mesh.quads.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)});

@@ -45,7 +45,7 @@ TEST(Triangulate, ConcaveQuadsAreCutAtTheReflexCorner) {
 
 TEST(Triangulate, TheCreaseFollowsTheCurvatureOfTheNormals) {
   // A quad of a cylinder turned by 30 degrees against the grid: the diagonal along the ruling is nearer to it.
-  for (const float sign : {1.0f, -1.0f}) {    // ridge and valley
+  for (const float sign : {1.0f, -1.0f}) {     // ridge and valley
     for (const float slope : {0.6f, -0.6f}) {  // direction of the ruling
       const auto cylinder = [&](float x, float y) {
         const float u = (x * slope - y) / std::sqrt(1 + slope * slope);  // distance from the ruling through 0

@@ -16,7 +16,13 @@ std::vector<std::byte> bytes(const std::string& text) {
 
 TEST(ChunkFilters, LzfFollowsItsFormat) {
   // "abc", then 6 bytes from 3 back, then 11 bytes from 1 back (long form), then "z"
-  const auto packed = bytes(std::string("\x02""abc" "\x80\x02" "\xe0\x02\x00" "\x00z", 11));
+  const auto packed =
+      bytes(std::string("\x02"
+                        "abc"
+                        "\x80\x02"
+                        "\xe0\x02\x00"
+                        "\x00z",
+                        11));
   std::vector<std::byte> out(64);
   const auto size = lzf_decode(packed, out);
   ASSERT_TRUE(size);
@@ -35,7 +41,10 @@ TEST(ChunkFilters, LzfNeverWritesOutsideAndNeverReadsBefore) {
   }
   std::vector<std::byte> out(8);
   EXPECT_FALSE(lzf_decode(bytes("\x20\x05"), out)) << "a reference before the beginning";
-  EXPECT_FALSE(lzf_decode(bytes("\x05" "ab"), out)) << "a literal run cut short";
+  EXPECT_FALSE(lzf_decode(bytes("\x05"
+                                "ab"),
+                          out))
+      << "a literal run cut short";
   EXPECT_FALSE(lzf_decode(bytes("\xe0"), out)) << "a length cut short";
   EXPECT_EQ(lzf_decode({}, out), 0u);
 }

@@ -158,8 +158,7 @@ TEST(Denoise, HugeRangesAndDenormalsStayFiniteAndInsideTheRange) {
 
 /// Centre voxel of a 3x3x3 volume whose only other value is its x neighbour; the weight follows from the result.
 double weight_seen(RangeWeight range, double difference, double sigma) {
-  const Volume<float> v =
-      make_volume({3, 1, 1}, [&](auto x, auto, auto) { return x == 2 ? difference : 0.0; });
+  const Volume<float> v = make_volume({3, 1, 1}, [&](auto x, auto, auto) { return x == 2 ? difference : 0.0; });
   const DenoiseOptions options{DenoiseMethod::kBilateral, range, 3, 1, sigma};
   const double out = denoised(v, options).at(1, 0, 0);  // out = w d / (3 + w): centre and left count 2 + 1
   return 3.0 * out / (difference - out);
@@ -179,9 +178,8 @@ TEST(Denoise, TukeyIsRootOfEAtSigmaAndNothingAtItsEnd) {
 TEST(Denoise, MedianRemovesSaltAndKeepsThePlaneStep) {
   std::mt19937_64 random(4);
   const auto clean = [](std::int64_t x) { return x < 15 ? 1.0 : 3.0; };
-  const Volume<float> v = make_volume({30, 20, 20}, [&](auto x, auto, auto) {
-    return random() % 25 == 0 ? 100.0 : clean(x);
-  });
+  const Volume<float> v =
+      make_volume({30, 20, 20}, [&](auto x, auto, auto) { return random() % 25 == 0 ? 100.0 : clean(x); });
   const Volume<float> out = denoised(v, {DenoiseMethod::kMedian, RangeWeight::kTukey, 3, 1, 0.0});
   for (std::int64_t z = 0; z < 20; ++z)
     for (std::int64_t y = 0; y < 20; ++y)
@@ -194,9 +192,8 @@ TEST(Denoise, MedianRemovesSaltAndKeepsThePlaneStep) {
 }
 
 TEST(Denoise, MedianOfNegativeValuesAndZerosIsOneOfThem) {
-  const Volume<float> v = make_volume({9, 9, 9}, [](auto x, auto y, auto z) {
-    return static_cast<double>((x * 5 + y * 11 + z * 17) % 23) - 11.0;
-  });
+  const Volume<float> v = make_volume(
+      {9, 9, 9}, [](auto x, auto y, auto z) { return static_cast<double>((x * 5 + y * 11 + z * 17) % 23) - 11.0; });
   for (const int window : {3, 5, 7}) {
     const DenoiseOptions options{DenoiseMethod::kMedian, RangeWeight::kTukey, window, 1, 0.0};
     const Volume<double> expected = oracle::denoise_once(v, options);

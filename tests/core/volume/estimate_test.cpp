@@ -51,8 +51,8 @@ Estimates estimates_of(const Volume<float>& v, const EstimateOptions& options = 
 TEST(Estimate, TwoGaussiansAreFoundWithinTwoPercent) {
   for (const auto& [snr_db, scale] : {std::pair{17.0, 1.0}, {23.0, 0.0017}, {28.0, 30000.0}, {35.0, 1.0}}) {
     const double sigma = std::pow(10.0, -snr_db / 20.0);
-    const Estimates e = estimates_of(
-        mixture_volume({{0.6, 0.1 * scale, 0.8 * sigma * scale}, {0.4, 1.1 * scale, sigma * scale}}, 1));
+    const Estimates e =
+        estimates_of(mixture_volume({{0.6, 0.1 * scale, 0.8 * sigma * scale}, {0.4, 1.1 * scale, sigma * scale}}, 1));
     EXPECT_NEAR(e.m_lo, 0.1 * scale, 0.01 * scale);
     EXPECT_NEAR(e.m_hi, 1.1 * scale, 0.01 * scale);
     EXPECT_NEAR(e.sigma, sigma * scale, 0.02 * sigma * scale) << snr_db << " dB, scale " << scale;
@@ -217,8 +217,7 @@ TEST(Estimate, TheDefaultThresholdLiesOnTheSurface) {
         for (std::int64_t x = 15; x < 30; ++x) {
           const double a = v.at(x, y, z), b = v.at(x + 1, y, z);
           if (!(a < tau && b >= tau)) continue;
-          const glm::dvec3 at =
-              half.frame().input_vox_from_grid({static_cast<double>(x) + (tau - a) / (b - a), y, z});
+          const glm::dvec3 at = half.frame().input_vox_from_grid({static_cast<double>(x) + (tau - a) / (b - a), y, z});
           sum += (at.x - wall - 0.02 * at.y - 0.01 * at.z) / 2.0;
           count += 1.0;
         }

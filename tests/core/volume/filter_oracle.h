@@ -54,8 +54,8 @@ inline double window_gauss(const Volume<float>& v, int window, std::int64_t x, s
   for (int c = -r; c <= r; ++c)
     for (int b = -r; b <= r; ++b)
       for (int a = -r; a <= r; ++a)
-        sum += binomial(2 * r, a + r) * binomial(2 * r, b + r) * binomial(2 * r, c + r) *
-               clamped(v, x + a, y + b, z + c);
+        sum +=
+            binomial(2 * r, a + r) * binomial(2 * r, b + r) * binomial(2 * r, c + r) * clamped(v, x + a, y + b, z + c);
   return sum / std::pow(2.0, 6.0 * r);
 }
 
@@ -77,8 +77,7 @@ inline Volume<double> denoise_once(const Volume<float>& v, const DenoiseOptions&
         for (std::int64_t x = 0; x < n.x; ++x) body(x, y, z);
   };
   each([&](auto x, auto y, auto z) {
-    guide.at(x, y, z) =
-        options.method == DenoiseMethod::kJointBilateral ? window_gauss(v, 3, x, y, z) : v.at(x, y, z);
+    guide.at(x, y, z) = options.method == DenoiseMethod::kJointBilateral ? window_gauss(v, 3, x, y, z) : v.at(x, y, z);
   });
   each([&](auto x, auto y, auto z) {
     if (options.method == DenoiseMethod::kGauss) {

@@ -24,9 +24,9 @@ class Hdf5Files : public testing::Test {
   }
 
  private:
-  fs::path folder_ = fs::temp_directory_path() /
-                     fmt::format("dubsar-hdf5-{}-{}", ::getpid(),
-                                 testing::UnitTest::GetInstance()->current_test_info()->name());
+  fs::path folder_ =
+      fs::temp_directory_path() /
+      fmt::format("dubsar-hdf5-{}-{}", ::getpid(), testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 std::vector<float> ramp(std::size_t count) {

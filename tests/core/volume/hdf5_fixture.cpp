@@ -17,16 +17,26 @@ hid_t good(hid_t id) {
 hid_t number_type(ScalarType type, ByteOrder order) {
   const bool big = order == ByteOrder::kBig;
   switch (type) {
-    case ScalarType::kU8: return H5T_STD_U8LE;
-    case ScalarType::kI8: return H5T_STD_I8LE;
-    case ScalarType::kU16: return big ? H5T_STD_U16BE : H5T_STD_U16LE;
-    case ScalarType::kI16: return big ? H5T_STD_I16BE : H5T_STD_I16LE;
-    case ScalarType::kU32: return big ? H5T_STD_U32BE : H5T_STD_U32LE;
-    case ScalarType::kI32: return big ? H5T_STD_I32BE : H5T_STD_I32LE;
-    case ScalarType::kU64: return big ? H5T_STD_U64BE : H5T_STD_U64LE;
-    case ScalarType::kI64: return big ? H5T_STD_I64BE : H5T_STD_I64LE;
-    case ScalarType::kF32: return big ? H5T_IEEE_F32BE : H5T_IEEE_F32LE;
-    default: return big ? H5T_IEEE_F64BE : H5T_IEEE_F64LE;
+    case ScalarType::kU8:
+      return H5T_STD_U8LE;
+    case ScalarType::kI8:
+      return H5T_STD_I8LE;
+    case ScalarType::kU16:
+      return big ? H5T_STD_U16BE : H5T_STD_U16LE;
+    case ScalarType::kI16:
+      return big ? H5T_STD_I16BE : H5T_STD_I16LE;
+    case ScalarType::kU32:
+      return big ? H5T_STD_U32BE : H5T_STD_U32LE;
+    case ScalarType::kI32:
+      return big ? H5T_STD_I32BE : H5T_STD_I32LE;
+    case ScalarType::kU64:
+      return big ? H5T_STD_U64BE : H5T_STD_U64LE;
+    case ScalarType::kI64:
+      return big ? H5T_STD_I64BE : H5T_STD_I64LE;
+    case ScalarType::kF32:
+      return big ? H5T_IEEE_F32BE : H5T_IEEE_F32LE;
+    default:
+      return big ? H5T_IEEE_F64BE : H5T_IEEE_F64LE;
   }
 }
 
@@ -43,7 +53,8 @@ hid_t parents() {
 
 // Bytes as they are; for LZF as literal runs of up to 32 bytes behind a length byte.
 template <bool kLiterals>
-std::size_t store(unsigned int flags, std::size_t, const unsigned int*, std::size_t size, std::size_t* room, void** buffer) {
+std::size_t store(unsigned int flags, std::size_t, const unsigned int*, std::size_t size, std::size_t* room,
+                  void** buffer) {
   if ((flags & H5Z_FLAG_REVERSE) != 0 || !kLiterals) return size;
   auto* packed = static_cast<unsigned char*>(std::malloc(size + size / 32 + 1));
   const auto* from = static_cast<const unsigned char*>(*buffer);
@@ -69,8 +80,14 @@ void set_packing(hid_t creation, const Packing& packing, std::vector<int>& filte
   if (packing.nbit) H5Pset_nbit(creation);
   if (packing.deflate > 0) H5Pset_deflate(creation, static_cast<unsigned int>(packing.deflate));
   if (packing.foreign_filter != 0) {
-    const H5Z_class2_t filter{H5Z_CLASS_T_VERS, packing.foreign_filter, 1, 1, packing.foreign_filter == 32000 ? "lzf" : "foreign",
-                              nullptr, nullptr, packing.foreign_filter == 32000 ? &store<true> : &store<false>};
+    const H5Z_class2_t filter{H5Z_CLASS_T_VERS,
+                              packing.foreign_filter,
+                              1,
+                              1,
+                              packing.foreign_filter == 32000 ? "lzf" : "foreign",
+                              nullptr,
+                              nullptr,
+                              packing.foreign_filter == 32000 ? &store<true> : &store<false>};
     good(H5Zregister(&filter));
     good(H5Pset_filter(creation, packing.foreign_filter, H5Z_FLAG_MANDATORY, 0, nullptr));
     filters.push_back(packing.foreign_filter);

@@ -51,8 +51,9 @@ TEST(ValueCounts, EveryValueIsKeptToFifteenBits) {
 }
 
 TEST(ValueCounts, NotFiniteValuesAreCountedApart) {
-  const float bad[] = {std::nanf(""), std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
-                       -0.0F, 0.0F, std::numeric_limits<float>::max()};
+  const float bad[] = {
+      std::nanf(""), std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), -0.0F,
+      0.0F,          std::numeric_limits<float>::max()};
   ValueCounts counts;
   counts.add(bad);
   EXPECT_EQ(counts.nonfinite(), 3);
@@ -94,8 +95,7 @@ TEST(Histogram, NoMassIsLostAndNoCombIsLeftOfIntegers) {
   const Volume<float> v = make_volume({64, 64, 64}, [](auto x, auto y, auto) { return (x + y) % 64; });
   const Histogram h = make_histogram(counted(v), 1024);
   EXPECT_NEAR(std::accumulate(h.mass.begin(), h.mass.end(), 0.0), 262144.0, 2100.0);  // the outer half steps may be cut
-  for (std::size_t bin = 40; bin < 980; ++bin)
-    EXPECT_NEAR(h.mass[bin], 4096.0 * h.width, 1e-6 * 4096.0) << bin;
+  for (std::size_t bin = 40; bin < 980; ++bin) EXPECT_NEAR(h.mass[bin], 4096.0 * h.width, 1e-6 * 4096.0) << bin;
 }
 
 TEST(Histogram, OneValueHasNoBins) {

@@ -67,11 +67,13 @@ class ImportFormats : public testing_tools::TempFolder {
     ASSERT_EQ((*volume)->dims(), kDims) << what;
     std::vector<float> out(static_cast<std::size_t>(kDims.count()));
     for (const std::int64_t z : {2, 0, 3, 1}) {  // any order
-      const auto read = (*volume)->read(z, z + 1, std::span(out).subspan(static_cast<std::size_t>(z * kDims.slice()),
-                                                                         static_cast<std::size_t>(kDims.slice())));
+      const auto read = (*volume)->read(
+          z, z + 1,
+          std::span(out).subspan(static_cast<std::size_t>(z * kDims.slice()), static_cast<std::size_t>(kDims.slice())));
       ASSERT_TRUE(read) << what << ": " << read.error().message;
     }
-    for (int i = 0; i < kDims.count(); ++i) ASSERT_EQ(out[static_cast<std::size_t>(i)], static_cast<float>(3 * i + first)) << what;
+    for (int i = 0; i < kDims.count(); ++i)
+      ASSERT_EQ(out[static_cast<std::size_t>(i)], static_cast<float>(3 * i + first)) << what;
   }
   static std::string warnings(const ImportedVolume& volume) {
     return fmt::format("{}", fmt::join(volume.info().warnings, "; "));
@@ -125,9 +127,11 @@ TEST_F(ImportFormats, NrrdRawAndGzipAreRead) {
     write_bytes(in("a.nrrd"), fmt::format(fmt::runtime(kNrrd), "float", order, "gzip", "") + gzip(stored<float>(big)));
     expect_ramp(open("a.nrrd"), -7, "gzip");
   }
-  write_bytes(in("a.nrrd"), fmt::format(fmt::runtime(kNrrd), "double", "little", "raw", "byte skip: 5\n") + "12345" + stored<double>(false));
+  write_bytes(in("a.nrrd"), fmt::format(fmt::runtime(kNrrd), "double", "little", "raw", "byte skip: 5\n") + "12345" +
+                                stored<double>(false));
   expect_ramp(open("a.nrrd"), -7, "byte skip");
-  write_bytes(in("a.nrrd"), fmt::format(fmt::runtime(kNrrd), "double", "little", "raw", "byte skip: -1\n") + "1234567" + stored<double>(false));
+  write_bytes(in("a.nrrd"), fmt::format(fmt::runtime(kNrrd), "double", "little", "raw", "byte skip: -1\n") + "1234567" +
+                                stored<double>(false));
   expect_ramp(open("a.nrrd"), -7, "from the end");
   write_bytes(in("v.raw"), stored<std::uint16_t>(false));
   write_bytes(in("a.nhdr"), fmt::format(fmt::runtime(kNrrd), "uint16", "little", "raw", "data file: v.raw\n"));
@@ -136,13 +140,16 @@ TEST_F(ImportFormats, NrrdRawAndGzipAreRead) {
 
 TEST_F(ImportFormats, NrrdVoxelSizeNeedsAUnit) {
   const auto with = [&](const std::string& fields) {
-    write_bytes(in("a.nrrd"), fmt::format(fmt::runtime(kNrrd), "short", "little", "raw", fields) + stored<std::int16_t>(false));
+    write_bytes(in("a.nrrd"),
+                fmt::format(fmt::runtime(kNrrd), "short", "little", "raw", fields) + stored<std::int16_t>(false));
     auto volume = open("a.nrrd");
     EXPECT_TRUE(volume) << volume.error().message;
     return std::move(*volume);
   };
-  EXPECT_EQ(with("spacings: 10 20 30\nunits: \"um\" \"um\" \"um\"\n")->info().voxel.mm, glm::dvec3(10 * 1e-3, 20 * 1e-3, 30 * 1e-3));
-  const auto directions = with("space dimension: 3\nspace directions: (0,0.3,0.4) (0.25,0,0) (0,0,1)\nspace units: \"mm\" \"mm\" \"mm\"\n");
+  EXPECT_EQ(with("spacings: 10 20 30\nunits: \"um\" \"um\" \"um\"\n")->info().voxel.mm,
+            glm::dvec3(10 * 1e-3, 20 * 1e-3, 30 * 1e-3));
+  const auto directions =
+      with("space dimension: 3\nspace directions: (0,0.3,0.4) (0.25,0,0) (0,0,1)\nspace units: \"mm\" \"mm\" \"mm\"\n");
   EXPECT_NEAR(directions->info().voxel.mm.x, 0.5, 1e-12);
   EXPECT_EQ(directions->info().voxel.mm.y, 0.25);
   const auto medical = with("space: left-posterior-superior\nspace directions: (0.5,0,0) (0,0.5,0) (0,0,1)\n");

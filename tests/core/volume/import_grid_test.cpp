@@ -42,8 +42,9 @@ class ImportGrid : public testing_tools::TempFolder {
     std::vector<float> all(static_cast<std::size_t>(dims.count()));
     for (std::int64_t z = 0; z < dims.z; z += slab) {
       const auto begin = std::max<std::int64_t>(0, z - overlap), end = std::min(dims.z, z + slab);
-      DUBSAR_TRY(source.read(begin, end, std::span(all).subspan(static_cast<std::size_t>(begin * dims.slice()),
-                                                                static_cast<std::size_t>((end - begin) * dims.slice()))));
+      DUBSAR_TRY(source.read(begin, end,
+                             std::span(all).subspan(static_cast<std::size_t>(begin * dims.slice()),
+                                                    static_cast<std::size_t>((end - begin) * dims.slice()))));
     }
     return all;
   }
@@ -59,7 +60,9 @@ TEST_F(ImportGrid, CropAndStrideEqualSlicing) {
     const std::array<std::int64_t, 3> sizes{kDims.x, kDims.y, kDims.z};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       options.crop->begin[axis] = static_cast<std::int64_t>(random() % 6);
-      options.crop->end[axis] = options.crop->begin[axis] + 5 + static_cast<std::int64_t>(random() % static_cast<unsigned>(sizes[axis] - options.crop->begin[axis] - 5 + 1));
+      options.crop->end[axis] =
+          options.crop->begin[axis] + 5 +
+          static_cast<std::int64_t>(random() % static_cast<unsigned>(sizes[axis] - options.crop->begin[axis] - 5 + 1));
       options.crop->end[axis] = std::min(options.crop->end[axis], sizes[axis]);
       options.stride[axis] = 1 + static_cast<std::int64_t>(random() % 3);
     }
@@ -75,7 +78,8 @@ TEST_F(ImportGrid, CropAndStrideEqualSlicing) {
       for (std::int64_t z = 0, i = 0; z < dims.z; ++z)
         for (std::int64_t y = 0; y < dims.y; ++y)
           for (std::int64_t x = 0; x < dims.x; ++x, ++i)
-            ASSERT_EQ((*all)[static_cast<std::size_t>(i)], expected(box, x, y, z)) << name << " " << x << " " << y << " " << z;
+            ASSERT_EQ((*all)[static_cast<std::size_t>(i)], expected(box, x, y, z))
+                << name << " " << x << " " << y << " " << z;
       const glm::dvec3 corner = (*volume)->frame().input_vox_from_grid({1, 1, 1});
       EXPECT_EQ(corner, glm::dvec3(box.x.at(1), box.y.at(1), box.z.at(1)));
     }
@@ -91,7 +95,8 @@ TEST_F(ImportGrid, SlabHeightOverlapAndThreadsChangeNothing) {
   for (const char* name : {"flat.h5", "chunked.h5"}) {
     std::vector<float> reference;
     std::int64_t count = 0;
-    for (const auto& [slab, overlap, threads] : {std::tuple(17, 0, 1), {1, 0, 2}, {3, 2, 2}, {4, 1, 7}, {5, 0, 2}, {16, 5, 2}}) {
+    for (const auto& [slab, overlap, threads] :
+         {std::tuple(17, 0, 1), {1, 0, 2}, {3, 2, 2}, {4, 1, 7}, {5, 0, 2}, {16, 5, 2}}) {
       set_thread_count(threads);
       ImportOptions options;
       options.path = in(name);
@@ -139,7 +144,8 @@ TEST_F(ImportGrid, NonfiniteVoxelsBecomeAir) {
 
 TEST_F(ImportGrid, MoreThanOnePercentNonfiniteStops) {
   const auto limit = static_cast<std::size_t>(kDims.count() / 100);
-  for (const auto& [bad, good] : {std::pair(limit, true), std::pair(limit + 1, false), std::pair<std::size_t, bool>(kDims.count(), false)}) {
+  for (const auto& [bad, good] :
+       {std::pair(limit, true), std::pair(limit + 1, false), std::pair<std::size_t, bool>(kDims.count(), false)}) {
     auto all = values();
     std::fill_n(all.begin(), bad, std::numeric_limits<float>::quiet_NaN());
     write("a.h5", {}, all);
@@ -164,7 +170,8 @@ class CountingReader final : public VoxelReader {
   std::int64_t layer_depth() const noexcept override { return 16; }
   Result<void> read(const VoxelBox& box, std::span<float> out) override {
     *slices_ += box.z.end - box.z.begin;
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<float>(box.z.at(static_cast<std::int64_t>(i) / box.dims().slice()));
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = static_cast<float>(box.z.at(static_cast<std::int64_t>(i) / box.dims().slice()));
     return {};
   }
 

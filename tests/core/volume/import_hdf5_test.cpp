@@ -1,7 +1,7 @@
 // HDF5 volumes of every layout, type and byte order against the values they were made of.
 
-#include <gmock/gmock.h>
 #include <fmt/ranges.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -42,8 +42,9 @@ std::vector<float> read_whole(SlabSource& source, std::int64_t slab = 2) {
   std::vector<float> all(static_cast<std::size_t>(dims.count()));
   for (std::int64_t z = 0; z < dims.z; z += slab) {
     const auto end = std::min(dims.z, z + slab);
-    const auto result = source.read(z, end, std::span(all).subspan(static_cast<std::size_t>(z * dims.slice()),
-                                                                   static_cast<std::size_t>((end - z) * dims.slice())));
+    const auto result = source.read(z, end,
+                                    std::span(all).subspan(static_cast<std::size_t>(z * dims.slice()),
+                                                           static_cast<std::size_t>((end - z) * dims.slice())));
     EXPECT_TRUE(result) << result.error().message;
   }
   return all;
@@ -54,7 +55,8 @@ void expect_values(const std::filesystem::path& path, const std::vector<double>&
   ASSERT_TRUE(volume) << what << ": " << volume.error().message;
   const auto read = read_whole(**volume);
   ASSERT_EQ(read.size(), values.size()) << what;
-  for (std::size_t i = 0; i < read.size(); ++i) ASSERT_EQ(read[i], static_cast<float>(values[i])) << what << " at " << i;
+  for (std::size_t i = 0; i < read.size(); ++i)
+    ASSERT_EQ(read[i], static_cast<float>(values[i])) << what << " at " << i;
 }
 
 TEST_F(ImportHdf5, EveryTypeAndByteOrderIsRead) {
@@ -100,7 +102,9 @@ TEST_F(ImportHdf5, EveryLayoutIsRead) {
   const auto values = values_of(kShape, -3.0, 0.5);
   for (const std::uint64_t user_block : {0, 512})
     for (const auto& [what, packing] : packings) {
-      { Hdf5Fixture(in("a.h5"), user_block).array("/v", ScalarType::kF32, ByteOrder::kLittle, kShape, values, packing); }
+      {
+        Hdf5Fixture(in("a.h5"), user_block).array("/v", ScalarType::kF32, ByteOrder::kLittle, kShape, values, packing);
+      }
       expect_values(in("a.h5"), values, fmt::format("{}, user block {}", what, user_block));
     }
   { Hdf5Fixture(in("a.h5")).twelve_bits("/v", kShape, values_of(kShape)); }
@@ -235,7 +239,8 @@ TEST_F(ImportHdf5Search, TomoprocNabuExchangeAndVtkAreKnown) {
 }
 
 TEST_F(ImportHdf5Search, TheFinestLevelOfAPyramidIsTaken) {
-  for (const char* pattern : {"/t00000/s00/{}/cells", "/s{}", "/DataSet/ResolutionLevel {}/TimePoint 0/Channel 0/Data"}) {
+  for (const char* pattern :
+       {"/t00000/s00/{}/cells", "/s{}", "/DataSet/ResolutionLevel {}/TimePoint 0/Channel 0/Data"}) {
     {
       Hdf5Fixture file(in("a.h5"));
       file.array(fmt::format(fmt::runtime(pattern), 0), {8, 8, 8}, values_of({8, 8, 8}));
@@ -276,11 +281,12 @@ TEST_F(ImportHdf5VoxelSize, IsTakenFromAxesWithUnits) {
   {
     Hdf5Fixture file(in("a.h5"));
     file.array("/data/v", kShape, values_of(kShape));
-    for (const auto& [name, length, step] : {std::tuple("z", 5, 30.0), std::tuple("y", 6, 20.0), std::tuple("x", 7, 10.0)}) {
+    for (const auto& [name, length, step] :
+         {std::tuple("z", 5, 30.0), std::tuple("y", 6, 20.0), std::tuple("x", 7, 10.0)}) {
       std::vector<double> positions;
       for (int i = 0; i < length; ++i) positions.push_back(5.0 + step * i);
-      file.array(fmt::format("/data/{}", name), ScalarType::kF64, ByteOrder::kLittle, {static_cast<std::uint64_t>(length)},
-                 positions);
+      file.array(fmt::format("/data/{}", name), ScalarType::kF64, ByteOrder::kLittle,
+                 {static_cast<std::uint64_t>(length)}, positions);
       file.attribute(fmt::format("/data/{}", name), "units", "um");
     }
     file.attribute("/data/v", "axes", "z:y:x");
@@ -321,7 +327,8 @@ TEST_F(ImportHdf5VoxelSize, IsTakenFromNamesWithUnitsAndNeverWithout) {
 }
 
 TEST_F(ImportHdf5VoxelSize, OutsideTheWindowOfScannersWarns) {
-  for (const auto& [um, warns] : {std::pair(0.4, true), std::pair(0.5, false), std::pair(1000.0, false), std::pair(1100.0, true)}) {
+  for (const auto& [um, warns] :
+       {std::pair(0.4, true), std::pair(0.5, false), std::pair(1000.0, false), std::pair(1100.0, true)}) {
     {
       Hdf5Fixture file(in("a.h5"));
       file.array("/v", kShape, values_of(kShape));

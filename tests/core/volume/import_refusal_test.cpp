@@ -45,7 +45,8 @@ TEST_F(ImportRefusal, Projections) {
     file.array("/exchange/data", {4, 5, 6}, ones(120));
     file.array("/exchange/theta", {4}, ones(4));
   }
-  expect(refusal(), ErrorKind::kBadData, {"\"/exchange/data\" holds projections", "\"/exchange/theta\"", "reconstruct it first"});
+  expect(refusal(), ErrorKind::kBadData,
+         {"\"/exchange/data\" holds projections", "\"/exchange/theta\"", "reconstruct it first"});
   expect(refusal("/exchange/data"), ErrorKind::kBadData, {"holds projections"});
   {
     Hdf5Fixture file(in("a.h5"));
@@ -101,7 +102,8 @@ TEST_F(ImportRefusal, TwoVolumesOfSimilarSize) {
     file.array("/second", {3, 5, 6}, ones(90));
     file.array("/small", {3, 3, 3}, ones(27));
   }
-  expect(refusal(), ErrorKind::kBadData, {"several volumes of similar size", "--dataset", "/first (4x5x6 float32)", "/second (3x5x6"});
+  expect(refusal(), ErrorKind::kBadData,
+         {"several volumes of similar size", "--dataset", "/first (4x5x6 float32)", "/second (3x5x6"});
   EXPECT_EQ(refusal().message.find("/small"), std::string::npos);
   EXPECT_EQ(refusal("/second").message, "it was opened");
 }
@@ -139,7 +141,8 @@ TEST_F(ImportRefusal, ACompressionBombUnlessItIsTrusted) {
 
 TEST_F(ImportRefusal, MissingAndUnsafeFilters) {
   const auto with = [&](int id) {
-    Hdf5Fixture(in("a.h5")).array("/v", ScalarType::kF32, kLittle, {4, 4, 4}, ones(64), {.chunk = {2, 2, 2}, .foreign_filter = id});
+    Hdf5Fixture(in("a.h5"))
+        .array("/v", ScalarType::kF32, kLittle, {4, 4, 4}, ones(64), {.chunk = {2, 2, 2}, .foreign_filter = id});
   };
   const auto folder = Hdf5File::plugin_folder();
   Hdf5File::set_plugin_folder(in("no-plugins"));
@@ -158,7 +161,10 @@ TEST_F(ImportRefusal, MissingAndUnsafeFilters) {
   expect(refusal(), ErrorKind::kBadData, {"filter 32026 (blosc2), for which there is no Debian package"});
   with(40000);
   expect(refusal(), ErrorKind::kBadData, {"filter 40000 (foreign), for which there is no Debian package"});
-  { Hdf5Fixture(in("a.h5")).array("/v", ScalarType::kI16, kLittle, {4, 4, 4}, ones(64), {.chunk = {2, 2, 2}, .nbit = true}); }
+  {
+    Hdf5Fixture(in("a.h5"))
+        .array("/v", ScalarType::kI16, kLittle, {4, 4, 4}, ones(64), {.chunk = {2, 2, 2}, .nbit = true});
+  }
   expect(refusal(), ErrorKind::kBadData, {"filter 5 (n-bit)", "h5repack"});
 }
 
@@ -214,7 +220,8 @@ TEST_F(ImportRefusal, VirtualDatasetsUnlessTheirFolderIsAllowed) {
   std::filesystem::create_directories(in("parts"));
   { Hdf5Fixture(in("parts/b.h5")).array("/v", {4, 5, 6}, ones(120)); }
   { Hdf5Fixture(in("a.h5")).virtual_dataset("/v", {4, 5, 6}, "parts/b.h5", "/v"); }
-  expect(refusal(), ErrorKind::kBadData, {"virtual dataset \"/v\" lies in another file \"parts/b.h5\"", "--allow-external"});
+  expect(refusal(), ErrorKind::kBadData,
+         {"virtual dataset \"/v\" lies in another file \"parts/b.h5\"", "--allow-external"});
   ImportOptions options;
   options.path = in("a.h5");
   options.allow_external = in("parts");
@@ -226,7 +233,8 @@ TEST_F(ImportRefusal, VirtualDatasetsUnlessTheirFolderIsAllowed) {
     EXPECT_EQ(out, std::vector<float>(120, 1.0F));
   }
   { Hdf5Fixture(in("parts/b.h5")).external_storage("/v", {4, 5, 6}, "/etc/debian_version", 0); }
-  expect(refusal("", [&](ImportOptions& o) { o.allow_external = in("parts"); }), ErrorKind::kBadData, {"refers to further files"});
+  expect(refusal("", [&](ImportOptions& o) { o.allow_external = in("parts"); }), ErrorKind::kBadData,
+         {"refers to further files"});
 }
 
 TEST_F(ImportRefusal, MissingDatasetNamesWhatIsThere) {
@@ -236,7 +244,9 @@ TEST_F(ImportRefusal, MissingDatasetNamesWhatIsThere) {
 
 TEST_F(ImportRefusal, CropAndStrideThatLeaveNothing) {
   { Hdf5Fixture(in("a.h5")).array("/v", {4, 5, 6}, ones(120)); }
-  const auto crop = [&](const char* text) { return refusal("", [&](ImportOptions& o) { o.crop = *parse_crop(text); }); };
+  const auto crop = [&](const char* text) {
+    return refusal("", [&](ImportOptions& o) { o.crop = *parse_crop(text); });
+  };
   expect(crop("0:7,:,:"), ErrorKind::kUsage, {"crop 0:7 along x found, expected a part of 0:6"});
   expect(crop(":,:,9:"), ErrorKind::kUsage, {"along z"});
   expect(crop(":,2:3,:"), ErrorKind::kUsage, {"leaves 1 voxels along y, expected at least 2"});
@@ -253,7 +263,9 @@ TEST_F(ImportRefusal, OptionsThatAreNotUnderstood) {
 }
 
 TEST_F(ImportRefusal, WhatIsNoRegularFile) {
-  const auto at = [&](const std::filesystem::path& path) { return refusal("", [&](ImportOptions& o) { o.path = path; }); };
+  const auto at = [&](const std::filesystem::path& path) {
+    return refusal("", [&](ImportOptions& o) { o.path = path; });
+  };
   expect(at(in("absent.h5")), ErrorKind::kNoInput, {"absent.h5", "No such file"});
   expect(at(folder()), ErrorKind::kBadData, {"holds no TIFF files"});
   ASSERT_EQ(::mkfifo(in("pipe").c_str(), 0600), 0);

@@ -66,14 +66,14 @@ TEST(Resample, AnImpulseSpreadsByOneTwoOne) {
     };
     for (std::int64_t z = 0; z < 6; ++z)
       for (std::int64_t y = 0; y < 6; ++y)
-        for (std::int64_t x = 0; x < 6; ++x)
-          EXPECT_EQ(out.at(x, y, z), weight(x, ix) * weight(y, iy) * weight(z, iz));
+        for (std::int64_t x = 0; x < 6; ++x) EXPECT_EQ(out.at(x, y, z), weight(x, ix) * weight(y, iy) * weight(z, iz));
   }
 }
 
 TEST(Resample, AgreesWithTheDefinitionForSmallAndOddSizes) {
   oracle::Noise noise(1);
-  for (const Dims dims : {Dims{1, 1, 1}, Dims{2, 2, 2}, Dims{1, 5, 2}, Dims{3, 1, 4}, Dims{67, 3, 5}, Dims{130, 7, 1}}) {
+  for (const Dims dims :
+       {Dims{1, 1, 1}, Dims{2, 2, 2}, Dims{1, 5, 2}, Dims{3, 1, 4}, Dims{67, 3, 5}, Dims{130, 7, 1}}) {
     const Volume<float> v = make_volume(dims, [&](auto, auto, auto) { return noise(); });
     const Volume<float> out = halved(v);
     const auto centre = [](std::int64_t n, std::int64_t i) { return n > 1 ? 2 * i + 1 : i; };

@@ -14,7 +14,8 @@ Volume<float> make(Dims dims, const std::function<double(double, double, double)
   for (std::int64_t z = 0; z < dims.z; ++z)
     for (std::int64_t y = 0; y < dims.y; ++y)
       for (std::int64_t x = 0; x < dims.x; ++x)
-        volume.at(x, y, z) = static_cast<float>(f(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)));
+        volume.at(x, y, z) =
+            static_cast<float>(f(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)));
   return volume;
 }
 
@@ -41,7 +42,8 @@ TEST(Sharpen, AWaveIsRaisedByWhatTheGaussianTakesFromIt) {
 }
 
 TEST(Sharpen, TheHalfLevelOfAPlanarEdgeKeepsItsPlace) {
-  const Volume<float> edge = make({24, 5, 5}, [](double x, double, double) { return 0.5 * (1.0 + std::tanh((x - 11.3) / 1.5)); });
+  const Volume<float> edge =
+      make({24, 5, 5}, [](double x, double, double) { return 0.5 * (1.0 + std::tanh((x - 11.3) / 1.5)); });
   const Volume<float> out = sharpened(edge, 1.0f, 5);
   const auto crossing = [](const Volume<float>& v) {
     std::int64_t x = 0;

@@ -59,8 +59,7 @@ TEST_F(PictureFolder, PicturesComeInTheOrderOfTheirNamesAtTheRateAsked) {
 }
 
 TEST_F(PictureFolder, LateReadersGetTheNewestPictureOnly) {
-  for (int i = 0; i < 9; ++i)
-    write(std::string(1, static_cast<char>('a' + i)) + ".png", static_cast<std::uint8_t>(i));
+  for (int i = 0; i < 9; ++i) write(std::string(1, static_cast<char>('a' + i)) + ".png", static_cast<std::uint8_t>(i));
   const auto source = make_picture_frames(folder_, 100.0, clock_);
   ASSERT_TRUE(source->start());
   clock_.advance(55 * kMs);
@@ -113,8 +112,7 @@ TEST_F(PictureFolder, PhotographsAreReadAndDamagedOnesSaySo) {
 
 TEST_F(PictureFolder, AFolderWithoutPicturesIsNoInput) {
   EXPECT_EQ(make_picture_frames(folder_, 10.0, clock_)->start().error().kind, ErrorKind::kNoInput);
-  EXPECT_EQ(make_picture_frames(folder_ / "nowhere", 10.0, clock_)->start().error().kind,
-            ErrorKind::kNoInput);
+  EXPECT_EQ(make_picture_frames(folder_ / "nowhere", 10.0, clock_)->start().error().kind, ErrorKind::kNoInput);
 }
 
 }  // namespace

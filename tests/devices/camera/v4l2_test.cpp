@@ -18,8 +18,7 @@ namespace {
 V4l2Testbed::Picture jpeg_picture() { return {V4L2_PIX_FMT_MJPEG, 24, 16, test_jpeg()}; }
 
 V4l2Testbed::Picture yuyv_picture(std::uint8_t luma) {
-  V4l2Testbed::Picture picture{V4L2_PIX_FMT_YUYV, 64, 48,
-                               std::vector<std::byte>(64 * 48 * 2, std::byte{128})};
+  V4l2Testbed::Picture picture{V4L2_PIX_FMT_YUYV, 64, 48, std::vector<std::byte>(64 * 48 * 2, std::byte{128})};
   for (std::size_t i = 0; i < picture.bytes.size(); i += 2) picture.bytes[i] = static_cast<std::byte>(luma);
   return picture;
 }
@@ -28,8 +27,7 @@ class V4l2 : public testing::Test {
  protected:
   void SetUp() override {
     testbed_ = std::make_unique<V4l2Testbed>();
-    if (!umockdev_in_mock_environment())
-      GTEST_SKIP() << "run it under umockdev-wrapper (ctest does the same)";
+    if (!umockdev_in_mock_environment()) GTEST_SKIP() << "run it under umockdev-wrapper (ctest does the same)";
     camera_ = make_camera({}, open_opencv_capture, clock_);
   }
   bool next_frame() {
@@ -80,8 +78,7 @@ TEST_F(V4l2, CompressedPicturesAreAskedForAndArriveInColour) {
     ASSERT_EQ(frame_.height, 16);
     ASSERT_EQ(frame_.format, PixelFormat::kRgb8);
     ASSERT_EQ(frame_.pixels.size(), 24U * 16 * 3);
-    for (const auto& [x, expected] :
-         {std::pair{5, std::array{200, 60, 30}}, std::pair{20, std::array{20, 180, 220}}})
+    for (const auto& [x, expected] : {std::pair{5, std::array{200, 60, 30}}, std::pair{20, std::array{20, 180, 220}}})
       for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(pixel(x, 8)[c], expected[c], 6);
   }
   const auto asked = testbed_->formats_asked_for();

@@ -49,8 +49,7 @@ void V4l2Testbed::add_node(int number) {
       "A: dev=81:{1}\\n\nA: name=Simulated Webcam\\n\nA: index=0\\n\n\n",
       folder(number), number);
   GError* error = nullptr;
-  if (!umockdev_testbed_add_from_string(testbed_, text.c_str(), &error))
-    throw std::runtime_error(error->message);
+  if (!umockdev_testbed_add_from_string(testbed_, text.c_str(), &error)) throw std::runtime_error(error->message);
   const std::string path = fmt::format("/dev/video{}", number);
   if (!umockdev_testbed_attach_ioctl(testbed_, path.c_str(), handler_, &error))
     throw std::runtime_error(error->message);

@@ -107,8 +107,7 @@ void fake_leapc_set_poll_error(std::uint32_t code) {
   service().poll_error = code;
   service().changed.notify_all();
 }
-void fake_leapc_send_frame(std::int64_t frame, std::int64_t time_us, const FakeHand* hands,
-                           std::uint32_t count) {
+void fake_leapc_send_frame(std::int64_t frame, std::int64_t time_us, const FakeHand* hands, std::uint32_t count) {
   const std::lock_guard lock(service().mutex);
   Event event = event_of(0x100, FakeTrackingEvent{nullptr, frame, time_us, frame, count, nullptr, 115.0F});
   event.hands.assign(hands, hands + count);
@@ -187,8 +186,7 @@ std::uint32_t LeapPollConnection(void* connection, std::uint32_t timeout_ms, Fak
     const FakeHand* const hands = event.hands.data();
     std::memcpy(event.bytes.data() + offsetof(FakeTrackingEvent, hands), &hands, sizeof hands);
   }
-  *message = {sizeof(FakeMessage), event.type, event.bytes.empty() ? nullptr : event.bytes.data(),
-              event.device};
+  *message = {sizeof(FakeMessage), event.type, event.bytes.empty() ? nullptr : event.bytes.data(), event.device};
   return kOk;
 }
 

@@ -62,13 +62,10 @@ struct FakeMessage {
 };
 #pragma pack(pop)
 
-static_assert(sizeof(FakeBone) == 44 && sizeof(FakeDigit) == 184 && sizeof(FakePalm) == 80 &&
-              sizeof(FakeHand) == 1084);
-static_assert(offsetof(FakeHand, palm) == 40 && offsetof(FakeHand, digits) == 120 &&
-              offsetof(FakeHand, arm) == 1040);
+static_assert(sizeof(FakeBone) == 44 && sizeof(FakeDigit) == 184 && sizeof(FakePalm) == 80 && sizeof(FakeHand) == 1084);
+static_assert(offsetof(FakeHand, palm) == 40 && offsetof(FakeHand, digits) == 120 && offsetof(FakeHand, arm) == 1040);
 static_assert(sizeof(FakeTrackingEvent) == 48 && offsetof(FakeTrackingEvent, hands) == 36);
-static_assert(sizeof(FakeMessage) == 20 && sizeof(FakeDeviceEvent) == 20 &&
-              sizeof(FakeDeviceStatusEvent) == 20);
+static_assert(sizeof(FakeMessage) == 20 && sizeof(FakeDeviceEvent) == 20 && sizeof(FakeDeviceStatusEvent) == 20);
 
 /// As new: service up, device 7 plugged in, nothing sent.
 void fake_leapc_reset();
@@ -79,8 +76,7 @@ void fake_leapc_set_now(std::int64_t us);
 /// What the next polls answer instead of success; 0: nothing special.
 void fake_leapc_set_poll_error(std::uint32_t code);
 /// Sends one frame to every connection.
-void fake_leapc_send_frame(std::int64_t frame, std::int64_t time_us, const FakeHand* hands,
-                           std::uint32_t count);
+void fake_leapc_send_frame(std::int64_t frame, std::int64_t time_us, const FakeHand* hands, std::uint32_t count);
 /// Sends any event: `bytes` of it are copied; none when `bytes` is 0 (a null address).
 void fake_leapc_send_event(std::uint32_t type, const void* event, std::uint32_t bytes, std::uint32_t device);
 /// Another client switches the mode.

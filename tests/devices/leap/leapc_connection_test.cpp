@@ -53,8 +53,7 @@ TEST_F(LeapcConnection, DeliversTheNewestFrameWithItsHandsAndItsTimeOnOurClock) 
   EXPECT_EQ(fake_leapc_counts().mode, 0U);  // desktop, asked for by us
   EXPECT_EQ(fake_leapc_counts().policies, kPolicyBackgroundFrames);
 
-  const FakeHand hands[2] = {flat_fake_hand(3, true, 10, 200, 0),
-                             flat_fake_hand(4, false, -50, 220, 5, 1.0F)};
+  const FakeHand hands[2] = {flat_fake_hand(3, true, 10, 200, 0), flat_fake_hand(4, false, -50, 220, 5, 1.0F)};
   const TimestampNs now = clock.now();
   fake_leapc_send_frame(900, now / 1000 + 3'600'000'000 - 20'000, hands, 2);  // measured 20 ms ago
   Frame frame;
@@ -88,9 +87,8 @@ TEST_F(LeapcConnection, AMissingLibrarySaysWhereItWasLookedFor) {
   const auto searched = Library::load();
   ASSERT_FALSE(searched);
   EXPECT_EQ(searched.error().kind, ErrorKind::kUnavailable);
-  EXPECT_THAT(searched.error().message,
-              testing::AllOf(HasSubstr("/opt/ultraleap/LeapSDK/lib"), HasSubstr("/usr/lib/ultraleap"),
-                             HasSubstr("install")));
+  EXPECT_THAT(searched.error().message, testing::AllOf(HasSubstr("/opt/ultraleap/LeapSDK/lib"),
+                                                       HasSubstr("/usr/lib/ultraleap"), HasSubstr("install")));
 }
 
 TEST_F(LeapcConnection, ALibraryBeforeVersion5OrAnotherOneIsRefused) {
@@ -98,8 +96,7 @@ TEST_F(LeapcConnection, ALibraryBeforeVersion5OrAnotherOneIsRefused) {
   const auto old = make_connection(options, clock)->start();
   ASSERT_FALSE(old);
   EXPECT_EQ(old.error().kind, ErrorKind::kUnavailable);
-  EXPECT_THAT(old.error().message,
-              testing::AllOf(HasSubstr("LeapSetTrackingMode"), HasSubstr("older than version 5")));
+  EXPECT_THAT(old.error().message, testing::AllOf(HasSubstr("LeapSetTrackingMode"), HasSubstr("older than version 5")));
   options.library = "/lib/x86_64-linux-gnu/libc.so.6";
   if (!std::filesystem::exists(options.library)) GTEST_SKIP() << "no such C library";
   EXPECT_THAT(make_connection(options, clock)->start().error().message, HasSubstr("LeapCreateConnection"));
@@ -200,8 +197,7 @@ TEST_F(LeapcConnection, ImpossibleMessagesAreCountedAndTheRestGoesOn) {
       too_many{nullptr, 1, 0, 1, 1000, nullptr, 0.0F};
   fake_leapc_send_event(0x100, &no_hands_there, sizeof no_hands_there, 7);
   fake_leapc_send_event(0x100, &too_many, sizeof too_many, 7);
-  for (const std::uint32_t type : {3U, 4U, 0x100U, 0x104U, 0x107U, 0x10bU})
-    fake_leapc_send_event(type, nullptr, 0, 7);
+  for (const std::uint32_t type : {3U, 4U, 0x100U, 0x104U, 0x107U, 0x10bU}) fake_leapc_send_event(type, nullptr, 0, 7);
   fake_leapc_send_event(0xdeadbeef, nullptr, 0, 7);  // an event of a newer library
   FakeHand hands[2] = {flat_fake_hand(1, true, 0, 200, 0), flat_fake_hand(2, true, 0, 200, 0)};
   hands[0].arm.next_joint.x = NAN;

@@ -150,11 +150,8 @@ TEST(LeapcProtocol, MessagesAndDevicesAreReadFromTheirPlaces) {
   EXPECT_EQ(message.event, reinterpret_cast<std::uintptr_t>(&event));
   EXPECT_EQ(message.device, 5U);
   EXPECT_EQ(decode_device(bytes_of(FakeDeviceEvent{1, nullptr, 7, 0xe8010001}).first<kDeviceBytes>()).id, 7U);
-  EXPECT_EQ(decode_device_status(bytes_of(FakeDeviceStatusEvent{nullptr, 8, 1, 2}).first<kDeviceBytes>()).id,
-            8U);
-  EXPECT_EQ(
-      decode_device_status(bytes_of(FakeDeviceStatusEvent{nullptr, 8, 1, 2}).first<kDeviceBytes>()).status,
-      2U);
+  EXPECT_EQ(decode_device_status(bytes_of(FakeDeviceStatusEvent{nullptr, 8, 1, 2}).first<kDeviceBytes>()).id, 8U);
+  EXPECT_EQ(decode_device_status(bytes_of(FakeDeviceStatusEvent{nullptr, 8, 1, 2}).first<kDeviceBytes>()).status, 2U);
   EXPECT_THAT(device_trouble(0xe8010003), testing::HasSubstr("cable"));
   EXPECT_THAT(device_trouble(2), testing::HasSubstr("paused"));
   EXPECT_EQ(device_trouble(1), "");

@@ -35,8 +35,7 @@ TEST(LeapcHands, All26JointsAreWhereTheBonesPutThem) {
   EXPECT_EQ(hand.grab_strength, 0.5);
   expect_near(hand.palm.position_m, {0.030, 0.250, -0.010});
   expect_near(hand.velocity_mps, {0.1, 0.0, -0.05});
-  for (const HandJointPose& joint : hand.joints)
-    EXPECT_TRUE(joint.valid && joint.tracked && joint.radius_m > 0.0);
+  for (const HandJointPose& joint : hand.joints) EXPECT_TRUE(joint.valid && joint.tracked && joint.radius_m > 0.0);
   // Bones are 30 mm long and start 40 mm behind the palm's centre; thumb at -40, index -20 ... little +40 mm.
   expect_near(hand.joint(HandJoint::kWrist).pose.position_m, {0.030, 0.250, 0.040});
   expect_near(hand.joint(HandJoint::kThumbMetacarpal).pose.position_m, {-0.010, 0.250, 0.030});
@@ -47,8 +46,7 @@ TEST(LeapcHands, All26JointsAreWhereTheBonesPutThem) {
   double x = -0.020;
   for (int finger = 0; finger < 4; ++finger, x += 0.020)
     for (int joint = 0; joint < 4; ++joint) {
-      const auto which =
-          static_cast<HandJoint>(static_cast<int>(HandJoint::kIndexMetacarpal) + 5 * finger + joint);
+      const auto which = static_cast<HandJoint>(static_cast<int>(HandJoint::kIndexMetacarpal) + 5 * finger + joint);
       expect_near(hand.joint(which).pose.position_m, {0.030 + x, 0.250, 0.030 - 0.030 * joint});
       EXPECT_NEAR(hand.joint(which).radius_m, 0.5e-3 * (17 + finger), 1e-9);
     }
@@ -79,13 +77,11 @@ TEST(Placement, WordsBecomeAPoseAndMistakesAreNamed) {
   EXPECT_EQ(*read_placement("at", "10/-200.5/300", pose), true);
   expect_near(pose.position_m, {0.010, -0.2005, 0.300});
   ASSERT_TRUE(*read_placement("turn", "90/0/0", pose));
-  expect_near(pose.rotation * glm::dvec3(0, 1, 0),
-              {0, 0, 1});  // a device that looks up now looks at the user
+  expect_near(pose.rotation * glm::dvec3(0, 1, 0), {0, 0, 1});  // a device that looks up now looks at the user
   ASSERT_TRUE(*read_placement("turn", "0/180/90", pose));
   expect_near(pose.rotation * glm::dvec3(1, 0, 0), {0, 1, 0});
   const Pose before = pose;
-  for (const char* bad :
-       {"", "1/2", "1/2/3/4", "1/2/x", "1,2,3", "nan/0/0", "inf/0/0", "0/0/10001", "1/2/3 "}) {
+  for (const char* bad : {"", "1/2", "1/2/3/4", "1/2/x", "1,2,3", "nan/0/0", "inf/0/0", "0/0/10001", "1/2/3 "}) {
     const auto taken = read_placement("at", bad, pose);
     ASSERT_FALSE(taken) << bad;
     EXPECT_EQ(taken.error().kind, ErrorKind::kUsage);

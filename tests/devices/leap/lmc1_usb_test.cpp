@@ -14,7 +14,6 @@
 namespace dubsar {
 namespace {
 
-
 UsbOpenOptions leap_options() {
   UsbOpenOptions options;
   options.interfaces = {lmc1::kControlInterface, lmc1::kStreamInterface};
@@ -47,8 +46,8 @@ TEST_F(Lmc1OverLibusb, IsListedReadCalibratedAndStreamedUntilItIsUnplugged) {
   Lmc1Options options;
   options.calibration_settle = milliseconds(0);
   auto driver = make_lmc1_driver(
-      [&] { return open_usb_transport(lmc1::kVendorId, lmc1::kProductId, leap_options(), listed->front().path); }, options,
-      clock);
+      [&] { return open_usb_transport(lmc1::kVendorId, lmc1::kProductId, leap_options(), listed->front().path); },
+      options, clock);
   const auto started = driver->start();
   ASSERT_TRUE(started) << started.error().message;
   EXPECT_EQ(driver->calibration(), device.calibration);

@@ -64,14 +64,12 @@ TEST(RigelProtocol, SettingsAreRequestsToExtensionUnit224) {
   const auto leds = rigel::leds(kUnits, true);
   EXPECT_EQ(leds[0], uvc::control_write({0x21, 0x01, 0x1b00, 0xe000}, 1, 1));
   EXPECT_EQ(leds[1], uvc::control_write({0x21, 0x01, 0x0600, 0xe000}, 1, 4));
-  EXPECT_EQ(rigel::get_extension(kUnits, rigel::Selector::kCalibration),
-            (ControlRequest{0xa1, 0x81, 0x1900, 0xe000}));
+  EXPECT_EQ(rigel::get_extension(kUnits, rigel::Selector::kCalibration), (ControlRequest{0xa1, 0x81, 0x1900, 0xe000}));
   EXPECT_EQ(rigel::gain(kUnits, 1)->request, (ControlRequest{0x21, 0x01, 0x0400, 0x0200}));
 }
 
 TEST(RigelProtocol, SettingsOutsideTheirRangeAreRefusedAndGapsAreLeftOut) {
-  for (const int us : {-1, 9, 4001})
-    EXPECT_EQ(rigel::exposure_us(kUnits, us).error().kind, ErrorKind::kUsage);
+  for (const int us : {-1, 9, 4001}) EXPECT_EQ(rigel::exposure_us(kUnits, us).error().kind, ErrorKind::kUsage);
   for (const int step : {-1, 65}) EXPECT_FALSE(rigel::gain(kUnits, step));
   for (int step = 0; step <= 64; ++step) {
     const auto value = static_cast<int>(rigel::gain(kUnits, step)->data[0]);
@@ -79,9 +77,7 @@ TEST(RigelProtocol, SettingsOutsideTheirRangeAreRefusedAndGapsAreLeftOut) {
   }
   EXPECT_FALSE(rigel::gain({0, 224, 0}, 1));
   for (const int n : {-1, 3, 129}) EXPECT_FALSE(rigel::dark_frame_interval(kUnits, n));
-  const auto interval = [](int n) {
-    return static_cast<int>(rigel::dark_frame_interval(kUnits, n)->data[0]);
-  };
+  const auto interval = [](int n) { return static_cast<int>(rigel::dark_frame_interval(kUnits, n)->data[0]); };
   EXPECT_EQ(interval(0), 0);
   EXPECT_EQ(interval(2), 2);
   EXPECT_EQ(interval(4), 3);  // one dark frame and three lit ones
@@ -163,8 +159,7 @@ TEST(UvcDescriptors, FlippedBitsAndRandomBytesDoNoHarm) {
   for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
     bytes[bit / 8] ^= std::byte(1U << bit % 8);
     if (const auto camera = uvc::parse_configuration(bytes)) {
-      for (const uvc::FrameSize& size : camera->frames)
-        EXPECT_LE(size.frame_bytes(), std::size_t{65535} * 65535 * 32);
+      for (const uvc::FrameSize& size : camera->frames) EXPECT_LE(size.frame_bytes(), std::size_t{65535} * 65535 * 32);
       (void)rigel::find_units(*camera);
     }
     bytes[bit / 8] ^= std::byte(1U << bit % 8);
@@ -202,8 +197,7 @@ TEST(UvcPayloadSplitter, PayloadsComeBackWholeHoweverTransfersCutThem) {
       std::vector<std::vector<std::byte>> found;
       for (const auto& transfer : transfers)
         if (!transfer.empty())
-          splitter.add(transfer,
-                       [&](std::span<const std::byte> p) { found.emplace_back(p.begin(), p.end()); });
+          splitter.add(transfer, [&](std::span<const std::byte> p) { found.emplace_back(p.begin(), p.end()); });
       EXPECT_TRUE(found == payloads) << payload_bytes << " " << buffer;
     }
 }
@@ -238,8 +232,7 @@ TEST(RigelDriver, DeliversThePicturesThatTheDeviceRendered) {
     const PosedHand hand = hand_above();
     HandRenderOptions render = device.render;
     HandRenderer(device.calibration, render).render({&hand, 1}, device.seed + 1, left, right);
-    for (auto* eye : {&left, &right})
-      std::copy_n(eye->end() - 1280, 640, eye->end() - 640);  // numbers stood there
+    for (auto* eye : {&left, &right}) std::copy_n(eye->end() - 1280, 640, eye->end() - 640);  // numbers stood there
     EXPECT_TRUE(std::ranges::equal(frame.view(0), left));
     EXPECT_TRUE(std::ranges::equal(frame.view(1), right));
     driver->stop();
@@ -334,8 +327,7 @@ class AlteredTransport final : public Transport {
     return inner_->read(out, timeout);
   }
   Result<void> write(std::span<const std::byte> out) override { return inner_->write(out); }
-  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data,
-                              milliseconds timeout) override {
+  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data, milliseconds timeout) override {
     if (request != uvc::kGetConfiguration) return inner_->control(request, data, timeout);
     const std::size_t count = std::min(data.size(), configuration_.size());
     std::copy_n(configuration_.begin(), count, data.begin());

@@ -40,8 +40,8 @@ struct Seen {
 
 /// Reads kFrames ticks; frame n of the device is the one of tick n.
 template <class Simulator>
-Seen run(Simulator& simulator, ManualClock& clock, const lmc1::Calibration& calibration,
-         std::size_t metadata_bytes, bool garbled) {
+Seen run(Simulator& simulator, ManualClock& clock, const lmc1::Calibration& calibration, std::size_t metadata_bytes,
+         bool garbled) {
   LeapCameraOptions options;
   options.own_thread = false;
   options.calibration_settle = milliseconds(0);
@@ -60,16 +60,14 @@ Seen run(Simulator& simulator, ManualClock& clock, const lmc1::Calibration& cali
   Frame frame;
   for (int tick = 0; tick < kFrames; ++tick, clock.advance(kTick)) {
     bool fresh = false;
-    for (int i = 0; i < 20; ++i)
-      fresh = camera->poll(frame) || fresh;  // a dropped transfer looks like silence
+    for (int i = 0; i < 20; ++i) fresh = camera->poll(frame) || fresh;  // a dropped transfer looks like silence
     if (!fresh) continue;
     renderer.render({}, 1 + static_cast<std::uint64_t>(tick), left, right);
     const auto same = [&](int eye, const std::vector<std::uint8_t>& rendered) {
       return std::equal(rendered.begin(), rendered.end() - static_cast<std::ptrdiff_t>(metadata_bytes),
                         frame.view(eye).begin());
     };
-    ++(frame.width == 640 && frame.height == 240 && same(0, left) && same(1, right) ? seen.whole
-                                                                                    : seen.wrong);
+    ++(frame.width == 640 && frame.height == 240 && same(0, left) && same(1, right) ? seen.whole : seen.wrong);
   }
   seen.counters = camera->counters();
   EXPECT_EQ(camera->state(), FrameSourceState::kRunning);

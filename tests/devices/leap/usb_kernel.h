@@ -28,8 +28,7 @@ inline constexpr const char* kSysfs = "/sys/devices/pci0000:00/usb1/1-1";
 /// The kernel's side of /dev/bus/usb/001/002.
 class UsbKernel {
  public:
-  explicit UsbKernel(UvcSimulator simulator)
-      : simulator_(std::move(simulator)), bed_(umockdev_testbed_new()) {
+  explicit UsbKernel(UvcSimulator simulator) : simulator_(std::move(simulator)), bed_(umockdev_testbed_new()) {
     std::array<std::byte, 18> device{};
     std::vector<std::byte> configuration(4096);
     if (!simulator_.control(uvc::kGetDevice, device)) throw std::runtime_error("no device descriptor");
@@ -51,12 +50,10 @@ class UsbKernel {
         "descriptors={0}\n\n",
         descriptors, id(8), id(10));
     GError* error = nullptr;
-    if (!umockdev_testbed_add_from_string(bed_, text.c_str(), &error))
-      throw std::runtime_error(error->message);
+    if (!umockdev_testbed_add_from_string(bed_, text.c_str(), &error)) throw std::runtime_error(error->message);
     handler_ = umockdev_ioctl_base_new();
     g_signal_connect(handler_, "handle-ioctl", G_CALLBACK(&UsbKernel::on_ioctl), this);
-    if (!umockdev_testbed_attach_ioctl(bed_, kNode, handler_, &error))
-      throw std::runtime_error(error->message);
+    if (!umockdev_testbed_attach_ioctl(bed_, kNode, handler_, &error)) throw std::runtime_error(error->message);
   }
   UsbKernel(const UsbKernel&) = delete;
   UsbKernel& operator=(const UsbKernel&) = delete;
@@ -87,9 +84,7 @@ class UsbKernel {
 
   void answer(UMockdevIoctlClient* client) {
     const std::lock_guard lock(mutex_);
-    const auto complete = [&](long result, int error) {
-      umockdev_ioctl_client_complete(client, result, error);
-    };
+    const auto complete = [&](long result, int error) { umockdev_ioctl_client_complete(client, result, error); };
     UMockdevIoctlData* argument = umockdev_ioctl_client_get_arg(client);
     switch (static_cast<unsigned>(umockdev_ioctl_client_get_request(client))) {
       case static_cast<unsigned>(USBDEVFS_GET_CAPABILITIES): {
@@ -147,8 +142,8 @@ class UsbKernel {
     urb.address = urb.urb->client_addr;
     const int length = urb.head().buffer_length;
     if (length > 0)
-      urb.buffer = umockdev_ioctl_data_resolve(urb.urb, offsetof(usbdevfs_urb, buffer),
-                                               static_cast<gsize>(length), nullptr);
+      urb.buffer =
+          umockdev_ioctl_data_resolve(urb.urb, offsetof(usbdevfs_urb, buffer), static_cast<gsize>(length), nullptr);
     if (urb.head().type != USBDEVFS_URB_TYPE_CONTROL) {
       if (urb.head().endpoint == bulk_endpoint_)
         waiting_.push_back(urb);
@@ -159,8 +154,8 @@ class UsbKernel {
     std::uint8_t* setup = urb.buffer->data;
     const auto u16 = [&](int at) { return static_cast<std::uint16_t>(setup[at] | setup[at + 1] << 8); };
     const ControlRequest request{setup[0], setup[1], u16(2), u16(4)};
-    const auto moved = simulator_.control(
-        request, std::as_writable_bytes(std::span(setup + 8, static_cast<std::size_t>(u16(6)))));
+    const auto moved =
+        simulator_.control(request, std::as_writable_bytes(std::span(setup + 8, static_cast<std::size_t>(u16(6)))));
     finish(urb, moved ? 0 : -EPIPE, moved ? static_cast<int>(*moved) : 0);
     return true;
   }
@@ -173,8 +168,8 @@ class UsbKernel {
         waiting_.pop_front();
         continue;
       }
-      const std::size_t length = simulator_.next_transfer(std::as_writable_bytes(
-          std::span(urb.buffer->data, static_cast<std::size_t>(urb.head().buffer_length))));
+      const std::size_t length = simulator_.next_transfer(
+          std::as_writable_bytes(std::span(urb.buffer->data, static_cast<std::size_t>(urb.head().buffer_length))));
       if (length == 0) return;
       finish(urb, 0, static_cast<int>(length));
       waiting_.pop_front();

@@ -57,10 +57,9 @@ class FacePhotographs : public testing::Test {
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x)
         for (int c = 0; c < 3; ++c) {
-          const float level =
-              planes[static_cast<std::size_t>((c * kWidth + y + (kWidth - kHeight) / 2) * kWidth + x)];
-          frame.pixels[static_cast<std::size_t>((y * kWidth + x) * 3 + c)] = static_cast<std::uint8_t>(
-              std::clamp(level + noise_sd * noise_[at++ & (kNoise - 1)], 0.0f, 255.0f));
+          const float level = planes[static_cast<std::size_t>((c * kWidth + y + (kWidth - kHeight) / 2) * kWidth + x)];
+          frame.pixels[static_cast<std::size_t>((y * kWidth + x) * 3 + c)] =
+              static_cast<std::uint8_t>(std::clamp(level + noise_sd * noise_[at++ & (kNoise - 1)], 0.0f, 255.0f));
         }
     return frame;
   }
@@ -83,10 +82,8 @@ double deviation(const std::vector<double>& values) {
 struct Pupils {
   glm::dvec2 right, left;
 };
-constexpr std::array<Pupils, 4> kSixth{{{{326, 608}, {428, 598}},
-                                        {{702, 461}, {796, 449}},
-                                        {{1229, 428}, {1331, 432}},
-                                        {{1530, 378}, {1634, 397}}}};
+constexpr std::array<Pupils, 4> kSixth{
+    {{{326, 608}, {428, 598}}, {{702, 461}, {796, 449}}, {{1229, 428}, {1331, 432}}, {{1530, 378}, {1634, 397}}}};
 
 double worst_pupil_error(const FaceSeen& face, const Pupils& pupils) {
   return std::max(glm::length(face.right_eye_px - pupils.right), glm::length(face.left_eye_px - pupils.left));
@@ -118,14 +115,12 @@ TEST_F(FacePhotographs, TheCascadeFindsTheSameFacesCoarsely) {
   const auto faces = (*cascade)->find(view_of(photo));
   ASSERT_TRUE(faces);
   for (const Pupils& pupils : kSixth) {
-    const auto best =
-        std::min_element(faces->begin(), faces->end(), [&](const FaceSeen& a, const FaceSeen& b) {
-          return worst_pupil_error(a, pupils) < worst_pupil_error(b, pupils);
-        });
+    const auto best = std::min_element(faces->begin(), faces->end(), [&](const FaceSeen& a, const FaceSeen& b) {
+      return worst_pupil_error(a, pupils) < worst_pupil_error(b, pupils);
+    });
     ASSERT_NE(best, faces->end());
     EXPECT_LT(worst_pupil_error(*best, pupils), 25.0);
-    EXPECT_NEAR(glm::length(best->left_eye_px - best->right_eye_px), glm::length(pupils.left - pupils.right),
-                25.0);
+    EXPECT_NEAR(glm::length(best->left_eye_px - best->right_eye_px), glm::length(pupils.left - pupils.right), 25.0);
   }
 }
 
@@ -151,13 +146,12 @@ TEST_F(FacePhotographs, AtSixtyCentimetresTheFilteredDepthIsStillWithinTenMillim
     for (const Pupils& pupils : std::span(kSixth).first(distance_m == 0.6 ? 4 : 1)) {
       FaceTrackerOptions options;
       // the face's yaw makes its pupils' distance shorter; what matters here is how still it is
-      const double scale = options.camera.focal_px(kWidth) * options.ipd_m / distance_m /
-                           glm::length(pupils.left - pupils.right);
+      const double scale =
+          options.camera.focal_px(kWidth) * options.ipd_m / distance_m / glm::length(pupils.left - pupils.right);
       std::array<std::vector<float>, 5> scenes;
       for (auto& planes : scenes)
-        planes = scene(
-            photo, 0.5 * (pupils.left + pupils.right) + glm::dvec2(shift(random_), shift(random_)) / scale,
-            scale);
+        planes = scene(photo, 0.5 * (pupils.left + pupils.right) + glm::dvec2(shift(random_), shift(random_)) / scale,
+                       scale);
       auto detector = make_network_face_detector(model_folder() / kFaceModel);
       ASSERT_TRUE(detector);
       FaceTracker tracker(*std::move(detector), options);
@@ -173,8 +167,7 @@ TEST_F(FacePhotographs, AtSixtyCentimetresTheFilteredDepthIsStillWithinTenMillim
         // the neighbours are in the picture as well; this one is in its middle
         const HeadFrame* middle = nullptr;
         for (const HeadFrame& head : heads)
-          if (head.tracked && std::abs(head.left_eye_m->x + head.right_eye_m->x) < 0.1 &&
-              (id == 0 || head.id == id))
+          if (head.tracked && std::abs(head.left_eye_m->x + head.right_eye_m->x) < 0.1 && (id == 0 || head.id == id))
             middle = &head;
         if (middle == nullptr) continue;
         id = middle->id;

@@ -26,9 +26,7 @@ struct Head {
     return centre_m + turn() * glm::dvec3(-0.0315, 0, 0);
   }  // at the left as the person sees the screen
   glm::dvec3 right_m() const { return centre_m + turn() * glm::dvec3(0.0315, 0, 0); }
-  glm::dvec3 nose_m() const {
-    return centre_m + turn() * glm::dvec3(0, -0.035, -kNose);
-  }  // towards the screen
+  glm::dvec3 nose_m() const { return centre_m + turn() * glm::dvec3(0, -0.035, -kNose); }  // towards the screen
 
   FaceSeen seen(const CameraView& camera) const {
     const Pose camera_from_screen = inverse(camera.screen_from_camera());
@@ -58,14 +56,13 @@ FaceTrackerOptions options_with_tilt(double tilt_deg) {
 TEST(PlaceEyes, AHeadThatFacesTheScreenIsPlacedWithinTwoPercentOfItsDistance) {
   const FaceTrackerOptions options = options_with_tilt(0.0);
   for (const double roll : {0.0, 0.3, -0.4})
-    for (const glm::dvec3& at : {glm::dvec3(0.01, 0.12, 0.6), glm::dvec3(0.2, -0.1, 0.7),
-                                 glm::dvec3(-0.15, 0.1, 0.4), glm::dvec3(0.3, 0.1, 1.0)}) {
+    for (const glm::dvec3& at : {glm::dvec3(0.01, 0.12, 0.6), glm::dvec3(0.2, -0.1, 0.7), glm::dvec3(-0.15, 0.1, 0.4),
+                                 glm::dvec3(0.3, 0.1, 1.0)}) {
       const Head head{at, 0.0, roll};
       const EyesPlaced eyes = place_eyes(head.seen(options.camera), kWidth, kHeight, options);
       EXPECT_LT(glm::length(eyes.left_m - head.left_m()), 0.02 * at.z) << at.x << ' ' << roll;
       EXPECT_LT(glm::length(eyes.right_m - head.right_m()), 0.02 * at.z) << at.x << ' ' << roll;
-      EXPECT_LT(eyes.left_m.x, eyes.right_m.x)
-          << "the picture is not mirrored, the screen frame is the person's";
+      EXPECT_LT(eyes.left_m.x, eyes.right_m.x) << "the picture is not mirrored, the screen frame is the person's";
     }
 }
 
@@ -78,8 +75,7 @@ TEST(PlaceEyes, TurningTheHeadKeepsItsPlaceAndTurnsTheEyes) {
       EXPECT_NEAR(eyes.yaw_rad, yaw, 0.06) << x;
       EXPECT_LT(glm::length(eyes.left_m - head.left_m()), 0.03) << x << ' ' << yaw;
       EXPECT_LT(glm::length(eyes.right_m - head.right_m()), 0.03) << x << ' ' << yaw;
-      EXPECT_EQ(eyes.left_m.z > eyes.right_m.z, yaw > 0)
-          << "the left eye goes back when a head turns to its left";
+      EXPECT_EQ(eyes.left_m.z > eyes.right_m.z, yaw > 0) << "the left eye goes back when a head turns to its left";
       EXPECT_NEAR(glm::length(eyes.left_m - eyes.right_m), 0.063, 1e-9);
     }
 }

@@ -68,16 +68,14 @@ class HandAccuracy : public ::testing::Test {
       const HandFrame& found = hands[0];
       const glm::dvec3 error = 1e3 * (found.palm.position_m - hand.palm_m);
       e.turn_degrees.push_back(
-          2.0 * std::acos(std::min(1.0, std::abs(glm::dot(found.palm.rotation, pose.palm.rotation)))) /
-          kDegree);
+          2.0 * std::acos(std::min(1.0, std::abs(glm::dot(found.palm.rotation, pose.palm.rotation)))) / kDegree);
       e.x.push_back(std::abs(error.x));
       e.along.push_back(std::abs(error.z));
       e.depth.push_back(std::abs(error.y));
       e.grab_right += (found.grab_strength > 0.5) == kind.fist ? 1 : 0;
       e.side_right += (found.chirality == Chirality::kLeft) == pose.left ? 1 : 0;
-      constexpr std::array<HandJoint, 5> kTips{HandJoint::kThumbTip, HandJoint::kIndexTip,
-                                               HandJoint::kMiddleTip, HandJoint::kRingTip,
-                                               HandJoint::kLittleTip};
+      constexpr std::array<HandJoint, 5> kTips{HandJoint::kThumbTip, HandJoint::kIndexTip, HandJoint::kMiddleTip,
+                                               HandJoint::kRingTip, HandJoint::kLittleTip};
       for (std::size_t f = 0; f < 5; ++f)
         if (found.joint(kTips[f]).tracked)
           e.tips.push_back(1e3 * glm::distance(found.joint(kTips[f]).pose.position_m, hand.tips_m[f]));
@@ -131,8 +129,7 @@ TEST_F(HandAccuracy, PalmIsWithinTwoMillimetresSidewaysAndFiveInDepth) {
   for (const bool fist : {false, true}) {
     Errors kind;
     for (const double height : {0.2, 0.25, 0.3, 0.35, 0.4}) {
-      const Errors e =
-          measure({.fist = fist}, height, trials_of_each_kind(), 2026);  // not the seed of the tuning
+      const Errors e = measure({.fist = fist}, height, trials_of_each_kind(), 2026);  // not the seed of the tuning
       print(fist ? "fist" : "open", height, e);
       EXPECT_LE(rms(e.x), 2.0);
       EXPECT_LE(rms(e.along), 2.0);

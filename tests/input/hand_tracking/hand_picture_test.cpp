@@ -22,8 +22,10 @@ TEST(HandPicture, DistanceInsideIsTheDistanceToTheNearestOtherPixel) {
       int nearest = 1 << 20;
       for (int v = region.y0 - 1; v <= region.y1; ++v)
         for (int u = region.x0 - 1; u <= region.x1; ++u)
-          if (labels[static_cast<std::size_t>(v * kWidth + u)] != 1) nearest = std::min(nearest, (u - x) * (u - x) + (v - y) * (v - y));
-      EXPECT_NEAR(distance[static_cast<std::size_t>((y - region.y0 + 1) * w + x - region.x0 + 1)], std::sqrt(nearest), 1e-4);
+          if (labels[static_cast<std::size_t>(v * kWidth + u)] != 1)
+            nearest = std::min(nearest, (u - x) * (u - x) + (v - y) * (v - y));
+      EXPECT_NEAR(distance[static_cast<std::size_t>((y - region.y0 + 1) * w + x - region.x0 + 1)], std::sqrt(nearest),
+                  1e-4);
     }
 }
 
@@ -35,7 +37,7 @@ TEST(HandPicture, RegionsAreTheConnectedBrightOnesLargestFirst) {
       for (int x = x0; x < x1; ++x) picture[static_cast<std::size_t>(y * kWidth + x)] = 50;
   };
   fill(0, 0, 3, 3);
-  fill(3, 3, 8, 8);    // touches the first one at a corner only
+  fill(3, 3, 8, 8);  // touches the first one at a corner only
   fill(10, 2, 19, 9);
   fill(9, 0, 10, 1);
   std::vector<std::uint32_t> stack;
@@ -49,18 +51,22 @@ TEST(HandPicture, RegionsAreTheConnectedBrightOnesLargestFirst) {
 
 TEST(HandPicture, CorrelationFindsAShiftOfATenthOfAPixel) {
   constexpr int kWidth = 120, kHeight = 60;
-  const auto scene = [](double x, double y) { return 100.0 + 60.0 * std::sin(0.31 * x) * std::cos(0.23 * y + 0.11 * x); };
+  const auto scene = [](double x, double y) {
+    return 100.0 + 60.0 * std::sin(0.31 * x) * std::cos(0.23 * y + 0.11 * x);
+  };
   for (const double truth : {17.0, 17.3, 17.5, 17.9}) {
     std::vector<std::uint8_t> left(kWidth * kHeight), right(kWidth * kHeight);
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
         left[static_cast<std::size_t>(y * kWidth + x)] = static_cast<std::uint8_t>(std::lround(scene(x, y)));
-        right[static_cast<std::size_t>(y * kWidth + x)] = static_cast<std::uint8_t>(std::lround(0.8 * scene(x + truth, y) + 9));
+        right[static_cast<std::size_t>(y * kWidth + x)] =
+            static_cast<std::uint8_t>(std::lround(0.8 * scene(x + truth, y) + 9));
       }
-    const auto match = match_disk({left.data(), kWidth, kHeight}, {right.data(), kWidth, kHeight}, {70, 30}, 20, 1, 5, 40, 0.6);
+    const auto match =
+        match_disk({left.data(), kWidth, kHeight}, {right.data(), kWidth, kHeight}, {70, 30}, 20, 1, 5, 40, 0.6);
     ASSERT_TRUE(match);
     EXPECT_NEAR(match->disparity_px, truth, 0.1);
-    EXPECT_GT(match->score, 0.98)  /* whole-pixel shifts are compared */;
+    EXPECT_GT(match->score, 0.98) /* whole-pixel shifts are compared */;
   }
 }
 

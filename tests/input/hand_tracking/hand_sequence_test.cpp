@@ -78,8 +78,7 @@ TEST(HandSequence, ThumbAndIndexFingerThatComeTogetherAreSeen) {
     ASSERT_TRUE(tracker.track(frame, hands));
     ASSERT_EQ(hands.size(), 1U) << i;
     EXPECT_LT(hands[0].grab_strength, 0.5) << i;
-    apart_mm.push_back(1e3 *
-                       std::abs(glm::distance(hand.tips_m[0], hand.tips_m[1]) - hands[0].pinch_distance_m));
+    apart_mm.push_back(1e3 * std::abs(glm::distance(hand.tips_m[0], hand.tips_m[1]) - hands[0].pinch_distance_m));
     palm_mm.push_back(1e3 * glm::distance(hands[0].palm.position_m, hand.palm_m));
   }
   EXPECT_LE(quantile(apart_mm, 0.5), 2.0);

@@ -14,8 +14,7 @@ inline constexpr double kDegree = 3.14159265358979 / 180.0;
 
 struct HandKind {
   bool fist = false;
-  double proportions =
-      0.0;  ///< up to which part finger length, palm width and thickness differ, each on its own
+  double proportions = 0.0;     ///< up to which part finger length, palm width and thickness differ, each on its own
   double wrist_turn_rad = 0.0;  ///< up to
   bool lit_from_eyes = false;   ///< a light at each eye instead of three along the device
   bool soft = false;            ///< out of focus: 1 2 1 over the pictures in both directions
@@ -46,8 +45,7 @@ inline HandPose random_hand(std::mt19937& random, double height_m, const HandKin
   return pose;
 }
 
-inline Frame render_frame(const HandRenderer& renderer, std::span<const PosedHand> hands,
-                          std::uint64_t seed) {
+inline Frame render_frame(const HandRenderer& renderer, std::span<const PosedHand> hands, std::uint64_t seed) {
   Frame frame;
   frame.width = renderer.options().width;
   frame.height = renderer.options().height;

@@ -73,8 +73,7 @@ TEST(RigelHands, OpenHandsAndFistsAt200To400MmAreWhereTheyAre) {
       pose.palm.position_m = {-0.02, height_m, 0.01};
       if (fist) pose.flexion.fill(1.0);
       const PosedHand posed = pose_hand(pose);
-      renderer.render({&posed, 1}, ++frame.sequence, pixels.first(frame.view_bytes()),
-                      pixels.last(frame.view_bytes()));
+      renderer.render({&posed, 1}, ++frame.sequence, pixels.first(frame.view_bytes()), pixels.last(frame.view_bytes()));
       frame.time += 1'000'000'000;
       Hands hands;
       ASSERT_TRUE(tracker.track(frame, hands));

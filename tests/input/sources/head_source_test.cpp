@@ -42,8 +42,7 @@ TEST(HeadFrame, WithoutPositionTheEyesTurnAboutTheNeck) {
   const auto ahead = head_frame({0, {}, false, true}, placement);
   ASSERT_TRUE(ahead);
   expect_near(0.5 * (*ahead->left_eye_m + *ahead->right_eye_m), {0.0, 0.05, 0.6}, 1e-12);
-  const auto left =
-      head_frame({0, {{}, glm::angleAxis(90 * kRad, glm::dvec3(0, 1, 0))}, false, true}, placement);
+  const auto left = head_frame({0, {{}, glm::angleAxis(90 * kRad, glm::dvec3(0, 1, 0))}, false, true}, placement);
   ASSERT_TRUE(left);
   expect_near(0.5 * (*left->left_eye_m + *left->right_eye_m), {-0.0805, 0.05, 0.6 + 0.0805}, 1e-12);
   EXPECT_LT(left->confidence, 1.0);
@@ -83,8 +82,7 @@ TEST(HeadSource, VrpnPosesAreInTheScreenFrame) {
   server.send(format_vrpn(vrpn_pose_message(3, 7, 0, {{0.0, 0.1, 0.7}, {1, 0, 0, 0}})));
   ASSERT_EQ(bench.poll(*source), Freshness::kNew);
   ASSERT_EQ(bench.frame.heads.size(), 1u);
-  expect_near(0.5 * (*bench.frame.heads[0].left_eye_m + *bench.frame.heads[0].right_eye_m), {0.0, 0.05, 0.6},
-              1e-12);
+  expect_near(0.5 * (*bench.frame.heads[0].left_eye_m + *bench.frame.heads[0].right_eye_m), {0.0, 0.05, 0.6}, 1e-12);
 }
 
 TEST(HeadSource, GlassesSayThatTheyMeasureNoPlace) {

@@ -124,8 +124,7 @@ TEST(SpaceMouseSource, ItsThreadStampsReportsWhenTheyComeNotWhenTheyAreAskedFor)
   Freshness freshness = Freshness::kLost;
   InputFrame frame;
   // polls that claim to come 25 ms later, as a display does that shows what was measured meanwhile
-  ASSERT_TRUE(
-      wait_for([&] { return (freshness = source->poll(5 * kSecond + 25 * kMs, frame)) == Freshness::kNew; }));
+  ASSERT_TRUE(wait_for([&] { return (freshness = source->poll(5 * kSecond + 25 * kMs, frame)) == Freshness::kNew; }));
   EXPECT_EQ(frame.time, 5 * kSecond);
 }
 

@@ -29,8 +29,7 @@ constexpr bool kMeasures = true;
 constexpr bool kMeasures = true;
 #endif
 constexpr int kCycles = 1000, kWarmUp = 100;
-constexpr std::size_t kMostGrowth =
-    512 * 1024;  // a picture more or less under way; 570 bytes a cycle are found
+constexpr std::size_t kMostGrowth = 512 * 1024;  // a picture more or less under way; 570 bytes a cycle are found
 
 std::ptrdiff_t entries(const char* folder) {
   return std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator());
@@ -55,8 +54,7 @@ TEST(Replug, AThousandTimesWithTheFirstPoseWithinASecond) {
   SpaceMouseSim mouse;
   SimDevice tracker("simulated opentrack");
   bench.config.reach_device = [&](const DeviceChoice& choice, const Clock&) -> Result<OpenTransport> {
-    return OpenTransport(
-        [&, head = choice.driver == "opentrack"] { return (head ? tracker : mouse.device()).open(); });
+    return OpenTransport([&, head = choice.driver == "opentrack"] { return (head ? tracker : mouse.device()).open(); });
   };
   const auto puck = bench.make("spacemouse"), head = bench.make("head:opentrack");
   InputFrame puck_frame, head_frame;
@@ -125,13 +123,11 @@ TEST(Replug, SourcesWithThreadsLeaveNothingBehind) {
       return TimestampNs{-1};
     };
     const auto open_now = [&] {
-      return mixer.states()[0].note.find("unplugged") == std::string::npos &&
-             mouse.device().open_count() == 1;
+      return mixer.states()[0].note.find("unplugged") == std::string::npos && mouse.device().open_count() == 1;
     };
     // the driver's thread has ended and the hands' one waits: two threads of sources are left
     const auto lost_now = [&] {
-      return mixer.states()[0].note.find("unplugged") != std::string::npos &&
-             mouse.device().open_count() == 0;
+      return mixer.states()[0].note.find("unplugged") != std::string::npos && mouse.device().open_count() == 0;
     };
     Held before;
     for (int cycle = 0; cycle < kCycles; ++cycle) {

@@ -24,8 +24,7 @@ namespace fs = std::filesystem;
 class ScriptFile {
  public:
   explicit ScriptFile(std::string_view text)
-      : path_((fs::temp_directory_path() / ("dubsar_person_" + std::to_string(::getpid()) + ".json"))
-                  .string()) {
+      : path_((fs::temp_directory_path() / ("dubsar_person_" + std::to_string(::getpid()) + ".json")).string()) {
     std::ofstream(path_) << text;
   }
   ~ScriptFile() { fs::remove(path_); }
@@ -60,8 +59,7 @@ TEST(SimulatedPeople, HeadsThroughOpentrackAndVrpnAreWhereTheScriptSays) {
       const double measured_s = std::floor((1e-9 * static_cast<double>(t) - 0.030) * 100.0 + 1e-6) / 100.0;
       EXPECT_LE(glm::distance(middle(bench.frame.heads[0]), *sample_head(script.heads[0], measured_s)), 1e-9)
           << tracker << t;
-      EXPECT_NEAR(glm::distance(*bench.frame.heads[0].left_eye_m, *bench.frame.heads[0].right_eye_m), 0.063,
-                  1e-12);
+      EXPECT_NEAR(glm::distance(*bench.frame.heads[0].left_eye_m, *bench.frame.heads[0].right_eye_m), 0.063, 1e-12);
     }
     EXPECT_EQ(samples, 297) << tracker;  // all of 3 s but the first 30 ms
     bench.poll(*source);
@@ -188,8 +186,7 @@ TEST(SimulatedPeople, LiveTrackersAreFoundOnRealSockets) {
     any.port = 0;
     udp_port = open_udp(any, clock).value()->port();
   }
-  const std::string socket_path =
-      (fs::temp_directory_path() / ("dubsar_spnav_" + std::to_string(::getpid()))).string();
+  const std::string socket_path = (fs::temp_directory_path() / ("dubsar_spnav_" + std::to_string(::getpid()))).string();
   struct Case {
     DeviceChoice choice;
     std::string spec;

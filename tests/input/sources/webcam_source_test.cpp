@@ -31,8 +31,7 @@ class WebcamOfAPhotograph : public testing::Test {
  protected:
   void SetUp() override {
     if (!std::filesystem::exists(photograph_folder() / "sample6.jpg")) GTEST_SKIP() << kNoPhotographs;
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ = std::filesystem::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
     bench_.config.model_folder = model_folder();

@@ -29,8 +29,7 @@ struct Noise {
     planes.resize(interleaved.size());
     for (std::size_t i = 0; i < interleaved.size(); ++i) {
       interleaved[i] = number(random);
-      planes[i % static_cast<std::size_t>(channels) * pixels + i / static_cast<std::size_t>(channels)] =
-          interleaved[i];
+      planes[i % static_cast<std::size_t>(channels) * pixels + i / static_cast<std::size_t>(channels)] = interleaved[i];
     }
   }
 };
@@ -144,8 +143,7 @@ TEST(NetGraph, ShapesThatDoNotFitAreRefused) {
     for (std::size_t dimension = 0; dimension < good.tensors[tensor].shape.size(); ++dimension) {
       NetGraph bad = good;
       ++bad.tensors[tensor].shape[dimension];
-      if (const int t = static_cast<int>(tensor); t == good.input && dimension == 1)
-        continue;  // 8 rows also give 4
+      if (const int t = static_cast<int>(tensor); t == good.input && dimension == 1) continue;  // 8 rows also give 4
       EXPECT_FALSE(check_graph(bad, "test")) << "tensor " << tensor << " dimension " << dimension;
     }
   for (std::size_t op = 0; op < good.ops.size(); ++op) {
@@ -185,9 +183,7 @@ TEST_P(RealNetworks, TheRealFileGivesWhatPlainLoopsGive) {
   expect_as_by_hand(*graph, GetParam() == kFaceModel ? -1.0f : 0.0f, 1.0f, 2e-4);
 }
 INSTANTIATE_TEST_SUITE_P(All, RealNetworks, testing::Values(kFaceModel, kPalmModel, kHandModel),
-                         [](const auto& file) {
-                           return std::string(file.param.substr(0, file.param.find('.')));
-                         });
+                         [](const auto& file) { return std::string(file.param.substr(0, file.param.find('.'))); });
 
 }  // namespace
 }  // namespace dubsar

@@ -40,8 +40,7 @@ TEST(PictureCrop, AnyScaleAndTurnSamplesTheRampWhereItSays) {
         for (int column = 0; column < size; ++column) {
           const glm::dvec2 at = crop.to_picture({(column + 0.5) / size, (row + 0.5) / size});
           const std::size_t i = static_cast<std::size_t>(row * size + column);
-          ASSERT_NEAR(planes[i], at.x - 0.5, 0.51)
-              << side << ' ' << turn;  // reduced pictures are rounded to levels
+          ASSERT_NEAR(planes[i], at.x - 0.5, 0.51) << side << ' ' << turn;  // reduced pictures are rounded to levels
           ASSERT_NEAR(planes[i + size * size], at.y - 0.5, 0.51) << side << ' ' << turn;
           ASSERT_NEAR(planes[i + 2 * size * size], 200.0, 1e-3);
         }

@@ -252,10 +252,8 @@ std::vector<std::byte> write_tflite(const NetGraph& graph, bool halves) {
   }
   for (const NetOp& op : graph.ops) add_op(code_of(op.kind), op.inputs, op.output, options_of(op));
   auto subgraph = std::make_shared<Node>();
-  subgraph->children = {{0, tables(tensors)},
-                        {1, numbers(std::vector<int>{graph.input})},
-                        {2, numbers(graph.outputs)},
-                        {3, tables(ops)}};
+  subgraph->children = {
+      {0, tables(tensors)}, {1, numbers(std::vector<int>{graph.input})}, {2, numbers(graph.outputs)}, {3, tables(ops)}};
   auto model = std::make_shared<Node>();
   put(*model, 0, std::uint32_t{3});
   model->children = {{1, tables(codes)}, {2, tables({subgraph})}, {4, tables(buffers)}};
@@ -303,8 +301,7 @@ NetGraph tiny_net() {
   op(NetOpKind::kPad, {c, whole({4, 2}, {0, 0, 0, 0, 0, 0, 0, 2})}, d);
   op(NetOpKind::kConv, {c, weights({6, 1, 1, 4}), weights({6})}, e);
   op(NetOpKind::kAdd, {d, e}, f).activation = NetActivation::kRelu;
-  const int pooled = data({1, 2, 2, 6}), large = data({1, 4, 4, 6}), h = data({1, 2, 2, 6}),
-            k = data({1, 2, 2, 6});
+  const int pooled = data({1, 2, 2, 6}), large = data({1, 4, 4, 6}), h = data({1, 2, 2, 6}), k = data({1, 2, 2, 6});
   NetOp& pool = op(NetOpKind::kMaxPool, {f}, pooled);
   pool.stride_rows = pool.stride_columns = pool.filter_rows = pool.filter_columns = 2;
   op(NetOpKind::kResizeBilinear, {pooled, whole({2}, {4, 4})}, large).half_pixel_centres = true;
@@ -361,8 +358,8 @@ std::vector<std::vector<float>> run_by_hand(const NetGraph& graph, const std::ve
           result = tensor(2).numbers[static_cast<std::size_t>(o)];
           each([&](int fy, int fx, const float* in) {
             for (int i = 0; i < w.shape[3]; ++i)
-              result += in[i] * w.numbers[static_cast<std::size_t>(
-                                    ((o * w.shape[1] + fy) * w.shape[2] + fx) * w.shape[3] + i)];
+              result += in[i] *
+                        w.numbers[static_cast<std::size_t>(((o * w.shape[1] + fy) * w.shape[2] + fx) * w.shape[3] + i)];
           });
         });
         break;
@@ -373,8 +370,7 @@ std::vector<std::vector<float>> run_by_hand(const NetGraph& graph, const std::ve
         windows(w.shape[1], w.shape[2], [&](float& result, int o, const auto& each) {
           result = tensor(2).numbers[static_cast<std::size_t>(o)];
           each([&](int fy, int fx, const float* in) {
-            result += in[o / multiplier] *
-                      w.numbers[static_cast<std::size_t>((fy * w.shape[2] + fx) * w.shape[3] + o)];
+            result += in[o / multiplier] * w.numbers[static_cast<std::size_t>((fy * w.shape[2] + fx) * w.shape[3] + o)];
           });
         });
         break;
@@ -415,11 +411,10 @@ std::vector<std::vector<float>> run_by_hand(const NetGraph& graph, const std::ve
       case NetOpKind::kResizeBilinear: {
         const Shape in = shape_of(tensor(0)), to = shape_of(out_tensor);
         const auto source = [&](int i, int from, int size) {
-          const auto scale = op.align_corners && size > 1
-                                 ? static_cast<float>(from - 1) / static_cast<float>(size - 1)
-                                 : static_cast<float>(from) / static_cast<float>(size);
-          const float at = op.half_pixel_centres ? (static_cast<float>(i) + 0.5f) * scale - 0.5f
-                                                 : static_cast<float>(i) * scale;
+          const auto scale = op.align_corners && size > 1 ? static_cast<float>(from - 1) / static_cast<float>(size - 1)
+                                                          : static_cast<float>(from) / static_cast<float>(size);
+          const float at =
+              op.half_pixel_centres ? (static_cast<float>(i) + 0.5f) * scale - 0.5f : static_cast<float>(i) * scale;
           return std::clamp(at, 0.0f, static_cast<float>(from - 1));
         };
         for (int y = 0; y < to.h; ++y)
@@ -433,8 +428,7 @@ std::vector<std::vector<float>> run_by_hand(const NetGraph& graph, const std::ve
               };
               const float du = u - static_cast<float>(x0), dv = v - static_cast<float>(y0);
               out[static_cast<std::size_t>((y * to.w + x) * to.c + c)] =
-                  (1 - dv) * ((1 - du) * at(y0, x0) + du * at(y0, x1)) +
-                  dv * ((1 - du) * at(y1, x0) + du * at(y1, x1));
+                  (1 - dv) * ((1 - du) * at(y0, x0) + du * at(y0, x1)) + dv * ((1 - du) * at(y1, x0) + du * at(y1, x1));
             }
         break;
       }

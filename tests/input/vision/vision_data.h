@@ -14,8 +14,7 @@ inline std::filesystem::path data_folder() {
   if (const char* const data = std::getenv("XDG_DATA_HOME"); data != nullptr && *data == '/')
     return std::filesystem::path(data) / "dubsar";
   const char* const home = std::getenv("HOME");
-  return home != nullptr ? std::filesystem::path(home) / ".local/share/dubsar"
-                         : std::filesystem::path("/nonexistent");
+  return home != nullptr ? std::filesystem::path(home) / ".local/share/dubsar" : std::filesystem::path("/nonexistent");
 }
 inline std::filesystem::path model_folder() { return data_folder() / "models"; }
 inline std::filesystem::path photograph_folder() { return data_folder() / "photographs"; }

@@ -53,8 +53,8 @@ class HandPhotographs : public testing::Test {
     frame.pixels.resize(frame.view_bytes());
     for (int i = 0; i < 640 * 480; ++i)
       for (int c = 0; c < 3; ++c)
-        frame.pixels[static_cast<std::size_t>(3 * i + c)] = static_cast<std::uint8_t>(std::clamp(
-            planes[static_cast<std::size_t>(c * 640 * 640 + 80 * 640 + i)] + noise(random_), 0.0f, 255.0f));
+        frame.pixels[static_cast<std::size_t>(3 * i + c)] = static_cast<std::uint8_t>(
+            std::clamp(planes[static_cast<std::size_t>(c * 640 * 640 + 80 * 640 + i)] + noise(random_), 0.0f, 255.0f));
     return frame;
   }
   std::unique_ptr<HandNetworks> networks_;
@@ -112,8 +112,7 @@ TEST_F(HandPhotographs, ARestingHandStaysWhereItIsAndItsBackFacesTheCamera) {
       cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC);
       const HandFrame* middle = nullptr;
       for (const HandFrame& hand : hands)
-        if (std::abs(hand.palm.position_m.x) < 0.08 && std::abs(hand.palm.position_m.y) < 0.08)
-          middle = &hand;
+        if (std::abs(hand.palm.position_m.x) < 0.08 && std::abs(hand.palm.position_m.y) < 0.08) middle = &hand;
       ASSERT_NE(middle, nullptr) << i;
       EXPECT_EQ(middle->chirality, Chirality::kLeft);
       // it hangs over a knee: its back up and to the camera, which looks along +Z, knuckles nearer than the
@@ -131,21 +130,19 @@ TEST_F(HandPhotographs, ARestingHandStaysWhereItIsAndItsBackFacesTheCamera) {
       double sum = 0, squares = 0;
       for (const double value : v) sum += value;
       for (const double value : v)
-        squares +=
-            (value - sum / static_cast<double>(v.size())) * (value - sum / static_cast<double>(v.size()));
+        squares += (value - sum / static_cast<double>(v.size())) * (value - sum / static_cast<double>(v.size()));
       return std::sqrt(squares / static_cast<double>(v.size() - 1));
     };
     for (const double value : z) depth_m[half] += 1e-3 * value / static_cast<double>(z.size());
-    std::printf("hand at %.2f m: sd of the palm %.1f mm sideways, %.1f mm in depth\n", depth_m[half],
-                spread(x), spread(z));
+    std::printf("hand at %.2f m: sd of the palm %.1f mm sideways, %.1f mm in depth\n", depth_m[half], spread(x),
+                spread(z));
     EXPECT_LT(spread(x), 3.0);
     EXPECT_LT(spread(z), 15.0);
   }
-  EXPECT_NEAR(depth_m[1] / depth_m[0], 1.0 / 0.6, 0.15)
-      << "a hand of 0.6 times the size is that much further away";
+  EXPECT_NEAR(depth_m[1] / depth_m[0], 1.0 / 0.6, 0.15) << "a hand of 0.6 times the size is that much further away";
   std::sort(cpu_ms.begin(), cpu_ms.end());
-  std::printf("CPU of a frame: median %.1f ms, worst (with the palm network) %.1f ms\n",
-              cpu_ms[cpu_ms.size() / 2], cpu_ms.back());
+  std::printf("CPU of a frame: median %.1f ms, worst (with the palm network) %.1f ms\n", cpu_ms[cpu_ms.size() / 2],
+              cpu_ms.back());
 }
 
 }  // namespace

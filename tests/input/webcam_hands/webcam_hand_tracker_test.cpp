@@ -79,11 +79,9 @@ HandSeen seen_at(const Landmarks& shape_m, const glm::dvec3& place_m, const Came
 
 TEST(PlaceHand, TheLandmarksOfAHandInPerspectiveSayExactlyWhereItIs) {
   CameraView camera;
-  for (const glm::dvec3& place :
-       {glm::dvec3(0, 0, 0.5), glm::dvec3(0.2, -0.1, 0.4), glm::dvec3(-0.3, 0.15, 1.0)})
+  for (const glm::dvec3& place : {glm::dvec3(0, 0, 0.5), glm::dvec3(0.2, -0.1, 0.4), glm::dvec3(-0.3, 0.15, 1.0)})
     for (const double size : {1.0, 0.85}) {
-      const auto found =
-          place_hand(seen_at(right_hand(0.3), place, camera, size), kWidth, kHeight, camera, size);
+      const auto found = place_hand(seen_at(right_hand(0.3), place, camera, size), kWidth, kHeight, camera, size);
       ASSERT_TRUE(found);
       EXPECT_LT(glm::length(*found - place), 1e-9);
     }
@@ -91,8 +89,7 @@ TEST(PlaceHand, TheLandmarksOfAHandInPerspectiveSayExactlyWhereItIs) {
 
 TEST(PlaceHand, AHandTakenForALargerOneIsPlacedThatMuchFurther) {
   CameraView camera;
-  const auto found =
-      place_hand(seen_at(right_hand(0.0), {0, 0, 0.5}, camera, 1.0), kWidth, kHeight, camera, 1.1);
+  const auto found = place_hand(seen_at(right_hand(0.0), {0, 0, 0.5}, camera, 1.0), kWidth, kHeight, camera, 1.1);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->z, 0.55, 1e-9);
 }
@@ -130,8 +127,7 @@ class PlayedNetworks final : public HandNetworks {
         Landmarks shape = right_hand(0.1);
         for (glm::dvec3& p : shape) p = {p.x, -p.z, 0.0};  // held up to the camera
         HandSeen seen =
-            seen_at(shape, {-(hand.at_px.x - 320) * 0.6 / f, -(hand.at_px.y - 240) * 0.6 / f - 0.07, 0.6},
-                    camera, 1.0);
+            seen_at(shape, {-(hand.at_px.x - 320) * 0.6 / f, -(hand.at_px.y - 240) * 0.6 / f - 0.07, 0.6}, camera, 1.0);
         seen.right = hand.right;
         return seen;
       }
