@@ -84,15 +84,11 @@ lab() {
 }
 
 tsan() {
-  deps
-  if ! command -v clang++ >/dev/null; then
-    echo "skipped: clang is missing: apt install clang" >&2
-    return
-  fi
+  deps clang libclang-rt-14-dev libomp-dev
   preset=tsan build=build/tsan
-  build_target --target test_devices test_leap test_input_sources
+  build_target --target test_devices test_leap test_leapc test_input test_input_sources
   local test
-  for test in devices/test_devices devices/leap/test_leap input/sources/test_input_sources; do
+  for test in devices/test_devices devices/leap/test_leap devices/leap/test_leapc input/test_input input/sources/test_input_sources; do
     TSAN_OPTIONS="halt_on_error=1 ${TSAN_OPTIONS:-}" "$build/tests/$test" --gtest_brief=1
   done
 }

@@ -44,6 +44,12 @@ struct LensSheet {
   SubpixelLayout subpixels;
 };
 
+/// What figures of lens sheets may be; beyond, a calibration is not believed. Known panels have 37 to 110 lenses an
+/// inch, slopes of 5 to 8 and centres within a few periods.
+inline constexpr double kLeastPitch = 5.0, kMostPitch = 500.0;  ///< lenses per inch
+inline constexpr double kLeastSlope = 0.5, kMostSlope = 1e4;    ///< of either sign; upright lenses have the largest
+inline constexpr double kMostCentre = 100.0;                    ///< periods, of either sign
+
 /// Figures of a Looking Glass calibration from which a sheet follows (the calibration file's own names and units).
 struct LookingGlassFigures {
   double pitch = 0.0;   ///< lenses per inch across the lens axis

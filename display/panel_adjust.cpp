@@ -15,7 +15,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kSuffix = ".adjust.json";
-constexpr double kFarCentre = 1e4, kSteepest = 1e4, kLeastSlope = 1e-3;
 constexpr std::int64_t kMaxBytes = 1 << 16;
 
 fs::path file_of(const fs::path& folder, std::string_view panel) {
@@ -65,13 +64,14 @@ Result<void> apply_adjustment(const PanelAdjustment& adjustment, PanelProfile& p
   if (!tracked && !profile.sheet)
     return fail(ErrorKind::kConfig, "adjustment of panel {}: it has no lens figures, give the unit's calibration file",
                 profile.name);
-  if (pitch) DUBSAR_TRY(check_figure(profile.name, "pitch", *pitch, tracked ? 0.01 : 1.0, tracked ? 10.0 : 1e4));
+  if (pitch)
+    DUBSAR_TRY(check_figure(profile.name, "pitch", *pitch, tracked ? 0.01 : kLeastPitch, tracked ? 10.0 : kMostPitch));
   if (slope)
-    DUBSAR_TRY(check_figure(profile.name, "slope", *slope, tracked ? -10.0 : -kSteepest, tracked ? 10.0 : kSteepest));
+    DUBSAR_TRY(check_figure(profile.name, "slope", *slope, tracked ? -10.0 : -kMostSlope, tracked ? 10.0 : kMostSlope));
   if (slope && !tracked && std::abs(*slope) < kLeastSlope)
-    return fail(ErrorKind::kConfig, "adjustment of panel {}: slope is {}, expected a number other than 0", profile.name,
-                *slope);
-  if (center) DUBSAR_TRY(check_figure(profile.name, "center", *center, -kFarCentre, kFarCentre));
+    return fail(ErrorKind::kConfig, "adjustment of panel {}: slope is {}, expected {} or more, of either sign",
+                profile.name, *slope, kLeastSlope);
+  if (center) DUBSAR_TRY(check_figure(profile.name, "center", *center, -kMostCentre, kMostCentre));
   double& pitch_of = tracked ? profile.optics->pitch_mm : profile.sheet->pitch;
   double& slope_of = tracked ? profile.optics->tan_slant : profile.sheet->slope;
   double& center_of = tracked ? profile.optics->phase0 : profile.sheet->center;
@@ -93,7 +93,7 @@ Result<void> load_adjustment(const fs::path& file, std::span<PanelProfile> profi
   PanelAdjustment adjustment;
   for (const auto& [name, place] :
        {std::pair{"pitch", &adjustment.pitch}, {"slope", &adjustment.slope}, {"center", &adjustment.center}})
-    if (fields.has(name)) *place = fields.number(name, -kFarCentre, kFarCentre);
+    if (fields.has(name)) *place = fields.number(name, -kMostSlope, kMostSlope);
   DUBSAR_TRY(fields.finish());
   for (PanelProfile& profile : profiles)
     if (profile.name == panel) {

@@ -32,12 +32,12 @@ Result<json> parse_config(std::string_view text, std::string_view source) {
 
 /// The fields that sheets have in profiles and in calibrations, under their respective names.
 void read_sheet(JsonFields& fields, LookingGlassFigures& sheet, const char* invert_name, const char* pattern_name) {
-  sheet.pitch = fields.number("pitch", 1.0, 1e4);
-  sheet.slope = fields.number("slope", -1e4, 1e4);
-  if (std::abs(sheet.slope) < 1e-3)
-    fields.complain(fmt::format("slope is {}, expected a number other than 0", sheet.slope));
+  sheet.pitch = fields.number("pitch", kLeastPitch, kMostPitch);
+  sheet.slope = fields.number("slope", -kMostSlope, kMostSlope);
+  if (std::abs(sheet.slope) < kLeastSlope)
+    fields.complain(fmt::format("slope is {}, expected {} or more, of either sign", sheet.slope, kLeastSlope));
   const double zero = 0.0;
-  sheet.center = fields.number("center", -1e4, 1e4, &zero);
+  sheet.center = fields.number("center", -kMostCentre, kMostCentre, &zero);
   sheet.invert_views = fields.flag(invert_name, true);
   const int uniform = 0;
   sheet.pattern = static_cast<CellPattern>(fields.integer(pattern_name, 0, 4, &uniform));

@@ -28,8 +28,8 @@ package() {
     file=$work/$name
     command -v npm >/dev/null ||
       { echo "models: npm is missing; ./do models installs it, or put $name into a folder and say --from FOLDER" >&2; return 69; }
-    (cd "$work" && timeout "$seconds" npm pack --silent --fetch-retries=0 --fetch-timeout="${seconds}000" "$1@$2" >/dev/null 2>log) ||
-      { echo "models: $1@$2 could not be fetched: $(tail -n 1 "$work/log")" >&2; return 69; }
+    (cd "$work" && timeout "$seconds" npm pack --loglevel=error --fetch-retries=0 --fetch-timeout="${seconds}000" "$1@$2" >/dev/null 2>log) ||
+      { echo "models: $1@$2 could not be fetched: $(grep -m 1 "ERR!" "$work/log" || echo "no answer in $seconds s")" >&2; return 69; }
   fi
   echo "$3  $file" | sha512sum --check --status ||
     { echo "models: $file is not the $1@$2 that was expected: its SHA-512 differs" >&2; return 65; }

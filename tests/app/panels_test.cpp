@@ -105,7 +105,7 @@ TEST_F(Panels, BadCalibrationsAreRefusedByNameAndRangeWhateverTheRoute) {
   ASSERT_EQ(report.found.size(), 4u);
   for (const std::size_t i : {0u, 1u, 3u}) {
     EXPECT_FALSE(report.found[i].panel);
-    EXPECT_NE(report.found[i].problem.find("pitch is 0.001, expected 1 to 10000"), std::string::npos)
+    EXPECT_NE(report.found[i].problem.find("pitch is 0.001, expected 5 to 500"), std::string::npos)
         << report.found[i].problem;
   }
   EXPECT_NE(report.found[2].problem.find("blank"), std::string::npos);

@@ -72,7 +72,7 @@ TEST_F(PanelAdjust, ImpossibleFiguresAreRefusedAndNothingIsWritten) {
     EXPECT_FALSE(saved) << text;
     return saved ? std::string() : saved.error().message;
   };
-  EXPECT_NE(words(kGo, "pitch=0.5").find("pitch is 0.5, expected 1 to 10000"), std::string::npos);
+  EXPECT_NE(words(kGo, "pitch=0.5").find("pitch is 0.5, expected 5 to 500"), std::string::npos);
   EXPECT_NE(words(kGo, "slope=0").find("slope is 0"), std::string::npos);
   EXPECT_NE(words("spatiallabs-15.6", "pitch=52").find("pitch is 52, expected 0.01 to 10"), std::string::npos);
   EXPECT_NE(words("looking-glass-65", "pitch=52").find("no lens figures"), std::string::npos);

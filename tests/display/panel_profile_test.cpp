@@ -158,8 +158,14 @@ TEST(Calibration, BadFiguresAreRefusedByNameAndRange) {
   };
   for (const Case& c : {
            Case{R"({"pitch": 0, "slope": 1, "DPI": 300, "screenW": 100, "screenH": 100})",
-                "pitch is 0, expected 1 to 10000"},
+                "pitch is 0, expected 5 to 500"},
            Case{R"({"pitch": 50, "slope": 0, "DPI": 300, "screenW": 100, "screenH": 100})", "slope is 0"},
+           Case{R"({"pitch": 9999, "slope": 5, "DPI": 300, "screenW": 100, "screenH": 100})",
+                "pitch is 9999, expected 5 to 500"},
+           Case{R"({"pitch": 50, "slope": 0.1, "DPI": 300, "screenW": 100, "screenH": 100})",
+                "slope is 0.1, expected 0.5 or more"},
+           Case{R"({"pitch": 50, "slope": 5, "center": 1e6, "DPI": 300, "screenW": 100, "screenH": 100})",
+                "center is 1000000, expected -100 to 100"},
            Case{R"({"pitch": 50, "slope": 5, "DPI": 300, "screenW": 20000, "screenH": 100})",
                 "screenW is 20000, expected 1 to 16384"},
            Case{R"({"pitch": 50, "slope": 5, "DPI": 300, "screenW": 10.5, "screenH": 100})",
