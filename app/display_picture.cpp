@@ -100,9 +100,7 @@ Result<void> read_display_options(const DisplayRequest& request, DisplayOptions&
   options.viewer.right_mm = between + half;
   options.magnification = request.magnification;
   options.profile_folder = panel_folder();
-  for (const std::string& file : request.plugins) {
-    DUBSAR_ASSIGN(options.plugins.emplace_back(), SinkPlugin::load(file));
-  }
+  DUBSAR_ASSIGN(options.plugins, load_plugins(request.plugins));
   return {};
 }
 

@@ -84,11 +84,11 @@ Result<void> check_display_options(const Options& options) {
 Result<VerbResult> show_in_window(const Options& options, const DisplayOptions& shown, const TriMesh& mesh,
                                   Progress& progress) {
   const DisplayRequest& request = options.display;
-  if (!request.see_from.empty() || !request.plugins.empty())
-    return fail(ErrorKind::kUsage, "--see-from and --plugin make files, expected no --window");
+  if (!request.see_from.empty()) return fail(ErrorKind::kUsage, "--see-from makes a file, expected no --window");
   LiveOptions live;
   DUBSAR_ASSIGN(live.session.display, resolve_display(request.display, request.bridge_port));
   live.session.profile_folder = shown.profile_folder;
+  live.session.plugins = shown.plugins;
   live.session.viewer = shown.viewer;
   live.session.shading = shown.shading;
   live.session.direction = shown.direction;

@@ -16,11 +16,13 @@
 #include "core/base/atomic_file.h"
 #include "core/base/log.h"
 #include "devices/looking_glass/bridge_client.h"
+#include "display/plugin_sink.h"
 
 namespace dubsar::app {
 namespace {
 
 struct Options {
+  std::vector<std::string> plugins;  // files
   std::string in, display = "mono", script, mapping, view = "front", style = "relief", size, monitor, frames, record;
   std::vector<std::string> inputs, partitions;
   double fps = 0.0, seconds = 0.0, display_delay_ms = 0.0;
@@ -108,6 +110,7 @@ Result<SessionOptions> session_options(const Options& options) {
   SessionOptions session;
   DUBSAR_ASSIGN(session.display, resolve_display(options.display, options.bridge_port));
   session.profile_folder = panel_folder();
+  DUBSAR_ASSIGN(session.plugins, load_plugins(options.plugins));
   session.model_folder = model_folder();
   DUBSAR_ASSIGN(session.shading, shading_preset(options.style));
   DUBSAR_ASSIGN(session.direction, parse_view_direction(options.view));
@@ -201,6 +204,9 @@ Verb add_view_verb(CLI::App& program) {
   for (const InputBackend& source : input_sources())
     sources += (sources.empty() ? "" : ", ") + std::string(source.name);
   command->add_option("--display", options->display, "NAME[:options]: " + sinks);
+  command->add_option("--plugin", options->plugins, "a display from a shared library; loading it runs its code")
+      ->type_name("FILE.so")
+      ->allow_extra_args(false);
   command->add_option("--input", options->inputs, "NAME[:options],...: " + sources);
   command->add_option("--script", options->script, "simulated people: the same as --input scripted:FILE")
       ->type_name("FILE");

@@ -188,4 +188,12 @@ Result<std::unique_ptr<OutputSink>> SinkPlugin::create(const std::string& option
   return std::make_unique<PluginSink>(shared_from_this(), *table_, sink);
 }
 
+Result<std::vector<std::shared_ptr<SinkPlugin>>> load_plugins(const std::vector<std::string>& files) {
+  std::vector<std::shared_ptr<SinkPlugin>> plugins;
+  for (const std::string& file : files) {
+    DUBSAR_ASSIGN(plugins.emplace_back(), SinkPlugin::load(file));
+  }
+  return plugins;
+}
+
 }  // namespace dubsar

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "display/output_sink.h"
 #include "display/plugin_abi.h"
@@ -31,5 +32,8 @@ class SinkPlugin : public std::enable_shared_from_this<SinkPlugin> {
   void* library_;
   const dubsar_sink_table* table_;
 };
+
+/// All of these files, or the first error of SinkPlugin::load.
+Result<std::vector<std::shared_ptr<SinkPlugin>>> load_plugins(const std::vector<std::string>& files);
 
 }  // namespace dubsar

@@ -5,9 +5,10 @@
 namespace dubsar {
 
 Result<SinkWindow> open_sink_window(std::string_view display, WindowOptions options,
-                                    const std::filesystem::path& profile_folder, std::string_view fallback) {
+                                    const std::filesystem::path& profile_folder, std::string_view fallback,
+                                    std::span<const std::shared_ptr<SinkPlugin>> plugins) {
   SinkWindow out;
-  DUBSAR_ASSIGN(auto sink, make_sink(display, profile_folder));
+  DUBSAR_ASSIGN(auto sink, make_sink(display, profile_folder, plugins));
   const SinkTraits wanted = sink->traits();
   if (wanted.exact_pixels) options.decorated = false;
   options.stereo = wanted.stereo_visual;

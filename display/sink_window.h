@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -27,6 +28,7 @@ struct SinkWindow {
 /// and of make_sink().
 Result<SinkWindow> open_sink_window(std::string_view display, WindowOptions options,
                                     const std::filesystem::path& profile_folder = {},
-                                    std::string_view fallback = "side_by_side");
+                                    std::string_view fallback = "side_by_side",
+                                    std::span<const std::shared_ptr<SinkPlugin>> plugins = {});
 
 }  // namespace dubsar

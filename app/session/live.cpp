@@ -101,11 +101,12 @@ class Live {
 
 Result<void> Live::open(const TriMesh& mesh) {
   WindowOptions place = options_.window;
-  DUBSAR_TRY(choose_place(options_.session.display, options_.session.profile_folder, options_.fullscreen, place));
+  DUBSAR_TRY(choose_place(options_.session, options_.fullscreen, place));
   SessionOptions wanted = options_.session;
   std::string note;
   {
-    DUBSAR_ASSIGN(SinkWindow shown, open_sink_window(wanted.display, place, wanted.profile_folder));
+    DUBSAR_ASSIGN(SinkWindow shown,
+                  open_sink_window(wanted.display, place, wanted.profile_folder, "side_by_side", wanted.plugins));
     const std::string_view name = shown.sink->traits().name;
     if (!wanted.display.starts_with(name)) wanted.display = name;
     note = shown.note;

@@ -174,7 +174,7 @@ Result<std::unique_ptr<Session>> Session::create(const TriMesh& mesh, const Sess
     DUBSAR_ASSIGN(parts->mesh, GpuMesh::upload(packed));
     DUBSAR_ASSIGN(parts->renderer, Renderer::create());
   }
-  DUBSAR_ASSIGN(parts->sink, make_sink(options.display, options.profile_folder));
+  DUBSAR_ASSIGN(parts->sink, make_sink(options.display, options.profile_folder, options.plugins));
   DUBSAR_TRY(parts->prepare(*parts->sink));
   return std::unique_ptr<Session>(new Session(std::move(parts)));
 }
@@ -184,7 +184,7 @@ SinkTraits Session::traits() const { return parts_->sink->traits(); }
 const ViewState& Session::view() const noexcept { return parts_->seen; }
 
 Result<void> Session::set_display(std::string_view spec) {
-  DUBSAR_ASSIGN(auto sink, make_sink(spec, parts_->options.profile_folder));
+  DUBSAR_ASSIGN(auto sink, make_sink(spec, parts_->options.profile_folder, parts_->options.plugins));
   DUBSAR_TRY(parts_->prepare(*sink));
   parts_->sink = std::move(sink);
   return {};

@@ -39,8 +39,9 @@ struct SessionOptions {
   std::string display = "mono";          ///< as make_sink() reads it
   std::filesystem::path model_folder{};  ///< networks of the webcam source; empty: none
   std::filesystem::path profile_folder{};
-  Screen screen{};  ///< in an offscreen session, what the sink does not know better
-  Viewer viewer{};  ///< where the eyes are while no head is tracked
+  std::vector<std::shared_ptr<SinkPlugin>> plugins{};  ///< their names count as displays, too
+  Screen screen{};                                     ///< in an offscreen session, what the sink does not know better
+  Viewer viewer{};                                     ///< where the eyes are while no head is tracked
   Shading shading{};
   ViewDirection direction{};  ///< the front of the home view
   double margin = 0.08;       ///< free border around the object at zoom 1

@@ -7,9 +7,8 @@
 
 namespace dubsar::app {
 
-Result<void> choose_place(std::string_view display, const std::filesystem::path& profile_folder,
-                          std::optional<bool> fullscreen, WindowOptions& window) {
-  DUBSAR_ASSIGN(const auto sink, make_sink(display, profile_folder));
+Result<void> choose_place(const SessionOptions& session, std::optional<bool> fullscreen, WindowOptions& window) {
+  DUBSAR_ASSIGN(const auto sink, make_sink(session.display, session.profile_folder, session.plugins));
   const SinkTraits traits = sink->traits();
   window.fullscreen = fullscreen.value_or(false);
   if (fullscreen || !traits.exact_pixels) return {};

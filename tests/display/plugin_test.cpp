@@ -7,7 +7,9 @@
 
 #include "display/plugin_sink.h"
 #include "display/render_display.h"
+#include "display/sink_window.h"
 #include "display/test_pattern.h"
+#include "tests/display/xvfb_server.h"
 
 namespace dubsar {
 namespace {
@@ -60,6 +62,21 @@ TEST(Plugin, OptionsItDoesNotKnowAreItsOwnSentence) {
   ASSERT_FALSE(sink);
   EXPECT_EQ(sink.error().kind, ErrorKind::kUsage);
   EXPECT_NE(sink.error().message.find("\"sideways\" is not known"), std::string::npos) << sink.error().message;
+}
+
+TEST(Plugin, ASampleOpensInAWindow) {
+  const testing::XvfbServer server;
+  if (!server.problem().empty()) GTEST_SKIP() << server.problem();
+  WindowOptions window;
+  window.width = 64;
+  window.height = 48;
+  EXPECT_EQ(open_sink_window("mirrored", window).error().kind, ErrorKind::kUsage);
+  const auto plugins = load_plugins({DUBSAR_SAMPLE_PLUGIN}).value();
+  const auto shown = open_sink_window("mirrored", window, {}, "side_by_side", plugins);
+  ASSERT_TRUE(shown) << shown.error().message;
+  EXPECT_EQ(shown->sink->traits().name, "mirrored");
+  EXPECT_EQ(shown->sink->traits().output, (PixelSize{64, 48}));
+  EXPECT_EQ(load_plugins({DUBSAR_SAMPLE_PLUGIN, "/nowhere.so"}).error().kind, ErrorKind::kNoInput);
 }
 
 TEST(Plugin, TablesThatDoNotFitAreRefusedWithWhatWasFound) {
