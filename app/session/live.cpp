@@ -69,6 +69,7 @@ class Live {
   bool over(TimestampNs now);
   void wait();
   void steer(const std::stop_token& stop);
+  Result<void> save_recording();
 
   bool simulated() const noexcept { return options_.simulated_fps > 0; }
   TimestampNs now() const { return simulated() ? manual_.now() : clock_.now(); }
@@ -362,6 +363,13 @@ void Live::steer(const std::stop_token& stop) {
   }
 }
 
+/// Ends the reading of input.
+Result<void> Live::save_recording() {
+  steering_ = {};  // joined
+  if (options_.record.empty()) return {};
+  return write_file_atomically(options_.record, log_.recording());
+}
+
 Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const LiveMoment&)>& look) {
   DUBSAR_TRY(check(options_));
   DUBSAR_TRY(open(mesh));
@@ -371,7 +379,10 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
   const auto delay = static_cast<TimestampNs>(1e9 * options_.display_delay_s);
   if (!simulated()) steering_ = std::jthread([this](const std::stop_token& stop) { steer(stop); });
   for (std::int64_t steps = 0; !window_->should_close() && !over(now()); ++steps) {
-    if (progress_.cancelled()) return cancelled_error();
+    if (progress_.cancelled()) {
+      DUBSAR_TRY(save_recording());  // what a person showed is not lost with the session
+      return cancelled_error();
+    }
     window_->poll_events();
     use_window_events();
     if (window_->take_place_changed())
@@ -407,14 +418,13 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
     wait();
   }
   progress_.end();
-  steering_ = {};  // joined
   out_.seconds = 1e-9 * static_cast<double>(now() - start_);
   out_.fps = intervals_ms_.empty() ? 0.0 : 1e3 / std::max(quantile(intervals_ms_, 0.5), 1e-3);
   out_.view = session_->view();
   out_.display = displays_[display_];
   out_.rows = sources_->rows();
   out_.sources = session_->input().states();
-  if (!options_.record.empty()) DUBSAR_TRY(write_file_atomically(options_.record, log_.recording()));
+  DUBSAR_TRY(save_recording());
   return std::move(out_);
 }
 

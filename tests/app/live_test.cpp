@@ -399,6 +399,7 @@ TEST_F(Live, ItEndsByClosingByTimeAndBySignal) {
   EXPECT_LT(done->seconds, 5.0);
   const TimestampNs start = SteadyClock().now();
   TimestampNs asked = start;
+  options_.record = std::filesystem::temp_directory_path() / fmt::format("dubsar_live_{}.jsonl", ::getpid());
   done = run_live(testing::lettered_box(), options_, cancelled, [&](const LiveMoment& m) {
     if (m.frames == 0 || cancelled.cancelled()) return;
     asked = SteadyClock().now();
@@ -407,6 +408,7 @@ TEST_F(Live, ItEndsByClosingByTimeAndBySignal) {
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().kind, ErrorKind::kCancelled);
   EXPECT_LT(SteadyClock().now() - asked, 2'000'000'000);
+  EXPECT_TRUE(std::filesystem::remove(options_.record)) << "what was recorded before Ctrl-C is kept";
 }
 
 TEST_F(Live, FullScreenAndBack) {
