@@ -59,7 +59,7 @@ build_target() {
 
 models() {
   command -v npm >/dev/null || deps npm
-  input/vision/fetch_models.sh "$@"
+  input/tracking/vision/fetch_models.sh "$@"
 }
 
 # Without it the device lab is skipped and says why.

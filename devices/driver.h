@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/base/clock.h"
-#include "devices/reconnector.h"
+#include "devices/transport/reconnector.h"
 
 namespace dubsar {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "devices/device_info.h"
-#include "devices/hid_transport.h"
+#include "devices/transport/hid_transport.h"
 
 namespace dubsar {
 

@@ -16,11 +16,11 @@
 #include "core/base/clock.h"
 #include "core/base/registry.h"
 #include "core/base/result.h"
-#include "devices/device_choice.h"
-#include "devices/hotplug_bell.h"
+#include "devices/device_spec.h"
+#include "devices/transport/hotplug_bell.h"
 #include "input/hand_frame.h"
 #include "input/input_event.h"
-#include "input/view_state.h"
+#include "input/navigation/view_state.h"
 
 namespace dubsar {
 
@@ -83,7 +83,7 @@ struct InputConfig {
   /// The clock is moved by hand: devices are read in poll(), without a thread, so that the same script gives the same
   /// input.
   bool simulated_time = false;
-  ReachDevice reach_device;              ///< how devices are reached; empty: the real ones
+  DeviceOpener reach_device;             ///< how devices are reached; empty: the real ones
   std::filesystem::path model_folder;    ///< networks that ./do models fetched; empty: none
   glm::dvec2 panel_m{0.344, 0.194};      ///< width and height of the whole panel; a webcam sits on its top edge
   std::shared_ptr<HotplugBell> hotplug;  ///< shared by the sources of a session; null: lost devices come back by pauses

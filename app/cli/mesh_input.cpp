@@ -5,7 +5,7 @@
 
 #include "core/exa/exa_file.h"
 #include "core/mesh_io/mesh_io.h"
-#include "core/surface/surface_model.h"
+#include "core/parts/surface_model.h"
 
 namespace dubsar::app {
 namespace {

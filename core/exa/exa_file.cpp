@@ -13,7 +13,7 @@
 #include "core/exa/geometry.h"
 #include "core/exa/patches.h"
 #include "core/exa/topology.h"
-#include "core/surface/extract.h"
+#include "core/extract/extract.h"
 
 namespace dubsar {
 namespace {

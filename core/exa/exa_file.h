@@ -11,7 +11,7 @@
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/exa/container.h"
-#include "core/surface/surface_model.h"
+#include "core/parts/surface_model.h"
 
 namespace dubsar {
 

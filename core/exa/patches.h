@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "core/surface/surface_model.h"
+#include "core/parts/surface_model.h"
 
 namespace dubsar {
 

@@ -12,7 +12,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
-#include "core/surface/bit_volume.h"
+#include "core/extract/bit_volume.h"
 
 namespace dubsar {
 

@@ -10,8 +10,8 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
-#include "core/surface/mesh_check.h"
-#include "core/surface/tri_mesh.h"
+#include "core/mesh/mesh_check.h"
+#include "core/mesh/tri_mesh.h"
 
 namespace dubsar {
 

@@ -1,6 +1,6 @@
 #include "core/mesh_io/mesh_output.h"
 
-#include "core/surface/shape_colors.h"
+#include "core/relief/shape_colors.h"
 
 namespace dubsar {
 

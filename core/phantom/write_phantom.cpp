@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "core/hdf5/hdf5_file.h"
 #include "core/phantom/phantom_source.h"
 #include "core/phantom/rasterise.h"
-#include "core/volume/hdf5_file.h"
 
 namespace dubsar::phantom {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
-#include "core/surface/occlusion.h"
-#include "core/surface/surface_model.h"
+#include "core/parts/surface_model.h"
+#include "core/relief/occlusion.h"
 
 namespace dubsar {
 

@@ -1,10 +1,10 @@
 #include "core/pipeline/pipeline.h"
 
 #include "core/base/log.h"
+#include "core/extract/extract.h"
 #include "core/pipeline/model_occlusion.h"
 #include "core/pipeline/report.h"
 #include "core/pipeline/volume_stages.h"
-#include "core/surface/extract.h"
 
 namespace dubsar {
 namespace {

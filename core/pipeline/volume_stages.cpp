@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "core/base/log.h"
+#include "core/extract/extract.h"
+#include "core/filter/resample.h"
+#include "core/filter/sharpen.h"
 #include "core/pipeline/tapped_source.h"
-#include "core/surface/extract.h"
-#include "core/volume/resample.h"
-#include "core/volume/sharpen.h"
 
 namespace dubsar {
 namespace {

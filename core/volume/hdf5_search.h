@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/volume/hdf5_file.h"
+#include "core/hdf5/hdf5_file.h"
 #include "core/volume/import_options.h"
 #include "core/volume/voxel_reader.h"
 

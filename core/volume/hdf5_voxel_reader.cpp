@@ -6,7 +6,7 @@
 
 #include "core/base/input_file.h"
 #include "core/base/parallel.h"
-#include "core/volume/chunk_filters.h"
+#include "core/hdf5/chunk_filters.h"
 
 namespace dubsar {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <memory>
 
-#include "core/volume/hdf5_file.h"
+#include "core/hdf5/hdf5_file.h"
 #include "core/volume/voxel_reader.h"
 
 namespace dubsar {

@@ -7,9 +7,9 @@
 
 #include "core/base/input_file.h"
 #include "core/base/log.h"
+#include "core/hdf5/hdf5_file.h"
 #include "core/image_io/tiff_file.h"
 #include "core/volume/grid_source.h"
-#include "core/volume/hdf5_file.h"
 #include "core/volume/import_hdf5.h"
 #include "core/volume/import_nrrd.h"
 #include "core/volume/import_raw.h"

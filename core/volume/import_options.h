@@ -11,7 +11,7 @@
 
 #include "core/base/budget.h"
 #include "core/base/result.h"
-#include "core/volume/scalar_type.h"
+#include "core/base/scalar_type.h"
 
 namespace dubsar {
 

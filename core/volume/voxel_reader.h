@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "core/volume/scalar_type.h"
+#include "core/base/scalar_type.h"
 #include "core/volume/volume.h"
 
 namespace dubsar {

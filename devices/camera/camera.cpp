@@ -25,7 +25,7 @@ Result<std::string> first_usable_camera() {
 
 class Camera final : public FrameSource {
  public:
-  Camera(const CameraOptions& options, Open open, const Clock& clock)
+  Camera(const WebcamOptions& options, Open open, const Clock& clock)
       : options_(options), open_(std::move(open)), clock_(clock) {}
   ~Camera() override { Camera::stop(); }
 
@@ -100,7 +100,7 @@ class Camera final : public FrameSource {
     reason_ = std::move(why);
   }
 
-  const CameraOptions options_;
+  const WebcamOptions options_;
   const Open open_;
   const Clock& clock_;
 
@@ -119,7 +119,7 @@ class Camera final : public FrameSource {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> make_camera(const CameraOptions& options, Open open, const Clock& clock) {
+std::unique_ptr<FrameSource> make_camera(const WebcamOptions& options, Open open, const Clock& clock) {
   return std::make_unique<Camera>(options, std::move(open), clock);
 }
 

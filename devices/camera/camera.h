@@ -13,7 +13,7 @@
 
 namespace dubsar {
 
-struct CameraOptions {
+struct WebcamOptions {
   std::string path;  ///< "/dev/video0"; empty: the first usable camera, looked for at every start
   CaptureFormat format;
 };
@@ -23,7 +23,7 @@ struct CameraOptions {
 /// wait for one picture, a second when the camera is silent. `open` may be called from the thread that calls
 /// start(). The clock outlives the source and can be used from the reader thread.
 std::unique_ptr<FrameSource> make_camera(
-    const CameraOptions& options,
+    const WebcamOptions& options,
     std::function<Result<std::unique_ptr<Capture>>(const std::string&, const CaptureFormat&)> open, const Clock& clock);
 
 /// All Video4Linux nodes that deliver pictures, and why one cannot be used. Asks each for its name, starts

@@ -10,7 +10,7 @@
 #include "core/base/registry.h"
 #include "devices/driver.h"
 #include "devices/head_tracker/head_sample.h"
-#include "devices/transport.h"
+#include "devices/transport/transport.h"
 
 namespace dubsar {
 

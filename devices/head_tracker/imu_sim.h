@@ -5,7 +5,7 @@
 
 #include "devices/head_tracker/rift_protocol.h"
 #include "devices/head_tracker/xreal_protocol.h"
-#include "devices/sim_transport.h"
+#include "devices/transport/sim_transport.h"
 
 namespace dubsar {
 

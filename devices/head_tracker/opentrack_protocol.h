@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "devices/head_tracker/head_sample.h"
-#include "devices/transport.h"
+#include "devices/transport/transport.h"
 
 namespace dubsar {
 

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "devices/device_timeline.h"
 #include "devices/head_tracker/head_sample.h"
-#include "devices/transport.h"
+#include "devices/transport/device_timeline.h"
+#include "devices/transport/transport.h"
 
 namespace dubsar {
 

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "devices/device_timeline.h"
 #include "devices/head_tracker/head_sample.h"
 #include "devices/head_tracker/imu_fusion.h"
-#include "devices/transport.h"
+#include "devices/transport/device_timeline.h"
+#include "devices/transport/transport.h"
 
 namespace dubsar {
 

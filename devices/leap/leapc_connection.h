@@ -10,7 +10,7 @@
 #include "core/base/clock.h"
 #include "core/base/result.h"
 #include "devices/leap/leapc_protocol.h"
-#include "devices/transport.h"
+#include "devices/transport/transport.h"
 
 namespace dubsar::leapc {
 

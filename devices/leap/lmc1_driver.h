@@ -8,7 +8,7 @@
 #include "devices/leap/lmc1_calibration.h"
 #include "devices/leap/lmc1_protocol.h"
 #include "devices/leap/stereo_camera.h"
-#include "devices/transport.h"
+#include "devices/transport/transport.h"
 
 namespace dubsar {
 

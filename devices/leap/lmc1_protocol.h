@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "devices/transport.h"
+#include "devices/transport/transport.h"
 #include "devices/uvc/uvc_protocol.h"
 
 namespace dubsar::lmc1 {

@@ -11,7 +11,7 @@
 #include "core/base/clock.h"
 #include "devices/frame_source.h"
 #include "devices/leap/lmc1_calibration.h"
-#include "devices/transport.h"
+#include "devices/transport/transport.h"
 #include "devices/uvc/uvc_protocol.h"
 
 namespace dubsar {

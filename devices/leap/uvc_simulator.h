@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/clock.h"
-#include "devices/transport.h"
+#include "devices/transport/transport.h"
 #include "devices/uvc/uvc_descriptors.h"
 
 namespace dubsar {

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/json_text.h"
-#include "devices/http_exchange.h"
-#include "devices/socket_transport.h"
+#include "devices/transport/http_exchange.h"
+#include "devices/transport/socket_transport.h"
 
 namespace dubsar {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/clock.h"
-#include "devices/transport.h"
+#include "devices/transport/transport.h"
 
 namespace dubsar {
 

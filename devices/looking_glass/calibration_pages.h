@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/base/clock.h"
-#include "devices/transport.h"
+#include "devices/transport/transport.h"
 
 namespace dubsar {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "devices/looking_glass/calibration_pages.h"
-#include "devices/sim_transport.h"
+#include "devices/transport/sim_transport.h"
 
 namespace dubsar {
 

@@ -5,10 +5,10 @@
 #include "devices/head_tracker/opentrack_protocol.h"
 #include "devices/head_tracker/vrpn_protocol.h"
 #include "devices/leap/leap_camera.h"
-#include "devices/socket_transport.h"
 #include "devices/spacemouse/spacenav_protocol.h"
+#include "devices/transport/socket_transport.h"
+#include "devices/transport/usb_transport.h"
 #include "devices/udev_rule.h"
-#include "devices/usb/usb_transport.h"
 
 namespace dubsar {
 namespace {
@@ -35,7 +35,7 @@ Result<std::unique_ptr<Transport>> open_leap() {
               instead.empty() ? std::string("leap: no such device is plugged in") : instead);
 }
 
-Result<OpenTransport> reach_opentrack(const DeviceChoice& choice, const Clock& clock) {
+Result<OpenTransport> reach_opentrack(const DeviceSpec& choice, const Clock& clock) {
   DUBSAR_TRY(check_listen_address(choice.address, choice.allow_remote));
   UdpOptions options;
   options.address = choice.address;
@@ -48,7 +48,7 @@ Result<OpenTransport> reach_opentrack(const DeviceChoice& choice, const Clock& c
   });
 }
 
-Result<OpenTransport> reach_vrpn(const DeviceChoice& choice) {
+Result<OpenTransport> reach_vrpn(const DeviceSpec& choice) {
   DUBSAR_TRY(check_address(choice.address));
   const std::uint16_t port = choice.port == 0 ? kVrpnPort : static_cast<std::uint16_t>(choice.port);
   return OpenTransport([address = choice.address, port] { return open_tcp_stream(address, port, kConnectTimeout); });
@@ -56,7 +56,7 @@ Result<OpenTransport> reach_vrpn(const DeviceChoice& choice) {
 
 }  // namespace
 
-Result<OpenTransport> reach_real_device(const DeviceChoice& choice, const Clock& clock) {
+Result<OpenTransport> reach_real_device(const DeviceSpec& choice, const Clock& clock) {
   if (choice.driver == "spacemouse" || choice.driver == "rift" || choice.driver == "xreal")
     return OpenTransport([driver = choice.driver, &clock] { return open_hid_device(driver, clock); });
   if (choice.driver == "spacenav")

@@ -6,14 +6,14 @@
 #include <string_view>
 #include <vector>
 
-#include "devices/device_choice.h"
 #include "devices/device_info.h"
+#include "devices/device_spec.h"
 
 namespace dubsar {
 
-/// The way to a real device (a ReachDevice): HID for spacemouse, rift and xreal, USB for leap, sockets for
+/// The way to a real device (a DeviceOpener): HID for spacemouse, rift and xreal, USB for leap, sockets for
 /// the others. A remote address without allow_remote is kUsage here already.
-Result<OpenTransport> reach_real_device(const DeviceChoice& choice, const Clock& clock);
+Result<OpenTransport> reach_real_device(const DeviceSpec& choice, const Clock& clock);
 
 /// All devices here that a driver knows, with the reason for those that cannot be used: HID, USB, cameras, and
 /// spacenavd at `spacenav_socket` (empty: the usual path). Opens none; takes some milliseconds. Any thread.

@@ -4,8 +4,8 @@
 #include <atomic>
 #include <memory>
 
-#include "devices/sim_transport.h"
 #include "devices/spacemouse/spacemouse_protocol.h"
+#include "devices/transport/sim_transport.h"
 
 namespace dubsar {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "devices/transport.h"
+#include "devices/transport/transport.h"
 
 namespace dubsar::uvc {
 

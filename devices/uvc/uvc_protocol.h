@@ -7,7 +7,7 @@
 #include <span>
 
 #include "core/base/result.h"
-#include "devices/transport.h"
+#include "devices/transport/transport.h"
 
 namespace dubsar::uvc {
 

@@ -6,9 +6,9 @@
 #include <glm/matrix.hpp>
 #include <string>
 
-#include "display/compose_pass.h"
+#include "display/optics/srgb.h"
+#include "display/render/compose_pass.h"
 #include "display/sinks/sink_options.h"
-#include "display/srgb.h"
 
 namespace dubsar {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "core/image_io/image.h"
-#include "display/output_sink.h"
+#include "display/sinks/output_sink.h"
 
 namespace dubsar {
 

@@ -1,7 +1,7 @@
 #pragma once
 // One view into picture files.
 
-#include "display/output_sink.h"
+#include "display/sinks/output_sink.h"
 
 namespace dubsar {
 

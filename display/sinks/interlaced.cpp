@@ -1,6 +1,6 @@
 #include "display/sinks/interlaced.h"
 
-#include "display/compose_pass.h"
+#include "display/render/compose_pass.h"
 #include "display/sinks/sink_options.h"
 
 namespace dubsar {

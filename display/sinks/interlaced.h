@@ -3,7 +3,7 @@
 // a pixel belongs to follows from its place on the panel, not in the window.
 
 #include "core/image_io/image.h"
-#include "display/output_sink.h"
+#include "display/sinks/output_sink.h"
 
 namespace dubsar {
 

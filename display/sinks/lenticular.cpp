@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "display/compose_pass.h"
-#include "display/panel_profile.h"
+#include "display/panels/panel_profile.h"
+#include "display/render/compose_pass.h"
 #include "display/sinks/sink_options.h"
 
 namespace dubsar {

@@ -1,8 +1,8 @@
 #pragma once
 // Panels with a lens sheet: N views (Looking Glass and generic sheets), or two views woven for tracked eyes. The maths
-// and the CPU references are in display/lens.h and display/weave.h.
+// and the CPU references are in display/optics/lens.h and display/optics/weave.h.
 
-#include "display/output_sink.h"
+#include "display/sinks/output_sink.h"
 
 namespace dubsar {
 

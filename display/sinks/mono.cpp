@@ -1,6 +1,6 @@
 #include "display/sinks/mono.h"
 
-#include "display/compose_pass.h"
+#include "display/render/compose_pass.h"
 #include "display/sinks/sink_options.h"
 
 namespace dubsar {

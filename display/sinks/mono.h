@@ -1,7 +1,7 @@
 #pragma once
 // One view, from the middle between the eyes; and the sink that draws nothing.
 
-#include "display/output_sink.h"
+#include "display/sinks/output_sink.h"
 
 namespace dubsar {
 

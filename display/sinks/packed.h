@@ -4,7 +4,7 @@
 // black gap of 1/24 of a view's height (30 lines at 720, 45 at 1080).
 
 #include "core/image_io/image.h"
-#include "display/output_sink.h"
+#include "display/sinks/output_sink.h"
 
 namespace dubsar {
 

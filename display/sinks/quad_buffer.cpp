@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "display/compose_pass.h"
+#include "display/render/compose_pass.h"
 #include "display/sinks/sink_options.h"
 
 namespace dubsar {

@@ -2,7 +2,7 @@
 // Two views into the left and the right buffer of one window: shutter glasses, zSpace, polarised projectors, on drivers
 // with stereo visuals.
 
-#include "display/output_sink.h"
+#include "display/sinks/output_sink.h"
 
 namespace dubsar {
 

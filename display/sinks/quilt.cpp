@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "display/compose_pass.h"
+#include "display/render/compose_pass.h"
 #include "display/sinks/sink_options.h"
 
 namespace dubsar {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/image_io/image.h"
-#include "display/output_sink.h"
-#include "display/panel_profile.h"
+#include "display/panels/panel_profile.h"
+#include "display/sinks/output_sink.h"
 
 namespace dubsar {
 

@@ -5,8 +5,8 @@
 #include <initializer_list>
 #include <string_view>
 
-#include "display/output_sink.h"
-#include "display/panel_profile.h"
+#include "display/panels/panel_profile.h"
+#include "display/sinks/output_sink.h"
 
 namespace dubsar {
 

@@ -2,11 +2,11 @@
 // What the wires of scripted people have in common: the script is sampled at its rate and told to the device.
 
 #include "input/simulated/scripted_source.h"
-#include "input/simulated/wire_person.h"
+#include "input/simulated/simulated_device.h"
 
 namespace dubsar {
 
-class ScriptedWire : public WirePerson {
+class ScriptedWire : public SimulatedDevice {
  public:
   void advance(TimestampNs now) override {
     if (!next_) next_ = now;
@@ -37,12 +37,12 @@ class ScriptedWire : public WirePerson {
 };
 
 // The makers that make_wire_person() chooses from; the options have been checked.
-std::unique_ptr<WirePerson> make_spacemouse_wire(WireOptions options);
-std::unique_ptr<WirePerson> make_spacenav_wire(WireOptions options);
-std::unique_ptr<WirePerson> make_opentrack_wire(WireOptions options);
-std::unique_ptr<WirePerson> make_vrpn_wire(WireOptions options);
-std::unique_ptr<WirePerson> make_rift_wire(WireOptions options);
-std::unique_ptr<WirePerson> make_xreal_wire(WireOptions options);
-std::unique_ptr<WirePerson> make_leap_wire(WireOptions options, const Clock& clock);
+std::unique_ptr<SimulatedDevice> make_spacemouse_wire(WireOptions options);
+std::unique_ptr<SimulatedDevice> make_spacenav_wire(WireOptions options);
+std::unique_ptr<SimulatedDevice> make_opentrack_wire(WireOptions options);
+std::unique_ptr<SimulatedDevice> make_vrpn_wire(WireOptions options);
+std::unique_ptr<SimulatedDevice> make_rift_wire(WireOptions options);
+std::unique_ptr<SimulatedDevice> make_xreal_wire(WireOptions options);
+std::unique_ptr<SimulatedDevice> make_leap_wire(WireOptions options, const Clock& clock);
 
 }  // namespace dubsar

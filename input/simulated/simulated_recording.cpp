@@ -6,8 +6,8 @@
 #include "devices/head_tracker/vrpn_protocol.h"
 #include "devices/head_tracker/xreal_protocol.h"
 #include "devices/leap/lmc1_driver.h"
-#include "devices/record_transport.h"
 #include "devices/spacemouse/spacenav_protocol.h"
+#include "devices/transport/record_transport.h"
 
 namespace dubsar {
 namespace {
@@ -16,18 +16,18 @@ constexpr TimestampNs kTickNs = 4'000'000;
 constexpr double kLongestLeap_s = 10.0;
 
 template <class Poll>
-void let_act(const WirePerson& person, ManualClock& clock, double seconds, const Poll& poll) {
+void let_act(const SimulatedDevice& person, ManualClock& clock, double seconds, const Poll& poll) {
   const auto end = static_cast<TimestampNs>(1e9 * seconds);
   for (poll(); clock.now() < end && !person.finished(); poll()) clock.advance(kTickNs);
 }
 
 template <class Protocol>
-void drive(const WirePerson& person, ManualClock& clock, double seconds, OpenTransport open) {
+void drive(const SimulatedDevice& person, ManualClock& clock, double seconds, OpenTransport open) {
   Driver<Protocol> driver(std::move(open), Protocol());
   let_act(person, clock, seconds, [&] { driver.poll(clock.now()); });
 }
 
-Result<void> drive_leap(const WirePerson& person, ManualClock& clock, double seconds, OpenTransport open) {
+Result<void> drive_leap(const SimulatedDevice& person, ManualClock& clock, double seconds, OpenTransport open) {
   Lmc1Options options;
   options.own_thread = false;
   options.calibration_settle = milliseconds(0);
@@ -47,7 +47,7 @@ Result<std::int64_t> write_simulated_recording(std::string_view driver, const st
     return fail(ErrorKind::kUsage, "simulate leap: {} s found, expected at most {} s (70 MB a second)", seconds,
                 kLongestLeap_s);
   ManualClock clock;
-  DUBSAR_ASSIGN(std::shared_ptr<WirePerson> person, make_wire_person(driver, std::move(options), clock));
+  DUBSAR_ASSIGN(std::shared_ptr<SimulatedDevice> person, make_wire_person(driver, std::move(options), clock));
   DUBSAR_ASSIGN(const auto writer, RecordingWriter::create(path, driver, "made by a simulator, no device", clock));
   const OpenTransport open = [writer,
                               below = reach_wire_person(person, clock)]() -> Result<std::unique_ptr<Transport>> {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "input/simulated/wire_person.h"
+#include "input/simulated/simulated_device.h"
 
 namespace dubsar {
 

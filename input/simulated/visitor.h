@@ -2,8 +2,8 @@
 // A simulated visitor with eyes and two hands: looks at the object, takes it, turns it, looks again, until it stands as
 // wished. Does not know the gains exactly, overshoots, and does not notice at once when the tracker lost a hand.
 
+#include "input/navigation/view_state.h"
 #include "input/simulated/script.h"
-#include "input/view_state.h"
 
 namespace dubsar {
 

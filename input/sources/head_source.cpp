@@ -1,8 +1,8 @@
 #include "input/sources/head_source.h"
 
 #include "devices/head_tracker/head_tracker.h"
-#include "input/sources/device_source.h"
-#include "input/sources/source_device.h"
+#include "input/sources/device_feed.h"
+#include "input/sources/threaded_source.h"
 
 namespace dubsar {
 namespace {
@@ -11,7 +11,7 @@ constexpr glm::dvec3 kEyesFromNeck_m{0.0, 0.075, -0.0805};
 constexpr double kNearest_m = 0.1, kFarthest_m = 3.0;
 constexpr TimestampNs kSilentNs = 1'000'000'000, kServerRetryNs = 900'000'000;
 
-class HeadReader final : public DeviceReader {
+class HeadReader final : public SourceReader {
  public:
   HeadReader(std::unique_ptr<HeadTracker> tracker, std::shared_ptr<const std::atomic<bool>> ended,
              const HeadPlacement& placement)
@@ -65,7 +65,7 @@ std::optional<HeadFrame> head_frame(const HeadSample& sample, const HeadPlacemen
 
 Result<std::unique_ptr<InputSource>> make_head_source(const InputConfig& config) {
   OptionReader options(config, "head");
-  DeviceChoice choice;
+  DeviceSpec choice;
   choice.driver = options.first_word();
   const auto found = find_backend(head_tracker_backends(), choice.driver, "head tracker");
   if (!found) return fail(ErrorKind::kUsage, "input head: {}; write head:NAME", found.error().message);
@@ -86,7 +86,7 @@ Result<std::unique_ptr<InputSource>> make_head_source(const InputConfig& config)
   placement.screen_from_tracker = options.placement(Pose{usual_place_m(choice.driver)});
   placement.eyes_m = 1e-3 * options.triple("eyes", 500.0, glm::dvec3(0.0));
   placement.ipd_m = 1e-3 * options.number("ipd", 40.0, 90.0, 63.0);
-  DUBSAR_ASSIGN(SourceDevice device, source_device(choice, options, config, placement.screen_from_tracker));
+  DUBSAR_ASSIGN(DeviceFeed device, source_device(choice, options, config, placement.screen_from_tracker));
   DUBSAR_TRY(options.finish());
 
   HeadTrackerConfig tracker_config;

@@ -1,12 +1,12 @@
 #include <array>
 
 #include "devices/real/real_devices.h"
+#include "input/input_recording.h"
 #include "input/input_source.h"
-#include "input/leapc/leapc_source.h"
-#include "input/recording.h"
 #include "input/simulated/scripted_source.h"
 #include "input/sources/head_source.h"
 #include "input/sources/leap_source.h"
+#include "input/sources/leapc_source.h"
 #include "input/sources/puck_sources.h"
 #include "input/sources/webcam_source.h"
 #include "input/window_events.h"

@@ -4,20 +4,20 @@
 #include <thread>
 
 #include "devices/leap/leap_camera.h"
-#include "devices/retry_pause.h"
-#include "input/hand_tracking/hand_tracker.h"
+#include "devices/transport/retry_pause.h"
 #include "input/placement.h"
-#include "input/sources/device_source.h"
-#include "input/sources/source_device.h"
+#include "input/sources/device_feed.h"
+#include "input/sources/threaded_source.h"
+#include "input/tracking/hands/hand_tracker.h"
 
 namespace dubsar {
 namespace {
 
 constexpr TimestampNs kSilentNs = 1'000'000'000;
 
-class LeapReader final : public DeviceReader {
+class LeapReader final : public SourceReader {
  public:
-  LeapReader(SourceDevice device, const LeapCameraOptions& options, const Clock& clock, const Pose& screen_from_leap)
+  LeapReader(DeviceFeed device, const LeapCameraOptions& options, const Clock& clock, const Pose& screen_from_leap)
       : driver_(make_leap_camera(std::move(device.open), options, clock)),
         ended_(std::move(device.ended)),
         screen_from_leap_(screen_from_leap) {}
@@ -83,13 +83,13 @@ class LeapReader final : public DeviceReader {
 
 Result<std::unique_ptr<InputSource>> make_leap_source(const InputConfig& config) {
   OptionReader options(config, "leap");
-  DeviceChoice choice;
+  DeviceSpec choice;
   choice.driver = "leap";
   const Pose place = options.placement(table_placement());
   LeapCameraOptions driver;
   driver.exposure_us = options.integer("exposure_us", 10, 1000, driver.exposure_us);
   driver.own_thread = !config.simulated_time;
-  DUBSAR_ASSIGN(SourceDevice device, source_device(choice, options, config, place));
+  DUBSAR_ASSIGN(DeviceFeed device, source_device(choice, options, config, place));
   DUBSAR_TRY(options.finish());
   if (!device.real) driver.calibration_settle = milliseconds(0);
   DeviceSourceTraits traits;

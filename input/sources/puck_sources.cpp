@@ -4,8 +4,8 @@
 
 #include "devices/driver.h"
 #include "devices/spacemouse/spacenav_protocol.h"
-#include "input/sources/device_source.h"
-#include "input/sources/source_device.h"
+#include "input/sources/device_feed.h"
+#include "input/sources/threaded_source.h"
 
 namespace dubsar {
 namespace {
@@ -14,9 +14,9 @@ constexpr int kMostButtons = 64;
 constexpr TimestampNs kServerRetryNs = 900'000'000;
 
 template <class Protocol>
-class PuckReader final : public DeviceReader {
+class PuckReader final : public SourceReader {
  public:
-  PuckReader(SourceDevice device, const Clock& clock)
+  PuckReader(DeviceFeed device, const Clock& clock)
       : driver_(std::move(device.open), Protocol(), &clock), ended_(std::move(device.ended)) {}
 
   bool read(TimestampNs now, milliseconds timeout, InputFrame& frame) override {
@@ -61,9 +61,9 @@ class PuckReader final : public DeviceReader {
 };
 
 template <class Protocol>
-Result<std::unique_ptr<InputSource>> make(const DeviceChoice& choice, OptionReader& options, const InputConfig& config,
+Result<std::unique_ptr<InputSource>> make(const DeviceSpec& choice, OptionReader& options, const InputConfig& config,
                                           TimestampNs retry_ns) {
-  DUBSAR_ASSIGN(SourceDevice device, source_device(choice, options, config));
+  DUBSAR_ASSIGN(DeviceFeed device, source_device(choice, options, config));
   DUBSAR_TRY(options.finish());
   DeviceSourceTraits traits;
   traits.name = choice.driver;
@@ -78,14 +78,14 @@ Result<std::unique_ptr<InputSource>> make(const DeviceChoice& choice, OptionRead
 
 Result<std::unique_ptr<InputSource>> make_spacemouse_source(const InputConfig& config) {
   OptionReader options(config, "spacemouse");
-  DeviceChoice choice;
+  DeviceSpec choice;
   choice.driver = "spacemouse";
   return make<SpaceMouseProtocol>(choice, options, config, 0);
 }
 
 Result<std::unique_ptr<InputSource>> make_spacenav_source(const InputConfig& config) {
   OptionReader options(config, "spacenav");
-  DeviceChoice choice;
+  DeviceSpec choice;
   choice.driver = "spacenav";
   choice.socket = options.text("socket");
   return make<SpacenavProtocol>(choice, options, config, kServerRetryNs);

@@ -8,12 +8,12 @@
 #include "devices/camera/camera.h"
 #include "devices/camera/capture.h"
 #include "devices/camera/picture_frames.h"
-#include "devices/retry_pause.h"
-#include "input/face_tracking/face_tracker.h"
-#include "input/sources/device_source.h"
+#include "devices/transport/retry_pause.h"
 #include "input/sources/option_reader.h"
-#include "input/vision/model_files.h"
-#include "input/webcam_hands/webcam_hand_tracker.h"
+#include "input/sources/threaded_source.h"
+#include "input/tracking/face/face_tracker.h"
+#include "input/tracking/vision/model_files.h"
+#include "input/tracking/webcam_hands/webcam_hand_tracker.h"
 
 namespace dubsar {
 namespace {
@@ -23,7 +23,7 @@ constexpr double kAbovePanelM = 0.01;
 constexpr double kRadians = std::numbers::pi / 180.0;
 constexpr TimestampNs kSilentNs = 2'000'000'000;
 
-class WebcamReader final : public DeviceReader {
+class WebcamReader final : public SourceReader {
  public:
   WebcamReader(WebcamFrames frames, FaceTracker faces, std::optional<WebcamHandTracker> hands)
       : frames_(std::move(frames)), faces_(std::move(faces)), hands_(std::move(hands)) {}
@@ -90,8 +90,8 @@ Result<std::unique_ptr<FaceDetector>> make_detector(const std::filesystem::path&
               models.string(), kModelCommand, cascade.error().message);
 }
 
-struct WebcamOptions {
-  CameraOptions camera;
+struct WebcamSourceOptions {
+  WebcamOptions camera;
   std::string replay;
   FaceTrackerOptions tracking;
   bool hands = false;
@@ -99,9 +99,9 @@ struct WebcamOptions {
   std::filesystem::path models;
 };
 
-Result<WebcamOptions> read_options(const InputConfig& config, bool with_camera) {
+Result<WebcamSourceOptions> read_options(const InputConfig& config, bool with_camera) {
   OptionReader options(config, "webcam");
-  WebcamOptions read;
+  WebcamSourceOptions read;
   std::string size = "640x480";
   if (with_camera) {
     read.camera.path = options.text("device");
@@ -126,7 +126,7 @@ Result<WebcamOptions> read_options(const InputConfig& config, bool with_camera) 
   return read;
 }
 
-Result<std::unique_ptr<InputSource>> make_source(WebcamFrames frames, const WebcamOptions& options,
+Result<std::unique_ptr<InputSource>> make_source(WebcamFrames frames, const WebcamSourceOptions& options,
                                                  const InputConfig& config) {
   DUBSAR_ASSIGN(auto detector, make_detector(options.models));
   std::optional<WebcamHandTracker> hands;
@@ -170,12 +170,12 @@ class SharedPictures final : public FrameSource {
 }  // namespace
 
 Result<std::unique_ptr<InputSource>> make_webcam_source_over(WebcamFrames frames, const InputConfig& config) {
-  DUBSAR_ASSIGN(const WebcamOptions options, read_options(config, false));
+  DUBSAR_ASSIGN(const WebcamSourceOptions options, read_options(config, false));
   return make_source(std::move(frames), options, config);
 }
 
 Result<std::unique_ptr<InputSource>> make_webcam_source(const InputConfig& config) {
-  DUBSAR_ASSIGN(const WebcamOptions options, read_options(config, true));
+  DUBSAR_ASSIGN(const WebcamSourceOptions options, read_options(config, true));
   WebcamFrames frames;
   if (!options.replay.empty()) {
     std::shared_ptr<PictureFrames> pictures =

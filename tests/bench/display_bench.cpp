@@ -8,10 +8,10 @@
 #include <memory>
 #include <numbers>
 
-#include "display/context_egl.h"
-#include "display/lod.h"
-#include "display/multi_view.h"
-#include "display/off_axis.h"
+#include "display/optics/off_axis.h"
+#include "display/render/context_egl.h"
+#include "display/render/lod.h"
+#include "display/render/multi_view.h"
 
 namespace dubsar {
 namespace {

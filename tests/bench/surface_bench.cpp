@@ -6,9 +6,9 @@
 #include <map>
 
 #include "core/base/parallel.h"
-#include "core/surface/extract.h"
-#include "core/surface/mesh_check.h"
-#include "core/surface/triangulate.h"
+#include "core/extract/extract.h"
+#include "core/extract/triangulate.h"
+#include "core/mesh/mesh_check.h"
 
 namespace dubsar {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "core/base/parallel.h"
-#include "core/volume/denoise.h"
-#include "core/volume/resample.h"
+#include "core/filter/denoise.h"
+#include "core/filter/resample.h"
 #include "core/volume/volume.h"
 
 namespace dubsar {

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "devices/http_exchange.h"
 #include "devices/looking_glass/bridge_client.h"
+#include "devices/transport/http_exchange.h"
 #include "tests/devices/fake_bridge.h"
 
 namespace dubsar {

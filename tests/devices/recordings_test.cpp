@@ -6,9 +6,9 @@
 
 #include "core/base/atomic_file.h"
 #include "devices/driver.h"
-#include "devices/record_transport.h"
-#include "devices/replay_transport.h"
 #include "devices/spacemouse/spacemouse_protocol.h"
+#include "devices/transport/record_transport.h"
+#include "devices/transport/replay_transport.h"
 
 namespace dubsar {
 namespace {

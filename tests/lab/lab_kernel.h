@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "core/base/clock.h"
-#include "devices/transport.h"
+#include "devices/transport/transport.h"
 
 namespace dubsar::lab {
 

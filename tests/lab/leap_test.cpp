@@ -3,7 +3,7 @@
 
 #include "devices/leap/lmc1_driver.h"
 #include "devices/real/real_devices.h"
-#include "input/hand_tracking/hand_tracker.h"
+#include "input/tracking/hands/hand_tracker.h"
 #include "tests/lab/lab_kernel.h"
 #include "tests/lab/leap_gadget.h"
 
@@ -19,7 +19,7 @@ std::optional<DeviceInfo> leap_on_the_bus() {
 bool kernel_has_it() { return is_a_camera(lmc1::kVendorId, lmc1::kProductId); }
 
 Result<std::unique_ptr<Transport>> open_leap(const Clock& clock) {
-  DeviceChoice choice;
+  DeviceSpec choice;
   choice.driver = "leap";
   return reach_real_device(choice, clock).value()();
 }

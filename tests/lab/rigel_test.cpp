@@ -65,7 +65,7 @@ TEST_F(LabRigel, TheKernelTakesItForACameraAndItsPicturesComeThroughLibusb) {
   ASSERT_TRUE(eventually([&] { return is_a_camera(rigel::kVendorId, options.product); }))
       << "uvcvideo does not take it for a camera";
 
-  DeviceChoice choice;
+  DeviceSpec choice;
   choice.driver = "leap";
   {
     const auto camera = make_leap_camera(reach_real_device(choice, clock_).value(), {}, clock_);
@@ -106,7 +106,7 @@ TEST_F(LabRigel, AController2IsListedWithTheOnlyWayToIt) {
   ASSERT_TRUE(plugged) << plugged.error().message;
   ASSERT_TRUE(eventually([] { return camera_on_the_bus().has_value(); }));
   EXPECT_EQ(camera_on_the_bus()->state, DeviceState::kIgnored);
-  DeviceChoice choice;
+  DeviceSpec choice;
   choice.driver = "leap";
   const auto opened = reach_real_device(choice, clock_).value()();
   ASSERT_FALSE(opened);

@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "devices/transport.h"
+#include "devices/transport/transport.h"
 
 namespace dubsar::lab {
 

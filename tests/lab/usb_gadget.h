@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "devices/transport.h"
+#include "devices/transport/transport.h"
 
 namespace dubsar::lab {
 

@@ -12,7 +12,7 @@
 #include "core/base/bytes.h"
 #include "core/base/input_file.h"
 #include "core/base/parallel.h"
-#include "core/surface/extract.h"
+#include "core/extract/extract.h"
 
 namespace dubsar {
 namespace {

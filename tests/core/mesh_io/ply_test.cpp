@@ -3,7 +3,7 @@
 #include "core/base/bytes.h"
 #include "core/base/input_file.h"
 #include "core/mesh_io/mesh_formats.h"
-#include "core/surface/shape_colors.h"
+#include "core/relief/shape_colors.h"
 #include "mesh_samples.h"
 
 namespace dubsar {

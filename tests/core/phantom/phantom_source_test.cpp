@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "core/base/parallel.h"
+#include "core/filter/resample.h"
 #include "core/phantom/write_phantom.h"
-#include "core/volume/resample.h"
 
 namespace dubsar::phantom {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/hdf5/hdf5_file.h"
 #include "core/phantom/phantom_source.h"
-#include "core/volume/hdf5_file.h"
 
 namespace dubsar::phantom {
 namespace {

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/volume/hdf5_file.h"
+#include "core/hdf5/hdf5_file.h"
 #include "core/volume/import.h"
 #include "tests/core/volume/hdf5_fixture.h"
 #include "tests/core/volume/temp_folder.h"

@@ -43,8 +43,8 @@ bool eventually(const Condition& condition) {
   return false;
 }
 
-CameraOptions at(const char* path) {
-  CameraOptions options;
+WebcamOptions at(const char* path) {
+  WebcamOptions options;
   options.path = path;
   return options;
 }

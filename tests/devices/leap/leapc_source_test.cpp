@@ -1,4 +1,4 @@
-#include "input/leapc/leapc_source.h"
+#include "input/sources/leapc_source.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "fake_hand.h"
-#include "input/leapc/leapc_hands.h"
 #include "input/placement.h"
+#include "input/sources/leapc_hands.h"
 
 namespace dubsar {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "devices/leap/lmc1_driver.h"
 #include "devices/leap/lmc1_simulator.h"
-#include "devices/usb/usb_transport.h"
+#include "devices/transport/usb_transport.h"
 #include "usb_kernel.h"
 
 namespace dubsar {

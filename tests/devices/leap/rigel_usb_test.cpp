@@ -41,7 +41,7 @@ TEST_F(RigelOverLibusb, IsListedOpenedByItsDescriptorsAndStreamedUntilItIsUnplug
   EXPECT_EQ(rigel->state, DeviceState::kUsable);
 
   SteadyClock clock;
-  DeviceChoice choice;
+  DeviceSpec choice;
   choice.driver = "leap";
   const auto open = reach_real_device(choice, clock);
   ASSERT_TRUE(open);
@@ -79,7 +79,7 @@ TEST_F(RigelOverLibusb, AController2IsListedWithTheOnlyWayToIt) {
   EXPECT_THAT(controller->reason, HasSubstr("only Ultraleap's own service"));
   EXPECT_THAT(controller->remedy, HasSubstr("--input leapc"));
   SteadyClock clock;
-  DeviceChoice choice;
+  DeviceSpec choice;
   choice.driver = "leap";
   const auto opened = (*reach_real_device(choice, clock))();
   ASSERT_FALSE(opened);

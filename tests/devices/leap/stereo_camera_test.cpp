@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <random>
 
-#include "devices/fault_transport.h"
 #include "devices/leap/leap_camera.h"
 #include "devices/leap/lmc1_simulator.h"
 #include "devices/leap/rigel_simulator.h"
+#include "devices/transport/fault_transport.h"
 
 namespace dubsar {
 namespace {

@@ -20,7 +20,7 @@ TEST(LeapSource, PicturesBecomeHandsInTheScreenFrame) {
     return std::vector{pose_hand(pose)};
   };
   Lmc1Simulator simulator(device);
-  bench.config.reach_device = [&](const DeviceChoice& choice, const Clock&) -> Result<OpenTransport> {
+  bench.config.reach_device = [&](const DeviceSpec& choice, const Clock&) -> Result<OpenTransport> {
     EXPECT_EQ(choice.driver, "leap");
     return OpenTransport([&] { return simulator.open(); });
   };

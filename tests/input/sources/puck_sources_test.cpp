@@ -7,9 +7,9 @@
 #include <thread>
 
 #include "devices/driver.h"
-#include "devices/record_transport.h"
 #include "devices/spacemouse/spacemouse_sim.h"
 #include "devices/spacemouse/spacenav_protocol.h"
+#include "devices/transport/record_transport.h"
 #include "tests/input/sources/source_bench.h"
 
 namespace dubsar::test {

@@ -53,7 +53,7 @@ TEST(Replug, AThousandTimesWithTheFirstPoseWithinASecond) {
   SourceBench bench;
   SpaceMouseSim mouse;
   SimDevice tracker("simulated opentrack");
-  bench.config.reach_device = [&](const DeviceChoice& choice, const Clock&) -> Result<OpenTransport> {
+  bench.config.reach_device = [&](const DeviceSpec& choice, const Clock&) -> Result<OpenTransport> {
     return OpenTransport([&, head = choice.driver == "opentrack"] { return (head ? tracker : mouse.device()).open(); });
   };
   const auto puck = bench.make("spacemouse"), head = bench.make("head:opentrack");
@@ -102,7 +102,7 @@ TEST(Replug, SourcesWithThreadsLeaveNothingBehind) {
     return std::vector{pose_hand(pose)};
   };
   Lmc1Simulator leap(leap_options);
-  bench.config.reach_device = [&](const DeviceChoice& choice, const Clock&) -> Result<OpenTransport> {
+  bench.config.reach_device = [&](const DeviceSpec& choice, const Clock&) -> Result<OpenTransport> {
     if (choice.driver == "leap") return OpenTransport([&] { return leap.open(); });
     return OpenTransport([&] { return mouse.device().open(); });
   };

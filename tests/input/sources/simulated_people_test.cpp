@@ -9,12 +9,12 @@
 #include <numbers>
 #include <thread>
 
-#include "devices/replay_transport.h"
-#include "devices/socket_transport.h"
-#include "input/mapping.h"
-#include "input/navigation.h"
-#include "input/simulated/live_wire.h"
+#include "devices/transport/replay_transport.h"
+#include "devices/transport/socket_transport.h"
+#include "input/navigation/mapping.h"
+#include "input/navigation/navigation.h"
 #include "input/simulated/simulated_recording.h"
+#include "input/simulated/simulated_server.h"
 #include "tests/input/sources/source_bench.h"
 
 namespace dubsar::test {
@@ -188,7 +188,7 @@ TEST(SimulatedPeople, LiveTrackersAreFoundOnRealSockets) {
   }
   const std::string socket_path = (fs::temp_directory_path() / ("dubsar_spnav_" + std::to_string(::getpid()))).string();
   struct Case {
-    DeviceChoice choice;
+    DeviceSpec choice;
     std::string spec;
   };
   std::vector<Case> cases(3);

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "devices/sim_transport.h"
+#include "devices/transport/sim_transport.h"
 #include "input/input_source.h"
 
 namespace dubsar::test {
@@ -19,7 +19,7 @@ struct SourceBench {
   }
   /// All devices that are asked for are `device`.
   void put(SimDevice& device) {
-    config.reach_device = [&device](const DeviceChoice&, const Clock&) -> Result<OpenTransport> {
+    config.reach_device = [&device](const DeviceSpec&, const Clock&) -> Result<OpenTransport> {
       return OpenTransport([&device] { return device.open(); });
     };
   }

@@ -5,10 +5,10 @@
 
 #include "core/image_io/jpeg_file.h"
 #include "core/image_io/png_file.h"
-#include "input/vision/model_files.h"
-#include "input/vision/picture_crop.h"
+#include "input/tracking/vision/model_files.h"
+#include "input/tracking/vision/picture_crop.h"
 #include "tests/input/sources/source_bench.h"
-#include "tests/input/vision/vision_data.h"
+#include "tests/input/tracking/vision/vision_data.h"
 
 namespace dubsar::test {
 namespace {

@@ -1,0 +1,31 @@
+#pragma once
+// Any device that a person can watch: opened by its driver's name, read as JSON.
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/base/clock.h"
+#include "devices/device_spec.h"
+#include "devices/driver.h"
+
+namespace dubsar::app {
+
+class DeviceMonitor {
+ public:
+  virtual ~DeviceMonitor() = default;
+  virtual std::optional<nlohmann::json> poll(TimestampNs now, milliseconds timeout) = 0;
+  virtual bool connected() const = 0;
+  virtual std::string reason() const = 0;
+  virtual DriverCounts counts() const = 0;
+  virtual TimestampNs newest() const = 0;  ///< when the last sample was measured
+};
+
+/// The driver over any transport, real or replayed; `clock`, that of the times it is polled with, stamps what is read
+/// and outlives it. A Leap needs `threaded` where its pictures come in real time. kUsage: no such driver.
+Result<std::unique_ptr<DeviceMonitor>> make_live_device(const DeviceSpec& choice, OpenTransport open,
+                                                        const Clock& clock, bool threaded);
+
+}  // namespace dubsar::app

@@ -1,0 +1,25 @@
+#pragma once
+// What can be done, in words, from the mapping in use: nothing here is typed twice.
+
+#include <string>
+#include <vector>
+
+#include "input/navigation/mapping.h"
+
+namespace dubsar::app {
+
+struct HelpRow {
+  std::string what, does;
+  friend bool operator==(const HelpRow&, const HelpRow&) = default;
+};
+struct HelpSection {
+  std::string title;
+  std::vector<HelpRow> rows;
+  friend bool operator==(const HelpSection&, const HelpSection&) = default;
+};
+
+/// Sections for the mouse, keys, hands and puck of a mapping, and for the session's own keys. Sections
+/// without a row are left out.
+std::vector<HelpSection> help_page(const Mapping& mapping);
+
+}  // namespace dubsar::app

@@ -1,0 +1,335 @@
+// dubsar devices: what is plugged in, whether it works, and recordings of it.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "app/cli/verb.h"
+#include "app/monitor/camera_pictures.h"
+#include "app/monitor/device_monitor.h"
+#include "app/monitor/monitor_text.h"
+#include "app/viewer/offscreen.h"
+#include "devices/enumerate.h"
+#include "devices/looking_glass/calibration_pages.h"
+#include "devices/real/real_devices.h"
+#include "devices/transport/record_transport.h"
+#include "devices/transport/replay_transport.h"
+#include "input/placement.h"
+#include "input/simulated/simulated_recording.h"
+#include "input/simulated/simulated_server.h"
+#include "input/source_options.h"
+#include "input/sources/head_source.h"
+
+namespace dubsar::app {
+namespace {
+using nlohmann::json;
+
+constexpr std::size_t kMostAges = 1'000'000;
+
+struct Options {
+  DeviceSpec device;
+  std::string file, script, udp, invert;
+  bool live = false;
+  std::optional<double> duration;
+  double seconds = 10.0;
+  double speed = 1.0;
+  std::optional<std::uint64_t> seed;
+  CLI::App *list = nullptr, *probe = nullptr, *monitor = nullptr, *record = nullptr, *replay = nullptr,
+           *simulate = nullptr;
+};
+
+Result<VerbResult> list(const Options& options) {
+  const std::vector<DeviceInfo> devices = list_real_devices(options.device.socket);
+  VerbResult result;
+  result.json["devices"] = json::array();
+  for (const DeviceInfo& d : devices) {
+    const std::string_view state = device_state_name(d.state);
+    result.json["devices"].push_back({{"driver", d.driver},
+                                      {"path", d.path},
+                                      {"name", d.name},
+                                      {"serial", d.serial},
+                                      {"vendor_id", d.vendor_id},
+                                      {"product_id", d.product_id},
+                                      {"state", state},
+                                      {"reason", d.reason},
+                                      {"remedy", d.remedy}});
+    result.text += fmt::format("{:<14} {:<14} {:04x}:{:04x} {:<18} {}\n", d.driver, state, d.vendor_id, d.product_id,
+                               d.path, d.name);
+    if (!d.reason.empty()) result.text += fmt::format("               {}; {}\n", d.reason, d.remedy);
+  }
+  if (devices.empty())
+    result.text =
+        "no SpaceMouse, headset, Leap or Looking Glass found; opentrack and vrpn trackers are reached by name\n";
+  return result;
+}
+
+/// Reads a device until `over()`; `each` gets every sample.
+template <class Over, class Each>
+Result<VerbResult> watch(DeviceMonitor& device, const Clock& clock, Progress& progress, const Over& over,
+                         const Each& each) {
+  std::int64_t samples = 0;
+  std::vector<double> ages_ms;
+  while (!progress.cancelled() && !over()) {
+    auto sample = device.poll(clock.now(), milliseconds(20));
+    if (sample) {
+      ++samples;
+      const double age_ms = 1e-6 * static_cast<double>(clock.now() - device.newest());
+      if (ages_ms.size() < kMostAges) ages_ms.push_back(age_ms);
+      (*sample)["age_ms"] = age_ms;
+      each(*sample);
+    } else if (!device.connected()) {
+      std::this_thread::sleep_for(milliseconds(20));
+    }
+  }
+  VerbResult result;
+  const DriverCounts& counts = device.counts();
+  result.json = {{"samples", samples},      {"reports", counts.accepted},      {"refused", counts.refused},
+                 {"losses", counts.losses}, {"connected", device.connected()}, {"reason", device.reason()}};
+  result.text = fmt::format("{} samples from {} reports, {} refused, lost {} times\n", samples, counts.accepted,
+                            counts.refused, counts.losses);
+  if (!ages_ms.empty()) {
+    const double median = quantile(ages_ms, 0.5), worst = quantile(ages_ms, 1.0);
+    result.json["age_ms"] = {{"median", median}, {"worst", worst}};
+    result.text += fmt::format("age when read: median {:.2f} ms, worst {:.2f} ms\n", median, worst);
+  }
+  if (counts.accepted == 0) {
+    result.failed = true;
+    result.failure = ErrorKind::kUnavailable;
+    result.text += device.connected() ? "the device is open and silent\n" : device.reason() + "\n";
+  }
+  return result;
+}
+
+/// Shows samples on standard output: drawn over and over in a terminal, else one line each.
+class SamplePrinter {
+ public:
+  explicit SamplePrinter(const Clock& clock) : clock_(clock), terminal_(::isatty(STDOUT_FILENO) == 1) {}
+  void operator()(const json& sample) {
+    const TimestampNs now = clock_.now();
+    if (!terminal_) {
+      fmt::print("{}\n", sample.dump());
+    } else if (now - drawn_ >= kDrawNs) {
+      drawn_ = now;
+      const std::string view = live_view(sample);
+      fmt::print("{}{}", lines_ > 0 ? fmt::format("\x1b[{}A\x1b[J", lines_) : "", view);
+      lines_ = std::count(view.begin(), view.end(), '\n');
+    }
+    std::fflush(stdout);
+  }
+
+ private:
+  static constexpr TimestampNs kDrawNs = 50'000'000;
+  const Clock& clock_;
+  const bool terminal_;
+  TimestampNs drawn_ = -kDrawNs;
+  std::ptrdiff_t lines_ = 0;
+};
+
+Result<VerbResult> probe_looking_glass(const Clock& clock) {
+  DUBSAR_ASSIGN(const auto transport, open_hid_device("looking_glass", clock));
+  DUBSAR_ASSIGN(const std::string text, read_looking_glass_calibration(*transport, clock));
+  VerbResult result;
+  result.json = {{"calibration", text}};
+  result.text = text + "\n";
+  return result;
+}
+
+Result<VerbResult> run_live(const Options& options, bool print, Progress& progress) {
+  const SteadyClock clock;
+  OpenTransport open;
+  if (options.device.driver != "leapc") {
+    DUBSAR_ASSIGN(open, reach_real_device(options.device, clock));
+  } else if (options.record->parsed()) {
+    return fail(ErrorKind::kUsage,
+                "devices: leapc is a service and sends no bytes of a device: record its hands with dubsar "
+                "view --input leapc --record FILE");
+  }
+  std::shared_ptr<RecordingWriter> writer;
+  if (options.record->parsed()) {
+    DUBSAR_TRY(check_output_path(options.file));
+    DUBSAR_ASSIGN(writer, RecordingWriter::create(options.file, options.device.driver, "", clock));
+    open = [open = std::move(open), writer]() -> Result<std::unique_ptr<Transport>> {
+      DUBSAR_ASSIGN(auto transport, open());
+      return make_record_transport(std::move(transport), writer);
+    };
+  }
+  DUBSAR_ASSIGN(const auto device, make_live_device(options.device, std::move(open), clock, true));
+  const TimestampNs end = clock.now() + static_cast<TimestampNs>(options.seconds * 1e9);
+  const auto over = [&] { return clock.now() >= end; };
+  SamplePrinter printer(clock);
+  const auto each = [&](const json& sample) {
+    if (print) printer(sample);
+  };
+  DUBSAR_ASSIGN(VerbResult result, watch(*device, clock, progress, over, each));
+  if (writer) {
+    DUBSAR_TRY(writer->finish());
+    result.json["events"] = writer->event_count();
+    result.text += fmt::format("{} events in {}\n", writer->event_count(), options.file);
+  }
+  return result;
+}
+
+Result<VerbResult> run_replay(const Options& options, bool print, Progress& progress) {
+  const SteadyClock clock;
+  DUBSAR_ASSIGN(Recording recording, read_recording(options.file));
+  DeviceSpec choice = options.device;
+  choice.driver = recording.driver;
+  ReplaySession session(std::move(recording), clock, options.speed);
+  DUBSAR_ASSIGN(const auto device, make_live_device(
+                                       choice, [&] { return session.open(); }, session.recorded_clock(), false));
+  const auto over = [&] { return session.finished(); };
+  SamplePrinter printer(clock);
+  return watch(*device, session.recorded_clock(), progress, over, [&](const json& sample) {
+    if (print) printer(sample);
+  });
+}
+
+/// A script, or somebody; where the device stands is where its source expects it.
+Result<WireOptions> wire_options(const Options& options) {
+  WireOptions wire;
+  if (options.script.empty()) {
+    wire.script = somebody(options.seed.value_or(1), options.duration.value_or(10.0));
+  } else {
+    DUBSAR_ASSIGN(const std::string text, read_source_text(options.script));
+    DUBSAR_ASSIGN(wire.script, parse_script(text, options.script));
+    if (options.seed) wire.script.seed = *options.seed;
+    if (options.duration) wire.script.duration_s = *options.duration;
+  }
+  wire.screen_from_device =
+      options.device.driver == "leap" ? table_placement() : Pose{usual_place_m(options.device.driver)};
+  return wire;
+}
+
+Result<VerbResult> run_simulate(const Options& options, bool print, Progress& progress) {
+  DUBSAR_ASSIGN(WireOptions wire, wire_options(options));
+  VerbResult result;
+  const bool live = options.live || !options.udp.empty();
+  if (live != options.file.empty())
+    return fail(ErrorKind::kUsage, "devices simulate: expected either a file to write, or --live or --udp HOST:PORT");
+  if (!live) {
+    DUBSAR_TRY(check_output_path(options.file));
+    DUBSAR_ASSIGN(const std::int64_t events,
+                  write_simulated_recording(options.device.driver, options.file, std::move(wire)));
+    result.json = {{"events", events}, {"file", options.file}};
+    result.text = fmt::format("{} events in {}\n", events, options.file);
+    return result;
+  }
+  DeviceSpec choice = options.device;
+  if (!options.udp.empty()) {
+    const std::size_t colon = options.udp.rfind(':');
+    if (colon == std::string::npos || choice.driver != "opentrack")
+      return fail(ErrorKind::kUsage, "devices simulate: --udp \"{}\" found, expected HOST:PORT, for opentrack",
+                  options.udp);
+    choice.address = options.udp.substr(0, colon);
+    choice.port = std::atoi(options.udp.c_str() + colon + 1);
+    if (choice.port < 1 || choice.port > 65535)
+      return fail(ErrorKind::kUsage, "devices simulate: --udp \"{}\" found, expected a port of 1 to 65535",
+                  options.udp);
+  }
+  const SteadyClock clock;
+  DUBSAR_ASSIGN(const auto person, make_wire_person(choice.driver, std::move(wire), clock));
+  const auto ready = [&](int port) {
+    if (!print) return;
+    fmt::print("simulated {} at {}\n", choice.driver,
+               choice.driver == "spacenav" ? choice.socket : fmt::format("{}:{}", choice.address, port));
+    std::fflush(stdout);
+  };
+  DUBSAR_ASSIGN(const LiveWireResult served, serve_live_wire(
+                                                 *person, choice, clock, [&] { return progress.cancelled(); }, ready));
+  result.json = {{"messages", served.messages}, {"clients", served.clients}};
+  result.text = fmt::format("{} messages sent\n", served.messages);
+  return result;
+}
+
+Result<VerbResult> run(const Options& options, const CommonOptions& common, Progress& progress) {
+  const bool print = common.json_path != "-" && !common.console.quiet;
+  if (options.list->parsed()) return list(options);
+  if (options.probe->parsed() && options.device.driver == "looking_glass") return probe_looking_glass(SteadyClock());
+  if (options.replay->parsed()) return run_replay(options, print, progress);
+  if (options.simulate->parsed()) return run_simulate(options, print, progress);
+  if (options.device.driver == "webcam" && !options.monitor->parsed())
+    return watch_camera(options.file, options.probe->parsed() ? 2.0 : options.seconds, progress);
+  Options chosen = options;
+  DUBSAR_ASSIGN(chosen.device.invert, parse_axes(options.invert));
+  if (options.probe->parsed()) chosen.seconds = 2.0;
+  return run_live(chosen, print && options.monitor->parsed(), progress);
+}
+
+void add_device_options(CLI::App& command, Options& options) {
+  command
+      .add_option("driver", options.device.driver,
+                  std::string(kDeviceDrivers) + "; probe and monitor: leapc; probe and record: webcam")
+      ->required();
+  command.add_option("--address", options.device.address, "opentrack: to listen on; vrpn: of the server");
+  command.add_option("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given")
+      ->check(CLI::Range(0, 65535));
+  command.add_flag("--allow-remote", options.device.allow_remote, "opentrack: listen to other machines too");
+  command.add_option("--tracker", options.device.tracker, "vrpn: name of the tracker (the first)");
+  command.add_option("--sensor", options.device.sensor, "vrpn: which of its sensors")->check(CLI::Range(0, 1000));
+  command.add_option("--invert", options.invert, "opentrack: axes that count the other way, e.g. x+yaw")
+      ->type_name("AXES");
+  command.add_option("--socket", options.device.socket, "spacenav: path of the daemon's socket");
+  command.add_option("--library", options.device.library, "leapc: Ultraleap's libLeapC.so")->type_name("FILE");
+}
+
+void add_simulate_options(CLI::App& command, Options& options) {
+  command.add_option("driver", options.device.driver, "whose bytes: " + std::string(kDeviceDrivers))->required();
+  command.add_option("file", options.file, "the recording to write")->type_name("FILE");
+  command
+      .add_option("--script", options.script, "what the person does (docs/input.md); else looks about and turns things")
+      ->type_name("FILE");
+  command.add_option("--seed", options.seed, "another person");
+  command.add_option("--seconds", options.duration, "how long, instead of the script's time")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->type_name("S");
+  command.add_flag("--live", options.live, "in real time on sockets: opentrack, vrpn, spacenav");
+  command.add_option("--udp", options.udp, "opentrack: live, to this receiver")->type_name("HOST:PORT");
+  command.add_option("--address", options.device.address, "opentrack: of the receiver; vrpn: to serve on");
+  command.add_option("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given")
+      ->check(CLI::Range(0, 65535));
+  command.add_flag("--allow-remote", options.device.allow_remote, "vrpn: serve other machines too");
+  command.add_option("--socket", options.device.socket, "spacenav: the socket to serve");
+}
+
+}  // namespace
+
+Verb add_devices_verb(CLI::App& program) {
+  CLI::App* const command = program.add_subcommand("devices", "input devices: list, check, watch, record, replay");
+  command->require_subcommand(1);
+  command->footer(
+      "Examples:\n  dubsar devices list\n  dubsar devices monitor opentrack --seconds 30\n"
+      "  dubsar devices simulate spacemouse turn.txt\n  dubsar devices replay turn.txt\n"
+      "  dubsar devices simulate opentrack --script scholar.json --udp 127.0.0.1:4242");
+  auto options = std::make_shared<Options>();
+  const auto add = [&](const char* name, const char* what) {
+    CLI::App* const sub = command->add_subcommand(name, what);
+    sub->fallthrough();
+    return sub;
+  };
+  const auto seconds = [&](CLI::App* sub) {
+    sub->add_option("--seconds", options->seconds, "how long")->check(CLI::Range(0.1, 86400.0))->type_name("S");
+  };
+  options->list = add("list", "devices that are here, and why one cannot be used");
+  options->list->add_option("--socket", options->device.socket, "path of spacenavd's socket");
+  options->probe = add("probe", "open a device and see whether it answers (also looking_glass: its calibration)");
+  options->monitor = add("monitor", "show what a device says: bars in a terminal, else one JSON line per sample");
+  options->record = add("record", "write what a device says to a file");
+  for (CLI::App* const sub : {options->probe, options->monitor, options->record}) add_device_options(*sub, *options);
+  options->replay = add("replay", "play a recording through its driver");
+  options->replay->add_option("--speed", options->speed, "2: twice as fast")->check(CLI::Range(0.01, 1000.0));
+  for (CLI::App* const sub : {options->record, options->replay})
+    sub->add_option("file", options->file, "the recording")->required()->type_name("FILE");
+  for (CLI::App* const sub : {options->monitor, options->record}) seconds(sub);
+  options->simulate = add("simulate", "a scripted person as bytes: a recording of any driver, or live on sockets");
+  add_simulate_options(*options->simulate, *options);
+  return {command,
+          [options](const CommonOptions& common, Progress& progress) { return run(*options, common, progress); }};
+}
+
+}  // namespace dubsar::app

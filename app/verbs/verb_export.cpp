@@ -1,0 +1,79 @@
+// dubsar export IN.exa OUT.{ply,stl,obj,glb}
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <numbers>
+
+#include "app/cli/mesh_input.h"
+#include "app/cli/verb.h"
+#include "core/mesh/simplify.h"
+#include "core/mesh_io/mesh_io.h"
+#include "core/pipeline/report.h"
+
+namespace dubsar::app {
+namespace {
+struct Options {
+  std::string in, out;
+  std::vector<std::string> partitions;
+  MeshWriteOptions write;
+  bool no_holes = false, simplify = false;
+  double simplify_angle_deg = 20.0, simplify_distance_vox = 0.1;
+};
+
+Result<VerbResult> run(const Options& options, Progress& progress) {
+  DUBSAR_TRY(check_output_path(options.out));
+  DUBSAR_TRY(mesh_format_from_path(options.out));
+  DUBSAR_ASSIGN(TriMesh mesh, load_mesh({options.in, options.partitions, !options.no_holes}, progress));
+  if (options.simplify) {
+    const SimplifyOptions limits{options.simplify_angle_deg * std::numbers::pi / 180.0, options.simplify_distance_vox};
+    DUBSAR_ASSIGN(mesh, simplify(mesh, limits, progress));
+  }
+  DUBSAR_TRY(write_mesh(options.out, mesh, options.write, progress));
+  const MeshCheck check = check_mesh(mesh.positions, mesh.triangles);
+  VerbResult result;
+  result.json = {{"output", options.out},
+                 {"bytes", std::filesystem::file_size(options.out)},
+                 {"mesh", mesh_check_json(check)},
+                 {"watertight", check.watertight()},
+                 {"voxel_size_known", mesh.frame.input_voxel.known()},
+                 {"partitions", partitions_json(mesh.partitions)}};
+  result.text = fmt::format("{}: {} vertices, {} triangles, {}\n", options.out, check.vertices, check.triangles,
+                            check.watertight() ? "watertight" : fmt::format("{} boundary edges", check.boundary_edges));
+  return result;
+}
+}  // namespace
+
+Verb add_export_verb(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = program.add_subcommand("export", "write surfaces as PLY, STL, OBJ or GLB");
+  command->add_option("IN", options->in, "EXA file (or a mesh file, to convert it)")->required();
+  command->add_option("OUT", options->out, "file to write; the suffix chooses the format")->required();
+  command->add_option("--partition", options->partitions, "only these parts: names or ids, e.g. tablet")
+      ->delimiter(',');
+  command->add_option("--units", options->write.units, "mm, or vox: coordinates of the input volume")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, MeshUnits>{{"mm", MeshUnits::kMm}, {"vox", MeshUnits::kVox}}))
+      ->option_text("mm|vox");
+  command->add_flag("--no-fill-holes", options->no_holes, "leave out the patches that close the parts");
+  command->add_flag("--simplify", options->simplify,
+                    "fewer triangles where the surface is flat (adaptive vertex clustering)");
+  command
+      ->add_option("--simplify-angle", options->simplify_angle_deg,
+                   "largest angle in degrees between old and new triangles")
+      ->check(CLI::Range(0.0, 90.0));
+  command
+      ->add_option("--simplify-distance", options->simplify_distance_vox,
+                   "largest distance of the surfaces in grid steps")
+      ->check(CLI::Range(0.0, 100.0));
+  command->footer(
+      "Examples:\n"
+      "  dubsar export tablet.exa tablet.ply\n"
+      "  dubsar export tablet.exa tablet.stl --partition tablet\n"
+      "  dubsar export tablet.exa envelope.glb --partition envelope --simplify");
+  return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,223 @@
+// dubsar render IN -o OUT.png: a picture in a file, or of a display in a window.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "app/calibration/auto_panel.h"
+#include "app/cli/mesh_input.h"
+#include "app/cli/verb.h"
+#include "app/verbs/display_picture.h"
+#include "app/viewer/live.h"
+#include "core/image_io/png_file.h"
+#include "core/image_io/tiff_file.h"
+#include "display/render/render_image.h"
+
+namespace dubsar::app {
+namespace {
+struct Options {
+  std::string in, out, view = "front", style = "relief", size, light;
+  std::vector<std::string> partitions, hide;
+  double mm_per_pixel = 0.0;
+  int samples = 0;  ///< 0: enough for one picture, fewer for the many of a display
+  DisplayRequest display;
+  bool perspective = false, colour_parts = false, transparent = false, window = false;
+};
+
+Result<void> parse_size(const std::string& text, CameraOptions& camera) {
+  int width = 0, height = 0;
+  char cross = 0;
+  if (std::sscanf(text.c_str(), "%d%c%d", &width, &cross, &height) != 3 || cross != 'x' || width < 1 || height < 1)
+    return fail(ErrorKind::kUsage, "--size \"{}\" not understood, expected WIDTHxHEIGHT such as 1600x1200", text);
+  camera.width = width;
+  camera.height = height;
+  return {};
+}
+
+Result<void> parse_light(const std::string& text, Shading& shading) {
+  double azimuth = 0.0, elevation = 0.0;
+  if (std::sscanf(text.c_str(), "%lf,%lf", &azimuth, &elevation) != 2)
+    return fail(ErrorKind::kUsage,
+                "--light \"{}\" not understood, expected AZIMUTH,ELEVATION in degrees such as 315,25", text);
+  shading.light_azimuth_deg = azimuth;
+  shading.light_elevation_deg = elevation;
+  return {};
+}
+
+Result<void> hide_partitions(const std::vector<std::string>& names, const TriMesh& mesh, Shading& shading) {
+  for (const std::string& name : names) {
+    bool found = false;
+    for (const Partition& p : mesh.partitions)
+      if (p.name == name || p.part == name || std::to_string(p.id) == name) {
+        shading.partitions = static_cast<std::uint8_t>(shading.partitions & ~(1 << p.id));
+        found = true;
+      }
+    if (!found) return fail(ErrorKind::kUsage, "--hide {}: there is no such partition in the file", name);
+  }
+  return {};
+}
+
+/// Options that make no sense together; said before any work.
+Result<void> check_display_options(const Options& options) {
+  const DisplayRequest& request = options.display;
+  if (request.display.empty()) {
+    if (request.pattern || !request.see_from.empty() || !request.viewer.empty() || !request.screen_mm.empty() ||
+        request.magnification > 0)
+      return fail(ErrorKind::kUsage,
+                  "--pattern, --see-from, --viewer, --screen-mm and --magnification are for displays, expected "
+                  "--display NAME too");
+    if (options.in.empty()) return fail(ErrorKind::kUsage, "IN is missing, expected a surface to draw");
+    return {};
+  }
+  if (options.perspective || options.mm_per_pixel > 0 || options.transparent)
+    return fail(ErrorKind::kUsage,
+                "--perspective, --mm-per-pixel and --transparent are not for displays: the viewer's place and "
+                "--magnification say how large things are");
+  if (options.in.empty() != request.pattern)
+    return fail(ErrorKind::kUsage, "{} found with --display, expected a surface or --pattern",
+                request.pattern ? "both IN and --pattern" : "neither IN nor --pattern");
+  return {};
+}
+
+/// The display's picture in a window, until it is closed; mouse and keyboard turn it.
+Result<VerbResult> show_in_window(const Options& options, const DisplayOptions& shown, const TriMesh& mesh,
+                                  Progress& progress) {
+  const DisplayRequest& request = options.display;
+  if (!request.see_from.empty()) return fail(ErrorKind::kUsage, "--see-from makes a file, expected no --window");
+  LiveOptions live;
+  DUBSAR_ASSIGN(live.session.display, resolve_display(request.display, request.bridge_port));
+  live.session.profile_folder = shown.profile_folder;
+  live.session.plugins = shown.plugins;
+  live.session.viewer = shown.viewer;
+  live.session.shading = shown.shading;
+  live.session.direction = shown.direction;
+  live.session.margin = shown.margin;
+  live.session.magnification = shown.magnification;
+  live.session.samples = shown.samples;
+  live.session.pattern = request.pattern;
+  DUBSAR_ASSIGN(live.session.mapping, default_mapping());
+  live.inputs = {"mouse", "keyboard"};
+  live.window.title = "dubsar: " + (request.pattern ? request.display : options.in);
+  if (!options.size.empty()) {
+    live.window.width = shown.screen.width_px;
+    live.window.height = shown.screen.height_px;
+    live.fullscreen = false;
+  }
+  DUBSAR_ASSIGN(const LiveResult done, run_live(mesh, live, progress));
+  VerbResult result;
+  result.json = {{"display", done.display}, {"frames", done.frames}, {"pattern", request.pattern}};
+  result.text = fmt::format("{}: shown in a window, {} frames\n", done.display, done.frames);
+  return result;
+}
+
+Result<void> check_output(const Options& options) {
+  if (options.window && (!options.out.empty() || options.display.display.empty()))
+    return fail(ErrorKind::kUsage, "--window found {}",
+                options.out.empty() ? "without --display NAME" : "with -o, expected one of them");
+  if (options.window) return {};
+  if (options.out.empty())
+    return fail(ErrorKind::kUsage, "-o is missing, expected a file to write, or --display NAME --window");
+  DUBSAR_TRY(check_output_path(options.out));
+  return {};
+}
+
+Result<VerbResult> run(const Options& options, Progress& progress) {
+  DUBSAR_TRY(check_output(options));
+  std::string suffix = std::filesystem::path(options.out).extension().string();
+  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (!options.window && suffix != ".png" && suffix != ".tif" && suffix != ".tiff")
+    return fail(ErrorKind::kUsage, "cannot write {}: expected a name that ends in .png or .tif", options.out);
+  DUBSAR_TRY(check_display_options(options));
+  RenderOptions render;
+  DUBSAR_ASSIGN(render.shading, shading_preset(options.style));
+  DUBSAR_ASSIGN(render.camera.direction, parse_view_direction(options.view == "orbit" ? "orbit:35,25" : options.view));
+  if (!options.size.empty()) DUBSAR_TRY(parse_size(options.size, render.camera));
+  if (!options.light.empty()) DUBSAR_TRY(parse_light(options.light, render.shading));
+  render.camera.perspective = options.perspective;
+  render.camera.mm_per_pixel = options.mm_per_pixel;
+  if (options.samples > 0) render.samples = options.samples;
+  render.shading.transparent_background = options.transparent;
+  if (options.colour_parts) render.shading.partition_colors = distinct_partition_colors();
+  TriMesh mesh;
+  if (!options.in.empty()) {
+    DUBSAR_ASSIGN(mesh, load_mesh({options.in, options.partitions, true}, progress));
+  }
+  DUBSAR_TRY(hide_partitions(options.hide, mesh, render.shading));
+  if (!options.display.display.empty()) {
+    DisplayOptions shown;
+    if (!options.size.empty()) {
+      shown.screen.width_px = render.camera.width;
+      shown.screen.height_px = render.camera.height;
+    }
+    DUBSAR_TRY(read_display_options(options.display, shown));
+    shown.direction = render.camera.direction;
+    shown.shading = render.shading;
+    if (options.samples > 0) shown.samples = options.samples;
+    if (options.window) return show_in_window(options, shown, mesh, progress);
+    return render_to_display(options.display, shown, mesh, options.out, progress);
+  }
+  DUBSAR_ASSIGN(const Picture picture, render_picture(mesh, render, progress));
+  if (suffix == ".png") {
+    PngOptions png;
+    png.dpi = picture.dpi();
+    DUBSAR_TRY(write_png(options.out, picture.image, png));
+  } else {
+    DUBSAR_TRY(write_tiff(options.out, picture.image, picture.dpi()));
+  }
+  VerbResult result;
+  result.json = {{"output", options.out},
+                 {"width", picture.image.width},
+                 {"height", picture.image.height},
+                 {"mm_per_pixel", picture.mm_per_pixel},
+                 {"triangles", mesh.triangles.size()},
+                 {"view", options.view},
+                 {"style", options.style}};
+  result.text = fmt::format("{}: {}x{} pixels, {:.4g} mm a pixel\n", options.out, picture.image.width,
+                            picture.image.height, picture.mm_per_pixel);
+  return result;
+}
+}  // namespace
+
+Verb add_render_verb(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command =
+      program.add_subcommand("render", "make a picture of a surface, or show what a display's panel shows");
+  command->add_option("IN", options->in, "EXA, PLY, OBJ, STL or GLB file");
+  command->add_option("-o,--output", options->out, "PNG or TIFF file to write");
+  command->add_flag("--window", options->window, "show the display's picture in a window instead of writing it");
+  command->add_option("--view", options->view,
+                      "front, back, left, right, top, bottom, orbit or orbit:AZIMUTH,ELEVATION[,ROLL]");
+  command->add_option("--size", options->size,
+                      "WIDTHxHEIGHT in pixels (1200x1200; of a display 1920x1080, or the panel's own)");
+  std::string styles;
+  for (const std::string_view name : shading_preset_names()) styles += (styles.empty() ? "" : ", ") + std::string(name);
+  command->add_option("--style", options->style, "shading: " + styles);
+  command->add_option("--partition", options->partitions, "only these parts: names or ids, e.g. tablet")
+      ->delimiter(',');
+  command->add_option("--hide", options->hide, "not these parts")->delimiter(',');
+  command->add_flag("--colour-parts,--color-parts", options->colour_parts, "each part in a colour of its own");
+  command->add_option("--light", options->light,
+                      "AZIMUTH,ELEVATION of the light in degrees; 315,20 rakes from the upper left");
+  command
+      ->add_option("--mm-per-pixel", options->mm_per_pixel,
+                   "exact scale (orthographic), instead of fitting the picture")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--perspective", options->perspective, "perspective instead of orthographic");
+  command->add_flag("--transparent", options->transparent, "no background");
+  command->add_option("--samples", options->samples, "samples per pixel side (3; of displays 2)")
+      ->check(CLI::Range(1, 8));
+  add_display_options(*command, options->display);
+  command->footer(
+      "Examples:\n"
+      "  dubsar render tablet.exa -o tablet.png --partition tablet\n"
+      "  dubsar render tablet.exa -o back.tif --view back --light 315,15 --mm-per-pixel 0.0423\n"
+      "  dubsar render bust.obj -o bust.png --style ao --view orbit:30,10\n"
+      "  dubsar render tablet.exa -o anaglyph.png --display anaglyph --size 1280x800\n"
+      "  dubsar render tablet.exa -o go.png --display lenticular:looking-glass-go\n"
+      "  dubsar render tablet.exa -o seen.png --display lenticular:spatiallabs-15.6 --see-from 31.5,0,600\n"
+      "  dubsar render --pattern -o pattern.png --display lenticular:calibration=visual.json");
+  return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
+}
+
+}  // namespace dubsar::app

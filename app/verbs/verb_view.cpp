@@ -1,0 +1,261 @@
+// dubsar view FILE --display SINK --input SOURCE,...: a session in a window, or offscreen.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+
+#include "app/calibration/auto_panel.h"
+#include "app/cli/config_folder.h"
+#include "app/cli/mesh_input.h"
+#include "app/cli/verb.h"
+#include "app/viewer/live.h"
+#include "app/viewer/offscreen.h"
+#include "core/base/atomic_file.h"
+#include "core/base/log.h"
+#include "devices/looking_glass/bridge_client.h"
+#include "display/sinks/plugin_sink.h"
+
+namespace dubsar::app {
+namespace {
+
+struct Options {
+  std::vector<std::string> plugins;  // files
+  std::string in, display = "mono", script, mapping, view = "front", style = "relief", size, monitor, frames, record;
+  std::vector<std::string> inputs, partitions;
+  double fps = 0.0, seconds = 0.0, display_delay_ms = 0.0;
+  int every = 1, samples = 0, bridge_port = kBridgePort;
+  bool offscreen = false, fullscreen = false, windowed = false;
+};
+
+/// "scripted:a.json,replay:b,c" has two sources: a word that names no source belongs to the one before it.
+std::vector<std::string> split_sources(const std::vector<std::string>& texts) {
+  std::vector<std::string> out;
+  for (const std::string& text : texts)
+    for (std::size_t at = 0; at <= text.size();) {
+      const std::size_t comma = std::min(text.find(',', at), text.size());
+      const std::string word = text.substr(at, comma - at);
+      const std::string name = word.substr(0, word.find(':'));
+      const bool starts = at == 0 || word.find(':') != std::string::npos ||
+                          std::any_of(input_sources().begin(), input_sources().end(),
+                                      [&](const InputBackend& b) { return b.name == name; });
+      if (starts) {
+        out.push_back(word);
+      } else {
+        out.back() += "," + word;
+      }
+      at = comma + 1;
+    }
+  return out;
+}
+
+Result<Screen> parse_screen(const std::string& text) {
+  int width = 0, height = 0;
+  char cross = 0;
+  if (std::sscanf(text.c_str(), "%d%c%d", &width, &cross, &height) != 3 || cross != 'x' || width < 16 || height < 16 ||
+      width > 16384 || height > 16384)
+    return fail(ErrorKind::kUsage,
+                "--size \"{}\" not understood, expected WIDTHxHEIGHT of 16 to 16384 pixels such as 960x540", text);
+  Screen screen;
+  screen.width_px = screen.window_w = width;
+  screen.height_px = screen.window_h = height;
+  screen.height_mm = screen.width_mm * height / width;
+  return screen;
+}
+
+nlohmann::json latency_json(const std::vector<double>& ms) {
+  return {{"frames", ms.size()},
+          {"median_ms", quantile(ms, 0.5)},
+          {"p95_ms", quantile(ms, 0.95)},
+          {"worst_ms", quantile(ms, 1.0)}};
+}
+
+nlohmann::json view_json(const ViewState& view) {
+  return {{"rotation_wxyz", {view.rotation.w, view.rotation.x, view.rotation.y, view.rotation.z}},
+          {"turned_deg", turn_between_deg(view.rotation, {1, 0, 0, 0})},
+          {"zoom", view.zoom},
+          {"pan", {view.pan.x, view.pan.y}},
+          {"light_azimuth_deg", view.light_azimuth_deg},
+          {"light_elevation_deg", view.light_elevation_deg}};
+}
+
+VerbResult describe(const std::string& display, const OffscreenResult& done, std::size_t triangles, bool simulated) {
+  VerbResult out;
+  const glm::dvec3 turn = vector_of(done.view.rotation) * 180.0 / 3.14159265358979323846;
+  out.json = {{"display", display},
+              {"frames", done.frames},
+              {"pictures", done.written},
+              {simulated ? "simulated_s" : "seconds", done.seconds},
+              {"triangles", triangles},
+              {"view", view_json(done.view)},
+              {"largest_turn_in_a_frame_deg", done.largest_turn_deg},
+              {simulated ? "input_age_at_cameras_simulated" : "input_age_at_cameras", latency_json(done.input_age_ms)},
+              {"frame_cpu", latency_json(done.frame_cpu_ms)}};
+  out.text = fmt::format(
+      "{} frames of {:.1f} s, {} pictures\n"
+      "turned by ({:.1f}, {:.1f}, {:.1f}) degrees about right, up, viewer; zoom {:.3f}; at most {:.2f} degrees a "
+      "frame\n"
+      "device time to cameras{}: median {:.1f} ms, 95 % {:.1f} ms, worst {:.1f} ms over {} frames with new input\n"
+      "CPU time of a frame: median {:.1f} ms, worst {:.1f} ms\n",
+      done.frames, done.seconds, done.written, turn.x, turn.y, turn.z, done.view.zoom, done.largest_turn_deg,
+      simulated ? " (simulated clock)" : "", quantile(done.input_age_ms, 0.5), quantile(done.input_age_ms, 0.95),
+      quantile(done.input_age_ms, 1.0), done.input_age_ms.size(), quantile(done.frame_cpu_ms, 0.5),
+      quantile(done.frame_cpu_ms, 1.0));
+  return out;
+}
+
+Result<SessionOptions> session_options(const Options& options) {
+  SessionOptions session;
+  DUBSAR_ASSIGN(session.display, resolve_display(options.display, options.bridge_port));
+  session.profile_folder = panel_folder();
+  DUBSAR_ASSIGN(session.plugins, load_plugins(options.plugins));
+  session.model_folder = model_folder();
+  DUBSAR_ASSIGN(session.shading, shading_preset(options.style));
+  DUBSAR_ASSIGN(session.direction, parse_view_direction(options.view));
+  if (options.mapping.empty()) {
+    DUBSAR_ASSIGN(session.mapping, default_mapping());
+  } else {
+    DUBSAR_ASSIGN(const std::string text, read_text_file(options.mapping));
+    DUBSAR_ASSIGN(session.mapping, parse_mapping(text, options.mapping));
+  }
+  return session;
+}
+
+Result<VerbResult> run_offscreen_verb(const Options& options, Progress& progress) {
+  if (!options.monitor.empty() || options.fullscreen || options.windowed)
+    return fail(ErrorKind::kUsage, "--monitor, --fullscreen and --windowed are for windows, expected no --offscreen");
+  OffscreenOptions offscreen;
+  DUBSAR_ASSIGN(offscreen.session, session_options(options));
+  DUBSAR_ASSIGN(offscreen.session.screen, parse_screen(options.size.empty() ? "960x540" : options.size));
+  offscreen.session.samples = std::max(1, options.samples);
+  offscreen.inputs = split_sources(options.inputs);
+  if (!options.script.empty()) offscreen.inputs.push_back("scripted:path=" + options.script);
+  if (options.fps > 0) offscreen.fps = options.fps;
+  if (options.seconds > 0) offscreen.longest_s = options.seconds;
+  offscreen.display_delay_s = 1e-3 * options.display_delay_ms;
+  offscreen.frames = options.frames;
+  offscreen.every = options.every;
+  offscreen.record = options.record;
+  DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.in, options.partitions, true}, progress));
+  DUBSAR_ASSIGN(const OffscreenResult done, run_offscreen(mesh, offscreen, progress));
+  return describe(options.display, done, mesh.triangles.size(), true);
+}
+
+std::string_view health_name(SourceHealth health) {
+  constexpr std::array<std::string_view, 4> kNames{"present", "lost", "missing", "off"};
+  return kNames[static_cast<std::size_t>(health)];
+}
+
+Result<VerbResult> run_window_verb(const Options& options, Progress& progress) {
+  if (options.fullscreen && options.windowed)
+    return fail(ErrorKind::kUsage, "--fullscreen and --windowed found, expected one of them");
+  LiveOptions live;
+  DUBSAR_ASSIGN(live.session, session_options(options));
+  live.session.quality = Quality::kAdaptive;
+  live.session.samples = options.samples > 0 ? options.samples : 2;
+  live.inputs = split_sources(options.inputs);
+  if (!options.script.empty()) live.inputs.push_back("scripted:path=" + options.script);
+  live.window.title = "dubsar: " + options.in;
+  live.window.monitor = options.monitor;
+  if (!options.size.empty()) {
+    DUBSAR_ASSIGN(const Screen screen, parse_screen(options.size));
+    live.window.width = screen.window_w;
+    live.window.height = screen.window_h;
+  }
+  if (options.fullscreen || options.windowed || !options.size.empty()) live.fullscreen = options.fullscreen;
+  live.simulated_fps = options.fps;
+  live.longest_s = options.seconds;
+  live.display_delay_s = 1e-3 * options.display_delay_ms;
+  live.frames = options.frames;
+  live.every = options.every;
+  live.record = options.record;
+  live.notices = options.frames.empty();
+  DUBSAR_TRY(list_monitors());  // before a large file is read
+  DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.in, options.partitions, true}, progress));
+  log_info("view: F1 shows help; Escape, closing the window or Ctrl-C end it");
+  DUBSAR_ASSIGN(const LiveResult done, run_live(mesh, live, progress));
+  VerbResult out = describe(done.display, done, mesh.triangles.size(), options.fps > 0);
+  out.json["frames_per_s_while_moving"] = done.fps;
+  out.json["sources"] = nlohmann::json::array();
+  out.text += fmt::format("frames a second while things moved: {:.1f}\n", done.fps);
+  for (const SourceRow& row : done.rows) {
+    out.json["sources"].push_back({{"source", row.spec}, {"state", health_name(row.health)}, {"reason", row.reason}});
+    out.text += fmt::format("source {}: {}{}{}\n", row.spec, health_name(row.health), row.reason.empty() ? "" : ", ",
+                            row.reason);
+  }
+  return out;
+}
+
+Result<VerbResult> run(const Options& options, Progress& progress) {
+  if (!options.record.empty()) DUBSAR_TRY(check_output_path(options.record));
+  return options.offscreen ? run_offscreen_verb(options, progress) : run_window_verb(options, progress);
+}
+
+}  // namespace
+
+Verb add_view_verb(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = program.add_subcommand("view", "turn a surface on a display with hands, head and mouse");
+  command->add_option("IN", options->in, "EXA, PLY, OBJ, STL or GLB file")->required();
+  std::string sinks, sources;
+  for (const SinkBackend& sink : output_sinks()) sinks += (sinks.empty() ? "" : ", ") + std::string(sink.name);
+  for (const InputBackend& source : input_sources())
+    sources += (sources.empty() ? "" : ", ") + std::string(source.name);
+  command->add_option("--display", options->display, "NAME[:options]: " + sinks);
+  command->add_option("--plugin", options->plugins, "a display from a shared library; loading it runs its code")
+      ->type_name("FILE.so")
+      ->allow_extra_args(false);
+  command->add_option("--input", options->inputs, "NAME[:options],...: " + sources);
+  command->add_option("--script", options->script, "simulated people: the same as --input scripted:FILE")
+      ->type_name("FILE");
+  command->add_option("--mapping", options->mapping, "which gesture does what (docs/input.md)")->type_name("FILE");
+  command->add_flag("--offscreen", options->offscreen, "without a window, in simulated time");
+  command->add_option("--frames", options->frames, "folder for pictures of the frames")->type_name("DIR");
+  command->add_option("--every", options->every, "write only each N-th frame")->check(CLI::Range(1, 100000));
+  command->add_option("--record", options->record, "write the input for --input replay:FILE")->type_name("FILE");
+  command->add_option("--size", options->size,
+                      "WIDTHxHEIGHT of the window (1280x720; offscreen 960x540, or the panel's own)");
+  command->add_option("--monitor", options->monitor,
+                      "part of the name of the monitor to use (dubsar displays lists them)");
+  command->add_flag("--fullscreen", options->fullscreen,
+                    "cover the monitor; displays that need exact pixels do so by themselves");
+  command->add_flag("--windowed", options->windowed, "never cover the monitor");
+  command
+      ->add_option("--fps", options->fps,
+                   "simulated time: N frames a second however long they take (offscreen 30; a window: real time)")
+      ->check(CLI::Range(1.0, 240.0));
+  command
+      ->add_option("--seconds", options->seconds,
+                   "end after this time at the latest (offscreen 60, a window stays open)")
+      ->check(CLI::Range(0.1, 3600.0));
+  command->add_option("--bridge-port", options->bridge_port, "of Looking Glass Bridge, for panel auto")
+      ->check(CLI::Range(0, 65535));
+  command
+      ->add_option("--display-delay-ms", options->display_delay_ms,
+                   "time from cameras to light, for the prediction of heads")
+      ->check(CLI::Range(0.0, 100.0));
+  command->add_option("--view", options->view,
+                      "the home view: front, back, left ... or orbit:AZIMUTH,ELEVATION[,ROLL]");
+  command->add_option("--style", options->style, "shading, as of render");
+  command->add_option("--partition", options->partitions, "only these parts: names or ids, e.g. tablet")
+      ->delimiter(',');
+  command->add_option("--samples", options->samples, "samples per pixel side (2; offscreen 1)")
+      ->check(CLI::Range(1, 8));
+  command->footer(
+      "In the window: F1 shows what mouse, keys and hands do and how the sources are; F2 goes to the next display, F11 "
+      "covers\n"
+      "the monitor, Escape ends.\n"
+      "Examples:\n"
+      "  dubsar view tablet.exa\n"
+      "  dubsar view tablet.exa --display anaglyph --partition tablet\n"
+      "  dubsar view tablet.exa --display lenticular:auto --input mouse,keyboard,leapc\n"
+      "  dubsar view tablet.exa --offscreen --display quilt:looking-glass-portrait --script visitor.json --frames "
+      "pictures\n"
+      "  dubsar view tablet.exa --offscreen --display lenticular:spatiallabs-15.6 --script scholar.json --frames "
+      "pictures --every 15");
+  return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,100 @@
+// The second half of extraction: count, prefix sums, write at final places. Every cell writes its vertices and its own
+// corners of the x-quads around its active edges, so that no adjacency is searched and nothing depends on threads.
+#include <algorithm>
+#include <atomic>
+#include <limits>
+
+#include "core/base/budget.h"
+#include "core/base/parallel.h"
+#include "core/extract/cell_kernels.h"
+#include "core/extract/extract.h"
+#include "core/extract/open_boundary.h"
+#include "core/extract/row_kernels.h"
+
+namespace dubsar {
+namespace {
+
+constexpr std::int64_t kMaxVertices = std::int64_t{std::numeric_limits<std::uint32_t>::max()} - 1;
+
+}  // namespace
+
+Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, Progress& progress) {
+  DUBSAR_TRY(check_signs(samples));
+  DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(samples));
+  DUBSAR_TRY(check_samples(samples, index.counts()));
+  const Dims& dims = samples.dims;
+  const std::int64_t grain = rows_per_chunk(dims.x);
+  const std::int64_t rows_y = dims.y + 1, rows = rows_y * (dims.z + 1);
+  const auto row_of = [&](std::int64_t r) { return CellRow{r % rows_y, r / rows_y}; };
+  std::atomic<std::int64_t> done{0};
+  const auto advance = [&](std::int64_t cell_rows) {
+    // Half of the voxels for counting, half for writing; the sum of the steps is exactly the number of voxels.
+    const auto voxels = [&](std::int64_t r) { return r * dims.count() / (2 * rows); };
+    const std::int64_t before = done.fetch_add(cell_rows);
+    progress.advance(voxels(before + cell_rows) - voxels(before));
+  };
+
+  std::vector<CellRowCounts> counts(static_cast<std::size_t>(rows));
+  parallel_chunks(rows, grain, [&](std::int64_t begin, std::int64_t end) {
+    if (progress.cancelled()) return;
+    for (std::int64_t r = begin; r < end; ++r) {
+      counts[static_cast<std::size_t>(r)] = count_cells(samples, index, row_of(r));
+    }
+    advance(end - begin);
+  });
+  if (progress.cancelled()) return cancelled_error();
+  std::int64_t vertices = 0, incidences = 0;
+  for (CellRowCounts& row : counts) {
+    const CellRowCounts here = row;
+    row = {static_cast<std::uint32_t>(vertices), static_cast<std::uint32_t>(incidences)};
+    vertices += here.vertices;
+    incidences += here.incidences;
+  }
+  if (vertices > kMaxVertices || incidences > kMaxVertices) {
+    return fail(ErrorKind::kTryAgain,
+                "extract: the surface has {} vertices and {} incidences, at most {} can be numbered: choose another "
+                "isovalue, denoise or crop the volume",
+                vertices, incidences, kMaxVertices);
+  }
+  const std::int64_t quads = index.counts().edges + index.virtual_edges();
+  DUBSAR_TRY(check_memory("the dual mesh", static_cast<std::uint64_t>(vertices) * 16 +
+                                               static_cast<std::uint64_t>(quads) * 16 +
+                                               static_cast<std::uint64_t>(incidences) * 4));
+
+  QuadMesh mesh;
+  parallel_for(3, 1, [&](std::int64_t part) {  // page faults are half of the cost of memory
+    if (part == 0) mesh.quads.resize(static_cast<std::size_t>(quads));
+    if (part == 1) mesh.incident.resize(static_cast<std::size_t>(incidences));
+    if (part != 2) return;
+    mesh.positions.resize(static_cast<std::size_t>(vertices));
+    mesh.first_incident.resize(static_cast<std::size_t>(vertices) + 1);
+    mesh.first_incident.back() = static_cast<std::uint32_t>(incidences);
+  });
+  std::vector<std::uint8_t> in_layer(samples.closed ? 0 : static_cast<std::size_t>(vertices));
+  std::vector<std::vector<DoubledCorner>> doubled(static_cast<std::size_t>((rows + grain - 1) / grain));
+  parallel_chunks(rows, grain, [&](std::int64_t begin, std::int64_t end) {
+    if (progress.cancelled()) return;
+    CellRowOutput output;
+    output.mesh = &mesh;
+    output.doubled = &doubled[static_cast<std::size_t>(begin / grain)];
+    output.in_layer = samples.closed ? nullptr : &in_layer;
+    for (std::int64_t r = begin; r < end; ++r) {
+      const CellRowCounts& start = counts[static_cast<std::size_t>(r)];
+      output.first_vertex = start.vertices;
+      output.first_incidence = start.incidences;
+      write_cells(samples, index, row_of(r), output);
+    }
+    advance(end - begin);
+  });
+  if (progress.cancelled()) return cancelled_error();
+
+  for (const auto& chunk : doubled) mesh.doubled.insert(mesh.doubled.end(), chunk.begin(), chunk.end());
+  std::sort(mesh.doubled.begin(), mesh.doubled.end(), [](const DoubledCorner& a, const DoubledCorner& b) {
+    return a.quad != b.quad ? a.quad < b.quad : a.corner < b.corner;
+  });
+  mesh.mark_doubled();
+  if (samples.closed) return mesh;
+  return open_at_boundary(mesh, in_layer);
+}
+
+}  // namespace dubsar

@@ -1,0 +1,25 @@
+#pragma once
+// X-quads to triangles such that every edge stays simple, whatever the input (docs/manifold.md): 4-gons take either
+// diagonal, 5- and 6-gons only diagonals between opposite corners, adjacent doubled corners a Steiner vertex.
+
+#include <span>
+
+#include "core/extract/quad_mesh.h"
+#include "core/mesh/tri_mesh.h"
+
+namespace dubsar {
+
+struct Triangulation {
+  std::vector<Triangle> triangles;            ///< vertex ids; id >= mesh.vertex_count(): steiner[id - vertex_count()]
+  std::vector<std::uint32_t> first_triangle;  ///< of quad q: triangles [first_triangle[q], first_triangle[q + 1])
+  std::vector<glm::vec3> steiner;             ///< mean of the polygon's vertices
+};
+
+/// `vertex_normals` guide the diagonal of 4-gons (one per dual vertex, unit) or are empty. With normals: the crease
+/// follows the curvature, i.e. the diagonal is taken that lies nearer to the surface estimated from normals and
+/// positions (paper section 3.3). Without: the pair of triangles that deviates least from the mean plane. Either way a
+/// 4-gon that is not convex in its mean plane is cut at its reflex corner; ties: the diagonal with the lowest vertex
+/// id. Deterministic for any thread count. About 60 ns a quad and thread.
+Triangulation triangulate(const QuadMesh& mesh, std::span<const glm::vec3> vertex_normals);
+
+}  // namespace dubsar

@@ -1,0 +1,240 @@
+#include "core/filter/denoise.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string_view>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/filter/bilateral_kernels.h"
+#include "core/filter/gauss_kernels.h"
+#include "core/filter/slice_ring.h"
+
+namespace dubsar {
+namespace {
+
+constexpr std::int64_t kBatchBytes = 4 << 20;  // output slices made at a time: the chain stays in the caches
+constexpr std::int64_t kTile = 256;            // voxels in x: the window's rows of a tile stay in the first-level cache
+constexpr std::int64_t kTileRows = 32;
+
+std::int64_t batch_for(Dims dims) {
+  return std::clamp<std::int64_t>(kBatchBytes / (dims.slice() * static_cast<std::int64_t>(sizeof(float))), 1, 16);
+}
+
+bool uses_guide(DenoiseMethod method) {
+  return method == DenoiseMethod::kBilateral || method == DenoiseMethod::kJointBilateral;
+}
+
+/// Factor on guide values that leaves a range weight of the difference alone.
+float guide_scale(const DenoiseOptions& options) {
+  if (!uses_guide(options.method)) return 1.0F;
+  const double width = options.sigma * (options.range == RangeWeight::kTukey ? kTukeyScale : std::numbers::sqrt2);
+  return static_cast<float>(std::min(1.0 / width, static_cast<double>(std::numeric_limits<float>::max())));
+}
+
+/// One iteration of one filter.
+class FilterSource final : public SlabSource {
+ public:
+  FilterSource(SlabSource& source, const DenoiseOptions& options)
+      : source_(&source),
+        options_(options),
+        radius_(options.window / 2),
+        guide_radius_(options.method == DenoiseMethod::kJointBilateral ? 1 : 0),
+        scale_(guide_scale(options)),
+        batch_(batch_for(source.dims())),
+        image_(source.dims(), batch_ + 2 * (radius_ + guide_radius_), SliceRing::Rows::kPadded),
+        guide_(uses_guide(options.method) ? SliceRing(source.dims(), batch_ + 2 * radius_, SliceRing::Rows::kPadded)
+                                          : SliceRing({1, 1, 1}, 1, SliceRing::Rows::kPadded)) {}
+
+  Dims dims() const noexcept override { return source_->dims(); }
+  const GridFrame& frame() const noexcept override { return source_->frame(); }
+
+  Result<void> read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) override {
+    DUBSAR_CHECK(z_begin >= 0 && z_begin <= z_end && z_end <= dims().z);
+    DUBSAR_CHECK(static_cast<std::int64_t>(out.size()) >= (z_end - z_begin) * dims().slice());
+    for (std::int64_t z = z_begin; z < z_end; z += batch_) {
+      const std::int64_t end = std::min(z_end, z + batch_);
+      const std::int64_t halo = radius_ + guide_radius_;
+      DUBSAR_TRY(image_.load(*source_, {z - halo, end + halo}));
+      if (uses_guide(options_.method)) make_guide({z - radius_, end + radius_});
+      float* to = out.data() + (z - z_begin) * dims().slice();
+      if (options_.method == DenoiseMethod::kGauss) {
+        gauss({z, end}, to);
+      } else {
+        window_filter({z, end}, to);
+      }
+    }
+    return {};
+  }
+
+ private:
+  void make_guide(SliceRange wanted) {
+    const SliceRange part = guide_.missing(wanted);
+    if (part.empty()) return;
+    const Dims d = dims();
+    parallel_chunks((part.end - part.begin) * d.y, 16, [&](std::int64_t begin, std::int64_t end) {
+      Buffer<float> padded(d.x + 2);
+      float* line = padded.data() + 1;
+      for (std::int64_t i = begin; i < end; ++i) {
+        const std::int64_t y = i % d.y, z = part.begin + i / d.y;
+        float* to = guide_.row(y, z);
+        if (guide_radius_ == 0) {
+          const float* from = image_.row(y, z);
+          for (std::int64_t x = 0; x < d.x; ++x) to[x] = from[x] * scale_;
+        } else {
+          std::array<const float*, 9> rows{};
+          for (int k = 0; k < 9; ++k) rows[static_cast<std::size_t>(k)] = image_.row(y + k % 3 - 1, z + k / 3 - 1);
+          kernels::gauss3_yz(rows.data(), d.x, line);
+          line[-1] = line[0];
+          line[d.x] = line[d.x - 1];
+          kernels::gauss3_x(line, d.x, scale_, to);
+        }
+        guide_.pad_row(to);
+      }
+    });
+    guide_.hold(part);
+  }
+
+  /// Row pointers of the window around row y of slice z, `rows[side * dz + dy]`.
+  void gather(SliceRing& ring, std::int64_t y, std::int64_t z, const float** rows) const {
+    for (std::int64_t dz = -radius_; dz <= radius_; ++dz) {
+      const SliceRing::Slice slice = ring.slice(z + dz);
+      for (std::int64_t dy = -radius_; dy <= radius_; ++dy) *rows++ = slice.row(y + dy);
+    }
+  }
+
+  /// Bilateral filters and median: every output row sees the rows of a window.
+  void window_filter(SliceRange slices, float* out) {
+    const Dims d = dims();
+    const std::int64_t tiles_x = (d.x + kTile - 1) / kTile, tiles_y = (d.y + kTileRows - 1) / kTileRows;
+    parallel_for((slices.end - slices.begin) * tiles_x * tiles_y, 1, [&](std::int64_t tile) {
+      const std::int64_t x0 = tile % tiles_x * kTile, y0 = tile / tiles_x % tiles_y * kTileRows;
+      const std::int64_t x1 = std::min(x0 + kTile, d.x), y1 = std::min(y0 + kTileRows, d.y);
+      const std::int64_t z = slices.begin + tile / tiles_x / tiles_y;
+      std::array<const float*, 49> image{}, guide{};
+      const kernels::Window window{image.data(), guide.data(), static_cast<int>(radius_)};
+      for (std::int64_t y = y0; y < y1; ++y) {
+        gather(image_, y, z, image.data());
+        if (uses_guide(options_.method)) gather(guide_, y, z, guide.data());
+        float* to = out + (z - slices.begin) * d.slice() + y * d.x;
+        if (options_.method == DenoiseMethod::kMedian) {
+          kernels::median(window, x0, x1, to);
+        } else if (options_.range == RangeWeight::kTukey) {
+          kernels::bilateral_tukey(window, x0, x1, to);
+        } else {
+          kernels::bilateral_gauss(window, x0, x1, to);
+        }
+      }
+    });
+  }
+
+  void gauss(SliceRange slices, float* out) {
+    const Dims d = dims();
+    const int side = options_.window;
+    const std::vector<float> taps = binomial(side);
+    std::vector<float> plane;
+    for (float z : taps)
+      for (float y : taps) plane.push_back(z * y);
+    parallel_chunks((slices.end - slices.begin) * d.y, 16, [&](std::int64_t begin, std::int64_t end) {
+      Buffer<float> padded(d.x + 2 * radius_);
+      float* line = padded.data() + radius_;
+      std::array<const float*, 49> rows{};
+      for (std::int64_t i = begin; i < end; ++i) {
+        const std::int64_t y = i % d.y, z = slices.begin + i / d.y;
+        gather(image_, y, z, rows.data());
+        if (side == 3) {
+          kernels::gauss3_yz(rows.data(), d.x, line);
+        } else {
+          kernels::weighted_rows(rows.data(), plane.data(), side * side, d.x, line);
+        }
+        std::fill(line - radius_, line, line[0]);
+        std::fill(line + d.x, line + d.x + radius_, line[d.x - 1]);
+        if (side == 3) {
+          kernels::gauss3_x(line, d.x, 1.0F, out + i * d.x);
+        } else {
+          kernels::weighted_taps(line, taps.data(), side, d.x, out + i * d.x);
+        }
+      }
+    });
+  }
+
+  /// Row of Pascal's triangle with `side` entries, sum 1.
+  static std::vector<float> binomial(int side) {
+    std::vector<float> row{1.0F};
+    while (static_cast<int>(row.size()) < side) {
+      row.push_back(0.0F);
+      for (std::size_t k = row.size() - 1; k > 0; --k) row[k] = 0.5F * (row[k] + row[k - 1]);
+      row[0] *= 0.5F;
+    }
+    return row;
+  }
+
+  SlabSource* source_;
+  DenoiseOptions options_;
+  std::int64_t radius_, guide_radius_;
+  float scale_;
+  std::int64_t batch_;
+  SliceRing image_, guide_;
+};
+
+/// Owns the iterations; the last one is the result.
+class FilterChain final : public SlabSource {
+ public:
+  FilterChain(SlabSource& source, const DenoiseOptions& options) : last_(&source) {
+    for (int k = 0; k < options.iterations; ++k) {
+      filters_.push_back(std::make_unique<FilterSource>(*last_, options));
+      last_ = filters_.back().get();
+    }
+  }
+  Dims dims() const noexcept override { return last_->dims(); }
+  const GridFrame& frame() const noexcept override { return last_->frame(); }
+  Result<void> read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) override {
+    return last_->read(z_begin, z_end, out);
+  }
+
+ private:
+  std::vector<std::unique_ptr<FilterSource>> filters_;
+  SlabSource* last_;
+};
+
+}  // namespace
+
+Result<void> check(const DenoiseOptions& options) {
+  if (options.window != 3 && options.window != 5 && options.window != 7)
+    return fail(ErrorKind::kUsage, "denoise: window of {} voxels, expected 3, 5 or 7", options.window);
+  if (options.iterations < 0 || options.iterations > 100)
+    return fail(ErrorKind::kUsage, "denoise: {} iterations, expected 0 to 100", options.iterations);
+  if (uses_guide(options.method) && options.iterations > 0 && !(options.sigma > 0.0 && std::isfinite(options.sigma)))
+    return fail(ErrorKind::kUsage,
+                "denoise: sigma is {}, a bilateral filter needs the noise's standard deviation (> 0)", options.sigma);
+  return {};
+}
+
+Result<std::unique_ptr<SlabSource>> make_denoised(SlabSource& source, const DenoiseOptions& options) {
+  DUBSAR_TRY(check(options));
+  return std::make_unique<FilterChain>(source, options);
+}
+
+Result<void> denoise_in_place(Volume<float>& volume, const DenoiseOptions& options, Progress& progress) {
+  DUBSAR_TRY(check(options));
+  if (volume.dims.count() == 0) return {};
+  const Dims dims = volume.dims;
+  const std::int64_t batch = batch_for(dims);
+  for (int k = 0; k < options.iterations; ++k) {
+    VolumeSource source(volume);
+    FilterSource filter(source, options);
+    // The filter has taken the slices around a batch into its ring before the batch is written, and never asks for a
+    // slice twice while it is read in rising order.
+    for (std::int64_t z = 0; z < dims.z; z += batch) {
+      if (progress.cancelled()) return cancelled_error();
+      const std::int64_t end = std::min(dims.z, z + batch), count = (end - z) * dims.slice();
+      DUBSAR_TRY(filter.read(z, end, {volume.row(0, z), static_cast<std::size_t>(count)}));
+      progress.advance(count);
+    }
+  }
+  return {};
+}
+
+}  // namespace dubsar

@@ -1,0 +1,59 @@
+#pragma once
+// Automatic parameters from the histogram: noise, signal-to-noise ratio and threshold (paper sections 3.1 and 3.2).
+
+#include <string>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/filter/histogram.h"
+#include "core/volume/slab_source.h"
+
+namespace dubsar {
+
+enum class ThresholdMethod {
+  kAuto,     ///< the paper's valley rule, kept within kCapLow..kCapHigh of the way from air to material
+  kValley,   ///< the paper's rule alone: up from the valley to `factor` times its density
+  kSigmas,   ///< the paper's alternative: `factor` sigma below the upper peak
+  kHalf,     ///< half way between the peaks
+  kOtsu,     ///< maximal variance between two classes
+  kMixture,  ///< equal posterior of the two upper components of a Gaussian mixture
+};
+
+struct EstimateOptions {
+  ThresholdMethod method = ThresholdMethod::kAuto;
+  double factor = 0.0;  ///< 0: the paper's, 2 for the valley rule and 3 for the sigmas
+};
+
+struct Estimates {
+  double m_lo = 0.0, m_hi = 0.0;   ///< grey values of air and material (modes)
+  double sigma = 0.0;              ///< standard deviation of the noise in the material
+  double snr_db = 0.0;             ///< 20 log10((m_hi - m_lo) / sigma)
+  double snr_alt_db = 0.0;         ///< 10 log10((m_hi - m_lo) / sigma), the other reading of the paper's figures
+  double threshold = 0.0;          ///< isovalue; meaningless with a refusal
+  double threshold_valley = 0.0;   ///< what the paper's rule alone says; 0 without two peaks
+  double material_fraction = 0.0;  ///< of all voxels, above the threshold
+  std::string path;                ///< which way was taken and why, one sentence
+  std::string refusal;             ///< why no threshold can be given; empty when there is one
+};
+
+/// Cap of the valley rule, in parts of the way from m_lo to m_hi: within 0.1 voxel of the true surface, where the rule
+/// alone is 0.7 voxel off (measured: estimate.cpp).
+inline constexpr double kCapLow = 0.45, kCapHigh = 0.5;
+
+/// Estimates from a histogram (2,048 bins). `laplacian_sigma` is used where the histogram says nothing about the noise
+/// (0: not known; see laplacian_noise). Never fails: `refusal` says when no threshold can be given.
+Estimates estimate(const Histogram& histogram, double laplacian_sigma, const EstimateOptions& options = {});
+
+/// Counts the source and estimates; measures the Laplacian noise, in a second pass, only where it is needed.
+/// Errors: those of the source, kCancelled, and kBadData for a source without voxels.
+Result<Estimates> estimate(SlabSource& source, const EstimateOptions& options, Progress& progress);
+
+/// The threshold, or kBadData with the refusal as text.
+Result<double> automatic_threshold(const Estimates& estimates);
+
+/// Noise from the median absolute Laplacian of the slices: 1.4826 median |L| / sqrt(20) with the 5-point kernel. Edges
+/// hardly count. Exact for white noise; correlated noise comes out too small. When most residuals are 0 (a masked
+/// background) the others count. At most 65 slices are read, of at least 3x3 voxels; smaller ones give 0.
+Result<double> laplacian_noise(SlabSource& source, Progress& progress);
+
+}  // namespace dubsar

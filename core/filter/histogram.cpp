@@ -1,0 +1,150 @@
+#include "core/filter/histogram.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "core/base/parallel.h"
+
+namespace dubsar {
+namespace {
+
+constexpr std::uint32_t kSign = 0x80000000U;
+
+/// Unsigned integers in the order of the floats.
+std::uint32_t key_of(float value) {
+  const std::uint32_t bits = std::bit_cast<std::uint32_t>(value);
+  return (bits & kSign) != 0 ? ~bits : bits | kSign;
+}
+
+double value_of(std::uint32_t key) { return std::bit_cast<float>((key & kSign) != 0 ? key ^ kSign : ~key); }
+
+/// Adds `mass`, spread evenly over [begin, end), to the bins.
+void spread(Histogram& h, double begin, double end, double mass) {
+  const double bins = static_cast<double>(h.mass.size());
+  const double from = (begin - h.low) / h.width, to = (end - h.low) / h.width;
+  if (!(to > 0.0) || !(from < bins)) return;
+  const double per_bin = to > from ? mass / (to - from) : 0.0;
+  const auto first = static_cast<std::size_t>(std::max(from, 0.0));
+  if (to - from < 1e-9) {
+    h.mass[std::min(first, h.mass.size() - 1)] += mass;
+    return;
+  }
+  for (std::size_t bin = first; bin < h.mass.size() && static_cast<double>(bin) < to; ++bin) {
+    const double left = std::max(from, static_cast<double>(bin)), right = std::min(to, static_cast<double>(bin) + 1.0);
+    h.mass[bin] += per_bin * std::max(0.0, right - left);
+  }
+}
+
+double quantile(const std::vector<ValueCounts::Value>& values, double rank) {
+  double below = 0.0;
+  for (const auto& value : values) {
+    below += static_cast<double>(value.count);
+    if (below > rank) return value.centre;
+  }
+  return values.back().centre;
+}
+
+}  // namespace
+
+ValueCounts::Block& ValueCounts::block(std::size_t index) {
+  if (!blocks_[index]) blocks_[index] = std::make_unique<Block>();
+  return *blocks_[index];
+}
+
+void ValueCounts::add(std::span<const float> values) {
+  std::int64_t bad = 0;
+  for (const float value : values) {
+    if (!(std::abs(value) <= std::numeric_limits<float>::max())) {
+      ++bad;
+      continue;
+    }
+    min_ = std::min(min_, value);
+    max_ = std::max(max_, value);
+    const std::uint32_t key = key_of(value == 0.0F ? 0.0F : value);  // -0 is 0
+    ++block(key >> 16)[(key >> 8) & 0xFFU];
+  }
+  nonfinite_ += bad;
+  count_ += static_cast<std::int64_t>(values.size()) - bad;
+}
+
+void ValueCounts::merge(const ValueCounts& other) {
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    if (!other.blocks_[i]) continue;
+    Block& mine = block(i);
+    for (std::size_t k = 0; k < mine.size(); ++k) mine[k] += (*other.blocks_[i])[k];
+  }
+  count_ += other.count_;
+  nonfinite_ += other.nonfinite_;
+  min_ = std::min(min_, other.min_);
+  max_ = std::max(max_, other.max_);
+}
+
+std::vector<ValueCounts::Value> ValueCounts::values() const {
+  std::vector<Value> all;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    if (!blocks_[i]) continue;
+    for (std::size_t k = 0; k < blocks_[i]->size(); ++k) {
+      const std::int64_t count = (*blocks_[i])[k];
+      if (count == 0) continue;
+      const auto key = static_cast<std::uint32_t>(i << 16 | k << 8);
+      // Numbers with few digits, such as integers, are the first of their 256 patterns on the positive side and the
+      // last on the negative one: taking that one as the centre keeps them exact.
+      all.push_back({value_of((key & kSign) != 0 ? key : key | 0xFFU), count});
+    }
+  }
+  return all;
+}
+
+Result<ValueCounts> count_values(SlabSource& source, Progress& progress) {
+  const Dims dims = source.dims();
+  if (dims.count() == 0) return ValueCounts{};
+  constexpr std::int64_t kSlabVoxels = 4 << 20;
+  const std::int64_t height = std::clamp<std::int64_t>(kSlabVoxels / dims.slice(), 1, dims.z);
+  const std::int64_t parts = thread_count();
+  std::vector<ValueCounts> partial(static_cast<std::size_t>(parts));
+  Buffer<float> slab(dims.slice() * height);
+  for (std::int64_t z = 0; z < dims.z; z += height) {
+    if (progress.cancelled()) return cancelled_error();
+    const std::int64_t end = std::min(dims.z, z + height), count = (end - z) * dims.slice();
+    DUBSAR_TRY(source.read(z, end, slab.span()));
+    parallel_for(parts, 1, [&](std::int64_t part) {
+      const std::int64_t from = count * part / parts, to = count * (part + 1) / parts;
+      partial[static_cast<std::size_t>(part)].add({slab.data() + from, static_cast<std::size_t>(to - from)});
+    });
+    progress.advance(count);
+  }
+  for (std::size_t part = 1; part < partial.size(); ++part) partial[0].merge(partial[part]);
+  return std::move(partial[0]);
+}
+
+Histogram make_histogram(const ValueCounts& counts, int bins, double tail) {
+  Histogram h;
+  h.total = static_cast<double>(counts.count());
+  const std::vector<ValueCounts::Value> values = counts.values();
+  if (values.size() < 2) {
+    if (!values.empty()) h.low = values.front().centre;
+    return h;
+  }
+  double low = quantile(values, tail * h.total), high = quantile(values, (1.0 - tail) * h.total);
+  if (!(high > low)) {  // all but a few voxels are equal
+    low = values.front().centre;
+    high = values.back().centre;
+  }
+  const double range = high - low;
+  h.low = low - 0.02 * range;
+  h.width = 1.04 * range / bins;
+  h.mass.assign(static_cast<std::size_t>(bins), 0.0);
+  const double reach = range / 64.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double here = values[i].centre;
+    double before = i > 0 ? 0.5 * (here - values[i - 1].centre) : reach;
+    double after = i + 1 < values.size() ? 0.5 * (values[i + 1].centre - here) : reach;
+    if (i == 0) before = after;
+    if (i + 1 == values.size()) after = before;
+    spread(h, here - std::min(before, reach), here + std::min(after, reach), static_cast<double>(values[i].count));
+  }
+  return h;
+}
+
+}  // namespace dubsar

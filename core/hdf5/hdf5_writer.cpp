@@ -1,0 +1,194 @@
+#include <algorithm>
+#include <utility>
+
+#include "core/hdf5/hdf5_api.h"
+#include "core/hdf5/hdf5_file.h"
+
+namespace dubsar {
+using namespace hdf5_api;
+
+namespace {
+
+tl::unexpected<Error> write_failed(const std::string& what) {
+  return fail(ErrorKind::kIo, "hdf5: cannot write {} ({}); is the disk full?", what, reason());
+}
+
+Handle variable_string() {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.get(), H5T_VARIABLE);
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  return type;
+}
+
+Handle make_parents() {
+  Handle list(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(list.get(), 1);
+  return list;
+}
+
+Handle without_times(hid_t property_class) {
+  Handle list(H5Pcreate(property_class), H5Pclose);
+  H5Pset_obj_track_times(list.get(), false);
+  return list;
+}
+
+}  // namespace
+
+Result<Hdf5Writer> Hdf5Writer::create(const std::filesystem::path& path) {
+  DUBSAR_ASSIGN(AtomicFile file, AtomicFile::create(path));
+  Hdf5Writer writer(std::move(file));
+  const Library library;
+  writer.id_ = H5Fcreate(writer.file_.temporary_path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  if (writer.id_ < 0) return fail(ErrorKind::kCannotCreate, "hdf5: cannot create {} ({})", path.string(), reason());
+  return writer;
+}
+
+Hdf5Writer::Hdf5Writer(Hdf5Writer&& other) noexcept
+    : file_(std::move(other.file_)), id_(std::exchange(other.id_, -1)), datasets_(std::move(other.datasets_)) {
+  other.datasets_.clear();
+}
+
+Hdf5Writer::~Hdf5Writer() {
+  const Library library;
+  close();
+}
+
+void Hdf5Writer::close() noexcept {
+  for (const auto& [path, id] : datasets_) H5Dclose(id);
+  datasets_.clear();
+  if (id_ >= 0) H5Fclose(std::exchange(id_, -1));
+}
+
+Result<void> Hdf5Writer::create_group(const std::string& path) {
+  const Library library;
+  const Handle parents = make_parents();
+  const Handle creation = without_times(H5P_GROUP_CREATE);
+  const Handle group(H5Gcreate2(id_, path.c_str(), parents.get(), creation.get(), H5P_DEFAULT), H5Gclose);
+  if (!group.ok()) return write_failed(fmt::format("group \"{}\"", path));
+  return {};
+}
+
+Result<void> Hdf5Writer::create_dataset(const std::string& path, const Hdf5Storage& storage) {
+  DUBSAR_CHECK(id_ >= 0 && !storage.dims.empty() && !datasets_.contains(path));
+  DUBSAR_CHECK(storage.chunk.empty() ? storage.deflate == 0 && !storage.shuffle
+                                     : storage.chunk.size() == storage.dims.size());
+  const Library library;
+  const std::vector<hsize_t> dims(storage.dims.begin(), storage.dims.end());
+  const Handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
+  const Handle creation = without_times(H5P_DATASET_CREATE);
+  if (!storage.chunk.empty()) {
+    const std::vector<hsize_t> chunk(storage.chunk.begin(), storage.chunk.end());
+    H5Pset_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data());
+    if (storage.shuffle) H5Pset_shuffle(creation.get());
+    if (storage.deflate > 0) H5Pset_deflate(creation.get(), static_cast<unsigned int>(storage.deflate));
+  }
+  H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);  // every number is written by the caller
+  const Handle parents = make_parents();
+  const hid_t id = H5Dcreate2(id_, path.c_str(), file_type(storage.type, storage.order), space.get(), parents.get(),
+                              creation.get(), H5P_DEFAULT);
+  if (id < 0) return write_failed(fmt::format("dataset \"{}\"", path));
+  datasets_[path] = id;
+  return {};
+}
+
+Result<void> Hdf5Writer::write_slab_bytes(const std::string& path, std::uint64_t first, ScalarType type,
+                                          std::span<const std::byte> bytes) {
+  const auto found = datasets_.find(path);
+  DUBSAR_CHECK(found != datasets_.end());
+  const Library library;
+  const Handle space(H5Dget_space(found->second), H5Sclose);
+  std::vector<hsize_t> count(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.get())));
+  H5Sget_simple_extent_dims(space.get(), count.data(), nullptr);
+  std::uint64_t entry = static_cast<std::uint64_t>(scalar_bytes(type));
+  for (std::size_t axis = 1; axis < count.size(); ++axis) entry *= count[axis];
+  DUBSAR_CHECK(bytes.size() % entry == 0 && first + bytes.size() / entry <= count[0]);
+  count[0] = bytes.size() / entry;
+  if (count[0] == 0) return {};
+  std::vector<std::uint64_t> start(count.size(), 0), size(count.begin(), count.end());
+  start[0] = first;
+  const auto selection = select(found->second, start, size);
+  if (!selection || H5Dwrite(found->second, file_type(type, kNativeOrder), selection->memory.get(),
+                             selection->file.get(), H5P_DEFAULT, bytes.data()) < 0)
+    return write_failed(fmt::format("dataset \"{}\"", path));
+  return {};
+}
+
+Result<void> Hdf5Writer::write_string(const std::string& path, const std::string& text) {
+  const Library library;
+  const Handle type = variable_string();
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle parents = make_parents();
+  const Handle creation = without_times(H5P_DATASET_CREATE);
+  const Handle id(H5Dcreate2(id_, path.c_str(), type.get(), space.get(), parents.get(), creation.get(), H5P_DEFAULT),
+                  H5Dclose);
+  const char* value = text.c_str();
+  if (!id.ok() || H5Dwrite(id.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) < 0)
+    return write_failed(fmt::format("dataset \"{}\"", path));
+  return {};
+}
+
+Result<void> Hdf5Writer::write_table(const std::string& path, std::span<const std::string> columns,
+                                     std::span<const double> values) {
+  DUBSAR_CHECK(!columns.empty() && values.size() % columns.size() == 0);
+  Hdf5Storage storage;
+  storage.type = ScalarType::kF64;
+  storage.dims = {values.size() / columns.size(), columns.size()};
+  DUBSAR_TRY(write(path, storage, values));
+  return set_attribute(path, "columns", columns);
+}
+
+Result<void> Hdf5Writer::write_attribute(const std::string& object, const std::string& name, std::int64_t type,
+                                         std::int64_t count, const void* values) {
+  const Handle parent(H5Oopen(id_, object.c_str(), H5P_DEFAULT), H5Oclose);
+  const auto length = static_cast<hsize_t>(count);
+  const Handle space(count < 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &length, nullptr), H5Sclose);
+  const Handle id(H5Acreate2(parent.get(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  if (!parent.ok() || !id.ok() || H5Awrite(id.get(), type, values) < 0)
+    return write_failed(fmt::format("attribute \"{}\" of \"{}\"", name, object));
+  return {};
+}
+
+Result<void> Hdf5Writer::set_attribute(const std::string& object, const std::string& name, const std::string& text) {
+  const Library library;
+  const char* value = text.c_str();
+  return write_attribute(object, name, variable_string().get(), -1, &value);
+}
+
+Result<void> Hdf5Writer::set_attribute(const std::string& object, const std::string& name, double value) {
+  const Library library;
+  return write_attribute(object, name, H5T_NATIVE_DOUBLE, -1, &value);
+}
+
+Result<void> Hdf5Writer::set_attribute(const std::string& object, const std::string& name, std::int64_t value) {
+  const Library library;
+  return write_attribute(object, name, H5T_NATIVE_INT64, -1, &value);
+}
+
+Result<void> Hdf5Writer::set_attribute(const std::string& object, const std::string& name,
+                                       std::span<const double> values) {
+  const Library library;
+  return write_attribute(object, name, H5T_NATIVE_DOUBLE, static_cast<std::int64_t>(values.size()), values.data());
+}
+
+Result<void> Hdf5Writer::set_attribute(const std::string& object, const std::string& name,
+                                       std::span<const std::string> texts) {
+  const Library library;
+  std::vector<const char*> pointers;
+  for (const std::string& text : texts) pointers.push_back(text.c_str());
+  return write_attribute(object, name, variable_string().get(), static_cast<std::int64_t>(texts.size()),
+                         pointers.data());
+}
+
+Result<void> Hdf5Writer::commit() {
+  {
+    const Library library;
+    bool good = true;
+    for (const auto& [path, id] : datasets_) good = H5Dclose(id) >= 0 && good;
+    datasets_.clear();
+    good = H5Fclose(std::exchange(id_, -1)) >= 0 && good;
+    if (!good) return write_failed(file_.temporary_path().string());
+  }
+  return file_.commit();
+}
+
+}  // namespace dubsar

@@ -1,0 +1,173 @@
+#include "core/mesh/mesh_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numeric>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/base/result.h"
+
+namespace dubsar {
+namespace {
+
+bool is_degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+
+bool has_area(std::span<const glm::vec3> positions, const Triangle& t) {
+  const glm::dvec3 p(positions[t[0]]), a = glm::dvec3(positions[t[1]]) - p, b = glm::dvec3(positions[t[2]]) - p;
+  const glm::dvec3 n = glm::cross(a, b);
+  const double square = glm::dot(n, n);
+  return square > 0.0 && std::isfinite(square);
+}
+
+/// The link of one vertex: each triangle around it gives a directed link edge from its next to its last corner.
+class Link {
+ public:
+  void clear() { ends_.clear(); }
+  void add(std::uint32_t from, std::uint32_t to) {
+    const auto triangle = static_cast<std::uint32_t>(ends_.size() / 2);
+    ends_.push_back({from, triangle, true});
+    ends_.push_back({to, triangle, false});
+  }
+  /// Adds what this vertex says: edges are counted at their lower end.
+  void check(std::uint32_t vertex, MeshCheck& sum) {
+    std::sort(ends_.begin(), ends_.end(), [](const End& a, const End& b) { return a.neighbour < b.neighbour; });
+    const std::size_t triangles = ends_.size() / 2;
+    fan_.resize(triangles);
+    std::iota(fan_.begin(), fan_.end(), 0u);
+    std::size_t fans = triangles, path_ends = 0;
+    bool branches = false;
+    for (std::size_t i = 0, j; i < ends_.size(); i = j) {
+      std::size_t leaving = 0;
+      for (j = i; j < ends_.size() && ends_[j].neighbour == ends_[i].neighbour; ++j) {
+        leaving += ends_[j].leaves;
+        fans -= join(ends_[i].triangle, ends_[j].triangle);
+      }
+      const std::size_t degree = j - i;
+      branches |= degree > 2;
+      path_ends += degree == 1;
+      if (ends_[i].neighbour < vertex) continue;
+      ++sum.edges;
+      sum.boundary_edges += degree == 1;
+      sum.nonmanifold_edges += degree > 2;
+      sum.inconsistent_edges += degree == 2 && leaving != 1;
+    }
+    ++sum.vertices;
+    sum.nonmanifold_vertices += branches || fans != 1 || path_ends > 2;
+  }
+
+ private:
+  struct End {
+    std::uint32_t neighbour, triangle;
+    bool leaves;
+  };
+  std::uint32_t root(std::uint32_t t) {
+    while (fan_[t] != t) t = fan_[t] = fan_[fan_[t]];
+    return t;
+  }
+  std::size_t join(std::uint32_t a, std::uint32_t b) {
+    a = root(a);
+    b = root(b);
+    fan_[std::max(a, b)] = std::min(a, b);
+    return a != b;
+  }
+  std::vector<End> ends_;
+  std::vector<std::uint32_t> fan_;
+};
+
+std::int64_t count_components(std::size_t vertices, std::span<const Triangle> triangles,
+                              std::span<const std::uint32_t> first) {
+  std::vector<std::uint32_t> parent(vertices);
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  std::int64_t joined = 0;
+  for (const Triangle& t : triangles) {
+    if (is_degenerate(t)) continue;
+    for (std::size_t i = 1; i < 3; ++i) {
+      const std::uint32_t a = root(t[0]), b = root(t[i]);
+      if (a != b) {
+        parent[std::max(a, b)] = std::min(a, b);
+        ++joined;
+      }
+    }
+  }
+  std::int64_t used = 0;
+  for (std::size_t v = 0; v < vertices; ++v) used += first[v + 1] > first[v];
+  return used - joined;
+}
+
+MeshCheck add(MeshCheck a, const MeshCheck& b) {
+  a.vertices += b.vertices;
+  a.edges += b.edges;
+  a.boundary_edges += b.boundary_edges;
+  a.nonmanifold_edges += b.nonmanifold_edges;
+  a.inconsistent_edges += b.inconsistent_edges;
+  a.nonmanifold_vertices += b.nonmanifold_vertices;
+  a.degenerate_triangles += b.degenerate_triangles;
+  a.zero_area_triangles += b.zero_area_triangles;
+  return a;
+}
+
+}  // namespace
+
+MeshCheck check_mesh(std::span<const glm::vec3> positions, std::span<const Triangle> triangles) {
+  const std::size_t vertices = positions.size();
+  const auto count = static_cast<std::int64_t>(triangles.size());
+  DUBSAR_CHECK(triangles.size() < (std::size_t{1} << 32) / 3);
+  MeshCheck sum = parallel_reduce<MeshCheck>(
+      count, 1 << 16, {},
+      [&](std::int64_t begin, std::int64_t end) {
+        MeshCheck part;
+        for (const Triangle& t :
+             triangles.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin))) {
+          DUBSAR_CHECK(t[0] < vertices && t[1] < vertices && t[2] < vertices);
+          const bool degenerate = is_degenerate(t);
+          part.degenerate_triangles += degenerate;
+          part.zero_area_triangles += !degenerate && !has_area(positions, t);
+        }
+        return part;
+      },
+      add);
+
+  // Triangles around each vertex: three times 4 bytes a triangle, no edge is ever stored.
+  std::vector<std::uint32_t> first(vertices + 1, 0);
+  for (const Triangle& t : triangles) {
+    if (is_degenerate(t)) continue;
+    for (const std::uint32_t v : t) ++first[v];
+  }
+  std::uint32_t total = 0;
+  for (std::uint32_t& f : first) f = total += f;
+  std::vector<std::uint32_t> around(total);
+  for (std::size_t i = triangles.size(); i-- > 0;) {
+    if (is_degenerate(triangles[i])) continue;
+    for (const std::uint32_t v : triangles[i]) around[--first[v]] = static_cast<std::uint32_t>(i);
+  }
+  sum = parallel_reduce<MeshCheck>(
+      static_cast<std::int64_t>(vertices), 1 << 14, sum,
+      [&](std::int64_t begin, std::int64_t end) {
+        MeshCheck part;
+        Link link;
+        for (auto v = static_cast<std::uint32_t>(begin); v < static_cast<std::uint64_t>(end); ++v) {
+          if (first[v] == first[v + 1]) continue;
+          link.clear();
+          for (std::uint32_t i = first[v]; i < first[v + 1]; ++i) {
+            const Triangle& t = triangles[around[i]];
+            const std::size_t k = t[0] == v ? 0 : t[1] == v ? 1 : 2;
+            link.add(t[(k + 1) % 3], t[(k + 2) % 3]);
+          }
+          link.check(v, part);
+        }
+        return part;
+      },
+      add);
+  sum.triangles = count;
+  sum.components = count_components(vertices, triangles, first);
+  sum.euler = sum.vertices - sum.edges + (sum.triangles - sum.degenerate_triangles);
+  return sum;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,312 @@
+#include "core/parts/air_space.h"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+#include <utility>
+
+#include "core/base/parallel.h"
+
+namespace dubsar {
+namespace {
+
+constexpr std::int64_t kPadX = 64;
+
+/// Bits of the last word of a row that are inside the grid.
+std::uint64_t tail_mask(std::int64_t width) {
+  return (width & 63) == 0 ? ~std::uint64_t{0} : (std::uint64_t{1} << (width & 63)) - 1;
+}
+
+/// Slices of `words` words each that are worth a thread: starting one costs as much as 100 kB of bit work.
+std::int64_t slice_grain(std::int64_t words) {
+  return std::max<std::int64_t>(1, (1 << 15) / std::max<std::int64_t>(words, 1));
+}
+
+/// out = in dilated by one along x.
+void dilate_row(const std::uint64_t* in, std::uint64_t* out, std::int64_t words, std::uint64_t tail) {
+  for (std::int64_t w = 0; w < words; ++w) {
+    const std::uint64_t below = w > 0 ? in[w - 1] >> 63 : 0, above = w + 1 < words ? in[w + 1] << 63 : 0;
+    out[w] = in[w] | in[w] << 1 | below | in[w] >> 1 | above;
+  }
+  out[words - 1] &= tail;
+}
+
+/// One step of dilation by the 3 x 3 x 3 cube.
+BitVolume dilate_once(const BitVolume& in) {
+  const Dims d = in.dims();
+  const std::int64_t words = in.words_per_row();
+  const std::uint64_t tail = tail_mask(d.x);
+  BitVolume xy(d), out(d);
+  parallel_for(d.z, slice_grain(words * d.y), [&](std::int64_t z) {
+    std::vector<std::uint64_t> rows(static_cast<std::size_t>(words * d.y));
+    for (std::int64_t y = 0; y < d.y; ++y) dilate_row(in.row(y, z), rows.data() + y * words, words, tail);
+    for (std::int64_t y = 0; y < d.y; ++y) {
+      const std::uint64_t* here = rows.data() + y * words;
+      const std::uint64_t* before = y > 0 ? here - words : here;
+      const std::uint64_t* after = y + 1 < d.y ? here + words : here;
+      std::uint64_t* to = xy.row(y, z);
+      for (std::int64_t w = 0; w < words; ++w) to[w] = here[w] | before[w] | after[w];
+    }
+  });
+  parallel_for(d.z, slice_grain(words * d.y), [&](std::int64_t z) {
+    const std::int64_t slice = words * d.y;
+    const std::uint64_t* here = xy.row(0, z);
+    const std::uint64_t* before = z > 0 ? here - slice : here;
+    const std::uint64_t* after = z + 1 < d.z ? here + slice : here;
+    std::uint64_t* to = out.row(0, z);
+    for (std::int64_t w = 0; w < slice; ++w) to[w] = here[w] | before[w] | after[w];
+  });
+  return out;
+}
+
+/// a & ~b, word by word.
+void subtract(BitVolume& a, const BitVolume& b) {
+  const auto from = b.words();
+  const auto to = a.words();
+  for (std::size_t w = 0; w < to.size(); ++w) to[w] &= ~from[w];
+}
+
+struct RowRun {
+  std::uint32_t begin, end;
+};
+
+/// Runs of clear bits of a row.
+void clear_runs(const std::uint64_t* row, std::int64_t width, std::vector<RowRun>& runs) {
+  runs.clear();
+  std::int64_t x = 0;
+  const std::int64_t words = (width + 63) / 64;
+  const auto next = [&](std::int64_t from, bool set) {  // first x >= from whose bit equals `set`
+    std::int64_t w = from >> 6;
+    if (w >= words) return width;
+    std::uint64_t bits = (set ? row[w] : ~row[w]) & (~std::uint64_t{0} << (from & 63));
+    while (bits == 0) {
+      if (++w >= words) return width;
+      bits = set ? row[w] : ~row[w];
+    }
+    return std::min(width, w * 64 + std::countr_zero(bits));
+  };
+  while ((x = next(x, false)) < width) {
+    const std::int64_t end = next(x, true);
+    runs.push_back({static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(end)});
+    x = end;
+  }
+}
+
+/// Runs of the clear bits of a whole volume, joined where they overlap in neighbouring rows.
+struct RunGraph {
+  std::vector<std::int64_t> first;  ///< first run of each row
+  std::vector<RowRun> runs;
+  std::vector<std::uint32_t> parent;
+
+  std::uint32_t root(std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = root(a);
+    b = root(b);
+    parent[std::max(a, b)] = std::min(a, b);
+  }
+
+  explicit RunGraph(const BitVolume& blocked) {
+    const Dims d = blocked.dims();
+    std::vector<std::vector<RowRun>> of_slice(static_cast<std::size_t>(d.z));
+    first.assign(static_cast<std::size_t>(d.y * d.z + 1), 0);
+    parallel_for(d.z, slice_grain(blocked.words_per_row() * d.y), [&](std::int64_t z) {
+      std::vector<RowRun> row_runs;
+      auto& all = of_slice[static_cast<std::size_t>(z)];
+      for (std::int64_t y = 0; y < d.y; ++y) {
+        clear_runs(blocked.row(y, z), d.x, row_runs);
+        first[static_cast<std::size_t>(z * d.y + y)] = static_cast<std::int64_t>(row_runs.size());
+        all.insert(all.end(), row_runs.begin(), row_runs.end());
+      }
+    });
+    runs.reserve(static_cast<std::size_t>(exclusive_scan(first)));
+    for (const auto& slice : of_slice) runs.insert(runs.end(), slice.begin(), slice.end());
+    DUBSAR_CHECK(runs.size() < 0xffffffffu);
+    parent.resize(runs.size());
+    std::iota(parent.begin(), parent.end(), 0u);
+    for (std::int64_t z = 0; z < d.z; ++z)
+      for (std::int64_t y = 0; y < d.y; ++y) {
+        if (y > 0) join_rows(z * d.y + y - 1, z * d.y + y);
+        if (z > 0) join_rows((z - 1) * d.y + y, z * d.y + y);
+      }
+  }
+
+  void join_rows(std::int64_t row_a, std::int64_t row_b) {
+    std::int64_t a = first[static_cast<std::size_t>(row_a)], b = first[static_cast<std::size_t>(row_b)];
+    const std::int64_t end_a = first[static_cast<std::size_t>(row_a + 1)];
+    const std::int64_t end_b = first[static_cast<std::size_t>(row_b + 1)];
+    while (a < end_a && b < end_b) {
+      const RowRun &run_a = runs[static_cast<std::size_t>(a)], &run_b = runs[static_cast<std::size_t>(b)];
+      if (run_a.begin < run_b.end && run_b.begin < run_a.end)
+        join(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
+      if (run_a.end < run_b.end)
+        ++a;
+      else
+        ++b;
+    }
+  }
+};
+
+void set_run(std::uint64_t* row, const RowRun& run) {
+  for (std::uint32_t x = run.begin; x < run.end;) {
+    const std::uint32_t bit = x & 63, count = std::min(64 - bit, run.end - x);
+    const std::uint64_t mask = count == 64 ? ~std::uint64_t{0} : ((std::uint64_t{1} << count) - 1) << bit;
+    row[x >> 6] |= mask;
+    x += count;
+  }
+}
+
+/// Grid faces between set bits of a and set bits of b (disjoint volumes).
+std::int64_t count_faces(const BitVolume& a, const BitVolume& b) {
+  const Dims d = a.dims();
+  const std::int64_t words = a.words_per_row();
+  return parallel_reduce<std::int64_t>(
+      d.z, slice_grain(words * d.y), 0,
+      [&](std::int64_t z0, std::int64_t z1) {
+        std::int64_t count = 0;
+        const auto both = [&](std::uint64_t p, std::uint64_t q) { count += std::popcount(p & q); };
+        for (std::int64_t z = z0; z < z1; ++z)
+          for (std::int64_t y = 0; y < d.y; ++y) {
+            const std::uint64_t *ra = a.row(y, z), *rb = b.row(y, z);
+            for (std::int64_t w = 0; w < words; ++w) {
+              const std::uint64_t below_a = ra[w] << 1 | (w > 0 ? ra[w - 1] >> 63 : 0);
+              const std::uint64_t below_b = rb[w] << 1 | (w > 0 ? rb[w - 1] >> 63 : 0);
+              both(ra[w], below_b);
+              both(rb[w], below_a);
+            }
+            for (int axis = 0; axis < 2; ++axis) {
+              if (axis == 0 ? y == 0 : z == 0) continue;
+              const std::uint64_t* pa = axis == 0 ? a.row(y - 1, z) : a.row(y, z - 1);
+              const std::uint64_t* pb = axis == 0 ? b.row(y - 1, z) : b.row(y, z - 1);
+              for (std::int64_t w = 0; w < words; ++w) {
+                both(ra[w], pb[w]);
+                both(rb[w], pa[w]);
+              }
+            }
+          }
+        return count;
+      },
+      [](std::int64_t p, std::int64_t q) { return p + q; });
+}
+
+/// Gives back to the exterior what the erosion by r took, as far as it is air.
+Exterior grow_back(const BitVolume& inside, BitVolume eroded, int r) {
+  Exterior e;
+  e.crack_radius = r;
+  e.air = std::move(eroded);
+  for (int step = 0; r > 0 && step <= r; ++step) {
+    e.air = dilate_once(e.air);
+    subtract(e.air, inside);
+  }
+  BitVolume enclosed(inside.dims());
+  const auto in = inside.words(), air = std::as_const(e.air).words();
+  const auto to = enclosed.words();
+  for (std::size_t w = 0; w < to.size(); ++w) to[w] = ~(in[w] | air[w]);
+  const std::uint64_t tail = tail_mask(inside.dims().x);
+  const auto words = static_cast<std::size_t>(inside.words_per_row());
+  for (std::size_t w = words - 1; w < to.size(); w += words) to[w] &= tail;
+  e.enclosed_faces = count_faces(inside, enclosed);
+  return e;
+}
+
+}  // namespace
+
+BitVolume pad(const BitVolume& bits, int margin) {
+  const Dims d = bits.dims();
+  BitVolume result({d.x + 2 * kPadX, d.y + 2 * margin, d.z + 2 * margin});
+  for (std::int64_t z = 0; z < d.z; ++z)
+    for (std::int64_t y = 0; y < d.y; ++y)
+      std::copy_n(bits.row(y, z), bits.words_per_row(), result.row(y + margin, z + margin) + 1);
+  return result;
+}
+
+BitVolume crop(const BitVolume& bits, int margin) {
+  const Dims d = bits.dims();
+  BitVolume result({d.x - 2 * kPadX, d.y - 2 * margin, d.z - 2 * margin});
+  const std::int64_t words = result.words_per_row();
+  for (std::int64_t z = 0; z < result.dims().z; ++z)
+    for (std::int64_t y = 0; y < result.dims().y; ++y) {
+      std::copy_n(bits.row(y + margin, z + margin) + 1, words, result.row(y, z));
+      result.row(y, z)[words - 1] &= tail_mask(result.dims().x);
+    }
+  return result;
+}
+
+BitVolume dilate(const BitVolume& inside, int r) {
+  BitVolume result = inside;
+  for (int i = 0; i < r; ++i) result = dilate_once(result);
+  return result;
+}
+
+BitVolume flood_from_border(const BitVolume& blocked) {
+  const Dims d = blocked.dims();
+  RunGraph graph(blocked);
+  std::vector<bool> reached(graph.runs.size(), false);
+  const auto each_run = [&](const auto& visit) {
+    for (std::int64_t row = 0; row < d.y * d.z; ++row)
+      for (std::int64_t i = graph.first[static_cast<std::size_t>(row)];
+           i < graph.first[static_cast<std::size_t>(row + 1)]; ++i)
+        visit(row % d.y, row / d.y, static_cast<std::uint32_t>(i));
+  };
+  each_run([&](std::int64_t y, std::int64_t z, std::uint32_t i) {
+    const RowRun& run = graph.runs[i];
+    if (y == 0 || y == d.y - 1 || z == 0 || z == d.z - 1 || run.begin == 0 || run.end == d.x)
+      reached[graph.root(i)] = true;
+  });
+  BitVolume result(d);
+  each_run([&](std::int64_t y, std::int64_t z, std::uint32_t i) {
+    if (reached[graph.root(i)]) set_run(result.row(y, z), graph.runs[i]);
+  });
+  return result;
+}
+
+Result<Exterior> find_exterior(const BitVolume& inside, int largest_radius, Progress& progress) {
+  // Enclosing 85 % of what the widest closing encloses: cracks give steps of tens of per cent, relief on the
+  // outer wall that a wide closing bridges gives a few.
+  constexpr double kEnough = 0.85;
+  const int margin = largest_radius + 2;  // so that a dilated object near the border does not block the way around it
+  const BitVolume padded = pad(inside, margin);
+  std::vector<std::int64_t> faces;
+  BitVolume blocked = padded;
+  for (int r = 0; r <= largest_radius; ++r) {
+    if (progress.cancelled()) return cancelled_error();
+    if (r > 0) blocked = dilate_once(blocked);
+    faces.push_back(grow_back(padded, flood_from_border(blocked), r).enclosed_faces);
+  }
+  const auto most = static_cast<double>(*std::max_element(faces.begin(), faces.end()));
+  int chosen = 0;
+  while (static_cast<double>(faces[static_cast<std::size_t>(chosen)]) < kEnough * most) ++chosen;
+  if (progress.cancelled()) return cancelled_error();
+  Exterior exterior = grow_back(padded, flood_from_border(dilate(padded, chosen)), chosen);
+  exterior.air = crop(exterior.air, margin);
+  return exterior;
+}
+
+EnclosedAir::EnclosedAir(const BitVolume& inside, const BitVolume& exterior) : dims_(inside.dims()) {
+  BitVolume blocked = inside;
+  const auto from = exterior.words();
+  const auto to = blocked.words();
+  for (std::size_t w = 0; w < to.size(); ++w) to[w] |= from[w];
+  RunGraph graph(blocked);
+  std::vector<std::uint32_t> id(graph.runs.size(), kNone);
+  runs_.reserve(graph.runs.size());
+  for (std::uint32_t i = 0; i < graph.runs.size(); ++i) {
+    const std::uint32_t root = graph.root(i);
+    if (id[root] == kNone) id[root] = count_++;
+    runs_.push_back({graph.runs[i].begin, graph.runs[i].end, id[root]});
+  }
+  first_run_ = std::move(graph.first);
+}
+
+std::uint32_t EnclosedAir::at(std::int64_t x, std::int64_t y, std::int64_t z) const noexcept {
+  if (x < 0 || y < 0 || z < 0 || x >= dims_.x || y >= dims_.y || z >= dims_.z) return kNone;
+  const auto row = static_cast<std::size_t>(z * dims_.y + y);
+  const auto begin = runs_.begin() + first_run_[row], end = runs_.begin() + first_run_[row + 1];
+  const auto run =
+      std::partition_point(begin, end, [&](const Run& r) { return static_cast<std::int64_t>(r.end) <= x; });
+  return run != end && static_cast<std::int64_t>(run->begin) <= x ? run->component : kNone;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,259 @@
+#include "core/parts/face_roles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numeric>
+
+#include "core/base/parallel.h"
+#include "core/parts/min_cut.h"
+
+namespace dubsar {
+namespace {
+
+constexpr std::int64_t kGrain = 1 << 13;
+
+/// Relief up to this many grid steps wide does not bend the depth field.
+constexpr int kSealRadius = 6;
+
+/// The air in front of a face: the first sample along the normal that is not inside.
+std::uint32_t air_in_front(const BitVolume& inside, const BitVolume& exterior, const EnclosedAir& enclosed,
+                           const glm::vec3& centre, const glm::vec3& normal) {
+  const Dims d = inside.dims();
+  for (const float step : {0.5f, 0.75f, 1.0f, 1.25f, 1.5f, 2.0f}) {
+    const glm::vec3 p = centre + step * normal;
+    const std::int64_t x = std::lround(p.x), y = std::lround(p.y), z = std::lround(p.z);
+    if (x < 0 || y < 0 || z < 0 || x >= d.x || y >= d.y || z >= d.z) return FaceScene::kExterior;
+    if (inside.get(x, y, z)) continue;
+    return exterior.get(x, y, z) ? FaceScene::kExterior : enclosed.at(x, y, z);
+  }
+  return EnclosedAir::kNone;
+}
+
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  std::uint32_t root(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = root(a);
+    b = root(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+/// Two labels on the faces where active[f]. preference > 0: the face wants `true`, in units of area.
+/// Faces that clearly agree and meet without a crease are one node, which leaves a small graph with the same
+/// cut.
+Result<std::vector<bool>> cut_faces(const SurfaceModel& model, const FaceScene& scene, const std::vector<bool>& active,
+                                    const std::vector<float>& preference, Progress& progress) {
+  // Design note: crease weight exp(-(max(0, -k - 0.2) / 0.25)), lambda 2 to 4.
+  constexpr float kLambda = 3.0f, kFlat = 0.2f, kFall = 0.25f;
+  constexpr float kClear = 0.3f;    // preference per area
+  constexpr double kUnits = 256.0;  // integer capacity per unit of area or length
+  constexpr double kMostCost = 1 << 29;
+  const FaceGraph& graph = scene.graph;
+  const std::uint32_t faces = graph.faces();
+  const auto clear_side = [&](std::uint32_t f) {
+    return preference[f] > kClear * graph.area[f] ? 1 : preference[f] < -kClear * graph.area[f] ? -1 : 0;
+  };
+  Sets sets(faces);
+  for (std::uint32_t f = 0; f < faces; ++f) {
+    if (!active[f] || clear_side(f) == 0) continue;
+    for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
+      const std::uint32_t g = graph.neighbour[s];
+      if (g == FaceGraph::kNone || g < f || !active[g] || clear_side(g) != clear_side(f)) continue;
+      if (graph.curvature(f, g) > -kFlat) sets.join(f, g);
+    }
+  }
+  if (progress.cancelled()) return cancelled_error();
+  std::vector<std::uint32_t> node(faces, FaceGraph::kNone);
+  std::uint32_t nodes = 0;
+  for (std::uint32_t f = 0; f < faces; ++f)
+    if (active[f]) node[f] = sets.root(f) == f ? nodes++ : node[sets.root(f)];
+  std::vector<double> wish(nodes, 0.0);
+  for (std::uint32_t f = 0; f < faces; ++f)
+    if (active[f]) wish[node[f]] += static_cast<double>(preference[f]);
+  MinCut cut(nodes);
+  for (std::uint32_t n = 0; n < nodes; ++n) {
+    const auto cost = static_cast<std::int32_t>(std::lround(std::clamp(wish[n] * kUnits, -kMostCost, kMostCost)));
+    cut.add_node_cost(n, cost < 0 ? -cost : 0, cost > 0 ? cost : 0);
+  }
+  for (std::uint32_t f = 0; f < faces; ++f) {
+    if (!active[f]) continue;
+    for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
+      const std::uint32_t g = graph.neighbour[s];
+      if (g == FaceGraph::kNone || g < f || !active[g] || node[g] == node[f]) continue;
+      const float crease = std::exp(-std::max(0.0f, -graph.curvature(f, g) - kFlat) / kFall);
+      const float length = side_length(model.mesh, f, s - graph.first_side[f]);
+      cut.add_edge(node[f], node[g],
+                   1 + static_cast<std::int32_t>(std::lround(kUnits * static_cast<double>(kLambda * crease * length))));
+    }
+  }
+  DUBSAR_TRY(cut.solve(progress));
+  std::vector<bool> result(faces, false);
+  for (std::uint32_t f = 0; f < faces; ++f)
+    if (active[f]) result[f] = cut.on_source_side(node[f]);
+  return result;
+}
+
+/// Near-tangential faces say little: the vote grows with the square of the cosine up to 0.5.
+float vote(float cosine) {
+  const float g = std::clamp(2.0f * cosine, -1.0f, 1.0f);
+  return g * std::abs(g);
+}
+
+/// Median depth of the faces at enclosed air that look inwards.
+float wall_thickness(const FaceScene& scene) {
+  std::vector<float> depths;
+  for (std::size_t f = 0; f < scene.air.size(); ++f)
+    if (scene.air[f] < FaceScene::kExterior && scene.inward[f] > 0.5f) depths.push_back(scene.depth[f]);
+  if (depths.empty()) return std::numeric_limits<float>::max();
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return std::max(*middle, 1.0f);
+}
+
+}  // namespace
+
+float side_length(const QuadMesh& mesh, std::uint32_t face, std::uint32_t side) {
+  if (!mesh.has_doubled(face)) {
+    const auto& v = mesh.quads[face];
+    return glm::distance(mesh.positions[v[side]], mesh.positions[v[(side + 1) & 3]]);
+  }
+  const Polygon polygon = mesh.polygon(face);
+  return glm::distance(mesh.positions[polygon.vertex[side]],
+                       mesh.positions[polygon.vertex[(side + 1) % static_cast<std::uint32_t>(polygon.size)]]);
+}
+
+Result<FaceScene> observe_faces(const SurfaceModel& model, const SegmentOptions& options, Progress& progress) {
+  FaceScene scene;
+  DUBSAR_ASSIGN(const Exterior exterior, find_exterior(model.samples.signs, options.largest_crack_radius, progress));
+  scene.crack_radius = exterior.crack_radius;
+  const EnclosedAir enclosed(model.samples.signs, exterior.air);
+  DUBSAR_ASSIGN(const DepthField depth,
+                DepthField::make(model.samples.signs, std::max(kSealRadius, exterior.crack_radius), progress));
+  DUBSAR_ASSIGN(scene.graph, FaceGraph::build(model.mesh, progress));
+  const std::uint32_t faces = scene.graph.faces();
+  scene.air.resize(faces);
+  scene.inward.resize(faces);
+  scene.depth.resize(faces);
+  parallel_chunks(faces, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    if (progress.cancelled()) return;
+    for (auto f = static_cast<std::size_t>(begin); f < static_cast<std::size_t>(end); ++f) {
+      const glm::vec3 &centre = scene.graph.centre[f], &normal = scene.graph.normal[f];
+      scene.air[f] = air_in_front(model.samples.signs, exterior.air, enclosed, centre, normal);
+      scene.inward[f] = glm::dot(normal, depth.inwards(centre));
+      scene.depth[f] = depth.depth(centre);
+    }
+  });
+  if (progress.cancelled()) return cancelled_error();
+  return scene;
+}
+
+FaceComponents find_components(const SurfaceModel& model, const FaceScene& scene,
+                               const std::vector<std::uint8_t>& label) {
+  const FaceGraph& graph = scene.graph;
+  const std::uint32_t faces = graph.faces();
+  Sets sets(faces);
+  for (std::uint32_t f = 0; f < faces; ++f)
+    for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
+      const std::uint32_t g = graph.neighbour[s];
+      if (g != FaceGraph::kNone && g > f && label[g] == label[f]) sets.join(f, g);
+    }
+  FaceComponents components;
+  components.of_face.resize(faces);
+  std::vector<glm::dvec3> centre;
+  for (std::uint32_t f = 0; f < faces; ++f) {
+    if (sets.root(f) == f) {
+      components.of_face[f] = static_cast<std::uint32_t>(components.info.size());
+      components.info.push_back({.first_face = f});
+      centre.emplace_back(0.0);
+    }
+    const std::uint32_t c = components.of_face[f] = components.of_face[sets.root(f)];
+    FaceComponents::Info& info = components.info[c];
+    const auto area = static_cast<double>(graph.area[f]);
+    info.area += area;
+    info.lowest = glm::min(info.lowest, graph.centre[f]);
+    info.highest = glm::max(info.highest, graph.centre[f]);
+    if (scene.air[f] == FaceScene::kExterior)
+      info.exterior_area += area;
+    else
+      info.inward_area += area * static_cast<double>(vote(scene.inward[f]));
+    centre[c] += area * glm::dvec3(graph.centre[f]);
+    for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
+      const std::uint32_t g = graph.neighbour[s];
+      if (g == FaceGraph::kNone || label[g] != label[f])
+        info.border += static_cast<double>(side_length(model.mesh, f, s - graph.first_side[f]));
+    }
+  }
+  for (std::size_t c = 0; c < centre.size(); ++c)
+    if (components.info[c].area > 0.0) centre[c] /= components.info[c].area;
+  for (std::uint32_t f = 0; f < faces; ++f) {
+    const std::uint32_t c = components.of_face[f];
+    components.info[c].volume += glm::dot(glm::dvec3(graph.centre[f]) - centre[c], glm::dvec3(graph.normal[f])) *
+                                 static_cast<double>(graph.area[f]) / 3.0;
+  }
+  return components;
+}
+
+Result<std::vector<FaceRole>> roles_by_cut(const SurfaceModel& model, const FaceScene& scene,
+                                           const SegmentOptions& options, Progress& progress) {
+  const FaceGraph& graph = scene.graph;
+  const std::uint32_t faces = graph.faces();
+  const FaceComponents whole = find_components(model, scene, std::vector<std::uint8_t>(faces, 0));
+  constexpr double kStray = 0.02;  // share of a surface whose faces may have looked through a thin wall
+  double total = 0.0;
+  for (const auto& info : whole.info) total += info.area;
+
+  std::vector<FaceRole> roles(faces, FaceRole::kInside);
+  std::vector<bool> undecided(faces, false), enclosed(faces, false);
+  bool any_undecided = false;
+  for (std::uint32_t f = 0; f < faces; ++f) {
+    const FaceComponents::Info& info = whole.info[whole.of_face[f]];
+    if (info.exterior_area <= kStray * info.area) {
+      if (info.volume > 0.0)
+        roles[f] = FaceRole::kCore;  // a body that touches nothing
+      else
+        enclosed[f] = info.area >= options.smallest_area * total;  // the gap, or a pore
+    } else if (info.exterior_area >= (1.0 - kStray) * info.area) {
+      roles[f] = FaceRole::kOutside;
+    } else {
+      undecided[f] = any_undecided = true;
+    }
+  }
+  std::vector<float> preference(faces, 0.0f);
+  if (any_undecided) {
+    // What can be seen through a crack lies deeper than the wall is thick.
+    const float wall = wall_thickness(scene);
+    for (std::uint32_t f = 0; f < faces; ++f)
+      if (undecided[f] && scene.air[f] != EnclosedAir::kNone)
+        preference[f] = graph.area[f] * (scene.air[f] == FaceScene::kExterior
+                                             ? std::clamp(2.0f - 2.0f * scene.depth[f] / wall, -1.0f, 1.0f)
+                                             : -1.0f);
+    DUBSAR_ASSIGN(const std::vector<bool> outside, cut_faces(model, scene, undecided, preference, progress));
+    for (std::uint32_t f = 0; f < faces; ++f)
+      if (undecided[f]) {
+        if (outside[f])
+          roles[f] = FaceRole::kOutside;
+        else
+          enclosed[f] = true;
+      }
+  }
+  // Where the envelope's clay was pressed onto the tablet, the rim of the contact is envelope: walls across
+  // the gap lean to it. On phantoms 0 to 0.35 are equal to 0.3 %, more takes tablet.
+  constexpr float kLean = 0.2f;
+  for (std::uint32_t f = 0; f < faces; ++f) preference[f] = -graph.area[f] * vote(scene.inward[f] + kLean);
+  DUBSAR_ASSIGN(const std::vector<bool> core, cut_faces(model, scene, enclosed, preference, progress));
+  for (std::uint32_t f = 0; f < faces; ++f)
+    if (enclosed[f]) roles[f] = core[f] ? FaceRole::kCore : FaceRole::kInside;
+  return roles;
+}
+
+}  // namespace dubsar

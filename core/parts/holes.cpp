@@ -1,0 +1,288 @@
+#include "core/parts/holes.h"
+
+#include <algorithm>
+#include <array>
+#include <glm/geometric.hpp>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "core/base/log.h"
+#include "core/base/parallel.h"
+#include "core/parts/border_loops.h"
+#include "core/parts/face_graph.h"
+
+namespace dubsar {
+namespace {
+
+constexpr std::uint32_t kNoFace = 0xffffffffu;
+
+std::uint64_t key(std::uint32_t a, std::uint32_t b) {
+  return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
+}
+
+/// First partition with the same part: the group of a partition.
+std::vector<std::uint8_t> groups_of(const std::vector<Partition>& partitions) {
+  const auto part = [](const Partition& p) -> const std::string& { return p.part.empty() ? p.name : p.part; };
+  std::vector<std::uint8_t> group(partitions.size());
+  for (std::size_t i = 0; i < partitions.size(); ++i) {
+    std::size_t first = 0;
+    while (part(partitions[first]) != part(partitions[i])) ++first;
+    group[i] = static_cast<std::uint8_t>(first);
+  }
+  return group;
+}
+
+/// Most frequent value, ties to the smaller.
+std::uint8_t majority(const std::vector<BorderEdge>& edges, const std::vector<std::uint32_t>& loop, bool left) {
+  std::array<int, 256> count{};
+  for (const std::uint32_t e : loop) ++count[left ? edges[e].left : edges[e].right];
+  return static_cast<std::uint8_t>(std::max_element(count.begin(), count.end()) - count.begin());
+}
+
+class HoleFiller {
+ public:
+  HoleFiller(SurfaceModel& model, const FaceGraph& graph, const HoleOptions& options, Progress& progress)
+      : model_(model), graph_(graph), options_(options), progress_(progress), group_(groups_of(model.partitions)) {}
+
+  Result<HoleReport> run() {
+    DUBSAR_TRY(fill_between_groups());
+    DUBSAR_TRY(fill_inside_groups());
+    for (const FillPatch& patch : model_.patches)
+      report_.triangles += static_cast<std::int64_t>(patch.triangles.size());
+    return report_;
+  }
+
+ private:
+  struct Task {
+    std::vector<std::uint32_t> vertices;  ///< in the sense of the patch's border
+    std::vector<glm::vec3> rim_normals;
+    std::uint8_t part = 0, reverse_part = FillPatch::kNoPart;
+  };
+
+  /// Sides of faces whose neighbour `differs` from them.
+  template <class Differs>
+  std::vector<BorderEdge> collect(const Differs& differs) const {
+    std::vector<BorderEdge> edges;
+    for (std::uint32_t f = 0; f < graph_.faces(); ++f)
+      for (std::uint32_t s = graph_.first_side[f]; s < graph_.first_side[f + 1]; ++s) {
+        const std::uint32_t g = graph_.neighbour[s];
+        if (g == FaceGraph::kNone) continue;
+        const std::uint8_t left = model_.quad_partition[f], right = model_.quad_partition[g];
+        if (left == right || !differs(left, right)) continue;
+        const Polygon polygon = model_.mesh.polygon(f);
+        const auto i = static_cast<std::size_t>(s - graph_.first_side[f]);
+        edges.push_back(
+            {polygon.vertex[i], polygon.vertex[(i + 1) % static_cast<std::size_t>(polygon.size)], f, left, right});
+      }
+    return edges;
+  }
+
+  /// Mean normal of the part's faces within some rings of a face: the very rim is rounded.
+  glm::vec3 normal_behind(std::uint32_t face) const {
+    constexpr std::size_t kMostFaces = 60;  // about 4 rings on one side of a border
+    std::vector<std::uint32_t> queue{face};
+    glm::vec3 sum(0.0f);
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+      const std::uint32_t f = queue[i];
+      sum += graph_.area[f] * graph_.normal[f];
+      for (std::uint32_t s = graph_.first_side[f]; s < graph_.first_side[f + 1] && queue.size() < kMostFaces; ++s) {
+        const std::uint32_t g = graph_.neighbour[s];
+        if (g == FaceGraph::kNone || group_[model_.quad_partition[g]] != group_[model_.quad_partition[face]]) continue;
+        if (std::find(queue.begin(), queue.end(), g) == queue.end()) queue.push_back(g);
+      }
+    }
+    const float length = glm::length(sum);
+    return length > 0.0f ? sum / length : glm::vec3(0.0f);
+  }
+
+  /// A hole is walked against the sense of the part's border, so that the patch continues the surface.
+  Task make_task(const std::vector<BorderEdge>& edges, const std::vector<std::uint32_t>& loop) const {
+    Task task;
+    for (auto e = loop.rbegin(); e != loop.rend(); ++e) {
+      task.vertices.push_back(edges[*e].to);
+      task.rim_normals.push_back(edges[*e].face == kNoFace ? glm::vec3(0.0f) : normal_behind(edges[*e].face));
+    }
+    for (const glm::vec3& normal : task.rim_normals)
+      if (normal == glm::vec3(0.0f)) {
+        task.rim_normals.clear();
+        break;
+      }
+    return task;
+  }
+
+  Result<void> fill_between_groups() {
+    std::vector<BorderEdge> all =
+        collect([&](std::uint8_t left, std::uint8_t right) { return group_[left] != group_[right]; });
+    std::unordered_set<std::uint64_t> shared;  // sides whose hole was filled for both
+    std::vector<Task> tasks;
+    for (std::uint8_t group = 0; group < group_.size(); ++group) {
+      std::vector<BorderEdge> edges;
+      for (const BorderEdge& e : all)
+        if (group_[e.left] == group && shared.count(key(e.from, e.to)) == 0) edges.push_back(e);
+      for (const auto& loop : join_loops(edges)) {
+        Task task = make_task(edges, loop);
+        task.part = majority(edges, loop, true);
+        const std::uint8_t beyond = group_[edges[loop.front()].right];
+        if (std::all_of(loop.begin(), loop.end(), [&](std::uint32_t e) { return group_[edges[e].right] == beyond; })) {
+          task.reverse_part = majority(edges, loop, false);
+          for (const std::uint32_t e : loop) shared.insert(key(edges[e].from, edges[e].to));
+        } else {
+          ++report_.unshared;
+        }
+        tasks.push_back(std::move(task));
+      }
+    }
+    report_.loops = static_cast<std::int64_t>(tasks.size());
+    DUBSAR_ASSIGN(report_.area, fill(tasks));
+    return {};
+  }
+
+  /// Where two partitions of one part meet, a membrane closes each of them alone.
+  Result<void> fill_inside_groups() {
+    std::vector<Task> tasks;
+    for (std::uint8_t id = 0; id < group_.size(); ++id) {
+      const auto members = std::count(group_.begin(), group_.end(), group_[id]);
+      if (members < 2) continue;
+      const auto partner = [&] {
+        for (std::uint8_t other = 0; other < group_.size(); ++other)
+          if (other != id && group_[other] == group_[id]) return other;
+        return FillPatch::kNoPart;
+      }();
+      if (members == 2 && partner < id) continue;  // closed together with its partner
+      std::vector<BorderEdge> edges = collect([&](std::uint8_t left, std::uint8_t) { return left == id; });
+      add_patch_borders(id, edges);
+      cancel_opposite(edges);
+      for (const auto& loop : join_loops(edges)) {
+        Task task = make_task(edges, loop);
+        task.part = id;
+        if (members == 2) task.reverse_part = partner;
+        tasks.push_back(std::move(task));
+      }
+    }
+    report_.membranes = static_cast<std::int64_t>(tasks.size());
+    DUBSAR_TRY(fill(tasks));
+    return {};
+  }
+
+  /// Border sides of the patches of a partition, in the sense that they have there.
+  void add_patch_borders(std::uint8_t id, std::vector<BorderEdge>& edges) const {
+    for (const FillPatch& patch : model_.patches) {
+      if (patch.part != id && patch.reverse_part != id) continue;
+      std::unordered_map<std::uint64_t, int> uses;
+      for (const Triangle& t : patch.triangles)
+        for (std::size_t i = 0; i < 3; ++i) ++uses[key(t[i], t[(i + 1) % 3])];
+      for (const Triangle& t : patch.triangles)
+        for (std::size_t i = 0; i < 3; ++i) {
+          std::uint32_t from = t[i], to = t[(i + 1) % 3];
+          if (uses[key(from, to)] != 1) continue;
+          if (patch.reverse_part == id) std::swap(from, to);
+          edges.push_back({from, to, kNoFace, id, id});
+        }
+    }
+  }
+
+  /// Sides that a face and a patch of the same partition run along in opposite directions are no border.
+  static void cancel_opposite(std::vector<BorderEdge>& edges) {
+    std::unordered_map<std::uint64_t, int> uses;
+    for (const BorderEdge& e : edges) ++uses[key(e.from, e.to)];
+    std::erase_if(edges, [&](const BorderEdge& e) { return uses[key(e.from, e.to)] == 2; });
+  }
+
+  /// Fills all loops and appends their patches; returns the area of the patches.
+  Result<double> fill(const std::vector<Task>& tasks) {
+    // Pairs of vertices that lie on more than one loop get no inner edge, since the other loop could make it
+    // too.
+    std::unordered_map<std::uint32_t, int> loops_of;
+    for (const Task& task : tasks)
+      for (const std::uint32_t v : task.vertices) ++loops_of[v];
+    std::vector<LoopFill> fills(tasks.size());
+    std::vector<Error> errors(tasks.size());
+    parallel_for(static_cast<std::int64_t>(tasks.size()), 1, [&](std::int64_t i) {
+      const auto at = static_cast<std::size_t>(i);
+      Result<LoopFill> filled = fill_loop(make_loop(tasks[at], loops_of), options_.fill, progress_);
+      if (filled)
+        fills[at] = std::move(*filled);
+      else
+        errors[at] = filled.error();
+      progress_.advance(static_cast<std::int64_t>(tasks[at].vertices.size()));
+    });
+    if (progress_.cancelled()) return cancelled_error();
+    for (const Error& error : errors)
+      if (!error.message.empty()) return tl::unexpected<Error>(error);
+
+    double area = 0.0;
+    const auto dual = static_cast<std::uint32_t>(model_.mesh.positions.size());
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      const auto n = static_cast<std::uint32_t>(tasks[i].vertices.size());
+      FillPatch patch{tasks[i].part, tasks[i].reverse_part, std::move(fills[i].added), std::move(fills[i].triangles)};
+      for (Triangle& t : patch.triangles)
+        for (std::uint32_t& v : t) v = v < n ? tasks[i].vertices[v] : v - n + dual;
+      model_.patches.push_back(std::move(patch));
+      area += fills[i].area;
+      report_.longest_loop = std::max(report_.longest_loop, static_cast<std::int64_t>(n));
+    }
+    return area;
+  }
+
+  Loop make_loop(const Task& task, const std::unordered_map<std::uint32_t, int>& loops_of) const {
+    Loop loop;
+    loop.rim_normals = task.rim_normals;
+    std::unordered_map<std::uint32_t, std::uint32_t> place;
+    for (const std::uint32_t v : task.vertices) {
+      place.emplace(v, static_cast<std::uint32_t>(loop.positions.size()));
+      loop.positions.push_back(model_.mesh.positions[v]);
+    }
+    auto taken = std::make_shared<std::unordered_set<std::uint64_t>>();
+    auto crossing = std::make_shared<std::vector<bool>>();
+    for (std::uint32_t i = 0; i < task.vertices.size(); ++i) {
+      crossing->push_back(loops_of.at(task.vertices[i]) > 1);
+      for (const std::uint32_t q : model_.mesh.quads_of(task.vertices[i])) {
+        const Polygon polygon = model_.mesh.polygon(q);
+        for (std::size_t c = 0; c < static_cast<std::size_t>(polygon.size); ++c)
+          if (const auto other = place.find(polygon.vertex[c]); other != place.end())
+            taken->insert(key(i, other->second));
+      }
+    }
+    loop.forbidden = [taken, crossing](std::uint32_t a, std::uint32_t b) {
+      return ((*crossing)[a] && (*crossing)[b]) || taken->count(key(a, b)) != 0;
+    };
+    return loop;
+  }
+
+  SurfaceModel& model_;
+  const FaceGraph& graph_;
+  const HoleOptions& options_;
+  Progress& progress_;
+  std::vector<std::uint8_t> group_;
+  HoleReport report_;
+};
+
+}  // namespace
+
+Result<HoleReport> fill_holes(SurfaceModel& model, const HoleOptions& options, Progress& progress) {
+  if (model.quad_partition.size() != model.mesh.quads.size() || model.partitions.empty())
+    return fail(ErrorKind::kBadData,
+                "holes: {} partition ids and {} partitions found, expected a segmented model of {} x-quads",
+                model.quad_partition.size(), model.partitions.size(), model.mesh.quads.size());
+  for (const std::uint8_t id : model.quad_partition)
+    if (id >= model.partitions.size())
+      return fail(ErrorKind::kBadData, "holes: an x-quad has partition {}, expected less than {}", id,
+                  model.partitions.size());
+  model.patches.clear();
+  progress.begin("fill holes", 0, "vertex");
+  DUBSAR_ASSIGN(const FaceGraph graph, FaceGraph::build(model.mesh, progress));
+  DUBSAR_ASSIGN(HoleReport report, HoleFiller(model, graph, options, progress).run());
+  DUBSAR_TRY(measure_partitions(model));
+  report.watertight = true;
+  for (const Partition& partition : model.partitions) {
+    if (partition.watertight) continue;
+    report.watertight = false;
+    log_warning("holes: partition \"{}\" is not watertight: {}", partition.name,
+                model.samples.closed ? "its borders do not join into loops"
+                                     : "the surface is open at the border of the volume");
+  }
+  progress.end();
+  return report;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,310 @@
+#include "core/parts/segment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/vector_relational.hpp>
+#include <map>
+
+#include "core/base/log.h"
+#include "core/parts/face_roles.h"
+
+namespace dubsar {
+namespace {
+
+constexpr std::size_t kMostPartitions = 8;
+
+/// The hidden body fills at least this share of what the outer surface encloses; smaller ones are loose
+/// pieces.
+constexpr double kSmallestCore = 0.03;
+
+using Infos = std::vector<FaceComponents::Info>;
+
+std::vector<std::uint8_t> as_labels(const std::vector<FaceRole>& roles) {
+  std::vector<std::uint8_t> labels(roles.size());
+  std::transform(roles.begin(), roles.end(), labels.begin(), [](FaceRole r) { return static_cast<std::uint8_t>(r); });
+  return labels;
+}
+
+double total_area(const Infos& infos) {
+  double sum = 0.0;
+  for (const auto& info : infos) sum += info.area;
+  return sum;
+}
+
+/// For each component the role of the neighbour with the longest common border; its own role where it has
+/// none.
+std::vector<FaceRole> strongest_neighbours(const SurfaceModel& model, const FaceScene& scene,
+                                           const FaceComponents& components, const std::vector<FaceRole>& roles,
+                                           const std::vector<bool>& wanted) {
+  std::vector<std::map<std::uint32_t, double>> border(components.info.size());
+  const FaceGraph& graph = scene.graph;
+  for (std::uint32_t f = 0; f < graph.faces(); ++f) {
+    const std::uint32_t c = components.of_face[f];
+    if (!wanted[c]) continue;
+    for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
+      const std::uint32_t g = graph.neighbour[s];
+      if (g != FaceGraph::kNone && components.of_face[g] != c)
+        border[c][components.of_face[g]] += static_cast<double>(side_length(model.mesh, f, s - graph.first_side[f]));
+    }
+  }
+  std::vector<FaceRole> result(components.info.size());
+  for (std::size_t c = 0; c < result.size(); ++c) {
+    double longest = 0.0;
+    result[c] = roles[components.info[c].first_face];
+    for (const auto& [other, length] : border[c])
+      if (length > longest) {
+        longest = length;
+        result[c] = roles[components.info[other].first_face];
+      }
+  }
+  return result;
+}
+
+/// Pieces that were cut off but are too small to be parts go to their strongest neighbour.
+void merge_small(const SurfaceModel& model, const FaceScene& scene, const SegmentOptions& options,
+                 std::vector<FaceRole>& roles) {
+  constexpr int kRounds = 4;  // a merged piece may free its neighbour to be merged; more rounds never changed anything
+  for (int round = 0; round < kRounds; ++round) {
+    const FaceComponents components = find_components(model, scene, as_labels(roles));
+    const double smallest = options.smallest_area * total_area(components.info);
+    std::vector<bool> small(components.info.size());
+    bool any = false;
+    for (std::size_t c = 0; c < small.size(); ++c) {
+      small[c] = components.info[c].border > 0.0 && components.info[c].area < smallest;
+      any = any || small[c];
+    }
+    if (!any) return;
+    const std::vector<FaceRole> target = strongest_neighbours(model, scene, components, roles, small);
+    for (std::uint32_t f = 0; f < scene.graph.faces(); ++f)
+      if (small[components.of_face[f]]) roles[f] = target[components.of_face[f]];
+  }
+}
+
+bool contains(const FaceComponents::Info& outer, const FaceComponents::Info& inner) {
+  return glm::all(glm::lessThan(outer.lowest, inner.lowest)) &&
+         glm::all(glm::greaterThan(outer.highest, inner.highest));
+}
+
+/// Which core components are the hidden body. Walls of pores that look outwards enclose a negative volume,
+/// loose pieces a small one, and a body whose neighbours merely stand close has no wall around it. Empty
+/// result: nothing is nested.
+std::vector<bool> accept_core(const Infos& infos, const std::vector<FaceRole>& role, const SegmentOptions& options) {
+  constexpr double kSmallestWall =
+      0.4;  // share of the core's area that an inner wall has, glued places left out of both
+  const double smallest_area = options.smallest_area * total_area(infos);
+  std::size_t shell = infos.size(), largest = infos.size();
+  const auto larger = [&](std::size_t c, std::size_t best) {
+    return best == infos.size() || infos[c].volume > infos[best].volume;
+  };
+  for (std::size_t c = 0; c < infos.size(); ++c)
+    if (role[c] == FaceRole::kOutside && larger(c, shell)) shell = c;
+  if (shell == infos.size() || infos[shell].volume <= 0.0) return {};
+  double core_area = 0.0, wall_area = 0.0;
+  for (std::size_t c = 0; c < infos.size(); ++c) {
+    if (!contains(infos[shell], infos[c])) continue;
+    if (role[c] == FaceRole::kCore && larger(c, largest)) largest = c;
+    if (role[c] == FaceRole::kInside) wall_area = std::max(wall_area, infos[c].area);
+  }
+  if (largest == infos.size() || infos[largest].volume < kSmallestCore * infos[shell].volume) return {};
+  std::vector<bool> accepted(infos.size(), false);
+  for (std::size_t c = 0; c < infos.size(); ++c) {
+    // What the cut separated belongs to the body if it has substance; what touches nothing must be the body
+    // itself.
+    const bool attached = infos[c].border > 0.0;
+    accepted[c] = c == largest || (role[c] == FaceRole::kCore && attached && infos[c].area >= smallest_area &&
+                                   infos[c].volume >= 0.01 * infos[largest].volume && contains(infos[shell], infos[c]));
+    if (accepted[c]) core_area += infos[c].area;
+  }
+  if (wall_area < kSmallestWall * core_area) return {};
+  return accepted;
+}
+
+class Partitioning {
+ public:
+  Partitioning(const FaceComponents& components, const SegmentOptions& options)
+      : components_(components), options_(options), id_(components.info.size(), FillPatch::kNoPart) {}
+
+  std::uint8_t add(std::string name, std::string part) {
+    const int id = static_cast<int>(partitions_.size());
+    partitions_.push_back({.id = id, .name = std::move(name), .part = std::move(part)});
+    return static_cast<std::uint8_t>(id);
+  }
+  void assign(std::size_t component, std::uint8_t id) { id_[component] = id; }
+  bool free(std::size_t component) const { return id_[component] == FillPatch::kNoPart; }
+
+  /// Closed bodies by falling volume; the first is called `first_name` if that is given.
+  void add_bodies(std::string_view first_name) {
+    std::vector<std::size_t> bodies;
+    const double smallest = options_.smallest_area * total_area(components_.info);
+    for (std::size_t c = 0; c < id_.size(); ++c) {
+      const FaceComponents::Info& info = components_.info[c];
+      if (free(c) && info.volume >= options_.smallest_volume && info.area >= smallest) bodies.push_back(c);
+    }
+    std::stable_sort(bodies.begin(), bodies.end(), [&](std::size_t a, std::size_t b) {
+      return components_.info[a].volume > components_.info[b].volume;
+    });
+    int fragment = 0;
+    for (const std::size_t c : bodies) {
+      if (partitions_.size() == kMostPartitions - 1) break;  // one place is kept for what is left
+      const std::string name = fragment == 0 && !first_name.empty()
+                                   ? std::string(first_name)
+                                   : fmt::format("fragment {}", fragment + first_name.empty());
+      ++fragment;
+      assign(c, add(name, name));
+    }
+  }
+
+  /// All that is left. Returns the number of components.
+  std::int64_t add_rest() {
+    const auto rest = std::count(id_.begin(), id_.end(), FillPatch::kNoPart);
+    if (rest > 0) {
+      const std::uint8_t id =
+          partitions_.empty() ? add("object", "object") : add("pores and crumbs", "pores and crumbs");
+      std::replace(id_.begin(), id_.end(), FillPatch::kNoPart, id);
+    }
+    return rest;
+  }
+
+  void store(SurfaceModel& model) && {
+    model.quad_partition.resize(components_.of_face.size());
+    for (std::size_t f = 0; f < components_.of_face.size(); ++f) model.quad_partition[f] = id_[components_.of_face[f]];
+    model.partitions = std::move(partitions_);
+  }
+
+ private:
+  const FaceComponents& components_;
+  const SegmentOptions& options_;
+  std::vector<std::uint8_t> id_;  ///< of each component
+  std::vector<Partition> partitions_;
+};
+
+/// Partitions from roles when a core was accepted.
+void store_nested(SurfaceModel& model, const FaceScene& scene, const SegmentOptions& options,
+                  const std::vector<FaceRole>& roles, SegmentReport& report) {
+  const FaceComponents components = find_components(model, scene, as_labels(roles));
+  const Infos& infos = components.info;
+  const auto role_of = [&](std::size_t c) { return roles[infos[c].first_face]; };
+  Partitioning partitioning(components, options);
+  const std::uint8_t tablet = partitioning.add("tablet", "tablet");
+  const std::uint8_t outside = partitioning.add("envelope outside", "envelope");
+  const std::uint8_t inside = partitioning.add("envelope inside", "envelope");
+  std::vector<FaceRole> role(infos.size());
+  for (std::size_t c = 0; c < infos.size(); ++c) role[c] = role_of(c);
+  const std::vector<bool> core = accept_core(infos, role, options);
+
+  std::size_t shell = infos.size();
+  std::vector<std::uint32_t> tablet_air;
+  for (std::size_t c = 0; c < infos.size(); ++c) {
+    if (core[c]) partitioning.assign(c, tablet);
+    if (role[c] == FaceRole::kOutside && (shell == infos.size() || infos[c].volume > infos[shell].volume)) shell = c;
+  }
+  partitioning.assign(shell, outside);
+  for (std::size_t f = 0; f < roles.size(); ++f)
+    if (core[components.of_face[f]] && scene.air[f] < FaceScene::kExterior) tablet_air.push_back(scene.air[f]);
+  std::sort(tablet_air.begin(), tablet_air.end());
+  tablet_air.erase(std::unique(tablet_air.begin(), tablet_air.end()), tablet_air.end());
+  // The inner wall: whatever was cut from the tablet or the outer wall, and walls around the tablet's air.
+  std::vector<double> at_tablet_air(infos.size(), 0.0);
+  for (std::size_t f = 0; f < roles.size(); ++f)
+    if (std::binary_search(tablet_air.begin(), tablet_air.end(), scene.air[f]))
+      at_tablet_air[components.of_face[f]] += static_cast<double>(scene.graph.area[f]);
+  for (std::size_t c = 0; c < infos.size(); ++c) {
+    if (!partitioning.free(c)) continue;
+    const bool wall = infos[c].volume < 0.0 && at_tablet_air[c] > 0.5 * infos[c].area;
+    if (infos[c].border > 0.0)
+      partitioning.assign(c, role[c] == FaceRole::kOutside ? outside : inside);
+    else if (wall)
+      partitioning.assign(c, inside);
+  }
+  partitioning.add_bodies("");
+  report.small_pieces = partitioning.add_rest();
+  std::move(partitioning).store(model);
+}
+
+double length_of_cuts(const SurfaceModel& model, const FaceGraph& graph) {
+  double length = 0.0;
+  for (std::uint32_t f = 0; f < graph.faces(); ++f)
+    for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
+      const std::uint32_t g = graph.neighbour[s];
+      if (g != FaceGraph::kNone && g > f && model.quad_partition[g] != model.quad_partition[f])
+        length += static_cast<double>(side_length(model.mesh, f, s - graph.first_side[f]));
+    }
+  return length;
+}
+
+}  // namespace
+
+Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options, Progress& progress) {
+  SegmentReport report;
+  progress.begin("segment", 3, "step");
+  DUBSAR_ASSIGN(const FaceScene scene, observe_faces(model, options, progress));
+  progress.advance(1);
+  const FaceComponents whole = find_components(model, scene, std::vector<std::uint8_t>(scene.graph.faces(), 0));
+  report.components = static_cast<std::int64_t>(whole.info.size());
+  report.crack_radius = scene.crack_radius;
+
+  model.patches.clear();
+  if (options.method == SegmentMethod::kNone) {
+    model.quad_partition.assign(scene.graph.faces(), 0);
+    model.partitions = {{.id = 0, .name = "object", .part = "object"}};
+    progress.end();
+    return report;
+  }
+  if (options.method == SegmentMethod::kBodies) {
+    Partitioning partitioning(whole, options);
+    partitioning.add_bodies("object");
+    report.small_pieces = partitioning.add_rest();
+    std::move(partitioning).store(model);
+    progress.end();
+    return report;
+  }
+  DUBSAR_ASSIGN(std::vector<FaceRole> roles, options.method == SegmentMethod::kNested
+                                                 ? roles_by_cut(model, scene, options, progress)
+                                                 : roles_by_concavity(model, scene, options, progress));
+  progress.advance(1);
+  merge_small(model, scene, options, roles);
+  if (progress.cancelled()) return cancelled_error();
+
+  // Core pieces that are not the hidden body fall back to the wall around them.
+  const FaceComponents components = find_components(model, scene, as_labels(roles));
+  std::vector<FaceRole> role(components.info.size());
+  for (std::size_t c = 0; c < role.size(); ++c) role[c] = roles[components.info[c].first_face];
+  const std::vector<bool> core = accept_core(components.info, role, options);
+  report.nested = !core.empty();
+  if (report.nested) {
+    for (std::size_t f = 0; f < roles.size(); ++f) {
+      const std::uint32_t c = components.of_face[f];
+      if (role[c] == FaceRole::kCore && !core[c]) roles[f] = FaceRole::kInside;
+    }
+    store_nested(model, scene, options, roles, report);
+    report.cut_length = length_of_cuts(model, scene.graph);
+  } else {
+    Partitioning partitioning(whole, options);
+    partitioning.add_bodies("object");
+    report.small_pieces = partitioning.add_rest();
+    std::move(partitioning).store(model);
+  }
+  log_info("segment: {} surfaces, {} partitions, {}, cracks up to {} steps closed", report.components,
+           model.partitions.size(), report.nested ? "a body inside another" : "no body inside another",
+           report.crack_radius > 0 ? 2 * report.crack_radius + 1 : 0);
+  progress.advance(1);
+  progress.end();
+  return report;
+}
+
+bool plausible_enclosure(const std::vector<Partition>& partitions) {
+  constexpr double kLeastFilling = 0.5;
+  const Partition *tablet = nullptr, *outside = nullptr, *inside = nullptr;
+  for (const Partition& p : partitions) {
+    if (p.name == "tablet") tablet = &p;
+    if (p.name == "envelope outside") outside = &p;
+    if (p.name == "envelope inside") inside = &p;
+  }
+  if (tablet == nullptr || outside == nullptr || inside == nullptr) return true;
+  const double cavity = -inside->volume_mm3;
+  return tablet->volume_mm3 > kLeastFilling * cavity && cavity > 0.0 && tablet->volume_mm3 < cavity &&
+         cavity < outside->volume_mm3;
+}
+
+}  // namespace dubsar

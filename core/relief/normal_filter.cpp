@@ -1,0 +1,164 @@
+#include "core/relief/normal_filter.h"
+
+#include <algorithm>
+
+#include "core/base/parallel.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/relief/normal_filter.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace dubsar::HWY_NAMESPACE {
+namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::CappedTag<float, FaceNeighbours::kLanes>;
+using V = hn::Vec<D>;
+
+struct Lanes4 {
+  V x, y, z, w;
+};
+
+/// Lane l: the four floats at from[l].
+#if HWY_TARGET == HWY_SCALAR
+HWY_INLINE Lanes4 load_transposed(D d, const float* const* from) {
+  return {hn::Set(d, from[0][0]), hn::Set(d, from[0][1]), hn::Set(d, from[0][2]), hn::Set(d, from[0][3])};
+}
+#else
+template <class Tag>
+HWY_INLINE Lanes4 load_transposed(Tag d, const float* const* from) {
+  constexpr std::size_t kWidth = hn::MaxLanes(Tag());
+  static_assert(kWidth == 4 || kWidth == 8 || kWidth == 16);
+  const hn::FixedTag<hn::TFromD<Tag>, 4> d4;
+  const auto row = [&](std::size_t i) HWY_ATTR {  // lanes i, i + 4, ... one per 128-bit block
+    if constexpr (kWidth == 4) {
+      return hn::LoadU(d4, from[i]);
+    } else {
+      const hn::FixedTag<hn::TFromD<Tag>, 8> d8;
+      const auto low = hn::Combine(d8, hn::LoadU(d4, from[i + 4]), hn::LoadU(d4, from[i]));
+      if constexpr (kWidth == 8)
+        return low;
+      else
+        return hn::Combine(d, hn::Combine(d8, hn::LoadU(d4, from[i + 12]), hn::LoadU(d4, from[i + 8])), low);
+    }
+  };
+  const hn::RepartitionToWide<Tag> d2;
+  const V r0 = row(0), r1 = row(1), r2 = row(2), r3 = row(3);
+  const auto xy01 = hn::BitCast(d2, hn::InterleaveLower(d, r0, r1));
+  const auto xy23 = hn::BitCast(d2, hn::InterleaveLower(d, r2, r3));
+  const auto zw01 = hn::BitCast(d2, hn::InterleaveUpper(d, r0, r1));
+  const auto zw23 = hn::BitCast(d2, hn::InterleaveUpper(d, r2, r3));
+  return {hn::BitCast(d, hn::InterleaveLower(d2, xy01, xy23)), hn::BitCast(d, hn::InterleaveUpper(d2, xy01, xy23)),
+          hn::BitCast(d, hn::InterleaveLower(d2, zw01, zw23)), hn::BitCast(d, hn::InterleaveUpper(d2, zw01, zw23))};
+}
+#endif
+
+/// Products and sums are kept apart (no fused multiply-add), so that all SIMD targets give the same bits.
+HWY_INLINE V dot(const V ax, const V ay, const V az, const V bx, const V by, const V bz) {
+  return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
+}
+
+constexpr std::uint32_t kMaxKept = 24;  ///< neighbours kept in registers and cache between the median steps
+
+void filter_slice(const FaceNeighbours::Chunk& chunk, std::size_t slice, std::size_t lane, const float* from, float* to,
+                  const NormalFilterOptions& options) {
+  const D d;
+  const std::size_t width = hn::Lanes(d);
+  const std::uint32_t rows = chunk.first_row[slice + 1] - chunk.first_row[slice];
+  const std::uint32_t* entries =
+      chunk.entries.data() + std::size_t{chunk.first_row[slice]} * FaceNeighbours::kLanes + lane;
+  const std::uint32_t* order = chunk.order.data() + slice * FaceNeighbours::kLanes + lane;
+  const hn::RebindToUnsigned<D> du;
+  const hn::RebindToSigned<D> di;
+
+  const float* own[FaceNeighbours::kLanes];
+  for (std::size_t l = 0; l < width; ++l) own[l] = from + std::size_t{order[l]} * 4;
+  const Lanes4 self = load_transposed(d, own);
+
+  const auto load_row = [&](std::uint32_t j) HWY_ATTR {
+    const std::uint32_t* row = entries + std::size_t{j} * FaceNeighbours::kLanes;
+    const float* p[FaceNeighbours::kLanes];
+    for (std::size_t l = 0; l < width; ++l) p[l] = from + std::size_t{row[l] & FaceNeighbours::kIndexMask} * 4;
+    Lanes4 n = load_transposed(d, p);
+    const auto shared = hn::ShiftRight<FaceNeighbours::kIndexBits>(hn::LoadU(du, row));
+    n.w = hn::Mul(n.w, hn::ConvertTo(d, hn::BitCast(di, shared)));
+    return n;
+  };
+  Lanes4 kept[kMaxKept];
+  const std::uint32_t kept_rows = std::min(rows, kMaxKept);
+  for (std::uint32_t j = 0; j < kept_rows; ++j) kept[j] = load_row(j);
+
+  const V two = hn::Set(d, 2.0f), epsilon = hn::Set(d, options.epsilon), zero = hn::Zero(d);
+  const V self_weight = hn::Mul(self.w, two);
+  V mx = self.x, my = self.y, mz = self.z;
+  for (int step = 0; step < options.median_steps; ++step) {
+    V sx = zero, sy = zero, sz = zero;
+    const auto add = [&](const V nx, const V ny, const V nz, const V weight) HWY_ATTR {
+      const V dx = hn::Sub(nx, mx), dy = hn::Sub(ny, my), dz = hn::Sub(nz, mz);
+      const V pull = hn::Div(weight, hn::Add(hn::Sqrt(dot(dx, dy, dz, dx, dy, dz)), epsilon));
+      sx = hn::Add(sx, hn::Mul(pull, nx));
+      sy = hn::Add(sy, hn::Mul(pull, ny));
+      sz = hn::Add(sz, hn::Mul(pull, nz));
+    };
+    add(self.x, self.y, self.z, self_weight);
+    for (std::uint32_t j = 0; j < kept_rows; ++j) add(kept[j].x, kept[j].y, kept[j].z, kept[j].w);
+    for (std::uint32_t j = kMaxKept; j < rows; ++j) {
+      const Lanes4 n = load_row(j);
+      add(n.x, n.y, n.z, n.w);
+    }
+    const V length2 = dot(sx, sy, sz, sx, sy, sz);
+    const auto valid = hn::Gt(length2, hn::Set(d, 1e-30f));  // normals that cancel leave m as it is
+    const V scale = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(length2));
+    mx = hn::IfThenElse(valid, hn::Mul(sx, scale), mx);
+    my = hn::IfThenElse(valid, hn::Mul(sy, scale), my);
+    mz = hn::IfThenElse(valid, hn::Mul(sz, scale), mz);
+  }
+  HWY_ALIGN float out[4 * FaceNeighbours::kLanes];
+  hn::StoreInterleaved4(mx, my, mz, self.w, d, out);
+  const std::size_t first = slice * FaceNeighbours::kLanes + lane;
+  for (std::size_t l = 0; l < width && first + l < static_cast<std::size_t>(chunk.faces); ++l)
+    std::copy_n(out + 4 * l, 4, to + std::size_t{order[l]} * 4);
+}
+
+}  // namespace
+
+void filter_chunk(const FaceNeighbours::Chunk& chunk, const float* from, float* to,
+                  const NormalFilterOptions& options) {
+  for (std::size_t slice = 0; slice * FaceNeighbours::kLanes < static_cast<std::size_t>(chunk.faces); ++slice)
+    for (std::size_t lane = 0; lane < FaceNeighbours::kLanes; lane += hn::Lanes(D()))
+      filter_slice(chunk, slice, lane, from, to, options);
+}
+
+}  // namespace dubsar::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace dubsar {
+HWY_EXPORT(filter_chunk);
+
+Result<void> filter_normals(const FaceNeighbours& neighbours, const NormalFilterOptions& options,
+                            std::vector<glm::vec4>& faces, Progress& progress) {
+  DUBSAR_CHECK(static_cast<std::int64_t>(faces.size()) == neighbours.face_count());
+  static_assert(sizeof(glm::vec4) == 4 * sizeof(float));
+  if (faces.empty()) return {};
+  std::vector<glm::vec4> next(faces.size());
+  const auto& chunks = neighbours.chunks();
+  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    parallel_chunks(static_cast<std::int64_t>(chunks.size()), 16, [&](std::int64_t begin, std::int64_t end) {
+      if (progress.cancelled()) return;
+      std::int64_t done = 0;
+      for (auto c = static_cast<std::size_t>(begin); c < static_cast<std::size_t>(end); ++c) {
+        HWY_DYNAMIC_DISPATCH(filter_chunk)(chunks[c], &faces.front().x, &next.front().x, options);
+        done += chunks[c].faces;
+      }
+      progress.advance(done);
+    });
+    if (progress.cancelled()) return cancelled_error();
+    faces.swap(next);
+  }
+  return {};
+}
+
+}  // namespace dubsar
+#endif

@@ -1,0 +1,219 @@
+#include "core/relief/occlusion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "core/base/parallel.h"
+#include "core/relief/ray_scene.h"
+
+namespace dubsar {
+namespace {
+
+constexpr std::int64_t kGrain = 256;  // vertices: 41 k rays, some 10 ms
+constexpr std::size_t kLanes = RayPacket::kRays;
+
+struct Frame {
+  glm::vec3 x, y, z;
+};
+
+/// Right-handed frame about a unit vector, without branches (Duff et al. 2017).
+Frame frame_about(glm::vec3 n) {
+  const float sign = std::copysign(1.0f, n.z), p = -1.0f / (sign + n.z), q = n.x * n.y * p;
+  return {{1.0f + sign * n.x * n.x * p, sign * q, -sign * n.x}, {q, sign + n.y * n.y * p, -n.y}, n};
+}
+
+bool finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// Traces the rays of up to 16 vertices: ray i of all of them together, since neighbours look the same way.
+class VertexGroup {
+ public:
+  VertexGroup(const RayScene& scene, const SkyRays& sky, const OcclusionOptions& options)
+      : scene_(scene), sky_(sky), options_(options) {}
+
+  void add(std::uint32_t vertex, glm::vec3 position, glm::vec3 normal) {
+    ids_[count_] = vertex;
+    frames_[count_] = frame_about(normal);
+    const glm::vec3 origin = position + options_.offset_vox * normal;
+    packet_.origin_x[count_] = origin.x;
+    packet_.origin_y[count_] = origin.y;
+    packet_.origin_z[count_] = origin.z;
+    packet_.active[count_] = true;
+    ++count_;
+  }
+  bool full() const noexcept { return count_ == kLanes; }
+
+  void trace(std::vector<float>& light) {
+    if (count_ == 0) return;
+    std::array<float, kLanes> taken{};
+    for (std::size_t ray = 0; ray < sky_.directions.size(); ++ray) {
+      const glm::vec3 local = sky_.directions[ray];
+      for (std::size_t i = 0; i < count_; ++i) {
+        const Frame& f = frames_[i];
+        packet_.direction_x[i] = f.x.x * local.x + f.y.x * local.y + f.z.x * local.z;
+        packet_.direction_y[i] = f.x.y * local.x + f.y.y * local.y + f.z.y * local.z;
+        packet_.direction_z[i] = f.x.z * local.x + f.y.z * local.y + f.z.z * local.z;
+      }
+      packet_.distance.fill(options_.radius_vox);
+      scene_.intersect(packet_);
+      for (std::size_t i = 0; i < count_; ++i) {
+        if (!packet_.hit[i]) continue;
+        const float near = packet_.from_behind[i] ? 1.0f : 1.0f - packet_.distance[i] / options_.radius_vox;
+        taken[i] += sky_.weights[ray] * std::max(near, 0.0f);
+      }
+    }
+    const auto sum = static_cast<float>(sky_.weight_sum);
+    for (std::size_t i = 0; i < count_; ++i) light[ids_[i]] = std::clamp(1.0f - taken[i] / sum, 0.0f, 1.0f);
+    packet_.active.fill(false);
+    count_ = 0;
+  }
+
+ private:
+  const RayScene& scene_;
+  const SkyRays& sky_;
+  const OcclusionOptions& options_;
+  RayPacket packet_;
+  std::array<std::uint32_t, kLanes> ids_{};
+  std::array<Frame, kLanes> frames_{};
+  std::size_t count_ = 0;
+};
+
+std::uint64_t spread3(std::uint64_t x) {  // 21 bits to every third bit
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x1f00000000ffffULL;
+  x = (x | x << 16) & 0x1f0000ff0000ffULL;
+  x = (x | x << 8) & 0x100f00f00f00f00fULL;
+  x = (x | x << 4) & 0x10c30c30c30c30c3ULL;
+  return (x | x << 2) & 0x1249249249249249ULL;
+}
+
+/// Vertices `ids` in an order where neighbours lie in the same small box and look to the same side.
+void sort_by_place_and_side(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
+                            std::vector<std::uint32_t>& ids) {
+  constexpr float kBox_vox = 4.0f;
+  glm::vec3 low(INFINITY);
+  for (const std::uint32_t v : ids) low = glm::min(low, positions[v]);
+  struct Item {
+    std::uint64_t key;
+    std::uint32_t vertex;
+  };
+  std::vector<Item> items(ids.size());
+  parallel_for(static_cast<std::int64_t>(ids.size()), 1 << 14, [&](std::int64_t i) {
+    const std::uint32_t v = ids[static_cast<std::size_t>(i)];
+    const glm::vec3 box = glm::min((positions[v] - low) / kBox_vox, glm::vec3(1e6f)), n = normals[v];
+    const glm::vec3 size = glm::abs(n);
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const auto side = static_cast<std::uint64_t>(2 * axis + (n[axis] < 0.0f));
+    const std::uint64_t place = spread3(static_cast<std::uint64_t>(box.x)) |
+                                spread3(static_cast<std::uint64_t>(box.y)) << 1 |
+                                spread3(static_cast<std::uint64_t>(box.z)) << 2;
+    items[static_cast<std::size_t>(i)] = {(place << 3) | side, v};
+  });
+  std::sort(items.begin(), items.end(),
+            [](const Item& a, const Item& b) { return a.key != b.key ? a.key < b.key : a.vertex < b.vertex; });
+  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = items[i].vertex;
+}
+
+Result<void> check_indices(std::span<const Triangle> triangles, std::size_t vertices) {
+  const std::uint32_t largest = parallel_reduce(
+      static_cast<std::int64_t>(triangles.size()), 1 << 16, 0u,
+      [&](std::int64_t begin, std::int64_t end) {
+        std::uint32_t part = 0;
+        for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t)
+          part = std::max({part, triangles[t][0], triangles[t][1], triangles[t][2]});
+        return part;
+      },
+      [](std::uint32_t a, std::uint32_t b) { return std::max(a, b); });
+  if (!triangles.empty() && largest >= vertices)
+    return fail(ErrorKind::kBadData, "occlusion: a triangle names vertex {}, the mesh has {}", largest, vertices);
+  return {};
+}
+
+}  // namespace
+
+SkyRays sky_rays(int count) {
+  DUBSAR_CHECK(count >= 1 && count <= 65536);
+  constexpr double kGoldenAngle = 2.39996322972865332;  // pi (3 - sqrt 5)
+  SkyRays sky;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1.0 - (i + 0.5) / count, r = std::sqrt(1.0 - z * z), azimuth = i * kGoldenAngle;
+    sky.directions.emplace_back(r * std::cos(azimuth), r * std::sin(azimuth), z);
+    const double weight = r * std::sqrt(z);
+    sky.weights.push_back(static_cast<float>(weight));
+    sky.weight_sum += weight;
+  }
+  return sky;
+}
+
+Result<std::vector<float>> ambient_light(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
+                                         std::span<const Triangle> triangles, const OcclusionOptions& options,
+                                         Progress& progress) {
+  DUBSAR_CHECK(normals.size() == positions.size());
+  DUBSAR_CHECK(options.partition.empty() || options.partition.size() == positions.size());
+  DUBSAR_CHECK(options.radius_vox > 0.0f);
+  DUBSAR_TRY(check_indices(triangles, positions.size()));
+  const SkyRays sky = sky_rays(options.rays);
+  const auto count = static_cast<std::int64_t>(positions.size());
+  progress.begin("ambient occlusion", count * options.rays, "ray");
+  std::vector<float> light(positions.size(), 1.0f);
+  DUBSAR_ASSIGN(const auto device, RayDevice::create(positions, thread_count()));
+
+  std::array<bool, 256> used{};
+  if (options.partition.empty()) used[0] = !positions.empty();
+  for (const std::uint8_t id : options.partition) used[id] = true;
+  std::vector<Triangle> own;
+  std::vector<std::uint32_t> ids;
+  for (std::size_t id = 0; id < used.size(); ++id) {
+    if (!used[id]) continue;
+    std::span<const Triangle> part = triangles;
+    if (!options.partition.empty()) {
+      own.clear();
+      for (const Triangle& t : triangles)
+        if (options.partition[t[0]] == id) own.push_back(t);
+      part = own;
+    }
+    DUBSAR_ASSIGN(const auto scene, RayScene::build(*device, part, progress));
+    ids.clear();
+    std::int64_t skipped = 0;
+    for (std::uint32_t v = 0; v < positions.size(); ++v) {
+      if (!options.partition.empty() && options.partition[v] != id) continue;
+      if (finite(positions[v]) && finite(normals[v]))
+        ids.push_back(v);
+      else
+        ++skipped;
+    }
+    sort_by_place_and_side(positions, normals, ids);
+    parallel_chunks(static_cast<std::int64_t>(ids.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      VertexGroup group(*scene, sky, options);
+      for (std::int64_t i = begin; i < end; ++i) {
+        const std::uint32_t v = ids[static_cast<std::size_t>(i)];
+        group.add(v, positions[v], normals[v]);
+        if (group.full() || i + 1 == end) {
+          if (progress.cancelled()) return;
+          group.trace(light);
+        }
+      }
+      progress.advance((end - begin) * options.rays);
+    });
+    progress.advance(skipped * options.rays);
+    if (progress.cancelled()) return cancelled_error();
+  }
+  progress.end();
+  return light;
+}
+
+Result<std::vector<std::uint8_t>> ambient_occlusion(std::span<const glm::vec3> positions,
+                                                    std::span<const glm::vec3> normals,
+                                                    std::span<const Triangle> triangles,
+                                                    const OcclusionOptions& options, Progress& progress) {
+  DUBSAR_ASSIGN(const std::vector<float> light, ambient_light(positions, normals, triangles, options, progress));
+  std::vector<std::uint8_t> steps(light.size());
+  parallel_for(static_cast<std::int64_t>(light.size()), 1 << 16, [&](std::int64_t i) {
+    const auto v = static_cast<std::size_t>(i);
+    steps[v] = static_cast<std::uint8_t>(std::lround(63.0f * light[v]));
+  });
+  return steps;
+}
+
+}  // namespace dubsar

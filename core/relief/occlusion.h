@@ -1,0 +1,51 @@
+#pragma once
+// Ambient occlusion per vertex (paper section 3.4.4): how much light of an even sky reaches it.
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/mesh/tri_mesh.h"
+
+namespace dubsar {
+
+struct OcclusionOptions {
+  int rays = 160;            ///< per vertex (paper); 1..65536
+  float radius_vox = 64.0f;  ///< surfaces further away take no light (paper)
+  /// Rays start this far above the vertex along its normal, so that neither rounding nor the roughness that the 4-bit
+  /// offsets leave (0.03 voxel) shades a vertex. Costs at most offset / radius of the value: 0.004.
+  float offset_vox = 0.25f;
+  /// One partition id per vertex, or empty. A ray only meets triangles of its vertex's partition: each part is lit as
+  /// if it lay alone in the hand. The partition of a triangle is that of its first vertex.
+  std::span<const std::uint8_t> partition = {};
+};
+
+/// Directions of the rays about +z and their weights. Fibonacci spiral: z_i = 1 - (i + .5) / n, azimuth i times the
+/// golden angle; weight w1 = sin(phi) sqrt(cos(phi)) with cos(phi) = z.
+struct SkyRays {
+  std::vector<glm::vec3> directions;
+  std::vector<float> weights;
+  double weight_sum = 0.0;
+};
+SkyRays sky_rays(int count);
+
+/// 1 - sum w1 w2 / sum w1 per vertex: 1 open, 0 dark; w2 = 1 - d / radius for a ray that meets a surface at distance
+/// d < radius, 0 for others. A ray that first meets the back of a triangle started under the surface: d = 0. (In open
+/// meshes this darkens what looks at their inner side.) `normals` are unit, one per vertex; a vertex whose normal or
+/// position is not finite gets 1.
+/// kBadData: a triangle names a vertex that is not there. kTryAgain: out of memory. Deterministic for any thread
+/// count. Progress in rays. Memory: about 100 bytes a triangle of the largest partition.
+Result<std::vector<float>> ambient_light(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
+                                         std::span<const Triangle> triangles, const OcclusionOptions& options,
+                                         Progress& progress);
+
+/// The same in 64 steps: round(63 light), as TriMesh::ao and VertexAttributes::ao hold it.
+Result<std::vector<std::uint8_t>> ambient_occlusion(std::span<const glm::vec3> positions,
+                                                    std::span<const glm::vec3> normals,
+                                                    std::span<const Triangle> triangles,
+                                                    const OcclusionOptions& options, Progress& progress);
+
+}  // namespace dubsar

@@ -1,0 +1,117 @@
+#include "devices/transport/replay_transport.h"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+namespace dubsar {
+
+class ReplayTransport final : public Transport {
+ public:
+  explicit ReplayTransport(ReplaySession& session) : session_(&session) {}
+
+  Result<std::size_t> read(std::span<std::byte> report, milliseconds timeout) override {
+    const auto& events = session_->recording_.events;
+    while (!lost_ && !session_->finished()) {
+      const RecordedEvent& event = events[session_->next_];
+      if (event.kind != WireEventKind::kRead && event.kind != WireEventKind::kLost) {
+        ++session_->next_;  // what the host did then is not done again
+        continue;
+      }
+      if (!due(event.time, timeout)) return std::size_t{0};
+      ++session_->next_;
+      session_->last_time_ = event.time;
+      if (event.kind == WireEventKind::kLost) {
+        lost_ = true;
+        break;
+      }
+      if (event.bytes.empty()) continue;
+      const std::size_t length = std::min(report.size(), event.bytes.size());
+      std::copy_n(event.bytes.begin(), length, report.begin());
+      return length;
+    }
+    return gone();
+  }
+
+  Result<void> write(std::span<const std::byte>) override {
+    if (lost_) return gone();
+    return {};
+  }
+  Result<void> set_feature(std::span<const std::byte>) override {
+    if (lost_) return gone();
+    return {};
+  }
+
+  Result<std::size_t> get_feature(std::uint8_t id, std::span<std::byte> out) override {
+    if (lost_) return gone();
+    const RecordedEvent* const event = answer(session_->next_feature_, [id](const RecordedEvent& e) {
+      return e.kind == WireEventKind::kFeatureGot && !e.bytes.empty() &&
+             std::to_integer<std::uint8_t>(e.bytes[0]) == id;
+    });
+    if (!event) return fail(ErrorKind::kBadData, "replay: the recording has no more answers for feature report {}", id);
+    return copy(*event, out);
+  }
+
+  Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data, milliseconds) override {
+    if (lost_) return gone();
+    if (!request.to_host()) return data.size();
+    const RecordedEvent* const event = answer(session_->next_control_, [&](const RecordedEvent& e) {
+      return e.kind == WireEventKind::kControl && e.request == request;
+    });
+    if (!event)
+      return fail(ErrorKind::kBadData, "replay: the recording has no more answers for control request {:#04x} {:#06x}",
+                  request.request, request.value);
+    return copy(*event, data);
+  }
+
+ private:
+  /// Waits at most `timeout` of the real time for a recorded time.
+  bool due(TimestampNs time, milliseconds timeout) const {
+    const auto ahead = [&] { return time - session_->recorded_now(); };
+    if (session_->factor_ == 0.0 || ahead() <= 0) return true;
+    const double wait_ns =
+        std::min(static_cast<double>(ahead()) / session_->factor_, static_cast<double>(timeout.count()) * 1e6);
+    if (wait_ns > 0.0) std::this_thread::sleep_for(std::chrono::nanoseconds(std::llround(wait_ns)));
+    return ahead() <= 0;
+  }
+  template <class Matches>
+  const RecordedEvent* answer(std::size_t& next, const Matches& matches) const {
+    const auto& events = session_->recording_.events;
+    for (std::size_t i = next; i < events.size(); ++i) {
+      if (!matches(events[i])) continue;
+      next = i + 1;
+      return &events[i];
+    }
+    return nullptr;
+  }
+  static std::size_t copy(const RecordedEvent& event, std::span<std::byte> out) {
+    const std::size_t length = std::min(out.size(), event.bytes.size());
+    std::copy_n(event.bytes.begin(), length, out.begin());
+    return length;
+  }
+  tl::unexpected<Error> gone() const {
+    if (session_->finished()) return fail(ErrorKind::kUnavailable, "replay: the recording is at its end");
+    return fail(ErrorKind::kUnavailable, "replay: the device was lost here when this was recorded");
+  }
+
+  ReplaySession* session_;
+  bool lost_ = false;
+};
+
+ReplaySession::ReplaySession(Recording recording, const Clock& clock, double factor)
+    : recording_(std::move(recording)),
+      clock_(&clock),
+      factor_(std::isfinite(factor) ? std::clamp(factor, 0.0, 1e6) : 1.0),
+      start_(clock.now()) {}
+
+TimestampNs ReplaySession::recorded_now() const noexcept {
+  if (factor_ == 0.0) return last_time_;
+  return static_cast<TimestampNs>(static_cast<double>(clock_->now() - start_) * factor_);
+}
+
+Result<std::unique_ptr<Transport>> ReplaySession::open() {
+  if (finished()) return fail(ErrorKind::kUnavailable, "replay: the recording is at its end");
+  return std::make_unique<ReplayTransport>(*this);
+}
+
+}  // namespace dubsar

@@ -1,0 +1,51 @@
+#pragma once
+// A recording that behaves like the device it was made of.
+
+#include <memory>
+
+#include "core/base/clock.h"
+#include "devices/transport/wire_recording.h"
+
+namespace dubsar {
+
+/// Plays one recording, through as many openings as it holds. Reports come in order, when they are due; what the host
+/// sends is accepted unseen; feature and control answers are the recorded ones, in order per request. The session must
+/// outlive its transports. One thread.
+class ReplaySession {
+ public:
+  /// `factor`: speed, 2 is twice as fast; 0: as fast as it is read. `clock` gives the real time and outlives this.
+  ReplaySession(Recording recording, const Clock& clock, double factor = 1.0);
+
+  /// Goes on behind the last loss. kUnavailable at the end of the recording.
+  Result<std::unique_ptr<Transport>> open();
+
+  /// Recorded time: of the last report with factor 0, and that of the playback otherwise. Gives drivers the same
+  /// timestamps in every replay with factor 0.
+  const Clock& recorded_clock() const noexcept { return recorded_clock_; }
+  bool finished() const noexcept { return next_ >= recording_.events.size(); }
+  const Recording& recording() const noexcept { return recording_; }
+
+ private:
+  friend class ReplayTransport;
+  class RecordedClock final : public Clock {
+   public:
+    explicit RecordedClock(const ReplaySession& session) : session_(&session) {}
+    TimestampNs now() const noexcept override { return session_->recorded_now(); }
+
+   private:
+    const ReplaySession* session_;
+  };
+  TimestampNs recorded_now() const noexcept;
+
+  const Recording recording_;
+  const Clock* const clock_;
+  const double factor_;
+  const TimestampNs start_;
+  std::size_t next_ = 0;          ///< event that read() looks at next
+  std::size_t next_feature_ = 0;  ///< events before it have been given as feature answers
+  std::size_t next_control_ = 0;
+  TimestampNs last_time_ = 0;  ///< recorded time of the last event that was given
+  RecordedClock recorded_clock_{*this};
+};
+
+}  // namespace dubsar

@@ -1,0 +1,161 @@
+#include "devices/transport/socket_transport.h"
+
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "devices/transport/socket_detail.h"
+
+namespace dubsar {
+namespace {
+using namespace socket_detail;
+
+class UdpListener final : public UdpTransport {
+ public:
+  UdpListener(Socket socket, const UdpOptions& options, std::uint16_t bound_port, const Clock& clock)
+      : socket_(std::move(socket)), options_(options), port_(bound_port), clock_(&clock), refilled_(clock.now()) {}
+
+  Result<std::size_t> read(std::span<std::byte> report, milliseconds timeout) override {
+    if (timeout.count() > 0) wait_for(socket_, POLLIN, timeout.count());
+    for (int looked = 0; looked < kMaxDatagramsPerRead; ++looked) {
+      Address sender;
+      const ::ssize_t length =
+          ::recvfrom(socket_.get(), report.data(), report.size(), MSG_TRUNC, sender.get(), &sender.length);
+      if (length < 0) {
+        if (errno == EAGAIN || errno == EINTR || errno == ECONNREFUSED) return std::size_t{0};
+        return fail(ErrorKind::kUnavailable, "udp: port {}: {}", port_, std::strerror(errno));
+      }
+      const TimestampNs now = clock_->now();
+      const bool whole = static_cast<std::size_t>(length) <= report.size();
+      if (!whole || length == 0 ||
+          (options_.accept && !options_.accept(report.first(static_cast<std::size_t>(length))))) {
+        ++counts_.refused;
+        continue;
+      }
+      if (peer_ && now - heard_ < options_.lock_ns && *peer_ != sender) {
+        ++counts_.foreign;
+        continue;
+      }
+      if (!take_token(now)) {
+        ++counts_.too_fast;
+        continue;
+      }
+      peer_ = sender;
+      heard_ = now;
+      ++counts_.taken;
+      return static_cast<std::size_t>(length);
+    }
+    return std::size_t{0};
+  }
+
+  Result<void> write(std::span<const std::byte> report) override {
+    if (!peer_) return fail(ErrorKind::kIo, "udp: port {}: nobody to answer yet", port_);
+    if (::sendto(socket_.get(), report.data(), report.size(), MSG_NOSIGNAL, peer_->get(), peer_->length) < 0)
+      return fail_errno(errno, fmt::format("udp: port {}: cannot answer", port_));
+    return {};
+  }
+
+  std::uint16_t port() const noexcept override { return port_; }
+  UdpCounts counts() const noexcept override { return counts_; }
+
+ private:
+  static constexpr int kMaxDatagramsPerRead = 256;  ///< a flood of rubbish cannot hold the reader
+  static constexpr double kBurst = 50.0;
+
+  bool take_token(TimestampNs now) {
+    tokens_ = std::min(kBurst, tokens_ + static_cast<double>(now - refilled_) * 1e-9 * options_.max_rate_hz);
+    refilled_ = now;
+    if (tokens_ < 1.0) return false;
+    tokens_ -= 1.0;
+    return true;
+  }
+
+  Socket socket_;
+  UdpOptions options_;
+  std::uint16_t port_;
+  const Clock* clock_;
+  std::optional<Address> peer_;
+  TimestampNs heard_ = 0;
+  TimestampNs refilled_;
+  double tokens_ = kBurst;
+  UdpCounts counts_;
+};
+
+/// Connects without blocking for longer than `timeout`.
+Result<void> connect_within(const Socket& socket, const sockaddr* address, socklen_t length, milliseconds timeout,
+                            const std::string& name) {
+  if (::connect(socket.get(), address, length) == 0) return {};
+  int error = errno;
+  if (error == EINPROGRESS) {
+    error = ETIMEDOUT;
+    if (wait_for(socket, POLLOUT, timeout.count())) {
+      socklen_t size = sizeof error;
+      if (::getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &error, &size) != 0) error = errno;
+    }
+  }
+  if (error == 0) return {};
+  if (error == EACCES || error == EPERM) return fail_errno(error, "cannot connect to " + name);
+  return fail(ErrorKind::kUnavailable, "{}: cannot connect: {}", name, std::strerror(error));
+}
+
+}  // namespace
+
+Result<void> check_address(const std::string& text) {
+  DUBSAR_TRY(parse_address(text, 0));
+  return {};
+}
+
+Result<void> check_listen_address(const std::string& text, bool allow_remote) {
+  DUBSAR_ASSIGN(const Address address, parse_address(text, 0));
+  if (!allow_remote && !is_loopback(address))
+    return fail(ErrorKind::kUsage, "udp: {} can be reached from other machines; say so explicitly to allow it", text);
+  return {};
+}
+
+Result<std::unique_ptr<UdpTransport>> open_udp(const UdpOptions& options, const Clock& clock) {
+  DUBSAR_TRY(check_listen_address(options.address, options.allow_remote));
+  DUBSAR_ASSIGN(Address address, parse_address(options.address, options.port));
+  Socket socket(::socket(address.storage.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (socket.get() < 0) return fail_errno(errno, "udp: cannot make a socket");
+  if (::bind(socket.get(), address.get(), address.length) != 0)
+    return fail(ErrorKind::kUnavailable, "udp: cannot listen on {} port {}: {}; another program may use it",
+                options.address, options.port, std::strerror(errno));
+  Address bound;
+  if (::getsockname(socket.get(), bound.get(), &bound.length) != 0) return fail_errno(errno, "udp: getsockname");
+  const std::uint16_t port = ntohs(reinterpret_cast<const sockaddr_in&>(bound.storage).sin_port);
+  return std::make_unique<UdpListener>(std::move(socket), options, port, clock);
+}
+
+Result<std::unique_ptr<Transport>> open_unix_stream(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.empty() || path.size() >= sizeof address.sun_path)
+    return fail(ErrorKind::kUsage, "socket: path of {} bytes, expected 1 to {}", path.size(),
+                sizeof address.sun_path - 1);
+  path.copy(address.sun_path, path.size());
+  Socket socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (socket.get() < 0) return fail_errno(errno, "socket: cannot make a socket");
+  DUBSAR_TRY(
+      connect_within(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address, milliseconds(0), path));
+  return std::make_unique<StreamTransport>(std::move(socket), path);
+}
+
+Result<std::unique_ptr<Transport>> open_tcp_stream(const std::string& address_text, std::uint16_t port,
+                                                   milliseconds timeout) {
+  DUBSAR_ASSIGN(const Address address, parse_address(address_text, port));
+  Socket socket(::socket(address.storage.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (socket.get() < 0) return fail_errno(errno, "socket: cannot make a socket");
+  const int on = 1;
+  ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  const std::string name = fmt::format("{} port {}", address_text, port);
+  DUBSAR_TRY(connect_within(socket, address.get(), address.length, timeout, name));
+  return std::make_unique<StreamTransport>(std::move(socket), name);
+}
+
+}  // namespace dubsar

@@ -1,0 +1,65 @@
+#pragma once
+// What a device and the host said to each other, with times, as a text file: every bug report becomes a file, every
+// file a test.
+//
+//   dubsar-recording 1
+//   driver spacemouse
+//   note SpaceMouse Compact, cap pushed right
+//   0 o
+//   16000000 r 015e0100000000
+//   20000000 c c0 81 0300 0105 4243
+//
+// One event per line: nanoseconds since the start (never falling), kind, then bytes in hexadecimal. Kinds: o opened,
+// x lost, r report read, w report written, s feature report set, f feature report got (first byte: its id), c control
+// request (type, request, value, index, then the data). Lines end with a line feed.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/clock.h"
+#include "core/base/result.h"
+#include "devices/transport/transport.h"
+
+namespace dubsar {
+
+enum class WireEventKind : char {
+  kOpened = 'o',
+  kLost = 'x',
+  kRead = 'r',
+  kWritten = 'w',
+  kFeatureSet = 's',
+  kFeatureGot = 'f',
+  kControl = 'c',
+};
+
+struct RecordedEvent {
+  TimestampNs time = 0;  ///< since the start of the recording
+  WireEventKind kind = WireEventKind::kRead;
+  ControlRequest request;  ///< for kControl
+  std::vector<std::byte> bytes;
+  bool operator==(const RecordedEvent&) const = default;
+};
+
+struct Recording {
+  std::string driver;
+  std::string note;
+  std::vector<RecordedEvent> events;
+  bool cut_off = false;  ///< the last line had no end (the program stopped while it was written) and was left out
+};
+
+/// kBadData: not a recording, another version, a broken line (its number is told), times that fall, an event longer
+/// than kMaxReportBytes.
+Result<Recording> parse_recording(std::string_view text);
+std::string format_recording(const Recording& recording);
+
+/// At most 1 GiB. kNoInput, kPermission, kBadData, kIo.
+Result<Recording> read_recording(const std::filesystem::path& path);
+
+/// One event as its line, with the line feed.
+std::string format_event(const RecordedEvent& event);
+
+}  // namespace dubsar

@@ -1,0 +1,113 @@
+#pragma once
+// Windows and monitors through GLFW; the only source that includes it. All of this belongs to the main thread.
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/clock.h"
+#include "core/base/result.h"
+#include "core/image_io/image.h"
+#include "display/render/gl_context.h"
+#include "display/sinks/output_sink.h"
+
+namespace dubsar {
+
+struct Monitor {
+  std::string name;
+  int x = 0, y = 0;                        ///< place on the desktop
+  int width_px = 0, height_px = 0;         ///< of its current mode
+  double width_mm = 0.0, height_mm = 0.0;  ///< 0 when the monitor does not say
+  double refresh_hz = 0.0;
+  bool primary = false;
+};
+
+/// kUnavailable, with the reason, when there is no display server.
+Result<std::vector<Monitor>> list_monitors();
+
+struct WindowOptions {
+  std::string title = "dubsar";
+  int width = 1280, height = 720;  ///< physical pixels of the drawing area
+  std::optional<int> x, y;         ///< upper left corner of the drawing area, from the monitor's; both or none
+  std::string monitor;             ///< part of a monitor's name; empty: the primary one
+  bool fullscreen = false;         ///< the monitor's size and mode; width, height, x and y are not used
+  bool decorated = true;           ///< false: no title bar and borders, as panels with lenses need it
+  bool visible = true;
+  bool stereo = false;  ///< a quad-buffered visual, or the call fails
+};
+
+/// Something that happened in a window, as plain data.
+struct WindowEvent {
+  enum class Kind { kMotion, kButton, kWheel, kKey };
+  TimestampNs time = 0;  ///< steady clock, when the window heard of it
+  Kind kind = Kind::kMotion;
+  double x = 0.0,
+         y = 0.0;     ///< kMotion: pixels to the right and down; kWheel: notches in y, positive away from the user
+  int button = 0;     ///< kButton: 0 left, 1 middle, 2 right
+  bool down = false;  ///< kButton, kKey; a key that is held repeats
+  bool shift = false, control = false, alt = false;
+  /// kKey: "left", "page_up", "escape", "f5", "space" ... for keys that type nothing, and what the keyboard's layout
+  /// types
+  /// ("a", "+", "?"), which only goes down.
+  std::string key{};
+};
+
+/// A window with a current GL 4.5 core context and vertical synchronisation.
+class GlfwWindow final : public GlContext {
+ public:
+  /// Errors: kUnavailable (no display server, no GL 4.5, no stereo visual), kUsage (no such monitor).
+  static Result<std::unique_ptr<GlfwWindow>> create(const WindowOptions& options);
+  ~GlfwWindow() override;
+
+  Result<void> make_current() override;
+  /// What compose() draws into; carries eye buffers when the context is quad-buffered.
+  Surface surface() const;
+  /// True when the context has a left and a right back buffer.
+  bool stereo() const noexcept { return stereo_; }
+  PixelSize size() const;
+  /// The monitor that holds the middle of the window, and where the window is on it, as a sink wants to know. Sizes
+  /// that the monitor does not tell come from `fallback`.
+  Screen screen(const Screen& fallback = {}) const;
+
+  void present();  ///< swaps buffers
+  void poll_events();
+  /// Returns when something happens in the window, at the latest after `timeout_s`.
+  void wait_events(double timeout_s);
+  /// Events since the last call, in order; at most 4096 are kept, the newest.
+  std::vector<WindowEvent> take_events();
+  /// True when the window was moved, resized or put on another monitor since the last call.
+  bool take_place_changed();
+  bool should_close() const;
+  void close();  ///< as if the user had closed it
+
+  /// Covers the monitor whose name contains `monitor` (empty: the one that holds the window's middle), or goes back to
+  /// where the window was. kUsage when there is no such monitor.
+  Result<void> set_fullscreen(const std::string& monitor = {});
+  void set_windowed();
+  bool fullscreen() const;
+  double refresh_hz() const;  ///< of the monitor the window is on; 0 when it does not say
+  /// RGB, top row first: what was drawn since the last present(). `eye` 1 reads the right buffer of a stereo window.
+  Result<Image> read(int eye = 0) const;
+
+  /// The GLFWwindow, for user interface libraries that want it.
+  void* handle() const noexcept { return window_; }
+
+ private:
+  explicit GlfwWindow(void* window) : window_(window) {}
+  struct Callbacks;
+  struct Place {
+    int x = 0, y = 0, width = 0, height = 0;
+  };
+  void push(WindowEvent event, int modifiers);
+
+  void* window_;
+  bool stereo_ = false;
+  std::vector<WindowEvent> events_;
+  std::optional<std::array<double, 2>> cursor_;  // none: the next place is no movement
+  bool place_changed_ = false;
+  Place windowed_;  // where it was before it covered the monitor
+};
+
+}  // namespace dubsar

@@ -1,0 +1,233 @@
+#include "display/render/gpu_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+#include <limits>
+
+#include "core/base/parallel.h"
+
+namespace dubsar {
+namespace {
+
+constexpr std::int64_t kGrain = 1 << 16;
+
+Box empty_box() {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  return {glm::dvec3(kInf), glm::dvec3(-kInf)};
+}
+void grow(Box& box, const glm::dvec3& p) {
+  box.min = glm::min(box.min, p);
+  box.max = glm::max(box.max, p);
+}
+bool is_empty(const Box& box) { return !(box.min.x <= box.max.x); }
+bool finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+template <class T>
+Result<void> check_array(std::string_view name, const std::vector<T>& array, std::size_t vertices) {
+  if (array.empty() || array.size() == vertices) return {};
+  return fail(ErrorKind::kBadData, "render: the mesh has {} vertices but {} {}, expected as many or none", vertices,
+              array.size(), name);
+}
+
+/// Area-weighted, in mm, not normalised. One thread: the sums must not depend on the number of threads.
+std::vector<glm::vec3> vertex_normals_mm(const TriMesh& mesh, const std::vector<Triangle>& triangles) {
+  std::vector<glm::vec3> normals(mesh.positions.size(), glm::vec3(0));
+  const glm::dvec3 step = mesh.frame.grid_voxel_mm();
+  for (const Triangle& t : triangles) {
+    const glm::dvec3 a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]);
+    const glm::vec3 n(glm::cross((b - a) * step, (c - a) * step));
+    for (const std::uint32_t v : t) normals[v] += n;
+  }
+  return normals;
+}
+
+/// False only when all of the box lies outside of one plane of the frustum.
+bool may_be_seen(const glm::dmat4& clip_from_world, const Box& box) {
+  const glm::dmat4 rows = glm::transpose(clip_from_world);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double sign : {-1.0, 1.0}) {
+      const glm::dvec4 plane = rows[3] + sign * rows[axis];  // inside: plane . (p, 1) >= 0
+      double most = plane.w;
+      for (int a = 0; a < 3; ++a) most += std::max(plane[a] * box.min[a], plane[a] * box.max[a]);
+      if (most < 0) return false;
+    }
+  return true;
+}
+
+std::int16_t snorm16(double value) {
+  return static_cast<std::int16_t>(std::lround(std::clamp(value, -1.0, 1.0) * 32767));
+}
+
+std::uint16_t unorm16(double value) {
+  return static_cast<std::uint16_t>(std::lround(std::clamp(value, 0.0, 1.0) * 65535));
+}
+
+}  // namespace
+
+std::array<std::int16_t, 2> encode_octahedral(const glm::dvec3& unit) {
+  const double sum = std::abs(unit.x) + std::abs(unit.y) + std::abs(unit.z);
+  if (!(sum > 0) || !std::isfinite(sum)) return {0, 0};
+  double x = unit.x / sum, y = unit.y / sum;
+  if (unit.z < 0) {
+    const double folded_x = (1 - std::abs(y)) * (x >= 0 ? 1 : -1);
+    y = (1 - std::abs(x)) * (y >= 0 ? 1 : -1);
+    x = folded_x;
+  }
+  return {snorm16(x), snorm16(y)};
+}
+
+glm::dvec3 decode_octahedral(const std::array<std::int16_t, 2>& code) {
+  glm::dvec3 n(std::max(code[0] / 32767.0, -1.0), std::max(code[1] / 32767.0, -1.0), 0.0);
+  n.z = 1.0 - std::abs(n.x) - std::abs(n.y);
+  const double fold = std::max(-n.z, 0.0);
+  n.x -= n.x >= 0 ? fold : -fold;
+  n.y -= n.y >= 0 ? fold : -fold;
+  return glm::normalize(n);
+}
+
+Box PackedMesh::box_of(std::uint8_t partitions) const {
+  Box box = empty_box();
+  for (int p = 0; p < kMaxPartitions; ++p)
+    if ((partitions >> p & 1) != 0 && first_triangle[p] < first_triangle[p + 1]) {
+      grow(box, partition_box_mm[p].min);
+      grow(box, partition_box_mm[p].max);
+    }
+  return is_empty(box) ? Box{} : box;
+}
+
+std::int64_t PackedMesh::triangles_of(std::uint8_t partitions) const {
+  std::int64_t count = 0;
+  for (int p = 0; p < kMaxPartitions; ++p)
+    if ((partitions >> p & 1) != 0) count += first_triangle[p + 1] - first_triangle[p];
+  return count;
+}
+
+Result<PackedMesh> pack_mesh(const TriMesh& mesh) {
+  const std::size_t count = mesh.positions.size();
+  DUBSAR_TRY(check_array("normals", mesh.normals, count));
+  DUBSAR_TRY(check_array("shape classes", mesh.shape, count));
+  DUBSAR_TRY(check_array("partition ids", mesh.partition, count));
+  DUBSAR_TRY(check_array("ambient occlusion values", mesh.ao, count));
+  DUBSAR_TRY(check_array("colours", mesh.colors, count));
+  for (const std::uint8_t p : mesh.partition)
+    if (p >= kMaxPartitions)
+      return fail(ErrorKind::kBadData, "render: partition {} found, expected 0 to {}", p, kMaxPartitions - 1);
+
+  PackedMesh out;
+  out.has_shape = !mesh.shape.empty();
+  out.has_ao = !mesh.ao.empty();
+  const glm::dvec3 step = mesh.frame.grid_voxel_mm();
+  out.mirrored = step.x * step.y * step.z < 0;
+
+  // Triangles by partition (counting sort), boxes on the way.
+  const auto partition_of = [&](const Triangle& t) { return mesh.partition.empty() ? 0 : mesh.partition[t[0]]; };
+  const auto usable = [&](const Triangle& t) {
+    return finite(mesh.positions[t[0]]) && finite(mesh.positions[t[1]]) && finite(mesh.positions[t[2]]);
+  };
+  for (const Triangle& t : mesh.triangles) {
+    if (t[0] >= count || t[1] >= count || t[2] >= count)
+      return fail(ErrorKind::kBadData, "render: a triangle names vertex {}, but there are {}",
+                  std::max({t[0], t[1], t[2]}), count);
+    if (usable(t)) ++out.first_triangle[partition_of(t) + 1];
+  }
+  for (int p = 0; p < kMaxPartitions; ++p) out.first_triangle[p + 1] += out.first_triangle[p];
+  out.triangles.resize(static_cast<std::size_t>(out.first_triangle[kMaxPartitions]));
+  out.partition_box_mm.fill(empty_box());
+  auto next = out.first_triangle;
+  for (const Triangle& t : mesh.triangles) {
+    if (!usable(t)) continue;
+    const int p = partition_of(t);
+    out.triangles[static_cast<std::size_t>(next[p]++)] = t;
+    for (const std::uint32_t v : t) grow(out.partition_box_mm[p], mesh.frame.mm_from_grid(mesh.positions[v]));
+  }
+  out.box_mm = out.box_of(0xff);
+
+  const bool compute_normals = mesh.normals.empty();
+  const std::vector<glm::vec3> computed =
+      compute_normals ? vertex_normals_mm(mesh, out.triangles) : std::vector<glm::vec3>();
+  const glm::dvec3 inverse_size = 1.0 / glm::max(out.box_mm.size(), glm::dvec3(std::numeric_limits<double>::min()));
+  out.vertices.resize(count);
+  parallel_for(static_cast<std::int64_t>(count), kGrain, [&](std::int64_t i) {
+    PackedVertex& v = out.vertices[static_cast<std::size_t>(i)];
+    const glm::dvec3 unit = (mesh.frame.mm_from_grid(mesh.positions[i]) - out.box_mm.min) * inverse_size;
+    for (int a = 0; a < 3; ++a) v.position[a] = std::isfinite(unit[a]) ? unorm16(unit[a]) : std::uint16_t{0};
+    const unsigned shape = mesh.shape.empty() ? 0u : mesh.shape[i] & 127u;
+    const unsigned ao = mesh.ao.empty() ? 63u : std::min<unsigned>(mesh.ao[i], 63u);
+    const unsigned partition = mesh.partition.empty() ? 0u : mesh.partition[i];
+    v.attributes = static_cast<std::uint16_t>(shape | ao << 7 | partition << 13);
+    v.normal = encode_octahedral(compute_normals ? glm::dvec3(computed[i]) : glm::dvec3(mesh.normals[i]) / step);
+  });
+  out.colors.resize(mesh.colors.size());
+  for (std::size_t i = 0; i < out.colors.size(); ++i)
+    out.colors[i] = {mesh.colors[i][0], mesh.colors[i][1], mesh.colors[i][2], 255};
+  return out;
+}
+
+Result<GpuMesh> GpuMesh::upload(const PackedMesh& mesh) {
+  if (mesh.triangles.empty())
+    return fail(ErrorKind::kBadData, "render: the mesh has no triangles, so there is nothing to draw");
+  GpuMesh out;
+  out.box_mm_ = mesh.box_mm;
+  out.first_triangle_ = mesh.first_triangle;
+  out.mirrored_ = mesh.mirrored;
+  out.chunks_ = mesh.chunks;
+  out.vertices_ = make_buffer(std::as_bytes(std::span(mesh.vertices)));
+  out.indices_ = make_buffer(std::as_bytes(std::span(mesh.triangles)));
+  out.vertex_array_ = make_vertex_array();
+  const GLuint vao = out.vertex_array_;
+  glVertexArrayElementBuffer(vao, out.indices_);
+  glVertexArrayVertexBuffer(vao, 0, out.vertices_, 0, sizeof(PackedVertex));
+  for (GLuint attribute = 0; attribute < 3; ++attribute) {
+    glEnableVertexArrayAttrib(vao, attribute);
+    glVertexArrayAttribBinding(vao, attribute, 0);
+  }
+  glVertexArrayAttribFormat(vao, 0, 3, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(PackedVertex, position));
+  glVertexArrayAttribIFormat(vao, 1, 1, GL_UNSIGNED_SHORT, offsetof(PackedVertex, attributes));
+  glVertexArrayAttribFormat(vao, 2, 2, GL_SHORT, GL_TRUE, offsetof(PackedVertex, normal));
+  if (!mesh.colors.empty()) {
+    out.colors_ = make_buffer(std::as_bytes(std::span(mesh.colors)));
+    glVertexArrayVertexBuffer(vao, 1, out.colors_, 0, 4);
+    glEnableVertexArrayAttrib(vao, 3);
+    glVertexArrayAttribBinding(vao, 3, 1);
+    glVertexArrayAttribFormat(vao, 3, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0);
+  }
+  DUBSAR_TRY(check_gl("uploading the mesh"));
+  return out;
+}
+
+std::vector<std::pair<std::int64_t, std::int64_t>> GpuMesh::visible_ranges(std::uint8_t partitions,
+                                                                           std::span<const View> views) const {
+  if (chunks_.empty()) return ranges(partitions);
+  std::vector<glm::dmat4> clips;
+  for (const View& view : views) clips.push_back(view.clip_from_world());
+  std::vector<std::pair<std::int64_t, std::int64_t>> out;
+  for (const TriangleChunk& chunk : chunks_) {
+    if ((partitions >> chunk.partition & 1) == 0) continue;
+    if (std::none_of(clips.begin(), clips.end(),
+                     [&](const glm::dmat4& clip) { return may_be_seen(clip, chunk.box_mm); }))
+      continue;
+    if (!out.empty() && out.back().first + out.back().second == chunk.first)
+      out.back().second += chunk.count;
+    else
+      out.emplace_back(chunk.first, chunk.count);
+  }
+  return out;
+}
+
+std::vector<std::pair<std::int64_t, std::int64_t>> GpuMesh::ranges(std::uint8_t partitions) const {
+  std::vector<std::pair<std::int64_t, std::int64_t>> out;
+  for (int p = 0; p < kMaxPartitions; ++p) {
+    const std::int64_t first = first_triangle_[p], count = first_triangle_[p + 1] - first;
+    if ((partitions >> p & 1) == 0 || count == 0) continue;
+    if (!out.empty() && out.back().first + out.back().second == first)
+      out.back().second += count;
+    else
+      out.emplace_back(first, count);
+  }
+  return out;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,61 @@
+#pragma once
+// Draws a mesh for any number of views into the layers of a view array.
+
+#include <span>
+
+#include "core/base/result.h"
+#include "display/optics/view.h"
+#include "display/render/gpu_mesh.h"
+#include "display/render/shading.h"
+#include "display/render/view_array.h"
+
+namespace dubsar {
+
+class Renderer {
+ public:
+  /// Compiles the shaders. Everything happens in the thread of the current GL 4.5 context, and all objects go before
+  /// the context does.
+  /// `layered` false: as on a driver that cannot choose layers in vertex shaders.
+  static Result<Renderer> create(bool layered = true);
+
+  /// Layer first_layer + i of `target` gets views[i] of `mesh`. `factor` x `factor` samples a pixel (1..8), averaged in
+  /// linear light. Pixels: the colour of a vertex is interpolated, light is computed per sample.
+  Result<void> render(const GpuMesh& mesh, const Shading& shading, std::span<const View> views, int factor,
+                      ViewArray& target, int first_layer = 0);
+
+  /// Layer layers[i] of `target` gets views[i], with one sample a pixel, in one instanced draw; where the driver cannot
+  /// choose layers in vertex shaders (ARB_shader_viewport_layer_array), one after the other. All other layers become
+  /// background. Transparent backgrounds are drawn opaque. Quick, for things that move.
+  Result<void> render_layers(const GpuMesh& mesh, const Shading& shading, std::span<const View> views,
+                             std::span<const int> layers, ViewArray& target);
+  /// Depth buffers of the last render_layers(), the same layers as its target (GL_TEXTURE_2D_ARRAY); 1 is background.
+  GLuint layer_depths() const noexcept { return layer_depth_.depth; }
+
+ private:
+  struct Scratch {  ///< samples of one view: linear light, premultiplied
+    int width = 0, height = 0;
+    GlTexture color, depth;
+    GlFramebuffer framebuffer;
+  };
+  struct LayerDepth {
+    int width = 0, height = 0, layers = 0;
+    GlTexture depth;
+    GlFramebuffer framebuffer;
+  };
+  struct Inputs {  ///< what the mesh shaders read; bound while it lives
+    GlBuffer views, style;
+    GlTexture table;
+  };
+  Result<void> use_scratch(int width, int height);
+  Result<void> use_layer_depth(const ViewArray& target);
+  Inputs bind_inputs(const GpuMesh& mesh, const Shading& shading, std::span<const View> views,
+                     std::span<const int> layers);
+
+  GlProgram mesh_program_, resolve_program_, layered_program_;
+  GlVertexArray no_vertices_;
+  GlFramebuffer layer_;
+  Scratch scratch_;
+  LayerDepth layer_depth_;
+};
+
+}  // namespace dubsar

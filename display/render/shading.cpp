@@ -1,0 +1,106 @@
+#include "display/render/shading.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "core/relief/shape_colors.h"
+
+namespace dubsar {
+namespace {
+
+ShapeColors shape_colors_of(ColorMap map) {
+  switch (map) {
+    case ColorMap::kTable:
+      return ShapeColors::kTable;
+    case ColorMap::kSkySun:
+      return ShapeColors::kSkySun;
+    case ColorMap::kPlain:
+    case ColorMap::kBlackWhite:
+      break;
+  }
+  return ShapeColors::kBlackWhite;
+}
+
+struct Preset {
+  std::string_view name;
+  ColorMap map;
+  bool ambient_occlusion, lit;
+};
+constexpr std::array<Preset, 9> kPresets{{{"relief", ColorMap::kBlackWhite, true, true},
+                                          {"phong", ColorMap::kPlain, false, true},
+                                          {"table", ColorMap::kTable, false, false},
+                                          {"black-white", ColorMap::kBlackWhite, false, false},
+                                          {"sky-sun", ColorMap::kSkySun, false, false},
+                                          {"ao", ColorMap::kPlain, true, false},
+                                          {"table-ao", ColorMap::kTable, true, false},
+                                          {"black-white-ao", ColorMap::kBlackWhite, true, false},
+                                          {"sky-sun-ao", ColorMap::kSkySun, true, false}}};
+
+}  // namespace
+
+std::vector<std::string_view> shading_preset_names() {
+  std::vector<std::string_view> names;
+  for (const Preset& preset : kPresets) names.push_back(preset.name);
+  return names;
+}
+
+Result<Shading> shading_preset(std::string_view name) {
+  std::string known;
+  for (const Preset& preset : kPresets) {
+    if (preset.name == name) {
+      Shading shading;
+      shading.map = preset.map;
+      shading.ambient_occlusion = preset.ambient_occlusion;
+      shading.lit = preset.lit;
+      if (!preset.lit) {  // figure 14: the table's own colours; ambient light alone is white
+        shading.base_color =
+            preset.map == ColorMap::kPlain ? Rgb8{255, 255, 255} : shape_color_table(shape_colors_of(preset.map))[0];
+        shading.contrast = 1.0;
+        shading.occlusion_power = 1.0;
+      }
+      return shading;
+    }
+    known += known.empty() ? "" : ", ";
+    known += preset.name;
+  }
+  return fail(ErrorKind::kUsage, "shading \"{}\" is not known, expected one of: {}", name, known);
+}
+
+std::array<Rgb8, 8> distinct_partition_colors() {
+  // Paul Tol's bright scheme and two more, ordered so that neighbours differ in lightness.
+  return {Rgb8{240, 228, 66}, {68, 119, 170}, {230, 159, 0},   {34, 136, 51},
+          {204, 187, 68},     {170, 51, 119}, {187, 187, 187}, {102, 204, 238}};
+}
+
+std::vector<std::array<std::uint8_t, 4>> color_table(const Shading& shading) {
+  const auto& shapes = shape_color_table(shape_colors_of(shading.map));
+  const double contrast = shading.map == ColorMap::kPlain ? 0.0 : shading.contrast;
+  std::vector<std::array<std::uint8_t, 4>> table;
+  table.reserve(kShapeRows * kAoColumns);
+  for (int ao = 0; ao < kAoColumns; ++ao) {
+    const double open = std::pow(ao / (kAoColumns - 1.0), shading.occlusion_power) * (kAoColumns - 1);
+    for (const ShapeRgb& shape : shapes) {
+      std::array<double, 3> value{};
+      for (std::size_t c = 0; c < 3; ++c)
+        value[c] = shading.base_color[c] * std::max(1.0 + contrast * (shape[c] - shapes[0][c]) / shapes[0][c], 0.0);
+      // Too bright: darker rather than of another hue.
+      const double fit = std::min(1.0, 255.0 / std::max({value[0], value[1], value[2], 1.0}));
+      Rgb8 color{};
+      for (std::size_t c = 0; c < 3; ++c) color[c] = static_cast<std::uint8_t>(std::lround(fit * value[c]));
+      if (shading.ambient_occlusion) color = shade(color, static_cast<std::uint8_t>(std::lround(open)));
+      table.push_back({color[0], color[1], color[2], 255});
+    }
+  }
+  return table;
+}
+
+glm::dvec3 light_direction(const Shading& shading) {
+  const double azimuth = shading.light_azimuth_deg * std::numbers::pi / 180;
+  const double elevation = shading.light_elevation_deg * std::numbers::pi / 180;
+  return {std::cos(elevation) * std::sin(azimuth), std::cos(elevation) * std::cos(azimuth), std::sin(elevation)};
+}
+
+}  // namespace dubsar

@@ -1,0 +1,214 @@
+#include "input/navigation/mapping.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "core/base/json_fields.h"
+#include "core/base/json_text.h"
+#include "input/navigation/embedded_mappings.h"
+
+namespace dubsar {
+namespace {
+using nlohmann::json;
+
+constexpr std::array<std::string_view, 18> kActionNames{
+    "none", "rotate",    "pan",        "zoom",    "zoom_and_roll", "light",     "next_side",  "select",  "reset",
+    "undo", "turn_left", "turn_right", "turn_up", "turn_down",     "roll_left", "roll_right", "zoom_in", "zoom_out"};
+constexpr std::array<std::string_view, 5> kControlNames{"none", "mouse", "keyboard", "puck", "hands"};
+constexpr std::initializer_list<Action> kDrags{Action::kNone, Action::kRotate, Action::kPan, Action::kZoom,
+                                               Action::kLight};
+constexpr std::initializer_list<Action> kSteps{
+    Action::kNone,   Action::kNextSide, Action::kReset,    Action::kUndo,      Action::kTurnLeft, Action::kTurnRight,
+    Action::kTurnUp, Action::kTurnDown, Action::kRollLeft, Action::kRollRight, Action::kZoomIn,   Action::kZoomOut};
+
+TimestampNs from_ms(double ms) { return static_cast<TimestampNs>(ms * 1e6); }
+
+Action read_action(JsonFields& fields, const std::string& name, std::initializer_list<Action> allowed) {
+  const std::string found = fields.text(name.c_str(), nullptr);
+  std::string names;
+  for (const Action action : allowed) {
+    if (found == action_name(action)) return action;
+    names += (names.empty() ? "" : ", ") + std::string(action_name(action));
+  }
+  fields.complain(fmt::format("{} is \"{}\", expected one of: {}", name, found, names));
+  return Action::kNone;
+}
+
+glm::dvec3 read_vector(JsonFields& fields, const json& object, const char* name) {
+  glm::dvec3 out{0.0};
+  const json* const value = fields.has(name) ? &object.at(name) : nullptr;
+  if (value == nullptr || !value->is_array() || value->size() != 3 ||
+      !std::all_of(value->begin(), value->end(),
+                   [](const json& v) { return v.is_number() && std::abs(v.get<double>()) <= 5000; })) {
+    fields.complain(fmt::format("{} is not three numbers of -5000 to 5000", name));
+    return out;
+  }
+  for (std::size_t i = 0; i < 3; ++i) out[static_cast<int>(i)] = value->at(i).get<double>();
+  return out;
+}
+
+/// Names in `found` that `known` does not have; the tables of mouse chords and keys are open.
+Result<void> refuse_unknown(const json& found, const json& known, const std::string& where) {
+  if (!found.is_object()) return fail(ErrorKind::kConfig, "{} is {}, expected an object", where, found.type_name());
+  for (const auto& [name, value] : found.items()) {
+    if (!known.contains(name)) {
+      std::string names;
+      for (const auto& item : known.items()) names += (names.empty() ? "" : ", ") + item.key();
+      return fail(ErrorKind::kConfig, "{}: \"{}\" is not known, expected one of: {}", where, name, names);
+    }
+    if (known.at(name).is_object() && name != "keys" && name != "mouse") {
+      DUBSAR_TRY(refuse_unknown(value, known.at(name), where + ": " + name));
+    } else if (known.at(name).is_object() && !value.is_object()) {
+      return fail(ErrorKind::kConfig, "{}: {} is {}, expected an object", where, name, value.type_name());
+    }
+  }
+  return {};
+}
+
+Result<HandMapping> read_hands(const json& object, const std::string& where) {
+  JsonFields f(object, where);
+  HandMapping out;
+  out.grab = read_action(f, "grab", kDrags);
+  out.two_hands = read_action(f, "two_hands", {Action::kNone, Action::kZoom, Action::kZoomAndRoll});
+  out.pinch = read_action(f, "pinch", kDrags);
+  out.swipe = read_action(f, "swipe", {Action::kNone, Action::kNextSide});
+  out.dwell = read_action(f, "dwell", {Action::kNone, Action::kSelect, Action::kReset});
+  out.turn_deg_per_mm = f.number("turn_deg_per_mm", 0.01, 10);
+  out.light_deg_per_mm = f.number("light_deg_per_mm", 0.01, 10);
+  out.inertia_s = f.number("inertia_s", 0, 5);
+  out.fastest_turn_deg_per_s = f.number("fastest_turn_deg_per_s", 10, 720);
+  out.fastest_zoom_per_s = f.number("fastest_zoom_per_s", 1.05, 20);
+  out.zone_min_mm = read_vector(f, object, "zone_min_mm");
+  out.zone_max_mm = read_vector(f, object, "zone_max_mm");
+  for (int i = 0; i < 3; ++i)
+    if (out.zone_min_mm[i] >= out.zone_max_mm[i]) f.complain("zone_min_mm is not below zone_max_mm");
+  DUBSAR_TRY(f.finish());
+  return out;
+}
+
+Result<GestureOptions> read_gestures(const json& object, const std::string& where) {
+  JsonFields f(object, where);
+  GestureOptions out;
+  out.grab_on = f.number("grab_on", 0.1, 1);
+  out.grab_off = f.number("grab_off", 0, 1);
+  out.pinch_on_m = 1e-3 * f.number("pinch_on_mm", 5, 60);
+  out.pinch_off_m = 1e-3 * f.number("pinch_off_mm", 5, 100);
+  out.drag_start_m = 1e-3 * f.number("drag_start_mm", 0, 100);
+  out.roll_start_rad = f.number("roll_start_deg", 0, 45) * std::numbers::pi / 180;
+  out.cooldown_ns = from_ms(f.number("cooldown_ms", 0, 5000));
+  out.hold_ns = from_ms(f.number("hold_ms", 0, 1000));
+  out.swipe_mps = 1e-3 * f.number("swipe_mm_per_s", 100, 5000);
+  out.swipe_lateral_mps = 1e-3 * f.number("swipe_lateral_mm_per_s", 10, 5000);
+  out.swipe_end_mps = 1e-3 * f.number("swipe_end_mm_per_s", 10, 5000);
+  out.swipe_opposing_mps = 1e-3 * f.number("swipe_opposing_mm_per_s", 1, 5000);
+  out.swipe_lockout_ns = from_ms(f.number("swipe_lockout_ms", 0, 5000));
+  out.swipe_travel_m = 1e-3 * f.number("swipe_travel_mm", 0, 500);
+  out.dwell_radius_m = 1e-3 * f.number("dwell_radius_mm", 1, 200);
+  out.dwell_start_ns = from_ms(f.number("dwell_start_ms", 0, 10000));
+  out.dwell_fill_ns = from_ms(f.number("dwell_fill_ms", 50, 10000));
+  if (out.grab_off >= out.grab_on) f.complain("grab_off is not below grab_on");
+  if (out.pinch_off_m <= out.pinch_on_m) f.complain("pinch_off_mm is not above pinch_on_mm");
+  if (out.swipe_end_mps >= out.swipe_mps) f.complain("swipe_end_mm_per_s is not below swipe_mm_per_s");
+  DUBSAR_TRY(f.finish());
+  return out;
+}
+
+bool is_chord(std::string_view name) {
+  for (const std::string_view modifier : {"shift+", "ctrl+", "alt+"})
+    if (name.starts_with(modifier)) name.remove_prefix(modifier.size());
+  return name == "left" || name == "middle" || name == "right" || name == "wheel";
+}
+
+Result<MouseMapping> read_mouse(const json& object, const std::string& where) {
+  JsonFields f(object, where);
+  MouseMapping out;
+  out.turn_deg_per_px = f.number("turn_deg_per_px", 0.001, 10);
+  out.light_deg_per_px = f.number("light_deg_per_px", 0.001, 10);
+  out.zoom_per_100_px = f.number("zoom_per_100_px", 1.01, 20);
+  out.zoom_per_notch = f.number("zoom_per_notch", 1.001, 4);
+  for (const auto& [name, value] : object.items()) {
+    if (value.is_number()) {
+      if (name != "turn_deg_per_px" && name != "light_deg_per_px" && name != "zoom_per_100_px" &&
+          name != "zoom_per_notch")
+        f.complain(fmt::format("\"{}\" is not known", name));
+    } else if (is_chord(name)) {
+      out.chords[name] = read_action(f, name, kDrags);
+    } else {
+      f.complain(
+          fmt::format("\"{}\" is no mouse chord, expected left, middle, right or wheel, after shift+, ctrl+ or alt+ "
+                      "in this order",
+                      name));
+    }
+  }
+  DUBSAR_TRY(f.finish());
+  return out;
+}
+
+Result<Mapping> read_mapping(const json& object, const std::string& where) {
+  Mapping out;
+  DUBSAR_ASSIGN(out.hands, read_hands(object.at("hands"), where + ": hands"));
+  DUBSAR_ASSIGN(out.gestures, read_gestures(object.at("gestures"), where + ": gestures"));
+  DUBSAR_ASSIGN(out.mouse, read_mouse(object.at("mouse"), where + ": mouse"));
+  JsonFields keys(object.at("keys"), where + ": keys");
+  for (const auto& item : object.at("keys").items()) out.keys[item.key()] = read_action(keys, item.key(), kSteps);
+  DUBSAR_TRY(keys.finish());
+  JsonFields puck(object.at("puck"), where + ": puck");
+  out.puck.turn_deg_per_s = puck.number("turn_deg_per_s", 1, 720);
+  out.puck.pan_per_s = puck.number("pan_per_s", 0.01, 10);
+  out.puck.zoom_per_s = puck.number("zoom_per_s", 1.01, 20);
+  out.puck.dead_zone = puck.number("dead_zone", 0, 0.5);
+  out.puck.one_axis = puck.flag("one_axis", false);
+  DUBSAR_TRY(puck.finish());
+  JsonFields f(object, where);
+  out.key_step_deg = f.number("key_step_deg", 0.1, 90);
+  out.key_zoom = f.number("key_zoom", 1.001, 4);
+  out.zoom_min = f.number("zoom_min", 0.01, 1);
+  out.zoom_max = f.number("zoom_max", 1, 1000);
+  out.handover_ns = from_ms(f.number("handover_ms", 0, 10000));
+  const json& priority = object.at("priority");
+  for (const json& name : priority) {
+    const auto* const found = name.is_string()
+                                  ? std::find(kControlNames.begin() + 1, kControlNames.end(), name.get<std::string>())
+                                  : kControlNames.end();
+    const auto control = static_cast<Control>(found - kControlNames.begin());
+    if (found == kControlNames.end() ||
+        std::find(out.priority.begin(), out.priority.end(), control) != out.priority.end()) {
+      f.complain("priority is not a list of mouse, keyboard, puck and hands, each at most once");
+      break;
+    }
+    out.priority.push_back(control);
+  }
+  if (!priority.is_array()) f.complain("priority is not a list of mouse, keyboard, puck and hands, each at most once");
+  DUBSAR_TRY(f.finish());
+  return out;
+}
+
+}  // namespace
+
+std::string_view action_name(Action action) noexcept { return kActionNames[static_cast<std::size_t>(action)]; }
+
+Result<Mapping> parse_mapping(std::string_view json_text, std::string_view source) {
+  DUBSAR_ASSIGN(json merged, parse_json(embedded_mappings().front().second, "the program's own mapping"));
+  auto changes = parse_json(json_text, source);
+  if (!changes) return fail(ErrorKind::kConfig, "{}", changes.error().message);
+  DUBSAR_TRY(refuse_unknown(*changes, merged, std::string(source)));
+  for (const auto& [name, value] : changes->items())
+    if (value.is_null()) return fail(ErrorKind::kConfig, "{}: {} is null, expected a value", source, name);
+  merged.merge_patch(*changes);
+  return read_mapping(merged, std::string(source));
+}
+
+Result<Mapping> default_mapping() { return parse_mapping("{}", "the program's own mapping"); }
+
+Action chord_action(const MouseMapping& mapping, std::uint8_t modifiers, std::string_view what) {
+  std::string chord;
+  if (modifiers & kShift) chord += "shift+";
+  if (modifiers & kControl) chord += "ctrl+";
+  if (modifiers & kAlt) chord += "alt+";
+  const auto found = mapping.chords.find(chord.append(what));
+  return found == mapping.chords.end() ? Action::kNone : found->second;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,171 @@
+// Displays from the command line: panels, patterns, what an eye sees, adjustments.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/base/atomic_file.h"
+#include "core/image_io/png_file.h"
+#include "tests/app/cli/run_program.h"
+#include "tests/devices/fake_bridge.h"
+#include "tests/display/panels/made_edid.h"
+
+namespace dubsar::test {
+namespace {
+namespace fs = std::filesystem;
+
+class DisplaysCommand : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = fs::temp_directory_path() / fmt::format("dubsar_displays_{}", ::getpid());
+    fs::create_directories(folder_);
+    ::setenv("XDG_CONFIG_HOME", (folder_ / "config").c_str(), 1);
+    ::unsetenv("DISPLAY");
+    ::unsetenv("WAYLAND_DISPLAY");
+    ASSERT_TRUE(
+        write_file_atomically(folder_ / "card.obj", "v 0 0 0\nv 40 0 0\nv 40 20 0\nv 0 20 4\nf 1 2 3\nf 1 3 4\n"));
+  }
+  static void TearDownTestSuite() { fs::remove_all(folder_); }
+  static std::string file(const char* name) { return (folder_ / name).string(); }
+  static nlohmann::json json(std::vector<std::string> arguments, int exit_code = 0) {
+    arguments.insert(arguments.end(), {"--json", "-", "--quiet"});
+    const ProgramRun run = run_dubsar(arguments);
+    EXPECT_EQ(run.exit_code, exit_code) << run.err;
+    return nlohmann::json::parse(run.out, nullptr, false);
+  }
+  inline static fs::path folder_;
+};
+
+TEST_F(DisplaysCommand, ListsWhatThereIsAndWhyMonitorsAreMissing) {
+  const auto found = json({"displays", "--bridge-port", "0"});
+  ASSERT_TRUE(found.is_object());
+  EXPECT_EQ(found["displays"][0]["name"], "mono");
+  const auto panel = [&](const char* name) {
+    for (const auto& entry : found["panels"])
+      if (entry["name"] == name) return entry;
+    return nlohmann::json();
+  };
+  EXPECT_EQ(panel("looking-glass-go")["views"], 66);
+  EXPECT_EQ(panel("looking-glass-65")["lens_figures"], false);
+  EXPECT_EQ(panel("sr-32")["kind"], "tracked");
+  EXPECT_EQ(found["monitors"].size(), 0u);
+  EXPECT_NE(found["monitors_missing"].get<std::string>().find("DISPLAY"), std::string::npos);
+  for (const char* route : {"usb_storage", "usb_hid"})
+    EXPECT_TRUE(found["calibrations_missing"][route].is_string()) << route;
+}
+
+TEST_F(DisplaysCommand, ACalibrationFromTheMakersServiceServesThePanelCalledAuto) {
+  ::setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
+  const std::string text =
+      R"({"serial": "LKG-E42", "pitch": 80.1, "slope": -6.6, "DPI": 491, "screenW": 1440, "screenH": 2560})";
+  const FakeBridge bridge({{"LKG-E42", "go_p", text}});
+  const std::string port = std::to_string(bridge.port());
+  const auto found = json({"displays", "--bridge-port", port})["calibrations"];
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0]["route"], "bridge");
+  EXPECT_EQ(found[0]["panel"], "looking-glass-go");
+  const auto made = json({"render", file("card.obj"), "-o", file("auto.png"), "--display", "quilt:auto",
+                          "--bridge-port", port, "--samples", "1"});
+  EXPECT_EQ(made["display"],
+            "quilt:panel=looking-glass-go,calibration=" + file("cache/dubsar/calibrations/LKG-E42.visual.json"));
+  EXPECT_EQ(
+      run_dubsar({"render", "--pattern", "-o", file("none.png"), "--display", "lenticular:auto", "--bridge-port", "0"})
+          .exit_code,
+      69);
+}
+
+TEST_F(DisplaysCommand, ConnectedPanelsAreNamedByTheirEdid) {
+  fs::create_directories(folder_ / "drm/card0-DP-2");
+  ASSERT_TRUE(write_file_atomically(folder_ / "drm/card0-DP-2/edid",
+                                    made_edid({.manufacturer = "ACR", .product = 1, .name = "ASV15-1B"})));
+  const auto found = json({"displays", "--edids", file("drm"), "--bridge-port", "0"})["edids"];
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0]["connector"], "DP-2");
+  EXPECT_EQ(found[0]["panels"][0], "spatiallabs-15.6");
+}
+
+TEST_F(DisplaysCommand, CrosstalkOfATrackedPanelIsToldAgainstSpeedAndLatency) {
+  const auto curve = json({"displays", "--crosstalk", "spatiallabs-15.6"});
+  EXPECT_LE(curve["nominal_percent"].get<double>(), 4.0);
+  EXPECT_LE(curve["worst_sideways_percent"].get<double>(), 5.0);
+  double of_8_mm = 0;
+  for (const auto& lag : curve["lags"])
+    if (lag["head_mm_s"] == 200 && lag["latency_ms"] == 40) of_8_mm = lag["percent"];
+  EXPECT_NEAR(of_8_mm, 6.5, 0.6);
+  EXPECT_EQ(run_dubsar({"displays", "--crosstalk", "looking-glass-go"}).exit_code, 78);
+}
+
+TEST_F(DisplaysCommand, CalibrationFilesAreReadAndProblemsNamed) {
+  ASSERT_TRUE(write_file_atomically(
+      file("visual.json"),
+      R"({"serial": "LKG-E77", "pitch": 80.1, "slope": -6.6, "DPI": 491, "screenW": 1440, "screenH": 2560})"));
+  EXPECT_EQ(json({"displays", "--calibration", file("visual.json")})["calibrations"][0]["panel"], "looking-glass-go");
+  ASSERT_TRUE(write_file_atomically(file("bad.json"), R"({"pitch": 80.1, "slope": 0})"));
+  const auto bad = json({"displays", "--calibration", file("bad.json")})["calibrations"][0];
+  EXPECT_NE(bad["problem"].get<std::string>().find("slope is 0"), std::string::npos) << bad;
+}
+
+TEST_F(DisplaysCommand, AnAdjustmentChangesThePictureUntilItIsReset) {
+  const std::vector<std::string> render{"render",      "--pattern", "-o",
+                                        file("p.png"), "--display", "lenticular:lens-sheet-24-5-views"};
+  const auto pixels = [&] {
+    EXPECT_EQ(run_dubsar(render).exit_code, 0);
+    return read_png(file("p.png"))->pixels;
+  };
+  const auto before = pixels();
+  const auto saved = json({"displays", "--adjust", "lens-sheet-24-5-views", "center=0.5"});
+  EXPECT_TRUE(fs::exists(saved["file"].get<std::string>()));
+  EXPECT_NE(pixels(), before);
+  EXPECT_EQ(json({"displays", "--adjust", "lens-sheet-24-5-views", "reset"})["removed"], true);
+  EXPECT_EQ(pixels(), before);
+  EXPECT_EQ(run_dubsar({"displays", "--adjust", "lens-sheet-24-5-views", "pitch=0"}).exit_code, 78);
+  EXPECT_EQ(run_dubsar({"displays", "--adjust", "no-such-panel", "pitch=50"}).exit_code, 64);
+}
+
+TEST_F(DisplaysCommand, EveryDisplayMakesItsPicture) {
+  for (const char* display : {"mono", "side_by_side:full", "top_bottom:frame_packing", "interlaced:subpixels",
+                              "anaglyph:amber_blue_dubois"}) {
+    const auto made = json(
+        {"render", file("card.obj"), "-o", file("d.png"), "--display", display, "--size", "320x240", "--samples", "1"});
+    EXPECT_EQ(made["views"], std::string(display) == "mono" ? 1 : 2) << display;
+    EXPECT_EQ(made["width"], std::string(display) == "side_by_side:full" ? 640 : 320) << display;
+  }
+  const auto quilt = json({"render", file("card.obj"), "-o", file("q.png"), "--display",
+                           "quilt:columns=3,rows=2,width=300,height=200,aspect=0.75", "--samples", "1"});
+  EXPECT_EQ(quilt["output"], file("q_qs3x2a0.75.png"));
+  EXPECT_EQ(read_png(file("q_qs3x2a0.75.png"))->width, 300);
+}
+
+TEST_F(DisplaysCommand, WhatAnEyeSeesIsWrittenWithItsCrosstalk) {
+  const auto seen = json({"render", "--pattern", "-o", file("s.png"), "--display",
+                          "lenticular:lens-sheet-24-5-views,nearest", "--see-from", "0,0,1200"});
+  EXPECT_EQ(seen["main_view"], 2) << "the middle one of five";
+  EXPECT_LT(seen["crosstalk_percent"].get<double>(), 5.0);
+  EXPECT_EQ(seen["view_percent"].size(), 5u);
+  EXPECT_EQ(read_png(file("s.png"))->width, 1920);
+}
+
+TEST_F(DisplaysCommand, OptionsThatContradictAreUsageErrors) {
+  const auto code = [&](std::vector<std::string> extra) {
+    std::vector<std::string> arguments{"render", "-o", file("x.png")};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    return run_dubsar(arguments).exit_code;
+  };
+  EXPECT_EQ(code({}), 64);
+  EXPECT_EQ(code({"--pattern"}), 64);
+  EXPECT_EQ(code({"--display", "mono"}), 64);
+  EXPECT_EQ(code({file("card.obj"), "--pattern", "--display", "mono"}), 64);
+  EXPECT_EQ(code({file("card.obj"), "--see-from", "0,0,600"}), 64);
+  EXPECT_EQ(code({"--pattern", "--display", "anaglyph", "--see-from", "0,0,600"}), 64);
+  EXPECT_EQ(code({"--pattern", "--display", "lenticular:sr-32", "--see-from", "0,0"}), 64);
+  EXPECT_EQ(code({file("card.obj"), "--display", "mono", "--perspective"}), 64);
+  EXPECT_EQ(code({"--pattern", "--display", "quad_buffer"}), 69);
+  EXPECT_FALSE(fs::exists(file("x.png")));
+}
+
+}  // namespace
+}  // namespace dubsar::test

@@ -1,0 +1,486 @@
+// Extraction against constructions that share no code with it: marching cubes curves held in maps, mirrored and turned
+// volumes, boxes of known size.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <glm/geometric.hpp>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "core/extract/cell_table.h"
+#include "core/extract/row_kernels.h"
+#include "tests/core/extract/extract_help.h"
+#include "tests/core/extract/random_volume.h"
+
+namespace dubsar {
+namespace {
+
+using Point = std::array<int, 3>;
+using Edge = std::pair<Point, Point>;  // rising
+
+/// The marching cubes polygon complex of a closed volume: crossings, segments on cell faces, curves in cells.
+struct NaiveSurface {
+  struct Component {
+    long crossings = 0, segments = 0, curves = 0;
+    auto operator<=>(const Component&) const = default;
+  };
+  std::map<Edge, double> crossings;               // with t
+  std::multiset<std::array<long, 2>> components;  // {crossings = x-quads, Euler number}
+  long curves = 0, pinches = 0;
+
+  NaiveSurface(const Volume<float>& volume, float tau) {
+    const auto inside_grid = [&](const Point& p) {
+      return p[0] >= 0 && p[1] >= 0 && p[2] >= 0 && p[0] < volume.dims.x && p[1] < volume.dims.y &&
+             p[2] < volume.dims.z;
+    };
+    const auto value = [&](const Point& p) { return static_cast<long double>(volume.at(p[0], p[1], p[2])) - tau; };
+    const auto inside = [&](const Point& p) { return inside_grid(p) && volume.at(p[0], p[1], p[2]) >= tau; };
+    const auto plus = [](Point p, int axis) { return ++p[static_cast<std::size_t>(axis)], p; };
+    const auto edge = [](const Point& p, const Point& q) { return p < q ? Edge{p, q} : Edge{q, p}; };
+
+    // Segments of every face of every cell, also between virtual points; faces are looked at once.
+    std::map<std::pair<Point, int>, std::vector<std::pair<Edge, Edge>>> faces;
+    std::map<Edge, Edge> parent;
+    std::function<Edge(Edge)> root = [&](Edge e) {
+      while (parent.at(e) != e) e = parent.at(e);
+      return e;
+    };
+    const auto each_point = [&](const std::function<void(const Point&)>& visit) {
+      Point p;
+      for (p[2] = -1; p[2] <= volume.dims.z; ++p[2]) {
+        for (p[1] = -1; p[1] <= volume.dims.y; ++p[1]) {
+          for (p[0] = -1; p[0] <= volume.dims.x; ++p[0]) visit(p);
+        }
+      }
+    };
+    each_point([&](const Point& p) {
+      for (int a = 0; a < 3; ++a) {
+        const Point q = plus(p, a);
+        if (inside(p) == inside(q)) continue;
+        long double t = 0.5L;
+        if (!inside_grid(p) || !inside_grid(q)) {
+          t = inside_grid(p) ? 0 : 1;
+        } else if (std::isfinite(value(p) / (value(p) - value(q)))) {
+          t = value(p) / (value(p) - value(q));
+        }
+        crossings[{p, q}] = static_cast<double>(t);
+        parent[{p, q}] = {p, q};
+      }
+    });
+    each_point([&](const Point& p) {
+      for (int a = 0; a < 3; ++a) {
+        const int u = (a + 1) % 3, v = (a + 2) % 3;
+        const std::array<Point, 4> ring = {p, plus(p, u), plus(plus(p, u), v), plus(p, v)};
+        std::vector<Edge> active;
+        for (std::size_t i = 0; i < 4; ++i) {
+          const Point &r = ring[i], &s = ring[(i + 1) % 4];
+          if (inside(r) != inside(s)) active.push_back(edge(r, s));
+        }
+        auto& segments = faces[{p, a}];
+        if (active.size() == 2) segments = {{active[0], active[1]}};
+        if (active.size() == 4) {
+          // Bilinear saddle value above the isovalue: the inside corners are joined, the outside ones cut off.
+          const std::size_t even = inside(ring[0]) ? 0 : 1;
+          const long double in = value(ring[even]) * value(ring[even + 2]);
+          const long double out = value(ring[1 - even]) * value(ring[3 - even]);
+          // active[i] lies between ring[i] and ring[i + 1]: cut off ring[k] by active[k - 1], active[k].
+          const std::size_t k = in > out ? 1 - even : even;
+          segments = {{active[(k + 3) % 4], active[k]}, {active[(k + 1) % 4], active[(k + 2) % 4]}};
+        }
+        for (const auto& [e, f] : segments) parent[root(e)] = root(f);
+      }
+    });
+    std::map<Edge, Component> parts;
+    for (const auto& [e, t] : crossings) ++parts[root(e)].crossings;
+    for (const auto& [face, segments] : faces) {
+      for (const auto& segment : segments) ++parts[root(segment.first)].segments;
+    }
+    each_point([&](const Point& p) {  // the cell above p: join its crossings to curves
+      std::map<Edge, std::vector<std::pair<Edge, int>>> next;
+      int face_number = 0;
+      for (int a = 0; a < 3; ++a) {
+        for (const Point& q : {p, plus(p, a)}) {
+          ++face_number;
+          const auto found = faces.find({q, a});
+          if (found == faces.end()) continue;
+          for (const auto& [e, f] : found->second) {
+            next[e].push_back({f, face_number});
+            next[f].push_back({e, face_number});
+          }
+        }
+      }
+      std::set<Edge> seen;
+      for (const auto& [start, unused] : next) {
+        if (seen.contains(start)) continue;
+        ++curves;
+        ++parts[root(start)].curves;
+        std::map<int, int> face_segments;
+        std::vector<Edge> todo = {start};
+        while (!todo.empty()) {
+          const Edge e = todo.back();
+          todo.pop_back();
+          if (!seen.insert(e).second) continue;
+          for (const auto& [f, number] : next.at(e)) {
+            ++face_segments[number];
+            todo.push_back(f);
+          }
+        }
+        for (const auto& [number, ends] : face_segments) pinches += ends == 4;
+      }
+    });
+    for (const auto& [e, part] : parts) {
+      components.insert({part.crossings, part.crossings - part.segments + part.curves});
+    }
+  }
+};
+
+/// The same of the dual mesh: {x-quads, Euler number} of every component.
+std::multiset<std::array<long, 2>> dual_components(const QuadMesh& mesh) {
+  std::vector<std::uint32_t> parent(mesh.positions.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const std::function<std::uint32_t(std::uint32_t)> root = [&](std::uint32_t v) {
+    return parent[v] == v ? v : parent[v] = root(parent[v]);
+  };
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (std::uint32_t q = 0; q < mesh.quads.size(); ++q) {
+    const Polygon polygon = mesh.polygon(q);
+    for (int i = 0; i < polygon.size; ++i) {
+      const std::uint32_t v = polygon.vertex[static_cast<std::size_t>(i)];
+      const std::uint32_t w = polygon.vertex[static_cast<std::size_t>((i + 1) % polygon.size)];
+      edges.insert({std::min(v, w), std::max(v, w)});
+      parent[root(v)] = root(w);
+    }
+  }
+  std::map<std::uint32_t, std::array<long, 2>> parts;
+  for (std::uint32_t v = 0; v < parent.size(); ++v) ++parts[root(v)][1];
+  for (const auto& [v, w] : edges) --parts[root(v)][1];
+  for (std::uint32_t q = 0; q < mesh.quads.size(); ++q) {
+    auto& part = parts[root(mesh.quads[q][0])];
+    ++part[0];
+    ++part[1];
+  }
+  std::multiset<std::array<long, 2>> components;
+  for (const auto& [v, part] : parts) components.insert(part);
+  return components;
+}
+
+TEST(ExtractOracle, ComponentsAndEulerNumbersAreThoseOfMarchingCubesInMaps) {
+  long pinches = 0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    const Volume<float> volume =
+        random_volume({3 + seed % 9, 9 - seed % 7, 4 + seed % 5}, seed, static_cast<int>(seed % 5));
+    const NaiveSurface naive(volume, 0.0f);
+    const QuadMesh mesh = build(sample(volume, 0.0f));
+    EXPECT_EQ(mesh.quad_count(), static_cast<std::int64_t>(naive.crossings.size())) << seed;
+    EXPECT_EQ(mesh.vertex_count(), naive.curves + static_cast<long>(mesh.doubled.size()) / 2) << seed;
+    EXPECT_EQ(dual_components(mesh), naive.components) << seed;
+    EXPECT_EQ(mesh.doubled.empty(), naive.pinches == 0) << seed;
+    pinches += naive.pinches;
+  }
+  EXPECT_GT(pinches, 100);
+}
+
+TEST(ExtractOracle, XQuadsComeInTheStatedOrderAroundTheirEdges) {
+  for (const bool closed : {true, false}) {
+    const Volume<float> volume = random_volume({67, 4, 4}, 5, 0);
+    const Dims& dims = volume.dims;
+    const NaiveSurface naive(volume, 0.0f);
+    const QuadMesh mesh = build(sample(volume, 0.0f, closed, 16));
+    std::vector<std::pair<Edge, double>> expected;
+    for (const bool virtual_edges : {false, true}) {
+      for (int z = -1; z < dims.z; ++z) {
+        for (int y = -1; y < dims.y; ++y) {
+          for (int a = 0; a < 3; ++a) {
+            for (int x = -1; x < dims.x; ++x) {
+              Point q = {x, y, z};
+              ++q[static_cast<std::size_t>(a)];
+              const bool is_virtual = x < 0 || y < 0 || z < 0 || q[0] == dims.x || q[1] == dims.y || q[2] == dims.z;
+              const auto at_face = [&](int axis, int c, std::int64_t n) { return axis != a && (c == 0 || c == n - 1); };
+              const bool dropped =
+                  !closed && (is_virtual || at_face(0, x, dims.x) || at_face(1, y, dims.y) || at_face(2, z, dims.z));
+              const auto found = naive.crossings.find({{x, y, z}, q});
+              if (is_virtual == virtual_edges && !dropped && found != naive.crossings.end()) expected.push_back(*found);
+            }
+          }
+        }
+      }
+    }
+    ASSERT_EQ(mesh.quads.size(), expected.size());
+    for (std::uint32_t i = 0; i < mesh.quads.size(); ++i) {
+      const auto& [edge, t] = expected[i];
+      const glm::dvec3 p(edge.first[0], edge.first[1], edge.first[2]),
+          q(edge.second[0], edge.second[1], edge.second[2]);
+      const int a = q.x > p.x ? 0 : q.y > p.y ? 1 : 2, u = (a + 1) % 3, v = (a + 2) % 3;
+      const auto air = [&](const Point& at) {
+        const bool in_grid = std::ranges::min(at) >= 0 && at[0] < dims.x && at[1] < dims.y && at[2] < dims.z;
+        return !(in_grid && volume.at(at[0], at[1], at[2]) >= 0.0f);
+      };
+      const Polygon polygon = mesh.polygon(i);
+      for (int k = 0; k < polygon.size; ++k) {
+        // Corner 0 at (+u, +v), then counter-clockwise seen from the air.
+        constexpr int kU[4] = {1, -1, -1, 1}, kV[4] = {1, 1, -1, -1};
+        const int corner = polygon.corner[static_cast<std::size_t>(k)];
+        const int turn = air(edge.second) ? corner : (4 - corner) % 4;
+        const glm::vec3 at = mesh.positions[polygon.vertex[static_cast<std::size_t>(k)]];
+        EXPECT_GE(kU[turn] * (at[u] - p[u]), 0.0) << "x-quad " << i;
+        EXPECT_GE(kV[turn] * (at[v] - p[v]), 0.0) << "x-quad " << i;
+        EXPECT_LE(kU[turn] * (at[u] - p[u]), 1.0) << "x-quad " << i;
+        EXPECT_LE(kV[turn] * (at[v] - p[v]), 1.0) << "x-quad " << i;
+        EXPECT_GE(at[a] - p[a], 0.0);
+        EXPECT_LE(at[a] - p[a], 1.0);
+      }
+    }
+  }
+}
+
+TEST(ExtractOracle, VerticesAreTheMeansOfTheirCrossings) {
+  const Volume<float> volume = random_volume({12, 9, 8}, 8, 2);
+  const NaiveSurface naive(volume, 0.0f);
+  const SurfaceSamples samples = sample(volume, 0.0f, true, 16);
+  const QuadMesh mesh = build(samples);
+  // Crossings in order of the x-quads: the order is tested above.
+  std::vector<glm::dvec3> crossing;
+  for (const bool virtual_edges : {false, true}) {
+    std::map<std::array<int, 5>, glm::dvec3> ordered;
+    for (const auto& [edge, t] : naive.crossings) {
+      const auto& [p, q] = edge;
+      const int a = q[0] > p[0] ? 0 : q[1] > p[1] ? 1 : 2;
+      const bool is_virtual =
+          std::ranges::min(p) < 0 || q[0] == volume.dims.x || q[1] == volume.dims.y || q[2] == volume.dims.z;
+      glm::dvec3 at(p[0], p[1], p[2]);
+      at[a] += t;
+      if (is_virtual == virtual_edges) ordered[{p[2], p[1], a, p[0], 0}] = at;
+    }
+    for (const auto& [key, at] : ordered) crossing.push_back(at);
+  }
+  ASSERT_EQ(crossing.size(), mesh.quads.size());
+  for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+    glm::dvec3 mean(0.0);
+    for (const std::uint32_t q : mesh.quads_of(v)) mean += crossing[q];
+    mean /= static_cast<double>(mesh.quads_of(v).size());
+    for (int a = 0; a < 3; ++a) EXPECT_NEAR(mesh.positions[v][a], mean[a], 1e-5 + 0x1p-17) << "vertex " << v;
+  }
+}
+
+/// Polygons by the places of their vertices, turned to start at the smallest. With 4-bit offsets the coordinates are
+/// whole multiples of 1 / (32 * 2520): 2520 can be divided by any number of crossings of a piece.
+std::multiset<std::vector<std::array<long, 3>>> polygons(const QuadMesh& mesh,
+                                                         const std::function<glm::dvec3(glm::dvec3)>& map, bool reverse,
+                                                         const std::set<Point>& without = {}) {
+  std::multiset<std::vector<std::array<long, 3>>> all;
+  for (std::uint32_t q = 0; q < mesh.quads.size(); ++q) {
+    const Polygon polygon = mesh.polygon(q);
+    std::vector<std::array<long, 3>> places;
+    bool skipped = false;
+    for (int i = 0; i < polygon.size; ++i) {
+      const glm::vec3& at = mesh.positions[polygon.vertex[static_cast<std::size_t>(i)]];
+      for (unsigned side = 0; side < 8 && !without.empty(); ++side) {  // cells that touch the vertex
+        Point cell;
+        for (int a = 0; a < 3; ++a) {
+          cell[static_cast<std::size_t>(a)] =
+              static_cast<int>(side >> a & 1u ? std::floor(at[a]) : std::ceil(at[a]) - 1.0f);
+        }
+        skipped |= without.contains(cell);
+      }
+      const glm::dvec3 p = map(glm::dvec3(at));
+      places.push_back({std::lround(p.x * 80640), std::lround(p.y * 80640), std::lround(p.z * 80640)});
+    }
+    if (skipped) continue;
+    if (reverse) std::reverse(places.begin(), places.end());
+    std::rotate(places.begin(), std::min_element(places.begin(), places.end()), places.end());
+    all.insert(places);
+  }
+  return all;
+}
+
+/// Low corners of the cells whose split cannot follow every symmetry (CellTable,
+/// SplitsFollowEverySymmetryWhereChordsCan).
+std::set<Point> cells_without_symmetry(const Volume<float>& volume, float tau) {
+  const CellTable& table = CellTable::instance();
+  std::set<int> ids;
+  for (int id = 0; id < CellTable::kConfigs; ++id) {
+    for (const CellSymmetry& g : cell_symmetries()) {
+      std::vector<CellChord> image;
+      for (const CellChord& chord : table.chords(id)) {
+        image.push_back({std::min(g.edge[chord.a], g.edge[chord.b]), std::max(g.edge[chord.a], g.edge[chord.b])});
+      }
+      std::ranges::sort(image);
+      if (!std::ranges::equal(image, table.chords(transform_config(table, id, g)))) ids.insert(id);
+    }
+  }
+  std::set<Point> cells;
+  for (int z = 0; z + 1 < volume.dims.z; ++z) {
+    for (int y = 0; y + 1 < volume.dims.y; ++y) {
+      for (int x = 0; x + 1 < volume.dims.x; ++x) {
+        const auto value = [&](unsigned c) { return volume.at(x + (c & 1u), y + (c >> 1 & 1u), z + (c >> 2)); };
+        unsigned signs = 0, resolution = 0, place = 0;
+        for (unsigned c = 0; c < 8; ++c) signs |= unsigned{value(c) >= tau} << c;
+        for (unsigned f = 0; f < 6; ++f) {
+          if (!(table.ambiguous_faces(signs) >> f & 1u)) continue;
+          const unsigned a = f / 2, u = 1u << ((a + 1) % 3), v = 1u << ((a + 2) % 3), c = (f & 1u) << a;
+          resolution |= unsigned{joins_inside(value(c), value(c | u), value(c | v), value(c | u | v), tau)} << place++;
+        }
+        if (ids.contains(table.id(signs, resolution))) cells.insert({x, y, z});
+      }
+    }
+  }
+  return cells;
+}
+
+/// Noise, low-pass filtered twice: curved, with many ambiguous faces.
+Volume<float> smooth_volume(Dims dims, unsigned seed) {
+  Volume<float> volume = random_volume(dims, seed, 0);
+  for (const int axis : {0, 1, 2, 0, 1, 2}) {
+    Volume<float> next(dims);
+    for (std::int64_t z = 0; z < dims.z; ++z) {
+      for (std::int64_t y = 0; y < dims.y; ++y) {
+        for (std::int64_t x = 0; x < dims.x; ++x) {
+          const auto at = [&](std::int64_t d) {
+            return volume.at(std::clamp<std::int64_t>(x + (axis == 0) * d, 0, dims.x - 1),
+                             std::clamp<std::int64_t>(y + (axis == 1) * d, 0, dims.y - 1),
+                             std::clamp<std::int64_t>(z + (axis == 2) * d, 0, dims.z - 1));
+          };
+          next.at(x, y, z) = at(0) + 0.5f * (at(-1) + at(1));
+        }
+      }
+    }
+    volume = std::move(next);
+  }
+  return volume;
+}
+
+TEST(ExtractOracle, MirroredAndTurnedVolumesGiveTheMirroredAndTurnedMesh) {
+  std::size_t doubled = 0;
+  for (const bool closed : {true, false}) {
+    const Dims dims{32, 32, 32};
+    const Volume<float> volume = smooth_volume(dims, 4);
+    const QuadMesh mesh = build(sample(volume, 0.1f, closed));
+    doubled += mesh.doubled.size();
+    const std::set<Point> special = cells_without_symmetry(volume, 0.1f);
+    EXPECT_LT(special.size(), 0.01 * static_cast<double>(mesh.vertex_count()));
+    const double last = static_cast<double>(dims.x - 1);
+    // New coordinates of an old point: `axes` permutes, `flips` mirrors; an odd number of both together reverses.
+    struct Turn {
+      std::array<int, 3> axes;
+      std::array<bool, 3> flips;
+      bool reverses;
+    };
+    for (const Turn& turn :
+         {Turn{{0, 1, 2}, {true, false, false}, true}, Turn{{0, 1, 2}, {false, true, false}, true},
+          Turn{{0, 1, 2}, {false, false, true}, true}, Turn{{1, 0, 2}, {true, false, false}, false},
+          Turn{{0, 2, 1}, {false, true, false}, false}, Turn{{1, 2, 0}, {false, false, false}, false},
+          Turn{{2, 1, 0}, {false, false, true}, false}}) {
+      const auto to_new = [&](const glm::dvec3& p) {
+        glm::dvec3 image;
+        for (std::size_t a = 0; a < 3; ++a) {
+          const double c = p[turn.axes[a]];
+          image[static_cast<int>(a)] = turn.flips[a] ? last - c : c;
+        }
+        return image;
+      };
+      Volume<float> turned(dims);
+      for (std::int64_t z = 0; z < dims.z; ++z) {
+        for (std::int64_t y = 0; y < dims.y; ++y) {
+          for (std::int64_t x = 0; x < dims.x; ++x) {
+            const glm::dvec3 p = to_new({x, y, z});
+            turned.at(std::lround(p.x), std::lround(p.y), std::lround(p.z)) = volume.at(x, y, z);
+          }
+        }
+      }
+      const QuadMesh image = build(sample(turned, 0.1f, closed));
+      const std::set<Point> special_image = cells_without_symmetry(turned, 0.1f);
+      EXPECT_EQ(special_image.size(), special.size());
+      EXPECT_EQ(image.vertex_count(), mesh.vertex_count());
+      if (closed) {
+        EXPECT_EQ(image.doubled.size(), mesh.doubled.size());
+      }
+      const auto found = polygons(
+          image, [](glm::dvec3 p) { return p; }, false, special_image);
+      const auto wanted = polygons(mesh, to_new, turn.reverses, special);
+      EXPECT_GT(wanted.size(), 0.9 * static_cast<double>(mesh.quad_count()));
+      EXPECT_TRUE(found == wanted) << "axes " << turn.axes[0] << turn.axes[1] << turn.axes[2];
+    }
+  }
+  EXPECT_GT(doubled, 0u) << "the volume has no split cell";
+}
+
+TEST(ExtractOracle, ExchangeOfInsideAndOutsideReversesThePolygons) {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const Volume<float> volume = random_volume({21, 17, 13}, seed, 0);
+    Volume<float> negative(volume.dims);
+    for (std::int64_t i = 0; i < volume.dims.count(); ++i) negative.voxels[i] = -volume.voxels[i];
+    const auto same = [](glm::dvec3 p) { return p; };
+    const QuadMesh mesh = build(sample(volume, 0.01f, false)), inverse = build(sample(negative, -0.01f, false));
+    EXPECT_EQ(mesh.positions.size(), inverse.positions.size());
+    EXPECT_TRUE(polygons(mesh, same, true) == polygons(inverse, same, false));
+  }
+}
+
+Volume<float> constant(Dims dims, float value) {
+  Volume<float> volume(dims);
+  std::fill_n(volume.voxels.data(), dims.count(), value);
+  return volume;
+}
+
+TEST(ExtractBoundary, FullVolumeIsClosedByAnExactBox) {
+  for (const Dims dims : {Dims{2, 2, 2}, Dims{5, 7, 3}, Dims{64, 3, 2}, Dims{65, 2, 4}}) {
+    const Volume<float> volume = constant(dims, 1.0f);
+    const QuadMesh mesh = build(sample(volume, 0.5f));
+    EXPECT_TRUE(check(mesh).watertight());
+    EXPECT_EQ(check(mesh).euler, 2);
+    double area = 0.0, enclosed = 0.0;
+    const Triangulation cut = triangulate(mesh, {});
+    for (const Triangle& t : cut.triangles) {
+      const glm::dvec3 a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]);
+      area += 0.5 * glm::length(glm::cross(b - a, c - a));
+      enclosed += glm::dot(a, glm::cross(b, c)) / 6.0;
+    }
+    const double x = static_cast<double>(dims.x - 1), y = static_cast<double>(dims.y - 1),
+                 z = static_cast<double>(dims.z - 1);
+    EXPECT_NEAR(enclosed, x * y * z, 1e-9);
+    EXPECT_NEAR(area, 2 * (x * y + y * z + z * x), 1e-9);
+    EXPECT_TRUE(build(sample(volume, 0.5f, false)).quads.empty());
+    EXPECT_TRUE(build(sample(volume, 0.5f, false)).positions.empty());
+    EXPECT_TRUE(build(sample(volume, 1.5f)).quads.empty());
+  }
+}
+
+TEST(ExtractBoundary, OpenHalfSpaceIsADisc) {
+  Volume<float> volume({20, 9, 12});
+  for (std::int64_t i = 0; i < volume.dims.count(); ++i) volume.voxels[i] = static_cast<float>(i % 20) - 7.25f;
+  const QuadMesh open = build(sample(volume, 0.0f, false, 16));
+  EXPECT_EQ(open.quad_count(), 7 * 10);
+  EXPECT_EQ(open.vertex_count(), 8 * 11);
+  const MeshCheck found = check(open);
+  EXPECT_TRUE(found.manifold());
+  EXPECT_EQ(found.boundary_edges, 2 * (7 + 10));
+  EXPECT_EQ(found.euler, 1);
+  for (const glm::vec3& p : open.positions) EXPECT_NEAR(p.x, 7.25f, 1e-4f);
+  const MeshCheck closed = check(build(sample(volume, 0.0f, true)));
+  EXPECT_TRUE(closed.watertight());
+  EXPECT_EQ(closed.euler, 2);
+}
+
+TEST(ExtractBoundary, TinyVolumesAreManifoldOpenAndClosed) {
+  set_thread_count(1);
+  std::int64_t split = 0;
+  for (unsigned seed = 0; seed < 2000; ++seed) {
+    const Dims dims{1 + seed % 4, 1 + seed / 4 % 4, 1 + seed / 16 % 5};
+    const Volume<float> volume = random_volume(dims, seed, static_cast<int>(seed % 5));
+    const MeshCheck closed = check(build(sample(volume, 0.0f, true)));
+    EXPECT_TRUE(closed.triangles == 0 || closed.watertight()) << "seed " << seed;
+    const QuadMesh open = build(sample(volume, 0.0f, false));
+    const MeshCheck found = check(open);
+    EXPECT_TRUE(found.manifold()) << "seed " << seed;
+    EXPECT_EQ(found.vertices - open.vertex_count(), static_cast<std::int64_t>(triangulate(open, {}).steiner.size()));
+    for (std::size_t v = 1; v < open.positions.size(); ++v) split += open.positions[v] == open.positions[v - 1];
+  }
+  set_thread_count(0);
+  EXPECT_GT(split, 10) << "no vertex had to be doubled: the test does not reach bow-ties";
+}
+
+}  // namespace
+}  // namespace dubsar

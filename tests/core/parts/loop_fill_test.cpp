@@ -1,0 +1,202 @@
+#include "core/parts/loop_fill.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <random>
+#include <set>
+
+#include "core/mesh/mesh_check.h"
+#include "core/parts/border_loops.h"
+
+namespace dubsar {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+LoopFill fill(const Loop& loop, const LoopFillOptions& options) {
+  SilentProgress progress;
+  auto filled = fill_loop(loop, options, progress);
+  EXPECT_TRUE(filled.has_value());
+  return std::move(*filled);
+}
+
+glm::vec3 at(const Loop& loop, const LoopFill& filled, std::uint32_t v) {
+  return v < loop.positions.size() ? loop.positions[v] : filled.added[v - loop.positions.size()];
+}
+
+/// A disk whose border runs once along the loop, in its sense.
+void expect_disk(const Loop& loop, const LoopFill& filled) {
+  std::vector<glm::vec3> positions = loop.positions;
+  positions.insert(positions.end(), filled.added.begin(), filled.added.end());
+  const MeshCheck check = check_mesh(positions, filled.triangles);
+  EXPECT_TRUE(check.manifold());
+  EXPECT_EQ(check.boundary_edges, static_cast<std::int64_t>(loop.positions.size()));
+  EXPECT_EQ(check.euler, 1);
+  EXPECT_EQ(check.components, 1);
+  EXPECT_EQ(check.vertices, static_cast<std::int64_t>(positions.size()));
+  std::set<std::pair<std::uint32_t, std::uint32_t>> sides;
+  for (const Triangle& t : filled.triangles)
+    for (std::size_t i = 0; i < 3; ++i) sides.emplace(t[i], t[(i + 1) % 3]);
+  const auto n = static_cast<std::uint32_t>(loop.positions.size());
+  for (std::uint32_t i = 0; i < n; ++i) EXPECT_EQ(sides.count({i, (i + 1) % n}), 1u) << i;
+}
+
+Loop circle(int n, float radius, const std::function<float(float)>& height, const std::function<float(float)>& scale) {
+  Loop loop;
+  for (int i = 0; i < n; ++i) {
+    const float a = 2.0f * static_cast<float>(kPi) * static_cast<float>(i) / static_cast<float>(n);
+    const float r = radius * scale(a);
+    loop.positions.emplace_back(r * std::cos(a), r * std::sin(a), height(a));
+  }
+  return loop;
+}
+float zero(float) { return 0.0f; }
+float one(float) { return 1.0f; }
+
+std::vector<LoopFillOptions> variants() {
+  std::vector<LoopFillOptions> all;
+  for (const LoopWeight weight : {LoopWeight::kArea, LoopWeight::kDihedralThenArea, LoopWeight::kAreaAndBend})
+    for (const bool refine : {false, true}) {
+      LoopFillOptions options;
+      options.weight = weight;
+      options.refine = refine;
+      all.push_back(options);
+    }
+  return all;
+}
+
+TEST(LoopFill, PlanarPolygonHasItsExactAreaAndNoTriangleTurnedOver) {
+  for (const LoopFillOptions& options : variants())
+    for (const int n : {3, 4, 5, 17, 100}) {
+      // A star shape with five lobes: not convex.
+      const Loop loop = circle(n, 10.0f, zero, [](float a) { return 1.0f + 0.4f * std::cos(5.0f * a); });
+      double area = 0.0;
+      for (std::size_t i = 0; i < loop.positions.size(); ++i) {
+        const glm::vec3 &p = loop.positions[i], &q = loop.positions[(i + 1) % loop.positions.size()];
+        area += 0.5 * (static_cast<double>(p.x) * static_cast<double>(q.y) -
+                       static_cast<double>(q.x) * static_cast<double>(p.y));
+      }
+      const LoopFill filled = fill(loop, options);
+      expect_disk(loop, filled);
+      EXPECT_NEAR(filled.area, area, 2e-5 * area);
+      for (const Triangle& t : filled.triangles) {
+        const glm::vec3 a = at(loop, filled, t[0]);
+        EXPECT_GT(glm::cross(at(loop, filled, t[1]) - a, at(loop, filled, t[2]) - a).z, -1e-4f);
+      }
+    }
+}
+
+TEST(LoopFill, BentQuadrilateralTakesTheSmallerOfItsTwoSurfaces) {
+  Loop loop;
+  loop.positions = {{0, 0, 0}, {4, 0, 1}, {4, 1, 0}, {0, 1, 1}};
+  LoopFillOptions options;
+  options.refine = false;
+  options.weight = LoopWeight::kArea;
+  const auto area = [&](int a, int b, int c) {
+    const auto& p = loop.positions;
+    const auto i = [](int k) { return static_cast<std::size_t>(k); };
+    return 0.5 * static_cast<double>(glm::length(glm::cross(p[i(b)] - p[i(a)], p[i(c)] - p[i(a)])));
+  };
+  EXPECT_NEAR(fill(loop, options).area, std::min(area(0, 1, 2) + area(0, 2, 3), area(1, 2, 3) + area(1, 3, 0)), 1e-6);
+}
+
+TEST(LoopFill, RimOfAHemisphereIsClosedByADisk) {
+  const Loop loop = circle(160, 20.0f, zero, one);
+  for (const LoopFillOptions& options : variants()) {
+    const LoopFill filled = fill(loop, options);
+    expect_disk(loop, filled);
+    EXPECT_NEAR(filled.area, kPi * 400.0, 1.0);
+    if (options.refine) {
+      EXPECT_GT(filled.added.size(), 100u);
+    }
+  }
+}
+
+TEST(LoopFill, ForbiddenEdgesAreNeverMade) {
+  std::mt19937 random(4);
+  for (const LoopFillOptions& options : variants())
+    for (int trial = 0; trial < 20; ++trial) {
+      Loop loop = circle(
+          24, 10.0f, [](float a) { return 2.0f * std::sin(3.0f * a); }, one);
+      std::set<std::pair<std::uint32_t, std::uint32_t>> taken;
+      for (int i = 0; i < 60; ++i) {
+        const auto a = static_cast<std::uint32_t>(random() % 24), b = static_cast<std::uint32_t>(random() % 24);
+        taken.emplace(std::min(a, b), std::max(a, b));
+      }
+      loop.forbidden = [&](std::uint32_t a, std::uint32_t b) {
+        return taken.count({std::min(a, b), std::max(a, b)}) > 0;
+      };
+      const LoopFill filled = fill(loop, options);
+      expect_disk(loop, filled);
+      for (const Triangle& t : filled.triangles)
+        for (std::size_t i = 0; i < 3; ++i) {
+          const std::uint32_t a = std::min(t[i], t[(i + 1) % 3]), b = std::max(t[i], t[(i + 1) % 3]);
+          if (b >= 24 || b == a + 1 || (a == 0 && b == 23)) continue;
+          EXPECT_EQ(taken.count({a, b}), 0u);
+        }
+    }
+}
+
+TEST(LoopFill, AllInnerEdgesForbiddenGivesAStar) {
+  Loop loop = circle(12, 5.0f, zero, one);
+  loop.forbidden = [](std::uint32_t, std::uint32_t) { return true; };
+  LoopFillOptions options;
+  options.refine = false;
+  const LoopFill filled = fill(loop, options);
+  EXPECT_TRUE(filled.star);
+  expect_disk(loop, filled);
+}
+
+TEST(LoopFill, RandomWigglyLoopsBecomeDisks) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<float> noise(-1.0f, 1.0f);
+  for (int trial = 0; trial < 30; ++trial) {
+    const int n = 3 + static_cast<int>(random() % 300);
+    Loop loop = circle(
+        n, 12.0f, [&](float) { return noise(random); }, [&](float) { return 1.0f + 0.15f * noise(random); });
+    for (std::size_t i = 0; i < loop.positions.size(); ++i)
+      loop.rim_normals.push_back(glm::normalize(glm::vec3(noise(random), noise(random), 2.0f)));
+    LoopFillOptions options;
+    options.refine = trial % 2 == 0;
+    options.exact_limit = trial % 3 == 0 ? 40 : 256;
+    expect_disk(loop, fill(loop, options));
+  }
+}
+
+TEST(LoopFill, LoopOfThirtyThousandVerticesIsCutDownFirst) {
+  const Loop loop = circle(
+      30000, 4000.0f, [](float a) { return 30.0f * std::sin(7.0f * a); },
+      [](float a) { return 1.0f + 0.1f * std::sin(40.0f * a); });
+  LoopFillOptions options;
+  options.refine = false;
+  const LoopFill filled = fill(loop, options);
+  expect_disk(loop, filled);
+  EXPECT_NEAR(filled.area, kPi * 16e6 * 1.005, 0.01 * kPi * 16e6);
+}
+
+TEST(BorderLoops, FigureEightBecomesTwoLoopsThatVisitNoVertexTwice) {
+  // 0 -> 1 -> 2 -> 0 -> 3 -> 4 -> 0, and a separate triangle; shuffled.
+  const std::vector<BorderEdge> edges{{3, 4}, {1, 2}, {7, 5}, {0, 3}, {2, 0}, {5, 6}, {4, 0}, {6, 7}, {0, 1}};
+  const auto loops = join_loops(edges);
+  ASSERT_EQ(loops.size(), 3u);
+  std::size_t used = 0;
+  for (const auto& loop : loops) {
+    EXPECT_EQ(loop.size(), 3u);
+    used += loop.size();
+    for (std::size_t i = 0; i < loop.size(); ++i) EXPECT_EQ(edges[loop[i]].to, edges[loop[(i + 1) % loop.size()]].from);
+  }
+  EXPECT_EQ(used, edges.size());
+}
+
+TEST(BorderLoops, PathsThatEndAtAnOpenBoundaryAreLeftOut) {
+  const std::vector<BorderEdge> edges{{9, 8}, {8, 0}, {0, 1}, {1, 2}, {2, 0}, {2, 5}};
+  const auto loops = join_loops(edges);
+  ASSERT_EQ(loops.size(), 1u);
+  EXPECT_EQ(loops[0].size(), 3u);
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,270 @@
+#include "core/parts/segment.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/base/parallel.h"
+#include "core/mesh/mesh_check.h"
+#include "core/parts/holes.h"
+#include "tests/core/parts/scene.h"
+
+namespace dubsar {
+namespace {
+
+using scene::Nested;
+
+SegmentReport run_segment(SurfaceModel& model, SegmentMethod method = SegmentMethod::kNested) {
+  SilentProgress progress;
+  SegmentOptions options;
+  options.method = method;
+  auto report = segment(model, options, progress);
+  EXPECT_TRUE(report.has_value()) << report.error().message;
+  return *report;
+}
+
+struct Quality {
+  double tablet_purity, tablet_recall, envelope_purity, envelope_recall;
+  double worst() const { return std::min({tablet_purity, tablet_recall, envelope_purity, envelope_recall}); }
+};
+
+/// Counts x-quads on one of the three true surfaces: rims of contacts and walls of pores and cracks belong to
+/// none.
+Quality judge(const SurfaceModel& model, const Nested& scene) {
+  double table[2][2] = {};
+  for (std::uint32_t q = 0; q < model.mesh.quads.size(); ++q) {
+    glm::vec3 c(0.0f);
+    for (const std::uint32_t v : model.mesh.quads[q]) c += 0.25f * model.mesh.positions[v];
+    const std::string& part = model.partitions[model.quad_partition[q]].part;
+    if (part != "tablet" && part != "envelope") continue;
+    if (std::min({std::abs(scene.tablet(c)), std::abs(scene.shell(c)), std::abs(scene.hollow(c))}) > 0.6f) continue;
+    ++table[scene.truth(c) == 0][part == "tablet"];
+  }
+  return {table[1][1] / (table[1][1] + table[0][1]), table[1][1] / (table[1][1] + table[1][0]),
+          table[0][0] / (table[0][0] + table[1][0]), table[0][0] / (table[0][0] + table[0][1])};
+}
+
+std::vector<std::string> names(const SurfaceModel& model) {
+  std::vector<std::string> result;
+  for (const Partition& p : model.partitions) result.push_back(p.name);
+  return result;
+}
+
+HoleReport run_fill(SurfaceModel& model) {
+  SilentProgress progress;
+  auto report = fill_holes(model, {}, progress);
+  EXPECT_TRUE(report.has_value()) << report.error().message;
+  return *report;
+}
+
+void expect_all_closed(const SurfaceModel& model) {
+  for (const Partition& partition : model.partitions) {
+    EXPECT_TRUE(partition.watertight) << partition.name;
+    MeshOptions options;
+    options.partition = partition.id;
+    const TriMesh mesh = make_tri_mesh(model, options).value();
+    const MeshCheck check = check_mesh(mesh.positions, mesh.triangles);
+    EXPECT_TRUE(check.watertight()) << partition.name << ": " << check.boundary_edges << " open, "
+                                    << check.nonmanifold_edges << " non-manifold edges";
+  }
+  const TriMesh all = make_tri_mesh(model).value();
+  EXPECT_TRUE(check_mesh(all.positions, all.triangles).watertight());
+}
+
+/// Three bridges of clay across the gap, two of them large.
+bool three_bridges(const glm::vec3& p) {
+  return scene::ball(p, {30.0f, 51.0f, 40.0f}, 12.0f) > 0.0f || scene::ball(p, {66.0f, 10.0f, 60.0f}, 9.0f) > 0.0f ||
+         scene::ball(p, {78.0f, 30.0f, 30.0f}, 8.0f) > 0.0f;
+}
+
+TEST(Segment, GluedTabletIsSeparatedAndEveryPartitionIsClosed) {
+  Nested scene;
+  scene.glue = three_bridges;
+  SurfaceModel model = scene::extract_model(scene.dims, scene);
+  const SegmentReport report = run_segment(model);
+  EXPECT_TRUE(report.nested);
+  EXPECT_EQ(report.components, 2);
+  EXPECT_EQ(report.crack_radius, 0);
+  EXPECT_EQ(names(model), (std::vector<std::string>{"tablet", "envelope outside", "envelope inside"}));
+  EXPECT_GE(judge(model, scene).worst(), 0.99);
+
+  const HoleReport holes = run_fill(model);
+  EXPECT_EQ(holes.loops, 3);
+  EXPECT_EQ(holes.unshared, 0);
+  EXPECT_TRUE(holes.watertight);
+  expect_all_closed(model);
+  // The tablet's volume is that of the rounded box without bridges, to a few per cent.
+  double truth = 0.0;
+  for (int z = 0; z < 96; ++z)
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 96; ++x) truth += scene.tablet(glm::vec3(x, y, z)) > 0.0f;
+  EXPECT_NEAR(model.partitions[0].volume_mm3, truth, 0.02 * truth);
+  EXPECT_LT(model.partitions[2].volume_mm3, 0.0);
+}
+
+TEST(Segment, TabletThatTouchesNothingIsSeparatedWithoutHoles) {
+  Nested scene;
+  SurfaceModel model = scene::extract_model(scene.dims, scene);
+  EXPECT_TRUE(run_segment(model).nested);
+  EXPECT_EQ(judge(model, scene).worst(), 1.0);
+  EXPECT_EQ(run_fill(model).loops, 0);
+  expect_all_closed(model);
+}
+
+TEST(Segment, CrackThroughTheEnvelopeIsBridged) {
+  for (const float width : {2.0f, 5.0f}) {
+    Nested scene;
+    scene.glue = three_bridges;
+    scene.change = [&](float v, const glm::vec3& p) {
+      const bool above = p.y > scene.centre.y && std::abs(p.z - 47.8f) < 25.0f;
+      const float slit = std::abs(p.x - 47.3f) - 0.5f * width;
+      return above && scene.tablet(p) < -1.5f ? std::min(v, slit) : v;
+    };
+    SurfaceModel model = scene::extract_model(scene.dims, scene);
+    const SegmentReport report = run_segment(model);
+    EXPECT_TRUE(report.nested);
+    EXPECT_EQ(report.components, 1);
+    EXPECT_GE(report.crack_radius, 1);
+    EXPECT_EQ(names(model), (std::vector<std::string>{"tablet", "envelope outside", "envelope inside"}));
+    EXPECT_GE(judge(model, scene).worst(), 0.99);
+    EXPECT_GE(run_fill(model).membranes, 1);
+    expect_all_closed(model);
+    MeshOptions envelope;
+    envelope.part = "envelope";
+    const TriMesh shell = make_tri_mesh(model, envelope).value();
+    EXPECT_TRUE(check_mesh(shell.positions, shell.triangles).watertight());
+    EXPECT_EQ(check_mesh(shell.positions, shell.triangles).components, 1);  // no membrane across the crack
+  }
+}
+
+TEST(Segment, PoresAndFragmentsAreNotTheTablet) {
+  Nested scene;
+  scene.gap = 6.0f;
+  scene.wall = 9.0f;
+  scene.glue = [](const glm::vec3& p) { return scene::ball(p, {30.0f, 46.0f, 40.0f}, 12.0f) > 0.0f; };
+  scene.change = [](float v, const glm::vec3& p) {
+    for (const glm::vec3& pore : {glm::vec3(47, 31, 47), glm::vec3(40, 35, 60), glm::vec3(60, 30, 35)})
+      v = std::min(v, -scene::ball(p, pore, 5.5f));
+    return std::max(v, scene::ball(p, {17.3f, 31.0f, 47.0f}, 1.7f));
+  };
+  SurfaceModel model = scene::extract_model(scene.dims, scene);
+  const SegmentReport report = run_segment(model);
+  EXPECT_TRUE(report.nested);
+  EXPECT_EQ(report.small_pieces, 4);
+  EXPECT_EQ(names(model),
+            (std::vector<std::string>{"tablet", "envelope outside", "envelope inside", "pores and crumbs"}));
+  EXPECT_GE(judge(model, scene).worst(), 0.99);
+  run_fill(model);
+  expect_all_closed(model);
+}
+
+TEST(Segment, SolidWithPoresIsOneObject) {
+  const auto solid = [](const glm::vec3& p) {
+    float v = scene::box(p, {31.2f, 31.7f, 31.4f}, glm::vec3(25.0f), 6.0f);
+    for (int i = 0; i < 8; ++i)
+      v = std::min(v, -scene::ball(p, {i & 1 ? 21.0f : 41.0f, i & 2 ? 22.0f : 42.0f, i & 4 ? 23.0f : 40.0f}, 7.0f));
+    return v;
+  };
+  SurfaceModel model = scene::extract_model({64, 64, 64}, solid);
+  const SegmentReport report = run_segment(model);
+  EXPECT_FALSE(report.nested);
+  EXPECT_EQ(report.components, 9);
+  EXPECT_EQ(report.small_pieces, 8);
+  EXPECT_EQ(names(model), (std::vector<std::string>{"object", "pores and crumbs"}));
+  run_fill(model);
+  expect_all_closed(model);
+}
+
+TEST(Segment, HollowBallHasNoTablet) {
+  const auto hollow = [](const glm::vec3& p) {
+    return std::min(scene::ball(p, glm::vec3(23.4f), 20.0f), -scene::ball(p, glm::vec3(22.0f), 12.0f));
+  };
+  SurfaceModel model = scene::extract_model({48, 48, 48}, hollow);
+  EXPECT_FALSE(run_segment(model).nested);
+  EXPECT_EQ(names(model), (std::vector<std::string>{"object", "pores and crumbs"}));
+}
+
+TEST(Segment, SeparatePiecesAreNamedByFallingVolumeAndAtMostEight) {
+  const auto pieces = [](const glm::vec3& p) {
+    float v = -1.0f;
+    for (int i = 0; i < 10; ++i)
+      v = std::max(
+          v,
+          scene::ball(p, {12.0f + 20.0f * static_cast<float>(i % 4), 12.0f + 20.0f * static_cast<float>(i / 4), 12.3f},
+                      9.0f - 0.6f * static_cast<float>((i * 7) % 10)));
+    return v;
+  };
+  SurfaceModel model = scene::extract_model({88, 64, 25}, pieces);
+  EXPECT_EQ(run_segment(model).small_pieces, 3);
+  EXPECT_EQ(model.partitions.size(), 8u);
+  EXPECT_EQ(model.partitions[0].name, "object");
+  EXPECT_EQ(model.partitions[6].name, "fragment 6");
+  ASSERT_TRUE(measure_partitions(model).has_value());
+  for (std::size_t i = 1; i < 7; ++i) EXPECT_LT(model.partitions[i].volume_mm3, model.partitions[i - 1].volume_mm3);
+}
+
+TEST(Segment, NothingAndEverythingAreNoProblem) {
+  SurfaceModel empty = scene::extract_model({16, 16, 16}, [](const glm::vec3&) { return -1.0f; });
+  EXPECT_FALSE(run_segment(empty).nested);
+  EXPECT_TRUE(empty.quad_partition.empty());
+  SurfaceModel full = scene::extract_model({16, 16, 16}, [](const glm::vec3&) { return 1.0f; });
+  run_segment(full);
+  EXPECT_EQ(names(full), (std::vector<std::string>{"object"}));
+  run_fill(full);
+  EXPECT_TRUE(full.partitions[0].watertight);
+}
+
+TEST(Segment, ConcavityMethodSeparatesTheGluedTabletToo) {
+  Nested scene;
+  scene.glue = three_bridges;
+  SurfaceModel model = scene::extract_model(scene.dims, scene);
+  EXPECT_TRUE(run_segment(model, SegmentMethod::kConcavity).nested);
+  EXPECT_GE(judge(model, scene).worst(), 0.97);
+  run_fill(model);
+  expect_all_closed(model);
+}
+
+TEST(Segment, ResultDoesNotDependOnThreads) {
+  Nested scene;
+  scene.glue = three_bridges;
+  SurfaceModel model = scene::extract_model(scene.dims, scene);
+  std::vector<std::vector<std::uint8_t>> labels;
+  std::vector<std::vector<Triangle>> patches;
+  for (const int threads : {1, 2, 7}) {
+    set_thread_count(threads);
+    run_segment(model);
+    run_fill(model);
+    labels.push_back(model.quad_partition);
+    patches.push_back(make_tri_mesh(model).value().triangles);
+  }
+  set_thread_count(0);
+  EXPECT_EQ(labels[0], labels[1]);
+  EXPECT_EQ(labels[0], labels[2]);
+  EXPECT_EQ(patches[0], patches[1]);
+  EXPECT_EQ(patches[0], patches[2]);
+}
+
+TEST(Segment, ATabletThatRattlesInItsCavityIsNotBelieved) {
+  std::vector<Partition> parts{{0, "tablet", "tablet", 1.0, 84.0, true},
+                               {1, "envelope outside", "envelope", 1.0, 200.0, true},
+                               {2, "envelope inside", "envelope", 1.0, -100.0, true}};
+  EXPECT_TRUE(plausible_enclosure(parts));
+  parts[0].volume_mm3 = 39.0;  // a brain in its skull
+  EXPECT_FALSE(plausible_enclosure(parts));
+  parts[0].volume_mm3 = -84.0;  // walls that enclose nothing
+  EXPECT_FALSE(plausible_enclosure(parts));
+  parts[0].volume_mm3 = 84.0;
+  parts[2].volume_mm3 = 100.0;
+  EXPECT_FALSE(plausible_enclosure(parts));
+  EXPECT_TRUE(plausible_enclosure({{0, "object", "object", 1.0, 1.0, true}}));
+}
+
+TEST(Segment, CancelStopsIt) {
+  SurfaceModel model = scene::extract_model({96, 64, 96}, Nested{});
+  SilentProgress progress;
+  progress.cancel();
+  EXPECT_EQ(segment(model, {}, progress).error().kind, ErrorKind::kCancelled);
+}
+
+}  // namespace
+}  // namespace dubsar

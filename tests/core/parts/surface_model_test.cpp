@@ -1,0 +1,177 @@
+#include "core/parts/surface_model.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "core/mesh/mesh_check.h"
+#include "tests/core/parts/scene.h"
+
+namespace dubsar {
+namespace {
+
+/// Two balls that overlap, labelled by the side of the plane x = 20: part 0 left, part 1 right.
+SurfaceModel two_balls() {
+  SurfaceModel model = scene::extract_model({41, 24, 24}, [](const glm::vec3& p) {
+    return std::max(scene::ball(p, {13.3f, 11.5f, 11.6f}, 9.0f), scene::ball(p, {27.1f, 11.4f, 11.2f}, 9.0f));
+  });
+  model.partitions = {{.id = 0, .name = "left", .part = ""}, {.id = 1, .name = "right", .part = ""}};
+  for (const auto& q : model.mesh.quads) {
+    float x = 0.0f;
+    for (const std::uint32_t v : q) x += 0.25f * model.mesh.positions[v].x;
+    model.quad_partition.push_back(x > 20.0f);
+  }
+  model.frame.input_voxel = {{0.1, 0.2, 0.3}, "test"};
+  model.frame.scale = {2.0, 2.0, 2.0};
+  return model;
+}
+
+TEST(SurfaceModel, WholeMeshWithoutPartitionsIsClosedAndOne) {
+  SurfaceModel model = two_balls();
+  model.partitions.clear();
+  model.quad_partition.clear();
+  const TriMesh mesh = make_tri_mesh(model).value();
+  const MeshCheck check = check_mesh(mesh.positions, mesh.triangles);
+  EXPECT_TRUE(check.watertight());
+  EXPECT_EQ(check.euler, 2);
+  EXPECT_EQ(mesh.positions.size(), model.mesh.positions.size());
+  EXPECT_EQ(mesh.normals.size(), mesh.positions.size());
+  EXPECT_TRUE(mesh.ao.empty());
+}
+
+TEST(SurfaceModel, PartsShareNoVertexAndEachKeepsItsBorder) {
+  SurfaceModel model = two_balls();
+  const TriMesh all = make_tri_mesh(model).value();
+  const MeshCheck whole = check_mesh(all.positions, all.triangles);
+  EXPECT_TRUE(whole.manifold());
+  EXPECT_EQ(whole.components, 2);
+  for (const Triangle& t : all.triangles) {
+    EXPECT_EQ(all.partition[t[0]], all.partition[t[1]]);
+    EXPECT_EQ(all.partition[t[0]], all.partition[t[2]]);
+  }
+  std::int64_t triangles = 0, open = 0;
+  for (int id = 0; id < 2; ++id) {
+    MeshOptions options;
+    options.partition = id;
+    const TriMesh one = make_tri_mesh(model, options).value();
+    const MeshCheck check = check_mesh(one.positions, one.triangles);
+    EXPECT_TRUE(check.manifold());
+    EXPECT_EQ(check.euler, 1);  // a disk
+    EXPECT_EQ(check.vertices, static_cast<std::int64_t>(one.positions.size()));
+    triangles += check.triangles;
+    open += check.boundary_edges;
+    for (const std::uint8_t p : one.partition) EXPECT_EQ(p, id);
+  }
+  EXPECT_EQ(triangles, whole.triangles);
+  EXPECT_EQ(open, whole.boundary_edges);
+}
+
+TEST(SurfaceModel, PartitionsOfOnePartStayJoined) {
+  SurfaceModel model = two_balls();
+  for (Partition& p : model.partitions) p.part = "both";
+  const TriMesh mesh = make_tri_mesh(model).value();
+  EXPECT_TRUE(check_mesh(mesh.positions, mesh.triangles).watertight());
+  EXPECT_EQ(check_mesh(mesh.positions, mesh.triangles).components, 1);
+  const auto parts = measure_parts(model).value();
+  ASSERT_EQ(parts.size(), 1u);
+  EXPECT_EQ(parts[0].name, "both");
+  EXPECT_TRUE(parts[0].watertight);
+  ASSERT_TRUE(measure_partitions(model).has_value());
+  EXPECT_FALSE(model.partitions[0].watertight);
+  EXPECT_NEAR(model.partitions[0].area_mm2 + model.partitions[1].area_mm2, parts[0].area_mm2, 1e-6 * parts[0].area_mm2);
+}
+
+/// Labels in a checkerboard: parts touch themselves at the corners, where a vertex has four fans.
+TEST(SurfaceModel, PartsThatTouchThemselvesAreSplitIntoFans) {
+  SurfaceModel model = two_balls();
+  for (std::size_t q = 0; q < model.mesh.quads.size(); ++q) {
+    glm::vec3 c(0.0f);
+    for (const std::uint32_t v : model.mesh.quads[q]) c += 0.25f * model.mesh.positions[v];
+    model.quad_partition[q] =
+        ((static_cast<int>(c.x) / 2) ^ (static_cast<int>(c.y) / 2) ^ (static_cast<int>(c.z) / 2)) & 1;
+  }
+  const TriMesh all = make_tri_mesh(model).value();
+  const MeshCheck check = check_mesh(all.positions, all.triangles);
+  EXPECT_TRUE(check.manifold());
+  EXPECT_GT(check.components, 50);
+  EXPECT_GT(all.positions.size(), model.mesh.positions.size());
+}
+
+TEST(SurfaceModel, MeasuresOfABallAreAnalyticInAnAnisotropicFrame) {
+  SurfaceModel model =
+      scene::extract_model({48, 48, 48}, [](const glm::vec3& p) { return scene::ball(p, glm::vec3(23.5f), 20.0f); });
+  model.frame.input_voxel = {{0.1, 0.2, 0.3}, "test"};
+  model.frame.scale = {2.0, 2.0, 2.0};
+  model.partitions = {{.id = 0, .name = "ball", .part = ""}};
+  ASSERT_TRUE(measure_partitions(model).has_value());
+  const double pi = 3.14159265358979, a = 4.0, b = 8.0, c = 12.0;
+  EXPECT_TRUE(model.partitions[0].watertight);
+  EXPECT_NEAR(model.partitions[0].volume_mm3, 4.0 / 3.0 * pi * a * b * c, 0.01 * 4.0 / 3.0 * pi * a * b * c);
+  // Thomsen's formula for the ellipsoid's area, good to 1.1 %.
+  const double p = 1.6075, mean = (std::pow(a * b, p) + std::pow(a * c, p) + std::pow(b * c, p)) / 3.0;
+  const double area = 4.0 * pi * std::pow(mean, 1.0 / p);
+  EXPECT_NEAR(model.partitions[0].area_mm2, area, 0.015 * area);
+}
+
+TEST(SurfaceModel, PatchClosesBothSidesWithTheSameTriangles) {
+  // A tetrahedron of two x-quads would be degenerate, so the patch is a fan over the real border of two
+  // balls.
+  SurfaceModel model = two_balls();
+  FillPatch patch;
+  patch.part = 0;
+  patch.reverse_part = 1;
+  const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());
+  for (std::uint32_t q = 0; q < model.mesh.quads.size(); ++q) {
+    if (model.quad_partition[q] != 0) continue;
+    const Polygon polygon = model.mesh.polygon(q);
+    for (int i = 0; i < polygon.size; ++i) {
+      const std::uint32_t a = polygon.vertex[static_cast<std::size_t>(i)];
+      const std::uint32_t b = polygon.vertex[static_cast<std::size_t>((i + 1) % polygon.size)];
+      for (const std::uint32_t other : model.mesh.quads_of(a)) {
+        if (model.quad_partition[other] != 1) continue;
+        const Polygon beyond = model.mesh.polygon(other);
+        for (int j = 0; j < beyond.size; ++j)
+          if (beyond.vertex[static_cast<std::size_t>(j)] == b &&
+              beyond.vertex[static_cast<std::size_t>((j + 1) % beyond.size)] == a)
+            patch.triangles.push_back({b, a, dual});
+      }
+    }
+  }
+  patch.extra_positions = {{20.2f, 11.4f, 11.4f}};
+  model.patches = {patch};
+  ASSERT_TRUE(measure_partitions(model).has_value());
+  double sum = 0.0;
+  for (const Partition& p : model.partitions) {
+    EXPECT_TRUE(p.watertight);
+    EXPECT_GT(p.volume_mm3, 0.0);
+    sum += p.volume_mm3;
+  }
+  model.patches.clear();
+  for (Partition& p : model.partitions) p.part = "both";
+  EXPECT_NEAR(sum, measure_parts(model).value()[0].volume_mm3,
+              1e-6 * sum);  // the two sides of the patch cancel
+}
+
+TEST(SurfaceModel, ContradictionsAreRefused) {
+  MeshOptions options;
+  options.partition = 2;
+  EXPECT_EQ(make_tri_mesh(two_balls(), options).error().kind, ErrorKind::kUsage);
+  options = {};
+  options.part = "tablet";
+  EXPECT_EQ(make_tri_mesh(two_balls(), options).error().kind, ErrorKind::kUsage);
+  SurfaceModel model = two_balls();
+  model.quad_partition[5] = 2;
+  EXPECT_EQ(make_tri_mesh(model).error().kind, ErrorKind::kBadData);
+  model = two_balls();
+  model.quad_partition.pop_back();
+  EXPECT_EQ(make_tri_mesh(model).error().kind, ErrorKind::kBadData);
+  model = two_balls();
+  model.attributes.ao.assign(3, 0);
+  EXPECT_EQ(make_tri_mesh(model).error().kind, ErrorKind::kBadData);
+  model = two_balls();
+  model.patches.push_back({0, 1, {}, {{0, 1, 4000000}}});
+  EXPECT_EQ(make_tri_mesh(model).error().kind, ErrorKind::kBadData);
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,86 @@
+// Many views into the layers of a view array.
+
+#include "display/render/renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <set>
+#include <string_view>
+
+#include "display/render/camera.h"
+#include "display/render/context_egl.h"
+#include "display/render/embedded_shaders.h"
+#include "tests/display/test_meshes.h"
+
+namespace dubsar {
+namespace {
+
+class RendererTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    auto made = EglContext::create();
+    ASSERT_TRUE(made) << made.error().message;
+    context_ = std::move(*made);
+  }
+  std::unique_ptr<EglContext> context_;
+};
+
+TEST_F(RendererTest, EachLayerShowsItsOwnView) {
+  const TriMesh mesh = testing::lettered_box();
+  auto gpu = GpuMesh::upload(pack_mesh(mesh).value());
+  auto renderer = Renderer::create();
+  ASSERT_TRUE(gpu && renderer);
+  std::vector<View> views;
+  for (const char* name : {"front", "orbit:40,10", "top", "left", "orbit:-100,-30"}) {
+    CameraOptions options;
+    options.direction = parse_view_direction(name).value();
+    options.width = 64;
+    options.height = 48;
+    views.push_back(fit_camera(gpu->box_mm(), options).value().view);
+  }
+  const Shading shading = shading_preset("phong").value();
+  auto all = ViewArray::create(64, 48, 7);
+  ASSERT_TRUE(all);
+  ASSERT_TRUE(renderer->render(*gpu, shading, views, 2, *all, 1));
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    auto one = ViewArray::create(64, 48, 1);
+    ASSERT_TRUE(renderer->render(*gpu, shading, std::span(&views[i], 1), 2, *one));
+    EXPECT_EQ(all->read_layer(static_cast<int>(i) + 1)->pixels, one->read_layer(0)->pixels) << "view " << i;
+    EXPECT_NE(all->read_layer(static_cast<int>(i))->pixels, all->read_layer(static_cast<int>(i) + 1)->pixels);
+  }
+}
+
+TEST_F(RendererTest, LayersKeepWhatIsWrittenTopRowFirst) {
+  auto array = ViewArray::create(3, 2, 2);
+  ASSERT_TRUE(array);
+  Image image(3, 2, 4);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<std::uint8_t>(11 * i);
+  ASSERT_TRUE(array->write_layer(1, image));
+  EXPECT_EQ(array->read_layer(1)->pixels, image.pixels);
+}
+
+TEST_F(RendererTest, ImpossibleArraysAreUsageErrors) {
+  for (const auto& [w, h, layers] : {std::array{0, 1, 1}, {1, 1 << 20, 1}, {1, 1, 0}, {1, 1, 1 << 20}}) {
+    const auto array = ViewArray::create(w, h, layers);
+    ASSERT_FALSE(array);
+    EXPECT_EQ(array.error().kind, ErrorKind::kUsage);
+  }
+}
+
+TEST_F(RendererTest, NoSurfaceContextIsGl45AndNamesItself) {
+  EXPECT_TRUE(has_gl45());
+  EXPECT_NE(describe_gl().find("OpenGL 4."), std::string::npos) << describe_gl();
+}
+
+TEST(Shaders, AreEmbeddedUnderTheirNames) {
+  std::set<std::string_view> names;
+  for (const auto& [name, text] : embedded_shaders()) {
+    EXPECT_TRUE(text.starts_with("#version 450 core")) << name;
+    names.insert(name);
+  }
+  EXPECT_TRUE(names.contains("mesh.vert") && names.contains("mesh.frag"));
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,118 @@
+#include "input/input_recording.h"
+
+#include <gtest/gtest.h>
+
+#include "input/mixer.h"
+#include "input/navigation/navigation.h"
+#include "input/simulated/scripted_source.h"
+
+namespace dubsar {
+namespace {
+
+Script busy_script() {
+  Script script;
+  script.duration_s = 12;
+  script.noise_m = 0.001;
+  script.visitor = VisitorGoal{25, -10, 1.0, 11};
+  script.bystanders = 1;
+  return script;
+}
+
+struct Session {
+  std::string recording;
+  ViewState view;
+};
+
+Session run(InputMixer& mixer, ViewState& seen, TimestampNs start) {
+  Session out;
+  Navigator navigator(default_mapping().value());
+  for (TimestampNs now = start; now < start + 12'000'000'000; now += 16'000'000) {
+    const InputFrame& frame = mixer.poll(now);
+    out.recording += record_line({now, frame}) + "\n";
+    navigator.update(now, frame);
+    seen = navigator.view();
+  }
+  out.view = seen;
+  return out;
+}
+
+TEST(Recording, AReplayedSessionEndsInTheSameView) {
+  ViewState seen;
+  InputMixer live;
+  live.add(play_script(busy_script(), &seen).value());
+  const Session original = run(live, seen, 1'000'000'000);
+  ASSERT_GT(turn_between_deg(original.view.rotation, {1, 0, 0, 0}), 5.0);
+  InputMixer replayed;
+  replayed.add(replay_frames(parse_recording(original.recording, "test").value()));
+  ViewState unused;
+  const Session again = run(replayed, unused, 77'000'000'000);  // another day
+  EXPECT_LT(turn_between_deg(original.view.rotation, again.view.rotation), 0.01);
+  EXPECT_NEAR(original.view.zoom, again.view.zoom, 1e-4);
+}
+
+TEST(Recording, EverythingInAFrameSurvives) {
+  RecordedFrame frame{500, {}};
+  frame.frame.time = 400;
+  frame.frame.events = {{300, EventKind::kWheel, {0.5, -2}, {}, false, kShift | kAlt, {}},
+                        {310, EventKind::kButton, {}, MouseButton::kMiddle, true, kControl, {}},
+                        {320, EventKind::kKey, {}, {}, true, 0, "page_up"}};
+  frame.frame.puck = PuckMotion{399, {0.1, -0.2, 0.3}, {1, 0, -1}};
+  HandFrame hand;
+  hand.time = 398;
+  hand.id = 4'000'000'000u;
+  hand.chirality = Chirality::kLeft;
+  hand.valid = true;
+  hand.palm = {{0.1, 0.2, 0.3}, glm::angleAxis(0.5, glm::dvec3(0, 0, 1))};
+  hand.grab_strength = 0.25;
+  hand.pinch_distance_m = 0.031;
+  hand.joint(HandJoint::kLittleTip) = {{{1, 2, 3}, {1, 0, 0, 0}}, 0.007, true, false};
+  frame.frame.hands = {hand};
+  HeadFrame head;
+  head.time = 397;
+  head.tracked = true;
+  head.right_eye_m = glm::dvec3(0.03, 0.01, 0.6);
+  frame.frame.heads = {head};
+  const std::string line = record_line(frame);
+  const auto back = parse_recording(line, "test").value();
+  ASSERT_EQ(back.size(), 1u);
+  EXPECT_EQ(record_line(back[0]), line);
+  EXPECT_EQ(back[0].frame.hands[0].id, 4'000'000'000u);
+  EXPECT_FALSE(back[0].frame.hands[0].tracked);
+  EXPECT_TRUE(back[0].frame.hands[0].joint(HandJoint::kLittleTip).valid);
+  EXPECT_FALSE(back[0].frame.hands[0].joint(HandJoint::kIndexTip).valid);
+  EXPECT_FALSE(back[0].frame.heads[0].left_eye_m);
+  EXPECT_EQ(back[0].frame.events[1].button, MouseButton::kMiddle);
+}
+
+TEST(Recording, EveryTruncationAndEveryBrokenByteIsRefusedOrHarmless) {
+  RecordedFrame frame{500, {}};
+  HandFrame hand;
+  hand.joint(HandJoint::kPalm).valid = true;
+  frame.frame.hands = {hand};
+  const std::string line = record_line(frame);
+  for (std::size_t n = 1; n < line.size(); ++n) EXPECT_FALSE(parse_recording(line.substr(0, n), "cut")) << n;
+  for (std::size_t i = 0; i < line.size(); ++i)
+    for (const char c : {'0', '9', '-', '"', '{', ']', 'e', '\0', '\xff'}) {
+      std::string broken = line;
+      broken[i] = c;
+      const auto parsed = parse_recording(broken, "broken");
+      EXPECT_TRUE(parsed || parsed.error().kind == ErrorKind::kConfig);
+    }
+}
+
+TEST(Recording, RefusesWhatCannotBe) {
+  const auto refused = [](std::string_view text) { return parse_recording(text, "r.jsonl").error().message; };
+  EXPECT_EQ(refused("{\"polled\": 5, \"t\": 4}\n{\"polled\": 4, \"t\": 4}"),
+            "r.jsonl: line 2: polled goes back in time");
+  EXPECT_EQ(refused("{\"polled\": -5, \"t\": 4}"),
+            "r.jsonl: line 1: polled is not a whole number of 0 to 4000000000000000000");
+  EXPECT_NE(refused("{\"t\": 4}").find("polled is missing"), std::string::npos);
+  EXPECT_NE(refused("5").find("expected an object"), std::string::npos);
+  EXPECT_NE(refused("{\"polled\": 5, \"t\": 4, \"heads\": "
+                    "[{\"t\":1,\"id\":1,\"tracked\":true,\"confidence\":1,\"left\":[1e9,0,0]}]}")
+                .find("left"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace dubsar

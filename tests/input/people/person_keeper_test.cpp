@@ -1,0 +1,122 @@
+#include "input/people/person_keeper.h"
+
+#include <gtest/gtest.h>
+
+namespace dubsar {
+namespace {
+
+constexpr TimestampNs kMs = 1'000'000;
+
+HandFrame hand_at(std::uint32_t id, Chirality side, const glm::dvec3& at_m) {
+  HandFrame hand;
+  hand.id = id;
+  hand.chirality = side;
+  hand.valid = hand.tracked = true;
+  hand.palm.position_m = at_m;
+  return hand;
+}
+
+HeadFrame head_at(std::uint32_t id, const glm::dvec3& at_m) {
+  HeadFrame head;
+  head.id = id;
+  head.tracked = true;
+  head.left_eye_m = at_m - glm::dvec3(0.03, 0, 0);
+  head.right_eye_m = at_m + glm::dvec3(0.03, 0, 0);
+  return head;
+}
+
+TEST(HeadKeeper, TakesTheNearestAndMostCentralAndKeepsItWhenSomebodyComesNearer) {
+  HeadKeeper keeper;
+  std::vector<HeadFrame> heads{head_at(1, {0.5, 0, 0.6}), head_at(2, {0.05, 0, 0.7})};
+  ASSERT_NE(keeper.update(0, heads), nullptr);
+  EXPECT_EQ(keeper.update(16 * kMs, heads)->id, 2u);
+  heads.push_back(head_at(3, {0.0, 0, 0.3}));
+  EXPECT_EQ(keeper.update(32 * kMs, heads)->id, 2u);
+}
+
+TEST(HeadKeeper, KnowsAHeadAgainByItsPlaceAndLetsAnotherInAfterASecond) {
+  HeadKeeper keeper;
+  const std::vector<HeadFrame> first{head_at(1, {0.1, 0, 0.6})};
+  ASSERT_NE(keeper.update(0, first), nullptr);
+  const std::vector<HeadFrame> renamed{head_at(7, {0.15, 0, 0.6}), head_at(8, {-0.4, 0, 0.5})};
+  EXPECT_EQ(keeper.update(100 * kMs, renamed)->id, 7u);
+  const std::vector<HeadFrame> other{head_at(8, {-0.4, 0, 0.5})};
+  EXPECT_EQ(keeper.update(900 * kMs, other), nullptr);
+  ASSERT_NE(keeper.update(1200 * kMs, other), nullptr);
+  EXPECT_EQ(keeper.update(1216 * kMs, other)->id, 8u);
+}
+
+TEST(HandKeeper, ARightHandStaysAloneNextToAnotherRightHand) {
+  HandKeeper keeper;
+  std::vector<HandFrame> hands{hand_at(1, Chirality::kRight, {0.1, 0, 0.3})};
+  ASSERT_EQ(keeper.update(0, hands, {}, {})[0]->id, 1u);
+  hands.insert(hands.begin(), hand_at(2, Chirality::kRight, {0.0, 0, 0.2}));
+  const auto kept = keeper.update(16 * kMs, hands, {}, {});
+  EXPECT_EQ(kept[0]->id, 1u);
+  EXPECT_EQ(kept[1], nullptr);
+}
+
+TEST(HandKeeper, TheOtherHandOfAPairIsLetInButNotACrossedFarOrDeepOne) {
+  struct Case {
+    glm::dvec3 at;
+    bool in;
+  };
+  for (const Case& c : {Case{{-0.1, 0, 0.3}, true},
+                        {{0.3, 0, 0.3}, false},
+                        {{-0.5, 0, 0.3}, false},
+                        {{-0.1, 0, 0.75}, false},
+                        {{0.08, 0, 0.3}, false}}) {
+    HandKeeper keeper({{-1, -1, -1}, {1, 1, 1}});
+    std::vector<HandFrame> hands{hand_at(1, Chirality::kRight, {0.1, 0, 0.3})};
+    (void)keeper.update(0, hands, {}, {});
+    hands.push_back(hand_at(2, Chirality::kLeft, c.at));
+    EXPECT_EQ(keeper.update(16 * kMs, hands, {}, {})[1] != nullptr, c.in) << c.at.x << " " << c.at.z;
+  }
+}
+
+TEST(HandKeeper, AHandMustComeInThroughTheZoneAndMayThenLeaveIt) {
+  HandKeeper keeper({{-0.2, -0.2, 0}, {0.2, 0.2, 0.4}});
+  std::vector<HandFrame> hands{hand_at(1, Chirality::kRight, {0.3, 0, 0.3})};
+  EXPECT_EQ(keeper.update(0, hands, {}, {})[0], nullptr);
+  hands[0].palm.position_m.x = 0.1;
+  EXPECT_NE(keeper.update(16 * kMs, hands, {}, {})[0], nullptr);
+  hands[0].palm.position_m.x = 0.3;
+  EXPECT_NE(keeper.update(32 * kMs, hands, {}, {})[0], nullptr);
+}
+
+TEST(HandKeeper, AHandThatReachesInFromTheSideIsIgnored) {
+  HandKeeper keeper;
+  HandFrame hand = hand_at(1, Chirality::kLeft, {0.1, 0, 0.3});
+  hand.palm.rotation = glm::angleAxis(1.3, glm::dvec3(0, 1, 0));  // fingers point to the left
+  EXPECT_EQ(keeper.update(0, std::vector{hand}, {}, {})[0], nullptr);
+}
+
+TEST(HandKeeper, AHandWhoseArmComesFromAnotherHeadIsIgnored) {
+  const std::vector<HeadFrame> heads{head_at(1, {0, 0, 0.6}), head_at(2, {0.5, 0, 0.6})};
+  const std::vector<HandFrame> hands{hand_at(1, Chirality::kLeft, {0.35, 0, 0.4})};
+  HandKeeper with_heads, without;
+  EXPECT_EQ(with_heads.update(0, hands, heads, glm::dvec3(0, 0, 0.6))[0], nullptr);
+  EXPECT_NE(without.update(0, hands, {}, {})[0], nullptr);
+}
+
+TEST(HandKeeper, ANewTrackerIdAtTheSamePlaceIsTheSameHand) {
+  HandKeeper keeper;
+  std::vector<HandFrame> hands{hand_at(1, Chirality::kRight, {0.1, 0, 0.3})};
+  (void)keeper.update(0, hands, {}, {});
+  EXPECT_EQ(keeper.update(100 * kMs, {}, {}, {})[0], nullptr);
+  hands = {hand_at(5, Chirality::kRight, {-0.2, 0, 0.3}), hand_at(6, Chirality::kRight, {0.15, 0, 0.3})};
+  EXPECT_EQ(keeper.update(200 * kMs, hands, {}, {})[0]->id, 6u);
+}
+
+TEST(HandKeeper, AHandThatAppearsTooFarAwayTooSoonIsSomebodyElses) {
+  const std::vector<HandFrame> mine{hand_at(1, Chirality::kRight, {0.1, 0, 0.3})};
+  const std::vector<HandFrame> found{hand_at(2, Chirality::kRight, {0.17, 0, 0.3})};
+  HandKeeper keeper, later;
+  (void)keeper.update(0, mine, {}, {});
+  (void)later.update(0, mine, {}, {});
+  EXPECT_EQ(keeper.update(100 * kMs, found, {}, {})[0], nullptr);
+  EXPECT_NE(later.update(300 * kMs, found, {}, {})[0], nullptr);
+}
+
+}  // namespace
+}  // namespace dubsar
