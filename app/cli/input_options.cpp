@@ -6,6 +6,8 @@ void add_input_options(CLI::App& command, InputOptionTexts& texts) {
   auto* const group = command.add_option_group("Input");
   group->add_option("--dataset", texts.dataset, "HDF5 path of the volume (also FILE:/path); default: found by itself");
   group->add_option("--voxel-size", texts.voxel_size, "voxel size, e.g. 38um or 10um,10um,25um (x,y,z)");
+  group->add_option("--axis-order", texts.axis_order,
+                    "order of the stored axes, slowest first: zyx, xyz, ...; a minus before one that runs backwards");
   group->add_option("--crop", texts.crop, "part of the volume, x0:x1,y0:y1,z0:z1; empty bounds are the borders");
   group->add_option("--stride", texts.stride, "take every N-th voxel: N or NX,NY,NZ");
   group->add_option("--dims", texts.dims, "raw file: size NXxNYxNZ");
@@ -30,6 +32,9 @@ Result<ImportOptions> parse_input_options(const std::string& path, const InputOp
   }
   if (!texts.stride.empty()) {
     DUBSAR_ASSIGN(options.stride, parse_stride(texts.stride));
+  }
+  if (!texts.axis_order.empty()) {
+    DUBSAR_ASSIGN(options.axis_order, parse_axis_order(texts.axis_order));
   }
   if (!texts.voxel_size.empty()) {
     DUBSAR_ASSIGN(options.voxel_size_mm, parse_voxel_size(texts.voxel_size));

@@ -9,7 +9,7 @@
 namespace dubsar::app {
 
 struct InputOptionTexts {
-  std::string dataset, crop, stride, voxel_size, dims, type, endian = "little", allow_external;
+  std::string dataset, axis_order, crop, stride, voxel_size, dims, type, endian = "little", allow_external;
   std::int64_t skip = 0;
   bool trust = false, allow_sparse = false;
 };

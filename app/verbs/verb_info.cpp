@@ -51,6 +51,7 @@ Result<VerbResult> volume_info(const Options& options) {
   text += dims == info.file_dims
               ? "\n"
               : fmt::format(" of {} x {} x {}\n", info.file_dims.x, info.file_dims.y, info.file_dims.z);
+  text += fmt::format("  axes         {}\n", describe(info.axes));
   text += fmt::format("  type         {}, {} endian, {}\n", info.dtype, info.byte_order, info.layout);
   for (const std::string& filter : info.filters) text += fmt::format("  filter       {}\n", filter);
   text += fmt::format("  voxel size   {}\n", length_text(info.voxel));

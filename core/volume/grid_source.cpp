@@ -25,17 +25,16 @@ Result<void> GridSource::fetch(std::int64_t k_begin, std::int64_t k_end, std::sp
 Result<void> GridSource::read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) {
   DUBSAR_CHECK(z_begin >= 0 && z_begin <= z_end && z_end <= dims_.z);
   DUBSAR_CHECK(static_cast<std::int64_t>(out.size()) >= (z_end - z_begin) * dims_.slice());
-  const std::int64_t depth = reader_->layer_depth();
   const std::int64_t slice = dims_.slice();
   const auto slices = [&](std::int64_t count) { return static_cast<std::size_t>(count * slice); };
-  if (depth <= 1 && z_begin < z_end) return fetch(z_begin, z_end, out.first(slices(z_end - z_begin)));
+  const auto first_at = [&](std::int64_t z) {
+    return z <= box_.z.begin ? 0 : std::min(dims_.z, (z - box_.z.begin - 1) / box_.z.step + 1);
+  };
   for (std::int64_t k = z_begin; k < z_end;) {
     // The slices of the grid that share a layer of chunks with slice k.
-    const std::int64_t layer = box_.z.at(k) / depth;
-    const auto first_at = [&](std::int64_t z) {
-      return z <= box_.z.begin ? 0 : std::min(dims_.z, (z - box_.z.begin + box_.z.step - 1) / box_.z.step);
-    };
-    const std::int64_t begin = first_at(layer * depth), end = first_at((layer + 1) * depth);
+    const AxisRange layer = reader_->layer_of(box_.z.at(k));
+    if (layer.count() <= 1 && reader_->chunk().z <= 1) return fetch(k, z_end, out.subspan(slices(k - z_begin)));
+    const std::int64_t begin = first_at(layer.begin), end = first_at(layer.end);
     const std::int64_t stop = std::min(end, z_end);
     const std::span<float> target = out.subspan(slices(k - z_begin), slices(stop - k));
     const bool whole = k == begin && stop == end;

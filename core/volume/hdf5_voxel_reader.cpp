@@ -25,9 +25,11 @@ class LibraryReader : public VoxelReader {
             static_cast<std::int64_t>(dims[axes_[0]])};
   }
 
-  std::int64_t layer_depth() const noexcept override {
+  Dims chunk() const noexcept override {
     const auto& info = dataset_.info();
-    return info.layout == Hdf5Layout::kChunked ? static_cast<std::int64_t>(info.chunk[axes_[0]]) : 1;
+    if (info.layout != Hdf5Layout::kChunked) return {1, 1, 1};
+    return {static_cast<std::int64_t>(info.chunk[axes_[2]]), static_cast<std::int64_t>(info.chunk[axes_[1]]),
+            static_cast<std::int64_t>(info.chunk[axes_[0]])};
   }
 
   // Slice by slice through the library's chunk cache, which holds a layer of chunks.

@@ -44,14 +44,14 @@ class Finder {
  public:
   Finder(const Hdf5Volume& volume, std::vector<std::string>& warnings) : volume_(volume), warnings_(warnings) {}
 
-  VoxelSize find() {
+  StatedVoxelSize find() {
     VoxelSize size;
     // What the file that was asked for says about the volume comes before what a linked file says.
     const auto search = [&](const Hdf5File& file, const std::string& path) {
       return from_axes(file, path, size) || from_names(file, path, size) || from_vtk(file, path, size);
     };
-    if (volume_.named_file != volume_.file && search(*volume_.named_file, volume_.named)) return size;
-    if (search(*volume_.file, volume_.info.path)) return size;
+    if (volume_.named_file != volume_.file && search(*volume_.named_file, volume_.named)) return {size, by_name_};
+    if (search(*volume_.file, volume_.info.path)) return {size, by_name_};
     return {};
   }
 
@@ -101,7 +101,8 @@ class Finder {
     return true;
   }
 
-  // One or three numbers; three are z, y, x unless the convention behind the name stores x first.
+  // One or three numbers; three are those of the stored axes, slowest first, unless the convention behind the name has
+  // the fastest first.
   static std::optional<glm::dvec3> in_order(const std::vector<double>& values, bool x_first) {
     if (values.size() == 1) return glm::dvec3(values[0]);
     if (values.size() != 3) return std::nullopt;
@@ -185,6 +186,7 @@ class Finder {
       }
       if (!positive(mm)) continue;
       size = {mm, fmt::format("{} x_{}, y_{}, z_{}", group, kind, kind, kind)};
+      by_name_ = true;
       return true;
     }
     return false;
@@ -202,11 +204,12 @@ class Finder {
 
   const Hdf5Volume& volume_;
   std::vector<std::string>& warnings_;
+  bool by_name_ = false;
 };
 
 }  // namespace
 
-VoxelSize hdf5_voxel_size(const Hdf5Volume& volume, std::vector<std::string>& warnings) {
+StatedVoxelSize hdf5_voxel_size(const Hdf5Volume& volume, std::vector<std::string>& warnings) {
   return Finder(volume, warnings).find();
 }
 

@@ -14,6 +14,7 @@
 #include "core/volume/import_nrrd.h"
 #include "core/volume/import_raw.h"
 #include "core/volume/import_tiff.h"
+#include "core/volume/oriented_reader.h"
 
 namespace dubsar {
 namespace {
@@ -99,6 +100,20 @@ Result<VoxelBox> box_of(const Dims& file, const ImportOptions& options) {
   return VoxelBox{ranges[0], ranges[1], ranges[2]};
 }
 
+/// From the stored axes to x, y, z of the object.
+void turn(OpenedVolume& opened, const ImportOptions& options) {
+  VolumeInfo& info = opened.info;
+  if (options.axis_order) {
+    info.axes = *options.axis_order;
+    info.axes.provenance = "--axis-order";
+  }
+  if (info.axes.usual()) return;
+  const auto dims = by_axis(info.axes, std::array{info.file_dims.x, info.file_dims.y, info.file_dims.z});
+  info.file_dims = {dims[0], dims[1], dims[2]};
+  if (!opened.voxel_by_name) info.voxel.mm = by_axis(info.axes, info.voxel.mm);
+  opened.reader = std::make_unique<OrientedReader>(std::move(opened.reader), info.axes);
+}
+
 void check_voxel_size(VolumeInfo& info) {
   const glm::dvec3 mm = info.voxel.mm;
   if (!info.voxel.known()) {
@@ -122,6 +137,7 @@ Result<std::unique_ptr<ImportedVolume>> open_volume(ImportOptions options) {
   DUBSAR_ASSIGN(OpenedVolume opened, open_by_content(options));
   VolumeInfo& info = opened.info;
   info.path = options.path.string();
+  turn(opened, options);
   DUBSAR_ASSIGN(info.box, box_of(info.file_dims, options));
   if (options.voxel_size_mm) info.voxel = {*options.voxel_size_mm, "--voxel-size"};
   check_voxel_size(info);

@@ -8,6 +8,7 @@
 
 #include "core/volume/external_access.h"
 #include "core/volume/flat_reader.h"
+#include "core/volume/hdf5_axis_order.h"
 #include "core/volume/hdf5_search.h"
 #include "core/volume/hdf5_voxel_reader.h"
 #include "core/volume/hdf5_voxel_size.h"
@@ -244,8 +245,11 @@ Result<OpenedVolume> open_hdf5(const ImportOptions& options) {
   opened.info.storage_bytes = static_cast<std::int64_t>(info.storage_bytes);
   opened.info.logical_bytes = logical;
   opened.info.candidates = volume.others;
-  opened.info.may_have_nonfinite = is_float(*info.scalar);
-  opened.info.voxel = hdf5_voxel_size(volume, opened.info.warnings);
+  opened.info.may_have_nonfinite = can_be_nonfinite(*info.scalar, opened.info.map);
+  const StatedVoxelSize stated = hdf5_voxel_size(volume, opened.info.warnings);
+  opened.info.voxel = stated.size;
+  opened.voxel_by_name = stated.by_name;
+  opened.info.axes = hdf5_axis_order(volume, opened.info.warnings);
   return opened;
 }
 

@@ -103,6 +103,7 @@ class GzipReader final : public VoxelReader {
   }
 
   Dims dims() const noexcept override { return dims_; }
+  bool sequential() const noexcept override { return true; }
 
   Result<void> read(const VoxelBox& box, std::span<float> out) override {
     const Dims size = box.dims();
@@ -145,6 +146,50 @@ class GzipReader final : public VoxelReader {
   std::int64_t kept_most_ = 0;
   std::int64_t next_ = 0;
 };
+
+// Directions of the axes `axes` in space; nullopt when the header states none that can be read.
+std::optional<std::array<glm::dvec3, 3>> directions_of(const Header& header, const std::array<std::size_t, 3>& axes) {
+  const auto texts = words(header.text("space directions"));
+  std::array<glm::dvec3, 3> directions{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (axes[i] >= texts.size()) return std::nullopt;
+    std::istringstream stream(texts[axes[i]].substr(texts[axes[i]].find('(') + 1));
+    int count = 0;
+    for (std::string part; std::getline(stream, part, ','); ++count) {
+      const auto value = to_number(trimmed(part.substr(0, part.find(')'))));
+      if (!value || count >= 3) return std::nullopt;
+      directions[i][count] = *value;
+    }
+    if (count != 3) return std::nullopt;
+  }
+  return directions;
+}
+
+AxisOrder axis_order(const Header& header, const std::array<std::size_t, 3>& axes, std::vector<std::string>& warnings) {
+  const std::string space = lower(header.text("space"));
+  if (!header.text("space directions").empty()) {
+    const bool left_handed = space == "las" || space == "last" || space.starts_with("left-anterior-superior") ||
+                             space.starts_with("3d-left-handed");
+    const auto directions = directions_of(header, axes);
+    if (auto order = directions ? axis_order_of(*directions, left_handed) : std::nullopt) {
+      order->provenance = "NRRD space directions" + (space.empty() ? "" : " in the space " + space);
+      return *order;
+    }
+    warnings.push_back(fmt::format(
+        "the NRRD space directions \"{}\" are not three independent vectors: whether the volume is a mirror "
+        "image cannot be told; --axis-order states the order",
+        header.text("space directions")));
+    return {};
+  }
+  auto labels = words(header.text("labels"));  // fastest first
+  std::reverse(labels.begin(), labels.end());
+  std::array<std::size_t, 3> used{};
+  for (std::size_t i = 0; i < 3 && labels.size() > axes[2]; ++i) used[i] = labels.size() - 1 - axes[2 - i];
+  auto order = labels.size() > axes[2] ? parse_axis_labels(labels, used) : std::nullopt;
+  if (!order) return {};
+  order->provenance = "NRRD labels";
+  return *std::move(order);
+}
 
 // Lengths of the axes `axes`; provenance empty when the header says nothing that can be used.
 VoxelSize voxel_size(const Header& header, const std::array<std::size_t, 3>& axes, std::vector<std::string>& warnings) {
@@ -288,6 +333,7 @@ Result<OpenedVolume> open_nrrd(const ImportOptions& options) {
   info.byte_order = order_name(order);
   info.may_have_nonfinite = is_float(*type);
   info.voxel = voxel_size(header, {axes[0], axes[1], axes[2]}, info.warnings);
+  info.axes = axis_order(header, {axes[0], axes[1], axes[2]}, info.warnings);
   return opened;
 }
 

@@ -12,6 +12,7 @@
 #include "core/base/budget.h"
 #include "core/base/result.h"
 #include "core/base/scalar_type.h"
+#include "core/volume/axis_order.h"
 
 namespace dubsar {
 
@@ -34,6 +35,7 @@ struct ImportOptions {
   std::string dataset;         ///< HDF5 path of the volume, or of a group that holds it; empty: found by itself
   std::optional<CropRange> crop;
   std::array<std::int64_t, 3> stride{1, 1, 1};          ///< x, y, z
+  std::optional<AxisOrder> axis_order;                  ///< overrides what the file says
   std::optional<glm::dvec3> voxel_size_mm;              ///< x, y, z; overrides what the file says
   std::optional<RawSpec> raw;                           ///< set: the file is read as raw, whatever it holds
   std::optional<std::filesystem::path> allow_external;  ///< folder in which other files may be opened

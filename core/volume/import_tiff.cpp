@@ -143,6 +143,10 @@ VoxelSize voxel_size(const TiffPage& page, std::vector<std::string>& warnings) {
   if (page.x_per_unit <= 0.0 || page.y_per_unit <= 0.0 || unit_mm <= 0.0) return {};
   const glm::dvec3 mm(unit_mm / page.x_per_unit, unit_mm / page.y_per_unit, 0.0);
   if (!std::isfinite(mm.x + mm.y)) return {};
+  if (number_or(fields, "spacing", 0.0) < 0.0)
+    warnings.emplace_back(
+        "the ImageJ spacing is negative: the slices may be stored last first, and the volume then is a mirror image; "
+        "--axis-order states the order (-zyx: the slices run backwards)");
   if (unit)
     if (const double spacing = number_or(fields, "spacing", 0.0); spacing != 0.0)
       return {{mm.x, mm.y, std::abs(spacing) * unit_mm}, "TIFF resolution tags and ImageJ spacing"};

@@ -1,6 +1,15 @@
 #include "core/volume/voxel_reader.h"
 
+#include <cmath>
+#include <limits>
+
 namespace dubsar {
+
+bool can_be_nonfinite(ScalarType type, const ScalarMap& map) noexcept {
+  const double largest =
+      std::ldexp(std::abs(map.scale), static_cast<int>(8 * scalar_bytes(type))) + std::abs(map.offset);
+  return is_float(type) || !(largest < static_cast<double>(std::numeric_limits<float>::max()));
+}
 
 void store_row(const std::byte* from, ScalarType type, ByteOrder order, const ScalarMap& map, const AxisRange& x,
                std::span<float> out) {

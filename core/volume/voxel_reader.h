@@ -1,7 +1,7 @@
 #pragma once
 // What every volume importer delivers: a reader for boxes of the stored array, and the facts about it.
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -10,6 +10,7 @@
 
 #include "core/base/result.h"
 #include "core/base/scalar_type.h"
+#include "core/volume/axis_order.h"
 #include "core/volume/volume.h"
 
 namespace dubsar {
@@ -17,7 +18,7 @@ namespace dubsar {
 /// Indices begin, begin + step, ... below end.
 struct AxisRange {
   std::int64_t begin = 0, end = 0, step = 1;
-  std::int64_t count() const noexcept { return end > begin ? (end - begin + step - 1) / step : 0; }
+  std::int64_t count() const noexcept { return end > begin ? (end - begin - 1) / step + 1 : 0; }
   std::int64_t at(std::int64_t i) const noexcept { return begin + i * step; }
   friend bool operator==(const AxisRange&, const AxisRange&) = default;
 };
@@ -32,10 +33,16 @@ struct VoxelBox {
 class VoxelReader {
  public:
   virtual ~VoxelReader() = default;
-  /// Of the stored array.
   virtual Dims dims() const noexcept = 0;
-  /// Slices that are decoded together (chunk depth): reading them in one call is cheapest. 1: no preference.
-  virtual std::int64_t layer_depth() const noexcept { return 1; }
+  /// Voxels along x, y and z that are decoded together; 1: no preference. Chunks start at voxel 0.
+  virtual Dims chunk() const noexcept { return {1, 1, 1}; }
+  /// Slices [begin, end) around slice z that are decoded together: reading them in one call is cheapest.
+  virtual AxisRange layer_of(std::int64_t z) const noexcept {
+    const std::int64_t depth = chunk().z, begin = z / depth * depth;
+    return {begin, std::min(begin + depth, dims().z), 1};
+  }
+  /// Whether slices come in rising z only, so that going back means starting again.
+  virtual bool sequential() const noexcept { return false; }
   /// Reads box.dims().count() values to `out`, x fastest. One caller at a time; threads inside.
   virtual Result<void> read(const VoxelBox& box, std::span<float> out) = 0;
 };
@@ -52,7 +59,8 @@ struct VolumeInfo {
   std::string format;    ///< "hdf5", "raw", "nrrd", "tiff"
   std::string dataset;   ///< HDF5 path, empty for other formats
   std::string found_by;  ///< how the volume was found: "named by the user", "NeXus default", ...
-  Dims file_dims;        ///< of the stored array
+  Dims file_dims;        ///< of the whole array, along x, y, z of the object
+  AxisOrder axes;        ///< how these lie in the file
   std::string dtype;     ///< "uint8" ... "float64"
   std::string byte_order;
   std::string layout;  ///< "contiguous", "chunked 32x32x32" (z, y, x), ...
@@ -67,11 +75,16 @@ struct VolumeInfo {
   bool may_have_nonfinite = true;           ///< a float type
 };
 
-/// A file opened by an importer.
+/// A file opened by an importer: dims and voxel size of the info follow the stored axes, fastest first, and the reader
+/// too. open_volume() turns them to x, y, z by info.axes.
 struct OpenedVolume {
   VolumeInfo info;
+  bool voxel_by_name = false;  ///< the voxel size was stated for x, y and z by name: it is not turned
   std::unique_ptr<VoxelReader> reader;
 };
+
+/// Whether numbers of this kind can be NaN or Inf as floats: floats, and integers whose map leads beyond 3.4e38.
+bool can_be_nonfinite(ScalarType type, const ScalarMap& map) noexcept;
 
 /// Stores one row of a box: `from` points at the stored number at x.begin.
 void store_row(const std::byte* from, ScalarType type, ByteOrder order, const ScalarMap& map, const AxisRange& x,

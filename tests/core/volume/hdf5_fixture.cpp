@@ -249,4 +249,18 @@ void Hdf5Fixture::attribute(const std::string& object, const std::string& name, 
   H5Oclose(parent);
 }
 
+void Hdf5Fixture::attribute(const std::string& object, const std::string& name, const std::vector<std::string>& texts) {
+  const hid_t parent = good(H5Oopen(id_, object.c_str(), H5P_DEFAULT)), space = space_of({texts.size()}),
+              type = good(H5Tcopy(H5T_C_S1));
+  H5Tset_size(type, H5T_VARIABLE);
+  std::vector<const char*> pointers;
+  for (const std::string& text : texts) pointers.push_back(text.empty() ? nullptr : text.c_str());
+  const hid_t id = good(H5Acreate2(parent, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT));
+  good(H5Awrite(id, type, pointers.data()));
+  H5Aclose(id);
+  H5Tclose(type);
+  H5Sclose(space);
+  H5Oclose(parent);
+}
+
 }  // namespace dubsar::testing_tools

@@ -52,6 +52,8 @@ class Hdf5Fixture {
   void hard_link(const std::string& path, const std::string& target);
   void attribute(const std::string& object, const std::string& name, const std::string& text);
   void attribute(const std::string& object, const std::string& name, const std::vector<double>& values);
+  /// Variable-length strings, as h5py writes them.
+  void attribute(const std::string& object, const std::string& name, const std::vector<std::string>& texts);
 
  private:
   std::int64_t id_ = -1;

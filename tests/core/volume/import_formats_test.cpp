@@ -150,8 +150,8 @@ TEST_F(ImportFormats, NrrdVoxelSizeNeedsAUnit) {
             glm::dvec3(10 * 1e-3, 20 * 1e-3, 30 * 1e-3));
   const auto directions =
       with("space dimension: 3\nspace directions: (0,0.3,0.4) (0.25,0,0) (0,0,1)\nspace units: \"mm\" \"mm\" \"mm\"\n");
-  EXPECT_NEAR(directions->info().voxel.mm.x, 0.5, 1e-12);
-  EXPECT_EQ(directions->info().voxel.mm.y, 0.25);
+  EXPECT_EQ(directions->info().voxel.mm.x, 0.25);  // the second stored axis runs along x
+  EXPECT_NEAR(directions->info().voxel.mm.y, 0.5, 1e-12);
   const auto medical = with("space: left-posterior-superior\nspace directions: (0.5,0,0) (0,0.5,0) (0,0,1)\n");
   EXPECT_EQ(medical->info().voxel.mm, glm::dvec3(0.5, 0.5, 1.0));
   EXPECT_THAT(warnings(*medical), HasSubstr("millimetres are taken"));

@@ -167,7 +167,7 @@ class CountingReader final : public VoxelReader {
  public:
   explicit CountingReader(std::int64_t* slices) : slices_(slices) {}
   Dims dims() const noexcept override { return {4, 4, 64}; }
-  std::int64_t layer_depth() const noexcept override { return 16; }
+  Dims chunk() const noexcept override { return {4, 4, 16}; }
   Result<void> read(const VoxelBox& box, std::span<float> out) override {
     *slices_ += box.z.end - box.z.begin;
     for (std::size_t i = 0; i < out.size(); ++i)
