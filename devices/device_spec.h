@@ -18,6 +18,7 @@ struct DeviceSpec {
   int port = 0;                       ///< 0: the protocol's own
   bool allow_remote = false;          ///< opentrack: listen to other machines too
   std::array<bool, 6> invert{};       ///< opentrack: x, y, z, yaw, pitch, roll are turned round
+  std::string sender;                 ///< opentrack: "opentrack", "xrlinux"; empty: told by the datagrams' length
   std::string tracker;                ///< vrpn: its name; empty: the first
   int sensor = 0;                     ///< vrpn
   std::string socket;                 ///< spacenav; empty: the usual one

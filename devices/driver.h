@@ -77,6 +77,11 @@ class Driver {
   void wake() noexcept { reconnector_.wake(); }
   bool connected() const noexcept { return reconnector_.connected(); }
   const std::string& reason() const noexcept { return reconnector_.reason(); }
+  /// What a protocol with a note() has to say about an open device that works, or gives nothing; empty otherwise.
+  std::string note() const {
+    if constexpr (requires(const Protocol& p) { p.note(); }) return connected() ? protocol_.note() : std::string();
+    return {};
+  }
   const DriverCounts& counts() const noexcept { return counts_; }
   Protocol& protocol() noexcept { return protocol_; }
 

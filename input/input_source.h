@@ -69,6 +69,8 @@ class InputSource {
   /// Scripts and recordings come to an end, live devices never do.
   virtual bool has_end() const noexcept { return false; }
   virtual bool finished() const noexcept { return false; }
+  /// Makes the present heading "straight on" soon, for trackers whose heading drifts; others do nothing. Any thread.
+  virtual void recentre() noexcept {}
   /// One sentence for people: why the device is lost, or what its measurements lack; empty: nothing to say.
   virtual std::string note() const { return {}; }
 };

@@ -63,6 +63,11 @@ const InputFrame& InputMixer::poll(TimestampNs now) {
   return merged_;
 }
 
+void InputMixer::recentre() {
+  const std::scoped_lock lock(mutex_);
+  for (const Entry& entry : sources_) entry.source->recentre();
+}
+
 SourceState InputMixer::describe(const Entry& entry) {
   return {std::string(entry.source->name()), entry.freshness, entry.frame.time, entry.source->note()};
 }

@@ -34,6 +34,9 @@ class InputMixer {
   /// stays until the next call.
   const InputFrame& poll(TimestampNs now);
 
+  /// Makes the present heading "straight on" for all sources whose heading drifts.
+  void recentre();
+
   std::vector<SourceState> states() const;
   /// None when the source is not here.
   std::optional<SourceState> state_of(const InputSource* source) const;

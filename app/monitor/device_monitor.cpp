@@ -54,6 +54,7 @@ class LiveDriver final : public DeviceMonitor {
   }
   bool connected() const override { return driver_.connected(); }
   std::string reason() const override { return driver_.reason(); }
+  std::string note() const override { return driver_.note(); }
   DriverCounts counts() const override { return driver_.counts(); }
   TimestampNs newest() const override { return newest_; }
 
@@ -73,6 +74,7 @@ class LiveHeadTracker final : public DeviceMonitor {
   }
   bool connected() const override { return tracker_->connected(); }
   std::string reason() const override { return tracker_->reason(); }
+  std::string note() const override { return tracker_->note(); }
   DriverCounts counts() const override { return tracker_->counts(); }
   TimestampNs newest() const override { return newest_; }
 
@@ -100,6 +102,7 @@ class LiveHands final : public DeviceMonitor {
   }
   bool connected() const override { return freshness_ != Freshness::kLost; }
   std::string reason() const override { return connected() ? std::string() : source_->note(); }
+  std::string note() const override { return connected() ? source_->note() : std::string(); }
   DriverCounts counts() const override { return counts_; }
   TimestampNs newest() const override { return frame_.time; }
 
@@ -137,6 +140,7 @@ Result<std::unique_ptr<DeviceMonitor>> make_live_device(const DeviceSpec& choice
   DUBSAR_ASSIGN(const auto* const backend, find_backend(head_tracker_backends(), choice.driver, "device driver"));
   HeadTrackerConfig config;
   config.open = std::move(open);
+  config.sender = choice.sender;
   config.tracker = choice.tracker;
   config.sensor = choice.sensor;
   config.invert = choice.invert;

@@ -19,6 +19,7 @@ class DeviceMonitor {
   virtual std::optional<nlohmann::json> poll(TimestampNs now, milliseconds timeout) = 0;
   virtual bool connected() const = 0;
   virtual std::string reason() const = 0;
+  virtual std::string note() const = 0;  ///< about an open device: what it was taken for, why nothing comes; else empty
   virtual DriverCounts counts() const = 0;
   virtual TimestampNs newest() const = 0;  ///< when the last sample was measured
 };

@@ -98,10 +98,16 @@ Result<VerbResult> watch(DeviceMonitor& device, const Clock& clock, Progress& pr
     result.json["age_ms"] = {{"median", median}, {"worst", worst}};
     result.text += fmt::format("age when read: median {:.2f} ms, worst {:.2f} ms\n", median, worst);
   }
-  if (counts.accepted == 0) {
+  const std::string note = device.note();
+  result.json["note"] = note;
+  if (!note.empty()) result.text += note + "\n";
+  if (samples == 0 && (counts.accepted == 0 || !note.empty())) {
     result.failed = true;
     result.failure = ErrorKind::kUnavailable;
-    result.text += device.connected() ? "the device is open and silent\n" : device.reason() + "\n";
+    if (!device.connected())
+      result.text += device.reason() + "\n";
+    else if (note.empty())
+      result.text += "the device is open and silent\n";
   }
   return result;
 }
@@ -274,6 +280,8 @@ void add_device_options(CLI::App& command, Options& options) {
   command.add_option("--sensor", options.device.sensor, "vrpn: which of its sensors")->check(CLI::Range(0, 1000));
   command.add_option("--invert", options.invert, "opentrack: axes that count the other way, e.g. x+yaw")
       ->type_name("AXES");
+  command.add_option("--sender", options.device.sender, "opentrack: whose signs, opentrack or xrlinux")
+      ->type_name("NAME");
   command.add_option("--socket", options.device.socket, "spacenav: path of the daemon's socket");
   command.add_option("--library", options.device.library, "leapc: Ultraleap's libLeapC.so")->type_name("FILE");
 }

@@ -16,6 +16,7 @@ class DrivenTracker final : public HeadTracker {
   std::optional<HeadSample> poll(TimestampNs now, milliseconds timeout) override { return driver_.poll(now, timeout); }
   bool connected() const noexcept override { return driver_.connected(); }
   const std::string& reason() const noexcept override { return driver_.reason(); }
+  std::string note() const override { return driver_.note(); }
   const DriverCounts& counts() const noexcept override { return driver_.counts(); }
   void wake() noexcept override { driver_.wake(); }
   void recentre() noexcept override {
@@ -34,7 +35,10 @@ Result<std::unique_ptr<HeadTracker>> make(const HeadTrackerConfig& config, Proto
 
 constexpr HeadTrackerBackend kBackends[] = {
     {"opentrack", "opentrack, AITrack and others by UDP", false,
-     [](const HeadTrackerConfig& config) { return make(config, OpentrackProtocol(config.invert)); }},
+     [](const HeadTrackerConfig& config) -> Result<std::unique_ptr<HeadTracker>> {
+       DUBSAR_ASSIGN(const auto sender, parse_opentrack_sender(config.sender));
+       return make(config, OpentrackProtocol(config.invert, sender));
+     }},
     {"vrpn", "a VRPN server by TCP", false,
      [](const HeadTrackerConfig& config) {
        return make(config, VrpnProtocol({config.tracker, config.sensor}));

@@ -21,6 +21,8 @@ class HeadTracker {
   virtual std::optional<HeadSample> poll(TimestampNs now, milliseconds timeout = milliseconds(0)) = 0;
   virtual bool connected() const noexcept = 0;
   virtual const std::string& reason() const noexcept = 0;  ///< why there is no device; empty while there is one
+  /// One sentence about a tracker that is open: what it was taken for, or why nothing comes of it; else empty.
+  virtual std::string note() const = 0;
   virtual const DriverCounts& counts() const noexcept = 0;
   virtual void wake() noexcept = 0;  ///< a device node has appeared
   virtual void
@@ -30,6 +32,7 @@ class HeadTracker {
 struct HeadTrackerConfig {
   OpenTransport open;             ///< how the device is reached
   std::array<bool, 6> invert{};   ///< opentrack: x, y, z, yaw, pitch, roll
+  std::string sender;             ///< opentrack: "opentrack", "xrlinux"; empty: told by the datagrams' length
   std::string tracker;            ///< vrpn: name of the tracker, empty: the first
   int sensor = 0;                 ///< vrpn
   const Clock* stamps = nullptr;  ///< as of Driver

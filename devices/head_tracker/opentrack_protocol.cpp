@@ -11,10 +11,29 @@ namespace {
 constexpr double kDeg = std::numbers::pi / 180.0;
 static_assert(sizeof(OpentrackPacket) == kOpentrackBytes);
 
+/// What x, y, z, yaw, pitch and roll on the wire are multiplied with to be ours: x right, y up, z back, right-handed
+/// turns.
+constexpr std::array<double, 6> kOpentrackSigns{-1, 1, 1, -1, 1, 1}, kXrLinuxSigns{1, 1, 1, 1, -1, -1};
+
+constexpr const std::array<double, 6>& signs_of(OpentrackSender sender) {
+  return sender == OpentrackSender::kXrLinux ? kXrLinuxSigns : kOpentrackSigns;
+}
+
 }  // namespace
 
+OpentrackSender opentrack_sender(std::size_t datagram_bytes) noexcept {
+  return datagram_bytes == kXrLinuxBytes ? OpentrackSender::kXrLinux : OpentrackSender::kOpentrack;
+}
+
+Result<std::optional<OpentrackSender>> parse_opentrack_sender(std::string_view name) {
+  if (name.empty()) return std::nullopt;
+  if (name == "opentrack") return OpentrackSender::kOpentrack;
+  if (name == "xrlinux") return OpentrackSender::kXrLinux;
+  return fail(ErrorKind::kUsage, "opentrack: sender \"{}\" found, expected opentrack or xrlinux", name);
+}
+
 std::optional<OpentrackPacket> parse_opentrack(std::span<const std::byte> datagram) noexcept {
-  if (datagram.size() != kOpentrackBytes) return std::nullopt;
+  if (datagram.size() < kOpentrackBytes) return std::nullopt;
   std::array<double, 6> v;
   std::memcpy(v.data(), datagram.data(), sizeof v);
   for (std::size_t i = 0; i < 6; ++i)
@@ -28,35 +47,46 @@ std::array<std::byte, kOpentrackBytes> format_opentrack(const OpentrackPacket& p
   return bytes;
 }
 
-Pose opentrack_pose(const OpentrackPacket& packet, const OpentrackInvert& invert) noexcept {
-  const auto sign = [&](std::size_t i) { return invert[i] ? -1.0 : 1.0; };
-  const double yaw = -sign(3) * packet.yaw_deg * kDeg, pitch = -sign(4) * packet.pitch_deg * kDeg;
-  const double roll = sign(5) * packet.roll_deg * kDeg;
-  return {{sign(0) * packet.x_cm * 0.01, sign(1) * packet.y_cm * 0.01, sign(2) * packet.z_cm * 0.01},
-          glm::angleAxis(yaw, glm::dvec3(0, 1, 0)) * glm::angleAxis(pitch, glm::dvec3(1, 0, 0)) *
-              glm::angleAxis(roll, glm::dvec3(0, 0, 1))};
+Pose opentrack_pose(const OpentrackPacket& packet, OpentrackSender sender, const OpentrackInvert& invert) noexcept {
+  std::array<double, 6> v{packet.x_cm, packet.y_cm, packet.z_cm, packet.yaw_deg, packet.pitch_deg, packet.roll_deg};
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] *= signs_of(sender)[i] * (invert[i] ? -1.0 : 1.0);
+  return {glm::dvec3(v[0], v[1], v[2]) * 0.01, glm::angleAxis(v[3] * kDeg, glm::dvec3(0, 1, 0)) *
+                                                   glm::angleAxis(v[4] * kDeg, glm::dvec3(1, 0, 0)) *
+                                                   glm::angleAxis(v[5] * kDeg, glm::dvec3(0, 0, 1))};
 }
 
-OpentrackPacket opentrack_packet(const Pose& pose) noexcept {
+OpentrackPacket opentrack_packet(const Pose& pose, OpentrackSender sender) noexcept {
   const glm::dquat& q = pose.rotation;
   // matrix of R_y R_x R_z: m[1][2] = -sin(pitch) in row 1, column 2
   const double pitch = std::asin(std::clamp(2.0 * (q.w * q.x - q.y * q.z), -1.0, 1.0));
   const double yaw = std::atan2(2.0 * (q.x * q.z + q.w * q.y), 1.0 - 2.0 * (q.x * q.x + q.y * q.y));
   const double roll = std::atan2(2.0 * (q.x * q.y + q.w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z));
-  return {pose.position_m.x * 100.0,
-          pose.position_m.y * 100.0,
-          pose.position_m.z * 100.0,
-          -yaw / kDeg,
-          -pitch / kDeg,
-          roll / kDeg};
+  const std::array<double, 6>& sign = signs_of(sender);
+  return {sign[0] * pose.position_m.x * 100.0,
+          sign[1] * pose.position_m.y * 100.0,
+          sign[2] * pose.position_m.z * 100.0,
+          sign[3] * yaw / kDeg,
+          sign[4] * pitch / kDeg,
+          sign[5] * roll / kDeg};
 }
 
 bool OpentrackProtocol::accept(std::span<const std::byte> datagram, TimestampNs now) {
   const auto packet = parse_opentrack(datagram);
   if (!packet) return false;
-  const auto passed = gate_.pass({now, opentrack_pose(*packet, invert_), true, true});
+  const OpentrackSender sender = sender_.value_or(opentrack_sender(datagram.size()));
+  heard_xrlinux_ = !sender_ && sender == OpentrackSender::kXrLinux;
+  // glasses that know no place say 0, which is no place either
+  const bool placed =
+      sender != OpentrackSender::kXrLinux || packet->x_cm != 0.0 || packet->y_cm != 0.0 || packet->z_cm != 0.0;
+  const auto passed = gate_.pass({now, opentrack_pose(*packet, sender, invert_), placed, true});
   if (passed) newest_ = passed;
   return passed.has_value();
+}
+
+std::string OpentrackProtocol::note() const {
+  if (!heard_xrlinux_) return {};
+  return "opentrack: datagrams of 52 bytes are XRLinuxDriver's: x counts to the right and yaw to the left "
+         "(sender=opentrack: as opentrack does)";
 }
 
 }  // namespace dubsar

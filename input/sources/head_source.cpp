@@ -1,6 +1,7 @@
 #include "input/sources/head_source.h"
 
 #include "devices/head_tracker/head_tracker.h"
+#include "devices/head_tracker/opentrack_protocol.h"
 #include "input/sources/device_feed.h"
 #include "input/sources/threaded_source.h"
 
@@ -29,6 +30,8 @@ class HeadReader final : public SourceReader {
   std::string reason() const override { return tracker_->reason(); }
   void wake() override { tracker_->wake(); }
   bool finished() const override { return ended_ && *ended_; }
+  std::string note() const override { return tracker_->note(); }
+  void recentre() override { tracker_->recentre(); }
 
  private:
   std::unique_ptr<HeadTracker> tracker_;
@@ -77,6 +80,8 @@ Result<std::unique_ptr<InputSource>> make_head_source(const InputConfig& config)
   if (opentrack) {
     choice.allow_remote = options.flag("remote");
     DUBSAR_ASSIGN(choice.invert, parse_axes(options.text("invert")));
+    choice.sender = options.text("sender");
+    DUBSAR_TRY(parse_opentrack_sender(choice.sender));
   }
   if (vrpn) {
     choice.tracker = options.text("tracker");
@@ -92,6 +97,7 @@ Result<std::unique_ptr<InputSource>> make_head_source(const InputConfig& config)
   HeadTrackerConfig tracker_config;
   tracker_config.open = std::move(device.open);
   tracker_config.invert = choice.invert;
+  tracker_config.sender = choice.sender;
   tracker_config.tracker = choice.tracker;
   tracker_config.sensor = choice.sensor;
   tracker_config.stamps = &session_clock(config);

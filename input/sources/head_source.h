@@ -22,7 +22,7 @@ glm::dvec3 usual_place_m(std::string_view tracker) noexcept;
 std::optional<HeadFrame> head_frame(const HeadSample& sample, const HeadPlacement& placement);
 
 /// Options: the tracker's name first (opentrack, vrpn, rift, xreal), then at, turn, eyes, ipd, replay, speed, simulate,
-/// seed; opentrack: port, address, remote, invert=x+yaw; vrpn: port, address, tracker, sensor.
+/// seed; opentrack: port, address, remote, invert=x+yaw, sender=xrlinux; vrpn: port, address, tracker, sensor.
 Result<std::unique_ptr<InputSource>> make_head_source(const InputConfig& config);
 
 }  // namespace dubsar

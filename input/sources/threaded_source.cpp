@@ -1,6 +1,7 @@
 #include "input/sources/threaded_source.h"
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -66,10 +67,12 @@ class ThreadedSource final : public InputSource {
     const std::lock_guard lock(mutex_);
     return finished_;
   }
+  void recentre() noexcept override { recentre_ = true; }
   std::string note() const override {
     const std::lock_guard lock(mutex_);
     if (!connected_) return reason_.empty() ? traits_.name + ": not opened yet" : reason_;
-    return silent_ ? traits_.name + ": open, but it says nothing" : traits_.note;
+    if (silent_) return note_.empty() ? traits_.name + ": open, but it says nothing" : note_;
+    return note_.empty() ? traits_.note : note_;
   }
 
  private:
@@ -89,12 +92,14 @@ class ThreadedSource final : public InputSource {
       next_retry_ = now + traits_.retry_ns;
       reader_->wake();
     }
+    if (recentre_.exchange(false)) reader_->recentre();
     working_.events.clear();
     const bool any = reader_->read(now, timeout, working_);
     std::unique_lock lock(mutex_);
     connected_ = reader_->connected();
     finished_ = finished_ || reader_->finished();
     if (!connected_) reason_ = reader_->reason();
+    if (std::string note = reader_->note(); note != note_) note_ = std::move(note);
     if (any) {
       fresh_ = measured_ = true;
       frame_.time = working_.time;
@@ -120,11 +125,12 @@ class ThreadedSource final : public InputSource {
   TimestampNs next_retry_ = 0;
   InputFrame working_;
 
+  std::atomic<bool> recentre_{false};
   mutable std::mutex mutex_;
   std::condition_variable stop_;
   InputFrame frame_;                // guarded by mutex_, without events
   std::vector<InputEvent> events_;  // guarded by mutex_; since the last poll
-  std::string reason_;              // guarded by mutex_
+  std::string reason_, note_;       // guarded by mutex_
   bool fresh_ = false, measured_ = false, connected_ = false, silent_ = false, finished_ = false,
        stopping_ = false;  // likewise
   std::thread thread_;

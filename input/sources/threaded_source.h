@@ -21,6 +21,9 @@ class SourceReader {
   virtual std::string reason() const = 0;          ///< why it is not connected
   virtual void wake() = 0;                         ///< a device node has appeared
   virtual bool finished() const { return false; }  ///< a recording or script is over
+  /// One sentence about an open device: what it was taken for, or why nothing comes of it; else empty.
+  virtual std::string note() const { return {}; }
+  virtual void recentre() {}  ///< the present heading is "straight on", where it drifts
 };
 
 struct DeviceSourceTraits {

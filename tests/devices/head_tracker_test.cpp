@@ -33,30 +33,86 @@ TEST(Opentrack, GoldenDatagramInCentimetresAndDegrees) {
   EXPECT_EQ(*packet, (OpentrackPacket{10, -5, 60, 90, 0, 0}));
   EXPECT_EQ(to_hex(format_opentrack(*packet)), to_hex(bytes));
   const Pose pose = opentrack_pose(*packet);
-  EXPECT_NEAR(pose.position_m.x, 0.10, 1e-12);
+  EXPECT_NEAR(pose.position_m.x, -0.10, 1e-12);  // x on the wire counts to the user's left
+  EXPECT_NEAR(pose.position_m.y, -0.05, 1e-12);
   EXPECT_NEAR(pose.position_m.z, 0.60, 1e-12);
   const glm::dvec3 gaze = pose.rotation * glm::dvec3(0, 0, -1);
   EXPECT_NEAR(gaze.x, 1.0, 1e-12);  // yaw on the wire counts to the right
-  EXPECT_NEAR((opentrack_pose(*packet, {false, false, false, true, false, false}).rotation * glm::dvec3(0, 0, -1)).x,
-              -1.0, 1e-12);
+  const OpentrackInvert yaw{false, false, false, true, false, false};
+  EXPECT_NEAR((opentrack_pose(*packet, OpentrackSender::kOpentrack, yaw).rotation * glm::dvec3(0, 0, -1)).x, -1.0,
+              1e-12);
+}
+
+// What opentrack's other outputs do with the same six numbers: proto-flightgear and proto-simconnect take positive
+// pitch as up and negate x; tracker-steamvr and tracker-tobii negate x, which counts to the right there, on its way in.
+TEST(Opentrack, PitchIsUpAndRollIsToTheLeft) {
+  EXPECT_NEAR((opentrack_pose({0, 0, 0, 0, 30, 0}).rotation * glm::dvec3(0, 0, -1)).y, 0.5, 1e-12);
+  // the right ear rises when the head is laid on the left shoulder
+  EXPECT_NEAR((opentrack_pose({0, 0, 0, 0, 0, 30}).rotation * glm::dvec3(1, 0, 0)).y, 0.5, 1e-12);
+}
+
+TEST(Opentrack, XrLinuxDriverCountsXToTheRightYawToTheLeftPitchDownAndRollToTheRight) {
+  const auto turned = [](const OpentrackPacket& packet, const glm::dvec3& axis) {
+    return opentrack_pose(packet, OpentrackSender::kXrLinux).rotation * axis;
+  };
+  EXPECT_NEAR(opentrack_pose({12, 3, 4, 0, 0, 0}, OpentrackSender::kXrLinux).position_m.x, 0.12, 1e-12);
+  EXPECT_NEAR(turned({0, 0, 0, 30, 0, 0}, {0, 0, -1}).x, -0.5, 1e-12);
+  EXPECT_NEAR(turned({0, 0, 0, 0, 30, 0}, {0, 0, -1}).y, -0.5, 1e-12);
+  EXPECT_NEAR(turned({0, 0, 0, 0, 0, 30}, {1, 0, 0}).y, -0.5, 1e-12);
+}
+
+TEST(Opentrack, DatagramsOf52BytesAreXrLinuxDriversUnlessAnotherSenderIsNamed) {
+  // x 12 cm, yaw 30 degrees, and the frame number 7 behind them, as XRLinuxDriver packs them
+  const auto bytes = from_hex(
+      "0000000000002840 0000000000000000 0000000000000000 0000000000003e40 0000000000000000 0000000000000000"
+      "07000000");
+  ASSERT_EQ(bytes.size(), 52U);
+  const auto hear = [&](std::optional<OpentrackSender> sender, std::string* note) {
+    SimDevice device("opentrack");
+    Driver<OpentrackProtocol> driver([&] { return device.open(); }, OpentrackProtocol({}, sender));
+    driver.poll(0);
+    device.send(bytes);
+    const auto sample = driver.poll(1);
+    *note = driver.note();
+    return sample->pose;
+  };
+  std::string note;
+  Pose pose = hear(std::nullopt, &note);
+  EXPECT_NEAR(pose.position_m.x, 0.12, 1e-12);
+  EXPECT_NEAR((pose.rotation * glm::dvec3(0, 0, -1)).x, -0.5, 1e-12);
+  EXPECT_NE(note.find("XRLinuxDriver"), std::string::npos) << note;
+  pose = hear(OpentrackSender::kXrLinux, &note);
+  EXPECT_NEAR(pose.position_m.x, 0.12, 1e-12);
+  EXPECT_EQ(note, "");
+  pose = hear(OpentrackSender::kOpentrack, &note);
+  EXPECT_NEAR(pose.position_m.x, -0.12, 1e-12);
+  EXPECT_NEAR((pose.rotation * glm::dvec3(0, 0, -1)).x, 0.5, 1e-12);
+  EXPECT_EQ(note, "");
+  EXPECT_EQ(parse_opentrack_sender("freetrack").error().kind, ErrorKind::kUsage);
 }
 
 TEST(Opentrack, PoseAndPacketAreInverse) {
   for (double yaw = -170; yaw <= 170; yaw += 34)
     for (double pitch = -80; pitch <= 80; pitch += 20)
       for (double roll = -170; roll <= 170; roll += 34) {
-        const OpentrackPacket back = opentrack_packet(opentrack_pose({1, 2, 3, yaw, pitch, roll}));
-        ASSERT_NEAR(back.yaw_deg, yaw, 1e-9);
-        ASSERT_NEAR(back.pitch_deg, pitch, 1e-9);
-        ASSERT_NEAR(back.roll_deg, roll, 1e-9);
+        for (const OpentrackSender sender : {OpentrackSender::kOpentrack, OpentrackSender::kXrLinux}) {
+          const OpentrackPacket back = opentrack_packet(opentrack_pose({1, 2, 3, yaw, pitch, roll}, sender), sender);
+          ASSERT_NEAR(back.x_cm, 1, 1e-9);
+          ASSERT_NEAR(back.z_cm, 3, 1e-9);
+          ASSERT_NEAR(back.yaw_deg, yaw, 1e-9);
+          ASSERT_NEAR(back.pitch_deg, pitch, 1e-9);
+          ASSERT_NEAR(back.roll_deg, roll, 1e-9);
+        }
       }
 }
 
-TEST(Opentrack, RefusesOtherLengthsAndValuesThatNoHeadHas) {
+TEST(Opentrack, ReadsTheFirst48BytesOfLongerDatagramsAndRefusesShorterOnesAndValuesThatNoHeadHas) {
   const auto good = format_opentrack({1, 2, 3, 4, 5, 6});
   std::vector<std::byte> longer(good.begin(), good.end());
-  longer.push_back({});
-  EXPECT_FALSE(parse_opentrack(longer));
+  for (int more = 0; more < 20; ++more) {
+    longer.push_back(std::byte{0xff});
+    EXPECT_EQ(parse_opentrack(longer), (OpentrackPacket{1, 2, 3, 4, 5, 6}));
+  }
   for (std::size_t length = 0; length < 48; ++length) EXPECT_FALSE(parse_opentrack(std::span(good).first(length)));
   for (std::size_t field = 0; field < 6; ++field)
     for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -1e300,

@@ -90,7 +90,7 @@ TEST(Malformed, TwoMillionOpentrackDatagrams) {
                 kEach, 2,
                 [](FastRandom& random, std::span<std::byte> out) -> std::size_t {
                   random.fill(out.first(48));
-                  if (random.below(2) == 0) return wrong_length(random, std::array<std::size_t, 1>{48});
+                  if (random.below(2) == 0) return random.below(48);
                   // sign and exponent of one number so that it is beyond 200, infinite or none at all
                   const std::size_t field = random.below(6);
                   out[8 * field + 7] = static_cast<std::byte>(random.below(2) * 0x80 + 0x41 + random.below(0x3F));

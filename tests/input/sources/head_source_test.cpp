@@ -6,6 +6,7 @@
 #include "devices/head_tracker/imu_sim.h"
 #include "devices/head_tracker/opentrack_protocol.h"
 #include "devices/head_tracker/vrpn_protocol.h"
+#include "input/mixer.h"
 #include "tests/input/sources/source_bench.h"
 
 namespace dubsar::test {
@@ -58,8 +59,8 @@ TEST(HeadSource, OpentrackDatagramsBecomeEyesBeforeThePanel) {
   bench.clock.advance(5 * kMs);
   ASSERT_EQ(bench.poll(*source), Freshness::kNew);
   ASSERT_EQ(bench.frame.heads.size(), 1u);
-  expect_near(*bench.frame.heads[0].left_eye_m, {-0.132, 0.05, 0.52}, 1e-12);
-  expect_near(*bench.frame.heads[0].right_eye_m, {-0.068, 0.05, 0.52}, 1e-12);
+  expect_near(*bench.frame.heads[0].left_eye_m, {0.068, 0.05, 0.52}, 1e-12);
+  expect_near(*bench.frame.heads[0].right_eye_m, {0.132, 0.05, 0.52}, 1e-12);
 
   // silent: the head is not handed out for ever, and the source says so
   bench.clock.advance(400 * kMs);
@@ -68,6 +69,58 @@ TEST(HeadSource, OpentrackDatagramsBecomeEyesBeforeThePanel) {
   bench.clock.advance(kSecond);
   EXPECT_EQ(bench.poll(*source), Freshness::kLost);
   EXPECT_NE(source->note().find("says nothing"), std::string::npos) << source->note();
+}
+
+TEST(HeadSource, AHead120MillimetresToTheRightAsOpentrackSendsItHasItsEyesThere) {
+  SourceBench bench;
+  SimDevice tracker("simulated opentrack");
+  bench.put(tracker);
+  const auto source = bench.make("head:opentrack,ipd=63");
+  bench.poll(*source);
+  tracker.send(format_opentrack({-12, 0, 0, 0, 0, 0}));
+  ASSERT_EQ(bench.poll(*source), Freshness::kNew);
+  ASSERT_EQ(bench.frame.heads.size(), 1u);
+  expect_near(*bench.frame.heads[0].left_eye_m, {0.1200 - 0.0315, 0.0, 0.6}, 1e-12);
+  expect_near(*bench.frame.heads[0].right_eye_m, {0.1200 + 0.0315, 0.0, 0.6}, 1e-12);
+}
+
+TEST(HeadSource, GlassesThatSpeakOpentrackAreToldByTheirLengthAndTurnAboutTheNeck) {
+  SourceBench bench;
+  SimDevice tracker("simulated XRLinuxDriver");
+  bench.put(tracker);
+  const auto source = bench.make("head:opentrack");
+  bench.poll(*source);
+  auto datagram = format_opentrack({0, 0, 0, 30, 0, 0});  // 30 degrees to the left, no place
+  std::vector<std::byte> with_number(datagram.begin(), datagram.end());
+  with_number.resize(52);
+  tracker.send(with_number);
+  ASSERT_EQ(bench.poll(*source), Freshness::kNew);
+  ASSERT_EQ(bench.frame.heads.size(), 1u);
+  expect_near(0.5 * (*bench.frame.heads[0].left_eye_m + *bench.frame.heads[0].right_eye_m),
+              {-0.0805 * std::sin(30 * kRad), 0.0, 0.6 + 0.0805 * (1 - std::cos(30 * kRad))}, 1e-12);
+  EXPECT_NE(source->note().find("XRLinuxDriver"), std::string::npos) << source->note();
+}
+
+TEST(HeadSource, AHeadsetThatHasDriftedIsRecentred) {
+  SourceBench bench;
+  RiftSim rift(RiftModel::kDk1);
+  bench.put(rift.device());
+  InputMixer mixer;
+  mixer.add(bench.make("head:rift"));
+  const auto turn = [&](double rate_rad_s, int count) {
+    for (int i = 0; i < count; ++i) {
+      rift.step({0.0, rate_rad_s, 0.0}, 1);
+      bench.clock.advance(kMs);
+      mixer.poll(bench.clock.now());
+    }
+    return mixer.poll(bench.clock.now());
+  };
+  const auto middle = [](const InputFrame& frame) {
+    return 0.5 * (*frame.heads.at(0).left_eye_m + *frame.heads.at(0).right_eye_m);
+  };
+  EXPECT_LT(middle(turn(60 * kRad, 500)).x, -0.03);
+  mixer.recentre();
+  expect_near(middle(turn(0.0, 5)), {0.0, 0.0, 0.6}, 1e-3);
 }
 
 TEST(HeadSource, VrpnPosesAreInTheScreenFrame) {
