@@ -13,7 +13,7 @@ layout(std140, binding = 1) uniform Style {
   vec4 weights;
   vec4 back_color;
   vec4 shininess;
-  vec4 partition_color[8];
+  vec4 clip_plane[8];
 };
 
 flat in int view_of_vertex;

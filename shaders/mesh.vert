@@ -1,6 +1,6 @@
 #version 450 core
 // One vertex of the surface: position in the unit cube of the mesh, packed attributes, octahedral normal. With LAYERED
-// each instance draws one view into its own layer.
+// each instance draws one view into its own layer; with CLIPPED planes cut.
 
 layout(location = 0) in vec3 unit_position;
 layout(location = 1) in uint packed_attributes;  // shape 7 bits, ambient light 6 bits, partition 3 bits
@@ -14,20 +14,25 @@ struct ViewData {
 };
 layout(std430, binding = 0) readonly buffer Views { ViewData views[]; };
 layout(location = 0) uniform int view_index;
+layout(location = 1) uniform vec3 part_color;   // linear
+layout(location = 2) uniform vec3 part_offset;  // in the unit cube
 
 layout(std140, binding = 1) uniform Style {
-  vec4 light;              // xyz: unit direction to the key light in the view frame; w: 1 = lit
-  vec4 weights;            // ambient, key, fill (from the eye), specular
-  vec4 back_color;         // linear; a: how much of it back faces take
-  vec4 shininess;          // x
-  vec4 partition_color[8]; // linear
+  vec4 light;          // xyz: unit direction to the key light in the view frame; w: 1 = lit
+  vec4 weights;        // ambient, key, fill (from the eye), specular
+  vec4 back_color;     // linear; a: how much of it back faces take
+  vec4 shininess;      // x
+  vec4 clip_plane[8];  // in the unit cube; what is below 0 goes
 };
-layout(binding = 0) uniform sampler2D color_table;  // sRGB-coded, x: shape, y: ambient light
+layout(binding = 0) uniform sampler2D color_table;  // linear, x: shape, y: ambient light
 
 flat out int view_of_vertex;
 out vec3 view_position;
 out vec3 view_normal;
 out vec3 albedo;  // linear
+#ifdef CLIPPED
+out float gl_ClipDistance[8];
+#endif
 
 vec3 linear_from_srgb(vec3 c) {
   return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
@@ -49,14 +54,16 @@ void main() {
   ViewData view = views[view_of_vertex];
   uint shape = packed_attributes & 127u;
   uint ao = (packed_attributes >> 7) & 63u;
-  uint part = packed_attributes >> 13;
 
-  vec4 position = view.view_from_unit * vec4(unit_position, 1.0);
+  vec4 unit = vec4(unit_position + part_offset, 1.0);
+  vec4 position = view.view_from_unit * unit;
   view_position = position.xyz;
   view_normal = mat3(view.view_from_normal) * decode_octahedral(oct_normal);
-  albedo = linear_from_srgb(texelFetch(color_table, ivec2(shape, ao), 0).rgb) *
-           linear_from_srgb(foreign_color.rgb) * partition_color[part].rgb;
+  albedo = texelFetch(color_table, ivec2(shape, ao), 0).rgb * linear_from_srgb(foreign_color.rgb) * part_color;
   gl_Position = view.clip_from_view * position;
+#ifdef CLIPPED
+  for (int i = 0; i < 8; ++i) gl_ClipDistance[i] = dot(clip_plane[i], unit);
+#endif
 #ifdef LAYERED
   gl_Layer = int(view.view_from_normal[3][0]);
 #endif

@@ -40,8 +40,8 @@ Result<void> parse_light(const std::string& text, Shading& shading) {
   if (std::sscanf(text.c_str(), "%lf,%lf", &azimuth, &elevation) != 2)
     return fail(ErrorKind::kUsage,
                 "--light \"{}\" not understood, expected AZIMUTH,ELEVATION in degrees such as 315,25", text);
-  shading.light_azimuth_deg = azimuth;
-  shading.light_elevation_deg = elevation;
+  shading.light.azimuth_deg = azimuth;
+  shading.light.elevation_deg = elevation;
   return {};
 }
 
@@ -50,7 +50,7 @@ Result<void> hide_partitions(const std::vector<std::string>& names, const TriMes
     bool found = false;
     for (const Partition& p : mesh.partitions)
       if (p.name == name || p.part == name || std::to_string(p.id) == name) {
-        shading.partitions = static_cast<std::uint8_t>(shading.partitions & ~(1 << p.id));
+        show_partitions(shading.parts, static_cast<std::uint8_t>(visible_partitions(shading.parts) & ~(1 << p.id)));
         found = true;
       }
     if (!found) return fail(ErrorKind::kUsage, "--hide {}: there is no such partition in the file", name);
@@ -137,8 +137,8 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
   render.camera.perspective = options.perspective;
   render.camera.mm_per_pixel = options.mm_per_pixel;
   if (options.samples > 0) render.samples = options.samples;
-  render.shading.transparent_background = options.transparent;
-  if (options.colour_parts) render.shading.partition_colors = distinct_partition_colors();
+  render.shading.background.transparent = options.transparent;
+  if (options.colour_parts) color_partitions(render.shading.parts, distinct_partition_colors());
   TriMesh mesh;
   if (!options.in.empty()) {
     DUBSAR_ASSIGN(mesh, load_mesh({options.in, options.partitions, true}, progress));

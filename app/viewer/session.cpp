@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "core/base/budget.h"
-#include "display/render/gpu_mesh.h"
+#include "display/render/lod_mesh.h"
 #include "display/render/multi_view.h"
 #include "display/render/renderer.h"
 #include "display/render/test_pattern.h"
@@ -56,7 +56,7 @@ glm::dmat4 screen_from_model(const Box& box, const ViewDirection& direction, con
 struct Session::Parts {
   SessionOptions options;
   Box box;
-  GpuMesh mesh;                      // kExact
+  std::optional<LodMesh> mesh;
   std::optional<Renderer> renderer;  // kExact
   std::optional<MultiView> multi;    // kAdaptive
   std::unique_ptr<OutputSink> sink;
@@ -78,8 +78,9 @@ struct Session::Parts {
   TimestampNs now = 0, moved_at = 0;
   Viewer viewer;  // of the last poll()
   std::optional<std::pair<ViewState, Viewer>> painted;
-  std::vector<View> views;  // painted, of the object
-  Shading shading;          // painted
+  std::vector<View> views;      // painted
+  std::vector<DrawItem> items;  // painted
+  Light light;                  // painted
   int coarse = 0;
   double exact_view_ms = 0.0;  // what one exact view takes; 0: not known yet
 
@@ -88,8 +89,8 @@ struct Session::Parts {
 
   static ViewState home(const SessionOptions& options) {
     ViewState view;
-    view.light_azimuth_deg = options.shading.light_azimuth_deg;
-    view.light_elevation_deg = options.shading.light_elevation_deg;
+    view.light_azimuth_deg = options.shading.light.azimuth_deg;
+    view.light_elevation_deg = options.shading.light.elevation_deg;
     return view;
   }
   static HeadFollowOptions follow(const SessionOptions& options) {
@@ -102,6 +103,7 @@ struct Session::Parts {
   Result<void> prepare(OutputSink& next);
   Viewer viewer_at(const FollowedEyes& eyes) const;
   bool moved() const;
+  SceneView scene() const { return {items, light, {}, options.shading.background}; }
   Result<void> paint_moved();
   Result<void> refine();
   void took(double ms, std::size_t count);
@@ -162,16 +164,17 @@ Result<std::unique_ptr<Session>> Session::create(const TriMesh& mesh, const Sess
     return fail(ErrorKind::kUsage, "view: margin {} and {} samples found, expected 0 to 0.45 and 1 to 8",
                 options.margin, options.samples);
   DUBSAR_ASSIGN(PackedMesh packed, pack_mesh(mesh));
-  if (!options.pattern && packed.triangles_of(options.shading.partitions) == 0)
+  if (!options.pattern && packed.triangles_of(visible_partitions(options.shading.parts)) == 0)
     return fail(ErrorKind::kUsage, "view: none of the partitions asked for has triangles, so there is nothing to draw");
   auto parts = std::make_unique<Parts>(options);
-  if (!options.pattern) parts->box = packed.box_of(options.shading.partitions);
+  if (!options.pattern) parts->box = packed.box_of(visible_partitions(options.shading.parts));
   if (options.pattern) {
     // nothing to draw
   } else if (options.quality == Quality::kAdaptive) {
-    DUBSAR_ASSIGN(parts->multi, MultiView::create(std::move(packed)));
+    DUBSAR_ASSIGN(parts->mesh, LodMesh::with_levels(std::move(packed)));
+    DUBSAR_ASSIGN(parts->multi, MultiView::create());
   } else {
-    DUBSAR_ASSIGN(parts->mesh, GpuMesh::upload(packed));
+    DUBSAR_ASSIGN(parts->mesh, LodMesh::exact(packed));
     DUBSAR_ASSIGN(parts->renderer, Renderer::create());
   }
   DUBSAR_ASSIGN(parts->sink, make_sink(options.display, options.profile_folder, options.plugins));
@@ -260,24 +263,24 @@ void Session::Parts::took(double ms, std::size_t count) {
 
 /// New cameras: exact views where there is time for them.
 Result<void> Session::Parts::paint_moved() {
-  shading = options.shading;
-  shading.light_azimuth_deg = seen.light_azimuth_deg;
-  shading.light_elevation_deg = seen.light_elevation_deg;
+  light = options.shading.light;
+  light.azimuth_deg = seen.light_azimuth_deg;
+  light.elevation_deg = seen.light_elevation_deg;
   const glm::dmat4 placed = screen_from_model(box, options.direction, seen, magnification, window.y, middle);
   const std::span<const View> wanted = sink->views(viewer);
   views.assign(wanted.begin(), wanted.end());
-  for (View& view : views) view.view_from_world = view.view_from_world * placed;
   painted = {seen, viewer};
   moved_at = now;
   coarse = 0;
   if (options.pattern) return {};
-  if (!multi) return renderer->render(mesh, shading, views, options.samples, *array);
+  items = {MeshItem{&*mesh, placed, options.shading.style, options.shading.parts}};
+  if (!multi) return renderer->render(scene(), views, options.samples, *array);
   if (exact_view_ms * static_cast<double>(views.size()) > options.budget_ms) {
     coarse = static_cast<int>(views.size());
-    return multi->draw_moving(shading, views, *array);
+    return multi->draw_moving(scene(), views, *array);
   }
   const TimestampNs start = SteadyClock().now();
-  DUBSAR_TRY(multi->draw_exact(shading, views, options.samples, *array));
+  DUBSAR_TRY(multi->draw_exact(scene(), views, options.samples, *array));
   glFinish();  // what it takes is to be known, and input that comes in meanwhile shall not wait behind it
   took(milliseconds_since(start), views.size());
   return {};
@@ -287,7 +290,7 @@ Result<void> Session::Parts::refine() {
   const TimestampNs start = SteadyClock().now();
   const int before = coarse;
   do {
-    DUBSAR_ASSIGN(coarse, multi->refine(shading, views, options.samples, *array, 1));
+    DUBSAR_ASSIGN(coarse, multi->refine(scene(), views, options.samples, *array, 1));
     glFinish();
   } while (coarse > 0 && milliseconds_since(start) < options.budget_ms);
   took(milliseconds_since(start), static_cast<std::size_t>(before - coarse));

@@ -27,8 +27,7 @@ double sin_deg(double degrees) { return cos_deg(degrees - 90.0); }
 
 std::array<glm::dvec3, 8> corners(const Box& box) {
   std::array<glm::dvec3, 8> out;
-  for (int i = 0; i < 8; ++i)
-    out[i] = {i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z};
+  for (int i = 0; i < 8; ++i) out[i] = box.corner(i);
   return out;
 }
 

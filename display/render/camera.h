@@ -14,6 +14,8 @@ struct Box {
   glm::dvec3 min{0.0}, max{0.0};
   glm::dvec3 size() const { return max - min; }
   glm::dvec3 centre() const { return 0.5 * (min + max); }
+  /// 0..7; bit 0 is set on the side of max.x, bit 1 of max.y, bit 2 of max.z.
+  glm::dvec3 corner(int i) const { return {i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z}; }
 };
 
 /// The object's own directions, unit, right-handed: `front` points from the object to the viewer of the front view.

@@ -51,6 +51,16 @@ GlBuffer make_buffer(std::span<const std::byte> bytes) {
   return GlBuffer(name);
 }
 
+GlBuffer make_stream_buffer() {
+  GLuint name = 0;
+  glCreateBuffers(1, &name);
+  return GlBuffer(name);
+}
+
+void stream(const GlBuffer& buffer, std::span<const std::byte> bytes) {
+  glNamedBufferData(buffer, static_cast<GLsizeiptr>(bytes.size()), bytes.data(), GL_STREAM_DRAW);
+}
+
 GlFramebuffer make_framebuffer() {
   GLuint name = 0;
   glCreateFramebuffers(1, &name);

@@ -53,6 +53,9 @@ using GlVertexArray = GlName<VertexArrayKind>;
 using GlProgram = GlName<ProgramKind>;
 
 GlBuffer make_buffer(std::span<const std::byte> bytes);
+/// A buffer whose contents change: stream() puts them in, whatever the GPU still reads of the old ones.
+GlBuffer make_stream_buffer();
+void stream(const GlBuffer& buffer, std::span<const std::byte> bytes);
 GlFramebuffer make_framebuffer();
 GlVertexArray make_vertex_array();
 GlTexture make_texture(GLenum target);

@@ -88,14 +88,20 @@ glm::dvec3 decode_octahedral(const std::array<std::int16_t, 2>& code) {
   return glm::normalize(n);
 }
 
-Box PackedMesh::box_of(std::uint8_t partitions) const {
+Box joined_box(const std::array<Box, kMaxPartitions>& boxes, std::uint8_t bits) {
   Box box = empty_box();
-  for (int p = 0; p < kMaxPartitions; ++p)
-    if ((partitions >> p & 1) != 0 && first_triangle[p] < first_triangle[p + 1]) {
-      grow(box, partition_box_mm[p].min);
-      grow(box, partition_box_mm[p].max);
+  for (std::size_t p = 0; p < boxes.size(); ++p)
+    if ((bits >> p & 1) != 0) {
+      grow(box, boxes[p].min);
+      grow(box, boxes[p].max);
     }
   return is_empty(box) ? Box{} : box;
+}
+
+Box PackedMesh::box_of(std::uint8_t partitions) const {
+  for (int p = 0; p < kMaxPartitions; ++p)
+    if (first_triangle[p] == first_triangle[p + 1]) partitions = static_cast<std::uint8_t>(partitions & ~(1 << p));
+  return joined_box(partition_box_mm, partitions);
 }
 
 std::int64_t PackedMesh::triangles_of(std::uint8_t partitions) const {

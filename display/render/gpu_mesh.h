@@ -11,6 +11,7 @@
 #include "display/optics/view.h"
 #include "display/render/camera.h"
 #include "display/render/gl_objects.h"
+#include "display/render/shading.h"
 
 namespace dubsar {
 
@@ -22,7 +23,8 @@ struct PackedVertex {
 };
 static_assert(sizeof(PackedVertex) == 12);
 
-constexpr int kMaxPartitions = 8;
+/// The box around those whose bit is set; a box of size 0 for none.
+Box joined_box(const std::array<Box, kMaxPartitions>& boxes, std::uint8_t bits);
 
 /// A run of triangles of one partition that lie close together.
 struct TriangleChunk {

@@ -6,7 +6,7 @@
 #include "core/base/budget.h"
 #include "core/base/log.h"
 #include "display/render/context_egl.h"
-#include "display/render/gpu_mesh.h"
+#include "display/render/lod_mesh.h"
 #include "display/render/renderer.h"
 
 namespace dubsar {
@@ -21,8 +21,8 @@ void copy_tile(const Image& tile, Image& picture, int left, int top) {
 }
 
 bool only_background(const Image& image, const Shading& shading) {
-  const std::array<std::uint8_t, 4> background{shading.background[0], shading.background[1], shading.background[2],
-                                               255};
+  const std::array<std::uint8_t, 4> background{shading.background.color[0], shading.background.color[1],
+                                               shading.background.color[2], 255};
   for (std::size_t i = 0; i < image.pixels.size(); i += static_cast<std::size_t>(image.channels)) {
     const std::uint8_t* pixel = image.pixels.data() + i;
     if (image.channels == 4 ? pixel[3] != 0 : !std::equal(pixel, pixel + 3, background.data())) return false;
@@ -34,8 +34,8 @@ bool only_background(const Image& image, const Shading& shading) {
 
 struct PictureRenderer::Parts {  // destroyed from the bottom to the top: the context last
   std::unique_ptr<EglContext> context;
-  PackedMesh packed;  // without vertices and triangles
-  GpuMesh mesh;
+  LodMesh mesh;
+  bool has_shape = false, has_ao = false;
   std::optional<Renderer> renderer;
 
   ~Parts() {
@@ -50,35 +50,35 @@ PictureRenderer::~PictureRenderer() = default;
 
 Result<PictureRenderer> PictureRenderer::create(const TriMesh& mesh) {
   auto parts = std::make_unique<Parts>();
-  DUBSAR_ASSIGN(parts->packed, pack_mesh(mesh));
+  DUBSAR_ASSIGN(const PackedMesh packed, pack_mesh(mesh));
+  parts->has_shape = packed.has_shape;
+  parts->has_ao = packed.has_ao;
   DUBSAR_ASSIGN(parts->context, EglContext::create());
-  DUBSAR_ASSIGN(parts->mesh, GpuMesh::upload(parts->packed));
+  DUBSAR_ASSIGN(parts->mesh, LodMesh::exact(packed));
   DUBSAR_ASSIGN(parts->renderer, Renderer::create());
-  parts->packed.vertices = {};
-  parts->packed.triangles = {};
-  parts->packed.colors = {};
   return PictureRenderer(std::move(parts));
 }
 
-Box PictureRenderer::box_mm(std::uint8_t partitions) const { return parts_->packed.box_of(partitions); }
+Box PictureRenderer::box_mm(std::uint8_t partitions) const { return parts_->mesh.box_of(partitions); }
 
 Result<Picture> PictureRenderer::render(const RenderOptions& options, Progress& progress) {
   const Shading& shading = options.shading;
-  if (parts_->packed.triangles_of(shading.partitions) == 0)
+  if (!parts_->mesh.has_any(visible_partitions(shading.parts)))
     return fail(ErrorKind::kUsage,
                 "render: none of the partitions asked for has triangles, so there is nothing to draw");
   if (options.samples < 1 || options.samples > 8)
     return fail(ErrorKind::kUsage, "render: {0} x {0} samples a pixel asked for, expected 1 x 1 to 8 x 8",
                 options.samples);
-  if (shading.map != ColorMap::kPlain && !parts_->packed.has_shape)
+  if (shading.style.map != ColorMap::kPlain && !parts_->has_shape)
     log_info("render: the mesh carries no shape classes, so it is drawn without curvature colouring");
-  if (shading.ambient_occlusion && !parts_->packed.has_ao)
+  if (shading.style.ambient_occlusion && !parts_->has_ao)
     log_info("render: the mesh carries no ambient occlusion, so it is drawn without");
-  DUBSAR_ASSIGN(const Camera camera, fit_camera(box_mm(shading.partitions), options.camera));
-  const int channels = shading.transparent_background ? 4 : 3;
+  DUBSAR_ASSIGN(const Camera camera, fit_camera(box_mm(visible_partitions(shading.parts)), options.camera));
+  const int channels = shading.background.transparent ? 4 : 3;
   DUBSAR_TRY(check_memory("render", static_cast<std::uint64_t>(camera.width) * camera.height * channels));
   DUBSAR_TRY(parts_->context->make_current());
 
+  const MeshScene scene(parts_->mesh, shading);
   const int side = kTileSamples / options.samples;
   Picture picture{Image(camera.width, camera.height, channels), camera.mm_per_pixel};
   progress.begin("render", static_cast<std::int64_t>(camera.width) * camera.height, "pixel");
@@ -88,7 +88,7 @@ Result<Picture> PictureRenderer::render(const RenderOptions& options, Progress& 
       const int w = std::min(side, camera.width - left), h = std::min(side, camera.height - top);
       DUBSAR_ASSIGN(ViewArray tile, ViewArray::create(w, h, 1));
       const View view = crop_view(camera.view, left, camera.height - top - h, w, h, camera.width, camera.height);
-      DUBSAR_TRY(parts_->renderer->render(parts_->mesh, shading, std::span(&view, 1), options.samples, tile));
+      DUBSAR_TRY(parts_->renderer->render(scene, std::span(&view, 1), options.samples, tile));
       DUBSAR_ASSIGN(const Image pixels, tile.read_layer(0));
       copy_tile(pixels, picture.image, left, top);
       progress.advance(static_cast<std::int64_t>(w) * h);

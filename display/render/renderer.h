@@ -1,12 +1,13 @@
 #pragma once
-// Draws a mesh for any number of views into the layers of a view array.
+// Draws a scene for any number of views into the layers of a view array.
 
 #include <span>
 
 #include "core/base/result.h"
 #include "display/optics/view.h"
-#include "display/render/gpu_mesh.h"
-#include "display/render/shading.h"
+#include "display/render/flat_pass.h"
+#include "display/render/mesh_pass.h"
+#include "display/render/scene.h"
 #include "display/render/view_array.h"
 
 namespace dubsar {
@@ -18,16 +19,18 @@ class Renderer {
   /// `layered` false: as on a driver that cannot choose layers in vertex shaders.
   static Result<Renderer> create(bool layered = true);
 
-  /// Layer first_layer + i of `target` gets views[i] of `mesh`. `factor` x `factor` samples a pixel (1..8), averaged in
-  /// linear light. Pixels: the colour of a vertex is interpolated, light is computed per sample.
-  Result<void> render(const GpuMesh& mesh, const Shading& shading, std::span<const View> views, int factor,
-                      ViewArray& target, int first_layer = 0);
+  /// Layer first_layer + i of `target` gets views[i] of the scene. `factor` x `factor` samples a pixel (1..8), averaged
+  /// in linear light. Pixels: the colour of a vertex is interpolated, light is computed per sample. Meshes with all
+  /// their triangles. kUsage as check_scene().
+  Result<void> render(const SceneView& scene, std::span<const View> views, int factor, ViewArray& target,
+                      int first_layer = 0);
 
-  /// Layer layers[i] of `target` gets views[i], with one sample a pixel, in one instanced draw; where the driver cannot
-  /// choose layers in vertex shaders (ARB_shader_viewport_layer_array), one after the other. All other layers become
-  /// background. Transparent backgrounds are drawn opaque. Quick, for things that move.
-  Result<void> render_layers(const GpuMesh& mesh, const Shading& shading, std::span<const View> views,
-                             std::span<const int> layers, ViewArray& target);
+  /// Layer layers[i] of `target` gets views[i], with one sample a pixel, in one instanced draw for each item; where the
+  /// driver cannot choose layers in vertex shaders (ARB_shader_viewport_layer_array), one view after the other. All
+  /// other layers become background. Transparent backgrounds are drawn opaque. Meshes in the level of detail that
+  /// merges what is smaller than `coarse_px` pixels. Quick, for things that move. kUsage as check_scene().
+  Result<void> render_layers(const SceneView& scene, std::span<const View> views, std::span<const int> layers,
+                             ViewArray& target, double coarse_px = 0.0);
   /// Depth buffers of the last render_layers(), the same layers as its target (GL_TEXTURE_2D_ARRAY); 1 is background.
   GLuint layer_depths() const noexcept { return layer_depth_.depth; }
 
@@ -42,16 +45,13 @@ class Renderer {
     GlTexture depth;
     GlFramebuffer framebuffer;
   };
-  struct Inputs {  ///< what the mesh shaders read; bound while it lives
-    GlBuffer views, style;
-    GlTexture table;
-  };
   Result<void> use_scratch(int width, int height);
   Result<void> use_layer_depth(const ViewArray& target);
-  Inputs bind_inputs(const GpuMesh& mesh, const Shading& shading, std::span<const View> views,
-                     std::span<const int> layers);
+  Result<void> draw_items(const SceneView& scene, const PassViews& target, double coarse_px, double pixel);
 
-  GlProgram mesh_program_, resolve_program_, layered_program_;
+  MeshPass meshes_;
+  FlatPass flat_;
+  GlProgram resolve_program_;
   GlVertexArray no_vertices_;
   GlFramebuffer layer_;
   Scratch scratch_;

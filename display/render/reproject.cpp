@@ -13,11 +13,6 @@ namespace {
 constexpr GLint kKey = 0, kShift = 1, kReach = 2, kFarDepth = 3;  // shaders/reproject.frag
 constexpr double kTolerancePx = 0.05;
 
-glm::dvec4 corner_of(const Box& box, int corner) {
-  return {corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y, corner & 4 ? box.max.z : box.min.z,
-          1.0};
-}
-
 /// Pixels of the drawn view in which the surface that lands on a pixel can be, from that pixel.
 std::pair<int, int> reach_of(const RowShift& shift, const DepthRange& depth) {
   const auto [least, most] = std::minmax({-shift.at(depth.nearest), -shift.at(depth.farthest)});
@@ -30,7 +25,7 @@ std::array<GLint, 4> pixels_of(const View& view, const Box& box, int width, int 
   glm::dvec2 low(1.0), high(-1.0);
   const glm::dmat4 clip = view.clip_from_world();
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec4 p = clip * corner_of(box, corner);
+    const glm::dvec4 p = clip * glm::dvec4(box.corner(corner), 1.0);
     if (!(p.w > 0)) return {0, 0, width, height};
     low = glm::min(low, glm::dvec2(p) / p.w);
     high = glm::max(high, glm::dvec2(p) / p.w);
@@ -64,7 +59,7 @@ DepthRange depth_range(const View& view, const Box& box) {
   DepthRange out{1.0, 0.0};
   const glm::dmat4 clip = view.clip_from_world();
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec4 p = clip * corner_of(box, corner);
+    const glm::dvec4 p = clip * glm::dvec4(box.corner(corner), 1.0);
     const double depth = p.w > 0 ? std::clamp(0.5 + 0.5 * p.z / p.w, 0.0, 1.0) : 0.0;
     out.nearest = std::min(out.nearest, depth);
     out.farthest = std::max(out.farthest, depth);

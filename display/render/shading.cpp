@@ -52,14 +52,15 @@ Result<Shading> shading_preset(std::string_view name) {
   for (const Preset& preset : kPresets) {
     if (preset.name == name) {
       Shading shading;
-      shading.map = preset.map;
-      shading.ambient_occlusion = preset.ambient_occlusion;
-      shading.lit = preset.lit;
+      Style& style = shading.style;
+      style.map = preset.map;
+      style.ambient_occlusion = preset.ambient_occlusion;
+      style.lit = preset.lit;
       if (!preset.lit) {  // figure 14: the table's own colours; ambient light alone is white
-        shading.base_color =
+        style.base_color =
             preset.map == ColorMap::kPlain ? Rgb8{255, 255, 255} : shape_color_table(shape_colors_of(preset.map))[0];
-        shading.contrast = 1.0;
-        shading.occlusion_power = 1.0;
+        style.contrast = 1.0;
+        style.occlusion_power = 1.0;
       }
       return shading;
     }
@@ -75,31 +76,45 @@ std::array<Rgb8, 8> distinct_partition_colors() {
           {204, 187, 68},     {170, 51, 119}, {187, 187, 187}, {102, 204, 238}};
 }
 
-std::vector<std::array<std::uint8_t, 4>> color_table(const Shading& shading) {
-  const auto& shapes = shape_color_table(shape_colors_of(shading.map));
-  const double contrast = shading.map == ColorMap::kPlain ? 0.0 : shading.contrast;
+std::uint8_t visible_partitions(const PartLooks& parts) {
+  unsigned bits = 0;
+  for (std::size_t p = 0; p < parts.size(); ++p) bits |= parts[p].visible ? 1u << p : 0u;
+  return static_cast<std::uint8_t>(bits);
+}
+
+void show_partitions(PartLooks& parts, std::uint8_t bits) {
+  for (std::size_t p = 0; p < parts.size(); ++p) parts[p].visible = (bits >> p & 1) != 0;
+}
+
+void color_partitions(PartLooks& parts, const std::array<Rgb8, 8>& colors) {
+  for (std::size_t p = 0; p < parts.size(); ++p) parts[p].color = colors[p];
+}
+
+std::vector<std::array<std::uint8_t, 4>> color_table(const Style& style) {
+  const auto& shapes = shape_color_table(shape_colors_of(style.map));
+  const double contrast = style.map == ColorMap::kPlain ? 0.0 : style.contrast;
   std::vector<std::array<std::uint8_t, 4>> table;
   table.reserve(kShapeRows * kAoColumns);
   for (int ao = 0; ao < kAoColumns; ++ao) {
-    const double open = std::pow(ao / (kAoColumns - 1.0), shading.occlusion_power) * (kAoColumns - 1);
+    const double open = std::pow(ao / (kAoColumns - 1.0), style.occlusion_power) * (kAoColumns - 1);
     for (const ShapeRgb& shape : shapes) {
       std::array<double, 3> value{};
       for (std::size_t c = 0; c < 3; ++c)
-        value[c] = shading.base_color[c] * std::max(1.0 + contrast * (shape[c] - shapes[0][c]) / shapes[0][c], 0.0);
+        value[c] = style.base_color[c] * std::max(1.0 + contrast * (shape[c] - shapes[0][c]) / shapes[0][c], 0.0);
       // Too bright: darker rather than of another hue.
       const double fit = std::min(1.0, 255.0 / std::max({value[0], value[1], value[2], 1.0}));
       Rgb8 color{};
       for (std::size_t c = 0; c < 3; ++c) color[c] = static_cast<std::uint8_t>(std::lround(fit * value[c]));
-      if (shading.ambient_occlusion) color = shade(color, static_cast<std::uint8_t>(std::lround(open)));
+      if (style.ambient_occlusion) color = shade(color, static_cast<std::uint8_t>(std::lround(open)));
       table.push_back({color[0], color[1], color[2], 255});
     }
   }
   return table;
 }
 
-glm::dvec3 light_direction(const Shading& shading) {
-  const double azimuth = shading.light_azimuth_deg * std::numbers::pi / 180;
-  const double elevation = shading.light_elevation_deg * std::numbers::pi / 180;
+glm::dvec3 light_direction(const Light& light) {
+  const double azimuth = light.azimuth_deg * std::numbers::pi / 180;
+  const double elevation = light.elevation_deg * std::numbers::pi / 180;
   return {std::cos(elevation) * std::sin(azimuth), std::cos(elevation) * std::cos(azimuth), std::sin(elevation)};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // How the surface looks: colouring by shape class and ambient occlusion (paper sections 3.4.2 and 3.4.4, figure 14),
-// light, partition colours, background. Pure data and tables; no GL.
+// light, looks of the parts, background. Plain values and tables; no GL.
 
 #include <array>
 #include <cstdint>
@@ -27,28 +27,65 @@ enum class BackFaces {
   kCull,
 };
 
-struct Shading {
+/// What a surface is made of, for the eye.
+struct Style {
   ColorMap map = ColorMap::kBlackWhite;
   double contrast = 1.6;  ///< how much of the map's relation to its own flat colour base_color takes on
   bool ambient_occlusion = true;
   double occlusion_power = 1.3;  ///< ambient light to this power: 1 as it is, more for darker hollows
   bool lit = true;               ///< false: the colours as they are, as in figure 14 a to e
   Rgb8 base_color{203, 192, 178};
-
-  double light_azimuth_deg = 315;   ///< in the picture, clockwise from its upper side: 315 is from the upper left
-  double light_elevation_deg = 25;  ///< above the picture plane: 90 is a headlight, below 30 is raking light
-  double ambient = 0.12, key = 1.0, fill = 0.25, specular = 0.05;  ///< weights; fill comes from the eye
-  double shininess = 24;
-
   BackFaces back_faces = BackFaces::kShow;
   Rgb8 back_color{120, 60, 60};
 
-  std::uint8_t partitions = 0xff;  ///< bit p: partition p is drawn
-  std::array<Rgb8, 8> partition_colors{Rgb8{255, 255, 255}, {255, 255, 255}, {255, 255, 255}, {255, 255, 255},
-                                       {255, 255, 255},     {255, 255, 255}, {255, 255, 255}, {255, 255, 255}};
+  bool operator==(const Style&) const = default;
+};
 
-  Rgb8 background{24, 24, 26};
-  bool transparent_background = false;  ///< alpha 0 where nothing is seen
+/// One far key light, and what comes from everywhere and from the eye. Turns with the picture, not with the object.
+struct Light {
+  double azimuth_deg = 315;   ///< in the picture, clockwise from its upper side: 315 is from the upper left
+  double elevation_deg = 25;  ///< above the picture plane: 90 is a headlight, below 30 is raking light
+  double ambient = 0.12, key = 1.0, fill = 0.25, specular = 0.05;  ///< weights; fill comes from the eye
+  double shininess = 24;
+
+  bool operator==(const Light&) const = default;
+};
+
+/// One partition of a mesh.
+struct PartLook {
+  bool visible = true;
+  Rgb8 color{255, 255, 255};  ///< times the style's colours
+  glm::dvec3 offset_mm{0.0};  ///< moves it, in the model's frame
+
+  bool operator==(const PartLook&) const = default;
+};
+
+constexpr int kMaxPartitions = 8;
+using PartLooks = std::array<PartLook, kMaxPartitions>;
+
+/// Bit p: partition p is visible.
+std::uint8_t visible_partitions(const PartLooks& parts);
+/// Only these.
+void show_partitions(PartLooks& parts, std::uint8_t bits);
+/// Distinct colours for partitions 0 to 7, for when partitions shall be told apart; they differ in lightness too.
+std::array<Rgb8, 8> distinct_partition_colors();
+void color_partitions(PartLooks& parts, const std::array<Rgb8, 8>& colors);
+
+struct Background {
+  Rgb8 color{24, 24, 26};
+  bool transparent = false;  ///< alpha 0 where nothing is seen
+
+  bool operator==(const Background&) const = default;
+};
+
+/// All of it, for pictures of one mesh.
+struct Shading {
+  Style style;
+  Light light;
+  PartLooks parts{};
+  Background background;
+
+  bool operator==(const Shading&) const = default;
 };
 
 /// Names of presets for the command line: "relief" (default), "phong", "table", "black-white", "sky-sun", "ao",
@@ -56,14 +93,11 @@ struct Shading {
 Result<Shading> shading_preset(std::string_view name);
 std::vector<std::string_view> shading_preset_names();
 
-/// Distinct colours for partitions 0 to 7, for when partitions shall be told apart; they differ in lightness too.
-std::array<Rgb8, 8> distinct_partition_colors();
-
 constexpr int kShapeRows = 128, kAoColumns = 64;
 /// Colour of shape class s (0..127) under ambient light a (0..63) at [a * 128 + s]: what the vertex shader looks up.
-std::vector<std::array<std::uint8_t, 4>> color_table(const Shading& shading);
+std::vector<std::array<std::uint8_t, 4>> color_table(const Style& style);
 
 /// Unit vector towards the key light in the view frame (+X right, +Y up, +Z to the eye).
-glm::dvec3 light_direction(const Shading& shading);
+glm::dvec3 light_direction(const Light& light);
 
 }  // namespace dubsar

@@ -9,7 +9,7 @@
 #include "core/base/budget.h"
 #include "display/render/compose_pass.h"
 #include "display/render/context_egl.h"
-#include "display/render/gpu_mesh.h"
+#include "display/render/lod_mesh.h"
 #include "display/render/renderer.h"
 #include "display/render/test_pattern.h"
 #include "display/render/view_array.h"
@@ -94,13 +94,13 @@ Result<DisplayPicture> render_display(const TriMesh& mesh, std::string_view disp
                 "display: magnification {} and margin {} found, expected above 0 (or 0 to fit) and 0 to 0.45",
                 options.magnification, options.margin);
   DUBSAR_ASSIGN(const PackedMesh packed, pack_mesh(mesh));
-  if (packed.triangles_of(options.shading.partitions) == 0)
+  if (packed.triangles_of(visible_partitions(options.shading.parts)) == 0)
     return fail(ErrorKind::kUsage,
                 "display: none of the partitions asked for has triangles, so there is nothing to draw");
   DUBSAR_ASSIGN(const Stage stage, open_stage(display, options));
   const SinkTraits traits = stage.sink->traits();
 
-  const Box box = packed.box_of(options.shading.partitions);
+  const Box box = packed.box_of(visible_partitions(options.shading.parts));
   const glm::dvec3 extents = picture_extents(box, options.direction);
   double magnification = options.magnification;
   if (magnification == 0) {
@@ -113,16 +113,15 @@ Result<DisplayPicture> render_display(const TriMesh& mesh, std::string_view disp
   viewer.back_mm = options.place_mm.z - half_depth;
   const glm::dmat4 screen_from_model = place_object(box, options.direction, options.place_mm, magnification);
 
-  DUBSAR_ASSIGN(const GpuMesh gpu, GpuMesh::upload(packed));
+  DUBSAR_ASSIGN(const LodMesh gpu, LodMesh::exact(packed));
+  const MeshScene scene(gpu, options.shading, screen_from_model);
   DUBSAR_ASSIGN(Renderer renderer, Renderer::create());
   DUBSAR_ASSIGN(ViewArray array, ViewArray::create(traits.view.width, traits.view.height, traits.views));
   const std::span<const View> views = stage.sink->views(viewer);
   progress.begin("render", traits.views, "view");
   for (int i = 0; i < traits.views; ++i) {
     if (progress.cancelled()) return cancelled_error();
-    View view = views[static_cast<std::size_t>(i)];
-    view.view_from_world = view.view_from_world * screen_from_model;
-    DUBSAR_TRY(renderer.render(gpu, options.shading, std::span(&view, 1), options.samples, array, i));
+    DUBSAR_TRY(renderer.render(scene, views.subspan(static_cast<std::size_t>(i), 1), options.samples, array, i));
     progress.advance(1);
   }
   DUBSAR_ASSIGN(DisplayPicture out, compose_picture(stage, array));

@@ -10,7 +10,7 @@
 
 #include "display/optics/off_axis.h"
 #include "display/render/context_egl.h"
-#include "display/render/lod.h"
+#include "display/render/lod_mesh.h"
 #include "display/render/multi_view.h"
 
 namespace dubsar {
@@ -59,15 +59,15 @@ std::vector<View> views_of_panel(int count) {
 
 void naive(benchmark::State& state) {
   const auto context = EglContext::create().value();
-  const GpuMesh mesh = GpuMesh::upload(tablet(state.range(1) * 1000)).value();
+  const LodMesh mesh = LodMesh::exact(tablet(state.range(1) * 1000)).value();
+  const MeshScene scene(mesh, Shading());
   auto renderer = Renderer::create().value();
   const auto views = views_of_panel(static_cast<int>(state.range(0)));
   auto array = ViewArray::create(kWidth, kHeight, static_cast<int>(views.size())).value();
-  if (!renderer.render(mesh, Shading(), std::span(views).first(1), 1, array))
-    state.SkipWithError("drawing failed");  // shaders
+  if (!renderer.render(scene, std::span(views).first(1), 1, array)) state.SkipWithError("drawing failed");  // shaders
   glFinish();
   for (auto _ : state) {
-    if (!renderer.render(mesh, Shading(), views, 1, array)) state.SkipWithError("drawing failed");
+    if (!renderer.render(scene, views, 1, array)) state.SkipWithError("drawing failed");
     glFinish();
   }
 }
@@ -81,22 +81,22 @@ double psnr_db(const Image& a, const Image& b) {
 
 void with_options(benchmark::State& state, const MultiViewOptions& options) {
   const auto context = EglContext::create().value();
-  auto multi = MultiView::create(tablet(state.range(1) * 1000), options).value();
+  const LodMesh mesh = LodMesh::with_levels(tablet(state.range(1) * 1000)).value();
+  const MeshScene scene(mesh, Shading());
+  auto multi = MultiView::create(options).value();
   const auto views = views_of_panel(static_cast<int>(state.range(0)));
   auto array = ViewArray::create(kWidth, kHeight, static_cast<int>(views.size())).value();
-  if (!multi.draw_moving(Shading(), views, array)) state.SkipWithError("drawing failed");  // compiles shaders
+  if (!multi.draw_moving(scene, views, array)) state.SkipWithError("drawing failed");  // compiles shaders
   glFinish();
   for (auto _ : state) {
-    if (!multi.draw_moving(Shading(), views, array)) state.SkipWithError("drawing failed");
+    if (!multi.draw_moving(scene, views, array)) state.SkipWithError("drawing failed");
     glFinish();
   }
   if (views.size() > 2) {  // how far a view that was not drawn is from the exact one
     auto exact = ViewArray::create(kWidth, kHeight, 1).value();
     auto renderer = Renderer::create().value();
     const std::size_t middle = views.size() / 2;
-    if (!renderer.render(GpuMesh::upload(tablet(state.range(1) * 1000)).value(), Shading(),
-                         std::span(&views[middle], 1), 1, exact))
-      state.SkipWithError("drawing failed");
+    if (!renderer.render(scene, std::span(&views[middle], 1), 1, exact)) state.SkipWithError("drawing failed");
     const Image truth = exact.read_layer(0).value();
     const auto of_layer = [&](std::size_t layer) {
       return psnr_db(array.read_layer(static_cast<int>(layer)).value(), truth);
@@ -108,8 +108,8 @@ void with_options(benchmark::State& state, const MultiViewOptions& options) {
         nearest = static_cast<std::size_t>(key);
     state.counters["copy_psnr_db"] = of_layer(nearest);
   }
-  state.counters["triangles"] =
-      static_cast<double>(multi.triangles(multi.level_for(mm_per_pixel_at(views[0], {0, 0, 0}, kWidth))));
+  state.counters["triangles"] = static_cast<double>(mesh.triangles(
+      options.cell_px > 0 ? mesh.level_for(options.cell_px * mm_per_pixel_at(views[0], {0, 0, 0}, kWidth)) : 0));
 }
 
 void DisplayNaive(benchmark::State& state) { naive(state); }
@@ -123,7 +123,7 @@ void DisplayEveryViewInstanced(benchmark::State& state) { with_options(state, {.
 void DisplayMakeLevels(benchmark::State& state) {
   const auto context = EglContext::create().value();
   const PackedMesh& mesh = tablet(state.range(0) * 1000);
-  for (auto _ : state) benchmark::DoNotOptimize(MultiView::create(mesh).value());
+  for (auto _ : state) benchmark::DoNotOptimize(LodMesh::with_levels(mesh).value());
 }
 
 void sizes(benchmark::internal::Benchmark* bench) {

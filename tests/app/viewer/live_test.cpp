@@ -98,8 +98,8 @@ class Live : public ::testing::Test {
     options.screen = screen_;
     auto context = EglContext::create();
     EXPECT_TRUE(context);
-    options.shading.light_azimuth_deg = view.light_azimuth_deg;
-    options.shading.light_elevation_deg = view.light_elevation_deg;
+    options.shading.light.azimuth_deg = view.light_azimuth_deg;
+    options.shading.light.elevation_deg = view.light_elevation_deg;
     auto session = Session::create(testing::lettered_box(), options).value();
     auto surface = OffscreenSurface::create(session->traits().output).value();
     EXPECT_TRUE(session->draw(1, 1, surface.surface()));

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "display/optics/off_axis.h"
+#include "display/render/mesh_pass.h"
 #include "display/render/multi_view.h"
 #include "tests/display/test_meshes.h"
 

@@ -12,6 +12,7 @@
 #include "display/optics/off_axis.h"
 #include "display/render/context_egl.h"
 #include "display/render/lod.h"
+#include "display/render/lod_mesh.h"
 #include "tests/display/test_meshes.h"
 
 namespace dubsar {
@@ -42,15 +43,15 @@ double mean_difference(const Image& a, const Image& b) {
 }
 
 TEST_F(MultiViewGl, LayersInOneDrawEqualViewsDrawnOneByOne) {
-  const GpuMesh gpu = GpuMesh::upload(pack_mesh(testing::lettered_box()).value()).value();
+  const LodMesh gpu = LodMesh::exact(pack_mesh(testing::lettered_box()).value()).value();
   auto renderer = Renderer::create().value();
   const auto wanted = views(5);
   auto together = ViewArray::create(90, 60, 7).value(), single = ViewArray::create(90, 60, 1).value();
   const Shading shading = shading_preset("phong").value();
   const std::vector<int> layers{6, 0, 3, 4, 1};
-  ASSERT_TRUE(renderer.render_layers(gpu, shading, wanted, layers, together));
+  ASSERT_TRUE(renderer.render_layers(MeshScene(gpu, shading), wanted, layers, together));
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    ASSERT_TRUE(renderer.render(gpu, shading, std::span(&wanted[i], 1), 1, single));
+    ASSERT_TRUE(renderer.render(MeshScene(gpu, shading), std::span(&wanted[i], 1), 1, single));
     const Image a = together.read_layer(layers[i]).value(), b = single.read_layer(0).value();
     int far = 0;
     for (std::size_t k = 0; k < a.pixels.size(); ++k) far += std::abs(int{a.pixels[k]} - int{b.pixels[k]}) > 1;
@@ -62,41 +63,43 @@ TEST_F(MultiViewGl, LayersInOneDrawEqualViewsDrawnOneByOne) {
 TEST_F(MultiViewGl, CullingNeverChangesThePicture) {
   PackedMesh mesh = pack_mesh(testing::sphere(120, 60, 120)).value();  // larger than the window
   auto renderer = Renderer::create().value();
-  const GpuMesh whole = GpuMesh::upload(mesh).value();
+  const LodMesh whole = LodMesh::exact(mesh).value();
   sort_into_chunks(mesh);
-  const GpuMesh chunked = GpuMesh::upload(mesh).value();
+  const LodMesh chunked = LodMesh::exact(mesh).value();
   const auto wanted = views(3);
   std::int64_t drawn = 0;
-  for (const auto& [first, count] : chunked.visible_ranges(0xff, wanted)) drawn += count;
+  for (const auto& [first, count] : chunked.level(0).visible_ranges(0xff, wanted)) drawn += count;
   EXPECT_LT(drawn, static_cast<std::int64_t>(mesh.triangles.size()) / 2) << "what is outside of all views is left out";
   auto a = ViewArray::create(90, 60, 3).value(), b = ViewArray::create(90, 60, 3).value();
-  ASSERT_TRUE(renderer.render(whole, Shading(), wanted, 1, a));
-  ASSERT_TRUE(renderer.render(chunked, Shading(), wanted, 1, b));
+  ASSERT_TRUE(renderer.render(MeshScene(whole, Shading()), wanted, 1, a));
+  ASSERT_TRUE(renderer.render(MeshScene(chunked, Shading()), wanted, 1, b));
   for (int i = 0; i < 3; ++i) EXPECT_EQ(a.read_layer(i)->pixels, b.read_layer(i)->pixels);
 }
 
 TEST_F(MultiViewGl, CoarseWhileMovingExactWhenStill) {
   const PackedMesh mesh = pack_mesh(testing::sphere(25, 150, 300)).value();
-  auto multi = MultiView::create(mesh, {.cell_px = 1.5, .key_views = 6});
+  const LodMesh levels = LodMesh::with_levels(mesh).value(), whole = LodMesh::exact(mesh).value();
+  ASSERT_GE(levels.levels(), 2);
+  for (int i = 1; i < levels.levels(); ++i) EXPECT_LT(levels.triangles(i), levels.triangles(i - 1));
+  EXPECT_EQ(levels.level_for(1e-6), 0) << "details are kept when they can be seen";
+  EXPECT_EQ(levels.level_for(100), levels.levels() - 1);
+  auto multi = MultiView::create({.cell_px = 1.5, .key_views = 6});
   ASSERT_TRUE(multi) << multi.error().message;
-  ASSERT_GE(multi->levels(), 2);
-  for (int i = 1; i < multi->levels(); ++i) EXPECT_LT(multi->triangles(i), multi->triangles(i - 1));
-  EXPECT_EQ(multi->level_for(1e-6), 0) << "details are kept when they can be seen";
-  EXPECT_EQ(multi->level_for(100), multi->levels() - 1);
 
   const auto wanted = views(12);
   const Shading shading = shading_preset("phong").value();
+  const MeshScene scene(levels, shading);
   auto array = ViewArray::create(90, 60, 12).value(), exact = ViewArray::create(90, 60, 12).value();
   auto renderer = Renderer::create().value();
-  ASSERT_TRUE(renderer.render(GpuMesh::upload(mesh).value(), shading, wanted, 2, exact));
-  ASSERT_TRUE(multi->draw_moving(shading, wanted, array));
+  ASSERT_TRUE(renderer.render(MeshScene(whole, shading), wanted, 2, exact));
+  ASSERT_TRUE(multi->draw_moving(scene, wanted, array));
   for (int i = 0; i < 12; ++i) {  // levels of detail and reprojection together
     const double off = mean_difference(array.read_layer(i).value(), exact.read_layer(i).value());
     EXPECT_LT(off, 3.0) << "view " << i;
   }
   int left = 12, steps = 0;
   while (left > 0 && steps < 10) {
-    left = multi->refine(shading, wanted, 2, array, 3).value();
+    left = multi->refine(scene, wanted, 2, array, 3).value();
     ++steps;
     if (steps == 1) {
       EXPECT_EQ(array.read_layer(5)->pixels, exact.read_layer(5)->pixels) << "the middle comes first";
@@ -133,12 +136,15 @@ TEST_F(MultiViewGl, AMillionTrianglesFrom48PlacesAreDrawnAtLeastFiveTimesFasterT
   auto renderer = Renderer::create().value();
   double loop = 0.0;
   {
-    const GpuMesh gpu = GpuMesh::upload(mesh).value();
-    loop = seconds([&] { ASSERT_TRUE(renderer.render(gpu, Shading(), std::span(wanted).first(kSample), 1, array)); }) *
-           kViews / kSample;
+    const LodMesh whole = LodMesh::exact(mesh).value();
+    const MeshScene scene(whole, Shading());
+    loop = seconds([&] { ASSERT_TRUE(renderer.render(scene, std::span(wanted).first(kSample), 1, array)); }) * kViews /
+           kSample;
   }
-  auto multi = MultiView::create(std::move(mesh)).value();
-  const double moving = seconds([&] { ASSERT_TRUE(multi.draw_moving(Shading(), wanted, array)); });
+  const LodMesh levels = LodMesh::with_levels(std::move(mesh)).value();
+  const MeshScene scene(levels, Shading());
+  auto multi = MultiView::create().value();
+  const double moving = seconds([&] { ASSERT_TRUE(multi.draw_moving(scene, wanted, array)); });
   EXPECT_GT(loop, 5 * moving) << "loop " << loop << " s, moving " << moving << " s";
   RecordProperty("ratio", std::to_string(loop / moving));
 }

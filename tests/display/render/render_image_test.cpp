@@ -23,8 +23,8 @@ RenderOptions flat_options(int width, int height) {
   options.camera.width = width;
   options.camera.height = height;
   options.shading = shading_preset("ao").value();
-  options.shading.base_color = {255, 255, 255};
-  options.shading.background = kBlack;
+  options.shading.style.base_color = {255, 255, 255};
+  options.shading.background.color = kBlack;
   options.samples = 1;
   return options;
 }
@@ -50,7 +50,7 @@ double coded(double value) {
 TEST(RenderImage, SilhouetteOfASphereHasTheAreaOfACircle) {
   RenderOptions options = flat_options(300, 300);
   options.samples = 4;
-  options.shading.transparent_background = true;
+  options.shading.background.transparent = true;
   const Picture picture = render(testing::sphere(10, 128, 256), options);
   ASSERT_EQ(picture.image.channels, 4);
   double covered = 0;
@@ -62,19 +62,21 @@ TEST(RenderImage, SilhouetteOfASphereHasTheAreaOfACircle) {
 TEST(RenderImage, LightOnASphereIsAnalytic) {
   RenderOptions options = flat_options(201, 201);
   options.shading = shading_preset("phong").value();
-  options.shading.base_color = {200, 150, 100};
+  options.shading.style.base_color = {200, 150, 100};
   const Shading& s = options.shading;
   const Picture picture = render(testing::sphere(10, 256, 512), options);
-  const glm::dvec3 light = light_direction(s);
+  const glm::dvec3 light = light_direction(s.light);
   for (const auto& [x, y] : {std::pair{100, 100}, {60, 70}, {100, 40}, {150, 120}}) {
     glm::dvec3 n((x - 100) * picture.mm_per_pixel / 10, (100 - y) * picture.mm_per_pixel / 10, 0);
     n.z = std::sqrt(1 - glm::dot(n, n));
     const double key = std::max(glm::dot(n, light), 0.0);
     const double gloss =
-        key > 0 ? std::pow(std::max(glm::dot(n, glm::normalize(light + glm::dvec3(0, 0, 1))), 0.0), s.shininess) : 0;
+        key > 0 ? std::pow(std::max(glm::dot(n, glm::normalize(light + glm::dvec3(0, 0, 1))), 0.0), s.light.shininess)
+                : 0;
     for (int c = 0; c < 3; ++c) {
       const double value =
-          linear(s.base_color[c] / 255.0) * (s.ambient + s.key * key + s.fill * n.z) + s.specular * gloss;
+          linear(s.style.base_color[c] / 255.0) * (s.light.ambient + s.light.key * key + s.light.fill * n.z) +
+          s.light.specular * gloss;
       EXPECT_NEAR(pixel(picture.image, x, y)[c], 255 * coded(value), 1.0) << x << ", " << y << " channel " << c;
     }
   }
@@ -101,7 +103,7 @@ TEST(RenderImage, EachNamedViewShowsItsFaceUprightAndNotMirrored) {
     RenderOptions options = flat_options(sizes[face][0], sizes[face][1]);
     options.camera.direction = parse_view_direction(names[face]).value();
     options.camera.mm_per_pixel = 0.1;  // the face fills the picture
-    options.shading.partition_colors = kFaceColors;
+    color_partitions(options.shading.parts, kFaceColors);
     const Image image = render(mesh, options).image;
     int wrong = 0;
     for (int y = 0; y < image.height; ++y)
@@ -118,7 +120,7 @@ TEST(RenderImage, EachNamedViewShowsItsFaceUprightAndNotMirrored) {
 TEST(RenderImage, OrthographicScaleIsExactInPixels) {
   RenderOptions options = flat_options(0, 0);
   options.camera.mm_per_pixel = 0.1;
-  options.shading.transparent_background = true;
+  options.shading.background.transparent = true;
   const Picture picture = render(testing::lettered_box(), options);
   EXPECT_DOUBLE_EQ(picture.dpi(), 254.0);
   int left = picture.image.width, right = -1, top = picture.image.height, bottom = -1;
@@ -147,7 +149,7 @@ TEST(RenderImage, TilesFitTogether) {
   RenderOptions options = flat_options(800, 600);
   options.samples = 8;
   options.camera.mm_per_pixel = 0.05;
-  options.shading.partition_colors = kFaceColors;
+  color_partitions(options.shading.parts, kFaceColors);
   const Image image = render(testing::lettered_box(), options).image;
   int wrong = 0;
   for (int y = 0; y < 600; ++y)
@@ -165,9 +167,9 @@ TEST(RenderImage, HiddenPartitionsAreNotDrawnAndDoNotFrameThePicture) {
   testing::add_rectangle(mesh, {-5, -5, 0}, {10, 0, 0}, {0, 10, 0}, 0);    // the smaller "tablet"
   RenderOptions options = flat_options(100, 100);
   options.camera.margin = 0.1;
-  options.shading.partition_colors = kFaceColors;
+  color_partitions(options.shading.parts, kFaceColors);
   EXPECT_EQ(pixel(render(mesh, options).image, 50, 50), kFaceColors[1]);
-  options.shading.partitions = 0b00000001;
+  show_partitions(options.shading.parts, 0b00000001);
   const Picture tablet = render(mesh, options);
   EXPECT_EQ(pixel(tablet.image, 50, 50), kFaceColors[0]);
   EXPECT_EQ(pixel(tablet.image, 10, 10), kFaceColors[0]);
@@ -175,7 +177,7 @@ TEST(RenderImage, HiddenPartitionsAreNotDrawnAndDoNotFrameThePicture) {
   EXPECT_NEAR(tablet.mm_per_pixel, 10 / 80.0, 1e-9);
 
   SilentProgress progress;
-  options.shading.partitions = 0b00000100;
+  show_partitions(options.shading.parts, 0b00000100);
   const auto nothing = render_picture(mesh, options, progress);
   ASSERT_FALSE(nothing);
   EXPECT_EQ(nothing.error().kind, ErrorKind::kUsage);
@@ -194,10 +196,10 @@ TEST(RenderImage, UnlitColoursAreThoseOfTheTable) {
       }
     RenderOptions options = flat_options(508, 16);
     options.shading = shading_preset(preset).value();
-    options.shading.background = {1, 2, 3};
+    options.shading.background.color = {1, 2, 3};
     options.camera.mm_per_pixel = 0.25;
     const Image image = render(mesh, options).image;
-    const auto table = color_table(options.shading);
+    const auto table = color_table(options.shading.style);
     for (int shape = 0; shape < 127; ++shape)
       for (int a = 0; a < 4; ++a) {
         const auto& entry = table[levels[a] * 128 + shape];
@@ -221,13 +223,13 @@ TEST(RenderImage, BackFacesAreShownTintedOrCulled) {
   RenderOptions options = flat_options(20, 20);
   options.camera.direction = parse_view_direction("back").value();
   EXPECT_EQ(pixel(render(mesh, options).image, 10, 10), (Rgb8{255, 255, 255}));
-  options.shading.back_faces = BackFaces::kTint;
-  options.shading.back_color = {90, 30, 60};
+  options.shading.style.back_faces = BackFaces::kTint;
+  options.shading.style.back_color = {90, 30, 60};
   EXPECT_EQ(pixel(render(mesh, options).image, 10, 10), (Rgb8{90, 30, 60}));
   mesh.frame.scale.x = -1;  // turns the triangles the other way round, but not their outside
   EXPECT_EQ(pixel(render(mesh, options).image, 10, 10), (Rgb8{90, 30, 60}));
   mesh.frame.scale.x = 1;
-  options.shading.back_faces = BackFaces::kCull;
+  options.shading.style.back_faces = BackFaces::kCull;
   SilentProgress progress;
   const auto nothing = render_picture(mesh, options, progress);
   ASSERT_FALSE(nothing) << "a blank picture went unnoticed";
@@ -246,10 +248,10 @@ TEST(RenderImage, TwoRunsGiveTheSameBytes) {
 
 TEST(RenderImage, BackgroundAndTransparency) {
   RenderOptions options = flat_options(40, 40);
-  options.shading.background = {12, 34, 56};
+  options.shading.background.color = {12, 34, 56};
   const TriMesh mesh = testing::sphere(1, 16, 32);
   EXPECT_EQ(pixel(render(mesh, options).image, 0, 0), (Rgb8{12, 34, 56}));
-  options.shading.transparent_background = true;
+  options.shading.background.transparent = true;
   const Image image = render(mesh, options).image;
   EXPECT_EQ(image.at(0, 0)[3], 0);
   EXPECT_EQ(image.at(20, 20)[3], 255);

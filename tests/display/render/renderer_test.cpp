@@ -11,6 +11,7 @@
 #include "display/render/camera.h"
 #include "display/render/context_egl.h"
 #include "display/render/embedded_shaders.h"
+#include "display/render/lod_mesh.h"
 #include "tests/display/test_meshes.h"
 
 namespace dubsar {
@@ -28,7 +29,7 @@ class RendererTest : public ::testing::Test {
 
 TEST_F(RendererTest, EachLayerShowsItsOwnView) {
   const TriMesh mesh = testing::lettered_box();
-  auto gpu = GpuMesh::upload(pack_mesh(mesh).value());
+  auto gpu = LodMesh::exact(pack_mesh(mesh).value());
   auto renderer = Renderer::create();
   ASSERT_TRUE(gpu && renderer);
   std::vector<View> views;
@@ -42,10 +43,10 @@ TEST_F(RendererTest, EachLayerShowsItsOwnView) {
   const Shading shading = shading_preset("phong").value();
   auto all = ViewArray::create(64, 48, 7);
   ASSERT_TRUE(all);
-  ASSERT_TRUE(renderer->render(*gpu, shading, views, 2, *all, 1));
+  ASSERT_TRUE(renderer->render(MeshScene(*gpu, shading), views, 2, *all, 1));
   for (std::size_t i = 0; i < views.size(); ++i) {
     auto one = ViewArray::create(64, 48, 1);
-    ASSERT_TRUE(renderer->render(*gpu, shading, std::span(&views[i], 1), 2, *one));
+    ASSERT_TRUE(renderer->render(MeshScene(*gpu, shading), std::span(&views[i], 1), 2, *one));
     EXPECT_EQ(all->read_layer(static_cast<int>(i) + 1)->pixels, one->read_layer(0)->pixels) << "view " << i;
     EXPECT_NE(all->read_layer(static_cast<int>(i))->pixels, all->read_layer(static_cast<int>(i) + 1)->pixels);
   }

@@ -11,6 +11,7 @@
 
 #include "display/optics/off_axis.h"
 #include "display/render/context_egl.h"
+#include "display/render/lod_mesh.h"
 #include "display/render/multi_view.h"
 #include "tests/display/test_meshes.h"
 
@@ -98,13 +99,13 @@ class Reproject : public ::testing::Test {
   /// Layers `drawn` are drawn, the others made from them; exact ones beside.
   void make(const TriMesh& mesh, const Shading& shading, const std::vector<View>& views, const std::vector<int>& drawn,
             bool layered = true) {
-    const GpuMesh gpu = GpuMesh::upload(pack_mesh(mesh).value()).value();
+    const LodMesh gpu = LodMesh::exact(pack_mesh(mesh).value()).value();
     auto renderer = Renderer::create(layered).value();
     auto reprojector = Reprojector::create().value();
     auto array = ViewArray::create(kWidth, kHeight, static_cast<int>(views.size())).value();
     std::vector<View> keys;
     for (const int layer : drawn) keys.push_back(views[static_cast<std::size_t>(layer)]);
-    ASSERT_TRUE(renderer.render_layers(gpu, shading, keys, drawn, array));
+    ASSERT_TRUE(renderer.render_layers(MeshScene(gpu, shading), keys, drawn, array));
     const auto filled = reprojector.fill(array, renderer.layer_depths(), views, drawn, gpu.box_mm());
     ASSERT_TRUE(filled) << filled.error().message;
     made_.clear();
@@ -112,7 +113,7 @@ class Reproject : public ::testing::Test {
     for (int i = 0; i < array.layers(); ++i) made_.push_back(array.read_layer(i).value());
     std::vector<int> all(views.size());
     for (int i = 0; i < array.layers(); ++i) all[static_cast<std::size_t>(i)] = i;
-    ASSERT_TRUE(renderer.render_layers(gpu, shading, views, all, array));
+    ASSERT_TRUE(renderer.render_layers(MeshScene(gpu, shading), views, all, array));
     for (int i = 0; i < array.layers(); ++i) exact_.push_back(array.read_layer(i).value());
   }
   std::unique_ptr<EglContext> context_;
@@ -143,7 +144,7 @@ TEST_F(Reproject, ViewsBetweenAreFarBetterThanCopiesOfTheNearest) {
 TEST_F(Reproject, EdgesAreNoWorseThanAPixelOff) {
   // Flat faces of one colour with letters: only edges can be wrong.
   Shading letters = shading_preset("phong").value();
-  letters.partition_colors = distinct_partition_colors();
+  color_partitions(letters.parts, distinct_partition_colors());
   make(testing::lettered_box(), letters, row_of_views(13), {0, 4, 8, 12});
   double made_db = 0.0, copied_db = 0.0;
   for (int i = 0; i < 13; ++i) {
@@ -162,8 +163,8 @@ TEST_F(Reproject, WhatAppearsBehindAnEdgeComesFromTheOtherSideAndHolesShowWhatIs
   testing::add_rectangle(mesh, {-40, -25, -30}, {80, 0, 0}, {0, 50, 0}, 0);
   testing::add_rectangle(mesh, {-10, -15, 40}, {20, 0, 0}, {0, 30, 0}, 1);
   Shading shading = shading_preset("ao").value();
-  shading.partition_colors = {Rgb8{255, 0, 0}, {0, 255, 0}};
-  shading.background = {0, 0, 0};
+  color_partitions(shading.parts, {Rgb8{255, 0, 0}, {0, 255, 0}});
+  shading.background.color = {0, 0, 0};
   make(mesh, shading, row_of_views(9, 20), {0, 8});
   for (int i = 1; i < 8; ++i) {
     const Difference off = difference(made_[i], exact_[i]);
@@ -187,11 +188,13 @@ TEST_F(Reproject, EyesThatDoNotStandInARowAreDrawn) {
   std::vector<View> views = row_of_views(12);
   views[5] = seen_from({3, 40, 300});
   const PackedMesh mesh = pack_mesh(hills()).value();
-  auto multi = MultiView::create(mesh, {.cell_px = 0, .key_views = 3}).value();
+  const LodMesh gpu = LodMesh::exact(mesh).value();
+  const MeshScene scene(gpu, Shading());
+  auto multi = MultiView::create({.cell_px = 0, .key_views = 3}).value();
   auto array = ViewArray::create(kWidth, kHeight, 12).value(), exact = ViewArray::create(kWidth, kHeight, 12).value();
-  ASSERT_TRUE(multi.draw_moving(Shading(), views, array));
+  ASSERT_TRUE(multi.draw_moving(scene, views, array));
   auto renderer = Renderer::create().value();
-  ASSERT_TRUE(renderer.render(GpuMesh::upload(mesh).value(), Shading(), views, 1, exact));
+  ASSERT_TRUE(renderer.render(scene, views, 1, exact));
   for (int i = 0; i < 12; ++i)
     EXPECT_LT(difference(array.read_layer(i).value(), exact.read_layer(i).value()).share, 0.001) << i;
 }

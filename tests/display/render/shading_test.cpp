@@ -20,14 +20,14 @@ TEST(Shading, EveryPresetHasItsNameAndOthersAreRefused) {
 }
 
 TEST(Shading, LightComesFromTheCompassPointOfThePicture) {
-  Shading s;
-  s.light_elevation_deg = 30;
+  Light s;
+  s.elevation_deg = 30;
   const struct {
     double azimuth;
     int x, y;
   } cases[] = {{0, 0, 1}, {90, 1, 0}, {180, 0, -1}, {270, -1, 0}, {315, -1, 1}};
   for (const auto& c : cases) {
-    s.light_azimuth_deg = c.azimuth;
+    s.azimuth_deg = c.azimuth;
     const glm::dvec3 l = light_direction(s);
     EXPECT_NEAR(glm::length(l), 1, 1e-12);
     EXPECT_NEAR(l.z, 0.5, 1e-12);
@@ -38,7 +38,7 @@ TEST(Shading, LightComesFromTheCompassPointOfThePicture) {
 
 TEST(Shading, AmbientOcclusionScalesEveryColourOfTheTable) {
   for (const ColorMap map : {ColorMap::kPlain, ColorMap::kTable, ColorMap::kBlackWhite, ColorMap::kSkySun}) {
-    Shading s;
+    Style s;
     s.map = map;
     s.occlusion_power = 1;
     s.ambient_occlusion = true;
@@ -59,7 +59,7 @@ TEST(Shading, AmbientOcclusionScalesEveryColourOfTheTable) {
 
 TEST(Shading, ConcaveIsDarkAndConvexIsLight) {
   for (const char* preset : {"black-white", "sky-sun"}) {
-    const auto table = color_table(shading_preset(preset).value());
+    const auto table = color_table(shading_preset(preset).value().style);
     const auto red = [&](int curvedness, int shape) { return static_cast<int>(table[1 + 9 * curvedness + shape][0]); };
     const int flat = table[0][0];
     EXPECT_LT(red(13, 0), flat);       // cup
@@ -79,7 +79,7 @@ TEST(Shading, UnlitPresetsAreTheTablesOfTheExporters) {
                {"black-white-ao", ShapeColors::kBlackWhite},
                {"sky-sun-ao", ShapeColors::kSkySun}};
   for (const auto& c : cases) {
-    const auto table = color_table(shading_preset(c.preset).value());
+    const auto table = color_table(shading_preset(c.preset).value().style);
     for (int ao = 0; ao < 64; ++ao)
       for (int shape = 0; shape < 127; ++shape) {
         const ShapeRgb expected = shade(shape_color_table(c.colors)[shape], static_cast<std::uint8_t>(ao));
@@ -91,13 +91,14 @@ TEST(Shading, UnlitPresetsAreTheTablesOfTheExporters) {
 
 TEST(Shading, ReliefKeepsItsHueAndDarkensWedges) {
   const Shading relief = shading_preset("relief").value();
-  const auto table = color_table(relief);
+  const auto table = color_table(relief.style);
   const auto& flat = table[63 * 128];
-  EXPECT_EQ((Rgb8{flat[0], flat[1], flat[2]}), relief.base_color);
+  EXPECT_EQ((Rgb8{flat[0], flat[1], flat[2]}), relief.style.base_color);
   const auto& wedge = table[48 * 128 + 1 + 9 * 9 + 2];  // a rut of 3 voxels' radius that sees 3/4 of the sky
   EXPECT_LT(wedge[0], 0.6 * flat[0]);
   for (const auto& color : table)
-    for (int c = 1; c < 3; ++c) ASSERT_NEAR(color[c], color[0] * relief.base_color[c] / 203.0, 1.5) << "another hue";
+    for (int c = 1; c < 3; ++c)
+      ASSERT_NEAR(color[c], color[0] * relief.style.base_color[c] / 203.0, 1.5) << "another hue";
 }
 
 TEST(Shading, PartitionColoursDifferInLightness) {

@@ -30,8 +30,8 @@ DisplayOptions white_options() {
   DisplayOptions options;
   options.screen = kScreen;
   options.shading = shading_preset("ao").value();
-  options.shading.base_color = {255, 255, 255};
-  options.shading.background = {0, 0, 0};
+  options.shading.style.base_color = {255, 255, 255};
+  options.shading.background.color = {0, 0, 0};
   options.samples = 1;
   return options;
 }
@@ -200,7 +200,7 @@ TEST(RenderDisplay, WrongRequestsAreUsageErrors) {
   options.magnification = -1;
   EXPECT_EQ(kind("mono", options), ErrorKind::kUsage);
   options = white_options();
-  options.shading.partitions = 2;
+  show_partitions(options.shading.parts, 2);
   EXPECT_EQ(kind("mono", options), ErrorKind::kUsage);
   progress.cancel();
   EXPECT_EQ(kind("mono", white_options()), ErrorKind::kCancelled);

@@ -11,7 +11,7 @@
 #include "display/optics/weave.h"
 #include "display/render/compose_pass.h"
 #include "display/render/context_egl.h"
-#include "display/render/gpu_mesh.h"
+#include "display/render/lod_mesh.h"
 #include "display/render/renderer.h"
 #include "display/sinks/anaglyph.h"
 #include "display/sinks/interlaced.h"
@@ -237,7 +237,7 @@ TEST_F(SinksGl, ImageWritesNumberedFilesAndNullDrawsNothing) {
 
 TEST_F(SinksGl, AMeshThroughARowInterlacedPanelShowsEachEyeItsView) {
   // The whole chain: viewer -> views -> renderer -> compose; every row equals that eye's own picture.
-  auto gpu = GpuMesh::upload(pack_mesh(testing::lettered_box()).value()).value();
+  const LodMesh mesh = LodMesh::exact(pack_mesh(testing::lettered_box()).value()).value();
   auto renderer = Renderer::create().value();
   auto sink = make_sink("interlaced:rows").value();
   const Screen screen{
@@ -248,8 +248,8 @@ TEST_F(SinksGl, AMeshThroughARowInterlacedPanelShowsEachEyeItsView) {
   viewer.back_mm = -10;
   auto array = ViewArray::create(120, 80, 2).value();
   Shading shading = shading_preset("phong").value();
-  shading.partition_colors = distinct_partition_colors();
-  ASSERT_TRUE(renderer.render(gpu, shading, sink->views(viewer), 1, array));
+  color_partitions(shading.parts, distinct_partition_colors());
+  ASSERT_TRUE(renderer.render(MeshScene(mesh, shading), sink->views(viewer), 1, array));
   auto surface = OffscreenSurface::create({120, 80}).value();
   ASSERT_TRUE(sink->compose(array, surface.surface()));
   const Image out = surface.read().value(), left = array.read_layer(0).value(), right = array.read_layer(1).value();

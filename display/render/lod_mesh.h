@@ -1,0 +1,45 @@
+#pragma once
+// A mesh in graphics memory in several levels of detail: coarse ones for small or moving pictures.
+
+#include <vector>
+
+#include "core/base/result.h"
+#include "display/render/gpu_mesh.h"
+
+namespace dubsar {
+
+/// One GL thread.
+class LodMesh {
+ public:
+  /// The mesh as it is, alone. Errors of GpuMesh::upload.
+  static Result<LodMesh> exact(const PackedMesh& mesh);
+  /// The mesh as it is, then by grids of 1/1024 to 1/64 of its longest side in steps of 1.41, each only when it has
+  /// less than 3/4 of the triangles of the one before. Takes the triangles' order from `mesh`.
+  static Result<LodMesh> with_levels(PackedMesh mesh);
+
+  int levels() const noexcept { return static_cast<int>(levels_.size()); }
+  const GpuMesh& level(int i) const { return levels_[static_cast<std::size_t>(i)].mesh; }  ///< 0 the finest
+  std::int64_t triangles(int i) const { return levels_[static_cast<std::size_t>(i)].triangles; }
+  /// The coarsest level whose grid is at most `cell_mm`; 0 for 0.
+  int level_for(double cell_mm) const noexcept;
+
+  const Box& box_mm() const noexcept { return levels_.front().mesh.box_mm(); }
+  /// Box of the partitions whose bit is set; a box of size 0 when they hold no triangle.
+  Box box_of(std::uint8_t partitions) const;
+  /// Whether any of these has triangles.
+  bool has_any(std::uint8_t partitions) const noexcept { return (has_triangles_ & partitions) != 0; }
+
+ private:
+  struct Level {
+    GpuMesh mesh;
+    double cell_mm = 0.0;
+    std::int64_t triangles = 0;
+  };
+  Result<void> add(const PackedMesh& level, double cell_mm);
+
+  std::vector<Level> levels_;  ///< finest first
+  std::array<Box, kMaxPartitions> partition_box_mm_{};
+  std::uint8_t has_triangles_ = 0;  ///< bit p: partition p
+};
+
+}  // namespace dubsar

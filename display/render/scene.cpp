@@ -1,0 +1,99 @@
+#include "display/render/scene.h"
+
+#include <cmath>
+#include <glm/vec4.hpp>
+#include <limits>
+
+#include "display/render/lod_mesh.h"
+#include "display/render/slice_image.h"
+
+namespace dubsar {
+namespace {
+
+bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool finite(const glm::dmat4& m) {
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 4; ++r)
+      if (!std::isfinite(m[c][r])) return false;
+  return true;
+}
+bool fraction(double value) { return value >= 0.0 && value <= 1.0; }
+
+void grow(Box& box, const glm::dvec3& p) {
+  box.min = glm::min(box.min, p);
+  box.max = glm::max(box.max, p);
+}
+
+void grow_by(Box& box, const MeshItem& item) {
+  for (std::size_t p = 0; p < item.parts.size(); ++p) {
+    if (!item.parts[p].visible || !item.mesh->has_any(static_cast<std::uint8_t>(1 << p))) continue;
+    const Box part = item.mesh->box_of(static_cast<std::uint8_t>(1 << p));
+    for (int corner = 0; corner < 8; ++corner)
+      grow(box, glm::dvec3(item.world_from_model * glm::dvec4(part.corner(corner) + item.parts[p].offset_mm, 1.0)));
+  }
+}
+
+void grow_by(Box& box, const SliceItem& item) {
+  for (const glm::dvec3& p : {item.corner_mm, item.corner_mm + item.across_mm, item.corner_mm + item.along_mm,
+                              item.corner_mm + item.across_mm + item.along_mm})
+    grow(box, p);
+}
+
+void grow_by(Box& box, const LinesItem& item) {
+  for (const glm::dvec3& p : item.points_mm) grow(box, p);
+}
+
+Result<void> check_item(const MeshItem& item) {
+  if (item.mesh == nullptr) return fail(ErrorKind::kUsage, "scene: a mesh item has no mesh");
+  if (!finite(item.world_from_model)) return fail(ErrorKind::kUsage, "scene: the place of a mesh is not finite");
+  for (const PartLook& part : item.parts)
+    if (!finite(part.offset_mm)) return fail(ErrorKind::kUsage, "scene: the offset of a part is not finite");
+  return {};
+}
+
+Result<void> check_item(const SliceItem& item) {
+  if (item.image == nullptr) return fail(ErrorKind::kUsage, "scene: a slice item has no image");
+  if (!finite(item.corner_mm) || !finite(item.across_mm) || !finite(item.along_mm) || !std::isfinite(item.black) ||
+      !std::isfinite(item.white) || !fraction(item.opacity))
+    return fail(ErrorKind::kUsage, "scene: a slice has numbers that are not finite, or opacity {}, expected 0 to 1",
+                item.opacity);
+  return {};
+}
+
+Result<void> check_item(const LinesItem& item) {
+  if (item.points_mm.size() % 2 != 0)
+    return fail(ErrorKind::kUsage, "scene: lines of {} points found, expected two for each", item.points_mm.size());
+  for (const glm::dvec3& p : item.points_mm)
+    if (!finite(p)) return fail(ErrorKind::kUsage, "scene: a point of a line is not finite");
+  if (!(item.width_px > 0) || !std::isfinite(item.width_px) || !fraction(item.opacity) ||
+      !fraction(item.hidden_opacity) || !std::isfinite(item.lift_mm))
+    return fail(ErrorKind::kUsage,
+                "scene: lines of {} pixels and opacities {} and {} found, expected more than 0 and 0 to 1",
+                item.width_px, item.opacity, item.hidden_opacity);
+  return {};
+}
+
+}  // namespace
+
+Box scene_box_mm(const SceneView& scene) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  Box box{glm::dvec3(kInf), glm::dvec3(-kInf)};
+  for (const DrawItem& item : scene.items) std::visit([&](const auto& i) { grow_by(box, i); }, item);
+  return box.min.x <= box.max.x ? box : Box{};
+}
+
+Result<void> check_scene(const SceneView& scene) {
+  if (scene.clips.size() > static_cast<std::size_t>(kMostClipPlanes))
+    return fail(ErrorKind::kUsage, "scene: {} clip planes found, expected at most {}", scene.clips.size(),
+                kMostClipPlanes);
+  for (const ClipPlane& clip : scene.clips)
+    if (!finite(clip.point_mm) || !finite(clip.normal) || clip.normal == glm::dvec3(0.0))
+      return fail(ErrorKind::kUsage, "scene: a clip plane has no direction, expected a point and a normal");
+  for (const DrawItem& item : scene.items) {
+    auto checked = std::visit([](const auto& i) { return check_item(i); }, item);
+    if (!checked) return checked;
+  }
+  return {};
+}
+
+}  // namespace dubsar

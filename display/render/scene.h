@@ -1,0 +1,90 @@
+#pragma once
+// What is drawn, as values: the items of a scene, its light and the planes that cut it. Whoever shows something makes
+// a SceneView for each picture; the renderer draws it for any number of views and keeps nothing of it.
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "core/base/result.h"
+#include "display/render/camera.h"
+#include "display/render/shading.h"
+
+namespace dubsar {
+
+class LodMesh;     // display/render/lod_mesh.h
+class SliceImage;  // display/render/slice_image.h
+
+/// A surface in graphics memory. Outlives the pictures of it.
+struct MeshItem {
+  const LodMesh* mesh = nullptr;
+  glm::dmat4 world_from_model{1.0};  ///< rotation, one scale for all axes, translation
+  Style style;
+  PartLooks parts{};
+};
+
+/// A cut through the scan: a rectangle in the world with grey values on it.
+struct SliceItem {
+  const SliceImage* image = nullptr;
+  glm::dvec3 corner_mm{0.0};        ///< outer corner of the first voxel of the first row
+  glm::dvec3 across_mm{1, 0, 0};    ///< along the first row, from its first voxel's outer side to its last one's
+  glm::dvec3 along_mm{0, 1, 0};     ///< from the first row's outer side to the last one's
+  double black = 0.0, white = 1.0;  ///< values that are shown black and white; white may be the smaller one
+  double opacity = 1.0;             ///< 0..1
+};
+
+/// Lines of constant width: measures, scale bars, pointers, boxes.
+struct LinesItem {
+  std::vector<glm::dvec3> points_mm;  ///< two for each segment
+  double width_px = 2.0;              ///< of the picture; ends are square
+  Rgb8 color{255, 255, 255};
+  double opacity = 1.0;  ///< 0..1
+  /// Opacity of what lies behind surfaces, times `opacity`: 0 hides it, 1 shows it as if nothing were before it.
+  double hidden_opacity = 0.0;
+  double lift_mm = 0.05;  ///< towards the eye, so that lines on a surface are seen
+};
+
+using DrawItem = std::variant<MeshItem, SliceItem, LinesItem>;
+
+/// Cuts away where dot(normal, p - point) < 0.
+struct ClipPlane {
+  glm::dvec3 point_mm{0.0};
+  glm::dvec3 normal{0, 0, 1};  ///< towards what stays
+
+  bool operator==(const ClipPlane&) const = default;
+};
+constexpr int kMostClipPlanes = 8;
+
+/// A moment's view of what there is to draw; borrows all of it for the time of one call.
+struct SceneView {
+  std::span<const DrawItem> items;
+  Light light;
+  std::span<const ClipPlane> clips;  ///< in the world; they cut meshes and slices, not lines. At most kMostClipPlanes
+  Background background;
+};
+
+/// A scene of one mesh at its own place, for pictures of it. `mesh` outlives it.
+class MeshScene {
+ public:
+  MeshScene(const LodMesh& mesh, const Shading& shading, const glm::dmat4& world_from_model = glm::dmat4(1.0))
+      : item_(MeshItem{&mesh, world_from_model, shading.style, shading.parts}),
+        light_(shading.light),
+        background_(shading.background) {}
+  operator SceneView() const { return {std::span(&item_, 1), light_, {}, background_}; }
+
+ private:
+  DrawItem item_;
+  Light light_;
+  Background background_;
+};
+
+/// World box of everything that is drawn; clip planes are not looked at. A box of size 0 for an empty scene.
+Box scene_box_mm(const SceneView& scene);
+
+/// kUsage for what cannot be drawn: numbers that are not finite, opacities beyond 0..1, an odd number of line points,
+/// missing meshes or images, too many planes.
+Result<void> check_scene(const SceneView& scene);
+
+}  // namespace dubsar
