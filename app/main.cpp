@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -15,66 +16,80 @@ namespace {
 using namespace dubsar;
 using namespace dubsar::app;
 
-void add_common_options(CLI::App& command, CommonOptions& common) {
-  const std::map<std::string, ProgressStyle> styles{{"auto", ProgressStyle::kAuto},
-                                                    {"bar", ProgressStyle::kBar},
-                                                    {"json", ProgressStyle::kJson},
-                                                    {"none", ProgressStyle::kNone}};
-  auto* const group = command.add_option_group("Common");
-  group->add_option("--json", common.json_path, "write the result as JSON to FILE (- for stdout)")->type_name("FILE");
-  group->add_option("--progress", common.console.progress, "how progress is shown on stderr")
-      ->transform(CLI::CheckedTransformer(styles, CLI::ignore_case))
-      ->option_text("auto|bar|json|none");
-  group->add_option("--threads", common.threads, "number of threads (0: all cores)")
-      ->check(CLI::Range(0, 1024))
-      ->type_name("N");
-  group->add_flag("-q,--quiet", common.console.quiet, "errors only");
-  group->add_flag("-v,--verbose", common.console.verbose, "more messages");
+void add_common_options(Arguments command, CommonOptions& common) {
+  Arguments group = command.group("Common");
+  group.writes("--json", common.json_path, FileFormat::kJson, "write the result as JSON to FILE (- for stdout)")
+      .called("FILE");
+  group.choice<ProgressStyle>("--progress", common.console.progress,
+                              {{"auto", ProgressStyle::kAuto},
+                               {"bar", ProgressStyle::kBar},
+                               {"json", ProgressStyle::kJson},
+                               {"none", ProgressStyle::kNone}},
+                              "how progress is shown on stderr");
+  group.value("--threads", common.threads, "number of threads (0: all cores)").range(0, 1024).called("N");
+  group.flag("-q,--quiet", common.console.quiet, "errors only");
+  group.flag("-v,--verbose", common.console.verbose, "more messages");
 }
 
-int report_error(const Error& error) {
+Result<void> print(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return {};
+  return fail_errno(errno, "cannot write the result to stdout");
+}
+
+std::string json_text(const nlohmann::json& json) {
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+/// On stderr, and as an object on stdout for programs that asked for one there.
+int report_error(const Error& error, const CommonOptions& common) {
   log(LogLevel::kError, error.message);
+  if (common.json_path == "-") {
+    const nlohmann::json object{{"error", {{"message", error.message}, {"exit_code", exit_code(error.kind)}}}};
+    if (!print(json_text(object))) log(LogLevel::kError, "cannot write the error to stdout");
+  }
   return exit_code(error.kind);
 }
 
-int run_verb(const Verb& verb, const CommonOptions& common) {
-  install_log(common.console);
-  set_thread_count(common.threads);
-  ConsoleProgress progress(common.console);
-  cancel_on_signals(progress);
-  if (!common.json_path.empty() && common.json_path != "-")
-    if (auto ok = check_output_path(common.json_path); !ok) return report_error(ok.error());
-  const auto result = verb.run(common, progress);
-  progress.end();
-  if (!result) return report_error(result.error());
-  if (common.json_path == "-") {
-    fmt::print("{}\n", result->json.dump(2));
-  } else {
-    fmt::print("{}", result->text);
-    if (!common.json_path.empty())
-      if (auto ok = write_file_atomically(common.json_path, result->json.dump(2) + "\n"); !ok)
-        return report_error(ok.error());
+Result<VerbResult> run_verb(const Verb& verb, const CommonOptions& common, Progress& progress) {
+  try {
+    return verb.run(common, progress);
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorKind::kTryAgain, "out of memory; close other programs, or work on a part of the data");
+  } catch (const std::exception& e) {
+    return fail(ErrorKind::kInternal, "internal error, please report: {}", e.what());
   }
-  if (std::fflush(stdout) != 0) return report_error({ErrorKind::kIo, "cannot write the result to stdout"});
-  return result->failed ? exit_code(result->failure) : 0;
 }
 
-int guarded_run(const Verb& verb, const CommonOptions& common) {
-  try {
-    return run_verb(verb, common);
-  } catch (const std::bad_alloc&) {
-    return report_error({ErrorKind::kTryAgain, "out of memory; use --crop or --stride, or close other programs"});
-  } catch (const std::exception& e) {
-    return report_error({ErrorKind::kInternal, fmt::format("internal error, please report: {}", e.what())});
+Result<void> deliver(const VerbResult& result, const CommonOptions& common) {
+  if (common.json_path == "-") return print(json_text(result.json));
+  DUBSAR_TRY(print(result.text));
+  if (common.json_path.empty()) return {};
+  return write_file_atomically(common.json_path, json_text(result.json));
+}
+
+int run(const Verb& verb, const CommonOptions& common) {
+  install_log(common.console);
+  set_thread_count(common.threads);
+  if (const auto ok = check_file_uses(verb.command.files()); !ok) return report_error(ok.error(), common);
+  ConsoleProgress progress(common.console);
+  cancel_on_signals(progress);
+  const Result<VerbResult> result = run_verb(verb, common, progress);
+  progress.end();
+  if (!result) return report_error(result.error(), common);
+  if (const auto ok = deliver(*result, common); !ok) {
+    log(LogLevel::kError, ok.error().message);
+    return exit_code(ok.error().kind);
   }
+  return result->failed ? exit_code(result->failure) : 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program("dubsar: from a CT scan of an enclosed cuneiform tablet to surfaces that can be read", "dubsar");
-  program.set_version_flag("--version", "dubsar " DUBSAR_VERSION);
-  program.require_subcommand(1);
+  Arguments program =
+      Arguments::program("dubsar: from a CT scan of an enclosed cuneiform tablet to surfaces that can be read",
+                         "dubsar", "dubsar " DUBSAR_VERSION);
+  program.needs_command();
   program.footer(
       "Examples:\n"
       "  dubsar phantom scan.h5 --preset demo\n"
@@ -87,16 +102,9 @@ int main(int argc, char** argv) {
   std::vector<Verb> verbs{add_phantom_verb(program), add_process_verb(program),  add_info_verb(program),
                           add_export_verb(program),  add_render_verb(program),   add_view_verb(program),
                           add_doctor_verb(program),  add_displays_verb(program), add_devices_verb(program)};
-  for (Verb& verb : verbs) add_common_options(*verb.command, common);
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::Success& e) {
-    return program.exit(e);  // --help, --version
-  } catch (const CLI::ParseError& e) {
-    program.exit(e, std::cout, std::cerr);
-    return exit_code(ErrorKind::kUsage);
-  }
+  for (const Verb& verb : verbs) add_common_options(verb.command, common);
+  if (const std::optional<int> over = program.parse(argc, argv)) return *over;
   for (const Verb& verb : verbs)
-    if (verb.command->parsed()) return guarded_run(verb, common);
+    if (verb.command.chosen()) return run(verb, common);
   return exit_code(ErrorKind::kUsage);
 }

@@ -43,6 +43,7 @@ function(dubsar_test name)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE dubsar_options ${ARG_DEPS} GTest::gtest GTest::gmock GTest::gtest_main)
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)  # a test is compiled more often than its loops are run
   include(GoogleTest)
   set(environment)
   if(ARG_ENVIRONMENT)

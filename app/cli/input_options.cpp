@@ -2,22 +2,22 @@
 
 namespace dubsar::app {
 
-void add_input_options(CLI::App& command, InputOptionTexts& texts) {
-  auto* const group = command.add_option_group("Input");
-  group->add_option("--dataset", texts.dataset, "HDF5 path of the volume (also FILE:/path); default: found by itself");
-  group->add_option("--voxel-size", texts.voxel_size, "voxel size, e.g. 38um or 10um,10um,25um (x,y,z)");
-  group->add_option("--axis-order", texts.axis_order,
-                    "order of the stored axes, slowest first: zyx, xyz, ...; a minus before one that runs backwards");
-  group->add_option("--crop", texts.crop, "part of the volume, x0:x1,y0:y1,z0:z1; empty bounds are the borders");
-  group->add_option("--stride", texts.stride, "take every N-th voxel: N or NX,NY,NZ");
-  group->add_option("--dims", texts.dims, "raw file: size NXxNYxNZ");
-  group->add_option("--type", texts.type, "raw file: uint8, int16, float32, ...");
-  group->add_option("--endian", texts.endian, "raw file: little or big")->check(CLI::IsMember({"little", "big"}));
-  group->add_option("--skip", texts.skip, "raw file: bytes before the voxels")->check(CLI::NonNegativeNumber);
-  group->add_option("--allow-external", texts.allow_external,
-                    "folder in which the file may refer to other files (external links, virtual datasets)");
-  group->add_flag("--trust", texts.trust, "accept compression ratios above 250:1");
-  group->add_flag("--allow-sparse", texts.allow_sparse, "accept chunks that were never written");
+void add_input_options(Arguments command, InputOptionTexts& texts) {
+  Arguments group = command.group("Input");
+  group.value("--dataset", texts.dataset, "HDF5 path of the volume (also FILE:/path); default: found by itself");
+  group.value("--voxel-size", texts.voxel_size, "voxel size, e.g. 38um or 10um,10um,25um (x,y,z)");
+  group.value("--axis-order", texts.axis_order,
+              "order of the stored axes, slowest first: zyx, xyz, ...; a minus before one that runs backwards");
+  group.value("--crop", texts.crop, "part of the volume, x0:x1,y0:y1,z0:z1; empty bounds are the borders");
+  group.value("--stride", texts.stride, "take every N-th voxel: N or NX,NY,NZ");
+  group.value("--dims", texts.dims, "raw file: size NXxNYxNZ");
+  group.value("--type", texts.type, "raw file: uint8, int16, float32, ...");
+  group.value("--endian", texts.endian, "raw file: little or big").one_of({"little", "big"});
+  group.value("--skip", texts.skip, "raw file: bytes before the voxels").not_negative();
+  group.value("--allow-external", texts.allow_external,
+              "folder in which the file may refer to other files (external links, virtual datasets)");
+  group.flag("--trust", texts.trust, "accept compression ratios above 250:1");
+  group.flag("--allow-sparse", texts.allow_sparse, "accept chunks that were never written");
 }
 
 Result<ImportOptions> parse_input_options(const std::string& path, const InputOptionTexts& texts) {

@@ -1,9 +1,9 @@
 #pragma once
 // Options that say how a volume file is read; shared by `process` and `info`.
 
-#include <CLI/CLI.hpp>
 #include <string>
 
+#include "app/cli/arguments.h"
 #include "core/volume/import_options.h"
 
 namespace dubsar::app {
@@ -14,7 +14,7 @@ struct InputOptionTexts {
   bool trust = false, allow_sparse = false;
 };
 
-void add_input_options(CLI::App& command, InputOptionTexts& texts);
+void add_input_options(Arguments command, InputOptionTexts& texts);
 
 /// Texts to options; kUsage with the text that is wrong.
 Result<ImportOptions> parse_input_options(const std::string& path, const InputOptionTexts& texts);

@@ -1,11 +1,11 @@
 #pragma once
 // One file per verb: each adds its subcommand and returns what runs when it is chosen.
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "app/cli/arguments.h"
 #include "app/cli/console.h"
 #include "core/base/result.h"
 
@@ -26,21 +26,18 @@ struct VerbResult {
 };
 
 struct Verb {
-  CLI::App* command = nullptr;
+  Arguments command;
   std::function<Result<VerbResult>(const CommonOptions&, Progress&)> run;
 };
 
-Verb add_phantom_verb(CLI::App& program);
-Verb add_process_verb(CLI::App& program);
-Verb add_info_verb(CLI::App& program);
-Verb add_export_verb(CLI::App& program);
-Verb add_render_verb(CLI::App& program);
-Verb add_view_verb(CLI::App& program);
-Verb add_doctor_verb(CLI::App& program);
-Verb add_devices_verb(CLI::App& program);
-Verb add_displays_verb(CLI::App& program);
-
-/// Fails early, before hours of work, when an output cannot be created: kCannotCreate, kPermission.
-Result<void> check_output_path(const std::string& path);
+Verb add_phantom_verb(Arguments program);
+Verb add_process_verb(Arguments program);
+Verb add_info_verb(Arguments program);
+Verb add_export_verb(Arguments program);
+Verb add_render_verb(Arguments program);
+Verb add_view_verb(Arguments program);
+Verb add_doctor_verb(Arguments program);
+Verb add_devices_verb(Arguments program);
+Verb add_displays_verb(Arguments program);
 
 }  // namespace dubsar::app

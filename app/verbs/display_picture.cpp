@@ -57,28 +57,25 @@ Result<void> add_sight(const DisplayPicture& picture, const glm::dvec3& eye, Ima
 
 }  // namespace
 
-void add_display_options(CLI::App& command, DisplayRequest& request) {
+void add_display_options(Arguments command, DisplayRequest& request) {
   std::string names;
   for (const SinkBackend& backend : output_sinks()) names += (names.empty() ? "" : ", ") + std::string(backend.name);
-  auto* const group = command.add_option_group("Displays");
-  group->add_option("--display", request.display,
-                    "the picture that a display's panel shows: NAME[:options]; `dubsar displays` explains " + names);
-  group->add_option("--see-from", request.see_from,
-                    "X,Y,Z of an eye in mm: write what it sees of a panel with lenses, and how much crosstalk");
-  group->add_option("--viewer", request.viewer, "X,Y,Z in mm of the point between the viewer's eyes (0,0,600)");
-  group->add_option("--eye-distance", request.eye_distance_mm, "distance of the viewer's eyes in mm")
-      ->check(CLI::Range(0.0, 100.0));
-  group->add_option("--screen-mm", request.screen_mm,
-                    "WIDTHxHEIGHT of the screen in mm; panel profiles bring their own");
-  group->add_option("--magnification", request.magnification, "1 for life size; default: as large as fits")
-      ->check(CLI::PositiveNumber);
-  group->add_option("--plugin", request.plugins, "a display from a shared library; loading it runs its code")
-      ->type_name("FILE.so");
+  Arguments group = command.group("Displays");
+  group.value("--display", request.display,
+              "the picture that a display's panel shows: NAME[:options]; `dubsar displays` explains " + names);
+  group.value("--see-from", request.see_from,
+              "X,Y,Z of an eye in mm: write what it sees of a panel with lenses, and how much crosstalk");
+  group.value("--viewer", request.viewer, "X,Y,Z in mm of the point between the viewer's eyes (0,0,600)");
+  group.value("--eye-distance", request.eye_distance_mm, "distance of the viewer's eyes in mm").range(0.0, 100.0);
+  group.value("--screen-mm", request.screen_mm, "WIDTHxHEIGHT of the screen in mm; panel profiles bring their own");
+  group.value("--magnification", request.magnification, "1 for life size; default: as large as fits").positive();
+  group.value("--plugin", request.plugins, "a display from a shared library; loading it runs its code")
+      .called("FILE.so");
   group
-      ->add_option("--bridge-port", request.bridge_port,
-                   "for panel auto: port of Looking Glass Bridge on this machine (33334); 0: leave it alone")
-      ->check(CLI::Range(0, 65535));
-  group->add_flag("--pattern", request.pattern, "numbered views instead of a surface (no IN)");
+      .value("--bridge-port", request.bridge_port,
+             "for panel auto: port of Looking Glass Bridge on this machine (33334); 0: leave it alone")
+      .range(0, 65535);
+  group.flag("--pattern", request.pattern, "numbered views instead of a surface (no IN)");
 }
 
 Result<void> read_display_options(const DisplayRequest& request, DisplayOptions& options) {

@@ -23,7 +23,7 @@ struct DisplayRequest {
   bool pattern = false;
 };
 
-void add_display_options(CLI::App& command, DisplayRequest& request);
+void add_display_options(Arguments command, DisplayRequest& request);
 
 /// Fills screen, viewer and folder of `options`; its screen has the pixels already. kUsage for texts that cannot be
 /// read.

@@ -40,8 +40,7 @@ struct Options {
   double seconds = 10.0;
   double speed = 1.0;
   std::optional<std::uint64_t> seed;
-  CLI::App *list = nullptr, *probe = nullptr, *monitor = nullptr, *record = nullptr, *replay = nullptr,
-           *simulate = nullptr;
+  std::optional<Arguments> list, probe, monitor, record, replay, simulate;
 };
 
 Result<VerbResult> list(const Options& options) {
@@ -151,14 +150,13 @@ Result<VerbResult> run_live(const Options& options, bool print, Progress& progre
   OpenTransport open;
   if (options.device.driver != "leapc") {
     DUBSAR_ASSIGN(open, reach_real_device(options.device, clock));
-  } else if (options.record->parsed()) {
+  } else if (options.record->chosen()) {
     return fail(ErrorKind::kUsage,
                 "devices: leapc is a service and sends no bytes of a device: record its hands with dubsar "
                 "view --input leapc --record FILE");
   }
   std::shared_ptr<RecordingWriter> writer;
-  if (options.record->parsed()) {
-    DUBSAR_TRY(check_output_path(options.file));
+  if (options.record->chosen()) {
     DUBSAR_ASSIGN(writer, RecordingWriter::create(options.file, options.device.driver, "", clock));
     open = [open = std::move(open), writer]() -> Result<std::unique_ptr<Transport>> {
       DUBSAR_ASSIGN(auto transport, open());
@@ -219,7 +217,6 @@ Result<VerbResult> run_simulate(const Options& options, bool print, Progress& pr
   if (live != options.file.empty())
     return fail(ErrorKind::kUsage, "devices simulate: expected either a file to write, or --live or --udp HOST:PORT");
   if (!live) {
-    DUBSAR_TRY(check_output_path(options.file));
     DUBSAR_ASSIGN(const std::int64_t events,
                   write_simulated_recording(options.device.driver, options.file, std::move(wire)));
     result.json = {{"events", events}, {"file", options.file}};
@@ -255,85 +252,74 @@ Result<VerbResult> run_simulate(const Options& options, bool print, Progress& pr
 
 Result<VerbResult> run(const Options& options, const CommonOptions& common, Progress& progress) {
   const bool print = common.json_path != "-" && !common.console.quiet;
-  if (options.list->parsed()) return list(options);
-  if (options.probe->parsed() && options.device.driver == "looking_glass") return probe_looking_glass(SteadyClock());
-  if (options.replay->parsed()) return run_replay(options, print, progress);
-  if (options.simulate->parsed()) return run_simulate(options, print, progress);
-  if (options.device.driver == "webcam" && !options.monitor->parsed())
-    return watch_camera(options.file, options.probe->parsed() ? 2.0 : options.seconds, progress);
+  if (options.list->chosen()) return list(options);
+  if (options.probe->chosen() && options.device.driver == "looking_glass") return probe_looking_glass(SteadyClock());
+  if (options.replay->chosen()) return run_replay(options, print, progress);
+  if (options.simulate->chosen()) return run_simulate(options, print, progress);
+  if (options.device.driver == "webcam" && !options.monitor->chosen())
+    return watch_camera(options.file, options.probe->chosen() ? 2.0 : options.seconds, progress);
   Options chosen = options;
   DUBSAR_ASSIGN(chosen.device.invert, parse_axes(options.invert));
-  if (options.probe->parsed()) chosen.seconds = 2.0;
-  return run_live(chosen, print && options.monitor->parsed(), progress);
+  if (options.probe->chosen()) chosen.seconds = 2.0;
+  return run_live(chosen, print && options.monitor->chosen(), progress);
 }
 
-void add_device_options(CLI::App& command, Options& options) {
+void add_device_options(Arguments command, Options& options) {
   command
-      .add_option("driver", options.device.driver,
-                  std::string(kDeviceDrivers) + "; probe and monitor: leapc; probe and record: webcam")
-      ->required();
-  command.add_option("--address", options.device.address, "opentrack: to listen on; vrpn: of the server");
-  command.add_option("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given")
-      ->check(CLI::Range(0, 65535));
-  command.add_flag("--allow-remote", options.device.allow_remote, "opentrack: listen to other machines too");
-  command.add_option("--tracker", options.device.tracker, "vrpn: name of the tracker (the first)");
-  command.add_option("--sensor", options.device.sensor, "vrpn: which of its sensors")->check(CLI::Range(0, 1000));
-  command.add_option("--invert", options.invert, "opentrack: axes that count the other way, e.g. x+yaw")
-      ->type_name("AXES");
-  command.add_option("--sender", options.device.sender, "opentrack: whose signs, opentrack or xrlinux")
-      ->type_name("NAME");
-  command.add_option("--socket", options.device.socket, "spacenav: path of the daemon's socket");
-  command.add_option("--library", options.device.library, "leapc: Ultraleap's libLeapC.so")->type_name("FILE");
+      .value("driver", options.device.driver,
+             std::string(kDeviceDrivers) + "; probe and monitor: leapc; probe and record: webcam")
+      .required();
+  command.value("--address", options.device.address, "opentrack: to listen on; vrpn: of the server");
+  command.value("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given").range(0, 65535);
+  command.flag("--allow-remote", options.device.allow_remote, "opentrack: listen to other machines too");
+  command.value("--tracker", options.device.tracker, "vrpn: name of the tracker (the first)");
+  command.value("--sensor", options.device.sensor, "vrpn: which of its sensors").range(0, 1000);
+  command.value("--invert", options.invert, "opentrack: axes that count the other way, e.g. x+yaw").called("AXES");
+  command.value("--sender", options.device.sender, "opentrack: whose signs, opentrack or xrlinux").called("NAME");
+  command.value("--socket", options.device.socket, "spacenav: path of the daemon's socket");
+  command.value("--library", options.device.library, "leapc: Ultraleap's libLeapC.so").called("FILE");
 }
 
-void add_simulate_options(CLI::App& command, Options& options) {
-  command.add_option("driver", options.device.driver, "whose bytes: " + std::string(kDeviceDrivers))->required();
-  command.add_option("file", options.file, "the recording to write")->type_name("FILE");
-  command
-      .add_option("--script", options.script, "what the person does (docs/input.md); else looks about and turns things")
-      ->type_name("FILE");
-  command.add_option("--seed", options.seed, "another person");
-  command.add_option("--seconds", options.duration, "how long, instead of the script's time")
-      ->check(CLI::Range(0.1, 3600.0))
-      ->type_name("S");
-  command.add_flag("--live", options.live, "in real time on sockets: opentrack, vrpn, spacenav");
-  command.add_option("--udp", options.udp, "opentrack: live, to this receiver")->type_name("HOST:PORT");
-  command.add_option("--address", options.device.address, "opentrack: of the receiver; vrpn: to serve on");
-  command.add_option("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given")
-      ->check(CLI::Range(0, 65535));
-  command.add_flag("--allow-remote", options.device.allow_remote, "vrpn: serve other machines too");
-  command.add_option("--socket", options.device.socket, "spacenav: the socket to serve");
+void add_simulate_options(Arguments command, Options& options) {
+  command.value("driver", options.device.driver, "whose bytes: " + std::string(kDeviceDrivers)).required();
+  command.writes("file", options.file, FileFormat::kOther, "the recording to write").called("FILE");
+  command.reads("--script", options.script, "what the person does (docs/input.md); else looks about and turns things")
+      .called("FILE");
+  command.value("--seed", options.seed, "another person");
+  command.value("--seconds", options.duration, "how long, instead of the script's time").range(0.1, 3600.0).called("S");
+  command.flag("--live", options.live, "in real time on sockets: opentrack, vrpn, spacenav");
+  command.value("--udp", options.udp, "opentrack: live, to this receiver").called("HOST:PORT");
+  command.value("--address", options.device.address, "opentrack: of the receiver; vrpn: to serve on");
+  command.value("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given").range(0, 65535);
+  command.flag("--allow-remote", options.device.allow_remote, "vrpn: serve other machines too");
+  command.value("--socket", options.device.socket, "spacenav: the socket to serve");
 }
 
 }  // namespace
 
-Verb add_devices_verb(CLI::App& program) {
-  CLI::App* const command = program.add_subcommand("devices", "input devices: list, check, watch, record, replay");
-  command->require_subcommand(1);
-  command->footer(
+Verb add_devices_verb(Arguments program) {
+  Arguments command = program.command("devices", "input devices: list, check, watch, record, replay");
+  command.needs_command();
+  command.footer(
       "Examples:\n  dubsar devices list\n  dubsar devices monitor opentrack --seconds 30\n"
       "  dubsar devices simulate spacemouse turn.txt\n  dubsar devices replay turn.txt\n"
       "  dubsar devices simulate opentrack --script scholar.json --udp 127.0.0.1:4242");
   auto options = std::make_shared<Options>();
-  const auto add = [&](const char* name, const char* what) {
-    CLI::App* const sub = command->add_subcommand(name, what);
-    sub->fallthrough();
-    return sub;
-  };
-  const auto seconds = [&](CLI::App* sub) {
-    sub->add_option("--seconds", options->seconds, "how long")->check(CLI::Range(0.1, 86400.0))->type_name("S");
+  const auto add = [&](const char* name, const char* what) { return command.subcommand(name, what); };
+  const auto seconds = [&](Arguments sub) {
+    sub.value("--seconds", options->seconds, "how long").range(0.1, 86400.0).called("S");
   };
   options->list = add("list", "devices that are here, and why one cannot be used");
-  options->list->add_option("--socket", options->device.socket, "path of spacenavd's socket");
+  options->list->value("--socket", options->device.socket, "path of spacenavd's socket");
   options->probe = add("probe", "open a device and see whether it answers (also looking_glass: its calibration)");
   options->monitor = add("monitor", "show what a device says: bars in a terminal, else one JSON line per sample");
   options->record = add("record", "write what a device says to a file");
-  for (CLI::App* const sub : {options->probe, options->monitor, options->record}) add_device_options(*sub, *options);
+  for (const Arguments& sub : {*options->probe, *options->monitor, *options->record}) add_device_options(sub, *options);
   options->replay = add("replay", "play a recording through its driver");
-  options->replay->add_option("--speed", options->speed, "2: twice as fast")->check(CLI::Range(0.01, 1000.0));
-  for (CLI::App* const sub : {options->record, options->replay})
-    sub->add_option("file", options->file, "the recording")->required()->type_name("FILE");
-  for (CLI::App* const sub : {options->monitor, options->record}) seconds(sub);
+  options->replay->value("--speed", options->speed, "2: twice as fast").range(0.01, 1000.0);
+  options->record->writes("file", options->file, FileFormat::kOther, "the recording").required().called("FILE");
+  options->replay->reads("file", options->file, "the recording").required().called("FILE");
+  for (const Arguments& sub : {*options->monitor, *options->record}) seconds(sub);
   options->simulate = add("simulate", "a scripted person as bytes: a recording of any driver, or live on sockets");
   add_simulate_options(*options->simulate, *options);
   return {command,

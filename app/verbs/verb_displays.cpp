@@ -301,31 +301,30 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 
 }  // namespace
 
-Verb add_displays_verb(CLI::App& program) {
+Verb add_displays_verb(Arguments program) {
   auto options = std::make_shared<Options>();
-  CLI::App* const command =
-      program.add_subcommand("displays", "what pictures can be shown on: displays, panels, calibrations, monitors");
+  Arguments command =
+      program.command("displays", "what pictures can be shown on: displays, panels, calibrations, monitors");
   command
-      ->add_option("--adjust", options->adjust,
-                   "save lens figures found by eye: PANEL pitch=..,slope=..,center=.. (or PANEL reset)")
-      ->expected(1, 2)
-      ->type_name("PANEL FIGURES");
-  command->add_flag("--window", options->window,
-                    "with --adjust PANEL: find the figures by eye, on the panel, with keys");
-  command->add_option("--monitor", options->monitor, "with --window: part of the panel's monitor name");
+      .value("--adjust", options->adjust,
+             "save lens figures found by eye: PANEL pitch=..,slope=..,center=.. (or PANEL reset)")
+      .words(1, 2)
+      .called("PANEL FIGURES");
+  command.flag("--window", options->window, "with --adjust PANEL: find the figures by eye, on the panel, with keys");
+  command.value("--monitor", options->monitor, "with --window: part of the panel's monitor name");
   command
-      ->add_option("--crosstalk", options->crosstalk,
-                   "how much light of the wrong eye a tracked panel lets through, against head speed and latency")
-      ->type_name("PANEL");
-  command->add_option("--calibration", options->calibration, "also look at this calibration file")->type_name("FILE");
+      .value("--crosstalk", options->crosstalk,
+             "how much light of the wrong eye a tracked panel lets through, against head speed and latency")
+      .called("PANEL");
+  command.reads("--calibration", options->calibration, "also look at this calibration file").called("FILE");
   command
-      ->add_option("--bridge-port", options->bridge_port,
-                   "port of Looking Glass Bridge on this machine (33334); 0: leave it alone")
-      ->check(CLI::Range(0, 65535));
-  command->add_option("--edids", options->edids, "folder with the kernel's connectors")->type_name("FOLDER");
-  command->add_option("--plugin", options->plugins, "a display from a shared library; loading it runs its code")
-      ->type_name("FILE.so");
-  command->footer(
+      .value("--bridge-port", options->bridge_port,
+             "port of Looking Glass Bridge on this machine (33334); 0: leave it alone")
+      .range(0, 65535);
+  command.value("--edids", options->edids, "folder with the kernel's connectors").called("FOLDER");
+  command.value("--plugin", options->plugins, "a display from a shared library; loading it runs its code")
+      .called("FILE.so");
+  command.footer(
       "Examples:\n"
       "  dubsar displays\n"
       "  dubsar displays --json -\n"

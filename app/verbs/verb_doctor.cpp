@@ -91,10 +91,9 @@ Result<VerbResult> run() {
 }
 }  // namespace
 
-Verb add_doctor_verb(CLI::App& program) {
-  CLI::App* const command =
-      program.add_subcommand("doctor", "check this machine: graphics, memory, disk, file filters");
-  command->footer("Examples:\n  dubsar doctor\n  dubsar doctor --json -");
+Verb add_doctor_verb(Arguments program) {
+  Arguments command = program.command("doctor", "check this machine: graphics, memory, disk, file filters");
+  command.footer("Examples:\n  dubsar doctor\n  dubsar doctor --json -");
   return {command, [](const CommonOptions&, Progress&) { return run(); }};
 }
 

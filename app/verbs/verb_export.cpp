@@ -24,7 +24,6 @@ struct Options {
 };
 
 Result<VerbResult> run(const Options& options, Progress& progress) {
-  DUBSAR_TRY(check_output_path(options.out));
   DUBSAR_TRY(mesh_format_from_path(options.out));
   DUBSAR_ASSIGN(TriMesh mesh, load_mesh({options.in, options.partitions, !options.no_holes}, progress));
   if (options.simplify) {
@@ -46,29 +45,23 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 }
 }  // namespace
 
-Verb add_export_verb(CLI::App& program) {
+Verb add_export_verb(Arguments program) {
   auto options = std::make_shared<Options>();
-  CLI::App* const command = program.add_subcommand("export", "write surfaces as PLY, STL, OBJ or GLB");
-  command->add_option("IN", options->in, "EXA file (or a mesh file, to convert it)")->required();
-  command->add_option("OUT", options->out, "file to write; the suffix chooses the format")->required();
-  command->add_option("--partition", options->partitions, "only these parts: names or ids, e.g. tablet")
-      ->delimiter(',');
-  command->add_option("--units", options->write.units, "mm, or vox: coordinates of the input volume")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, MeshUnits>{{"mm", MeshUnits::kMm}, {"vox", MeshUnits::kVox}}))
-      ->option_text("mm|vox");
-  command->add_flag("--no-fill-holes", options->no_holes, "leave out the patches that close the parts");
-  command->add_flag("--simplify", options->simplify,
-                    "fewer triangles where the surface is flat (adaptive vertex clustering)");
+  Arguments command = program.command("export", "write surfaces as PLY, STL, OBJ or GLB");
+  command.reads("IN", options->in, "EXA file (or a mesh file, to convert it)").required();
+  command.writes("OUT", options->out, FileFormat::kMesh, "file to write; the suffix chooses the format").required();
+  command.value("--partition", options->partitions, "only these parts: names or ids, e.g. tablet").separated_by(',');
+  command.choice<MeshUnits>("--units", options->write.units, {{"mm", MeshUnits::kMm}, {"vox", MeshUnits::kVox}},
+                            "mm, or vox: coordinates of the input volume");
+  command.flag("--no-fill-holes", options->no_holes, "leave out the patches that close the parts");
+  command.flag("--simplify", options->simplify,
+               "fewer triangles where the surface is flat (adaptive vertex clustering)");
   command
-      ->add_option("--simplify-angle", options->simplify_angle_deg,
-                   "largest angle in degrees between old and new triangles")
-      ->check(CLI::Range(0.0, 90.0));
-  command
-      ->add_option("--simplify-distance", options->simplify_distance_vox,
-                   "largest distance of the surfaces in grid steps")
-      ->check(CLI::Range(0.0, 100.0));
-  command->footer(
+      .value("--simplify-angle", options->simplify_angle_deg, "largest angle in degrees between old and new triangles")
+      .range(0.0, 90.0);
+  command.value("--simplify-distance", options->simplify_distance_vox, "largest distance of the surfaces in grid steps")
+      .range(0.0, 100.0);
+  command.footer(
       "Examples:\n"
       "  dubsar export tablet.exa tablet.ply\n"
       "  dubsar export tablet.exa tablet.stl --partition tablet\n"

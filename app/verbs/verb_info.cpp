@@ -145,12 +145,12 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 }
 }  // namespace
 
-Verb add_info_verb(CLI::App& program) {
+Verb add_info_verb(Arguments program) {
   auto options = std::make_shared<Options>();
-  CLI::App* const command = program.add_subcommand("info", "say what is in a volume, surface or mesh file");
-  command->add_option("FILE", options->in, "volume (HDF5, NRRD, TIFF, raw), EXA, PLY, STL, OBJ or GLB")->required();
-  add_input_options(*command, options->input);
-  command->footer(
+  Arguments command = program.command("info", "say what is in a volume, surface or mesh file");
+  command.reads("FILE", options->in, "volume (HDF5, NRRD, TIFF, raw), EXA, PLY, STL, OBJ or GLB").required();
+  add_input_options(command, options->input);
+  command.footer(
       "Examples:\n  dubsar info scan.h5\n  dubsar info scan.h5:/entry/data/data\n  dubsar info tablet.exa --json -");
   return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
 }

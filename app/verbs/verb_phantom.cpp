@@ -25,12 +25,8 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
   }
   wanted.seed = options.seed;
   wanted.snr_db = options.snr_db;
-  DUBSAR_TRY(check_output_path(options.out));
   std::optional<std::filesystem::path> truth;
-  if (!options.truth.empty()) {
-    DUBSAR_TRY(check_output_path(options.truth));
-    truth = options.truth;
-  }
+  if (!options.truth.empty()) truth = options.truth;
   DUBSAR_ASSIGN(const phantom::PhantomReport report, phantom::write_phantom(options.out, truth, wanted, progress));
   const phantom::PhantomOptions& made = report.options;
   VerbResult result;
@@ -57,18 +53,18 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 }
 }  // namespace
 
-Verb add_phantom_verb(CLI::App& program) {
+Verb add_phantom_verb(Arguments program) {
   auto options = std::make_shared<Options>();
-  CLI::App* const command = program.add_subcommand("phantom", "make the scan of an enclosed tablet with known truth");
-  command->add_option("OUT", options->out, "HDF5 file to write")->required();
-  command->add_option("--preset", options->preset, "size: tiny, demo (512x272x472) or paper (1871x999x1723)")
-      ->check(CLI::IsMember({"tiny", "demo", "paper"}));
-  command->add_option("--size", options->size, "size NXxNYxNZ in voxels, instead of a preset");
-  command->add_option("--seed", options->seed, "another number, another tablet");
-  command->add_option("--snr", options->snr_db, "signal-to-noise ratio of the raw scan in dB")
-      ->check(CLI::Range(0.0, 120.0));
-  command->add_option("--truth", options->truth, "HDF5 file for labels, signed distances and the table of wedges");
-  command->footer(
+  Arguments command = program.command("phantom", "make the scan of an enclosed tablet with known truth");
+  command.writes("OUT", options->out, FileFormat::kPhantom, "HDF5 file to write").required();
+  command.value("--preset", options->preset, "size: tiny, demo (512x272x472) or paper (1871x999x1723)")
+      .one_of({"tiny", "demo", "paper"});
+  command.value("--size", options->size, "size NXxNYxNZ in voxels, instead of a preset");
+  command.value("--seed", options->seed, "another number, another tablet");
+  command.value("--snr", options->snr_db, "signal-to-noise ratio of the raw scan in dB").range(0.0, 120.0);
+  command.writes("--truth", options->truth, FileFormat::kPhantom,
+                 "HDF5 file for labels, signed distances and the table of wedges");
+  command.footer(
       "Examples:\n  dubsar phantom scan.h5 --preset demo\n  dubsar phantom scan.h5 --size 512x512x512 --seed 7 --truth "
       "truth.h5");
   return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};

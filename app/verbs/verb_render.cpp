@@ -118,7 +118,6 @@ Result<void> check_output(const Options& options) {
   if (options.window) return {};
   if (options.out.empty())
     return fail(ErrorKind::kUsage, "-o is missing, expected a file to write, or --display NAME --window");
-  DUBSAR_TRY(check_output_path(options.out));
   return {};
 }
 
@@ -179,36 +178,31 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 }
 }  // namespace
 
-Verb add_render_verb(CLI::App& program) {
+Verb add_render_verb(Arguments program) {
   auto options = std::make_shared<Options>();
-  CLI::App* const command =
-      program.add_subcommand("render", "make a picture of a surface, or show what a display's panel shows");
-  command->add_option("IN", options->in, "EXA, PLY, OBJ, STL or GLB file");
-  command->add_option("-o,--output", options->out, "PNG or TIFF file to write");
-  command->add_flag("--window", options->window, "show the display's picture in a window instead of writing it");
-  command->add_option("--view", options->view,
-                      "front, back, left, right, top, bottom, orbit or orbit:AZIMUTH,ELEVATION[,ROLL]");
-  command->add_option("--size", options->size,
-                      "WIDTHxHEIGHT in pixels (1200x1200; of a display 1920x1080, or the panel's own)");
+  Arguments command = program.command("render", "make a picture of a surface, or show what a display's panel shows");
+  command.reads("IN", options->in, "EXA, PLY, OBJ, STL or GLB file");
+  command.writes("-o,--output", options->out, FileFormat::kPicture, "PNG or TIFF file to write");
+  command.flag("--window", options->window, "show the display's picture in a window instead of writing it");
+  command.value("--view", options->view,
+                "front, back, left, right, top, bottom, orbit or orbit:AZIMUTH,ELEVATION[,ROLL]");
+  command.value("--size", options->size,
+                "WIDTHxHEIGHT in pixels (1200x1200; of a display 1920x1080, or the panel's own)");
   std::string styles;
   for (const std::string_view name : shading_preset_names()) styles += (styles.empty() ? "" : ", ") + std::string(name);
-  command->add_option("--style", options->style, "shading: " + styles);
-  command->add_option("--partition", options->partitions, "only these parts: names or ids, e.g. tablet")
-      ->delimiter(',');
-  command->add_option("--hide", options->hide, "not these parts")->delimiter(',');
-  command->add_flag("--colour-parts,--color-parts", options->colour_parts, "each part in a colour of its own");
-  command->add_option("--light", options->light,
-                      "AZIMUTH,ELEVATION of the light in degrees; 315,20 rakes from the upper left");
-  command
-      ->add_option("--mm-per-pixel", options->mm_per_pixel,
-                   "exact scale (orthographic), instead of fitting the picture")
-      ->check(CLI::PositiveNumber);
-  command->add_flag("--perspective", options->perspective, "perspective instead of orthographic");
-  command->add_flag("--transparent", options->transparent, "no background");
-  command->add_option("--samples", options->samples, "samples per pixel side (3; of displays 2)")
-      ->check(CLI::Range(1, 8));
-  add_display_options(*command, options->display);
-  command->footer(
+  command.value("--style", options->style, "shading: " + styles);
+  command.value("--partition", options->partitions, "only these parts: names or ids, e.g. tablet").separated_by(',');
+  command.value("--hide", options->hide, "not these parts").separated_by(',');
+  command.flag("--colour-parts,--color-parts", options->colour_parts, "each part in a colour of its own");
+  command.value("--light", options->light,
+                "AZIMUTH,ELEVATION of the light in degrees; 315,20 rakes from the upper left");
+  command.value("--mm-per-pixel", options->mm_per_pixel, "exact scale (orthographic), instead of fitting the picture")
+      .positive();
+  command.flag("--perspective", options->perspective, "perspective instead of orthographic");
+  command.flag("--transparent", options->transparent, "no background");
+  command.value("--samples", options->samples, "samples per pixel side (3; of displays 2)").range(1, 8);
+  add_display_options(command, options->display);
+  command.footer(
       "Examples:\n"
       "  dubsar render tablet.exa -o tablet.png --partition tablet\n"
       "  dubsar render tablet.exa -o back.tif --view back --light 315,15 --mm-per-pixel 0.0423\n"

@@ -189,61 +189,52 @@ Result<VerbResult> run_window_verb(const Options& options, Progress& progress) {
 }
 
 Result<VerbResult> run(const Options& options, Progress& progress) {
-  if (!options.record.empty()) DUBSAR_TRY(check_output_path(options.record));
   return options.offscreen ? run_offscreen_verb(options, progress) : run_window_verb(options, progress);
 }
 
 }  // namespace
 
-Verb add_view_verb(CLI::App& program) {
+Verb add_view_verb(Arguments program) {
   auto options = std::make_shared<Options>();
-  CLI::App* const command = program.add_subcommand("view", "turn a surface on a display with hands, head and mouse");
-  command->add_option("IN", options->in, "EXA, PLY, OBJ, STL or GLB file")->required();
+  Arguments command = program.command("view", "turn a surface on a display with hands, head and mouse");
+  command.reads("IN", options->in, "EXA, PLY, OBJ, STL or GLB file").required();
   std::string sinks, sources;
   for (const SinkBackend& sink : output_sinks()) sinks += (sinks.empty() ? "" : ", ") + std::string(sink.name);
   for (const InputBackend& source : input_sources())
     sources += (sources.empty() ? "" : ", ") + std::string(source.name);
-  command->add_option("--display", options->display, "NAME[:options]: " + sinks);
-  command->add_option("--plugin", options->plugins, "a display from a shared library; loading it runs its code")
-      ->type_name("FILE.so")
-      ->allow_extra_args(false);
-  command->add_option("--input", options->inputs, "NAME[:options],...: " + sources);
-  command->add_option("--script", options->script, "simulated people: the same as --input scripted:FILE")
-      ->type_name("FILE");
-  command->add_option("--mapping", options->mapping, "which gesture does what (docs/input.md)")->type_name("FILE");
-  command->add_flag("--offscreen", options->offscreen, "without a window, in simulated time");
-  command->add_option("--frames", options->frames, "folder for pictures of the frames")->type_name("DIR");
-  command->add_option("--every", options->every, "write only each N-th frame")->check(CLI::Range(1, 100000));
-  command->add_option("--record", options->record, "write the input for --input replay:FILE")->type_name("FILE");
-  command->add_option("--size", options->size,
-                      "WIDTHxHEIGHT of the window (1280x720; offscreen 960x540, or the panel's own)");
-  command->add_option("--monitor", options->monitor,
-                      "part of the name of the monitor to use (dubsar displays lists them)");
-  command->add_flag("--fullscreen", options->fullscreen,
-                    "cover the monitor; displays that need exact pixels do so by themselves");
-  command->add_flag("--windowed", options->windowed, "never cover the monitor");
+  command.value("--display", options->display, "NAME[:options]: " + sinks);
+  command.value("--plugin", options->plugins, "a display from a shared library; loading it runs its code")
+      .called("FILE.so")
+      .one_word_each_time();
+  command.value("--input", options->inputs, "NAME[:options],...: " + sources);
+  command.reads("--script", options->script, "simulated people: the same as --input scripted:FILE").called("FILE");
+  command.reads("--mapping", options->mapping, "which gesture does what (docs/input.md)").called("FILE");
+  command.flag("--offscreen", options->offscreen, "without a window, in simulated time");
+  command.value("--frames", options->frames, "folder for pictures of the frames").called("DIR");
+  command.value("--every", options->every, "write only each N-th frame").range(1, 100000);
+  command.writes("--record", options->record, FileFormat::kOther, "write the input for --input replay:FILE")
+      .called("FILE");
+  command.value("--size", options->size,
+                "WIDTHxHEIGHT of the window (1280x720; offscreen 960x540, or the panel's own)");
+  command.value("--monitor", options->monitor, "part of the name of the monitor to use (dubsar displays lists them)");
+  command.flag("--fullscreen", options->fullscreen,
+               "cover the monitor; displays that need exact pixels do so by themselves");
+  command.flag("--windowed", options->windowed, "never cover the monitor");
   command
-      ->add_option("--fps", options->fps,
-                   "simulated time: N frames a second however long they take (offscreen 30; a window: real time)")
-      ->check(CLI::Range(1.0, 240.0));
+      .value("--fps", options->fps,
+             "simulated time: N frames a second however long they take (offscreen 30; a window: real time)")
+      .range(1.0, 240.0);
+  command.value("--seconds", options->seconds, "end after this time at the latest (offscreen 60, a window stays open)")
+      .range(0.1, 3600.0);
+  command.value("--bridge-port", options->bridge_port, "of Looking Glass Bridge, for panel auto").range(0, 65535);
   command
-      ->add_option("--seconds", options->seconds,
-                   "end after this time at the latest (offscreen 60, a window stays open)")
-      ->check(CLI::Range(0.1, 3600.0));
-  command->add_option("--bridge-port", options->bridge_port, "of Looking Glass Bridge, for panel auto")
-      ->check(CLI::Range(0, 65535));
-  command
-      ->add_option("--display-delay-ms", options->display_delay_ms,
-                   "time from cameras to light, for the prediction of heads")
-      ->check(CLI::Range(0.0, 100.0));
-  command->add_option("--view", options->view,
-                      "the home view: front, back, left ... or orbit:AZIMUTH,ELEVATION[,ROLL]");
-  command->add_option("--style", options->style, "shading, as of render");
-  command->add_option("--partition", options->partitions, "only these parts: names or ids, e.g. tablet")
-      ->delimiter(',');
-  command->add_option("--samples", options->samples, "samples per pixel side (2; offscreen 1)")
-      ->check(CLI::Range(1, 8));
-  command->footer(
+      .value("--display-delay-ms", options->display_delay_ms, "time from cameras to light, for the prediction of heads")
+      .range(0.0, 100.0);
+  command.value("--view", options->view, "the home view: front, back, left ... or orbit:AZIMUTH,ELEVATION[,ROLL]");
+  command.value("--style", options->style, "shading, as of render");
+  command.value("--partition", options->partitions, "only these parts: names or ids, e.g. tablet").separated_by(',');
+  command.value("--samples", options->samples, "samples per pixel side (2; offscreen 1)").range(1, 8);
+  command.footer(
       "In the window: F1 shows what mouse, keys and hands do and how the sources are; F2 goes to the next display, F11 "
       "covers\n"
       "the monitor, Escape ends.\n"

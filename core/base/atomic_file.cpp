@@ -21,12 +21,37 @@ Result<void> write_all(int descriptor, std::span<const std::byte> bytes, std::in
   }
   return {};
 }
+
+/// Where a chain of links ends, also when nothing is there yet. Fails after 40 links, as the system does.
+Result<fs::path> behind_links(const fs::path& name) {
+  fs::path at = name;
+  std::error_code error;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(at, error)); ++links) {
+    const fs::path next = fs::read_symlink(at, error);
+    if (error || links == 40)
+      return fail(ErrorKind::kCannotCreate, "cannot create {}: its link leads nowhere, expected a file name",
+                  name.string());
+    at = next.is_absolute() ? next : at.parent_path() / next;
+  }
+  return at;
+}
 }  // namespace
 
-Result<AtomicFile> AtomicFile::create(const fs::path& target, std::int64_t expected_bytes) {
+Result<void> check_output_kind(const fs::path& target) {
   std::error_code ignored;
-  if (target.filename().empty() || fs::is_directory(target, ignored))
-    return fail(ErrorKind::kCannotCreate, "cannot create {}: it is a folder, expected a file name", target.string());
+  const fs::file_status status = fs::status(target, ignored);
+  const char* found = nullptr;
+  if (target.filename().empty() || fs::is_directory(status)) found = "a folder";
+  if (fs::is_fifo(status)) found = "a pipe";
+  if (fs::is_socket(status)) found = "a socket";
+  if (fs::is_block_file(status) || fs::is_character_file(status)) found = "a device";
+  if (!found) return {};
+  return fail(ErrorKind::kCannotCreate, "cannot create {}: it is {}, expected a file name", target.string(), found);
+}
+
+Result<AtomicFile> AtomicFile::create(const fs::path& name, std::int64_t expected_bytes) {
+  DUBSAR_TRY(check_output_kind(name));
+  DUBSAR_ASSIGN(const fs::path target, behind_links(name));
   AtomicFile file;
   file.target_ = target;
   std::random_device random;
@@ -42,6 +67,9 @@ Result<AtomicFile> AtomicFile::create(const fs::path& target, std::int64_t expec
     file.temporary_.clear();
     return error;
   }
+  if (struct stat old{}; ::stat(target.c_str(), &old) == 0)
+    if (::fchmod(file.descriptor_, old.st_mode & 0777) != 0)
+      return fail_errno(errno, fmt::format("cannot give {} the rights of the old file", target.string()));
   if (expected_bytes > 0) {
     // EOPNOTSUPP and EINVAL: the file system cannot reserve; the write itself will tell.
     const int error = ::posix_fallocate(file.descriptor_, 0, expected_bytes);

@@ -11,11 +11,16 @@
 
 namespace dubsar {
 
-/// Writes go to a temporary file beside the target (O_EXCL); commit() syncs and renames it. Without commit() the
+/// kCannotCreate when `target` is something that a file must not take the place of: a folder, a named pipe, a socket or
+/// a device. Links are followed. A file, or nothing, is fine.
+Result<void> check_output_kind(const std::filesystem::path& target);
+
+/// Writes go to a temporary file beside the target (O_EXCL; beside what a link points to, so that the link stays), with
+/// the access rights of the file that it replaces; commit() syncs and renames it. Without commit() the
 /// destructor removes it. Uses write(2), never stdio, so that every failure is seen. One thread.
 class AtomicFile {
  public:
-  /// Errors: kCannotCreate (no such folder, target is a folder), kPermission, kIo (disk full: when expected_bytes is
+  /// Errors: kCannotCreate (no such folder, target is no file), kPermission, kIo (disk full: when expected_bytes is
   /// given, space is reserved first).
   static Result<AtomicFile> create(const std::filesystem::path& target, std::int64_t expected_bytes = 0);
 

@@ -23,7 +23,7 @@ namespace {
 // foot of the material's peak as the filters take the noise away: it keeps gaps open and eats 0.7 voxel of everything
 // else. Surfaces count more, and glued parts are separated later by shape: the cap is the half level.
 
-// Of the design note (denoising and automatic parameters), tried on phantoms and on public scans.
+// Tried on phantoms and on public scans.
 constexpr double kBandwidth = 0.004;       // of the histogram's range: finds peaks
 constexpr double kDeepestValley = 0.8;     // density of the valley / of the lower peak, above it there is one peak only
 constexpr double kLeastProminence = 0.05;  // of the lower peak

@@ -58,7 +58,7 @@ struct Histogram {
   double centre(double bin) const noexcept { return low + (bin + 0.5) * width; }
 };
 
-/// Bins over the range that leaves `tail` of the values out on either side, widened by 2 % (design note: `tail` 0.01 %,
+/// Bins over the range that leaves `tail` of the values out on either side, widened by 2 % (`tail` 0.01 %,
 /// 2,048 bins). Values that come in steps (integer scans) are spread over their step, so that no comb of empty bins
 /// remains; a step wider than 1/32 of the range is taken as a gap. A volume with one value has width 0 and no bins.
 Histogram make_histogram(const ValueCounts& counts, int bins = 2048, double tail = 1e-4);

@@ -1,6 +1,6 @@
 #pragma once
 // The air around and inside a scanned object: which of it is outside, which is enclosed once cracks are
-// closed, and how deep any point lies below the outside (design note: segmentation).
+// closed, and how deep any point lies below the outside (docs/method.md, 8).
 
 #include <cstdint>
 #include <glm/vec3.hpp>

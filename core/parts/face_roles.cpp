@@ -53,7 +53,7 @@ class Sets {
 /// cut.
 Result<std::vector<bool>> cut_faces(const SurfaceModel& model, const FaceScene& scene, const std::vector<bool>& active,
                                     const std::vector<float>& preference, Progress& progress) {
-  // Design note: crease weight exp(-(max(0, -k - 0.2) / 0.25)), lambda 2 to 4.
+  // Crease weight exp(-(max(0, -k - 0.2) / 0.25)), lambda 2 to 4.
   constexpr float kLambda = 3.0f, kFlat = 0.2f, kFall = 0.25f;
   constexpr float kClear = 0.3f;    // preference per area
   constexpr double kUnits = 256.0;  // integer capacity per unit of area or length

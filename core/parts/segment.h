@@ -1,6 +1,6 @@
 #pragma once
 // Segmentation: which x-quads belong to the hidden tablet, to the outside and the inside of its envelope, or
-// to loose pieces (paper section 3.4.3; design note: segmentation).
+// to loose pieces (paper section 3.4.3; docs/method.md, 8).
 
 #include <string>
 #include <vector>
@@ -22,7 +22,7 @@ enum class SegmentMethod {
 struct SegmentOptions {
   SegmentMethod method = SegmentMethod::kNested;
   float concavity = -0.2f;        ///< kConcavity: cut at k_min below this, per grid step; -0.1 to -0.3 work on phantoms
-  int dilate_rings = 1;           ///< kConcavity: rings of vertices added to the cut; 0 leaks (design note)
+  int dilate_rings = 1;           ///< kConcavity: rings of vertices added to the cut; 0 leaks
   int largest_crack_radius = 8;   ///< widest crack in the envelope that can be closed is 2 r + 1 grid steps
   double smallest_area = 0.001;   ///< pieces below this share of the whole area are merged
   double smallest_volume = 64.0;  ///< and closed pieces below this volume, voxels of the processed grid

@@ -24,7 +24,7 @@ bool drain(int descriptor, std::string& text) {
 
 [[noreturn]] void become_program(const std::vector<std::string>& arguments, const RunOptions& options, int out,
                                  int err) {
-  ::dup2(out, STDOUT_FILENO);
+  ::dup2(options.out.empty() ? out : ::open(options.out.c_str(), O_WRONLY), STDOUT_FILENO);
   ::dup2(err, STDERR_FILENO);
   if (options.file_size_limit >= 0) {
     const rlimit limit{static_cast<rlim_t>(options.file_size_limit), static_cast<rlim_t>(options.file_size_limit)};

@@ -19,6 +19,7 @@ struct RunOptions {
   std::function<int(const std::string& err)> watch;
   long file_size_limit = -1;  ///< RLIMIT_FSIZE in bytes
   double timeout_s = 120.0;   ///< then the program is killed
+  std::string out{};          ///< a file or device for stdout; empty: it is caught
 };
 
 /// Runs the program `dubsar` of this build with `arguments`.

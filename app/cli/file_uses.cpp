@@ -1,0 +1,134 @@
+#include "app/cli/file_uses.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+
+#include "core/base/atomic_file.h"
+#include "core/exa/container.h"
+#include "core/hdf5/hdf5_file.h"
+
+namespace dubsar::app {
+namespace fs = std::filesystem;
+namespace {
+
+/// The file of an input text, which may end in ":/dataset" or begin with a wire's name.
+fs::path file_of(const std::string& text) {
+  std::error_code ignored;
+  if (fs::exists(text, ignored)) return text;
+  const auto colon = text.rfind(":/");
+  return colon == std::string::npos ? text : text.substr(0, colon);
+}
+
+/// By device and inode where both exist, else by name with links and ".." resolved.
+bool same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error) && !error) return true;
+  const fs::path left = fs::weakly_canonical(a, error), right = fs::weakly_canonical(b, error);
+  return !error && left == right;
+}
+
+std::string lower_suffix(const std::string& path) {
+  std::string suffix = fs::path(path).extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+  return suffix;
+}
+
+Result<void> check_place(const FileUse& file) {
+  std::error_code ignored;
+  const fs::path target = fs::exists(file.path, ignored) ? fs::canonical(file.path, ignored) : fs::path(file.path);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  DUBSAR_TRY(check_output_kind(file.path));
+  if (!fs::is_directory(folder, ignored))
+    return fail(ErrorKind::kCannotCreate, "cannot create {}: the folder {} does not exist, make it first", file.path,
+                folder.string());
+  if (::access(folder.c_str(), W_OK) != 0)
+    return fail(ErrorKind::kPermission, "cannot create {}: no permission to write in {}", file.path, folder.string());
+  return {};
+}
+
+Result<void> check_not_read(const FileUse& out, const FileUse& in) {
+  std::error_code ignored;
+  const fs::path read = file_of(in.path);
+  if (same_file(out.path, read))
+    return fail(ErrorKind::kUsage,
+                "{} {} is the file that is read as {}; expected another name, so that nothing is lost", out.option,
+                out.path, in.option);
+  if (fs::is_directory(read, ignored) && fs::exists(out.path, ignored) &&
+      same_file(fs::absolute(out.path, ignored).parent_path(), read))
+    return fail(ErrorKind::kUsage, "{} {} lies in the folder that is read as {}; expected a new name", out.option,
+                out.path, in.option);
+  return {};
+}
+
+/// What a file is by its first bytes: only those kinds that people cannot make again at will.
+std::string_view treasure(const std::string& path, const std::array<char, 16>& head, std::size_t count) {
+  const std::string_view bytes(head.data(), count);
+  if (bytes.starts_with(kExaMagic)) return "a surface file (EXA)";
+  if (Hdf5File::has_signature(path)) return "an HDF5 file";
+  if (bytes.starts_with("NRRD")) return "a volume (NRRD)";
+  return {};
+}
+
+bool is_phantom(const std::string& path) {
+  const auto file = Hdf5File::open(path);
+  if (!file) return false;
+  for (const char* object : {"/", "/truth/label"})
+    if (file->string(object, "creator") == "dubsar phantom") return true;
+  return false;
+}
+
+Result<void> check_replaced(const FileUse& out) {
+  std::ifstream file(out.path, std::ios::binary);
+  std::array<char, 16> head{};
+  file.read(head.data(), head.size());
+  const auto count = static_cast<std::size_t>(file.gcount());
+  if (count == 0) return {};
+  const std::string_view bytes(head.data(), count);
+  const std::string_view found = treasure(out.path, head, count);
+  const bool json = bytes.find_first_not_of(" \t\r\n") != std::string_view::npos &&
+                    std::string_view("{[").find(bytes[bytes.find_first_not_of(" \t\r\n")]) != std::string_view::npos;
+  if (out.format == FileFormat::kJson && !json)
+    return fail(ErrorKind::kCannotCreate, "{} {} exists and is {}, expected a new name or an older JSON file",
+                out.option, out.path, found.empty() ? "no JSON" : found);
+  if (found.empty()) return {};
+  if (out.format == FileFormat::kExa && bytes.starts_with(kExaMagic)) return {};
+  if (out.format == FileFormat::kPhantom && is_phantom(out.path)) return {};
+  return fail(ErrorKind::kCannotCreate, "{} {} exists and is {}, which would be lost; expected another name",
+              out.option, out.path, out.format == FileFormat::kPhantom ? "an HDF5 file that no phantom made" : found);
+}
+
+Result<void> check_suffix(const FileUse& out) {
+  if (out.format == FileFormat::kExa && lower_suffix(out.path) != ".exa")
+    return fail(ErrorKind::kUsage, "{} {} found, expected a name that ends in .exa", out.option, out.path);
+  const std::string suffix = lower_suffix(out.path);
+  if (out.format == FileFormat::kPhantom && suffix != ".h5" && suffix != ".hdf5" && suffix != ".nxs")
+    return fail(ErrorKind::kUsage, "{} {} found, expected a name that ends in .h5, .hdf5 or .nxs", out.option,
+                out.path);
+  return {};
+}
+
+}  // namespace
+
+Result<void> check_file_uses(std::span<const FileUse> files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!files[i].written) continue;
+    DUBSAR_TRY(check_place(files[i]));
+    DUBSAR_TRY(check_suffix(files[i]));
+    for (std::size_t k = 0; k < files.size(); ++k) {
+      if (k == i) continue;
+      if (!files[k].written) DUBSAR_TRY(check_not_read(files[i], files[k]));
+      if (files[k].written && k < i && same_file(files[i].path, files[k].path))
+        return fail(ErrorKind::kUsage, "{} and {} are the same file {}, expected two names", files[k].option,
+                    files[i].option, files[i].path);
+    }
+    DUBSAR_TRY(check_replaced(files[i]));
+  }
+  return {};
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,27 @@
+#pragma once
+// What a verb reads and what it writes, checked before any work: nothing that is read, and nothing that somebody may
+// not be able to make again, is written over.
+
+#include <span>
+#include <string>
+
+#include "core/base/result.h"
+
+namespace dubsar::app {
+
+enum class FileFormat { kOther, kJson, kExa, kMesh, kPicture, kPhantom };
+
+struct FileUse {
+  std::string option;  ///< as it stands on the command line, e.g. "--json"
+  std::string path;    ///< never empty
+  bool written = false;
+  FileFormat format = FileFormat::kOther;  ///< of what is written
+};
+
+/// For every file that would be written: its folder exists and can be written in; it is no folder, pipe, socket or
+/// device; it is not the same file (also by another name or link) as one that is read or written besides, nor one of
+/// the files of a folder that is read; its suffix is that of its format, where there is one; and what is there already
+/// is no scan, surface or report of another kind. kCannotCreate, kPermission, kUsage (suffix, the same file twice).
+Result<void> check_file_uses(std::span<const FileUse> files);
+
+}  // namespace dubsar::app

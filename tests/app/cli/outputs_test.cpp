@@ -1,0 +1,156 @@
+// What a tired person may type as an output: the input itself, the same name twice, a link, a pipe, a device, somebody
+// else's file. Nothing is ever lost, and one sentence says what to do.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/base/atomic_file.h"
+#include "tests/app/cli/run_program.h"
+
+namespace dubsar::test {
+namespace {
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class Outputs : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder() = fs::temp_directory_path() / fmt::format("dubsar_outputs_{}", ::getpid());
+    fs::create_directories(folder());
+    ASSERT_EQ(run_dubsar({"phantom", at("scan.h5"), "--preset", "tiny", "--seed", "77"}).exit_code, 0);
+    ASSERT_EQ(run_dubsar({"process", at("scan.h5"), "-o", at("tablet.exa"), "--no-ao", "-q"}).exit_code, 0);
+  }
+  static void TearDownTestSuite() { fs::remove_all(folder()); }
+  static fs::path& folder() {
+    static fs::path path;
+    return path;
+  }
+  static std::string at(const std::string& name) { return (folder() / name).string(); }
+  static std::string bytes(const std::string& name) { return read_text_file(at(name), 1 << 30).value_or("gone"); }
+
+  /// The run is refused with `exit_code` and a sentence, and `kept` is what it was, byte for byte.
+  static void refused(const std::vector<std::string>& arguments, int exit_code, const std::string& kept,
+                      const std::string& says) {
+    const std::string before = bytes(kept);
+    const ProgramRun run = run_dubsar(arguments);
+    EXPECT_EQ(run.exit_code, exit_code) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(says));
+    EXPECT_EQ(bytes(kept), before) << kept << " was changed by " << ::testing::PrintToString(arguments);
+  }
+};
+
+TEST_F(Outputs, TheScanThatIsReadIsNeverWrittenOver) {
+  fs::create_symlink(at("scan.h5"), at("alias.exa"));
+  fs::create_hard_link(at("scan.h5"), at("twin.exa"));
+  fs::create_hard_link(at("scan.h5"), at("renamed.exa"));
+  refused({"process", at("scan.h5"), "-o", at("scan.h5")}, 64, "scan.h5", "expected a name that ends in .exa");
+  refused({"process", at("renamed.exa"), "-o", at("renamed.exa")}, 64, "scan.h5", "the file that is read");
+  refused({"process", at("scan.h5"), "-o", at("alias.exa")}, 64, "scan.h5", "the file that is read");
+  refused({"process", at("scan.h5"), "-o", at("twin.exa")}, 64, "scan.h5", "the file that is read");
+  refused({"process", at("scan.h5") + ":/entry/data/data", "-o", at("x.exa"), "--json", at("scan.h5")}, 64, "scan.h5",
+          "the file that is read");
+  refused({"info", at("scan.h5"), "--json", folder().string() + "/./../" + folder().filename().string() + "/scan.h5"},
+          64, "scan.h5", "the file that is read");
+  EXPECT_TRUE(fs::is_symlink(at("alias.exa")));
+}
+
+TEST_F(Outputs, OneFileIsNotWrittenTwice) {
+  refused({"process", at("scan.h5"), "-o", at("a.exa"), "--json", at("a.exa")}, 64, "scan.h5", "the same file");
+  EXPECT_FALSE(fs::exists(at("a.exa")));
+}
+
+TEST_F(Outputs, FilesOfAnotherKindStay) {
+  fs::copy_file(at("scan.h5"), at("other.h5"));
+  ASSERT_TRUE(write_file_atomically(at("thesis.txt"), "Chapter 1"));
+  fs::copy_file(at("tablet.exa"), at("older.exa"));
+  refused({"info", at("tablet.exa"), "--json", at("other.h5")}, 73, "other.h5", "an HDF5 file");
+  refused({"info", at("tablet.exa"), "--json", at("thesis.txt")}, 73, "thesis.txt", "no JSON");
+  refused({"render", at("tablet.exa"), "-o", at("other.h5")}, 73, "other.h5", "an HDF5 file");
+  refused({"export", at("tablet.exa"), at("older.exa")}, 73, "older.exa", "a surface file");
+  refused({"process", at("scan.h5"), "-o", at("x.png")}, 64, "scan.h5", "ends in .exa");
+  EXPECT_FALSE(fs::exists(at("x.png")));
+}
+
+TEST_F(Outputs, APhantomReplacesOnlyPhantoms) {
+  // A scan by somebody else: the same file, but nothing says that a phantom made it.
+  std::string foreign = bytes("scan.h5");
+  for (std::size_t found; (found = foreign.find("dubsar phantom")) != std::string::npos;)
+    foreign.replace(found, 14, "beamline P05  ");
+  ASSERT_TRUE(write_file_atomically(at("foreign.h5"), foreign));
+  refused({"phantom", at("foreign.h5"), "--preset", "tiny"}, 73, "foreign.h5", "no phantom made");
+  ASSERT_EQ(run_dubsar({"phantom", at("again.h5"), "--preset", "tiny", "--truth", at("truth.h5")}).exit_code, 0);
+  EXPECT_EQ(run_dubsar({"phantom", at("again.h5"), "--preset", "tiny", "--truth", at("truth.h5")}).exit_code, 0);
+  refused({"phantom", at("again.h5"), "--preset", "tiny", "--truth", at("again.h5")}, 64, "again.h5", "the same file");
+}
+
+TEST_F(Outputs, ReportsAndSurfacesReplaceOlderOnes) {
+  EXPECT_EQ(run_dubsar({"info", at("tablet.exa"), "--json", at("report.json")}).exit_code, 0);
+  EXPECT_EQ(run_dubsar({"info", at("tablet.exa"), "--json", at("report.json")}).exit_code, 0);
+  ASSERT_EQ(run_dubsar({"process", at("scan.h5"), "-o", at("made.exa"), "--no-ao", "-q"}).exit_code, 0);
+  EXPECT_EQ(run_dubsar({"process", at("scan.h5"), "-o", at("made.exa"), "--no-ao", "-q"}).exit_code, 0);
+}
+
+TEST_F(Outputs, LinksStayLinksAndTheFileBehindThemIsReplaced) {
+  ASSERT_TRUE(write_file_atomically(at("behind.json"), "{}"));
+  fs::create_symlink("behind.json", at("link.json"));
+  fs::create_symlink("not_there_yet.json", at("dangling.json"));
+  EXPECT_EQ(run_dubsar({"info", at("tablet.exa"), "--json", at("link.json")}).exit_code, 0);
+  EXPECT_TRUE(fs::is_symlink(at("link.json")));
+  EXPECT_GT(bytes("behind.json").size(), 2u);
+  EXPECT_EQ(run_dubsar({"info", at("tablet.exa"), "--json", at("dangling.json")}).exit_code, 0);
+  EXPECT_TRUE(fs::is_symlink(at("dangling.json")));
+  EXPECT_TRUE(fs::is_regular_file(at("not_there_yet.json")));
+}
+
+TEST_F(Outputs, PipesAndDevicesAreNoFiles) {
+  ASSERT_EQ(::mkfifo(at("pipe.exa").c_str(), 0600), 0);
+  const ProgramRun pipe = run_dubsar({"process", at("scan.h5"), "-o", at("pipe.exa")});
+  EXPECT_EQ(pipe.exit_code, 73);
+  EXPECT_THAT(pipe.err, HasSubstr("it is a pipe"));
+  EXPECT_TRUE(fs::is_fifo(at("pipe.exa")));
+  const ProgramRun device = run_dubsar({"info", at("tablet.exa"), "--json", "/dev/null"});
+  EXPECT_EQ(device.exit_code, 73);
+  EXPECT_THAT(device.err, HasSubstr("it is a device"));
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(Outputs, AnOldFilesRightsAreKept) {
+  ASSERT_EQ(run_dubsar({"info", at("tablet.exa"), "--json", at("private.json")}).exit_code, 0);
+  fs::permissions(at("private.json"), fs::perms::owner_read | fs::perms::owner_write);
+  ASSERT_EQ(run_dubsar({"info", at("tablet.exa"), "--json", at("private.json")}).exit_code, 0);
+  EXPECT_EQ(fs::status(at("private.json")).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST(CommandLine, FailuresAreObjectsForProgramsThatAskedForJson) {
+  const ProgramRun run = run_dubsar({"info", "/no/such/file.exa", "--json", "-"});
+  EXPECT_EQ(run.exit_code, 66);
+  const auto object = nlohmann::json::parse(run.out, nullptr, false);
+  ASSERT_TRUE(object.is_object()) << run.out;
+  EXPECT_EQ(object["error"]["exit_code"], 66);
+  EXPECT_THAT(object["error"]["message"].get<std::string>(), HasSubstr("/no/such/file.exa"));
+}
+
+TEST(CommandLine, AFullStdoutIsAnInputOutputError) {
+  RunOptions full;
+  full.out = "/dev/full";
+  const ProgramRun run = run_dubsar({"doctor", "--json", "-"}, full);
+  EXPECT_EQ(run.exit_code, 74) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("cannot write the result to stdout"));
+}
+
+TEST(CommandLine, NothingTypedListsTheVerbsAndSlipsAreNamed) {
+  const ProgramRun nothing = run_dubsar({});
+  EXPECT_EQ(nothing.exit_code, 64);
+  EXPECT_THAT(nothing.err, HasSubstr("turn a CT scan into separated"));
+  EXPECT_THAT(run_dubsar({"proces", "a.h5"}).err, HasSubstr("Did you mean process?"));
+  EXPECT_THAT(run_dubsar({"render", "a.exa", "--stile", "clay"}).err, HasSubstr("Did you mean --style?"));
+  EXPECT_THAT(run_dubsar({"render", "a.exa", "--xyzzy", "clay"}).err, ::testing::Not(HasSubstr("Did you mean")));
+}
+
+}  // namespace
+}  // namespace dubsar::test
