@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <optional>
 #include <string>
 
 #include "core/base/clock.h"
@@ -24,7 +25,10 @@ struct InputEvent {
   MouseButton button = MouseButton::kLeft;
   bool down = false;  ///< kButton, kKey
   std::uint8_t modifiers = kNoModifier;
-  std::string key{};  ///< kKey: "left", "up", "home", "space", "a", "1", "+", "f5" ...
+  std::string key{};    ///< kKey: "left", "up", "home", "space", "a", "1", "+", "f5" ...
+  bool repeat = false;  ///< kKey: the keyboard says again that it is down; nobody pressed it
+  /// Where the pointer is, in heights of the window from its middle, to the right and up; none: nobody knows.
+  std::optional<glm::dvec2> at{};
 };
 
 }  // namespace dubsar

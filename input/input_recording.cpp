@@ -55,6 +55,8 @@ json event_json(const InputEvent& event) {
   if (event.kind == EventKind::kMotion || event.kind == EventKind::kWheel) out["by"] = {event.motion.x, event.motion.y};
   if (event.kind == EventKind::kButton) out["button"] = static_cast<int>(event.button);
   if (event.kind == EventKind::kKey) out["key"] = event.key;
+  if (event.repeat) out["repeat"] = true;
+  if (event.at) out["at"] = {event.at->x, event.at->y};
   if (event.kind == EventKind::kButton || event.kind == EventKind::kKey) out["down"] = event.down;
   return out;
 }
@@ -174,6 +176,11 @@ InputEvent read_event(LineReader& read, const json& object) {
   if (event.kind == EventKind::kButton)
     event.button = static_cast<MouseButton>(read.whole(read.get(object, "button"), "button", 0, 2));
   if (event.kind == EventKind::kButton || event.kind == EventKind::kKey) event.down = read.truth(object, "down");
+  if (object.is_object() && object.contains("repeat")) event.repeat = read.truth(object, "repeat");
+  if (object.is_object() && object.contains("at")) {
+    const auto at = read.reals<2>(object.at("at"), "at");
+    event.at = {at[0], at[1]};
+  }
   if (event.kind == EventKind::kKey) {
     const json& key = read.get(object, "key");
     if (key.is_string() && key.get_ref<const std::string&>().size() <= 32) {

@@ -7,6 +7,17 @@ namespace {
 
 constexpr std::size_t kMost = 4096;
 
+/// What a full queue can do without: see WindowEvents.
+std::vector<InputEvent>::iterator least_missed(std::vector<InputEvent>& queue) {
+  const auto value = [](const InputEvent& e) {
+    if (e.kind == EventKind::kMotion) return 0;
+    if (e.kind == EventKind::kWheel || e.repeat) return 1;
+    return e.down ? 2 : 3;
+  };
+  return std::min_element(queue.begin(), queue.end(),
+                          [&](const InputEvent& a, const InputEvent& b) { return value(a) < value(b); });
+}
+
 class WindowSource final : public InputSource {
  public:
   WindowSource(WindowEvents* window, bool keys) : window_(window), keys_(keys) {}
@@ -43,13 +54,10 @@ void WindowEvents::push(const InputEvent& event) {
       queue.back().modifiers == event.modifiers) {
     queue.back().motion += event.motion;
     queue.back().time = event.time;
+    queue.back().at = event.at;
     return;
   }
-  if (queue.size() >= kMost) {
-    const auto motion =
-        std::find_if(queue.begin(), queue.end(), [](const InputEvent& e) { return e.kind == EventKind::kMotion; });
-    queue.erase(motion == queue.end() ? queue.begin() : motion);
-  }
+  if (queue.size() >= kMost) queue.erase(least_missed(queue));
   queue.push_back(event);
 }
 

@@ -56,7 +56,7 @@ class Live {
  private:
   Result<void> open(const TriMesh& mesh);
   Result<void> place_changed();
-  void use_window_events();
+  void use_window_event(const WindowEvent& told);
   void obey(SessionCommand command);
   void use_key(const std::string& key);
   bool ask(const std::string& key);
@@ -146,6 +146,7 @@ Result<void> Live::open(const TriMesh& mesh) {
     for (std::string& spec : present_inputs()) inputs.push_back(std::move(spec));
   }
   DUBSAR_TRY(sources_->start(inputs));
+  window_->on_event([this](const WindowEvent& event) { use_window_event(event); });
   DUBSAR_TRY(place_changed());
   if (!note.empty()) {
     log_warning("{}", note);
@@ -246,17 +247,16 @@ bool Live::ask(const std::string& key) {
   return answer.taken;
 }
 
-void Live::use_window_events() {
-  for (WindowEvent& event : window_->take_events()) {
-    if (simulated()) event.time = now();
-    const bool key = event.kind == WindowEvent::Kind::kKey;
-    if (key && (session_command(event.key) || help_open_)) {
-      if (event.down) use_key(event.key);
-      if (session_command(event.key)) continue;
-    }
-    if (key && event.down && options_.keys && ask(event.key)) continue;
-    events_.push(to_input_event(event));
+void Live::use_window_event(const WindowEvent& told) {
+  InputEvent event = to_input_event(told, window_->size());
+  if (simulated()) event.time = now();
+  const bool key = event.kind == EventKind::kKey;
+  if (key && (session_command(event.key) || help_open_)) {
+    if (event.down && !event.repeat) use_key(event.key);
+    if (session_command(event.key)) return;
   }
+  if (key && event.down && options_.keys && ask(event.key)) return;
+  events_.push(event);
 }
 
 std::vector<HelpSection> Live::help() const {
@@ -378,13 +378,13 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
   glm::dquat last_turn = session_->view().rotation;
   const auto delay = static_cast<TimestampNs>(1e9 * options_.display_delay_s);
   if (!simulated()) steering_ = std::jthread([this](const std::stop_token& stop) { steer(stop); });
-  for (std::int64_t steps = 0; !window_->should_close() && !over(now()); ++steps) {
+  bool ends = false;
+  for (std::int64_t steps = 0; !ends; ++steps) {
     if (progress_.cancelled()) {
       DUBSAR_TRY(save_recording());  // what a person showed is not lost with the session
       return cancelled_error();
     }
     window_->poll_events();
-    use_window_events();
     if (window_->take_place_changed())
       if (auto done = place_changed(); !done) log_warning("{}", done.error().message);
     const TimestampNs at = now();
@@ -397,7 +397,8 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
     update_overlay(at);
     drawn_ = false;
     const PixelSize size = window_->size();
-    const bool due = simulated() ? steps % options_.every == 0 : session_->needs_paint();
+    const bool damaged = window_->take_damaged();
+    const bool due = simulated() ? steps % options_.every == 0 : damaged || session_->needs_paint();
     if (due && size.width > 0 && size.height > 0) {
       auto shown = show(clock_.now());
       failures_ = shown ? 0 : failures_ + 1;
@@ -415,7 +416,8 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
             .sources = sources_->rows(),
             .session = *session_,
             .window = *window_});
-    wait();
+    ends = window_->should_close() || over(now());
+    if (!ends) wait();
   }
   progress_.end();
   out_.seconds = 1e-9 * static_cast<double>(now() - start_);

@@ -75,7 +75,7 @@ struct Session::Parts {
   std::optional<glm::dvec3> selected_m;  // since the last poll()
   ViewState seen;
   TimestampNs used_input = 0;
-  TimestampNs now = 0, moved_at = 0;
+  TimestampNs now = 0, moved_at = 0, prepared_at = 0;
   Viewer viewer;  // of the last poll()
   std::optional<std::pair<ViewState, Viewer>> painted;
   std::vector<View> views;      // painted
@@ -122,10 +122,12 @@ Result<void> Session::Parts::prepare(OutputSink& next) {
   if (options.pattern)
     for (int i = 0; i < traits.views; ++i)
       DUBSAR_TRY(layers.write_layer(i, numbered_view(traits.view.width, traits.view.height, i, traits.views)));
+  if (array) exact_view_ms *= static_cast<double>(layers.width()) * layers.height() / array->width() / array->height();
   array = std::move(layers);
   overlaid.reset();
   painted.reset();
   coarse = 0;
+  prepared_at = now;
   const ShownRect shown = shown_mm(next.views(Viewer())[0]);
   window = shown.size;
   middle = shown.middle;
@@ -194,6 +196,7 @@ Result<void> Session::set_display(std::string_view spec) {
 }
 
 Result<void> Session::set_screen(const Screen& screen) {
+  if (screen == parts_->options.screen) return {};
   const Screen before = std::exchange(parts_->options.screen, screen);
   auto done = parts_->prepare(*parts_->sink);
   if (!done) {
@@ -219,7 +222,7 @@ void Session::Parts::steer(TimestampNs at) {
   const InputFrame& frame = mixer.poll(steered);
   if (told) told(steered, frame);
   navigator.update(steered, frame);
-  if (navigator.kept_head()) head.add(*navigator.kept_head());
+  if (navigator.kept_head()) head.add(*navigator.kept_head(), steered);
   if (navigator.selected_m()) selected_m = navigator.selected_m();
   newest_input = std::max(newest_input, frame.time);
 }
@@ -275,7 +278,9 @@ Result<void> Session::Parts::paint_moved() {
   if (options.pattern) return {};
   items = {MeshItem{&*mesh, placed, options.shading.style, options.shading.parts}};
   if (!multi) return renderer->render(scene(), views, options.samples, *array);
-  if (exact_view_ms * static_cast<double>(views.size()) > options.budget_ms) {
+  // What is not known to be quick, and what another size may replace at once, is coarse first.
+  if (exact_view_ms == 0.0 || now - prepared_at < kRestNs ||
+      exact_view_ms * static_cast<double>(views.size()) > options.budget_ms) {
     coarse = static_cast<int>(views.size());
     return multi->draw_moving(scene(), views, *array);
   }

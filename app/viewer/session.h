@@ -32,7 +32,8 @@ namespace dubsar::app {
 
 enum class Quality {
   kExact,     ///< all triangles and samples in every picture
-  kAdaptive,  ///< coarse views while things move, where exact ones take longer than budget_ms; exact ones at rest
+  kAdaptive,  ///< coarse views while things move, where exact ones take longer than budget_ms or nobody knows yet what
+              ///< they take, and while the window's size changes; exact ones at rest
 };
 
 struct SessionOptions {

@@ -6,7 +6,8 @@
 
 namespace dubsar::app {
 
-inline InputEvent to_input_event(const WindowEvent& event) {
+/// `window` is the size of its drawing area, which places of the pointer are counted in.
+inline InputEvent to_input_event(const WindowEvent& event, const PixelSize& window) {
   InputEvent out;
   out.time = event.time;
   switch (event.kind) {
@@ -29,6 +30,10 @@ inline InputEvent to_input_event(const WindowEvent& event) {
   out.modifiers =
       static_cast<std::uint8_t>((event.shift ? kShift : 0) | (event.control ? kControl : 0) | (event.alt ? kAlt : 0));
   out.key = event.key;
+  out.repeat = event.repeat;
+  if (event.at && window.height > 0)
+    out.at = glm::dvec2((*event.at)[0] - 0.5 * window.width, 0.5 * window.height - (*event.at)[1]) /
+             static_cast<double>(window.height);
   return out;
 }
 

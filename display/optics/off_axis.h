@@ -24,6 +24,7 @@ struct Screen {
 
   /// Our window in the screen frame.
   WindowRect window_rect() const;
+  friend bool operator==(const Screen&, const Screen&) = default;
 };
 
 /// kUsage unless sizes are positive and sane and the window has at least one pixel; it may reach over the panel's edge.

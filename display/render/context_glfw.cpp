@@ -144,8 +144,6 @@ std::string utf8(unsigned code) {
   return out;
 }
 
-constexpr std::size_t kMostEvents = 4096;
-
 void set_hints(const WindowOptions& options) {
   glfwDefaultWindowHints();
   glfwWindowHint(GLFW_CLIENT_API, GLFW_OPENGL_API);
@@ -171,14 +169,32 @@ void set_hints(const WindowOptions& options) {
 struct GlfwWindow::Callbacks {
   static GlfwWindow& of(GLFWwindow* handle) { return *static_cast<GlfwWindow*>(glfwGetWindowUserPointer(handle)); }
 
-  static void key(GLFWwindow* handle, int key, int, int action, int modifiers) {
-    WindowEvent event{.kind = WindowEvent::Kind::kKey, .down = action != GLFW_RELEASE, .key = key_name(key)};
-    if (!event.key.empty()) of(handle).push(std::move(event), modifiers);
+  static void key(GLFWwindow* handle, int key, int scancode, int action, int modifiers) {
+    GlfwWindow& window = of(handle);
+    window.typing_.reset();
+    if (action == GLFW_RELEASE) {
+      const auto held = window.held_.extract(scancode);
+      if (!held.empty()) window.push({.kind = WindowEvent::Kind::kKey, .key = held.mapped()}, modifiers);
+      return;
+    }
+    std::string name = key_name(key);
+    const bool chord = (modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT)) != 0;
+    if (const char* const typed = glfwGetKeyName(key, scancode); name.empty() && typed != nullptr && chord)
+      name = typed;
+    if (!name.empty()) return window.goes_down(scancode, std::move(name), action == GLFW_REPEAT, modifiers);
+    window.typing_ = Typing{scancode, action == GLFW_REPEAT};
   }
   static void character(GLFWwindow* handle, unsigned code) {
     if (code <= ' ') return;
     if (code >= 'A' && code <= 'Z') code += 'a' - 'A';
-    of(handle).push({.kind = WindowEvent::Kind::kKey, .down = true, .key = utf8(code)}, 0);
+    GlfwWindow& window = of(handle);
+    if (!window.typing_) {  // composed of several keys: nothing is held
+      window.push({.kind = WindowEvent::Kind::kKey, .down = true, .key = utf8(code)}, 0);
+      window.push({.kind = WindowEvent::Kind::kKey, .key = utf8(code)}, 0);
+      return;
+    }
+    const Typing typing = *std::exchange(window.typing_, std::nullopt);
+    window.goes_down(typing.scancode, utf8(code), typing.repeat, held_modifiers(handle));
   }
   static void button(GLFWwindow* handle, int button, int action, int modifiers) {
     const int ours = button == GLFW_MOUSE_BUTTON_LEFT     ? 0
@@ -198,10 +214,9 @@ struct GlfwWindow::Callbacks {
     glfwGetFramebufferSize(handle, &pixels_x, &pixels_y);
     x *= width > 0 ? static_cast<double>(pixels_x) / width : 1.0;
     y *= height > 0 ? static_cast<double>(pixels_y) / height : 1.0;
-    if (window.cursor_)
-      window.push({.kind = WindowEvent::Kind::kMotion, .x = x - (*window.cursor_)[0], .y = y - (*window.cursor_)[1]},
-                  held_modifiers(handle));
-    window.cursor_ = std::array<double, 2>{x, y};
+    const auto before = std::exchange(window.cursor_, std::array<double, 2>{x, y});
+    const std::array<double, 2> from = before.value_or(*window.cursor_);  // the first place is no movement
+    window.push({.kind = WindowEvent::Kind::kMotion, .x = x - from[0], .y = y - from[1]}, held_modifiers(handle));
   }
   static void enter(GLFWwindow* handle, int) {
     for (const int button : {GLFW_MOUSE_BUTTON_LEFT, GLFW_MOUSE_BUTTON_MIDDLE, GLFW_MOUSE_BUTTON_RIGHT})
@@ -209,6 +224,8 @@ struct GlfwWindow::Callbacks {
     of(handle).cursor_.reset();
   }
   static void moved(GLFWwindow* handle, int, int) { of(handle).place_changed_ = true; }
+  static void damaged(GLFWwindow* handle) { of(handle).damaged_ = true; }
+  static void iconified(GLFWwindow* handle, int) { of(handle).damaged_ = true; }
   static int held_modifiers(GLFWwindow* handle) {
     const auto held = [&](int left, int right) {
       return glfwGetKey(handle, left) == GLFW_PRESS || glfwGetKey(handle, right) == GLFW_PRESS;
@@ -228,6 +245,8 @@ struct GlfwWindow::Callbacks {
     glfwSetCursorEnterCallback(handle, enter);
     glfwSetWindowPosCallback(handle, moved);
     glfwSetFramebufferSizeCallback(handle, moved);
+    glfwSetWindowRefreshCallback(handle, damaged);
+    glfwSetWindowIconifyCallback(handle, iconified);
   }
 };
 
@@ -236,8 +255,13 @@ void GlfwWindow::push(WindowEvent event, int modifiers) {
   event.shift = (modifiers & GLFW_MOD_SHIFT) != 0;
   event.control = (modifiers & GLFW_MOD_CONTROL) != 0;
   event.alt = (modifiers & GLFW_MOD_ALT) != 0;
-  if (events_.size() >= kMostEvents) events_.erase(events_.begin());
-  events_.push_back(std::move(event));
+  event.at = cursor_;
+  if (told_) told_(event);
+}
+
+void GlfwWindow::goes_down(int scancode, std::string name, bool repeat, int modifiers) {
+  held_[scancode] = name;
+  push({.kind = WindowEvent::Kind::kKey, .down = true, .repeat = repeat, .key = std::move(name)}, modifiers);
 }
 
 Result<std::vector<Monitor>> list_monitors() {
@@ -331,8 +355,8 @@ Screen GlfwWindow::screen(const Screen& fallback) const {
 void GlfwWindow::present() { glfwSwapBuffers(as_window(window_)); }
 void GlfwWindow::poll_events() { glfwPollEvents(); }
 void GlfwWindow::wait_events(double timeout_s) { glfwWaitEventsTimeout(std::max(timeout_s, 1e-4)); }
-std::vector<WindowEvent> GlfwWindow::take_events() { return std::exchange(events_, {}); }
 bool GlfwWindow::take_place_changed() { return std::exchange(place_changed_, false); }
+bool GlfwWindow::take_damaged() { return std::exchange(damaged_, false); }
 void GlfwWindow::close() { glfwSetWindowShouldClose(as_window(window_), GLFW_TRUE); }
 bool GlfwWindow::fullscreen() const { return glfwGetWindowMonitor(as_window(window_)) != nullptr; }
 

@@ -2,6 +2,8 @@
 // Windows and monitors through GLFW; the only source that includes it. All of this belongs to the main thread.
 
 #include <array>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,14 +46,16 @@ struct WindowEvent {
   TimestampNs time = 0;  ///< steady clock, when the window heard of it
   Kind kind = Kind::kMotion;
   double x = 0.0,
-         y = 0.0;     ///< kMotion: pixels to the right and down; kWheel: notches in y, positive away from the user
-  int button = 0;     ///< kButton: 0 left, 1 middle, 2 right
-  bool down = false;  ///< kButton, kKey; a key that is held repeats
+         y = 0.0;       ///< kMotion: pixels to the right and down; kWheel: notches in y, positive away from the user
+  int button = 0;       ///< kButton: 0 left, 1 middle, 2 right
+  bool down = false;    ///< kButton, kKey
+  bool repeat = false;  ///< kKey: it is held, and nobody pressed it again
   bool shift = false, control = false, alt = false;
-  /// kKey: "left", "page_up", "escape", "f5", "space" ... for keys that type nothing, and what the keyboard's layout
-  /// types
-  /// ("a", "+", "?"), which only goes down.
+  /// kKey: "left", "page_up", "escape", "f5", "space" ... for keys that type nothing, else what the keyboard's layout
+  /// types ("a", "+", "?"); with control or alt what the key types alone ("z").
   std::string key{};
+  /// Where the pointer is: pixels from the upper left corner of the drawing area; none before it was in the window.
+  std::optional<std::array<double, 2>> at{};
 };
 
 /// A window with a current GL 4.5 core context and vertical synchronisation.
@@ -75,10 +79,13 @@ class GlfwWindow final : public GlContext {
   void poll_events();
   /// Returns when something happens in the window, at the latest after `timeout_s`.
   void wait_events(double timeout_s);
-  /// Events since the last call, in order; at most 4096 are kept, the newest.
-  std::vector<WindowEvent> take_events();
+  /// Told every event, in order, while poll_events() or wait_events() runs. There is no queue here.
+  void on_event(std::function<void(const WindowEvent&)> told) { told_ = std::move(told); }
   /// True when the window was moved, resized or put on another monitor since the last call.
   bool take_place_changed();
+  /// True when a part of what was shown is lost since the last call: another window stood before it, or it was
+  /// minimised. Whoever draws presents the picture again.
+  bool take_damaged();
   bool should_close() const;
   void close();  ///< as if the user had closed it
 
@@ -100,13 +107,20 @@ class GlfwWindow final : public GlContext {
   struct Place {
     int x = 0, y = 0, width = 0, height = 0;
   };
+  struct Typing {  ///< a key that types went down; what it types comes in the next callback
+    int scancode = 0;
+    bool repeat = false;
+  };
   void push(WindowEvent event, int modifiers);
+  void goes_down(int scancode, std::string name, bool repeat, int modifiers);
 
   void* window_;
   bool stereo_ = false;
-  std::vector<WindowEvent> events_;
+  std::function<void(const WindowEvent&)> told_;
   std::optional<std::array<double, 2>> cursor_;  // none: the next place is no movement
-  bool place_changed_ = false;
+  std::optional<Typing> typing_;
+  std::map<int, std::string> held_;  // scan codes of keys that are down, by the names that they went down with
+  bool place_changed_ = false, damaged_ = false;
   Place windowed_;  // where it was before it covered the monitor
 };
 

@@ -55,7 +55,8 @@ TEST(Recording, EverythingInAFrameSurvives) {
   frame.frame.time = 400;
   frame.frame.events = {{300, EventKind::kWheel, {0.5, -2}, {}, false, kShift | kAlt, {}},
                         {310, EventKind::kButton, {}, MouseButton::kMiddle, true, kControl, {}},
-                        {320, EventKind::kKey, {}, {}, true, 0, "page_up"}};
+                        {320, EventKind::kKey, {}, {}, true, 0, "page_up", true},
+                        {330, EventKind::kMotion, {3, 4}, {}, false, 0, {}, false, glm::dvec2(-0.25, 0.5)}};
   frame.frame.puck = PuckMotion{399, {0.1, -0.2, 0.3}, {1, 0, -1}};
   HandFrame hand;
   hand.time = 398;
@@ -82,6 +83,8 @@ TEST(Recording, EverythingInAFrameSurvives) {
   EXPECT_FALSE(back[0].frame.hands[0].joint(HandJoint::kIndexTip).valid);
   EXPECT_FALSE(back[0].frame.heads[0].left_eye_m);
   EXPECT_EQ(back[0].frame.events[1].button, MouseButton::kMiddle);
+  EXPECT_TRUE(back[0].frame.events[2].repeat);
+  EXPECT_EQ(back[0].frame.events[3].at, glm::dvec2(-0.25, 0.5));
 }
 
 TEST(Recording, EveryTruncationAndEveryBrokenByteIsRefusedOrHarmless) {

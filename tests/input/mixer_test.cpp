@@ -113,6 +113,29 @@ TEST(WindowEvents, MotionsAreJoinedAndNothingElseIsLost) {
   EXPECT_EQ(frame.events[0].key, "home");
 }
 
+TEST(WindowEvents, AFullQueueKeepsEveryRelease) {
+  WindowEvents window;
+  InputConfig config;
+  config.window = &window;
+  const auto mouse = make_input("mouse", config).value(), keyboard = make_input("keyboard", config).value();
+  for (int i = 0; i < 20000; ++i) {  // motions that cannot be joined, then nothing but presses and repeats
+    window.push({i, EventKind::kMotion, {1, 0}, {}, false, static_cast<std::uint8_t>(i % 2), {}});
+    window.push({i, EventKind::kKey, {}, {}, true, 0, "left", i % 3 != 0});
+    if (i == 100) window.push({i, EventKind::kButton, {}, MouseButton::kLeft, false, 0, {}});
+    if (i == 100) window.push({i, EventKind::kKey, {}, {}, false, 0, "shift"});
+  }
+  for (int i = 0; i < 20000; ++i) window.push({i, EventKind::kWheel, {0, 1}, {}, false, 0, {}});
+  InputFrame frame;
+  mouse->poll(0, frame);
+  EXPECT_LE(frame.events.size(), 4096u);
+  EXPECT_EQ(std::count_if(frame.events.begin(), frame.events.end(),
+                          [](const InputEvent& e) { return e.kind == EventKind::kButton && !e.down; }),
+            1);
+  keyboard->poll(0, frame);
+  EXPECT_LE(frame.events.size(), 4096u);
+  EXPECT_EQ(std::count_if(frame.events.begin(), frame.events.end(), [](const InputEvent& e) { return !e.down; }), 1);
+}
+
 TEST(WindowEvents, ArePutInByOneThreadAndTakenOutThroughTheMixerByAnother) {
   WindowEvents window;
   InputConfig config;

@@ -433,6 +433,101 @@ TEST_F(Live, FullScreenAndBack) {
   EXPECT_EQ(size, (PixelSize{1920, 1200}));
 }
 
+TEST_F(Live, AFloodOfMotionsWhileAPictureIsMadeNeitherLosesTheReleaseNorTheDrag) {
+  ViewState dragged;
+  const auto done = play({
+      {[&] {
+         person_->point(kX + 100, kY + 100);
+         person_->press(1);
+         for (int i = 0; i < 5000; ++i) person_->point(kX + 100 + i % 100, kY + 100);
+         person_->point(kX + 150, kY + 100);
+         person_->release(1);
+         for (int i = 0; i < 5000; ++i) person_->point(kX + 150 + i % 40, kY + 120);
+         person_->settle();  // all of it has come before the next turn of the loop
+       },
+       [&](const LiveMoment& m) {
+         dragged = m.report.view;
+         return m.report.control == Control::kNone && m.report.view.rotation.w != 1.0;
+       }},
+      {[&] {
+         for (int i = 0; i < 50; ++i) person_->point(kX + 100, kY + 100 + i);
+         person_->settle();
+       },
+       [](const LiveMoment&) { return true; }},
+      end(),
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  // 50 pixels to the right between press and release, at 0.4 degrees each.
+  EXPECT_LT(turn_between_deg(dragged.rotation, turn_of({0, 20 * std::numbers::pi / 180, 0})), 0.01);
+  EXPECT_EQ(turn_between_deg(dragged.rotation, done->view.rotation), 0.0) << "the button is up: the drag has ended";
+}
+
+TEST_F(Live, EscapeThatIsHeldClosesTheHelpAndNotTheWindow) {
+  double pressed_s = 0.0;
+  const auto seconds = [] { return 1e-9 * static_cast<double>(SteadyClock().now()); };
+  const auto done = play({
+      {[&] { person_->key("f1"); }, [](const LiveMoment& m) { return m.help; }},
+      {[&] {
+         person_->hold("escape");
+         pressed_s = seconds();
+       },
+       [&](const LiveMoment& m) { return !m.help && seconds() - pressed_s > 1.5; }},  // keys repeat after 0.66 s
+      {[&] { person_->let_go("escape"); }, [](const LiveMoment& m) { return !m.window.should_close(); }},
+      end(),
+  });
+  ASSERT_TRUE(done) << done.error().message;
+}
+
+TEST_F(Live, WhatAnotherWindowOrMinimisingSpoiltIsShownAgain) {
+  Image before, covered, uncovered, restored;
+  const auto done = play({
+      look(before),
+      {[&] {
+         person_->cover(kX, kY, kWidth, kHeight / 2);
+         covered = shot();
+         person_->uncover();
+       },
+       [&](const LiveMoment&) { return shot().pixels == before.pixels; }},
+      {[&] {
+         person_->minimise();
+         person_->restore();
+       },
+       [&](const LiveMoment&) { return shot().pixels == before.pixels; }},
+      end(),
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_GT(differing_share(before, covered), 0.3);
+}
+
+TEST_F(Live, TheFirstPictureAndThoseOfAWindowThatIsResizedAreCoarseAndExactAtRest) {
+  SilentProgress silent;
+  constexpr int kSizes = 12;
+  int asked = 0, drawn = 0, coarse = 0;
+  bool first_coarse = false, exact_at_rest = false;
+  options_.longest_s = 30;
+  const auto done = run_live(testing::lettered_box(), options_, silent, [&](const LiveMoment& m) {
+    if (m.frames == 0) return;
+    const PixelSize now = m.session.traits().output;
+    if (m.drawn && m.frames == 1) first_coarse = m.session.coarse_views() > 0;
+    if (asked > 0 && m.drawn && asked < kSizes) {
+      ++drawn;
+      coarse += m.session.coarse_views() > 0;
+    }
+    if (now.width != kWidth + asked) return;
+    if (asked < kSizes) {
+      person_->resize(kWidth + ++asked, kHeight);
+    } else if (m.session.coarse_views() == 0) {
+      exact_at_rest = true;
+      m.window.close();
+    }
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_TRUE(first_coarse);
+  EXPECT_GE(drawn, kSizes - 1);
+  EXPECT_EQ(coarse, drawn);
+  EXPECT_TRUE(exact_at_rest);
+}
+
 TEST(DisplayClock, LightIsTheMiddleOfTheScanAfterThePictureIsReady) {
   DisplayClock clock(100.0);  // 10 ms
   const TimestampNs ms = 1'000'000;

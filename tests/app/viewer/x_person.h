@@ -5,6 +5,9 @@
 #include <xcb/xcb.h>
 #include <xcb/xtest.h>
 
+#include <array>
+#include <cstdint>
+#include <cstdlib>
 #include <string>
 
 namespace dubsar::testing {
@@ -36,8 +39,47 @@ class XPerson {
     hold(name);
     let_go(name);
   }
+  /// Returns when the server has done all that was asked of it.
+  void settle() { std::free(xcb_get_input_focus_reply(connection_, xcb_get_input_focus(connection_), nullptr)); }
+
+  /// Another program's window over this part of the screen, until it ends.
+  void cover(int x, int y, int width, int height) {
+    cover_ = xcb_generate_id(connection_);
+    const std::array<std::uint32_t, 2> values{0x00ff00ff, 1};  // background, override-redirect: no manager is asked
+    xcb_create_window(connection_, XCB_COPY_FROM_PARENT, cover_, root_, static_cast<std::int16_t>(x),
+                      static_cast<std::int16_t>(y), static_cast<std::uint16_t>(width),
+                      static_cast<std::uint16_t>(height), 0, XCB_WINDOW_CLASS_INPUT_OUTPUT, XCB_COPY_FROM_PARENT,
+                      XCB_CW_BACK_PIXEL | XCB_CW_OVERRIDE_REDIRECT, values.data());
+    xcb_map_window(connection_, cover_);
+    settle();
+  }
+  void uncover() {
+    xcb_destroy_window(connection_, cover_);
+    settle();
+  }
+  /// What a window manager does with the window of the session, the newest on the screen.
+  void minimise() {
+    xcb_unmap_window(connection_, newest());
+    settle();
+  }
+  void restore() {
+    xcb_map_window(connection_, newest());
+    settle();
+  }
+  void resize(int width, int height) {
+    const std::array<std::uint32_t, 2> values{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+    xcb_configure_window(connection_, newest(), XCB_CONFIG_WINDOW_WIDTH | XCB_CONFIG_WINDOW_HEIGHT, values.data());
+    settle();
+  }
 
  private:
+  xcb_window_t newest() {
+    xcb_query_tree_reply_t* const tree = xcb_query_tree_reply(connection_, xcb_query_tree(connection_, root_), nullptr);
+    const int count = xcb_query_tree_children_length(tree);
+    const xcb_window_t out = count > 0 ? xcb_query_tree_children(tree)[count - 1] : 0;
+    std::free(tree);
+    return out;
+  }
   static int code(const std::string& name) {  // evdev codes + 8
     if (name == "escape") return 9;
     if (name == "1") return 10;
@@ -52,6 +94,8 @@ class XPerson {
     if (name == "f2") return 68;
     if (name == "f11") return 95;
     if (name == "right") return 114;
+    if (name == "left") return 113;
+    if (name == "z") return 52;
     if (name == "home") return 110;
     return 0;
   }
@@ -61,7 +105,7 @@ class XPerson {
     xcb_flush(connection_);
   }
   xcb_connection_t* connection_;
-  xcb_window_t root_ = 0;
+  xcb_window_t root_ = 0, cover_ = 0;
 };
 
 }  // namespace dubsar::testing

@@ -42,7 +42,7 @@ double rms_mm(double speed_mps, TimestampNs lag, bool predict, double noise_m) {
       HeadFrame head = head_at(measured, truth(1e-9 * static_cast<double>(measured)));
       *head.left_eye_m += noise_m * glm::dvec3(random.normal(), random.normal(), random.normal());
       *head.right_eye_m += noise_m * glm::dvec3(random.normal(), random.normal(), random.normal());
-      follower.add(head);
+      follower.add(head, now);
     }
     if (i < 60) continue;
     const FollowedEyes eyes = follower.eyes(now, now);
@@ -67,7 +67,7 @@ TEST(HeadFollower, KeepsBothEyesWhenOneIsNotSeen) {
   for (int i = 1; i <= 20; ++i) {
     HeadFrame head = head_at(i * 16 * kMs, {0.05, 0, 0.5});
     if (i > 10) head.left_eye_m.reset();
-    follower.add(head);
+    follower.add(head, head.time);
   }
   const FollowedEyes eyes = follower.eyes(20 * 16 * kMs, 20 * 16 * kMs);
   EXPECT_NEAR(eyes.left_m.x, 0.05 - 0.0315, 1e-6);
@@ -78,7 +78,7 @@ TEST(HeadFollower, KeepsBothEyesWhenOneIsNotSeen) {
 TEST(HeadFollower, EasesToTheRestingPlaceWhenTheHeadIsGoneAndNeverJumps) {
   HeadFollower follower;
   const HeadFollowOptions options;
-  for (int i = 1; i <= 20; ++i) follower.add(head_at(i * 16 * kMs, {0.2, 0.1, 0.5}));
+  for (int i = 1; i <= 20; ++i) follower.add(head_at(i * 16 * kMs, {0.2, 0.1, 0.5}), i * 16 * kMs);
   glm::dvec3 last = follower.eyes(320 * kMs, 320 * kMs).left_m;
   for (TimestampNs now = 320 * kMs; now < 4000 * kMs; now += 16 * kMs) {
     const FollowedEyes eyes = follower.eyes(now, now);
@@ -87,6 +87,33 @@ TEST(HeadFollower, EasesToTheRestingPlaceWhenTheHeadIsGoneAndNeverJumps) {
   }
   EXPECT_EQ(follower.eyes(4000 * kMs, 4000 * kMs).presence, Presence::kOff);
   EXPECT_NEAR(glm::length(last - (options.rest_m - glm::dvec3(0.0315, 0, 0))), 0.0, 1e-9);
+}
+
+TEST(HeadFollower, AHeadThatComesBackIsGoneToWithoutAJump) {
+  // Gone for 300 ms (held), 900 ms (on the way to the middle) and 5 s (at rest), and back elsewhere with a tilted head.
+  for (const TimestampNs away : {300 * kMs, 900 * kMs, 5000 * kMs}) {
+    HeadFollower follower;
+    const HeadFollowOptions options;
+    const auto seen = [&](TimestampNs now, const glm::dvec3& centre, const glm::dvec3& half) {
+      HeadFrame head = head_at(now, centre);
+      head.left_eye_m = centre - half;
+      head.right_eye_m = centre + half;
+      follower.add(head, now);
+    };
+    const glm::dvec3 level(0.0315, 0, 0), tilted(0.0223, 0.0223, 0);
+    FollowedEyes last = follower.eyes(0, 0);
+    const TimestampNs gone = 1600 * kMs, back = gone + away;
+    for (TimestampNs now = 16 * kMs; now < back + 2000 * kMs; now += 16 * kMs) {
+      if (now < gone) seen(now, {0.2, 0.1, 0.5}, tilted);
+      if (now >= back) seen(now, {-0.15, 0.05, 0.55}, level);
+      const FollowedEyes eyes = follower.eyes(now, now);
+      EXPECT_LT(glm::length(eyes.left_m - last.left_m), 0.0105) << away / kMs << " " << now / kMs;
+      EXPECT_LT(glm::length(eyes.right_m - last.right_m), 0.0105) << away / kMs << " " << now / kMs;
+      last = eyes;
+    }
+    EXPECT_NEAR(glm::length(last.left_m - (glm::dvec3(-0.15, 0.05, 0.55) - level)), 0.0, 1e-6);
+    EXPECT_EQ(last.presence, Presence::kTracked);
+  }
 }
 
 TEST(HeadFollower, NobodyMeansTheRestingPlace) {

@@ -1,0 +1,68 @@
+#include "app/commands/command_table.h"
+
+#include <algorithm>
+#include <array>
+
+namespace dubsar::app {
+namespace {
+
+std::string listed(std::span<const std::string> words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+  return out;
+}
+
+}  // namespace
+
+std::pair<std::string_view, std::string> split_command(std::string_view text) {
+  const std::size_t space = std::min(text.find(' '), text.size());
+  std::string argument(text.substr(space));
+  argument.erase(0, argument.find_first_not_of(' '));
+  return {text.substr(0, space), std::move(argument)};
+}
+
+CommandTable CommandTable::standard(const std::vector<std::string>& styles) {
+  CommandTable out;
+  for (std::vector<Command>& part : std::array{window_commands(), view_commands(), look_commands(styles)})
+    for (Command& command : part) out.add(std::move(command));
+  return out;
+}
+
+void CommandTable::add(Command command) {
+  DUBSAR_CHECK(find(command.name) == nullptr && !command.name.empty() && command.run);
+  commands_.push_back(std::move(command));
+}
+
+const Command* CommandTable::find(std::string_view name) const {
+  const auto found = std::find_if(commands_.begin(), commands_.end(), [&](const Command& c) { return c.name == name; });
+  return found == commands_.end() ? nullptr : &*found;
+}
+
+Result<void> CommandTable::check(std::string_view text) const {
+  const auto [name, argument] = split_command(text);
+  const Command* const command = find(name);
+  if (command == nullptr) {
+    std::vector<std::string> names;
+    for (const Command& known : commands_) names.push_back(known.name);
+    return fail(ErrorKind::kUsage, "\"{}\" is no command, expected one of: {}", name, listed(names));
+  }
+  if (argument.empty() && !command->argument.empty() && !command->optional)
+    return fail(ErrorKind::kUsage, "{}: nothing found after it, expected {}", name, command->argument);
+  if (!argument.empty() && command->argument.empty())
+    return fail(ErrorKind::kUsage, "{}: \"{}\" found after it, expected nothing", name, argument);
+  if (!argument.empty() && command->closed &&
+      std::find(command->values.begin(), command->values.end(), argument) == command->values.end())
+    return fail(ErrorKind::kUsage, "{}: \"{}\" found, expected one of: {}", name, argument, listed(command->values));
+  return {};
+}
+
+Result<void> CommandTable::run(std::string_view text, Editor& editor) const {
+  DUBSAR_TRY(check(text));
+  const auto [name, argument] = split_command(text);
+  const Command& command = *find(name);
+  if (command.enabled && !command.enabled(editor))
+    return fail(ErrorKind::kUsage, "{}: there is nothing to do it to now", name);
+  return command.run(editor, argument);
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,64 @@
+#pragma once
+// Everything that can be done, each once: a name for scripts and mappings, words for people, keys, and what it does.
+// The help, the panels, mapping files and scripts read this table and nothing else.
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/commands/editor.h"
+#include "core/base/result.h"
+
+namespace dubsar::app {
+
+/// A key as key_chord() writes it, and what the command is told when it is pressed.
+struct DefaultKey {
+  std::string key, argument{};
+};
+
+struct Command {
+  std::string name;                   ///< "turn_left"
+  std::string group;                  ///< heading it stands under: "View", "Sides" ...
+  std::string words;                  ///< "turn to the left"; with an argument "turn to the side that is called"
+  std::vector<DefaultKey> keys;       ///< with which it is called unless a mapping says otherwise
+  std::string argument{};             ///< what its argument is: "degrees"; empty: it takes none
+  std::vector<std::string> values{};  ///< arguments worth offering; when `closed`, all there are
+  bool closed = false;
+  bool optional = false;                         ///< its argument may be left out
+  bool repeats = false;                          ///< a key that is held does it again and again
+  bool steers = false;                           ///< moves the view, which somebody else may be holding
+  std::function<bool(const Editor&)> enabled{};  ///< none: always
+  std::function<Result<void>(Editor&, const std::string& argument)> run{};
+};
+
+class CommandTable {
+ public:
+  /// The program's commands; `styles` are the names of the shadings there are.
+  static CommandTable standard(const std::vector<std::string>& styles);
+
+  /// Names are told apart by their caller: two of the same are a mistake of ours.
+  void add(Command command);
+  std::span<const Command> all() const noexcept { return commands_; }
+  /// Null: there is none of this name.
+  const Command* find(std::string_view name) const;
+  /// Whether "NAME" or "NAME ARGUMENT" can be said. kUsage with what was expected.
+  Result<void> check(std::string_view text) const;
+  /// Does what the text says, as one step of the history at most. kUsage: as check(), or a command that cannot be done
+  /// now; the command's own errors.
+  Result<void> run(std::string_view text, Editor& editor) const;
+
+ private:
+  std::vector<Command> commands_;
+};
+
+/// "side reverse" is "side" and "reverse".
+std::pair<std::string_view, std::string> split_command(std::string_view text);
+
+/// Parts of the table, each in a file of its own.
+std::vector<Command> view_commands();                                        ///< turning, zooming, sides, undo and redo
+std::vector<Command> look_commands(const std::vector<std::string>& styles);  ///< light, style, parts
+std::vector<Command> window_commands();                                      ///< help, displays, sources, the window
+
+}  // namespace dubsar::app

@@ -1,0 +1,23 @@
+#include "app/commands/editor.h"
+
+#include <algorithm>
+
+namespace dubsar::app {
+
+void Editor::change(Document next, std::string_view words, Way way, std::uint64_t merge) {
+  next.now.zoom = std::clamp(next.now.zoom, steps_.zoom_min, steps_.zoom_max);
+  way_ = way;
+  history_.change(std::move(next), std::string(words), merge);
+}
+
+bool Editor::undo() {
+  way_ = Way::kGlide;
+  return history_.undo();
+}
+
+bool Editor::redo() {
+  way_ = Way::kGlide;
+  return history_.redo();
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,163 @@
+// Commands for what is seen: light, style, parts, and how far the envelope is lifted.
+
+#include <algorithm>
+#include <charconv>
+
+#include "app/commands/command_table.h"
+#include "app/commands/number_argument.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr double kRakingDeg = 15.0;  // low enough for shadows in every wedge
+constexpr std::array<std::string_view, 8> kCompass{"top",    "upper_right", "right", "lower_right",
+                                                   "bottom", "lower_left",  "left",  "upper_left"};
+constexpr double kUnpackStep = 0.05;
+
+Command light_from() {
+  Command out{"light_from", "Light", "raking light from one of eight directions", {}};
+  out.argument = "a direction";
+  for (std::size_t i = 0; i < kCompass.size(); ++i) {
+    out.values.emplace_back(kCompass[i]);
+    out.keys.push_back({fmt::format("alt+{}", i + 1), std::string(kCompass[i])});
+  }
+  out.closed = out.steers = true;
+  out.run = [why = out.words](Editor& editor, const std::string& name) -> Result<void> {
+    Document next = editor.document();
+    const auto* const at = std::find(kCompass.begin(), kCompass.end(), name);
+    next.light = {45.0 * static_cast<double>(at - kCompass.begin()), kRakingDeg};
+    editor.change(std::move(next), why, Way::kGlide);
+    return {};
+  };
+  return out;
+}
+
+Command light() {
+  Command out{"light", "Light", "light from anywhere", {}};
+  out.argument = "azimuth,elevation in degrees";
+  out.values = {"315,25", "0,90"};
+  out.steers = true;
+  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    DUBSAR_ASSIGN(const double azimuth, number_argument("light", text.substr(0, comma), 0.0, 360.0));
+    DUBSAR_ASSIGN(const double elevation,
+                  number_argument("light", text.substr(std::min(comma + 1, text.size())), 5.0, 90.0));
+    Document next = editor.document();
+    next.light = {azimuth, elevation};
+    editor.change(std::move(next), why);
+    return {};
+  };
+  return out;
+}
+
+Command style(std::vector<std::string> names) {
+  Command out{"style", "Style", "colours and shades of the surface", {}};
+  out.argument = "a style";
+  out.values = std::move(names);
+  out.closed = true;
+  out.run = [why = out.words](Editor& editor, const std::string& name) -> Result<void> {
+    Document next = editor.document();
+    next.style.name = name;
+    editor.change(std::move(next), why);
+    return {};
+  };
+  return out;
+}
+
+Command next_style(std::vector<std::string> names) {
+  Command out{"next_style", "Style", "the next style", {{"s"}}};
+  out.run = [names = std::move(names), why = out.words](Editor& editor, const std::string&) -> Result<void> {
+    Document next = editor.document();
+    const auto at = std::find(names.begin(), names.end(), next.style.name);
+    next.style.name = names[at == names.end() ? 0 : static_cast<std::size_t>(at + 1 - names.begin()) % names.size()];
+    editor.change(std::move(next), why);
+    return {};
+  };
+  return out;
+}
+
+Command occlusion() {
+  Command out{"occlusion", "Style", "dark hollows on or off", {{"o"}}};
+  out.run = [why = out.words](Editor& editor, const std::string&) -> Result<void> {
+    Document next = editor.document();
+    next.style.occlusion = !next.style.occlusion;
+    editor.change(std::move(next), why);
+    return {};
+  };
+  return out;
+}
+
+Command part() {
+  Command out{"part", "Parts", "a part on or off", {}};
+  out.argument = "its number or name";
+  out.values = {"1", "2", "3", "4"};
+  for (const std::string& number : out.values) out.keys.push_back({"ctrl+" + number, number});
+  out.enabled = [](const Editor& editor) { return editor.document().parts.size() > 1; };
+  out.run = [why = out.words](Editor& editor, const std::string& wanted) -> Result<void> {
+    Document next = editor.document();
+    std::size_t number = 0;
+    std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
+    for (std::size_t i = 0; i < next.parts.size(); ++i)
+      if (next.parts[i].name == wanted || i + 1 == number) {
+        next.parts[i].visible = !next.parts[i].visible;
+        editor.change(std::move(next), why);
+        return {};
+      }
+    return fail(ErrorKind::kUsage, "part: \"{}\" found, expected a name or 1 to {}", wanted, next.parts.size());
+  };
+  return out;
+}
+
+Command all_parts() {
+  Command out{"all_parts", "Parts", "all parts", {{"ctrl+0"}}};
+  out.enabled = [](const Editor& editor) { return editor.document().parts.size() > 1; };
+  out.run = [why = out.words](Editor& editor, const std::string&) -> Result<void> {
+    Document next = editor.document();
+    for (Part& each : next.parts) each.visible = true;
+    editor.change(std::move(next), why);
+    return {};
+  };
+  return out;
+}
+
+/// `step` 0: to the percentage that is said.
+Command unpack(std::string name, std::string words, double step, std::vector<DefaultKey> keys) {
+  Command out{std::move(name), "Parts", std::move(words), std::move(keys)};
+  if (step == 0.0) {
+    out.argument = "0 to 100";
+    out.values = {"0", "50", "100"};
+  }
+  out.repeats = step != 0.0;
+  out.enabled = [](const Editor& editor) { return can_unpack(editor.document()); };
+  out.run = [step, what = out.name, why = out.words](Editor& editor, const std::string& argument) -> Result<void> {
+    Document next = editor.document();
+    if (step == 0.0) {
+      DUBSAR_ASSIGN(const double percent, number_argument(what, argument, 0.0, 100.0));
+      next.unpack = 0.01 * percent;
+    } else {
+      next.unpack = std::clamp(next.unpack + step, 0.0, 1.0);
+    }
+    editor.change(std::move(next), why);
+    return {};
+  };
+  return out;
+}
+
+}  // namespace
+
+std::vector<Command> look_commands(const std::vector<std::string>& styles) {
+  std::vector<Command> out;
+  out.push_back(light_from());
+  out.push_back(light());
+  if (!styles.empty()) out.push_back(style(styles));
+  if (!styles.empty()) out.push_back(next_style(styles));
+  out.push_back(occlusion());
+  out.push_back(part());
+  out.push_back(all_parts());
+  out.push_back(unpack("unpack", "how far the envelope is lifted, in percent", 0.0, {}));
+  out.push_back(unpack("unpack_more", "lift the envelope", kUnpackStep, {{"u"}}));
+  out.push_back(unpack("unpack_less", "put the envelope back", -kUnpackStep, {{"shift+u"}}));
+  return out;
+}
+
+}  // namespace dubsar::app

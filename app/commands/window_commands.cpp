@@ -1,0 +1,59 @@
+// Commands for the window and what it is connected to. They change no document and are not undone.
+
+#include "app/commands/command_table.h"
+
+namespace dubsar::app {
+namespace {
+
+Command plain(std::string name, std::string words, std::vector<DefaultKey> keys,
+              std::function<Result<void>(Editor&)> run) {
+  Command out{std::move(name), "This window", std::move(words), std::move(keys)};
+  out.run = [run = std::move(run)](Editor& editor, const std::string&) { return run(editor); };
+  return out;
+}
+
+/// While the help lists the sources, numbers switch them.
+Command toggle_source() {
+  Command out{"toggle_source", "This window", "source on or off, while this help is shown", {}};
+  out.argument = "its number";
+  for (char number = '1'; number <= '9'; ++number) {
+    out.values.emplace_back(1, number);
+    out.keys.push_back({std::string(1, number), std::string(1, number)});
+  }
+  out.closed = true;
+  out.enabled = [](const Editor& editor) { return editor.desk().help; };
+  out.run = [](Editor& editor, const std::string& number) -> Result<void> {
+    if (editor.place().toggle_source(static_cast<std::size_t>(number[0] - '1'))) return {};
+    return fail(ErrorKind::kUsage, "toggle_source: there is no source {}", number);
+  };
+  return out;
+}
+
+}  // namespace
+
+std::vector<Command> window_commands() {
+  std::vector<Command> out;
+  out.push_back(plain("help", "this help", {{"f1"}, {"?"}}, [](Editor& editor) -> Result<void> {
+    editor.desk().help = !editor.desk().help;
+    return {};
+  }));
+  out.push_back(toggle_source());
+  out.push_back(
+      plain("next_display", "next display", {{"f2"}}, [](Editor& editor) { return editor.place().switch_display(1); }));
+  out.push_back(plain("previous_display", "display before", {{"f3"}},
+                      [](Editor& editor) { return editor.place().switch_display(-1); }));
+  out.push_back(plain("retry_sources", "look for missing sources now", {{"f5"}}, [](Editor& editor) -> Result<void> {
+    editor.place().retry_sources();
+    return {};
+  }));
+  out.push_back(plain("fullscreen", "whole monitor, and back", {{"f11"}},
+                      [](Editor& editor) { return editor.place().toggle_fullscreen(); }));
+  out.push_back(plain("close", "close this help, or end", {{"escape"}}, [](Editor& editor) -> Result<void> {
+    if (!editor.desk().help) editor.place().end();
+    editor.desk().help = false;
+    return {};
+  }));
+  return out;
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,117 @@
+#pragma once
+// What a person has made of a surface: where it is looked at from, by which light, which parts are there, what was
+// measured and noted. Plain values, without GL or devices; one owner, who keeps a history of them.
+
+#include <array>
+#include <cstdint>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "input/navigation/view_state.h"
+
+namespace dubsar::app {
+
+/// A piece of the object that is shown as one: "tablet", "envelope".
+struct Part {
+  std::string name;
+  std::uint8_t partitions = 0;  ///< bit p: partition p of the mesh belongs to it
+  bool visible = true;
+  std::array<std::uint8_t, 3> colour{255, 255, 255};  ///< sRGB; white: as the style wants
+  double opacity = 1.0;                               ///< 0..1
+  glm::dvec3 offset_mm{0.0};                          ///< from its place in the scan
+  friend bool operator==(const Part&, const Part&) = default;
+};
+
+/// Where the object is seen from: turned from its front view, zoomed, moved (ViewState has the units).
+struct CameraPose {
+  glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
+  double zoom = 1.0;
+  glm::dvec2 pan{0.0, 0.0};
+  friend bool operator==(const CameraPose&, const CameraPose&) = default;
+};
+
+struct LightPlace {
+  double azimuth_deg = 315.0;   ///< clockwise from the upper side of the picture
+  double elevation_deg = 25.0;  ///< above the picture plane
+  friend bool operator==(const LightPlace&, const LightPlace&) = default;
+};
+
+struct StyleChoice {
+  std::string name = "relief";  ///< of shading_preset()
+  double strength = 1.0;        ///< of its colours: 0 none, 1 as designed, 2 twice
+  bool occlusion = true;        ///< hollows are darker
+  friend bool operator==(const StyleChoice&, const StyleChoice&) = default;
+};
+
+/// Hides what lies beyond it: points x with dot(normal, x) > distance_mm.
+struct Cut {
+  glm::dvec3 normal{0.0, 0.0, 1.0};
+  double distance_mm = 0.0;
+  bool on = true;
+  friend bool operator==(const Cut&, const Cut&) = default;
+};
+
+struct Measure {
+  std::string name;
+  std::vector<glm::dvec3> points_mm;  ///< on the surface, in the frame of the scan
+  friend bool operator==(const Measure&, const Measure&) = default;
+};
+
+struct Note {
+  std::string text;
+  glm::dvec3 at_mm{0.0}, normal{0.0, 0.0, 1.0};  ///< where it is pinned to the surface
+  CameraPose camera;                             ///< how it was seen
+  friend bool operator==(const Note&, const Note&) = default;
+};
+
+struct SliceView {
+  int axis = 2;  ///< 0 x, 1 y, 2 z of the scan
+  double position_mm = 0.0;
+  bool visible = false;
+  friend bool operator==(const SliceView&, const SliceView&) = default;
+};
+
+struct Keyframe {
+  double time_s = 0.0;
+  CameraPose camera;
+  LightPlace light;
+  double unpack = 0.0;
+  friend bool operator==(const Keyframe&, const Keyframe&) = default;
+};
+
+struct SourceFile {
+  std::string path;
+  std::int64_t bytes = 0;  ///< another size: another file under the same name
+  friend bool operator==(const SourceFile&, const SourceFile&) = default;
+};
+
+struct Document {
+  SourceFile source;
+  std::vector<Part> parts;
+  double unpack = 0.0;   ///< how far the envelope is lifted from the tablet: 0 not, 1 away
+  CameraPose home, now;  ///< home is the obverse, upright
+  LightPlace home_light, light;
+  StyleChoice style;
+  std::vector<Cut> clips;
+  std::vector<Measure> measures;
+  std::vector<Note> notes;
+  std::vector<SliceView> slices;
+  std::vector<Keyframe> keyframes;
+  friend bool operator==(const Document&, const Document&) = default;
+};
+
+/// Camera and light as navigation has them, and back.
+ViewState view_of(const Document& document);
+ViewState home_of(const Document& document);
+void set_view(Document& document, const ViewState& view);
+
+/// Whether there is an envelope to lift from something else: a part of that name beside others.
+bool can_unpack(const Document& document);
+
+/// Partitions of the parts that are shown; all when there are no parts.
+std::uint8_t visible_partitions(const Document& document);
+
+}  // namespace dubsar::app

@@ -1,0 +1,39 @@
+#pragma once
+// The states of a document, forwards and backwards. What belongs together, such as a drag or a throw, is one step.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/document/document.h"
+
+namespace dubsar::app {
+
+class History {
+ public:
+  explicit History(Document first) : now_(std::move(first)) {}
+
+  const Document& now() const noexcept { return now_; }
+  /// One step, named by `words`; none when nothing differs. Changes in a row with the same `merge` other than 0 are one
+  /// step. What was undone before can no longer be redone. At most 1000 steps are kept, the newest.
+  void change(Document next, std::string words, std::uint64_t merge = 0);
+  /// False when there is nothing to undo or redo.
+  bool undo();
+  bool redo();
+  std::size_t undo_depth() const noexcept { return past_.size(); }
+  std::size_t redo_depth() const noexcept { return future_.size(); }
+  /// What the next undo or redo is about; empty: there is none.
+  std::string undo_words() const { return past_.empty() ? std::string() : past_.back().words; }
+  std::string redo_words() const { return future_.empty() ? std::string() : future_.back().words; }
+
+ private:
+  struct Step {
+    Document other;  ///< on the far side of the step
+    std::string words;
+    std::uint64_t merge = 0;
+  };
+  std::vector<Step> past_, future_;
+  Document now_;
+};
+
+}  // namespace dubsar::app

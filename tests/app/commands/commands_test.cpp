@@ -1,0 +1,277 @@
+// Commands without a window: what each does to a document, and that all of it can be undone.
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+#include "app/commands/key_table.h"
+#include "app/commands/sides.h"
+
+namespace dubsar::app {
+namespace {
+
+class FakePlace final : public Workplace {
+ public:
+  Result<void> switch_display(int step) override {
+    display += step;
+    return {};
+  }
+  Result<void> toggle_fullscreen() override {
+    fullscreen = !fullscreen;
+    return {};
+  }
+  void retry_sources() override { ++retries; }
+  bool toggle_source(std::size_t index) override {
+    toggled.push_back(index);
+    return index < 3;
+  }
+  void end() override { ended = true; }
+  int display = 0, retries = 0;
+  bool fullscreen = false, ended = false;
+  std::vector<std::size_t> toggled;
+};
+
+const std::vector<std::string> kStyles{"relief", "phong", "sky-sun"};
+
+Document two_parts() {
+  Document out;
+  out.parts = {{"tablet", 1}, {"envelope", 6}};
+  return out;
+}
+
+struct Bench {
+  CommandTable commands = CommandTable::standard(kStyles);
+  FakePlace place;
+  Editor editor{two_parts(), place};
+  void run(std::string_view text) {
+    const auto done = commands.run(text, editor);
+    EXPECT_TRUE(done) << done.error().message;
+  }
+  std::string refusal(std::string_view text) {
+    const auto done = commands.run(text, editor);
+    return done ? "accepted" : done.error().message;
+  }
+  const Document& now() const { return editor.document(); }
+};
+
+double apart_deg(const glm::dquat& a, const glm::dquat& b) { return turn_between_deg(a, b); }
+
+TEST(Commands, TwoHundredUndoAndRedoStepsThroughEveryCommandReturnTheSameDocument) {
+  const unsigned seed = std::random_device()();
+  std::mt19937 random(seed);
+  Bench bench;
+  std::vector<std::string> texts;
+  for (const Command& command : bench.commands.all()) {
+    if (command.name == "undo" || command.name == "redo") continue;
+    if (command.argument.empty() || command.optional) texts.push_back(command.name);
+    for (const std::string& value : command.values) texts.push_back(command.name + " " + value);
+  }
+  std::vector<Document> states{bench.now()};
+  std::set<std::string> told;
+  while (states.size() <= 200 || told.size() < texts.size()) {
+    const std::string& text = texts[random() % texts.size()];
+    told.insert(text);
+    static_cast<void>(bench.commands.run(text, bench.editor));  // some cannot be done now
+    if (bench.now() != states.back()) states.push_back(bench.now());
+  }
+  ASSERT_GE(states.size(), 200u);
+  const Document last = bench.now();
+  for (std::size_t i = states.size() - 1; i-- > 0;) {
+    bench.run("undo");
+    ASSERT_EQ(bench.now(), states[i]) << "seed " << seed << " step " << i;
+  }
+  EXPECT_EQ(bench.refusal("undo"), "undo: there is nothing to do it to now");
+  for (std::size_t i = 1; i < states.size(); ++i) {
+    bench.run("redo");
+    ASSERT_EQ(bench.now(), states[i]) << "seed " << seed << " step " << i;
+  }
+  EXPECT_EQ(bench.now(), last);
+}
+
+TEST(Commands, SidesAreThoseOfATabletThatIsTurnedAsScribesDo) {
+  // Towards the viewer: which way a side's outside points before it is turned; and what is up on it then.
+  struct Row {
+    const char* name;
+    glm::dvec3 outside, up;
+  };
+  const std::array<Row, 6> rows{{{"obverse", {0, 0, 1}, {0, 1, 0}},
+                                 {"bottom", {0, -1, 0}, {0, 0, 1}},    // its text goes on where the obverse ends
+                                 {"reverse", {0, 0, -1}, {0, -1, 0}},  // upside down to the obverse
+                                 {"top", {0, 1, 0}, {0, 0, -1}},
+                                 {"left", {-1, 0, 0}, {0, 1, 0}},
+                                 {"right", {1, 0, 0}, {0, 1, 0}}}};
+  for (const glm::dquat& home : {glm::dquat(1, 0, 0, 0), turn_of({0, 0, 1.5}), turn_of({0.4, -1.0, 2.0})}) {
+    Bench bench;
+    Document at_home = bench.now();
+    at_home.home.rotation = home;
+    bench.editor.change(at_home, "test");
+    for (const Row& row : rows) {
+      bench.run(std::string("side ") + row.name);
+      const glm::dquat q = bench.now().now.rotation * glm::conjugate(home);
+      EXPECT_NEAR(glm::length(q * row.outside - glm::dvec3(0, 0, 1)), 0, 1e-12) << row.name;
+      EXPECT_NEAR(glm::length(q * row.up - glm::dvec3(0, 1, 0)), 0, 1e-12) << row.name;
+      EXPECT_EQ(kSideNames[static_cast<std::size_t>(facing_side(bench.now().now.rotation, home))], row.name);
+      EXPECT_EQ(bench.editor.way(), Way::kGlide);
+    }
+  }
+}
+
+TEST(Commands, WhatFacesTheViewerBecomesTheObverse) {
+  Bench bench;
+  bench.run("side reverse");
+  bench.run("turn_left 8");
+  bench.run("obverse_here");
+  EXPECT_LT(apart_deg(bench.now().now.rotation, turn_to(Side::kReverse)), 1e-9) << "squared up";
+  EXPECT_EQ(facing_side(bench.now().now.rotation, bench.now().home.rotation), Side::kObverse);
+  bench.run("side reverse");
+  EXPECT_LT(apart_deg(bench.now().now.rotation, {1, 0, 0, 0}), 1e-9);
+}
+
+TEST(Commands, KeysStepAndResetGoesHomeWithItsLight) {
+  Bench bench;
+  for (int i = 0; i < 120; ++i) bench.run("turn_left");
+  EXPECT_LT(apart_deg(bench.now().now.rotation, turn_of({0, -600 * 3.14159265358979 / 180, 0})), 1e-6);
+  EXPECT_EQ(bench.editor.history().undo_depth(), 120u);
+  bench.run("light_from left");
+  EXPECT_EQ(bench.now().light, (LightPlace{270, 15}));
+  for (int i = 0; i < 40; ++i) bench.run("zoom_in");
+  EXPECT_DOUBLE_EQ(bench.now().now.zoom, 20.0);
+  bench.run("reset");
+  EXPECT_EQ(bench.now().now, bench.now().home);
+  EXPECT_EQ(bench.now().light, bench.now().home_light);
+  bench.run("undo");
+  EXPECT_DOUBLE_EQ(bench.now().now.zoom, 20.0);
+}
+
+TEST(Commands, PartsAndTheEnvelope) {
+  Bench bench;
+  bench.run("part envelope");
+  EXPECT_EQ(visible_partitions(bench.now()), 1);
+  bench.run("part 1");
+  EXPECT_EQ(visible_partitions(bench.now()), 0);
+  bench.run("all_parts");
+  EXPECT_EQ(visible_partitions(bench.now()), 7);
+  bench.run("unpack 37.5");
+  EXPECT_EQ(bench.now().unpack, 0.375);
+  for (int i = 0; i < 30; ++i) bench.run("unpack_more");
+  EXPECT_EQ(bench.now().unpack, 1.0);
+  for (int i = 0; i < 30; ++i) bench.run("unpack_less");
+  EXPECT_EQ(bench.now().unpack, 0.0) << "exactly back";
+  EXPECT_NE(bench.refusal("part seal").find("expected a name or 1 to 2"), std::string::npos);
+  FakePlace place;
+  Document one;
+  one.parts = {{"object", 1}};
+  Editor alone(one, place);
+  EXPECT_FALSE(bench.commands.run("part 1", alone));
+  EXPECT_FALSE(bench.commands.run("unpack 50", alone));
+}
+
+TEST(Commands, MistakesAreSentencesWithWhatWasExpected) {
+  Bench bench;
+  EXPECT_EQ(bench.refusal("side backside"),
+            "side: \"backside\" found, expected one of: obverse, bottom, reverse, top, left, right");
+  EXPECT_EQ(bench.refusal("side"), "side: nothing found after it, expected a side");
+  EXPECT_EQ(bench.refusal("reset now"), "reset: \"now\" found after it, expected nothing");
+  EXPECT_NE(bench.refusal("dance").find("\"dance\" is no command, expected one of: help, "), std::string::npos);
+  EXPECT_EQ(bench.refusal("turn_left 1x"), "turn_left: \"1x\" found, expected a number of 0 to 360");
+  EXPECT_EQ(bench.refusal("turn_left nan"), "turn_left: \"nan\" found, expected a number of 0 to 360");
+  EXPECT_EQ(bench.refusal("unpack 101"), "unpack: \"101\" found, expected a number of 0 to 100");
+  EXPECT_EQ(bench.refusal("light 315"), "light: \"\" found, expected a number of 5 to 90");
+  EXPECT_EQ(bench.editor.history().undo_depth(), 0u);
+}
+
+TEST(Commands, EveryNameIsSaidOnceAndEveryKeyDoesOneThingAtATime) {
+  const CommandTable commands = CommandTable::standard(kStyles);
+  std::set<std::string> names, keys;
+  for (const Command& command : commands.all()) {
+    EXPECT_TRUE(names.insert(command.name).second) << command.name;
+    EXPECT_FALSE(command.words.empty()) << command.name;
+    EXPECT_FALSE(command.group.empty()) << command.name;
+    if (command.name == "toggle_source") continue;  // only while the help is open
+    for (const DefaultKey& key : command.keys) EXPECT_TRUE(keys.insert(key.key).second) << key.key;
+  }
+}
+
+InputEvent key(const std::string& name, std::uint8_t modifiers = 0) {
+  return {0, EventKind::kKey, {}, {}, true, modifiers, name};
+}
+
+TEST(Keys, ChordsNameWhatIsHeld) {
+  EXPECT_EQ(key_chord(key("left")), "left");
+  EXPECT_EQ(key_chord(key("left", kShift)), "shift+left");
+  EXPECT_EQ(key_chord(key("u", kShift)), "shift+u");
+  EXPECT_EQ(key_chord(key("?", kShift)), "?") << "shift shows in what is typed";
+  EXPECT_EQ(key_chord(key("z", kControl)), "ctrl+z");
+  EXPECT_EQ(key_chord(key("z", kControl | kShift)), "ctrl+shift+z");
+  EXPECT_EQ(key_chord(key("1", kAlt)), "alt+1");
+}
+
+TEST(Keys, AMappingMovesAndRemovesThem) {
+  Bench bench;
+  const KeyTable plain = KeyTable::create(bench.commands).value();
+  EXPECT_EQ(plain.command_for("home", bench.editor), "reset");
+  EXPECT_EQ(plain.command_for("3", bench.editor), "side reverse");
+  EXPECT_EQ(plain.command_for("q", bench.editor), "");
+  EXPECT_EQ(plain.command_for("ctrl+z", bench.editor), "") << "there is nothing to undo";
+  EXPECT_EQ(plain.keys_for("help"), (std::vector<std::string>{"f1", "?"}));
+  bench.editor.desk().help = true;
+  EXPECT_EQ(plain.command_for("3", bench.editor), "toggle_source 3");
+  bench.editor.desk().help = false;
+  const KeyTable changed =
+      KeyTable::create(bench.commands, {{"home", "none"}, {"q", "side reverse"}, {"f1", "next_display"}}).value();
+  EXPECT_EQ(changed.command_for("home", bench.editor), "");
+  EXPECT_EQ(changed.command_for("q", bench.editor), "side reverse");
+  EXPECT_EQ(changed.command_for("f1", bench.editor), "next_display");
+  EXPECT_EQ(changed.keys_for("help"), (std::vector<std::string>{"?"}));
+  EXPECT_EQ(changed.keys_for("side reverse"), (std::vector<std::string>{"q", "3"}));
+  const auto wrong = KeyTable::create(bench.commands, {{"x", "rotate"}});
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.error().kind, ErrorKind::kConfig);
+  EXPECT_NE(wrong.error().message.find("mapping: keys: x is \"rotate\": \"rotate\" is no command"), std::string::npos)
+      << wrong.error().message;
+}
+
+TEST(Commands, WindowCommandsReachThePlaceAndChangeNoDocument) {
+  Bench bench;
+  for (const char* text : {"next_display", "next_display", "previous_display", "retry_sources", "fullscreen", "help",
+                           "toggle_source 2", "close"})
+    bench.run(text);
+  EXPECT_EQ(bench.place.display, 1);
+  EXPECT_EQ(bench.place.retries, 1);
+  EXPECT_TRUE(bench.place.fullscreen);
+  EXPECT_EQ(bench.place.toggled, (std::vector<std::size_t>{1}));
+  EXPECT_FALSE(bench.place.ended) << "escape closed the help";
+  EXPECT_FALSE(bench.editor.desk().help);
+  bench.run("close");
+  EXPECT_TRUE(bench.place.ended);
+  EXPECT_EQ(bench.editor.history().undo_depth(), 0u);
+}
+
+/// The sample action: all that a new one needs.
+Command stand_on_end() {
+  Command out{"stand_on_end", "View", "stand the tablet on its narrow side", {{"ctrl+e"}}};
+  out.run = [why = out.words](Editor& editor, const std::string&) -> Result<void> {
+    Document next = editor.document();
+    next.now.rotation = turn_of({0, 0, 1.5707963267948966}) * next.home.rotation;
+    editor.change(std::move(next), why, Way::kGlide);
+    return {};
+  };
+  return out;
+}
+
+TEST(Commands, ANewActionIsOneCommand) {
+  Bench bench;
+  bench.commands.add(stand_on_end());
+  bench.run("stand_on_end");  // scripts
+  EXPECT_LT(apart_deg(bench.now().now.rotation, turn_of({0, 0, 1.5707963267948966})), 1e-9);
+  EXPECT_EQ(bench.editor.history().undo_words(), "stand the tablet on its narrow side");
+  bench.run("undo");
+  EXPECT_EQ(bench.now(), two_parts());
+  const KeyTable keys = KeyTable::create(bench.commands, {{"x", "stand_on_end"}}).value();  // mapping files
+  EXPECT_EQ(keys.keys_for("stand_on_end"), (std::vector<std::string>{"x", "ctrl+e"}));      // the help
+  EXPECT_EQ(keys.command_for(key_chord(key("e", kControl)), bench.editor), "stand_on_end");
+}
+
+}  // namespace
+}  // namespace dubsar::app

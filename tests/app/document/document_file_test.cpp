@@ -1,0 +1,155 @@
+#include "app/document/document_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+
+namespace dubsar::app {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr TimestampNs kSecond = 1'000'000'000;
+
+/// Something in every field.
+Document rich(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto real = [&] { return std::uniform_real_distribution<>(-1000, 1000)(random); };
+  const auto camera = [&] {
+    return CameraPose{turn_of({real(), real(), real()}), 0.5 + std::abs(real()), {real(), real()}};
+  };
+  const auto vector = [&] { return glm::dvec3(real(), real(), real()); };
+  Document out;
+  out.source = {"/scans/K\u00fcltepe \u0161/kt.exa", 123'456'789'012};
+  out.parts = {{"tablet", 1, true, {1, 2, 3}, 0.25, vector()}, {"envelope", 6, false, {255, 0, 9}, 1.0, vector()}};
+  out.unpack = 0.375;
+  out.home = camera();
+  out.now = camera();
+  out.home_light = {10, 20};
+  out.light = {real(), real()};
+  out.style = {"sky-sun", 1.7, false};
+  out.clips = {{vector(), real(), false}};
+  out.measures = {{"wedge", {vector(), vector()}}};
+  out.notes = {{"a-na \u1e2ba-x, \"\u02bes\u2082\"\nsecond line", vector(), vector(), camera()}};
+  out.slices = {{1, real(), true}};
+  out.keyframes = {{1.5, camera(), {3, 4}, 0.5}, {}};
+  return out;
+}
+
+class DocumentFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / fmt::format("dubsar_document_{}", ::getpid());
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  fs::path folder_;
+};
+
+TEST_F(DocumentFile, EveryFieldComesBackExactly) {
+  for (const unsigned seed : {std::random_device()(), 1u, 2u}) {
+    const Document document = rich(seed);
+    const std::string text = format_document(document);
+    const auto back = parse_document(text, "test");
+    ASSERT_TRUE(back) << back.error().message << " seed " << seed;
+    EXPECT_EQ(*back, document) << "seed " << seed;
+    EXPECT_EQ(format_document(*back), text);
+  }
+}
+
+TEST_F(DocumentFile, EveryTruncationMissingFieldAndWrongTypeIsRefusedInASentence) {
+  const std::string text = format_document(rich(5));
+  for (std::size_t n = 0; n + 2 < text.size(); n += 7) EXPECT_FALSE(parse_document(text.substr(0, n), "cut")) << n;
+  using nlohmann::json;
+  const json whole = json::parse(text);
+  const json flat = whole.flatten();
+  for (const auto& [pointer, value] : flat.items()) {
+    json without = whole;
+    const json::json_pointer at(pointer);
+    json& around = without.at(at.parent_pointer());
+    const bool list_item = !around.is_object();
+    if (list_item) {
+      around.erase(std::stoul(at.back()));
+    } else {
+      around.erase(at.back());
+    }
+    const auto missing = parse_document(without.dump(), "x");
+    EXPECT_TRUE(!missing || list_item) << pointer;
+    for (const json& wrong : {json("text"), json(nullptr), json::array(), json(1e300), json::object()}) {
+      if (wrong.type() == value.type()) continue;
+      if (wrong.is_number() && value.is_number()) continue;
+      json changed = whole;
+      changed[at] = wrong;
+      const auto refused = parse_document(changed.dump(), "x");
+      ASSERT_FALSE(refused) << pointer << " " << wrong;
+      EXPECT_EQ(refused.error().kind, ErrorKind::kBadData);
+    }
+  }
+}
+
+TEST_F(DocumentFile, RangesAndOtherVersionsAreRefusedByName) {
+  const auto refusal = [](auto change) {
+    Document document = rich(6);
+    change(document);
+    const auto back = parse_document(format_document(document), "k.json");
+    return back ? std::string("accepted") : back.error().message;
+  };
+  EXPECT_EQ(refusal([](Document& d) { d.now.zoom = 0; }), "k.json: zoom is 0, expected more than 0");
+  EXPECT_EQ(refusal([](Document& d) { d.unpack = 2; }), "k.json: unpack is 2, expected 0 to 1");
+  EXPECT_NE(refusal([](Document& d) { d.now.rotation = {0, 0, 0, 0}; }).find("now.rotation_wxyz"), std::string::npos);
+  EXPECT_NE(refusal([](Document& d) { d.notes[0].at_mm.x = 1e9; }).find("notes[0].at_mm"), std::string::npos);
+  std::string text = format_document(rich(7));
+  text.replace(text.find("\"version\": 1"), 12, "\"version\": 2");
+  const auto newer = parse_document(text, "k.json");
+  ASSERT_FALSE(newer);
+  EXPECT_EQ(newer.error().message, "k.json: version 2 found, expected 1; a newer dubsar may have written it");
+  EXPECT_FALSE(parse_document("[]", "k.json"));
+}
+
+TEST_F(DocumentFile, AKilledSessionLosesAtMostTenSecondsAndAnOrderlyEndLeavesNothing) {
+  const Document first = rich(8);
+  const fs::path file = Autosave::file_for(folder_ / "state" / "sessions", first.source);
+  Document document = first;
+  {
+    Autosave autosave(file);
+    for (TimestampNs now = 0; now < 100 * kSecond; now += kSecond) {
+      document.notes[0].text = fmt::format("second {}", now / kSecond);
+      ASSERT_TRUE(autosave.keep(now, document));
+    }
+  }  // killed: nothing is tidied up
+  Autosave next(file);
+  ASSERT_TRUE(next.has_left_behind());
+  const auto left = next.left_behind(first.source);
+  ASSERT_TRUE(left) << left.error().message;
+  EXPECT_GE(std::stoi(left->notes[0].text.substr(7)), 89);
+  SourceFile other = first.source;
+  other.bytes += 1;
+  EXPECT_FALSE(next.left_behind(other)) << "notes on another file";
+  next.discard();
+  EXPECT_FALSE(next.has_left_behind());
+}
+
+TEST_F(DocumentFile, NothingIsWrittenBeforeSomethingChanged) {
+  Autosave autosave(folder_ / "a.json");
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(autosave.keep(i * kSecond, rich(9)));
+  EXPECT_FALSE(autosave.has_left_behind());
+}
+
+TEST_F(DocumentFile, EveryBrokenByteIsRefusedOrReadAsADocument) {
+  const std::string text = format_document(rich(10));
+  for (std::size_t i = 0; i < text.size(); i += 3)
+    for (const char c : {'0', '-', '"', '}', '\xff'}) {
+      std::string broken = text;
+      broken[i] = c;
+      const auto parsed = parse_document(broken, "broken");
+      EXPECT_TRUE(parsed || parsed.error().kind == ErrorKind::kBadData);
+      if (parsed) {
+        EXPECT_TRUE(parse_document(format_document(*parsed), "again")) << i << c;
+      }
+    }
+}
+
+}  // namespace
+}  // namespace dubsar::app
