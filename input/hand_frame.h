@@ -51,6 +51,7 @@ struct HandJointPose {
   double radius_m = 0.0;  ///< half the finger's thickness; 0: unknown
   bool valid = false;     ///< the pose can be used: measured, or inferred from other joints
   bool tracked = false;   ///< measured in this very frame
+  bool operator==(const HandJointPose&) const = default;
 };
 
 /// Lengths in metres, right-handed, +X right, +Y up, +Z to the user. A tracker's own frame has its origin in the
@@ -68,6 +69,7 @@ struct HandFrame {
   double grab_strength = 0.0;     ///< 0: open hand, 1: fist
   double pinch_distance_m = 0.1;  ///< thumb tip to index tip, surface to surface or centre to centre
   std::array<HandJointPose, kHandJointCount> joints{};
+  bool operator==(const HandFrame&) const = default;
 
   const HandJointPose& joint(HandJoint which) const noexcept { return joints[static_cast<std::size_t>(which)]; }
   HandJointPose& joint(HandJoint which) noexcept { return joints[static_cast<std::size_t>(which)]; }

@@ -1,291 +1,168 @@
 #include "input/input_recording.h"
 
 #include <algorithm>
-#include <cmath>
-#include <nlohmann/json.hpp>
+#include <fstream>
+#include <functional>
+#include <sstream>
 
-#include "core/base/json_text.h"
 #include "input/source_options.h"
 
 namespace dubsar {
 namespace {
-using nlohmann::json;
 
-constexpr std::size_t kMostFrames = 200'000, kMostThings = 4096;
-constexpr double kLargest = 1e6;
+constexpr std::size_t kBlockBytes = std::size_t{64} << 10;
 
-json numbers(const glm::dvec3& v) {
-  const auto round = [](double x) { return std::round(x * 1e6) / 1e6; };
-  return {round(v.x), round(v.y), round(v.z)};
-}
-json numbers(const glm::dquat& q) { return {q.w, q.x, q.y, q.z}; }
-
-json hand_json(const HandFrame& hand) {
-  json joints = json::array();
-  for (std::size_t i = 0; i < hand.joints.size(); ++i)
-    if (hand.joints[i].valid)
-      joints.push_back({{"j", i},
-                        {"at", numbers(hand.joints[i].pose.position_m)},
-                        {"q", numbers(hand.joints[i].pose.rotation)},
-                        {"r", hand.joints[i].radius_m},
-                        {"tracked", hand.joints[i].tracked}});
-  return {{"t", hand.time},
-          {"id", hand.id},
-          {"side", static_cast<int>(hand.chirality)},
-          {"valid", hand.valid},
-          {"tracked", hand.tracked},
-          {"confidence", hand.confidence},
-          {"palm", numbers(hand.palm.position_m)},
-          {"q", numbers(hand.palm.rotation)},
-          {"v", numbers(hand.velocity_mps)},
-          {"grab", hand.grab_strength},
-          {"pinch", hand.pinch_distance_m},
-          {"joints", joints}};
-}
-
-json head_json(const HeadFrame& head) {
-  json out{{"t", head.time}, {"id", head.id}, {"tracked", head.tracked}, {"confidence", head.confidence}};
-  if (head.left_eye_m) out["left"] = numbers(*head.left_eye_m);
-  if (head.right_eye_m) out["right"] = numbers(*head.right_eye_m);
-  return out;
-}
-
-json event_json(const InputEvent& event) {
-  json out{{"t", event.time}, {"kind", static_cast<int>(event.kind)}, {"mods", event.modifiers}};
-  if (event.kind == EventKind::kMotion || event.kind == EventKind::kWheel) out["by"] = {event.motion.x, event.motion.y};
-  if (event.kind == EventKind::kButton) out["button"] = static_cast<int>(event.button);
-  if (event.kind == EventKind::kKey) out["key"] = event.key;
-  if (event.repeat) out["repeat"] = true;
-  if (event.at) out["at"] = {event.at->x, event.at->y};
-  if (event.kind == EventKind::kButton || event.kind == EventKind::kKey) out["down"] = event.down;
-  return out;
-}
-
-/// Reads one line; the first thing wrong is kept and everything after it reads as zero.
-class LineReader {
- public:
-  const json& get(const json& object, const char* name) {
-    static const json kNothing;
-    if (object.is_object() && object.contains(name)) return object.at(name);
-    complain(std::string(name) + " is missing");
-    return kNothing;
-  }
-  double real(const json& value, const char* name) {
-    if (value.is_number() && std::abs(value.get<double>()) <= kLargest) return value.get<double>();
-    complain(std::string(name) + " is not a number of -1000000 to 1000000");
-    return 0.0;
-  }
-  std::int64_t whole(const json& value, const char* name, std::int64_t low, std::int64_t high) {
-    if (value.is_number_integer() &&
-        (!value.is_number_unsigned() || value.get<std::uint64_t>() <= std::uint64_t{9'000'000'000'000'000'000}) &&
-        value.get<std::int64_t>() >= low && value.get<std::int64_t>() <= high)
-      return value.get<std::int64_t>();
-    complain(fmt::format("{} is not a whole number of {} to {}", name, low, high));
-    return low;
-  }
-  TimestampNs time(const json& object) { return whole(get(object, "t"), "t", 0, kLatest); }
-  bool truth(const json& object, const char* name) {
-    const json& value = get(object, name);
-    if (!value.is_boolean()) complain(std::string(name) + " is not true or false");
-    return value.is_boolean() && value.get<bool>();
-  }
-  template <std::size_t N>
-  std::array<double, N> reals(const json& value, const char* name) {
-    std::array<double, N> out{};
-    if (!value.is_array() || value.size() != N) {
-      complain(fmt::format("{} is not {} numbers", name, N));
-      return out;
-    }
-    for (std::size_t i = 0; i < N; ++i) out[i] = real(value[i], name);
-    return out;
-  }
-  glm::dvec3 vector(const json& object, const char* name) {
-    const auto v = reals<3>(get(object, name), name);
-    return {v[0], v[1], v[2]};
-  }
-  glm::dquat turn(const json& object, const char* name) {
-    const auto v = reals<4>(get(object, name), name);
-    const glm::dquat q(v[0], v[1], v[2], v[3]);
-    const double length = glm::length(q);
-    if (std::abs(length - 1.0) <= 1e-12) return q;
-    if (std::abs(length - 1.0) <= 0.01) return glm::normalize(q);
-    complain(std::string(name) + " is not a unit quaternion");
-    return {1, 0, 0, 0};
-  }
-  const json& list(const json& object, const char* name, std::size_t most) {
-    static const json kEmpty = json::array();
-    if (!object.contains(name)) return kEmpty;
-    if (object.at(name).is_array() && object.at(name).size() <= most) return object.at(name);
-    complain(fmt::format("{} is not a list of at most {} things", name, most));
-    return kEmpty;
-  }
-  void complain(std::string sentence) {
-    if (complaint_.empty()) complaint_ = std::move(sentence);
-  }
-  const std::string& complaint() const { return complaint_; }
-
-  static constexpr TimestampNs kLatest = 4'000'000'000'000'000'000;
-
- private:
-  std::string complaint_;
-};
-
-HandFrame read_hand(LineReader& read, const json& object) {
-  HandFrame hand;
-  hand.time = read.time(object);
-  hand.id = static_cast<std::uint32_t>(read.whole(read.get(object, "id"), "id", 0, 0xffffffffLL));
-  hand.chirality = static_cast<Chirality>(read.whole(read.get(object, "side"), "side", 0, 2));
-  hand.valid = read.truth(object, "valid");
-  hand.tracked = read.truth(object, "tracked");
-  hand.confidence = read.real(read.get(object, "confidence"), "confidence");
-  hand.palm = {read.vector(object, "palm"), read.turn(object, "q")};
-  hand.velocity_mps = read.vector(object, "v");
-  hand.grab_strength = read.real(read.get(object, "grab"), "grab");
-  hand.pinch_distance_m = read.real(read.get(object, "pinch"), "pinch");
-  for (const json& item : read.list(object, "joints", kHandJointCount)) {
-    HandJointPose& joint =
-        hand.joints[static_cast<std::size_t>(read.whole(read.get(item, "j"), "j", 0, kHandJointCount - 1))];
-    joint = {{read.vector(item, "at"), read.turn(item, "q")},
-             read.real(read.get(item, "r"), "r"),
-             true,
-             read.truth(item, "tracked")};
-  }
-  return hand;
-}
-
-HeadFrame read_head(LineReader& read, const json& object) {
-  HeadFrame head;
-  head.time = read.time(object);
-  head.id = static_cast<std::uint32_t>(read.whole(read.get(object, "id"), "id", 0, 0xffffffffLL));
-  head.tracked = read.truth(object, "tracked");
-  head.confidence = read.real(read.get(object, "confidence"), "confidence");
-  if (object.is_object() && object.contains("left")) head.left_eye_m = read.vector(object, "left");
-  if (object.is_object() && object.contains("right")) head.right_eye_m = read.vector(object, "right");
-  return head;
-}
-
-InputEvent read_event(LineReader& read, const json& object) {
-  InputEvent event;
-  event.time = read.time(object);
-  event.kind = static_cast<EventKind>(read.whole(read.get(object, "kind"), "kind", 0, 3));
-  event.modifiers = static_cast<std::uint8_t>(read.whole(read.get(object, "mods"), "mods", 0, 7));
-  if (event.kind == EventKind::kMotion || event.kind == EventKind::kWheel) {
-    const auto by = read.reals<2>(read.get(object, "by"), "by");
-    event.motion = {by[0], by[1]};
-  }
-  if (event.kind == EventKind::kButton)
-    event.button = static_cast<MouseButton>(read.whole(read.get(object, "button"), "button", 0, 2));
-  if (event.kind == EventKind::kButton || event.kind == EventKind::kKey) event.down = read.truth(object, "down");
-  if (object.is_object() && object.contains("repeat")) event.repeat = read.truth(object, "repeat");
-  if (object.is_object() && object.contains("at")) {
-    const auto at = read.reals<2>(object.at("at"), "at");
-    event.at = {at[0], at[1]};
-  }
-  if (event.kind == EventKind::kKey) {
-    const json& key = read.get(object, "key");
-    if (key.is_string() && key.get_ref<const std::string&>().size() <= 32) {
-      event.key = key.get<std::string>();
-    } else {
-      read.complain("key is not a name of at most 32 letters");
-    }
-  }
-  return event;
-}
-
-RecordedFrame read_frame(LineReader& read, const json& object) {
-  RecordedFrame out;
-  out.polled = read.whole(read.get(object, "polled"), "polled", 0, LineReader::kLatest);
-  out.frame.time = read.time(object);
-  for (const json& item : read.list(object, "events", kMostThings)) out.frame.events.push_back(read_event(read, item));
-  for (const json& item : read.list(object, "hands", kMaxHands)) out.frame.hands.push_back(read_hand(read, item));
-  for (const json& item : read.list(object, "heads", 16)) out.frame.heads.push_back(read_head(read, item));
-  if (object.contains("puck")) {
-    const json& puck = object.at("puck");
-    out.frame.puck = PuckMotion{read.time(puck), read.vector(puck, "push"), read.vector(puck, "twist")};
-  }
-  return out;
-}
+using NextFrame = std::function<Result<std::optional<RecordedFrame>>()>;
 
 class ReplaySource final : public InputSource {
  public:
-  explicit ReplaySource(std::vector<RecordedFrame> frames) : frames_(std::move(frames)) {}
+  ReplaySource(NextFrame read, std::string note) : read_(std::move(read)), note_(std::move(note)) { advance(); }
   std::string_view name() const noexcept override { return "replay"; }
   Result<void> start() override { return {}; }
   bool has_end() const noexcept override { return true; }
-  bool finished() const noexcept override { return next_ >= frames_.size(); }
+  bool finished() const noexcept override { return !next_; }
+  std::string note() const override { return note_; }
 
   Freshness poll(TimestampNs now, InputFrame& newest) noexcept override {
     newest.events.clear();
-    if (frames_.empty()) return Freshness::kLost;
-    if (!start_) start_ = now;
-    const TimestampNs shift = *start_ - frames_.front().polled;
+    if (!start_ && next_) {
+      start_ = now;
+      shift_ = now - next_->polled;
+    }
+    if (!start_ || broken_) return Freshness::kLost;
     bool any = false;
     std::vector<InputEvent> events;
-    for (; next_ < frames_.size() && frames_[next_].polled + shift <= now; ++next_) {
-      newest = frames_[next_].frame;
+    for (; next_ && next_->polled + shift_ <= now; advance()) {
+      newest = std::move(next_->frame);
       any = true;
       events.insert(events.end(), newest.events.begin(), newest.events.end());
     }
     if (!any) return Freshness::kUnchanged;
     newest.events = std::move(events);
-    newest.time += shift;
-    for (InputEvent& event : newest.events) event.time += shift;
-    for (HandFrame& hand : newest.hands) hand.time += shift;
-    for (HeadFrame& head : newest.heads) head.time += shift;
-    if (newest.puck) newest.puck->time += shift;
+    newest.time += shift_;
+    for (InputEvent& event : newest.events) event.time += shift_;
+    for (HandFrame& hand : newest.hands) hand.time += shift_;
+    for (HeadFrame& head : newest.heads) head.time += shift_;
+    if (newest.puck) newest.puck->time += shift_;
     return Freshness::kNew;
   }
 
  private:
-  std::vector<RecordedFrame> frames_;
-  std::size_t next_ = 0;
+  void advance() {
+    next_.reset();
+    auto read = read_();
+    if (read) {
+      next_ = *std::move(read);
+    } else {  // it was whole when it was checked
+      broken_ = true;
+      note_ = std::move(read).error().message;
+    }
+  }
+  NextFrame read_;
+  std::string note_;
+  std::optional<RecordedFrame> next_;
   std::optional<TimestampNs> start_;
+  TimestampNs shift_ = 0;
+  bool broken_ = false;
 };
 
 }  // namespace
 
-std::string record_line(const RecordedFrame& recorded) {
-  const InputFrame& frame = recorded.frame;
-  json out{{"polled", recorded.polled}, {"t", frame.time}};
-  for (const InputEvent& event : frame.events) out["events"].push_back(event_json(event));
-  for (const HandFrame& hand : frame.hands) out["hands"].push_back(hand_json(hand));
-  for (const HeadFrame& head : frame.heads) out["heads"].push_back(head_json(head));
-  if (frame.puck)
-    out["puck"] = {{"t", frame.puck->time}, {"push", numbers(frame.puck->push)}, {"twist", numbers(frame.puck->twist)}};
-  return dump_json(out);
+RecordingReader::RecordingReader(std::unique_ptr<std::istream> stream, std::string name)
+    : stream_(std::move(stream)), name_(std::move(name)) {}
+
+Result<RecordingReader> RecordingReader::open(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto found = std::filesystem::status(path, error);
+  if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found))
+    return fail(ErrorKind::kBadData, "{} is not a regular file, expected a recording", path.string());
+  errno = 0;
+  auto file = std::make_unique<std::ifstream>(path, std::ios::binary);
+  if (!file->is_open()) return fail_errno(errno, fmt::format("cannot open {}", path.string()));
+  return RecordingReader(std::move(file), path.string());
 }
 
-Result<std::vector<RecordedFrame>> parse_recording(std::string_view text, std::string_view source) {
-  std::vector<RecordedFrame> frames;
-  for (int line_number = 1; !text.empty(); ++line_number) {
-    const std::string_view line = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(text.size(), line.size() + 1));
-    if (line.empty()) continue;
-    const std::string where = fmt::format("{}: line {}", source, line_number);
-    auto object = parse_json(line, where);
-    if (!object) return fail(ErrorKind::kConfig, "{}", object.error().message);
-    if (!object->is_object())
-      return fail(ErrorKind::kConfig, "{}: found {}, expected an object", where, object->type_name());
-    if (frames.size() == kMostFrames) return fail(ErrorKind::kConfig, "{}: more than {} frames", where, kMostFrames);
-    LineReader read;
-    RecordedFrame frame = read_frame(read, *object);
-    if (!frames.empty() && frame.polled < frames.back().polled) read.complain("polled goes back in time");
-    if (!read.complaint().empty()) return fail(ErrorKind::kConfig, "{}: {}", where, read.complaint());
-    frames.push_back(std::move(frame));
+RecordingReader RecordingReader::over(std::string text, std::string name) {
+  return {std::make_unique<std::istringstream>(std::move(text)), std::move(name)};
+}
+
+std::optional<std::string_view> RecordingReader::take_line() {
+  std::size_t end = buffer_.find('\n', begin_);
+  while (end == std::string::npos && *stream_ && buffer_.size() - begin_ <= kLongestLine) {
+    buffer_.erase(0, begin_);
+    begin_ = 0;
+    const std::size_t had = buffer_.size();
+    buffer_.resize(had + kBlockBytes);
+    stream_->read(buffer_.data() + had, kBlockBytes);
+    buffer_.resize(had + static_cast<std::size_t>(stream_->gcount()));
+    end = buffer_.find('\n', had);
   }
-  return frames;
+  whole_line_ = end != std::string::npos;
+  if (!whole_line_) end = buffer_.size();
+  if (end == begin_ && !whole_line_) return std::nullopt;
+  const std::string_view line = std::string_view(buffer_).substr(begin_, end - begin_);
+  begin_ = end + (whole_line_ ? 1 : 0);
+  ++line_number_;
+  return line;
+}
+
+tl::unexpected<Error> RecordingReader::broken(std::string_view why) {
+  stream_->setstate(std::ios::failbit);
+  buffer_.clear();
+  begin_ = 0;
+  return fail(ErrorKind::kConfig, "{}: line {}: {}", name_, line_number_, why);
+}
+
+Result<std::optional<RecordedFrame>> RecordingReader::next() {
+  while (const auto line = take_line()) {
+    if (line->empty()) continue;
+    if (line->size() > kLongestLine) return broken(fmt::format("longer than {} bytes", kLongestLine));
+    auto frame = parse_line(*line);
+    if (!frame && !whole_line_ && frame.error().kind == ErrorKind::kBadData) {
+      cut_off_ = true;
+      return std::nullopt;
+    }
+    if (!frame) return broken(frame.error().message);
+    if (frame->polled < last_polled_) return broken("polled goes back in time");
+    last_polled_ = frame->polled;
+    return std::optional<RecordedFrame>(*std::move(frame));
+  }
+  return std::nullopt;
+}
+
+Result<std::vector<RecordedFrame>> parse_input_recording(std::string text, std::string name) {
+  RecordingReader reader = RecordingReader::over(std::move(text), std::move(name));
+  std::vector<RecordedFrame> frames;
+  for (;;) {
+    DUBSAR_ASSIGN(std::optional<RecordedFrame> frame, reader.next());
+    if (!frame) return frames;
+    frames.push_back(*std::move(frame));
+  }
 }
 
 std::unique_ptr<InputSource> replay_frames(std::vector<RecordedFrame> frames) {
-  return std::make_unique<ReplaySource>(std::move(frames));
+  auto held = std::make_shared<std::vector<RecordedFrame>>(std::move(frames));
+  return std::make_unique<ReplaySource>(
+      [held, next = std::size_t{0}]() mutable -> Result<std::optional<RecordedFrame>> {
+        if (next == held->size()) return std::nullopt;
+        return std::optional<RecordedFrame>((*held)[next++]);
+      },
+      std::string());
 }
 
 Result<std::unique_ptr<InputSource>> make_replay_source(const InputConfig& config) {
   DUBSAR_ASSIGN(const std::string path, only_path_option(config, "replay"));
-  DUBSAR_ASSIGN(const std::string text, read_source_text(path));
-  DUBSAR_ASSIGN(auto frames, parse_recording(text, path));
-  if (frames.empty()) return fail(ErrorKind::kConfig, "{}: no frames in it, expected one JSON object a line", path);
-  return replay_frames(std::move(frames));
+  DUBSAR_ASSIGN(RecordingReader check, RecordingReader::open(path));
+  std::int64_t frames = 0;
+  for (;; ++frames) {
+    DUBSAR_ASSIGN(const std::optional<RecordedFrame> frame, check.next());
+    if (!frame) break;
+  }
+  if (frames == 0) return fail(ErrorKind::kConfig, "{}: no frames in it, expected one JSON object a line", path);
+  std::string note = check.cut_off() ? fmt::format("{}: its last line is not whole and was left out", path) : "";
+  DUBSAR_ASSIGN(RecordingReader opened, RecordingReader::open(path));
+  auto reader = std::make_shared<RecordingReader>(std::move(opened));
+  return std::make_unique<ReplaySource>([reader] { return reader->next(); }, std::move(note));
 }
 
 }  // namespace dubsar

@@ -33,12 +33,14 @@ struct HeadFrame {
   bool tracked = false;  ///< measured now
   double confidence = 0.0;
   std::optional<glm::dvec3> left_eye_m, right_eye_m;
+  bool operator==(const HeadFrame&) const = default;
 };
 
 /// Deflection of a six-axis puck, -1..1 each, axes of the screen frame; it stays until the next report.
 struct PuckMotion {
   TimestampNs time = 0;
   glm::dvec3 push{0.0}, twist{0.0};
+  bool operator==(const PuckMotion&) const = default;
 };
 
 /// What a source knows at one moment. Poses are the newest ones; events are all since the last poll, oldest first.

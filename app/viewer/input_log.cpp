@@ -3,23 +3,25 @@
 #include <utility>
 
 #include "app/viewer/session_keys.h"
-#include "input/input_recording.h"
 
 namespace dubsar::app {
 
-void InputLog::record(bool wanted) {
+void InputLog::record(std::unique_ptr<InputRecorder> recorder) {
   const std::scoped_lock lock(mutex_);
-  record_ = wanted;
+  recorder_ = std::move(recorder);
 }
 
 void InputLog::hear(TimestampNs at, const InputFrame& frame) {
   const std::scoped_lock lock(mutex_);
   for (const InputEvent& event : frame.events)
-    if (event.kind == EventKind::kKey && event.down && session_command(event.key)) keys_.push_back(event.key);
-  if (!record_) return;
-  std::string line = record_line({0, frame});  // most polls bring nothing new
-  if (line != last_line_) recording_ += record_line({at, frame}) + "\n";
-  last_line_ = std::move(line);
+    if (event.kind == EventKind::kKey && event.down && !event.repeat && session_command(event.key))
+      keys_.push_back(event.key);
+  if (recorder_) recorder_->add(at, frame);
+}
+
+void InputLog::hear_own(const InputEvent& event) {
+  const std::scoped_lock lock(mutex_);
+  if (recorder_) recorder_->add_event(event);
 }
 
 std::vector<std::string> InputLog::take_keys() {
@@ -27,9 +29,14 @@ std::vector<std::string> InputLog::take_keys() {
   return std::exchange(keys_, {});
 }
 
-std::string InputLog::recording() const {
+Result<void> InputLog::flush() {
   const std::scoped_lock lock(mutex_);
-  return recording_;
+  return recorder_ ? recorder_->flush() : Result<void>();
+}
+
+Result<void> InputLog::finish() {
+  const std::scoped_lock lock(mutex_);
+  return recorder_ ? recorder_->finish() : Result<void>();
 }
 
 }  // namespace dubsar::app

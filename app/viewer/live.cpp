@@ -14,7 +14,6 @@
 #include "app/viewer/input_log.h"
 #include "app/viewer/session_keys.h"
 #include "app/viewer/window_input.h"
-#include "core/base/atomic_file.h"
 #include "core/base/log.h"
 #include "core/image_io/png_file.h"
 #include "display/render/compose_pass.h"
@@ -69,7 +68,7 @@ class Live {
   bool over(TimestampNs now);
   void wait();
   void steer(const std::stop_token& stop);
-  Result<void> save_recording();
+  Result<void> end_recording();
 
   bool simulated() const noexcept { return options_.simulated_fps > 0; }
   TimestampNs now() const { return simulated() ? manual_.now() : clock_.now(); }
@@ -137,7 +136,10 @@ Result<void> Live::open(const TriMesh& mesh) {
   config.hotplug = HotplugBell::of_this_machine();
   config.model_folder = options_.session.model_folder;
   config.panel_m = 1e-3 * glm::dvec2(options_.session.screen.width_mm, options_.session.screen.height_mm);
-  log_.record(!options_.record.empty());
+  if (!options_.record.empty()) {
+    DUBSAR_ASSIGN(auto recorder, InputRecorder::create(options_.record));
+    log_.record(std::move(recorder));
+  }
   session_->on_input([this](TimestampNs at, const InputFrame& frame) { log_.hear(at, frame); });
   sources_ = std::make_unique<SourceSet>(session_->input(), config, options_.make_input);
   std::vector<std::string> inputs = options_.inputs;
@@ -253,9 +255,9 @@ void Live::use_window_event(const WindowEvent& told) {
   const bool key = event.kind == EventKind::kKey;
   if (key && (session_command(event.key) || help_open_)) {
     if (event.down && !event.repeat) use_key(event.key);
-    if (session_command(event.key)) return;
+    if (session_command(event.key)) return log_.hear_own(event);
   }
-  if (key && event.down && options_.keys && ask(event.key)) return;
+  if (key && event.down && options_.keys && ask(event.key)) return log_.hear_own(event);
   events_.push(event);
 }
 
@@ -364,10 +366,9 @@ void Live::steer(const std::stop_token& stop) {
 }
 
 /// Ends the reading of input.
-Result<void> Live::save_recording() {
+Result<void> Live::end_recording() {
   steering_ = {};  // joined
-  if (options_.record.empty()) return {};
-  return write_file_atomically(options_.record, log_.recording());
+  return log_.finish();
 }
 
 Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const LiveMoment&)>& look) {
@@ -381,7 +382,7 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
   bool ends = false;
   for (std::int64_t steps = 0; !ends; ++steps) {
     if (progress_.cancelled()) {
-      DUBSAR_TRY(save_recording());  // what a person showed is not lost with the session
+      DUBSAR_TRY(end_recording());  // what a person showed is not lost with the session
       return cancelled_error();
     }
     window_->poll_events();
@@ -391,6 +392,7 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
     sources_->tick(at);
     report_ = session_->poll(at, (simulated() ? at : display_clock_.light(at)) + delay);
     for (const std::string& key : log_.take_keys()) use_key(key);
+    if (simulated()) DUBSAR_TRY(log_.flush());
     if (report_.input_age) out_.input_age_ms.push_back(1e-6 * static_cast<double>(*report_.input_age));
     out_.largest_turn_deg = std::max(out_.largest_turn_deg, turn_between_deg(last_turn, report_.view.rotation));
     last_turn = report_.view.rotation;
@@ -426,7 +428,7 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
   out_.display = displays_[display_];
   out_.rows = sources_->rows();
   out_.sources = session_->input().states();
-  DUBSAR_TRY(save_recording());
+  DUBSAR_TRY(end_recording());
   return std::move(out_);
 }
 

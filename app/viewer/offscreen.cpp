@@ -4,11 +4,10 @@
 #include <cmath>
 #include <system_error>
 
-#include "core/base/atomic_file.h"
 #include "core/image_io/png_file.h"
 #include "display/render/compose_pass.h"
 #include "display/render/context_egl.h"
-#include "input/input_recording.h"
+#include "input/input_recorder.h"
 
 namespace dubsar::app {
 namespace {
@@ -57,9 +56,11 @@ Result<OffscreenResult> run_offscreen(const TriMesh& mesh, const OffscreenOption
   config.simulated_time = true;
   config.model_folder = options.session.model_folder;
   config.panel_m = 1e-3 * glm::dvec2(options.session.screen.width_mm, options.session.screen.height_mm);
-  std::string recording;
-  if (!options.record.empty())
-    session->on_input([&](TimestampNs now, const InputFrame& frame) { recording += record_line({now, frame}) + "\n"; });
+  std::unique_ptr<InputRecorder> recorder;
+  if (!options.record.empty()) {
+    DUBSAR_ASSIGN(recorder, InputRecorder::create(options.record));
+    session->on_input([&](TimestampNs now, const InputFrame& frame) { recorder->add(now, frame); });
+  }
   for (const std::string& spec : options.inputs) {
     DUBSAR_ASSIGN(auto source, make_input(spec, config));
     session->input().add(std::move(source));
@@ -90,6 +91,7 @@ Result<OffscreenResult> run_offscreen(const TriMesh& mesh, const OffscreenOption
     if (report.input_age) out.input_age_ms.push_back(1e-6 * static_cast<double>(*report.input_age));
     out.largest_turn_deg = std::max(out.largest_turn_deg, turn_between_deg(last_turn, report.view.rotation));
     last_turn = report.view.rotation;
+    if (recorder) DUBSAR_TRY(recorder->flush());
     if (session->input().finished()) --left_after_end;
     clock.advance(step);
     progress.advance(1);
@@ -98,7 +100,7 @@ Result<OffscreenResult> run_offscreen(const TriMesh& mesh, const OffscreenOption
   out.seconds = static_cast<double>(out.frames) / options.fps;
   out.view = session->view();
   out.sources = session->input().states();
-  if (!options.record.empty()) DUBSAR_TRY(write_file_atomically(options.record, recording));
+  if (recorder) DUBSAR_TRY(recorder->finish());
   return out;
 }
 

@@ -9,6 +9,7 @@ namespace dubsar {
 struct Pose {
   glm::dvec3 position_m{0.0, 0.0, 0.0};
   glm::dquat rotation{1.0, 0.0, 0.0, 0.0};  ///< w, x, y, z; unit
+  bool operator==(const Pose&) const = default;
 };
 
 /// a_from_c = compose(a_from_b, b_from_c)

@@ -1,6 +1,10 @@
 #include "input/input_recording.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 
 #include "input/mixer.h"
 #include "input/navigation/navigation.h"
@@ -43,7 +47,7 @@ TEST(Recording, AReplayedSessionEndsInTheSameView) {
   const Session original = run(live, seen, 1'000'000'000);
   ASSERT_GT(turn_between_deg(original.view.rotation, {1, 0, 0, 0}), 5.0);
   InputMixer replayed;
-  replayed.add(replay_frames(parse_recording(original.recording, "test").value()));
+  replayed.add(replay_frames(parse_input_recording(original.recording, "test").value()));
   ViewState unused;
   const Session again = run(replayed, unused, 77'000'000'000);  // another day
   EXPECT_LT(turn_between_deg(original.view.rotation, again.view.rotation), 0.01);
@@ -74,7 +78,7 @@ TEST(Recording, EverythingInAFrameSurvives) {
   head.right_eye_m = glm::dvec3(0.03, 0.01, 0.6);
   frame.frame.heads = {head};
   const std::string line = record_line(frame);
-  const auto back = parse_recording(line, "test").value();
+  const auto back = parse_input_recording(line, "test").value();
   ASSERT_EQ(back.size(), 1u);
   EXPECT_EQ(record_line(back[0]), line);
   EXPECT_EQ(back[0].frame.hands[0].id, 4'000'000'000u);
@@ -87,24 +91,84 @@ TEST(Recording, EverythingInAFrameSurvives) {
   EXPECT_EQ(back[0].frame.events[3].at, glm::dvec2(-0.25, 0.5));
 }
 
-TEST(Recording, EveryTruncationAndEveryBrokenByteIsRefusedOrHarmless) {
+TEST(Recording, ALastLineThatIsNotWholeIsLeftOutAndNothingElseIs) {
   RecordedFrame frame{500, {}};
   HandFrame hand;
   hand.joint(HandJoint::kPalm).valid = true;
   frame.frame.hands = {hand};
-  const std::string line = record_line(frame);
-  for (std::size_t n = 1; n < line.size(); ++n) EXPECT_FALSE(parse_recording(line.substr(0, n), "cut")) << n;
-  for (std::size_t i = 0; i < line.size(); ++i)
+  const std::string line = record_line(frame), before = record_line({400, {}}) + "\n";
+  for (std::size_t n = 1; n < line.size(); ++n) {
+    RecordingReader reader = RecordingReader::over(before + line.substr(0, n), "cut");
+    EXPECT_EQ(reader.next().value().value().polled, 400) << n;
+    EXPECT_FALSE(reader.next().value()) << n;
+    EXPECT_TRUE(reader.cut_off()) << n;
+    EXPECT_FALSE(parse_input_recording(before + line.substr(0, n) + "\n", "cut")) << n;  // a broken line is none
+  }
+  RecordingReader whole = RecordingReader::over(before + line, "whole");  // a line feed is not what makes it whole
+  EXPECT_TRUE(whole.next().value());
+  EXPECT_EQ(whole.next().value().value().frame.hands.size(), 1u);
+  EXPECT_FALSE(whole.next().value());
+  EXPECT_FALSE(whole.cut_off());
+}
+
+TEST(Recording, ABrokenByteIsRefusedWithItsLineOrReadAsWhatItSays) {
+  RecordedFrame frame{500, {}};
+  HandFrame hand;
+  hand.joint(HandJoint::kPalm).valid = true;
+  frame.frame.hands = {hand};
+  const std::string line = record_line(frame) + "\n";
+  int refused = 0, read = 0;
+  for (std::size_t i = 0; i + 1 < line.size(); ++i)
     for (const char c : {'0', '9', '-', '"', '{', ']', 'e', '\0', '\xff'}) {
       std::string broken = line;
       broken[i] = c;
-      const auto parsed = parse_recording(broken, "broken");
-      EXPECT_TRUE(parsed || parsed.error().kind == ErrorKind::kConfig);
+      const auto parsed = parse_input_recording(broken, "broken");
+      if (!parsed) {
+        ++refused;
+        EXPECT_EQ(parsed.error().kind, ErrorKind::kConfig);
+        EXPECT_EQ(parsed.error().message.find("broken: line 1: "), 0u) << parsed.error().message;
+        continue;
+      }
+      ++read;  // another number, or a name that is not known: what it says is what is kept
+      ASSERT_EQ(parsed->size(), 1u) << broken;
+      const std::string again = record_line(parsed->front());
+      EXPECT_EQ(record_line(parse_input_recording(again, "again").value().front()), again) << broken;
     }
+  EXPECT_GT(refused, 3 * read) << refused << " refused, " << read << " read";
+}
+
+TEST(Recording, LengthDoesNotMatter) {
+  // More than the 8 MiB that scripts may have, and more than 200000 frames.
+  const auto path = std::filesystem::temp_directory_path() / ("dubsar_long_" + std::to_string(::getpid()) + ".jsonl");
+  constexpr int kFrames = 210'000;
+  {
+    std::ofstream file(path);
+    InputFrame frame;
+    frame.puck = PuckMotion{};
+    for (int i = 0; i < kFrames; ++i) file << record_line({i * 11'000'000LL, frame}) << "\n";
+  }
+  ASSERT_GT(std::filesystem::file_size(path), std::uintmax_t{9} << 20);
+  InputConfig config;
+  config.options = {{"path", path.string()}};
+  auto source = make_replay_source(config);
+  ASSERT_TRUE(source) << source.error().message;
+  InputFrame newest;
+  (*source)->poll(0, newest);
+  EXPECT_FALSE((*source)->finished());
+  (*source)->poll((kFrames - 2) * 11'000'000LL, newest);
+  EXPECT_FALSE((*source)->finished());
+  (*source)->poll((kFrames - 1) * 11'000'000LL, newest);
+  EXPECT_TRUE((*source)->finished());
+  std::filesystem::remove(path);
+}
+
+TEST(Recording, ALineWithoutEndIsNotReadToItsEnd) {
+  const std::string endless(3 * kLongestLine, ' ');
+  EXPECT_NE(parse_input_recording(endless, "r.jsonl").error().message.find("longer than"), std::string::npos);
 }
 
 TEST(Recording, RefusesWhatCannotBe) {
-  const auto refused = [](std::string_view text) { return parse_recording(text, "r.jsonl").error().message; };
+  const auto refused = [](const char* text) { return parse_input_recording(text, "r.jsonl").error().message; };
   EXPECT_EQ(refused("{\"polled\": 5, \"t\": 4}\n{\"polled\": 4, \"t\": 4}"),
             "r.jsonl: line 2: polled goes back in time");
   EXPECT_EQ(refused("{\"polled\": -5, \"t\": 4}"),

@@ -14,8 +14,10 @@
 #include "app/panels/help_page.h"
 #include "app/viewer/display_clock.h"
 #include "app/viewer/session_keys.h"
+#include "core/base/atomic_file.h"
 #include "display/render/compose_pass.h"
 #include "display/render/context_egl.h"
+#include "input/input_recording.h"
 #include "tests/app/viewer/x_person.h"
 #include "tests/display/test_meshes.h"
 #include "tests/display/xvfb_server.h"
@@ -408,7 +410,29 @@ TEST_F(Live, ItEndsByClosingByTimeAndBySignal) {
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().kind, ErrorKind::kCancelled);
   EXPECT_LT(SteadyClock().now() - asked, 2'000'000'000);
-  EXPECT_TRUE(std::filesystem::remove(options_.record)) << "what was recorded before Ctrl-C is kept";
+  EXPECT_TRUE(parse_input_recording(read_text_file(options_.record).value(), "what was recorded before Ctrl-C"));
+  std::filesystem::remove(options_.record);
+}
+
+TEST_F(Live, KeysThatTheSessionItselfTakesAreInItsRecording) {
+  options_.record = std::filesystem::temp_directory_path() / fmt::format("dubsar_live_keys_{}.jsonl", ::getpid());
+  const auto help = [](bool open) { return [open](const LiveMoment& m) { return m.help == open; }; };
+  const auto done = play({{[] { person_->key("f1"); }, help(true)},
+                          {[] { person_->key("f1"); }, help(false)},
+                          {[] { person_->key("right"); },
+                           [](const LiveMoment& m) {
+                             return turn_between_deg(m.report.view.rotation, {1, 0, 0, 0}) > 5.0;
+                           }},
+                          end()});
+  ASSERT_TRUE(done) << done.error().message;
+  const auto frames = parse_input_recording(read_text_file(options_.record).value(), "recording");
+  ASSERT_TRUE(frames) << frames.error().message;
+  std::string keys;
+  for (const RecordedFrame& frame : *frames)
+    for (const InputEvent& event : frame.frame.events)
+      if (event.kind == EventKind::kKey && event.down) keys += event.key + " ";
+  EXPECT_EQ(keys, "f1 f1 right ");
+  std::filesystem::remove(options_.record);
 }
 
 TEST_F(Live, FullScreenAndBack) {
