@@ -28,7 +28,10 @@ usage() {
 ./do build    build the program (build/release/app/dubsar)
 ./do bench    run the benchmarks; ./do bench displays: only those of many views
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
+./do asan     the tests that need no window under AddressSanitizer and UndefinedBehaviorSanitizer
 ./do tsan     devices and inputs under ThreadSanitizer (clang)
+./do core     build and test the core alone: no graphics, no devices
+./do lint     is every source formatted, and clang-tidy over what changed since the last commit (or since REVISION)
 ./do deps     install the packages of Debian 12 that dubsar needs
 ./do strips   make the strips of pictures in docs/ again (minutes)
 ./do format   clang-format over all sources
@@ -81,6 +84,35 @@ lab() {
   lab_kernel || { echo "do lab: there is no kernel to boot" >&2; exit 69; }
   build_target --target test_lab
   tests/lab/run_in_kernel.sh "$PWD/$build/tests/lab/test_lab" "$@"
+}
+
+# The same cases as in `test`, less those that need windows, a kernel of their own or most of an hour.
+asan() {
+  deps
+  preset=asan build=build/asan
+  cmake --preset "$preset" >/dev/null
+  cmake --build "$build" -j "$jobs" --target dubsar_checked_tests
+  ASAN_OPTIONS="strict_string_checks=1:detect_stack_use_after_return=1:${ASAN_OPTIONS:-}" \
+    UBSAN_OPTIONS="print_stacktrace=1:${UBSAN_OPTIONS:-}" \
+    LSAN_OPTIONS="suppressions=$PWD/tests/leaks_of_others.txt:print_suppressions=0:${LSAN_OPTIONS:-}" \
+    ctest --test-dir "$build" --output-on-failure -j "$jobs" -L '^(unit|app)$' "$@"
+}
+
+core() {
+  deps
+  preset=core build=build/core
+  build_target
+  ctest --test-dir "$build" --output-on-failure -j "$jobs" -L '^unit$' "$@"
+}
+
+lint() {
+  deps clang-format clang-tidy
+  git ls-files '*.cpp' '*.h' | xargs clang-format --dry-run --Werror
+  local since=${1:-HEAD~1} changed
+  git rev-parse -q --verify "$since" >/dev/null || return 0  # a checkout without history
+  cmake --preset "$preset" >/dev/null
+  changed=$(git diff --name-only --diff-filter=AM "$since" -- '*.cpp' | head -n "${LINT_FILES:-12}")
+  [ -z "$changed" ] || clang-tidy -p "$build" --quiet --warnings-as-errors='*' $changed
 }
 
 tsan() {
@@ -144,7 +176,10 @@ case "$verb" in
   lab) lab "$@" ;;
   build) deps; build_target --target dubsar "$@" ;;
   bench) bench "$@" ;;
+  asan) asan "$@" ;;
   tsan) tsan ;;
+  core) core "$@" ;;
+  lint) lint "$@" ;;
   models) models "$@" ;;
   deps) deps ;;
   strips) strips "$@" ;;

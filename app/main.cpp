@@ -70,6 +70,7 @@ Result<void> deliver(const VerbResult& result, const CommonOptions& common) {
 int run(const Verb& verb, const CommonOptions& common) {
   install_log(common.console);
   set_thread_count(common.threads);
+  if (verb.settle) verb.settle();
   if (const auto ok = check_file_uses(verb.command.files()); !ok) return report_error(ok.error(), common);
   ConsoleProgress progress(common.console);
   cancel_on_signals(progress);

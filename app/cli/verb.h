@@ -28,6 +28,8 @@ struct VerbResult {
 struct Verb {
   Arguments command;
   std::function<Result<VerbResult>(const CommonOptions&, Progress&)> run;
+  std::function<void()> settle =
+      nullptr;  ///< fills in names that follow from others, before files are checked; may be empty
 };
 
 Verb add_phantom_verb(Arguments program);

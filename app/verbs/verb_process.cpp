@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <map>
+#include <filesystem>
 #include <memory>
 
 #include "app/cli/input_options.h"
@@ -75,6 +75,17 @@ void add_surface_options(Arguments command, Options& options) {
   group.value("--ao-radius", options.radius, "reach of the rays in grid steps").positive();
 }
 
+/// The surface beside the scan: tablet.h5:/entry/data -> tablet.exa, a folder of slices -> its name and .exa.
+void settle(Options& options) {
+  if (!options.out.empty()) return;
+  std::error_code ignored;
+  const auto colon = options.in.rfind(":/");
+  const bool dataset = colon != std::string::npos && !std::filesystem::exists(options.in, ignored);
+  std::filesystem::path in(dataset ? options.in.substr(0, colon) : options.in);
+  if (!in.has_filename()) in = in.parent_path();
+  options.out = in.replace_extension(".exa").string();
+}
+
 Result<VerbResult> run(Options options, const Arguments command, const CommonOptions&, Progress& progress) {
   PipelineOptions& p = options.pipeline;
   DUBSAR_ASSIGN(p.import, parse_input_options(options.in, options.input));
@@ -101,7 +112,8 @@ Verb add_process_verb(Arguments program) {
   auto options = std::make_shared<Options>();
   Arguments command = program.command("process", "turn a CT scan into separated, watertight surfaces (EXA)");
   command.reads("IN", options->in, "HDF5, NRRD, TIFF (file or folder) or raw volume").required();
-  command.writes("-o,--output", options->out, FileFormat::kExa, "EXA file to write").required();
+  command.writes("-o,--output", options->out, FileFormat::kExa,
+                 "EXA file to write (default: beside IN, with the suffix .exa)");
   add_input_options(command, options->input);
   add_filter_options(command, *options);
   add_surface_options(command, *options);
@@ -111,9 +123,11 @@ Verb add_process_verb(Arguments program) {
       "  dubsar process scan.h5 -o part.exa --crop 0:512,0:512,0:512 --no-ao\n"
       "  dubsar process scan.raw --dims 512x512x300 --type uint16 --voxel-size 38um -o tablet.exa\n"
       "  dubsar process scan.h5 -o tablet.exa --json report.json");
-  return {command, [options, command](const CommonOptions& common, Progress& progress) {
+  return {command,
+          [options, command](const CommonOptions& common, Progress& progress) {
             return run(*options, command, common, progress);
-          }};
+          },
+          [options] { settle(*options); }};
 }
 
 }  // namespace dubsar::app

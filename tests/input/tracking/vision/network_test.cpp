@@ -12,6 +12,7 @@
 #include "core/base/input_file.h"
 #include "input/tracking/vision/model_files.h"
 #include "input/tracking/vision/tflite_file.h"
+#include "tests/input/tracking/vision/small_nets.h"
 #include "tests/input/tracking/vision/tflite_writer.h"
 #include "tests/input/tracking/vision/vision_data.h"
 
