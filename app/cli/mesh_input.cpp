@@ -16,11 +16,9 @@ std::optional<int> as_id(const std::string& text) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(id) : std::nullopt;
 }
 
-tl::unexpected<Error> no_such_partition(const std::string& wanted, const std::vector<Partition>& partitions) {
-  std::string names;
-  for (const Partition& p : partitions) names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", p.name, p.id);
+tl::unexpected<Error> no_such_partition(const std::string& wanted, const PartitionTable& partitions) {
   return fail(ErrorKind::kUsage, "there is no partition \"{}\", expected one of: {}", wanted,
-              names.empty() ? "none, the file is not segmented" : names);
+              partitions.empty() ? "none, the file is not segmented" : partitions.listed());
 }
 
 /// What a name or id stands for in an EXA file: a whole part or a single partition.
@@ -32,9 +30,9 @@ Result<MeshOptions> mesh_options(const SurfaceModel& model, const std::string& w
       options.partition = p.id;
       return options;
     }
-    if (p.part == wanted) options.part = wanted;
+    if (p.body == wanted) options.body = wanted;
   }
-  if (options.part) return options;
+  if (options.body) return options;
   return no_such_partition(wanted, model.partitions);
 }
 
@@ -51,10 +49,10 @@ void append(TriMesh& to, const TriMesh& from) {
   append_array(to.k_min, from.k_min);
   append_array(to.k_max, from.k_max);
   append_array(to.shape, from.shape);
-  append_array(to.partition, from.partition);
+  append_array(to.triangle_partition, from.triangle_partition);
   append_array(to.ao, from.ao);
   append_array(to.colors, from.colors);
-  append_array(to.partitions, from.partitions);
+  to.partitions.merge(from.partitions);
 }
 
 Result<TriMesh> load_exa(const MeshRequest& request, Progress& progress) {
@@ -90,9 +88,9 @@ Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress) {
     int id = as_id(wanted).value_or(-1);
     for (const Partition& p : mesh.partitions)
       if (p.name == wanted) id = p.id;
-    if (mesh.partition.empty() || std::find(mesh.partition.begin(), mesh.partition.end(), id) == mesh.partition.end())
-      return no_such_partition(wanted, mesh.partitions);
-    TriMesh part = select_partition(mesh, id);
+    const auto& labels = mesh.triangle_partition;
+    if (std::find(labels.begin(), labels.end(), id) == labels.end()) return no_such_partition(wanted, mesh.partitions);
+    TriMesh part = select_partition(mesh, static_cast<PartitionId>(id));
     if (joined)
       append(*joined, part);
     else

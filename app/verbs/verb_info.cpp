@@ -64,7 +64,7 @@ Result<VerbResult> volume_info(const Options& options) {
   return result;
 }
 
-void add_partitions_text(std::string& text, const std::vector<Partition>& partitions) {
+void add_partitions_text(std::string& text, const PartitionTable& partitions) {
   for (const Partition& p : partitions)
     text += fmt::format("  part {}       {}: {:.1f} mm2, {:.1f} mm3, {}\n", p.id, p.name, p.area_mm2, p.volume_mm3,
                         p.watertight ? "watertight" : "open");

@@ -49,7 +49,7 @@ Result<void> hide_partitions(const std::vector<std::string>& names, const TriMes
   for (const std::string& name : names) {
     bool found = false;
     for (const Partition& p : mesh.partitions)
-      if (p.name == name || p.part == name || std::to_string(p.id) == name) {
+      if (p.name == name || p.body == name || std::to_string(p.id) == name) {
         show_partitions(shading.parts, static_cast<std::uint8_t>(visible_partitions(shading.parts) & ~(1 << p.id)));
         found = true;
       }

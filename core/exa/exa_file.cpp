@@ -18,7 +18,7 @@
 namespace dubsar {
 namespace {
 constexpr std::uint16_t kCodecPlain = 0, kCodecSigns = 1;
-constexpr int kHighestShape = 126, kHighestAo = 63, kHighestPartition = 7;
+constexpr int kHighestShape = 126, kHighestAo = 63, kHighestPartition = PartitionTable::kHighest;
 constexpr std::size_t kWriteStep = std::size_t{4} << 20;
 
 struct BlockName {
@@ -85,9 +85,6 @@ Result<void> check_model(const SurfaceModel& model, const QuadMesh& rebuilt) {
   if (largest(a.shape) > kHighestShape || largest(a.ao) > kHighestAo ||
       largest(model.quad_partition) > kHighestPartition)
     return fail(ErrorKind::kInternal, "exa: a shape class, ambient light or partition is out of range");
-  for (const Partition& p : model.partitions)
-    if (p.id < 0 || p.id > kHighestPartition)
-      return fail(ErrorKind::kInternal, "exa: partition id {} found, expected 0..7", p.id);
   return check_patches(model.patches, model.mesh.vertex_count());
 }
 

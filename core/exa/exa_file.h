@@ -36,7 +36,7 @@ struct ExaInfo {
   int offset_bits = 0;
   bool closed = true;
   std::int64_t vertices = 0, quads = 0;
-  std::vector<Partition> partitions;
+  PartitionTable partitions;
   std::string provenance;
   ExaStats stats;
 };

@@ -128,39 +128,20 @@ Result<ExaHeader> parse_exa_header(std::string_view text) {
   return header;
 }
 
-Result<std::string> exa_partitions_json(const std::vector<Partition>& partitions) {
-  nlohmann::ordered_json table = nlohmann::ordered_json::array();
-  for (const Partition& p : partitions) {
+Result<std::string> exa_partitions_json(const PartitionTable& partitions) {
+  for (const Partition& p : partitions)
     if (!std::isfinite(p.area_mm2) || !std::isfinite(p.volume_mm3))
       return fail(ErrorKind::kBadData, "exa: area or volume of partition {} is not finite", p.id);
-    table.push_back({{"id", p.id},
-                     {"name", p.name},
-                     {"part", p.part},
-                     {"area_mm2", p.area_mm2},
-                     {"volume_mm3", p.volume_mm3},
-                     {"watertight", p.watertight}});
-  }
-  return table.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
+  return partitions_json(partitions).dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-Result<std::vector<Partition>> parse_exa_partitions(std::string_view text) {
+Result<PartitionTable> parse_exa_partitions(std::string_view text) {
   DUBSAR_ASSIGN(const Json json, parse_json(text, "exa: partition table"));
-  if (!json.is_array() || json.size() > 256) return fail(ErrorKind::kBadData, "exa: the partition table is no table");
-  std::vector<Partition> partitions;
+  if (!json.is_array()) return fail(ErrorKind::kBadData, "exa: the partition table is no table");
+  PartitionTable partitions;
   for (const Json& row : json) {
-    Members members(row);
-    Partition p;
-    const std::int64_t id = members.count("id");
-    p.name = members.text("name");
-    p.part = members.text("part");
-    p.area_mm2 = members.number("area_mm2");
-    p.volume_mm3 = members.number("volume_mm3");
-    p.watertight = members.flag("watertight");
-    if (!members.wrong().empty() || id > 7)
-      return fail(ErrorKind::kBadData, "exa: \"{}\" is missing or wrong in the partition table",
-                  members.wrong().empty() ? "id" : members.wrong());
-    p.id = static_cast<int>(id);
-    partitions.push_back(std::move(p));
+    DUBSAR_ASSIGN(Partition partition, parse_partition(row));
+    DUBSAR_TRY(partitions.insert(std::move(partition)));
   }
   return partitions;
 }

@@ -25,8 +25,8 @@ Result<std::string> exa_header_json(const ExaHeader& header);
 /// kBadData: missing or wrong members, dimensions out of bounds.
 Result<ExaHeader> parse_exa_header(std::string_view text);
 
-Result<std::string> exa_partitions_json(const std::vector<Partition>& partitions);
-Result<std::vector<Partition>> parse_exa_partitions(std::string_view text);
+Result<std::string> exa_partitions_json(const PartitionTable& partitions);
+Result<PartitionTable> parse_exa_partitions(std::string_view text);
 
 /// Over positions, quads and doubled corners: tells a reader that builds another mesh from the same samples.
 std::uint64_t mesh_checksum(const QuadMesh& mesh);

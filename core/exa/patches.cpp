@@ -11,8 +11,8 @@ std::string encode_patches(const std::vector<FillPatch>& patches) {
   std::string bytes;
   append_little(bytes, static_cast<std::uint32_t>(patches.size()));
   for (const FillPatch& patch : patches) {
-    append_little(bytes, patch.part);
-    append_little(bytes, patch.reverse_part);
+    append_little(bytes, patch.partition);
+    append_little(bytes, patch.reverse_partition);
     append_little(bytes, std::uint16_t{0});
     append_little(bytes, static_cast<std::uint32_t>(patch.extra_positions.size()));
     append_little(bytes, static_cast<std::uint32_t>(patch.triangles.size()));
@@ -30,8 +30,8 @@ Result<std::vector<FillPatch>> decode_patches(std::string_view bytes, std::int64
   DUBSAR_TRY(check_count("exa: fill patches", count, 12, reader.left()));
   std::vector<FillPatch> patches(count);
   for (FillPatch& patch : patches) {
-    patch.part = reader.little<std::uint8_t>();
-    patch.reverse_part = reader.little<std::uint8_t>();
+    patch.partition = reader.little<std::uint8_t>();
+    patch.reverse_partition = reader.little<std::uint8_t>();
     const auto zero = reader.little<std::uint16_t>();
     const auto extra = reader.little<std::uint32_t>(), triangles = reader.little<std::uint32_t>();
     if (zero != 0) return fail(ErrorKind::kBadData, "exa: a fill patch has unknown flags {}", zero);
@@ -51,9 +51,10 @@ Result<std::vector<FillPatch>> decode_patches(std::string_view bytes, std::int64
 
 Result<void> check_patches(const std::vector<FillPatch>& patches, std::int64_t vertex_count) {
   for (const FillPatch& patch : patches) {
-    if (patch.part > 7 || (patch.reverse_part > 7 && patch.reverse_part != FillPatch::kNoPart))
-      return fail(ErrorKind::kBadData, "exa: a fill patch names partition {} and {}, expected 0..7", patch.part,
-                  patch.reverse_part);
+    if (patch.partition > PartitionTable::kHighest ||
+        (patch.reverse_partition > PartitionTable::kHighest && patch.reverse_partition != PartitionTable::kNone))
+      return fail(ErrorKind::kBadData, "exa: a fill patch names partition {} and {}, expected 0..{}", patch.partition,
+                  patch.reverse_partition, PartitionTable::kHighest);
     for (const glm::vec3& p : patch.extra_positions)
       if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
         return fail(ErrorKind::kBadData, "exa: a vertex of a fill patch is not finite");

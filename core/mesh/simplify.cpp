@@ -129,12 +129,13 @@ class Simplifier {
     carry(mesh_.k_min, out.k_min);
     carry(mesh_.k_max, out.k_max);
     carry(mesh_.shape, out.shape);
-    carry(mesh_.partition, out.partition);
     carry(mesh_.ao, out.ao);
     carry(mesh_.colors, out.colors);
-    for (const Face& face : faces_) {
-      if (face.alive)
-        out.triangles.push_back({renamed[face.vertex[0]], renamed[face.vertex[1]], renamed[face.vertex[2]]});
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      const Face& face = faces_[f];
+      if (!face.alive) continue;
+      out.triangles.push_back({renamed[face.vertex[0]], renamed[face.vertex[1]], renamed[face.vertex[2]]});
+      if (!mesh_.triangle_partition.empty()) out.triangle_partition.push_back(mesh_.triangle_partition[f]);
     }
     out.frame = mesh_.frame;
     out.partitions = mesh_.partitions;
@@ -149,13 +150,12 @@ class Simplifier {
   /// triangles around their vertices are no closed fan.
   void lock_borders() {
     locked_.assign(head_.size(), 0);
-    if (!mesh_.partition.empty()) {
-      for (const Triangle& t : mesh_.triangles) {
-        const auto& part = mesh_.partition;
-        if (part[t[0]] == part[t[1]] && part[t[1]] == part[t[2]]) continue;
-        for (const std::uint32_t v : t) locked_[v] = 1;
+    std::vector<PartitionId> seen(head_.size(), PartitionTable::kNone);
+    for (std::size_t t = 0; t < mesh_.triangle_partition.size(); ++t)
+      for (const std::uint32_t v : mesh_.triangles[t]) {
+        if (seen[v] != PartitionTable::kNone && seen[v] != mesh_.triangle_partition[t]) locked_[v] = 1;
+        seen[v] = mesh_.triangle_partition[t];
       }
-    }
     std::vector<std::uint32_t> order(head_.size());
     std::iota(order.begin(), order.end(), 0u);
     const auto key = [&](std::uint32_t v) {

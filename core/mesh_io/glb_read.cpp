@@ -128,7 +128,7 @@ struct Parser {
     return result;
   }
 
-  Result<void> primitive(const Json& json, const glm::dmat4& transform, std::uint8_t part) {
+  Result<void> primitive(const Json& json, const glm::dmat4& transform, PartitionId partition) {
     if (number(json, "mode", 4) != 4) return broken("points, lines or strips found, expected triangles");
     const Json* attributes = member(json, "attributes");
     if (!attributes) return broken("a primitive has no attributes");
@@ -144,7 +144,6 @@ struct Parser {
       if (!std::isfinite(moved.x) || !std::isfinite(moved.y) || !std::isfinite(moved.z))
         return broken("a position is not finite");
       mesh.positions.push_back(moved);
-      mesh.partition.push_back(part);
     }
     if (const Json* index = member(*attributes, "NORMAL")) {
       DUBSAR_ASSIGN(const Accessor normals, accessor(index));
@@ -185,6 +184,7 @@ struct Parser {
         triangle[k] = static_cast<std::uint32_t>(base + v);
       }
       mesh.triangles.push_back(triangle);
+      mesh.triangle_partition.push_back(partition);
     }
     return {};
   }
@@ -245,9 +245,9 @@ struct Parser {
       const Json* primitives = shape ? member(*shape, "primitives") : nullptr;
       if (!primitives || !primitives->is_array()) return broken("a node names a mesh that does not exist");
       const Json* extras = member(node, "extras");
-      const auto part = extras ? number(*extras, "partition", 0) : std::optional<std::uint64_t>(0);
-      for (const Json& json : *primitives)
-        DUBSAR_TRY(primitive(json, transform, static_cast<std::uint8_t>(ours && part && *part < 8 ? *part : 0)));
+      const std::uint64_t id = ours && extras ? number(*extras, "partition", 0).value_or(0) : 0;
+      const auto partition = static_cast<PartitionId>(id <= PartitionTable::kHighest ? id : 0);
+      for (const Json& json : *primitives) DUBSAR_TRY(primitive(json, transform, partition));
     }
     return {};
   }
@@ -293,7 +293,7 @@ Result<TriMesh> parse_glb(std::string_view bytes, Progress& progress) {
     DUBSAR_TRY(lines.apply(mesh));
   else
     mesh.frame.input_voxel.provenance = "glTF is in metres";
-  if (mesh.partitions.empty()) mesh.partition.clear();
+  if (mesh.partitions.empty()) mesh.triangle_partition.clear();
   return std::move(mesh);
 }
 

@@ -17,7 +17,7 @@ constexpr int kFloat = 5126, kUint = 5125, kUshort = 5123, kArrayBuffer = 34962,
 
 /// One partition with vertices of its own, in mm.
 struct Part {
-  int id = 0;
+  PartitionId id = 0;
   std::vector<std::uint32_t> vertices;  ///< ids in the mesh
   std::vector<Triangle> triangles;      ///< local ids
 };
@@ -25,12 +25,13 @@ struct Part {
 std::vector<Part> split(const TriMesh& mesh) {
   std::vector<Part> parts;
   std::vector<std::uint32_t> local(mesh.positions.size());
-  for (int id = 0; id < 8; ++id) {
+  for (PartitionId id = 0; id < PartitionTable::kMost; ++id) {
     std::fill(local.begin(), local.end(), std::numeric_limits<std::uint32_t>::max());
     Part part;
     part.id = id;
-    for (const Triangle& t : mesh.triangles) {
-      if (partition_of(mesh, t) != id) continue;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      if (mesh.partition_of(i) != id) continue;
+      const Triangle& t = mesh.triangles[i];
       Triangle moved;
       for (std::size_t c = 0; c < 3; ++c) {
         std::uint32_t& slot = local[t[c]];
@@ -43,7 +44,7 @@ std::vector<Part> split(const TriMesh& mesh) {
       part.triangles.push_back(moved);
     }
     if (!part.triangles.empty()) parts.push_back(std::move(part));
-    if (mesh.partition.empty()) break;
+    if (mesh.triangle_partition.empty()) break;
   }
   return parts;
 }

@@ -110,7 +110,7 @@ Result<MeshInfo> mesh_info(const std::filesystem::path& path, Progress& progress
   };
   note(!mesh.normals.empty(), "normals");
   note(!mesh.colors.empty(), "colors");
-  note(!mesh.partition.empty(), "partition");
+  note(!mesh.triangle_partition.empty(), "partition");
   note(!mesh.k_min.empty(), "k_min");
   note(!mesh.k_max.empty(), "k_max");
   note(!mesh.shape.empty(), "shape");
@@ -118,24 +118,27 @@ Result<MeshInfo> mesh_info(const std::filesystem::path& path, Progress& progress
   return info;
 }
 
-TriMesh select_partition(const TriMesh& mesh, int partition) {
+TriMesh select_partition(const TriMesh& mesh, PartitionId partition) {
   constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
   TriMesh part;
   part.frame = mesh.frame;
   part.provenance = mesh.provenance;
-  for (const Partition& row_of : mesh.partitions)
-    if (row_of.id == partition) part.partitions.push_back(row_of);
+  if (const Partition* const row = mesh.partitions.find(partition)) part.partitions = {*row};
   std::vector<std::uint32_t> moved(mesh.positions.size(), kUnused), kept;
-  for (const Triangle& t : mesh.triangles)
-    if (partition_of(mesh, t) == partition)
-      for (const std::uint32_t v : t) moved[v] = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (mesh.partition_of(t) == partition)
+      for (const std::uint32_t v : mesh.triangles[t]) moved[v] = 0;
   for (std::uint32_t v = 0; v < moved.size(); ++v)
     if (moved[v] != kUnused) {
       moved[v] = static_cast<std::uint32_t>(kept.size());
       kept.push_back(v);
     }
-  for (const Triangle& t : mesh.triangles)
-    if (partition_of(mesh, t) == partition) part.triangles.push_back({moved[t[0]], moved[t[1]], moved[t[2]]});
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (mesh.partition_of(i) != partition) continue;
+    const Triangle& t = mesh.triangles[i];
+    part.triangles.push_back({moved[t[0]], moved[t[1]], moved[t[2]]});
+  }
+  if (!mesh.triangle_partition.empty()) part.triangle_partition.assign(part.triangles.size(), partition);
   const auto copy = [&](const auto& from, auto& to) {
     if (from.empty()) return;
     to.reserve(kept.size());
@@ -146,7 +149,6 @@ TriMesh select_partition(const TriMesh& mesh, int partition) {
   copy(mesh.k_min, part.k_min);
   copy(mesh.k_max, part.k_max);
   copy(mesh.shape, part.shape);
-  copy(mesh.partition, part.partition);
   copy(mesh.ao, part.ao);
   copy(mesh.colors, part.colors);
   return part;

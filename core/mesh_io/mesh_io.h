@@ -32,7 +32,7 @@ struct MeshInfo {
   MeshCheck check;                      ///< is it a 2-manifold?
   VoxelSize unit;                       ///< one file unit; unknown() when the file does not say
   std::vector<std::string> attributes;  ///< "normals", "colors", "k_min", ... that the file carries
-  std::vector<Partition> partitions;
+  PartitionTable partitions;
   std::string provenance;  ///< JSON text, empty for foreign files
 };
 
@@ -56,7 +56,7 @@ Result<TriMesh> read_mesh(const std::filesystem::path& path, Progress& progress)
 /// Reads the file and describes it.
 Result<MeshInfo> mesh_info(const std::filesystem::path& path, Progress& progress);
 
-/// The triangles of one part and the vertices they use, in the old order.
-TriMesh select_partition(const TriMesh& mesh, int partition);
+/// The triangles of one partition and the vertices they use, in the old order.
+TriMesh select_partition(const TriMesh& mesh, PartitionId partition);
 
 }  // namespace dubsar

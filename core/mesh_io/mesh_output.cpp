@@ -8,8 +8,11 @@ Result<void> check_tri_mesh(const TriMesh& mesh) {
   const std::size_t count = mesh.positions.size();
   const auto fits = [&](std::size_t size) { return size == 0 || size == count; };
   if (!fits(mesh.normals.size()) || !fits(mesh.k_min.size()) || !fits(mesh.k_max.size()) || !fits(mesh.shape.size()) ||
-      !fits(mesh.partition.size()) || !fits(mesh.ao.size()) || !fits(mesh.colors.size()))
+      !fits(mesh.ao.size()) || !fits(mesh.colors.size()))
     return fail(ErrorKind::kInternal, "mesh: vertex arrays of different lengths, expected {} entries each", count);
+  if (!mesh.triangle_partition.empty() && mesh.triangle_partition.size() != mesh.triangles.size())
+    return fail(ErrorKind::kInternal, "mesh: {} partition ids found, expected one for each of {} triangles",
+                mesh.triangle_partition.size(), mesh.triangles.size());
   for (const Triangle& t : mesh.triangles)
     for (const std::uint32_t v : t)
       if (v >= count) return fail(ErrorKind::kInternal, "mesh: vertex {} named, but there are {}", v, count);
@@ -24,10 +27,9 @@ VertexColors output_colors(const TriMesh& mesh) {
   return {shape_vertex_colors(ShapeColors::kTable, mesh.shape, mesh.ao), true};
 }
 
-std::string partition_name(const TriMesh& mesh, int id) {
-  for (const Partition& partition : mesh.partitions)
-    if (partition.id == id && !partition.name.empty()) return partition.name;
-  return fmt::format("part {}", id);
+std::string partition_name(const TriMesh& mesh, PartitionId id) {
+  const Partition* const partition = mesh.partitions.find(id);
+  return partition != nullptr && !partition->name.empty() ? partition->name : fmt::format("part {}", id);
 }
 
 }  // namespace dubsar

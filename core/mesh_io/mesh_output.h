@@ -53,14 +53,7 @@ struct VertexColors {
 };
 VertexColors output_colors(const TriMesh& mesh);
 
-/// Partition of a triangle, 0 where the mesh has none: the highest of its vertices, because a vertex between two
-/// partitions that stay joined carries the lower id.
-inline int partition_of(const TriMesh& mesh, const Triangle& t) noexcept {
-  if (mesh.partition.empty()) return 0;
-  return std::max({mesh.partition[t[0]], mesh.partition[t[1]], mesh.partition[t[2]]});
-}
-
-/// Table name of a part, or "part 3".
-std::string partition_name(const TriMesh& mesh, int id);
+/// Table name of a partition, or "part 3".
+std::string partition_name(const TriMesh& mesh, PartitionId id);
 
 }  // namespace dubsar

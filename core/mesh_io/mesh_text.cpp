@@ -32,6 +32,10 @@ std::string ascii_json(const std::string& text) {
   const auto json = parse_json(text, "provenance");
   return dump_json(json ? *json : nlohmann::json(text));
 }
+
+std::string one_ascii_line(const nlohmann::ordered_json& json) {
+  return json.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
+}
 }  // namespace
 
 std::vector<std::string> mesh_text_lines(const TriMesh& mesh, const MeshWriteOptions& options, bool colors_derived) {
@@ -46,7 +50,7 @@ std::vector<std::string> mesh_text_lines(const TriMesh& mesh, const MeshWriteOpt
   }
   if (colors_derived) lines.emplace_back(kColors);
   for (const Partition& partition : mesh.partitions)
-    lines.push_back(std::string(kPartition) + partition_to_json(partition));
+    lines.push_back(std::string(kPartition) + one_ascii_line(partition_json(partition)));
   if (!mesh.provenance.empty()) {
     const std::string text = ascii_json(mesh.provenance);
     for (std::size_t at = 0; at < text.size(); at += kPiece)
@@ -90,43 +94,12 @@ Result<void> MeshTextReader::apply(TriMesh& mesh) const {
     mesh.frame.input_voxel.provenance = voxel_provenance_.empty() ? "mesh file" : voxel_provenance_;
   }
   for (const std::string& text : partitions_) {
-    DUBSAR_ASSIGN(Partition partition, partition_from_json(text));
-    mesh.partitions.push_back(std::move(partition));
+    DUBSAR_ASSIGN(const nlohmann::json row, parse_json(text, "partition table"));
+    DUBSAR_ASSIGN(Partition partition, parse_partition(row));
+    DUBSAR_TRY(mesh.partitions.insert(std::move(partition)));
   }
   mesh.provenance = provenance_;
   return {};
-}
-
-std::string partition_to_json(const Partition& partition) {
-  nlohmann::ordered_json json;
-  json["id"] = partition.id;
-  json["name"] = partition.name;
-  if (!partition.part.empty()) json["part"] = partition.part;
-  json["area_mm2"] = partition.area_mm2;
-  json["volume_mm3"] = partition.volume_mm3;
-  json["watertight"] = partition.watertight;
-  return json.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
-}
-
-Result<Partition> partition_from_json(std::string_view text) {
-  DUBSAR_ASSIGN(const nlohmann::json json, parse_json(text, "partition table"));
-  const auto number = [&](const char* key) {
-    return json.contains(key) && json[key].is_number() ? json[key].get<double>() : 0.0;
-  };
-  if (!json.is_object() || !json.contains("id") || !json["id"].is_number_integer() || !json.contains("name") ||
-      !json["name"].is_string())
-    return fail(ErrorKind::kBadData, "partition table: id and name expected in every row");
-  const auto id = json["id"].get<std::int64_t>();
-  if (id < 0 || id > 7) return fail(ErrorKind::kBadData, "partition table: id {} found, expected 0..7", id);
-  Partition partition;
-  partition.id = static_cast<int>(id);
-  partition.name = json["name"].get<std::string>();
-  if (json.contains("part") && json["part"].is_string()) partition.part = json["part"].get<std::string>();
-  partition.area_mm2 = number("area_mm2");
-  partition.volume_mm3 = number("volume_mm3");
-  partition.watertight =
-      json.contains("watertight") && json["watertight"].is_boolean() && json["watertight"].get<bool>();
-  return partition;
 }
 
 }  // namespace dubsar

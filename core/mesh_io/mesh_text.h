@@ -29,8 +29,4 @@ class MeshTextReader {
   std::vector<std::string> partitions_;
 };
 
-/// {"id":0,"name":"tablet","area_mm2":..,"volume_mm3":..,"watertight":true} as one ASCII line, and back.
-std::string partition_to_json(const Partition& partition);
-Result<Partition> partition_from_json(std::string_view text);
-
 }  // namespace dubsar

@@ -25,9 +25,8 @@ struct Parser {
   MeshTextReader text;
   std::vector<glm::vec3> normals;
   std::vector<std::uint32_t> corner_normals;
-  std::vector<std::uint8_t> polygon_part;
   bool corners_without_normal = false, vertices_without_color = false;
-  std::uint8_t part = 0;
+  PartitionId partition = 0;
   std::size_t line_number = 0;
 
   tl::unexpected<Error> broken(std::string_view line, std::string_view expected) const {
@@ -83,7 +82,7 @@ struct Parser {
     }
     if (size < 3) return broken(line, "at least 3 corners");
     soup.sizes.push_back(size);
-    polygon_part.push_back(part);
+    soup.partitions.push_back(partition);
     return {};
   }
 
@@ -99,8 +98,8 @@ struct Parser {
       normals.push_back(finite(normal) ? normal : glm::vec3(0.0f));
     } else if (key == "g") {
       const std::string_view name = words.word();
-      const bool numbered = name.size() > 4 && name.starts_with("part") && name[4] >= '0' && name[4] <= '7';
-      part = numbered ? static_cast<std::uint8_t>(name[4] - '0') : std::uint8_t{0};
+      const int digit = name.size() > 4 && name.starts_with("part") ? name[4] - '0' : 0;
+      partition = digit > 0 && digit <= PartitionTable::kHighest ? static_cast<PartitionId>(digit) : PartitionId{0};
     } else if (line.starts_with("# ")) {
       text.line(line.substr(2));
     }
@@ -145,12 +144,7 @@ struct Parser {
     if (!soup.corners.empty() && !corners_without_normal) DUBSAR_TRY(vertex_normals());
     if (vertices_without_color) mesh.colors.clear();
     DUBSAR_TRY(text.apply(mesh));
-    if (text.ours() && !mesh.partitions.empty()) {
-      mesh.partition.assign(count, 0);
-      std::size_t corner = 0;
-      for (std::size_t p = 0; p < soup.sizes.size(); ++p)
-        for (std::uint32_t c = 0; c < soup.sizes[p]; ++c) mesh.partition[soup.corners[corner++]] = polygon_part[p];
-    }
+    if (text.ours() && !mesh.partitions.empty()) mesh.triangle_partition = triangle_partitions(soup);
     DUBSAR_ASSIGN(mesh.triangles, triangulate_soup(mesh.positions, soup, "obj"));
     return {};
   }
@@ -177,7 +171,7 @@ struct Parser {
 }  // namespace
 
 Result<TriMesh> parse_obj(std::string_view bytes, Progress& progress) {
-  Parser parser{bytes, progress, {}, {}, {}, {}, {}, {}};
+  Parser parser{bytes, progress, {}, {}, {}, {}, {}};
   DUBSAR_TRY(parser.lines());
   DUBSAR_TRY(parser.finish());
   return std::move(parser.mesh);
@@ -214,10 +208,11 @@ Result<void> write_obj(const std::filesystem::path& path, const TriMesh& mesh, c
     fmt::format_to(std::back_inserter(row), "vn {} {} {}\n", n.x, n.y, n.z);
     emit();
   }
-  for (int id = 0; id < 8; ++id) {
+  for (PartitionId id = 0; id < PartitionTable::kMost; ++id) {
     bool named = false;
-    for (const Triangle& t : mesh.triangles) {
-      if (partition_of(mesh, t) != id) continue;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      if (mesh.partition_of(i) != id) continue;
+      const Triangle& t = mesh.triangles[i];
       if (!named) {
         std::string name = partition_name(mesh, id);
         std::replace_if(

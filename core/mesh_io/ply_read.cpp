@@ -88,6 +88,8 @@ std::optional<Slot> slot_of(const PlyProperty& property, bool ours) {
   return std::nullopt;
 }
 
+bool is_label(const PlyProperty& property) { return property.name == "partition" && !property.list; }
+
 double color_scale(PlyScalar type) {
   if (!ply_is_integer(type)) return 255.0;
   return type == PlyScalar::kU16 ? 1.0 / 257.0 : 1.0;
@@ -107,6 +109,7 @@ struct Parser {
   PolygonSoup soup;
   std::uint64_t vertex_count = 0;
   std::int64_t skipped = 0;
+  std::vector<PartitionId> labels{};  ///< of the vertices, from files without labels of the faces
 
   template <class Values>
   Result<void> vertices(const PlyElement& element, Values& values) {
@@ -131,7 +134,7 @@ struct Parser {
     if (normals) mesh.normals.resize(count);
     if (colors) mesh.colors.resize(count);
     if (curvatures) mesh.k_min.resize(count), mesh.k_max.resize(count);
-    if (has[kPart]) mesh.partition.resize(count);
+    if (has[kPart]) labels.resize(count);
     if (has[kShape]) mesh.shape.resize(count);
     if (has[kAo]) mesh.ao.resize(count);
 
@@ -164,7 +167,7 @@ struct Parser {
         mesh.k_max[v] = static_cast<float>(row[kKMax]);
       }
       if (has[kPart]) {
-        DUBSAR_ASSIGN(mesh.partition[v], checked_byte<std::uint8_t>(row[kPart], 7, "partition"));
+        DUBSAR_ASSIGN(labels[v], checked_byte<PartitionId>(row[kPart], PartitionTable::kHighest, "partition"));
       }
       if (has[kShape]) {
         DUBSAR_ASSIGN(mesh.shape[v], checked_byte<std::uint8_t>(row[kShape], 126, "shape"));
@@ -215,9 +218,16 @@ struct Parser {
 
   template <class Values>
   Result<void> faces(const PlyElement& element, Values& values) {
+    const bool labelled = header.text.ours() && std::any_of(element.properties.begin(), element.properties.end(),
+                                                            [](const PlyProperty& p) { return is_label(p); });
     for (std::uint64_t f = 0; f < element.count; ++f) {
+      PartitionId label = 0;
+      const std::size_t polygons = soup.sizes.size();
       for (const PlyProperty& property : element.properties) {
-        if (!property.list) {
+        if (labelled && is_label(property)) {
+          const double value = values.next(property.type);
+          DUBSAR_ASSIGN(label, checked_byte<PartitionId>(value, PartitionTable::kHighest, "partition"));
+        } else if (!property.list) {
           values.next(property.type);
         } else if (property.name == "vertex_indices" || property.name == "vertex_index") {
           DUBSAR_TRY(corners(property, values));
@@ -228,6 +238,7 @@ struct Parser {
       if (!values.ok())
         return fail(ErrorKind::kBadData, "ply: the file ends or has a broken number in face {} of {}", f,
                     element.count);
+      if (labelled) soup.partitions.insert(soup.partitions.end(), soup.sizes.size() - polygons, label);
       if (f % kStep == 0 && progress.cancelled()) return cancelled_error();
     }
     return {};
@@ -247,6 +258,16 @@ struct Parser {
       if (i % kStep == 0 && progress.cancelled()) return cancelled_error();
     }
     return {};
+  }
+
+  /// Files of earlier versions label vertices, those between two partitions with the lower id.
+  std::vector<PartitionId> triangle_labels() const {
+    if (labels.empty() || !soup.partitions.empty()) return triangle_partitions(soup);
+    std::vector<PartitionId> of_triangle(mesh.triangles.size());
+    std::transform(mesh.triangles.begin(), mesh.triangles.end(), of_triangle.begin(), [&](const Triangle& t) {
+      return std::max({labels[t[0]], labels[t[1]], labels[t[2]]});
+    });
+    return of_triangle;
   }
 
   template <class Values>
@@ -299,6 +320,7 @@ Result<TriMesh> parse_ply(std::string_view bytes, Progress& progress) {
   }
   if (parser.skipped > 0) log_warning("ply: {} faces with fewer than 3 corners left out", parser.skipped);
   DUBSAR_ASSIGN(parser.mesh.triangles, triangulate_soup(parser.mesh.positions, parser.soup, "ply"));
+  parser.mesh.triangle_partition = parser.triangle_labels();
   DUBSAR_TRY(header.text.apply(parser.mesh));
   return std::move(parser.mesh);
 }

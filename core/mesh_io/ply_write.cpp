@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 
 #include "core/base/buffered_writer.h"
@@ -13,6 +14,15 @@ void append(std::string& row, const glm::vec3& v) {
   append_little(row, v.x);
   append_little(row, v.y);
   append_little(row, v.z);
+}
+
+/// For viewers that colour vertices: the lowest partition of the triangles around each. The truth is at the faces.
+std::vector<PartitionId> vertex_labels(const TriMesh& mesh) {
+  std::vector<PartitionId> labels(mesh.positions.size(), PartitionTable::kNone);
+  for (std::size_t t = 0; t < mesh.triangle_partition.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t]) labels[v] = std::min(labels[v], mesh.triangle_partition[t]);
+  std::replace(labels.begin(), labels.end(), PartitionTable::kNone, PartitionId{0});
+  return labels;
 }
 }  // namespace
 
@@ -38,18 +48,23 @@ Result<void> write_ply(const std::filesystem::path& path, const TriMesh& mesh, c
   declare(true, "float", 4, {"x", "y", "z"});
   declare(normals, "float", 4, {"nx", "ny", "nz"});
   declare(!colors.rgb.empty(), "uchar", 1, {"red", "green", "blue"});
-  declare(!mesh.partition.empty(), "uchar", 1, {"partition"});
+  declare(!mesh.triangle_partition.empty(), "uchar", 1, {"partition"});
   declare(curvatures, "float", 4, {"k_min", "k_max"});
   declare(!mesh.shape.empty(), "uchar", 1, {"shape"});
   declare(!mesh.ao.empty(), "uchar", 1, {"ao"});
   declare(curvatures, "float", 4, {"quality"});
-  header += fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n", mesh.triangles.size());
+  header += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", mesh.triangles.size());
+  const bool labelled = !mesh.triangle_partition.empty();
+  header += labelled ? "property uchar partition\nend_header\n" : "end_header\n";
 
-  const std::size_t bytes = header.size() + vertex_bytes * mesh.positions.size() + 13 * mesh.triangles.size();
+  const std::size_t triangle_bytes = labelled ? 14 : 13;
+  const std::size_t bytes =
+      header.size() + vertex_bytes * mesh.positions.size() + triangle_bytes * mesh.triangles.size();
   DUBSAR_ASSIGN(AtomicFile file, AtomicFile::create(path, static_cast<std::int64_t>(bytes)));
   BufferedWriter out(file);
   out.text(header);
   const OutputSpace space(mesh.frame, options.units);
+  const std::vector<PartitionId> labels = vertex_labels(mesh);
   progress.begin("write ply", static_cast<std::int64_t>(mesh.positions.size() + mesh.triangles.size()), "item");
   std::string row;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -58,7 +73,7 @@ Result<void> write_ply(const std::filesystem::path& path, const TriMesh& mesh, c
     if (normals) append(row, space.normal(mesh.normals[v]));
     if (!colors.rgb.empty())
       for (const std::uint8_t c : colors.rgb[v]) append_little(row, c);
-    if (!mesh.partition.empty()) append_little(row, mesh.partition[v]);
+    if (labelled) append_little(row, labels[v]);
     const float k_min = curvatures ? space.curvature(mesh.k_min[v]) : 0.0f;
     const float k_max = curvatures ? space.curvature(mesh.k_max[v]) : 0.0f;
     if (curvatures) append_little(row, k_min), append_little(row, k_max);
@@ -75,6 +90,7 @@ Result<void> write_ply(const std::filesystem::path& path, const TriMesh& mesh, c
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     row.assign(1, '\3');
     for (const std::uint32_t v : mesh.triangles[t]) append_little(row, v);
+    if (labelled) append_little(row, mesh.triangle_partition[t]);
     out.text(row);
     if ((t + 1) % kStep == 0) {
       progress.advance(kStep);

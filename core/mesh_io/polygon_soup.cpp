@@ -87,4 +87,11 @@ Result<std::vector<Triangle>> triangulate_soup(std::span<const glm::vec3> positi
   return triangles;
 }
 
+std::vector<PartitionId> triangle_partitions(const PolygonSoup& soup) {
+  std::vector<PartitionId> of_triangle;
+  for (std::size_t p = 0; p < soup.partitions.size(); ++p)
+    of_triangle.insert(of_triangle.end(), soup.sizes[p] - 2, soup.partitions[p]);
+  return of_triangle;
+}
+
 }  // namespace dubsar

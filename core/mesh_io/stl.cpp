@@ -137,9 +137,9 @@ Result<void> write_stl(const std::filesystem::path& path, const TriMesh& mesh, c
   else
     header += "voxel; ";
   if (!mesh.triangles.empty() && !mesh.partitions.empty()) {
-    const int id = partition_of(mesh, mesh.triangles.front());
-    const bool single = std::all_of(mesh.triangles.begin(), mesh.triangles.end(),
-                                    [&](const Triangle& t) { return partition_of(mesh, t) == id; });
+    const PartitionId id = mesh.partition_of(0);
+    const bool single = std::all_of(mesh.triangle_partition.begin(), mesh.triangle_partition.end(),
+                                    [&](PartitionId other) { return other == id; });
     header += single ? partition_name(mesh, id) : "all parts";
   }
   std::replace_if(

@@ -20,16 +20,11 @@ std::uint64_t key(std::uint32_t a, std::uint32_t b) {
   return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
 }
 
-/// First partition with the same part: the group of a partition.
-std::vector<std::uint8_t> groups_of(const std::vector<Partition>& partitions) {
-  const auto part = [](const Partition& p) -> const std::string& { return p.part.empty() ? p.name : p.part; };
-  std::vector<std::uint8_t> group(partitions.size());
-  for (std::size_t i = 0; i < partitions.size(); ++i) {
-    std::size_t first = 0;
-    while (part(partitions[first]) != part(partitions[i])) ++first;
-    group[i] = static_cast<std::uint8_t>(first);
-  }
-  return group;
+/// The body of each partition.
+std::vector<PartitionId> bodies_of(const PartitionTable& partitions) {
+  std::vector<PartitionId> bodies;
+  for (const Partition& p : partitions) bodies.push_back(partitions.body_of(p.id));
+  return bodies;
 }
 
 /// Most frequent value, ties to the smaller.
@@ -42,7 +37,7 @@ std::uint8_t majority(const std::vector<BorderEdge>& edges, const std::vector<st
 class HoleFiller {
  public:
   HoleFiller(SurfaceModel& model, const FaceGraph& graph, const HoleOptions& options, Progress& progress)
-      : model_(model), graph_(graph), options_(options), progress_(progress), group_(groups_of(model.partitions)) {}
+      : model_(model), graph_(graph), options_(options), progress_(progress), group_(bodies_of(model.partitions)) {}
 
   Result<HoleReport> run() {
     DUBSAR_TRY(fill_between_groups());
@@ -56,7 +51,7 @@ class HoleFiller {
   struct Task {
     std::vector<std::uint32_t> vertices;  ///< in the sense of the patch's border
     std::vector<glm::vec3> rim_normals;
-    std::uint8_t part = 0, reverse_part = FillPatch::kNoPart;
+    PartitionId partition = 0, reverse_partition = PartitionTable::kNone;
   };
 
   /// Sides of faces whose neighbour `differs` from them.
@@ -121,10 +116,10 @@ class HoleFiller {
         if (group_[e.left] == group && shared.count(key(e.from, e.to)) == 0) edges.push_back(e);
       for (const auto& loop : join_loops(edges)) {
         Task task = make_task(edges, loop);
-        task.part = majority(edges, loop, true);
+        task.partition = majority(edges, loop, true);
         const std::uint8_t beyond = group_[edges[loop.front()].right];
         if (std::all_of(loop.begin(), loop.end(), [&](std::uint32_t e) { return group_[edges[e].right] == beyond; })) {
-          task.reverse_part = majority(edges, loop, false);
+          task.reverse_partition = majority(edges, loop, false);
           for (const std::uint32_t e : loop) shared.insert(key(edges[e].from, edges[e].to));
         } else {
           ++report_.unshared;
@@ -146,7 +141,7 @@ class HoleFiller {
       const auto partner = [&] {
         for (std::uint8_t other = 0; other < group_.size(); ++other)
           if (other != id && group_[other] == group_[id]) return other;
-        return FillPatch::kNoPart;
+        return PartitionTable::kNone;
       }();
       if (members == 2 && partner < id) continue;  // closed together with its partner
       std::vector<BorderEdge> edges = collect([&](std::uint8_t left, std::uint8_t) { return left == id; });
@@ -154,8 +149,8 @@ class HoleFiller {
       cancel_opposite(edges);
       for (const auto& loop : join_loops(edges)) {
         Task task = make_task(edges, loop);
-        task.part = id;
-        if (members == 2) task.reverse_part = partner;
+        task.partition = id;
+        if (members == 2) task.reverse_partition = partner;
         tasks.push_back(std::move(task));
       }
     }
@@ -167,7 +162,7 @@ class HoleFiller {
   /// Border sides of the patches of a partition, in the sense that they have there.
   void add_patch_borders(std::uint8_t id, std::vector<BorderEdge>& edges) const {
     for (const FillPatch& patch : model_.patches) {
-      if (patch.part != id && patch.reverse_part != id) continue;
+      if (patch.partition != id && patch.reverse_partition != id) continue;
       std::unordered_map<std::uint64_t, int> uses;
       for (const Triangle& t : patch.triangles)
         for (std::size_t i = 0; i < 3; ++i) ++uses[key(t[i], t[(i + 1) % 3])];
@@ -175,7 +170,7 @@ class HoleFiller {
         for (std::size_t i = 0; i < 3; ++i) {
           std::uint32_t from = t[i], to = t[(i + 1) % 3];
           if (uses[key(from, to)] != 1) continue;
-          if (patch.reverse_part == id) std::swap(from, to);
+          if (patch.reverse_partition == id) std::swap(from, to);
           edges.push_back({from, to, kNoFace, id, id});
         }
     }
@@ -214,7 +209,8 @@ class HoleFiller {
     const auto dual = static_cast<std::uint32_t>(model_.mesh.positions.size());
     for (std::size_t i = 0; i < tasks.size(); ++i) {
       const auto n = static_cast<std::uint32_t>(tasks[i].vertices.size());
-      FillPatch patch{tasks[i].part, tasks[i].reverse_part, std::move(fills[i].added), std::move(fills[i].triangles)};
+      FillPatch patch{tasks[i].partition, tasks[i].reverse_partition, std::move(fills[i].added),
+                      std::move(fills[i].triangles)};
       for (Triangle& t : patch.triangles)
         for (std::uint32_t& v : t) v = v < n ? tasks[i].vertices[v] : v - n + dual;
       model_.patches.push_back(std::move(patch));
@@ -264,10 +260,7 @@ Result<HoleReport> fill_holes(SurfaceModel& model, const HoleOptions& options, P
     return fail(ErrorKind::kBadData,
                 "holes: {} partition ids and {} partitions found, expected a segmented model of {} x-quads",
                 model.quad_partition.size(), model.partitions.size(), model.mesh.quads.size());
-  for (const std::uint8_t id : model.quad_partition)
-    if (id >= model.partitions.size())
-      return fail(ErrorKind::kBadData, "holes: an x-quad has partition {}, expected less than {}", id,
-                  model.partitions.size());
+  DUBSAR_TRY(model.partitions.check_complete(model.quad_partition, "holes", "an x-quad"));
   model.patches.clear();
   progress.begin("fill holes", 0, "vertex");
   DUBSAR_ASSIGN(const FaceGraph graph, FaceGraph::build(model.mesh, progress));

@@ -12,8 +12,6 @@
 namespace dubsar {
 namespace {
 
-constexpr std::size_t kMostPartitions = 8;
-
 /// The hidden body fills at least this share of what the outer surface encloses; smaller ones are loose
 /// pieces.
 constexpr double kSmallestCore = 0.03;
@@ -123,18 +121,14 @@ std::vector<bool> accept_core(const Infos& infos, const std::vector<FaceRole>& r
 class Partitioning {
  public:
   Partitioning(const FaceComponents& components, const SegmentOptions& options)
-      : components_(components), options_(options), id_(components.info.size(), FillPatch::kNoPart) {}
+      : components_(components), options_(options), id_(components.info.size(), PartitionTable::kNone) {}
 
-  std::uint8_t add(std::string name, std::string part) {
-    const int id = static_cast<int>(partitions_.size());
-    partitions_.push_back({.id = id, .name = std::move(name), .part = std::move(part)});
-    return static_cast<std::uint8_t>(id);
-  }
-  void assign(std::size_t component, std::uint8_t id) { id_[component] = id; }
-  bool free(std::size_t component) const { return id_[component] == FillPatch::kNoPart; }
+  PartitionId add(PartitionKind kind, std::string_view body = {}) { return partitions_.add(kind, body); }
+  void assign(std::size_t component, PartitionId id) { id_[component] = id; }
+  bool free(std::size_t component) const { return id_[component] == PartitionTable::kNone; }
 
-  /// Closed bodies by falling volume; the first is called `first_name` if that is given.
-  void add_bodies(std::string_view first_name) {
+  /// Closed bodies by falling volume: `first`, then fragments.
+  void add_bodies(PartitionKind first) {
     std::vector<std::size_t> bodies;
     const double smallest = options_.smallest_area * total_area(components_.info);
     for (std::size_t c = 0; c < id_.size(); ++c) {
@@ -146,22 +140,20 @@ class Partitioning {
     });
     int fragment = 0;
     for (const std::size_t c : bodies) {
-      if (partitions_.size() == kMostPartitions - 1) break;  // one place is kept for what is left
-      const std::string name = fragment == 0 && !first_name.empty()
-                                   ? std::string(first_name)
-                                   : fmt::format("fragment {}", fragment + first_name.empty());
-      ++fragment;
-      assign(c, add(name, name));
+      if (partitions_.size() + 1 == PartitionTable::kMost) break;  // one place is kept for what is left
+      if (c == bodies.front() && first != PartitionKind::kFragment)
+        assign(c, partitions_.add(first));
+      else
+        assign(c, partitions_.add(PartitionKind::kFragment, {}, fmt::format("fragment {}", ++fragment)));
     }
   }
 
   /// All that is left. Returns the number of components.
   std::int64_t add_rest() {
-    const auto rest = std::count(id_.begin(), id_.end(), FillPatch::kNoPart);
+    const auto rest = std::count(id_.begin(), id_.end(), PartitionTable::kNone);
     if (rest > 0) {
-      const std::uint8_t id =
-          partitions_.empty() ? add("object", "object") : add("pores and crumbs", "pores and crumbs");
-      std::replace(id_.begin(), id_.end(), FillPatch::kNoPart, id);
+      const PartitionId id = add(partitions_.empty() ? PartitionKind::kObject : PartitionKind::kPores);
+      std::replace(id_.begin(), id_.end(), PartitionTable::kNone, id);
     }
     return rest;
   }
@@ -175,8 +167,8 @@ class Partitioning {
  private:
   const FaceComponents& components_;
   const SegmentOptions& options_;
-  std::vector<std::uint8_t> id_;  ///< of each component
-  std::vector<Partition> partitions_;
+  std::vector<PartitionId> id_;  ///< of each component
+  PartitionTable partitions_;
 };
 
 /// Partitions from roles when a core was accepted.
@@ -186,9 +178,9 @@ void store_nested(SurfaceModel& model, const FaceScene& scene, const SegmentOpti
   const Infos& infos = components.info;
   const auto role_of = [&](std::size_t c) { return roles[infos[c].first_face]; };
   Partitioning partitioning(components, options);
-  const std::uint8_t tablet = partitioning.add("tablet", "tablet");
-  const std::uint8_t outside = partitioning.add("envelope outside", "envelope");
-  const std::uint8_t inside = partitioning.add("envelope inside", "envelope");
+  const PartitionId tablet = partitioning.add(PartitionKind::kTablet);
+  const PartitionId outside = partitioning.add(PartitionKind::kEnvelopeOutside, "envelope");
+  const PartitionId inside = partitioning.add(PartitionKind::kEnvelopeInside, "envelope");
   std::vector<FaceRole> role(infos.size());
   for (std::size_t c = 0; c < infos.size(); ++c) role[c] = role_of(c);
   const std::vector<bool> core = accept_core(infos, role, options);
@@ -217,7 +209,7 @@ void store_nested(SurfaceModel& model, const FaceScene& scene, const SegmentOpti
     else if (wall)
       partitioning.assign(c, inside);
   }
-  partitioning.add_bodies("");
+  partitioning.add_bodies(PartitionKind::kFragment);
   report.small_pieces = partitioning.add_rest();
   std::move(partitioning).store(model);
 }
@@ -247,13 +239,14 @@ Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options
   model.patches.clear();
   if (options.method == SegmentMethod::kNone) {
     model.quad_partition.assign(scene.graph.faces(), 0);
-    model.partitions = {{.id = 0, .name = "object", .part = "object"}};
+    model.partitions.clear();
+    model.partitions.add(PartitionKind::kObject);
     progress.end();
     return report;
   }
   if (options.method == SegmentMethod::kBodies) {
     Partitioning partitioning(whole, options);
-    partitioning.add_bodies("object");
+    partitioning.add_bodies(PartitionKind::kObject);
     report.small_pieces = partitioning.add_rest();
     std::move(partitioning).store(model);
     progress.end();
@@ -281,7 +274,7 @@ Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options
     report.cut_length = length_of_cuts(model, scene.graph);
   } else {
     Partitioning partitioning(whole, options);
-    partitioning.add_bodies("object");
+    partitioning.add_bodies(PartitionKind::kObject);
     report.small_pieces = partitioning.add_rest();
     std::move(partitioning).store(model);
   }
@@ -293,14 +286,11 @@ Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options
   return report;
 }
 
-bool plausible_enclosure(const std::vector<Partition>& partitions) {
+bool plausible_enclosure(const PartitionTable& partitions) {
   constexpr double kLeastFilling = 0.5;
-  const Partition *tablet = nullptr, *outside = nullptr, *inside = nullptr;
-  for (const Partition& p : partitions) {
-    if (p.name == "tablet") tablet = &p;
-    if (p.name == "envelope outside") outside = &p;
-    if (p.name == "envelope inside") inside = &p;
-  }
+  const Partition* const tablet = partitions.find(PartitionKind::kTablet);
+  const Partition* const outside = partitions.find(PartitionKind::kEnvelopeOutside);
+  const Partition* const inside = partitions.find(PartitionKind::kEnvelopeInside);
   if (tablet == nullptr || outside == nullptr || inside == nullptr) return true;
   const double cavity = -inside->volume_mm3;
   return tablet->volume_mm3 > kLeastFilling * cavity && cavity > 0.0 && tablet->volume_mm3 < cavity &&

@@ -48,6 +48,6 @@ Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options
 /// Are measured partitions named "tablet" and "envelope inside" an enclosed tablet? An envelope was pressed on around
 /// its tablet, so that the tablet fills at least half of the cavity (0.84 on phantoms); a brain in its skull, fibres
 /// and foams fill less, or have walls that enclose nothing. True for anything that does not claim to be one.
-bool plausible_enclosure(const std::vector<Partition>& partitions);
+bool plausible_enclosure(const PartitionTable& partitions);
 
 }  // namespace dubsar

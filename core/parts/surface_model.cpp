@@ -1,5 +1,7 @@
 #include "core/parts/surface_model.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <numeric>
@@ -11,16 +13,12 @@
 namespace dubsar {
 namespace {
 
-constexpr std::uint8_t kNotSelected = 255;
+constexpr std::uint8_t kNotSelected = PartitionTable::kNone;
 
 /// Which partitions go in, and which of them stay joined.
 struct Selection {
   std::vector<std::uint8_t> group;  ///< of each partition id; kNotSelected: left out
 };
-
-const std::string& part_name(const Partition& partition) {
-  return partition.part.empty() ? partition.name : partition.part;
-}
 
 Result<void> check_model(const SurfaceModel& model) {
   const std::size_t vertices = model.mesh.positions.size();
@@ -33,20 +31,13 @@ Result<void> check_model(const SurfaceModel& model) {
   if (!model.quad_partition.empty() && model.quad_partition.size() != model.mesh.quads.size())
     return fail(ErrorKind::kBadData, "surface_model: {} partition ids found, expected one for each of {} x-quads",
                 model.quad_partition.size(), model.mesh.quads.size());
+  DUBSAR_TRY(model.partitions.check_complete(model.quad_partition, "surface_model", "an x-quad"));
   const std::size_t count = std::max<std::size_t>(model.partitions.size(), 1);
-  if (model.partitions.size() > 8)
-    return fail(ErrorKind::kBadData, "surface_model: {} partitions found, expected at most 8", model.partitions.size());
-  for (std::size_t i = 0; i < model.partitions.size(); ++i)
-    if (model.partitions[i].id != static_cast<int>(i))
-      return fail(ErrorKind::kBadData, "surface_model: partition {} found at place {}, expected rising ids from 0",
-                  model.partitions[i].id, i);
-  for (const std::uint8_t id : model.quad_partition)
-    if (id >= count)
-      return fail(ErrorKind::kBadData, "surface_model: an x-quad has partition {}, expected less than {}", id, count);
   for (const FillPatch& patch : model.patches) {
-    if (patch.part >= count || (patch.reverse_part >= count && patch.reverse_part != FillPatch::kNoPart))
+    if (patch.partition >= count ||
+        (patch.reverse_partition >= count && patch.reverse_partition != PartitionTable::kNone))
       return fail(ErrorKind::kBadData, "surface_model: a fill patch has partition {}, expected less than {}",
-                  std::max(patch.part, patch.reverse_part), count);
+                  std::max(patch.partition, patch.reverse_partition), count);
     for (const Triangle& t : patch.triangles)
       if (*std::max_element(t.begin(), t.end()) >= vertices + patch.extra_positions.size())
         return fail(ErrorKind::kBadData, "surface_model: a fill patch uses a vertex that does not exist");
@@ -59,29 +50,21 @@ Result<Selection> select(const SurfaceModel& model, const MeshOptions& options) 
   const std::size_t count = std::max<std::size_t>(partitions.size(), 1);
   Selection selection{std::vector<std::uint8_t>(count, kNotSelected)};
   if (options.partition) {
-    if (*options.partition < 0 || static_cast<std::size_t>(*options.partition) >= count)
+    if (*options.partition >= count)
       return fail(ErrorKind::kUsage, "surface_model: there is no partition {}, expected 0 to {}", *options.partition,
                   count - 1);
-    selection.group[static_cast<std::size_t>(*options.partition)] = 0;
+    selection.group[*options.partition] = 0;
     return selection;
   }
-  bool found = false;
-  std::string names;
-  for (std::size_t i = 0; i < count; ++i) {
-    selection.group[i] = static_cast<std::uint8_t>(i);
-    if (partitions.empty()) continue;
-    for (std::size_t j = 0; j < i; ++j)
-      if (part_name(partitions[j]) == part_name(partitions[i]))
-        selection.group[i] = std::min(selection.group[i], static_cast<std::uint8_t>(j));
-    if (selection.group[i] == i) names += (names.empty() ? "\"" : ", \"") + part_name(partitions[i]) + "\"";
-    if (!options.part) continue;
-    if (part_name(partitions[i]) == *options.part)
-      found = true;
-    else
-      selection.group[i] = kNotSelected;
+  bool found = !options.body;
+  for (std::size_t id = 0; id < count; ++id) {
+    const bool wanted = !options.body || (!partitions.empty() && partitions[id].body_name() == *options.body);
+    if (wanted) selection.group[id] = partitions.body_of(static_cast<PartitionId>(id));
+    found = found || wanted;
   }
-  if (options.part && !found)
-    return fail(ErrorKind::kUsage, "surface_model: there is no part \"{}\", expected one of: {}", *options.part, names);
+  if (!found)
+    return fail(ErrorKind::kUsage, "surface_model: there is no part \"{}\", expected one of: {}", *options.body,
+                fmt::join(partitions.body_names(), ", "));
   return selection;
 }
 
@@ -135,12 +118,12 @@ void add_patches(const SurfaceModel& model, const Selection& selection, Soup& so
     }
   };
   for (const FillPatch& patch : model.patches) {
-    const std::uint8_t front = selection.group[patch.part];
+    const std::uint8_t front = selection.group[patch.partition];
     const std::uint8_t back =
-        patch.reverse_part == FillPatch::kNoPart ? kNotSelected : selection.group[patch.reverse_part];
+        patch.reverse_partition == PartitionTable::kNone ? kNotSelected : selection.group[patch.reverse_partition];
     if (front == back) continue;  // inside one part, or not selected at all
-    if (front != kNotSelected) add_side(patch, patch.part, false);
-    if (back != kNotSelected) add_side(patch, patch.reverse_part, true);
+    if (front != kNotSelected) add_side(patch, patch.partition, false);
+    if (back != kNotSelected) add_side(patch, patch.reverse_partition, true);
   }
 }
 
@@ -349,13 +332,10 @@ Result<TriMesh> assemble(const SurfaceModel& model, Triangulation triangulation,
 
   TriMesh out;
   fill_attributes(model, soup, numbering, added, out);
-  out.partition.assign(numbering.source.size(), FillPatch::kNoPart);
-  for (std::size_t t = 0; t < soup.triangles.size(); ++t)
-    for (std::uint32_t& v : soup.triangles[t]) {
-      v = numbering.new_id[v];
-      out.partition[v] = std::min(out.partition[v], soup.partition[t]);
-    }
+  for (Triangle& t : soup.triangles)
+    for (std::uint32_t& v : t) v = numbering.new_id[v];
   out.triangles = std::move(soup.triangles);
+  out.triangle_partition = std::move(soup.partition);
   if (source != nullptr) {
     *source = numbering.source;
     for (std::uint32_t& v : *source)
@@ -363,7 +343,7 @@ Result<TriMesh> assemble(const SurfaceModel& model, Triangulation triangulation,
   }
   out.frame = model.frame;
   for (const Partition& partition : model.partitions)
-    if (selection.group[static_cast<std::size_t>(partition.id)] != kNotSelected) out.partitions.push_back(partition);
+    if (selection.group[partition.id] != kNotSelected) DUBSAR_TRY(out.partitions.insert(partition));
   out.provenance = model.provenance;
   return out;
 }
@@ -379,28 +359,13 @@ Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& opti
 Result<void> measure_partitions(SurfaceModel& model) {
   DUBSAR_TRY(check_model(model));
   const Triangulation triangulation = triangulate(model.mesh, model.attributes.normals);
-  for (Partition& partition : model.partitions) {
-    DUBSAR_ASSIGN(const TriMesh mesh, assemble(model, triangulation, {.partition = partition.id}));
+  for (std::size_t row = 0; row < model.partitions.size(); ++row) {
+    const PartitionId id = model.partitions[row].id;
+    DUBSAR_ASSIGN(const TriMesh mesh, assemble(model, triangulation, {.partition = id}));
     const MeshMeasure measure = measure_mesh(mesh);
-    partition.area_mm2 = measure.area_mm2;
-    partition.volume_mm3 = measure.volume_mm3;
-    partition.watertight = measure.watertight;
+    model.partitions.measured(id, measure.area_mm2, measure.volume_mm3, measure.watertight);
   }
   return {};
-}
-
-Result<std::vector<Partition>> measure_parts(const SurfaceModel& model) {
-  DUBSAR_TRY(check_model(model));
-  const Triangulation triangulation = triangulate(model.mesh, model.attributes.normals);
-  std::vector<Partition> parts;
-  for (const Partition& partition : model.partitions) {
-    const std::string& name = part_name(partition);
-    if (std::any_of(parts.begin(), parts.end(), [&](const Partition& p) { return p.name == name; })) continue;
-    DUBSAR_ASSIGN(const TriMesh mesh, assemble(model, triangulation, {.part = name}));
-    const MeshMeasure measure = measure_mesh(mesh);
-    parts.push_back({partition.id, name, name, measure.area_mm2, measure.volume_mm3, measure.watertight});
-  }
-  return parts;
 }
 
 }  // namespace dubsar

@@ -10,6 +10,6 @@ namespace dubsar {
 
 /// Fills model.attributes.ao, one value a dual vertex. A vertex on the border of two parts takes the brighter of its
 /// two values. Errors: those of ambient_occlusion().
-Result<void> occlusion_of_model(SurfaceModel& model, OcclusionOptions options, Progress& progress);
+Result<void> occlusion_of_model(SurfaceModel& model, const OcclusionOptions& options, Progress& progress);
 
 }  // namespace dubsar

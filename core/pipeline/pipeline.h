@@ -62,7 +62,7 @@ struct PipelineReport {
   SegmentReport segment;
   MeshCheck mesh;  ///< of all parts together, with their fill patches
   std::int64_t vertices = 0, xquads = 0;
-  std::vector<Partition> partitions;
+  PartitionTable partitions;
   ExaStats exa;
   std::vector<std::string> warnings;
 };

@@ -104,18 +104,6 @@ json volume_json(const VolumeInfo& info) {
           {"other_datasets", candidates}};
 }
 
-json partitions_json(const std::vector<Partition>& partitions) {
-  json array = json::array();
-  for (const Partition& part : partitions)
-    array.push_back({{"id", part.id},
-                     {"name", part.name},
-                     {"part", part.part},
-                     {"area_mm2", part.area_mm2},
-                     {"volume_mm3", part.volume_mm3},
-                     {"watertight", part.watertight}});
-  return array;
-}
-
 json mesh_check_json(const MeshCheck& check) {
   return {{"vertices", check.vertices},
           {"triangles", check.triangles},

@@ -19,7 +19,6 @@ nlohmann::json provenance_json(const PipelineReport& report, const PipelineOptio
 
 /// Facts of a volume file, also for `dubsar info`.
 nlohmann::json volume_json(const VolumeInfo& info);
-nlohmann::json partitions_json(const std::vector<Partition>& partitions);
 nlohmann::json mesh_check_json(const MeshCheck& check);
 
 }  // namespace dubsar

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::int64_t kGrain = 256;  // vertices: 41 k rays, some 10 ms
 constexpr std::size_t kLanes = RayPacket::kRays;
+constexpr PartitionId kNoBody = PartitionTable::kNone;
 
 struct Frame {
   glm::vec3 x, y, z;
@@ -130,6 +131,14 @@ Result<void> check_indices(std::span<const Triangle> triangles, std::size_t vert
   return {};
 }
 
+std::vector<PartitionId> bodies_of_vertices(const LitSurface& surface) {
+  std::vector<PartitionId> bodies(surface.positions.size(), surface.bodies.empty() ? PartitionId{0} : kNoBody);
+  for (std::size_t t = 0; t < surface.bodies.size(); ++t)
+    for (const std::uint32_t v : surface.triangles[t]) bodies[v] = std::min(bodies[v], surface.bodies[t]);
+  std::replace(bodies.begin(), bodies.end(), kNoBody, PartitionId{0});
+  return bodies;
+}
+
 }  // namespace
 
 SkyRays sky_rays(int count) {
@@ -146,11 +155,11 @@ SkyRays sky_rays(int count) {
   return sky;
 }
 
-Result<std::vector<float>> ambient_light(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
-                                         std::span<const Triangle> triangles, const OcclusionOptions& options,
+Result<std::vector<float>> ambient_light(const LitSurface& surface, const OcclusionOptions& options,
                                          Progress& progress) {
+  const auto& [positions, normals, triangles, bodies] = surface;
   DUBSAR_CHECK(normals.size() == positions.size());
-  DUBSAR_CHECK(options.partition.empty() || options.partition.size() == positions.size());
+  DUBSAR_CHECK(bodies.empty() || bodies.size() == triangles.size());
   DUBSAR_CHECK(options.radius_vox > 0.0f);
   DUBSAR_TRY(check_indices(triangles, positions.size()));
   const SkyRays sky = sky_rays(options.rays);
@@ -159,25 +168,25 @@ Result<std::vector<float>> ambient_light(std::span<const glm::vec3> positions, s
   std::vector<float> light(positions.size(), 1.0f);
   DUBSAR_ASSIGN(const auto device, RayDevice::create(positions, thread_count()));
 
+  const std::vector<PartitionId> body_of = bodies_of_vertices(surface);
   std::array<bool, 256> used{};
-  if (options.partition.empty()) used[0] = !positions.empty();
-  for (const std::uint8_t id : options.partition) used[id] = true;
+  for (const PartitionId id : body_of) used[id] = true;
   std::vector<Triangle> own;
   std::vector<std::uint32_t> ids;
   for (std::size_t id = 0; id < used.size(); ++id) {
     if (!used[id]) continue;
     std::span<const Triangle> part = triangles;
-    if (!options.partition.empty()) {
+    if (!bodies.empty()) {
       own.clear();
-      for (const Triangle& t : triangles)
-        if (options.partition[t[0]] == id) own.push_back(t);
+      for (std::size_t t = 0; t < triangles.size(); ++t)
+        if (bodies[t] == id) own.push_back(triangles[t]);
       part = own;
     }
     DUBSAR_ASSIGN(const auto scene, RayScene::build(*device, part, progress));
     ids.clear();
     std::int64_t skipped = 0;
     for (std::uint32_t v = 0; v < positions.size(); ++v) {
-      if (!options.partition.empty() && options.partition[v] != id) continue;
+      if (body_of[v] != id) continue;
       if (finite(positions[v]) && finite(normals[v]))
         ids.push_back(v);
       else
@@ -203,11 +212,9 @@ Result<std::vector<float>> ambient_light(std::span<const glm::vec3> positions, s
   return light;
 }
 
-Result<std::vector<std::uint8_t>> ambient_occlusion(std::span<const glm::vec3> positions,
-                                                    std::span<const glm::vec3> normals,
-                                                    std::span<const Triangle> triangles,
-                                                    const OcclusionOptions& options, Progress& progress) {
-  DUBSAR_ASSIGN(const std::vector<float> light, ambient_light(positions, normals, triangles, options, progress));
+Result<std::vector<std::uint8_t>> ambient_occlusion(const LitSurface& surface, const OcclusionOptions& options,
+                                                    Progress& progress) {
+  DUBSAR_ASSIGN(const std::vector<float> light, ambient_light(surface, options, progress));
   std::vector<std::uint8_t> steps(light.size());
   parallel_for(static_cast<std::int64_t>(light.size()), 1 << 16, [&](std::int64_t i) {
     const auto v = static_cast<std::size_t>(i);

@@ -18,9 +18,15 @@ struct OcclusionOptions {
   /// Rays start this far above the vertex along its normal, so that neither rounding nor the roughness that the 4-bit
   /// offsets leave (0.03 voxel) shades a vertex. Costs at most offset / radius of the value: 0.004.
   float offset_vox = 0.25f;
-  /// One partition id per vertex, or empty. A ray only meets triangles of its vertex's partition: each part is lit as
-  /// if it lay alone in the hand. The partition of a triangle is that of its first vertex.
-  std::span<const std::uint8_t> partition = {};
+};
+
+/// The surface that is lit; the arrays are borrowed. Triangles without a body are all of one. Bodies share no vertices:
+/// a vertex belongs to the lowest body of its triangles, one without triangles to body 0.
+struct LitSurface {
+  std::span<const glm::vec3> positions;
+  std::span<const glm::vec3> normals;  ///< unit, one per vertex
+  std::span<const Triangle> triangles;
+  std::span<const PartitionId> bodies = {};  ///< of each triangle, or empty
 };
 
 /// Directions of the rays about +z and their weights. Fibonacci spiral: z_i = 1 - (i + .5) / n, azimuth i times the
@@ -34,18 +40,15 @@ SkyRays sky_rays(int count);
 
 /// 1 - sum w1 w2 / sum w1 per vertex: 1 open, 0 dark; w2 = 1 - d / radius for a ray that meets a surface at distance
 /// d < radius, 0 for others. A ray that first meets the back of a triangle started under the surface: d = 0. (In open
-/// meshes this darkens what looks at their inner side.) `normals` are unit, one per vertex; a vertex whose normal or
-/// position is not finite gets 1.
-/// kBadData: a triangle names a vertex that is not there. kTryAgain: out of memory. Deterministic for any thread
-/// count. Progress in rays. Memory: about 100 bytes a triangle of the largest partition.
-Result<std::vector<float>> ambient_light(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
-                                         std::span<const Triangle> triangles, const OcclusionOptions& options,
+/// meshes this darkens what looks at their inner side.) A ray only meets triangles of its vertex's body: each is lit as
+/// if it lay alone in the hand. A vertex whose normal or position is not finite gets 1. kBadData: a triangle names a
+/// vertex that is not there. kTryAgain: out of memory. Deterministic for any thread count. Progress in rays. Memory:
+/// about 100 bytes a triangle of the largest body.
+Result<std::vector<float>> ambient_light(const LitSurface& surface, const OcclusionOptions& options,
                                          Progress& progress);
 
 /// The same in 64 steps: round(63 light), as TriMesh::ao and VertexAttributes::ao hold it.
-Result<std::vector<std::uint8_t>> ambient_occlusion(std::span<const glm::vec3> positions,
-                                                    std::span<const glm::vec3> normals,
-                                                    std::span<const Triangle> triangles,
-                                                    const OcclusionOptions& options, Progress& progress);
+Result<std::vector<std::uint8_t>> ambient_occlusion(const LitSurface& surface, const OcclusionOptions& options,
+                                                    Progress& progress);
 
 }  // namespace dubsar

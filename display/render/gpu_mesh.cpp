@@ -6,6 +6,8 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
+#include <numeric>
+#include <unordered_map>
 
 #include "core/base/parallel.h"
 
@@ -42,6 +44,35 @@ std::vector<glm::vec3> vertex_normals_mm(const TriMesh& mesh, const std::vector<
     for (const std::uint32_t v : t) normals[v] += n;
   }
   return normals;
+}
+
+/// The vertices of a packed mesh: which one of the source each is, and the partition of its triangles.
+struct LabelledVertices {
+  std::vector<std::uint32_t> source;
+  std::vector<PartitionId> partition;
+};
+
+/// Points the triangles of each partition at copies of those vertices that a lower partition has taken.
+LabelledVertices split_by_partition(PackedMesh& mesh, std::size_t count) {
+  LabelledVertices vertices{std::vector<std::uint32_t>(count), std::vector<PartitionId>(count, PartitionTable::kNone)};
+  std::iota(vertices.source.begin(), vertices.source.end(), 0u);
+  std::unordered_map<std::uint32_t, std::uint32_t> copies;  // of this partition
+  for (int p = 0; p < kMaxPartitions; ++p) {
+    copies.clear();
+    for (std::int64_t t = mesh.first_triangle[p]; t < mesh.first_triangle[p + 1]; ++t)
+      for (std::uint32_t& v : mesh.triangles[static_cast<std::size_t>(t)]) {
+        if (vertices.partition[v] == PartitionTable::kNone) vertices.partition[v] = static_cast<PartitionId>(p);
+        if (vertices.partition[v] == p) continue;
+        const auto [copy, made] = copies.try_emplace(v, static_cast<std::uint32_t>(vertices.source.size()));
+        if (made) {
+          vertices.source.push_back(v);
+          vertices.partition.push_back(static_cast<PartitionId>(p));
+        }
+        v = copy->second;
+      }
+  }
+  std::replace(vertices.partition.begin(), vertices.partition.end(), PartitionTable::kNone, PartitionId{0});
+  return vertices;
 }
 
 /// False only when all of the box lies outside of one plane of the frustum.
@@ -115,10 +146,12 @@ Result<PackedMesh> pack_mesh(const TriMesh& mesh) {
   const std::size_t count = mesh.positions.size();
   DUBSAR_TRY(check_array("normals", mesh.normals, count));
   DUBSAR_TRY(check_array("shape classes", mesh.shape, count));
-  DUBSAR_TRY(check_array("partition ids", mesh.partition, count));
   DUBSAR_TRY(check_array("ambient occlusion values", mesh.ao, count));
   DUBSAR_TRY(check_array("colours", mesh.colors, count));
-  for (const std::uint8_t p : mesh.partition)
+  if (!mesh.triangle_partition.empty() && mesh.triangle_partition.size() != mesh.triangles.size())
+    return fail(ErrorKind::kBadData, "render: the mesh has {} triangles but {} partition ids, expected as many or none",
+                mesh.triangles.size(), mesh.triangle_partition.size());
+  for (const PartitionId p : mesh.triangle_partition)
     if (p >= kMaxPartitions)
       return fail(ErrorKind::kBadData, "render: partition {} found, expected 0 to {}", p, kMaxPartitions - 1);
 
@@ -129,23 +162,24 @@ Result<PackedMesh> pack_mesh(const TriMesh& mesh) {
   out.mirrored = step.x * step.y * step.z < 0;
 
   // Triangles by partition (counting sort), boxes on the way.
-  const auto partition_of = [&](const Triangle& t) { return mesh.partition.empty() ? 0 : mesh.partition[t[0]]; };
   const auto usable = [&](const Triangle& t) {
     return finite(mesh.positions[t[0]]) && finite(mesh.positions[t[1]]) && finite(mesh.positions[t[2]]);
   };
-  for (const Triangle& t : mesh.triangles) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
     if (t[0] >= count || t[1] >= count || t[2] >= count)
       return fail(ErrorKind::kBadData, "render: a triangle names vertex {}, but there are {}",
                   std::max({t[0], t[1], t[2]}), count);
-    if (usable(t)) ++out.first_triangle[partition_of(t) + 1];
+    if (usable(t)) ++out.first_triangle[mesh.partition_of(i) + 1];
   }
   for (int p = 0; p < kMaxPartitions; ++p) out.first_triangle[p + 1] += out.first_triangle[p];
   out.triangles.resize(static_cast<std::size_t>(out.first_triangle[kMaxPartitions]));
   out.partition_box_mm.fill(empty_box());
   auto next = out.first_triangle;
-  for (const Triangle& t : mesh.triangles) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
     if (!usable(t)) continue;
-    const int p = partition_of(t);
+    const int p = mesh.partition_of(i);
     out.triangles[static_cast<std::size_t>(next[p]++)] = t;
     for (const std::uint32_t v : t) grow(out.partition_box_mm[p], mesh.frame.mm_from_grid(mesh.positions[v]));
   }
@@ -155,20 +189,22 @@ Result<PackedMesh> pack_mesh(const TriMesh& mesh) {
   const std::vector<glm::vec3> computed =
       compute_normals ? vertex_normals_mm(mesh, out.triangles) : std::vector<glm::vec3>();
   const glm::dvec3 inverse_size = 1.0 / glm::max(out.box_mm.size(), glm::dvec3(std::numeric_limits<double>::min()));
-  out.vertices.resize(count);
-  parallel_for(static_cast<std::int64_t>(count), kGrain, [&](std::int64_t i) {
-    PackedVertex& v = out.vertices[static_cast<std::size_t>(i)];
+  const LabelledVertices labelled = split_by_partition(out, count);
+  out.vertices.resize(labelled.source.size());
+  parallel_for(static_cast<std::int64_t>(out.vertices.size()), kGrain, [&](std::int64_t at) {
+    PackedVertex& v = out.vertices[static_cast<std::size_t>(at)];
+    const std::size_t i = labelled.source[static_cast<std::size_t>(at)];
     const glm::dvec3 unit = (mesh.frame.mm_from_grid(mesh.positions[i]) - out.box_mm.min) * inverse_size;
     for (int a = 0; a < 3; ++a) v.position[a] = std::isfinite(unit[a]) ? unorm16(unit[a]) : std::uint16_t{0};
     const unsigned shape = mesh.shape.empty() ? 0u : mesh.shape[i] & 127u;
     const unsigned ao = mesh.ao.empty() ? 63u : std::min<unsigned>(mesh.ao[i], 63u);
-    const unsigned partition = mesh.partition.empty() ? 0u : mesh.partition[i];
+    const unsigned partition = labelled.partition[static_cast<std::size_t>(at)];
     v.attributes = static_cast<std::uint16_t>(shape | ao << 7 | partition << 13);
     v.normal = encode_octahedral(compute_normals ? glm::dvec3(computed[i]) : glm::dvec3(mesh.normals[i]) / step);
   });
-  out.colors.resize(mesh.colors.size());
-  for (std::size_t i = 0; i < out.colors.size(); ++i)
-    out.colors[i] = {mesh.colors[i][0], mesh.colors[i][1], mesh.colors[i][2], 255};
+  if (!mesh.colors.empty())
+    for (const std::uint32_t v : labelled.source)
+      out.colors.push_back({mesh.colors[v][0], mesh.colors[v][1], mesh.colors[v][2], 255});
   return out;
 }
 

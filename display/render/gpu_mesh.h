@@ -50,9 +50,10 @@ struct PackedMesh {
   std::int64_t triangles_of(std::uint8_t partitions) const;
 };
 
-/// Positions and normals go to mm by mesh.frame. Missing normals are computed (area-weighted); triangles with vertices
-/// that are not finite are dropped. kBadData when an index or an attribute array does not fit. Cost: about 30 ns a
-/// vertex on one core.
+/// Positions and normals go to mm by mesh.frame. A vertex between partitions gets a copy for each but the first, behind
+/// the vertices of the mesh, so that every vertex tells the partition of its triangles. Missing normals are computed
+/// (area-weighted); triangles with vertices that are not finite are dropped. kBadData when an index or an attribute
+/// array does not fit. Cost: about 30 ns a vertex on one core.
 Result<PackedMesh> pack_mesh(const TriMesh& mesh);
 
 /// Octahedral code of a unit vector (Cigolle et al. 2014); (0, 0) decodes to +z.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/mesh/partition_table.h"
 
 namespace dubsar {
 
@@ -60,7 +61,7 @@ struct PartLook {
   bool operator==(const PartLook&) const = default;
 };
 
-constexpr int kMaxPartitions = 8;
+constexpr int kMaxPartitions = static_cast<int>(PartitionTable::kMost);
 using PartLooks = std::array<PartLook, kMaxPartitions>;
 
 /// Bit p: partition p is visible.

@@ -36,10 +36,10 @@ inline void add_rectangle(TriMesh& mesh, glm::vec3 corner, glm::vec3 u, glm::vec
   for (const glm::vec3& p : {corner, corner + u, corner + u + v, corner + v}) {
     mesh.positions.push_back(p);
     mesh.normals.push_back(glm::normalize(glm::cross(u, v)));
-    mesh.partition.push_back(partition);
   }
   mesh.triangles.push_back({first, first + 1, first + 2});
   mesh.triangles.push_back({first, first + 2, first + 3});
+  mesh.triangle_partition.insert(mesh.triangle_partition.end(), 2, partition);
 }
 
 /// A box of size (40, 30, 10) around the origin whose faces are partitions 0 to 5: +z (front), -z (back), -x (left),

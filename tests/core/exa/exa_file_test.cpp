@@ -56,12 +56,12 @@ SurfaceModel sample_model(const Dims& dims, Kind kind, unsigned seed, bool close
     model.quad_partition.push_back(static_cast<std::uint8_t>(q / 100 % 8));
   model.partitions = {{0, "tablet", "", 12.5, 1.0 / 3.0, true},
                       {1, "envelope \"inside\"", "envelope", 1e-9, -2e5, false}};
-  for (int id = 2; id < 8; ++id)
-    model.partitions.push_back({id, fmt::format("fragment {}", id), "", 0.1 * id, 0.0, false});
+  for (PartitionId id = 2; id < PartitionTable::kMost; ++id)
+    EXPECT_TRUE(model.partitions.insert({id, fmt::format("fragment {}", id), "", 0.1 * id, 0.0, false}));
   if (vertices > 3) {
     model.patches.resize(2);
     model.patches[0] = {0, 7, {{0.5f, 1.25f, -3.0f}}, {{0, 1, static_cast<std::uint32_t>(vertices)}, {1, 2, 3}}};
-    model.patches[1].part = 3;
+    model.patches[1].partition = 3;
   }
   model.frame.scale = {2.0, 2.0, 2.0};
   model.frame.origin_vox = {0.5, 0.1, -1.0 / 3.0};
@@ -92,15 +92,15 @@ void expect_equal(const SurfaceModel& a, const SurfaceModel& b) {
   for (std::size_t i = 0; i < a.partitions.size(); ++i) {
     EXPECT_EQ(a.partitions[i].id, b.partitions[i].id);
     EXPECT_EQ(a.partitions[i].name, b.partitions[i].name);
-    EXPECT_EQ(a.partitions[i].part, b.partitions[i].part);
+    EXPECT_EQ(a.partitions[i].body, b.partitions[i].body);
     EXPECT_EQ(a.partitions[i].area_mm2, b.partitions[i].area_mm2);
     EXPECT_EQ(a.partitions[i].volume_mm3, b.partitions[i].volume_mm3);
     EXPECT_EQ(a.partitions[i].watertight, b.partitions[i].watertight);
   }
   ASSERT_EQ(a.patches.size(), b.patches.size());
   for (std::size_t i = 0; i < a.patches.size(); ++i) {
-    EXPECT_EQ(a.patches[i].part, b.patches[i].part);
-    EXPECT_EQ(a.patches[i].reverse_part, b.patches[i].reverse_part);
+    EXPECT_EQ(a.patches[i].partition, b.patches[i].partition);
+    EXPECT_EQ(a.patches[i].reverse_partition, b.patches[i].reverse_partition);
     EXPECT_TRUE(same_bytes(a.patches[i].extra_positions, b.patches[i].extra_positions));
     EXPECT_EQ(a.patches[i].triangles, b.patches[i].triangles);
   }

@@ -130,28 +130,32 @@ TEST(Simplify, ManifoldsStayManifoldsWithTheirTopology) {
 TEST(Simplify, AttributesAndPartBordersAreKept) {
   TriMesh mesh = sphere_mesh(24);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    mesh.partition.push_back(mesh.positions[v].x > 11.5f);
     mesh.k_min.push_back(mesh.positions[v].y);
     mesh.normals.push_back(mesh.positions[v]);
   }
-  std::vector<glm::vec3> border;
+  const auto side = [&](const TriMesh& of, const Triangle& t) {
+    return of.positions[t[0]].x + of.positions[t[1]].x + of.positions[t[2]].x > 3 * 11.5f;
+  };
+  std::vector<std::array<bool, 2>> seen(mesh.positions.size());
   for (const Triangle& t : mesh.triangles) {
-    for (const std::uint32_t v : t) {
-      if (mesh.partition[t[0]] != mesh.partition[t[1]] || mesh.partition[t[1]] != mesh.partition[t[2]]) {
-        border.push_back(mesh.positions[v]);
-      }
-    }
+    mesh.triangle_partition.push_back(side(mesh, t));
+    for (const std::uint32_t v : t) seen[v][side(mesh, t)] = true;
   }
+  std::vector<glm::vec3> border;
+  for (std::size_t v = 0; v < seen.size(); ++v)
+    if (seen[v][0] && seen[v][1]) border.push_back(mesh.positions[v]);
+  ASSERT_GT(border.size(), 20u);
   const TriMesh small = run(mesh, {.max_angle_rad = 0.5, .max_distance_vox = 0.2});
   ASSERT_LT(small.positions.size(), mesh.positions.size() / 2);
-  ASSERT_EQ(small.partition.size(), small.positions.size());
+  ASSERT_EQ(small.triangle_partition.size(), small.triangles.size());
   EXPECT_TRUE(small.ao.empty());
   for (std::size_t v = 0; v < small.positions.size(); ++v) {
-    EXPECT_EQ(small.partition[v], small.positions[v].x > 11.5f);
     EXPECT_EQ(small.k_min[v], small.positions[v].y);
     EXPECT_EQ(small.normals[v], small.positions[v]);
   }
   for (const glm::vec3& p : border) EXPECT_NE(std::ranges::find(small.positions, p), small.positions.end());
+  for (std::size_t t = 0; t < small.triangles.size(); ++t)
+    EXPECT_EQ(small.partition_of(t), side(small, small.triangles[t]));
 }
 
 TEST(Simplify, SameMeshTwiceGivesTheSameTriangles) {

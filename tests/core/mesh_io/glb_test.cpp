@@ -108,7 +108,7 @@ TEST_F(Glb, PartsColoursAndNormalsReadBackEqual) {
   ASSERT_TRUE(write_mesh(folder_ / "a.glb", mesh, {}, progress));
   const auto read = read_mesh(folder_ / "a.glb", progress);
   ASSERT_TRUE(read) << read.error().message;
-  EXPECT_EQ(read->partition, mesh.partition);
+  EXPECT_EQ(read->triangle_partition, mesh.triangle_partition);
   ASSERT_EQ(read->triangles.size(), mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t c = 0; c < 3; ++c) {

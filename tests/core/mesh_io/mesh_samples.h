@@ -31,7 +31,6 @@ inline TriMesh sample_mesh(int around = 24, int across = 12) {
         mesh.k_max.push_back(static_cast<float>(std::max(k, 0.1)));
         mesh.shape.push_back(static_cast<std::uint8_t>((i * across + j) % 127));
         mesh.ao.push_back(static_cast<std::uint8_t>((i + j) % 64));
-        mesh.partition.push_back(static_cast<std::uint8_t>(part * 3));
         mesh.colors.push_back({static_cast<std::uint8_t>(i * 7), static_cast<std::uint8_t>(j * 20), 200});
       }
     for (int i = 0; i < around; ++i)
@@ -41,6 +40,7 @@ inline TriMesh sample_mesh(int around = 24, int across = 12) {
         };
         mesh.triangles.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1)});
         mesh.triangles.push_back({id(i, j), id(i + 1, j + 1), id(i, j + 1)});
+        mesh.triangle_partition.insert(mesh.triangle_partition.end(), 2, static_cast<PartitionId>(part * 3));
       }
   }
   mesh.frame.scale = {2.0, 2.0, 2.0};

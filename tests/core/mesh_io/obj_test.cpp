@@ -23,7 +23,7 @@ TEST_F(Obj, MeshReadBackEqualsTheMeshWritten) {
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->triangles, mesh.triangles);
   EXPECT_EQ(read->normals, mesh.normals) << "shortest decimal numbers must give the same floats";
-  EXPECT_EQ(read->partition, mesh.partition);
+  EXPECT_EQ(read->triangle_partition, mesh.triangle_partition);
   EXPECT_EQ(read->provenance, mesh.provenance);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v)
     EXPECT_EQ(read->positions[v], glm::vec3(mesh.frame.input_vox_from_grid(glm::dvec3(mesh.positions[v]))));

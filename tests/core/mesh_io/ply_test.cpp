@@ -26,7 +26,7 @@ TEST_F(Ply, MeshReadBackInVoxelsEqualsTheMeshWritten) {
   EXPECT_EQ(read->triangles, mesh.triangles);
   EXPECT_EQ(read->normals, mesh.normals);
   EXPECT_EQ(read->colors, mesh.colors);
-  EXPECT_EQ(read->partition, mesh.partition);
+  EXPECT_EQ(read->triangle_partition, mesh.triangle_partition);
   EXPECT_EQ(read->shape, mesh.shape);
   EXPECT_EQ(read->ao, mesh.ao);
   ASSERT_EQ(read->positions.size(), mesh.positions.size());
@@ -40,7 +40,7 @@ TEST_F(Ply, MeshReadBackInVoxelsEqualsTheMeshWritten) {
   ASSERT_EQ(read->partitions.size(), 2u);
   EXPECT_EQ(read->partitions[1].id, 3);
   EXPECT_EQ(read->partitions[1].name, "envelope inside");
-  EXPECT_EQ(read->partitions[1].part, "envelope");
+  EXPECT_EQ(read->partitions[1].body, "envelope");
   EXPECT_EQ(read->partitions[0].area_mm2, 1234.5);
   EXPECT_EQ(read->partitions[0].volume_mm3, 678.25);
   EXPECT_TRUE(read->partitions[0].watertight);
@@ -88,10 +88,10 @@ TEST_F(Ply, HeaderListsThePropertiesInTheOrderOfTheContract) {
       "property float nx\nproperty float ny\nproperty float nz\n"
       "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar partition\n"
       "property float k_min\nproperty float k_max\nproperty uchar shape\nproperty uchar ao\nproperty float quality\n"
-      "element face 1152\nproperty list uchar int vertex_indices\nend_header\n";
+      "element face 1152\nproperty list uchar int vertex_indices\nproperty uchar partition\nend_header\n";
   ASSERT_THAT(bytes, HasSubstr(expected));
   const std::size_t body = bytes.find("end_header\n") + 11;
-  EXPECT_EQ(bytes.size() - body, 576u * 42u + 1152u * 13u);
+  EXPECT_EQ(bytes.size() - body, 576u * 42u + 1152u * 14u);
   ByteReader first(std::string_view(bytes).substr(body));
   first.take(28);
   const auto k_min = first.little<float>(), k_max = first.little<float>();

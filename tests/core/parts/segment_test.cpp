@@ -35,7 +35,7 @@ Quality judge(const SurfaceModel& model, const Nested& scene) {
   for (std::uint32_t q = 0; q < model.mesh.quads.size(); ++q) {
     glm::vec3 c(0.0f);
     for (const std::uint32_t v : model.mesh.quads[q]) c += 0.25f * model.mesh.positions[v];
-    const std::string& part = model.partitions[model.quad_partition[q]].part;
+    const std::string& part = model.partitions[model.quad_partition[q]].body;
     if (part != "tablet" && part != "envelope") continue;
     if (std::min({std::abs(scene.tablet(c)), std::abs(scene.shell(c)), std::abs(scene.hollow(c))}) > 0.6f) continue;
     ++table[scene.truth(c) == 0][part == "tablet"];
@@ -130,7 +130,7 @@ TEST(Segment, CrackThroughTheEnvelopeIsBridged) {
     EXPECT_GE(run_fill(model).membranes, 1);
     expect_all_closed(model);
     MeshOptions envelope;
-    envelope.part = "envelope";
+    envelope.body = "envelope";
     const TriMesh shell = make_tri_mesh(model, envelope).value();
     EXPECT_TRUE(check_mesh(shell.positions, shell.triangles).watertight());
     EXPECT_EQ(check_mesh(shell.positions, shell.triangles).components, 1);  // no membrane across the crack
@@ -245,18 +245,18 @@ TEST(Segment, ResultDoesNotDependOnThreads) {
 }
 
 TEST(Segment, ATabletThatRattlesInItsCavityIsNotBelieved) {
-  std::vector<Partition> parts{{0, "tablet", "tablet", 1.0, 84.0, true},
-                               {1, "envelope outside", "envelope", 1.0, 200.0, true},
-                               {2, "envelope inside", "envelope", 1.0, -100.0, true}};
+  PartitionTable parts{{0, "tablet", "tablet", 1.0, 84.0, true},
+                       {1, "envelope outside", "envelope", 1.0, 200.0, true},
+                       {2, "envelope inside", "envelope", 1.0, -100.0, true}};
   EXPECT_TRUE(plausible_enclosure(parts));
-  parts[0].volume_mm3 = 39.0;  // a brain in its skull
+  parts.measured(0, 1.0, 39.0, true);  // a brain in its skull
   EXPECT_FALSE(plausible_enclosure(parts));
-  parts[0].volume_mm3 = -84.0;  // walls that enclose nothing
+  parts.measured(0, 1.0, -84.0, true);  // walls that enclose nothing
   EXPECT_FALSE(plausible_enclosure(parts));
-  parts[0].volume_mm3 = 84.0;
-  parts[2].volume_mm3 = 100.0;
+  parts.measured(0, 1.0, 84.0, true);
+  parts.measured(2, 1.0, 100.0, true);
   EXPECT_FALSE(plausible_enclosure(parts));
-  EXPECT_TRUE(plausible_enclosure({{0, "object", "object", 1.0, 1.0, true}}));
+  EXPECT_TRUE(plausible_enclosure(PartitionTable{{0, "object", "object", 1.0, 1.0, true}}));
 }
 
 TEST(Segment, CancelStopsIt) {

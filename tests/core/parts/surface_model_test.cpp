@@ -15,7 +15,7 @@ SurfaceModel two_balls() {
   SurfaceModel model = scene::extract_model({41, 24, 24}, [](const glm::vec3& p) {
     return std::max(scene::ball(p, {13.3f, 11.5f, 11.6f}, 9.0f), scene::ball(p, {27.1f, 11.4f, 11.2f}, 9.0f));
   });
-  model.partitions = {{.id = 0, .name = "left", .part = ""}, {.id = 1, .name = "right", .part = ""}};
+  model.partitions = {{.id = 0, .name = "left", .body = ""}, {.id = 1, .name = "right", .body = ""}};
   for (const auto& q : model.mesh.quads) {
     float x = 0.0f;
     for (const std::uint32_t v : q) x += 0.25f * model.mesh.positions[v].x;
@@ -45,12 +45,14 @@ TEST(SurfaceModel, PartsShareNoVertexAndEachKeepsItsBorder) {
   const MeshCheck whole = check_mesh(all.positions, all.triangles);
   EXPECT_TRUE(whole.manifold());
   EXPECT_EQ(whole.components, 2);
-  for (const Triangle& t : all.triangles) {
-    EXPECT_EQ(all.partition[t[0]], all.partition[t[1]]);
-    EXPECT_EQ(all.partition[t[0]], all.partition[t[2]]);
-  }
+  std::vector<PartitionId> owner(all.positions.size(), PartitionTable::kNone);
+  for (std::size_t t = 0; t < all.triangles.size(); ++t)
+    for (const std::uint32_t v : all.triangles[t]) {
+      EXPECT_TRUE(owner[v] == PartitionTable::kNone || owner[v] == all.partition_of(t));
+      owner[v] = all.partition_of(t);
+    }
   std::int64_t triangles = 0, open = 0;
-  for (int id = 0; id < 2; ++id) {
+  for (PartitionId id = 0; id < 2; ++id) {
     MeshOptions options;
     options.partition = id;
     const TriMesh one = make_tri_mesh(model, options).value();
@@ -60,25 +62,33 @@ TEST(SurfaceModel, PartsShareNoVertexAndEachKeepsItsBorder) {
     EXPECT_EQ(check.vertices, static_cast<std::int64_t>(one.positions.size()));
     triangles += check.triangles;
     open += check.boundary_edges;
-    for (const std::uint8_t p : one.partition) EXPECT_EQ(p, id);
+    EXPECT_EQ(one.triangle_partition, std::vector<PartitionId>(one.triangles.size(), id));
   }
   EXPECT_EQ(triangles, whole.triangles);
   EXPECT_EQ(open, whole.boundary_edges);
 }
 
-TEST(SurfaceModel, PartitionsOfOnePartStayJoined) {
+/// Both partitions bound one body.
+void join(SurfaceModel& model) {
+  PartitionTable joined;
+  for (Partition p : model.partitions) {
+    p.body = "both";
+    ASSERT_TRUE(joined.insert(p));
+  }
+  model.partitions = joined;
+}
+
+TEST(SurfaceModel, PartitionsOfOneBodyStayJoined) {
   SurfaceModel model = two_balls();
-  for (Partition& p : model.partitions) p.part = "both";
+  join(model);
   const TriMesh mesh = make_tri_mesh(model).value();
   EXPECT_TRUE(check_mesh(mesh.positions, mesh.triangles).watertight());
   EXPECT_EQ(check_mesh(mesh.positions, mesh.triangles).components, 1);
-  const auto parts = measure_parts(model).value();
-  ASSERT_EQ(parts.size(), 1u);
-  EXPECT_EQ(parts[0].name, "both");
-  EXPECT_TRUE(parts[0].watertight);
+  const MeshMeasure both = measure_mesh(make_tri_mesh(model, {.body = "both"}).value());
+  EXPECT_TRUE(both.watertight);
   ASSERT_TRUE(measure_partitions(model).has_value());
   EXPECT_FALSE(model.partitions[0].watertight);
-  EXPECT_NEAR(model.partitions[0].area_mm2 + model.partitions[1].area_mm2, parts[0].area_mm2, 1e-6 * parts[0].area_mm2);
+  EXPECT_NEAR(model.partitions[0].area_mm2 + model.partitions[1].area_mm2, both.area_mm2, 1e-6 * both.area_mm2);
 }
 
 /// Labels in a checkerboard: parts touch themselves at the corners, where a vertex has four fans.
@@ -102,7 +112,7 @@ TEST(SurfaceModel, MeasuresOfABallAreAnalyticInAnAnisotropicFrame) {
       scene::extract_model({48, 48, 48}, [](const glm::vec3& p) { return scene::ball(p, glm::vec3(23.5f), 20.0f); });
   model.frame.input_voxel = {{0.1, 0.2, 0.3}, "test"};
   model.frame.scale = {2.0, 2.0, 2.0};
-  model.partitions = {{.id = 0, .name = "ball", .part = ""}};
+  model.partitions = PartitionTable{{.id = 0, .name = "ball", .body = ""}};
   ASSERT_TRUE(measure_partitions(model).has_value());
   const double pi = 3.14159265358979, a = 4.0, b = 8.0, c = 12.0;
   EXPECT_TRUE(model.partitions[0].watertight);
@@ -118,8 +128,8 @@ TEST(SurfaceModel, PatchClosesBothSidesWithTheSameTriangles) {
   // balls.
   SurfaceModel model = two_balls();
   FillPatch patch;
-  patch.part = 0;
-  patch.reverse_part = 1;
+  patch.partition = 0;
+  patch.reverse_partition = 1;
   const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());
   for (std::uint32_t q = 0; q < model.mesh.quads.size(); ++q) {
     if (model.quad_partition[q] != 0) continue;
@@ -147,8 +157,8 @@ TEST(SurfaceModel, PatchClosesBothSidesWithTheSameTriangles) {
     sum += p.volume_mm3;
   }
   model.patches.clear();
-  for (Partition& p : model.partitions) p.part = "both";
-  EXPECT_NEAR(sum, measure_parts(model).value()[0].volume_mm3,
+  join(model);
+  EXPECT_NEAR(sum, measure_mesh(make_tri_mesh(model).value()).volume_mm3,
               1e-6 * sum);  // the two sides of the patch cancel
 }
 
@@ -157,7 +167,7 @@ TEST(SurfaceModel, ContradictionsAreRefused) {
   options.partition = 2;
   EXPECT_EQ(make_tri_mesh(two_balls(), options).error().kind, ErrorKind::kUsage);
   options = {};
-  options.part = "tablet";
+  options.body = "tablet";
   EXPECT_EQ(make_tri_mesh(two_balls(), options).error().kind, ErrorKind::kUsage);
   SurfaceModel model = two_balls();
   model.quad_partition[5] = 2;

@@ -16,9 +16,10 @@ using namespace test;
 
 std::vector<glm::vec3> normals_of(const QuadMesh& mesh) { return vertex_normals(mesh, face_normals(mesh)); }
 
-std::vector<float> light(const QuadMesh& mesh, const OcclusionOptions& options = {}) {
+std::vector<float> light(const QuadMesh& mesh, const OcclusionOptions& options = {},
+                         const std::vector<PartitionId>& bodies = {}) {
   SilentProgress progress;
-  auto result = ambient_light(mesh.positions, normals_of(mesh), split_quads(mesh), options, progress);
+  auto result = ambient_light({mesh.positions, normals_of(mesh), split_quads(mesh), bodies}, options, progress);
   EXPECT_TRUE(result) << result.error().message;
   return result ? *result : std::vector<float>{};
 }
@@ -92,7 +93,7 @@ TEST(Occlusion, ConvexBodiesAreExactlyOpen) {
   std::vector<glm::vec3> normals;
   SilentProgress progress;
   ASSERT_TRUE(smooth(smoothed, normals, {}, progress));
-  const auto value = ambient_light(smoothed.positions, normals, split_quads(smoothed), {}, progress);
+  const auto value = ambient_light({smoothed.positions, normals, split_quads(smoothed)}, {}, progress);
   ASSERT_TRUE(value);
   EXPECT_GT(*std::min_element(value->begin(), value->end()), 0.99f);
   EXPECT_GT(mean(*value), 0.9999);
@@ -145,7 +146,7 @@ TEST(Occlusion, RightAngledGrooveAgreesWithRayPlaneIntersection) {
     normals.push_back(n);
   }
   SilentProgress progress;
-  const auto values = ambient_light(positions, normals, split_quads(mesh), {}, progress);
+  const auto values = ambient_light({positions, normals, split_quads(mesh)}, {}, progress);
   ASSERT_TRUE(values);
   for (std::size_t i = 0; i < heights.size(); ++i) {
     // Dense sampling of directions; the left slope is the plane x + z = 0.
@@ -169,22 +170,20 @@ TEST(Occlusion, UnderTheSurfaceItIsDark) {
   positions.emplace_back(3.0f, 2.0f, -1.0f);
   normals.emplace_back(0, 0, 1);
   SilentProgress progress;
-  const auto values = ambient_light(positions, normals, split_quads(mesh), {}, progress);
+  const auto values = ambient_light({positions, normals, split_quads(mesh)}, {}, progress);
   ASSERT_TRUE(values);
   EXPECT_NEAR(values->back(), 0.0f, 1e-5f);
 }
 
-TEST(Occlusion, PartitionsAreLitAloneAndOtherwiseTheEnclosedBodyIsDark) {
+TEST(Occlusion, BodiesAreLitAloneAndOtherwiseTheEnclosedBodyIsDark) {
   QuadMesh mesh = cube_sphere(24, 20);
   const std::size_t body = mesh.positions.size();
   append(mesh, inside_out(cube_sphere(24, 23)));  // inner wall, gap of 3
   const std::size_t wall = mesh.positions.size();
   append(mesh, cube_sphere(24, 30));  // outer wall
-  std::vector<std::uint8_t> partition(mesh.positions.size(), 1);
-  std::fill_n(partition.begin(), body, std::uint8_t{2});
-  OcclusionOptions options;
-  options.partition = partition;
-  const auto apart = light(mesh, options), together = light(mesh);
+  std::vector<PartitionId> bodies;
+  for (const Triangle& t : split_quads(mesh)) bodies.push_back(t[0] < body ? 2 : 1);
+  const auto apart = light(mesh, {}, bodies), together = light(mesh);
   for (std::size_t v = 0; v < body; ++v) {
     EXPECT_EQ(apart[v], 1.0f);
     EXPECT_LT(together[v], 0.15f);
@@ -234,13 +233,13 @@ TEST(Occlusion, SameValuesForOneTwoAndSevenThreadsInSixtyFourSteps) {
   std::vector<float> first;
   for (const int threads : {1, 2, 7}) {
     set_thread_count(threads);
-    const auto values = ambient_light(mesh.positions, normals, triangles, options, progress);
+    const auto values = ambient_light({mesh.positions, normals, triangles}, options, progress);
     ASSERT_TRUE(values);
     if (first.empty()) first = *values;
     EXPECT_TRUE(*values == first) << threads;
   }
   set_thread_count(0);
-  const auto steps = ambient_occlusion(mesh.positions, normals, triangles, options, progress);
+  const auto steps = ambient_occlusion({mesh.positions, normals, triangles}, options, progress);
   ASSERT_TRUE(steps);
   for (std::size_t v = 0; v < first.size(); ++v) {
     ASSERT_LE((*steps)[v], 63);
@@ -252,17 +251,17 @@ TEST(Occlusion, RefusesMissingVerticesAndTakesEmptyAndBrokenInput) {
   SilentProgress progress;
   const std::vector<glm::vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, normals(3, glm::vec3(0, 0, 1));
   const std::vector<Triangle> bad{{0, 1, 3}}, good{{0, 1, 2}};
-  const auto refused = ambient_light(positions, normals, bad, {}, progress);
+  const auto refused = ambient_light({positions, normals, bad}, {}, progress);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::kBadData);
-  const auto empty = ambient_light({}, {}, {}, {}, progress);
+  const auto empty = ambient_light({}, {}, progress);
   ASSERT_TRUE(empty);
   EXPECT_TRUE(empty->empty());
-  const auto no_triangles = ambient_light(positions, normals, {}, {}, progress);
+  const auto no_triangles = ambient_light({positions, normals, {}}, {}, progress);
   ASSERT_TRUE(no_triangles);
   EXPECT_EQ(*no_triangles, std::vector<float>(3, 1.0f));
   const std::vector<glm::vec3> broken(3, glm::vec3(NAN));
-  const auto not_finite = ambient_light(positions, broken, good, {}, progress);
+  const auto not_finite = ambient_light({positions, broken, good}, {}, progress);
   ASSERT_TRUE(not_finite);
   EXPECT_EQ(*not_finite, std::vector<float>(3, 1.0f));
 }
@@ -274,7 +273,7 @@ TEST(Occlusion, StopsWhenCancelled) {
     }
   } progress;
   const QuadMesh mesh = rough_scene();
-  const auto values = ambient_light(mesh.positions, normals_of(mesh), split_quads(mesh), {}, progress);
+  const auto values = ambient_light({mesh.positions, normals_of(mesh), split_quads(mesh)}, {}, progress);
   ASSERT_FALSE(values);
   EXPECT_EQ(values.error().kind, ErrorKind::kCancelled);
 }

@@ -54,7 +54,7 @@ TEST(Postprocess, RandomVolumesStayFiniteBoundedAndManifold) {
     EXPECT_TRUE(check.watertight()) << kind;
     normals.resize(positions.size(), glm::vec3(0, 0, 1));
     const auto light =
-        ambient_light(positions, normals, triangles.triangles, {.rays = 16, .radius_vox = 8.0f}, progress);
+        ambient_light({positions, normals, triangles.triangles}, {.rays = 16, .radius_vox = 8.0f}, progress);
     ASSERT_TRUE(light);
     for (const float value : *light) ASSERT_TRUE(value >= 0.0f && value <= 1.0f) << kind;
   }
@@ -91,7 +91,7 @@ TEST(Postprocess, SphereOfTheRealExtractionHasItsNormalsCurvatureAndLight) {
   EXPECT_GT(caps, 0.97 * count);
   const Triangulation triangles = triangulate(mesh, normals);
   ASSERT_TRUE(triangles.steiner.empty());
-  const auto light = ambient_light(mesh.positions, normals, triangles.triangles, {.rays = 40}, progress);
+  const auto light = ambient_light({mesh.positions, normals, triangles.triangles}, {.rays = 40}, progress);
   ASSERT_TRUE(light);
   double mean = 0;
   for (const float value : *light) mean += static_cast<double>(value) / count;

@@ -114,7 +114,9 @@ TEST(PackMesh, MeshesThatContradictThemselvesAreRefused) {
   bad.shape = {1};
   EXPECT_TRUE(refused(bad));
   bad = mesh;
-  bad.partition[2] = 8;
+  bad.triangle_partition[1] = 8;
+  EXPECT_TRUE(refused(bad));
+  bad.triangle_partition = {0};
   EXPECT_TRUE(refused(bad));
 }
 
