@@ -10,7 +10,9 @@
 
 #include "app/cli/verb.h"
 #include "core/base/atomic_file.h"
+#include "core/base/json_text.h"
 #include "core/base/parallel.h"
+#include "core/base/plain_text.h"
 
 namespace {
 using namespace dubsar;
@@ -36,16 +38,12 @@ Result<void> print(std::string_view text) {
   return fail_errno(errno, "cannot write the result to stdout");
 }
 
-std::string json_text(const nlohmann::json& json) {
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-}
-
 /// On stderr, and as an object on stdout for programs that asked for one there.
 int report_error(const Error& error, const CommonOptions& common) {
   log(LogLevel::kError, error.message);
   if (common.json_path == "-") {
     const nlohmann::json object{{"error", {{"message", error.message}, {"exit_code", exit_code(error.kind)}}}};
-    if (!print(json_text(object))) log(LogLevel::kError, "cannot write the error to stdout");
+    if (!print(dump_json_lines(object) + "\n")) log(LogLevel::kError, "cannot write the error to stdout");
   }
   return exit_code(error.kind);
 }
@@ -61,10 +59,10 @@ Result<VerbResult> run_verb(const Verb& verb, const CommonOptions& common, Progr
 }
 
 Result<void> deliver(const VerbResult& result, const CommonOptions& common) {
-  if (common.json_path == "-") return print(json_text(result.json));
-  DUBSAR_TRY(print(result.text));
+  if (common.json_path == "-") return print(dump_json_lines(result.json) + "\n");
+  DUBSAR_TRY(print(plain_text(result.text, true)));
   if (common.json_path.empty()) return {};
-  return write_file_atomically(common.json_path, json_text(result.json));
+  return write_file_atomically(common.json_path, dump_json_lines(result.json) + "\n");
 }
 
 int run(const Verb& verb, const CommonOptions& common) {

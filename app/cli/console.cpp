@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/clock.h"
+#include "core/base/json_text.h"
 
 namespace dubsar::app {
 namespace {
@@ -120,7 +121,7 @@ void ConsoleProgress::print_line(bool finished) {
                         {"unit", unit_},        {"percent", percent},   {"rate_per_s", rate},
                         {"elapsed_s", elapsed}, {"finished", finished}, {"rss_mib", peak_rss_mib()}};
     line["eta_s"] = eta >= 0.0 ? nlohmann::json(eta) : nlohmann::json(nullptr);
-    put(line.dump() + "\n");
+    put(dump_json(line) + "\n");
     return;
   }
   if (style_ == ProgressStyle::kBar) {

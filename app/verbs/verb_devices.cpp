@@ -15,6 +15,7 @@
 #include "app/monitor/device_monitor.h"
 #include "app/monitor/monitor_text.h"
 #include "app/viewer/offscreen.h"
+#include "core/base/json_text.h"
 #include "devices/enumerate.h"
 #include "devices/looking_glass/calibration_pages.h"
 #include "devices/real/real_devices.h"
@@ -118,7 +119,7 @@ class SamplePrinter {
   void operator()(const json& sample) {
     const TimestampNs now = clock_.now();
     if (!terminal_) {
-      fmt::print("{}\n", sample.dump());
+      fmt::print("{}\n", dump_json(sample));
     } else if (now - drawn_ >= kDrawNs) {
       drawn_ = now;
       const std::string view = live_view(sample);

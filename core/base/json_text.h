@@ -19,4 +19,8 @@ Result<nlohmann::json> parse_json(std::string_view text, std::string_view what);
 /// One line of plain ASCII; characters that are not UTF-8 are replaced.
 std::string dump_json(const nlohmann::json& json);
 
+/// The same over several lines, in UTF-8: for files and streams that people read too. Every JSON that holds names from
+/// files or of files goes through one of these: nlohmann's own dump() throws on what is not UTF-8.
+std::string dump_json_lines(const nlohmann::json& json);
+
 }  // namespace dubsar

@@ -2,6 +2,8 @@
 
 #include <mutex>
 
+#include "core/base/plain_text.h"
+
 namespace dubsar {
 namespace {
 std::mutex& log_mutex() {
@@ -20,8 +22,9 @@ void set_log_handler(LogHandler handler) {
 }
 
 void log(LogLevel level, std::string_view message) {
+  const std::string plain = plain_text(message);  // names from files go through here
   const std::lock_guard lock(log_mutex());
-  if (log_handler()) log_handler()(level, message);
+  if (log_handler()) log_handler()(level, plain);
 }
 
 }  // namespace dubsar

@@ -16,7 +16,7 @@ using LogHandler = std::function<void(LogLevel, std::string_view)>;
 /// Installs the handler for the whole process (default: messages are dropped). Call before threads start.
 void set_log_handler(LogHandler handler);
 
-/// Passes one message, without a trailing newline, to the handler. Any thread; calls are serialised.
+/// Passes one message, as plain_text() without a trailing newline, to the handler. Any thread; calls are serialised.
 void log(LogLevel level, std::string_view message);
 
 template <class... Args>

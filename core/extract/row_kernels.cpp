@@ -117,6 +117,9 @@ HWY_INLINE bool decide(double a, double b, double c, double d) {
   return a >= 0 ? diagonal > other : other > diagonal;
 }
 
+// The row one voxel further; rows behind the last one do not exist.
+HWY_INLINE const float* beside(const float* row) { return row != nullptr ? row + 1 : nullptr; }
+
 void fill_row(const SignRows& rows, const ValueRows& values, std::int64_t nx, float isovalue, int offset_bits,
               const RowItems& items, std::uint16_t* offsets, std::uint8_t* joined) {
   const std::int64_t words = (nx + 63) / 64;
@@ -134,8 +137,8 @@ void fill_row(const SignRows& rows, const ValueRows& values, std::int64_t nx, fl
     }
     if ((word.faces[0] | word.faces[1] | word.faces[2]) == 0) continue;
     const float* corners[3][4] = {{values.here, values.next_y, values.next_z, values.next_yz},
-                                  {values.here, values.here + 1, values.next_z, values.next_z + 1},
-                                  {values.here, values.here + 1, values.next_y, values.next_y + 1}};
+                                  {values.here, values.here + 1, values.next_z, beside(values.next_z)},
+                                  {values.here, values.here + 1, values.next_y, beside(values.next_y)}};
     for (std::size_t a = 0; a < 3; ++a) {
       for (std::uint64_t rest = word.faces[a]; rest != 0; rest &= rest - 1) {
         const std::int64_t x = 64 * w + __builtin_ctzll(rest);
@@ -185,6 +188,9 @@ std::uint32_t count_changes(const std::uint64_t* row, std::int64_t x) noexcept {
   return HWY_DYNAMIC_DISPATCH(count_changes)(row, x);
 }
 RowItems count_row(const SignRows& rows, std::int64_t nx) { return HWY_DYNAMIC_DISPATCH(count_row)(rows, nx); }
+// The row one voxel further; rows behind the last one do not exist.
+HWY_INLINE const float* beside(const float* row) { return row != nullptr ? row + 1 : nullptr; }
+
 void fill_row(const SignRows& rows, const ValueRows& values, std::int64_t nx, float isovalue, int offset_bits,
               const RowItems& items, std::uint16_t* offsets, std::uint8_t* joined) {
   HWY_DYNAMIC_DISPATCH(fill_row)(rows, values, nx, isovalue, offset_bits, items, offsets, joined);

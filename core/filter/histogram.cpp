@@ -107,7 +107,7 @@ Result<ValueCounts> count_values(SlabSource& source, Progress& progress) {
   for (std::int64_t z = 0; z < dims.z; z += height) {
     if (progress.cancelled()) return cancelled_error();
     const std::int64_t end = std::min(dims.z, z + height), count = (end - z) * dims.slice();
-    DUBSAR_TRY(source.read(z, end, slab.span()));
+    DUBSAR_TRY(source.read(z, end, slab.span().first(static_cast<std::size_t>(count))));
     parallel_for(parts, 1, [&](std::int64_t part) {
       const std::int64_t from = count * part / parts, to = count * (part + 1) / parts;
       partial[static_cast<std::size_t>(part)].add({slab.data() + from, static_cast<std::size_t>(to - from)});

@@ -63,7 +63,8 @@ Result<void> SliceRing::load(SlabSource& source, SliceRange wanted) {
     if (staging_.size() < step * slice) staging_ = Buffer<float>(step * slice);
     for (std::int64_t z = part.begin; z < part.end; z += step) {
       const std::int64_t end = std::min(part.end, z + step);
-      if (auto ok = source.read(z, end, staging_.span()); !ok) return give_up(ok);
+      if (auto ok = source.read(z, end, staging_.span().first(static_cast<std::size_t>((end - z) * slice))); !ok)
+        return give_up(ok);
       parallel_for((end - z) * dims_.y, 64, [&](std::int64_t i) {
         float* to = row(i % dims_.y, z + i / dims_.y);
         const float* from = staging_.data() + i * dims_.x;

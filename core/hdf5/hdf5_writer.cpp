@@ -1,16 +1,21 @@
+#include "core/hdf5/hdf5_writer.h"
+
 #include <algorithm>
 #include <utility>
 
-#include "core/hdf5/hdf5_api.h"
-#include "core/hdf5/hdf5_file.h"
+#include "core/hdf5/library.h"
 
 namespace dubsar {
-using namespace hdf5_api;
+using hdf5::file_type;
+using hdf5::Handle;
+using hdf5::Library;
+using hdf5::reason;
+using hdf5::select;
 
 namespace {
 
-tl::unexpected<Error> write_failed(const std::string& what) {
-  return fail(ErrorKind::kIo, "hdf5: cannot write {} ({}); is the disk full?", what, reason());
+tl::unexpected<Error> abandoned() {
+  return fail(ErrorKind::kIo, "cannot write the HDF5 file: an earlier part of it could not be written");
 }
 
 Handle variable_string() {
@@ -39,7 +44,7 @@ Result<Hdf5Writer> Hdf5Writer::create(const std::filesystem::path& path) {
   Hdf5Writer writer(std::move(file));
   const Library library;
   writer.id_ = H5Fcreate(writer.file_.temporary_path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  if (writer.id_ < 0) return fail(ErrorKind::kCannotCreate, "hdf5: cannot create {} ({})", path.string(), reason());
+  if (writer.id_ < 0) return writer.give_up(path.string());
   return writer;
 }
 
@@ -49,29 +54,37 @@ Hdf5Writer::Hdf5Writer(Hdf5Writer&& other) noexcept
 }
 
 Hdf5Writer::~Hdf5Writer() {
+  if (id_ < 0) return;
   const Library library;
-  close();
+  flush_and_close();
 }
 
-void Hdf5Writer::close() noexcept {
-  for (const auto& [path, id] : datasets_) H5Dclose(id);
+// The library flushes again what it could not flush when a file that cannot be written is closed, trips over its own
+// objects and ends the process: such a file stays open.
+void Hdf5Writer::abandon() noexcept {
   datasets_.clear();
-  if (id_ >= 0) H5Fclose(std::exchange(id_, -1));
+  id_ = -1;
 }
 
-Result<void> Hdf5Writer::create_group(const std::string& path) {
-  const Library library;
-  const Handle parents = make_parents();
-  const Handle creation = without_times(H5P_GROUP_CREATE);
-  const Handle group(H5Gcreate2(id_, path.c_str(), parents.get(), creation.get(), H5P_DEFAULT), H5Gclose);
-  if (!group.ok()) return write_failed(fmt::format("group \"{}\"", path));
-  return {};
+bool Hdf5Writer::flush_and_close() noexcept {
+  bool good = H5Fflush(id_, H5F_SCOPE_LOCAL) >= 0;
+  for (const auto& [path, id] : datasets_) good = good && H5Dclose(id) >= 0;
+  good = good && H5Fclose(id_) >= 0;
+  abandon();
+  return good;
+}
+
+tl::unexpected<Error> Hdf5Writer::give_up(const std::string& what) {
+  const std::string why = reason();
+  abandon();
+  return fail(ErrorKind::kIo, "cannot write {} ({}); is the disk full?", what, why);
 }
 
 Result<void> Hdf5Writer::create_dataset(const std::string& path, const Hdf5Storage& storage) {
-  DUBSAR_CHECK(id_ >= 0 && !storage.dims.empty() && !datasets_.contains(path));
+  DUBSAR_CHECK(!storage.dims.empty() && !datasets_.contains(path));
   DUBSAR_CHECK(storage.chunk.empty() ? storage.deflate == 0 && !storage.shuffle
                                      : storage.chunk.size() == storage.dims.size());
+  if (id_ < 0) return abandoned();
   const Library library;
   const std::vector<hsize_t> dims(storage.dims.begin(), storage.dims.end());
   const Handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
@@ -86,13 +99,14 @@ Result<void> Hdf5Writer::create_dataset(const std::string& path, const Hdf5Stora
   const Handle parents = make_parents();
   const hid_t id = H5Dcreate2(id_, path.c_str(), file_type(storage.type, storage.order), space.get(), parents.get(),
                               creation.get(), H5P_DEFAULT);
-  if (id < 0) return write_failed(fmt::format("dataset \"{}\"", path));
+  if (id < 0) return give_up(fmt::format("dataset \"{}\"", path));
   datasets_[path] = id;
   return {};
 }
 
 Result<void> Hdf5Writer::write_slab_bytes(const std::string& path, std::uint64_t first, ScalarType type,
                                           std::span<const std::byte> bytes) {
+  if (id_ < 0) return abandoned();
   const auto found = datasets_.find(path);
   DUBSAR_CHECK(found != datasets_.end());
   const Library library;
@@ -109,21 +123,7 @@ Result<void> Hdf5Writer::write_slab_bytes(const std::string& path, std::uint64_t
   const auto selection = select(found->second, start, size);
   if (!selection || H5Dwrite(found->second, file_type(type, kNativeOrder), selection->memory.get(),
                              selection->file.get(), H5P_DEFAULT, bytes.data()) < 0)
-    return write_failed(fmt::format("dataset \"{}\"", path));
-  return {};
-}
-
-Result<void> Hdf5Writer::write_string(const std::string& path, const std::string& text) {
-  const Library library;
-  const Handle type = variable_string();
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle parents = make_parents();
-  const Handle creation = without_times(H5P_DATASET_CREATE);
-  const Handle id(H5Dcreate2(id_, path.c_str(), type.get(), space.get(), parents.get(), creation.get(), H5P_DEFAULT),
-                  H5Dclose);
-  const char* value = text.c_str();
-  if (!id.ok() || H5Dwrite(id.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) < 0)
-    return write_failed(fmt::format("dataset \"{}\"", path));
+    return give_up(fmt::format("dataset \"{}\"", path));
   return {};
 }
 
@@ -139,12 +139,13 @@ Result<void> Hdf5Writer::write_table(const std::string& path, std::span<const st
 
 Result<void> Hdf5Writer::write_attribute(const std::string& object, const std::string& name, std::int64_t type,
                                          std::int64_t count, const void* values) {
+  if (id_ < 0) return abandoned();
   const Handle parent(H5Oopen(id_, object.c_str(), H5P_DEFAULT), H5Oclose);
   const auto length = static_cast<hsize_t>(count);
   const Handle space(count < 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &length, nullptr), H5Sclose);
   const Handle id(H5Acreate2(parent.get(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   if (!parent.ok() || !id.ok() || H5Awrite(id.get(), type, values) < 0)
-    return write_failed(fmt::format("attribute \"{}\" of \"{}\"", name, object));
+    return give_up(fmt::format("attribute \"{}\" of \"{}\"", name, object));
   return {};
 }
 
@@ -180,13 +181,10 @@ Result<void> Hdf5Writer::set_attribute(const std::string& object, const std::str
 }
 
 Result<void> Hdf5Writer::commit() {
+  if (id_ < 0) return abandoned();
   {
     const Library library;
-    bool good = true;
-    for (const auto& [path, id] : datasets_) good = H5Dclose(id) >= 0 && good;
-    datasets_.clear();
-    good = H5Fclose(std::exchange(id_, -1)) >= 0 && good;
-    if (!good) return write_failed(file_.temporary_path().string());
+    if (!flush_and_close()) return give_up(file_.temporary_path().string());
   }
   return file_.commit();
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
-#include "core/hdf5/hdf5_file.h"
+#include "core/hdf5/hdf5_writer.h"
 #include "core/phantom/phantom_source.h"
 #include "core/phantom/rasterise.h"
 

@@ -1,5 +1,6 @@
 #include "core/pipeline/pipeline.h"
 
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "core/extract/extract.h"
 #include "core/pipeline/model_occlusion.h"
@@ -101,7 +102,7 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   DUBSAR_TRY(separate(options, result, clock, progress));
   DUBSAR_TRY(add_occlusion(options, result, clock, progress));
   DUBSAR_TRY(check(result, clock));
-  model.provenance = provenance_json(result.report, options).dump();
+  model.provenance = dump_json(provenance_json(result.report, options));
   result.report.stages = clock.records();
   return result;
 }

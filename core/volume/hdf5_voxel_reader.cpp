@@ -4,7 +4,6 @@
 #include <mutex>
 #include <utility>
 
-#include "core/base/input_file.h"
 #include "core/base/parallel.h"
 #include "core/hdf5/chunk_filters.h"
 
@@ -79,8 +78,8 @@ class LibraryReader : public VoxelReader {
 class ChunkReader final : public LibraryReader {
  public:
   ChunkReader(std::shared_ptr<Hdf5File> file, Hdf5Dataset dataset, const std::array<std::size_t, 3>& axes,
-              const ScalarMap& map, InputFile bytes)
-      : LibraryReader(std::move(file), std::move(dataset), axes, map), bytes_(std::move(bytes)) {
+              const ScalarMap& map)
+      : LibraryReader(std::move(file), std::move(dataset), axes, map) {
     const auto& info = dataset_.info();
     for (std::size_t i = 0; i < 3; ++i) chunk_[i] = static_cast<std::int64_t>(info.chunk[axes_[i]]);
     for (const Hdf5Filter& filter : info.filters) filters_.push_back(filter.id);
@@ -88,7 +87,7 @@ class ChunkReader final : public LibraryReader {
   }
 
   Result<void> read(const VoxelBox& box, std::span<float> out) override {
-    DUBSAR_ASSIGN(const std::vector<Hdf5Chunk> chunks, chunks_in(box));
+    const std::vector<Origin> chunks = chunks_in(box);
     std::mutex mutex;
     Result<void> result;
     const std::int64_t grain = std::max<std::int64_t>(1, (1 << 17) / static_cast<std::int64_t>(chunk_bytes_ + 1));
@@ -104,62 +103,51 @@ class ChunkReader final : public LibraryReader {
   }
 
  private:
-  Result<std::vector<Hdf5Chunk>> chunks_in(const VoxelBox& box) const {
+  using Origin = std::array<std::int64_t, 3>;  ///< of a chunk: z, y, x
+
+  std::vector<Origin> chunks_in(const VoxelBox& box) const {
     const AxisRange ranges[3] = {box.z, box.y, box.x};
     std::array<std::int64_t, 3> first{}, last{};
     for (std::size_t i = 0; i < 3; ++i) {
       first[i] = ranges[i].begin / chunk_[i];
       last[i] = ranges[i].at(ranges[i].count() - 1) / chunk_[i];
     }
-    std::vector<Hdf5Chunk> chunks;
-    std::vector<std::uint64_t> origin(dataset_.info().dims.size(), 0);
+    std::vector<Origin> chunks;
     for (std::int64_t z = first[0]; z <= last[0]; ++z)
       for (std::int64_t y = first[1]; y <= last[1]; ++y)
-        for (std::int64_t x = first[2]; x <= last[2]; ++x) {
-          origin[axes_[0]] = static_cast<std::uint64_t>(z * chunk_[0]);
-          origin[axes_[1]] = static_cast<std::uint64_t>(y * chunk_[1]);
-          origin[axes_[2]] = static_cast<std::uint64_t>(x * chunk_[2]);
-          DUBSAR_ASSIGN(const Hdf5Chunk chunk, dataset_.chunk_at(origin));
-          chunks.push_back(chunk);
-        }
+        for (std::int64_t x = first[2]; x <= last[2]; ++x)
+          chunks.push_back({z * chunk_[0], y * chunk_[1], x * chunk_[2]});
     return chunks;
   }
 
   // The plain numbers of a chunk; empty when it was never written.
-  Result<std::span<const std::byte>> unpack(const Hdf5Chunk& chunk, ChunkScratch& scratch) const {
-    if (chunk.file_offset < 0) return std::span<const std::byte>();
+  Result<std::span<const std::byte>> unpack(const Origin& at, ChunkScratch& scratch) const {
     const auto& info = dataset_.info();
+    std::vector<std::uint64_t> origin(info.dims.size(), 0);
+    for (std::size_t i = 0; i < 3; ++i) origin[axes_[i]] = static_cast<std::uint64_t>(at[i]);
     // A chunk that could not be shrunk is a little larger than its numbers.
-    if (chunk.bytes > 2 * chunk_bytes_ + 1024)
-      return fail(ErrorKind::kBadData,
-                  "import_hdf5: a chunk of \"{}\" has {} bytes for {} bytes of voxels; the file is "
-                  "damaged",
-                  info.path, chunk.bytes, chunk_bytes_);
-    scratch.packed.resize(chunk.bytes);
-    // The library does not always count a user block in.
-    DUBSAR_TRY(file_->user_block() == 0 ? bytes_.read_at(chunk.file_offset, scratch.packed)
-                                        : dataset_.read_chunk(chunk, scratch.packed));
-    const auto numbers = undo_filters(filters_, chunk.filter_mask, static_cast<std::size_t>(scalar_bytes(*info.scalar)),
-                                      chunk_bytes_, scratch);
+    DUBSAR_ASSIGN(const auto mask, dataset_.read_chunk(origin, 2 * chunk_bytes_ + 1024, scratch.packed));
+    if (!mask) return std::span<const std::byte>();
+    const auto numbers =
+        undo_filters(filters_, *mask, static_cast<std::size_t>(scalar_bytes(*info.scalar)), chunk_bytes_, scratch);
     if (!numbers)
-      return fail(ErrorKind::kBadData,
-                  "import_hdf5: a chunk of \"{}\" at byte {} cannot be decoded; the file is damaged, "
-                  "copy it again",
-                  info.path, chunk.file_offset);
+      return fail(
+          ErrorKind::kBadData,
+          "import_hdf5: the chunk of \"{}\" at {}, {}, {} cannot be decoded; the file is damaged, copy it again",
+          info.path, at[0], at[1], at[2]);
     return *numbers;
   }
 
-  Result<void> decode(const Hdf5Chunk& chunk, const VoxelBox& box, std::span<float> out, ChunkScratch& scratch) const {
-    DUBSAR_ASSIGN(const std::span<const std::byte> bytes, unpack(chunk, scratch));
+  Result<void> decode(const Origin& origin, const VoxelBox& box, std::span<float> out, ChunkScratch& scratch) const {
+    DUBSAR_ASSIGN(const std::span<const std::byte> bytes, unpack(origin, scratch));
     const ScalarType type = *dataset_.info().scalar;
     const Dims size = box.dims();
     const AxisRange ranges[3] = {box.z, box.y, box.x};
-    std::array<std::int64_t, 3> origin{}, first{}, last{};  // of the chunk; indices into the box that lie in it
+    std::array<std::int64_t, 3> first{}, last{};  // indices into the box that lie in the chunk
     for (std::size_t i = 0; i < 3; ++i) {
-      origin[i] = static_cast<std::int64_t>(chunk.origin[axes_[i]]);
       const AxisRange& range = ranges[i];
       const auto steps_to = [&](std::int64_t index) {
-        return index <= range.begin ? 0 : (index - range.begin + range.step - 1) / range.step;
+        return index <= range.begin ? 0 : (index - range.begin - 1) / range.step + 1;
       };
       first[i] = steps_to(origin[i]);
       last[i] = std::min(range.count(), steps_to(origin[i] + chunk_[i]));
@@ -182,7 +170,6 @@ class ChunkReader final : public LibraryReader {
     return {};
   }
 
-  InputFile bytes_;
   std::array<std::int64_t, 3> chunk_{};  ///< z, y, x
   std::vector<int> filters_;
   std::size_t chunk_bytes_ = 0;
@@ -210,8 +197,7 @@ Result<std::unique_ptr<VoxelReader>> make_hdf5_reader(std::shared_ptr<Hdf5File> 
   const std::uint64_t cache = direct ? 0 : std::min(layer, kMostCache);
   DUBSAR_ASSIGN(Hdf5Dataset dataset, file->open_dataset(info.path, cache, info.layout == Hdf5Layout::kVirtual));
   if (!direct) return std::make_unique<LibraryReader>(std::move(file), std::move(dataset), axes, map);
-  DUBSAR_ASSIGN(InputFile bytes, InputFile::open(file->path()));
-  return std::make_unique<ChunkReader>(std::move(file), std::move(dataset), axes, map, std::move(bytes));
+  return std::make_unique<ChunkReader>(std::move(file), std::move(dataset), axes, map);
 }
 
 }  // namespace dubsar

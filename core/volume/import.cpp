@@ -67,7 +67,7 @@ Result<OpenedVolume> open_by_content(const ImportOptions& options) {
   const std::string_view text(head.data(), bytes);
   if (is_nrrd(text)) return open_nrrd(options);
   if (TiffFile::has_signature(options.path)) return open_tiff_stack(options);
-  if (Hdf5File::has_signature(options.path)) return open_hdf5(options);
+  if (Hdf5File::has_signature(file)) return open_hdf5(options);
   std::string found = "no known format";
   for (const Magic& magic : kOthers)
     if (text.size() >= magic.offset + magic.bytes.size() &&

@@ -17,7 +17,8 @@ class SlabSource {
   virtual ~SlabSource() = default;
   virtual Dims dims() const noexcept = 0;
   virtual const GridFrame& frame() const noexcept = 0;
-  /// Writes slices [z_begin, z_end) to `out`, which holds dims().slice() * (z_end - z_begin) floats, x fastest. One
+  /// Writes slices [z_begin, z_end) to the front of `out`, at least dims().slice() * (z_end - z_begin) floats, x
+  /// fastest. One
   /// caller at a time; the source may use all threads inside. Reading in rising order is fastest; any order works.
   virtual Result<void> read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) = 0;
 };

@@ -121,7 +121,7 @@ Result<fs::path> save_adjustment(const fs::path& folder, std::string_view panel,
   fs::create_directories(folder, error);
   if (error) return fail(ErrorKind::kCannotCreate, "cannot create the folder {}: {}", folder.string(), error.message());
   const fs::path file = file_of(folder, panel);
-  DUBSAR_TRY(write_file_atomically(file, object.dump(2) + "\n"));
+  DUBSAR_TRY(write_file_atomically(file, dump_json_lines(object) + "\n"));
   return file;
 }
 

@@ -1,13 +1,18 @@
 #include "core/hdf5/hdf5_file.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <numeric>
+
+#include "core/hdf5/hdf5_writer.h"
 
 namespace dubsar {
 namespace {
@@ -53,7 +58,6 @@ Result<void> write_sample(const fs::path& path) {
   DUBSAR_TRY(writer.set_attribute("/entry/data/data", "voxel_size", 0.038));
   const std::vector<std::string> axes{"z", "y", "x"};
   DUBSAR_TRY(writer.set_attribute("/entry/data", "axes", axes));
-  DUBSAR_TRY(writer.write_string("/entry/definition", "NXtomoproc"));
   const std::vector<std::string> columns{"x", "depth_mm"};
   const std::vector<double> table{1, 2, 3, 4, 5, 6};
   DUBSAR_TRY(writer.write_table("/wedges", columns, table));
@@ -68,7 +72,6 @@ TEST_F(Hdf5Files, WhatWasWrittenIsReadBack) {
   EXPECT_EQ(file->string("/", "default"), "entry");
   EXPECT_EQ(file->numbers("/entry/data/data", "voxel_size"), std::vector<double>{0.038});
   EXPECT_EQ(file->strings("/entry/data", "axes"), (std::vector<std::string>{"z", "y", "x"}));
-  EXPECT_EQ(file->string_dataset("/entry/definition"), "NXtomoproc");
   EXPECT_EQ(file->number_dataset("/wedges"), (std::vector<double>{1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(file->strings("/wedges", "columns"), (std::vector<std::string>{"x", "depth_mm"}));
   EXPECT_EQ(file->numbers("/", "absent"), std::nullopt);
@@ -123,6 +126,48 @@ TEST_F(Hdf5Files, AnAbandonedWriterLeavesTheOldFile) {
   EXPECT_EQ(std::distance(fs::directory_iterator(in("a.h5").parent_path()), {}), 1) << "a temporary file was left";
 }
 
+// Everything that a file can ask for in texts: each may be short, and all together more than there is memory for.
+TEST_F(Hdf5Files, VariableLengthStringsHaveALimit) {
+  const std::vector<std::string> many(3000, std::string(1000, 'x')), few(16, std::string(1000, 'y'));
+  {
+    auto writer = Hdf5Writer::create(in("a.h5"));
+    ASSERT_TRUE(writer);
+    ASSERT_TRUE(writer->set_attribute("/", "many", many));
+    ASSERT_TRUE(writer->set_attribute("/", "long", std::string((1 << 16) + 1, 'z')));
+    ASSERT_TRUE(writer->set_attribute("/", "few", few));
+    ASSERT_TRUE(writer->set_attribute("/", "most", std::string(1 << 16, 'z')));
+    ASSERT_TRUE(writer->commit());
+  }
+  const auto file = Hdf5File::open(in("a.h5"));
+  ASSERT_TRUE(file);
+  EXPECT_EQ(file->strings("/", "many"), std::nullopt) << "3 MB in one attribute";
+  EXPECT_EQ(file->strings("/", "long"), std::nullopt);
+  EXPECT_EQ(file->strings("/", "few"), few);
+  EXPECT_EQ(file->string("/", "most")->size(), std::size_t{1} << 16);
+}
+
+// In a process of its own, whose files may not grow beyond a limit, as on a full disk.
+void write_within(const fs::path& path, rlim_t limit) {
+  ::signal(SIGXFSZ, SIG_IGN);
+  const rlimit size{limit, limit};
+  if (::setrlimit(RLIMIT_FSIZE, &size) != 0) ::_exit(3);
+  for (int again = 0; again < 2; ++again) {  // and the library is fit for use afterwards
+    const auto written = write_sample(path);
+    if (written || written.error().kind != ErrorKind::kIo) ::_exit(written ? 1 : 2);
+    if (written.error().message.find('\n') != std::string::npos) ::_exit(4);
+  }
+  std::exit(0);  // with all that the library does at the end of a program
+}
+
+TEST_F(Hdf5Files, AFullDiskIsAnErrorAtEveryByte) {
+  ASSERT_TRUE(write_sample(in("whole.h5")));
+  const auto whole = static_cast<rlim_t>(fs::file_size(in("whole.h5")));
+  for (rlim_t limit = 0; limit < whole; limit += whole / 9)
+    EXPECT_EXIT(write_within(in("a.h5"), limit), testing::ExitedWithCode(0), "") << limit << " of " << whole;
+  EXPECT_EXIT(write_within(in("a.h5"), whole - 1), testing::ExitedWithCode(0), "");
+  EXPECT_FALSE(fs::exists(in("a.h5")));
+}
+
 TEST_F(Hdf5Files, ListsEveryLinkInOrder) {
   ASSERT_TRUE(write_sample(in("a.h5")));
   const auto file = Hdf5File::open(in("a.h5"));
@@ -131,8 +176,7 @@ TEST_F(Hdf5Files, ListsEveryLinkInOrder) {
   ASSERT_TRUE(links);
   std::vector<std::string> paths;
   for (const auto& link : *links) paths.push_back(link.path);
-  EXPECT_EQ(paths, (std::vector<std::string>{"/entry", "/entry/data", "/entry/data/data", "/entry/definition",
-                                             "/packed", "/wedges"}));
+  EXPECT_EQ(paths, (std::vector<std::string>{"/entry", "/entry/data", "/entry/data/data", "/packed", "/wedges"}));
   const auto missing = file->resolve("/entry/none/data");
   ASSERT_TRUE(missing);
   EXPECT_EQ(missing->kind, Hdf5Target::Kind::kMissing);

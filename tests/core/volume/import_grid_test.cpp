@@ -8,7 +8,7 @@
 #include <random>
 
 #include "core/base/parallel.h"
-#include "core/hdf5/hdf5_file.h"
+#include "core/hdf5/hdf5_writer.h"
 #include "core/volume/grid_source.h"
 #include "core/volume/import.h"
 #include "tests/core/volume/temp_folder.h"

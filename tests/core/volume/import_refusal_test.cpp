@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "core/hdf5/hdf5_file.h"
+#include "core/hdf5/hdf5_filters.h"
+#include "core/hdf5/hdf5_writer.h"
 #include "core/volume/import.h"
 #include "tests/core/volume/hdf5_fixture.h"
 #include "tests/core/volume/temp_folder.h"
@@ -144,8 +146,7 @@ TEST_F(ImportRefusal, MissingAndUnsafeFilters) {
     Hdf5Fixture(in("a.h5"))
         .array("/v", ScalarType::kF32, kLittle, {4, 4, 4}, ones(64), {.chunk = {2, 2, 2}, .foreign_filter = id});
   };
-  const auto folder = Hdf5File::plugin_folder();
-  Hdf5File::set_plugin_folder(in("no-plugins"));
+  const auto folder = set_hdf5_plugin_folder(in("no-plugins"));
   for (const auto& [id, name, package] :
        {std::tuple(307, "bzip2", "hdf5-filter-plugin"), std::tuple(32004, "lz4", "hdf5-filter-plugin"),
         std::tuple(32008, "bitshuffle", "bitshuffle"), std::tuple(32001, "blosc", "hdf5-filter-plugin-blosc-serial"),
@@ -154,7 +155,7 @@ TEST_F(ImportRefusal, MissingAndUnsafeFilters) {
     expect(refusal(), ErrorKind::kBadData,
            {fmt::format("filter {} ({}), which is missing; apt install {}", id, name, package).c_str()});
   }
-  Hdf5File::set_plugin_folder(folder);
+  set_hdf5_plugin_folder(folder);
   with(32015);
   expect(refusal(), ErrorKind::kBadData, {"filter 32015 (zstd), for which there is no Debian package"});
   with(32026);
