@@ -14,7 +14,7 @@ packages=(
   libimgui-dev
   libhidapi-dev libusb-1.0-0-dev
   libopencv-core-dev libopencv-dnn-dev libopencv-objdetect-dev libopencv-videoio-dev opencv-data
-  libgtest-dev libgmock-dev libbenchmark-dev libumockdev-dev libxcb-xtest0-dev umockdev xvfb
+  libgtest-dev libgmock-dev libbenchmark-dev libspnav-dev libumockdev-dev libxcb-xtest0-dev umockdev xvfb
 )
 
 # The device lab runs in a kernel of its own; nothing else needs these.
@@ -26,6 +26,7 @@ usage() {
 ./do test     install what is needed, build, run all tests
 ./do lab      boot Debian's kernel in qemu and test the drivers on virtual USB, HID and camera devices
 ./do build    build the program (build/release/app/dubsar)
+./do peers    talk to VRPN, spacenavd, libspnav and opentrack, as far as they are installed, and print a table
 ./do bench    run the benchmarks; ./do bench displays: only those of many views
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
 ./do asan     the tests that need no window under AddressSanitizer and UndefinedBehaviorSanitizer
@@ -115,6 +116,12 @@ lint() {
   [ -z "$changed" ] || clang-tidy -p "$build" --quiet --warnings-as-errors='*' $changed
 }
 
+peers() {
+  deps
+  build_target --target dubsar
+  tests/peers/run.sh "$build/app/dubsar"
+}
+
 tsan() {
   deps clang libclang-rt-14-dev libomp-dev
   preset=tsan build=build/tsan
@@ -177,6 +184,7 @@ case "$verb" in
   build) deps; build_target --target dubsar "$@" ;;
   bench) bench "$@" ;;
   asan) asan "$@" ;;
+  peers) peers ;;
   tsan) tsan ;;
   core) core "$@" ;;
   lint) lint "$@" ;;

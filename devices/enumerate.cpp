@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -17,6 +18,16 @@ namespace {
 constexpr std::uint16_t kGenericDesktop = 1, kMultiAxisController = 8;
 
 int can_open(const std::string& path) { return ::access(path.c_str(), R_OK | W_OK) == 0 ? 0 : errno; }
+
+DeviceInfo unreadable_xreal(const XrealProduct& glasses) {
+  DeviceInfo info;
+  info.driver = "xreal";
+  info.name = glasses.name;
+  info.state = DeviceState::kIgnored;
+  info.reason = glasses.needs;
+  info.remedy = kXrealRemedy;
+  return info;
+}
 
 /// Driver and name; an empty driver where the interface is not one that a driver uses.
 DeviceInfo recognise(const HidNode& node) {
@@ -39,13 +50,17 @@ DeviceInfo recognise(const HidNode& node) {
     case SpaceMouseId::kUnknown:
       break;
   }
-  if (node.vendor_id == kRiftVendor && (node.product_id == kRiftDk1 || node.product_id == kRiftDk2)) {
+  if (node.vendor_id == kRiftVendor &&
+      (node.product_id == kRiftDk1 || node.product_id == kRiftDk2 || node.product_id == kRiftDk2Late)) {
     info.driver = "rift";
     info.name = node.product_id == kRiftDk1 ? "Oculus Rift DK1" : "Oculus Rift DK2";
-  } else if (node.vendor_id == kXrealVendor && xreal_imu_interface(node.product_id) >= 0) {
-    if (node.interface_number == xreal_imu_interface(node.product_id)) info.driver = "xreal";
-    info.name = xreal_name(node.product_id);
-  } else if (node.vendor_id == kLookingGlassVendor && node.product_id == kLookingGlassProduct) {
+  } else if (const XrealProduct* const glasses =
+                 node.vendor_id == kXrealVendor ? find_xreal(node.product_id) : nullptr) {
+    if (!glasses->needs.empty()) return unreadable_xreal(*glasses);
+    if (node.interface_number == glasses->imu_interface) info.driver = "xreal";
+    info.name = glasses->name;
+  } else if (node.vendor_id == kLookingGlassVendor && node.product_id == kLookingGlassProduct &&
+             node.product.starts_with(kLookingGlassProductName)) {
     info.driver = "looking_glass";
     info.name = "Looking Glass calibration";
   }
@@ -59,6 +74,13 @@ std::vector<DeviceInfo> known_hid_devices(const std::vector<HidNode>& nodes, int
   for (const HidNode& node : nodes) {
     DeviceInfo info = recognise(node);
     if (info.driver.empty()) continue;
+    // glasses that cannot be read are told once, not for each of their interfaces
+    const auto told = [&](const DeviceInfo& d) {
+      return d.driver == "xreal" && d.state == DeviceState::kIgnored && d.product_id == node.product_id &&
+             d.serial == node.serial;
+    };
+    if (info.driver == "xreal" && info.state == DeviceState::kIgnored && std::any_of(known.begin(), known.end(), told))
+      continue;
     info.path = node.path;
     if (!node.product.empty()) info.name = node.product;
     info.serial = node.serial;
@@ -85,14 +107,29 @@ std::vector<DeviceInfo> known_hid_devices(const std::vector<HidNode>& nodes, int
   return known;
 }
 
+std::optional<DeviceInfo> unreadable_glasses(UsbId id, const std::string& path) {
+  const XrealProduct* const glasses = id.vendor == kXrealVendor ? find_xreal(id.product) : nullptr;
+  if (glasses == nullptr || glasses->needs.empty()) return std::nullopt;
+  DeviceInfo info = unreadable_xreal(*glasses);
+  info.path = path;
+  info.vendor_id = id.vendor;
+  info.product_id = id.product;
+  return info;
+}
+
 std::vector<DeviceInfo> list_hid_devices() { return known_hid_devices(list_hid_nodes(), can_open); }
 
 Result<std::unique_ptr<Transport>> open_hid_device(std::string_view driver, const Clock& clock) {
   Error error{ErrorKind::kUnavailable, fmt::format("{}: no such device is plugged in", driver)};
   for (const DeviceInfo& info : list_hid_devices()) {
-    if (info.driver != driver || info.state == DeviceState::kIgnored) continue;
+    if (info.driver != driver) continue;
+    if (info.state == DeviceState::kIgnored) {
+      if (error.message.ends_with("plugged in"))
+        error.message = fmt::format("{}: {}: {}; {}", driver, info.name, info.reason, info.remedy);
+      continue;
+    }
     if (info.state == DeviceState::kUsable) {
-      auto opened = open_hid(info.path, clock);
+      auto opened = open_hid(info.path, clock, {info.vendor_id, info.product_id});
       if (opened) return opened;
       error = std::move(opened).error();
     } else {

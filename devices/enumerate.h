@@ -2,6 +2,7 @@
 // Which devices are here, and why those that cannot be used cannot.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,9 @@ namespace dubsar {
 /// `permission`: 0, or the errno that opening it for reading and writing would give.
 std::vector<DeviceInfo> known_hid_devices(const std::vector<HidNode>& nodes,
                                           int (*permission)(const std::string& path));
+
+/// Glasses among USB devices that no driver reads, with what they need; nothing for others.
+std::optional<DeviceInfo> unreadable_glasses(UsbId id, const std::string& path);
 
 /// All HID devices that a driver knows, on this machine. Opens none. Any thread.
 std::vector<DeviceInfo> list_hid_devices();

@@ -172,7 +172,10 @@ Result<VerbResult> run_live(const Options& options, bool print, Progress& progre
     if (print) printer(sample);
   };
   DUBSAR_ASSIGN(VerbResult result, watch(*device, clock, progress, over, each));
-  if (writer) {
+  if (writer && writer->heard_count() == 0) {
+    writer->discard();
+    result.text += fmt::format("nothing was heard, {} is left as it was\n", options.file);
+  } else if (writer) {
     DUBSAR_TRY(writer->finish());
     result.json["events"] = writer->event_count();
     result.text += fmt::format("{} events in {}\n", writer->event_count(), options.file);

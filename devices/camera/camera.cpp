@@ -1,6 +1,7 @@
 #include "devices/camera/camera.h"
 
 #include <atomic>
+#include <exception>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -42,7 +43,13 @@ class Camera final : public FrameSource {
       reason_.clear();
     }
     stopping_ = false;
-    thread_ = std::thread([this] { read_loop(); });
+    thread_ = std::thread([this] {
+      try {
+        read_loop();
+      } catch (const std::exception& mistake) {  // costs the camera, not the session
+        lose(fmt::format("camera: reading has stopped by a mistake of this program: {}", mistake.what()));
+      }
+    });
     return {};
   }
 

@@ -8,7 +8,7 @@ namespace dubsar {
 std::optional<HeadSample> HeadGate::pass(HeadSample sample) noexcept {
   if (sample.has_position)
     for (int i = 0; i < 3; ++i)
-      if (!(std::abs(sample.pose.position_m[i]) <= kHeadBoxM)) return std::nullopt;
+      if (!(std::abs(sample.pose.position_m[i]) <= box_m_)) return std::nullopt;
   if (sample.has_orientation) {
     const double length = glm::length(sample.pose.rotation);
     if (!(std::abs(length - 1.0) <= 0.01)) return std::nullopt;

@@ -56,7 +56,8 @@ std::array<std::byte, 8> pack_rift_vector(const std::array<std::int32_t, 3>& val
 std::optional<RiftReport> parse_rift(std::span<const std::byte> report) noexcept {
   RiftReport parsed;
   const Layout* layout = nullptr;
-  if (report.size() == kDk1Layout.bytes && byte_at(report, 0) == kDk1Layout.id) {
+  const bool dk1_size = report.size() == kDk1Layout.bytes || report.size() == kDk2Layout.bytes;
+  if (dk1_size && byte_at(report, 0) == kDk1Layout.id) {
     layout = &kDk1Layout;
     parsed.model = RiftModel::kDk1;
     parsed.ticks = byte_at(report, 2) | byte_at(report, 3) << 8;

@@ -15,7 +15,8 @@ namespace dubsar {
 
 enum class RiftModel { kDk1, kDk2 };
 
-inline constexpr std::uint16_t kRiftVendor = 0x2833, kRiftDk1 = 0x0001, kRiftDk2 = 0x0021;
+inline constexpr std::uint16_t kRiftVendor = 0x2833, kRiftDk1 = 0x0001, kRiftDk2 = 0x0021,
+                               kRiftDk2Late = 0x2021;  ///< a DK2 too
 
 struct RiftReport {
   RiftModel model = RiftModel::kDk1;
@@ -25,7 +26,8 @@ struct RiftReport {
   std::array<ImuSample, 3> samples{};
 };
 
-/// DK1: 62 bytes, report 1; DK2: 64 bytes, report 11. No readings, or another length: nothing.
+/// DK1: 62 bytes, or 64 as some kernels and hubs deliver them, report 1; DK2: 64 bytes, report 11. No readings, or
+/// another length: nothing.
 std::optional<RiftReport> parse_rift(std::span<const std::byte> report) noexcept;
 std::vector<std::byte> format_rift(const RiftReport& report);
 

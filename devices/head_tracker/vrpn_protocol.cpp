@@ -133,6 +133,23 @@ bool VrpnProtocol::accept(std::span<const std::byte> bytes, TimestampNs now) {
   return all_valid && !stream_.broken();
 }
 
+std::string VrpnProtocol::note() const {
+  if (found_) return {};
+  const std::string wished =
+      fmt::format("{}, sensor {}", choice_.tracker.empty() ? "any tracker" : choice_.tracker, choice_.sensor);
+  std::string names;
+  for (const auto& [tracker, sensors] : heard_) {
+    std::string numbers;
+    for (const std::int32_t sensor : sensors) numbers += fmt::format("{}{}", numbers.empty() ? "" : ", ", sensor);
+    names += fmt::format("{}{} (sensor {})", names.empty() ? "" : ", ", tracker, numbers);
+  }
+  if (!names.empty()) return fmt::format("vrpn: no poses of {}; heard are: {}", wished, names);
+  for (const auto& [number, name] : senders_) names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+  if (!names.empty())
+    return fmt::format("vrpn: no poses of {}; the server names {}, and none sends poses", wished, names);
+  return {};
+}
+
 bool VrpnProtocol::handle(const VrpnMessage& message, TimestampNs now) {
   ByteReader reader(as_text(message.payload));
   if (message.type == kSenderName || message.type == kTypeName) {
@@ -159,12 +176,16 @@ bool VrpnProtocol::handle(const VrpnMessage& message, TimestampNs now) {
   std::array<double, 7> v;
   for (double& value : v) value = reader.big<double>();
   const auto sender = senders_.find(message.sender);
+  if (const std::string name = sender == senders_.end() ? "?" : sender->second;
+      heard_.size() < kMaxHeard || heard_.contains(name))
+    if (auto& sensors = heard_[name]; sensors.size() < kMaxHeard) sensors.insert(sensor);
   if (!choice_.tracker.empty() && (sender == senders_.end() || sender->second != choice_.tracker)) return true;
   if (sensor != choice_.sensor) return true;
   if (choice_.tracker.empty()) {
     if (!first_sender_) first_sender_ = message.sender;
     if (*first_sender_ != message.sender) return true;
   }
+  found_ = true;
   const TimestampNs said = 1'000'000'000 * TimestampNs{message.seconds} + 1000 * TimestampNs{message.microseconds};
   const TimestampNs time = said > 0 ? timeline_.host_time(said, now) : now;
   const auto passed = gate_.pass({time, {{v[0], v[1], v[2]}, glm::dquat(v[6], v[3], v[4], v[5])}, true, true});

@@ -1,11 +1,12 @@
 #pragma once
-// Client side of VRPN over TCP: poses of "vrpn_Tracker Pos_Quat". Facts: vrpn/vrpn vrpn_Connection.C, checked against
-// its own server 07.38.
+// VRPN's messages over TCP, and the client's side: poses of "vrpn_Tracker Pos_Quat". Facts: vrpn/vrpn
+// vrpn_Connection.C, checked against bytes of its own server and client 07.38.
 
 #include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -45,6 +46,7 @@ class VrpnStream {
   void feed(std::span<const std::byte> bytes);
   std::optional<VrpnMessage> next();
   bool broken() const noexcept { return broken_; }
+  bool greeted() const noexcept { return greeted_ && !broken_; }  ///< the other side's cookie has come, and fits
 
  private:
   std::vector<std::byte> pending_;
@@ -57,7 +59,8 @@ struct VrpnChoice {
   std::int32_t sensor = 0;  ///< which of its sensors is the head
 };
 
-/// For Driver over open_tcp_stream(). Poses are in the server's frame, in metres.
+/// For Driver over open_tcp_stream(). Poses are in the server's frame, in metres, whose origin may lie anywhere in a
+/// hall.
 class VrpnProtocol {
  public:
   using Sample = HeadSample;
@@ -68,15 +71,19 @@ class VrpnProtocol {
   /// False when a message in these bytes was invalid.
   bool accept(std::span<const std::byte> bytes, TimestampNs now);
   std::optional<Sample> newest() { return std::exchange(newest_, std::nullopt); }
+  /// While the wished tracker or sensor has not been heard: which have. Empty when it has, or nothing was heard yet.
+  std::string note() const;
 
  private:
+  static constexpr std::size_t kMaxHeard = 64;
   bool handle(const VrpnMessage& message, TimestampNs now);
   VrpnChoice choice_;
   VrpnStream stream_;
   std::map<std::int32_t, std::string> senders_, types_;
   std::optional<std::int32_t> first_sender_;
-  bool goodbye_ = false;
-  HeadGate gate_;
+  std::map<std::string, std::set<std::int32_t>> heard_;  ///< sensors by tracker, at most kMaxHeard of each
+  bool goodbye_ = false, found_ = false;
+  HeadGate gate_{kHallM};
   DeviceTimeline timeline_;
   std::optional<Sample> newest_;
 };

@@ -9,15 +9,21 @@
 namespace dubsar {
 namespace {
 
-struct Product {
-  std::uint16_t id;
-  std::string_view name;
-  int imu_interface;
-};
-constexpr std::array<Product, 4> kProducts = {{{0x0424, "XREAL Air", 3},
-                                               {0x0428, "XREAL Air 2", 3},
-                                               {0x0432, "XREAL Air 2 Pro", 3},
-                                               {0x0426, "XREAL Air 2 Ultra", 2}}};
+constexpr std::string_view kByNetwork =
+    "its poses come over a network of its own, which XRLinuxDriver speaks and this program does not";
+constexpr std::string_view kNotKnown = "the number of its inertial interface is not known here";
+constexpr std::array<XrealProduct, 12> kProducts{{{0x0424, "XREAL Air", 3, {}},
+                                                  {0x0428, "XREAL Air 2", 3, {}},
+                                                  {0x0432, "XREAL Air 2 Pro", 3, {}},
+                                                  {0x0426, "XREAL Air 2 Ultra", 2, {}},
+                                                  {0x0435, "XREAL One Pro", -1, kByNetwork},
+                                                  {0x0436, "XREAL One Pro", -1, kByNetwork},
+                                                  {0x0437, "XREAL One", -1, kByNetwork},
+                                                  {0x0438, "XREAL One", -1, kByNetwork},
+                                                  {0x043d, "XREAL 1S", -1, kByNetwork},
+                                                  {0x043e, "XREAL 1S", -1, kByNetwork},
+                                                  {0x0440, "XREAL xbx a01", -1, kNotKnown},
+                                                  {0x0442, "XREAL xbx a01+", -1, kNotKnown}}};
 
 constexpr double kGravity_m_s2 = 9.81;
 constexpr double kDeg = std::numbers::pi / 180.0;
@@ -79,16 +85,10 @@ void put_vector(std::span<std::byte> out, std::size_t at, const glm::dvec3& sens
 
 }  // namespace
 
-int xreal_imu_interface(std::uint16_t product_id) noexcept {
-  for (const Product& product : kProducts)
-    if (product.id == product_id) return product.imu_interface;
-  return -1;
-}
-
-std::string_view xreal_name(std::uint16_t product_id) noexcept {
-  for (const Product& product : kProducts)
-    if (product.id == product_id) return product.name;
-  return "XREAL glasses";
+const XrealProduct* find_xreal(std::uint16_t product_id) noexcept {
+  for (const XrealProduct& product : kProducts)
+    if (product.id == product_id) return &product;
+  return nullptr;
 }
 
 std::optional<XrealReport> parse_xreal(std::span<const std::byte> report) noexcept {

@@ -16,9 +16,17 @@
 namespace dubsar {
 
 inline constexpr std::uint16_t kXrealVendor = 0x3318;
-/// The HID interface that carries the inertial reports of a product, or -1 when the product is not known.
-int xreal_imu_interface(std::uint16_t product_id) noexcept;
-std::string_view xreal_name(std::uint16_t product_id) noexcept;
+
+struct XrealProduct {
+  std::uint16_t id = 0;
+  std::string_view name;
+  int imu_interface = -1;  ///< the HID interface that carries the inertial reports; -1: not one that is known
+  std::string_view needs;  ///< why this program cannot read it and what can; empty where it can
+};
+/// The models that XRLinuxDriver knows (src/devices/xreal.c); null: none of them.
+const XrealProduct* find_xreal(std::uint16_t product_id) noexcept;
+inline constexpr std::string_view kXrealRemedy =
+    "run XRLinuxDriver with its opentrack output and use head:opentrack,sender=xrlinux";
 
 struct XrealReport {
   std::uint64_t time_ns = 0;  ///< the glasses' clock

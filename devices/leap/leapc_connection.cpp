@@ -4,6 +4,7 @@
 #include <array>
 #include <condition_variable>
 #include <cstring>
+#include <exception>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -71,7 +72,16 @@ class LibraryConnection final : public Connection {
     reason_ = kConnectingText;
     counters_ = {};
     fresh_ = stopping_ = false;
-    thread_ = std::thread([this, owned = std::move(handle)]() mutable { run(std::move(owned)); });
+    thread_ = std::thread([this, owned = std::move(handle)]() mutable {
+      try {
+        run(std::move(owned));
+      } catch (const std::exception& mistake) {  // costs the hands, not the session
+        const std::lock_guard guard(mutex_);
+        state_ = State::kNoService;
+        reason_ = fmt::format("leapc: reading has stopped by a mistake of this program: {}", mistake.what());
+        fresh_ = false;
+      }
+    });
     if (options_.patience == milliseconds(0)) return {};
     if (changed_.wait_for(lock, options_.patience, [&] { return counters_.connections > 0; })) return {};
     lock.unlock();

@@ -56,10 +56,10 @@ Result<EyeCalibration> decode_eye(std::span<const std::byte> bytes, std::size_t 
   return eye;
 }
 
-// Rotation of Cayley parameters c: (I + [c]) (I - [c])^-1. Which way the device means it is not checked; real values
-// turn by less than a degree.
-glm::dmat3 rotation_of(const std::array<float, 3>& cayley) {
-  const double x = cayley[0], y = cayley[1], z = cayley[2];
+// From the eye to the rig: (I + [p]) (I - [p])^-1 of p = -c, as the maker's sample rectifies with
+// CayleyTransform(-rotation) (leapmotion/leapuvc Python/leapuvc.py).
+glm::dmat3 rig_from_eye_of(const std::array<float, 3>& cayley) {
+  const double x = -double{cayley[0]}, y = -double{cayley[1]}, z = -double{cayley[2]};
   const glm::dmat3 cross(0, z, -y, -z, 0, x, y, -x, 0);  // column by column
   const glm::dmat3 one(1.0);
   return (one + cross) * glm::inverse(one - cross);
@@ -109,7 +109,7 @@ Lens::Lens(const EyeCalibration& eye, int width, int height) noexcept
       fy_(double{eye.focal_px} * height / 480.0),
       cx_((320.0 + double{eye.offset_x_px}) * width / 640.0),
       cy_((240.0 + double{eye.offset_y_px}) * height / 480.0),
-      rig_from_eye_(rotation_of(eye.cayley)) {
+      rig_from_eye_(rig_from_eye_of(eye.cayley)) {
   for (std::size_t i = 0; i < 6; ++i) radial_[i] = eye.radial[i];
   for (std::size_t i = 0; i < 2; ++i) tangential_[i] = eye.tangential[i];
   double radius = 0.0, ray_radius = 0.0;

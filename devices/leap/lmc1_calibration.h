@@ -27,7 +27,7 @@ struct EyeCalibration {
   /// the ray, the inverse of OpenCV's model.
   std::array<float, 6> radial{};
   float old_focal_px = 0, old_centre_x_px = 0, old_centre_y_px = 0;
-  std::array<float, 3> cayley{};  ///< rotation of the eye
+  std::array<float, 3> cayley{};  ///< turns rays of the rig into those of the eye
   bool operator==(const EyeCalibration&) const = default;
 };
 

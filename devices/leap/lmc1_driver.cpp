@@ -1,6 +1,7 @@
 #include "devices/leap/lmc1_driver.h"
 
 #include <array>
+#include <atomic>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -12,7 +13,7 @@ constexpr milliseconds kControlTimeout{1000};
 
 class Lmc1Kind final : public StereoCameraKind {
  public:
-  explicit Lmc1Kind(const Lmc1Options& options) : options_(options) {}
+  explicit Lmc1Kind(const Lmc1Options& options) : options_(options), dark_interval_(options.dark_frame_interval) {}
 
   Result<Stream> prepare(Transport& transport) override {
     const lmc1::Mode* const mode = lmc1::find_mode(options_.width, options_.height);
@@ -23,7 +24,7 @@ class Lmc1Kind final : public StereoCameraKind {
     DUBSAR_TRY(uvc::commit_stream(transport, lmc1::kStreamInterface, lmc1::request_mode(*mode)));
     DUBSAR_ASSIGN(const auto exposure, lmc1::exposure_us(options_.exposure_us));
     DUBSAR_ASSIGN(const auto gain, lmc1::analog_gain(options_.analog_gain_sixteenths));
-    DUBSAR_ASSIGN(const auto dark, lmc1::dark_frame_interval(options_.dark_frame_interval));
+    DUBSAR_ASSIGN(const auto dark, lmc1::dark_frame_interval(dark_interval_));
     for (const auto& write : {lmc1::switch_on(lmc1::Switch::kHdr, false), lmc1::gamma(false), exposure, gain, dark})
       DUBSAR_TRY(uvc::send(transport, write));
     for (const lmc1::Switch led : kLeds) DUBSAR_TRY(uvc::send(transport, lmc1::switch_on(led, options_.leds)));
@@ -32,12 +33,18 @@ class Lmc1Kind final : public StereoCameraKind {
 
   const std::optional<lmc1::Calibration>& calibration() const override { return calibration_; }
   Result<uvc::ControlWrite> exposure(int us) const override { return lmc1::exposure_us(us); }
-  Result<uvc::ControlWrite> dark_frame_interval(int n) override { return lmc1::dark_frame_interval(n); }
+  Result<uvc::ControlWrite> dark_frame_interval(int n) override {
+    DUBSAR_ASSIGN(const auto write, lmc1::dark_frame_interval(n));
+    dark_interval_ = n;
+    return write;
+  }
 
   void unpack(std::span<const std::byte> bytes, Frame& frame) override {
     const auto metadata = lmc1::decode_metadata(bytes.last<lmc1::kMetadataBytes>());
     frame.exposure_us = metadata.exposure_us;
-    frame.dark = metadata.label == 1;  // not checked on a device
+    // without dark frames every one is lit, whatever the label is (LeapUVC manual, "Image Metadata")
+    const int interval = dark_interval_;
+    frame.dark = interval == 1 || (interval > 1 && metadata.label == 1);  // the label: not checked on a device
     const std::span<std::uint8_t> pixels(frame.pixels);
     lmc1::deinterleave(bytes, pixels.first(bytes.size() / 2), pixels.last(bytes.size() / 2));
   }
@@ -51,6 +58,7 @@ class Lmc1Kind final : public StereoCameraKind {
                                                      lmc1::Switch::kLedRight};
   const Lmc1Options options_;
   std::optional<lmc1::Calibration> calibration_;
+  std::atomic<int> dark_interval_;  // set by the user's thread, read by the reader's
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "devices/leap/stereo_camera.h"
 
 #include <atomic>
+#include <exception>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -44,11 +45,7 @@ class Camera final : public StereoCamera {
       counters_ = {};
     }
     stopping_ = false;
-    if (own_thread_)
-      thread_ = std::thread([this] {
-        while (!stopping_ && read_once(kReadTimeout)) {
-        }
-      });
+    if (own_thread_) thread_ = std::thread([this] { read_loop(); });
     return {};
   }
 
@@ -109,6 +106,16 @@ class Camera final : public StereoCamera {
     const std::lock_guard lock(mutex_);
     pending_.push_back(*write);
     return {};
+  }
+
+  /// An exception is a mistake of ours: it costs the device, not the session.
+  void read_loop() noexcept {
+    try {
+      while (!stopping_ && read_once(kReadTimeout)) {
+      }
+    } catch (const std::exception& mistake) {
+      lose(fmt::format("leap: reading has stopped by a mistake of this program: {}", mistake.what()));
+    }
   }
 
   /// One transfer. False: the device is lost.

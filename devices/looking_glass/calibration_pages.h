@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "core/base/clock.h"
 #include "devices/transport/transport.h"
@@ -14,6 +15,8 @@
 namespace dubsar {
 
 inline constexpr std::uint16_t kLookingGlassVendor = 0x04d8, kLookingGlassProduct = 0xef7e;
+/// The numbers are those of a maker of chips; only devices of this name are displays (lonetech/LookingGlass).
+inline constexpr std::string_view kLookingGlassProductName = "HoloPlay";
 inline constexpr std::size_t kLookingGlassPageBytes = 64;
 inline constexpr std::size_t kLookingGlassReportBytes = 68;
 inline constexpr std::size_t kLookingGlassMaxJsonBytes = 16384;  ///< real ones have about 700

@@ -1,5 +1,7 @@
 #include "devices/real/real_devices.h"
 
+#include <algorithm>
+
 #include "devices/camera/camera.h"
 #include "devices/enumerate.h"
 #include "devices/head_tracker/opentrack_protocol.h"
@@ -49,9 +51,11 @@ Result<OpenTransport> reach_opentrack(const DeviceSpec& choice, const Clock& clo
 }
 
 Result<OpenTransport> reach_vrpn(const DeviceSpec& choice) {
-  DUBSAR_TRY(check_address(choice.address));
+  DUBSAR_TRY(check_host(choice.address));
   const std::uint16_t port = choice.port == 0 ? kVrpnPort : static_cast<std::uint16_t>(choice.port);
-  return OpenTransport([address = choice.address, port] { return open_tcp_stream(address, port, kConnectTimeout); });
+  return OpenTransport([address = choice.address, port] {
+    return open_tcp_stream(address, port, kConnectTimeout, TcpClosing::kAtOnce);
+  });
 }
 
 }  // namespace
@@ -72,6 +76,11 @@ std::vector<DeviceInfo> list_real_devices(const std::string& spacenav_socket) {
   std::vector<DeviceInfo> devices = list_hid_devices();
   const auto usb = list_usb_devices();
   for (const UsbDevice& device : usb ? *usb : std::vector<UsbDevice>{}) {
+    if (auto glasses = unreadable_glasses({device.vendor_id, device.product_id}, device.path);
+        glasses && std::none_of(devices.begin(), devices.end(), [&](const DeviceInfo& d) {
+          return d.vendor_id == device.vendor_id && d.product_id == device.product_id;
+        }))
+      devices.push_back(*std::move(glasses));
     const LeapProduct* const product = find_leap_product(device.vendor_id, device.product_id);
     if (product == nullptr) continue;
     DeviceInfo info;

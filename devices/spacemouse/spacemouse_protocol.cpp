@@ -11,12 +11,12 @@ namespace {
 constexpr std::byte kTranslationId{1}, kRotationId{2}, kButtonsId{3}, kBatteryId{0x17};
 
 constexpr std::uint16_t kLogitech = 0x046d, k3Dconnexion = 0x256f;
-constexpr std::array<std::uint16_t, 11> kLogitechSpaceMice = {0xc603, 0xc605, 0xc606, 0xc621, 0xc623, 0xc625,
-                                                              0xc626, 0xc627, 0xc628, 0xc629, 0xc62b};
-constexpr std::array<std::uint16_t, 10> k3DconnexionSpaceMice = {0xc62e, 0xc62f, 0xc631, 0xc632, 0xc633,
-                                                                 0xc635, 0xc636, 0xc638, 0xc63a, 0xc652};
-constexpr std::array<std::uint16_t, 11> k3DconnexionOrdinary = {0xc650, 0xc651, 0xc654, 0xc655, 0xc656, 0xc657,
-                                                                0xc658, 0xc664, 0xc665, 0xc667, 0xc668};
+// spacenavd src/dev.c: the table of devices with their flags, and the black list.
+constexpr std::array<std::uint16_t, 12> kLogitechSpaceMice = {0xc603, 0xc605, 0xc606, 0xc621, 0xc623, 0xc625,
+                                                              0xc626, 0xc627, 0xc628, 0xc629, 0xc62b, 0xc640};
+constexpr std::array<std::uint16_t, 3> kYUpSpaceMice = {0xc603, 0xc606, 0xc640};  // Plus XT, Classic, NuLOOQ
+constexpr std::array<std::uint16_t, 13> k3DconnexionOrdinary = {0xc62c, 0xc641, 0xc650, 0xc651, 0xc654, 0xc655, 0xc656,
+                                                                0xc657, 0xc658, 0xc664, 0xc665, 0xc667, 0xc668};
 
 int axis_at(std::span<const std::byte> report, std::size_t at) noexcept {
   return static_cast<std::int16_t>(std::to_integer<unsigned>(report[at]) | std::to_integer<unsigned>(report[at + 1])
@@ -38,9 +38,10 @@ void append_axes(std::vector<std::byte>& out, const glm::ivec3& axes) {
   }
 }
 
-/// Device axes (x right, y to the user, z down) to screen axes, as a share of the full deflection.
-glm::dvec3 screen_from_device(const glm::ivec3& raw) {
+/// Device axes to screen axes, as a share of the full deflection.
+glm::dvec3 screen_from_device(const glm::ivec3& raw, SpaceMouseAxes axes) {
   const auto share = [](int v) { return std::clamp(static_cast<double>(v) / kSpaceMouseFullScale, -1.0, 1.0); };
+  if (axes == SpaceMouseAxes::kYUp) return {share(raw.x), share(raw.y), share(-raw.z)};
   return {share(raw.x), share(-raw.z), share(raw.y)};
 }
 
@@ -99,14 +100,21 @@ std::vector<std::byte> spacemouse_led_report(bool on) { return {std::byte{4}, on
 SpaceMouseId spacemouse_id(std::uint16_t vendor_id, std::uint16_t product_id) noexcept {
   const auto has = [product_id](const auto& ids) { return std::find(ids.begin(), ids.end(), product_id) != ids.end(); };
   if (vendor_id == kLogitech && has(kLogitechSpaceMice)) return SpaceMouseId::kSpaceMouse;
-  if (vendor_id == k3Dconnexion && has(k3DconnexionSpaceMice)) return SpaceMouseId::kSpaceMouse;
-  if (vendor_id == k3Dconnexion && has(k3DconnexionOrdinary)) return SpaceMouseId::kOrdinaryMouse;
+  if (vendor_id == k3Dconnexion)
+    return has(k3DconnexionOrdinary) ? SpaceMouseId::kOrdinaryMouse : SpaceMouseId::kSpaceMouse;
   return SpaceMouseId::kUnknown;
+}
+
+SpaceMouseAxes spacemouse_axes(UsbId id) noexcept {
+  const bool y_up = id.vendor == kLogitech &&
+                    std::find(kYUpSpaceMice.begin(), kYUpSpaceMice.end(), id.product) != kYUpSpaceMice.end();
+  return y_up ? SpaceMouseAxes::kYUp : SpaceMouseAxes::kZDown;
 }
 
 Result<void> SpaceMouseProtocol::start(Transport& transport, TimestampNs now) {
   sample_ = {};
   sample_.time = now;
+  axes_ = spacemouse_axes(transport.usb_id());
   // a model without a ring light refuses the report, which is no reason not to use it
   if (auto lit = transport.write(spacemouse_led_report(true)); !lit && lit.error().kind == ErrorKind::kUnavailable)
     return lit;
@@ -116,8 +124,8 @@ Result<void> SpaceMouseProtocol::start(Transport& transport, TimestampNs now) {
 bool SpaceMouseProtocol::accept(std::span<const std::byte> report, TimestampNs now) {
   const auto parsed = parse_spacemouse(report);
   if (!parsed) return false;
-  if (parsed->translation) sample_.translation = screen_from_device(*parsed->translation);
-  if (parsed->rotation) sample_.rotation = screen_from_device(*parsed->rotation);
+  if (parsed->translation) sample_.translation = screen_from_device(*parsed->translation, axes_);
+  if (parsed->rotation) sample_.rotation = screen_from_device(*parsed->rotation, axes_);
   if (parsed->buttons) sample_.buttons = *parsed->buttons;
   if (parsed->battery_percent) battery_percent_ = parsed->battery_percent;
   sample_.time = now;

@@ -14,8 +14,7 @@
 
 namespace dubsar {
 
-/// What one report says; parts that it does not carry are empty. Raw device units and axes (x right, y to the user,
-/// z down).
+/// What one report says; parts that it does not carry are empty. Raw device units and axes (see SpaceMouseAxes).
 struct SpaceMouseReport {
   std::optional<glm::ivec3> translation, rotation;  ///< about -350..350
   std::optional<std::uint64_t> buttons;             ///< bit i: button i is down
@@ -38,7 +37,15 @@ std::vector<std::byte> spacemouse_led_report(bool on);
 
 enum class SpaceMouseId { kUnknown, kSpaceMouse, kOrdinaryMouse };
 /// kOrdinaryMouse: 3Dconnexion's mice and keyboards (CadMouse, ...), which must be left to the system.
+/// Vendor 256f makes little else than six-axis pucks: products of his that are not known are taken for one.
 SpaceMouseId spacemouse_id(std::uint16_t vendor_id, std::uint16_t product_id) noexcept;
+
+/// Which way a model counts: x is to the right for all.
+enum class SpaceMouseAxes {
+  kZDown,  ///< y to the user, z down
+  kYUp,    ///< y up, z away from the user: the first models by cable
+};
+SpaceMouseAxes spacemouse_axes(UsbId id) noexcept;
 
 /// The cap and the buttons, in the axes of the screen frame (x right, y up, z to the viewer).
 struct SpaceMouseSample {
@@ -60,6 +67,7 @@ class SpaceMouseProtocol {
 
  private:
   Sample sample_;
+  SpaceMouseAxes axes_ = SpaceMouseAxes::kZDown;
   std::optional<int> battery_percent_;
   bool changed_ = false;
 };

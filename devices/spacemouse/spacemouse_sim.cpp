@@ -2,7 +2,7 @@
 
 namespace dubsar {
 
-SpaceMouseSim::SpaceMouseSim(bool combined) : combined_(combined) {
+SpaceMouseSim::SpaceMouseSim(bool combined, UsbId id) : combined_(combined), device_("simulated SpaceMouse", true, id) {
   SimBehaviour behaviour;
   behaviour.on_write = [light = light_](std::span<const std::byte> report) -> Result<void> {
     if (report.size() != 2 || report[0] != std::byte{4})

@@ -12,7 +12,7 @@ namespace dubsar {
 class SpaceMouseSim {
  public:
   /// `combined`: sends all six axes in one report, as wireless models do.
-  explicit SpaceMouseSim(bool combined = false);
+  explicit SpaceMouseSim(bool combined = false, UsbId id = {0x256f, 0xc635});
   /// Raw device axes, as the cap would send them.
   void move(const glm::ivec3& translation, const glm::ivec3& rotation);
   void press(std::uint64_t buttons);
@@ -22,7 +22,7 @@ class SpaceMouseSim {
  private:
   bool combined_;
   std::shared_ptr<std::atomic<bool>> light_ = std::make_shared<std::atomic<bool>>(false);
-  SimDevice device_{"simulated SpaceMouse"};
+  SimDevice device_;
 };
 
 }  // namespace dubsar

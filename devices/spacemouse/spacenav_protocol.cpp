@@ -11,13 +11,15 @@ namespace {
 using Words = std::array<std::int32_t, 8>;
 static_assert(sizeof(Words) == kSpacenavEventBytes);
 
+constexpr std::int32_t kFirstOther = 4, kLastOther = 6;  // UEV_CFG, UEV_RAWAXIS, UEV_RAWBUTTON
+
 bool within(const Words& words, std::size_t first, std::size_t last) noexcept {
   return std::all_of(words.begin() + static_cast<std::ptrdiff_t>(first),
                      words.begin() + static_cast<std::ptrdiff_t>(last) + 1,
                      [](std::int32_t v) { return v >= -4096 && v <= 4096; });
 }
 
-double share(int value) { return std::clamp(static_cast<double>(value) / kSpaceMouseFullScale, -1.0, 1.0); }
+double share(int value) { return std::clamp(static_cast<double>(value) / kSpacenavFullScale, -1.0, 1.0); }
 
 }  // namespace
 
@@ -38,6 +40,15 @@ std::optional<SpacenavEvent> parse_spacenav(std::span<const std::byte> bytes) no
     event.button = words[1];
     return event;
   }
+  if (words[0] == static_cast<std::int32_t>(SpacenavEvent::Kind::kDevice) && (words[1] == 0 || words[1] == 1)) {
+    event.kind = SpacenavEvent::Kind::kDevice;
+    event.removed = words[1] == 1;
+    return event;
+  }
+  if ((words[0] >= kFirstOther && words[0] <= kLastOther) || (words[0] & ~0xFFFF) == kSpacenavTag) {
+    event.kind = SpacenavEvent::Kind::kOther;
+    return event;
+  }
   return std::nullopt;
 }
 
@@ -54,7 +65,7 @@ std::vector<std::byte> format_spacenav(const SpacenavEvent& event) {
              event.rotation.z,
              event.period_ms};
   else
-    words[1] = event.button;
+    words[1] = event.kind == SpacenavEvent::Kind::kDevice ? (event.removed ? 1 : 0) : event.button;
   std::vector<std::byte> bytes(kSpacenavEventBytes);
   std::memcpy(bytes.data(), words.data(), sizeof words);
   return bytes;
@@ -71,6 +82,18 @@ Result<void> SpacenavProtocol::start(Transport& transport, TimestampNs now) {
   *this = {};
   sample_.time = now;
   return transport.write(spacenav_hello(1));
+}
+
+Result<void> SpacenavProtocol::keep_up(Transport&, TimestampNs now) {
+  const bool deflected = sample_.translation != glm::dvec3(0.0) || sample_.rotation != glm::dvec3(0.0);
+  if (deflected && now - moved_ > kSpacenavHoldsNs) let_go(now);
+  return {};
+}
+
+void SpacenavProtocol::let_go(TimestampNs now) {
+  sample_.translation = sample_.rotation = glm::dvec3(0.0);
+  sample_.time = now;
+  changed_ = true;
 }
 
 bool SpacenavProtocol::accept(std::span<const std::byte> bytes, TimestampNs now) {
@@ -99,7 +122,15 @@ bool SpacenavProtocol::accept(std::span<const std::byte> bytes, TimestampNs now)
 }
 
 void SpacenavProtocol::apply(const SpacenavEvent& event, TimestampNs now) {
+  if (event.kind == SpacenavEvent::Kind::kOther) return;
+  if (event.kind == SpacenavEvent::Kind::kDevice) {
+    if (!event.removed) return;
+    sample_.buttons = 0;  // a puck that is gone pushes nothing
+    let_go(now);
+    return;
+  }
   if (event.kind == SpacenavEvent::Kind::kMotion) {
+    moved_ = now;
     // z and the turn about it are mirrored, as libspnav's own spnav_posrot_moveobj does for a right-handed scene
     sample_.translation = {share(event.translation.x), share(event.translation.y), share(-event.translation.z)};
     sample_.rotation = {share(event.rotation.x), share(event.rotation.y), share(-event.rotation.z)};

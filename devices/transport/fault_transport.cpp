@@ -63,6 +63,7 @@ class FaultTransport final : public Transport {
     DUBSAR_TRY(check_plugged());
     return below_->control(request, data, timeout);
   }
+  UsbId usb_id() const noexcept override { return below_->usb_id(); }
 
  private:
   /// A fault of this kind that concerns the next report; stalls count down, the others end by report number.

@@ -44,8 +44,8 @@ std::optional<NodeIdentity> identity_of(const std::string& path) {
 
 class HidTransport final : public Transport {
  public:
-  HidTransport(hid_device* device, std::string path, NodeIdentity identity, const Clock& clock)
-      : device_(device), path_(std::move(path)), identity_(identity), clock_(&clock), heard_(clock.now()) {}
+  HidTransport(hid_device* device, std::string path, NodeIdentity identity, const Clock& clock, UsbId id)
+      : device_(device), path_(std::move(path)), identity_(identity), clock_(&clock), heard_(clock.now()), id_(id) {}
   ~HidTransport() override { ::hid_close(device_); }
 
   Result<std::size_t> read(std::span<std::byte> report, milliseconds timeout) override {
@@ -88,6 +88,8 @@ class HidTransport final : public Transport {
     return {};
   }
 
+  UsbId usb_id() const noexcept override { return id_; }
+
  private:
   tl::unexpected<Error> lose(const wchar_t* why) {
     lost_reason_ = fmt::format("hid: {}: the device is lost: {}", path_, narrow(why));
@@ -109,6 +111,7 @@ class HidTransport final : public Transport {
   NodeIdentity identity_;
   const Clock* clock_;
   TimestampNs heard_;
+  UsbId id_;
   std::optional<std::string> lost_reason_;
 };
 
@@ -138,7 +141,7 @@ std::vector<HidNode> list_hid_nodes() {
   return nodes;
 }
 
-Result<std::unique_ptr<Transport>> open_hid(const std::string& path, const Clock& clock) {
+Result<std::unique_ptr<Transport>> open_hid(const std::string& path, const Clock& clock, UsbId id) {
   const auto identity = identity_of(path);
   if (!identity) return fail(ErrorKind::kUnavailable, "hid: {} is not there", path);
   if (::access(path.c_str(), R_OK | W_OK) != 0) {
@@ -150,7 +153,7 @@ Result<std::unique_ptr<Transport>> open_hid(const std::string& path, const Clock
   const std::lock_guard lock(hidapi_mutex());
   hid_device* const device = ::hid_open_path(path.c_str());
   if (!device) return fail(ErrorKind::kIo, "hid: {} cannot be opened: {}", path, narrow(::hid_error(nullptr)));
-  return std::make_unique<HidTransport>(device, path, *identity, clock);
+  return std::make_unique<HidTransport>(device, path, *identity, clock, id);
 }
 
 }  // namespace dubsar

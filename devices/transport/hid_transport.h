@@ -27,6 +27,7 @@ std::vector<HidNode> list_hid_nodes();
 /// Opens one node for reading and writing. kUnavailable: not there; kPermission: not allowed, with the udev rule that
 /// mends it; kIo: busy or refused by the kernel. The transport is lost when the node disappears: a read that finds
 /// nothing for 250 ms looks whether the node is still the one that was opened, because hidraw may stay silent for ever.
-Result<std::unique_ptr<Transport>> open_hid(const std::string& path, const Clock& clock);
+/// `id` is what enumeration said; the transport tells it to the protocol.
+Result<std::unique_ptr<Transport>> open_hid(const std::string& path, const Clock& clock, UsbId id = {});
 
 }  // namespace dubsar

@@ -10,6 +10,7 @@ namespace {
 constexpr std::string_view kLineEnd = "\r\n", kHeadEnd = "\r\n\r\n";
 constexpr std::size_t kMaxHeadBytes = 16 << 10;
 constexpr milliseconds kReadPiece{50};
+constexpr int kMostInterim = 8;
 constexpr int kMaxSilentReads = 1000;  // ends also when the clock stands still
 
 char lower(char c) noexcept { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
@@ -104,6 +105,17 @@ std::string format_http_put(std::string_view host, std::string_view path, std::s
 Result<std::optional<HttpReply>> parse_http_reply(std::string_view bytes, bool ended) {
   if (bytes.size() > kMaxHttpBytes)
     return fail(ErrorKind::kBadData, "http: an answer of more than {} bytes", kMaxHttpBytes);
+  // 100 Continue and the like come before the answer
+  for (int interim = 0; interim <= kMostInterim; ++interim) {
+    const std::size_t end = bytes.find(kHeadEnd);
+    if (end == std::string_view::npos) break;
+    DUBSAR_ASSIGN(const Head head, parse_head(bytes.substr(0, end)));
+    if (head.status >= 200) break;
+    if (interim == kMostInterim)
+      return fail(ErrorKind::kBadData, "http: more than {} answers of the kind 1xx before the one that counts",
+                  kMostInterim);
+    bytes.remove_prefix(end + kHeadEnd.size());
+  }
   const auto not_whole = [&]() -> Result<std::optional<HttpReply>> {
     if (ended)
       return fail(ErrorKind::kBadData, "http: the answer ends after {} bytes, before it is whole", bytes.size());
@@ -117,7 +129,6 @@ Result<std::optional<HttpReply>> parse_http_reply(std::string_view bytes, bool e
   }
   DUBSAR_ASSIGN(const Head head, parse_head(bytes.substr(0, head_end)));
   const std::string_view rest = bytes.substr(head_end + kHeadEnd.size());
-  if (head.status < 200) return parse_http_reply(rest, ended);  // 100 Continue and the like come before the answer
   if (head.chunked) {
     DUBSAR_ASSIGN(auto body, parse_chunks(rest));
     if (!body) return not_whole();

@@ -23,7 +23,7 @@ std::string format_http_put(std::string_view host, std::string_view path, std::s
 
 /// The answer, if `bytes` hold all of it; nothing when more has to come. `ended`: the server has closed,
 /// nothing will come. Bodies by Content-Length, chunked, or up to the end. kBadData: not HTTP/1,
-/// contradicting lengths, cut short, longer than kMaxHttpBytes.
+/// more than 8 interim answers (1xx), contradicting lengths, cut short, longer than kMaxHttpBytes.
 Result<std::optional<HttpReply>> parse_http_reply(std::string_view bytes, bool ended);
 
 /// Sends the request and reads until the answer is whole. kUnavailable: nothing whole within `time_limit` of

@@ -1,26 +1,30 @@
 #include "devices/transport/record_transport.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
+#include <array>
+#include <utility>
 
 namespace dubsar {
 namespace {
 
 constexpr std::size_t kPendingBytes = std::size_t{64} << 10;
+constexpr TimestampNs kPendingNs = 500'000'000;
 
 class RecordTransport final : public Transport {
  public:
   RecordTransport(std::unique_ptr<Transport> below, std::shared_ptr<RecordingWriter> writer)
       : below_(std::move(below)), writer_(std::move(writer)) {
-    writer_->add(WireEventKind::kOpened, {});
+    std::array<std::byte, 4> id{};
+    const UsbId who = below_->usb_id();
+    for (std::size_t i = 0; i < 4; ++i)
+      id[i] = static_cast<std::byte>((std::uint32_t{who.vendor} << 16 | who.product) >> (24 - 8 * i) & 0xFFU);
+    writer_->add(WireEventKind::kOpened, std::span(id).first(who == UsbId{} ? 0 : 4));
   }
 
   Result<std::size_t> read(std::span<std::byte> report, milliseconds timeout) override {
     auto length = below_->read(report, timeout);
     if (length && *length > 0) writer_->add(WireEventKind::kRead, report.first(*length));
     note_loss(length);
+    writer_->tick();
     return length;
   }
   Result<void> write(std::span<const std::byte> report) override {
@@ -47,6 +51,7 @@ class RecordTransport final : public Transport {
     note_loss(length);
     return length;
   }
+  UsbId usb_id() const noexcept override { return below_->usb_id(); }
 
  private:
   template <class T>
@@ -66,36 +71,29 @@ class RecordTransport final : public Transport {
 Result<std::shared_ptr<RecordingWriter>> RecordingWriter::create(const std::filesystem::path& path,
                                                                  std::string_view driver, std::string_view note,
                                                                  const Clock& clock) {
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor < 0) {
-    const int error = errno;
-    if (error == EACCES || error == EPERM) return fail_errno(error, "cannot write " + path.string());
-    return fail(ErrorKind::kCannotCreate, "recording: cannot create {}: {}", path.string(),
-                std::generic_category().message(error));
-  }
+  DUBSAR_ASSIGN(GrowingFile file, GrowingFile::create(path));
   const Recording header{std::string(driver), std::string(note), {}, false};
-  return std::shared_ptr<RecordingWriter>(
-      new RecordingWriter(descriptor, path.string(), format_recording(header), clock));
+  return std::shared_ptr<RecordingWriter>(new RecordingWriter(std::move(file), format_recording(header), clock));
 }
 
-RecordingWriter::RecordingWriter(int descriptor, std::string path, std::string header, const Clock& clock)
-    : descriptor_(descriptor),
-      path_(std::move(path)),
-      clock_(&clock),
-      start_(clock.now()),
-      pending_(std::move(header)) {}
+RecordingWriter::RecordingWriter(GrowingFile file, std::string header, const Clock& clock)
+    : file_(std::move(file)), clock_(&clock), start_(clock.now()), pending_(std::move(header)), written_(start_) {
+  write_out();
+}
 
 RecordingWriter::~RecordingWriter() {
-  flush();
-  ::close(descriptor_);
+  if (!finished_) flush();
 }
 
 void RecordingWriter::add(WireEventKind kind, std::span<const std::byte> bytes, const ControlRequest& request) {
   const std::lock_guard lock(mutex_);
-  if (!status_) return;
-  pending_ += format_event({clock_->now() - start_, kind, request, {bytes.begin(), bytes.end()}});
+  if (!status_ || finished_) return;
+  const TimestampNs now = clock_->now();
+  pending_ += format_event({now - start_, kind, request, {bytes.begin(), bytes.end()}});
   ++event_count_;
-  if (pending_.size() >= kPendingBytes) write_out();
+  if (kind == WireEventKind::kRead || kind == WireEventKind::kFeatureGot || kind == WireEventKind::kControl)
+    ++heard_count_;
+  if (pending_.size() >= kPendingBytes || now - written_ >= kPendingNs) write_out();
 }
 
 void RecordingWriter::flush() {
@@ -103,10 +101,23 @@ void RecordingWriter::flush() {
   write_out();
 }
 
+void RecordingWriter::tick() {
+  const std::lock_guard lock(mutex_);
+  if (clock_->now() - written_ >= kPendingNs) write_out();
+}
+
 Result<void> RecordingWriter::finish() {
   const std::lock_guard lock(mutex_);
   write_out();
+  if (status_ && !std::exchange(finished_, true)) status_ = file_.finish();
   return status_;
+}
+
+void RecordingWriter::discard() {
+  const std::lock_guard lock(mutex_);
+  if (status_) status_ = fail(ErrorKind::kUsage, "recording: it was discarded");
+  pending_.clear();
+  file_.discard();
 }
 
 std::int64_t RecordingWriter::event_count() const {
@@ -114,15 +125,15 @@ std::int64_t RecordingWriter::event_count() const {
   return event_count_;
 }
 
+std::int64_t RecordingWriter::heard_count() const {
+  const std::lock_guard lock(mutex_);
+  return heard_count_;
+}
+
 void RecordingWriter::write_out() {
-  std::string_view left = pending_;
-  while (status_ && !left.empty()) {
-    const ::ssize_t written = ::write(descriptor_, left.data(), left.size());
-    if (written > 0)
-      left.remove_prefix(static_cast<std::size_t>(written));
-    else if (errno != EINTR)
-      status_ = fail_errno(errno, "cannot write " + path_);
-  }
+  written_ = clock_->now();
+  if (pending_.empty()) return;
+  if (status_) status_ = file_.append(pending_);
   pending_.clear();
 }
 

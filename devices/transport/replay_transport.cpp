@@ -8,7 +8,8 @@ namespace dubsar {
 
 class ReplayTransport final : public Transport {
  public:
-  explicit ReplayTransport(ReplaySession& session) : session_(&session) {}
+  ReplayTransport(ReplaySession& session, UsbId id) : session_(&session), id_(id) {}
+  UsbId usb_id() const noexcept override { return id_; }
 
   Result<std::size_t> read(std::span<std::byte> report, milliseconds timeout) override {
     const auto& events = session_->recording_.events;
@@ -67,6 +68,9 @@ class ReplayTransport final : public Transport {
  private:
   /// Waits at most `timeout` of the real time for a recorded time.
   bool due(TimestampNs time, milliseconds timeout) const {
+    // a device that said nothing for long, or a time stamp that is wrong, is not waited for
+    if (session_->factor_ > 0.0 && time - session_->last_time_ > ReplaySession::kLongestPauseNs)
+      session_->skip_to(time - ReplaySession::kLongestPauseNs);
     const auto ahead = [&] { return time - session_->recorded_now(); };
     if (session_->factor_ == 0.0 || ahead() <= 0) return true;
     const double wait_ns =
@@ -95,6 +99,7 @@ class ReplayTransport final : public Transport {
   }
 
   ReplaySession* session_;
+  UsbId id_;
   bool lost_ = false;
 };
 
@@ -106,12 +111,26 @@ ReplaySession::ReplaySession(Recording recording, const Clock& clock, double fac
 
 TimestampNs ReplaySession::recorded_now() const noexcept {
   if (factor_ == 0.0) return last_time_;
-  return static_cast<TimestampNs>(static_cast<double>(clock_->now() - start_) * factor_);
+  return skipped_ + static_cast<TimestampNs>(static_cast<double>(clock_->now() - start_) * factor_);
 }
+
+void ReplaySession::skip_to(TimestampNs time) noexcept { skipped_ += std::max<TimestampNs>(time - recorded_now(), 0); }
 
 Result<std::unique_ptr<Transport>> ReplaySession::open() {
   if (finished()) return fail(ErrorKind::kUnavailable, "replay: the recording is at its end");
-  return std::make_unique<ReplayTransport>(*this);
+  UsbId id;
+  for (std::size_t i = next_; i < recording_.events.size(); ++i) {
+    const RecordedEvent& event = recording_.events[i];
+    if (event.kind == WireEventKind::kRead) break;
+    if (event.kind != WireEventKind::kOpened || event.bytes.size() != 4) continue;
+    const auto word = [&](std::size_t at) {
+      return static_cast<std::uint16_t>(std::to_integer<unsigned>(event.bytes[at]) << 8 |
+                                        std::to_integer<unsigned>(event.bytes[at + 1]));
+    };
+    id = {word(0), word(2)};
+    break;
+  }
+  return std::make_unique<ReplayTransport>(*this, id);
 }
 
 }  // namespace dubsar

@@ -8,12 +8,13 @@
 
 namespace dubsar {
 
-/// Plays one recording, through as many openings as it holds. Reports come in order, when they are due; what the host
-/// sends is accepted unseen; feature and control answers are the recorded ones, in order per request. The session must
-/// outlive its transports. One thread.
+/// Plays one recording, through as many openings as it holds. Reports come in order, when they are due, but after a
+/// pause of kLongestPauseNs at most; what the host sends is accepted unseen; feature and control answers are the
+/// recorded ones, in order per request. The session must outlive its transports. One thread.
 class ReplaySession {
  public:
   /// `factor`: speed, 2 is twice as fast; 0: as fast as it is read. `clock` gives the real time and outlives this.
+  static constexpr TimestampNs kLongestPauseNs = 5'000'000'000;
   ReplaySession(Recording recording, const Clock& clock, double factor = 1.0);
 
   /// Goes on behind the last loss. kUnavailable at the end of the recording.
@@ -36,6 +37,7 @@ class ReplaySession {
     const ReplaySession* session_;
   };
   TimestampNs recorded_now() const noexcept;
+  void skip_to(TimestampNs time) noexcept;  ///< the recorded time is at least this from now on
 
   const Recording recording_;
   const Clock* const clock_;
@@ -44,6 +46,7 @@ class ReplaySession {
   std::size_t next_ = 0;          ///< event that read() looks at next
   std::size_t next_feature_ = 0;  ///< events before it have been given as feature answers
   std::size_t next_control_ = 0;
+  TimestampNs skipped_ = 0;    ///< of recorded time, in pauses
   TimestampNs last_time_ = 0;  ///< recorded time of the last event that was given
   RecordedClock recorded_clock_{*this};
 };

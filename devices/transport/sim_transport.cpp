@@ -7,9 +7,11 @@
 namespace dubsar {
 
 struct SimDevice::Shared {
-  Shared(std::string device_name, bool keeps_messages) : name(std::move(device_name)), messages(keeps_messages) {}
+  Shared(std::string device_name, bool keeps_messages, UsbId who)
+      : name(std::move(device_name)), messages(keeps_messages), id(who) {}
   const std::string name;
   const bool messages;
+  const UsbId id;
   std::mutex mutex;
   std::condition_variable arrived;
   std::shared_ptr<const SimBehaviour> behaviour = std::make_shared<SimBehaviour>();  // guarded by mutex
@@ -73,6 +75,7 @@ class SimTransport final : public Transport {
     if (!behaviour->on_control) return Transport::control(request, data, timeout);
     return behaviour->on_control(request, data);
   }
+  UsbId usb_id() const noexcept override { return shared_->id; }
 
  private:
   bool lost() const { return !shared_->plugged || shared_->plug_number != plug_number_; }
@@ -91,7 +94,8 @@ class SimTransport final : public Transport {
 
 }  // namespace
 
-SimDevice::SimDevice(std::string name, bool messages) : shared_(std::make_shared<Shared>(std::move(name), messages)) {}
+SimDevice::SimDevice(std::string name, bool messages, UsbId id)
+    : shared_(std::make_shared<Shared>(std::move(name), messages, id)) {}
 
 SimDevice::~SimDevice() { unplug(); }
 

@@ -25,7 +25,7 @@ struct SimBehaviour {
 class SimDevice {
  public:
   /// `messages` false: the transport is a byte stream, one read may return several pieces.
-  explicit SimDevice(std::string name, bool messages = true);
+  explicit SimDevice(std::string name, bool messages = true, UsbId id = {});
   ~SimDevice();
 
   void set_behaviour(SimBehaviour behaviour);

@@ -81,6 +81,23 @@ inline bool wait_for(const Socket& socket, short events, std::int64_t timeout_ms
   return ::poll(&waiting, 1, static_cast<int>(std::clamp<std::int64_t>(timeout_ms, 0, 3'600'000))) > 0;
 }
 
+/// Connects without blocking for longer than `timeout`.
+inline Result<void> connect_within(const Socket& socket, const sockaddr* address, socklen_t length,
+                                   milliseconds timeout, const std::string& name) {
+  if (::connect(socket.get(), address, length) == 0) return {};
+  int error = errno;
+  if (error == EINPROGRESS) {
+    error = ETIMEDOUT;
+    if (wait_for(socket, POLLOUT, timeout.count())) {
+      socklen_t size = sizeof error;
+      if (::getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &error, &size) != 0) error = errno;
+    }
+  }
+  if (error == 0) return {};
+  if (error == EACCES || error == EPERM) return fail_errno(error, "cannot connect to " + name);
+  return fail(ErrorKind::kUnavailable, "{}: cannot connect: {}", name, std::strerror(error));
+}
+
 class StreamTransport final : public Transport {
  public:
   StreamTransport(Socket socket, std::string name) : socket_(std::move(socket)), name_(std::move(name)) {}

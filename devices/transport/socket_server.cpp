@@ -3,6 +3,9 @@
 #include <netinet/tcp.h>
 #include <sys/un.h>
 
+#include <array>
+#include <cstddef>
+
 #include "devices/transport/socket_detail.h"
 #include "devices/transport/socket_transport.h"
 
@@ -34,6 +37,41 @@ class Listener final : public StreamServer {
   std::uint16_t port_;
   std::string unlink_path_;
 };
+
+/// Listens on TCP and UDP of one port.
+class CalledListener final : public StreamServer {
+ public:
+  using CalledPort = std::function<std::optional<std::uint16_t>(std::span<const std::byte>)>;
+  CalledListener(std::unique_ptr<StreamServer> tcp, Socket udp, CalledPort called_port)
+      : tcp_(std::move(tcp)), udp_(std::move(udp)), called_port_(std::move(called_port)) {}
+
+  std::unique_ptr<Transport> accept(milliseconds timeout) override {
+    if (auto client = tcp_->accept(timeout)) return client;
+    std::array<std::byte, 512> datagram;
+    Address caller;
+    const ::ssize_t length =
+        ::recvfrom(udp_.get(), datagram.data(), datagram.size(), MSG_DONTWAIT, caller.get(), &caller.length);
+    if (length <= 0) return nullptr;
+    const auto port = called_port_(std::span(datagram).first(static_cast<std::size_t>(length)));
+    if (!port) return nullptr;
+    // the port lies at the same place for both families
+    reinterpret_cast<sockaddr_in&>(caller.storage).sin_port = htons(*port);
+    Socket client(::socket(caller.storage.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    const std::string name = fmt::format("caller at port {}", *port);
+    if (client.get() < 0 || !connect_within(client, caller.get(), caller.length, kCallTimeout, name)) return nullptr;
+    const int on = 1;
+    ::setsockopt(client.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    return std::make_unique<StreamTransport>(std::move(client), name);
+  }
+  std::uint16_t port() const noexcept override { return tcp_->port(); }
+
+ private:
+  static constexpr milliseconds kCallTimeout{200};
+  std::unique_ptr<StreamServer> tcp_;
+  Socket udp_;
+  CalledPort called_port_;
+};
+static_assert(offsetof(sockaddr_in, sin_port) == offsetof(sockaddr_in6, sin6_port));
 
 class UdpSender final : public Transport {
  public:
@@ -80,6 +118,19 @@ Result<std::unique_ptr<StreamServer>> listen_tcp(const std::string& text, std::u
   if (::getsockname(socket.get(), bound.get(), &bound.length) != 0) return fail_errno(errno, "socket: getsockname");
   const std::uint16_t chosen = ntohs(reinterpret_cast<const sockaddr_in&>(bound.storage).sin_port);
   return std::make_unique<Listener>(std::move(socket), fmt::format("{} port {}", text, chosen), chosen, std::string());
+}
+
+Result<std::unique_ptr<StreamServer>> listen_tcp_and_calls(
+    const std::string& text, std::uint16_t port, bool allow_remote,
+    std::function<std::optional<std::uint16_t>(std::span<const std::byte>)> called_port) {
+  DUBSAR_ASSIGN(auto tcp, listen_tcp(text, port, allow_remote));
+  DUBSAR_ASSIGN(const Address address, parse_address(text, tcp->port()));
+  Socket udp(::socket(address.storage.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (udp.get() < 0) return fail_errno(errno, "socket: cannot make a socket");
+  if (::bind(udp.get(), address.get(), address.length) != 0)
+    return fail(ErrorKind::kUnavailable, "socket: cannot listen for datagrams on {} port {}: {}", text, tcp->port(),
+                std::strerror(errno));
+  return std::make_unique<CalledListener>(std::move(tcp), std::move(udp), std::move(called_port));
 }
 
 Result<std::unique_ptr<Transport>> open_udp_sender(const std::string& text, std::uint16_t port) {

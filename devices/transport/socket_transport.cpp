@@ -1,5 +1,6 @@
 #include "devices/transport/socket_transport.h"
 
+#include <netdb.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -9,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include "devices/transport/socket_detail.h"
 
@@ -87,27 +89,51 @@ class UdpListener final : public UdpTransport {
   UdpCounts counts_;
 };
 
-/// Connects without blocking for longer than `timeout`.
-Result<void> connect_within(const Socket& socket, const sockaddr* address, socklen_t length, milliseconds timeout,
-                            const std::string& name) {
-  if (::connect(socket.get(), address, length) == 0) return {};
-  int error = errno;
-  if (error == EINPROGRESS) {
-    error = ETIMEDOUT;
-    if (wait_for(socket, POLLOUT, timeout.count())) {
-      socklen_t size = sizeof error;
-      if (::getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &error, &size) != 0) error = errno;
-    }
+/// All addresses of a host, in the order in which they should be tried. Blocks while a name server is asked.
+Result<std::vector<Address>> resolve(const std::string& host, std::uint16_t port) {
+  if (const auto numeric = parse_address(host, port)) return std::vector{*numeric};
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  const int error = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found);
+  if (error != 0) return fail(ErrorKind::kUnavailable, "{}: no address found: {}", host, ::gai_strerror(error));
+  std::vector<Address> addresses;
+  for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
+    if ((one->ai_family != AF_INET && one->ai_family != AF_INET6) || one->ai_addrlen > sizeof(sockaddr_storage))
+      continue;
+    Address address;
+    std::memcpy(&address.storage, one->ai_addr, one->ai_addrlen);
+    address.length = one->ai_addrlen;
+    addresses.push_back(address);
   }
-  if (error == 0) return {};
-  if (error == EACCES || error == EPERM) return fail_errno(error, "cannot connect to " + name);
-  return fail(ErrorKind::kUnavailable, "{}: cannot connect: {}", name, std::strerror(error));
+  ::freeaddrinfo(found);
+  if (addresses.empty()) return fail(ErrorKind::kUnavailable, "{}: no internet address found", host);
+  return addresses;
+}
+
+Result<std::unique_ptr<Transport>> connect_tcp(const Address& address, const std::string& name, milliseconds timeout,
+                                               TcpClosing closing) {
+  Socket socket(::socket(address.storage.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (socket.get() < 0) return fail_errno(errno, "socket: cannot make a socket");
+  const int on = 1;
+  ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  const linger at_once{1, 0};
+  if (closing == TcpClosing::kAtOnce) ::setsockopt(socket.get(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+  DUBSAR_TRY(connect_within(socket, address.get(), address.length, timeout, name));
+  return std::make_unique<StreamTransport>(std::move(socket), name);
 }
 
 }  // namespace
 
-Result<void> check_address(const std::string& text) {
-  DUBSAR_TRY(parse_address(text, 0));
+Result<void> check_host(const std::string& text) {
+  if (parse_address(text, 0)) return {};
+  const auto allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-' ||
+           c == '_';
+  };
+  if (text.empty() || text.size() > 253 || !std::all_of(text.begin(), text.end(), allowed))
+    return fail(ErrorKind::kUsage, "socket: \"{}\" found, expected the name of a host, or an address such as 127.0.0.1",
+                text);
   return {};
 }
 
@@ -146,16 +172,15 @@ Result<std::unique_ptr<Transport>> open_unix_stream(const std::string& path) {
   return std::make_unique<StreamTransport>(std::move(socket), path);
 }
 
-Result<std::unique_ptr<Transport>> open_tcp_stream(const std::string& address_text, std::uint16_t port,
-                                                   milliseconds timeout) {
-  DUBSAR_ASSIGN(const Address address, parse_address(address_text, port));
-  Socket socket(::socket(address.storage.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  if (socket.get() < 0) return fail_errno(errno, "socket: cannot make a socket");
-  const int on = 1;
-  ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  const std::string name = fmt::format("{} port {}", address_text, port);
-  DUBSAR_TRY(connect_within(socket, address.get(), address.length, timeout, name));
-  return std::make_unique<StreamTransport>(std::move(socket), name);
+Result<std::unique_ptr<Transport>> open_tcp_stream(const std::string& host, std::uint16_t port, milliseconds timeout,
+                                                   TcpClosing closing) {
+  DUBSAR_TRY(check_host(host));
+  DUBSAR_ASSIGN(const std::vector<Address> addresses, resolve(host, port));
+  const std::string name = fmt::format("{} port {}", host, port);
+  Result<std::unique_ptr<Transport>> opened = fail(ErrorKind::kUnavailable, "{}: no address to connect to", name);
+  for (const Address& address : addresses)
+    if ((opened = connect_tcp(address, name, timeout, closing))) break;
+  return opened;
 }
 
 }  // namespace dubsar

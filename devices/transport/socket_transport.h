@@ -34,9 +34,10 @@ class UdpTransport : public Transport {
   virtual UdpCounts counts() const noexcept = 0;
 };
 
-/// kUsage: not an address in numbers, or for listening one that other machines reach without `allow_remote`.
+/// kUsage: not an address in numbers, or one that other machines reach without `allow_remote`.
 Result<void> check_listen_address(const std::string& address, bool allow_remote);
-Result<void> check_address(const std::string& address);
+/// kUsage: neither an address in numbers nor letters of a host's name. Asks no name server.
+Result<void> check_host(const std::string& text);
 
 /// kUsage: not a numeric address, or a remote one without allow_remote; kUnavailable: the port is taken.
 Result<std::unique_ptr<UdpTransport>> open_udp(const UdpOptions& options, const Clock& clock);
@@ -44,8 +45,13 @@ Result<std::unique_ptr<UdpTransport>> open_udp(const UdpOptions& options, const 
 /// Connects to a UNIX stream socket. kUnavailable: nobody listens; kPermission.
 Result<std::unique_ptr<Transport>> open_unix_stream(const std::string& path);
 
-/// Connects by TCP to an address in numbers, waiting at most `timeout`. kUsage, kUnavailable.
-Result<std::unique_ptr<Transport>> open_tcp_stream(const std::string& address, std::uint16_t port,
-                                                   milliseconds timeout);
+/// How our end of a connection is closed when it is closed first. kAtOnce: by a reset (SO_LINGER 0), which leaves no
+/// TIME_WAIT on the server's port; servers that do not set SO_REUSEADDR could not listen there again for a minute.
+enum class TcpClosing { kOrderly, kAtOnce };
+
+/// Connects by TCP to a host by name or address, waiting at most `timeout` for each of its addresses, and as long as
+/// the name server takes. kUsage, kUnavailable.
+Result<std::unique_ptr<Transport>> open_tcp_stream(const std::string& host, std::uint16_t port, milliseconds timeout,
+                                                   TcpClosing closing = TcpClosing::kOrderly);
 
 }  // namespace dubsar

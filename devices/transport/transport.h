@@ -28,6 +28,12 @@ struct ControlRequest {
   bool to_host() const noexcept { return (request_type & 0x80U) != 0; }
 };
 
+/// Who made a device and which of his products it is, as USB and HID tell it; zeros where nobody says.
+struct UsbId {
+  std::uint16_t vendor = 0, product = 0;
+  bool operator==(const UsbId&) const = default;
+};
+
 /// One open device, used by one thread at a time.
 ///
 /// Errors of every call: kUnavailable means that the device is lost (unplugged, the peer has closed, the recording is
@@ -53,6 +59,9 @@ class Transport {
 
   /// Sends a feature report; its first byte is the id.
   virtual Result<void> set_feature(std::span<const std::byte> report);
+
+  /// For protocols whose bytes mean different things on different models.
+  virtual UsbId usb_id() const noexcept { return {}; }
 
   /// USB control transfer: `data` is filled (to host) or sent (to device). Returns the bytes moved. kBadData: the
   /// device stalled the request.

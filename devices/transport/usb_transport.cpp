@@ -110,6 +110,7 @@ class UsbTransport final : public Transport {
     if (options_.read_endpoint == 0)
       return fail(ErrorKind::kUsage, "usb: {} was opened without an endpoint to read", name_);
     if (slots_.empty()) DUBSAR_TRY(start_reading());
+    DUBSAR_TRY(submit_idle());
     const auto until = steady_clock::now() + timeout;
     while (done_.empty()) {
       if (lost_) return lost();
@@ -125,10 +126,8 @@ class UsbTransport final : public Transport {
     if (status == LIBUSB_TRANSFER_NO_DEVICE || status == LIBUSB_TRANSFER_CANCELLED) lost_ = true;
     if (lost_) return lost();
     if (status == LIBUSB_TRANSFER_STALL) libusb_clear_halt(handle_, options_.read_endpoint);
-    if (const int error = submit(slot); error == LIBUSB_ERROR_NO_DEVICE)
-      lost_ = true;
-    else if (error != 0)
-      return fail(ErrorKind::kIo, "usb: cannot ask {} for more: {}", name_, libusb_strerror(error));
+    idle_.push_back(&slot);  // asked for more at once, and if that is refused, by the next read
+    if (const auto asked = submit_idle(); !asked && lost_) return lost();
     if (status != LIBUSB_TRANSFER_COMPLETED)
       return fail(ErrorKind::kIo, "usb: a transfer from {} failed (libusb status {})", name_, static_cast<int>(status));
     return length;
@@ -178,6 +177,24 @@ class UsbTransport final : public Transport {
     return error;
   }
 
+  /// Asks for data with all buffers that wait for nothing. An error only while none of them is on its way.
+  Result<void> submit_idle() {
+    for (std::size_t waiting = idle_.size(); waiting > 0; --waiting) {
+      Slot& slot = *idle_.front();
+      const int error = submit(slot);
+      if (error == LIBUSB_ERROR_NO_DEVICE) {
+        lost_ = true;
+        return tl::unexpected<Error>(lost().error());
+      }
+      if (error != 0) {
+        if (any_in_flight() || !done_.empty()) return {};
+        return fail(ErrorKind::kIo, "usb: cannot ask {} for data: {}", name_, libusb_strerror(error));
+      }
+      idle_.pop_front();
+    }
+    return {};
+  }
+
   Result<void> start_reading() {
     for (int i = 0; i < options_.transfers_in_flight; ++i) {
       auto slot = std::make_unique<Slot>();
@@ -187,13 +204,8 @@ class UsbTransport final : public Transport {
       if (slot->transfer == nullptr) return fail(ErrorKind::kTryAgain, "usb: out of memory for transfers");
       libusb_fill_bulk_transfer(slot->transfer, handle_, options_.read_endpoint, slot->buffer.data(),
                                 static_cast<int>(slot->buffer.size()), &UsbTransport::finished, slot.get(), 0);
+      idle_.push_back(slot.get());
       slots_.push_back(std::move(slot));
-      const int error = submit(*slots_.back());
-      if (error == LIBUSB_ERROR_NO_DEVICE) {
-        lost_ = true;
-        return tl::unexpected<Error>(lost().error());
-      }
-      if (error != 0) return fail(ErrorKind::kIo, "usb: cannot read from {}: {}", name_, libusb_strerror(error));
     }
     return {};
   }
@@ -218,6 +230,7 @@ class UsbTransport final : public Transport {
   std::vector<int> claimed_;
   std::vector<std::unique_ptr<Slot>> slots_;
   std::deque<Slot*> done_;  // in the order in which they came back
+  std::deque<Slot*> idle_;  // neither on their way nor done
   bool lost_ = false;
 };
 

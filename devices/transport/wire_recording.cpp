@@ -14,6 +14,7 @@ namespace {
 constexpr std::string_view kMagic = "dubsar-recording ";
 constexpr int kVersion = 1;
 constexpr std::string_view kKinds = "oxrwsfc";
+constexpr TimestampNs kMostRecordedNs = TimestampNs{366} * 86'400 * 1'000'000'000;
 
 void append_hex(std::string& out, std::uint32_t value, int digits) {
   for (int shift = 4 * (digits - 1); shift >= 0; shift -= 4) out += "0123456789abcdef"[(value >> shift) & 15U];
@@ -55,7 +56,9 @@ std::optional<RecordedEvent> parse_event(std::string_view line) {
   RecordedEvent event;
   const auto time = number<TimestampNs>(take_word(line), 10, 0);
   const std::string_view kind = take_word(line);
-  if (!time || *time < 0 || kind.size() != 1 || kKinds.find(kind[0]) == std::string_view::npos) return std::nullopt;
+  if (!time || *time < 0 || *time > kMostRecordedNs || kind.size() != 1 ||
+      kKinds.find(kind[0]) == std::string_view::npos)
+    return std::nullopt;
   event.time = *time;
   event.kind = static_cast<WireEventKind>(kind[0]);
   if (event.kind == WireEventKind::kControl) {
@@ -67,8 +70,8 @@ std::optional<RecordedEvent> parse_event(std::string_view line) {
     event.request = {*type, *request, *value, *index};
   }
   auto bytes = hex_bytes(line);
-  const bool bare = event.kind == WireEventKind::kOpened || event.kind == WireEventKind::kLost;
-  if (!bytes || (bare && !bytes->empty())) return std::nullopt;
+  if (!bytes || (event.kind == WireEventKind::kLost && !bytes->empty())) return std::nullopt;
+  if (event.kind == WireEventKind::kOpened && !bytes->empty() && bytes->size() != 4) return std::nullopt;
   event.bytes = std::move(*bytes);
   return event;
 }

@@ -9,9 +9,10 @@
 //   16000000 r 015e0100000000
 //   20000000 c c0 81 0300 0105 4243
 //
-// One event per line: nanoseconds since the start (never falling), kind, then bytes in hexadecimal. Kinds: o opened,
-// x lost, r report read, w report written, s feature report set, f feature report got (first byte: its id), c control
-// request (type, request, value, index, then the data). Lines end with a line feed.
+// One event per line: nanoseconds since the start (never falling, at most a year), kind, then bytes in hexadecimal.
+// Kinds: o opened (bytes: vendor and product, two each, where they are known), x lost, r report read, w report written,
+// s feature report set, f feature report got (first byte: its id), c control request (type, request, value, index, then
+// the data). Lines end with a line feed.
 
 #include <cstddef>
 #include <cstdint>

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "devices/head_tracker/opentrack_protocol.h"
-#include "devices/head_tracker/vrpn_protocol.h"
+#include "devices/head_tracker/vrpn_server.h"
 #include "devices/transport/sim_transport.h"
 #include "input/simulated/scripted_wire.h"
 
@@ -35,28 +35,27 @@ class VrpnWire final : public ScriptedWire {
  public:
   explicit VrpnWire(WireOptions options) : ScriptedWire(options), place_(options.screen_from_device) {
     SimBehaviour behaviour;
-    behaviour.on_write = [this](std::span<const std::byte> cookie) -> Result<void> {
-      if (!vrpn_cookie_fits(cookie)) return fail(ErrorKind::kBadData, "simulated VRPN: not a client of version 07");
-      device_.send(vrpn_cookie());
-      device_.send(format_vrpn(vrpn_name_message(-1, kSender, "Tracker0")));
-      device_.send(format_vrpn(vrpn_name_message(-2, kType, "vrpn_Tracker Pos_Quat")));
+    behaviour.on_write = [this](std::span<const std::byte> bytes) -> Result<void> {
+      DUBSAR_ASSIGN(const auto answer, side_.accept(bytes));
+      if (!answer.empty()) device_.send(answer);
       return {};
     };
     device_.set_behaviour(std::move(behaviour));
   }
-  Result<std::unique_ptr<Transport>> open() override { return device_.open(); }
+  Result<std::unique_ptr<Transport>> open() override {
+    side_ = VrpnServerSide(kTracker);
+    return device_.open();
+  }
 
  private:
-  static constexpr std::int32_t kSender = 0, kType = 4;
+  static constexpr const char* kTracker = "Tracker0";
   void say(const InputFrame& frame) override {
     const auto pose = tracked_head(frame, place_);
     if (!pose) return;
-    VrpnMessage message = vrpn_pose_message(kSender, kType, 0, *pose);
-    message.seconds = static_cast<std::uint32_t>(frame.time / 1'000'000'000);
-    message.microseconds = static_cast<std::uint32_t>(frame.time / 1000 % 1'000'000);
-    device_.send(format_vrpn(message));
+    if (const auto message = side_.pose(frame.time, *pose); !message.empty()) device_.send(message);
   }
   Pose place_;
+  VrpnServerSide side_{kTracker};
   SimDevice device_{"simulated VRPN", false};
 };
 

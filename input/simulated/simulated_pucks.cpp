@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "devices/spacemouse/spacemouse_sim.h"
-#include "devices/spacemouse/spacenav_protocol.h"
+#include "devices/spacemouse/spacenav_server.h"
 #include "input/simulated/scripted_wire.h"
 
 namespace dubsar {
@@ -97,24 +97,30 @@ class SpacenavWire final : public PuckWire {
  public:
   explicit SpacenavWire(WireOptions options) : PuckWire(std::move(options)) {
     SimBehaviour behaviour;
-    behaviour.on_write = [this](std::span<const std::byte> hello) -> Result<void> {
-      if (hello.size() == 4) device_.send(hello);
+    behaviour.on_write = [this](std::span<const std::byte> bytes) -> Result<void> {
+      if (const auto answer = side_.accept(bytes); !answer.empty()) device_.send(answer);
       return {};
     };
     device_.set_behaviour(std::move(behaviour));
   }
-  Result<std::unique_ptr<Transport>> open() override { return device_.open(); }
+  Result<std::unique_ptr<Transport>> open() override {
+    side_ = {};
+    return device_.open();
+  }
 
  private:
   /// The daemon's axes: z away from the user.
-  static glm::ivec3 daemon_axes(const glm::dvec3& v) { return raw({v.x, v.y, -v.z}); }
+  static glm::ivec3 daemon_axes(const glm::dvec3& v) {
+    return glm::ivec3(glm::round(glm::dvec3(v.x, v.y, -v.z) * double{kSpacenavFullScale}));
+  }
   void send(const Deflection& cap) override {
     SpacenavEvent event;
     event.translation = daemon_axes(cap.push);
     event.rotation = daemon_axes(cap.twist);
     event.period_ms = 16;
-    device_.send(format_spacenav(event));
+    if (const auto bytes = side_.tell(event); !bytes.empty()) device_.send(bytes);
   }
+  SpacenavServerSide side_;
   SimDevice device_{"simulated spacenavd", false};
 };
 

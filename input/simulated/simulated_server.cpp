@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "devices/head_tracker/opentrack_protocol.h"
-#include "devices/head_tracker/vrpn_protocol.h"
+#include "devices/head_tracker/vrpn_server.h"
 #include "devices/transport/socket_server.h"
 
 namespace dubsar {
@@ -55,8 +55,8 @@ Result<LiveWireResult> serve_live_wire(SimulatedDevice& person, const DeviceSpec
   }
   std::unique_ptr<StreamServer> server;
   if (choice.driver == "vrpn") {
-    DUBSAR_ASSIGN(
-        server, listen_tcp(choice.address, choice.port < 0 ? std::uint16_t{0} : port(kVrpnPort), choice.allow_remote));
+    DUBSAR_ASSIGN(server, listen_tcp_and_calls(choice.address, choice.port < 0 ? std::uint16_t{0} : port(kVrpnPort),
+                                               choice.allow_remote, parse_vrpn_call));
   } else if (choice.driver == "spacenav") {
     if (choice.socket.empty())
       return fail(ErrorKind::kUsage, "simulate spacenav: expected the path of the socket to serve");

@@ -15,9 +15,9 @@ struct LiveWireResult {
 };
 
 /// Lets the person act in real time until it has finished or `over` says so: opentrack sends datagrams to
-/// address and port of `choice`, vrpn serves TCP there, spacenav serves the UNIX socket of `choice`. `ready`
-/// is called with the port once clients can come. kUsage: other drivers, no socket path; kUnavailable,
-/// kCannotCreate: the address is taken.
+/// address and port of `choice`, vrpn serves TCP there and calls back who asks by UDP, spacenav serves the UNIX socket
+/// of `choice`. `ready` is called with the port once clients can come. kUsage: other drivers, no socket path;
+/// kUnavailable, kCannotCreate: the address is taken.
 Result<LiveWireResult> serve_live_wire(SimulatedDevice& person, const DeviceSpec& choice, const Clock& clock,
                                        const std::function<bool()>& over,
                                        const std::function<void(int port)>& ready = {});

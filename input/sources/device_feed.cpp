@@ -33,6 +33,7 @@ class ReplayedTransport final : public Transport {
   Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data, milliseconds timeout) override {
     return below_->control(request, data, timeout);
   }
+  UsbId usb_id() const noexcept override { return below_->usb_id(); }
 
  private:
   std::shared_ptr<Replay> replay_;

@@ -1,5 +1,7 @@
 #include "input/sources/head_source.h"
 
+#include <cmath>
+
 #include "devices/head_tracker/head_tracker.h"
 #include "devices/head_tracker/opentrack_protocol.h"
 #include "input/sources/device_feed.h"
@@ -9,7 +11,7 @@ namespace dubsar {
 namespace {
 
 constexpr glm::dvec3 kEyesFromNeck_m{0.0, 0.075, -0.0805};
-constexpr double kNearest_m = 0.1, kFarthest_m = 3.0;
+constexpr double kNearest_m = 0.1, kFarthest_m = 3.0, kFarthestBeside_m = 2.5;
 constexpr TimestampNs kSilentNs = 1'000'000'000, kServerRetryNs = 900'000'000;
 
 class HeadReader final : public SourceReader {
@@ -61,8 +63,10 @@ std::optional<HeadFrame> head_frame(const HeadSample& sample, const HeadPlacemen
   const glm::dvec3 half = turn * glm::dvec3(0.5 * placement.ipd_m, 0.0, 0.0);
   head.left_eye_m = middle - half;
   head.right_eye_m = middle + half;
-  for (const double z : {head.left_eye_m->z, head.right_eye_m->z})
-    if (z < kNearest_m || z > kFarthest_m) return std::nullopt;
+  for (const glm::dvec3& eye : {*head.left_eye_m, *head.right_eye_m}) {
+    if (!(eye.z >= kNearest_m && eye.z <= kFarthest_m)) return std::nullopt;
+    if (!(std::abs(eye.x) <= kFarthestBeside_m && std::abs(eye.y) <= kFarthestBeside_m)) return std::nullopt;
+  }
   return head;
 }
 

@@ -18,7 +18,8 @@ struct HeadPlacement {
 glm::dvec3 usual_place_m(std::string_view tracker) noexcept;
 
 /// Both eyes. A tracker without position turns the head about a neck 75 mm below and 80.5 mm behind the eyes
-/// (the neck model of the Oculus SDK). Nothing for eyes that are not 0.1 to 3 m before the panel.
+/// (the neck model of the Oculus SDK). Nothing for eyes that are not 0.1 to 3 m before the panel,
+/// or more than 2.5 m beside, above or below its centre.
 std::optional<HeadFrame> head_frame(const HeadSample& sample, const HeadPlacement& placement);
 
 /// Options: the tracker's name first (opentrack, vrpn, rift, xreal), then at, turn, eyes, ipd, replay, speed, simulate,

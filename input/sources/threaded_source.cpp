@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <thread>
 
@@ -41,7 +42,7 @@ class ThreadedSource final : public InputSource {
 
   Freshness poll(TimestampNs now, InputFrame& newest) noexcept override {
     if (traits_.before_poll) traits_.before_poll();
-    if (!threaded_) read_once(now, milliseconds(0));
+    if (!threaded_) read_guarded(now, milliseconds(0));
     newest.events.clear();
     const std::lock_guard lock(mutex_);
     const bool fresh = std::exchange(fresh_, false);
@@ -77,8 +78,25 @@ class ThreadedSource final : public InputSource {
 
  private:
   void read_loop() {
-    while (read_once(clock_.now(), kReadTimeout)) {
+    while (read_guarded(clock_.now(), kReadTimeout)) {
     }
+  }
+
+  /// An exception is a mistake of ours: it costs this source, not the session. False: nothing more will be read.
+  bool read_guarded(TimestampNs now, milliseconds timeout) noexcept {
+    if (broken_) return false;
+    std::string what = "unknown";
+    try {
+      return read_once(now, timeout);
+    } catch (const std::exception& mistake) {
+      what = mistake.what();
+    } catch (...) {
+    }
+    broken_ = true;
+    const std::lock_guard lock(mutex_);
+    connected_ = fresh_ = false;
+    reason_ = traits_.name + ": reading has stopped by a mistake of this program: " + what;
+    return false;
   }
 
   /// False: the source is being destroyed.
@@ -123,6 +141,7 @@ class ThreadedSource final : public InputSource {
   std::unique_ptr<SourceReader> reader_;
   std::uint64_t rings_;
   TimestampNs next_retry_ = 0;
+  bool broken_ = false;
   InputFrame working_;
 
   std::atomic<bool> recentre_{false};

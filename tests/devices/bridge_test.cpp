@@ -29,6 +29,17 @@ TEST(HttpReply, BodiesByLengthByChunksAndUpToTheEndAreTheSame) {
   }
 }
 
+TEST(HttpReply, AnswersBeforeTheAnswerAreCounted) {
+  const auto preceded = [](int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) text += "HTTP/1.1 100\r\n\r\n";
+    return parse_http_reply(text + "HTTP/1.1 200 OK\r\nContent-Length: 2\r\n\r\nhi", true);
+  };
+  EXPECT_EQ((*preceded(8))->body, "hi");
+  EXPECT_EQ(preceded(9).error().kind, ErrorKind::kBadData);
+  EXPECT_EQ(preceded(60'000).error().kind, ErrorKind::kBadData);  // each one was a stack frame once
+}
+
 TEST(HttpReply, EveryTruncationWaitsForMoreOrIsAnError) {
   for (const std::string text :
        {"HTTP/1.1 200 OK\r\nContent-Length: 11\r\n\r\nhello world",

@@ -116,14 +116,27 @@ TEST(Malformed, TwoMillionHeadsetReports) {
                       out[0] = std::byte{11};
                       out[3] = std::byte{0};
                       return 64;
-                    default:  // XREAL with a divisor of zero
+                    default:  // the same of the first model, in both its lengths
                       out[0] = std::byte{1};
-                      out[1] = std::byte{2};
-                      std::fill_n(out.begin() + 14, 4, std::byte{0});
-                      return 64;
+                      out[1] = std::byte{0};
+                      return random.below(2) == 0 ? 62 : 64;
                   }
                 },
                 parse),
+            0);
+}
+
+TEST(Malformed, TwoMillionReportsOfGlassesWithoutADivisor) {
+  EXPECT_EQ(accepted_of(
+                kEach, 6,
+                [](FastRandom& random, std::span<std::byte> out) -> std::size_t {
+                  random.fill(out.first(64));
+                  out[0] = std::byte{1};
+                  out[1] = std::byte{2};
+                  std::fill_n(out.begin() + (random.below(2) == 0 ? 14 : 29), 4, std::byte{0});
+                  return 64;
+                },
+                [](auto report) { return parse_xreal(report).has_value(); }),
             0);
 }
 
@@ -134,6 +147,7 @@ TEST(Malformed, TwoMillionSpacenavEventsAndCalibrationPages) {
                   random.fill(out.first(72));
                   if (random.below(2) == 0) return wrong_length(random, std::array<std::size_t, 2>{32, 68});
                   out[1] = std::byte{0x7f};  // an unknown kind of event, an unknown command
+                  out[3] = std::byte{0x11};  // and no answer to a request
                   return random.below(2) == 0 ? 32 : 68;
                 },
                 [](auto r) { return parse_spacenav(r).has_value() || parse_looking_glass(r).has_value(); }),

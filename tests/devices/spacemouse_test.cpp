@@ -1,20 +1,23 @@
-// SpaceMouse reports and the spacenavd stream.
+// SpaceMouse reports, and what enumeration makes of HID nodes.
 
 #include <dirent.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include <filesystem>
 
 #include "devices/driver.h"
 #include "devices/enumerate.h"
+#include "devices/head_tracker/xreal_protocol.h"
 #include "devices/spacemouse/spacemouse_sim.h"
-#include "devices/spacemouse/spacenav_protocol.h"
+#include "devices/transport/record_transport.h"
+#include "devices/transport/replay_transport.h"
 #include "tests/devices/device_bytes.h"
 
 namespace dubsar {
 namespace {
 
 constexpr TimestampNs kSecond = 1'000'000'000;
+using Ids = std::initializer_list<std::uint16_t>;
 
 TEST(SpaceMouse, GoldenReportsOfEveryForm) {
   using R = SpaceMouseReport;
@@ -72,6 +75,53 @@ TEST(SpaceMouse, CapPulledUpMovesUpOnTheScreen) {
   }
 }
 
+// spacenavd's table (src/dev.c): these three have neither DF_SWAPYZ nor DF_INVYZ, so that their raw axes are the
+// daemon's: x right, y up, z away from the user.
+TEST(SpaceMouse, PlusXtClassicAndNuLooqCountYUp) {
+  for (const std::uint16_t product : Ids{0xc603, 0xc606, 0xc640}) {
+    EXPECT_EQ(spacemouse_id(0x046d, product), SpaceMouseId::kSpaceMouse);
+    SpaceMouseSim sim(false, {0x046d, product});
+    Driver<SpaceMouseProtocol> driver([&] { return sim.device().open(); }, SpaceMouseProtocol());
+    driver.poll(0);
+    sim.move({35, 350, 70}, {0, 35, -350});
+    const auto sample = driver.poll(10);
+    ASSERT_TRUE(sample);
+    EXPECT_EQ(sample->translation, glm::dvec3(0.1, 1, -0.2));
+    EXPECT_EQ(sample->rotation, glm::dvec3(0, 0.1, 1));
+  }
+}
+
+TEST(SpaceMouse, ARecordingTellsWhichModelItWas) {
+  ManualClock clock;
+  const auto path = std::filesystem::path(::testing::TempDir()) / "plus_xt.txt";
+  SpaceMouseSim sim(false, {0x046d, 0xc603});
+  {
+    const auto writer = RecordingWriter::create(path, "spacemouse", "", clock).value();
+    Driver<SpaceMouseProtocol> driver(
+        [&]() -> Result<std::unique_ptr<Transport>> {
+          DUBSAR_ASSIGN(auto below, sim.device().open());
+          return make_record_transport(std::move(below), writer);
+        },
+        SpaceMouseProtocol());
+    driver.poll(0);
+    sim.move({0, 350, 0}, {0, 0, 0});
+    ASSERT_EQ(driver.poll(1)->translation, glm::dvec3(0, 1, 0));
+    ASSERT_TRUE(writer->finish());
+  }
+  ReplaySession session(read_recording(path).value(), clock, 0.0);
+  Driver<SpaceMouseProtocol> driver([&] { return session.open(); }, SpaceMouseProtocol());
+  EXPECT_EQ(driver.poll(0)->translation, glm::dvec3(0, 1, 0));
+  std::filesystem::remove(path);
+}
+
+TEST(SpaceMouse, UnknownProductsOfItsMakerAreTakenForOneAndKnownMiceAreNot) {
+  for (const std::uint16_t product : Ids{0xc62e, 0xc635, 0xc652, 0xc69f})
+    EXPECT_EQ(spacemouse_id(0x256f, product), SpaceMouseId::kSpaceMouse) << std::hex << product;
+  for (const std::uint16_t product : Ids{0xc62c, 0xc641, 0xc650, 0xc668})
+    EXPECT_EQ(spacemouse_id(0x256f, product), SpaceMouseId::kOrdinaryMouse) << std::hex << product;
+  EXPECT_EQ(spacemouse_id(0x046d, 0xc69f), SpaceMouseId::kUnknown);
+}
+
 TEST(SpaceMouse, ADeviceThatSendsOnlyRubbishIsOpenedAgain) {
   SpaceMouseSim sim;
   Driver<SpaceMouseProtocol> driver([&] { return sim.device().open(); }, SpaceMouseProtocol());
@@ -124,50 +174,6 @@ TEST(SpaceMouse, AThousandUnpluggingsLeaveNoThreadNoDescriptorAndTakeLessThanASe
   EXPECT_EQ(entries_of("/proc/self/task"), threads);
 }
 
-TEST(Spacenav, GoldenEvents) {
-  SpacenavEvent motion;
-  motion.translation = {10, 20, -30};
-  motion.rotation = {1, 2, 3};
-  motion.period_ms = 16;
-  const auto bytes = from_hex("00000000 0a000000 14000000 e2ffffff 01000000 02000000 03000000 10000000");
-  EXPECT_EQ(parse_spacenav(bytes), motion);
-  EXPECT_EQ(format_spacenav(motion), bytes);
-  EXPECT_EQ(to_hex(spacenav_hello(1)), "0155aa7f");
-  for (std::size_t length = 0; length < 32; ++length) EXPECT_FALSE(parse_spacenav(std::span(bytes).first(length)));
-  auto bad = bytes;
-  bad[0] = std::byte{9};
-  EXPECT_FALSE(parse_spacenav(bad));
-  bad = bytes;
-  bad[6] = std::byte{1};  // 65546
-  EXPECT_FALSE(parse_spacenav(bad));
-}
-
-TEST(Spacenav, EventsAreFoundHoweverTheStreamIsCutAndWithOrWithoutGreeting) {
-  SpacenavEvent motion, press;
-  motion.translation = {35, 70, -105};
-  press.kind = SpacenavEvent::Kind::kPress;
-  press.button = 5;
-  for (const bool greeting : {true, false}) {
-    std::vector<std::byte> stream = greeting ? spacenav_hello(1) : std::vector<std::byte>();
-    for (const auto& event : {motion, press}) {
-      const auto bytes = format_spacenav(event);
-      stream.insert(stream.end(), bytes.begin(), bytes.end());
-    }
-    for (std::size_t piece = 1; piece <= stream.size(); ++piece) {
-      SimDevice device("spacenavd", false);
-      Driver<SpacenavProtocol> driver([&] { return device.open(); }, SpacenavProtocol());
-      driver.poll(0);
-      for (std::size_t at = 0; at < stream.size(); at += piece)
-        device.send(std::span(stream).subspan(at, std::min(piece, stream.size() - at)));
-      const auto sample = driver.poll(5);
-      ASSERT_TRUE(sample);
-      EXPECT_EQ(sample->translation, glm::dvec3(0.1, 0.2, 0.3));
-      EXPECT_EQ(sample->buttons, 32U);
-      EXPECT_EQ(driver.counts().refused, 0U);
-    }
-  }
-}
-
 TEST(Enumerate, SaysWhyADeviceCannotBeUsedAndNamesTheRule) {
   const std::vector<HidNode> nodes{{"/dev/hidraw0", 0x256f, 0xc635, 1, 8, 0, "3Dconnexion", "SpaceMouse Compact", "S1"},
                                    {"/dev/hidraw1", 0x256f, 0xc650, 1, 2, 0, "3Dconnexion", "CadMouse", ""},
@@ -190,6 +196,40 @@ TEST(Enumerate, SaysWhyADeviceCannotBeUsedAndNamesTheRule) {
   EXPECT_EQ(found[2].reason, "");
   EXPECT_EQ(found[3].driver, "looking_glass");
   EXPECT_EQ(found[3].state, DeviceState::kBusy);
+}
+
+TEST(Enumerate, HeadsetsAreKnownByAllTheirNumbersAndGlassesThatCannotBeReadSayWhatTheyNeed) {
+  const std::vector<HidNode> nodes{{"/dev/hidraw0", 0x2833, 0x2021, 1, 0, 0, "", "", ""},
+                                   {"/dev/hidraw1", 0x3318, 0x0437, 0xff00, 1, 0, "", "", "A"},
+                                   {"/dev/hidraw2", 0x3318, 0x0437, 0xff00, 1, 1, "", "", "A"},
+                                   {"/dev/hidraw3", 0x04d8, 0xef7e, 0, 0, 0, "", "Programmer", ""},
+                                   {"/dev/hidraw4", 0x3318, 0x0426, 0xff00, 1, 2, "", "", ""}};
+  const auto found = known_hid_devices(nodes, [](const std::string&) { return 0; });
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0].name, "Oculus Rift DK2");
+  EXPECT_EQ(found[0].state, DeviceState::kUsable);
+  EXPECT_EQ(found[1].name, "XREAL One");
+  EXPECT_EQ(found[1].state, DeviceState::kIgnored);
+  EXPECT_NE(found[1].reason.find("network"), std::string::npos);
+  EXPECT_NE(found[1].remedy.find("sender=xrlinux"), std::string::npos);
+  EXPECT_EQ(found[2].name, "XREAL Air 2 Ultra");
+  EXPECT_EQ(found[2].state, DeviceState::kUsable);
+}
+
+// The table of XRLinuxDriver, src/devices/xreal.c: products, and those that it reads by HID.
+TEST(Enumerate, EveryModelOfXrealIsListed) {
+  for (const std::uint16_t product : Ids{0x0424, 0x0428, 0x0432, 0x0426}) {
+    ASSERT_TRUE(find_xreal(product)) << std::hex << product;
+    EXPECT_EQ(find_xreal(product)->needs, "");
+  }
+  for (const std::uint16_t product : Ids{0x0435, 0x0436, 0x0437, 0x0438, 0x043d, 0x043e, 0x0440, 0x0442}) {
+    const auto told = unreadable_glasses({0x3318, product}, "usb:001/002");
+    ASSERT_TRUE(told) << std::hex << product;
+    EXPECT_EQ(told->driver, "xreal");
+    EXPECT_NE(told->reason, "");
+  }
+  EXPECT_FALSE(unreadable_glasses({0x3318, 0x0424}, ""));
+  EXPECT_FALSE(unreadable_glasses({0x3319, 0x0437}, ""));
 }
 
 }  // namespace

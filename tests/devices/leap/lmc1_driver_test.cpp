@@ -160,6 +160,23 @@ TEST(Lmc1Driver, SettingsReachTheDeviceWhileItRuns) {
   EXPECT_TRUE(eventually([&] { return driver->poll(frame) && !frame.dark; }));
 }
 
+TEST(Lmc1Driver, WithoutDarkFramesEveryFrameIsLitWhateverItsLabelIs) {
+  std::vector<std::byte> bytes(std::size_t{640} * 240 * 2);
+  lmc1::encode_metadata({200, 16, 1}, std::span(bytes).last<lmc1::kMetadataBytes>());
+  for (const int interval : {0, 2}) {
+    Lmc1Options options = quick();
+    options.dark_frame_interval = interval;
+    const auto kind = lmc1_kind(options);
+    Frame frame;
+    frame.width = 640;
+    frame.height = 240;
+    frame.views = 2;
+    frame.pixels.resize(2 * frame.view_bytes());
+    kind->unpack(bytes, frame);
+    EXPECT_EQ(frame.dark, interval == 2);
+  }
+}
+
 TEST(Lmc1Driver, ADeviceThatStallsItsCalibrationIsRefusedInOneSentence) {
   Lmc1SimulatorOptions device;
   device.calibration.baseline_mm = 0.0F;

@@ -83,6 +83,28 @@ TEST(Lmc1Lens, PixelAndRayAreInversesAlsoAtTheRim) {
     }
 }
 
+// leapuvc.py undistorts with R = CayleyTransform(-rotation), which cv::initUndistortRectifyMap applies to the eye's
+// rays; its formula, written out for a rotation of (0, c, 0): R = [[1 - cc, 0, 2c], [0, 1 + cc, 0], [-2c, 0, 1 - cc]] /
+// (1 + cc) with -c for c.
+TEST(Lmc1Lens, TheEyesAreTurnedAsTheMakersSampleTurnsThem) {
+  auto eye = lmc1::decode_calibration(bytes_of(kRealBlob))->left;
+  eye.radial = {};
+  eye.tangential = {};
+  const glm::dvec2 centre(320.0 + double{eye.offset_x_px}, 240.0 + double{eye.offset_y_px});
+  const double c = 0.01;
+  const auto ray_with = [&](float x, float y, float z) {
+    eye.cayley = {x, y, z};
+    return lmc1::Lens(eye, 640, 480).ray_from_pixel(centre);
+  };
+  EXPECT_NEAR(ray_with(0, 0.01F, 0).x, -2.0 * c / (1.0 - c * c), 1e-8);
+  EXPECT_NEAR(ray_with(0, 0.01F, 0).y, 0.0, 1e-12);
+  EXPECT_NEAR(ray_with(0.01F, 0, 0).y, 2.0 * c / (1.0 - c * c), 1e-8);
+  // about the axis itself a point beside it moves: z of -c, so clockwise from x to -y
+  eye.cayley = {0, 0, 0.01F};
+  const auto beside = lmc1::Lens(eye, 640, 480).ray_from_pixel(centre + glm::dvec2(double{eye.focal_px}, 0.0));
+  EXPECT_NEAR(beside.y, -2.0 * c / (1.0 + c * c), 1e-8);
+}
+
 TEST(Lmc1Lens, SeesAbout140DegreesAndBinningHalvesTheRows) {
   const auto calibration = lmc1::decode_calibration(bytes_of(kRealBlob));
   const lmc1::Lens full(calibration->left, 640, 480), binned(calibration->left, 640, 240);

@@ -72,6 +72,26 @@ TEST_F(Lmc1OverLibusb, IsListedReadCalibratedAndStreamedUntilItIsUnplugged) {
   EXPECT_EQ(driver->start().error().kind, ErrorKind::kNoInput);
 }
 
+TEST_F(Lmc1OverLibusb, BuffersThatTheKernelRefusedAreOfferedAgain) {
+  Lmc1SimulatorOptions device;
+  device.paced = true;
+  Lmc1Simulator simulator(device);
+  UsbKernel kernel(simulator);
+  SteadyClock clock;
+  Lmc1Options options;
+  options.calibration_settle = milliseconds(0);
+  UsbOpenOptions one_buffer = leap_options();
+  one_buffer.transfers_in_flight = 1;
+  auto driver = make_lmc1_driver([&] { return open_usb_transport(lmc1::kVendorId, lmc1::kProductId, one_buffer); },
+                                 options, clock);
+  kernel.refuse(2);  // the first ones already
+  ASSERT_TRUE(driver->start());
+  ASSERT_TRUE(eventually([&] { return driver->counters().frames >= 3; })) << driver->reason();
+  kernel.refuse(1);  // with one buffer nothing would come any more
+  const auto before = driver->counters().frames;
+  EXPECT_TRUE(eventually([&] { return driver->counters().frames >= before + 5; })) << driver->reason();
+}
+
 TEST_F(Lmc1OverLibusb, AStalledRequestIsBadDataAndTheDeviceStaysUsable) {
   Lmc1Simulator simulator(Lmc1SimulatorOptions{});
   UsbKernel kernel(simulator);

@@ -8,6 +8,7 @@
 #include <umockdev.h>
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -63,6 +64,9 @@ class UsbKernel {
     g_object_unref(bed_);
   }
 
+  /// The next bulk requests are refused for want of memory.
+  void refuse(int count) { refuse_ = count; }
+
   void unplug() {
     simulator_.unplug();
     umockdev_testbed_uevent(bed_, kSysfs, "remove");
@@ -104,7 +108,7 @@ class UsbKernel {
       case static_cast<unsigned>(USBDEVFS_IOCTL):
         return complete(-1, ENODATA);
       case static_cast<unsigned>(USBDEVFS_SUBMITURB):
-        return complete(submit(argument) ? 0 : -1, simulator_.plugged() ? 0 : ENODEV);
+        return complete(submit(argument) ? 0 : -1, simulator_.plugged() ? ENOMEM : ENODEV);
       case static_cast<unsigned>(USBDEVFS_REAPURB):
       case static_cast<unsigned>(USBDEVFS_REAPURBNDELAY): {
         fill_bulk();
@@ -140,6 +144,10 @@ class UsbKernel {
     Urb urb{};
     urb.urb = umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_urb), nullptr);
     urb.address = urb.urb->client_addr;
+    if (urb.head().type == USBDEVFS_URB_TYPE_BULK && refuse_ > 0) {
+      --refuse_;
+      return false;
+    }
     const int length = urb.head().buffer_length;
     if (length > 0)
       urb.buffer =
@@ -186,6 +194,7 @@ class UsbKernel {
   std::uint8_t bulk_endpoint_ = 0;
   UMockdevTestbed* bed_;
   UMockdevIoctlBase* handler_ = nullptr;
+  std::atomic<int> refuse_{0};
   std::mutex mutex_;
   std::deque<Urb> waiting_, done_;
 };

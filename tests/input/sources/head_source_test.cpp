@@ -138,6 +138,28 @@ TEST(HeadSource, VrpnPosesAreInTheScreenFrame) {
   expect_near(0.5 * (*bench.frame.heads[0].left_eye_m + *bench.frame.heads[0].right_eye_m), {0.0, 0.05, 0.6}, 1e-12);
 }
 
+TEST(HeadSource, ARoomTrackerWithItsOriginInACornerOfTheFloorWorks) {
+  SourceBench bench;
+  SimDevice server("simulated VRPN server", false);
+  bench.put(server);
+  // the panel's centre is 4 m along the wall, 1.4 m above the floor and 3 m into the room
+  const auto source = bench.make("head:vrpn,at=-4000/-1400/-3000");
+  bench.poll(*source);
+  const auto say = [&](const glm::dvec3& at_m) {
+    server.send(format_vrpn(vrpn_pose_message(0, 4, 0, {at_m, {1, 0, 0, 0}})));
+    bench.clock.advance(kSecond);  // far apart, so that the speed is not what limits them
+    return bench.poll(*source);
+  };
+  server.send(vrpn_cookie());
+  server.send(format_vrpn(vrpn_name_message(-1, 0, "Head")));
+  server.send(format_vrpn(vrpn_name_message(-2, 4, "vrpn_Tracker Pos_Quat")));
+  ASSERT_EQ(say({4.0, 1.5, 3.7}), Freshness::kNew);
+  ASSERT_EQ(bench.frame.heads.size(), 1u);
+  expect_near(0.5 * (*bench.frame.heads[0].left_eye_m + *bench.frame.heads[0].right_eye_m), {0.0, 0.1, 0.7}, 1e-9);
+  ASSERT_EQ(say({0.5, 1.5, 3.7}), Freshness::kNew);  // 3.5 m beside the panel: nobody who looks at it
+  EXPECT_TRUE(bench.frame.heads.empty());
+}
+
 TEST(HeadSource, GlassesSayThatTheyMeasureNoPlace) {
   SourceBench bench;
   RiftSim rift(RiftModel::kDk1);

@@ -22,7 +22,7 @@ TEST(SourceOptions, WhatIsWrongIsSaidByNameBeforeAnythingIsOpened) {
   EXPECT_EQ(refused("head:opentrack,at=0/0/0/0", "at="), ErrorKind::kUsage);
   EXPECT_EQ(refused("head:opentrack,remote=yes", "takes no value"), ErrorKind::kUsage);
   EXPECT_EQ(refused("head:opentrack,address=0.0.0.0", "other machines"), ErrorKind::kUsage);
-  EXPECT_EQ(refused("head:vrpn,address=localhost", "in numbers"), ErrorKind::kUsage);
+  EXPECT_EQ(refused("head:vrpn,address=no host", "name of a host"), ErrorKind::kUsage);
   EXPECT_EQ(refused("head:rift,port=1", "\"port\" is not an option"), ErrorKind::kUsage);
   EXPECT_EQ(refused("leap:tilt=3", "at, turn"), ErrorKind::kUsage);
   EXPECT_EQ(refused("spacemouse:replay=/no/such/file", "/no/such/file"), ErrorKind::kNoInput);

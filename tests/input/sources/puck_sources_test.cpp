@@ -136,7 +136,7 @@ TEST(SpacenavSource, EventsOfTheDaemonArePuckMotions) {
   bench.poll(*source);
   daemon.send(spacenav_hello(1));
   SpacenavEvent event;
-  event.rotation = {0, 175, 0};
+  event.rotation = {0, 250, 0};
   daemon.send(format_spacenav(event));
   ASSERT_EQ(bench.poll(*source), Freshness::kNew);
   EXPECT_EQ(bench.frame.puck->twist, glm::dvec3(0.0, 0.5, 0.0));
