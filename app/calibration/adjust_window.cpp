@@ -1,7 +1,6 @@
 #include "app/calibration/adjust_window.h"
 
-#include <system_error>
-
+#include "display/panels/calibration.h"
 #include "display/panels/panel_adjust.h"
 
 namespace dubsar::app {
@@ -15,18 +14,13 @@ constexpr double kSlopeStep = 2e-3;   // of the slope
 
 }  // namespace
 
-Result<LensTuner> LensTuner::create(const fs::path& folder, const fs::path& scratch, const std::string& panel,
-                                    const fs::path& calibration) {
+Result<LensTuner> LensTuner::create(std::shared_ptr<SinkCatalog> catalog, const fs::path& folder,
+                                    const std::string& panel, const fs::path& calibration) {
   LensTuner out;
+  DUBSAR_ASSIGN(out.panel_, choose_panel(catalog->panels(), panel, calibration));
+  out.catalog_ = std::move(catalog);
   out.folder_ = folder;
-  out.scratch_ = scratch;
-  std::error_code error;
-  const bool has_own = fs::is_directory(folder, error);
-  error.clear();  // a folder that is not there yet
-  if (has_own) fs::copy(folder, scratch, fs::copy_options::overwrite_existing, error);
-  if (error) return fail(ErrorKind::kIo, "cannot copy the profiles of {}: {}", folder.string(), error.message());
-  DUBSAR_ASSIGN(const PanelProfile profile, choose_panel(folder, panel, calibration.string()));
-  out.panel_ = profile.name;
+  const PanelProfile& profile = out.panel_;
   if (profile.optics) {
     out.first_ = {profile.optics->pitch_mm, profile.optics->tan_slant, profile.optics->phase0};
   } else if (profile.sheet) {
@@ -35,15 +29,20 @@ Result<LensTuner> LensTuner::create(const fs::path& folder, const fs::path& scra
     return fail(ErrorKind::kConfig, "adjustment of panel {}: it has no lens figures to start from", panel);
   }
   out.now_ = out.first_;
+  DUBSAR_TRY(out.use());
   return out;
 }
+
+SinkSpec LensTuner::display() const { return {"lenticular", {{"panel", panel_.name}}}; }
 
 std::string LensTuner::text() const {
   return fmt::format("pitch={:.7g},slope={:.6g},center={:.4f}", now_.pitch, now_.slope, now_.center);
 }
 
 Result<void> LensTuner::use() {
-  DUBSAR_TRY(save_adjustment(scratch_, panel_, {now_.pitch, now_.slope, now_.center}));
+  PanelProfile changed = panel_;
+  DUBSAR_TRY(apply_adjustment({now_.pitch, now_.slope, now_.center}, changed));
+  catalog_->put(std::move(changed));
   return {};
 }
 

@@ -3,40 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-
-#include "app/cli/config_folder.h"
-#include "core/base/atomic_file.h"
-#include "display/sinks/output_sink.h"
 
 namespace dubsar::app {
-namespace fs = std::filesystem;
 
 namespace {
 
-bool is_auto(const std::pair<std::string, std::string>& option) {
-  return (option.first == "auto" && option.second.empty()) || (option.first == "panel" && option.second == "auto");
-}
-
-std::string file_name_of(const FoundCalibration& found) {
-  std::string name;
-  for (const char c : found.serial.empty() ? found.panel->name : found.serial)
-    name += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' ? c : '_';
-  return name + ".visual.json";
-}
-
-/// The file with the calibration, made where there is none that options can name.
-Result<fs::path> file_of(const FoundCalibration& found, const fs::path& cache_folder) {
-  const bool is_file = found.route == "file" || found.route == "usb_storage";
-  if (is_file && found.place.find(',') == std::string::npos) return fs::path(found.place);
-  if (cache_folder.empty())
-    return fail(ErrorKind::kCannotCreate,
-                "panel {}: its calibration cannot be kept, neither XDG_CACHE_HOME nor HOME is set", found.panel->name);
-  std::error_code error;
-  fs::create_directories(cache_folder, error);
-  const fs::path file = cache_folder / file_name_of(found);
-  DUBSAR_TRY(write_file_atomically(file, found.text));
-  return file;
+bool is_auto(const SinkOption& option) {
+  return (option.key == "auto" && !option.value) || (option.key == "panel" && option.value == "auto");
 }
 
 /// Readable calibrations, one a unit: the first route that has it.
@@ -61,14 +34,13 @@ std::string reasons_of(const CalibrationReport& report) {
 
 }  // namespace
 
-Result<std::string> choose_panel_options(const PanelFacts& facts, std::span<const PanelProfile> profiles,
-                                         const fs::path& cache_folder) {
+Result<PanelProfile> choose_auto_panel(const PanelFacts& facts, const PanelSet& known) {
   std::vector<const FoundCalibration*> units = units_of(facts.calibrations);
   std::vector<const PanelProfile*> tracked;
   std::string looking_glass;  // connected, by its EDID
   for (const ConnectedEdid& each : facts.edids) {
     if (!each.edid) continue;
-    const auto panels = panels_of_edid(profiles, *each.edid);
+    const auto panels = panels_of_edid(known, *each.edid);
     if (panels.empty()) continue;
     if (panels[0]->kind == PanelKind::kTracked) {
       tracked.insert(tracked.end(), panels.begin(), panels.end());
@@ -89,34 +61,22 @@ Result<std::string> choose_panel_options(const PanelFacts& facts, std::span<cons
     return fail(ErrorKind::kUsage,
                 "several panels are here: {}; expected panel=NAME or calibration=FILE instead of auto", names);
   }
-  if (!tracked.empty()) return "panel=" + tracked[0]->name;
+  if (!tracked.empty()) return *tracked[0];
   if (units.empty() && !looking_glass.empty())
     return fail(ErrorKind::kUnavailable, "a Looking Glass is connected ({}), but its calibration was not found: {}",
                 looking_glass, reasons_of(facts.calibrations));
   if (units.empty()) return fail(ErrorKind::kUnavailable, "no panel was found: {}", reasons_of(facts.calibrations));
-  DUBSAR_ASSIGN(const fs::path file, file_of(*units[0], cache_folder));
-  return fmt::format("panel={},calibration={}", units[0]->panel->name, file.string());
+  return *units[0]->panel;
 }
 
-Result<std::string> resolve_display(std::string_view display, int bridge_port) {
-  const std::size_t colon = display.find(':');
-  if (colon == std::string_view::npos) return std::string(display);
-  const auto options = parse_sink_options(display.substr(colon + 1));
-  if (std::none_of(options.begin(), options.end(), is_auto)) return std::string(display);
-  DUBSAR_ASSIGN(const auto profiles, load_profiles(panel_folder()));
-  const SteadyClock clock;
-  const PanelFacts facts{find_calibrations(search_this_machine(bridge_port, clock), profiles, clock),
-                         read_connected_edids()};
-  DUBSAR_ASSIGN(const std::string chosen, choose_panel_options(facts, profiles, calibration_cache()));
-  std::string out(display.substr(0, colon + 1));
-  for (const auto& option : options) {
-    if (out.back() != ':') out += ',';
-    if (is_auto(option))
-      out += chosen;
-    else
-      out += option.first + (option.second.empty() ? "" : "=" + option.second);
-  }
-  return out;
+bool names_auto_panel(const SinkSpec& display) {
+  return std::any_of(display.options.begin(), display.options.end(), is_auto);
+}
+
+SinkSpec with_panel(SinkSpec display, const PanelProfile& panel) {
+  for (SinkOption& option : display.options)
+    if (is_auto(option)) option = {"panel", panel.name};
+  return display;
 }
 
 }  // namespace dubsar::app

@@ -7,6 +7,7 @@
 #include "devices/enumerate.h"
 #include "devices/looking_glass/bridge_client.h"
 #include "devices/looking_glass/calibration_pages.h"
+#include "display/panels/calibration.h"
 
 namespace dubsar::app {
 namespace fs = std::filesystem;
@@ -15,8 +16,7 @@ namespace {
 
 constexpr std::int64_t kMaxCalibrationBytes = 64 << 10;
 
-FoundCalibration judge(std::string route, std::string place, Result<std::string> text,
-                       std::span<const PanelProfile> profiles) {
+FoundCalibration judge(std::string route, std::string place, Result<std::string> text, const PanelSet& panels) {
   FoundCalibration found{std::move(route), std::move(place), {}, {}, {}, {}};
   if (!text) {
     found.problem = text.error().message;
@@ -25,7 +25,7 @@ FoundCalibration judge(std::string route, std::string place, Result<std::string>
   found.text = *std::move(text);
   const auto read = parse_calibration(found.text, found.place);
   if (read) found.serial = read->serial;
-  auto panel = read ? calibrated_profile(profiles, *read) : Result<PanelProfile>(tl::unexpect, read.error());
+  auto panel = read ? calibrated_profile(panels, *read) : Result<PanelProfile>(tl::unexpect, read.error());
   if (panel)
     found.panel = *std::move(panel);
   else
@@ -33,11 +33,10 @@ FoundCalibration judge(std::string route, std::string place, Result<std::string>
   return found;
 }
 
-void search_storage(const CalibrationSearch& search, std::span<const PanelProfile> profiles,
-                    CalibrationReport& report) {
+void search_storage(const CalibrationSearch& search, const PanelSet& panels, CalibrationReport& report) {
   const std::vector<fs::path> files = find_calibration_files(search.mounts);
   for (const fs::path& file : files)
-    report.found.push_back(judge("usb_storage", file.string(), read_text_file(file, kMaxCalibrationBytes), profiles));
+    report.found.push_back(judge("usb_storage", file.string(), read_text_file(file, kMaxCalibrationBytes), panels));
   if (!files.empty()) return;
   std::string places;
   for (const fs::path& root : search.mounts)
@@ -47,7 +46,7 @@ void search_storage(const CalibrationSearch& search, std::span<const PanelProfil
                                     : fmt::format("nothing at {}; connect and mount the panel's USB storage", places));
 }
 
-void search_hid(const CalibrationSearch& search, std::span<const PanelProfile> profiles, const Clock& clock,
+void search_hid(const CalibrationSearch& search, const PanelSet& panels, const Clock& clock,
                 CalibrationReport& report) {
   for (const CalibrationSearch::HidUnit& unit : search.hid) {
     if (!unit.problem.empty()) {
@@ -58,13 +57,13 @@ void search_hid(const CalibrationSearch& search, std::span<const PanelProfile> p
     report.found.push_back(judge("usb_hid", unit.place,
                                  transport ? read_looking_glass_calibration(**transport, clock)
                                            : Result<std::string>(tl::unexpect, transport.error()),
-                                 profiles));
+                                 panels));
   }
   if (search.hid.empty())
     report.missing.emplace_back("usb_hid", "no Looking Glass of the first generation (USB 04d8:ef7e) is plugged in");
 }
 
-void search_bridge(const CalibrationSearch& search, std::span<const PanelProfile> profiles, const Clock& clock,
+void search_bridge(const CalibrationSearch& search, const PanelSet& panels, const Clock& clock,
                    CalibrationReport& report) {
   if (!search.bridge) {
     report.missing.emplace_back("bridge", "not asked");
@@ -78,16 +77,16 @@ void search_bridge(const CalibrationSearch& search, std::span<const PanelProfile
                     search.bridge_place, devices.error().message));
     return;
   }
-  int panels = 0;
+  int calibrated = 0;
   for (const BridgeDevice& device : *devices) {
     if (device.calibration.empty()) continue;
-    ++panels;
+    ++calibrated;
     FoundCalibration found =
-        judge("bridge", fmt::format("{} {}", search.bridge_place, device.id), device.calibration, profiles);
+        judge("bridge", fmt::format("{} {}", search.bridge_place, device.id), device.calibration, panels);
     if (found.serial.empty()) found.serial = device.id;
     report.found.push_back(std::move(found));
   }
-  if (panels == 0)
+  if (calibrated == 0)
     report.missing.emplace_back("bridge",
                                 fmt::format("Looking Glass Bridge at {} knows {} displays, none with a calibration",
                                             search.bridge_place, devices->size()));
@@ -111,15 +110,14 @@ CalibrationSearch search_this_machine(int bridge_port, const Clock& clock) {
   return search;
 }
 
-CalibrationReport find_calibrations(const CalibrationSearch& search, std::span<const PanelProfile> profiles,
-                                    const Clock& clock) {
+CalibrationReport find_calibrations(const CalibrationSearch& search, const PanelSet& panels, const Clock& clock) {
   CalibrationReport report;
   if (!search.file.empty())
     report.found.push_back(
-        judge("file", search.file.string(), read_text_file(search.file, kMaxCalibrationBytes), profiles));
-  search_storage(search, profiles, report);
-  search_hid(search, profiles, clock, report);
-  search_bridge(search, profiles, clock, report);
+        judge("file", search.file.string(), read_text_file(search.file, kMaxCalibrationBytes), panels));
+  search_storage(search, panels, report);
+  search_hid(search, panels, clock, report);
+  search_bridge(search, panels, clock, report);
   return report;
 }
 

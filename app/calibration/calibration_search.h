@@ -10,7 +10,7 @@
 
 #include "core/base/clock.h"
 #include "devices/transport/transport.h"
-#include "display/panels/panel_profile.h"
+#include "display/panels/panel_set.h"
 
 namespace dubsar::app {
 
@@ -46,7 +46,6 @@ struct CalibrationReport {
 };
 
 /// Tries all routes; bad calibrations are found ones with a problem. Blocks for at most some seconds.
-CalibrationReport find_calibrations(const CalibrationSearch& search, std::span<const PanelProfile> profiles,
-                                    const Clock& clock);
+CalibrationReport find_calibrations(const CalibrationSearch& search, const PanelSet& panels, const Clock& clock);
 
 }  // namespace dubsar::app

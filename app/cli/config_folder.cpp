@@ -23,13 +23,6 @@ fs::path panel_folder() {
   return config.empty() ? config : config / "panels";
 }
 
-fs::path calibration_cache() {
-  const fs::path below = fs::path("dubsar") / "calibrations";
-  if (const fs::path xdg = from_environment("XDG_CACHE_HOME"); xdg.is_absolute()) return xdg / below;
-  const fs::path home = from_environment("HOME");
-  return home.empty() ? fs::path() : home / ".cache" / below;
-}
-
 fs::path model_folder() {
   if (const fs::path xdg = from_environment("XDG_DATA_HOME"); xdg.is_absolute()) return xdg / "dubsar" / "models";
   const fs::path home = from_environment("HOME");

@@ -12,10 +12,6 @@ std::filesystem::path config_folder();
 /// Panel profiles and adjustments: config_folder() / "panels".
 std::filesystem::path panel_folder();
 
-/// Copies of calibrations that were read from devices: $XDG_CACHE_HOME/dubsar/calibrations, else below $HOME/.cache;
-/// empty when neither variable is set.
-std::filesystem::path calibration_cache();
-
 /// The networks that `./do models` fetched: $XDG_DATA_HOME/dubsar/models, else $HOME/.local/share/dubsar/models; empty
 /// when neither variable is set.
 std::filesystem::path model_folder();

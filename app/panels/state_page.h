@@ -12,7 +12,7 @@
 namespace dubsar::app {
 
 struct StateFigures {
-  std::string display;  ///< as make_sink() reads it
+  std::string display;  ///< NAME[:options]
   SinkTraits traits;
   Presence head = Presence::kOff;
   glm::dvec3 eyes_mm{0.0};           ///< midpoint, screen frame

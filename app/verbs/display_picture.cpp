@@ -5,12 +5,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "app/calibration/auto_panel.h"
-#include "app/cli/config_folder.h"
+#include "app/calibration/display_choice.h"
 #include "core/image_io/png_file.h"
 #include "core/image_io/tiff_file.h"
-#include "display/sinks/output_sink.h"
-#include "display/sinks/plugin_sink.h"
+#include "display/sinks/sink_catalog.h"
 
 namespace dubsar::app {
 namespace fs = std::filesystem;
@@ -78,7 +76,7 @@ void add_display_options(Arguments command, DisplayRequest& request) {
   group.flag("--pattern", request.pattern, "numbered views instead of a surface (no IN)");
 }
 
-Result<void> read_display_options(const DisplayRequest& request, DisplayOptions& options) {
+Result<SinkSpec> read_display_options(const DisplayRequest& request, DisplayOptions& options) {
   Screen& screen = options.screen;
   screen.window_w = screen.width_px;
   screen.window_h = screen.height_px;
@@ -96,18 +94,18 @@ Result<void> read_display_options(const DisplayRequest& request, DisplayOptions&
   options.viewer.left_mm = between - half;
   options.viewer.right_mm = between + half;
   options.magnification = request.magnification;
-  options.profile_folder = panel_folder();
-  DUBSAR_ASSIGN(options.plugins, load_plugins(request.plugins));
-  return {};
+  DUBSAR_ASSIGN(const DisplayChoice choice, choose_display(request.display, request.plugins, request.bridge_port));
+  options.catalog = choice.catalog;
+  return choice.display;
 }
 
-Result<VerbResult> render_to_display(const DisplayRequest& request, const DisplayOptions& options, const TriMesh& mesh,
-                                     const fs::path& out, Progress& progress) {
+Result<VerbResult> render_to_display(const DisplayRequest& request, const SinkSpec& display,
+                                     const DisplayOptions& options, const TriMesh& mesh, const fs::path& out,
+                                     Progress& progress) {
   glm::dvec3 eye(0.0);
   if (!request.see_from.empty()) {
     DUBSAR_ASSIGN(eye, parse_place(request.see_from, "--see-from"));
   }
-  DUBSAR_ASSIGN(const std::string display, resolve_display(request.display, request.bridge_port));
   DisplayPicture picture;
   if (request.pattern) {
     DUBSAR_ASSIGN(picture, render_pattern(display, options));
@@ -126,7 +124,7 @@ Result<VerbResult> render_to_display(const DisplayRequest& request, const Displa
   result.json.update({{"output", path.string()},
                       {"width", image.width},
                       {"height", image.height},
-                      {"display", display},
+                      {"display", display.text()},
                       {"views", picture.views},
                       {"magnification", picture.magnification},
                       {"pattern", request.pattern}});

@@ -25,13 +25,14 @@ struct DisplayRequest {
 
 void add_display_options(Arguments command, DisplayRequest& request);
 
-/// Fills screen, viewer and folder of `options`; its screen has the pixels already. kUsage for texts that cannot be
-/// read.
-Result<void> read_display_options(const DisplayRequest& request, DisplayOptions& options);
+/// Fills screen, viewer and catalog of `options`; its screen has the pixels already. Returns the display. kUsage for
+/// texts that cannot be read; errors of choose_display.
+Result<SinkSpec> read_display_options(const DisplayRequest& request, DisplayOptions& options);
 
 /// Renders (`mesh` is not looked at for the pattern) and writes `out`, whose name gets the display's suffix when it
 /// lacks it.
-Result<VerbResult> render_to_display(const DisplayRequest& request, const DisplayOptions& options, const TriMesh& mesh,
+Result<VerbResult> render_to_display(const DisplayRequest& request, const SinkSpec& display,
+                                     const DisplayOptions& options, const TriMesh& mesh,
                                      const std::filesystem::path& out, Progress& progress);
 
 }  // namespace dubsar::app

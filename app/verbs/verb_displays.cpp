@@ -1,7 +1,6 @@
 // dubsar displays: what there is to show pictures on, what belongs to what, and why something is missing.
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -9,6 +8,7 @@
 
 #include "app/calibration/adjust_window.h"
 #include "app/calibration/calibration_search.h"
+#include "app/calibration/display_choice.h"
 #include "app/cli/config_folder.h"
 #include "app/cli/verb.h"
 #include "core/base/log.h"
@@ -16,9 +16,8 @@
 #include "display/panels/crosstalk_curve.h"
 #include "display/panels/edid.h"
 #include "display/panels/panel_adjust.h"
-#include "display/panels/panel_profile.h"
+#include "display/panels/panel_set.h"
 #include "display/render/context_glfw.h"
-#include "display/sinks/output_sink.h"
 #include "display/sinks/plugin_sink.h"
 
 namespace dubsar::app {
@@ -40,23 +39,23 @@ const char* kind_name(PanelKind kind) {
   return kind == PanelKind::kLookingGlass ? "looking_glass" : kind == PanelKind::kLensSheet ? "lens_sheet" : "tracked";
 }
 
-Result<void> add_sinks(const Options& options, VerbResult& result) {
+void add_sinks(const SinkCatalog& catalog, const Options& options, VerbResult& result) {
   result.text += "displays (--display NAME[:options])\n";
   for (const SinkBackend& sink : output_sinks()) {
     result.json["displays"].push_back({{"name", sink.name}, {"summary", sink.summary}});
     result.text += fmt::format("  {:<14} {}\n", sink.name, sink.summary);
   }
-  for (const std::string& file : options.plugins) {
-    DUBSAR_ASSIGN(const auto plugin, SinkPlugin::load(file));
+  for (std::size_t i = 0; i < catalog.plugins().size(); ++i) {
+    const auto& plugin = catalog.plugins()[i];
+    const std::string& file = options.plugins[i];
     result.json["displays"].push_back({{"name", plugin->name()}, {"summary", plugin->summary()}, {"plugin", file}});
     result.text += fmt::format("  {:<14} {} ({})\n", plugin->name(), plugin->summary(), file);
   }
-  return {};
 }
 
-void add_panels(const std::vector<PanelProfile>& profiles, VerbResult& result) {
+void add_panels(const PanelSet& panels, VerbResult& result) {
   result.text += "panels (--display lenticular:PANEL, quilt:PANEL)\n";
-  for (const PanelProfile& p : profiles) {
+  for (const PanelProfile& p : panels.profiles) {
     nlohmann::json entry{{"name", p.name},
                          {"title", p.title},
                          {"kind", kind_name(p.kind)},
@@ -73,15 +72,23 @@ void add_panels(const std::vector<PanelProfile>& profiles, VerbResult& result) {
                                p.sheet || p.optics ? "" : "; no lens figures, give calibration=FILE",
                                p.adjustment.empty() ? "" : "; adjusted by you");
   }
+  result.json["panel_problems"] = nlohmann::json::array();
+  for (const PanelProblem& problem : panels.problems) {
+    result.json["panel_problems"].push_back(
+        {{"file", problem.file.string()}, {"panel", problem.panel}, {"reason", problem.reason}});
+    result.text += fmt::format("  left out: {}\n", problem.reason);
+  }
 }
 
-void add_calibrations(const Options& options, const std::vector<PanelProfile>& profiles, VerbResult& result) {
+Result<void> add_calibrations(const Options& options, const PanelSet& panels, VerbResult& result) {
   result.json["calibrations"] = nlohmann::json::array();
   result.text += "calibrations of Looking Glass units\n";
   const SteadyClock clock;
   CalibrationSearch search = search_this_machine(options.bridge_port, clock);
   search.file = options.calibration;
-  const CalibrationReport report = find_calibrations(search, profiles, clock);
+  if (std::error_code error; !options.calibration.empty() && !fs::exists(options.calibration, error))
+    return fail(ErrorKind::kNoInput, "--calibration {}: there is no such file", options.calibration);
+  const CalibrationReport report = find_calibrations(search, panels, clock);
   for (const FoundCalibration& found : report.found) {
     nlohmann::json entry{{"route", found.route}, {"place", found.place}};
     if (!found.serial.empty()) entry["serial"] = found.serial;
@@ -99,6 +106,7 @@ void add_calibrations(const Options& options, const std::vector<PanelProfile>& p
     result.json["calibrations_missing"][route] = why;
     result.text += fmt::format("  {:<14} none: {}\n", route, why);
   }
+  return {};
 }
 
 nlohmann::json edid_json(const Edid& edid) {
@@ -113,13 +121,12 @@ nlohmann::json edid_json(const Edid& edid) {
 }
 
 /// Which panel a monitor is, by its EDID.
-std::string add_identity(const Edid& edid, const Monitor& monitor, const std::vector<PanelProfile>& profiles,
-                         nlohmann::json& entry) {
+std::string add_identity(const Edid& edid, const Monitor& monitor, const PanelSet& panels, nlohmann::json& entry) {
   entry["edid"] = edid_json(edid);
   std::string words =
       fmt::format("; {} {} {}", edid.manufacturer, edid.product, edid.name.empty() ? "without a name" : edid.name);
   entry["panels"] = nlohmann::json::array();
-  for (const PanelProfile* panel : panels_of_edid(profiles, edid)) {
+  for (const PanelProfile* panel : panels_of_edid(panels, edid)) {
     words += (entry["panels"].empty() ? ": " : " or ") + panel->name;
     entry["panels"].push_back(panel->name);
   }
@@ -130,7 +137,7 @@ std::string add_identity(const Edid& edid, const Monitor& monitor, const std::ve
   return words;
 }
 
-void add_monitors(const Options& options, const std::vector<PanelProfile>& profiles, VerbResult& result) {
+void add_monitors(const Options& options, const PanelSet& panels, VerbResult& result) {
   result.json["monitors"] = nlohmann::json::array();
   result.text += "monitors\n";
   const std::vector<ConnectedEdid> edids = read_connected_edids(options.edids);
@@ -139,7 +146,7 @@ void add_monitors(const Options& options, const std::vector<PanelProfile>& profi
     nlohmann::json entry = each.edid ? edid_json(*each.edid) : nlohmann::json{{"problem", each.edid.error().message}};
     entry["connector"] = each.connector;
     for (const PanelProfile* panel :
-         each.edid ? panels_of_edid(profiles, *each.edid) : std::vector<const PanelProfile*>())
+         each.edid ? panels_of_edid(panels, *each.edid) : std::vector<const PanelProfile*>())
       entry["panels"].push_back(panel->name);
     result.json["edids"].push_back(std::move(entry));
     result.text +=
@@ -165,7 +172,7 @@ void add_monitors(const Options& options, const std::vector<PanelProfile>& profi
                          {"primary", m.primary}};
     std::string words;
     if (const Edid* const edid = edid_of(m, edids); edid != nullptr)
-      words = add_identity(*edid, m, profiles, entry);
+      words = add_identity(*edid, m, panels, entry);
     else
       words = "; no EDID of it was found";
     result.json["monitors"].push_back(std::move(entry));
@@ -177,8 +184,7 @@ void add_monitors(const Options& options, const std::vector<PanelProfile>& profi
 
 /// The optical simulator's curves of a tracked panel.
 Result<VerbResult> crosstalk(const std::string& panel) {
-  DUBSAR_ASSIGN(const auto profiles, load_profiles(panel_folder()));
-  DUBSAR_ASSIGN(const PanelProfile profile, find_profile(profiles, panel));
+  DUBSAR_ASSIGN(const PanelProfile profile, load_panels(panel_folder()).find(panel));
   DUBSAR_ASSIGN(const CrosstalkCurve curve, crosstalk_curve(profile));
   VerbResult result;
   result.json = {{"panel", profile.name},
@@ -215,30 +221,17 @@ Result<VerbResult> crosstalk(const std::string& panel) {
   return result;
 }
 
-/// A folder for one run.
-struct ScratchFolder {
-  fs::path path = fs::temp_directory_path() / fmt::format("dubsar_adjust_{}", ::getpid());
-  ScratchFolder() { fs::create_directories(path); }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-};
-
 Result<VerbResult> adjust_in_window(const Options& options, Progress& progress) {
   const fs::path folder = panel_folder();
   if (options.adjust.size() != 1)
     return fail(ErrorKind::kUsage, "--adjust: figures and --window found, expected one of them");
   if (folder.empty())
     return fail(ErrorKind::kCannotCreate, "cannot save the adjustment: neither XDG_CONFIG_HOME nor HOME is set");
-  const ScratchFolder scratch;
-  DUBSAR_ASSIGN(LensTuner tuner, LensTuner::create(folder, scratch.path, options.adjust[0], options.calibration));
   LiveOptions live;
-  live.session.display = "lenticular:panel=" + options.adjust[0] +
-                         (options.calibration.empty() ? "" : ",calibration=" + options.calibration);
-  live.session.profile_folder = scratch.path;
+  DUBSAR_ASSIGN(live.session.catalog, user_catalog({}));
+  DUBSAR_ASSIGN(LensTuner tuner,
+                LensTuner::create(live.session.catalog, folder, options.adjust[0], options.calibration));
+  live.session.display = tuner.display();
   live.session.pattern = true;
   DUBSAR_ASSIGN(live.session.mapping, default_mapping());
   live.inputs = {"keyboard"};
@@ -287,15 +280,16 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
   if (options.window) return adjust_in_window(options, progress);
   if (!options.adjust.empty()) return adjust(options.adjust);
   if (!options.crosstalk.empty()) return crosstalk(options.crosstalk);
-  DUBSAR_ASSIGN(const auto profiles, load_profiles(panel_folder()));
+  DUBSAR_ASSIGN(const auto catalog, user_catalog(options.plugins));
+  const PanelSet& panels = catalog->panels();
   VerbResult result;
   result.json["panel_folder"] = panel_folder().string();
-  DUBSAR_TRY(add_sinks(options, result));
-  add_panels(profiles, result);
+  add_sinks(*catalog, options, result);
+  add_panels(panels, result);
   result.text += fmt::format("  your own profiles and adjustments: {}\n",
                              panel_folder().empty() ? "HOME is not set" : panel_folder().string());
-  add_calibrations(options, profiles, result);
-  add_monitors(options, profiles, result);
+  DUBSAR_TRY(add_calibrations(options, panels, result));
+  add_monitors(options, panels, result);
   return result;
 }
 

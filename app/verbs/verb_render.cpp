@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <memory>
 
-#include "app/calibration/auto_panel.h"
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
 #include "app/verbs/display_picture.h"
@@ -81,14 +80,13 @@ Result<void> check_display_options(const Options& options) {
 }
 
 /// The display's picture in a window, until it is closed; mouse and keyboard turn it.
-Result<VerbResult> show_in_window(const Options& options, const DisplayOptions& shown, const TriMesh& mesh,
-                                  Progress& progress) {
+Result<VerbResult> show_in_window(const Options& options, const SinkSpec& display, const DisplayOptions& shown,
+                                  const TriMesh& mesh, Progress& progress) {
   const DisplayRequest& request = options.display;
   if (!request.see_from.empty()) return fail(ErrorKind::kUsage, "--see-from makes a file, expected no --window");
   LiveOptions live;
-  DUBSAR_ASSIGN(live.session.display, resolve_display(request.display, request.bridge_port));
-  live.session.profile_folder = shown.profile_folder;
-  live.session.plugins = shown.plugins;
+  live.session.display = display;
+  live.session.catalog = shown.catalog;
   live.session.viewer = shown.viewer;
   live.session.shading = shown.shading;
   live.session.direction = shown.direction;
@@ -149,12 +147,12 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
       shown.screen.width_px = render.camera.width;
       shown.screen.height_px = render.camera.height;
     }
-    DUBSAR_TRY(read_display_options(options.display, shown));
+    DUBSAR_ASSIGN(const SinkSpec display, read_display_options(options.display, shown));
     shown.direction = render.camera.direction;
     shown.shading = render.shading;
     if (options.samples > 0) shown.samples = options.samples;
-    if (options.window) return show_in_window(options, shown, mesh, progress);
-    return render_to_display(options.display, shown, mesh, options.out, progress);
+    if (options.window) return show_in_window(options, display, shown, mesh, progress);
+    return render_to_display(options.display, display, shown, mesh, options.out, progress);
   }
   DUBSAR_ASSIGN(const Picture picture, render_picture(mesh, render, progress));
   if (suffix == ".png") {

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/calibration/auto_panel.h"
+#include "app/calibration/display_choice.h"
 #include "app/cli/config_folder.h"
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
@@ -16,7 +16,6 @@
 #include "core/base/atomic_file.h"
 #include "core/base/log.h"
 #include "devices/looking_glass/bridge_client.h"
-#include "display/sinks/plugin_sink.h"
 
 namespace dubsar::app {
 namespace {
@@ -108,9 +107,9 @@ VerbResult describe(const std::string& display, const OffscreenResult& done, std
 
 Result<SessionOptions> session_options(const Options& options) {
   SessionOptions session;
-  DUBSAR_ASSIGN(session.display, resolve_display(options.display, options.bridge_port));
-  session.profile_folder = panel_folder();
-  DUBSAR_ASSIGN(session.plugins, load_plugins(options.plugins));
+  DUBSAR_ASSIGN(DisplayChoice choice, choose_display(options.display, options.plugins, options.bridge_port));
+  session.display = std::move(choice.display);
+  session.catalog = std::move(choice.catalog);
   session.model_folder = model_folder();
   DUBSAR_ASSIGN(session.shading, shading_preset(options.style));
   DUBSAR_ASSIGN(session.direction, parse_view_direction(options.view));

@@ -17,6 +17,7 @@
 #include "core/base/log.h"
 #include "core/image_io/png_file.h"
 #include "display/render/compose_pass.h"
+#include "display/sinks/field_cadence.h"
 #include "display/sinks/sink_window.h"
 #include "input/window_events.h"
 
@@ -64,6 +65,7 @@ class Live {
   void notice(std::string text, TimestampNs now);
   void update_overlay(TimestampNs now);
   std::vector<HelpSection> help() const;
+  Field wait_turn();
   Result<void> show(TimestampNs begun);
   bool over(TimestampNs now);
   void wait();
@@ -71,6 +73,7 @@ class Live {
   Result<void> end_recording();
 
   bool simulated() const noexcept { return options_.simulated_fps > 0; }
+  int fields() const { return session_->traits().fields; }
   TimestampNs now() const { return simulated() ? manual_.now() : clock_.now(); }
 
   const LiveOptions& options_;
@@ -84,7 +87,8 @@ class Live {
   WindowEvents events_;
   std::unique_ptr<SourceSet> sources_;
   DisplayClock display_clock_;
-  std::vector<std::string> displays_;
+  FieldCadence cadence_;
+  std::vector<SinkSpec> displays_;
   std::size_t display_ = 0;
   Mapping mapping_;
   FrameReport report_;
@@ -101,26 +105,21 @@ class Live {
 
 Result<void> Live::open(const TriMesh& mesh) {
   WindowOptions place = options_.window;
-  DUBSAR_TRY(choose_place(options_.session, options_.fullscreen, place));
   SessionOptions wanted = options_.session;
-  std::string note;
-  {
-    DUBSAR_ASSIGN(SinkWindow shown,
-                  open_sink_window(wanted.display, place, wanted.profile_folder, "side_by_side", wanted.plugins));
-    const std::string_view name = shown.sink->traits().name;
-    if (!wanted.display.starts_with(name)) wanted.display = name;
-    note = shown.note;
-    shown.sink.reset();
-    window_ = std::move(shown.window);
-  }
+  DUBSAR_ASSIGN(auto sink, wanted.catalog->make(wanted.display));
+  DUBSAR_TRY(choose_place(sink->traits(), options_.fullscreen, place));
+  DUBSAR_ASSIGN(SinkWindow shown, open_sink_window(*wanted.catalog, wanted.display, std::move(sink), place));
+  wanted.display = shown.display;
+  const std::string note = shown.note;
+  window_ = std::move(shown.window);
   wanted.screen = window_->screen(wanted.screen);
   wanted.stereo_window = window_->stereo();
   if (simulated()) wanted.quality = Quality::kExact;
-  DUBSAR_ASSIGN(session_, Session::create(mesh, wanted));
+  DUBSAR_ASSIGN(session_, Session::create(mesh, wanted, std::move(shown.sink)));
   DUBSAR_ASSIGN(overlay_, Overlay::create());
   displays_ = {wanted.display};
   if (options_.displays.empty()) {
-    displays_ = displays_for_window(wanted.display, wanted.screen, window_->stereo(), wanted.profile_folder);
+    displays_ = displays_for_window(wanted.display, wanted.screen, window_->stereo(), wanted.catalog->panels());
   } else {
     displays_.insert(displays_.end(), options_.displays.begin(), options_.displays.end());
   }
@@ -166,6 +165,7 @@ Result<void> Live::place_changed() {
   if (size.width < 1 || size.height < 1) return {};  // minimised
   DUBSAR_TRY(session_->set_screen(window_->screen(options_.session.screen)));
   display_clock_.set_refresh(window_->refresh_hz());
+  cadence_.set_refresh(window_->refresh_hz());
   const SinkTraits traits = session_->traits();
   whole_.reset();
   if (!traits.exact_pixels && traits.output != size && traits.output.width > 0 && traits.output.height > 0) {
@@ -188,8 +188,8 @@ void Live::switch_display(int step) {
     if (done) done = place_changed();
     if (done) {
       display_ = next;
-      notice("display " + displays_[next], now());
-      log_info("display {}", displays_[next]);
+      notice("display " + displays_[next].text(), now());
+      log_info("display {}", displays_[next].text());
       return;
     }
     log_warning("{}", done.error().message);
@@ -263,7 +263,7 @@ void Live::use_window_event(const WindowEvent& told) {
 
 std::vector<HelpSection> Live::help() const {
   StateFigures state;
-  state.display = displays_[display_];
+  state.display = displays_[display_].text();
   state.traits = session_->traits();
   state.head = report_.head;
   state.eyes_mm = report_.viewer.centre_mm();
@@ -296,11 +296,19 @@ void Live::update_overlay(TimestampNs now) {
   session_->set_overlay(overlay_->text().empty() ? nullptr : overlay_.get());
 }
 
+/// Waits where a beat of the monitor is too near, and says whose turn it is behind it.
+Field Live::wait_turn() {
+  const TimestampNs turn = cadence_.turn(clock_.now());
+  std::this_thread::sleep_for(std::chrono::nanoseconds(std::max<TimestampNs>(0, turn - clock_.now())));
+  return cadence_.next(std::max(turn, clock_.now()));
+}
+
 /// Draws and presents; figures are kept, files written.
 Result<void> Live::show(TimestampNs begun) {
   const double cpu = process_cpu_seconds();
   const Surface target = window_->surface();
-  DUBSAR_TRY(session_->paint(whole_ ? whole_->surface() : target));
+  const Field field = fields() > 1 ? wait_turn() : Field::kFirst;
+  DUBSAR_TRY(session_->paint(whole_ ? whole_->surface() : target, field));
   if (whole_) DUBSAR_TRY(fit_into(whole_->surface(), target));
   if (!options_.frames.empty() && (simulated() || out_.frames % options_.every == 0)) {
     DUBSAR_ASSIGN(const Image picture, window_->read());
@@ -311,8 +319,10 @@ Result<void> Live::show(TimestampNs begun) {
   }
   const TimestampNs drawn = clock_.now();
   window_->present();
+  if (fields() > 1) glFinish();  // the beat is over when the call is, not when the driver has queued it
   const TimestampNs presented = clock_.now();
   display_clock_.presented(begun, drawn, presented);
+  cadence_.presented(presented);
   const auto keep = [](std::deque<double>& values, double value) {
     values.push_back(value);
     if (values.size() > kRecent) values.pop_front();
@@ -348,6 +358,7 @@ bool Live::over(TimestampNs now) {
 /// Until the next picture is due, or while nothing moves until something happens.
 void Live::wait() {
   if (simulated()) return manual_.advance(static_cast<TimestampNs>(1e9 / options_.simulated_fps));
+  if (fields() > 1) return;  // the next present waits for the monitor
   if (!session_->needs_paint() && !report_.moving) return window_->wait_events(kIdleS);
   for (TimestampNs now = clock_.now(); now < display_clock_.next_start() && !window_->should_close();
        now = clock_.now())
@@ -400,7 +411,7 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
     drawn_ = false;
     const PixelSize size = window_->size();
     const bool damaged = window_->take_damaged();
-    const bool due = simulated() ? steps % options_.every == 0 : damaged || session_->needs_paint();
+    const bool due = simulated() ? steps % options_.every == 0 : damaged || session_->needs_paint() || fields() > 1;
     if (due && size.width > 0 && size.height > 0) {
       auto shown = show(clock_.now());
       failures_ = shown ? 0 : failures_ + 1;
@@ -409,15 +420,17 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
       if (shown) report_.light = session_->light();
       progress_.advance(1);
     }
-    if (look)
+    if (look) {
+      const std::string name = displays_[display_].text();
       look({.report = report_,
             .drawn = drawn_,
             .frames = out_.frames,
             .help = help_open_,
-            .display = displays_[display_],
+            .display = name,
             .sources = sources_->rows(),
             .session = *session_,
             .window = *window_});
+    }
     ends = window_->should_close() || over(now());
     if (!ends) wait();
   }
@@ -425,7 +438,7 @@ Result<LiveResult> Live::run(const TriMesh& mesh, const std::function<void(const
   out_.seconds = 1e-9 * static_cast<double>(now() - start_);
   out_.fps = intervals_ms_.empty() ? 0.0 : 1e3 / std::max(quantile(intervals_ms_, 0.5), 1e-3);
   out_.view = session_->view();
-  out_.display = displays_[display_];
+  out_.display = displays_[display_].text();
   out_.rows = sources_->rows();
   out_.sources = session_->input().states();
   DUBSAR_TRY(end_recording());

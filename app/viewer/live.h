@@ -31,7 +31,7 @@ struct LiveOptions {
   /// Whether the window covers a monitor. None: displays that need exact pixels do, on the monitor of
   /// `window.monitor`, else the one that has the panel's pixels; others do not.
   std::optional<bool> fullscreen;
-  std::vector<std::string> displays;  ///< what the keys go through besides session.display; none: what fits the window
+  std::vector<SinkSpec> displays;  ///< what the keys go through besides session.display; none: what fits the window
   /// 0: real time. Else simulated time: this many steps a second, however long they take, exact views, and a picture at
   /// each `every`-th step; the same script gives the same pictures on every machine.
   double simulated_fps = 0.0;

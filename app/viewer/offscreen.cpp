@@ -76,7 +76,8 @@ Result<OffscreenResult> run_offscreen(const TriMesh& mesh, const OffscreenOption
   for (; out.frames < most && left_after_end > 0; ++out.frames) {
     if (progress.cancelled()) return cancelled_error();
     const double cpu = process_cpu_seconds();
-    DUBSAR_ASSIGN(const FrameReport report, session->draw(clock.now(), clock.now() + delay, surface.surface()));
+    const Field field = traits.fields > 1 && out.frames % 2 == 1 ? Field::kSecond : Field::kFirst;
+    DUBSAR_ASSIGN(const FrameReport report, session->draw(clock.now(), clock.now() + delay, surface.surface(), field));
     const bool write = !options.frames.empty() && out.frames % options.every == 0;
     if (write || look) {
       DUBSAR_ASSIGN(const Image picture, surface.read());

@@ -161,7 +161,8 @@ Viewer Session::Parts::viewer_at(const FollowedEyes& eyes) const {
 Session::Session(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Session::~Session() = default;
 
-Result<std::unique_ptr<Session>> Session::create(const TriMesh& mesh, const SessionOptions& options) {
+Result<std::unique_ptr<Session>> Session::create(const TriMesh& mesh, const SessionOptions& options,
+                                                 std::unique_ptr<OutputSink> sink) {
   if (!(options.margin >= 0 && options.margin <= 0.45) || options.samples < 1 || options.samples > 8)
     return fail(ErrorKind::kUsage, "view: margin {} and {} samples found, expected 0 to 0.45 and 1 to 8",
                 options.margin, options.samples);
@@ -179,7 +180,10 @@ Result<std::unique_ptr<Session>> Session::create(const TriMesh& mesh, const Sess
     DUBSAR_ASSIGN(parts->mesh, LodMesh::exact(packed));
     DUBSAR_ASSIGN(parts->renderer, Renderer::create());
   }
-  DUBSAR_ASSIGN(parts->sink, make_sink(options.display, options.profile_folder, options.plugins));
+  parts->sink = std::move(sink);
+  if (!parts->sink) {
+    DUBSAR_ASSIGN(parts->sink, options.catalog->make(options.display));
+  }
   DUBSAR_TRY(parts->prepare(*parts->sink));
   return std::unique_ptr<Session>(new Session(std::move(parts)));
 }
@@ -188,8 +192,8 @@ InputMixer& Session::input() noexcept { return parts_->mixer; }
 SinkTraits Session::traits() const { return parts_->sink->traits(); }
 const ViewState& Session::view() const noexcept { return parts_->seen; }
 
-Result<void> Session::set_display(std::string_view spec) {
-  DUBSAR_ASSIGN(auto sink, make_sink(spec, parts_->options.profile_folder, parts_->options.plugins));
+Result<void> Session::set_display(const SinkSpec& spec) {
+  DUBSAR_ASSIGN(auto sink, parts_->options.catalog->make(spec));
   DUBSAR_TRY(parts_->prepare(*sink));
   parts_->sink = std::move(sink);
   return {};
@@ -302,7 +306,7 @@ Result<void> Session::Parts::refine() {
   return {};
 }
 
-Result<void> Session::paint(const Surface& target) {
+Result<void> Session::paint(const Surface& target, Field field) {
   Parts& p = *parts_;
   if (p.moved()) {
     DUBSAR_TRY(p.paint_moved());
@@ -310,7 +314,7 @@ Result<void> Session::paint(const Surface& target) {
     DUBSAR_TRY(p.refine());
   }
   p.overlay_changed = false;
-  if (p.overlay == nullptr) return p.sink->compose(*p.array, target);
+  if (p.overlay == nullptr) return p.sink->compose(*p.array, target, field);
   const ViewArray& array = *p.array;
   if (!p.overlaid) {
     DUBSAR_ASSIGN(p.overlaid, ViewArray::create(array.width(), array.height(), array.layers()));
@@ -318,7 +322,7 @@ Result<void> Session::paint(const Surface& target) {
   glCopyImageSubData(array.coded(), GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, p.overlaid->coded(), GL_TEXTURE_2D_ARRAY, 0, 0, 0,
                      0, array.width(), array.height(), array.layers());
   DUBSAR_TRY(p.overlay->paint(*p.overlaid, p.window));
-  return p.sink->compose(*p.overlaid, target);
+  return p.sink->compose(*p.overlaid, target, field);
 }
 
 std::optional<PanelLight> Session::light() const { return parts_->sink->light(); }
@@ -330,10 +334,10 @@ void Session::set_overlay(LayerPainter* painter) {
   if (painter == nullptr) parts_->overlaid.reset();
 }
 
-Result<FrameReport> Session::draw(TimestampNs now, TimestampNs display_time, const Surface& target) {
+Result<FrameReport> Session::draw(TimestampNs now, TimestampNs display_time, const Surface& target, Field field) {
   FrameReport report = poll(now, display_time);
   parts_->painted.reset();
-  DUBSAR_TRY(paint(target));
+  DUBSAR_TRY(paint(target, field));
   report.light = light();
   return report;
 }

@@ -18,7 +18,7 @@
 #include "display/optics/optics.h"
 #include "display/render/camera.h"
 #include "display/render/shading.h"
-#include "display/sinks/output_sink.h"
+#include "display/sinks/sink_catalog.h"
 #include "input/mixer.h"
 #include "input/navigation/mapping.h"
 #include "input/navigation/view_state.h"
@@ -37,12 +37,12 @@ enum class Quality {
 };
 
 struct SessionOptions {
-  std::string display = "mono";          ///< as make_sink() reads it
+  SinkSpec display{"mono"};
+  /// Displays and panels that may be named; who owns it, too, may put other figures into it and set the display again.
+  std::shared_ptr<SinkCatalog> catalog = std::make_shared<SinkCatalog>();
   std::filesystem::path model_folder{};  ///< networks of the webcam source; empty: none
-  std::filesystem::path profile_folder{};
-  std::vector<std::shared_ptr<SinkPlugin>> plugins{};  ///< their names count as displays, too
-  Screen screen{};                                     ///< in an offscreen session, what the sink does not know better
-  Viewer viewer{};                                     ///< where the eyes are while no head is tracked
+  Screen screen{};                       ///< in an offscreen session, what the sink does not know better
+  Viewer viewer{};                       ///< where the eyes are while no head is tracked
   Shading shading{};
   ViewDirection direction{};  ///< the front of the home view
   double margin = 0.08;       ///< free border around the object at zoom 1
@@ -81,13 +81,14 @@ struct FrameReport {
 class Session {
  public:
   /// kUnavailable without GL 4.5 or for a sink that needs a stereo visual; kUsage, kBadData, kTryAgain as pack_mesh(),
-  /// make_sink().
-  static Result<std::unique_ptr<Session>> create(const TriMesh& mesh, const SessionOptions& options);
+  /// SinkCatalog::make(). `sink` is what options.display names, where somebody made it already.
+  static Result<std::unique_ptr<Session>> create(const TriMesh& mesh, const SessionOptions& options,
+                                                 std::unique_ptr<OutputSink> sink = nullptr);
   ~Session();
 
   /// Sources and the sink may be changed while it runs.
   InputMixer& input() noexcept;
-  Result<void> set_display(std::string_view spec);
+  Result<void> set_display(const SinkSpec& spec);
   Result<void> set_screen(const Screen& screen);
   SinkTraits traits() const;
 
@@ -101,12 +102,13 @@ class Session {
   /// True when paint() would make another picture than it did last: something moved by more than 0.05 mm of an eye, the
   /// overlay or the display changed, or views are still coarse and things rest.
   bool needs_paint() const noexcept;
-  /// Renders the views of the last poll() and composes them on `target`.
-  Result<void> paint(const Surface& target);
+  /// Renders the views of the last poll() and composes them on `target`: the field that is due, where traits() has two.
+  Result<void> paint(const Surface& target, Field field = Field::kFirst);
   /// Where the panel's lenses send what was painted last.
   std::optional<PanelLight> light() const;
   /// poll() and paint(), whatever changed.
-  Result<FrameReport> draw(TimestampNs now, TimestampNs display_time, const Surface& target);
+  Result<FrameReport> draw(TimestampNs now, TimestampNs display_time, const Surface& target,
+                           Field field = Field::kFirst);
 
   /// Drawn over the views from the next paint() on; call it again when it looks different. Null: nothing. It outlives
   /// the session or is taken away.

@@ -2,14 +2,9 @@
 
 #include <algorithm>
 
-#include "display/panels/panel_profile.h"
-#include "display/sinks/output_sink.h"
-
 namespace dubsar::app {
 
-Result<void> choose_place(const SessionOptions& session, std::optional<bool> fullscreen, WindowOptions& window) {
-  DUBSAR_ASSIGN(const auto sink, make_sink(session.display, session.profile_folder, session.plugins));
-  const SinkTraits traits = sink->traits();
+Result<void> choose_place(const SinkTraits& traits, std::optional<bool> fullscreen, WindowOptions& window) {
   window.fullscreen = fullscreen.value_or(false);
   if (fullscreen || !traits.exact_pixels) return {};
   if (traits.name != "lenticular" || !window.monitor.empty()) {
@@ -26,18 +21,17 @@ Result<void> choose_place(const SessionOptions& session, std::optional<bool> ful
   return {};
 }
 
-std::vector<std::string> displays_for_window(const std::string& first, const Screen& screen, bool stereo,
-                                             const std::filesystem::path& profile_folder) {
-  std::vector<std::string> out{first};
-  const auto add = [&](std::string name) {
-    if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(std::move(name));
+std::vector<SinkSpec> displays_for_window(const SinkSpec& first, const Screen& screen, bool stereo,
+                                          const PanelSet& panels) {
+  std::vector<SinkSpec> out{first};
+  const auto add = [&](SinkSpec spec) {
+    if (std::find(out.begin(), out.end(), spec) == out.end()) out.push_back(std::move(spec));
   };
-  for (const char* name : {"mono", "anaglyph", "side_by_side", "top_bottom", "interlaced"}) add(name);
-  if (stereo) add("quad_buffer");
-  if (const auto profiles = load_profiles(profile_folder))
-    for (const PanelProfile& panel : *profiles)
-      if (panel.width_px == screen.width_px && panel.height_px == screen.height_px && (panel.sheet || panel.optics))
-        add("lenticular:" + panel.name);
+  for (const char* name : {"mono", "anaglyph", "side_by_side", "top_bottom", "interlaced"}) add({name});
+  if (stereo) add({"quad_buffer"});
+  for (const PanelProfile& panel : panels.profiles)
+    if (panel.width_px == screen.width_px && panel.height_px == screen.height_px && (panel.sheet || panel.optics))
+      add({"lenticular", {{panel.name}}});
   return out;
 }
 

@@ -1,24 +1,23 @@
 #pragma once
 // Which monitor a display's window belongs on, and which displays a window can show.
 
-#include <filesystem>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
-#include "app/viewer/session.h"
 #include "display/render/context_glfw.h"
+#include "display/sinks/output_sink.h"
+#include "display/sinks/sink_catalog.h"
 
 namespace dubsar::app {
 
 /// Sets `fullscreen` and `monitor` of `window`: as told, else displays that need exact pixels cover a monitor, that of
-/// `window.monitor` or the one that has the panel's pixels. Errors: those of make_sink() and list_monitors().
-Result<void> choose_place(const SessionOptions& session, std::optional<bool> fullscreen, WindowOptions& window);
+/// `window.monitor` or the one that has the panel's pixels. `display` has not seen a window yet. Errors: those of
+/// list_monitors().
+Result<void> choose_place(const SinkTraits& display, std::optional<bool> fullscreen, WindowOptions& window);
 
-/// Displays that a window on this screen can show, as make_sink() reads them: `first`, those for any monitor,
-/// panels of exactly this size, and quad_buffer in a stereo window.
-std::vector<std::string> displays_for_window(const std::string& first, const Screen& screen, bool stereo,
-                                             const std::filesystem::path& profile_folder);
+/// Displays that a window on this screen can show: `first`, those for any monitor, panels of exactly this size, and
+/// quad_buffer in a stereo window.
+std::vector<SinkSpec> displays_for_window(const SinkSpec& first, const Screen& screen, bool stereo,
+                                          const PanelSet& panels);
 
 }  // namespace dubsar::app

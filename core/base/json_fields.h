@@ -22,6 +22,7 @@ class JsonFields {
   std::string text(const char* name, const char* fallback);
 
   bool has(const char* name) const { return object_->is_object() && object_->contains(name); }
+  const std::string& where() const noexcept { return where_; }
   void complain(std::string sentence);
   /// The first complaint, or nothing.
   Result<void> finish() const;

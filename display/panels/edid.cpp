@@ -6,8 +6,6 @@
 #include <cmath>
 #include <fstream>
 
-#include "display/render/context_glfw.h"
-
 namespace dubsar {
 namespace fs = std::filesystem;
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "display/panels/monitor.h"
 
 namespace dubsar {
 
@@ -37,8 +38,6 @@ struct ConnectedEdid {
 /// All cardN-CONNECTOR/edid below `folder` that are not empty, by card and connector. Linux; elsewhere there
 /// are none.
 std::vector<ConnectedEdid> read_connected_edids(const std::filesystem::path& folder = "/sys/class/drm");
-
-struct Monitor;
 
 /// The EDID of a monitor that the window system tells of: by the connector's name ("HDMI-1" of X is the
 /// kernel's "HDMI-A-1"), where drivers that count connectors otherwise must not contradict the size: then by

@@ -1,13 +1,12 @@
 #include "display/panels/panel_adjust.h"
 
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/base/atomic_file.h"
 #include "core/base/json_fields.h"
 #include "core/base/json_text.h"
-#include "core/base/log.h"
+#include "core/base/parse_number.h"
 
 namespace dubsar {
 namespace fs = std::filesystem;
@@ -40,16 +39,13 @@ Result<PanelAdjustment> parse_adjustment(std::string_view text) {
                                          : key == "slope"  ? &out.slope
                                          : key == "center" ? &out.center
                                                            : nullptr;
-    double value = 0.0;
-    const char* const end = word.data() + word.size();
-    const bool read = equals != std::string_view::npos && place != nullptr && !*place &&
-                      std::from_chars(word.data() + equals + 1, end, value).ptr == end && equals + 1 < word.size();
-    if (!read)
+    const auto value = equals == std::string_view::npos ? std::nullopt : parse_number(word.substr(equals + 1));
+    if (!value || place == nullptr || *place)
       return fail(ErrorKind::kUsage,
                   "adjustment \"{}\" not understood at \"{}\", expected pitch=NUMBER,slope=NUMBER,center=NUMBER, each "
                   "once at most",
                   text, word);
-    *place = value;
+    *place = *value;
   }
   if (out.empty())
     return fail(ErrorKind::kUsage, "adjustment \"{}\" is empty, expected pitch=NUMBER,slope=NUMBER,center=NUMBER",
@@ -82,56 +78,79 @@ Result<void> apply_adjustment(const PanelAdjustment& adjustment, PanelProfile& p
   return {};
 }
 
-bool is_adjustment_file(const fs::path& file) { return file.filename().string().ends_with(kSuffix); }
+namespace {
 
-Result<void> load_adjustment(const fs::path& file, std::span<PanelProfile> profiles) {
+/// `panel` becomes the name that the file says.
+Result<void> read_adjustment(const fs::path& file, PanelSet& panels, std::string& panel) {
   DUBSAR_ASSIGN(const std::string text, read_text_file(file, kMaxBytes));
-  const auto object = parse_json(text, file.string());
-  if (!object) return fail(ErrorKind::kConfig, "{}", object.error().message);
-  JsonFields fields(*object, fmt::format("adjustment {}", file.string()));
-  const std::string panel = fields.text("adjusts", nullptr);
+  DUBSAR_ASSIGN(const nlohmann::json object, parse_json(text, file.string()));
+  JsonFields fields(object, fmt::format("adjustment {}", file.string()));
+  if (!object.is_object()) fields.complain(fmt::format("{} found, expected an object", object.type_name()));
+  const std::string named = fields.text("adjusts", nullptr);
   PanelAdjustment adjustment;
   for (const auto& [name, place] :
        {std::pair{"pitch", &adjustment.pitch}, {"slope", &adjustment.slope}, {"center", &adjustment.center}})
     if (fields.has(name)) *place = fields.number(name, -kMostSlope, kMostSlope);
+  if (is_panel_name(named))
+    panel = named;
+  else
+    fields.complain("adjusts is not the name of a panel, expected letters, digits, '.', '-' and '_'");
   DUBSAR_TRY(fields.finish());
-  for (PanelProfile& profile : profiles)
+  for (PanelProfile& profile : panels.profiles)
     if (profile.name == panel) {
-      if (profile.sheet || profile.optics) return apply_adjustment(adjustment, profile);
-      profile.adjustment = adjustment;  // waits for a calibration
+      const bool waits = !profile.sheet && !profile.optics;  // for a calibration
+      if (waits) profile.adjustment = adjustment;
+      const auto applied = waits ? Result<void>() : apply_adjustment(adjustment, profile);
+      if (!applied) return fail(ErrorKind::kConfig, "{}: {}", file.string(), applied.error().message);
       return {};
     }
-  log_warning("adjustment {}: no panel is called \"{}\", so it is not used", file.string(), panel);
-  return {};
+  return fail(ErrorKind::kConfig, "adjustment {}: no panel is called \"{}\", so it is not used", file.string(), panel);
+}
+
+}  // namespace
+
+bool is_adjustment_file(const fs::path& file) { return file.filename().string().ends_with(kSuffix); }
+
+void load_adjustment(const fs::path& file, PanelSet& panels) {
+  std::string panel = file.filename().string();
+  panel.erase(panel.size() - kSuffix.size());
+  if (auto read = read_adjustment(file, panels, panel); !read)
+    panels.problems.push_back({file, panel, read.error().message});
 }
 
 Result<fs::path> save_adjustment(const fs::path& folder, std::string_view panel, const PanelAdjustment& adjustment) {
-  DUBSAR_ASSIGN(const auto profiles, load_profiles(folder));
-  DUBSAR_ASSIGN(PanelProfile profile, find_profile(profiles, panel));
+  DUBSAR_ASSIGN(PanelProfile profile, load_panels(folder).find(panel));
+  return save_adjustment(folder, std::move(profile), adjustment);
+}
+
+Result<fs::path> save_adjustment(const fs::path& folder, PanelProfile profile, const PanelAdjustment& adjustment) {
   PanelAdjustment all = profile.adjustment;
   if (adjustment.pitch) all.pitch = adjustment.pitch;
   if (adjustment.slope) all.slope = adjustment.slope;
   if (adjustment.center) all.center = adjustment.center;
   DUBSAR_TRY(apply_adjustment(all, profile));
-  nlohmann::json object{{"adjusts", panel}};
+  nlohmann::json object{{"adjusts", profile.name}};
   if (all.pitch) object["pitch"] = *all.pitch;
   if (all.slope) object["slope"] = *all.slope;
   if (all.center) object["center"] = *all.center;
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) return fail(ErrorKind::kCannotCreate, "cannot create the folder {}: {}", folder.string(), error.message());
-  const fs::path file = file_of(folder, panel);
+  const fs::path file = file_of(folder, profile.name);
   DUBSAR_TRY(write_file_atomically(file, dump_json_lines(object) + "\n"));
   return file;
 }
 
 Result<bool> remove_adjustment(const fs::path& folder, std::string_view panel) {
-  DUBSAR_ASSIGN(const auto profiles, load_profiles(folder));
-  DUBSAR_TRY(find_profile(profiles, panel));
+  const fs::path file = file_of(folder, panel);
   std::error_code error;
-  const bool removed = fs::remove(file_of(folder, panel), error);
-  if (error) return fail(ErrorKind::kIo, "cannot remove {}: {}", file_of(folder, panel).string(), error.message());
-  return removed;
+  const bool plain = is_panel_name(panel);  // else the name would lead out of the folder
+  const bool removed = plain && fs::remove(file, error);
+  if (error) return fail(ErrorKind::kIo, "cannot remove {}: {}", file.string(), error.message());
+  if (removed) return true;
+  if (const auto known = load_panels(folder).find(panel); !known && known.error().kind == ErrorKind::kUsage)
+    return tl::unexpected<Error>(known.error());
+  return false;
 }
 
 }  // namespace dubsar

@@ -2,10 +2,9 @@
 // The user's corrections of a panel's lens figures: one small file PANEL.adjust.json beside the user's profiles.
 
 #include <filesystem>
-#include <span>
 #include <string_view>
 
-#include "display/panels/panel_profile.h"
+#include "display/panels/panel_set.h"
 
 namespace dubsar {
 
@@ -18,15 +17,21 @@ Result<void> apply_adjustment(const PanelAdjustment& adjustment, PanelProfile& p
 
 bool is_adjustment_file(const std::filesystem::path& file);
 
-/// Reads the file and applies it to the profile that it names; a panel that is not there is left alone with a warning.
-Result<void> load_adjustment(const std::filesystem::path& file, std::span<PanelProfile> profiles);
+/// Reads the file and applies it to the profile that it names. What is wrong, a panel that is not there included,
+/// becomes a problem of `panels`.
+void load_adjustment(const std::filesystem::path& file, PanelSet& panels);
 
-/// Adds to what is saved for `panel` (a profile of load_profiles(folder)) and writes it atomically, making the folder.
-/// Returns the file. Errors as apply_adjustment, then of writing.
+/// Adds to what is saved for `panel` (one of load_panels(folder)) and writes it atomically, making the folder.
+/// Returns the file. Errors of PanelSet::find, as apply_adjustment, then of writing.
 Result<std::filesystem::path> save_adjustment(const std::filesystem::path& folder, std::string_view panel,
                                               const PanelAdjustment& adjustment);
 
-/// Forgets what is saved for `panel`. Returns false when nothing was.
+/// The same for a panel whose figures may come from elsewhere, a calibration.
+Result<std::filesystem::path> save_adjustment(const std::filesystem::path& folder, PanelProfile panel,
+                                              const PanelAdjustment& adjustment);
+
+/// Forgets what is saved for `panel`, whatever it is: the file is not read. Returns false when nothing was; kUsage when
+/// there is no such panel either.
 Result<bool> remove_adjustment(const std::filesystem::path& folder, std::string_view panel);
 
 }  // namespace dubsar

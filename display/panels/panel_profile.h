@@ -1,10 +1,8 @@
 #pragma once
-// Panels are data: what a display is made of, read from JSON in the source tree, in the user's configuration folder or
-// from a unit's own calibration file. Bad figures are refused by name and range.
+// Panels are data: what a display is made of, read from JSON. Bad figures are refused by name and range.
 
-#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,7 +10,6 @@
 #include "core/base/result.h"
 #include "display/optics/lens.h"
 #include "display/optics/weave.h"
-#include "display/panels/edid.h"
 
 namespace dubsar {
 
@@ -62,46 +59,12 @@ struct PanelProfile {
   double height_mm() const noexcept { return width_mm * height_px / width_px; }
 };
 
-/// Reads one profile or an array of them. `source` names the text in errors. kConfig when a field is missing, of a
-/// wrong type or out of range; the sentence has the field's name, the value found and the range.
-Result<std::vector<PanelProfile>> parse_profiles(std::string_view json_text, std::string_view source);
+/// What a panel may be called: 1 to 64 letters, digits, '.', '-' and '_', no '.' first. Files are named after it.
+bool is_panel_name(std::string_view name);
 
-/// The profiles of the program (embedded) followed by those of *.json in `user_folder` (may be missing); a user's
-/// profile replaces one of the same name. Adjustments (display/panels/panel_adjust.h) are applied last. Errors as
-/// parse_profiles.
-Result<std::vector<PanelProfile>> load_profiles(const std::filesystem::path& user_folder);
-
-/// kUsage with the names there are.
-Result<PanelProfile> find_profile(std::span<const PanelProfile> profiles, std::string_view name);
-
-/// A unit's own calibration (`visual.json` of a Looking Glass, at most 64 KiB).
-struct Calibration {
-  LookingGlassFigures figures;
-  double view_cone_deg = 40.0;
-  double fringe = 0.0;
-  std::string serial, config_version, source;
-};
-
-/// Reads a calibration: numbers may be bare or wrapped as {"value": x}. Refused (kConfig) by name and range: pitch
-/// 1..10000, slope not 0, screen 1..16384, DPI 10..2000, viewCone 1..170, at most 10 subpixel cells, all finite.
-Result<Calibration> parse_calibration(std::string_view json_text, std::string_view source);
-
-/// The profile with the calibration's lens figures and size, then the profile's adjustment; picks the model by name if
-/// one is given, else by serial, else by size.
-Result<PanelProfile> calibrated_profile(std::span<const PanelProfile> profiles, const Calibration& calibration,
-                                        std::string_view model = {});
-
-/// The panel that options name: a profile's name, a calibration file, or both (both empty: kUsage).
-Result<PanelProfile> choose_panel(const std::filesystem::path& user_folder, std::string_view name,
-                                  const std::filesystem::path& calibration_file);
-
-/// The panels that a monitor with this EDID can be, by the profile's own pixels and, where the EDID tells it, the
-/// picture's width to 15 %: Looking Glasses when its name starts with "LKG" (only those whose serials start like its
-/// name or serial, if there are any), tracked panels by manufacturer and product.
-std::vector<const PanelProfile*> panels_of_edid(std::span<const PanelProfile> profiles, const Edid& edid);
-
-/// Calibration files on mounted units: <root>/*/LKG_calibration/visual.json under each root, e.g. /media/$USER.
-std::vector<std::filesystem::path> find_calibration_files(std::span<const std::filesystem::path> roots);
+/// Reads one profile. `source` names the text in errors. kConfig when a field is missing, of a wrong type or out of
+/// range; the sentence has the field's name, the value found and the range.
+Result<PanelProfile> parse_profile(const nlohmann::json& object, std::string_view source);
 
 /// How far away the middle of the viewing zone is: the profile's figure, else 14 degrees of field of view over its
 /// height.

@@ -5,8 +5,7 @@
 
 #include "core/image_io/image.h"
 #include "display/render/gl_objects.h"
-#include "display/render/view_array.h"
-#include "display/sinks/output_sink.h"
+#include "display/render/surface.h"
 
 namespace dubsar {
 

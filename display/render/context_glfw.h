@@ -12,19 +12,12 @@
 #include "core/base/clock.h"
 #include "core/base/result.h"
 #include "core/image_io/image.h"
+#include "display/optics/off_axis.h"
+#include "display/panels/monitor.h"
 #include "display/render/gl_context.h"
-#include "display/sinks/output_sink.h"
+#include "display/render/surface.h"
 
 namespace dubsar {
-
-struct Monitor {
-  std::string name;
-  int x = 0, y = 0;                        ///< place on the desktop
-  int width_px = 0, height_px = 0;         ///< of its current mode
-  double width_mm = 0.0, height_mm = 0.0;  ///< 0 when the monitor does not say
-  double refresh_hz = 0.0;
-  bool primary = false;
-};
 
 /// kUnavailable, with the reason, when there is no display server.
 Result<std::vector<Monitor>> list_monitors();

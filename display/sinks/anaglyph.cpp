@@ -5,10 +5,12 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 #include <string>
+#include <vector>
 
 #include "display/optics/srgb.h"
 #include "display/render/compose_pass.h"
-#include "display/sinks/sink_options.h"
+#include "display/render/view_array.h"
+#include "display/sinks/stereo_views.h"
 
 namespace dubsar {
 namespace {
@@ -56,7 +58,7 @@ class AnaglyphSink : public OutputSink {
   }
   std::span<const View> views(const Viewer& viewer) override { return views_ = stereo_views(screen_, viewer); }
 
-  Result<void> compose(const ViewArray& views, const Surface& target) override {
+  Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
     DUBSAR_TRY(pass_.begin(target, views.coded()));
     const glm::mat3 left(variant_.left), right(variant_.right);
     glUniformMatrix3fv(kLeftLocation, 1, GL_FALSE, glm::value_ptr(left));
@@ -88,20 +90,16 @@ Image anaglyph_views(const Image& left, const Image& right, const AnaglyphVarian
   return out;
 }
 
-Result<std::unique_ptr<OutputSink>> make_anaglyph_sink(const SinkConfig& given) {
-  SinkConfig config = given;
-  const AnaglyphVariant* variant = &kVariants[0];
-  std::string names;
-  for (const AnaglyphVariant& candidate : kVariants) {
-    names += names.empty() ? "" : ", ";
-    names += candidate.name;
-    if (!given.options.empty() && given.options.front() == std::pair<std::string, std::string>(candidate.name, "")) {
-      variant = &candidate;
-      config.options.erase(config.options.begin());
-    }
+Result<std::unique_ptr<OutputSink>> make_anaglyph_sink(SinkOptions options) {
+  std::vector<std::string_view> names;
+  std::string known;
+  for (const AnaglyphVariant& variant : kVariants) {
+    known += (names.empty() ? "one of: " : ", ") + std::string(variant.name);
+    names.push_back(variant.name);
   }
-  DUBSAR_TRY(expect_no_more(config, "anaglyph", "one of: " + names));
-  return std::make_unique<AnaglyphSink>(*variant);
+  const int variant = options.choice(names);
+  DUBSAR_TRY(options.finish(known));
+  return std::make_unique<AnaglyphSink>(kVariants[static_cast<std::size_t>(variant)]);
 }
 
 }  // namespace dubsar

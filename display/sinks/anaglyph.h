@@ -8,6 +8,7 @@
 
 #include "core/image_io/image.h"
 #include "display/sinks/output_sink.h"
+#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 
@@ -24,6 +25,6 @@ std::span<const AnaglyphVariant> anaglyph_variants();
 /// Reference: what compose() draws. Views of the same size. RGB.
 Image anaglyph_views(const Image& left, const Image& right, const AnaglyphVariant& variant);
 
-Result<std::unique_ptr<OutputSink>> make_anaglyph_sink(const SinkConfig& config);
+Result<std::unique_ptr<OutputSink>> make_anaglyph_sink(SinkOptions options);
 
 }  // namespace dubsar

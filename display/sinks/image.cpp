@@ -4,8 +4,8 @@
 
 #include "core/image_io/png_file.h"
 #include "display/render/compose_pass.h"
+#include "display/render/view_array.h"
 #include "display/sinks/mono.h"
-#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 namespace {
@@ -22,8 +22,8 @@ class ImageSink : public OutputSink {
   Result<void> configure(const Screen& screen) override { return mono_->configure(screen); }
   std::span<const View> views(const Viewer& viewer) override { return mono_->views(viewer); }
 
-  Result<void> compose(const ViewArray& views, const Surface& target) override {
-    DUBSAR_TRY(mono_->compose(views, target));
+  Result<void> compose(const ViewArray& views, const Surface& target, Field field) override {
+    DUBSAR_TRY(mono_->compose(views, target, field));
     DUBSAR_ASSIGN(const Image picture, views.read_layer(0));
     std::string path = path_;
     const auto percent = path.find('%');
@@ -40,20 +40,15 @@ class ImageSink : public OutputSink {
 
 }  // namespace
 
-Result<std::unique_ptr<OutputSink>> make_image_sink(const SinkConfig& given) {
-  SinkConfig config = given;
-  std::string path;
-  if (!config.options.empty() && config.options.front().first == "path") {
-    path = config.options.front().second;
-    config.options.erase(config.options.begin());
-  }
-  DUBSAR_TRY(expect_no_more(config, "image", "path=FILE.png"));
+Result<std::unique_ptr<OutputSink>> make_image_sink(SinkOptions options) {
+  const std::string path = options.text("path").value_or("");
+  DUBSAR_TRY(options.finish("path=FILE.png"));
   if (path.empty() || std::filesystem::path(path).extension() != ".png" ||
       std::count(path.begin(), path.end(), '%') > 1)
     return fail(ErrorKind::kUsage,
                 "display image: path \"{}\" found, expected path=FILE.png with at most one % for the frame number",
                 path);
-  DUBSAR_ASSIGN(auto mono, make_mono_sink({}));
+  DUBSAR_ASSIGN(auto mono, make_mono_sink(SinkOptions({"mono"}, built_in_panels())));
   return std::make_unique<ImageSink>(path, std::move(mono));
 }
 

@@ -2,11 +2,12 @@
 // One view into picture files.
 
 #include "display/sinks/output_sink.h"
+#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 
 /// Options: path=FILE.png; a % in it is replaced by the number of the frame, five digits. Without % every frame
 /// replaces the file. Writes what compose() draws as PNG, and draws it to the surface too.
-Result<std::unique_ptr<OutputSink>> make_image_sink(const SinkConfig& config);
+Result<std::unique_ptr<OutputSink>> make_image_sink(SinkOptions options);
 
 }  // namespace dubsar

@@ -1,7 +1,8 @@
 #include "display/sinks/interlaced.h"
 
 #include "display/render/compose_pass.h"
-#include "display/sinks/sink_options.h"
+#include "display/render/view_array.h"
+#include "display/sinks/stereo_views.h"
 
 namespace dubsar {
 namespace {
@@ -23,7 +24,7 @@ class InterlacedSink : public OutputSink {
   }
   std::span<const View> views(const Viewer& viewer) override { return views_ = stereo_views(screen_, viewer); }
 
-  Result<void> compose(const ViewArray& views, const Surface& target) override {
+  Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
     DUBSAR_TRY(pass_.begin(target, views.coded()));
     glUniform1i(kPatternLocation, static_cast<int>(pattern_));
     glUniform3i(kPanelOriginLocation, screen_.window_x, screen_.window_y, screen_.window_h);
@@ -67,13 +68,10 @@ Image interlace_views(const Image& left, const Image& right, const Screen& scree
   return out;
 }
 
-Result<std::unique_ptr<OutputSink>> make_interlaced_sink(const SinkConfig& given) {
-  SinkConfig config = given;
-  const bool right_first = take_choice(config, {"left_first", "right_first"}) == 1;
-  const auto pattern =
-      static_cast<InterlacePattern>(take_choice(config, {"rows", "columns", "checkerboard", "subpixels"}));
-  DUBSAR_TRY(
-      expect_no_more(config, "interlaced", "rows, columns, checkerboard or subpixels, left_first or right_first"));
+Result<std::unique_ptr<OutputSink>> make_interlaced_sink(SinkOptions options) {
+  const bool right_first = options.choice({"left_first", "right_first"}) == 1;
+  const auto pattern = static_cast<InterlacePattern>(options.choice({"rows", "columns", "checkerboard", "subpixels"}));
+  DUBSAR_TRY(options.finish("rows, columns, checkerboard or subpixels, left_first or right_first"));
   return std::make_unique<InterlacedSink>(pattern, right_first);
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/image_io/image.h"
 #include "display/sinks/output_sink.h"
+#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 
@@ -16,6 +17,6 @@ int interlace_parity(InterlacePattern pattern, int panel_x, int panel_y, int cha
 Image interlace_views(const Image& left, const Image& right, const Screen& screen, InterlacePattern pattern,
                       bool right_first);
 
-Result<std::unique_ptr<OutputSink>> make_interlaced_sink(const SinkConfig& config);
+Result<std::unique_ptr<OutputSink>> make_interlaced_sink(SinkOptions options);
 
 }  // namespace dubsar

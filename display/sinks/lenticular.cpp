@@ -10,7 +10,8 @@
 
 #include "display/panels/panel_profile.h"
 #include "display/render/compose_pass.h"
-#include "display/sinks/sink_options.h"
+#include "display/render/view_array.h"
+#include "display/sinks/stereo_views.h"
 
 namespace dubsar {
 namespace {
@@ -75,7 +76,7 @@ class ViewsSink : public OutputSink {
       views_.push_back(viewer_view(screen_.window_rect(), viewer, eye));
     return views_;
   }
-  Result<void> compose(const ViewArray& views, const Surface& target) override {
+  Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
     const double right = sheet_.periods / sheet_.width_px, up = sheet_.periods * sheet_.tilt / sheet_.height_px;
     const double start = 0.5 * right + 0.5 * up - sheet_.centre;
     DUBSAR_TRY(pass_.begin(target, views.linear()));
@@ -142,7 +143,7 @@ class TrackedSink : public OutputSink {
              glm::vec3(viewer.right_mm)};  // light goes to the true eyes, whatever the factors
     return views_ = stereo_views(screen_, viewer);
   }
-  Result<void> compose(const ViewArray& views, const Surface& target) override {
+  Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
     const LensOptics& lens = panel_.lens;
     DUBSAR_TRY(pass_.begin(target, views.coded()));
     set_window(screen_);
@@ -172,16 +173,15 @@ class TrackedSink : public OutputSink {
 
 }  // namespace
 
-Result<std::unique_ptr<OutputSink>> make_lenticular_sink(const SinkConfig& given) {
+Result<std::unique_ptr<OutputSink>> make_lenticular_sink(SinkOptions options) {
   constexpr std::string_view kKnown =
       "panel=PROFILE and/or calibration=FILE, and nearest, linear, gaussian3 or gaussian10";
-  SinkConfig config = given;
   constexpr std::array<ViewFilter, 4> kFilters{ViewFilter::kLinear, ViewFilter::kNearest, ViewFilter::kGaussian3,
                                                ViewFilter::kGaussian10};
   const auto filter =
-      kFilters[static_cast<std::size_t>(take_choice(config, {"linear", "nearest", "gaussian3", "gaussian10"}))];
-  DUBSAR_ASSIGN(auto panel_choice, take_panel(config));
-  DUBSAR_TRY(expect_no_more(config, "lenticular", kKnown));
+      kFilters[static_cast<std::size_t>(options.choice({"linear", "nearest", "gaussian3", "gaussian10"}))];
+  DUBSAR_ASSIGN(auto panel_choice, options.panel());
+  DUBSAR_TRY(options.finish(kKnown));
   if (!panel_choice) return fail(ErrorKind::kUsage, "display lenticular: no panel was named, expected {}", kKnown);
   PanelProfile profile = *std::move(panel_choice);
   if (profile.kind == PanelKind::kTracked) {

@@ -3,12 +3,13 @@
 // and the CPU references are in display/optics/lens.h and display/optics/weave.h.
 
 #include "display/sinks/output_sink.h"
+#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 
 /// Options: PROFILE or panel=PROFILE (a panel's name), nearest, linear (default), gaussian3 or gaussian10,
 /// calibration=FILE (a Looking Glass unit's visual.json; names the model too, unless PROFILE does). The window counts
 /// when the screen has the panel's pixels, else the picture is that of the whole panel.
-Result<std::unique_ptr<OutputSink>> make_lenticular_sink(const SinkConfig& config);
+Result<std::unique_ptr<OutputSink>> make_lenticular_sink(SinkOptions options);
 
 }  // namespace dubsar

@@ -1,7 +1,7 @@
 #include "display/sinks/mono.h"
 
 #include "display/render/compose_pass.h"
-#include "display/sinks/sink_options.h"
+#include "display/render/view_array.h"
 
 namespace dubsar {
 namespace {
@@ -25,7 +25,7 @@ class MonoSink : public OutputSink {
     view_ = viewer_view(screen_.window_rect(), viewer, camera_pair(viewer).centre_mm());
     return {&view_, 1};
   }
-  Result<void> compose(const ViewArray& views, const Surface& target) override {
+  Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
     if (!draws_) return {};
     DUBSAR_TRY(copy_.begin(target, views.coded()));
     glUniform1i(kLayerLocation, 0);
@@ -42,13 +42,13 @@ class MonoSink : public OutputSink {
 
 }  // namespace
 
-Result<std::unique_ptr<OutputSink>> make_mono_sink(const SinkConfig& config) {
-  DUBSAR_TRY(expect_no_more(config, "mono", "no options"));
+Result<std::unique_ptr<OutputSink>> make_mono_sink(SinkOptions options) {
+  DUBSAR_TRY(options.finish("no options"));
   return std::make_unique<MonoSink>(true);
 }
 
-Result<std::unique_ptr<OutputSink>> make_null_sink(const SinkConfig& config) {
-  DUBSAR_TRY(expect_no_more(config, "null", "no options"));
+Result<std::unique_ptr<OutputSink>> make_null_sink(SinkOptions options) {
+  DUBSAR_TRY(options.finish("no options"));
   return std::make_unique<MonoSink>(false);
 }
 

@@ -2,12 +2,13 @@
 // One view, from the middle between the eyes; and the sink that draws nothing.
 
 #include "display/sinks/output_sink.h"
+#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 
-Result<std::unique_ptr<OutputSink>> make_mono_sink(const SinkConfig& config);
+Result<std::unique_ptr<OutputSink>> make_mono_sink(SinkOptions options);
 
 /// Asks for the views of a mono sink and drops them: measures everything before compose().
-Result<std::unique_ptr<OutputSink>> make_null_sink(const SinkConfig& config);
+Result<std::unique_ptr<OutputSink>> make_null_sink(SinkOptions options);
 
 }  // namespace dubsar

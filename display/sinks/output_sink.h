@@ -1,33 +1,25 @@
 #pragma once
 // The one interface behind which every display stands. A sink says which views it wants, the renderer fills a view
 // array, the sink puts them together for its panel. The order of calls: configure (again whenever the window or the
-// screen changes), views (every frame), compose (every frame, GL thread).
+// screen changes), views (every picture), compose (every picture, and each field of it; GL thread).
 
-#include <array>
-#include <filesystem>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
-#include "core/base/registry.h"
 #include "core/base/result.h"
 #include "display/optics/off_axis.h"
 #include "display/optics/optics.h"
 #include "display/optics/view.h"
+#include "display/render/surface.h"
 
 namespace dubsar {
 
-class SinkPlugin;
 class ViewArray;
 
-struct PixelSize {
-  int width = 0, height = 0;
-  friend bool operator==(const PixelSize&, const PixelSize&) = default;
-};
+/// Whose turn it is on a display that shows its eyes one after the other; other displays know only kFirst.
+enum class Field : int { kFirst = 0, kSecond = 1 };
 
 struct SinkTraits {
   std::string_view name;
@@ -37,16 +29,10 @@ struct SinkTraits {
   bool tracked = false;        ///< follows the viewer's eyes
   bool exact_pixels = false;   ///< works only unscaled, at a known place on the panel
   bool stereo_visual = false;  ///< needs a quad-buffered context
-  std::string file_suffix{};   ///< what files of this picture carry before the extension, e.g. "_qs8x6a0.75"
-};
-
-/// Where compose() draws: a GL frame buffer (0: the window) of SinkTraits::output pixels. Bytes are sRGB-coded.
-struct Surface {
-  unsigned framebuffer = 0;
-  int width = 0, height = 0;
-  /// Draw buffers of the left and the right eye (GL_BACK_LEFT and GL_BACK_RIGHT, or two colour attachments); 0: the
-  /// surface holds one picture.
-  std::array<unsigned, 2> eye_buffers{0, 0};
+  /// Pictures that take turns, one at each refresh of the monitor, for as long as anything is shown: 1, or 2 for
+  /// shutters. Which one is due, FieldCadence says (display/sinks/field_cadence.h).
+  int fields = 1;
+  std::string file_suffix{};  ///< what files of this picture carry before the extension, e.g. "_qs8x6a0.75"
 };
 
 class OutputSink {
@@ -58,29 +44,13 @@ class OutputSink {
   /// The cameras for this viewer, traits().views of them; world is the screen frame. No GL. The span is good until the
   /// next call.
   virtual std::span<const View> views(const Viewer& viewer) = 0;
-  /// Draws the panel's picture from the layers. GL thread, with the context current that the sink is destroyed in.
-  virtual Result<void> compose(const ViewArray& views, const Surface& target) = 0;
+  /// Draws the panel's picture from the layers; nothing is kept between fields. GL thread, with the context current
+  /// that the sink is destroyed in.
+  virtual Result<void> compose(const ViewArray& views, const Surface& target, Field field) = 0;
+  /// For displays whose picture has one field.
+  Result<void> compose(const ViewArray& views, const Surface& target) { return compose(views, target, Field::kFirst); }
   /// Where the panel's lenses send the light of what was composed last; nothing for displays without lenses.
   virtual std::optional<PanelLight> light() const { return std::nullopt; }
 };
-
-/// What the part after "NAME:" said, and where to look for data.
-struct SinkConfig {
-  std::vector<std::pair<std::string, std::string>> options;  ///< "key=value"; a bare word has an empty value
-  std::filesystem::path profile_folder;                      ///< the user's panel profiles; may be missing
-};
-
-using SinkBackend = Backend<OutputSink, SinkConfig>;
-
-/// All sinks, in the order in which they are offered.
-std::span<const SinkBackend> output_sinks();
-
-/// Makes the sink that "NAME[:word,key=value,...]" names. kUsage with the names there are, or with what the sink's
-/// options are. Names of plug-ins (display/sinks/plugin_sink.h) count, too.
-Result<std::unique_ptr<OutputSink>> make_sink(std::string_view spec, const std::filesystem::path& profile_folder = {},
-                                              std::span<const std::shared_ptr<SinkPlugin>> plugins = {});
-
-/// Splits "word,key=value" (empty text: no options).
-std::vector<std::pair<std::string, std::string>> parse_sink_options(std::string_view text);
 
 }  // namespace dubsar

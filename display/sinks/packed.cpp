@@ -3,7 +3,8 @@
 #include <algorithm>
 
 #include "display/render/compose_pass.h"
-#include "display/sinks/sink_options.h"
+#include "display/render/view_array.h"
+#include "display/sinks/stereo_views.h"
 
 namespace dubsar {
 namespace {
@@ -32,7 +33,7 @@ class PackedSink : public OutputSink {
   }
   std::span<const View> views(const Viewer& viewer) override { return views_ = stereo_views(screen_, viewer); }
 
-  Result<void> compose(const ViewArray& views, const Surface& target) override {
+  Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     glDisable(GL_SCISSOR_TEST);
     glClearColor(0, 0, 0, 1);
@@ -58,14 +59,13 @@ class PackedSink : public OutputSink {
   ComposePass copy_{"copy.frag"};
 };
 
-Result<std::unique_ptr<OutputSink>> make_packed(SinkConfig config, Packing packing, std::string_view name,
-                                                std::string_view known) {
-  packing.right_first = take_choice(config, {"left_first", "right_first"}) == 1;
+Result<std::unique_ptr<OutputSink>> make_packed(SinkOptions options, Packing packing, std::string_view known) {
+  packing.right_first = options.choice({"left_first", "right_first"}) == 1;
   const int size =
-      packing.vertical ? take_choice(config, {"half", "full", "frame_packing"}) : take_choice(config, {"half", "full"});
+      packing.vertical ? options.choice({"half", "full", "frame_packing"}) : options.choice({"half", "full"});
   packing.full = size >= 1;
   packing.frame_packing = size == 2;
-  DUBSAR_TRY(expect_no_more(config, name, known));
+  DUBSAR_TRY(options.finish(known));
   if (packing.frame_packing && packing.right_first)
     return fail(ErrorKind::kUsage,
                 "display top_bottom: frame_packing with right_first found, expected left_first: the standard has the "
@@ -105,13 +105,12 @@ Image pack_views(const Image& left, const Image& right, PixelSize window, const 
   return out;
 }
 
-Result<std::unique_ptr<OutputSink>> make_side_by_side_sink(const SinkConfig& config) {
-  return make_packed(config, {.vertical = false}, "side_by_side", "half or full, left_first or right_first");
+Result<std::unique_ptr<OutputSink>> make_side_by_side_sink(SinkOptions options) {
+  return make_packed(std::move(options), {.vertical = false}, "half or full, left_first or right_first");
 }
 
-Result<std::unique_ptr<OutputSink>> make_top_bottom_sink(const SinkConfig& config) {
-  return make_packed(config, {.vertical = true}, "top_bottom",
-                     "half, full or frame_packing, left_first or right_first");
+Result<std::unique_ptr<OutputSink>> make_top_bottom_sink(SinkOptions options) {
+  return make_packed(std::move(options), {.vertical = true}, "half, full or frame_packing, left_first or right_first");
 }
 
 }  // namespace dubsar

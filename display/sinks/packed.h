@@ -5,6 +5,7 @@
 
 #include "core/image_io/image.h"
 #include "display/sinks/output_sink.h"
+#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 
@@ -23,7 +24,7 @@ struct Packing {
 /// Reference: what compose() draws. RGB.
 Image pack_views(const Image& left, const Image& right, PixelSize window, const Packing& packing);
 
-Result<std::unique_ptr<OutputSink>> make_side_by_side_sink(const SinkConfig& config);
-Result<std::unique_ptr<OutputSink>> make_top_bottom_sink(const SinkConfig& config);
+Result<std::unique_ptr<OutputSink>> make_side_by_side_sink(SinkOptions options);
+Result<std::unique_ptr<OutputSink>> make_top_bottom_sink(SinkOptions options);
 
 }  // namespace dubsar

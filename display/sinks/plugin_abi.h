@@ -59,7 +59,7 @@ typedef struct dubsar_sink_traits {
   int32_t views;              /* 1 .. 2048 */
   int32_t view_w, view_h;     /* pixels of one view, 1 .. 16384 */
   int32_t output_w, output_h; /* pixels of the composed picture, 1 .. 16384 */
-  int32_t reserved;
+  int32_t fields;             /* pictures that take turns at each refresh: 2 for shutters, else 0 or 1 */
 } dubsar_sink_traits;
 
 typedef struct dubsar_sink_frame {
@@ -67,6 +67,7 @@ typedef struct dubsar_sink_frame {
   uint32_t view_array; /* GL_TEXTURE_2D_ARRAY, GL_RGBA8, layer k is view k, bytes are sRGB-coded, row 0 at the bottom */
   uint32_t framebuffer; /* draw here; sRGB-coded bytes */
   int32_t width, height;
+  int32_t field; /* whose turn it is: 0, or 1 where the traits say two fields */
 } dubsar_sink_frame;
 
 typedef struct dubsar_sink_host {
@@ -82,7 +83,8 @@ typedef struct dubsar_sink_table {
   uint32_t abi, size;
   const char* name;    /* a-z, 0-9 and _, at most 32 characters; not that of a built-in display */
   const char* summary; /* one line with the options */
-  /* `options` is what stands behind "NAME:", perhaps empty. NULL: `error` says why. */
+  /* `options` is what stands behind "NAME:", perhaps empty: words and key=value with commas between; those that hold
+     commas are in quotation marks. NULL: `error` says why. */
   void* (*create)(const char* options, char* error, size_t error_size);
   void (*destroy)(void* sink);
   /* Called before the first views() and when the window changes; fills `traits`. */

@@ -9,6 +9,7 @@
 
 #include "core/base/log.h"
 #include "display/render/view_array.h"
+#include "display/sinks/sink_catalog.h"
 
 namespace dubsar {
 namespace {
@@ -67,7 +68,8 @@ class PluginSink : public OutputSink {
             .view = {traits_.view_w, traits_.view_h},
             .output = {traits_.output_w, traits_.output_h},
             .tracked = (traits_.flags & DUBSAR_SINK_TRACKED) != 0,
-            .exact_pixels = (traits_.flags & DUBSAR_SINK_EXACT_PIXELS) != 0};
+            .exact_pixels = (traits_.flags & DUBSAR_SINK_EXACT_PIXELS) != 0,
+            .fields = std::max(1, traits_.fields)};
   }
   Result<void> configure(const Screen& screen) override {
     DUBSAR_TRY(check_screen(screen));
@@ -78,6 +80,9 @@ class PluginSink : public OutputSink {
     if (table_.configure(sink_, &given, &made, error.data(), error.size()) != 0)
       return fail(ErrorKind::kUsage, "display {}: {}", plugin_->name(), sentence(error));
     const auto side = [](int pixels) { return pixels >= 1 && pixels <= kMaxSide; };
+    if (made.fields < 0 || made.fields > 2)
+      return fail(ErrorKind::kBadData, "display {}: its plug-in wants {} fields, expected 1 or 2", plugin_->name(),
+                  made.fields);
     if (made.views < 1 || made.views > kMaxViews || !side(made.view_w) || !side(made.view_h) || !side(made.output_w) ||
         !side(made.output_h))
       return fail(ErrorKind::kBadData,
@@ -114,10 +119,11 @@ class PluginSink : public OutputSink {
     }
     return views_;
   }
-  Result<void> compose(const ViewArray& views, const Surface& target) override {
+  Result<void> compose(const ViewArray& views, const Surface& target, Field field) override {
     if (!problem_.empty()) return fail(ErrorKind::kBadData, "display {}: {}", plugin_->name(), problem_);
-    const dubsar_sink_frame frame{sizeof(dubsar_sink_frame), views.coded(), target.framebuffer, target.width,
-                                  target.height};
+    const dubsar_sink_frame frame{
+        sizeof(dubsar_sink_frame),       views.coded(), target.framebuffer, target.width, target.height,
+        static_cast<std::int32_t>(field)};
     ErrorText error{};
     if (table_.compose(sink_, &frame, error.data(), error.size()) != 0)
       return fail(ErrorKind::kUnavailable, "display {}: {}", plugin_->name(), sentence(error));

@@ -3,7 +3,8 @@
 #include <algorithm>
 
 #include "display/render/compose_pass.h"
-#include "display/sinks/sink_options.h"
+#include "display/render/view_array.h"
+#include "display/sinks/stereo_views.h"
 
 namespace dubsar {
 namespace {
@@ -23,7 +24,7 @@ class QuadBufferSink : public OutputSink {
   }
   std::span<const View> views(const Viewer& viewer) override { return views_ = stereo_views(screen_, viewer); }
 
-  Result<void> compose(const ViewArray& views, const Surface& target) override {
+  Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
     if (std::count(target.eye_buffers.begin(), target.eye_buffers.end(), 0u) != 0)
       return fail(ErrorKind::kUnavailable,
                   "display quad_buffer: this window has one buffer, expected one for each eye (a stereo visual)");
@@ -48,8 +49,8 @@ class QuadBufferSink : public OutputSink {
 
 }  // namespace
 
-Result<std::unique_ptr<OutputSink>> make_quad_buffer_sink(const SinkConfig& config) {
-  DUBSAR_TRY(expect_no_more(config, "quad_buffer", "no options"));
+Result<std::unique_ptr<OutputSink>> make_quad_buffer_sink(SinkOptions options) {
+  DUBSAR_TRY(options.finish("no options"));
   return std::make_unique<QuadBufferSink>();
 }
 

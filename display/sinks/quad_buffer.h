@@ -3,10 +3,11 @@
 // with stereo visuals.
 
 #include "display/sinks/output_sink.h"
+#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 
 /// No options of its own. compose() wants a surface with eye_buffers: kUnavailable without.
-Result<std::unique_ptr<OutputSink>> make_quad_buffer_sink(const SinkConfig& config);
+Result<std::unique_ptr<OutputSink>> make_quad_buffer_sink(SinkOptions options);
 
 }  // namespace dubsar

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "display/render/compose_pass.h"
-#include "display/sinks/sink_options.h"
+#include "display/render/view_array.h"
 
 namespace dubsar {
 namespace {
@@ -53,7 +53,7 @@ class QuiltSink : public OutputSink {
       views_.push_back(viewer_view(window, viewer, eye));
     return views_;
   }
-  Result<void> compose(const ViewArray& views, const Surface& target) override {
+  Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
     DUBSAR_TRY(pass_.begin(target, views.coded()));
     glUniform2i(kTileLocation, setup_.layout.tile_width(), setup_.layout.tile_height());
     glUniform2i(kColumnsLocation, setup_.layout.columns, setup_.layout.rows);
@@ -66,23 +66,6 @@ class QuiltSink : public OutputSink {
   std::vector<View> views_;
   ComposePass pass_{"quilt.frag"};
 };
-
-/// Reads key=value as a number into `target` and takes it out of the options.
-Result<void> take_number(SinkConfig& config, std::string_view key, double least, double most, double& target) {
-  for (auto option = config.options.begin(); option != config.options.end(); ++option) {
-    if (option->first != key) continue;
-    const std::string& text = option->second;
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !(value >= least && value <= most))
-      return fail(ErrorKind::kUsage, "display quilt: {}={} found, expected a number from {} to {}", key, text, least,
-                  most);
-    target = value;
-    config.options.erase(option);
-    return {};
-  }
-  return {};
-}
 
 }  // namespace
 
@@ -152,10 +135,9 @@ std::vector<Image> split_quilt(const Image& quilt, const QuiltLayout& layout) {
   return views;
 }
 
-Result<std::unique_ptr<OutputSink>> make_quilt_sink(const SinkConfig& given) {
-  SinkConfig config = given;
+Result<std::unique_ptr<OutputSink>> make_quilt_sink(SinkOptions options) {
   QuiltSetup setup{{8, 6, 3360, 3360}, 0.75, 40.0};  // a Looking Glass Portrait
-  DUBSAR_ASSIGN(const auto panel, take_panel(config));
+  DUBSAR_ASSIGN(const auto panel, options.panel());
   if (panel) {
     const PanelProfile& profile = *panel;
     if (profile.quilt.views() < 1)
@@ -163,20 +145,13 @@ Result<std::unique_ptr<OutputSink>> make_quilt_sink(const SinkConfig& given) {
                   profile.name);
     setup = {profile.quilt, profile.aspect, profile.view_cone_deg, profile.height_mm(), profile.design_distance_mm};
   }
-  double columns = setup.layout.columns, rows = setup.layout.rows;
-  double width = setup.layout.width_px, height = setup.layout.height_px;
-  DUBSAR_TRY(take_number(config, "columns", 1, kMaxTiles, columns));
-  DUBSAR_TRY(take_number(config, "rows", 1, kMaxTiles, rows));
-  DUBSAR_TRY(take_number(config, "width", kMinTilePx, kMaxQuiltPx, width));
-  DUBSAR_TRY(take_number(config, "height", kMinTilePx, kMaxQuiltPx, height));
-  DUBSAR_TRY(take_number(config, "aspect", kMinAspect, kMaxAspect, setup.aspect));
-  DUBSAR_TRY(take_number(config, "cone", 1, 170, setup.cone_deg));
-  DUBSAR_TRY(expect_no_more(config, "quilt",
-                            "panel=PROFILE, calibration=FILE, columns=, rows=, width=, height=, aspect=, cone="));
-  for (const double whole : {columns, rows, width, height})
-    if (whole != std::floor(whole))
-      return fail(ErrorKind::kUsage, "display quilt: {} found, expected whole columns, rows and pixels", whole);
-  setup.layout = {static_cast<int>(columns), static_cast<int>(rows), static_cast<int>(width), static_cast<int>(height)};
+  QuiltLayout& layout = setup.layout;
+  layout = {options.whole("columns", 1, kMaxTiles, layout.columns), options.whole("rows", 1, kMaxTiles, layout.rows),
+            options.whole("width", kMinTilePx, kMaxQuiltPx, layout.width_px),
+            options.whole("height", kMinTilePx, kMaxQuiltPx, layout.height_px)};
+  setup.aspect = options.number("aspect", kMinAspect, kMaxAspect, setup.aspect);
+  setup.cone_deg = options.number("cone", 1, 170, setup.cone_deg);
+  DUBSAR_TRY(options.finish("panel=PROFILE, calibration=FILE, columns=, rows=, width=, height=, aspect=, cone="));
   if (setup.layout.tile_width() < kMinTilePx || setup.layout.tile_height() < kMinTilePx)
     return fail(ErrorKind::kUsage, "display quilt: tiles of {} x {} pixels are too small, expected at least {} a side",
                 setup.layout.tile_width(), setup.layout.tile_height(), kMinTilePx);

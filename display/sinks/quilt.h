@@ -11,6 +11,7 @@
 #include "core/image_io/image.h"
 #include "display/panels/panel_profile.h"
 #include "display/sinks/output_sink.h"
+#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 
@@ -40,6 +41,6 @@ Image make_quilt(std::span<const Image> views, const QuiltLayout& layout);
 /// The tiles of a quilt as views, RGB.
 std::vector<Image> split_quilt(const Image& quilt, const QuiltLayout& layout);
 
-Result<std::unique_ptr<OutputSink>> make_quilt_sink(const SinkConfig& config);
+Result<std::unique_ptr<OutputSink>> make_quilt_sink(SinkOptions options);
 
 }  // namespace dubsar

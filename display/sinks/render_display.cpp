@@ -13,7 +13,6 @@
 #include "display/render/renderer.h"
 #include "display/render/test_pattern.h"
 #include "display/render/view_array.h"
-#include "display/sinks/output_sink.h"
 
 namespace dubsar {
 namespace {
@@ -44,16 +43,22 @@ struct Stage {  // destroyed from the bottom to the top: the sink's GL objects g
   std::unique_ptr<OutputSink> sink;
 };
 
-Result<Stage> open_stage(std::string_view display, const DisplayOptions& options) {
+Result<Stage> open_stage(const SinkSpec& display, const DisplayOptions& options) {
   Stage stage;
   DUBSAR_ASSIGN(stage.context, EglContext::create());
-  DUBSAR_ASSIGN(stage.sink, make_sink(display, options.profile_folder, options.plugins));
+  DUBSAR_ASSIGN(stage.sink, options.catalog->make(display));
   DUBSAR_TRY(stage.sink->configure(options.screen));
   const SinkTraits traits = stage.sink->traits();
   if (traits.stereo_visual)
     return fail(ErrorKind::kUnavailable,
                 "display {}: needs a window with a stereo visual, expected a display that makes one picture",
                 traits.name);
+  if (traits.fields > 1)
+    return fail(
+        ErrorKind::kUsage,
+        "display {}: shows its eyes one after the other, expected a window, or a display that makes one picture "
+        "such as side_by_side",
+        traits.name);
   DUBSAR_TRY(check_memory("display", kBytesPerViewPixel * static_cast<std::uint64_t>(traits.view.width) *
                                          static_cast<std::uint64_t>(traits.view.height) *
                                          static_cast<std::uint64_t>(traits.views)));
@@ -86,7 +91,7 @@ glm::dmat4 place_object(const Box& box, const ViewDirection& direction, const gl
   return out;
 }
 
-Result<DisplayPicture> render_display(const TriMesh& mesh, std::string_view display, const DisplayOptions& options,
+Result<DisplayPicture> render_display(const TriMesh& mesh, const SinkSpec& display, const DisplayOptions& options,
                                       Progress& progress) {
   if (!(options.magnification >= 0) || !std::isfinite(options.magnification) ||
       !(options.margin >= 0 && options.margin <= 0.45))
@@ -130,7 +135,7 @@ Result<DisplayPicture> render_display(const TriMesh& mesh, std::string_view disp
   return out;
 }
 
-Result<DisplayPicture> render_pattern(std::string_view display, const DisplayOptions& options) {
+Result<DisplayPicture> render_pattern(const SinkSpec& display, const DisplayOptions& options) {
   DUBSAR_ASSIGN(const Stage stage, open_stage(display, options));
   const SinkTraits traits = stage.sink->traits();
   DUBSAR_ASSIGN(ViewArray array, ViewArray::create(traits.view.width, traits.view.height, traits.views));

@@ -2,12 +2,9 @@
 // A mesh as a display's panel shows it, without a window: `dubsar render --display NAME[:options]`, and tests of whole
 // chains from the viewer to the panel's picture.
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
@@ -17,7 +14,7 @@
 #include "display/optics/optics.h"
 #include "display/render/camera.h"
 #include "display/render/shading.h"
-#include "display/sinks/output_sink.h"
+#include "display/sinks/sink_catalog.h"
 
 namespace dubsar {
 
@@ -32,8 +29,7 @@ struct DisplayOptions {
   double margin = 0.05;        ///< free border when it is fitted, 0..0.45
   Shading shading{};
   int samples = 2;  ///< samples x samples a pixel of a view, 1..8
-  std::filesystem::path profile_folder{};
-  std::vector<std::shared_ptr<SinkPlugin>> plugins{};  ///< their names count as displays, too
+  std::shared_ptr<SinkCatalog> catalog = std::make_shared<SinkCatalog>();  ///< displays and panels that may be named
 };
 
 struct DisplayPicture {
@@ -44,14 +40,14 @@ struct DisplayPicture {
   std::optional<PanelLight> light;  ///< for displays with lenses: see() and light_at() say what eyes see of the image
 };
 
-/// `display` is a sink as make_sink() reads it. Errors: kUsage (no such sink, bad options, nothing to draw),
+/// Errors: those of SinkCatalog::make, kUsage (no such sink, bad options, nothing to draw),
 /// kUnavailable without GL 4.5, kTryAgain (memory), kCancelled. Cost: all views, one after the other.
-Result<DisplayPicture> render_display(const TriMesh& mesh, std::string_view display, const DisplayOptions& options,
+Result<DisplayPicture> render_display(const TriMesh& mesh, const SinkSpec& display, const DisplayOptions& options,
                                       Progress& progress);
 
 /// The numbered-view test pattern (display/render/test_pattern.h) as the display shows it. Uses the screen, the viewer
-/// and the profile folder of `options`. Errors as render_display.
-Result<DisplayPicture> render_pattern(std::string_view display, const DisplayOptions& options);
+/// and the catalog of `options`. Errors as render_display.
+Result<DisplayPicture> render_pattern(const SinkSpec& display, const DisplayOptions& options);
 
 /// What an eye (screen frame, mm) sees of the picture, of the panel's size. kUsage for displays without lenses, and for
 /// eyes that are not before the panel.

@@ -1,25 +1,41 @@
 #pragma once
-// The small things that sinks share: reading their options, two eyes through one window.
+// Reading a display's options: each is taken out, the first thing wrong becomes one sentence.
 
-#include <array>
 #include <initializer_list>
+#include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 
-#include "display/panels/panel_profile.h"
-#include "display/sinks/output_sink.h"
+#include "display/panels/panel_set.h"
+#include "display/sinks/sink_spec.h"
 
 namespace dubsar {
 
-/// Takes a bare word out of `config` if it is one of `choices` and returns its index; 0 when none of them is there.
-int take_choice(SinkConfig& config, std::initializer_list<std::string_view> choices);
+class SinkOptions {
+ public:
+  /// Borrows `panels`.
+  SinkOptions(SinkSpec spec, const PanelSet& panels) : spec_(std::move(spec)), panels_(&panels) {}
 
-/// Takes "panel=NAME" (or the first bare word) and "calibration=FILE" out of `config`; nothing when neither is there.
-Result<std::optional<PanelProfile>> take_panel(SinkConfig& config);
+  /// Takes a bare word out if it is one of `choices` and returns its index; 0 when none of them is there.
+  int choice(std::span<const std::string_view> choices);
+  int choice(std::initializer_list<std::string_view> choices) { return choice({choices.begin(), choices.size()}); }
+  /// Takes "key=NUMBER" out; `fallback` when it is not there.
+  double number(std::string_view key, double least, double most, double fallback);
+  int whole(std::string_view key, int least, int most, int fallback);
+  /// Takes "key=TEXT" out.
+  std::optional<std::string> text(std::string_view key);
+  /// Takes "panel=NAME" (or the first bare word) and "calibration=FILE" out; nothing when neither is there. Ask for
+  /// choices before.
+  Result<std::optional<PanelProfile>> panel();
 
-/// kUsage naming the first option that is left, and what the sink knows.
-Result<void> expect_no_more(const SinkConfig& config, std::string_view sink, std::string_view known);
+  /// kUsage with the first number that cannot be, or with an option that is left and what the display knows.
+  Result<void> finish(std::string_view known);
 
-/// Left and right view through the window.
-std::array<View, 2> stereo_views(const Screen& screen, const Viewer& viewer);
+ private:
+  SinkSpec spec_;
+  const PanelSet* panels_;
+  std::string complaint_;
+};
 
 }  // namespace dubsar

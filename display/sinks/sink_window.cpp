@@ -4,11 +4,10 @@
 
 namespace dubsar {
 
-Result<SinkWindow> open_sink_window(std::string_view display, WindowOptions options,
-                                    const std::filesystem::path& profile_folder, std::string_view fallback,
-                                    std::span<const std::shared_ptr<SinkPlugin>> plugins) {
+Result<SinkWindow> open_sink_window(const SinkCatalog& catalog, const SinkSpec& display,
+                                    std::unique_ptr<OutputSink> sink, WindowOptions options, const SinkSpec& fallback) {
   SinkWindow out;
-  DUBSAR_ASSIGN(auto sink, make_sink(display, profile_folder, plugins));
+  out.display = display;
   const SinkTraits wanted = sink->traits();
   if (wanted.exact_pixels) options.decorated = false;
   options.stereo = wanted.stereo_visual;
@@ -16,9 +15,11 @@ Result<SinkWindow> open_sink_window(std::string_view display, WindowOptions opti
   if (!window && wanted.stereo_visual && window.error().kind == ErrorKind::kUnavailable) {
     const std::string reason = window.error().message;
     options.stereo = false;
-    DUBSAR_ASSIGN(sink, make_sink(fallback, profile_folder));
+    DUBSAR_ASSIGN(sink, catalog.make(fallback));
+    out.display = fallback;
     window = GlfwWindow::create(options);
-    out.note = fmt::format("display {} cannot be had here ({}); {} is shown instead", display, reason, fallback);
+    out.note =
+        fmt::format("display {} cannot be had here ({}); {} is shown instead", display.text(), reason, fallback.text());
   }
   if (!window) return tl::unexpected<Error>(window.error());
   out.window = *std::move(window);
@@ -30,8 +31,14 @@ Result<SinkWindow> open_sink_window(std::string_view display, WindowOptions opti
     out.note = fmt::format(
         "display {} makes a picture of {} x {} pixels and the window has {} x {}: it will not look right; "
         "use the panel's own monitor, full screen",
-        display, traits.output.width, traits.output.height, screen.window_w, screen.window_h);
+        display.text(), traits.output.width, traits.output.height, screen.window_w, screen.window_h);
   return out;
+}
+
+Result<SinkWindow> open_sink_window(const SinkCatalog& catalog, const SinkSpec& display, const WindowOptions& options,
+                                    const SinkSpec& fallback) {
+  DUBSAR_ASSIGN(auto sink, catalog.make(display));
+  return open_sink_window(catalog, display, std::move(sink), options, fallback);
 }
 
 }  // namespace dubsar

@@ -6,12 +6,13 @@
 #include <fstream>
 
 #include "app/calibration/auto_panel.h"
+#include "app/calibration/display_choice.h"
 #include "core/base/atomic_file.h"
 #include "devices/looking_glass/bridge_client.h"
 #include "devices/looking_glass/looking_glass_sim.h"
-#include "display/sinks/output_sink.h"
 #include "tests/devices/fake_bridge.h"
 #include "tests/display/panels/made_edid.h"
+#include "tests/display/spec.h"
 
 namespace dubsar::app {
 namespace {
@@ -45,9 +46,9 @@ class Panels : public ::testing::Test {
     search_.bridge = bridge_opener(bridge.port());
     search_.bridge_place = "bridge";
   }
-  CalibrationReport find() { return find_calibrations(search_, profiles_, SteadyClock()); }
-  Result<std::string> choose(const std::vector<ConnectedEdid>& edids = {}) {
-    return choose_panel_options({find(), edids}, profiles_, folder_ / "cache");
+  CalibrationReport find() { return find_calibrations(search_, panels_, SteadyClock()); }
+  Result<PanelProfile> choose(const std::vector<ConnectedEdid>& edids = {}) {
+    return choose_auto_panel({find(), edids}, panels_);
   }
   static ConnectedEdid monitor(const test::MadeEdid& of) {
     const std::string bytes = test::made_edid(of);
@@ -55,7 +56,7 @@ class Panels : public ::testing::Test {
   }
 
   fs::path folder_ = fs::temp_directory_path() / fmt::format("dubsar_panels_{}", ::getpid());
-  std::vector<PanelProfile> profiles_ = load_profiles({}).value();
+  const PanelSet& panels_ = built_in_panels();
   std::vector<std::unique_ptr<LookingGlassSim>> units_;
   CalibrationSearch search_;
 };
@@ -115,17 +116,27 @@ TEST_F(Panels, AutoTakesTheOneUnitHoweverManyRoutesItHas) {
   store(kPortrait);
   const test::FakeBridge bridge({{"LKG-P00671", "portrait", kPortrait}});
   ask(bridge);
-  const std::string file = (folder_ / "media/LKG-P/LKG_calibration/visual.json").string();
-  EXPECT_EQ(choose().value(), "panel=looking-glass-portrait,calibration=" + file);
+  const PanelProfile panel = choose().value();
+  EXPECT_EQ(panel.name, "looking-glass-portrait");
+  EXPECT_EQ(panel.sheet->pitch, 52.5);
+  EXPECT_EQ(panel.calibration, (folder_ / "media/LKG-P/LKG_calibration/visual.json").string());
 }
 
-TEST_F(Panels, AutoKeepsACalibrationThatIsNoFileAndSinksTakeIt) {
+TEST_F(Panels, SinksTakeACalibrationThatIsNoFile) {
   plug_in(kLarge, {});
-  const std::string options = choose().value();
-  EXPECT_EQ(options, "panel=looking-glass-15.6,calibration=" + (folder_ / "cache/LKG-4K-00017.visual.json").string());
-  const auto sink = make_sink("quilt:" + options);
-  ASSERT_TRUE(sink) << sink.error().message;
-  EXPECT_TRUE(make_sink("lenticular:" + options + ",nearest"));
+  SinkCatalog catalog;
+  const auto size = catalog.panels().profiles.size();
+  catalog.put(choose().value());
+  EXPECT_EQ(catalog.panels().profiles.size(), size);
+  EXPECT_EQ(catalog.panels().find("looking-glass-15.6")->sheet->pitch, 50.1);
+  for (const char* text : {"quilt:auto", "lenticular:auto,nearest", "lenticular:nearest,panel=auto"}) {
+    const SinkSpec display = testing::spec(text);
+    ASSERT_TRUE(names_auto_panel(display)) << text;
+    const SinkSpec named = with_panel(display, choose().value());
+    EXPECT_NE(named.text().find("panel=looking-glass-15.6"), std::string::npos) << named.text();
+    const auto sink = catalog.make(named);
+    EXPECT_TRUE(sink) << sink.error().message;
+  }
 }
 
 TEST_F(Panels, AutoAmongSeveralUnitsGoesByTheMonitorsNameElseAsks) {
@@ -136,11 +147,11 @@ TEST_F(Panels, AutoAmongSeveralUnitsGoesByTheMonitorsNameElseAsks) {
   EXPECT_NE(unclear.error().message.find("looking-glass-15.6"), std::string::npos);
   const auto shown =
       monitor({.width_px = 1536, .height_px = 2048, .width_mm = 120, .height_mm = 160, .name = "LKG-P00671"});
-  EXPECT_EQ(choose({shown}).value().substr(0, 28), "panel=looking-glass-portrait");
+  EXPECT_EQ(choose({shown})->name, "looking-glass-portrait");
 }
 
 TEST_F(Panels, AutoKnowsTrackedPanelsByTheirEdid) {
-  EXPECT_EQ(choose({monitor({.manufacturer = "ACR", .product = 1})}).value(), "panel=spatiallabs-15.6");
+  EXPECT_EQ(choose({monitor({.manufacturer = "ACR", .product = 1})})->name, "spatiallabs-15.6");
   const auto bare =
       choose({monitor({.width_px = 1536, .height_px = 2048, .width_mm = 120, .height_mm = 160, .name = "LKG-P00671"})});
   EXPECT_NE(bare.error().message.find("LKG-P00671 at DP-1"), std::string::npos);
@@ -149,8 +160,10 @@ TEST_F(Panels, AutoKnowsTrackedPanelsByTheirEdid) {
 }
 
 TEST_F(Panels, DisplaysWithoutAutoAreLeftAlone) {
-  EXPECT_EQ(resolve_display("anaglyph", 0).value(), "anaglyph");
-  EXPECT_EQ(resolve_display("lenticular:looking-glass-go,nearest", 0).value(), "lenticular:looking-glass-go,nearest");
+  for (const char* text : {"anaglyph", "lenticular:looking-glass-go,nearest"}) {
+    EXPECT_FALSE(names_auto_panel(testing::spec(text)));
+    EXPECT_EQ(choose_display(text, {}, 0)->display, testing::spec(text));
+  }
 }
 
 }  // namespace

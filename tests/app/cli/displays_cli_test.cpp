@@ -70,8 +70,8 @@ TEST_F(DisplaysCommand, ACalibrationFromTheMakersServiceServesThePanelCalledAuto
   EXPECT_EQ(found[0]["panel"], "looking-glass-go");
   const auto made = json({"render", file("card.obj"), "-o", file("auto.png"), "--display", "quilt:auto",
                           "--bridge-port", port, "--samples", "1"});
-  EXPECT_EQ(made["display"],
-            "quilt:panel=looking-glass-go,calibration=" + file("cache/dubsar/calibrations/LKG-E42.visual.json"));
+  EXPECT_EQ(made["display"], "quilt:panel=looking-glass-go");
+  EXPECT_FALSE(fs::exists(folder_ / "cache")) << "nothing is kept";
   EXPECT_EQ(
       run_dubsar({"render", "--pattern", "-o", file("none.png"), "--display", "lenticular:auto", "--bridge-port", "0"})
           .exit_code,
@@ -105,6 +105,7 @@ TEST_F(DisplaysCommand, CalibrationFilesAreReadAndProblemsNamed) {
       R"({"serial": "LKG-E77", "pitch": 80.1, "slope": -6.6, "DPI": 491, "screenW": 1440, "screenH": 2560})"));
   EXPECT_EQ(json({"displays", "--calibration", file("visual.json")})["calibrations"][0]["panel"], "looking-glass-go");
   ASSERT_TRUE(write_file_atomically(file("bad.json"), R"({"pitch": 80.1, "slope": 0})"));
+  EXPECT_EQ(run_dubsar({"displays", "--calibration", file("nowhere.json")}).exit_code, 66);
   const auto bad = json({"displays", "--calibration", file("bad.json")})["calibrations"][0];
   EXPECT_NE(bad["problem"].get<std::string>().find("slope is 0"), std::string::npos) << bad;
 }
@@ -124,6 +125,26 @@ TEST_F(DisplaysCommand, AnAdjustmentChangesThePictureUntilItIsReset) {
   EXPECT_EQ(pixels(), before);
   EXPECT_EQ(run_dubsar({"displays", "--adjust", "lens-sheet-24-5-views", "pitch=0"}).exit_code, 78);
   EXPECT_EQ(run_dubsar({"displays", "--adjust", "no-such-panel", "pitch=50"}).exit_code, 64);
+}
+
+TEST_F(DisplaysCommand, ABadPanelFileIsToldAndLosesItsPanelOnly) {
+  const fs::path panels = folder_ / "config/dubsar/panels";
+  fs::create_directories(panels);
+  ASSERT_TRUE(write_file_atomically(panels / "bad.json", "[1]"));
+  ASSERT_TRUE(write_file_atomically(panels / "looking-glass-go.adjust.json", std::string(70000, ' ')));
+  const auto found = json({"displays", "--bridge-port", "0"});
+  EXPECT_EQ(found["panel_problems"].size(), 2u);
+  const auto code = [&](std::vector<std::string> arguments) { return run_dubsar(arguments).exit_code; };
+  const auto render = [&](const char* display) {
+    return code({"render", "--pattern", "-o", file("p.png"), "--display", display});
+  };
+  EXPECT_EQ(render("lenticular:lens-sheet-24-5-views"), 0);
+  EXPECT_EQ(render("quilt:looking-glass-go"), 78);
+  EXPECT_EQ(code({"displays", "--adjust", "looking-glass-go", "center=0.1"}), 78);
+  EXPECT_EQ(code({"displays", "--adjust", "looking-glass-go", "center=1e999"}), 64);
+  EXPECT_EQ(code({"displays", "--adjust", "looking-glass-go", "reset"}), 0);
+  EXPECT_EQ(render("quilt:looking-glass-go"), 0);
+  fs::remove(panels / "bad.json");
 }
 
 TEST_F(DisplaysCommand, EveryDisplayMakesItsPicture) {

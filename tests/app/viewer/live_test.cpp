@@ -19,6 +19,7 @@
 #include "display/render/context_egl.h"
 #include "input/input_recording.h"
 #include "tests/app/viewer/x_person.h"
+#include "tests/display/spec.h"
 #include "tests/display/test_meshes.h"
 #include "tests/display/xvfb_server.h"
 
@@ -95,7 +96,7 @@ class Live : public ::testing::Test {
   }
   Image offscreen(const std::string& display, const ViewState& view) const {
     SessionOptions options = options_.session;
-    options.display = display;
+    options.display = testing::spec(display);
     options.quality = Quality::kExact;
     options.screen = screen_;
     auto context = EglContext::create();
@@ -220,7 +221,8 @@ TEST_F(Live, HelpIsShownInTheMiddleOfEveryDisplayAndGoesAgain) {
 }
 
 TEST_F(Live, DisplaysAreSwitchedWhileItRuns) {
-  options_.displays = {"anaglyph", "interlaced", "quilt:columns=4,rows=2,width=400,height=200,aspect=1.3,cone=40"};
+  options_.displays = {
+      {"anaglyph"}, {"interlaced"}, testing::spec("quilt:columns=4,rows=2,width=400,height=200,aspect=1.3,cone=40")};
   std::vector<std::string> shown;
   std::vector<Image> shots;
   std::vector<Step> steps;
@@ -237,7 +239,7 @@ TEST_F(Live, DisplaysAreSwitchedWhileItRuns) {
   steps.push_back(end());
   const auto done = play(steps);
   ASSERT_TRUE(done) << done.error().message;
-  ASSERT_EQ(shown, (std::vector<std::string>{"mono", "anaglyph", "interlaced", options_.displays[2], "mono"}));
+  ASSERT_EQ(shown, (std::vector<std::string>{"mono", "anaglyph", "interlaced", options_.displays[2].text(), "mono"}));
   for (const std::size_t i : {0u, 1u, 2u, 4u})
     EXPECT_EQ(shots[i].pixels, offscreen(shown[i], ViewState()).pixels) << shown[i];
   // A quilt has its own size: it is fitted into the window, with black above and below.
@@ -248,7 +250,7 @@ TEST_F(Live, DisplaysAreSwitchedWhileItRuns) {
 }
 
 TEST_F(Live, AnInterlacedWindowKeepsTheParityOfThePanel) {
-  options_.session.display = "interlaced";
+  options_.session.display = {"interlaced"};
   Image here;
   const auto done = play({
       look(here),
@@ -262,15 +264,13 @@ TEST_F(Live, AnInterlacedWindowKeepsTheParityOfThePanel) {
 
 TEST_F(Live, KeysOnAPanelChangeItsFiguresAndSaveThem) {
   const auto root = std::filesystem::temp_directory_path() / ("dubsar_tuner_" + std::to_string(::getpid()));
-  const auto folder = root / "panels", scratch = root / "scratch";
-  std::filesystem::create_directories(scratch);
-  auto tuner = LensTuner::create(folder, scratch, "lens-sheet-24-5-views");
+  const auto folder = root / "panels";
+  auto tuner = LensTuner::create(options_.session.catalog, folder, "lens-sheet-24-5-views");
   ASSERT_TRUE(tuner) << tuner.error().message;
   const std::string first = tuner->text();
-  options_.session.display = "lenticular:lens-sheet-24-5-views";
-  options_.session.profile_folder = scratch;
+  options_.session.display = tuner->display();
   options_.session.pattern = true;
-  options_.displays = {"mono"};
+  options_.displays = {{"mono"}};
   std::string taken;
   options_.keys = [&](const std::string& key) {
     const KeyAnswer answer = tuner->key(key);
@@ -294,10 +294,10 @@ TEST_F(Live, KeysOnAPanelChangeItsFiguresAndSaveThem) {
   EXPECT_EQ(before.pixels, back.pixels);
   EXPECT_EQ(tuner->text(), first);
   EXPECT_TRUE(tuner->saved());
-  const auto profile = choose_panel(folder, "lens-sheet-24-5-views", "");
+  const auto profile = load_panels(folder).find("lens-sheet-24-5-views");
   ASSERT_TRUE(profile) << profile.error().message;
   ASSERT_TRUE(profile->adjustment.center);
-  const auto untouched = choose_panel({}, "lens-sheet-24-5-views", "");
+  const auto untouched = built_in_panels().find("lens-sheet-24-5-views");
   EXPECT_NEAR(*profile->adjustment.center - untouched->sheet->center, 0.02, 1e-9);
   EXPECT_EQ(turn_between_deg(done->view.rotation, {1, 0, 0, 0}), 0.0) << "the arrows belong to the panel";
   std::filesystem::remove_all(root);

@@ -144,7 +144,7 @@ Result<void> scholar(const TriMesh& mesh, const fs::path& scripts, const fs::pat
                     .view = "orbit:25,20",
                     .every = 54,
                     .longest_s = 4.8,
-                    .profile_folder = panels.path};
+                    .panel_folder = panels.path};
   const std::string file = (scripts / "scholar.json").string();
   DUBSAR_ASSIGN(const StagedSession session, play(server, mesh, stage, {"scripted:" + file}));
   DUBSAR_ASSIGN(const std::string text, read_text_file(file));
@@ -176,7 +176,7 @@ Result<void> developer(const TriMesh& mesh, const fs::path& scripts, const fs::p
                     .view = "orbit:25,20",
                     .every = 70,
                     .longest_s = 5.9,
-                    .profile_folder = panels.path};
+                    .panel_folder = panels.path};
   const std::string file = (scripts / "developer.json").string();
   const fs::path recording = folder / "developer.jsonl";
   DUBSAR_ASSIGN(const StagedSession live,

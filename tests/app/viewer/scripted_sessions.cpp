@@ -12,8 +12,8 @@ constexpr double kHalfIpdMm = 31.5;
 Result<StagedSession> play(const XvfbServer& server, const TriMesh& mesh, const Stage& stage,
                            const std::vector<std::string>& inputs, const std::filesystem::path& record) {
   app::LiveOptions options;
-  options.session.display = stage.display;
-  options.session.profile_folder = stage.profile_folder;
+  DUBSAR_ASSIGN(options.session.display, parse_sink_spec(stage.display));
+  options.session.catalog = std::make_shared<SinkCatalog>(load_panels(stage.panel_folder));
   options.session.samples = 2;
   DUBSAR_ASSIGN(options.session.mapping, default_mapping());
   DUBSAR_ASSIGN(options.session.direction, parse_view_direction(stage.view));

@@ -30,7 +30,7 @@ struct Stage {
   double fps = 60.0;
   int every = 1;  ///< a picture at each n-th step
   double longest_s = 60.0;
-  std::filesystem::path profile_folder{};
+  std::filesystem::path panel_folder{};
 };
 
 /// Runs a session to its end in a window of the server. `inputs` as of `dubsar view --input`.

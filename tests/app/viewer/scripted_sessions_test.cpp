@@ -84,7 +84,7 @@ TEST_F(ScriptedSession, AScholarsHeadMovesBeforeAWeavedPanelAndEachEyeSeesItsOwn
                     .height = 270,
                     .every = 84,
                     .longest_s = 4.8,
-                    .profile_folder = folder_ / "panels"};
+                    .panel_folder = folder_ / "panels"};
   const auto session = play(*server_, lettered_box(), stage, {"scripted:" + script("scholar.json")});
   ASSERT_TRUE(session) << session.error().message;
   const Script wanted = parsed("scholar.json");
@@ -116,7 +116,7 @@ TEST_F(ScriptedSession, ADeveloperGetsTheSameFromSimulatedDevicesAndFromTheirRec
                     .height = 270,
                     .every = 30,
                     .longest_s = 5.9,
-                    .profile_folder = folder_ / "panels"};
+                    .panel_folder = folder_ / "panels"};
   const fs::path recording = folder_ / "developer.jsonl";
   const auto live =
       play(*server_, lettered_box(), stage,

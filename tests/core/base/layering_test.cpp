@@ -46,6 +46,9 @@ TEST(Layering, RoomsIncludeOnlyWhatIsBelowThem) {
       {"core/phantom/", {"core/image_io/"}},
       {"core/mesh_io/", {"core/exa/"}},
       {"display/", {"input/", "app/", "devices/"}},
+      {"display/optics/", {"display/panels/", "display/render/", "display/sinks/", "epoxy/"}},
+      {"display/panels/", {"display/render/", "display/sinks/", "epoxy/"}},
+      {"display/render/", {"display/sinks/"}},
   };
   for (std::size_t floor = 0; floor < floors.size(); ++floor) {
     auto& walls = forbidden["core/" + floors[floor] + "/"];

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "display/panels/panel_set.h"
+
 namespace dubsar {
 namespace {
 
-PanelProfile laptop() { return find_profile(load_profiles({}).value(), "spatiallabs-15.6").value(); }
+PanelProfile laptop() { return built_in_panels().find("spatiallabs-15.6").value(); }
 
 TEST(CrosstalkCurve, OfTheLaptopPanelStaysWithinItsBounds) {
   CrosstalkQuestion question;
@@ -44,7 +46,7 @@ TEST(CrosstalkCurve, OfTheLaptopPanelStaysWithinItsBounds) {
 }
 
 TEST(CrosstalkCurve, IsForTrackedPanels) {
-  const auto sheet = find_profile(load_profiles({}).value(), "lens-sheet-24-5-views").value();
+  const auto sheet = built_in_panels().find("lens-sheet-24-5-views").value();
   EXPECT_EQ(crosstalk_curve(sheet).error().kind, ErrorKind::kConfig);
 }
 

@@ -5,8 +5,7 @@
 
 #include <fstream>
 
-#include "display/panels/panel_profile.h"
-#include "display/render/context_glfw.h"
+#include "display/panels/panel_set.h"
 #include "tests/display/panels/made_edid.h"
 
 namespace dubsar {
@@ -91,10 +90,10 @@ TEST_F(Connectors, MonitorsFindTheirsByNameAndBySize) {
 }
 
 TEST(PanelsOfEdid, LookingGlassesByNameAndSizeTrackedOnesByMakerAndProduct) {
-  const auto profiles = load_profiles({}).value();
+  const PanelSet& panels = built_in_panels();
   const auto names = [&](const MadeEdid& of) {
     std::string out;
-    for (const PanelProfile* p : panels_of_edid(profiles, parse(made_edid(of)).value())) out += p->name + " ";
+    for (const PanelProfile* p : panels_of_edid(panels, parse(made_edid(of)).value())) out += p->name + " ";
     return out;
   };
   EXPECT_EQ(names({.manufacturer = "LKG",

@@ -8,7 +8,8 @@
 #include <filesystem>
 
 #include "core/base/atomic_file.h"
-#include "display/sinks/output_sink.h"
+#include "display/panels/calibration.h"
+#include "display/sinks/sink_catalog.h"
 
 namespace dubsar {
 namespace {
@@ -18,9 +19,7 @@ class PanelAdjust : public ::testing::Test {
  protected:
   void SetUp() override { fs::remove_all(folder_); }
   void TearDown() override { fs::remove_all(folder_); }
-  PanelProfile panel(std::string_view name) const {
-    return find_profile(load_profiles(folder_ / "panels").value(), name).value();
-  }
+  PanelProfile panel(std::string_view name) const { return load_panels(folder_ / "panels").find(name).value(); }
   fs::path folder_ = fs::temp_directory_path() / fmt::format("dubsar_adjust_{}", ::getpid());
 };
 
@@ -47,7 +46,7 @@ TEST_F(PanelAdjust, ACalibrationIsAdjustedToo) {
   const auto calibration = parse_calibration(
       R"({"serial": "LKG-E1", "pitch": 80.1, "slope": -6.6, "center": 0.25, "DPI": 491, "screenW": 1440, "screenH": 2560})",
       "v");
-  const auto profile = calibrated_profile(load_profiles(panels).value(), *calibration);
+  const auto profile = calibrated_profile(load_panels(panels), *calibration);
   ASSERT_TRUE(profile);
   EXPECT_EQ(profile->sheet->slope, -6.5);
   EXPECT_EQ(profile->sheet->pitch, 80.1);
@@ -78,21 +77,48 @@ TEST_F(PanelAdjust, ImpossibleFiguresAreRefusedAndNothingIsWritten) {
   EXPECT_NE(words("looking-glass-65", "pitch=52").find("no lens figures"), std::string::npos);
   EXPECT_NE(words("no-such-panel", "pitch=52").find("no-such-panel"), std::string::npos);
   EXPECT_FALSE(fs::exists(panels));
-  for (const char* text : {"", "pitch", "pitch=", "pitch=a", "pitch=1x", "pitch=1,pitch=2", "tilt=1", "pitch=1,,"}) {
+  for (const char* text : {"", "pitch", "pitch=", "pitch=a", "pitch=1x", "pitch=1,pitch=2", "tilt=1", "pitch=1,,",
+                           "center=1e999", "center=nan", "center=inf", "pitch= 1"}) {
     const auto read = parse_adjustment(text);
     ASSERT_FALSE(read) << text;
     EXPECT_EQ(read.error().kind, ErrorKind::kUsage);
   }
 }
 
-TEST_F(PanelAdjust, ADamagedFileIsNamed) {
+TEST_F(PanelAdjust, ADamagedFileLosesItsPanelWithTheReasonAndResetHealsIt) {
   const fs::path panels = folder_ / "panels";
   fs::create_directories(panels);
-  ASSERT_TRUE(write_file_atomically(panels / "a.adjust.json", R"({"adjusts": "looking-glass-go", "pitch": "fast"})"));
-  const auto profiles = load_profiles(panels);
-  ASSERT_FALSE(profiles);
-  EXPECT_EQ(profiles.error().kind, ErrorKind::kConfig);
-  EXPECT_NE(profiles.error().message.find("a.adjust.json"), std::string::npos) << profiles.error().message;
+  const fs::path file = panels / "looking-glass-go.adjust.json";
+  for (const std::string& text : {std::string(R"({"adjusts": "looking-glass-go", "pitch": "fast"})"),
+                                  std::string(R"({"adjusts": "looking-glass-go", "pitch": 1e4})"), std::string("[1]"),
+                                  std::string("{"), std::string(), std::string(70000, ' ')}) {
+    ASSERT_TRUE(write_file_atomically(file, text));
+    const PanelSet set = load_panels(panels);
+    ASSERT_EQ(set.problems.size(), 1u) << text.substr(0, 80);
+    EXPECT_EQ(set.problems[0].file, file);
+    const auto lost = set.find(kGo);
+    ASSERT_FALSE(lost) << "its figures are not guessed";
+    EXPECT_EQ(lost.error().kind, ErrorKind::kConfig);
+    EXPECT_NE(lost.error().message.find("looking-glass-go.adjust.json"), std::string::npos) << lost.error().message;
+    EXPECT_TRUE(set.find("looking-glass-portrait")) << "its neighbours stay";
+    EXPECT_EQ(save_adjustment(panels, kGo, *parse_adjustment("center=0.1")).error().kind, ErrorKind::kConfig);
+    const auto removed = remove_adjustment(panels, kGo);
+    ASSERT_TRUE(removed) << removed.error().message;
+    EXPECT_TRUE(*removed);
+    EXPECT_TRUE(load_panels(panels).find(kGo));
+  }
+  ASSERT_TRUE(write_file_atomically(panels / "gone.adjust.json", R"({"adjusts": "gone", "pitch": 50})"));
+  EXPECT_NE(load_panels(panels).problems.at(0).reason.find("no panel is called \"gone\""), std::string::npos);
+  EXPECT_TRUE(*remove_adjustment(panels, "gone"));
+  EXPECT_EQ(remove_adjustment(panels, "gone").error().kind, ErrorKind::kUsage);
+}
+
+TEST_F(PanelAdjust, NamesDoNotLeadOutOfTheFolder) {
+  const fs::path panels = folder_ / "panels", outside = folder_ / "x.adjust.json";
+  fs::create_directories(panels);
+  ASSERT_TRUE(write_file_atomically(outside, "{}"));
+  EXPECT_FALSE(remove_adjustment(panels, "../x"));
+  EXPECT_TRUE(fs::exists(outside));
 }
 
 TEST_F(PanelAdjust, ACalibrationCanBeJoinedWithANamedModel) {
@@ -100,14 +126,14 @@ TEST_F(PanelAdjust, ACalibrationCanBeJoinedWithANamedModel) {
   const fs::path file = folder_ / "visual.json";
   ASSERT_TRUE(write_file_atomically(
       file, R"({"serial": "X", "pitch": 48, "slope": -6, "DPI": 136, "screenW": 7680, "screenH": 4320})"));
-  const auto named = choose_panel({}, "looking-glass-65", file);
+  const auto named = choose_panel(built_in_panels(), "looking-glass-65", file);
   ASSERT_TRUE(named) << named.error().message;
   EXPECT_EQ(named->name, "looking-glass-65");
   EXPECT_EQ(named->sheet->pitch, 48);
-  EXPECT_TRUE(make_sink(fmt::format("lenticular:panel=looking-glass-65,calibration={}", file.string())));
-  EXPECT_TRUE(make_sink(fmt::format("quilt:calibration={},looking-glass-65", file.string())));
-  EXPECT_FALSE(make_sink("lenticular:looking-glass-65")) << "it has no lens figures of its own";
-  EXPECT_FALSE(choose_panel({}, "spatiallabs-15.6", file)) << "a tracked panel has no such calibration";
+  EXPECT_TRUE(SinkCatalog().make(fmt::format("lenticular:panel=looking-glass-65,calibration={}", file.string())));
+  EXPECT_TRUE(SinkCatalog().make(fmt::format("quilt:calibration={},looking-glass-65", file.string())));
+  EXPECT_FALSE(SinkCatalog().make("lenticular:looking-glass-65")) << "it has no lens figures of its own";
+  EXPECT_FALSE(choose_panel(built_in_panels(), "spatiallabs-15.6", file)) << "a tracked panel has no such calibration";
 }
 
 }  // namespace

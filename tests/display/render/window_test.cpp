@@ -41,7 +41,7 @@ void compose(OutputSink& sink, const Surface& target) {
 Image offscreen(std::string_view display, const Screen& screen) {
   auto context = EglContext::create();
   EXPECT_TRUE(context);
-  auto sink = make_sink(display).value();
+  auto sink = SinkCatalog().make(display).value();
   EXPECT_TRUE(sink->configure(screen));
   auto surface = OffscreenSurface::create(sink->traits().output);
   compose(*sink, surface->surface());
@@ -51,7 +51,7 @@ Image offscreen(std::string_view display, const Screen& screen) {
 /// What GL says was drawn, and what is on the X server's screen after presenting it.
 void screenshot(std::string_view display, const WindowOptions& options, const testing::XvfbServer& server,
                 Screen& screen, Image& back, Image& front) {
-  auto shown = open_sink_window(display, options);
+  auto shown = open_sink_window({}, parse_sink_spec(display).value(), options);
   ASSERT_TRUE(shown) << shown.error().message;
   EXPECT_EQ(shown->note, "") << display;
   EXPECT_EQ(shown->window->size(), (PixelSize{options.width, options.height}));
@@ -96,7 +96,7 @@ TEST_F(Window, InterlacedParityFollowsThePanelNotTheWindow) {
     options.height = 48;
     options.x = 10;
     options.y = 20 + i;
-    auto shown = open_sink_window("interlaced", options);
+    auto shown = open_sink_window({}, {"interlaced"}, options);
     ASSERT_TRUE(shown) << shown.error().message;
     compose(*shown->sink, shown->window->surface());
     pictures[i] = shown->window->read().value();
@@ -133,7 +133,7 @@ TEST_F(Window, QuadBuffersAreUsedWhereTheyExistAndElseTheNoteSaysWhatIsShown) {
   options.width = 200;
   options.height = 100;
   options.decorated = false;
-  auto shown = open_sink_window("quad_buffer", options);
+  auto shown = open_sink_window({}, {"quad_buffer"}, options);
   ASSERT_TRUE(shown) << shown.error().message;
   compose(*shown->sink, shown->window->surface());
   EXPECT_TRUE(shown->window->stereo() || std::getenv("DUBSAR_EXPECT_STEREO") == nullptr)
@@ -152,7 +152,7 @@ TEST_F(Window, QuadBuffersAreUsedWhereTheyExistAndElseTheNoteSaysWhatIsShown) {
   EXPECT_NE(shown->note.find("quad_buffer"), std::string::npos);
   EXPECT_NE(shown->note.find("side_by_side is shown instead"), std::string::npos) << shown->note;
   const Surface mono = shown->window->surface();
-  auto sink = make_sink("quad_buffer").value();
+  auto sink = SinkCatalog().make("quad_buffer").value();
   ASSERT_TRUE(sink->configure(shown->window->screen()));
   auto array = ViewArray::create(200, 100, 2);
   const auto refused = sink->compose(*array, mono);

@@ -16,13 +16,15 @@
 #include "core/base/atomic_file.h"
 #include "display/optics/optics.h"
 #include "display/optics/srgb.h"
-#include "display/panels/panel_profile.h"
+#include "display/panels/panel_set.h"
 #include "display/render/compose_pass.h"
 #include "display/render/context_egl.h"
 #include "display/render/test_pattern.h"
+#include "display/render/view_array.h"
+#include "display/sinks/field_cadence.h"
 #include "display/sinks/interlaced.h"
-#include "display/sinks/output_sink.h"
 #include "display/sinks/quilt.h"
+#include "display/sinks/sink_catalog.h"
 
 namespace dubsar {
 namespace {
@@ -75,7 +77,7 @@ class Directions : public ::testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   void open(const std::string& spec, const Viewer& viewer = {}) {
-    auto made = make_sink(spec, folder_);
+    auto made = SinkCatalog(load_panels(folder_)).make(spec);
     ASSERT_TRUE(made) << made.error().message;
     sink_ = std::move(*made);
     ASSERT_TRUE(sink_->configure(kScreen));
@@ -173,7 +175,7 @@ class Directions : public ::testing::Test {
     const Image picture = composed();
     const auto light = sink_->light();
     ASSERT_TRUE(light);
-    const PanelProfile profile = find_profile(load_profiles(folder_).value(), panel).value();
+    const PanelProfile profile = load_panels(folder_).find(panel).value();
     const int views = sink_->traits().views;
     const double half_cone = 0.5 * profile.view_cone_deg * std::numbers::pi / 180, z = viewing_distance_mm(profile);
     for (int k = filter == "linear" ? 2 : 1;
@@ -253,6 +255,40 @@ TEST_F(Directions, EveryViewArrivesAtTheEyeItIsFor) {
            glGetTextureImage(pictures[eye], 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(read.pixels.size()),
                              read.pixels.data());
            expect_view(eye, mean_light(read, 0), 1e-9, "quad_buffer");
+         }
+       }},
+      {"shutter",
+       [&] {
+         // Glasses open the left eye at even beats; the present loop is late now and then, and holds a picture.
+         open("shutter");
+         const ViewArray views = painted();
+         FieldCadence cadence;
+         cadence.set_refresh(120.0);
+         const double beat_ns = 1e9 / 119.88;
+         std::array<Light, 2> light{Light(0.0), Light(0.0)};
+         std::array<int, 2> open_beats{0, 0};
+         auto surface = OffscreenSurface::create(sink_->traits().output).value();
+         std::int64_t beat = 0;
+         for (int picture = 0; picture < 400; ++picture) {
+           const std::int64_t next = beat + (picture % 7 == 3 ? 2 : 1);  // ready after the beat that it was begun for
+           const auto time = [&](std::int64_t b, double late_ms) {
+             return static_cast<TimestampNs>(static_cast<double>(b) * beat_ns + 1e6 * late_ms);
+           };
+           const Field field = cadence.next(cadence.turn(time(next, -4.0)));
+           ASSERT_TRUE(sink_->compose(views, surface.surface(), field));
+           const Light shown = mean_light(surface.read().value(), 0);
+           beat = next;  // in between, the picture before was held
+           cadence.presented(time(beat, 0.5 * (picture % 3)));
+           const auto eye = static_cast<std::size_t>(beat % 2);
+           light[eye] += shown;
+           ++open_beats[eye];
+         }
+         // Which of the two orders the glasses have, a switch on them says.
+         const int first = nearest_view_to(light[0] / static_cast<double>(open_beats[0]));
+         for (std::size_t eye = 0; eye < 2; ++eye) {
+           EXPECT_GT(open_beats[eye], 150);
+           expect_view(eye == 0 ? first : 1 - first, light[eye] / static_cast<double>(open_beats[eye]), 1e-9,
+                       "shutter");
          }
        }},
       {"quilt", [&] {

@@ -9,12 +9,17 @@
 #include "display/sinks/plugin_sink.h"
 #include "display/sinks/render_display.h"
 #include "display/sinks/sink_window.h"
+#include "tests/display/spec.h"
 #include "tests/display/xvfb_server.h"
 
 namespace dubsar {
 namespace {
 
 std::filesystem::path broken(int how) { return fmt::format("{}/libbroken_plugin_{}.so", DUBSAR_BROKEN_PLUGINS, how); }
+
+std::shared_ptr<SinkCatalog> with(std::vector<std::shared_ptr<SinkPlugin>> plugins) {
+  return std::make_shared<SinkCatalog>(built_in_panels(), std::move(plugins));
+}
 
 DisplayOptions small_screen() {
   DisplayOptions options;
@@ -28,10 +33,10 @@ TEST(Plugin, TheSampleMirrorsTheMonoPicture) {
   ASSERT_TRUE(plugin) << plugin.error().message;
   EXPECT_EQ((*plugin)->name(), "mirrored");
   DisplayOptions options = small_screen();
-  options.plugins.push_back(*plugin);
-  const Image mono = render_pattern("mono", options)->image;
+  options.catalog = with({*plugin});
+  const Image mono = render_pattern({"mono"}, options)->image;
   for (const bool upside_down : {false, true}) {
-    const auto mirrored = render_pattern(upside_down ? "mirrored:upside_down" : "mirrored", options);
+    const auto mirrored = render_pattern(testing::spec(upside_down ? "mirrored:upside_down" : "mirrored"), options);
     ASSERT_TRUE(mirrored) << mirrored.error().message;
     for (int y = 0; y < 90; ++y)
       for (int x = 0; x < 160; ++x)
@@ -43,7 +48,7 @@ TEST(Plugin, TheSampleMirrorsTheMonoPicture) {
 
 TEST(Plugin, ItsViewIsThatOfTheMirroredViewer) {
   const auto plugin = SinkPlugin::load(DUBSAR_SAMPLE_PLUGIN).value();
-  const auto sink = plugin->create("").value(), mono = make_sink("mono").value();
+  const auto sink = plugin->create("").value(), mono = SinkCatalog().make("mono").value();
   const Screen screen = small_screen().screen;
   ASSERT_TRUE(sink->configure(screen) && mono->configure(screen));
   Viewer viewer;
@@ -70,9 +75,9 @@ TEST(Plugin, ASampleOpensInAWindow) {
   WindowOptions window;
   window.width = 64;
   window.height = 48;
-  EXPECT_EQ(open_sink_window("mirrored", window).error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(open_sink_window({}, {"mirrored"}, window).error().kind, ErrorKind::kUsage);
   const auto plugins = load_plugins({DUBSAR_SAMPLE_PLUGIN}).value();
-  const auto shown = open_sink_window("mirrored", window, {}, "side_by_side", plugins);
+  const auto shown = open_sink_window(*with(plugins), {"mirrored"}, window);
   ASSERT_TRUE(shown) << shown.error().message;
   EXPECT_EQ(shown->sink->traits().name, "mirrored");
   EXPECT_EQ(shown->sink->traits().output, (PixelSize{64, 48}));
@@ -99,8 +104,8 @@ TEST(Plugin, TablesThatDoNotFitAreRefusedWithWhatWasFound) {
 TEST(Plugin, ImpossibleWishesAndViewsAreRefused) {
   for (const int how : {7, 8}) {
     DisplayOptions options = small_screen();
-    options.plugins.push_back(SinkPlugin::load(broken(how)).value());
-    const auto picture = render_pattern("broken", options);
+    options.catalog = with({SinkPlugin::load(broken(how)).value()});
+    const auto picture = render_pattern({"broken"}, options);
     ASSERT_FALSE(picture);
     EXPECT_EQ(picture.error().kind, ErrorKind::kBadData) << picture.error().message;
   }
@@ -108,8 +113,8 @@ TEST(Plugin, ImpossibleWishesAndViewsAreRefused) {
 
 TEST(Plugin, UnknownDisplaysAreStillUsageErrors) {
   DisplayOptions options = small_screen();
-  options.plugins.push_back(SinkPlugin::load(DUBSAR_SAMPLE_PLUGIN).value());
-  EXPECT_EQ(render_pattern("hologram", options).error().kind, ErrorKind::kUsage);
+  options.catalog = with({SinkPlugin::load(DUBSAR_SAMPLE_PLUGIN).value()});
+  EXPECT_EQ(render_pattern({"hologram"}, options).error().kind, ErrorKind::kUsage);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "display/render/test_pattern.h"
 #include "display/sinks/output_sink.h"
 #include "display/sinks/quilt.h"
+#include "tests/display/spec.h"
 #include "tests/display/test_meshes.h"
 
 namespace dubsar {
@@ -44,7 +45,7 @@ TriMesh card() {  // 40 x 20 mm, in one plane
 
 Image shown(const TriMesh& mesh, std::string_view display, const DisplayOptions& options) {
   SilentProgress progress;
-  auto picture = render_display(mesh, display, options, progress);
+  auto picture = render_display(mesh, testing::spec(display), options, progress);
   EXPECT_TRUE(picture) << picture.error().message;
   return picture ? std::move(picture->image) : Image();
 }
@@ -74,7 +75,7 @@ TEST(RenderDisplay, FittedObjectsFillTheWindowToTheMargin) {
   DisplayOptions options = white_options();
   options.margin = 0.1;
   SilentProgress progress;
-  const auto picture = render_display(card(), "mono", options, progress);
+  const auto picture = render_display(card(), {"mono"}, options, progress);
   ASSERT_TRUE(picture) << picture.error().message;
   EXPECT_NEAR(picture->magnification, 80.0 / 40.0, 1e-9);
   EXPECT_EQ(bright(picture->image).second, 160 * 80);
@@ -111,12 +112,13 @@ TEST(RenderDisplay, QuiltViewsSweepFromTheLeftmostCameraToTheRight) {
 
 TEST(RenderDisplay, EverySinkThatDrawsShowsTheObject) {
   for (const SinkBackend& backend : output_sinks()) {
-    if (backend.name == "null" || backend.name == "image" || backend.name == "lenticular") continue;
+    if (backend.name == "null" || backend.name == "shutter" || backend.name == "image" || backend.name == "lenticular")
+      continue;
     const bool quilt = backend.name == "quilt";
     const std::string spec = std::string(backend.name) + (quilt ? ":columns=3,rows=2,width=300,height=200" : "");
     DisplayOptions options = white_options();
     SilentProgress progress;
-    const auto picture = render_display(testing::lettered_box(), spec, options, progress);
+    const auto picture = render_display(testing::lettered_box(), testing::spec(spec), options, progress);
     if (!picture && picture.error().kind == ErrorKind::kUnavailable) continue;  // needs a stereo visual
     ASSERT_TRUE(picture) << spec << ": " << picture.error().message;
     EXPECT_EQ(picture->image.width, quilt ? 300 : 200) << spec;
@@ -138,7 +140,7 @@ TEST(RenderDisplay, ObjectsAreTurnedAsTheViewSays) {
 
 TEST(RenderDisplay, EachEyeSeesItsOwnPatternThroughTheLenses) {
   DisplayOptions options;
-  const auto picture = render_pattern("lenticular:lens-sheet-24-5-views,nearest", options);
+  const auto picture = render_pattern(testing::spec("lenticular:lens-sheet-24-5-views,nearest"), options);
   ASSERT_TRUE(picture) << picture.error().message;
   ASSERT_TRUE(picture->light);
   // Eyes in the middle of each view's cone, at the distance the panel is made for; 0 is the leftmost.
@@ -173,7 +175,7 @@ TEST(RenderDisplay, TrackedWeaveIsSeenByTheEyesItWasWovenFor) {
   DisplayOptions options;
   options.viewer.left_mm = {-51.5, 10, 580};
   options.viewer.right_mm = {11.5, 10, 580};
-  const auto picture = render_pattern("lenticular:spatiallabs-15.6", options);
+  const auto picture = render_pattern(testing::spec("lenticular:spatiallabs-15.6"), options);
   ASSERT_TRUE(picture && picture->light);
   const EyeLight left = light_at(*picture->light, options.viewer.left_mm, 64);
   const EyeLight right = light_at(*picture->light, options.viewer.right_mm, 64);
@@ -184,7 +186,7 @@ TEST(RenderDisplay, TrackedWeaveIsSeenByTheEyesItWasWovenFor) {
 }
 
 TEST(RenderDisplay, SeeingIsForDisplaysWithLenses) {
-  const auto picture = render_pattern("anaglyph", DisplayOptions());
+  const auto picture = render_pattern({"anaglyph"}, DisplayOptions());
   ASSERT_TRUE(picture) << picture.error().message;
   EXPECT_EQ(see_display(*picture, {0, 0, 600}).error().kind, ErrorKind::kUsage);
 }
@@ -192,7 +194,7 @@ TEST(RenderDisplay, SeeingIsForDisplaysWithLenses) {
 TEST(RenderDisplay, WrongRequestsAreUsageErrors) {
   SilentProgress progress;
   const auto kind = [&](std::string_view display, const DisplayOptions& options) {
-    const auto picture = render_display(card(), display, options, progress);
+    const auto picture = render_display(card(), testing::spec(display), options, progress);
     return picture ? ErrorKind::kInternal : picture.error().kind;
   };
   DisplayOptions options = white_options();

@@ -13,11 +13,12 @@
 #include "display/render/context_egl.h"
 #include "display/render/lod_mesh.h"
 #include "display/render/renderer.h"
+#include "display/render/view_array.h"
 #include "display/sinks/anaglyph.h"
 #include "display/sinks/interlaced.h"
-#include "display/sinks/output_sink.h"
 #include "display/sinks/packed.h"
 #include "display/sinks/quilt.h"
+#include "display/sinks/sink_catalog.h"
 #include "tests/display/test_meshes.h"
 
 namespace dubsar {
@@ -59,7 +60,7 @@ class SinksGl : public ::testing::Test {
 };
 
 TEST_F(SinksGl, MonoCopiesItsViewExactly) {
-  auto sink = make_sink("mono").value();
+  auto sink = SinkCatalog().make("mono").value();
   ASSERT_TRUE(sink->configure({.window_w = 37, .window_h = 23}));
   const auto views = noise(sink->traits());
   const Image out = compose(*sink, views);
@@ -79,7 +80,7 @@ TEST_F(SinksGl, PackedPicturesEqualTheReference) {
                {"top_bottom:frame_packing", {.vertical = true, .full = true, .frame_packing = true}}};
   for (const auto& c : cases)
     for (const PixelSize window : {PixelSize{64, 48}, {37, 25}}) {
-      auto sink = make_sink(c.spec).value();
+      auto sink = SinkCatalog().make(c.spec).value();
       ASSERT_TRUE(sink->configure({.window_w = window.width, .window_h = window.height}));
       const auto views = noise(sink->traits());
       EXPECT_EQ(compose(*sink, views).pixels, pack_views(views[0], views[1], window, c.packing).pixels) << c.spec;
@@ -91,8 +92,9 @@ TEST_F(SinksGl, InterlacedPicturesEqualTheReference) {
   for (int pattern = 0; pattern < 4; ++pattern)
     for (const bool right_first : {false, true})
       for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {0, 1}, {101, 54}, {-3, -2}}) {
-        auto sink =
-            make_sink(std::string("interlaced:") + names[pattern] + (right_first ? ",right_first" : "")).value();
+        auto sink = SinkCatalog()
+                        .make(std::string("interlaced:") + names[pattern] + (right_first ? ",right_first" : ""))
+                        .value();
         const Screen screen{.window_x = x, .window_y = y, .window_w = 31, .window_h = 22};
         ASSERT_TRUE(sink->configure(screen));
         const auto views = noise(sink->traits());
@@ -105,7 +107,7 @@ TEST_F(SinksGl, InterlacedPicturesEqualTheReference) {
 
 TEST_F(SinksGl, AnaglyphsEqualTheReferenceToOneStep) {
   for (const AnaglyphVariant& variant : anaglyph_variants()) {
-    auto sink = make_sink("anaglyph:" + std::string(variant.name)).value();
+    auto sink = SinkCatalog().make("anaglyph:" + std::string(variant.name)).value();
     ASSERT_TRUE(sink->configure({.window_w = 64, .window_h = 64}));
     const auto views = noise(sink->traits());
     const Image out = compose(*sink, views), expected = anaglyph_views(views[0], views[1], variant);
@@ -121,7 +123,7 @@ TEST_F(SinksGl, AnaglyphsEqualTheReferenceToOneStep) {
 TEST_F(SinksGl, QuiltsEqualTheReference) {
   for (const char* spec :
        {"quilt:columns=3,rows=2,width=61,height=43,aspect=1", "quilt:columns=5,rows=9,width=100,height=99"}) {
-    auto sink = make_sink(spec).value();
+    auto sink = SinkCatalog().make(spec).value();
     ASSERT_TRUE(sink->configure({}));
     const SinkTraits traits = sink->traits();
     const auto views = noise(traits);
@@ -141,13 +143,13 @@ double differing(const Image& a, const Image& b) {
 
 TEST_F(SinksGl, LensWeavesEqualTheReference) {
   // Nearest views of noise: a subpixel that shows another view has another colour.
-  const auto profiles = load_profiles({}).value();
+  const PanelSet& panels = built_in_panels();
   for (const char* name : {"looking-glass-portrait", "looking-glass-16-gen3-portrait", "lens-sheet-24-5-views"})
     for (const char* filter : {"nearest", "linear", "gaussian3", "gaussian10"}) {
       if (std::string_view(name).find("gen3") != std::string_view::npos && filter != std::string_view("nearest"))
         continue;
-      const PanelProfile profile = find_profile(profiles, name).value();
-      auto sink = make_sink(std::string("lenticular:") + name + "," + filter).value();
+      const PanelProfile profile = panels.find(name).value();
+      auto sink = SinkCatalog().make(std::string("lenticular:") + name + "," + filter).value();
       // A window at the panel's far corner: the largest phases, and the panel's coordinates must count.
       const Screen screen{.width_px = profile.width_px,
                           .height_px = profile.height_px,
@@ -186,16 +188,16 @@ TEST_F(SinksGl, LensWeavesEqualTheReference) {
 }
 
 TEST_F(SinksGl, WholePanelWeaveEqualsTheReferenceOnNoise) {
-  auto sink = make_sink("lenticular:lens-sheet-24-5-views,linear").value();
+  auto sink = SinkCatalog().make("lenticular:lens-sheet-24-5-views,linear").value();
   ASSERT_TRUE(sink->configure({}));
-  const auto profile = find_profile(load_profiles({}).value(), "lens-sheet-24-5-views").value();
+  const auto profile = built_in_panels().find("lens-sheet-24-5-views").value();
   const auto views = noise(sink->traits());
   EXPECT_LE(differing(compose(*sink, views), weave_views(views, lens_sheet(*profile.sheet))), 0.0005);
 }
 
 TEST_F(SinksGl, TrackedWeaveEqualsTheReference) {
-  const auto profile = find_profile(load_profiles({}).value(), "spatiallabs-15.6").value();
-  auto sink = make_sink("lenticular:spatiallabs-15.6").value();
+  const auto profile = built_in_panels().find("spatiallabs-15.6").value();
+  auto sink = SinkCatalog().make("lenticular:spatiallabs-15.6").value();
   ASSERT_TRUE(sink->configure({}));
   const SinkTraits traits = sink->traits();
   Image white(traits.view.width, traits.view.height, 4), black = white;
@@ -214,7 +216,7 @@ TEST_F(SinksGl, ImageWritesNumberedFilesAndNullDrawsNothing) {
   const auto folder =
       std::filesystem::temp_directory_path() / fmt::format("dubsar_sink_{}", static_cast<int>(::getpid()));
   std::filesystem::create_directories(folder);
-  auto sink = make_sink("image:path=" + (folder / "f-%.png").string()).value();
+  auto sink = SinkCatalog().make("image:path=" + (folder / "f-%.png").string()).value();
   ASSERT_TRUE(sink->configure({.window_w = 20, .window_h = 10}));
   const auto views = noise(sink->traits());
   compose(*sink, views);
@@ -224,7 +226,7 @@ TEST_F(SinksGl, ImageWritesNumberedFilesAndNullDrawsNothing) {
   EXPECT_EQ(file->pixels, views[0].pixels);
   std::filesystem::remove_all(folder);
 
-  auto null = make_sink("null").value();
+  auto null = SinkCatalog().make("null").value();
   ASSERT_TRUE(null->configure({.window_w = 8, .window_h = 8}));
   auto array = ViewArray::create(8, 8, 1);
   auto surface = OffscreenSurface::create({8, 8});
@@ -239,7 +241,7 @@ TEST_F(SinksGl, AMeshThroughARowInterlacedPanelShowsEachEyeItsView) {
   // The whole chain: viewer -> views -> renderer -> compose; every row equals that eye's own picture.
   const LodMesh mesh = LodMesh::exact(pack_mesh(testing::lettered_box()).value()).value();
   auto renderer = Renderer::create().value();
-  auto sink = make_sink("interlaced:rows").value();
+  auto sink = SinkCatalog().make("interlaced:rows").value();
   const Screen screen{
       .width_mm = 60, .height_mm = 40, .width_px = 120, .height_px = 80, .window_w = 120, .window_h = 80};
   ASSERT_TRUE(sink->configure(screen));
@@ -259,9 +261,29 @@ TEST_F(SinksGl, AMeshThroughARowInterlacedPanelShowsEachEyeItsView) {
       for (int c = 0; c < 3; ++c) ASSERT_EQ(out.at(x, y)[c], (y % 2 == 0 ? left : right).at(x, y)[c]);
 }
 
+TEST_F(SinksGl, ShutterShowsOneWholeViewAtEachTurn) {
+  for (const bool right_first : {false, true}) {
+    auto sink = SinkCatalog().make(right_first ? "shutter:right_first" : "shutter:left_first").value();
+    ASSERT_TRUE(sink->configure({.window_w = 33, .window_h = 21}));
+    ASSERT_EQ(sink->traits().fields, 2);
+    const auto views = noise(sink->traits());
+    auto array = ViewArray::create(33, 21, 2);
+    for (int eye = 0; eye < 2; ++eye) ASSERT_TRUE(array->write_layer(eye, views[eye]));
+    auto surface = OffscreenSurface::create({33, 21});
+    for (const Field field : {Field::kFirst, Field::kSecond, Field::kFirst, Field::kFirst, Field::kSecond}) {
+      ASSERT_TRUE(sink->compose(*array, surface->surface(), field));
+      const Image& eye = views[(field == Field::kSecond) != right_first ? 1 : 0];
+      const Image out = surface->read().value();
+      for (int y = 0; y < 21; ++y)
+        for (int x = 0; x < 33; ++x)
+          for (int c = 0; c < 3; ++c) ASSERT_EQ(out.at(x, y)[c], eye.at(x, y)[c]);
+    }
+  }
+}
+
 TEST_F(SinksGl, QuadBufferPutsEachViewIntoItsOwnBufferOfAStandIn) {
   // A frame buffer with two colour attachments stands in for the left and the right back buffer.
-  auto sink = make_sink("quad_buffer").value();
+  auto sink = SinkCatalog().make("quad_buffer").value();
   ASSERT_TRUE(sink->configure({.width_px = 31, .height_px = 17, .window_w = 31, .window_h = 17}));
   ASSERT_TRUE(sink->traits().stereo_visual);
   const auto views = noise(sink->traits());

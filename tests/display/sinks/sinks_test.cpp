@@ -7,9 +7,9 @@
 
 #include "display/sinks/anaglyph.h"
 #include "display/sinks/interlaced.h"
-#include "display/sinks/output_sink.h"
 #include "display/sinks/packed.h"
 #include "display/sinks/quilt.h"
+#include "display/sinks/sink_catalog.h"
 
 namespace dubsar {
 namespace {
@@ -25,14 +25,14 @@ const Image& red() {
   return image;
 }
 
-TEST(SinkRegistry, EverySinkIsMadeByItsNameAndAsksForWhatItSays) {
+TEST(SinkCatalogTest, EverySinkIsMadeByItsNameAndAsksForWhatItSays) {
   std::set<std::string_view> names;
   for (const SinkBackend& backend : output_sinks()) {
     names.insert(backend.name);
     const std::string spec = std::string(backend.name) + (backend.name == "image"        ? ":path=/nowhere/a.png"
                                                           : backend.name == "lenticular" ? ":spatiallabs-15.6"
                                                                                          : "");
-    auto sink = make_sink(spec);
+    auto sink = SinkCatalog().make(spec);
     ASSERT_TRUE(sink) << sink.error().message;
     Screen screen{.window_x = 5, .window_y = 7, .window_w = 64, .window_h = 48};
     ASSERT_TRUE((*sink)->configure(screen));
@@ -47,10 +47,11 @@ TEST(SinkRegistry, EverySinkIsMadeByItsNameAndAsksForWhatItSays) {
   EXPECT_EQ(names.size(), output_sinks().size());
 }
 
-TEST(SinkRegistry, WrongNamesAndOptionsAreUsageErrorsThatSayWhatThereIs) {
+TEST(SinkCatalogTest, WrongNamesAndOptionsAreUsageErrorsThatSayWhatThereIs) {
   for (const char* bad : {"",
                           "hologram",
                           "mono:half",
+                          "shutter:half",
                           "side_by_side:frame_packing",
                           "side_by_side:half,full",
                           "top_bottom:frame_packing,right_first",
@@ -69,20 +70,11 @@ TEST(SinkRegistry, WrongNamesAndOptionsAreUsageErrorsThatSayWhatThereIs) {
                           "lenticular",
                           "lenticular:no-such-panel",
                           "lenticular:spatiallabs-15.6,blurred"}) {
-    const auto sink = make_sink(bad);
+    const auto sink = SinkCatalog().make(bad);
     ASSERT_FALSE(sink) << bad;
     EXPECT_EQ(sink.error().kind, ErrorKind::kUsage) << bad;
     EXPECT_NE(sink.error().message.find("expected"), std::string::npos) << sink.error().message;
   }
-}
-
-TEST(SinkRegistry, OptionsAreSplitAtCommasAndTheFirstEqualsSign) {
-  const auto options = parse_sink_options("half,path=a=b.png,x=");
-  ASSERT_EQ(options.size(), 3u);
-  EXPECT_EQ(options[0], (std::pair<std::string, std::string>{"half", ""}));
-  EXPECT_EQ(options[1], (std::pair<std::string, std::string>{"path", "a=b.png"}));
-  EXPECT_EQ(options[2], (std::pair<std::string, std::string>{"x", ""}));
-  EXPECT_TRUE(parse_sink_options("").empty());
 }
 
 TEST(Packed, SizesAndPlacesOfEveryKind) {
@@ -121,7 +113,7 @@ TEST(Packed, SizesAndPlacesOfEveryKind) {
 }
 
 TEST(Packed, HalfViewsLookThroughTheWholeWindow) {
-  auto half = make_sink("side_by_side:half"), full = make_sink("side_by_side:full");
+  auto half = SinkCatalog().make("side_by_side:half"), full = SinkCatalog().make("side_by_side:full");
   ASSERT_TRUE(half && full);
   ASSERT_TRUE((*half)->configure({}) && (*full)->configure({}));
   for (int eye = 0; eye < 2; ++eye)
@@ -130,7 +122,7 @@ TEST(Packed, HalfViewsLookThroughTheWholeWindow) {
 
 TEST(Stereo, TheFirstViewIsTheLeftEyesInEveryTwoViewSink) {
   for (const char* spec : {"side_by_side", "side_by_side:right_first", "top_bottom", "interlaced", "anaglyph"}) {
-    auto sink = make_sink(spec);
+    auto sink = SinkCatalog().make(spec);
     ASSERT_TRUE(sink);
     ASSERT_TRUE((*sink)->configure({}));
     const auto views = (*sink)->views(Viewer());
@@ -258,7 +250,7 @@ TEST(Quilt, ViewZeroIsAtTheLowerLeftAndPaddingIsBlack) {
 }
 
 TEST(Quilt, SinkTakesItsLayoutFromThePanelProfile) {
-  auto sink = make_sink("quilt:looking-glass-portrait");
+  auto sink = SinkCatalog().make("quilt:looking-glass-portrait");
   ASSERT_TRUE(sink) << sink.error().message;
   const SinkTraits traits = (*sink)->traits();
   EXPECT_EQ(traits.views, 48);
@@ -274,7 +266,7 @@ TEST(Quilt, SinkTakesItsLayoutFromThePanelProfile) {
 }
 
 TEST(Quilt, SizesCanBeGiven) {
-  auto sink = make_sink("quilt:columns=4,rows=2,width=402,height=201,aspect=1.5,cone=30");
+  auto sink = SinkCatalog().make("quilt:columns=4,rows=2,width=402,height=201,aspect=1.5,cone=30");
   ASSERT_TRUE(sink) << sink.error().message;
   EXPECT_EQ((*sink)->traits().view, (PixelSize{100, 100}));
   EXPECT_EQ((*sink)->traits().file_suffix, "_qs4x2a1.5");

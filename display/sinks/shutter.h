@@ -1,0 +1,14 @@
+#pragma once
+// Two views one after the other, each over the whole window, for shutter glasses in step with the monitor: projectors
+// with DLP Link, televisions and glasses of 100 Hz and more.
+
+#include "display/sinks/output_sink.h"
+#include "display/sinks/sink_options.h"
+
+namespace dubsar {
+
+/// Options: left_first (default) or right_first, for glasses that open the other eye at the beat we call the first.
+/// Field::kFirst is the left eye's picture, or the right one's.
+Result<std::unique_ptr<OutputSink>> make_shutter_sink(SinkOptions options);
+
+}  // namespace dubsar
