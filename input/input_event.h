@@ -29,6 +29,9 @@ struct InputEvent {
   bool repeat = false;  ///< kKey: the keyboard says again that it is down; nobody pressed it
   /// Where the pointer is, in heights of the window from its middle, to the right and up; none: nobody knows.
   std::optional<glm::dvec2> at{};
+  /// kButton: how far the surface under the pointer stands before the object's centre, in heights of the window; none:
+  /// there is no surface, or nobody looked.
+  std::optional<double> lever{};
 };
 
 }  // namespace dubsar

@@ -2,6 +2,7 @@
 // The one interface behind which every input stands, what it delivers, and the ordered table of back ends.
 
 #include <filesystem>
+#include <functional>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -80,7 +81,7 @@ class InputSource {
 struct InputConfig {
   std::vector<std::pair<std::string, std::string>> options;  ///< "key=value"; a bare word has an empty value
   WindowEvents* window = nullptr;        ///< where mouse and keyboard come from; none without a window
-  const ViewState* seen_view = nullptr;  ///< what a simulated visitor looks at; outlives the source
+  std::function<ViewState()> seen_view;  ///< what a simulated visitor looks at; asked in any thread
   /// The session's clock, on which devices stamp what they measure; null: the steady clock. It outlives the source and
   /// may be read in any thread.
   const Clock* clock = nullptr;

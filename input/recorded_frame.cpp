@@ -55,6 +55,7 @@ json event_json(const InputEvent& event) {
   if (event.kind == EventKind::kKey) out["key"] = event.key;
   if (event.repeat) out["repeat"] = true;
   if (event.at) out["at"] = {event.at->x, event.at->y};
+  if (event.lever) out["lever"] = *event.lever;
   if (event.kind == EventKind::kButton || event.kind == EventKind::kKey) out["down"] = event.down;
   return out;
 }
@@ -175,6 +176,7 @@ InputEvent read_event(LineReader& read, const json& object) {
     event.button = static_cast<MouseButton>(read.whole(read.get(object, "button"), "button", 0, 2));
   if (event.kind == EventKind::kButton || event.kind == EventKind::kKey) event.down = read.truth(object, "down");
   if (object.is_object() && object.contains("repeat")) event.repeat = read.truth(object, "repeat");
+  if (object.is_object() && object.contains("lever")) event.lever = read.real(object.at("lever"), "lever");
   if (object.is_object() && object.contains("at")) {
     const auto at = read.reals<2>(object.at("at"), "at");
     event.at = {at[0], at[1]};

@@ -46,30 +46,43 @@ Result<void> LensTuner::use() {
   return {};
 }
 
-KeyAnswer LensTuner::key(const std::string& name) {
-  const Figures before = now_;
-  if (name == "left" || name == "right") {
-    now_.center += name == "left" ? -kCentreStep : kCentreStep;
-  } else if (name == "up" || name == "down") {
-    now_.pitch *= name == "up" ? 1.0 + kPitchStep : 1.0 - kPitchStep;
-  } else if (name == "page_up" || name == "page_down") {
-    now_.slope *= name == "page_up" ? 1.0 + kSlopeStep : 1.0 - kSlopeStep;
-  } else if (name == "0") {
-    now_ = first_;
-  } else if (name == "s") {
-    const auto file = save_adjustment(folder_, panel_, {now_.pitch, now_.slope, now_.center});
-    if (!file) return {.taken = true, .notice = file.error().message};
-    saved_ = true;
-    file_ = *file;
-    return {.taken = true, .notice = fmt::format("saved: {}", text())};
-  } else {
+Command LensTuner::step(std::string name, std::string words, std::string key, std::function<void(Figures&)> change) {
+  Command out{std::move(name), "Panel", std::move(words), {{std::move(key)}}};
+  out.repeats = true;
+  out.run = [this, change = std::move(change)](Editor& editor, const std::string&) -> Result<void> {
+    const Figures before = now_;
+    change(now_);
+    if (auto done = use(); !done) {
+      now_ = before;
+      return done;
+    }
+    DUBSAR_TRY(editor.place().switch_display(0));
+    editor.place().say(text());
     return {};
-  }
-  if (const auto done = use(); !done) {
-    now_ = before;
-    return {.taken = true, .notice = done.error().message};
-  }
-  return {.taken = true, .display_changed = true, .notice = text()};
+  };
+  return out;
+}
+
+Command LensTuner::save() {
+  Command out{"panel_save", "Panel", "save the figures", {{"s"}}};
+  out.run = [this](Editor& editor, const std::string&) -> Result<void> {
+    DUBSAR_ASSIGN(file_, save_adjustment(folder_, panel_, {now_.pitch, now_.slope, now_.center}));
+    saved_ = true;
+    editor.place().say(fmt::format("saved: {}", text()));
+    return {};
+  };
+  return out;
+}
+
+std::vector<Command> LensTuner::commands() {
+  return {step("panel_left", "views to the left", "left", [](Figures& f) { f.center -= kCentreStep; }),
+          step("panel_right", "views to the right", "right", [](Figures& f) { f.center += kCentreStep; }),
+          step("pitch_more", "larger pitch", "up", [](Figures& f) { f.pitch *= 1.0 + kPitchStep; }),
+          step("pitch_less", "smaller pitch", "down", [](Figures& f) { f.pitch *= 1.0 - kPitchStep; }),
+          step("slope_more", "larger slope", "page_up", [](Figures& f) { f.slope *= 1.0 + kSlopeStep; }),
+          step("slope_less", "smaller slope", "page_down", [](Figures& f) { f.slope *= 1.0 - kSlopeStep; }),
+          step("panel_reset", "back to the figures that were there", "0", [this](Figures& f) { f = first_; }),
+          save()};
 }
 
 }  // namespace dubsar::app

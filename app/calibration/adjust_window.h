@@ -4,8 +4,9 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
-#include "app/viewer/live.h"
+#include "app/commands/command_table.h"
 #include "display/sinks/sink_catalog.h"
 
 namespace dubsar::app {
@@ -21,9 +22,9 @@ class LensTuner {
 
   /// What shows the panel with the figures of now.
   SinkSpec display() const;
-  /// left, right: centre; up, down: pitch; page_up, page_down: slope; "s" saves for the user; "0" goes back to what was
-  /// there.
-  KeyAnswer key(const std::string& name);
+  /// Keys left, right: centre; up, down: pitch; page_up, page_down: slope; "s" saves for the user; "0" goes back to
+  /// what was there. They are good as long as this.
+  std::vector<Command> commands();
   std::string text() const;  ///< the figures, as `dubsar displays --adjust` reads them
   bool saved() const noexcept { return saved_; }
   const std::filesystem::path& file() const noexcept { return file_; }  ///< of the last saving
@@ -34,6 +35,8 @@ class LensTuner {
   };
   LensTuner() = default;
   Result<void> use();
+  Command step(std::string name, std::string words, std::string key, std::function<void(Figures&)> change);
+  Command save();
 
   std::shared_ptr<SinkCatalog> catalog_;
   std::filesystem::path folder_, file_;

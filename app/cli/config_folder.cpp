@@ -29,6 +29,12 @@ fs::path model_folder() {
   return home.empty() ? fs::path() : home / ".local" / "share" / "dubsar" / "models";
 }
 
+fs::path session_folder() {
+  if (const fs::path xdg = from_environment("XDG_STATE_HOME"); xdg.is_absolute()) return xdg / "dubsar" / "sessions";
+  const fs::path home = from_environment("HOME");
+  return home.empty() ? fs::path() : home / ".local" / "state" / "dubsar" / "sessions";
+}
+
 std::vector<fs::path> mount_folders() {
   fs::path user = from_environment("USER");
   if (user.empty()) user = from_environment("LOGNAME");

@@ -16,6 +16,10 @@ std::filesystem::path panel_folder();
 /// when neither variable is set.
 std::filesystem::path model_folder();
 
+/// Work that sessions have not ended in order: $XDG_STATE_HOME/dubsar/sessions, else
+/// $HOME/.local/state/dubsar/sessions; empty when neither variable is set.
+std::filesystem::path session_folder();
+
 /// Where desktops mount USB storage of the user: /media/$USER and /run/media/$USER.
 std::vector<std::filesystem::path> mount_folders();
 

@@ -56,6 +56,9 @@ class CommandTable {
 /// "side reverse" is "side" and "reverse".
 std::pair<std::string_view, std::string> split_command(std::string_view text);
 
+/// Heading of those that concern the window and change no document.
+inline constexpr std::string_view kWindowGroup = "This window";
+
 /// Parts of the table, each in a file of its own.
 std::vector<Command> view_commands();                                        ///< turning, zooming, sides, undo and redo
 std::vector<Command> look_commands(const std::vector<std::string>& styles);  ///< light, style, parts

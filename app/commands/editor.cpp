@@ -4,10 +4,10 @@
 
 namespace dubsar::app {
 
-void Editor::change(Document next, std::string_view words, Way way, std::uint64_t merge) {
+void Editor::change(Document next, std::string_view words, Way way) {
   next.now.zoom = std::clamp(next.now.zoom, steps_.zoom_min, steps_.zoom_max);
   way_ = way;
-  history_.change(std::move(next), std::string(words), merge);
+  history_.change(std::move(next), std::string(words), merge_);
 }
 
 bool Editor::undo() {

@@ -14,10 +14,11 @@ namespace dubsar::app {
 class Workplace {
  public:
   virtual ~Workplace() = default;
-  virtual Result<void> switch_display(int step) = 0;  ///< 1: the next one, -1: the one before
+  virtual Result<void> switch_display(int step) = 0;  ///< 1: the next one, -1: the one before, 0: this one, made again
   virtual Result<void> toggle_fullscreen() = 0;
   virtual void retry_sources() = 0;
   virtual bool toggle_source(std::size_t index) = 0;  ///< false: there is no such source
+  virtual void say(std::string words) = 0;            ///< one line over the picture, for some seconds
   virtual void end() = 0;
 };
 
@@ -52,8 +53,10 @@ class Editor {
   const Desk& desk() const noexcept { return desk_; }
   Workplace& place() noexcept { return *place_; }
 
-  /// A step of the document; changes in a row with the same `merge` other than 0 are one.
-  void change(Document next, std::string_view words, Way way = Way::kJump, std::uint64_t merge = 0);
+  /// A step of the document.
+  void change(Document next, std::string_view words, Way way = Way::kJump);
+  /// Changes in a row under the same number other than 0 are one step: those of a drag, or of a key that is held.
+  void merge_with(std::uint64_t merge) noexcept { merge_ = merge; }
   bool undo();
   bool redo();
   /// How the view of the last change is gone to.
@@ -65,6 +68,7 @@ class Editor {
   StepFigures steps_;
   Desk desk_;
   Way way_ = Way::kJump;
+  std::uint64_t merge_ = 0;
 };
 
 }  // namespace dubsar::app

@@ -18,7 +18,4 @@ glm::dquat turn_to(Side side, const glm::dquat& home = {1.0, 0.0, 0.0, 0.0});
 /// The side that faces the viewer most.
 Side facing_side(const glm::dquat& rotation, const glm::dquat& home = {1.0, 0.0, 0.0, 0.0});
 
-/// The axis-parallel turn nearest to `q`: one of the 24 turns of a cube.
-glm::dquat nearest_square_turn(const glm::dquat& q);
-
 }  // namespace dubsar::app

@@ -7,6 +7,7 @@
 #include "app/commands/command_table.h"
 #include "app/commands/number_argument.h"
 #include "app/commands/sides.h"
+#include "input/navigation/square_turn.h"
 
 namespace dubsar::app {
 namespace {
@@ -86,7 +87,7 @@ Command obverse_here() {
 
 Command history(std::string name, bool back, std::vector<DefaultKey> keys) {
   Command out{name, "Back", name, std::move(keys)};
-  out.repeats = true;
+  out.repeats = out.steers = true;
   out.enabled = [back](const Editor& editor) {
     return (back ? editor.history().undo_depth() : editor.history().redo_depth()) > 0;
   };

@@ -7,14 +7,14 @@ namespace {
 
 Command plain(std::string name, std::string words, std::vector<DefaultKey> keys,
               std::function<Result<void>(Editor&)> run) {
-  Command out{std::move(name), "This window", std::move(words), std::move(keys)};
+  Command out{std::move(name), std::string(kWindowGroup), std::move(words), std::move(keys)};
   out.run = [run = std::move(run)](Editor& editor, const std::string&) { return run(editor); };
   return out;
 }
 
 /// While the help lists the sources, numbers switch them.
 Command toggle_source() {
-  Command out{"toggle_source", "This window", "source on or off, while this help is shown", {}};
+  Command out{"toggle_source", std::string(kWindowGroup), "source on or off, while this help is shown", {}};
   out.argument = "its number";
   for (char number = '1'; number <= '9'; ++number) {
     out.values.emplace_back(1, number);

@@ -1,10 +1,9 @@
 #include "app/panels/help_page.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-
-#include "app/viewer/session_keys.h"
 
 namespace dubsar::app {
 namespace {
@@ -13,6 +12,8 @@ std::string drag_words(Action action) {
   switch (action) {
     case Action::kRotate:
       return "turn";
+    case Action::kRotateFine:
+      return "turn slowly";
     case Action::kPan:
       return "move";
     case Action::kZoom:
@@ -32,12 +33,6 @@ std::string drag_words(Action action) {
   }
 }
 
-/// Actions that belong into one line.
-struct Family {
-  std::vector<Action> actions;
-  std::string words;
-};
-
 void add(HelpSection& section, std::string what, std::string does) {
   if (!does.empty()) section.rows.push_back({std::move(what), std::move(does)});
 }
@@ -46,31 +41,30 @@ HelpSection mouse_section(const MouseMapping& mouse) {
   HelpSection out{"Mouse", {}};
   for (const auto& [chord, action] : mouse.chords)
     add(out, chord.ends_with("wheel") ? chord : chord + " drag", drag_words(action));
+  const auto turns = mouse.chords.find("left");
+  if (turns != mouse.chords.end() && turns->second == Action::kRotate)
+    add(out, "left twice", "what is pointed at goes to the middle");
   const auto chords = [](const HelpRow& row) { return std::count(row.what.begin(), row.what.end(), '+'); };
   std::stable_sort(out.rows.begin(), out.rows.end(),
                    [&](const HelpRow& a, const HelpRow& b) { return chords(a) < chords(b); });
   return out;
 }
 
-HelpSection key_section(const Mapping& mapping) {
-  const std::string step = fmt::format("{:g} degrees", mapping.key_step_deg);
-  const std::vector<Family> families{
-      {{Action::kTurnLeft, Action::kTurnRight, Action::kTurnUp, Action::kTurnDown}, "turn by " + step},
-      {{Action::kRollLeft, Action::kRollRight}, "roll by " + step},
-      {{Action::kZoomIn, Action::kZoomOut}, "zoom in, out"},
-      {{Action::kNextSide}, "quarter turn to the next side"},
-      {{Action::kReset}, "back to the first view"},
-      {{Action::kUndo}, "undo"},
-  };
-  HelpSection out{"Keys", {}};
-  for (const Family& family : families) {
-    std::string keys;
-    for (const Action action : family.actions)
-      for (const auto& [key, mapped] : mapping.keys)
-        if (mapped == action) keys.append(keys.empty() ? "" : " ").append(key);
-    if (!keys.empty()) add(out, keys, family.words);
+/// One line of a command that has keys: "left shift+left", or "1 to 6" where each says something else.
+void add_command(HelpSection& section, const Command& command, const KeyTable& keys) {
+  std::vector<std::string> found = keys.keys_for(command.name);
+  std::vector<std::string> told;
+  for (const DefaultKey& key : command.keys)
+    if (!key.argument.empty())
+      for (std::string& each : keys.keys_for(command.name + " " + key.argument)) told.push_back(std::move(each));
+  std::string words = command.words;
+  if (found.empty() && told.size() > 2) {
+    found = {told.front() + " to " + told.back()};
+    if (command.closed && command.values.size() <= 6) words += fmt::format(": {}", fmt::join(command.values, ", "));
+  } else {
+    found.insert(found.end(), told.begin(), told.end());
   }
-  return out;
+  if (!found.empty()) add(section, fmt::format("{}", fmt::join(found, " ")), std::move(words));
 }
 
 HelpSection hand_section(const HandMapping& hands) {
@@ -83,34 +77,32 @@ HelpSection hand_section(const HandMapping& hands) {
   return out;
 }
 
-HelpSection session_section() {
-  HelpSection out{"This window", {}};
-  for (const SessionKey& key : kSessionKeys) {
-    if (!out.rows.empty() && out.rows.back().does == key.words) {
-      out.rows.back().what.append(" ").append(key.key);
-    } else {
-      add(out, std::string(key.key), std::string(key.words));
-    }
+/// Commands by their headings, in the order of the table.
+std::vector<HelpSection> command_sections(const KeyTable& keys, bool keyboard_steers) {
+  std::vector<HelpSection> out;
+  for (const Command& command : keys.commands().all()) {
+    if (command.steers && !keyboard_steers) continue;
+    auto at = std::find_if(out.begin(), out.end(), [&](const HelpSection& s) { return s.title == command.group; });
+    if (at == out.end()) at = out.insert(out.end(), HelpSection{command.group, {}});
+    add_command(*at, command, keys);
   }
-  add(out, "1 to 9", "source on or off, while this help is shown");
+  std::rotate(out.begin(), std::min(out.begin() + 1, out.end()), out.end());  // the window's own come last
   return out;
 }
 
 }  // namespace
 
-std::vector<HelpSection> help_page(const Mapping& mapping) {
+std::vector<HelpSection> help_page(const Mapping& mapping, const KeyTable& keys) {
   std::vector<HelpSection> out{mouse_section(mapping.mouse),
-                               key_section(mapping),
                                hand_section(mapping.hands),
-                               {"Puck", {{"push", "move and zoom"}, {"twist", "turn"}}},
-                               session_section()};
+                               {"Puck", {{"push", "move and zoom"}, {"twist", "turn"}}}};
   const auto listens = [&](Control control) {
     return std::find(mapping.priority.begin(), mapping.priority.end(), control) != mapping.priority.end();
   };
+  for (HelpSection& section : command_sections(keys, listens(Control::kKeyboard))) out.push_back(std::move(section));
   std::erase_if(out, [&](const HelpSection& s) {
     return s.rows.empty() || (s.title == "Mouse" && !listens(Control::kMouse)) ||
-           (s.title == "Keys" && !listens(Control::kKeyboard)) || (s.title == "Hands" && !listens(Control::kHands)) ||
-           (s.title == "Puck" && !listens(Control::kPuck));
+           (s.title == "Hands" && !listens(Control::kHands)) || (s.title == "Puck" && !listens(Control::kPuck));
   });
   return out;
 }

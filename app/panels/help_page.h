@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "app/commands/key_table.h"
 #include "input/navigation/mapping.h"
 
 namespace dubsar::app {
@@ -18,8 +19,8 @@ struct HelpSection {
   friend bool operator==(const HelpSection&, const HelpSection&) = default;
 };
 
-/// Sections for the mouse, keys, hands and puck of a mapping, and for the session's own keys. Sections
-/// without a row are left out.
-std::vector<HelpSection> help_page(const Mapping& mapping);
+/// Sections for the mouse, hands and puck of a mapping, and for all commands that have keys. Sections without a row are
+/// left out.
+std::vector<HelpSection> help_page(const Mapping& mapping, const KeyTable& keys);
 
 }  // namespace dubsar::app

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/panels/help_page.h"
-#include "app/viewer/session.h"
+#include "app/viewer/stage.h"
 
 namespace dubsar::app {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "app/viewer/offscreen.h"
+#include "core/base/quantile.h"
 
 namespace dubsar::app {
 namespace {

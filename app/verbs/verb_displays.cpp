@@ -11,6 +11,7 @@
 #include "app/calibration/display_choice.h"
 #include "app/cli/config_folder.h"
 #include "app/cli/verb.h"
+#include "app/viewer/run_view.h"
 #include "core/base/log.h"
 #include "devices/looking_glass/bridge_client.h"
 #include "display/panels/crosstalk_curve.h"
@@ -227,22 +228,22 @@ Result<VerbResult> adjust_in_window(const Options& options, Progress& progress) 
     return fail(ErrorKind::kUsage, "--adjust: figures and --window found, expected one of them");
   if (folder.empty())
     return fail(ErrorKind::kCannotCreate, "cannot save the adjustment: neither XDG_CONFIG_HOME nor HOME is set");
-  LiveOptions live;
-  DUBSAR_ASSIGN(live.session.catalog, user_catalog({}));
-  DUBSAR_ASSIGN(LensTuner tuner,
-                LensTuner::create(live.session.catalog, folder, options.adjust[0], options.calibration));
-  live.session.display = tuner.display();
-  live.session.pattern = true;
-  DUBSAR_ASSIGN(live.session.mapping, default_mapping());
-  live.inputs = {"keyboard"};
-  live.window.title = "dubsar: " + options.adjust[0];
-  live.window.monitor = options.monitor;
-  live.keys = [&](const std::string& key) { return tuner.key(key); };
+  ViewOptions view;
+  view.window = WindowOptions();
+  DUBSAR_ASSIGN(view.stage.catalog, user_catalog({}));
+  DUBSAR_ASSIGN(LensTuner tuner, LensTuner::create(view.stage.catalog, folder, options.adjust[0], options.calibration));
+  view.stage.display = tuner.display();
+  view.stage.pattern = true;
+  DUBSAR_ASSIGN(view.mapping, default_mapping());
+  view.inputs = {"keyboard"};
+  view.window->title = "dubsar: " + options.adjust[0];
+  view.window->monitor = options.monitor;
+  view.commands = tuner.commands();
   log_info(
       "one number should fill the panel: left and right move the views, up and down change the pitch, page up and page "
       "down the slope; "
       "s saves, 0 goes back, Escape ends");
-  DUBSAR_ASSIGN(const LiveResult done, run_live(TriMesh(), live, progress));
+  DUBSAR_ASSIGN(const ViewResult done, run_view(TriMesh(), view, progress));
   VerbResult result;
   result.json = {
       {"panel", options.adjust[0]}, {"figures", tuner.text()}, {"saved", tuner.saved()}, {"frames", done.frames}};

@@ -8,7 +8,7 @@
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
 #include "app/verbs/display_picture.h"
-#include "app/viewer/live.h"
+#include "app/viewer/run_view.h"
 #include "core/image_io/png_file.h"
 #include "core/image_io/tiff_file.h"
 #include "display/render/render_image.h"
@@ -84,25 +84,26 @@ Result<VerbResult> show_in_window(const Options& options, const SinkSpec& displa
                                   const TriMesh& mesh, Progress& progress) {
   const DisplayRequest& request = options.display;
   if (!request.see_from.empty()) return fail(ErrorKind::kUsage, "--see-from makes a file, expected no --window");
-  LiveOptions live;
-  live.session.display = display;
-  live.session.catalog = shown.catalog;
-  live.session.viewer = shown.viewer;
-  live.session.shading = shown.shading;
-  live.session.direction = shown.direction;
-  live.session.margin = shown.margin;
-  live.session.magnification = shown.magnification;
-  live.session.samples = shown.samples;
-  live.session.pattern = request.pattern;
-  DUBSAR_ASSIGN(live.session.mapping, default_mapping());
-  live.inputs = {"mouse", "keyboard"};
-  live.window.title = "dubsar: " + (request.pattern ? request.display : options.in);
+  ViewOptions view;
+  view.window = WindowOptions();
+  view.stage.display = display;
+  view.stage.catalog = shown.catalog;
+  view.stage.viewer = shown.viewer;
+  view.stage.shading = shown.shading;
+  view.stage.direction = shown.direction;
+  view.stage.margin = shown.margin;
+  view.stage.magnification = shown.magnification;
+  view.stage.samples = shown.samples;
+  view.stage.pattern = request.pattern;
+  DUBSAR_ASSIGN(view.mapping, default_mapping());
+  view.inputs = {"mouse", "keyboard"};
+  view.window->title = "dubsar: " + (request.pattern ? request.display : options.in);
   if (!options.size.empty()) {
-    live.window.width = shown.screen.width_px;
-    live.window.height = shown.screen.height_px;
-    live.fullscreen = false;
+    view.window->width = shown.screen.width_px;
+    view.window->height = shown.screen.height_px;
+    view.fullscreen = false;
   }
-  DUBSAR_ASSIGN(const LiveResult done, run_live(mesh, live, progress));
+  DUBSAR_ASSIGN(const ViewResult done, run_view(mesh, view, progress));
   VerbResult result;
   result.json = {{"display", done.display}, {"frames", done.frames}, {"pattern", request.pattern}};
   result.text = fmt::format("{}: shown in a window, {} frames\n", done.display, done.frames);

@@ -11,10 +11,10 @@
 #include "app/cli/config_folder.h"
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
-#include "app/viewer/live.h"
-#include "app/viewer/offscreen.h"
+#include "app/viewer/run_view.h"
 #include "core/base/atomic_file.h"
 #include "core/base/log.h"
+#include "core/base/quantile.h"
 #include "devices/looking_glass/bridge_client.h"
 
 namespace dubsar::app {
@@ -80,7 +80,7 @@ nlohmann::json view_json(const ViewState& view) {
           {"light_elevation_deg", view.light_elevation_deg}};
 }
 
-VerbResult describe(const std::string& display, const OffscreenResult& done, std::size_t triangles, bool simulated) {
+VerbResult describe(const std::string& display, const ViewResult& done, std::size_t triangles, bool simulated) {
   VerbResult out;
   const glm::dvec3 turn = vector_of(done.view.rotation) * 180.0 / 3.14159265358979323846;
   out.json = {{"display", display},
@@ -105,90 +105,109 @@ VerbResult describe(const std::string& display, const OffscreenResult& done, std
   return out;
 }
 
-Result<SessionOptions> session_options(const Options& options) {
-  SessionOptions session;
-  DUBSAR_ASSIGN(DisplayChoice choice, choose_display(options.display, options.plugins, options.bridge_port));
-  session.display = std::move(choice.display);
-  session.catalog = std::move(choice.catalog);
-  session.model_folder = model_folder();
-  DUBSAR_ASSIGN(session.shading, shading_preset(options.style));
-  DUBSAR_ASSIGN(session.direction, parse_view_direction(options.view));
-  if (options.mapping.empty()) {
-    DUBSAR_ASSIGN(session.mapping, default_mapping());
-  } else {
-    DUBSAR_ASSIGN(const std::string text, read_text_file(options.mapping));
-    DUBSAR_ASSIGN(session.mapping, parse_mapping(text, options.mapping));
-  }
-  return session;
-}
-
-Result<VerbResult> run_offscreen_verb(const Options& options, Progress& progress) {
-  if (!options.monitor.empty() || options.fullscreen || options.windowed)
-    return fail(ErrorKind::kUsage, "--monitor, --fullscreen and --windowed are for windows, expected no --offscreen");
-  OffscreenOptions offscreen;
-  DUBSAR_ASSIGN(offscreen.session, session_options(options));
-  DUBSAR_ASSIGN(offscreen.session.screen, parse_screen(options.size.empty() ? "960x540" : options.size));
-  offscreen.session.samples = std::max(1, options.samples);
-  offscreen.inputs = split_sources(options.inputs);
-  if (!options.script.empty()) offscreen.inputs.push_back("scripted:path=" + options.script);
-  if (options.fps > 0) offscreen.fps = options.fps;
-  if (options.seconds > 0) offscreen.longest_s = options.seconds;
-  offscreen.display_delay_s = 1e-3 * options.display_delay_ms;
-  offscreen.frames = options.frames;
-  offscreen.every = options.every;
-  offscreen.record = options.record;
-  DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.in, options.partitions, true}, progress));
-  DUBSAR_ASSIGN(const OffscreenResult done, run_offscreen(mesh, offscreen, progress));
-  return describe(options.display, done, mesh.triangles.size(), true);
-}
-
 std::string_view health_name(SourceHealth health) {
   constexpr std::array<std::string_view, 4> kNames{"present", "lost", "missing", "off"};
   return kNames[static_cast<std::size_t>(health)];
 }
 
-Result<VerbResult> run_window_verb(const Options& options, Progress& progress) {
-  if (options.fullscreen && options.windowed)
-    return fail(ErrorKind::kUsage, "--fullscreen and --windowed found, expected one of them");
-  LiveOptions live;
-  DUBSAR_ASSIGN(live.session, session_options(options));
-  live.session.quality = Quality::kAdaptive;
-  live.session.samples = options.samples > 0 ? options.samples : 2;
-  live.inputs = split_sources(options.inputs);
-  if (!options.script.empty()) live.inputs.push_back("scripted:path=" + options.script);
-  live.window.title = "dubsar: " + options.in;
-  live.window.monitor = options.monitor;
-  if (!options.size.empty()) {
-    DUBSAR_ASSIGN(const Screen screen, parse_screen(options.size));
-    live.window.width = screen.window_w;
-    live.window.height = screen.window_h;
-  }
-  if (options.fullscreen || options.windowed || !options.size.empty()) live.fullscreen = options.fullscreen;
-  live.simulated_fps = options.fps;
-  live.longest_s = options.seconds;
-  live.display_delay_s = 1e-3 * options.display_delay_ms;
-  live.frames = options.frames;
-  live.every = options.every;
-  live.record = options.record;
-  live.notices = options.frames.empty();
-  DUBSAR_TRY(list_monitors());  // before a large file is read
-  DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.in, options.partitions, true}, progress));
-  log_info("view: F1 shows help; Escape, closing the window or Ctrl-C end it");
-  DUBSAR_ASSIGN(const LiveResult done, run_live(mesh, live, progress));
-  VerbResult out = describe(done.display, done, mesh.triangles.size(), options.fps > 0);
-  out.json["frames_per_s_while_moving"] = done.fps;
+void add_sources(const std::vector<SourceRow>& rows, VerbResult& out) {
   out.json["sources"] = nlohmann::json::array();
-  out.text += fmt::format("frames a second while things moved: {:.1f}\n", done.fps);
-  for (const SourceRow& row : done.rows) {
+  for (const SourceRow& row : rows) {
     out.json["sources"].push_back({{"source", row.spec}, {"state", health_name(row.health)}, {"reason", row.reason}});
     out.text += fmt::format("source {}: {}{}{}\n", row.spec, health_name(row.health), row.reason.empty() ? "" : ", ",
                             row.reason);
   }
-  return out;
+}
+
+Result<ViewOptions> view_options(const Options& options) {
+  ViewOptions view;
+  DUBSAR_ASSIGN(DisplayChoice choice, choose_display(options.display, options.plugins, options.bridge_port));
+  view.stage.display = std::move(choice.display);
+  view.stage.catalog = std::move(choice.catalog);
+  DUBSAR_ASSIGN(view.stage.shading, shading_preset(options.style));
+  view.document.style.name = options.style;
+  DUBSAR_ASSIGN(view.stage.direction, parse_view_direction(options.view));
+  view.model_folder = model_folder();
+  if (options.mapping.empty()) {
+    DUBSAR_ASSIGN(view.mapping, default_mapping());
+  } else {
+    DUBSAR_ASSIGN(const std::string text, read_text_file(options.mapping));
+    DUBSAR_ASSIGN(view.mapping, parse_mapping(text, options.mapping));
+  }
+  view.inputs = split_sources(options.inputs);
+  if (!options.script.empty()) view.inputs.push_back("scripted:path=" + options.script);
+  view.fps = options.fps;
+  view.longest_s = options.seconds;
+  view.display_delay_s = 1e-3 * options.display_delay_ms;
+  view.frames = options.frames;
+  view.every = options.every;
+  view.record = options.record;
+  return view;
+}
+
+Result<void> without_window(const Options& options, ViewOptions& view) {
+  if (!options.monitor.empty() || options.fullscreen || options.windowed)
+    return fail(ErrorKind::kUsage, "--monitor, --fullscreen and --windowed are for windows, expected no --offscreen");
+  DUBSAR_ASSIGN(view.stage.screen, parse_screen(options.size.empty() ? "960x540" : options.size));
+  view.stage.samples = std::max(1, options.samples);
+  view.notices = false;
+  if (options.fps == 0) view.fps = 30.0;
+  if (options.seconds == 0) view.longest_s = 60.0;
+  return {};
+}
+
+/// What a session that was killed left behind, and where this one keeps its own work.
+void keep_work(const Options& options, ViewOptions& view) {
+  std::error_code error;
+  SourceFile source{std::filesystem::absolute(options.in, error).string(), 0};
+  source.bytes = static_cast<std::int64_t>(std::filesystem::file_size(options.in, error));
+  if (error) return;  // reading it says why
+  view.document.source = source;
+  const std::filesystem::path folder = session_folder();
+  if (folder.empty()) return;
+  view.autosave = Autosave::file_for(folder, source);
+  const Autosave autosave(view.autosave);
+  if (!autosave.has_left_behind()) return;
+  auto left = autosave.left_behind(source);
+  if (!left) return log_warning("{}", left.error().message);
+  view.document = *std::move(left);
+  log_info("view: the last session on this file ended early; its work is here again");
+}
+
+Result<void> with_window(const Options& options, ViewOptions& view) {
+  if (options.fullscreen && options.windowed)
+    return fail(ErrorKind::kUsage, "--fullscreen and --windowed found, expected one of them");
+  view.stage.quality = Quality::kAdaptive;
+  view.stage.samples = options.samples > 0 ? options.samples : 2;
+  view.window = WindowOptions();
+  view.window->title = "dubsar: " + options.in;
+  view.window->monitor = options.monitor;
+  if (!options.size.empty()) {
+    DUBSAR_ASSIGN(const Screen screen, parse_screen(options.size));
+    view.window->width = screen.window_w;
+    view.window->height = screen.window_h;
+  }
+  if (options.fullscreen || options.windowed || !options.size.empty()) view.fullscreen = options.fullscreen;
+  view.notices = options.frames.empty();
+  if (options.fps == 0) keep_work(options, view);
+  DUBSAR_TRY(list_monitors());  // before a large file is read
+  return {};
 }
 
 Result<VerbResult> run(const Options& options, Progress& progress) {
-  return options.offscreen ? run_offscreen_verb(options, progress) : run_window_verb(options, progress);
+  DUBSAR_ASSIGN(ViewOptions view, view_options(options));
+  DUBSAR_TRY(options.offscreen ? without_window(options, view) : with_window(options, view));
+  DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.in, options.partitions, true}, progress));
+  if (!options.offscreen) log_info("view: F1 shows help; Escape, closing the window or Ctrl-C end it");
+  DUBSAR_ASSIGN(const ViewResult done, run_view(mesh, view, progress));
+  VerbResult out =
+      describe(options.offscreen ? options.display : done.display, done, mesh.triangles.size(), view.fps > 0);
+  if (!options.offscreen) {
+    out.json["frames_per_s_while_moving"] = done.fps;
+    out.text += fmt::format("frames a second while things moved: {:.1f}\n", done.fps);
+  }
+  add_sources(done.rows, out);
+  return out;
 }
 
 }  // namespace

@@ -13,15 +13,14 @@ namespace dubsar {
 namespace {
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 18> kActionNames{
-    "none", "rotate",    "pan",        "zoom",    "zoom_and_roll", "light",     "next_side",  "select",  "reset",
-    "undo", "turn_left", "turn_right", "turn_up", "turn_down",     "roll_left", "roll_right", "zoom_in", "zoom_out"};
+constexpr std::array<std::string_view, 10> kActionNames{"none",          "rotate", "rotate_fine", "pan",    "zoom",
+                                                        "zoom_and_roll", "light",  "next_side",   "select", "reset"};
 constexpr std::array<std::string_view, 5> kControlNames{"none", "mouse", "keyboard", "puck", "hands"};
 constexpr std::initializer_list<Action> kDrags{Action::kNone, Action::kRotate, Action::kPan, Action::kZoom,
                                                Action::kLight};
-constexpr std::initializer_list<Action> kSteps{
-    Action::kNone,   Action::kNextSide, Action::kReset,    Action::kUndo,      Action::kTurnLeft, Action::kTurnRight,
-    Action::kTurnUp, Action::kTurnDown, Action::kRollLeft, Action::kRollRight, Action::kZoomIn,   Action::kZoomOut};
+constexpr std::initializer_list<Action> kMouseDrags{Action::kNone, Action::kRotate, Action::kRotateFine,
+                                                    Action::kPan,  Action::kZoom,   Action::kLight};
+constexpr std::size_t kLongestKeyCommand = 200;
 
 TimestampNs from_ms(double ms) { return static_cast<TimestampNs>(ms * 1e6); }
 
@@ -134,7 +133,7 @@ Result<MouseMapping> read_mouse(const json& object, const std::string& where) {
           name != "zoom_per_notch")
         f.complain(fmt::format("\"{}\" is not known", name));
     } else if (is_chord(name)) {
-      out.chords[name] = read_action(f, name, kDrags);
+      out.chords[name] = read_action(f, name, kMouseDrags);
     } else {
       f.complain(
           fmt::format("\"{}\" is no mouse chord, expected left, middle, right or wheel, after shift+, ctrl+ or alt+ "
@@ -152,7 +151,12 @@ Result<Mapping> read_mapping(const json& object, const std::string& where) {
   DUBSAR_ASSIGN(out.gestures, read_gestures(object.at("gestures"), where + ": gestures"));
   DUBSAR_ASSIGN(out.mouse, read_mouse(object.at("mouse"), where + ": mouse"));
   JsonFields keys(object.at("keys"), where + ": keys");
-  for (const auto& item : object.at("keys").items()) out.keys[item.key()] = read_action(keys, item.key(), kSteps);
+  for (const auto& item : object.at("keys").items()) {
+    const std::string command = keys.text(item.key().c_str(), nullptr);
+    if (command.empty() || command.size() > kLongestKeyCommand || !item.value().is_string())
+      keys.complain(fmt::format("{} is no command, expected its name, with what it is told behind it", item.key()));
+    out.keys[item.key()] = command;
+  }
   DUBSAR_TRY(keys.finish());
   JsonFields puck(object.at("puck"), where + ": puck");
   out.puck.turn_deg_per_s = puck.number("turn_deg_per_s", 1, 720);
@@ -196,6 +200,9 @@ Result<Mapping> parse_mapping(std::string_view json_text, std::string_view sourc
   DUBSAR_TRY(refuse_unknown(*changes, merged, std::string(source)));
   for (const auto& [name, value] : changes->items())
     if (value.is_null()) return fail(ErrorKind::kConfig, "{}: {} is null, expected a value", source, name);
+  if (changes->contains("keys"))
+    for (auto& [key, command] : changes->at("keys").items())
+      if (command.is_null()) command = "none";
   merged.merge_patch(*changes);
   return read_mapping(merged, std::string(source));
 }

@@ -15,9 +15,11 @@
 
 namespace dubsar {
 
+/// What a movement does; what keys do are commands, which the mapping knows by their names only.
 enum class Action {
   kNone,
-  kRotate,  ///< drags and pucks: the object follows the hand
+  kRotate,      ///< drags and pucks: the object follows the hand
+  kRotateFine,  ///< a quarter as fast
   kPan,
   kZoom,
   kZoomAndRoll,  ///< two hands
@@ -25,15 +27,6 @@ enum class Action {
   kNextSide,  ///< quarter turn to the next axis-parallel view
   kSelect,
   kReset,
-  kUndo,
-  kTurnLeft,
-  kTurnRight,
-  kTurnUp,
-  kTurnDown,
-  kRollLeft,
-  kRollRight,
-  kZoomIn,
-  kZoomOut,
 };
 std::string_view action_name(Action action) noexcept;
 
@@ -63,7 +56,7 @@ struct Mapping {
   HandMapping hands;
   GestureOptions gestures;
   MouseMapping mouse;
-  std::map<std::string, Action> keys;
+  std::map<std::string, std::string> keys;  ///< changes: commands by key; "none" takes a key's own command away
   double key_step_deg = 0, key_zoom = 0;
   PuckMapping puck;
   double zoom_min = 0, zoom_max = 0;
@@ -75,7 +68,8 @@ struct Mapping {
 Result<Mapping> default_mapping();
 
 /// The default with the changes that the JSON text makes: only what differs needs to be said, null removes a key or a
-/// mouse chord. kConfig, by name and range, for unknown names, wrong types and figures out of range.
+/// mouse chord. kConfig, by name and range, for unknown names, wrong types and figures out of range; whether commands
+/// exist is for their table to say.
 Result<Mapping> parse_mapping(std::string_view json_text, std::string_view source);
 
 /// The action of a mouse chord ("ctrl+left"), or kNone.

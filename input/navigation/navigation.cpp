@@ -4,12 +4,14 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
+#include <utility>
+
+#include "input/navigation/square_turn.h"
 
 namespace dubsar {
 namespace {
 
 constexpr double kRad = std::numbers::pi / 180.0;
-constexpr std::size_t kUndoSteps = 200;
 constexpr double kMmPerWindow = 200.0;      // of a hand's way, when it pans by a window's height
 constexpr double kPixelsPerWindow = 900.0;  // the same for the mouse
 constexpr double kThrowDegPerS = 12.0;      // slower releases do not glide on
@@ -18,36 +20,16 @@ constexpr double kLongestStepS = 1.0 / 60.0;     // a late frame may not make up
 constexpr double kMostPendingRad = 20.0 * kRad;  // a hand that is faster than the object slips on it
 constexpr double kMostPendingZoom = 0.4;
 constexpr double kShortestGlideS = 0.25;
+constexpr TimestampNs kDoubleClickNs = 400'000'000;
+constexpr double kSamePlace = 0.01;  // heights of the window
+constexpr double kFine = 0.25;
 constexpr double kLightLow = 5.0, kLightHigh = 85.0;
 
 double seconds(TimestampNs ns) { return 1e-9 * static_cast<double>(ns); }
 
 void turn(ViewState& view, const glm::dvec3& vector_rad) {
+  if (vector_rad == glm::dvec3(0.0)) return;  // a view at rest stays the same to the last bit
   view.rotation = glm::normalize(turn_of(vector_rad) * view.rotation);
-}
-
-/// The axis-parallel turn nearest to `q`: one of the 24 turns of a cube.
-glm::dquat nearest_side(const glm::dquat& q) {
-  const glm::dmat3 m = glm::mat3_cast(q);
-  double best = -4.0;
-  glm::dmat3 out(1.0);
-  for (int x = 0; x < 3; ++x)
-    for (const double sx : {-1.0, 1.0})
-      for (int y = 0; y < 3; ++y)
-        for (const double sy : {-1.0, 1.0}) {
-          if (y == x) continue;
-          glm::dmat3 candidate(0.0);
-          candidate[0][x] = sx;
-          candidate[1][y] = sy;
-          candidate[2] = glm::cross(candidate[0], candidate[1]);
-          double trace = 0.0;
-          for (int c = 0; c < 3; ++c) trace += glm::dot(m[c], candidate[c]);
-          if (trace > best) {
-            best = trace;
-            out = candidate;
-          }
-        }
-  return glm::normalize(glm::quat_cast(out));
 }
 
 }  // namespace
@@ -56,13 +38,7 @@ Navigator::Navigator(const Mapping& mapping, const ViewState& home)
     : mapping_(mapping),
       home_(home),
       view_(home),
-      hand_keeper_({1e-3 * mapping.hands.zone_min_mm, 1e-3 * mapping.hands.zone_max_mm}),
       hands_{GestureRecognizer(mapping.gestures), GestureRecognizer(mapping.gestures)} {}
-
-void Navigator::remember() {
-  if (undo_.size() == kUndoSteps) undo_.erase(undo_.begin());
-  undo_.push_back(glide_ ? glide_->to : view_);
-}
 
 /// True when `control` may steer now. A higher one takes the view away from a lower one.
 bool Navigator::claim(Control control, TimestampNs now) {
@@ -93,7 +69,7 @@ void Navigator::drop_pending() {
 }
 
 void Navigator::release_idle_control(TimestampNs now) {
-  if (mode_ != HandMode::kNone || mouse_dragging_) control_used_ = now;
+  if (mode_ != HandMode::kNone || mouse_.dragging) control_used_ = now;
   if (control_ != Control::kNone && now - control_used_ > mapping_.handover_ns) control_ = Control::kNone;
 }
 
@@ -125,85 +101,97 @@ void Navigator::advance_glide(TimestampNs now) {
   }
 }
 
-void Navigator::reset(TimestampNs now) {
-  remember();
-  glide_to(home_, now);
+void Navigator::go_to(const ViewState& view, TimestampNs now, bool glide) {
+  if (glide) return glide_to(view, now);
+  glide_.reset();
+  drop_pending();
+  view_ = view;
 }
 
-void Navigator::undo(TimestampNs now) {
-  if (undo_.empty()) return;
-  const ViewState target = undo_.back();
-  undo_.pop_back();
-  glide_to(target, now);
+void Navigator::let_go_of_mouse() {
+  mouse_.buttons = {};
+  mouse_.dragging = false;
 }
 
 void Navigator::turn_to_next_side(const glm::dvec3& axis, TimestampNs now) {
-  const glm::dquat from = nearest_side(glide_ ? glide_->to.rotation : view_.rotation);
+  const glm::dquat from = nearest_square_turn(glide_ ? glide_->to.rotation : view_.rotation);
   ViewState target = view_;
   target.rotation = glm::normalize(glm::angleAxis(0.5 * std::numbers::pi, axis) * from);
   glide_to(target, now);
 }
 
-void Navigator::step(Action action, TimestampNs now) {
-  const double a = mapping_.key_step_deg * kRad;
-  if (action == Action::kNone) return;
-  if (action == Action::kReset) return reset(now);
-  if (action == Action::kUndo) return undo(now);
-  remember();
-  if (action == Action::kNextSide) return turn_to_next_side({0, 1, 0}, now);
+void Navigator::zoom_about(const std::optional<glm::dvec2>& at, double factor) {
+  const double zoom = std::clamp(view_.zoom * factor, mapping_.zoom_min, mapping_.zoom_max);
+  if (at) view_.pan = *at - (*at - view_.pan) * (zoom / view_.zoom);
+  view_.zoom = zoom;
+}
+
+void Navigator::use_button(const InputEvent& event, TimestampNs now) {
+  constexpr std::array<std::string_view, 3> kNames{"left", "middle", "right"};
+  const auto button = static_cast<std::size_t>(event.button);
+  mouse_.buttons[button] = event.down;
+  mouse_.at = event.at;
+  if (!event.down) {
+    const auto& held = mouse_.buttons;
+    if (std::none_of(held.begin(), held.end(), [](bool b) { return b; })) mouse_.dragging = false;
+    return;
+  }
+  if (mouse_.dragging) return;
+  mouse_.action = chord_action(mapping_.mouse, event.modifiers, kNames[button]);
+  if (mouse_.action == Action::kNone || !claim(Control::kMouse, now)) return;
+  ++movement_;
+  const bool twice = event.at && mouse_.pressed_at && event.time - mouse_.pressed <= kDoubleClickNs &&
+                     glm::length(*event.at - *mouse_.pressed_at) <= kSamePlace;
+  mouse_.pressed = event.time;
+  mouse_.pressed_at = event.at;
+  mouse_.held.reset();
+  if (event.at && event.lever) mouse_.held = glm::dvec3(*event.at - view_.pan, *event.lever);
+  mouse_.dragging = true;
+  if (twice && mouse_.action == Action::kRotate) {  // what is pointed at goes to the middle
+    ViewState target = view_;
+    target.pan -= *event.at;
+    return glide_to(target, now);
+  }
   glide_.reset();
-  if (action == Action::kTurnLeft) turn(view_, {0, -a, 0});
-  if (action == Action::kTurnRight) turn(view_, {0, a, 0});
-  if (action == Action::kTurnUp) turn(view_, {-a, 0, 0});
-  if (action == Action::kTurnDown) turn(view_, {a, 0, 0});
-  if (action == Action::kRollLeft) turn(view_, {0, 0, a});
-  if (action == Action::kRollRight) turn(view_, {0, 0, -a});
-  if (action == Action::kZoomIn) view_.zoom *= mapping_.key_zoom;
-  if (action == Action::kZoomOut) view_.zoom /= mapping_.key_zoom;
+}
+
+/// Places of the pointer count in heights of the window, so that what is held stays under it; movements that come
+/// without a place go by pixels.
+void Navigator::drag_by_mouse(const InputEvent& event) {
+  const MouseMapping& mouse = mapping_.mouse;
+  const glm::dvec2 px = event.motion;
+  const std::optional<glm::dvec2> before = std::exchange(mouse_.at, event.at);
+  const glm::dvec2 moved = event.at && before ? *event.at - *before : glm::dvec2(px.x, -px.y) / kPixelsPerWindow;
+  if (mouse_.action == Action::kRotate || mouse_.action == Action::kRotateFine) {
+    double gain = mouse.turn_deg_per_px * kRad * glm::length(px);
+    if (mouse_.held && event.at && before) gain = std::min(gain, glm::length(moved) / std::max(mouse_.held->z, 1e-3));
+    if (mouse_.action == Action::kRotateFine) gain *= kFine;
+    const double length = glm::length(px);
+    if (length == 0.0) return;
+    const glm::dvec3 vector = gain / length * glm::dvec3(px.y, px.x, 0);
+    turn(view_, vector);
+    if (mouse_.held) mouse_.held = turn_of(vector) * *mouse_.held;
+  }
+  if (mouse_.action == Action::kPan) view_.pan += moved;
+  if (mouse_.action == Action::kZoom) zoom_about(mouse_.pressed_at, std::pow(mouse.zoom_per_100_px, -px.y / 100.0));
+  if (mouse_.action == Action::kLight) drag(Action::kLight, glm::dvec2(px.x, -px.y), mouse.light_deg_per_px);
 }
 
 void Navigator::use_mouse(const InputEvent& event, TimestampNs now) {
-  constexpr std::array<std::string_view, 3> kNames{"left", "middle", "right"};
-  const MouseMapping& mouse = mapping_.mouse;
-  if (event.kind == EventKind::kButton) {
-    const auto button = static_cast<std::size_t>(event.button);
-    buttons_[button] = event.down;
-    if (event.down && !mouse_dragging_) {
-      mouse_action_ = chord_action(mouse, event.modifiers, kNames[button]);
-      if (mouse_action_ == Action::kNone || !claim(Control::kMouse, now)) return;
-      remember();
-      glide_.reset();
-      mouse_dragging_ = true;
-    } else if (!event.down && std::none_of(buttons_.begin(), buttons_.end(), [](bool b) { return b; })) {
-      mouse_dragging_ = false;
-    }
-    return;
-  }
+  if (event.kind == EventKind::kButton) return use_button(event, now);
   if (event.kind == EventKind::kWheel) {
-    if (chord_action(mouse, event.modifiers, "wheel") != Action::kZoom || !claim(Control::kMouse, now)) return;
-    if (fresh_claim_) remember();
+    if (chord_action(mapping_.mouse, event.modifiers, "wheel") != Action::kZoom || !claim(Control::kMouse, now)) return;
+    if (fresh_claim_) ++movement_;
     glide_.reset();
-    view_.zoom *= std::pow(mouse.zoom_per_notch, event.motion.y);
-    return;
+    return zoom_about(event.at, std::pow(mapping_.mouse.zoom_per_notch, event.motion.y));
   }
-  if (event.kind != EventKind::kMotion || !mouse_dragging_ || !claim(Control::kMouse, now)) return;
-  const glm::dvec2 px = event.motion;
-  if (mouse_action_ == Action::kRotate) turn(view_, mouse.turn_deg_per_px * kRad * glm::dvec3(px.y, px.x, 0));
-  if (mouse_action_ == Action::kPan) view_.pan += glm::dvec2(px.x, -px.y) / kPixelsPerWindow;
-  if (mouse_action_ == Action::kZoom) view_.zoom *= std::pow(mouse.zoom_per_100_px, -px.y / 100.0);
-  if (mouse_action_ == Action::kLight) drag(Action::kLight, glm::dvec2(px.x, -px.y), mouse.light_deg_per_px);
+  if (event.kind == EventKind::kMotion && mouse_.dragging && !glide_ && claim(Control::kMouse, now))
+    drag_by_mouse(event);
 }
 
 void Navigator::use_events(TimestampNs now, const InputFrame& frame) {
-  for (const InputEvent& event : frame.events) {
-    if (event.kind != EventKind::kKey) {
-      use_mouse(event, now);
-      continue;
-    }
-    const auto found = event.down ? mapping_.keys.find(event.key) : mapping_.keys.end();
-    if (found == mapping_.keys.end() || found->second == Action::kNone) continue;
-    if (claim(Control::kKeyboard, now)) step(found->second, now);
-  }
+  for (const InputEvent& event : frame.events)
+    if (event.kind != EventKind::kKey) use_mouse(event, now);
 }
 
 void Navigator::use_puck(TimestampNs now, const std::optional<PuckMotion>& puck, double dt_s) {
@@ -218,7 +206,7 @@ void Navigator::use_puck(TimestampNs now, const std::optional<PuckMotion>& puck,
   if (strongest == 0.0 || !claim(Control::kPuck, now)) return;
   if (mapping_.puck.one_axis)
     for (double& a : axes) a = std::abs(a) == strongest ? a : 0.0;
-  if (fresh_claim_) remember();
+  if (fresh_claim_) ++movement_;
   glide_.reset();
   turn(view_, mapping_.puck.turn_deg_per_s * kRad * dt_s * glm::dvec3(axes[3], axes[4], axes[5]));
   view_.pan += mapping_.puck.pan_per_s * dt_s * glm::dvec2(axes[0], axes[1]);
@@ -249,14 +237,16 @@ void Navigator::begin_or_end_hand_modes(TimestampNs now) {
       if (event.kind == GestureKind::kSwipe && mapping_.hands.swipe == Action::kNextSide && mode_ == HandMode::kNone &&
           !hands_[1 - h].grabbing() && claim(Control::kHands, now)) {
         constexpr std::array<glm::dvec3, 4> kAxes{{{0, -1, 0}, {0, 1, 0}, {-1, 0, 0}, {1, 0, 0}}};
-        remember();
+        ++movement_;
         turn_to_next_side(kAxes[static_cast<std::size_t>(event.direction)], now);
       }
       if (event.kind == GestureKind::kDwell && mapping_.hands.dwell == Action::kSelect)
         selected_m_ = hands_[h].cursor_m();
       if (event.kind == GestureKind::kDwell && mapping_.hands.dwell == Action::kReset && mode_ == HandMode::kNone &&
-          claim(Control::kHands, now))
-        reset(now);
+          claim(Control::kHands, now)) {
+        ++movement_;
+        glide_to(home_, now);
+      }
     }
   const bool grab0 = hands_[0].grabbing(), grab1 = hands_[1].grabbing();
   HandMode wanted = HandMode::kNone;
@@ -291,7 +281,7 @@ void Navigator::begin_or_end_hand_modes(TimestampNs now) {
     needs_new_grab_ = true;
     return;
   }
-  remember();
+  ++movement_;
   mode_ = wanted;
   glide_.reset();
   inertia_rad_per_s_ = glm::dvec3(0.0);
@@ -363,24 +353,21 @@ void Navigator::spend_pending(double dt_s) {
   moving_ = glm::length(now_rad) > 0.0 || zoom != 0.0;
 }
 
-void Navigator::use_hands(TimestampNs now, const InputFrame& frame, double dt_s) {
-  kept_head_.reset();
-  if (const HeadFrame* const head = head_keeper_.update(now, frame.heads)) kept_head_ = *head;
-  const auto kept = hand_keeper_.update(now, frame.hands, frame.heads, head_keeper_.place_m());
+void Navigator::use_hands(TimestampNs now, const SteeringHands& kept, double dt_s) {
   for (std::size_t h = 0; h < hands_.size(); ++h) hands_[h].update(now, kept[h]);
   begin_or_end_hand_modes(now);
   follow_hands();
   spend_pending(dt_s);
 }
 
-void Navigator::update(TimestampNs now, const InputFrame& frame) {
+void Navigator::update(TimestampNs now, const InputFrame& frame, const SteeringHands& hands) {
   const double dt_s = last_update_ < 0 ? 0.0 : std::max(0.0, seconds(now - last_update_));
   last_update_ = now;
   selected_m_.reset();
   release_idle_control(now);
   use_events(now, frame);
   use_puck(now, frame.puck, std::min(dt_s, 0.1));
-  use_hands(now, frame, dt_s);
+  use_hands(now, hands, dt_s);
   advance_glide(now);
   view_.zoom = std::clamp(view_.zoom, mapping_.zoom_min, mapping_.zoom_max);
 }

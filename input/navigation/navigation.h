@@ -2,57 +2,76 @@
 // From input to the view: hands, mouse, keyboard and puck steer one object through a mapping. Time is an argument.
 
 #include <array>
+#include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "input/gestures/gesture.h"
 #include "input/input_source.h"
 #include "input/navigation/mapping.h"
 #include "input/navigation/view_state.h"
-#include "input/people/person_keeper.h"
 
 namespace dubsar {
+
+/// The hands of the person who steers (input/people/person_keeper.h), null where one is not seen.
+using SteeringHands = std::array<const HandFrame*, 2>;
 
 class Navigator {
  public:
   explicit Navigator(const Mapping& mapping, const ViewState& home = {});
 
-  /// Everything that came since the last update. Gestures, glides and quarter turns advance to `now`.
-  void update(TimestampNs now, const InputFrame& frame);
+  /// Everything that came since the last update; of the events those of the mouse. Gestures, glides and quarter turns
+  /// advance to `now`.
+  void update(TimestampNs now, const InputFrame& frame, const SteeringHands& hands);
 
   const ViewState& view() const noexcept { return view_; }
+  /// Where the view will be when nobody does anything more: the end of a glide.
+  const ViewState& goal() const noexcept { return glide_ ? glide_->to : view_; }
+  /// Counts what people did, from 1 on: a drag is one movement, with the throw at its end.
+  std::uint64_t movement() const noexcept { return movement_; }
   Control control() const noexcept { return control_; }  ///< who steers now
   /// Something moves by itself or is held: a picture made now will soon be old.
   bool moving() const noexcept { return glide_.has_value() || control_ != Control::kNone || moving_; }
   /// Where a dwelling hand selected something since the last update, metres in the screen frame.
   const std::optional<glm::dvec3>& selected_m() const noexcept { return selected_m_; }
-  const std::optional<HeadFrame>& kept_head() const noexcept { return kept_head_; }  ///< none: not in the last frame
   const std::array<GestureRecognizer, 2>& hands() const noexcept { return hands_; }
-  std::size_t undo_depth() const noexcept { return undo_.size(); }
 
-  void reset(TimestampNs now);  ///< back to the home view, as a glide
-  void undo(TimestampNs now);   ///< back to the view before the last change, as a glide
+  /// True when a key may change the view now: nobody with a better right holds it.
+  bool claim_for_keys(TimestampNs now) { return claim(Control::kKeyboard, now); }
+  /// The view that a command made: at once, or as a glide.
+  void go_to(const ViewState& view, TimestampNs now, bool glide);
+  void set_home(const ViewState& home) { home_ = home; }
+  /// Whoever held a mouse button is gone without letting go of it.
+  void let_go_of_mouse();
 
  private:
   struct Glide {  ///< a smooth step between two views
     ViewState from, to;
     TimestampNs start = 0, duration = 1;
   };
+  struct MouseDrag {
+    std::array<bool, 3> buttons{};
+    Action action = Action::kNone;
+    bool dragging = false;
+    std::optional<glm::dvec2> at, pressed_at;  // heights of the window
+    std::optional<glm::dvec3> held;            // the point of the surface under the pointer, from the object's centre
+    TimestampNs pressed = -1;                  // the last press, for clicks that come in pairs
+  };
   enum class HandMode { kNone, kOneGrab, kTwoGrabs, kPinch };
 
   bool claim(Control control, TimestampNs now);
   void drop_pending();
   void release_idle_control(TimestampNs now);
-  void remember();
   void glide_to(const ViewState& target, TimestampNs now);
   void advance_glide(TimestampNs now);
   void turn_to_next_side(const glm::dvec3& axis, TimestampNs now);
-  void step(Action action, TimestampNs now);
 
   void use_events(TimestampNs now, const InputFrame& frame);
   void use_mouse(const InputEvent& event, TimestampNs now);
+  void use_button(const InputEvent& event, TimestampNs now);
+  void drag_by_mouse(const InputEvent& event);
+  void zoom_about(const std::optional<glm::dvec2>& at, double factor);
   void use_puck(TimestampNs now, const std::optional<PuckMotion>& puck, double dt_s);
-  void use_hands(TimestampNs now, const InputFrame& frame, double dt_s);
+  void use_hands(TimestampNs now, const SteeringHands& hands, double dt_s);
   void begin_or_end_hand_modes(TimestampNs now);
   void follow_hands();
   void spend_pending(double dt_s);
@@ -60,18 +79,13 @@ class Navigator {
 
   Mapping mapping_;
   ViewState home_, view_;
-  std::vector<ViewState> undo_;
   std::optional<Glide> glide_;
+  std::uint64_t movement_ = 0;
   Control control_ = Control::kNone;
   TimestampNs control_used_ = 0, last_update_ = -1;
   bool fresh_claim_ = false;  // the last claim changed who steers
-  std::array<bool, 3> buttons_{};
-  Action mouse_action_ = Action::kNone;
-  bool mouse_dragging_ = false;
+  MouseDrag mouse_;
 
-  HeadKeeper head_keeper_;
-  HandKeeper hand_keeper_;
-  std::optional<HeadFrame> kept_head_;
   std::array<GestureRecognizer, 2> hands_;
   HandMode mode_ = HandMode::kNone;
   std::size_t leading_ = 0;      // the hand of one-handed modes

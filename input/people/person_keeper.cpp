@@ -160,4 +160,11 @@ std::array<const HandFrame*, 2> HandKeeper::update(TimestampNs now, std::span<co
   return kept;
 }
 
+KeptPerson PersonKeeper::update(TimestampNs now, const InputFrame& frame) {
+  KeptPerson out;
+  if (const HeadFrame* const head = head_.update(now, frame.heads)) out.head = *head;
+  out.hands = hands_.update(now, frame.hands, frame.heads, head_.place_m());
+  return out;
+}
+
 }  // namespace dubsar

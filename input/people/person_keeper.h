@@ -61,4 +61,22 @@ class HandKeeper {
   std::array<Slot, 2> slots_{};
 };
 
+/// The person that is kept, as seen now.
+struct KeptPerson {
+  std::optional<HeadFrame> head;            ///< none: not in this frame
+  std::array<const HandFrame*, 2> hands{};  ///< of the frame; null where a hand is not seen
+};
+
+/// Keeps one person: head and hands.
+class PersonKeeper {
+ public:
+  explicit PersonKeeper(const HandZone& zone = {}) : hands_(zone) {}
+  /// The hands are good as long as `frame`.
+  KeptPerson update(TimestampNs now, const InputFrame& frame);
+
+ private:
+  HeadKeeper head_;
+  HandKeeper hands_;
+};
+
 }  // namespace dubsar

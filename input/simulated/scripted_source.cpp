@@ -42,8 +42,8 @@ class DropoutClock {
 
 class ScriptedSource final : public InputSource {
  public:
-  ScriptedSource(Script script, const ViewState* seen_view)
-      : script_(std::move(script)), seen_(seen_view), noise_(script_.seed + 101) {
+  ScriptedSource(Script script, std::function<ViewState()> seen_view)
+      : script_(std::move(script)), seen_(std::move(seen_view)), noise_(script_.seed + 101) {
     add_bystanders(script_);
     if (script_.visitor) visitor_.emplace(*script_.visitor, script_.seed);
     const std::size_t hands = script_.hands.size() + 2;
@@ -60,7 +60,7 @@ class ScriptedSource final : public InputSource {
   Freshness poll(TimestampNs now, InputFrame& newest) noexcept override {
     if (!start_) start_ = now;
     const double now_s = 1e-9 * static_cast<double>(now - *start_);
-    if (visitor_) visitor_->look(now_s, *seen_);
+    if (visitor_) visitor_->look(now_s, seen_());
     finished_ = now_s >= script_.duration_s || (visitor_ && visitor_->gone());
     const auto sample = static_cast<std::int64_t>(std::floor((now_s - script_.latency_s) * script_.rate_hz + 1e-9));
     if (sample < 0 || sample == last_sample_) return Freshness::kUnchanged;
@@ -114,7 +114,7 @@ class ScriptedSource final : public InputSource {
   }
 
   Script script_;
-  const ViewState* seen_;
+  std::function<ViewState()> seen_;
   ScriptRandom noise_;
   std::optional<SimulatedVisitor> visitor_;
   std::vector<DropoutClock> hand_clocks_, eye_clocks_;
@@ -126,10 +126,10 @@ class ScriptedSource final : public InputSource {
 
 }  // namespace
 
-Result<std::unique_ptr<InputSource>> play_script(Script script, const ViewState* seen_view) {
-  if (script.visitor && seen_view == nullptr)
+Result<std::unique_ptr<InputSource>> play_script(Script script, std::function<ViewState()> seen_view) {
+  if (script.visitor && !seen_view)
     return fail(ErrorKind::kUsage, "input scripted: the script has a visitor, who needs a view to look at");
-  return std::make_unique<ScriptedSource>(std::move(script), seen_view);
+  return std::make_unique<ScriptedSource>(std::move(script), std::move(seen_view));
 }
 
 Result<std::unique_ptr<InputSource>> make_scripted_source(const InputConfig& config) {

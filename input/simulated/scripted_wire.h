@@ -21,7 +21,7 @@ class ScriptedWire : public SimulatedDevice {
  protected:
   explicit ScriptedWire(WireOptions options)
       : step_(static_cast<TimestampNs>(1e9 / options.script.rate_hz)), seen_(std::move(options.seen)) {
-    actor_ = play_script(std::move(options.script), &view_).value();
+    actor_ = play_script(std::move(options.script), [this] { return view_; }).value();
   }
   virtual void say(const InputFrame& frame) = 0;
   const ViewState& view() const noexcept { return view_; }

@@ -4,32 +4,14 @@
 
 #include <atomic>
 #include <memory>
-#include <mutex>
 #include <string_view>
 
 #include "core/base/pose.h"
 #include "devices/transport/transport.h"
-#include "input/navigation/view_state.h"
+#include "input/navigation/seen_view.h"
 #include "input/simulated/script.h"
 
 namespace dubsar {
-
-/// What a simulated visitor sees, told by the session's thread and looked at in a reader's.
-class SeenView {
- public:
-  void show(const ViewState& view) {
-    const std::lock_guard lock(mutex_);
-    view_ = view;
-  }
-  ViewState look() const {
-    const std::lock_guard lock(mutex_);
-    return view_;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  ViewState view_{};  // guarded by mutex_
-};
 
 struct WireOptions {
   Script script{};

@@ -31,7 +31,7 @@ class LeapWire final : public SimulatedDevice {
     device.paced = true;
     device.clock = &clock;
     device.hands = [this](std::uint64_t) { return hands_now(); };
-    actor_ = play_script(std::move(options.script), &view_).value();
+    actor_ = play_script(std::move(options.script), [this] { return view_; }).value();
     simulator_.emplace(std::move(device));
   }
   void advance(TimestampNs) override {}  // the device keeps its own pace

@@ -45,7 +45,7 @@ Result<DeviceFeed> simulated_device(std::string_view driver, WireOptions wire, c
   std::function<void()> before_poll;
   if (config.seen_view) {
     auto seen = std::make_shared<SeenView>();
-    before_poll = [seen, view = config.seen_view] { seen->show(*view); };
+    before_poll = [seen, view = config.seen_view] { seen->show(view()); };
     wire.seen = std::move(seen);
   }
   DUBSAR_ASSIGN(std::shared_ptr<SimulatedDevice> person,

@@ -18,6 +18,7 @@
 #include "input/input_recording.h"
 #include "input/mixer.h"
 #include "input/navigation/navigation.h"
+#include "input/people/person_keeper.h"
 #include "input/simulated/scripted_source.h"
 
 namespace dubsar {
@@ -61,8 +62,9 @@ void record_minute(const fs::path& path, std::uint64_t seed, bool paced, Seen& s
   auto recorder = InputRecorder::create(path).value();
   ViewState view;
   InputMixer mixer;
-  mixer.add(play_script(busy_minute(seed), &view).value());
+  mixer.add(play_script(busy_minute(seed), [&] { return view; }).value());
   Navigator navigator(default_mapping().value());
+  PersonKeeper people;
   for (int i = 0; i < kSteps; ++i) {
     const TimestampNs now = kStart + i * kStep;
     InputFrame frame = mixer.poll(now);
@@ -73,7 +75,7 @@ void record_minute(const fs::path& path, std::uint64_t seed, bool paced, Seen& s
       frame.hands[1].palm.position_m.y -= 0.6;
       for (HandJointPose& joint : frame.hands[1].joints) joint.pose.position_m.y -= 0.6;
     }
-    navigator.update(now, frame);
+    navigator.update(now, frame, people.update(now, frame).hands);
     recorder->add(now, frame);
     if (!paced) static_cast<void>(recorder->flush());
     view = navigator.view();
@@ -142,10 +144,12 @@ TEST_F(KilledRecording, ShowsTheSameViewWithinTheLastSecond) {
   InputMixer mixer;
   mixer.add(replay_frames(frames));
   Navigator navigator(default_mapping().value());
+  PersonKeeper people;
   double worst_deg = 0, worst_zoom = 0;
   const auto played = std::min(steps, static_cast<int>((last - kStart) / kStep) + 1);
   for (int i = static_cast<int>((frames.front().polled - kStart) / kStep); i < played; ++i) {
-    navigator.update(kStart + i * kStep, mixer.poll(kStart + i * kStep));
+    const InputFrame& polled = mixer.poll(kStart + i * kStep);
+    navigator.update(kStart + i * kStep, polled, people.update(kStart + i * kStep, polled).hands);
     const auto at = static_cast<std::size_t>(i);
     worst_deg = std::max(worst_deg, turn_between_deg(navigator.view().rotation, seen_->rotation[at]));
     worst_zoom = std::max(worst_zoom, std::abs(navigator.view().zoom - seen_->zoom[at]));

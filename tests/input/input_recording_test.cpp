@@ -8,6 +8,7 @@
 
 #include "input/mixer.h"
 #include "input/navigation/navigation.h"
+#include "input/people/person_keeper.h"
 #include "input/simulated/scripted_source.h"
 
 namespace dubsar {
@@ -30,10 +31,11 @@ struct Session {
 Session run(InputMixer& mixer, ViewState& seen, TimestampNs start) {
   Session out;
   Navigator navigator(default_mapping().value());
+  PersonKeeper people;
   for (TimestampNs now = start; now < start + 12'000'000'000; now += 16'000'000) {
     const InputFrame& frame = mixer.poll(now);
     out.recording += record_line({now, frame}) + "\n";
-    navigator.update(now, frame);
+    navigator.update(now, frame, people.update(now, frame).hands);
     seen = navigator.view();
   }
   out.view = seen;
@@ -43,7 +45,7 @@ Session run(InputMixer& mixer, ViewState& seen, TimestampNs start) {
 TEST(Recording, AReplayedSessionEndsInTheSameView) {
   ViewState seen;
   InputMixer live;
-  live.add(play_script(busy_script(), &seen).value());
+  live.add(play_script(busy_script(), [&] { return seen; }).value());
   const Session original = run(live, seen, 1'000'000'000);
   ASSERT_GT(turn_between_deg(original.view.rotation, {1, 0, 0, 0}), 5.0);
   InputMixer replayed;

@@ -26,10 +26,12 @@ class FakePlace final : public Workplace {
     toggled.push_back(index);
     return index < 3;
   }
+  void say(std::string words) override { said = std::move(words); }
   void end() override { ended = true; }
   int display = 0, retries = 0;
   bool fullscreen = false, ended = false;
   std::vector<std::size_t> toggled;
+  std::string said;
 };
 
 const std::vector<std::string> kStyles{"relief", "phong", "sky-sun"};

@@ -1,7 +1,5 @@
 // Sessions in a window of an X server without a screen, with real mouse and key events.
 
-#include "app/viewer/live.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -11,9 +9,10 @@
 #include <numbers>
 
 #include "app/calibration/adjust_window.h"
+#include "app/commands/sides.h"
 #include "app/panels/help_page.h"
 #include "app/viewer/display_clock.h"
-#include "app/viewer/session_keys.h"
+#include "app/viewer/run_view.h"
 #include "core/base/atomic_file.h"
 #include "display/render/compose_pass.h"
 #include "display/render/context_egl.h"
@@ -43,15 +42,16 @@ class Live : public ::testing::Test {
     ASSERT_TRUE(person_->here());
     person_->type_where_the_pointer_is();
     person_->point(kX + 5, kY + 5);
-    options_.session.mapping = default_mapping().value();
-    options_.session.shading = shading_preset("relief").value();
-    options_.session.quality = Quality::kAdaptive;
-    options_.session.samples = 2;
-    options_.window.width = kWidth;
-    options_.window.height = kHeight;
-    options_.window.x = kX;
-    options_.window.y = kY;
-    options_.window.decorated = false;
+    options_.mapping = default_mapping().value();
+    options_.stage.shading = shading_preset("relief").value();
+    options_.stage.quality = Quality::kAdaptive;
+    options_.stage.samples = 2;
+    options_.window = WindowOptions();
+    options_.window->width = kWidth;
+    options_.window->height = kHeight;
+    options_.window->x = kX;
+    options_.window->y = kY;
+    options_.window->decorated = false;
     options_.fullscreen = false;
     options_.inputs = {"mouse", "keyboard"};  // not what the machine of the test has
     options_.notices = false;
@@ -62,15 +62,16 @@ class Live : public ::testing::Test {
   /// nothing to draw.
   struct Step {
     std::function<void()> act;
-    std::function<bool(const LiveMoment&)> done;
+    std::function<bool(const ViewMoment&)> done;
   };
-  Result<LiveResult> play(std::vector<Step> steps, Progress* progress = nullptr) {
+  Result<ViewResult> play(std::vector<Step> steps, Progress* progress = nullptr) {
     SilentProgress silent;
     std::size_t at = 0;
     bool acted = false;
-    auto out = run_live(
-        testing::lettered_box(), options_, progress != nullptr ? *progress : silent, [&](const LiveMoment& moment) {
-          if (at >= steps.size() || moment.drawn || moment.frames == 0 || moment.session.coarse_views() > 0) return;
+    auto out = run_view(
+        testing::lettered_box(), options_, progress != nullptr ? *progress : silent, [&](const ViewMoment& moment) {
+          if (at >= steps.size() || moment.drawn || moment.frames == 0 || moment.viewer.stage().coarse_views() > 0)
+            return;
           if (!acted && steps[at].act) steps[at].act();
           if (!acted) {
             acted = true;
@@ -85,33 +86,34 @@ class Live : public ::testing::Test {
   }
   Image shot() const { return server_->screen(kX, kY, kWidth, kHeight); }
   Step look(Image& into) {
-    return {{}, [this, &into](const LiveMoment& moment) {
-              screen_ = moment.window.screen();  // asks the server, so that it has done all before
+    return {{}, [this, &into](const ViewMoment& moment) {
+              screen_ = moment.presenter.window()->screen();  // asks the server, so that it has done all before
               into = shot();
               return true;
             }};
   }
   Step end() {
-    return {[this] { person_->key("escape"); }, [](const LiveMoment&) { return true; }};
+    return {[this] { person_->key("escape"); }, [](const ViewMoment&) { return true; }};
   }
   Image offscreen(const std::string& display, const ViewState& view) const {
-    SessionOptions options = options_.session;
+    StageOptions options = options_.stage;
     options.display = testing::spec(display);
     options.quality = Quality::kExact;
     options.screen = screen_;
     auto context = EglContext::create();
     EXPECT_TRUE(context);
-    options.shading.light.azimuth_deg = view.light_azimuth_deg;
-    options.shading.light.elevation_deg = view.light_elevation_deg;
-    auto session = Session::create(testing::lettered_box(), options).value();
-    auto surface = OffscreenSurface::create(session->traits().output).value();
-    EXPECT_TRUE(session->draw(1, 1, surface.surface()));
+    auto stage = Stage::create(testing::lettered_box(), options).value();
+    auto surface = OffscreenSurface::create(stage->traits().output).value();
+    FollowedEyes eyes;
+    eyes.presence = Presence::kOff;
+    stage->show({view, 1.0, options.shading.style, options.shading.parts}, eyes, 1);
+    EXPECT_TRUE(stage->paint(surface.surface()));
     return surface.read().value();
   }
 
   inline static std::unique_ptr<testing::XvfbServer> server_;
   inline static std::unique_ptr<testing::XPerson> person_;
-  LiveOptions options_;
+  ViewOptions options_;
   Screen screen_;
 };
 
@@ -133,17 +135,17 @@ TEST_F(Live, ARealMouseTurnsTheObjectAndTheWindowShowsWhatAnOffscreenSessionDraw
          for (int i = 1; i <= 50; ++i) person_->point(kX + 100 + 2 * i, kY + 100);
          person_->release(1);
        },
-       [](const LiveMoment& m) {
+       [](const ViewMoment& m) {
          return turn_between_deg(m.report.view.rotation, {1, 0, 0, 0}) > 39.9;
        }},
       look(after),
       {[&] { turned = {}; },
-       [&](const LiveMoment& m) {
+       [&](const ViewMoment& m) {
          turned = m.report.view;
          return true;
        }},
       {[&] { person_->key("home"); },
-       [](const LiveMoment& m) {
+       [](const ViewMoment& m) {
          return turn_between_deg(m.report.view.rotation, {1, 0, 0, 0}) == 0.0 && !m.report.moving;
        }},
       look(back),
@@ -163,7 +165,7 @@ TEST_F(Live, ARealMouseTurnsTheObjectAndTheWindowShowsWhatAnOffscreenSessionDraw
 
 TEST_F(Live, WheelAndChordsReachTheMapping) {
   double zoom = 0.0;
-  glm::dvec2 pan{0.0};
+  glm::dvec2 zoomed{0.0}, pan{0.0};
   const auto done = play({
       {[&] {
          person_->point(kX + 50, kY + 50);
@@ -172,8 +174,9 @@ TEST_F(Live, WheelAndChordsReachTheMapping) {
            person_->release(4);
          }
        },
-       [&](const LiveMoment& m) {
+       [&](const ViewMoment& m) {
          zoom = m.report.view.zoom;
+         zoomed = pan = m.report.view.pan;
          return zoom > 1.4;
        }},
       {[&] {
@@ -183,15 +186,18 @@ TEST_F(Live, WheelAndChordsReachTheMapping) {
          person_->release(1);
          person_->let_go("shift");
        },
-       [&](const LiveMoment& m) {
+       [&](const ViewMoment& m) {
          pan = m.report.view.pan;
-         return pan.x != 0.0;
+         return pan != zoomed;
        }},
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_NEAR(zoom, std::pow(1.12, 3), 1e-9);
-  EXPECT_NEAR(pan.x, 0.1, 1e-9);
+  // The wheel left what was under the pointer there, and the object followed the pointer by 90 pixels of 240.
+  const glm::dvec2 at(-110.0 / 240, 70.0 / 240);
+  EXPECT_NEAR(glm::length(at - zoomed - zoom * at), 0.0, 1e-9);
+  EXPECT_NEAR(pan.x - zoomed.x, 90.0 / 240, 1e-9);
   EXPECT_EQ(turn_between_deg(done->view.rotation, {1, 0, 0, 0}), 0.0);
 }
 
@@ -199,19 +205,19 @@ TEST_F(Live, HelpIsShownInTheMiddleOfEveryDisplayAndGoesAgain) {
   Image plain, help, question, gone;
   const auto done = play({
       look(plain),
-      {[&] { person_->key("f1"); }, [](const LiveMoment& m) { return m.help; }},
+      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return m.viewer.desk().help; }},
       look(help),
       {[&] { person_->key("escape"); },
-       [](const LiveMoment& m) { return !m.help; }},  // closes the help, not the window
+       [](const ViewMoment& m) { return !m.viewer.desk().help; }},  // closes the help, not the window
       look(gone),
       {[&] {
          person_->hold("shift");
          person_->key("slash");
          person_->let_go("shift");
        },
-       [](const LiveMoment& m) { return m.help; }},
+       [](const ViewMoment& m) { return m.viewer.desk().help; }},
       look(question),
-      {[&] { person_->key("f1"); }, [](const LiveMoment& m) { return !m.help; }},
+      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return !m.viewer.desk().help; }},
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;
@@ -228,10 +234,11 @@ TEST_F(Live, DisplaysAreSwitchedWhileItRuns) {
   std::vector<Step> steps;
   for (int i = 0; i < 5; ++i) {
     if (i > 0)
-      steps.push_back({[&] { person_->key("f2"); }, [&](const LiveMoment& m) { return m.display != shown.back(); }});
-    steps.push_back({{}, [&](const LiveMoment& m) {
-                       screen_ = m.window.screen();
-                       shown.push_back(m.display);
+      steps.push_back(
+          {[&] { person_->key("f2"); }, [&](const ViewMoment& m) { return m.viewer.display() != shown.back(); }});
+    steps.push_back({{}, [&](const ViewMoment& m) {
+                       screen_ = m.presenter.window()->screen();
+                       shown.push_back(m.viewer.display());
                        shots.push_back(shot());
                        return true;
                      }});
@@ -250,7 +257,7 @@ TEST_F(Live, DisplaysAreSwitchedWhileItRuns) {
 }
 
 TEST_F(Live, AnInterlacedWindowKeepsTheParityOfThePanel) {
-  options_.session.display = {"interlaced"};
+  options_.stage.display = {"interlaced"};
   Image here;
   const auto done = play({
       look(here),
@@ -265,20 +272,22 @@ TEST_F(Live, AnInterlacedWindowKeepsTheParityOfThePanel) {
 TEST_F(Live, KeysOnAPanelChangeItsFiguresAndSaveThem) {
   const auto root = std::filesystem::temp_directory_path() / ("dubsar_tuner_" + std::to_string(::getpid()));
   const auto folder = root / "panels";
-  auto tuner = LensTuner::create(options_.session.catalog, folder, "lens-sheet-24-5-views");
+  auto tuner = LensTuner::create(options_.stage.catalog, folder, "lens-sheet-24-5-views");
   ASSERT_TRUE(tuner) << tuner.error().message;
   const std::string first = tuner->text();
-  options_.session.display = tuner->display();
-  options_.session.pattern = true;
+  options_.stage.display = tuner->display();
+  options_.stage.pattern = true;
   options_.displays = {{"mono"}};
   std::string taken;
-  options_.keys = [&](const std::string& key) {
-    const KeyAnswer answer = tuner->key(key);
-    if (answer.taken) taken += key + " ";
-    return answer;
-  };
+  options_.commands = tuner->commands();
+  for (Command& command : options_.commands)
+    command.run = [&taken, run = command.run, key = command.keys.front().key](Editor& editor,
+                                                                              const std::string& argument) {
+      taken += key + " ";
+      return run(editor, argument);
+    };
   Image before, moved, back;
-  const auto took = [&](const char* keys) { return [&, keys](const LiveMoment&) { return taken == keys; }; };
+  const auto took = [&](const char* keys) { return [&, keys](const ViewMoment&) { return taken == keys; }; };
   const auto done = play({
       look(before),
       {[&] { person_->key("right"); }, took("right ")},
@@ -338,14 +347,16 @@ TEST_F(Live, ALostSourceIsNamedAndUsedAgainAndAMissingOneIsTriedAgain) {
   };
   std::string reason;
   const auto health = [](std::size_t index, SourceHealth wanted) {
-    return [index, wanted](const LiveMoment& m) { return m.sources.size() == 3 && m.sources[index].health == wanted; };
+    return [index, wanted](const ViewMoment& m) {
+      return m.viewer.sources().size() == 3 && m.viewer.sources()[index].health == wanted;
+    };
   };
   const auto done = play({
       {{}, health(1, SourceHealth::kPresent)},
       {{},
-       [&](const LiveMoment& m) {
-         reason = m.sources[2].reason;
-         return m.sources[2].health == SourceHealth::kMissing;
+       [&](const ViewMoment& m) {
+         reason = m.viewer.sources()[2].reason;
+         return m.viewer.sources()[2].health == SourceHealth::kMissing;
        }},
       {[&] { device->plugged = false; }, health(1, SourceHealth::kLost)},
       {[&] { device->plugged = true; }, health(1, SourceHealth::kPresent)},
@@ -360,7 +371,7 @@ TEST_F(Live, ALostSourceIsNamedAndUsedAgainAndAMissingOneIsTriedAgain) {
        },
        health(1, SourceHealth::kOff)},
       {[&] { person_->key("2"); }, health(1, SourceHealth::kPresent)},
-      {[&] { person_->key("f1"); }, [](const LiveMoment& m) { return !m.help; }},
+      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return !m.viewer.desk().help; }},
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;
@@ -373,14 +384,14 @@ TEST_F(Live, ALostSourceIsNamedAndUsedAgainAndAMissingOneIsTriedAgain) {
 TEST_F(Live, MistakesInTheInputsAreRefusedAndNothingElseIsTriedInTheirPlace) {
   SilentProgress progress;
   options_.inputs = {"mouse", "crystal_ball"};
-  auto done = run_live(testing::lettered_box(), options_, progress);
+  auto done = run_view(testing::lettered_box(), options_, progress);
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().kind, ErrorKind::kUsage) << done.error().message;
   options_.inputs = {"absent"};
   options_.make_input = [](std::string_view, const InputConfig&) -> Result<std::unique_ptr<InputSource>> {
     return fail(ErrorKind::kPermission, "input absent: not allowed");
   };
-  done = run_live(testing::lettered_box(), options_, progress);
+  done = run_view(testing::lettered_box(), options_, progress);
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().kind, ErrorKind::kPermission);
 }
@@ -389,20 +400,20 @@ TEST_F(Live, ItEndsByClosingByTimeAndBySignal) {
   SilentProgress cancelled;
   options_.longest_s = 0.3;
   SilentProgress progress;
-  auto done = run_live(testing::lettered_box(), options_, progress);
+  auto done = run_view(testing::lettered_box(), options_, progress);
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_GE(done->seconds, 0.3);
   EXPECT_LT(done->seconds, 2.3);
   options_.longest_s = 20;
-  done = run_live(testing::lettered_box(), options_, progress, [](const LiveMoment& m) {
-    if (m.frames > 0) m.window.close();
+  done = run_view(testing::lettered_box(), options_, progress, [](const ViewMoment& m) {
+    if (m.frames > 0) m.presenter.window()->close();
   });
   ASSERT_TRUE(done);
   EXPECT_LT(done->seconds, 5.0);
   const TimestampNs start = SteadyClock().now();
   TimestampNs asked = start;
   options_.record = std::filesystem::temp_directory_path() / fmt::format("dubsar_live_{}.jsonl", ::getpid());
-  done = run_live(testing::lettered_box(), options_, cancelled, [&](const LiveMoment& m) {
+  done = run_view(testing::lettered_box(), options_, cancelled, [&](const ViewMoment& m) {
     if (m.frames == 0 || cancelled.cancelled()) return;
     asked = SteadyClock().now();
     cancelled.cancel();
@@ -416,12 +427,12 @@ TEST_F(Live, ItEndsByClosingByTimeAndBySignal) {
 
 TEST_F(Live, KeysThatTheSessionItselfTakesAreInItsRecording) {
   options_.record = std::filesystem::temp_directory_path() / fmt::format("dubsar_live_keys_{}.jsonl", ::getpid());
-  const auto help = [](bool open) { return [open](const LiveMoment& m) { return m.help == open; }; };
+  const auto help = [](bool open) { return [open](const ViewMoment& m) { return m.viewer.desk().help == open; }; };
   const auto done = play({{[] { person_->key("f1"); }, help(true)},
                           {[] { person_->key("f1"); }, help(false)},
                           {[] { person_->key("right"); },
-                           [](const LiveMoment& m) {
-                             return turn_between_deg(m.report.view.rotation, {1, 0, 0, 0}) > 5.0;
+                           [](const ViewMoment& m) {
+                             return turn_between_deg(m.report.view.rotation, {1, 0, 0, 0}) > 4.9;
                            }},
                           end()});
   ASSERT_TRUE(done) << done.error().message;
@@ -431,7 +442,7 @@ TEST_F(Live, KeysThatTheSessionItselfTakesAreInItsRecording) {
   for (const RecordedFrame& frame : *frames)
     for (const InputEvent& event : frame.frame.events)
       if (event.kind == EventKind::kKey && event.down) keys += event.key + " ";
-  EXPECT_EQ(keys, "f1 f1 right ");
+  EXPECT_EQ(keys, "f1 f1 right escape ");
   std::filesystem::remove(options_.record);
 }
 
@@ -439,17 +450,17 @@ TEST_F(Live, FullScreenAndBack) {
   PixelSize size;
   const auto done = play({
       {[&] { person_->key("f11"); },
-       [&](const LiveMoment& m) {
-         return m.window.fullscreen() && m.window.size() == PixelSize{1920, 1200};
+       [&](const ViewMoment& m) {
+         return m.presenter.window()->fullscreen() && m.presenter.window()->size() == PixelSize{1920, 1200};
        }},
       {{},
-       [&](const LiveMoment& m) {
-         size = m.session.traits().output;
+       [&](const ViewMoment& m) {
+         size = m.viewer.stage().traits().output;
          return size.width == 1920;
        }},
       {[&] { person_->key("f11"); },
-       [&](const LiveMoment& m) {
-         return !m.window.fullscreen() && m.session.traits().output == PixelSize{kWidth, kHeight};
+       [&](const ViewMoment& m) {
+         return !m.presenter.window()->fullscreen() && m.viewer.stage().traits().output == PixelSize{kWidth, kHeight};
        }},
       end(),
   });
@@ -469,7 +480,7 @@ TEST_F(Live, AFloodOfMotionsWhileAPictureIsMadeNeitherLosesTheReleaseNorTheDrag)
          for (int i = 0; i < 5000; ++i) person_->point(kX + 150 + i % 40, kY + 120);
          person_->settle();  // all of it has come before the next turn of the loop
        },
-       [&](const LiveMoment& m) {
+       [&](const ViewMoment& m) {
          dragged = m.report.view;
          return m.report.control == Control::kNone && m.report.view.rotation.w != 1.0;
        }},
@@ -477,7 +488,7 @@ TEST_F(Live, AFloodOfMotionsWhileAPictureIsMadeNeitherLosesTheReleaseNorTheDrag)
          for (int i = 0; i < 50; ++i) person_->point(kX + 100, kY + 100 + i);
          person_->settle();
        },
-       [](const LiveMoment&) { return true; }},
+       [](const ViewMoment&) { return true; }},
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;
@@ -490,13 +501,15 @@ TEST_F(Live, EscapeThatIsHeldClosesTheHelpAndNotTheWindow) {
   double pressed_s = 0.0;
   const auto seconds = [] { return 1e-9 * static_cast<double>(SteadyClock().now()); };
   const auto done = play({
-      {[&] { person_->key("f1"); }, [](const LiveMoment& m) { return m.help; }},
+      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return m.viewer.desk().help; }},
       {[&] {
          person_->hold("escape");
          pressed_s = seconds();
        },
-       [&](const LiveMoment& m) { return !m.help && seconds() - pressed_s > 1.5; }},  // keys repeat after 0.66 s
-      {[&] { person_->let_go("escape"); }, [](const LiveMoment& m) { return !m.window.should_close(); }},
+       [&](const ViewMoment& m) {
+         return !m.viewer.desk().help && seconds() - pressed_s > 1.5;
+       }},  // keys repeat after 0.66 s
+      {[&] { person_->let_go("escape"); }, [](const ViewMoment& m) { return !m.presenter.window()->should_close(); }},
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;
@@ -511,12 +524,12 @@ TEST_F(Live, WhatAnotherWindowOrMinimisingSpoiltIsShownAgain) {
          covered = shot();
          person_->uncover();
        },
-       [&](const LiveMoment&) { return shot().pixels == before.pixels; }},
+       [&](const ViewMoment&) { return shot().pixels == before.pixels; }},
       {[&] {
          person_->minimise();
          person_->restore();
        },
-       [&](const LiveMoment&) { return shot().pixels == before.pixels; }},
+       [&](const ViewMoment&) { return shot().pixels == before.pixels; }},
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;
@@ -529,20 +542,20 @@ TEST_F(Live, TheFirstPictureAndThoseOfAWindowThatIsResizedAreCoarseAndExactAtRes
   int asked = 0, drawn = 0, coarse = 0;
   bool first_coarse = false, exact_at_rest = false;
   options_.longest_s = 30;
-  const auto done = run_live(testing::lettered_box(), options_, silent, [&](const LiveMoment& m) {
+  const auto done = run_view(testing::lettered_box(), options_, silent, [&](const ViewMoment& m) {
     if (m.frames == 0) return;
-    const PixelSize now = m.session.traits().output;
-    if (m.drawn && m.frames == 1) first_coarse = m.session.coarse_views() > 0;
+    const PixelSize now = m.viewer.stage().traits().output;
+    if (m.drawn && m.frames == 1) first_coarse = m.viewer.stage().coarse_views() > 0;
     if (asked > 0 && m.drawn && asked < kSizes) {
       ++drawn;
-      coarse += m.session.coarse_views() > 0;
+      coarse += m.viewer.stage().coarse_views() > 0;
     }
     if (now.width != kWidth + asked) return;
     if (asked < kSizes) {
       person_->resize(kWidth + ++asked, kHeight);
-    } else if (m.session.coarse_views() == 0) {
+    } else if (m.viewer.stage().coarse_views() == 0) {
       exact_at_rest = true;
-      m.window.close();
+      m.presenter.window()->close();
     }
   });
   ASSERT_TRUE(done) << done.error().message;
@@ -550,6 +563,66 @@ TEST_F(Live, TheFirstPictureAndThoseOfAWindowThatIsResizedAreCoarseAndExactAtRes
   EXPECT_GE(drawn, kSizes - 1);
   EXPECT_EQ(coarse, drawn);
   EXPECT_TRUE(exact_at_rest);
+}
+
+TEST_F(Live, KeysTurnToSidesAndUndoAndRedoGoBackAndForth) {
+  Image front, bottom, back, again;
+  const auto faces = [](Side side) {
+    return [side](const ViewMoment& m) {
+      return turn_between_deg(m.report.view.rotation, turn_to(side)) < 1e-6 && !m.report.moving;
+    };
+  };
+  const auto done = play({
+      look(front),
+      {[&] { person_->key("2"); }, faces(Side::kBottom)},
+      look(bottom),
+      {[&] {
+         person_->hold("control");
+         person_->key("z");
+         person_->let_go("control");
+       },
+       faces(Side::kObverse)},
+      look(back),
+      {[&] {
+         person_->hold("control");
+         person_->hold("shift");
+         person_->key("z");
+         person_->let_go("shift");
+         person_->let_go("control");
+       },
+       faces(Side::kBottom)},
+      look(again),
+      end(),
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_GT(differing_share(front, bottom), 0.01);
+  EXPECT_EQ(differing_share(front, back), 0.0);
+  EXPECT_EQ(differing_share(bottom, again), 0.0);
+}
+
+TEST_F(Live, ADragIsOneStepOfTheHistory) {
+  const auto done = play({
+      {[&] {
+         person_->point(kX + 100, kY + 100);
+         person_->press(1);
+         for (int i = 1; i <= 50; ++i) person_->point(kX + 100 + i, kY + 100);
+         person_->release(1);
+       },
+       [](const ViewMoment& m) {
+         return turn_between_deg(m.report.view.rotation, {1, 0, 0, 0}) > 19.9;
+       }},
+      {[&] {
+         person_->hold("control");
+         person_->key("z");
+         person_->let_go("control");
+       },
+       [](const ViewMoment& m) {
+         return turn_between_deg(m.report.view.rotation, {1, 0, 0, 0}) < 1e-9 && !m.report.moving;
+       }},
+      end(),
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_EQ(done->document.now, done->document.home);
 }
 
 TEST(DisplayClock, LightIsTheMiddleOfTheScanAfterThePictureIsReady) {
@@ -574,23 +647,26 @@ TEST(HelpPage, SaysWhatTheMappingSays) {
           if (row.what == what) return row.does;
     return {};
   };
-  const auto page = help_page(default_mapping().value());
+  const CommandTable commands = CommandTable::standard({"relief"});
+  const KeyTable keys = KeyTable::create(commands).value();
+  const auto page = help_page(default_mapping().value(), keys);
   EXPECT_EQ(find(page, "Mouse", "left drag"), "turn");
   EXPECT_EQ(find(page, "Mouse", "shift+left drag"), "move");
   EXPECT_EQ(find(page, "Mouse", "wheel"), "zoom");
-  EXPECT_EQ(find(page, "Keys", "backspace"), "undo");
+  EXPECT_EQ(find(page, "Back", "backspace ctrl+z"), "undo");
+  EXPECT_EQ(find(page, "Sides", "1 to 6"), "turn to a side: obverse, bottom, reverse, top, left, right");
   EXPECT_EQ(find(page, "Hands", "pinch and move"), "move the light");
   EXPECT_EQ(find(page, "This window", "f1 ?"), "this help");
-  for (const SessionKey& key : kSessionKeys) EXPECT_EQ(session_command(key.key), key.command) << key.key;
   const auto museum =
       help_page(parse_mapping(R"({"hands": {"pinch": "none"}, "mouse": {"alt+left": "light", "wheel": null},
       "priority": ["hands", "mouse"]})",
                               "museum")
-                    .value());
+                    .value(),
+                keys);
   EXPECT_EQ(find(museum, "Mouse", "alt+left drag"), "move the light");
   EXPECT_EQ(find(museum, "Mouse", "wheel"), "");
   EXPECT_EQ(find(museum, "Hands", "pinch and move"), "");
-  EXPECT_EQ(find(museum, "Keys", "backspace"), "") << "the keyboard does not steer";
+  EXPECT_EQ(find(museum, "Back", "backspace ctrl+z"), "") << "the keyboard does not steer";
 }
 
 }  // namespace

@@ -11,34 +11,36 @@ constexpr double kHalfIpdMm = 31.5;
 
 Result<StagedSession> play(const XvfbServer& server, const TriMesh& mesh, const Stage& stage,
                            const std::vector<std::string>& inputs, const std::filesystem::path& record) {
-  app::LiveOptions options;
-  DUBSAR_ASSIGN(options.session.display, parse_sink_spec(stage.display));
-  options.session.catalog = std::make_shared<SinkCatalog>(load_panels(stage.panel_folder));
-  options.session.samples = 2;
-  DUBSAR_ASSIGN(options.session.mapping, default_mapping());
-  DUBSAR_ASSIGN(options.session.direction, parse_view_direction(stage.view));
-  DUBSAR_ASSIGN(options.session.shading, shading_preset("relief"));
-  options.window.width = stage.width;
-  options.window.height = stage.height;
-  options.window.x = 0;
-  options.window.y = 0;
-  options.window.decorated = false;
+  app::ViewOptions options;
+  DUBSAR_ASSIGN(options.stage.display, parse_sink_spec(stage.display));
+  options.stage.catalog = std::make_shared<SinkCatalog>(load_panels(stage.panel_folder));
+  options.stage.samples = 2;
+  DUBSAR_ASSIGN(options.mapping, default_mapping());
+  DUBSAR_ASSIGN(options.stage.direction, parse_view_direction(stage.view));
+  DUBSAR_ASSIGN(options.stage.shading, shading_preset("relief"));
+  options.window = WindowOptions();
+  options.window->width = stage.width;
+  options.window->height = stage.height;
+  options.window->x = 0;
+  options.window->y = 0;
+  options.window->decorated = false;
   options.fullscreen = false;
   options.notices = false;
   options.inputs = inputs;
-  options.simulated_fps = stage.fps;
+  options.fps = stage.fps;
   options.every = stage.every;
   options.longest_s = stage.longest_s;
   options.record = record;
   SilentProgress progress;
   StagedSession out;
   int steps = 0;
-  DUBSAR_ASSIGN(out.result, app::run_live(mesh, options, progress, [&](const app::LiveMoment& moment) {
-                  const double time_s = steps++ / stage.fps;
-                  if (!moment.drawn) return;
-                  static_cast<void>(moment.window.screen());  // asks the server, so that it has done all before
-                  out.moments.push_back({time_s, server.screen(0, 0, stage.width, stage.height), moment.report});
-                }));
+  DUBSAR_ASSIGN(
+      out.result, app::run_view(mesh, options, progress, [&](const app::ViewMoment& moment) {
+        const double time_s = steps++ / stage.fps;
+        if (!moment.drawn) return;
+        static_cast<void>(moment.presenter.window()->screen());  // asks the server, so that it has done all before
+        out.moments.push_back({time_s, server.screen(0, 0, stage.width, stage.height), moment.report});
+      }));
   return out;
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/viewer/live.h"
+#include "app/viewer/run_view.h"
 #include "display/sinks/render_display.h"
 #include "tests/display/xvfb_server.h"
 
@@ -15,11 +15,11 @@ namespace dubsar::testing {
 struct SessionMoment {
   double time_s = 0.0;
   Image window;  ///< what the X server has on its screen there
-  app::FrameReport report;
+  app::PictureReport report;
 };
 
 struct StagedSession {
-  app::LiveResult result;
+  app::ViewResult result;
   std::vector<SessionMoment> moments;
 };
 

@@ -7,7 +7,8 @@
 #include <fstream>
 #include <numbers>
 
-#include "app/viewer/offscreen.h"
+#include "app/viewer/run_view.h"
+#include "core/base/quantile.h"
 #include "devices/head_tracker/vrpn_protocol.h"
 #include "devices/transport/sim_transport.h"
 #include "display/render/compose_pass.h"
@@ -28,8 +29,11 @@ class SessionTest : public ::testing::Test {
     folder_ = fs::temp_directory_path() / ("dubsar_session_" + std::to_string(::getpid()) + "_" +
                                            ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(folder_);
-    options_.session.mapping = default_mapping().value();
-    options_.session.shading = shading_preset("relief").value();
+    options_.mapping = default_mapping().value();
+    options_.stage.shading = shading_preset("relief").value();
+    options_.fps = 30.0;
+    options_.longest_s = 60.0;
+    options_.notices = false;
   }
   void TearDown() override { fs::remove_all(folder_); }
   std::string file(const std::string& name, const std::string& text) {
@@ -37,9 +41,17 @@ class SessionTest : public ::testing::Test {
     return (folder_ / name).string();
   }
   fs::path folder_;
-  OffscreenOptions options_;
+  ViewOptions options_;
   SilentProgress progress_;
 };
+
+/// `look` sees every picture.
+Result<ViewResult> run_offscreen(const TriMesh& mesh, const ViewOptions& options, Progress& progress,
+                                 const std::function<void(const Image&, const PictureReport&)>& look = {}) {
+  return run_view(mesh, options, progress, [&](const ViewMoment& moment) {
+    if (look) look(moment.presenter.picture().value(), moment.report);
+  });
+}
 
 double differing_share(const Image& a, const Image& b) {
   std::size_t differ = 0;
@@ -48,15 +60,15 @@ double differing_share(const Image& a, const Image& b) {
 }
 
 TEST_F(SessionTest, AVisitorsHandsTurnAndZoomTheObjectOnAQuilt) {
-  options_.session.display = testing::spec("quilt:columns=4,rows=2,width=256,height=128,aspect=1,cone=40");
+  options_.stage.display = testing::spec("quilt:columns=4,rows=2,width=256,height=128,aspect=1,cone=40");
   options_.inputs = {"scripted:" +
                      file("visitor.json", R"({"seed": 4, "duration_s": 60, "noise_mm": 0.5, "bystanders": 1,
       "hand_dropouts": {"per_s": 0.3}, "visitor": {"yaw_deg": 40, "pitch_deg": 15, "zoom": 1.3}})")};
   options_.longest_s = 70;
   options_.record = folder_ / "recording.jsonl";
   Image first, last;
-  const OffscreenResult done =
-      run_offscreen(testing::lettered_box(), options_, progress_, [&](const Image& picture, const FrameReport&) {
+  const ViewResult done =
+      run_offscreen(testing::lettered_box(), options_, progress_, [&](const Image& picture, const PictureReport&) {
         if (first.pixels.empty()) first = picture;
         last = picture;
       }).value();
@@ -73,8 +85,8 @@ TEST_F(SessionTest, AVisitorsHandsTurnAndZoomTheObjectOnAQuilt) {
   options_.inputs = {"replay:" + options_.record.string()};
   options_.record.clear();
   Image replayed;
-  const OffscreenResult again =
-      run_offscreen(testing::lettered_box(), options_, progress_, [&](const Image& picture, const FrameReport&) {
+  const ViewResult again =
+      run_offscreen(testing::lettered_box(), options_, progress_, [&](const Image& picture, const PictureReport&) {
         replayed = picture;
       }).value();
   EXPECT_LT(turn_between_deg(again.view.rotation, done.view.rotation), 0.05);
@@ -87,18 +99,17 @@ TEST_F(SessionTest, EachEyeOfAMovingScholarSeesItsOwnViewInEveryFrame) {
        R"([{"name": "small-tracked", "title": "test", "kind": "tracked", "width_px": 480, "height_px": 270,
       "width_mm": 43.2, "optics": {"pitch_mm": 0.200884, "tan_slant": 0.333333, "reduced_gap_mm": 0.956589,
       "refractive_index": 1.5, "phase0": 0.0, "spot_sigma_periods": 0.1}, "design_distance_mm": 600, "ipd_mm": 63}])");
-  options_.session.catalog = std::make_shared<SinkCatalog>(load_panels(folder_ / "panels"));
-  options_.session.display = testing::spec("lenticular:small-tracked");
-  options_.inputs = {
-      "scripted:" +
-      file("scholar.json", R"({"duration_s": 3, "latency_ms": 40, "rate_hz": 60, "noise_mm": 0.3, "heads": [{"keys": [
-      {"t": 0, "at_mm": [-80, 0, 600]}, {"t": 1.2, "at_mm": [60, 20, 560]}, {"t": 2.6, "at_mm": [-60, 0, 640]}, {"t": 3, "at_mm": [-60, 0, 640]}]}]})")};
+  options_.stage.catalog = std::make_shared<SinkCatalog>(load_panels(folder_ / "panels"));
+  options_.stage.display = testing::spec("lenticular:small-tracked");
+  const std::string text = R"({"duration_s": 3, "latency_ms": 40, "rate_hz": 60, "noise_mm": 0.3, "heads": [{"keys": [
+      {"t": 0, "at_mm": [-80, 0, 600]}, {"t": 1.2, "at_mm": [60, 20, 560]}, {"t": 2.6, "at_mm": [-60, 0, 640]}, {"t": 3, "at_mm": [-60, 0, 640]}]}]})";
+  options_.inputs = {"scripted:" + file("scholar.json", text)};
   options_.fps = 60;
   options_.longest_s = 2.9;
-  const Script script = parse_script(fixed, "scholar").value();
+  const Script script = parse_script(text, "scholar").value();
   int frame = 0, checked = 0;
   double worst = 0.0, unfollowed = 0.0, squares = 0.0;
-  (void)run_offscreen(testing::lettered_box(), options_, progress_, [&](const Image&, const FrameReport& report) {
+  (void)run_offscreen(testing::lettered_box(), options_, progress_, [&](const Image&, const PictureReport& report) {
     const auto head = sample_head(script.heads[0], frame++ / 60.0);
     if (frame < 20 || !head) return;  // the tracker needs its first samples
     ASSERT_TRUE(report.light);
@@ -125,27 +136,27 @@ TEST_F(SessionTest, EachEyeOfAMovingScholarSeesItsOwnViewInEveryFrame) {
 
 TEST_F(SessionTest, RefusesWhatCannotRun) {
   const auto kind = [&](auto change) {
-    OffscreenOptions options = options_;
+    ViewOptions options = options_;
     options.inputs = {"scripted:" + file("short.json", R"({"duration_s": 0.1})")};
     change(options);
     const auto done = run_offscreen(testing::lettered_box(), options, progress_);
     return done ? std::string("accepted") : std::to_string(exit_code(done.error().kind));
   };
-  EXPECT_EQ(kind([](OffscreenOptions& o) { o.inputs.clear(); }), "64");
-  EXPECT_EQ(kind([](OffscreenOptions& o) { o.inputs = {"mouse"}; }), "69");
-  EXPECT_EQ(kind([](OffscreenOptions& o) { o.session.display = {"hologram"}; }), "64");
-  EXPECT_EQ(kind([](OffscreenOptions& o) { o.fps = 0; }), "64");
-  EXPECT_EQ(kind([](OffscreenOptions& o) { o.frames = "/proc/nowhere/x"; }), "73");
+  EXPECT_EQ(kind([](ViewOptions& o) { o.inputs.clear(); }), "64");
+  EXPECT_EQ(kind([](ViewOptions& o) { o.inputs = {"mouse"}; }), "69");
+  EXPECT_EQ(kind([](ViewOptions& o) { o.stage.display = {"hologram"}; }), "64");
+  EXPECT_EQ(kind([](ViewOptions& o) { o.fps = 0; }), "64");
+  EXPECT_EQ(kind([](ViewOptions& o) { o.frames = "/proc/nowhere/x"; }), "73");
 }
 
 TEST_F(SessionTest, AVisitorsHandsInInfraredPicturesTurnAndZoomTheObject) {
-  options_.session.screen.width_px = options_.session.screen.window_w = 64;
-  options_.session.screen.height_px = options_.session.screen.window_h = 64;
+  options_.stage.screen.width_px = options_.stage.screen.window_w = 64;
+  options_.stage.screen.height_px = options_.stage.screen.window_h = 64;
   // The script's hands are rendered, sent as USB transfers, found again by the hand tracker, and steer the view.
   options_.inputs = {"leap:simulate=" + file("visitor.json", R"({"seed": 1, "duration_s": 40, "rate_hz": 115,
       "visitor": {"yaw_deg": -50, "pitch_deg": 10, "zoom": 1.3}})")};
   options_.longest_s = 45;
-  const OffscreenResult done = run_offscreen(testing::lettered_box(), options_, progress_).value();
+  const ViewResult done = run_offscreen(testing::lettered_box(), options_, progress_).value();
   EXPECT_LE(turn_between_deg(done.view.rotation, turn_of({10 * kRad, 0, 0}) * turn_of({0, -50 * kRad, 0})), 5.0);
   EXPECT_NEAR(done.view.zoom, 1.3, 0.065);
   EXPECT_LE(done.largest_turn_deg, 2.0);
@@ -153,30 +164,24 @@ TEST_F(SessionTest, AVisitorsHandsInInfraredPicturesTurnAndZoomTheObject) {
 }
 
 TEST_F(SessionTest, HandsSteerThoughAPictureTakesAQuarterOfASecond) {
-  const auto context = EglContext::create().value();
-  options_.session.screen.width_px = options_.session.screen.window_w = 64;
-  options_.session.screen.height_px = options_.session.screen.window_h = 64;
-  const auto session = Session::create(testing::lettered_box(), options_.session).value();
   ManualClock clock(1'000'000'000);
+  Steering steering(options_.mapping, {}, {});
   InputConfig config;
-  config.seen_view = &session->view();
+  config.seen_view = [seen = steering.seen()] { return seen->look(); };
   config.clock = &clock;
   config.simulated_time = true;
-  session->input().add(make_input("scripted:" + file("visitor.json", R"({"seed": 4, "duration_s": 90, "noise_mm": 0.5,
+  steering.input().add(make_input("scripted:" + file("visitor.json", R"({"seed": 4, "duration_s": 90, "noise_mm": 0.5,
       "visitor": {"yaw_deg": 40, "pitch_deg": 15, "zoom": 1.3}})"),
                                   config)
                            .value());
   int heard = 0;
-  session->on_input([&](TimestampNs, const InputFrame& frame) { heard += frame.hands.empty() ? 0 : 1; });
-  for (int step = 0; step < 90 * 120 && !session->input().finished(); ++step, clock.advance(8'333'333)) {
-    if (step % 30 == 0) {
-      static_cast<void>(session->poll(clock.now(), clock.now()));  // what a picture every 250 ms would show
-    } else {
-      session->steer(clock.now());
-    }
+  steering.on_input([&](TimestampNs, const InputFrame& frame) { heard += frame.hands.empty() ? 0 : 1; });
+  for (int step = 0; step < 90 * 120 && !steering.input().finished(); ++step, clock.advance(8'333'333)) {
+    steering.steer(clock.now());
+    if (step % 30 == 0) static_cast<void>(steering.look(clock.now(), clock.now()));  // a picture every 250 ms
   }
   EXPECT_GT(heard, 1000);
-  const ViewState seen = session->poll(clock.now(), clock.now()).view;
+  const ViewState seen = steering.look(clock.now(), clock.now()).view;
   EXPECT_LE(turn_between_deg(seen.rotation, turn_of({15 * kRad, 0, 0}) * turn_of({0, 40 * kRad, 0})), 5.0);
   EXPECT_NEAR(seen.zoom, 1.3, 0.065);
 }
@@ -184,22 +189,20 @@ TEST_F(SessionTest, HandsSteerThoughAPictureTakesAQuarterOfASecond) {
 TEST_F(SessionTest, TheAgeOfTheInputIsTheTimeFromItsMeasurementToTheCameras) {
   constexpr TimestampNs kMs = 1'000'000,
                         kServerOrigin = 1'700'000'000'000'000'000;  // the server's clock counts from 1970
-  const auto context = EglContext::create().value();
   ManualClock clock(1000 * kMs);
   SimDevice server("simulated VRPN server", false);
-  SessionOptions options = options_.session;
-  options.screen.width_px = options.screen.window_w = 64;
-  options.screen.height_px = options.screen.window_h = 64;
-  const auto session = Session::create(testing::lettered_box(), options).value();
+  Steering steering(options_.mapping, {}, {});
   InputConfig config;
   config.clock = &clock;
   config.simulated_time = true;
   config.reach_device = [&](const DeviceSpec&, const Clock&) -> Result<OpenTransport> {
     return OpenTransport([&] { return server.open(); });
   };
-  session->input().add(make_input("head:vrpn", config).value());
-  const OffscreenSurface surface = OffscreenSurface::create(session->traits().output).value();
-  const auto draw = [&] { return session->draw(clock.now(), clock.now(), surface.surface()).value(); };
+  steering.input().add(make_input("head:vrpn", config).value());
+  const auto draw = [&] {
+    steering.steer(clock.now());
+    return steering.look(clock.now(), clock.now());
+  };
   const auto send_pose_measured = [&](TimestampNs time) {
     VrpnMessage message = vrpn_pose_message(0, 4, 0, {{0.02, 0.0, 0.6}, {1, 0, 0, 0}});
     message.seconds = static_cast<std::uint32_t>((kServerOrigin + time) / 1'000'000'000);
@@ -215,10 +218,10 @@ TEST_F(SessionTest, TheAgeOfTheInputIsTheTimeFromItsMeasurementToTheCameras) {
   for (const TimestampNs lag : {40, 25, 90}) {
     clock.advance(200 * kMs);
     send_pose_measured(clock.now() - lag * kMs);
-    const FrameReport report = draw();
+    const Steered report = draw();
     ASSERT_TRUE(report.input_age);
     EXPECT_NEAR(1e-6 * static_cast<double>(*report.input_age), static_cast<double>(lag), 0.1);
-    EXPECT_NEAR(report.viewer.right_mm.x - 31.5, 20.0, 1e-3);
+    EXPECT_NEAR(1e3 * report.eyes.right_m.x - 31.5, 20.0, 1e-3);
     EXPECT_FALSE(draw().input_age);  // nothing new
   }
 }

@@ -84,6 +84,7 @@ class XPerson {
     if (name == "escape") return 9;
     if (name == "1") return 10;
     if (name == "2") return 11;
+    if (name == "3") return 12;
     if (name == "0") return 19;
     if (name == "s") return 39;
     if (name == "f5") return 71;

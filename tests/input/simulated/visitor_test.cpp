@@ -11,6 +11,7 @@
 
 #include "input/mixer.h"
 #include "input/navigation/navigation.h"
+#include "input/people/person_keeper.h"
 #include "input/simulated/scripted_source.h"
 
 namespace dubsar {
@@ -30,12 +31,14 @@ Outcome run(const Script& script, const ViewState& home = {}) {
   Outcome out;
   const Mapping mapping = default_mapping().value();
   Navigator navigator(mapping, home);
+  PersonKeeper people;
   ViewState seen = home;
   InputMixer mixer;
-  mixer.add(play_script(script, &seen).value());
+  mixer.add(play_script(script, [&] { return seen; }).value());
   TimestampNs now = 1'000'000'000;
   for (int settle = 0; settle < 60; now += kFrame) {
-    navigator.update(now, mixer.poll(now));
+    const InputFrame& polled = mixer.poll(now);
+    navigator.update(now, polled, people.update(now, polled).hands);
     out.largest_step_deg = std::max(out.largest_step_deg, turn_between_deg(seen.rotation, navigator.view().rotation));
     out.longest_zoom_step = std::max(out.longest_zoom_step, std::abs(std::log(navigator.view().zoom / seen.zoom)));
     seen = navigator.view();

@@ -13,6 +13,7 @@
 #include "devices/transport/socket_transport.h"
 #include "input/navigation/mapping.h"
 #include "input/navigation/navigation.h"
+#include "input/people/person_keeper.h"
 #include "input/simulated/simulated_recording.h"
 #include "input/simulated/simulated_server.h"
 #include "tests/input/sources/source_bench.h"
@@ -100,13 +101,14 @@ TEST(SimulatedPeople, AVisitorWithAPuckTurnsTheViewToWhereItIsWished) {
   for (const char* puck : {"spacemouse", "spacenav"}) {
     SourceBench bench;
     Navigator navigator(default_mapping().value());
+    PersonKeeper people;
     ViewState seen = navigator.view();
-    bench.config.seen_view = &seen;
+    bench.config.seen_view = [&] { return seen; };
     const auto source = bench.make(std::string(puck) + ":simulate=" + file.path());
     double turned_at_once = 0.0;
     for (int i = 0; i < 60 * 20 && !source->finished(); ++i, bench.clock.advance(kSecond / 60)) {
       bench.poll(*source);
-      navigator.update(bench.clock.now(), bench.frame);
+      navigator.update(bench.clock.now(), bench.frame, people.update(bench.clock.now(), bench.frame).hands);
       turned_at_once = std::max(turned_at_once, turn_between_deg(seen.rotation, navigator.view().rotation));
       seen = navigator.view();
     }

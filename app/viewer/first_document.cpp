@@ -1,0 +1,53 @@
+#include "app/viewer/first_document.h"
+
+#include <algorithm>
+
+namespace dubsar::app {
+namespace {
+
+constexpr double kGap = 0.1;  // between what is taken apart, of the object's height
+
+std::vector<Part> parts_of(const TriMesh& mesh) {
+  std::vector<Part> out;
+  for (const Partition& partition : mesh.partitions) {
+    const std::string& name = partition.body_name();
+    auto at = std::find_if(out.begin(), out.end(), [&](const Part& part) { return part.name == name; });
+    if (at == out.end()) at = out.insert(out.end(), Part{name});
+    at->partitions = static_cast<std::uint8_t>(at->partitions | 1u << partition.id);
+  }
+  return out;
+}
+
+}  // namespace
+
+Document first_document(const ViewOptions& options, const TriMesh& mesh) {
+  Document out = options.document;
+  if (out.parts.empty()) out.parts = parts_of(mesh);
+  const Light& light = options.stage.shading.light;
+  if (out.home_light == LightPlace() && out.light == LightPlace())
+    out.home_light = out.light = {light.azimuth_deg, light.elevation_deg};
+  return out;
+}
+
+Shown shown_of(const Document& document, const ViewState& view, const StageOptions& stage, const Box& model) {
+  Shown out{view, 1.0, stage.shading.style, stage.shading.parts};
+  if (document.style.name != Document().style.name)
+    if (const auto preset = shading_preset(document.style.name)) out.style = preset->style;
+  out.style.contrast *= document.style.strength;
+  out.style.ambient_occlusion = out.style.ambient_occlusion && document.style.occlusion;
+  const double unpack = can_unpack(document) ? document.unpack : 0.0;
+  const ObjectFrame frame = object_frame(model);
+  const double height = (1.0 + kGap) * std::abs(glm::dot(model.size(), frame.up));
+  out.fit = 1.0 / (1.0 + (1.0 + kGap) * unpack);
+  for (const Part& part : document.parts)
+    for (int p = 0; p < kMaxPartitions; ++p) {
+      if ((part.partitions >> p & 1) == 0) continue;
+      PartLook& look = out.parts[static_cast<std::size_t>(p)];
+      look.visible = look.visible && part.visible;
+      if (part.colour != Part().colour) look.color = part.colour;
+      look.offset_mm = part.offset_mm + 0.5 * (part.name == "envelope" ? unpack : -unpack) * height * frame.up;
+    }
+  return out;
+}
+
+}  // namespace dubsar::app

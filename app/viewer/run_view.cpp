@@ -1,0 +1,206 @@
+#include "app/viewer/run_view.h"
+
+#include <cmath>
+#include <deque>
+#include <system_error>
+
+#include "app/viewer/window_presenter.h"
+#include "core/base/log.h"
+#include "core/base/quantile.h"
+#include "core/image_io/png_file.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr TimestampNs kSecond = 1'000'000'000;
+constexpr std::size_t kRecent = 300;  // measurements that the figures on the help page come from
+constexpr int kMostFailures = 3;
+
+Result<void> check(const ViewOptions& options) {
+  const bool simulated = options.fps != 0;
+  if (simulated && !(options.fps >= 1 && options.fps <= 240))
+    return fail(ErrorKind::kUsage, "view: {} frames a second found, expected 1 to 240", options.fps);
+  if (!simulated && !options.window)
+    return fail(ErrorKind::kUsage, "view: no frames a second found, expected 1 to 240 without a window");
+  if (!(options.longest_s >= 0 && options.longest_s <= 86400 * 7) || options.every < 1 ||
+      !(options.display_delay_s >= 0 && options.display_delay_s <= 0.1))
+    return fail(ErrorKind::kUsage,
+                "view: {} s with a display delay of {} s found, expected up to a week and 0 to 0.1 s",
+                options.longest_s, options.display_delay_s);
+  if (!options.window && options.inputs.empty())
+    return fail(ErrorKind::kUsage,
+                "view: no input, expected --script FILE or --input with scripted:FILE or replay:FILE");
+  if (options.frames.empty()) return {};
+  std::error_code error;
+  std::filesystem::create_directories(options.frames, error);
+  if (error || !std::filesystem::is_directory(options.frames))
+    return fail(ErrorKind::kCannotCreate, "view: cannot create the folder {}: {}", options.frames.string(),
+                error.message());
+  return {};
+}
+
+class Figures {
+ public:
+  void took_part(ViewResult& out, const PictureReport& report) {
+    if (!report.input_age) return;
+    const double ms = 1e-6 * static_cast<double>(*report.input_age);
+    out.input_age_ms.push_back(ms);
+    keep(ages_ms_, ms);
+  }
+  /// A picture was presented at `at` of the real clock.
+  void presented(TimestampNs at, bool moving) {
+    if (moving && last_ >= 0 && at - last_ < kSecond / 4) {
+      intervals_all_ms_.push_back(1e-6 * static_cast<double>(at - last_));
+      keep(intervals_ms_, intervals_all_ms_.back());
+    }
+    last_ = at;
+  }
+  RecentFigures recent() const {
+    return {{intervals_ms_.begin(), intervals_ms_.end()}, {ages_ms_.begin(), ages_ms_.end()}};
+  }
+  double fps() const {
+    return intervals_all_ms_.empty() ? 0.0 : 1e3 / std::max(quantile(intervals_all_ms_, 0.5), 1e-3);
+  }
+
+ private:
+  static void keep(std::deque<double>& values, double value) {
+    values.push_back(value);
+    if (values.size() > kRecent) values.pop_front();
+  }
+  TimestampNs last_ = -1;
+  std::deque<double> ages_ms_, intervals_ms_;
+  std::vector<double> intervals_all_ms_;
+};
+
+class Loop {
+ public:
+  Loop(const ViewOptions& options, Progress& progress) : options_(options), progress_(progress) {}
+  Result<ViewResult> run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look);
+
+ private:
+  bool simulated() const noexcept { return options_.fps > 0; }
+  TimestampNs step() const { return static_cast<TimestampNs>(1e9 / options_.fps); }
+  const Clock& clock() const noexcept { return simulated() ? static_cast<const Clock&>(manual_) : steady_; }
+  Result<void> draw(bool& drawn);
+  Result<void> write_picture();
+  bool ends(TimestampNs start);
+
+  ViewOptions options_;
+  Progress& progress_;
+  SteadyClock steady_;
+  ManualClock manual_;                    // of simulated time; outlives the sources
+  std::unique_ptr<Presenter> presenter_;  // all else has GL objects
+  std::unique_ptr<Viewer> viewer_;
+  Figures figures_;
+  ViewResult out_;
+  std::int64_t steps_ = 0;
+  int failures_ = 0;
+};
+
+Result<void> Loop::write_picture() {
+  if (options_.frames.empty() || (!simulated() && out_.frames % options_.every != 0)) return {};
+  DUBSAR_ASSIGN(const Image picture, presenter_->picture());
+  const std::string name =
+      fmt::format("frame-{:05}{}.png", simulated() ? steps_ : out_.frames, viewer_->stage().traits().file_suffix);
+  DUBSAR_TRY(write_png((options_.frames / name).string(), picture));
+  ++out_.written;
+  return {};
+}
+
+Result<void> Loop::draw(bool& drawn) {
+  const double cpu = process_cpu_seconds();
+  DUBSAR_TRY(viewer_->paint(presenter_->surface(), presenter_->turn()));
+  DUBSAR_TRY(write_picture());
+  DUBSAR_TRY(presenter_->present());
+  figures_.presented(steady_.now(), viewer_->report().moving);
+  out_.frame_cpu_ms.push_back(1e3 * (process_cpu_seconds() - cpu));
+  ++out_.frames;
+  drawn = true;
+  return {};
+}
+
+bool Loop::ends(TimestampNs start) {
+  const TimestampNs now = clock().now();
+  if (presenter_->ended() || viewer_->over(now)) return true;
+  if (options_.longest_s <= 0) return false;
+  if (simulated()) return static_cast<double>(steps_ + 1) >= options_.longest_s * options_.fps;
+  return now - start >= static_cast<TimestampNs>(1e9 * options_.longest_s);
+}
+
+Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look) {
+  DUBSAR_TRY(check(options_));
+  std::string note;
+  std::unique_ptr<OutputSink> sink;
+  if (options_.window) {
+    DUBSAR_ASSIGN(presenter_, WindowPresenter::create(options_, sink, note));
+  } else {
+    DUBSAR_ASSIGN(presenter_, FilePresenter::create());
+  }
+  if (simulated()) {
+    options_.stage.quality = Quality::kExact;
+    manual_.set(step());
+  }
+  DUBSAR_ASSIGN(viewer_, Viewer::create(mesh, options_, *presenter_, clock(), std::move(sink), note));
+  progress_.begin("view", 0, "frame");
+  const TimestampNs start = clock().now();
+  const auto delay = static_cast<TimestampNs>(1e9 * options_.display_delay_s);
+  glm::dquat last_turn = view_of(viewer_->document()).rotation;
+  for (bool over = false; !over; ++steps_) {
+    if (progress_.cancelled()) {
+      DUBSAR_TRY(viewer_->finish(true));  // what a person showed is not lost with the session
+      return cancelled_error();
+    }
+    presenter_->take_events();
+    if (presenter_->take_place_changed())
+      if (auto done = viewer_->place_changed(); !done) log_warning("{}", done.error().message);
+    const bool damaged = presenter_->take_damaged();
+    const TimestampNs at = clock().now();
+    viewer_->tick(at, (simulated() ? at : presenter_->light(at)) + delay, figures_.recent());
+    const PictureReport& report = viewer_->report();
+    figures_.took_part(out_, report);
+    out_.largest_turn_deg = std::max(out_.largest_turn_deg, turn_between_deg(last_turn, report.view.rotation));
+    last_turn = report.view.rotation;
+    bool drawn = false;
+    const bool due =
+        simulated() ? steps_ % options_.every == 0 : damaged || viewer_->needs_paint() || viewer_->fields() > 1;
+    if (due && presenter_->visible()) {
+      const auto done = draw(drawn);
+      failures_ = done ? 0 : failures_ + 1;
+      if (!done && failures_ == 1) log_warning("{}; the session goes on", done.error().message);
+      if (failures_ >= kMostFailures || (!done && !options_.window)) {
+        static_cast<void>(viewer_->finish(false));
+        return tl::unexpected<Error>(done.error());
+      }
+      progress_.advance(1);
+    }
+    if (look)
+      look({.report = report, .drawn = drawn, .frames = out_.frames, .viewer = *viewer_, .presenter = *presenter_});
+    over = ends(start);
+    if (simulated()) {
+      DUBSAR_TRY(viewer_->flush());
+      manual_.advance(step());
+    } else if (!over) {
+      presenter_->wait(viewer_->needs_paint() || report.moving);
+    }
+  }
+  progress_.end();
+  out_.seconds = 1e-9 * static_cast<double>(clock().now() - start);
+  out_.fps = figures_.fps();
+  out_.view = viewer_->report().view;
+  out_.display = viewer_->display();
+  out_.rows = viewer_->sources();
+  out_.sources = viewer_->source_states();
+  out_.document = viewer_->document();
+  DUBSAR_TRY(viewer_->finish(true));
+  return std::move(out_);
+}
+
+}  // namespace
+
+Result<ViewResult> run_view(const TriMesh& mesh, const ViewOptions& options, Progress& progress,
+                            const std::function<void(const ViewMoment&)>& look) {
+  Loop loop(options, progress);
+  return loop.run(mesh, look);
+}
+
+}  // namespace dubsar::app

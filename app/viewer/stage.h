@@ -1,0 +1,125 @@
+#pragma once
+// What a session draws with: the surface in graphics memory, the display, and what lies over the picture. It is told
+// what to show and paints it; it knows nothing of input, windows or documents.
+
+#include <memory>
+#include <optional>
+
+#include "core/base/clock.h"
+#include "core/base/result.h"
+#include "core/mesh/tri_mesh.h"
+#include "display/optics/off_axis.h"
+#include "display/optics/optics.h"
+#include "display/render/camera.h"
+#include "display/render/shading.h"
+#include "display/sinks/sink_catalog.h"
+#include "input/navigation/view_state.h"
+#include "input/people/head_follower.h"
+
+namespace dubsar {
+class ViewArray;
+}
+
+namespace dubsar::app {
+
+enum class Quality {
+  kExact,     ///< all triangles and samples in every picture
+  kAdaptive,  ///< coarse views while things move, where exact ones take longer than budget_ms or nobody knows yet what
+              ///< they take, and while the window's size changes; exact ones at rest
+};
+
+struct StageOptions {
+  SinkSpec display{"mono"};
+  /// Displays and panels that may be named; who owns it, too, may put other figures into it and set the display again.
+  std::shared_ptr<SinkCatalog> catalog = std::make_shared<SinkCatalog>();
+  Screen screen{};  ///< without a window, what the sink does not know better
+  Viewer viewer{};  ///< where the eyes are while no head is tracked
+  Shading shading{};
+  ViewDirection direction{};  ///< the front of the home view
+  double margin = 0.08;       ///< free border around the object at zoom 1
+  int samples = 1;            ///< samples x samples a pixel
+  Quality quality = Quality::kExact;
+  double budget_ms = 14.0;     ///< kAdaptive: for the views of one picture
+  bool stereo_window = false;  ///< the target has a left and a right buffer
+  double magnification = 0.0;  ///< 1: life size at zoom 1; 0: as large as fits
+  bool pattern = false;        ///< numbered views (display/render/test_pattern.h) in place of the mesh
+};
+
+/// What a picture shows besides what the stage was made with.
+struct Shown {
+  ViewState view{};
+  double fit = 1.0;  ///< times the size that fits at zoom 1: parts that stand apart need more room
+  Style style{};
+  PartLooks parts{};
+  friend bool operator==(const Shown& a, const Shown& b) {
+    return a.view.rotation == b.view.rotation && a.view.zoom == b.view.zoom && a.view.pan == b.view.pan &&
+           a.view.light_azimuth_deg == b.view.light_azimuth_deg &&
+           a.view.light_elevation_deg == b.view.light_elevation_deg && a.fit == b.fit && a.style == b.style &&
+           a.parts == b.parts;
+  }
+};
+
+/// Draws over all views before they are composed, so that it stands at the same place for both eyes: on the panel's
+/// plane.
+class LayerPainter {
+ public:
+  virtual ~LayerPainter() = default;
+  /// `window_mm` is what the panel shows across; pixels of a layer need not be square on it.
+  virtual Result<void> paint(ViewArray& layers, const glm::dvec2& window_mm) = 0;
+};
+
+/// One thread: that of the GL context, which must be current in every call and outlive the stage.
+class Stage {
+ public:
+  /// kUnavailable without GL 4.5 or for a sink that needs a stereo visual; kUsage, kBadData, kTryAgain as pack_mesh(),
+  /// SinkCatalog::make(). `sink` is what options.display names, where somebody made it already.
+  static Result<std::unique_ptr<Stage>> create(const TriMesh& mesh, const StageOptions& options,
+                                               std::unique_ptr<OutputSink> sink = nullptr);
+  ~Stage();
+
+  /// May be changed at any time; when one fails nothing changes.
+  Result<void> set_display(const SinkSpec& spec);
+  Result<void> set_screen(const Screen& screen);
+  SinkTraits traits() const;
+  /// Where the eyes of somebody are expected whom nobody sees, metres in the screen frame.
+  glm::dvec3 rest_m() const;
+
+  /// What the next picture shows, at `now`.
+  void show(const Shown& shown, const FollowedEyes& eyes, TimestampNs now);
+  /// Whether it differs from the last picture: an eye moved by more than 0.05 mm, or anything else.
+  bool moved() const noexcept;
+  /// True when paint() would make another picture than it did last: moved(), the overlay or the display changed, or
+  /// views are still coarse and things rest.
+  bool needs_paint() const noexcept;
+  /// The next picture is drawn whether or not something changed.
+  void repaint();
+  /// Renders the views and composes them on `target`: the field that is due, where traits() has two.
+  Result<void> paint(const Surface& target, Field field = Field::kFirst);
+
+  const Viewer& viewer() const noexcept;    ///< the eyes that cameras are made for
+  std::optional<PanelLight> light() const;  ///< where the panel's lenses send what was painted last
+  int coarse_views() const noexcept;        ///< of the last picture; 0: all are exact
+  /// Drawn over the views from the next paint() on; call it again when it looks different. Null: nothing. It outlives
+  /// the stage or is taken away.
+  void set_overlay(LayerPainter* painter);
+
+  /// Where the object stands that was shown last: from mm of the model to mm of the screen.
+  glm::dmat4 screen_from_model() const;
+  /// Of what it was made with, in the model's frame.
+  const Box& box_mm() const noexcept;
+  /// What the panel shows across, mm, and its middle.
+  glm::dvec2 window_mm() const noexcept;
+  glm::dvec2 middle_mm() const noexcept;
+
+ private:
+  struct Parts;
+  explicit Stage(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+/// screen_from_model for a view: the object fitted by `magnification`, turned, zoomed and moved; pan counts heights of
+/// the window, `window_height_mm`, from `middle_mm`, the place of the window's middle on the panel.
+glm::dmat4 screen_from_model(const Box& box, const ViewDirection& direction, const ViewState& view,
+                             double magnification, double window_height_mm, const glm::dvec2& middle_mm = {0.0, 0.0});
+
+}  // namespace dubsar::app

@@ -1,0 +1,71 @@
+#pragma once
+// What a session is asked for, what it tells while it runs, and what comes of it.
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/commands/command_table.h"
+#include "app/document/document.h"
+#include "app/viewer/source_set.h"
+#include "app/viewer/stage.h"
+#include "display/render/context_glfw.h"
+#include "input/navigation/mapping.h"
+
+namespace dubsar::app {
+
+struct ViewOptions {
+  StageOptions stage{};
+  Document document{};  ///< its view and home are the stage's, and its parts the mesh's where it has none
+  Mapping mapping{};
+  std::filesystem::path model_folder{};  ///< networks of the webcam source; empty: none
+  std::vector<std::string> inputs;       ///< none in a window: mouse, keyboard, and the devices that are plugged in
+  std::optional<WindowOptions> window;   ///< none: offscreen, pictures in memory and files
+  /// Whether the window covers a monitor. None: displays that need exact pixels do, on the monitor of
+  /// `window.monitor`, else the one that has the panel's pixels; others do not.
+  std::optional<bool> fullscreen;
+  std::vector<SinkSpec> displays;  ///< what the keys go through besides stage.display; none: what fits the window
+  /// Simulated time: this many steps a second, however long they take; the same script gives the same pictures on every
+  /// machine. 0: real time, in a window only.
+  double fps = 0.0;
+  double longest_s = 0.0;          ///< 0: until somebody ends it, or its scripts and recordings are over (plus 1 s)
+  double display_delay_s = 0.0;    ///< from the presentation of a picture to its light, beyond the monitor's scan
+  std::filesystem::path frames{};  ///< folder for frame-00000.png ..., what is presented; empty: none
+  /// Only each n-th picture becomes a file; in simulated time nothing else is drawn, and pictures count steps.
+  int every = 1;
+  std::filesystem::path record{};    ///< recording of the input; empty: none
+  bool notices = true;               ///< a line for some seconds: how to get help and leave, which display this is now
+  std::vector<Command> commands{};   ///< in place of those that change what is looked at
+  std::filesystem::path autosave{};  ///< copy of the document while somebody works; empty: none
+  MakeInput make_input = dubsar::make_input;
+};
+
+/// What went into one picture. Times are those of the session's clock.
+struct PictureReport {
+  ViewState view{};
+  Viewer viewer{};  ///< the eyes that cameras were made for
+  Presence head = Presence::kOff;
+  Control control = Control::kNone;
+  bool moving = false;                     ///< it differs from the last one
+  std::optional<TimestampNs> input_age{};  ///< device time of the newest measurement to the cameras; none: nothing new
+  std::optional<PanelLight> light{};       ///< where the panel's lenses send it, for displays with lenses
+  std::optional<glm::dvec3> selected_m{};  ///< a dwelling hand chose this place
+};
+
+struct ViewResult {
+  int frames = 0, written = 0;
+  double seconds = 0.0;  ///< of the session's clock
+  double fps = 0.0;      ///< in real time, while things moved: from one presented picture to the next
+  ViewState view{};
+  std::vector<double> input_age_ms{};  ///< one for every turn that had new input
+  std::vector<double> frame_cpu_ms{};  ///< CPU time of each picture, all threads
+  double largest_turn_deg = 0.0;       ///< between two turns
+  std::string display{};               ///< shown at the end
+  std::vector<SourceRow> rows{};
+  std::vector<SourceState> sources{};
+  Document document{};
+};
+
+}  // namespace dubsar::app

@@ -1,0 +1,293 @@
+#include "app/viewer/viewer.h"
+
+#include <algorithm>
+
+#include "app/panels/state_page.h"
+#include "app/viewer/first_document.h"
+#include "app/viewer/picker.h"
+#include "app/viewer/window_input.h"
+#include "app/viewer/window_place.h"
+#include "core/base/log.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr TimestampNs kSecond = 1'000'000'000;
+constexpr TimestampNs kNoticeNs = 6 * kSecond, kFadeNs = kSecond, kHelpRefreshNs = kSecond / 2, kSettleNs = kSecond;
+constexpr std::uint64_t kKeySteps = std::uint64_t{1} << 63;  // told apart from movements
+
+bool same_view(const ViewState& a, const ViewState& b) { return Shown{a} == Shown{b}; }
+
+HeadFollowOptions follow_options(const StageOptions& stage) {
+  HeadFollowOptions out;
+  out.rest_m = 1e-3 * stage.viewer.centre_mm();
+  out.ipd_m = 1e-3 * glm::length(stage.viewer.right_mm - stage.viewer.left_mm);
+  return out;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Viewer>> Viewer::create(const TriMesh& mesh, const ViewOptions& options, Presenter& presenter,
+                                               const Clock& clock, std::unique_ptr<OutputSink> sink,
+                                               const std::string& note) {
+  std::unique_ptr<Viewer> out(new Viewer(mesh, options, presenter, clock));
+  DUBSAR_TRY(out->open(std::move(sink), note));
+  return out;
+}
+
+Viewer::~Viewer() {
+  if (steering_) steering_->stop();
+  if (stage_) stage_->set_overlay(nullptr);
+  sources_.reset();
+}
+
+Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& note) {
+  const StageOptions& stage = given_.options.stage;
+  commands_ = std::make_unique<CommandTable>();
+  if (given_.options.commands.empty()) {
+    std::vector<std::string> styles;
+    for (const std::string_view name : shading_preset_names()) styles.emplace_back(name);
+    *commands_ = CommandTable::standard(styles);
+  } else {
+    for (Command& command : window_commands()) commands_->add(std::move(command));
+    for (const Command& command : given_.options.commands) commands_->add(command);
+  }
+  DUBSAR_ASSIGN(KeyTable keys, KeyTable::create(*commands_, given_.options.mapping.keys));
+  keys_ = std::make_unique<KeyTable>(std::move(keys));
+  const Mapping& mapping = given_.options.mapping;
+  editor_ =
+      std::make_unique<Editor>(first_document(given_.options, given_.mesh), *this,
+                               StepFigures{mapping.key_step_deg, mapping.key_zoom, mapping.zoom_min, mapping.zoom_max});
+  DUBSAR_ASSIGN(stage_, Stage::create(given_.mesh, stage, std::move(sink)));
+  DUBSAR_ASSIGN(overlay_, Overlay::create());
+  if (given_.options.displays.empty()) {
+    displays_.specs = displays_for_window(stage.display, stage.screen, stage.stereo_window, stage.catalog->panels());
+  } else {
+    displays_.specs = given_.options.displays;
+    displays_.specs.insert(displays_.specs.begin(), stage.display);
+  }
+  steering_ = std::make_unique<Steering>(mapping, view_of(document()), follow_options(stage));
+  steering_->set_home(home_of(document()));
+  autosave_ = Autosave(given_.options.autosave);
+  DUBSAR_TRY(start_sources());
+  if (GlfwWindow* const window = given_.presenter.window())
+    window->on_event([this, window](const WindowEvent& event) { handle(to_input_event(event, window->size())); });
+  DUBSAR_TRY(place_changed());
+  if (!note.empty()) {
+    log_warning("{}", note);
+    say(note);
+  } else {
+    say("F1: help    Esc: end");
+  }
+  if (given_.options.fps == 0) steering_->run(given_.clock);
+  return {};
+}
+
+Result<void> Viewer::start_sources() {
+  InputConfig config;
+  config.seen_view = [seen = steering_->seen()] { return seen->look(); };
+  config.clock = &given_.clock;
+  config.simulated_time = given_.options.fps > 0;
+  config.model_folder = given_.options.model_folder;
+  config.panel_m = 1e-3 * glm::dvec2(given_.options.stage.screen.width_mm, given_.options.stage.screen.height_mm);
+  std::vector<std::string> inputs = given_.options.inputs;
+  if (given_.presenter.window() != nullptr) {
+    config.window = &events_;
+    config.hotplug = HotplugBell::of_this_machine();
+    if (inputs.empty()) {
+      inputs = {"mouse", "keyboard"};
+      for (std::string& spec : present_inputs()) inputs.push_back(std::move(spec));
+    }
+  }
+  if (!given_.options.record.empty()) {
+    DUBSAR_ASSIGN(recorder_, InputRecorder::create(given_.options.record));
+    steering_->on_input([this](TimestampNs at, const InputFrame& frame) { recorder_->add(at, frame); });
+  }
+  sources_ = std::make_unique<SourceSet>(steering_->input(), config, given_.options.make_input);
+  return sources_->start(inputs);
+}
+
+Result<void> Viewer::place_changed() {
+  static_cast<void>(given_.presenter.take_place_changed());
+  if (!given_.presenter.visible()) return {};
+  DUBSAR_TRY(stage_->set_screen(given_.presenter.screen(given_.options.stage.screen)));
+  steering_->set_rest(stage_->rest_m());
+  return given_.presenter.fit(stage_->traits());
+}
+
+Result<void> Viewer::switch_display(int step) {
+  const std::size_t count = displays_.specs.size();
+  for (std::size_t tried = 1; tried <= count; ++tried) {
+    const std::size_t next = (displays_.shown + (step > 0   ? tried
+                                                 : step < 0 ? tried * (count - 1)
+                                                            : tried - 1)) %
+                             count;
+    auto done = stage_->set_display(displays_.specs[next]);
+    if (done) done = place_changed();
+    if (done) {
+      displays_.shown = next;
+      if (step != 0) say("display " + display());
+      log_info("display {}", display());
+      return {};
+    }
+    log_warning("{}", done.error().message);
+  }
+  return fail(ErrorKind::kUnavailable, "none of {} displays can be shown", count);
+}
+
+bool Viewer::toggle_source(std::size_t index) {
+  if (!sources_->toggle(index)) return false;
+  steering_->let_go_of_mouse();  // it may have been the mouse, with a button down
+  at_.help_made = -1;
+  return true;
+}
+
+void Viewer::say(std::string text) {
+  if (!given_.options.notices) return;
+  notice_ = {std::move(text), given_.clock.now()};
+}
+
+/// How far the surface at this place of the window stands before the object's centre, in heights of the window.
+std::optional<double> Viewer::lever_at(const glm::dvec2& at) const {
+  const glm::dvec2 window = stage_->window_mm();
+  const glm::dvec3 target(stage_->middle_mm() + at * window.y, 0.0), eye = stage_->viewer().centre_mm();
+  const glm::dmat4 model_from_screen = glm::inverse(stage_->screen_from_model());
+  const glm::dvec3 from(model_from_screen * glm::dvec4(eye, 1.0)), to(model_from_screen * glm::dvec4(target, 1.0));
+  const Shown shown = shown_of(document(), report_.view, given_.options.stage, stage_->box_mm());
+  const auto picked = pick(given_.mesh, shown.parts, {from, glm::normalize(to - from)});
+  if (!picked) return std::nullopt;
+  return glm::dvec4(stage_->screen_from_model() * glm::dvec4(picked->at_mm, 1.0)).z / window.y;
+}
+
+void Viewer::handle(InputEvent event) {
+  if (given_.options.fps > 0) event.time = given_.clock.now();
+  if (event.kind == EventKind::kButton && event.down && event.at && !given_.options.stage.pattern)
+    event.lever = lever_at(*event.at);
+  const auto rows = sources_->rows();
+  const bool keyboard = std::any_of(rows.begin(), rows.end(), [](const SourceRow& row) {
+    return row.spec == "keyboard" && row.health == SourceHealth::kPresent;
+  });
+  if (event.kind == EventKind::kKey && !keyboard) {  // whoever steers, a window can be closed and asked for help
+    const Command* const command = commands_->find(split_command(keys_->command_for(key_chord(event), *editor_)).first);
+    if (command == nullptr || command->group != kWindowGroup) return;
+    if (recorder_) recorder_->add_event(event);
+    if (event.down) use_key(event);
+    return;
+  }
+  events_.push(event);
+}
+
+void Viewer::use_key(const InputEvent& event) {
+  const std::string text = keys_->command_for(key_chord(event), *editor_);
+  if (text.empty()) return;
+  const Command& command = *commands_->find(split_command(text).first);
+  if (event.repeat && !command.repeats) return;
+  if (!event.repeat) ++at_.presses;
+  run(text, kKeySteps + at_.presses);
+}
+
+void Viewer::run(std::string_view text, std::uint64_t merge) {
+  const Command* const command = commands_->find(split_command(text).first);
+  if (command != nullptr && command->steers && !steering_->claim_for_keys(given_.clock.now())) return;
+  keep_up();
+  editor_->merge_with(merge);
+  auto done = commands_->run(text, *editor_);
+  editor_->merge_with(0);
+  if (!done) say(done.error().message);
+  at_.help_made = -1;
+  follow();
+}
+
+/// What people did to the view since the last time becomes part of the document, a movement as one step.
+void Viewer::keep_up() {
+  const auto [goal, movement] = steering_->goal();
+  if (movement == 0 || same_view(goal, view_of(document()))) return;
+  Document next = document();
+  set_view(next, goal);
+  editor_->merge_with(movement);
+  editor_->change(std::move(next), "turn, move, zoom or light");
+  editor_->merge_with(0);
+}
+
+/// What commands did to the view is gone to.
+void Viewer::follow() {
+  steering_->set_home(home_of(document()));
+  if (!same_view(steering_->goal().first, view_of(document())))
+    steering_->go_to(view_of(document()), given_.clock.now(), editor_->way() == Way::kGlide);
+}
+
+void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
+  OverlayText text = overlay_->text();
+  if (!desk().help) {
+    text.help.clear();
+  } else if (at_.help_made < 0 || now - at_.help_made >= kHelpRefreshNs) {
+    StateFigures state;
+    state.display = display();
+    state.traits = stage_->traits();
+    state.head = report_.head;
+    state.eyes_mm = report_.viewer.centre_mm();
+    state.interval_ms = figures.interval_ms;
+    state.input_age_ms = figures.input_age_ms;
+    state.sources = sources();
+    text.help = state_page(state);
+    for (HelpSection& section : help_page(given_.options.mapping, *keys_)) text.help.push_back(std::move(section));
+    at_.help_made = now;
+  }
+  const TimestampNs age = now - notice_.since;
+  if (notice_.since < 0 || age >= kNoticeNs) {
+    text.notice.clear();
+    text.notice_opacity = 1.0;
+  } else {
+    text.notice = notice_.text;
+    text.notice_opacity = std::clamp(static_cast<double>(kNoticeNs - age) / static_cast<double>(kFadeNs), 0.0, 1.0);
+  }
+  if (text == overlay_->text()) return;
+  overlay_->set(std::move(text));
+  stage_->set_overlay(overlay_->text().empty() ? nullptr : overlay_.get());
+}
+
+void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures& figures) {
+  sources_->tick(now);
+  steering_->steer(now);
+  for (const InputEvent& event : steering_->take_keys()) use_key(event);
+  keep_up();
+  const Steered steered = steering_->look(now, display_time);
+  stage_->show(shown_of(document(), steered.view, given_.options.stage, stage_->box_mm()), steered.eyes, now);
+  report_.view = steered.view;
+  report_.viewer = stage_->viewer();
+  report_.head = steered.eyes.presence;
+  report_.control = steered.control;
+  report_.moving = stage_->moved();
+  report_.input_age = steered.input_age;
+  report_.selected_m = steered.selected_m;
+  update_overlay(now, figures);
+  if (const auto kept = autosave_.keep(now, document()); !kept) log_warning("{}", kept.error().message);
+}
+
+Result<void> Viewer::paint(const Surface& target, Field field) {
+  DUBSAR_TRY(stage_->paint(target, field));
+  report_.light = stage_->light();
+  return {};
+}
+
+bool Viewer::over(TimestampNs now) {
+  const auto rows = sources_->rows();
+  InputMixer& input = steering_->input();
+  const bool waits_for_people = input.endless() || std::any_of(rows.begin(), rows.end(), [](const SourceRow& row) {
+                                  return row.health == SourceHealth::kMissing;
+                                });
+  if (waits_for_people || !input.finished()) {
+    at_.over_since = -1;
+    return false;
+  }
+  if (at_.over_since < 0) at_.over_since = now;
+  return now - at_.over_since >= kSettleNs;
+}
+
+Result<void> Viewer::finish(bool orderly) {
+  steering_->stop();
+  if (orderly) autosave_.discard();
+  return recorder_ ? recorder_->finish() : Result<void>();
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,116 @@
+#pragma once
+// A session: the document and who may change it. Commands, people and keys change it; the stage shows it.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/commands/key_table.h"
+#include "app/document/document_file.h"
+#include "app/panels/overlay.h"
+#include "app/viewer/presenter.h"
+#include "app/viewer/steering.h"
+#include "input/input_recorder.h"
+#include "input/window_events.h"
+
+namespace dubsar::app {
+
+/// Figures for the page of help, from whoever measures them.
+struct RecentFigures {
+  std::vector<double> interval_ms, input_age_ms;
+};
+
+/// One thread: that of the GL context.
+class Viewer final : public Workplace {
+ public:
+  /// Starts the sources, too. `mesh`, `options`, `presenter` and `clock` outlive it; events of the presenter's window
+  /// come here. Errors of Stage::create, SourceSet::start, the recording, and of the mapping's keys.
+  static Result<std::unique_ptr<Viewer>> create(const TriMesh& mesh, const ViewOptions& options, Presenter& presenter,
+                                                const Clock& clock, std::unique_ptr<OutputSink> sink,
+                                                const std::string& note);
+  ~Viewer() override;
+
+  /// Everything up to `now`: sources, keys, commands; then what the next picture shows, whose light reaches the eye at
+  /// `display_time`.
+  void tick(TimestampNs now, TimestampNs display_time, const RecentFigures& figures);
+  const PictureReport& report() const noexcept { return report_; }
+  bool needs_paint() const noexcept { return stage_->needs_paint(); }
+  Result<void> paint(const Surface& target, Field field);
+  /// Two: the display shows its eyes in turn, whether or not anything changes.
+  int fields() const { return stage_->traits().fields; }
+  /// The window is somewhere else: the stage and the presenter follow.
+  Result<void> place_changed();
+  /// Scripts and recordings were the only input, and are over for 1 s.
+  bool over(TimestampNs now);
+
+  /// Does what a command says. What cannot be done becomes a line over the picture.
+  void run(std::string_view command, std::uint64_t merge = 0);
+  /// An event of a window.
+  void handle(InputEvent event);
+
+  /// What simulated time waits for; the end of the recording; what an orderly end leaves behind.
+  Result<void> flush() { return recorder_ ? recorder_->flush() : Result<void>(); }
+  Result<void> finish(bool orderly);
+
+  const Stage& stage() const noexcept { return *stage_; }
+  const Document& document() const noexcept { return editor_->document(); }
+  const Desk& desk() const noexcept { return editor_->desk(); }
+  std::string display() const { return displays_.specs[displays_.shown].text(); }
+  std::vector<SourceRow> sources() const { return sources_->rows(); }
+  std::vector<SourceState> source_states() const { return steering_->input().states(); }
+
+  Result<void> switch_display(int step) override;
+  Result<void> toggle_fullscreen() override { return given_.presenter.toggle_fullscreen(); }
+  void retry_sources() override { sources_->retry_now(); }
+  bool toggle_source(std::size_t index) override;
+  void say(std::string words) override;
+  void end() override { given_.presenter.end(); }
+
+ private:
+  struct Given {
+    const TriMesh& mesh;
+    const ViewOptions& options;
+    Presenter& presenter;
+    const Clock& clock;
+  };
+  struct Displays {
+    std::vector<SinkSpec> specs;
+    std::size_t shown = 0;
+  };
+  struct Notice {
+    std::string text;
+    TimestampNs since = -1;
+  };
+  /// What the loop and the people do, as numbers.
+  struct Progression {
+    TimestampNs over_since = -1, help_made = -1;
+    std::uint64_t presses = 0;
+  };
+  Viewer(const TriMesh& mesh, const ViewOptions& options, Presenter& presenter, const Clock& clock)
+      : given_{mesh, options, presenter, clock} {}
+  Result<void> open(std::unique_ptr<OutputSink> sink, const std::string& note);
+  Result<void> start_sources();
+  void use_key(const InputEvent& event);
+  void keep_up();
+  void follow();
+  void update_overlay(TimestampNs now, const RecentFigures& figures);
+  std::optional<double> lever_at(const glm::dvec2& at) const;
+
+  Given given_;
+  std::unique_ptr<CommandTable> commands_;
+  std::unique_ptr<KeyTable> keys_;
+  std::unique_ptr<Editor> editor_;
+  std::unique_ptr<Stage> stage_;
+  std::unique_ptr<Overlay> overlay_;
+  WindowEvents events_;
+  std::unique_ptr<InputRecorder> recorder_;
+  std::unique_ptr<Steering> steering_;
+  std::unique_ptr<SourceSet> sources_;
+  PictureReport report_;
+  Displays displays_;
+  Notice notice_;
+  Progression at_;
+  Autosave autosave_{{}};
+};
+
+}  // namespace dubsar::app
