@@ -36,6 +36,7 @@ Verb add_phantom_verb(Arguments program);
 Verb add_process_verb(Arguments program);
 Verb add_info_verb(Arguments program);
 Verb add_export_verb(Arguments program);
+Verb add_fatcross_verb(Arguments program);
 Verb add_render_verb(Arguments program);
 Verb add_view_verb(Arguments program);
 Verb add_doctor_verb(Arguments program);

@@ -206,7 +206,7 @@ Result<void> TiffFile::read_gray(std::span<std::byte> out) {
   return {};
 }
 
-Result<void> write_tiff(const std::filesystem::path& path, const Image& image, double dpi) {
+Result<void> write_tiff(const std::filesystem::path& path, const Image& image, double dpi, const TiffTags& tags) {
   DUBSAR_CHECK(image.width > 0 && image.height > 0 && (image.channels == 3 || image.channels == 4));
   DUBSAR_CHECK(image.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
                                           static_cast<std::size_t>(image.channels));
@@ -228,6 +228,10 @@ Result<void> write_tiff(const std::filesystem::path& path, const Image& image, d
   TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_LZW);
   TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
   TIFFSetField(tiff, TIFFTAG_SOFTWARE, "dubsar");
+  if (!tags.description.empty()) TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, tags.description.c_str());
+  if (!tags.copyright.empty()) TIFFSetField(tiff, TIFFTAG_COPYRIGHT, tags.copyright.c_str());
+  if (!tags.xmp.empty())
+    TIFFSetField(tiff, TIFFTAG_XMLPACKET, static_cast<std::uint32_t>(tags.xmp.size()), tags.xmp.data());
   if (image.channels == 4) {
     const std::uint16_t alpha = EXTRASAMPLE_UNASSALPHA;
     TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &alpha);

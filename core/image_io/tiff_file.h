@@ -62,8 +62,14 @@ class TiffFile {
   std::unique_ptr<void, Closer> tiff_;
 };
 
+/// What a picture says about itself; empty: not said.
+struct TiffTags {
+  std::string description, copyright;
+  std::string xmp;  ///< a whole XMP packet (tag 700)
+};
+
 /// Writes an RGB or RGBA picture, LZW-compressed, with its resolution in dots per inch (0: none). The file appears
 /// whole or not at all. The same picture gives the same bytes. kCannotCreate, kPermission, kIo.
-Result<void> write_tiff(const std::filesystem::path& path, const Image& image, double dpi);
+Result<void> write_tiff(const std::filesystem::path& path, const Image& image, double dpi, const TiffTags& tags = {});
 
 }  // namespace dubsar

@@ -95,7 +95,7 @@ Result<Camera> fit_camera(const Box& box, const CameraOptions& options) {
     return fail(ErrorKind::kUsage, "camera: field of view {} degrees found, expected 1 to 120",
                 options.field_of_view_deg);
 
-  const ObjectFrame axes = picture_frame(object_frame(box), options.direction);
+  const ObjectFrame axes = picture_frame(options.object.value_or(object_frame(box)), options.direction);
   const glm::dvec3 centre = box.centre();
   std::array<glm::dvec3, 8> seen = corners(box);
   double half_x = 0, half_y = 0, near_z = -diagonal, far_z = diagonal;

@@ -2,6 +2,7 @@
 // Cameras that show a whole object: which side is "front", and how far away the eye is. Pure maths.
 
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string_view>
 
 #include "core/base/result.h"
@@ -43,6 +44,7 @@ Result<ViewDirection> parse_view_direction(std::string_view text);
 
 struct CameraOptions {
   ViewDirection direction{};
+  std::optional<ObjectFrame> object{};  ///< which way the object's front is; none: object_frame() of its box
   bool perspective = false;
   double field_of_view_deg = 20.0;  ///< perspective: of the longer picture side, 1..120
   double margin = 0.05;             ///< free border, as a fraction of the picture side, 0..0.45

@@ -4,8 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 
+#include "core/mesh/tablet_frame.h"
 #include "core/phantom/phantom_source.h"
 #include "core/phantom/write_phantom.h"
 #include "core/pipeline/pipeline.h"
@@ -52,6 +55,16 @@ TEST_P(EnclosedTablet, IsSeparatedAccuratelyAndReadably) {
     ASSERT_TRUE(mesh) << mesh.error().message;
     EXPECT_TRUE(check_mesh(mesh->positions, mesh->triangles).watertight()) << part;
   }
+
+  // Upright by its own writing: phantoms are written with x along the lines, z up, and the obverse towards -y.
+  const auto tablet = make_tri_mesh(result->model, {.body = "tablet"});
+  ASSERT_TRUE(tablet);
+  const auto lies = find_tablet_frame(*tablet);
+  ASSERT_TRUE(lies);
+  const double within = std::cos(10.0 * std::numbers::pi / 180.0);
+  EXPECT_GT(lies->right.x, within);
+  EXPECT_GT(lies->up.z, within);
+  EXPECT_LT(lies->front.y, -within);
 
   // Judged without the patches: they stand where no surface can be seen.
   const auto mesh = make_tri_mesh(result->model, {.fill_holes = false});

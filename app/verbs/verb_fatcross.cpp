@@ -1,0 +1,147 @@
+// dubsar fatcross IN -o OUT.tif: all six sides of a tablet in one picture at one scale, for publication.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "app/cli/mesh_input.h"
+#include "app/cli/verb.h"
+#include "app/publish/fat_cross.h"
+#include "app/publish/xmp.h"
+#include "core/image_io/tiff_file.h"
+
+namespace dubsar::app {
+namespace {
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string in, out, part = "auto", style = "phong";
+  std::vector<std::string> layers;
+  double dpi = 600.0;
+  int samples = 3;
+  Rgb8 ground{0, 0, 0};
+  FrameTurn turn = FrameTurn::kNone;
+  bool over = false, no_sides = false;
+  Publication publication;
+};
+
+constexpr std::array<const char*, kTabletSides.size()> kSideSuffix{"_01", "_02", "_03", "_04", "_05", "_06"};
+constexpr double kUnsure = 0.05;  // share of the evidence below which the finding is called a guess
+
+fs::path with_suffix(const fs::path& path, const std::string& suffix) {
+  return path.parent_path() / (path.stem().string() + suffix + path.extension().string());
+}
+
+/// The tablet where there is one, else everything.
+Result<TriMesh> load_part(const Options& options, Progress& progress) {
+  if (options.part != "auto" && options.part != "all") return load_mesh({options.in, {options.part}, true}, progress);
+  if (options.part == "auto")
+    if (Result<TriMesh> tablet = load_mesh({options.in, {"tablet"}, true}, progress);
+        tablet || tablet.error().kind != ErrorKind::kUsage)
+      return tablet;
+  return load_mesh({options.in, {}, true}, progress);
+}
+
+Result<void> write_cross(const Options& options, const FatCross& cross, const fs::path& out, bool sides) {
+  const TiffTags tags{options.publication.title, options.publication.rights, xmp_packet(options.publication)};
+  DUBSAR_TRY(write_tiff(out, cross.whole, options.dpi, tags));
+  for (std::size_t k = 0; sides && k < cross.sides.size(); ++k)
+    DUBSAR_TRY(write_tiff(with_suffix(out, kSideSuffix[k]), cross.sides[k], options.dpi, tags));
+  return {};
+}
+
+Result<VerbResult> run(const Options& options, Progress& progress) {
+  const std::string suffix = fs::path(options.out).extension().string();
+  if (suffix != ".tif" && suffix != ".tiff")
+    return fail(ErrorKind::kUsage, "cannot write {}: expected a name that ends in .tif or .tiff", options.out);
+  std::vector<std::string> styles = options.layers;
+  if (styles.empty()) styles = {options.style};
+  for (const std::string& style : styles) DUBSAR_TRY(shading_preset(style));
+  DUBSAR_ASSIGN(const TriMesh mesh, load_part(options, progress));
+  if (!mesh.frame.input_voxel.known() && !is_exa_file(options.in))
+    log(LogLevel::kWarning, fmt::format("{} does not state its units; taken as millimetres", options.in));
+  if (!mesh.frame.input_voxel.known() && is_exa_file(options.in))
+    return fail(
+        ErrorKind::kUsage,
+        "{} does not say how large its voxels are, so {} dots an inch mean nothing; process the scan again with "
+        "--voxel-size, e.g. 38um",
+        options.in, options.dpi);
+  DUBSAR_ASSIGN(TabletFrame frame, find_tablet_frame(mesh));
+  const bool unsure = frame.up_share < kUnsure;
+  frame = turned(frame, options.turn);
+  if (options.over) frame = turned(frame, FrameTurn::kOver);
+  const TriMesh upright = in_tablet_frame(mesh, frame);
+
+  VerbResult result;
+  result.json["files"] = nlohmann::json::array();
+  for (std::size_t layer = 0; layer < styles.size(); ++layer) {
+    FatCrossOptions draw;
+    draw.dpi = options.dpi;
+    draw.ground = options.ground;
+    draw.samples = options.samples;
+    DUBSAR_ASSIGN(draw.shading, shading_preset(styles[layer]));
+    DUBSAR_ASSIGN(const FatCross cross, draw_fat_cross(upright, draw, progress));
+    const fs::path out = styles.size() == 1 ? fs::path(options.out) : with_suffix(options.out, "_" + styles[layer]);
+    DUBSAR_TRY(write_cross(options, cross, out, !options.no_sides && layer == 0));
+    result.json["files"].push_back(out.string());
+    result.json["width"] = cross.whole.width;
+    result.json["height"] = cross.whole.height;
+    result.json["ruler_mm"] = cross.ruler_mm;
+    result.json["ruler_px"] = cross.ruler_px;
+    result.text += fmt::format("{}: {}x{} pixels, {:g} dots an inch, ruler {} mm\n", out.string(), cross.whole.width,
+                               cross.whole.height, options.dpi, cross.ruler_mm);
+  }
+  result.json["dpi"] = options.dpi;
+  result.json["up_share"] = frame.up_share;
+  result.json["obverse_share"] = frame.obverse_share;
+  const auto rows = frame.tablet_from_model();
+  for (int r = 0; r < 3; ++r) result.json["tablet_from_model"].push_back({rows[0][r], rows[1][r], rows[2][r]});
+  if (unsure)
+    result.text +=
+        "the writing does not say which way is up; if the text stands on its head, give --turn half, left or right\n";
+  return result;
+}
+
+}  // namespace
+
+Verb add_fatcross_verb(Arguments program) {
+  auto options = std::make_shared<Options>();
+  options->publication.made_by = "dubsar " DUBSAR_VERSION;
+  Arguments command =
+      program.command("fatcross", "all six sides of a tablet in one picture at one scale, for publication");
+  command.reads("IN", options->in, "EXA, PLY, OBJ, STL or GLB file").required();
+  command
+      .writes("-o,--output", options->out, FileFormat::kPicture,
+              "TIFF file to write; the six sides go beside it as NAME_01 (obverse), _02 (reverse), _03 (top), _04 "
+              "(bottom), _05 (left), _06 (right)")
+      .required();
+  command.value("--part", options->part, "which part: tablet where there is one (auto), all, envelope, ...");
+  command.value("--dpi", options->dpi, "dots an inch at life size").range(50.0, 4800.0);
+  command.choice<Rgb8>("--ground", options->ground,
+                       {{"black", {0, 0, 0}}, {"white", {255, 255, 255}}, {"grey", {128, 128, 128}}},
+                       "colour around the tablet (black)");
+  command.choice<FrameTurn>("--turn", options->turn,
+                            {{"none", FrameTurn::kNone},
+                             {"half", FrameTurn::kHalf},
+                             {"left", FrameTurn::kLeft},
+                             {"right", FrameTurn::kRight}},
+                            "turn the found orientation in the picture, where the text does not stand upright");
+  command.flag("--over", options->over, "the found obverse is the reverse");
+  command.value("--style", options->style, "shading, as of render (phong)");
+  command.value("--layers", options->layers, "several shadings of the same picture: NAME_style.tif each")
+      .separated_by(',');
+  command.value("--samples", options->samples, "samples per pixel side").range(1, 8);
+  command.flag("--no-sides", options->no_sides, "only the cross, not the six sides");
+  command.value("--title", options->publication.title, "goes into the file, e.g. \"AO 8295\"");
+  command.value("--rights", options->publication.rights, "goes into the file");
+  command.value("--institution", options->publication.institution, "goes into the file");
+  command.footer(
+      "Examples:\n"
+      "  dubsar fatcross tablet.exa -o tablet.tif\n"
+      "  dubsar fatcross tablet.exa -o ao8295.tif --ground white --title \"AO 8295\" --institution \"Musee du "
+      "Louvre\"");
+  return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,182 @@
+#include "core/mesh/tablet_frame.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <vector>
+
+#include "core/mesh/side_relief.h"
+
+namespace dubsar {
+namespace {
+
+/// Eigenvectors of a symmetric matrix as columns, by falling eigenvalue: cyclic Jacobi rotations.
+glm::dmat3 eigenvectors(glm::dmat3 m) {
+  glm::dmat3 v(1.0);
+  for (int sweep = 0; sweep < 32; ++sweep)
+    for (const auto& [p, q] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
+      if (std::abs(m[q][p]) < 1e-300) continue;
+      const double theta = (m[q][q] - m[p][p]) / (2.0 * m[q][p]);
+      const double t = (theta >= 0 ? 1.0 : -1.0) / (std::abs(theta) + std::sqrt(theta * theta + 1.0));
+      const double c = 1.0 / std::sqrt(t * t + 1.0), s = t * c;
+      glm::dmat3 turn(1.0);
+      turn[p][p] = turn[q][q] = c;
+      turn[q][p] = s;
+      turn[p][q] = -s;
+      m = glm::transpose(turn) * m * turn;
+      v = v * turn;
+    }
+  std::array<int, 3> order{0, 1, 2};
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return m[a][a] > m[b][b]; });
+  return {v[order[0]], v[order[1]], v[order[2]]};
+}
+
+/// The same direction or its opposite, whichever looks along the axis it is nearest to.
+glm::dvec3 along_its_axis(const glm::dvec3& v) {
+  int axis = 0;
+  for (int k = 1; k < 3; ++k)
+    if (std::abs(v[k]) > std::abs(v[axis]) + 1e-9) axis = k;
+  return v[axis] < 0 ? -v : v;
+}
+
+/// What the relief of the six sides says about a direction of reading: skew along any axis of the box, on the side that
+/// looks along another.
+class Writing {
+ public:
+  Writing(std::span<const glm::dvec3> points, std::span<const Triangle> triangles,
+          const std::array<glm::dvec3, 3>& axes, double step_mm)
+      : axes_(axes) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (int sign = 0; sign < 2; ++sign) {
+        const double s = sign ? -1.0 : 1.0;
+        const glm::dvec3 front = s * axes[axis], right = axes[(axis + 1) % 3];
+        const auto skew = slope_skew(height_map(points, triangles, {right, glm::cross(front, right), front}, step_mm));
+        const glm::dvec3 up = glm::cross(front, right);
+        const double along = glm::dot(up, axes[(axis + 2) % 3]) > 0 ? 1.0 : -1.0;
+        skew_[axis][sign] = {skew[0], along * skew[1]};
+      }
+  }
+
+  /// How well impressions on the side `front` fit lines that run to `right` with their tops towards `up`.
+  double fit(const glm::dvec3& front, const glm::dvec3& right, const glm::dvec3& up) const {
+    return skew(front, up) - skew(front, right);
+  }
+
+ private:
+  double skew(const glm::dvec3& front, const glm::dvec3& direction) const {
+    const auto [axis, sign] = nearest(front);
+    const auto [along, turn] = nearest(direction);
+    const double value = skew_[axis][sign][along == (axis + 1) % 3 ? 0 : 1];
+    return turn ? -value : value;
+  }
+  std::pair<int, int> nearest(const glm::dvec3& v) const {
+    int best = 0;
+    for (int k = 1; k < 3; ++k)
+      if (std::abs(glm::dot(v, axes_[k])) > std::abs(glm::dot(v, axes_[best]))) best = k;
+    return {best, glm::dot(v, axes_[best]) < 0 ? 1 : 0};
+  }
+
+  std::array<glm::dvec3, 3> axes_;
+  std::array<std::array<std::array<double, 2>, 2>, 3> skew_{};
+};
+
+/// Obverse, lower edge, reverse and upper edge are written while the tablet is turned about `right`.
+double turned_while_written(const Writing& writing, const TabletFrame& f) {
+  return writing.fit(f.front, f.right, f.up) + writing.fit(-f.front, f.right, -f.up) +
+         writing.fit(-f.up, f.right, f.front) + writing.fit(f.up, f.right, -f.front);
+}
+
+/// Lines run on over the right edge; the left edge is read downwards.
+double edges_beside(const Writing& writing, const TabletFrame& f) {
+  return writing.fit(f.right, -f.front, f.up) + writing.fit(-f.right, -f.up, f.front);
+}
+
+double share(double best, double next) {
+  const double all = std::abs(best) + std::abs(next);
+  return all > 0.0 ? std::clamp((best - next) / all, 0.0, 1.0) : 0.0;
+}
+
+}  // namespace
+
+glm::dmat3 TabletFrame::tablet_from_model() const { return glm::transpose(glm::dmat3(right, up, front)); }
+
+Result<TabletFrame> find_tablet_frame(const TriMesh& mesh) {
+  std::vector<glm::dvec3> points;
+  points.reserve(mesh.positions.size());
+  for (const glm::vec3& p : mesh.positions) points.push_back(mesh.frame.mm_from_grid(glm::dvec3(p)));
+  glm::dmat3 areas(0.0);
+  double edges = 0.0;
+  for (const Triangle& t : mesh.triangles) {
+    const glm::dvec3 n = glm::cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]);
+    const double area = glm::length(n);
+    if (!(area > 0.0)) continue;
+    areas += glm::outerProduct(n, n / area);
+    edges += glm::distance(points[t[0]], points[t[1]]);
+  }
+  if (!(areas[0][0] + areas[1][1] + areas[2][2] > 0.0))
+    return fail(ErrorKind::kBadData, "the surface has no area, expected a tablet that can be turned upright");
+  const glm::dmat3 found = eigenvectors(areas);
+  const std::array<glm::dvec3, 3> axes{along_its_axis(found[0]), along_its_axis(found[1]), along_its_axis(found[2])};
+  const Writing writing(points, mesh.triangles, axes, edges / static_cast<double>(mesh.triangles.size()));
+
+  TabletFrame best, other;
+  double best_fit = 0.0, next_fit = 0.0;
+  int tried = 0;
+  for (const glm::dvec3& right : {axes[1], -axes[1], axes[2], -axes[2]}) {
+    const TabletFrame frame{right, glm::cross(axes[0], right), axes[0]};
+    const double fit = turned_while_written(writing, frame);
+    if (tried == 0 || fit > best_fit) {
+      next_fit = tried == 0 ? fit : std::max(next_fit, best_fit);
+      best_fit = fit;
+      best = frame;
+    } else {
+      next_fit = tried == 1 ? fit : std::max(next_fit, fit);
+    }
+    ++tried;
+  }
+  best.up_share = share(best_fit, next_fit);
+  other = turned(best, FrameTurn::kOver);
+  const double this_way = edges_beside(writing, best), that_way = edges_beside(writing, other);
+  best.obverse_share = share(std::max(this_way, that_way), std::min(this_way, that_way));
+  if (that_way <= this_way) return best;
+  other.up_share = best.up_share;
+  other.obverse_share = best.obverse_share;
+  return other;
+}
+
+TabletFrame turned(const TabletFrame& f, FrameTurn turn) {
+  TabletFrame out = f;
+  switch (turn) {
+    case FrameTurn::kNone:
+      break;
+    case FrameTurn::kHalf:
+      out.right = -f.right, out.up = -f.up;
+      break;
+    case FrameTurn::kLeft:  // the picture turns to the left: what was up points left
+      out.right = -f.up, out.up = f.right;
+      break;
+    case FrameTurn::kRight:
+      out.right = f.up, out.up = -f.right;
+      break;
+    case FrameTurn::kOver:
+      out.up = -f.up, out.front = -f.front;
+      break;
+  }
+  return out;
+}
+
+TriMesh in_tablet_frame(const TriMesh& mesh, const TabletFrame& frame) {
+  TriMesh out = mesh;
+  const glm::dmat3 turn = frame.tablet_from_model();
+  const glm::dvec3 step = mesh.frame.grid_voxel_mm();
+  for (glm::vec3& p : out.positions) p = glm::vec3(turn * mesh.frame.mm_from_grid(glm::dvec3(p)));
+  for (glm::vec3& n : out.normals)  // of an uneven grid: normals go with the inverse steps
+    n = glm::vec3(glm::normalize(turn * (glm::dvec3(n) / step)));
+  out.frame = GridFrame{};
+  out.frame.input_voxel.mm = glm::dvec3(1.0);
+  out.frame.input_voxel.provenance = mesh.frame.input_voxel.provenance;
+  return out;
+}
+
+}  // namespace dubsar

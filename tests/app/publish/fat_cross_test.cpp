@@ -1,0 +1,143 @@
+// The fat-cross: exact scale, its layout, its ruler, and files as other programs read them.
+
+#include "app/publish/fat_cross.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "app/publish/xmp.h"
+#include "core/image_io/tiff_file.h"
+
+namespace dubsar::app {
+namespace {
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+/// A box with its corner at the origin, edges in mm.
+TriMesh box(double x, double y, double z) {
+  TriMesh mesh;
+  for (int i = 0; i < 8; ++i) mesh.positions.push_back(glm::vec3(i & 1 ? x : 0, i & 2 ? y : 0, i & 4 ? z : 0));
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  mesh.frame.input_voxel.provenance = "made";
+  return mesh;
+}
+
+TEST(FatCross, ACubeOfTenMillimetresSpans236PixelsOnEverySide) {
+  SilentProgress progress;
+  const auto cross = draw_fat_cross(box(10.0, 10.0, 10.0), {}, progress);
+  ASSERT_TRUE(cross) << cross.error().message;
+  for (const Image& side : cross->sides) {
+    EXPECT_NEAR(side.width, 236, 1);
+    EXPECT_NEAR(side.height, 236, 1);
+    int lit = 0;  // along the middle row
+    for (int x = 0; x < side.width; ++x) lit += side.at(x, side.height / 2)[0] > 30;
+    EXPECT_NEAR(lit, 236, 1);
+  }
+  EXPECT_EQ(cross->ruler_mm, 10);
+  EXPECT_NEAR(cross->ruler_px, 10.0 / 25.4 * 600.0, 1.0);
+}
+
+TEST(FatCross, SidesOfAPlateHaveItsThreeEdges) {
+  SilentProgress progress;
+  FatCrossOptions options;
+  options.dpi = 254.0;  // 10 pixels a millimetre
+  options.ground = {255, 255, 255};
+  const auto cross = draw_fat_cross(box(52.0, 31.0, 12.0), options, progress);
+  ASSERT_TRUE(cross);
+  const auto expect = [&](TabletSide side, int width, int height) {
+    const Image& image = cross->sides[static_cast<std::size_t>(side)];
+    EXPECT_NEAR(image.width, width, 1);
+    EXPECT_NEAR(image.height, height, 1);
+  };
+  expect(TabletSide::kObverse, 520, 310);
+  expect(TabletSide::kReverse, 520, 310);
+  expect(TabletSide::kUpper, 520, 120);
+  expect(TabletSide::kLower, 520, 120);
+  expect(TabletSide::kLeft, 120, 310);
+  expect(TabletSide::kRight, 120, 310);
+  EXPECT_EQ(cross->ruler_mm, 50);
+  EXPECT_EQ(cross->ruler_px, 500);
+  EXPECT_EQ(cross->whole.at(0, 0)[0], 255);
+}
+
+TEST(FatCross, PicturesOfTheLayoutNeverOverlap) {
+  const std::array<PixelExtent, 6> sides{{{520, 310}, {520, 310}, {500, 120}, {510, 121}, {120, 310}, {90, 300}}};
+  const CrossLayout layout = lay_out_cross(sides, {200, 60}, 100);
+  struct Rectangle {
+    int x0, y0, x1, y1;
+  };
+  std::vector<Rectangle> placed;
+  const auto add = [&](const CrossPlace& p, const PixelExtent& e) {
+    placed.push_back({p.x, p.y, p.x + e.width, p.y + e.height});
+  };
+  const std::array<std::size_t, 4> spine{0, 3, 1, 2}, wings{4, 5, 4, 5};
+  for (std::size_t k = 0; k < 4; ++k) {
+    add(layout.spine[k], sides[spine[k]]);
+    add(layout.wings[k], sides[wings[k]]);
+  }
+  add(layout.ruler, {200, 60});
+  for (std::size_t a = 0; a < placed.size(); ++a) {
+    EXPECT_GE(placed[a].x0, 100 - 1);
+    EXPECT_GE(placed[a].y0, 100);
+    EXPECT_LE(placed[a].x1, layout.width - 99);
+    EXPECT_LE(placed[a].y1, layout.height - 100);
+    for (std::size_t b = 0; b < a; ++b)
+      EXPECT_TRUE(placed[a].x1 <= placed[b].x0 || placed[b].x1 <= placed[a].x0 || placed[a].y1 <= placed[b].y0 ||
+                  placed[b].y1 <= placed[a].y0)
+          << a << " covers " << b;
+  }
+  EXPECT_TRUE(layout.wings[2].half_turned && layout.wings[3].half_turned);
+  EXPECT_LT(layout.wings[0].x, layout.spine[0].x);
+  EXPECT_LT(layout.wings[2].x, layout.spine[2].x);
+}
+
+TEST(FatCross, TheRulerIsTheLongestThatIsNotLongerThanTheTablet) {
+  EXPECT_EQ(ruler_length_mm(8.0), 10);
+  EXPECT_EQ(ruler_length_mm(19.9), 10);
+  EXPECT_EQ(ruler_length_mm(20.0), 20);
+  EXPECT_EQ(ruler_length_mm(61.0), 50);
+}
+
+TEST(FatCross, FilesSayTheirScaleAndWhoseTheyAre) {
+  const fs::path file = fs::temp_directory_path() / fmt::format("dubsar_cross_{}.tif", ::getpid());
+  const std::string xmp = xmp_packet({"AO 8295 <loan> & seal", "CC BY 4.0",
+                                      "Mus\xc3\xa9"
+                                      "e du Louvre",
+                                      "dubsar"});
+  EXPECT_THAT(xmp, HasSubstr("AO 8295 &lt;loan&gt; &amp; seal"));
+  ASSERT_TRUE(write_tiff(file, Image(30, 20, 3), 600.0, {"AO 8295", "CC BY 4.0", xmp}));
+  const auto text = [&] {
+    std::string bytes(static_cast<std::size_t>(fs::file_size(file)), '\0');
+    FILE* const in = std::fopen(file.c_str(), "rb");
+    EXPECT_EQ(std::fread(bytes.data(), 1, bytes.size(), in), bytes.size());
+    std::fclose(in);
+    return bytes;
+  }();
+  EXPECT_THAT(text, HasSubstr("CC BY 4.0"));
+  EXPECT_THAT(text, HasSubstr("Mus\xc3\xa9"
+                              "e du Louvre"));
+  auto tiff = TiffFile::open(file);
+  ASSERT_TRUE(tiff);
+  const auto page = tiff->select(0);
+  ASSERT_TRUE(page);
+  EXPECT_EQ(page->x_per_unit, 600.0);
+  EXPECT_EQ(page->unit_mm, 25.4);
+  EXPECT_EQ(page->description, "AO 8295");
+  fs::remove(file);
+}
+
+TEST(FatCross, ResolutionsThatMakeNoSenseAreRefused) {
+  SilentProgress progress;
+  FatCrossOptions options;
+  options.dpi = 0.0;
+  const auto cross = draw_fat_cross(box(10, 10, 10), options, progress);
+  ASSERT_FALSE(cross);
+  EXPECT_EQ(cross.error().kind, ErrorKind::kUsage);
+}
+
+}  // namespace
+}  // namespace dubsar::app
