@@ -17,6 +17,7 @@
 #include "core/base/clock.h"
 #include "core/base/registry.h"
 #include "core/base/result.h"
+#include "devices/device_info.h"
 #include "devices/device_spec.h"
 #include "devices/transport/hotplug_bell.h"
 #include "input/hand_frame.h"
@@ -99,12 +100,15 @@ using InputBackend = Backend<InputSource, InputConfig>;
 /// All sources, in the order of their priority when several see hands or heads. Needs dubsar_input_sources.
 std::span<const InputBackend> input_sources();
 
-/// Specs for make_input() of the sources with auto_select whose real device is plugged in and can be used:
-/// "spacemouse", "head:rift" ...; not those of a window. Takes some milliseconds.
+/// Specs for make_input() of what a session takes beside its window's mouse and keyboard when its user names nothing:
+/// of these devices, those that can be used, as "spacemouse", "head:rift" ...; never services, servers, cameras,
+/// simulations.
+std::vector<std::string> present_inputs(const std::vector<DeviceInfo>& present);
+/// The same for this machine; takes some milliseconds.
 std::vector<std::string> present_inputs();
 
-/// Makes and starts the source that "NAME[:option,...]" names: kUsage with the names there are or what the options are.
-/// `base` holds what the text cannot say.
+/// Makes and starts the source that "NAME[:option,...]" names (source_spec.h): kUsage with the names there are or what
+/// the options are. `base` holds what the text cannot say.
 Result<std::unique_ptr<InputSource>> make_input(std::string_view spec, const InputConfig& base = {});
 
 }  // namespace dubsar

@@ -16,6 +16,7 @@
 #include "core/base/log.h"
 #include "core/base/quantile.h"
 #include "devices/looking_glass/bridge_client.h"
+#include "input/source_spec.h"
 
 namespace dubsar::app {
 namespace {
@@ -29,24 +30,16 @@ struct Options {
   bool offscreen = false, fullscreen = false, windowed = false;
 };
 
-/// "scripted:a.json,replay:b,c" has two sources: a word that names no source belongs to the one before it.
-std::vector<std::string> split_sources(const std::vector<std::string>& texts) {
+/// What --input and --script say, one text for each source.
+Result<std::vector<std::string>> source_texts(const Options& options) {
+  std::vector<std::string_view> names;
+  for (const InputBackend& source : input_sources()) names.push_back(source.name);
   std::vector<std::string> out;
-  for (const std::string& text : texts)
-    for (std::size_t at = 0; at <= text.size();) {
-      const std::size_t comma = std::min(text.find(',', at), text.size());
-      const std::string word = text.substr(at, comma - at);
-      const std::string name = word.substr(0, word.find(':'));
-      const bool starts = at == 0 || word.find(':') != std::string::npos ||
-                          std::any_of(input_sources().begin(), input_sources().end(),
-                                      [&](const InputBackend& b) { return b.name == name; });
-      if (starts) {
-        out.push_back(word);
-      } else {
-        out.back() += "," + word;
-      }
-      at = comma + 1;
-    }
+  for (const std::string& text : options.inputs) {
+    DUBSAR_ASSIGN(const std::vector<SourceSpec> specs, parse_sources(text, names));
+    for (const SourceSpec& spec : specs) out.push_back(spec.text());
+  }
+  if (!options.script.empty()) out.push_back(SourceSpec{"scripted", {{"path", options.script}}}.text());
   return out;
 }
 
@@ -134,8 +127,7 @@ Result<ViewOptions> view_options(const Options& options) {
     DUBSAR_ASSIGN(const std::string text, read_text_file(options.mapping));
     DUBSAR_ASSIGN(view.mapping, parse_mapping(text, options.mapping));
   }
-  view.inputs = split_sources(options.inputs);
-  if (!options.script.empty()) view.inputs.push_back("scripted:path=" + options.script);
+  DUBSAR_ASSIGN(view.inputs, source_texts(options));
   view.fps = options.fps;
   view.longest_s = options.seconds;
   view.display_delay_s = 1e-3 * options.display_delay_ms;

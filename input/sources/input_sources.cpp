@@ -4,6 +4,7 @@
 #include "input/input_recording.h"
 #include "input/input_source.h"
 #include "input/simulated/scripted_source.h"
+#include "input/source_spec.h"
 #include "input/sources/head_source.h"
 #include "input/sources/leap_source.h"
 #include "input/sources/leapc_source.h"
@@ -34,9 +35,10 @@ constexpr std::array<InputBackend, 10> kSources{{
 
 std::span<const InputBackend> input_sources() { return kSources; }
 
-std::vector<std::string> present_inputs() {
+std::vector<std::string> present_inputs() { return present_inputs(list_real_devices()); }
+
+std::vector<std::string> present_inputs(const std::vector<DeviceInfo>& present) {
   std::vector<std::string> out;
-  const auto present = list_real_devices();
   const auto add = [&](std::string_view driver, std::string_view spec) {
     for (const DeviceInfo& device : present)
       if (device.driver == driver && device.state == DeviceState::kUsable) return out.emplace_back(spec), true;
@@ -49,18 +51,11 @@ std::vector<std::string> present_inputs() {
   return out;
 }
 
-Result<std::unique_ptr<InputSource>> make_input(std::string_view spec, const InputConfig& base) {
-  const auto colon = spec.find(':');
-  DUBSAR_ASSIGN(const InputBackend* backend, find_backend(input_sources(), spec.substr(0, colon), "input"));
+Result<std::unique_ptr<InputSource>> make_input(std::string_view text, const InputConfig& base) {
+  DUBSAR_ASSIGN(const SourceSpec spec, parse_source(text));
+  DUBSAR_ASSIGN(const InputBackend* backend, find_backend(input_sources(), spec.name, "input"));
   InputConfig config = base;
-  std::string_view options = colon == std::string_view::npos ? std::string_view() : spec.substr(colon + 1);
-  while (!options.empty()) {
-    const std::string_view word = options.substr(0, options.find(','));
-    const auto equals = word.find('=');
-    config.options.emplace_back(word.substr(0, equals),
-                                equals == std::string_view::npos ? std::string_view() : word.substr(equals + 1));
-    options.remove_prefix(std::min(options.size(), word.size() + 1));
-  }
+  for (const Option& option : spec.options) config.options.emplace_back(option.key, option.value.value_or(""));
   DUBSAR_ASSIGN(auto source, backend->create(config));
   DUBSAR_TRY(source->start());
   return source;

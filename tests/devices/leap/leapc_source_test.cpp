@@ -139,10 +139,7 @@ TEST_F(LeapcSource, StartsBeforeTheServiceDoesAndSaysWhatItWaitsFor) {
   EXPECT_EQ((*source)->note(), "");
 }
 
-TEST_F(LeapcSource, IsNeverTakenUnlessNamedAndSaysWhatIsMissing) {
-  const auto row = find_backend(input_sources(), "leapc", "input");
-  ASSERT_TRUE(row);
-  EXPECT_FALSE((*row)->auto_select);
+TEST_F(LeapcSource, SaysWhatIsMissing) {
   const auto absent = make_input("leapc:library=/nowhere/libLeapC.so");
   ASSERT_FALSE(absent);
   EXPECT_EQ(absent.error().kind, ErrorKind::kUnavailable);

@@ -1,3 +1,4 @@
+#include "input/source_spec.h"
 #include "input/sources/option_reader.h"
 #include "tests/input/sources/source_bench.h"
 
@@ -27,6 +28,71 @@ TEST(SourceOptions, WhatIsWrongIsSaidByNameBeforeAnythingIsOpened) {
   EXPECT_EQ(refused("leap:tilt=3", "at, turn"), ErrorKind::kUsage);
   EXPECT_EQ(refused("spacemouse:replay=/no/such/file", "/no/such/file"), ErrorKind::kNoInput);
   EXPECT_EQ(refused("spacemouse:replay=", "needs a value"), ErrorKind::kUsage);
+}
+
+TEST(SourceOptions, EveryDocumentedOptionIsTakenWithColonsAndCommas) {
+  std::vector<std::string_view> names;
+  for (const InputBackend& source : input_sources()) names.push_back(source.name);
+  const auto specs = parse_sources(
+      "head:opentrack,address=::1,port=4243,remote,invert=x+yaw,sender=xrlinux,at=0/0/600,turn=0/5/0,eyes=0/0/"
+      "80,ipd=64,"
+      "head:vrpn,address=127.0.0.2,port=3884,tracker=\"a,b:c\",sensor=2,"
+      "head:rift,ipd=60,at=0/10/600,turn=0/0/0,eyes=0/1/2,"
+      "head:xreal,"
+      "spacemouse,"
+      "spacenav:socket=/tmp/a:b,"
+      "leap:at=0/-200/150,turn=0/0/0,exposure_us=150,"
+      "mouse,keyboard",
+      names);
+  ASSERT_TRUE(specs) << specs.error().message;
+  ASSERT_EQ(specs->size(), 9u);
+  EXPECT_EQ((*specs)[0].options[1], (Option{"address", "::1"}));
+  EXPECT_EQ((*specs)[1].options[3], (Option{"tracker", "a,b:c"}));
+  InputConfig config;
+  config.simulated_time = true;
+  SimDevice nothing("nothing");
+  config.reach_device = [&](const DeviceSpec&, const Clock&) -> Result<OpenTransport> {
+    return OpenTransport([&] { return nothing.open(); });
+  };
+  for (const SourceSpec& spec : *specs) {
+    EXPECT_EQ(parse_source(spec.text()).value(), spec) << spec.text();
+    if (spec.name == "mouse" || spec.name == "keyboard") continue;  // need a window
+    const auto source = make_input(spec.text(), config);
+    EXPECT_TRUE(source) << spec.text() << ": " << source.error().message;
+  }
+  const auto webcam = parse_sources(
+      "webcam:hfov=60,device=/dev/v4l/by-path/pci-0000:00:14.0-usb-0:3:1.0-video-index0,hands,scripted:a.json,replay:b",
+      names);
+  ASSERT_EQ(webcam->size(), 3u);
+  EXPECT_EQ((*webcam)[0].options.size(), 3u);
+  EXPECT_EQ((*webcam)[1].text(), "scripted:a.json");
+  const SourceSpec odd{"scripted", {{"path", "a,b=\"c\":d.json"}}};
+  EXPECT_EQ(parse_sources(odd.text() + ",mouse", names)->front(), odd);
+  EXPECT_EQ(parse_sources("", names).error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(parse_sources("mouse,,keyboard", names).error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(parse_sources("head:opentrack,address=\"::1", names).error().kind, ErrorKind::kUsage);
+}
+
+TEST(InputSources, ExactlyTheseAreTakenUnasked) {
+  const auto here = [](std::string_view driver, DeviceState state = DeviceState::kUsable) {
+    DeviceInfo info;
+    info.driver = driver;
+    info.state = state;
+    return info;
+  };
+  using Inputs = std::vector<std::string>;
+  EXPECT_EQ(present_inputs(std::vector<DeviceInfo>{}), Inputs{});
+  std::vector<DeviceInfo> all;
+  for (const char* driver : {"spacemouse", "spacenav", "opentrack", "vrpn", "rift", "xreal", "leap", "leapc", "webcam",
+                             "looking_glass", "something else"})
+    all.push_back(here(driver));
+  EXPECT_EQ(present_inputs(all), (Inputs{"spacenav", "leap", "head:rift", "head:xreal"}));  // spacenavd holds the puck
+  EXPECT_EQ(present_inputs({here("spacemouse"), here("webcam"), here("leapc")}), Inputs{"spacemouse"});
+  EXPECT_EQ(present_inputs({here("spacemouse"), here("spacenav", DeviceState::kNoPermission)}), Inputs{"spacemouse"});
+  EXPECT_EQ(present_inputs({here("spacemouse", DeviceState::kIgnored), here("leap", DeviceState::kNoPermission),
+                            here("rift", DeviceState::kBusy), here("xreal", DeviceState::kBroken)}),
+            Inputs{});
+  EXPECT_EQ(present_inputs({here("xreal"), here("xreal")}), Inputs{"head:xreal"});  // two of a kind are one source
 }
 
 TEST(SourceOptions, PlacesAreMillimetresAndTurnsDegrees) {
