@@ -79,13 +79,14 @@ Result<VerbResult> exa_info(const Options& options) {
   result.json = {
       {"kind", "exa"},
       {"version", {info.major, info.minor}},
-      {"grid", {info.dims.x, info.dims.y, info.dims.z}},
-      {"vertices", info.vertices},
-      {"xquads", info.quads},
-      {"threshold", info.isovalue},
-      {"offset_bits", info.offset_bits},
-      {"voxel_size_mm", {info.frame.input_voxel.mm.x, info.frame.input_voxel.mm.y, info.frame.input_voxel.mm.z}},
-      {"voxel_size_known", info.frame.input_voxel.known()},
+      {"grid", {info.header.dims.x, info.header.dims.y, info.header.dims.z}},
+      {"vertices", info.header.vertices},
+      {"xquads", info.header.quads},
+      {"threshold", info.header.isovalue},
+      {"offset_bits", info.header.offset_bits},
+      {"voxel_size_mm",
+       {info.header.frame.input_voxel.mm.x, info.header.frame.input_voxel.mm.y, info.header.frame.input_voxel.mm.z}},
+      {"voxel_size_known", info.header.frame.input_voxel.known()},
       {"bytes", info.stats.bytes},
       {"bits_per_vertex", info.stats.bits_per_vertex},
       {"blocks", blocks},
@@ -93,10 +94,10 @@ Result<VerbResult> exa_info(const Options& options) {
   result.json["provenance"] = info.provenance.empty() ? json(nullptr) : json::parse(info.provenance, nullptr, false);
   std::string& text = result.text;
   text = fmt::format("surface (EXA {}.{})\n", info.major, info.minor);
-  text += fmt::format("  grid         {} x {} x {}, threshold {:g}\n", info.dims.x, info.dims.y, info.dims.z,
-                      info.isovalue);
-  text += fmt::format("  mesh         {} vertices, {} x-quads\n", info.vertices, info.quads);
-  text += fmt::format("  voxel size   {}\n", length_text(info.frame.input_voxel));
+  text += fmt::format("  grid         {} x {} x {}, threshold {:g}\n", info.header.dims.x, info.header.dims.y,
+                      info.header.dims.z, info.header.isovalue);
+  text += fmt::format("  mesh         {} vertices, {} x-quads\n", info.header.vertices, info.header.quads);
+  text += fmt::format("  voxel size   {}\n", length_text(info.header.frame.input_voxel));
   text +=
       fmt::format("  file         {} bytes, {:.2f} bits per vertex\n", info.stats.bytes, info.stats.bits_per_vertex);
   for (const ExaBlockStats& block : info.stats.blocks)

@@ -1,14 +1,13 @@
 #include "core/exa/container.h"
 
-#include <xxhash.h>
-
 #include "core/base/bytes.h"
+#include "core/exa/chunks.h"
 
 namespace dubsar {
 namespace {
-constexpr std::size_t kChecksumBytes = 8;
+constexpr std::size_t kSumBytes = 4;
 
-std::uint64_t head_bytes(std::uint64_t blocks) { return kExaPreludeBytes + blocks * kExaRowBytes + kChecksumBytes; }
+std::uint64_t head_bytes(std::uint64_t blocks) { return kExaPreludeBytes + blocks * kExaRowBytes + kSumBytes; }
 
 /// For error texts: a damaged type may hold anything.
 std::string shown(std::string_view type) {
@@ -24,8 +23,6 @@ const ExaRow* ExaTable::find(std::string_view type) const noexcept {
     if (row.type == type) return &row;
   return nullptr;
 }
-
-std::uint64_t exa_checksum(std::string_view bytes) noexcept { return XXH3_64bits(bytes.data(), bytes.size()); }
 
 std::string exa_head(std::span<const ExaBlock> blocks, std::uint16_t major, std::uint16_t minor) {
   DUBSAR_CHECK(blocks.size() <= kExaMaxBlocks);
@@ -43,10 +40,10 @@ std::string exa_head(std::span<const ExaBlock> blocks, std::uint16_t major, std:
     append_little(head, block.flags);
     append_little(head, offset);
     append_little(head, static_cast<std::uint64_t>(block.bytes.size()));
-    append_little(head, exa_checksum(block.bytes));
+    append_little(head, block.chunks);
     offset += block.bytes.size();
   }
-  append_little(head, exa_checksum(head));
+  append_little(head, crc32_of(head));
   return head;
 }
 
@@ -61,8 +58,12 @@ Result<std::uint64_t> exa_head_bytes(std::string_view prelude, std::uint64_t fil
   const auto announced = reader.little<std::uint64_t>();
   if (!reader.ok())
     return fail(ErrorKind::kBadData, "exa: {} bytes found, the head alone needs {}", prelude.size(), kExaPreludeBytes);
-  if (major != kExaMajor)
-    return fail(ErrorKind::kBadData, "exa: format version {} found, expected {}; it needs another dubsar", major,
+  if (major < kExaMajor)
+    return fail(ErrorKind::kBadData,
+                "exa: format version {} found, expected {}; that format was never kept: process the scan again", major,
+                kExaMajor);
+  if (major > kExaMajor)
+    return fail(ErrorKind::kBadData, "exa: format version {} found, expected {}; it needs a later dubsar", major,
                 kExaMajor);
   if (blocks > kExaMaxBlocks)
     return fail(ErrorKind::kBadData, "exa: {} blocks announced, expected at most {}", blocks, kExaMaxBlocks);
@@ -78,9 +79,9 @@ Result<ExaTable> parse_exa_head(std::string_view head, std::uint64_t file_bytes)
   DUBSAR_ASSIGN(const std::uint64_t expected, exa_head_bytes(head.substr(0, kExaPreludeBytes), file_bytes));
   if (head.size() < expected) return fail(ErrorKind::kBadData, "exa: the block table is truncated");
   head = head.substr(0, expected);
-  ByteReader stored(head.substr(head.size() - kChecksumBytes));
-  if (stored.little<std::uint64_t>() != exa_checksum(head.substr(0, head.size() - kChecksumBytes)))
-    return fail(ErrorKind::kBadData, "exa: the checksum of the block table is wrong: the file is damaged");
+  ByteReader stored(head.substr(head.size() - kSumBytes));
+  if (stored.little<std::uint32_t>() != crc32_of(head.substr(0, head.size() - kSumBytes)))
+    return fail(ErrorKind::kBadData, "exa: the sum of the block table is wrong: the file is damaged");
   ByteReader reader(head.substr(kExaMagic.size()));
   ExaTable table;
   table.major = reader.little<std::uint16_t>();
@@ -94,7 +95,7 @@ Result<ExaTable> parse_exa_head(std::string_view head, std::uint64_t file_bytes)
     row.flags = reader.little<std::uint16_t>();
     row.offset = reader.little<std::uint64_t>();
     row.length = reader.little<std::uint64_t>();
-    row.checksum = reader.little<std::uint64_t>();
+    row.chunks = reader.little<std::uint32_t>();
     if (row.offset != offset || row.length > file_bytes - kExaEnd.size() - offset)
       return fail(ErrorKind::kBadData, "exa: block \"{}\" lies outside the file or over another", shown(row.type));
     offset += row.length;
@@ -103,14 +104,6 @@ Result<ExaTable> parse_exa_head(std::string_view head, std::uint64_t file_bytes)
     return fail(ErrorKind::kBadData, "exa: {} bytes between the blocks and the end belong to no block",
                 file_bytes - kExaEnd.size() - offset);
   return table;
-}
-
-Result<std::string_view> exa_block(std::string_view file, const ExaRow& row) {
-  const std::string_view bytes = file.substr(row.offset, row.length);
-  if (bytes.size() != row.length || exa_checksum(bytes) != row.checksum)
-    return fail(ErrorKind::kBadData, "exa: the checksum of block \"{}\" is wrong: the file is damaged",
-                shown(row.type));
-  return bytes;
 }
 
 }  // namespace dubsar

@@ -3,45 +3,27 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <new>
 
 #include "core/base/atomic_file.h"
-#include "core/base/bytes.h"
+#include "core/base/budget.h"
 #include "core/base/input_file.h"
-#include "core/base/parallel.h"
-#include "core/exa/exa_text.h"
-#include "core/exa/geometry.h"
+#include "core/exa/attributes.h"
+#include "core/exa/chunks.h"
+#include "core/exa/exa_reader.h"
+#include "core/exa/exact.h"
+#include "core/exa/offsets.h"
 #include "core/exa/patches.h"
-#include "core/exa/topology.h"
+#include "core/exa/settle.h"
+#include "core/exa/sign_brick.h"
 #include "core/extract/extract.h"
 
 namespace dubsar {
 namespace {
-constexpr std::uint16_t kCodecPlain = 0, kCodecSigns = 1;
-constexpr int kHighestShape = 126, kHighestAo = 63, kHighestPartition = PartitionTable::kHighest;
+constexpr std::uint16_t kCodec = 0;
 constexpr std::size_t kWriteStep = std::size_t{4} << 20;
-
-struct BlockName {
-  std::string_view type, name;
-};
-constexpr std::array<BlockName, 14> kBlockNames{{{"HEAD", "header"},
-                                                 {"SIGN", "signs"},
-                                                 {"FACE", "face_decisions"},
-                                                 {"OFFS", "offsets"},
-                                                 {"POSN", "positions"},
-                                                 {"NORM", "normals"},
-                                                 {"KMIN", "k_min"},
-                                                 {"KMAX", "k_max"},
-                                                 {"SHAP", "shape"},
-                                                 {"AMBO", "ao"},
-                                                 {"QPAR", "quad_partition"},
-                                                 {"PART", "partitions"},
-                                                 {"FILL", "fill_patches"},
-                                                 {"PROV", "provenance"}}};
-
-bool known(std::string_view type) {
-  return std::any_of(kBlockNames.begin(), kBlockNames.end(), [&](const BlockName& b) { return b.type == type; });
-}
+constexpr std::array<const char*, 3> kSignBlocks{"SIG0", "SIG1", "SIG2"};
 
 ExaStats stats_of(const ExaTable& table, std::int64_t vertices) {
   ExaStats stats;
@@ -51,11 +33,11 @@ ExaStats stats_of(const ExaTable& table, std::int64_t vertices) {
     return vertices > 0 ? 8.0 * static_cast<double>(bytes) / static_cast<double>(vertices) : 0.0;
   };
   std::int64_t container = stats.bytes;
-  stats.blocks.push_back({"container", 0, 0.0});
+  stats.blocks.push_back({"container", 0, 0.0, 0});
   for (const ExaRow& row : table.rows) {
     const auto bytes = static_cast<std::int64_t>(row.length);
     container -= bytes;
-    stats.blocks.push_back({exa_block_name(row.type), bytes, bits(bytes)});
+    stats.blocks.push_back({exa_block_name(row.type), bytes, bits(bytes), row.chunks});
   }
   stats.blocks[0].bytes = container;
   stats.blocks[0].bits_per_vertex = bits(container);
@@ -69,125 +51,321 @@ Result<void> check_model(const SurfaceModel& model, const QuadMesh& rebuilt) {
   const auto quads = static_cast<std::size_t>(model.mesh.quad_count());
   const auto fits = [](std::size_t size, std::size_t count) { return size == 0 || size == count; };
   const VertexAttributes& a = model.attributes;
-  if (!fits(a.normals.size(), vertices) || !fits(a.k_min.size(), vertices) || !fits(a.k_max.size(), vertices) ||
+  if (!fits(a.normals.size(), vertices) || !fits(a.k_min.size(), vertices) || a.k_min.size() != a.k_max.size() ||
       !fits(a.shape.size(), vertices) || !fits(a.ao.size(), vertices) || !fits(model.quad_partition.size(), quads))
     return fail(ErrorKind::kInternal, "exa: arrays do not fit the mesh of {} vertices and {} x-quads", vertices, quads);
   if (model.mesh.quads != rebuilt.quads || model.mesh.doubled != rebuilt.doubled ||
       model.mesh.positions.size() != rebuilt.positions.size())
     return fail(ErrorKind::kInternal, "exa: the mesh of {} vertices is not the one that the samples give ({} vertices)",
                 vertices, rebuilt.positions.size());
-  for (const glm::vec3& p : model.mesh.positions)
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-      return fail(ErrorKind::kBadData, "exa: a vertex position is not finite, so the surface is not stored");
-  const auto largest = [](const std::vector<std::uint8_t>& v) {
-    return v.empty() ? 0 : *std::max_element(v.begin(), v.end());
+  const auto finite = [](float v) { return std::isfinite(v); };
+  const auto all_finite = [&](const std::vector<glm::vec3>& items) {
+    return std::all_of(items.begin(), items.end(),
+                       [&](const glm::vec3& p) { return finite(p.x) && finite(p.y) && finite(p.z); });
   };
-  if (largest(a.shape) > kHighestShape || largest(a.ao) > kHighestAo ||
-      largest(model.quad_partition) > kHighestPartition)
+  if (!all_finite(model.mesh.positions) || !all_finite(a.normals) ||
+      !std::all_of(a.k_min.begin(), a.k_min.end(), finite) || !std::all_of(a.k_max.begin(), a.k_max.end(), finite))
+    return fail(ErrorKind::kBadData,
+                "exa: a position, normal or curvature is not finite, so the surface is not stored");
+  const auto largest = [](const std::vector<std::uint8_t>& v) {
+    return v.empty() ? 0 : int{*std::max_element(v.begin(), v.end())};
+  };
+  if (largest(a.shape) > highest_label(ExaLabel::kShape) || largest(a.ao) > highest_label(ExaLabel::kLight) ||
+      largest(model.quad_partition) > highest_label(ExaLabel::kPartition))
     return fail(ErrorKind::kInternal, "exa: a shape class, ambient light or partition is out of range");
   return check_patches(model.patches, model.mesh.vertex_count());
 }
 
-/// The blocks of a file in memory, checked and found by type.
-class Blocks {
- public:
-  static Result<Blocks> open(std::string_view file) {
-    DUBSAR_ASSIGN(const std::uint64_t head, exa_head_bytes(file.substr(0, kExaPreludeBytes), file.size()));
-    Blocks blocks;
-    blocks.file_ = file;
-    DUBSAR_ASSIGN(blocks.table_, parse_exa_head(file.substr(0, head), file.size()));
-    if (!file.ends_with(kExaEnd)) return fail(ErrorKind::kBadData, "exa: the end mark is damaged");
-    for (const ExaRow& row : blocks.table_.rows) {
-      DUBSAR_TRY(exa_block(file, row));
-      if (blocks.table_.find(row.type) != &row)
-        return fail(ErrorKind::kBadData, "exa: two blocks \"{}\", expected one", exa_block_name(row.type));
-      if (!known(row.type) && (row.flags & kExaRequired))
-        return fail(ErrorKind::kBadData, "exa: block \"{}\" is needed and not known; a later dubsar wrote the file",
-                    exa_block_name(row.type));
-    }
-    return blocks;
-  }
-  const ExaRow* row(std::string_view type) const { return table_.find(type); }
-  std::string_view bytes(const ExaRow& row) const { return file_.substr(row.offset, row.length); }
-  /// The bytes of a block that must be there with this codec.
-  Result<std::string_view> required(std::string_view type, std::uint16_t codec) const {
-    const ExaRow* found = row(type);
-    if (!found) return fail(ErrorKind::kBadData, "exa: block \"{}\" is missing", exa_block_name(type));
-    if (found->codec != codec)
-      return fail(ErrorKind::kBadData, "exa: codec {} of block \"{}\" is not known; a later dubsar wrote the file",
-                  found->codec, exa_block_name(type));
-    return bytes(*found);
-  }
-
- private:
-  std::string_view file_;
-  ExaTable table_;
-};
-
-Result<void> decode_attributes(const Blocks& blocks, SurfaceModel& model, Progress& progress) {
-  const std::size_t vertices = model.mesh.positions.size();
-  VertexAttributes& a = model.attributes;
-  if (const ExaRow* row = blocks.row("NORM")) {
-    DUBSAR_ASSIGN(a.normals, decode_normals(row->codec, blocks.bytes(*row), vertices, progress));
-  }
-  if (const ExaRow* row = blocks.row("KMIN")) {
-    DUBSAR_ASSIGN(a.k_min, decode_curvatures(row->codec, blocks.bytes(*row), vertices, progress));
-  }
-  if (const ExaRow* row = blocks.row("KMAX")) {
-    DUBSAR_ASSIGN(a.k_max, decode_curvatures(row->codec, blocks.bytes(*row), vertices, progress));
-  }
-  const auto labels = [&](const char* type, std::size_t count, int highest,
-                          std::vector<std::uint8_t>& out) -> Result<void> {
-    const ExaRow* row = blocks.row(type);
-    if (!row) return {};
-    DUBSAR_ASSIGN(out, decode_labels(row->codec, blocks.bytes(*row), count, highest, exa_block_name(type), progress));
-    return {};
-  };
-  DUBSAR_TRY(labels("SHAP", vertices, kHighestShape, a.shape));
-  DUBSAR_TRY(labels("AMBO", vertices, kHighestAo, a.ao));
-  return labels("QPAR", model.mesh.quads.size(), kHighestPartition, model.quad_partition);
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin());
 }
 
-Result<void> decode_tables(const Blocks& blocks, SurfaceModel& model) {
-  if (blocks.row("PART")) {
-    DUBSAR_ASSIGN(const std::string_view text, blocks.required("PART", kCodecPlain));
-    DUBSAR_ASSIGN(model.partitions, parse_exa_partitions(text));
+/// Can a reader compute the normals and curvatures itself?
+Result<void> find_normals(const SurfaceModel& model, ExaHeader& header, Progress& progress) {
+  const VertexAttributes& a = model.attributes;
+  header.normals = a.normals.empty() && a.k_min.empty() ? ExaNormals::kNone : ExaNormals::kExact;
+  header.curvatures = !a.k_min.empty();
+  if (a.normals.empty()) return {};
+  DUBSAR_ASSIGN(const std::vector<glm::vec3> normals, recomputed_normals(model.mesh, progress));
+  if (!same_bytes(normals, a.normals)) return {};
+  for (const CurvatureMethod method : {CurvatureMethod::kFit, CurvatureMethod::kPairs}) {
+    header.curvature = method;
+    if (a.k_min.empty()) {
+      header.normals = ExaNormals::kRecomputed;
+      return {};
+    }
+    DUBSAR_ASSIGN(const Curvatures k, principal_curvatures(model.mesh, normals, method, progress));
+    if (!same_bytes(k.k_min, a.k_min) || !same_bytes(k.k_max, a.k_max)) continue;
+    header.normals = ExaNormals::kRecomputed;
+    return {};
   }
-  if (blocks.row("FILL")) {
-    DUBSAR_ASSIGN(const std::string_view bytes, blocks.required("FILL", kCodecPlain));
-    DUBSAR_ASSIGN(model.patches, decode_patches(bytes, model.mesh.vertex_count()));
+  header.curvature = CurvatureMethod::kFit;
+  return {};
+}
+
+std::span<const float> floats_of(const std::vector<glm::vec3>& items) {
+  return {reinterpret_cast<const float*>(items.data()), items.size() * 3};
+}
+std::span<float> floats_of(std::vector<glm::vec3>& items) {
+  return {reinterpret_cast<float*>(items.data()), items.size() * 3};
+}
+
+class BlockList {
+ public:
+  void add(const char* type, bool required, const std::vector<std::string>& chunks) {
+    blocks_.push_back({type, kCodec, required ? kExaRequired : std::uint16_t{0},
+                       static_cast<std::uint32_t>(chunks.size()), join_chunks(chunks)});
   }
-  if (blocks.row("PROV")) {
-    DUBSAR_ASSIGN(const std::string_view text, blocks.required("PROV", kCodecPlain));
-    model.provenance = text;
+  std::vector<ExaBlock> take() { return std::move(blocks_); }
+
+ private:
+  std::vector<ExaBlock> blocks_;
+};
+
+Result<void> add_positions(const SurfaceModel& model, const QuadMesh& base, BlockList& blocks, Progress& progress) {
+  if (same_bytes(base.positions, model.mesh.positions)) return {};
+  if (const auto escapes = encode_escapes(base, model.mesh.positions, progress)) {
+    blocks.add("ESCP", true, *escapes);
+  } else {
+    blocks.add("POSN", true, encode_floats(floats_of(model.mesh.positions), 3, progress));
   }
   return {};
 }
-}  // namespace
 
-std::string exa_block_name(std::string_view type) {
-  for (const BlockName& block : kBlockNames)
-    if (block.type == type) return std::string(block.name);
-  std::string text(type);
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < 32 || c > 126; }, '?');
-  return text;
+Result<void> decode_positions(const ExaReader& reader, SurfaceModel& model, Progress& progress) {
+  if (reader.has("ESCP")) {
+    DUBSAR_ASSIGN(const ExaChunks escapes, reader.chunks("ESCP", kCodec));
+    DUBSAR_TRY(decode_escapes(escapes.chunks, model.mesh, progress));
+  }
+  if (reader.has("POSN")) {
+    DUBSAR_ASSIGN(const ExaChunks exact, reader.chunks("POSN", kCodec));
+    DUBSAR_TRY(decode_floats(exact.chunks, 3, "positions", floats_of(model.mesh.positions), progress));
+  }
+  return {};
 }
 
-void quantise_for_exa(SurfaceModel& model) {
-  constexpr std::int64_t kGrain = 1 << 14;
-  const auto each = [&](auto& items, auto rounded) {
-    parallel_for(static_cast<std::int64_t>(items.size()), kGrain, [&](std::int64_t i) {
-      auto& item = items[static_cast<std::size_t>(i)];
-      item = rounded(item);
-    });
+Result<void> decode_normals(const ExaReader& reader, const ExaHeader& header, SurfaceModel& model, Progress& progress) {
+  VertexAttributes& a = model.attributes;
+  const std::size_t vertices = model.mesh.positions.size();
+  if (header.normals == ExaNormals::kRecomputed) {
+    DUBSAR_ASSIGN(a.normals, recomputed_normals(model.mesh, progress));
+    if (!header.curvatures) return {};
+    DUBSAR_ASSIGN(Curvatures k, principal_curvatures(model.mesh, a.normals, header.curvature, progress));
+    a.k_min = std::move(k.k_min);
+    a.k_max = std::move(k.k_max);
+    return {};
+  }
+  if (reader.has("NORM")) {
+    DUBSAR_ASSIGN(const ExaChunks normals, reader.chunks("NORM", kCodec));
+    a.normals.resize(vertices);
+    DUBSAR_TRY(decode_floats(normals.chunks, 3, "normals", floats_of(a.normals), progress));
+  }
+  if (reader.has("CURV")) {
+    DUBSAR_ASSIGN(const ExaChunks curvatures, reader.chunks("CURV", kCodec));
+    std::vector<float> pairs(2 * vertices);
+    DUBSAR_TRY(decode_floats(curvatures.chunks, 2, "curvatures", pairs, progress));
+    a.k_min.resize(vertices);
+    a.k_max.resize(vertices);
+    for (std::size_t v = 0; v < vertices; ++v) {
+      a.k_min[v] = pairs[2 * v];
+      a.k_max[v] = pairs[2 * v + 1];
+    }
+  }
+  return {};
+}
+
+Result<void> decode_attributes(const ExaReader& reader, SurfaceModel& model, Progress& progress) {
+  const auto labels = [&](const char* type, ExaLabel label, std::vector<std::uint8_t>& out) -> Result<void> {
+    if (!reader.has(type)) return {};
+    DUBSAR_ASSIGN(const ExaChunks chunks, reader.chunks(type, kCodec));
+    DUBSAR_ASSIGN(out, decode_labels(label, model.mesh, chunks.chunks, progress));
+    return {};
   };
-  each(model.mesh.positions, quantised_position);
-  each(model.attributes.normals, quantised_normal);
-  each(model.attributes.k_min, quantised_curvature);
-  each(model.attributes.k_max, quantised_curvature);
-  for (FillPatch& patch : model.patches) each(patch.extra_positions, quantised_position);
+  DUBSAR_TRY(labels("SHAP", ExaLabel::kShape, model.attributes.shape));
+  DUBSAR_TRY(labels("AMBO", ExaLabel::kLight, model.attributes.ao));
+  DUBSAR_TRY(labels("QPAR", ExaLabel::kPartition, model.quad_partition));
+  if (reader.has("PART")) {
+    DUBSAR_ASSIGN(const std::string text, reader.text("PART"));
+    DUBSAR_ASSIGN(model.partitions, parse_exa_partitions(text));
+  }
+  if (reader.has("FILL")) {
+    DUBSAR_ASSIGN(const ExaChunks patches, reader.chunks("FILL", kCodec));
+    DUBSAR_ASSIGN(model.patches, decode_patches(patches.chunks, model.mesh.vertex_count()));
+  }
+  if (reader.has("PROV")) {
+    DUBSAR_ASSIGN(model.provenance, reader.text("PROV"));
+  }
+  return {};
 }
+
+struct LoadedSigns {
+  std::vector<ExaChunks> blocks;
+  SignChunks chunks;
+};
+
+Result<LoadedSigns> load_signs(const ExaReader& reader, int level, const std::function<bool(std::size_t)>& wanted) {
+  LoadedSigns loaded;
+  DUBSAR_ASSIGN(ExaChunks coarse, reader.chunks("SIGC", kCodec));
+  loaded.chunks.coarse = coarse.chunks;
+  loaded.blocks.push_back(std::move(coarse));
+  for (int l = kBrickLevels - 1; l >= level; --l) {
+    DUBSAR_ASSIGN(ExaChunks block, reader.chunks(kSignBlocks[static_cast<std::size_t>(l)], kCodec, wanted));
+    loaded.chunks.bricks[static_cast<std::size_t>(l)] = block.chunks;
+    loaded.blocks.push_back(std::move(block));
+  }
+  return loaded;
+}
+
+SurfaceSamples empty_samples(const ExaHeader& header) {
+  SurfaceSamples samples;
+  samples.dims = header.dims;
+  samples.isovalue = header.isovalue;
+  samples.offset_bits = header.offset_bits;
+  samples.closed = header.closed;
+  return samples;
+}
+
+Result<SurfaceModel> decode_model(const ExaReader& reader, Progress& progress) {
+  DUBSAR_TRY(reader.check_sums());  // before anything is decoded: a damaged file costs next to nothing
+  DUBSAR_ASSIGN(const ExaHeader header, reader.header());
+  DUBSAR_TRY(check_memory("exa", exa_memory_bound(header)));
+  SurfaceModel model;
+  model.frame = header.frame;
+  model.samples = empty_samples(header);
+  SurfaceSamples& samples = model.samples;
+  {
+    DUBSAR_ASSIGN(const LoadedSigns loaded, load_signs(reader, 0, {}));
+    DUBSAR_ASSIGN(samples.signs, decode_signs(loaded.chunks, header.dims, 0, std::nullopt,
+                                              most_coded_signs(static_cast<std::uint64_t>(header.edges)), progress));
+  }
+  const SampleCounts counts = count_samples(samples.signs);
+  if (counts.edges != header.edges || counts.faces != header.faces)
+    return fail(ErrorKind::kBadData, "exa: {} active edges and {} ambiguous faces found, the header says {} and {}",
+                counts.edges, counts.faces, header.edges, header.faces);
+  {
+    DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("OFFS", kCodec));
+    DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("FACE", kCodec));
+    DUBSAR_TRY(decode_samples(offsets.chunks, faces.chunks, samples, progress));
+  }
+  DUBSAR_ASSIGN(model.mesh, build_quad_mesh(samples, progress));
+  if (model.mesh.vertex_count() != header.vertices || model.mesh.quad_count() != header.quads)
+    return fail(ErrorKind::kBadData, "exa: {} vertices and {} x-quads found, the header says {} and {}",
+                model.mesh.vertex_count(), model.mesh.quad_count(), header.vertices, header.quads);
+  DUBSAR_TRY(decode_positions(reader, model, progress));
+  if (position_sum_of(model) != header.position_sum || quad_sum_of(model.mesh) != header.quad_sum)
+    return fail(ErrorKind::kBadData, "exa: the mesh built from this file is not the one that was written");
+  DUBSAR_TRY(decode_normals(reader, header, model, progress));
+  DUBSAR_TRY(decode_attributes(reader, model, progress));
+  return model;
+}
+
+tl::unexpected<Error> named(const std::filesystem::path& path, Error error) {
+  if (error.kind == ErrorKind::kBadData || error.kind == ErrorKind::kTryAgain)
+    error.message = path.string() + ": " + error.message;
+  return tl::unexpected<Error>(std::move(error));
+}
+
+/// Opens a file, does something with it, and names the file in what went wrong.
+template <class T, class Use>
+Result<T> with_file(const std::filesystem::path& path, const Use& use) {
+  DUBSAR_ASSIGN(InputFile input, InputFile::open(path));
+  const auto read = [&]() -> Result<T> {
+    try {
+      DUBSAR_ASSIGN(const ExaReader reader, ExaReader::open(std::make_shared<InputFile>(std::move(input))));
+      return use(reader);
+    } catch (const std::bad_alloc&) {
+      return fail(ErrorKind::kTryAgain, "exa: out of memory");
+    }
+  };
+  Result<T> result = read();
+  if (!result) return named(path, result.error());
+  return result;
+}
+
+/// A mesh of samples without attributes, its frame moved and scaled.
+Result<SurfaceModel> bare_model(SurfaceSamples samples, const GridFrame& frame, const glm::dvec3& low, double scale,
+                                Progress& progress) {
+  SurfaceModel model;
+  model.frame = frame;
+  model.frame.origin_vox = frame.input_vox_from_grid(low);
+  model.frame.scale = frame.scale * scale;
+  model.samples = std::move(samples);
+  DUBSAR_ASSIGN(model.mesh, build_quad_mesh(model.samples, progress));
+  return model;
+}
+
+Result<SurfaceModel> decode_level(const ExaReader& reader, int level, Progress& progress) {
+  DUBSAR_ASSIGN(const ExaHeader header, reader.header());
+  DUBSAR_TRY(check_memory("exa", exa_memory_bound(header)));
+  DUBSAR_ASSIGN(const LoadedSigns loaded, load_signs(reader, level, {}));
+  SurfaceSamples samples = empty_samples(header);
+  samples.dims = level_dims(header.dims, level);
+  samples.closed = true;
+  samples.offset_bits = 16;
+  DUBSAR_ASSIGN(samples.signs, decode_signs(loaded.chunks, header.dims, level, std::nullopt,
+                                            most_coded_signs(static_cast<std::uint64_t>(header.edges)), progress));
+  const SampleCounts counts = count_samples(samples.signs);
+  if (static_cast<std::uint64_t>(counts.edges) > most_coded_signs(static_cast<std::uint64_t>(header.edges)))
+    return fail(ErrorKind::kBadData, "exa: {} active edges found on level {}, the whole surface has {}", counts.edges,
+                level, header.edges);
+  samples.offsets.assign(static_cast<std::size_t>(counts.edges), 1 << 15);
+  samples.joined.assign(static_cast<std::size_t>(counts.faces), 0);
+  return bare_model(std::move(samples), header.frame, glm::dvec3(0.0), std::exp2(level), progress);
+}
+
+Result<SurfaceModel> decode_box(const ExaReader& reader, const GridBox& box, Progress& progress) {
+  DUBSAR_ASSIGN(const ExaHeader header, reader.header());
+  const Dims& dims = header.dims;
+  const std::array<std::int64_t, 3> size{dims.x, dims.y, dims.z};
+  std::array<std::int64_t, 3> first{}, last{}, low{}, points{};  // bricks, points
+  const Dims grid = brick_grid(dims);
+  const std::array<std::int64_t, 3> bricks{grid.x, grid.y, grid.z};
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (box.low[a] > box.high[a] || box.high[a] < 0 || box.low[a] >= size[a])
+      return fail(ErrorKind::kUsage, "exa: the box {}..{} along axis {} lies outside of the grid of {} points",
+                  box.low[a], box.high[a], a, size[a]);
+    first[a] = std::min(std::max<std::int64_t>(box.low[a], 0) / kBrickCells, bricks[a] - 1);
+    last[a] = std::min(box.high[a] / kBrickCells, bricks[a] - 1);
+    low[a] = first[a] * kBrickCells;
+    points[a] = std::min((last[a] + 1) * kBrickCells + 1, size[a]) - low[a];
+  }
+  DUBSAR_TRY(check_memory("exa", exa_memory_bound(header)));
+  const auto wanted = [&](std::size_t index) {
+    const auto i = static_cast<std::int64_t>(index);
+    const std::array<std::int64_t, 3> at{i % grid.x, i / grid.x % grid.y, i / grid.slice()};
+    return at[0] >= first[0] && at[0] <= last[0] && at[1] >= first[1] && at[1] <= last[1] && at[2] >= first[2] &&
+           at[2] <= last[2];
+  };
+  DUBSAR_ASSIGN(const LoadedSigns loaded, load_signs(reader, 0, wanted));
+  GridBox closed;
+  for (std::size_t a = 0; a < 3; ++a) {
+    closed.low[a] = low[a] + 1;  // inside, so that bricks that only touch a side stay out
+    closed.high[a] = low[a] + points[a] - 2;
+  }
+  DUBSAR_ASSIGN(const BitVolume whole,
+                decode_signs(loaded.chunks, dims, 0, closed, most_coded_signs(static_cast<std::uint64_t>(header.edges)),
+                             progress));
+  SurfaceSamples samples = empty_samples(header);
+  samples.dims = {points[0], points[1], points[2]};
+  samples.closed = false;
+  samples.signs = BitVolume(samples.dims);
+  for (std::int64_t z = 0; z < points[2]; ++z)
+    for (std::int64_t y = 0; y < points[1]; ++y)
+      for (std::int64_t x = 0; x < points[0]; ++x)
+        samples.signs.set(x, y, z, whole.get(low[0] + x, low[1] + y, low[2] + z));
+  DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("OFFS", kCodec, wanted));
+  DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("FACE", kCodec, wanted));
+  std::vector<std::string_view> own_offsets, own_faces;
+  for (std::size_t i = 0; i < offsets.chunks.size() && i < faces.chunks.size(); ++i) {
+    if (!wanted(i)) continue;
+    own_offsets.push_back(offsets.chunks[i]);
+    own_faces.push_back(faces.chunks[i]);
+  }
+  DUBSAR_TRY(decode_samples(own_offsets, own_faces, samples, progress));
+  return bare_model(std::move(samples), header.frame, glm::dvec3(low[0], low[1], low[2]), 1.0, progress);
+}
+}  // namespace
 
 Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& progress) {
   DUBSAR_ASSIGN(const QuadMesh base, build_quad_mesh(model.samples, progress));
@@ -200,90 +378,54 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   header.closed = model.samples.closed;
   header.vertices = model.mesh.vertex_count();
   header.quads = model.mesh.quad_count();
-  header.mesh_sum = mesh_checksum(model.mesh);
+  header.edges = static_cast<std::int64_t>(model.samples.offsets.size());
+  header.faces = static_cast<std::int64_t>(model.samples.joined.size());
+  header.position_sum = position_sum_of(model);
+  header.quad_sum = quad_sum_of(model.mesh);
+  header.tool = "dubsar " DUBSAR_VERSION;
+  DUBSAR_TRY(find_normals(model, header, progress));
 
-  std::vector<ExaBlock> blocks;
-  const auto add = [&](const char* type, std::uint16_t flags, Encoded encoded) {
-    blocks.push_back({type, encoded.codec, flags, std::move(encoded.bytes)});
-  };
+  BlockList blocks;
   DUBSAR_ASSIGN(std::string text, exa_header_json(header));
-  add("HEAD", kExaRequired, {kCodecPlain, std::move(text)});
-  DUBSAR_ASSIGN(std::string signs, encode_signs(model.samples.signs, progress));
-  add("SIGN", kExaRequired, {kCodecSigns, std::move(signs)});
-  add("FACE", kExaRequired, encode_bits<std::uint8_t>(model.samples.joined, 1));
-  add("OFFS", kExaRequired, encode_bits<std::uint16_t>(model.samples.offsets, model.samples.offset_bits));
-  const bool smoothed =
-      exa_checksum({reinterpret_cast<const char*>(model.mesh.positions.data()),
-                    model.mesh.positions.size() * sizeof(glm::vec3)}) !=
-      exa_checksum({reinterpret_cast<const char*>(base.positions.data()), base.positions.size() * sizeof(glm::vec3)});
-  if (smoothed) {
-    DUBSAR_ASSIGN(Encoded positions, encode_positions(model.mesh.positions, base.positions, progress));
-    add("POSN", kExaRequired, std::move(positions));
-  }
-  const VertexAttributes& a = model.attributes;
-  if (!a.normals.empty()) {
-    DUBSAR_ASSIGN(Encoded normals, encode_normals(a.normals, progress));
-    add("NORM", 0, std::move(normals));
-  }
-  const auto curvatures = [&](const char* type, const std::vector<float>& k) -> Result<void> {
-    if (k.empty()) return {};
-    DUBSAR_ASSIGN(Encoded encoded, encode_curvatures(k, progress));
-    add(type, 0, std::move(encoded));
-    return {};
-  };
-  DUBSAR_TRY(curvatures("KMIN", a.k_min));
-  DUBSAR_TRY(curvatures("KMAX", a.k_max));
-  const auto labels = [&](const char* type, const std::vector<std::uint8_t>& values) -> Result<void> {
-    if (values.empty()) return {};
-    DUBSAR_ASSIGN(Encoded encoded, encode_labels(values, progress));
-    add(type, 0, std::move(encoded));
-    return {};
-  };
-  DUBSAR_TRY(labels("SHAP", a.shape));
-  DUBSAR_TRY(labels("AMBO", a.ao));
-  DUBSAR_TRY(labels("QPAR", model.quad_partition));
+  blocks.add("HEAD", true, {std::move(text)});
   if (!model.partitions.empty()) {
     DUBSAR_ASSIGN(std::string table, exa_partitions_json(model.partitions));
-    add("PART", 0, {kCodecPlain, std::move(table)});
+    blocks.add("PART", false, {std::move(table)});
   }
-  if (!model.patches.empty()) add("FILL", 0, {kCodecPlain, encode_patches(model.patches)});
-  if (!model.provenance.empty()) add("PROV", 0, {kCodecPlain, model.provenance});
-  return blocks;
+  if (!model.provenance.empty()) blocks.add("PROV", false, {model.provenance});
+  DUBSAR_ASSIGN(const SignCode signs, encode_signs(model.samples.signs, progress));
+  blocks.add("SIGC", true, signs.coarse);
+  for (std::size_t level = kBrickLevels; level-- > 0;) blocks.add(kSignBlocks[level], true, signs.bricks[level]);
+  DUBSAR_ASSIGN(const SampleCode samples, encode_samples(model.samples, progress));
+  blocks.add("FACE", true, samples.faces);
+  blocks.add("OFFS", true, samples.offsets);
+  DUBSAR_TRY(add_positions(model, base, blocks, progress));
+  const VertexAttributes& a = model.attributes;
+  if (header.normals == ExaNormals::kExact) {
+    if (!a.normals.empty()) blocks.add("NORM", false, encode_floats(floats_of(a.normals), 3, progress));
+    if (header.curvatures) {
+      std::vector<float> pairs(2 * a.k_min.size());
+      for (std::size_t v = 0; v < a.k_min.size(); ++v) {
+        pairs[2 * v] = a.k_min[v];
+        pairs[2 * v + 1] = a.k_max[v];
+      }
+      blocks.add("CURV", false, encode_floats(pairs, 2, progress));
+    }
+  }
+  const auto labels = [&](const char* type, ExaLabel label, const std::vector<std::uint8_t>& values) {
+    if (!values.empty()) blocks.add(type, false, encode_labels(label, model.mesh, values, progress));
+  };
+  labels("SHAP", ExaLabel::kShape, a.shape);
+  labels("AMBO", ExaLabel::kLight, a.ao);
+  labels("QPAR", ExaLabel::kPartition, model.quad_partition);
+  if (!model.patches.empty()) blocks.add("FILL", false, encode_patches(model.patches, model.mesh.vertex_count()));
+  if (progress.cancelled()) return cancelled_error();
+  return blocks.take();
 }
 
 Result<SurfaceModel> decode_exa(std::string_view file, Progress& progress) {
-  DUBSAR_ASSIGN(const Blocks blocks, Blocks::open(file));
-  DUBSAR_ASSIGN(const std::string_view text, blocks.required("HEAD", kCodecPlain));
-  DUBSAR_ASSIGN(const ExaHeader header, parse_exa_header(text));
-  SurfaceModel model;
-  model.frame = header.frame;
-  SurfaceSamples& samples = model.samples;
-  samples.dims = header.dims;
-  samples.isovalue = header.isovalue;
-  samples.offset_bits = header.offset_bits;
-  samples.closed = header.closed;
-  DUBSAR_ASSIGN(const std::string_view signs, blocks.required("SIGN", kCodecSigns));
-  DUBSAR_ASSIGN(samples.signs, decode_signs(signs, header.dims, progress));
-  const SampleCounts counts = count_samples(samples.signs);
-  DUBSAR_ASSIGN(const std::string_view faces, blocks.required("FACE", kCodecBits));
-  DUBSAR_ASSIGN(samples.joined,
-                decode_bits<std::uint8_t>(faces, static_cast<std::uint64_t>(counts.faces), 1, "face decisions"));
-  DUBSAR_ASSIGN(const std::string_view offsets, blocks.required("OFFS", kCodecBits));
-  DUBSAR_ASSIGN(samples.offsets, decode_bits<std::uint16_t>(offsets, static_cast<std::uint64_t>(counts.edges),
-                                                            samples.offset_bits, "offsets"));
-  DUBSAR_ASSIGN(model.mesh, build_quad_mesh(samples, progress));
-  if (model.mesh.vertex_count() != header.vertices || model.mesh.quad_count() != header.quads)
-    return fail(ErrorKind::kBadData, "exa: {} vertices and {} x-quads found, the header says {} and {}",
-                model.mesh.vertex_count(), model.mesh.quad_count(), header.vertices, header.quads);
-  if (const ExaRow* row = blocks.row("POSN")) {
-    DUBSAR_ASSIGN(model.mesh.positions,
-                  decode_positions(row->codec, blocks.bytes(*row), model.mesh.positions, progress));
-  }
-  if (mesh_checksum(model.mesh) != header.mesh_sum)
-    return fail(ErrorKind::kBadData, "exa: the mesh built from this file is not the one that was written");
-  DUBSAR_TRY(decode_attributes(blocks, model, progress));
-  DUBSAR_TRY(decode_tables(blocks, model));
-  return model;
+  DUBSAR_ASSIGN(const ExaReader reader, ExaReader::open(file));
+  return decode_model(reader, progress);
 }
 
 Result<ExaStats> write_exa(const std::filesystem::path& path, const SurfaceModel& model, Progress& progress) {
@@ -313,70 +455,39 @@ Result<ExaStats> write_exa(const std::filesystem::path& path, const SurfaceModel
 }
 
 Result<SurfaceModel> read_exa(const std::filesystem::path& path, Progress& progress) {
-  const auto named = [&](Error error) {
-    if (error.kind == ErrorKind::kBadData || error.kind == ErrorKind::kTryAgain)
-      error.message = path.string() + ": " + error.message;
-    return tl::unexpected<Error>(std::move(error));
-  };
-  DUBSAR_ASSIGN(const InputFile input, InputFile::open(path));
-  const auto prelude = read_bytes(input, 0, std::min<std::int64_t>(input.size(), kExaPreludeBytes));
-  if (!prelude) return named(prelude.error());
-  // A huge file of another kind is refused before it is read.
-  if (const auto head = exa_head_bytes(*prelude, static_cast<std::uint64_t>(input.size())); !head)
-    return named(head.error());
-  DUBSAR_ASSIGN(const std::string bytes, read_bytes(input, 0, input.size()));
-  try {
-    auto model = decode_exa(bytes, progress);
-    if (!model) return named(std::move(model).error());
-    return model;
-  } catch (const std::bad_alloc&) {
-    return fail(ErrorKind::kTryAgain, "{}: out of memory while reading {} bytes", path.string(), bytes.size());
-  }
+  return with_file<SurfaceModel>(path, [&](const ExaReader& reader) { return decode_model(reader, progress); });
+}
+
+Result<SurfaceModel> read_exa_level(const std::filesystem::path& path, int level, Progress& progress) {
+  if (level < 1 || level > kBrickLevels)
+    return fail(ErrorKind::kUsage, "exa: level {} asked for, 1 to {} expected", level, kBrickLevels);
+  return with_file<SurfaceModel>(path, [&](const ExaReader& reader) { return decode_level(reader, level, progress); });
+}
+
+Result<SurfaceModel> read_exa_box(const std::filesystem::path& path, const GridBox& box, Progress& progress) {
+  return with_file<SurfaceModel>(path, [&](const ExaReader& reader) { return decode_box(reader, box, progress); });
+}
+
+Result<void> check_exa_sums(const std::filesystem::path& path) {
+  return with_file<void>(path, [](const ExaReader& reader) { return reader.check_sums(); });
 }
 
 Result<ExaInfo> read_exa_info(const std::filesystem::path& path) {
-  DUBSAR_ASSIGN(const InputFile input, InputFile::open(path));
-  const auto read = [&]() -> Result<ExaInfo> {
-    DUBSAR_ASSIGN(const std::string prelude,
-                  read_bytes(input, 0, std::min<std::int64_t>(input.size(), kExaPreludeBytes)));
-    const auto size = static_cast<std::uint64_t>(input.size());
-    DUBSAR_ASSIGN(const std::uint64_t head_bytes, exa_head_bytes(prelude, size));
-    DUBSAR_ASSIGN(const std::string head, read_bytes(input, 0, static_cast<std::int64_t>(head_bytes)));
-    DUBSAR_ASSIGN(const ExaTable table, parse_exa_head(head, size));
-    const auto text_of = [&](const ExaRow& row) -> Result<std::string> {
-      DUBSAR_ASSIGN(std::string bytes,
-                    read_bytes(input, static_cast<std::int64_t>(row.offset), static_cast<std::int64_t>(row.length)));
-      DUBSAR_TRY(exa_block(bytes, {row.type, row.codec, row.flags, 0, row.length, row.checksum}));
-      return bytes;
-    };
-    const ExaRow* row = table.find("HEAD");
-    if (!row) return fail(ErrorKind::kBadData, "exa: block \"header\" is missing");
-    DUBSAR_ASSIGN(const std::string text, text_of(*row));
-    DUBSAR_ASSIGN(const ExaHeader header, parse_exa_header(text));
+  return with_file<ExaInfo>(path, [](const ExaReader& reader) -> Result<ExaInfo> {
     ExaInfo info;
-    info.major = table.major;
-    info.minor = table.minor;
-    info.frame = header.frame;
-    info.dims = header.dims;
-    info.isovalue = header.isovalue;
-    info.offset_bits = header.offset_bits;
-    info.closed = header.closed;
-    info.vertices = header.vertices;
-    info.quads = header.quads;
-    info.stats = stats_of(table, header.vertices);
-    if (row = table.find("PART"); row) {
-      DUBSAR_ASSIGN(const std::string partitions, text_of(*row));
+    DUBSAR_ASSIGN(info.header, reader.header());
+    info.major = reader.table().major;
+    info.minor = reader.table().minor;
+    info.stats = stats_of(reader.table(), info.header.vertices);
+    if (reader.has("PART")) {
+      DUBSAR_ASSIGN(const std::string partitions, reader.text("PART"));
       DUBSAR_ASSIGN(info.partitions, parse_exa_partitions(partitions));
     }
-    if (row = table.find("PROV"); row) {
-      DUBSAR_ASSIGN(info.provenance, text_of(*row));
+    if (reader.has("PROV")) {
+      DUBSAR_ASSIGN(info.provenance, reader.text("PROV"));
     }
     return info;
-  };
-  auto info = read();
-  if (!info && info.error().kind == ErrorKind::kBadData)
-    info.error().message = path.string() + ": " + info.error().message;
-  return info;
+  });
 }
 
 }  // namespace dubsar

@@ -6,7 +6,7 @@
 #include "core/base/budget.h"
 #include "core/base/bytes.h"
 #include "core/base/json_text.h"
-#include "core/exa/container.h"
+#include "core/exa/chunks.h"
 
 namespace dubsar {
 namespace {
@@ -67,6 +67,15 @@ class Members {
 };
 }  // namespace
 
+namespace {
+constexpr std::uint64_t kMostPerByte = 16384;  ///< vertices, edges, faces or grid points of a byte of the file
+constexpr std::uint64_t kAlwaysItems = 1 << 16, kAlwaysPoints = std::uint64_t{1} << 32;
+
+std::string_view normals_name(ExaNormals normals) {
+  return normals == ExaNormals::kNone ? "none" : normals == ExaNormals::kRecomputed ? "recomputed" : "exact";
+}
+}  // namespace
+
 Result<std::string> exa_header_json(const ExaHeader& header) {
   if (!std::isfinite(header.isovalue) || !finite(header.frame.scale) || !finite(header.frame.origin_vox) ||
       !finite(header.frame.input_voxel.mm))
@@ -78,15 +87,23 @@ Result<std::string> exa_header_json(const ExaHeader& header) {
   json["closed"] = header.closed;
   json["vertices"] = header.vertices;
   json["quads"] = header.quads;
-  json["mesh_xxh3"] = fmt::format("{:016x}", header.mesh_sum);
+  json["edges"] = header.edges;
+  json["faces"] = header.faces;
+  json["position_sum"] = header.position_sum;
+  json["quad_sum"] = header.quad_sum;
+  json["normals"] = normals_name(header.normals);
+  json["curvatures"] = header.curvatures;
+  json["curvature_method"] = header.curvature == CurvatureMethod::kFit ? "fit" : "pairs";
+  json["unit"] = "mm";
   json["scale"] = vector_json(header.frame.scale);
   json["origin_vox"] = vector_json(header.frame.origin_vox);
   json["voxel_size_mm"] = vector_json(header.frame.input_voxel.mm);
   json["voxel_size_from"] = header.frame.input_voxel.provenance;
+  json["tool"] = header.tool;
   return json.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-Result<ExaHeader> parse_exa_header(std::string_view text) {
+Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_bytes) {
   DUBSAR_ASSIGN(const Json json, parse_json(text, "exa: header"));
   Members members(json);
   ExaHeader header;
@@ -96,11 +113,18 @@ Result<ExaHeader> parse_exa_header(std::string_view text) {
   header.closed = members.flag("closed");
   header.vertices = members.count("vertices");
   header.quads = members.count("quads");
-  const std::string sum = members.text("mesh_xxh3");
+  header.edges = members.count("edges");
+  header.faces = members.count("faces");
+  header.position_sum = static_cast<std::uint32_t>(members.count("position_sum"));
+  header.quad_sum = static_cast<std::uint32_t>(members.count("quad_sum"));
+  const std::string normals = members.text("normals"), method = members.text("curvature_method");
+  header.curvatures = members.flag("curvatures");
+  const std::string unit = members.text("unit");
   header.frame.scale = members.vector("scale");
   header.frame.origin_vox = members.vector("origin_vox");
   header.frame.input_voxel.mm = members.vector("voxel_size_mm");
   header.frame.input_voxel.provenance = members.text("voxel_size_from");
+  header.tool = members.text("tool");
   if (!members.wrong().empty())
     return fail(ErrorKind::kBadData, "exa: \"{}\" is missing or wrong in the header", members.wrong());
   std::uint64_t size[3];
@@ -112,20 +136,36 @@ Result<ExaHeader> parse_exa_header(std::string_view text) {
   DUBSAR_TRY(check_dims("exa", size, 1));
   header.dims = {static_cast<std::int64_t>(size[0]), static_cast<std::int64_t>(size[1]),
                  static_cast<std::int64_t>(size[2])};
+  if (static_cast<std::uint64_t>(header.dims.count()) > kAlwaysPoints + kMostPerByte * file_bytes)
+    return fail(ErrorKind::kBadData, "exa: {} grid points in a file of {} bytes, expected at most {}",
+                header.dims.count(), file_bytes, kAlwaysPoints + kMostPerByte * file_bytes);
+  for (const std::int64_t count : {header.vertices, header.quads, header.edges, header.faces})
+    if (static_cast<std::uint64_t>(count) > kAlwaysItems + kMostPerByte * file_bytes)
+      return fail(ErrorKind::kBadData,
+                  "exa: {} vertices, x-quads, edges or faces in a file of {} bytes, expected at most {}", count,
+                  file_bytes, kAlwaysItems + kMostPerByte * file_bytes);
   if (bits < 1 || bits > 16) return fail(ErrorKind::kBadData, "exa: {} offset bits found, expected 1..16", bits);
   header.offset_bits = static_cast<int>(bits);
   for (int a = 0; a < 3; ++a)
     if (!(header.frame.scale[a] > 0.0) || !(header.frame.input_voxel.mm[a] > 0.0))
       return fail(ErrorKind::kBadData, "exa: a scale or voxel size is not positive");
   if (!std::isfinite(header.isovalue)) return fail(ErrorKind::kBadData, "exa: the isovalue is not finite");
-  std::size_t used = 0;
-  for (const char c : sum) {
-    const int digit = c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
-    if (digit >= 0) header.mesh_sum = header.mesh_sum << 4 | static_cast<unsigned>(digit), ++used;
-  }
-  if (used != 16 || sum.size() != 16)
-    return fail(ErrorKind::kBadData, "exa: the mesh checksum in the header is broken");
+  if (unit != "mm") return fail(ErrorKind::kBadData, "exa: voxel sizes in \"{}\" found, expected \"mm\"", unit);
+  for (const ExaNormals kind : {ExaNormals::kNone, ExaNormals::kRecomputed, ExaNormals::kExact})
+    if (normals == normals_name(kind)) header.normals = kind;
+  if (normals != normals_name(header.normals))
+    return fail(ErrorKind::kBadData, "exa: normals \"{}\" found, expected none, recomputed or exact", normals);
+  if (method != "fit" && method != "pairs")
+    return fail(ErrorKind::kBadData, "exa: curvature method \"{}\" found, expected fit or pairs", method);
+  header.curvature = method == "fit" ? CurvatureMethod::kFit : CurvatureMethod::kPairs;
   return header;
+}
+
+std::uint64_t exa_memory_bound(const ExaHeader& header) {
+  const auto words = static_cast<std::uint64_t>((header.dims.x + 63) / 64 * header.dims.y * header.dims.z);
+  const auto rows = static_cast<std::uint64_t>((header.dims.y + 1) * (header.dims.z + 1));
+  const auto items = static_cast<std::uint64_t>(header.vertices + header.quads + header.edges + header.faces);
+  return words * 9 + rows * 48 + items * 80 + (std::uint64_t{64} << 20);
 }
 
 Result<std::string> exa_partitions_json(const PartitionTable& partitions) {
@@ -146,19 +186,23 @@ Result<PartitionTable> parse_exa_partitions(std::string_view text) {
   return partitions;
 }
 
-std::uint64_t mesh_checksum(const QuadMesh& mesh) {
-  const auto sum_of = [](const auto& items) {
-    return exa_checksum({reinterpret_cast<const char*>(items.data()), items.size() * sizeof(items[0])});
+std::uint32_t position_sum_of(const SurfaceModel& model) {
+  const auto bytes_of = [](const auto& items) {
+    return std::string_view(reinterpret_cast<const char*>(items.data()), items.size() * sizeof(items[0]));
   };
-  std::string sums;
-  append_little(sums, sum_of(mesh.positions));
-  append_little(sums, sum_of(mesh.quads));
+  return crc32_of(bytes_of(model.samples.offsets), crc32_of(bytes_of(model.mesh.positions)));
+}
+
+std::uint32_t quad_sum_of(const QuadMesh& mesh) {
+  const std::uint32_t quads =
+      crc32_of({reinterpret_cast<const char*>(mesh.quads.data()), mesh.quads.size() * sizeof(mesh.quads[0])});
+  std::string corners;
   for (const DoubledCorner& d : mesh.doubled) {
-    append_little(sums, d.quad);
-    append_little(sums, d.vertex);
-    append_little(sums, d.corner);
+    append_little(corners, d.quad);
+    append_little(corners, d.vertex);
+    append_little(corners, d.corner);
   }
-  return exa_checksum(sums);
+  return crc32_of(corners, quads);
 }
 
 }  // namespace dubsar

@@ -7,8 +7,16 @@
 
 #include "core/base/result.h"
 #include "core/parts/surface_model.h"
+#include "core/relief/curvature.h"
 
 namespace dubsar {
+
+/// What the arrays of normals and curvatures are.
+enum class ExaNormals {
+  kNone,
+  kRecomputed,  ///< recomputed_normals() and principal_curvatures() of the mesh that was read
+  kExact,       ///< stored
+};
 
 struct ExaHeader {
   GridFrame frame;
@@ -17,18 +25,28 @@ struct ExaHeader {
   int offset_bits = 4;
   bool closed = true;
   std::int64_t vertices = 0, quads = 0;
-  std::uint64_t mesh_sum = 0;  ///< mesh_checksum() of the mesh that was written
+  std::int64_t edges = 0, faces = 0;  ///< offsets and face decisions
+  ExaNormals normals = ExaNormals::kNone;
+  bool curvatures = false;  ///< kRecomputed: k_min and k_max, too
+  CurvatureMethod curvature = CurvatureMethod::kFit;
+  std::string tool;                              ///< program and version that wrote the file
+  std::uint32_t position_sum = 0, quad_sum = 0;  ///< position_sum_of(), quad_sum_of() of the mesh that was written
 };
 
 /// kBadData when a number is not finite (JSON cannot hold it).
 Result<std::string> exa_header_json(const ExaHeader& header);
-/// kBadData: missing or wrong members, dimensions out of bounds.
-Result<ExaHeader> parse_exa_header(std::string_view text);
+/// kBadData: missing or wrong members, dimensions out of bounds, or counts that no file of `file_bytes` can have.
+Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_bytes);
+
+/// Most memory that reading a file with this header takes, besides the file itself.
+std::uint64_t exa_memory_bound(const ExaHeader& header);
 
 Result<std::string> exa_partitions_json(const PartitionTable& partitions);
 Result<PartitionTable> parse_exa_partitions(std::string_view text);
 
-/// Over positions, quads and doubled corners: tells a reader that builds another mesh from the same samples.
-std::uint64_t mesh_checksum(const QuadMesh& mesh);
+/// CRC-32 over the positions as floats and the offsets, and over x-quads and doubled corners: tells a reader that
+/// decodes other samples, or builds another mesh from the same.
+std::uint32_t position_sum_of(const SurfaceModel& model);
+std::uint32_t quad_sum_of(const QuadMesh& mesh);
 
 }  // namespace dubsar

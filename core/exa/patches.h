@@ -1,10 +1,8 @@
 #pragma once
-// Fill patches as bytes. Few and small, so they are stored plainly.
-//
-//   count 4; then per patch: part 1, reverse part 1, zero 2, extra vertices 4, triangles 4, vertices 12 each,
-//   triangles 12 each
+// Fill patches as bytes (docs/exa.md, "Fill patches").
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,9 +12,15 @@
 
 namespace dubsar {
 
-std::string encode_patches(const std::vector<FillPatch>& patches);
-/// kBadData: counts beyond the bytes that are there, ids of vertices that do not exist, positions that are not finite.
-Result<std::vector<FillPatch>> decode_patches(std::string_view bytes, std::int64_t vertex_count);
+inline constexpr double kPatchStep = 1.0 / 1024.0;  ///< grid steps
+
+/// Rounds the vertices of the patches to kPatchStep, which is what EXA stores compactly. Twice is the same as once.
+void settle_patches(std::vector<FillPatch>& patches);
+
+/// One chunk. Lossless.
+std::vector<std::string> encode_patches(const std::vector<FillPatch>& patches, std::int64_t vertex_count);
+/// kBadData: counts beyond what the bytes can hold, ids of vertices that do not exist, positions that are not finite.
+Result<std::vector<FillPatch>> decode_patches(std::span<const std::string_view> chunks, std::int64_t vertex_count);
 /// The same checks on a model in memory.
 Result<void> check_patches(const std::vector<FillPatch>& patches, std::int64_t vertex_count);
 

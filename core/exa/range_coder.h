@@ -1,7 +1,7 @@
 #pragma once
-// Adaptive binary range coder (Martin 1979; carry handling as in LZMA). Integers only, so the same bytes everywhere.
+// Range coder (Martin 1979; carry handling as in LZMA) for bits and for symbols with given probabilities, and a bit
+// whose probability is learnt. Integers only, so the same bytes everywhere (docs/exa.md, "Range coder").
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -10,20 +10,27 @@
 
 namespace dubsar {
 
+/// Probabilities are 16-bit fractions: a share of kProbabilityOne that is never 0 and never all.
+inline constexpr std::uint32_t kProbabilityOne = 1u << 16;
+
 /// Probability that a bit is 1, learnt as the mean of what was seen, later as a slow moving average.
 class AdaptiveBit {
  public:
-  /// 15-bit probability of a 1, never certain.
-  std::uint32_t probability() const noexcept { return std::clamp<std::uint32_t>(p_ >> 7, kLeast, kOne - kLeast); }
+  AdaptiveBit() = default;
+  /// Starts at `p` (of 65536) as if `seen` bits had been seen.
+  constexpr AdaptiveBit(std::uint32_t p, int seen) noexcept : p_(p << 6), seen_(static_cast<std::uint8_t>(seen)) {}
+  std::uint32_t probability() const noexcept {
+    const std::uint32_t p = p_ >> 6;
+    return p < kLeast ? kLeast : p > kProbabilityOne - kLeast ? kProbabilityOne - kLeast : p;
+  }
   void learn(bool bit) noexcept {
     const std::int64_t target = bit ? (1 << 22) - 1 : 0;
     p_ = static_cast<std::uint32_t>(p_ + (target - p_) * kRate[seen_] / 65536);
     if (seen_ + 1 < kLimit) ++seen_;
   }
-  static constexpr std::uint32_t kOne = 1 << 15;
 
  private:
-  static constexpr std::uint32_t kLeast = 4;
+  static constexpr std::uint32_t kLeast = 8;
   static constexpr int kLimit = 160;  // tuned on spheres and a noisy phantom: 60 to 250 differ by less than 1 %
   static constexpr std::array<std::int32_t, kLimit> kRate = [] {
     std::array<std::int32_t, kLimit> rate{};
@@ -36,26 +43,54 @@ class AdaptiveBit {
 
 class RangeEncoder {
  public:
-  void code(AdaptiveBit& model, bool bit) {
-    const std::uint32_t bound = (range_ / AdaptiveBit::kOne) * model.probability();
-    if (bit) {
+  /// A bit that is 1 with probability p / 65536, 0 < p < 65536.
+  void bit(std::uint32_t p, bool value) {
+    const std::uint32_t bound = (range_ >> 16) * p;
+    if (value) {
       range_ = bound;
     } else {
       low_ += bound;
       range_ -= bound;
     }
-    model.learn(bit);
+    normalise();
+  }
+  void bit(AdaptiveBit& model, bool value) {
+    bit(model.probability(), value);
+    model.learn(value);
+  }
+  /// The symbol that holds [start, start + size) of 65536.
+  void symbol(std::uint32_t start, std::uint32_t size) {
+    range_ >>= 16;
+    low_ += std::uint64_t{range_} * start;
+    range_ *= size;
+    normalise();
+  }
+  /// The lowest `count` (0..16) bits of a number, all equally likely.
+  void raw(std::uint32_t value, int count) {
+    if (count > 0) symbol(value << (16 - count), 1u << (16 - count));
+  }
+  /// All bytes: no more than are needed, as behind the end there are zeros.
+  std::string take() {
+    const std::uint64_t last = low_ + range_ - 1;
+    for (int k = 31; k >= 0; --k) {
+      const std::uint64_t mask = (std::uint64_t{1} << k) - 1, rounded = (low_ + mask) & ~mask;
+      if (rounded > last) continue;
+      low_ = rounded;
+      break;
+    }
+    for (int i = 0; i < 5; ++i) shift_low();
+    while (!bytes_.empty() && bytes_.back() == '\0') bytes_.pop_back();
+    bytes_.erase(0, 1);  // the carry out of the first byte, always 0
+    return std::move(bytes_);
+  }
+
+ private:
+  void normalise() {
     while (range_ < (1u << 24)) {
       range_ <<= 8;
       shift_low();
     }
   }
-  std::string take() {
-    for (int i = 0; i < 5; ++i) shift_low();
-    return std::move(bytes_);
-  }
-
- private:
   void shift_low() {
     if (low_ < 0xFF000000u || low_ > 0xFFFFFFFFu) {
       const auto carry = static_cast<unsigned>(low_ >> 32);
@@ -73,37 +108,55 @@ class RangeEncoder {
   std::uint8_t cache_ = 0;
 };
 
-/// Decodes what RangeEncoder wrote. Damaged bytes give wrong bits, never a read outside; past the end come zeros.
+/// Decodes what RangeEncoder wrote. Damaged bytes give wrong values, never a read outside; past the end come zeros.
 class RangeDecoder {
  public:
   explicit RangeDecoder(std::string_view bytes) noexcept : bytes_(bytes) {
-    for (int i = 0; i < 5; ++i) code_ = code_ << 8 | next();
+    for (int i = 0; i < 4; ++i) code_ = code_ << 8 | next();
   }
-  bool decode(AdaptiveBit& model) noexcept {
-    const std::uint32_t bound = (range_ / AdaptiveBit::kOne) * model.probability();
-    const bool bit = code_ < bound;
-    if (bit) {
+  bool bit(std::uint32_t p) noexcept {
+    const std::uint32_t bound = (range_ >> 16) * p;
+    const bool value = code_ < bound;
+    if (value) {
       range_ = bound;
     } else {
       code_ -= bound;
       range_ -= bound;
     }
-    model.learn(bit);
+    normalise();
+    return value;
+  }
+  bool bit(AdaptiveBit& model) noexcept {
+    const bool value = bit(model.probability());
+    model.learn(value);
+    return value;
+  }
+  /// The place, 0..65535, that the next symbol holds; symbol() with its interval must follow.
+  std::uint32_t place() noexcept {
+    range_ >>= 16;
+    const std::uint32_t at = code_ / range_;
+    return at < kProbabilityOne ? at : kProbabilityOne - 1;
+  }
+  void symbol(std::uint32_t start, std::uint32_t size) noexcept {
+    code_ -= range_ * start;
+    range_ *= size;
+    normalise();
+  }
+  std::uint32_t raw(int count) noexcept {
+    if (count == 0) return 0;
+    const std::uint32_t value = place() >> (16 - count);
+    symbol(value << (16 - count), 1u << (16 - count));
+    return value;
+  }
+
+ private:
+  void normalise() noexcept {
     while (range_ < (1u << 24)) {
       range_ <<= 8;
       code_ = code_ << 8 | next();
     }
-    return bit;
   }
-  bool past_end() const noexcept { return used_ > bytes_.size(); }
-  /// True when exactly all bytes were used, as after decoding a whole undamaged stream.
-  bool at_end() const noexcept { return used_ == bytes_.size(); }
-
- private:
-  std::uint32_t next() noexcept {
-    const std::size_t at = used_++;
-    return at < bytes_.size() ? static_cast<unsigned char>(bytes_[at]) : 0u;
-  }
+  std::uint32_t next() noexcept { return used_ < bytes_.size() ? static_cast<unsigned char>(bytes_[used_++]) : 0u; }
   std::string_view bytes_;
   std::size_t used_ = 0;
   std::uint32_t code_ = 0, range_ = 0xFFFFFFFFu;

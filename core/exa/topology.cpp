@@ -1,398 +1,384 @@
 #include "core/exa/topology.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <vector>
+#include <atomic>
+#include <utility>
 
 #include "core/base/budget.h"
 #include "core/base/parallel.h"
-#include "core/exa/bitstream.h"
-#include "core/exa/range_coder.h"
+#include "core/exa/sign_coder.h"
 
 namespace dubsar {
 namespace {
-constexpr int kTop = 5;              // spacing 32: raw signs of the top lattice cost 1/32768 bit per grid point
-constexpr std::size_t kStep = 4096;  // cells between looks at `progress`
-constexpr std::array<int, 7> kPhases{7, 6, 5, 3, 4, 2, 1};  // bit a: the point is new along axis a
+constexpr int kTopSpacing = 8, kTopCells = kBrickCells / kTopSpacing;
 
-using Point = std::array<std::int64_t, 3>;
-using Cell = std::array<std::uint16_t, 3>;
+/// Cells along an axis: whole cells of the top lattice, at least one.
+std::int64_t padded_cells(std::int64_t points) { return std::max<std::int64_t>(1, (points + 6) / 8) * 8; }
+std::int64_t bricks_along(std::int64_t points) { return (padded_cells(points) + kBrickCells - 1) / kBrickCells; }
+std::size_t count_of(const Dims& d) { return static_cast<std::size_t>(d.count()); }
 
-/// Cells of spacing 2^level along an axis; a volume one point thick has one cell without extent.
-std::int64_t cells_along(std::int64_t dim, int level) {
-  return std::max<std::int64_t>(1, (dim - 1 + (std::int64_t{1} << level) - 1) >> level);
+struct Brick {
+  std::array<std::int64_t, 3> low{};  ///< first point
+  std::array<int, 3> cells{};         ///< finest cells
+};
+Brick brick_at(const Dims& dims, std::int64_t index) {
+  const Dims grid = brick_grid(dims);
+  const std::array<std::int64_t, 3> place{index % grid.x, index / grid.x % grid.y, index / grid.slice()};
+  const std::array<std::int64_t, 3> points{dims.x, dims.y, dims.z};
+  Brick brick;
+  for (std::size_t a = 0; a < 3; ++a) {
+    brick.low[a] = place[a] * kBrickCells;
+    brick.cells[a] = static_cast<int>(std::min<std::int64_t>(kBrickCells, padded_cells(points[a]) - brick.low[a]));
+  }
+  return brick;
 }
-Dims cells_of(const Dims& d, int level) {
-  return {cells_along(d.x, level), cells_along(d.y, level), cells_along(d.z, level)};
+
+/// Beyond the end the last slice is repeated.
+bool sign_at(const BitVolume& signs, std::int64_t x, std::int64_t y, std::int64_t z) {
+  const Dims& d = signs.dims();
+  return signs.get(std::min(x, d.x - 1), std::min(y, d.y - 1), std::min(z, d.z - 1));
 }
 
-std::vector<std::int64_t> top_coordinates(std::int64_t dim) {
-  std::vector<std::int64_t> found;
-  for (std::int64_t c = 0; c < dim - 1; c += std::int64_t{1} << kTop) found.push_back(c);
-  found.push_back(dim - 1);
-  return found;
+BitVolume every_eighth(const BitVolume& signs) {
+  BitVolume coarse(coarse_dims(signs.dims()));
+  const Dims& d = coarse.dims();
+  for (std::int64_t z = 0; z < d.z; ++z)
+    for (std::int64_t y = 0; y < d.y; ++y)
+      for (std::int64_t x = 0; x < d.x; ++x) coarse.set(x, y, z, sign_at(signs, 8 * x, 8 * y, 8 * z));
+  return coarse;
 }
 
-/// Level 1 cells, of at most 3x3x3 points, that contain both signs.
-BitVolume active_cells(const BitVolume& signs) {
+/// The corner signs of a brick, from the volume of every eighth point.
+SignLattice top_lattice(const BitVolume& coarse, const Brick& brick) {
+  SignLattice top({brick.cells[0] / 8, brick.cells[1] / 8, brick.cells[2] / 8});
+  for (int z = 0; z <= top.cells()[2]; ++z)
+    for (int y = 0; y <= top.cells()[1]; ++y)
+      for (int x = 0; x <= top.cells()[0]; ++x)
+        if (coarse.get(brick.low[0] / 8 + x, brick.low[1] / 8 + y, brick.low[2] / 8 + z)) top.set(x, y, z);
+  return top;
+}
+
+/// What the encoder knows of a brick: its signs and which cells of spacing 2, 4, 8 have both signs inside.
+class BrickTruth {
+ public:
+  BrickTruth(const BitVolume& signs, const Brick& brick) : signs_(signs), brick_(brick) {
+    std::array<int, 3> n{brick.cells[0] / 2, brick.cells[1] / 2, brick.cells[2] / 2};
+    for (std::size_t level = 1; level <= 3; ++level) {
+      cells_[level] = n;
+      mixed_[level].assign(static_cast<std::size_t>(n[1] * n[2]), 0);
+      for (int z = 0; z < n[2]; ++z)
+        for (int y = 0; y < n[1]; ++y) mixed_[level][row(level, y, z)] = level == 1 ? pairs(y, z) : halves(level, y, z);
+      for (int& c : n) c /= 2;
+    }
+  }
+  bool sign(int x, int y, int z) const {
+    return sign_at(signs_, brick_.low[0] + x, brick_.low[1] + y, brick_.low[2] + z);
+  }
+  bool mixed(int level, int x, int y, int z) const {
+    const auto l = static_cast<std::size_t>(level);
+    return mixed_[l][row(l, y, z)] >> x & 1;
+  }
+  bool any() const {
+    return std::any_of(mixed_[3].begin(), mixed_[3].end(), [](std::uint64_t word) { return word != 0; });
+  }
+
+ private:
+  std::size_t row(std::size_t level, int y, int z) const { return static_cast<std::size_t>(z * cells_[level][1] + y); }
+  /// 129 points of a row: the words that it starts with and the last point.
+  struct RowBits {
+    std::uint64_t low = 0, high = 0;
+    bool last = false;
+  };
+  RowBits row_bits(int y, int z) const {
+    const Dims& d = signs_.dims();
+    const std::uint64_t* words = signs_.row(std::min(brick_.low[1] + y, d.y - 1), std::min(brick_.low[2] + z, d.z - 1));
+    const std::int64_t first = brick_.low[0] / 64, count = signs_.words_per_row(), points = d.x - brick_.low[0];
+    RowBits bits;
+    if (points >= 129) return {words[first], words[first + 1], (words[first + 2] & 1) != 0};
+    bits.low = words[first];
+    if (first + 1 < count) bits.high = words[first + 1];
+    bits.last = signs_.get(d.x - 1, std::min(brick_.low[1] + y, d.y - 1), std::min(brick_.low[2] + z, d.z - 1));
+    if (!bits.last) return bits;
+    if (points < 64) bits.low |= ~std::uint64_t{0} << points;
+    if (points <= 64)
+      bits.high = ~std::uint64_t{0};
+    else if (points < 128)
+      bits.high |= ~std::uint64_t{0} << (points - 64);
+    return bits;
+  }
+  static std::uint64_t even_bits(std::uint64_t w) {
+    w &= 0x5555555555555555u;
+    w = (w | w >> 1) & 0x3333333333333333u;
+    w = (w | w >> 2) & 0x0F0F0F0F0F0F0F0Fu;
+    w = (w | w >> 4) & 0x00FF00FF00FF00FFu;
+    w = (w | w >> 8) & 0x0000FFFF0000FFFFu;
+    return (w | w >> 16) & 0xFFFFFFFFu;
+  }
+  std::uint64_t pairs(int y, int z) const {
+    RowBits any, all{~std::uint64_t{0}, ~std::uint64_t{0}, true};
+    for (int p = 0; p < 9; ++p) {
+      const RowBits bits = row_bits(2 * y + p % 3, 2 * z + p / 3);
+      any = {any.low | bits.low, any.high | bits.high, any.last || bits.last};
+      all = {all.low & bits.low, all.high & bits.high, all.last && bits.last};
+    }
+    const auto three = [](std::uint64_t w, bool next, auto join) {  // bit i with bits i + 1 and i + 2
+      return join(join(w, w >> 1), w >> 2 | std::uint64_t{next} << 62);
+    };
+    const auto both = [](std::uint64_t a, std::uint64_t b) { return a & b; };
+    const auto either = [](std::uint64_t a, std::uint64_t b) { return a | b; };
+    const std::uint64_t low = three(any.low, any.high & 1, either) & ~three(all.low, all.high & 1, both);
+    const std::uint64_t high = three(any.high, any.last, either) & ~three(all.high, all.last, both);
+    const std::uint64_t mixed = even_bits(low) | even_bits(high) << 32;
+    const int n = cells_[1][0];
+    return n >= 64 ? mixed : mixed & ((std::uint64_t{1} << n) - 1);
+  }
+  std::uint64_t halves(std::size_t level, int y, int z) const {
+    std::uint64_t any = 0;
+    for (int p = 0; p < 4; ++p) any |= mixed_[level - 1][row(level - 1, 2 * y + p % 2, 2 * z + p / 2)];
+    return even_bits(any | any >> 1);
+  }
+
+  const BitVolume& signs_;
+  Brick brick_;
+  std::array<std::array<int, 3>, 4> cells_{};
+  std::array<std::vector<std::uint64_t>, 4> mixed_;
+};
+
+struct EncodeBrick {
+  const BrickTruth& truth;
+  SignStatistics& statistics;
+  RangeEncoder& out;
+  bool flag(int context, int level, int x, int y, int z) {
+    const bool hidden = truth.mixed(level, x, y, z);
+    out.bit(statistics.flag(context), hidden);
+    return hidden;
+  }
+  bool point(const SignLattice& lattice, int level, int phase, int x, int y, int z) {
+    const bool inside = truth.sign(x << level, y << level, z << level);
+    out.bit(statistics.predict(lattice, level, phase, x, y, z), inside);
+    statistics.learn(inside);
+    return inside;
+  }
+};
+
+struct DecodeBrick {
+  SignStatistics& statistics;
+  RangeDecoder& in;
+  std::uint64_t points = 0;
+  bool flag(int context, int, int, int, int) { return in.bit(statistics.flag(context)); }
+  bool point(const SignLattice& lattice, int level, int phase, int x, int y, int z) {
+    const bool inside = in.bit(statistics.predict(lattice, level, phase, x, y, z));
+    statistics.learn(inside);
+    ++points;
+    return inside;
+  }
+};
+
+/// The chunks of one brick by level. The first byte of the coarsest names the model: the one that is better there.
+std::array<std::string, 3> encode_brick(const BrickTruth& truth, const SignLattice& top, bool is_coarse) {
+  struct Attempt {
+    SignBrick brick;
+    SignStatistics statistics;
+    std::array<std::string, 3> code;
+    void refine(const BrickTruth& by, std::size_t level) {
+      RangeEncoder out;
+      EncodeBrick coder{by, statistics, out};
+      brick.refine(coder, static_cast<int>(level));
+      code[level] = out.take();
+    }
+    std::size_t bytes() const { return code[1].size() + code[2].size(); }
+  };
+  std::optional<Attempt> best;
+  for (std::size_t model = 0; model < kSignModels; ++model) {
+    Attempt attempt{SignBrick(top), SignStatistics(model, is_coarse), {}};
+    attempt.refine(truth, 2);
+    attempt.refine(truth, 1);
+    attempt.code[2].insert(attempt.code[2].begin(), static_cast<char>(model));
+    if (!best || attempt.bytes() < best->bytes()) best = std::move(attempt);
+  }
+  best->refine(truth, 0);
+  return best->code;
+}
+
+/// One chunk a brick and level.
+Result<std::array<std::vector<std::string>, 3>> encode_bricks(const BitVolume& signs, const BitVolume& coarse,
+                                                              bool is_coarse, Progress& progress) {
   const Dims& dims = signs.dims();
-  BitVolume active(cells_of(dims, 1));
-  const Dims& cells = active.dims();
-  const std::int64_t words = signs.words_per_row();
-  parallel_chunks(cells.y * cells.z, 64, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<std::uint64_t> any(static_cast<std::size_t>(words) + 1), all(static_cast<std::size_t>(words) + 1);
-    for (std::int64_t r = begin; r < end; ++r) {
-      const std::int64_t y = r % cells.y, z = r / cells.y;
-      std::fill(any.begin(), any.end(), 0);
-      std::fill(all.begin(), all.end(), ~std::uint64_t{0});
-      for (std::int64_t pz = 2 * z; pz <= std::min(2 * z + 2, dims.z - 1); ++pz)
-        for (std::int64_t py = 2 * y; py <= std::min(2 * y + 2, dims.y - 1); ++py) {
-          const std::uint64_t* row = signs.row(py, pz);
-          for (std::int64_t w = 0; w < words; ++w) {
-            any[static_cast<std::size_t>(w)] |= row[w];
-            all[static_cast<std::size_t>(w)] &= row[w];
-          }
-        }
-      if (dims.x % 64 != 0) all[static_cast<std::size_t>(words) - 1] |= ~std::uint64_t{0} << (dims.x % 64);
-      for (std::size_t w = 0; w < static_cast<std::size_t>(words); ++w) {
-        const std::uint64_t o = any[w] | any[w] >> 1 | any[w + 1] << 63 | any[w] >> 2 | any[w + 1] << 62;
-        const std::uint64_t n = all[w] & (all[w] >> 1 | all[w + 1] << 63) & (all[w] >> 2 | all[w + 1] << 62);
-        for (std::uint64_t mixed = o & ~n & 0x5555555555555555ULL; mixed != 0; mixed &= mixed - 1) {
-          const std::int64_t x = static_cast<std::int64_t>(w) * 32 + std::countr_zero(mixed) / 2;
-          if (x < cells.x) active.set(x, y, z, true);
-        }
+  std::array<std::vector<std::string>, 3> chunks;
+  for (auto& level : chunks) level.resize(count_of(brick_grid(dims)));
+  parallel_for(brick_grid(dims).count(), 1, [&](std::int64_t index) {
+    if (progress.cancelled()) return;
+    const Brick at = brick_at(dims, index);
+    const BrickTruth truth(signs, at);
+    if (truth.any()) {
+      std::array<std::string, 3> code = encode_brick(truth, top_lattice(coarse, at), is_coarse);
+      for (std::size_t level = 0; level < kBrickLevels; ++level)
+        chunks[level][static_cast<std::size_t>(index)] = std::move(code[level]);
+    }
+    progress.advance(1);
+  });
+  if (progress.cancelled()) return cancelled_error();
+  return chunks;
+}
+
+/// The points that a brick owns: all but those of its far sides that the next brick has, too.
+struct Owned {
+  std::array<std::int64_t, 3> low{}, end{};
+};
+Owned owned_by(const Brick& brick, int level, const Dims& points, bool all_sides) {
+  const std::array<std::int64_t, 3> size{points.x, points.y, points.z};
+  Owned owned;
+  for (std::size_t a = 0; a < 3; ++a) {
+    owned.low[a] = brick.low[a] >> level;
+    const std::int64_t far = owned.low[a] + (brick.cells[a] >> level);
+    owned.end[a] = std::min(size[a], all_sides || far + 1 >= size[a] ? far + 1 : far);
+  }
+  return owned;
+}
+
+/// Sets bits [first, first + count) of a row from `bits`, which are 0 beyond count.
+void put_bits(std::uint64_t* row, std::int64_t first, std::uint64_t bits) {
+  row[first >> 6] |= bits << (first & 63);
+  if ((first & 63) != 0 && bits >> (64 - (first & 63)) != 0) row[(first >> 6) + 1] |= bits >> (64 - (first & 63));
+}
+
+/// `bits_of(y, z, from)`: 64 signs of a row of the brick.
+template <class BitsOf>
+void store(const Owned& owned, const BitsOf& bits_of, BitVolume& out) {
+  for (std::int64_t z = owned.low[2]; z < owned.end[2]; ++z)
+    for (std::int64_t y = owned.low[1]; y < owned.end[1]; ++y)
+      for (std::int64_t x = owned.low[0]; x < owned.end[0]; x += 64) {
+        std::uint64_t bits = bits_of(static_cast<int>(y - owned.low[1]), static_cast<int>(z - owned.low[2]),
+                                     static_cast<int>(x - owned.low[0]));
+        if (owned.end[0] - x < 64) bits &= (std::uint64_t{1} << (owned.end[0] - x)) - 1;
+        if (bits != 0) put_bits(out.row(y, z), x, bits);
       }
+}
+
+/// `out`: the points of spacing 2^level of a volume of `dims` points.
+Result<void> decode_bricks(const std::array<std::vector<std::string_view>, 3>& chunks, const Dims& dims,
+                           const BitVolume& coarse, bool is_coarse, int level, const std::optional<GridBox>& box,
+                           std::uint64_t most_points, BitVolume& out, Progress& progress) {
+  const std::int64_t bricks = brick_grid(dims).count();
+  for (int l = level; l < kBrickLevels; ++l)
+    if (chunks[static_cast<std::size_t>(l)].size() != static_cast<std::size_t>(bricks))
+      return fail(ErrorKind::kBadData, "exa: {} chunks of signs found, {} bricks expected",
+                  chunks[static_cast<std::size_t>(l)].size(), bricks);
+  // Words of 64 points are shared by bricks of a row at coarse levels: one row of bricks at a time.
+  // Bricks of a box write their far sides, too: all in one row.
+  const std::int64_t row = box ? bricks : brick_grid(dims).x;
+  std::atomic<bool> broken{false};
+  std::atomic<std::uint64_t> points{0};
+  parallel_for(bricks / row, 1, [&](std::int64_t r) {
+    for (std::int64_t index = r * row; index < (r + 1) * row; ++index) {
+      if (progress.cancelled()) return;
+      const auto i = static_cast<std::size_t>(index);
+      const Brick at = brick_at(dims, index);
+      bool wanted = true;
+      for (std::size_t a = 0; box && a < 3; ++a)
+        wanted = wanted && at.low[a] <= box->high[a] && at.low[a] + at.cells[a] >= box->low[a];
+      if (!wanted) continue;
+      const Owned owned = owned_by(at, level, out.dims(), box.has_value());
+      SignLattice top = top_lattice(coarse, at);
+      if (chunks[2][i].empty()) {
+        const std::uint64_t fill = top.get(0, 0, 0) ? ~std::uint64_t{0} : 0;
+        if (fill != 0)
+          store(
+              owned, [fill](int, int, int) { return fill; }, out);
+      } else {
+        const auto model = static_cast<unsigned char>(chunks[2][i][0]);
+        if (model >= kSignModels) {
+          broken = true;
+          return;
+        }
+        SignBrick brick(std::move(top));
+        SignStatistics statistics(model, is_coarse);
+        for (int l = kBrickLevels - 1; l >= level; --l) {
+          RangeDecoder in(chunks[static_cast<std::size_t>(l)][i].substr(l == 2 ? 1 : 0));
+          DecodeBrick coder{statistics, in};
+          brick.refine(coder, l);
+          if ((points += coder.points) > most_points) return;
+        }
+        const SignLattice& lattice = brick.lattice();
+        store(
+            owned, [&](int y, int z, int from) { return lattice.word(y, z, from); }, out);
+      }
+      progress.advance(1);
     }
   });
-  return active;
+  if (progress.cancelled()) return cancelled_error();
+  if (points > most_points)
+    return fail(ErrorKind::kBadData, "exa: more than {} signs are coded, which the surface cannot need", most_points);
+  if (broken) return fail(ErrorKind::kBadData, "exa: a brick of signs names a model that is not known");
+  return {};
 }
-
-/// Cells of the next coarser level with an active child.
-BitVolume coarser(const BitVolume& fine, const Dims& dims) {
-  BitVolume active(dims);
-  for (std::int64_t z = 0; z < fine.dims().z; ++z)
-    for (std::int64_t y = 0; y < fine.dims().y; ++y) {
-      const std::uint64_t* row = fine.row(y, z);
-      for (std::int64_t w = 0; w < fine.words_per_row(); ++w)
-        for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1)
-          active.set((w * 64 + std::countr_zero(bits)) / 2, y / 2, z / 2, true);
-    }
-  return active;
-}
-
-void fill_ones(BitVolume& signs, const Point& low, const Point& high) {
-  const std::int64_t first = low[0] >> 6, last = high[0] >> 6;
-  const std::uint64_t head = ~std::uint64_t{0} << (low[0] & 63), tail = ~std::uint64_t{0} >> (63 - (high[0] & 63));
-  for (std::int64_t z = low[2]; z <= high[2]; ++z)
-    for (std::int64_t y = low[1]; y <= high[1]; ++y) {
-      std::uint64_t* row = signs.row(y, z);
-      for (std::int64_t w = first; w <= last; ++w)
-        row[w] |= (w == first ? head : ~std::uint64_t{0}) & (w == last ? tail : ~std::uint64_t{0});
-    }
-}
-
-/// Encoder and decoder walk the same way; Coder says what a bit is.
-template <class Coder>
-class Walk {
- public:
-  Walk(Coder& coder, Progress& progress) : coder_(coder), progress_(progress), dims_(coder.signs().dims()) {
-    size_ = {dims_.x, dims_.y, dims_.z};
-    point_models_.resize(3 * (kCentreModels + 3 * kFaceModels + 3 * kEdgeModels));
-  }
-
-  Result<void> run() {
-    DUBSAR_TRY(top());
-    for (level_ = kTop - 1; level_ >= 0; --level_) {
-      step_ = std::int64_t{1} << level_;
-      parents_along_ = {parents_.dims().x, parents_.dims().y, parents_.dims().z};
-      for (const int phase : kPhases) {
-        for (std::size_t c = 0; c < list_.size(); ++c) {
-          new_points(list_[c], phase);
-          if (c % kStep == 0) DUBSAR_TRY(look());
-        }
-      }
-      DUBSAR_TRY(children());
-      progress_.advance(1);
-    }
-    return look();
-  }
-
- private:
-  static constexpr std::size_t kCentreModels = 1 << 11, kFaceModels = 1 << 9, kEdgeModels = 1 << 13;
-
-  Result<void> look() const {
-    if (progress_.cancelled()) return cancelled_error();
-    if (coder_.exhausted()) return fail(ErrorKind::kBadData, "exa: the sign code ends too early");
-    return {};
-  }
-
-  bool sign(const Point& p) const { return coder_.signs().get(p[0], p[1], p[2]); }
-
-  Point low(const Cell& cell, int level) const {
-    return {std::int64_t{cell[0]} << level, std::int64_t{cell[1]} << level, std::int64_t{cell[2]} << level};
-  }
-  Point high(const Point& low_corner, int level) const {
-    Point p;
-    for (std::size_t a = 0; a < 3; ++a) p[a] = std::min(low_corner[a] + (std::int64_t{1} << level), size_[a] - 1);
-    return p;
-  }
-  /// Number of corners that are inside, 0..8.
-  int inside_corners(const Point& a, const Point& b) const {
-    int count = 0;
-    for (int c = 0; c < 8; ++c) count += sign({c & 1 ? b[0] : a[0], c & 2 ? b[1] : a[1], c & 4 ? b[2] : a[2]}) ? 1 : 0;
-    return count;
-  }
-
-  /// Is the cell active? Codes a flag where its corners agree and it has an inside; fills inactive cells.
-  bool activity(const Cell& cell, int level, const BitVolume& known) {
-    const Point a = low(cell, level), b = high(a, level);
-    const int corners = inside_corners(a, b);
-    if (corners != 0 && corners != 8) return true;
-    int near = 0;
-    if (cell[0] > 0) near += known.get(cell[0] - 1, cell[1], cell[2]) ? 1 : 0;
-    if (cell[1] > 0) near += known.get(cell[0], cell[1] - 1, cell[2]) ? 1 : 0;
-    if (cell[2] > 0) near += known.get(cell[0], cell[1], cell[2] - 1) ? 1 : 0;
-    if (coder_.flag(flag_models_[static_cast<std::size_t>(level * 8 + near * 2 + corners / 8)], cell, level))
-      return true;
-    if (corners == 8) coder_.fill(a, b);
-    return false;
-  }
-
-  Result<void> top() {
-    const auto xs = top_coordinates(size_[0]), ys = top_coordinates(size_[1]), zs = top_coordinates(size_[2]);
-    for (const std::int64_t z : zs)
-      for (const std::int64_t y : ys)
-        for (const std::int64_t x : xs) coder_.raw({x, y, z});
-    parents_ = BitVolume(cells_of(dims_, kTop));
-    const Dims& cells = parents_.dims();
-    for (std::int64_t z = 0; z < cells.z; ++z)
-      for (std::int64_t y = 0; y < cells.y; ++y) {
-        for (std::int64_t x = 0; x < cells.x; ++x) {
-          const Cell cell{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), static_cast<std::uint16_t>(z)};
-          if (!activity(cell, kTop, parents_)) continue;
-          parents_.set(x, y, z, true);
-          list_.push_back(cell);
-        }
-        DUBSAR_TRY(look());
-      }
-    return {};
-  }
-
-  Result<void> children() {
-    if (level_ == 0) return {};
-    const std::uint64_t most = list_.size() * 8 * sizeof(Cell);
-    if (most > (std::uint64_t{256} << 20)) DUBSAR_TRY(check_memory("exa signs", most));
-    std::vector<Cell> next;
-    next.reserve(list_.size() * 3);
-    BitVolume active(cells_of(dims_, level_));
-    const std::array<std::int64_t, 3> along{active.dims().x, active.dims().y, active.dims().z};
-    for (std::size_t c = 0; c < list_.size(); ++c) {
-      for (int octant = 0; octant < 8; ++octant) {
-        Cell child;
-        bool exists = true;
-        for (std::size_t a = 0; a < 3; ++a) {
-          const int index = 2 * list_[c][a] + (octant >> a & 1);
-          exists = exists && index < along[a];
-          child[a] = static_cast<std::uint16_t>(index);
-        }
-        if (!exists || !activity(child, level_, active)) continue;
-        active.set(child[0], child[1], child[2], true);
-        next.push_back(child);
-      }
-      if (c % kStep == 0) DUBSAR_TRY(look());
-    }
-    list_ = std::move(next);
-    parents_ = std::move(active);
-    return {};
-  }
-
-  /// The new points of one kind that a parent owns: those in its half-open box, and at the end of the volume those on
-  /// its far side.
-  void new_points(const Cell& cell, int phase) {
-    const Point a = low(cell, level_ + 1);
-    Point p;
-    std::array<int, 3> options{1, 1, 1};
-    std::array<bool, 3> has_middle;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      has_middle[axis] = a[axis] + step_ < size_[axis] - 1;
-      if (phase >> axis & 1) {
-        if (!has_middle[axis]) return;
-      } else if (cell[axis] + 1 == parents_along_[axis] && size_[axis] > 1) {
-        options[axis] = 2;
-      }
-    }
-    for (int oz = 0; oz < options[2]; ++oz)
-      for (int oy = 0; oy < options[1]; ++oy)
-        for (int ox = 0; ox < options[0]; ++ox) {
-          const std::array<int, 3> far{ox, oy, oz};
-          if (!all_active(cell, phase, far)) continue;
-          Neighbours n;
-          for (std::size_t axis = 0; axis < 3; ++axis) {
-            const std::int64_t end = std::min(a[axis] + 2 * step_, size_[axis] - 1);
-            if (phase >> axis & 1) {
-              p[axis] = a[axis] + step_;
-              n.below[axis] = a[axis];
-              n.above[axis] = end;
-              n.before[axis] = p[axis] - 2 * step_;
-            } else if (far[axis]) {
-              p[axis] = end;
-              n.below[axis] = has_middle[axis] ? a[axis] + step_ : -1;
-              n.above[axis] = -1;
-              n.before[axis] = a[axis];
-            } else {
-              p[axis] = a[axis];
-              n.below[axis] = a[axis] - step_;
-              n.above[axis] = has_middle[axis] ? a[axis] + step_ : -1;
-              n.before[axis] = a[axis] - 2 * step_;
-            }
-          }
-          coder_.point(point_models_[model(p, n, phase)], p);
-        }
-  }
-
-  /// Coordinates next to a point along each axis, -1 or less where there is none: for new axes the parent's ends,
-  /// otherwise the middles of the parents on both sides; `before` is the previous point of the same kind.
-  struct Neighbours {
-    Point below, above, before;
-  };
-
-  bool all_active(const Cell& cell, int phase, const std::array<int, 3>& far) const {
-    for (int side = 1; side < 8; ++side) {  // bit a: the parent below along axis a
-      bool touches = true;
-      std::array<std::int64_t, 3> other{cell[0], cell[1], cell[2]};
-      for (std::size_t a = 0; a < 3; ++a) {
-        if (!(side >> a & 1)) continue;
-        touches = touches && !(phase >> a & 1) && !far[a] && --other[a] >= 0;
-      }
-      if (touches && !parents_.get(other[0], other[1], other[2])) return false;
-    }
-    return true;
-  }
-
-  std::size_t at(Point p, std::size_t axis, std::int64_t coordinate) const {
-    if (coordinate < 0) return 0;
-    p[axis] = coordinate;
-    return sign(p) ? 1 : 0;
-  }
-  std::size_t at(Point p, std::size_t axis_a, std::int64_t a, std::size_t axis_b, std::int64_t b) const {
-    if (a < 0 || b < 0) return 0;
-    p[axis_a] = a;
-    p[axis_b] = b;
-    return sign(p) ? 1 : 0;
-  }
-
-  std::size_t model(const Point& p, const Neighbours& n, int phase) const {
-    std::size_t context = at(p, 0, n.before[0]) | at(p, 1, n.before[1]) << 1 | at(p, 2, n.before[2]) << 2;
-    const std::size_t base =
-        static_cast<std::size_t>(std::min(level_, 2)) * (kCentreModels + 3 * kFaceModels + 3 * kEdgeModels);
-    if (phase == 7) {
-      for (int c = 0; c < 8; ++c)
-        context =
-            context << 1 |
-            (sign({c & 1 ? n.above[0] : n.below[0], c & 2 ? n.above[1] : n.below[1], c & 4 ? n.above[2] : n.below[2]})
-                 ? 1u
-                 : 0u);
-      return base + context;
-    }
-    if (std::popcount(static_cast<unsigned>(phase)) == 2) {
-      const auto c = static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(7 - phase)));
-      const std::size_t a = (c + 1) % 3, b = (c + 2) % 3;
-      for (const std::int64_t pa : {n.below[a], n.above[a]})
-        for (const std::int64_t pb : {n.below[b], n.above[b]}) context = context << 1 | at(p, a, pa, b, pb);
-      context = context << 2 | at(p, c, n.below[c]) << 1 | at(p, c, n.above[c]);
-      return base + kCentreModels + c * kFaceModels + context;
-    }
-    const auto a = static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(phase)));
-    const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
-    context = context << 2 | at(p, a, n.below[a]) << 1 | at(p, a, n.above[a]);
-    context = context << 2 | at(p, b, n.below[b]) << 1 | at(p, b, n.above[b]);
-    context = context << 2 | at(p, c, n.below[c]) << 1 | at(p, c, n.above[c]);
-    for (const std::int64_t pb : {n.below[b], n.above[b]})
-      for (const std::int64_t pc : {n.below[c], n.above[c]}) context = context << 1 | at(p, b, pb, c, pc);
-    return base + kCentreModels + 3 * kFaceModels + a * kEdgeModels + context;
-  }
-
-  Coder& coder_;
-  Progress& progress_;
-  Dims dims_;
-  std::array<std::int64_t, 3> size_{}, parents_along_{};
-  int level_ = kTop;
-  std::int64_t step_ = 1;
-  std::vector<Cell> list_;  ///< active parents, in an order in which neighbours at lower coordinates come first
-  BitVolume parents_;
-  std::vector<AdaptiveBit> point_models_;
-  std::array<AdaptiveBit, (kTop + 1) * 8> flag_models_;
-};
-
-class SignEncoder {
- public:
-  explicit SignEncoder(const BitVolume& signs) : signs_(signs) {
-    active_[1] = active_cells(signs);
-    for (int level = 2; level <= kTop; ++level)
-      active_[static_cast<std::size_t>(level)] =
-          coarser(active_[static_cast<std::size_t>(level) - 1], cells_of(signs.dims(), level));
-  }
-  const BitVolume& signs() const { return signs_; }
-  bool exhausted() const { return false; }
-  void raw(const Point& p) { top_.put(signs_.get(p[0], p[1], p[2]) ? 1 : 0, 1); }
-  void point(AdaptiveBit& model, const Point& p) { coder_.code(model, signs_.get(p[0], p[1], p[2])); }
-  bool flag(AdaptiveBit& model, const Cell& cell, int level) {
-    const bool active = active_[static_cast<std::size_t>(level)].get(cell[0], cell[1], cell[2]);
-    coder_.code(model, active);
-    return active;
-  }
-  void fill(const Point&, const Point&) {}
-  std::string take() { return top_.take() + coder_.take(); }
-
- private:
-  const BitVolume& signs_;
-  std::array<BitVolume, kTop + 1> active_;
-  BitWriter top_;
-  RangeEncoder coder_;
-};
-
-class SignDecoder {
- public:
-  SignDecoder(const Dims& dims, std::string_view top, std::string_view rest) : signs_(dims), top_(top), coder_(rest) {}
-  const BitVolume& signs() const { return signs_; }
-  bool exhausted() const { return coder_.past_end(); }
-  void raw(const Point& p) { signs_.set(p[0], p[1], p[2], top_.get(1) != 0); }
-  void point(AdaptiveBit& model, const Point& p) { signs_.set(p[0], p[1], p[2], coder_.decode(model)); }
-  bool flag(AdaptiveBit& model, const Cell&, int) { return coder_.decode(model); }
-  void fill(const Point& low, const Point& high) { fill_ones(signs_, low, high); }
-  bool finished() const { return coder_.at_end() && top_.padding() == 0; }
-  BitVolume take() { return std::move(signs_); }
-
- private:
-  BitVolume signs_;
-  BitReader top_;
-  RangeDecoder coder_;
-};
 }  // namespace
 
-Result<std::string> encode_signs(const BitVolume& signs, Progress& progress) {
-  progress.begin("encode signs", kTop, "level");
-  SignEncoder encoder(signs);
-  DUBSAR_TRY(Walk(encoder, progress).run());
-  progress.end();
-  return encoder.take();
+Dims brick_grid(const Dims& dims) { return {bricks_along(dims.x), bricks_along(dims.y), bricks_along(dims.z)}; }
+
+Dims coarse_dims(const Dims& dims) {
+  return {padded_cells(dims.x) / 8 + 1, padded_cells(dims.y) / 8 + 1, padded_cells(dims.z) / 8 + 1};
 }
 
-Result<BitVolume> decode_signs(std::string_view bytes, const Dims& dims, Progress& progress) {
-  const std::uint64_t top =
-      top_coordinates(dims.x).size() * top_coordinates(dims.y).size() * top_coordinates(dims.z).size();
-  const std::uint64_t top_bytes = packed_bytes(top, 1);
-  if (top_bytes > bytes.size())
-    return fail(ErrorKind::kBadData, "exa: {} bytes of signs for {}x{}x{} points, expected at least {}", bytes.size(),
-                dims.x, dims.y, dims.z, top_bytes);
-  DUBSAR_TRY(check_memory("exa signs", static_cast<std::uint64_t>((dims.x + 63) / 64 * dims.y * dims.z) * 10));
-  progress.begin("decode signs", kTop, "level");
-  SignDecoder decoder(dims, bytes.substr(0, top_bytes), bytes.substr(top_bytes));
-  DUBSAR_TRY(Walk(decoder, progress).run());
-  if (!decoder.finished()) return fail(ErrorKind::kBadData, "exa: the sign code has bytes that do not belong to it");
+Dims level_dims(const Dims& dims, int level) {
+  return {((dims.x - 1) >> level) + 1, ((dims.y - 1) >> level) + 1, ((dims.z - 1) >> level) + 1};
+}
+
+std::size_t coarse_chunk_count(const Dims& dims) { return 1 + kBrickLevels * count_of(brick_grid(coarse_dims(dims))); }
+
+Result<SignCode> encode_signs(const BitVolume& signs, Progress& progress) {
+  const BitVolume coarse = every_eighth(signs), top = every_eighth(coarse);
+  progress.begin("encode signs", brick_grid(signs.dims()).count() + brick_grid(coarse.dims()).count(), "brick");
+  SignCode code;
+  std::string raw((count_of(top.dims()) + 7) / 8, '\0');
+  std::size_t bit = 0;
+  for (std::int64_t z = 0; z < top.dims().z; ++z)
+    for (std::int64_t y = 0; y < top.dims().y; ++y)
+      for (std::int64_t x = 0; x < top.dims().x; ++x, ++bit)
+        if (top.get(x, y, z)) raw[bit / 8] = static_cast<char>(raw[bit / 8] | 1 << bit % 8);
+  code.coarse.push_back(std::move(raw));
+  DUBSAR_ASSIGN(auto middle, encode_bricks(coarse, top, true, progress));
+  for (std::size_t level = kBrickLevels; level-- > 0;)
+    for (std::string& chunk : middle[level]) code.coarse.push_back(std::move(chunk));
+  DUBSAR_ASSIGN(code.bricks, encode_bricks(signs, coarse, false, progress));
   progress.end();
-  return decoder.take();
+  return code;
+}
+
+Result<BitVolume> decode_signs(const SignChunks& chunks, const Dims& dims, int level, const std::optional<GridBox>& box,
+                               std::uint64_t most_points, Progress& progress) {
+  DUBSAR_CHECK(level >= 0 && level <= kBrickLevels);
+  const Dims coarse = coarse_dims(dims), top = coarse_dims(coarse), points = level_dims(dims, level);
+  DUBSAR_TRY(check_memory("exa signs", static_cast<std::uint64_t>((points.x + 63) / 64 * points.y * points.z +
+                                                                  (coarse.x + 63) / 64 * coarse.y * coarse.z) *
+                                           8));
+  progress.begin("decode signs", brick_grid(dims).count() + brick_grid(coarse).count(), "brick");
+  if (chunks.coarse.size() != coarse_chunk_count(dims) || chunks.coarse[0].size() != (count_of(top) + 7) / 8)
+    return fail(ErrorKind::kBadData, "exa: {} chunks of coarse signs found, {} expected", chunks.coarse.size(),
+                coarse_chunk_count(dims));
+  BitVolume raw(top);
+  std::size_t bit = 0;
+  for (std::int64_t z = 0; z < top.z; ++z)
+    for (std::int64_t y = 0; y < top.y; ++y)
+      for (std::int64_t x = 0; x < top.x; ++x, ++bit) raw.set(x, y, z, chunks.coarse[0][bit / 8] >> bit % 8 & 1);
+  std::array<std::vector<std::string_view>, 3> middle;
+  const std::size_t bricks = count_of(brick_grid(coarse));
+  for (std::size_t l = 0; l < kBrickLevels; ++l) {
+    const auto first = chunks.coarse.begin() + static_cast<std::ptrdiff_t>(1 + (kBrickLevels - 1 - l) * bricks);
+    middle[l].assign(first, first + static_cast<std::ptrdiff_t>(bricks));
+  }
+  BitVolume eighth(coarse);
+  DUBSAR_TRY(decode_bricks(middle, coarse, raw, true, 0, std::nullopt, most_points, eighth, progress));
+  BitVolume signs(points);
+  if (level == kBrickLevels) {
+    for (std::int64_t z = 0; z < points.z; ++z)
+      for (std::int64_t y = 0; y < points.y; ++y)
+        for (std::int64_t x = 0; x < points.x; ++x) signs.set(x, y, z, eighth.get(x, y, z));
+  } else {
+    DUBSAR_TRY(decode_bricks(chunks.bricks, dims, eighth, false, level, box, most_points, signs, progress));
+  }
+  progress.end();
+  return signs;
 }
 
 }  // namespace dubsar

@@ -1,14 +1,13 @@
 #pragma once
-// The sign code (paper section 3.2): signs on lattices of spacing 32, 16, ... 1. A cell that no surface enters is
-// dropped with everything inside it; only points all of whose coarser cells are active are coded.
-//
-// Per level: seven phases (cell centres, three kinds of face points, three kinds of edge points), so that the points
-// of a phase see neighbours of earlier phases on both sides; then one flag for each child cell whose corners agree:
-// does it hide a surface? Without the flags the code would lose small features. Bits go through adaptive binary
-// models chosen by the known neighbours.
+// The signs of a volume as bytes (docs/exa.md, "Signs"). In bricks of 128 cells, each of which can be read without the
+// others, and in levels: every eighth point first, then spacing 4, 2 and 1.
 
+#include <array>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
@@ -16,12 +15,48 @@
 
 namespace dubsar {
 
-/// Lossless. Cost: one pass over the bits to find active cells (all threads), then about 1.4 coded bits per vertex on
-/// one thread. kCancelled.
-Result<std::string> encode_signs(const BitVolume& signs, Progress& progress);
+inline constexpr int kBrickCells = 128;
 
-/// `dims` must have passed check_dims. kBadData for anything that is not exactly one encoded volume; kTryAgain when the
-/// volume does not fit in memory. Memory: the volume's bits and the list of active cells.
-Result<BitVolume> decode_signs(std::string_view bytes, const Dims& dims, Progress& progress);
+/// Bricks along each axis of a volume; 1 for a volume of one point.
+Dims brick_grid(const Dims& dims);
+/// The volume of every eighth point, the last slices repeated so that every cell has its corners.
+Dims coarse_dims(const Dims& dims);
+
+/// Chunks in file order.
+struct SignCode {
+  std::vector<std::string> coarse;  ///< raw bits of every 64th point; bricks of every 8th, level by level
+  std::array<std::vector<std::string>, 3> bricks;  ///< of spacing 1, 2, 4; one chunk a brick, empty: no surface inside
+};
+
+/// The same chunks, borrowed. A level that is not wanted may be empty.
+struct SignChunks {
+  std::vector<std::string_view> coarse;
+  std::array<std::vector<std::string_view>, 3> bricks;
+};
+
+/// How many chunks a volume has.
+std::size_t coarse_chunk_count(const Dims& dims);
+
+/// Lossless. All threads; the same bytes for any number of them. kCancelled.
+Result<SignCode> encode_signs(const BitVolume& signs, Progress& progress);
+
+/// A box of grid points, ends included.
+struct GridBox {
+  std::array<std::int64_t, 3> low{}, high{};
+};
+
+/// `dims` must have passed check_dims. `level` 0..3: only the points of spacing 2^level, whose volume has
+/// level_dims(dims, level) points. `box`: only bricks that touch it, with the points of all their sides; elsewhere the
+/// signs are 0. kBadData when the number of chunks is wrong or more than `most_points` signs are coded, which bounds
+/// the time that damaged bytes can take; kTryAgain when the volume does not fit in memory. Bytes that are no sign code
+/// give other signs. All threads.
+Result<BitVolume> decode_signs(const SignChunks& chunks, const Dims& dims, int level, const std::optional<GridBox>& box,
+                               std::uint64_t most_points, Progress& progress);
+
+/// No volume with so many active edges has more coded signs.
+constexpr std::uint64_t most_coded_signs(std::uint64_t edges) { return 64 * edges + (1 << 16); }
+
+/// Points of spacing 2^level that lie in the volume.
+Dims level_dims(const Dims& dims, int level);
 
 }  // namespace dubsar

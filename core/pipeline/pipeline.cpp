@@ -2,6 +2,7 @@
 
 #include "core/base/json_text.h"
 #include "core/base/log.h"
+#include "core/exa/patches.h"
 #include "core/extract/extract.h"
 #include "core/pipeline/model_occlusion.h"
 #include "core/pipeline/report.h"
@@ -28,6 +29,12 @@ Result<void> smooth_and_measure(const PipelineOptions& options, PipelineResult& 
   return {};
 }
 
+SettleOptions settle_options(const PipelineOptions& options) {
+  SettleOptions settle = options.settle;
+  settle.curvature = options.curvature;
+  return settle;
+}
+
 Result<void> separate_with(const SegmentOptions& segment_options, bool fill, PipelineResult& result, StageClock& clock,
                            Progress& progress) {
   SurfaceModel& model = result.model;
@@ -39,6 +46,7 @@ Result<void> separate_with(const SegmentOptions& segment_options, bool fill, Pip
   if (fill) {
     DUBSAR_ASSIGN(const HoleReport holes, fill_holes(model, HoleOptions{}, progress));
     triangles = holes.triangles;
+    settle_patches(model.patches);
   } else {
     DUBSAR_TRY(measure_partitions(model));
   }
@@ -98,7 +106,9 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
                 result.report.threshold);
 
   DUBSAR_TRY(smooth_and_measure(options, result, clock, progress));
-  quantise_for_exa(model);  // from here on the model is what the file will hold
+  clock.start("settle", "vertex");  // from here on the model is what the file will hold
+  DUBSAR_ASSIGN(result.report.settle, settle_for_exa(model, settle_options(options), progress));
+  clock.finish(model.mesh.vertex_count());
   DUBSAR_TRY(separate(options, result, clock, progress));
   DUBSAR_TRY(add_occlusion(options, result, clock, progress));
   DUBSAR_TRY(check(result, clock));

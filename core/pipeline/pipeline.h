@@ -9,6 +9,7 @@
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/exa/exa_file.h"
+#include "core/exa/settle.h"
 #include "core/filter/denoise.h"
 #include "core/filter/estimate.h"
 #include "core/mesh/mesh_check.h"
@@ -35,6 +36,7 @@ struct PipelineOptions {
   bool closed_boundary = true;
   SmoothOptions smooth;
   CurvatureMethod curvature = CurvatureMethod::kFit;
+  SettleOptions settle;  ///< its curvature method is the one above
   SegmentOptions segment;
   bool fill_holes = true;
   bool occlusion = true;
@@ -59,6 +61,7 @@ struct PipelineReport {
   float threshold = 0.0f;
   std::string threshold_path;  ///< how it was found
   SmoothStats smooth;
+  SettleStats settle;
   SegmentReport segment;
   MeshCheck mesh;  ///< of all parts together, with their fill patches
   std::int64_t vertices = 0, xquads = 0;

@@ -1,0 +1,69 @@
+#pragma once
+// What is known around an active edge when its offset is coded: the signs of its brick and the offsets before it
+// (docs/exa.md, "Offsets").
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "core/extract/bit_volume.h"
+
+namespace dubsar {
+
+inline constexpr int kOffsetInputs = 52;
+using OffsetInputs = std::array<std::int16_t, 56>;  ///< padded with 0
+
+/// Signs of the points of a brick; places outside have the sign of the nearest point of the brick.
+class BrickSigns {
+ public:
+  static constexpr int kBorder = 3;
+  BrickSigns(const BitVolume& signs, const std::array<std::int64_t, 3>& low);
+  /// Points along each axis, both ends included: at most 129.
+  const std::array<int, 3>& points() const noexcept { return points_; }
+  bool get(int x, int y, int z) const noexcept { return row(y, z)[(x + 8) >> 3] >> (x & 7) & 1; }
+  /// Signs at x - 3 .. x + 3 of a row.
+  unsigned window(int x, int y, int z) const noexcept {
+    std::uint16_t bits;
+    std::memcpy(&bits, row(y, z) + ((x + 5) >> 3), sizeof bits);
+    return bits >> ((x + 5) & 7) & 127;
+  }
+  /// Signs from x = 0, 64 or 128 on.
+  std::uint64_t word(int y, int z, int from) const noexcept {
+    std::uint64_t bits;
+    std::memcpy(&bits, row(y, z) + 1 + from / 8, sizeof bits);
+    return bits;
+  }
+
+ private:
+  static constexpr std::ptrdiff_t kRowBytes = 32;
+  const unsigned char* row(int y, int z) const noexcept {
+    return bytes_.data() + ((z + kBorder) * (points_[1] + 2 * kBorder) + y + kBorder) * kRowBytes;
+  }
+  std::array<int, 3> points_{};
+  std::vector<unsigned char> bytes_;
+};
+
+class OffsetWindow {
+ public:
+  explicit OffsetWindow(const BrickSigns& signs);
+  /// Slices must be begun in rising order.
+  void begin_slice(int z);
+  /// Notes the offset of an edge: its middle in 1 / 64 of a grid step, 0..63.
+  void store(int axis, int x, int y, int z, int middle) noexcept {
+    *place(axis, x, y, z) = static_cast<std::uint8_t>(middle);
+  }
+  /// The surroundings of the edge from (x, y, z) along an axis.
+  void inputs(int axis, int x, int y, int z, OffsetInputs& out) const noexcept;
+
+ private:
+  static constexpr int kSide = 136, kUnknown = 255;
+  std::uint8_t* place(int axis, int x, int y, int z) noexcept { return known_.data() + index(axis, x, y, z); }
+  static std::size_t index(int axis, int x, int y, int z) noexcept {
+    return static_cast<std::size_t>((((z & 7) * 3 + axis) * kSide + y + 3) * kSide + x + 3);
+  }
+  const BrickSigns& signs_;
+  std::vector<std::uint8_t> known_;  ///< eight slices
+};
+
+}  // namespace dubsar

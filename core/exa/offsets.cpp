@@ -1,0 +1,151 @@
+#include "core/exa/offsets.h"
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+
+#include "core/base/budget.h"
+#include "core/base/parallel.h"
+#include "core/exa/brick_items.h"
+#include "core/exa/offset_model.h"
+#include "core/exa/range_coder.h"
+#include "core/exa/topology.h"
+
+namespace dubsar {
+namespace {
+std::array<std::int64_t, 3> brick_low(const Dims& grid, std::int64_t index) {
+  return {index % grid.x * kBrickCells, index / grid.x % grid.y * kBrickCells, index / grid.slice() * kBrickCells};
+}
+
+/// Middle of an offset's interval in 1 / 64 of a grid step.
+int middle_of(std::uint32_t offset, int bits) { return static_cast<int>((2 * offset + 1) << 5 >> bits); }
+
+const AdaptiveBit kJoined(kProbabilityOne / 2, 6);
+}  // namespace
+
+namespace {
+constexpr int kTrial = 2048;  ///< edges that decide which model a brick takes
+
+/// The offsets of a brick, or of its first `most` edges.
+std::string encode_offsets(const SurfaceSamples& samples, const BrickItems& items, std::size_t model, int most) {
+  const int bits = std::min(samples.offset_bits, kModelledBits), rest = samples.offset_bits - bits;
+  const OffsetModel& network = OffsetModel::instance(model);
+  OffsetWindow window(items.signs());
+  RangeEncoder out;
+  OffsetInputs inputs;
+  int count = 0;
+  items.edges([&](int z) { window.begin_slice(z); },
+              [&](int axis, int x, int y, int z, std::uint32_t number) {
+                if (count >= most) return;
+                ++count;
+                const std::uint32_t offset = samples.offsets[number], symbol = offset >> rest;
+                window.inputs(axis, x, y, z, inputs);
+                const OffsetDistribution likely = network.predict(axis, inputs, bits);
+                const std::uint32_t start = likely.start(symbol);
+                out.symbol(start, likely.start(symbol + 1) - start);
+                out.raw(offset & ((1u << rest) - 1), rest);
+                window.store(axis, x, y, z, middle_of(offset, samples.offset_bits));
+              });
+  return count == 0 ? std::string() : static_cast<char>(model) + out.take();
+}
+
+/// With the model that is better for the first edges.
+std::string encode_offsets(const SurfaceSamples& samples, const BrickItems& items) {
+  std::size_t best = 0, least = ~std::size_t{0};
+  for (std::size_t model = 0; model < kOffsetModels; ++model) {
+    const std::size_t bytes = encode_offsets(samples, items, model, kTrial).size();
+    if (bytes == 0) return {};
+    if (bytes < least) best = model, least = bytes;
+  }
+  return encode_offsets(samples, items, best, std::numeric_limits<int>::max());
+}
+
+std::string encode_faces(const SurfaceSamples& samples, const BrickItems& items) {
+  RangeEncoder out;
+  AdaptiveBit joined = kJoined;
+  bool any = false;
+  items.faces([&](std::uint32_t number) {
+    out.bit(joined, samples.joined[number] != 0);
+    any = true;
+  });
+  std::string bytes = out.take();
+  if (any && bytes.empty()) bytes.push_back('\0');
+  return any ? bytes : std::string();
+}
+}  // namespace
+
+Result<SampleCode> encode_samples(const SurfaceSamples& samples, Progress& progress) {
+  DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(samples));
+  const Dims grid = brick_grid(samples.dims);
+  SampleCode code;
+  code.offsets.resize(static_cast<std::size_t>(grid.count()));
+  code.faces.resize(code.offsets.size());
+  progress.begin("encode offsets", grid.count(), "brick");
+  parallel_for(grid.count(), 1, [&](std::int64_t i) {
+    if (progress.cancelled()) return;
+    const BrickItems items(samples, index, brick_low(grid, i));
+    code.offsets[static_cast<std::size_t>(i)] = encode_offsets(samples, items);
+    code.faces[static_cast<std::size_t>(i)] = encode_faces(samples, items);
+    progress.advance(1);
+  });
+  if (progress.cancelled()) return cancelled_error();
+  progress.end();
+  return code;
+}
+
+Result<void> decode_samples(std::span<const std::string_view> offsets, std::span<const std::string_view> faces,
+                            SurfaceSamples& samples, Progress& progress) {
+  DUBSAR_TRY(check_signs(samples));
+  const Dims grid = brick_grid(samples.dims);
+  for (const std::size_t found : {offsets.size(), faces.size()})
+    if (found != static_cast<std::size_t>(grid.count()))
+      return fail(ErrorKind::kBadData, "exa: {} chunks of offsets or face decisions found, {} bricks expected", found,
+                  grid.count());
+  DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(samples));
+  const SampleCounts& counts = index.counts();
+  DUBSAR_TRY(check_memory("exa offsets", static_cast<std::uint64_t>(counts.edges * 2 + counts.faces)));
+  samples.offsets.assign(static_cast<std::size_t>(counts.edges), 0);
+  samples.joined.assign(static_cast<std::size_t>(counts.faces), 0);
+  const int bits = std::min(samples.offset_bits, kModelledBits), rest = samples.offset_bits - bits;
+  std::atomic<bool> broken{false};
+  progress.begin("decode offsets", grid.count(), "brick");
+  parallel_for(grid.count(), 1, [&](std::int64_t i) {
+    if (progress.cancelled()) return;
+    const auto slot = static_cast<std::size_t>(i);
+    if (offsets[slot].empty() && faces[slot].empty()) return;
+    const BrickItems items(samples, index, brick_low(grid, i));
+    if (!offsets[slot].empty()) {
+      const auto model = static_cast<unsigned char>(offsets[slot][0]);
+      if (model >= kOffsetModels) {
+        broken = true;
+        return;
+      }
+      const OffsetModel& network = OffsetModel::instance(model);
+      OffsetWindow window(items.signs());
+      RangeDecoder in(offsets[slot].substr(1));
+      OffsetInputs inputs;
+      items.edges([&](int z) { window.begin_slice(z); },
+                  [&](int axis, int x, int y, int z, std::uint32_t number) {
+                    window.inputs(axis, x, y, z, inputs);
+                    const OffsetDistribution likely = network.predict(axis, inputs, bits);
+                    const std::uint32_t symbol = likely.find(in.place()), start = likely.start(symbol);
+                    in.symbol(start, likely.start(symbol + 1) - start);
+                    const std::uint32_t offset = symbol << rest | in.raw(rest);
+                    samples.offsets[number] = static_cast<std::uint16_t>(offset);
+                    window.store(axis, x, y, z, middle_of(offset, samples.offset_bits));
+                  });
+    }
+    if (!faces[slot].empty()) {
+      RangeDecoder in(faces[slot]);
+      AdaptiveBit joined = kJoined;
+      items.faces([&](std::uint32_t number) { samples.joined[number] = in.bit(joined) ? 1 : 0; });
+    }
+    progress.advance(1);
+  });
+  if (progress.cancelled()) return cancelled_error();
+  if (broken) return fail(ErrorKind::kBadData, "exa: a brick of offsets names a model that is not known");
+  progress.end();
+  return {};
+}
+
+}  // namespace dubsar

@@ -1,0 +1,151 @@
+#pragma once
+// The walk over a brick of signs from a lattice of spacing 8 to one of spacing 1 (docs/exa.md, "Signs"). Encoder and
+// decoder walk the same way; a Coder says what a bit is:
+//   bool flag(int context, int level, int x, int y, int z)   does this cell of equal corners hide a surface?
+//   bool point(const SignLattice&, int level, int phase, int x, int y, int z)   the sign of a point
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/exa/sign_lattice.h"
+
+namespace dubsar {
+
+/// Points by which of their coordinates are odd (bit a: axis a), in the order in which they are coded.
+inline constexpr std::array<int, 7> kSignPhases{7, 6, 5, 3, 4, 2, 1};
+inline constexpr int kBrickLevels = 3;        ///< spacing 4, 2, 1
+inline constexpr int kFlagContexts = 3 * 28;  ///< level 3, 2, 1; corners; mixed neighbours 0..6; hidden neighbours
+
+class SignBrick {
+ public:
+  /// `top`: signs of the lattice of spacing 8, at most 16 cells along an axis.
+  explicit SignBrick(SignLattice top) : lattice_(std::move(top)) {}
+
+  /// From the lattice of spacing 2^(level + 1) to that of 2^level, level = 2, 1, 0 in this order.
+  template <class Coder>
+  void refine(Coder& coder, int level) {
+    find_active(coder, level + 1);
+    refine_without_surface();
+    for (const int phase : kSignPhases) code_phase(coder, level, phase);
+  }
+  const SignLattice& lattice() const noexcept { return lattice_; }
+
+ private:
+  static std::size_t rows(const SignLattice& l) { return static_cast<std::size_t>(l.cells()[1] * l.cells()[2]); }
+  static std::uint64_t low_bits(int n) { return n >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << n) - 1; }
+  std::size_t at(int y, int z) const { return static_cast<std::size_t>(z * lattice_.cells()[1] + y); }
+
+  std::vector<std::uint64_t> mixed_cells() const {
+    std::vector<std::uint64_t> mixed(rows(lattice_));
+    const auto& n = lattice_.cells();
+    for (int z = 0; z < n[2]; ++z)
+      for (int y = 0; y < n[1]; ++y) {
+        std::uint64_t any = 0, all = ~std::uint64_t{0};
+        for (int c = 0; c < 4; ++c) {
+          const std::uint64_t low = lattice_.word(y + c % 2, z + c / 2),
+                              high = lattice_.next_word(y + c % 2, z + c / 2);
+          any |= low | high;
+          all &= low & high;
+        }
+        mixed[at(y, z)] = any & ~all & low_bits(n[0]);
+      }
+    return mixed;
+  }
+
+  /// Fills active_ for the cells of the present lattice.
+  template <class Coder>
+  void find_active(Coder& coder, int level) {
+    const auto& n = lattice_.cells();
+    const std::vector<std::uint64_t> mixed = mixed_cells(), parents = std::move(active_);
+    active_ = mixed;
+    std::vector<std::uint64_t> hidden(mixed.size(), 0);
+    for (int z = 0; z < n[2]; ++z)
+      for (int y = 0; y < n[1]; ++y) {
+        std::uint64_t candidates = low_bits(n[0]);
+        if (!parents.empty()) {
+          const std::uint64_t parent = parents[static_cast<std::size_t>((z / 2) * (n[1] / 2) + y / 2)];
+          candidates &= spread(parent) | spread(parent) << 1;
+        }
+        for (std::uint64_t rest = candidates & ~mixed[at(y, z)]; rest != 0; rest &= rest - 1) {
+          const int x = std::countr_zero(rest);
+          const auto bit = [&](const std::vector<std::uint64_t>& words, int bx, int by, int bz) {
+            return bx >= 0 && by >= 0 && bz >= 0 && bx < n[0] && by < n[1] && bz < n[2]
+                       ? static_cast<int>(words[at(by, bz)] >> bx & 1)
+                       : 0;
+          };
+          const int near = bit(mixed, x - 1, y, z) + bit(mixed, x + 1, y, z) + bit(mixed, x, y - 1, z) +
+                           bit(mixed, x, y + 1, z) + bit(mixed, x, y, z - 1) + bit(mixed, x, y, z + 1);
+          const int before = bit(hidden, x - 1, y, z) | bit(hidden, x, y - 1, z) | bit(hidden, x, y, z - 1);
+          const int context = (3 - level) * 28 + before * 14 + (lattice_.get(x, y, z) ? 7 : 0) + near;
+          if (!coder.flag(context, level, x, y, z)) continue;
+          hidden[at(y, z)] |= std::uint64_t{1} << x;
+          active_[at(y, z)] |= std::uint64_t{1} << x;
+        }
+      }
+  }
+
+  /// Bit i to bit 2 i, for the lower 32 bits.
+  static std::uint64_t spread(std::uint64_t w) {
+    w &= 0xFFFFFFFFu;
+    w = (w | w << 16) & 0x0000FFFF0000FFFFu;
+    w = (w | w << 8) & 0x00FF00FF00FF00FFu;
+    w = (w | w << 4) & 0x0F0F0F0F0F0F0F0Fu;
+    w = (w | w << 2) & 0x3333333333333333u;
+    return (w | w << 1) & 0x5555555555555555u;
+  }
+
+  /// The next finer lattice with the signs that are known: those of this one, and those of inactive cells.
+  void refine_without_surface() {
+    const auto& n = lattice_.cells();
+    SignLattice fine({2 * n[0], 2 * n[1], 2 * n[2]});
+    for (int z = 0; z <= n[2]; ++z)
+      for (int y = 0; y <= n[1]; ++y) {
+        for (std::uint64_t bits = lattice_.word(y, z) & low_bits(n[0]); bits != 0; bits &= bits - 1)
+          fine.set(2 * std::countr_zero(bits), 2 * y, 2 * z);
+        if (lattice_.get(n[0], y, z)) fine.set(2 * n[0], 2 * y, 2 * z);
+        if (y == n[1] || z == n[2]) continue;
+        for (std::uint64_t bits = lattice_.word(y, z) & ~active_[at(y, z)] & low_bits(n[0]); bits != 0;
+             bits &= bits - 1) {
+          const int x = std::countr_zero(bits);
+          for (int p = 0; p < 27; ++p) fine.set(2 * x + p % 3, 2 * y + p / 3 % 3, 2 * z + p / 9);
+        }
+      }
+    lattice_ = std::move(fine);
+  }
+
+  /// The points of one kind all of whose coarser cells are active, in rising z, y, x.
+  template <class Coder>
+  void code_phase(Coder& coder, int level, int phase) {
+    const auto& n = lattice_.cells();
+    const int parents_x = n[0] / 2, parents_y = n[1] / 2, parents_z = n[2] / 2;
+    for (int z = phase >> 2 & 1; z <= n[2]; z += 2)
+      for (int y = phase >> 1 & 1; y <= n[1]; y += 2) {
+        std::uint64_t all = ~std::uint64_t{0};
+        for (int pz = (z - 1) >> 1; pz <= z >> 1; ++pz)
+          for (int py = (y - 1) >> 1; py <= y >> 1; ++py)
+            if (pz >= 0 && py >= 0 && pz < parents_z && py < parents_y)
+              all &= active_[static_cast<std::size_t>(pz * parents_y + py)];
+        if (all == 0) continue;
+        if (phase & 1) {
+          for (; all != 0; all &= all - 1) code_point(coder, level, phase, 2 * std::countr_zero(all) + 1, y, z);
+          continue;
+        }
+        const bool last = all >> (parents_x - 1) & 1;
+        std::uint64_t even = (all << 1 | 1) & all;
+        for (; even != 0; even &= even - 1) code_point(coder, level, phase, 2 * std::countr_zero(even), y, z);
+        if (last) code_point(coder, level, phase, n[0], y, z);
+      }
+  }
+  template <class Coder>
+  void code_point(Coder& coder, int level, int phase, int x, int y, int z) {
+    if (coder.point(lattice_, level, phase, x, y, z)) lattice_.set(x, y, z);
+  }
+
+  SignLattice lattice_;
+  std::vector<std::uint64_t> active_;  ///< one word of cells for each row (z, y) of the lattice before the last refine
+};
+
+}  // namespace dubsar

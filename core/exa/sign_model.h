@@ -1,0 +1,76 @@
+#pragma once
+// How likely is a point inside, given the signs around it? A small network per phase with fixed integer weights
+// (docs/exa.md, "Signs"; trained by tests/bench/exa_train.cpp).
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "core/exa/sign_brick.h"
+
+namespace dubsar {
+
+struct SignTap {
+  int x = 0, y = 0, z = 0;
+};
+
+/// The neighbours that a point of a phase can know: at most kSignReach2 away (squared), in rising z, y, x; points of
+/// even coordinates, of earlier phases, and those of its own phase that come before it.
+inline constexpr int kSignReach2 = 11;
+std::vector<SignTap> sign_taps(int phase);
+
+inline constexpr std::size_t kSignModels = 2;
+inline constexpr int kSignUnits = 16;  ///< hidden units
+
+/// Weights of one phase: units x taps; a hidden unit is clamp(sum of +-weight + bias, 0, 1023), the logit in 1 / 256 is
+/// (sum of weight x unit) / 8 rounded down + bias of the level.
+struct SignWeights {
+  std::vector<std::int8_t> in;  ///< [tap][unit]
+  std::array<std::int16_t, kSignUnits> in_bias{}, out{};
+  std::array<std::int16_t, 3> out_bias{};  ///< by level_class
+};
+
+class SignModel {
+ public:
+  /// Built on first use from the tables of weights; thread-safe. `which`: 0 for surfaces with the noise of a scan, 1
+  /// for smooth ones.
+  static const SignModel& instance(std::size_t which);
+  explicit SignModel(const std::array<SignWeights, 7>& weights);
+
+  /// In 1 / 256, clamped to +-2047. `phase_index`: place in kSignPhases.
+  int logit(const SignLattice& lattice, std::size_t phase_index, std::size_t level_class, int x, int y, int z) const {
+    const Phase& phase = phases_[phase_index];
+    const unsigned char* here = lattice.row(y, z) + ((x + 5) >> 3);
+    const int shift = (x + 5) & 7;
+    alignas(32) std::array<std::int16_t, kSignUnits> sum = phase.bias;
+    for (const Row& row : phase.rows) {
+      std::uint16_t bits;
+      std::memcpy(&bits, here + lattice.step(row.y, row.z), sizeof bits);
+      const auto& add = row.sums[bits >> shift & 127];
+      for (std::size_t u = 0; u < kSignUnits; ++u) sum[u] = static_cast<std::int16_t>(sum[u] + add[u]);
+    }
+    std::int32_t total = 0;
+    for (std::size_t u = 0; u < kSignUnits; ++u) {
+      const std::int16_t unit = sum[u] < 0 ? std::int16_t{0} : sum[u] > 1023 ? std::int16_t{1023} : sum[u];
+      total += std::int32_t{unit} * phase.out[u];
+    }
+    const int logit = (total >> 3) + phase.out_bias[level_class];
+    return logit < -2047 ? -2047 : logit > 2047 ? 2047 : logit;
+  }
+
+ private:
+  struct alignas(32) Sums : std::array<std::int16_t, kSignUnits> {};
+  struct Row {
+    int y = 0, z = 0;
+    std::array<Sums, 128> sums;  ///< by the signs at x - 3 .. x + 3
+  };
+  struct Phase {
+    std::vector<Row> rows;
+    std::array<std::int16_t, kSignUnits> bias{}, out{};
+    std::array<std::int16_t, 3> out_bias{};
+  };
+  std::array<Phase, 7> phases_;
+};
+
+}  // namespace dubsar

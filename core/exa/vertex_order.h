@@ -1,0 +1,52 @@
+#pragma once
+// Per-vertex and per-x-quad values in chunks of 65,536: which neighbours are known when one is coded.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/base/progress.h"
+#include "core/extract/quad_mesh.h"
+
+namespace dubsar {
+
+inline constexpr std::int64_t kItemsPerChunk = 65536;
+constexpr std::int64_t item_chunks(std::int64_t items) { return (items + kItemsPerChunk - 1) / kItemsPerChunk; }
+
+/// Calls visit(w) for the neighbours w of vertex v with first <= w < v: for each incident x-quad in rising order the
+/// vertex before v and the vertex behind it in the polygon.
+template <class Visit>
+void known_neighbours(const QuadMesh& mesh, std::uint32_t v, std::uint32_t first, const Visit& visit) {
+  for (const std::uint32_t q : mesh.quads_of(v)) {
+    if (!mesh.has_doubled(q)) {
+      const auto& quad = mesh.quads[q];
+      const std::uint32_t at = quad[0] == v ? 0 : quad[1] == v ? 1 : quad[2] == v ? 2 : 3;
+      for (const std::uint32_t w : {quad[(at + 3) % 4], quad[(at + 1) % 4]})
+        if (w >= first && w < v) visit(w);
+      continue;
+    }
+    const Polygon polygon = mesh.polygon(q);
+    int at = 0;
+    while (polygon.vertex[static_cast<std::size_t>(at)] != v) ++at;
+    for (const int side : {at + polygon.size - 1, at + 1}) {
+      const std::uint32_t w = polygon.vertex[static_cast<std::size_t>(side % polygon.size)];
+      if (w >= first && w < v) visit(w);
+    }
+  }
+}
+
+/// Encodes chunks on all threads: encode(first, end) -> bytes.
+template <class Encode>
+std::vector<std::string> encode_item_chunks(std::int64_t items, Progress& progress, const Encode& encode) {
+  std::vector<std::string> chunks(static_cast<std::size_t>(item_chunks(items)));
+  parallel_for(static_cast<std::int64_t>(chunks.size()), 1, [&](std::int64_t c) {
+    if (progress.cancelled()) return;
+    const std::int64_t first = c * kItemsPerChunk,
+                       end = first + kItemsPerChunk < items ? first + kItemsPerChunk : items;
+    chunks[static_cast<std::size_t>(c)] = encode(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end));
+  });
+  return chunks;
+}
+
+}  // namespace dubsar
