@@ -35,6 +35,7 @@ struct Verb {
 Verb add_phantom_verb(Arguments program);
 Verb add_process_verb(Arguments program);
 Verb add_info_verb(Arguments program);
+Verb add_exa_verb(Arguments program);
 Verb add_export_verb(Arguments program);
 Verb add_fatcross_verb(Arguments program);
 Verb add_render_verb(Arguments program);

@@ -61,6 +61,11 @@ void add_surface_options(Arguments command, Options& options) {
   group.choice<CurvatureMethod>("--curvature", p.curvature,
                                 {{"fit", CurvatureMethod::kFit}, {"pairs", CurvatureMethod::kPairs}},
                                 "curvature estimate: fit (default) or the paper's opposite pairs");
+  group
+      .value("--max-error", p.settle.max_error,
+             "largest distance of a stored vertex from the smoothed surface in grid steps (default 1/16)")
+      .positive();
+  group.flag("--exact-normals", p.settle.exact_normals, "store normals and curvatures to the last bit");
   group.choice<SegmentMethod>(
       "--segment", p.segment.method,
       {{"nested", SegmentMethod::kNested},

@@ -56,7 +56,8 @@ std::ptrdiff_t temporaries() {
 }
 
 TEST(CommandLine, EveryVerbHasHelpWithExamples) {
-  for (const char* verb : {"phantom", "process", "info", "export", "render", "displays", "devices", "view", "doctor"}) {
+  for (const char* verb :
+       {"phantom", "process", "info", "exa", "export", "render", "displays", "devices", "view", "doctor"}) {
     const ProgramRun run = run_dubsar({verb, "--help"});
     EXPECT_EQ(run.exit_code, 0) << verb;
     EXPECT_NE(run.out.find("Example"), std::string::npos) << verb;

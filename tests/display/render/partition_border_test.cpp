@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/exa/exa_file.h"
+#include "core/exa/settle.h"
 #include "core/mesh/simplify.h"
 #include "core/mesh_io/mesh_io.h"
 #include "core/parts/holes.h"
@@ -104,9 +105,9 @@ TEST(PartitionBorder, FilesKeepTheLabelOfEveryTriangle) {
 
 TEST(PartitionBorder, AnExaFileKeepsTheLabelOfEveryTriangle) {
   SurfaceModel model = cracked_envelope();
-  quantise_for_exa(model);
-  const auto path = std::filesystem::temp_directory_path() / fmt::format("dubsar_border_{}.exa", ::getpid());
   SilentProgress progress;
+  ASSERT_TRUE(settle_for_exa(model, {}, progress));
+  const auto path = std::filesystem::temp_directory_path() / fmt::format("dubsar_border_{}.exa", ::getpid());
   ASSERT_TRUE(write_exa(path, model, progress));
   const auto read = read_exa(path, progress);
   std::filesystem::remove(path);

@@ -1,0 +1,82 @@
+// Files of this version are readable for ever, and docs/exa.md suffices to read them: each golden file gives the sums
+// that stand beside it, here and in the reader that was written from that page alone.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "core/exa/chunks.h"
+#include "core/exa/exa_file.h"
+
+namespace dubsar {
+namespace {
+namespace fs = std::filesystem;
+
+const fs::path kGolden = DUBSAR_GOLDEN;
+
+/// Lines "name.exa N vertices M x-quads positions 0123abcd ...", by file name.
+std::map<std::string, std::string> expected_lines() {
+  std::map<std::string, std::string> lines;
+  std::ifstream file(kGolden / "exa_sums.txt");
+  for (std::string line; std::getline(file, line);) lines[line.substr(0, line.find(' '))] = line;
+  return lines;
+}
+
+template <class T>
+void add_sum(std::string& line, const char* name, const std::vector<T>& items) {
+  if (items.empty()) return;
+  line += fmt::format(" {} {:08x}", name,
+                      crc32_of({reinterpret_cast<const char*>(items.data()), items.size() * sizeof(T)}));
+}
+
+TEST(ExaGolden, EveryFileGivesTheSumsThatStandBesideIt) {
+  const auto expected = expected_lines();
+  ASSERT_GE(expected.size(), 3u);
+  SilentProgress progress;
+  for (const auto& [name, line] : expected) {
+    const auto info = read_exa_info(kGolden / name);
+    const auto model = read_exa(kGolden / name, progress);
+    ASSERT_TRUE(model) << name << ": " << model.error().message;
+    std::string found =
+        fmt::format("{} {} vertices {} x-quads", name, model->mesh.vertex_count(), model->mesh.quad_count());
+    add_sum(found, "positions", model->mesh.positions);
+    add_sum(found, "quads", model->mesh.quads);
+    add_sum(found, "shape", model->attributes.shape);
+    add_sum(found, "ao", model->attributes.ao);
+    add_sum(found, "quad_partition", model->quad_partition);
+    if (info->header.normals == ExaNormals::kExact) {
+      add_sum(found, "normals", model->attributes.normals);
+      std::vector<float> pairs;
+      for (std::size_t v = 0; v < model->attributes.k_min.size(); ++v) {
+        pairs.push_back(model->attributes.k_min[v]);
+        pairs.push_back(model->attributes.k_max[v]);
+      }
+      add_sum(found, "curvatures", pairs);
+    }
+    EXPECT_EQ(found, line);
+  }
+}
+
+TEST(ExaGolden, TheReaderWrittenFromTheSpecificationGivesTheSame) {
+  if (std::system("python3 -c 'import numpy' 2>/dev/null") != 0 &&
+      std::system("/usr/bin/python3 -c 'import numpy' 2>/dev/null") != 0)
+    GTEST_SKIP() << "python3 with numpy is not installed (apt install python3-numpy)";
+  const std::string python = std::system("python3 -c 'import numpy' 2>/dev/null") == 0 ? "python3" : "/usr/bin/python3";
+  for (const auto& [name, line] : expected_lines()) {
+    const std::string command = fmt::format("cd '{}' && {} exa_reader.py '{}' 2>&1", kGolden.string(), python, name);
+    FILE* pipe = ::popen(command.c_str(), "r");
+    ASSERT_NE(pipe, nullptr);
+    std::string found;
+    for (std::array<char, 512> text; std::fgets(text.data(), static_cast<int>(text.size()), pipe) != nullptr;)
+      found += text.data();
+    EXPECT_EQ(::pclose(pipe), 0) << command;
+    EXPECT_EQ(found, line + "\n");
+  }
+}
+
+}  // namespace
+}  // namespace dubsar
