@@ -27,7 +27,8 @@ usage() {
 ./do lab      boot Debian's kernel in qemu and test the drivers on virtual USB, HID and camera devices
 ./do build    build the program (build/release/app/dubsar)
 ./do peers    talk to VRPN, spacenavd, libspnav and opentrack, as far as they are installed, and print a table
-./do bench    run the benchmarks; ./do bench displays: only those of many views
+./do bench    run the benchmarks; ./do bench displays: only those of many views;
+              ./do bench exa: bits and speed of the surface format
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
 ./do asan     the tests that need no window under AddressSanitizer and UndefinedBehaviorSanitizer
 ./do tsan     devices and inputs under ThreadSanitizer (clang)
@@ -134,6 +135,18 @@ tsan() {
 
 bench() {
   deps
+  if [ "${1:-}" = exa ]; then
+    build_target --target dubsar exa_bench
+    local folder=$build/bench-exa passes
+    mkdir -p "$folder"
+    [ -e "$folder/scan.h5" ] || "$build/app/dubsar" phantom "$folder/scan.h5" --preset demo
+    for passes in 0 1 2; do
+      "$build/app/dubsar" process "$folder/scan.h5" -o "$folder/denoised_$passes.exa" --iterations $passes --no-ao -q
+      "$build/app/dubsar" exa stat "$folder/denoised_$passes.exa"
+    done
+    "$build/tests/bench/exa_bench" "$folder"/denoised_*.exa
+    return
+  fi
   build_target --target dubsar_bench
   local filter=()
   if [ "${1:-}" = displays ]; then

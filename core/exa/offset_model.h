@@ -1,6 +1,7 @@
 #pragma once
 // Where does an edge cross the surface, given its surroundings? A small network per axis with fixed integer weights
-// gives mean and spread of a logistic distribution (docs/exa.md, "Offsets"; trained by tests/bench/exa_train.cpp).
+// gives mean and spread of a logistic distribution (docs/exa.md, "Offsets"). Fitted as those of the signs, scan on
+// crossings of 4 bits, smooth on settled ones of 4 and 5 bits.
 
 #include <array>
 #include <cstdint>

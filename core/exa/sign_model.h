@@ -1,6 +1,7 @@
 #pragma once
 // How likely is a point inside, given the signs around it? A small network per phase with fixed integer weights
-// (docs/exa.md, "Signs"; trained by tests/bench/exa_train.cpp).
+// (docs/exa.md, "Signs"). They were fitted by gradient descent on the logarithmic loss: scan on phantoms of 23 to 33 dB
+// and two CT volumes, smooth on spheres; test surfaces were others.
 
 #include <array>
 #include <cstdint>
