@@ -31,6 +31,10 @@ std::uint64_t available_memory_bytes() {
   return available;
 }
 
+std::uint64_t Budget::limit_bytes() const {
+  return memory_bytes > 0 ? memory_bytes : available_memory_bytes() / 10 * 8;
+}
+
 Result<std::int64_t> check_dims(std::string_view what, std::span<const std::uint64_t> dims, std::uint64_t element_bytes,
                                 const Budget& budget) {
   Uint128 product = 1;
@@ -57,7 +61,7 @@ Result<void> check_count(std::string_view what, std::uint64_t count, std::uint64
 }
 
 Result<void> check_memory(std::string_view what, std::uint64_t bytes, const Budget& budget) {
-  const std::uint64_t limit = budget.memory_bytes > 0 ? budget.memory_bytes : available_memory_bytes() / 10 * 8;
+  const std::uint64_t limit = budget.limit_bytes();
   if (bytes > limit)
     return fail(ErrorKind::kTryAgain, "{}: {:.0f} MiB of memory needed, {:.0f} MiB allowed; use --crop or --stride",
                 what, static_cast<double>(bytes) / kMiB, static_cast<double>(limit) / kMiB);

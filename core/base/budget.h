@@ -2,6 +2,7 @@
 // One size check for every format: before memory is taken, the announced size is checked against what is there.
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string_view>
 
@@ -13,6 +14,13 @@ struct Budget {
   std::uint64_t memory_bytes = 0;       ///< most that one object may take; 0: 80 % of MemAvailable
   std::uint64_t max_dimension = 65535;  ///< a scanner has 3072; more is a damaged header
   std::uint64_t max_voxels = std::uint64_t{1} << 36;
+  /// Where a scratch file may be made when something must be kept that does not fit; on a disk.
+  std::filesystem::path scratch_folder = "/var/tmp";
+
+  /// Most that one object may take: memory_bytes, or 80 % of what is available now.
+  std::uint64_t limit_bytes() const;
+  /// Most that a stage may keep beside what it makes, such as a layer of chunks: a quarter of the limit.
+  std::uint64_t kept_bytes() const { return limit_bytes() / 4; }
 };
 
 /// Bytes of memory this process may still take (MemAvailable, or the cgroup limit if smaller).

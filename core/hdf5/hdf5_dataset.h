@@ -2,6 +2,7 @@
 // Datasets of an HDF5 file: what they are, and their numbers. Every call into the library holds one lock, so that all
 // functions here may be called from any thread.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -45,6 +46,7 @@ struct Hdf5DatasetInfo {
   std::uint64_t storage_bytes = 0;   ///< bytes allocated in the file
   std::int64_t file_offset = -1;     ///< of a contiguous dataset from the first byte of the file; -1: none
   double fill_value = 0.0;
+  std::array<std::byte, 8> fill_stored{};  ///< the same as a stored number (plain_scalar)
   std::vector<Hdf5ExternalPart> external;
   std::vector<std::string> virtual_files;  ///< source files of a virtual dataset
   std::uint64_t address = 0;               ///< identity: hard links to one dataset share it

@@ -206,11 +206,9 @@ Result<Hdf5DatasetInfo> Hdf5File::inspect(const std::string& path, bool open_sou
   return std::move(opened.info);
 }
 
-Result<Hdf5Dataset> Hdf5File::open_dataset(const std::string& path, std::uint64_t chunk_cache_bytes,
-                                           bool open_sources) const {
+Result<Hdf5Dataset> Hdf5File::open_dataset(const std::string& path, bool open_sources) const {
   const Library library;
   const Handle access = dataset_access();
-  H5Pset_chunk_cache(access.get(), 12421, chunk_cache_bytes, 1.0);
   DUBSAR_ASSIGN(OpenDataset opened, open_with_info(id_, path, access.get(), open_sources));
   Hdf5Dataset dataset;
   dataset.info_ = std::move(opened.info);

@@ -53,9 +53,7 @@ class Hdf5File {
   /// `path` must resolve to a dataset (see resolve()). The library opens the source files of a virtual dataset when it
   /// is asked for its shape: only with `open_sources` are the dims of such a dataset filled in.
   Result<Hdf5DatasetInfo> inspect(const std::string& path, bool open_sources = false) const;
-  /// `chunk_cache_bytes`: memory of the library for decoded chunks.
-  Result<Hdf5Dataset> open_dataset(const std::string& path, std::uint64_t chunk_cache_bytes = 1 << 20,
-                                   bool open_sources = false) const;
+  Result<Hdf5Dataset> open_dataset(const std::string& path, bool open_sources = false) const;
 
   /// Attributes of a group or dataset; nullopt when absent or of another kind (numbers: integers and floats, strings:
   /// fixed or variable length), longer than 4096 elements, or texts of more than 64 KiB each or 1 MiB together.

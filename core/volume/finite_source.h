@@ -19,6 +19,7 @@ class FiniteSource final : public SlabSource {
 
   Dims dims() const noexcept override { return source_->dims(); }
   const GridFrame& frame() const noexcept override { return source_->frame(); }
+  std::int64_t preferred_height() const noexcept override { return source_->preferred_height(); }
   /// kBadData once more than 1 % of all voxels of the volume were found not to be finite.
   Result<void> read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) override;
 

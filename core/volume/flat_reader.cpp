@@ -17,19 +17,19 @@ class FlatReader final : public VoxelReader {
   explicit FlatReader(FlatLayout layout) : layout_(std::move(layout)) {}
 
   Dims dims() const noexcept override { return layout_.dims; }
+  const NumberFormat& format() const noexcept override { return layout_.format; }
 
-  Result<void> read(const VoxelBox& box, std::span<float> out) override {
+  Result<void> read(const VoxelBox& box, std::span<std::byte> out) override {
     const Dims size = box.dims();
-    DUBSAR_CHECK(static_cast<std::int64_t>(out.size()) >= size.count());
-    const std::int64_t element = scalar_bytes(layout_.type);
+    const std::int64_t element = scalar_bytes(layout_.format.type);
+    DUBSAR_CHECK(static_cast<std::int64_t>(out.size()) >= size.count() * element);
     const std::int64_t row = layout_.dims.x * element;
     // Whole rows, and of them whole runs, are cheaper than many small reads unless most bytes would be thrown away.
     const bool narrow = (box.x.end - box.x.begin) * 4 < layout_.dims.x;
     const bool runs = box.y.step == 1 && !narrow;
     const std::int64_t rows_at_once = runs ? std::clamp<std::int64_t>(kPieceBytes / row, 1, size.y) : 1;
     const std::int64_t pieces_per_slice = (size.y + rows_at_once - 1) / rows_at_once;
-    const bool in_place = runs && layout_.type == ScalarType::kF32 && layout_.order == kNativeOrder &&
-                          layout_.map.identity() && size.x == layout_.dims.x;
+    const bool in_place = runs && size.x == layout_.dims.x;
     std::mutex mutex;
     Result<void> result;
     const std::int64_t grain = std::max<std::int64_t>(1, kGrainBytes / (rows_at_once * row));
@@ -40,12 +40,12 @@ class FlatReader final : public VoxelReader {
         const std::int64_t j = piece % pieces_per_slice * rows_at_once;
         const std::int64_t rows = std::min(rows_at_once, size.y - j);
         const std::int64_t first_row = box.z.at(k) * layout_.dims.y + box.y.at(j);
-        const std::span<float> target =
-            out.subspan(static_cast<std::size_t>((k * size.y + j) * size.x), static_cast<std::size_t>(rows * size.x));
+        const std::span<std::byte> target = out.subspan(static_cast<std::size_t>((k * size.y + j) * size.x * element),
+                                                        static_cast<std::size_t>(rows * size.x * element));
         const std::int64_t skip = narrow ? box.x.begin * element : 0;
         const std::int64_t bytes = narrow ? (box.x.end - box.x.begin) * element : rows * row;
         if (!in_place) buffer.resize(static_cast<std::size_t>(bytes));
-        const auto read = fetch(first_row * row + skip, in_place ? std::as_writable_bytes(target) : std::span(buffer));
+        const auto read = fetch(first_row * row + skip, in_place ? target : std::span(buffer));
         if (!read) {
           const std::lock_guard lock(mutex);
           result = read;
@@ -54,8 +54,7 @@ class FlatReader final : public VoxelReader {
         if (in_place) continue;
         const std::byte* from = buffer.data() + (narrow ? 0 : box.x.begin * element);
         for (std::int64_t r = 0; r < rows; ++r)
-          store_row(from + r * row, layout_.type, layout_.order, layout_.map, box.x,
-                    target.subspan(static_cast<std::size_t>(r * size.x)));
+          copy_row(from + r * row, element, box.x, target.data() + r * size.x * element);
       }
     });
     return result;
@@ -93,10 +92,10 @@ Result<std::unique_ptr<VoxelReader>> make_flat_reader(FlatLayout layout) {
                   segment.file.path().string(), segment.file.size(), segment.bytes, segment.offset);
     present += segment.bytes;
   }
-  const std::int64_t needed = layout.dims.count() * scalar_bytes(layout.type);
+  const std::int64_t needed = layout.dims.count() * scalar_bytes(layout.format.type);
   if (present < needed)
     return fail(ErrorKind::kBadData, "{} bytes of voxels found, expected {} ({} x {} x {} of {})", present, needed,
-                layout.dims.x, layout.dims.y, layout.dims.z, scalar_name(layout.type));
+                layout.dims.x, layout.dims.y, layout.dims.z, scalar_name(layout.format.type));
   return std::make_unique<FlatReader>(std::move(layout));
 }
 

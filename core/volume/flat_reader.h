@@ -17,9 +17,7 @@ struct FlatSegment {
 
 struct FlatLayout {
   Dims dims;
-  ScalarType type = ScalarType::kF32;
-  ByteOrder order = kNativeOrder;
-  ScalarMap map;
+  NumberFormat format;
   std::vector<FlatSegment> segments;  ///< in the order of the array
 };
 

@@ -1,6 +1,7 @@
 #include "core/volume/hdf5_voxel_reader.h"
 
 #include <algorithm>
+#include <cstring>
 #include <mutex>
 #include <utility>
 
@@ -10,13 +11,21 @@
 namespace dubsar {
 namespace {
 
+constexpr std::int64_t kRowsAtOnce = 256;  // where there are no chunks
+
 std::vector<std::uint64_t> shape(std::size_t rank) { return std::vector<std::uint64_t>(rank, 1); }
 
 class LibraryReader : public VoxelReader {
  public:
   LibraryReader(std::shared_ptr<Hdf5File> file, Hdf5Dataset dataset, const std::array<std::size_t, 3>& axes,
                 const ScalarMap& map)
-      : file_(std::move(file)), dataset_(std::move(dataset)), axes_(axes), map_(map) {}
+      : file_(std::move(file)), dataset_(std::move(dataset)), axes_(axes) {
+    const Hdf5DatasetInfo& info = dataset_.info();
+    format_ = info.plain_scalar ? NumberFormat{*info.scalar, info.order, map}
+                                : NumberFormat{ScalarType::kF64, kNativeOrder, map};
+  }
+
+  const NumberFormat& format() const noexcept override { return format_; }
 
   Dims dims() const noexcept override {
     const auto& dims = dataset_.info().dims;
@@ -31,39 +40,18 @@ class LibraryReader : public VoxelReader {
             static_cast<std::int64_t>(info.chunk[axes_[0]])};
   }
 
-  // Slice by slice through the library's chunk cache, which holds a layer of chunks.
-  Result<void> read(const VoxelBox& box, std::span<float> out) override {
+  // Layer by layer of chunks, and rows of chunks where not all voxels are wanted: the library decodes a chunk once for
+  // every call that touches it.
+  Result<void> read(const VoxelBox& box, std::span<std::byte> out) override {
     const Dims size = box.dims();
-    const auto& info = dataset_.info();
-    auto offset = std::vector<std::uint64_t>(info.dims.size(), 0);
-    auto count = shape(info.dims.size());
-    const std::int64_t rows = box.y.end - box.y.begin, row = box.x.end - box.x.begin;
-    offset[axes_[1]] = static_cast<std::uint64_t>(box.y.begin);
-    offset[axes_[2]] = static_cast<std::uint64_t>(box.x.begin);
-    count[axes_[1]] = static_cast<std::uint64_t>(rows);
-    count[axes_[2]] = static_cast<std::uint64_t>(row);
-    std::vector<std::byte> stored;
-    std::vector<double> numbers;
-    for (std::int64_t k = 0; k < size.z; ++k) {
-      offset[axes_[0]] = static_cast<std::uint64_t>(box.z.at(k));
-      ScalarType type = ScalarType::kF64;
-      ByteOrder order = kNativeOrder;
-      const std::byte* from = nullptr;
-      if (info.plain_scalar) {
-        type = *info.scalar;
-        order = info.order;
-        stored.resize(static_cast<std::size_t>(rows * row * scalar_bytes(type)));
-        DUBSAR_TRY(dataset_.read_stored(offset, count, stored));
-        from = stored.data();
-      } else {
-        numbers.resize(static_cast<std::size_t>(rows * row));
-        DUBSAR_TRY(dataset_.read_doubles(offset, count, numbers));
-        from = std::as_bytes(std::span(numbers)).data();
-      }
-      parallel_for(size.y, std::max<std::int64_t>(64, (1 << 18) / row), [&](std::int64_t j) {
-        store_row(from + j * box.y.step * row * scalar_bytes(type), type, order, map_, box.x,
-                  out.subspan(static_cast<std::size_t>((k * size.y + j) * size.x), static_cast<std::size_t>(size.x)));
-      });
+    const std::int64_t element = scalar_bytes(format_.type);
+    const bool all = box.x.step == 1 && box.y.step == 1 && box.z.step == 1;
+    for (std::int64_t k = 0; k < size.z;) {
+      const std::int64_t layer_end = all ? box.z.end : std::min(box.z.end, layer_of(box.z.at(k)).end);
+      const AxisRange z{box.z.at(k), layer_end, box.z.step};
+      const auto target = out.subspan(static_cast<std::size_t>(k * size.x * size.y * element));
+      DUBSAR_TRY(all ? load({box.x, box.y, z}, target) : pick({box.x, box.y, z}, target));
+      k += z.count();
     }
     return {};
   }
@@ -72,7 +60,48 @@ class LibraryReader : public VoxelReader {
   std::shared_ptr<Hdf5File> file_;
   Hdf5Dataset dataset_;
   std::array<std::size_t, 3> axes_;
-  ScalarMap map_;
+  NumberFormat format_;
+
+ private:
+  // All voxels between the ends of the ranges.
+  Result<void> load(const VoxelBox& box, std::span<std::byte> out) const {
+    const auto& info = dataset_.info();
+    auto offset = std::vector<std::uint64_t>(info.dims.size(), 0), count = shape(info.dims.size());
+    const AxisRange ranges[3] = {box.z, box.y, box.x};
+    std::uint64_t numbers = 1;
+    for (std::size_t i = 0; i < 3; ++i) {
+      offset[axes_[i]] = static_cast<std::uint64_t>(ranges[i].begin);
+      count[axes_[i]] = static_cast<std::uint64_t>(ranges[i].end - ranges[i].begin);
+      numbers *= count[axes_[i]];
+    }
+    out = out.first(numbers * static_cast<std::uint64_t>(scalar_bytes(format_.type)));
+    if (info.plain_scalar) return dataset_.read_stored(offset, count, out);
+    std::vector<double> values(numbers);
+    DUBSAR_TRY(dataset_.read_doubles(offset, count, values));
+    std::memcpy(out.data(), values.data(), out.size());
+    return {};
+  }
+
+  Result<void> pick(const VoxelBox& box, std::span<std::byte> out) {
+    const Dims size = box.dims();
+    const std::int64_t element = scalar_bytes(format_.type);
+    const std::int64_t depth = chunk().y > 1 ? chunk().y : kRowsAtOnce;
+    for (std::int64_t j = 0; j < size.y;) {
+      const std::int64_t begin = box.y.at(j), end = std::min(box.y.end, (begin / depth + 1) * depth);
+      const AxisRange y{begin, end, box.y.step};
+      const std::int64_t row = box.x.end - box.x.begin;
+      stored_.resize(static_cast<std::size_t>((box.z.end - box.z.begin) * (end - begin) * row * element));
+      DUBSAR_TRY(load({{box.x.begin, box.x.end, 1}, {begin, end, 1}, {box.z.begin, box.z.end, 1}}, stored_));
+      for (std::int64_t k = 0; k < size.z; ++k)
+        for (std::int64_t r = 0; r < y.count(); ++r)
+          copy_row(stored_.data() + (k * box.z.step * (end - begin) + r * y.step) * row * element, element,
+                   {0, row, box.x.step}, out.data() + ((k * size.y + j + r) * size.x) * element);
+      j += y.count();
+    }
+    return {};
+  }
+
+  std::vector<std::byte> stored_;
 };
 
 class ChunkReader final : public LibraryReader {
@@ -86,7 +115,7 @@ class ChunkReader final : public LibraryReader {
     chunk_bytes_ = static_cast<std::size_t>(chunk_[0] * chunk_[1] * chunk_[2] * scalar_bytes(*info.scalar));
   }
 
-  Result<void> read(const VoxelBox& box, std::span<float> out) override {
+  Result<void> read(const VoxelBox& box, std::span<std::byte> out) override {
     const std::vector<Origin> chunks = chunks_in(box);
     std::mutex mutex;
     Result<void> result;
@@ -138,9 +167,10 @@ class ChunkReader final : public LibraryReader {
     return *numbers;
   }
 
-  Result<void> decode(const Origin& origin, const VoxelBox& box, std::span<float> out, ChunkScratch& scratch) const {
+  Result<void> decode(const Origin& origin, const VoxelBox& box, std::span<std::byte> out,
+                      ChunkScratch& scratch) const {
     DUBSAR_ASSIGN(const std::span<const std::byte> bytes, unpack(origin, scratch));
-    const ScalarType type = *dataset_.info().scalar;
+    const std::int64_t element = scalar_bytes(format_.type);
     const Dims size = box.dims();
     const AxisRange ranges[3] = {box.z, box.y, box.x};
     std::array<std::int64_t, 3> first{}, last{};  // indices into the box that lie in the chunk
@@ -153,19 +183,18 @@ class ChunkReader final : public LibraryReader {
       last[i] = std::min(range.count(), steps_to(origin[i] + chunk_[i]));
     }
     if (first[2] >= last[2]) return {};
-    const float fill = static_cast<float>(dataset_.info().fill_value * map_.scale + map_.offset);
     const AxisRange x{box.x.at(first[2]), box.x.at(last[2] - 1) + 1, box.x.step};
     for (std::int64_t k = first[0]; k < last[0]; ++k)
       for (std::int64_t j = first[1]; j < last[1]; ++j) {
-        const std::span<float> row = out.subspan(static_cast<std::size_t>((k * size.y + j) * size.x + first[2]),
-                                                 static_cast<std::size_t>(last[2] - first[2]));
+        std::byte* const row = out.data() + ((k * size.y + j) * size.x + first[2]) * element;
         if (bytes.empty()) {
-          std::fill(row.begin(), row.end(), fill);
+          for (std::int64_t i = 0; i < x.count(); ++i)
+            std::memcpy(row + i * element, dataset_.info().fill_stored.data(), static_cast<std::size_t>(element));
           continue;
         }
         const std::int64_t at =
             ((box.z.at(k) - origin[0]) * chunk_[1] + (box.y.at(j) - origin[1])) * chunk_[2] + x.begin - origin[2];
-        store_row(bytes.data() + at * scalar_bytes(type), type, dataset_.info().order, map_, x, row);
+        copy_row(bytes.data() + at * element, element, x, row);
       }
     return {};
   }
@@ -188,14 +217,7 @@ bool decodes_chunks(const Hdf5DatasetInfo& info, const std::array<std::size_t, 3
 Result<std::unique_ptr<VoxelReader>> make_hdf5_reader(std::shared_ptr<Hdf5File> file, const Hdf5DatasetInfo& info,
                                                       const std::array<std::size_t, 3>& axes, const ScalarMap& map) {
   const bool direct = decodes_chunks(info, axes);
-  // The library decodes a chunk again for every slice unless its cache holds a whole layer of chunks.
-  constexpr std::uint64_t kMostCache = std::uint64_t{512} << 20;
-  std::uint64_t layer = info.element_bytes();
-  for (std::size_t axis = 0; axis < info.chunk.size(); ++axis)
-    layer *= axis == axes[0] ? info.chunk[axis]
-                             : (info.dims[axis] + info.chunk[axis] - 1) / info.chunk[axis] * info.chunk[axis];
-  const std::uint64_t cache = direct ? 0 : std::min(layer, kMostCache);
-  DUBSAR_ASSIGN(Hdf5Dataset dataset, file->open_dataset(info.path, cache, info.layout == Hdf5Layout::kVirtual));
+  DUBSAR_ASSIGN(Hdf5Dataset dataset, file->open_dataset(info.path, info.layout == Hdf5Layout::kVirtual));
   if (!direct) return std::make_unique<LibraryReader>(std::move(file), std::move(dataset), axes, map);
   return std::make_unique<ChunkReader>(std::move(file), std::move(dataset), axes, map);
 }

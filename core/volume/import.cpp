@@ -111,7 +111,7 @@ void turn(OpenedVolume& opened, const ImportOptions& options) {
   const auto dims = by_axis(info.axes, std::array{info.file_dims.x, info.file_dims.y, info.file_dims.z});
   info.file_dims = {dims[0], dims[1], dims[2]};
   if (!opened.voxel_by_name) info.voxel.mm = by_axis(info.axes, info.voxel.mm);
-  opened.reader = std::make_unique<OrientedReader>(std::move(opened.reader), info.axes);
+  opened.reader = std::make_unique<OrientedReader>(std::move(opened.reader), info.axes, options.budget.kept_bytes());
 }
 
 void check_voxel_size(VolumeInfo& info) {
@@ -142,7 +142,8 @@ Result<std::unique_ptr<ImportedVolume>> open_volume(ImportOptions options) {
   if (options.voxel_size_mm) info.voxel = {*options.voxel_size_mm, "--voxel-size"};
   check_voxel_size(info);
   for (const std::string& warning : info.warnings) log_warning("{}: {}", info.path, warning);
-  std::unique_ptr<SlabSource> source = std::make_unique<GridSource>(std::move(opened.reader), info.box, info.voxel);
+  std::unique_ptr<SlabSource> source =
+      std::make_unique<GridSource>(std::move(opened.reader), info.box, info.voxel, options.budget);
   FiniteSource* finite = nullptr;
   if (info.may_have_nonfinite) {
     auto decorated = std::make_unique<FiniteSource>(std::move(source), options.nonfinite_fill);

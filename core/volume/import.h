@@ -19,6 +19,7 @@ class ImportedVolume final : public SlabSource {
 
   Dims dims() const noexcept override { return source_->dims(); }
   const GridFrame& frame() const noexcept override { return source_->frame(); }
+  std::int64_t preferred_height() const noexcept override { return source_->preferred_height(); }
   Result<void> read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) override {
     return source_->read(z_begin, z_end, out);
   }

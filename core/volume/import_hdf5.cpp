@@ -231,8 +231,9 @@ Result<OpenedVolume> open_hdf5(const ImportOptions& options) {
   DUBSAR_TRY(check_storage(volume, options, static_cast<std::uint64_t>(logical)));
   DUBSAR_ASSIGN(opened.info.map, scalar_map(volume));
   if (flat) {
-    DUBSAR_ASSIGN(opened.reader, make_flat_reader({opened.info.file_dims, *info.scalar, info.order, opened.info.map,
-                                                   std::move(segments)}));
+    DUBSAR_ASSIGN(
+        opened.reader,
+        make_flat_reader({opened.info.file_dims, {*info.scalar, info.order, opened.info.map}, std::move(segments)}));
   } else {
     DUBSAR_ASSIGN(opened.reader, make_hdf5_reader(volume.file, info, axes, opened.info.map));
   }

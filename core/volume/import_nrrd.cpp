@@ -97,21 +97,23 @@ Result<Header> read_header(const InputFile& file) {
 class GzipReader final : public VoxelReader {
  public:
   GzipReader(GzipStream stream, Dims dims, ScalarType type, ByteOrder order)
-      : stream_(std::move(stream)), dims_(dims), type_(type), order_(order) {
+      : stream_(std::move(stream)), dims_(dims), format_{type, order, {}} {
     constexpr std::int64_t kKeptBytes = 64 << 20;
     kept_most_ = std::max<std::int64_t>(8, kKeptBytes / (dims.slice() * scalar_bytes(type)));
   }
 
   Dims dims() const noexcept override { return dims_; }
+  const NumberFormat& format() const noexcept override { return format_; }
   bool sequential() const noexcept override { return true; }
 
-  Result<void> read(const VoxelBox& box, std::span<float> out) override {
+  Result<void> read(const VoxelBox& box, std::span<std::byte> out) override {
     const Dims size = box.dims();
+    const std::int64_t element = scalar_bytes(format_.type);
     for (std::int64_t k = 0; k < size.z; ++k) {
       DUBSAR_ASSIGN(const std::byte* slice, slice_at(box.z.at(k)));
       for (std::int64_t j = 0; j < size.y; ++j)
-        store_row(slice + (box.y.at(j) * dims_.x + box.x.begin) * scalar_bytes(type_), type_, order_, {}, box.x,
-                  out.subspan(static_cast<std::size_t>((k * size.y + j) * size.x), static_cast<std::size_t>(size.x)));
+        copy_row(slice + (box.y.at(j) * dims_.x + box.x.begin) * element, element, box.x,
+                 out.data() + (k * size.y + j) * size.x * element);
     }
     return {};
   }
@@ -130,7 +132,7 @@ class GzipReader final : public VoxelReader {
         slice = std::move(kept_.front());
         kept_.pop_front();
       }
-      slice.resize(static_cast<std::size_t>(dims_.slice() * scalar_bytes(type_)));
+      slice.resize(static_cast<std::size_t>(dims_.slice() * scalar_bytes(format_.type)));
       DUBSAR_TRY(stream_.read(slice));
       kept_.push_back(std::move(slice));
       ++next_;
@@ -140,8 +142,7 @@ class GzipReader final : public VoxelReader {
 
   GzipStream stream_;
   Dims dims_;
-  ScalarType type_;
-  ByteOrder order_;
+  NumberFormat format_;
   std::deque<std::vector<std::byte>> kept_;
   std::int64_t kept_most_ = 0;
   std::int64_t next_ = 0;
@@ -309,7 +310,7 @@ Result<OpenedVolume> open_nrrd(const ImportOptions& options) {
     info.layout = "contiguous";
     std::vector<FlatSegment> segments;
     segments.push_back({std::move(data.file), offset, info.logical_bytes});
-    DUBSAR_ASSIGN(opened.reader, make_flat_reader({info.file_dims, *type, order, {}, std::move(segments)}));
+    DUBSAR_ASSIGN(opened.reader, make_flat_reader({info.file_dims, {*type, order, {}}, std::move(segments)}));
   } else if ((encoding == "gzip" || encoding == "gz") && skip == 0.0) {
     if (info.logical_bytes > (std::int64_t{64} << 20) && info.logical_bytes / 250 > info.storage_bytes &&
         !options.trust)

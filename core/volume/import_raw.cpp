@@ -38,7 +38,7 @@ Result<OpenedVolume> open_raw(const ImportOptions& options) {
   info.may_have_nonfinite = is_float(raw.type);
   std::vector<FlatSegment> segments;
   segments.push_back({std::move(file), raw.skip, bytes});
-  DUBSAR_ASSIGN(opened.reader, make_flat_reader({info.file_dims, raw.type, raw.order, {}, std::move(segments)}));
+  DUBSAR_ASSIGN(opened.reader, make_flat_reader({info.file_dims, {raw.type, raw.order, {}}, std::move(segments)}));
   return opened;
 }
 

@@ -61,20 +61,22 @@ std::optional<ScalarType> type_of(const TiffPage& page) {
 
 class SliceReader final : public VoxelReader {
  public:
-  SliceReader(std::vector<Slice> slices, TiffPage like) : slices_(std::move(slices)), like_(std::move(like)) {}
+  SliceReader(std::vector<Slice> slices, TiffPage like)
+      : slices_(std::move(slices)), like_(std::move(like)), format_{*type_of(like_), kNativeOrder, {}} {}
 
   Dims dims() const noexcept override { return {like_.width, like_.height, static_cast<std::int64_t>(slices_.size())}; }
+  const NumberFormat& format() const noexcept override { return format_; }
 
-  Result<void> read(const VoxelBox& box, std::span<float> out) override {
+  Result<void> read(const VoxelBox& box, std::span<std::byte> out) override {
     const Dims size = box.dims();
-    const ScalarType type = *type_of(like_);
+    const std::int64_t element = scalar_bytes(format_.type);
     std::mutex mutex;
     Result<void> result;
     const std::int64_t grain = std::max<std::int64_t>(4, (1 << 18) / (like_.width * like_.height));
     parallel_chunks(size.z, grain, [&](std::int64_t begin, std::int64_t end) {
       std::optional<TiffFile> file;
       fs::path open_path;
-      std::vector<std::byte> page(static_cast<std::size_t>(like_.width * like_.height * scalar_bytes(type)));
+      std::vector<std::byte> page(static_cast<std::size_t>(like_.width * like_.height * element));
       for (std::int64_t k = begin; k < end; ++k) {
         const Slice& slice = slices_[static_cast<std::size_t>(box.z.at(k))];
         auto loaded = load(slice, file, open_path, page);
@@ -84,9 +86,8 @@ class SliceReader final : public VoxelReader {
           return;
         }
         for (std::int64_t j = 0; j < size.y; ++j)
-          store_row(page.data() + (box.y.at(j) * like_.width + box.x.begin) * scalar_bytes(type), type, kNativeOrder,
-                    {}, box.x,
-                    out.subspan(static_cast<std::size_t>((k * size.y + j) * size.x), static_cast<std::size_t>(size.x)));
+          copy_row(page.data() + (box.y.at(j) * like_.width + box.x.begin) * element, element, box.x,
+                   out.data() + (k * size.y + j) * size.x * element);
       }
     });
     return result;
@@ -112,6 +113,7 @@ class SliceReader final : public VoxelReader {
 
   std::vector<Slice> slices_;
   TiffPage like_;
+  NumberFormat format_;
 };
 
 std::map<std::string, std::string> imagej_fields(const std::string& description) {
@@ -279,7 +281,7 @@ Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
     std::vector<FlatSegment> segments;
     segments.push_back({std::move(file), first->data_offset, info.logical_bytes});
     const ByteOrder order = first->big_endian ? ByteOrder::kBig : ByteOrder::kLittle;
-    DUBSAR_ASSIGN(opened.reader, make_flat_reader({info.file_dims, type, order, {}, std::move(segments)}));
+    DUBSAR_ASSIGN(opened.reader, make_flat_reader({info.file_dims, {type, order, {}}, std::move(segments)}));
   } else {
     opened.reader = std::make_unique<SliceReader>(std::move(slices), *first);
   }

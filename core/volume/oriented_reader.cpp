@@ -8,7 +8,6 @@
 namespace dubsar {
 namespace {
 
-constexpr std::int64_t kLayerBytes = std::int64_t{512} << 20;
 constexpr std::int64_t kPieceVoxels = 8 << 20;
 constexpr std::int64_t kTile = 32;  // voxels a side: both sides of a transposition stay in the first-level cache
 
@@ -26,11 +25,12 @@ struct Target {
   std::int64_t begin = 0;  ///< of the first stored voxel
 };
 
-void scatter(std::span<const float> from, const std::array<std::int64_t, 3>& size, const Target& to, float* out) {
+template <class Number>
+void scatter(const Number* from, const std::array<std::int64_t, 3>& size, const Target& to, Number* out) {
   if (to.step[0] == 1 || to.step[0] == -1) {
     parallel_for(size[1] * size[2], std::max<std::int64_t>(1, (1 << 16) / size[0]), [&](std::int64_t row) {
-      const float* in = from.data() + row * size[0];
-      float* target = out + to.begin + row % size[1] * to.step[1] + row / size[1] * to.step[2];
+      const Number* in = from + row * size[0];
+      Number* target = out + to.begin + row % size[1] * to.step[1] + row / size[1] * to.step[2];
       for (std::int64_t i = 0; i < size[0]; ++i) target[i * to.step[0]] = in[i];
     });
     return;
@@ -44,21 +44,27 @@ void scatter(std::span<const float> from, const std::array<std::int64_t, 3>& siz
     const std::int64_t i0 = tile % tiles_fast * kTile, j0 = tile / tiles_fast % tiles_across * kTile;
     const std::int64_t i1 = std::min(i0 + kTile, size[0]), j1 = std::min(j0 + kTile, size[across]);
     for (std::int64_t i = i0; i < i1; ++i) {
-      const float* in = from.data() + i + k * in_step[other];
-      float* target = out + to.begin + i * to.step[0] + k * to.step[other];
+      const Number* in = from + i + k * in_step[other];
+      Number* target = out + to.begin + i * to.step[0] + k * to.step[other];
       for (std::int64_t j = j0; j < j1; ++j) target[j * to.step[across]] = in[j * in_step[across]];
     }
   });
 }
 
+template <class Number>
+void scatter_bytes(const std::vector<std::byte>& from, const std::array<std::int64_t, 3>& size, const Target& to,
+                   std::span<std::byte> out) {
+  scatter(reinterpret_cast<const Number*>(from.data()), size, to, reinterpret_cast<Number*>(out.data()));
+}
+
 }  // namespace
 
-OrientedReader::OrientedReader(std::unique_ptr<VoxelReader> stored, const AxisOrder& order)
+OrientedReader::OrientedReader(std::unique_ptr<VoxelReader> stored, const AxisOrder& order, std::uint64_t layer_bytes)
     : stored_(std::move(stored)), order_(order) {
   const auto size = by_axis(order_, as_array(stored_->dims()));
   dims_ = {size[0], size[1], size[2]};
-  layer_ =
-      std::clamp<std::int64_t>(kLayerBytes / (dims_.slice() * static_cast<std::int64_t>(sizeof(float))), 1, dims_.z);
+  const std::int64_t slice_bytes = dims_.slice() * scalar_bytes(stored_->format().type);
+  layer_ = std::clamp<std::int64_t>(static_cast<std::int64_t>(layer_bytes) / slice_bytes, 1, dims_.z);
 }
 
 Dims OrientedReader::chunk() const noexcept {
@@ -82,7 +88,8 @@ AxisRange OrientedReader::layer_of(std::int64_t z) const noexcept {
   return here(begin, std::min(begin + depth, dims_.z));
 }
 
-Result<void> OrientedReader::read(const VoxelBox& box, std::span<float> out) {
+Result<void> OrientedReader::read(const VoxelBox& box, std::span<std::byte> out) {
+  const std::int64_t element = scalar_bytes(stored_->format().type);
   const std::array<AxisRange, 3> ranges{box.x, box.y, box.z};
   const std::array<std::int64_t, 3> length = as_array(dims_), count = as_array(box.dims());
   const std::array<std::int64_t, 3> step{1, count[0], count[0] * count[1]};
@@ -103,9 +110,13 @@ Result<void> OrientedReader::read(const VoxelBox& box, std::span<float> out) {
     const std::int64_t stop = (stored[2].at(i) / depth + layers) * depth;
     AxisRange part{stored[2].at(i), std::min(stop, stored[2].end), stored[2].step};
     const std::array<std::int64_t, 3> size{stored[0].count(), stored[1].count(), part.count()};
-    piece_.resize(static_cast<std::size_t>(size[0] * size[1] * size[2]));
+    piece_.resize(static_cast<std::size_t>(size[0] * size[1] * size[2] * element));
     DUBSAR_TRY(stored_->read({stored[0], stored[1], part}, piece_));
-    scatter(piece_, size, target, out.data());
+    const auto place = element == 1   ? scatter_bytes<std::uint8_t>
+                       : element == 2 ? scatter_bytes<std::uint16_t>
+                       : element == 4 ? scatter_bytes<std::uint32_t>
+                                      : scatter_bytes<std::uint64_t>;
+    place(piece_, size, target, out);
     target.begin += size[2] * target.step[2];
     i += size[2];
   }

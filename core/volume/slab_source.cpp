@@ -22,6 +22,8 @@ Result<Volume<float>> read_all(SlabSource& source, Progress& progress, std::int6
   const Dims dims = source.dims();
   DUBSAR_TRY(check_memory("volume", static_cast<std::uint64_t>(dims.count()) * sizeof(float)));
   Volume<float> volume(dims);
+  const std::int64_t preferred = std::max<std::int64_t>(1, source.preferred_height());
+  if (slab <= 0) slab = std::max<std::int64_t>(1, 32 / preferred) * preferred;
   for (std::int64_t z = 0; z < dims.z; z += slab) {
     if (progress.cancelled()) return cancelled_error();
     const std::int64_t end = std::min(dims.z, z + slab);

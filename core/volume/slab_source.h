@@ -17,6 +17,8 @@ class SlabSource {
   virtual ~SlabSource() = default;
   virtual Dims dims() const noexcept = 0;
   virtual const GridFrame& frame() const noexcept = 0;
+  /// Slices that are cheapest to ask for in one call that begins at a multiple of them; 1: no preference.
+  virtual std::int64_t preferred_height() const noexcept { return 1; }
   /// Writes slices [z_begin, z_end) to the front of `out`, at least dims().slice() * (z_end - z_begin) floats, x
   /// fastest. One
   /// caller at a time; the source may use all threads inside. Reading in rising order is fastest; any order works.
@@ -37,8 +39,9 @@ class VolumeSource final : public SlabSource {
   GridFrame frame_;
 };
 
-/// Reads everything into memory in slabs of `slab` slices; advances `progress` by voxels. kTryAgain when it does not
+/// Reads everything into memory, in slabs of `slab` slices (0: about 32, a multiple of the source's
+/// preferred height); advances `progress` by voxels. kTryAgain when it does not
 /// fit, kCancelled when stopped.
-Result<Volume<float>> read_all(SlabSource& source, Progress& progress, std::int64_t slab = 32);
+Result<Volume<float>> read_all(SlabSource& source, Progress& progress, std::int64_t slab = 0);
 
 }  // namespace dubsar

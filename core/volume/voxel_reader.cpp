@@ -1,6 +1,7 @@
 #include "core/volume/voxel_reader.h"
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace dubsar {
@@ -11,13 +12,14 @@ bool can_be_nonfinite(ScalarType type, const ScalarMap& map) noexcept {
   return is_float(type) || !(largest < static_cast<double>(std::numeric_limits<float>::max()));
 }
 
-void store_row(const std::byte* from, ScalarType type, ByteOrder order, const ScalarMap& map, const AxisRange& x,
-               std::span<float> out) {
-  const auto count = static_cast<std::size_t>(x.count());
-  if (x.step == 1) return scalars_to_float(from, type, order, map, out.first(count));
-  const std::int64_t bytes = x.step * scalar_bytes(type);
-  for (std::size_t i = 0; i < count; ++i)
-    scalars_to_float(from + static_cast<std::int64_t>(i) * bytes, type, order, map, out.subspan(i, 1));
+void copy_row(const std::byte* from, std::int64_t number_bytes, const AxisRange& x, std::byte* to) {
+  const std::int64_t count = x.count();
+  if (x.step == 1) {
+    std::memcpy(to, from, static_cast<std::size_t>(count * number_bytes));
+    return;
+  }
+  for (std::int64_t i = 0; i < count; ++i)
+    std::memcpy(to + i * number_bytes, from + i * x.step * number_bytes, static_cast<std::size_t>(number_bytes));
 }
 
 }  // namespace dubsar

@@ -30,9 +30,18 @@ struct VoxelBox {
   friend bool operator==(const VoxelBox&, const VoxelBox&) = default;
 };
 
+/// How a reader delivers numbers: as they are stored.
+struct NumberFormat {
+  ScalarType type = ScalarType::kF32;
+  ByteOrder order = kNativeOrder;
+  ScalarMap map;  ///< what they mean
+  bool is_native_float() const noexcept { return type == ScalarType::kF32 && order == kNativeOrder && map.identity(); }
+};
+
 class VoxelReader {
  public:
   virtual ~VoxelReader() = default;
+  virtual const NumberFormat& format() const noexcept = 0;
   virtual Dims dims() const noexcept = 0;
   /// Voxels along x, y and z that are decoded together; 1: no preference. Chunks start at voxel 0.
   virtual Dims chunk() const noexcept { return {1, 1, 1}; }
@@ -43,8 +52,8 @@ class VoxelReader {
   }
   /// Whether slices come in rising z only, so that going back means starting again.
   virtual bool sequential() const noexcept { return false; }
-  /// Reads box.dims().count() values to `out`, x fastest. One caller at a time; threads inside.
-  virtual Result<void> read(const VoxelBox& box, std::span<float> out) = 0;
+  /// Reads box.dims().count() stored numbers to the front of `out`, x fastest. One caller at a time; threads inside.
+  virtual Result<void> read(const VoxelBox& box, std::span<std::byte> out) = 0;
 };
 
 struct VolumeCandidate {
@@ -86,8 +95,7 @@ struct OpenedVolume {
 /// Whether numbers of this kind can be NaN or Inf as floats: floats, and integers whose map leads beyond 3.4e38.
 bool can_be_nonfinite(ScalarType type, const ScalarMap& map) noexcept;
 
-/// Stores one row of a box: `from` points at the stored number at x.begin.
-void store_row(const std::byte* from, ScalarType type, ByteOrder order, const ScalarMap& map, const AxisRange& x,
-               std::span<float> out);
+/// Copies one row of a box: x.count() numbers of 1, 2, 4 or 8 bytes; `from` points at the one at x.begin.
+void copy_row(const std::byte* from, std::int64_t number_bytes, const AxisRange& x, std::byte* to);
 
 }  // namespace dubsar

@@ -9,7 +9,6 @@
 
 #include "core/base/parallel.h"
 #include "core/hdf5/hdf5_writer.h"
-#include "core/volume/grid_source.h"
 #include "core/volume/import.h"
 #include "tests/core/volume/temp_folder.h"
 
@@ -162,32 +161,29 @@ TEST_F(ImportGrid, MoreThanOnePercentNonfiniteStops) {
   }
 }
 
-// A reader that counts what is asked of it.
-class CountingReader final : public VoxelReader {
- public:
-  explicit CountingReader(std::int64_t* slices) : slices_(slices) {}
-  Dims dims() const noexcept override { return {4, 4, 64}; }
-  Dims chunk() const noexcept override { return {4, 4, 16}; }
-  Result<void> read(const VoxelBox& box, std::span<float> out) override {
-    *slices_ += box.z.end - box.z.begin;
-    for (std::size_t i = 0; i < out.size(); ++i)
-      out[i] = static_cast<float>(box.z.at(static_cast<std::int64_t>(i) / box.dims().slice()));
-    return {};
-  }
-
- private:
-  std::int64_t* slices_;
-};
-
-TEST_F(ImportGrid, LayersOfChunksAreDecodedOnce) {
-  for (const std::int64_t slab : {1, 5, 16, 24, 64}) {
-    std::int64_t decoded = 0;
-    GridSource source(std::make_unique<CountingReader>(&decoded), {{0, 4, 1}, {0, 4, 1}, {0, 64, 1}}, {});
-    const auto all = read(source, slab);
-    ASSERT_TRUE(all);
-    for (std::size_t i = 0; i < all->size(); ++i) ASSERT_EQ((*all)[i], static_cast<float>(i / 16));
-    EXPECT_EQ(decoded, 64) << "slab " << slab;
-  }
+// Chunks that reach over what may be kept in memory, with their edges beyond the array, through both ways to decode.
+TEST_F(ImportGrid, LayersBeyondTheBudgetComeBackTheSame) {
+  write("chunked.h5", {8, 6, 23}, values());
+  for (const std::uint64_t memory : {std::uint64_t{1} << 30, std::uint64_t{4000}})
+    for (const std::int64_t slab : {1, 3, 8, 17})
+      for (const char* stride : {"1", "2,1,3"}) {
+        ImportOptions options;
+        options.path = in("chunked.h5");
+        options.stride = *parse_stride(stride);
+        options.budget.memory_bytes = memory;
+        options.budget.scratch_folder = folder();
+        const auto volume = open_volume(options);
+        ASSERT_TRUE(volume);
+        const auto all = read(**volume, slab);
+        ASSERT_TRUE(all) << all.error().message;
+        const VoxelBox& box = (*volume)->info().box;
+        const Dims dims = (*volume)->dims();
+        for (std::int64_t i = 0; i < dims.count(); ++i)
+          ASSERT_EQ((*all)[static_cast<std::size_t>(i)],
+                    expected(box, i % dims.x, i / dims.x % dims.y, i / dims.slice()))
+              << memory << " " << slab << " " << i;
+      }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder()), {}), 1) << "scratch files have no names";
 }
 
 }  // namespace
