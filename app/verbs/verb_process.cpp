@@ -25,14 +25,9 @@ void add_filter_options(Arguments command, Options& options) {
   PipelineOptions& p = options.pipeline;
   Arguments group = command.group("Filters and threshold");
   group.flag("--no-resample", options.no_resample, "skip Gauss 3x3x3 and 2:1 resampling");
-  group.choice<DenoiseMethod>("--denoise", p.denoise.method,
-                              {{"median", DenoiseMethod::kMedian},
-                               {"gauss", DenoiseMethod::kGauss},
-                               {"bilateral", DenoiseMethod::kBilateral},
-                               {"joint", DenoiseMethod::kJointBilateral}},
+  group.choice<DenoiseMethod>("--denoise", p.denoise.method, choices_of(kDenoiseMethods),
                               "denoising filter (default joint)");
-  group.choice<RangeWeight>("--range-weight", p.denoise.range,
-                            {{"tukey", RangeWeight::kTukey}, {"gauss", RangeWeight::kGauss}},
+  group.choice<RangeWeight>("--range-weight", p.denoise.range, choices_of(kRangeWeights),
                             "range weight of the bilateral filters (default tukey)");
   group.value("--window", p.denoise.window, "window of the filter in voxels").one_of({"3", "5", "7"});
   group.value("--iterations", p.denoise.iterations, "passes of the filter, 0: none").range(0, 32);
@@ -40,13 +35,7 @@ void add_filter_options(Arguments command, Options& options) {
   group.value("--sharpen", options.sharpen, "give edges back what 2:1 took: 0 off, 1 default where the noise allows it")
       .range(0.0, 4.0);
   group.value("--threshold", options.threshold, "isovalue in grey values (default: estimated)");
-  group.choice<ThresholdMethod>("--threshold-method", p.estimate.method,
-                                {{"auto", ThresholdMethod::kAuto},
-                                 {"valley", ThresholdMethod::kValley},
-                                 {"sigmas", ThresholdMethod::kSigmas},
-                                 {"half", ThresholdMethod::kHalf},
-                                 {"otsu", ThresholdMethod::kOtsu},
-                                 {"mixture", ThresholdMethod::kMixture}},
+  group.choice<ThresholdMethod>("--threshold-method", p.estimate.method, choices_of(kThresholdMethods),
                                 "how the isovalue is estimated (default auto)");
   group.value("--threshold-factor", p.estimate.factor, "the paper's f (default 2 for valley, 3 for sigmas)").positive();
 }
@@ -67,11 +56,7 @@ void add_surface_options(Arguments command, Options& options) {
       .positive();
   group.flag("--exact-normals", p.settle.exact_normals, "store normals and curvatures to the last bit");
   group.choice<SegmentMethod>(
-      "--segment", p.segment.method,
-      {{"nested", SegmentMethod::kNested},
-       {"concavity", SegmentMethod::kConcavity},
-       {"bodies", SegmentMethod::kBodies},
-       {"none", SegmentMethod::kNone}},
+      "--segment", p.segment.method, choices_of(kSegmentMethods),
       "how parts are separated: nested (default), the paper's concavity threshold, closed bodies, or none");
   group.value("--concavity", p.segment.concavity, "k_min per grid step below which --segment concavity cuts");
   group.flag("--no-fill-holes", options.no_holes, "leave the holes that segmentation cuts");

@@ -23,13 +23,9 @@ std::int64_t batch_for(Dims dims) {
   return std::clamp<std::int64_t>(kBatchBytes / (dims.slice() * static_cast<std::int64_t>(sizeof(float))), 1, 16);
 }
 
-bool uses_guide(DenoiseMethod method) {
-  return method == DenoiseMethod::kBilateral || method == DenoiseMethod::kJointBilateral;
-}
-
 /// Factor on guide values that leaves a range weight of the difference alone.
 float guide_scale(const DenoiseOptions& options) {
-  if (!uses_guide(options.method)) return 1.0F;
+  if (!needs_sigma(options.method)) return 1.0F;
   const double width = options.sigma * (options.range == RangeWeight::kTukey ? kTukeyScale : std::numbers::sqrt2);
   return static_cast<float>(std::min(1.0 / width, static_cast<double>(std::numeric_limits<float>::max())));
 }
@@ -45,8 +41,8 @@ class FilterSource final : public SlabSource {
         scale_(guide_scale(options)),
         batch_(batch_for(source.dims())),
         image_(source.dims(), batch_ + 2 * (radius_ + guide_radius_), SliceRing::Rows::kPadded),
-        guide_(uses_guide(options.method) ? SliceRing(source.dims(), batch_ + 2 * radius_, SliceRing::Rows::kPadded)
-                                          : SliceRing({1, 1, 1}, 1, SliceRing::Rows::kPadded)) {}
+        guide_(needs_sigma(options.method) ? SliceRing(source.dims(), batch_ + 2 * radius_, SliceRing::Rows::kPadded)
+                                           : SliceRing({1, 1, 1}, 1, SliceRing::Rows::kPadded)) {}
 
   Dims dims() const noexcept override { return source_->dims(); }
   const GridFrame& frame() const noexcept override { return source_->frame(); }
@@ -58,7 +54,7 @@ class FilterSource final : public SlabSource {
       const std::int64_t end = std::min(z_end, z + batch_);
       const std::int64_t halo = radius_ + guide_radius_;
       DUBSAR_TRY(image_.load(*source_, {z - halo, end + halo}));
-      if (uses_guide(options_.method)) make_guide({z - radius_, end + radius_});
+      if (needs_sigma(options_.method)) make_guide({z - radius_, end + radius_});
       float* to = out.data() + (z - z_begin) * dims().slice();
       if (options_.method == DenoiseMethod::kGauss) {
         gauss({z, end}, to);
@@ -117,7 +113,7 @@ class FilterSource final : public SlabSource {
       const kernels::Window window{image.data(), guide.data(), static_cast<int>(radius_)};
       for (std::int64_t y = y0; y < y1; ++y) {
         gather(image_, y, z, image.data());
-        if (uses_guide(options_.method)) gather(guide_, y, z, guide.data());
+        if (needs_sigma(options_.method)) gather(guide_, y, z, guide.data());
         float* to = out + (z - slices.begin) * d.slice() + y * d.x;
         if (options_.method == DenoiseMethod::kMedian) {
           kernels::median(window, x0, x1, to);
@@ -206,7 +202,7 @@ Result<void> check(const DenoiseOptions& options) {
     return fail(ErrorKind::kUsage, "denoise: window of {} voxels, expected 3, 5 or 7", options.window);
   if (options.iterations < 0 || options.iterations > 100)
     return fail(ErrorKind::kUsage, "denoise: {} iterations, expected 0 to 100", options.iterations);
-  if (uses_guide(options.method) && options.iterations > 0 && !(options.sigma > 0.0 && std::isfinite(options.sigma)))
+  if (needs_sigma(options.method) && options.iterations > 0 && !(options.sigma > 0.0 && std::isfinite(options.sigma)))
     return fail(ErrorKind::kUsage,
                 "denoise: sigma is {}, a bilateral filter needs the noise's standard deviation (> 0)", options.sigma);
   return {};

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/base/enum_names.h"
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/volume/slab_source.h"
@@ -18,11 +19,28 @@ enum class DenoiseMethod {
   kJointBilateral,  ///< weights from the differences in the image after Gauss 3x3x3
 };
 
+inline constexpr EnumName<DenoiseMethod> kDenoiseMethods[] = {
+    {DenoiseMethod::kMedian, "median"},
+    {DenoiseMethod::kGauss, "gauss"},
+    {DenoiseMethod::kBilateral, "bilateral"},
+    {DenoiseMethod::kJointBilateral, "joint_bilateral", "joint"},
+};
+static_assert(names_all(kDenoiseMethods, static_cast<std::size_t>(DenoiseMethod::kJointBilateral) + 1));
+
+/// Whether the method weighs neighbours by their differences, and so needs the noise.
+constexpr bool needs_sigma(DenoiseMethod method) {
+  return method == DenoiseMethod::kBilateral || method == DenoiseMethod::kJointBilateral;
+}
+
 /// How much a neighbour with difference d counts, next to the spatial (binomial) weight.
 enum class RangeWeight {
   kTukey,  ///< (1 - (d / s')^2)^2 for d < s', else 0; s' = 2.1262 sigma gives e^-1/2 at sigma (paper, figure 5)
   kGauss,  ///< exp(-d^2 / (2 sigma^2))
 };
+
+inline constexpr EnumName<RangeWeight> kRangeWeights[] = {{RangeWeight::kTukey, "tukey"},
+                                                          {RangeWeight::kGauss, "gauss"}};
+static_assert(names_all(kRangeWeights, static_cast<std::size_t>(RangeWeight::kGauss) + 1));
 
 /// s' / sigma = 1 / sqrt(1 - exp(-1/4)): both weights are e^-1/2 at sigma (paper section 3.1).
 inline constexpr double kTukeyScale = 2.1262200413381014;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -179,75 +180,65 @@ double share_above(const Histogram& h, double threshold) {
   return inside > 0.0 ? (inside - below) / inside : 0.0;
 }
 
-void set_modes(Estimates& e, double m_lo, double m_hi, double sigma) {
-  e.m_lo = m_lo;
-  e.m_hi = m_hi;
-  e.sigma = sigma;
-  if (sigma > 0.0 && m_hi > m_lo) {
-    e.snr_db = 20.0 * std::log10((m_hi - m_lo) / sigma);
-    e.snr_alt_db = 0.5 * e.snr_db;
-  }
-}
-
 bool two_classes(double share) { return share >= kLeastShare && share <= 1.0 - kLeastShare; }
 
-/// Two peaks as in the paper. False, with the reason in e.path, when the histogram has no two of them.
-bool from_peaks(const Histogram& h, const EstimateOptions& options, Estimates& e) {
+SplitAttempt refused(SplitWay way, SplitVerdict verdict, std::string reason) {
+  return {way, verdict, std::nullopt, std::move(reason)};
+}
+
+/// The threshold between two measured peaks, and how it was set.
+std::pair<double, std::string> between_peaks(const Split& split, const EstimateOptions& options) {
+  const double contrast = split.m_hi - split.m_lo;
+  switch (options.method) {
+    case ThresholdMethod::kValley:
+      return {split.threshold_valley, "threshold by the valley rule, not capped"};
+    case ThresholdMethod::kSigmas:
+      return {split.m_hi - (options.factor > 0.0 ? options.factor : 3.0) * split.sigma,
+              "threshold some sigmas below the upper peak"};
+    case ThresholdMethod::kHalf:
+      return {split.m_lo + 0.5 * contrast, "threshold half way between them"};
+    default:
+      break;
+  }
+  const double low = split.m_lo + kCapLow * contrast;
+  const double high = std::max(low, std::min(split.m_lo + kCapHigh * contrast, split.m_hi - 3.0 * split.sigma));
+  const char* how = split.threshold_valley > high  ? "capped from above"
+                    : split.threshold_valley < low ? "capped from below"
+                                                   : "as it is";
+  return {std::clamp(split.threshold_valley, low, high),
+          fmt::format("threshold by the valley rule ({:.6g}), {}", split.threshold_valley, how)};
+}
+
+/// Two peaks as in the paper.
+SplitAttempt by_peaks(const Histogram& h, const EstimateOptions& options) {
+  constexpr SplitWay kWay = SplitWay::kPeaks;
   const double coarse = kBandwidth * static_cast<double>(h.mass.size());
   const std::vector<double> pd = smoothed(h, coarse);
   const std::optional<PeakPair> pair = most_prominent_pair(pd);
-  if (!pair) {
-    e.path = "the histogram has one peak";
-    return false;
-  }
-  if (pair->valley_ratio > std::min(kDeepestValley, 1.0 - kLeastProminence)) {
-    e.path = fmt::format("the valley between the peaks has {:.0f} % of the lower peak's density",
-                         100.0 * pair->valley_ratio);
-    return false;
-  }
+  if (!pair) return refused(kWay, SplitVerdict::kOnePeak, "the histogram has one peak");
+  if (pair->valley_ratio > std::min(kDeepestValley, 1.0 - kLeastProminence))
+    return refused(kWay, SplitVerdict::kShallowValley,
+                   fmt::format("the valley between the peaks has {:.0f} % of the lower peak's density",
+                               100.0 * pair->valley_ratio));
   const std::optional<PeakShape> lower = measure_peak(h, pair->low, pair->valley, coarse);
   const std::optional<PeakShape> upper = measure_peak(h, pair->high, pair->valley, coarse);
-  if (!lower || !upper || !(lower->bin < upper->bin)) {
-    e.path = "a peak has no slope";
-    return false;
-  }
-  const double m_lo = h.centre(lower->bin), m_hi = h.centre(upper->bin), contrast = m_hi - m_lo;
-  set_modes(e, m_lo, m_hi, upper->sigma * h.width);
-  const double factor = options.factor;
-  e.threshold_valley =
-      valley_rule(h, pd, *pair, options.method == ThresholdMethod::kSigmas || factor <= 0.0 ? 2.0 : factor);
-  const std::string sigma_text = upper->outer ? ", sigma from its outer slope" : "";
-  switch (options.method) {
-    case ThresholdMethod::kValley:
-      e.threshold = e.threshold_valley;
-      e.path = "two peaks" + sigma_text + "; threshold by the valley rule, not capped";
-      break;
-    case ThresholdMethod::kSigmas:
-      e.threshold = m_hi - (factor > 0.0 ? factor : 3.0) * e.sigma;
-      e.path = "two peaks" + sigma_text + "; threshold some sigmas below the upper peak";
-      break;
-    case ThresholdMethod::kHalf:
-      e.threshold = m_lo + 0.5 * contrast;
-      e.path = "two peaks" + sigma_text + "; threshold half way between them";
-      break;
-    default: {
-      const double low = m_lo + kCapLow * contrast;
-      const double high = std::max(low, std::min(m_lo + kCapHigh * contrast, m_hi - 3.0 * e.sigma));
-      e.threshold = std::clamp(e.threshold_valley, low, high);
-      const char* how = e.threshold_valley > high  ? "capped from above"
-                        : e.threshold_valley < low ? "capped from below"
-                                                   : "as it is";
-      e.path =
-          fmt::format("two peaks{}; threshold by the valley rule ({:.6g}), {}", sigma_text, e.threshold_valley, how);
-    }
-  }
-  e.material_fraction = share_above(h, e.threshold);
-  if (options.method == ThresholdMethod::kAuto && !two_classes(e.material_fraction)) {
-    e.path = fmt::format("the peaks split the voxels {:.2f} % to {:.2f} %", 100.0 * (1.0 - e.material_fraction),
-                         100.0 * e.material_fraction);
-    return false;
-  }
-  return true;
+  if (!lower || !upper || !(lower->bin < upper->bin))
+    return refused(kWay, SplitVerdict::kNoSlope, "a peak has no slope");
+  Split split;
+  split.m_lo = h.centre(lower->bin);
+  split.m_hi = h.centre(upper->bin);
+  split.sigma = upper->sigma * h.width;
+  const bool factor_is_other = options.method == ThresholdMethod::kSigmas || options.factor <= 0.0;
+  split.threshold_valley = valley_rule(h, pd, *pair, factor_is_other ? 2.0 : options.factor);
+  const auto [threshold, how] = between_peaks(split, options);
+  split.threshold = threshold;
+  split.material_fraction = share_above(h, threshold);
+  if (options.method == ThresholdMethod::kAuto && !two_classes(split.material_fraction))
+    return refused(kWay, SplitVerdict::kOneClass,
+                   fmt::format("the peaks split the voxels {:.2f} % to {:.2f} %",
+                               100.0 * (1.0 - split.material_fraction), 100.0 * split.material_fraction));
+  return {kWay, SplitVerdict::kTaken, split,
+          fmt::format("two peaks{}; {}", upper->outer ? ", sigma from its outer slope" : "", how)};
 }
 
 /// Half the sum of absolute differences between the smoothed histogram and the mixture, both with mass 1.
@@ -269,7 +260,7 @@ double misfit(const Histogram& h, const Mixture& m) {
   return 0.5 * sum;
 }
 
-bool from_mixture(const Histogram& h, Estimates& e) {
+SplitAttempt by_mixture(const Histogram& h) {
   for (const int count : {2, 3}) {
     const Mixture m = fit_mixture(h, count);
     const Mixture::Component& low = m.components[m.components.size() - 2];
@@ -278,27 +269,38 @@ bool from_mixture(const Histogram& h, Estimates& e) {
     if (separation(low, high) < kLeastSeparation || low.weight < kLeastShare || high.weight < kLeastShare ||
         !(misfit(h, m) <= kLargestMisfit) || !two_classes(share))
       continue;
-    set_modes(e, low.mean, high.mean, high.sigma);
-    e.threshold = between;
-    e.material_fraction = share;
-    e.path += fmt::format("{}threshold from a mixture of {} Gaussians", e.path.empty() ? "" : "; ", count);
-    return true;
+    return {SplitWay::kMixture, SplitVerdict::kTaken, Split{low.mean, high.mean, high.sigma, between, 0.0, share},
+            fmt::format("threshold from a mixture of {} Gaussians", count)};
   }
-  e.path += std::string(e.path.empty() ? "" : "; ") + "no mixture of Gaussians fits";
-  return false;
+  return refused(SplitWay::kMixture, SplitVerdict::kNoFit, "no mixture of Gaussians fits");
 }
 
-bool from_otsu(const Histogram& h, double laplacian_sigma, bool asked_for, Estimates& e) {
+SplitAttempt by_otsu(const Histogram& h, double laplacian_sigma, bool asked_for) {
   const OtsuSplit split = otsu_split(h);
-  if (!asked_for && (split.separability < kLeastSeparability || !two_classes(split.share_hi))) {
-    e.path += fmt::format("; Otsu's classes are not apart (separability {:.2f})", split.separability);
-    return false;
+  if (!asked_for && (split.separability < kLeastSeparability || !two_classes(split.share_hi)))
+    return refused(SplitWay::kOtsu, SplitVerdict::kNotApart,
+                   fmt::format("Otsu's classes are not apart (separability {:.2f})", split.separability));
+  return {SplitWay::kOtsu, SplitVerdict::kTaken,
+          Split{split.mean_lo, split.mean_hi, laplacian_sigma, split.threshold, 0.0, split.share_hi},
+          "threshold by Otsu, sigma from the Laplacian"};
+}
+
+/// Until one is taken.
+std::vector<SplitAttempt> try_ways(const Histogram& h, double laplacian_sigma, const EstimateOptions& options) {
+  switch (options.method) {
+    case ThresholdMethod::kOtsu:
+      return {by_otsu(h, laplacian_sigma, true)};
+    case ThresholdMethod::kMixture:
+      return {by_mixture(h)};
+    case ThresholdMethod::kAuto:
+      break;
+    default:
+      return {by_peaks(h, options)};
   }
-  set_modes(e, split.mean_lo, split.mean_hi, laplacian_sigma);
-  e.threshold = split.threshold;
-  e.material_fraction = split.share_hi;
-  e.path += fmt::format("{}threshold by Otsu, sigma from the Laplacian", e.path.empty() ? "" : "; ");
-  return true;
+  std::vector<SplitAttempt> attempts{by_peaks(h, options)};
+  if (!attempts.back().split) attempts.push_back(by_mixture(h));
+  if (!attempts.back().split) attempts.push_back(by_otsu(h, laplacian_sigma, false));
+  return attempts;
 }
 
 }  // namespace
@@ -312,25 +314,30 @@ Estimates estimate(const Histogram& h, double laplacian_sigma, const EstimateOpt
         "threshold: all voxels have the value {:.6g}, expected air and material; choose another dataset", h.low);
     return e;
   }
-  bool done = false;
-  switch (options.method) {
-    case ThresholdMethod::kOtsu:
-      done = from_otsu(h, laplacian_sigma, true, e);
-      break;
-    case ThresholdMethod::kMixture:
-      done = from_mixture(h, e);
-      break;
-    case ThresholdMethod::kAuto:
-      done = from_peaks(h, options, e) || from_mixture(h, e) || from_otsu(h, laplacian_sigma, false, e);
-      break;
-    default:
-      done = from_peaks(h, options, e);
+  e.attempts = try_ways(h, laplacian_sigma, options);
+  for (const SplitAttempt& attempt : e.attempts) e.path += (e.path.empty() ? "" : "; ") + attempt.reason;
+  const SplitAttempt* const way = taken(e);
+  if (way == nullptr) {
+    e.sigma = laplacian_sigma;
+    e.refusal = fmt::format("threshold: cannot tell material from air ({}), set it with --threshold", e.path);
+    return e;
   }
-  if (done) return e;
-  set_modes(e, 0.0, 0.0, laplacian_sigma);
-  e.snr_db = e.snr_alt_db = e.threshold = e.threshold_valley = e.material_fraction = 0.0;
-  e.refusal = fmt::format("threshold: cannot tell material from air ({}), set it with --threshold", e.path);
+  const Split& split = *way->split;
+  e.m_lo = split.m_lo;
+  e.m_hi = split.m_hi;
+  e.sigma = split.sigma;
+  e.threshold = split.threshold;
+  e.threshold_valley = split.threshold_valley;
+  e.material_fraction = split.material_fraction;
+  if (e.sigma > 0.0 && e.m_hi > e.m_lo) {
+    e.snr_db = 20.0 * std::log10((e.m_hi - e.m_lo) / e.sigma);
+    e.snr_alt_db = 0.5 * e.snr_db;
+  }
   return e;
+}
+
+const SplitAttempt* taken(const Estimates& estimates) noexcept {
+  return !estimates.attempts.empty() && estimates.attempts.back().split ? &estimates.attempts.back() : nullptr;
 }
 
 Result<Estimates> estimate(SlabSource& source, const EstimateOptions& options, Progress& progress) {

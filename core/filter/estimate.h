@@ -1,8 +1,11 @@
 #pragma once
 // Automatic parameters from the histogram: noise, signal-to-noise ratio and threshold (paper sections 3.1 and 3.2).
 
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "core/base/enum_names.h"
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/filter/histogram.h"
@@ -19,26 +22,67 @@ enum class ThresholdMethod {
   kMixture,  ///< equal posterior of the two upper components of a Gaussian mixture
 };
 
+inline constexpr EnumName<ThresholdMethod> kThresholdMethods[] = {
+    {ThresholdMethod::kAuto, "auto"}, {ThresholdMethod::kValley, "valley"}, {ThresholdMethod::kSigmas, "sigmas"},
+    {ThresholdMethod::kHalf, "half"}, {ThresholdMethod::kOtsu, "otsu"},     {ThresholdMethod::kMixture, "mixture"},
+};
+static_assert(names_all(kThresholdMethods, static_cast<std::size_t>(ThresholdMethod::kMixture) + 1));
+
 struct EstimateOptions {
   ThresholdMethod method = ThresholdMethod::kAuto;
   double factor = 0.0;  ///< 0: the paper's, 2 for the valley rule and 3 for the sigmas
 };
 
+/// Ways to tell air from material in a histogram, in the order in which kAuto tries them.
+enum class SplitWay { kPeaks, kMixture, kOtsu };
+
+/// Air and material as one way sees them.
+struct Split {
+  double m_lo = 0.0, m_hi = 0.0;  ///< grey values
+  double sigma = 0.0;             ///< of the noise in the material; 0: the way says nothing about it
+  double threshold = 0.0;
+  double threshold_valley = 0.0;  ///< see Estimates
+  double material_fraction = 0.0;
+};
+
+/// Why a way was taken or not.
+enum class SplitVerdict {
+  kTaken,
+  kOnePeak,        ///< the histogram has one peak
+  kShallowValley,  ///< two peaks that run into each other
+  kNoSlope,        ///< a peak without a slope to measure
+  kOneClass,       ///< nearly all voxels on one side
+  kNoFit,          ///< no mixture of Gaussians describes the histogram
+  kNotApart,       ///< Otsu's classes are those of a single Gaussian
+};
+
+/// One way that was tried.
+struct SplitAttempt {
+  SplitWay way = SplitWay::kPeaks;
+  SplitVerdict verdict = SplitVerdict::kTaken;
+  std::optional<Split> split;  ///< when it was taken
+  std::string reason;          ///< for people
+};
+
 struct Estimates {
-  double m_lo = 0.0, m_hi = 0.0;   ///< grey values of air and material (modes)
-  double sigma = 0.0;              ///< standard deviation of the noise in the material
-  double snr_db = 0.0;             ///< 20 log10((m_hi - m_lo) / sigma)
-  double snr_alt_db = 0.0;         ///< 10 log10((m_hi - m_lo) / sigma), the other reading of the paper's figures
-  double threshold = 0.0;          ///< isovalue; meaningless with a refusal
-  double threshold_valley = 0.0;   ///< what the paper's rule alone says; 0 without two peaks
-  double material_fraction = 0.0;  ///< of all voxels, above the threshold
-  std::string path;                ///< which way was taken and why, one sentence
-  std::string refusal;             ///< why no threshold can be given; empty when there is one
+  double m_lo = 0.0, m_hi = 0.0;       ///< grey values of air and material (modes)
+  double sigma = 0.0;                  ///< standard deviation of the noise in the material
+  double snr_db = 0.0;                 ///< 20 log10((m_hi - m_lo) / sigma)
+  double snr_alt_db = 0.0;             ///< 10 log10((m_hi - m_lo) / sigma), the other reading of the paper's figures
+  double threshold = 0.0;              ///< isovalue; meaningless with a refusal
+  double threshold_valley = 0.0;       ///< what the paper's rule alone says; 0 without two peaks
+  double material_fraction = 0.0;      ///< of all voxels, above the threshold
+  std::vector<SplitAttempt> attempts;  ///< in the order in which they were made; the last one was taken or none
+  std::string path;                    ///< their reasons, one sentence
+  std::string refusal;                 ///< why no threshold can be given; empty when there is one
 };
 
 /// Cap of the valley rule, in parts of the way from m_lo to m_hi: within 0.1 voxel of the true surface, where the rule
 /// alone is 0.7 voxel off (measured: estimate.cpp).
 inline constexpr double kCapLow = 0.45, kCapHigh = 0.5;
+
+/// The attempt that was taken; nullptr with a refusal.
+const SplitAttempt* taken(const Estimates& estimates) noexcept;
 
 /// Estimates from a histogram (2,048 bins). `laplacian_sigma` is used where the histogram says nothing about the noise
 /// (0: not known; see laplacian_noise). Never fails: `refusal` says when no threshold can be given.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/enum_names.h"
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/parts/surface_model.h"
@@ -18,6 +19,12 @@ enum class SegmentMethod {
   kBodies,     ///< closed bodies as they are, nothing is separated
   kNone,       ///< one partition
 };
+
+inline constexpr EnumName<SegmentMethod> kSegmentMethods[] = {{SegmentMethod::kNested, "nested"},
+                                                              {SegmentMethod::kConcavity, "concavity"},
+                                                              {SegmentMethod::kBodies, "bodies"},
+                                                              {SegmentMethod::kNone, "none"}};
+static_assert(names_all(kSegmentMethods, static_cast<std::size_t>(SegmentMethod::kNone) + 1));
 
 struct SegmentOptions {
   SegmentMethod method = SegmentMethod::kNested;

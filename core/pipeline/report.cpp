@@ -7,10 +7,6 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::array<const char*, 4> kDenoiseNames{"median", "gauss", "bilateral", "joint_bilateral"};
-constexpr std::array<const char*, 6> kThresholdNames{"auto", "valley", "sigmas", "half", "otsu", "mixture"};
-constexpr std::array<const char*, 4> kSegmentNames{"nested", "concavity", "bodies", "none"};
-
 json dims_json(const Dims& dims) { return {dims.x, dims.y, dims.z}; }
 json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
@@ -19,21 +15,20 @@ json parameters_json(const PipelineReport& report, const PipelineOptions& option
   return {
       {"resample", options.resample},
       {"denoise",
-       {{"method", kDenoiseNames[static_cast<std::size_t>(denoise.method)]},
-        {"range", denoise.range == RangeWeight::kTukey ? "tukey" : "gauss"},
+       {{"method", name_in(kDenoiseMethods, denoise.method)},
+        {"range", name_in(kRangeWeights, denoise.range)},
         {"window", denoise.window},
         {"iterations", denoise.iterations},
         {"sigma", denoise.sigma > 0.0 ? json(denoise.sigma) : json("estimated")}}},
       {"sharpen", report.sharpen},
-      {"threshold_method",
-       options.threshold ? "given" : kThresholdNames[static_cast<std::size_t>(options.estimate.method)]},
+      {"threshold_method", options.threshold ? "given" : name_in(kThresholdMethods, options.estimate.method)},
       {"threshold", report.threshold},
       {"offset_bits", options.offset_bits},
       {"boundary", options.closed_boundary ? "closed" : "open"},
       {"normal_iterations", options.smooth.normals.iterations},
       {"vertex_iterations", options.smooth.vertex_iterations},
       {"curvature", options.curvature == CurvatureMethod::kFit ? "fit" : "pairs"},
-      {"segment", kSegmentNames[static_cast<std::size_t>(options.segment.method)]},
+      {"segment", name_in(kSegmentMethods, options.segment.method)},
       {"fill_holes", options.fill_holes},
       {"occlusion", options.occlusion ? json{{"rays", options.occlusion_options.rays},
                                              {"radius_vox", options.occlusion_options.radius_vox}}

@@ -11,20 +11,6 @@
 namespace dubsar {
 namespace {
 
-std::string_view method_name(DenoiseMethod method) {
-  switch (method) {
-    case DenoiseMethod::kMedian:
-      return "median";
-    case DenoiseMethod::kGauss:
-      return "gauss";
-    case DenoiseMethod::kBilateral:
-      return "bilateral";
-    case DenoiseMethod::kJointBilateral:
-      return "joint_bilateral";
-  }
-  return "";
-}
-
 /// Slices of the raw scan that are enough to know its noise: its histogram is needed for the report only.
 constexpr std::int64_t kRawSampleSlices = 48, kRawSampleGroup = 3;
 
@@ -79,8 +65,7 @@ Result<void> denoise_and_estimate(Volume<float>& volume, const PipelineOptions& 
     DenoiseOptions pass = options.denoise;
     pass.iterations = 1;
     if (pass.sigma <= 0.0) pass.sigma = estimates.sigma;
-    const bool needs_sigma = pass.method == DenoiseMethod::kBilateral || pass.method == DenoiseMethod::kJointBilateral;
-    if (needs_sigma && pass.sigma <= 0.0) {
+    if (needs_sigma(pass.method) && pass.sigma <= 0.0) {
       log_info("denoise: the volume has no noise that could be measured, nothing to filter");
       break;
     }
@@ -89,7 +74,7 @@ Result<void> denoise_and_estimate(Volume<float>& volume, const PipelineOptions& 
     DUBSAR_TRY(denoise_in_place(volume, pass, progress));
     clock.finish(volume.dims.count());
     DUBSAR_ASSIGN(estimates, estimate_volume(volume, "estimate", options, clock, progress));
-    report.filters.push_back({fmt::format("{} {}", method_name(pass.method), iteration), estimates});
+    report.filters.push_back({fmt::format("{} {}", name_in(kDenoiseMethods, pass.method), iteration), estimates});
   }
   report.estimates = std::move(estimates);
   return {};
