@@ -30,7 +30,8 @@ SubpixelCell read_cell(const json& entry, JsonFields& fields) {
     }
     const json& pair = entry.at(kChannels[k]);
     if (!pair.is_array() || pair.size() != 2 || !is_offset(pair[0]) || !is_offset(pair[1]))
-      fields.complain(fmt::format("subpixel cell: {} is not two numbers of -2 to 2", kChannels[k]));
+      fields.complain(
+          fmt::format("subpixel cell: {} is something else, expected two numbers of -2 to 2", kChannels[k]));
     else
       cell.offset_px[k] = {pair[0].get<double>(), pair[1].get<double>()};
   }

@@ -45,7 +45,8 @@ TimestampNs FieldCadence::turn(TimestampNs now) const noexcept {
 }
 
 Field FieldCadence::next(TimestampNs at) const noexcept {
-  const double since = last_ns_ < 0.0 ? 0.0 : (static_cast<double>(at) - last_ns_) / period_ns_;
+  if (last_ns_ < 0.0) return Field::kFirst;  // whose beat becomes number 0
+  const double since = (static_cast<double>(at) - last_ns_) / period_ns_;
   const std::int64_t beat = beats_ + static_cast<std::int64_t>(std::max(1.0, std::ceil(since)));
   return beat % 2 == 0 ? Field::kFirst : Field::kSecond;
 }
