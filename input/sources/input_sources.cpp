@@ -3,6 +3,7 @@
 #include "devices/real/real_devices.h"
 #include "input/input_recording.h"
 #include "input/input_source.h"
+#include "input/plugins/source_plugin.h"
 #include "input/simulated/scripted_source.h"
 #include "input/source_spec.h"
 #include "input/sources/head_source.h"
@@ -15,7 +16,7 @@
 namespace dubsar {
 namespace {
 
-constexpr std::array<InputBackend, 10> kSources{{
+constexpr std::array<InputBackend, 11> kSources{{
     {"mouse", "turn, shift or middle: move, ctrl or wheel: zoom, right: light", true, make_mouse_source},
     {"keyboard", "arrows turn, + and - zoom, home resets, backspace undoes", true, make_keyboard_source},
     {"spacemouse", "a 3Dconnexion puck turns, moves and zooms", true, make_spacemouse_source},
@@ -28,6 +29,7 @@ constexpr std::array<InputBackend, 10> kSources{{
      "the head from a face, with :hands hands too: webcam[:hands,device=/dev/video0,hfov=60,ipd=63,at=X/Y/Z,tilt=0]",
      false, make_webcam_source},
     {"scripted", "simulated people: scripted:FILE.json", false, make_scripted_source},
+    {"plugin", "a shared library: plugin:FILE.so[,at=X/Y/Z,turn=X/Y/Z,...]", false, make_plugin_source},
     {"replay", "a recording of any input: replay:FILE.jsonl", false, make_replay_source},
 }};
 
