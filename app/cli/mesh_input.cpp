@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "core/exa/exa_file.h"
+#include "core/mesh/vertex_attributes.h"
 #include "core/mesh_io/mesh_io.h"
 #include "core/parts/surface_model.h"
 
@@ -36,22 +37,12 @@ Result<MeshOptions> mesh_options(const SurfaceModel& model, const std::string& w
   return no_such_partition(wanted, model.partitions);
 }
 
-template <class T>
-void append_array(std::vector<T>& to, const std::vector<T>& from) {
-  to.insert(to.end(), from.begin(), from.end());
-}
-
 void append(TriMesh& to, const TriMesh& from) {
   const auto base = static_cast<std::uint32_t>(to.positions.size());
   for (Triangle t : from.triangles) to.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
-  append_array(to.positions, from.positions);
-  append_array(to.normals, from.normals);
-  append_array(to.k_min, from.k_min);
-  append_array(to.k_max, from.k_max);
-  append_array(to.shape, from.shape);
-  append_array(to.triangle_partition, from.triangle_partition);
-  append_array(to.ao, from.ao);
-  append_array(to.colors, from.colors);
+  const auto& labels = from.triangle_partition;
+  to.triangle_partition.insert(to.triangle_partition.end(), labels.begin(), labels.end());
+  append_vertices(to, from);
   to.partitions.merge(from.partitions);
 }
 

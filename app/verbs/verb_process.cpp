@@ -87,7 +87,10 @@ Result<VerbResult> run(Options options, const Arguments command, const CommonOpt
   p.occlusion_options.radius_vox = static_cast<float>(options.radius);
   if (command.given("--sharpen")) p.sharpen = static_cast<float>(options.sharpen);
   if (command.given("--threshold")) p.threshold = static_cast<float>(options.threshold);
-  DUBSAR_ASSIGN(PipelineResult result, run_pipeline(p, progress));
+  Result<PipelineResult> made = run_pipeline(p, progress);
+  if (!made && made.error().kind == ErrorKind::kTryAgain)
+    made.error().message += "; take a part of the scan with --crop, or fewer voxels with --stride";
+  DUBSAR_ASSIGN(PipelineResult result, std::move(made));
   DUBSAR_TRY(write_product(options.out, result, progress));
   VerbResult out;
   out.json = report_json(result.report, p);

@@ -1,35 +1,17 @@
 #include "core/base/budget.h"
 
-#include <fstream>
 #include <limits>
-#include <string>
+
+#include "core/base/memory_left.h"
 
 namespace dubsar {
 namespace {
 constexpr double kMiB = 1024.0 * 1024.0;
 __extension__ using Uint128 = unsigned __int128;
 
-std::uint64_t read_number(const char* path, std::uint64_t otherwise) {
-  std::ifstream file(path);
-  std::uint64_t value = 0;
-  return file >> value ? value : otherwise;
-}
 }  // namespace
 
-std::uint64_t available_memory_bytes() {
-  std::uint64_t available = std::numeric_limits<std::uint64_t>::max();
-  std::ifstream meminfo("/proc/meminfo");
-  std::string key, unit;
-  for (std::uint64_t kib = 0; meminfo >> key >> kib;) {
-    std::getline(meminfo, unit);
-    if (key == "MemAvailable:") available = kib * 1024;
-  }
-  constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
-  const std::uint64_t limit = read_number("/sys/fs/cgroup/memory.max", kNone);
-  const std::uint64_t used = read_number("/sys/fs/cgroup/memory.current", 0);
-  if (limit != kNone && limit > used && limit - used < available) available = limit - used;
-  return available;
-}
+std::uint64_t available_memory_bytes() { return memory_left({}); }
 
 std::uint64_t Budget::limit_bytes() const {
   return memory_bytes > 0 ? memory_bytes : available_memory_bytes() / 10 * 8;
@@ -63,8 +45,8 @@ Result<void> check_count(std::string_view what, std::uint64_t count, std::uint64
 Result<void> check_memory(std::string_view what, std::uint64_t bytes, const Budget& budget) {
   const std::uint64_t limit = budget.limit_bytes();
   if (bytes > limit)
-    return fail(ErrorKind::kTryAgain, "{}: {:.0f} MiB of memory needed, {:.0f} MiB allowed; use --crop or --stride",
-                what, static_cast<double>(bytes) / kMiB, static_cast<double>(limit) / kMiB);
+    return fail(ErrorKind::kTryAgain, "{}: {:.0f} MiB of memory needed, {:.0f} MiB allowed", what,
+                static_cast<double>(bytes) / kMiB, static_cast<double>(limit) / kMiB);
   return {};
 }
 

@@ -10,6 +10,8 @@
 #include <numeric>
 #include <optional>
 
+#include "core/mesh/vertex_attributes.h"
+
 namespace dubsar {
 namespace {
 
@@ -113,24 +115,13 @@ class Simplifier {
 
   TriMesh result() const {
     TriMesh out;
-    std::vector<std::uint32_t> renamed(head_.size(), kNone);
+    std::vector<std::uint32_t> renamed(head_.size(), kNone), kept;
     for (std::uint32_t v = 0; v < head_.size(); ++v) {
       if (removed_[v]) continue;
-      renamed[v] = static_cast<std::uint32_t>(out.positions.size());
-      out.positions.push_back(mesh_.positions[v]);
+      renamed[v] = static_cast<std::uint32_t>(kept.size());
+      kept.push_back(v);
     }
-    const auto carry = [&](const auto& from, auto& to) {
-      if (from.empty()) return;
-      for (std::size_t v = 0; v < renamed.size(); ++v) {
-        if (renamed[v] != kNone) to.push_back(from[v]);
-      }
-    };
-    carry(mesh_.normals, out.normals);
-    carry(mesh_.k_min, out.k_min);
-    carry(mesh_.k_max, out.k_max);
-    carry(mesh_.shape, out.shape);
-    carry(mesh_.ao, out.ao);
-    carry(mesh_.colors, out.colors);
+    gather_vertices(mesh_, kept, out);
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       const Face& face = faces_[f];
       if (!face.alive) continue;
@@ -373,7 +364,9 @@ Result<TriMesh> simplify(const TriMesh& mesh, const SimplifyOptions& options, Pr
                   mesh.positions.size());
     }
   }
-  DUBSAR_CHECK(mesh.triangles.size() < kNone / 3);
+  if (mesh.triangles.size() >= kNone / 3)
+    return fail(ErrorKind::kTryAgain, "simplify: {} triangles found, expected at most {}; take one part at a time",
+                mesh.triangles.size(), kNone / 3);
   Simplifier simplifier(mesh, options);
   // The distance grows from pass to pass, so that merges that cost nothing come first everywhere.
   const auto vertices = static_cast<std::int64_t>(mesh.positions.size());

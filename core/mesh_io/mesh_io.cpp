@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/base/input_file.h"
+#include "core/mesh/vertex_attributes.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_output.h"
 
@@ -105,16 +106,10 @@ Result<MeshInfo> mesh_info(const std::filesystem::path& path, Progress& progress
       info.min_mm = glm::min(info.min_mm, p);
       info.max_mm = glm::max(info.max_mm, p);
     }
-  const auto note = [&](bool present, const char* name) {
-    if (present) info.attributes.emplace_back(name);
-  };
-  note(!mesh.normals.empty(), "normals");
-  note(!mesh.colors.empty(), "colors");
-  note(!mesh.triangle_partition.empty(), "partition");
-  note(!mesh.k_min.empty(), "k_min");
-  note(!mesh.k_max.empty(), "k_max");
-  note(!mesh.shape.empty(), "shape");
-  note(!mesh.ao.empty(), "ao");
+  for_each_attribute([&](const auto& attribute) {
+    if (!(mesh.*attribute.values).empty()) info.attributes.emplace_back(attribute.name);
+  });
+  if (!mesh.triangle_partition.empty()) info.attributes.emplace_back("partition");
   return info;
 }
 
@@ -139,18 +134,7 @@ TriMesh select_partition(const TriMesh& mesh, PartitionId partition) {
     part.triangles.push_back({moved[t[0]], moved[t[1]], moved[t[2]]});
   }
   if (!mesh.triangle_partition.empty()) part.triangle_partition.assign(part.triangles.size(), partition);
-  const auto copy = [&](const auto& from, auto& to) {
-    if (from.empty()) return;
-    to.reserve(kept.size());
-    for (const std::uint32_t v : kept) to.push_back(from[v]);
-  };
-  copy(mesh.positions, part.positions);
-  copy(mesh.normals, part.normals);
-  copy(mesh.k_min, part.k_min);
-  copy(mesh.k_max, part.k_max);
-  copy(mesh.shape, part.shape);
-  copy(mesh.ao, part.ao);
-  copy(mesh.colors, part.colors);
+  gather_vertices(mesh, kept, part);
   return part;
 }
 

@@ -1,21 +1,12 @@
 #include "core/mesh_io/mesh_output.h"
 
+#include "core/mesh/vertex_attributes.h"
 #include "core/relief/shape_colors.h"
 
 namespace dubsar {
 
 Result<void> check_tri_mesh(const TriMesh& mesh) {
-  const std::size_t count = mesh.positions.size();
-  const auto fits = [&](std::size_t size) { return size == 0 || size == count; };
-  if (!fits(mesh.normals.size()) || !fits(mesh.k_min.size()) || !fits(mesh.k_max.size()) || !fits(mesh.shape.size()) ||
-      !fits(mesh.ao.size()) || !fits(mesh.colors.size()))
-    return fail(ErrorKind::kInternal, "mesh: vertex arrays of different lengths, expected {} entries each", count);
-  if (!mesh.triangle_partition.empty() && mesh.triangle_partition.size() != mesh.triangles.size())
-    return fail(ErrorKind::kInternal, "mesh: {} partition ids found, expected one for each of {} triangles",
-                mesh.triangle_partition.size(), mesh.triangles.size());
-  for (const Triangle& t : mesh.triangles)
-    for (const std::uint32_t v : t)
-      if (v >= count) return fail(ErrorKind::kInternal, "mesh: vertex {} named, but there are {}", v, count);
+  DUBSAR_TRY(check_arrays(mesh, ErrorKind::kInternal, "mesh"));
   for (const glm::vec3& p : mesh.positions)
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       return fail(ErrorKind::kBadData, "mesh: a vertex position is not finite, so the mesh is not written");

@@ -90,6 +90,11 @@ std::optional<Slot> slot_of(const PlyProperty& property, bool ours) {
 
 bool is_label(const PlyProperty& property) { return property.name == "partition" && !property.list; }
 
+/// NaN counts as 0.
+std::uint8_t color_byte(double value) {
+  return static_cast<std::uint8_t>(value > 0.0 ? std::min(std::round(value), 255.0) : 0.0);
+}
+
 double color_scale(PlyScalar type) {
   if (!ply_is_integer(type)) return 255.0;
   return type == PlyScalar::kU16 ? 1.0 / 257.0 : 1.0;
@@ -161,7 +166,7 @@ struct Parser {
       if (normals) mesh.normals[v] = point(kNx);
       if (colors)
         for (int c = 0; c < 3; ++c)
-          mesh.colors[v][c] = static_cast<std::uint8_t>(std::clamp(std::round(row[kRed + c]), 0.0, 255.0));
+          mesh.colors[v][static_cast<std::size_t>(c)] = color_byte(row[static_cast<std::size_t>(kRed + c)]);
       if (curvatures) {
         mesh.k_min[v] = static_cast<float>(row[kKMin]);
         mesh.k_max[v] = static_cast<float>(row[kKMax]);
@@ -218,6 +223,9 @@ struct Parser {
 
   template <class Values>
   Result<void> faces(const PlyElement& element, Values& values) {
+    if (element.properties.empty() && element.count > 0)
+      return fail(ErrorKind::kBadData, "ply: {} faces without properties found, expected a list vertex_indices",
+                  element.count);
     const bool labelled = header.text.ours() && std::any_of(element.properties.begin(), element.properties.end(),
                                                             [](const PlyProperty& p) { return is_label(p); });
     for (std::uint64_t f = 0; f < element.count; ++f) {

@@ -182,10 +182,12 @@ FaceComponents find_components(const SurfaceModel& model, const FaceScene& scene
     info.area += area;
     info.lowest = glm::min(info.lowest, graph.centre[f]);
     info.highest = glm::max(info.highest, graph.centre[f]);
-    if (scene.air[f] == FaceScene::kExterior)
-      info.exterior_area += area;
-    else
-      info.inward_area += area * static_cast<double>(vote(scene.inward[f]));
+    if (scene.observed()) {
+      if (scene.air[f] == FaceScene::kExterior)
+        info.exterior_area += area;
+      else
+        info.inward_area += area * static_cast<double>(vote(scene.inward[f]));
+    }
     centre[c] += area * glm::dvec3(graph.centre[f]);
     for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
       const std::uint32_t g = graph.neighbour[s];

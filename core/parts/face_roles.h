@@ -1,5 +1,5 @@
 #pragma once
-// The first half of segmentation: every face gets a role from where its air lies and where it looks.
+// Roles of faces: every face gets one from where its air lies and where it looks, and the roles make the partitions.
 
 #include <cstdint>
 #include <vector>
@@ -24,8 +24,12 @@ struct FaceScene {
       air;                    ///< per face: kExterior, a component of enclosed air, or EnclosedAir::kNone (unknown)
   std::vector<float> inward;  ///< per face: cosine between its normal and the way inwards
   std::vector<float> depth;   ///< per face: below the sealed outside, grid steps
+
+  /// False when only the graph is there: enough for components of closed bodies.
+  bool observed() const noexcept { return air.size() == graph.faces(); }
 };
 
+/// The expensive half: floods the air for every crack radius and measures depths.
 Result<FaceScene> observe_faces(const SurfaceModel& model, const SegmentOptions& options, Progress& progress);
 
 /// Faces of one label that hang together.
@@ -52,6 +56,11 @@ Result<std::vector<FaceRole>> roles_by_cut(const SurfaceModel& model, const Face
 /// Components of what the concavity threshold leaves; each gets the role that most of its area votes for.
 Result<std::vector<FaceRole>> roles_by_concavity(const SurfaceModel& model, const FaceScene& scene,
                                                  const SegmentOptions& options, Progress& progress);
+
+/// The second half: sets quad_partition and partitions of the model from the roles of its faces, and small_pieces and
+/// cut_length of the report. False, and closed bodies as they are, when the core pieces are no hidden body.
+bool partition_by_roles(SurfaceModel& model, const FaceScene& scene, const SegmentOptions& options,
+                        std::vector<FaceRole> roles, SegmentReport& report);
 
 /// Length of side i of a face.
 float side_length(const QuadMesh& mesh, std::uint32_t face, std::uint32_t side);

@@ -171,19 +171,30 @@ class Partitioning {
   PartitionTable partitions_;
 };
 
-/// Partitions from roles when a core was accepted.
-void store_nested(SurfaceModel& model, const FaceScene& scene, const SegmentOptions& options,
-                  const std::vector<FaceRole>& roles, SegmentReport& report) {
-  const FaceComponents components = find_components(model, scene, as_labels(roles));
+/// Faces of one role that hang together, and which of them are the hidden body; `core` is empty when nothing is nested.
+struct Nesting {
+  FaceComponents components;
+  std::vector<FaceRole> role;  ///< of each component
+  std::vector<bool> core;
+};
+
+Nesting find_nesting(const SurfaceModel& model, const FaceScene& scene, const SegmentOptions& options,
+                     const std::vector<FaceRole>& roles) {
+  Nesting nesting{find_components(model, scene, as_labels(roles)), {}, {}};
+  for (const FaceComponents::Info& info : nesting.components.info) nesting.role.push_back(roles[info.first_face]);
+  nesting.core = accept_core(nesting.components.info, nesting.role, options);
+  return nesting;
+}
+
+/// Partitions of a nested object.
+void store_nested(SurfaceModel& model, const FaceScene& scene, const SegmentOptions& options, const Nesting& nesting,
+                  SegmentReport& report) {
+  const auto& [components, role, core] = nesting;
   const Infos& infos = components.info;
-  const auto role_of = [&](std::size_t c) { return roles[infos[c].first_face]; };
   Partitioning partitioning(components, options);
   const PartitionId tablet = partitioning.add(PartitionKind::kTablet);
   const PartitionId outside = partitioning.add(PartitionKind::kEnvelopeOutside, "envelope");
   const PartitionId inside = partitioning.add(PartitionKind::kEnvelopeInside, "envelope");
-  std::vector<FaceRole> role(infos.size());
-  for (std::size_t c = 0; c < infos.size(); ++c) role[c] = role_of(c);
-  const std::vector<bool> core = accept_core(infos, role, options);
 
   std::size_t shell = infos.size();
   std::vector<std::uint32_t> tablet_air;
@@ -192,13 +203,13 @@ void store_nested(SurfaceModel& model, const FaceScene& scene, const SegmentOpti
     if (role[c] == FaceRole::kOutside && (shell == infos.size() || infos[c].volume > infos[shell].volume)) shell = c;
   }
   partitioning.assign(shell, outside);
-  for (std::size_t f = 0; f < roles.size(); ++f)
+  for (std::size_t f = 0; f < components.of_face.size(); ++f)
     if (core[components.of_face[f]] && scene.air[f] < FaceScene::kExterior) tablet_air.push_back(scene.air[f]);
   std::sort(tablet_air.begin(), tablet_air.end());
   tablet_air.erase(std::unique(tablet_air.begin(), tablet_air.end()), tablet_air.end());
   // The inner wall: whatever was cut from the tablet or the outer wall, and walls around the tablet's air.
   std::vector<double> at_tablet_air(infos.size(), 0.0);
-  for (std::size_t f = 0; f < roles.size(); ++f)
+  for (std::size_t f = 0; f < components.of_face.size(); ++f)
     if (std::binary_search(tablet_air.begin(), tablet_air.end(), scene.air[f]))
       at_tablet_air[components.of_face[f]] += static_cast<double>(scene.graph.area[f]);
   for (std::size_t c = 0; c < infos.size(); ++c) {
@@ -225,12 +236,47 @@ double length_of_cuts(const SurfaceModel& model, const FaceGraph& graph) {
   return length;
 }
 
+/// Partitions of closed bodies as they are.
+void store_bodies(SurfaceModel& model, const FaceComponents& whole, const SegmentOptions& options,
+                  SegmentReport& report) {
+  Partitioning partitioning(whole, options);
+  partitioning.add_bodies(PartitionKind::kObject);
+  report.small_pieces = partitioning.add_rest();
+  std::move(partitioning).store(model);
+}
+
 }  // namespace
+
+bool partition_by_roles(SurfaceModel& model, const FaceScene& scene, const SegmentOptions& options,
+                        std::vector<FaceRole> roles, SegmentReport& report) {
+  Nesting nesting = find_nesting(model, scene, options, roles);
+  if (!nesting.core.empty()) {
+    // Core pieces that are not the hidden body fall back to the wall around them. The wall may then reach beyond the
+    // shell, so that nothing is nested any more.
+    for (std::size_t f = 0; f < roles.size(); ++f) {
+      const std::uint32_t c = nesting.components.of_face[f];
+      if (nesting.role[c] == FaceRole::kCore && !nesting.core[c]) roles[f] = FaceRole::kInside;
+    }
+    nesting = find_nesting(model, scene, options, roles);
+  }
+  if (nesting.core.empty()) {
+    store_bodies(model, find_components(model, scene, std::vector<std::uint8_t>(roles.size(), 0)), options, report);
+    return false;
+  }
+  store_nested(model, scene, options, nesting, report);
+  report.cut_length = length_of_cuts(model, scene.graph);
+  return true;
+}
 
 Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options, Progress& progress) {
   SegmentReport report;
   progress.begin("segment", 3, "step");
-  DUBSAR_ASSIGN(const FaceScene scene, observe_faces(model, options, progress));
+  FaceScene scene;
+  if (options.method == SegmentMethod::kNested || options.method == SegmentMethod::kConcavity) {
+    DUBSAR_ASSIGN(scene, observe_faces(model, options, progress));
+  } else {
+    DUBSAR_ASSIGN(scene.graph, FaceGraph::build(model.mesh, progress));
+  }
   progress.advance(1);
   const FaceComponents whole = find_components(model, scene, std::vector<std::uint8_t>(scene.graph.faces(), 0));
   report.components = static_cast<std::int64_t>(whole.info.size());
@@ -245,10 +291,7 @@ Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options
     return report;
   }
   if (options.method == SegmentMethod::kBodies) {
-    Partitioning partitioning(whole, options);
-    partitioning.add_bodies(PartitionKind::kObject);
-    report.small_pieces = partitioning.add_rest();
-    std::move(partitioning).store(model);
+    store_bodies(model, whole, options, report);
     progress.end();
     return report;
   }
@@ -258,26 +301,7 @@ Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options
   progress.advance(1);
   merge_small(model, scene, options, roles);
   if (progress.cancelled()) return cancelled_error();
-
-  // Core pieces that are not the hidden body fall back to the wall around them.
-  const FaceComponents components = find_components(model, scene, as_labels(roles));
-  std::vector<FaceRole> role(components.info.size());
-  for (std::size_t c = 0; c < role.size(); ++c) role[c] = roles[components.info[c].first_face];
-  const std::vector<bool> core = accept_core(components.info, role, options);
-  report.nested = !core.empty();
-  if (report.nested) {
-    for (std::size_t f = 0; f < roles.size(); ++f) {
-      const std::uint32_t c = components.of_face[f];
-      if (role[c] == FaceRole::kCore && !core[c]) roles[f] = FaceRole::kInside;
-    }
-    store_nested(model, scene, options, roles, report);
-    report.cut_length = length_of_cuts(model, scene.graph);
-  } else {
-    Partitioning partitioning(whole, options);
-    partitioning.add_bodies(PartitionKind::kObject);
-    report.small_pieces = partitioning.add_rest();
-    std::move(partitioning).store(model);
-  }
+  report.nested = partition_by_roles(model, scene, options, std::move(roles), report);
   log_info("segment: {} surfaces, {} partitions, {}, cracks up to {} steps closed", report.components,
            model.partitions.size(), report.nested ? "a body inside another" : "no body inside another",
            report.crack_radius > 0 ? 2 * report.crack_radius + 1 : 0);

@@ -15,6 +15,16 @@ namespace {
 
 constexpr std::uint8_t kNotSelected = PartitionTable::kNone;
 
+/// Triangles are counted in 32 bits; a polygon with doubled corners gives at most four more each.
+Result<void> check_size(const QuadMesh& mesh) {
+  const std::int64_t most = 2 * mesh.quad_count() + 4 * static_cast<std::int64_t>(mesh.doubled.size());
+  if (most >= (std::int64_t{1} << 32) / 3)
+    return fail(ErrorKind::kTryAgain,
+                "surface_model: {} x-quads found, too many to make triangles of; expected at most {}",
+                mesh.quad_count(), (std::int64_t{1} << 32) / 6);
+  return {};
+}
+
 /// Which partitions go in, and which of them stay joined.
 struct Selection {
   std::vector<std::uint8_t> group;  ///< of each partition id; kNotSelected: left out
@@ -150,8 +160,8 @@ std::vector<bool> find_border(const SurfaceModel& model, const Selection& select
   return border;
 }
 
-/// Gives every fan of triangles around a border vertex its own copy of it. Copy i gets the id first_copy + i;
-/// the result holds the id that each copy stands for.
+/// Gives every fan of triangles around a border vertex its own copy of it. O(n log n), whatever the triangles are. Copy
+/// i gets the id first_copy + i; the result holds the id that each copy stands for.
 std::vector<std::uint32_t> split_fans(Soup& soup, const std::vector<bool>& border, std::uint32_t first_copy) {
   struct Corner {
     std::uint32_t vertex;
@@ -177,7 +187,9 @@ std::vector<std::uint32_t> split_fans(Soup& soup, const std::vector<bool>& borde
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
-  std::vector<std::pair<std::size_t, std::uint32_t>> id_of_fan;
+  std::vector<std::pair<std::uint32_t, std::size_t>> starts;  // first side of a corner, corner
+  std::vector<bool> met;                                      // a corner ends where these start
+  std::vector<std::uint32_t> id_of_fan;                       // by the fan's root
   for (std::size_t begin = 0; begin < corners.size();) {
     const std::uint32_t vertex = corners[begin].vertex;
     bool original_taken = false;
@@ -187,26 +199,38 @@ std::vector<std::uint32_t> split_fans(Soup& soup, const std::vector<bool>& borde
       const std::size_t count = end - begin;
       parent.resize(count);
       std::iota(parent.begin(), parent.end(), std::size_t{0});
-      for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t j = 0; j < count; ++j)
-          if (corners[begin + i].previous == corners[begin + j].next) {
-            const std::size_t a = root(i), b = root(j);
-            parent[std::max(a, b)] = std::min(a, b);
-          }
-      id_of_fan.clear();
+      const auto join = [&](std::size_t i, std::size_t j) {
+        const std::size_t a = root(i), b = root(j);
+        parent[std::max(a, b)] = std::min(a, b);
+      };
+      // Corners hang together where the side that one ends with is the side that others start with.
+      starts.clear();
+      for (std::size_t i = 0; i < count; ++i) starts.emplace_back(corners[begin + i].next, i);
+      std::sort(starts.begin(), starts.end());
+      met.assign(count, false);
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t side = corners[begin + i].previous;
+        const auto start = std::lower_bound(starts.begin(), starts.end(), std::pair(side, std::size_t{0}));
+        if (start == starts.end() || start->first != side) continue;
+        join(i, start->second);
+        met[static_cast<std::size_t>(start - starts.begin())] = true;
+      }
+      for (std::size_t s = 1; s < count; ++s) {
+        if (starts[s].first != starts[s - 1].first || !met[s - 1]) continue;
+        join(starts[s - 1].second, starts[s].second);
+        met[s] = true;
+      }
+      id_of_fan.assign(count, vertex);
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t fan = root(i);
-        std::uint32_t id = vertex;
         if (fan == i) {  // roots are the smallest of their fan, so they come first
           if (original_taken) {
-            id = first_copy + static_cast<std::uint32_t>(copies.size());
+            id_of_fan[fan] = first_copy + static_cast<std::uint32_t>(copies.size());
             copies.push_back(vertex);
           }
           original_taken = true;
-          id_of_fan.emplace_back(i, id);
-        } else {
-          id = std::find_if(id_of_fan.begin(), id_of_fan.end(), [&](const auto& f) { return f.first == fan; })->second;
         }
+        const std::uint32_t id = id_of_fan[fan];
         Triangle& triangle = soup.triangles[corners[begin + i].triangle];
         for (std::uint32_t& v : triangle)
           if (v == vertex) v = id;
@@ -353,11 +377,13 @@ Result<TriMesh> assemble(const SurfaceModel& model, Triangulation triangulation,
 Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& options,
                               std::vector<std::uint32_t>* source) {
   DUBSAR_TRY(check_model(model));
+  DUBSAR_TRY(check_size(model.mesh));
   return assemble(model, triangulate(model.mesh, model.attributes.normals), options, source);
 }
 
 Result<void> measure_partitions(SurfaceModel& model) {
   DUBSAR_TRY(check_model(model));
+  DUBSAR_TRY(check_size(model.mesh));
   const Triangulation triangulation = triangulate(model.mesh, model.attributes.normals);
   for (std::size_t row = 0; row < model.partitions.size(); ++row) {
     const PartitionId id = model.partitions[row].id;

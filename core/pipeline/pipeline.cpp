@@ -42,15 +42,13 @@ Result<void> separate_with(const SegmentOptions& segment_options, bool fill, Pip
   DUBSAR_ASSIGN(result.report.segment, segment(model, segment_options, progress));
   clock.finish(model.mesh.quad_count());
   clock.start("fill_holes", "triangle");
-  std::int64_t triangles = 0;
   if (fill) {
-    DUBSAR_ASSIGN(const HoleReport holes, fill_holes(model, HoleOptions{}, progress));
-    triangles = holes.triangles;
+    DUBSAR_ASSIGN(result.report.holes, fill_holes(model, HoleOptions{}, progress));
     settle_patches(model.patches);
   } else {
     DUBSAR_TRY(measure_partitions(model));
   }
-  clock.finish(triangles);
+  clock.finish(result.report.holes ? result.report.holes->triangles : 0);
   return {};
 }
 
@@ -58,9 +56,13 @@ Result<void> separate(const PipelineOptions& options, PipelineResult& result, St
   DUBSAR_TRY(separate_with(options.segment, options.fill_holes, result, clock, progress));
   if (options.segment.method != SegmentMethod::kNested || plausible_enclosure(result.model.partitions)) return {};
   log_info("segment: the inner body does not fill a cavity as an enclosed tablet would; the bodies stay whole");
+  result.report.enclosure_refused = true;
   SegmentOptions bodies = options.segment;
   bodies.method = SegmentMethod::kBodies;
-  return separate_with(bodies, options.fill_holes, result, clock, progress);
+  const int crack_radius = result.report.segment.crack_radius;
+  DUBSAR_TRY(separate_with(bodies, options.fill_holes, result, clock, progress));
+  result.report.segment.crack_radius = crack_radius;  // bodies do not look for cracks
+  return {};
 }
 
 /// The light of each dual vertex, from the triangles of its own part.
@@ -101,8 +103,7 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   clock.finish(model.mesh.vertex_count());
   if (model.mesh.vertex_count() == 0)
     return fail(ErrorKind::kBadData,
-                "there is no surface at threshold {:g}: all voxels are on one side; give another with "
-                "--threshold",
+                "there is no surface at threshold {:g}: all voxels are on one side; give another threshold",
                 result.report.threshold);
 
   DUBSAR_TRY(smooth_and_measure(options, result, clock, progress));

@@ -62,8 +62,10 @@ struct PipelineReport {
   std::string threshold_path;  ///< how it was found
   SmoothStats smooth;
   SettleStats settle;
-  SegmentReport segment;
-  MeshCheck mesh;  ///< of all parts together, with their fill patches
+  SegmentReport segment;            ///< of the segmentation that was believed
+  bool enclosure_refused = false;   ///< a body in another was found, but it did not fill its cavity as a tablet would
+  std::optional<HoleReport> holes;  ///< when holes were filled
+  MeshCheck mesh;                   ///< of all parts together, with their fill patches
   std::int64_t vertices = 0, xquads = 0;
   PartitionTable partitions;
   ExaStats exa;

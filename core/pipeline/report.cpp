@@ -65,6 +65,21 @@ json estimates_json(const PipelineReport& report) {
           {"filters", filters}};
 }
 
+json segment_json(const PipelineReport& report) {
+  json segment{{"nested", report.segment.nested},
+               {"enclosure_refused", report.enclosure_refused},
+               {"crack_radius_vox", report.segment.crack_radius},
+               {"components", report.segment.components},
+               {"small_pieces", report.segment.small_pieces},
+               {"cut_length_vox", report.segment.cut_length}};
+  if (const auto& holes = report.holes)
+    segment["holes"] = {{"loops", holes->loops},          {"membranes", holes->membranes},
+                        {"unshared", holes->unshared},    {"longest_loop", holes->longest_loop},
+                        {"triangles", holes->triangles},  {"area_vox2", holes->area},
+                        {"watertight", holes->watertight}};
+  return segment;
+}
+
 json exa_json(const ExaStats& stats) {
   json blocks = json::object();
   for (const ExaBlockStats& block : stats.blocks)
@@ -140,6 +155,7 @@ json report_json(const PipelineReport& report, const PipelineOptions& options) {
           {"estimates", estimates_json(report)},
           {"stages", stages},
           {"mesh", mesh},
+          {"segment", segment_json(report)},
           {"partitions", partitions_json(report.partitions)},
           {"exa", exa_json(report.exa)},
           {"parameters", parameters_json(report, options)},
@@ -166,7 +182,15 @@ std::string report_text(const PipelineReport& report) {
       fmt::format("mesh: {} vertices, {} x-quads, {} triangles, {} non-manifold edges, {} non-manifold vertices\n\n",
                   report.vertices, report.xquads, report.mesh.triangles, report.mesh.nonmanifold_edges,
                   report.mesh.nonmanifold_vertices);
-  text += fmt::format("{:<4}{:<24}{:>14}{:>14}  {}\n", "id", "part", "area mm2", "volume mm3", "");
+  text += fmt::format("parts: {} surfaces, {}{}", report.segment.components,
+                      report.segment.nested ? "a body inside another" : "no body inside another",
+                      report.enclosure_refused ? " that fills its cavity as a tablet would" : "");
+  if (report.segment.crack_radius > 0)
+    text += fmt::format(", cracks up to {} steps closed", 2 * report.segment.crack_radius + 1);
+  if (report.segment.nested) text += fmt::format(", cut along {:.0f} steps", report.segment.cut_length);
+  if (report.holes)
+    text += fmt::format(", {} holes and {} cracks filled", report.holes->loops, report.holes->membranes);
+  text += fmt::format("\n{:<4}{:<24}{:>14}{:>14}  {}\n", "id", "part", "area mm2", "volume mm3", "");
   for (const Partition& part : report.partitions)
     text += fmt::format("{:<4}{:<24}{:>14.1f}{:>14.1f}  {}\n", part.id, part.name, part.area_mm2, part.volume_mm3,
                         part.watertight ? "watertight" : "open");

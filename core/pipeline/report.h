@@ -8,7 +8,7 @@
 
 namespace dubsar {
 
-/// Keys: input, estimates, stages, mesh, partitions, exa, parameters, warnings.
+/// Keys: input, estimates, stages, mesh, segment, partitions, exa, parameters, warnings.
 nlohmann::json report_json(const PipelineReport& report, const PipelineOptions& options);
 
 /// The stage table, the estimates and the parts, in lines of at most 110 characters.

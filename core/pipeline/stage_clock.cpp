@@ -9,12 +9,12 @@ namespace dubsar {
 void StageClock::start(std::string_view name, std::string_view unit) {
   reset_peak_rss();
   current_ = StageRecord{std::string(name), 0.0, 0.0, 0.0, 0, std::string(unit)};
-  started_ns_ = SteadyClock().now();
+  started_ns_ = now();
   started_cpu_s_ = process_cpu_seconds();
 }
 
 void StageClock::finish(std::int64_t work) {
-  current_.wall_s = 1e-9 * static_cast<double>(SteadyClock().now() - started_ns_);
+  current_.wall_s = 1e-9 * static_cast<double>(now() - started_ns_);
   current_.cpu_s = process_cpu_seconds() - started_cpu_s_;
   current_.peak_rss_mib = peak_rss_mib();
   current_.work = work;

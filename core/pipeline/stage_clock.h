@@ -22,6 +22,8 @@ struct StageRecord {
 /// Collects stage records. A stage runs from start() to finish(); stages do not overlap. One thread.
 class StageClock {
  public:
+  /// Borrows the clock of the wall; without one, that of the machine.
+  explicit StageClock(const Clock* wall = nullptr) : wall_(wall) {}
   void start(std::string_view name, std::string_view unit);
   /// Ends the present stage and records it.
   void finish(std::int64_t work);
@@ -31,6 +33,9 @@ class StageClock {
   const std::vector<StageRecord>& records() const noexcept { return records_; }
 
  private:
+  TimestampNs now() const noexcept { return wall_ != nullptr ? wall_->now() : SteadyClock().now(); }
+
+  const Clock* wall_;
   std::vector<StageRecord> records_;
   StageRecord current_;
   TimestampNs started_ns_ = 0;

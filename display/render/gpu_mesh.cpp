@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "core/base/parallel.h"
+#include "core/mesh/vertex_attributes.h"
 
 namespace dubsar {
 namespace {
@@ -26,13 +27,6 @@ void grow(Box& box, const glm::dvec3& p) {
 }
 bool is_empty(const Box& box) { return !(box.min.x <= box.max.x); }
 bool finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
-
-template <class T>
-Result<void> check_array(std::string_view name, const std::vector<T>& array, std::size_t vertices) {
-  if (array.empty() || array.size() == vertices) return {};
-  return fail(ErrorKind::kBadData, "render: the mesh has {} vertices but {} {}, expected as many or none", vertices,
-              array.size(), name);
-}
 
 /// Area-weighted, in mm, not normalised. One thread: the sums must not depend on the number of threads.
 std::vector<glm::vec3> vertex_normals_mm(const TriMesh& mesh, const std::vector<Triangle>& triangles) {
@@ -144,16 +138,7 @@ std::int64_t PackedMesh::triangles_of(std::uint8_t partitions) const {
 
 Result<PackedMesh> pack_mesh(const TriMesh& mesh) {
   const std::size_t count = mesh.positions.size();
-  DUBSAR_TRY(check_array("normals", mesh.normals, count));
-  DUBSAR_TRY(check_array("shape classes", mesh.shape, count));
-  DUBSAR_TRY(check_array("ambient occlusion values", mesh.ao, count));
-  DUBSAR_TRY(check_array("colours", mesh.colors, count));
-  if (!mesh.triangle_partition.empty() && mesh.triangle_partition.size() != mesh.triangles.size())
-    return fail(ErrorKind::kBadData, "render: the mesh has {} triangles but {} partition ids, expected as many or none",
-                mesh.triangles.size(), mesh.triangle_partition.size());
-  for (const PartitionId p : mesh.triangle_partition)
-    if (p >= kMaxPartitions)
-      return fail(ErrorKind::kBadData, "render: partition {} found, expected 0 to {}", p, kMaxPartitions - 1);
+  DUBSAR_TRY(check_arrays(mesh, ErrorKind::kBadData, "render"));
 
   PackedMesh out;
   out.has_shape = !mesh.shape.empty();
@@ -167,9 +152,6 @@ Result<PackedMesh> pack_mesh(const TriMesh& mesh) {
   };
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const Triangle& t = mesh.triangles[i];
-    if (t[0] >= count || t[1] >= count || t[2] >= count)
-      return fail(ErrorKind::kBadData, "render: a triangle names vertex {}, but there are {}",
-                  std::max({t[0], t[1], t[2]}), count);
     if (usable(t)) ++out.first_triangle[mesh.partition_of(i) + 1];
   }
   for (int p = 0; p < kMaxPartitions; ++p) out.first_triangle[p + 1] += out.first_triangle[p];

@@ -32,5 +32,11 @@ TEST(Budget, MemoryBeyondTheLimitIsTryAgain) {
   EXPECT_GT(available_memory_bytes(), 1u << 20);
 }
 
+TEST(Budget, TheMessageNamesNoFlagOfAnyProgram) {
+  Budget budget;
+  budget.memory_bytes = 1;
+  EXPECT_EQ(check_memory("png", 3 << 20, budget).error().message.find("--"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace dubsar

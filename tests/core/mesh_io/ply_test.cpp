@@ -178,10 +178,35 @@ TEST_F(Ply, LiesAreRefusedWithASentence) {
               HasSubstr("not finite"));
   EXPECT_THAT(says("ply\nformat ascii 1.0\nelement vertex 1\n" + xyz + "element face 0\n" + face + "0 1e39 0\n"),
               HasSubstr("not finite"));
+  for (const char* element : {"face", "edge"})
+    for (const char* format : {"ascii", "binary_big_endian"})
+      says(fmt::format("ply\nformat {} 1.0\nelement vertex 0\n{}element {} 18446744073709551615\nend_header\n", format,
+                       xyz, element));  // comes back: 2^64 - 1 items of no bytes take no time
+  EXPECT_THAT(says("ply\nformat ascii 1.0\nelement vertex 0\n" + xyz + "element face 7\nend_header\n"),
+              HasSubstr("7 faces without properties"));
   EXPECT_THAT(says("ply\nformat ascii 1.0\nelement tristrips 1\n" + face), HasSubstr("strips"));
   EXPECT_THAT(says("ply\nformat ascii 2.0\n"), HasSubstr("format"));
   EXPECT_THAT(says("ply\nformat ascii 1.0\nelement vertex 1\n" + xyz), HasSubstr("does not end"));
   EXPECT_THAT(says("ply\nformat ascii 1.0\nproperty float x\nend_header\n"), HasSubstr("before any element"));
+}
+
+TEST_F(Ply, ColoursThatAreNoNumbersAreDark) {
+  const auto mesh = parse(
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float red\nproperty float green\nproperty float blue\nend_header\n"
+      "0 0 0 nan -1 0.5\n0 0 0 inf -inf 1\n");
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_EQ(mesh->colors[0], (std::array<std::uint8_t, 3>{0, 0, 128}));
+  EXPECT_EQ(mesh->colors[1], (std::array<std::uint8_t, 3>{255, 0, 255}));
+}
+
+TEST_F(Ply, FilesThatLabelVerticesOnlyAreReadAsTheirWriterMeantThem) {
+  const auto mesh = parse(
+      "ply\nformat ascii 1.0\ncomment made by dubsar\nelement vertex 4\nproperty float x\nproperty float y\n"
+      "property float z\nproperty uchar partition\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0 1\n1 0 0 1\n1 1 0 2\n0 1 0 1\n3 0 1 3\n3 1 2 3\n");
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_EQ(mesh->triangle_partition, (std::vector<PartitionId>{1, 2})) << "a vertex between two had the lower label";
 }
 
 TEST_F(Ply, PolygonsBecomeTrianglesThatCoverThem) {

@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/mesh/mesh_check.h"
+#include "core/parts/face_roles.h"
 #include "core/parts/holes.h"
 #include "tests/core/parts/scene.h"
 
@@ -135,6 +136,36 @@ TEST(Segment, CrackThroughTheEnvelopeIsBridged) {
     EXPECT_TRUE(check_mesh(shell.positions, shell.triangles).watertight());
     EXPECT_EQ(check_mesh(shell.positions, shell.triangles).components, 1);  // no membrane across the crack
   }
+}
+
+/// A piece with the wrong role that joins the inner wall to the outermost faces, through the crack.
+TEST(Segment, AWallThatReachesBeyondTheShellIsNoWallOfACavity) {
+  Nested scene;
+  scene.change = [&](float v, const glm::vec3& p) {
+    const bool above = p.y > scene.centre.y && std::abs(p.z - 47.8f) < 25.0f;
+    return above && scene.tablet(p) < -1.5f ? std::min(v, std::abs(p.x - 47.3f) - 2.5f) : v;
+  };
+  SurfaceModel model = scene::extract_model(scene.dims, scene);
+  SilentProgress progress;
+  const FaceScene seen = observe_faces(model, {}, progress).value();
+  const auto roles = [&](bool with_piece) {
+    std::vector<FaceRole> result;
+    for (std::uint32_t q = 0; q < model.mesh.quads.size(); ++q) {
+      glm::vec3 c(0.0f);
+      for (const std::uint32_t v : model.mesh.quads[q]) c += 0.25f * model.mesh.positions[v];
+      const int truth = scene.truth(c);
+      result.push_back(truth == 0 ? FaceRole::kCore : truth == 1 ? FaceRole::kOutside : FaceRole::kInside);
+      // From the crack in the middle over the top to the whole end of the outer wall.
+      if (with_piece && truth == 1 && (c.x > 84.0f || (c.x > 46.0f && c.y > 20.0f && std::abs(c.z - 47.8f) < 6.0f)))
+        result.back() = FaceRole::kCore;
+    }
+    return result;
+  };
+  SegmentReport report;
+  EXPECT_TRUE(partition_by_roles(model, seen, {}, roles(false), report));
+  EXPECT_EQ(names(model).front(), "tablet");
+  EXPECT_FALSE(partition_by_roles(model, seen, {}, roles(true), report));
+  EXPECT_EQ(names(model).front(), "object");
 }
 
 TEST(Segment, PoresAndFragmentsAreNotTheTablet) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
+#include <numeric>
+#include <random>
 
 #include "core/mesh/mesh_check.h"
 #include "tests/core/parts/scene.h"
@@ -160,6 +162,56 @@ TEST(SurfaceModel, PatchClosesBothSidesWithTheSameTriangles) {
   join(model);
   EXPECT_NEAR(sum, measure_mesh(make_tri_mesh(model).value()).volume_mm3,
               1e-6 * sum);  // the two sides of the patch cancel
+}
+
+/// Such a patch can stand in a file of some megabytes; comparing each corner with each would take 10^12 steps.
+TEST(SurfaceModel, AMillionTrianglesAtOneVertexAreSplitInLinearTime) {
+  constexpr std::uint32_t kTriangles = 1'000'000;
+  SurfaceModel model = two_balls();
+  const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());
+  FillPatch patch;
+  patch.partition = 0;
+  patch.reverse_partition = 1;
+  patch.extra_positions.assign(1000, glm::vec3(20.0f));
+  for (std::uint32_t t = 0; t < kTriangles; ++t) {
+    const std::uint32_t a = dual + t % 1000, b = dual + (t / 1000 + t % 1000 + 1) % 1000;
+    patch.triangles.push_back({0, a, b});
+  }
+  model.patches = {patch};
+  const Result<TriMesh> mesh = make_tri_mesh(model);
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_GE(mesh->triangles.size(), 2 * std::size_t{kTriangles});
+}
+
+/// Fans that meet at one vertex, against the definition: corners are joined where one ends as another starts.
+TEST(SurfaceModel, FansAroundAVertexAreThoseOfTheDefinition) {
+  std::mt19937 random(20);
+  for (int round = 0; round < 50; ++round) {
+    SurfaceModel model = two_balls();
+    const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());
+    model.quad_partition.assign(model.mesh.quads.size(), 0);
+    FillPatch patch;  // of another partition than the faces, so that at vertex 0 only its own triangles meet
+    patch.partition = 1;
+    patch.extra_positions.assign(9, glm::vec3(20.0f));
+    const std::size_t count = 1 + random() % 12;
+    for (std::size_t t = 0; t < count; ++t) {
+      const auto a = static_cast<std::uint32_t>(random() % 9);
+      const auto b = static_cast<std::uint32_t>((a + 1 + random() % 8) % 9);
+      patch.triangles.push_back({0, dual + a, dual + b});
+    }
+    model.patches = {patch};
+    const TriMesh mesh = make_tri_mesh(model).value();
+    std::vector<std::size_t> fan(count);
+    std::iota(fan.begin(), fan.end(), std::size_t{0});
+    for (std::size_t n = 0; n < count; ++n)  // the closure of the relation, by plain repetition
+      for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t j = 0; j < count; ++j)
+          if (patch.triangles[i][2] == patch.triangles[j][1]) fan[i] = fan[j] = std::min(fan[i], fan[j]);
+    const std::size_t first = mesh.triangles.size() - count;
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = 0; j < count; ++j)
+        ASSERT_EQ(mesh.triangles[first + i][0] == mesh.triangles[first + j][0], fan[i] == fan[j]) << round;
+  }
 }
 
 TEST(SurfaceModel, ContradictionsAreRefused) {

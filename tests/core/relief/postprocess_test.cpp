@@ -42,7 +42,7 @@ TEST(Postprocess, RandomVolumesStayFiniteBoundedAndManifold) {
     ASSERT_TRUE(k);
     for (std::size_t v = 0; v < start.size(); ++v) {
       ASSERT_TRUE(finite(mesh.positions[v])) << kind;
-      ASSERT_LE(glm::length(mesh.positions[v] - start[v]), 0.2501f) << kind;
+      ASSERT_LE(glm::length(mesh.positions[v] - start[v]), 0.0801f) << kind;
       ASSERT_NEAR(glm::length(normals[v]), 1.0f, 1e-4f) << kind;
       ASSERT_TRUE(std::isfinite(k->k_min[v]) && std::isfinite(k->k_max[v])) << kind;
       ASSERT_LE(k->k_min[v], k->k_max[v]) << kind;

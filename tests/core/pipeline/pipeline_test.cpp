@@ -1,0 +1,142 @@
+// The whole chain on a small phantom: what it reports, that threads do not change it, that it can be stopped.
+
+#include "core/pipeline/pipeline.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/base/input_file.h"
+#include "core/base/parallel.h"
+#include "core/phantom/write_phantom.h"
+#include "core/pipeline/report.h"
+
+namespace dubsar {
+namespace {
+namespace fs = std::filesystem;
+
+class Pipeline : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = fs::temp_directory_path() / fmt::format("dubsar_pipeline_{}", ::getpid());
+    fs::create_directories(folder_);
+    SilentProgress progress;
+    phantom::PhantomOptions wanted;
+    wanted.dims = {96, 64, 96};
+    wanted.seed = 11;
+    wanted.snr_db = 30.0;
+    ASSERT_TRUE(phantom::write_phantom(folder_ / "scan.h5", std::nullopt, wanted, progress));
+  }
+  static void TearDownTestSuite() { fs::remove_all(folder_); }
+
+  static PipelineOptions options() {
+    PipelineOptions options;
+    options.import.path = folder_ / "scan.h5";
+    options.resample = false;
+    options.denoise.iterations = 1;
+    options.occlusion_options.rays = 8;
+    return options;
+  }
+  static Result<PipelineResult> process(const fs::path& out, Progress& progress) {
+    DUBSAR_ASSIGN(PipelineResult result, run_pipeline(options(), progress));
+    DUBSAR_TRY(write_product(out, result, progress));
+    return result;
+  }
+  static inline fs::path folder_;
+};
+
+TEST_F(Pipeline, NothingThatAStageFoundIsMissingInTheReport) {
+  SilentProgress progress;
+  const auto result = process(folder_ / "a.exa", progress);
+  ASSERT_TRUE(result) << result.error().message;
+  const PipelineReport& report = result->report;
+  std::vector<std::string> stages;
+  for (const StageRecord& stage : report.stages) stages.push_back(stage.name);
+  EXPECT_EQ(stages,
+            (std::vector<std::string>{"estimate_raw", "import", "estimate", "denoise", "estimate", "extract", "mesh",
+                                      "smooth", "curvature", "segment", "fill_holes", "occlusion", "check", "write"}));
+  for (const StageRecord& stage : report.stages) {
+    EXPECT_GE(stage.work, stage.name == "fill_holes" ? 0 : 1) << stage.name;
+  }
+
+  const nlohmann::json json = report_json(report, options());
+  EXPECT_EQ(json["input"]["dims"], nlohmann::json({96, 64, 96}));
+  EXPECT_EQ(json["input"]["grid"], nlohmann::json({96, 64, 96}));
+  EXPECT_EQ(json["input"]["nonfinite_voxels"], 0);
+  EXPECT_EQ(json["estimates"]["filters"].size(), 3u);
+  EXPECT_GT(json["estimates"]["threshold"], 0.0);
+  EXPECT_FALSE(json["estimates"]["path"].get<std::string>().empty());
+  EXPECT_GT(json["mesh"]["smooth"]["max_displacement_vox"], 0.0);
+  EXPECT_EQ(json["mesh"]["vertices"], result->model.mesh.vertex_count());
+  EXPECT_EQ(json["mesh"]["xquads"], result->model.mesh.quad_count());
+  EXPECT_EQ(json["mesh"]["nonmanifold_edges"], 0);
+  EXPECT_EQ(json["partitions"].size(), result->model.partitions.size());
+  EXPECT_EQ(json["exa"]["bytes"], fs::file_size(folder_ / "a.exa"));
+  EXPECT_EQ(json["segment"]["components"], report.segment.components);
+  EXPECT_GE(json["segment"]["components"], 1);
+  for (const char* key : {"nested", "enclosure_refused", "crack_radius_vox", "small_pieces", "cut_length_vox"})
+    EXPECT_TRUE(json["segment"].contains(key)) << key;
+  std::int64_t patch_triangles = 0;
+  for (const FillPatch& patch : result->model.patches)
+    patch_triangles += static_cast<std::int64_t>(patch.triangles.size());
+  EXPECT_EQ(json["segment"]["holes"]["triangles"], patch_triangles);
+  for (const char* key : {"loops", "membranes", "unshared", "longest_loop", "area_vox2", "watertight"})
+    EXPECT_TRUE(json["segment"]["holes"].contains(key)) << key;
+  EXPECT_NE(report_text(report).find("surfaces, "), std::string::npos);
+}
+
+TEST_F(Pipeline, OneAndSevenThreadsGiveTheSameBytes) {
+  std::vector<std::string> bytes;
+  for (const int threads : {1, 7}) {
+    set_thread_count(threads);
+    SilentProgress progress;
+    ASSERT_TRUE(process(folder_ / "b.exa", progress));
+    bytes.push_back(read_file_bytes(folder_ / "b.exa").value());
+  }
+  set_thread_count(0);
+  EXPECT_TRUE(bytes[0] == bytes[1]);
+}
+
+/// Stops when the n-th stage begins.
+class StopAt final : public Progress {
+ public:
+  explicit StopAt(int stage) : left_(stage) {}
+  const std::string& stage() const noexcept { return stage_; }
+
+ private:
+  void on_begin(std::string_view stage, std::int64_t, std::string_view) override {
+    if (--left_ != 0) return;
+    stage_ = stage;
+    cancel();
+  }
+  int left_;
+  std::string stage_;
+};
+
+TEST_F(Pipeline, StoppedInAnyStageItLeavesNothing) {
+  int stages = 0;
+  for (int stage = 1;; ++stage) {
+    StopAt progress(stage);
+    const auto result = process(folder_ / "stopped.exa", progress);
+    if (progress.stage().empty()) {
+      EXPECT_TRUE(result) << result.error().message;
+      break;
+    }
+    ++stages;
+    ASSERT_FALSE(result) << progress.stage();
+    EXPECT_EQ(result.error().kind, ErrorKind::kCancelled) << progress.stage();
+    std::vector<std::string> left;
+    for (const auto& entry : fs::directory_iterator(folder_)) left.push_back(entry.path().filename().string());
+    EXPECT_EQ(std::count_if(left.begin(), left.end(), [](const std::string& name) { return name[0] == 's'; }), 1)
+        << "only scan.h5, after " << progress.stage();
+    ASSERT_LT(stages, 60);
+  }
+  EXPECT_GE(stages, 12);
+}
+
+}  // namespace
+}  // namespace dubsar
