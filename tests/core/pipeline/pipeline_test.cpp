@@ -56,9 +56,9 @@ TEST_F(Pipeline, NothingThatAStageFoundIsMissingInTheReport) {
   const PipelineReport& report = result->report;
   std::vector<std::string> stages;
   for (const StageRecord& stage : report.stages) stages.push_back(stage.name);
-  EXPECT_EQ(stages,
-            (std::vector<std::string>{"estimate_raw", "import", "estimate", "denoise", "estimate", "extract", "mesh",
-                                      "smooth", "curvature", "segment", "fill_holes", "occlusion", "check", "write"}));
+  EXPECT_EQ(stages, (std::vector<std::string>{"estimate_raw", "import", "estimate", "denoise", "estimate", "extract",
+                                              "mesh", "smooth", "curvature", "settle", "segment", "fill_holes",
+                                              "occlusion", "check", "write"}));
   for (const StageRecord& stage : report.stages) {
     EXPECT_GE(stage.work, stage.name == "fill_holes" ? 0 : 1) << stage.name;
   }
