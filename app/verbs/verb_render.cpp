@@ -2,7 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <cmath>
 #include <filesystem>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
 #include <memory>
 
 #include "app/cli/mesh_input.h"
@@ -12,6 +17,7 @@
 #include "core/image_io/png_file.h"
 #include "core/image_io/tiff_file.h"
 #include "display/render/render_image.h"
+#include "display/render/scene.h"
 
 namespace dubsar::app {
 namespace {
@@ -21,7 +27,10 @@ struct Options {
   double mm_per_pixel = 0.0;
   int samples = 0;  ///< 0: enough for one picture, fewer for the many of a display
   DisplayRequest display;
-  bool perspective = false, colour_parts = false, transparent = false, window = false;
+  bool perspective = false, colour_parts = false, transparent = false, window = false, shadows = false,
+       unmarked = false;
+  std::vector<std::string> opacity, cut;
+  double unpack = 0.0, fog = 0.0;  ///< percent
 };
 
 Result<void> parse_size(const std::string& text, CameraOptions& camera) {
@@ -54,6 +63,66 @@ Result<void> hide_partitions(const std::vector<std::string>& names, const TriMes
       }
     if (!found) return fail(ErrorKind::kUsage, "--hide {}: there is no such partition in the file", name);
   }
+  return {};
+}
+
+/// "NAME=NUMBER" or "NAME:NUMBER".
+Result<std::pair<std::string, double>> named_number(const std::string& option, const std::string& text, char between) {
+  const std::size_t at = text.rfind(between);
+  double value = 0.0;
+  if (at != std::string::npos && at > 0) {
+    const auto [end, error] = std::from_chars(text.data() + at + 1, text.data() + text.size(), value);
+    if (error == std::errc() && end == text.data() + text.size()) return std::pair{text.substr(0, at), value};
+  }
+  return fail(ErrorKind::kUsage, "{} \"{}\" not understood, expected NAME{}NUMBER", option, text, between);
+}
+
+Box box_of(const TriMesh& mesh) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  Box box{glm::dvec3(kInf), glm::dvec3(-kInf)};
+  for (const glm::vec3& position : mesh.positions) {
+    const glm::dvec3 p = mesh.frame.mm_from_grid(position);
+    if (!std::isfinite(p.x + p.y + p.z)) continue;
+    box.min = glm::min(box.min, p);
+    box.max = glm::max(box.max, p);
+  }
+  return box;
+}
+
+/// What the options say about the parts of this surface.
+Result<void> dress_parts(const Options& options, const TriMesh& mesh, Shading& shading) {
+  const Box box = box_of(mesh);
+  for (const std::string& text : options.opacity) {
+    DUBSAR_ASSIGN(const auto wanted, named_number("--opacity", text, '='));
+    bool found = false;
+    for (const Partition& p : mesh.partitions)
+      if (p.name == wanted.first || p.body_name() == wanted.first || std::to_string(p.id) == wanted.first) {
+        shading.parts[static_cast<std::size_t>(p.id)].opacity = wanted.second;
+        found = true;
+      }
+    if (!found) return fail(ErrorKind::kUsage, "--opacity {}: there is no such part in the file", wanted.first);
+    if (!(wanted.second >= 0 && wanted.second <= 1))
+      return fail(ErrorKind::kUsage, "--opacity {} found, expected 0 to 1", wanted.second);
+  }
+  for (const std::string& text : options.cut) {
+    DUBSAR_ASSIGN(const auto wanted, named_number("--cut", text, ':'));
+    DUBSAR_ASSIGN(const ClipPlane cut, cut_from_side(box, wanted.first, wanted.second / 100.0));
+    shading.clips.push_back(cut);
+  }
+  if (options.unpack > 0) {
+    const ObjectFrame frame = object_frame(box);
+    const double way = 1.1 * glm::dot(glm::abs(frame.up), box.size()) * options.unpack / 100.0;
+    bool found = false;
+    for (const Partition& p : mesh.partitions)
+      if (p.body_name() == "envelope") {
+        shading.parts[static_cast<std::size_t>(p.id)].offset_mm = way * frame.up;
+        found = true;
+      }
+    if (!found) return fail(ErrorKind::kUsage, "--unpack: there is no envelope in the file");
+  }
+  shading.fog.strength = options.fog / 100.0;
+  shading.style.mark_inferred = !options.unmarked;
+  shading.light.shadows = shading.light.shadows || options.shadows;
   return {};
 }
 
@@ -142,6 +211,7 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
     DUBSAR_ASSIGN(mesh, load_mesh({options.in, options.partitions, true}, progress));
   }
   DUBSAR_TRY(hide_partitions(options.hide, mesh, render.shading));
+  DUBSAR_TRY(dress_parts(options, mesh, render.shading));
   if (!options.display.display.empty()) {
     DisplayOptions shown;
     if (!options.size.empty()) {
@@ -195,6 +265,15 @@ Verb add_render_verb(Arguments program) {
   command.flag("--colour-parts,--color-parts", options->colour_parts, "each part in a colour of its own");
   command.value("--light", options->light,
                 "AZIMUTH,ELEVATION of the light in degrees; 315,20 rakes from the upper left");
+  command.flag("--shadows", options->shadows, "what stands before the light casts shadows (--style raking: always)");
+  command.flag("--unmarked", options->unmarked, "surface that the scan does not show is not hatched");
+  command.value("--opacity", options->opacity, "NAME=0..1: parts that are seen through, e.g. envelope=0.3")
+      .separated_by(',');
+  command.value("--unpack", options->unpack, "lifts the envelope off the tablet, 0 to 100 percent").range(0, 100);
+  command.value("--cut", options->cut, "SIDE:PERCENT cut away, e.g. front:50; also back, left, right, top, bottom")
+      .separated_by(',');
+  command.value("--fog", options->fog, "0 to 100 percent: how much of the background the farthest point takes on")
+      .range(0, 100);
   command.value("--mm-per-pixel", options->mm_per_pixel, "exact scale (orthographic), instead of fitting the picture")
       .positive();
   command.flag("--perspective", options->perspective, "perspective instead of orthographic");
@@ -205,6 +284,8 @@ Verb add_render_verb(Arguments program) {
       "Examples:\n"
       "  dubsar render tablet.exa -o tablet.png --partition tablet\n"
       "  dubsar render tablet.exa -o back.tif --view back --light 315,15 --mm-per-pixel 0.0423\n"
+      "  dubsar render tablet.exa -o lines.png --style raking --light 315,15\n"
+      "  dubsar render tablet.exa -o both.png --opacity envelope=0.3\n"
       "  dubsar render bust.obj -o bust.png --style ao --view orbit:30,10\n"
       "  dubsar render tablet.exa -o anaglyph.png --display anaglyph --size 1280x800\n"
       "  dubsar render tablet.exa -o go.png --display lenticular:looking-glass-go\n"

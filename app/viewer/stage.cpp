@@ -5,6 +5,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "core/base/budget.h"
+#include "core/base/log.h"
 #include "display/render/lod_mesh.h"
 #include "display/render/multi_view.h"
 #include "display/render/renderer.h"
@@ -18,6 +19,7 @@ namespace {
 constexpr std::uint64_t kBytesPerViewPixel = 4;
 constexpr double kEyeStepMm = 0.05;           // what an eye may move before there is a new picture
 constexpr TimestampNs kRestNs = 150'000'000;  // before coarse views are made exact
+constexpr double kMovingMs = 28.0;            // for 30 pictures a second
 constexpr double kForget = 0.3;               // of the mean time that a view takes
 
 double milliseconds_since(TimestampNs start) { return 1e-6 * static_cast<double>(SteadyClock().now() - start); }
@@ -63,9 +65,10 @@ struct Stage::Parts {
   TimestampNs now = 0, moved_at = 0, prepared_at = 0;
   Viewer viewer;
   std::optional<std::pair<Shown, Viewer>> painted;
-  std::vector<View> views;      // painted
-  std::vector<DrawItem> items;  // painted
-  Light light;                  // painted
+  std::vector<View> views;       // painted
+  std::vector<DrawItem> items;   // painted
+  std::vector<ClipPlane> clips;  // painted
+  Light light;                   // painted
   int coarse = 0;
   double exact_view_ms = 0.0;  // what one exact view takes; 0: not known yet
 
@@ -76,9 +79,10 @@ struct Stage::Parts {
     return app::screen_from_model(box, options.direction, shown.view, magnification * shown.fit, window.y, middle);
   }
   bool moved() const noexcept;
-  SceneView scene() const { return {items, light, {}, options.shading.background}; }
+  SceneView scene() const { return {items, light, clips, options.shading.background, options.shading.fog}; }
   Result<void> paint_moved();
   Result<void> refine();
+  bool may_refine() const noexcept { return coarse > 0 && mesh->has_exact() && now - moved_at >= kRestNs; }
   void took(double ms, std::size_t count);
 };
 
@@ -146,8 +150,8 @@ Result<std::unique_ptr<Stage>> Stage::create(const TriMesh& mesh, const StageOpt
   if (options.pattern) {
     // nothing to draw
   } else if (options.quality == Quality::kAdaptive) {
-    DUBSAR_ASSIGN(parts->mesh, LodMesh::with_levels(std::move(packed)));
-    DUBSAR_ASSIGN(parts->multi, MultiView::create());
+    DUBSAR_ASSIGN(parts->mesh, LodMesh::growing(std::move(packed)));
+    DUBSAR_ASSIGN(parts->multi, MultiView::create({.budget_ms = kMovingMs}));
   } else {
     DUBSAR_ASSIGN(parts->mesh, LodMesh::exact(packed));
     DUBSAR_ASSIGN(parts->renderer, Renderer::create());
@@ -194,6 +198,10 @@ bool Stage::Parts::moved() const noexcept {
 }
 
 void Stage::show(const Shown& shown, const FollowedEyes& eyes, TimestampNs now) {
+  if (parts_->mesh && !parts_->mesh->complete()) {
+    const auto updated = parts_->mesh->update();
+    if (!updated) log_warning("view: {}; it stays coarse", updated.error().message);
+  }
   parts_->shown = shown;
   parts_->now = now;
   parts_->viewer = parts_->viewer_at(eyes);
@@ -204,7 +212,7 @@ void Stage::repaint() { parts_->painted.reset(); }
 
 bool Stage::needs_paint() const noexcept {
   const Parts& p = *parts_;
-  return p.overlay_changed || p.moved() || (p.coarse > 0 && p.now - p.moved_at >= kRestNs);
+  return p.overlay_changed || p.moved() || p.may_refine();
 }
 
 void Stage::Parts::took(double ms, std::size_t count) {
@@ -223,10 +231,11 @@ Result<void> Stage::Parts::paint_moved() {
   moved_at = now;
   coarse = 0;
   if (options.pattern) return {};
+  clips = dubsar::moved(options.shading.clips, placed());
   items = {MeshItem{&*mesh, placed(), shown.style, shown.parts}};
   if (!multi) return renderer->render(scene(), views, options.samples, *array);
   // What is not known to be quick, and what another size may replace at once, is coarse first.
-  if (exact_view_ms == 0.0 || now - prepared_at < kRestNs ||
+  if (!mesh->has_exact() || exact_view_ms == 0.0 || now - prepared_at < kRestNs ||
       exact_view_ms * static_cast<double>(views.size()) > options.budget_ms) {
     coarse = static_cast<int>(views.size());
     return multi->draw_moving(scene(), views, *array);
@@ -253,7 +262,7 @@ Result<void> Stage::paint(const Surface& target, Field field) {
   Parts& p = *parts_;
   if (p.moved()) {
     DUBSAR_TRY(p.paint_moved());
-  } else if (p.coarse > 0 && p.now - p.moved_at >= kRestNs) {
+  } else if (p.may_refine()) {
     DUBSAR_TRY(p.refine());
   }
   p.overlay_changed = false;

@@ -127,6 +127,7 @@ class Simplifier {
       if (!face.alive) continue;
       out.triangles.push_back({renamed[face.vertex[0]], renamed[face.vertex[1]], renamed[face.vertex[2]]});
       if (!mesh_.triangle_partition.empty()) out.triangle_partition.push_back(mesh_.triangle_partition[f]);
+      if (!mesh_.triangle_inferred.empty()) out.triangle_inferred.push_back(mesh_.triangle_inferred[f]);
     }
     out.frame = mesh_.frame;
     out.partitions = mesh_.partitions;

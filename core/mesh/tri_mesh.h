@@ -26,6 +26,7 @@ struct TriMesh {
   std::vector<std::uint8_t> ao;                     ///< ambient light, 0 (dark) .. 63 (open)
   std::vector<std::array<std::uint8_t, 3>> colors;  ///< only from foreign files that carry colours
   std::vector<PartitionId> triangle_partition;      ///< one per triangle; empty: all 0
+  std::vector<std::uint8_t> triangle_inferred;      ///< one per triangle, 1: a fill patch; empty: none
   GridFrame frame;
   PartitionTable partitions;
   std::string provenance;  ///< JSON text: program, version, parameters, input

@@ -360,6 +360,11 @@ Result<TriMesh> assemble(const SurfaceModel& model, Triangulation triangulation,
     for (std::uint32_t& v : t) v = numbering.new_id[v];
   out.triangles = std::move(soup.triangles);
   out.triangle_partition = std::move(soup.partition);
+  if (soup.first_patch_triangle < out.triangles.size()) {
+    out.triangle_inferred.assign(out.triangles.size(), 0);
+    std::fill(out.triangle_inferred.begin() + static_cast<std::ptrdiff_t>(soup.first_patch_triangle),
+              out.triangle_inferred.end(), std::uint8_t{1});
+  }
   if (source != nullptr) {
     *source = numbering.source;
     for (std::uint32_t& v : *source)

@@ -80,10 +80,10 @@ GlTexture make_texture(GLenum target) {
 }
 
 Result<GlProgram> make_program(std::string_view vertex_name, std::string_view fragment_name,
-                               std::string_view vertex_lines) {
+                               std::string_view vertex_lines, std::string_view fragment_lines) {
   const Shader vertex(GL_VERTEX_SHADER), fragment(GL_FRAGMENT_SHADER);
   DUBSAR_TRY(compile(vertex, vertex_name, vertex_lines));
-  DUBSAR_TRY(compile(fragment, fragment_name));
+  DUBSAR_TRY(compile(fragment, fragment_name, fragment_lines));
   GlProgram program(glCreateProgram());
   glAttachShader(program, vertex.name);
   glAttachShader(program, fragment.name);

@@ -61,9 +61,9 @@ GlVertexArray make_vertex_array();
 GlTexture make_texture(GLenum target);
 
 /// Compiles and links two embedded shaders (names of files in shaders/). kInternal with the driver's log when it
-/// refuses them: they are ours. `vertex_lines` go below the #version line of the vertex shader (switches).
+/// refuses them: they are ours. The lines go below the #version line of either shader (switches).
 Result<GlProgram> make_program(std::string_view vertex_name, std::string_view fragment_name,
-                               std::string_view vertex_lines = {});
+                               std::string_view vertex_lines = {}, std::string_view fragment_lines = {});
 
 /// kTryAgain for GL_OUT_OF_MEMORY, kInternal for any other GL error since the last check. `what` was being done.
 Result<void> check_gl(std::string_view what);

@@ -69,6 +69,17 @@ LabelledVertices split_by_partition(PackedMesh& mesh, std::size_t count) {
   return vertices;
 }
 
+/// One chunk for all of a partition that the scan shows, one for what is inferred.
+std::vector<TriangleChunk> whole_partitions(const PackedMesh& mesh) {
+  std::vector<TriangleChunk> out;
+  for (int p = 0; p < kMaxPartitions; ++p) {
+    const std::int64_t begin = mesh.first_triangle[p], split = mesh.first_inferred[p], end = mesh.first_triangle[p + 1];
+    if (begin < split) out.push_back({begin, split - begin, p, false, mesh.partition_box_mm[p]});
+    if (split < end) out.push_back({split, end - split, p, true, mesh.partition_box_mm[p]});
+  }
+  return out;
+}
+
 /// False only when all of the box lies outside of one plane of the frustum.
 bool may_be_seen(const glm::dmat4& clip_from_world, const Box& box) {
   const glm::dmat4 rows = glm::transpose(clip_from_world);
@@ -146,25 +157,48 @@ Result<PackedMesh> pack_mesh(const TriMesh& mesh) {
   const glm::dvec3 step = mesh.frame.grid_voxel_mm();
   out.mirrored = step.x * step.y * step.z < 0;
 
-  // Triangles by partition (counting sort), boxes on the way.
-  const auto usable = [&](const Triangle& t) {
-    return finite(mesh.positions[t[0]]) && finite(mesh.positions[t[1]]) && finite(mesh.positions[t[2]]);
+  // Triangles by partition and evidence (counting sort), boxes on the way.
+  const std::vector<std::uint8_t>& inferred = mesh.triangle_inferred;
+  if (!inferred.empty() && inferred.size() != mesh.triangles.size())
+    return fail(ErrorKind::kBadData, "render: {} triangles but {} marks of inferred ones, expected as many or none",
+                mesh.triangles.size(), inferred.size());
+  std::vector<char> usable(count);
+  parallel_for(static_cast<std::int64_t>(count), kGrain,
+               [&](std::int64_t i) { usable[static_cast<std::size_t>(i)] = finite(mesh.positions[i]); });
+  constexpr std::size_t kNone = 2 * kMaxPartitions;
+  const auto group_of = [&](std::size_t i) -> std::size_t {
+    const Triangle& t = mesh.triangles[i];
+    if (!usable[t[0]] || !usable[t[1]] || !usable[t[2]]) return kNone;
+    return 2u * mesh.partition_of(i) + (inferred.empty() || inferred[i] == 0 ? 0u : 1u);
   };
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const Triangle& t = mesh.triangles[i];
-    if (usable(t)) ++out.first_triangle[mesh.partition_of(i) + 1];
+  std::array<std::int64_t, kNone + 2> next{};
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) ++next[group_of(i) + 1];
+  for (std::size_t g = 0; g < kNone; ++g) next[g + 1] += next[g];
+  for (std::size_t p = 0; p < kMaxPartitions; ++p) {
+    out.first_triangle[p + 1] = next[2 * p + 2];
+    out.first_inferred[p] = next[2 * p + 1];
   }
-  for (int p = 0; p < kMaxPartitions; ++p) out.first_triangle[p + 1] += out.first_triangle[p];
-  out.triangles.resize(static_cast<std::size_t>(out.first_triangle[kMaxPartitions]));
+  out.triangles.resize(static_cast<std::size_t>(next[kNone]));
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  std::array<glm::vec3, kMaxPartitions> low{}, high{};
+  low.fill(glm::vec3(kInf));
+  high.fill(glm::vec3(-kInf));
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const std::size_t group = group_of(i);
+    if (group == kNone) continue;
+    const Triangle& t = mesh.triangles[i];
+    out.triangles[static_cast<std::size_t>(next[group]++)] = t;
+    for (const std::uint32_t v : t) {
+      low[group / 2] = glm::min(low[group / 2], mesh.positions[v]);
+      high[group / 2] = glm::max(high[group / 2], mesh.positions[v]);
+    }
+  }
   out.partition_box_mm.fill(empty_box());
-  auto next = out.first_triangle;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const Triangle& t = mesh.triangles[i];
-    if (!usable(t)) continue;
-    const int p = mesh.partition_of(i);
-    out.triangles[static_cast<std::size_t>(next[p]++)] = t;
-    for (const std::uint32_t v : t) grow(out.partition_box_mm[p], mesh.frame.mm_from_grid(mesh.positions[v]));
-  }
+  for (std::size_t p = 0; p < kMaxPartitions; ++p)
+    if (low[p].x <= high[p].x) {
+      grow(out.partition_box_mm[p], mesh.frame.mm_from_grid(low[p]));
+      grow(out.partition_box_mm[p], mesh.frame.mm_from_grid(high[p]));
+    }
   out.box_mm = out.box_of(0xff);
 
   const bool compute_normals = mesh.normals.empty();
@@ -195,9 +229,8 @@ Result<GpuMesh> GpuMesh::upload(const PackedMesh& mesh) {
     return fail(ErrorKind::kBadData, "render: the mesh has no triangles, so there is nothing to draw");
   GpuMesh out;
   out.box_mm_ = mesh.box_mm;
-  out.first_triangle_ = mesh.first_triangle;
   out.mirrored_ = mesh.mirrored;
-  out.chunks_ = mesh.chunks;
+  out.chunks_ = mesh.chunks.empty() ? whole_partitions(mesh) : mesh.chunks;
   out.vertices_ = make_buffer(std::as_bytes(std::span(mesh.vertices)));
   out.indices_ = make_buffer(std::as_bytes(std::span(mesh.triangles)));
   out.vertex_array_ = make_vertex_array();
@@ -222,14 +255,13 @@ Result<GpuMesh> GpuMesh::upload(const PackedMesh& mesh) {
   return out;
 }
 
-std::vector<std::pair<std::int64_t, std::int64_t>> GpuMesh::visible_ranges(std::uint8_t partitions,
-                                                                           std::span<const View> views) const {
-  if (chunks_.empty()) return ranges(partitions);
+TriangleRanges GpuMesh::visible_ranges(std::uint8_t partitions, std::span<const View> views, Evidence evidence) const {
   std::vector<glm::dmat4> clips;
   for (const View& view : views) clips.push_back(view.clip_from_world());
-  std::vector<std::pair<std::int64_t, std::int64_t>> out;
+  TriangleRanges out;
   for (const TriangleChunk& chunk : chunks_) {
     if ((partitions >> chunk.partition & 1) == 0) continue;
+    if (evidence != Evidence::kBoth && chunk.inferred != (evidence == Evidence::kInferred)) continue;
     if (std::none_of(clips.begin(), clips.end(),
                      [&](const glm::dmat4& clip) { return may_be_seen(clip, chunk.box_mm); }))
       continue;
@@ -237,19 +269,6 @@ std::vector<std::pair<std::int64_t, std::int64_t>> GpuMesh::visible_ranges(std::
       out.back().second += chunk.count;
     else
       out.emplace_back(chunk.first, chunk.count);
-  }
-  return out;
-}
-
-std::vector<std::pair<std::int64_t, std::int64_t>> GpuMesh::ranges(std::uint8_t partitions) const {
-  std::vector<std::pair<std::int64_t, std::int64_t>> out;
-  for (int p = 0; p < kMaxPartitions; ++p) {
-    const std::int64_t first = first_triangle_[p], count = first_triangle_[p + 1] - first;
-    if ((partitions >> p & 1) == 0 || count == 0) continue;
-    if (!out.empty() && out.back().first + out.back().second == first)
-      out.back().second += count;
-    else
-      out.emplace_back(first, count);
   }
   return out;
 }

@@ -30,6 +30,7 @@ Box joined_box(const std::array<Box, kMaxPartitions>& boxes, std::uint8_t bits);
 struct TriangleChunk {
   std::int64_t first = 0, count = 0;
   int partition = 0;
+  bool inferred = false;
   Box box_mm;
 };
 
@@ -37,9 +38,11 @@ struct TriangleChunk {
 struct PackedMesh {
   Box box_mm;  ///< of all finite vertices that triangles use
   std::vector<PackedVertex> vertices;
-  std::vector<std::array<std::uint8_t, 4>> colors;                ///< only when the mesh has foreign colours
-  std::vector<Triangle> triangles;                                ///< sorted by partition, order kept within one
+  std::vector<std::array<std::uint8_t, 4>> colors;  ///< only when the mesh has foreign colours
+  /// Sorted by partition, within one those that the scan shows before those that are inferred; else order is kept.
+  std::vector<Triangle> triangles;
   std::array<std::int64_t, kMaxPartitions + 1> first_triangle{};  ///< of each partition
+  std::array<std::int64_t, kMaxPartitions> first_inferred{};      ///< of each partition; its end when there is none
   std::array<Box, kMaxPartitions> partition_box_mm{};
   std::vector<TriangleChunk> chunks;  ///< all triangles, or none (display/render/lod.h makes them)
   bool has_shape = false, has_ao = false;
@@ -60,6 +63,9 @@ Result<PackedMesh> pack_mesh(const TriMesh& mesh);
 std::array<std::int16_t, 2> encode_octahedral(const glm::dvec3& unit);
 glm::dvec3 decode_octahedral(const std::array<std::int16_t, 2>& code);
 
+using TriangleRanges = std::vector<std::pair<std::int64_t, std::int64_t>>;
+enum class Evidence { kMeasured, kInferred, kBoth };
+
 /// The packed mesh in buffers of the current context.
 class GpuMesh {
  public:
@@ -68,18 +74,16 @@ class GpuMesh {
   GLuint vertex_array() const noexcept { return vertex_array_; }
   const Box& box_mm() const noexcept { return box_mm_; }
   bool mirrored() const noexcept { return mirrored_; }
-  /// Index ranges (first triangle, count) to draw for the partitions whose bit is set, neighbours joined.
-  std::vector<std::pair<std::int64_t, std::int64_t>> ranges(std::uint8_t partitions) const;
-  /// The same without the chunks that none of the views can see.
-  std::vector<std::pair<std::int64_t, std::int64_t>> visible_ranges(std::uint8_t partitions,
-                                                                    std::span<const View> views) const;
+  /// Index ranges (first triangle, count) to draw for the partitions whose bit is set, neighbours joined, without the
+  /// chunks that none of the views (world: the mesh's) can see.
+  TriangleRanges visible_ranges(std::uint8_t partitions, std::span<const View> views,
+                                Evidence evidence = Evidence::kBoth) const;
 
  private:
   GlVertexArray vertex_array_;
   GlBuffer vertices_, colors_, indices_;
   Box box_mm_;
-  std::array<std::int64_t, kMaxPartitions + 1> first_triangle_{};
-  std::vector<TriangleChunk> chunks_;
+  std::vector<TriangleChunk> chunks_;  ///< of a mesh without chunks: one a partition and evidence
   bool mirrored_ = false;
 };
 

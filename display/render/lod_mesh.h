@@ -1,6 +1,8 @@
 #pragma once
 // A mesh in graphics memory in several levels of detail: coarse ones for small or moving pictures.
 
+#include <array>
+#include <memory>
 #include <vector>
 
 #include "core/base/result.h"
@@ -16,6 +18,21 @@ class LodMesh {
   /// The mesh as it is, then by grids of 1/1024 to 1/64 of its longest side in steps of 1.41, each only when it has
   /// less than 3/4 of the triangles of the one before. Takes the triangles' order from `mesh`.
   static Result<LodMesh> with_levels(PackedMesh mesh);
+  /// A quick level of 1/90 of its longest side at once (small meshes: as they are); all that with_levels() has is made
+  /// in a thread of its own and comes in by update(), the mesh as it is first. Keeps a copy in memory until then.
+  static Result<LodMesh> growing(PackedMesh mesh);
+
+  LodMesh();
+  LodMesh(LodMesh&&) noexcept;
+  LodMesh& operator=(LodMesh&&) noexcept;
+  ~LodMesh();  ///< a thread that still works is stopped and waited for, a level's time at most
+
+  /// Takes in what is ready, a level a call. True when level 0 is another one than before. kTryAgain without memory.
+  Result<bool> update();
+  /// Whether level 0 is the mesh as it is.
+  bool has_exact() const noexcept { return !levels_.empty() && levels_.front().cell_mm == 0.0; }
+  /// Whether all levels are there.
+  bool complete() const noexcept { return growth_ == nullptr; }
 
   int levels() const noexcept { return static_cast<int>(levels_.size()); }
   const GpuMesh& level(int i) const { return levels_[static_cast<std::size_t>(i)].mesh; }  ///< 0 the finest
@@ -34,12 +51,16 @@ class LodMesh {
     GpuMesh mesh;
     double cell_mm = 0.0;
     std::int64_t triangles = 0;
+    bool quick = false;  ///< until a better one is made
   };
+  class Growth;
   Result<void> add(const PackedMesh& level, double cell_mm);
+  void describe(const PackedMesh& mesh);
 
   std::vector<Level> levels_;  ///< finest first
   std::array<Box, kMaxPartitions> partition_box_mm_{};
   std::uint8_t has_triangles_ = 0;  ///< bit p: partition p
+  std::unique_ptr<Growth> growth_;  ///< while levels are missing
 };
 
 }  // namespace dubsar

@@ -1,5 +1,7 @@
 #include "display/render/mesh_pass.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_inverse.hpp>
@@ -7,16 +9,24 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
+#include <string>
 
 #include "display/optics/srgb.h"
 #include "display/render/lod_mesh.h"
+#include "display/render/shadow_map.h"
 
 namespace dubsar {
 namespace {
 
 constexpr GLint kViewIndex = 0, kPartColor = 1, kPartOffset = 2;  // shaders/mesh.vert
 constexpr GLuint kViewsBinding = 0, kStyleBinding = 1, kForeignColor = 3;
+constexpr GLuint kTableUnit = 0, kShadowUnit = 1, kOpaqueUnit = 2, kPeeledUnit = 3;
 constexpr std::size_t kMostTables = 8;
+constexpr double kHatchStripes = 90;         // along the longest side of a mesh
+constexpr double kLeastSineEven = 0.12;      // Light::even: 7 degrees
+constexpr double kShadowOffsetTexels = 1.5;  // along the normal, before the map is asked
+
+enum Variant : unsigned { kLayered = 1, kClipped = 2, kShadowed = 4, kPeeled = 8, kInferredSurface = 16, kFoggy = 32 };
 
 struct ViewData {  // std430, as in shaders/mesh.vert
   glm::mat4 view_from_unit, clip_from_view, view_from_normal;
@@ -24,6 +34,9 @@ struct ViewData {  // std430, as in shaders/mesh.vert
 
 struct StyleData {  // std140, as in shaders/mesh.vert
   glm::vec4 light, weights, back_color, shininess;
+  glm::vec4 inferred_color, inferred_stripe, hatch;
+  glm::vec4 fog_color, fog_depth;
+  glm::mat4 map_from_unit, map_from_normal;
   std::array<glm::vec4, kMostClipPlanes> clip_plane;
 };
 
@@ -34,38 +47,49 @@ ViewData view_data(const View& view, const glm::dmat4& world_from_unit, int laye
   return {glm::mat4(view.view_from_world * world_from_unit), glm::mat4(view.clip_from_view), glm::mat4(normals)};
 }
 
-glm::dmat4 model_from_unit(const Box& box) {
-  glm::dmat4 out(1.0);
-  const glm::dvec3 size = box.size();
-  for (int a = 0; a < 3; ++a) {
-    out[a][a] = size[a];
-    out[3][a] = box.min[a];
+/// Depths before the eye between which the fog grows, of the first view.
+glm::dvec2 fog_depths(const SceneView& scene, const View& view) {
+  const Box box = scene_box_mm(scene);
+  glm::dvec2 out(std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity());
+  for (int corner = 0; corner < 8; ++corner) {
+    const double depth = -(view.view_from_world * glm::dvec4(box.corner(corner), 1.0)).z;
+    out = {std::min(out.x, depth), std::max(out.y, depth)};
   }
   return out;
 }
 
-StyleData style_data(const Style& s, const Light& light, std::span<const ClipPlane> clips,
-                     const glm::dmat4& world_from_unit) {
+StyleData style_data(const MeshItem& item, const SceneView& scene, const View& view, const ShadowMap* shadows) {
+  const Style& s = item.style;
+  const Light& light = scene.light;
+  const Box& box = item.mesh->box_mm();
+  const glm::dmat4 world_from_unit = item.world_from_model * model_from_unit(box);
+  const glm::dvec3 direction = light_direction(light);
   StyleData out{};
-  out.light = glm::vec4(glm::vec3(light_direction(light)), s.lit ? 1.0f : 0.0f);
-  out.weights = glm::vec4(glm::dvec4(light.ambient, light.key, light.fill, light.specular));
+  out.light = glm::vec4(glm::vec3(direction), s.lit ? 1.0f : 0.0f);
+  const double key = light.even ? light.key / std::max(direction.z, kLeastSineEven) : light.key;
+  out.weights = glm::vec4(glm::dvec4(light.ambient, key, light.fill, light.specular));
   out.back_color = glm::vec4(linear_color(s.back_color), s.back_faces == BackFaces::kTint ? 1.0f : 0.0f);
-  out.shininess = glm::vec4(static_cast<float>(light.shininess));
-  out.clip_plane.fill(glm::vec4(0, 0, 0, 1));
-  for (std::size_t i = 0; i < clips.size(); ++i) {
-    const glm::dvec4 plane(clips[i].normal, -glm::dot(clips[i].normal, clips[i].point_mm));
-    out.clip_plane[i] = glm::vec4(plane * world_from_unit);  // row vector: plane . (world_from_unit * unit)
+  out.shininess = glm::vec4(static_cast<float>(light.shininess), static_cast<float>(light.knee), 0.0f, 0.0f);
+  out.inferred_color = glm::vec4(linear_color(s.inferred_color), 1.0f);
+  out.inferred_stripe = glm::vec4(linear_color(s.inferred_stripe), 1.0f);
+  const glm::dvec3 size = box.size();
+  out.hatch = glm::vec4(glm::vec3(size * (kHatchStripes / std::max({size.x, size.y, size.z, 1e-9}))), 0.0f);
+  if (scene.fog.strength > 0) {
+    const glm::dvec2 depth = fog_depths(scene, view);
+    out.fog_color = scene.background.transparent ? glm::vec4(0.0f) : glm::vec4(linear_color(scene.background.color), 1);
+    out.fog_depth = glm::vec4(glm::vec2(depth), static_cast<float>(scene.fog.strength), 0.0f);
   }
+  if (shadows != nullptr) {
+    out.map_from_unit = glm::mat4(shadows->map_from_world() * world_from_unit);
+    const glm::dmat3 turn = glm::inverseTranspose(glm::dmat3(item.world_from_model));
+    const double scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(item.world_from_model))));
+    out.map_from_normal = glm::mat4(
+        glm::mat3(glm::dmat3(shadows->map_from_world()) * turn * scale * (kShadowOffsetTexels * shadows->texel_mm())));
+  }
+  out.clip_plane.fill(glm::vec4(0, 0, 0, 1));
+  for (std::size_t i = 0; i < scene.clips.size(); ++i)
+    out.clip_plane[i] = glm::vec4(unit_plane(scene.clips[i], world_from_unit));
   return out;
-}
-
-void draw_ranges(const std::vector<std::pair<std::int64_t, std::int64_t>>& ranges, GLsizei instances) {
-  constexpr std::int64_t kMostAtOnce = std::numeric_limits<GLsizei>::max() / 3;
-  for (auto [first, count] : ranges)
-    for (; count > 0; first += kMostAtOnce, count -= kMostAtOnce)
-      glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(3 * std::min(count, kMostAtOnce)), GL_UNSIGNED_INT,
-                              reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * sizeof(Triangle)),
-                              instances);
 }
 
 void set_state(const MeshItem& item, bool mirrored, std::size_t clips) {
@@ -81,6 +105,42 @@ void set_state(const MeshItem& item, bool mirrored, std::size_t clips) {
 }
 
 }  // namespace
+
+void draw_ranges(const TriangleRanges& ranges, GLsizei instances) {
+  constexpr std::int64_t kMostAtOnce = std::numeric_limits<GLsizei>::max() / 3;
+  for (auto [first, count] : ranges)
+    for (; count > 0; first += kMostAtOnce, count -= kMostAtOnce)
+      glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(3 * std::min(count, kMostAtOnce)), GL_UNSIGNED_INT,
+                              reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * sizeof(Triangle)),
+                              instances);
+}
+
+glm::dmat4 model_from_unit(const Box& box) {
+  glm::dmat4 out(1.0);
+  const glm::dvec3 size = box.size();
+  for (int a = 0; a < 3; ++a) {
+    out[a][a] = size[a];
+    out[3][a] = box.min[a];
+  }
+  return out;
+}
+
+glm::dvec3 unit_offset(const glm::dvec3& offset_mm, const Box& box) {
+  return offset_mm / glm::max(box.size(), glm::dvec3(std::numeric_limits<float>::min()));
+}
+
+glm::dvec4 unit_plane(const ClipPlane& clip, const glm::dmat4& world_from_unit) {
+  return glm::dvec4(clip.normal, -glm::dot(clip.normal, clip.point_mm)) * world_from_unit;  // a row
+}
+
+int level_for_views(const MeshItem& item, std::span<const View> views, double coarse_px, int width_px) {
+  if (!(coarse_px > 0)) return 0;
+  double finest = std::numeric_limits<double>::infinity();
+  for (const View& view : views)
+    finest = std::min(finest,
+                      mm_per_pixel_at(model_view(view, item.world_from_model), item.mesh->box_mm().centre(), width_px));
+  return item.mesh->level_for(coarse_px * finest);
+}
 
 View model_view(const View& view, const glm::dmat4& world_from_model) {
   return {view.view_from_world * world_from_model, view.clip_from_view};
@@ -102,24 +162,33 @@ Result<MeshPass> MeshPass::create(bool layered) {
   out.layered_ = layered && epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array");
   out.views_ = make_stream_buffer();
   out.style_ = make_stream_buffer();
-  DUBSAR_TRY(out.program(false, false));
+  DUBSAR_TRY(out.program(0));
   return out;
 }
 
-Result<GLuint> MeshPass::program(bool layered, bool clipped) {
-  const int key = (layered ? 1 : 0) | (clipped ? 2 : 0);
-  if (const auto found = programs_.find(key); found != programs_.end()) return GLuint{found->second};
+Result<GLuint> MeshPass::program(unsigned variant) {
+  if (const auto found = programs_.find(variant); found != programs_.end()) return GLuint{found->second};
   std::string lines;
-  if (layered) lines += "#extension GL_ARB_shader_viewport_layer_array : require\n#define LAYERED\n";
-  if (clipped) lines += "#define CLIPPED\n";
-  DUBSAR_ASSIGN(GlProgram made, make_program("mesh.vert", "mesh.frag", lines));
-  return GLuint{programs_.emplace(key, std::move(made)).first->second};
+  const auto define = [&](Variant bit, std::string_view name) {
+    if ((variant & bit) != 0) lines += fmt::format("#define {}\n", name);
+  };
+  define(kLayered, "LAYERED");
+  define(kClipped, "CLIPPED");
+  define(kShadowed, "SHADOWED");
+  define(kPeeled, "PEELED");
+  define(kInferredSurface, "INFERRED");
+  define(kFoggy, "FOGGY");
+  const std::string_view extension =
+      (variant & kLayered) != 0 ? "#extension GL_ARB_shader_viewport_layer_array : require\n" : "";
+  DUBSAR_ASSIGN(GlProgram made, make_program("mesh.vert", "mesh.frag", std::string(extension) + lines, lines));
+  return GLuint{programs_.emplace(variant, std::move(made)).first->second};
 }
 
 GLuint MeshPass::table_of(const Style& style) {
   const auto same = [&](const Table& t) {
     return t.style.map == style.map && t.style.contrast == style.contrast && t.style.base_color == style.base_color &&
-           t.style.ambient_occlusion == style.ambient_occlusion && t.style.occlusion_power == style.occlusion_power;
+           t.style.ambient_occlusion == style.ambient_occlusion && t.style.occlusion_power == style.occlusion_power &&
+           t.style.shoulder == style.shoulder;
   };
   if (const auto found = std::find_if(tables_.begin(), tables_.end(), same); found != tables_.end()) {
     std::rotate(found, found + 1, tables_.end());
@@ -135,51 +204,67 @@ GLuint MeshPass::table_of(const Style& style) {
   return tables_.back().texture;
 }
 
-Result<void> MeshPass::draw(const MeshItem& item, const SceneView& scene, const PassViews& target, double coarse_px) {
+Result<void> MeshPass::draw(const MeshItem& item, const SceneView& scene, const PassViews& target,
+                            const MeshPassMode& mode) {
   DUBSAR_CHECK(target.layers.empty() ? target.views.size() == 1
                                      : layered_ && target.layers.size() == target.views.size());
-  const LodMesh& mesh = *item.mesh;
-  const Box& box = mesh.box_mm();
-  double finest = std::numeric_limits<double>::infinity();
+  const bool transparent = mode.opaque_depth != 0;
+  const auto drawn = [&](const PartLook& p) { return p.visible && p.opacity > 0 && (p.opacity < 1.0) == transparent; };
+  if (std::none_of(item.parts.begin(), item.parts.end(), drawn)) return {};
+  const Box& box = item.mesh->box_mm();
+  const GpuMesh& level = item.mesh->level(level_for_views(item, target.views, target.coarse_px, target.width_px));
   std::vector<View> views;
-  for (const View& view : target.views) {
-    views.push_back(model_view(view, item.world_from_model));
-    if (coarse_px > 0) finest = std::min(finest, mm_per_pixel_at(views.back(), box.centre(), target.width_px));
-  }
-  const GpuMesh& level = mesh.level(coarse_px > 0 ? mesh.level_for(coarse_px * finest) : 0);
-
-  const glm::dmat4 from_unit = model_from_unit(box);
   std::vector<ViewData> data;
-  for (std::size_t i = 0; i < views.size(); ++i)
-    data.push_back(view_data(views[i], from_unit, target.layers.empty() ? 0 : target.layers[i]));
+  for (std::size_t i = 0; i < target.views.size(); ++i) {
+    views.push_back(model_view(target.views[i], item.world_from_model));
+    data.push_back(view_data(views.back(), model_from_unit(box), target.layers.empty() ? 0 : target.layers[i]));
+  }
   stream(views_, std::as_bytes(std::span(data)));
-  const StyleData style = style_data(item.style, scene.light, scene.clips, item.world_from_model * from_unit);
+  const ShadowMap* const shadows = item.style.lit ? mode.shadows : nullptr;
+  const StyleData style = style_data(item, scene, target.views[0], shadows);
   stream(style_, std::as_bytes(std::span(&style, 1)));
-  DUBSAR_ASSIGN(const GLuint shader, program(!target.layers.empty(), !scene.clips.empty()));
-  glUseProgram(shader);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kViewsBinding, views_);
   glBindBufferBase(GL_UNIFORM_BUFFER, kStyleBinding, style_);
   glVertexAttrib4f(kForeignColor, 1, 1, 1, 1);
-  glBindTextureUnit(0, table_of(item.style));
-  set_state(item, level.mirrored(), scene.clips.size());
-  glUniform1i(kViewIndex, 0);
-  glBindVertexArray(level.vertex_array());
-  const glm::dvec3 unit_per_mm = 1.0 / glm::max(box.size(), glm::dvec3(std::numeric_limits<float>::min()));
-  for (std::size_t p = 0; p < item.parts.size(); ++p) {
-    const PartLook& part = item.parts[p];
-    if (!part.visible) continue;
-    std::vector<View> moved;
-    for (const View& view : views) moved.push_back(model_view(view, glm::translate(glm::dmat4(1.0), part.offset_mm)));
-    const auto ranges = level.visible_ranges(static_cast<std::uint8_t>(1 << p), moved);
-    if (ranges.empty()) continue;
-    const glm::vec3 color = linear_color(part.color), offset(part.offset_mm * unit_per_mm);
-    glUniform3f(kPartColor, color.x, color.y, color.z);
-    glUniform3f(kPartOffset, offset.x, offset.y, offset.z);
-    draw_ranges(ranges, static_cast<GLsizei>(views.size()));
+  glBindTextureUnit(kTableUnit, table_of(item.style));
+  if (shadows != nullptr) glBindTextureUnit(kShadowUnit, shadows->texture());
+  if (transparent) {
+    glBindTextureUnit(kOpaqueUnit, mode.opaque_depth);
+    glBindTextureUnit(kPeeledUnit, mode.peeled_depth);
   }
+  set_state(item, level.mirrored(), scene.clips.size());
+  glBindVertexArray(level.vertex_array());
+  const unsigned variant = (target.layers.empty() ? 0u : kLayered) | (scene.clips.empty() ? 0u : kClipped) |
+                           (shadows == nullptr ? 0u : kShadowed) | (transparent ? kPeeled : 0u) |
+                           (scene.fog.strength > 0 ? kFoggy : 0u);
+  for (std::size_t p = 0; p < item.parts.size(); ++p)
+    if (drawn(item.parts[p])) DUBSAR_TRY(draw_part(level, item, p, views, variant));
   glDisable(GL_CULL_FACE);
   for (GLuint i = 0; i < scene.clips.size(); ++i) glDisable(GL_CLIP_DISTANCE0 + i);
   return check_gl("drawing a surface");
+}
+
+Result<void> MeshPass::draw_part(const GpuMesh& level, const MeshItem& item, std::size_t p, std::span<const View> views,
+                                 unsigned variant) {
+  const PartLook& part = item.parts[p];
+  std::vector<View> moved;
+  for (const View& view : views) moved.push_back(model_view(view, glm::translate(glm::dmat4(1.0), part.offset_mm)));
+  for (const bool inferred : {false, true}) {
+    const auto evidence = !item.style.mark_inferred ? Evidence::kBoth
+                          : inferred                ? Evidence::kInferred
+                                                    : Evidence::kMeasured;
+    if (inferred && !item.style.mark_inferred) continue;
+    const TriangleRanges ranges = level.visible_ranges(static_cast<std::uint8_t>(1 << p), moved, evidence);
+    if (ranges.empty()) continue;
+    DUBSAR_ASSIGN(const GLuint shader, program(variant | (inferred ? kInferredSurface : 0u)));
+    glUseProgram(shader);
+    glUniform1i(kViewIndex, 0);
+    const glm::vec3 color = linear_color(part.color), offset(unit_offset(part.offset_mm, item.mesh->box_mm()));
+    glUniform4f(kPartColor, color.x, color.y, color.z, static_cast<float>(part.opacity));
+    glUniform3f(kPartOffset, offset.x, offset.y, offset.z);
+    draw_ranges(ranges, static_cast<GLsizei>(views.size()));
+  }
+  return {};
 }
 
 }  // namespace dubsar

@@ -5,10 +5,14 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
+#include "core/base/clock.h"
+
 namespace dubsar {
 namespace {
 
-constexpr double kMostShiftPx = 16;  // between drawn views; more leaves wide holes
+constexpr double kMostMergedPx = 12;
+constexpr double kRoom = 0.4, kFiner = 0.8409;  // of the budget, before twice the triangles are tried in two steps
+constexpr double kMostShiftPx = 16;             // between drawn views; more leaves wide holes
 
 }  // namespace
 
@@ -25,6 +29,7 @@ std::vector<int> key_views(int count, int keys) {
 Result<MultiView> MultiView::create(const MultiViewOptions& options) {
   MultiView out;
   out.options_ = options;
+  out.coarse_px_ = options.budget_ms > 0 ? kMostMergedPx : options.cell_px;
   DUBSAR_ASSIGN(out.renderer_, Renderer::create());
   DUBSAR_ASSIGN(out.reprojector_, Reprojector::create());
   return out;
@@ -35,13 +40,27 @@ Result<void> MultiView::draw_moving(const SceneView& scene, std::span<const View
   coarse_ = static_cast<int>(views.size());
   if (views.empty()) return {};
   DUBSAR_TRY(check_scene(scene));
+  const TimestampNs start = SteadyClock().now();
   const Box box = scene_box_mm(scene);
   const std::vector<int> layers = key_views(coarse_, keys_for(views, target, box));
   std::vector<View> drawn;
   for (const int layer : layers) drawn.push_back(views[static_cast<std::size_t>(layer)]);
-  DUBSAR_TRY(renderer_.render_layers(scene, drawn, layers, target, options_.cell_px));
-  if (static_cast<int>(layers.size()) == coarse_) return {};
-  return reprojector_.fill(target, renderer_.layer_depths(), views, layers, box);
+  DUBSAR_TRY(renderer_.render_layers(scene, drawn, layers, target, coarse_px_));
+  if (static_cast<int>(layers.size()) < coarse_)
+    DUBSAR_TRY(reprojector_.fill(target, renderer_.layer_depths(), views, layers, box));
+  if (options_.budget_ms > 0) {
+    glFinish();
+    took(1e-6 * static_cast<double>(SteadyClock().now() - start));
+  }
+  return {};
+}
+
+/// Triangles grow with the square of what is not merged.
+void MultiView::took(double ms) {
+  if (ms > options_.budget_ms)
+    coarse_px_ = std::min(kMostMergedPx, coarse_px_ * std::min(2.0, std::sqrt(ms / options_.budget_ms)));
+  else if (ms < kRoom * options_.budget_ms)
+    coarse_px_ = std::max(options_.cell_px, coarse_px_ * kFiner);
 }
 
 int MultiView::keys_for(std::span<const View> views, const ViewArray& target, const Box& box) const {

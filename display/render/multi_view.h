@@ -16,6 +16,9 @@ struct MultiViewOptions {
   /// (display/render/reproject.h); more where the object would shift by more than 16 pixels from one drawn view to the
   /// next. 0: all are drawn.
   int key_views = 8;
+  /// Moving: more is merged, up to 12 pixels, until a picture takes no longer than this. Waits for the GPU, to know.
+  /// The first picture is as coarse as that. 0: whatever it takes.
+  double budget_ms = 0.0;
 };
 
 /// One GL thread.
@@ -35,12 +38,14 @@ class MultiView {
   Result<void> draw_exact(const SceneView& scene, std::span<const View> views, int samples, ViewArray& target);
 
  private:
+  void took(double ms);
   int keys_for(std::span<const View> views, const ViewArray& target, const Box& box) const;
 
   MultiViewOptions options_;
   Renderer renderer_;
   Reprojector reprojector_;
-  int coarse_ = 0;  ///< views that refine() has to do yet
+  double coarse_px_ = 0.0;  ///< what draw_moving() merges now
+  int coarse_ = 0;          ///< views that refine() has to do yet
 };
 
 /// `keys` of `count` views (fewer: all), from the first to the last, evenly.

@@ -6,6 +6,7 @@ namespace dubsar {
 namespace {
 
 constexpr GLint kFactorLocation = 0;  // shaders/resolve.frag
+constexpr int kShadowTexels = 4096, kQuickShadowTexels = 1024;
 
 glm::vec4 opaque_background(const SceneView& scene) { return glm::vec4(linear_color(scene.background.color), 1.0f); }
 
@@ -33,6 +34,8 @@ Result<Renderer> Renderer::create(bool layered) {
   Renderer out;
   DUBSAR_ASSIGN(out.meshes_, MeshPass::create(layered));
   DUBSAR_ASSIGN(out.flat_, FlatPass::create(out.meshes_.layered()));
+  DUBSAR_ASSIGN(out.peel_, PeelPass::create());
+  DUBSAR_ASSIGN(out.shadows_, ShadowMap::create());
   DUBSAR_ASSIGN(out.resolve_program_, make_program("fullscreen.vert", "resolve.frag"));
   out.no_vertices_ = make_vertex_array();
   out.layer_ = make_framebuffer();
@@ -81,14 +84,23 @@ Result<void> Renderer::use_layer_depth(const ViewArray& target) {
   return {};
 }
 
-Result<void> Renderer::draw_items(const SceneView& scene, const PassViews& target, double coarse_px, double pixel) {
+Result<const ShadowMap*> Renderer::cast_shadows(const SceneView& scene, std::span<const View> views, int size,
+                                                double coarse_px, int width_px) {
+  if (!scene.light.shadows) return nullptr;
+  DUBSAR_TRY(shadows_.draw(scene, views, size, coarse_px, width_px));
+  return &shadows_;
+}
+
+Result<void> Renderer::draw_items(const SceneView& scene, const PassViews& target, const ShadowMap* shadows,
+                                  double pixel, const Into& into) {
   for (const DrawItem& item : scene.items)
-    if (const auto* mesh = std::get_if<MeshItem>(&item)) DUBSAR_TRY(meshes_.draw(*mesh, scene, target, coarse_px));
+    if (const auto* mesh = std::get_if<MeshItem>(&item)) DUBSAR_TRY(meshes_.draw(*mesh, scene, target, {shadows}));
   for (const DrawItem& item : scene.items)
     if (const auto* slice = std::get_if<SliceItem>(&item)) DUBSAR_TRY(flat_.draw(*slice, scene, target));
   for (const DrawItem& item : scene.items)
     if (const auto* lines = std::get_if<LinesItem>(&item)) DUBSAR_TRY(flat_.draw(*lines, target, pixel));
-  return {};
+  if (!has_transparency(scene)) return {};
+  return peel_.draw(meshes_, scene, target, shadows, into.framebuffer, into.depth, into.depth_layer);
 }
 
 Result<void> Renderer::render_layers(const SceneView& scene, std::span<const View> views, std::span<const int> layers,
@@ -98,18 +110,27 @@ Result<void> Renderer::render_layers(const SceneView& scene, std::span<const Vie
   if (views.empty()) return {};
   DUBSAR_TRY(check_scene(scene));
   DUBSAR_TRY(use_layer_depth(target));
+  const bool together =
+      meshes_.layered() && !has_transparency(scene) && (!scene.light.shadows || same_direction(views));
+  const ShadowMap* shadows = nullptr;
+  if (together) {
+    DUBSAR_ASSIGN(shadows, cast_shadows(scene, views, kQuickShadowTexels, coarse_px, target.width()));
+  }
   const GLuint framebuffer = layer_depth_.framebuffer;
   glNamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, target.linear(), 0);
   glNamedFramebufferTexture(framebuffer, GL_DEPTH_ATTACHMENT, layer_depth_.depth, 0);
   begin_drawing(framebuffer, target.width(), target.height(), opaque_background(scene), true);
-  if (meshes_.layered()) {
-    DUBSAR_TRY(draw_items(scene, {views, layers, target.width(), target.height()}, coarse_px, 1.0));
-  } else {
-    for (std::size_t i = 0; i < views.size(); ++i) {
-      glNamedFramebufferTextureLayer(framebuffer, GL_COLOR_ATTACHMENT0, target.linear(), 0, layers[i]);
-      glNamedFramebufferTextureLayer(framebuffer, GL_DEPTH_ATTACHMENT, layer_depth_.depth, 0, layers[i]);
-      DUBSAR_TRY(draw_items(scene, {views.subspan(i, 1), {}, target.width(), target.height()}, coarse_px, 1.0));
-    }
+  if (together)
+    DUBSAR_TRY(draw_items(scene, {views, layers, target.width(), target.height(), coarse_px}, shadows, 1.0, {}));
+  for (std::size_t i = 0; i < views.size() && !together; ++i) {
+    const auto one = views.subspan(i, 1);
+    DUBSAR_ASSIGN(shadows, cast_shadows(scene, one, kQuickShadowTexels, coarse_px, target.width()));
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(0, 0, target.width(), target.height());
+    glNamedFramebufferTextureLayer(framebuffer, GL_COLOR_ATTACHMENT0, target.linear(), 0, layers[i]);
+    glNamedFramebufferTextureLayer(framebuffer, GL_DEPTH_ATTACHMENT, layer_depth_.depth, 0, layers[i]);
+    DUBSAR_TRY(draw_items(scene, {one, {}, target.width(), target.height(), coarse_px}, shadows, 1.0,
+                          {framebuffer, layer_depth_.depth, layers[i]}));
   }
   glDisable(GL_FRAMEBUFFER_SRGB);
   glDisable(GL_DEPTH_TEST);
@@ -128,8 +149,11 @@ Result<void> Renderer::render(const SceneView& scene, std::span<const View> view
   DUBSAR_TRY(use_scratch(target.width() * factor, target.height() * factor));
   const glm::vec4 background = scene.background.transparent ? glm::vec4(0.0f) : opaque_background(scene);
   for (std::size_t i = 0; i < views.size(); ++i) {
+    const auto one = views.subspan(i, 1);
+    DUBSAR_ASSIGN(const ShadowMap* const shadows, cast_shadows(scene, one, kShadowTexels, 0.0, target.width()));
     begin_drawing(scratch_.framebuffer, scratch_.width, scratch_.height, background, false);
-    DUBSAR_TRY(draw_items(scene, {views.subspan(i, 1), {}, scratch_.width, scratch_.height}, 0.0, factor));
+    DUBSAR_TRY(draw_items(scene, {one, {}, scratch_.width, scratch_.height, 0.0}, shadows, factor,
+                          {scratch_.framebuffer, scratch_.depth, -1}));
 
     glNamedFramebufferTextureLayer(layer_, GL_COLOR_ATTACHMENT0, target.coded(), 0,
                                    first_layer + static_cast<GLint>(i));

@@ -7,7 +7,9 @@
 #include "display/optics/view.h"
 #include "display/render/flat_pass.h"
 #include "display/render/mesh_pass.h"
+#include "display/render/peel_pass.h"
 #include "display/render/scene.h"
+#include "display/render/shadow_map.h"
 #include "display/render/view_array.h"
 
 namespace dubsar {
@@ -26,9 +28,10 @@ class Renderer {
                       int first_layer = 0);
 
   /// Layer layers[i] of `target` gets views[i], with one sample a pixel, in one instanced draw for each item; where the
-  /// driver cannot choose layers in vertex shaders (ARB_shader_viewport_layer_array), one view after the other. All
-  /// other layers become background. Transparent backgrounds are drawn opaque. Meshes in the level of detail that
-  /// merges what is smaller than `coarse_px` pixels. Quick, for things that move. kUsage as check_scene().
+  /// driver cannot choose layers in vertex shaders (ARB_shader_viewport_layer_array), and for transparent parts, one
+  /// view after the other. All other layers become background. Transparent backgrounds are drawn opaque. Meshes in the
+  /// level of detail that merges what is smaller than `coarse_px` pixels. Quick, for things that move. kUsage as
+  /// check_scene().
   Result<void> render_layers(const SceneView& scene, std::span<const View> views, std::span<const int> layers,
                              ViewArray& target, double coarse_px = 0.0);
   /// Depth buffers of the last render_layers(), the same layers as its target (GL_TEXTURE_2D_ARRAY); 1 is background.
@@ -47,10 +50,19 @@ class Renderer {
   };
   Result<void> use_scratch(int width, int height);
   Result<void> use_layer_depth(const ViewArray& target);
-  Result<void> draw_items(const SceneView& scene, const PassViews& target, double coarse_px, double pixel);
+  struct Into {  ///< for transparent parts
+    GLuint framebuffer = 0, depth = 0;
+    int depth_layer = -1;
+  };
+  Result<const ShadowMap*> cast_shadows(const SceneView& scene, std::span<const View> views, int size, double coarse_px,
+                                        int width_px);
+  Result<void> draw_items(const SceneView& scene, const PassViews& target, const ShadowMap* shadows, double pixel,
+                          const Into& into);
 
   MeshPass meshes_;
   FlatPass flat_;
+  PeelPass peel_;
+  ShadowMap shadows_;
   GlProgram resolve_program_;
   GlVertexArray no_vertices_;
   GlFramebuffer layer_;

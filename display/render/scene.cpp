@@ -1,6 +1,9 @@
 #include "display/render/scene.h"
 
+#include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_inverse.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
 
@@ -47,7 +50,9 @@ Result<void> check_item(const MeshItem& item) {
   if (item.mesh == nullptr) return fail(ErrorKind::kUsage, "scene: a mesh item has no mesh");
   if (!finite(item.world_from_model)) return fail(ErrorKind::kUsage, "scene: the place of a mesh is not finite");
   for (const PartLook& part : item.parts)
-    if (!finite(part.offset_mm)) return fail(ErrorKind::kUsage, "scene: the offset of a part is not finite");
+    if (!finite(part.offset_mm) || !fraction(part.opacity))
+      return fail(ErrorKind::kUsage, "scene: a part with opacity {} or an offset that is not finite, expected 0 to 1",
+                  part.opacity);
   return {};
 }
 
@@ -75,6 +80,40 @@ Result<void> check_item(const LinesItem& item) {
 
 }  // namespace
 
+std::vector<ClipPlane> moved(std::span<const ClipPlane> clips, const glm::dmat4& world_from_model) {
+  const glm::dmat3 normals = glm::inverseTranspose(glm::dmat3(world_from_model));
+  std::vector<ClipPlane> out;
+  for (const ClipPlane& clip : clips)
+    out.push_back({glm::dvec3(world_from_model * glm::dvec4(clip.point_mm, 1.0)), normals * clip.normal});
+  return out;
+}
+
+Result<ClipPlane> cut_from_side(const Box& box, std::string_view side, double share) {
+  const ObjectFrame frame = object_frame(box);
+  const std::array<std::pair<std::string_view, glm::dvec3>, 6> sides{{{"front", frame.front},
+                                                                      {"back", -frame.front},
+                                                                      {"left", -frame.right},
+                                                                      {"right", frame.right},
+                                                                      {"top", frame.up},
+                                                                      {"bottom", -frame.up}}};
+  if (share >= 0 && share <= 1)
+    for (const auto& [name, outward] : sides)
+      if (side == name) {
+        const double extent = glm::dot(glm::abs(outward), box.size());
+        return ClipPlane{box.centre() + (0.5 - share) * extent * outward, -outward};
+      }
+  return fail(ErrorKind::kUsage,
+              "cut of {} from \"{}\" found, expected 0 to 1 from front, back, left, right, top or bottom", share, side);
+}
+
+bool has_transparency(const SceneView& scene) {
+  for (const DrawItem& item : scene.items)
+    if (const auto* mesh = std::get_if<MeshItem>(&item))
+      for (const PartLook& part : mesh->parts)
+        if (part.visible && part.opacity < 1.0) return true;
+  return false;
+}
+
 Box scene_box_mm(const SceneView& scene) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
   Box box{glm::dvec3(kInf), glm::dvec3(-kInf)};
@@ -86,6 +125,8 @@ Result<void> check_scene(const SceneView& scene) {
   if (scene.clips.size() > static_cast<std::size_t>(kMostClipPlanes))
     return fail(ErrorKind::kUsage, "scene: {} clip planes found, expected at most {}", scene.clips.size(),
                 kMostClipPlanes);
+  if (!fraction(scene.fog.strength))
+    return fail(ErrorKind::kUsage, "scene: fog of {} found, expected 0 to 1", scene.fog.strength);
   for (const ClipPlane& clip : scene.clips)
     if (!finite(clip.point_mm) || !finite(clip.normal) || clip.normal == glm::dvec3(0.0))
       return fail(ErrorKind::kUsage, "scene: a clip plane has no direction, expected a point and a normal");

@@ -5,6 +5,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <span>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -48,37 +49,43 @@ struct LinesItem {
 
 using DrawItem = std::variant<MeshItem, SliceItem, LinesItem>;
 
-/// Cuts away where dot(normal, p - point) < 0.
-struct ClipPlane {
-  glm::dvec3 point_mm{0.0};
-  glm::dvec3 normal{0, 0, 1};  ///< towards what stays
-
-  bool operator==(const ClipPlane&) const = default;
-};
-constexpr int kMostClipPlanes = 8;
-
 /// A moment's view of what there is to draw; borrows all of it for the time of one call.
 struct SceneView {
   std::span<const DrawItem> items;
   Light light;
   std::span<const ClipPlane> clips;  ///< in the world; they cut meshes and slices, not lines. At most kMostClipPlanes
   Background background;
+  Fog fog{};
 };
 
-/// A scene of one mesh at its own place, for pictures of it. `mesh` outlives it.
+/// Planes of a model's frame in the world.
+std::vector<ClipPlane> moved(std::span<const ClipPlane> clips, const glm::dmat4& world_from_model);
+
+/// The plane that cuts a share (0..1) of the box away from one side of its object_frame(): "front", "back", "left",
+/// "right", "top" or "bottom". kUsage for another side or share.
+Result<ClipPlane> cut_from_side(const Box& box, std::string_view side, double share);
+
+/// A scene of one mesh, for pictures of it. `mesh` outlives it.
 class MeshScene {
  public:
   MeshScene(const LodMesh& mesh, const Shading& shading, const glm::dmat4& world_from_model = glm::dmat4(1.0))
       : item_(MeshItem{&mesh, world_from_model, shading.style, shading.parts}),
         light_(shading.light),
-        background_(shading.background) {}
-  operator SceneView() const { return {std::span(&item_, 1), light_, {}, background_}; }
+        clips_(moved(shading.clips, world_from_model)),
+        background_(shading.background),
+        fog_(shading.fog) {}
+  operator SceneView() const { return {std::span(&item_, 1), light_, clips_, background_, fog_}; }
 
  private:
   DrawItem item_;
   Light light_;
+  std::vector<ClipPlane> clips_;
   Background background_;
+  Fog fog_;
 };
+
+/// True when parts of a mesh are drawn with an opacity below 1.
+bool has_transparency(const SceneView& scene);
 
 /// World box of everything that is drawn; clip planes are not looked at. A box of size 0 for an empty scene.
 Box scene_box_mm(const SceneView& scene);

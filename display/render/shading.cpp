@@ -24,20 +24,44 @@ ShapeColors shape_colors_of(ColorMap map) {
   return ShapeColors::kBlackWhite;
 }
 
+constexpr double kDeepest = 0.06;  // of the base colour's bytes, for the strongest cup at any contrast
+
 struct Preset {
   std::string_view name;
   ColorMap map;
   bool ambient_occlusion, lit;
+  bool rakes = false;
 };
-constexpr std::array<Preset, 9> kPresets{{{"relief", ColorMap::kBlackWhite, true, true},
-                                          {"phong", ColorMap::kPlain, false, true},
-                                          {"table", ColorMap::kTable, false, false},
-                                          {"black-white", ColorMap::kBlackWhite, false, false},
-                                          {"sky-sun", ColorMap::kSkySun, false, false},
-                                          {"ao", ColorMap::kPlain, true, false},
-                                          {"table-ao", ColorMap::kTable, true, false},
-                                          {"black-white-ao", ColorMap::kBlackWhite, true, false},
-                                          {"sky-sun-ao", ColorMap::kSkySun, true, false}}};
+constexpr std::array<Preset, 10> kPresets{{{"relief", ColorMap::kBlackWhite, true, true},
+                                           {"phong", ColorMap::kPlain, false, true},
+                                           {"raking", ColorMap::kPlain, false, true, true},
+                                           {"table", ColorMap::kTable, false, false},
+                                           {"black-white", ColorMap::kBlackWhite, false, false},
+                                           {"sky-sun", ColorMap::kSkySun, false, false},
+                                           {"ao", ColorMap::kPlain, true, false},
+                                           {"table-ao", ColorMap::kTable, true, false},
+                                           {"black-white-ao", ColorMap::kBlackWhite, true, false},
+                                           {"sky-sun-ao", ColorMap::kSkySun, true, false}}};
+
+/// A lamp beside the tablet in a dark room. Level clay is a middle grey; walls towards the lamp come close to white.
+Light raking_light() {
+  Light light;
+  light.elevation_deg = 15;
+  light.ambient = 0.02;
+  light.key = 0.42;
+  light.fill = 0.02;  // so that walls in the shadow keep their slopes
+  light.specular = 0.0;
+  light.even = true;
+  light.shadows = true;
+  light.knee = 0.6;
+  return light;
+}
+
+/// 1 + x where x is small; towards `least` (below 1) and `most` (above 1) where it is not. Slope 1 at 0, never level.
+double bent(double x, double least, double most) {
+  const double room = x < 0 ? 1.0 - least : std::max(most - 1.0, 1e-6);
+  return x < 0 ? 1.0 - room * (1.0 - std::exp(x / room)) : 1.0 + room * (1.0 - std::exp(-x / room));
+}
 
 }  // namespace
 
@@ -61,7 +85,9 @@ Result<Shading> shading_preset(std::string_view name) {
             preset.map == ColorMap::kPlain ? Rgb8{255, 255, 255} : shape_color_table(shape_colors_of(preset.map))[0];
         style.contrast = 1.0;
         style.occlusion_power = 1.0;
+        style.shoulder = false;
       }
+      if (preset.rakes) shading.light = raking_light();
       return shading;
     }
     known += known.empty() ? "" : ", ";
@@ -95,12 +121,16 @@ std::vector<std::array<std::uint8_t, 4>> color_table(const Style& style) {
   const double contrast = style.map == ColorMap::kPlain ? 0.0 : style.contrast;
   std::vector<std::array<std::uint8_t, 4>> table;
   table.reserve(kShapeRows * kAoColumns);
+  const double brightest = std::max({style.base_color[0], style.base_color[1], style.base_color[2], std::uint8_t{1}});
+  const auto factor = [&](double x) {
+    return style.shoulder ? bent(x, kDeepest, 255.0 / brightest) : std::max(1.0 + x, 0.0);
+  };
   for (int ao = 0; ao < kAoColumns; ++ao) {
     const double open = std::pow(ao / (kAoColumns - 1.0), style.occlusion_power) * (kAoColumns - 1);
     for (const ShapeRgb& shape : shapes) {
       std::array<double, 3> value{};
       for (std::size_t c = 0; c < 3; ++c)
-        value[c] = style.base_color[c] * std::max(1.0 + contrast * (shape[c] - shapes[0][c]) / shapes[0][c], 0.0);
+        value[c] = style.base_color[c] * factor(contrast * (shape[c] - shapes[0][c]) / shapes[0][c]);
       // Too bright: darker rather than of another hue.
       const double fit = std::min(1.0, 255.0 / std::max({value[0], value[1], value[2], 1.0}));
       Rgb8 color{};

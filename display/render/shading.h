@@ -34,10 +34,17 @@ struct Style {
   double contrast = 1.6;  ///< how much of the map's relation to its own flat colour base_color takes on
   bool ambient_occlusion = true;
   double occlusion_power = 1.3;  ///< ambient light to this power: 1 as it is, more for darker hollows
-  bool lit = true;               ///< false: the colours as they are, as in figure 14 a to e
+  /// Beyond its linear part the map's contrast bends: the bottoms of wedges and the tops of ridges keep their slopes
+  /// instead of all becoming black or white.
+  bool shoulder = true;
+  bool lit = true;  ///< false: the colours as they are, as in figure 14 a to e
   Rgb8 base_color{203, 192, 178};
   BackFaces back_faces = BackFaces::kShow;
   Rgb8 back_color{120, 60, 60};
+  /// Surface that the scan does not show (fill patches) is hatched in these two colours, never darker than a third of
+  /// full light. False: it looks like all the rest.
+  bool mark_inferred = true;
+  Rgb8 inferred_color{122, 158, 204}, inferred_stripe{38, 70, 128};
 
   bool operator==(const Style&) const = default;
 };
@@ -48,6 +55,11 @@ struct Light {
   double elevation_deg = 25;  ///< above the picture plane: 90 is a headlight, below 30 is raking light
   double ambient = 0.12, key = 1.0, fill = 0.25, specular = 0.05;  ///< weights; fill comes from the eye
   double shininess = 24;
+  /// `key` is what a surface gets that faces the eye, at any elevation from 7 degrees: what rakes is as bright as what
+  /// comes from the front. False: `key` is for a surface that faces the light.
+  bool even = false;
+  bool shadows = false;  ///< what stands before the light casts them
+  double knee = 1.0;     ///< linear light from which on highlights are bent into white instead of clipped, 0..1
 
   bool operator==(const Light&) const = default;
 };
@@ -56,6 +68,7 @@ struct Light {
 struct PartLook {
   bool visible = true;
   Rgb8 color{255, 255, 255};  ///< times the style's colours
+  double opacity = 1.0;       ///< 0..1; what is behind shows through, in the right order, whatever the order of drawing
   glm::dvec3 offset_mm{0.0};  ///< moves it, in the model's frame
 
   bool operator==(const PartLook&) const = default;
@@ -79,18 +92,36 @@ struct Background {
   bool operator==(const Background&) const = default;
 };
 
+/// Cuts away where dot(normal, p - point) < 0.
+struct ClipPlane {
+  glm::dvec3 point_mm{0.0};
+  glm::dvec3 normal{0, 0, 1};  ///< towards what stays
+
+  bool operator==(const ClipPlane&) const = default;
+};
+constexpr int kMostClipPlanes = 8;
+
+/// Fades what is far into the background.
+struct Fog {
+  double strength = 0.0;  ///< 0..1: how much of the background the farthest point of the scene takes on
+
+  bool operator==(const Fog&) const = default;
+};
+
 /// All of it, for pictures of one mesh.
 struct Shading {
   Style style;
   Light light;
   PartLooks parts{};
   Background background;
+  std::vector<ClipPlane> clips{};  ///< in the mesh's frame
+  Fog fog{};
 
   bool operator==(const Shading&) const = default;
 };
 
-/// Names of presets for the command line: "relief" (default), "phong", "table", "black-white", "sky-sun", "ao",
-/// "sky-sun-ao", "black-white-ao", "table-ao". kUsage, with the list, for another name.
+/// Names of presets for the command line: "relief" (default), "phong", "raking" (low light with shadows), "table",
+/// "black-white", "sky-sun", "ao", "sky-sun-ao", "black-white-ao", "table-ao". kUsage, with the list, for another name.
 Result<Shading> shading_preset(std::string_view name);
 std::vector<std::string_view> shading_preset_names();
 

@@ -110,6 +110,24 @@ TEST_F(MultiViewGl, CoarseWhileMovingExactWhenStill) {
   for (int i = 0; i < 12; ++i) EXPECT_EQ(array.read_layer(i)->pixels, exact.read_layer(i)->pixels) << "view " << i;
 }
 
+TEST_F(MultiViewGl, WithABudgetThingsGetCoarserUntilItIsKeptAndNeverBeyond) {
+  const LodMesh levels = LodMesh::with_levels(pack_mesh(testing::sphere(25, 400, 800)).value()).value();
+  const MeshScene scene(levels, Shading());
+  const auto wanted = views(4);
+  const auto picture = [&](const MultiViewOptions& options, int pictures) {
+    auto multi = MultiView::create(options).value();
+    auto array = ViewArray::create(90, 60, 4).value();
+    for (int i = 0; i < pictures; ++i) EXPECT_TRUE(multi.draw_moving(scene, wanted, array));
+    return array.read_layer(1).value().pixels;
+  };
+  const auto fine = picture({.cell_px = 0.1}, 1);
+  EXPECT_TRUE(picture({.cell_px = 0.1, .budget_ms = 1e9}, 40) == fine) << "time enough: as fine as without a budget";
+  const auto coarsest = picture({.cell_px = 12}, 1);
+  EXPECT_TRUE(coarsest != fine);
+  EXPECT_TRUE(picture({.cell_px = 0.1, .budget_ms = 1e-6}, 20) == coarsest) << "no time at all";
+  EXPECT_TRUE(picture({.cell_px = 0.1, .budget_ms = 1e9}, 1) == coarsest) << "what is not known to be quick";
+}
+
 TEST_F(MultiViewGl, AMillionTrianglesFrom48PlacesAreDrawnAtLeastFiveTimesFasterThanByALoop) {
   PackedMesh mesh = pack_mesh(testing::sphere(25, 708, 708)).value();
   ASSERT_GE(mesh.triangles.size(), 1'000'000u);

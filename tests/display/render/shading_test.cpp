@@ -98,7 +98,7 @@ TEST(Shading, ReliefKeepsItsHueAndDarkensWedges) {
   EXPECT_LT(wedge[0], 0.6 * flat[0]);
   for (const auto& color : table)
     for (int c = 1; c < 3; ++c)
-      ASSERT_NEAR(color[c], color[0] * relief.style.base_color[c] / 203.0, 1.5) << "another hue";
+      ASSERT_NEAR(color[c], color[0] * relief.style.base_color[c] / 203.0, 2.0) << "another hue";
 }
 
 TEST(Shading, PartitionColoursDifferInLightness) {
