@@ -11,7 +11,7 @@ packages=(
   libfmt-dev libexpected-dev libglm-dev nlohmann-json3-dev libcli11-dev libhwy-dev libxxhash-dev
   libhdf5-dev hdf5-plugin-lzf hdf5-filter-plugin libtiff-dev libpng-dev libjpeg-dev zlib1g-dev libdeflate-dev libzstd-dev
   libembree-dev libglfw3-dev libepoxy-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri
-  libimgui-dev
+  libimgui-dev fonts-dejavu-core
   libhidapi-dev libusb-1.0-0-dev
   libopencv-core-dev libopencv-dnn-dev libopencv-objdetect-dev libopencv-videoio-dev opencv-data
   libgtest-dev libgmock-dev libbenchmark-dev libspnav-dev libumockdev-dev libxcb-xtest0-dev umockdev xvfb

@@ -31,6 +31,8 @@ enum class Way {
 /// What is open; not part of the document, and not undone.
 struct Desk {
   bool help = false;
+  bool panels = false;
+  std::string drawer{};  ///< of the panels; empty: none is open
   friend bool operator==(const Desk&, const Desk&) = default;
 };
 

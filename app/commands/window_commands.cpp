@@ -29,6 +29,22 @@ Command toggle_source() {
   return out;
 }
 
+/// One at a time; the one that is open is closed.
+Command drawer() {
+  Command out{"drawer", std::string(kWindowGroup), "panel", {}};
+  out.argument = "a panel";
+  out.values = {"parts", "light", "style"};
+  out.keys = {{"p", "parts"}, {"l", "light"}, {"t", "style"}};
+  out.closed = true;
+  out.run = [](Editor& editor, const std::string& name) -> Result<void> {
+    Desk& desk = editor.desk();
+    desk.drawer = desk.drawer == name && desk.panels ? std::string() : name;
+    desk.panels = true;
+    return {};
+  };
+  return out;
+}
+
 }  // namespace
 
 std::vector<Command> window_commands() {
@@ -42,6 +58,11 @@ std::vector<Command> window_commands() {
       plain("next_display", "next display", {{"f2"}}, [](Editor& editor) { return editor.place().switch_display(1); }));
   out.push_back(plain("previous_display", "display before", {{"f3"}},
                       [](Editor& editor) { return editor.place().switch_display(-1); }));
+  out.push_back(plain("panels", "panels on or off", {{"tab"}}, [](Editor& editor) -> Result<void> {
+    editor.desk().panels = !editor.desk().panels;
+    return {};
+  }));
+  out.push_back(drawer());
   out.push_back(plain("retry_sources", "look for missing sources now", {{"f5"}}, [](Editor& editor) -> Result<void> {
     editor.place().retry_sources();
     return {};

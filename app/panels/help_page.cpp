@@ -59,7 +59,7 @@ void add_command(HelpSection& section, const Command& command, const KeyTable& k
       for (std::string& each : keys.keys_for(command.name + " " + key.argument)) told.push_back(std::move(each));
   std::string words = command.words;
   if (found.empty() && told.size() > 2) {
-    found = {told.front() + " to " + told.back()};
+    found = told.size() > 4 ? std::vector<std::string>{told.front() + " to " + told.back()} : told;
     if (command.closed && command.values.size() <= 6) words += fmt::format(": {}", fmt::join(command.values, ", "));
   } else {
     found.insert(found.end(), told.begin(), told.end());

@@ -5,16 +5,20 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
+#include "app/panels/panel_font.h"
 #include "display/render/gl_objects.h"
 #include "display/render/view_array.h"
 
 namespace dubsar::app {
 namespace {
 
-constexpr float kFontPx = 26.0f;  // twice the bitmap font's own size: sharp when it is halved
+constexpr float kFontPx = 26.0f;       // of the help and its like, sharp when it is halved
+constexpr float kPanelFontPx = 15.0f;  // of panels on monitors of 96 dpi
+constexpr double kLargeScale = 1.2;    // from here on panels are drawn with the large font
 constexpr float kLinePx = 13.0f;
-constexpr float kGlyphPx = 7.0f;        // its width, at kLinePx
+constexpr float kGlyphPx = 7.4f;        // its usual width, at kLinePx
 constexpr double kLeastHeight = 540.0;  // of the layout; smaller views show it smaller
 constexpr double kMostHeight = 900.0;   // larger ones larger
 constexpr float kMargin = 12.0f;
@@ -28,6 +32,16 @@ struct Layout {
   std::vector<std::size_t> starts{0};  ///< first section of each column
 };
 
+/// Letters of European languages, of transliterations of Akkadian and Sumerian,
+void add_font(float size_px) {
+  ImFontConfig font;
+  font.FontDataOwnedByAtlas = false;
+  const std::span<const unsigned char> data = panel_font();
+  // ImGui does not write to what it does not own.
+  ImGui::GetIO().Fonts->AddFontFromMemoryTTF(const_cast<unsigned char*>(data.data()), static_cast<int>(data.size()),
+                                             size_px, &font, panel_letters());
+}
+
 std::size_t lines_of(const HelpSection& section, std::size_t glyphs, std::size_t second) {
   std::size_t lines = 2;
   for (const HelpRow& row : section.rows) {
@@ -37,7 +51,8 @@ std::size_t lines_of(const HelpSection& section, std::size_t glyphs, std::size_t
   return lines;
 }
 
-/// First sections of at most `columns` columns of `rows` lines; nothing when it does not fit.
+/// First sections of at most `columns` columns of `rows` lines; nothing when it
+/// does not fit.
 std::optional<std::vector<std::size_t>> fill(const std::vector<std::size_t>& lines, std::size_t columns,
                                              std::size_t rows) {
   std::vector<std::size_t> starts{0};
@@ -79,7 +94,8 @@ constexpr ImGuiWindowFlags kPlain = ImGuiWindowFlags_NoDecoration | ImGuiWindowF
 
 void draw_section(const HelpSection& section, float second, float width) {
   ImGui::TextColored(ImVec4(1.0f, 0.8f, 0.45f, 1.0f), "%s", section.title.c_str());
-  const float left = ImGui::GetCursorPosX(), column = ImGui::GetColumnOffset();  // of the window
+  const float left = ImGui::GetCursorPosX(),
+              column = ImGui::GetColumnOffset();  // of the window
   for (const HelpRow& row : section.rows) {
     ImGui::TextUnformatted(row.what.c_str());
     ImGui::SameLine(left - column +
@@ -126,16 +142,15 @@ void draw_notice(const std::string& notice, double opacity, float width, float h
 
 }  // namespace
 
-Result<std::unique_ptr<Overlay>> Overlay::create() {
+Result<std::unique_ptr<Overlay>> Overlay::create(const KeyTable& keys) {
   DUBSAR_CHECK(ImGui::GetCurrentContext() == nullptr);
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
   io.DeltaTime = 1.0f / 60.0f;
-  ImFontConfig font;
-  font.SizePixels = kFontPx;
-  io.Fonts->AddFontDefault(&font);
+  add_font(kFontPx);
+  add_font(kPanelFontPx);
   ImGui::StyleColorsDark();
   ImGui::GetStyle().WindowBorderSize = 0.0f;
   ImGui::GetStyle().WindowRounding = 4.0f;
@@ -143,7 +158,8 @@ Result<std::unique_ptr<Overlay>> Overlay::create() {
     ImGui::DestroyContext();
     return fail(ErrorKind::kUnavailable, "overlay: Dear ImGui found no OpenGL library that it can use");
   }
-  return std::unique_ptr<Overlay>(new Overlay());
+  ImGui_ImplOpenGL3_NewFrame();  // makes the picture of the letters
+  return std::unique_ptr<Overlay>(new Overlay(keys));
 }
 
 Overlay::~Overlay() {
@@ -151,21 +167,67 @@ Overlay::~Overlay() {
   ImGui::DestroyContext();
 }
 
+glm::dvec2 Overlay::layout(int view_height, const glm::dvec2& window_mm) {
+  const double height = std::clamp(static_cast<double>(view_height), kLeastHeight, kMostHeight);
+  return {height * window_mm.x / window_mm.y, height};
+}
+
+void Overlay::draw_all(float width, float height) {
+  if (text_.panels && text_.help.empty()) {
+    ImFont* const font = ImGui::GetIO().Fonts->Fonts[scale_.y >= kLargeScale ? 0 : 1];
+    const float before = font->Scale;
+    font->Scale = kPanelFontPx / font->FontSize;
+    ImGui::PushFont(font);
+    draw_panels(*text_.panels, keys_, width, height, commands_);
+    ImGui::PopFont();
+    font->Scale = before;
+  }
+  if (!text_.help.empty()) draw_help(text_.help, width, height);
+  if (!text_.notice.empty()) draw_notice(text_.notice, text_.notice_opacity, width, height - (text_.panels ? 56 : 0));
+}
+
+void Overlay::frame(const glm::dvec2& layout, const glm::dvec2& scale) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = ImVec2(static_cast<float>(layout.x), static_cast<float>(layout.y));
+  io.DisplayFramebufferScale = ImVec2(static_cast<float>(scale.x), static_cast<float>(scale.y));
+  scale_ = scale;
+  ImGui::NewFrame();
+  draw_all(io.DisplaySize.x, io.DisplaySize.y);
+  ImGui::Render();
+}
+
+bool Overlay::take(const InputEvent& event, const glm::dvec2& layout) {
+  if (!text_.panels || !text_.help.empty() || event.kind == EventKind::kKey || !event.at) return false;
+  ImGuiIO& io = ImGui::GetIO();
+  const auto button = static_cast<std::size_t>(event.button);
+  const bool releases_ours = event.kind == EventKind::kButton && !event.down && held_[button];
+  io.MousePos = ImVec2(static_cast<float>(0.5 * layout.x + event.at->x * layout.y),
+                       static_cast<float>((0.5 - event.at->y) * layout.y));
+  frame(layout, scale_);  // what is under the pointer now
+  const bool ours = io.WantCaptureMouse && !object_held_;
+  if (event.kind == EventKind::kButton && event.down) {
+    held_[button] = ours;
+    object_held_ = object_held_ || !ours;
+  }
+  if (event.kind == EventKind::kButton && !event.down && !releases_ours) object_held_ = false;
+  if (!ours && !releases_ours) return false;
+  if (event.kind == EventKind::kButton) {
+    held_[button] = event.down;
+    constexpr std::array<int, 3> kTheirs{0, 2, 1};
+    io.MouseDown[kTheirs[button]] = event.down;
+  }
+  frame(layout, scale_);
+  return true;
+}
+
+std::vector<std::string> Overlay::take_commands() { return std::exchange(commands_, {}); }
+
 Result<void> Overlay::paint(ViewArray& layers, const glm::dvec2& window_mm) {
   if (text_.empty()) return {};
-  const double height = std::clamp(static_cast<double>(layers.height()), kLeastHeight, kMostHeight);
-  const double width = height * window_mm.x / window_mm.y;
-  ImGuiIO& io = ImGui::GetIO();
-  io.DisplaySize = ImVec2(static_cast<float>(width), static_cast<float>(height));
-  io.DisplayFramebufferScale =
-      ImVec2(static_cast<float>(layers.width() / width), static_cast<float>(layers.height() / height));
+  const glm::dvec2 size = layout(layers.height(), window_mm);
   ImGui_ImplOpenGL3_NewFrame();
-  for (int pass = 0; pass < 2; ++pass) {  // sizes that follow from text are known in the second
-    ImGui::NewFrame();
-    if (!text_.help.empty()) draw_help(text_.help, io.DisplaySize.x, io.DisplaySize.y);
-    if (!text_.notice.empty()) draw_notice(text_.notice, text_.notice_opacity, io.DisplaySize.x, io.DisplaySize.y);
-    ImGui::Render();
-  }
+  for (int pass = 0; pass < 2; ++pass)  // sizes that follow from text are known in the second
+    frame(size, {layers.width() / size.x, layers.height() / size.y});
   const GlFramebuffer target = make_framebuffer();
   for (int layer = 0; layer < layers.layers(); ++layer) {
     glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, layers.coded(), 0, layer);

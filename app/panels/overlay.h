@@ -1,10 +1,14 @@
 #pragma once
-// Text over the picture: the help page, what the session is doing, and a hint line. Hidden unless asked for.
+// What lies over the picture: panels, the help page, what the session is doing,
+// and a hint line.
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/panels/desk_panels.h"
 #include "app/panels/help_page.h"
 #include "app/viewer/stage.h"
 
@@ -14,24 +18,43 @@ struct OverlayText {
   std::vector<HelpSection> help;  ///< shown in columns; empty: no help
   std::string notice;             ///< one line at the lower edge; empty: none
   double notice_opacity = 1.0;
-  bool empty() const noexcept { return help.empty() && notice.empty(); }
+  std::optional<PanelState> panels{};  ///< while there is no help
+  bool empty() const noexcept { return help.empty() && notice.empty() && !panels; }
   friend bool operator==(const OverlayText&, const OverlayText&) = default;
 };
 
-/// Drawn by Dear ImGui into every view at the same place, so that both eyes of every display see it on the
-/// panel's plane. One at a time; the GL context that made it is current in every call and at its end.
+/// Drawn by Dear ImGui into every view at the same place, so that both eyes of
+/// every display see it on the panel's plane. One at a time; the GL context
+/// that made it is current in every call and at its end.
 class Overlay final : public LayerPainter {
  public:
-  /// kUnavailable when Dear ImGui cannot use this context.
-  static Result<std::unique_ptr<Overlay>> create();
+  /// `keys` outlives it. kUnavailable when Dear ImGui cannot use this context.
+  static Result<std::unique_ptr<Overlay>> create(const KeyTable& keys);
   ~Overlay() override;
   void set(OverlayText text) { text_ = std::move(text); }
   const OverlayText& text() const noexcept { return text_; }
   Result<void> paint(ViewArray& layers, const glm::dvec2& window_mm) override;
 
+  /// Pixels of the layout for views of this size on a window of this shape.
+  static glm::dvec2 layout(int view_height, const glm::dvec2& window_mm);
+
+  /// An event of the pointer, before the object sees it: true when a panel
+  /// takes it. `layout` as above.
+  bool take(const InputEvent& event, const glm::dvec2& layout);
+  /// What was asked for since the last call.
+  std::vector<std::string> take_commands();
+
  private:
-  Overlay() = default;
+  explicit Overlay(const KeyTable& keys) : keys_(keys) {}
+  void frame(const glm::dvec2& layout, const glm::dvec2& scale);
+  void draw_all(float width, float height);
+
+  const KeyTable& keys_;
   OverlayText text_;
+  std::vector<std::string> commands_;
+  glm::dvec2 scale_{1.0, 1.0};
+  std::array<bool, 3> held_{};  ///< buttons that went down on a panel
+  bool object_held_ = false;    ///< one went down beside them
 };
 
 }  // namespace dubsar::app

@@ -180,7 +180,9 @@ Result<void> with_window(const Options& options, ViewOptions& view) {
     view.window->height = screen.window_h;
   }
   if (options.fullscreen || options.windowed || !options.size.empty()) view.fullscreen = options.fullscreen;
-  view.notices = options.frames.empty();
+  view.notices = view.panels = options.frames.empty();
+  if (view.panels) view.stage.margin = 0.12;  // room for the line above the surface and the strip below it
+  view.title = std::filesystem::path(options.in).filename().string();
   if (options.fps == 0) keep_work(options, view);
   DUBSAR_TRY(list_monitors());  // before a large file is read
   return {};

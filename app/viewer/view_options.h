@@ -36,6 +36,8 @@ struct ViewOptions {
   /// Only each n-th picture becomes a file; in simulated time nothing else is drawn, and pictures count steps.
   int every = 1;
   std::filesystem::path record{};    ///< recording of the input; empty: none
+  bool panels = false;               ///< around the surface, on displays of one view; a key shows them on all
+  std::string title{};               ///< what the panels call it
   bool notices = true;               ///< a line for some seconds: how to get help and leave, which display this is now
   std::vector<Command> commands{};   ///< in place of those that change what is looked at
   std::filesystem::path autosave{};  ///< copy of the document while somebody works; empty: none

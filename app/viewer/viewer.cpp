@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/commands/sides.h"
 #include "app/panels/state_page.h"
 #include "app/viewer/first_document.h"
 #include "app/viewer/picker.h"
@@ -59,13 +60,14 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
       std::make_unique<Editor>(first_document(given_.options, given_.mesh), *this,
                                StepFigures{mapping.key_step_deg, mapping.key_zoom, mapping.zoom_min, mapping.zoom_max});
   DUBSAR_ASSIGN(stage_, Stage::create(given_.mesh, stage, std::move(sink)));
-  DUBSAR_ASSIGN(overlay_, Overlay::create());
+  DUBSAR_ASSIGN(overlay_, Overlay::create(*keys_));
   if (given_.options.displays.empty()) {
     displays_.specs = displays_for_window(stage.display, stage.screen, stage.stereo_window, stage.catalog->panels());
   } else {
     displays_.specs = given_.options.displays;
     displays_.specs.insert(displays_.specs.begin(), stage.display);
   }
+  editor_->desk().panels = given_.options.panels && stage_->traits().views == 1;
   steering_ = std::make_unique<Steering>(mapping, view_of(document()), follow_options(stage));
   steering_->set_home(home_of(document()));
   autosave_ = Autosave(given_.options.autosave);
@@ -126,6 +128,7 @@ Result<void> Viewer::switch_display(int step) {
     if (done) done = place_changed();
     if (done) {
       displays_.shown = next;
+      if (step != 0) editor_->desk().panels = given_.options.panels && stage_->traits().views == 1;
       if (step != 0) say("display " + display());
       log_info("display {}", display());
       return {};
@@ -161,6 +164,12 @@ std::optional<double> Viewer::lever_at(const glm::dvec2& at) const {
 
 void Viewer::handle(InputEvent event) {
   if (given_.options.fps > 0) event.time = given_.clock.now();
+  if (overlay_->take(event, Overlay::layout(stage_->traits().view.height, stage_->window_mm()))) {
+    stage_->set_overlay(overlay_.get());  // what the pointer is on looks different
+    if (event.kind == EventKind::kButton && event.down) ++at_.presses;
+    for (const std::string& command : overlay_->take_commands()) run(command, kKeySteps + at_.presses);
+    return;
+  }
   if (event.kind == EventKind::kButton && event.down && event.at && !given_.options.stage.pattern)
     event.lever = lever_at(*event.at);
   const auto rows = sources_->rows();
@@ -216,6 +225,29 @@ void Viewer::follow() {
     steering_->go_to(view_of(document()), given_.clock.now(), editor_->way() == Way::kGlide);
 }
 
+PanelState Viewer::panel_state() const {
+  const Document& d = document();
+  PanelState out;
+  out.title = given_.options.title;
+  out.display = display();
+  out.drawer = desk().drawer;
+  out.parts = d.parts;
+  out.can_unpack = can_unpack(d);
+  out.unpack = d.unpack;
+  out.light = d.light;
+  out.style = d.style.name;
+  out.occlusion = d.style.occlusion;
+  out.undo = editor_->history().undo_words();
+  out.redo = editor_->history().redo_words();
+  out.side = kSideNames[static_cast<std::size_t>(facing_side(report_.view.rotation, d.home.rotation))];
+  const glm::dvec2 window = stage_->window_mm();
+  const double scale =
+      glm::length(glm::dvec3(stage_->screen_from_model()[0]));  // of the screen for one mm of the object
+  out.mm_per_px = window.y / (Overlay::layout(stage_->traits().view.height, window).y * scale);
+  out.faint = report_.control == Control::kMouse || report_.control == Control::kHands;
+  return out;
+}
+
 void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
   OverlayText text = overlay_->text();
   if (!desk().help) {
@@ -233,6 +265,8 @@ void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
     for (HelpSection& section : help_page(given_.options.mapping, *keys_)) text.help.push_back(std::move(section));
     at_.help_made = now;
   }
+  text.panels.reset();
+  if (desk().panels && !desk().help) text.panels = panel_state();
   const TimestampNs age = now - notice_.since;
   if (notice_.since < 0 || age >= kNoticeNs) {
     text.notice.clear();

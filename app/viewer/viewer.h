@@ -91,6 +91,7 @@ class Viewer final : public Workplace {
   Result<void> open(std::unique_ptr<OutputSink> sink, const std::string& note);
   Result<void> start_sources();
   void use_key(const InputEvent& event);
+  PanelState panel_state() const;
   void keep_up();
   void follow();
   void update_overlay(TimestampNs now, const RecentFigures& figures);

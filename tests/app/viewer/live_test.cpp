@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <set>
 
 #include "app/calibration/adjust_window.h"
 #include "app/commands/sides.h"
@@ -600,6 +601,58 @@ TEST_F(Live, KeysTurnToSidesAndUndoAndRedoGoBackAndForth) {
   EXPECT_EQ(differing_share(bottom, again), 0.0);
 }
 
+TEST_F(Live, ButtonsOnThePanelsDoWhatTheirCommandsDoAndTabTakesThePanelsAway) {
+  options_.panels = true;
+  options_.window->width = 1000;
+  options_.window->height = 600;
+  const auto shot_of_all = [&] { return server_->screen(kX, kY, 1000, 600); };
+  Image with, without;
+  std::set<Side> reached;
+  std::vector<Step> steps{{{}, [&](const ViewMoment&) {
+                             with = shot_of_all();
+                             return true;
+                           }}};
+  for (int x = 20; x <= 460; x += 40)  // along the strip of sides
+    steps.push_back({[&, x] {
+                       person_->point(kX + x, kY + 600 - 24);
+                       person_->press(1);
+                       person_->release(1);
+                       person_->settle();
+                     },
+                     [&](const ViewMoment& m) {
+                       if (m.report.moving) return false;
+                       reached.insert(facing_side(m.report.view.rotation));
+                       return true;
+                     }});
+  steps.push_back({[&] {
+                     person_->point(kX + 30, kY + 600 - 24);  // a drag that begins on a panel is the panel's
+                     person_->press(1);
+                     for (int i = 0; i < 100; ++i) person_->point(kX + 30 + i, kY + 300);
+                     person_->release(1);
+                     person_->point(kX + 500, kY + 5);
+                     person_->settle();
+                   },
+                   [&](const ViewMoment& m) { return !m.report.moving && m.report.control == Control::kNone; }});
+  steps.push_back({[&] { person_->key("tab"); }, [&](const ViewMoment& m) { return !m.viewer.desk().panels; }});
+  steps.push_back({{}, [&](const ViewMoment&) {
+                     without = shot_of_all();
+                     return true;
+                   }});
+  steps.push_back(end());
+  const auto done = play(steps);
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_EQ(reached.size(), 6u);
+  EXPECT_EQ(done->document.now.pan, glm::dvec2(0.0));
+  double standing = 0;
+  for (const Side side : {Side::kObverse, Side::kBottom, Side::kReverse, Side::kTop, Side::kLeft, Side::kRight})
+    standing += turn_between_deg(done->document.now.rotation, turn_to(side)) < 1e-6;
+  EXPECT_EQ(standing, 1) << "buttons turn to sides and nothing in between";
+  const auto strip_at = [](const Image& image) {
+    return std::vector<std::uint8_t>(image.at(0, 590), image.at(0, 591));
+  };
+  EXPECT_NE(strip_at(with), strip_at(without));
+}
+
 TEST_F(Live, ADragIsOneStepOfTheHistory) {
   const auto done = play({
       {[&] {
@@ -654,6 +707,7 @@ TEST(HelpPage, SaysWhatTheMappingSays) {
   EXPECT_EQ(find(page, "Mouse", "shift+left drag"), "move");
   EXPECT_EQ(find(page, "Mouse", "wheel"), "zoom");
   EXPECT_EQ(find(page, "Back", "backspace ctrl+z"), "undo");
+  EXPECT_EQ(find(page, "This window", "p l t"), "panel: parts, light, style");
   EXPECT_EQ(find(page, "Sides", "1 to 6"), "turn to a side: obverse, bottom, reverse, top, left, right");
   EXPECT_EQ(find(page, "Hands", "pinch and move"), "move the light");
   EXPECT_EQ(find(page, "This window", "f1 ?"), "this help");

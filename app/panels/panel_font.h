@@ -1,0 +1,16 @@
+#pragma once
+// The letters of the panels: a TrueType font of the build machine
+// (cmake/Font.cmake says which), inside the program.
+
+#include <cstdint>
+#include <span>
+
+namespace dubsar::app {
+
+std::span<const unsigned char> panel_font();
+
+/// The letters that panels use of it, as ranges (first, last ... 0): those of European languages, of transliterations
+/// of Akkadian and Sumerian, and digits above and below the line.
+const std::uint16_t* panel_letters();
+
+}  // namespace dubsar::app

@@ -1,0 +1,5 @@
+# The font of the panels: Noto Sans (fonts-noto-core) where it is, else DejaVu Sans (fonts-dejavu-core). Both have the letters
+# of European languages and of transliterations of Akkadian.
+find_file(DUBSAR_PANEL_FONT NAMES NotoSans-Regular.ttf DejaVuSans.ttf
+  PATHS /usr/share/fonts/truetype/noto /usr/share/fonts/truetype/dejavu
+  DOC "TrueType font that is embedded for panels" REQUIRED NO_DEFAULT_PATH)

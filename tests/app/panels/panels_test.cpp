@@ -1,0 +1,41 @@
+// Panels without a window: the letters they can write, and figures of the scale bar.
+
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include <cmath>
+
+#include "app/panels/desk_panels.h"
+#include "app/panels/panel_font.h"
+
+namespace dubsar::app {
+namespace {
+
+TEST(PanelFont, HasTheLettersOfEuropeanLanguagesAndOfTransliterations) {
+  ImFontAtlas atlas;
+  ImFontConfig config;
+  config.FontDataOwnedByAtlas = false;
+  const auto data = panel_font();
+  ASSERT_GT(data.size(), 100'000u);
+  ImFont* const font = atlas.AddFontFromMemoryTTF(const_cast<unsigned char*>(data.data()),
+                                                  static_cast<int>(data.size()), 15.0f, &config, panel_letters());
+  ASSERT_TRUE(atlas.Build());
+  for (const int code : {0x0161 /* s caron */, 0x1e63 /* s dot */, 0x1e6d /* t dot */, 0x1e2b /* h breve */,
+                         0x02be /* aleph */, 0x02bf /* ayin */, 0x2082 /* subscript 2 */, 0x2093 /* subscript x */,
+                         0x011d /* g circumflex */, 0x1e2a, 0x0160, 0x0101, 0x00e9, 0x00df, 0x0142, 0x0159, 0x00b0})
+    EXPECT_NE(font->FindGlyphNoFallback(static_cast<ImWchar>(code)), nullptr) << std::hex << code;
+}
+
+TEST(ScaleBar, IsTheLongestRoundLengthThatFits) {
+  for (double mm_per_px = 1e-5; mm_per_px < 1e3; mm_per_px *= 1.37) {
+    const double bar = scale_bar_mm(mm_per_px, 150.0), most = 150.0 * mm_per_px;
+    EXPECT_LE(bar, most * (1 + 1e-9));
+    EXPECT_GE(bar, most / 2.5 * (1 - 1e-9));
+    const double mantissa = bar / std::pow(10.0, std::floor(std::log10(bar * (1 + 1e-12))));
+    EXPECT_TRUE(std::abs(mantissa - 1) < 1e-9 || std::abs(mantissa - 2) < 1e-9 || std::abs(mantissa - 5) < 1e-9)
+        << mantissa;
+  }
+}
+
+}  // namespace
+}  // namespace dubsar::app
