@@ -93,6 +93,7 @@ Result<PanelProfile> calibrated_profile(const PanelSet& panels, const Calibratio
   profile.width_px = figures.screen_width;
   profile.height_px = figures.screen_height;
   profile.width_mm = figures.screen_width / figures.dpi * kMmPerInch;
+  profile.aspect = static_cast<double>(figures.screen_width) / figures.screen_height;
   profile.view_cone_deg = calibration.view_cone_deg;
   profile.calibration = calibration.source;
   DUBSAR_TRY(apply_adjustment(profile.adjustment, profile));

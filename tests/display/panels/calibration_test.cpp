@@ -33,6 +33,7 @@ TEST(Calibration, PicksTheModelBySerial) {
   EXPECT_EQ(profile->name, "looking-glass-portrait");
   EXPECT_EQ(profile->calibration, "visual.json");
   EXPECT_NEAR(profile->width_mm, 120.415, 1e-3);
+  EXPECT_EQ(profile->aspect, 1536.0 / 2048.0);
 }
 
 TEST(Calibration, CellsOfTheThirdGenerationAreRead) {

@@ -62,6 +62,19 @@ TEST(PanelProfile, EveryLookingGlassModelHasItsFigures) {
   EXPECT_EQ(built_in_panels().find("looking-glass-go")->quilt.tile_height(), 682);
 }
 
+TEST(PanelProfile, CentresAreTheMakers) {
+  for (const auto& [name, centre] : {std::pair{"looking-glass-8.9", 0.0},
+                                     {"looking-glass-portrait", 0.5},
+                                     {"looking-glass-16-gen2", 0.5},
+                                     {"looking-glass-32-gen2", 0.3},
+                                     {"looking-glass-go", -0.3},
+                                     {"looking-glass-kiosk", 0.5},
+                                     {"looking-glass-16-gen3-portrait", 0.0},
+                                     {"looking-glass-16-gen3-landscape", 0.5},
+                                     {"looking-glass-32-gen3-landscape", -0.2}})
+    EXPECT_EQ(built_in_panels().find(name)->sheet->center, centre) << name;
+}
+
 TEST(PanelProfile, CellsOfTheThirdGenerationAreTheMakers) {
   const auto cells = [](const char* name) { return built_in_panels().find(name)->sheet->cells; };
   const SubpixelCell p0{{glm::dvec2{-.25, -.31}, {-.25, .28}, {.25, 0}}},
