@@ -30,7 +30,7 @@ usage() {
 ./do bench    run the benchmarks; ./do bench displays: only those of many views;
               ./do bench exa: bits and speed of the surface format
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
-./do asan     the tests that need no window under AddressSanitizer and UndefinedBehaviorSanitizer
+./do asan     the tests that need no window under AddressSanitizer and UndefinedBehaviorSanitizer; asan core: of core
 ./do tsan     devices and inputs under ThreadSanitizer (clang)
 ./do core     build and test the core alone: no graphics, no devices
 ./do lint     is every source formatted, and clang-tidy over what changed since the last commit (or since REVISION)
@@ -88,16 +88,21 @@ lab() {
   tests/lab/run_in_kernel.sh "$PWD/$build/tests/lab/test_lab" "$@"
 }
 
-# The same cases as in `test`, less those that need windows, a kernel of their own or most of an hour.
+# The same cases as in `test`, less those that need windows, a kernel of their own or most of an hour. asan core: of core only.
 asan() {
   deps
   preset=asan build=build/asan
   cmake --preset "$preset" >/dev/null
-  cmake --build "$build" -j "$jobs" --target dubsar_checked_tests
+  local target=dubsar_checked_tests cases=$build
+  if [ "${1:-}" = core ]; then
+    target=dubsar_checked_core_tests cases=$build/tests/core
+    shift
+  fi
+  cmake --build "$build" -j "$jobs" --target "$target"
   ASAN_OPTIONS="strict_string_checks=1:detect_stack_use_after_return=1:${ASAN_OPTIONS:-}" \
     UBSAN_OPTIONS="print_stacktrace=1:${UBSAN_OPTIONS:-}" \
     LSAN_OPTIONS="suppressions=$PWD/tests/leaks_of_others.txt:print_suppressions=0:${LSAN_OPTIONS:-}" \
-    ctest --test-dir "$build" --output-on-failure -j "$jobs" -L '^(unit|app)$' "$@"
+    ctest --test-dir "$cases" --output-on-failure -j "$jobs" -L '^(unit|app)$' "$@"
 }
 
 core() {

@@ -38,6 +38,7 @@ endfunction()
 
 # What `./do asan` builds: the tests of the labels unit and app, which need no window and no preloaded library.
 add_custom_target(dubsar_checked_tests)
+add_custom_target(dubsar_checked_core_tests)  # of `./do asan core`
 
 # dubsar_test(name SOURCES a_test.cpp ... DEPS rooms [LABEL unit|gl|device|slow] [TIMEOUT seconds]
 #             [ENVIRONMENT NAME=value])
@@ -55,6 +56,9 @@ function(dubsar_test name)
   dubsar_cold(${name})  # a test is compiled more often than its loops are run
   if(ARG_LABEL MATCHES "^(unit|app)$")
     add_dependencies(dubsar_checked_tests ${name})
+    if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/core/")
+      add_dependencies(dubsar_checked_core_tests ${name})
+    endif()
   endif()
   include(GoogleTest)
   set(environment)

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "app/calibration/display_choice.h"
+#include "core/base/parse_number.h"
 #include "core/image_io/png_file.h"
 #include "core/image_io/tiff_file.h"
 #include "display/sinks/sink_catalog.h"
@@ -18,15 +19,15 @@ namespace {
 constexpr double kMmPerInch = 25.4;
 
 Result<glm::dvec3> parse_place(const std::string& text, const char* option) {
-  glm::dvec3 out(0.0);
-  int used = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &out.x, &out.y, &out.z, &used) != 3 ||
-      used != static_cast<int>(text.size()) || !std::isfinite(out.x) || !std::isfinite(out.y) || !std::isfinite(out.z))
+  const auto place = parse_numbers<3>(text);
+  if (!place)
     return fail(ErrorKind::kUsage,
                 "{} \"{}\" not understood, expected X,Y,Z in mm from the middle of the panel: right, up, towards the "
                 "viewer, such as 30,0,600",
                 option, text);
-  return out;
+  if (!((*place)[2] > 0.0))
+    return fail(ErrorKind::kUsage, "{} \"{}\" is behind the panel, expected a Z of more than 0 mm", option, text);
+  return glm::dvec3((*place)[0], (*place)[1], (*place)[2]);
 }
 
 Result<void> write_picture(const fs::path& path, const Image& image, double dpi) {
@@ -81,11 +82,14 @@ Result<SinkSpec> read_display_options(const DisplayRequest& request, DisplayOpti
   screen.window_w = screen.width_px;
   screen.window_h = screen.height_px;
   screen.height_mm = screen.width_mm * screen.height_px / screen.width_px;
-  if (!request.screen_mm.empty() &&
-      (std::sscanf(request.screen_mm.c_str(), "%lfx%lf", &screen.width_mm, &screen.height_mm) != 2 ||
-       !(screen.width_mm > 0) || !(screen.height_mm > 0)))
-    return fail(ErrorKind::kUsage, "--screen-mm \"{}\" not understood, expected WIDTHxHEIGHT such as 344x194",
-                request.screen_mm);
+  if (!request.screen_mm.empty()) {
+    const auto size = parse_numbers<2>(request.screen_mm, 'x');
+    if (!size || !((*size)[0] > 0) || !((*size)[1] > 0))
+      return fail(ErrorKind::kUsage, "--screen-mm \"{}\" not understood, expected WIDTHxHEIGHT such as 344x194",
+                  request.screen_mm);
+    screen.width_mm = (*size)[0];
+    screen.height_mm = (*size)[1];
+  }
   glm::dvec3 between = options.viewer.nominal_mm;
   if (!request.viewer.empty()) {
     DUBSAR_ASSIGN(between, parse_place(request.viewer, "--viewer"));

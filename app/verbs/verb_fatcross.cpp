@@ -27,7 +27,8 @@ struct Options {
 };
 
 constexpr std::array<const char*, kTabletSides.size()> kSideSuffix{"_01", "_02", "_03", "_04", "_05", "_06"};
-constexpr double kUnsure = 0.05;  // share of the evidence below which the finding is called a guess
+constexpr double kUnsure = 0.05;    // share of the evidence below which the way up is called a guess
+constexpr double kDoubtful = 0.05;  // and which side is the obverse
 
 fs::path with_suffix(const fs::path& path, const std::string& suffix) {
   return path.parent_path() / (path.stem().string() + suffix + path.extension().string());
@@ -68,7 +69,7 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
         "--voxel-size, e.g. 38um",
         options.in, options.dpi);
   DUBSAR_ASSIGN(TabletFrame frame, find_tablet_frame(mesh));
-  const bool unsure = frame.up_share < kUnsure;
+  const bool unsure = frame.up_share < kUnsure, either_side = frame.obverse_share < kDoubtful;
   frame = turned(frame, options.turn);
   if (options.over) frame = turned(frame, FrameTurn::kOver);
   const TriMesh upright = in_tablet_frame(mesh, frame);
@@ -100,6 +101,8 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
   if (unsure)
     result.text +=
         "the writing does not say which way is up; if the text stands on its head, give --turn half, left or right\n";
+  if (!unsure && either_side)
+    result.text += "the edges do not say which broad side is the obverse; if it is the other one, give --over\n";
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include "app/cli/verb.h"
 #include "app/verbs/display_picture.h"
 #include "app/viewer/run_view.h"
+#include "core/base/parse_number.h"
 #include "core/image_io/png_file.h"
 #include "core/image_io/tiff_file.h"
 #include "display/render/render_image.h"
@@ -33,10 +35,9 @@ struct Options {
   double unpack = 0.0, fog = 0.0;  ///< percent
 };
 
-Result<void> parse_size(const std::string& text, CameraOptions& camera) {
-  int width = 0, height = 0;
-  char cross = 0;
-  if (std::sscanf(text.c_str(), "%d%c%d", &width, &cross, &height) != 3 || cross != 'x' || width < 1 || height < 1)
+Result<void> read_size(const std::string& text, CameraOptions& camera) {
+  const auto [width, height] = parse_size(text).value_or(std::array{0, 0});
+  if (width < 1 || height < 1)
     return fail(ErrorKind::kUsage, "--size \"{}\" not understood, expected WIDTHxHEIGHT such as 1600x1200", text);
   camera.width = width;
   camera.height = height;
@@ -44,12 +45,15 @@ Result<void> parse_size(const std::string& text, CameraOptions& camera) {
 }
 
 Result<void> parse_light(const std::string& text, Shading& shading) {
-  double azimuth = 0.0, elevation = 0.0;
-  if (std::sscanf(text.c_str(), "%lf,%lf", &azimuth, &elevation) != 2)
-    return fail(ErrorKind::kUsage,
-                "--light \"{}\" not understood, expected AZIMUTH,ELEVATION in degrees such as 315,25", text);
-  shading.light.azimuth_deg = azimuth;
-  shading.light.elevation_deg = elevation;
+  const auto light = parse_numbers<2>(text);
+  if (!light || std::abs((*light)[0]) > 360.0 || (*light)[1] < 0.0 || (*light)[1] > 90.0)
+    return fail(
+        ErrorKind::kUsage,
+        "--light \"{}\" not understood, expected AZIMUTH,ELEVATION in degrees, -360 to 360 and 0 to 90, such as "
+        "315,25",
+        text);
+  shading.light.azimuth_deg = (*light)[0];
+  shading.light.elevation_deg = (*light)[1];
   return {};
 }
 
@@ -199,26 +203,30 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
   RenderOptions render;
   DUBSAR_ASSIGN(render.shading, shading_preset(options.style));
   DUBSAR_ASSIGN(render.camera.direction, parse_view_direction(options.view == "orbit" ? "orbit:35,25" : options.view));
-  if (!options.size.empty()) DUBSAR_TRY(parse_size(options.size, render.camera));
+  if (!options.size.empty()) DUBSAR_TRY(read_size(options.size, render.camera));
   if (!options.light.empty()) DUBSAR_TRY(parse_light(options.light, render.shading));
   render.camera.perspective = options.perspective;
   render.camera.mm_per_pixel = options.mm_per_pixel;
   if (options.samples > 0) render.samples = options.samples;
   render.shading.background.transparent = options.transparent;
   if (options.colour_parts) color_partitions(render.shading.parts, distinct_partition_colors());
+  const bool on_display = !options.display.display.empty();
+  DisplayOptions shown;
+  SinkSpec display;
+  if (on_display) {
+    if (!options.size.empty()) {
+      shown.screen.width_px = render.camera.width;
+      shown.screen.height_px = render.camera.height;
+    }
+    DUBSAR_ASSIGN(display, read_display_options(options.display, shown));
+  }
   TriMesh mesh;
   if (!options.in.empty()) {
     DUBSAR_ASSIGN(mesh, load_mesh({options.in, options.partitions, true}, progress));
   }
   DUBSAR_TRY(hide_partitions(options.hide, mesh, render.shading));
   DUBSAR_TRY(dress_parts(options, mesh, render.shading));
-  if (!options.display.display.empty()) {
-    DisplayOptions shown;
-    if (!options.size.empty()) {
-      shown.screen.width_px = render.camera.width;
-      shown.screen.height_px = render.camera.height;
-    }
-    DUBSAR_ASSIGN(const SinkSpec display, read_display_options(options.display, shown));
+  if (on_display) {
     shown.direction = render.camera.direction;
     shown.shading = render.shading;
     if (options.samples > 0) shown.samples = options.samples;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <memory>
 
 #include "app/calibration/display_choice.h"
@@ -14,6 +13,7 @@
 #include "app/viewer/run_view.h"
 #include "core/base/atomic_file.h"
 #include "core/base/log.h"
+#include "core/base/parse_number.h"
 #include "core/base/quantile.h"
 #include "devices/looking_glass/bridge_client.h"
 #include "input/source_spec.h"
@@ -44,10 +44,8 @@ Result<std::vector<std::string>> source_texts(const Options& options) {
 }
 
 Result<Screen> parse_screen(const std::string& text) {
-  int width = 0, height = 0;
-  char cross = 0;
-  if (std::sscanf(text.c_str(), "%d%c%d", &width, &cross, &height) != 3 || cross != 'x' || width < 16 || height < 16 ||
-      width > 16384 || height > 16384)
+  const auto [width, height] = parse_size(text).value_or(std::array{0, 0});
+  if (width < 16 || height < 16 || width > 16384 || height > 16384)
     return fail(ErrorKind::kUsage,
                 "--size \"{}\" not understood, expected WIDTHxHEIGHT of 16 to 16384 pixels such as 960x540", text);
   Screen screen;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kMostSteps = 1600.0;
 constexpr int kReach = 12;         // steps: wider than a wedge, narrower than the curve of a side
-constexpr double kRim = 0.6;       // slope of the neighbourhood, above it the surface turns to another side
+constexpr double kRim = 1.3;       // slope of the neighbourhood, above it the surface turns to another side
 constexpr double kSteepest = 1.5;  // slopes count up to this: walls beyond it are steps of the height map
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
@@ -118,7 +118,7 @@ std::array<double, 2> slope_skew(const HeightMap& map) {
       if (std::isnan(right[i]) || std::isnan(up[i])) continue;
       const auto [broad_right, known] = mean_right.mean(x, y, kReach);
       const double broad_up = mean_up.mean(x, y, kReach)[0];
-      if (known < 0.95 || std::hypot(broad_right, broad_up) > kRim) continue;
+      if (known < 0.85 || std::hypot(broad_right, broad_up) > kRim) continue;
       const double a = std::clamp(static_cast<double>(right[i]) - broad_right, -kSteepest, kSteepest);
       const double b = std::clamp(static_cast<double>(up[i]) - broad_up, -kSteepest, kSteepest);
       skew[0] += a * a * a;

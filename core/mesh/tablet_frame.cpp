@@ -92,6 +92,15 @@ double edges_beside(const Writing& writing, const TabletFrame& f) {
   return writing.fit(f.right, -f.front, f.up) + writing.fit(-f.right, -f.up, f.front);
 }
 
+/// Without those that fill holes: nobody wrote there, and their rims are steps.
+std::vector<Triangle> seen_triangles(const TriMesh& mesh) {
+  if (mesh.triangle_inferred.empty()) return mesh.triangles;
+  std::vector<Triangle> seen;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (!mesh.triangle_inferred[t]) seen.push_back(mesh.triangles[t]);
+  return seen;
+}
+
 double share(double best, double next) {
   const double all = std::abs(best) + std::abs(next);
   return all > 0.0 ? std::clamp((best - next) / all, 0.0, 1.0) : 0.0;
@@ -118,7 +127,8 @@ Result<TabletFrame> find_tablet_frame(const TriMesh& mesh) {
     return fail(ErrorKind::kBadData, "the surface has no area, expected a tablet that can be turned upright");
   const glm::dmat3 found = eigenvectors(areas);
   const std::array<glm::dvec3, 3> axes{along_its_axis(found[0]), along_its_axis(found[1]), along_its_axis(found[2])};
-  const Writing writing(points, mesh.triangles, axes, edges / static_cast<double>(mesh.triangles.size()));
+  const double step_mm = edges / static_cast<double>(mesh.triangles.size());
+  const Writing writing(points, seen_triangles(mesh), axes, step_mm);
 
   TabletFrame best, other;
   double best_fit = 0.0, next_fit = 0.0;
@@ -138,7 +148,7 @@ Result<TabletFrame> find_tablet_frame(const TriMesh& mesh) {
   best.up_share = share(best_fit, next_fit);
   other = turned(best, FrameTurn::kOver);
   const double this_way = edges_beside(writing, best), that_way = edges_beside(writing, other);
-  best.obverse_share = share(std::max(this_way, that_way), std::min(this_way, that_way));
+  if (best_fit > 0.0) best.obverse_share = std::clamp(std::abs(this_way - that_way) / best_fit, 0.0, 1.0);
   if (that_way <= this_way) return best;
   other.up_share = best.up_share;
   other.obverse_share = best.obverse_share;

@@ -15,8 +15,9 @@ namespace dubsar {
 /// obverse over the lower edge to the reverse, whose text is upright then.
 struct TabletFrame {
   glm::dvec3 right{1, 0, 0}, up{0, 1, 0}, front{0, 0, 1};
-  /// 0 (a guess) to 1: how much of the evidence of the writing speaks for this way up and not for the next best, and
-  /// for this side as the obverse.
+  /// 0 (a guess) to 1: how much of the evidence of the writing speaks for this way up and not for the next best; and
+  /// how strong what the edges say of the obverse is beside what the broad sides say of the way up. Below .05 that is
+  /// in doubt: obverse and reverse may be exchanged, each of them upright.
   double up_share = 0.0, obverse_share = 0.0;
 
   /// Rows right, up, front: a point in mm to the tablet's own axes.

@@ -1,10 +1,11 @@
 #include "input/sources/webcam_source.h"
 
+#include <array>
 #include <chrono>
-#include <cstdio>
 #include <numbers>
 #include <thread>
 
+#include "core/base/parse_number.h"
 #include "devices/camera/camera.h"
 #include "devices/camera/capture.h"
 #include "devices/camera/picture_frames.h"
@@ -119,9 +120,10 @@ Result<WebcamSourceOptions> read_options(const InputConfig& config, bool with_ca
   read.models = options.text("models", config.model_folder.string());
   DUBSAR_TRY(options.finish());
   CaptureFormat& format = read.camera.format;
-  char cross = 0, rest = 0;
-  if (std::sscanf(size.c_str(), "%d%c%d%c", &format.width, &cross, &format.height, &rest) != 3 || cross != 'x' ||
-      format.width < 160 || format.width > 4096 || format.height < 120 || format.height > 4096)
+  const auto pixels = parse_size(size).value_or(std::array{0, 0});
+  format.width = pixels[0];
+  format.height = pixels[1];
+  if (format.width < 160 || format.width > 4096 || format.height < 120 || format.height > 4096)
     return fail(ErrorKind::kUsage, "input webcam: size is \"{}\", expected WIDTHxHEIGHT such as 640x480", size);
   return read;
 }

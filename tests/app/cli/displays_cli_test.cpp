@@ -71,7 +71,7 @@ TEST_F(DisplaysCommand, ACalibrationFromTheMakersServiceServesThePanelCalledAuto
   const auto made = json({"render", file("card.obj"), "-o", file("auto.png"), "--display", "quilt:auto",
                           "--bridge-port", port, "--samples", "1"});
   EXPECT_EQ(made["display"], "quilt:panel=looking-glass-go");
-  EXPECT_FALSE(fs::exists(folder_ / "cache")) << "nothing is kept";
+  EXPECT_FALSE(fs::exists(folder_ / "cache" / "dubsar")) << "nothing is kept";
   EXPECT_EQ(
       run_dubsar({"render", "--pattern", "-o", file("none.png"), "--display", "lenticular:auto", "--bridge-port", "0"})
           .exit_code,

@@ -275,7 +275,7 @@ TEST(Navigation, WhatIsUnderThePointerStaysThereWhileTheWheelZooms) {
   const glm::dvec2 point = (at - desk.view().pan) / desk.view().zoom;   // of the object, in its own heights
   for (int i = 0; i < 100; ++i) desk.wheel(i % 3 == 0 ? -1.5 : 1, at);  // past the largest zoom, too
   EXPECT_NEAR(glm::length(desk.view().pan + desk.view().zoom * point - at), 0, 1e-12);
-  EXPECT_GT(desk.view().zoom, 10.0);
+  EXPECT_GT(desk.view().zoom, 5.0) << "one turn back from the largest zoom";
 }
 
 TEST(Navigation, TheSurfaceThatIsHeldFollowsThePointerAtEveryZoom) {

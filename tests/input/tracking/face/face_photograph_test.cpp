@@ -173,7 +173,7 @@ TEST_F(FacePhotographs, AtSixtyCentimetresTheFilteredDepthIsStillWithinTenMillim
         id = middle->id;
         ++seen;
         raw.push_back(500.0 * (middle->left_eye_m->z + middle->right_eye_m->z));
-        follower.add(*middle);
+        follower.add(*middle, frame.time);
         if (i < 15) continue;
         const FollowedEyes eyes = follower.eyes(frame.time, frame.time);
         filtered.push_back(500.0 * (eyes.left_m.z + eyes.right_m.z));
