@@ -8,12 +8,13 @@ jobs=${JOBS:-$(nproc)}
 
 packages=(
   g++ cmake ninja-build pkg-config git ca-certificates
-  libfmt-dev libexpected-dev libglm-dev nlohmann-json3-dev libcli11-dev libhwy-dev libxxhash-dev
-  libhdf5-dev hdf5-plugin-lzf hdf5-filter-plugin libtiff-dev libpng-dev libjpeg-dev zlib1g-dev libdeflate-dev libzstd-dev
+  libfmt-dev libexpected-dev libglm-dev nlohmann-json3-dev libcli11-dev libhwy-dev
+  libhdf5-dev hdf5-plugin-lzf hdf5-filter-plugin libtiff-dev libpng-dev libjpeg-dev zlib1g-dev libdeflate-dev
   libembree-dev libglfw3-dev libepoxy-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri
   libimgui-dev fonts-dejavu-core
   libhidapi-dev libusb-1.0-0-dev
   libopencv-core-dev libopencv-dnn-dev libopencv-objdetect-dev libopencv-videoio-dev opencv-data
+  python3-numpy
   libgtest-dev libgmock-dev libbenchmark-dev libspnav-dev libumockdev-dev libxcb-xtest0-dev umockdev xvfb
 )
 
@@ -99,7 +100,8 @@ asan() {
     shift
   fi
   cmake --build "$build" -j "$jobs" --target "$target"
-  ASAN_OPTIONS="strict_string_checks=1:detect_stack_use_after_return=1:${ASAN_OPTIONS:-}" \
+  # No detect_stack_use_after_return: g++ 12 does not align its stand-in frames for the 64-byte registers of AVX-512.
+  ASAN_OPTIONS="strict_string_checks=1:${ASAN_OPTIONS:-}" \
     UBSAN_OPTIONS="print_stacktrace=1:${UBSAN_OPTIONS:-}" \
     LSAN_OPTIONS="suppressions=$PWD/tests/leaks_of_others.txt:print_suppressions=0:${LSAN_OPTIONS:-}" \
     ctest --test-dir "$cases" --output-on-failure -j "$jobs" -L '^(unit|app)$' "$@"
@@ -119,7 +121,7 @@ lint() {
   git rev-parse -q --verify "$since" >/dev/null || return 0  # a checkout without history
   cmake --preset "$preset" >/dev/null
   changed=$(git diff --name-only --diff-filter=AM "$since" -- '*.cpp' | head -n "${LINT_FILES:-12}")
-  [ -z "$changed" ] || clang-tidy -p "$build" --quiet --warnings-as-errors='*' $changed
+  [ -z "$changed" ] || clang-tidy -p "$build" --quiet --extra-arg=-Wno-unknown-warning-option --warnings-as-errors='*' $changed
 }
 
 peers() {

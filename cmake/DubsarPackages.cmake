@@ -13,8 +13,6 @@ find_package(ZLIB REQUIRED)
 find_package(embree 3 REQUIRED)
 pkg_check_modules(libdeflate REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)
-pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
-pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
 
 # HDF5: the serial C library by pkg-config, never the OpenMPI build that find_package may prefer.
 pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial)

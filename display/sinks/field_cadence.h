@@ -10,9 +10,9 @@
 namespace dubsar {
 
 /// Follows the beats by the times at which presents came back; a monitor says "120 Hz" and beats 119.88 times. Presents
-/// may come back up to a quarter of a beat late, and pictures may miss some hundred beats. Which eye the glasses open at
-/// the first beat nobody tells the program: glasses and projectors have a switch for that, and the display the option
-/// right_first.
+/// may come back up to a quarter of a beat late, and pictures may miss some hundred beats. Which eye the glasses open
+/// at the first beat nobody tells the program: glasses and projectors have a switch for that, and the display the
+/// option right_first.
 class FieldCadence {
  public:
   /// Starts anew; 60 Hz where the monitor does not say (1 to 1000 Hz are believed).

@@ -90,9 +90,10 @@ TEST_P(EnclosedTablet, IsSeparatedAccuratelyAndReadably) {
   EXPECT_GE(score.wedges.kept_fraction(), 0.95);
 }
 
+// Drawn on 2026-11-22 after all constants had been set; nothing was tuned on them (that was on 1 to 6).
 INSTANTIATE_TEST_SUITE_P(Seeds, EnclosedTablet,
-                         ::testing::Values(Scan{1, 17.0}, Scan{2, 17.0}, Scan{3, 17.0}, Scan{4, 17.0}, Scan{5, 17.0},
-                                           Scan{6, 23.0}),
+                         ::testing::Values(Scan{70411, 17.0}, Scan{90233, 17.0}, Scan{1588, 17.0}, Scan{62047, 17.0},
+                                           Scan{335171, 17.0}, Scan{48619, 23.0}),
                          [](const auto& instance) {
                            return fmt::format("seed{}at{:.0f}dB", instance.param.seed, instance.param.snr_db);
                          });
