@@ -175,8 +175,9 @@ demo() {
   "$dubsar" process "$scan" -o "$out/tablet.exa" --json "$out/report.json"
   "$dubsar" export "$out/tablet.exa" "$out/tablet.ply"
   "$dubsar" export "$out/tablet.exa" "$out/tablet.stl" --partition tablet
-  "$dubsar" render "$out/tablet.exa" -o "$out/tablet.png" --partition tablet
+  "$dubsar" render "$out/tablet.exa" -o "$out/tablet.png" --partition tablet --style raking --light 315,20
   "$dubsar" render "$out/tablet.exa" -o "$out/envelope.png" --view orbit
+  "$dubsar" fatcross "$out/tablet.exa" -o "$out/fatcross.tif"
   if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
     echo "the tablet in a window: drag to turn, F1 for help, Escape to end" >&2
     "$dubsar" view "$out/tablet.exa" --partition tablet || echo "do: the surfaces and pictures are in $out/, a window could not be shown" >&2
