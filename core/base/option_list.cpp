@@ -34,13 +34,13 @@ std::string quoted(std::string_view text, std::string_view special) {
 
 }  // namespace
 
-Result<std::vector<Option>> parse_options(std::string_view text) {
+Result<std::vector<Option>> parse_options(std::string_view text, std::string_view subject, std::string_view whole) {
   std::vector<Option> options;
   if (text.empty()) return options;
   std::string_view rest = text;
   const auto wrong = [&](std::string_view what) {
-    return fail(ErrorKind::kUsage, "options \"{}\": {} at \"{}\", expected words and key=value with commas between",
-                text, what, rest);
+    return fail(ErrorKind::kUsage, "{} \"{}\": {} at \"{}\", expected words and key=value with commas between", subject,
+                whole.empty() ? text : whole, what, rest);
   };
   for (;;) {
     if (rest.empty() || rest.front() == ',') return wrong("an option is empty");

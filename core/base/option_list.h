@@ -18,8 +18,10 @@ struct Option {
 
 /// Options with commas between. Words and values may stand in quotation marks, and hold commas, equals signs and (after
 /// a backslash) quotation marks and backslashes then. Order is kept. An empty text has none. kUsage, with the place:
-/// an empty option, quotation marks that do not end or end early.
-Result<std::vector<Option>> parse_options(std::string_view text);
+/// an empty option, quotation marks that do not end or end early; the sentence names `subject` and the `whole` text
+/// that the options are a part of (empty: they are all of it).
+Result<std::vector<Option>> parse_options(std::string_view text, std::string_view subject = "options",
+                                          std::string_view whole = {});
 
 /// parse_options() reads it as equal.
 std::string options_text(const std::vector<Option>& options);

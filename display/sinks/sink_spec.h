@@ -1,20 +1,16 @@
 #pragma once
 // Which display, with which options: what "NAME:word,key=value" says. Parsed once, printed back as the same.
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/base/option_list.h"
 #include "core/base/result.h"
 
 namespace dubsar {
 
-struct SinkOption {
-  std::string key;
-  std::optional<std::string> value{};  ///< none: a bare word; empty: "key="
-  bool operator==(const SinkOption&) const = default;
-};
+using SinkOption = Option;
 
 struct SinkSpec {
   std::string name;
