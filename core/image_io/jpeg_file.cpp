@@ -2,12 +2,17 @@
 
 #include <jpeglib.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <csetjmp>
 #include <cstdio>  // jpeglib.h needs it
+#include <cstdlib>
 #include <string>
 
+#include "core/base/atomic_file.h"
 #include "core/base/input_file.h"
+#include "core/image_io/srgb_profile.h"
 
 namespace dubsar {
 namespace {
@@ -55,6 +60,66 @@ bool read_rows(Decoder* decoder, Image* image) {
   return true;
 }
 
+struct Encoder {
+  jpeg_compress_struct jpeg{};
+  jpeg_error_mgr errors{};
+  std::jmp_buf jump;
+  std::array<char, JMSG_LENGTH_MAX> message{};
+  unsigned char* bytes = nullptr;  // of malloc()
+  unsigned long size = 0;
+  ~Encoder() {
+    jpeg_destroy_compress(&jpeg);
+    std::free(bytes);
+  }
+};
+
+[[noreturn]] void on_encoder_error(j_common_ptr jpeg) {
+  auto* const encoder = static_cast<Encoder*>(jpeg->client_data);
+  jpeg->err->format_message(jpeg, encoder->message.data());
+  std::longjmp(encoder->jump, 1);
+}
+
+constexpr std::string_view kXmpMark("http://ns.adobe.com/xap/1.0/\0", 29);
+constexpr std::size_t kMostMarkerBytes = 65533;
+
+bool encode(Encoder* encoder, const Image* image, const JpegOptions* options, const std::string* xmp) {
+  if (setjmp(encoder->jump) != 0) return false;
+  jpeg_compress_struct& jpeg = encoder->jpeg;
+  jpeg_create_compress(&jpeg);
+  jpeg_mem_dest(&jpeg, &encoder->bytes, &encoder->size);
+  jpeg.image_width = static_cast<JDIMENSION>(image->width);
+  jpeg.image_height = static_cast<JDIMENSION>(image->height);
+  jpeg.input_components = image->channels;
+  jpeg.in_color_space = image->channels == 4 ? JCS_EXT_RGBX : JCS_RGB;
+  jpeg_set_defaults(&jpeg);
+  jpeg_set_quality(&jpeg, options->quality, TRUE);
+  jpeg.optimize_coding = TRUE;
+  for (int c = 0; c < jpeg.num_components; ++c) jpeg.comp_info[c].h_samp_factor = jpeg.comp_info[c].v_samp_factor = 1;
+  if (options->dpi > 0.0) {
+    jpeg.density_unit = 1;  // dots an inch
+    jpeg.X_density = jpeg.Y_density = static_cast<UINT16>(std::clamp(std::lround(options->dpi), 1l, 65535l));
+  }
+  jpeg_start_compress(&jpeg, TRUE);
+  if (!xmp->empty())
+    jpeg_write_marker(&jpeg, JPEG_APP0 + 1, reinterpret_cast<const JOCTET*>(xmp->data()),
+                      static_cast<unsigned>(xmp->size()));
+  jpeg_write_icc_profile(&jpeg, reinterpret_cast<const JOCTET*>(srgb_profile().data()),
+                         static_cast<unsigned>(srgb_profile().size()));
+  while (jpeg.next_scanline < jpeg.image_height) {
+    JSAMPROW row = const_cast<JSAMPROW>(image->at(0, static_cast<int>(jpeg.next_scanline)));
+    jpeg_write_scanlines(&jpeg, &row, 1);
+  }
+  jpeg_finish_compress(&jpeg);
+  return true;
+}
+
+bool opaque(const Image& image) {
+  if (image.channels == 3) return true;
+  for (std::size_t i = 3; i < image.pixels.size(); i += 4)
+    if (image.pixels[i] != 255) return false;
+  return true;
+}
+
 }  // namespace
 
 Result<Image> decode_jpeg(std::span<const std::byte> bytes, std::string_view source, const Budget& budget) {
@@ -80,6 +145,33 @@ Result<Image> decode_jpeg(std::span<const std::byte> bytes, std::string_view sou
 Result<Image> read_jpeg(const std::filesystem::path& path, const Budget& budget) {
   DUBSAR_ASSIGN(const std::string bytes, read_file_bytes(path));
   return decode_jpeg(std::as_bytes(std::span(bytes.data(), bytes.size())), path.string(), budget);
+}
+
+Result<void> write_jpeg(const std::filesystem::path& path, const Image& image, const JpegOptions& options) {
+  if (image.width < 1 || image.height < 1 || image.width > kLargestSize || image.height > kLargestSize ||
+      (image.channels != 3 && image.channels != 4) ||
+      image.pixels.size() != static_cast<std::size_t>(image.width) * image.height * image.channels)
+    return fail(ErrorKind::kUsage,
+                "jpeg: a picture of {} x {} pixels found, expected 1 to {} a side; PNG and TIFF take more", image.width,
+                image.height, kLargestSize);
+  if (options.quality < 1 || options.quality > 100)
+    return fail(ErrorKind::kUsage, "jpeg: quality {} found, expected 1 to 100", options.quality);
+  if (!opaque(image))
+    return fail(ErrorKind::kUsage, "jpeg: {} shall be written with transparency, which JPEG has not; take PNG or TIFF",
+                path.string());
+  const std::string xmp = options.xmp.empty() ? std::string() : std::string(kXmpMark) + options.xmp;
+  if (xmp.size() > kMostMarkerBytes)
+    return fail(ErrorKind::kUsage, "jpeg: {} bytes of XMP found, expected at most {}; shorten the title or the rights",
+                xmp.size(), kMostMarkerBytes);
+  DUBSAR_ASSIGN(AtomicFile file, AtomicFile::create(path));
+  Encoder encoder;
+  encoder.jpeg.err = jpeg_std_error(&encoder.errors);
+  encoder.errors.error_exit = on_encoder_error;
+  encoder.jpeg.client_data = &encoder;
+  if (!encode(&encoder, &image, &options, &xmp))
+    return fail(ErrorKind::kInternal, "jpeg: cannot encode {}: {}", path.string(), encoder.message.data());
+  DUBSAR_TRY(file.write(std::as_bytes(std::span(encoder.bytes, encoder.size))));
+  return file.commit();
 }
 
 }  // namespace dubsar

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include "core/base/budget.h"
 #include "core/base/result.h"
@@ -19,5 +21,16 @@ Result<Image> decode_jpeg(std::span<const std::byte> bytes, std::string_view sou
 
 /// The same from a file; also kNoInput, kPermission, kIo.
 Result<Image> read_jpeg(const std::filesystem::path& path, const Budget& budget = {});
+
+struct JpegOptions {
+  int quality = 92;   ///< 1..100; colours keep their full resolution
+  double dpi = 0.0;   ///< written into the JFIF head when > 0 (whole dots an inch, at most 65535)
+  std::string xmp{};  ///< a whole XMP packet of at most 65 kB; empty: none
+};
+
+/// Writes an RGB picture, or an opaque RGBA one, with the sRGB profile. The file appears whole or not at all; the same
+/// picture gives the same bytes. kUsage: an empty picture, one with transparency (JPEG has none), more than 65500
+/// pixels a side; the errors of AtomicFile.
+Result<void> write_jpeg(const std::filesystem::path& path, const Image& image, const JpegOptions& options = {});
 
 }  // namespace dubsar

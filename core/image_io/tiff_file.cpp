@@ -10,6 +10,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/input_file.h"
+#include "core/image_io/srgb_profile.h"
 
 namespace dubsar {
 namespace {
@@ -60,6 +61,20 @@ T field(TIFF* tiff, std::uint32_t tag, T otherwise) {
   T value = otherwise;
   return TIFFGetFieldDefaulted(tiff, tag, &value) == 1 ? value : otherwise;
 }
+
+/// What stands beside the colours of a pixel.
+struct TiffExtras {
+  bool alpha = false, premultiplied = false;
+  static TiffExtras of(TIFF* tiff) {
+    std::uint16_t count = 0;
+    const std::uint16_t* kinds = nullptr;
+    TiffExtras extras;
+    if (TIFFGetField(tiff, TIFFTAG_EXTRASAMPLES, &count, &kinds) != 1 || count == 0 || kinds == nullptr) return extras;
+    extras.premultiplied = kinds[0] == EXTRASAMPLE_ASSOCALPHA;
+    extras.alpha = extras.premultiplied || kinds[0] == EXTRASAMPLE_UNASSALPHA;
+    return extras;
+  }
+};
 
 void invert(std::span<std::byte> bytes) {
   for (std::byte& byte : bytes) byte = ~byte;  // max - value, for any width
@@ -206,6 +221,53 @@ Result<void> TiffFile::read_gray(std::span<std::byte> out) {
   return {};
 }
 
+Result<Image> TiffFile::read_picture(const Budget& budget) {
+  TIFF* const tiff = static_cast<TIFF*>(tiff_.get());
+  DUBSAR_ASSIGN(const TiffPage page, describe());
+  const auto width = static_cast<std::uint64_t>(page.width), height = static_cast<std::uint64_t>(page.height);
+  const std::array dims{width, height};
+  DUBSAR_TRY(check_dims("tiff", dims, 4, budget));
+  DUBSAR_TRY(check_memory("tiff", width * height * 8, budget));
+  library_says_->clear();
+  const auto extras = TiffExtras::of(tiff);
+  const bool plain = page.bits == 8 && !page.palette && TIFFIsTiled(tiff) == 0 &&
+                     field<std::uint16_t>(tiff, TIFFTAG_PHOTOMETRIC, 0) == PHOTOMETRIC_RGB &&
+                     field<std::uint16_t>(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) == PLANARCONFIG_CONTIG &&
+                     field<std::uint16_t>(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT) == ORIENTATION_TOPLEFT;
+  if (plain && (page.channels == 3 || (page.channels == 4 && extras.alpha && !extras.premultiplied))) {
+    Image image(static_cast<int>(width), static_cast<int>(height), page.channels);
+    const std::size_t row = width * static_cast<std::size_t>(page.channels);
+    for (std::uint32_t y = 0; y < height; ++y)
+      if (TIFFReadScanline(tiff, image.pixels.data() + y * row, y, 0) != 1)
+        return damaged(fmt::format("row {} cannot be decoded, the file is damaged or truncated", y));
+    return image;
+  }
+  std::array<char, 1024> why{};
+  if (TIFFRGBAImageOK(tiff, why.data()) != 1)
+    return damaged(fmt::format("no picture that can be shown: {}", why.data()));
+  std::vector<std::uint32_t> raster(width * height);
+  if (TIFFReadRGBAImageOriented(tiff, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
+                                raster.data(), ORIENTATION_TOPLEFT, 1) != 1)
+    return damaged("the picture cannot be decoded, the file is damaged or truncated");
+  Image image(static_cast<int>(width), static_cast<int>(height), extras.alpha ? 4 : 3);
+  std::uint8_t* out = image.pixels.data();
+  for (const std::uint32_t pixel : raster) {
+    const std::array rgb{TIFFGetR(pixel), TIFFGetG(pixel), TIFFGetB(pixel)};
+    const std::uint32_t alpha = TIFFGetA(pixel);
+    for (const std::uint32_t value : rgb)  // libtiff gives colours times alpha
+      *out++ = static_cast<std::uint8_t>(
+          !extras.alpha || alpha == 0 ? value : std::min<std::uint32_t>(255, (255 * value + alpha / 2) / alpha));
+    if (extras.alpha) *out++ = static_cast<std::uint8_t>(alpha);
+  }
+  return image;
+}
+
+Result<Image> read_tiff_picture(const std::filesystem::path& path, const Budget& budget) {
+  DUBSAR_ASSIGN(TiffFile file, TiffFile::open(path));
+  DUBSAR_TRY(file.select(0));
+  return file.read_picture(budget);
+}
+
 Result<void> write_tiff(const std::filesystem::path& path, const Image& image, double dpi, const TiffTags& tags) {
   DUBSAR_CHECK(image.width > 0 && image.height > 0 && (image.channels == 3 || image.channels == 4));
   DUBSAR_CHECK(image.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
@@ -232,6 +294,8 @@ Result<void> write_tiff(const std::filesystem::path& path, const Image& image, d
   if (!tags.copyright.empty()) TIFFSetField(tiff, TIFFTAG_COPYRIGHT, tags.copyright.c_str());
   if (!tags.xmp.empty())
     TIFFSetField(tiff, TIFFTAG_XMLPACKET, static_cast<std::uint32_t>(tags.xmp.size()), tags.xmp.data());
+  const auto profile = srgb_profile();
+  TIFFSetField(tiff, TIFFTAG_ICCPROFILE, static_cast<std::uint32_t>(profile.size()), profile.data());
   if (image.channels == 4) {
     const std::uint16_t alpha = EXTRASAMPLE_UNASSALPHA;
     TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &alpha);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/budget.h"
 #include "core/base/result.h"
 #include "core/image_io/image.h"
 
@@ -48,6 +49,8 @@ class TiffFile {
   /// The selected page, which has one channel of whole bytes: height rows of width samples in the machine's byte order,
   /// 0 black (unsigned white-is-zero pages are inverted). `out` has exactly that size.
   Result<void> read_gray(std::span<std::byte> out);
+  /// The selected page as a picture (read_tiff_picture()).
+  Result<Image> read_picture(const Budget& budget);
 
  private:
   struct Closer {
@@ -68,8 +71,13 @@ struct TiffTags {
   std::string xmp;  ///< a whole XMP packet (tag 700)
 };
 
-/// Writes an RGB or RGBA picture, LZW-compressed, with its resolution in dots per inch (0: none). The file appears
-/// whole or not at all. The same picture gives the same bytes. kCannotCreate, kPermission, kIo.
+/// Writes an RGB or RGBA picture, LZW-compressed, with the sRGB profile and its resolution in dots per inch (0: none).
+/// The file appears whole or not at all. The same picture gives the same bytes. kCannotCreate, kPermission, kIo.
 Result<void> write_tiff(const std::filesystem::path& path, const Image& image, double dpi, const TiffTags& tags = {});
+
+/// The first page of any TIFF that libtiff can show (grey, palette, CMYK, YCbCr, 1 to 16 bits, strips or tiles) as
+/// 8-bit RGB, or RGBA where it has transparency; 8-bit RGB and RGBA to the last bit. Sizes are checked against `budget`
+/// before memory is taken. kNoInput, kPermission, kBadData, kTryAgain.
+Result<Image> read_tiff_picture(const std::filesystem::path& path, const Budget& budget = {});
 
 }  // namespace dubsar
