@@ -4,12 +4,13 @@
 
 #include <array>
 #include <cstdint>
-#include <glm/gtc/quaternion.hpp>
-#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <string>
 #include <vector>
 
+#include "app/document/keyframe.h"
+#include "app/document/measure.h"
+#include "app/document/pose.h"
 #include "input/navigation/view_state.h"
 
 namespace dubsar::app {
@@ -25,24 +26,13 @@ struct Part {
   friend bool operator==(const Part&, const Part&) = default;
 };
 
-/// Where the object is seen from: turned from its front view, zoomed, moved (ViewState has the units).
-struct CameraPose {
-  glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
-  double zoom = 1.0;
-  glm::dvec2 pan{0.0, 0.0};
-  friend bool operator==(const CameraPose&, const CameraPose&) = default;
-};
-
-struct LightPlace {
-  double azimuth_deg = 315.0;   ///< clockwise from the upper side of the picture
-  double elevation_deg = 25.0;  ///< above the picture plane
-  friend bool operator==(const LightPlace&, const LightPlace&) = default;
-};
-
 struct StyleChoice {
   std::string name = "relief";  ///< of shading_preset()
   double strength = 1.0;        ///< of its colours: 0 none, 1 as designed, 2 twice
   bool occlusion = true;        ///< hollows are darker
+  bool evidence = true;         ///< what the scan does not show is hatched
+  std::string second{};         ///< a style that is mixed in; empty: none
+  double mix = 0.0;             ///< how much of `second`, 0..1
   friend bool operator==(const StyleChoice&, const StyleChoice&) = default;
 };
 
@@ -54,32 +44,21 @@ struct Cut {
   friend bool operator==(const Cut&, const Cut&) = default;
 };
 
-struct Measure {
-  std::string name;
-  std::vector<glm::dvec3> points_mm;  ///< on the surface, in the frame of the scan
-  friend bool operator==(const Measure&, const Measure&) = default;
-};
-
 struct Note {
+  std::string label;  ///< as editions count: "o. 5", "r. 3"; may be empty
   std::string text;
   glm::dvec3 at_mm{0.0}, normal{0.0, 0.0, 1.0};  ///< where it is pinned to the surface
-  CameraPose camera;                             ///< how it was seen
+  std::vector<glm::dvec3> line_mm;  ///< the text stands along these places, a line's transliteration; empty: a pin
+  CameraPose camera;                ///< how it was seen
   friend bool operator==(const Note&, const Note&) = default;
 };
 
 struct SliceView {
-  int axis = 2;  ///< 0 x, 1 y, 2 z of the scan
-  double position_mm = 0.0;
+  int axis = 2;                      ///< 0 x, 1 y, 2 z of the scan; 3: free, across `normal`
+  glm::dvec3 normal{0.0, 0.0, 1.0};  ///< of a free one
+  double position_mm = 0.0;          ///< along the axis or the normal, from the scan's origin
   bool visible = false;
   friend bool operator==(const SliceView&, const SliceView&) = default;
-};
-
-struct Keyframe {
-  double time_s = 0.0;
-  CameraPose camera;
-  LightPlace light;
-  double unpack = 0.0;
-  friend bool operator==(const Keyframe&, const Keyframe&) = default;
 };
 
 struct SourceFile {
@@ -96,6 +75,7 @@ struct Document {
   LightPlace home_light, light;
   StyleChoice style;
   std::vector<Cut> clips;
+  double fog = 0.0;  ///< 0..1: how much the far side fades
   std::vector<Measure> measures;
   std::vector<Note> notes;
   std::vector<SliceView> slices;

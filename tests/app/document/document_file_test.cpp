@@ -29,12 +29,15 @@ Document rich(unsigned seed) {
   out.now = camera();
   out.home_light = {10, 20};
   out.light = {real(), real()};
-  out.style = {"sky-sun", 1.7, false};
+  out.style = {"sky-sun", 1.7, false, false, "phong", 0.25};
   out.clips = {{vector(), real(), false}};
-  out.measures = {{"wedge", {vector(), vector()}}};
-  out.notes = {{"a-na \u1e2ba-x, \"\u02bes\u2082\"\nsecond line", vector(), vector(), camera()}};
-  out.slices = {{1, real(), true}};
-  out.keyframes = {{1.5, camera(), {3, 4}, 0.5}, {}};
+  out.fog = 0.125;
+  out.measures = {{MeasureKind::kDistance, "wedge", {vector(), vector()}, {1.5, 2.25, 3, 4, {vector()}}},
+                  {MeasureKind::kDepth, "", {vector()}, {}}};
+  out.notes = {
+      {"o. 5", "a-na \u1e2ba-x, \"\u02bes\u2082\"\nsecond line", vector(), vector(), {vector(), vector()}, camera()}};
+  out.slices = {{1, {0, 0, 1}, real(), true}, {3, vector(), real(), false}};
+  out.keyframes = {{1.5, camera(), {3, 4}, 0.5, "phong", {{"tablet", 0.5, vector()}}}, {}};
   return out;
 }
 
@@ -78,7 +81,7 @@ TEST_F(DocumentFile, EveryTruncationMissingFieldAndWrongTypeIsRefusedInASentence
     const auto missing = parse_document(without.dump(), "x");
     EXPECT_TRUE(!missing || list_item) << pointer;
     for (const json& wrong : {json("text"), json(nullptr), json::array(), json(1e300), json::object()}) {
-      if (wrong.type() == value.type()) continue;
+      if (wrong.type() == whole[at].type()) continue;
       if (wrong.is_number() && value.is_number()) continue;
       json changed = whole;
       changed[at] = wrong;
@@ -87,6 +90,24 @@ TEST_F(DocumentFile, EveryTruncationMissingFieldAndWrongTypeIsRefusedInASentence
       EXPECT_EQ(refused.error().kind, ErrorKind::kBadData);
     }
   }
+}
+
+TEST_F(DocumentFile, AnOlderVersionIsReadAndWhatItDidNotKnowIsAsUsual) {
+  nlohmann::json old = nlohmann::json::parse(format_document(rich(11)));
+  old["version"] = 1;
+  for (const char* unknown : {"second", "mix", "evidence"}) old["style"].erase(unknown);
+  for (auto& note : old["notes"]) note.erase("label"), note.erase("line_mm");
+  old.erase("fog");
+  const auto back = parse_document(old.dump(), "old");
+  ASSERT_TRUE(back) << back.error().message;
+  Document expected = rich(11);
+  expected.style.second.clear();
+  expected.style.mix = 0;
+  expected.style.evidence = true;
+  expected.fog = 0;
+  expected.notes[0].label.clear();
+  expected.notes[0].line_mm.clear();
+  EXPECT_EQ(*back, expected);
 }
 
 TEST_F(DocumentFile, RangesAndOtherVersionsAreRefusedByName) {
@@ -101,10 +122,10 @@ TEST_F(DocumentFile, RangesAndOtherVersionsAreRefusedByName) {
   EXPECT_NE(refusal([](Document& d) { d.now.rotation = {0, 0, 0, 0}; }).find("now.rotation_wxyz"), std::string::npos);
   EXPECT_NE(refusal([](Document& d) { d.notes[0].at_mm.x = 1e9; }).find("notes[0].at_mm"), std::string::npos);
   std::string text = format_document(rich(7));
-  text.replace(text.find("\"version\": 1"), 12, "\"version\": 2");
+  text.replace(text.find("\"version\": 2"), 12, "\"version\": 3");
   const auto newer = parse_document(text, "k.json");
   ASSERT_FALSE(newer);
-  EXPECT_EQ(newer.error().message, "k.json: version 2 found, expected 1; a newer dubsar may have written it");
+  EXPECT_EQ(newer.error().message, "k.json: version 3 found, expected 1 to 2; a newer dubsar may have written it");
   EXPECT_FALSE(parse_document("[]", "k.json"));
 }
 

@@ -1,0 +1,100 @@
+#pragma once
+// What each value of a document consists of, in files: once for writing and for reading (field_json.h). Part of this
+// room.
+
+#include "app/document/field_json.h"
+
+namespace dubsar::app {
+
+void fields(auto& f, SourceFile& v) {
+  f("path", v.path);
+  f("bytes", v.bytes);
+}
+void fields(auto& f, Part& v) {
+  f("name", v.name);
+  f("partitions", v.partitions);
+  f("visible", v.visible);
+  f("colour", v.colour);
+  f("opacity", v.opacity);
+  f("offset_mm", v.offset_mm);
+}
+void fields(auto& f, CameraPose& v) {
+  f("rotation_wxyz", v.rotation);
+  f("zoom", v.zoom);
+  f("pan", v.pan);
+}
+void fields(auto& f, LightPlace& v) {
+  f("azimuth_deg", v.azimuth_deg);
+  f("elevation_deg", v.elevation_deg);
+}
+void fields(auto& f, StyleChoice& v) {
+  f("name", v.name);
+  f("strength", v.strength);
+  f("occlusion", v.occlusion);
+  f("evidence", v.evidence);
+  f("second", v.second);
+  f("mix", v.mix);
+}
+void fields(auto& f, Cut& v) {
+  f("normal", v.normal);
+  f("distance_mm", v.distance_mm);
+  f("on", v.on);
+}
+void fields(auto& f, MeasureFigures& v) {
+  f("straight_mm", v.straight_mm);
+  f("surface_mm", v.surface_mm);
+  f("angle_deg", v.angle_deg);
+  f("depth_mm", v.depth_mm);
+  f("path_mm", v.path_mm);
+}
+void fields(auto& f, Measure& v) {
+  f("kind", v.kind);
+  f("name", v.name);
+  f("points_mm", v.points_mm);
+  f("figures", v.figures);
+}
+void fields(auto& f, Note& v) {
+  f("label", v.label);
+  f("text", v.text);
+  f("at_mm", v.at_mm);
+  f("normal", v.normal);
+  f("line_mm", v.line_mm);
+  f("camera", v.camera);
+}
+void fields(auto& f, SliceView& v) {
+  f("axis", v.axis);
+  f("normal", v.normal);
+  f("position_mm", v.position_mm);
+  f("visible", v.visible);
+}
+void fields(auto& f, KeyedPart& v) {
+  f("name", v.name);
+  f("opacity", v.opacity);
+  f("offset_mm", v.offset_mm);
+}
+void fields(auto& f, Keyframe& v) {
+  f("time_s", v.time_s);
+  f("camera", v.camera);
+  f("light", v.light);
+  f("unpack", v.unpack);
+  f("style", v.style);
+  f("parts", v.parts);
+}
+void fields(auto& f, Document& v) {
+  f("source", v.source);
+  f("parts", v.parts);
+  f("unpack", v.unpack);
+  f("home", v.home);
+  f("now", v.now);
+  f("home_light", v.home_light);
+  f("light", v.light);
+  f("style", v.style);
+  f("clips", v.clips);
+  f("fog", v.fog);
+  f("measures", v.measures);
+  f("notes", v.notes);
+  f("slices", v.slices);
+  f("keyframes", v.keyframes);
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,155 @@
+// Films as values: what they pass through, how they move, and their files.
+
+#include "app/document/keyframe.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "app/document/document_file.h"
+
+namespace dubsar::app {
+namespace {
+
+std::vector<Keyframe> some_film(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto real = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+  std::vector<Keyframe> out;
+  double time = real(-2, 2);
+  for (int i = 0; i < 6; ++i) {
+    Keyframe key;
+    key.time_s = time;
+    time += real(0.2, 4);
+    key.camera = {turn_of({real(-2, 2), real(-2, 2), real(-2, 2)}), real(0.3, 8), {real(-1, 1), real(-1, 1)}};
+    key.light = {real(0, 360), real(5, 85)};
+    key.unpack = real(0, 1);
+    key.style = i % 2 == 0 ? "relief" : "";
+    key.parts = {{"tablet", 1.0, {}}, {"envelope", real(0, 1), {real(-9, 9), 0, 0}}};
+    out.push_back(key);
+  }
+  return out;
+}
+
+double apart_deg(const CameraPose& a, const CameraPose& b) { return turn_between_deg(a.rotation, b.rotation); }
+
+TEST(Film, PassesThroughItsKeysAndRestsBeforeAndAfter) {
+  const auto film = some_film(std::random_device()());
+  for (std::size_t i = 0; i < film.size(); ++i) {
+    Keyframe there = moment_at(film, film[i].time_s);
+    EXPECT_EQ(there.style, "relief");
+    there.style = film[i].style;
+    EXPECT_EQ(there, film[i]) << i;
+    for (const double before : {1e-9, -1e-9}) {
+      const Keyframe near = moment_at(film, film[i].time_s + before);
+      EXPECT_LT(apart_deg(near.camera, film[i].camera), 1e-4);
+      EXPECT_NEAR(near.camera.zoom, film[i].camera.zoom, 1e-6);
+      EXPECT_NEAR(near.parts[1].offset_mm.x, film[i].parts[1].offset_mm.x, 1e-5);
+    }
+  }
+  EXPECT_EQ(moment_at(film, -1e5).camera, film.front().camera);
+  EXPECT_EQ(moment_at(film, 1e5).camera, film.back().camera);
+  EXPECT_DOUBLE_EQ(film_length_s(film), film.back().time_s - film.front().time_s);
+  EXPECT_EQ(film_length_s(std::span(film).first(1)), 0.0);
+}
+
+TEST(Film, SpeedHasNoJumpsAndEndsAtRest) {
+  const auto film = some_film(11);
+  const double h = 1e-5;
+  const auto speeds = [&](double t) {  // degrees, logarithm of zoom, heights, unpack, mm a second
+    const Keyframe a = moment_at(film, t), b = moment_at(film, t + h);
+    const glm::dvec3 turn = vector_of(b.camera.rotation * glm::conjugate(a.camera.rotation)) / h;
+    return std::array{turn.x,
+                      turn.y,
+                      turn.z,
+                      std::log(b.camera.zoom / a.camera.zoom) / h,
+                      (b.camera.pan.x - a.camera.pan.x) / h,
+                      std::remainder(b.light.azimuth_deg - a.light.azimuth_deg, 360.0) / h / 57.3,
+                      (b.unpack - a.unpack) / h,
+                      (b.parts[1].offset_mm.x - a.parts[1].offset_mm.x) / h};
+  };
+  for (std::size_t i = 0; i < film.size(); ++i) {
+    const auto before = speeds(film[i].time_s - 2 * h), after = speeds(film[i].time_s + h);
+    for (std::size_t c = 0; c < before.size(); ++c) {
+      EXPECT_NEAR(before[c], after[c], 2e-2) << "key " << i << " component " << c;
+      if (i == 0 || i + 1 == film.size()) {
+        EXPECT_NEAR(before[c] + after[c], 0.0, 2e-2) << "the ends are at rest";
+      }
+    }
+  }
+}
+
+TEST(Film, NumbersStayBetweenTheirKeysAndTurnsTakeTheShorterWay) {
+  for (unsigned seed = 1; seed < 30; ++seed) {
+    const auto film = some_film(seed);
+    for (std::size_t i = 0; i + 1 < film.size(); ++i)
+      for (double t = 0; t <= 1; t += 0.05) {
+        const Keyframe now = moment_at(film, film[i].time_s + t * (film[i + 1].time_s - film[i].time_s));
+        const auto between = [&](double a, double x, double b) {
+          EXPECT_GE(x, std::min(a, b) - 1e-9);
+          EXPECT_LE(x, std::max(a, b) + 1e-9);
+        };
+        between(film[i].unpack, now.unpack, film[i + 1].unpack);
+        between(film[i].camera.zoom, now.camera.zoom, film[i + 1].camera.zoom);
+        between(film[i].light.elevation_deg, now.light.elevation_deg, film[i + 1].light.elevation_deg);
+        between(film[i].parts[1].opacity, now.parts[1].opacity, film[i + 1].parts[1].opacity);
+        EXPECT_NEAR(glm::length(now.camera.rotation), 1.0, 1e-12);
+      }
+  }
+  std::vector<Keyframe> light(2);
+  light[0].light = {350, 20};
+  light[1].light = {10, 20};
+  light[1].time_s = 1;
+  EXPECT_NEAR(moment_at(light, 0.5).light.azimuth_deg, 0.0, 1e-9) << "over the top, not round the bottom";
+  light[1].camera.rotation = turn_of({0, 1.0, 0});
+  EXPECT_NEAR(turn_between_deg(moment_at(light, 0.5).camera.rotation, turn_of({0, 0.5, 0})), 0.0, 1e-9);
+}
+
+TEST(Film, IsWhatTheDocumentShowsAndBack) {
+  Document document;
+  document.parts = {{"tablet", 1}, {"envelope", 6, false, {255, 255, 255}, 0.5, {0, 0, 7}}};
+  document.now = {turn_of({0.1, 0.2, 0.3}), 2.0, {0.1, 0.2}};
+  document.light = {90, 15};
+  document.unpack = 0.25;
+  document.style.name = "raking";
+  const Keyframe frame = keyframe_of(document, 3.0);
+  EXPECT_EQ(frame.parts[1].opacity, 0.0) << "not there";
+  Document other;
+  other.parts = {{"tablet", 1}, {"envelope", 6}};
+  show_keyframe(other, frame);
+  EXPECT_EQ(keyframe_of(other, 3.0), frame);
+  EXPECT_FALSE(other.parts[1].visible);
+}
+
+TEST(Film, FilesAreExactAndMistakesAreSentences) {
+  const auto film = some_film(std::random_device()());
+  const std::string text = format_film(film);
+  const auto back = parse_film(text, "film");
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(*back, film);
+  Document document;
+  document.keyframes = film;
+  EXPECT_EQ(parse_film(format_document(document), "document").value(), film) << "a session's file is a film, too";
+  for (std::size_t n = 0; n + 2 < text.size(); n += 3) EXPECT_FALSE(parse_film(text.substr(0, n), "cut")) << n;
+  const auto refusal = [&](auto change) {
+    auto changed = film;
+    change(changed);
+    const auto parsed = parse_film(format_film(changed), "f.json");
+    return parsed ? std::string("accepted") : parsed.error().message;
+  };
+  EXPECT_EQ(refusal([](auto& f) { f.clear(); }), "f.json: no keyframe found, expected at least one");
+  EXPECT_EQ(refusal([](auto& f) { f[1].unpack = 2; }), "f.json: keyframes[1].unpack is 2, expected 0 to 1");
+  EXPECT_EQ(refusal([](auto& f) { f[0].camera.zoom = 0; }),
+            "f.json: keyframes[0].camera.zoom is 0, expected more than 0");
+  EXPECT_EQ(refusal([](auto& f) {
+              f[1].time_s = 4;
+              f[2].time_s = 4;
+              f[0].time_s = 3;
+            }),
+            "f.json: keyframes[2].time_s is 4, expected more than 4");
+  EXPECT_FALSE(parse_film("[]", "x"));
+  EXPECT_FALSE(parse_film(R"({"format": "dubsar film", "version": 2, "keyframes": []})", "x"));
+}
+
+}  // namespace
+}  // namespace dubsar::app
