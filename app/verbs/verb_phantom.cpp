@@ -13,7 +13,8 @@ namespace {
 struct Options {
   std::string out, size, preset = "demo", truth;
   std::uint64_t seed = 1;
-  double snr_db = 17.0;
+  phantom::PhantomOptions model;
+  bool unwritten = false;
 };
 
 Result<VerbResult> run(const Options& options, Progress& progress) {
@@ -24,7 +25,16 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
     wanted.voxel_mm = 0.0;
   }
   wanted.seed = options.seed;
-  wanted.snr_db = options.snr_db;
+  const phantom::PhantomOptions& model = options.model;
+  wanted.snr_db = model.snr_db;
+  wanted.contact = model.contact;
+  wanted.film_vox = model.film_vox;
+  wanted.contact_share = model.contact_share;
+  wanted.gap_vox = model.gap_vox;
+  wanted.wedge_depth_vox = model.wedge_depth_vox;
+  wanted.envelope_density = model.envelope_density;
+  wanted.rings = model.rings;
+  wanted.written = !options.unwritten;
   std::optional<std::filesystem::path> truth;
   if (!options.truth.empty()) truth = options.truth;
   DUBSAR_ASSIGN(const phantom::PhantomReport report, phantom::write_phantom(options.out, truth, wanted, progress));
@@ -36,7 +46,10 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
       "glued over {:.1f} % of the tablet{}\n",
       options.out, made.dims.x, made.dims.y, made.dims.z, made.voxel_mm, made.seed, made.snr_db, report.tablet_wedges,
       report.envelope_wedges, report.pores, 100.0 * report.glued_fraction, report.cracked ? ", envelope cracked" : "");
-  if (truth) result.text += fmt::format("{}: labels, distances, wedges\n", options.truth);
+  const auto& cases = report.wedges_by_case;
+  result.text += fmt::format("contact {}: wedges {} free, {} pockets, {} under a film, {} filled\n",
+                             name_in(phantom::kContacts, made.contact), cases[0], cases[1], cases[2], cases[3]);
+  if (truth) result.text += fmt::format("{}: labels, distances, interface, wedges\n", options.truth);
   result.json = {{"output", options.out},
                  {"dims", {made.dims.x, made.dims.y, made.dims.z}},
                  {"voxel_size_mm", made.voxel_mm},
@@ -47,7 +60,11 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
                  {"cracked", report.cracked},
                  {"tablet_wedges", report.tablet_wedges},
                  {"envelope_wedges", report.envelope_wedges},
+                 {"contact", name_in(phantom::kContacts, made.contact)},
                  {"pores", report.pores}};
+  if (made.contact == phantom::Contact::kFilm) result.json["film_vox"] = made.film_vox;
+  for (const auto& state : phantom::kWedgeCases)
+    result.json["wedges"][std::string(state.name)] = cases[static_cast<std::size_t>(state.value)];
   if (truth) result.json["truth"] = options.truth;
   return result;
 }
@@ -61,12 +78,28 @@ Verb add_phantom_verb(Arguments program) {
       .one_of({"tiny", "demo", "paper"});
   command.value("--size", options->size, "size NXxNYxNZ in voxels, instead of a preset");
   command.value("--seed", options->seed, "another number, another tablet");
-  command.value("--snr", options->snr_db, "signal-to-noise ratio of the raw scan in dB").range(0.0, 120.0);
+  phantom::PhantomOptions& model = options->model;
+  command.value("--snr", model.snr_db, "signal-to-noise ratio of the raw scan in dB").range(0.0, 120.0);
   command.writes("--truth", options->truth, FileFormat::kPhantom,
-                 "HDF5 file for labels, signed distances and the table of wedges");
+                 "HDF5 file for labels, signed distances, the true interface and the table of wedges");
+  Arguments contact = command.group("Tablet and envelope");
+  contact.choice<phantom::Contact>(
+      "--contact", model.contact, choices_of(phantom::kContacts),
+      "where they touch: pressed into each other (default), pockets (wedges stay full of air), filled (no air), film");
+  contact.value("--film", model.film_vox, "thickness of the film of --contact film in voxels (default 0.5)")
+      .range(0.05, 2.0);
+  contact
+      .value("--contact-share", model.contact_share, "share of the tablet that touches (default: 0.08 to 0.26, drawn)")
+      .range(0.01, 0.6);
+  contact.value("--gap", model.gap_vox, "gap elsewhere in voxels (default: 0.3 mm)").range(1.0, 64.0);
+  contact.value("--wedge-depth", model.wedge_depth_vox, "depth of a usual wedge in voxels (default 7, or 0.45 mm)")
+      .range(2.0, 64.0);
+  contact.flag("--unwritten", options->unwritten, "nobody wrote on the tablet");
+  contact.value("--envelope-density", model.envelope_density, "of its clay, relative to the tablet's").range(0.5, 1.5);
+  contact.value("--rings", model.rings, "ring artefacts: standard deviation relative to clay").range(0.0, 1.0);
   command.footer(
       "Examples:\n  dubsar phantom scan.h5 --preset demo\n  dubsar phantom scan.h5 --size 512x512x512 --seed 7 --truth "
-      "truth.h5");
+      "truth.h5\n  dubsar phantom scan.h5 --contact film --film 0.3 --wedge-depth 10 --truth truth.h5");
   return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
 }
 

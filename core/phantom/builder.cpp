@@ -28,7 +28,7 @@ std::unique_ptr<const Phantom> PhantomBuilder::build(const PhantomOptions& optio
   builder.shape_bodies();
   builder.shape_gap();
   builder.measure_glue();
-  builder.write_tablet();
+  if (phantom->options_.written) builder.write_tablet();
   builder.write_envelope();
   builder.index_wedges();
   builder.crack_envelope();
@@ -61,7 +61,8 @@ void PhantomBuilder::shape_bodies() {
   Random random(seed(), 2);
   // Sizes that a coarse grid could not show are kept at some voxels: a small phantom is coarser, not empty.
   const float half_y = mm(kEnvelopeHalfMm[1]);
-  p_.gap_open_ = std::max(mm(0.30), std::min(5.5f, 0.075f * half_y));
+  p_.gap_open_ = p_.options_.gap_vox > 0.0 ? static_cast<float>(p_.options_.gap_vox)
+                                           : std::max(mm(0.30), std::min(5.5f, 0.075f * half_y));
   const float wall = std::max(mm(3.0), 4.5f);
 
   ClayBody& outer = p_.outer_;
@@ -94,7 +95,11 @@ void PhantomBuilder::shape_bodies() {
   p_.outer_relief_ = mm(0.8);  // band and ruling below, figures above
   p_.tablet_relief_ = std::max(1.5f * p_.gap_open_, mm(0.6));
   // Wedges shallower than some 7 voxels do not survive: PSF, resampling and denoising take 1.2 voxels from a tip.
-  line_pitch_ = std::min(std::max(mm(3.6), 56.0f), 0.6f * tablet.half[2]);
+  constexpr float kPitchOfDepth = 8.0f;  // a line of 56 voxels has wedges of about 7
+  const float pitch = p_.options_.wedge_depth_vox > 0.0
+                          ? kPitchOfDepth * static_cast<float>(p_.options_.wedge_depth_vox)
+                          : std::max(mm(3.6), 56.0f);
+  line_pitch_ = std::min(pitch, 0.6f * tablet.half[2]);
   tip_rounding_ = std::min(std::max(mm(0.08), 4.0f), 0.07f * line_pitch_);
   p_.rim_rounding_ = std::max(mm(0.05), 1.0f);
   p_.join_rounding_ = std::max(mm(0.04), 1.0f);
@@ -150,17 +155,21 @@ void PhantomBuilder::measure_glue() {
   std::sort(spots.begin(), spots.end(), [](const Spot& a, const Spot& b) { return a.glue > b.glue; });
   double total = 0.0;
   for (const Spot& spot : spots) total += static_cast<double>(spot.area);
-  const double wanted = total * Random(seed(), 4).uniform(0.08, 0.26);
+  const double share =
+      p_.options_.contact_share > 0.0 ? p_.options_.contact_share : Random(seed(), 4).uniform(0.08, 0.26);
+  const double wanted = total * share;
   double sum = 0.0;
   for (const Spot& spot : spots) {
     sum += static_cast<double>(spot.area);
     p_.glue_threshold_ = spot.glue;
     if (sum >= wanted) break;
   }
-  p_.overlap_ = std::max(mm(0.5), 3.0f);
+  // Where the envelope only lies on the tablet, half a voxel makes sure that no air is left.
+  p_.overlap_ = p_.options_.contact == Contact::kPockets ? 0.5f : std::max(mm(0.5), 3.0f);
+  p_.film_ = static_cast<float>(p_.options_.film_vox);
   double glued = 0.0;
   for (const Spot& spot : spots)
-    if (p_.gap(spot.point).v <= 0.0f) glued += static_cast<double>(spot.area);
+    if (p_.touches(p_.gap(spot.point).v)) glued += static_cast<double>(spot.area);
   p_.glued_fraction_ = glued / total;
 }
 

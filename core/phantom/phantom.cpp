@@ -55,11 +55,12 @@ Dual Phantom::gap(const Point& point) const {
     const float t = std::max(1.0f + q.v, 0.0f);
     gap = {-overlap_ * (1.0f - t * t * t), q.g * (3.0f * overlap_ * t * t)};
   }
-  if (gap.v <= 0.0f) return gap;
-  gap = gap * (gap_variation_.evaluate(point) + 1.0f);
-  for (const auto& touch : touches_)
-    gap = gap * (Dual{1.0f, Float4{}} - bump(point.distance2(touch.centre), touch.radius2) * touch.depth);
-  return gap;
+  if (gap.v > 0.0f) {
+    gap = gap * (gap_variation_.evaluate(point) + 1.0f);
+    for (const auto& touch : touches_)
+      gap = gap * (Dual{1.0f, Float4{}} - bump(point.distance2(touch.centre), touch.radius2) * touch.depth);
+  }
+  return options_.contact == Contact::kFilm ? max(gap, Dual{film_, Float4{}}) : gap;
 }
 
 Fields Phantom::fields(float x, float y, float z, float reach) const {
@@ -97,7 +98,10 @@ Fields Phantom::fields(float x, float y, float z, float reach) const {
     const Dual hollow = impressions(tablet_wedges_, tablet_cells_[cell], point, -base);
     f.tablet = carve(base, decor, hollow);
     // The envelope was pressed on: its inner wall follows the tablet at the gap's width and sinks into the wedges.
-    const Dual followed = smooth_max(base, -(hollow + hint_), 2.0f * rim_rounding_);
+    const Dual followed = options_.contact == Contact::kPressed
+                              ? smooth_max(base, -(hollow + hint_), 2.0f * rim_rounding_)
+                          : options_.contact == Contact::kPockets ? base
+                                                                  : f.tablet;
     const Dual width = gap(point);
     f.wall = width - followed;
     // Where both are one, neither's surface exists: the way out leads along the joint to where the gap opens.
@@ -112,7 +116,8 @@ Fields Phantom::fields(float x, float y, float z, float reach) const {
       envelope = max(envelope, -f.crack);
     }
   }
-  f.clay = min(smooth_min(f.tablet, envelope, join_rounding_), joint);
+  f.clay = options_.contact == Contact::kFilm ? min(f.tablet, envelope)
+                                              : min(smooth_min(f.tablet, envelope, join_rounding_), joint);
   for (const std::uint32_t id : pore_cells_[cell]) {
     const Pore& pore = pores_[id];
     Dual r2;

@@ -31,6 +31,20 @@ enum class Label : std::uint8_t {
 
 enum class Owner : std::uint8_t { kTablet, kEnvelope };
 
+/// What became of a wedge when the envelope was put on.
+enum class WedgeCase : std::uint8_t {
+  kFree,    ///< air from its place to its deepest point
+  kPocket,  ///< the envelope bridges it: air inside, at least half of its depth, closed above
+  kFilm,    ///< a film of air along its walls
+  kFilled,  ///< clay of the envelope in it, and no air, or air only at the bottom
+};
+
+inline constexpr EnumName<WedgeCase> kWedgeCases[] = {{WedgeCase::kFree, "free"},
+                                                      {WedgeCase::kPocket, "pocket"},
+                                                      {WedgeCase::kFilm, "film"},
+                                                      {WedgeCase::kFilled, "filled"}};
+static_assert(names_all(kWedgeCases, static_cast<std::size_t>(WedgeCase::kFilled) + 1));
+
 /// One wedge, in input voxel coordinates.
 struct Wedge {
   glm::dvec3 position;  ///< on the undisturbed surface, above the deepest point
@@ -41,8 +55,9 @@ struct Wedge {
   double head_half_width = 0.0;
   Side side = Side::kObverse;
   Owner owner = Owner::kTablet;
-  std::int32_t sign = 0;  ///< running number of the sign it belongs to
-  bool open = true;       ///< air from `position` to the deepest point; false: filled with the envelope's clay
+  std::int32_t sign = 0;               ///< running number of the sign it belongs to
+  bool open = true;                    ///< air from `position` to the deepest point
+  WedgeCase state = WedgeCase::kFree;  ///< of the tablet's; those of the envelope's outside are free
 };
 
 /// Fields at a point, in voxels, negative inside; metric to first order after division by their gradients near their
@@ -67,7 +82,7 @@ class Phantom {
 
   const PhantomOptions& options() const noexcept { return options_; }
   const std::vector<Wedge>& wedges() const noexcept { return wedges_; }
-  /// Part of the tablet's surface where there is no air between it and the envelope, 0..1.
+  /// Part of the tablet's surface where there is no air between it and the envelope, or a film of it, 0..1.
   double glued_fraction() const noexcept { return glued_fraction_; }
   bool cracked() const noexcept { return crack_.radius2 > 0.0f; }
   int pore_count() const noexcept { return static_cast<int>(pores_.size()); }
@@ -92,6 +107,8 @@ class Phantom {
   /// Distance in voxels to where the tablet is glued to the envelope: how far the clay of one is from that of the
   /// other, negative where they overlap.
   double gap_width(const glm::dvec3& point) const;
+  /// Tablet and envelope touch here, or there is a film between them.
+  bool in_contact(const glm::dvec3& point) const { return touches(static_cast<float>(gap_width(point))); }
 
   /// All fields at a point. The smaller the reach, the faster: 0.1 to 0.4 us.
   Fields fields(float x, float y, float z, float reach = 20.0f) const;
@@ -136,6 +153,7 @@ class Phantom {
                    const Dual& depth) const;
   Dual carve(const Dual& body, const Dual& decor, const Dual& hollow) const;
   Dual gap(const Point& point) const;
+  bool touches(float gap) const noexcept { return gap <= (options_.contact == Contact::kFilm ? film_ : 0.0f); }
   template <class Field>
   double project(const glm::dvec3& point, const Field& field) const;
 
@@ -146,7 +164,7 @@ class Phantom {
   ClayBody tablet_, outer_;
   // Gap between tablet and envelope (all in voxels).
   Waves gap_variation_, glue_field_;
-  float glue_threshold_ = 0.0f, glue_ramp_ = 1.0f, gap_open_ = 1.0f, overlap_ = 1.0f;
+  float glue_threshold_ = 0.0f, glue_ramp_ = 1.0f, gap_open_ = 1.0f, overlap_ = 1.0f, film_ = 0.0f;
   std::vector<ClayBody::FingerMark> touches_;  ///< depth: share of the gap that closes
   // Fine features.
   float rim_rounding_ = 1.0f, join_rounding_ = 1.0f, lip_height_ = 0.0f, lip_width_ = 1.0f, hint_ = 0.0f;

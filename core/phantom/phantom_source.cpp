@@ -19,9 +19,35 @@ float coverage(const Dual& field) {
   return std::clamp(0.5f - field.v / std::max(slope, 0.2f), 0.0f, 1.0f);
 }
 
-float density(const Fields& f) {
-  return kAirDensity + (kClayDensity - kAirDensity) * coverage(f.clay) +
-         (kOrganicDensity - kAirDensity) * coverage(f.organic) + (kGrainDensity - kClayDensity) * coverage(f.grain);
+/// Share of clay in a voxel, that of the envelope weighted. A film of air thinner than a voxel has both clays in it:
+/// they are summed, where one field of both would know the nearer wall only.
+float clay_of_two(const Fields& f, float envelope_density) {
+  const float tablet = coverage(f.tablet);
+  const float envelope = std::min(coverage(max(max(f.outer, f.wall), -f.crack)), 1.0f - tablet);
+  const float hollow = std::max(coverage(f.pore), coverage(f.organic));
+  return (tablet + envelope_density * envelope) * (1.0f - hollow);
+}
+
+float density(const Fields& f, const PhantomOptions& options) {
+  const float clay =
+      tells_clays_apart(options) ? clay_of_two(f, static_cast<float>(options.envelope_density)) : coverage(f.clay);
+  return kAirDensity + (kClayDensity - kAirDensity) * clay + (kOrganicDensity - kAirDensity) * coverage(f.organic) +
+         (kGrainDensity - kClayDensity) * coverage(f.grain);
+}
+
+/// Rings around the axis of rotation (z, through the middle): gains of detector columns, each a little off.
+std::vector<float> ring_profile(const PhantomOptions& options) {
+  if (options.rings <= 0.0) return {};
+  const auto columns = static_cast<std::size_t>(std::hypot(options.dims.x, options.dims.y) / 2.0 + 3.0);
+  std::vector<float> profile(columns);
+  Random random(options.seed, 0x72696e67);
+  // A column in seven is off; uniform on [-a, a] has the deviation a / sqrt(3).
+  const double range = options.rings * std::sqrt(3.0 * 7.0);
+  for (float& gain : profile)
+    gain = random.uniform() < 1.0 / 7.0
+               ? static_cast<float>(random.uniform(-range, range)) * (kClayDensity - kAirDensity)
+               : 0.0f;
+  return profile;
 }
 
 }  // namespace
@@ -31,6 +57,7 @@ PhantomSource::PhantomSource(std::shared_ptr<const Phantom> phantom) : phantom_(
   frame_.input_voxel = {glm::dvec3(options.voxel_mm), "phantom"};
   if (!std::isinf(options.snr_db))
     sigma_ = static_cast<double>(kClayDensity - kAirDensity) / std::pow(10.0, options.snr_db / 20.0);
+  rings_ = ring_profile(options);
 }
 
 void PhantomSource::fill_raw(std::int64_t z_begin, std::int64_t z_end) {
@@ -45,14 +72,16 @@ void PhantomSource::fill_raw(std::int64_t z_begin, std::int64_t z_end) {
                         {d.x + 1, std::min(y_lo + kBrickEdge, d.y + 1), std::min(z_lo + kBrickEdge, z_end)}};
     for (std::int64_t bx = brick_of(-1); bx <= brick_of(d.x); ++bx)
       visit_brick(
-          *phantom_, {1.0f, false}, {bx * kBrickEdge, y_lo, z_lo}, kBrickEdge, clip,
+          *phantom_, {1.0f, tells_clays_apart(phantom_->options())}, {bx * kBrickEdge, y_lo, z_lo}, kBrickEdge, clip,
           [&](const VoxelBox& box, const Fields& f) {
-            const float value = density(f);
+            const float value = density(f, phantom_->options());
             for (std::int64_t z = box.lo[2]; z < box.hi[2]; ++z)
               for (std::int64_t y = box.lo[1]; y < box.hi[1]; ++y)
                 std::fill(raw_row(y, z) + box.lo[0] + 1, raw_row(y, z) + box.hi[0] + 1, value);
           },
-          [&](std::int64_t x, std::int64_t y, std::int64_t z, const Fields& f) { raw_row(y, z)[x + 1] = density(f); });
+          [&](std::int64_t x, std::int64_t y, std::int64_t z, const Fields& f) {
+            raw_row(y, z)[x + 1] = density(f, phantom_->options());
+          });
     if (white > 0.0f)
       for (std::int64_t z = clip.lo[2]; z < clip.hi[2]; ++z)
         for (std::int64_t y = clip.lo[1]; y < clip.hi[1]; ++y) {
@@ -86,8 +115,17 @@ Result<void> PhantomSource::read(std::int64_t z_begin, std::int64_t z_end, std::
       const float* rows[9];
       for (std::int64_t k = 0; k < 9; ++k) rows[k] = raw_row(y + k % 3 - 1, z + k / 3 - 1);
       kernels::blur_yz(rows, sum);
-      kernels::blur_x(sum, out.subspan(static_cast<std::size_t>((z - z_begin) * d.slice() + y * d.x),
-                                       static_cast<std::size_t>(d.x)));
+      const std::span<float> row =
+          out.subspan(static_cast<std::size_t>((z - z_begin) * d.slice() + y * d.x), static_cast<std::size_t>(d.x));
+      kernels::blur_x(sum, row);
+      if (rings_.empty()) return;
+      const double off = static_cast<double>(y) - 0.5 * static_cast<double>(d.y - 1);
+      for (std::int64_t x = 0; x < d.x; ++x) {
+        const double radius = std::hypot(static_cast<double>(x) - 0.5 * static_cast<double>(d.x - 1), off);
+        const auto column = static_cast<std::size_t>(radius);
+        const auto t = static_cast<float>(radius - static_cast<double>(column));
+        row[static_cast<std::size_t>(x)] += (1.0f - t) * rings_[column] + t * rings_[column + 1];
+      }
     });
   }
   return {};

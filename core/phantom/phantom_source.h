@@ -34,6 +34,7 @@ class PhantomSource final : public SlabSource {
   std::shared_ptr<const Phantom> phantom_;
   GridFrame frame_;
   double sigma_ = 0.0;
+  std::vector<float> rings_;  ///< by distance from the axis of rotation, density; empty: none
   // Unblurred slices [raw_begin_, raw_end_), one voxel wider than the grid on each side.
   std::vector<float> raw_;
   std::int64_t raw_begin_ = 0, raw_end_ = 0;

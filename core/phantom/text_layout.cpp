@@ -134,13 +134,22 @@ void PhantomBuilder::measure_wedges() {
       const Fields f = p_.fields(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
       return wedge.owner == Owner::kTablet ? std::array{f.tablet.v, f.clay.v} : std::array{f.outer.v, f.clay.v};
     };
+    constexpr double kStep = 0.05;  // of the nominal depth
+    int steps = 0, air = 0;
     double lo = 0.0, hi = 0.0;
     wedge.open = field(0.0)[1] > 0.0f;
     const double nominal = wedge.depth;
-    for (hi = 0.05 * nominal; hi < 2.5 * nominal && field(hi)[0] > 0.0f; hi += 0.05 * nominal) {
-      wedge.open = wedge.open && field(hi)[1] > 0.0f;
+    for (hi = kStep * nominal; hi < 2.5 * nominal && field(hi)[0] > 0.0f; hi += kStep * nominal) {
+      const bool in_air = field(hi)[1] > 0.0f;
+      wedge.open = wedge.open && in_air;
+      ++steps;
+      air += in_air;
       lo = hi;
     }
+    if (wedge.owner == Owner::kTablet && !wedge.open)
+      wedge.state = p_.options_.contact == Contact::kFilm ? WedgeCase::kFilm
+                    : 2 * air >= steps                    ? WedgeCase::kPocket
+                                                          : WedgeCase::kFilled;
     for (int i = 0; i < 30; ++i) {
       const double middle = 0.5 * (lo + hi);
       (field(middle)[0] > 0.0f ? lo : hi) = middle;

@@ -75,12 +75,13 @@ Result<void> write_scan(const std::filesystem::path& path, const std::shared_ptr
 Result<void> write_wedges(Hdf5Writer& file, const Phantom& phantom) {
   const std::vector<std::string> columns{"x",      "y",      "z",      "out_x", "out_y",  "out_z",
                                          "tail_x", "tail_y", "tail_z", "depth", "length", "head_half_width",
-                                         "side",   "owner",  "sign",   "open"};
+                                         "side",   "owner",  "sign",   "open",  "case"};
   std::vector<double> rows;
   for (const Wedge& w : phantom.wedges())
     rows.insert(rows.end(), {w.position.x, w.position.y, w.position.z, w.outward.x, w.outward.y, w.outward.z, w.tail.x,
                              w.tail.y, w.tail.z, w.depth, w.length, w.head_half_width, static_cast<double>(w.side),
-                             static_cast<double>(w.owner), static_cast<double>(w.sign), w.open ? 1.0 : 0.0});
+                             static_cast<double>(w.owner), static_cast<double>(w.sign), w.open ? 1.0 : 0.0,
+                             static_cast<double>(w.state)});
   return file.write_table("/truth/wedges", columns, rows);
 }
 
@@ -91,26 +92,33 @@ Result<void> write_truth(const std::filesystem::path& path, const Phantom& phant
   const std::vector<std::uint64_t> chunk{static_cast<std::uint64_t>(std::min(kSlab, d.z)),
                                          static_cast<std::uint64_t>(std::min<std::int64_t>(64, d.y)),
                                          static_cast<std::uint64_t>(std::min<std::int64_t>(64, d.x))};
-  const std::string label_path = "/truth/label", distance_path = "/truth/distance";
+  const std::string label_path = "/truth/label", distance_path = "/truth/distance", interface_path = "/truth/interface";
   DUBSAR_TRY(
       file.create_dataset(label_path, {.type = ScalarType::kU8, .dims = shape(d), .chunk = chunk, .deflate = 1}));
   DUBSAR_TRY(file.create_dataset(
       distance_path, {.type = ScalarType::kI16, .dims = shape(d), .chunk = chunk, .deflate = 1, .shuffle = true}));
+  DUBSAR_TRY(file.create_dataset(
+      interface_path, {.type = ScalarType::kI16, .dims = shape(d), .chunk = chunk, .deflate = 1, .shuffle = true}));
   DUBSAR_TRY(describe(file, phantom, label_path));
   const std::vector<std::string> names{"outside", "tablet", "envelope", "gap", "pore", "organic", "glue"};
   DUBSAR_TRY(file.set_attribute(label_path, "names", std::span<const std::string>(names)));
   DUBSAR_TRY(file.set_attribute(distance_path, "scale_voxel", 1.0 / kDistanceSteps));
   DUBSAR_TRY(file.set_attribute(distance_path, "reach_voxel", Phantom::kReach));
+  DUBSAR_TRY(file.set_attribute(interface_path, "scale_voxel", 1.0 / kDistanceSteps));
+  DUBSAR_TRY(file.set_attribute(interface_path, "reach_voxel", Phantom::kReach));
   DUBSAR_TRY(write_wedges(file, phantom));
   progress.begin("truth", d.count(), "voxel");
   std::vector<std::uint8_t> label;
-  std::vector<std::int16_t> distance;
+  std::vector<std::int16_t> distance, interface;
   for (std::int64_t z = 0; z < d.z; z += kSlab) {
     if (progress.cancelled()) return cancelled_error();
     const std::int64_t slices = std::min(kSlab, d.z - z);
     label.resize(static_cast<std::size_t>(slices * d.slice()));
     distance.resize(label.size());
+    interface.resize(label.size());
     rasterise_truth(phantom, z, z + slices, label, distance);
+    rasterise_interface(phantom, z, z + slices, interface);
+    DUBSAR_TRY(file.write_slab<std::int16_t>(interface_path, static_cast<std::uint64_t>(z), interface));
     DUBSAR_TRY(file.write_slab<std::uint8_t>(label_path, static_cast<std::uint64_t>(z), label));
     DUBSAR_TRY(file.write_slab<std::int16_t>(distance_path, static_cast<std::uint64_t>(z), distance));
     progress.advance(slices * d.slice());
@@ -152,6 +160,17 @@ void rasterise_truth(const Phantom& phantom, std::int64_t z_begin, std::int64_t 
   });
 }
 
+void rasterise_interface(const Phantom& phantom, std::int64_t z_begin, std::int64_t z_end,
+                         std::span<std::int16_t> distance) {
+  const Dims d = phantom.options().dims;
+  parallel_for(d.y * (z_end - z_begin), 4, [&](std::int64_t item) {
+    const std::int64_t y = item % d.y, z = z_begin + item / d.y;
+    for (std::int64_t x = 0; x < d.x; ++x)
+      distance[static_cast<std::size_t>(item * d.x + x)] =
+          static_cast<std::int16_t>(std::lround(kDistanceSteps * phantom.tablet_distance({x, y, z})));
+  });
+}
+
 Result<PhantomReport> write_phantom(const std::filesystem::path& scan,
                                     const std::optional<std::filesystem::path>& truth, const PhantomOptions& options,
                                     Progress& progress) {
@@ -164,8 +183,10 @@ Result<PhantomReport> write_phantom(const std::filesystem::path& scan,
   report.glued_fraction = phantom->glued_fraction();
   report.cracked = phantom->cracked();
   report.pores = phantom->pore_count();
-  for (const Wedge& wedge : phantom->wedges())
+  for (const Wedge& wedge : phantom->wedges()) {
+    if (wedge.owner == Owner::kTablet) ++report.wedges_by_case[static_cast<std::size_t>(wedge.state)];
     ++(wedge.owner == Owner::kTablet ? report.tablet_wedges : report.envelope_wedges);
+  }
   return report;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // `dubsar phantom`: the scan of a phantom and the truth about it as HDF5 files.
 
+#include <array>
 #include <filesystem>
 #include <optional>
 
@@ -15,12 +16,16 @@ struct PhantomReport {
   double glued_fraction = 0.0;
   bool cracked = false;
   int tablet_wedges = 0, envelope_wedges = 0, pores = 0;
+  std::array<int, std::size(kWedgeCases)> wedges_by_case{};  ///< of the tablet's
 };
 
 /// Writes the scan to `scan` (NeXus: /entry/data/data float32 z y x, with axes in mm) and, if wanted, the truth:
 ///   /truth/label       uint8  z y x   Label of each voxel
 ///   /truth/distance    int16  z y x   signed distance to the clay's surface in 1/256 voxel, cut at Phantom::kReach
-///   /truth/wedges      float64 table, one row a wedge; the attribute "columns" names the columns
+///   /truth/interface   int16  z y x   the same to the tablet's surface as if it were unwrapped: the true interface
+///   where
+///                                     it touches the envelope
+///   /truth/wedges      float64 table, one row a wedge; the attribute "columns" names the columns; "case" is WedgeCase
 /// Both files appear only when complete. Streams slabs of 16 slices: memory is some slices. Advances `progress` by
 /// voxels (stages "phantom" and "truth").
 /// Errors: kUsage (options), kCannotCreate, kPermission, kIo, kCancelled.
@@ -34,5 +39,8 @@ inline constexpr double kDistanceSteps = 256.0;
 /// Truth of slices [z_begin, z_end), x fastest: both spans hold slice * (z_end - z_begin) values. All threads.
 void rasterise_truth(const Phantom& phantom, std::int64_t z_begin, std::int64_t z_end, std::span<std::uint8_t> label,
                      std::span<std::int16_t> distance);
+/// The same for the distance to the tablet's surface as if it were unwrapped.
+void rasterise_interface(const Phantom& phantom, std::int64_t z_begin, std::int64_t z_end,
+                         std::span<std::int16_t> distance);
 
 }  // namespace dubsar::phantom
