@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numeric>
 #include <vector>
 
+#include "core/base/disjoint_sets.h"
 #include "core/base/parallel.h"
 #include "core/base/result.h"
 
@@ -34,15 +34,14 @@ class Link {
   void check(std::uint32_t vertex, MeshCheck& sum) {
     std::sort(ends_.begin(), ends_.end(), [](const End& a, const End& b) { return a.neighbour < b.neighbour; });
     const std::size_t triangles = ends_.size() / 2;
-    fan_.resize(triangles);
-    std::iota(fan_.begin(), fan_.end(), 0u);
+    fans_.reset(triangles);
     std::size_t fans = triangles, path_ends = 0;
     bool branches = false;
     for (std::size_t i = 0, j; i < ends_.size(); i = j) {
       std::size_t leaving = 0;
       for (j = i; j < ends_.size() && ends_[j].neighbour == ends_[i].neighbour; ++j) {
         leaving += ends_[j].leaves;
-        fans -= join(ends_[i].triangle, ends_[j].triangle);
+        fans -= fans_.join(ends_[i].triangle, ends_[j].triangle);
       }
       const std::size_t degree = j - i;
       branches |= degree > 2;
@@ -62,38 +61,17 @@ class Link {
     std::uint32_t neighbour, triangle;
     bool leaves;
   };
-  std::uint32_t root(std::uint32_t t) {
-    while (fan_[t] != t) t = fan_[t] = fan_[fan_[t]];
-    return t;
-  }
-  std::size_t join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    fan_[std::max(a, b)] = std::min(a, b);
-    return a != b;
-  }
   std::vector<End> ends_;
-  std::vector<std::uint32_t> fan_;
+  DisjointSets fans_;
 };
 
 std::int64_t count_components(std::size_t vertices, std::span<const Triangle> triangles,
                               std::span<const std::uint32_t> first) {
-  std::vector<std::uint32_t> parent(vertices);
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets sets(vertices);
   std::int64_t joined = 0;
   for (const Triangle& t : triangles) {
     if (is_degenerate(t)) continue;
-    for (std::size_t i = 1; i < 3; ++i) {
-      const std::uint32_t a = root(t[0]), b = root(t[i]);
-      if (a != b) {
-        parent[std::max(a, b)] = std::min(a, b);
-        ++joined;
-      }
-    }
+    for (std::size_t i = 1; i < 3; ++i) joined += sets.join(t[0], t[i]);
   }
   std::int64_t used = 0;
   for (std::size_t v = 0; v < vertices; ++v) used += first[v + 1] > first[v];

@@ -1,6 +1,6 @@
 #pragma once
-// The one list of what a TriMesh may know of its vertices besides their positions. Whoever copies, joins, checks or
-// names attributes goes through it, so that adding one is a member of TriMesh and its entry here.
+// The one list of what may be known of vertices besides their positions. Whoever copies, joins, checks or names
+// attributes goes through it, so that adding one is a member of VertexAttributes and its entry here.
 
 #include <span>
 #include <string_view>
@@ -12,16 +12,30 @@
 
 namespace dubsar {
 
+/// What a vertex gets that a Steiner point or a fill patch adds to a surface.
+enum class AddedValue {
+  kNormal,       ///< unit mean over the surface around it; on a patch the patch's own
+  kSurfaceMean,  ///< mean over the surface around it; 0 on a patch
+  kMean,         ///< mean over the surface around it; inside a patch that of all rims
+  kNeighbour,    ///< that of a neighbour on the surface; 0 on a patch
+};
+
 template <class Mesh, class T>
 struct VertexAttribute {
   std::string_view name;  ///< in reports and messages
   std::vector<T> Mesh::*values;
+  AddedValue added = AddedValue::kNeighbour;
 };
+template <class Mesh, class T>
+VertexAttribute(std::string_view, std::vector<T> Mesh::*, AddedValue = {}) -> VertexAttribute<Mesh, T>;
 
 inline constexpr std::tuple kVertexAttributes{
-    VertexAttribute{"normals", &TriMesh::normals}, VertexAttribute{"colors", &TriMesh::colors},
-    VertexAttribute{"k_min", &TriMesh::k_min},     VertexAttribute{"k_max", &TriMesh::k_max},
-    VertexAttribute{"shape", &TriMesh::shape},     VertexAttribute{"ao", &TriMesh::ao},
+    VertexAttribute{"normals", &VertexAttributes::normals, AddedValue::kNormal},
+    VertexAttribute{"colors", &VertexAttributes::colors, AddedValue::kNeighbour},
+    VertexAttribute{"k_min", &VertexAttributes::k_min, AddedValue::kSurfaceMean},
+    VertexAttribute{"k_max", &VertexAttributes::k_max, AddedValue::kSurfaceMean},
+    VertexAttribute{"shape", &VertexAttributes::shape, AddedValue::kNeighbour},
+    VertexAttribute{"ao", &VertexAttributes::ao, AddedValue::kMean},
 };
 
 /// Calls visit(attribute) for each entry of a list, in its order.

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
 #include <utility>
 
+#include "core/base/disjoint_sets.h"
 #include "core/base/parallel.h"
 
 namespace dubsar {
@@ -96,17 +96,7 @@ void clear_runs(const std::uint64_t* row, std::int64_t width, std::vector<RowRun
 struct RunGraph {
   std::vector<std::int64_t> first;  ///< first run of each row
   std::vector<RowRun> runs;
-  std::vector<std::uint32_t> parent;
-
-  std::uint32_t root(std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    parent[std::max(a, b)] = std::min(a, b);
-  }
+  DisjointSets sets;
 
   explicit RunGraph(const BitVolume& blocked) {
     const Dims d = blocked.dims();
@@ -124,8 +114,7 @@ struct RunGraph {
     runs.reserve(static_cast<std::size_t>(exclusive_scan(first)));
     for (const auto& slice : of_slice) runs.insert(runs.end(), slice.begin(), slice.end());
     DUBSAR_CHECK(runs.size() < 0xffffffffu);
-    parent.resize(runs.size());
-    std::iota(parent.begin(), parent.end(), 0u);
+    sets.reset(runs.size());
     for (std::int64_t z = 0; z < d.z; ++z)
       for (std::int64_t y = 0; y < d.y; ++y) {
         if (y > 0) join_rows(z * d.y + y - 1, z * d.y + y);
@@ -140,7 +129,7 @@ struct RunGraph {
     while (a < end_a && b < end_b) {
       const RowRun &run_a = runs[static_cast<std::size_t>(a)], &run_b = runs[static_cast<std::size_t>(b)];
       if (run_a.begin < run_b.end && run_b.begin < run_a.end)
-        join(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
+        sets.join(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
       if (run_a.end < run_b.end)
         ++a;
       else
@@ -253,11 +242,11 @@ BitVolume flood_from_border(const BitVolume& blocked) {
   each_run([&](std::int64_t y, std::int64_t z, std::uint32_t i) {
     const RowRun& run = graph.runs[i];
     if (y == 0 || y == d.y - 1 || z == 0 || z == d.z - 1 || run.begin == 0 || run.end == d.x)
-      reached[graph.root(i)] = true;
+      reached[graph.sets.root(i)] = true;
   });
   BitVolume result(d);
   each_run([&](std::int64_t y, std::int64_t z, std::uint32_t i) {
-    if (reached[graph.root(i)]) set_run(result.row(y, z), graph.runs[i]);
+    if (reached[graph.sets.root(i)]) set_run(result.row(y, z), graph.runs[i]);
   });
   return result;
 }
@@ -293,7 +282,7 @@ EnclosedAir::EnclosedAir(const BitVolume& inside, const BitVolume& exterior) : d
   std::vector<std::uint32_t> id(graph.runs.size(), kNone);
   runs_.reserve(graph.runs.size());
   for (std::uint32_t i = 0; i < graph.runs.size(); ++i) {
-    const std::uint32_t root = graph.root(i);
+    const std::uint32_t root = graph.sets.root(i);
     if (id[root] == kNone) id[root] = count_++;
     runs_.push_back({graph.runs[i].begin, graph.runs[i].end, id[root]});
   }

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <numeric>
 
+#include "core/base/disjoint_sets.h"
 #include "core/base/parallel.h"
 #include "core/parts/min_cut.h"
 
@@ -31,23 +31,6 @@ std::uint32_t air_in_front(const BitVolume& inside, const BitVolume& exterior, c
   return EnclosedAir::kNone;
 }
 
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 /// Two labels on the faces where active[f]. preference > 0: the face wants `true`, in units of area.
 /// Faces that clearly agree and meet without a crease are one node, which leaves a small graph with the same
 /// cut.
@@ -63,7 +46,7 @@ Result<std::vector<bool>> cut_faces(const SurfaceModel& model, const FaceScene& 
   const auto clear_side = [&](std::uint32_t f) {
     return preference[f] > kClear * graph.area[f] ? 1 : preference[f] < -kClear * graph.area[f] ? -1 : 0;
   };
-  Sets sets(faces);
+  DisjointSets sets(faces);
   for (std::uint32_t f = 0; f < faces; ++f) {
     if (!active[f] || clear_side(f) == 0) continue;
     for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
@@ -161,7 +144,7 @@ FaceComponents find_components(const SurfaceModel& model, const FaceScene& scene
                                const std::vector<std::uint8_t>& label) {
   const FaceGraph& graph = scene.graph;
   const std::uint32_t faces = graph.faces();
-  Sets sets(faces);
+  DisjointSets sets(faces);
   for (std::uint32_t f = 0; f < faces; ++f)
     for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
       const std::uint32_t g = graph.neighbour[s];

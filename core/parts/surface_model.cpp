@@ -3,12 +3,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <glm/geometric.hpp>
-#include <numeric>
-#include <tuple>
 #include <utility>
 
+#include "core/base/parallel.h"
 #include "core/extract/triangulate.h"
+#include "core/mesh/vertex_attributes.h"
+#include "core/parts/triangle_soup.h"
 
 namespace dubsar {
 namespace {
@@ -32,12 +32,14 @@ struct Selection {
 
 Result<void> check_model(const SurfaceModel& model) {
   const std::size_t vertices = model.mesh.positions.size();
-  const auto fits = [&](std::size_t size) { return size == 0 || size == vertices; };
-  const VertexAttributes& a = model.attributes;
-  if (!fits(a.normals.size()) || !fits(a.k_min.size()) || !fits(a.k_max.size()) || !fits(a.shape.size()) ||
-      !fits(a.ao.size()))
-    return fail(ErrorKind::kBadData,
-                "surface_model: an attribute array does not have one entry for each of {} vertices", vertices);
+  Result<void> fits;
+  for_each_attribute([&](const auto& a) {
+    const std::size_t size = (model.attributes.*a.values).size();
+    if (fits && size != 0 && size != vertices)
+      fits = fail(ErrorKind::kBadData, "surface_model: {} {} found, expected one for each of {} vertices", size, a.name,
+                  vertices);
+  });
+  DUBSAR_TRY(fits);
   if (!model.quad_partition.empty() && model.quad_partition.size() != model.mesh.quads.size())
     return fail(ErrorKind::kBadData, "surface_model: {} partition ids found, expected one for each of {} x-quads",
                 model.quad_partition.size(), model.mesh.quads.size());
@@ -78,17 +80,7 @@ Result<Selection> select(const SurfaceModel& model, const MeshOptions& options) 
   return selection;
 }
 
-/// Triangles before vertices are split: ids 0..dual are dual vertices, then Steiner points, then patch
-/// vertices (one copy for each side of a patch).
-struct Soup {
-  std::vector<Triangle> triangles;
-  std::vector<std::uint8_t> partition, group;  ///< of each triangle
-  std::vector<glm::vec3> added;                ///< positions of ids from dual_count on
-  std::size_t first_patch_triangle = 0;
-  std::size_t first_patch_vertex = 0;  ///< an id
-};
-
-void add_quads(const SurfaceModel& model, const Selection& selection, Triangulation triangulation, Soup& soup) {
+void add_quads(const SurfaceModel& model, const Selection& selection, Triangulation triangulation, TriangleSoup& soup) {
   const std::size_t quads = model.mesh.quads.size();
   soup.added = std::move(triangulation.steiner);
   const bool everything =
@@ -111,7 +103,7 @@ void add_quads(const SurfaceModel& model, const Selection& selection, Triangulat
   soup.group.resize(kept);
 }
 
-void add_patches(const SurfaceModel& model, const Selection& selection, Soup& soup) {
+void add_patches(const SurfaceModel& model, const Selection& selection, TriangleSoup& soup) {
   const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());
   soup.first_patch_triangle = soup.triangles.size();
   soup.first_patch_vertex = dual + soup.added.size();
@@ -160,144 +152,13 @@ std::vector<bool> find_border(const SurfaceModel& model, const Selection& select
   return border;
 }
 
-/// Gives every fan of triangles around a border vertex its own copy of it. O(n log n), whatever the triangles are. Copy
-/// i gets the id first_copy + i; the result holds the id that each copy stands for.
-std::vector<std::uint32_t> split_fans(Soup& soup, const std::vector<bool>& border, std::uint32_t first_copy) {
-  struct Corner {
-    std::uint32_t vertex;
-    std::uint8_t group;
-    std::uint32_t triangle;
-    std::uint32_t next, previous;  ///< the other two vertices, in order
-  };
-  std::vector<Corner> corners;
-  for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
-    const Triangle& triangle = soup.triangles[t];
-    for (std::size_t c = 0; c < 3; ++c)
-      if (triangle[c] < border.size() && border[triangle[c]])
-        corners.push_back(
-            {triangle[c], soup.group[t], static_cast<std::uint32_t>(t), triangle[(c + 1) % 3], triangle[(c + 2) % 3]});
-  }
-  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
-    return std::tie(a.vertex, a.group, a.triangle) < std::tie(b.vertex, b.group, b.triangle);
-  });
-
-  std::vector<std::uint32_t> copies;
-  std::vector<std::size_t> parent;
-  const auto root = [&](std::size_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  std::vector<std::pair<std::uint32_t, std::size_t>> starts;  // first side of a corner, corner
-  std::vector<bool> met;                                      // a corner ends where these start
-  std::vector<std::uint32_t> id_of_fan;                       // by the fan's root
-  for (std::size_t begin = 0; begin < corners.size();) {
-    const std::uint32_t vertex = corners[begin].vertex;
-    bool original_taken = false;
-    while (begin < corners.size() && corners[begin].vertex == vertex) {
-      std::size_t end = begin;
-      while (end < corners.size() && corners[end].vertex == vertex && corners[end].group == corners[begin].group) ++end;
-      const std::size_t count = end - begin;
-      parent.resize(count);
-      std::iota(parent.begin(), parent.end(), std::size_t{0});
-      const auto join = [&](std::size_t i, std::size_t j) {
-        const std::size_t a = root(i), b = root(j);
-        parent[std::max(a, b)] = std::min(a, b);
-      };
-      // Corners hang together where the side that one ends with is the side that others start with.
-      starts.clear();
-      for (std::size_t i = 0; i < count; ++i) starts.emplace_back(corners[begin + i].next, i);
-      std::sort(starts.begin(), starts.end());
-      met.assign(count, false);
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t side = corners[begin + i].previous;
-        const auto start = std::lower_bound(starts.begin(), starts.end(), std::pair(side, std::size_t{0}));
-        if (start == starts.end() || start->first != side) continue;
-        join(i, start->second);
-        met[static_cast<std::size_t>(start - starts.begin())] = true;
-      }
-      for (std::size_t s = 1; s < count; ++s) {
-        if (starts[s].first != starts[s - 1].first || !met[s - 1]) continue;
-        join(starts[s - 1].second, starts[s].second);
-        met[s] = true;
-      }
-      id_of_fan.assign(count, vertex);
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t fan = root(i);
-        if (fan == i) {  // roots are the smallest of their fan, so they come first
-          if (original_taken) {
-            id_of_fan[fan] = first_copy + static_cast<std::uint32_t>(copies.size());
-            copies.push_back(vertex);
-          }
-          original_taken = true;
-        }
-        const std::uint32_t id = id_of_fan[fan];
-        Triangle& triangle = soup.triangles[corners[begin + i].triangle];
-        for (std::uint32_t& v : triangle)
-          if (v == vertex) v = id;
-      }
-      begin = end;
-    }
-  }
-  return copies;
-}
-
-/// Averages over the dual vertices around each added vertex.
-struct Surroundings {
-  glm::vec3 normal{0.0f};
-  float k_min = 0.0f, k_max = 0.0f, ao = 0.0f;
-  float count = 0.0f;
-  std::uint8_t shape = 0;
-};
-
-std::vector<Surroundings> average_around_added(const SurfaceModel& model, const Soup& soup) {
-  const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());
-  const VertexAttributes& a = model.attributes;
-  std::vector<Surroundings> result(soup.added.size());
-  const auto position = [&](std::uint32_t v) { return v < dual ? model.mesh.positions[v] : soup.added[v - dual]; };
-  for (std::size_t i = 0; i < soup.triangles.size(); ++i) {
-    const Triangle& t = soup.triangles[i];
-    const bool patch = i >= soup.first_patch_triangle;
-    for (const std::uint32_t v : t) {
-      if (v < dual) continue;
-      Surroundings& s = result[v - dual];
-      if (patch) s.normal += glm::cross(position(t[1]) - position(t[0]), position(t[2]) - position(t[0]));
-      for (const std::uint32_t w : t) {
-        if (w >= dual) continue;
-        s.count += 1.0f;
-        if (!patch && !a.normals.empty()) s.normal += a.normals[w];
-        if (!a.ao.empty()) s.ao += static_cast<float>(a.ao[w]);
-        if (patch) continue;
-        if (!a.k_min.empty()) s.k_min += a.k_min[w];
-        if (!a.k_max.empty()) s.k_max += a.k_max[w];
-        if (!a.shape.empty()) s.shape = a.shape[w];
-      }
-    }
-  }
-  // Inner vertices of a patch touch no dual vertex: they take the mean over the rims.
-  float patch_ao = 0.0f, patch_count = 0.0f;
-  for (std::size_t i = 0; i < result.size(); ++i)
-    if (dual + i >= soup.first_patch_vertex) patch_ao += result[i].ao, patch_count += result[i].count;
-  for (Surroundings& s : result) {
-    const float length = glm::length(s.normal);
-    s.normal = length > 0.0f ? s.normal / length : glm::vec3(0.0f, 0.0f, 1.0f);
-    if (s.count > 0.0f) {
-      s.k_min /= s.count;
-      s.k_max /= s.count;
-      s.ao /= s.count;
-    } else if (patch_count > 0.0f) {
-      s.ao = patch_ao / patch_count;
-    }
-  }
-  return result;
-}
-
 /// Source of every output vertex, in output order, and the new id of every soup vertex that is used.
 struct Numbering {
   std::vector<std::uint32_t> source;  ///< id in the soup, below dual + added; copies stand for their original
   std::vector<std::uint32_t> new_id;
 };
 
-Numbering number_vertices(const Soup& soup, std::size_t first_copy, const std::vector<std::uint32_t>& copies) {
+Numbering number_vertices(const TriangleSoup& soup, std::size_t first_copy, const std::vector<std::uint32_t>& copies) {
   Numbering numbering;
   numbering.new_id.assign(first_copy + copies.size(), 0);
   for (const Triangle& t : soup.triangles)
@@ -310,36 +171,30 @@ Numbering number_vertices(const Soup& soup, std::size_t first_copy, const std::v
   return numbering;
 }
 
-void fill_attributes(const SurfaceModel& model, const Soup& soup, const Numbering& numbering,
-                     const std::vector<Surroundings>& added, TriMesh& out) {
+/// Positions and attributes of the output vertices.
+void fill_vertices(const SurfaceModel& model, const TriangleSoup& soup, const Numbering& numbering,
+                   const VertexAttributes& added, TriMesh& out) {
   const std::size_t dual = model.mesh.positions.size();
-  const std::size_t count = numbering.source.size();
-  const VertexAttributes& a = model.attributes;
-  const auto gather = [&](const auto& from, auto& to, const auto& of_added) {
-    if (from.empty() && dual > 0) return;
-    to.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
+  const auto gather = [&](const auto& from, const auto& from_added, auto& to) {
+    to.resize(numbering.source.size());
+    parallel_for(static_cast<std::int64_t>(to.size()), 1 << 14, [&](std::int64_t k) {
+      const auto i = static_cast<std::size_t>(k);
       const std::uint32_t v = numbering.source[i];
-      to[i] = v < dual ? from[v] : of_added(added[v - dual]);
-    }
+      to[i] = v < dual ? from[v] : from_added[v - dual];
+    });
   };
-  out.positions.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t v = numbering.source[i];
-    out.positions[i] = v < dual ? model.mesh.positions[v] : soup.added[v - dual];
-  }
-  gather(a.normals, out.normals, [](const Surroundings& s) { return s.normal; });
-  gather(a.k_min, out.k_min, [](const Surroundings& s) { return s.k_min; });
-  gather(a.k_max, out.k_max, [](const Surroundings& s) { return s.k_max; });
-  gather(a.shape, out.shape, [](const Surroundings& s) { return s.shape; });
-  gather(a.ao, out.ao, [](const Surroundings& s) { return static_cast<std::uint8_t>(s.ao + 0.5f); });
+  gather(model.mesh.positions, soup.added, out.positions);
+  for_each_attribute([&](const auto& a) {
+    if (const auto& values = model.attributes.*a.values; !values.empty())
+      gather(values, added.*a.values, out.*a.values);
+  });
 }
 
 /// One TriMesh from triangles that were made before, so that several selections share the triangulation.
 Result<TriMesh> assemble(const SurfaceModel& model, Triangulation triangulation, const MeshOptions& options,
                          std::vector<std::uint32_t>* source = nullptr) {
   DUBSAR_ASSIGN(const Selection selection, select(model, options));
-  Soup soup;
+  TriangleSoup soup;
   add_quads(model, selection, std::move(triangulation), soup);
   soup.first_patch_triangle = soup.triangles.size();
   soup.first_patch_vertex = model.mesh.positions.size() + soup.added.size();
@@ -347,15 +202,14 @@ Result<TriMesh> assemble(const SurfaceModel& model, Triangulation triangulation,
 
   const std::size_t first_copy = model.mesh.positions.size() + soup.added.size();
   if (first_copy > (std::size_t{1} << 31))
-    return fail(ErrorKind::kTryAgain,
-                "surface_model: {} vertices found, expected at most 2^31; crop or resample the input", first_copy);
-  const std::vector<Surroundings> added = average_around_added(model, soup);
+    return fail(ErrorKind::kTryAgain, "surface_model: {} vertices found, expected at most 2^31", first_copy);
+  const VertexAttributes added = attributes_of_added(model, soup);
   const std::vector<std::uint32_t> copies =
       split_fans(soup, find_border(model, selection), static_cast<std::uint32_t>(first_copy));
   const Numbering numbering = number_vertices(soup, first_copy, copies);
 
   TriMesh out;
-  fill_attributes(model, soup, numbering, added, out);
+  fill_vertices(model, soup, numbering, added, out);
   for (Triangle& t : soup.triangles)
     for (std::uint32_t& v : t) v = numbering.new_id[v];
   out.triangles = std::move(soup.triangles);

@@ -15,14 +15,6 @@
 
 namespace dubsar {
 
-/// Per dual vertex; arrays are empty when the stage did not run.
-struct VertexAttributes {
-  std::vector<glm::vec3> normals;
-  std::vector<float> k_min, k_max;
-  std::vector<std::uint8_t> shape;
-  std::vector<std::uint8_t> ao;  ///< 0..63
-};
-
 /// Triangles that close a hole which segmentation cut. Made once and used by both partitions, reversed for
 /// `reverse_partition`, so that the pieces mate exactly. A patch between two partitions of one body (a membrane across
 /// a crack, where the envelope's outside meets its inside) closes each of the two when it stands alone, and is left out
@@ -37,8 +29,8 @@ struct FillPatch {
 struct SurfaceModel {
   GridFrame frame;
   SurfaceSamples samples;
-  QuadMesh mesh;  ///< smoothed positions; connectivity follows from samples
-  VertexAttributes attributes;
+  QuadMesh mesh;                            ///< smoothed positions; connectivity follows from samples
+  VertexAttributes attributes;              ///< of dual vertices; arrays are empty when the stage did not run
   std::vector<PartitionId> quad_partition;  ///< per x-quad; empty: not segmented, all 0
   PartitionTable partitions;
   std::vector<FillPatch> patches;

@@ -1,0 +1,146 @@
+#include "core/parts/triangle_soup.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <span>
+#include <tuple>
+#include <type_traits>
+
+#include "core/mesh/fans.h"
+#include "core/mesh/vertex_attributes.h"
+
+namespace dubsar {
+namespace {
+
+/// An added vertex and a dual vertex that share a triangle, in the order of the triangles.
+struct Around {
+  std::uint32_t added, dual;
+  bool patch;  ///< the triangle is of a fill patch
+};
+
+std::vector<Around> find_around(const TriangleSoup& soup, std::uint32_t dual) {
+  std::vector<Around> around;
+  for (std::size_t i = 0; i < soup.triangles.size(); ++i)
+    for (const std::uint32_t v : soup.triangles[i]) {
+      if (v < dual) continue;
+      for (const std::uint32_t w : soup.triangles[i])
+        if (w < dual) around.push_back({v - dual, w, i >= soup.first_patch_triangle});
+    }
+  return around;
+}
+
+std::vector<glm::vec3> normals_of_added(const SurfaceModel& model, const TriangleSoup& soup,
+                                        std::span<const Around> around) {
+  const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());
+  std::vector<glm::vec3> normals(soup.added.size(), glm::vec3(0.0f));
+  const auto position = [&](std::uint32_t v) { return v < dual ? model.mesh.positions[v] : soup.added[v - dual]; };
+  for (std::size_t i = soup.first_patch_triangle; i < soup.triangles.size(); ++i) {
+    const Triangle& t = soup.triangles[i];
+    for (const std::uint32_t v : t)
+      if (v >= dual) normals[v - dual] += glm::cross(position(t[1]) - position(t[0]), position(t[2]) - position(t[0]));
+  }
+  for (const Around& a : around)
+    if (!a.patch) normals[a.added] += model.attributes.normals[a.dual];
+  for (glm::vec3& n : normals) {
+    const float length = glm::length(n);
+    n = length > 0.0f ? n / length : glm::vec3(0.0f, 0.0f, 1.0f);
+  }
+  return normals;
+}
+
+/// Means over the dual vertices around; `everywhere`: on patches too, and for their inner vertices over all rims.
+template <class T>
+std::vector<T> means_of_added(const std::vector<T>& values, bool everywhere, const TriangleSoup& soup,
+                              std::span<const Around> around, std::size_t first_patch_vertex) {
+  std::vector<float> sum(soup.added.size(), 0.0f), count(soup.added.size(), 0.0f);
+  for (const Around& a : around) {
+    if (a.patch && !everywhere) continue;
+    sum[a.added] += static_cast<float>(values[a.dual]);
+    count[a.added] += 1.0f;
+  }
+  float rims = 0.0f, rim_count = 0.0f;
+  for (std::size_t i = first_patch_vertex; i < sum.size(); ++i) rims += sum[i], rim_count += count[i];
+  std::vector<T> means(sum.size());
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const float mean = count[i] > 0.0f ? sum[i] / count[i] : rim_count > 0.0f ? rims / rim_count : sum[i];
+    means[i] = static_cast<T>(std::is_integral_v<T> ? mean + 0.5f : mean);
+  }
+  return means;
+}
+
+/// The values of an attribute at the added vertices (AddedValue).
+template <class T>
+std::vector<T> values_of_added(const std::vector<T>& values, AddedValue rule, const SurfaceModel& model,
+                               const TriangleSoup& soup, std::span<const Around> around) {
+  if constexpr (std::is_same_v<T, glm::vec3>) {
+    if (rule == AddedValue::kNormal) return normals_of_added(model, soup, around);
+  }
+  if constexpr (std::is_arithmetic_v<T>) {
+    if (rule == AddedValue::kMean || rule == AddedValue::kSurfaceMean)
+      return means_of_added(values, rule == AddedValue::kMean, soup, around,
+                            soup.first_patch_vertex - model.mesh.positions.size());
+  }
+  std::vector<T> result(soup.added.size(), T{});
+  for (const Around& a : around)
+    if (!a.patch) result[a.added] = values[a.dual];
+  return result;
+}
+
+}  // namespace
+
+VertexAttributes attributes_of_added(const SurfaceModel& model, const TriangleSoup& soup) {
+  const std::vector<Around> around = find_around(soup, static_cast<std::uint32_t>(model.mesh.positions.size()));
+  VertexAttributes added;
+  for_each_attribute([&](const auto& a) {
+    const auto& values = model.attributes.*a.values;
+    if (!values.empty()) added.*a.values = values_of_added(values, a.added, model, soup, around);
+  });
+  return added;
+}
+
+std::vector<std::uint32_t> split_fans(TriangleSoup& soup, const std::vector<bool>& border, std::uint32_t first_copy) {
+  struct Corner {
+    std::uint32_t vertex;
+    std::uint8_t group;
+    std::uint32_t triangle;
+    std::uint32_t next, previous;  ///< the other two vertices, in order
+  };
+  std::vector<Corner> corners;
+  for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
+    const Triangle& triangle = soup.triangles[t];
+    for (std::size_t c = 0; c < 3; ++c)
+      if (triangle[c] < border.size() && border[triangle[c]])
+        corners.push_back(
+            {triangle[c], soup.group[t], static_cast<std::uint32_t>(t), triangle[(c + 1) % 3], triangle[(c + 2) % 3]});
+  }
+  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
+    return std::tie(a.vertex, a.group, a.triangle) < std::tie(b.vertex, b.group, b.triangle);
+  });
+
+  std::vector<std::uint32_t> copies;
+  Fans fans;
+  bool original_taken = false;
+  for (std::size_t begin = 0, end; begin < corners.size(); begin = end) {
+    const std::uint32_t vertex = corners[begin].vertex;
+    if (begin == 0 || corners[begin - 1].vertex != vertex) original_taken = false;
+    fans.clear();
+    for (end = begin;
+         end < corners.size() && corners[end].vertex == vertex && corners[end].group == corners[begin].group; ++end)
+      fans.add(corners[end].next, corners[end].previous);
+    const std::uint32_t count = fans.find();
+    // The first fan of a vertex keeps it, all others get copies.
+    const std::uint32_t kept = original_taken ? 0 : 1;
+    const std::uint32_t first_new = first_copy + static_cast<std::uint32_t>(copies.size());
+    copies.insert(copies.end(), count - kept, vertex);
+    original_taken = true;
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t fan = fans.of_corner()[i - begin];
+      if (fan < kept) continue;
+      for (std::uint32_t& v : soup.triangles[corners[i].triangle])
+        if (v == vertex) v = first_new + fan - kept;
+    }
+  }
+  return copies;
+}
+
+}  // namespace dubsar

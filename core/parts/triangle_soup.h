@@ -1,0 +1,30 @@
+#pragma once
+// The triangles of a surface model before they become a TriMesh: parts still share vertices, and Steiner points and
+// patches have added some that have no attributes yet.
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/parts/surface_model.h"
+
+namespace dubsar {
+
+/// Ids 0..dual are dual vertices, then Steiner points, then patch
+/// vertices (one copy for each side of a patch).
+struct TriangleSoup {
+  std::vector<Triangle> triangles;
+  std::vector<std::uint8_t> partition, group;  ///< of each triangle
+  std::vector<glm::vec3> added;                ///< positions of ids from dual_count on
+  std::size_t first_patch_triangle = 0;
+  std::size_t first_patch_vertex = 0;  ///< an id
+};
+
+/// All attributes that the model has, at the added vertices (AddedValue says how). Call it before split_fans().
+VertexAttributes attributes_of_added(const SurfaceModel& model, const TriangleSoup& soup);
+
+/// Gives every fan of triangles of one group around a border vertex its own copy of it. O(n log n), whatever the
+/// triangles are. Copy i gets the id first_copy + i; the result holds the id that each copy stands for.
+std::vector<std::uint32_t> split_fans(TriangleSoup& soup, const std::vector<bool>& border, std::uint32_t first_copy);
+
+}  // namespace dubsar
