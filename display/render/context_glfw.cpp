@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/log.h"
+#include "display/render/utf8.h"
 
 namespace dubsar {
 namespace {
@@ -121,27 +122,6 @@ std::string key_name(int key) {
       break;
   }
   return key >= GLFW_KEY_F1 && key <= GLFW_KEY_F25 ? fmt::format("f{}", key - GLFW_KEY_F1 + 1) : std::string();
-}
-
-std::string utf8(unsigned code) {
-  std::string out;
-  const auto put = [&](unsigned byte) { out += static_cast<char>(static_cast<unsigned char>(byte)); };
-  if (code < 0x80) {
-    put(code);
-  } else if (code < 0x800) {
-    put(0xC0 | code >> 6);
-    put(0x80 | (code & 0x3F));
-  } else if (code < 0x10000) {
-    put(0xE0 | code >> 12);
-    put(0x80 | (code >> 6 & 0x3F));
-    put(0x80 | (code & 0x3F));
-  } else {
-    put(0xF0 | code >> 18);
-    put(0x80 | (code >> 12 & 0x3F));
-    put(0x80 | (code >> 6 & 0x3F));
-    put(0x80 | (code & 0x3F));
-  }
-  return out;
 }
 
 void set_hints(const WindowOptions& options) {

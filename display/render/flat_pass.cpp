@@ -4,18 +4,13 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
+#include "display/render/flat_views.h"
 #include "display/render/slice_image.h"
 
 namespace dubsar {
 namespace {
 
 constexpr GLuint kViewsBinding = 0, kPointsBinding = 1;
-constexpr std::string_view kLayered = "#extension GL_ARB_shader_viewport_layer_array : require\n#define LAYERED\n";
-
-struct FlatView {  // std430, as in shaders/slice.vert and shaders/lines.vert
-  glm::mat4 view_from_world, clip_from_view;
-  glm::vec4 layer;  // x; y: 1 for parallel projection
-};
 
 void blend() {
   glEnable(GL_BLEND);
@@ -41,8 +36,8 @@ Result<FlatPass> FlatPass::create(bool layered) {
   DUBSAR_ASSIGN(out.slice_, make_program("slice.vert", "slice.frag"));
   DUBSAR_ASSIGN(out.lines_, make_program("lines.vert", "lines.frag"));
   if (layered) {
-    DUBSAR_ASSIGN(out.slice_layered_, make_program("slice.vert", "slice.frag", kLayered));
-    DUBSAR_ASSIGN(out.lines_layered_, make_program("lines.vert", "lines.frag", kLayered));
+    DUBSAR_ASSIGN(out.slice_layered_, make_program("slice.vert", "slice.frag", kFlatLayered));
+    DUBSAR_ASSIGN(out.lines_layered_, make_program("lines.vert", "lines.frag", kFlatLayered));
   }
   out.no_vertices_ = make_vertex_array();
   out.views_ = make_stream_buffer();
@@ -51,13 +46,7 @@ Result<FlatPass> FlatPass::create(bool layered) {
 }
 
 void FlatPass::bind_views(const PassViews& target) {
-  std::vector<FlatView> data;
-  for (std::size_t i = 0; i < target.views.size(); ++i) {
-    const View& view = target.views[i];
-    data.push_back(
-        {glm::mat4(view.view_from_world), glm::mat4(view.clip_from_view),
-         glm::vec4(target.layers.empty() ? 0 : target.layers[i], view.orthographic() ? 1.0f : 0.0f, 0.0f, 0.0f)});
-  }
+  const std::vector<FlatView> data = flat_views(target);
   stream(views_, std::as_bytes(std::span(data)));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kViewsBinding, views_);
   glBindVertexArray(no_vertices_);

@@ -1,6 +1,7 @@
 #include "display/render/gpu_mesh.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -230,6 +231,8 @@ Result<GpuMesh> GpuMesh::upload(const PackedMesh& mesh) {
   GpuMesh out;
   out.box_mm_ = mesh.box_mm;
   out.mirrored_ = mesh.mirrored;
+  static std::atomic<std::uint64_t> uploads{0};
+  out.version_ = ++uploads;
   out.chunks_ = mesh.chunks.empty() ? whole_partitions(mesh) : mesh.chunks;
   out.vertices_ = make_buffer(std::as_bytes(std::span(mesh.vertices)));
   out.indices_ = make_buffer(std::as_bytes(std::span(mesh.triangles)));

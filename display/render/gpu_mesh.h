@@ -74,6 +74,8 @@ class GpuMesh {
   GLuint vertex_array() const noexcept { return vertex_array_; }
   const Box& box_mm() const noexcept { return box_mm_; }
   bool mirrored() const noexcept { return mirrored_; }
+  /// Of what was uploaded: no two uploads of a process have the same.
+  std::uint64_t version() const noexcept { return version_; }
   /// Index ranges (first triangle, count) to draw for the partitions whose bit is set, neighbours joined, without the
   /// chunks that none of the views (world: the mesh's) can see.
   TriangleRanges visible_ranges(std::uint8_t partitions, std::span<const View> views,
@@ -85,6 +87,7 @@ class GpuMesh {
   Box box_mm_;
   std::vector<TriangleChunk> chunks_;  ///< of a mesh without chunks: one a partition and evidence
   bool mirrored_ = false;
+  std::uint64_t version_ = 0;
 };
 
 }  // namespace dubsar

@@ -34,6 +34,7 @@ Result<Renderer> Renderer::create(bool layered) {
   Renderer out;
   DUBSAR_ASSIGN(out.meshes_, MeshPass::create(layered));
   DUBSAR_ASSIGN(out.flat_, FlatPass::create(out.meshes_.layered()));
+  DUBSAR_ASSIGN(out.labels_, LabelPass::create(out.meshes_.layered()));
   DUBSAR_ASSIGN(out.peel_, PeelPass::create());
   DUBSAR_ASSIGN(out.shadows_, ShadowMap::create());
   DUBSAR_ASSIGN(out.resolve_program_, make_program("fullscreen.vert", "resolve.frag"));
@@ -99,8 +100,11 @@ Result<void> Renderer::draw_items(const SceneView& scene, const PassViews& targe
     if (const auto* slice = std::get_if<SliceItem>(&item)) DUBSAR_TRY(flat_.draw(*slice, scene, target));
   for (const DrawItem& item : scene.items)
     if (const auto* lines = std::get_if<LinesItem>(&item)) DUBSAR_TRY(flat_.draw(*lines, target, pixel));
-  if (!has_transparency(scene)) return {};
-  return peel_.draw(meshes_, scene, target, shadows, into.framebuffer, into.depth, into.depth_layer);
+  if (has_transparency(scene))
+    DUBSAR_TRY(peel_.draw(meshes_, scene, target, shadows, into.framebuffer, into.depth, into.depth_layer));
+  for (const DrawItem& item : scene.items)
+    if (const auto* label = std::get_if<LabelItem>(&item)) DUBSAR_TRY(labels_.draw(*label, target, pixel));
+  return {};
 }
 
 Result<void> Renderer::render_layers(const SceneView& scene, std::span<const View> views, std::span<const int> layers,

@@ -6,6 +6,7 @@
 #include "core/base/result.h"
 #include "display/optics/view.h"
 #include "display/render/flat_pass.h"
+#include "display/render/label_pass.h"
 #include "display/render/mesh_pass.h"
 #include "display/render/peel_pass.h"
 #include "display/render/scene.h"
@@ -61,6 +62,7 @@ class Renderer {
 
   MeshPass meshes_;
   FlatPass flat_;
+  LabelPass labels_;
   PeelPass peel_;
   ShadowMap shadows_;
   GlProgram resolve_program_;

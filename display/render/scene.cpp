@@ -46,6 +46,19 @@ void grow_by(Box& box, const LinesItem& item) {
   for (const glm::dvec3& p : item.points_mm) grow(box, p);
 }
 
+void grow_by(Box& box, const LabelItem& item) { grow(box, item.at_mm); }
+
+Result<void> check_item(const LabelItem& item) {
+  if (item.font == nullptr) return fail(ErrorKind::kUsage, "scene: a label has no font");
+  if (!finite(item.at_mm) || !finite(item.along_mm) || !(item.height_px > 0) || !std::isfinite(item.height_px) ||
+      !fraction(item.opacity) || !fraction(item.hidden_opacity) || !fraction(item.anchor) ||
+      !std::isfinite(item.lift_mm) || !std::isfinite(item.shift_px.x) || !std::isfinite(item.shift_px.y))
+    return fail(ErrorKind::kUsage,
+                "scene: a label of {} pixels and opacities {} and {} found, expected more than 0 and 0 to 1",
+                item.height_px, item.opacity, item.hidden_opacity);
+  return {};
+}
+
 Result<void> check_item(const MeshItem& item) {
   if (item.mesh == nullptr) return fail(ErrorKind::kUsage, "scene: a mesh item has no mesh");
   if (!finite(item.world_from_model)) return fail(ErrorKind::kUsage, "scene: the place of a mesh is not finite");

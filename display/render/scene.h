@@ -3,8 +3,10 @@
 // a SceneView for each picture; the renderer draws it for any number of views and keeps nothing of it.
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
+#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -17,6 +19,7 @@ namespace dubsar {
 
 class LodMesh;     // display/render/lod_mesh.h
 class SliceImage;  // display/render/slice_image.h
+class LabelFont;   // display/render/label_font.h
 
 /// A surface in graphics memory. Outlives the pictures of it.
 struct MeshItem {
@@ -45,15 +48,35 @@ struct LinesItem {
   /// Opacity of what lies behind surfaces, times `opacity`: 0 hides it, 1 shows it as if nothing were before it.
   double hidden_opacity = 0.0;
   double lift_mm = 0.05;  ///< towards the eye, so that lines on a surface are seen
+
+  bool operator==(const LinesItem&) const = default;
 };
 
-using DrawItem = std::variant<MeshItem, SliceItem, LinesItem>;
+/// A line of text at a place of the world, of constant size in the picture.
+struct LabelItem {
+  LabelFont* font = nullptr;  ///< outlives the pictures of it
+  std::string text;           ///< UTF-8, one line
+  glm::dvec3 at_mm{0.0};
+  glm::dvec3 along_mm{0.0};  ///< the text runs towards at_mm + along_mm; 0: to the right of the picture
+  glm::dvec2 shift_px{0.0};  ///< from the place to the text's base line, right and up
+  double anchor = 0.0;       ///< what of the text stands at the place: 0 its beginning, 0.5 its middle, 1 its end
+  double height_px = 16.0;   ///< of the letters, of the picture
+  Rgb8 color{232, 228, 220}, border{23, 24, 27};
+  double opacity = 1.0;         ///< 0..1
+  double hidden_opacity = 0.0;  ///< as of lines
+  double lift_mm = 3.0;         ///< towards the eye: what is rough around the place does not cut the letters
+
+  bool operator==(const LabelItem&) const = default;
+};
+
+using DrawItem = std::variant<MeshItem, SliceItem, LinesItem, LabelItem>;
 
 /// A moment's view of what there is to draw; borrows all of it for the time of one call.
 struct SceneView {
   std::span<const DrawItem> items;
   Light light;
-  std::span<const ClipPlane> clips;  ///< in the world; they cut meshes and slices, not lines. At most kMostClipPlanes
+  std::span<const ClipPlane>
+      clips;  ///< in the world; they cut meshes and slices, not lines and labels. At most kMostClipPlanes
   Background background;
   Fog fog{};
 };

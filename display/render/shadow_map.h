@@ -32,7 +32,7 @@ class ShadowMap {
   struct Caster {
     const LodMesh* mesh = nullptr;
     int level = 0;
-    std::int64_t triangles = 0;
+    std::uint64_t version = 0;  ///< of the level's triangles: another mesh may be where one was
     glm::dmat4 world_from_model{1.0};
     PartLooks parts{};
     bool operator==(const Caster&) const = default;

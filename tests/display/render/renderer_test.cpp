@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -50,6 +51,32 @@ TEST_F(RendererTest, EachLayerShowsItsOwnView) {
     EXPECT_EQ(all->read_layer(static_cast<int>(i) + 1)->pixels, one->read_layer(0)->pixels) << "view " << i;
     EXPECT_NE(all->read_layer(static_cast<int>(i))->pixels, all->read_layer(static_cast<int>(i) + 1)->pixels);
   }
+}
+
+TEST_F(RendererTest, ShadowsAreThoseOfTheMeshThatIsThereAndNotOfOneThatWasAtItsPlaceInMemory) {
+  const auto post_at = [](float x) {  // a plate with a post on it, as many triangles wherever the post stands
+    TriMesh mesh;
+    testing::add_rectangle(mesh, {-20, -20, 0}, {40, 0, 0}, {0, 40, 0}, 0);
+    for (const float side : {-1.0f, 1.0f})
+      testing::add_rectangle(mesh, {x, -3 * side, 0}, {0, 6 * side, 0}, {0, 0, 8}, 0);
+    return mesh;
+  };
+  Shading shading = shading_preset("raking").value();
+  shading.light.azimuth_deg = 270;
+  CameraOptions camera;
+  camera.width = camera.height = 64;
+  std::optional<LodMesh> mesh = LodMesh::exact(pack_mesh(post_at(-8)).value()).value();
+  const View view = fit_camera(mesh->box_mm(), camera).value().view;
+  auto array = ViewArray::create(64, 64, 1).value();
+  auto used = Renderer::create().value(), fresh = Renderer::create().value();
+  ASSERT_TRUE(used.render(MeshScene(*mesh, shading), std::span(&view, 1), 1, array));
+  const Image first = array.read_layer(0).value();
+  mesh.emplace(LodMesh::exact(pack_mesh(post_at(4)).value()).value());
+  ASSERT_TRUE(used.render(MeshScene(*mesh, shading), std::span(&view, 1), 1, array));
+  const Image second = array.read_layer(0).value();
+  ASSERT_TRUE(fresh.render(MeshScene(*mesh, shading), std::span(&view, 1), 1, array));
+  EXPECT_EQ(second.pixels, array.read_layer(0)->pixels);
+  EXPECT_NE(second.pixels, first.pixels);
 }
 
 TEST_F(RendererTest, LayersKeepWhatIsWrittenTopRowFirst) {

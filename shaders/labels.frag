@@ -1,0 +1,19 @@
+#version 450 core
+// Letters from distances to their outlines, with a border.
+
+layout(binding = 0) uniform sampler2D sheet;  // 0.5 on the outline, more inside
+layout(location = 4) uniform vec4 fill;       // linear, premultiplied
+layout(location = 5) uniform vec4 border;     // linear, premultiplied
+layout(location = 6) uniform float wide;      // of the border, in the sheet's units
+
+in vec2 sheet_place;
+layout(location = 0) out vec4 color;  // linear, premultiplied
+
+void main() {
+  float inside = texture(sheet, sheet_place).r - 0.5;
+  float soft = max(0.7 * fwidth(inside), 1e-4);
+  float letter = smoothstep(-soft, soft, inside);
+  float around = smoothstep(-soft, soft, inside + wide);
+  color = mix(border * around, fill, letter);
+  if (color.a == 0.0) discard;
+}

@@ -1,0 +1,52 @@
+#version 450 core
+// Letters of one line of text: four vertices a letter, all letters of a view after each other. The line begins at a place
+// of the world and has a constant size in the picture.
+
+struct FlatView {
+  mat4 view_from_world;
+  mat4 clip_from_view;
+  vec4 layer;  // x; y: 1 for parallel projection
+};
+struct Letter {
+  vec4 place;  // pixels from the line's place, right and up: left, bottom, right, top
+  vec4 sheet;  // the same corners in the sheet, 0..1
+};
+layout(std430, binding = 0) readonly buffer Views { FlatView views[]; };
+layout(std430, binding = 1) readonly buffer Letters { Letter letters[]; };
+layout(location = 0) uniform int count;
+layout(location = 1) uniform vec3 measures;  // width and height of the target, lift in mm
+layout(location = 2) uniform vec3 at;        // world
+layout(location = 3) uniform vec3 along;     // world: where the line leads to; none: to the right of the picture
+
+out vec2 sheet_place;
+
+vec4 clip_position(FlatView view, vec3 point) {
+  vec3 p = (view.view_from_world * vec4(point, 1.0)).xyz;
+  vec3 to_eye = mix(normalize(-p), vec3(0.0, 0.0, 1.0), view.layer.y);
+  return view.clip_from_view * vec4(p + measures.z * to_eye, 1.0);
+}
+
+void main() {
+  FlatView view = views[gl_InstanceID / count];
+  Letter letter = letters[gl_InstanceID % count];
+  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+  vec2 offset = mix(letter.place.xy, letter.place.zw, corner);
+  sheet_place = mix(letter.sheet.xy, letter.sheet.zw, corner);
+  vec4 here = clip_position(view, at);
+  vec2 half_size = 0.5 * measures.xy;
+  if (here.z + here.w < 0.0 || here.w <= 0.0) {
+    gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
+  } else {
+    vec2 right = vec2(1.0, 0.0);
+    if (dot(along, along) > 0.0) {
+      vec4 there = clip_position(view, at + along);
+      vec2 way = (there.xy / there.w - here.xy / here.w) * half_size;
+      if (there.w > 0.0 && dot(way, way) > 1.0) right = normalize(way);
+    }
+    vec2 turned = offset.x * right + offset.y * vec2(-right.y, right.x);
+    gl_Position = vec4(here.xy + turned / half_size * here.w, here.zw);
+  }
+#ifdef LAYERED
+  gl_Layer = int(view.layer.x);
+#endif
+}

@@ -1,0 +1,182 @@
+// Labels: where their letters stand, that they are sharp at every size, and what hides them.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <glm/gtc/matrix_transform.hpp>
+#include <iterator>
+#include <memory>
+
+#include "display/render/context_egl.h"
+#include "display/render/label_font.h"
+#include "display/render/lod_mesh.h"
+#include "display/render/renderer.h"
+#include "tests/display/test_meshes.h"
+
+namespace dubsar {
+namespace {
+
+constexpr int kSide = 200;  // pixels; one mm each
+
+class Labels : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    auto made = EglContext::create();
+    ASSERT_TRUE(made) << made.error().message;
+    context_ = std::move(*made);
+    renderer_ = Renderer::create().value();
+    std::ifstream file(DUBSAR_PANEL_FONT, std::ios::binary);
+    bytes_.assign(std::istreambuf_iterator<char>(file), {});
+    font_ = LabelFont::create(bytes_).value();
+    label_.font = font_.get();
+    label_.color = {255, 255, 255};
+    label_.border = {0, 0, 255};
+  }
+  Image picture(std::span<const DrawItem> items, int factor = 1) {
+    View view;
+    view.clip_from_view = glm::ortho(-100.0, 100.0, -100.0, 100.0, -100.0, 100.0);
+    const SceneView scene{items, Light(), {}, Background{{0, 0, 0}, false}};
+    auto array = ViewArray::create(kSide, kSide, 3).value();
+    const std::array<View, 2> eyes{view, view};
+    const std::array<int, 2> where{2, 0};
+    EXPECT_TRUE(renderer_.render_layers(scene, eyes, where, array));
+    const Image layered = array.read_layer(2).value();
+    const auto drawn = renderer_.render(scene, std::span(&view, 1), factor, array);
+    EXPECT_TRUE(drawn) << drawn.error().message;
+    const Image out = array.read_layer(0).value();
+    int off = 0;
+    for (std::size_t i = 0; i < out.pixels.size(); ++i) off += std::abs(out.pixels[i] - layered.pixels[i]) > 2;
+    if (factor == 1) {
+      EXPECT_EQ(off, 0) << "in layers as alone";
+    }
+    return out;
+  }
+  struct Extent {
+    int left = kSide, right = -1, top = kSide, bottom = -1, count = 0;
+  };
+  /// Of pixels that `wanted` says yes to.
+  template <class Wanted>
+  static Extent extent(const Image& image, const Wanted& wanted) {
+    Extent out;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x)
+        if (wanted(image.at(x, y))) {
+          out = {std::min(out.left, x), std::max(out.right, x), std::min(out.top, y), std::max(out.bottom, y),
+                 out.count + 1};
+        }
+    return out;
+  }
+  static bool white(const std::uint8_t* p) { return p[0] > 200; }
+  static bool drawn(const std::uint8_t* p) { return p[2] > 60; }
+
+  std::unique_ptr<EglContext> context_;
+  Renderer renderer_;
+  std::vector<unsigned char> bytes_;
+  std::unique_ptr<LabelFont> font_;
+  LabelItem label_;
+};
+
+TEST_F(Labels, StandWhereTheyBeginAndAreAsHighAsTheyShallBe) {
+  label_.text = "HH";
+  label_.at_mm = {-30, 10, 0};
+  label_.height_px = 40;
+  const std::array<DrawItem, 1> items{label_};
+  const Extent seen = extent(picture(items, 2), white);
+  EXPECT_NEAR(seen.left, 70 + 3, 3) << "at x = -30, behind the letter's own room";
+  EXPECT_NEAR(seen.bottom, 90 - 1, 2) << "stands on y = 10";
+  EXPECT_NEAR(seen.bottom - seen.top, 0.52 * 40, 5) << "capitals of Latin fonts are .6 to .75 of an em of letters";
+  label_.anchor = 1.0;
+  const std::array<DrawItem, 1> ends{label_};
+  EXPECT_NEAR(extent(picture(ends, 2), white).right, 70 - 3, 3);
+  label_.anchor = 0.0;
+  label_.along_mm = {0, 10, 0};  // upwards
+  const std::array<DrawItem, 1> up{label_};
+  const Extent turned = extent(picture(up, 2), white);
+  EXPECT_NEAR(turned.bottom - turned.top, seen.right - seen.left, 2);
+  EXPECT_NEAR(turned.right, 70 - 1, 2);
+}
+
+TEST_F(Labels, AreSharpAtEverySizeAndHaveABorder) {
+  label_.text = "I";
+  for (const double height : {12.0, 24.0, 48.0, 120.0}) {
+    label_.height_px = height;
+    label_.at_mm = {-20.5, -40, 0};
+    const std::array<DrawItem, 1> items{label_};
+    const Image image = picture(items);
+    const Extent seen = extent(image, white), all = extent(image, drawn);
+    ASSERT_GT(seen.count, 0) << height;
+    // Across the stem: nothing, border, white, border, nothing, each step within a pixel and a half.
+    const int y = (seen.top + seen.bottom) / 2;
+    int between = 0, whites = 0, blues = 0;
+    for (int x = 0; x < kSide; ++x) {
+      const std::uint8_t* const p = image.at(x, y);
+      whites += p[0] > 230;
+      blues += p[2] > 230 && p[0] < 25;
+      between += (p[0] >= 25 && p[0] <= 230) || (p[2] >= 25 && p[2] <= 230);
+    }
+    EXPECT_GE(whites, 1) << height;
+    EXPECT_LE(between, 6) << height;
+    if (height >= 48) {
+      EXPECT_GE(blues, 2) << height;
+    }
+    EXPECT_LT(all.left, seen.left);
+    EXPECT_GT(all.right, seen.right);
+  }
+}
+
+TEST_F(Labels, AreHiddenByWhatStandsBeforeThemAndNotByWhatTheyStandOn) {
+  TriMesh wall;
+  testing::add_rectangle(wall, {-90, -90, 0}, {180, 0, 0}, {0, 180, 0}, 0);
+  const LodMesh mesh = LodMesh::exact(pack_mesh(wall).value()).value();
+  MeshItem plate{&mesh, glm::dmat4(1.0), shading_preset("ao").value().style, {}};
+  plate.parts[0].color = {0, 0, 0};
+  label_.text = "MM";
+  label_.height_px = 40;
+  const auto whites = [&](double z, double hidden) {
+    label_.at_mm = {-20, 0, z};
+    label_.hidden_opacity = hidden;
+    const std::array<DrawItem, 2> items{plate, label_};
+    return extent(picture(items), white).count;
+  };
+  const int free = whites(20, 0);
+  EXPECT_GT(free, 100);
+  EXPECT_EQ(whites(0, 0), free) << "on the surface";
+  EXPECT_EQ(whites(-2, 0), free) << "in a hollow of it";
+  EXPECT_EQ(whites(-10, 0), 0) << "behind it";
+  EXPECT_EQ(whites(-10, 1), free);
+}
+
+TEST_F(Labels, HaveTheLettersOfTransliterationsAndSurviveAFullSheet) {
+  EXPECT_GT(font_->width_em("\u0161\u1e63\u1e6d\u1e2b\u02be\u2082"), 2.0);
+  for (const unsigned code : {0x161u, 0x1e63u, 0x1e6du, 0x1e2bu, 0x2beu, 0x2082u})
+    EXPECT_GT(font_->glyph(code).width, 0) << std::hex << code;
+  EXPECT_EQ(font_->glyph(' ').width, 0);
+  label_.text = "A";
+  label_.height_px = 60;
+  const std::array<DrawItem, 1> items{label_};
+  const Image before = picture(items);
+  for (unsigned code = 0x21; code < 0x600; ++code) font_->glyph(code);
+  EXPECT_EQ(picture(items).pixels, before.pixels);
+}
+
+TEST_F(Labels, WhatIsNoFontOrCannotBeDrawnIsRefused) {
+  const std::vector<unsigned char> rubbish(1000, 'x');
+  EXPECT_EQ(LabelFont::create(rubbish).error().kind, ErrorKind::kBadData);
+  EXPECT_FALSE(LabelFont::create({}));
+  const auto refused = [&](auto change) {
+    LabelItem item = label_;
+    item.text = "x";
+    change(item);
+    const std::array<DrawItem, 1> items{item};
+    return !check_scene({items, Light(), {}, Background()}).has_value();
+  };
+  EXPECT_FALSE(refused([](LabelItem&) {}));
+  EXPECT_TRUE(refused([](LabelItem& l) { l.font = nullptr; }));
+  EXPECT_TRUE(refused([](LabelItem& l) { l.height_px = 0; }));
+  EXPECT_TRUE(refused([](LabelItem& l) { l.opacity = 2; }));
+  EXPECT_TRUE(refused([](LabelItem& l) { l.at_mm.x = std::nan(""); }));
+}
+
+}  // namespace
+}  // namespace dubsar
