@@ -1,0 +1,52 @@
+#pragma once
+// What a museum says about its kiosk, in one JSON file.
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/kiosk/quiet_hours.h"
+#include "core/base/result.h"
+
+namespace dubsar::app {
+
+/// Texts by language.
+using Texts = std::map<std::string, std::string, std::less<>>;
+
+struct KioskObject {
+  std::filesystem::path file, tour{};  ///< surface; film with captions, empty: none
+  Texts title{};
+  std::vector<std::string> parts{};  ///< shown; empty: all
+  std::string style = "relief";
+};
+
+struct KioskProfile {
+  std::vector<KioskObject> objects;          ///< at least one
+  std::vector<std::string> languages{"en"};  ///< the first one is spoken at first
+  std::filesystem::path words{};             ///< changes to the program's sentences; empty: none
+  std::string display = "mono", monitor{};   ///< as of `dubsar view`; monitor empty: where the panel is
+  std::vector<std::string> inputs{};         ///< as of `dubsar view --input`; empty: what is plugged in, no keyboard
+  double idle_reset_s = 90.0;                ///< without a hand, until all is as at the beginning
+  double attract_after_s = 8.0;              ///< without a hand, until the object moves by itself
+  std::vector<QuietHours> quiet{};
+  double brightness = 1.0;  ///< 0.1..1
+  double reading_distance_m = 1.5;
+  std::string pin{};                 ///< 4 to 12 digits; empty: no menu by keys
+  std::filesystem::path key_file{};  ///< a file whose presence opens the operator's menu; empty: none
+  std::filesystem::path journal{};   ///< folder; empty: none
+};
+
+/// Relative paths count from `folder`, that of the profile. kConfig in one sentence for what is unknown, missing or out
+/// of range; whether files exist is not looked at.
+Result<KioskProfile> parse_kiosk_profile(std::string_view json_text, std::string_view source,
+                                         const std::filesystem::path& folder);
+
+/// kNoInput, kPermission, kConfig; also looks whether the objects, tours and words are there.
+Result<KioskProfile> read_kiosk_profile(const std::filesystem::path& path);
+
+/// The text in the language, else in English, else any; empty when there is none.
+std::string_view text_in(const Texts& texts, std::string_view language) noexcept;
+
+}  // namespace dubsar::app

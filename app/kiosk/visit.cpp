@@ -1,0 +1,155 @@
+#include "app/kiosk/visit.h"
+
+#include <algorithm>
+
+namespace dubsar::app {
+namespace {
+
+constexpr TimestampNs kSecond = 1'000'000'000;
+constexpr double kTurnedDeg = 25.0;             // on purpose: further than a hand that only takes hold
+constexpr double kZoomed = 0.15;                // a sixth larger or smaller
+constexpr TimestampNs kPatience = 2 * kSecond;  // before the next thing is shown to somebody who is busy
+constexpr TimestampNs kLessonTime = 9 * kSecond, kLessonRest = 6 * kSecond;
+constexpr TimestampNs kTroubleTime = 700'000'000;  // a hand that passes by is not spoken to
+constexpr TimestampNs kGone = 2 * kSecond;         // a lost hand mostly comes back
+constexpr int kMostShown = 3;
+
+constexpr std::size_t index(Lesson lesson) { return static_cast<std::size_t>(lesson); }
+TimestampNs ns(double seconds) { return static_cast<TimestampNs>(1e9 * seconds); }
+
+Line line_of(Lesson lesson) {
+  switch (lesson) {
+    case Lesson::kShowHand:
+      return Line::kShowHand;
+    case Lesson::kGrab:
+      return Line::kGrab;
+    case Lesson::kTurn:
+      return Line::kTurn;
+    case Lesson::kRest:
+      return Line::kRest;
+    case Lesson::kTwoHands:
+      return Line::kTwoHands;
+    case Lesson::kSwipe:
+      break;
+  }
+  return Line::kSwipe;
+}
+
+}  // namespace
+
+void Visit::begin(TimestampNs now) {
+  phase_ = VisitPhase::kArrived;
+  course_ = {};
+  course_.rests_until = now;
+  ++counts_.visits;
+}
+
+void Visit::done(Lesson lesson) {
+  if (course_.done[index(lesson)]) return;
+  course_.done[index(lesson)] = true;
+  ++counts_.done[index(lesson)];
+}
+
+void Visit::learn(const VisitMoment& moment) {
+  course_.turned_deg += moment.turned_deg;
+  course_.zoomed += moment.zoomed;
+  if (moment.hands > 0) done(Lesson::kShowHand);
+  if (moment.hands > 0 && moment.hand == HandState::kHolding) done(Lesson::kGrab);
+  if (course_.turned_deg >= kTurnedDeg) done(Lesson::kTurn);
+  if (course_.zoomed >= kZoomed) done(Lesson::kTwoHands);
+  if (moment.rested) done(Lesson::kRest);
+  if (moment.swiped) done(Lesson::kSwipe);
+  touched_ = touched_ || moment.turned_deg > 0 || moment.zoomed > 0 || moment.rested || moment.swiped;
+  if (course_.done[index(Lesson::kTurn)]) phase_ = VisitPhase::kFree;
+}
+
+std::optional<Lesson> Visit::next(const VisitMoment& moment) const {
+  for (std::size_t i = 0; i < kLessonCount; ++i) {
+    const auto lesson = static_cast<Lesson>(i);
+    if (course_.done[i] || course_.shown[i] >= kMostShown) continue;
+    if (lesson == Lesson::kTurn && !(moment.hands > 0 && moment.hand == HandState::kHolding)) continue;
+    return lesson;
+  }
+  return std::nullopt;
+}
+
+void Visit::teach(TimestampNs now, const VisitMoment& moment) {
+  const bool holds = moment.hands > 0 && moment.hand == HandState::kHolding;
+  if (course_.now) {
+    const std::size_t shown = index(*course_.now);
+    const bool again = *course_.now == Lesson::kTurn && !holds;  // it let go: back to taking hold
+    if (!course_.done[shown] && !again && now - course_.since < kLessonTime) return;
+    const bool success = course_.done[shown];
+    course_.now.reset();
+    course_.rests_until = now + (success ? kPatience : again ? 0 : kLessonRest);
+  }
+  // Nobody is interrupted while the object turns in the hand.
+  if (holds && course_.done[index(Lesson::kTurn)]) course_.rests_until = std::max(course_.rests_until, now + kPatience);
+  if (now < course_.rests_until) return;
+  course_.now = next(moment);
+  if (!course_.now) return;
+  course_.since = now;
+  ++course_.shown[index(*course_.now)];
+}
+
+std::optional<Line> Visit::line(const VisitMoment& moment) const {
+  if (trouble_since_ >= 0 && last_ - trouble_since_ >= kTroubleTime) {
+    if (moment.hand == HandState::kTooFar) return Line::kNearer;
+    if (moment.hand == HandState::kFist) return Line::kOpenFirst;
+    if (moment.hand == HandState::kStranger) return Line::kSomebodyElse;
+  }
+  if (course_.now) return line_of(*course_.now);
+  return std::nullopt;
+}
+
+VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
+  VisitPicture out;
+  const bool first = last_ < 0;
+  last_ = first ? now : std::max(now, last_);  // a clock that jumps back holds the visit still
+  if (first) last_hand_ = last_somebody_ = last_ - ns(figures_.attract_after_s);
+  const bool somebody = moment.head || moment.hands > 0;
+  if (moment.hands > 0) last_hand_ = last_;
+  if (somebody) last_somebody_ = last_;
+  const bool trouble = moment.hands > 0 && moment.hand > HandState::kReady;
+  if (!trouble) trouble_since_ = -1;
+  if (trouble && trouble_since_ < 0) trouble_since_ = last_;
+
+  if (moment.asleep && moment.hands == 0 && last_ - last_hand_ >= ns(figures_.attract_after_s)) {
+    out.reset = phase_ != VisitPhase::kAsleep && touched_;
+    phase_ = VisitPhase::kAsleep;
+  } else if (phase_ == VisitPhase::kAsleep && !moment.asleep) {
+    phase_ = VisitPhase::kAttract;
+  }
+  const bool waits = phase_ == VisitPhase::kAttract || phase_ == VisitPhase::kAsleep;
+  if (waits && (moment.hands > 0 || (moment.head && phase_ == VisitPhase::kAttract))) {
+    begin(last_);
+    out.arrived = true;
+  }
+  if (phase_ == VisitPhase::kLeaving && moment.hands > 0)
+    phase_ = course_.done[index(Lesson::kTurn)] ? VisitPhase::kFree : VisitPhase::kArrived;  // back in time
+  if (phase_ == VisitPhase::kArrived || phase_ == VisitPhase::kFree) {
+    learn(moment);
+    teach(last_, moment);
+    if (!somebody && last_ - last_somebody_ >= kGone) phase_ = VisitPhase::kLeaving;
+  }
+  if (phase_ == VisitPhase::kLeaving) course_.now.reset();
+  const bool alone = last_ - last_hand_ >= ns(figures_.idle_reset_s) ||
+                     (!touched_ && last_ - last_somebody_ >= ns(figures_.attract_after_s));
+  if (alone && !waits && !(somebody && !touched_)) {
+    out.reset = touched_;
+    phase_ = VisitPhase::kAttract;
+    course_.now.reset();
+  }
+  if (out.reset) {
+    touched_ = false;
+    ++counts_.resets;
+  }
+  out.phase = phase_;
+  out.lesson = course_.now;
+  if (course_.now) out.lesson_s = 1e-9 * static_cast<double>(last_ - course_.since);
+  if (phase_ == VisitPhase::kAttract) out.line = moment.tracker ? Line::kInvite : Line::kNoTracker;
+  if (phase_ == VisitPhase::kArrived || phase_ == VisitPhase::kFree) out.line = line(moment);
+  return out;
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,91 @@
+#pragma once
+// What happens at a kiosk: nobody, an arrival, learning, free play, leaving. Time is an argument; the same moments give
+// the same visit.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "app/kiosk/words.h"
+#include "core/base/clock.h"
+
+namespace dubsar::app {
+
+/// How a hand stands to the object; the worse, the higher.
+enum class HandState : std::uint8_t {
+  kHolding,
+  kReady,     ///< it may take hold
+  kFist,      ///< it came in closed, and must open first
+  kTooFar,    ///< outside the zone of the sensor
+  kStranger,  ///< of somebody who has to wait
+};
+
+/// Things a visitor may learn, in the order in which they are taught.
+enum class Lesson : std::uint8_t { kShowHand, kGrab, kTurn, kRest, kTwoHands, kSwipe };
+inline constexpr std::size_t kLessonCount = 6;
+
+/// What is known at one moment.
+struct VisitMoment {
+  bool tracker = true;                 ///< there is a hand sensor
+  bool asleep = false;                 ///< quiet hours
+  bool head = false;                   ///< somebody is seen, with or without hands
+  int hands = 0;                       ///< that are seen
+  HandState hand = HandState::kReady;  ///< of the leading one; meaningless without hands
+  bool two_hold = false;               ///< both of a person's hands hold
+  double turned_deg = 0.0;             ///< by hands, since the last moment
+  double zoomed = 0.0;                 ///< |logarithm| of the zoom by hands, since the last moment
+  bool swiped = false, rested = false;
+};
+
+enum class VisitPhase : std::uint8_t { kAsleep, kAttract, kArrived, kFree, kLeaving };
+
+struct VisitPicture {
+  VisitPhase phase = VisitPhase::kAttract;
+  std::optional<Line> line;      ///< said now
+  std::optional<Lesson> lesson;  ///< shown as a moving hand
+  double lesson_s = 0.0;         ///< since it is shown
+  bool reset = false;            ///< now, once: all is to go back to the beginning
+  bool arrived = false;          ///< now, once: a visit began
+};
+
+struct VisitFigures {
+  double idle_reset_s = 90.0, attract_after_s = 8.0;
+};
+
+/// Who can do a thing is not taught it: a lesson waits until its time has come, is shown for a while, rests, and is
+/// over for this visit when it was done or was shown three times. One thread.
+class Visit {
+ public:
+  explicit Visit(const VisitFigures& figures = {}) : figures_(figures) {}
+  VisitPicture update(TimestampNs now, const VisitMoment& moment);
+
+  struct Counts {
+    std::int64_t visits = 0, resets = 0;
+    std::array<std::int64_t, kLessonCount> done{};  ///< visits in which it was done
+  };
+  const Counts& counts() const noexcept { return counts_; }
+
+ private:
+  struct Course {
+    std::array<bool, kLessonCount> done{};
+    std::array<int, kLessonCount> shown{};
+    std::optional<Lesson> now;
+    TimestampNs since = 0, rests_until = 0;
+    double turned_deg = 0.0, zoomed = 0.0;
+  };
+  void begin(TimestampNs now);
+  void learn(const VisitMoment& moment);
+  void done(Lesson lesson);
+  std::optional<Lesson> next(const VisitMoment& moment) const;
+  void teach(TimestampNs now, const VisitMoment& moment);
+  std::optional<Line> line(const VisitMoment& moment) const;
+
+  VisitFigures figures_;
+  VisitPhase phase_ = VisitPhase::kAttract;
+  TimestampNs last_hand_ = 0, last_somebody_ = 0, last_ = -1, trouble_since_ = -1;
+  bool touched_ = false;  // somebody moved the object since it was reset
+  Course course_;
+  Counts counts_;
+};
+
+}  // namespace dubsar::app

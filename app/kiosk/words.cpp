@@ -1,0 +1,120 @@
+#include "app/kiosk/words.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/base/json_text.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr std::size_t kLongestLine = 120;
+
+struct Sentence {
+  Line line;
+  std::string_view name, en, de, fr;
+};
+
+constexpr std::array<Sentence, kLineCount> kSentences{{
+    {Line::kInvite, "invite", "Reach out your hand: turn the tablet yourself",
+     "Strecken Sie die Hand aus: drehen Sie die Tafel selbst", "Tendez la main : tournez vous-même la tablette"},
+    {Line::kShowHand, "show_hand", "Hold your open hand over the sensor", "Halten Sie die offene Hand über den Sensor",
+     "Tenez la main ouverte au-dessus du capteur"},
+    {Line::kGrab, "grab", "Close your hand: you take hold of the tablet",
+     "Schließen Sie die Hand: Sie fassen die Tafel an", "Fermez la main : vous saisissez la tablette"},
+    {Line::kTurn, "turn", "Move your fist: the tablet turns with it", "Bewegen Sie die Faust: die Tafel dreht sich mit",
+     "Déplacez le poing : la tablette tourne avec lui"},
+    {Line::kTwoHands, "two_hands", "Close both hands and pull them apart: the tablet grows",
+     "Schließen Sie beide Hände und ziehen Sie sie auseinander: die Tafel wird größer",
+     "Fermez les deux mains et écartez-les : la tablette grandit"},
+    {Line::kSwipe, "swipe", "Wipe with the open hand: the next side",
+     "Wischen Sie mit der offenen Hand: die nächste Seite", "Balayez de la main ouverte : la face suivante"},
+    {Line::kRest, "rest", "Hold your open hand still: the envelope opens",
+     "Halten Sie die offene Hand still: die Hülle öffnet sich",
+     "Gardez la main ouverte immobile : l'enveloppe s'ouvre"},
+    {Line::kNearer, "nearer", "A little nearer, please", "Bitte etwas näher", "Un peu plus près, s'il vous plaît"},
+    {Line::kOpenFirst, "open_first", "Open your hand first", "Öffnen Sie zuerst die Hand", "Ouvrez d'abord la main"},
+    {Line::kSomebodyElse, "somebody_else", "Somebody else holds the tablet: you are next",
+     "Jemand anders hält die Tafel: gleich sind Sie dran", "Quelqu'un d'autre tient la tablette : ce sera votre tour"},
+    {Line::kNoTracker, "no_tracker", "The hand sensor is missing; the tablet turns by itself",
+     "Der Handsensor fehlt; die Tafel dreht sich von selbst", "Le capteur manque ; la tablette tourne toute seule"},
+    {Line::kNoPanel, "no_panel", "The display is not the one that was set up: this picture is flat",
+     "Die Anzeige ist nicht die eingerichtete: dieses Bild ist flach",
+     "L'écran n'est pas celui qui a été réglé : cette image est plate"},
+    {Line::kNoObject, "no_object", "This object cannot be shown today", "Dieses Stück kann heute nicht gezeigt werden",
+     "Cet objet ne peut pas être montré aujourd'hui"},
+}};
+
+constexpr std::array<std::string_view, 3> kSpoken{"en", "de", "fr"};
+
+/// Letters, not bytes.
+std::size_t letters(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+bool is_language_code(std::string_view code) {
+  return (code.size() == 2 || code.size() == 3) &&
+         std::all_of(code.begin(), code.end(), [](char c) { return c >= 'a' && c <= 'z'; });
+}
+
+}  // namespace
+
+std::string_view line_name(Line line) noexcept { return kSentences[static_cast<std::size_t>(line)].name; }
+
+std::span<const std::string_view> spoken_languages() noexcept { return kSpoken; }
+
+Words::Words() {
+  for (const Sentence& sentence : kSentences) {
+    const auto at = static_cast<std::size_t>(sentence.line);
+    languages_["en"][at] = sentence.en;
+    languages_["de"][at] = sentence.de;
+    languages_["fr"][at] = sentence.fr;
+  }
+}
+
+Result<Words> Words::parse(std::string_view json_text, std::string_view source) {
+  DUBSAR_ASSIGN(const nlohmann::json object, parse_json(json_text, source));
+  if (!object.is_object())
+    return fail(ErrorKind::kConfig, "{}: no object of languages found, expected {{\"de\": {{\"grab\": \"...\"}}}}",
+                source);
+  Words out;
+  for (const auto& [language, lines] : object.items()) {
+    if (!is_language_code(language))
+      return fail(ErrorKind::kConfig, "{}: \"{}\" is no language, expected a code such as de", source, language);
+    if (!lines.is_object()) return fail(ErrorKind::kConfig, "{}: {} holds no object of lines", source, language);
+    auto& own = out.languages_[language];
+    for (const auto& [name, sentence] : lines.items()) {
+      const auto found =
+          std::find_if(kSentences.begin(), kSentences.end(),
+                       [&, wanted = std::string_view(name)](const Sentence& s) { return s.name == wanted; });
+      if (found == kSentences.end())
+        return fail(ErrorKind::kConfig, "{}: {} has a line \"{}\", which does not exist", source, language, name);
+      if (!sentence.is_string() || sentence.get_ref<const std::string&>().empty() ||
+          letters(sentence.get_ref<const std::string&>()) > kLongestLine)
+        return fail(ErrorKind::kConfig, "{}: {}.{} is no text of 1 to {} letters", source, language, name,
+                    kLongestLine);
+      own[static_cast<std::size_t>(found->line)] = sentence.get<std::string>();
+    }
+    for (const Sentence& sentence : kSentences)
+      if (own[static_cast<std::size_t>(sentence.line)].empty())
+        return fail(ErrorKind::kConfig, "{}: {} is a new language and lacks the line \"{}\"", source, language,
+                    sentence.name);
+  }
+  return out;
+}
+
+bool Words::has(std::string_view language) const { return languages_.find(language) != languages_.end(); }
+
+const std::string& Words::say(Line line, std::string_view language) const {
+  const auto found = languages_.find(language);
+  const auto& lines = found == languages_.end() ? languages_.find("en")->second : found->second;
+  return lines[static_cast<std::size_t>(line)];
+}
+
+bool Words::right_to_left(std::string_view language) noexcept {
+  constexpr std::array<std::string_view, 5> kRightToLeft{"ar", "ckb", "fa", "he", "ur"};
+  return std::find(kRightToLeft.begin(), kRightToLeft.end(), language) != kRightToLeft.end();
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,101 @@
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "app/kiosk/journal.h"
+#include "app/kiosk/service_notify.h"
+#include "core/base/atomic_file.h"
+
+namespace dubsar::app {
+namespace {
+
+/// The manager's side of sd_notify(3).
+class Manager {
+ public:
+  Manager() : path_(testing::TempDir() + fmt::format("notify_{}", ::getpid())) {
+    descriptor_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0);
+    sockaddr_un at{};
+    at.sun_family = AF_UNIX;
+    std::strncpy(at.sun_path, path_.c_str(), sizeof at.sun_path - 1);
+    ::unlink(path_.c_str());
+    EXPECT_EQ(::bind(descriptor_, reinterpret_cast<const sockaddr*>(&at), sizeof at), 0);
+  }
+  ~Manager() {
+    ::close(descriptor_);
+    ::unlink(path_.c_str());
+  }
+  /// All so far; the kernel keeps ten that were not read.
+  const std::vector<std::string>& heard() {
+    char text[512];
+    for (ssize_t n; (n = ::recv(descriptor_, text, sizeof text, 0)) >= 0;) heard_.emplace_back(text, text + n);
+    return heard_;
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  std::vector<std::string> heard_;
+  int descriptor_ = -1;
+};
+
+TEST(ServiceNotify, SaysReadyAndAliveAsOftenAsTheWatchdogNeeds) {
+  Manager manager;
+  ServiceNotify notify(manager.path(), 3'000'000);  // 3 s
+  notify.ready();
+  for (int i = 0; i <= 100; ++i) {  // 10 s of pictures
+    notify.alive(i * TimestampNs{100'000'000});
+    manager.heard();
+  }
+  notify.status("12 visits\nREADY=0");
+  notify.stopping();
+  const auto& heard = manager.heard();
+  ASSERT_GE(heard.size(), 4U);
+  EXPECT_EQ(heard.front(), "READY=1");
+  EXPECT_EQ(std::count(heard.begin(), heard.end(), "WATCHDOG=1"), 11);
+  EXPECT_EQ(heard[heard.size() - 2], "STATUS=12 visits READY=0");
+  EXPECT_EQ(heard.back(), "STOPPING=1");
+}
+
+TEST(ServiceNotify, WithoutAManagerNothingHappens) {
+  ServiceNotify none, gone(testing::TempDir() + "no_such_socket", 1000), odd("relative", 1000);
+  for (ServiceNotify* notify : {&none, &gone, &odd}) {
+    notify->ready();
+    notify->alive(5);
+  }
+}
+
+TEST(Journal, IsOneJsonObjectALineInAFileADay) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / fmt::format("journal_{}", ::getpid());
+  Journal journal(folder);
+  const std::int64_t noon = 1'790'000'000;
+  ASSERT_TRUE(journal.add(noon, "visit_began"));
+  ASSERT_TRUE(journal.add(noon + 60, "hour", "\"visits\": 3"));
+  ASSERT_TRUE(journal.add(noon + 86'400, "visit_began"));
+  EXPECT_NE(journal.file(noon), journal.file(noon + 86'400));
+  const auto text = read_text_file(journal.file(noon));
+  ASSERT_TRUE(text);
+  const std::size_t split = text->find('\n');
+  const auto first = nlohmann::json::parse(text->substr(0, split)),
+             second = nlohmann::json::parse(text->substr(split + 1));
+  EXPECT_EQ(first.at("what"), "visit_began");
+  EXPECT_EQ(second.at("visits"), 3);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Journal, ThatCannotBeWrittenSaysWhere) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "a_file_is_no_folder";
+  ASSERT_TRUE(write_file_atomically(folder, std::string_view("x")));
+  const auto done = Journal(folder).add(1'790'000'000, "start");
+  ASSERT_FALSE(done);
+  EXPECT_NE(done.error().message.find(folder.string()), std::string::npos);
+  EXPECT_TRUE(Journal({}).add(1'790'000'000, "start"));
+}
+
+}  // namespace
+}  // namespace dubsar::app

@@ -1,0 +1,162 @@
+#include "app/kiosk/visit.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+namespace dubsar::app {
+namespace {
+
+constexpr TimestampNs kStep = 50'000'000;  // 20 pictures a second
+
+/// A visit told by what happens for how long.
+class Story {
+ public:
+  explicit Story(const VisitFigures& figures = {}) : visit_(figures) {}
+  /// Goes on for `seconds`; `seen` is called for each picture.
+  VisitPicture go_on(double seconds, VisitMoment moment, const std::function<void(const VisitPicture&)>& seen = {}) {
+    VisitPicture last;
+    for (int i = 0; i < static_cast<int>(seconds * 20); ++i, now_ += kStep) {
+      last = visit_.update(now_, moment);
+      resets += last.reset;
+      arrivals += last.arrived;
+      if (seen) seen(last);
+    }
+    return last;
+  }
+  const Visit& visit() const { return visit_; }
+  int resets = 0, arrivals = 0;
+
+ private:
+  Visit visit_;
+  TimestampNs now_ = 7'000'000'000;
+};
+
+VisitMoment nobody() { return {}; }
+VisitMoment hand(HandState state, double turned_deg = 0.0) {
+  VisitMoment out;
+  out.hands = 1;
+  out.hand = state;
+  out.turned_deg = turned_deg;
+  return out;
+}
+
+TEST(Visit, NobodyIsInvited) {
+  Story story;
+  const auto picture = story.go_on(5, nobody());
+  EXPECT_EQ(picture.phase, VisitPhase::kAttract);
+  EXPECT_EQ(picture.line, Line::kInvite);
+  EXPECT_FALSE(picture.lesson);
+  EXPECT_EQ(story.arrivals, 0);
+}
+
+TEST(Visit, TeachesTheNextThingWhenOneSucceeded) {
+  Story story;
+  story.go_on(2, nobody());
+  auto picture = story.go_on(1, hand(HandState::kReady));
+  EXPECT_EQ(story.arrivals, 1);
+  EXPECT_EQ(picture.lesson, Lesson::kGrab);
+  picture = story.go_on(2.5, hand(HandState::kHolding));
+  EXPECT_EQ(picture.lesson, Lesson::kTurn);
+  story.go_on(1, hand(HandState::kHolding, 2.0));  // 40 degrees
+  picture = story.go_on(3, hand(HandState::kReady));
+  EXPECT_EQ(picture.phase, VisitPhase::kFree);
+  EXPECT_EQ(picture.lesson, Lesson::kRest);
+  EXPECT_EQ(picture.line, Line::kRest);
+  EXPECT_EQ(story.visit().counts().done[static_cast<std::size_t>(Lesson::kTurn)], 1);
+}
+
+TEST(Visit, LeavesThoseAloneWhoCan) {
+  Story story;
+  story.go_on(2, nobody());
+  bool taught_turn = false, interrupted = false;
+  story.go_on(0.2, hand(HandState::kReady));
+  story.go_on(1.0, hand(HandState::kHolding, 2.0),
+              [&](const VisitPicture& p) { taught_turn |= p.lesson == Lesson::kTurn; });
+  story.go_on(30, hand(HandState::kHolding, 0.5), [&](const VisitPicture& p) { interrupted |= p.lesson.has_value(); });
+  EXPECT_FALSE(taught_turn);
+  EXPECT_FALSE(interrupted);
+}
+
+TEST(Visit, ALessonThatDoesNotHelpRestsAndIsGivenUp) {
+  Story story;
+  int shown = 0;
+  bool was = false;
+  story.go_on(120, hand(HandState::kReady), [&](const VisitPicture& p) {
+    const bool is = p.lesson == Lesson::kGrab;
+    shown += is && !was;
+    was = is;
+  });
+  EXPECT_EQ(shown, 3);
+}
+
+TEST(Visit, SaysWhatIsWrongWithAHandButNotWithOneThatPassesBy) {
+  Story story;
+  story.go_on(1, hand(HandState::kReady));
+  EXPECT_NE(story.go_on(0.4, hand(HandState::kTooFar)).line, Line::kNearer);
+  EXPECT_EQ(story.go_on(0.6, hand(HandState::kTooFar)).line, Line::kNearer);
+  EXPECT_EQ(story.go_on(1, hand(HandState::kFist)).line, Line::kOpenFirst);
+  EXPECT_EQ(story.go_on(1, hand(HandState::kStranger)).line, Line::kSomebodyElse);
+}
+
+TEST(Visit, ResetsOnceWhenTheObjectWasMovedAndNobodyComesBack) {
+  Story story({.idle_reset_s = 20, .attract_after_s = 5});
+  story.go_on(1, hand(HandState::kReady));
+  story.go_on(2, hand(HandState::kHolding, 2.0));
+  story.go_on(19, nobody());
+  EXPECT_EQ(story.resets, 0);
+  const auto picture = story.go_on(60, nobody());
+  EXPECT_EQ(story.resets, 1);
+  EXPECT_EQ(picture.phase, VisitPhase::kAttract);
+}
+
+TEST(Visit, NothingIsResetThatWasNotMoved) {
+  Story story({.idle_reset_s = 20, .attract_after_s = 5});
+  story.go_on(1, hand(HandState::kReady));
+  const auto picture = story.go_on(60, nobody());
+  EXPECT_EQ(story.resets, 0);
+  EXPECT_EQ(picture.phase, VisitPhase::kAttract);
+}
+
+TEST(Visit, AHandThatIsLostForAMomentIsTheSameVisit) {
+  Story story({.idle_reset_s = 20, .attract_after_s = 5});
+  story.go_on(1, hand(HandState::kReady));
+  story.go_on(2, hand(HandState::kHolding, 2.0));
+  story.go_on(10, nobody());
+  story.go_on(2, hand(HandState::kReady));
+  EXPECT_EQ(story.arrivals, 1);
+  EXPECT_EQ(story.resets, 0);
+}
+
+TEST(Visit, QuietHoursWaitForTheLastHand) {
+  Story story({.idle_reset_s = 20, .attract_after_s = 5});
+  story.go_on(3, hand(HandState::kHolding, 2.0));
+  VisitMoment late = hand(HandState::kHolding, 2.0);
+  late.asleep = true;
+  EXPECT_NE(story.go_on(3, late).phase, VisitPhase::kAsleep);
+  VisitMoment night = nobody();
+  night.asleep = true;
+  EXPECT_EQ(story.go_on(10, night).phase, VisitPhase::kAsleep);
+  EXPECT_EQ(story.resets, 1);
+  EXPECT_FALSE(story.go_on(3, night).line);
+  EXPECT_EQ(story.go_on(1, nobody()).phase, VisitPhase::kAttract);
+}
+
+TEST(Visit, WithoutASensorItSaysSo) {
+  Story story;
+  VisitMoment moment;
+  moment.tracker = false;
+  EXPECT_EQ(story.go_on(1, moment).line, Line::kNoTracker);
+}
+
+TEST(Visit, AClockThatJumpsBackEndsNothing) {
+  Visit visit({.idle_reset_s = 20, .attract_after_s = 5});
+  visit.update(100'000'000'000, hand(HandState::kReady));
+  visit.update(101'000'000'000, hand(HandState::kHolding, 40.0));
+  const auto picture = visit.update(5'000'000'000, hand(HandState::kReady));
+  EXPECT_EQ(picture.phase, VisitPhase::kFree);
+  EXPECT_FALSE(picture.reset);
+}
+
+}  // namespace
+}  // namespace dubsar::app
