@@ -3,12 +3,12 @@
 
 #include <array>
 #include <concepts>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "core/base/clock.h"
+#include "devices/device_driver.h"
 #include "devices/transport/reconnector.h"
 
 namespace dubsar {
@@ -24,14 +24,10 @@ concept DeviceProtocol = requires(P protocol, Transport& transport, std::span<co
   { protocol.newest() } -> std::same_as<std::optional<typename P::Sample>>;
 };
 
-struct DriverCounts {
-  std::uint64_t accepted = 0, refused = 0, losses = 0;
-};
-
 /// Reads all that has come, newest wins. A lost device is a state: poll() then gives nothing and tries to open it
 /// again (Reconnector). A device that sends kMaxRefusedInARow invalid reports in a row is opened again too. One thread.
 template <DeviceProtocol Protocol>
-class Driver {
+class Driver final : public DeviceDriver {
  public:
   using Sample = typename Protocol::Sample;
   static constexpr int kMaxRefusedInARow = 1000;
@@ -74,15 +70,23 @@ class Driver {
     return protocol_.newest();
   }
 
-  void wake() noexcept { reconnector_.wake(); }
-  bool connected() const noexcept { return reconnector_.connected(); }
-  const std::string& reason() const noexcept { return reconnector_.reason(); }
+  std::optional<DeviceSample> next(TimestampNs now, milliseconds timeout) override {
+    auto sample = poll(now, timeout);
+    if (!sample) return std::nullopt;
+    return DeviceSample(*std::move(sample));
+  }
+  void wake() noexcept override { reconnector_.wake(); }
+  void recentre() noexcept override {
+    if constexpr (requires(Protocol & p) { p.recentre(); }) protocol_.recentre();
+  }
+  bool connected() const noexcept override { return reconnector_.connected(); }
+  const std::string& reason() const noexcept override { return reconnector_.reason(); }
   /// What a protocol with a note() has to say about an open device that works, or gives nothing; empty otherwise.
-  std::string note() const {
+  std::string note() const override {
     if constexpr (requires(const Protocol& p) { p.note(); }) return connected() ? protocol_.note() : std::string();
     return {};
   }
-  const DriverCounts& counts() const noexcept { return counts_; }
+  const DriverCounts& counts() const noexcept override { return counts_; }
   Protocol& protocol() noexcept { return protocol_; }
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 // Pictures from a device: webcams deliver one view per frame, stereo infrared cameras two.
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -54,6 +55,9 @@ class FrameSource {
   /// Never blocks for a frame. True: `newest` is a frame that this function has not returned before; older ones that
   /// arrived meanwhile are gone. `newest` lends its memory to the source, so keep handing in the same object.
   virtual bool poll(Frame& newest) = 0;
+
+  /// poll() that waits at most `timeout` for such a frame.
+  virtual bool wait(Frame& newest, std::chrono::milliseconds timeout) = 0;
 
   /// A lost device is a state, not an error; reason() is one sentence for people.
   virtual FrameSourceState state() const = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// The one interface behind which every input stands, what it delivers, and the ordered table of back ends.
+// The one interface behind which every input stands, what it delivers, and how sources are made by their names.
 
 #include <filesystem>
 #include <functional>
@@ -8,14 +8,12 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "core/base/clock.h"
-#include "core/base/registry.h"
+#include "core/base/option_list.h"
 #include "core/base/result.h"
 #include "devices/device_info.h"
 #include "devices/device_spec.h"
@@ -80,7 +78,7 @@ class InputSource {
 };
 
 struct InputConfig {
-  std::vector<std::pair<std::string, std::string>> options;  ///< "key=value"; a bare word has an empty value
+  std::vector<Option> options;           ///< of the one source that is made with it
   WindowEvents* window = nullptr;        ///< where mouse and keyboard come from; none without a window
   std::function<ViewState()> seen_view;  ///< what a simulated visitor looks at; asked in any thread
   /// The session's clock, on which devices stamp what they measure; null: the steady clock. It outlives the source and
@@ -95,10 +93,9 @@ struct InputConfig {
   std::shared_ptr<HotplugBell> hotplug;  ///< shared by the sources of a session; null: lost devices come back by pauses
 };
 
-using InputBackend = Backend<InputSource, InputConfig>;
-
-/// All sources, in the order of their priority when several see hands or heads. Needs dubsar_input_sources.
-std::span<const InputBackend> input_sources();
+/// Names of all sources, in the order of their priority when several see hands or heads: those of a window, of the
+/// table of drivers, of programs and files. Needs dubsar_input_sources, as what follows does.
+std::vector<std::string_view> input_source_names();
 
 /// Specs for make_input() of what a session takes beside its window's mouse and keyboard when its user names nothing:
 /// of these devices, those that can be used, as "spacemouse", "head:rift" ...; never services, servers, cameras,

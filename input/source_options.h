@@ -12,9 +12,9 @@ namespace dubsar {
 /// The file of "NAME:FILE" or "NAME:path=FILE": kUsage when there is none or anything else.
 inline Result<std::string> only_path_option(const InputConfig& config, std::string_view source) {
   if (config.options.size() == 1) {
-    const auto& [key, value] = config.options.front();
-    if (key == "path" && !value.empty()) return value;
-    if (!key.empty() && value.empty() && key != "path") return key;
+    const Option& option = config.options.front();
+    if (option.key == "path" && !option.value.value_or("").empty()) return *option.value;
+    if (option.key != "path" && !option.value) return option.key;
   }
   return fail(ErrorKind::kUsage, "input {}: expected one file, as {}:FILE", source, source);
 }

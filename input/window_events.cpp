@@ -38,7 +38,7 @@ class WindowSource final : public InputSource {
 Result<std::unique_ptr<InputSource>> make(const InputConfig& config, bool keys) {
   const std::string_view name = keys ? "keyboard" : "mouse";
   if (!config.options.empty())
-    return fail(ErrorKind::kUsage, "input {}: option \"{}\" found, expected none", name, config.options.front().first);
+    return fail(ErrorKind::kUsage, "input {}: option \"{}\" found, expected none", name, config.options.front().key);
   if (config.window == nullptr)
     return fail(ErrorKind::kUnavailable,
                 "input {}: there is no window to get it from; use scripted or replay without a window", name);

@@ -4,7 +4,7 @@
 
 #include "app/cli/config_folder.h"
 #include "core/base/atomic_file.h"
-#include "devices/enumerate.h"
+#include "devices/device_list.h"
 #include "devices/looking_glass/bridge_client.h"
 #include "devices/looking_glass/calibration_pages.h"
 #include "display/panels/calibration.h"
@@ -97,8 +97,8 @@ void search_bridge(const CalibrationSearch& search, const PanelSet& panels, cons
 CalibrationSearch search_this_machine(int bridge_port, const Clock& clock) {
   CalibrationSearch search;
   search.mounts = mount_folders();
-  for (const DeviceInfo& info : list_hid_devices()) {
-    if (info.driver != "looking_glass") continue;
+  const auto driver = find_driver("looking_glass", "displays", driver_table());
+  for (const DeviceInfo& info : list_hid_devices(driver ? DriverTable(*driver, 1) : DriverTable())) {
     CalibrationSearch::HidUnit unit{info.path, [path = info.path, &clock] { return open_hid(path, clock); }, {}};
     if (info.state != DeviceState::kUsable) unit.problem = fmt::format("{}; {}", info.reason, info.remedy);
     search.hid.push_back(std::move(unit));

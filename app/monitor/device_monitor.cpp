@@ -3,9 +3,9 @@
 #include <chrono>
 #include <thread>
 
-#include "devices/head_tracker/head_tracker.h"
-#include "devices/spacemouse/spacenav_protocol.h"
+#include "devices/drivers.h"
 #include "input/input_source.h"
+#include "input/source_spec.h"
 
 namespace dubsar::app {
 namespace {
@@ -13,7 +13,7 @@ using nlohmann::json;
 
 json numbers(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-json to_json(const SpaceMouseSample& sample) {
+json to_json(const PuckSample& sample) {
   return {{"time_s", 1e-9 * static_cast<double>(sample.time)},
           {"translation", numbers(sample.translation)},
           {"rotation", numbers(sample.rotation)},
@@ -27,6 +27,8 @@ json to_json(const HeadSample& sample) {
   if (sample.has_orientation) out["rotation_wxyz"] = {q.w, q.x, q.y, q.z};
   return out;
 }
+
+json to_json(const StereoSample& sample) { return {{"time_s", 1e-9 * static_cast<double>(sample.time)}}; }
 
 json to_json(const InputFrame& frame) {
   json out = {{"time_s", 1e-9 * static_cast<double>(frame.time)}, {"hands", json::array()}};
@@ -42,51 +44,30 @@ json to_json(const InputFrame& frame) {
   return out;
 }
 
-template <class Protocol>
-class LiveDriver final : public DeviceMonitor {
+class DriverMonitor final : public DeviceMonitor {
  public:
-  LiveDriver(OpenTransport open, const Clock& clock) : driver_(std::move(open), Protocol(), &clock) {}
+  explicit DriverMonitor(std::unique_ptr<DeviceDriver> driver) : driver_(std::move(driver)) {}
   std::optional<json> poll(TimestampNs now, milliseconds timeout) override {
-    const auto sample = driver_.poll(now, timeout);
+    const auto sample = driver_->next(now, timeout);
     if (!sample) return std::nullopt;
-    newest_ = sample->time;
-    return to_json(*sample);
+    newest_ = time_of(*sample);
+    return std::visit([](const auto& s) { return to_json(s); }, *sample);
   }
-  bool connected() const override { return driver_.connected(); }
-  std::string reason() const override { return driver_.reason(); }
-  std::string note() const override { return driver_.note(); }
-  DriverCounts counts() const override { return driver_.counts(); }
+  bool connected() const override { return driver_->connected(); }
+  std::string reason() const override { return driver_->reason(); }
+  std::string note() const override { return driver_->note(); }
+  DriverCounts counts() const override { return driver_->counts(); }
   TimestampNs newest() const override { return newest_; }
 
  private:
-  Driver<Protocol> driver_;
-  TimestampNs newest_ = 0;
-};
-
-class LiveHeadTracker final : public DeviceMonitor {
- public:
-  explicit LiveHeadTracker(std::unique_ptr<HeadTracker> tracker) : tracker_(std::move(tracker)) {}
-  std::optional<json> poll(TimestampNs now, milliseconds timeout) override {
-    const auto sample = tracker_->poll(now, timeout);
-    if (!sample) return std::nullopt;
-    newest_ = sample->time;
-    return to_json(*sample);
-  }
-  bool connected() const override { return tracker_->connected(); }
-  std::string reason() const override { return tracker_->reason(); }
-  std::string note() const override { return tracker_->note(); }
-  DriverCounts counts() const override { return tracker_->counts(); }
-  TimestampNs newest() const override { return newest_; }
-
- private:
-  std::unique_ptr<HeadTracker> tracker_;
+  std::unique_ptr<DeviceDriver> driver_;
   TimestampNs newest_ = 0;
 };
 
 /// Hands in the device's own frame.
-class LiveHands final : public DeviceMonitor {
+class HandsMonitor final : public DeviceMonitor {
  public:
-  LiveHands(std::unique_ptr<InputSource> source, bool threaded) : source_(std::move(source)), threaded_(threaded) {}
+  HandsMonitor(std::unique_ptr<InputSource> source, bool threaded) : source_(std::move(source)), threaded_(threaded) {}
   std::optional<json> poll(TimestampNs now, milliseconds timeout) override {
     const auto until = std::chrono::steady_clock::now() + timeout;
     for (;;) {
@@ -116,37 +97,25 @@ class LiveHands final : public DeviceMonitor {
 
 }  // namespace
 
-Result<std::unique_ptr<DeviceMonitor>> make_live_device(const DeviceSpec& choice, OpenTransport open,
-                                                        const Clock& clock, bool threaded) {
-  if (choice.driver == "spacemouse") return std::make_unique<LiveDriver<SpaceMouseProtocol>>(std::move(open), clock);
-  if (choice.driver == "spacenav") return std::make_unique<LiveDriver<SpacenavProtocol>>(std::move(open), clock);
-  if (choice.driver == "leap") {
-    InputConfig config;
-    config.clock = &clock;
-    config.simulated_time = !threaded;
+Result<std::unique_ptr<DeviceMonitor>> monitor_device(const DeviceSpec& spec, OpenTransport open, const Clock& clock,
+                                                      bool threaded) {
+  DUBSAR_ASSIGN(const DriverEntry* driver, find_driver(spec.driver, "devices", driver_table()));
+  if (driver->gives != Gives::kStereoPictures && driver->gives != Gives::kHands) {
+    DUBSAR_ASSIGN(auto made, drive_device(spec, std::move(open), clock));
+    return std::make_unique<DriverMonitor>(std::move(made));
+  }
+  InputConfig config;  // hands are what people want to see of pictures
+  config.clock = &clock;
+  config.simulated_time = !threaded;
+  if (open) {
     config.reach_device = [open = std::move(open)](const DeviceSpec&, const Clock&) -> Result<OpenTransport> {
       return open;
     };
-    DUBSAR_ASSIGN(auto source, make_input("leap:at=0/0/0", config));
-    return std::make_unique<LiveHands>(std::move(source), threaded);
   }
-  if (choice.driver == "leapc") {
-    InputConfig config;
-    config.clock = &clock;
-    if (!choice.library.empty()) config.options.emplace_back("library", choice.library);
-    DUBSAR_ASSIGN(auto source, make_input("leapc:at=0/0/0", config));
-    return std::make_unique<LiveHands>(std::move(source), true);
-  }
-  DUBSAR_ASSIGN(const auto* const backend, find_backend(head_tracker_backends(), choice.driver, "device driver"));
-  HeadTrackerConfig config;
-  config.open = std::move(open);
-  config.sender = choice.sender;
-  config.tracker = choice.tracker;
-  config.sensor = choice.sensor;
-  config.invert = choice.invert;
-  config.stamps = &clock;
-  DUBSAR_ASSIGN(auto tracker, backend->create(config));
-  return std::make_unique<LiveHeadTracker>(std::move(tracker));
+  SourceSpec source{std::string(driver->input.source), spec.options};
+  source.options.push_back({"at", "0/0/0"});
+  DUBSAR_ASSIGN(auto made, make_input(source.text(), config));
+  return std::make_unique<HandsMonitor>(std::move(made), threaded);
 }
 
 }  // namespace dubsar::app

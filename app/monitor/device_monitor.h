@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "core/base/clock.h"
+#include "devices/device_driver.h"
 #include "devices/device_spec.h"
-#include "devices/driver.h"
 
 namespace dubsar::app {
 
@@ -25,8 +25,9 @@ class DeviceMonitor {
 };
 
 /// The driver over any transport, real or replayed; `clock`, that of the times it is polled with, stamps what is read
-/// and outlives it. A Leap needs `threaded` where its pictures come in real time. kUsage: no such driver.
-Result<std::unique_ptr<DeviceMonitor>> make_live_device(const DeviceSpec& choice, OpenTransport open,
-                                                        const Clock& clock, bool threaded);
+/// and outlives it. Cameras whose hands are shown need `threaded` where their pictures come in real time. kUsage: no
+/// such driver, options that it does not have.
+Result<std::unique_ptr<DeviceMonitor>> monitor_device(const DeviceSpec& spec, OpenTransport open, const Clock& clock,
+                                                      bool threaded);
 
 }  // namespace dubsar::app

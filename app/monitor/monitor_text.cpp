@@ -51,7 +51,7 @@ std::string hand_line(const json& hand) {
 
 }  // namespace
 
-std::string live_view(const json& sample) {
+std::string monitor_text(const json& sample) {
   std::string out;
   if (sample.contains("translation")) {
     out += bars(sample["translation"], {"right", "up", "to you"}, 1.0, "");

@@ -9,6 +9,6 @@ namespace dubsar::app {
 /// A sample of DeviceMonitor as lines of at most 79 characters: axes and head as bars, hands as a line each, the
 /// age when the sample has "age_ms". Samples of one device that have the same parts have the same number of
 /// lines.
-std::string live_view(const nlohmann::json& sample);
+std::string monitor_text(const nlohmann::json& sample);
 
 }  // namespace dubsar::app

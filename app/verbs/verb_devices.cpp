@@ -16,16 +16,13 @@
 #include "app/monitor/monitor_text.h"
 #include "core/base/json_text.h"
 #include "core/base/quantile.h"
-#include "devices/enumerate.h"
+#include "devices/device_list.h"
 #include "devices/looking_glass/calibration_pages.h"
-#include "devices/real/real_devices.h"
 #include "devices/transport/record_transport.h"
 #include "devices/transport/replay_transport.h"
-#include "input/placement.h"
 #include "input/simulated/simulated_recording.h"
 #include "input/simulated/simulated_server.h"
 #include "input/source_options.h"
-#include "input/sources/head_source.h"
 
 namespace dubsar::app {
 namespace {
@@ -34,9 +31,27 @@ using nlohmann::json;
 constexpr std::size_t kMostAges = 1'000'000;
 
 struct Options {
-  DeviceSpec device;
-  std::string file, script, udp, invert;
-  bool live = false;
+  std::string driver, file, script, udp;
+  std::string address, port, tracker, sensor, invert, sender, socket, library;
+  bool live = false, remote = false;
+
+  /// What was said, for the driver to judge.
+  DeviceSpec device() const {
+    DeviceSpec spec{driver};
+    const auto add = [&](const char* key, const std::string& value) {
+      if (!value.empty()) spec.options.push_back({key, value});
+    };
+    add("address", address);
+    add("port", port);
+    add("tracker", tracker);
+    add("sensor", sensor);
+    add("invert", invert);
+    add("sender", sender);
+    add("socket", socket);
+    add("library", library);
+    if (remote) spec.options.push_back({"remote"});
+    return spec;
+  }
   std::optional<double> duration;
   double seconds = 10.0;
   double speed = 1.0;
@@ -45,7 +60,7 @@ struct Options {
 };
 
 Result<VerbResult> list(const Options& options) {
-  const std::vector<DeviceInfo> devices = list_real_devices(options.device.socket);
+  const std::vector<DeviceInfo> devices = list_devices(options.socket);
   VerbResult result;
   result.json["devices"] = json::array();
   for (const DeviceInfo& d : devices) {
@@ -122,7 +137,7 @@ class SamplePrinter {
       fmt::print("{}\n", dump_json(sample));
     } else if (now - drawn_ >= kDrawNs) {
       drawn_ = now;
-      const std::string view = live_view(sample);
+      const std::string view = monitor_text(sample);
       fmt::print("{}{}", lines_ > 0 ? fmt::format("\x1b[{}A\x1b[J", lines_) : "", view);
       lines_ = std::count(view.begin(), view.end(), '\n');
     }
@@ -137,6 +152,11 @@ class SamplePrinter {
   std::ptrdiff_t lines_ = 0;
 };
 
+bool is_calibration(std::string_view name) {
+  const auto driver = find_driver(name, "devices", driver_table());
+  return driver && (*driver)->gives == Gives::kNothing;
+}
+
 Result<VerbResult> probe_looking_glass(const Clock& clock) {
   DUBSAR_ASSIGN(const auto transport, open_hid_device("looking_glass", clock));
   DUBSAR_ASSIGN(const std::string text, read_looking_glass_calibration(*transport, clock));
@@ -148,23 +168,26 @@ Result<VerbResult> probe_looking_glass(const Clock& clock) {
 
 Result<VerbResult> run_live(const Options& options, bool print, Progress& progress) {
   const SteadyClock clock;
+  const DeviceSpec spec = options.device();
+  DUBSAR_ASSIGN(const DriverEntry* driver, find_driver(spec.driver, "devices", driver_table()));
   OpenTransport open;
-  if (options.device.driver != "leapc") {
-    DUBSAR_ASSIGN(open, reach_real_device(options.device, clock));
+  if (driver->bus != Bus::kService) {
+    DUBSAR_ASSIGN(open, open_device(spec, clock));
   } else if (options.record->chosen()) {
     return fail(ErrorKind::kUsage,
-                "devices: leapc is a service and sends no bytes of a device: record its hands with dubsar "
-                "view --input leapc --record FILE");
+                "devices: {} is a service and sends no bytes of a device: record its hands with dubsar "
+                "view --input {} --record FILE",
+                spec.driver, driver->input.source);
   }
   std::shared_ptr<RecordingWriter> writer;
   if (options.record->chosen()) {
-    DUBSAR_ASSIGN(writer, RecordingWriter::create(options.file, options.device.driver, "", clock));
+    DUBSAR_ASSIGN(writer, RecordingWriter::create(options.file, spec.driver, "", clock));
     open = [open = std::move(open), writer]() -> Result<std::unique_ptr<Transport>> {
       DUBSAR_ASSIGN(auto transport, open());
       return make_record_transport(std::move(transport), writer);
     };
   }
-  DUBSAR_ASSIGN(const auto device, make_live_device(options.device, std::move(open), clock, true));
+  DUBSAR_ASSIGN(const auto device, monitor_device(spec, std::move(open), clock, true));
   const TimestampNs end = clock.now() + static_cast<TimestampNs>(options.seconds * 1e9);
   const auto over = [&] { return clock.now() >= end; };
   SamplePrinter printer(clock);
@@ -186,11 +209,10 @@ Result<VerbResult> run_live(const Options& options, bool print, Progress& progre
 Result<VerbResult> run_replay(const Options& options, bool print, Progress& progress) {
   const SteadyClock clock;
   DUBSAR_ASSIGN(Recording recording, read_recording(options.file));
-  DeviceSpec choice = options.device;
-  choice.driver = recording.driver;
+  const DeviceSpec spec{recording.driver};
   ReplaySession session(std::move(recording), clock, options.speed);
-  DUBSAR_ASSIGN(const auto device, make_live_device(
-                                       choice, [&] { return session.open(); }, session.recorded_clock(), false));
+  DUBSAR_ASSIGN(const auto device, monitor_device(
+                                       spec, [&] { return session.open(); }, session.recorded_clock(), false));
   const auto over = [&] { return session.finished(); };
   SamplePrinter printer(clock);
   return watch(*device, session.recorded_clock(), progress, over, [&](const json& sample) {
@@ -199,56 +221,53 @@ Result<VerbResult> run_replay(const Options& options, bool print, Progress& prog
 }
 
 /// A script, or somebody; where the device stands is where its source expects it.
-Result<WireOptions> wire_options(const Options& options) {
-  WireOptions wire;
+Result<PersonOptions> person_options(const Options& options, const DriverEntry& driver) {
+  PersonOptions person;
   if (options.script.empty()) {
-    wire.script = somebody(options.seed.value_or(1), options.duration.value_or(10.0));
+    person.script = somebody(options.seed.value_or(1), options.duration.value_or(10.0));
   } else {
     DUBSAR_ASSIGN(const std::string text, read_source_text(options.script));
-    DUBSAR_ASSIGN(wire.script, parse_script(text, options.script));
-    if (options.seed) wire.script.seed = *options.seed;
-    if (options.duration) wire.script.duration_s = *options.duration;
+    DUBSAR_ASSIGN(person.script, parse_script(text, options.script));
+    if (options.seed) person.script.seed = *options.seed;
+    if (options.duration) person.script.duration_s = *options.duration;
   }
-  wire.screen_from_device =
-      options.device.driver == "leap" ? table_placement() : Pose{usual_place_m(options.device.driver)};
-  return wire;
+  person.screen_from_device = driver.usual_place;
+  return person;
 }
 
 Result<VerbResult> run_simulate(const Options& options, bool print, Progress& progress) {
-  DUBSAR_ASSIGN(WireOptions wire, wire_options(options));
+  DeviceSpec spec = options.device();
+  DUBSAR_ASSIGN(const DriverEntry* driver, find_driver(spec.driver, "devices simulate", driver_table()));
+  DUBSAR_ASSIGN(PersonOptions person, person_options(options, *driver));
   VerbResult result;
   const bool live = options.live || !options.udp.empty();
   if (live != options.file.empty())
     return fail(ErrorKind::kUsage, "devices simulate: expected either a file to write, or --live or --udp HOST:PORT");
   if (!live) {
-    DUBSAR_ASSIGN(const std::int64_t events,
-                  write_simulated_recording(options.device.driver, options.file, std::move(wire)));
+    DUBSAR_ASSIGN(const std::int64_t events, write_simulated_recording(*driver, options.file, std::move(person)));
     result.json = {{"events", events}, {"file", options.file}};
     result.text = fmt::format("{} events in {}\n", events, options.file);
     return result;
   }
-  DeviceSpec choice = options.device;
   if (!options.udp.empty()) {
     const std::size_t colon = options.udp.rfind(':');
-    if (colon == std::string::npos || choice.driver != "opentrack")
+    if (colon == std::string::npos || driver->bus != Bus::kUdp)
       return fail(ErrorKind::kUsage, "devices simulate: --udp \"{}\" found, expected HOST:PORT, for opentrack",
                   options.udp);
-    choice.address = options.udp.substr(0, colon);
-    choice.port = std::atoi(options.udp.c_str() + colon + 1);
-    if (choice.port < 1 || choice.port > 65535)
-      return fail(ErrorKind::kUsage, "devices simulate: --udp \"{}\" found, expected a port of 1 to 65535",
-                  options.udp);
+    spec.options = {{"address", options.udp.substr(0, colon)}, {"port", options.udp.substr(colon + 1)}};
   }
   const SteadyClock clock;
-  DUBSAR_ASSIGN(const auto person, make_wire_person(choice.driver, std::move(wire), clock));
+  DUBSAR_ASSIGN(const SimulatedFeed feed, simulate_device(*driver, std::move(person), clock));
   const auto ready = [&](int port) {
     if (!print) return;
-    fmt::print("simulated {} at {}\n", choice.driver,
-               choice.driver == "spacenav" ? choice.socket : fmt::format("{}:{}", choice.address, port));
+    const std::string address = options.address.empty() ? "127.0.0.1" : options.address;
+    fmt::print("simulated {} at {}\n", spec.driver,
+               driver->bus == Bus::kUnixSocket ? options.socket : fmt::format("{}:{}", address, port));
     std::fflush(stdout);
   };
-  DUBSAR_ASSIGN(const LiveWireResult served, serve_live_wire(
-                                                 *person, choice, clock, [&] { return progress.cancelled(); }, ready));
+  DUBSAR_ASSIGN(const ServerResult served,
+                serve_simulated(
+                    *driver, feed, spec.options, clock, [&] { return progress.cancelled(); }, ready));
   result.json = {{"messages", served.messages}, {"clients", served.clients}};
   result.text = fmt::format("{} messages sent\n", served.messages);
   return result;
@@ -257,35 +276,35 @@ Result<VerbResult> run_simulate(const Options& options, bool print, Progress& pr
 Result<VerbResult> run(const Options& options, const CommonOptions& common, Progress& progress) {
   const bool print = common.json_path != "-" && !common.console.quiet;
   if (options.list->chosen()) return list(options);
-  if (options.probe->chosen() && options.device.driver == "looking_glass") return probe_looking_glass(SteadyClock());
+  if (options.probe->chosen() && is_calibration(options.driver)) return probe_looking_glass(SteadyClock());
   if (options.replay->chosen()) return run_replay(options, print, progress);
   if (options.simulate->chosen()) return run_simulate(options, print, progress);
-  if (options.device.driver == "webcam" && !options.monitor->chosen())
+  const auto driver = find_driver(options.driver, "devices", driver_table());
+  if (driver && (*driver)->bus == Bus::kVideo && !options.monitor->chosen())
     return watch_camera(options.file, options.probe->chosen() ? 2.0 : options.seconds, progress);
   Options chosen = options;
-  DUBSAR_ASSIGN(chosen.device.invert, parse_axes(options.invert));
   if (options.probe->chosen()) chosen.seconds = 2.0;
   return run_live(chosen, print && options.monitor->chosen(), progress);
 }
 
 void add_device_options(Arguments command, Options& options) {
   command
-      .value("driver", options.device.driver,
-             std::string(kDeviceDrivers) + "; probe and monitor: leapc; probe and record: webcam")
+      .value("driver", options.driver,
+             driver_names(driver_table(), can_be_opened) + "; probe and monitor: leapc; probe and record: webcam")
       .required();
-  command.value("--address", options.device.address, "opentrack: to listen on; vrpn: of the server");
-  command.value("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given").range(0, 65535);
-  command.flag("--allow-remote", options.device.allow_remote, "opentrack: listen to other machines too");
-  command.value("--tracker", options.device.tracker, "vrpn: name of the tracker (the first)");
-  command.value("--sensor", options.device.sensor, "vrpn: which of its sensors").range(0, 1000);
+  command.value("--address", options.address, "opentrack: to listen on; vrpn: of the server");
+  command.value("--port", options.port, "opentrack: 4242, vrpn: 3883 unless given");
+  command.flag("--allow-remote", options.remote, "opentrack: listen to other machines too");
+  command.value("--tracker", options.tracker, "vrpn: name of the tracker (the first)");
+  command.value("--sensor", options.sensor, "vrpn: which of its sensors");
   command.value("--invert", options.invert, "opentrack: axes that count the other way, e.g. x+yaw").called("AXES");
-  command.value("--sender", options.device.sender, "opentrack: whose signs, opentrack or xrlinux").called("NAME");
-  command.value("--socket", options.device.socket, "spacenav: path of the daemon's socket");
-  command.value("--library", options.device.library, "leapc: Ultraleap's libLeapC.so").called("FILE");
+  command.value("--sender", options.sender, "opentrack: whose signs, opentrack or xrlinux").called("NAME");
+  command.value("--socket", options.socket, "spacenav: path of the daemon's socket");
+  command.value("--library", options.library, "leapc: Ultraleap's libLeapC.so").called("FILE");
 }
 
 void add_simulate_options(Arguments command, Options& options) {
-  command.value("driver", options.device.driver, "whose bytes: " + std::string(kDeviceDrivers)).required();
+  command.value("driver", options.driver, "whose bytes: " + driver_names(driver_table(), can_be_simulated)).required();
   command.writes("file", options.file, FileFormat::kOther, "the recording to write").called("FILE");
   command.reads("--script", options.script, "what the person does (docs/input.md); else looks about and turns things")
       .called("FILE");
@@ -293,10 +312,10 @@ void add_simulate_options(Arguments command, Options& options) {
   command.value("--seconds", options.duration, "how long, instead of the script's time").range(0.1, 3600.0).called("S");
   command.flag("--live", options.live, "in real time on sockets: opentrack, vrpn, spacenav");
   command.value("--udp", options.udp, "opentrack: live, to this receiver").called("HOST:PORT");
-  command.value("--address", options.device.address, "opentrack: of the receiver; vrpn: to serve on");
-  command.value("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given").range(0, 65535);
-  command.flag("--allow-remote", options.device.allow_remote, "vrpn: serve other machines too");
-  command.value("--socket", options.device.socket, "spacenav: the socket to serve");
+  command.value("--address", options.address, "opentrack: of the receiver; vrpn: to serve on");
+  command.value("--port", options.port, "opentrack: 4242, vrpn: 3883 unless given");
+  command.flag("--allow-remote", options.remote, "vrpn: serve other machines too");
+  command.value("--socket", options.socket, "spacenav: the socket to serve");
 }
 
 }  // namespace
@@ -314,7 +333,7 @@ Verb add_devices_verb(Arguments program) {
     sub.value("--seconds", options->seconds, "how long").range(0.1, 86400.0).called("S");
   };
   options->list = add("list", "devices that are here, and why one cannot be used");
-  options->list->value("--socket", options->device.socket, "path of spacenavd's socket");
+  options->list->value("--socket", options->socket, "path of spacenavd's socket");
   options->probe = add("probe", "open a device and see whether it answers (also looking_glass: its calibration)");
   options->monitor = add("monitor", "show what a device says: bars in a terminal, else one JSON line per sample");
   options->record = add("record", "write what a device says to a file");

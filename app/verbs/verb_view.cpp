@@ -32,8 +32,7 @@ struct Options {
 
 /// What --input and --script say, one text for each source.
 Result<std::vector<std::string>> source_texts(const Options& options) {
-  std::vector<std::string_view> names;
-  for (const InputBackend& source : input_sources()) names.push_back(source.name);
+  const std::vector<std::string_view> names = input_source_names();
   std::vector<std::string> out;
   for (const std::string& text : options.inputs) {
     DUBSAR_ASSIGN(const std::vector<SourceSpec> specs, parse_sources(text, names));
@@ -210,8 +209,8 @@ Verb add_view_verb(Arguments program) {
   command.reads("IN", options->in, "EXA, PLY, OBJ, STL or GLB file").required();
   std::string sinks, sources;
   for (const SinkBackend& sink : output_sinks()) sinks += (sinks.empty() ? "" : ", ") + std::string(sink.name);
-  for (const InputBackend& source : input_sources())
-    sources += (sources.empty() ? "" : ", ") + std::string(source.name);
+  for (const std::string_view source : input_source_names())
+    sources += (sources.empty() ? "" : ", ") + std::string(source);
   command.value("--display", options->display, "NAME[:options]: " + sinks);
   command.value("--plugin", options->plugins, "a display from a shared library; loading it runs its code")
       .called("FILE.so")

@@ -1,6 +1,7 @@
 #include "devices/camera/camera.h"
 
 #include <atomic>
+#include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -69,6 +70,12 @@ class Camera final : public FrameSource {
     fresh_ = false;
     return true;
   }
+  bool wait(Frame& newest, std::chrono::milliseconds timeout) override {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, timeout, [this] { return fresh_ || state_ != FrameSourceState::kRunning; });
+    lock.unlock();
+    return poll(newest);
+  }
   FrameSourceState state() const override {
     const std::lock_guard lock(mutex_);
     return state_;
@@ -99,12 +106,14 @@ class Camera final : public FrameSource {
       const std::lock_guard lock(mutex_);
       std::swap(frame, newest_);
       fresh_ = true;
+      changed_.notify_all();
     }
   }
   void lose(std::string why) {
     const std::lock_guard lock(mutex_);
     state_ = FrameSourceState::kLost;
     reason_ = std::move(why);
+    changed_.notify_all();
   }
 
   const WebcamOptions options_;
@@ -118,6 +127,7 @@ class Camera final : public FrameSource {
   std::atomic<bool> stopping_{false};
 
   mutable std::mutex mutex_;
+  std::condition_variable changed_;
   FrameSourceState state_ = FrameSourceState::kStopped;
   std::string reason_;
   Frame newest_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <thread>
 
 #include "core/image_io/jpeg_file.h"
 #include "core/image_io/png_file.h"
@@ -76,6 +77,14 @@ class Pictures final : public PictureFrames {
     if (finished()) {
       state_ = FrameSourceState::kStopped;
       reason_ = "the last picture has been shown";
+    }
+    return true;
+  }
+  bool wait(Frame& newest, std::chrono::milliseconds timeout) override {
+    const auto until = std::chrono::steady_clock::now() + timeout;
+    while (!poll(newest)) {
+      if (state_ != FrameSourceState::kRunning || std::chrono::steady_clock::now() >= until) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     return true;
   }

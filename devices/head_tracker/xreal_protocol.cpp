@@ -85,11 +85,7 @@ void put_vector(std::span<std::byte> out, std::size_t at, const glm::dvec3& sens
 
 }  // namespace
 
-const XrealProduct* find_xreal(std::uint16_t product_id) noexcept {
-  for (const XrealProduct& product : kProducts)
-    if (product.id == product_id) return &product;
-  return nullptr;
-}
+std::span<const XrealProduct> xreal_products() noexcept { return kProducts; }
 
 std::optional<XrealReport> parse_xreal(std::span<const std::byte> report) noexcept {
   if (report.size() != kReportBytes || report[0] != std::byte{1} || report[1] != std::byte{2}) return std::nullopt;

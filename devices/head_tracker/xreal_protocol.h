@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -23,8 +24,8 @@ struct XrealProduct {
   int imu_interface = -1;  ///< the HID interface that carries the inertial reports; -1: not one that is known
   std::string_view needs;  ///< why this program cannot read it and what can; empty where it can
 };
-/// The models that XRLinuxDriver knows (src/devices/xreal.c); null: none of them.
-const XrealProduct* find_xreal(std::uint16_t product_id) noexcept;
+/// The models that XRLinuxDriver knows (src/devices/xreal.c).
+std::span<const XrealProduct> xreal_products() noexcept;
 inline constexpr std::string_view kXrealRemedy =
     "run XRLinuxDriver with its opentrack output and use head:opentrack,sender=xrlinux";
 

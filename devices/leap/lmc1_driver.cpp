@@ -70,7 +70,7 @@ Result<lmc1::Calibration> read_lmc1_calibration(Transport& transport, millisecon
   for (std::size_t i = 0; i < blob.size(); ++i) {
     std::array<std::byte, 2> data{std::byte(static_cast<std::size_t>(lmc1::kCalibrationAddress) + i), std::byte{0}};
     DUBSAR_TRY(transport.control(lmc1::set_current(lmc1::kProcessingUnit, sharpness), data, kControlTimeout));
-    if (settle > milliseconds{0}) std::this_thread::sleep_for(settle);
+    if (settle > milliseconds{0} && transport.is_hardware()) std::this_thread::sleep_for(settle);
     DUBSAR_ASSIGN(const std::size_t length,
                   transport.control(lmc1::get_current(lmc1::kProcessingUnit, saturation), data, kControlTimeout));
     if (length != 2) return fail(ErrorKind::kBadData, "leap: calibration answer of {} bytes, expected 2", length);

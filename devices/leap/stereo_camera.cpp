@@ -1,6 +1,9 @@
 #include "devices/leap/stereo_camera.h"
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -13,6 +16,7 @@ namespace dubsar {
 namespace {
 
 constexpr milliseconds kReadTimeout{50};    // how long stop() may have to wait
+constexpr milliseconds kLongestDrain{4};    // after a picture, for newer ones
 constexpr int kMaxFailures = 100;           // transfers in a row
 constexpr int kMaxTransfersPerPoll = 4096;  // without a thread; about 200 frames
 
@@ -61,16 +65,24 @@ class Camera final : public StereoCamera {
   }
 
   bool poll(Frame& newest) override {
-    if (!own_thread_ && state() == FrameSourceState::kRunning) {
-      idle_ = false;
-      for (int i = 0; i < kMaxTransfersPerPoll && !idle_ && read_once(milliseconds(0)); ++i) {
-      }
+    if (!own_thread_) drain(std::nullopt);
+    return take(newest);
+  }
+  bool wait(Frame& newest, milliseconds timeout) override {
+    if (own_thread_) {
+      std::unique_lock lock(mutex_);
+      changed_.wait_for(lock, timeout, [this] { return fresh_ || state_ != FrameSourceState::kRunning; });
+      lock.unlock();
+      return take(newest);
     }
-    const std::lock_guard lock(mutex_);
-    if (!fresh_) return false;
-    std::swap(newest, newest_);
-    fresh_ = false;
-    return true;
+    const auto until = SteadyTime::clock::now() + timeout;
+    for (;;) {
+      drain(timeout > milliseconds(0) ? std::optional(kLongestDrain) : std::nullopt);
+      if (take(newest)) return true;
+      const auto left = std::chrono::duration_cast<milliseconds>(until - SteadyTime::clock::now());
+      if (left <= milliseconds(0) || state() != FrameSourceState::kRunning) return false;
+      read_once(std::min(left, kReadTimeout));
+    }
   }
   FrameSourceState state() const override {
     const std::lock_guard lock(mutex_);
@@ -97,6 +109,33 @@ class Camera final : public StereoCamera {
   }
 
  private:
+  using SteadyTime = std::chrono::steady_clock::time_point;
+
+  /// Reads what has come. With `longest`, for so long at most once there is a picture: a device that is slower than its
+  /// pace always has something to say.
+  void drain(std::optional<milliseconds> longest) {
+    if (state() != FrameSourceState::kRunning) return;
+    idle_ = false;
+    std::optional<SteadyTime> until;
+    for (int i = 0; i < kMaxTransfersPerPoll && !idle_ && read_once(milliseconds(0)); ++i) {
+      if (!longest || !has_fresh()) continue;
+      const SteadyTime now = SteadyTime::clock::now();
+      if (!until) until = now + *longest;
+      if (now >= *until) return;
+    }
+  }
+  bool has_fresh() const {
+    const std::lock_guard lock(mutex_);
+    return fresh_;
+  }
+  bool take(Frame& newest) {
+    const std::lock_guard lock(mutex_);
+    if (!fresh_) return false;
+    std::swap(newest, newest_);
+    fresh_ = false;
+    return true;
+  }
+
   Result<void> must_run() const {
     if (state() == FrameSourceState::kRunning) return {};
     return fail(ErrorKind::kUsage, "leap: settings can be changed only while the source is running");
@@ -158,12 +197,14 @@ class Camera final : public StereoCamera {
     const std::lock_guard lock(mutex_);
     std::swap(working_, newest_);
     fresh_ = true;
+    changed_.notify_all();
   }
 
   bool lose(const std::string& why) {
     const std::lock_guard lock(mutex_);
     state_ = FrameSourceState::kLost;
     reason_ = why;
+    changed_.notify_all();
     return false;
   }
 
@@ -188,6 +229,7 @@ class Camera final : public StereoCamera {
   std::atomic<bool> stopping_{false};
 
   mutable std::mutex mutex_;
+  std::condition_variable changed_;
   FrameSourceState state_ = FrameSourceState::kStopped;
   std::string reason_;
   Frame newest_;

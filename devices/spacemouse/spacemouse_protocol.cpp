@@ -9,14 +9,8 @@ namespace dubsar {
 namespace {
 
 constexpr std::byte kTranslationId{1}, kRotationId{2}, kButtonsId{3}, kBatteryId{0x17};
-
-constexpr std::uint16_t kLogitech = 0x046d, k3Dconnexion = 0x256f;
-// spacenavd src/dev.c: the table of devices with their flags, and the black list.
-constexpr std::array<std::uint16_t, 12> kLogitechSpaceMice = {0xc603, 0xc605, 0xc606, 0xc621, 0xc623, 0xc625,
-                                                              0xc626, 0xc627, 0xc628, 0xc629, 0xc62b, 0xc640};
-constexpr std::array<std::uint16_t, 3> kYUpSpaceMice = {0xc603, 0xc606, 0xc640};  // Plus XT, Classic, NuLOOQ
-constexpr std::array<std::uint16_t, 13> k3DconnexionOrdinary = {0xc62c, 0xc641, 0xc650, 0xc651, 0xc654, 0xc655, 0xc656,
-                                                                0xc657, 0xc658, 0xc664, 0xc665, 0xc667, 0xc668};
+// spacenavd src/dev.c: Plus XT, Classic, NuLOOQ.
+constexpr std::array<UsbId, 3> kYUpSpaceMice{{{0x046d, 0xc603}, {0x046d, 0xc606}, {0x046d, 0xc640}}};
 
 int axis_at(std::span<const std::byte> report, std::size_t at) noexcept {
   return static_cast<std::int16_t>(std::to_integer<unsigned>(report[at]) | std::to_integer<unsigned>(report[at + 1])
@@ -97,17 +91,8 @@ std::vector<std::vector<std::byte>> format_spacemouse(const SpaceMouseReport& re
 
 std::vector<std::byte> spacemouse_led_report(bool on) { return {std::byte{4}, on ? std::byte{1} : std::byte{0}}; }
 
-SpaceMouseId spacemouse_id(std::uint16_t vendor_id, std::uint16_t product_id) noexcept {
-  const auto has = [product_id](const auto& ids) { return std::find(ids.begin(), ids.end(), product_id) != ids.end(); };
-  if (vendor_id == kLogitech && has(kLogitechSpaceMice)) return SpaceMouseId::kSpaceMouse;
-  if (vendor_id == k3Dconnexion)
-    return has(k3DconnexionOrdinary) ? SpaceMouseId::kOrdinaryMouse : SpaceMouseId::kSpaceMouse;
-  return SpaceMouseId::kUnknown;
-}
-
 SpaceMouseAxes spacemouse_axes(UsbId id) noexcept {
-  const bool y_up = id.vendor == kLogitech &&
-                    std::find(kYUpSpaceMice.begin(), kYUpSpaceMice.end(), id.product) != kYUpSpaceMice.end();
+  const bool y_up = std::find(kYUpSpaceMice.begin(), kYUpSpaceMice.end(), id) != kYUpSpaceMice.end();
   return y_up ? SpaceMouseAxes::kYUp : SpaceMouseAxes::kZDown;
 }
 
@@ -133,7 +118,7 @@ bool SpaceMouseProtocol::accept(std::span<const std::byte> report, TimestampNs n
   return true;
 }
 
-std::optional<SpaceMouseSample> SpaceMouseProtocol::newest() {
+std::optional<PuckSample> SpaceMouseProtocol::newest() {
   if (!std::exchange(changed_, false)) return std::nullopt;
   return sample_;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/clock.h"
+#include "devices/spacemouse/puck_sample.h"
 #include "devices/transport/transport.h"
 
 namespace dubsar {
@@ -35,11 +36,6 @@ std::vector<std::vector<std::byte>> format_spacemouse(const SpaceMouseReport& re
 /// Output report that switches the ring light.
 std::vector<std::byte> spacemouse_led_report(bool on);
 
-enum class SpaceMouseId { kUnknown, kSpaceMouse, kOrdinaryMouse };
-/// kOrdinaryMouse: 3Dconnexion's mice and keyboards (CadMouse, ...), which must be left to the system.
-/// Vendor 256f makes little else than six-axis pucks: products of his that are not known are taken for one.
-SpaceMouseId spacemouse_id(std::uint16_t vendor_id, std::uint16_t product_id) noexcept;
-
 /// Which way a model counts: x is to the right for all.
 enum class SpaceMouseAxes {
   kZDown,  ///< y to the user, z down
@@ -47,18 +43,10 @@ enum class SpaceMouseAxes {
 };
 SpaceMouseAxes spacemouse_axes(UsbId id) noexcept;
 
-/// The cap and the buttons, in the axes of the screen frame (x right, y up, z to the viewer).
-struct SpaceMouseSample {
-  TimestampNs time = 0;
-  glm::dvec3 translation{0.0};  ///< each -1..1: share of the full deflection
-  glm::dvec3 rotation{0.0};     ///< right-handed about each axis, -1..1
-  std::uint64_t buttons = 0;
-};
-
 /// For Driver: puts the parts together and lights the ring.
 class SpaceMouseProtocol {
  public:
-  using Sample = SpaceMouseSample;
+  using Sample = PuckSample;
   Result<void> start(Transport& transport, TimestampNs now);
   Result<void> keep_up(Transport&, TimestampNs) { return {}; }
   bool accept(std::span<const std::byte> report, TimestampNs now);

@@ -142,7 +142,7 @@ void SpacenavProtocol::apply(const SpacenavEvent& event, TimestampNs now) {
   changed_ = true;
 }
 
-std::optional<SpaceMouseSample> SpacenavProtocol::newest() {
+std::optional<PuckSample> SpacenavProtocol::newest() {
   if (!std::exchange(changed_, false)) return std::nullopt;
   return sample_;
 }

@@ -45,7 +45,7 @@ std::vector<std::byte> spacenav_hello(std::uint8_t version);
 /// For Driver over open_unix_stream(): finds the events in the byte stream, with or without the answer to the greeting.
 class SpacenavProtocol {
  public:
-  using Sample = SpaceMouseSample;
+  using Sample = PuckSample;
   Result<void> start(Transport& transport, TimestampNs now);
   /// A deflection ends when the daemon has been silent for kSpacenavHoldsNs.
   Result<void> keep_up(Transport&, TimestampNs now);

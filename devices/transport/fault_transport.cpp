@@ -6,6 +6,8 @@
 #include <random>
 #include <utility>
 
+#include "devices/transport/forwarding_transport.h"
+
 namespace dubsar {
 namespace {
 
@@ -25,10 +27,10 @@ std::optional<std::uint64_t> take_number(std::string_view& text, char lead) {
   return number;
 }
 
-class FaultTransport final : public Transport {
+class FaultTransport final : public ForwardingTransport {
  public:
   FaultTransport(std::unique_ptr<Transport> below, std::vector<Fault> faults, std::uint64_t seed)
-      : below_(std::move(below)), faults_(std::move(faults)), random_(seed) {}
+      : ForwardingTransport(std::move(below)), faults_(std::move(faults)), random_(seed) {}
 
   Result<std::size_t> read(std::span<std::byte> report, milliseconds timeout) override {
     DUBSAR_TRY(check_plugged());
@@ -36,7 +38,7 @@ class FaultTransport final : public Transport {
       --stall->count;
       return std::size_t{0};
     }
-    auto read = below_->read(report, timeout);
+    auto read = below().read(report, timeout);
     if (!read || *read == 0) return read;
     const Fault* const drop = active(FaultKind::kDrop);
     const Fault* const truncate = active(FaultKind::kTruncate);
@@ -49,21 +51,20 @@ class FaultTransport final : public Transport {
   }
   Result<void> write(std::span<const std::byte> report) override {
     DUBSAR_TRY(check_plugged());
-    return below_->write(report);
+    return below().write(report);
   }
   Result<std::size_t> get_feature(std::uint8_t id, std::span<std::byte> out) override {
     DUBSAR_TRY(check_plugged());
-    return below_->get_feature(id, out);
+    return below().get_feature(id, out);
   }
   Result<void> set_feature(std::span<const std::byte> report) override {
     DUBSAR_TRY(check_plugged());
-    return below_->set_feature(report);
+    return below().set_feature(report);
   }
   Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data, milliseconds timeout) override {
     DUBSAR_TRY(check_plugged());
-    return below_->control(request, data, timeout);
+    return below().control(request, data, timeout);
   }
-  UsbId usb_id() const noexcept override { return below_->usb_id(); }
 
  private:
   /// A fault of this kind that concerns the next report; stalls count down, the others end by report number.
@@ -83,7 +84,6 @@ class FaultTransport final : public Transport {
     return {};
   }
 
-  std::unique_ptr<Transport> below_;
   std::vector<Fault> faults_;
   std::mt19937_64 random_;
   std::uint64_t report_number_ = 0;  ///< of the report that arrives next

@@ -3,25 +3,27 @@
 #include <array>
 #include <utility>
 
+#include "devices/transport/forwarding_transport.h"
+
 namespace dubsar {
 namespace {
 
 constexpr std::size_t kPendingBytes = std::size_t{64} << 10;
 constexpr TimestampNs kPendingNs = 500'000'000;
 
-class RecordTransport final : public Transport {
+class RecordTransport final : public ForwardingTransport {
  public:
   RecordTransport(std::unique_ptr<Transport> below, std::shared_ptr<RecordingWriter> writer)
-      : below_(std::move(below)), writer_(std::move(writer)) {
+      : ForwardingTransport(std::move(below)), writer_(std::move(writer)) {
     std::array<std::byte, 4> id{};
-    const UsbId who = below_->usb_id();
+    const UsbId who = usb_id();
     for (std::size_t i = 0; i < 4; ++i)
       id[i] = static_cast<std::byte>((std::uint32_t{who.vendor} << 16 | who.product) >> (24 - 8 * i) & 0xFFU);
     writer_->add(WireEventKind::kOpened, std::span(id).first(who == UsbId{} ? 0 : 4));
   }
 
   Result<std::size_t> read(std::span<std::byte> report, milliseconds timeout) override {
-    auto length = below_->read(report, timeout);
+    auto length = below().read(report, timeout);
     if (length && *length > 0) writer_->add(WireEventKind::kRead, report.first(*length));
     note_loss(length);
     writer_->tick();
@@ -29,29 +31,28 @@ class RecordTransport final : public Transport {
   }
   Result<void> write(std::span<const std::byte> report) override {
     writer_->add(WireEventKind::kWritten, report);
-    auto done = below_->write(report);
+    auto done = below().write(report);
     note_loss(done);
     return done;
   }
   Result<std::size_t> get_feature(std::uint8_t id, std::span<std::byte> out) override {
-    auto length = below_->get_feature(id, out);
+    auto length = below().get_feature(id, out);
     if (length && *length > 0) writer_->add(WireEventKind::kFeatureGot, out.first(*length));
     note_loss(length);
     return length;
   }
   Result<void> set_feature(std::span<const std::byte> report) override {
     writer_->add(WireEventKind::kFeatureSet, report);
-    auto done = below_->set_feature(report);
+    auto done = below().set_feature(report);
     note_loss(done);
     return done;
   }
   Result<std::size_t> control(const ControlRequest& request, std::span<std::byte> data, milliseconds timeout) override {
-    auto length = below_->control(request, data, timeout);
+    auto length = below().control(request, data, timeout);
     if (length) writer_->add(WireEventKind::kControl, data.first(*length), request);
     note_loss(length);
     return length;
   }
-  UsbId usb_id() const noexcept override { return below_->usb_id(); }
 
  private:
   template <class T>
@@ -61,7 +62,6 @@ class RecordTransport final : public Transport {
     writer_->add(WireEventKind::kLost, {});
     writer_->flush();
   }
-  std::unique_ptr<Transport> below_;
   std::shared_ptr<RecordingWriter> writer_;
   bool lost_ = false;
 };

@@ -62,6 +62,8 @@ class Transport {
 
   /// For protocols whose bytes mean different things on different models.
   virtual UsbId usb_id() const noexcept { return {}; }
+  /// Hardware at the other end, which needs the pauses that hardware needs.
+  virtual bool is_hardware() const noexcept { return false; }
 
   /// USB control transfer: `data` is filled (to host) or sent (to device). Returns the bytes moved. kBadData: the
   /// device stalled the request.

@@ -106,6 +106,7 @@ class UsbTransport final : public Transport {
     return {};
   }
 
+  bool is_hardware() const noexcept override { return true; }
   Result<std::size_t> read(std::span<std::byte> report, milliseconds timeout) override {
     if (options_.read_endpoint == 0)
       return fail(ErrorKind::kUsage, "usb: {} was opened without an endpoint to read", name_);

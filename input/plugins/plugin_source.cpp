@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "core/base/log.h"
+#include "core/base/option_reader.h"
 #include "devices/transport/retry_pause.h"
-#include "input/placement.h"
 #include "input/plugins/plugin_frame.h"
 #include "input/plugins/source_plugin.h"
 
@@ -221,16 +221,14 @@ class PluginSource final : public InputSource {
 }  // namespace
 
 Result<std::unique_ptr<InputSource>> make_plugin_source(const InputConfig& config) {
-  if (config.options.empty() || !config.options.front().second.empty())
+  OptionReader options(config.options, "input plugin");
+  const std::string file = options.first_word();
+  if (file.empty())
     return fail(ErrorKind::kUsage, "input plugin: expected a file, as plugin:FILE.so[,at=X/Y/Z,turn=X/Y/Z,...]");
-  DUBSAR_ASSIGN(std::shared_ptr<SourcePlugin> plugin, SourcePlugin::load(config.options.front().first));
-  Pose place{};
-  std::string rest;
-  for (std::size_t i = 1; i < config.options.size(); ++i) {
-    const auto& [key, value] = config.options[i];
-    DUBSAR_ASSIGN(const bool taken, read_placement(key, value, place));
-    if (!taken) rest += fmt::format("{}{}{}{}", rest.empty() ? "" : ",", key, value.empty() ? "" : "=", value);
-  }
+  DUBSAR_ASSIGN(std::shared_ptr<SourcePlugin> plugin, SourcePlugin::load(file));
+  const Pose place = options.placement(Pose{});
+  DUBSAR_TRY(options.status());
+  const std::string rest = options_text(options.take_rest());
   std::string why;
   void* const source = guarded([&](ErrorText& e) { return plugin->table().create(rest.c_str(), e.data(), e.size()); },
                                static_cast<void*>(nullptr), why);

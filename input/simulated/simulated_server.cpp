@@ -3,8 +3,6 @@
 #include <array>
 #include <thread>
 
-#include "devices/head_tracker/opentrack_protocol.h"
-#include "devices/head_tracker/vrpn_server.h"
 #include "devices/transport/socket_server.h"
 
 namespace dubsar {
@@ -13,7 +11,7 @@ namespace {
 constexpr milliseconds kTick{2};
 
 /// Everything that the device has to say goes to the client. False: the client has left.
-bool pass_on(Transport& device, Transport& client, LiveWireResult& result) {
+bool pass_on(Transport& device, Transport& client, ServerResult& result) {
   std::array<std::byte, 4096> buffer;
   for (;;) {
     const auto length = device.read(buffer, milliseconds(0));
@@ -36,40 +34,53 @@ bool listen_to(Transport& device, Transport& client) {
 
 }  // namespace
 
-Result<LiveWireResult> serve_live_wire(SimulatedDevice& person, const DeviceSpec& choice, const Clock& clock,
-                                       const std::function<bool()>& over, const std::function<void(int)>& ready) {
-  LiveWireResult result;
-  const auto port = [&](std::uint16_t usual) {
-    return choice.port == 0 ? usual : static_cast<std::uint16_t>(choice.port);
-  };
-  if (choice.driver == "opentrack") {
-    DUBSAR_ASSIGN(const auto receiver, open_udp_sender(choice.address, port(kOpentrackPort)));
-    DUBSAR_ASSIGN(const auto device, person.open());
-    if (ready) ready(port(kOpentrackPort));
-    for (; !person.finished() && !over(); std::this_thread::sleep_for(kTick)) {
-      person.advance(clock.now());
+Result<ServerResult> serve_simulated(const DriverEntry& driver, const SimulatedFeed& feed,
+                                     const std::vector<Option>& where, const Clock& clock,
+                                     const std::function<bool()>& over, const std::function<void(int)>& ready) {
+  ServerResult result;
+  OptionReader options(where, fmt::format("simulate {}", driver.name));
+  const auto finished = [&] { return feed.person->finished() || over(); };
+  if (driver.bus == Bus::kUdp) {
+    const std::string address = options.text("address", "127.0.0.1");
+    const auto port = static_cast<std::uint16_t>(options.integer("port", 1, 65535, driver.port));
+    DUBSAR_TRY(options.finish());
+    DUBSAR_ASSIGN(const auto receiver, open_udp_sender(address, port));
+    DUBSAR_ASSIGN(const auto device, feed.device->open());
+    if (ready) ready(port);
+    for (; !finished(); std::this_thread::sleep_for(kTick)) {
+      feed.device->advance(clock.now());
       if (!pass_on(*device, *receiver, result))
-        return fail(ErrorKind::kIo, "simulate: cannot send to {} port {}", choice.address, port(kOpentrackPort));
+        return fail(ErrorKind::kIo, "simulate: cannot send to {} port {}", address, port);
     }
     return result;
   }
   std::unique_ptr<StreamServer> server;
-  if (choice.driver == "vrpn") {
-    DUBSAR_ASSIGN(server, listen_tcp_and_calls(choice.address, choice.port < 0 ? std::uint16_t{0} : port(kVrpnPort),
-                                               choice.allow_remote, parse_vrpn_call));
-  } else if (choice.driver == "spacenav") {
-    if (choice.socket.empty())
-      return fail(ErrorKind::kUsage, "simulate spacenav: expected the path of the socket to serve");
-    DUBSAR_ASSIGN(server, listen_unix(choice.socket));
+  if (driver.bus == Bus::kTcp) {
+    const std::string address = options.text("address", "127.0.0.1");
+    const int port = options.integer("port", 0, 65535, driver.port);
+    const bool remote = options.flag("remote");
+    DUBSAR_TRY(options.finish());
+    const auto number = static_cast<std::uint16_t>(port);
+    if (driver.calls != nullptr) {
+      DUBSAR_ASSIGN(server, listen_tcp_and_calls(address, number, remote, driver.calls));
+    } else {
+      DUBSAR_ASSIGN(server, listen_tcp(address, number, remote));
+    }
+  } else if (driver.bus == Bus::kUnixSocket) {
+    const std::string path = options.text("socket");
+    DUBSAR_TRY(options.finish());
+    if (path.empty())
+      return fail(ErrorKind::kUsage, "simulate {}: expected the path of the socket to serve", driver.name);
+    DUBSAR_ASSIGN(server, listen_unix(path));
   } else {
-    return fail(ErrorKind::kUsage, "simulate: {} has no socket; write a recording instead", choice.driver);
+    return fail(ErrorKind::kUsage, "simulate: {} has no socket; write a recording instead", driver.name);
   }
   if (ready) ready(server->port());
   std::unique_ptr<Transport> client, device;
-  for (; !person.finished() && !over(); std::this_thread::sleep_for(kTick)) {
-    person.advance(clock.now());
+  for (; !finished(); std::this_thread::sleep_for(kTick)) {
+    feed.device->advance(clock.now());
     if (!client && (client = server->accept(milliseconds(0)))) {
-      DUBSAR_ASSIGN(device, person.open());
+      DUBSAR_ASSIGN(device, feed.device->open());
       ++result.clients;
     }
     if (client && (!listen_to(*device, *client) || !pass_on(*device, *client, result))) client.reset();

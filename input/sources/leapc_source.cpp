@@ -3,7 +3,7 @@
 #include <optional>
 #include <utility>
 
-#include "input/placement.h"
+#include "devices/drivers.h"
 #include "input/sources/leapc_hands.h"
 
 namespace dubsar {
@@ -68,21 +68,14 @@ std::unique_ptr<InputSource> leapc_source(std::unique_ptr<leapc::Connection> con
 
 Result<std::unique_ptr<InputSource>> make_leapc_source(const InputConfig& config) {
   static const SteadyClock kSteady;
+  DUBSAR_ASSIGN(const DriverEntry* driver, find_driver("leapc", "input", driver_table()));
+  OptionReader reader(config.options, "input leapc");
   leapc::Options options;
   options.patience = milliseconds(0);
-  Pose screen_from_device = table_placement();
-  for (const auto& [key, value] : config.options) {
-    if (key == "library" && !value.empty()) {
-      options.library = value;
-    } else if (key == "mode") {
-      DUBSAR_ASSIGN(options.mode, mode_named(value));
-    } else {
-      DUBSAR_ASSIGN(const bool placed, read_placement(key, value, screen_from_device));
-      if (!placed)
-        return fail(ErrorKind::kUsage,
-                    "input leapc: option \"{}\" found, expected library=FILE, mode=MODE, at=X/Y/Z or turn=X/Y/Z", key);
-    }
-  }
+  options.library = reader.text("library");
+  DUBSAR_ASSIGN(options.mode, mode_named(reader.text("mode", "desktop")));
+  const Pose screen_from_device = reader.placement(driver->usual_place);
+  DUBSAR_TRY(reader.finish());
   return leapc_source(leapc::make_connection(options, config.clock ? *config.clock : kSteady), screen_from_device,
                       config.simulated_time);
 }

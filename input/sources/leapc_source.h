@@ -9,7 +9,7 @@
 
 namespace dubsar {
 
-/// Options: library=FILE, mode=desktop|screentop|headmounted, at=X/Y/Z, turn=X/Y/Z (input/placement.h).
+/// Options: library=FILE, mode=desktop|screentop|headmounted, at=X/Y/Z, turn=X/Y/Z (OptionReader::placement).
 /// kUsage for others. start() is kUnavailable when there is no library (it says where it looked). A service
 /// or a device that is missing makes the source lost, with what to do in note(); it comes back by itself.
 Result<std::unique_ptr<InputSource>> make_leapc_source(const InputConfig& config);

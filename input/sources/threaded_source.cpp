@@ -16,7 +16,7 @@ constexpr std::size_t kMostEvents = 4096;
 
 class ThreadedSource final : public InputSource {
  public:
-  ThreadedSource(DeviceSourceTraits traits, std::unique_ptr<SourceReader> reader, const InputConfig& config)
+  ThreadedSource(ThreadedSourceTraits traits, std::unique_ptr<SourceReader> reader, const InputConfig& config)
       : traits_(std::move(traits)),
         clock_(session_clock(config)),
         threaded_(!config.simulated_time),
@@ -132,7 +132,7 @@ class ThreadedSource final : public InputSource {
     return !stopping_;
   }
 
-  const DeviceSourceTraits traits_;
+  const ThreadedSourceTraits traits_;
   const Clock& clock_;
   const bool threaded_;
   const std::shared_ptr<HotplugBell> hotplug_;
@@ -162,8 +162,8 @@ const Clock& session_clock(const InputConfig& config) {
   return config.clock ? *config.clock : kSteady;
 }
 
-std::unique_ptr<InputSource> make_device_source(DeviceSourceTraits traits, std::unique_ptr<SourceReader> reader,
-                                                const InputConfig& config) {
+std::unique_ptr<InputSource> make_threaded_source(ThreadedSourceTraits traits, std::unique_ptr<SourceReader> reader,
+                                                  const InputConfig& config) {
   return std::make_unique<ThreadedSource>(std::move(traits), std::move(reader), config);
 }
 

@@ -26,7 +26,7 @@ class SourceReader {
   virtual void recentre() {}  ///< the present heading is "straight on", where it drifts
 };
 
-struct DeviceSourceTraits {
+struct ThreadedSourceTraits {
   std::string name;
   std::string note{};  ///< what its measurements lack
   bool has_end = false;
@@ -38,8 +38,8 @@ struct DeviceSourceTraits {
   TimestampNs retry_ns = 0;  ///< not 0: tries at least this often to open it (servers that no node announces)
 };
 
-std::unique_ptr<InputSource> make_device_source(DeviceSourceTraits traits, std::unique_ptr<SourceReader> reader,
-                                                const InputConfig& config);
+std::unique_ptr<InputSource> make_threaded_source(ThreadedSourceTraits traits, std::unique_ptr<SourceReader> reader,
+                                                  const InputConfig& config);
 
 /// config.clock, or the steady clock.
 const Clock& session_clock(const InputConfig& config);

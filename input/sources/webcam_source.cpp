@@ -1,16 +1,14 @@
 #include "input/sources/webcam_source.h"
 
 #include <array>
-#include <chrono>
 #include <numbers>
-#include <thread>
 
+#include "core/base/option_reader.h"
 #include "core/base/parse_number.h"
 #include "devices/camera/camera.h"
 #include "devices/camera/capture.h"
 #include "devices/camera/picture_frames.h"
 #include "devices/transport/retry_pause.h"
-#include "input/sources/option_reader.h"
 #include "input/sources/threaded_source.h"
 #include "input/tracking/face/face_tracker.h"
 #include "input/tracking/vision/model_files.h"
@@ -31,14 +29,9 @@ class WebcamReader final : public SourceReader {
 
   bool read(TimestampNs now, milliseconds timeout, InputFrame& frame) override {
     if (!open_ && !open(now)) return false;
-    const auto until = std::chrono::steady_clock::now() + timeout;
-    while (!frames_.source->poll(picture_)) {
-      if (frames_.source->state() == FrameSourceState::kLost) {
-        lose(frames_.source->reason(), now);
-        return false;
-      }
-      if (std::chrono::steady_clock::now() >= until) return false;
-      std::this_thread::sleep_for(milliseconds(1));
+    if (!frames_.source->wait(picture_, timeout)) {
+      if (frames_.source->state() == FrameSourceState::kLost) lose(frames_.source->reason(), now);
+      return false;
     }
     Result<void> tracked = faces_.track(picture_, frame.heads);
     if (tracked && hands_) tracked = hands_->track(picture_, frame.hands);
@@ -101,7 +94,7 @@ struct WebcamSourceOptions {
 };
 
 Result<WebcamSourceOptions> read_options(const InputConfig& config, bool with_camera) {
-  OptionReader options(config, "webcam");
+  OptionReader options(config.options, "input webcam");
   WebcamSourceOptions read;
   std::string size = "640x480";
   if (with_camera) {
@@ -144,7 +137,7 @@ Result<std::unique_ptr<InputSource>> make_source(WebcamFrames frames, const Webc
     tracking.hand_size = options.hand_size;
     hands.emplace(*std::move(networks), tracking);
   }
-  DeviceSourceTraits traits;
+  ThreadedSourceTraits traits;
   traits.name = "webcam";
   traits.has_end = frames.ended != nullptr;
   traits.silent_ns = traits.has_end ? 0 : kSilentNs;
@@ -152,7 +145,7 @@ Result<std::unique_ptr<InputSource>> make_source(WebcamFrames frames, const Webc
     traits.note = fmt::format("webcam: faces without their network: depth is coarse; {} fetches it", kModelCommand);
   auto reader = std::make_unique<WebcamReader>(std::move(frames), FaceTracker(std::move(detector), options.tracking),
                                                std::move(hands));
-  return make_device_source(std::move(traits), std::move(reader), config);
+  return make_threaded_source(std::move(traits), std::move(reader), config);
 }
 
 /// Pictures that two hold: the reader, and whoever asks whether they are over.
@@ -162,6 +155,7 @@ class SharedPictures final : public FrameSource {
   Result<void> start() override { return pictures_->start(); }
   void stop() noexcept override { pictures_->stop(); }
   bool poll(Frame& newest) override { return pictures_->poll(newest); }
+  bool wait(Frame& newest, milliseconds timeout) override { return pictures_->wait(newest, timeout); }
   FrameSourceState state() const override { return pictures_->state(); }
   std::string reason() const override { return pictures_->reason(); }
 

@@ -1,4 +1,4 @@
-// SpaceMouse reports, and what enumeration makes of HID nodes.
+// SpaceMouse reports, and a puck that comes and goes.
 
 #include <dirent.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,6 @@
 #include <filesystem>
 
 #include "devices/driver.h"
-#include "devices/enumerate.h"
-#include "devices/head_tracker/xreal_protocol.h"
 #include "devices/spacemouse/spacemouse_sim.h"
 #include "devices/transport/record_transport.h"
 #include "devices/transport/replay_transport.h"
@@ -79,7 +77,6 @@ TEST(SpaceMouse, CapPulledUpMovesUpOnTheScreen) {
 // daemon's: x right, y up, z away from the user.
 TEST(SpaceMouse, PlusXtClassicAndNuLooqCountYUp) {
   for (const std::uint16_t product : Ids{0xc603, 0xc606, 0xc640}) {
-    EXPECT_EQ(spacemouse_id(0x046d, product), SpaceMouseId::kSpaceMouse);
     SpaceMouseSim sim(false, {0x046d, product});
     Driver<SpaceMouseProtocol> driver([&] { return sim.device().open(); }, SpaceMouseProtocol());
     driver.poll(0);
@@ -112,14 +109,6 @@ TEST(SpaceMouse, ARecordingTellsWhichModelItWas) {
   Driver<SpaceMouseProtocol> driver([&] { return session.open(); }, SpaceMouseProtocol());
   EXPECT_EQ(driver.poll(0)->translation, glm::dvec3(0, 1, 0));
   std::filesystem::remove(path);
-}
-
-TEST(SpaceMouse, UnknownProductsOfItsMakerAreTakenForOneAndKnownMiceAreNot) {
-  for (const std::uint16_t product : Ids{0xc62e, 0xc635, 0xc652, 0xc69f})
-    EXPECT_EQ(spacemouse_id(0x256f, product), SpaceMouseId::kSpaceMouse) << std::hex << product;
-  for (const std::uint16_t product : Ids{0xc62c, 0xc641, 0xc650, 0xc668})
-    EXPECT_EQ(spacemouse_id(0x256f, product), SpaceMouseId::kOrdinaryMouse) << std::hex << product;
-  EXPECT_EQ(spacemouse_id(0x046d, 0xc69f), SpaceMouseId::kUnknown);
 }
 
 TEST(SpaceMouse, ADeviceThatSendsOnlyRubbishIsOpenedAgain) {
@@ -158,7 +147,7 @@ TEST(SpaceMouse, AThousandUnpluggingsLeaveNoThreadNoDescriptorAndTakeLessThanASe
     sim.device().plug();
     if (cycle % 2 == 0) driver.wake();  // as HotplugWatch does; without it only short losses are quick
     const TimestampNs replugged = clock.now();
-    std::optional<SpaceMouseSample> sample;
+    std::optional<PuckSample> sample;
     while (!sample && clock.now() - replugged < 20 * kSecond) {
       sim.move({cycle % 350, 0, 0}, {0, 0, 0});
       sample = driver.poll(clock.now());
@@ -172,64 +161,6 @@ TEST(SpaceMouse, AThousandUnpluggingsLeaveNoThreadNoDescriptorAndTakeLessThanASe
   EXPECT_EQ(driver.counts().losses, 1000U);
   EXPECT_EQ(entries_of("/proc/self/fd"), descriptors);
   EXPECT_EQ(entries_of("/proc/self/task"), threads);
-}
-
-TEST(Enumerate, SaysWhyADeviceCannotBeUsedAndNamesTheRule) {
-  const std::vector<HidNode> nodes{{"/dev/hidraw0", 0x256f, 0xc635, 1, 8, 0, "3Dconnexion", "SpaceMouse Compact", "S1"},
-                                   {"/dev/hidraw1", 0x256f, 0xc650, 1, 2, 0, "3Dconnexion", "CadMouse", ""},
-                                   {"/dev/hidraw2", 0x1234, 0x5678, 1, 2, 0, "", "Keyboard", ""},
-                                   {"/dev/hidraw3", 0x3318, 0x0424, 0xff00, 1, 3, "", "XREAL Air", ""},
-                                   {"/dev/hidraw4", 0x3318, 0x0424, 0xff00, 1, 4, "", "XREAL Air", ""},
-                                   {"/dev/hidraw5", 0x256f, 0xc652, 1, 6, 0, "", "Universal Receiver", ""},
-                                   {"/dev/hidraw6", 0x04d8, 0xef7e, 0, 0, 0, "", "HoloPlay", ""}};
-  const auto found = known_hid_devices(nodes, [](const std::string& path) {
-    return path == "/dev/hidraw0" ? EACCES : path == "/dev/hidraw6" ? EBUSY : 0;
-  });
-  ASSERT_EQ(found.size(), 4U);
-  EXPECT_EQ(found[0].driver, "spacemouse");
-  EXPECT_EQ(found[0].state, DeviceState::kNoPermission);
-  EXPECT_NE(found[0].remedy.find(R"(SUBSYSTEM=="hidraw", ATTRS{idVendor}=="256f", ATTRS{idProduct}=="c635")"),
-            std::string::npos);
-  EXPECT_EQ(found[1].state, DeviceState::kIgnored);
-  EXPECT_EQ(found[2].path, "/dev/hidraw3");
-  EXPECT_EQ(found[2].state, DeviceState::kUsable);
-  EXPECT_EQ(found[2].reason, "");
-  EXPECT_EQ(found[3].driver, "looking_glass");
-  EXPECT_EQ(found[3].state, DeviceState::kBusy);
-}
-
-TEST(Enumerate, HeadsetsAreKnownByAllTheirNumbersAndGlassesThatCannotBeReadSayWhatTheyNeed) {
-  const std::vector<HidNode> nodes{{"/dev/hidraw0", 0x2833, 0x2021, 1, 0, 0, "", "", ""},
-                                   {"/dev/hidraw1", 0x3318, 0x0437, 0xff00, 1, 0, "", "", "A"},
-                                   {"/dev/hidraw2", 0x3318, 0x0437, 0xff00, 1, 1, "", "", "A"},
-                                   {"/dev/hidraw3", 0x04d8, 0xef7e, 0, 0, 0, "", "Programmer", ""},
-                                   {"/dev/hidraw4", 0x3318, 0x0426, 0xff00, 1, 2, "", "", ""}};
-  const auto found = known_hid_devices(nodes, [](const std::string&) { return 0; });
-  ASSERT_EQ(found.size(), 3U);
-  EXPECT_EQ(found[0].name, "Oculus Rift DK2");
-  EXPECT_EQ(found[0].state, DeviceState::kUsable);
-  EXPECT_EQ(found[1].name, "XREAL One");
-  EXPECT_EQ(found[1].state, DeviceState::kIgnored);
-  EXPECT_NE(found[1].reason.find("network"), std::string::npos);
-  EXPECT_NE(found[1].remedy.find("sender=xrlinux"), std::string::npos);
-  EXPECT_EQ(found[2].name, "XREAL Air 2 Ultra");
-  EXPECT_EQ(found[2].state, DeviceState::kUsable);
-}
-
-// The table of XRLinuxDriver, src/devices/xreal.c: products, and those that it reads by HID.
-TEST(Enumerate, EveryModelOfXrealIsListed) {
-  for (const std::uint16_t product : Ids{0x0424, 0x0428, 0x0432, 0x0426}) {
-    ASSERT_TRUE(find_xreal(product)) << std::hex << product;
-    EXPECT_EQ(find_xreal(product)->needs, "");
-  }
-  for (const std::uint16_t product : Ids{0x0435, 0x0436, 0x0437, 0x0438, 0x043d, 0x043e, 0x0440, 0x0442}) {
-    const auto told = unreadable_glasses({0x3318, product}, "usb:001/002");
-    ASSERT_TRUE(told) << std::hex << product;
-    EXPECT_EQ(told->driver, "xreal");
-    EXPECT_NE(told->reason, "");
-  }
-  EXPECT_FALSE(unreadable_glasses({0x3318, 0x0424}, ""));
-  EXPECT_FALSE(unreadable_glasses({0x3319, 0x0437}, ""));
 }
 
 }  // namespace

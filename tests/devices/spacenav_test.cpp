@@ -62,7 +62,7 @@ struct SpacenavBench {
     driver.poll(0);
     device.send(spacenav_hello(1));
   }
-  std::optional<SpaceMouseSample> say(const char* hex, TimestampNs now) {
+  std::optional<PuckSample> say(const char* hex, TimestampNs now) {
     device.send(from_hex(hex));
     return driver.poll(now);
   }

@@ -7,8 +7,8 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "devices/device_list.h"
 #include "devices/driver.h"
-#include "devices/enumerate.h"
 #include "devices/head_tracker/imu_sim.h"
 #include "devices/looking_glass/looking_glass_sim.h"
 #include "devices/spacemouse/spacemouse_sim.h"
@@ -108,7 +108,7 @@ TEST_F(LabSpaceMouse, IsListedSaysItsAxesLightsUpAndComesBack) {
   EXPECT_EQ(info.state, DeviceState::kUsable) << info.reason;
   {
     Driver<SpaceMouseProtocol> driver([this] { return open_hid_device("spacemouse", clock_); }, SpaceMouseProtocol());
-    std::optional<SpaceMouseSample> sample;
+    std::optional<PuckSample> sample;
     ASSERT_TRUE(eventually([&] {
       if (auto newest = driver.poll(clock_.now(), milliseconds(20))) sample = newest;
       return sample && sample->rotation != glm::dvec3(0.0);

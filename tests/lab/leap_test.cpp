@@ -1,8 +1,8 @@
 // A Leap Motion Controller on a real USB bus (USB/IP): the kernel's camera driver takes it, unmodified libusb
 // takes it from there, our driver reads calibration and pictures, the tracker sees the hand.
 
+#include "devices/device_list.h"
 #include "devices/leap/lmc1_driver.h"
-#include "devices/real/real_devices.h"
 #include "input/tracking/hands/hand_tracker.h"
 #include "tests/lab/lab_kernel.h"
 #include "tests/lab/leap_gadget.h"
@@ -11,7 +11,7 @@ namespace dubsar::lab {
 namespace {
 
 std::optional<DeviceInfo> leap_on_the_bus() {
-  for (DeviceInfo& info : list_real_devices("/none"))
+  for (DeviceInfo& info : list_devices("/none"))
     if (info.driver == "leap") return std::move(info);
   return std::nullopt;
 }
@@ -21,7 +21,7 @@ bool kernel_has_it() { return is_a_camera(lmc1::kVendorId, lmc1::kProductId); }
 Result<std::unique_ptr<Transport>> open_leap(const Clock& clock) {
   DeviceSpec choice;
   choice.driver = "leap";
-  return reach_real_device(choice, clock).value()();
+  return open_device(choice, clock).value()();
 }
 
 class LabLeap : public Lab {

@@ -3,9 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include "devices/device_list.h"
 #include "devices/leap/leap_camera.h"
 #include "devices/leap/rigel_simulator.h"
-#include "devices/real/real_devices.h"
 #include "tests/lab/lab_kernel.h"
 #include "tests/lab/usb_gadget.h"
 #include "tests/lab/usbip_port.h"
@@ -40,7 +40,7 @@ class RigelGadget final : public UsbGadget {
 };
 
 std::optional<DeviceInfo> camera_on_the_bus() {
-  for (DeviceInfo& info : list_real_devices("/none"))
+  for (DeviceInfo& info : list_devices("/none"))
     if (info.vendor_id == rigel::kVendorId) return std::move(info);
   return std::nullopt;
 }
@@ -68,7 +68,7 @@ TEST_F(LabRigel, TheKernelTakesItForACameraAndItsPicturesComeThroughLibusb) {
   DeviceSpec choice;
   choice.driver = "leap";
   {
-    const auto camera = make_leap_camera(reach_real_device(choice, clock_).value(), {}, clock_);
+    const auto camera = make_leap_camera(open_device(choice, clock_).value(), {}, clock_);
     const auto started = camera->start();
     ASSERT_TRUE(started) << started.error().message;
     EXPECT_EQ(camera->calibration(), options.calibration);
@@ -108,7 +108,7 @@ TEST_F(LabRigel, AController2IsListedWithTheOnlyWayToIt) {
   EXPECT_EQ(camera_on_the_bus()->state, DeviceState::kIgnored);
   DeviceSpec choice;
   choice.driver = "leap";
-  const auto opened = reach_real_device(choice, clock_).value()();
+  const auto opened = open_device(choice, clock_).value()();
   ASSERT_FALSE(opened);
   EXPECT_THAT(opened.error().message, testing::HasSubstr("--input leapc"));
   port.unplug();

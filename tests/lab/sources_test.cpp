@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "devices/real/real_devices.h"
+#include "devices/device_list.h"
 #include "devices/spacemouse/spacemouse_sim.h"
 #include "input/input_source.h"
 #include "tests/lab/lab_kernel.h"
@@ -16,7 +16,7 @@ namespace dubsar::lab {
 namespace {
 
 std::string node_of(std::string_view driver) {
-  for (const DeviceInfo& info : list_real_devices("/none"))
+  for (const DeviceInfo& info : list_devices("/none"))
     if (info.driver == driver) return info.path;
   return {};
 }

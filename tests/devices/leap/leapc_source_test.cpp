@@ -6,8 +6,8 @@
 #include <numbers>
 #include <thread>
 
+#include "core/base/option_reader.h"
 #include "fake_hand.h"
-#include "input/placement.h"
 #include "input/sources/leapc_hands.h"
 
 namespace dubsar {
@@ -72,21 +72,26 @@ TEST(LeapcHands, AMissingRotationComesFromTheBoneAndThePalm) {
 }
 
 TEST(Placement, WordsBecomeAPoseAndMistakesAreNamed) {
-  Pose pose = table_placement();
-  EXPECT_EQ(*read_placement("library", "x", pose), false);
-  EXPECT_EQ(*read_placement("at", "10/-200.5/300", pose), true);
-  expect_near(pose.position_m, {0.010, -0.2005, 0.300});
-  ASSERT_TRUE(*read_placement("turn", "90/0/0", pose));
-  expect_near(pose.rotation * glm::dvec3(0, 1, 0), {0, 0, 1});  // a device that looks up now looks at the user
-  ASSERT_TRUE(*read_placement("turn", "0/180/90", pose));
+  const auto read = [](std::vector<Option> words, const Pose& usual) {
+    OptionReader options(std::move(words), "test");
+    const Pose pose = options.placement(usual);
+    EXPECT_TRUE(options.finish());
+    return pose;
+  };
+  const Pose usual{{0.0, -0.2, 0.15}, {1.0, 0.0, 0.0, 0.0}};
+  EXPECT_EQ(read({}, usual), usual);
+  const Pose moved_only = read({{"at", "10/-200.5/300"}}, usual);
+  expect_near(moved_only.position_m, {0.010, -0.2005, 0.300});
+  const Pose up = read({{"turn", "90/0/0"}}, usual);
+  expect_near(up.position_m, usual.position_m);
+  expect_near(up.rotation * glm::dvec3(0, 1, 0), {0, 0, 1});  // a device that looks up now looks at the user
+  const Pose pose = read({{"turn", "0/180/90"}}, usual);
   expect_near(pose.rotation * glm::dvec3(1, 0, 0), {0, 1, 0});
-  const Pose before = pose;
   for (const char* bad : {"", "1/2", "1/2/3/4", "1/2/x", "1,2,3", "nan/0/0", "inf/0/0", "0/0/10001", "1/2/3 "}) {
-    const auto taken = read_placement("at", bad, pose);
-    ASSERT_FALSE(taken) << bad;
-    EXPECT_EQ(taken.error().kind, ErrorKind::kUsage);
+    OptionReader options({{"at", bad}}, "test");
+    static_cast<void>(options.placement(usual));
+    EXPECT_EQ(options.finish().error().kind, ErrorKind::kUsage) << bad;
   }
-  EXPECT_EQ(pose.position_m, before.position_m);
 }
 
 class LeapcSource : public testing::Test {

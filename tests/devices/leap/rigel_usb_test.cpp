@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
+#include "devices/device_list.h"
 #include "devices/leap/leap_camera.h"
 #include "devices/leap/rigel_simulator.h"
-#include "devices/real/real_devices.h"
 #include "usb_kernel.h"
 
 namespace dubsar {
@@ -33,7 +33,7 @@ TEST_F(RigelOverLibusb, IsListedOpenedByItsDescriptorsAndStreamedUntilItIsUnplug
   };
   RigelSimulator simulator(device);
   UsbKernel kernel(simulator);
-  const auto listed = list_real_devices("/nowhere");
+  const auto listed = list_devices("/nowhere");
   const DeviceInfo* const rigel = find(listed, 0x1202);
   ASSERT_NE(rigel, nullptr);
   EXPECT_EQ(rigel->driver, "leap");
@@ -43,7 +43,7 @@ TEST_F(RigelOverLibusb, IsListedOpenedByItsDescriptorsAndStreamedUntilItIsUnplug
   SteadyClock clock;
   DeviceSpec choice;
   choice.driver = "leap";
-  const auto open = reach_real_device(choice, clock);
+  const auto open = open_device(choice, clock);
   ASSERT_TRUE(open);
   auto camera = make_leap_camera(*open, {}, clock);
   const auto started = camera->start();
@@ -63,7 +63,7 @@ TEST_F(RigelOverLibusb, IsListedOpenedByItsDescriptorsAndStreamedUntilItIsUnplug
   kernel.unplug();
   EXPECT_TRUE(eventually([&] { return camera->state() == FrameSourceState::kLost; }));
   camera->stop();
-  EXPECT_EQ(find(list_real_devices("/nowhere"), 0x1202), nullptr);
+  EXPECT_EQ(find(list_devices("/nowhere"), 0x1202), nullptr);
 }
 
 TEST_F(RigelOverLibusb, AController2IsListedWithTheOnlyWayToIt) {
@@ -71,7 +71,7 @@ TEST_F(RigelOverLibusb, AController2IsListedWithTheOnlyWayToIt) {
   device.product = 0x1206;
   RigelSimulator simulator(device);
   UsbKernel kernel(simulator);
-  const auto listed = list_real_devices("/nowhere");
+  const auto listed = list_devices("/nowhere");
   const DeviceInfo* const controller = find(listed, 0x1206);
   ASSERT_NE(controller, nullptr);
   EXPECT_EQ(controller->driver, "leapc");
@@ -81,7 +81,7 @@ TEST_F(RigelOverLibusb, AController2IsListedWithTheOnlyWayToIt) {
   SteadyClock clock;
   DeviceSpec choice;
   choice.driver = "leap";
-  const auto opened = (*reach_real_device(choice, clock))();
+  const auto opened = (*open_device(choice, clock))();
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().kind, ErrorKind::kUnavailable);
   EXPECT_THAT(opened.error().message,

@@ -7,8 +7,8 @@
 
 #include <thread>
 
+#include "devices/device_list.h"
 #include "devices/driver.h"
-#include "devices/enumerate.h"
 #include "devices/looking_glass/calibration_pages.h"
 #include "devices/spacemouse/spacemouse_protocol.h"
 #include "devices/transport/hid_transport.h"

@@ -16,10 +16,10 @@ namespace {
 
 using std::chrono::steady_clock;
 
-Result<std::unique_ptr<InputSource>> make(const char* file, std::vector<std::pair<std::string, std::string>> options) {
+Result<std::unique_ptr<InputSource>> make(const char* file, std::vector<Option> options) {
   InputConfig config;
   config.options = std::move(options);
-  config.options.insert(config.options.begin(), {file, ""});
+  config.options.insert(config.options.begin(), Option{file});
   return make_plugin_source(config);
 }
 
@@ -58,18 +58,18 @@ TEST(SourcePlugin, WhatIsThrownIsALossWithItsReason) {
   for (const auto& [way, reason] :
        {std::pair{"throw_open", "it threw an exception"}, std::pair{"throw_read", "index 7 of 3"},
         std::pair{"absent", "no camera is plugged in"}, std::pair{"lost", "xxxx"}}) {
-    const auto source = make(DUBSAR_UNRULY, {{way, ""}});
+    const auto source = make(DUBSAR_UNRULY, {{way}});
     ASSERT_TRUE(source) << source.error().message;
     EXPECT_TRUE(eventually([&] { return (*source)->note().find(reason) != std::string::npos; })) << (*source)->note();
     InputFrame frame;
     EXPECT_EQ((*source)->poll(SteadyClock().now(), frame), Freshness::kLost);
   }
-  EXPECT_NE(make(DUBSAR_UNRULY, {{"throw_create", ""}}).error().message.find("no memory"), std::string::npos);
-  EXPECT_NE(make(DUBSAR_UNRULY, {{"refuse", ""}}).error().message.find("does not want"), std::string::npos);
+  EXPECT_NE(make(DUBSAR_UNRULY, {{"throw_create"}}).error().message.find("no memory"), std::string::npos);
+  EXPECT_NE(make(DUBSAR_UNRULY, {{"refuse"}}).error().message.find("does not want"), std::string::npos);
 }
 
 TEST(SourcePlugin, ABlockedOneIsLostAndNobodyWaitsForIt) {
-  auto source = make(DUBSAR_UNRULY, {{"block", ""}}).value();
+  auto source = make(DUBSAR_UNRULY, {{"block"}}).value();
   const SteadyClock clock;
   InputFrame frame;
   EXPECT_TRUE(eventually([&] { return source->poll(clock.now(), frame) == Freshness::kUnchanged; }));
@@ -90,7 +90,7 @@ TEST(SourcePlugin, ABlockedOneIsLostAndNobodyWaitsForIt) {
 }
 
 TEST(SourcePlugin, AFloodIsBounded) {
-  const auto source = make(DUBSAR_UNRULY, {{"flood", ""}}).value();
+  const auto source = make(DUBSAR_UNRULY, {{"flood"}}).value();
   const SteadyClock clock;
   InputFrame frame;
   ASSERT_TRUE(eventually([&] { return source->poll(clock.now(), frame) == Freshness::kNew; }));
@@ -103,13 +103,13 @@ TEST(SourcePlugin, AFloodIsBounded) {
 
 TEST(SourcePlugin, WhatCannotBeIsRefusedAndTimesToComeAreNow) {
   for (const char* way : {"nan", "short"}) {
-    const auto source = make(DUBSAR_UNRULY, {{way, ""}}).value();
+    const auto source = make(DUBSAR_UNRULY, {{way}}).value();
     InputFrame frame;
     ASSERT_TRUE(eventually([&] { return source->poll(SteadyClock().now(), frame) == Freshness::kNew; }));
     EXPECT_TRUE(frame.heads.empty());
     EXPECT_NE(source->note().find("cannot be"), std::string::npos) << source->note();
   }
-  const auto source = make(DUBSAR_UNRULY, {{"future", ""}}).value();
+  const auto source = make(DUBSAR_UNRULY, {{"future"}}).value();
   InputFrame frame;
   ASSERT_TRUE(eventually([&] { return source->poll(SteadyClock().now(), frame) == Freshness::kNew; }));
   EXPECT_LE(frame.time, SteadyClock().now());

@@ -28,7 +28,7 @@ class Thrower final : public SourceReader {
 
 TEST(BrokenReader, AnExceptionIsALossWithItsReason) {
   SourceBench bench;
-  const auto source = make_device_source({.name = "thrower"}, std::make_unique<Thrower>(2), bench.config);
+  const auto source = make_threaded_source({.name = "thrower"}, std::make_unique<Thrower>(2), bench.config);
   ASSERT_TRUE(source->start());
   EXPECT_EQ(bench.poll(*source), Freshness::kNew);
   EXPECT_EQ(bench.poll(*source), Freshness::kNew);
@@ -38,7 +38,7 @@ TEST(BrokenReader, AnExceptionIsALossWithItsReason) {
 }
 
 TEST(BrokenReader, InAThreadOfItsOwnToo) {
-  const auto source = make_device_source({.name = "thrower"}, std::make_unique<Thrower>(0), {});
+  const auto source = make_threaded_source({.name = "thrower"}, std::make_unique<Thrower>(0), {});
   ASSERT_TRUE(source->start());
   InputFrame frame;
   const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(10);

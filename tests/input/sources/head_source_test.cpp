@@ -1,5 +1,3 @@
-#include "input/sources/head_source.h"
-
 #include <glm/geometric.hpp>
 #include <numbers>
 
@@ -7,6 +5,7 @@
 #include "devices/head_tracker/opentrack_protocol.h"
 #include "devices/head_tracker/vrpn_protocol.h"
 #include "input/mixer.h"
+#include "input/sources/head_placement.h"
 #include "tests/input/sources/source_bench.h"
 
 namespace dubsar::test {

@@ -1,4 +1,3 @@
-#include "input/sources/leap_source.h"
 
 #include <glm/geometric.hpp>
 #include <numbers>

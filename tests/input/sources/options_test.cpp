@@ -1,5 +1,6 @@
+#include "core/base/option_reader.h"
+#include "devices/drivers.h"
 #include "input/source_spec.h"
-#include "input/sources/option_reader.h"
 #include "tests/input/sources/source_bench.h"
 
 namespace dubsar::test {
@@ -19,8 +20,8 @@ TEST(SourceOptions, WhatIsWrongIsSaidByNameBeforeAnythingIsOpened) {
   EXPECT_EQ(refused("head:opentrack,ipd=630", "40 to 90"), ErrorKind::kUsage);
   EXPECT_EQ(refused("head:opentrack,port=1.5", "whole number"), ErrorKind::kUsage);
   EXPECT_EQ(refused("head:opentrack,invert=up", "\"up\""), ErrorKind::kUsage);
-  EXPECT_EQ(refused("head:opentrack,at=0/0", "at=0/0"), ErrorKind::kUsage);
-  EXPECT_EQ(refused("head:opentrack,at=0/0/0/0", "at="), ErrorKind::kUsage);
+  EXPECT_EQ(refused("head:opentrack,at=0/0", "at is \"0/0\""), ErrorKind::kUsage);
+  EXPECT_EQ(refused("head:opentrack,at=0/0/0/0", "at is"), ErrorKind::kUsage);
   EXPECT_EQ(refused("head:opentrack,remote=yes", "takes no value"), ErrorKind::kUsage);
   EXPECT_EQ(refused("head:opentrack,address=0.0.0.0", "other machines"), ErrorKind::kUsage);
   EXPECT_EQ(refused("head:vrpn,address=no host", "name of a host"), ErrorKind::kUsage);
@@ -31,9 +32,8 @@ TEST(SourceOptions, WhatIsWrongIsSaidByNameBeforeAnythingIsOpened) {
 }
 
 TEST(SourceOptions, EveryDocumentedOptionIsTakenWithColonsAndCommas) {
-  std::vector<std::string_view> names;
-  for (const InputBackend& source : input_sources()) names.push_back(source.name);
-  const auto specs = parse_sources(
+  const std::vector<std::string_view> names = input_source_names();
+  const std::string many =
       "head:opentrack,address=::1,port=4243,remote,invert=x+yaw,sender=xrlinux,at=0/0/600,turn=0/5/0,eyes=0/0/"
       "80,ipd=64,"
       "head:vrpn,address=127.0.0.2,port=3884,tracker=\"a,b:c\",sensor=2,"
@@ -42,8 +42,8 @@ TEST(SourceOptions, EveryDocumentedOptionIsTakenWithColonsAndCommas) {
       "spacemouse,"
       "spacenav:socket=/tmp/a:b,"
       "leap:at=0/-200/150,turn=0/0/0,exposure_us=150,"
-      "mouse,keyboard",
-      names);
+      "mouse,keyboard";
+  const auto specs = parse_sources(many, names);
   ASSERT_TRUE(specs) << specs.error().message;
   ASSERT_EQ(specs->size(), 9u);
   EXPECT_EQ((*specs)[0].options[1], (Option{"address", "::1"}));
@@ -83,22 +83,20 @@ TEST(InputSources, ExactlyTheseAreTakenUnasked) {
   using Inputs = std::vector<std::string>;
   EXPECT_EQ(present_inputs(std::vector<DeviceInfo>{}), Inputs{});
   std::vector<DeviceInfo> all;
-  for (const char* driver : {"spacemouse", "spacenav", "opentrack", "vrpn", "rift", "xreal", "leap", "leapc", "webcam",
-                             "looking_glass", "something else"})
-    all.push_back(here(driver));
-  EXPECT_EQ(present_inputs(all), (Inputs{"spacenav", "leap", "head:rift", "head:xreal"}));  // spacenavd holds the puck
-  EXPECT_EQ(present_inputs({here("spacemouse"), here("webcam"), here("leapc")}), Inputs{"spacemouse"});
-  EXPECT_EQ(present_inputs({here("spacemouse"), here("spacenav", DeviceState::kNoPermission)}), Inputs{"spacemouse"});
+  for (const DriverEntry& driver : driver_table()) all.push_back(here(driver.name));
+  EXPECT_EQ(present_inputs(all), (Inputs{"spacenav", "head:rift", "head:xreal", "leap"}));
+  EXPECT_EQ(present_inputs({here("spacemouse"), here("webcam"), here("leapc"), here("opentrack"), here("vrpn"),
+                            here("looking_glass")}),
+            (Inputs{"spacemouse"}));
   EXPECT_EQ(present_inputs({here("spacemouse", DeviceState::kIgnored), here("leap", DeviceState::kNoPermission),
                             here("rift", DeviceState::kBusy), here("xreal", DeviceState::kBroken)}),
             Inputs{});
-  EXPECT_EQ(present_inputs({here("xreal"), here("xreal")}), Inputs{"head:xreal"});  // two of a kind are one source
+  // two of a kind are one source
+  EXPECT_EQ(present_inputs({here("xreal"), here("xreal")}), (Inputs{"head:xreal"}));
 }
 
 TEST(SourceOptions, PlacesAreMillimetresAndTurnsDegrees) {
-  InputConfig config;
-  config.options = {{"at", "10/-20.5/30"}, {"turn", "90/90/0"}};
-  OptionReader options(config, "test");
+  OptionReader options({{"at", "10/-20.5/30"}, {"turn", "90/90/0"}}, "test");
   const Pose place = options.placement({});
   ASSERT_TRUE(options.finish());
   EXPECT_LE(glm::distance(place.position_m, glm::dvec3(0.010, -0.0205, 0.030)), 1e-12);

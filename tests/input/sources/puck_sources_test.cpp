@@ -1,4 +1,3 @@
-#include "input/sources/puck_sources.h"
 
 #include <unistd.h>
 

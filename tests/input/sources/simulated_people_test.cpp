@@ -16,6 +16,7 @@
 #include "input/people/person_keeper.h"
 #include "input/simulated/simulated_recording.h"
 #include "input/simulated/simulated_server.h"
+#include "input/source_spec.h"
 #include "tests/input/sources/source_bench.h"
 
 namespace dubsar::test {
@@ -154,12 +155,16 @@ TEST(SimulatedPeople, HandsOverALeapAreWhereTheScriptSays) {
 TEST(SimulatedPeople, RecordingsOfEveryDriverDependOnTheScriptOnlyAndPlayThroughIt) {
   const auto folder = fs::temp_directory_path() / ("dubsar_wires_" + std::to_string(::getpid()));
   fs::create_directories(folder);
-  for (const char* driver : {"spacemouse", "spacenav", "opentrack", "vrpn", "rift", "xreal", "leap"}) {
-    const double seconds = std::string(driver) == "leap" ? 0.05 : 1.0;
+  for (const DriverEntry& row : driver_table()) {
+    if (!can_be_simulated(row)) continue;
+    const std::string driver(row.name);
+    const bool pictures = row.gives == Gives::kStereoPictures;
+    const double seconds = pictures ? 0.05 : 1.0;
     const auto write = [&](const char* name, std::uint64_t seed) {
-      WireOptions options;
+      PersonOptions options;
       options.script = somebody(seed, seconds);
-      const auto events = write_simulated_recording(driver, folder / name, options);
+      options.screen_from_device = row.usual_place;
+      const auto events = write_simulated_recording(row, folder / name, options);
       EXPECT_TRUE(events) << events.error().message;
       return read_recording(folder / name).value();
     };
@@ -167,14 +172,14 @@ TEST(SimulatedPeople, RecordingsOfEveryDriverDependOnTheScriptOnlyAndPlayThrough
     EXPECT_EQ(first.driver, driver);
     EXPECT_TRUE(first.events == again.events) << driver;
     EXPECT_FALSE(first.events == other.events) << driver;
-    const bool head = std::string_view("opentrack vrpn rift xreal").find(driver) != std::string_view::npos;
     SourceBench bench;
-    const auto source = bench.make((head ? std::string("head:") + driver + "," : std::string(driver) + ":") +
-                                   "replay=" + (folder / "a").string());
+    SourceSpec spec = parse_source(row.input.source).value();
+    spec.options.push_back({"replay", (folder / "a").string()});
+    const auto source = bench.make(spec.text());
     int fresh = 0;
     for (int i = 0; i < 110 && !source->finished(); ++i, bench.clock.advance(10 * kMs))
       fresh += bench.poll(*source) == Freshness::kNew ? 1 : 0;
-    EXPECT_GE(fresh, std::string(driver) == "leap" ? 3 : 20) << driver;
+    EXPECT_GE(fresh, pictures ? 3 : 20) << driver;
     EXPECT_TRUE(source->finished()) << driver;
   }
   fs::remove_all(folder);
@@ -190,29 +195,25 @@ TEST(SimulatedPeople, LiveTrackersAreFoundOnRealSockets) {
   }
   const std::string socket_path = (fs::temp_directory_path() / ("dubsar_spnav_" + std::to_string(::getpid()))).string();
   struct Case {
-    DeviceSpec choice;
+    std::string_view driver;
+    std::vector<Option> where;
     std::string spec;
   };
-  std::vector<Case> cases(3);
-  cases[0].choice.driver = "opentrack";
-  cases[0].choice.port = udp_port;
-  cases[0].spec = "head:opentrack,port=";
-  cases[1].choice.driver = "vrpn";
-  cases[1].choice.port = -1;
-  cases[1].spec = "head:vrpn,port=";
-  cases[2].choice.driver = "spacenav";
-  cases[2].choice.socket = socket_path;
-  cases[2].spec = "spacenav:socket=" + socket_path;
+  std::vector<Case> cases{{"opentrack", {{"port", std::to_string(udp_port)}}, "head:opentrack,port="},
+                          {"vrpn", {{"port", "0"}}, "head:vrpn,port="},
+                          {"spacenav", {{"socket", socket_path}}, "spacenav:socket=" + socket_path}};
   for (Case& c : cases) {
-    WireOptions options;
+    PersonOptions options;
     options.script = somebody(1, 60.0);
-    const auto person = make_wire_person(c.choice.driver, options, clock).value();
+    const DriverEntry& driver = *find_driver(c.driver, "test", driver_table()).value();
+    options.screen_from_device = driver.usual_place;
+    const SimulatedFeed feed = simulate_device(driver, options, clock).value();
     std::atomic<bool> over{false};
     std::atomic<int> port{-1};
-    Result<LiveWireResult> served;
+    Result<ServerResult> served;
     std::thread server([&] {
-      served = serve_live_wire(
-          *person, c.choice, clock, [&] { return over.load(); }, [&](int p) { port = p; });
+      served = serve_simulated(
+          driver, feed, c.where, clock, [&] { return over.load(); }, [&](int p) { port = p; });
       port = 0;
     });
     while (port < 0) std::this_thread::yield();
@@ -227,7 +228,7 @@ TEST(SimulatedPeople, LiveTrackersAreFoundOnRealSockets) {
         heard = (*source)->poll(clock.now(), frame) == Freshness::kNew;
         std::this_thread::sleep_for(milliseconds(1));
       }
-      EXPECT_TRUE(heard) << c.choice.driver << ": " << (*source)->note();
+      EXPECT_TRUE(heard) << c.driver << ": " << (*source)->note();
       if (heard) {
         EXPECT_LE(clock.now() - frame.time, 50 * kMs);
       }

@@ -143,6 +143,7 @@ TEST(WebcamSourceOver, ALostCameraIsAStateAndComesBack) {
       newest.pixels.assign(64 * 64 * 3, 90);
       return true;
     }
+    bool wait(Frame& newest, std::chrono::milliseconds) override { return poll(newest); }
     FrameSourceState state() const override {
       return running && !*there ? FrameSourceState::kLost : FrameSourceState::kRunning;
     }
