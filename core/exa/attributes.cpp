@@ -45,28 +45,55 @@ class ShapeCode {
   std::array<BitTree<4>, 76> shapes_;
 };
 
-/// The difference from the mean of the neighbours, by how far they are apart.
+/// Light as the neighbours let expect it, and how far they are apart.
+struct LightContext {
+  int expected = 48, apart = 9;
+};
+LightContext light_context(const QuadMesh& mesh, const std::uint8_t* values, std::uint32_t v, std::uint32_t first) {
+  int sum = 0, weight = 0, low = 63, high = 0;
+  known_surroundings(mesh, v, first, [&](std::uint32_t w, int share) {
+    sum += share * values[w];
+    weight += share;
+    low = std::min<int>(low, values[w]);
+    high = std::max<int>(high, values[w]);
+  });
+  if (weight == 0) return {};
+  return {(sum + weight / 2) / weight, std::min(8, high - low)};
+}
+/// Steps from the expected level to the nearest that can be had.
+int light_steps(int level, int expected, int step) {
+  const int apart = level - expected;
+  return (apart + (apart < 0 ? -step / 2 : step / 2)) / step;
+}
+int light_at(int expected, int steps, int step) { return std::clamp(expected + steps * step, 0, 63); }
+
+/// The difference from what the neighbours let expect, by how far they are apart.
 class LightCode {
  public:
+  explicit LightCode(int step) : step_(step) {}
   template <class Coder>
   std::uint8_t code(Coder& coder, const QuadMesh& mesh, const std::uint8_t* values, std::uint32_t v,
                     std::uint32_t first) {
-    int sum = 0, count = 0, low = 63, high = 0;
-    known_neighbours(mesh, v, first, [&](std::uint32_t w) {
-      sum += values[w];
-      low = std::min<int>(low, values[w]);
-      high = std::max<int>(high, values[w]);
-      ++count;
-    });
-    const int mean = count == 0 ? 48 : (sum + count / 2) / count;
-    const int apart = count == 0 ? 9 : std::min(8, high - low);
-    return static_cast<std::uint8_t>(mean +
-                                     numbers_[static_cast<std::size_t>(apart)].code(coder, int{values[v]} - mean));
+    const LightContext context = light_context(mesh, values, v, first);
+    const int steps =
+        numbers_[static_cast<std::size_t>(context.apart)].code(coder, light_steps(values[v], context.expected, step_));
+    return static_cast<std::uint8_t>(light_at(context.expected, steps, step_));
   }
 
  private:
+  int step_;
   std::array<SignedNumber, 10> numbers_;
 };
+
+/// Are all levels where steps of this size lead?
+bool light_in_steps(const QuadMesh& mesh, std::span<const std::uint8_t> light, std::uint32_t first, std::uint32_t end,
+                    int step) {
+  for (std::uint32_t v = first; v < end; ++v) {
+    const int expected = light_context(mesh, light.data(), v, first).expected;
+    if (light_at(expected, light_steps(light[v], expected, step), step) != light[v]) return false;
+  }
+  return true;
+}
 
 /// That of the x-quad coded before around one of the corners, or another one.
 class PartitionCode {
@@ -94,53 +121,107 @@ class PartitionCode {
   std::array<BitTree<3>, 8> other_;
 };
 
-template <class Code>
-std::vector<std::string> encode(const QuadMesh& mesh, std::span<const std::uint8_t> values, Progress& progress) {
-  return encode_item_chunks(static_cast<std::int64_t>(values.size()), progress,
-                            [&](std::uint32_t first, std::uint32_t end) {
-                              RangeEncoder out;
-                              BitSink sink{out};
-                              Code code;
-                              for (std::uint32_t i = first; i < end; ++i)
-                                code.code(sink, mesh, values.data(), i, first);
-                              return out.take();
-                            });
+/// A small number per vertex: that of most known neighbours, or another one.
+class EnumCode {
+ public:
+  template <class Coder>
+  std::uint8_t code(Coder& coder, const QuadMesh& mesh, const std::uint8_t* values, std::uint32_t v,
+                    std::uint32_t first) {
+    std::array<int, 8> votes{};
+    int all = 0;
+    known_surroundings(mesh, v, first, [&](std::uint32_t w, int share) {
+      votes[values[w] & 7] += share;
+      all += share;
+    });
+    const auto best = static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
+    const int others = std::min(7, all - votes[best]);
+    const auto context = best * 16 + (all == 0 ? 8 : static_cast<std::size_t>(others));
+    if (coder.bit(same_[context], values[v] == best)) return static_cast<std::uint8_t>(best);
+    return static_cast<std::uint8_t>(other_[best].code(coder, values[v]));
+  }
+
+ private:
+  std::array<AdaptiveBit, 128> same_;
+  std::array<BitTree<3>, 8> other_;
+};
+
+template <class Code, class... Args>
+std::string encode_chunk(const QuadMesh& mesh, std::span<const std::uint8_t> values, std::uint32_t first,
+                         std::uint32_t end, Args... args) {
+  RangeEncoder out;
+  BitSink sink{out};
+  Code code(args...);
+  for (std::uint32_t i = first; i < end; ++i) code.code(sink, mesh, values.data(), i, first);
+  return out.take();
 }
 
+/// The first byte of a chunk of light is the step.
+std::string encode_light_chunk(const QuadMesh& mesh, std::span<const std::uint8_t> values, std::uint32_t first,
+                               std::uint32_t end) {
+  const int step = light_in_steps(mesh, values, first, end, kLightStep) ? kLightStep : 1;
+  return static_cast<char>(step) + encode_chunk<LightCode>(mesh, values, first, end, step);
+}
+
+/// False: a value out of range.
 template <class Code>
-bool decode(const QuadMesh& mesh, std::span<const std::string_view> chunks, int highest,
-            std::vector<std::uint8_t>& values, Progress& progress) {
-  std::atomic<bool> broken{false};
-  parallel_for(static_cast<std::int64_t>(chunks.size()), 1, [&](std::int64_t c) {
-    if (progress.cancelled()) return;
-    RangeDecoder in(chunks[static_cast<std::size_t>(c)]);
-    BitSource source{in};
-    Code code;
-    const auto first = static_cast<std::uint32_t>(c * kItemsPerChunk);
-    const auto end = static_cast<std::uint32_t>(
-        std::min<std::int64_t>(first + kItemsPerChunk, static_cast<std::int64_t>(values.size())));
-    for (std::uint32_t i = first; i < end; ++i) {
-      values[i] = code.code(source, mesh, values.data(), i, first);
-      if (values[i] > highest) {
-        broken = true;
-        return;
-      }
+bool decode_chunk(Code code, RangeDecoder in, const QuadMesh& mesh, std::uint32_t first, std::uint32_t end, int highest,
+                  std::vector<std::uint8_t>& values) {
+  BitSource source{in};
+  for (std::uint32_t i = first; i < end; ++i) {
+    values[i] = code.code(source, mesh, values.data(), i, first);
+    if (values[i] > highest) return false;
+  }
+  return true;
+}
+
+bool decode_chunk(ExaLabel label, std::string_view bytes, const QuadMesh& mesh, std::uint32_t first, std::uint32_t end,
+                  std::vector<std::uint8_t>& values) {
+  const int highest = highest_label(label);
+  switch (label) {
+    case ExaLabel::kShape:
+      return decode_chunk(ShapeCode(), RangeDecoder(bytes), mesh, first, end, highest, values);
+    case ExaLabel::kEnum:
+      return decode_chunk(EnumCode(), RangeDecoder(bytes), mesh, first, end, highest, values);
+    case ExaLabel::kPartition:
+      return decode_chunk(PartitionCode(), RangeDecoder(bytes), mesh, first, end, highest, values);
+    case ExaLabel::kLight: {
+      const int step = bytes.empty() ? 0 : bytes[0];
+      return (step == 1 || step == kLightStep) &&
+             decode_chunk(LightCode(step), RangeDecoder(bytes.substr(1)), mesh, first, end, highest, values);
     }
-  });
-  return !broken;
+  }
+  return false;
 }
 }  // namespace
 
+void settle_light(const QuadMesh& mesh, std::span<std::uint8_t> light, Progress& progress) {
+  parallel_for(item_chunks(static_cast<std::int64_t>(light.size())), 1, [&](std::int64_t c) {
+    if (progress.cancelled()) return;
+    const auto first = static_cast<std::uint32_t>(c * kItemsPerChunk);
+    const auto end = static_cast<std::uint32_t>(
+        std::min<std::int64_t>(first + kItemsPerChunk, static_cast<std::int64_t>(light.size())));
+    for (std::uint32_t v = first; v < end; ++v) {
+      const int expected = light_context(mesh, light.data(), v, first).expected;
+      light[v] = static_cast<std::uint8_t>(light_at(expected, light_steps(light[v], expected, kLightStep), kLightStep));
+    }
+  });
+}
+
 std::vector<std::string> encode_labels(ExaLabel label, const QuadMesh& mesh, std::span<const std::uint8_t> values,
                                        Progress& progress) {
-  switch (label) {
-    case ExaLabel::kShape:
-      return encode<ShapeCode>(mesh, values, progress);
-    case ExaLabel::kLight:
-      return encode<LightCode>(mesh, values, progress);
-    default:
-      return encode<PartitionCode>(mesh, values, progress);
-  }
+  return encode_item_chunks(static_cast<std::int64_t>(values.size()), progress,
+                            [&](std::uint32_t first, std::uint32_t end) {
+                              switch (label) {
+                                case ExaLabel::kShape:
+                                  return encode_chunk<ShapeCode>(mesh, values, first, end);
+                                case ExaLabel::kLight:
+                                  return encode_light_chunk(mesh, values, first, end);
+                                case ExaLabel::kEnum:
+                                  return encode_chunk<EnumCode>(mesh, values, first, end);
+                                default:
+                                  return encode_chunk<PartitionCode>(mesh, values, first, end);
+                              }
+                            });
 }
 
 Result<std::vector<std::uint8_t>> decode_labels(ExaLabel label, const QuadMesh& mesh,
@@ -150,12 +231,15 @@ Result<std::vector<std::uint8_t>> decode_labels(ExaLabel label, const QuadMesh& 
     return fail(ErrorKind::kBadData, "exa: {} chunks of an attribute found, {} expected for {} items", chunks.size(),
                 item_chunks(items), items);
   std::vector<std::uint8_t> values(static_cast<std::size_t>(items));
-  const int highest = highest_label(label);
-  const bool whole = label == ExaLabel::kShape   ? decode<ShapeCode>(mesh, chunks, highest, values, progress)
-                     : label == ExaLabel::kLight ? decode<LightCode>(mesh, chunks, highest, values, progress)
-                                                 : decode<PartitionCode>(mesh, chunks, highest, values, progress);
+  std::atomic<bool> whole{true};
+  parallel_for(static_cast<std::int64_t>(chunks.size()), 1, [&](std::int64_t c) {
+    if (progress.cancelled()) return;
+    const auto first = static_cast<std::uint32_t>(c * kItemsPerChunk);
+    const auto end = static_cast<std::uint32_t>(std::min<std::int64_t>(first + kItemsPerChunk, items));
+    if (!decode_chunk(label, chunks[static_cast<std::size_t>(c)], mesh, first, end, values)) whole = false;
+  });
   if (progress.cancelled()) return cancelled_error();
-  if (!whole) return fail(ErrorKind::kBadData, "exa: an attribute is larger than {}", highest);
+  if (!whole) return fail(ErrorKind::kBadData, "exa: an attribute is larger than {}", highest_label(label));
   return values;
 }
 

@@ -93,6 +93,7 @@ Result<std::string> exa_header_json(const ExaHeader& header) {
   json["quad_sum"] = header.quad_sum;
   json["normals"] = normals_name(header.normals);
   json["curvatures"] = header.curvatures;
+  json["shapes"] = header.shapes ? "recomputed" : "stored";
   json["curvature_method"] = header.curvature == CurvatureMethod::kFit ? "fit" : "pairs";
   json["unit"] = "mm";
   json["scale"] = vector_json(header.frame.scale);
@@ -119,6 +120,7 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
   header.quad_sum = static_cast<std::uint32_t>(members.count("quad_sum"));
   const std::string normals = members.text("normals"), method = members.text("curvature_method");
   header.curvatures = members.flag("curvatures");
+  const std::string shapes = members.text("shapes");
   const std::string unit = members.text("unit");
   header.frame.scale = members.vector("scale");
   header.frame.origin_vox = members.vector("origin_vox");
@@ -157,6 +159,10 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
     return fail(ErrorKind::kBadData, "exa: normals \"{}\" found, expected none, recomputed or exact", normals);
   if (method != "fit" && method != "pairs")
     return fail(ErrorKind::kBadData, "exa: curvature method \"{}\" found, expected fit or pairs", method);
+  if ((shapes != "recomputed" && shapes != "stored") || (shapes == "recomputed" && !header.curvatures))
+    return fail(ErrorKind::kBadData, "exa: shapes \"{}\" found, expected stored, or recomputed beside curvatures",
+                shapes);
+  header.shapes = shapes == "recomputed";
   header.curvature = method == "fit" ? CurvatureMethod::kFit : CurvatureMethod::kPairs;
   return header;
 }

@@ -28,6 +28,7 @@ struct ExaHeader {
   std::int64_t edges = 0, faces = 0;  ///< offsets and face decisions
   ExaNormals normals = ExaNormals::kNone;
   bool curvatures = false;  ///< kRecomputed: k_min and k_max, too
+  bool shapes = false;      ///< shape_classes() of the curvatures; not stored
   CurvatureMethod curvature = CurvatureMethod::kFit;
   std::string tool;                              ///< program and version that wrote the file
   std::uint32_t position_sum = 0, quad_sum = 0;  ///< position_sum_of(), quad_sum_of() of the mesh that was written

@@ -34,7 +34,7 @@ OffsetDistribution OffsetModel::predict(int axis_index, const OffsetInputs& inpu
     mean += unit * axis.out[0][u];
     spread += unit * axis.out[1][u];
   }
-  return {(mean >> 7) + axis.out_bias[0], std::clamp(((spread >> 9) + axis.out_bias[1]) >> 6, 0, 31), bits};
+  return {8 * std::clamp(((mean >> 7) + axis.out_bias[0] + 4) >> 3, -128, 127), std::clamp(((spread >> 9) + axis.out_bias[1]) >> 6, 0, 31), bits};
 }
 
 }  // namespace dubsar

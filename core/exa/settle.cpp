@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "core/exa/attributes.h"
 #include "core/exa/exact.h"
 #include "core/extract/extract.h"
 #include "core/relief/normal_filter.h"
+#include "core/relief/shape_class.h"
 #include "core/relief/smooth.h"
 
 namespace dubsar {
@@ -233,6 +235,7 @@ Result<SettleStats> settle_for_exa(SurfaceModel& model, const SettleOptions& opt
     return fail(ErrorKind::kInternal, "exa: the mesh of {} vertices is not the one that the samples give ({} vertices)",
                 model.mesh.positions.size(), base.positions.size());
   VertexAttributes& attributes = model.attributes;
+  settle_light(model.mesh, attributes.ao, progress);
   const bool settled = same_positions(base.positions, model.mesh.positions) ||
                        encode_escapes(base, model.mesh.positions, progress).has_value();
   if (!settled) {
@@ -263,6 +266,12 @@ Result<SettleStats> settle_for_exa(SurfaceModel& model, const SettleOptions& opt
                 principal_curvatures(model.mesh, attributes.normals, options.curvature, progress));
   attributes.k_min = std::move(curvatures.k_min);
   attributes.k_max = std::move(curvatures.k_max);
+  if (attributes.shape.empty()) return stats;
+  std::vector<std::uint8_t> shape = shape_classes(attributes.k_min, attributes.k_max);
+  std::size_t changed = 0;
+  for (std::size_t v = 0; v < shape.size(); ++v) changed += shape[v] != attributes.shape[v] ? 1u : 0u;
+  stats.shape_changed_fraction = static_cast<double>(changed) / static_cast<double>(shape.size());
+  attributes.shape = std::move(shape);
   return stats;
 }
 

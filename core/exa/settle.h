@@ -20,16 +20,18 @@ struct SettleOptions {
 
 struct SettleStats {
   double mean_error_vox = 0.0, p95_error_vox = 0.0, max_error_vox = 0.0;  ///< vertex to surface before
-  double escaped_fraction = 0.0;  ///< vertices that the offsets do not bring near enough
-  double normal_error_deg = 0.0;  ///< mean angle between normals before and after
+  double escaped_fraction = 0.0;        ///< vertices that the offsets do not bring near enough
+  double normal_error_deg = 0.0;        ///< mean angle between normals before and after
+  double shape_changed_fraction = 0.0;  ///< vertices whose class of shape is another one
 };
 
 /// Chooses offsets of samples.offset_bits such that the vertices that follow from them (build_quad_mesh) lie on the
 /// surface of mesh.positions: none further than max_error, 95 % within half of it; the few that cannot escape to a
 /// place of their own (kEscapeStep). Vertices slide along the surface by up to half a grid step. Then normals and
 /// curvatures are those of recomputed_normals() and principal_curvatures(), where the model has any and exact_normals
-/// is off. Shape classes and all other attributes stay. A settled model stays as it is, to the last bit. kUsage:
-/// max_error is not positive. Deterministic for any thread count; about 3 us a vertex and thread.
+/// is off, and shape classes those of the curvatures; settle_light() settles ambient light. All other attributes stay.
+/// A settled model stays as it is, to the last bit. kUsage: max_error is not positive. Deterministic for any thread
+/// count; about 3 us a vertex and thread.
 Result<SettleStats> settle_for_exa(SurfaceModel& model, const SettleOptions& options, Progress& progress);
 
 /// Vertex normals of the x-quads' normals after 16 iterations of filter_normals(): on a phantom of 30 dB their mean

@@ -10,6 +10,7 @@
 namespace dubsar {
 
 struct BitSink {
+  static constexpr bool kWrites = true;
   RangeEncoder& out;
   bool bit(AdaptiveBit& model, bool value) {
     out.bit(model, value);
@@ -21,6 +22,7 @@ struct BitSink {
   }
 };
 struct BitSource {
+  static constexpr bool kWrites = false;
   RangeDecoder& in;
   bool bit(AdaptiveBit& model, bool) { return in.bit(model); }
   std::uint32_t raw(std::uint32_t, int count) { return in.raw(count); }

@@ -36,6 +36,29 @@ void known_neighbours(const QuadMesh& mesh, std::uint32_t v, std::uint32_t first
   }
 }
 
+/// Calls visit(w, share) for the vertices w of the x-quads around v with first <= w < v, in rising x-quads and in the
+/// order of the polygon from the one behind v on: share 2 for those beside v, 1 for the others. Polygons that share w
+/// count each.
+template <class Visit>
+void known_surroundings(const QuadMesh& mesh, std::uint32_t v, std::uint32_t first, const Visit& visit) {
+  for (const std::uint32_t q : mesh.quads_of(v)) {
+    if (!mesh.has_doubled(q)) {
+      const auto& quad = mesh.quads[q];
+      const std::uint32_t at = quad[0] == v ? 0 : quad[1] == v ? 1 : quad[2] == v ? 2 : 3;
+      for (std::uint32_t step = 1; step < 4; ++step)
+        if (const std::uint32_t w = quad[(at + step) % 4]; w >= first && w < v) visit(w, step == 2 ? 1 : 2);
+      continue;
+    }
+    const Polygon polygon = mesh.polygon(q);
+    int at = 0;
+    while (polygon.vertex[static_cast<std::size_t>(at)] != v) ++at;
+    for (int step = 1; step < polygon.size; ++step)
+      if (const std::uint32_t w = polygon.vertex[static_cast<std::size_t>((at + step) % polygon.size)];
+          w >= first && w < v)
+        visit(w, step == 1 || step + 1 == polygon.size ? 2 : 1);
+  }
+}
+
 /// Encodes chunks on all threads: encode(first, end) -> bytes.
 template <class Encode>
 std::vector<std::string> encode_item_chunks(std::int64_t items, Progress& progress, const Encode& encode) {

@@ -2,6 +2,7 @@
 
 #include "core/base/json_text.h"
 #include "core/base/log.h"
+#include "core/exa/attributes.h"
 #include "core/exa/patches.h"
 #include "core/extract/extract.h"
 #include "core/pipeline/model_occlusion.h"
@@ -44,7 +45,7 @@ Result<void> separate_with(const SegmentOptions& segment_options, bool fill, Pip
   clock.start("fill_holes", "triangle");
   if (fill) {
     DUBSAR_ASSIGN(result.report.holes, fill_holes(model, HoleOptions{}, progress));
-    settle_patches(model.patches);
+    settle_patches(model.patches, model.mesh.vertex_count());
   } else {
     DUBSAR_TRY(measure_partitions(model));
   }
@@ -73,6 +74,7 @@ Result<void> add_occlusion(const PipelineOptions& options, PipelineResult& resul
   const std::int64_t rays = model.mesh.vertex_count() * options.occlusion_options.rays;
   clock.start("occlusion", "ray");
   DUBSAR_TRY(occlusion_of_model(model, options.occlusion_options, progress));
+  settle_light(model.mesh, model.attributes.ao, progress);
   clock.finish(rays);
   return {};
 }

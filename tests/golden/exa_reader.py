@@ -35,7 +35,7 @@ def read_blocks(data):
 
     need(data[:8] == b"\x89EXA\r\n\x1a\n", "magic")
     major, _, count, size = struct.unpack_from("<HHIQ", data, 8)
-    need(major == 2 and count <= 256 and size == len(data), "head")
+    need(major == 3 and count <= 256 and size == len(data), "head")
     end = 24 + 28 * count
     need(zlib.crc32(data[:end]) == struct.unpack_from("<I", data, end)[0], "sum of the table")
     blocks, at = {}, end + 4
@@ -417,7 +417,7 @@ def decode_offsets(chunks, signs, edges, bits):
                     inputs += [0, 64] if middle is None else [middle + 1 if back else 64 - middle, 0]
             w, bias, out, out_bias = model[a]
             units = np.clip((128 * bias + w @ np.array(inputs)) >> 7, 0, 8191)
-            mean = (int(out[0] @ units) >> 7) + int(out_bias[0])
+            mean = 8 * clamp(((int(out[0] @ units) >> 7) + int(out_bias[0]) + 4) >> 3, -128, 127)
             steep = STEEP[clamp(((int(out[1] @ units) >> 9) + int(out_bias[1])) >> 6, 0, 31)]
 
             def start_of(symbol):
@@ -706,6 +706,14 @@ class Neighbours:
             found += [w for w in (p[i - 1], p[(i + 1) % len(p)]) if first <= w < v]
         return found
 
+    def surroundings(self, v, first):
+        found = []
+        for q in self.around[v]:
+            p = self.polygons[q]
+            i, n = p.index(v), len(p)
+            found += [(p[(i + s) % n], 2 if s in (1, n - 1) else 1) for s in range(1, n)]
+        return [(w, share) for w, share in found if first <= w < v]
+
 
 def chunk_items(chunks, count):
     for i, chunk in enumerate(chunks):
@@ -761,13 +769,28 @@ def decode_shape(chunks, mesh, count):
 
 def decode_light(chunks, mesh, count):
     values = np.zeros(count, dtype=np.uint8)
-    for decoder, items in chunk_items(chunks, count):
-        numbers = [SignedNumber() for _ in range(10)]
+    for decoder, items in chunk_items([c[1:] for c in chunks], count):
+        numbers, step = [SignedNumber() for _ in range(10)], chunks[items[0] // 65536][0]
         for v in items:
-            near = [int(values[w]) for w in mesh.known(v, items[0])]
-            n = len(near)
-            mean, apart = ((sum(near) + n // 2) // n, min(8, max(near) - min(near))) if n else (48, 9)
-            values[v] = mean + numbers[apart].get(decoder)
+            near = [(int(values[w]), share) for w, share in mesh.surroundings(v, items[0])]
+            n, total = sum(share for _, share in near), sum(level * share for level, share in near)
+            levels = [level for level, _ in near]
+            expected, apart = ((total + n // 2) // n, min(8, max(levels) - min(levels))) if n else (48, 9)
+            values[v] = clamp(expected + step * numbers[apart].get(decoder), 0, 63)
+    return values
+
+
+def decode_enum(chunks, mesh, count):
+    values = np.zeros(count, dtype=np.uint8)
+    for decoder, items in chunk_items(chunks, count):
+        same, other = [AdaptiveBit() for _ in range(128)], [Tree(3) for _ in range(8)]
+        for v in items:
+            votes = [0] * 8
+            for w, share in mesh.surroundings(v, items[0]):
+                votes[values[w]] += share
+            best, total = votes.index(max(votes)), sum(votes)
+            context = 16 * best + (min(7, total - votes[best]) if total else 8)
+            values[v] = best if decoder.adaptive(same[context]) else other[best].get(decoder)
     return values
 
 
@@ -784,6 +807,157 @@ def decode_partition(chunks, mesh, count):
             best = votes.index(max(votes))
             values[q] = best if decoder.adaptive(same[5 * sum(votes) + votes[best]]) else other[best].get(decoder)
     return values
+
+
+# Fill patches --------------------------------------------------------------------------------------------------------
+
+
+class Number:
+    def __init__(self):
+        self.trees = [Tree(8) for _ in range(5)]
+
+    def get(self, decoder):
+        value = 0
+        for place, tree in enumerate(self.trees):
+            byte = tree.get(decoder)
+            value |= (byte & 127) << (7 * place)
+            if byte < 128:
+                break
+        return value & 0xFFFFFFFF
+
+    def signed(self, decoder):
+        v = self.get(decoder)
+        return (v >> 1) ^ -(v & 1)
+
+
+def rim_ways(mesh, partition, of, v):
+    before, behind = [], []
+    for q in mesh.around[v]:
+        if of[q] == partition:
+            p = mesh.polygons[q]
+            before.append(p[p.index(v) - 1])
+            behind.append(p[(p.index(v) + 1) % len(p)])
+    return [w for w in before if w not in behind]
+
+
+def walk_disk(rim, choose):
+    """Triangles of numbers: 0..rim-1 the rim, then vertices as they are met."""
+    vertex, alive = list(range(rim)), [True] * rim
+    nxt, prev = [(i + 1) % rim for i in range(rim)], [(i - 1) % rim for i in range(rim)]
+    queue, head, count, at = list(range(rim)), 0, rim, [0] * rim
+    triangles = []
+    while head < len(queue):
+        i, head = queue[head], head + 1
+        if not alive[i]:
+            continue
+        j = nxt[i]
+        if nxt[j] == i:
+            alive[i] = alive[j] = False
+            continue
+        step, distance = choose(min(at[vertex[i]], 7), min(at[vertex[j]], 7))
+        if step == 1:
+            k = nxt[j]
+            alive[j], nxt[i], prev[k] = False, k, i
+            queue.append(i)
+        elif step == 2:
+            k = prev[i]
+            alive[i], nxt[k], prev[j] = False, j, k
+            queue.append(k)
+        else:
+            new = len(vertex)
+            if step == 0:
+                k = new
+                vertex.append(count)
+                nxt.append(j)
+                prev.append(i)
+                nxt[i] = prev[j] = new
+                at.append(0)
+                count += 1
+            else:
+                k = j if distance > 0 else i
+                for _ in range(abs(distance)):
+                    k = nxt[k] if distance > 0 else prev[k]
+                vertex.append(vertex[k])
+                nxt.append(j)
+                prev.append(prev[k])
+                nxt[prev[k]] = prev[j] = new
+                nxt[i], prev[k] = k, i
+            alive.append(True)
+            queue += [i, new]
+        triangles.append((vertex[i], vertex[j], vertex[k]))
+        for v in triangles[-1]:
+            at[v] += 1
+    return triangles, count - rim
+
+
+def relaxed_disk(rim, triangles, count):
+    p = [list(r) for r in rim]
+    centre = [sum(r[a] for r in rim) // len(rim) for a in range(3)]
+    for a, b, c in triangles:
+        if c == len(p):
+            p.append([(3 * p[a][d] + 3 * p[b][d] + 2 * centre[d]) // 8 for d in range(3)])
+    around = [[t[(c + 1) % 3] for t in triangles for c in range(3) if t[c] == len(rim) + i] for i in range(count)]
+    for _ in range(32):
+        for i, near in enumerate(around):
+            for d in range(3):
+                here = p[len(rim) + i][d]
+                p[len(rim) + i][d] += 3 * (sum(p[w][d] for w in near) // len(near) - here) // 2
+    return p[len(rim):], around
+
+
+def decode_patches(chunk, positions, mesh, of):
+    decoder, counts, ids, distances, floats = Decoder(chunk), Number(), Number(), Number(), Number()
+    way, steps, residuals = Tree(2), [Tree(2) for _ in range(256)], [SignedNumber() for _ in range(3)]
+    start, patches = 0, []
+    for _ in range(counts.get(decoder)):
+        part, reverse, compact = counts.get(decoder), counts.get(decoder), counts.get(decoder)
+        if not compact:
+            patches.append((part, reverse, *loose_patch(decoder, counts, floats, len(positions))))
+            continue
+        rim = []
+        for i in range(counts.get(decoder)):
+            kind = way.get(decoder) if i else 3
+            before = rim[-1] if i else start
+            rim.append(rim_ways(mesh, part, of, before)[kind] if kind < 3 else before + ids.signed(decoder))
+        start, last = rim[0], 0
+
+        def choose(at_a, at_b):
+            nonlocal last
+            last = steps[(last * 8 + at_a) * 8 + at_b].get(decoder)
+            return last, distances.signed(decoder) if last == 3 else 0
+
+        triangles, count = walk_disk(len(rim), choose)
+        fine = np.floor(positions[rim].astype(np.float64) * 1024.0 + 0.5).astype(np.int64).tolist()
+        relaxed, around = relaxed_disk(fine, triangles, count)
+        extra, apart = np.zeros((count, 3), dtype=np.float32), []
+        for i in range(count):
+            known = [w - len(rim) for w in around[i] if w < len(rim) + i]
+            sums = [sum(apart[w][d] for w in known if w >= 0) for d in range(3)]
+            n = len(known)
+            apart.append([((2 * t + n) // (2 * n) if n else 0) + r.get(decoder) for t, r in zip(sums, residuals)])
+            extra[i] = [((relaxed[i][d] + 8) // 16 + apart[i][d]) / 64.0 for d in range(3)]
+        named = [[rim[v] if v < len(rim) else v - len(rim) + len(positions) for v in t] for t in triangles]
+        patches.append((part, reverse, extra, named))
+    return patches
+
+
+def loose_patch(decoder, counts, floats, vertices):
+    extra, triangles = counts.get(decoder), counts.get(decoder)
+    bits = np.array([floats.get(decoder) for _ in range(3 * extra)], dtype=np.uint32)
+    kinds, places, other = Tree(2), Tree(5), Number()
+    recent, following, last, ids = [0xFFFFFFFF] * 32, vertices, 0, []
+    for _ in range(3 * triangles):
+        kind = kinds.get(decoder)
+        if kind == 0:
+            v = recent[places.get(decoder)]
+        elif kind == 1:
+            v = following
+        else:
+            v = last = last + other.signed(decoder) & 0xFFFFFFFF
+        following += v == following
+        recent = [v] + ([r for r in recent if r != v] if v in recent else recent[:-1])
+        ids.append(v)
+    return bits.view(np.float32).reshape(-1, 3), np.array(ids, dtype=np.uint32).reshape(-1, 3).tolist()
 
 
 def read(path):
@@ -813,6 +987,11 @@ def read(path):
                                       ("QPAR", "quad_partition", decode_partition, len(quads))):
         if kind in blocks:
             result[name] = decode(blocks[kind], mesh, count)
+    if "FILL" in blocks:
+        patches = decode_patches(blocks["FILL"][0], positions, mesh, result.get("quad_partition", np.zeros(len(quads))))
+        result["patches"] = np.frombuffer(
+            b"".join(bytes([part, reverse]) + extra.tobytes() + np.array(triangles, dtype=np.uint32).tobytes()
+                     for part, reverse, extra, triangles in patches), dtype=np.uint8)
     for kind, name, columns in (("NORM", "normals", 3), ("CURV", "curvatures", 2)):
         if kind in blocks:
             result[name] = decode_floats(blocks[kind], len(positions), columns)
@@ -824,7 +1003,7 @@ def main():
         found = read(path)
         print(path, len(found["positions"]), "vertices", len(found["quads"]), "x-quads",
               *(f"{name} {zlib.crc32(np.ascontiguousarray(found[name]).tobytes()):08x}"
-                for name in ("positions", "quads", "shape", "ao", "quad_partition", "normals", "curvatures")
+                for name in ("positions", "quads", "shape", "ao", "quad_partition", "normals", "curvatures", "patches")
                 if name in found))
 
 

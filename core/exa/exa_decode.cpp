@@ -1,0 +1,152 @@
+#include "core/exa/exa_decode.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/base/budget.h"
+#include "core/exa/attributes.h"
+#include "core/exa/exa_blocks.h"
+#include "core/exa/exact.h"
+#include "core/exa/offsets.h"
+#include "core/exa/patches.h"
+#include "core/exa/settle.h"
+#include "core/exa/sign_brick.h"
+#include "core/extract/extract.h"
+#include "core/relief/shape_class.h"
+
+namespace dubsar {
+namespace {
+std::span<float> floats_of(std::vector<glm::vec3>& items) {
+  return {reinterpret_cast<float*>(items.data()), items.size() * 3};
+}
+
+Result<void> decode_positions(const ExaReader& reader, SurfaceModel& model, Progress& progress) {
+  if (reader.has("ESCP")) {
+    DUBSAR_ASSIGN(const ExaChunks escapes, reader.chunks("ESCP", kCodec));
+    DUBSAR_TRY(decode_escapes(escapes.chunks, model.mesh, progress));
+  }
+  if (reader.has("POSN")) {
+    DUBSAR_ASSIGN(const ExaChunks exact, reader.chunks("POSN", kCodec));
+    DUBSAR_TRY(decode_floats(exact.chunks, 3, "positions", floats_of(model.mesh.positions), progress));
+  }
+  return {};
+}
+
+Result<void> decode_normals(const ExaReader& reader, const ExaHeader& header, SurfaceModel& model, Progress& progress) {
+  VertexAttributes& a = model.attributes;
+  const std::size_t vertices = model.mesh.positions.size();
+  if (header.normals == ExaNormals::kRecomputed) {
+    DUBSAR_ASSIGN(a.normals, recomputed_normals(model.mesh, progress));
+    if (!header.curvatures) return {};
+    DUBSAR_ASSIGN(Curvatures k, principal_curvatures(model.mesh, a.normals, header.curvature, progress));
+    a.k_min = std::move(k.k_min);
+    a.k_max = std::move(k.k_max);
+    return {};
+  }
+  if (reader.has("NORM")) {
+    DUBSAR_ASSIGN(const ExaChunks normals, reader.chunks("NORM", kCodec));
+    a.normals.resize(vertices);
+    DUBSAR_TRY(decode_floats(normals.chunks, 3, "normals", floats_of(a.normals), progress));
+  }
+  if (reader.has("CURV")) {
+    DUBSAR_ASSIGN(const ExaChunks curvatures, reader.chunks("CURV", kCodec));
+    std::vector<float> pairs(2 * vertices);
+    DUBSAR_TRY(decode_floats(curvatures.chunks, 2, "curvatures", pairs, progress));
+    a.k_min.resize(vertices);
+    a.k_max.resize(vertices);
+    for (std::size_t v = 0; v < vertices; ++v) {
+      a.k_min[v] = pairs[2 * v];
+      a.k_max[v] = pairs[2 * v + 1];
+    }
+  }
+  return {};
+}
+
+Result<void> decode_attributes(const ExaReader& reader, const ExaHeader& header, SurfaceModel& model,
+                               Progress& progress) {
+  const auto labels = [&](const char* type, ExaLabel label, std::vector<std::uint8_t>& out) -> Result<void> {
+    if (!reader.has(type)) return {};
+    DUBSAR_ASSIGN(const ExaChunks chunks, reader.chunks(type, kCodec));
+    DUBSAR_ASSIGN(out, decode_labels(label, model.mesh, chunks.chunks, progress));
+    return {};
+  };
+  if (header.shapes) {
+    model.attributes.shape = shape_classes(model.attributes.k_min, model.attributes.k_max);
+  } else {
+    DUBSAR_TRY(labels("SHAP", ExaLabel::kShape, model.attributes.shape));
+  }
+  DUBSAR_TRY(labels("AMBO", ExaLabel::kLight, model.attributes.ao));
+  DUBSAR_TRY(labels("QPAR", ExaLabel::kPartition, model.quad_partition));
+  if (reader.has("PART")) {
+    DUBSAR_ASSIGN(const std::string text, reader.text("PART"));
+    DUBSAR_ASSIGN(model.partitions, parse_exa_partitions(text));
+  }
+  if (reader.has("FILL")) {
+    DUBSAR_ASSIGN(const ExaChunks patches, reader.chunks("FILL", kCodec));
+    DUBSAR_ASSIGN(model.patches, decode_patches(patches.chunks, {model.mesh, model.quad_partition}));
+  }
+  if (reader.has("PROV")) {
+    DUBSAR_ASSIGN(model.provenance, reader.text("PROV"));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<LoadedSigns> load_signs(const ExaReader& reader, int level, const std::function<bool(std::size_t)>& wanted) {
+  LoadedSigns loaded;
+  DUBSAR_ASSIGN(ExaChunks coarse, reader.chunks("SIGC", kCodec));
+  loaded.chunks.coarse = coarse.chunks;
+  loaded.blocks.push_back(std::move(coarse));
+  for (int l = kBrickLevels - 1; l >= level; --l) {
+    DUBSAR_ASSIGN(ExaChunks block, reader.chunks(kSignBlocks[static_cast<std::size_t>(l)], kCodec, wanted));
+    loaded.chunks.bricks[static_cast<std::size_t>(l)] = block.chunks;
+    loaded.blocks.push_back(std::move(block));
+  }
+  return loaded;
+}
+
+SurfaceSamples empty_samples(const ExaHeader& header) {
+  SurfaceSamples samples;
+  samples.dims = header.dims;
+  samples.isovalue = header.isovalue;
+  samples.offset_bits = header.offset_bits;
+  samples.closed = header.closed;
+  return samples;
+}
+
+Result<SurfaceModel> decode_model(const ExaReader& reader, Progress& progress) {
+  DUBSAR_TRY(reader.check_sums());  // before anything is decoded: a damaged file costs next to nothing
+  DUBSAR_ASSIGN(const ExaHeader header, reader.header());
+  DUBSAR_TRY(check_memory("exa", exa_memory_bound(header)));
+  SurfaceModel model;
+  model.frame = header.frame;
+  model.samples = empty_samples(header);
+  SurfaceSamples& samples = model.samples;
+  {
+    DUBSAR_ASSIGN(const LoadedSigns loaded, load_signs(reader, 0, {}));
+    DUBSAR_ASSIGN(samples.signs, decode_signs(loaded.chunks, header.dims, 0, std::nullopt,
+                                              most_coded_signs(static_cast<std::uint64_t>(header.edges)), progress));
+  }
+  const SampleCounts counts = count_samples(samples.signs);
+  if (counts.edges != header.edges || counts.faces != header.faces)
+    return fail(ErrorKind::kBadData, "exa: {} active edges and {} ambiguous faces found, the header says {} and {}",
+                counts.edges, counts.faces, header.edges, header.faces);
+  {
+    DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("OFFS", kCodec));
+    DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("FACE", kCodec));
+    DUBSAR_TRY(decode_samples(offsets.chunks, faces.chunks, samples, progress));
+  }
+  DUBSAR_ASSIGN(model.mesh, build_quad_mesh(samples, progress));
+  if (model.mesh.vertex_count() != header.vertices || model.mesh.quad_count() != header.quads)
+    return fail(ErrorKind::kBadData, "exa: {} vertices and {} x-quads found, the header says {} and {}",
+                model.mesh.vertex_count(), model.mesh.quad_count(), header.vertices, header.quads);
+  DUBSAR_TRY(decode_positions(reader, model, progress));
+  if (position_sum_of(model) != header.position_sum || quad_sum_of(model.mesh) != header.quad_sum)
+    return fail(ErrorKind::kBadData, "exa: the mesh built from this file is not the one that was written");
+  DUBSAR_TRY(decode_normals(reader, header, model, progress));
+  DUBSAR_TRY(decode_attributes(reader, header, model, progress));
+  return model;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,32 @@
+#pragma once
+// From the blocks of a file to a model: all of it, a coarser level, or a box.
+
+#include <functional>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/exa/exa_reader.h"
+#include "core/exa/exa_text.h"
+#include "core/exa/topology.h"
+#include "core/parts/surface_model.h"
+
+namespace dubsar {
+
+/// As read_exa(), read_exa_level() and read_exa_box() (exa_file.h).
+Result<SurfaceModel> decode_model(const ExaReader& reader, Progress& progress);
+Result<SurfaceModel> decode_level(const ExaReader& reader, int level, Progress& progress);
+Result<SurfaceModel> decode_box(const ExaReader& reader, const GridBox& box, Progress& progress);
+
+/// Blocks of signs and the chunks that borrow from them.
+struct LoadedSigns {
+  std::vector<ExaChunks> blocks;
+  SignChunks chunks;
+};
+/// The signs down to spacing 2^level; with `wanted`, only of the bricks i with wanted(i).
+Result<LoadedSigns> load_signs(const ExaReader& reader, int level, const std::function<bool(std::size_t)>& wanted);
+
+/// What the header says of the samples; signs, offsets and face decisions are empty.
+SurfaceSamples empty_samples(const ExaHeader& header);
+
+}  // namespace dubsar

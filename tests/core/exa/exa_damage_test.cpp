@@ -1,0 +1,137 @@
+#include "core/base/atomic_file.h"
+#include "core/exa/settle.h"
+#include "tests/core/exa/exa_test_models.h"
+
+namespace dubsar {
+namespace {
+using ::testing::HasSubstr;
+
+TEST_F(ExaFile, EveryTruncationBitFlipAndExtraByteIsRefused) {
+  SurfaceModel model = sample_model({12, 9, 10}, Kind::kBlob, 6);
+  ASSERT_TRUE(settle_for_exa(model, {}, progress_));
+  const std::string whole = file_of(encoded(model));
+  ASSERT_TRUE(decode_exa(whole, progress_));
+  const auto refused = [&](const std::string& bytes) {
+    const auto read = decode_exa(bytes, progress_);
+    return !read && read.error().kind == ErrorKind::kBadData && read.error().message.size() > 20;
+  };
+  for (std::size_t length = 0; length < whole.size(); ++length) ASSERT_TRUE(refused(whole.substr(0, length))) << length;
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    std::string flipped = whole;
+    flipped[at] ^= static_cast<char>(1u << at % 8);
+    if (at == 10 || at == 11) continue;  // the minor version is covered by the checksum below
+    ASSERT_TRUE(refused(flipped)) << at;
+  }
+  std::string minor = whole;
+  minor[10] ^= 1;
+  EXPECT_TRUE(refused(minor));
+  EXPECT_TRUE(refused(whole + '\0'));
+  EXPECT_TRUE(refused("x" + whole));
+}
+
+TEST_F(ExaFile, LaterVersionsAreRefusedOrSkippedAsTheirNumberSays) {
+  SurfaceModel model = sample_model({12, 9, 10}, Kind::kBlob, 6);
+  std::vector<ExaBlock> blocks = encoded(model);
+  EXPECT_THAT(decode_exa(file_of(blocks, 4), progress_).error().message,
+              HasSubstr("format version 4 found, expected 3; it needs a later dubsar"));
+  EXPECT_THAT(decode_exa(file_of(blocks, 2), progress_).error().message, HasSubstr("process the scan again"));
+  blocks.push_back({"NEW1", 99, 0, 1, join_chunks(std::vector<std::string>{"whatever"})});
+  const auto later = decode_exa(file_of(blocks, kExaMajor, 7), progress_);
+  ASSERT_TRUE(later) << later.error().message;
+  expect_equal(model, *later);
+  blocks.back().flags = kExaRequired;
+  EXPECT_THAT(decode_exa(file_of(blocks), progress_).error().message, HasSubstr("\"NEW1\" is needed and not known"));
+  blocks.pop_back();
+  blocks.push_back(blocks[2]);
+  EXPECT_THAT(decode_exa(file_of(blocks), progress_).error().message, HasSubstr("two blocks"));
+  blocks.pop_back();
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    std::vector<ExaBlock> other = blocks;
+    other[b].codec = 77;
+    const auto read = decode_exa(file_of(other), progress_);
+    if (!read)
+      EXPECT_THAT(read.error().message, HasSubstr("codec 77"));
+    else
+      EXPECT_EQ(blocks[b].type, "none of the blocks may ignore its codec");
+    if (!(blocks[b].flags & kExaRequired) || blocks[b].type == "POSN" || blocks[b].type == "ESCP") continue;
+    other = blocks;
+    other.erase(other.begin() + static_cast<std::ptrdiff_t>(b));
+    EXPECT_THAT(decode_exa(file_of(other), progress_).error().message, HasSubstr("is missing"));
+  }
+}
+
+/// The chunks of a block, for damage behind sums that are repaired.
+std::vector<std::string> chunks_of(const ExaBlock& block) {
+  const auto chunks = split_chunks(block.bytes, block.chunks, "test");
+  return {chunks->begin(), chunks->end()};
+}
+
+TEST_F(ExaFile, DamageBehindRepairedSumsNeverCrashes) {
+  for (const bool settled : {false, true}) {
+    SurfaceModel model = sample_model({14, 9, 10}, Kind::kNoise, 6);
+    if (settled) {
+      ASSERT_TRUE(settle_for_exa(model, {}, progress_));
+    }
+    const std::vector<ExaBlock> blocks = encoded(model);
+    std::mt19937 random(1);
+    int accepted = 0;
+    for (int round = 0; round < 500; ++round) {
+      std::vector<ExaBlock> damaged = blocks;
+      ExaBlock& block = damaged[random() % damaged.size()];
+      std::vector<std::string> chunks = chunks_of(block);
+      std::string& bytes = chunks[random() % chunks.size()];
+      if (bytes.empty()) continue;
+      if (round % 3 == 0)
+        bytes[random() % bytes.size()] ^= static_cast<char>(1u << random() % 8);
+      else if (round % 3 == 1)
+        bytes.resize(random() % bytes.size());
+      else
+        bytes.insert(random() % bytes.size(), std::string(1 + random() % 9, static_cast<char>(random())));
+      if (round % 50 == 0) chunks.pop_back();
+      block.chunks = static_cast<std::uint32_t>(chunks.size());
+      block.bytes = join_chunks(chunks);
+      const auto read = decode_exa(file_of(damaged), progress_);
+      if (!read) {
+        ASSERT_TRUE(read.error().kind == ErrorKind::kBadData || read.error().kind == ErrorKind::kTryAgain)
+            << read.error().message;
+        continue;
+      }
+      ++accepted;  // a flipped attribute or text: a valid file all the same
+      ASSERT_EQ(read->mesh.quads, model.mesh.quads);
+      ASSERT_TRUE(same_bytes(read->mesh.positions, model.mesh.positions));
+      if (const auto mesh = make_tri_mesh(*read); !mesh) {
+        ASSERT_EQ(mesh.error().kind, ErrorKind::kBadData) << "a flipped partition id";
+      }
+    }
+    EXPECT_LT(accepted, 350);
+  }
+}
+
+TEST_F(ExaFile, HeadersThatLieAreRefusedWithASentence) {
+  const SurfaceModel model = sample_model({12, 9, 10}, Kind::kBlob, 6);
+  const std::vector<ExaBlock> blocks = encoded(model);
+  const auto says = [&](const std::string& from, const std::string& to) {
+    std::vector<ExaBlock> lying = blocks;
+    const std::size_t at = lying[0].bytes.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    std::string text = chunks_of(lying[0])[0];
+    text.replace(text.find(from), from.size(), to);
+    lying[0].bytes = join_chunks(std::vector<std::string>{text});
+    const auto read = decode_exa(file_of(lying), progress_);
+    return read ? std::string("accepted") : read.error().message;
+  };
+  EXPECT_THAT(says("[12,9,10]", "[65535,65535,16]"), HasSubstr("grid points in a file of"));
+  EXPECT_THAT(says("[12,9,10]", "[65535,65535,65535]"), HasSubstr("2^36"));
+  EXPECT_THAT(says("[12,9,10]", "[0,9,10]"), HasSubstr("dimension 0"));
+  EXPECT_THAT(says("[12,9,10]", "[12,9]"), HasSubstr("\"dims\""));
+  EXPECT_THAT(says("[12,9,10]", "[12,9,1e999]"), HasSubstr("broken"));
+  EXPECT_THAT(says("\"offset_bits\":4", "\"offset_bits\":5"), HasSubstr("not the one that was written"));
+  EXPECT_THAT(says("\"offset_bits\":4", "\"offset_bits\":17"), HasSubstr("17 offset bits"));
+  EXPECT_THAT(says("\"closed\":true", "\"closed\":false"), HasSubstr("the header says"));
+  EXPECT_THAT(says("\"closed\":true", "\"closed\":1"), HasSubstr("\"closed\""));
+  EXPECT_THAT(says("\"vertices\":", "\"vertices\":1"), HasSubstr("the header says"));
+  EXPECT_THAT(says("{", std::string(100, '[')), HasSubstr("nested"));
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,100 @@
+// make_golden FOLDER: writes the golden files of this version of the format. Run it when the version changes, then
+// write down what exa_reader.py prints; never to make a test pass.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/exa/exa_file.h"
+#include "core/exa/patches.h"
+#include "core/exa/settle.h"
+#include "core/extract/extract.h"
+#include "core/parts/holes.h"
+#include "core/relief/shape_class.h"
+#include "core/relief/smooth.h"
+
+namespace {
+using namespace dubsar;
+
+struct Sample {
+  const char* name;
+  Dims dims;
+  double noise;
+  bool closed;
+  int bits;
+  bool smoothed, exact;
+  unsigned seed;
+};
+
+SurfaceModel make(const Sample& sample) {
+  std::mt19937 random(sample.seed);
+  const auto uniform = [&] { return static_cast<double>(random() % 65536) / 32768.0 - 1.0; };
+  Volume<float> volume(sample.dims);
+  for (std::int64_t z = 0; z < sample.dims.z; ++z)
+    for (std::int64_t y = 0; y < sample.dims.y; ++y)
+      for (std::int64_t x = 0; x < sample.dims.x; ++x)
+        volume.at(x, y, z) =
+            static_cast<float>(std::sin(.31 * static_cast<double>(x)) + std::sin(.27 * static_cast<double>(y) + 1.0) +
+                               std::sin(.23 * static_cast<double>(z)) - .2 + sample.noise * uniform());
+  VolumeSource source(volume);
+  SilentProgress progress;
+  SurfaceModel model;
+  model.samples =
+      sample_surface(source, {.isovalue = .125f, .offset_bits = sample.bits, .closed = sample.closed}, progress)
+          .value();
+  model.mesh = build_quad_mesh(model.samples, progress).value();
+  model.frame.scale = {2, 2, 2};
+  model.frame.origin_vox = {.5, .5, .5};
+  model.frame.input_voxel = {{.038, .038, .04}, "/entry/data@pixel_size"};
+  model.provenance = "{\"program\":\"dubsar\"}";
+  if (!sample.smoothed) return model;
+  VertexAttributes& a = model.attributes;
+  smooth(model.mesh, a.normals, {}, progress).value();
+  auto k = principal_curvatures(model.mesh, a.normals, CurvatureMethod::kFit, progress).value();
+  a.k_min = k.k_min;
+  a.k_max = k.k_max;
+  a.shape = shape_classes(k.k_min, k.k_max);
+  for (const glm::vec3& p : model.mesh.positions)
+    a.ao.push_back(static_cast<std::uint8_t>(
+        std::clamp(40.0 + 20.0 * std::sin(.1 * double{p.x} + .07 * double{p.z}) + 2.0 * uniform(), 0.0, 63.0)));
+  SettleOptions settle;
+  settle.exact_normals = sample.exact;
+  settle_for_exa(model, settle, progress).value();
+  if (sample.exact) a.shape[5] = static_cast<std::uint8_t>((a.shape[5] + 1) % 127);  // so that the classes are stored
+  for (const auto& quad : model.mesh.quads)
+    model.quad_partition.push_back(model.mesh.positions[quad[0]].x > static_cast<float>(sample.dims.x) / 2 ? 1 : 0);
+  model.partitions.insert({0, "tablet", "tablet", 1.5, 2.5, true});
+  model.partitions.insert({1, "envelope outside", "envelope", 3.5, -4.5, false});
+  if (sample.closed) {
+    (void)fill_holes(model, HoleOptions{}, progress).value();
+    settle_patches(model.patches, model.mesh.vertex_count());
+    model.patches.push_back({0,
+                             255,
+                             {{1.0f / 3.0f, 2.0f, 3.0f}},
+                             {{7, 8, static_cast<std::uint32_t>(model.mesh.positions.size())}, {9, 8, 7}}});
+  }
+  return model;
+}
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    fmt::print(stderr, "make_golden FOLDER\n");
+    return 64;
+  }
+  for (const Sample& sample : {Sample{"exa3_smoothed.exa", {37, 33, 29}, .15, true, 4, true, false, 1},
+                               Sample{"exa3_open_exact.exa", {21, 19, 23}, .3, false, 5, true, true, 2},
+                               Sample{"exa3_noise.exa", {13, 11, 12}, 3.0, true, 9, false, false, 3},
+                               Sample{"exa3_two_bricks.exa", {141, 9, 8}, .1, false, 4, false, false, 4}}) {
+    SilentProgress progress;
+    const auto stats = write_exa(std::string(argv[1]) + "/" + sample.name, make(sample), progress);
+    if (!stats) {
+      fmt::print(stderr, "{}\n", stats.error().message);
+      return exit_code(stats.error().kind);
+    }
+    fmt::print("{} {} vertices {:.3f} bits a vertex\n", sample.name, stats->vertices, stats->bits_per_vertex);
+  }
+  return 0;
+}
