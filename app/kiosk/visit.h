@@ -8,17 +8,9 @@
 
 #include "app/kiosk/words.h"
 #include "core/base/clock.h"
+#include "input/people/hand_marks.h"
 
 namespace dubsar::app {
-
-/// How a hand stands to the object; the worse, the higher.
-enum class HandState : std::uint8_t {
-  kHolding,
-  kReady,     ///< it may take hold
-  kFist,      ///< it came in closed, and must open first
-  kTooFar,    ///< outside the zone of the sensor
-  kStranger,  ///< of somebody who has to wait
-};
 
 /// Things a visitor may learn, in the order in which they are taught.
 enum class Lesson : std::uint8_t { kShowHand, kGrab, kTurn, kRest, kTwoHands, kSwipe };

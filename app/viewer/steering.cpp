@@ -14,7 +14,8 @@ constexpr std::size_t kMostKeys = 4096;
 }  // namespace
 
 Steering::Steering(const Mapping& mapping, const ViewState& home, const HeadFollowOptions& head)
-    : people_({1e-3 * mapping.hands.zone_min_mm, 1e-3 * mapping.hands.zone_max_mm}),
+    : zone_{1e-3 * mapping.hands.zone_min_mm, 1e-3 * mapping.hands.zone_max_mm},
+      people_(zone_),
       navigator_(mapping, home),
       head_(head) {
   seen_->show(home);
@@ -33,7 +34,10 @@ void Steering::steer(TimestampNs now) {
   const KeptPerson person = people_.update(steered_, frame);
   navigator_.update(steered_, frame, person.hands);
   if (person.head) head_.add(*person.head, steered_);
-  if (navigator_.selected_m()) selected_m_ = navigator_.selected_m();
+  if (navigator_.selected_m()) since_.selected_m = navigator_.selected_m();
+  since_.hands = hand_marks(frame, person, navigator_.hands(), zone_);
+  for (const GestureRecognizer& hand : navigator_.hands())
+    for (const GestureEvent& event : hand.events()) since_.swiped = since_.swiped || event.kind == GestureKind::kSwipe;
   for (const InputEvent& event : frame.events)
     if (event.kind == EventKind::kKey && event.down && keys_.size() < kMostKeys) keys_.push_back(event);
   newest_input_ = std::max(newest_input_, frame.time);
@@ -60,11 +64,12 @@ std::vector<InputEvent> Steering::take_keys() {
 
 Steered Steering::look(TimestampNs now, TimestampNs display_time) {
   const std::scoped_lock lock(mutex_);
-  Steered out;
+  Steered out = since_;
+  since_.selected_m.reset();
+  since_.swiped = false;
   out.view = navigator_.view();
   out.control = navigator_.control();
   out.eyes = head_.eyes(now, display_time);
-  out.selected_m = std::exchange(selected_m_, std::nullopt);
   if (newest_input_ > used_input_) {
     out.input_age = now - newest_input_;
     used_input_ = newest_input_;

@@ -13,8 +13,8 @@
 #include "input/mixer.h"
 #include "input/navigation/navigation.h"
 #include "input/navigation/seen_view.h"
+#include "input/people/hand_marks.h"
 #include "input/people/head_follower.h"
-#include "input/people/person_keeper.h"
 
 namespace dubsar::app {
 
@@ -23,6 +23,8 @@ struct Steered {
   ViewState view{};
   Control control = Control::kNone;
   FollowedEyes eyes{};                     ///< at the time when the picture will be seen
+  std::vector<HandMark> hands{};           ///< everybody's
+  bool swiped = false;                     ///< a hand did since the last one
   std::optional<glm::dvec3> selected_m{};  ///< a dwelling hand chose this place since the last one
   std::optional<TimestampNs> input_age{};  ///< of the newest measurement; none: nothing new since the last one
 };
@@ -67,11 +69,12 @@ class Steering {
   std::shared_ptr<SeenView> seen_ = std::make_shared<SeenView>();
   mutable std::mutex mutex_;  // for all below but the thread
   std::function<void(TimestampNs, const InputFrame&)> told_;
+  HandZone zone_;
   PersonKeeper people_;
   Navigator navigator_;
   HeadFollower head_;
   TimestampNs steered_ = 0, newest_input_ = 0, used_input_ = 0;
-  std::optional<glm::dvec3> selected_m_;
+  Steered since_{};  // what happened since the last look()
   std::vector<InputEvent> keys_;
   std::jthread thread_;
 };

@@ -42,6 +42,7 @@ class GestureRecognizer {
   bool seen_now() const noexcept { return seen_now_; }         ///< measured since the update before
   bool grabbing() const noexcept { return grabbing_; }
   bool pinching() const noexcept { return pinching_; }
+  bool may_grab() const noexcept { return grab_armed_; }  ///< it was seen open, so that closing it takes hold
   const glm::dvec3& position_m() const noexcept { return position_m_; }  ///< of the palm, filtered; stays while held
   const glm::dvec3& velocity_mps() const noexcept { return velocity_mps_; }
   double dwell_progress() const noexcept { return dwell_progress_; }  ///< 0..1
