@@ -7,7 +7,7 @@
 
 #include "app/cli/input_options.h"
 #include "app/cli/verb.h"
-#include "core/pipeline/report.h"
+#include "core/pipeline/pipeline.h"
 
 namespace dubsar::app {
 namespace {
@@ -43,7 +43,7 @@ void add_filter_options(Arguments command, Options& options) {
 void add_surface_options(Arguments command, Options& options) {
   PipelineOptions& p = options.pipeline;
   Arguments group = command.group("Surface");
-  group.value("--offset-bits", p.offset_bits, "bits per edge crossing, N").range(1, 16);
+  group.value("--offset-bits", p.sample.offset_bits, "bits per edge crossing, N").range(1, 16);
   group.flag("--open-boundary", options.open_boundary, "leave the surface open at the border of the volume");
   group.value("--smooth", p.smooth.normals.iterations, "iterations of the normal filter").range(0, 1000);
   group.value("--vertex-iterations", p.smooth.vertex_iterations, "iterations of the vertex update").range(0, 1000);
@@ -80,12 +80,13 @@ Result<VerbResult> run(Options options, const Arguments command, const CommonOpt
   PipelineOptions& p = options.pipeline;
   DUBSAR_ASSIGN(p.import, parse_input_options(options.in, options.input));
   p.resample = !options.no_resample;
-  p.closed_boundary = !options.open_boundary;
+  p.sample.closed = !options.open_boundary;
   p.fill_holes = !options.no_holes;
-  p.occlusion = !options.no_ao;
-  p.occlusion_options.rays = options.rays;
-  p.occlusion_options.radius_vox = static_cast<float>(options.radius);
-  if (command.given("--sharpen")) p.sharpen = static_cast<float>(options.sharpen);
+  if (options.no_ao)
+    p.occlusion.reset();
+  else
+    p.occlusion = OcclusionOptions{.rays = options.rays, .radius_vox = static_cast<float>(options.radius)};
+  if (command.given("--sharpen")) p.sample.sharpen = static_cast<float>(options.sharpen);
   if (command.given("--threshold")) p.threshold = static_cast<float>(options.threshold);
   Result<PipelineResult> made = run_pipeline(p, progress);
   if (!made && made.error().kind == ErrorKind::kTryAgain)

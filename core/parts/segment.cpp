@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/base/log.h"
+#include "core/parts/enclosure.h"
 #include "core/parts/face_roles.h"
 
 namespace dubsar {
@@ -302,23 +303,19 @@ Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options
   merge_small(model, scene, options, roles);
   if (progress.cancelled()) return cancelled_error();
   report.nested = partition_by_roles(model, scene, options, std::move(roles), report);
+  if (report.nested && options.method == SegmentMethod::kNested && !plausible_enclosure(model, scene.graph)) {
+    log_info("segment: the inner body does not fill a cavity as an enclosed tablet would; the bodies stay whole");
+    report.enclosure_refused = true;
+    report.nested = false;
+    report.cut_length = 0.0;
+    store_bodies(model, whole, options, report);
+  }
   log_info("segment: {} surfaces, {} partitions, {}, cracks up to {} steps closed", report.components,
            model.partitions.size(), report.nested ? "a body inside another" : "no body inside another",
            report.crack_radius > 0 ? 2 * report.crack_radius + 1 : 0);
   progress.advance(1);
   progress.end();
   return report;
-}
-
-bool plausible_enclosure(const PartitionTable& partitions) {
-  constexpr double kLeastFilling = 0.5;
-  const Partition* const tablet = partitions.find(PartitionKind::kTablet);
-  const Partition* const outside = partitions.find(PartitionKind::kEnvelopeOutside);
-  const Partition* const inside = partitions.find(PartitionKind::kEnvelopeInside);
-  if (tablet == nullptr || outside == nullptr || inside == nullptr) return true;
-  const double cavity = -inside->volume_mm3;
-  return tablet->volume_mm3 > kLeastFilling * cavity && cavity > 0.0 && tablet->volume_mm3 < cavity &&
-         cavity < outside->volume_mm3;
 }
 
 }  // namespace dubsar

@@ -36,25 +36,21 @@ struct SegmentOptions {
 };
 
 struct SegmentReport {
-  bool nested = false;   ///< a body was found inside another: partitions "tablet", "envelope outside", "... inside"
-  int crack_radius = 0;  ///< of the exterior that was used
-  std::int64_t components = 0;    ///< connected surfaces before segmentation
-  std::int64_t small_pieces = 0;  ///< components in the partition "pores and crumbs"
-  double cut_length = 0.0;        ///< length of the borders between parts, grid steps
+  bool nested = false;  ///< a body was found inside another: partitions "tablet", "envelope outside", "... inside"
+  bool enclosure_refused = false;  ///< one was found, but it does not fill its cavity as a tablet would (enclosure.h)
+  int crack_radius = 0;            ///< of the exterior that was used
+  std::int64_t components = 0;     ///< connected surfaces before segmentation
+  std::int64_t small_pieces = 0;   ///< components in the partition "pores and crumbs"
+  double cut_length = 0.0;         ///< length of the borders between parts, grid steps
 };
 
 /// Sets quad_partition and partitions (ids and names; measure_partitions() or fill_holes() adds the figures)
 /// and drops old patches. A nested object gets "tablet" 0, "envelope outside" 1 and "envelope inside" 2 (the
-/// last two are the part "envelope"), any other object "object" 0; then follow "fragment 1", ... by falling
-/// volume, and last "pores and crumbs" with all closed small pieces and the cavities inside the clay. At most
-/// 8 partitions. Needs smoothed positions; kConcavity also vertex normals (kBadData without them).
-/// Deterministic for any thread count. kCancelled. Cost: about 1.5 us a face on one core; memory about 150
-/// bytes a face and 2 bits a grid point.
+/// last two are the part "envelope"), any other object "object" 0 (kNested: also one whose inner body is no tablet);
+/// then follow "fragment 1", ... by falling volume, and last "pores and crumbs" with all closed small pieces and the
+/// cavities inside the clay. At most 8 partitions. Needs smoothed positions; kConcavity also vertex normals (kBadData
+/// without them). Deterministic for any thread count. kCancelled. Cost: about 1.5 us a face on one core; memory about
+/// 150 bytes a face and 2 bits a grid point.
 Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options, Progress& progress);
-
-/// Are measured partitions named "tablet" and "envelope inside" an enclosed tablet? An envelope was pressed on around
-/// its tablet, so that the tablet fills at least half of the cavity (0.84 on phantoms); a brain in its skull, fibres
-/// and foams fill less, or have walls that enclose nothing. True for anything that does not claim to be one.
-bool plausible_enclosure(const PartitionTable& partitions);
 
 }  // namespace dubsar

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/pipeline/pipeline.h"
+
 namespace dubsar {
 using nlohmann::json;
 
@@ -22,25 +24,26 @@ json parameters_json(const PipelineReport& report, const PipelineOptions& option
         {"sigma", denoise.sigma > 0.0 ? json(denoise.sigma) : json("estimated")}}},
       {"sharpen", report.sharpen},
       {"threshold_method", options.threshold ? "given" : name_in(kThresholdMethods, options.estimate.method)},
-      {"threshold", report.threshold},
-      {"offset_bits", options.offset_bits},
-      {"boundary", options.closed_boundary ? "closed" : "open"},
+      {"threshold", report.threshold.value},
+      {"offset_bits", options.sample.offset_bits},
+      {"boundary", options.sample.closed ? "closed" : "open"},
       {"normal_iterations", options.smooth.normals.iterations},
       {"vertex_iterations", options.smooth.vertex_iterations},
       {"curvature", options.curvature == CurvatureMethod::kFit ? "fit" : "pairs"},
       {"segment", name_in(kSegmentMethods, options.segment.method)},
       {"fill_holes", options.fill_holes},
-      {"occlusion", options.occlusion ? json{{"rays", options.occlusion_options.rays},
-                                             {"radius_vox", options.occlusion_options.radius_vox}}
-                                      : json(nullptr)},
+      {"occlusion", options.occlusion
+                        ? json{{"rays", options.occlusion->rays}, {"radius_vox", options.occlusion->radius_vox}}
+                        : json(nullptr)},
   };
 }
 
 json input_json(const PipelineReport& report) {
-  json input = volume_json(report.input);
-  input["nonfinite_voxels"] = report.nonfinite_voxels;
-  if (report.nonfinite_voxels > 0) input["nonfinite_fill"] = report.nonfinite_fill;
-  input["grid"] = dims_json(report.grid);
+  const ScanFacts& scan = report.scan;
+  json input = volume_json(scan.info);
+  input["nonfinite_voxels"] = scan.nonfinite_voxels;
+  if (scan.nonfinite_voxels > 0) input["nonfinite_fill"] = scan.nonfinite_fill;
+  input["grid"] = dims_json(scan.grid);
   return input;
 }
 
@@ -54,20 +57,21 @@ json estimates_json(const PipelineReport& report) {
                        {"air", step.estimates.m_lo},
                        {"material", step.estimates.m_hi},
                        {"path", step.estimates.path}});
-  return {{"sigma", report.estimates.sigma},
-          {"snr_db", report.estimates.snr_db},
-          {"air", report.estimates.m_lo},
-          {"material", report.estimates.m_hi},
-          {"material_fraction", report.estimates.material_fraction},
-          {"threshold", report.threshold},
-          {"threshold_valley", report.estimates.threshold_valley},
-          {"path", report.threshold_path},
+  const Estimates& last = report.filters.back().estimates;
+  return {{"sigma", last.sigma},
+          {"snr_db", last.snr_db},
+          {"air", last.m_lo},
+          {"material", last.m_hi},
+          {"material_fraction", last.material_fraction},
+          {"threshold", report.threshold.value},
+          {"threshold_valley", last.threshold_valley},
+          {"path", report.threshold.path},
           {"filters", filters}};
 }
 
 json segment_json(const PipelineReport& report) {
   json segment{{"nested", report.segment.nested},
-               {"enclosure_refused", report.enclosure_refused},
+               {"enclosure_refused", report.segment.enclosure_refused},
                {"crack_radius_vox", report.segment.crack_radius},
                {"components", report.segment.components},
                {"small_pieces", report.segment.small_pieces},
@@ -88,6 +92,25 @@ json exa_json(const ExaStats& stats) {
 }
 
 }  // namespace
+
+PipelineReport make_report(const StageResults& results, const SurfaceModel& model, const StageClock& clock) {
+  PipelineReport report{.scan = results.imported.facts,
+                        .filters = {results.imported.raw},
+                        .threshold = results.threshold,
+                        .sharpen = results.sampled.sharpen,
+                        .smooth = results.smoothed.stats,
+                        .settle = results.settled.stats,
+                        .segment = results.separated.segment,
+                        .holes = results.separated.holes,
+                        .mesh = results.check,
+                        .vertices = model.mesh.vertex_count(),
+                        .xquads = model.mesh.quad_count(),
+                        .partitions = model.partitions,
+                        .exa = {},
+                        .stages = clock.records()};
+  report.filters.insert(report.filters.end(), results.denoised.steps.begin(), results.denoised.steps.end());
+  return report;
+}
 
 json volume_json(const VolumeInfo& info) {
   json candidates = json::array();
@@ -150,7 +173,13 @@ json report_json(const PipelineReport& report, const PipelineOptions& options) {
   mesh["export_vertices"] = report.mesh.vertices;
   mesh["smooth"] = {{"mean_displacement_vox", report.smooth.mean_displacement_vox},
                     {"max_displacement_vox", report.smooth.max_displacement_vox},
+                    {"clamped_fraction", report.smooth.clamped_fraction},
                     {"residual_angle_deg", report.smooth.residual_angle_deg}};
+  mesh["settle"] = {{"mean_error_vox", report.settle.mean_error_vox},
+                    {"p95_error_vox", report.settle.p95_error_vox},
+                    {"max_error_vox", report.settle.max_error_vox},
+                    {"escaped_fraction", report.settle.escaped_fraction},
+                    {"normal_error_deg", report.settle.normal_error_deg}};
   return {{"input", input_json(report)},
           {"estimates", estimates_json(report)},
           {"stages", stages},
@@ -159,7 +188,7 @@ json report_json(const PipelineReport& report, const PipelineOptions& options) {
           {"partitions", partitions_json(report.partitions)},
           {"exa", exa_json(report.exa)},
           {"parameters", parameters_json(report, options)},
-          {"warnings", report.warnings}};
+          {"warnings", report.scan.warnings}};
 }
 
 std::string report_text(const PipelineReport& report) {
@@ -177,14 +206,14 @@ std::string report_text(const PipelineReport& report) {
   for (const FilterStep& step : report.filters)
     text += fmt::format("noise {:<22} sigma {:<11.4g} SNR {:5.1f} dB\n", step.name, step.estimates.sigma,
                         step.estimates.snr_db);
-  text += fmt::format("threshold {:.6g}: {}\n", report.threshold, report.threshold_path);
+  text += fmt::format("threshold {:.6g}: {}\n", report.threshold.value, report.threshold.path);
   text +=
       fmt::format("mesh: {} vertices, {} x-quads, {} triangles, {} non-manifold edges, {} non-manifold vertices\n\n",
                   report.vertices, report.xquads, report.mesh.triangles, report.mesh.nonmanifold_edges,
                   report.mesh.nonmanifold_vertices);
   text += fmt::format("parts: {} surfaces, {}{}", report.segment.components,
                       report.segment.nested ? "a body inside another" : "no body inside another",
-                      report.enclosure_refused ? " that fills its cavity as a tablet would" : "");
+                      report.segment.enclosure_refused ? " that fills its cavity as a tablet would" : "");
   if (report.segment.crack_radius > 0)
     text += fmt::format(", cracks up to {} steps closed", 2 * report.segment.crack_radius + 1);
   if (report.segment.nested) text += fmt::format(", cut along {:.0f} steps", report.segment.cut_length);

@@ -1,12 +1,50 @@
 #pragma once
-// What a run found and cost, for programs (JSON, snake_case keys) and for people (text).
+// What a run found and cost, made at its end from what the stages returned; for programs (JSON, snake_case keys) and
+// for people (text).
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
-#include "core/pipeline/pipeline.h"
+#include "core/exa/exa_file.h"
+#include "core/pipeline/surface_stages.h"
+#include "core/pipeline/volume_stages.h"
 
 namespace dubsar {
+
+struct PipelineOptions;
+
+struct PipelineReport {
+  ScanFacts scan;
+  std::vector<FilterStep> filters;  ///< the raw scan, then before and after each pass; the last ones gave the threshold
+  Threshold threshold;
+  float sharpen = 0.0f;  ///< amount that was used
+  SmoothStats smooth;
+  SettleStats settle;
+  SegmentReport segment;
+  std::optional<HoleReport> holes;  ///< when holes were filled
+  MeshCheck mesh;                   ///< of all parts together, with their fill patches
+  std::int64_t vertices = 0, xquads = 0;
+  PartitionTable partitions;
+  ExaStats exa;  ///< once the product is written
+  std::vector<StageRecord> stages;
+};
+
+/// What the stages returned; what a later stage took over from it (grids, meshes) may be gone.
+struct StageResults {
+  const ImportedGrid& imported;
+  const DenoisedGrid& denoised;
+  const Threshold& threshold;
+  const SampledSurface& sampled;
+  const SmoothedMesh& smoothed;
+  const SettledModel& settled;
+  const SeparatedModel& separated;
+  const MeshCheck& check;
+};
+
+/// The one place where a report is made.
+PipelineReport make_report(const StageResults& results, const SurfaceModel& model, const StageClock& clock);
 
 /// Keys: input, estimates, stages, mesh, segment, partitions, exa, parameters, warnings.
 nlohmann::json report_json(const PipelineReport& report, const PipelineOptions& options);

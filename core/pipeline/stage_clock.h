@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/clock.h"
+#include "core/base/progress.h"
 
 namespace dubsar {
 
@@ -40,6 +41,12 @@ class StageClock {
   StageRecord current_;
   TimestampNs started_ns_ = 0;
   double started_cpu_s_ = 0.0;
+};
+
+/// What a stage gets besides its input: who records its cost, and who is told of it and may stop it.
+struct StageRun {
+  StageClock& clock;
+  Progress& progress;
 };
 
 }  // namespace dubsar

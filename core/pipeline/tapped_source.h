@@ -17,7 +17,6 @@ class TappedSource final : public SlabSource {
 
   double wall_s() const noexcept { return wall_s_; }
   double cpu_s() const noexcept { return cpu_s_; }
-  std::int64_t voxels() const noexcept { return slices_seen_ * dims().slice(); }
 
  private:
   SlabSource* source_;

@@ -14,123 +14,113 @@ namespace {
 /// Slices of the raw scan that are enough to know its noise: its histogram is needed for the report only.
 constexpr std::int64_t kRawSampleSlices = 48, kRawSampleGroup = 3;
 
-Result<void> estimate_raw(SlabSource& scan, const PipelineOptions& options, PipelineReport& report, StageClock& clock,
-                          Progress& progress) {
-  SampledSource sample(scan, kRawSampleSlices, kRawSampleGroup);
-  clock.start("estimate_raw", "voxel");
-  progress.begin("estimate_raw", sample.dims().count(), "voxel");
-  DUBSAR_ASSIGN(Estimates estimates, estimate(sample, options.estimate, progress));
-  clock.finish(sample.dims().count());
-  report.filters.push_back({"raw", std::move(estimates)});
-  return {};
-}
-
-/// Reads, resamples and returns the volume in memory; two records, since both run interleaved.
-Result<Volume<float>> import_and_resample(SlabSource& scan, bool resample, GridFrame& frame, StageClock& clock,
-                                          Progress& progress) {
-  clock.start(resample ? "resample" : "import", "voxel");
-  progress.begin("import", scan.dims().count(), "voxel");
-  TappedSource tap(scan, progress);
-  SilentProgress silent;
-  if (!resample) {
-    frame = scan.frame();
-    DUBSAR_ASSIGN(Volume<float> volume, read_all(tap, silent));
-    clock.finish(scan.dims().count());
-    return volume;
-  }
-  HalfResolutionSource half(tap);
-  frame = half.frame();
-  DUBSAR_ASSIGN(Volume<float> volume, read_all(half, silent));
-  clock.finish(scan.dims().count());
-  clock.split_before_last("import", tap.wall_s(), tap.cpu_s(), scan.dims().count(), "voxel");
-  return volume;
-}
-
-Result<Estimates> estimate_volume(const Volume<float>& volume, std::string_view stage, const PipelineOptions& options,
-                                  StageClock& clock, Progress& progress) {
-  VolumeSource source(volume);
-  clock.start(stage, "voxel");
-  progress.begin(stage, volume.dims.count(), "voxel");
-  DUBSAR_ASSIGN(Estimates estimates, estimate(source, options.estimate, progress));
-  clock.finish(volume.dims.count());
+Result<Estimates> estimate_source(SlabSource& source, std::string_view stage, const EstimateOptions& options,
+                                  StageRun run) {
+  run.clock.start(stage, "voxel");
+  run.progress.begin(stage, source.dims().count(), "voxel");
+  DUBSAR_ASSIGN(Estimates estimates, estimate(source, options, run.progress));
+  run.clock.finish(source.dims().count());
   return estimates;
 }
 
-/// One filter pass at a time, each with the noise that the one before has left.
-Result<void> denoise_and_estimate(Volume<float>& volume, const PipelineOptions& options, PipelineReport& report,
-                                  StageClock& clock, Progress& progress) {
-  DUBSAR_ASSIGN(Estimates estimates, estimate_volume(volume, "estimate", options, clock, progress));
-  report.filters.push_back({options.resample ? "gauss 2:1" : "imported", estimates});
-  for (int iteration = 1; iteration <= options.denoise.iterations; ++iteration) {
-    DenoiseOptions pass = options.denoise;
-    pass.iterations = 1;
-    if (pass.sigma <= 0.0) pass.sigma = estimates.sigma;
-    if (needs_sigma(pass.method) && pass.sigma <= 0.0) {
-      log_info("denoise: the volume has no noise that could be measured, nothing to filter");
-      break;
-    }
-    clock.start("denoise", "voxel");
-    progress.begin("denoise", volume.dims.count(), "voxel");
-    DUBSAR_TRY(denoise_in_place(volume, pass, progress));
-    clock.finish(volume.dims.count());
-    DUBSAR_ASSIGN(estimates, estimate_volume(volume, "estimate", options, clock, progress));
-    report.filters.push_back({fmt::format("{} {}", name_in(kDenoiseMethods, pass.method), iteration), estimates});
+/// Reads and resamples; two records, since both run interleaved.
+Result<Grid> read_grid(SlabSource& scan, bool resample, StageRun run) {
+  run.clock.start(resample ? "resample" : "import", "voxel");
+  run.progress.begin("import", scan.dims().count(), "voxel");
+  TappedSource tap(scan, run.progress);
+  SilentProgress silent;
+  Grid grid;
+  if (!resample) {
+    grid.frame = scan.frame();
+    DUBSAR_ASSIGN(grid.volume, read_all(tap, silent));
+    run.clock.finish(scan.dims().count());
+    return grid;
   }
-  report.estimates = std::move(estimates);
-  return {};
-}
-
-Result<void> choose_threshold(const PipelineOptions& options, PipelineReport& report) {
-  if (options.threshold) {
-    report.threshold = *options.threshold;
-    report.threshold_path = "given by the user";
-    return {};
-  }
-  DUBSAR_ASSIGN(const double threshold, automatic_threshold(report.estimates));
-  report.threshold = static_cast<float>(threshold);
-  report.threshold_path = report.estimates.path;
-  log_info("threshold {:g}: {}", report.threshold, report.threshold_path);
-  return {};
+  HalfResolutionSource half(tap);
+  grid.frame = half.frame();
+  DUBSAR_ASSIGN(grid.volume, read_all(half, silent));
+  run.clock.finish(scan.dims().count());
+  run.clock.split_before_last("import", tap.wall_s(), tap.cpu_s(), scan.dims().count(), "voxel");
+  return grid;
 }
 
 /// Least SNR at which sharpening, which may double the noise, leaves more than a raw scan of the paper has (17 dB).
 constexpr double kSharpenFromDb = 26.0;
 
-float sharpen_amount(const PipelineOptions& options, const Estimates& estimates) {
-  if (options.sharpen) return *options.sharpen;
-  return options.denoise.iterations > 0 && estimates.snr_db >= kSharpenFromDb ? 1.0f : 0.0f;
-}
-
 }  // namespace
 
-Result<SurfaceSamples> run_volume_stages(const PipelineOptions& options, PipelineReport& report, GridFrame& frame,
-                                         StageClock& clock, Progress& progress) {
-  DUBSAR_ASSIGN(const std::unique_ptr<ImportedVolume> scan, open_volume(options.import));
-  report.input = scan->info();
-  report.warnings = report.input.warnings;
-  DUBSAR_TRY(estimate_raw(*scan, options, report, clock, progress));
-  DUBSAR_ASSIGN(Volume<float> volume, import_and_resample(*scan, options.resample, frame, clock, progress));
-  report.nonfinite_voxels = scan->nonfinite_count();
-  report.nonfinite_fill = scan->nonfinite_fill();
-  if (report.nonfinite_voxels > 0) {
-    report.warnings.push_back(
-        fmt::format("{} voxels were NaN or Inf and count as {:g}", report.nonfinite_voxels, report.nonfinite_fill));
-    log(LogLevel::kWarning, report.warnings.back());
+Result<ImportedGrid> import_grid(const ImportOptions& options, bool resample, const EstimateOptions& estimate,
+                                 StageRun run) {
+  DUBSAR_ASSIGN(const std::unique_ptr<ImportedVolume> scan, open_volume(options));
+  ImportedGrid imported;
+  imported.facts.info = scan->info();
+  imported.facts.warnings = scan->info().warnings;
+  SampledSource some(*scan, kRawSampleSlices, kRawSampleGroup);
+  imported.raw.name = "raw";
+  DUBSAR_ASSIGN(imported.raw.estimates, estimate_source(some, "estimate_raw", estimate, run));
+  DUBSAR_ASSIGN(imported.grid, read_grid(*scan, resample, run));
+  imported.grid_name = resample ? "gauss 2:1" : "imported";
+  ScanFacts& facts = imported.facts;
+  facts.grid = imported.grid.volume.dims;
+  facts.nonfinite_voxels = scan->nonfinite_count();
+  facts.nonfinite_fill = scan->nonfinite_fill();
+  if (facts.nonfinite_voxels > 0) {
+    facts.warnings.push_back(
+        fmt::format("{} voxels were NaN or Inf and count as {:g}", facts.nonfinite_voxels, facts.nonfinite_fill));
+    log(LogLevel::kWarning, facts.warnings.back());
   }
-  report.grid = volume.dims;
-  DUBSAR_TRY(denoise_and_estimate(volume, options, report, clock, progress));
-  DUBSAR_TRY(choose_threshold(options, report));
+  return imported;
+}
 
-  VolumeSource filtered(volume, frame);
-  report.sharpen = sharpen_amount(options, report.estimates);
-  SharpenedSource sharpened(filtered, report.sharpen);
-  SlabSource& source = report.sharpen > 0.0f ? static_cast<SlabSource&>(sharpened) : filtered;
-  clock.start("extract", "voxel");
-  progress.begin("extract", volume.dims.count(), "voxel");
-  const ExtractOptions extract{report.threshold, options.offset_bits, options.closed_boundary};
-  DUBSAR_ASSIGN(SurfaceSamples samples, sample_surface(source, extract, progress));
-  clock.finish(volume.dims.count());
-  return samples;
+Result<DenoisedGrid> denoise(Grid grid, std::string name, const DenoiseOptions& options,
+                             const EstimateOptions& estimate, StageRun run) {
+  DenoisedGrid denoised{std::move(grid), {}};
+  Volume<float>& volume = denoised.grid.volume;
+  VolumeSource source(volume);
+  const auto add_step = [&](std::string step) -> Result<void> {
+    DUBSAR_ASSIGN(Estimates estimates, estimate_source(source, "estimate", estimate, run));
+    denoised.steps.push_back({std::move(step), std::move(estimates)});
+    return {};
+  };
+  DUBSAR_TRY(add_step(std::move(name)));
+  for (int iteration = 1; iteration <= options.iterations; ++iteration) {
+    DenoiseOptions pass = options;
+    pass.iterations = 1;
+    if (pass.sigma <= 0.0) pass.sigma = denoised.steps.back().estimates.sigma;
+    if (needs_sigma(pass.method) && pass.sigma <= 0.0) {
+      log_info("denoise: the volume has no noise that could be measured, nothing to filter");
+      break;
+    }
+    run.clock.start("denoise", "voxel");
+    run.progress.begin("denoise", volume.dims.count(), "voxel");
+    DUBSAR_TRY(denoise_in_place(volume, pass, run.progress));
+    run.clock.finish(volume.dims.count());
+    DUBSAR_TRY(add_step(fmt::format("{} {}", name_in(kDenoiseMethods, pass.method), iteration)));
+  }
+  return denoised;
+}
+
+Result<Threshold> choose_threshold(std::optional<float> given, const Estimates& estimates) {
+  if (given) return Threshold{*given, "given by the user"};
+  DUBSAR_ASSIGN(const double value, automatic_threshold(estimates));
+  Threshold threshold{static_cast<float>(value), estimates.path};
+  log_info("threshold {:g}: {}", threshold.value, threshold.path);
+  return threshold;
+}
+
+Result<SampledSurface> sample(const Grid& grid, float threshold, const Estimates& estimates, bool denoised,
+                              const SampleOptions& options, StageRun run) {
+  SampledSurface sampled;
+  sampled.sharpen = options.sharpen.value_or(denoised && estimates.snr_db >= kSharpenFromDb ? 1.0f : 0.0f);
+  VolumeSource filtered(grid.volume, grid.frame);
+  SharpenedSource sharpened(filtered, sampled.sharpen);
+  SlabSource& source = sampled.sharpen > 0.0f ? static_cast<SlabSource&>(sharpened) : filtered;
+  run.clock.start("extract", "voxel");
+  run.progress.begin("extract", grid.volume.dims.count(), "voxel");
+  DUBSAR_ASSIGN(sampled.samples,
+                sample_surface(source, {threshold, options.offset_bits, options.closed}, run.progress));
+  run.clock.finish(grid.volume.dims.count());
+  return sampled;
 }
 
 }  // namespace dubsar

@@ -1,12 +1,84 @@
 #pragma once
-// The stages that work on voxels: import, resampling, denoising, estimates, sampling of the isosurface.
+// The stages that work on voxels: import and resampling, denoising, the threshold, sampling of the isosurface. Each is
+// a function of values; a report is made from their results (report.h).
 
-#include "core/pipeline/pipeline.h"
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/extract/surface_samples.h"
+#include "core/filter/denoise.h"
+#include "core/filter/estimate.h"
+#include "core/pipeline/stage_clock.h"
+#include "core/volume/import.h"
 
 namespace dubsar {
 
-/// From the file to the samples of the surface; fills input, grid, filters, estimates and threshold of the report.
-Result<SurfaceSamples> run_volume_stages(const PipelineOptions& options, PipelineReport& report, GridFrame& frame,
-                                         StageClock& clock, Progress& progress);
+/// A volume in memory and where it lies in the scan.
+struct Grid {
+  GridFrame frame;
+  Volume<float> volume;
+};
+
+/// What a filter left, or what was there before the first: noise, air and material.
+struct FilterStep {
+  std::string name;  ///< "raw", "gauss 2:1", "joint_bilateral 1", ...
+  Estimates estimates;
+};
+
+/// What is known of the scan once all of it was read.
+struct ScanFacts {
+  VolumeInfo info;
+  std::int64_t nonfinite_voxels = 0;
+  float nonfinite_fill = 0.0f;        ///< what they count as
+  std::vector<std::string> warnings;  ///< of the file and of its voxels
+  Dims grid;                          ///< after resampling
+};
+
+struct ImportedGrid {
+  ScanFacts facts;
+  FilterStep raw;  ///< of a sample of the scan
+  Grid grid;
+  std::string grid_name;  ///< how it was made, as a FilterStep is named
+};
+
+/// Opens the scan, estimates its noise from a sample, reads it, and halves it along each axis (`resample`: Gauss 3x3x3
+/// and 2:1). Errors: those of open_volume() and of its source; kTryAgain when the grid does not fit into memory.
+Result<ImportedGrid> import_grid(const ImportOptions& options, bool resample, const EstimateOptions& estimate,
+                                 StageRun run);
+
+struct DenoisedGrid {
+  Grid grid;
+  std::vector<FilterStep> steps;  ///< before the first pass (`name`) and after each one
+};
+
+/// One pass at a time, each with the noise that the one before has left, unless options.sigma is given. A volume
+/// without noise stays as it is.
+Result<DenoisedGrid> denoise(Grid grid, std::string name, const DenoiseOptions& options,
+                             const EstimateOptions& estimate, StageRun run);
+
+struct Threshold {
+  float value = 0.0f;
+  std::string path;  ///< how it was found, one sentence
+};
+
+/// The given one, or that of the estimates. kBadData, with their refusal, where they have none.
+Result<Threshold> choose_threshold(std::optional<float> given, const Estimates& estimates);
+
+struct SampleOptions {
+  std::optional<float> sharpen;  ///< amount (sharpen.h); default: 1 where the noise allows it
+  int offset_bits = 4;           ///< N
+  bool closed = true;            ///< at the border of the volume
+};
+
+struct SampledSurface {
+  SurfaceSamples samples;
+  float sharpen = 0.0f;  ///< amount that was used
+};
+
+/// Sharpens and samples the isosurface. `denoised`: whether a filter pass was asked for; without one the default is no
+/// sharpening.
+Result<SampledSurface> sample(const Grid& grid, float threshold, const Estimates& estimates, bool denoised,
+                              const SampleOptions& options, StageRun run);
 
 }  // namespace dubsar

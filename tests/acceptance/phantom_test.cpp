@@ -43,7 +43,7 @@ TEST_P(EnclosedTablet, IsSeparatedAccuratelyAndReadably) {
 
   PipelineOptions options;
   options.import.path = scan;
-  options.occlusion = false;
+  options.occlusion.reset();
   const auto result = run_pipeline(options, progress);
   ASSERT_TRUE(result) << result.error().message;
   const PipelineReport& report = result->report;

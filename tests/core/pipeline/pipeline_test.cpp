@@ -13,7 +13,6 @@
 #include "core/base/input_file.h"
 #include "core/base/parallel.h"
 #include "core/phantom/write_phantom.h"
-#include "core/pipeline/report.h"
 
 namespace dubsar {
 namespace {
@@ -38,7 +37,7 @@ class Pipeline : public ::testing::Test {
     options.import.path = folder_ / "scan.h5";
     options.resample = false;
     options.denoise.iterations = 1;
-    options.occlusion_options.rays = 8;
+    options.occlusion->rays = 8;
     return options;
   }
   static Result<PipelineResult> process(const fs::path& out, Progress& progress) {
@@ -71,6 +70,8 @@ TEST_F(Pipeline, NothingThatAStageFoundIsMissingInTheReport) {
   EXPECT_GT(json["estimates"]["threshold"], 0.0);
   EXPECT_FALSE(json["estimates"]["path"].get<std::string>().empty());
   EXPECT_GT(json["mesh"]["smooth"]["max_displacement_vox"], 0.0);
+  EXPECT_GT(json["mesh"]["settle"]["p95_error_vox"], 0.0);
+  EXPECT_LE(json["mesh"]["settle"]["p95_error_vox"], 1.0 / 32.0);
   EXPECT_EQ(json["mesh"]["vertices"], result->model.mesh.vertex_count());
   EXPECT_EQ(json["mesh"]["xquads"], result->model.mesh.quad_count());
   EXPECT_EQ(json["mesh"]["nonmanifold_edges"], 0);
