@@ -10,9 +10,10 @@ layout(location = 0) uniform ivec4 window;    // lower left corner on the panel 
 layout(location = 1) uniform vec4 step_x;     // periods a pixel to the right: coarse, fine; upwards: coarse, fine
 layout(location = 2) uniform float start;     // phase of the middle of the panel's lower left pixel
 layout(location = 3) uniform ivec4 mode;      // views, filter, inverted, cell pattern
-layout(location = 4) uniform float sigma;     // of the wide Gaussian, in views
+layout(location = 4) uniform float sigma;     // of the Gaussians, in views
 layout(location = 5) uniform int cells;
 layout(location = 6) uniform vec2 offsets[3 * kMaxCells];  // pixels
+layout(location = 36) uniform float fringe;    // above 0: of even rows from the bottom, below: of odd ones
 layout(location = 0) out vec4 color;
 
 vec3 srgb_from_linear(vec3 c) {
@@ -60,15 +61,17 @@ void main() {
                       sample_view(min(near + 1, mode.x - 1), k, corner, mixing), blend);
     } else {
       int reach = mode.y == 2 ? 1 : 10;
-      float width = mode.y == 2 ? 0.5 : sigma, sum = 0.0, weights = 0.0;
+      float sum = 0.0, weights = 0.0;
+      float best = (clamp(round(exact), 0.0, float(mode.x - 1)) - exact) / sigma;  // else few views would underflow
       for (int view = max(0, near - reach); view <= min(mode.x - 1, near + reach); ++view) {
-        float far = (float(view) + 0.5 - exact) / width;
-        float weight = exp(-0.5 * far * far);
+        float far = (float(view) - exact) / sigma;
+        float weight = exp(0.5 * (best * best - far * far));
         sum += weight * sample_view(view, k, corner, mixing);
         weights += weight;
       }
-      result[k] = weights > 0.0 ? sum / weights : sample_view(near, k, corner, mixing);
+      result[k] = sum / weights;
     }
   }
-  color = vec4(srgb_from_linear(result), 1.0);
+  bool dimmed = (panel.y % 2 == 0) == (fringe > 0.0);
+  color = vec4(srgb_from_linear(result) * (dimmed ? 1.0 - abs(fringe) : 1.0), 1.0);
 }

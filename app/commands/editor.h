@@ -16,6 +16,7 @@ class Workplace {
   virtual ~Workplace() = default;
   virtual Result<void> switch_display(int step) = 0;  ///< 1: the next one, -1: the one before, 0: this one, made again
   virtual Result<void> toggle_fullscreen() = 0;
+  virtual Result<void> swap_eyes() = 0;  ///< kUnavailable where the display has not two views
   virtual void retry_sources() = 0;
   virtual bool toggle_source(std::size_t index) = 0;  ///< false: there is no such source
   virtual void say(std::string words) = 0;            ///< one line over the picture, for some seconds

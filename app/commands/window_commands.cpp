@@ -58,6 +58,8 @@ std::vector<Command> window_commands() {
       plain("next_display", "next display", {{"f2"}}, [](Editor& editor) { return editor.place().switch_display(1); }));
   out.push_back(plain("previous_display", "display before", {{"f3"}},
                       [](Editor& editor) { return editor.place().switch_display(-1); }));
+  out.push_back(plain("swap_eyes", "left and right eye exchanged, and back", {{"x"}},
+                      [](Editor& editor) { return editor.place().swap_eyes(); }));
   out.push_back(plain("panels", "panels on or off", {{"tab"}}, [](Editor& editor) -> Result<void> {
     editor.desk().panels = !editor.desk().panels;
     return {};

@@ -7,8 +7,8 @@
 
 #include "app/calibration/display_choice.h"
 #include "core/base/parse_number.h"
-#include "core/image_io/png_file.h"
-#include "core/image_io/tiff_file.h"
+#include "core/image_io/picture_file.h"
+#include "display/sinks/quilt.h"
 #include "display/sinks/sink_catalog.h"
 
 namespace dubsar::app {
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kMmPerInch = 25.4;
+constexpr double kMmPerInch = 25.4, kEyeDistanceMm = 63.0;
 
 Result<glm::dvec3> parse_place(const std::string& text, const char* option) {
   const auto place = parse_numbers<3>(text);
@@ -26,15 +26,30 @@ Result<glm::dvec3> parse_place(const std::string& text, const char* option) {
                 "viewer, such as 30,0,600",
                 option, text);
   if (!((*place)[2] > 0.0))
-    return fail(ErrorKind::kUsage, "{} \"{}\" is behind the panel, expected a Z of more than 0 mm", option, text);
+    return fail(ErrorKind::kUsage, "{} \"{}\" is behind the panel, expected a Z of {} mm or more", option, text,
+                kNearestEyeMm);
+  if (!((*place)[2] >= kNearestEyeMm))
+    return fail(ErrorKind::kUsage, "{} \"{}\" is too near to the panel, expected a Z of {} mm or more", option, text,
+                kNearestEyeMm);
   return glm::dvec3((*place)[0], (*place)[1], (*place)[2]);
 }
 
-Result<void> write_picture(const fs::path& path, const Image& image, double dpi) {
-  if (path.extension() != ".png") return write_tiff(path.string(), image, dpi);
-  PngOptions png;
-  png.dpi = dpi;
-  return write_png(path.string(), image, png);
+/// An option that would change nothing is a mistake that its owner should hear of.
+Result<void> refuse_ignored(const DisplayRequest& request, const SinkTraits& traits) {
+  const auto refuse = [&](std::string_view option, std::string_view why) {
+    return fail(ErrorKind::kUsage, "{} does nothing for display {}: {}", option, traits.name, why);
+  };
+  if (traits.own_pixels && request.sized) return refuse("--size", "its pixels are those of its panel or its layout");
+  if (traits.own_size && !request.screen_mm.empty()) return refuse("--screen-mm", "its panel brings its own size");
+  if (!traits.tracked && !request.viewer.empty())
+    return refuse("--viewer", "its views are made for all places before the panel");
+  if (!traits.tracked && request.eye_distance_mm)
+    return refuse("--eye-distance", "its views are made for all places before the panel");
+  if (traits.views == 1 && request.eye_distance_mm) return refuse("--eye-distance", "it has one view");
+  if (!request.pattern) return {};
+  if (request.magnification > 0) return refuse("--magnification", "--pattern fills the panel");
+  if (!request.of_surfaces.empty()) return refuse(request.of_surfaces, "--pattern shows no surface");
+  return {};
 }
 
 /// The eye's picture goes where the panel's would have gone.
@@ -54,9 +69,16 @@ Result<void> add_sight(const DisplayPicture& picture, const glm::dvec3& eye, Ima
   return {};
 }
 
+/// Of a picture that is shown pixel by pixel; 0 for those that are files of several pictures.
+double dots_an_inch(const DisplayPicture& picture, const Screen& screen) {
+  if (picture.light) return kMmPerInch / picture.light->panel.lens.pixel_mm.x;
+  const bool of_screen = picture.image.width == screen.window_w && picture.image.height == screen.window_h;
+  return of_screen ? kMmPerInch * screen.width_px / screen.width_mm : 0.0;
+}
+
 }  // namespace
 
-void add_display_options(Arguments command, DisplayRequest& request) {
+void add_display_options(Arguments command, DisplayRequest& request, bool surfaces) {
   std::string names;
   for (const SinkBackend& backend : output_sinks()) names += (names.empty() ? "" : ", ") + std::string(backend.name);
   Arguments group = command.group("Displays");
@@ -67,14 +89,15 @@ void add_display_options(Arguments command, DisplayRequest& request) {
   group.value("--viewer", request.viewer, "X,Y,Z in mm of the point between the viewer's eyes (0,0,600)");
   group.value("--eye-distance", request.eye_distance_mm, "distance of the viewer's eyes in mm").range(0.0, 100.0);
   group.value("--screen-mm", request.screen_mm, "WIDTHxHEIGHT of the screen in mm; panel profiles bring their own");
-  group.value("--magnification", request.magnification, "1 for life size; default: as large as fits").positive();
+  if (surfaces)
+    group.value("--magnification", request.magnification, "1 for life size; default: as large as fits").positive();
   group.value("--plugin", request.plugins, "a display from a shared library; loading it runs its code")
       .called("FILE.so");
   group
       .value("--bridge-port", request.bridge_port,
              "for panel auto: port of Looking Glass Bridge on this machine (33334); 0: leave it alone")
       .range(0, 65535);
-  group.flag("--pattern", request.pattern, "numbered views instead of a surface (no IN)");
+  if (surfaces) group.flag("--pattern", request.pattern, "numbered views instead of a surface (no IN)");
 }
 
 Result<SinkSpec> read_display_options(const DisplayRequest& request, DisplayOptions& options) {
@@ -94,48 +117,53 @@ Result<SinkSpec> read_display_options(const DisplayRequest& request, DisplayOpti
   if (!request.viewer.empty()) {
     DUBSAR_ASSIGN(between, parse_place(request.viewer, "--viewer"));
   }
-  const glm::dvec3 half(0.5 * request.eye_distance_mm, 0.0, 0.0);
+  const glm::dvec3 half(0.5 * request.eye_distance_mm.value_or(kEyeDistanceMm), 0.0, 0.0);
   options.viewer.left_mm = between - half;
   options.viewer.right_mm = between + half;
   options.magnification = request.magnification;
   DUBSAR_ASSIGN(const DisplayChoice choice, choose_display(request.display, request.plugins, request.bridge_port));
   options.catalog = choice.catalog;
+  DUBSAR_ASSIGN(const auto sink, options.catalog->make(choice.display));
+  DUBSAR_TRY(sink->configure(screen));
+  DUBSAR_TRY(refuse_ignored(request, sink->traits()));
   return choice.display;
+}
+
+Result<VerbResult> write_display_picture(const DisplayRequest& request, const SinkSpec& display,
+                                         const DisplayOptions& options, const DisplayPicture& picture,
+                                         const fs::path& out) {
+  VerbResult result;
+  Image image = picture.image;
+  if (!request.see_from.empty()) {
+    DUBSAR_ASSIGN(const glm::dvec3 eye, parse_place(request.see_from, "--see-from"));
+    DUBSAR_TRY(add_sight(picture, eye, image, result));
+  }
+  const fs::path path = request.see_from.empty() ? name_with_suffix(out, picture.file_suffix) : out;
+  DUBSAR_TRY(write_picture(path, image, {.dpi = dots_an_inch(picture, options.screen)}));
+  result.json.update({{"output", path.string()},
+                      {"width", image.width},
+                      {"height", image.height},
+                      {"display", display.text()},
+                      {"views", picture.views}});
+  result.text = fmt::format("{}: {}x{} pixels, {} view{}\n", path.string(), image.width, image.height, picture.views,
+                            picture.views == 1 ? "" : "s") +
+                result.text;
+  return result;
 }
 
 Result<VerbResult> render_to_display(const DisplayRequest& request, const SinkSpec& display,
                                      const DisplayOptions& options, const TriMesh& mesh, const fs::path& out,
                                      Progress& progress) {
-  glm::dvec3 eye(0.0);
-  if (!request.see_from.empty()) {
-    DUBSAR_ASSIGN(eye, parse_place(request.see_from, "--see-from"));
-  }
+  if (!request.see_from.empty()) DUBSAR_TRY(parse_place(request.see_from, "--see-from"));  // before the work
   DisplayPicture picture;
   if (request.pattern) {
     DUBSAR_ASSIGN(picture, render_pattern(display, options));
   } else {
     DUBSAR_ASSIGN(picture, render_display(mesh, display, options, progress));
   }
-  VerbResult result;
-  Image image = picture.image;
-  if (!request.see_from.empty()) DUBSAR_TRY(add_sight(picture, eye, image, result));
-  fs::path path = out;
-  const std::string stem = out.stem().string();
-  if (request.see_from.empty() && !stem.ends_with(picture.file_suffix))
-    path.replace_filename(stem + picture.file_suffix + out.extension().string());
-  const double dpi = picture.light ? kMmPerInch / picture.light->panel.lens.pixel_mm.x : 0.0;
-  DUBSAR_TRY(write_picture(path, image, dpi));
-  result.json.update({{"output", path.string()},
-                      {"width", image.width},
-                      {"height", image.height},
-                      {"display", display.text()},
-                      {"views", picture.views},
-                      {"magnification", picture.magnification},
-                      {"pattern", request.pattern}});
-  result.text = fmt::format("{}: {}x{} pixels, {} view{}{}\n", path.string(), image.width, image.height, picture.views,
-                            picture.views == 1 ? "" : "s",
-                            request.pattern ? "" : fmt::format(", magnification {:.4g}", picture.magnification)) +
-                result.text;
+  DUBSAR_ASSIGN(VerbResult result, write_display_picture(request, display, options, picture, out));
+  result.json.update({{"magnification", picture.magnification}, {"pattern", request.pattern}});
+  if (!request.pattern) result.text += fmt::format("magnification {:.4g}\n", picture.magnification);
   return result;
 }
 

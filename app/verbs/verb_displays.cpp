@@ -91,6 +91,8 @@ Result<void> add_calibrations(const Options& options, const PanelSet& panels, Ve
     return fail(ErrorKind::kNoInput, "--calibration {}: there is no such file", options.calibration);
   const CalibrationReport report = find_calibrations(search, panels, clock);
   for (const FoundCalibration& found : report.found) {
+    // One that somebody named is expected to be good; others are told.
+    if (found.route == "file" && !found.panel) result.failed = true, result.failure = ErrorKind::kConfig;
     nlohmann::json entry{{"route", found.route}, {"place", found.place}};
     if (!found.serial.empty()) entry["serial"] = found.serial;
     if (found.panel)

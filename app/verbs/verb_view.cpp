@@ -138,6 +138,12 @@ Result<void> without_window(const Options& options, ViewOptions& view) {
   if (!options.monitor.empty() || options.fullscreen || options.windowed)
     return fail(ErrorKind::kUsage, "--monitor, --fullscreen and --windowed are for windows, expected no --offscreen");
   DUBSAR_ASSIGN(view.stage.screen, parse_screen(options.size.empty() ? "960x540" : options.size));
+  DUBSAR_ASSIGN(const auto sink, view.stage.catalog->make(view.stage.display));
+  DUBSAR_TRY(sink->configure(view.stage.screen));
+  if (!options.size.empty() && sink->traits().own_pixels)
+    return fail(ErrorKind::kUsage,
+                "--size does nothing for display {}: its pixels are those of its panel or its layout",
+                sink->traits().name);
   view.stage.samples = std::max(1, options.samples);
   view.notices = false;
   if (options.fps == 0) view.fps = 30.0;

@@ -69,6 +69,7 @@ struct Stage::Parts {
   std::vector<DrawItem> items;   // painted
   std::vector<ClipPlane> clips;  // painted
   Light light;                   // painted
+  std::vector<int> chosen;       // without a mesh: what each layer shows; empty: nothing yet
   int coarse = 0;
   double exact_view_ms = 0.0;  // what one exact view takes; 0: not known yet
 
@@ -80,6 +81,8 @@ struct Stage::Parts {
   }
   bool moved() const noexcept;
   SceneView scene() const { return {items, light, clips, options.shading.background, options.shading.fog}; }
+  bool has_mesh() const noexcept { return !options.pattern && !options.pictures; }
+  Result<void> fill_layers();
   Result<void> paint_moved();
   Result<void> refine();
   bool may_refine() const noexcept { return coarse > 0 && mesh->has_exact() && now - moved_at >= kRestNs; }
@@ -96,9 +99,7 @@ Result<void> Stage::Parts::prepare(OutputSink& next) {
                                          static_cast<std::uint64_t>(traits.view.height) *
                                          static_cast<std::uint64_t>(traits.views)));
   DUBSAR_ASSIGN(ViewArray layers, ViewArray::create(traits.view.width, traits.view.height, traits.views));
-  if (options.pattern)
-    for (int i = 0; i < traits.views; ++i)
-      DUBSAR_TRY(layers.write_layer(i, numbered_view(traits.view.width, traits.view.height, i, traits.views)));
+  chosen.clear();
   if (array) exact_view_ms *= static_cast<double>(layers.width()) * layers.height() / array->width() / array->height();
   array = std::move(layers);
   overlaid.reset();
@@ -142,12 +143,13 @@ Result<std::unique_ptr<Stage>> Stage::create(const TriMesh& mesh, const StageOpt
     return fail(ErrorKind::kUsage, "view: margin {} and {} samples found, expected 0 to 0.45 and 1 to 8",
                 options.margin, options.samples);
   DUBSAR_ASSIGN(PackedMesh packed, pack_mesh(mesh));
-  if (!options.pattern && packed.triangles_of(visible_partitions(options.shading.parts)) == 0)
+  const bool has_mesh = !options.pattern && !options.pictures;
+  if (has_mesh && packed.triangles_of(visible_partitions(options.shading.parts)) == 0)
     return fail(ErrorKind::kUsage, "view: none of the partitions asked for has triangles, so there is nothing to draw");
   auto parts = std::make_unique<Parts>(options);
   parts->shown = {{}, 1.0, options.shading.style, options.shading.parts};
-  if (!options.pattern) parts->box = packed.box_of(visible_partitions(options.shading.parts));
-  if (options.pattern) {
+  if (has_mesh) parts->box = packed.box_of(visible_partitions(options.shading.parts));
+  if (!has_mesh) {
     // nothing to draw
   } else if (options.quality == Quality::kAdaptive) {
     DUBSAR_ASSIGN(parts->mesh, LodMesh::growing(std::move(packed)));
@@ -162,6 +164,14 @@ Result<std::unique_ptr<Stage>> Stage::create(const TriMesh& mesh, const StageOpt
   }
   DUBSAR_TRY(parts->prepare(*parts->sink));
   return std::unique_ptr<Stage>(new Stage(std::move(parts)));
+}
+
+Result<void> Stage::swap_eyes() {
+  if (traits().views != 2)
+    return fail(ErrorKind::kUnavailable, "display {} has {} views, expected one with two to exchange the eyes",
+                traits().name, traits().views);
+  parts_->options.viewer.swap_eyes = !parts_->options.viewer.swap_eyes;
+  return {};
 }
 
 SinkTraits Stage::traits() const { return parts_->sink->traits(); }
@@ -192,7 +202,7 @@ Result<void> Stage::set_screen(const Screen& screen) {
 }
 
 bool Stage::Parts::moved() const noexcept {
-  if (!painted || !(painted->first == shown)) return true;
+  if (!painted || !(painted->first == shown) || painted->second.swap_eyes != viewer.swap_eyes) return true;
   return glm::distance(painted->second.left_mm, viewer.left_mm) > kEyeStepMm ||
          glm::distance(painted->second.right_mm, viewer.right_mm) > kEyeStepMm;
 }
@@ -220,6 +230,25 @@ void Stage::Parts::took(double ms, std::size_t count) {
   exact_view_ms = exact_view_ms == 0.0 ? each : (1.0 - kForget) * exact_view_ms + kForget * each;
 }
 
+/// Pictures that exist already, where another one is wanted than is there.
+Result<void> Stage::Parts::fill_layers() {
+  const SinkTraits traits = sink->traits();
+  chosen.resize(static_cast<std::size_t>(traits.views), -1);
+  for (int layer = 0; layer < traits.views; ++layer) {
+    int& there = chosen[static_cast<std::size_t>(layer)];
+    const bool swapped = viewer.swap_eyes && traits.views == 2;
+    const int wanted = options.pictures ? picture_for_layer(*options.pictures, traits, layer, viewer)
+                       : swapped        ? 1 - layer
+                                        : layer;
+    if (std::exchange(there, wanted) == wanted) continue;
+    DUBSAR_TRY(array->write_layer(
+        layer, options.pictures ? layer_of_picture(options.pictures->views[static_cast<std::size_t>(wanted)],
+                                                   options.pictures->aspect, traits, layer)
+                                : numbered_view(traits.view.width, traits.view.height, wanted, traits.views)));
+  }
+  return {};
+}
+
 /// New cameras: exact views where there is time for them.
 Result<void> Stage::Parts::paint_moved() {
   light = options.shading.light;
@@ -230,7 +259,7 @@ Result<void> Stage::Parts::paint_moved() {
   painted = {shown, viewer};
   moved_at = now;
   coarse = 0;
-  if (options.pattern) return {};
+  if (!has_mesh()) return fill_layers();
   clips = dubsar::moved(options.shading.clips, placed());
   items = {MeshItem{&*mesh, placed(), shown.style, shown.parts}};
   if (!multi) return renderer->render(scene(), views, options.samples, *array);

@@ -13,6 +13,7 @@
 #include "display/render/camera.h"
 #include "display/render/shading.h"
 #include "display/sinks/sink_catalog.h"
+#include "display/sinks/view_pictures.h"
 #include "input/navigation/view_state.h"
 #include "input/people/head_follower.h"
 
@@ -43,6 +44,7 @@ struct StageOptions {
   bool stereo_window = false;  ///< the target has a left and a right buffer
   double magnification = 0.0;  ///< 1: life size at zoom 1; 0: as large as fits
   bool pattern = false;        ///< numbered views (display/render/test_pattern.h) in place of the mesh
+  std::shared_ptr<const ViewPictures> pictures{};  ///< these in place of the mesh
 };
 
 /// What a picture shows besides what the stage was made with.
@@ -80,6 +82,8 @@ class Stage {
   /// May be changed at any time; when one fails nothing changes.
   Result<void> set_display(const SinkSpec& spec);
   Result<void> set_screen(const Screen& screen);
+  /// Each eye gets the other's view. kUnavailable for displays that have not two views.
+  Result<void> swap_eyes();
   SinkTraits traits() const;
   /// Where the eyes of somebody are expected whom nobody sees, metres in the screen frame.
   glm::dvec3 rest_m() const;

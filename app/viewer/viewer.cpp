@@ -138,6 +138,12 @@ Result<void> Viewer::switch_display(int step) {
   return fail(ErrorKind::kUnavailable, "none of {} displays can be shown", count);
 }
 
+Result<void> Viewer::swap_eyes() {
+  DUBSAR_TRY(stage_->swap_eyes());
+  say("left and right eye exchanged");
+  return {};
+}
+
 bool Viewer::toggle_source(std::size_t index) {
   if (!sources_->toggle(index)) return false;
   steering_->let_go_of_mouse();  // it may have been the mouse, with a button down
@@ -170,7 +176,8 @@ void Viewer::handle(InputEvent event) {
     for (const std::string& command : overlay_->take_commands()) run(command, kKeySteps + at_.presses);
     return;
   }
-  if (event.kind == EventKind::kButton && event.down && event.at && !given_.options.stage.pattern)
+  if (event.kind == EventKind::kButton && event.down && event.at && !given_.options.stage.pattern &&
+      !given_.options.stage.pictures)
     event.lever = lever_at(*event.at);
   const auto rows = sources_->rows();
   const bool keyboard = std::any_of(rows.begin(), rows.end(), [](const SourceRow& row) {

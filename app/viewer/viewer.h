@@ -61,6 +61,7 @@ class Viewer final : public Workplace {
 
   Result<void> switch_display(int step) override;
   Result<void> toggle_fullscreen() override { return given_.presenter.toggle_fullscreen(); }
+  Result<void> swap_eyes() override;
   void retry_sources() override { sources_->retry_now(); }
   bool toggle_source(std::size_t index) override;
   void say(std::string words) override;

@@ -17,6 +17,7 @@ LensSheet lens_sheet(const LookingGlassFigures& figures) {
   sheet.tilt = figures.screen_height / (figures.screen_width * figures.slope);
   sheet.centre = figures.center;
   sheet.invert_views = figures.invert_views;
+  sheet.fringe = figures.fringe;
   sheet.subpixels.pattern = figures.pattern;
   if (!figures.cells.empty()) sheet.subpixels.cells = figures.cells;
   for (SubpixelCell& cell : sheet.subpixels.cells) {
@@ -63,6 +64,11 @@ double lens_position(const LensSheet& sheet, std::int64_t x, std::int64_t y, int
   return sheet.invert_views ? 1.0 - place : place;
 }
 
+double row_light(const LensSheet& sheet, std::int64_t y) noexcept {
+  const bool dimmed = (y % 2 == 0) == (sheet.fringe > 0.0);
+  return dimmed ? 1.0 - std::abs(sheet.fringe) : 1.0;
+}
+
 int nearest_view(double position, int views) noexcept {
   return std::clamp(static_cast<int>(std::floor(position * views)), 0, views - 1);
 }
@@ -77,11 +83,11 @@ std::vector<ViewWeight> view_weights(double position, int views, ViewFilter filt
     return {{near, 1.0 - mix}, {next, mix}};
   }
   const int reach = filter == ViewFilter::kGaussian3 ? 1 : 10;
-  const double width = filter == ViewFilter::kGaussian3 ? 0.5 : sigma * views;  // in views
+  const double width = sigma * views;  // in views
   std::vector<ViewWeight> weights;
   double sum = 0.0;
   for (int view = std::max(0, near - reach); view <= std::min(views - 1, near + reach); ++view) {
-    const double distance = (view + 0.5 - exact) / width;
+    const double distance = (view - exact) / width;
     weights.push_back({view, std::exp(-0.5 * distance * distance)});
     sum += weights.back().weight;
   }

@@ -42,6 +42,7 @@ struct LensSheet {
   double centre = 0.0;              ///< phase offset in periods
   bool invert_views = true;         ///< view order reversed across a lens
   SubpixelLayout subpixels;
+  double fringe = 0.0;  ///< row_light()
 };
 
 /// What figures of lens sheets may be; beyond, a calibration is not believed. Known panels have 37 to 110 lenses an
@@ -62,6 +63,7 @@ struct LookingGlassFigures {
   bool flip_subpixels = false;  ///< blue first
   CellPattern pattern = CellPattern::kUniform;
   std::vector<SubpixelCell> cells;  ///< empty: plain RGB stripes
+  double fringe = 0.0;              ///< -1 to 1, row_light()
 };
 
 /// periods = pitch * width / dpi * cos(atan(1 / slope)); tilt = height / (width * slope); both signs as the vendor's.
@@ -74,6 +76,11 @@ int cell_index(CellPattern pattern, int cells, std::int64_t x, std::int64_t y) n
 /// inverted where the sheet inverts. A view index is floor(position * view_count).
 double lens_position(const LensSheet& sheet, std::int64_t x, std::int64_t y, int channel) noexcept;
 
+/// What the coded colours of a row of pixels are multiplied with, y from the bottom: 1 - |fringe| in even rows where
+/// fringe is above 0, in odd rows where it is below; 1 in the others. Some panels of 15.6" and 8K carry such a figure,
+/// and the maker's own weave (HoloPlay SDK for Unity) dims coded colours by it.
+double row_light(const LensSheet& sheet, std::int64_t y) noexcept;
+
 /// clamp(floor(position * views), 0, views - 1)
 int nearest_view(double position, int views) noexcept;
 
@@ -82,7 +89,9 @@ struct ViewWeight {
   double weight;
 };
 /// Views that make up a subpixel and their weights (sum 1). `sigma` is the Gaussian's width in lens position units and
-/// is used by kGaussian10 only. Linear mixes the views floor(p) and floor(p) + 1 by the fraction, clamped at the ends.
+/// is used by kGaussian3 (3 views) and kGaussian10 (21 views). Linear mixes the views floor(p) and floor(p) + 1 by the
+/// fraction, clamped at the ends; for both Gaussians, too, view v lies at p = v, as the maker has it: half a view from
+/// where kNearest has its middle.
 std::vector<ViewWeight> view_weights(double position, int views, ViewFilter filter, double sigma = 0.01);
 
 /// A sheet in the terms of optics, for eyes at known places (millimetres, panel frame: centre, x right, y up, z to

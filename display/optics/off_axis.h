@@ -41,6 +41,7 @@ struct Viewer {
   double zero_parallax_mm = 0.0;           ///< world z that appears in the panel's plane
   double front_mm = 300.0;                 ///< world z of the nearest and the farthest thing to show
   double back_mm = -600.0;
+  bool swap_eyes = false;  ///< two views: each eye gets the other's; glasses worn or wired wrongly
 
   glm::dvec3 centre_mm() const { return 0.5 * (left_mm + right_mm); }
 };

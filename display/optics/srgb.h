@@ -24,11 +24,15 @@ inline const std::array<double, 256>& linear_of_byte() {
   return table;
 }
 
-/// Linear light, clamped to 0..1, to the nearest byte.
-inline std::uint8_t srgb_from_linear(double light) {
+/// Linear light, clamped to 0..1, to a coded value of 0 to 1.
+inline double coded_from_linear(double light) {
   const double c = std::clamp(light, 0.0, 1.0);
-  const double coded = c <= 0.0031308 ? c * 12.92 : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(255.0 * coded));
+  return c <= 0.0031308 ? c * 12.92 : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
+}
+
+/// The same to the nearest byte.
+inline std::uint8_t srgb_from_linear(double light) {
+  return static_cast<std::uint8_t>(std::lround(255.0 * coded_from_linear(light)));
 }
 
 }  // namespace dubsar

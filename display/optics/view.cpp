@@ -14,4 +14,22 @@ View crop_view(const View& view, int x, int y, int w, int h, int full_w, int ful
   return {view.view_from_world, crop * view.clip_from_view};
 }
 
+namespace {
+/// -1 for the leftmost view's far edge to 1 for the rightmost's; its middle counts.
+double across(int index, int count) noexcept { return (2.0 * index + 1.0) / count - 1.0; }
+}  // namespace
+
+glm::dvec2 focus_source(const ViewFocus& focus, int index, int count, const glm::dvec2& uv) noexcept {
+  const glm::dvec2 zoomed = (uv - 0.5) / focus.zoom + 0.5;
+  return {zoomed.x + across(index, count) * focus.focus, zoomed.y};
+}
+
+View focused_view(View view, const ViewFocus& focus, int index, int count) {
+  glm::dmat4 moved(1.0);
+  moved[0][0] = moved[1][1] = focus.zoom;
+  moved[3][0] = -2.0 * across(index, count) * focus.focus * focus.zoom;
+  view.clip_from_view = moved * view.clip_from_view;
+  return view;
+}
+
 }  // namespace dubsar

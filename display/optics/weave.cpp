@@ -51,6 +51,7 @@ Image weave_views(std::span<const Image> views, const LensSheet& sheet, const We
   Image panel(sheet.width_px, sheet.height_px, 3);
   parallel_for(sheet.height_px, 16, [&](std::int64_t row) {
     const double v = 1.0 - (static_cast<double>(row) + 0.5) / sheet.height_px;
+    const double dimmed = row_light(sheet, sheet.height_px - 1 - row);
     for (int column = 0; column < sheet.width_px; ++column) {
       const double u = (column + 0.5) / sheet.width_px;
       for (int channel = 0; channel < 3; ++channel) {
@@ -58,7 +59,7 @@ Image weave_views(std::span<const Image> views, const LensSheet& sheet, const We
         double sum = 0.0;
         for (const auto& [view, weight] : view_weights(position, count, options.filter, options.gaussian_sigma))
           sum += weight * sample_light(views[static_cast<std::size_t>(view)], u, v, channel);
-        panel.at(column, static_cast<int>(row))[channel] = srgb_from_linear(sum);
+        panel.at(column, static_cast<int>(row))[channel] = to_byte(255.0 * dimmed * coded_from_linear(sum));
       }
     }
   });

@@ -11,7 +11,7 @@ namespace dubsar {
 
 struct WeaveOptions {
   ViewFilter filter = ViewFilter::kLinear;
-  double gaussian_sigma = 0.01;  ///< of kGaussian10, in lens positions
+  double gaussian_sigma = 0.01;  ///< of the Gaussians, in lens positions (the maker's default)
 };
 
 /// Colour 0..255 of channel k of a view at (u, v), v up: bilinear, clamped to the edge, as GL samples a texture.
@@ -23,7 +23,7 @@ double sample_light(const Image& view, double u, double v, int channel) noexcept
 double subpixel_view(const LensSheet& sheet, int views, int column, int row_from_top, int channel) noexcept;
 
 /// N views (0 leftmost camera, all of one size) to a panel image of sheet.width_px x height_px, RGB. Views and their
-/// texels are mixed in linear light. Uses all threads.
+/// texels are mixed in linear light, rows dimmed by row_light() after coding. Uses all threads.
 Image weave_views(std::span<const Image> views, const LensSheet& sheet, const WeaveOptions& options = {});
 
 /// Panel geometry of a two-view weave.

@@ -55,9 +55,8 @@ Result<Calibration> parse_calibration(std::string_view json_text, std::string_vi
   sheet.screen_height = fields.integer("screenH", 1, kMostPanelPx);
   sheet.flip_image_x = fields.flag("flipImageX", false);
   sheet.flip_subpixels = fields.flag("flipSubp", false);
-  const double forty = 40.0, zero = 0.0;
+  const double forty = 40.0;
   calibration.view_cone_deg = fields.number("viewCone", 1.0, 170.0, &forty);
-  calibration.fringe = fields.number("fringe", -1.0, 1.0, &zero);
   if (fields.has("subpixelCells")) read_lens_cells(object.at("subpixelCells"), fields, sheet);
   calibration.serial = fields.text("serial", "");
   if (!printable(calibration.serial)) fields.complain("serial has letters that cannot be printed, expected ASCII");

@@ -14,7 +14,6 @@ namespace dubsar {
 struct Calibration {
   LookingGlassFigures figures;
   double view_cone_deg = 40.0;
-  double fringe = 0.0;
   std::string serial, source;
 };
 

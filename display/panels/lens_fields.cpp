@@ -48,6 +48,7 @@ void read_lens_figures(JsonFields& fields, LookingGlassFigures& sheet, const cha
     fields.complain(fmt::format("slope is {}, expected {} or more, of either sign", sheet.slope, kLeastSlope));
   const double zero = 0.0;
   sheet.center = fields.number("center", -kMostCentre, kMostCentre, &zero);
+  sheet.fringe = fields.number("fringe", -1.0, 1.0, &zero);
   sheet.invert_views = fields.flag(invert_name, true);
   const int uniform = 0;
   sheet.pattern = static_cast<CellPattern>(fields.integer(pattern_name, 0, 4, &uniform));

@@ -9,7 +9,7 @@ namespace dubsar {
 constexpr int kMostPanelPx = 16384;  ///< a side
 constexpr double kMmPerInch = 25.4;
 
-/// Fills pitch, slope, center, inversion and cell pattern; what is wrong becomes a complaint of `fields`.
+/// Fills pitch, slope, center, fringe, inversion and cell pattern; what is wrong becomes a complaint of `fields`.
 void read_lens_figures(JsonFields& fields, LookingGlassFigures& sheet, const char* invert_name,
                        const char* pattern_name);
 

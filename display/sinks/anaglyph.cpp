@@ -45,7 +45,7 @@ const std::array<AnaglyphVariant, 14> kVariants{{
 
 class AnaglyphSink : public OutputSink {
  public:
-  explicit AnaglyphSink(const AnaglyphVariant& variant) : variant_(variant) {}
+  AnaglyphSink(const AnaglyphVariant& variant, bool right_first) : variant_(variant), right_first_(right_first) {}
 
   SinkTraits traits() const noexcept override {
     const PixelSize size{screen_.window_w, screen_.window_h};
@@ -60,7 +60,8 @@ class AnaglyphSink : public OutputSink {
 
   Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
     DUBSAR_TRY(pass_.begin(target, views.coded()));
-    const glm::mat3 left(variant_.left), right(variant_.right);
+    const glm::mat3 left(right_first_ ? variant_.right : variant_.left),
+        right(right_first_ ? variant_.left : variant_.right);
     glUniformMatrix3fv(kLeftLocation, 1, GL_FALSE, glm::value_ptr(left));
     glUniformMatrix3fv(kRightLocation, 1, GL_FALSE, glm::value_ptr(right));
     return pass_.draw();
@@ -68,6 +69,7 @@ class AnaglyphSink : public OutputSink {
 
  private:
   AnaglyphVariant variant_;
+  bool right_first_;
   Screen screen_;
   std::array<View, 2> views_;
   ComposePass pass_{"anaglyph.frag"};
@@ -91,6 +93,7 @@ Image anaglyph_views(const Image& left, const Image& right, const AnaglyphVarian
 }
 
 Result<std::unique_ptr<OutputSink>> make_anaglyph_sink(SinkOptions options) {
+  const bool right_first = options.eyes_swapped();
   std::vector<std::string_view> names;
   std::string known;
   for (const AnaglyphVariant& variant : kVariants) {
@@ -98,8 +101,8 @@ Result<std::unique_ptr<OutputSink>> make_anaglyph_sink(SinkOptions options) {
     names.push_back(variant.name);
   }
   const int variant = options.choice(names);
-  DUBSAR_TRY(options.finish(known));
-  return std::make_unique<AnaglyphSink>(kVariants[static_cast<std::size_t>(variant)]);
+  DUBSAR_TRY(options.finish(known + "; left_first or right_first"));
+  return std::make_unique<AnaglyphSink>(kVariants[static_cast<std::size_t>(variant)], right_first);
 }
 
 }  // namespace dubsar

@@ -25,6 +25,7 @@ std::span<const AnaglyphVariant> anaglyph_variants();
 /// Reference: what compose() draws. Views of the same size. RGB.
 Image anaglyph_views(const Image& left, const Image& right, const AnaglyphVariant& variant);
 
+/// Options: a variant's name, and left_first or right_first: which eye the first colour of that name is for.
 Result<std::unique_ptr<OutputSink>> make_anaglyph_sink(SinkOptions options);
 
 }  // namespace dubsar

@@ -17,6 +17,12 @@ int interlace_parity(InterlacePattern pattern, int panel_x, int panel_y, int cha
 Image interlace_views(const Image& left, const Image& right, const Screen& screen, InterlacePattern pattern,
                       bool right_first);
 
+/// Whether counting rows from the panel's bottom exchanges the eyes: on panels with an even number of rows.
+bool bottom_exchanges(InterlacePattern pattern, int panel_height) noexcept;
+
+/// Options: rows (default), columns, checkerboard or subpixels; left_first (default) or right_first, the eye of the
+/// first row or square; for rows and checkerboard top (default: the panel's upper left corner is first, as ffmpeg's
+/// stereo3d has it) or bottom (its lower left corner, as Bino has it).
 Result<std::unique_ptr<OutputSink>> make_interlaced_sink(SinkOptions options);
 
 }  // namespace dubsar

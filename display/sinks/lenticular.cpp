@@ -18,7 +18,7 @@ namespace {
 
 // shaders/lens_views.frag and shaders/lens_tracked.frag
 constexpr GLint kWindow = 0;
-constexpr GLint kSteps = 1, kStart = 2, kMode = 3, kSigma = 4, kCells = 5, kOffsets = 6;
+constexpr GLint kSteps = 1, kStart = 2, kMode = 3, kSigma = 4, kCells = 5, kOffsets = 6, kFringe = 36;
 constexpr GLint kPanelPx = 1, kPixelMm = 2, kLens = 3, kPhase0 = 4, kEyes = 5, kTrackedOffsets = 7;
 constexpr std::size_t kMaxCells = 10;
 constexpr int kCoarseBits = 11;  // times a pixel number below 8192: 24 bits, exact in a float
@@ -52,17 +52,25 @@ std::vector<glm::vec2> flat_offsets(const SubpixelLayout& layout) {
 
 class ViewsSink : public OutputSink {
  public:
-  ViewsSink(PanelProfile profile, ViewFilter filter)
+  ViewsSink(PanelProfile profile, ViewFilter filter, const ViewFocus& focus)
       : profile_(std::move(profile)),
         sheet_(lens_sheet(*profile_.sheet)),
         filter_(filter),
+        focus_(focus),
         screen_(panel_screen(profile_, {})) {}
 
   SinkTraits traits() const noexcept override {
     const PixelSize window{screen_.window_w, screen_.window_h};
     const PixelSize tile{profile_.quilt.views() > 0 ? profile_.quilt.tile_width() : window.width,
                          profile_.quilt.views() > 0 ? profile_.quilt.tile_height() : window.height};
-    return {.name = "lenticular", .views = profile_.views, .view = tile, .output = window, .exact_pixels = true};
+    return {.name = "lenticular",
+            .views = profile_.views,
+            .view = tile,
+            .output = window,
+            .own_pixels = true,
+            .own_size = true,
+            .focus = focus_,
+            .exact_pixels = true};
   }
   Result<void> configure(const Screen& screen) override {
     DUBSAR_TRY(check_screen(screen));
@@ -73,7 +81,8 @@ class ViewsSink : public OutputSink {
     const double distance = viewing_distance_mm(profile_);
     views_.clear();
     for (const glm::dvec3& eye : cone_eyes(profile_.views, profile_.view_cone_deg * std::numbers::pi / 180, distance))
-      views_.push_back(viewer_view(screen_.window_rect(), viewer, eye));
+      views_.push_back(focused_view(viewer_view(screen_.window_rect(), viewer, eye), focus_,
+                                    static_cast<int>(views_.size()), profile_.views));
     return views_;
   }
   Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
@@ -88,6 +97,7 @@ class ViewsSink : public OutputSink {
                 static_cast<int>(sheet_.subpixels.pattern));
     glUniform1f(kSigma, static_cast<float>(WeaveOptions().gaussian_sigma * profile_.views));
     const auto offsets = flat_offsets(sheet_.subpixels);
+    glUniform1f(kFringe, static_cast<float>(sheet_.fringe));
     glUniform1i(kCells, static_cast<int>(sheet_.subpixels.cells.size()));
     glUniform2fv(kOffsets, static_cast<GLsizei>(offsets.size()), glm::value_ptr(offsets[0]));
     return pass_.draw();
@@ -113,6 +123,7 @@ class ViewsSink : public OutputSink {
   PanelProfile profile_;
   LensSheet sheet_;
   ViewFilter filter_;
+  ViewFocus focus_;
   Screen screen_;
   std::vector<View> views_;
   ComposePass pass_{"lens_views.frag"};
@@ -120,8 +131,8 @@ class ViewsSink : public OutputSink {
 
 class TrackedSink : public OutputSink {
  public:
-  TrackedSink(PanelProfile profile, const TrackedPanel& panel)
-      : profile_(std::move(profile)), panel_(panel), screen_(panel_screen(profile_, {})) {}
+  TrackedSink(PanelProfile profile, const TrackedPanel& panel, bool right_first)
+      : profile_(std::move(profile)), panel_(panel), right_first_(right_first), screen_(panel_screen(profile_, {})) {}
 
   SinkTraits traits() const noexcept override {
     const PixelSize window{screen_.window_w, screen_.window_h};
@@ -131,6 +142,8 @@ class TrackedSink : public OutputSink {
             .view = {(window.width + 1) / 2, window.height},
             .output = window,
             .tracked = true,
+            .own_pixels = true,
+            .own_size = true,
             .exact_pixels = true};
   }
   Result<void> configure(const Screen& screen) override {
@@ -139,8 +152,9 @@ class TrackedSink : public OutputSink {
     return {};
   }
   std::span<const View> views(const Viewer& viewer) override {
-    eyes_ = {glm::vec3(viewer.left_mm),
-             glm::vec3(viewer.right_mm)};  // light goes to the true eyes, whatever the factors
+    // Light goes to the true eyes, whatever the factors.
+    eyes_ = {glm::vec3(right_first_ ? viewer.right_mm : viewer.left_mm),
+             glm::vec3(right_first_ ? viewer.left_mm : viewer.right_mm)};
     return views_ = stereo_views(screen_, viewer);
   }
   Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
@@ -165,32 +179,46 @@ class TrackedSink : public OutputSink {
  private:
   PanelProfile profile_;
   TrackedPanel panel_;
+  bool right_first_;  ///< layer 0 is for the right eye
   Screen screen_;
   std::array<View, 2> views_;
-  std::array<glm::vec3, 2> eyes_{glm::vec3(Viewer().left_mm), glm::vec3(Viewer().right_mm)};
+  std::array<glm::vec3, 2> eyes_{glm::vec3(Viewer().left_mm), glm::vec3(Viewer().right_mm)};  ///< of layers 0 and 1
   ComposePass pass_{"lens_tracked.frag"};
 };
 
 }  // namespace
 
 Result<std::unique_ptr<OutputSink>> make_lenticular_sink(SinkOptions options) {
-  constexpr std::string_view kKnown =
-      "panel=PROFILE and/or calibration=FILE, and nearest, linear, gaussian3 or gaussian10";
-  constexpr std::array<ViewFilter, 4> kFilters{ViewFilter::kLinear, ViewFilter::kNearest, ViewFilter::kGaussian3,
-                                               ViewFilter::kGaussian10};
-  const auto filter =
-      kFilters[static_cast<std::size_t>(options.choice({"linear", "nearest", "gaussian3", "gaussian10"}))];
+  constexpr std::string_view kPanels = "panel=PROFILE and/or calibration=FILE";
+  constexpr std::string_view kOfViews = "nearest, linear, gaussian3 or gaussian10, focus=, zoom=";
+  constexpr std::string_view kOfTracked = "left_first or right_first";
+  constexpr std::array<ViewFilter, 5> kFilters{ViewFilter::kLinear, ViewFilter::kLinear, ViewFilter::kNearest,
+                                               ViewFilter::kGaussian3, ViewFilter::kGaussian10};
+  const int filter = options.choice({"", "linear", "nearest", "gaussian3", "gaussian10"});  // 0: none was given
+  const int order = options.choice({"", "left_first", "right_first"});
   DUBSAR_ASSIGN(auto panel_choice, options.panel());
-  DUBSAR_TRY(options.finish(kKnown));
-  if (!panel_choice) return fail(ErrorKind::kUsage, "display lenticular: no panel was named, expected {}", kKnown);
+  if (!panel_choice) return fail(ErrorKind::kUsage, "display lenticular: no panel was named, expected {}", kPanels);
   PanelProfile profile = *std::move(panel_choice);
   if (profile.kind == PanelKind::kTracked) {
+    if (filter != 0)
+      return fail(ErrorKind::kUsage,
+                  "display lenticular: panel {} weaves two views and filters none, expected {} and no filter",
+                  profile.name, kOfTracked);
+    DUBSAR_TRY(options.finish(fmt::format("{}, {}", kPanels, kOfTracked)));
     DUBSAR_ASSIGN(const TrackedPanel panel, panel_optics(profile, profile.design_distance_mm));
     if (panel.subpixels.cells.size() != 1)
       return fail(ErrorKind::kConfig, "display lenticular: panel {} has {} subpixel cells, expected 1 for tracked eyes",
                   profile.name, panel.subpixels.cells.size());
-    return std::make_unique<TrackedSink>(std::move(profile), panel);
+    return std::make_unique<TrackedSink>(std::move(profile), panel, order == 2);
   }
+  const ViewFocus focus = options.focus();
+  DUBSAR_TRY(options.finish(fmt::format("{}, {}", kPanels, kOfViews)));
+  if (order != 0)
+    return fail(
+        ErrorKind::kUsage,
+        "display lenticular: panel {} has {} views in the order that its calibration says (invView), expected no "
+        "left_first or right_first",
+        profile.name, profile.views);
   if (!profile.sheet)
     return fail(ErrorKind::kConfig,
                 "display lenticular: no lens figures of panel {} are known, expected calibration=FILE", profile.name);
@@ -198,7 +226,7 @@ Result<std::unique_ptr<OutputSink>> make_lenticular_sink(SinkOptions options) {
     return fail(ErrorKind::kConfig, "display lenticular: {} subpixel cells found, expected at most {}",
                 profile.sheet->cells.size(), kMaxCells);
   if (profile.quilt.views() > 0) profile.views = profile.quilt.views();
-  return std::make_unique<ViewsSink>(std::move(profile), filter);
+  return std::make_unique<ViewsSink>(std::move(profile), kFilters[static_cast<std::size_t>(filter)], focus);
 }
 
 }  // namespace dubsar

@@ -7,9 +7,10 @@
 
 namespace dubsar {
 
-/// Options: PROFILE or panel=PROFILE (a panel's name), nearest, linear (default), gaussian3 or gaussian10,
-/// calibration=FILE (a Looking Glass unit's visual.json; names the model too, unless PROFILE does). The window counts
-/// when the screen has the panel's pixels, else the picture is that of the whole panel.
+/// Options: PROFILE or panel=PROFILE (a panel's name), calibration=FILE (a Looking Glass unit's visual.json; names the
+/// model too, unless PROFILE does). Of many views: nearest, linear (default), gaussian3 or gaussian10, focus=, zoom=;
+/// of two tracked ones: left_first, right_first. The window counts when the screen has the panel's pixels, else the
+/// picture is that of the whole panel.
 Result<std::unique_ptr<OutputSink>> make_lenticular_sink(SinkOptions options);
 
 }  // namespace dubsar

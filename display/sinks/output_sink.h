@@ -27,6 +27,10 @@ struct SinkTraits {
   PixelSize view{};            ///< pixels of one layer
   PixelSize output{};          ///< pixels of the composed picture
   bool tracked = false;        ///< follows the viewer's eyes
+  bool own_pixels = false;     ///< output is the panel's or the file's: a screen's pixels do not matter
+  bool own_size = false;       ///< so are millimetres
+  double aspect = 0.0;         ///< of what is seen, width / height; 0: that of `output`
+  ViewFocus focus{};           ///< views of pictures that exist already are to be taken so (focus_source())
   bool exact_pixels = false;   ///< works only unscaled, at a known place on the panel
   bool stereo_visual = false;  ///< needs a quad-buffered context
   /// Pictures that take turns, one at each refresh of the monitor, for as long as anything is shown: 1, or 2 for

@@ -21,7 +21,8 @@ class PackedSink : public OutputSink {
             .views = 2,
             .view = packing_.view_size(window()),
             .output = packing_.output_size(window()),
-            .tracked = true};
+            .tracked = true,
+            .aspect = static_cast<double>(window().width) / window().height};
   }
   Result<void> configure(const Screen& screen) override {
     DUBSAR_TRY(check_screen(screen));
@@ -60,7 +61,7 @@ class PackedSink : public OutputSink {
 };
 
 Result<std::unique_ptr<OutputSink>> make_packed(SinkOptions options, Packing packing, std::string_view known) {
-  packing.right_first = options.choice({"left_first", "right_first"}) == 1;
+  packing.right_first = options.eyes_swapped();
   const int size =
       packing.vertical ? options.choice({"half", "full", "frame_packing"}) : options.choice({"half", "full"});
   packing.full = size >= 1;

@@ -13,6 +13,8 @@ constexpr GLint kLayerLocation = 0, kOriginLocation = 1;  // shaders/copy.frag
 
 class QuadBufferSink : public OutputSink {
  public:
+  explicit QuadBufferSink(bool right_first) : right_first_(right_first) {}
+
   SinkTraits traits() const noexcept override {
     const PixelSize size{screen_.window_w, screen_.window_h};
     return {.name = "quad_buffer", .views = 2, .view = size, .output = size, .tracked = true, .stereo_visual = true};
@@ -31,7 +33,7 @@ class QuadBufferSink : public OutputSink {
     for (std::size_t eye = 0; eye < 2; ++eye) {
       DUBSAR_TRY(copy_.begin(target, views.coded()));
       glDrawBuffer(target.eye_buffers[eye]);
-      glUniform1i(kLayerLocation, static_cast<GLint>(eye));
+      glUniform1i(kLayerLocation, static_cast<GLint>(right_first_ ? 1 - eye : eye));
       glUniform2i(kOriginLocation, 0, 0);
       DUBSAR_TRY(copy_.draw());
     }
@@ -42,6 +44,7 @@ class QuadBufferSink : public OutputSink {
   }
 
  private:
+  bool right_first_;
   Screen screen_;
   std::array<View, 2> views_;
   ComposePass copy_{"copy.frag"};
@@ -50,8 +53,9 @@ class QuadBufferSink : public OutputSink {
 }  // namespace
 
 Result<std::unique_ptr<OutputSink>> make_quad_buffer_sink(SinkOptions options) {
-  DUBSAR_TRY(options.finish("no options"));
-  return std::make_unique<QuadBufferSink>();
+  const bool right_first = options.eyes_swapped();
+  DUBSAR_TRY(options.finish("left_first or right_first"));
+  return std::make_unique<QuadBufferSink>(right_first);
 }
 
 }  // namespace dubsar

@@ -17,11 +17,30 @@ constexpr double kMinAspect = 0.05, kMaxAspect = 20.0;
 constexpr double kFieldOfViewDeg =
     14.0;  // vertical, at the place the maker expects the viewer (Looking Glass documentation)
 
+/// Letters of "_qs8x6a0.75" or "_qs8x6" at the start of `text`; 0 when it starts otherwise.
+std::size_t suffix_length(std::string_view text) {
+  std::size_t at = 3;
+  const auto digits = [&] {
+    const std::size_t first = at;
+    while (at < text.size() && text[at] >= '0' && text[at] <= '9') ++at;
+    return at > first;
+  };
+  const auto letter = [&](char c) { return at < text.size() && text[at] == c && (++at, true); };
+  if (!digits() || !letter('x') || !digits()) return 0;
+  std::size_t end = at;
+  if (letter('a') && digits()) {
+    end = at;
+    if (letter('.') && digits()) end = at;
+  }
+  return end;
+}
+
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 struct QuiltSetup {
   QuiltLayout layout;
   double aspect = 0.0, cone_deg = 0.0;
+  ViewFocus focus{};
   double height_mm = 0.0, distance_mm = 0.0;  ///< 0: from the screen, from the field of view
 };
 
@@ -35,6 +54,10 @@ class QuiltSink : public OutputSink {
             .views = layout.views(),
             .view = {layout.tile_width(), layout.tile_height()},
             .output = {layout.width_px, layout.height_px},
+            .own_pixels = true,
+            .own_size = setup_.height_mm > 0,
+            .aspect = setup_.aspect,
+            .focus = setup_.focus,
             .file_suffix = quilt_suffix(layout.columns, layout.rows, setup_.aspect)};
   }
   Result<void> configure(const Screen& screen) override {
@@ -50,7 +73,8 @@ class QuiltSink : public OutputSink {
     const WindowRect window{{-half_w, -half_h, 0}, {half_w, -half_h, 0}, {-half_w, half_h, 0}};
     views_.clear();
     for (const glm::dvec3& eye : cone_eyes(setup_.layout.views(), radians(setup_.cone_deg), distance))
-      views_.push_back(viewer_view(window, viewer, eye));
+      views_.push_back(focused_view(viewer_view(window, viewer, eye), setup_.focus, static_cast<int>(views_.size()),
+                                    setup_.layout.views()));
     return views_;
   }
   Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
@@ -71,6 +95,19 @@ class QuiltSink : public OutputSink {
 
 std::string quilt_suffix(int columns, int rows, double aspect) {
   return fmt::format("_qs{}x{}a{:.5g}", columns, rows, aspect);
+}
+
+std::filesystem::path name_with_suffix(const std::filesystem::path& path, std::string_view suffix) {
+  if (suffix.empty()) return path;
+  std::string stem = path.stem().string();
+  for (std::size_t at = stem.find("_qs"); at != std::string::npos; at = stem.find("_qs", at)) {
+    if (const std::size_t length = suffix_length(std::string_view(stem).substr(at)); length > 0)
+      stem.erase(at, length);
+    else
+      ++at;
+  }
+  std::filesystem::path out = path;
+  return out.replace_filename(stem + std::string(suffix) + path.extension().string());
 }
 
 std::optional<QuiltName> parse_quilt_name(std::string_view file_name) {
@@ -136,14 +173,18 @@ std::vector<Image> split_quilt(const Image& quilt, const QuiltLayout& layout) {
 }
 
 Result<std::unique_ptr<OutputSink>> make_quilt_sink(SinkOptions options) {
-  QuiltSetup setup{{8, 6, 3360, 3360}, 0.75, 40.0};  // a Looking Glass Portrait
+  QuiltSetup setup{.layout = {8, 6, 3360, 3360}, .aspect = 0.75, .cone_deg = 40.0};  // a Looking Glass Portrait
   DUBSAR_ASSIGN(const auto panel, options.panel());
   if (panel) {
     const PanelProfile& profile = *panel;
     if (profile.quilt.views() < 1)
       return fail(ErrorKind::kUsage, "display quilt: panel \"{}\" takes no quilts, expected a Looking Glass",
                   profile.name);
-    setup = {profile.quilt, profile.aspect, profile.view_cone_deg, profile.height_mm(), profile.design_distance_mm};
+    setup = {.layout = profile.quilt,
+             .aspect = profile.aspect,
+             .cone_deg = profile.view_cone_deg,
+             .height_mm = profile.height_mm(),
+             .distance_mm = profile.design_distance_mm};
   }
   QuiltLayout& layout = setup.layout;
   layout = {options.whole("columns", 1, kMaxTiles, layout.columns), options.whole("rows", 1, kMaxTiles, layout.rows),
@@ -151,7 +192,9 @@ Result<std::unique_ptr<OutputSink>> make_quilt_sink(SinkOptions options) {
             options.whole("height", kMinTilePx, kMaxQuiltPx, layout.height_px)};
   setup.aspect = options.number("aspect", kMinAspect, kMaxAspect, setup.aspect);
   setup.cone_deg = options.number("cone", 1, 170, setup.cone_deg);
-  DUBSAR_TRY(options.finish("panel=PROFILE, calibration=FILE, columns=, rows=, width=, height=, aspect=, cone="));
+  setup.focus = options.focus();
+  DUBSAR_TRY(options.finish(
+      "panel=PROFILE, calibration=FILE, columns=, rows=, width=, height=, aspect=, cone=, focus=, zoom="));
   if (setup.layout.tile_width() < kMinTilePx || setup.layout.tile_height() < kMinTilePx)
     return fail(ErrorKind::kUsage, "display quilt: tiles of {} x {} pixels are too small, expected at least {} a side",
                 setup.layout.tile_width(), setup.layout.tile_height(), kMinTilePx);

@@ -2,6 +2,7 @@
 // All views of a light field panel in one picture, as tiles: view 0, the leftmost camera, at the lower left, then to
 // the right, then upwards. The file's name carries the layout: NAME_qs8x6a0.75.png has 8 columns, 6 rows, aspect 0.75.
 
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -23,6 +24,10 @@ struct QuiltName {
 /// "_qs8x6a0.75"
 std::string quilt_suffix(int columns, int rows, double aspect);
 
+/// `path` with a display's file suffix before the extension; quilts' suffixes that stand in it already are taken
+/// away, so that there is one.
+std::filesystem::path name_with_suffix(const std::filesystem::path& path, std::string_view suffix);
+
 /// Finds "_qs<columns>x<rows>[a<aspect>]" in a file's name; the last one counts. Nothing when there is none or it is
 /// out of range (1 to 100 a side, aspect 0.05 to 20).
 std::optional<QuiltName> parse_quilt_name(std::string_view file_name);
@@ -41,6 +46,8 @@ Image make_quilt(std::span<const Image> views, const QuiltLayout& layout);
 /// The tiles of a quilt as views, RGB.
 std::vector<Image> split_quilt(const Image& quilt, const QuiltLayout& layout);
 
+/// Options: PROFILE or panel=, calibration=FILE, columns= rows= width= height= aspect= cone=, focus= and zoom=
+/// (ViewFocus).
 Result<std::unique_ptr<OutputSink>> make_quilt_sink(SinkOptions options);
 
 }  // namespace dubsar

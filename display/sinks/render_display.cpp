@@ -145,6 +145,16 @@ Result<DisplayPicture> render_pattern(const SinkSpec& display, const DisplayOpti
   return compose_picture(stage, array);
 }
 
+Result<DisplayPicture> show_pictures(const ViewPictures& pictures, const SinkSpec& display,
+                                     const DisplayOptions& options) {
+  DUBSAR_ASSIGN(const Stage stage, open_stage(display, options));
+  const SinkTraits traits = stage.sink->traits();
+  DUBSAR_ASSIGN(ViewArray array, ViewArray::create(traits.view.width, traits.view.height, traits.views));
+  stage.sink->views(options.viewer);
+  DUBSAR_TRY(write_pictures(pictures, traits, options.viewer, array));
+  return compose_picture(stage, array);
+}
+
 Result<Image> see_display(const DisplayPicture& picture, const glm::dvec3& eye_mm) {
   if (!picture.light)
     return fail(

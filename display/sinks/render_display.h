@@ -15,6 +15,7 @@
 #include "display/render/camera.h"
 #include "display/render/shading.h"
 #include "display/sinks/sink_catalog.h"
+#include "display/sinks/view_pictures.h"
 
 namespace dubsar {
 
@@ -48,6 +49,11 @@ Result<DisplayPicture> render_display(const TriMesh& mesh, const SinkSpec& displ
 /// The numbered-view test pattern (display/render/test_pattern.h) as the display shows it. Uses the screen, the viewer
 /// and the catalog of `options`. Errors as render_display.
 Result<DisplayPicture> render_pattern(const SinkSpec& display, const DisplayOptions& options);
+
+/// A picture that exists already, as the display shows it. Uses the screen, the viewer and the catalog of `options`.
+/// Errors as render_display.
+Result<DisplayPicture> show_pictures(const ViewPictures& pictures, const SinkSpec& display,
+                                     const DisplayOptions& options);
 
 /// What an eye (screen frame, mm) sees of the picture, of the panel's size. kUsage for displays without lenses, and for
 /// eyes that are not before the panel.

@@ -43,7 +43,7 @@ class ShutterSink : public OutputSink {
 }  // namespace
 
 Result<std::unique_ptr<OutputSink>> make_shutter_sink(SinkOptions options) {
-  const bool right_first = options.choice({"left_first", "right_first"}) == 1;
+  const bool right_first = options.eyes_swapped();
   DUBSAR_TRY(options.finish("left_first or right_first"));
   return std::make_unique<ShutterSink>(right_first);
 }

@@ -22,19 +22,28 @@ constexpr std::array<SinkBackend, 11> kSinks{{
      make_side_by_side_sink},
     {"top_bottom", "two views above each other: half (default), full, frame_packing; left_first (default), right_first",
      make_top_bottom_sink},
-    {"interlaced", "two views in alternate rows (default), columns, checkerboard or subpixels; left_first, right_first",
+    {"interlaced",
+     "two views in alternate rows (default), columns, checkerboard or subpixels; left_first, right_first; "
+     "rows and squares are counted from the top (default) or bottom",
      make_interlaced_sink},
-    {"anaglyph", "two views for coloured glasses: red_cyan_dubois (default) and 13 others", make_anaglyph_sink},
-    {"lenticular", "lens sheets: PROFILE and/or calibration=FILE; linear (default), nearest, gaussian3, gaussian10",
+    {"anaglyph", "two views for coloured glasses: red_cyan_dubois (default) and 13 others; left_first, right_first",
+     make_anaglyph_sink},
+    {"lenticular",
+     "lens sheets: PROFILE and/or calibration=FILE; of many views linear (default), nearest, gaussian3, gaussian10, "
+     "focus=, zoom=; of two tracked ones left_first, right_first",
      make_lenticular_sink},
     {"quad_buffer",
-     "two views in a quad-buffered window (shutter glasses, zSpace); side_by_side where there is no stereo visual",
+     "two views in a quad-buffered window (shutter glasses, zSpace); left_first, right_first; side_by_side where there "
+     "is no "
+     "stereo visual",
      make_quad_buffer_sink},
     {"shutter",
      "two views in turn, one at each refresh, for projectors and glasses of 100 Hz and more: left_first "
      "(default), right_first",
      make_shutter_sink},
-    {"quilt", "all views of a Looking Glass panel as tiles: PROFILE or columns=,rows=,width=,height=,aspect=,cone=",
+    {"quilt",
+     "all views of a Looking Glass panel as tiles: PROFILE or columns=,rows=,width=,height=,aspect=,cone=,"
+     "focus=,zoom=",
      make_quilt_sink},
     {"image", "one view into files: path=FILE.png, or path=NAME-%.png for numbered ones", make_image_sink},
     {"null", "draws nothing, for measuring", make_null_sink},

@@ -7,7 +7,7 @@
 
 namespace dubsar {
 
-/// Left and right view through the window.
+/// Left and right view through the window; the other way round where viewer.swap_eyes says so.
 std::array<View, 2> stereo_views(const Screen& screen, const Viewer& viewer);
 
 }  // namespace dubsar

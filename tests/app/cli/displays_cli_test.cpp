@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/base/atomic_file.h"
+#include "core/image_io/picture_file.h"
 #include "core/image_io/png_file.h"
 #include "tests/app/cli/run_program.h"
 #include "tests/devices/fake_bridge.h"
@@ -106,8 +107,17 @@ TEST_F(DisplaysCommand, CalibrationFilesAreReadAndProblemsNamed) {
   EXPECT_EQ(json({"displays", "--calibration", file("visual.json")})["calibrations"][0]["panel"], "looking-glass-go");
   ASSERT_TRUE(write_file_atomically(file("bad.json"), R"({"pitch": 80.1, "slope": 0})"));
   EXPECT_EQ(run_dubsar({"displays", "--calibration", file("nowhere.json")}).exit_code, 66);
-  const auto bad = json({"displays", "--calibration", file("bad.json")})["calibrations"][0];
+  const auto bad = json({"displays", "--calibration", file("bad.json")}, 78)["calibrations"][0];
   EXPECT_NE(bad["problem"].get<std::string>().find("slope is 0"), std::string::npos) << bad;
+  for (const char* text : {"{\"pitch\": ", "", "[]", "\x89PNG", "{\"pitch\": {\"value\": \"52\"}}"}) {
+    ASSERT_TRUE(write_file_atomically(file("bad.json"), text));
+    EXPECT_EQ(run_dubsar({"displays", "--calibration", file("bad.json")}).exit_code, 78) << text;
+    EXPECT_EQ(run_dubsar({"render", "--pattern", "-o", file("p.png"), "--display",
+                          "lenticular:calibration=" + file("bad.json")})
+                  .exit_code,
+              78)
+        << text;
+  }
 }
 
 TEST_F(DisplaysCommand, AnAdjustmentChangesThePictureUntilItIsReset) {
@@ -168,6 +178,80 @@ TEST_F(DisplaysCommand, WhatAnEyeSeesIsWrittenWithItsCrosstalk) {
   EXPECT_LT(seen["crosstalk_percent"].get<double>(), 5.0);
   EXPECT_EQ(seen["view_percent"].size(), 5u);
   EXPECT_EQ(read_png(file("s.png"))->width, 1920);
+}
+
+TEST_F(DisplaysCommand, OptionsThatADisplayDoesNotLookAtAreRefused) {
+  const auto refused = [&](const std::string& display, std::vector<std::string> extra) {
+    std::vector<std::string> arguments{"render", file("card.obj"), "-o", file("y.png"), "--display", display};
+    const std::string option = extra[0];
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    const ProgramRun run = run_dubsar(arguments);
+    EXPECT_EQ(run.exit_code, 64) << display << " " << option;
+    EXPECT_NE(run.err.find(option), std::string::npos) << run.err;
+  };
+  for (const char* display : {"quilt:looking-glass-go", "lenticular:looking-glass-go"}) {
+    refused(display, {"--size", "300x200"});
+    refused(display, {"--viewer", "10,0,500"});
+    refused(display, {"--eye-distance", "60"});
+    refused(display, {"--screen-mm", "300x200"});
+  }
+  refused("quilt:columns=3,rows=2,width=300,height=200", {"--size", "300x200"});
+  refused("lenticular:spatiallabs-15.6", {"--size", "300x200"});
+  refused("mono", {"--eye-distance", "60"});
+  refused("anaglyph", {"--viewer", "0,0,10"});
+  refused("anaglyph", {"--viewer", "0,0,-600"});
+  EXPECT_EQ(
+      run_dubsar({"render", "--pattern", "-o", file("y.png"), "--display", "anaglyph", "--style", "ao"}).exit_code, 64);
+  EXPECT_EQ(run_dubsar({"view", file("card.obj"), "--offscreen", "--script", file("none.json"), "--size", "320x240",
+                        "--display", "quilt:looking-glass-go"})
+                .exit_code,
+            64);
+  EXPECT_FALSE(fs::exists(file("y.png")));
+}
+
+TEST_F(DisplaysCommand, AQuiltsNameSaysItsLayoutOnce) {
+  const std::string display = "quilt:columns=3,rows=2,width=300,height=200,aspect=0.75";
+  for (const char* name : {"n.png", "n_qs3x2a0.75.png", "n_qs8x6a1.png"})
+    EXPECT_EQ(json({"render", "--pattern", "-o", file(name), "--display", display})["output"],
+              file("n_qs3x2a0.75.png"));
+}
+
+TEST_F(DisplaysCommand, APairThatExistsIsShownOnAnyDisplay) {
+  Image pair(64, 18, 3);
+  for (int y = 0; y < 18; ++y)
+    for (int x = 0; x < 64; ++x) pair.at(x, y)[x < 32 ? 0 : 2] = 200;  // left red, right blue
+  for (const char* name : {"pair_sbs.png", "pair_sbs.tif", "pair_sbs.jpg"}) {
+    ASSERT_TRUE(write_picture(file(name), pair));
+    const auto made =
+        json({"show", file(name), "-o", file("a.png"), "--display", "anaglyph:red_cyan_full", "--size", "160x90"});
+    EXPECT_EQ(made["layout"], "side by side") << name;
+    const Image out = *read_png(file("a.png"));
+    EXPECT_NEAR(out.at(80, 45)[0], 200, 4) << name << ": the left eye's red";
+    EXPECT_NEAR(out.at(80, 45)[2], 200, 4) << name << ": the right eye's blue";
+    EXPECT_EQ(json({"show", file(name), "-o", file("b.png"), "--display", "mono", "--swap"})["views"], 1);
+    EXPECT_NEAR(read_png(file("b.png"))->at(960, 540)[2], 200, 4) << "exchanged: the left one is blue";
+  }
+  const auto quilt = json({"show", file("pair_sbs.png"), "-o", file("c.jpg"), "--display",
+                           "quilt:columns=4,rows=1,width=128,height=18,aspect=1.7778"});
+  EXPECT_EQ(quilt["output"], file("c_qs4x1a1.7778.jpg"));
+  const auto seen = json({"show", file("c_qs4x1a1.7778.jpg"), "-o", file("d.png"), "--display",
+                          "lenticular:spatiallabs-15.6", "--see-from", "31.5,0,600", "--cone", "30"});
+  EXPECT_EQ(seen["input_views"], 4);
+  EXPECT_EQ(seen["main_view"], 1);
+  EXPECT_GT(read_png(file("d.png"))->at(1920, 1080)[2], 180) << "the right eye sees the right half's blue";
+  EXPECT_LT(read_png(file("d.png"))->at(1920, 1080)[0], 60);
+  const auto code = [&](std::vector<std::string> arguments) { return run_dubsar(arguments).exit_code; };
+  EXPECT_EQ(code({"show", file("pair_sbs.png"), "-o", file("e.png")}), 64);
+  EXPECT_EQ(code({"show", file("pair_sbs.png"), "--display", "mono"}), 64);
+  EXPECT_EQ(code({"show", file("pair_sbs.png"), "-o", file("pair_sbs.png"), "--display", "mono"}), 64);
+  EXPECT_EQ(code({"show", file("c_qs4x1a1.7778.jpg"), "-o", file("c.jpg"), "--display",
+                  "quilt:columns=4,rows=1,width=128,height=18,aspect=1.7778"}),
+            64)
+      << "with its suffix the product's name is that of the picture that is shown";
+  EXPECT_EQ(code({"show", file("pair_sbs.png"), "-o", file("e.png"), "--display", "mono", "--layout", "sideways"}), 64);
+  EXPECT_EQ(code({"show", file("pair_sbs.png"), "-o", file("e.png"), "--display", "mono", "--layout", "qs9x1"}), 65);
+  EXPECT_EQ(code({"show", file("none_sbs.png"), "-o", file("e.png"), "--display", "mono"}), 66);
+  EXPECT_FALSE(fs::exists(file("e.png")));
 }
 
 TEST_F(DisplaysCommand, OptionsThatContradictAreUsageErrors) {

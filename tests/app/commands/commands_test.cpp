@@ -21,6 +21,10 @@ class FakePlace final : public Workplace {
     fullscreen = !fullscreen;
     return {};
   }
+  Result<void> swap_eyes() override {
+    swapped = !swapped;
+    return {};
+  }
   void retry_sources() override { ++retries; }
   bool toggle_source(std::size_t index) override {
     toggled.push_back(index);
@@ -29,7 +33,7 @@ class FakePlace final : public Workplace {
   void say(std::string words) override { said = std::move(words); }
   void end() override { ended = true; }
   int display = 0, retries = 0;
-  bool fullscreen = false, ended = false;
+  bool fullscreen = false, swapped = false, ended = false;
   std::vector<std::size_t> toggled;
   std::string said;
 };

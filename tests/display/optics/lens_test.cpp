@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "display/optics/weave.h"
+
 namespace dubsar {
 namespace {
 
@@ -95,6 +97,54 @@ TEST(ViewWeights, SumToOneAndCentreOnTheView) {
   const auto linear = view_weights(10.25 / 48.0, 48, ViewFilter::kLinear);
   EXPECT_EQ(linear[0].view, 10);
   EXPECT_NEAR(linear[1].weight, 0.25, 1e-9);
+}
+
+/// The maker's weave (looking-glass-webxr, GaussianViewFiltering): weights exp(-(g - floor(g N + i) / N)^2 / (2
+/// sigma^2)).
+TEST(ViewWeights, GaussiansAreThoseOfTheMakersWeave) {
+  for (const int views : {5, 45, 48, 66})
+    for (const double g : {0.105, 0.3, 0.4999, 0.77}) {
+      for (const auto& [filter, reach] : {std::pair{ViewFilter::kGaussian3, 1}, {ViewFilter::kGaussian10, 10}}) {
+        std::vector<double> expected(static_cast<std::size_t>(views), 0.0);
+        double sum = 0.0;
+        for (int i = -reach; i <= reach; ++i) {
+          const double snapped = std::floor((g + static_cast<double>(i) / views) * views);
+          if (snapped < 0 || snapped >= views) continue;  // the maker's would take a tile of another row
+          const double off = g - snapped / views;
+          expected[static_cast<std::size_t>(snapped)] = std::exp(-off * off / (2 * 0.01 * 0.01));
+          sum += expected[static_cast<std::size_t>(snapped)];
+        }
+        for (const auto& [view, weight] : view_weights(g, views, filter))
+          EXPECT_NEAR(weight, expected[static_cast<std::size_t>(view)] / sum, 1e-9) << views << " " << g << " " << view;
+      }
+    }
+}
+
+/// What the maker's weave for Unity (Lightfield.shader) multiplies a row's colours with; v up from the bottom.
+double makers_fringe(double fringe, double v, double height) {
+  const double pixel = v * height + std::ceil(fringe * 0.5);
+  return 1.0 - std::abs(fringe) * std::floor(std::fmod(pixel, 2.0));
+}
+
+TEST(LensSheet, FringeDimsTheRowsThatTheMakersWeaveDims) {
+  LookingGlassFigures f = portrait();
+  for (const double fringe : {0.0, 0.2, -0.2, 1.0, -0.03}) {
+    f.fringe = fringe;
+    const LensSheet sheet = lens_sheet(f);
+    for (int y = 0; y < 9; ++y)
+      EXPECT_NEAR(row_light(sheet, y), makers_fringe(fringe, (y + 0.5) / f.screen_height, f.screen_height), 1e-9)
+          << fringe << ", row " << y << " from the bottom";
+  }
+}
+
+TEST(LensSheet, AWovenWhiteIsDimmedInEverySecondRow) {
+  LookingGlassFigures f = portrait();
+  f.screen_width = 8, f.screen_height = 4, f.fringe = 0.2;
+  Image white(2, 2, 3);
+  std::fill(white.pixels.begin(), white.pixels.end(), std::uint8_t{255});
+  const Image woven = weave_views(std::vector<Image>(3, white), lens_sheet(f));
+  for (int row = 0; row < 4; ++row)  // the bottom row is an even one
+    EXPECT_EQ(woven.at(3, row)[1], row % 2 == 1 ? 204 : 255) << "row " << row << " from the top";
 }
 
 LensOptics laptop_lens() {

@@ -151,6 +151,22 @@ TEST(Viewer, ClipPlanesHoldTheScene) {
   EXPECT_NEAR(ndc(view, {0, 0, -300}).z, 1, 1e-9);
 }
 
+TEST(ViewFocus, CamerasMoveAsPicturesDo) {
+  const ViewFocus focus{0.03, 1.7};
+  const glm::dvec3 point(12, -7, 40);
+  const auto uv = [&](const View& view) { return 0.5 + 0.5 * glm::dvec2(ndc(view, point)); };
+  for (int i = 0; i < 5; ++i) {
+    const View plain = viewer_view(kScreen.window_rect(), {}, {20.0 * i - 40, 0, 600});
+    const glm::dvec2 from = focus_source(focus, i, 5, uv(focused_view(plain, focus, i, 5)));
+    EXPECT_NEAR(from.x, uv(plain).x, 1e-12);
+    EXPECT_NEAR(from.y, uv(plain).y, 1e-12);
+  }
+  EXPECT_EQ(focus_source({}, 3, 5, {0.2, 0.9}), glm::dvec2(0.2, 0.9));
+  EXPECT_LT(uv(focused_view(viewer_view(kScreen.window_rect(), {}, {40, 0, 600}), {0.1, 1}, 4, 5)).x,
+            uv(viewer_view(kScreen.window_rect(), {}, {40, 0, 600})).x)
+      << "above 0: the right eye sees it farther to the left, so that it comes nearer";
+}
+
 TEST(Screen, NonsenseIsRefused) {
   EXPECT_TRUE(check_screen(kScreen));
   Screen screen = kScreen;

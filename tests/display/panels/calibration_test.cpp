@@ -27,6 +27,16 @@ TEST(Calibration, WrappedAndBareNumbersAreTheSame) {
   EXPECT_DOUBLE_EQ(bare->figures.pitch, wrapped->figures.pitch);
 }
 
+TEST(Calibration, TheFringeGoesIntoTheSheet) {
+  const auto read = parse_calibration(
+      R"({"serial": "LKG-4K-1", "pitch": 50.1, "slope": -7.7, "DPI": 283, "screenW": 3840, "screenH": 2160,
+          "fringe": {"value": -0.15}})",
+      "large");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_DOUBLE_EQ(lens_sheet(read->figures).fringe, -0.15);
+  EXPECT_DOUBLE_EQ(calibrated_profile(built_in_panels(), *read)->sheet->fringe, -0.15);
+}
+
 TEST(Calibration, PicksTheModelBySerial) {
   const auto profile = calibrated_profile(built_in_panels(), *parse_calibration(kWrapped, "visual.json"));
   ASSERT_TRUE(profile);

@@ -105,6 +105,45 @@ TEST_F(SinksGl, InterlacedPicturesEqualTheReference) {
       }
 }
 
+/// Bino takes the parity of gl_FragCoord, which counts from the screen's lower left corner.
+TEST_F(SinksGl, RowsAndSquaresMayBeCountedFromTheBottom) {
+  for (const char* pattern : {"rows", "checkerboard"})
+    for (const int height : {1080, 1081}) {
+      auto sink = SinkCatalog().make(std::string("interlaced:bottom,") + pattern).value();
+      const Screen screen{.height_px = height, .window_x = 6, .window_y = 11, .window_w = 16, .window_h = 9};
+      ASSERT_TRUE(sink->configure(screen));
+      const auto views = noise(sink->traits());
+      const Image out = compose(*sink, views);
+      for (int y = 0; y < out.height; ++y)
+        for (int x = 0; x < out.width; ++x) {
+          const int from_bottom = height - 1 - (screen.window_y + y), from_left = screen.window_x + x;
+          const int eye = (from_bottom + (pattern[0] == 'c' ? from_left : 0)) % 2;
+          ASSERT_EQ(out.at(x, y)[1], views[static_cast<std::size_t>(eye)].at(x, y)[1]) << pattern << " " << height;
+        }
+    }
+  EXPECT_EQ(SinkCatalog().make("interlaced:columns,bottom").error().kind, ErrorKind::kUsage);
+}
+
+TEST_F(SinksGl, ExchangedEyesAreTheOtherViewsPicture) {
+  for (const char* spec : {"anaglyph:amber_blue_half", "lenticular:small-tracked"}) {
+    PanelSet panels = built_in_panels();
+    PanelProfile small = panels.find("spatiallabs-15.6").value();
+    small.name = "small-tracked", small.width_px = 120, small.height_px = 40, small.width_mm = 10.8;
+    panels.put(small);
+    Image pictures[2];
+    for (const bool exchanged : {false, true}) {
+      auto sink = SinkCatalog(panels).make(std::string(spec) + (exchanged ? ",right_first" : "")).value();
+      ASSERT_TRUE(sink->configure({.window_w = 120, .window_h = 40}));
+      sink->views(Viewer());
+      state_ = 7;
+      auto views = noise(sink->traits());
+      if (exchanged) std::swap(views[0], views[1]);
+      pictures[exchanged] = compose(*sink, views);
+    }
+    EXPECT_EQ(pictures[0].pixels, pictures[1].pixels) << spec;
+  }
+}
+
 TEST_F(SinksGl, AnaglyphsEqualTheReferenceToOneStep) {
   for (const AnaglyphVariant& variant : anaglyph_variants()) {
     auto sink = SinkCatalog().make("anaglyph:" + std::string(variant.name)).value();
@@ -148,8 +187,11 @@ TEST_F(SinksGl, LensWeavesEqualTheReference) {
     for (const char* filter : {"nearest", "linear", "gaussian3", "gaussian10"}) {
       if (std::string_view(name).find("gen3") != std::string_view::npos && filter != std::string_view("nearest"))
         continue;
-      const PanelProfile profile = panels.find(name).value();
-      auto sink = SinkCatalog().make(std::string("lenticular:") + name + "," + filter).value();
+      PanelProfile profile = panels.find(name).value();
+      profile.sheet->fringe = filter[0] == 'l' ? -0.25 : 0.0;
+      SinkCatalog catalog;
+      catalog.put(profile);
+      auto sink = catalog.make(std::string("lenticular:") + name + "," + filter).value();
       // A window at the panel's far corner: the largest phases, and the panel's coordinates must count.
       const Screen screen{.width_px = profile.width_px,
                           .height_px = profile.height_px,
@@ -181,7 +223,8 @@ TEST_F(SinksGl, LensWeavesEqualTheReference) {
             double sum = 0;
             for (const auto& [view, weight] : view_weights(place, traits.views, mode))
               sum += weight * linear_from_srgb(views[view].at(0, 0)[k]);
-            expected.at(x, y)[k] = srgb_from_linear(sum);
+            const double dimmed = row_light(sheet, profile.height_px - 1 - (8 + y));
+            expected.at(x, y)[k] = static_cast<std::uint8_t>(std::lround(255 * dimmed * coded_from_linear(sum)));
           }
       EXPECT_LE(differing(out, expected), 0.0005) << name << " " << filter;
     }

@@ -207,6 +207,15 @@ TEST(Quilt, NamesAreWrittenStrictlyAndReadTolerantly) {
   EXPECT_EQ(quilt_suffix(8, 6, 0.75), "_qs8x6a0.75");
   EXPECT_EQ(quilt_suffix(5, 9, 16.0 / 9), "_qs5x9a1.7778");
   EXPECT_EQ(quilt_suffix(11, 6, 0.5625), "_qs11x6a0.5625");
+  for (const auto& [given, expected] : {std::pair{"d/tablet.png", "d/tablet_qs8x6a0.75.png"},
+                                        {"d/tablet_qs8x6a0.75.png", "d/tablet_qs8x6a0.75.png"},
+                                        {"tablet_qs5x9a1.7778.tif", "tablet_qs8x6a0.75.tif"},
+                                        {"tablet_qs8x6.png", "tablet_qs8x6a0.75.png"},
+                                        {"tablet_qs8x6a0.75_new.png", "tablet_new_qs8x6a0.75.png"},
+                                        {"tablet_qs8x6a0.75_qs8x6a0.75.png", "tablet_qs8x6a0.75.png"},
+                                        {"a_qs.png", "a_qs_qs8x6a0.75.png"}})
+    EXPECT_EQ(name_with_suffix(given, "_qs8x6a0.75"), expected);
+  EXPECT_EQ(name_with_suffix("a_qs8x6a0.75.png", ""), "a_qs8x6a0.75.png");
   const struct {
     const char* text;
     int columns, rows;
