@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "core/exa/offset_window.h"
 #include "core/exa/probability.h"
@@ -15,26 +16,17 @@ inline constexpr std::size_t kOffsetModels = 2;  ///< 0: crossings of a scan, 1:
 inline constexpr std::size_t kOffsetUnits = 24;
 inline constexpr int kModelledBits = 6;  ///< of an offset; the lower ones are noise
 
-/// Logit steps (1 / 256) per 1 / 1024 grid step, times 256: 2^16 / (16 * 2^(s / 4)) for spread s, rounded.
-inline constexpr std::array<std::int32_t, 32> kSteepness{4096, 3444, 2896, 2435, 2048, 1722, 1448, 1218, 1024, 861, 724,
-                                                         609,  512,  431,  362,  304,  256,  215,  181,  152,  128, 108,
-                                                         91,   76,   64,   54,   45,   38,   32,   27,   23,   19};
+/// Mean in 1 / 128 grid step from the middle of the edge, -128..127; spread 0..31.
+struct OffsetEstimate {
+  int mean = 0, spread = 0;
+};
 
 /// Probabilities of the 2^bits symbols of one edge, as intervals of 65536.
 class OffsetDistribution {
  public:
-  OffsetDistribution(int mean, int spread, int bits) noexcept
-      : mean_(mean), steepness_(kSteepness[static_cast<std::size_t>(spread)]), bits_(bits) {}
+  OffsetDistribution(const OffsetEstimate& estimate, int bits) noexcept : estimate_(estimate), bits_(bits) {}
   /// Start of the interval of symbol k, 0..2^bits; rises by 32 at least with each k.
-  std::uint32_t start(std::uint32_t k) const noexcept {
-    if (k == 0) return 0;
-    const std::uint32_t symbols = 1u << bits_;
-    if (k == symbols) return 1u << 16;
-    const std::int64_t distance = (std::int64_t{k} << (10 - bits_)) - 512 - mean_;
-    const std::int64_t logit = distance * steepness_ >> 8;
-    const std::uint32_t below = probability_of(static_cast<int>(logit < -2048 ? -2048 : logit > 2047 ? 2047 : logit));
-    return (below * (65536 - 32 * symbols) >> 16) + 32 * k;
-  }
+  std::uint32_t start(std::uint32_t k) const noexcept;
   /// The symbol whose interval holds `place`, 0..65535.
   std::uint32_t find(std::uint32_t place) const noexcept {
     std::uint32_t low = 0;
@@ -44,24 +36,49 @@ class OffsetDistribution {
   }
 
  private:
-  std::int64_t mean_;
-  std::int64_t steepness_;
+  OffsetEstimate estimate_;
   int bits_;
+};
+
+/// The same for 4 bits, all of them in a table.
+class OffsetTable {
+ public:
+  static constexpr int kBits = 4;
+  using Starts = std::array<std::uint16_t, 16>;
+  static const OffsetTable& instance();
+  OffsetTable();
+  const Starts& starts(const OffsetEstimate& e) const noexcept {
+    return rows_[static_cast<std::size_t>(e.spread) * 256 + static_cast<std::size_t>(e.mean + 128)];
+  }
+  static std::uint32_t end(const Starts& starts, std::uint32_t symbol) noexcept {
+    return symbol == 15 ? 65536u : starts[symbol + 1];
+  }
+  static std::uint32_t find(const Starts& starts, std::uint32_t place) noexcept {
+    const auto sought = static_cast<std::uint16_t>(place);
+    std::uint16_t below = 0;
+    for (const std::uint16_t start : starts) below = static_cast<std::uint16_t>(below + (start <= sought ? 1 : 0));
+    return below - 1u;
+  }
+
+ private:
+  std::vector<Starts> rows_;
 };
 
 class OffsetModel {
  public:
   static const OffsetModel& instance(std::size_t which);
   explicit OffsetModel(const std::int16_t* weights);
-  OffsetDistribution predict(int axis, const OffsetInputs& inputs, int bits) const noexcept;
+  OffsetEstimate predict(int axis, const OffsetInputs& inputs) const noexcept;
+
+  /// Weights of two inputs at a time for all units, and what makes an estimate of the units.
+  struct alignas(64) Axis {
+    std::array<std::array<std::array<std::int16_t, 2>, kOffsetUnits>, kOffsetInputs / 2> in{};
+    std::array<std::int32_t, kOffsetUnits> bias{};
+    std::array<std::array<std::int32_t, kOffsetUnits>, 2> out{};
+    std::array<std::int32_t, 2> out_bias{};
+  };
 
  private:
-  struct Axis {
-    std::array<OffsetInputs, kOffsetUnits> in{};
-    std::array<std::int16_t, kOffsetUnits> bias{};
-    std::array<std::array<std::int16_t, kOffsetUnits>, 2> out{};
-    std::array<std::int16_t, 2> out_bias{};
-  };
   std::array<Axis, 3> axes_;
 };
 

@@ -12,7 +12,7 @@
 namespace dubsar {
 
 inline constexpr int kOffsetInputs = 52;
-using OffsetInputs = std::array<std::int16_t, 56>;  ///< padded with 0
+using OffsetInputs = std::array<std::int16_t, kOffsetInputs>;
 
 /// Signs of the points of a brick; places outside have the sign of the nearest point of the brick.
 class BrickSigns {
@@ -22,12 +22,11 @@ class BrickSigns {
   /// Points along each axis, both ends included: at most 129.
   const std::array<int, 3>& points() const noexcept { return points_; }
   bool get(int x, int y, int z) const noexcept { return row(y, z)[(x + 8) >> 3] >> (x & 7) & 1; }
-  /// Signs at x - 3 .. x + 3 of a row.
-  unsigned window(int x, int y, int z) const noexcept {
-    std::uint16_t bits;
-    std::memcpy(&bits, row(y, z) + ((x + 5) >> 3), sizeof bits);
-    return bits >> ((x + 5) & 7) & 127;
-  }
+  /// Where the signs of x - 3 .. x + 3 stand: 7 bits from bit (x + 5) & 7 of two bytes on.
+  const unsigned char* window(int x, int y, int z) const noexcept { return row(y, z) + ((x + 5) >> 3); }
+  /// Bytes from a row to the one of the next y, and of the next z.
+  static constexpr std::ptrdiff_t kRowBytes = 32;
+  std::ptrdiff_t plane_bytes() const noexcept { return (points_[1] + 2 * kBorder) * kRowBytes; }
   /// Signs from x = 0, 64 or 128 on.
   std::uint64_t word(int y, int z, int from) const noexcept {
     std::uint64_t bits;
@@ -36,7 +35,6 @@ class BrickSigns {
   }
 
  private:
-  static constexpr std::ptrdiff_t kRowBytes = 32;
   const unsigned char* row(int y, int z) const noexcept {
     return bytes_.data() + ((z + kBorder) * (points_[1] + 2 * kBorder) + y + kBorder) * kRowBytes;
   }
@@ -58,12 +56,15 @@ class OffsetWindow {
 
  private:
   static constexpr int kSide = 136, kUnknown = 255;
+  template <int kAxis>
+  void gather(int x, int y, int z, OffsetInputs& out) const noexcept;
   std::uint8_t* place(int axis, int x, int y, int z) noexcept { return known_.data() + index(axis, x, y, z); }
-  static std::size_t index(int axis, int x, int y, int z) noexcept {
-    return static_cast<std::size_t>((((z & 7) * 3 + axis) * kSide + y + 3) * kSide + x + 3);
+  static std::ptrdiff_t index(int axis, int x, int y, int z) noexcept {
+    return (((z & 7) * 3 + axis) * kSide + y + 3) * kSide + x + 3;
   }
   const BrickSigns& signs_;
-  std::vector<std::uint8_t> known_;  ///< eight slices
+  std::vector<std::uint8_t> known_;              ///< eight slices
+  std::array<const std::uint8_t*, 5> slices_{};  ///< place of (axis 0, 0, 0) in the slices z - 2 .. z + 2
 };
 
 }  // namespace dubsar

@@ -30,6 +30,7 @@ constexpr int kTrial = 2048;  ///< edges that decide which model a brick takes
 std::string encode_offsets(const SurfaceSamples& samples, const BrickItems& items, std::size_t model, int most) {
   const int bits = std::min(samples.offset_bits, kModelledBits), rest = samples.offset_bits - bits;
   const OffsetModel& network = OffsetModel::instance(model);
+  const OffsetTable& table = OffsetTable::instance();
   OffsetWindow window(items.signs());
   RangeEncoder out;
   OffsetInputs inputs;
@@ -40,9 +41,15 @@ std::string encode_offsets(const SurfaceSamples& samples, const BrickItems& item
                 ++count;
                 const std::uint32_t offset = samples.offsets[number], symbol = offset >> rest;
                 window.inputs(axis, x, y, z, inputs);
-                const OffsetDistribution likely = network.predict(axis, inputs, bits);
-                const std::uint32_t start = likely.start(symbol);
-                out.symbol(start, likely.start(symbol + 1) - start);
+                const OffsetEstimate estimate = network.predict(axis, inputs);
+                if (bits == OffsetTable::kBits) {
+                  const OffsetTable::Starts& starts = table.starts(estimate);
+                  out.symbol(starts[symbol], OffsetTable::end(starts, symbol) - starts[symbol]);
+                } else {
+                  const OffsetDistribution likely(estimate, bits);
+                  const std::uint32_t start = likely.start(symbol);
+                  out.symbol(start, likely.start(symbol + 1) - start);
+                }
                 out.raw(offset & ((1u << rest) - 1), rest);
                 window.store(axis, x, y, z, middle_of(offset, samples.offset_bits));
               });
@@ -121,15 +128,25 @@ Result<void> decode_samples(std::span<const std::string_view> offsets, std::span
         return;
       }
       const OffsetModel& network = OffsetModel::instance(model);
+      const OffsetTable& table = OffsetTable::instance();
       OffsetWindow window(items.signs());
       RangeDecoder in(offsets[slot].substr(1));
       OffsetInputs inputs;
       items.edges([&](int z) { window.begin_slice(z); },
                   [&](int axis, int x, int y, int z, std::uint32_t number) {
                     window.inputs(axis, x, y, z, inputs);
-                    const OffsetDistribution likely = network.predict(axis, inputs, bits);
-                    const std::uint32_t symbol = likely.find(in.place()), start = likely.start(symbol);
-                    in.symbol(start, likely.start(symbol + 1) - start);
+                    const OffsetEstimate estimate = network.predict(axis, inputs);
+                    std::uint32_t symbol = 0;
+                    if (bits == OffsetTable::kBits) {
+                      const OffsetTable::Starts& starts = table.starts(estimate);
+                      symbol = OffsetTable::find(starts, in.place());
+                      in.symbol(starts[symbol], OffsetTable::end(starts, symbol) - starts[symbol]);
+                    } else {
+                      const OffsetDistribution likely(estimate, bits);
+                      symbol = likely.find(in.place());
+                      const std::uint32_t start = likely.start(symbol);
+                      in.symbol(start, likely.start(symbol + 1) - start);
+                    }
                     const std::uint32_t offset = symbol << rest | in.raw(rest);
                     samples.offsets[number] = static_cast<std::uint16_t>(offset);
                     window.store(axis, x, y, z, middle_of(offset, samples.offset_bits));

@@ -22,7 +22,9 @@ constexpr int kFitSteps = 8;     // more than 8 change the error by less than 1 
 constexpr double kSteep = 0.15;  // cosine between edge and normal below which they hardly cross
 constexpr double kDamping = 0.05;
 constexpr double kOutsideHalf = 0.045;  // vertices that may lie further than half the bound
-constexpr int kNormalIterations = 16;
+// Seven wide steps come nearer to 32 narrow ones than 16 narrow ones do: .9 degrees on a phantom of 31 dB.
+constexpr int kNormalIterations = 7;
+constexpr float kNormalEpsilon = 0.03f;
 
 /// An active edge inside the grid and its x-quad.
 struct FitEdge {
@@ -222,6 +224,7 @@ Result<std::vector<glm::vec3>> recomputed_normals(const QuadMesh& mesh, Progress
   DUBSAR_ASSIGN(const FaceNeighbours neighbours, FaceNeighbours::build(mesh, progress));
   NormalFilterOptions options;
   options.iterations = kNormalIterations;
+  options.epsilon = kNormalEpsilon;
   DUBSAR_TRY(filter_normals(neighbours, options, faces, progress));
   return vertex_normals(mesh, faces);
 }
