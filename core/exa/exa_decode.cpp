@@ -70,9 +70,9 @@ Result<void> decode_attributes(const ExaReader& reader, const ExaHeader& header,
     DUBSAR_ASSIGN(out, decode_labels(label, model.mesh, chunks.chunks, progress));
     return {};
   };
-  if (header.shapes) {
+  if (header.shapes && !model.attributes.k_min.empty()) {
     model.attributes.shape = shape_classes(model.attributes.k_min, model.attributes.k_max);
-  } else {
+  } else if (!header.shapes) {
     DUBSAR_TRY(labels("SHAP", ExaLabel::kShape, model.attributes.shape));
   }
   DUBSAR_TRY(labels("AMBO", ExaLabel::kLight, model.attributes.ao));
@@ -115,7 +115,7 @@ SurfaceSamples empty_samples(const ExaHeader& header) {
   return samples;
 }
 
-Result<SurfaceModel> decode_model(const ExaReader& reader, Progress& progress) {
+Result<SurfaceModel> decode_model(const ExaReader& reader, const ExaReadOptions& options, Progress& progress) {
   DUBSAR_TRY(reader.check_sums());  // before anything is decoded: a damaged file costs next to nothing
   DUBSAR_ASSIGN(const ExaHeader header, reader.header());
   DUBSAR_TRY(check_memory("exa", exa_memory_bound(header)));
@@ -144,7 +144,8 @@ Result<SurfaceModel> decode_model(const ExaReader& reader, Progress& progress) {
   DUBSAR_TRY(decode_positions(reader, model, progress));
   if (position_sum_of(model) != header.position_sum || quad_sum_of(model.mesh) != header.quad_sum)
     return fail(ErrorKind::kBadData, "exa: the mesh built from this file is not the one that was written");
-  DUBSAR_TRY(decode_normals(reader, header, model, progress));
+  if (options.recompute || header.normals != ExaNormals::kRecomputed)
+    DUBSAR_TRY(decode_normals(reader, header, model, progress));
   DUBSAR_TRY(decode_attributes(reader, header, model, progress));
   return model;
 }

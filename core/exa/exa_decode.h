@@ -6,6 +6,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/exa/exa_file.h"
 #include "core/exa/exa_reader.h"
 #include "core/exa/exa_text.h"
 #include "core/exa/topology.h"
@@ -14,7 +15,7 @@
 namespace dubsar {
 
 /// As read_exa(), read_exa_level() and read_exa_box() (exa_file.h).
-Result<SurfaceModel> decode_model(const ExaReader& reader, Progress& progress);
+Result<SurfaceModel> decode_model(const ExaReader& reader, const ExaReadOptions& options, Progress& progress);
 Result<SurfaceModel> decode_level(const ExaReader& reader, int level, Progress& progress);
 Result<SurfaceModel> decode_box(const ExaReader& reader, const GridBox& box, Progress& progress);
 

@@ -58,9 +58,9 @@ Result<T> with_file(const std::filesystem::path& path, const Use& use) {
 }
 }  // namespace
 
-Result<SurfaceModel> decode_exa(std::string_view file, Progress& progress) {
+Result<SurfaceModel> decode_exa(std::string_view file, Progress& progress, const ExaReadOptions& options) {
   DUBSAR_ASSIGN(const ExaReader reader, ExaReader::open(file));
-  return decode_model(reader, progress);
+  return decode_model(reader, options, progress);
 }
 
 Result<ExaStats> write_exa(const std::filesystem::path& path, const SurfaceModel& model, Progress& progress) {
@@ -89,8 +89,9 @@ Result<ExaStats> write_exa(const std::filesystem::path& path, const SurfaceModel
   return stats_of(table, model.mesh.vertex_count());
 }
 
-Result<SurfaceModel> read_exa(const std::filesystem::path& path, Progress& progress) {
-  return with_file<SurfaceModel>(path, [&](const ExaReader& reader) { return decode_model(reader, progress); });
+Result<SurfaceModel> read_exa(const std::filesystem::path& path, Progress& progress, const ExaReadOptions& options) {
+  return with_file<SurfaceModel>(path,
+                                 [&](const ExaReader& reader) { return decode_model(reader, options, progress); });
 }
 
 Result<SurfaceModel> read_exa_level(const std::filesystem::path& path, int level, Progress& progress) {

@@ -45,9 +45,14 @@ struct ExaInfo {
 /// kPermission, kIo, kCancelled. The same bytes for any number of threads.
 Result<ExaStats> write_exa(const std::filesystem::path& path, const SurfaceModel& model, Progress& progress);
 
+struct ExaReadOptions {
+  bool recompute = true;  ///< normals, curvatures and shape classes that the file leaves to the reader; else empty
+};
+
 /// Errors: kNoInput, kPermission, kIo, kBadData (damaged, hostile, or from another version), kTryAgain (memory),
 /// kCancelled.
-Result<SurfaceModel> read_exa(const std::filesystem::path& path, Progress& progress);
+Result<SurfaceModel> read_exa(const std::filesystem::path& path, Progress& progress,
+                              const ExaReadOptions& options = {});
 
 /// Reads head, table and the small text blocks only. Errors as read_exa().
 Result<ExaInfo> read_exa_info(const std::filesystem::path& path);
@@ -65,6 +70,6 @@ Result<void> check_exa_sums(const std::filesystem::path& path);
 
 /// The same from and to memory, for tests and fuzzers.
 Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& progress);
-Result<SurfaceModel> decode_exa(std::string_view file, Progress& progress);
+Result<SurfaceModel> decode_exa(std::string_view file, Progress& progress, const ExaReadOptions& options = {});
 
 }  // namespace dubsar

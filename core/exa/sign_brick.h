@@ -2,8 +2,10 @@
 // The walk over a brick of signs from a lattice of spacing 8 to one of spacing 1 (docs/exa.md, "Signs"). Encoder and
 // decoder walk the same way; a Coder says what a bit is:
 //   bool flag(int context, int level, int x, int y, int z)   does this cell of equal corners hide a surface?
-//   bool point(const SignLattice&, int level, int phase, int x, int y, int z)   the sign of a point
+//   void begin(const SignLattice&, int level, int phase)                  points of this phase follow
+//   bool point(const SignLattice&, int level, int x, int y, int z)        the sign of a point
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -97,22 +99,36 @@ class SignBrick {
     return (w | w << 1) & 0x5555555555555555u;
   }
 
+  /// 129 signs of a row.
+  using RowSigns = std::array<std::uint64_t, 3>;
+  /// Bit i to bit 2 i.
+  static RowSigns doubled(std::uint64_t w) { return {spread(w), spread(w >> 32), 0}; }
+
   /// The next finer lattice with the signs that are known: those of this one, and those of inactive cells.
   void refine_without_surface() {
     const auto& n = lattice_.cells();
     SignLattice fine({2 * n[0], 2 * n[1], 2 * n[2]});
-    for (int z = 0; z <= n[2]; ++z)
-      for (int y = 0; y <= n[1]; ++y) {
-        for (std::uint64_t bits = lattice_.word(y, z) & low_bits(n[0]); bits != 0; bits &= bits - 1)
-          fine.set(2 * std::countr_zero(bits), 2 * y, 2 * z);
-        if (lattice_.get(n[0], y, z)) fine.set(2 * n[0], 2 * y, 2 * z);
-        if (y == n[1] || z == n[2]) continue;
-        for (std::uint64_t bits = lattice_.word(y, z) & ~active_[at(y, z)] & low_bits(n[0]); bits != 0;
-             bits &= bits - 1) {
-          const int x = std::countr_zero(bits);
-          for (int p = 0; p < 27; ++p) fine.set(2 * x + p % 3, 2 * y + p / 3 % 3, 2 * z + p / 9);
-        }
+    std::vector<RowSigns> inside(rows(lattice_));  // points of inactive cells of sign 1, by rows of cells
+    for (int z = 0; z < n[2]; ++z)
+      for (int y = 0; y < n[1]; ++y) {
+        const RowSigns first = doubled(lattice_.word(y, z) & ~active_[at(y, z)] & low_bits(n[0]));
+        inside[at(y, z)] = {first[0] | first[0] << 1 | first[0] << 2,
+                            first[1] | first[1] << 1 | first[1] << 2 | first[0] >> 62, first[1] >> 62};
       }
+    for (int z = 0; z <= 2 * n[2]; ++z)
+      for (int y = 0; y <= 2 * n[1]; ++y) {
+        RowSigns row{};
+        if (y % 2 == 0 && z % 2 == 0) {
+          const bool last = lattice_.get(n[0], y / 2, z / 2);
+          row = doubled(lattice_.word(y / 2, z / 2) & low_bits(n[0]));
+          row[static_cast<std::size_t>(2 * n[0] / 64)] |= std::uint64_t{last} << (2 * n[0] % 64);
+        }
+        for (int cz = std::max(0, (z - 1) >> 1); cz <= std::min(n[2] - 1, z >> 1); ++cz)
+          for (int cy = std::max(0, (y - 1) >> 1); cy <= std::min(n[1] - 1, y >> 1); ++cy)
+            for (std::size_t w = 0; w < 3; ++w) row[w] |= inside[at(cy, cz)][w];
+        if ((row[0] | row[1] | row[2]) != 0) fine.assign_row(y, z, row);
+      }
+    fine.mirror();
     lattice_ = std::move(fine);
   }
 
@@ -121,6 +137,7 @@ class SignBrick {
   void code_phase(Coder& coder, int level, int phase) {
     const auto& n = lattice_.cells();
     const int parents_x = n[0] / 2, parents_y = n[1] / 2, parents_z = n[2] / 2;
+    coder.begin(lattice_, level, phase);
     for (int z = phase >> 2 & 1; z <= n[2]; z += 2)
       for (int y = phase >> 1 & 1; y <= n[1]; y += 2) {
         std::uint64_t all = ~std::uint64_t{0};
@@ -130,18 +147,18 @@ class SignBrick {
               all &= active_[static_cast<std::size_t>(pz * parents_y + py)];
         if (all == 0) continue;
         if (phase & 1) {
-          for (; all != 0; all &= all - 1) code_point(coder, level, phase, 2 * std::countr_zero(all) + 1, y, z);
+          for (; all != 0; all &= all - 1) code_point(coder, level, 2 * std::countr_zero(all) + 1, y, z);
           continue;
         }
         const bool last = all >> (parents_x - 1) & 1;
         std::uint64_t even = (all << 1 | 1) & all;
-        for (; even != 0; even &= even - 1) code_point(coder, level, phase, 2 * std::countr_zero(even), y, z);
-        if (last) code_point(coder, level, phase, n[0], y, z);
+        for (; even != 0; even &= even - 1) code_point(coder, level, 2 * std::countr_zero(even), y, z);
+        if (last) code_point(coder, level, n[0], y, z);
       }
   }
   template <class Coder>
-  void code_point(Coder& coder, int level, int phase, int x, int y, int z) {
-    if (coder.point(lattice_, level, phase, x, y, z)) lattice_.set(x, y, z);
+  void code_point(Coder& coder, int level, int x, int y, int z) {
+    if (coder.point(lattice_, level, x, y, z)) lattice_.set(x, y, z);
   }
 
   SignLattice lattice_;

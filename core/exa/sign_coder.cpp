@@ -22,11 +22,15 @@ SignStatistics::SignStatistics(std::size_t model, bool coarse) : model_(&SignMod
     flags_[context] = AdaptiveBit((context / 14 % 2 ? kHiddenBesideHidden : kHidden)[context % 7], kSeen);
 }
 
-std::uint32_t SignStatistics::predict(const SignLattice& lattice, int level, int phase, int x, int y, int z) noexcept {
+void SignStatistics::begin(const SignLattice& lattice, int level, int phase) noexcept {
   const std::size_t index = kPhaseIndex[static_cast<std::size_t>(phase)];
   const std::size_t level_class = coarse_ ? 2 : static_cast<std::size_t>(std::min(level, 2));
-  refiner_ = level_class * 7 + index;
-  const std::uint32_t p = refiners_[refiner_].predict(model_->logit(lattice, index, level_class, x, y, z));
+  refiner_ = &refiners_[level_class * 7 + index];
+  place_ = model_->place(lattice, index, level_class);
+}
+
+std::uint32_t SignStatistics::predict(int x, int y, int z) noexcept {
+  const std::uint32_t p = refiner_->predict(SignModel::logit(place_, x, y, z));
   return std::clamp<std::uint32_t>(p, 16, kProbabilityOne - 16);
 }
 

@@ -17,15 +17,18 @@ class SignStatistics {
 
   AdaptiveBit& flag(int context) noexcept { return flags_[static_cast<std::size_t>(context)]; }
 
+  /// Points of this phase follow.
+  void begin(const SignLattice& lattice, int level, int phase) noexcept;
   /// Probability that a point is inside; learn() with the truth must follow.
-  std::uint32_t predict(const SignLattice& lattice, int level, int phase, int x, int y, int z) noexcept;
-  void learn(bool inside) noexcept { refiners_[refiner_].learn(inside); }
+  std::uint32_t predict(int x, int y, int z) noexcept;
+  void learn(bool inside) noexcept { refiner_->learn(inside); }
 
  private:
   const SignModel* model_;
   bool coarse_ = false;
   std::array<Refiner, 21> refiners_;
-  std::size_t refiner_ = 0;
+  Refiner* refiner_ = nullptr;
+  SignModel::Place place_;
   std::array<AdaptiveBit, kFlagContexts> flags_;
 };
 

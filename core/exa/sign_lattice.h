@@ -31,6 +31,25 @@ class SignLattice {
       for (const int mz : mirrors(z, 2))
         if (my != kNone && mz != kNone && (my != y || mz != z)) set_row(x, my, mz);
   }
+  /// Sets a whole row, bits 0..cells of `signs`; mirror() must follow before anything is read outside.
+  void assign_row(int y, int z, const std::array<std::uint64_t, 3>& signs) noexcept {
+    // Bit x stands at x + 8, so that 129 signs and the border fill three words.
+    std::array<std::uint64_t, 3> words{signs[0] << 8, signs[1] << 8 | signs[0] >> 56, signs[2] << 8 | signs[1] >> 56};
+    std::memcpy(bytes_.data() + offset(y, z), words.data(), sizeof words);
+    for (const int x : {1, 2, 3, cells_[0] - 3, cells_[0] - 2, cells_[0] - 1})
+      if (x >= 1 && x < cells_[0] && get(x, y, z)) set_row(x, y, z);
+    if (cells_[0] <= kReach && get(cells_[0], y, z)) set_row(cells_[0], y, z);
+    if (cells_[0] <= kReach && get(0, y, z)) set_row(0, y, z);
+  }
+  /// Fills the border from rows set by assign_row().
+  void mirror() noexcept {
+    for (int z = 0; z <= cells_[2]; ++z)
+      mirror_axis(
+          1, [&](int y) { return bytes_.data() + offset(y, z); }, kRowBytes);
+    const std::size_t bytes = static_cast<std::size_t>(plane_);
+    mirror_axis(
+        2, [&](int z) { return bytes_.data() + offset(-kReach, z); }, static_cast<std::ptrdiff_t>(bytes));
+  }
   /// The row of points (y, z): bit x + 8, lowest bit of a byte first.
   const unsigned char* row(int y, int z) const noexcept { return bytes_.data() + offset(y, z); }
   /// 64 signs of a row from x = 0, 64 or 128 on; what lies beyond the border is 0 or the mirror.
@@ -42,6 +61,15 @@ class SignLattice {
 
  private:
   static constexpr std::ptrdiff_t kRowBytes = 24;  // 8 + 129 + 3 bits, whole words
+
+  template <class At>
+  void mirror_axis(std::size_t axis, const At& at, std::ptrdiff_t bytes) noexcept {
+    const int n = cells_[axis];
+    for (int k = 1; k <= kReach && k <= n; ++k) {
+      std::memcpy(at(-k), at(k), static_cast<std::size_t>(bytes));
+      std::memcpy(at(n + k), at(n - k), static_cast<std::size_t>(bytes));
+    }
+  }
   static constexpr int kNone = -100;
 
   static std::uint64_t load(const unsigned char* at) noexcept {
@@ -58,7 +86,10 @@ class SignLattice {
     return {c, c >= 1 && c <= kReach ? -c : kNone, c <= n - 1 && c >= n - kReach ? 2 * n - c : kNone};
   }
   void set_bit(int x, int y, int z) noexcept {
-    bytes_[offset(y, z) + static_cast<std::size_t>((x + 8) >> 3)] |= static_cast<unsigned char>(1 << (x & 7));
+    // A whole word, so that reading the bits next to it does not wait for a store of another width.
+    unsigned char* at = bytes_.data() + offset(y, z) + ((x + 8) >> 6) * 8;
+    const std::uint64_t word = load(at) | std::uint64_t{1} << ((x + 8) & 63);
+    std::memcpy(at, &word, sizeof word);
   }
   void set_row(int x, int y, int z) noexcept {
     set_bit(x, y, z);

@@ -2,9 +2,62 @@
 
 #include <algorithm>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/exa/sign_model.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace dubsar::HWY_NAMESPACE {
+namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Sum of the units times their weights. Integers: the same on every target.
+#if HWY_TARGET == HWY_SCALAR
+std::int32_t weigh(const SignModel::Place& place, const unsigned char* here, int shift) {
+  const SignModel::Phase& phase = *place.phase;
+  SignModel::Sums sum = phase.bias;
+  for (std::size_t r = 0; r < phase.rows.size(); ++r) {
+    std::uint16_t bits;
+    std::memcpy(&bits, here + place.steps[r], sizeof bits);
+    const SignModel::Sums& add = phase.rows[r].sums[bits >> shift & 127];
+    for (std::size_t u = 0; u < sum.size(); ++u) sum[u] = static_cast<std::int16_t>(sum[u] + add[u]);
+  }
+  std::int32_t total = 0;
+  for (std::size_t u = 0; u < sum.size(); ++u)
+    total += std::int32_t{std::clamp<std::int16_t>(sum[u], 0, 1023)} * phase.out[u];
+  return total;
+}
+#else
+std::int32_t weigh(const SignModel::Place& place, const unsigned char* here, int shift) {
+  const hn::CappedTag<std::int16_t, kSignUnits> d;
+  const hn::RepartitionToWide<decltype(d)> d32;
+  const SignModel::Phase& phase = *place.phase;
+  const std::size_t width = hn::Lanes(d), rows = phase.rows.size();
+  auto even = hn::Zero(d32), odd = hn::Zero(d32);
+  for (std::size_t u = 0; u < kSignUnits; u += width) {
+    auto sum = hn::Load(d, phase.bias.data() + u);
+    for (std::size_t r = 0; r < rows; ++r) {
+      std::uint16_t bits;
+      std::memcpy(&bits, here + place.steps[r], sizeof bits);
+      sum = hn::Add(sum, hn::Load(d, phase.rows[r].sums[bits >> shift & 127].data() + u));
+    }
+    sum = hn::Min(hn::Max(sum, hn::Zero(d)), hn::Set(d, std::int16_t{1023}));
+    even = hn::ReorderWidenMulAccumulate(d32, sum, hn::Load(d, phase.out.data() + u), even, odd);
+  }
+  return hn::GetLane(hn::SumOfLanes(d32, hn::Add(even, odd)));
+}
+#endif
+
+}  // namespace
+}  // namespace dubsar::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace dubsar {
 namespace {
 #include "core/exa/sign_weights.inc"
+HWY_EXPORT(weigh);
 }  // namespace
 
 std::vector<SignTap> sign_taps(int phase) {
@@ -27,8 +80,8 @@ SignModel::SignModel(const std::array<SignWeights, 7>& weights) {
   for (std::size_t p = 0; p < 7; ++p) {
     const std::vector<SignTap> taps = sign_taps(kSignPhases[p]);
     Phase& phase = phases_[p];
-    phase.bias = weights[p].in_bias;
-    phase.out = weights[p].out;
+    static_cast<std::array<std::int16_t, kSignUnits>&>(phase.bias) = weights[p].in_bias;
+    static_cast<std::array<std::int16_t, kSignUnits>&>(phase.out) = weights[p].out;
     phase.out_bias = weights[p].out_bias;
     for (std::size_t t = 0; t < taps.size();) {
       Row row{taps[t].y, taps[t].z, {}};
@@ -41,7 +94,26 @@ SignModel::SignModel(const std::array<SignWeights, 7>& weights) {
           }
       phase.rows.push_back(row);
     }
+    const auto own =
+        std::find_if(phase.rows.begin(), phase.rows.end(), [](const Row& r) { return r.y == 0 && r.z == 0; });
+    if (own != phase.rows.end()) std::rotate(own, own + 1, phase.rows.end());
   }
+}
+
+SignModel::Place SignModel::place(const SignLattice& lattice, std::size_t phase_index, std::size_t level_class) const {
+  Place place;
+  place.lattice = &lattice;
+  place.phase = &phases_[phase_index];
+  place.out_bias = place.phase->out_bias[level_class];
+  for (std::size_t r = 0; r < place.phase->rows.size(); ++r)
+    place.steps[r] = lattice.step(place.phase->rows[r].y, place.phase->rows[r].z);
+  return place;
+}
+
+int SignModel::logit(const Place& place, int x, int y, int z) noexcept {
+  const unsigned char* here = place.lattice->row(y, z) + ((x + 5) >> 3);
+  const std::int32_t total = HWY_DYNAMIC_DISPATCH(weigh)(place, here, (x + 5) & 7);
+  return std::clamp((total >> 3) + place.out_bias, -2047, 2047);
 }
 
 namespace {
@@ -65,3 +137,4 @@ const SignModel& SignModel::instance(std::size_t which) {
 }
 
 }  // namespace dubsar
+#endif

@@ -39,38 +39,30 @@ class SignModel {
   static const SignModel& instance(std::size_t which);
   explicit SignModel(const std::array<SignWeights, 7>& weights);
 
-  /// In 1 / 256, clamped to +-2047. `phase_index`: place in kSignPhases.
-  int logit(const SignLattice& lattice, std::size_t phase_index, std::size_t level_class, int x, int y, int z) const {
-    const Phase& phase = phases_[phase_index];
-    const unsigned char* here = lattice.row(y, z) + ((x + 5) >> 3);
-    const int shift = (x + 5) & 7;
-    alignas(32) std::array<std::int16_t, kSignUnits> sum = phase.bias;
-    for (const Row& row : phase.rows) {
-      std::uint16_t bits;
-      std::memcpy(&bits, here + lattice.step(row.y, row.z), sizeof bits);
-      const auto& add = row.sums[bits >> shift & 127];
-      for (std::size_t u = 0; u < kSignUnits; ++u) sum[u] = static_cast<std::int16_t>(sum[u] + add[u]);
-    }
-    std::int32_t total = 0;
-    for (std::size_t u = 0; u < kSignUnits; ++u) {
-      const std::int16_t unit = sum[u] < 0 ? std::int16_t{0} : sum[u] > 1023 ? std::int16_t{1023} : sum[u];
-      total += std::int32_t{unit} * phase.out[u];
-    }
-    const int logit = (total >> 3) + phase.out_bias[level_class];
-    return logit < -2047 ? -2047 : logit > 2047 ? 2047 : logit;
-  }
-
- private:
   struct alignas(32) Sums : std::array<std::int16_t, kSignUnits> {};
   struct Row {
     int y = 0, z = 0;
     std::array<Sums, 128> sums;  ///< by the signs at x - 3 .. x + 3
   };
   struct Phase {
-    std::vector<Row> rows;
-    std::array<std::int16_t, kSignUnits> bias{}, out{};
+    std::vector<Row> rows;  ///< that of the point itself last: its signs are known last
+    Sums bias{}, out{};
     std::array<std::int16_t, 3> out_bias{};
   };
+  /// A phase on a lattice.
+  struct Place {
+    static constexpr std::size_t kRows = 37;  ///< rows at most sqrt(11) away
+    const SignLattice* lattice = nullptr;
+    const Phase* phase = nullptr;
+    int out_bias = 0;
+    std::array<std::ptrdiff_t, kRows> steps{};  ///< bytes from the row of a point to those of phase->rows
+  };
+  /// `phase_index`: place in kSignPhases. The lattice must outlive it and not be exchanged.
+  Place place(const SignLattice& lattice, std::size_t phase_index, std::size_t level_class) const;
+  /// In 1 / 256, clamped to +-2047.
+  static int logit(const Place& place, int x, int y, int z) noexcept;
+
+ private:
   std::array<Phase, 7> phases_;
 };
 

@@ -153,9 +153,10 @@ struct EncodeBrick {
     out.bit(statistics.flag(context), hidden);
     return hidden;
   }
-  bool point(const SignLattice& lattice, int level, int phase, int x, int y, int z) {
+  void begin(const SignLattice& lattice, int level, int phase) { statistics.begin(lattice, level, phase); }
+  bool point(const SignLattice&, int level, int x, int y, int z) {
     const bool inside = truth.sign(x << level, y << level, z << level);
-    out.bit(statistics.predict(lattice, level, phase, x, y, z), inside);
+    out.bit(statistics.predict(x, y, z), inside);
     statistics.learn(inside);
     return inside;
   }
@@ -166,8 +167,9 @@ struct DecodeBrick {
   RangeDecoder& in;
   std::uint64_t points = 0;
   bool flag(int context, int, int, int, int) { return in.bit(statistics.flag(context)); }
-  bool point(const SignLattice& lattice, int level, int phase, int x, int y, int z) {
-    const bool inside = in.bit(statistics.predict(lattice, level, phase, x, y, z));
+  void begin(const SignLattice& lattice, int level, int phase) { statistics.begin(lattice, level, phase); }
+  bool point(const SignLattice&, int, int x, int y, int z) {
+    const bool inside = in.bit(statistics.predict(x, y, z));
     statistics.learn(inside);
     ++points;
     return inside;

@@ -33,6 +33,18 @@ TEST_F(ExaFile, ModelReadBackEqualsTheModelWritten) {
         }
 }
 
+TEST_F(ExaFile, WhatCanBeRecomputedIsLeftOutWhenNotAskedFor) {
+  SurfaceModel model = sample_model({30, 30, 30}, Kind::kBlob, 8);
+  ASSERT_TRUE(settle_for_exa(model, {}, progress_));
+  const std::string file = file_of(encoded(model));
+  const auto whole = decode_exa(file, progress_), bare = decode_exa(file, progress_, {.recompute = false});
+  ASSERT_TRUE(whole && bare);
+  expect_equal(model, *whole);
+  EXPECT_TRUE(bare->attributes.normals.empty() && bare->attributes.k_min.empty() && bare->attributes.shape.empty());
+  EXPECT_EQ(bare->attributes.ao, model.attributes.ao);
+  EXPECT_TRUE(same_bytes(bare->mesh.positions, model.mesh.positions));
+}
+
 TEST_F(ExaFile, MinimalModelWithoutAttributesIsStored) {
   SurfaceModel model = sample_model({20, 20, 20}, Kind::kBlob, 3);
   model.mesh = build_quad_mesh(model.samples, progress_).value();
