@@ -98,11 +98,6 @@ Result<void> AtomicFile::write(std::span<const std::byte> bytes) {
   return {};
 }
 
-Result<void> AtomicFile::write_at(std::int64_t offset, std::span<const std::byte> bytes) {
-  DUBSAR_CHECK(offset >= 0 && offset + static_cast<std::int64_t>(bytes.size()) <= size_);
-  return write_all(descriptor_, bytes, offset, target_);
-}
-
 Result<void> AtomicFile::commit() {
   const auto failed = [&](std::string_view verb) {
     return fail_errno(errno, fmt::format("cannot {} {}", verb, target_.string()));

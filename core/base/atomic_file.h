@@ -32,8 +32,6 @@ class AtomicFile {
 
   Result<void> write(std::span<const std::byte> bytes);
   Result<void> write(std::string_view text) { return write(std::as_bytes(std::span(text.data(), text.size()))); }
-  /// Overwrites bytes written before (for a header that is known last).
-  Result<void> write_at(std::int64_t offset, std::span<const std::byte> bytes);
   std::int64_t size() const noexcept { return size_; }
 
   /// For third-party writers that need a path: they may write to temporary_path() themselves; then commit().

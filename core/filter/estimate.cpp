@@ -319,7 +319,7 @@ Estimates estimate(const Histogram& h, double laplacian_sigma, const EstimateOpt
   const SplitAttempt* const way = taken(e);
   if (way == nullptr) {
     e.sigma = laplacian_sigma;
-    e.refusal = fmt::format("threshold: cannot tell material from air ({}), set it with --threshold", e.path);
+    e.refusal = fmt::format("threshold: cannot tell material from air ({}), set the threshold", e.path);
     return e;
   }
   const Split& split = *way->split;

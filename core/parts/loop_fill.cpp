@@ -11,35 +11,30 @@ namespace dubsar {
 namespace {
 
 /// Cost of a triangulation: bend is the largest 1 - cos(dihedral angle), 0 where it does not count.
-struct Weight {
-  float bend = std::numeric_limits<float>::infinity();
-  float area = std::numeric_limits<float>::infinity();
-  friend bool operator<(const Weight& a, const Weight& b) {
-    return a.bend < b.bend || (a.bend == b.bend && a.area < b.area);
-  }
-};
+constexpr float kImpossible = std::numeric_limits<float>::infinity();
 
-/// Dynamic programme over the sub-polygons i..j of a polygon given as indices into the loop.
+/// Dynamic programme over the sub-polygons i..j of a polygon given as indices into the loop. Least sum of area and, for
+/// every edge, length times (1 - cos dihedral) times a length that grows with the loop: one sharp corner of the rim
+/// does not hide all other angles.
 class OptimalTriangulation {
  public:
-  OptimalTriangulation(const Loop& loop, std::vector<std::uint32_t> polygon, LoopWeight weight)
+  OptimalTriangulation(const Loop& loop, std::vector<std::uint32_t> polygon)
       : loop_(loop),
         polygon_(std::move(polygon)),
-        weight_(weight),
         n_(polygon_.size()),
-        best_(n_ * n_),
+        best_(n_ * n_, kImpossible),
         apex_(n_ * n_, 0) {}
 
   /// Appends triangles in loop indices; false when every triangulation needs a forbidden edge.
   Result<bool> solve(std::vector<Triangle>& triangles, Progress& progress) {
     constexpr float kStiffness = 1.0f / 16.0f;  // of the loop's length: two fifths of its radius
     for (std::size_t i = 0; i < n_; ++i) stiffness_ += kStiffness * glm::distance(at(i), at((i + 1) % n_));
-    for (std::size_t i = 0; i + 1 < n_; ++i) best_[i * n_ + i + 1] = {0.0f, 0.0f};
+    for (std::size_t i = 0; i + 1 < n_; ++i) best_[i * n_ + i + 1] = 0.0f;
     for (std::size_t gap = 2; gap < n_; ++gap) {
       if (progress.cancelled()) return cancelled_error();
       for (std::size_t i = 0; i + gap < n_; ++i) find_apex(i, i + gap);
     }
-    if (best_[n_ - 1].area == std::numeric_limits<float>::infinity()) return false;
+    if (best_[n_ - 1] == kImpossible) return false;
     std::vector<std::pair<std::size_t, std::size_t>> todo{{0, n_ - 1}};
     while (!todo.empty()) {
       const auto [i, j] = todo.back();
@@ -77,35 +72,28 @@ class OptimalTriangulation {
     return true;
   }
 
-  void bend(Weight& w, float value, std::size_t i, std::size_t j) const {
-    if (weight_ == LoopWeight::kDihedralThenArea)
-      w.bend = std::max(w.bend, value);
-    else
-      w.area += stiffness_ * value * glm::distance(at(i), at(j));
-  }
-
   void find_apex(std::size_t i, std::size_t j) {
     const bool closing = i == 0 && j == n_ - 1;
     if (!closing && loop_.forbidden && loop_.forbidden(polygon_[i], polygon_[j])) return;
-    Weight best;
+    float best = kImpossible;
+    const auto bend = [&](const glm::vec3& a, const glm::vec3& b, std::size_t from, std::size_t to) {
+      return stiffness_ * (1.0f - glm::dot(a, b)) * glm::distance(at(from), at(to));
+    };
     std::size_t apex = i + 1;
     const glm::vec3 side = at(j) - at(i);
     for (std::size_t k = i + 1; k < j; ++k) {
-      const Weight &left = best_[i * n_ + k], &right = best_[k * n_ + j];
-      Weight w{std::max(left.bend, right.bend), left.area + right.area};
-      if (w.area == std::numeric_limits<float>::infinity() || w.bend > best.bend) continue;
+      float cost = best_[i * n_ + k] + best_[k * n_ + j];
+      if (cost == kImpossible) continue;
       const glm::vec3 vector = glm::cross(at(k) - at(i), side);
       const float twice_area = glm::length(vector);
-      w.area += 0.5f * twice_area;
-      if (weight_ != LoopWeight::kArea) {
-        const glm::vec3 normal = twice_area > 0.0f ? vector / twice_area : glm::vec3(0.0f);
-        glm::vec3 other;
-        if (far_normal(i, k, other)) bend(w, 1.0f - glm::dot(normal, other), i, k);
-        if (far_normal(k, j, other)) bend(w, 1.0f - glm::dot(normal, other), k, j);
-        if (closing && rim_normal(polygon_[j], polygon_[0], other)) bend(w, 1.0f - glm::dot(normal, other), i, j);
-      }
-      if (w < best) {
-        best = w;
+      cost += 0.5f * twice_area;
+      const glm::vec3 normal = twice_area > 0.0f ? vector / twice_area : glm::vec3(0.0f);
+      glm::vec3 other;
+      if (far_normal(i, k, other)) cost += bend(normal, other, i, k);
+      if (far_normal(k, j, other)) cost += bend(normal, other, k, j);
+      if (closing && rim_normal(polygon_[j], polygon_[0], other)) cost += bend(normal, other, i, j);
+      if (cost < best) {
+        best = cost;
         apex = k;
       }
     }
@@ -115,10 +103,9 @@ class OptimalTriangulation {
 
   const Loop& loop_;
   std::vector<std::uint32_t> polygon_;
-  LoopWeight weight_;
-  float stiffness_ = 0.0f;  ///< of kAreaAndBend
+  float stiffness_ = 0.0f;
   std::size_t n_;
-  std::vector<Weight> best_;
+  std::vector<float> best_;
   std::vector<std::uint32_t> apex_;
 };
 
@@ -140,7 +127,7 @@ Result<void> triangulate_polygon(const Loop& loop, const std::vector<std::uint32
   if (n < 3) return {};
   const auto limit = static_cast<std::size_t>(std::max(options.exact_limit, 8));
   const auto solve = [&](const std::vector<std::uint32_t>& piece) -> Result<void> {
-    DUBSAR_ASSIGN(const bool done, OptimalTriangulation(loop, piece, options.weight).solve(fill.triangles, progress));
+    DUBSAR_ASSIGN(const bool done, OptimalTriangulation(loop, piece).solve(fill.triangles, progress));
     if (!done) {
       fill.star = true;
       add_star(loop, piece, fill);

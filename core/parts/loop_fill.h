@@ -14,15 +14,7 @@
 
 namespace dubsar {
 
-enum class LoopWeight {
-  kArea,              ///< least total area (Barequet and Sharir)
-  kDihedralThenArea,  ///< least largest dihedral angle, then least area (Liepa)
-  kAreaAndBend,       ///< least sum of area and, for every edge, length times (1 - cos dihedral) times a length
-                      ///< that grows with the loop: one sharp corner of the rim does not hide all other angles
-};
-
 struct LoopFillOptions {
-  LoopWeight weight = LoopWeight::kAreaAndBend;
   int exact_limit = 256;    ///< loops with more vertices are first cut down to a coarse loop of this many
   bool refine = true;       ///< add vertices inside (Liepa section 4) ...
   float growth = 1.15f;     ///< ... whose spacing grows by this factor with every generation

@@ -21,19 +21,29 @@ Result<void> TappedSource::read(std::int64_t z_begin, std::int64_t z_end, std::s
 }
 
 SampledSource::SampledSource(SlabSource& source, std::int64_t slices, std::int64_t group)
-    : source_(&source), dims_(source.dims()), group_(std::max<std::int64_t>(group, 1)), spacing_(group_) {
+    : source_(&source), dims_(source.dims()), group_(std::max<std::int64_t>(group, 1)) {
   const std::int64_t groups = std::max<std::int64_t>(1, slices / group_);
-  if (dims_.z > groups * group_) {
-    spacing_ = dims_.z / groups;
-    dims_.z = groups * group_;
+  if (dims_.z <= groups * group_) {
+    group_ = dims_.z;
+    starts_ = {0};
+    return;
   }
+  const std::int64_t spacing = dims_.z / groups, layer = std::max<std::int64_t>(source.preferred_height(), 1);
+  for (std::int64_t i = 0; i < groups; ++i) {
+    std::int64_t start = i * spacing;
+    // A group that reaches into the next layer of chunks begins with it, where the layer is not that of the next group.
+    const std::int64_t border = (start + layer - 1) / layer * layer;
+    if (border < start + group_ && border + group_ <= std::min((i + 1) * spacing, dims_.z)) start = border;
+    starts_.push_back(start);
+  }
+  dims_.z = groups * group_;
 }
 
 Result<void> SampledSource::read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) {
   for (std::int64_t z = z_begin; z < z_end;) {
     const std::int64_t in_group = z % group_;
     const std::int64_t count = std::min(z_end - z, group_ - in_group);
-    const std::int64_t from = z / group_ * spacing_ + in_group;
+    const std::int64_t from = starts_[static_cast<std::size_t>(z / group_)] + in_group;
     DUBSAR_TRY(source_->read(from, from + count, out.subspan(static_cast<std::size_t>((z - z_begin) * dims_.slice()))));
     z += count;
   }

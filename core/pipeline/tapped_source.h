@@ -1,7 +1,7 @@
 #pragma once
 // A slab source that passes slabs on and keeps the books: time spent above it, voxels read, progress, cancel.
 
-#include <memory>
+#include <vector>
 
 #include "core/volume/slab_source.h"
 
@@ -29,7 +29,8 @@ class TappedSource final : public SlabSource {
 /// sample of a large scan. Borrows the source.
 class SampledSource final : public SlabSource {
  public:
-  /// Takes about `slices` slices in groups of `group`, spread evenly; all of them when there are no more.
+  /// Takes about `slices` slices in groups of `group`, spread evenly; all of them when there are no more. Groups do not
+  /// lie across layers of the source's preferred height where that can be avoided: each layer may have to be decoded.
   SampledSource(SlabSource& source, std::int64_t slices, std::int64_t group);
   Dims dims() const noexcept override { return dims_; }
   const GridFrame& frame() const noexcept override { return source_->frame(); }
@@ -38,7 +39,8 @@ class SampledSource final : public SlabSource {
  private:
   SlabSource* source_;
   Dims dims_;
-  std::int64_t group_, spacing_;
+  std::int64_t group_;
+  std::vector<std::int64_t> starts_;  ///< of each group
 };
 
 }  // namespace dubsar

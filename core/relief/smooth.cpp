@@ -181,10 +181,7 @@ Result<SmoothStats> smooth(QuadMesh& mesh, std::vector<glm::vec3>& normals, cons
   }
   SmoothStats stats;
   std::vector<glm::vec3> from = mesh.positions, to(mesh.positions.size());
-  for (; stats.vertex_iterations < options.vertex_iterations; ++stats.vertex_iterations) {
-    if (options.stop_angle_deg > 0.0f &&
-        mean_angle_deg(mesh, from, faces) < static_cast<double>(options.stop_angle_deg))
-      break;
+  for (int iteration = 0; iteration < options.vertex_iterations; ++iteration) {
     move_vertices(mesh, mesh.positions, from, to, faces, options.max_displacement_vox, progress);
     if (progress.cancelled()) return cancelled_error();
     from.swap(to);
@@ -198,7 +195,7 @@ Result<SmoothStats> smooth(QuadMesh& mesh, std::vector<glm::vec3>& normals, cons
   stats.residual_angle_deg = mean_angle_deg(mesh, from, faces);
 
   mesh.positions.swap(from);
-  normals = vertex_normals(mesh, options.vertex_normals == VertexNormals::kFiltered ? faces : face_normals(mesh));
+  normals = vertex_normals(mesh, faces);
   progress.end();
   return stats;
 }

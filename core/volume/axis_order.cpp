@@ -108,8 +108,7 @@ std::string AxisOrder::letters() const {
 }
 
 std::string describe(const AxisOrder& order) {
-  if (!order.known())
-    return "zyx taken, slowest first: the file does not say, a mirror image could not be told (--axis-order)";
+  if (!order.known()) return "zyx taken, slowest first: the file does not say, a mirror image could not be told";
   return fmt::format("{}, slowest first ({}){}", order.letters(), order.provenance,
                      order.mirrored_as_stored() ? ": turned, or the surface would be a mirror image"
                      : order.usual()            ? ""

@@ -58,7 +58,7 @@ class Reader {
       warnings_.push_back(
           fmt::format("\"{}\" was written by MATLAB, whose arrays may have y or x first: whether the volume is a "
                       "mirror image cannot "
-                      "be told; --axis-order states the order",
+                      "be told; a given axis order states it",
                       path));
   }
 

@@ -303,7 +303,7 @@ class Search {
         if (count_of(volume.info) >= count_of(levels[0].info) / 2 && names.size() < 8)
           names.push_back(fmt::format("{} ({})", volume.named, describe_array(volume.info)));
       return fail(ErrorKind::kBadData,
-                  "import_hdf5: {} holds several volumes of similar size, expected one: name it with --dataset: {}",
+                  "import_hdf5: {} holds several volumes of similar size, expected one: name its dataset: {}",
                   file_->path().string(), fmt::join(names, ", "));
     }
     Hdf5Volume chosen = levels.front();

@@ -197,7 +197,7 @@ class Finder {
     const auto values = file.numbers("/VTKHDF", "Spacing");
     const auto mm = values ? in_order(*values, true) : std::nullopt;
     if (!mm || !positive(*mm)) return false;
-    warnings_.push_back("/VTKHDF@Spacing has no unit, millimetres are taken; --voxel-size overrides it");
+    warnings_.push_back("/VTKHDF@Spacing has no unit, millimetres are taken; a given voxel size overrides it");
     size = {*mm, "/VTKHDF@Spacing (unit taken as mm)"};
     return true;
   }

@@ -76,7 +76,7 @@ Result<OpenedVolume> open_by_content(const ImportOptions& options) {
   return fail(
       ErrorKind::kBadData,
       "import: {} is {}, expected an HDF5, NRRD or TIFF volume or a folder of TIFF slices; for a raw volume give "
-      "--dims and --type",
+      "its size and number type",
       options.path.string(), found);
 }
 
@@ -105,7 +105,7 @@ void turn(OpenedVolume& opened, const ImportOptions& options) {
   VolumeInfo& info = opened.info;
   if (options.axis_order) {
     info.axes = *options.axis_order;
-    info.axes.provenance = "--axis-order";
+    info.axes.provenance = "given by the user";
   }
   if (info.axes.usual()) return;
   const auto dims = by_axis(info.axes, std::array{info.file_dims.x, info.file_dims.y, info.file_dims.z});
@@ -117,7 +117,7 @@ void turn(OpenedVolume& opened, const ImportOptions& options) {
 void check_voxel_size(VolumeInfo& info) {
   const glm::dvec3 mm = info.voxel.mm;
   if (!info.voxel.known()) {
-    info.warnings.emplace_back("voxel size unknown: 1 voxel is taken as 1 mm; give --voxel-size");
+    info.warnings.emplace_back("voxel size unknown: 1 voxel is taken as 1 mm; give the voxel size");
     return;
   }
   // What micro-CT and CT scanners deliver; beyond it the unit is usually wrong by a factor of 1000.
@@ -126,7 +126,7 @@ void check_voxel_size(VolumeInfo& info) {
   if (least < kLeast || most > kMost)
     info.warnings.push_back(
         fmt::format("voxel size {:g} x {:g} x {:g} mm ({}) found, expected 0.0005 to 1 mm: is the unit "
-                    "right? --voxel-size overrides it",
+                    "right? a given voxel size overrides it",
                     mm.x, mm.y, mm.z, info.voxel.provenance));
 }
 
@@ -139,7 +139,7 @@ Result<std::unique_ptr<ImportedVolume>> open_volume(ImportOptions options) {
   info.path = options.path.string();
   turn(opened, options);
   DUBSAR_ASSIGN(info.box, box_of(info.file_dims, options));
-  if (options.voxel_size_mm) info.voxel = {*options.voxel_size_mm, "--voxel-size"};
+  if (options.voxel_size_mm) info.voxel = {*options.voxel_size_mm, "given by the user"};
   check_voxel_size(info);
   for (const std::string& warning : info.warnings) log_warning("{}: {}", info.path, warning);
   std::unique_ptr<SlabSource> source =

@@ -135,19 +135,17 @@ Result<void> check_storage(const Hdf5Volume& volume, const ImportOptions& option
   }
   // Below 64 MiB a bomb does no harm.
   if (logical > (std::uint64_t{64} << 20) && logical / info.storage_bytes > 250 && !options.trust)
-    return fail(
-        ErrorKind::kBadData,
-        "import_hdf5: dataset \"{}\" unpacks {} bytes to {} ({}:1, expected at most 250:1); give --trust if you "
-        "know the file",
-        info.path, info.storage_bytes, logical, logical / info.storage_bytes);
+    return fail(ErrorKind::kBadData,
+                "import_hdf5: dataset \"{}\" unpacks {} bytes to {} ({}:1, expected at most 250:1); if you know the "
+                "file, say that it is trusted",
+                info.path, info.storage_bytes, logical, logical / info.storage_bytes);
   DUBSAR_ASSIGN(const Hdf5Dataset dataset, volume.file->open_dataset(info.path));
   DUBSAR_ASSIGN(const std::uint64_t written, dataset.written_chunks());
   if (static_cast<double>(written) < 0.99 * static_cast<double>(chunks) && !options.allow_sparse)
-    return fail(
-        ErrorKind::kBadData,
-        "import_hdf5: dataset \"{}\" is sparse or was not written to its end: {} of {} chunks are missing; give "
-        "--allow-sparse to read them as {}",
-        info.path, chunks - std::min(written, chunks), chunks, info.fill_value);
+    return fail(ErrorKind::kBadData,
+                "import_hdf5: dataset \"{}\" is sparse or was not written to its end: {} of {} chunks are missing; "
+                "if sparse data are allowed they are read as {}",
+                info.path, chunks - std::min(written, chunks), chunks, info.fill_value);
   return {};
 }
 

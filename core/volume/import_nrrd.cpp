@@ -178,7 +178,7 @@ AxisOrder axis_order(const Header& header, const std::array<std::size_t, 3>& axe
     }
     warnings.push_back(fmt::format(
         "the NRRD space directions \"{}\" are not three independent vectors: whether the volume is a mirror "
-        "image cannot be told; --axis-order states the order",
+        "image cannot be told; a given axis order states it",
         header.text("space directions")));
     return {};
   }
@@ -315,8 +315,8 @@ Result<OpenedVolume> open_nrrd(const ImportOptions& options) {
     if (info.logical_bytes > (std::int64_t{64} << 20) && info.logical_bytes / 250 > info.storage_bytes &&
         !options.trust)
       return fail(ErrorKind::kBadData,
-                  "import_nrrd: {} unpacks {} bytes to {}, expected at most 250:1; give --trust if you know "
-                  "the file",
+                  "import_nrrd: {} unpacks {} bytes to {}, expected at most 250:1; if you know the file, "
+                  "say that it is trusted",
                   path, info.storage_bytes, info.logical_bytes);
     info.layout = "stream";
     info.filters = {"gzip"};

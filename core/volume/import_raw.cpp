@@ -19,15 +19,16 @@ Result<OpenedVolume> open_raw(const ImportOptions& options) {
   if (raw.skip < 0 || left < bytes)
     return fail(
         ErrorKind::kBadData,
-        "import_raw: {} has {} bytes, expected {} ({} x {} x {} of {} behind {} skipped bytes); check --dims, --type "
-        "and --skip",
+        "import_raw: {} has {} bytes, expected {} ({} x {} x {} of {} behind {} skipped bytes); check the size, the "
+        "number type and the bytes to skip",
         options.path.string(), file.size(), raw.skip + bytes, raw.dims[0], raw.dims[1], raw.dims[2],
         scalar_name(raw.type), raw.skip);
   OpenedVolume opened;
   VolumeInfo& info = opened.info;
   if (left > bytes)
-    info.warnings.push_back(
-        fmt::format("{} bytes follow the voxels and are not read; check --dims, --type and --skip", left - bytes));
+    info.warnings.push_back(fmt::format(
+        "{} bytes follow the voxels and are not read; check the size, the number type and the bytes to skip",
+        left - bytes));
   info.format = "raw";
   info.found_by = "named by the user";
   info.file_dims = {raw.dims[0], raw.dims[1], raw.dims[2]};

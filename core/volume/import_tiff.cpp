@@ -148,7 +148,7 @@ VoxelSize voxel_size(const TiffPage& page, std::vector<std::string>& warnings) {
   if (number_or(fields, "spacing", 0.0) < 0.0)
     warnings.emplace_back(
         "the ImageJ spacing is negative: the slices may be stored last first, and the volume then is a mirror image; "
-        "--axis-order states the order (-zyx: the slices run backwards)");
+        "a given axis order states it (-zyx: the slices run backwards)");
   if (unit)
     if (const double spacing = number_or(fields, "spacing", 0.0); spacing != 0.0)
       return {{mm.x, mm.y, std::abs(spacing) * unit_mm}, "TIFF resolution tags and ImageJ spacing"};
@@ -265,8 +265,8 @@ Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
   for (const fs::path& path : files) info.storage_bytes += static_cast<std::int64_t>(fs::file_size(path, ignored));
   if (info.logical_bytes > (std::int64_t{64} << 20) && info.logical_bytes / 250 > info.storage_bytes && !options.trust)
     return fail(ErrorKind::kBadData,
-                "import_tiff: {} unpacks {} bytes to {}, expected at most 250:1; give --trust if you know "
-                "the files",
+                "import_tiff: {} unpacks {} bytes to {}, expected at most 250:1; if you know the files, "
+                "say that they are trusted",
                 options.path.string(), info.storage_bytes, info.logical_bytes);
   info.format = "tiff";
   info.found_by = files.size() > 1 ? fmt::format("{} files", files.size()) : "pages of one file";

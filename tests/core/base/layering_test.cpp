@@ -96,4 +96,18 @@ TEST(Layering, EachThirdPartyCApiIsIncludedByOneSourceFile) {
   }
 }
 
+// The program has flags; the libraries, which others call too, speak of what the flags mean.
+TEST(Layering, NoTextOfCoreNamesAFlagOfTheProgram) {
+  const std::regex flag(R"(^[^/]*"[^"]*--[a-z])");
+  int files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(DUBSAR_SOURCE_DIR) / "core")) {
+    if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;
+    ++files;
+    std::ifstream in(entry.path());
+    for (std::string line; std::getline(in, line);)
+      EXPECT_FALSE(std::regex_search(line, flag)) << entry.path() << ": " << line;
+  }
+  EXPECT_GT(files, 100);
+}
+
 }  // namespace

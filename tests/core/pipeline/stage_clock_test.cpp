@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/pipeline/tapped_source.h"
 
 namespace dubsar {
@@ -67,6 +69,38 @@ TEST(SampledSource, TakesGroupsOfSlicesFromTheWholeHeight) {
   EXPECT_EQ(parts, all);
   SampledSource whole(source, 1000, 3);
   EXPECT_EQ(whole.dims().z, 100);
+}
+
+/// A source whose slices come in layers, as chunks do; counts the layers that reads touch.
+class LayeredSource final : public SlabSource {
+ public:
+  LayeredSource(const Volume<float>& volume, std::int64_t layer) : source_(volume), layer_(layer) {}
+  Dims dims() const noexcept override { return source_.dims(); }
+  const GridFrame& frame() const noexcept override { return source_.frame(); }
+  std::int64_t preferred_height() const noexcept override { return layer_; }
+  Result<void> read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) override {
+    touched += (z_end - 1) / layer_ - z_begin / layer_ + 1;
+    return source_.read(z_begin, z_end, out);
+  }
+  std::int64_t touched = 0;
+
+ private:
+  VolumeSource source_;
+  std::int64_t layer_;
+};
+
+TEST(SampledSource, NoGroupLiesAcrossTwoLayersOfChunks) {
+  const Volume<float> volume = ramp({1, 1, 400});
+  for (const std::int64_t layer : {1, 4, 6, 7, 16, 64}) {
+    LayeredSource source(volume, layer);
+    SampledSource sample(source, 24, 3);
+    std::vector<float> all(24);
+    ASSERT_EQ(sample.dims().z, 24);
+    ASSERT_TRUE(sample.read(0, 24, all));
+    EXPECT_EQ(source.touched, layer == 1 ? 24 : 8) << layer;
+    EXPECT_TRUE(std::is_sorted(all.begin(), all.end())) << layer;
+    EXPECT_EQ(std::adjacent_find(all.begin(), all.end()), all.end()) << "no slice twice, layer " << layer;
+  }
 }
 
 }  // namespace

@@ -278,19 +278,6 @@ TEST(Smooth, NeverMovesAVertexFurtherThanTheLimit) {
   EXPECT_NEAR(stats->max_displacement_vox, static_cast<double>(largest), 1e-6);
 }
 
-TEST(Smooth, StopsEarlyWhenTheFacesAgreeWithTheirNormals) {
-  QuadMesh mesh = quantised_sphere(50, 20, 4);
-  SmoothOptions options;
-  options.vertex_iterations = 100;
-  options.stop_angle_deg = 1.5f;
-  std::vector<glm::vec3> normals;
-  SilentProgress progress;
-  const auto stats = smooth(mesh, normals, options, progress);
-  ASSERT_TRUE(stats);
-  EXPECT_LT(stats->vertex_iterations, 100);
-  EXPECT_LT(stats->residual_angle_deg, 1.5);
-}
-
 TEST(Smooth, SameBytesForOneTwoAndSevenThreads) {
   const QuadMesh start = quantised_sphere(64, 27, 4);
   std::vector<glm::vec3> first_positions, first_normals;

@@ -200,7 +200,7 @@ TEST_F(AxisOrders, Hdf5LabelsInEveryOrderAndPlace) {
         EXPECT_EQ((*volume)->info().axes.letters(), letters) << way;
         EXPECT_EQ((*volume)->info().axes.mirrored_as_stored(), mirrored) << way;
         EXPECT_TRUE((*volume)->info().axes.known()) << way;
-        EXPECT_EQ(warnings(**volume), "voxel size unknown: 1 voxel is taken as 1 mm; give --voxel-size") << way;
+        EXPECT_EQ(warnings(**volume), "voxel size unknown: 1 voxel is taken as 1 mm; give the voxel size") << way;
       }
   }
 }
@@ -257,8 +257,8 @@ TEST_F(AxisOrders, TheUserHasTheLastWord) {
   options.path = in("a.h5");
   options.axis_order = *parse_axis_order("xyz");
   const auto volume = open_volume(options);
-  expect_object(volume, "--axis-order");
-  EXPECT_EQ((*volume)->info().axes.provenance, "--axis-order");
+  expect_object(volume, "given by the user");
+  EXPECT_EQ((*volume)->info().axes.provenance, "given by the user");
 }
 
 TEST_F(AxisOrders, SizesFollowTheirAxes) {

@@ -351,7 +351,7 @@ TEST_F(ImportHdf5VoxelSize, OfTheUserWins) {
   const auto volume = open_volume(options);
   ASSERT_TRUE(volume);
   EXPECT_EQ((*volume)->frame().input_voxel.mm, glm::dvec3(0.038));
-  EXPECT_EQ((*volume)->frame().input_voxel.provenance, "--voxel-size");
+  EXPECT_EQ((*volume)->frame().input_voxel.provenance, "given by the user");
 }
 
 }  // namespace

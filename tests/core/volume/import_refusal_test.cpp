@@ -105,7 +105,7 @@ TEST_F(ImportRefusal, TwoVolumesOfSimilarSize) {
     file.array("/small", {3, 3, 3}, ones(27));
   }
   expect(refusal(), ErrorKind::kBadData,
-         {"several volumes of similar size", "--dataset", "/first (4x5x6 float32)", "/second (3x5x6"});
+         {"several volumes of similar size", "name its dataset", "/first (4x5x6 float32)", "/second (3x5x6"});
   EXPECT_EQ(refusal().message.find("/small"), std::string::npos);
   EXPECT_EQ(refusal("/second").message, "it was opened");
 }
@@ -118,7 +118,7 @@ TEST_F(ImportRefusal, EmptyAndNeverWritten) {
   { Hdf5Fixture(in("a.h5")).array("/late", {4, 5, 6}, {}); }
   expect(refusal(), ErrorKind::kBadData, {"nothing was ever written"});
   { Hdf5Fixture(in("a.h5")).half_written("/v", {8, 8, 8}, {2, 8, 8}, 5); }
-  expect(refusal(), ErrorKind::kBadData, {"1 of 4 chunks are missing", "--allow-sparse"});
+  expect(refusal(), ErrorKind::kBadData, {"1 of 4 chunks are missing", "if sparse data are allowed"});
   EXPECT_EQ(refusal("", [](ImportOptions& o) { o.allow_sparse = true; }).message, "it was opened");
 }
 
@@ -137,7 +137,7 @@ TEST_F(ImportRefusal, ACompressionBombUnlessItIsTrusted) {
   Hdf5Storage storage{.type = ScalarType::kU8, .dims = {80, 1024, 1024}, .chunk = {80, 1024, 1024}, .deflate = 9};
   ASSERT_TRUE(writer->write<std::uint8_t>("/v", storage, std::vector<std::uint8_t>(80 << 20)));
   ASSERT_TRUE(writer->commit());
-  expect(refusal(), ErrorKind::kBadData, {"expected at most 250:1", "--trust"});
+  expect(refusal(), ErrorKind::kBadData, {"expected at most 250:1", "say that it is trusted"});
   EXPECT_EQ(refusal("", [](ImportOptions& o) { o.trust = true; }).message, "it was opened");
 }
 
@@ -175,7 +175,7 @@ TEST_F(ImportRefusal, ExternalStorageUnlessItsFolderIsAllowed) {
   for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = static_cast<char>(i);
   write_bytes(in("raw/v.raw"), "head" + raw);
   { Hdf5Fixture(in("a.h5")).external_storage("/v", {4, 4, 4}, "raw/v.raw", 4); }
-  expect(refusal(), ErrorKind::kBadData, {"lies in another file \"raw/v.raw\"", "--allow-external"});
+  expect(refusal(), ErrorKind::kBadData, {"lies in another file \"raw/v.raw\"", "its folder is allowed"});
   ImportOptions options;
   options.path = in("a.h5");
   options.allow_external = in("raw");
@@ -203,7 +203,7 @@ TEST_F(ImportRefusal, ExternalLinksUnlessTheirFolderIsAllowed) {
     file.soft_link("/detour", "/entry/data");
   }
   for (const char* path : {"", "/entry/data/v", "/detour/v"})
-    expect(refusal(path), ErrorKind::kBadData, {"lies in another file \"parts/b.h5\"", "--allow-external"});
+    expect(refusal(path), ErrorKind::kBadData, {"lies in another file \"parts/b.h5\"", "its folder is allowed"});
   ImportOptions options;
   options.path = in("a.h5");
   options.dataset = "/detour/v";
@@ -222,7 +222,7 @@ TEST_F(ImportRefusal, VirtualDatasetsUnlessTheirFolderIsAllowed) {
   { Hdf5Fixture(in("parts/b.h5")).array("/v", {4, 5, 6}, ones(120)); }
   { Hdf5Fixture(in("a.h5")).virtual_dataset("/v", {4, 5, 6}, "parts/b.h5", "/v"); }
   expect(refusal(), ErrorKind::kBadData,
-         {"virtual dataset \"/v\" lies in another file \"parts/b.h5\"", "--allow-external"});
+         {"virtual dataset \"/v\" lies in another file \"parts/b.h5\"", "its folder is allowed"});
   ImportOptions options;
   options.path = in("a.h5");
   options.allow_external = in("parts");
@@ -274,7 +274,7 @@ TEST_F(ImportRefusal, WhatIsNoRegularFile) {
   write_bytes(in("empty"), "");
   expect(at(in("empty")), ErrorKind::kBadData, {"is empty"});
   write_bytes(in("text"), "this is not a volume");
-  expect(at(in("text")), ErrorKind::kBadData, {"no known format", "--dims and --type"});
+  expect(at(in("text")), ErrorKind::kBadData, {"no known format", "its size and number type"});
   write_bytes(in("picture.h5"), "\x89PNG\r\n\x1a\nxxxxxxxx");
   expect(at(in("picture.h5")), ErrorKind::kBadData, {"a PNG picture"});
   if (::geteuid() != 0) {
