@@ -46,7 +46,7 @@ std::optional<OperatorWish> OperatorMenu::key(std::string_view key, TimestampNs 
         std::find_if(all.begin(), all.end(), [&](const OperatorRow& r) { return key.size() == 1 && key[0] == r.key; });
     if (row == all.end() && key != "escape") return std::nullopt;
     const OperatorWish wish = row == all.end() ? OperatorWish::kClose : row->wish;
-    if (wish == OperatorWish::kClose || wish == OperatorWish::kEnd) open_ = false;
+    if (wish == OperatorWish::kClose || wish == OperatorWish::kEnd || wish == OperatorWish::kNextObject) open_ = false;
     return wish;
   }
   if (locked(now)) return std::nullopt;

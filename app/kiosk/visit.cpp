@@ -57,7 +57,7 @@ void Visit::learn(const VisitMoment& moment) {
   if (moment.hands > 0 && moment.hand == HandState::kHolding) done(Lesson::kGrab);
   if (course_.turned_deg >= kTurnedDeg) done(Lesson::kTurn);
   if (course_.zoomed >= kZoomed) done(Lesson::kTwoHands);
-  if (moment.rested) done(Lesson::kRest);
+  if (moment.rested && (course_.done[index(Lesson::kTurn)] || course_.now == Lesson::kRest)) done(Lesson::kRest);
   if (moment.swiped) done(Lesson::kSwipe);
   touched_ = touched_ || moment.turned_deg > 0 || moment.zoomed > 0 || moment.rested || moment.swiped;
   if (course_.done[index(Lesson::kTurn)]) phase_ = VisitPhase::kFree;
@@ -108,6 +108,7 @@ VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
   last_ = first ? now : std::max(now, last_);  // a clock that jumps back holds the visit still
   if (first) last_hand_ = last_somebody_ = last_ - ns(figures_.attract_after_s);
   const bool somebody = moment.head || moment.hands > 0;
+  const std::optional<Lesson> was_taught = course_.now;
   if (moment.hands > 0) last_hand_ = last_;
   if (somebody) last_somebody_ = last_;
   const bool trouble = moment.hands > 0 && moment.hand > HandState::kReady;
@@ -144,6 +145,8 @@ VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
     touched_ = false;
     ++counts_.resets;
   }
+  // A hand that only waits opens nothing; one that has turned the object, or was shown how, means it.
+  out.open = moment.rested && (course_.done[index(Lesson::kTurn)] || was_taught == Lesson::kRest);
   out.phase = phase_;
   out.lesson = course_.now;
   if (course_.now) out.lesson_s = 1e-9 * static_cast<double>(last_ - course_.since);

@@ -36,6 +36,7 @@ struct VisitPicture {
   std::optional<Line> line;      ///< said now
   std::optional<Lesson> lesson;  ///< shown as a moving hand
   double lesson_s = 0.0;         ///< since it is shown
+  bool open = false;             ///< now, once: the visitor asked for the envelope to be opened or closed
   bool reset = false;            ///< now, once: all is to go back to the beginning
   bool arrived = false;          ///< now, once: a visit began
 };

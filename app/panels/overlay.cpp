@@ -183,6 +183,7 @@ void Overlay::draw_all(float width, float height) {
     font->Scale = before;
   }
   if (!text_.help.empty()) draw_help(text_.help, width, height);
+  if (text_.gallery) draw_gallery(*text_.gallery, width, height, px_per_mm_);
   if (!text_.notice.empty()) draw_notice(text_.notice, text_.notice_opacity, width, height - (text_.panels ? 56 : 0));
 }
 
@@ -225,6 +226,7 @@ std::vector<std::string> Overlay::take_commands() { return std::exchange(command
 Result<void> Overlay::paint(ViewArray& layers, const glm::dvec2& window_mm) {
   if (text_.empty()) return {};
   const glm::dvec2 size = layout(layers.height(), window_mm);
+  px_per_mm_ = static_cast<float>(size.y / window_mm.y);
   ImGui_ImplOpenGL3_NewFrame();
   for (int pass = 0; pass < 2; ++pass)  // sizes that follow from text are known in the second
     frame(size, {layers.width() / size.x, layers.height() / size.y});

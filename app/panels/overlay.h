@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/panels/desk_panels.h"
+#include "app/panels/gallery_page.h"
 #include "app/panels/help_page.h"
 #include "app/viewer/stage.h"
 
@@ -19,7 +20,8 @@ struct OverlayText {
   std::string notice;             ///< one line at the lower edge; empty: none
   double notice_opacity = 1.0;
   std::optional<PanelState> panels{};  ///< while there is no help
-  bool empty() const noexcept { return help.empty() && notice.empty() && !panels; }
+  std::optional<GalleryPicture> gallery{};
+  bool empty() const noexcept { return help.empty() && notice.empty() && !panels && !gallery; }
   friend bool operator==(const OverlayText&, const OverlayText&) = default;
 };
 
@@ -53,6 +55,7 @@ class Overlay final : public LayerPainter {
   OverlayText text_;
   std::vector<std::string> commands_;
   glm::dvec2 scale_{1.0, 1.0};
+  float px_per_mm_ = 3.0f;
   std::array<bool, 3> held_{};  ///< buttons that went down on a panel
   bool object_held_ = false;    ///< one went down beside them
 };

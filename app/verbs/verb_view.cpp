@@ -10,7 +10,7 @@
 #include "app/cli/config_folder.h"
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
-#include "app/viewer/run_view.h"
+#include "app/verbs/view_kiosk.h"
 #include "core/base/atomic_file.h"
 #include "core/base/log.h"
 #include "core/base/parse_number.h"
@@ -22,6 +22,7 @@ namespace dubsar::app {
 namespace {
 
 struct Options {
+  std::string kiosk;
   std::vector<std::string> plugins;  // files
   std::string in, display = "mono", script, mapping, view = "front", style = "relief", size, monitor, frames, record;
   std::vector<std::string> inputs, partitions;
@@ -191,7 +192,40 @@ Result<void> with_window(const Options& options, ViewOptions& view) {
   return {};
 }
 
+/// What the profile of a kiosk says takes the place of what was not given.
+Options kiosk_options(Options options, const KioskProfile& profile, const KioskObject& object,
+                      const std::string& display) {
+  options.in = object.file.string();
+  options.display = display;
+  options.style = object.style;
+  if (options.inputs.empty()) options.inputs = profile.inputs;
+  if (options.monitor.empty() && !options.offscreen) options.monitor = profile.monitor;
+  if (options.size.empty() && !options.windowed && !options.offscreen) options.fullscreen = true;
+  return options;
+}
+
+Result<VerbResult> run_kiosk_of(const Options& given, Progress& progress) {
+  if (!given.in.empty()) return fail(ErrorKind::kUsage, "view: a file and --kiosk found, expected one of them");
+  const auto options = [&](const KioskProfile& profile, const KioskObject& object,
+                           const std::string& display) -> Result<ViewOptions> {
+    const Options one = kiosk_options(given, profile, object, display);
+    DUBSAR_ASSIGN(ViewOptions view, view_options(one));
+    DUBSAR_TRY(one.offscreen ? without_window(one, view) : with_window(one, view));
+    view.document.source = {};
+    return view;
+  };
+  DUBSAR_ASSIGN(const KioskOutcome done, run_kiosk({given.kiosk, options}, progress));
+  VerbResult out = describe(done.display, done.last, done.triangles, given.offscreen || given.fps > 0);
+  out.json["visits"] = done.counts.visits;
+  out.json["resets"] = done.counts.resets;
+  out.text += fmt::format("{} visits, {} times back to the beginning\n", done.counts.visits, done.counts.resets);
+  add_sources(done.last.rows, out);
+  return out;
+}
+
 Result<VerbResult> run(const Options& options, Progress& progress) {
+  if (!options.kiosk.empty()) return run_kiosk_of(options, progress);
+  if (options.in.empty()) return fail(ErrorKind::kUsage, "view: no file found, expected a surface such as tablet.exa");
   DUBSAR_ASSIGN(ViewOptions view, view_options(options));
   DUBSAR_TRY(options.offscreen ? without_window(options, view) : with_window(options, view));
   DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.in, options.partitions, true}, progress));
@@ -212,7 +246,10 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 Verb add_view_verb(Arguments program) {
   auto options = std::make_shared<Options>();
   Arguments command = program.command("view", "turn a surface on a display with hands, head and mouse");
-  command.reads("IN", options->in, "EXA, PLY, OBJ, STL or GLB file").required();
+  command.reads("IN", options->in, "EXA, PLY, OBJ, STL or GLB file");
+  command
+      .reads("--kiosk", options->kiosk, "a gallery's profile (docs/kiosk.md): its objects, until an operator ends it")
+      .called("PROFILE.json");
   std::string sinks, sources;
   for (const SinkBackend& sink : output_sinks()) sinks += (sinks.empty() ? "" : ", ") + std::string(sink.name);
   for (const std::string_view source : input_source_names())

@@ -39,6 +39,8 @@ class Presenter {
   virtual void wait(bool /*moving*/) {}
   virtual bool ended() const = 0;
   virtual void end() = 0;
+  /// Whoever wanted to close the window may not.
+  virtual void keep_open() {}
   virtual Result<void> toggle_fullscreen() {
     return fail(ErrorKind::kUnavailable, "there is no window that could cover a monitor");
   }

@@ -113,6 +113,7 @@ Result<void> Loop::draw(bool& drawn) {
   DUBSAR_TRY(write_picture());
   DUBSAR_TRY(presenter_->present());
   figures_.presented(steady_.now(), viewer_->report().moving);
+  viewer_->presented(steady_.now());
   out_.frame_cpu_ms.push_back(1e3 * (process_cpu_seconds() - cpu));
   ++out_.frames;
   drawn = true;
@@ -121,6 +122,10 @@ Result<void> Loop::draw(bool& drawn) {
 
 bool Loop::ends(TimestampNs start) {
   const TimestampNs now = clock().now();
+  if (options_.guide != nullptr) {
+    if (viewer_->led_to_end()) return true;
+    if (presenter_->ended()) presenter_->keep_open();
+  }
   if (presenter_->ended() || viewer_->over(now)) return true;
   if (options_.longest_s <= 0) return false;
   if (simulated()) return static_cast<double>(steps_ + 1) >= options_.longest_s * options_.fps;

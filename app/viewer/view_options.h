@@ -16,6 +16,8 @@
 
 namespace dubsar::app {
 
+class SessionGuide;  // app/viewer/session_guide.h
+
 struct ViewOptions {
   StageOptions stage{};
   Document document{};  ///< its view and home are the stage's, and its parts the mesh's where it has none
@@ -41,6 +43,7 @@ struct ViewOptions {
   bool notices = true;               ///< a line for some seconds: how to get help and leave, which display this is now
   std::vector<Command> commands{};   ///< in place of those that change what is looked at
   std::filesystem::path autosave{};  ///< copy of the document while somebody works; empty: none
+  SessionGuide* guide = nullptr;     ///< leads the session and says when it ends; null: nobody does. Outlives it
   MakeInput make_input = dubsar::make_input;
 };
 

@@ -16,6 +16,7 @@ namespace {
 constexpr TimestampNs kSecond = 1'000'000'000;
 constexpr TimestampNs kNoticeNs = 6 * kSecond, kFadeNs = kSecond, kHelpRefreshNs = kSecond / 2, kSettleNs = kSecond;
 constexpr std::uint64_t kKeySteps = std::uint64_t{1} << 63;  // told apart from movements
+constexpr std::uint64_t kGuideSteps = std::uint64_t{1} << 62;
 
 bool same_view(const ViewState& a, const ViewState& b) { return Shown{a} == Shown{b}; }
 
@@ -170,6 +171,7 @@ std::optional<double> Viewer::lever_at(const glm::dvec2& at) const {
 
 void Viewer::handle(InputEvent event) {
   if (given_.options.fps > 0) event.time = given_.clock.now();
+  if (given_.options.guide != nullptr && given_.options.guide->takes(event, given_.clock.now())) return;
   if (overlay_->take(event, Overlay::layout(stage_->traits().view.height, stage_->window_mm()))) {
     stage_->set_overlay(overlay_.get());  // what the pointer is on looks different
     if (event.kind == EventKind::kButton && event.down) ++at_.presses;
@@ -272,6 +274,7 @@ void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
     for (HelpSection& section : help_page(given_.options.mapping, *keys_)) text.help.push_back(std::move(section));
     at_.help_made = now;
   }
+  text.gallery = at_.guidance.picture;
   text.panels.reset();
   if (desk().panels && !desk().help) text.panels = panel_state();
   const TimestampNs age = now - notice_.since;
@@ -287,12 +290,28 @@ void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
   stage_->set_overlay(overlay_->text().empty() ? nullptr : overlay_.get());
 }
 
+/// Whoever leads the session sees how things stand and says what is to be done.
+void Viewer::lead(TimestampNs now, const Steered& steered) {
+  SessionGuide* const guide = given_.options.guide;
+  if (guide == nullptr) return;
+  const std::vector<SourceRow> rows = sources_->rows();
+  at_.guidance = guide->lead({now, steered, document(), rows, stage_->window_mm(), stage_->middle_mm()});
+  for (const std::string& command : at_.guidance.commands) run(command, kGuideSteps);
+}
+
+void Viewer::presented(TimestampNs now) {
+  if (given_.options.guide != nullptr) given_.options.guide->presented(now);
+}
+
 void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures& figures) {
   sources_->tick(now);
   steering_->steer(now);
-  for (const InputEvent& event : steering_->take_keys()) use_key(event);
+  for (const InputEvent& event : steering_->take_keys())
+    if (given_.options.guide == nullptr || !given_.options.guide->takes(event, now)) use_key(event);
   keep_up();
-  const Steered steered = steering_->look(now, display_time);
+  Steered steered = steering_->look(now, display_time);
+  lead(now, steered);
+  steered.view.rotation = at_.guidance.turn * steered.view.rotation;
   stage_->show(shown_of(document(), steered.view, given_.options.stage, stage_->box_mm()), steered.eyes, now);
   report_.view = steered.view;
   report_.viewer = stage_->viewer();

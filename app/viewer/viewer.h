@@ -9,6 +9,7 @@
 #include "app/document/document_file.h"
 #include "app/panels/overlay.h"
 #include "app/viewer/presenter.h"
+#include "app/viewer/session_guide.h"
 #include "app/viewer/steering.h"
 #include "input/input_recorder.h"
 #include "input/window_events.h"
@@ -40,6 +41,9 @@ class Viewer final : public Workplace {
   int fields() const { return stage_->traits().fields; }
   /// The window is somewhere else: the stage and the presenter follow.
   Result<void> place_changed();
+  /// Whether whoever leads the session has ended it.
+  bool led_to_end() const noexcept { return at_.guidance.end; }
+  void presented(TimestampNs now);
   /// Scripts and recordings were the only input, and are over for 1 s.
   bool over(TimestampNs now);
 
@@ -86,6 +90,7 @@ class Viewer final : public Workplace {
   struct Progression {
     TimestampNs over_since = -1, help_made = -1;
     std::uint64_t presses = 0;
+    Guidance guidance{};  ///< of whoever leads the session
   };
   Viewer(const TriMesh& mesh, const ViewOptions& options, Presenter& presenter, const Clock& clock)
       : given_{mesh, options, presenter, clock} {}
@@ -99,6 +104,8 @@ class Viewer final : public Workplace {
   std::optional<double> lever_at(const glm::dvec2& at) const;
 
   Given given_;
+  void lead(TimestampNs now, const Steered& steered);
+
   std::unique_ptr<CommandTable> commands_;
   std::unique_ptr<KeyTable> keys_;
   std::unique_ptr<Editor> editor_;

@@ -29,6 +29,7 @@ class WindowPresenter final : public Presenter {
   void wait(bool moving) override;
   bool ended() const override { return window_->should_close(); }
   void end() override { window_->close(); }
+  void keep_open() override { window_->keep_open(); }
   Result<void> toggle_fullscreen() override;
   GlfwWindow* window() override { return window_.get(); }
 

@@ -368,6 +368,8 @@ void GlfwWindow::set_windowed() {
   place_changed_ = true;
 }
 
+void GlfwWindow::keep_open() { glfwSetWindowShouldClose(as_window(window_), GLFW_FALSE); }
+
 bool GlfwWindow::should_close() const { return glfwWindowShouldClose(as_window(window_)) == GLFW_TRUE; }
 
 Result<Image> GlfwWindow::read(int eye) const {

@@ -1,0 +1,25 @@
+#pragma once
+// Hands as rings before the panel, so that people see that they are seen.
+
+#include <glm/vec2.hpp>
+#include <span>
+#include <vector>
+
+#include "display/render/scene.h"
+#include "input/people/hand_marks.h"
+
+namespace dubsar::app {
+
+/// Where a panel shows the places of a zone: the zone's middle at the panel's middle, its sides a little within the
+/// panel's, its depth squeezed into what eyes fuse with ease (0.12 of the height before the panel to 0.05 behind).
+struct RingStage {
+  HandZone zone{};
+  glm::dvec2 window_mm{1.0}, middle_mm{0.0};
+};
+glm::dvec3 ring_place_mm(const RingStage& stage, const glm::dvec3& place_m) noexcept;
+
+/// One ring a hand that closes as the hand does, amber when it may take hold or holds, grey otherwise; around it the
+/// share of a selection by holding still.
+std::vector<LinesItem> hand_rings(const RingStage& stage, std::span<const HandMark> hands);
+
+}  // namespace dubsar::app

@@ -1,0 +1,221 @@
+#include "app/kiosk/kiosk_guide.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <numbers>
+
+#include "app/document/document.h"
+#include "app/kiosk/hand_rings.h"
+#include "core/base/log.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr double kSwayDeg = 12.0, kSwayPeriodS = 22.0;  // at most 4 degrees a second
+constexpr double kSwayRiseS = 4.0, kSwayFallS = 2.0, kUnpackS = 2.0, kDarkS = 3.0;
+constexpr double kAsleepDark = 0.97;
+constexpr double kHandTurnDeg = 0.05;  // less is noise
+
+WallTime this_machine() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  return {static_cast<std::int64_t>(now), 60 * local.tm_hour + local.tm_min};
+}
+
+/// A step towards a goal at an even pace.
+double towards(double from, double to, double step) {
+  return from < to ? std::min(from + step, to) : std::max(from - step, to);
+}
+
+bool sees_hands(const SourceRow& row) {
+  return row.health == SourceHealth::kPresent && row.spec != "mouse" && row.spec != "keyboard" &&
+         row.spec.rfind("head:", 0) != 0;
+}
+
+}  // namespace
+
+KioskGuide::KioskGuide(KioskParts parts)
+    : parts_(std::move(parts)),
+      visit_({parts_.profile.idle_reset_s, parts_.profile.attract_after_s}),
+      menu_(parts_.profile.pin),
+      journal_(parts_.profile.journal),
+      notify_(parts_.notify_socket, parts_.watchdog_us) {
+  if (!parts_.wall) parts_.wall = this_machine;
+  write("start");
+  if (!parts_.trouble.empty()) {
+    log_warning("{}", parts_.trouble);
+    write("trouble");
+  }
+}
+
+KioskGuide::~KioskGuide() {
+  write("end", fmt::format("\"visits\": {}, \"resets\": {}", visit_.counts().visits, visit_.counts().resets));
+  notify_.stopping();
+}
+
+void KioskGuide::write(std::string_view what, std::string_view figures) {
+  const auto done = journal_.add(parts_.wall().unix_s, what, figures);
+  if (!done && done.error().message != journal_trouble_) log_warning("{}", done.error().message);
+  journal_trouble_ = done ? std::string() : done.error().message;
+}
+
+void KioskGuide::begin_object() {
+  ended_ = false;
+  motion_ = {};
+  view_.reset();
+}
+
+bool KioskGuide::takes(const InputEvent& event, TimestampNs now) {
+  if (event.kind != EventKind::kKey) return false;  // a finger or a mouse may turn the object as a hand does
+  const bool plain = (event.modifiers & (kControl | kAlt)) == 0;
+  if (event.down && !event.repeat && plain)
+    if (const auto wish = menu_.key(event.key, now)) wishes_.push_back(*wish);
+  return true;
+}
+
+VisitMoment KioskGuide::notice(const GuideMoment& moment) {
+  const Steered& steered = moment.steered;
+  VisitMoment out;
+  out.tracker = std::any_of(moment.sources.begin(), moment.sources.end(), sees_hands);
+  out.asleep = is_quiet(parts_.profile.quiet, parts_.wall().minute_of_day);
+  out.head = steered.eyes.presence == Presence::kTracked;
+  out.hands = static_cast<int>(steered.hands.size());
+  if (!steered.hands.empty()) out.hand = steered.hands.front().state;
+  out.two_hold = steered.hands.size() > 1 && steered.hands[0].state == HandState::kHolding &&
+                 steered.hands[1].state == HandState::kHolding;
+  if (view_ && steered.control == Control::kHands) {
+    const double turned = turn_between_deg(view_->rotation, steered.view.rotation);
+    if (turned > kHandTurnDeg) out.turned_deg = turned;
+    if (out.two_hold) out.zoomed = std::abs(std::log(steered.view.zoom / view_->zoom));
+  }
+  // A mouse or a finger on the glass is a visitor's hand as well.
+  if (steered.control == Control::kMouse) {
+    out.hands = std::max(out.hands, 1);
+    out.hand = HandState::kHolding;
+    if (view_) out.turned_deg = turn_between_deg(view_->rotation, steered.view.rotation);
+  }
+  out.swiped = steered.swiped;
+  out.rested = steered.selected_m.has_value();
+  view_ = steered.view;
+  return out;
+}
+
+void KioskGuide::obey(OperatorWish wish, Guidance& out) {
+  switch (wish) {
+    case OperatorWish::kClose:
+      break;
+    case OperatorWish::kNextObject:
+      object_ = (object_ + 1) % parts_.profile.objects.size();
+      out.end = true;
+      break;
+    case OperatorWish::kNextLanguage:
+      language_ = (language_ + 1) % parts_.profile.languages.size();
+      break;
+    case OperatorWish::kReset:
+      motion_.unpack_goal = 0.0;
+      out.commands.emplace_back("reset");
+      break;
+    case OperatorWish::kRetryDevices:
+      out.commands.emplace_back("retry_sources");
+      break;
+    case OperatorWish::kNextDisplay:
+      out.commands.emplace_back("next_display");
+      break;
+    case OperatorWish::kEnd:
+      object_ = parts_.profile.objects.size();
+      out.end = true;
+      break;
+  }
+  write("operator", fmt::format("\"wish\": {}", static_cast<int>(wish)));
+}
+
+/// What goes on by itself: the sway of an object that nobody holds, the envelope, the light of the room.
+void KioskGuide::move_on(const GuideMoment& moment, const VisitPicture& visit, Guidance& out) {
+  const double dt =
+      motion_.last < 0 ? 0.0 : std::clamp(1e-9 * static_cast<double>(moment.now - motion_.last), 0.0, 0.2);
+  motion_.last = moment.now;
+  const bool sways = visit.phase == VisitPhase::kAttract;
+  if (sways && motion_.sway == 0.0) motion_.sway_since = moment.now;
+  motion_.sway = towards(motion_.sway, sways ? 1.0 : 0.0, dt / (sways ? kSwayRiseS : kSwayFallS));
+  const double eased = motion_.sway * motion_.sway * (3.0 - 2.0 * motion_.sway);
+  const double phase = 2e-9 * std::numbers::pi * static_cast<double>(moment.now - motion_.sway_since) / kSwayPeriodS;
+  const double angle = eased * kSwayDeg * std::numbers::pi / 180.0 * std::sin(phase);
+  if (angle != 0.0) out.turn = turn_of({0.0, angle, 0.0});
+
+  if (visit.reset) {
+    motion_.unpack_goal = 0.0;
+    out.commands.emplace_back("reset");
+  } else if (visit.open && can_unpack(moment.document)) {
+    motion_.unpack_goal = motion_.unpack_goal > 0.5 ? 0.0 : 1.0;
+  }
+  const double unpack = towards(motion_.unpack, motion_.unpack_goal, dt / kUnpackS);
+  if (unpack != motion_.unpack && can_unpack(moment.document)) {
+    const double smooth = unpack * unpack * (3.0 - 2.0 * unpack);
+    out.commands.push_back(fmt::format("unpack {:.3f}", 100.0 * smooth));
+  }
+  motion_.unpack = unpack;
+  const double dark = visit.phase == VisitPhase::kAsleep ? kAsleepDark : 1.0 - parts_.profile.brightness;
+  motion_.dark = motion_.shown ? towards(motion_.dark, dark, dt / kDarkS) : dark;
+  motion_.shown = true;
+}
+
+GalleryPicture KioskGuide::picture(const VisitPicture& visit) const {
+  GalleryPicture out;
+  const std::string& spoken = language();
+  if (visit.line) out.line = parts_.words.say(*visit.line, spoken);
+  if (visit.phase == VisitPhase::kAttract && !parts_.trouble.empty())
+    out.line = parts_.words.say(Line::kNoPanel, spoken);
+  out.right_to_left = Words::right_to_left(spoken);
+  out.lesson = visit.lesson;
+  out.lesson_s = visit.lesson_s;
+  if (visit.phase == VisitPhase::kAttract && object_ < parts_.profile.objects.size())
+    out.title = text_in(parts_.profile.objects[object_].title, spoken);
+  out.letter_mm = letter_height_mm(parts_.profile.reading_distance_m);
+  out.dark = motion_.dark;
+  if (menu_.open())
+    for (const OperatorRow& row : OperatorMenu::rows()) out.menu.push_back(fmt::format("{}  {}", row.key, row.words));
+  return out;
+}
+
+Guidance KioskGuide::lead(const GuideMoment& moment) {
+  Guidance out;
+  menu_.tick(moment.now);
+  const WallTime wall = parts_.wall();
+  if (!parts_.profile.key_file.empty() && wall.unix_s != looked_) {  // once a second
+    std::error_code error;
+    menu_.file_present(std::filesystem::exists(parts_.profile.key_file, error), moment.now);
+  }
+  looked_ = wall.unix_s;
+  for (const OperatorWish wish : std::exchange(wishes_, {})) obey(wish, out);
+  const VisitPicture visit = visit_.update(moment.now, notice(moment));
+  if (visit.arrived) write("visit");
+  if (visit.reset) write("reset");
+  if (const std::int64_t hour = wall.unix_s / 3600; hour != hour_) {
+    if (hour_ >= 0) {
+      const Visit::Counts& counts = visit_.counts();
+      write("hour", fmt::format("\"visits\": {}, \"resets\": {}, \"turned\": {}, \"zoomed\": {}, \"opened\": {}",
+                                counts.visits, counts.resets, counts.done[static_cast<std::size_t>(Lesson::kTurn)],
+                                counts.done[static_cast<std::size_t>(Lesson::kTwoHands)],
+                                counts.done[static_cast<std::size_t>(Lesson::kRest)]));
+      notify_.status(fmt::format("{} visits", counts.visits));
+    }
+    hour_ = hour;
+  }
+  move_on(moment, visit, out);
+  ended_ = out.end;
+  if (visit.phase != VisitPhase::kAsleep)
+    out.lines = hand_rings({parts_.zone, moment.window_mm, moment.middle_mm}, moment.steered.hands);
+  out.picture = picture(visit);
+  return out;
+}
+
+void KioskGuide::presented(TimestampNs now) {
+  if (!ready_) notify_.ready();
+  ready_ = true;
+  notify_.alive(now);
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,79 @@
+#pragma once
+// Leads the session of a kiosk: visitors are invited, seen, taught and left alone; what they moved goes back when they
+// are gone; an operator has the only keys.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "app/kiosk/journal.h"
+#include "app/kiosk/kiosk_profile.h"
+#include "app/kiosk/operator_menu.h"
+#include "app/kiosk/service_notify.h"
+#include "app/viewer/session_guide.h"
+
+namespace dubsar::app {
+
+/// The time of the wall: seconds since 1970, and the local minute of the day.
+struct WallTime {
+  std::int64_t unix_s = 0;
+  int minute_of_day = 0;
+};
+
+struct KioskParts {
+  KioskProfile profile{};
+  Words words{};
+  HandZone zone{};
+  std::string trouble{};             ///< said at the beginning, e.g. of a display that is not there
+  std::function<WallTime()> wall{};  ///< none: that of this machine
+  std::string notify_socket{};       ///< of a service manager
+  std::int64_t watchdog_us = 0;
+};
+
+class KioskGuide final : public SessionGuide {
+ public:
+  explicit KioskGuide(KioskParts parts);
+  ~KioskGuide() override;
+
+  bool takes(const InputEvent& event, TimestampNs now) override;
+  Guidance lead(const GuideMoment& moment) override;
+  void presented(TimestampNs now) override;
+
+  /// Another object, or the same again, is shown from now on.
+  void begin_object();
+  /// Whether an operator ended the session.
+  bool ended() const noexcept { return ended_; }
+  /// Which object the operator wants next, from 0 on; as many as there are: none, the kiosk is over.
+  std::size_t object() const noexcept { return object_; }
+  const Visit& visit() const noexcept { return visit_; }
+  const std::string& language() const { return parts_.profile.languages[language_]; }
+
+ private:
+  struct Motion {  ///< what goes on by itself
+    double unpack = 0.0, unpack_goal = 0.0, sway = 0.0, dark = 0.0;
+    TimestampNs last = -1, sway_since = 0;
+    bool shown = false;
+  };
+  VisitMoment notice(const GuideMoment& moment);
+  void obey(OperatorWish wish, Guidance& out);
+  void move_on(const GuideMoment& moment, const VisitPicture& visit, Guidance& out);
+  GalleryPicture picture(const VisitPicture& visit) const;
+  void write(std::string_view what, std::string_view figures = {});
+
+  KioskParts parts_;
+  Visit visit_;
+  OperatorMenu menu_;
+  Journal journal_;
+  ServiceNotify notify_;
+  std::vector<OperatorWish> wishes_;
+  Motion motion_;
+  std::optional<ViewState> view_;  // of the last moment
+  std::string journal_trouble_;
+  std::size_t object_ = 0, language_ = 0;
+  std::int64_t hour_ = -1, looked_ = -1;
+  bool ended_ = false;
+  bool ready_ = false;  // said to the service manager
+};
+
+}  // namespace dubsar::app

@@ -1,0 +1,91 @@
+#include "app/panels/gallery_page.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "app/panels/lesson_picture.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr float kCapital = 0.73f;  // height of a capital, of the size of the panels' font
+constexpr ImGuiWindowFlags kBare = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav |
+                                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                                   ImGuiWindowFlags_NoBackground;
+
+/// A text in the middle of a width, on a dark ground; its lower edge at `bottom`. Returns its upper edge.
+float draw_words(const std::string& words, float size_px, float width, float bottom, bool right_to_left) {
+  if (words.empty()) return bottom;
+  ImFont* const font = ImGui::GetFont();
+  const float room = 0.88f * width;
+  const ImVec2 whole = font->CalcTextSizeA(size_px, 1e6f, 0.0f, words.c_str());
+  const float fitted = std::max(size_px * std::min(1.0f, 2.0f * room / std::max(whole.x, 1.0f)), 0.5f * size_px);
+  const ImVec2 text = font->CalcTextSizeA(fitted, 1e6f, room, words.c_str());
+  const float left = right_to_left ? 0.5f * (width + room) - text.x : 0.5f * (width - text.x);
+  const float pad = 0.4f * fitted;
+  const ImVec2 at(left, bottom - text.y - pad);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(ImVec2(at.x - 1.5f * pad, at.y - pad), ImVec2(at.x + text.x + 1.5f * pad, bottom),
+                     ImGui::GetColorU32(ImVec4(0.09f, 0.09f, 0.1f, 0.82f)), pad);
+  list.AddText(font, fitted, at, ImGui::GetColorU32(ImVec4(0.95f, 0.93f, 0.88f, 1.0f)), words.c_str(), nullptr, room);
+  return at.y - pad;
+}
+
+void draw_menu(const std::vector<std::string>& rows, float size_px, float width, float height) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  ImFont* const font = ImGui::GetFont();
+  float wide = 0.0f;
+  for (const std::string& row : rows) wide = std::max(wide, font->CalcTextSizeA(size_px, 1e6f, 0.0f, row.c_str()).x);
+  const float step = 1.5f * size_px, tall = step * static_cast<float>(rows.size());
+  ImVec2 at(0.5f * (width - wide), 0.5f * (height - tall));
+  list.AddRectFilled(ImVec2(at.x - step, at.y - step), ImVec2(at.x + wide + step, at.y + tall + step),
+                     ImGui::GetColorU32(ImVec4(0.09f, 0.09f, 0.1f, 0.96f)), 0.4f * step);
+  for (const std::string& row : rows) {
+    list.AddText(font, size_px, at, ImGui::GetColorU32(ImVec4(0.95f, 0.93f, 0.88f, 1.0f)), row.c_str());
+    at.y += step;
+  }
+}
+
+}  // namespace
+
+double letter_height_mm(double reading_distance_m) noexcept {
+  constexpr double kArcMinutes = 20.0;
+  return 1e3 * reading_distance_m * kArcMinutes / 60.0 * std::numbers::pi / 180.0;
+}
+
+void draw_gallery(const GalleryPicture& picture, float width, float height, float px_per_mm) {
+  ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
+  ImGui::SetNextWindowSize(ImVec2(width, height));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0.0f, 0.0f));
+  ImGui::Begin("gallery", nullptr, kBare);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (picture.dark > 0.0)
+    list.AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(width, height),
+                       ImGui::GetColorU32(ImVec4(0.0f, 0.0f, 0.0f, static_cast<float>(picture.dark))));
+  // No letter is larger than what leaves the object its place.
+  const float size = std::min(static_cast<float>(picture.letter_mm) * px_per_mm / kCapital, 0.07f * height);
+  float bottom = height - 0.03f * height;
+  bottom = draw_words(picture.line, size, width, bottom, picture.right_to_left);
+  if (picture.lesson) {
+    // Beside the object where there is room, else above the words.
+    const bool wide = width > 1.25f * height;
+    const float radius = wide ? std::min(0.2f * height, 0.16f * width) : std::min(0.14f * height, 0.2f * width);
+    const float x = wide ? 1.25f * radius : 0.5f * width, y = wide ? 0.55f * height : bottom - 1.15f * radius;
+    draw_lesson(lesson_pose(*picture.lesson, picture.lesson_s), x, y, radius);
+  }
+  if (!picture.title.empty() || !picture.text.empty()) {
+    const float first = 0.03f * height + 2.0f * size;
+    draw_words(picture.title, 1.1f * size, width, first, picture.right_to_left);
+    if (!picture.text.empty()) {
+      const ImVec2 text = ImGui::GetFont()->CalcTextSizeA(0.8f * size, 1e6f, 0.88f * width, picture.text.c_str());
+      draw_words(picture.text, 0.8f * size, width, first + 1.2f * size + text.y, picture.right_to_left);
+    }
+  }
+  if (!picture.menu.empty()) draw_menu(picture.menu, std::max(size * 0.6f, 14.0f), width, height);
+  ImGui::End();
+  ImGui::PopStyleVar();
+}
+
+}  // namespace dubsar::app

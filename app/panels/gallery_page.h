@@ -1,0 +1,32 @@
+#pragma once
+// What lies over the object in a gallery: one line at reading distance, a hand that shows what can be done, the caption
+// of a tour, the operator's menu.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/kiosk/visit.h"
+
+namespace dubsar::app {
+
+struct GalleryPicture {
+  std::string line;            ///< one sentence; empty: none
+  bool right_to_left = false;  ///< how it is set
+  std::string title, text;     ///< of what is shown now; both may be empty
+  std::optional<Lesson> lesson;
+  double lesson_s = 0.0;          ///< how far its moving hand is
+  double letter_mm = 8.0;         ///< height of the letters on the panel
+  double dark = 0.0;              ///< 0..1: how much of the light is taken away
+  std::vector<std::string> menu;  ///< rows of the operator's menu; empty: closed
+  friend bool operator==(const GalleryPicture&, const GalleryPicture&) = default;
+};
+
+/// Height of letters that are read with ease from a distance: 20 minutes of arc for a capital (ISO 9241-303:
+/// 16 at least, 20 to 22 preferred).
+double letter_height_mm(double reading_distance_m) noexcept;
+
+/// Within a frame of Dear ImGui of `width` x `height` pixels, of which `px_per_mm` are a millimetre of the panel.
+void draw_gallery(const GalleryPicture& picture, float width, float height, float px_per_mm);
+
+}  // namespace dubsar::app

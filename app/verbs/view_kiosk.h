@@ -1,0 +1,33 @@
+#pragma once
+// dubsar view --kiosk PROFILE.json: the objects of a profile one after the other, until an operator ends it.
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "app/kiosk/kiosk_profile.h"
+#include "app/kiosk/visit.h"
+#include "app/viewer/run_view.h"
+
+namespace dubsar::app {
+
+struct KioskSession {
+  std::filesystem::path profile;
+  /// What a session is asked for, of an object on a display.
+  std::function<Result<ViewOptions>(const KioskProfile&, const KioskObject&, const std::string& display)> options;
+};
+
+struct KioskOutcome {
+  ViewResult last{};
+  Visit::Counts counts{};
+  int sessions = 0;
+  std::size_t triangles = 0;
+  std::string display{};
+};
+
+/// Reads all objects before the first picture; those that cannot be read are left out and said. A display that cannot
+/// be had is replaced by a flat picture, which is said on the screen. Errors: the profile's, of the only object, of the
+/// session.
+Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress);
+
+}  // namespace dubsar::app

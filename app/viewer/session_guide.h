@@ -1,0 +1,47 @@
+#pragma once
+// Who leads a session besides those that steer it, such as a gallery: it sees what happens, says what lies over the
+// picture, and may let the object move by itself.
+
+#include <glm/gtc/quaternion.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/panels/gallery_page.h"
+#include "app/viewer/source_set.h"
+#include "app/viewer/steering.h"
+#include "display/render/scene.h"
+
+namespace dubsar::app {
+
+struct Document;
+
+struct GuideMoment {
+  TimestampNs now = 0;
+  const Steered& steered;
+  const Document& document;
+  std::span<const SourceRow> sources;
+  glm::dvec2 window_mm{1.0}, middle_mm{0.0};  ///< what the panel shows across, and its middle in the screen frame
+};
+
+struct Guidance {
+  std::vector<std::string> commands{};      ///< done now
+  glm::dquat turn{1.0, 0.0, 0.0, 0.0};      ///< the object is turned this much further in this picture
+  std::vector<LinesItem> lines{};           ///< in the screen frame, mm
+  std::optional<GalleryPicture> picture{};  ///< over everything else; none: what there always is
+  bool end = false;                         ///< the session is over
+};
+
+/// One thread: that of the session.
+class SessionGuide {
+ public:
+  virtual ~SessionGuide() = default;
+  /// True: the event is the guide's, nobody else sees it.
+  virtual bool takes(const InputEvent& event, TimestampNs now) = 0;
+  virtual Guidance lead(const GuideMoment& moment) = 0;
+  /// A picture is on the panel.
+  virtual void presented(TimestampNs now) = 0;
+};
+
+}  // namespace dubsar::app

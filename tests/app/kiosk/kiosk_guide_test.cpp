@@ -1,0 +1,225 @@
+#include "app/kiosk/kiosk_guide.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "app/document/document.h"
+#include "app/kiosk/hand_rings.h"
+#include "app/panels/lesson_picture.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr TimestampNs kStep = 50'000'000;
+
+/// A kiosk without a window: what it is told and what it wants.
+class Kiosk {
+ public:
+  explicit Kiosk(KioskProfile profile = {}, int minute = 12 * 60) : minute_(minute) {
+    if (profile.objects.empty())
+      profile.objects = {{.file = "a.exa", .title = {{"en", "A"}, {"de", "B"}}}, {.file = "b.exa"}};
+    profile.pin = "8302";
+    KioskParts parts;
+    parts.profile = profile;
+    parts.wall = [this] { return WallTime{1'790'000'000 + now_ / 1'000'000'000, minute_}; };
+    guide_ = std::make_unique<KioskGuide>(std::move(parts));
+    document_.parts = {{"tablet", 1}, {"envelope", 2}};
+  }
+  Guidance go_on(double seconds, Steered steered = {}) {
+    Guidance last;
+    for (int i = 0; i < static_cast<int>(20 * seconds); ++i, now_ += kStep) {
+      last = guide_->lead({now_, steered, document_, rows_, {600, 340}, {0, 0}});
+      steered.selected_m.reset();
+      for (const std::string& command : last.commands) {
+        commands.push_back(command);
+        if (command.rfind("unpack ", 0) == 0) document_.unpack = 0.01 * std::stod(command.substr(7));
+      }
+      const double turned = turn_between_deg(last.turn, turn_);
+      fastest_deg_per_s = std::max(fastest_deg_per_s, turned / 0.05);
+      turn_ = last.turn;
+    }
+    return last;
+  }
+  void type(std::string_view keys) {
+    for (const char c : keys) press(std::string(1, c));
+    press("enter");
+  }
+  void press(const std::string& key) {
+    InputEvent event;
+    event.kind = EventKind::kKey;
+    event.key = key;
+    event.down = true;
+    EXPECT_TRUE(guide_->takes(event, now_));
+  }
+  KioskGuide& guide() { return *guide_; }
+  const Document& document() const { return document_; }
+  void set_minute(int minute) { minute_ = minute; }
+  std::vector<std::string> commands;
+  double fastest_deg_per_s = 0.0;
+
+ private:
+  std::unique_ptr<KioskGuide> guide_;
+  std::vector<SourceRow> rows_{{"leap", SourceHealth::kPresent, ""}};
+  Document document_;
+  TimestampNs now_ = 3'000'000'000;
+  int minute_;
+  glm::dquat turn_{1, 0, 0, 0};
+};
+
+Steered with_hand(HandState state, Control control = Control::kNone, double turned_deg = 0.0) {
+  Steered out;
+  out.hands = {{{0.1, 0.0, 0.2}, state == HandState::kHolding ? 1.0 : 0.0, 0.0, state}};
+  out.control = control;
+  out.view.rotation = turn_of({0, turned_deg * 0.0174532925, 0});
+  return out;
+}
+
+TEST(KioskGuide, AnObjectNobodyHoldsMovesSlowlyAndStopsWithoutAJump) {
+  Kiosk kiosk;
+  kiosk.go_on(40);
+  EXPECT_GT(kiosk.fastest_deg_per_s, 1.0);
+  EXPECT_LE(kiosk.fastest_deg_per_s, 6.0);
+  kiosk.fastest_deg_per_s = 0.0;
+  kiosk.go_on(4, with_hand(HandState::kReady));
+  EXPECT_LE(kiosk.fastest_deg_per_s, 12.0);  // it swings back within a hand's way to it
+  const auto still = kiosk.go_on(1, with_hand(HandState::kReady));
+  EXPECT_LT(turn_between_deg(still.turn, {1, 0, 0, 0}), 1e-6);
+}
+
+TEST(KioskGuide, SaysTheTitleAndInvitesInTheLanguageOfTheOperator) {
+  KioskProfile profile;
+  profile.languages = {"de", "en"};
+  Kiosk kiosk(profile);
+  auto picture = *kiosk.go_on(1).picture;
+  EXPECT_EQ(picture.title, "B");
+  EXPECT_EQ(picture.line, Words().say(Line::kInvite, "de"));
+  kiosk.type("8302");
+  picture = *kiosk.go_on(0.1).picture;
+  EXPECT_EQ(picture.menu.size(), OperatorMenu::rows().size());
+  kiosk.press("2");
+  EXPECT_EQ(kiosk.go_on(0.1).picture->title, "A");
+}
+
+TEST(KioskGuide, HoldingStillOpensTheEnvelopeSmoothlyAfterTheObjectWasTurned) {
+  Kiosk kiosk;
+  kiosk.go_on(1, with_hand(HandState::kReady));
+  Steered rests = with_hand(HandState::kReady);
+  rests.selected_m = glm::dvec3(0.0);
+  kiosk.go_on(1, rests);
+  EXPECT_EQ(kiosk.document().unpack, 0.0);  // who only waits opens nothing
+  for (int i = 0; i < 20; ++i) kiosk.go_on(0.05, with_hand(HandState::kHolding, Control::kHands, 2.0 * i));
+  rests.view = with_hand(HandState::kReady, Control::kNone, 38.0).view;
+  kiosk.go_on(3, rests);
+  EXPECT_EQ(kiosk.document().unpack, 1.0);
+  double last = 0.0, largest = 0.0;
+  for (const std::string& command : kiosk.commands)
+    if (command.rfind("unpack ", 0) == 0) {
+      largest = std::max(largest, std::abs(std::stod(command.substr(7)) - last));
+      last = std::stod(command.substr(7));
+    }
+  EXPECT_LT(largest, 5.0);  // percent a picture
+}
+
+TEST(KioskGuide, GoesBackToTheBeginningWhenNobodyComesBack) {
+  KioskProfile profile;
+  profile.idle_reset_s = 20;
+  profile.attract_after_s = 4;
+  Kiosk kiosk(profile);
+  for (int i = 0; i < 20; ++i) kiosk.go_on(0.05, with_hand(HandState::kHolding, Control::kHands, 2.0 * i));
+  kiosk.go_on(18);
+  EXPECT_EQ(std::count(kiosk.commands.begin(), kiosk.commands.end(), "reset"), 0);
+  kiosk.go_on(10);
+  EXPECT_EQ(std::count(kiosk.commands.begin(), kiosk.commands.end(), "reset"), 1);
+}
+
+TEST(KioskGuide, IsDarkInQuietHoursAndNeverFlashes) {
+  KioskProfile profile;
+  profile.quiet = {{18 * 60, 9 * 60}};
+  Kiosk kiosk(profile);
+  EXPECT_EQ(kiosk.go_on(1).picture->dark, 0.0);
+  kiosk.set_minute(20 * 60);
+  double last = 0.0, step = 0.0;
+  for (int i = 0; i < 400; ++i) {
+    const double dark = kiosk.go_on(0.05).picture->dark;
+    step = std::max(step, std::abs(dark - last));
+    last = dark;
+  }
+  EXPECT_GT(last, 0.9);
+  EXPECT_LT(step, 0.05);
+  EXPECT_TRUE(kiosk.go_on(0.05).picture->line.empty());
+}
+
+TEST(KioskGuide, OnlyTheOperatorEndsIt) {
+  Kiosk kiosk;
+  const std::vector<std::string> keys{"escape", "f4", "f11",  "q",  "tab",    "enter",
+                                      "1",      "9",  "home", "f1", "delete", "5"};
+  std::mt19937 random(60219);
+  for (int i = 0; i < 10'000; ++i) {
+    kiosk.press(keys[random() % keys.size()]);
+    if (i % 50 == 0) {
+      EXPECT_FALSE(kiosk.go_on(0.05).end);
+    }
+  }
+  EXPECT_TRUE(kiosk.commands.empty());
+  kiosk.go_on(45);  // a lock after wrong numbers is over
+  kiosk.type("8302");
+  kiosk.press("1");
+  EXPECT_TRUE(kiosk.go_on(0.05).end);
+  EXPECT_EQ(kiosk.guide().object(), 1U);
+  kiosk.guide().begin_object();
+  kiosk.type("8302");
+  kiosk.press("9");
+  EXPECT_TRUE(kiosk.go_on(0.05).end);
+  EXPECT_EQ(kiosk.guide().object(), 2U);  // as many as there are: over
+}
+
+TEST(HandRings, StandWhereTheHandIsWithinThePanelAndAComfortableDepth) {
+  const RingStage stage{{{-0.35, -0.25, -0.2}, {0.35, 0.35, 0.6}}, {600, 340}, {0, 0}};
+  const auto middle = ring_place_mm(stage, {0.0, 0.05, 0.2});
+  EXPECT_NEAR(middle.x, 0.0, 1e-9);
+  EXPECT_NEAR(middle.y, 0.0, 1e-9);
+  const auto right = ring_place_mm(stage, {0.2, 0.05, 0.2}), near = ring_place_mm(stage, {0.0, 0.05, 0.5});
+  EXPECT_GT(right.x, 100.0);
+  EXPECT_GT(near.z, middle.z);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> anywhere(-2.0, 2.0);
+  for (int i = 0; i < 1000; ++i) {
+    const auto at = ring_place_mm(stage, {anywhere(random), anywhere(random), anywhere(random)});
+    EXPECT_LE(std::abs(at.x), 300.0);
+    EXPECT_LE(std::abs(at.y), 170.0);
+    EXPECT_LE(at.z, 0.13 * 340);
+    EXPECT_GE(at.z, -0.06 * 340);
+  }
+  EXPECT_EQ(hand_rings(stage, std::vector<HandMark>{{{0, 0, 0.2}}}).size(), 1U);
+  EXPECT_EQ(hand_rings(stage, std::vector<HandMark>{{{0, 0, 0.2}, 0.0, 0.5}}).size(), 2U);
+  EXPECT_TRUE(hand_rings(stage, {}).empty());
+}
+
+TEST(LessonPicture, MovesWithoutJumpsAndNeverFlashes) {
+  for (std::size_t i = 0; i < kLessonCount; ++i) {
+    const auto lesson = static_cast<Lesson>(i);
+    LessonPose last = lesson_pose(lesson, 0.0);
+    bool moved = false;
+    for (double t = 0.01; t < 12.0; t += 0.01) {
+      const LessonPose pose = lesson_pose(lesson, t);
+      if (pose.opacity > 0.01f && last.opacity > 0.01f) {  // where it can be seen
+        EXPECT_LT(std::hypot(pose.x - last.x, pose.y - last.y), 0.06f) << i << " at " << t;
+        EXPECT_LT(std::abs(pose.closing - last.closing), 0.05f) << i << " at " << t;
+      }
+      EXPECT_LT(std::abs(pose.opacity - last.opacity), 0.05f) << i << " at " << t;
+      moved = moved || pose.x != last.x || pose.y != last.y || pose.closing != last.closing || pose.ring != last.ring;
+      last = pose;
+    }
+    EXPECT_TRUE(moved) << i;
+  }
+}
+
+TEST(GalleryPage, LettersGrowWithTheDistance) {
+  EXPECT_NEAR(letter_height_mm(1.5), 8.7, 0.1);
+  EXPECT_NEAR(letter_height_mm(3.0), 2 * letter_height_mm(1.5), 1e-9);
+}
+
+}  // namespace
+}  // namespace dubsar::app
