@@ -29,7 +29,7 @@ usage() {
 ./do build    build the program (build/release/app/dubsar)
 ./do peers    talk to VRPN, spacenavd, libspnav and opentrack, as far as they are installed, and print a table
 ./do bench    run the benchmarks; ./do bench displays: only those of many views;
-              ./do bench exa: bits and speed of the surface format
+              ./do bench exa: bits and speed of the surface format, beside Draco and meshoptimizer
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
 ./do asan     the tests that need no window under AddressSanitizer and UndefinedBehaviorSanitizer; asan core: of core
 ./do tsan     devices and inputs under ThreadSanitizer (clang)
@@ -143,15 +143,16 @@ tsan() {
 bench() {
   deps
   if [ "${1:-}" = exa ]; then
+    (deps libdraco-dev libmeshoptimizer-dev libzstd-dev) || echo "do: going on without Draco and meshoptimizer beside it" >&2
     build_target --target dubsar exa_bench
     local folder=$build/bench-exa passes
     mkdir -p "$folder"
     [ -e "$folder/scan.h5" ] || "$build/app/dubsar" phantom "$folder/scan.h5" --preset demo
     for passes in 0 1 2; do
-      "$build/app/dubsar" process "$folder/scan.h5" -o "$folder/denoised_$passes.exa" --iterations $passes --no-ao -q
+      "$build/app/dubsar" process "$folder/scan.h5" -o "$folder/denoised_$passes.exa" --iterations $passes -q
       "$build/app/dubsar" exa stat "$folder/denoised_$passes.exa"
     done
-    "$build/tests/bench/exa_bench" "$folder"/denoised_*.exa
+    "$build/tests/bench/exa_bench" --large "$folder"/denoised_*.exa
     return
   fi
   build_target --target dubsar_bench
