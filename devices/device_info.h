@@ -11,7 +11,7 @@ namespace dubsar {
 enum class DeviceState {
   kUsable,
   kNoPermission,  ///< the node is there, this user may not open it
-  kBusy,          ///< another program holds it
+  kBusy,          ///< another program holds it (cameras)
   kIgnored,       ///< known and deliberately left alone (a vendor's ordinary mouse, say)
   kBroken,        ///< answers, but not as its kind should
 };

@@ -48,10 +48,6 @@ void explain(DeviceInfo& info, int error) {
     info.state = DeviceState::kNoPermission;
     info.reason = fmt::format("this user may not open {}", info.path);
     info.remedy = fmt::format("{}; the rule is: {}", kUdevRemedy, udev_rule("hidraw", info.vendor_id, info.product_id));
-  } else if (error == EBUSY) {
-    info.state = DeviceState::kBusy;
-    info.reason = "another program holds it";
-    info.remedy = "end that program (lsof " + info.path + ")";
   } else {
     info.state = DeviceState::kBroken;
     info.reason = fmt::format("{}: {}", info.path, std::strerror(error));

@@ -79,6 +79,11 @@ std::int64_t InputRecorder::frames() const {
   return added_;
 }
 
+Result<void> InputRecorder::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
 void InputRecorder::write_loop() {
   std::vector<RecordedFrame> frames;
   std::string text;

@@ -37,6 +37,8 @@ class InputRecorder {
   Result<void> finish();
 
   std::int64_t frames() const;
+  /// The first error there was so far, without waiting for anything.
+  Result<void> status() const;
 
  private:
   explicit InputRecorder(GrowingFile file);

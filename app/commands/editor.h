@@ -18,6 +18,7 @@ class Workplace {
   virtual Result<void> toggle_fullscreen() = 0;
   virtual Result<void> swap_eyes() = 0;  ///< kUnavailable where the display has not two views
   virtual void retry_sources() = 0;
+  virtual void recentre_heads() = 0;  ///< trackers whose heading drifts: the present one is straight ahead
   virtual bool toggle_source(std::size_t index) = 0;  ///< false: there is no such source
   virtual void say(std::string words) = 0;            ///< one line over the picture, for some seconds
   virtual void end() = 0;

@@ -69,6 +69,11 @@ std::vector<Command> window_commands() {
     editor.place().retry_sources();
     return {};
   }));
+  out.push_back(plain("recentre", "straight ahead is where you look now", {{"f6"}}, [](Editor& editor) -> Result<void> {
+    editor.place().recentre_heads();
+    editor.place().say("straight ahead is where you look now");
+    return {};
+  }));
   out.push_back(plain("fullscreen", "whole monitor, and back", {{"f11"}},
                       [](Editor& editor) { return editor.place().toggle_fullscreen(); }));
   out.push_back(plain("close", "close this help, or end", {{"escape"}}, [](Editor& editor) -> Result<void> {

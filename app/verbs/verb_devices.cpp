@@ -189,13 +189,13 @@ Result<VerbResult> run_live(const Options& options, bool print, Progress& progre
   }
   DUBSAR_ASSIGN(const auto device, monitor_device(spec, std::move(open), clock, true));
   const TimestampNs end = clock.now() + static_cast<TimestampNs>(options.seconds * 1e9);
-  const auto over = [&] { return clock.now() >= end; };
+  const auto over = [&] { return clock.now() >= end || (writer && !writer->status()); };  // a full disk is told at once
   SamplePrinter printer(clock);
   const auto each = [&](const json& sample) {
     if (print) printer(sample);
   };
   DUBSAR_ASSIGN(VerbResult result, watch(*device, clock, progress, over, each));
-  if (writer && writer->heard_count() == 0) {
+  if (writer && writer->status() && writer->heard_count() == 0) {
     writer->discard();
     result.text += fmt::format("nothing was heard, {} is left as it was\n", options.file);
   } else if (writer) {

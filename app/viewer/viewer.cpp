@@ -320,6 +320,12 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
   report_.moving = stage_->moved();
   report_.input_age = steered.input_age;
   report_.selected_m = steered.selected_m;
+  if (recorder_ && !at_.recording_failed)
+    if (const auto kept = recorder_->status(); !kept) {
+      at_.recording_failed = true;
+      log_warning("the recording has ended: {}", kept.error().message);
+      say("the recording has ended: " + kept.error().message);
+    }
   update_overlay(now, figures);
   if (const auto kept = autosave_.keep(now, document()); !kept) log_warning("{}", kept.error().message);
 }

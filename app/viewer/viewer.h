@@ -67,6 +67,7 @@ class Viewer final : public Workplace {
   Result<void> toggle_fullscreen() override { return given_.presenter.toggle_fullscreen(); }
   Result<void> swap_eyes() override;
   void retry_sources() override { sources_->retry_now(); }
+  void recentre_heads() override { steering_->input().recentre(); }
   bool toggle_source(std::size_t index) override;
   void say(std::string words) override;
   void end() override { given_.presenter.end(); }
@@ -91,6 +92,7 @@ class Viewer final : public Workplace {
     TimestampNs over_since = -1, help_made = -1;
     std::uint64_t presses = 0;
     Guidance guidance{};  ///< of whoever leads the session
+    bool recording_failed = false;  // and told
   };
   Viewer(const TriMesh& mesh, const ViewOptions& options, Presenter& presenter, const Clock& clock)
       : given_{mesh, options, presenter, clock} {}

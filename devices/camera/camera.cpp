@@ -1,11 +1,11 @@
 #include "devices/camera/camera.h"
 
 #include <atomic>
-#include <condition_variable>
 #include <exception>
-#include <mutex>
 #include <thread>
 #include <utility>
+
+#include "devices/mailbox.h"
 
 namespace dubsar {
 namespace {
@@ -38,17 +38,14 @@ class Camera final : public FrameSource {
       DUBSAR_ASSIGN(path, first_usable_camera());
     }
     DUBSAR_ASSIGN(capture_, open_(path, options_.format));
-    {
-      const std::lock_guard lock(mutex_);
-      state_ = FrameSourceState::kRunning;
-      reason_.clear();
-    }
+    box_.tell(FrameSourceState::kRunning);
     stopping_ = false;
     thread_ = std::thread([this] {
       try {
         read_loop();
       } catch (const std::exception& mistake) {  // costs the camera, not the session
-        lose(fmt::format("camera: reading has stopped by a mistake of this program: {}", mistake.what()));
+        box_.tell(FrameSourceState::kLost,
+                  fmt::format("camera: reading has stopped by a mistake of this program: {}", mistake.what()));
       }
     });
     return {};
@@ -58,32 +55,15 @@ class Camera final : public FrameSource {
     stopping_ = true;
     if (thread_.joinable()) thread_.join();
     capture_.reset();
-    const std::lock_guard lock(mutex_);
-    state_ = FrameSourceState::kStopped;
-    fresh_ = false;
+    box_.tell(FrameSourceState::kStopped, {}, false);
   }
 
-  bool poll(Frame& newest) override {
-    const std::lock_guard lock(mutex_);
-    if (!fresh_) return false;
-    std::swap(newest, newest_);
-    fresh_ = false;
-    return true;
-  }
+  bool poll(Frame& newest) override { return box_.take(newest); }
   bool wait(Frame& newest, std::chrono::milliseconds timeout) override {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, timeout, [this] { return fresh_ || state_ != FrameSourceState::kRunning; });
-    lock.unlock();
-    return poll(newest);
+    return box_.wait(newest, timeout, FrameSourceState::kRunning);
   }
-  FrameSourceState state() const override {
-    const std::lock_guard lock(mutex_);
-    return state_;
-  }
-  std::string reason() const override {
-    const std::lock_guard lock(mutex_);
-    return reason_;
-  }
+  FrameSourceState state() const override { return box_.state(); }
+  std::string reason() const override { return box_.reason(); }
 
  private:
   void read_loop() {
@@ -103,18 +83,10 @@ class Camera final : public FrameSource {
       frame.format = PixelFormat::kRgb8;
       frame.exposure_us = 0;
       frame.dark = false;
-      const std::lock_guard lock(mutex_);
-      std::swap(frame, newest_);
-      fresh_ = true;
-      changed_.notify_all();
+      box_.put(frame);
     }
   }
-  void lose(std::string why) {
-    const std::lock_guard lock(mutex_);
-    state_ = FrameSourceState::kLost;
-    reason_ = std::move(why);
-    changed_.notify_all();
-  }
+  void lose(std::string why) { box_.tell(FrameSourceState::kLost, std::move(why)); }
 
   const WebcamOptions options_;
   const Open open_;
@@ -126,12 +98,7 @@ class Camera final : public FrameSource {
   std::thread thread_;
   std::atomic<bool> stopping_{false};
 
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  FrameSourceState state_ = FrameSourceState::kStopped;
-  std::string reason_;
-  Frame newest_;
-  bool fresh_ = false;
+  Mailbox<Frame, FrameSourceState> box_{FrameSourceState::kStopped};
 };
 
 }  // namespace

@@ -19,56 +19,33 @@ constexpr std::array<LeapProduct, 5> kProducts{{
     {rigel::kVendorId, 0x1206, "Leap Motion Controller 2", false},
 }};
 
-class AnyLeapKind final : public StereoCameraKind {
- public:
-  explicit AnyLeapKind(const LeapCameraOptions& options) : options_(options) {}
-
-  Result<Stream> prepare(Transport& transport) override {
-    kind_.reset();
-    DUBSAR_ASSIGN(kind_, recognise(transport));
-    return kind_->prepare(transport);
+Result<std::unique_ptr<StereoCameraKind>> find_kind(const LeapCameraOptions& options, Transport& transport) {
+  std::array<std::byte, 18> device{};
+  const auto length = transport.control(uvc::kGetDevice, device, kTimeout);
+  if (!length && length.error().kind == ErrorKind::kUnavailable) return tl::unexpected<Error>(length.error());
+  const auto u16 = [&](std::size_t at) {
+    return static_cast<std::uint16_t>(static_cast<unsigned>(device[at]) | static_cast<unsigned>(device[at + 1]) << 8);
+  };
+  const LeapProduct* const product =
+      length && *length == device.size() ? find_leap_product(u16(8), u16(10)) : kProducts.data();
+  if (product == nullptr)
+    return fail(ErrorKind::kBadData, "leap: the device is {:04x}:{:04x}, which is no Leap camera", u16(8), u16(10));
+  if (!product->by_usb)
+    return fail(ErrorKind::kUnavailable, "leap: {}: {}; {}", product->name, kLeapServiceReason, kLeapServiceRemedy);
+  if (product->vendor_id == lmc1::kVendorId) {
+    Lmc1Options lmc1;
+    lmc1.exposure_us = options.exposure_us;
+    lmc1.dark_frame_interval = options.dark_frame_interval;
+    lmc1.calibration_settle = options.calibration_settle;
+    return lmc1_kind(lmc1);
   }
-  const std::optional<lmc1::Calibration>& calibration() const override {
-    static const std::optional<lmc1::Calibration> kNone;
-    return kind_ ? kind_->calibration() : kNone;
-  }
-  Result<uvc::ControlWrite> exposure(int us) const override { return kind_->exposure(us); }
-  Result<uvc::ControlWrite> dark_frame_interval(int n) override { return kind_->dark_frame_interval(n); }
-  void unpack(std::span<const std::byte> bytes, Frame& frame) override { kind_->unpack(bytes, frame); }
-  void lights_out(Transport& transport) noexcept override { kind_->lights_out(transport); }
-
- private:
-  Result<std::unique_ptr<StereoCameraKind>> recognise(Transport& transport) const {
-    std::array<std::byte, 18> device{};
-    const auto length = transport.control(uvc::kGetDevice, device, kTimeout);
-    if (!length && length.error().kind == ErrorKind::kUnavailable) return tl::unexpected<Error>(length.error());
-    const auto u16 = [&](std::size_t at) {
-      return static_cast<std::uint16_t>(static_cast<unsigned>(device[at]) | static_cast<unsigned>(device[at + 1]) << 8);
-    };
-    const LeapProduct* const product =
-        length && *length == device.size() ? find_leap_product(u16(8), u16(10)) : kProducts.data();
-    if (product == nullptr)
-      return fail(ErrorKind::kBadData, "leap: the device is {:04x}:{:04x}, which is no Leap camera", u16(8), u16(10));
-    if (!product->by_usb)
-      return fail(ErrorKind::kUnavailable, "leap: {}: {}; {}", product->name, kLeapServiceReason, kLeapServiceRemedy);
-    if (product->vendor_id == lmc1::kVendorId) {
-      Lmc1Options lmc1;
-      lmc1.exposure_us = options_.exposure_us;
-      lmc1.dark_frame_interval = options_.dark_frame_interval;
-      lmc1.calibration_settle = options_.calibration_settle;
-      return lmc1_kind(lmc1);
-    }
-    RigelOptions rigel;
-    rigel.exposure_us = options_.exposure_us;
-    rigel.dark_frame_interval = options_.dark_frame_interval;
-    DUBSAR_ASSIGN(const uvc::Camera camera, uvc::read_camera(transport));
-    if (camera.find(640, 240) != nullptr) rigel.height = 240;
-    return rigel_kind(rigel);
-  }
-
-  const LeapCameraOptions options_;
-  std::unique_ptr<StereoCameraKind> kind_;
-};
+  RigelOptions rigel;
+  rigel.exposure_us = options.exposure_us;
+  rigel.dark_frame_interval = options.dark_frame_interval;
+  DUBSAR_ASSIGN(const uvc::Camera camera, uvc::read_camera(transport));
+  if (camera.find(640, 240) != nullptr) rigel.height = 240;
+  return rigel_kind(rigel);
+}
 
 }  // namespace
 
@@ -82,7 +59,8 @@ const LeapProduct* find_leap_product(std::uint16_t vendor_id, std::uint16_t prod
 
 std::unique_ptr<StereoCamera> make_leap_camera(OpenTransport open, const LeapCameraOptions& options,
                                                const Clock& clock) {
-  return make_stereo_camera(std::move(open), std::make_unique<AnyLeapKind>(options), options.own_thread, clock);
+  return make_stereo_camera(
+      std::move(open), [options](Transport& transport) { return find_kind(options, transport); }, clock);
 }
 
 }  // namespace dubsar

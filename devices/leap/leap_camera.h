@@ -30,7 +30,6 @@ inline constexpr std::string_view kLeapServiceRemedy =
 struct LeapCameraOptions {
   int exposure_us = 200;
   int dark_frame_interval = 0;         ///< every n-th frame is taken without light; 0: none
-  bool own_thread = true;              ///< as in make_stereo_camera
   milliseconds calibration_settle{4};  ///< of the LMC1, as in Lmc1Options
 };
 

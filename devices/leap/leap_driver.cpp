@@ -68,7 +68,6 @@ std::unique_ptr<DeviceDriver> drive_leap(OpenTransport open, OptionReader& optio
   static const SteadyClock kSteady;
   LeapCameraOptions camera;
   camera.exposure_us = options.integer("exposure_us", 10, 1000, camera.exposure_us);
-  camera.own_thread = false;
   return make_leap_driver(std::move(open), camera, stamps != nullptr ? *stamps : kSteady);
 }
 

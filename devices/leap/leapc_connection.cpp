@@ -12,6 +12,7 @@
 
 #include "devices/leap/leapc_clock.h"
 #include "devices/leap/leapc_library.h"
+#include "devices/mailbox.h"
 
 namespace dubsar::leapc {
 namespace {
@@ -68,18 +69,15 @@ class LibraryConnection final : public Connection {
     DUBSAR_ASSIGN(library_, Library::load(options_.library));
     DUBSAR_ASSIGN(Handle handle, Handle::open(*library_));
     std::unique_lock lock(mutex_);
-    state_ = State::kNoService;
-    reason_ = kConnectingText;
+    box_.tell(State::kNoService, kConnectingText, false);
     counters_ = {};
-    fresh_ = stopping_ = false;
+    stopping_ = false;
     thread_ = std::thread([this, owned = std::move(handle)]() mutable {
       try {
         run(std::move(owned));
       } catch (const std::exception& mistake) {  // costs the hands, not the session
-        const std::lock_guard guard(mutex_);
-        state_ = State::kNoService;
-        reason_ = fmt::format("leapc: reading has stopped by a mistake of this program: {}", mistake.what());
-        fresh_ = false;
+        box_.tell(State::kNoService,
+                  fmt::format("leapc: reading has stopped by a mistake of this program: {}", mistake.what()), false);
       }
     });
     if (options_.patience == milliseconds(0)) return {};
@@ -96,27 +94,12 @@ class LibraryConnection final : public Connection {
     }
     changed_.notify_all();
     if (thread_.joinable()) thread_.join();
-    const std::lock_guard lock(mutex_);
-    state_ = State::kStopped;
-    reason_.clear();
-    fresh_ = false;
+    box_.tell(State::kStopped, {}, false);
   }
 
-  bool poll(Frame& newest) override {
-    const std::lock_guard lock(mutex_);
-    if (!fresh_) return false;
-    std::swap(newest, newest_);
-    fresh_ = false;
-    return true;
-  }
-  State state() const override {
-    const std::lock_guard lock(mutex_);
-    return state_;
-  }
-  std::string reason() const override {
-    const std::lock_guard lock(mutex_);
-    return reason_;
-  }
+  bool poll(Frame& newest) override { return box_.take(newest); }
+  State state() const override { return box_.state(); }
+  std::string reason() const override { return box_.reason(); }
   Counters counters() const override {
     const std::lock_guard lock(mutex_);
     return counters_;
@@ -173,11 +156,7 @@ class LibraryConnection final : public Connection {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, options_.poll, [&] { return stopping_; });
   }
-  void tell(State state, std::string reason) {
-    const std::lock_guard lock(mutex_);
-    state_ = state;
-    reason_ = std::move(reason);
-  }
+  void tell(State state, std::string reason) { box_.tell(state, std::move(reason)); }
   void refuse() {
     const std::lock_guard lock(mutex_);
     ++counters_.refused;
@@ -327,12 +306,12 @@ class LibraryConnection final : public Connection {
       session.devices.insert(message.device);
       judge(session);
     }
-    const std::lock_guard lock(mutex_);
-    counters_.refused += refused;
-    if (!session.right_mode) return;
-    ++counters_.frames;
-    std::swap(session.frame, newest_);
-    fresh_ = true;
+    {
+      const std::lock_guard lock(mutex_);
+      counters_.refused += refused;
+      if (session.right_mode) ++counters_.frames;
+    }
+    if (session.right_mode) box_.put(session.frame);
   }
 
   const Options options_;
@@ -343,11 +322,9 @@ class LibraryConnection final : public Connection {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   bool stopping_ = false;
-  State state_ = State::kStopped;
-  std::string reason_;
   Counters counters_;
-  Frame newest_;
-  bool fresh_ = false;
+
+  Mailbox<Frame, State> box_{State::kStopped};
 };
 
 }  // namespace

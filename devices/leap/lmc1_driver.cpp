@@ -1,7 +1,6 @@
 #include "devices/leap/lmc1_driver.h"
 
 #include <array>
-#include <atomic>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -13,7 +12,7 @@ constexpr milliseconds kControlTimeout{1000};
 
 class Lmc1Kind final : public StereoCameraKind {
  public:
-  explicit Lmc1Kind(const Lmc1Options& options) : options_(options), dark_interval_(options.dark_frame_interval) {}
+  explicit Lmc1Kind(const Lmc1Options& options) : options_(options) {}
 
   Result<Stream> prepare(Transport& transport) override {
     const lmc1::Mode* const mode = lmc1::find_mode(options_.width, options_.height);
@@ -24,7 +23,7 @@ class Lmc1Kind final : public StereoCameraKind {
     DUBSAR_TRY(uvc::commit_stream(transport, lmc1::kStreamInterface, lmc1::request_mode(*mode)));
     DUBSAR_ASSIGN(const auto exposure, lmc1::exposure_us(options_.exposure_us));
     DUBSAR_ASSIGN(const auto gain, lmc1::analog_gain(options_.analog_gain_sixteenths));
-    DUBSAR_ASSIGN(const auto dark, lmc1::dark_frame_interval(dark_interval_));
+    DUBSAR_ASSIGN(const auto dark, lmc1::dark_frame_interval(options_.dark_frame_interval));
     for (const auto& write : {lmc1::switch_on(lmc1::Switch::kHdr, false), lmc1::gamma(false), exposure, gain, dark})
       DUBSAR_TRY(uvc::send(transport, write));
     for (const lmc1::Switch led : kLeds) DUBSAR_TRY(uvc::send(transport, lmc1::switch_on(led, options_.leds)));
@@ -32,18 +31,12 @@ class Lmc1Kind final : public StereoCameraKind {
   }
 
   const std::optional<lmc1::Calibration>& calibration() const override { return calibration_; }
-  Result<uvc::ControlWrite> exposure(int us) const override { return lmc1::exposure_us(us); }
-  Result<uvc::ControlWrite> dark_frame_interval(int n) override {
-    DUBSAR_ASSIGN(const auto write, lmc1::dark_frame_interval(n));
-    dark_interval_ = n;
-    return write;
-  }
 
   void unpack(std::span<const std::byte> bytes, Frame& frame) override {
     const auto metadata = lmc1::decode_metadata(bytes.last<lmc1::kMetadataBytes>());
     frame.exposure_us = metadata.exposure_us;
     // without dark frames every one is lit, whatever the label is (LeapUVC manual, "Image Metadata")
-    const int interval = dark_interval_;
+    const int interval = options_.dark_frame_interval;
     frame.dark = interval == 1 || (interval > 1 && metadata.label == 1);  // the label: not checked on a device
     const std::span<std::uint8_t> pixels(frame.pixels);
     lmc1::deinterleave(bytes, pixels.first(bytes.size() / 2), pixels.last(bytes.size() / 2));
@@ -58,7 +51,6 @@ class Lmc1Kind final : public StereoCameraKind {
                                                      lmc1::Switch::kLedRight};
   const Lmc1Options options_;
   std::optional<lmc1::Calibration> calibration_;
-  std::atomic<int> dark_interval_;  // set by the user's thread, read by the reader's
 };
 
 }  // namespace
@@ -82,7 +74,9 @@ Result<lmc1::Calibration> read_lmc1_calibration(Transport& transport, millisecon
 std::unique_ptr<StereoCameraKind> lmc1_kind(const Lmc1Options& options) { return std::make_unique<Lmc1Kind>(options); }
 
 std::unique_ptr<StereoCamera> make_lmc1_driver(OpenTransport open, const Lmc1Options& options, const Clock& clock) {
-  return make_stereo_camera(std::move(open), lmc1_kind(options), options.own_thread, clock);
+  return make_stereo_camera(
+      std::move(open),
+      [options](Transport&) -> Result<std::unique_ptr<StereoCameraKind>> { return lmc1_kind(options); }, clock);
 }
 
 }  // namespace dubsar

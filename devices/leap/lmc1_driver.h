@@ -18,7 +18,6 @@ struct Lmc1Options {
   int analog_gain_sixteenths = 16;
   int dark_frame_interval = 0;  ///< n: every n-th frame is taken without light; 0: none
   bool leds = true;
-  bool own_thread = true;  ///< as in make_stereo_camera
   /// Between the address and the byte of the calibration read-out (156 times): the device needs about 4 ms.
   milliseconds calibration_settle{4};
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <string>
 
 namespace dubsar {
@@ -13,7 +12,7 @@ constexpr std::uint32_t kDarkLabel = 1;  // as on the LMC1; not checked on a dev
 
 class RigelKind final : public StereoCameraKind {
  public:
-  explicit RigelKind(const RigelOptions& options) : options_(options), dark_interval_(options.dark_frame_interval) {}
+  explicit RigelKind(const RigelOptions& options) : options_(options) {}
 
   Result<Stream> prepare(Transport& transport) override {
     DUBSAR_ASSIGN(const uvc::Camera camera, uvc::read_camera(transport));
@@ -36,8 +35,7 @@ class RigelKind final : public StereoCameraKind {
 
     DUBSAR_ASSIGN(const auto exposure, rigel::exposure_us(units_, options_.exposure_us));
     DUBSAR_ASSIGN(const auto gain, rigel::gain(units_, options_.gain_step));
-    dark_interval_ = options_.dark_frame_interval;
-    DUBSAR_ASSIGN(const auto dark, rigel::dark_frame_interval(units_, dark_interval_));
+    DUBSAR_ASSIGN(const auto dark, rigel::dark_frame_interval(units_, options_.dark_frame_interval));
     for (const auto& write : {exposure, gain, dark}) DUBSAR_TRY(uvc::send(transport, write));
     for (const auto& write : rigel::leds(units_, options_.leds)) DUBSAR_TRY(uvc::send(transport, write));
     return Stream{size.width, size.height, size.frame_bytes(),
@@ -45,12 +43,6 @@ class RigelKind final : public StereoCameraKind {
   }
 
   const std::optional<lmc1::Calibration>& calibration() const override { return calibration_; }
-  Result<uvc::ControlWrite> exposure(int us) const override { return rigel::exposure_us(units_, us); }
-  Result<uvc::ControlWrite> dark_frame_interval(int n) override {
-    DUBSAR_ASSIGN(const auto write, rigel::dark_frame_interval(units_, n));
-    dark_interval_ = n;
-    return write;
-  }
 
   void unpack(std::span<const std::byte> bytes, Frame& frame) override {
     const std::size_t view = frame.view_bytes();
@@ -59,11 +51,11 @@ class RigelKind final : public StereoCameraKind {
                                   right = std::span(frame.pixels).last(view);
     rigel::split_rows(bytes, frame.width, left, right);
     frame.exposure_us = 0;
-    frame.dark = dark_interval_ == 1;
+    frame.dark = options_.dark_frame_interval == 1;
     if (!line_ || frame.height < 2) return;
     const auto metadata = rigel::decode_metadata(*line_, bytes.last(2 * width));
     frame.exposure_us = static_cast<int>(std::min<std::uint32_t>(metadata.exposure_us, 65535));
-    frame.dark = frame.dark || (dark_interval_ > 1 && metadata.frame_label == kDarkLabel);
+    frame.dark = frame.dark || (options_.dark_frame_interval > 1 && metadata.frame_label == kDarkLabel);
     for (const std::span<std::uint8_t> eye : {left, right})
       std::copy_n(eye.end() - static_cast<std::ptrdiff_t>(2 * width), width,
                   eye.end() - static_cast<std::ptrdiff_t>(width));
@@ -104,7 +96,6 @@ class RigelKind final : public StereoCameraKind {
   rigel::Units units_;
   std::optional<lmc1::Calibration> calibration_;
   std::optional<rigel::EmbeddedLine> line_;
-  std::atomic<int> dark_interval_;  // set by the user's thread, read by the reader's
 };
 
 }  // namespace
@@ -114,7 +105,9 @@ std::unique_ptr<StereoCameraKind> rigel_kind(const RigelOptions& options) {
 }
 
 std::unique_ptr<StereoCamera> make_rigel_driver(OpenTransport open, const RigelOptions& options, const Clock& clock) {
-  return make_stereo_camera(std::move(open), rigel_kind(options), options.own_thread, clock);
+  return make_stereo_camera(
+      std::move(open),
+      [options](Transport&) -> Result<std::unique_ptr<StereoCameraKind>> { return rigel_kind(options); }, clock);
 }
 
 }  // namespace dubsar

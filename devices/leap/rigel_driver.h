@@ -14,7 +14,6 @@ struct RigelOptions {
   int gain_step = 0;            ///< 0 to 64
   int dark_frame_interval = 0;  ///< 0 none, 1 all, 2, 4 to 128: every n-th frame is taken without light
   bool leds = true;
-  bool own_thread = true;  ///< as in make_stereo_camera
 };
 
 /// start() opens, reads the descriptors and the calibration, commits the mode and lights the LEDs.

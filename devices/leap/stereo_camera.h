@@ -1,9 +1,9 @@
 #pragma once
 // What all Leap cameras have in common: two infrared pictures in one video stream over USB, a calibration on
-// board, exposure and lights. The reader thread lives here; each kind of camera adds its own requests and its
-// own pixels.
+// board, exposure and lights. Each kind of camera adds its own requests and its own pixels.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,17 +27,14 @@ class StereoCamera : public FrameSource {
   /// Of one eye's pictures, once started.
   virtual int width() const = 0;
   virtual int height() const = 0;
-  /// Applied by the reader thread before its next read; the source must be running.
-  virtual Result<void> set_exposure(int us) = 0;
-  virtual Result<void> set_dark_frame_interval(int n) = 0;
   virtual StreamCounters counters() const = 0;
 };
 
 /// One bulk transfer as dubsar asks for it; transports are opened with this size.
 inline constexpr std::size_t kStereoTransferBytes = 16384;
 
-/// How one kind of camera is spoken to. prepare() and lights_out() are called by start() and stop(), unpack()
-/// by whoever reads; never two at once.
+/// How one kind of camera is spoken to. prepare() and lights_out() are called by start() and stop(), unpack() by
+/// poll().
 class StereoCameraKind {
  public:
   virtual ~StereoCameraKind() = default;
@@ -50,16 +47,16 @@ class StereoCameraKind {
   /// Reads the calibration, commits a video mode, sets exposure and lights.
   virtual Result<Stream> prepare(Transport& transport) = 0;
   virtual const std::optional<lmc1::Calibration>& calibration() const = 0;
-  virtual Result<uvc::ControlWrite> exposure(int us) const = 0;
-  virtual Result<uvc::ControlWrite> dark_frame_interval(int n) = 0;
   /// `bytes` are stream.frame_bytes; sets pixels, exposure_us and dark, the rest is set already.
   virtual void unpack(std::span<const std::byte> bytes, Frame& frame) = 0;
   virtual void lights_out(Transport& transport) noexcept = 0;
 };
 
-/// `own_thread` false: poll() reads what has come (for clocks that are moved by hand). A frame's `time` is
-/// that of the clock at its last byte; the clock outlives the camera and may be read by its thread.
-std::unique_ptr<StereoCamera> make_stereo_camera(OpenTransport open, std::unique_ptr<StereoCameraKind> kind,
-                                                 bool own_thread, const Clock& clock);
+/// Which kind the opened device is; asked at each start.
+using FindCameraKind = std::function<Result<std::unique_ptr<StereoCameraKind>>(Transport&)>;
+
+/// poll() and wait() read what has come, in their caller's thread. A frame's `time` is that of the clock at its last
+/// byte; the clock outlives the camera.
+std::unique_ptr<StereoCamera> make_stereo_camera(OpenTransport open, FindCameraKind find, const Clock& clock);
 
 }  // namespace dubsar

@@ -120,6 +120,11 @@ void RecordingWriter::discard() {
   file_.discard();
 }
 
+Result<void> RecordingWriter::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
 std::int64_t RecordingWriter::event_count() const {
   const std::lock_guard lock(mutex_);
   return event_count_;

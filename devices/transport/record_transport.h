@@ -32,6 +32,8 @@ class RecordingWriter {
   /// there. Without it the recording stays where it grew.
   Result<void> finish();
   void discard();  ///< takes away what was written; an older file stays
+  /// The first error there was so far.
+  Result<void> status() const;
   std::int64_t event_count() const;
   std::int64_t heard_count() const;  ///< of those that the device said
 

@@ -1,7 +1,5 @@
 #include "display/sinks/plugin_sink.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,7 +13,6 @@ namespace dubsar {
 namespace {
 
 constexpr int kMaxSide = 16384, kMaxViews = 2048;
-constexpr std::size_t kMaxName = 32;
 using ErrorText = std::array<char, 512>;
 
 std::string sentence(ErrorText& text) {
@@ -142,21 +139,13 @@ class PluginSink : public OutputSink {
 Result<void> check_table(const std::string& file, const dubsar_sink_table* table) {
   if (table == nullptr)
     return fail(ErrorKind::kBadData, "plug-in {}: it refuses to work with ABI version {}", file, DUBSAR_SINK_ABI);
-  if (table->abi != DUBSAR_SINK_ABI)
-    return fail(ErrorKind::kBadData,
-                "plug-in {}: ABI version {} found, expected {}; build it again with this program's plugin_abi.h", file,
-                table->abi, DUBSAR_SINK_ABI);
-  if (table->size < sizeof(dubsar_sink_table))
-    return fail(ErrorKind::kBadData, "plug-in {}: its table has {} bytes, expected at least {}", file, table->size,
-                sizeof(dubsar_sink_table));
+  DUBSAR_TRY(check_plugin_version(file, {table->abi, table->size}, {DUBSAR_SINK_ABI, sizeof(dubsar_sink_table)},
+                                  "plugin_abi.h"));
   if (table->name == nullptr || table->summary == nullptr || table->create == nullptr || table->destroy == nullptr ||
       table->configure == nullptr || table->views == nullptr || table->compose == nullptr)
     return fail(ErrorKind::kBadData, "plug-in {}: its table has gaps, expected every entry", file);
   const std::string_view name(table->name);
-  constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyz0123456789_";
-  if (name.empty() || name.size() > kMaxName || name.find_first_not_of(kAllowed) != std::string_view::npos)
-    return fail(ErrorKind::kBadData, "plug-in {}: its name is \"{}\", expected 1 to {} of a-z, 0-9 and _", file,
-                name.substr(0, 100), kMaxName);
+  DUBSAR_TRY(check_plugin_name(file, name));
   for (const SinkBackend& sink : output_sinks())
     if (sink.name == name)
       return fail(ErrorKind::kBadData, "plug-in {}: its name {} is that of a built-in display", file, name);
@@ -166,26 +155,11 @@ Result<void> check_table(const std::string& file, const dubsar_sink_table* table
 }  // namespace
 
 Result<std::shared_ptr<SinkPlugin>> SinkPlugin::load(const std::filesystem::path& file) {
-  std::error_code error;
-  const auto whole =
-      std::filesystem::canonical(file, error);  // a bare name would be searched for in the system's folders
-  if (error) return fail(ErrorKind::kNoInput, "plug-in {}: {}", file.string(), error.message());
-  void* const library = ::dlopen(whole.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr)
-    return fail(ErrorKind::kUnavailable, "plug-in {}: it cannot be loaded: {}", whole.string(), ::dlerror());
-  const auto entry = reinterpret_cast<dubsar_sink_entry>(::dlsym(library, DUBSAR_SINK_ENTRY));
-  const dubsar_sink_table* const table = entry != nullptr ? entry(&kHost) : nullptr;
-  auto good = entry != nullptr ? check_table(whole.string(), table)
-                               : fail(ErrorKind::kBadData, "plug-in {}: it has no function {}, so it is not a plug-in",
-                                      whole.string(), DUBSAR_SINK_ENTRY);
-  if (!good) {
-    ::dlclose(library);
-    return tl::unexpected<Error>(good.error());
-  }
-  return std::shared_ptr<SinkPlugin>(new SinkPlugin(library, table));
+  DUBSAR_ASSIGN(PluginLibrary library, PluginLibrary::load(file, DUBSAR_SINK_ENTRY));
+  const dubsar_sink_table* const table = library.entry<dubsar_sink_entry>()(&kHost);
+  DUBSAR_TRY(check_table(library.path(), table));
+  return std::shared_ptr<SinkPlugin>(new SinkPlugin(std::move(library), table));
 }
-
-SinkPlugin::~SinkPlugin() { ::dlclose(library_); }
 
 Result<std::unique_ptr<OutputSink>> SinkPlugin::create(const std::string& options) {
   ErrorText error{};

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/plugin_library.h"
 #include "display/sinks/output_sink.h"
 #include "display/sinks/plugin_abi.h"
 
@@ -18,7 +19,6 @@ class SinkPlugin : public std::enable_shared_from_this<SinkPlugin> {
   /// kNoInput when there is no such file, kUnavailable when it cannot be loaded, kBadData, with what was found, when it
   /// is not a plug-in of this ABI version, its table is incomplete or its name is one of the built-in displays.
   static Result<std::shared_ptr<SinkPlugin>> load(const std::filesystem::path& file);
-  ~SinkPlugin();
   SinkPlugin(const SinkPlugin&) = delete;
   SinkPlugin& operator=(const SinkPlugin&) = delete;
 
@@ -28,8 +28,8 @@ class SinkPlugin : public std::enable_shared_from_this<SinkPlugin> {
   Result<std::unique_ptr<OutputSink>> create(const std::string& options);
 
  private:
-  SinkPlugin(void* library, const dubsar_sink_table* table) : library_(library), table_(table) {}
-  void* library_;
+  SinkPlugin(PluginLibrary library, const dubsar_sink_table* table) : library_(std::move(library)), table_(table) {}
+  PluginLibrary library_;
   const dubsar_sink_table* table_;
 };
 

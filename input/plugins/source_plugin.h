@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "core/base/plugin_library.h"
 #include "input/input_source.h"
 #include "input/plugins/source_plugin_abi.h"
 
@@ -15,7 +16,6 @@ class SourcePlugin {
  public:
   /// kNoInput: no such file; kUnavailable: it cannot be loaded; kBadData: it is no plug-in, or not for this program.
   static Result<std::shared_ptr<SourcePlugin>> load(const std::filesystem::path& file);
-  ~SourcePlugin();
   SourcePlugin(const SourcePlugin&) = delete;
   SourcePlugin& operator=(const SourcePlugin&) = delete;
 
@@ -23,8 +23,8 @@ class SourcePlugin {
   std::string name() const { return table_->name; }
 
  private:
-  SourcePlugin(void* library, const dubsar_source_table* table) noexcept : library_(library), table_(table) {}
-  void* library_;
+  SourcePlugin(PluginLibrary library, const dubsar_source_table* table) : library_(std::move(library)), table_(table) {}
+  PluginLibrary library_;
   const dubsar_source_table* table_;
 };
 

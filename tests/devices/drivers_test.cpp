@@ -36,7 +36,7 @@ TEST(Enumerate, SaysWhyADeviceCannotBeUsedAndNamesTheRule) {
                                    {"/dev/hidraw5", 0x256f, 0xc652, 1, 6, 0, "", "Universal Receiver", ""},
                                    {"/dev/hidraw6", 0x04d8, 0xef7e, 0, 0, 0, "", "HoloPlay", ""}};
   const auto found = known_hid_devices(nodes, [](const std::string& path) {
-    return path == "/dev/hidraw0" ? EACCES : path == "/dev/hidraw6" ? EBUSY : 0;
+    return path == "/dev/hidraw0" ? EACCES : path == "/dev/hidraw6" ? EIO : 0;
   });
   ASSERT_EQ(found.size(), 4U);
   EXPECT_EQ(found[0].driver, "spacemouse");
@@ -48,7 +48,7 @@ TEST(Enumerate, SaysWhyADeviceCannotBeUsedAndNamesTheRule) {
   EXPECT_EQ(found[2].state, DeviceState::kUsable);
   EXPECT_EQ(found[2].reason, "");
   EXPECT_EQ(found[3].driver, "looking_glass");
-  EXPECT_EQ(found[3].state, DeviceState::kBusy);
+  EXPECT_EQ(found[3].state, DeviceState::kBroken);
 }
 
 TEST(Enumerate, HeadsetsAreKnownByAllTheirNumbersAndGlassesThatCannotBeReadSayWhatTheyNeed) {

@@ -214,6 +214,10 @@ TEST(InputRecorder, AnOldRecordingStaysWhereNothingCameOrTheDiskIsFull) {
   fs::remove(path);
   auto full = InputRecorder::create("/dev/full").value();
   full->add(1, {});
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (full->status() && std::chrono::steady_clock::now() < until)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_EQ(full->status().error().kind, ErrorKind::kIo);  // told without being asked to end
   EXPECT_EQ(full->flush().error().kind, ErrorKind::kIo);
   full->add(2, {});
   EXPECT_EQ(full->finish().error().kind, ErrorKind::kIo);

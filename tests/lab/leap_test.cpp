@@ -66,7 +66,8 @@ TEST_F(LabLeap, IsTakenFromTheKernelsCameraDriverAndShowsAHand) {
     EXPECT_EQ(driver->counters().dropped_frames, 0U);
 
     leap_.unplug();
-    EXPECT_TRUE(eventually([&] { return driver->state() == FrameSourceState::kLost; }, milliseconds(1000)));
+    EXPECT_TRUE(eventually([&] { return driver->poll(frame), driver->state() == FrameSourceState::kLost; },
+                           milliseconds(1000)));
     EXPECT_NE(driver->reason().find("unplugged"), std::string::npos) << driver->reason();
     ASSERT_TRUE(eventually([] { return !leap_on_the_bus(); }));
     EXPECT_EQ(driver->start().error().kind, ErrorKind::kUnavailable);

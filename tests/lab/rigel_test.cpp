@@ -92,7 +92,7 @@ TEST_F(LabRigel, TheKernelTakesItForACameraAndItsPicturesComeThroughLibusb) {
     EXPECT_EQ(camera->counters().bad_transfers + camera->counters().dropped_frames, 0U);
     port.unplug();
     simulator.unplug();
-    EXPECT_TRUE(eventually([&] { return camera->state() == FrameSourceState::kLost; }));
+    EXPECT_TRUE(eventually([&] { return camera->poll(frame), camera->state() == FrameSourceState::kLost; }));
   }
   EXPECT_TRUE(eventually([] { return !camera_on_the_bus(); }));
 }

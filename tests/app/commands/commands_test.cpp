@@ -26,13 +26,14 @@ class FakePlace final : public Workplace {
     return {};
   }
   void retry_sources() override { ++retries; }
+  void recentre_heads() override { ++recentred; }
   bool toggle_source(std::size_t index) override {
     toggled.push_back(index);
     return index < 3;
   }
   void say(std::string words) override { said = std::move(words); }
   void end() override { ended = true; }
-  int display = 0, retries = 0;
+  int display = 0, retries = 0, recentred = 0;
   bool fullscreen = false, swapped = false, ended = false;
   std::vector<std::size_t> toggled;
   std::string said;
@@ -240,11 +241,12 @@ TEST(Keys, AMappingMovesAndRemovesThem) {
 
 TEST(Commands, WindowCommandsReachThePlaceAndChangeNoDocument) {
   Bench bench;
-  for (const char* text : {"next_display", "next_display", "previous_display", "retry_sources", "fullscreen", "help",
-                           "toggle_source 2", "close"})
+  for (const char* text : {"next_display", "next_display", "previous_display", "retry_sources", "recentre",
+                           "fullscreen", "help", "toggle_source 2", "close"})
     bench.run(text);
   EXPECT_EQ(bench.place.display, 1);
   EXPECT_EQ(bench.place.retries, 1);
+  EXPECT_EQ(bench.place.recentred, 1);
   EXPECT_TRUE(bench.place.fullscreen);
   EXPECT_EQ(bench.place.toggled, (std::vector<std::size_t>{1}));
   EXPECT_FALSE(bench.place.ended) << "escape closed the help";

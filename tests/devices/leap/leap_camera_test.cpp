@@ -13,7 +13,6 @@ using testing::HasSubstr;
 
 LeapCameraOptions quick() {
   LeapCameraOptions options;
-  options.own_thread = false;
   options.calibration_settle = milliseconds(0);
   options.exposure_us = 150;
   return options;

@@ -53,10 +53,9 @@ TEST_F(Lmc1OverLibusb, IsListedReadCalibratedAndStreamedUntilItIsUnplugged) {
   EXPECT_EQ(driver->calibration(), device.calibration);
   EXPECT_TRUE(simulator.led_on(lmc1::Switch::kLedRight));
 
-  ASSERT_TRUE(eventually([&] { return driver->counters().frames >= 20; })) << driver->reason();
-  EXPECT_EQ(driver->counters().dropped_frames, 0U);
   Frame frame;
-  ASSERT_TRUE(driver->poll(frame));
+  ASSERT_TRUE(eventually([&] { return driver->poll(frame) && frame.sequence >= 20; })) << driver->reason();
+  EXPECT_EQ(driver->counters().dropped_frames, 0U);
   HandRenderer renderer(device.calibration, HandRenderOptions{});
   std::vector<std::uint8_t> left(640 * 240), right(640 * 240);
   renderer.render(device.hands(frame.sequence - 1), device.seed + frame.sequence - 1, left, right);
@@ -64,7 +63,7 @@ TEST_F(Lmc1OverLibusb, IsListedReadCalibratedAndStreamedUntilItIsUnplugged) {
   EXPECT_TRUE(std::equal(right.begin(), right.end() - 6, frame.view(1).begin()));
 
   kernel.unplug();
-  EXPECT_TRUE(eventually([&] { return driver->state() == FrameSourceState::kLost; }));
+  EXPECT_TRUE(eventually([&] { return driver->poll(frame), driver->state() == FrameSourceState::kLost; }));
   driver->stop();
   const auto after = list_usb_devices();
   ASSERT_TRUE(after);
@@ -86,10 +85,11 @@ TEST_F(Lmc1OverLibusb, BuffersThatTheKernelRefusedAreOfferedAgain) {
                                  options, clock);
   kernel.refuse(2);  // the first ones already
   ASSERT_TRUE(driver->start());
-  ASSERT_TRUE(eventually([&] { return driver->counters().frames >= 3; })) << driver->reason();
+  Frame frame;
+  ASSERT_TRUE(eventually([&] { return driver->poll(frame) && frame.sequence >= 3; })) << driver->reason();
   kernel.refuse(1);  // with one buffer nothing would come any more
-  const auto before = driver->counters().frames;
-  EXPECT_TRUE(eventually([&] { return driver->counters().frames >= before + 5; })) << driver->reason();
+  const std::uint64_t before = frame.sequence;
+  EXPECT_TRUE(eventually([&] { return driver->poll(frame) && frame.sequence >= before + 5; })) << driver->reason();
 }
 
 TEST_F(Lmc1OverLibusb, AStalledRequestIsBadDataAndTheDeviceStaysUsable) {

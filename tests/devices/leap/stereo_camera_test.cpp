@@ -43,7 +43,6 @@ template <class Simulator>
 Seen run(Simulator& simulator, ManualClock& clock, const lmc1::Calibration& calibration, std::size_t metadata_bytes,
          bool garbled) {
   LeapCameraOptions options;
-  options.own_thread = false;
   options.calibration_settle = milliseconds(0);
   auto camera = make_leap_camera(
       [&]() -> Result<std::unique_ptr<Transport>> {

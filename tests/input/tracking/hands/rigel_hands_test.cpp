@@ -26,7 +26,6 @@ TEST(RigelHands, SimulatorDriverAndTrackerFollowOneHand) {
   RigelSimulator simulator(device);
   SteadyClock clock;
   LeapCameraOptions options;
-  options.own_thread = false;  // no pictures are rendered that nobody looks at
   auto camera = make_leap_camera([&] { return simulator.open(); }, options, clock);
   const auto started = camera->start();
   ASSERT_TRUE(started) << started.error().message;
