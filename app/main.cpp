@@ -8,6 +8,7 @@
 #include <new>
 #include <vector>
 
+#include "app/cli/error_json.h"
 #include "app/cli/verb.h"
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
@@ -42,8 +43,7 @@ Result<void> print(std::string_view text) {
 int report_error(const Error& error, const CommonOptions& common) {
   log(LogLevel::kError, error.message);
   if (common.json_path == "-") {
-    const nlohmann::json object{{"error", {{"message", error.message}, {"exit_code", exit_code(error.kind)}}}};
-    if (!print(dump_json_lines(object) + "\n")) log(LogLevel::kError, "cannot write the error to stdout");
+    if (!print(error_json(error))) log(LogLevel::kError, "cannot write the error to stdout");
   }
   return exit_code(error.kind);
 }
@@ -92,11 +92,12 @@ int main(int argc, char** argv) {
   program.footer(
       "Examples:\n"
       "  dubsar phantom scan.h5 --preset demo\n"
-      "  dubsar process scan.h5 -o tablet.exa\n"
-      "  dubsar render tablet.exa -o tablet.png\n"
-      "  dubsar export tablet.exa tablet.stl --partition tablet\n\n"
-      "Exit codes: 0 done, 64 usage, 65 bad data, 66 no input, 69 device missing, 70 internal, 73 cannot create,\n"
-      "74 I/O or disk full, 75 try again, 77 permission, 130 cancelled.");
+      "  dubsar process scan.h5\n"
+      "  dubsar view scan.exa\n"
+      "  dubsar fatcross scan.exa\n\n"
+      "Exit codes: 0 done, 64 usage, 65 bad data, 66 no input, 69 device missing, 70 internal, 73 cannot create, 74 "
+      "I/O "
+      "or disk full, 75 try again, 77 permission, 78 bad profile, 130 cancelled.");
   CommonOptions common;
   std::vector<Verb> verbs{add_phantom_verb(program), add_process_verb(program),  add_info_verb(program),
                           add_exa_verb(program),     add_export_verb(program),   add_fatcross_verb(program),

@@ -1,8 +1,15 @@
 #include "app/cli/arguments.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 
+#include "app/cli/error_json.h"
+#include "app/cli/help_text.h"
+#include "core/base/near_word.h"
 #include "core/base/result.h"
 
 namespace dubsar::app {
@@ -23,45 +30,40 @@ namespace {
 CLI::Option& option(void* pointer) { return *static_cast<CLI::Option*>(pointer); }
 CLI::App& app(void* pointer) { return *static_cast<CLI::App*>(pointer); }
 
-/// Single letters to insert, leave out or change until the words are equal.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t k = 0; k <= b.size(); ++k) row[k] = k;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t corner = row[0]++;
-    for (std::size_t k = 0; k < b.size(); ++k) {
-      const std::size_t changed = corner + (a[i] == b[k] ? 0 : 1);
-      corner = row[k + 1];
-      row[k + 1] = std::min({changed, row[k] + 1, corner + 1});
-    }
-  }
-  return row.back();
+/// Help adds what is allowed to what the option does.
+CLI::Option& says(void* pointer, const std::string& allowed) {
+  CLI::Option& it = option(pointer);
+  it.description(it.get_description() + " (" + allowed + ")");
+  return it;
 }
 
-/// The verb or option of `from` that `word` may have been meant as; empty when none is near.
-std::string meant(const CLI::App& from, const std::string& word) {
-  std::string best;
-  std::size_t least = word.size() < 5 ? 2 : 3;  // nearer than this
-  const auto consider = [&](const std::string& name) {
-    const std::size_t distance = edit_distance(word, name);
-    if (distance < least) least = distance, best = name;
+/// Refuses texts for which `good` is not true; "--window: 4 found, expected ...".
+CLI::Validator expects(const std::string& words, std::function<bool(const std::string&)> good) {
+  CLI::Validator validator(
+      [words, good = std::move(good)](std::string& text) {
+        return good(text) ? std::string()
+                          : fmt::format("{} found, expected {}", text.empty() ? "nothing" : text, words);
+      },
+      "");
+  return validator;
+}
+
+template <class T>
+std::function<bool(const std::string&)> number_that(std::function<bool(T)> good) {
+  return [good = std::move(good)](const std::string& text) {
+    T value{};
+    return CLI::detail::lexical_cast(text, value) && good(value);
   };
-  for (const CLI::App* const part : from.get_subcommands([](const CLI::App*) { return true; })) {
-    if (!part->get_name().empty() && !word.starts_with("-")) consider(part->get_name());
-    if (part->get_name().empty())  // a group of options
-      for (const CLI::Option* const option : part->get_options())
-        for (const std::string& name : option->get_lnames()) consider("--" + name);
-  }
-  for (const CLI::Option* const option : from.get_options())
-    for (const std::string& name : option->get_lnames()) consider("--" + name);
-  return best;
 }
 
-/// The innermost verb that was chosen, the program itself when none was.
-const CLI::App& chosen_app(const CLI::App& root) {
-  for (const CLI::App* const part : root.get_subcommands([](const CLI::App*) { return true; }))
-    if (!part->get_name().empty() && part->parsed()) return chosen_app(*part);
-  return root;
+CLI::Validator one_word_of(std::vector<std::string> words) {
+  return CLI::Validator(
+      [words = std::move(words)](std::string& text) {
+        if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
+        return fmt::format("{} found, expected one of: {}{}", text.empty() ? "nothing" : text, fmt::join(words, ", "),
+                           did_you_mean(text, words));
+      },
+      "");
 }
 
 template <class T>
@@ -71,11 +73,30 @@ Option add(void* to, const std::string& name, T& target, const std::string& help
 }  // namespace
 
 Option& Option::required() { return option(option_).required(), *this; }
-Option& Option::range(int least, int most) { return option(option_).check(CLI::Range(least, most)), *this; }
-Option& Option::range(double least, double most) { return option(option_).check(CLI::Range(least, most)), *this; }
-Option& Option::positive() { return option(option_).check(CLI::PositiveNumber), *this; }
-Option& Option::not_negative() { return option(option_).check(CLI::NonNegativeNumber), *this; }
-Option& Option::one_of(std::vector<std::string> words) { return option(option_).check(CLI::IsMember(words)), *this; }
+Option& Option::range(int least, int most) {
+  const std::string words = fmt::format("{} to {}", least, most);
+  says(option_, words).check(expects(words, number_that<std::int64_t>([=](std::int64_t v) {
+                                       return v >= least && v <= most;
+                                     })));
+  return *this;
+}
+Option& Option::range(double least, double most) {
+  const std::string words = fmt::format("{:g} to {:g}", least, most);
+  says(option_, words).check(expects(words, number_that<double>([=](double v) { return v >= least && v <= most; })));
+  return *this;
+}
+Option& Option::positive() {
+  option(option_).check(expects("more than 0", number_that<double>([](double v) { return v > 0.0; })));
+  return *this;
+}
+Option& Option::not_negative() {
+  option(option_).check(expects("0 or more", number_that<double>([](double v) { return v >= 0.0; })));
+  return *this;
+}
+Option& Option::one_of(std::vector<std::string> words) {
+  says(option_, fmt::format("{}", fmt::join(words, ", "))).check(one_word_of(words));
+  return *this;
+}
 Option& Option::called(const std::string& type) { return option(option_).type_name(type), *this; }
 Option& Option::separated_by(char separator) { return option(option_).delimiter(separator), *this; }
 Option& Option::words(int least, int most) { return option(option_).expected(least, most), *this; }
@@ -143,28 +164,27 @@ Option Arguments::flag(const std::string& name, bool& target, const std::string&
 
 Option Arguments::choice_of(const std::string& name, const std::vector<std::string>& words,
                             std::function<void(std::size_t)> chosen, const std::string& help) {
-  std::string all;
-  for (const std::string& word : words) all += (all.empty() ? "" : "|") + word;
   const auto use = [words, chosen = std::move(chosen)](const std::string& word) {
     chosen(static_cast<std::size_t>(std::find(words.begin(), words.end(), word) - words.begin()));
   };
-  return Option(
-      app(app_).add_option_function<std::string>(name, use, help)->check(CLI::IsMember(words))->option_text(all));
+  CLI::Option* const made = app(app_).add_option_function<std::string>(name, use, help);
+  says(made, fmt::format("{}", fmt::join(words, ", "))).check(one_word_of(words))->type_name("WORD");
+  return Option(made);
 }
 
 Option Arguments::reads(const std::string& name, std::string& target, const std::string& help) {
   state_->files.push_back({app_, name, [&target] { return std::vector{target}; }, false, FileFormat::kOther});
-  return value(name, target, help);
+  return value(name, target, help).called("FILE");
 }
 
 Option Arguments::reads(const std::string& name, std::vector<std::string>& target, const std::string& help) {
   state_->files.push_back({app_, name, [&target] { return target; }, false, FileFormat::kOther});
-  return value(name, target, help);
+  return value(name, target, help).called("FILE");
 }
 
 Option Arguments::writes(const std::string& name, std::string& target, FileFormat format, const std::string& help) {
   state_->files.push_back({app_, name, [&target] { return std::vector{target}; }, true, format});
-  return value(name, target, help);
+  return value(name, target, help).called("FILE");
 }
 
 bool Arguments::chosen() const { return app(app_).parsed(); }
@@ -192,25 +212,31 @@ std::vector<FileUse> Arguments::files() const {
 
 std::optional<int> Arguments::parse(int argc, char** argv) {
   CLI::App& root = app(app_);
-  if (argc < 2) {
-    std::cerr << root.help();
+  std::vector<std::string> words(argv + 1, argv + std::max(argc, 1));
+  if (words.empty()) {
+    std::cerr << help_text(root, help_columns());
     return exit_code(ErrorKind::kUsage);
   }
+  if (words[0] == "help") {  // "help process" is "process --help"
+    words.erase(words.begin());
+    words.push_back("--help");
+  }
   try {
-    root.parse(argc, argv);
+    std::vector<std::string> backwards(words.rbegin(), words.rend());
+    root.parse(backwards);
     return std::nullopt;
+  } catch (const CLI::CallForHelp&) {
+    std::cout << help_text(chosen_app(root), help_columns());
+    return 0;
   } catch (const CLI::Success& e) {
-    return root.exit(e);  // --help, --version
+    return root.exit(e);  // --version
   } catch (const CLI::ParseError& e) {
-    root.exit(e, std::cout, std::cerr);
-    const CLI::App& at = chosen_app(root);
-    std::vector<std::string> unknown = at.remaining(true);
-    for (const std::string& word : &at == &root ? unknown : root.remaining(false)) unknown.push_back(word);
-    for (const std::string& word : unknown)
-      if (const std::string better = meant(at, word.substr(0, word.find('='))); !better.empty()) {
-        std::cerr << "Did you mean " << better << "?\n";
-        break;
-      }
+    const std::string message = refusal_text(root, e, words);
+    std::cerr << "error: " << message << "\n";
+    const auto json = std::find(words.begin(), words.end(), "--json");
+    if (std::find(words.begin(), words.end(), "--json=-") != words.end() ||
+        (json != words.end() && json + 1 != words.end() && json[1] == "-"))
+      std::cout << error_json(Error{ErrorKind::kUsage, message});
     return exit_code(ErrorKind::kUsage);
   }
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/base/near_word.h"
+
 namespace dubsar::app {
 namespace {
 
@@ -44,7 +46,8 @@ Result<void> CommandTable::check(std::string_view text) const {
   if (command == nullptr) {
     std::vector<std::string> names;
     for (const Command& known : commands_) names.push_back(known.name);
-    return fail(ErrorKind::kUsage, "\"{}\" is no command, expected one of: {}", name, listed(names));
+    return fail(ErrorKind::kUsage, "\"{}\" is no command, expected one of: {}{}", name, listed(names),
+                did_you_mean(name, names));
   }
   if (argument.empty() && !command->argument.empty() && !command->optional)
     return fail(ErrorKind::kUsage, "{}: nothing found after it, expected {}", name, command->argument);

@@ -6,6 +6,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
+#include "core/base/near_word.h"
 #include "display/panels/embedded_profiles.h"
 #include "display/panels/panel_adjust.h"
 
@@ -53,7 +54,8 @@ Result<PanelProfile> PanelSet::find(std::string_view name) const {
   }
   std::string unread;
   for (const PanelProblem& problem : problems) unread += "; not read: " + problem.reason;
-  return fail(ErrorKind::kUsage, "no panel profile is called \"{}\", expected one of: {}{}", name, names, unread);
+  return fail(ErrorKind::kUsage, "no panel profile is called \"{}\", expected one of: {}{}{}", name, names, unread,
+              did_you_mean(name, names));
 }
 
 void PanelSet::put(PanelProfile profile) {

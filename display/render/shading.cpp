@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/near_word.h"
 #include "core/relief/shape_colors.h"
 
 namespace dubsar {
@@ -93,7 +94,8 @@ Result<Shading> shading_preset(std::string_view name) {
     known += known.empty() ? "" : ", ";
     known += preset.name;
   }
-  return fail(ErrorKind::kUsage, "shading \"{}\" is not known, expected one of: {}", name, known);
+  return fail(ErrorKind::kUsage, "shading \"{}\" is not known, expected one of: {}{}", name, known,
+              did_you_mean(name, known));
 }
 
 std::array<Rgb8, 8> distinct_partition_colors() {

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "core/base/near_word.h"
 #include "display/sinks/anaglyph.h"
 #include "display/sinks/image.h"
 #include "display/sinks/interlaced.h"
@@ -68,7 +69,8 @@ Result<std::unique_ptr<OutputSink>> SinkCatalog::make(const SinkSpec& spec) cons
     if (plugin->name() == spec.name) return plugin->create(spec.options_text());
     names += ", " + std::string(plugin->name());
   }
-  return fail(ErrorKind::kUsage, "no display is called \"{}\", expected one of: {}", spec.name, names);
+  return fail(ErrorKind::kUsage, "no display is called \"{}\", expected one of: {}{}", spec.name, names,
+              did_you_mean(spec.name, names));
 }
 
 Result<std::unique_ptr<OutputSink>> SinkCatalog::make(std::string_view text) const {

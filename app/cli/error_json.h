@@ -1,0 +1,16 @@
+#pragma once
+// A failure as programs read it, on stdout where --json - was asked for.
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/base/json_text.h"
+#include "core/base/result.h"
+
+namespace dubsar::app {
+
+inline std::string error_json(const Error& error) {
+  return dump_json_lines({{"error", {{"message", error.message}, {"exit_code", exit_code(error.kind)}}}}) + "\n";
+}
+
+}  // namespace dubsar::app
