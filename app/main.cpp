@@ -8,6 +8,7 @@
 #include <new>
 #include <vector>
 
+#include "app/cli/console_progress.h"
 #include "app/cli/error_json.h"
 #include "app/cli/verb.h"
 #include "core/base/atomic_file.h"
@@ -70,10 +71,12 @@ int run(const Verb& verb, const CommonOptions& common) {
   set_thread_count(common.threads);
   if (verb.settle) verb.settle();
   if (const auto ok = check_file_uses(verb.command.files()); !ok) return report_error(ok.error(), common);
-  ConsoleProgress progress(common.console);
+  ConsoleProgress progress(common.console, verb.plan ? verb.plan() : std::vector<PlannedStage>());
   cancel_on_signals(progress);
   const Result<VerbResult> result = run_verb(verb, common, progress);
-  progress.end();
+  progress.close();
+  if (!result && result.error().kind != ErrorKind::kUsage)  // whatever went wrong: a file that is not there comes first
+    if (const auto there = check_inputs(verb.command.files()); !there) return report_error(there.error(), common);
   if (!result) return report_error(result.error(), common);
   if (const auto ok = deliver(*result, common); !ok) {
     log(LogLevel::kError, ok.error().message);

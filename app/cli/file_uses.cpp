@@ -7,8 +7,11 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "core/base/atomic_file.h"
+#include "core/base/near_word.h"
 #include "core/exa/container.h"
 #include "core/hdf5/hdf5_file.h"
 
@@ -102,6 +105,23 @@ Result<void> check_replaced(const FileUse& out) {
               out.option, out.path, out.format == FileFormat::kPhantom ? "an HDF5 file that no phantom made" : found);
 }
 
+/// A name beside the one that is missing that differs by a slip.
+Result<void> check_there(const FileUse& in) {
+  std::error_code error;
+  const fs::path file = file_of(in.path);
+  if (fs::exists(file, error) || error) return {};  // what else is wrong with it, reading it says
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, error))
+    return fail(ErrorKind::kNoInput, "there is no file {}, nor a folder {}", in.path, folder.string());
+  std::vector<std::string> names;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end && names.size() < 10000; at.increment(error))
+    if (at->path().filename().string().find(".tmp-") == std::string::npos)
+      names.push_back(file.has_parent_path() ? (folder / at->path().filename()).string()
+                                             : at->path().filename().string());
+  std::sort(names.begin(), names.end());
+  return fail(ErrorKind::kNoInput, "there is no file {}{}", in.path, did_you_mean(file.string(), names));
+}
+
 Result<void> check_suffix(const FileUse& out) {
   if (out.format == FileFormat::kExa && lower_suffix(out.path) != ".exa")
     return fail(ErrorKind::kUsage, "{} {} found, expected a name that ends in .exa", out.option, out.path);
@@ -113,6 +133,12 @@ Result<void> check_suffix(const FileUse& out) {
 }
 
 }  // namespace
+
+Result<void> check_inputs(std::span<const FileUse> files) {
+  for (const FileUse& file : files)
+    if (!file.written) DUBSAR_TRY(check_there(file));
+  return {};
+}
 
 Result<void> check_file_uses(std::span<const FileUse> files) {
   for (std::size_t i = 0; i < files.size(); ++i) {

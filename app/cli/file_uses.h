@@ -24,4 +24,7 @@ struct FileUse {
 /// is no scan, surface or report of another kind. kCannotCreate, kPermission, kUsage (suffix, the same file twice).
 Result<void> check_file_uses(std::span<const FileUse> files);
 
+/// Everything that is read exists. kNoInput, with the name beside it that may have been meant.
+Result<void> check_inputs(std::span<const FileUse> files);
+
 }  // namespace dubsar::app

@@ -44,16 +44,16 @@ std::string wrapped(std::string_view text, int first, int indent, int columns) {
 }
 
 /// A name and what it does, beside it or below it.
-std::string entry(const std::string& name, const std::string& what, int columns) {
-  const bool narrow = columns < 70;
-  const int indent = narrow ? 6 : kNameColumns;
+std::string entry(const std::string& name, const std::string& what, int columns, int indent) {
   std::string out = "  " + name;
-  if (narrow || static_cast<int>(out.size()) + 2 > indent)
+  if (static_cast<int>(out.size()) + 2 > indent)
     out += "\n" + std::string(static_cast<std::size_t>(indent), ' ');
   else
     out.append(static_cast<std::size_t>(indent) - out.size(), ' ');
   return out + wrapped(what, indent, indent, columns);
 }
+
+int option_indent(int columns) { return columns < 70 ? 6 : kNameColumns; }
 
 std::string full_name(const CLI::App& app) {
   return app.get_parent() == nullptr || app.get_parent()->get_name().empty()
@@ -78,9 +78,11 @@ std::string option_name(const CLI::Option& option) {
 std::string options_text(const CLI::App& app, const std::string& title, int columns) {
   std::string out;
   for (const CLI::Option* const option : app.get_options()) {
-    if (option->get_positional()) continue;
-    out +=
-        entry(option_name(*option), option->get_description() + (option->get_required() ? " (needed)" : ""), columns);
+    const bool help = option->check_lname("help");
+    if (option->get_positional() || (help && app.get_name().empty())) continue;  // each group has a --help of its own
+    const std::string what = help ? "this page" : option->get_description();
+    out += entry(option_name(*option), what + (option->get_required() ? " (needed)" : ""), columns,
+                 option_indent(columns));
   }
   return out.empty() ? "" : "\n" + title + "\n" + out;
 }
@@ -154,8 +156,9 @@ std::string unknown_text(const CLI::App& app, const std::string& word) {
     return fmt::format("{} has no option {}{}", where, name, did_you_mean(name, names_in(app, true)));
   const auto commands = names_in(app, false);
   if (commands.empty()) return fmt::format("\"{}\" is more than {} expects", word, where);
-  return fmt::format("{} has no command \"{}\", expected one of: {}{}{}", where, word, fmt::join(commands, ", "),
-                     did_you_mean(word, commands), app.get_parent() == nullptr ? verb_for_file(word) : "");
+  const bool program = app.get_parent() == nullptr;
+  return fmt::format("{} has no {} \"{}\", expected one of: {}{}{}", where, program ? "verb" : "command", word,
+                     fmt::join(commands, ", "), did_you_mean(word, commands), program ? verb_for_file(word) : "");
 }
 
 }  // namespace
@@ -190,24 +193,28 @@ std::string help_text(const CLI::App& app, int columns) {
   out += "\n" + wrapped(program ? use : use + " [options]", 0, 5, columns);
   std::string places;
   for (const CLI::Option* const option : app.get_options())
-    if (option->get_positional()) places += entry(option->get_name(), option->get_description(), columns);
+    if (option->get_positional())
+      places += entry(option->get_name(), option->get_description(), columns, option_indent(columns));
   if (!places.empty()) out += "\n" + places;
   if (!commands.empty()) {
     out += program ? "\nVerbs\n" : "\nCommands\n";
+    std::size_t longest = 0;
+    for (const std::string& command : commands) longest = std::max(longest, command.size());
     for (const CLI::App* const part : app.get_subcommands(kAny))
-      if (!part->get_name().empty()) out += entry(part->get_name(), part->get_description(), columns);
+      if (!part->get_name().empty())
+        out += entry(part->get_name(), part->get_description(), columns, static_cast<int>(longest) + 4);
     out += "\n" +
            wrapped(fmt::format("{} {} --help says what it takes.", name, program ? "VERB" : "COMMAND"), 0, 0, columns);
   }
   out += options_text(app, "Options", columns);
   for (const CLI::App* const part : app.get_subcommands(kAny))
-    if (part->get_name().empty()) out += options_text(*part, part->get_description(), columns);
+    if (part->get_name().empty()) out += options_text(*part, part->get_group(), columns);
   return out + footer_text(app.get_footer(), columns);
 }
 
 std::string refusal_text(const CLI::App& root, const CLI::ParseError& error, const std::vector<std::string>& words) {
   const CLI::App& at = chosen_app(root);
-  const std::string hint = fmt::format("; {} --help says more", full_name(at));
+  const std::string hint = fmt::format(" ({} --help says more)", full_name(at));
   if (&at == &root && !words.empty() && !words[0].starts_with("-")) return unknown_text(root, words[0]) + hint;
   std::vector<std::string> unknown = at.remaining(false);
   if (&at != &root)

@@ -1,8 +1,11 @@
 #include "app/cli/mesh_input.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <charconv>
 
+#include "core/base/near_word.h"
 #include "core/exa/exa_file.h"
 #include "core/mesh/vertex_attributes.h"
 #include "core/mesh_io/mesh_io.h"
@@ -18,8 +21,19 @@ std::optional<int> as_id(const std::string& text) {
 }
 
 tl::unexpected<Error> no_such_partition(const std::string& wanted, const PartitionTable& partitions) {
-  return fail(ErrorKind::kUsage, "there is no partition \"{}\", expected one of: {}", wanted,
-              partitions.empty() ? "none, the file is not segmented" : partitions.listed());
+  if (partitions.empty())
+    return fail(ErrorKind::kUsage, "there is no part \"{}\": the surface is one piece, expected no name of a part",
+                wanted);
+  std::vector<std::string> names = partitions.body_names();
+  for (const Partition& p : partitions)
+    if (std::find(names.begin(), names.end(), p.name) == names.end()) names.push_back(p.name);
+  return fail(ErrorKind::kUsage, "there is no part \"{}\", expected one of: {}{}", wanted, fmt::join(names, ", "),
+              did_you_mean(wanted, names));
+}
+
+bool names_a_part(const PartitionTable& partitions, const std::string& wanted) {
+  return std::any_of(partitions.begin(), partitions.end(),
+                     [&](const Partition& p) { return p.name == wanted || p.body == wanted || as_id(wanted) == p.id; });
 }
 
 /// What a name or id stands for in an EXA file: a whole part or a single partition.
@@ -47,6 +61,7 @@ void append(TriMesh& to, const TriMesh& from) {
 }
 
 Result<TriMesh> load_exa(const MeshRequest& request, Progress& progress) {
+  DUBSAR_TRY(check_parts(request.path, request.partitions));
   DUBSAR_ASSIGN(const SurfaceModel model, read_exa(request.path, progress));
   MeshOptions all;
   all.fill_holes = request.fill_holes;
@@ -68,6 +83,15 @@ Result<TriMesh> load_exa(const MeshRequest& request, Progress& progress) {
 bool is_exa_file(const std::filesystem::path& path) {
   const auto info = read_exa_info(path);
   return info.has_value() || path.extension() == ".exa";
+}
+
+Result<void> check_parts(const std::filesystem::path& path, std::span<const std::string> names) {
+  if (names.empty()) return {};
+  const auto info = read_exa_info(path);  // what is wrong with the file, reading it says
+  if (!info) return {};
+  for (const std::string& wanted : names)
+    if (!names_a_part(info->partitions, wanted)) return no_such_partition(wanted, info->partitions);
+  return {};
 }
 
 Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress) {

@@ -2,6 +2,7 @@
 // Surfaces from files: EXA and mesh formats, whole or some of their parts.
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,10 @@ struct MeshRequest {
 /// The mesh of the request; parts are joined into one TriMesh but share no vertices. kUsage, with the names there are,
 /// for a partition that is not in the file; else the reader's errors.
 Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress);
+
+/// kUsage when an EXA file has no part of one of these names or ids; quick, so that slips are known before a large file
+/// is read. Other files, and files that cannot be read, are let through.
+Result<void> check_parts(const std::filesystem::path& path, std::span<const std::string> names);
 
 /// True when the file begins like an EXA file.
 bool is_exa_file(const std::filesystem::path& path);

@@ -7,6 +7,7 @@
 
 #include "app/cli/arguments.h"
 #include "app/cli/console.h"
+#include "app/cli/overall_progress.h"
 #include "core/base/result.h"
 
 namespace dubsar::app {
@@ -30,6 +31,7 @@ struct Verb {
   std::function<Result<VerbResult>(const CommonOptions&, Progress&)> run;
   std::function<void()> settle =
       nullptr;  ///< fills in names that follow from others, before files are checked; may be empty
+  std::function<std::vector<PlannedStage>()> plan = nullptr;  ///< of runs that take minutes; may be empty
 };
 
 Verb add_phantom_verb(Arguments program);

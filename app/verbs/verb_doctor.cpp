@@ -1,7 +1,9 @@
 // dubsar doctor: what this machine has, what is missing, and how to mend it.
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <thread>
@@ -11,7 +13,9 @@
 #include "core/base/budget.h"
 #include "core/volume/import_hdf5.h"
 #include "devices/camera/capture.h"
+#include "devices/device_list.h"
 #include "display/render/context_egl.h"
+#include "display/render/context_glfw.h"
 #include "input/tracking/vision/model_files.h"
 
 namespace dubsar::app {
@@ -68,6 +72,35 @@ Finding check_cameras() {
   return {"webcam", "ok", "OpenCV's capture code can be loaded; cameras: dubsar devices list", ""};
 }
 
+Finding check_windows() {
+  const auto monitors = list_monitors();
+  if (!monitors) return {"windows", "note", monitors.error().message, "pictures, films and --offscreen work without"};
+  return {"windows", "ok", fmt::format("{} monitor{}", monitors->size(), monitors->size() == 1 ? "" : "s"), ""};
+}
+
+std::vector<Finding> check_devices() {
+  std::vector<Finding> findings;
+  for (const DeviceInfo& device : list_devices())
+    findings.push_back({"device", device.state == DeviceState::kUsable ? "ok" : "note",
+                        device.reason.empty() ? device.name : device.name + ": " + device.reason, device.remedy});
+  if (findings.empty())
+    findings.push_back({"devices", "ok", "none connected that a driver knows: dubsar devices list", ""});
+  return findings;
+}
+
+/// A program on the PATH that films are made with.
+Finding check_ffmpeg() {
+  const char* const path = std::getenv("PATH");
+  std::string_view folders = path != nullptr ? path : "";
+  while (!folders.empty()) {
+    const std::size_t end = std::min(folders.find(':'), folders.size());
+    const std::string program = std::string(folders.substr(0, end)) + "/ffmpeg";
+    if (::access(program.c_str(), X_OK) == 0) return {"ffmpeg", "ok", program, ""};
+    folders.remove_prefix(std::min(end + 1, folders.size()));
+  }
+  return {"ffmpeg", "note", "not here: films are written as single pictures", "apt install ffmpeg"};
+}
+
 Result<VerbResult> run() {
   std::vector<Finding> findings{
       check_gl(),
@@ -77,6 +110,9 @@ Result<VerbResult> run() {
   for (Finding& finding : check_hdf5_filters()) findings.push_back(std::move(finding));
   for (Finding& finding : check_models()) findings.push_back(std::move(finding));
   findings.push_back(check_cameras());
+  for (Finding& finding : check_devices()) findings.push_back(std::move(finding));
+  findings.push_back(check_windows());
+  findings.push_back(check_ffmpeg());
   VerbResult result;
   result.json["findings"] = nlohmann::json::array();
   for (const Finding& f : findings) {

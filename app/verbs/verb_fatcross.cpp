@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "app/cli/default_output.h"
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
 #include "app/publish/fat_cross.h"
@@ -114,11 +115,9 @@ Verb add_fatcross_verb(Arguments program) {
   Arguments command =
       program.command("fatcross", "all six sides of a tablet in one picture at one scale, for publication");
   command.reads("IN", options->in, "EXA, PLY, OBJ, STL or GLB file").required();
-  command
-      .writes("-o,--output", options->out, FileFormat::kPicture,
-              "TIFF file to write; the six sides go beside it as NAME_01 (obverse), _02 (reverse), _03 (top), _04 "
-              "(bottom), _05 (left), _06 (right)")
-      .required();
+  command.writes("-o,--output", options->out, FileFormat::kPicture,
+                 "TIFF file to write; the six sides go beside it as NAME_01 (obverse), _02 (reverse), _03 (top), _04 "
+                 "(bottom), _05 (left), _06 (right). Unless given: beside IN, NAME_fatcross.tif");
   command.value("--part", options->part, "which part: tablet where there is one (auto), all, envelope, ...");
   command.value("--dpi", options->dpi, "dots an inch at life size").range(50.0, 4800.0);
   command.choice<Rgb8>("--ground", options->ground,
@@ -141,10 +140,13 @@ Verb add_fatcross_verb(Arguments program) {
   command.value("--institution", options->publication.institution, "goes into the file");
   command.footer(
       "Examples:\n"
-      "  dubsar fatcross tablet.exa -o tablet.tif\n"
+      "  dubsar fatcross tablet.exa\n"
       "  dubsar fatcross tablet.exa -o ao8295.tif --ground white --title \"AO 8295\" --institution \"Musee du "
       "Louvre\"");
-  return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
+  return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); },
+          [options] {
+            if (options->out.empty()) options->out = output_beside(options->in, "_fatcross.tif");
+          }};
 }
 
 }  // namespace dubsar::app

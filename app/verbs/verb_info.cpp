@@ -8,6 +8,7 @@
 #include "app/cli/input_options.h"
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
+#include "app/publish/surface_facts.h"
 #include "core/exa/exa_file.h"
 #include "core/mesh_io/mesh_io.h"
 #include "core/pipeline/report.h"
@@ -70,8 +71,14 @@ void add_partitions_text(std::string& text, const PartitionTable& partitions) {
                         p.watertight ? "watertight" : "open");
 }
 
-Result<VerbResult> exa_info(const Options& options) {
+Result<VerbResult> exa_info(const Options& options, bool verbose, Progress& progress) {
   DUBSAR_ASSIGN(const ExaInfo info, read_exa_info(options.in));
+  DUBSAR_TRY(check_exa_sums(options.in));
+  DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.in, {}, true}, progress));
+  SurfaceFacts facts;
+  if (!mesh.triangles.empty()) {
+    DUBSAR_ASSIGN(facts, surface_facts(mesh));
+  }
   VerbResult result;
   json blocks = json::object();
   for (const ExaBlockStats& block : info.stats.blocks)
@@ -92,18 +99,24 @@ Result<VerbResult> exa_info(const Options& options) {
       {"blocks", blocks},
       {"partitions", partitions_json(info.partitions)}};
   result.json["provenance"] = info.provenance.empty() ? json(nullptr) : json::parse(info.provenance, nullptr, false);
+  result.json["sums_good"] = true;
+  result.json["facts"] = facts_json(facts);
   std::string& text = result.text;
-  text = fmt::format("surface (EXA {}.{})\n", info.major, info.minor);
+  text = fmt::format("surface (EXA {}.{}), whole: all sums are good\n", info.major, info.minor);
+  text += fmt::format("  {}\n", what_it_is(facts));
+  text += fmt::format("  box          {} (along the scan)\n", size_text(facts.box, facts.millimetres));
+  text += fmt::format("  voxel size   {}\n", length_text(info.header.frame.input_voxel));
   text += fmt::format("  grid         {} x {} x {}, threshold {:g}\n", info.header.dims.x, info.header.dims.y,
                       info.header.dims.z, info.header.isovalue);
   text += fmt::format("  mesh         {} vertices, {} x-quads\n", info.header.vertices, info.header.quads);
-  text += fmt::format("  voxel size   {}\n", length_text(info.header.frame.input_voxel));
   text +=
       fmt::format("  file         {} bytes, {:.2f} bits per vertex\n", info.stats.bytes, info.stats.bits_per_vertex);
   for (const ExaBlockStats& block : info.stats.blocks)
-    text += fmt::format("  block        {:<16}{:>12} bytes {:>8.2f} bits per vertex\n", block.name, block.bytes,
-                        block.bits_per_vertex);
-  add_partitions_text(text, info.partitions);
+    if (verbose)
+      text += fmt::format("  block        {:<16}{:>12} bytes {:>8.2f} bits per vertex\n", block.name, block.bytes,
+                          block.bits_per_vertex);
+  text += "\n" + facts_text(facts);
+  if (verbose) text += "\n", add_partitions_text(text, info.partitions);
   return result;
 }
 
@@ -138,9 +151,9 @@ Result<VerbResult> describe_mesh(const Options& options, Progress& progress) {
   return result;
 }
 
-Result<VerbResult> run(const Options& options, Progress& progress) {
+Result<VerbResult> run(const Options& options, bool verbose, Progress& progress) {
   const bool raw = !options.input.dims.empty() || !options.input.type.empty();
-  if (!raw && is_exa_file(options.in)) return exa_info(options);
+  if (!raw && is_exa_file(options.in)) return exa_info(options, verbose, progress);
   if (!raw && mesh_format_from_path(options.in)) return describe_mesh(options, progress);
   return volume_info(options);
 }
@@ -153,7 +166,9 @@ Verb add_info_verb(Arguments program) {
   add_input_options(command, options->input);
   command.footer(
       "Examples:\n  dubsar info scan.h5\n  dubsar info scan.h5:/entry/data/data\n  dubsar info tablet.exa --json -");
-  return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
+  return {command, [options](const CommonOptions& common, Progress& progress) {
+            return run(*options, common.console.verbose, progress);
+          }};
 }
 
 }  // namespace dubsar::app

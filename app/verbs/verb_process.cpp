@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 
+#include "app/cli/default_output.h"
 #include "app/cli/input_options.h"
 #include "app/cli/verb.h"
+#include "app/publish/surface_facts.h"
 #include "core/pipeline/pipeline.h"
+#include "core/pipeline/report.h"
 
 namespace dubsar::app {
 namespace {
@@ -65,18 +67,39 @@ void add_surface_options(Arguments command, Options& options) {
   group.value("--ao-radius", options.radius, "reach of the rays in grid steps").positive();
 }
 
-/// The surface beside the scan: tablet.h5:/entry/data -> tablet.exa, a folder of slices -> its name and .exa.
-void settle(Options& options) {
-  if (!options.out.empty()) return;
-  std::error_code ignored;
-  const auto colon = options.in.rfind(":/");
-  const bool dataset = colon != std::string::npos && !std::filesystem::exists(options.in, ignored);
-  std::filesystem::path in(dataset ? options.in.substr(0, colon) : options.in);
-  if (!in.has_filename()) in = in.parent_path();
-  options.out = in.replace_extension(".exa").string();
+/// The stages of a run as Progress names them, with the seconds that they took on the phantom of `--preset demo`.
+std::vector<PlannedStage> plan_of(const Options& options) {
+  std::vector<PlannedStage> plan{{"estimate_raw", 0.42}, {"import", 0.40}, {"estimate", 0.45}};
+  for (int pass = 0; pass < options.pipeline.denoise.iterations; ++pass) {
+    plan.push_back({"denoise", 1.12});
+    plan.push_back({"estimate", 0.4});
+  }
+  plan.push_back({"extract", 1.37});
+  for (const auto& [name, seconds] : {std::pair{"mesh", 0.08},
+                                      {"smooth", 1.18},
+                                      {"curvature", 0.22},
+                                      {"settle", 1.9},
+                                      {"curvature", 0.2},
+                                      {"segment", 3.6},
+                                      {"fill holes", 1.36}})
+    plan.push_back({name, seconds, true});
+  if (!options.no_ao) plan.push_back({"ambient occlusion", 22.5 * options.rays / 160.0, true});
+  for (const auto& [name, seconds] : {std::pair{"curvature", 0.4}, {"encode signs", 0.8}, {"encode offsets", 0.7}})
+    plan.push_back({name, seconds, true});
+  return plan;
 }
 
-Result<VerbResult> run(Options options, const Arguments command, const CommonOptions&, Progress& progress) {
+/// What was found, in words, and what can be done with it.
+std::string summary(const std::string& out, const SurfaceFacts& facts) {
+  std::string text = fmt::format("{}: {}\n\n{}", out, what_it_is(facts), facts_text(facts));
+  if (!facts.millimetres) text += "\nThe scan does not say how large its voxels are: give --voxel-size.\n";
+  text += "\nNext:\n";
+  for (const char* const verb : {"view", "fatcross", "export"})
+    text += fmt::format("  dubsar {} {}\n", verb, quoted(out));
+  return text;
+}
+
+Result<VerbResult> run(Options options, const Arguments command, const CommonOptions& common, Progress& progress) {
   PipelineOptions& p = options.pipeline;
   DUBSAR_ASSIGN(p.import, parse_input_options(options.in, options.input));
   p.resample = !options.no_resample;
@@ -93,10 +116,13 @@ Result<VerbResult> run(Options options, const Arguments command, const CommonOpt
     made.error().message += "; take a part of the scan with --crop, or fewer voxels with --stride";
   DUBSAR_ASSIGN(PipelineResult result, std::move(made));
   DUBSAR_TRY(write_product(options.out, result, progress));
+  DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(result.model));
+  DUBSAR_ASSIGN(const SurfaceFacts facts, surface_facts(mesh));
   VerbResult out;
   out.json = report_json(result.report, p);
   out.json["output"] = options.out;
-  out.text = report_text(result.report) + options.out + "\n";
+  out.json["facts"] = facts_json(facts);
+  out.text = (common.console.verbose ? report_text(result.report) + "\n" : "") + summary(options.out, facts);
   return out;
 }
 
@@ -113,7 +139,8 @@ Verb add_process_verb(Arguments program) {
   add_surface_options(command, *options);
   command.footer(
       "Examples:\n"
-      "  dubsar process scan.h5 -o tablet.exa\n"
+      "  dubsar process scan.h5\n"
+      "  dubsar process scan.h5 -o tablet.exa --verbose\n"
       "  dubsar process scan.h5 -o part.exa --crop 0:512,0:512,0:512 --no-ao\n"
       "  dubsar process scan.raw --dims 512x512x300 --type uint16 --voxel-size 38um -o tablet.exa\n"
       "  dubsar process scan.h5 -o tablet.exa --json report.json");
@@ -121,7 +148,10 @@ Verb add_process_verb(Arguments program) {
           [options, command](const CommonOptions& common, Progress& progress) {
             return run(*options, command, common, progress);
           },
-          [options] { settle(*options); }};
+          [options] {
+            if (options->out.empty()) options->out = output_beside(options->in, ".exa");
+          },
+          [options] { return plan_of(*options); }};
 }
 
 }  // namespace dubsar::app

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -11,13 +12,13 @@
 #include <limits>
 #include <memory>
 
+#include "app/cli/default_output.h"
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
 #include "app/verbs/display_picture.h"
 #include "app/viewer/run_view.h"
 #include "core/base/parse_number.h"
-#include "core/image_io/png_file.h"
-#include "core/image_io/tiff_file.h"
+#include "core/image_io/picture_file.h"
 #include "display/render/render_image.h"
 #include "display/render/scene.h"
 
@@ -183,6 +184,22 @@ Result<VerbResult> show_in_window(const Options& options, const SinkSpec& displa
   return result;
 }
 
+/// Beside the surface, named after what is seen: tablet_front.png.
+void name_output(Options& options) {
+  if (options.window || !options.out.empty() || options.in.empty()) return;
+  std::string what = options.view;
+  std::replace_if(
+      what.begin(), what.end(), [](char c) { return c == ':' || c == ',' || c == '/'; }, '-');
+  options.out = output_beside(options.in, "_" + what + ".png");
+}
+
+/// Of all options that name parts.
+Result<void> check_part_names(const Options& options) {
+  std::vector<std::string> names = options.hide;
+  for (const std::string& text : options.opacity) names.push_back(text.substr(0, text.rfind('=')));
+  return check_parts(options.in, names);
+}
+
 Result<void> check_output(const Options& options) {
   if (options.window && (!options.out.empty() || options.display.display.empty()))
     return fail(ErrorKind::kUsage, "--window found {}",
@@ -190,15 +207,11 @@ Result<void> check_output(const Options& options) {
   if (options.window) return {};
   if (options.out.empty())
     return fail(ErrorKind::kUsage, "-o is missing, expected a file to write, or --display NAME --window");
-  return {};
+  return picture_format_from_path(options.out).map([](PictureFormat) {});
 }
 
 Result<VerbResult> run(const Options& options, Progress& progress) {
   DUBSAR_TRY(check_output(options));
-  std::string suffix = std::filesystem::path(options.out).extension().string();
-  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (!options.window && suffix != ".png" && suffix != ".tif" && suffix != ".tiff")
-    return fail(ErrorKind::kUsage, "cannot write {}: expected a name that ends in .png or .tif", options.out);
   DUBSAR_TRY(check_display_options(options));
   RenderOptions render;
   DUBSAR_ASSIGN(render.shading, shading_preset(options.style));
@@ -222,6 +235,7 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
   }
   TriMesh mesh;
   if (!options.in.empty()) {
+    DUBSAR_TRY(check_part_names(options));
     DUBSAR_ASSIGN(mesh, load_mesh({options.in, options.partitions, true}, progress));
   }
   DUBSAR_TRY(hide_partitions(options.hide, mesh, render.shading));
@@ -234,13 +248,9 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
     return render_to_display(options.display, display, shown, mesh, options.out, progress);
   }
   DUBSAR_ASSIGN(const Picture picture, render_picture(mesh, render, progress));
-  if (suffix == ".png") {
-    PngOptions png;
-    png.dpi = picture.dpi();
-    DUBSAR_TRY(write_png(options.out, picture.image, png));
-  } else {
-    DUBSAR_TRY(write_tiff(options.out, picture.image, picture.dpi()));
-  }
+  PictureOptions file;
+  file.dpi = picture.dpi();
+  DUBSAR_TRY(write_picture(options.out, picture.image, file));
   VerbResult result;
   result.json = {{"output", options.out},
                  {"width", picture.image.width},
@@ -259,7 +269,8 @@ Verb add_render_verb(Arguments program) {
   auto options = std::make_shared<Options>();
   Arguments command = program.command("render", "make a picture of a surface, or show what a display's panel shows");
   command.reads("IN", options->in, "EXA, PLY, OBJ, STL or GLB file");
-  command.writes("-o,--output", options->out, FileFormat::kPicture, "PNG or TIFF file to write");
+  command.writes("-o,--output", options->out, FileFormat::kPicture,
+                 "PNG, TIFF or JPEG file to write; unless given: beside IN, NAME_front.png and the like");
   command.flag("--window", options->window, "show the display's picture in a window instead of writing it");
   command.value("--view", options->view,
                 "front, back, left, right, top, bottom, orbit or orbit:AZIMUTH,ELEVATION[,ROLL]");
@@ -305,7 +316,8 @@ Verb add_render_verb(Arguments program) {
                                      "--shadows", "--unmarked", "--opacity", "--unpack", "--cut", "--fog", "--samples"})
               if (command.given(name)) options->display.of_surfaces = name;
             return run(*options, progress);
-          }};
+          },
+          [options] { name_output(*options); }};
 }
 
 }  // namespace dubsar::app

@@ -32,7 +32,7 @@ constexpr std::size_t kLongestWord = 64;  // longer ones are no slips, and cost 
 }  // namespace
 
 std::string near_word(std::string_view word, std::span<const std::string> known) {
-  if (word.empty() || word.size() > kLongestWord) return {};
+  if (word.size() < 2 || word.size() > kLongestWord) return {};
   const std::string wanted = lower(word);
   std::string best;
   std::size_t least = word.size() < 5 ? 2 : 3;  // nearer than this

@@ -87,16 +87,17 @@ void append(BufferedWriter& out, const glm::vec3& v) {
 }
 }  // namespace
 
-Result<void> write_glb(const std::filesystem::path& path, const TriMesh& mesh, const MeshWriteOptions&,
+Result<void> write_glb(const std::filesystem::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
                        Progress& progress) {
   DUBSAR_TRY(check_tri_mesh(mesh));
   const OutputSpace space(mesh.frame, MeshUnits::kMm);
   const VertexColors colors = output_colors(mesh);
+  const bool derived = colors.derived || options.colors_derived;
   const std::vector<Part> parts = split(mesh);
 
   Json json;
   json["asset"] = {{"version", "2.0"}, {"generator", "dubsar"}};
-  json["asset"]["extras"] = {{"dubsar", mesh_text_lines(mesh, {MeshUnits::kMm}, colors.derived)}};
+  json["asset"]["extras"] = {{"dubsar", mesh_text_lines(mesh, {MeshUnits::kMm}, derived)}};
   json["scene"] = 0;
   json["scenes"] = Json::array({{{"nodes", {0}}}});
   // Grid millimetres with z up to metres with y up, as glTF wants; the data keep millimetres.

@@ -23,7 +23,7 @@ Result<void> write_stl(const std::filesystem::path& path, const TriMesh& mesh, c
 
 /// Wavefront OBJ: v (with optional colour), vn, f with positive and negative indices, polygons, line continuation.
 Result<TriMesh> parse_obj(std::string_view bytes, Progress& progress);
-/// v, vn and f a//a; one group per partition.
+/// v with colours (x y z r g b, as most programs read them), vn and f a//a; one group per partition.
 Result<void> write_obj(const std::filesystem::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
                        Progress& progress);
 
@@ -32,5 +32,11 @@ Result<TriMesh> parse_glb(std::string_view bytes, Progress& progress);
 /// One named node, mesh and primitive per partition below a root node that turns millimetres, z up, into metres, y up.
 Result<void> write_glb(const std::filesystem::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
                        Progress& progress);
+
+/// 3D Manufacturing Format 1.3: one object a body in millimetres, colours by the materials extension.
+Result<void> write_3mf(const std::filesystem::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
+                       Progress& progress);
+/// Always kBadData: 3MF is written for printers, not read.
+Result<TriMesh> parse_3mf(std::string_view bytes, Progress& progress);
 
 }  // namespace dubsar

@@ -18,10 +18,11 @@ struct Format {
   Result<void> (*write)(const std::filesystem::path&, const TriMesh&, const MeshWriteOptions&, Progress&);
 };
 
-constexpr std::array<Format, 4> kFormats{{{MeshFormat::kPly, "ply", ".ply", parse_ply, write_ply},
+constexpr std::array<Format, 5> kFormats{{{MeshFormat::kPly, "ply", ".ply", parse_ply, write_ply},
                                           {MeshFormat::kStl, "stl", ".stl", parse_stl, write_stl},
                                           {MeshFormat::kObj, "obj", ".obj", parse_obj, write_obj},
-                                          {MeshFormat::kGlb, "glb", ".glb", parse_glb, write_glb}}};
+                                          {MeshFormat::kGlb, "glb", ".glb", parse_glb, write_glb},
+                                          {MeshFormat::k3mf, "3mf", ".3mf", parse_3mf, write_3mf}}};
 
 const Format& row(MeshFormat format) { return kFormats[static_cast<std::size_t>(format)]; }
 
@@ -70,7 +71,8 @@ Result<MeshFormat> mesh_format_from_path(const std::filesystem::path& path) {
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   for (const Format& format : kFormats)
     if (format.suffix == suffix) return format.format;
-  return fail(ErrorKind::kUsage, "{}: suffix \"{}\" found, expected .ply, .stl, .obj or .glb", path.string(), suffix);
+  return fail(ErrorKind::kUsage, "{}: suffix \"{}\" found, expected .ply, .stl, .obj, .glb or .3mf", path.string(),
+              suffix);
 }
 
 Result<void> write_mesh(const std::filesystem::path& path, const TriMesh& mesh, const MeshWriteOptions& options,

@@ -1,5 +1,5 @@
 #pragma once
-// The one door to mesh files: PLY, STL, OBJ and GLB, written from and read into a TriMesh.
+// The one door to mesh files: PLY, STL, OBJ, GLB and 3MF (only written), from and into a TriMesh.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,7 +15,7 @@
 
 namespace dubsar {
 
-enum class MeshFormat { kPly, kStl, kObj, kGlb };
+enum class MeshFormat { kPly, kStl, kObj, kGlb, k3mf };
 
 /// What the numbers in the file mean. kVox: coordinates of the input volume, voxel centres at integers. GLB is always
 /// in metres, as glTF demands.
@@ -23,6 +23,7 @@ enum class MeshUnits { kMm, kVox };
 
 struct MeshWriteOptions {
   MeshUnits units = MeshUnits::kMm;
+  bool colors_derived = false;  ///< the mesh's colours follow from its attributes: readers of ours need not keep them
 };
 
 struct MeshInfo {

@@ -182,7 +182,9 @@ Result<void> write_obj(const std::filesystem::path& path, const TriMesh& mesh, c
   DUBSAR_TRY(check_tri_mesh(mesh));
   DUBSAR_ASSIGN(AtomicFile file, AtomicFile::create(path));
   BufferedWriter out(file);
-  for (const std::string& line : mesh_text_lines(mesh, options, false)) out.text("# " + line + "\n");
+  const VertexColors colors = output_colors(mesh);
+  for (const std::string& line : mesh_text_lines(mesh, options, colors.derived || options.colors_derived))
+    out.text("# " + line + "\n");
   const OutputSpace space(mesh.frame, options.units);
   const bool normals = !mesh.normals.empty();
   progress.begin("write obj", static_cast<std::int64_t>(mesh.positions.size() + mesh.triangles.size()), "item");
@@ -195,10 +197,13 @@ Result<void> write_obj(const std::filesystem::path& path, const TriMesh& mesh, c
   const auto stop = [&]() -> Result<void> { return out.ok() ? cancelled_error() : out.flush(); };
   fmt::memory_buffer row;
   const auto emit = [&]() { out.text(std::string_view(row.data(), row.size())); };
-  for (const glm::vec3& grid : mesh.positions) {
-    const glm::vec3 p = space.position(grid);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const glm::vec3 p = space.position(mesh.positions[v]);
     row.clear();
-    fmt::format_to(std::back_inserter(row), "v {} {} {}\n", p.x, p.y, p.z);
+    fmt::format_to(std::back_inserter(row), "v {} {} {}", p.x, p.y, p.z);
+    if (!colors.rgb.empty())
+      for (const std::uint8_t c : colors.rgb[v]) fmt::format_to(std::back_inserter(row), " {:.4g}", c / 255.0);
+    row.push_back('\n');
     emit();
     if (stopped()) return stop();
   }

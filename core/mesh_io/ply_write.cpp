@@ -33,10 +33,11 @@ Result<void> write_ply(const std::filesystem::path& path, const TriMesh& mesh, c
     return fail(ErrorKind::kUsage, "ply: {} vertices do not fit 31-bit indices; export one partition at a time",
                 mesh.positions.size());
   const VertexColors colors = output_colors(mesh);
+  const bool derived = colors.derived || options.colors_derived;
   const bool normals = !mesh.normals.empty(), curvatures = !mesh.k_min.empty() && !mesh.k_max.empty();
 
   std::string header = "ply\nformat binary_little_endian 1.0\n";
-  for (const std::string& line : mesh_text_lines(mesh, options, colors.derived)) header += "comment " + line + "\n";
+  for (const std::string& line : mesh_text_lines(mesh, options, derived)) header += "comment " + line + "\n";
   std::size_t vertex_bytes = 0;
   const auto declare = [&](bool present, std::string_view type, std::size_t bytes,
                            std::initializer_list<std::string_view> names) {

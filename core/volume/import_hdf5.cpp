@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/hdf5/chunk_filters.h"
 #include "core/hdf5/hdf5_filters.h"
 #include "core/volume/external_access.h"
 #include "core/volume/flat_reader.h"
@@ -257,7 +258,8 @@ std::vector<Hdf5FilterState> hdf5_filter_states() {
   std::vector<Hdf5FilterState> states;
   for (const FilterName& known : kFilterNames)
     if (known.package != nullptr)
-      states.push_back({known.name, hdf5_filter_available(known.id), fmt::format("apt install {}", known.package)});
+      states.push_back({known.name, can_undo_filter(known.id) || hdf5_filter_available(known.id),
+                        fmt::format("apt install {}", known.package)});
   return states;
 }
 

@@ -75,7 +75,7 @@ TEST(CommandLine, UsageErrorsExitWith64) {
                                                     {"info", "a.h5", "--progress", "often"},
                                                     {"process", "a.h5", "-o", "b.exa", "--crop", "backwards"},
                                                     {"phantom", "x.h5", "--size", "7"},
-                                                    {"render", "a.exa", "-o", "b.jpg"}}) {
+                                                    {"render", "a.exa", "-o", "b.gif"}}) {
     const ProgramRun run = run_dubsar(arguments);
     EXPECT_EQ(run.exit_code, 64) << (arguments.empty() ? "" : arguments[0]) << run.err;
     EXPECT_FALSE(run.err.empty());

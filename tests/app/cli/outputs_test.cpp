@@ -147,9 +147,9 @@ TEST(CommandLine, NothingTypedListsTheVerbsAndSlipsAreNamed) {
   const ProgramRun nothing = run_dubsar({});
   EXPECT_EQ(nothing.exit_code, 64);
   EXPECT_THAT(nothing.err, HasSubstr("turn a CT scan into separated"));
-  EXPECT_THAT(run_dubsar({"proces", "a.h5"}).err, HasSubstr("Did you mean process?"));
-  EXPECT_THAT(run_dubsar({"render", "a.exa", "--stile", "clay"}).err, HasSubstr("Did you mean --style?"));
-  EXPECT_THAT(run_dubsar({"render", "a.exa", "--xyzzy", "clay"}).err, ::testing::Not(HasSubstr("Did you mean")));
+  EXPECT_THAT(run_dubsar({"proces", "a.h5"}).err, HasSubstr("did you mean \"process\"?"));
+  EXPECT_THAT(run_dubsar({"render", "a.exa", "--stile", "clay"}).err, HasSubstr("did you mean \"--style\"?"));
+  EXPECT_THAT(run_dubsar({"render", "a.exa", "--xyzzy", "clay"}).err, ::testing::Not(HasSubstr("did you mean")));
 }
 
 }  // namespace

@@ -1,0 +1,171 @@
+#include "app/publish/surface_facts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/mesh/mesh_check.h"
+#include "core/mesh/tablet_frame.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr double kUnsure = 0.05;  // share of the evidence below which the way up is a guess
+
+struct Box {
+  glm::dvec3 least{std::numeric_limits<double>::infinity()}, most{-std::numeric_limits<double>::infinity()};
+  void add(const glm::dvec3& p) { least = glm::min(least, p), most = glm::max(most, p); }
+  glm::dvec3 size() const { return most.x >= least.x ? most - least : glm::dvec3(0.0); }
+};
+
+struct Body {
+  PartFacts facts;
+  Box box;
+  std::vector<Triangle> triangles;
+};
+
+std::vector<glm::dvec3> points_of(const TriMesh& mesh) {
+  std::vector<glm::dvec3> points;
+  points.reserve(mesh.positions.size());
+  for (const glm::vec3& p : mesh.positions) points.push_back(mesh.frame.mm_from_grid(glm::dvec3(p)));
+  return points;
+}
+
+/// What the writing is on: the tablet where there is one, else everything.
+TriMesh written_part(const TriMesh& mesh) {
+  const Partition* const tablet = mesh.partitions.find(PartitionKind::kTablet);
+  if (tablet == nullptr || mesh.triangle_partition.empty()) return mesh;
+  TriMesh part;
+  part.frame = mesh.frame;
+  part.positions = mesh.positions;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (mesh.triangle_partition[t] != tablet->id) continue;
+    part.triangles.push_back(mesh.triangles[t]);
+    if (!mesh.triangle_inferred.empty()) part.triangle_inferred.push_back(mesh.triangle_inferred[t]);
+  }
+  return part.triangles.empty() ? mesh : part;
+}
+
+bool crumbs(const PartFacts& part) { return part.kind == PartitionKind::kPores; }
+
+std::string area_text(double area, bool mm) {
+  return fmt::format("{:.{}f} {}", area, area < 100 ? 1 : 0, mm ? "mm2" : "voxel faces");
+}
+
+std::string volume_text(double volume, bool mm) {
+  if (!mm) return fmt::format("{:.0f} voxels", volume);
+  return volume < 1000.0 ? fmt::format("{:.0f} mm3", volume) : fmt::format("{:.1f} cm3", volume / 1000.0);
+}
+
+}  // namespace
+
+Result<SurfaceFacts> surface_facts(const TriMesh& mesh) {
+  SurfaceFacts facts;
+  facts.millimetres = mesh.frame.input_voxel.known();
+  DUBSAR_ASSIGN(const TabletFrame frame, find_tablet_frame(written_part(mesh)));
+  facts.upright = frame.up_share >= kUnsure;
+  const glm::dmat3 turn = frame.tablet_from_model();
+  const std::vector<glm::dvec3> points = points_of(mesh);
+  std::map<PartitionId, Body> bodies;
+  Box all;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const PartitionId id = mesh.partitions.body_of(mesh.partition_of(t));
+    Body& body = bodies[id];
+    const Triangle& v = mesh.triangles[t];
+    for (const std::uint32_t corner : v) body.box.add(turn * points[corner]), all.add(points[corner]);
+    const glm::dvec3 normal = glm::cross(points[v[1]] - points[v[0]], points[v[2]] - points[v[0]]);
+    const double area = 0.5 * glm::length(normal);
+    body.facts.area += area;
+    body.facts.volume += glm::dot(points[v[0]], normal) / 6.0;
+    if (!mesh.triangle_inferred.empty() && mesh.triangle_inferred[t] != 0) body.facts.inferred_area += area;
+    body.triangles.push_back(v);
+  }
+  facts.box = all.size();
+  for (auto& [id, body] : bodies) {
+    const Partition* const row = mesh.partitions.find(id);
+    body.facts.name = row != nullptr ? row->body_name() : "object";
+    body.facts.kind = row != nullptr ? row->kind : PartitionKind::kObject;
+    body.facts.size = body.box.size();
+    body.facts.watertight = check_mesh(mesh.positions, body.triangles).watertight();
+    facts.parts.push_back(std::move(body.facts));
+  }
+  std::stable_sort(facts.parts.begin(), facts.parts.end(),
+                   [](const PartFacts& a, const PartFacts& b) { return crumbs(a) != crumbs(b) ? crumbs(b) : false; });
+  return facts;
+}
+
+nlohmann::json facts_json(const SurfaceFacts& facts) {
+  using nlohmann::json;
+  const auto vector = [](const glm::dvec3& v) { return json{v.x, v.y, v.z}; };
+  json parts = json::array();
+  double area = 0.0, inferred = 0.0;
+  for (const PartFacts& part : facts.parts) {
+    area += part.area;
+    inferred += part.inferred_area;
+    parts.push_back({{"name", part.name},
+                     {"size", vector(part.size)},
+                     {"area", part.area},
+                     {"volume", part.volume},
+                     {"watertight", part.watertight},
+                     {"inferred_area", part.inferred_area},
+                     {"inferred_share", part.inferred_share()}});
+  }
+  return {{"unit", facts.millimetres ? "mm" : "voxel"},
+          {"upright", facts.upright},
+          {"box", vector(facts.box)},
+          {"parts", std::move(parts)},
+          {"evidence",
+           {{"area", area},
+            {"measured_area", area - inferred},
+            {"inferred_area", inferred},
+            {"inferred_share", area > 0.0 ? inferred / area : 0.0}}}};
+}
+
+std::string size_text(const glm::dvec3& size, bool mm) {
+  const int digits = mm ? (std::max({size.x, size.y, size.z}) < 10.0 ? 2 : 1) : 0;
+  return fmt::format("{:.{}f} x {:.{}f} x {:.{}f} {}", size.x, digits, size.y, digits, size.z, digits,
+                     mm ? "mm" : "voxels");
+}
+
+std::string facts_text(const SurfaceFacts& facts) {
+  const bool mm = facts.millimetres;
+  std::string text;
+  std::size_t longest = 8;
+  for (const PartFacts& part : facts.parts)
+    if (!crumbs(part)) longest = std::max(longest, part.name.size());
+  for (const PartFacts& part : facts.parts)
+    if (!crumbs(part))
+      text += fmt::format("  {:<{}}  {}, {}{}\n", part.name, longest, size_text(part.size, mm),
+                        volume_text(part.volume, mm), part.watertight ? "" : ", open");
+  if (facts.upright) text += fmt::format("  {:<{}}  (width x height x thickness)\n", "", longest);
+  for (const PartFacts& part : facts.parts)
+    if (crumbs(part)) text += fmt::format("  and {}: {}\n", part.name, area_text(part.area, mm));
+  std::string inferred;
+  for (const PartFacts& part : facts.parts)
+    if (part.inferred_area > 0.0)
+      inferred += fmt::format("  {:<{}}  {}, {:.1f} % of its surface\n", part.name, longest,
+                              area_text(part.inferred_area, mm), 100.0 * part.inferred_share());
+  if (!inferred.empty()) text += "\nNot in the scan, closed smoothly, hatched in pictures:\n" + inferred;
+  return text;
+}
+
+std::string what_it_is(const SurfaceFacts& facts) {
+  bool tablet = false, envelope = false;
+  std::size_t count = 0;
+  for (const PartFacts& part : facts.parts) {
+    tablet = tablet || part.name == "tablet";
+    envelope = envelope || part.name == "envelope";
+    count += crumbs(part) ? 0 : 1;
+  }
+  if (tablet && envelope) return "a tablet inside its envelope";
+  if (tablet) return "a tablet";
+  return count == 1 ? "one object" : fmt::format("{} objects", count);
+}
+
+}  // namespace dubsar::app
