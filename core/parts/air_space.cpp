@@ -31,39 +31,47 @@ void dilate_row(const std::uint64_t* in, std::uint64_t* out, std::int64_t words,
   out[words - 1] &= tail;
 }
 
-/// One step of dilation by the 3 x 3 x 3 cube.
-BitVolume dilate_once(const BitVolume& in) {
+/// One step of dilation by the 3 x 3 x 3 cube, without what is set in `barred` (if given). Slices run through a window
+/// of three, so that each is read and written once.
+BitVolume dilate_once(const BitVolume& in, const BitVolume* barred = nullptr) {
   const Dims d = in.dims();
-  const std::int64_t words = in.words_per_row();
+  const std::int64_t words = in.words_per_row(), slice = words * d.y;
   const std::uint64_t tail = tail_mask(d.x);
-  BitVolume xy(d), out(d);
-  parallel_for(d.z, slice_grain(words * d.y), [&](std::int64_t z) {
-    std::vector<std::uint64_t> rows(static_cast<std::size_t>(words * d.y));
-    for (std::int64_t y = 0; y < d.y; ++y) dilate_row(in.row(y, z), rows.data() + y * words, words, tail);
-    for (std::int64_t y = 0; y < d.y; ++y) {
-      const std::uint64_t* here = rows.data() + y * words;
-      const std::uint64_t* before = y > 0 ? here - words : here;
-      const std::uint64_t* after = y + 1 < d.y ? here + words : here;
-      std::uint64_t* to = xy.row(y, z);
-      for (std::int64_t w = 0; w < words; ++w) to[w] = here[w] | before[w] | after[w];
+  BitVolume out(d);
+  constexpr std::int64_t kSlices = 16;  // of a chunk: two more are dilated along x and y than are written
+  parallel_chunks(d.z, std::max(kSlices, slice_grain(slice)), [&](std::int64_t z_begin, std::int64_t z_end) {
+    std::vector<std::uint64_t> rows(static_cast<std::size_t>(slice));
+    std::vector<std::uint64_t> window(static_cast<std::size_t>(3 * slice), 0);
+    const auto place = [&](std::int64_t z) { return window.data() + (z + 3) % 3 * slice; };
+    const auto spread = [&](std::int64_t z) {  // slice z, dilated along x and y
+      std::uint64_t* const to = place(z);
+      if (z < 0 || z >= d.z) {
+        std::fill_n(to, slice, 0);
+        return;
+      }
+      for (std::int64_t y = 0; y < d.y; ++y) dilate_row(in.row(y, z), rows.data() + y * words, words, tail);
+      for (std::int64_t y = 0; y < d.y; ++y) {
+        const std::uint64_t* here = rows.data() + y * words;
+        const std::uint64_t* before = y > 0 ? here - words : here;
+        const std::uint64_t* after = y + 1 < d.y ? here + words : here;
+        for (std::int64_t w = 0; w < words; ++w) to[y * words + w] = here[w] | before[w] | after[w];
+      }
+    };
+    spread(z_begin - 1);
+    spread(z_begin);
+    for (std::int64_t z = z_begin; z < z_end; ++z) {
+      spread(z + 1);
+      const std::uint64_t *before = place(z - 1), *here = place(z), *after = place(z + 1);
+      std::uint64_t* to = out.row(0, z);
+      if (barred == nullptr) {
+        for (std::int64_t w = 0; w < slice; ++w) to[w] = here[w] | before[w] | after[w];
+      } else {
+        const std::uint64_t* bar = barred->row(0, z);
+        for (std::int64_t w = 0; w < slice; ++w) to[w] = (here[w] | before[w] | after[w]) & ~bar[w];
+      }
     }
   });
-  parallel_for(d.z, slice_grain(words * d.y), [&](std::int64_t z) {
-    const std::int64_t slice = words * d.y;
-    const std::uint64_t* here = xy.row(0, z);
-    const std::uint64_t* before = z > 0 ? here - slice : here;
-    const std::uint64_t* after = z + 1 < d.z ? here + slice : here;
-    std::uint64_t* to = out.row(0, z);
-    for (std::int64_t w = 0; w < slice; ++w) to[w] = here[w] | before[w] | after[w];
-  });
   return out;
-}
-
-/// a & ~b, word by word.
-void subtract(BitVolume& a, const BitVolume& b) {
-  const auto from = b.words();
-  const auto to = a.words();
-  for (std::size_t w = 0; w < to.size(); ++w) to[w] &= ~from[w];
 }
 
 struct RowRun {
@@ -185,10 +193,7 @@ Exterior grow_back(const BitVolume& inside, BitVolume eroded, int r) {
   Exterior e;
   e.crack_radius = r;
   e.air = std::move(eroded);
-  for (int step = 0; r > 0 && step <= r; ++step) {
-    e.air = dilate_once(e.air);
-    subtract(e.air, inside);
-  }
+  for (int step = 0; r > 0 && step <= r; ++step) e.air = dilate_once(e.air, &inside);
   BitVolume enclosed(inside.dims());
   const auto in = inside.words(), air = std::as_const(e.air).words();
   const auto to = enclosed.words();
@@ -257,20 +262,30 @@ Result<Exterior> find_exterior(const BitVolume& inside, int largest_radius, Prog
   constexpr double kEnough = 0.85;
   const int margin = largest_radius + 2;  // so that a dilated object near the border does not block the way around it
   const BitVolume padded = pad(inside, margin);
-  std::vector<std::int64_t> faces;
-  BitVolume blocked = padded;
-  for (int r = 0; r <= largest_radius; ++r) {
+  const auto close = [&](int r) { return grow_back(padded, flood_from_border(dilate(padded, r)), r); };
+  Exterior chosen = close(0);
+  if (largest_radius > 0) {
     if (progress.cancelled()) return cancelled_error();
-    if (r > 0) blocked = dilate_once(blocked);
-    faces.push_back(grow_back(padded, flood_from_border(blocked), r).enclosed_faces);
+    Exterior widest = close(largest_radius);
+    const double enough = kEnough * static_cast<double>(std::max(chosen.enclosed_faces, widest.enclosed_faces));
+    const auto encloses = [&](const Exterior& e) { return static_cast<double>(e.enclosed_faces) >= enough; };
+    // From radius 1 on a wider closing encloses all that a narrower one does: every step back from the exterior of r +
+    // 1 begins inside that of r. So the least radius that is enough is found by halving.
+    if (!encloses(chosen)) {
+      int too_small = 0;
+      chosen = std::move(widest);
+      while (chosen.crack_radius - too_small > 1) {
+        if (progress.cancelled()) return cancelled_error();
+        Exterior middle = close((too_small + chosen.crack_radius) / 2);
+        if (encloses(middle))
+          chosen = std::move(middle);
+        else
+          too_small = middle.crack_radius;
+      }
+    }
   }
-  const auto most = static_cast<double>(*std::max_element(faces.begin(), faces.end()));
-  int chosen = 0;
-  while (static_cast<double>(faces[static_cast<std::size_t>(chosen)]) < kEnough * most) ++chosen;
-  if (progress.cancelled()) return cancelled_error();
-  Exterior exterior = grow_back(padded, flood_from_border(dilate(padded, chosen)), chosen);
-  exterior.air = crop(exterior.air, margin);
-  return exterior;
+  chosen.air = crop(chosen.air, margin);
+  return chosen;
 }
 
 EnclosedAir::EnclosedAir(const BitVolume& inside, const BitVolume& exterior) : dims_(inside.dims()) {

@@ -32,7 +32,8 @@ struct Exterior {
 };
 
 /// Tries crack radii from 0 to `largest_radius` and takes the smallest that encloses nearly as much surface
-/// as any: that is 0 for a sound envelope, and the width of the cracks for a broken one. kCancelled.
+/// as any: that is 0 for a sound envelope, and the width of the cracks for a broken one. Two closings for a sound
+/// envelope, log2(largest_radius) more for a broken one. kCancelled.
 Result<Exterior> find_exterior(const BitVolume& inside, int largest_radius, Progress& progress);
 
 /// Connected components (6-neighbourhood) of the air that is neither inside nor exterior.

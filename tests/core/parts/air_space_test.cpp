@@ -116,6 +116,63 @@ TEST(AirSpace, TheSmallestRadiusThatClosesTheCrackIsFound) {
   EXPECT_TRUE(find_exterior(slit_box(19), 8, progress)->air.get(24, 24, 24));  // too wide: all is outside
 }
 
+/// Every radius, closed and grown back point by point.
+TEST(AirSpace, TheExteriorIsThatOfTrialsOfAllRadii) {
+  std::mt19937 random(71);
+  constexpr int kLargest = 4, kMargin = kLargest + 2;
+  int broken = 0;
+  for (int round = 0; round < 12; ++round) {
+    const auto slits = static_cast<std::int64_t>(random() % 4);
+    std::array<std::int64_t, 4> at{}, width{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      at[i] = 8 + static_cast<std::int64_t>(random() % 20);
+      width[i] = 1 + static_cast<std::int64_t>(random() % 7);
+    }
+    const BitVolume inside = make_bits({40, 38, 36}, [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+      const bool box = std::min({x, y, z}) >= 3 && x < 37 && y < 35 && z < 33;
+      const bool hollow = std::min({x, y, z}) >= 8 && x < 32 && y < 30 && z < 28;
+      bool slit = false;
+      for (std::int64_t i = 0; i < slits; ++i) {
+        const auto n = static_cast<std::size_t>(i);
+        slit = slit || (z > 20 && x >= at[n] && x < at[n] + width[n] && y > 8 && y < 30);
+      }
+      return box && !hollow && !slit && !random_bit(random, 1);
+    });
+    const BitVolume padded = pad(inside, kMargin);
+    std::vector<BitVolume> air;
+    std::vector<std::int64_t> faces;
+    for (int r = 0; r <= kLargest; ++r) {
+      BitVolume out = flood_from_border(dilate(padded, r));
+      for (int step = 0; r > 0 && step <= r; ++step) {
+        out = dilate(out, 1);
+        for (std::size_t w = 0; w < out.words().size(); ++w) out.words()[w] &= ~padded.words()[w];
+      }
+      air.push_back(crop(out, kMargin));
+      const Dims d = padded.dims();
+      std::int64_t count = 0;
+      for (std::int64_t z = 1; z + 1 < d.z; ++z)
+        for (std::int64_t y = 1; y + 1 < d.y; ++y)
+          for (std::int64_t x = 1; x + 1 < d.x; ++x)
+            if (padded.get(x, y, z))
+              for (const auto& [dx, dy, dz] :
+                   {std::array{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}})
+                count += !padded.get(x + dx, y + dy, z + dz) && !out.get(x + dx, y + dy, z + dz);
+      faces.push_back(count);
+    }
+    const auto most = static_cast<double>(*std::max_element(faces.begin(), faces.end()));
+    int expected = 0;
+    while (static_cast<double>(faces[static_cast<std::size_t>(expected)]) < 0.85 * most) ++expected;
+    broken += expected > 0;
+    SilentProgress progress;
+    const Exterior found = find_exterior(inside, kLargest, progress).value();
+    EXPECT_EQ(found.crack_radius, expected) << round;
+    EXPECT_EQ(found.enclosed_faces, faces[static_cast<std::size_t>(expected)]) << round;
+    EXPECT_TRUE(found.air == air[static_cast<std::size_t>(expected)]) << round;
+  }
+  EXPECT_GE(broken, 3);
+  EXPECT_LE(broken, 11);
+}
+
 TEST(DepthField, DepthInABallIsTheDistanceToItsSurface) {
   const glm::vec3 centre(40.0f, 41.0f, 39.0f);
   const BitVolume ball = make_bits({80, 80, 80}, [&](std::int64_t x, std::int64_t y, std::int64_t z) {
