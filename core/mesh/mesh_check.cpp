@@ -80,6 +80,7 @@ std::int64_t count_components(std::size_t vertices, std::span<const Triangle> tr
 
 MeshCheck add(MeshCheck a, const MeshCheck& b) {
   a.vertices += b.vertices;
+  a.triangles += b.triangles;
   a.edges += b.edges;
   a.boundary_edges += b.boundary_edges;
   a.nonmanifold_edges += b.nonmanifold_edges;
@@ -92,27 +93,41 @@ MeshCheck add(MeshCheck a, const MeshCheck& b) {
 
 }  // namespace
 
-MeshCheck check_mesh(std::span<const glm::vec3> positions, std::span<const Triangle> triangles) {
+namespace {
+
+/// What of a mesh belongs to which label; without labels all is of one.
+using Labels = std::span<const PartitionId>;
+
+/// All but components and the Euler number.
+std::vector<MeshCheck> check_labelled(std::span<const glm::vec3> positions, std::span<const Triangle> triangles,
+                                      Labels labels, std::size_t label_count, std::vector<std::uint32_t>& first) {
   const std::size_t vertices = positions.size();
-  const auto count = static_cast<std::int64_t>(triangles.size());
   DUBSAR_CHECK(triangles.size() < (std::size_t{1} << 32) / 3);
-  MeshCheck sum = parallel_reduce<MeshCheck>(
-      count, 1 << 16, {},
+  const auto label_of = [&](std::size_t triangle) { return labels.empty() ? std::size_t{0} : labels[triangle]; };
+  using Checks = std::vector<MeshCheck>;
+  const auto add_all = [](Checks a, const Checks& b) {
+    for (std::size_t i = 0; i < a.size(); ++i) a[i] = add(a[i], b[i]);
+    return a;
+  };
+  Checks sum = parallel_reduce<Checks>(
+      static_cast<std::int64_t>(triangles.size()), 1 << 16, Checks(label_count),
       [&](std::int64_t begin, std::int64_t end) {
-        MeshCheck part;
-        for (const Triangle& t :
-             triangles.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin))) {
+        Checks part(label_count);
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+          const Triangle& t = triangles[i];
           DUBSAR_CHECK(t[0] < vertices && t[1] < vertices && t[2] < vertices);
           const bool degenerate = is_degenerate(t);
-          part.degenerate_triangles += degenerate;
-          part.zero_area_triangles += !degenerate && !has_area(positions, t);
+          MeshCheck& check = part[label_of(i)];
+          ++check.triangles;
+          check.degenerate_triangles += degenerate;
+          check.zero_area_triangles += !degenerate && !has_area(positions, t);
         }
         return part;
       },
-      add);
+      add_all);
 
   // Triangles around each vertex: three times 4 bytes a triangle, no edge is ever stored.
-  std::vector<std::uint32_t> first(vertices + 1, 0);
+  first.assign(vertices + 1, 0);
   for (const Triangle& t : triangles) {
     if (is_degenerate(t)) continue;
     for (const std::uint32_t v : t) ++first[v];
@@ -124,10 +139,10 @@ MeshCheck check_mesh(std::span<const glm::vec3> positions, std::span<const Trian
     if (is_degenerate(triangles[i])) continue;
     for (const std::uint32_t v : triangles[i]) around[--first[v]] = static_cast<std::uint32_t>(i);
   }
-  sum = parallel_reduce<MeshCheck>(
-      static_cast<std::int64_t>(vertices), 1 << 14, sum,
+  return parallel_reduce<Checks>(
+      static_cast<std::int64_t>(vertices), 1 << 14, std::move(sum),
       [&](std::int64_t begin, std::int64_t end) {
-        MeshCheck part;
+        Checks part(label_count);
         Link link;
         for (auto v = static_cast<std::uint32_t>(begin); v < static_cast<std::uint64_t>(end); ++v) {
           if (first[v] == first[v + 1]) continue;
@@ -137,15 +152,32 @@ MeshCheck check_mesh(std::span<const glm::vec3> positions, std::span<const Trian
             const std::size_t k = t[0] == v ? 0 : t[1] == v ? 1 : 2;
             link.add(t[(k + 1) % 3], t[(k + 2) % 3]);
           }
-          link.check(v, part);
+          link.check(v, part[label_of(around[first[v]])]);
         }
         return part;
       },
-      add);
-  sum.triangles = count;
-  sum.components = count_components(vertices, triangles, first);
-  sum.euler = sum.vertices - sum.edges + (sum.triangles - sum.degenerate_triangles);
-  return sum;
+      add_all);
+}
+
+}  // namespace
+
+MeshCheck check_mesh(std::span<const glm::vec3> positions, std::span<const Triangle> triangles) {
+  std::vector<std::uint32_t> first;
+  MeshCheck check = check_labelled(positions, triangles, {}, 1, first).front();
+  check.components = count_components(positions.size(), triangles, first);
+  check.euler = check.vertices - check.edges + (check.triangles - check.degenerate_triangles);
+  return check;
+}
+
+std::vector<bool> watertight_parts(std::span<const glm::vec3> positions, std::span<const Triangle> triangles,
+                                   std::span<const PartitionId> parts) {
+  DUBSAR_CHECK(parts.size() == triangles.size());
+  std::vector<std::uint32_t> first;
+  std::vector<bool> watertight;
+  for (const MeshCheck& check :
+       check_labelled(positions, triangles, parts, std::size_t{PartitionTable::kHighest} + 1, first))
+    watertight.push_back(check.watertight());
+  return watertight;
 }
 
 }  // namespace dubsar

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
+#include <vector>
 
 #include "core/mesh/tri_mesh.h"
 
@@ -31,5 +32,10 @@ struct MeshCheck {
 /// Degenerate triangles are counted and otherwise left out; vertex ids must be in range (checked). All threads, O(n);
 /// 12 bytes a triangle and 8 a vertex of memory; about 1 s for 5 million triangles and one thread.
 MeshCheck check_mesh(std::span<const glm::vec3> positions, std::span<const Triangle> triangles);
+
+/// For each partition id whether its triangles alone are watertight(). Partitions must not share vertices. Cost as
+/// check_mesh(), once for all of them.
+std::vector<bool> watertight_parts(std::span<const glm::vec3> positions, std::span<const Triangle> triangles,
+                                   std::span<const PartitionId> parts);
 
 }  // namespace dubsar

@@ -115,14 +115,14 @@ float side_length(const QuadMesh& mesh, std::uint32_t face, std::uint32_t side) 
                        mesh.positions[polygon.vertex[(side + 1) % static_cast<std::uint32_t>(polygon.size)]]);
 }
 
-Result<FaceScene> observe_faces(const SurfaceModel& model, const SegmentOptions& options, Progress& progress) {
-  FaceScene scene;
+Result<FaceScene> observe_faces(const SurfaceModel& model, const FaceGraph& graph, const SegmentOptions& options,
+                                Progress& progress) {
+  FaceScene scene{.graph = graph};
   DUBSAR_ASSIGN(const Exterior exterior, find_exterior(model.samples.signs, options.largest_crack_radius, progress));
   scene.crack_radius = exterior.crack_radius;
   const EnclosedAir enclosed(model.samples.signs, exterior.air);
   DUBSAR_ASSIGN(const DepthField depth,
                 DepthField::make(model.samples.signs, std::max(kSealRadius, exterior.crack_radius), progress));
-  DUBSAR_ASSIGN(scene.graph, FaceGraph::build(model.mesh, progress));
   const std::uint32_t faces = scene.graph.faces();
   scene.air.resize(faces);
   scene.inward.resize(faces);

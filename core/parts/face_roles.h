@@ -18,19 +18,20 @@ enum class FaceRole : std::uint8_t {
 
 struct FaceScene {
   static constexpr std::uint32_t kExterior = 0xfffffffeu;
-  FaceGraph graph;
+  const FaceGraph& graph;  ///< borrowed
   int crack_radius = 0;
   std::vector<std::uint32_t>
-      air;                    ///< per face: kExterior, a component of enclosed air, or EnclosedAir::kNone (unknown)
-  std::vector<float> inward;  ///< per face: cosine between its normal and the way inwards
-  std::vector<float> depth;   ///< per face: below the sealed outside, grid steps
+      air{};                    ///< per face: kExterior, a component of enclosed air, or EnclosedAir::kNone (unknown)
+  std::vector<float> inward{};  ///< per face: cosine between its normal and the way inwards
+  std::vector<float> depth{};   ///< per face: below the sealed outside, grid steps
 
   /// False when only the graph is there: enough for components of closed bodies.
   bool observed() const noexcept { return air.size() == graph.faces(); }
 };
 
 /// The expensive half: floods the air for every crack radius and measures depths.
-Result<FaceScene> observe_faces(const SurfaceModel& model, const SegmentOptions& options, Progress& progress);
+Result<FaceScene> observe_faces(const SurfaceModel& model, const FaceGraph& graph, const SegmentOptions& options,
+                                Progress& progress);
 
 /// Faces of one label that hang together.
 struct FaceComponents {

@@ -256,6 +256,12 @@ class HoleFiller {
 }  // namespace
 
 Result<HoleReport> fill_holes(SurfaceModel& model, const HoleOptions& options, Progress& progress) {
+  DUBSAR_ASSIGN(const FaceGraph graph, FaceGraph::build(model.mesh, progress));
+  return fill_holes(model, graph, options, progress);
+}
+
+Result<HoleReport> fill_holes(SurfaceModel& model, const FaceGraph& graph, const HoleOptions& options,
+                              Progress& progress) {
   if (model.quad_partition.size() != model.mesh.quads.size() || model.partitions.empty())
     return fail(ErrorKind::kBadData,
                 "holes: {} partition ids and {} partitions found, expected a segmented model of {} x-quads",
@@ -263,7 +269,6 @@ Result<HoleReport> fill_holes(SurfaceModel& model, const HoleOptions& options, P
   DUBSAR_TRY(model.partitions.check_complete(model.quad_partition, "holes", "an x-quad"));
   model.patches.clear();
   progress.begin("fill holes", 0, "vertex");
-  DUBSAR_ASSIGN(const FaceGraph graph, FaceGraph::build(model.mesh, progress));
   DUBSAR_ASSIGN(HoleReport report, HoleFiller(model, graph, options, progress).run());
   DUBSAR_TRY(measure_partitions(model));
   report.watertight = true;

@@ -6,6 +6,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/parts/face_graph.h"
 #include "core/parts/loop_fill.h"
 #include "core/parts/surface_model.h"
 
@@ -30,5 +31,8 @@ struct HoleReport {
 /// closed says so in `watertight`, and the log says why. kBadData: the model is not segmented or contradicts
 /// itself; kCancelled. Deterministic for any thread count. Cost: see fill_loop().
 Result<HoleReport> fill_holes(SurfaceModel& model, const HoleOptions& options, Progress& progress);
+/// The same with the graph of the model's faces.
+Result<HoleReport> fill_holes(SurfaceModel& model, const FaceGraph& graph, const HoleOptions& options,
+                              Progress& progress);
 
 }  // namespace dubsar

@@ -1,4 +1,4 @@
-#include <cmath>
+#include <array>
 #include <glm/geometric.hpp>
 
 #include "core/base/parallel.h"
@@ -7,33 +7,70 @@
 
 namespace dubsar {
 
-MeshMeasure measure_mesh(const TriMesh& mesh) {
-  if (mesh.positions.empty()) return {};
-  struct Sums {
-    double area = 0.0, volume = 0.0;
-  };
+namespace {
+
+struct Sums {
+  double area = 0.0, volume = 0.0;
+};
+using SumsOfParts = std::array<Sums, std::size_t{PartitionTable::kHighest} + 1>;
+
+/// Area and signed volume of the triangles of each partition.
+SumsOfParts sum_parts(const TriMesh& mesh) {
   const glm::dvec3 step_mm = mesh.frame.grid_voxel_mm();
   const glm::dvec3 origin(mesh.positions.front());  // near the surface, so that the volume does not cancel
-  const auto sums = parallel_reduce<Sums>(
+  SumsOfParts sums = parallel_reduce<SumsOfParts>(
       static_cast<std::int64_t>(mesh.triangles.size()), 1 << 16, {},
       [&](std::int64_t begin, std::int64_t end) {
-        Sums s;
-        for (std::int64_t t = begin; t < end; ++t) {
-          const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
+        SumsOfParts part{};
+        for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
+          const Triangle& triangle = mesh.triangles[t];
           const auto corner = [&](std::size_t c) {
             return (glm::dvec3(mesh.positions[triangle[c]]) - origin) * step_mm;
           };
           const glm::dvec3 a = corner(0), b = corner(1), c = corner(2);
+          Sums& s = part[mesh.partition_of(t)];
           s.area += 0.5 * glm::length(glm::cross(b - a, c - a));
           s.volume += glm::dot(a, glm::cross(b, c)) / 6.0;
         }
-        return s;
+        return part;
       },
-      [](Sums a, Sums b) {
-        return Sums{a.area + b.area, a.volume + b.volume};
+      [](SumsOfParts a, const SumsOfParts& b) {
+        for (std::size_t i = 0; i < a.size(); ++i) a[i] = {a[i].area + b[i].area, a[i].volume + b[i].volume};
+        return a;
       });
-  const double handedness = step_mm.x * step_mm.y * step_mm.z < 0.0 ? -1.0 : 1.0;
-  return {sums.area, handedness * sums.volume, check_mesh(mesh.positions, mesh.triangles).watertight()};
+  if (step_mm.x * step_mm.y * step_mm.z < 0.0)
+    for (Sums& s : sums) s.volume = -s.volume;
+  return sums;
+}
+
+}  // namespace
+
+MeshMeasure measure_mesh(const TriMesh& mesh) {
+  if (mesh.positions.empty()) return {};
+  MeshMeasure measure;
+  for (const Sums& s : sum_parts(mesh)) {
+    measure.area_mm2 += s.area;
+    measure.volume_mm3 += s.volume;
+  }
+  measure.watertight = check_mesh(mesh.positions, mesh.triangles).watertight();
+  return measure;
+}
+
+Result<void> measure_partitions(SurfaceModel& model) {
+  if (model.partitions.empty()) return {};
+  DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model, {.separate_partitions = true, .attributes = false}));
+  if (mesh.positions.empty()) {
+    for (std::size_t row = 0; row < model.partitions.size(); ++row)
+      model.partitions.measured(model.partitions[row].id, 0.0, 0.0, false);
+    return {};
+  }
+  const SumsOfParts sums = sum_parts(mesh);
+  const std::vector<bool> watertight = watertight_parts(mesh.positions, mesh.triangles, mesh.triangle_partition);
+  for (std::size_t row = 0; row < model.partitions.size(); ++row) {
+    const PartitionId id = model.partitions[row].id;
+    model.partitions.measured(id, sums[id].area, sums[id].volume, watertight[id]);
+  }
+  return {};
 }
 
 }  // namespace dubsar

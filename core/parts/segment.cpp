@@ -270,14 +270,17 @@ bool partition_by_roles(SurfaceModel& model, const FaceScene& scene, const Segme
 }
 
 Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options, Progress& progress) {
+  DUBSAR_ASSIGN(const FaceGraph graph, FaceGraph::build(model.mesh, progress));
+  return segment(model, graph, options, progress);
+}
+
+Result<SegmentReport> segment(SurfaceModel& model, const FaceGraph& graph, const SegmentOptions& options,
+                              Progress& progress) {
+  const bool looks = options.method == SegmentMethod::kNested || options.method == SegmentMethod::kConcavity;
   SegmentReport report;
   progress.begin("segment", 3, "step");
-  FaceScene scene;
-  if (options.method == SegmentMethod::kNested || options.method == SegmentMethod::kConcavity) {
-    DUBSAR_ASSIGN(scene, observe_faces(model, options, progress));
-  } else {
-    DUBSAR_ASSIGN(scene.graph, FaceGraph::build(model.mesh, progress));
-  }
+  DUBSAR_ASSIGN(const FaceScene scene,
+                looks ? observe_faces(model, graph, options, progress) : Result<FaceScene>(FaceScene{.graph = graph}));
   progress.advance(1);
   const FaceComponents whole = find_components(model, scene, std::vector<std::uint8_t>(scene.graph.faces(), 0));
   report.components = static_cast<std::int64_t>(whole.info.size());

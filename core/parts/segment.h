@@ -8,6 +8,7 @@
 #include "core/base/enum_names.h"
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/parts/face_graph.h"
 #include "core/parts/surface_model.h"
 
 namespace dubsar {
@@ -52,5 +53,8 @@ struct SegmentReport {
 /// without them). Deterministic for any thread count. kCancelled. Cost: about 1.5 us a face on one core; memory about
 /// 150 bytes a face and 2 bits a grid point.
 Result<SegmentReport> segment(SurfaceModel& model, const SegmentOptions& options, Progress& progress);
+/// The same with the graph of the model's faces; keeps none of it.
+Result<SegmentReport> segment(SurfaceModel& model, const FaceGraph& graph, const SegmentOptions& options,
+                              Progress& progress);
 
 }  // namespace dubsar

@@ -71,7 +71,8 @@ Result<Selection> select(const SurfaceModel& model, const MeshOptions& options) 
   bool found = !options.body;
   for (std::size_t id = 0; id < count; ++id) {
     const bool wanted = !options.body || (!partitions.empty() && partitions[id].body_name() == *options.body);
-    if (wanted) selection.group[id] = partitions.body_of(static_cast<PartitionId>(id));
+    const auto partition = static_cast<PartitionId>(id);
+    if (wanted) selection.group[id] = options.separate_partitions ? partition : partitions.body_of(partition);
     found = found || wanted;
   }
   if (!found)
@@ -173,7 +174,7 @@ Numbering number_vertices(const TriangleSoup& soup, std::size_t first_copy, cons
 
 /// Positions and attributes of the output vertices.
 void fill_vertices(const SurfaceModel& model, const TriangleSoup& soup, const Numbering& numbering,
-                   const VertexAttributes& added, TriMesh& out) {
+                   const VertexAttributes& added, bool attributes, TriMesh& out) {
   const std::size_t dual = model.mesh.positions.size();
   const auto gather = [&](const auto& from, const auto& from_added, auto& to) {
     to.resize(numbering.source.size());
@@ -185,17 +186,20 @@ void fill_vertices(const SurfaceModel& model, const TriangleSoup& soup, const Nu
   };
   gather(model.mesh.positions, soup.added, out.positions);
   for_each_attribute([&](const auto& a) {
-    if (const auto& values = model.attributes.*a.values; !values.empty())
-      gather(values, added.*a.values, out.*a.values);
+    const auto& values = model.attributes.*a.values;
+    if (!values.empty() && attributes) gather(values, added.*a.values, out.*a.values);
   });
 }
 
-/// One TriMesh from triangles that were made before, so that several selections share the triangulation.
-Result<TriMesh> assemble(const SurfaceModel& model, Triangulation triangulation, const MeshOptions& options,
-                         std::vector<std::uint32_t>* source = nullptr) {
+}  // namespace
+
+Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& options,
+                              std::vector<std::uint32_t>* source) {
+  DUBSAR_TRY(check_model(model));
+  DUBSAR_TRY(check_size(model.mesh));
   DUBSAR_ASSIGN(const Selection selection, select(model, options));
   TriangleSoup soup;
-  add_quads(model, selection, std::move(triangulation), soup);
+  add_quads(model, selection, triangulate(model.mesh, model.attributes.normals), soup);
   soup.first_patch_triangle = soup.triangles.size();
   soup.first_patch_vertex = model.mesh.positions.size() + soup.added.size();
   if (options.fill_holes) add_patches(model, selection, soup);
@@ -203,13 +207,13 @@ Result<TriMesh> assemble(const SurfaceModel& model, Triangulation triangulation,
   const std::size_t first_copy = model.mesh.positions.size() + soup.added.size();
   if (first_copy > (std::size_t{1} << 31))
     return fail(ErrorKind::kTryAgain, "surface_model: {} vertices found, expected at most 2^31", first_copy);
-  const VertexAttributes added = attributes_of_added(model, soup);
+  const VertexAttributes added = options.attributes ? attributes_of_added(model, soup) : VertexAttributes{};
   const std::vector<std::uint32_t> copies =
       split_fans(soup, find_border(model, selection), static_cast<std::uint32_t>(first_copy));
   const Numbering numbering = number_vertices(soup, first_copy, copies);
 
   TriMesh out;
-  fill_vertices(model, soup, numbering, added, out);
+  fill_vertices(model, soup, numbering, added, options.attributes, out);
   for (Triangle& t : soup.triangles)
     for (std::uint32_t& v : t) v = numbering.new_id[v];
   out.triangles = std::move(soup.triangles);
@@ -229,28 +233,6 @@ Result<TriMesh> assemble(const SurfaceModel& model, Triangulation triangulation,
     if (selection.group[partition.id] != kNotSelected) DUBSAR_TRY(out.partitions.insert(partition));
   out.provenance = model.provenance;
   return out;
-}
-
-}  // namespace
-
-Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& options,
-                              std::vector<std::uint32_t>* source) {
-  DUBSAR_TRY(check_model(model));
-  DUBSAR_TRY(check_size(model.mesh));
-  return assemble(model, triangulate(model.mesh, model.attributes.normals), options, source);
-}
-
-Result<void> measure_partitions(SurfaceModel& model) {
-  DUBSAR_TRY(check_model(model));
-  DUBSAR_TRY(check_size(model.mesh));
-  const Triangulation triangulation = triangulate(model.mesh, model.attributes.normals);
-  for (std::size_t row = 0; row < model.partitions.size(); ++row) {
-    const PartitionId id = model.partitions[row].id;
-    DUBSAR_ASSIGN(const TriMesh mesh, assemble(model, triangulation, {.partition = id}));
-    const MeshMeasure measure = measure_mesh(mesh);
-    model.partitions.measured(id, measure.area_mm2, measure.volume_mm3, measure.watertight);
-  }
-  return {};
 }
 
 }  // namespace dubsar

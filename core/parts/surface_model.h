@@ -41,6 +41,8 @@ struct MeshOptions {
   std::optional<PartitionId> partition = std::nullopt;  ///< only this one
   std::optional<std::string> body = std::nullopt;       ///< only the partitions of this body, e.g. "envelope"
   bool fill_holes = true;                               ///< add the fill patches
+  bool separate_partitions = false;                     ///< those of one body do not stay joined
+  bool attributes = true;                               ///< of vertices; false: positions only
 };
 
 /// The triangle mesh of a model (curvature-guided diagonals, docs/manifold.md). Bodies are separate: vertices
@@ -63,7 +65,7 @@ struct MeshMeasure {
 MeshMeasure measure_mesh(const TriMesh& mesh);
 
 /// Fills area, volume and watertight of every partition of the model, each measured alone with its fill patches.
-/// Cost: one make_tri_mesh and one check_mesh per partition.
+/// Cost: one make_tri_mesh and one check_mesh.
 Result<void> measure_partitions(SurfaceModel& model);
 
 }  // namespace dubsar

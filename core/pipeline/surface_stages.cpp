@@ -48,11 +48,12 @@ Result<SettledModel> settle(SurfaceModel model, const SettleOptions& options, St
 Result<SeparatedModel> separate(SurfaceModel model, const SegmentOptions& options, bool fill, StageRun run) {
   SeparatedModel separated{std::move(model), {}, std::nullopt};
   run.clock.start("segment", "face");
-  DUBSAR_ASSIGN(separated.segment, segment(separated.model, options, run.progress));
+  DUBSAR_ASSIGN(const FaceGraph graph, FaceGraph::build(separated.model.mesh, run.progress));
+  DUBSAR_ASSIGN(separated.segment, segment(separated.model, graph, options, run.progress));
   run.clock.finish(separated.model.mesh.quad_count());
   run.clock.start("fill_holes", "triangle");
   if (fill) {
-    DUBSAR_ASSIGN(separated.holes, fill_holes(separated.model, HoleOptions{}, run.progress));
+    DUBSAR_ASSIGN(separated.holes, fill_holes(separated.model, graph, HoleOptions{}, run.progress));
     settle_patches(separated.model.patches, separated.model.mesh.vertex_count());
   } else {
     DUBSAR_TRY(measure_partitions(separated.model));

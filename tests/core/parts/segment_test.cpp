@@ -147,7 +147,8 @@ TEST(Segment, AWallThatReachesBeyondTheShellIsNoWallOfACavity) {
   };
   SurfaceModel model = scene::extract_model(scene.dims, scene);
   SilentProgress progress;
-  const FaceScene seen = observe_faces(model, {}, progress).value();
+  const FaceGraph graph = FaceGraph::build(model.mesh, progress).value();
+  const FaceScene seen = observe_faces(model, graph, {}, progress).value();
   const auto roles = [&](bool with_piece) {
     std::vector<FaceRole> result;
     for (std::uint32_t q = 0; q < model.mesh.quads.size(); ++q) {
