@@ -9,7 +9,7 @@ jobs=${JOBS:-$(nproc)}
 packages=(
   g++ cmake ninja-build pkg-config git ca-certificates
   libfmt-dev libexpected-dev libglm-dev nlohmann-json3-dev libcli11-dev libhwy-dev
-  libhdf5-dev hdf5-plugin-lzf hdf5-filter-plugin libtiff-dev libpng-dev libjpeg-dev zlib1g-dev libdeflate-dev
+  libmeshoptimizer-dev libhdf5-dev hdf5-plugin-lzf hdf5-filter-plugin libtiff-dev libpng-dev libjpeg-dev zlib1g-dev libdeflate-dev
   libembree-dev libglfw3-dev libepoxy-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri
   libimgui-dev fonts-dejavu-core
   libhidapi-dev libusb-1.0-0-dev
@@ -143,7 +143,7 @@ tsan() {
 bench() {
   deps
   if [ "${1:-}" = exa ]; then
-    (deps libdraco-dev libmeshoptimizer-dev libzstd-dev) || echo "do: going on without Draco and meshoptimizer beside it" >&2
+    (deps libdraco-dev libzstd-dev) || echo "do: going on without Draco and meshoptimizer beside it" >&2
     build_target --target dubsar exa_bench
     local folder=$build/bench-exa passes
     mkdir -p "$folder"

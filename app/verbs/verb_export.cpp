@@ -78,6 +78,8 @@ Verb add_export_verb(Arguments program) {
                             "mm, or vox: coordinates of the input volume; GLB is always in metres, 3MF in mm");
   command.value("--style", options->style,
                 "colours of the vertices as a picture in this style shows them, as of render");
+  command.flag("--compress", options->write.compress,
+               "GLB for the web: quantised to 1/16 grid step, EXT_meshopt_compression");
   command.flag("--no-fill-holes", options->no_holes, "leave out the patches that close the parts");
   command.flag("--simplify", options->simplify,
                "fewer triangles where the surface is flat (adaptive vertex clustering)");

@@ -30,6 +30,10 @@ Result<void> write_obj(const std::filesystem::path& path, const TriMesh& mesh, c
 /// glTF 2.0 binary: triangle meshes in the node tree, uncompressed, not sparse, all data in the file.
 Result<TriMesh> parse_glb(std::string_view bytes, Progress& progress);
 /// One named node, mesh and primitive per partition below a root node that turns millimetres, z up, into metres, y up.
+/// For the web: KHR_mesh_quantization and EXT_meshopt_compression. All parts share one grid of 1/16 grid step (coarser
+/// where 16 bits do not reach), so that what mates still does. Normals of 8 bits.
+Result<void> write_compressed_glb(const std::filesystem::path& path, const TriMesh& mesh,
+                                  const MeshWriteOptions& options, Progress& progress);
 Result<void> write_glb(const std::filesystem::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
                        Progress& progress);
 

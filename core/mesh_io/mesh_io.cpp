@@ -78,6 +78,8 @@ Result<MeshFormat> mesh_format_from_path(const std::filesystem::path& path) {
 Result<void> write_mesh(const std::filesystem::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
                         Progress& progress) {
   DUBSAR_ASSIGN(const MeshFormat format, mesh_format_from_path(path));
+  if (options.compress && format != MeshFormat::kGlb)
+    return fail(ErrorKind::kUsage, "{}: only GLB can be compressed; give a name that ends in .glb", path.string());
   return row(format).write(path, mesh, options, progress);
 }
 
