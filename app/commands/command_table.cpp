@@ -25,7 +25,8 @@ std::pair<std::string_view, std::string> split_command(std::string_view text) {
 
 CommandTable CommandTable::standard(const std::vector<std::string>& styles) {
   CommandTable out;
-  for (std::vector<Command>& part : std::array{window_commands(), view_commands(), look_commands(styles)})
+  for (std::vector<Command>& part : std::array{window_commands(), view_commands(), look_commands(styles),
+                                               mark_commands(), section_commands(), film_commands()})
     for (Command& command : part) out.add(std::move(command));
   return out;
 }
@@ -65,6 +66,7 @@ Result<void> CommandTable::run(std::string_view text, Editor& editor) const {
   const Command& command = *find(name);
   if (command.enabled && !command.enabled(editor))
     return fail(ErrorKind::kUsage, "{}: there is nothing to do it to now", name);
+  if (name != "close") editor.desk().leaving = false;
   return command.run(editor, argument);
 }
 

@@ -10,6 +10,12 @@ void Editor::change(Document next, std::string_view words, Way way) {
   history_.change(std::move(next), std::string(words), merge_);
 }
 
+bool Editor::has_work() const {
+  const Document& now = document();
+  return now.measures != opened_.measures || now.notes != opened_.notes || now.keyframes != opened_.keyframes ||
+         now.clips != opened_.clips;
+}
+
 bool Editor::undo() {
   way_ = Way::kGlide;
   return history_.undo();

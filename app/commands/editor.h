@@ -4,11 +4,20 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "app/document/history.h"
 #include "core/base/result.h"
 
 namespace dubsar::app {
+
+/// A place on the surface, in mm of the scan.
+struct SurfacePin {
+  glm::dvec3 at_mm{0.0}, normal{0.0, 0.0, 1.0};
+  std::string part{};  ///< that it lies on; empty: none of them
+  std::string side{};  ///< that looks its way: "obverse" ...
+  friend bool operator==(const SurfacePin&, const SurfacePin&) = default;
+};
 
 /// What a session can do besides changing its document. A window has one, tests have another.
 class Workplace {
@@ -22,6 +31,24 @@ class Workplace {
   virtual bool toggle_source(std::size_t index) = 0;  ///< false: there is no such source
   virtual void say(std::string words) = 0;            ///< one line over the picture, for some seconds
   virtual void end() = 0;
+
+  /// The place of the surface that is nearest to a point.
+  virtual Result<SurfacePin> pin(const glm::dvec3& at_mm) = 0;
+  /// What comes of a measure's points.
+  virtual Result<MeasureFigures> figures(const Measure& measure) = 0;
+  /// How far the surface reaches along a direction of the home view (right, up, to the viewer), and which direction of
+  /// the scan that is.
+  struct Reach {
+    glm::dvec3 direction{0.0, 0.0, 1.0};
+    double from_mm = 0.0, to_mm = 0.0;
+  };
+  virtual Reach reach(const glm::dvec3& home_direction) = 0;
+  /// The direction of the scan towards the viewer, as things stand.
+  virtual Reach reach_to_viewer() = 0;
+  /// What is seen as a picture, `factor` times as large as in the window. Says where it is.
+  virtual Result<void> picture(const std::string& path, int factor) = 0;
+  /// Shows the document's film from its beginning, or stops it.
+  virtual Result<void> play_film() = 0;
 };
 
 /// How a view that a command changed is gone to.
@@ -34,7 +61,12 @@ enum class Way {
 struct Desk {
   bool help = false;
   bool panels = false;
-  std::string drawer{};  ///< of the panels; empty: none is open
+  bool palette = false;               ///< all commands by typing
+  bool leaving = false;               ///< asked whether to end with work in it
+  std::string drawer{};               ///< of the panels; empty: none is open
+  std::string tool{"turn"};           ///< what a click does
+  std::vector<SurfacePin> pending{};  ///< places that the tool was told and still waits with
+  std::size_t note = 0;               ///< which is open, counted from 1; 0: none
   friend bool operator==(const Desk&, const Desk&) = default;
 };
 
@@ -48,7 +80,7 @@ struct StepFigures {
 class Editor {
  public:
   Editor(Document first, Workplace& place, const StepFigures& steps = {})
-      : history_(std::move(first)), place_(&place), steps_(steps) {}
+      : opened_(first), history_(std::move(first)), place_(&place), steps_(steps) {}
 
   const Document& document() const noexcept { return history_.now(); }
   const History& history() const noexcept { return history_; }
@@ -63,10 +95,15 @@ class Editor {
   void merge_with(std::uint64_t merge) noexcept { merge_ = merge; }
   bool undo();
   bool redo();
+  /// As it was when the session began.
+  const Document& opened() const noexcept { return opened_; }
+  /// Measures, notes, keyframes or cuts were made, changed or taken away in this session.
+  bool has_work() const;
   /// How the view of the last change is gone to.
   Way way() const noexcept { return way_; }
 
  private:
+  Document opened_;
   History history_;
   Workplace* place_;
   StepFigures steps_;

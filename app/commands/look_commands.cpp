@@ -87,6 +87,57 @@ Command occlusion() {
   return out;
 }
 
+Command evidence() {
+  Command out{"evidence", "Style", "mark what the scan does not show, or not", {{"e"}}};
+  out.run = [why = out.words](Editor& editor, const std::string&) -> Result<void> {
+    Document next = editor.document();
+    next.style.evidence = !next.style.evidence;
+    editor.change(std::move(next), why);
+    return {};
+  };
+  return out;
+}
+
+Command strength() {
+  Command out{"strength", "Style", "how strong a style's colours are, in percent", {}};
+  out.argument = "0 to 200";
+  out.values = {"0", "100", "200"};
+  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+    DUBSAR_ASSIGN(const double percent, number_argument("strength", text, 0.0, 200.0));
+    Document next = editor.document();
+    next.style.strength = 0.01 * percent;
+    editor.change(std::move(next), why);
+    return {};
+  };
+  return out;
+}
+
+/// The part of this name or number. kUsage.
+Result<Part*> part_of(std::string_view command, Document& document, const std::string& wanted) {
+  for (Part& each : document.parts)
+    if (each.name == wanted) return &each;
+  DUBSAR_ASSIGN(const std::size_t at, place_argument(command, wanted, document.parts.size()));
+  return &document.parts[at];
+}
+
+Command part_opacity() {
+  Command out{"part_opacity", "Parts", "how much of a part one sees, in percent", {}};
+  out.argument = "its number or name, and 0 to 100";
+  out.values = {"1 50", "1 100"};
+  out.enabled = [](const Editor& editor) { return !editor.document().parts.empty(); };
+  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+    const std::size_t space = std::min(text.rfind(' '), text.size());
+    DUBSAR_ASSIGN(const double percent,
+                  number_argument("part_opacity", text.substr(std::min(space + 1, text.size())), 0.0, 100.0));
+    Document next = editor.document();
+    DUBSAR_ASSIGN(Part* const which, part_of("part_opacity", next, text.substr(0, space)));
+    which->opacity = 0.01 * percent;
+    editor.change(std::move(next), why);
+    return {};
+  };
+  return out;
+}
+
 Command part() {
   Command out{"part", "Parts", "a part on or off", {}};
   out.argument = "its number or name";
@@ -152,7 +203,10 @@ std::vector<Command> look_commands(const std::vector<std::string>& styles) {
   if (!styles.empty()) out.push_back(style(styles));
   if (!styles.empty()) out.push_back(next_style(styles));
   out.push_back(occlusion());
+  out.push_back(evidence());
+  out.push_back(strength());
   out.push_back(part());
+  out.push_back(part_opacity());
   out.push_back(all_parts());
   out.push_back(unpack("unpack", "how far the envelope is lifted, in percent", 0.0, {}));
   out.push_back(unpack("unpack_more", "lift the envelope", kUnpackStep, {{"u"}}));

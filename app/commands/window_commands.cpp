@@ -1,6 +1,7 @@
 // Commands for the window and what it is connected to. They change no document and are not undone.
 
 #include "app/commands/command_table.h"
+#include "app/commands/number_argument.h"
 
 namespace dubsar::app {
 namespace {
@@ -33,8 +34,9 @@ Command toggle_source() {
 Command drawer() {
   Command out{"drawer", std::string(kWindowGroup), "panel", {}};
   out.argument = "a panel";
-  out.values = {"parts", "light", "style"};
-  out.keys = {{"p", "parts"}, {"l", "light"}, {"t", "style"}};
+  out.values = {"parts", "light", "style", "measures", "notes", "cuts", "film"};
+  out.keys = {{"p", "parts"},       {"l", "light"}, {"t", "style"},     {"m", "measures"},
+              {"shift+n", "notes"}, {"c", "cuts"},  {"shift+k", "film"}};
   out.closed = true;
   out.run = [](Editor& editor, const std::string& name) -> Result<void> {
     Desk& desk = editor.desk();
@@ -43,6 +45,45 @@ Command drawer() {
     return {};
   };
   return out;
+}
+
+Command picture() {
+  Command out{"picture", std::string(kWindowGroup), "write what is seen into a file", {{"f12"}}};
+  out.argument = "FILE.png or FILE.tif, and how many times the window's size";
+  out.optional = true;
+  out.run = [](Editor& editor, const std::string& text) -> Result<void> {
+    const std::size_t space = text.rfind(' ');
+    std::string path = text;
+    int factor = 1;
+    if (space != std::string::npos) {  // a name with spaces is one as long as no number stands behind it
+      const auto number = number_argument("picture", text.substr(space + 1), 1.0, 16.0);
+      if (number) {
+        factor = static_cast<int>(*number);
+        path = text.substr(0, space);
+      }
+    }
+    return editor.place().picture(path, factor);
+  };
+  return out;
+}
+
+/// What was opened last goes first; a session with work in it asks.
+Result<void> close(Editor& editor) {
+  Desk& desk = editor.desk();
+  if (desk.help) {
+    desk.help = false;
+  } else if (desk.palette) {
+    desk.palette = false;
+  } else if (desk.tool != "turn") {
+    desk.tool = "turn";
+    desk.pending.clear();
+  } else if (editor.has_work() && !desk.leaving) {
+    desk.leaving = true;
+    editor.place().say("Esc again: end. What you measured and noted is kept, and here again next time.");
+  } else {
+    editor.place().end();
+  }
+  return {};
 }
 
 }  // namespace
@@ -76,11 +117,12 @@ std::vector<Command> window_commands() {
   }));
   out.push_back(plain("fullscreen", "whole monitor, and back", {{"f11"}},
                       [](Editor& editor) { return editor.place().toggle_fullscreen(); }));
-  out.push_back(plain("close", "close this help, or end", {{"escape"}}, [](Editor& editor) -> Result<void> {
-    if (!editor.desk().help) editor.place().end();
-    editor.desk().help = false;
+  out.push_back(plain("palette", "all commands, by typing", {{"ctrl+k"}}, [](Editor& editor) -> Result<void> {
+    editor.desk().palette = !editor.desk().palette;
     return {};
   }));
+  out.push_back(picture());
+  out.push_back(plain("close", "close what is open, lay down the tool, or end", {{"escape"}}, close));
   return out;
 }
 

@@ -31,8 +31,6 @@ struct StyleChoice {
   double strength = 1.0;        ///< of its colours: 0 none, 1 as designed, 2 twice
   bool occlusion = true;        ///< hollows are darker
   bool evidence = true;         ///< what the scan does not show is hatched
-  std::string second{};         ///< a style that is mixed in; empty: none
-  double mix = 0.0;             ///< how much of `second`, 0..1
   friend bool operator==(const StyleChoice&, const StyleChoice&) = default;
 };
 
@@ -45,6 +43,7 @@ struct Cut {
 };
 
 struct Note {
+  std::string part;   ///< that it is pinned to; empty: none of them
   std::string label;  ///< as editions count: "o. 5", "r. 3"; may be empty
   std::string text;
   glm::dvec3 at_mm{0.0}, normal{0.0, 0.0, 1.0};  ///< where it is pinned to the surface

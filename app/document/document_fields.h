@@ -32,8 +32,6 @@ void fields(auto& f, StyleChoice& v) {
   f("strength", v.strength);
   f("occlusion", v.occlusion);
   f("evidence", v.evidence);
-  f("second", v.second);
-  f("mix", v.mix);
 }
 void fields(auto& f, Cut& v) {
   f("normal", v.normal);
@@ -50,10 +48,12 @@ void fields(auto& f, MeasureFigures& v) {
 void fields(auto& f, Measure& v) {
   f("kind", v.kind);
   f("name", v.name);
+  f("part", v.part);
   f("points_mm", v.points_mm);
   f("figures", v.figures);
 }
 void fields(auto& f, Note& v) {
+  f("part", v.part);
   f("label", v.label);
   f("text", v.text);
   f("at_mm", v.at_mm);

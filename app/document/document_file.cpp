@@ -29,7 +29,6 @@ std::string complaint_about(const Document& d) {
     if (slice.axis < 0 || slice.axis > 3 || slice.normal == glm::dvec3(0.0))
       return fmt::format("axis is {}, expected 0 to 3 and a direction", slice.axis);
   if (!(d.fog >= 0 && d.fog <= 1)) return fmt::format("fog is {}, expected 0 to 1", d.fog);
-  if (!(d.style.mix >= 0 && d.style.mix <= 1)) return fmt::format("style.mix is {}, expected 0 to 1", d.style.mix);
   for (const Measure& measure : d.measures)
     if (measure.points_mm.size() != points_of(measure.kind))
       return fmt::format("{} of {} places found, expected {}", measure_kind_name(measure.kind),
@@ -108,6 +107,13 @@ Result<void> Autosave::keep(TimestampNs now, const Document& document) {
   DUBSAR_TRY(save_document(file_, document));
   written_ = document;
   return {};
+}
+
+Result<void> Autosave::leave(const Document& document) {
+  if (file_.empty()) return {};
+  std::error_code error;
+  std::filesystem::create_directories(file_.parent_path(), error);
+  return save_document(file_, document);
 }
 
 void Autosave::discard() {

@@ -30,13 +30,15 @@ class Autosave {
 
   /// An empty path: nothing is kept.
   explicit Autosave(std::filesystem::path file) : file_(std::move(file)) {}
-  /// What an earlier session of the same surface left behind when it was killed; none after an orderly end.
+  /// What an earlier session of the same surface left behind when it was killed; or left behind in order.
   /// kBadData for a file that cannot be read or is of another surface; it is left where it is.
   Result<Document> left_behind(const SourceFile& source) const;
   bool has_left_behind() const;
 
   /// Writes when the document differs from what was written and ten seconds have passed since then.
   Result<void> keep(TimestampNs now, const Document& document);
+  /// An orderly end of a session with work in it: the next one finds it.
+  Result<void> leave(const Document& document);
   /// An orderly end: nothing is left behind.
   void discard();
 

@@ -37,6 +37,7 @@ struct MeasureFigures {
 struct Measure {
   MeasureKind kind = MeasureKind::kDistance;
   std::string name;                   ///< "wedge head"; may be empty
+  std::string part;                   ///< that the first place lies on; empty: none
   std::vector<glm::dvec3> points_mm;  ///< on the surface, in the frame of the scan
   MeasureFigures figures;
   friend bool operator==(const Measure&, const Measure&) = default;

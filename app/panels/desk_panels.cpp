@@ -4,64 +4,24 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
 
 #include "app/commands/sides.h"
+#include "app/panels/palette.h"
+#include "app/panels/panel_kit.h"
 
 namespace dubsar::app {
 namespace {
 
-// One accent and warm neutrals; text stands out 7:1 from the panels.
-constexpr ImU32 kAccent = IM_COL32(0xd9, 0xa4, 0x41, 0xff), kDim = IM_COL32(0x9a, 0x96, 0x8e, 0xff),
-                kText = IM_COL32(0xe8, 0xe4, 0xdc, 0xff), kLine = IM_COL32(0x3a, 0x3b, 0x3f, 0xff);
-constexpr float kTop = 32.0f, kStrip = 48.0f, kTab = 74.0f, kDrawer = 236.0f, kGap = 8.0f, kBall = 110.0f;
-constexpr float kFaint = 0.33f;
-constexpr double kLowestDeg = 5.0, kHighestDeg = 85.0;
 constexpr double kLongestBarPx = 150.0;
-constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
-                                    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBringToFrontOnFocus;
-
-struct Board {
-  const PanelState& state;
-  const KeyTable& keys;
-  std::vector<std::string>& commands;
-  float width, height;
-};
-
-/// What a thing does and which key does the same, while the pointer rests on
-/// it.
-void explain(const Board& desk, const std::string& command) {
-  if (!ImGui::IsItemHovered()) return;
-  const auto [name, argument] = split_command(command);
-  const Command* const known = desk.keys.commands().find(name);
-  if (known == nullptr) return;
-  std::string text = argument.empty() ? known->words : fmt::format("{}: {}", known->words, argument);
-  const auto keys = desk.keys.keys_for(command);
-  if (!keys.empty()) text += "    " + keys.front();
-  ImGui::SetTooltip("%s", text.c_str());
-}
-
-bool button(const Board& desk, const char* label, const std::string& command, bool active, bool enabled = true) {
-  ImGui::BeginDisabled(!enabled);
-  if (active) ImGui::PushStyleColor(ImGuiCol_Text, kAccent);
-  const bool pressed = ImGui::Button(label);
-  if (active) ImGui::PopStyleColor();
-  ImGui::EndDisabled();
-  explain(desk, command);
-  if (pressed) desk.commands.push_back(command);
-  return pressed;
-}
+constexpr float kFaint = 0.33f;
+constexpr float kToolsWidth = 82.0f;
 
 void begin(const char* name, float x, float y, float width, float height) {
   ImGui::SetNextWindowPos(ImVec2(x, y));
   ImGui::SetNextWindowSize(ImVec2(width, height));
   ImGui::Begin(name, nullptr, kFixed);
-}
-
-float button_width(const char* label) {
-  return ImGui::CalcTextSize(label).x + 2.0f * ImGui::GetStyle().FramePadding.x + ImGui::GetStyle().ItemSpacing.x;
 }
 
 void draw_line(const Board& desk) {
@@ -123,65 +83,19 @@ void draw_strip(const Board& desk) {
   ImGui::End();
 }
 
-void draw_parts(const Board& desk) {
-  for (std::size_t i = 0; i < desk.state.parts.size(); ++i) {
-    const Part& part = desk.state.parts[i];
-    bool visible = part.visible;
-    if (ImGui::Checkbox(part.name.c_str(), &visible)) desk.commands.push_back(fmt::format("part {}", i + 1));
-    explain(desk, fmt::format("part {}", i + 1));
-  }
-  button(desk, "all parts", "all_parts", false);
-}
-
-/// A ball seen from the front: the light stands where it is touched, low at its
-/// rim.
-void draw_light(const Board& desk) {
-  const ImVec2 corner = ImGui::GetCursorScreenPos();
-  ImGui::InvisibleButton("ball", ImVec2(kBall, kBall));
-  const ImVec2 middle(corner.x + 0.5f * kBall, corner.y + 0.5f * kBall);
-  const float radius = 0.5f * kBall - 4.0f;
-  constexpr double kRad = std::numbers::pi / 180.0;
-  if (ImGui::IsItemActive()) {
-    const ImVec2 at = ImGui::GetIO().MousePos;
-    const double x = (at.x - middle.x) / radius, y = (middle.y - at.y) / radius;
-    const double azimuth = std::fmod(std::atan2(x, y) / kRad + 360.0, 360.0);
-    const double elevation = std::clamp(std::acos(std::min(1.0, std::hypot(x, y))) / kRad, kLowestDeg, kHighestDeg);
-    if (std::abs(azimuth - desk.state.light.azimuth_deg) > 0.05 ||
-        std::abs(elevation - desk.state.light.elevation_deg) > 0.05)
-      desk.commands.push_back(fmt::format("light {:.1f},{:.1f}", azimuth, elevation));
-  }
-  ImDrawList* const draw = ImGui::GetWindowDrawList();
-  draw->AddCircleFilled(middle, radius, IM_COL32(0x2b, 0x2d, 0x31, 0xff), 48);
-  draw->AddCircle(middle, radius, kLine, 48, 1.5f);
-  const double low = std::cos(desk.state.light.elevation_deg * kRad), azimuth = desk.state.light.azimuth_deg * kRad;
-  const ImVec2 light(middle.x + radius * static_cast<float>(low * std::sin(azimuth)),
-                     middle.y - radius * static_cast<float>(low * std::cos(azimuth)));
-  draw->AddLine(light, middle, kLine, 1.5f);
-  draw->AddCircleFilled(light, 6.0f, kAccent, 24);
-  ImGui::TextColored(ImColor(kDim), "%.0f° round, %.0f° high", desk.state.light.azimuth_deg,
-                     desk.state.light.elevation_deg);
-  constexpr std::array<std::array<const char*, 2>, 8> kPresets{{{"upper left", "upper_left"},
-                                                                {"top", "top"},
-                                                                {"upper right", "upper_right"},
-                                                                {"left", "left"},
-                                                                {"right", "right"},
-                                                                {"lower left", "lower_left"},
-                                                                {"bottom", "bottom"},
-                                                                {"lower right", "lower_right"}}};
-  for (std::size_t i = 0; i < kPresets.size(); ++i) {
-    if (i != 0 && i != 3 && i != 5) ImGui::SameLine();
-    button(desk, kPresets[i][0], std::string("light_from ") + kPresets[i][1], false);
-  }
-}
-
-void draw_styles(const Board& desk) {
-  if (const Command* const style = desk.keys.commands().find("style"))
-    for (const std::string& name : style->values) {
-      if (ImGui::RadioButton(name.c_str(), name == desk.state.style)) desk.commands.push_back("style " + name);
-    }
-  bool occlusion = desk.state.occlusion;
-  if (ImGui::Checkbox("dark hollows", &occlusion)) desk.commands.push_back("occlusion");
-  explain(desk, "occlusion");
+void draw_tools(const Board& desk) {
+  constexpr std::array<std::array<const char*, 2>, 7> kTools{{{"Turn", "turn"},
+                                                              {"Distance", "distance"},
+                                                              {"Angle", "angle"},
+                                                              {"Depth", "depth"},
+                                                              {"Profile", "profile"},
+                                                              {"Note", "note"},
+                                                              {"Line", "line"}}};
+  const float row = ImGui::GetFrameHeightWithSpacing();
+  begin("tools", 0.0f, kTop + kGap, kToolsWidth,
+        row * static_cast<float>(kTools.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
+  for (const auto& [label, name] : kTools) button(desk, label, std::string("tool ") + name, desk.state.tool == name);
+  ImGui::End();
 }
 
 void draw_drawers(const Board& desk) {
@@ -193,6 +107,10 @@ void draw_drawers(const Board& desk) {
   if (desk.state.parts.size() > 1) rows.push_back({"Parts", "parts", draw_parts});
   rows.push_back({"Light", "light", draw_light});
   rows.push_back({"Style", "style", draw_styles});
+  rows.push_back({"Measures", "measures", draw_measures});
+  rows.push_back({"Notes", "notes", draw_notes});
+  rows.push_back({"Cuts", "cuts", draw_cuts});
+  rows.push_back({"Film", "film", draw_film});
   const float row = ImGui::GetFrameHeightWithSpacing();
   begin("drawers", desk.width - kTab, kTop + kGap, kTab,
         row * static_cast<float>(rows.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
@@ -238,9 +156,15 @@ void draw_panels(const PanelState& state, const KeyTable& keys, float width, flo
   ImGui::PushStyleVar(ImGuiStyleVar_FrameRounding, 3.0f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(16.0f, 16.0f));
-  draw_line(desk);
-  draw_strip(desk);
-  draw_drawers(desk);
+  if (state.panels) {
+    draw_line(desk);
+    draw_tools(desk);
+    draw_strip(desk);
+    draw_drawers(desk);
+  }
+  ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1.0f);
+  draw_palette(state.palette, keys, width, height, commands);
+  ImGui::PopStyleVar();
   ImGui::PopStyleVar(5);
   ImGui::PopStyleColor(12);
 }

@@ -1,7 +1,6 @@
 #pragma once
-// What stands around the surface in a window: a line above it, the strip of
-// sides below it, and drawers at its right for parts, light and style. Panels
-// never change anything: they post commands.
+// What stands around the surface in a window: a line above it, tools at its left, the strip of sides below it, drawers
+// at its right, and all commands by typing. Panels never change anything: they post commands.
 
 #include <string>
 #include <vector>
@@ -14,18 +13,29 @@ namespace dubsar::app {
 /// All that panels show, as values.
 struct PanelState {
   std::string title, display;
-  std::string drawer;  ///< which is open: "parts", "light", "style"; empty: none
+  std::string drawer;  ///< which is open: "parts", "light" ...; empty: none
+  std::string tool;    ///< what a click does
   std::vector<Part> parts;
   bool can_unpack = false;
   double unpack = 0.0;
   LightPlace light;
   std::string style;
-  bool occlusion = true;
-  std::string undo, redo;  ///< what the next one is about; empty: there is none
-  std::string side;        ///< the one that faces the viewer
-  double mm_per_px = 0.0;  ///< of the object, in its middle, by pixels of the
-                           ///< layout; 0: no scale bar
-  bool faint = false;      ///< something moves: the surface owns the window
+  bool occlusion = true, evidence = true;
+  double strength = 1.0;
+  double measured_mm2 = 0.0, inferred_mm2 = 0.0;  ///< of the surface
+  std::vector<Measure> measures;
+  std::vector<Note> notes;
+  std::size_t note = 0;  ///< which is open, counted from 1; 0: none
+  std::size_t cuts = 0;
+  double fog = 0.0;
+  std::vector<double> keyframes_s;  ///< their times
+  bool playing = false;
+  bool panels = true, palette = false;  ///< which are shown
+  std::string undo, redo;               ///< what the next one is about; empty: there is none
+  std::string side;                     ///< the one that faces the viewer
+  double mm_per_px = 0.0;               ///< of the object, in its middle, by pixels of the
+                                        ///< layout; 0: no scale bar
+  bool faint = false;                   ///< something moves: the surface owns the window
   friend bool operator==(const PanelState&, const PanelState&) = default;
 };
 

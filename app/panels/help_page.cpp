@@ -50,6 +50,19 @@ HelpSection mouse_section(const MouseMapping& mouse) {
   return out;
 }
 
+constexpr std::size_t kMostValues = 7;
+
+/// "1", "2", "3" ... or "alt+1", "alt+2" ...
+bool is_row(const std::vector<std::string>& keys) {
+  if (keys.size() < 3) return false;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    std::string expected = keys.front();
+    expected.back() = static_cast<char>(expected.back() + i);
+    if (keys[i] != expected || keys[i].back() < '1' || keys[i].back() > '9') return false;
+  }
+  return true;
+}
+
 /// One line of a command that has keys: "left shift+left", or "1 to 6" where each says something else.
 void add_command(HelpSection& section, const Command& command, const KeyTable& keys) {
   std::vector<std::string> found = keys.keys_for(command.name);
@@ -59,8 +72,9 @@ void add_command(HelpSection& section, const Command& command, const KeyTable& k
       for (std::string& each : keys.keys_for(command.name + " " + key.argument)) told.push_back(std::move(each));
   std::string words = command.words;
   if (found.empty() && told.size() > 2) {
-    found = told.size() > 4 ? std::vector<std::string>{told.front() + " to " + told.back()} : told;
-    if (command.closed && command.values.size() <= 6) words += fmt::format(": {}", fmt::join(command.values, ", "));
+    found = is_row(told) ? std::vector<std::string>{told.front() + " to " + told.back()} : told;
+    if (command.closed && command.values.size() <= kMostValues)
+      words += fmt::format(": {}", fmt::join(command.values, ", "));
   } else {
     found.insert(found.end(), told.begin(), told.end());
   }

@@ -4,7 +4,9 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "app/panels/panel_font.h"
@@ -25,6 +27,26 @@ constexpr float kMargin = 12.0f;
 
 constexpr float kLineStepPx = kLinePx + 4.0f;
 constexpr float kLargest = 1.6f, kSmallest = 0.45f, kScaleStep = 0.05f;
+
+/// Keys that edit text, by their places in Dear ImGui's table, which are ours to choose.
+constexpr std::array<std::pair<std::string_view, ImGuiKey_>, 18> kEditKeys{{{"left", ImGuiKey_LeftArrow},
+                                                                            {"right", ImGuiKey_RightArrow},
+                                                                            {"up", ImGuiKey_UpArrow},
+                                                                            {"down", ImGuiKey_DownArrow},
+                                                                            {"page_up", ImGuiKey_PageUp},
+                                                                            {"page_down", ImGuiKey_PageDown},
+                                                                            {"home", ImGuiKey_Home},
+                                                                            {"end", ImGuiKey_End},
+                                                                            {"insert", ImGuiKey_Insert},
+                                                                            {"delete", ImGuiKey_Delete},
+                                                                            {"backspace", ImGuiKey_Backspace},
+                                                                            {"enter", ImGuiKey_Enter},
+                                                                            {"escape", ImGuiKey_Escape},
+                                                                            {"a", ImGuiKey_A},
+                                                                            {"c", ImGuiKey_C},
+                                                                            {"v", ImGuiKey_V},
+                                                                            {"x", ImGuiKey_X},
+                                                                            {"z", ImGuiKey_Z}}};
 
 struct Layout {
   float scale = kSmallest, column_width = 0.0f;
@@ -149,6 +171,8 @@ Result<std::unique_ptr<Overlay>> Overlay::create(const KeyTable& keys) {
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
   io.DeltaTime = 1.0f / 60.0f;
+  io.KeyRepeatDelay = 1e9f;  // the window's keyboard repeats
+  for (const auto& [name, key] : kEditKeys) io.KeyMap[key] = key;
   add_font(kFontPx);
   add_font(kPanelFontPx);
   ImGui::StyleColorsDark();
@@ -197,8 +221,45 @@ void Overlay::frame(const glm::dvec2& layout, const glm::dvec2& scale) {
   ImGui::Render();
 }
 
+namespace {
+/// What a key types; empty: nothing.
+std::string typed_by(const InputEvent& event) {
+  if ((event.modifiers & (kControl | kAlt)) != 0) return {};
+  if (event.key == "space") return " ";
+  const bool named = event.key.size() > 1 && static_cast<unsigned char>(event.key[0]) < 0x80;
+  if (named) return {};
+  const bool upper = (event.modifiers & kShift) != 0 && event.key[0] >= 'a' && event.key[0] <= 'z';
+  return upper ? std::string(1, static_cast<char>(event.key[0] - 'a' + 'A')) : event.key;
+}
+}  // namespace
+
+bool Overlay::take_key(const InputEvent& event, const glm::dvec2& layout) {
+  ImGuiIO& io = ImGui::GetIO();
+  const bool palette = text_.panels->palette;
+  if (!palette && !io.WantTextInput) return false;
+  const bool control = (event.modifiers & kControl) != 0;
+  if (palette && (event.key == "escape" || (control && event.key == "k"))) return false;  // they close it
+  const auto at =
+      std::find_if(kEditKeys.begin(), kEditKeys.end(), [&](const auto& row) { return row.first == event.key; });
+  io.KeyCtrl = control;
+  io.KeyShift = (event.modifiers & kShift) != 0;
+  if (event.down) {
+    const std::string typed = typed_by(event);
+    if (!typed.empty()) io.AddInputCharactersUTF8(typed.c_str());
+    if (at != kEditKeys.end() && io.KeysDown[at->second]) {  // held: it goes down again
+      io.KeysDown[at->second] = false;
+      frame(layout, scale_);
+    }
+  }
+  if (at != kEditKeys.end()) io.KeysDown[at->second] = event.down;
+  frame(layout, scale_);
+  return true;
+}
+
 bool Overlay::take(const InputEvent& event, const glm::dvec2& layout) {
-  if (!text_.panels || !text_.help.empty() || event.kind == EventKind::kKey || !event.at) return false;
+  if (!text_.panels || !text_.help.empty()) return false;
+  if (event.kind == EventKind::kKey) return take_key(event, layout);
+  if (!event.at) return false;
   ImGuiIO& io = ImGui::GetIO();
   const auto button = static_cast<std::size_t>(event.button);
   const bool releases_ours = event.kind == EventKind::kButton && !event.down && held_[button];

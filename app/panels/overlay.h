@@ -40,14 +40,15 @@ class Overlay final : public LayerPainter {
   /// Pixels of the layout for views of this size on a window of this shape.
   static glm::dvec2 layout(int view_height, const glm::dvec2& window_mm);
 
-  /// An event of the pointer, before the object sees it: true when a panel
-  /// takes it. `layout` as above.
+  /// An event, before the object sees it: true when a panel takes it. Keys are taken while something is typed.
+  /// `layout` as above.
   bool take(const InputEvent& event, const glm::dvec2& layout);
   /// What was asked for since the last call.
   std::vector<std::string> take_commands();
 
  private:
   explicit Overlay(const KeyTable& keys) : keys_(keys) {}
+  bool take_key(const InputEvent& event, const glm::dvec2& layout);
   void frame(const glm::dvec2& layout, const glm::dvec2& scale);
   void draw_all(float width, float height);
 

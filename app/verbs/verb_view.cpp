@@ -116,7 +116,7 @@ Result<ViewOptions> view_options(const Options& options) {
   view.stage.display = std::move(choice.display);
   view.stage.catalog = std::move(choice.catalog);
   DUBSAR_ASSIGN(view.stage.shading, shading_preset(options.style));
-  view.document.style.name = options.style;
+  view.document.style.name = view.stage.style = options.style;
   DUBSAR_ASSIGN(view.stage.direction, parse_view_direction(options.view));
   view.model_folder = model_folder();
   if (options.mapping.empty()) {
@@ -167,7 +167,9 @@ void keep_work(const Options& options, ViewOptions& view) {
   auto left = autosave.left_behind(source);
   if (!left) return log_warning("{}", left.error().message);
   view.document = *std::move(left);
-  log_info("view: the last session on this file ended early; its work is here again");
+  view.upright = false;
+  view.restored = true;
+  log_info("view: the work of the last session on this file is here again");
 }
 
 Result<void> with_window(const Options& options, ViewOptions& view) {
@@ -187,6 +189,7 @@ Result<void> with_window(const Options& options, ViewOptions& view) {
   view.notices = view.panels = options.frames.empty();
   if (view.panels) view.stage.margin = 0.12;  // room for the line above the surface and the strip below it
   view.title = std::filesystem::path(options.in).filename().string();
+  view.upright = options.view == "front";
   if (options.fps == 0) keep_work(options, view);
   DUBSAR_TRY(list_monitors());  // before a large file is read
   return {};

@@ -1,6 +1,10 @@
 #include "app/viewer/first_document.h"
 
 #include <algorithm>
+#include <glm/geometric.hpp>
+
+#include "app/viewer/surface_tools.h"
+#include "display/render/gpu_mesh.h"
 
 namespace dubsar::app {
 namespace {
@@ -26,13 +30,33 @@ Document first_document(const ViewOptions& options, const TriMesh& mesh) {
   const Light& light = options.stage.shading.light;
   if (out.home_light == LightPlace() && out.light == LightPlace())
     out.home_light = out.light = {light.azimuth_deg, light.elevation_deg};
+  if (options.upright) {
+    if (const auto packed = pack_mesh(mesh))
+      if (const auto turn = upright_turn(mesh, first_turn(packed->box_mm, options.stage.direction)))
+        out.home.rotation = out.now.rotation = *turn;
+  }
   return out;
 }
 
+glm::dmat3 first_turn(const Box& model, const ViewDirection& direction) {
+  const ObjectFrame frame = picture_frame(object_frame(model), direction);
+  return glm::transpose(glm::dmat3(frame.right, frame.up, frame.front));
+}
+
 Shown shown_of(const Document& document, const ViewState& view, const StageOptions& stage, const Box& model) {
-  Shown out{view, 1.0, stage.shading.style, stage.shading.parts};
-  if (document.style.name != Document().style.name)
-    if (const auto preset = shading_preset(document.style.name)) out.style = preset->style;
+  Shown out;
+  out.view = view;
+  out.style = stage.shading.style;
+  out.parts = stage.shading.parts;
+  if (document.style.name != stage.style)
+    if (const auto preset = shading_preset(document.style.name)) {
+      out.style = preset->style;
+      out.light = preset->light;
+    }
+  out.style.mark_inferred = out.style.mark_inferred && document.style.evidence;
+  out.fog.strength = document.fog;
+  for (const Cut& cut : document.clips)
+    if (cut.on) out.clips.push_back({cut.normal * cut.distance_mm / glm::dot(cut.normal, cut.normal), -cut.normal});
   out.style.contrast *= document.style.strength;
   out.style.ambient_occlusion = out.style.ambient_occlusion && document.style.occlusion;
   const double unpack = can_unpack(document) ? document.unpack : 0.0;
@@ -44,6 +68,7 @@ Shown shown_of(const Document& document, const ViewState& view, const StageOptio
       if ((part.partitions >> p & 1) == 0) continue;
       PartLook& look = out.parts[static_cast<std::size_t>(p)];
       look.visible = look.visible && part.visible;
+      look.opacity *= part.opacity;
       if (part.colour != Part().colour) look.color = part.colour;
       look.offset_mm = part.offset_mm + 0.5 * (part.name == "envelope" ? unpack : -unpack) * height * frame.up;
     }

@@ -1,5 +1,6 @@
 #include "app/viewer/picker.h"
 
+#include <algorithm>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -25,7 +26,13 @@ double meets(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b, const glm
 
 }  // namespace
 
-std::optional<Picked> pick(const TriMesh& mesh, const PartLooks& parts, const Ray& ray) {
+std::optional<Picked> pick(const TriMesh& mesh, const PartLooks& parts, const Ray& ray,
+                           std::span<const ClipPlane> clips) {
+  const auto kept = [&](double at) {
+    return std::all_of(clips.begin(), clips.end(), [&](const ClipPlane& clip) {
+      return glm::dot(clip.normal, ray.from + at * ray.direction - clip.point_mm) >= 0.0;
+    });
+  };
   const auto corner = [&](std::uint32_t v, const PartLook& part) {
     return mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[v])) + part.offset_mm;
   };
@@ -46,7 +53,7 @@ std::optional<Picked> pick(const TriMesh& mesh, const PartLooks& parts, const Ra
       const PartLook& part = part_of(i);
       if (!part.visible) continue;
       const double at = meets(ray, corner(t[0], part), corner(t[1], part), corner(t[2], part));
-      if (at < mine) {
+      if (at < mine && kept(at)) {
         mine = at;
         found = i;
       }

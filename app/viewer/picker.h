@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 
 #include "core/mesh/tri_mesh.h"
 #include "display/render/shading.h"
@@ -19,7 +20,9 @@ struct Picked {
 };
 
 /// The nearest place where a ray meets the visible parts of the mesh, both in mm of the model; none: it passes by.
+/// What `clips` (of the model's frame) cut away is passed.
 /// Looks at every triangle, in all threads: some 10 ns each on one core, for clicks.
-std::optional<Picked> pick(const TriMesh& mesh, const PartLooks& parts, const Ray& ray);
+std::optional<Picked> pick(const TriMesh& mesh, const PartLooks& parts, const Ray& ray,
+                           std::span<const ClipPlane> clips = {});
 
 }  // namespace dubsar::app

@@ -4,11 +4,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "app/viewer/stage_parts.h"
 #include "core/base/budget.h"
 #include "core/base/log.h"
-#include "display/render/lod_mesh.h"
-#include "display/render/multi_view.h"
-#include "display/render/renderer.h"
 #include "display/render/test_pattern.h"
 #include "display/render/view_array.h"
 #include "display/sinks/render_display.h"
@@ -17,10 +15,9 @@ namespace dubsar::app {
 namespace {
 
 constexpr std::uint64_t kBytesPerViewPixel = 4;
-constexpr double kEyeStepMm = 0.05;           // what an eye may move before there is a new picture
-constexpr TimestampNs kRestNs = 150'000'000;  // before coarse views are made exact
-constexpr double kMovingMs = 28.0;            // for 30 pictures a second
-constexpr double kForget = 0.3;               // of the mean time that a view takes
+constexpr double kEyeStepMm = 0.05;  // what an eye may move before there is a new picture
+constexpr double kMovingMs = 28.0;   // for 30 pictures a second
+constexpr double kForget = 0.3;      // of the mean time that a view takes
 
 double milliseconds_since(TimestampNs start) { return 1e-6 * static_cast<double>(SteadyClock().now() - start); }
 
@@ -48,87 +45,48 @@ glm::dmat4 screen_from_model(const Box& box, const ViewDirection& direction, con
   return moved * zoomed * glm::mat4_cast(view.rotation) * place_object(box, direction, {0, 0, 0}, magnification);
 }
 
-struct Stage::Parts {
-  StageOptions options;
-  Box box;
-  std::optional<LodMesh> mesh;
-  std::optional<Renderer> renderer;  // kExact
-  std::optional<MultiView> multi;    // kAdaptive
-  std::unique_ptr<OutputSink> sink;
-  std::optional<ViewArray> array, overlaid;
-  LayerPainter* overlay = nullptr;
-  bool overlay_changed = false;
-  glm::dvec2 window{0.0}, middle{0.0};  // size and middle of what is shown of the panel's plane, mm
-  glm::dvec3 aside_mm{0.0};             // from the panel's middle to where the eyes are thought to be level with
-  double magnification = 1.0;
-  Shown shown;  // of the next picture
-  TimestampNs now = 0, moved_at = 0, prepared_at = 0;
-  Viewer viewer;
-  std::optional<std::pair<Shown, Viewer>> painted;
-  std::vector<View> views;       // painted
-  std::vector<DrawItem> items;   // painted
-  std::vector<ClipPlane> clips;  // painted
-  Light light;                   // painted
-  std::vector<int> chosen;       // without a mesh: what each layer shows; empty: nothing yet
-  int coarse = 0;
-  double exact_view_ms = 0.0;  // what one exact view takes; 0: not known yet
-
-  explicit Parts(const StageOptions& given) : options(given) {}
-  Result<void> prepare(OutputSink& next);
-  Viewer viewer_at(const FollowedEyes& eyes) const;
-  glm::dmat4 placed() const {
-    return app::screen_from_model(box, options.direction, shown.view, magnification * shown.fit, window.y, middle);
-  }
-  bool moved() const noexcept;
-  SceneView scene() const { return {items, light, clips, options.shading.background, options.shading.fog}; }
-  bool has_mesh() const noexcept { return !options.pattern && !options.pictures; }
-  Result<void> fill_layers();
-  Result<void> paint_moved();
-  Result<void> refine();
-  bool may_refine() const noexcept { return coarse > 0 && mesh->has_exact() && now - moved_at >= kRestNs; }
-  void took(double ms, std::size_t count);
-};
-
 /// Configures a sink and makes the layers for it; nothing changes when that fails.
-Result<void> Stage::Parts::prepare(OutputSink& next) {
-  DUBSAR_TRY(next.configure(options.screen));
-  const SinkTraits traits = next.traits();
+Result<void> Stage::Parts::prepare(OutputSink& with) {
+  DUBSAR_TRY(with.configure(options.screen));
+  const SinkTraits traits = with.traits();
   if (traits.stereo_visual && !options.stereo_window)
     return fail(ErrorKind::kUnavailable, "display {}: needs a window with a stereo visual", traits.name);
   DUBSAR_TRY(check_memory("display", kBytesPerViewPixel * static_cast<std::uint64_t>(traits.view.width) *
                                          static_cast<std::uint64_t>(traits.view.height) *
                                          static_cast<std::uint64_t>(traits.views)));
-  DUBSAR_ASSIGN(ViewArray layers, ViewArray::create(traits.view.width, traits.view.height, traits.views));
-  chosen.clear();
-  if (array) exact_view_ms *= static_cast<double>(layers.width()) * layers.height() / array->width() / array->height();
-  array = std::move(layers);
-  overlaid.reset();
-  painted.reset();
-  coarse = 0;
-  prepared_at = now;
-  const ShownRect rect = shown_mm(next.views(Viewer())[0]);
-  window = rect.size;
-  middle = rect.middle;
+  DUBSAR_ASSIGN(ViewArray made, ViewArray::create(traits.view.width, traits.view.height, traits.views));
+  layers.chosen.clear();
+  if (const auto& before = layers.array)
+    cost.exact_view_ms *= static_cast<double>(made.width()) * made.height() / before->width() / before->height();
+  layers.array = std::move(made);
+  layers.overlaid.reset();
+  painted.of.reset();
+  cost.coarse = 0;
+  cost.prepared_at = next.now;
+  const ShownRect rect = shown_mm(with.views(Viewer())[0]);
+  plane.window = rect.size;
+  plane.middle = rect.middle;
   // A window on a plain monitor is looked at straight; before a panel of lenses people are where the panel wants them.
-  aside_mm = traits.exact_pixels ? glm::dvec3(0.0) : glm::dvec3(middle, 0.0);
+  plane.aside_mm = traits.exact_pixels ? glm::dvec3(0.0) : glm::dvec3(plane.middle, 0.0);
   // The longest edge fits both ways, so that every side of the object does.
-  const glm::dvec3 size = box.size();
-  magnification = options.magnification > 0 ? options.magnification
-                                            : (1.0 - 2.0 * options.margin) * std::min(window.x, window.y) /
-                                                  std::max({size.x, size.y, size.z, 1e-9});
+  const glm::dvec3 size = object.box.size();
+  plane.magnification = options.magnification > 0 ? options.magnification
+                                                  : (1.0 - 2.0 * options.margin) * std::min(rect.size.x, rect.size.y) /
+                                                        std::max({size.x, size.y, size.z, 1e-9});
   return {};
 }
 
 Viewer Stage::Parts::viewer_at(const FollowedEyes& eyes) const {
   Viewer out = options.viewer;
-  out.left_mm += aside_mm;
-  out.right_mm += aside_mm;
-  out.nominal_mm += aside_mm;
+  out.left_mm += plane.aside_mm;
+  out.right_mm += plane.aside_mm;
+  out.nominal_mm += plane.aside_mm;
   if (eyes.presence != Presence::kOff) {
     out.left_mm = 1e3 * eyes.left_m;
     out.right_mm = 1e3 * eyes.right_m;
   }
-  const double half_depth = 0.51 * magnification * shown.fit * shown.view.zoom * glm::length(box.size()) + 1.0;
+  const double half_depth =
+      0.51 * plane.magnification * next.shown.fit * next.shown.view.zoom * glm::length(object.box.size()) + 1.0;
   out.front_mm = half_depth;
   out.back_mm = -half_depth;
   return out;
@@ -147,16 +105,18 @@ Result<std::unique_ptr<Stage>> Stage::create(const TriMesh& mesh, const StageOpt
   if (has_mesh && packed.triangles_of(visible_partitions(options.shading.parts)) == 0)
     return fail(ErrorKind::kUsage, "view: none of the partitions asked for has triangles, so there is nothing to draw");
   auto parts = std::make_unique<Parts>(options);
-  parts->shown = {{}, 1.0, options.shading.style, options.shading.parts};
-  if (has_mesh) parts->box = packed.box_of(visible_partitions(options.shading.parts));
+  parts->next.shown.style = options.shading.style;
+  parts->next.shown.parts = options.shading.parts;
+  Parts::Object& object = parts->object;
+  if (has_mesh) object.box = packed.box_of(visible_partitions(options.shading.parts));
   if (!has_mesh) {
     // nothing to draw
   } else if (options.quality == Quality::kAdaptive) {
-    DUBSAR_ASSIGN(parts->mesh, LodMesh::growing(std::move(packed)));
-    DUBSAR_ASSIGN(parts->multi, MultiView::create({.budget_ms = kMovingMs}));
+    DUBSAR_ASSIGN(object.mesh, LodMesh::growing(std::move(packed)));
+    DUBSAR_ASSIGN(object.multi, MultiView::create({.budget_ms = kMovingMs}));
   } else {
-    DUBSAR_ASSIGN(parts->mesh, LodMesh::exact(packed));
-    DUBSAR_ASSIGN(parts->renderer, Renderer::create());
+    DUBSAR_ASSIGN(object.mesh, LodMesh::exact(packed));
+    DUBSAR_ASSIGN(object.renderer, Renderer::create());
   }
   parts->sink = std::move(sink);
   if (!parts->sink) {
@@ -175,11 +135,11 @@ Result<void> Stage::swap_eyes() {
 }
 
 SinkTraits Stage::traits() const { return parts_->sink->traits(); }
-glm::dvec3 Stage::rest_m() const { return 1e-3 * (parts_->options.viewer.centre_mm() + parts_->aside_mm); }
-const Viewer& Stage::viewer() const noexcept { return parts_->viewer; }
-glm::dvec2 Stage::window_mm() const noexcept { return parts_->window; }
-const Box& Stage::box_mm() const noexcept { return parts_->box; }
-glm::dvec2 Stage::middle_mm() const noexcept { return parts_->middle; }
+glm::dvec3 Stage::rest_m() const { return 1e-3 * (parts_->options.viewer.centre_mm() + parts_->plane.aside_mm); }
+const Viewer& Stage::viewer() const noexcept { return parts_->next.viewer; }
+glm::dvec2 Stage::window_mm() const noexcept { return parts_->plane.window; }
+const Box& Stage::box_mm() const noexcept { return parts_->object.box; }
+glm::dvec2 Stage::middle_mm() const noexcept { return parts_->plane.middle; }
 
 glm::dmat4 Stage::screen_from_model() const { return parts_->placed(); }
 
@@ -202,88 +162,91 @@ Result<void> Stage::set_screen(const Screen& screen) {
 }
 
 bool Stage::Parts::moved() const noexcept {
-  if (!painted || !(painted->first == shown) || painted->second.swap_eyes != viewer.swap_eyes) return true;
-  return glm::distance(painted->second.left_mm, viewer.left_mm) > kEyeStepMm ||
-         glm::distance(painted->second.right_mm, viewer.right_mm) > kEyeStepMm;
+  if (!painted.of || !(painted.of->first == next.shown) || painted.of->second.swap_eyes != next.viewer.swap_eyes)
+    return true;
+  return glm::distance(painted.of->second.left_mm, next.viewer.left_mm) > kEyeStepMm ||
+         glm::distance(painted.of->second.right_mm, next.viewer.right_mm) > kEyeStepMm;
 }
 
 void Stage::show(const Shown& shown, const FollowedEyes& eyes, TimestampNs now) {
-  if (parts_->mesh && !parts_->mesh->complete()) {
-    const auto updated = parts_->mesh->update();
+  auto& mesh = parts_->object.mesh;
+  if (mesh && !mesh->complete()) {
+    const auto updated = mesh->update();
     if (!updated) log_warning("view: {}; it stays coarse", updated.error().message);
   }
-  parts_->shown = shown;
-  parts_->now = now;
-  parts_->viewer = parts_->viewer_at(eyes);
+  parts_->next.shown = shown;
+  parts_->next.now = now;
+  parts_->next.viewer = parts_->viewer_at(eyes);
 }
 
 bool Stage::moved() const noexcept { return parts_->moved(); }
-void Stage::repaint() { parts_->painted.reset(); }
+void Stage::repaint() { parts_->painted.of.reset(); }
 
 bool Stage::needs_paint() const noexcept {
   const Parts& p = *parts_;
-  return p.overlay_changed || p.moved() || p.may_refine();
+  return p.layers.overlay_changed || p.moved() || p.may_refine();
 }
 
 void Stage::Parts::took(double ms, std::size_t count) {
   const double each = ms / static_cast<double>(std::max<std::size_t>(count, 1));
-  exact_view_ms = exact_view_ms == 0.0 ? each : (1.0 - kForget) * exact_view_ms + kForget * each;
+  cost.exact_view_ms = cost.exact_view_ms == 0.0 ? each : (1.0 - kForget) * cost.exact_view_ms + kForget * each;
 }
 
-/// Pictures that exist already, where another one is wanted than is there.
-Result<void> Stage::Parts::fill_layers() {
-  const SinkTraits traits = sink->traits();
-  chosen.resize(static_cast<std::size_t>(traits.views), -1);
-  for (int layer = 0; layer < traits.views; ++layer) {
-    int& there = chosen[static_cast<std::size_t>(layer)];
-    const bool swapped = viewer.swap_eyes && traits.views == 2;
-    const int wanted = options.pictures ? picture_for_layer(*options.pictures, traits, layer, viewer)
-                       : swapped        ? 1 - layer
-                                        : layer;
-    if (std::exchange(there, wanted) == wanted) continue;
-    DUBSAR_TRY(array->write_layer(
-        layer, options.pictures ? layer_of_picture(options.pictures->views[static_cast<std::size_t>(wanted)],
-                                                   options.pictures->aspect, traits, layer)
-                                : numbered_view(traits.view.width, traits.view.height, wanted, traits.views)));
+/// The scene of the next picture, in mm of the screen.
+void Stage::Parts::set_scene() {
+  const Shown& shown = next.shown;
+  const glm::dmat4 world = placed();
+  const auto place = [&](glm::dvec3& p) { p = glm::dvec3(world * glm::dvec4(p, 1.0)); };
+  painted.light = shown.light.value_or(options.shading.light);
+  painted.light.azimuth_deg = shown.view.light_azimuth_deg;
+  painted.light.elevation_deg = shown.view.light_elevation_deg;
+  painted.fog = shown.fog.strength > 0 ? shown.fog : options.shading.fog;
+  painted.clips = dubsar::moved(options.shading.clips, world);
+  for (const ClipPlane& clip : dubsar::moved(shown.clips, world)) painted.clips.push_back(clip);
+  painted.items = {MeshItem{&*object.mesh, world, shown.style, shown.parts}};
+  for (LinesItem lines : shown.marks.lines) {
+    for (glm::dvec3& p : lines.points_mm) place(p);
+    painted.items.emplace_back(std::move(lines));
   }
-  return {};
+  for (LabelItem label : shown.marks.labels) {
+    label.along_mm = glm::dmat3(world) * label.along_mm;
+    place(label.at_mm);
+    painted.items.emplace_back(std::move(label));
+  }
 }
 
 /// New cameras: exact views where there is time for them.
 Result<void> Stage::Parts::paint_moved() {
-  light = options.shading.light;
-  light.azimuth_deg = shown.view.light_azimuth_deg;
-  light.elevation_deg = shown.view.light_elevation_deg;
-  const std::span<const View> wanted = sink->views(viewer);
-  views.assign(wanted.begin(), wanted.end());
-  painted = {shown, viewer};
-  moved_at = now;
-  coarse = 0;
+  const std::span<const View> wanted = sink->views(next.viewer);
+  painted.views.assign(wanted.begin(), wanted.end());
+  painted.of = {next.shown, next.viewer};
+  painted.moved_at = next.now;
+  cost.coarse = 0;
   if (!has_mesh()) return fill_layers();
-  clips = dubsar::moved(options.shading.clips, placed());
-  items = {MeshItem{&*mesh, placed(), shown.style, shown.parts}};
-  if (!multi) return renderer->render(scene(), views, options.samples, *array);
+  set_scene();
+  ViewArray& array = *layers.array;
+  if (!object.multi) return object.renderer->render(scene(), painted.views, options.samples, array);
   // What is not known to be quick, and what another size may replace at once, is coarse first.
-  if (!mesh->has_exact() || exact_view_ms == 0.0 || now - prepared_at < kRestNs ||
-      exact_view_ms * static_cast<double>(views.size()) > options.budget_ms) {
-    coarse = static_cast<int>(views.size());
-    return multi->draw_moving(scene(), views, *array);
+  if (!object.mesh->has_exact() || cost.exact_view_ms == 0.0 || next.now - cost.prepared_at < kRestNs ||
+      cost.exact_view_ms * static_cast<double>(painted.views.size()) > options.budget_ms) {
+    cost.coarse = static_cast<int>(painted.views.size());
+    return object.multi->draw_moving(scene(), painted.views, array);
   }
   const TimestampNs start = SteadyClock().now();
-  DUBSAR_TRY(multi->draw_exact(scene(), views, options.samples, *array));
+  DUBSAR_TRY(object.multi->draw_exact(scene(), painted.views, options.samples, array));
   glFinish();  // what it takes is to be known, and input that comes in meanwhile shall not wait behind it
-  took(milliseconds_since(start), views.size());
+  took(milliseconds_since(start), painted.views.size());
   return {};
 }
 
 Result<void> Stage::Parts::refine() {
   const TimestampNs start = SteadyClock().now();
-  const int before = coarse;
+  const int before = cost.coarse;
   do {
-    DUBSAR_ASSIGN(coarse, multi->refine(scene(), views, options.samples, *array, 1));
+    DUBSAR_ASSIGN(cost.coarse, object.multi->refine(scene(), painted.views, options.samples, *layers.array, 1));
     glFinish();
-  } while (coarse > 0 && milliseconds_since(start) < options.budget_ms);
-  took(milliseconds_since(start), static_cast<std::size_t>(before - coarse));
+  } while (cost.coarse > 0 && milliseconds_since(start) < options.budget_ms);
+  took(milliseconds_since(start), static_cast<std::size_t>(before - cost.coarse));
   return {};
 }
 
@@ -294,25 +257,27 @@ Result<void> Stage::paint(const Surface& target, Field field) {
   } else if (p.may_refine()) {
     DUBSAR_TRY(p.refine());
   }
-  p.overlay_changed = false;
-  if (p.overlay == nullptr) return p.sink->compose(*p.array, target, field);
-  const ViewArray& array = *p.array;
-  if (!p.overlaid) {
-    DUBSAR_ASSIGN(p.overlaid, ViewArray::create(array.width(), array.height(), array.layers()));
+  Parts::Layers& layers = p.layers;
+  layers.overlay_changed = false;
+  if (layers.overlay == nullptr) return p.sink->compose(*layers.array, target, field);
+  const ViewArray& array = *layers.array;
+  if (!layers.overlaid) {
+    DUBSAR_ASSIGN(layers.overlaid, ViewArray::create(array.width(), array.height(), array.layers()));
   }
-  glCopyImageSubData(array.coded(), GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, p.overlaid->coded(), GL_TEXTURE_2D_ARRAY, 0, 0, 0,
-                     0, array.width(), array.height(), array.layers());
-  DUBSAR_TRY(p.overlay->paint(*p.overlaid, p.window));
-  return p.sink->compose(*p.overlaid, target, field);
+  glCopyImageSubData(array.coded(), GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, layers.overlaid->coded(), GL_TEXTURE_2D_ARRAY, 0,
+                     0, 0, 0, array.width(), array.height(), array.layers());
+  DUBSAR_TRY(layers.overlay->paint(*layers.overlaid, p.plane.window));
+  return p.sink->compose(*layers.overlaid, target, field);
 }
 
 std::optional<PanelLight> Stage::light() const { return parts_->sink->light(); }
-int Stage::coarse_views() const noexcept { return parts_->coarse; }
+int Stage::coarse_views() const noexcept { return parts_->cost.coarse; }
 
 void Stage::set_overlay(LayerPainter* painter) {
-  parts_->overlay_changed = parts_->overlay_changed || painter != nullptr || parts_->overlay != nullptr;
-  parts_->overlay = painter;
-  if (painter == nullptr) parts_->overlaid.reset();
+  Parts::Layers& layers = parts_->layers;
+  layers.overlay_changed = layers.overlay_changed || painter != nullptr || layers.overlay != nullptr;
+  layers.overlay = painter;
+  if (painter == nullptr) layers.overlaid.reset();
 }
 
 }  // namespace dubsar::app

@@ -7,10 +7,12 @@
 
 #include "core/base/clock.h"
 #include "core/base/result.h"
+#include "core/image_io/image.h"
 #include "core/mesh/tri_mesh.h"
 #include "display/optics/off_axis.h"
 #include "display/optics/optics.h"
 #include "display/render/camera.h"
+#include "display/render/scene.h"
 #include "display/render/shading.h"
 #include "display/sinks/sink_catalog.h"
 #include "display/sinks/view_pictures.h"
@@ -36,9 +38,10 @@ struct StageOptions {
   Screen screen{};  ///< without a window, what the sink does not know better
   Viewer viewer{};  ///< where the eyes are while no head is tracked
   Shading shading{};
-  ViewDirection direction{};  ///< the front of the home view
-  double margin = 0.08;       ///< free border around the object at zoom 1
-  int samples = 1;            ///< samples x samples a pixel
+  std::string style = "relief";  ///< the name of the shading's style and light
+  ViewDirection direction{};     ///< the front of the home view
+  double margin = 0.08;          ///< free border around the object at zoom 1
+  int samples = 1;               ///< samples x samples a pixel
   Quality quality = Quality::kExact;
   double budget_ms = 14.0;     ///< kAdaptive: for the views of one picture
   bool stereo_window = false;  ///< the target has a left and a right buffer
@@ -47,14 +50,26 @@ struct StageOptions {
   std::shared_ptr<const ViewPictures> pictures{};  ///< these in place of the mesh
 };
 
+/// What stands on and around the surface: measures, notes. In mm of the model.
+struct Marks {
+  std::vector<LinesItem> lines;
+  std::vector<LabelItem> labels;
+  bool operator==(const Marks&) const = default;
+};
+
 /// What a picture shows besides what the stage was made with.
 struct Shown {
   ViewState view{};
   double fit = 1.0;  ///< times the size that fits at zoom 1: parts that stand apart need more room
   Style style{};
   PartLooks parts{};
+  std::optional<Light> light{};    ///< but for its place, which is the view's; none: the stage's own
+  std::vector<ClipPlane> clips{};  ///< besides the stage's own; in the model's frame
+  Fog fog{};                       ///< none: the stage's own
+  Marks marks{};
   friend bool operator==(const Shown& a, const Shown& b) {
-    return a.view.rotation == b.view.rotation && a.view.zoom == b.view.zoom && a.view.pan == b.view.pan &&
+    return a.light == b.light && a.clips == b.clips && a.fog == b.fog && a.marks == b.marks &&
+           a.view.rotation == b.view.rotation && a.view.zoom == b.view.zoom && a.view.pan == b.view.pan &&
            a.view.light_azimuth_deg == b.view.light_azimuth_deg &&
            a.view.light_elevation_deg == b.view.light_elevation_deg && a.fit == b.fit && a.style == b.style &&
            a.parts == b.parts;
@@ -106,6 +121,10 @@ class Stage {
   /// Drawn over the views from the next paint() on; call it again when it looks different. Null: nothing. It outlives
   /// the stage or is taken away.
   void set_overlay(LayerPainter* painter);
+
+  /// The object as the next picture shows it, without what lies over it, at `factor` times the pixels of a view, exact;
+  /// seen from the middle of the eyes. kUsage: more than 16384 pixels on a side; kTryAgain.
+  Result<Image> still(int factor);
 
   /// Where the object stands that was shown last: from mm of the model to mm of the screen.
   glm::dmat4 screen_from_model() const;

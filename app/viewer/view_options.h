@@ -42,7 +42,9 @@ struct ViewOptions {
   std::string title{};               ///< what the panels call it
   bool notices = true;               ///< a line for some seconds: how to get help and leave, which display this is now
   std::vector<Command> commands{};   ///< in place of those that change what is looked at
-  std::filesystem::path autosave{};  ///< copy of the document while somebody works; empty: none
+  bool upright = false;              ///< the obverse stands upright at home, as its writing says
+  std::filesystem::path autosave{};  ///< copy of the document while somebody works and after it; empty: none
+  bool restored = false;             ///< the document is that of an earlier session
   SessionGuide* guide = nullptr;     ///< leads the session and says when it ends; null: nobody does. Outlives it
   MakeInput make_input = dubsar::make_input;
 };

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "app/commands/sides.h"
-#include "app/panels/state_page.h"
+#include "app/panels/panel_font.h"
 #include "app/viewer/first_document.h"
-#include "app/viewer/picker.h"
+#include "app/viewer/marks.h"
 #include "app/viewer/window_input.h"
 #include "app/viewer/window_place.h"
 #include "core/base/log.h"
@@ -14,7 +14,7 @@ namespace dubsar::app {
 namespace {
 
 constexpr TimestampNs kSecond = 1'000'000'000;
-constexpr TimestampNs kNoticeNs = 6 * kSecond, kFadeNs = kSecond, kHelpRefreshNs = kSecond / 2, kSettleNs = kSecond;
+constexpr TimestampNs kSettleNs = kSecond;
 constexpr std::uint64_t kKeySteps = std::uint64_t{1} << 63;  // told apart from movements
 constexpr std::uint64_t kGuideSteps = std::uint64_t{1} << 62;
 
@@ -45,23 +45,25 @@ Viewer::~Viewer() {
 
 Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& note) {
   const StageOptions& stage = given_.options.stage;
-  commands_ = std::make_unique<CommandTable>();
+  said_.commands = std::make_unique<CommandTable>();
   if (given_.options.commands.empty()) {
     std::vector<std::string> styles;
     for (const std::string_view name : shading_preset_names()) styles.emplace_back(name);
-    *commands_ = CommandTable::standard(styles);
+    *said_.commands = CommandTable::standard(styles);
   } else {
-    for (Command& command : window_commands()) commands_->add(std::move(command));
-    for (const Command& command : given_.options.commands) commands_->add(command);
+    for (Command& command : window_commands()) said_.commands->add(std::move(command));
+    for (const Command& command : given_.options.commands) said_.commands->add(command);
   }
-  DUBSAR_ASSIGN(KeyTable keys, KeyTable::create(*commands_, given_.options.mapping.keys));
-  keys_ = std::make_unique<KeyTable>(std::move(keys));
+  DUBSAR_ASSIGN(KeyTable keys, KeyTable::create(*said_.commands, given_.options.mapping.keys));
+  said_.keys = std::make_unique<KeyTable>(std::move(keys));
   const Mapping& mapping = given_.options.mapping;
   editor_ =
       std::make_unique<Editor>(first_document(given_.options, given_.mesh), *this,
                                StepFigures{mapping.key_step_deg, mapping.key_zoom, mapping.zoom_min, mapping.zoom_max});
   DUBSAR_ASSIGN(stage_, Stage::create(given_.mesh, stage, std::move(sink)));
-  DUBSAR_ASSIGN(overlay_, Overlay::create(*keys_));
+  DUBSAR_ASSIGN(tools_.font, LabelFont::create(panel_font()));
+  tools_.evidence = evidence_shares(given_.mesh);
+  DUBSAR_ASSIGN(overlay_, Overlay::create(*said_.keys));
   if (given_.options.displays.empty()) {
     displays_.specs = displays_for_window(stage.display, stage.screen, stage.stereo_window, stage.catalog->panels());
   } else {
@@ -80,7 +82,7 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
     log_warning("{}", note);
     say(note);
   } else {
-    say("F1: help    Esc: end");
+    say("Drag to turn. 1 to 6: sides. U: lift the envelope. Ctrl+K: everything. F1: help.");
   }
   if (given_.options.fps == 0) steering_->run(given_.clock);
   return {};
@@ -157,27 +159,16 @@ void Viewer::say(std::string text) {
   notice_ = {std::move(text), given_.clock.now()};
 }
 
-/// How far the surface at this place of the window stands before the object's centre, in heights of the window.
-std::optional<double> Viewer::lever_at(const glm::dvec2& at) const {
-  const glm::dvec2 window = stage_->window_mm();
-  const glm::dvec3 target(stage_->middle_mm() + at * window.y, 0.0), eye = stage_->viewer().centre_mm();
-  const glm::dmat4 model_from_screen = glm::inverse(stage_->screen_from_model());
-  const glm::dvec3 from(model_from_screen * glm::dvec4(eye, 1.0)), to(model_from_screen * glm::dvec4(target, 1.0));
-  const Shown shown = shown_of(document(), report_.view, given_.options.stage, stage_->box_mm());
-  const auto picked = pick(given_.mesh, shown.parts, {from, glm::normalize(to - from)});
-  if (!picked) return std::nullopt;
-  return glm::dvec4(stage_->screen_from_model() * glm::dvec4(picked->at_mm, 1.0)).z / window.y;
-}
-
 void Viewer::handle(InputEvent event) {
   if (given_.options.fps > 0) event.time = given_.clock.now();
   if (given_.options.guide != nullptr && given_.options.guide->takes(event, given_.clock.now())) return;
   if (overlay_->take(event, Overlay::layout(stage_->traits().view.height, stage_->window_mm()))) {
     stage_->set_overlay(overlay_.get());  // what the pointer is on looks different
-    if (event.kind == EventKind::kButton && event.down) ++at_.presses;
+    if ((event.kind == EventKind::kButton && event.down) || event.key == "enter") ++at_.presses;
     for (const std::string& command : overlay_->take_commands()) run(command, kKeySteps + at_.presses);
     return;
   }
+  if (take_click(event)) return;
   if (event.kind == EventKind::kButton && event.down && event.at && !given_.options.stage.pattern &&
       !given_.options.stage.pictures)
     event.lever = lever_at(*event.at);
@@ -186,7 +177,8 @@ void Viewer::handle(InputEvent event) {
     return row.spec == "keyboard" && row.health == SourceHealth::kPresent;
   });
   if (event.kind == EventKind::kKey && !keyboard) {  // whoever steers, a window can be closed and asked for help
-    const Command* const command = commands_->find(split_command(keys_->command_for(key_chord(event), *editor_)).first);
+    const Command* const command =
+        said_.commands->find(split_command(said_.keys->command_for(key_chord(event), *editor_)).first);
     if (command == nullptr || command->group != kWindowGroup) return;
     if (recorder_) recorder_->add_event(event);
     if (event.down) use_key(event);
@@ -196,20 +188,20 @@ void Viewer::handle(InputEvent event) {
 }
 
 void Viewer::use_key(const InputEvent& event) {
-  const std::string text = keys_->command_for(key_chord(event), *editor_);
+  const std::string text = said_.keys->command_for(key_chord(event), *editor_);
   if (text.empty()) return;
-  const Command& command = *commands_->find(split_command(text).first);
+  const Command& command = *said_.commands->find(split_command(text).first);
   if (event.repeat && !command.repeats) return;
   if (!event.repeat) ++at_.presses;
   run(text, kKeySteps + at_.presses);
 }
 
 void Viewer::run(std::string_view text, std::uint64_t merge) {
-  const Command* const command = commands_->find(split_command(text).first);
+  const Command* const command = said_.commands->find(split_command(text).first);
   if (command != nullptr && command->steers && !steering_->claim_for_keys(given_.clock.now())) return;
   keep_up();
   editor_->merge_with(merge);
-  auto done = commands_->run(text, *editor_);
+  auto done = said_.commands->run(text, *editor_);
   editor_->merge_with(0);
   if (!done) say(done.error().message);
   at_.help_made = -1;
@@ -234,62 +226,6 @@ void Viewer::follow() {
     steering_->go_to(view_of(document()), given_.clock.now(), editor_->way() == Way::kGlide);
 }
 
-PanelState Viewer::panel_state() const {
-  const Document& d = document();
-  PanelState out;
-  out.title = given_.options.title;
-  out.display = display();
-  out.drawer = desk().drawer;
-  out.parts = d.parts;
-  out.can_unpack = can_unpack(d);
-  out.unpack = d.unpack;
-  out.light = d.light;
-  out.style = d.style.name;
-  out.occlusion = d.style.occlusion;
-  out.undo = editor_->history().undo_words();
-  out.redo = editor_->history().redo_words();
-  out.side = kSideNames[static_cast<std::size_t>(facing_side(report_.view.rotation, d.home.rotation))];
-  const glm::dvec2 window = stage_->window_mm();
-  const double scale =
-      glm::length(glm::dvec3(stage_->screen_from_model()[0]));  // of the screen for one mm of the object
-  out.mm_per_px = window.y / (Overlay::layout(stage_->traits().view.height, window).y * scale);
-  out.faint = report_.control == Control::kMouse || report_.control == Control::kHands;
-  return out;
-}
-
-void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
-  OverlayText text = overlay_->text();
-  if (!desk().help) {
-    text.help.clear();
-  } else if (at_.help_made < 0 || now - at_.help_made >= kHelpRefreshNs) {
-    StateFigures state;
-    state.display = display();
-    state.traits = stage_->traits();
-    state.head = report_.head;
-    state.eyes_mm = report_.viewer.centre_mm();
-    state.interval_ms = figures.interval_ms;
-    state.input_age_ms = figures.input_age_ms;
-    state.sources = sources();
-    text.help = state_page(state);
-    for (HelpSection& section : help_page(given_.options.mapping, *keys_)) text.help.push_back(std::move(section));
-    at_.help_made = now;
-  }
-  text.gallery = at_.guidance.picture;
-  text.panels.reset();
-  if (desk().panels && !desk().help) text.panels = panel_state();
-  const TimestampNs age = now - notice_.since;
-  if (notice_.since < 0 || age >= kNoticeNs) {
-    text.notice.clear();
-    text.notice_opacity = 1.0;
-  } else {
-    text.notice = notice_.text;
-    text.notice_opacity = std::clamp(static_cast<double>(kNoticeNs - age) / static_cast<double>(kFadeNs), 0.0, 1.0);
-  }
-  if (text == overlay_->text()) return;
-  overlay_->set(std::move(text));
-  stage_->set_overlay(overlay_->text().empty() ? nullptr : overlay_.get());
-}
-
 /// Whoever leads the session sees how things stand and says what is to be done.
 void Viewer::lead(TimestampNs now, const Steered& steered) {
   SessionGuide* const guide = given_.options.guide;
@@ -312,8 +248,13 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
   Steered steered = steering_->look(now, display_time);
   lead(now, steered);
   steered.view.rotation = at_.guidance.turn * steered.view.rotation;
-  stage_->show(shown_of(document(), steered.view, given_.options.stage, stage_->box_mm()), steered.eyes, now);
-  report_.view = steered.view;
+  const bool film = at_.film_since >= 0;
+  const Document seen = film ? shown_document(now) : document();
+  const ViewState view = film ? view_of(seen) : steered.view;
+  Shown shown = shown_of(seen, view, given_.options.stage, stage_->box_mm());
+  shown.marks = marks_of(seen, desk(), shown.parts, *tools_.font);
+  stage_->show(shown, steered.eyes, now);
+  report_.view = view;
   report_.viewer = stage_->viewer();
   report_.head = steered.eyes.presence;
   report_.control = steered.control;
@@ -352,7 +293,11 @@ bool Viewer::over(TimestampNs now) {
 
 Result<void> Viewer::finish(bool orderly) {
   steering_->stop();
-  if (orderly) autosave_.discard();
+  const Document& d = document();
+  const bool made = !d.measures.empty() || !d.notes.empty() || !d.keyframes.empty() || !d.clips.empty() ||
+                    editor_->has_work() || given_.options.restored || d.home != editor_->opened().home;
+  if (orderly && made) DUBSAR_TRY(autosave_.leave(d));
+  if (orderly && !made) autosave_.discard();
   return recorder_ ? recorder_->finish() : Result<void>();
 }
 

@@ -8,9 +8,12 @@
 #include "app/commands/key_table.h"
 #include "app/document/document_file.h"
 #include "app/panels/overlay.h"
+#include "app/viewer/picker.h"
 #include "app/viewer/presenter.h"
 #include "app/viewer/session_guide.h"
 #include "app/viewer/steering.h"
+#include "app/viewer/surface_tools.h"
+#include "display/render/label_font.h"
 #include "input/input_recorder.h"
 #include "input/window_events.h"
 
@@ -71,6 +74,12 @@ class Viewer final : public Workplace {
   bool toggle_source(std::size_t index) override;
   void say(std::string words) override;
   void end() override { given_.presenter.end(); }
+  Result<SurfacePin> pin(const glm::dvec3& at_mm) override;
+  Result<MeasureFigures> figures(const Measure& measure) override;
+  Reach reach(const glm::dvec3& home_direction) override;
+  Reach reach_to_viewer() override;
+  Result<void> picture(const std::string& path, int factor) override;
+  Result<void> play_film() override;
 
  private:
   struct Given {
@@ -78,6 +87,10 @@ class Viewer final : public Workplace {
     const ViewOptions& options;
     Presenter& presenter;
     const Clock& clock;
+  };
+  struct Vocabulary {
+    std::unique_ptr<CommandTable> commands;
+    std::unique_ptr<KeyTable> keys;
   };
   struct Displays {
     std::vector<SinkSpec> specs;
@@ -90,27 +103,38 @@ class Viewer final : public Workplace {
   /// What the loop and the people do, as numbers.
   struct Progression {
     TimestampNs over_since = -1, help_made = -1;
+    TimestampNs film_since = -1;  ///< while a film is shown
     std::uint64_t presses = 0;
     Guidance guidance{};  ///< of whoever leads the session
     bool recording_failed = false;  // and told
+  };
+  /// What tools need, and what is known of the surface.
+  struct Tools {
+    std::unique_ptr<LabelFont> font;
+    EvidenceShares evidence;
+    std::optional<InputEvent> press;  ///< with a tool in the hand: it becomes a click, or a drag that turns
   };
   Viewer(const TriMesh& mesh, const ViewOptions& options, Presenter& presenter, const Clock& clock)
       : given_{mesh, options, presenter, clock} {}
   Result<void> open(std::unique_ptr<OutputSink> sink, const std::string& note);
   Result<void> start_sources();
   void use_key(const InputEvent& event);
+  void lead(TimestampNs now, const Steered& steered);
   PanelState panel_state() const;
   void keep_up();
   void follow();
   void update_overlay(TimestampNs now, const RecentFigures& figures);
   std::optional<double> lever_at(const glm::dvec2& at) const;
+  std::optional<Picked> picked_at(const glm::dvec2& at) const;
+  bool take_click(const InputEvent& event);
+  void click(const glm::dvec2& at);
+  Document shown_document(TimestampNs now);
+  Reach reach_of(const glm::dvec3& direction, const glm::dquat& rotation) const;
 
   Given given_;
-  void lead(TimestampNs now, const Steered& steered);
-
-  std::unique_ptr<CommandTable> commands_;
-  std::unique_ptr<KeyTable> keys_;
+  Vocabulary said_;
   std::unique_ptr<Editor> editor_;
+  Tools tools_;
   std::unique_ptr<Stage> stage_;
   std::unique_ptr<Overlay> overlay_;
   WindowEvents events_;

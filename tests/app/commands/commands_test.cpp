@@ -5,62 +5,10 @@
 #include <random>
 #include <set>
 
-#include "app/commands/key_table.h"
-#include "app/commands/sides.h"
+#include "tests/app/commands/bench.h"
 
 namespace dubsar::app {
 namespace {
-
-class FakePlace final : public Workplace {
- public:
-  Result<void> switch_display(int step) override {
-    display += step;
-    return {};
-  }
-  Result<void> toggle_fullscreen() override {
-    fullscreen = !fullscreen;
-    return {};
-  }
-  Result<void> swap_eyes() override {
-    swapped = !swapped;
-    return {};
-  }
-  void retry_sources() override { ++retries; }
-  void recentre_heads() override { ++recentred; }
-  bool toggle_source(std::size_t index) override {
-    toggled.push_back(index);
-    return index < 3;
-  }
-  void say(std::string words) override { said = std::move(words); }
-  void end() override { ended = true; }
-  int display = 0, retries = 0, recentred = 0;
-  bool fullscreen = false, swapped = false, ended = false;
-  std::vector<std::size_t> toggled;
-  std::string said;
-};
-
-const std::vector<std::string> kStyles{"relief", "phong", "sky-sun"};
-
-Document two_parts() {
-  Document out;
-  out.parts = {{"tablet", 1}, {"envelope", 6}};
-  return out;
-}
-
-struct Bench {
-  CommandTable commands = CommandTable::standard(kStyles);
-  FakePlace place;
-  Editor editor{two_parts(), place};
-  void run(std::string_view text) {
-    const auto done = commands.run(text, editor);
-    EXPECT_TRUE(done) << done.error().message;
-  }
-  std::string refusal(std::string_view text) {
-    const auto done = commands.run(text, editor);
-    return done ? "accepted" : done.error().message;
-  }
-  const Document& now() const { return editor.document(); }
-};
 
 double apart_deg(const glm::dquat& a, const glm::dquat& b) { return turn_between_deg(a, b); }
 
@@ -68,12 +16,8 @@ TEST(Commands, TwoHundredUndoAndRedoStepsThroughEveryCommandReturnTheSameDocumen
   const unsigned seed = std::random_device()();
   std::mt19937 random(seed);
   Bench bench;
-  std::vector<std::string> texts;
-  for (const Command& command : bench.commands.all()) {
-    if (command.name == "undo" || command.name == "redo") continue;
-    if (command.argument.empty() || command.optional) texts.push_back(command.name);
-    for (const std::string& value : command.values) texts.push_back(command.name + " " + value);
-  }
+  std::vector<std::string> texts = ways_to_say(bench.commands);
+  std::erase_if(texts, [](const std::string& text) { return text == "undo" || text == "redo"; });
   std::vector<Document> states{bench.now()};
   std::set<std::string> told;
   while (states.size() <= 200 || told.size() < texts.size()) {

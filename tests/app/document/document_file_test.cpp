@@ -29,13 +29,13 @@ Document rich(unsigned seed) {
   out.now = camera();
   out.home_light = {10, 20};
   out.light = {real(), real()};
-  out.style = {"sky-sun", 1.7, false, false, "phong", 0.25};
+  out.style = {"sky-sun", 1.7, false, false};
   out.clips = {{vector(), real(), false}};
   out.fog = 0.125;
-  out.measures = {{MeasureKind::kDistance, "wedge", {vector(), vector()}, {1.5, 2.25, 3, 4, {vector()}}},
-                  {MeasureKind::kDepth, "", {vector()}, {}}};
+  out.measures = {{MeasureKind::kDistance, "wedge", "tablet", {vector(), vector()}, {1.5, 2.25, 3, 4, {vector()}}},
+                  {MeasureKind::kDepth, "", "", {vector()}, {}}};
   out.notes = {
-      {"o. 5", "a-na \u1e2ba-x, \"\u02bes\u2082\"\nsecond line", vector(), vector(), {vector(), vector()}, camera()}};
+      {"tablet", "o. 5", "a-na \u1e2ba-x, \"\u02bes\u2082\"\nsecond line", vector(), vector(), {vector(), vector()}, camera()}};
   out.slices = {{1, {0, 0, 1}, real(), true}, {3, vector(), real(), false}};
   out.keyframes = {{1.5, camera(), {3, 4}, 0.5, "phong", {{"tablet", 0.5, vector()}}}, {}};
   return out;
@@ -95,17 +95,16 @@ TEST_F(DocumentFile, EveryTruncationMissingFieldAndWrongTypeIsRefusedInASentence
 TEST_F(DocumentFile, AnOlderVersionIsReadAndWhatItDidNotKnowIsAsUsual) {
   nlohmann::json old = nlohmann::json::parse(format_document(rich(11)));
   old["version"] = 1;
-  for (const char* unknown : {"second", "mix", "evidence"}) old["style"].erase(unknown);
-  for (auto& note : old["notes"]) note.erase("label"), note.erase("line_mm");
+  old["style"].erase("evidence");
+  for (auto& note : old["notes"]) note.erase("label"), note.erase("line_mm"), note.erase("part");
   old.erase("fog");
   const auto back = parse_document(old.dump(), "old");
   ASSERT_TRUE(back) << back.error().message;
   Document expected = rich(11);
-  expected.style.second.clear();
-  expected.style.mix = 0;
   expected.style.evidence = true;
   expected.fog = 0;
   expected.notes[0].label.clear();
+  expected.notes[0].part.clear();
   expected.notes[0].line_mm.clear();
   EXPECT_EQ(*back, expected);
 }

@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "app/panels/palette.h"
+
 namespace dubsar::app {
 namespace {
 
@@ -23,7 +27,11 @@ TEST(HelpPage, SaysWhatTheMappingSays) {
   EXPECT_EQ(find(page, "Mouse", "shift+left drag"), "move");
   EXPECT_EQ(find(page, "Mouse", "wheel"), "zoom");
   EXPECT_EQ(find(page, "Back", "backspace ctrl+z"), "undo");
-  EXPECT_EQ(find(page, "This window", "p l t"), "panel: parts, light, style");
+  EXPECT_EQ(find(page, "This window", "p l t m shift+n c shift+k"),
+            "panel: parts, light, style, measures, notes, cuts, film");
+  EXPECT_EQ(find(page, "Light", "alt+1 to alt+8"), "raking light from one of eight directions");
+  EXPECT_EQ(find(page, "Measures", "v d a w f n i"),
+            "what a click does: turn, distance, angle, depth, profile, note, line");
   EXPECT_EQ(find(page, "Sides", "1 to 6"), "turn to a side: obverse, bottom, reverse, top, left, right");
   EXPECT_EQ(find(page, "Hands", "pinch and move"), "move the light");
   EXPECT_EQ(find(page, "This window", "f1 ?"), "this help");
@@ -37,6 +45,32 @@ TEST(HelpPage, SaysWhatTheMappingSays) {
   EXPECT_EQ(find(museum, "Mouse", "wheel"), "");
   EXPECT_EQ(find(museum, "Hands", "pinch and move"), "");
   EXPECT_EQ(find(museum, "Back", "backspace ctrl+z"), "") << "the keyboard does not steer";
+}
+
+TEST(Palette, FindsCommandsByTheirWordsAndSaysTheirKeys) {
+  const CommandTable commands = CommandTable::standard({"relief", "raking"});
+  const KeyTable keys = KeyTable::create(commands).value();
+  const auto first = [&](std::string_view typed) {
+    const auto rows = palette_rows(keys, typed, 12);
+    return rows.empty() ? PaletteRow() : rows[0];
+  };
+  EXPECT_EQ(first("rev").text, "side reverse");
+  EXPECT_EQ(first("rev").key, "3");
+  EXPECT_EQ(first("style rak").text, "style raking");
+  EXPECT_EQ(first("WEDGE depth").text, "measure_depth");
+  EXPECT_FALSE(first("measure_depth").ready) << "its place has to be told";
+  EXPECT_EQ(first("measure_depth 1,2,3").text, "measure_depth 1,2,3") << "as it was typed";
+  EXPECT_EQ(first("unpack 37").text, "unpack 37");
+  EXPECT_TRUE(palette_rows(keys, "xyzzy", 12).empty());
+  EXPECT_EQ(palette_rows(keys, "", 12).size(), 12u);
+  std::size_t found = 0;  // nothing is left out
+  for (const Command& command : commands.all()) {
+    if (command.name == "palette") continue;
+    const auto rows = palette_rows(keys, command.name, 100);
+    found += std::any_of(rows.begin(), rows.end(),
+                         [&](const PaletteRow& row) { return split_command(row.text).first == command.name; });
+  }
+  EXPECT_EQ(found, commands.all().size() - 1);
 }
 
 }  // namespace

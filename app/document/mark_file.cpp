@@ -1,0 +1,139 @@
+#include "app/document/mark_file.h"
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "core/base/atomic_file.h"
+#include "core/base/json_text.h"
+
+namespace dubsar::app {
+namespace {
+namespace fs = std::filesystem;
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr std::string_view kAnnotationContext = "http://www.w3.org/ns/anno.jsonld";
+
+ordered_json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+ordered_json path_json(const std::vector<glm::dvec3>& points) {
+  ordered_json out = ordered_json::array();
+  for (const glm::dvec3& p : points) out.push_back(vector_json(p));
+  return out;
+}
+
+ordered_json file_of(std::string_view format, const Document& document) {
+  return {{"format", format}, {"version", 1}, {"source", document.source.path}, {"frame", "mm of the scan"}};
+}
+
+ordered_json camera_json(const CameraPose& camera) {
+  const glm::dquat& q = camera.rotation;
+  return {{"rotation_wxyz", {q.w, q.x, q.y, q.z}}, {"zoom", camera.zoom}, {"pan", {camera.pan.x, camera.pan.y}}};
+}
+
+std::string text_of(const ordered_json& out) { return dump_json_lines(json(out)) + "\n"; }
+
+/// A path as a file URI (RFC 8089): letters beyond ASCII and signs are coded.
+std::string file_uri(const std::string& path) {
+  std::string out = "file://";
+  for (const char c : path) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z') || (byte >= '0' && byte <= '9') ||
+                       std::string_view("/-._~").find(c) != std::string_view::npos;
+    out += plain ? std::string(1, c) : fmt::format("%{:02X}", byte);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string format_measures(const Document& document) {
+  ordered_json out = file_of("dubsar measures", document);
+  out["measures"] = ordered_json::array();
+  for (const Measure& measure : document.measures) {
+    const MeasureFigures& f = measure.figures;
+    ordered_json row{{"kind", measure_kind_name(measure.kind)}, {"name", measure.name}, {"part", measure.part}};
+    row["points_mm"] = path_json(measure.points_mm);
+    if (measure.kind == MeasureKind::kDistance || measure.kind == MeasureKind::kProfile) {
+      row["straight_mm"] = f.straight_mm;
+      row["surface_mm"] = f.surface_mm > 0 ? ordered_json(f.surface_mm) : ordered_json(nullptr);
+    }
+    if (measure.kind == MeasureKind::kAngle) row["angle_deg"] = f.angle_deg;
+    if (measure.kind == MeasureKind::kDepth || measure.kind == MeasureKind::kProfile) row["depth_mm"] = f.depth_mm;
+    if (!f.path_mm.empty()) row["path_mm"] = path_json(f.path_mm);
+    out["measures"].push_back(std::move(row));
+  }
+  return text_of(out);
+}
+
+std::string format_notes(const Document& document) {
+  ordered_json out = file_of("dubsar notes", document);
+  out["notes"] = ordered_json::array();
+  for (const Note& note : document.notes)
+    out["notes"].push_back({{"label", note.label},
+                            {"text", note.text},
+                            {"part", note.part},
+                            {"at_mm", vector_json(note.at_mm)},
+                            {"normal", vector_json(note.normal)},
+                            {"line_mm", path_json(note.line_mm)},
+                            {"camera", camera_json(note.camera)}});
+  return text_of(out);
+}
+
+std::string format_annotations(const Document& document) {
+  const std::string source = file_uri(document.source.path);
+  ordered_json items = ordered_json::array();
+  for (std::size_t i = 0; i < document.notes.size(); ++i) {
+    const Note& note = document.notes[i];
+    const auto point = [&](const glm::dvec3& p) {
+      return ordered_json{{"type", "PointSelector"}, {"x", p.x}, {"y", p.y}, {"z", p.z}};
+    };
+    ordered_json selector = point(note.at_mm);
+    if (note.line_mm.size() > 1) {
+      selector = {{"type", "RangeSelector"},
+                  {"startSelector", point(note.line_mm.front())},
+                  {"endSelector", point(note.line_mm.back())}};
+    }
+    ordered_json body{{"type", "TextualBody"}, {"value", note.text}, {"format", "text/plain"}};
+    ordered_json item{{"id", fmt::format("urn:dubsar:note:{}", i + 1)}, {"type", "Annotation"}};
+    item["motivation"] = note.line_mm.size() > 1 ? "transcribing" : "commenting";
+    if (!note.label.empty()) item["label"] = note.label;
+    item["body"] = std::move(body);
+    item["target"] = {{"source", source}, {"selector", std::move(selector)}};
+    items.push_back(std::move(item));
+  }
+  const std::size_t total = items.size();
+  const ordered_json terms{{"PointSelector", "http://iiif.io/api/presentation/4#PointSelector"},
+                           {"x", "http://iiif.io/api/presentation/4#x"},
+                           {"y", "http://iiif.io/api/presentation/4#y"},
+                           {"z", "http://iiif.io/api/presentation/4#z"},
+                           {"transcribing", "http://www.w3.org/ns/oa#transcribing"},
+                           {"label", "http://www.w3.org/2000/01/rdf-schema#label"}};
+  ordered_json out;
+  out["@context"] = ordered_json::array({kAnnotationContext, terms});
+  out["id"] = "urn:dubsar:notes";
+  out["type"] = "AnnotationCollection";
+  out["label"] = "notes on " + fs::path(document.source.path).filename().string();
+  out["generator"] = {{"type", "Software"}, {"name", "dubsar"}};
+  out["total"] = total;
+  out["first"] = {{"id", "urn:dubsar:notes:1"}, {"type", "AnnotationPage"}, {"startIndex", 0}, {"items", items}};
+  return text_of(out);
+}
+
+Result<void> write_marks(const std::string& path, std::string_view text) {
+  const fs::path target(path);
+  const std::string suffix = target.extension().string();
+  if (suffix != ".json" && suffix != ".jsonld")
+    return fail(ErrorKind::kUsage, "cannot write {}: expected a name that ends in .json or .jsonld", path);
+  std::error_code error;
+  const fs::file_status status = fs::symlink_status(target, error);
+  if (fs::exists(status)) {
+    const auto before = fs::is_regular_file(status) ? read_text_file(target) : Result<std::string>(std::string());
+    constexpr std::size_t kBeginning = 2000;
+    if (!before || before->substr(0, kBeginning).find("dubsar") == std::string::npos)
+      return fail(ErrorKind::kUsage, "cannot write {}: something else is there; give another name", path);
+  }
+  return write_file_atomically(target, text);
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,118 @@
+// The drawers for what is seen: parts, light, style and evidence.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "app/panels/panel_kit.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr float kBall = 110.0f;
+constexpr ImU32 kHatch = IM_COL32(122, 158, 204, 255), kStripe = IM_COL32(38, 70, 128, 255);  // as the surface has it
+constexpr double kLowestDeg = 5.0, kHighestDeg = 85.0;
+
+/// What the hatch means, and how much of the surface it is.
+void draw_evidence(const Board& desk) {
+  bool evidence = desk.state.evidence;
+  if (ImGui::Checkbox("mark what the scan does not show", &evidence)) desk.commands.push_back("evidence");
+  explain(desk, "evidence");
+  const double all = desk.state.measured_mm2 + desk.state.inferred_mm2;
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float size = ImGui::GetTextLineHeight();
+  ImDrawList* const draw = ImGui::GetWindowDrawList();
+  const ImVec2 end(corner.x + 2.0f * size, corner.y + size);
+  draw->AddRectFilled(corner, end, kHatch);
+  for (float x = corner.x; x < end.x; x += 8.0f)
+    draw->AddRectFilled(ImVec2(x, corner.y), ImVec2(std::min(x + 4.0f, end.x), end.y), kStripe);
+  ImGui::Dummy(ImVec2(2.0f * size + 4.0f, size));
+  ImGui::SameLine();
+  ImGui::Text("%.1f mm\u00b2, %.1f %%", desk.state.inferred_mm2, all > 0 ? 100.0 * desk.state.inferred_mm2 / all : 0.0);
+  say_dim("no surface in the scan here: closed so that the part is whole");
+  ImGui::Text("%.0f mm\u00b2", desk.state.measured_mm2);
+  ImGui::SameLine();
+  ImGui::TextColored(ImColor(kDim), "seen in the scan");
+}
+
+}  // namespace
+
+void draw_parts(const Board& desk) {
+  for (std::size_t i = 0; i < desk.state.parts.size(); ++i) {
+    const Part& part = desk.state.parts[i];
+    bool visible = part.visible;
+    if (ImGui::Checkbox(part.name.c_str(), &visible)) desk.commands.push_back(fmt::format("part {}", i + 1));
+    explain(desk, fmt::format("part {}", i + 1));
+    auto percent = static_cast<float>(100.0 * part.opacity);
+    ImGui::SameLine(120.0f);
+    ImGui::SetNextItemWidth(110.0f);
+    ImGui::PushID(static_cast<int>(i));
+    if (ImGui::SliderFloat("##opacity", &percent, 0.0f, 100.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
+      desk.commands.push_back(fmt::format("part_opacity {} {:.4g}", i + 1, percent));
+    explain(desk, "part_opacity");
+    ImGui::PopID();
+  }
+  button(desk, "all parts", "all_parts", false);
+}
+
+/// A ball seen from the front: the light stands where it is touched, low at its
+/// rim.
+void draw_light(const Board& desk) {
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImGui::InvisibleButton("ball", ImVec2(kBall, kBall));
+  const ImVec2 middle(corner.x + 0.5f * kBall, corner.y + 0.5f * kBall);
+  const float radius = 0.5f * kBall - 4.0f;
+  constexpr double kRad = std::numbers::pi / 180.0;
+  if (ImGui::IsItemActive()) {
+    const ImVec2 at = ImGui::GetIO().MousePos;
+    const double x = (at.x - middle.x) / radius, y = (middle.y - at.y) / radius;
+    const double azimuth = std::fmod(std::atan2(x, y) / kRad + 360.0, 360.0);
+    const double elevation = std::clamp(std::acos(std::min(1.0, std::hypot(x, y))) / kRad, kLowestDeg, kHighestDeg);
+    if (std::abs(azimuth - desk.state.light.azimuth_deg) > 0.05 ||
+        std::abs(elevation - desk.state.light.elevation_deg) > 0.05)
+      desk.commands.push_back(fmt::format("light {:.1f},{:.1f}", azimuth, elevation));
+  }
+  ImDrawList* const draw = ImGui::GetWindowDrawList();
+  draw->AddCircleFilled(middle, radius, IM_COL32(0x2b, 0x2d, 0x31, 0xff), 48);
+  draw->AddCircle(middle, radius, kLine, 48, 1.5f);
+  const double low = std::cos(desk.state.light.elevation_deg * kRad), azimuth = desk.state.light.azimuth_deg * kRad;
+  const ImVec2 light(middle.x + radius * static_cast<float>(low * std::sin(azimuth)),
+                     middle.y - radius * static_cast<float>(low * std::cos(azimuth)));
+  draw->AddLine(light, middle, kLine, 1.5f);
+  draw->AddCircleFilled(light, 6.0f, kAccent, 24);
+  ImGui::TextColored(ImColor(kDim), "%.0f° round, %.0f° high", desk.state.light.azimuth_deg,
+                     desk.state.light.elevation_deg);
+  constexpr std::array<std::array<const char*, 2>, 8> kPresets{{{"upper left", "upper_left"},
+                                                                {"top", "top"},
+                                                                {"upper right", "upper_right"},
+                                                                {"left", "left"},
+                                                                {"right", "right"},
+                                                                {"lower left", "lower_left"},
+                                                                {"bottom", "bottom"},
+                                                                {"lower right", "lower_right"}}};
+  for (std::size_t i = 0; i < kPresets.size(); ++i) {
+    if (i != 0 && i != 3 && i != 5) ImGui::SameLine();
+    button(desk, kPresets[i][0], std::string("light_from ") + kPresets[i][1], false);
+  }
+}
+
+void draw_styles(const Board& desk) {
+  if (const Command* const style = desk.keys.commands().find("style"))
+    for (const std::string& name : style->values) {
+      if (ImGui::RadioButton(name.c_str(), name == desk.state.style)) desk.commands.push_back("style " + name);
+    }
+  bool occlusion = desk.state.occlusion;
+  if (ImGui::Checkbox("dark hollows", &occlusion)) desk.commands.push_back("occlusion");
+  explain(desk, "occlusion");
+  auto strength = static_cast<float>(100.0 * desk.state.strength);
+  ImGui::SetNextItemWidth(120.0f);
+  if (ImGui::SliderFloat("strength", &strength, 0.0f, 200.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
+    desk.commands.push_back(fmt::format("strength {:.4g}", strength));
+  ImGui::Separator();
+  draw_evidence(desk);
+}
+
+}  // namespace dubsar::app

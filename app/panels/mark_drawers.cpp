@@ -1,0 +1,125 @@
+// The drawers for what is made of a surface: measures, notes, cuts, film.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "app/panels/panel_kit.h"
+#include "app/viewer/marks.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr float kFieldPx = 236.0f;
+
+/// A profile as a curve: along its chord, and how far below it.
+void draw_curve(const Measure& measure) {
+  const auto& path = measure.figures.path_mm;
+  if (path.size() < 3) return;
+  const glm::dvec3 chord = path.back() - path.front();
+  const double length = glm::length(chord);
+  if (length == 0) return;
+  std::vector<float> below;
+  for (const glm::dvec3& p : path) {
+    const glm::dvec3 off = p - path.front();
+    below.push_back(-static_cast<float>(glm::length(off - chord * (glm::dot(off, chord) / (length * length)))));
+  }
+  ImGui::PlotLines("##curve", below.data(), static_cast<int>(below.size()), 0, nullptr,
+                   -1.05f * static_cast<float>(std::max(measure.figures.depth_mm, 1e-3)), 0.05f,
+                   ImVec2(kFieldPx, 60.0f));
+}
+
+/// Letters of transliterations for keyboards that do not have them.
+void letter_buttons(const Board& desk, const std::string& command, const std::string& text) {
+  constexpr std::array<const char*, 9> kLetters{"\u0161", "\u1e63", "\u1e6d", "\u1e2b", "\u02be",
+                                                "\u02bf", "\u2082", "\u2083", "\u2093"};
+  for (std::size_t i = 0; i < kLetters.size(); ++i) {
+    if (i > 0) ImGui::SameLine(0.0f, 2.0f);
+    if (ImGui::SmallButton(kLetters[i])) desk.commands.push_back(command + text + kLetters[i]);
+  }
+}
+
+}  // namespace
+
+void draw_measures(const Board& desk) {
+  if (desk.state.measures.empty()) say_dim("Take a tool at the left and click on the surface.");
+  for (std::size_t i = 0; i < desk.state.measures.size(); ++i) {
+    const Measure& measure = desk.state.measures[i];
+    ImGui::PushID(static_cast<int>(i));
+    std::string name;
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextColored(ImColor(kDim), "%zu", i + 1);
+    ImGui::SameLine(28.0f);
+    if (type_in("##name", measure.name, name, 150.0f))
+      desk.commands.push_back(fmt::format("name_measure {} {}", i + 1, name));
+    ImGui::SameLine();
+    button(desk, "x", fmt::format("delete_measure {}", i + 1), false);
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextUnformatted(figures_text(measure).c_str());
+    ImGui::PopTextWrapPos();
+    if (measure.kind == MeasureKind::kProfile) draw_curve(measure);
+    ImGui::PopID();
+  }
+}
+
+void draw_notes(const Board& desk) {
+  if (desk.state.notes.empty()) say_dim("Take the tool Note or Line at the left and click on the surface.");
+  for (std::size_t i = 0; i < desk.state.notes.size(); ++i) {
+    const Note& note = desk.state.notes[i];
+    const bool open = desk.state.note == i + 1;
+    ImGui::PushID(static_cast<int>(i));
+    const std::string title = fmt::format("{}  {}", note.label.empty() ? std::to_string(i + 1) : note.label,
+                                          open ? std::string() : note.text.substr(0, note.text.find('\n')));
+    button(desk, title.c_str(), fmt::format("open_note {}", i + 1), open);
+    if (open) {
+      std::string typed;
+      if (type_in("##label", note.label, typed, 90.0f))
+        desk.commands.push_back(fmt::format("note_label {} {}", i + 1, typed));
+      ImGui::SameLine();
+      button(desk, "look", fmt::format("go_to_note {}", i + 1), false);
+      ImGui::SameLine();
+      button(desk, "delete", fmt::format("delete_note {}", i + 1), false);
+      if (type_in("##text", note.text, typed, kFieldPx))
+        desk.commands.push_back(fmt::format("note_text {} {}", i + 1, typed));
+      letter_buttons(desk, fmt::format("note_text {} ", i + 1), note.text);
+    }
+    ImGui::PopID();
+  }
+}
+
+void draw_cuts(const Board& desk) {
+  button(desk, "across the view", "cut_here", false);
+  const bool any = desk.state.cuts > 0;
+  button(desk, "deeper", "cut_deeper", false, any);
+  ImGui::SameLine();
+  button(desk, "less deep", "cut_back", false, any);
+  ImGui::SameLine();
+  button(desk, "none", "no_cuts", false, any);
+  for (const char* side : {"front", "back", "left", "right", "top", "bottom"}) {
+    if (side != std::string("front") && side != std::string("left") && side != std::string("top")) ImGui::SameLine();
+    button(desk, side, fmt::format("cut {} 20", side), false);
+  }
+  auto percent = static_cast<float>(100.0 * desk.state.fog);
+  ImGui::SetNextItemWidth(120.0f);
+  if (ImGui::SliderFloat("far side fades", &percent, 0.0f, 100.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
+    desk.commands.push_back(fmt::format("fog {:.4g}", percent));
+  explain(desk, "fog");
+}
+
+void draw_film(const Board& desk) {
+  button(desk, "add what is seen", "keyframe", false);
+  ImGui::SameLine();
+  button(desk, desk.state.playing ? "stop" : "play", "play", desk.state.playing, desk.state.keyframes_s.size() > 1);
+  if (desk.state.keyframes_s.empty()) say_dim("Turn, light and lift as it shall be, and add it; go on with the next.");
+  for (std::size_t i = 0; i < desk.state.keyframes_s.size(); ++i) {
+    ImGui::PushID(static_cast<int>(i));
+    button(desk, fmt::format("{:.1f} s", desk.state.keyframes_s[i]).c_str(), fmt::format("go_to_keyframe {}", i + 1),
+           false);
+    ImGui::SameLine();
+    button(desk, "x", fmt::format("delete_keyframe {}", i + 1), false);
+    ImGui::PopID();
+  }
+}
+
+}  // namespace dubsar::app

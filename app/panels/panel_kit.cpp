@@ -1,0 +1,53 @@
+#include "app/panels/panel_kit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace dubsar::app {
+
+void explain(const Board& desk, const std::string& command) {
+  if (!ImGui::IsItemHovered()) return;
+  const auto [name, argument] = split_command(command);
+  const Command* const known = desk.keys.commands().find(name);
+  if (known == nullptr) return;
+  std::string text = argument.empty() ? known->words : fmt::format("{}: {}", known->words, argument);
+  const auto keys = desk.keys.keys_for(command);
+  if (!keys.empty()) text += "    " + keys.front();
+  ImGui::SetTooltip("%s", text.c_str());
+}
+
+bool button(const Board& desk, const char* label, const std::string& command, bool active, bool enabled) {
+  ImGui::BeginDisabled(!enabled);
+  if (active) ImGui::PushStyleColor(ImGuiCol_Text, kAccent);
+  const bool pressed = ImGui::Button(label);
+  if (active) ImGui::PopStyleColor();
+  ImGui::EndDisabled();
+  explain(desk, command);
+  if (pressed) desk.commands.push_back(command);
+  return pressed;
+}
+
+float button_width(const char* label) {
+  return ImGui::CalcTextSize(label).x + 2.0f * ImGui::GetStyle().FramePadding.x + ImGui::GetStyle().ItemSpacing.x;
+}
+
+void say_dim(const char* words) {
+  ImGui::PushStyleColor(ImGuiCol_Text, kDim);
+  ImGui::PushTextWrapPos(0.0f);
+  ImGui::TextUnformatted(words);
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+}
+
+bool type_in(const char* id, const std::string& now, std::string& typed, float width) {
+  std::array<char, 2048> text{};
+  now.copy(text.data(), std::min(now.size(), text.size() - 1));
+  ImGui::SetNextItemWidth(width);
+  if (!ImGui::InputText(id, text.data(), text.size())) return false;
+  typed = text.data();
+  return typed != now;
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,48 @@
+#pragma once
+// What panels are made of: colours, sizes, buttons that say which key does the same. Part of this room.
+
+#include <imgui.h>
+
+#include <string>
+#include <vector>
+
+#include "app/panels/desk_panels.h"
+
+namespace dubsar::app {
+
+// One accent and warm neutrals; text stands out 7:1 from the panels.
+inline constexpr ImU32 kAccent = IM_COL32(0xd9, 0xa4, 0x41, 0xff), kDim = IM_COL32(0x9a, 0x96, 0x8e, 0xff),
+                       kText = IM_COL32(0xe8, 0xe4, 0xdc, 0xff), kLine = IM_COL32(0x3a, 0x3b, 0x3f, 0xff);
+inline constexpr float kTop = 32.0f, kStrip = 48.0f, kTab = 90.0f, kDrawer = 264.0f, kGap = 8.0f;
+inline constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                           ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                                           ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBringToFrontOnFocus;
+
+struct Board {
+  const PanelState& state;
+  const KeyTable& keys;
+  std::vector<std::string>& commands;
+  float width, height;
+};
+
+/// What a thing does and which key does the same, while the pointer rests on it.
+void explain(const Board& desk, const std::string& command);
+/// Posts the command when it is pressed.
+bool button(const Board& desk, const char* label, const std::string& command, bool active, bool enabled = true);
+/// A button of text without a frame, as long as its words.
+float button_width(const char* label);
+/// Dim words that break where the panel ends.
+void say_dim(const char* words);
+/// A line of text that is kept while it is typed in, and told as it changes: true then. `id` names it in its window.
+bool type_in(const char* id, const std::string& now, std::string& typed, float width);
+
+// Drawers, one each.
+void draw_parts(const Board& desk);
+void draw_light(const Board& desk);
+void draw_styles(const Board& desk);
+void draw_measures(const Board& desk);
+void draw_notes(const Board& desk);
+void draw_cuts(const Board& desk);
+void draw_film(const Board& desk);
+
+}  // namespace dubsar::app

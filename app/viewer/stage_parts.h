@@ -1,0 +1,87 @@
+#pragma once
+// What a stage consists of. Part of this room.
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "app/viewer/stage.h"
+#include "display/render/lod_mesh.h"
+#include "display/render/multi_view.h"
+#include "display/render/renderer.h"
+#include "display/render/view_array.h"
+
+namespace dubsar::app {
+
+inline constexpr TimestampNs kRestNs = 150'000'000;  // before coarse views are made exact
+
+struct Stage::Parts {
+  struct Object {
+    Box box;
+    std::optional<LodMesh> mesh;
+    std::optional<Renderer> renderer;  // kExact, and for stills
+    std::optional<MultiView> multi;    // kAdaptive
+  };
+  struct Layers {
+    std::optional<ViewArray> array, overlaid;
+    LayerPainter* overlay = nullptr;
+    bool overlay_changed = false;
+    std::vector<int> chosen;  // without a mesh: what each layer shows; empty: nothing yet
+  };
+  struct Plane {                          // what is shown of the panel's
+    glm::dvec2 window{0.0}, middle{0.0};  // size and middle, mm
+    glm::dvec3 aside_mm{0.0};             // from the panel's middle to where the eyes are thought to be level with
+    double magnification = 1.0;
+  };
+  struct Next {
+    Shown shown;
+    Viewer viewer;
+    TimestampNs now = 0;
+  };
+  struct Painted {
+    std::optional<std::pair<Shown, Viewer>> of;
+    std::vector<View> views;
+    std::vector<DrawItem> items;
+    std::vector<ClipPlane> clips;
+    Light light;
+    Fog fog;
+    TimestampNs moved_at = 0;
+  };
+  struct Cost {
+    int coarse = 0;              // views of the last picture
+    double exact_view_ms = 0.0;  // what one exact view takes; 0: not known yet
+    TimestampNs prepared_at = 0;
+  };
+  StageOptions options;
+  std::unique_ptr<OutputSink> sink;
+  Object object;
+  Layers layers;
+  Plane plane;
+  Next next;
+  Painted painted;
+  Cost cost;
+
+  explicit Parts(const StageOptions& given) : options(given) {}
+  Result<void> prepare(OutputSink& with);
+  Viewer viewer_at(const FollowedEyes& eyes) const;
+  glm::dmat4 placed() const {
+    return app::screen_from_model(object.box, options.direction, next.shown.view, plane.magnification * next.shown.fit,
+                                  plane.window.y, plane.middle);
+  }
+  bool moved() const noexcept;
+  SceneView scene() const {
+    return {painted.items, painted.light, painted.clips, options.shading.background, painted.fog};
+  }
+  bool has_mesh() const noexcept { return !options.pattern && !options.pictures; }
+  void set_scene();
+  Result<void> fill_layers();
+  Result<void> paint_moved();
+  Result<void> refine();
+  bool may_refine() const noexcept {
+    return cost.coarse > 0 && object.mesh->has_exact() && next.now - painted.moved_at >= kRestNs;
+  }
+  void took(double ms, std::size_t count);
+};
+
+}  // namespace dubsar::app

@@ -1,0 +1,58 @@
+// Pictures of a stage that are not those of its display: stills, and pictures that exist already.
+
+#include <algorithm>
+
+#include "app/viewer/stage_parts.h"
+#include "display/render/test_pattern.h"
+
+namespace dubsar::app {
+
+/// Pictures that exist already, where another one is wanted than is there.
+Result<void> Stage::Parts::fill_layers() {
+  const SinkTraits traits = sink->traits();
+  layers.chosen.resize(static_cast<std::size_t>(traits.views), -1);
+  for (int layer = 0; layer < traits.views; ++layer) {
+    int& there = layers.chosen[static_cast<std::size_t>(layer)];
+    const bool swapped = next.viewer.swap_eyes && traits.views == 2;
+    const int wanted = options.pictures ? picture_for_layer(*options.pictures, traits, layer, next.viewer)
+                       : swapped        ? 1 - layer
+                                        : layer;
+    if (std::exchange(there, wanted) == wanted) continue;
+    DUBSAR_TRY(layers.array->write_layer(
+        layer, options.pictures ? layer_of_picture(options.pictures->views[static_cast<std::size_t>(wanted)],
+                                                   options.pictures->aspect, traits, layer)
+                                : numbered_view(traits.view.width, traits.view.height, wanted, traits.views)));
+  }
+  return {};
+}
+
+Result<Image> Stage::still(int factor) {
+  Parts& p = *parts_;
+  const PixelSize view = p.sink->traits().view;
+  constexpr int kMostSide = 16384;
+  if (factor < 1 || factor * std::max(view.width, view.height) > kMostSide)
+    return fail(ErrorKind::kUsage, "picture: {} times {} x {} pixels asked for, expected at most {} on a side", factor,
+                view.width, view.height, kMostSide);
+  if (!p.has_mesh()) return fail(ErrorKind::kUsage, "picture: there is no surface");
+  if (!p.object.renderer) {
+    DUBSAR_ASSIGN(p.object.renderer, Renderer::create());
+  }
+  DUBSAR_ASSIGN(ViewArray array, ViewArray::create(factor * view.width, factor * view.height, 1));
+  const std::span<const View> views = p.sink->views(p.next.viewer);
+  const View middle = views[views.size() / 2];
+  Parts::Painted before = p.painted;
+  p.set_scene();
+  for (DrawItem& item : p.painted.items) {  // as thick as they look in the window
+    if (auto* lines = std::get_if<LinesItem>(&item)) lines->width_px *= factor;
+    if (auto* label = std::get_if<LabelItem>(&item)) {
+      label->height_px *= factor;
+      label->shift_px *= factor;
+    }
+  }
+  const auto drawn = p.object.renderer->render(p.scene(), std::span(&middle, 1), p.options.samples, array);
+  p.painted = std::move(before);
+  if (!drawn) return tl::unexpected<Error>(drawn.error());
+  return array.read_layer(0);
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,116 @@
+#include "app/viewer/surface_tools.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "app/commands/sides.h"
+#include "core/mesh/surface_measure.h"
+#include "core/mesh/tablet_frame.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr std::size_t kMostPathPoints = 4000;  // a document holds at most 10000 things
+
+void thin_out(std::vector<glm::dvec3>& path) {
+  if (path.size() <= kMostPathPoints) return;
+  std::vector<glm::dvec3> out;
+  for (std::size_t i = 0; i < kMostPathPoints; ++i) out.push_back(path[i * (path.size() - 1) / (kMostPathPoints - 1)]);
+  path = std::move(out);
+}
+
+TriMesh tablet_of(const TriMesh& mesh) {
+  TriMesh out;
+  out.positions = mesh.positions;
+  out.frame = mesh.frame;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Partition* const row = mesh.partitions.find(mesh.partition_of(t));
+    if (row != nullptr && row->body_name() == "tablet") out.triangles.push_back(mesh.triangles[t]);
+  }
+  return out;
+}
+
+}  // namespace
+
+EvidenceShares evidence_shares(const TriMesh& mesh) {
+  EvidenceShares out;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto at = [&](std::size_t k) {
+      return mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[mesh.triangles[t][k]]));
+    };
+    const double area = 0.5 * glm::length(glm::cross(at(1) - at(0), at(2) - at(0)));
+    if (!std::isfinite(area)) continue;
+    const bool inferred = !mesh.triangle_inferred.empty() && mesh.triangle_inferred[t] != 0;
+    (inferred ? out.inferred_mm2 : out.measured_mm2) += area;
+  }
+  return out;
+}
+
+Result<SurfacePin> pin_on(const TriMesh& mesh, const std::vector<Part>& parts, const glm::dvec3& at_mm) {
+  DUBSAR_ASSIGN(const SurfacePlace place, nearest_place(mesh, at_mm));
+  SurfacePin out{place.at_mm, place.normal, {}, {}};
+  const PartitionId id = mesh.partition_of(place.triangle);
+  for (const Part& part : parts)
+    if ((part.partitions >> id & 1) != 0) out.part = part.name;
+  return out;
+}
+
+Result<MeasureFigures> figures_of(const TriMesh& mesh, const Measure& measure) {
+  if (measure.points_mm.size() != points_of(measure.kind))
+    return fail(ErrorKind::kUsage, "{}: {} places found, expected {}", measure_kind_name(measure.kind),
+                measure.points_mm.size(), points_of(measure.kind));
+  std::vector<SurfacePlace> places;
+  for (const glm::dvec3& point : measure.points_mm) {
+    DUBSAR_ASSIGN(const SurfacePlace place, nearest_place(mesh, point));
+    places.push_back(place);
+  }
+  MeasureFigures out;
+  if (measure.kind == MeasureKind::kAngle) {
+    out.angle_deg = angle_between_deg(places[0].at_mm, places[1].at_mm, places[2].at_mm);
+    return out;
+  }
+  if (measure.kind == MeasureKind::kDepth) {
+    DUBSAR_ASSIGN(const ImpressionDepth depth, impression_depth(mesh, places[0], kDepthRadiusMm));
+    out.depth_mm = depth.depth_mm;
+    out.path_mm = {depth.rim_mm, depth.bottom_mm};
+    return out;
+  }
+  out.straight_mm = glm::distance(places[0].at_mm, places[1].at_mm);
+  out.path_mm = section_between(mesh, places[0], places[1]);
+  out.surface_mm = length_of(out.path_mm);
+  if (measure.kind == MeasureKind::kProfile)
+    out.depth_mm = deepest_below_chord(out.path_mm, places[0].normal + places[1].normal);
+  thin_out(out.path_mm);
+  return out;
+}
+
+Workplace::Reach reach_along(const TriMesh& mesh, const glm::dvec3& direction) {
+  Workplace::Reach out{direction, std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t) {
+      const double at = glm::dot(direction, mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[v])));
+      out.from_mm = std::min(out.from_mm, at);
+      out.to_mm = std::max(out.to_mm, at);
+    }
+  if (out.from_mm > out.to_mm) out.from_mm = out.to_mm = 0.0;
+  return out;
+}
+
+Result<glm::dquat> upright_turn(const TriMesh& mesh, const glm::dmat3& first) {
+  const TriMesh tablet = tablet_of(mesh);
+  DUBSAR_ASSIGN(const TabletFrame frame, find_tablet_frame(tablet.triangles.empty() ? mesh : tablet));
+  return glm::normalize(glm::quat_cast(frame.tablet_from_model() * glm::transpose(first)));
+}
+
+std::string side_of(const glm::dvec3& normal, const glm::dmat3& home) {
+  const glm::dvec3 seen = home * normal;
+  const std::array<glm::dvec3, 6> outward{{{0, 0, 1}, {0, -1, 0}, {0, 0, -1}, {0, 1, 0}, {-1, 0, 0}, {1, 0, 0}}};
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < outward.size(); ++i)
+    if (glm::dot(seen, outward[i]) > glm::dot(seen, outward[best]) + 1e-9) best = i;
+  return std::string(kSideNames[best]);
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,32 @@
+#pragma once
+// What tools find on the surface of a session: places, figures, how far it reaches, what of it was measured.
+
+#include "app/commands/editor.h"
+#include "core/mesh/tri_mesh.h"
+
+namespace dubsar::app {
+
+/// mm2 of the surface that the scan shows, and of that which was inferred.
+struct EvidenceShares {
+  double measured_mm2 = 0.0, inferred_mm2 = 0.0;
+};
+EvidenceShares evidence_shares(const TriMesh& mesh);
+
+/// The nearest place of the surface, with the part of `parts` that it lies on; its side is left empty.
+Result<SurfacePin> pin_on(const TriMesh& mesh, const std::vector<Part>& parts, const glm::dvec3& at_mm);
+
+/// What comes of a measure's points, each taken to the surface first. kUsage: too few or too many points, and the
+/// errors of impression_depth().
+Result<MeasureFigures> figures_of(const TriMesh& mesh, const Measure& measure);
+
+/// From where to where the surface reaches along a direction (unit), mm from the scan's origin.
+Workplace::Reach reach_along(const TriMesh& mesh, const glm::dvec3& direction);
+
+/// The turn that shows the tablet's obverse upright, found from its writing: of the part "tablet" where there is one,
+/// else of everything. `first` turns the scan as an unturned view shows it.
+Result<glm::dquat> upright_turn(const TriMesh& mesh, const glm::dmat3& first);
+
+/// Which of the six sides looks the way of a normal; `home` turns the scan to its obverse.
+std::string side_of(const glm::dvec3& normal, const glm::dmat3& home);
+
+}  // namespace dubsar::app

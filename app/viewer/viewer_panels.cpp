@@ -1,0 +1,88 @@
+// What stands over the pictures of a session.
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+#include "app/commands/sides.h"
+#include "app/panels/state_page.h"
+#include "app/viewer/viewer.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr TimestampNs kSecond = 1'000'000'000;
+constexpr TimestampNs kNoticeNs = 6 * kSecond, kFadeNs = kSecond, kHelpRefreshNs = kSecond / 2;
+
+}  // namespace
+
+PanelState Viewer::panel_state() const {
+  const Document& d = document();
+  PanelState out;
+  out.title = given_.options.title;
+  out.display = display();
+  out.drawer = desk().drawer;
+  out.parts = d.parts;
+  out.can_unpack = can_unpack(d);
+  out.unpack = d.unpack;
+  out.light = d.light;
+  out.style = d.style.name;
+  out.occlusion = d.style.occlusion;
+  out.evidence = d.style.evidence;
+  out.strength = d.style.strength;
+  out.measured_mm2 = tools_.evidence.measured_mm2;
+  out.inferred_mm2 = tools_.evidence.inferred_mm2;
+  out.tool = desk().tool;
+  out.measures = d.measures;
+  out.notes = d.notes;
+  out.note = desk().note;
+  out.cuts = d.clips.size();
+  out.fog = d.fog;
+  for (const Keyframe& key : d.keyframes) out.keyframes_s.push_back(key.time_s);
+  out.playing = at_.film_since >= 0;
+  out.panels = desk().panels;
+  out.palette = desk().palette;
+  out.undo = editor_->history().undo_words();
+  out.redo = editor_->history().redo_words();
+  out.side = kSideNames[static_cast<std::size_t>(facing_side(report_.view.rotation, d.home.rotation))];
+  const glm::dvec2 window = stage_->window_mm();
+  const double scale =
+      glm::length(glm::dvec3(stage_->screen_from_model()[0]));  // of the screen for one mm of the object
+  out.mm_per_px = window.y / (Overlay::layout(stage_->traits().view.height, window).y * scale);
+  out.faint = report_.control == Control::kMouse || report_.control == Control::kHands;
+  return out;
+}
+
+void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
+  OverlayText text = overlay_->text();
+  if (!desk().help) {
+    text.help.clear();
+  } else if (at_.help_made < 0 || now - at_.help_made >= kHelpRefreshNs) {
+    StateFigures state;
+    state.display = display();
+    state.traits = stage_->traits();
+    state.head = report_.head;
+    state.eyes_mm = report_.viewer.centre_mm();
+    state.interval_ms = figures.interval_ms;
+    state.input_age_ms = figures.input_age_ms;
+    state.sources = sources();
+    text.help = state_page(state);
+    for (HelpSection& section : help_page(given_.options.mapping, *said_.keys)) text.help.push_back(std::move(section));
+    at_.help_made = now;
+  }
+  text.gallery = at_.guidance.picture;
+  text.panels.reset();
+  if ((desk().panels || desk().palette) && !desk().help) text.panels = panel_state();
+  const TimestampNs age = now - notice_.since;
+  if (notice_.since < 0 || age >= kNoticeNs) {
+    text.notice.clear();
+    text.notice_opacity = 1.0;
+  } else {
+    text.notice = notice_.text;
+    text.notice_opacity = std::clamp(static_cast<double>(kNoticeNs - age) / static_cast<double>(kFadeNs), 0.0, 1.0);
+  }
+  if (text == overlay_->text()) return;
+  overlay_->set(std::move(text));
+  stage_->set_overlay(overlay_->text().empty() ? nullptr : overlay_.get());
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,141 @@
+// What tools and commands of a session do to the surface: places under the pointer, clicks, measures, pictures, films.
+
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_inverse.hpp>
+
+#include "app/viewer/first_document.h"
+#include "app/viewer/viewer.h"
+#include "core/image_io/png_file.h"
+#include "core/image_io/tiff_file.h"
+
+namespace dubsar::app {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr double kClick = 0.006;  // heights of the window: what moves less is a click
+constexpr double kMmPerInch = 25.4;
+
+/// The first of NAME-001.png, NAME-002.png ... that is not there yet.
+fs::path next_free(const std::string& name) {
+  for (int number = 1;; ++number) {
+    fs::path path = fmt::format("{}-{:03}.png", name, number);
+    std::error_code error;
+    if (!fs::exists(fs::symlink_status(path, error))) return path;
+  }
+}
+
+}  // namespace
+
+/// What is under this place of the window, with parts where they stand.
+std::optional<Picked> Viewer::picked_at(const glm::dvec2& at) const {
+  const glm::dvec2 window = stage_->window_mm();
+  const glm::dvec3 target(stage_->middle_mm() + at * window.y, 0.0), eye = stage_->viewer().centre_mm();
+  const glm::dmat4 model_from_screen = glm::inverse(stage_->screen_from_model());
+  const glm::dvec3 from(model_from_screen * glm::dvec4(eye, 1.0)), to(model_from_screen * glm::dvec4(target, 1.0));
+  const Shown shown = shown_of(document(), report_.view, given_.options.stage, stage_->box_mm());
+  return pick(given_.mesh, shown.parts, {from, glm::normalize(to - from)}, shown.clips);
+}
+
+/// How far the surface at this place of the window stands before the object's centre, in heights of the window.
+std::optional<double> Viewer::lever_at(const glm::dvec2& at) const {
+  const auto picked = picked_at(at);
+  if (!picked) return std::nullopt;
+  return glm::dvec4(stage_->screen_from_model() * glm::dvec4(picked->at_mm, 1.0)).z / stage_->window_mm().y;
+}
+
+/// With a tool in the hand a press waits: when it is let go where it began it is a click, else the drag turns as ever.
+bool Viewer::take_click(const InputEvent& event) {
+  std::optional<InputEvent>& press = tools_.press;
+  const bool left = event.kind == EventKind::kButton && event.button == MouseButton::kLeft;
+  if (left && event.down && event.at && event.modifiers == 0 && desk().tool != "turn") {
+    press = event;
+    return true;
+  }
+  if (!press || !event.at) return false;
+  if (left && !event.down) {
+    const glm::dvec2 at = *press->at;
+    press.reset();
+    click(at);
+    return true;
+  }
+  if (event.kind != EventKind::kMotion) return false;
+  if (glm::distance(*event.at, *press->at) <= kClick) return true;
+  InputEvent begun = *press;
+  press.reset();
+  begun.lever = lever_at(*begun.at);
+  events_.push(begun);
+  return false;
+}
+
+void Viewer::click(const glm::dvec2& at) {
+  const auto picked = picked_at(at);
+  if (!picked) return say("There is no surface here.");
+  const PartitionId id = given_.mesh.partition_of(picked->triangle);
+  const Shown shown = shown_of(document(), report_.view, given_.options.stage, stage_->box_mm());
+  const glm::dvec3 there = picked->at_mm - shown.parts[std::min<std::size_t>(id, shown.parts.size() - 1)].offset_mm;
+  ++at_.presses;
+  run(fmt::format("point {:.6f},{:.6f},{:.6f}", there.x, there.y, there.z));
+}
+
+Result<SurfacePin> Viewer::pin(const glm::dvec3& at_mm) {
+  DUBSAR_ASSIGN(SurfacePin out, pin_on(given_.mesh, document().parts, at_mm));
+  const glm::dmat3 home =
+      glm::mat3_cast(document().home.rotation) * first_turn(stage_->box_mm(), given_.options.stage.direction);
+  out.side = side_of(out.normal, home);
+  return out;
+}
+
+Result<MeasureFigures> Viewer::figures(const Measure& measure) { return figures_of(given_.mesh, measure); }
+
+Workplace::Reach Viewer::reach_of(const glm::dvec3& direction, const glm::dquat& rotation) const {
+  const glm::dmat3 turn = glm::mat3_cast(rotation) * first_turn(stage_->box_mm(), given_.options.stage.direction);
+  return reach_along(given_.mesh, glm::normalize(glm::transpose(turn) * direction));
+}
+Workplace::Reach Viewer::reach(const glm::dvec3& home_direction) {
+  return reach_of(home_direction, document().home.rotation);
+}
+Workplace::Reach Viewer::reach_to_viewer() { return reach_of({0, 0, 1}, report_.view.rotation); }
+
+Result<void> Viewer::picture(const std::string& path, int factor) {
+  const std::string name = given_.options.title.empty() ? "dubsar" : fs::path(given_.options.title).stem().string();
+  const fs::path target = path.empty() ? next_free(name) : fs::path(path);
+  const std::string suffix = target.extension().string();
+  if (suffix != ".png" && suffix != ".tif" && suffix != ".tiff")
+    return fail(ErrorKind::kUsage, "picture: cannot write {}, expected a name that ends in .png or .tif",
+                target.string());
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(target, error)))
+    return fail(ErrorKind::kUsage, "picture: {} is there already; give another name", target.string());
+  DUBSAR_ASSIGN(const Image image, stage_->still(factor));
+  // Dots an inch of the object itself, in its middle: printed so, it has its size.
+  const double scale = glm::length(glm::dvec3(stage_->screen_from_model()[0]));
+  const double dpi = image.height / stage_->window_mm().y * scale * kMmPerInch;
+  if (suffix == ".png") {
+    DUBSAR_TRY(write_png(target, image, {.dpi = dpi}));
+  } else {
+    DUBSAR_TRY(write_tiff(target, image, dpi));
+  }
+  say(fmt::format("written: {}, {} x {} pixels, {:.0f} dots an inch at life size", target.string(), image.width,
+                  image.height, dpi));
+  return {};
+}
+
+Result<void> Viewer::play_film() {
+  at_.film_since = at_.film_since >= 0 ? -1 : given_.clock.now();
+  return {};
+}
+
+/// The document as the film shows it now; its end is the film's end.
+Document Viewer::shown_document(TimestampNs now) {
+  Document out = document();
+  const double since = 1e-9 * static_cast<double>(now - at_.film_since);
+  if (out.keyframes.empty() || since > film_length_s(out.keyframes)) {
+    at_.film_since = -1;
+    return out;
+  }
+  show_keyframe(out, moment_at(document().keyframes, out.keyframes.front().time_s + since));
+  return out;
+}
+
+}  // namespace dubsar::app

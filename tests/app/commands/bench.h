@@ -1,0 +1,121 @@
+#pragma once
+// An editor with two parts in a place without a window, for tests of commands.
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "app/commands/key_table.h"
+#include "app/commands/sides.h"
+
+namespace dubsar::app {
+
+class FakePlace final : public Workplace {
+ public:
+  Result<void> switch_display(int step) override {
+    display += step;
+    return {};
+  }
+  Result<void> toggle_fullscreen() override {
+    fullscreen = !fullscreen;
+    return {};
+  }
+  Result<void> swap_eyes() override {
+    swapped = !swapped;
+    return {};
+  }
+  void retry_sources() override { ++retries; }
+  bool toggle_source(std::size_t index) override {
+    toggled.push_back(index);
+    return index < 3;
+  }
+  void say(std::string words) override { said = std::move(words); }
+  void end() override { ended = true; }
+  // A surface that is level at z = 5 of the scan.
+  Result<SurfacePin> pin(const glm::dvec3& at) override {
+    return SurfacePin{{at.x, at.y, 5.0}, {0, 0, 1}, "tablet", at.x < 0 ? "reverse" : "obverse"};
+  }
+  Result<MeasureFigures> figures(const Measure& measure) override {
+    MeasureFigures out;
+    if (measure.points_mm.size() > 1) out.straight_mm = glm::distance(measure.points_mm[0], measure.points_mm[1]);
+    if (measure.kind == MeasureKind::kDepth && measure.points_mm[0].x > 90)
+      return fail(ErrorKind::kUsage, "depth: no surface");
+    return out;
+  }
+  Reach reach(const glm::dvec3& direction) override { return {direction, -20, 10}; }
+  Reach reach_to_viewer() override { return {{0, 1, 0}, -4, 6}; }
+  Result<void> picture(const std::string& path, int factor) override {
+    pictures.push_back(fmt::format("{} x{}", path, factor));
+    return {};
+  }
+  Result<void> play_film() override {
+    ++plays;
+    return {};
+  }
+  std::vector<std::string> pictures;
+  int plays = 0;
+  int display = 0, retries = 0;
+  bool fullscreen = false, swapped = false, ended = false;
+  std::vector<std::size_t> toggled;
+  std::string said;
+};
+
+inline const std::vector<std::string> kStyles{"relief", "phong", "sky-sun"};
+
+inline Document two_parts() {
+  Document out;
+  out.parts = {{"tablet", 1}, {"envelope", 6}};
+  return out;
+}
+
+struct Bench {
+  CommandTable commands = CommandTable::standard(kStyles);
+  FakePlace place;
+  Editor editor{two_parts(), place};
+  void run(std::string_view text) {
+    const auto done = commands.run(text, editor);
+    EXPECT_TRUE(done) << done.error().message;
+  }
+  std::string refusal(std::string_view text) {
+    const auto done = commands.run(text, editor);
+    return done ? "accepted" : done.error().message;
+  }
+  const Document& now() const { return editor.document(); }
+};
+
+/// A way to say each command that needs to be told something that its table does not offer. A new command of that kind
+/// belongs here, or tests that go through all of them fail.
+inline std::vector<std::string> ways_to_say(const CommandTable& commands) {
+  const std::vector<std::string> told{"point 3,4,5",
+                                      "measure_distance 1,2,3 4,6,3 a long one",
+                                      "measure_angle 1,0,0 0,0,0 0,1,0",
+                                      "measure_depth 7,7,5",
+                                      "measure_profile 0,0,0 9,0,0 rim",
+                                      "name_measure 1 wedge \u0161",
+                                      "delete_measure 1",
+                                      "write_measures /nowhere/measures.json",
+                                      "add_note 1,2,3 a-na \u1e2ba-x",
+                                      "add_line -1,2,3 -9,2,3 um-ma",
+                                      "open_note 1",
+                                      "note_text 1 other words",
+                                      "note_label 1 o. 17",
+                                      "go_to_note 1",
+                                      "delete_note 1",
+                                      "write_notes /nowhere/notes.json",
+                                      "write_annotations /nowhere/notes.jsonld",
+                                      "go_to_keyframe 1",
+                                      "delete_keyframe 1",
+                                      "write_film /nowhere/film.json"};
+  std::vector<std::string> out;
+  for (const Command& command : commands.all()) {
+    const std::size_t before = out.size();
+    if (command.argument.empty() || command.optional) out.push_back(command.name);
+    for (const std::string& value : command.values) out.push_back(command.name + " " + value);
+    for (const std::string& text : told)
+      if (split_command(text).first == command.name) out.push_back(text);
+    EXPECT_GT(out.size(), before) << command.name << " is never said";
+  }
+  return out;
+}
+
+}  // namespace dubsar::app
