@@ -238,6 +238,7 @@ bool Overlay::take_key(const InputEvent& event, const glm::dvec2& layout) {
   const bool palette = text_.panels->palette;
   if (!palette && !io.WantTextInput) return false;
   const bool control = (event.modifiers & kControl) != 0;
+  if (!palette && control && std::string_view("acvxz").find(event.key) == std::string_view::npos) return false;
   if (palette && (event.key == "escape" || (control && event.key == "k"))) return false;  // they close it
   const auto at =
       std::find_if(kEditKeys.begin(), kEditKeys.end(), [&](const auto& row) { return row.first == event.key; });

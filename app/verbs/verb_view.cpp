@@ -24,7 +24,8 @@ namespace {
 struct Options {
   std::string kiosk;
   std::vector<std::string> plugins;  // files
-  std::string in, display = "mono", script, mapping, view = "front", style = "relief", size, monitor, frames, record;
+  std::string in, display = "mono", script, steps, mapping, view = "front", style = "relief", size, monitor, frames,
+                  record;
   std::vector<std::string> inputs, partitions;
   double fps = 0.0, seconds = 0.0, display_delay_ms = 0.0;
   int every = 1, samples = 0, bridge_port = kBridgePort;
@@ -126,6 +127,10 @@ Result<ViewOptions> view_options(const Options& options) {
     DUBSAR_ASSIGN(view.mapping, parse_mapping(text, options.mapping));
   }
   DUBSAR_ASSIGN(view.inputs, source_texts(options));
+  if (!options.steps.empty()) {
+    DUBSAR_ASSIGN(const std::string steps, read_text_file(options.steps));
+    DUBSAR_ASSIGN(view.steps, parse_steps(steps, options.steps));
+  }
   view.fps = options.fps;
   view.longest_s = options.seconds;
   view.display_delay_s = 1e-3 * options.display_delay_ms;
@@ -263,6 +268,8 @@ Verb add_view_verb(Arguments program) {
       .one_word_each_time();
   command.value("--input", options->inputs, "NAME[:options],...: " + sources);
   command.reads("--script", options->script, "simulated people: the same as --input scripted:FILE").called("FILE");
+  command.reads("--steps", options->steps, "commands with the seconds when they are said, one a line (docs/guide.md)")
+      .called("FILE");
   command.reads("--mapping", options->mapping, "which gesture does what (docs/input.md)").called("FILE");
   command.flag("--offscreen", options->offscreen, "without a window, in simulated time");
   command.value("--frames", options->frames, "folder for pictures of the frames").called("DIR");

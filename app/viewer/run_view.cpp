@@ -27,9 +27,9 @@ Result<void> check(const ViewOptions& options) {
     return fail(ErrorKind::kUsage,
                 "view: {} s with a display delay of {} s found, expected up to a week and 0 to 0.1 s",
                 options.longest_s, options.display_delay_s);
-  if (!options.window && options.inputs.empty())
+  if (!options.window && options.inputs.empty() && options.steps.empty())
     return fail(ErrorKind::kUsage,
-                "view: no input, expected --script FILE or --input with scripted:FILE or replay:FILE");
+                "view: no input, expected --steps FILE, --script FILE or --input with scripted:FILE or replay:FILE");
   if (options.frames.empty()) return {};
   std::error_code error;
   std::filesystem::create_directories(options.frames, error);
@@ -161,6 +161,10 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
     const bool damaged = presenter_->take_damaged();
     const TimestampNs at = clock().now();
     viewer_->tick(at, (simulated() ? at : presenter_->light(at)) + delay, figures_.recent());
+    if (viewer_->failed()) {
+      static_cast<void>(viewer_->finish(true));
+      return tl::unexpected<Error>(*viewer_->failed());
+    }
     const PictureReport& report = viewer_->report();
     figures_.took_part(out_, report);
     out_.largest_turn_deg = std::max(out_.largest_turn_deg, turn_between_deg(last_turn, report.view.rotation));

@@ -196,6 +196,7 @@ void Stage::Parts::took(double ms, std::size_t count) {
 void Stage::Parts::set_scene() {
   const Shown& shown = next.shown;
   const glm::dmat4 world = placed();
+  const double scale = glm::length(glm::dvec3(world[0]));  // lifts count mm of the object
   const auto place = [&](glm::dvec3& p) { p = glm::dvec3(world * glm::dvec4(p, 1.0)); };
   painted.light = shown.light.value_or(options.shading.light);
   painted.light.azimuth_deg = shown.view.light_azimuth_deg;
@@ -206,11 +207,13 @@ void Stage::Parts::set_scene() {
   painted.items = {MeshItem{&*object.mesh, world, shown.style, shown.parts}};
   for (LinesItem lines : shown.marks.lines) {
     for (glm::dvec3& p : lines.points_mm) place(p);
+    lines.lift_mm *= scale;
     painted.items.emplace_back(std::move(lines));
   }
   for (LabelItem label : shown.marks.labels) {
     label.along_mm = glm::dmat3(world) * label.along_mm;
     place(label.at_mm);
+    label.lift_mm *= scale;
     painted.items.emplace_back(std::move(label));
   }
 }

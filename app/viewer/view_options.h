@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/commands/command_table.h"
+#include "app/commands/step_script.h"
 #include "app/document/document.h"
 #include "app/viewer/source_set.h"
 #include "app/viewer/stage.h"
@@ -37,12 +38,14 @@ struct ViewOptions {
   std::filesystem::path frames{};  ///< folder for frame-00000.png ..., what is presented; empty: none
   /// Only each n-th picture becomes a file; in simulated time nothing else is drawn, and pictures count steps.
   int every = 1;
-  std::filesystem::path record{};    ///< recording of the input; empty: none
-  bool panels = false;               ///< around the surface, on displays of one view; a key shows them on all
-  std::string title{};               ///< what the panels call it
-  bool notices = true;               ///< a line for some seconds: how to get help and leave, which display this is now
-  std::vector<Command> commands{};   ///< in place of those that change what is looked at
-  bool upright = false;              ///< the obverse stands upright at home, as its writing says
+  std::vector<TimedCommand>
+      steps{};                      ///< said at their times, from the first picture on; one that fails ends the session
+  std::filesystem::path record{};   ///< recording of the input; empty: none
+  bool panels = false;              ///< around the surface, on displays of one view; a key shows them on all
+  std::string title{};              ///< what the panels call it
+  bool notices = true;              ///< a line for some seconds: how to get help and leave, which display this is now
+  std::vector<Command> commands{};  ///< in place of those that change what is looked at
+  bool upright = false;             ///< the obverse stands upright at home, as its writing says
   std::filesystem::path autosave{};  ///< copy of the document while somebody works and after it; empty: none
   bool restored = false;             ///< the document is that of an earlier session
   SessionGuide* guide = nullptr;     ///< leads the session and says when it ends; null: nobody does. Outlives it

@@ -54,6 +54,7 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
     for (Command& command : window_commands()) said_.commands->add(std::move(command));
     for (const Command& command : given_.options.commands) said_.commands->add(command);
   }
+  DUBSAR_TRY(check_steps(given_.options.steps, *said_.commands, "steps"));
   DUBSAR_ASSIGN(KeyTable keys, KeyTable::create(*said_.commands, given_.options.mapping.keys));
   said_.keys = std::make_unique<KeyTable>(std::move(keys));
   const Mapping& mapping = given_.options.mapping;
@@ -188,6 +189,7 @@ void Viewer::handle(InputEvent event) {
 }
 
 void Viewer::use_key(const InputEvent& event) {
+  if (event.key == kClickKey) return event.at ? click(*event.at) : void();
   const std::string text = said_.keys->command_for(key_chord(event), *editor_);
   if (text.empty()) return;
   const Command& command = *said_.commands->find(split_command(text).first);
@@ -199,13 +201,29 @@ void Viewer::use_key(const InputEvent& event) {
 void Viewer::run(std::string_view text, std::uint64_t merge) {
   const Command* const command = said_.commands->find(split_command(text).first);
   if (command != nullptr && command->steers && !steering_->claim_for_keys(given_.clock.now())) return;
+  if (const auto done = obey(text, merge); !done) say(done.error().message);
+}
+
+Result<void> Viewer::obey(std::string_view command, std::uint64_t merge) {
   keep_up();
   editor_->merge_with(merge);
-  auto done = said_.commands->run(text, *editor_);
+  auto done = said_.commands->run(command, *editor_);
   editor_->merge_with(0);
-  if (!done) say(done.error().message);
   at_.help_made = -1;
   follow();
+  return done;
+}
+
+/// Those of the options that are due.
+void Viewer::say_steps(TimestampNs now) {
+  const std::vector<TimedCommand>& steps = given_.options.steps;
+  if (at_.began < 0) at_.began = now;
+  for (; at_.steps < steps.size() && !at_.failed; ++at_.steps) {
+    const TimedCommand& step = steps[at_.steps];
+    if (1e-9 * static_cast<double>(now - at_.began) < step.time_s) return;
+    if (const auto done = obey(step.text, 0); !done)
+      at_.failed = Error{done.error().kind, fmt::format("at {} s: {}", step.time_s, done.error().message)};
+  }
 }
 
 /// What people did to the view since the last time becomes part of the document, a movement as one step.
@@ -244,6 +262,7 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
   steering_->steer(now);
   for (const InputEvent& event : steering_->take_keys())
     if (given_.options.guide == nullptr || !given_.options.guide->takes(event, now)) use_key(event);
+  say_steps(now);
   keep_up();
   Steered steered = steering_->look(now, display_time);
   lead(now, steered);
@@ -283,7 +302,8 @@ bool Viewer::over(TimestampNs now) {
   const bool waits_for_people = input.endless() || std::any_of(rows.begin(), rows.end(), [](const SourceRow& row) {
                                   return row.health == SourceHealth::kMissing;
                                 });
-  if (waits_for_people || !input.finished()) {
+  const bool steps_over = at_.steps == given_.options.steps.size();
+  if (waits_for_people || !(input.finished() || given_.options.inputs.empty()) || !steps_over) {
     at_.over_since = -1;
     return false;
   }

@@ -19,6 +19,9 @@
 
 namespace dubsar::app {
 
+/// What a click with a tool is among the keys, so that each comes in its turn.
+inline constexpr std::string_view kClickKey = "click";
+
 /// Figures for the page of help, from whoever measures them.
 struct RecentFigures {
   std::vector<double> interval_ms, input_age_ms;
@@ -52,6 +55,8 @@ class Viewer final : public Workplace {
 
   /// Does what a command says. What cannot be done becomes a line over the picture.
   void run(std::string_view command, std::uint64_t merge = 0);
+  /// A step of the options that could not be done.
+  const std::optional<Error>& failed() const noexcept { return at_.failed; }
   /// An event of a window.
   void handle(InputEvent event);
 
@@ -104,6 +109,9 @@ class Viewer final : public Workplace {
   struct Progression {
     TimestampNs over_since = -1, help_made = -1;
     TimestampNs film_since = -1;  ///< while a film is shown
+    TimestampNs began = -1;       ///< when the first step was due at 0
+    std::size_t steps = 0;        ///< how many were said
+    std::optional<Error> failed;  ///< what became of one
     std::uint64_t presses = 0;
     Guidance guidance{};  ///< of whoever leads the session
     bool recording_failed = false;  // and told
@@ -120,6 +128,8 @@ class Viewer final : public Workplace {
   Result<void> start_sources();
   void use_key(const InputEvent& event);
   void lead(TimestampNs now, const Steered& steered);
+  Result<void> obey(std::string_view command, std::uint64_t merge);
+  void say_steps(TimestampNs now);
   PanelState panel_state() const;
   void keep_up();
   void follow();

@@ -54,9 +54,11 @@ bool Viewer::take_click(const InputEvent& event) {
   }
   if (!press || !event.at) return false;
   if (left && !event.down) {
-    const glm::dvec2 at = *press->at;
+    InputEvent click = *press;  // in its turn with the keys before and after it
     press.reset();
-    click(at);
+    click.kind = EventKind::kKey;
+    click.key = kClickKey;
+    events_.push(click);
     return true;
   }
   if (event.kind != EventKind::kMotion) return false;

@@ -87,6 +87,16 @@ class XPerson {
     if (name == "3") return 12;
     if (name == "0") return 19;
     if (name == "s") return 39;
+    if (name == "a") return 38;
+    if (name == "d") return 40;
+    if (name == "e") return 26;
+    if (name == "i") return 31;
+    if (name == "k") return 45;
+    if (name == "n") return 57;
+    if (name == "r") return 27;
+    if (name == "v") return 55;
+    if (name == "space") return 65;
+    if (name == "enter") return 36;
     if (name == "f5") return 71;
     if (name == "slash") return 61;
     if (name == "shift") return 50;
