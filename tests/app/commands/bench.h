@@ -24,6 +24,7 @@ class FakePlace final : public Workplace {
     swapped = !swapped;
     return {};
   }
+  void recentre_heads() override { ++recentred; }
   void retry_sources() override { ++retries; }
   bool toggle_source(std::size_t index) override {
     toggled.push_back(index);
@@ -54,7 +55,7 @@ class FakePlace final : public Workplace {
   }
   std::vector<std::string> pictures;
   int plays = 0;
-  int display = 0, retries = 0;
+  int display = 0, retries = 0, recentred = 0;
   bool fullscreen = false, swapped = false, ended = false;
   std::vector<std::size_t> toggled;
   std::string said;
