@@ -1,10 +1,10 @@
 #include "app/viewer/first_document.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "app/viewer/surface_tools.h"
-#include "display/render/gpu_mesh.h"
 
 namespace dubsar::app {
 namespace {
@@ -22,6 +22,18 @@ std::vector<Part> parts_of(const TriMesh& mesh) {
   return out;
 }
 
+/// Of all vertices that triangles use, as the stage has it.
+Box box_of(const TriMesh& mesh) {
+  const auto at = [&](std::uint32_t v) { return mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[v])); };
+  Box out{at(mesh.triangles[0][0]), at(mesh.triangles[0][0])};
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t) {
+      out.min = glm::min(out.min, at(v));
+      out.max = glm::max(out.max, at(v));
+    }
+  return out;
+}
+
 }  // namespace
 
 Document first_document(const ViewOptions& options, const TriMesh& mesh) {
@@ -30,10 +42,9 @@ Document first_document(const ViewOptions& options, const TriMesh& mesh) {
   const Light& light = options.stage.shading.light;
   if (out.home_light == LightPlace() && out.light == LightPlace())
     out.home_light = out.light = {light.azimuth_deg, light.elevation_deg};
-  if (options.upright) {
-    if (const auto packed = pack_mesh(mesh))
-      if (const auto turn = upright_turn(mesh, first_turn(packed->box_mm, options.stage.direction)))
-        out.home.rotation = out.now.rotation = *turn;
+  if (options.upright && !mesh.triangles.empty()) {
+    if (const auto turn = upright_turn(mesh, first_turn(box_of(mesh), options.stage.direction)))
+      out.home.rotation = out.now.rotation = *turn;
   }
   return out;
 }
