@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <unordered_map>
 
 #include "core/base/disjoint_sets.h"
 #include "core/base/parallel.h"
@@ -140,50 +141,117 @@ Result<FaceScene> observe_faces(const SurfaceModel& model, const FaceGraph& grap
   return scene;
 }
 
+namespace {
+
+/// What the faces of one component in one chunk add up to.
+struct ComponentSum {
+  std::uint32_t component = 0;
+  FaceComponents::Info info;
+  glm::dvec3 area_centre{0.0};  ///< sum of area times centre
+  glm::dvec3 area_normal{0.0};  ///< sum of area times normal
+};
+
+ComponentSum& sum_of(std::vector<ComponentSum>& sums, std::unordered_map<std::uint32_t, std::size_t>& place,
+                     std::uint32_t component) {
+  const auto [at, is_new] = place.try_emplace(component, sums.size());
+  if (is_new) sums.push_back({.component = component, .info = {}});
+  return sums[at->second];
+}
+
+void add(ComponentSum& a, const ComponentSum& b) {
+  a.info.area += b.info.area;
+  a.info.volume += b.info.volume;
+  a.info.exterior_area += b.info.exterior_area;
+  a.info.inward_area += b.info.inward_area;
+  a.info.border += b.info.border;
+  a.info.lowest = glm::min(a.info.lowest, b.info.lowest);
+  a.info.highest = glm::max(a.info.highest, b.info.highest);
+  a.area_centre += b.area_centre;
+  a.area_normal += b.area_normal;
+}
+
+/// One face; `volume` takes the cone from the origin.
+void add_face(ComponentSum& sum, const SurfaceModel& model, const FaceScene& scene,
+              const std::vector<std::uint8_t>& label, std::uint32_t f) {
+  const FaceGraph& graph = scene.graph;
+  FaceComponents::Info& info = sum.info;
+  const auto area = static_cast<double>(graph.area[f]);
+  const glm::dvec3 centre(graph.centre[f]), normal(graph.normal[f]);
+  info.area += area;
+  info.volume += area * glm::dot(centre, normal) / 3.0;
+  info.lowest = glm::min(info.lowest, graph.centre[f]);
+  info.highest = glm::max(info.highest, graph.centre[f]);
+  if (scene.observed()) {
+    if (scene.air[f] == FaceScene::kExterior)
+      info.exterior_area += area;
+    else
+      info.inward_area += area * static_cast<double>(vote(scene.inward[f]));
+  }
+  sum.area_centre += area * centre;
+  sum.area_normal += area * normal;
+  for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
+    const std::uint32_t g = graph.neighbour[s];
+    if (g == FaceGraph::kNone || label[g] != label[f])
+      info.border += static_cast<double>(side_length(model.mesh, f, s - graph.first_side[f]));
+  }
+}
+
+}  // namespace
+
 FaceComponents find_components(const SurfaceModel& model, const FaceScene& scene,
                                const std::vector<std::uint8_t>& label) {
+  constexpr std::int64_t kChunk = 1 << 16;
   const FaceGraph& graph = scene.graph;
   const std::uint32_t faces = graph.faces();
-  DisjointSets sets(faces);
-  for (std::uint32_t f = 0; f < faces; ++f)
+  ConcurrentSets sets(faces);
+  parallel_for(faces, kGrain, [&](std::int64_t i) {
+    const auto f = static_cast<std::uint32_t>(i);
     for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
       const std::uint32_t g = graph.neighbour[s];
       if (g != FaceGraph::kNone && g > f && label[g] == label[f]) sets.join(f, g);
     }
+  });
   FaceComponents components;
   components.of_face.resize(faces);
-  std::vector<glm::dvec3> centre;
-  for (std::uint32_t f = 0; f < faces; ++f) {
-    if (sets.root(f) == f) {
-      components.of_face[f] = static_cast<std::uint32_t>(components.info.size());
+  parallel_for(faces, kGrain, [&](std::int64_t i) {
+    components.of_face[static_cast<std::size_t>(i)] = sets.root(static_cast<std::uint32_t>(i));
+  });
+  for (std::uint32_t f = 0; f < faces; ++f) {  // roots come before all others of their component
+    std::uint32_t& id = components.of_face[f];
+    if (id == f) {
+      id = static_cast<std::uint32_t>(components.info.size());
       components.info.push_back({.first_face = f});
-      centre.emplace_back(0.0);
-    }
-    const std::uint32_t c = components.of_face[f] = components.of_face[sets.root(f)];
-    FaceComponents::Info& info = components.info[c];
-    const auto area = static_cast<double>(graph.area[f]);
-    info.area += area;
-    info.lowest = glm::min(info.lowest, graph.centre[f]);
-    info.highest = glm::max(info.highest, graph.centre[f]);
-    if (scene.observed()) {
-      if (scene.air[f] == FaceScene::kExterior)
-        info.exterior_area += area;
-      else
-        info.inward_area += area * static_cast<double>(vote(scene.inward[f]));
-    }
-    centre[c] += area * glm::dvec3(graph.centre[f]);
-    for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
-      const std::uint32_t g = graph.neighbour[s];
-      if (g == FaceGraph::kNone || label[g] != label[f])
-        info.border += static_cast<double>(side_length(model.mesh, f, s - graph.first_side[f]));
+    } else {
+      id = components.of_face[id];
     }
   }
-  for (std::size_t c = 0; c < centre.size(); ++c)
-    if (components.info[c].area > 0.0) centre[c] /= components.info[c].area;
-  for (std::uint32_t f = 0; f < faces; ++f) {
-    const std::uint32_t c = components.of_face[f];
-    components.info[c].volume += glm::dot(glm::dvec3(graph.centre[f]) - centre[c], glm::dvec3(graph.normal[f])) *
-                                 static_cast<double>(graph.area[f]) / 3.0;
+  using Sums = std::vector<ComponentSum>;
+  const Sums sums = parallel_reduce<Sums>(
+      faces, kChunk, Sums(),
+      [&](std::int64_t begin, std::int64_t end) {
+        Sums part;
+        std::unordered_map<std::uint32_t, std::size_t> place;
+        std::size_t last = 0;
+        for (auto f = static_cast<std::uint32_t>(begin); f < static_cast<std::uint64_t>(end); ++f) {
+          const std::uint32_t c = components.of_face[f];
+          if (part.empty() || part[last].component != c)
+            last = static_cast<std::size_t>(&sum_of(part, place, c) - part.data());
+          add_face(part[last], model, scene, label, f);
+        }
+        return part;
+      },
+      [&](Sums all, const Sums& part) {
+        all.resize(components.info.size());
+        for (const ComponentSum& sum : part) add(all[sum.component], sum);
+        return all;
+      });
+  for (std::size_t c = 0; c < sums.size(); ++c) {
+    FaceComponents::Info& info = components.info[c];
+    const std::uint32_t first = info.first_face;
+    info = sums[c].info;
+    info.first_face = first;
+    // Cones from the centre of area: those from the origin less what the shift takes.
+    if (info.area > 0.0) info.volume -= glm::dot(sums[c].area_centre / info.area, sums[c].area_normal) / 3.0;
   }
   return components;
 }
