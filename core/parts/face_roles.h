@@ -29,7 +29,7 @@ struct FaceScene {
   bool observed() const noexcept { return air.size() == graph.faces(); }
 };
 
-/// The expensive half: floods the air for every crack radius and measures depths.
+/// The expensive half: finds the exterior (find_exterior) and measures depths. Borrows the graph.
 Result<FaceScene> observe_faces(const SurfaceModel& model, const FaceGraph& graph, const SegmentOptions& options,
                                 Progress& progress);
 
