@@ -77,12 +77,17 @@ Result<VerbResult> recompress(const Options& options, Progress& progress) {
   DUBSAR_ASSIGN(const SettleStats stats, settle_for_exa(model, settle, progress));
   DUBSAR_ASSIGN(const ExaStats after, write_exa(options.out, model, progress));
   VerbResult result;
-  result.text =
-      fmt::format("{}: {} bytes, before {}; vertices moved off the surface by {:.4f} of a grid step at most\n",
-                  options.out, after.bytes, before.stats.bytes, stats.max_error_vox);
+  result.text = fmt::format(
+      "{}: {} bytes, before {}; vertices moved off the surface by {:.4f} of a grid step at most, normals by "
+      "{:.2f} degrees on average, {:.1f} % of the shape classes changed\n",
+      options.out, after.bytes, before.stats.bytes, stats.max_error_vox, stats.normal_error_deg,
+      100.0 * stats.shape_changed_fraction);
   result.json = stats_json(after);
   result.json["bytes_before"] = before.stats.bytes;
   result.json["max_error_vox"] = stats.max_error_vox;
+  result.json["p95_error_vox"] = stats.p95_error_vox;
+  result.json["normal_error_deg"] = stats.normal_error_deg;
+  result.json["shape_changed_fraction"] = stats.shape_changed_fraction;
   return result;
 }
 }  // namespace
