@@ -41,6 +41,7 @@ Verb add_exa_verb(Arguments program);
 Verb add_export_verb(Arguments program);
 Verb add_fatcross_verb(Arguments program);
 Verb add_render_verb(Arguments program);
+Verb add_report_verb(Arguments program);
 Verb add_show_verb(Arguments program);
 Verb add_view_verb(Arguments program);
 Verb add_doctor_verb(Arguments program);

@@ -142,7 +142,7 @@ std::string facts_text(const SurfaceFacts& facts) {
   for (const PartFacts& part : facts.parts)
     if (!crumbs(part))
       text += fmt::format("  {:<{}}  {}, {}{}\n", part.name, longest, size_text(part.size, mm),
-                        volume_text(part.volume, mm), part.watertight ? "" : ", open");
+                          volume_text(part.volume, mm), part.watertight ? "" : ", open");
   if (facts.upright) text += fmt::format("  {:<{}}  (width x height x thickness)\n", "", longest);
   for (const PartFacts& part : facts.parts)
     if (crumbs(part)) text += fmt::format("  and {}: {}\n", part.name, area_text(part.area, mm));

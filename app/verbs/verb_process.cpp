@@ -94,7 +94,7 @@ std::string summary(const std::string& out, const SurfaceFacts& facts) {
   std::string text = fmt::format("{}: {}\n\n{}", out, what_it_is(facts), facts_text(facts));
   if (!facts.millimetres) text += "\nThe scan does not say how large its voxels are: give --voxel-size.\n";
   text += "\nNext:\n";
-  for (const char* const verb : {"view", "fatcross", "export"})
+  for (const char* const verb : {"view", "fatcross", "report"})
     text += fmt::format("  dubsar {} {}\n", verb, quoted(out));
   return text;
 }

@@ -147,7 +147,7 @@ Result<Image> read_jpeg(const std::filesystem::path& path, const Budget& budget)
   return decode_jpeg(std::as_bytes(std::span(bytes.data(), bytes.size())), path.string(), budget);
 }
 
-Result<void> write_jpeg(const std::filesystem::path& path, const Image& image, const JpegOptions& options) {
+Result<std::string> encode_jpeg(const Image& image, const JpegOptions& options) {
   if (image.width < 1 || image.height < 1 || image.width > kLargestSize || image.height > kLargestSize ||
       (image.channels != 3 && image.channels != 4) ||
       image.pixels.size() != static_cast<std::size_t>(image.width) * image.height * image.channels)
@@ -157,21 +157,23 @@ Result<void> write_jpeg(const std::filesystem::path& path, const Image& image, c
   if (options.quality < 1 || options.quality > 100)
     return fail(ErrorKind::kUsage, "jpeg: quality {} found, expected 1 to 100", options.quality);
   if (!opaque(image))
-    return fail(ErrorKind::kUsage, "jpeg: {} shall be written with transparency, which JPEG has not; take PNG or TIFF",
-                path.string());
+    return fail(ErrorKind::kUsage, "jpeg: a picture with transparency found, which JPEG has not; take PNG or TIFF");
   const std::string xmp = options.xmp.empty() ? std::string() : std::string(kXmpMark) + options.xmp;
   if (xmp.size() > kMostMarkerBytes)
     return fail(ErrorKind::kUsage, "jpeg: {} bytes of XMP found, expected at most {}; shorten the title or the rights",
                 xmp.size(), kMostMarkerBytes);
-  DUBSAR_ASSIGN(AtomicFile file, AtomicFile::create(path));
   Encoder encoder;
   encoder.jpeg.err = jpeg_std_error(&encoder.errors);
   encoder.errors.error_exit = on_encoder_error;
   encoder.jpeg.client_data = &encoder;
   if (!encode(&encoder, &image, &options, &xmp))
-    return fail(ErrorKind::kInternal, "jpeg: cannot encode {}: {}", path.string(), encoder.message.data());
-  DUBSAR_TRY(file.write(std::as_bytes(std::span(encoder.bytes, encoder.size))));
-  return file.commit();
+    return fail(ErrorKind::kInternal, "jpeg: cannot encode: {}", encoder.message.data());
+  return std::string(reinterpret_cast<const char*>(encoder.bytes), encoder.size);
+}
+
+Result<void> write_jpeg(const std::filesystem::path& path, const Image& image, const JpegOptions& options) {
+  DUBSAR_ASSIGN(const std::string bytes, encode_jpeg(image, options));
+  return write_file_atomically(path, std::string_view(bytes));
 }
 
 }  // namespace dubsar

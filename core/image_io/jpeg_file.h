@@ -28,6 +28,10 @@ struct JpegOptions {
   std::string xmp{};  ///< a whole XMP packet of at most 65 kB; empty: none
 };
 
+/// The bytes of a file of an RGB picture, or an opaque RGBA one, with the sRGB profile; the same picture gives the same
+/// bytes. kUsage: an empty picture, one with transparency (JPEG has none), more than 65500 pixels a side.
+Result<std::string> encode_jpeg(const Image& image, const JpegOptions& options = {});
+
 /// Writes an RGB picture, or an opaque RGBA one, with the sRGB profile. The file appears whole or not at all; the same
 /// picture gives the same bytes. kUsage: an empty picture, one with transparency (JPEG has none), more than 65500
 /// pixels a side; the errors of AtomicFile.

@@ -1,0 +1,141 @@
+#include "app/publish/report_page.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/publish/page_files.h"
+#include "core/base/json_text.h"
+
+namespace dubsar::app {
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
+  return out;
+}
+
+std::string_view page_file(std::string_view name) {
+  for (const auto& [file, text] : page_files())
+    if (file == name) return text;
+  return {};
+}
+
+std::string parts_table(const SurfaceFacts& facts) {
+  const char* const unit = facts.millimetres ? "mm" : "voxels";
+  std::string out = fmt::format(
+      "<div class=\"scroll\"><table><tr><th>part</th><th>{}</th><th>surface, {}²</th><th>volume, {}³</th>"
+      "<th>not in the scan</th><th></th></tr>\n",
+      facts.upright ? fmt::format("width × height × thickness, {}", unit) : fmt::format("size, {}", unit), unit, unit);
+  for (const PartFacts& part : facts.parts)
+    out += fmt::format(
+        "<tr><td>{}</td><td>{:.1f} × {:.1f} × {:.1f}</td><td>{:.0f}</td><td>{:.0f}</td><td>{:.0f} {}² ({:.1f} %)</td>"
+        "<td>{}</td></tr>\n",
+        escaped(part.name), part.size.x, part.size.y, part.size.z, part.area, part.volume, part.inferred_area, unit,
+        100.0 * part.inferred_share(), part.watertight ? "watertight" : "open");
+  return out + "</table></div>\n";
+}
+
+std::string evidence(const SurfaceFacts& facts) {
+  std::string out;
+  for (const PartFacts& part : facts.parts) {
+    if (part.inferred_area <= 0.0) continue;
+    out += fmt::format(
+        "<p>{}: {:.1f} % of the surface is measured, {:.1f} % is not in the scan: there it was closed smoothly, and is "
+        "blue in the picture above and hatched in those below.</p><div class=\"bar\"><i "
+        "style=\"width:{:.2f}%\"></i></div>\n",
+        escaped(part.name), 100.0 * (1.0 - part.inferred_share()), 100.0 * part.inferred_share(),
+        100.0 * part.inferred_share());
+  }
+  return out.empty() ? "<p>All of the surface is in the scan.</p>\n" : out;
+}
+
+/// What a reader wants to know of how it was made, and all of it below.
+std::string provenance(const ReportContent& content) {
+  if (content.provenance.empty()) return "<p class=\"dim\">The file does not say how it was made.</p>\n";
+  const auto json = nlohmann::json::parse(content.provenance, nullptr, false);
+  if (json.is_discarded()) return "<pre>" + escaped(content.provenance) + "</pre>\n";
+  std::string rows;
+  const auto row = [&](const char* name, const nlohmann::json::json_pointer& at) {
+    if (!json.contains(at) || json.at(at).is_null()) return;
+    const nlohmann::json& value = json.at(at);
+    const std::string text = value.is_string() ? value.get<std::string>()
+                             : value.is_number_float()
+                                 ? fmt::format("{:.6g}", value.get<double>())
+                                 : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    rows += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", name, escaped(text));
+  };
+  using Pointer = nlohmann::json::json_pointer;
+  row("scan", Pointer("/input/path"));
+  row("data set", Pointer("/input/dataset"));
+  row("voxels", Pointer("/input/file_dims"));
+  row("voxel size, mm", Pointer("/input/voxel_size_mm"));
+  row("voxel size from", Pointer("/input/provenance"));
+  row("noise, dB", Pointer("/estimates/snr_db"));
+  row("threshold", Pointer("/estimates/threshold"));
+  return "<div class=\"scroll\"><table>" + rows + "</table></div>\n<details><summary>all parameters</summary><pre>" +
+         escaped(dump_json_lines(json)) + "</pre></details>\n";
+}
+
+}  // namespace
+
+std::string base64(const std::string& bytes) {
+  constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t three = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      three = three << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? kLetters[three >> (18 - 6 * k) & 63] : '=';
+  }
+  return out;
+}
+
+std::string report_page(const ReportContent& content) {
+  std::string out = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, "
+      "initial-scale=1\">\n<title>{0}</title>\n<style>\n{1}</style>\n"
+      "</head>\n<body>\n<h1>{0}</h1>\n<p class=\"dim\">{2}{3}</p>\n",
+      escaped(content.title), page_file("page.css"), escaped(what_it_is(content.facts)),
+      content.institution.empty() ? "" : ", " + escaped(content.institution));
+  out +=
+      "<div id=\"stage\"><canvas></canvas><p>This page shows the surface with JavaScript.</p></div>\n<div "
+      "class=\"desk\"></div>\n";
+  if (content.simplified)
+    out +=
+        "<p class=\"dim\">Here the surface has fewer triangles where it is flat; the pictures below show all of "
+        "it.</p>\n";
+  out += "<h2>Parts</h2>\n" + parts_table(content.facts);
+  out += "<h2>Evidence</h2>\n" + evidence(content.facts);
+  out += "<h2>Six sides</h2>\n<div class=\"sides\">\n";
+  for (const ReportPicture& picture : content.pictures)
+    out += fmt::format(
+        "<figure><img alt=\"{0}\" src=\"data:image/jpeg;base64,{1}\"><figcaption>{0}</figcaption></figure>\n",
+        escaped(picture.caption), base64(picture.jpeg));
+  out += "</div>\n<h2>How it was made</h2>\n" + provenance(content);
+  out += fmt::format("<p class=\"dim\">Made by {}.{}</p>\n", escaped(content.made_by),
+                     content.rights.empty() ? "" : " " + escaped(content.rights));
+  out += "<script type=\"application/octet-stream\" id=\"surface\">" + base64(content.glb) + "</script>\n<script>\n";
+  out += page_file("viewer.js");
+  return out + "</script>\n</body>\n</html>\n";
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,63 @@
+#include "app/publish/report_page.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace dubsar::app {
+namespace {
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(Base64, IsThatOfTheStandardsExamples) {
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("f"), "Zg==");
+  EXPECT_EQ(base64("fo"), "Zm8=");
+  EXPECT_EQ(base64("foo"), "Zm9v");
+  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(base64(std::string("\xff\xfe\xfd\0", 4)), "//79AA==");
+}
+
+ReportContent content() {
+  ReportContent content;
+  content.title = "AO 8295 <script>alert(1)</script>";
+  content.made_by = "dubsar";
+  content.rights = "\"A & B\"";
+  PartFacts tablet;
+  tablet.name = "tablet";
+  tablet.size = {52.2, 54.3, 13.9};
+  tablet.area = 1000.0;
+  tablet.inferred_area = 117.0;
+  content.facts.parts = {tablet};
+  content.pictures = {{"obverse", "jpeg"}};
+  content.glb = "glTF";
+  content.provenance = R"({"input":{"path":"</pre><b>scan.h5"}})";
+  return content;
+}
+
+TEST(ReportPage, NeedsNothingButItself) {
+  const std::string page = report_page(content());
+  for (const char* reference : {"http:", "https:", "src=\"/", "href=", "@import", "url(", "fetch(", "XMLHttpRequest"})
+    EXPECT_THAT(page, Not(HasSubstr(reference)));
+  EXPECT_THAT(page, HasSubstr("src=\"data:image/jpeg;base64,anBlZw==\""));
+  EXPECT_THAT(page, HasSubstr("id=\"surface\">Z2xURg==</script>"));
+}
+
+TEST(ReportPage, TextsOfFilesAndPeopleAreTextAndNothingElse) {
+  const std::string page = report_page(content());
+  EXPECT_THAT(page, HasSubstr("AO 8295 &lt;script&gt;alert(1)&lt;/script&gt;"));
+  EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
+  EXPECT_THAT(page, HasSubstr("&quot;A &amp; B&quot;"));
+  EXPECT_THAT(page, Not(HasSubstr("<b>scan.h5")));
+  ReportContent broken = content();
+  broken.provenance = "{not json <i>";
+  EXPECT_THAT(report_page(broken), HasSubstr("{not json &lt;i&gt;"));
+}
+
+TEST(ReportPage, SaysSizesAndWhatIsNotInTheScan) {
+  const std::string page = report_page(content());
+  EXPECT_THAT(page, HasSubstr("52.2 × 54.3 × 13.9"));
+  EXPECT_THAT(page, HasSubstr("88.3 % of the surface is measured, 11.7 % is not in the scan"));
+}
+
+}  // namespace
+}  // namespace dubsar::app
