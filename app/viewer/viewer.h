@@ -113,7 +113,7 @@ class Viewer final : public Workplace {
     std::size_t steps = 0;        ///< how many were said
     std::optional<Error> failed;  ///< what became of one
     std::uint64_t presses = 0;
-    Guidance guidance{};  ///< of whoever leads the session
+    Guidance guidance{};            ///< of whoever leads the session
     bool recording_failed = false;  // and told
   };
   /// What tools need, and what is known of the surface.

@@ -10,6 +10,22 @@ namespace {
 constexpr OneEuroOptions kPalmFilter{2.0, 30.0, 3.0};
 constexpr TimestampNs kVelocityWindow = 60'000'000;
 constexpr TimestampNs kRest = 100'000'000;
+constexpr double kForgetsOpen_per_s = 0.25;  // of the strength that an open hand had
+}  // namespace
+
+namespace {
+
+/// The index finger is stretched: from knuckle to tip it is 0.7 times as long as from wrist to knuckle then. False
+/// where the joints are not known.
+bool points(const HandFrame& hand) {
+  const auto &wrist = hand.joint(HandJoint::kWrist), &knuckle = hand.joint(HandJoint::kIndexProximal),
+             &tip = hand.joint(HandJoint::kIndexTip);
+  if (!wrist.valid || !knuckle.valid || !tip.valid) return false;
+  constexpr double kStretched = 0.6;
+  return glm::length(tip.pose.position_m - knuckle.pose.position_m) >
+         kStretched * glm::length(knuckle.pose.position_m - wrist.pose.position_m);
+}
+
 }  // namespace
 
 GestureRecognizer::GestureRecognizer(const GestureOptions& options)
@@ -23,6 +39,7 @@ void GestureRecognizer::lose(TimestampNs now) {
   if (grabbing_) add(now, GestureKind::kGrab, GesturePhase::kCancel);
   if (pinching_) add(now, GestureKind::kPinch, GesturePhase::kCancel);
   grabbing_ = pinching_ = grab_armed_ = pinch_armed_ = dwelt_ = false;
+  open_grab_ = 1.0;
   came_.reset();
   swiped_.reset();
   dwell_since_.reset();
@@ -42,6 +59,7 @@ void GestureRecognizer::update(TimestampNs now, const HandFrame* hand) {
     return;
   }
   if (came_ && now - last_seen_ > options_.hold_ns) lose(now);  // polled rarely: the gap shows only now
+  const TimestampNs since_ns = last_sample_ < 0 ? 0 : hand->time - last_sample_;
   last_sample_ = hand->time;
   last_seen_ = now;
   if (!came_) came_ = now;
@@ -49,25 +67,34 @@ void GestureRecognizer::update(TimestampNs now, const HandFrame* hand) {
   cursor_m_ = cursor_point_m(*hand);
   history_.add({hand->time, hand->palm.position_m});
   velocity_mps_ = history_.velocity_mps();
-  grab_and_pinch(now, *hand);
+  grab_and_pinch(now, *hand, since_ns);
   swipe(now);
   dwell(now);
 }
 
-void GestureRecognizer::grab_and_pinch(TimestampNs now, const HandFrame& hand) {
+void GestureRecognizer::grab_and_pinch(TimestampNs now, const HandFrame& hand, TimestampNs since_ns) {
   const bool may_begin = now - *came_ >= options_.cooldown_ns;
-  if (grabbing_ && hand.grab_strength <= options_.grab_off) {
+  const double grab = hand.grab_strength;
+  closest_grab_ = std::max(closest_grab_, grab);
+  const bool lets_go =
+      closest_grab_ >= options_.grab_on ? grab <= options_.grab_off : grab <= closest_grab_ - options_.grab_let_go;
+  const bool gently = grab >= options_.grab_gentle && grab - open_grab_ >= options_.grab_rise && !points(hand) &&
+                      glm::length(velocity_mps_) <= options_.grab_rest_mps;
+  if (!grabbing_) open_grab_ = std::min(grab, open_grab_ + kForgetsOpen_per_s * 1e-9 * static_cast<double>(since_ns));
+  if (grabbing_ && lets_go) {
     grabbing_ = false;
+    open_grab_ = grab;
     pinch_armed_ = false;  // the fingers of an opening fist pass through a pinch
     add(now, GestureKind::kGrab, GesturePhase::kEnd);
-  } else if (!grabbing_ && may_begin && grab_armed_ && hand.grab_strength >= options_.grab_on) {
+  } else if (!grabbing_ && may_begin && grab_armed_ && (grab >= options_.grab_on || gently)) {
     if (pinching_) add(now, GestureKind::kPinch, GesturePhase::kCancel);
     pinching_ = false;
     grabbing_ = true;
     grab_armed_ = false;
+    closest_grab_ = grab;
     add(now, GestureKind::kGrab, GesturePhase::kBegin);
   }
-  if (hand.grab_strength <= options_.grab_off) grab_armed_ = true;
+  if (grab <= options_.grab_off) grab_armed_ = true;
   if (grabbing_) return;
   if (pinching_ && hand.pinch_distance_m >= options_.pinch_off_m) {
     pinching_ = false;

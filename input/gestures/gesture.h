@@ -51,7 +51,7 @@ class GestureRecognizer {
 
  private:
   void lose(TimestampNs now);
-  void grab_and_pinch(TimestampNs now, const HandFrame& hand);
+  void grab_and_pinch(TimestampNs now, const HandFrame& hand, TimestampNs since_ns);
   void swipe(TimestampNs now);
   void dwell(TimestampNs now);
   void add(TimestampNs now, GestureKind kind, GesturePhase phase, SwipeDirection direction = {});
@@ -64,6 +64,7 @@ class GestureRecognizer {
   TimestampNs last_seen_ = 0, last_sample_ = -1, slow_since_ = 0;
   bool seen_now_ = false, grabbing_ = false, pinching_ = false;
   bool grab_armed_ = false, pinch_armed_ = false;  // the hand was seen open
+  double open_grab_ = 1.0, closest_grab_ = 0.0;    // how open it was lately; how closed in this grab
   bool dwelt_ = false;                             // once per rest
   bool swipe_ended_ = true, swipe_rested_ = true;
   int swipe_axis_ = 0;

@@ -7,7 +7,11 @@
 namespace dubsar {
 
 struct GestureOptions {
-  double grab_on = 0.8, grab_off = 0.7;            ///< grab strength
+  double grab_on = 0.8, grab_off = 0.7;  ///< grab strength
+  /// Who holds the air as an object never makes a fist: a hand that rests and closes by `rise` to at least `gentle`
+  /// grabs too, and lets go when it has opened by `let_go` from its closest.
+  double grab_gentle = 0.45, grab_rise = 0.28, grab_let_go = 0.2, grab_rest_mps = 0.15;
+  double pull_start_m = 0.025;  ///< a grabbing hand that moves this far towards its owner or away first, zooms
   double pinch_on_m = 0.025, pinch_off_m = 0.030;  ///< thumb tip to index tip
   double drag_start_m = 0.010;                     ///< a grabbing hand moves this far before anything follows it
   double roll_start_rad = 0.105;                   ///< two hands turn this far before the object rolls

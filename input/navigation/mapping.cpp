@@ -70,6 +70,7 @@ Result<HandMapping> read_hands(const json& object, const std::string& where) {
   JsonFields f(object, where);
   HandMapping out;
   out.grab = read_action(f, "grab", kDrags);
+  out.pull = read_action(f, "pull", {Action::kNone, Action::kZoom});
   out.two_hands = read_action(f, "two_hands", {Action::kNone, Action::kZoom, Action::kZoomAndRoll});
   out.pinch = read_action(f, "pinch", kDrags);
   out.swipe = read_action(f, "swipe", {Action::kNone, Action::kNextSide});
@@ -92,6 +93,11 @@ Result<GestureOptions> read_gestures(const json& object, const std::string& wher
   GestureOptions out;
   out.grab_on = f.number("grab_on", 0.1, 1);
   out.grab_off = f.number("grab_off", 0, 1);
+  out.grab_gentle = f.number("grab_gentle", 0.1, 1);
+  out.grab_rise = f.number("grab_rise", 0.05, 1);
+  out.grab_let_go = f.number("grab_let_go", 0.05, 1);
+  out.grab_rest_mps = 1e-3 * f.number("grab_rest_mm_per_s", 1, 5000);
+  out.pull_start_m = 1e-3 * f.number("pull_start_mm", 1, 200);
   out.pinch_on_m = 1e-3 * f.number("pinch_on_mm", 5, 60);
   out.pinch_off_m = 1e-3 * f.number("pinch_off_mm", 5, 100);
   out.drag_start_m = 1e-3 * f.number("drag_start_mm", 0, 100);

@@ -34,7 +34,7 @@ std::string_view action_name(Action action) noexcept;
 enum class Control { kNone, kMouse, kKeyboard, kPuck, kHands };
 
 struct HandMapping {
-  Action grab{}, two_hands{}, pinch{}, swipe{}, dwell{};
+  Action grab{}, pull{}, two_hands{}, pinch{}, swipe{}, dwell{};
   double turn_deg_per_mm = 0, light_deg_per_mm = 0;
   double inertia_s = 0;               ///< decay time of the turn after a throw; 0: none
   double fastest_turn_deg_per_s = 0;  ///< the view never turns faster under a hand, whatever the tracker says

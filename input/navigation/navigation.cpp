@@ -23,6 +23,8 @@ constexpr double kShortestGlideS = 0.25;
 constexpr TimestampNs kDoubleClickNs = 400'000'000;
 constexpr double kSamePlace = 0.01;  // heights of the window
 constexpr double kFine = 0.25;
+constexpr double kPullsRatherThanTurns = 1.5;  // of the way to the side
+constexpr double kPullPerMetre = 7.0;          // logarithm of the zoom: a forearm's way is a factor of 3
 constexpr double kLightLow = 5.0, kLightHigh = 85.0;
 
 double seconds(TimestampNs ns) { return 1e-9 * static_cast<double>(ns); }
@@ -266,7 +268,7 @@ void Navigator::begin_or_end_hand_modes(TimestampNs now) {
   };
   const bool same_hand = wanted == HandMode::kTwoGrabs || wanted == HandMode::kNone || leads(leading_);
   if (wanted == mode_ && same_hand) return;
-  if (released && wanted == HandMode::kNone && mapping_.hands.grab == Action::kRotate && past_dead_zone_) {
+  if (released && wanted == HandMode::kNone && mapping_.hands.grab == Action::kRotate && past_dead_zone_ && !pulls_) {
     const glm::dvec3 v = hands_[leading_].velocity_mps() * 1e3 * mapping_.hands.turn_deg_per_mm;
     const double speed = std::hypot(v.x, v.y);
     if (speed > kThrowDegPerS && mapping_.hands.inertia_s > 0)
@@ -274,7 +276,7 @@ void Navigator::begin_or_end_hand_modes(TimestampNs now) {
           kRad * std::min(1.0, mapping_.hands.fastest_turn_deg_per_s / speed) * glm::dvec3(-v.y, v.x, 0);
   }
   mode_ = HandMode::kNone;
-  past_dead_zone_ = rolls_ = zooms_ = false;
+  past_dead_zone_ = rolls_ = zooms_ = pulls_ = false;
   if (lost) drop_pending();
   if (wanted == HandMode::kNone) return;
   if (!claim(Control::kHands, now)) {
@@ -300,7 +302,20 @@ void Navigator::follow_hands() {
   if (mode_ == HandMode::kOneGrab || mode_ == HandMode::kPinch) {
     if (!hands_[leading_].seen_now()) return;
     const glm::dvec3 moved = hands_[leading_].position_m() - anchor_m_;
-    if (!past_dead_zone_ && mode_ == HandMode::kOneGrab && std::hypot(moved.x, moved.y) < start_m) return;
+    const double sideways = std::hypot(moved.x, moved.y);
+    if (!past_dead_zone_ && mode_ == HandMode::kOneGrab && mapping_.hands.pull != Action::kNone && !pulls_)
+      pulls_ =
+          std::abs(moved.z) >= mapping_.gestures.pull_start_m && std::abs(moved.z) > kPullsRatherThanTurns * sideways;
+    if (pulls_) {
+      if (past_dead_zone_) pending_zoom_ += kPullPerMetre * moved.z;
+      past_dead_zone_ = true;
+      anchor_m_ = hands_[leading_].position_m();
+      return;
+    }
+    if (!past_dead_zone_ && mode_ == HandMode::kOneGrab && sideways < start_m) return;
+    if (!past_dead_zone_ && mode_ == HandMode::kOneGrab && mapping_.hands.pull != Action::kNone &&
+        std::abs(moved.z) > kPullsRatherThanTurns * sideways)
+      return;  // not decided yet
     anchor_m_ = hands_[leading_].position_m();
     if (std::exchange(past_dead_zone_, true) || mode_ == HandMode::kPinch) {
       const Action action = mode_ == HandMode::kPinch ? mapping_.hands.pinch : mapping_.hands.grab;

@@ -90,7 +90,7 @@ class Navigator {
   HandMode mode_ = HandMode::kNone;
   std::size_t leading_ = 0;      // the hand of one-handed modes
   bool needs_new_grab_ = false;  // after two hands, a remaining fist does not turn the object
-  bool past_dead_zone_ = false, rolls_ = false, zooms_ = false;
+  bool past_dead_zone_ = false, rolls_ = false, zooms_ = false, pulls_ = false;
   glm::dvec3 anchor_m_{0.0};               // of the leading hand, moves with it
   double span_m_ = 0.0, angle_rad_ = 0.0;  // of the line between two hands, where it was last used
   glm::dvec3 pending_turn_rad_{0.0};       // asked for by hands, spent at a bounded speed

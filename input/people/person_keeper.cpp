@@ -14,6 +14,11 @@ constexpr double kLargestTurnTan = 1.43;  // a hand that reaches in from the sid
 constexpr double kBodyM = 0.75, kShortestArmM = 0.3, kLongestArmM = 0.9;  // bodies stand 0.75 m from the screen
 constexpr double kSameShoulderM = 0.2, kShouldersMinM = 0.15, kShouldersMaxM = 0.55;
 constexpr std::size_t kMostStrangers = 16;
+constexpr double kClearlyBetterM = 0.25;
+constexpr TimestampNs kMakesRoom = 500'000'000;
+// A hand's shoulder, as its fingers tell it, is on its side of the head, and not far from it; without a camera the head
+// is somewhere before the panel's middle.
+constexpr double kFarthestShoulderM = 0.33, kWrongSideM = 0.05, kHeadUnknownM = 0.12;
 constexpr double kHeadMarginM = 0.03;  // shoulders of two who stand close are as near to one head as to the other
 constexpr double kPairMinM = 0.06, kPairMaxM = 0.70, kPairDepthM = 0.30;
 
@@ -52,7 +57,26 @@ bool inside(const HandZone& zone, const glm::dvec3& p) {
 
 }  // namespace
 
-const HeadFrame* HeadKeeper::update(TimestampNs now, std::span<const HeadFrame> heads) {
+namespace {
+
+/// Who stands nearest and most before the middle.
+double rank_of(const glm::dvec3& at_m) { return glm::length(at_m) + 2.0 * std::abs(at_m.x); }
+
+const HeadFrame* foremost(std::span<const HeadFrame> heads) {
+  const HeadFrame* best = nullptr;
+  double least = std::numeric_limits<double>::max();
+  for (const HeadFrame& head : heads) {
+    const auto at = place_of(head);
+    if (!at || !head.tracked || rank_of(*at) >= least) continue;
+    least = rank_of(*at);
+    best = &head;
+  }
+  return best;
+}
+
+}  // namespace
+
+const HeadFrame* HeadKeeper::update(TimestampNs now, std::span<const HeadFrame> heads, bool rests) {
   const HeadFrame* best = nullptr;
   double least = std::numeric_limits<double>::max();
   if (place_m_ && now - seen_ <= kGone) {
@@ -68,15 +92,17 @@ const HeadFrame* HeadKeeper::update(TimestampNs now, std::span<const HeadFrame> 
     }
   } else {
     place_m_.reset();
-    for (const HeadFrame& head : heads) {
-      const auto at = place_of(head);
-      if (!at || !head.tracked) continue;
-      const double rank = glm::length(*at) + 2.0 * std::abs(at->x);
-      if (rank < least) {
-        least = rank;
-        best = &head;
-      }
-    }
+    best = foremost(heads);
+  }
+  const HeadFrame* const other = best != nullptr ? foremost(heads) : nullptr;
+  const double margin_m = rests ? kClearlyBetterM : 2.0 * kClearlyBetterM;
+  if (other == nullptr || other == best || rank_of(*place_of(*other)) + margin_m > rank_of(*place_of(*best))) {
+    better_since_ = -1;
+  } else if (better_since_ < 0 || better_ != other->id) {
+    better_ = other->id;
+    better_since_ = now;
+  } else if (now - better_since_ >= (rests ? kMakesRoom : 2 * kMakesRoom)) {
+    best = other;
   }
   if (best == nullptr) return nullptr;
   place_m_ = place_of(*best);
@@ -96,6 +122,12 @@ bool HandKeeper::may_enter(const HandFrame& hand, const Slot& other, std::span<c
           aside_m(hand, *eyes) + kHeadMarginM < aside_m(hand, *kept_head_m))
         return false;
     }
+  const double beside = shoulder.x - (kept_head_m ? kept_head_m->x : 0.0);
+  const double unsure = kept_head_m ? 0.0 : kHeadUnknownM;
+  if (std::abs(beside) > kFarthestShoulderM + 0.5 * unsure) return false;
+  if (hand.chirality != Chirality::kUnknown &&
+      (hand.chirality == Chirality::kRight ? beside : -beside) < -kWrongSideM - unsure)
+    return false;
   if (!other.taken) return true;
   const bool known = hand.chirality != Chirality::kUnknown && other.chirality != Chirality::kUnknown;
   if (known && hand.chirality == other.chirality) return false;
@@ -162,7 +194,10 @@ std::array<const HandFrame*, 2> HandKeeper::update(TimestampNs now, std::span<co
 
 KeptPerson PersonKeeper::update(TimestampNs now, const InputFrame& frame) {
   KeptPerson out;
-  if (const HeadFrame* const head = head_.update(now, frame.heads)) out.head = *head;
+  const auto before = head_.place_m();
+  if (const HeadFrame* const head = head_.update(now, frame.heads, hands_.empty())) out.head = *head;
+  const auto place = head_.place_m();
+  if (before && place && glm::length(*place - *before) > kSameHeadM) hands_.let_go();  // somebody else's
   out.hands = hands_.update(now, frame.hands, frame.heads, head_.place_m());
   return out;
 }

@@ -17,15 +17,16 @@ class HeadKeeper {
  public:
   /// The kept head if it is in `heads`, else null. It is known again by its tracker's id, or, where the tracker gave a
   /// new one, by its place (300 mm). When it has been away for `gone_ns`, the head with the least distance plus twice
-  /// its sideways offset takes over.
-  const HeadFrame* update(TimestampNs now, std::span<const HeadFrame> heads);
+  /// its sideways offset takes over; when `rests`, which is when the kept person's hands are down, also one for whom
+  /// that is less by 250 mm for 0.5 s: who looked on from beside makes room for who stands before the panel.
+  const HeadFrame* update(TimestampNs now, std::span<const HeadFrame> heads, bool rests = false);
   std::optional<glm::dvec3> place_m() const noexcept { return place_m_; }
 
  private:
   static constexpr TimestampNs kGone = 1'000'000'000;
   std::optional<glm::dvec3> place_m_;
-  std::uint32_t id_ = 0;
-  TimestampNs seen_ = 0;
+  std::uint32_t id_ = 0, better_ = 0;
+  TimestampNs seen_ = 0, better_since_ = -1;
 };
 
 struct HandZone {
@@ -44,6 +45,10 @@ class HandKeeper {
   /// has been away for 1.5 s.
   std::array<const HandFrame*, 2> update(TimestampNs now, std::span<const HandFrame> hands,
                                          std::span<const HeadFrame> heads, std::optional<glm::dvec3> kept_head_m);
+  /// All slots are free.
+  void let_go() { slots_ = {}; }
+  /// Nobody's hand is kept.
+  bool empty() const noexcept { return !slots_[0].taken && !slots_[1].taken; }
 
  private:
   static constexpr TimestampNs kGone = 1'500'000'000;

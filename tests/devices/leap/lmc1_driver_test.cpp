@@ -158,8 +158,8 @@ TEST(Lmc1Driver, ExposureAndDarkFramesAreTheDevices) {
   ASSERT_TRUE(driver->start());
   EXPECT_EQ(simulator.exposure_us(), 333);
   Frame frame;
-  EXPECT_TRUE(eventually([&] { return driver->poll(frame) && frame.dark; }));
-  EXPECT_TRUE(eventually([&] { return driver->poll(frame) && !frame.dark; }));
+  EXPECT_TRUE(eventually([&] { return driver->wait(frame, milliseconds(50)) && frame.dark; }));
+  EXPECT_TRUE(eventually([&] { return driver->wait(frame, milliseconds(50)) && !frame.dark; }));
   options.exposure_us = 5;
   EXPECT_FALSE(make_lmc1_driver([&] { return simulator.open(); }, options, clock)->start());
 }

@@ -268,8 +268,8 @@ TEST(RigelDriver, ExposureAndDarkFramesAreTheDevices) {
   ASSERT_TRUE(driver->start());
   EXPECT_EQ(simulator.exposure_us(), 777);
   Frame frame;
-  EXPECT_TRUE(eventually([&] { return driver->poll(frame) && frame.dark; }));
-  EXPECT_TRUE(eventually([&] { return driver->poll(frame) && !frame.dark; }));
+  EXPECT_TRUE(eventually([&] { return driver->wait(frame, milliseconds(50)) && frame.dark; }));
+  EXPECT_TRUE(eventually([&] { return driver->wait(frame, milliseconds(50)) && !frame.dark; }));
   options.exposure_us = 5000;
   EXPECT_FALSE(make_rigel_driver([&] { return simulator.open(); }, options, clock)->start());
   options = quick();

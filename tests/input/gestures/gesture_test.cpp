@@ -9,6 +9,13 @@ namespace {
 
 constexpr TimestampNs kMs = 1'000'000, kStep = 10 * kMs;
 
+/// Fists only.
+GestureOptions firm() {
+  GestureOptions options;
+  options.grab_gentle = 2.0;
+  return options;
+}
+
 /// A hand that is moved by hand, 100 samples a second.
 struct Person {
   GestureRecognizer recognizer;
@@ -16,7 +23,7 @@ struct Person {
   TimestampNs now = 0;
   std::vector<GestureEvent> events;
 
-  Person() {
+  explicit Person(const GestureOptions& options = firm()) : recognizer(options) {
     hand.valid = hand.tracked = true;
     hand.palm.position_m = {0, 0, 0.3};
     hand.pinch_distance_m = 0.06;
@@ -115,6 +122,47 @@ TEST(Gesture, AGrabTakesOverFromAPinchByCancellingIt) {
   EXPECT_FALSE(p.recognizer.pinching());
   EXPECT_EQ(p.count(GestureKind::kPinch, GesturePhase::kCancel), 1);
   EXPECT_EQ(p.count(GestureKind::kPinch, GesturePhase::kEnd), 0);
+}
+
+void set_index(HandFrame& hand, double tip_m) {
+  hand.joint(HandJoint::kWrist) = {Pose{{0, 0, 0.36}, {1, 0, 0, 0}}, 0.01, true, true};
+  hand.joint(HandJoint::kIndexProximal) = {Pose{{0, 0, 0.26}, {1, 0, 0, 0}}, 0.01, true, true};
+  hand.joint(HandJoint::kIndexTip) = {Pose{{0, 0, 0.26 - tip_m}, {1, 0, 0, 0}}, 0.01, true, true};
+}
+
+TEST(Gesture, AHandThatHoldsTheAirAsAnObjectGrabsAndLetsGoWhenItOpens) {
+  Person p{GestureOptions{}};
+  set_index(p.hand, 0.045);
+  p.hand.grab_strength = 0.2;
+  p.steps(60);
+  p.hand.grab_strength = 0.46;
+  p.steps(5);
+  EXPECT_FALSE(p.recognizer.grabbing()) << "closed by less than 0.28";
+  p.hand.grab_strength = 0.62;
+  p.step();
+  EXPECT_TRUE(p.recognizer.grabbing());
+  p.move({0.3, 0.0, 0.0}, 30);
+  EXPECT_TRUE(p.recognizer.grabbing());
+  p.hand.grab_strength = 0.41;
+  p.step();
+  EXPECT_FALSE(p.recognizer.grabbing());
+  EXPECT_EQ(p.count(GestureKind::kGrab, GesturePhase::kEnd), 1);
+}
+
+TEST(Gesture, ClosingAHandOnItsWayAndPointingAreNotGrabs) {
+  Person walks{GestureOptions{}}, points{GestureOptions{}};
+  set_index(walks.hand, 0.045);
+  walks.hand.grab_strength = points.hand.grab_strength = 0.1;
+  walks.steps(60);
+  walks.move({0.4, 0.0, 0.0}, 10);
+  walks.hand.grab_strength = 0.6;
+  walks.move({0.4, 0.0, 0.0}, 20);
+  EXPECT_FALSE(walks.recognizer.grabbing());
+  set_index(points.hand, 0.07);
+  points.steps(60);
+  points.hand.grab_strength = 0.7;
+  points.steps(30);
+  EXPECT_FALSE(points.recognizer.grabbing());
 }
 
 TEST(Gesture, NothingBeginsWithin300MsOfAHandsArrival) {

@@ -46,6 +46,30 @@ TEST(HeadKeeper, KnowsAHeadAgainByItsPlaceAndLetsAnotherInAfterASecond) {
   EXPECT_EQ(keeper.update(1216 * kMs, other)->id, 8u);
 }
 
+TEST(HeadKeeper, WhoLookedOnFromBesideMakesRoomForWhoStandsBeforeThePanel) {
+  const HeadFrame beside = head_at(1, {0.5, 0, 0.6}), before = head_at(2, {0.0, 0, 0.7});
+  for (const bool rests : {true, false}) {
+    HeadKeeper keeper;
+    const std::vector<HeadFrame> alone{beside}, both{beside, before};
+    ASSERT_EQ(keeper.update(0, alone, rests)->id, 1u);
+    EXPECT_EQ(keeper.update(100 * kMs, both, rests)->id, 1u);
+    EXPECT_EQ(keeper.update(580 * kMs, both, rests)->id, 1u);
+    EXPECT_EQ(keeper.update(620 * kMs, both, rests)->id, rests ? 2u : 1u);
+    EXPECT_EQ(keeper.update(1120 * kMs, both, rests)->id, 2u);
+  }
+}
+
+TEST(HandKeeper, AHandWhoseShoulderIsOnTheWrongSideOfTheHeadIsSomebodyElses) {
+  // straight hands: the shoulder is behind them
+  for (const auto& [x, in] :
+       {std::pair{0.1, true}, std::pair{-0.02, true}, std::pair{-0.15, false}, std::pair{0.34, false}}) {
+    HandKeeper keeper;
+    const std::vector<HandFrame> hands{hand_at(1, Chirality::kRight, {x, 0, 0.3})};
+    const std::vector<HeadFrame> heads{head_at(1, {0.0, 0, 0.7})};
+    EXPECT_EQ(keeper.update(0, hands, heads, glm::dvec3(0.0, 0.0, 0.7))[0] != nullptr, in) << x;
+  }
+}
+
 TEST(HandKeeper, ARightHandStaysAloneNextToAnotherRightHand) {
   HandKeeper keeper;
   std::vector<HandFrame> hands{hand_at(1, Chirality::kRight, {0.1, 0, 0.3})};
@@ -92,8 +116,8 @@ TEST(HandKeeper, AHandThatReachesInFromTheSideIsIgnored) {
 }
 
 TEST(HandKeeper, AHandWhoseArmComesFromAnotherHeadIsIgnored) {
-  const std::vector<HeadFrame> heads{head_at(1, {0, 0, 0.6}), head_at(2, {0.5, 0, 0.6})};
-  const std::vector<HandFrame> hands{hand_at(1, Chirality::kLeft, {0.35, 0, 0.4})};
+  const std::vector<HeadFrame> heads{head_at(1, {0, 0, 0.6}), head_at(2, {0.4, 0, 0.6})};
+  const std::vector<HandFrame> hands{hand_at(1, Chirality::kRight, {0.3, 0, 0.4})};
   HandKeeper with_heads, without;
   EXPECT_EQ(with_heads.update(0, hands, heads, glm::dvec3(0, 0, 0.6))[0], nullptr);
   EXPECT_NE(without.update(0, hands, {}, {})[0], nullptr);
