@@ -10,7 +10,7 @@ packages=(
   g++ cmake ninja-build pkg-config git ca-certificates
   libfmt-dev libexpected-dev libglm-dev nlohmann-json3-dev libcli11-dev libhwy-dev
   libmeshoptimizer-dev libhdf5-dev hdf5-plugin-lzf hdf5-filter-plugin libtiff-dev libpng-dev libjpeg-dev zlib1g-dev libdeflate-dev
-  libembree-dev libglfw3-dev libepoxy-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri
+  libembree-dev libglfw3-dev libepoxy-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri libopenxr-dev libopenxr-loader1
   libimgui-dev fonts-dejavu-core
   libhidapi-dev libusb-1.0-0-dev
   libopencv-core-dev libopencv-dnn-dev libopencv-objdetect-dev libopencv-videoio-dev opencv-data
@@ -126,6 +126,7 @@ lint() {
 
 peers() {
   deps
+  (deps spacenavd) || true  # VRPN and opentrack are not in Debian 12
   build_target --target dubsar
   tests/peers/run.sh "$build/app/dubsar"
 }
@@ -133,9 +134,9 @@ peers() {
 tsan() {
   deps clang libclang-rt-14-dev libomp-dev
   preset=tsan build=build/tsan
-  build_target --target test_devices test_leap test_leapc test_input test_input_sources
+  build_target --target test_devices test_leap test_leapc test_input test_input_plugins test_input_sources
   local test
-  for test in devices/test_devices devices/leap/test_leap devices/leap/test_leapc input/test_input input/sources/test_input_sources; do
+  for test in devices/test_devices devices/leap/test_leap devices/leap/test_leapc input/test_input input/plugins/test_input_plugins input/sources/test_input_sources; do
     TSAN_OPTIONS="halt_on_error=1 ${TSAN_OPTIONS:-}" "$build/tests/$test" --gtest_brief=1
   done
 }

@@ -24,6 +24,10 @@ if(DUBSAR_APP)
   pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
   pkg_check_modules(egl REQUIRED IMPORTED_TARGET egl)
   pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)
+  pkg_check_modules(openxr IMPORTED_TARGET openxr)  # head-mounted displays; without it they say so
+  if(openxr_FOUND)
+    pkg_check_modules(x11 REQUIRED IMPORTED_TARGET x11)
+  endif()
   pkg_check_modules(hidapi REQUIRED IMPORTED_TARGET hidapi-hidraw)
   pkg_check_modules(libusb REQUIRED IMPORTED_TARGET libusb-1.0)
 

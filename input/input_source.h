@@ -25,6 +25,7 @@
 namespace dubsar {
 
 class WindowEvents;
+class WornFeed;
 
 /// A head as trackers see it, in the screen frame (panel centre, metres). An eye that was not seen is missing.
 struct HeadFrame {
@@ -90,6 +91,7 @@ struct InputConfig {
   DeviceOpener reach_device;             ///< how devices are reached; empty: the real ones
   std::filesystem::path model_folder;    ///< networks that ./do models fetched; empty: none
   glm::dvec2 panel_m{0.344, 0.194};      ///< width and height of the whole panel; a webcam sits on its top edge
+  std::shared_ptr<WornFeed> worn;        ///< of the headset that pictures are made for; none without one
   std::shared_ptr<HotplugBell> hotplug;  ///< shared by the sources of a session; null: lost devices come back by pauses
 };
 

@@ -41,10 +41,10 @@ Result<void> refuse_ignored(const DisplayRequest& request, const SinkTraits& tra
   };
   if (traits.own_pixels && request.sized) return refuse("--size", "its pixels are those of its panel or its layout");
   if (traits.own_size && !request.screen_mm.empty()) return refuse("--screen-mm", "its panel brings its own size");
-  if (!traits.tracked && !request.viewer.empty())
-    return refuse("--viewer", "its views are made for all places before the panel");
-  if (!traits.tracked && request.eye_distance_mm)
-    return refuse("--eye-distance", "its views are made for all places before the panel");
+  const std::string_view why =
+      traits.worn ? "its eyes are the wearer's" : "its views are made for all places before the panel";
+  if (!traits.tracked && !request.viewer.empty()) return refuse("--viewer", why);
+  if (!traits.tracked && request.eye_distance_mm) return refuse("--eye-distance", why);
   if (traits.views == 1 && request.eye_distance_mm) return refuse("--eye-distance", "it has one view");
   if (!request.pattern) return {};
   if (request.magnification > 0) return refuse("--magnification", "--pattern fills the panel");

@@ -9,6 +9,7 @@
 #include "app/calibration/adjust_window.h"
 #include "app/calibration/calibration_search.h"
 #include "app/calibration/display_choice.h"
+#include "app/calibration/eye_check.h"
 #include "app/cli/config_folder.h"
 #include "app/cli/verb.h"
 #include "app/viewer/run_view.h"
@@ -30,7 +31,9 @@ struct Options {
   std::vector<std::string> adjust;  ///< PANEL, figures or "reset"
   bool window = false;              ///< adjust by eye
   std::string monitor;
-  std::string calibration, crosstalk;
+  std::string calibration, crosstalk, check_eyes, input = "head:opentrack";
+  double seconds = 10.0, delay_ms = 40.0;
+  bool of_check = false;  ///< an option of --check-eyes was given
   std::string edids = "/sys/class/drm";
   int bridge_port = kBridgePort;
   std::vector<std::string> plugins;
@@ -224,6 +227,35 @@ Result<VerbResult> crosstalk(const std::string& panel) {
   return result;
 }
 
+/// A tracker before a tracked panel, while somebody moves.
+Result<VerbResult> check_tracker(const Options& options, Progress& progress) {
+  DUBSAR_ASSIGN(const PanelProfile panel, load_panels(panel_folder()).find(options.check_eyes));
+  DUBSAR_ASSIGN(const auto source, make_input(options.input));
+  const auto told = [](const std::string& line) { log_info("{}", line); };
+  DUBSAR_ASSIGN(const EyeCheckFigures figures,
+                check_eyes(*source, panel, {options.seconds, options.delay_ms}, told, progress));
+  VerbResult result;
+  const auto triple = [](const glm::dvec3& p) { return nlohmann::json{p.x, p.y, p.z}; };
+  result.json = {{"panel", panel.name},
+                 {"input", options.input},
+                 {"samples", figures.samples},
+                 {"rate_hz", figures.rate_hz},
+                 {"delay_ms", options.delay_ms},
+                 {"median_percent", figures.median_percent},
+                 {"worst_percent", figures.worst_percent},
+                 {"own_percent", figures.own_percent},
+                 {"left_mm", triple(figures.last_mm.left_mm)},
+                 {"right_mm", triple(figures.last_mm.right_mm)},
+                 {"note", figures.note}};
+  result.text = fmt::format(
+      "{} before panel {}: {} heads, {:.0f} a second; light of the wrong eye with {:g} ms of delay: median {:.1f} %, "
+      "worst "
+      "{:.1f} %; of the lenses alone {:.1f} %\n",
+      options.input, panel.name, figures.samples, figures.rate_hz, options.delay_ms, figures.median_percent,
+      figures.worst_percent, figures.own_percent);
+  return result;
+}
+
 Result<VerbResult> adjust_in_window(const Options& options, Progress& progress) {
   const fs::path folder = panel_folder();
   if (options.adjust.size() != 1)
@@ -283,6 +315,10 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
   if (options.window) return adjust_in_window(options, progress);
   if (!options.adjust.empty()) return adjust(options.adjust);
   if (!options.crosstalk.empty()) return crosstalk(options.crosstalk);
+  if (!options.check_eyes.empty()) return check_tracker(options, progress);
+  if (options.of_check)
+    return fail(ErrorKind::kUsage,
+                "--input, --seconds and --delay-ms are of --check-eyes, expected --check-eyes PANEL too");
   DUBSAR_ASSIGN(const auto catalog, user_catalog(options.plugins));
   const PanelSet& panels = catalog->panels();
   VerbResult result;
@@ -313,6 +349,14 @@ Verb add_displays_verb(Arguments program) {
       .value("--crosstalk", options->crosstalk,
              "how much light of the wrong eye a tracked panel lets through, against head speed and latency")
       .called("PANEL");
+  command
+      .value("--check-eyes", options->check_eyes,
+             "what a head tracker is worth before a tracked panel: light of the wrong eye, live, while somebody moves")
+      .called("PANEL");
+  command.value("--input", options->input, "with --check-eyes: the tracker (head:opentrack)").called("SOURCE");
+  command.value("--seconds", options->seconds, "with --check-eyes: how long (10)").range(0.5, 3600.0);
+  command.value("--delay-ms", options->delay_ms, "with --check-eyes: from a head's move to the light for it (40)")
+      .range(0.0, 500.0);
   command.reads("--calibration", options->calibration, "also look at this calibration file").called("FILE");
   command
       .value("--bridge-port", options->bridge_port,
@@ -326,10 +370,14 @@ Verb add_displays_verb(Arguments program) {
       "  dubsar displays\n"
       "  dubsar displays --json -\n"
       "  dubsar displays --crosstalk spatiallabs-15.6\n"
+      "  dubsar displays --check-eyes spatiallabs-15.6 --input head:opentrack\n"
       "  dubsar render --pattern -o pattern.png --display lenticular:looking-glass-go\n"
       "  dubsar displays --adjust looking-glass-go pitch=80.74,center=0.31\n"
       "  dubsar displays --adjust spatiallabs-15.6 --window");
-  return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
+  return {command, [options, command](const CommonOptions&, Progress& progress) {
+            options->of_check = command.given("--input") || command.given("--seconds") || command.given("--delay-ms");
+            return run(*options, progress);
+          }};
 }
 
 }  // namespace dubsar::app

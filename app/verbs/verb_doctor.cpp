@@ -14,6 +14,7 @@
 #include "core/volume/import_hdf5.h"
 #include "devices/camera/capture.h"
 #include "devices/device_list.h"
+#include "display/headset/headset.h"
 #include "display/render/context_egl.h"
 #include "display/render/context_glfw.h"
 #include "input/tracking/vision/model_files.h"
@@ -101,6 +102,11 @@ Finding check_ffmpeg() {
   return {"ffmpeg", "note", "not here: films are written as single pictures", "apt install ffmpeg"};
 }
 
+Finding check_headset() {
+  const HeadsetFacts facts = headset_facts();
+  return {"openxr", facts.present ? "ok" : "note", facts.words, ""};
+}
+
 Result<VerbResult> run() {
   std::vector<Finding> findings{
       check_gl(),
@@ -113,6 +119,7 @@ Result<VerbResult> run() {
   for (Finding& finding : check_devices()) findings.push_back(std::move(finding));
   findings.push_back(check_windows());
   findings.push_back(check_ffmpeg());
+  findings.push_back(check_headset());
   VerbResult result;
   result.json["findings"] = nlohmann::json::array();
   for (const Finding& f : findings) {

@@ -75,6 +75,10 @@ Result<ViewPictures> read_views(const Options& options, PictureLayout& layout) {
 
 Result<VerbResult> in_window(const Options& options, const SinkSpec& display, const DisplayOptions& shown,
                              ViewPictures pictures, Progress& progress) {
+  DUBSAR_ASSIGN(const auto sink, shown.catalog->make(display));
+  if (sink->traits().worn)
+    return fail(ErrorKind::kUsage, "display {}: a picture that moves with the head helps nobody, expected a panel",
+                sink->traits().name);
   ViewOptions view;
   view.window = WindowOptions();
   view.stage.display = display;

@@ -71,6 +71,7 @@ Result<void> Stage::Parts::prepare(OutputSink& with) {
   // The longest edge fits both ways, so that every side of the object does.
   const glm::dvec3 size = object.box.size();
   plane.magnification = options.magnification > 0 ? options.magnification
+                      : traits.worn             ? 1.0  // life size
                                                   : (1.0 - 2.0 * options.margin) * std::min(rect.size.x, rect.size.y) /
                                                         std::max({size.x, size.y, size.z, 1e-9});
   return {};
@@ -126,7 +127,12 @@ Result<std::unique_ptr<Stage>> Stage::create(const TriMesh& mesh, const StageOpt
   return std::unique_ptr<Stage>(new Stage(std::move(parts)));
 }
 
+std::optional<WearerFrame> Stage::wearer() const { return parts_->sink->wearer(); }
+std::string Stage::display_note() const { return parts_->sink->note(); }
+void Stage::recentre() { parts_->sink->recentre(); }
+
 Result<void> Stage::swap_eyes() {
+  if (traits().worn) return fail(ErrorKind::kUnavailable, "display {} knows which eye is which", traits().name);
   if (traits().views != 2)
     return fail(ErrorKind::kUnavailable, "display {} has {} views, expected one with two to exchange the eyes",
                 traits().name, traits().views);
@@ -162,6 +168,7 @@ Result<void> Stage::set_screen(const Screen& screen) {
 }
 
 bool Stage::Parts::moved() const noexcept {
+  if (sink->traits().worn) return true;
   if (!painted.of || !(painted.of->first == next.shown) || painted.of->second.swap_eyes != next.viewer.swap_eyes)
     return true;
   return glm::distance(painted.of->second.left_mm, next.viewer.left_mm) > kEyeStepMm ||
@@ -262,7 +269,7 @@ Result<void> Stage::paint(const Surface& target, Field field) {
   }
   Parts::Layers& layers = p.layers;
   layers.overlay_changed = false;
-  if (layers.overlay == nullptr) return p.sink->compose(*layers.array, target, field);
+  if (layers.overlay == nullptr || p.sink->traits().worn) return p.sink->compose(*layers.array, target, field);
   const ViewArray& array = *layers.array;
   if (!layers.overlaid) {
     DUBSAR_ASSIGN(layers.overlaid, ViewArray::create(array.width(), array.height(), array.layers()));

@@ -97,6 +97,8 @@ class Stage {
   /// May be changed at any time; when one fails nothing changes.
   Result<void> set_display(const SinkSpec& spec);
   Result<void> set_screen(const Screen& screen);
+  /// Of worn displays: the object is put before the wearer anew.
+  void recentre();
   /// Each eye gets the other's view. kUnavailable for displays that have not two views.
   Result<void> swap_eyes();
   SinkTraits traits() const;
@@ -118,6 +120,9 @@ class Stage {
   const Viewer& viewer() const noexcept;    ///< the eyes that cameras are made for
   std::optional<PanelLight> light() const;  ///< where the panel's lenses send what was painted last
   int coarse_views() const noexcept;        ///< of the last picture; 0: all are exact
+  /// Of worn displays: who wears it, as of the last paint(), in the screen frame; and why nobody does.
+  std::optional<WearerFrame> wearer() const;
+  std::string display_note() const;
   /// Drawn over the views from the next paint() on; call it again when it looks different. Null: nothing. It outlives
   /// the stage or is taken away.
   void set_overlay(LayerPainter* painter);

@@ -8,6 +8,7 @@
 #include "app/viewer/marks.h"
 #include "app/viewer/window_input.h"
 #include "app/viewer/window_place.h"
+#include "app/viewer/worn_input.h"
 #include "core/base/log.h"
 
 namespace dubsar::app {
@@ -95,6 +96,7 @@ Result<void> Viewer::start_sources() {
   config.clock = &given_.clock;
   config.simulated_time = given_.options.fps > 0;
   config.model_folder = given_.options.model_folder;
+  if (stage_->traits().worn) config.worn = displays_.worn = std::make_shared<WornFeed>();
   config.panel_m = 1e-3 * glm::dvec2(given_.options.stage.screen.width_mm, given_.options.stage.screen.height_mm);
   std::vector<std::string> inputs = given_.options.inputs;
   if (given_.presenter.window() != nullptr) {
@@ -103,6 +105,7 @@ Result<void> Viewer::start_sources() {
     if (inputs.empty()) {
       inputs = {"mouse", "keyboard"};
       for (std::string& spec : present_inputs()) inputs.push_back(std::move(spec));
+      if (displays_.worn) inputs.emplace_back("openxr");
     }
   }
   if (!given_.options.record.empty()) {
@@ -119,6 +122,15 @@ Result<void> Viewer::place_changed() {
   DUBSAR_TRY(stage_->set_screen(given_.presenter.screen(given_.options.stage.screen)));
   steering_->set_rest(stage_->rest_m());
   return given_.presenter.fit(stage_->traits());
+}
+
+/// What the headset said of its wearer goes to the source of hands.
+void Viewer::feed_worn() {
+  if (!displays_.worn) return;
+  if (const auto wearer = stage_->wearer())
+    displays_.worn->put(worn_sample(*wearer));
+  else
+    displays_.worn->absent(stage_->display_note());
 }
 
 Result<void> Viewer::switch_display(int step) {
@@ -140,6 +152,12 @@ Result<void> Viewer::switch_display(int step) {
     log_warning("{}", done.error().message);
   }
   return fail(ErrorKind::kUnavailable, "none of {} displays can be shown", count);
+}
+
+void Viewer::recentre() {
+  steering_->input().recentre();
+  stage_->recentre();
+  say("straight on is here now");
 }
 
 Result<void> Viewer::swap_eyes() {
@@ -291,9 +309,10 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
 }
 
 Result<void> Viewer::paint(const Surface& target, Field field) {
-  DUBSAR_TRY(stage_->paint(target, field));
-  report_.light = stage_->light();
-  return {};
+  auto painted = stage_->paint(target, field);
+  feed_worn();
+  if (painted) report_.light = stage_->light();
+  return painted;
 }
 
 bool Viewer::over(TimestampNs now) {

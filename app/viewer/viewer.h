@@ -16,6 +16,7 @@
 #include "display/render/label_font.h"
 #include "input/input_recorder.h"
 #include "input/window_events.h"
+#include "input/worn_feed.h"
 
 namespace dubsar::app {
 
@@ -74,6 +75,7 @@ class Viewer final : public Workplace {
   Result<void> switch_display(int step) override;
   Result<void> toggle_fullscreen() override { return given_.presenter.toggle_fullscreen(); }
   Result<void> swap_eyes() override;
+  void recentre() override;
   void retry_sources() override { sources_->retry_now(); }
   void recentre_heads() override { steering_->input().recentre(); }
   bool toggle_source(std::size_t index) override;
@@ -100,6 +102,7 @@ class Viewer final : public Workplace {
   struct Displays {
     std::vector<SinkSpec> specs;
     std::size_t shown = 0;
+    std::shared_ptr<WornFeed> worn;  ///< who wears the display, for the source of their hands; null: none is worn
   };
   struct Notice {
     std::string text;
@@ -132,6 +135,7 @@ class Viewer final : public Workplace {
   void say_steps(TimestampNs now);
   PanelState panel_state() const;
   void keep_up();
+  void feed_worn();
   void follow();
   void update_overlay(TimestampNs now, const RecentFigures& figures);
   std::optional<double> lever_at(const glm::dvec2& at) const;

@@ -34,6 +34,8 @@ Result<void> WindowPresenter::fit(const SinkTraits& traits) {
   clock_.set_refresh(window_->refresh_hz());
   cadence_.set_refresh(window_->refresh_hz());
   fields_ = traits.fields;
+  worn_ = traits.worn;
+  window_->wait_for_monitor(!worn_);
   whole_.reset();
   if (!traits.exact_pixels && traits.output != window_->size() && traits.output.width > 0 && traits.output.height > 0) {
     DUBSAR_ASSIGN(whole_, OffscreenSurface::create(traits.output));
@@ -43,7 +45,7 @@ Result<void> WindowPresenter::fit(const SinkTraits& traits) {
 
 bool WindowPresenter::visible() const {
   const PixelSize size = window_->size();
-  return size.width > 0 && size.height > 0;
+  return worn_ || (size.width > 0 && size.height > 0);  // a headset goes on when its window is minimised
 }
 
 Field WindowPresenter::turn() {
@@ -78,7 +80,7 @@ Result<void> WindowPresenter::present() {
 }
 
 void WindowPresenter::wait(bool moving) {
-  if (fields_ > 1) return;  // the next present waits for the monitor
+  if (fields_ > 1 || worn_) return;  // the next present waits for the monitor, the next cameras for the headset
   if (!moving) return window_->wait_events(kIdleS);
   const SteadyClock clock;
   for (TimestampNs now = clock.now(); now < clock_.next_start() && !window_->should_close(); now = clock.now())

@@ -41,7 +41,7 @@ class WindowPresenter final : public Presenter {
   FieldCadence cadence_;
   int fields_ = 1;
   TimestampNs begun_ = 0;
-  bool composed_ = false;
+  bool composed_ = false, worn_ = false;
 };
 
 }  // namespace dubsar::app

@@ -297,6 +297,8 @@ Result<void> GlfwWindow::make_current() {
   return fail(ErrorKind::kUnavailable, "window: its context cannot be made current ({})", last_error());
 }
 
+void GlfwWindow::wait_for_monitor(bool waits) { glfwSwapInterval(waits ? 1 : 0); }
+
 PixelSize GlfwWindow::size() const {
   PixelSize out;
   glfwGetFramebufferSize(as_window(window_), &out.width, &out.height);

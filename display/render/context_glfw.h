@@ -69,6 +69,8 @@ class GlfwWindow final : public GlContext {
   Screen screen(const Screen& fallback = {}) const;
 
   void present();  ///< swaps buffers
+  /// Whether present() waits for the monitor, as it does at first; else something else paces the pictures.
+  void wait_for_monitor(bool waits);
   void poll_events();
   /// Returns when something happens in the window, at the latest after `timeout_s`.
   void wait_events(double timeout_s);

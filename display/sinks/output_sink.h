@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/base/result.h"
+#include "display/headset/headset.h"
 #include "display/optics/off_axis.h"
 #include "display/optics/optics.h"
 #include "display/optics/view.h"
@@ -36,6 +37,9 @@ struct SinkTraits {
   /// Pictures that take turns, one at each refresh of the monitor, for as long as anything is shown: 1, or 2 for
   /// shutters. Which one is due, FieldCadence says (display/sinks/field_cadence.h).
   int fields = 1;
+  /// On a head: cameras are the wearer's own and new for every picture, whose turn the display waits for; objects stand
+  /// in life size, and nothing lies over them.
+  bool worn = false;
   std::string file_suffix{};  ///< what files of this picture carry before the extension, e.g. "_qs8x6a0.75"
 };
 
@@ -53,6 +57,12 @@ class OutputSink {
   virtual Result<void> compose(const ViewArray& views, const Surface& target, Field field) = 0;
   /// For displays whose picture has one field.
   Result<void> compose(const ViewArray& views, const Surface& target) { return compose(views, target, Field::kFirst); }
+  /// Of worn displays: who wears it, at the moment that the newest views() are for, in the screen frame.
+  virtual std::optional<WearerFrame> wearer() const { return std::nullopt; }
+  /// Of worn displays: "before me" is where the wearer looks now.
+  virtual void recentre() {}
+  /// Why nothing reaches anybody's eyes at the moment; empty: something does.
+  virtual std::string note() const { return {}; }
   /// Where the panel's lenses send the light of what was composed last; nothing for displays without lenses.
   virtual std::optional<PanelLight> light() const { return std::nullopt; }
 };

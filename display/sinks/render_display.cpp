@@ -59,6 +59,9 @@ Result<Stage> open_stage(const SinkSpec& display, const DisplayOptions& options)
         "display {}: shows its eyes one after the other, expected a window, or a display that makes one picture "
         "such as side_by_side",
         traits.name);
+  if (traits.worn)
+    return fail(ErrorKind::kUsage, "display {}: is worn and shows what is there now, expected dubsar view",
+                traits.name);
   DUBSAR_TRY(check_memory("display", kBytesPerViewPixel * static_cast<std::uint64_t>(traits.view.width) *
                                          static_cast<std::uint64_t>(traits.view.height) *
                                          static_cast<std::uint64_t>(traits.views)));

@@ -8,6 +8,7 @@
 #include "display/sinks/interlaced.h"
 #include "display/sinks/lenticular.h"
 #include "display/sinks/mono.h"
+#include "display/sinks/openxr.h"
 #include "display/sinks/packed.h"
 #include "display/sinks/plugin_sink.h"
 #include "display/sinks/quad_buffer.h"
@@ -17,7 +18,7 @@
 namespace dubsar {
 namespace {
 
-constexpr std::array<SinkBackend, 11> kSinks{{
+constexpr std::array<SinkBackend, 12> kSinks{{
     {"mono", "one view for any monitor", make_mono_sink},
     {"side_by_side", "two views beside each other: half (default), full; left_first (default), right_first",
      make_side_by_side_sink},
@@ -42,6 +43,8 @@ constexpr std::array<SinkBackend, 11> kSinks{{
      "two views in turn, one at each refresh, for projectors and glasses of 100 Hz and more: left_first "
      "(default), right_first",
      make_shutter_sink},
+    {"openxr", "head-mounted displays through OpenXR, life size on a table before the wearer: distance=, height=",
+     make_openxr_sink},
     {"quilt",
      "all views of a Looking Glass panel as tiles: PROFILE or columns=,rows=,width=,height=,aspect=,cone=,"
      "focus=,zoom=",

@@ -9,6 +9,7 @@
 #include "input/source_spec.h"
 #include "input/sources/device_source.h"
 #include "input/sources/leapc_source.h"
+#include "input/sources/openxr_source.h"
 #include "input/sources/webcam_source.h"
 #include "input/window_events.h"
 
@@ -23,7 +24,8 @@ struct NamedSource {
 };
 
 constexpr std::array<NamedSource, 2> kOfWindows{{{"mouse", make_mouse_source}, {"keyboard", make_keyboard_source}}};
-constexpr std::array<NamedSource, 5> kOthers{{{"leapc", make_leapc_source},
+constexpr std::array<NamedSource, 6> kOthers{{{"leapc", make_leapc_source},
+                                              {"openxr", make_openxr_source},
                                               {"webcam", make_webcam_source},
                                               {"scripted", make_scripted_source},
                                               {"plugin", make_plugin_source},

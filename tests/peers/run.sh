@@ -21,6 +21,9 @@ end() { kill "$1" 2>/dev/null; wait "$1" 2>/dev/null; }
 # wait_for FILE TEXT: up to 5 s
 wait_for() { for _ in $(seq 50); do grep -q "$2" "$work/$1" 2>/dev/null && return 0; sleep .1; done; return 1; }
 
+# the daemon that was begun here has its socket; up to 5 s
+wait_for_socket() { for _ in $(seq 50); do [ -S /var/run/spnav.sock ] && return 0; sleep .1; done; return 1; }
+
 row PEER RESULT FIGURES
 
 # libspnav, a client, before the simulated daemon
@@ -39,7 +42,7 @@ fi
 # spacenavd, the daemon: the greeting; motions need a puck
 if ! have spacenavd; then
   missing "spacenavd daemon" "apt install spacenavd"
-elif [ ! -S /var/run/spnav.sock ]; then
+elif [ ! -S /var/run/spnav.sock ] && { [ "$(id -u)" -ne 0 ] || ! begin spacenavd spacenavd -d || ! wait_for_socket; }; then
   missing "spacenavd daemon" "installed, but it does not run: systemctl start spacenavd"
 elif told=$("$dubsar" devices probe spacenav --json "$work/probe.json" 2>&1); then
   good "spacenavd daemon" "$(head -1 <<<"$told")"

@@ -44,6 +44,19 @@ TEST(DevicesCommand, ASimulatedRecordingReplaysThroughItsDriverAndDependsOnItsSe
   fs::remove_all(folder);
 }
 
+TEST(DevicesCommand, AVrpnTrackerThatIsNotThereEndsWith69AndTheNamesThatAre) {
+  const std::string port = std::to_string(42000 + ::getpid() % 9000);
+  std::thread server([&] {
+    EXPECT_EQ(run_dubsar({"devices", "simulate", "vrpn", "--live", "--port", port, "--seconds", "8"}).exit_code, 0);
+  });
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  const ProgramRun wrong =
+      run_dubsar({"devices", "monitor", "vrpn", "--port", port, "--tracker", "Nobody0", "--seconds", "4"});
+  EXPECT_EQ(wrong.exit_code, 69) << wrong.out;
+  EXPECT_NE(wrong.out.find("Tracker0"), std::string::npos) << wrong.out;
+  server.join();
+}
+
 TEST(DevicesCommand, SaysWhatIsMissing) {
   const ProgramRun list = run_dubsar({"devices", "list", "--json", "-"});
   EXPECT_EQ(list.exit_code, 0) << list.err;

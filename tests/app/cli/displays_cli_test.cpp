@@ -1,12 +1,19 @@
 // Displays from the command line: panels, patterns, what an eye sees, adjustments.
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 
 #include "core/base/atomic_file.h"
 #include "core/image_io/picture_file.h"
@@ -207,6 +214,57 @@ TEST_F(DisplaysCommand, OptionsThatADisplayDoesNotLookAtAreRefused) {
                 .exit_code,
             64);
   EXPECT_FALSE(fs::exists(file("y.png")));
+}
+
+/// What opentrack sends from a maker's machine: six doubles, x to the user's left in centimetres.
+class OpentrackSender {
+ public:
+  explicit OpentrackSender(int port) {
+    socket_ = ::socket(AF_INET, SOCK_DGRAM, 0);
+    to_.sin_family = AF_INET;
+    to_.sin_port = htons(static_cast<std::uint16_t>(port));
+    to_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    thread_ = std::thread([this] {
+      for (int i = 0; !done_; ++i) {
+        const std::array<double, 6> pose{-12.0 + 3.0 * std::sin(0.1 * i), 0, 0, 0, 0, 0};
+        ::sendto(socket_, pose.data(), sizeof pose, 0, reinterpret_cast<const sockaddr*>(&to_), sizeof to_);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      }
+    });
+  }
+  ~OpentrackSender() {
+    done_ = true;
+    thread_.join();
+    ::close(socket_);
+  }
+
+ private:
+  int socket_ = -1;
+  sockaddr_in to_{};
+  std::atomic<bool> done_{false};
+  std::thread thread_;
+};
+
+TEST_F(DisplaysCommand, ATrackersWorthBeforeAPanelIsToldLive) {
+  const int port = 21000 + ::getpid() % 20000;
+  const std::string input = "head:opentrack,port=" + std::to_string(port);
+  {
+    const OpentrackSender sender(port);
+    const ProgramRun run =
+        run_dubsar({"displays", "--check-eyes", "spatiallabs-15.6", "--input", input, "--seconds", "4", "--json", "-"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_NE(run.err.find("% of the light is the other eye's"), std::string::npos) << run.err;
+    const auto figures = nlohmann::json::parse(run.out);
+    EXPECT_GE(figures["samples"], 20);
+    EXPECT_NEAR(figures["left_mm"][0].get<double>(), 120 - 31.5, 31) << "12 cm to the left as opentrack counts: right";
+    EXPECT_LE(figures["own_percent"].get<double>(), 6.0);
+    EXPECT_GE(figures["worst_percent"].get<double>(), figures["own_percent"].get<double>());
+  }
+  EXPECT_EQ(
+      run_dubsar({"displays", "--check-eyes", "spatiallabs-15.6", "--input", input, "--seconds", "0.6"}).exit_code, 69);
+  EXPECT_EQ(
+      run_dubsar({"displays", "--check-eyes", "looking-glass-go", "--input", input, "--seconds", "0.6"}).exit_code, 78);
+  EXPECT_EQ(run_dubsar({"displays", "--delay-ms", "20"}).exit_code, 64);
 }
 
 TEST_F(DisplaysCommand, AQuiltsNameSaysItsLayoutOnce) {

@@ -82,6 +82,54 @@ TEST(Layering, Hdf5IsBehindTheDoorOfItsRoom) {
   EXPECT_EQ(users, std::set<std::string>{"core/hdf5/library.h"});
 }
 
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// docs/architecture.md, "a sink": its pair, one row of the table, its case in the test of directions, its row in the
+// docs.
+TEST(Layering, ASinkIsItsPairARowOfTheTableItsTestAndItsRowInTheDocs) {
+  const fs::path root(DUBSAR_SOURCE_DIR);
+  const std::string table = text_of(root / "display/sinks/sink_catalog.cpp");
+  const std::string directions = text_of(root / "tests/display/sinks/directions_test.cpp");
+  const std::string docs = text_of(root / "docs/displays.md");
+  const std::regex row(R"re(\{"(\w+)",[^}]*?(make_\w+_sink)\})re");
+  std::map<std::string, std::set<std::string>> users;  // of each maker
+  const std::regex maker(R"(\bmake_\w+_sink\b)");
+  for (const char* room : {"core", "devices", "input", "display", "app"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / room)) {
+      if (!entry.is_regular_file()) continue;
+      const std::string text = text_of(entry.path());
+      for (std::sregex_iterator it(text.begin(), text.end(), maker), end; it != end; ++it)
+        users[it->str()].insert(fs::relative(entry.path(), root).string());
+    }
+  int sinks = 0;
+  for (std::sregex_iterator it(table.begin(), table.end(), row), end; it != end; ++it, ++sinks) {
+    const std::string name = (*it)[1], make = (*it)[2];
+    EXPECT_NE(directions.find("{\"" + name + "\","), std::string::npos)
+        << "no case of " << name << " in directions_test.cpp";
+    EXPECT_TRUE(std::regex_search(docs, std::regex("\n\\|[^|]*\\b" + name + "\\b[^|]*\\|"))) << "no row of " << name;
+    std::set<std::string> pairs;
+    for (const std::string& user : users[make]) {
+      if (user == "display/sinks/sink_catalog.cpp") continue;
+      EXPECT_TRUE(starts_with(user, "display/sinks/")) << make << " is known to " << user;
+      pairs.insert(user.substr(0, user.rfind('.')));
+    }
+    EXPECT_LE(pairs.size(), 2u) << make << ": its own pair, and at most one display that is made of it";
+  }
+  EXPECT_GE(sinks, 12);
+}
+
+// OpenXR drags the words of X11 and EGL along: one header of one folder includes it, and only that folder includes it.
+TEST(Layering, OpenXrIsBehindTheDoorOfItsRoom) {
+  for (const auto& [file, target] : all_includes()) {
+    const bool inside = starts_with(file, "display/headset/openxr_");
+    EXPECT_TRUE(inside || !starts_with(target, "openxr/")) << file << " includes " << target;
+    EXPECT_TRUE(inside || !starts_with(target, "display/headset/openxr_")) << file << " includes " << target;
+  }
+}
+
 TEST(Layering, EachThirdPartyCApiIsIncludedByOneSourceFile) {
   const std::vector<std::string> apis{
       "hidapi",          "libusb", "GLFW/glfw3.h", "tiffio.h", "embree3/rtcore.h", "opencv2/videoio.hpp",

@@ -23,6 +23,7 @@
 #include "display/render/view_array.h"
 #include "display/sinks/field_cadence.h"
 #include "display/sinks/interlaced.h"
+#include "display/sinks/openxr.h"
 #include "display/sinks/quilt.h"
 #include "display/sinks/sink_catalog.h"
 
@@ -64,6 +65,25 @@ Light mean_light(
       }
   return sum / std::max(1.0, static_cast<double>(count));
 }
+
+/// A headset that keeps what it is handed for each eye.
+class KeepingHeadset final : public Headset {
+ public:
+  explicit KeepingHeadset(std::array<Image, 2>& worn) : worn_(&worn) {}
+  std::string runtime() const override { return "none"; }
+  std::string device() const override { return "kept"; }
+  PixelSize eye_size() const override { return {40, 30}; }
+  bool has_hands() const override { return false; }
+  std::optional<WearerFrame> begin() override { return WearerFrame(); }
+  Result<void> end(const ViewArray& views) override {
+    for (int eye = 0; eye < 2; ++eye) (*worn_)[static_cast<std::size_t>(eye)] = views.read_layer(eye).value();
+    return {};
+  }
+  std::string reason() const override { return {}; }
+
+ private:
+  std::array<Image, 2>* worn_;
+};
 
 class Directions : public ::testing::Test {
  protected:
@@ -290,6 +310,17 @@ TEST_F(Directions, EveryViewArrivesAtTheEyeItIsFor) {
            expect_view(eye == 0 ? first : 1 - first, light[eye] / static_cast<double>(open_beats[eye]), 1e-9,
                        "shutter");
          }
+       }},
+      {"openxr",
+       [&] {
+         std::array<Image, 2> worn;
+         sink_ = openxr_sink(std::make_unique<KeepingHeadset>(worn));
+         ASSERT_TRUE(sink_->configure(kScreen));
+         sink_->views({});  // nominal cameras, then the wearer's
+         sink_->views({});
+         composed();
+         for (int eye = 0; eye < 2; ++eye)
+           expect_view(eye, mean_light(worn[static_cast<std::size_t>(eye)], 0), 1e-9, "openxr");
        }},
       {"quilt", [&] {
          open("quilt:small-glass");

@@ -1,0 +1,255 @@
+#include "display/headset/openxr_session.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "display/render/view_array.h"
+
+namespace dubsar::openxr {
+namespace {
+
+constexpr auto kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+constexpr XrDuration kPatience = 500'000'000;  // for an image that the compositor still shows
+
+struct Binding {
+  XrGraphicsBindingEGLMNDX egl = made<XrGraphicsBindingEGLMNDX>(XR_TYPE_GRAPHICS_BINDING_EGL_MNDX);
+  XrGraphicsBindingOpenGLXlibKHR glx = made<XrGraphicsBindingOpenGLXlibKHR>(XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR);
+  const void* which = nullptr;
+};
+
+/// Of the context that is current now.
+Result<void> bind_current(const Instance& instance, Binding& out) {
+  if (const EGLContext context = eglGetCurrentContext(); context != EGL_NO_CONTEXT) {
+    if (!instance.has_egl())
+      return fail(ErrorKind::kUnavailable,
+                  "openxr: runtime {} takes no EGL contexts (XR_MNDX_egl_enable), expected a window on an X11 server",
+                  instance.runtime());
+    out.egl.getProcAddress = eglGetProcAddress;
+    out.egl.display = eglGetCurrentDisplay();
+    out.egl.context = context;
+    out.which = &out.egl;
+    return {};
+  }
+  const GLXContext context = glXGetCurrentContext();
+  Display* const display = context != nullptr ? glXGetCurrentDisplay() : nullptr;
+  if (display == nullptr)
+    return fail(ErrorKind::kUnavailable, "openxr: no OpenGL context of EGL or GLX is current, expected one");
+  int id = 0, screen = 0, count = 0;
+  glXQueryContext(display, context, GLX_FBCONFIG_ID, &id);
+  glXQueryContext(display, context, GLX_SCREEN, &screen);
+  const int wanted[] = {GLX_FBCONFIG_ID, id, 0};
+  GLXFBConfig* const configs = glXChooseFBConfig(display, screen, wanted, &count);
+  if (configs == nullptr || count < 1)
+    return fail(ErrorKind::kUnavailable, "openxr: the window's visual {} was not found again", id);
+  out.glx.xDisplay = display;
+  out.glx.glxFBConfig = configs[0];
+  int visual = 0;
+  glXGetFBConfigAttrib(display, configs[0], GLX_VISUAL_ID, &visual);
+  out.glx.visualid = static_cast<std::uint32_t>(visual);
+  out.glx.glxDrawable = glXGetCurrentDrawable();
+  out.glx.glxContext = context;
+  out.which = &out.glx;
+  XFree(configs);
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Session>> Session::create(Instance& instance) {
+  std::unique_ptr<Session> out(new Session(instance));
+  const XrInstance handle = instance.handle();
+  const auto requirements =
+      function_of<PFN_xrGetOpenGLGraphicsRequirementsKHR>(handle, "xrGetOpenGLGraphicsRequirementsKHR");
+  if (requirements == nullptr)
+    return fail(ErrorKind::kUnavailable, "openxr: runtime {} does not say which OpenGL it needs", instance.runtime());
+  auto range = made<XrGraphicsRequirementsOpenGLKHR>(XR_TYPE_GRAPHICS_REQUIREMENTS_OPENGL_KHR);
+  DUBSAR_TRY(check(requirements(handle, instance.system(), &range), "asking which OpenGL is needed"));
+  if (XR_MAKE_VERSION(4, 5, 0) < range.minApiVersionSupported)
+    return fail(ErrorKind::kUnavailable, "openxr: runtime {} needs OpenGL {}.{}, expected 4.5 or less",
+                instance.runtime(), XR_VERSION_MAJOR(range.minApiVersionSupported),
+                XR_VERSION_MINOR(range.minApiVersionSupported));
+  Binding binding;
+  DUBSAR_TRY(bind_current(instance, binding));
+  auto info = made<XrSessionCreateInfo>(XR_TYPE_SESSION_CREATE_INFO);
+  info.next = binding.which;
+  info.systemId = instance.system();
+  DUBSAR_TRY(check(xrCreateSession(handle, &info, &out->session_), "beginning a session"));
+  DUBSAR_TRY(out->make_spaces());
+  DUBSAR_ASSIGN(out->hands_, HandInput::create(instance, out->session_));
+  DUBSAR_TRY(out->make_chains());
+  return out;
+}
+
+Session::~Session() {
+  hands_.reset();
+  for (const Chain& chain : chains_)
+    if (chain.handle != XR_NULL_HANDLE) xrDestroySwapchain(chain.handle);
+  for (const XrSpace space : {stage_, local_})
+    if (space != XR_NULL_HANDLE) xrDestroySpace(space);
+  if (session_ != XR_NULL_HANDLE) xrDestroySession(session_);
+}
+
+Result<void> Session::make_spaces() {
+  auto info = made<XrReferenceSpaceCreateInfo>(XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
+  info.poseInReferenceSpace.orientation.w = 1.0f;
+  info.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL;
+  DUBSAR_TRY(check(xrCreateReferenceSpace(session_, &info, &local_), "finding the room's middle"));
+  info.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_STAGE;
+  if (XR_FAILED(xrCreateReferenceSpace(session_, &info, &stage_)))
+    stage_ = XR_NULL_HANDLE;  // nobody measured the floor
+  return {};
+}
+
+Result<void> Session::make_chains() {
+  std::uint32_t count = 0;
+  DUBSAR_TRY(check(xrEnumerateSwapchainFormats(session_, 0, &count, nullptr), "asking for formats"));
+  std::vector<std::int64_t> formats(count);
+  DUBSAR_TRY(check(xrEnumerateSwapchainFormats(session_, count, &count, formats.data()), "asking for formats"));
+  if (std::find(formats.begin(), formats.end(), GL_SRGB8_ALPHA8) == formats.end())
+    return fail(ErrorKind::kUnavailable, "openxr: runtime {} has no pictures of format GL_SRGB8_ALPHA8 among its {}",
+                instance_->runtime(), count);
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    const XrViewConfigurationView& size = instance_->eyes()[eye];
+    auto info = made<XrSwapchainCreateInfo>(XR_TYPE_SWAPCHAIN_CREATE_INFO);
+    info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT;
+    info.format = GL_SRGB8_ALPHA8;
+    info.sampleCount = 1;
+    info.width = size.recommendedImageRectWidth;
+    info.height = size.recommendedImageRectHeight;
+    info.faceCount = info.arraySize = info.mipCount = 1;
+    Chain& chain = chains_[eye];
+    DUBSAR_TRY(check(xrCreateSwapchain(session_, &info, &chain.handle), "making pictures"));
+    chain.width = static_cast<int>(info.width);
+    chain.height = static_cast<int>(info.height);
+    DUBSAR_TRY(check(xrEnumerateSwapchainImages(chain.handle, 0, &count, nullptr), "asking for pictures"));
+    chain.images.assign(count, made<XrSwapchainImageOpenGLKHR>(XR_TYPE_SWAPCHAIN_IMAGE_OPENGL_KHR));
+    DUBSAR_TRY(check(xrEnumerateSwapchainImages(chain.handle, count, &count,
+                                                reinterpret_cast<XrSwapchainImageBaseHeader*>(chain.images.data())),
+                     "asking for pictures"));
+  }
+  return {};
+}
+
+Result<void> Session::start_running() {
+  auto info = made<XrSessionBeginInfo>(XR_TYPE_SESSION_BEGIN_INFO);
+  info.primaryViewConfigurationType = kStereo;
+  DUBSAR_TRY(check(xrBeginSession(session_, &info), "beginning to show pictures"));
+  running_ = true;
+  return {};
+}
+
+Result<void> Session::follow_events() {
+  XrEventDataBuffer event;
+  for (;;) {
+    DUBSAR_ASSIGN(const bool more, instance_->next_event(event));
+    if (!more) return {};
+    if (event.type == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING)
+      return fail(ErrorKind::kUnavailable, "openxr: runtime {} is going away", instance_->runtime());
+    if (event.type == XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING) recentred_ = true;
+    if (event.type != XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED) continue;
+    const auto& change = *reinterpret_cast<const XrEventDataSessionStateChanged*>(&event);
+    if (change.session != session_) continue;
+    if (change.state == XR_SESSION_STATE_READY) {
+      DUBSAR_TRY(start_running());
+    } else if (change.state == XR_SESSION_STATE_STOPPING) {
+      running_ = begun_ = false;
+      DUBSAR_TRY(check(xrEndSession(session_), "pausing"));
+    } else if (change.state == XR_SESSION_STATE_LOSS_PENDING) {
+      return fail(ErrorKind::kUnavailable, "openxr: the headset was lost; it is waited for");
+    } else if (change.state == XR_SESSION_STATE_EXITING) {
+      return fail(ErrorKind::kUnavailable, "openxr: runtime {} ended the session", instance_->runtime());
+    }
+  }
+}
+
+TimestampNs Session::steady_from(XrTime time) const {
+  const auto convert =
+      function_of<PFN_xrConvertTimeToTimespecTimeKHR>(instance_->handle(), "xrConvertTimeToTimespecTimeKHR");
+  timespec steady{};
+  if (instance_->has_time() && convert != nullptr && XR_SUCCEEDED(convert(instance_->handle(), time, &steady)))
+    return static_cast<TimestampNs>(steady.tv_sec) * 1'000'000'000 + steady.tv_nsec;
+  return SteadyClock().now() + frame_.predictedDisplayPeriod;  // about: a frame is begun one refresh before
+}
+
+std::optional<double> Session::floor_at(XrTime time) const {
+  if (stage_ == XR_NULL_HANDLE) return std::nullopt;
+  auto location = made<XrSpaceLocation>(XR_TYPE_SPACE_LOCATION);
+  if (XR_FAILED(xrLocateSpace(stage_, local_, time, &location)) ||
+      (location.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) == 0)
+    return std::nullopt;
+  return location.pose.position.y;
+}
+
+Result<std::optional<WearerFrame>> Session::begin() {
+  if (begun_) DUBSAR_TRY(end(nullptr));
+  frame_ = made<XrFrameState>(XR_TYPE_FRAME_STATE);
+  DUBSAR_TRY(check(xrWaitFrame(session_, nullptr, &frame_), "waiting for a frame"));
+  DUBSAR_TRY(check(xrBeginFrame(session_, nullptr), "beginning a frame"));
+  begun_ = true;
+  WearerFrame out;
+  out.time = SteadyClock().now();
+  out.displayed = steady_from(frame_.predictedDisplayTime);
+  auto where = made<XrViewLocateInfo>(XR_TYPE_VIEW_LOCATE_INFO);
+  where.viewConfigurationType = kStereo;
+  where.displayTime = frame_.predictedDisplayTime;
+  where.space = local_;
+  auto state = made<XrViewState>(XR_TYPE_VIEW_STATE);
+  views_.fill(made<XrView>(XR_TYPE_VIEW));
+  std::uint32_t count = 0;
+  DUBSAR_TRY(check(xrLocateViews(session_, &where, &state, 2, &count, views_.data()), "finding the eyes"));
+  constexpr XrViewStateFlags kPlaced = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_VALID_BIT;
+  if (count != 2 || (state.viewStateFlags & kPlaced) != kPlaced) return std::optional<WearerFrame>();
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    const XrFovf& fov = views_[eye].fov;
+    out.eyes[eye] = {pose_of(views_[eye].pose), std::tan(fov.angleLeft), std::tan(fov.angleRight),
+                     std::tan(fov.angleDown), std::tan(fov.angleUp)};
+  }
+  hands_->locate(local_, frame_.predictedDisplayTime, out);
+  out.floor_m = floor_at(frame_.predictedDisplayTime);
+  out.recentred = std::exchange(recentred_, false);
+  return std::optional<WearerFrame>(out);
+}
+
+Result<void> Session::copy_eye(const ViewArray& views, std::size_t eye) {
+  const Chain& chain = chains_[eye];
+  std::uint32_t index = 0;
+  DUBSAR_TRY(check(xrAcquireSwapchainImage(chain.handle, nullptr, &index), "taking a picture"));
+  auto wait = made<XrSwapchainImageWaitInfo>(XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO);
+  wait.timeout = kPatience;
+  const XrResult ready = xrWaitSwapchainImage(chain.handle, &wait);
+  // Both are sRGB-coded bytes: copied as they are.
+  if (ready == XR_SUCCESS && index < chain.images.size())
+    glCopyImageSubData(views.coded(), GL_TEXTURE_2D_ARRAY, 0, 0, 0, static_cast<GLint>(eye), chain.images[index].image,
+                       GL_TEXTURE_2D, 0, 0, 0, 0, std::min(views.width(), chain.width),
+                       std::min(views.height(), chain.height), 1);
+  DUBSAR_TRY(check(xrReleaseSwapchainImage(chain.handle, nullptr), "giving a picture back"));
+  return check(ready, "waiting for a picture");
+}
+
+Result<void> Session::end(const ViewArray* views) {
+  const bool shown = views != nullptr && frame_.shouldRender == XR_TRUE;
+  std::array<XrCompositionLayerProjectionView, 2> eyes{};
+  for (std::size_t eye = 0; shown && eye < 2; ++eye) {
+    DUBSAR_TRY(copy_eye(*views, eye));
+    eyes[eye] = made<XrCompositionLayerProjectionView>(XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW);
+    eyes[eye].pose = views_[eye].pose;
+    eyes[eye].fov = views_[eye].fov;
+    eyes[eye].subImage.swapchain = chains_[eye].handle;
+    eyes[eye].subImage.imageRect.extent = {std::min(views->width(), chains_[eye].width),
+                                           std::min(views->height(), chains_[eye].height)};
+  }
+  auto layer = made<XrCompositionLayerProjection>(XR_TYPE_COMPOSITION_LAYER_PROJECTION);
+  layer.space = local_;
+  layer.viewCount = 2;
+  layer.views = eyes.data();
+  const auto* const first = reinterpret_cast<const XrCompositionLayerBaseHeader*>(&layer);
+  auto info = made<XrFrameEndInfo>(XR_TYPE_FRAME_END_INFO);
+  info.displayTime = frame_.predictedDisplayTime;
+  info.environmentBlendMode = instance_->blend();
+  info.layerCount = shown ? 1 : 0;
+  info.layers = shown ? &first : nullptr;
+  begun_ = false;
+  return check(xrEndFrame(session_, &info), "showing a frame");
+}
+
+}  // namespace dubsar::openxr

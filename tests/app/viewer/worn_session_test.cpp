@@ -1,0 +1,107 @@
+// A whole session on a head: the wearer looks around and turns the tablet with a hand, in the made OpenXR runtime.
+
+#include <cmath>
+#include <numbers>
+
+#include "app/viewer/run_view.h"
+#include "app/viewer/worn_input.h"
+#include "tests/display/spec.h"
+#include "tests/display/test_meshes.h"
+#include "tests/openxr_runtime/worn_test.h"
+
+namespace dubsar::app {
+namespace {
+
+class WornSession : public dubsar::testing::WornTest {
+ protected:
+  void SetUp() override {
+    WornTest::SetUp();
+    if (HasFatalFailure()) return;
+    made_->floor_m = -1.2;  // the object is 35 cm under the eyes
+    made_->read_pictures = false;
+    options_.mapping = default_mapping().value();
+    options_.stage.shading = shading_preset("relief").value();
+    options_.stage.display = dubsar::testing::spec("openxr");
+    options_.stage.screen = {.width_px = 160, .height_px = 120, .window_w = 160, .window_h = 120};
+    options_.inputs = {"openxr"};
+    options_.fps = 30.0;
+    options_.notices = false;
+  }
+  double now_s() const { return made_->now_s; }
+  ViewOptions options_;
+  SilentProgress progress_;
+};
+
+double degrees_about_up(const glm::dquat& turn) { return 2.0 * std::atan2(turn.y, turn.w) * 180.0 / std::numbers::pi; }
+
+TEST_F(WornSession, AHandThatGrabsAndMovesTurnsTheTabletAndTheHeadLooksAround) {
+  made_->yaw_amplitude = 0.3;
+  made_->right_hand = made_->fist = true;
+  made_->hand_from = {-0.08, -0.25, -0.45};
+  made_->hand_speed = {0.15, 0, 0};  // of the runtime's time, in which a step of the session takes 11 ms
+  made_->hold_from = now_s() + 0.5;
+  made_->hold_to = now_s() + 1.5;
+  options_.longest_s = 7.0;
+  const auto done = run_view(dubsar::testing::lettered_box(), options_, progress_);
+  ASSERT_TRUE(done) << done.error().message;
+  ASSERT_EQ(done->rows.size(), 1u);
+  EXPECT_EQ(done->rows[0].health, SourceHealth::kPresent) << done->rows[0].reason;
+  // 15 cm to the right, half a degree a millimetre, and what it still turns when it is let go.
+  const double turned = degrees_about_up(done->view.rotation);
+  EXPECT_GT(turned, 60.0);
+  EXPECT_LT(turned, 110.0);
+  EXPECT_LT(std::abs(done->view.rotation.x) + std::abs(done->view.rotation.z), 0.12) << "about the vertical";
+  ASSERT_GT(made_->frames.size(), 150u);
+  for (const auto& frame : made_->frames) {
+    ASSERT_EQ(frame.layers, 1);
+    const auto head = made_head(*made_, 1e-9 * static_cast<double>(frame.displayed));
+    for (const auto& pose : frame.poses) {
+      const double turn = 2.0 * std::acos(std::min(1.0, std::abs(glm::dot(head.rotation, pose.rotation))));
+      ASSERT_LE(turn * 180.0 / std::numbers::pi, 0.2);
+      ASSERT_NEAR(glm::distance(head.position, pose.position), 0.032, 1e-3);
+    }
+  }
+}
+
+TEST_F(WornSession, ASqueezedControllerIsAPuck) {
+  made_->controller = true;
+  options_.longest_s = 3.0;
+  int step = 0;
+  const auto done = run_view(dubsar::testing::lettered_box(), options_, progress_, [&](const ViewMoment&) {
+    const std::lock_guard lock(made_->mutex);
+    made_->grip.position = {0.1, -0.3, -0.4};
+    made_->squeeze = ++step > 20 && step < 70 ? 1.0 : 0.0;
+    made_->grip.rotation = glm::angleAxis(step > 22 ? 0.5 : 0.0, glm::dvec3(0, 1, 0));
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_GT(degrees_about_up(done->view.rotation), 15.0) << "twisted to the left seen from above";
+}
+
+TEST_F(WornSession, TheSessionGoesOnWhenTheHeadsetIsLostAndComesBack) {
+  options_.longest_s =
+      15.0;  // the runtime is asked again after a second, and nobody waits for the pictures of a lost one
+  int step = 0;
+  std::size_t before = 0;
+  const auto done = run_view(dubsar::testing::lettered_box(), options_, progress_, [&](const ViewMoment&) {
+    const std::lock_guard lock(made_->mutex);
+    if (++step == 30) before = made_->frames.size();
+    made_->lose_session = step >= 30 && step < 40;
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_EQ(done->frames, 450);
+  EXPECT_GT(before, 20u);
+  EXPECT_GT(made_->frames.size(), before + 50) << "pictures reach the headset again";
+  EXPECT_EQ(made_->sessions_ever, 2);
+  EXPECT_EQ(done->rows[0].health, SourceHealth::kPresent) << done->rows[0].reason;
+}
+
+TEST_F(WornSession, WithoutAHeadsetTheSourceSaysWhatItNeeds) {
+  options_.stage.display = dubsar::testing::spec("mono");
+  options_.longest_s = 0.2;
+  const auto done = run_view(dubsar::testing::lettered_box(), options_, progress_);
+  const std::string said = done ? done->rows[0].reason : done.error().message;
+  EXPECT_NE(said.find("expected --display openxr"), std::string::npos) << said;
+}
+
+}  // namespace
+}  // namespace dubsar::app

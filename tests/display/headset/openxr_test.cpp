@@ -1,0 +1,310 @@
+// Head-mounted displays through the real OpenXR loader, with a runtime of our own behind it: where pictures are made
+// for, what is submitted, and what happens when the headset goes.
+
+#include "display/sinks/openxr.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <glm/gtc/constants.hpp>
+
+#include "display/render/compose_pass.h"
+#include "display/render/context_egl.h"
+#include "display/render/context_glfw.h"
+#include "display/render/lod_mesh.h"
+#include "display/render/renderer.h"
+#include "display/render/view_array.h"
+#include "display/sinks/render_display.h"
+#include "display/sinks/sink_catalog.h"
+#include "tests/display/spec.h"
+#include "tests/display/test_meshes.h"
+#include "tests/display/xvfb_server.h"
+#include "tests/openxr_runtime/worn_test.h"
+
+namespace dubsar {
+namespace {
+
+using testing::MadeFrame;
+using testing::MadePose;
+
+double degrees_between(const glm::dquat& a, const glm::dquat& b) {
+  return 2.0 * std::acos(std::min(1.0, std::abs(glm::dot(a, b)))) * 180.0 / glm::pi<double>();
+}
+
+class OpenXr : public testing::WornTest {
+ protected:
+  void SetUp() override {
+    WornTest::SetUp();
+    if (HasFatalFailure()) return;
+    auto made = EglContext::create();
+    ASSERT_TRUE(made) << made.error().message;
+    context_ = std::move(*made);
+  }
+  void TearDown() override {
+    scene_.reset();
+    sink_.reset();
+    WornTest::TearDown();
+  }
+
+  void open(const std::string& spec = "openxr") {
+    auto sink = SinkCatalog().make(spec);
+    ASSERT_TRUE(sink) << sink.error().message;
+    sink_ = std::move(*sink);
+    ASSERT_TRUE(sink_->configure({.window_w = 320, .window_h = 200}));
+    sink_->views(Viewer());  // the nominal cameras
+    TriMesh card;            // 30 mm square, upright, its middle at the origin
+    testing::add_rectangle(card, {-15, -15, 0}, {30, 0, 0}, {0, 30, 0}, 0);
+    scene_ = std::make_unique<Scene>(card);
+  }
+  /// One picture: cameras, rendering, compose. True when somebody was there to see it.
+  bool picture() {
+    const std::span<const View> views = sink_->views(Viewer());
+    EXPECT_TRUE(scene_->renderer.render(scene_->scene, views, 1, scene_->array));
+    const auto done = sink_->compose(scene_->array, scene_->mirror.surface());
+    EXPECT_TRUE(done) << done.error().message;
+    return sink_->wearer().has_value();
+  }
+  void pictures_until_worn() {
+    for (const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20); !picture();)
+      ASSERT_LT(std::chrono::steady_clock::now(), end) << sink_->note();
+  }
+
+  struct Scene {
+    explicit Scene(const TriMesh& card)
+        : mesh(LodMesh::exact(pack_mesh(card).value()).value()),
+          shading([] {
+            Shading out = shading_preset("ao").value();
+            out.style.base_color = {255, 255, 255};
+            out.background.color = {0, 0, 0};
+            return out;
+          }()),
+          scene(mesh, shading, glm::dmat4(1.0)),
+          renderer(Renderer::create().value()),
+          array(ViewArray::create(testing::kMadeEyePx, testing::kMadeEyePx, 2).value()),
+          mirror(OffscreenSurface::create({320, 200}).value()) {}
+    LodMesh mesh;
+    Shading shading;
+    MeshScene scene;
+    Renderer renderer;
+    ViewArray array;
+    OffscreenSurface mirror;
+  };
+  std::unique_ptr<EglContext> context_;
+  std::unique_ptr<OutputSink> sink_;
+  std::unique_ptr<Scene> scene_;
+};
+
+/// Truth: where an eye is at the time that a frame is displayed.
+MadePose true_eye(const testing::MadeFacts& made, const MadeFrame& frame, int eye) {
+  const MadePose head = made_head(made, 1e-9 * static_cast<double>(frame.displayed));
+  const double side = (eye == 0 ? -0.5 : 0.5) * made.eyes_apart_m;
+  return {head.position + head.rotation * glm::dvec3(side, 0, 0), head.rotation};
+}
+
+void expect_predicted_poses(const testing::MadeFacts& made, std::size_t from) {
+  ASSERT_GT(made.frames.size(), from);
+  for (std::size_t i = from; i < made.frames.size(); ++i) {
+    const MadeFrame& frame = made.frames[i];
+    ASSERT_EQ(frame.layers, 1) << "frame " << i;
+    EXPECT_EQ(frame.displayed, frame.predicted);
+    for (int eye = 0; eye < 2; ++eye) {
+      const MadePose truth = true_eye(made, frame, eye), given = frame.poses[static_cast<std::size_t>(eye)];
+      EXPECT_LE(degrees_between(truth.rotation, given.rotation), 0.2) << "frame " << i << ", eye " << eye;
+      EXPECT_LE(glm::distance(truth.position, given.position), 1e-3) << "frame " << i << ", eye " << eye;
+    }
+  }
+}
+
+TEST_F(OpenXr, LayersHaveThePosesPredictedForTheDisplayTimeWhileTheHeadTurns) {
+  made_->yaw_amplitude = 0.5;  // up to 126 degrees a second: 1.4 from one frame to the next
+  made_->nod_amplitude = 0.2;
+  made_->sway_m = 0.05;
+  open();
+  pictures_until_worn();
+  for (int i = 0; i < 60; ++i) ASSERT_TRUE(picture());
+  EXPECT_EQ(std::string_view(made_->binding), "EGL");
+  EXPECT_EQ(made_->frames.size(), 61u);
+  expect_predicted_poses(*made_, 0);
+}
+
+/// Where the object stands, from the first head and the floor.
+glm::dvec3 expected_place(const testing::MadeFacts& made, const MadePose& first_head) {
+  glm::dvec3 ahead = first_head.rotation * glm::dvec3(0, 0, -1);
+  ahead = glm::normalize(glm::dvec3(ahead.x, 0, ahead.z));
+  return {first_head.position.x + 0.5 * ahead.x, made.floor_m + 0.85, first_head.position.z + 0.5 * ahead.z};
+}
+
+TEST_F(OpenXr, TheObjectStaysOnItsTableInBothEyesPictures) {
+  made_->yaw_amplitude = 0.25;
+  made_->nod_amplitude = 0.1;
+  made_->sway_m = 0.06;
+  made_->yaw_middle = 1.1;  // whichever way the wearer sits
+  made_->head_middle = {0.3, 0.1, -0.7};
+  made_->floor_m = -1.05;  // the object's middle is 30 cm under the eyes
+  open();
+  pictures_until_worn();
+  for (int i = 0; i < 40; ++i) ASSERT_TRUE(picture());
+  const MadePose first = made_head(*made_, 1e-9 * static_cast<double>(made_->frames[0].displayed));
+  const glm::dvec3 place = expected_place(*made_, first);
+  for (const MadeFrame& frame : made_->frames)
+    for (int eye = 0; eye < 2; ++eye) {
+      const MadePose at = true_eye(*made_, frame, eye);
+      const glm::dvec3 seen = glm::conjugate(at.rotation) * (place - at.position);
+      const auto& fov = frame.fov[static_cast<std::size_t>(eye)];
+      const auto pixel = [&](double tangent, float low, float high) {
+        return testing::kMadeEyePx * (tangent - std::tan(low)) / (std::tan(high) - std::tan(low));
+      };
+      const auto bright = frame.bright[static_cast<std::size_t>(eye)];
+      ASSERT_TRUE(bright) << "nothing to be seen";
+      EXPECT_NEAR(bright->x, pixel(seen.x / -seen.z, fov[0], fov[1]), 0.6);
+      EXPECT_NEAR(bright->y, pixel(seen.y / -seen.z, fov[3], fov[2]), 0.6);
+    }
+  int lit = 0;  // and the window shows the left eye's
+  const Image mirror = scene_->mirror.read().value();
+  for (int y = 0; y < mirror.height; ++y)
+    for (int x = 0; x < mirror.width; ++x) lit += mirror.at(x, y)[0] > 127;
+  EXPECT_GT(lit, 20);
+}
+
+TEST_F(OpenXr, ALostSessionAndALostRuntimeComeBack) {
+  made_->yaw_amplitude = 0.3;
+  open();
+  pictures_until_worn();
+  for (const bool whole_runtime : {false, true}) {
+    for (int i = 0; i < 5; ++i) ASSERT_TRUE(picture());
+    const Pose before = sink_->wearer()->eyes[0].pose;
+    {
+      const std::lock_guard lock(made_->mutex);
+      (whole_runtime ? made_->end_instance : made_->lose_session) = true;
+    }
+    for (int i = 0; i < 5; ++i) EXPECT_FALSE(picture());
+    EXPECT_FALSE(sink_->note().empty());
+    const std::size_t seen = made_->frames.size();
+    {
+      const std::lock_guard lock(made_->mutex);
+      made_->end_instance = made_->lose_session = false;
+    }
+    pictures_until_worn();
+    for (int i = 0; i < 5; ++i) ASSERT_TRUE(picture());
+    EXPECT_TRUE(sink_->note().empty());
+    EXPECT_EQ(made_->sessions, 1);
+    EXPECT_EQ(made_->swapchains, 2);
+    expect_predicted_poses(*made_, seen);
+    EXPECT_NEAR(glm::length(before.position_m), glm::length(sink_->wearer()->eyes[0].pose.position_m), 0.05)
+        << "the object stands where it stood";
+  }
+  EXPECT_GE(made_->sessions_ever, 3);
+}
+
+TEST_F(OpenXr, TheWearersMiddleIsBeforeTheWearerAgainAfterRecentring) {
+  open("openxr:distance=0.6,height=1.2");
+  pictures_until_worn();
+  const auto head = [&] {
+    const auto wearer = sink_->wearer();
+    return 0.5 * (wearer->eyes[0].pose.position_m + wearer->eyes[1].pose.position_m);
+  };
+  EXPECT_NEAR(head().z, 0.6, 1e-6);
+  EXPECT_NEAR(head().y, 1.5 - 1.2, 1e-6) << "over the floor, which is 1.5 m under the eyes";
+  EXPECT_NEAR(*sink_->wearer()->floor_m, -1.2, 1e-6);
+  {
+    const std::lock_guard lock(made_->mutex);
+    made_->yaw_middle = 2.0;
+    made_->head_middle = {1, 0, 1};
+  }
+  ASSERT_TRUE(picture());
+  EXPECT_GT(std::abs(head().x), 0.2);
+  for (const bool by_runtime : {true, false}) {
+    if (by_runtime) {
+      const std::lock_guard lock(made_->mutex);
+      made_->recentre = true;
+    } else {
+      const std::lock_guard lock(made_->mutex);
+      made_->yaw_middle = -1.0;
+      sink_->recentre();
+    }
+    ASSERT_TRUE(picture());
+    EXPECT_NEAR(head().x, 0.0, 1e-6);
+    EXPECT_NEAR(head().z, 0.6, 1e-6);
+  }
+}
+
+TEST_F(OpenXr, WithoutAFloorTheObjectIsUnderTheEyes) {
+  made_->has_floor = false;
+  open();
+  pictures_until_worn();
+  EXPECT_NEAR(sink_->wearer()->eyes[0].pose.position_m.y, 0.35, 1e-6);
+  EXPECT_FALSE(sink_->wearer()->floor_m);
+}
+
+TEST_F(OpenXr, WhatIsMissingIsSaid) {
+  made_->no_headset = true;
+  auto sink = SinkCatalog().make("openxr");
+  ASSERT_FALSE(sink);
+  EXPECT_EQ(sink.error().kind, ErrorKind::kUnavailable);
+  EXPECT_NE(sink.error().message.find("Made Runtime 1.2.3 has no headset"), std::string::npos) << sink.error().message;
+  EXPECT_NE(headset_facts().words.find("no headset"), std::string::npos);
+  made_->no_headset = false;
+  EXPECT_EQ(headset_facts().words, "runtime Made Runtime 1.2.3, headset Made Headset, hands, EGL and GLX");
+  ::setenv("XR_RUNTIME_JSON", "/nonexistent/runtime.json", 1);
+  sink = SinkCatalog().make("openxr");
+  ASSERT_FALSE(sink);
+  EXPECT_NE(sink.error().message.find("no runtime answers"), std::string::npos) << sink.error().message;
+  EXPECT_EQ(SinkCatalog().make("openxr:far").error().kind, ErrorKind::kUsage);
+  SilentProgress progress;
+  ::setenv("XR_RUNTIME_JSON", DUBSAR_MADE_RUNTIME_JSON, 1);
+  EXPECT_EQ(render_display(testing::lettered_box(), {"openxr"}, {}, progress).error().kind, ErrorKind::kUsage);
+}
+
+/// The same in a window on an X server: a context of GLX.
+class OpenXrInWindow : public OpenXr {
+ protected:
+  static void SetUpTestSuite() { server_ = std::make_unique<testing::XvfbServer>(); }
+  static void TearDownTestSuite() { server_.reset(); }
+  void SetUp() override {
+    WornTest::SetUp();
+    if (!server_->problem().empty()) GTEST_SKIP() << server_->problem();
+    WindowOptions options;
+    options.width = 320;
+    options.height = 200;
+    auto window = GlfwWindow::create(options);
+    ASSERT_TRUE(window) << window.error().message;
+    window_ = std::move(*window);
+  }
+  void TearDown() override {
+    OpenXr::TearDown();
+    window_.reset();
+  }
+  inline static std::unique_ptr<testing::XvfbServer> server_;
+  std::unique_ptr<GlfwWindow> window_;
+};
+
+TEST_F(OpenXrInWindow, AContextOfGlxIsBoundAndShowsTheSame) {
+  made_->yaw_amplitude = 0.5;
+  made_->floor_m = -1.05;
+  open();
+  pictures_until_worn();
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(picture());
+  EXPECT_EQ(std::string_view(made_->binding), "GLX");
+  expect_predicted_poses(*made_, 0);
+  for (const MadeFrame& frame : made_->frames)
+    for (const auto& bright : frame.bright) EXPECT_TRUE(bright);
+}
+
+TEST(RoomFromScreen, IsBeforeTheEyesWhicheverWayTheyLook) {
+  const HeadsetPlace place;
+  for (const double yaw : {0.0, 1.0, 3.0, -2.0})
+    for (const double nod : {0.0, -1.0, 1.0, -1.5, 1.5}) {
+      const Pose head{{0.2, 1.6, -0.4},
+                      glm::angleAxis(yaw, glm::dvec3(0, 1, 0)) * glm::angleAxis(nod, glm::dvec3(1, 0, 0))};
+      const Pose room = room_from_screen(head, 0.0, place);
+      const glm::dvec3 ahead(-std::sin(yaw), 0, -std::cos(yaw));
+      EXPECT_LE(glm::distance(room.position_m, glm::dvec3(0.2, 0.85, -0.4) + 0.5 * ahead), 1e-9) << yaw << " " << nod;
+      EXPECT_LE(glm::distance(room.rotation * glm::dvec3(0, 0, 1), -ahead), 1e-9) << "towards the wearer";
+      EXPECT_LE(glm::distance(room.rotation * glm::dvec3(0, 1, 0), glm::dvec3(0, 1, 0)), 1e-9);
+    }
+}
+
+}  // namespace
+}  // namespace dubsar

@@ -1,0 +1,77 @@
+#pragma once
+// What the sources of the made runtime share.
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+#include <epoxy/glx.h>
+
+#include <ctime>
+
+#define XR_USE_GRAPHICS_API_OPENGL
+#define XR_USE_PLATFORM_XLIB
+#define XR_USE_PLATFORM_EGL
+#define XR_USE_TIMESPEC
+#include <openxr/openxr.h>
+#include <openxr/openxr_platform.h>
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "tests/openxr_runtime/made_headset.h"
+
+namespace dubsar::testing {
+
+enum class SpaceKind { kLocal, kStage, kView, kGrip };
+struct MadeSpace {
+  SpaceKind kind = SpaceKind::kLocal;
+  int side = 0;
+};
+struct MadeSwapchain {
+  std::array<unsigned, 3> textures{};
+  int width = 0, height = 0, next = 0, shown = -1;
+  bool acquired = false, waited = false;
+};
+struct MadeAction {
+  std::string name;
+  XrActionType type = XR_ACTION_TYPE_POSE_INPUT;
+};
+
+/// One instance, one session, as runtimes have it.
+struct RuntimeState {
+  MadeHeadset headset;
+  std::deque<XrSessionState> news;
+  std::map<std::uint64_t, MadeSpace> spaces;
+  std::map<std::uint64_t, MadeSwapchain> swapchains;
+  std::map<std::uint64_t, MadeAction> actions;
+  std::map<std::uint64_t, int> trackers;  // side
+  std::map<std::string, XrPath> paths;
+  std::uint64_t next_handle = 1, session = 0, instance = 0;
+  bool running = false, waited = false, begun = false, recentred = false, loss_told = false;
+  std::int64_t frame = 0;  // number of the one that was waited for
+};
+
+RuntimeState& state();
+
+constexpr std::int64_t kPeriodNs = 11'111'111;
+
+template <class Handle>
+std::uint64_t id_of(Handle handle) {
+  return reinterpret_cast<std::uint64_t>(handle);
+}
+template <class Handle>
+Handle handle_of(std::uint64_t id) {
+  return reinterpret_cast<Handle>(id);
+}
+
+XrPosef posef(const MadePose& pose);
+MadePose in_space(const MadePose& local_from_thing, const MadeSpace& base, double time_s);
+MadePose place_of(const MadeSpace& space, double time_s);
+/// The session is lost from the moment that a test wants it to be.
+bool session_lost();
+
+/// Hands and actions by their names, for xrGetInstanceProcAddr; null: not theirs.
+PFN_xrVoidFunction input_function(const std::string& name);
+
+}  // namespace dubsar::testing
