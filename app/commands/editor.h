@@ -26,7 +26,6 @@ class Workplace {
   virtual Result<void> switch_display(int step) = 0;  ///< 1: the next one, -1: the one before, 0: this one, made again
   virtual Result<void> toggle_fullscreen() = 0;
   virtual Result<void> swap_eyes() = 0;  ///< kUnavailable where the display has not two views
-  virtual void recentre() = 0;           ///< of trackers whose heading drifts, and of headsets: "straight on" is here
   virtual void retry_sources() = 0;
   virtual void recentre_heads() = 0;  ///< trackers whose heading drifts: the present one is straight ahead
   virtual bool toggle_source(std::size_t index) = 0;  ///< false: there is no such source

@@ -106,11 +106,6 @@ std::vector<Command> window_commands() {
     return {};
   }));
   out.push_back(drawer());
-  out.push_back(
-      plain("recentre", "straight on is where the head looks now", {{"f7"}}, [](Editor& editor) -> Result<void> {
-        editor.place().recentre();
-        return {};
-      }));
   out.push_back(plain("retry_sources", "look for missing sources now", {{"f5"}}, [](Editor& editor) -> Result<void> {
     editor.place().retry_sources();
     return {};

@@ -154,10 +154,9 @@ Result<void> Viewer::switch_display(int step) {
   return fail(ErrorKind::kUnavailable, "none of {} displays can be shown", count);
 }
 
-void Viewer::recentre() {
+void Viewer::recentre_heads() {
   steering_->input().recentre();
   stage_->recentre();
-  say("straight on is here now");
 }
 
 Result<void> Viewer::swap_eyes() {

@@ -75,9 +75,8 @@ class Viewer final : public Workplace {
   Result<void> switch_display(int step) override;
   Result<void> toggle_fullscreen() override { return given_.presenter.toggle_fullscreen(); }
   Result<void> swap_eyes() override;
-  void recentre() override;
   void retry_sources() override { sources_->retry_now(); }
-  void recentre_heads() override { steering_->input().recentre(); }
+  void recentre_heads() override;
   bool toggle_source(std::size_t index) override;
   void say(std::string words) override;
   void end() override { given_.presenter.end(); }
