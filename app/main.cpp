@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <vector>
@@ -88,6 +89,8 @@ int run(const Verb& verb, const CommonOptions& common) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // The loader of OpenXR prints what our own sentences say; who wants to read it sets another value.
+  ::setenv("XR_LOADER_DEBUG", "none", 0);
   Arguments program =
       Arguments::program("dubsar: from a CT scan of an enclosed cuneiform tablet to surfaces that can be read",
                          "dubsar", "dubsar " DUBSAR_VERSION);
