@@ -212,6 +212,7 @@ void Stage::Parts::set_scene() {
   painted.clips = dubsar::moved(options.shading.clips, world);
   for (const ClipPlane& clip : dubsar::moved(shown.clips, world)) painted.clips.push_back(clip);
   painted.items = {MeshItem{&*object.mesh, world, shown.style, shown.parts}};
+  for (const LinesItem& lines : shown.before) painted.items.emplace_back(lines);
   for (LinesItem lines : shown.marks.lines) {
     for (glm::dvec3& p : lines.points_mm) place(p);
     lines.lift_mm *= scale;

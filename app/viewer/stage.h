@@ -67,8 +67,9 @@ struct Shown {
   std::vector<ClipPlane> clips{};  ///< besides the stage's own; in the model's frame
   Fog fog{};                       ///< none: the stage's own
   Marks marks{};
+  std::vector<LinesItem> before{};  ///< people's hands: mm of the screen frame
   friend bool operator==(const Shown& a, const Shown& b) {
-    return a.light == b.light && a.clips == b.clips && a.fog == b.fog && a.marks == b.marks &&
+    return a.light == b.light && a.clips == b.clips && a.fog == b.fog && a.marks == b.marks && a.before == b.before &&
            a.view.rotation == b.view.rotation && a.view.zoom == b.view.zoom && a.view.pan == b.view.pan &&
            a.view.light_azimuth_deg == b.view.light_azimuth_deg &&
            a.view.light_elevation_deg == b.view.light_elevation_deg && a.fit == b.fit && a.style == b.style &&

@@ -288,6 +288,7 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
   const Document seen = film ? shown_document(now) : document();
   const ViewState view = film ? view_of(seen) : steered.view;
   Shown shown = shown_of(seen, view, given_.options.stage, stage_->box_mm());
+  shown.before = at_.guidance.lines;
   shown.marks = marks_of(seen, desk(), shown.parts, *tools_.font);
   stage_->show(shown, steered.eyes, now);
   report_.view = view;
