@@ -30,6 +30,7 @@ usage() {
 ./do peers    talk to VRPN, spacenavd, libspnav and opentrack, as far as they are installed, and print a table
 ./do bench    run the benchmarks; ./do bench displays: only those of many views;
               ./do bench exa: bits and speed of the surface format, beside Draco and meshoptimizer
+              ./do bench contact [X Y Z SEED]: what is read where tablet and envelope touch
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
 ./do asan     the tests that need no window under AddressSanitizer and UndefinedBehaviorSanitizer; asan core: of core
 ./do tsan     devices and inputs under ThreadSanitizer (clang)
@@ -154,6 +155,11 @@ bench() {
       "$build/app/dubsar" exa stat "$folder/denoised_$passes.exa"
     done
     "$build/tests/bench/exa_bench" --large "$folder"/denoised_*.exa
+    return
+  fi
+  if [ "${1:-}" = contact ]; then
+    build_target --target contact_bench
+    "$build/tests/bench/contact_bench" "${@:2}"
     return
   fi
   build_target --target dubsar_bench

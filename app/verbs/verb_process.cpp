@@ -20,13 +20,17 @@ struct Options {
   PipelineOptions pipeline;
   double threshold = 0.0, sharpen = 1.0, radius = 64.0;
   int rays = 160;
-  bool no_resample = false, no_holes = false, no_ao = false, open_boundary = false;
+  bool no_resample = false, no_holes = false, no_contact = false, no_ao = false, open_boundary = false;
 };
 
 void add_filter_options(Arguments command, Options& options) {
   PipelineOptions& p = options.pipeline;
   Arguments group = command.group("Filters and threshold");
-  group.flag("--no-resample", options.no_resample, "skip Gauss 3x3x3 and 2:1 resampling");
+  group.choice<Detail>(
+      "--detail", p.detail, choices_of(kDetails),
+      "grid of the surface: half (default: Gauss 3x3x3 and 2:1, as in the paper), scan (all the scan "
+      "has, and the contact of tablet and envelope is traced), auto (scan where time and memory allow)");
+  group.flag("--no-resample", options.no_resample, "the same as --detail scan");
   group.choice<DenoiseMethod>("--denoise", p.denoise.method, choices_of(kDenoiseMethods),
                               "denoising filter (default joint)");
   group.choice<RangeWeight>("--range-weight", p.denoise.range, choices_of(kRangeWeights),
@@ -62,6 +66,7 @@ void add_surface_options(Arguments command, Options& options) {
       "how parts are separated: nested (default), the paper's concavity threshold, closed bodies, or none");
   group.value("--concavity", p.segment.concavity, "k_min per grid step below which --segment concavity cuts");
   group.flag("--no-fill-holes", options.no_holes, "leave the holes that segmentation cuts");
+  group.flag("--no-contact", options.no_contact, "leave smooth patches where tablet and envelope touch");
   group.flag("--no-ao", options.no_ao, "skip ambient occlusion");
   group.value("--ao-rays", options.rays, "rays per vertex").range(1, 65536);
   group.value("--ao-radius", options.radius, "reach of the rays in grid steps").positive();
@@ -102,7 +107,8 @@ std::string summary(const std::string& out, const SurfaceFacts& facts) {
 Result<VerbResult> run(Options options, const Arguments command, const CommonOptions& common, Progress& progress) {
   PipelineOptions& p = options.pipeline;
   DUBSAR_ASSIGN(p.import, parse_input_options(options.in, options.input));
-  p.resample = !options.no_resample;
+  if (options.no_resample) p.detail = Detail::kScan;
+  p.trace_contact = !options.no_contact;
   p.sample.closed = !options.open_boundary;
   p.fill_holes = !options.no_holes;
   if (options.no_ao)

@@ -8,10 +8,12 @@
 #include "core/exa/exa_blocks.h"
 #include "core/exa/exact.h"
 #include "core/exa/offsets.h"
+#include "core/exa/patch_evidence.h"
 #include "core/exa/patches.h"
 #include "core/exa/settle.h"
 #include "core/exa/sign_brick.h"
 #include "core/extract/extract.h"
+#include "core/mesh/evidence.h"
 #include "core/relief/shape_class.h"
 
 namespace dubsar {
@@ -76,6 +78,10 @@ Result<void> decode_attributes(const ExaReader& reader, const ExaHeader& header,
     DUBSAR_TRY(labels("SHAP", ExaLabel::kShape, model.attributes.shape));
   }
   DUBSAR_TRY(labels("AMBO", ExaLabel::kLight, model.attributes.ao));
+  DUBSAR_TRY(labels("EVID", ExaLabel::kEnum, model.attributes.evidence));
+  for (const std::uint8_t evidence : model.attributes.evidence)
+    if (evidence >= kEvidenceCount)
+      return fail(ErrorKind::kBadData, "exa: evidence {} found, expected 0 to {}", evidence, kEvidenceCount - 1);
   DUBSAR_TRY(labels("QPAR", ExaLabel::kPartition, model.quad_partition));
   if (reader.has("PART")) {
     DUBSAR_ASSIGN(const std::string text, reader.text("PART"));
@@ -84,6 +90,10 @@ Result<void> decode_attributes(const ExaReader& reader, const ExaHeader& header,
   if (reader.has("FILL")) {
     DUBSAR_ASSIGN(const ExaChunks patches, reader.chunks("FILL", kCodec));
     DUBSAR_ASSIGN(model.patches, decode_patches(patches.chunks, {model.mesh, model.quad_partition}));
+    if (reader.has("FEVI")) {
+      DUBSAR_ASSIGN(const ExaChunks evidence, reader.chunks("FEVI", kCodec));
+      DUBSAR_TRY(decode_patch_evidence(evidence.chunks, model.patches));
+    }
   }
   if (reader.has("PROV")) {
     DUBSAR_ASSIGN(model.provenance, reader.text("PROV"));

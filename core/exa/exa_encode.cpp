@@ -8,10 +8,12 @@
 #include "core/exa/exa_file.h"
 #include "core/exa/exact.h"
 #include "core/exa/offsets.h"
+#include "core/exa/patch_evidence.h"
 #include "core/exa/patches.h"
 #include "core/exa/settle.h"
 #include "core/exa/sign_brick.h"
 #include "core/extract/extract.h"
+#include "core/mesh/evidence.h"
 #include "core/relief/shape_class.h"
 
 namespace dubsar {
@@ -23,7 +25,8 @@ Result<void> check_model(const SurfaceModel& model, const QuadMesh& rebuilt) {
   const auto fits = [](std::size_t size, std::size_t count) { return size == 0 || size == count; };
   const VertexAttributes& a = model.attributes;
   if (!fits(a.normals.size(), vertices) || !fits(a.k_min.size(), vertices) || a.k_min.size() != a.k_max.size() ||
-      !fits(a.shape.size(), vertices) || !fits(a.ao.size(), vertices) || !fits(model.quad_partition.size(), quads))
+      !fits(a.shape.size(), vertices) || !fits(a.ao.size(), vertices) || !fits(a.evidence.size(), vertices) ||
+      !fits(model.quad_partition.size(), quads))
     return fail(ErrorKind::kInternal, "exa: arrays do not fit the mesh of {} vertices and {} x-quads", vertices, quads);
   if (model.mesh.quads != rebuilt.quads || model.mesh.doubled != rebuilt.doubled ||
       model.mesh.positions.size() != rebuilt.positions.size())
@@ -42,8 +45,8 @@ Result<void> check_model(const SurfaceModel& model, const QuadMesh& rebuilt) {
     return v.empty() ? 0 : int{*std::max_element(v.begin(), v.end())};
   };
   if (largest(a.shape) > highest_label(ExaLabel::kShape) || largest(a.ao) > highest_label(ExaLabel::kLight) ||
-      largest(model.quad_partition) > highest_label(ExaLabel::kPartition))
-    return fail(ErrorKind::kInternal, "exa: a shape class, ambient light or partition is out of range");
+      largest(a.evidence) >= int{kEvidenceCount} || largest(model.quad_partition) > highest_label(ExaLabel::kPartition))
+    return fail(ErrorKind::kInternal, "exa: a shape class, ambient light, evidence or partition is out of range");
   return check_patches(model.patches, model.mesh.vertex_count());
 }
 
@@ -154,9 +157,11 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   };
   if (!header.shapes) labels("SHAP", ExaLabel::kShape, a.shape);
   labels("AMBO", ExaLabel::kLight, a.ao);
+  labels("EVID", ExaLabel::kEnum, a.evidence);
   labels("QPAR", ExaLabel::kPartition, model.quad_partition);
   if (!model.patches.empty())
     blocks.add("FILL", false, encode_patches(model.patches, {model.mesh, model.quad_partition}));
+  if (has_patch_evidence(model.patches)) blocks.add("FEVI", false, encode_patch_evidence(model.patches));
   if (progress.cancelled()) return cancelled_error();
   return blocks.take();
 }

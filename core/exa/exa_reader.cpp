@@ -10,7 +10,7 @@ namespace {
 struct BlockName {
   std::string_view type, name;
 };
-constexpr std::array<BlockName, 17> kBlockNames{{{"HEAD", "header"},
+constexpr std::array<BlockName, 19> kBlockNames{{{"HEAD", "header"},
                                                  {"PART", "partitions"},
                                                  {"PROV", "provenance"},
                                                  {"SIGC", "signs_8"},
@@ -25,8 +25,10 @@ constexpr std::array<BlockName, 17> kBlockNames{{{"HEAD", "header"},
                                                  {"CURV", "curvatures"},
                                                  {"SHAP", "shape"},
                                                  {"AMBO", "ao"},
+                                                 {"EVID", "evidence"},
                                                  {"QPAR", "quad_partition"},
-                                                 {"FILL", "fill_patches"}}};
+                                                 {"FILL", "fill_patches"},
+                                                 {"FEVI", "fill_evidence"}}};
 }  // namespace
 
 std::string exa_block_name(std::string_view type) {

@@ -306,6 +306,11 @@ void settle_patches(std::vector<FillPatch>& patches, std::int64_t vertex_count) 
     std::vector<glm::vec3> extra;
     for (const std::uint32_t v : disk->order) extra.push_back(patch.extra_positions[v]);
     patch.extra_positions = std::move(extra);
+    if (!patch.evidence.empty()) {
+      std::vector<std::uint8_t> evidence;
+      for (const std::uint32_t v : disk->order) evidence.push_back(patch.evidence[v]);
+      patch.evidence = std::move(evidence);
+    }
     patch.triangles = named_triangles(disk->rim, disk->triangles, static_cast<std::uint32_t>(vertex_count));
   }
 }
@@ -340,6 +345,9 @@ Result<void> check_patches(const std::vector<FillPatch>& patches, std::int64_t v
         (patch.reverse_partition > PartitionTable::kHighest && patch.reverse_partition != PartitionTable::kNone))
       return fail(ErrorKind::kBadData, "exa: a fill patch names partition {} and {}, expected 0..{}", patch.partition,
                   patch.reverse_partition, PartitionTable::kHighest);
+    if (!patch.evidence.empty() && patch.evidence.size() != patch.extra_positions.size())
+      return fail(ErrorKind::kBadData, "exa: a fill patch has {} vertices but evidence for {}",
+                  patch.extra_positions.size(), patch.evidence.size());
     for (const glm::vec3& p : patch.extra_positions)
       if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
         return fail(ErrorKind::kBadData, "exa: a vertex of a fill patch is not finite");

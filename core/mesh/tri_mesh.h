@@ -22,6 +22,7 @@ struct VertexAttributes {
   std::vector<float> k_min, k_max;                  ///< principal curvatures per grid step, k_min <= k_max, convex > 0
   std::vector<std::uint8_t> shape;                  ///< 0 flat, 1 + 9 i + s (shape_class.h)
   std::vector<std::uint8_t> ao;                     ///< ambient light, 0 (dark) .. 63 (open)
+  std::vector<std::uint8_t> evidence;               ///< how the place is known (evidence.h)
   std::vector<std::array<std::uint8_t, 3>> colors;  ///< only from foreign files that carry colours
 };
 
@@ -30,7 +31,7 @@ struct TriMesh : VertexAttributes {
   std::vector<glm::vec3> positions;  ///< grid coordinates of `frame`
   std::vector<Triangle> triangles;
   std::vector<PartitionId> triangle_partition;  ///< one per triangle; empty: all 0
-  std::vector<std::uint8_t> triangle_inferred;  ///< one per triangle, 1: a fill patch; empty: none
+  std::vector<std::uint8_t> triangle_inferred;  ///< one per triangle, 1: inferred (evidence.h); empty: none
   GridFrame frame;
   PartitionTable partitions;
   std::string provenance;  ///< JSON text: program, version, parameters, input

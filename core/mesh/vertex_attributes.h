@@ -36,6 +36,7 @@ inline constexpr std::tuple kVertexAttributes{
     VertexAttribute{"k_max", &VertexAttributes::k_max, AddedValue::kSurfaceMean},
     VertexAttribute{"shape", &VertexAttributes::shape, AddedValue::kNeighbour},
     VertexAttribute{"ao", &VertexAttributes::ao, AddedValue::kMean},
+    VertexAttribute{"evidence", &VertexAttributes::evidence, AddedValue::kNeighbour},
 };
 
 /// Calls visit(attribute) for each entry of a list, in its order.

@@ -7,6 +7,7 @@
 #include "core/base/budget.h"
 #include "core/base/bytes.h"
 #include "core/base/log.h"
+#include "core/mesh/evidence.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/ply_header.h"
 #include "core/mesh_io/polygon_soup.h"
@@ -75,11 +76,12 @@ class AsciiValues {
   bool ok_ = true;
 };
 
-enum Slot { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kPart, kKMin, kKMax, kShape, kAo, kSlots };
+enum Slot { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kPart, kKMin, kKMax, kShape, kAo, kEvidence, kSlots };
 
 std::optional<Slot> slot_of(const PlyProperty& property, bool ours) {
-  static constexpr std::array<std::string_view, kSlots> kNames{
-      "x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "partition", "k_min", "k_max", "shape", "ao"};
+  static constexpr std::array<std::string_view, kSlots> kNames{"x",     "y",     "z",     "nx",   "ny",
+                                                               "nz",    "red",   "green", "blue", "partition",
+                                                               "k_min", "k_max", "shape", "ao",   "evidence"};
   for (int slot = 0; slot < kSlots; ++slot) {
     if (property.name != kNames[static_cast<std::size_t>(slot)] || property.list) continue;
     if (slot >= kPart && !ours) return std::nullopt;  // a foreign "ao" or "shape" means something else
@@ -142,6 +144,7 @@ struct Parser {
     if (has[kPart]) labels.resize(count);
     if (has[kShape]) mesh.shape.resize(count);
     if (has[kAo]) mesh.ao.resize(count);
+    if (has[kEvidence]) mesh.evidence.resize(count);
 
     std::array<double, kSlots> row{};
     const auto point = [&](int first) {
@@ -179,6 +182,10 @@ struct Parser {
       }
       if (has[kAo]) {
         DUBSAR_ASSIGN(mesh.ao[v], checked_byte<std::uint8_t>(row[kAo], 63, "ao"));
+      }
+      if (has[kEvidence]) {
+        constexpr int kHighest = static_cast<int>(kEvidenceCount) - 1;
+        DUBSAR_ASSIGN(mesh.evidence[v], checked_byte<std::uint8_t>(row[kEvidence], kHighest, "evidence"));
       }
       if (v % kStep == 0 && progress.cancelled()) return cancelled_error();
     }

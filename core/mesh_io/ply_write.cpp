@@ -53,6 +53,7 @@ Result<void> write_ply(const std::filesystem::path& path, const TriMesh& mesh, c
   declare(curvatures, "float", 4, {"k_min", "k_max"});
   declare(!mesh.shape.empty(), "uchar", 1, {"shape"});
   declare(!mesh.ao.empty(), "uchar", 1, {"ao"});
+  declare(!mesh.evidence.empty(), "uchar", 1, {"evidence"});
   declare(curvatures, "float", 4, {"quality"});
   header += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", mesh.triangles.size());
   const bool labelled = !mesh.triangle_partition.empty();
@@ -80,6 +81,7 @@ Result<void> write_ply(const std::filesystem::path& path, const TriMesh& mesh, c
     if (curvatures) append_little(row, k_min), append_little(row, k_max);
     if (!mesh.shape.empty()) append_little(row, mesh.shape[v]);
     if (!mesh.ao.empty()) append_little(row, mesh.ao[v]);
+    if (!mesh.evidence.empty()) append_little(row, mesh.evidence[v]);
     if (curvatures) append_little(row, 0.5f * (k_min + k_max));
     out.text(row);
     if ((v + 1) % kStep == 0) {

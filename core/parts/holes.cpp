@@ -114,6 +114,11 @@ class HoleFiller {
       std::vector<BorderEdge> edges;
       for (const BorderEdge& e : all)
         if (group_[e.left] == group && shared.count(key(e.from, e.to)) == 0) edges.push_back(e);
+      if (options_.keep_patches) {
+        for (std::uint8_t id = 0; id < group_.size(); ++id)
+          if (group_[id] == group) add_patch_borders(id, edges);
+        cancel_opposite(edges);
+      }
       for (const auto& loop : join_loops(edges)) {
         Task task = make_task(edges, loop);
         task.partition = majority(edges, loop, true);
@@ -267,7 +272,7 @@ Result<HoleReport> fill_holes(SurfaceModel& model, const FaceGraph& graph, const
                 "holes: {} partition ids and {} partitions found, expected a segmented model of {} x-quads",
                 model.quad_partition.size(), model.partitions.size(), model.mesh.quads.size());
   DUBSAR_TRY(model.partitions.check_complete(model.quad_partition, "holes", "an x-quad"));
-  model.patches.clear();
+  if (!options.keep_patches) model.patches.clear();
   progress.begin("fill holes", 0, "vertex");
   DUBSAR_ASSIGN(HoleReport report, HoleFiller(model, graph, options, progress).run());
   DUBSAR_TRY(measure_partitions(model));

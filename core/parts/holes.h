@@ -14,6 +14,7 @@ namespace dubsar {
 
 struct HoleOptions {
   LoopFillOptions fill;
+  bool keep_patches = false;  ///< the model's patches between parts stay, and what they close is no hole
 };
 
 struct HoleReport {

@@ -7,6 +7,7 @@
 
 #include "core/base/parallel.h"
 #include "core/extract/triangulate.h"
+#include "core/mesh/evidence.h"
 #include "core/mesh/vertex_attributes.h"
 #include "core/parts/triangle_soup.h"
 
@@ -50,6 +51,9 @@ Result<void> check_model(const SurfaceModel& model) {
         (patch.reverse_partition >= count && patch.reverse_partition != PartitionTable::kNone))
       return fail(ErrorKind::kBadData, "surface_model: a fill patch has partition {}, expected less than {}",
                   std::max(patch.partition, patch.reverse_partition), count);
+    if (!patch.evidence.empty() && patch.evidence.size() != patch.extra_positions.size())
+      return fail(ErrorKind::kBadData, "surface_model: a fill patch has {} vertices but evidence for {}",
+                  patch.extra_positions.size(), patch.evidence.size());
     for (const Triangle& t : patch.triangles)
       if (*std::max_element(t.begin(), t.end()) >= vertices + patch.extra_positions.size())
         return fail(ErrorKind::kBadData, "surface_model: a fill patch uses a vertex that does not exist");
@@ -111,6 +115,11 @@ void add_patches(const SurfaceModel& model, const Selection& selection, Triangle
   const auto add_side = [&](const FillPatch& patch, std::uint8_t id, bool reversed) {
     const auto base = static_cast<std::uint32_t>(dual + soup.added.size());
     soup.added.insert(soup.added.end(), patch.extra_positions.begin(), patch.extra_positions.end());
+    if (patch.evidence.empty())
+      soup.patch_evidence.resize(soup.patch_evidence.size() + patch.extra_positions.size(),
+                                 evidence_byte(Evidence::kInferred));
+    else
+      soup.patch_evidence.insert(soup.patch_evidence.end(), patch.evidence.begin(), patch.evidence.end());
     for (Triangle t : patch.triangles) {
       for (std::uint32_t& v : t)
         if (v >= dual) v = v - dual + base;
@@ -191,6 +200,26 @@ void fill_vertices(const SurfaceModel& model, const TriangleSoup& soup, const Nu
   });
 }
 
+/// How each vertex is known, and which triangles are not: those of patches, but for films.
+void fill_evidence(const TriangleSoup& soup, const Numbering& numbering, TriMesh& out) {
+  if (out.evidence.empty()) out.evidence.assign(out.positions.size(), evidence_byte(Evidence::kMeasured));
+  for (std::size_t i = 0; i < numbering.source.size(); ++i)
+    if (numbering.source[i] >= soup.first_patch_vertex)
+      out.evidence[i] = soup.patch_evidence[numbering.source[i] - soup.first_patch_vertex];
+  if (soup.first_patch_triangle >= out.triangles.size()) return;
+  out.triangle_inferred.assign(out.triangles.size(), 0);
+  for (std::size_t t = soup.first_patch_triangle; t < out.triangles.size(); ++t) {
+    // A triangle between vertices of the rim alone knows nothing either.
+    bool film = false, inferred = false;
+    for (const std::uint32_t v : out.triangles[t]) {
+      if (numbering.source[v] < soup.first_patch_vertex) continue;
+      film = film || out.evidence[v] == evidence_byte(Evidence::kFilm);
+      inferred = inferred || out.evidence[v] == evidence_byte(Evidence::kInferred);
+    }
+    out.triangle_inferred[t] = inferred || !film;
+  }
+}
+
 }  // namespace
 
 Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& options,
@@ -208,8 +237,10 @@ Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& opti
   if (first_copy > (std::size_t{1} << 31))
     return fail(ErrorKind::kTryAgain, "surface_model: {} vertices found, expected at most 2^31", first_copy);
   const VertexAttributes added = options.attributes ? attributes_of_added(model, soup) : VertexAttributes{};
-  const std::vector<std::uint32_t> copies =
-      split_fans(soup, find_border(model, selection), static_cast<std::uint32_t>(first_copy));
+  std::vector<bool> border = find_border(model, selection);
+  border.resize(soup.first_patch_vertex, false);
+  border.resize(first_copy, true);  // a patch may touch itself, too
+  const std::vector<std::uint32_t> copies = split_fans(soup, border, static_cast<std::uint32_t>(first_copy));
   const Numbering numbering = number_vertices(soup, first_copy, copies);
 
   TriMesh out;
@@ -218,11 +249,7 @@ Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& opti
     for (std::uint32_t& v : t) v = numbering.new_id[v];
   out.triangles = std::move(soup.triangles);
   out.triangle_partition = std::move(soup.partition);
-  if (soup.first_patch_triangle < out.triangles.size()) {
-    out.triangle_inferred.assign(out.triangles.size(), 0);
-    std::fill(out.triangle_inferred.begin() + static_cast<std::ptrdiff_t>(soup.first_patch_triangle),
-              out.triangle_inferred.end(), std::uint8_t{1});
-  }
+  fill_evidence(soup, numbering, out);
   if (source != nullptr) {
     *source = numbering.source;
     for (std::uint32_t& v : *source)

@@ -23,7 +23,8 @@ struct FillPatch {
   PartitionId partition = 0;                              ///< that the triangles are oriented for
   PartitionId reverse_partition = PartitionTable::kNone;  ///< that they are reversed for, if any
   std::vector<glm::vec3> extra_positions;                 ///< vertices that the patch adds, grid coordinates
-  std::vector<Triangle> triangles;  ///< id < vertex_count(): dual vertex; else extra_positions[id - count]
+  std::vector<Triangle> triangles;       ///< id < vertex_count(): dual vertex; else extra_positions[id - count]
+  std::vector<std::uint8_t> evidence{};  ///< of the extra vertices (evidence.h); empty: all inferred
 };
 
 struct SurfaceModel {

@@ -16,6 +16,7 @@ struct TriangleSoup {
   std::vector<Triangle> triangles;
   std::vector<std::uint8_t> partition, group;  ///< of each triangle
   std::vector<glm::vec3> added;                ///< positions of ids from dual_count on
+  std::vector<std::uint8_t> patch_evidence;    ///< of the added vertices from first_patch_vertex on (evidence.h)
   std::size_t first_patch_triangle = 0;
   std::size_t first_patch_vertex = 0;  ///< an id
 };

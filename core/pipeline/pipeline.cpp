@@ -21,7 +21,7 @@ SurfaceModel assemble(GridFrame frame, SurfaceSamples samples, QuadMesh mesh, Ve
 Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& progress) {
   StageClock clock;
   const StageRun run{clock, progress};
-  DUBSAR_ASSIGN(ImportedGrid imported, import_grid(options.import, options.resample, options.estimate, run));
+  DUBSAR_ASSIGN(ImportedGrid imported, import_grid(options.import, options.detail, options.estimate, run));
   DUBSAR_ASSIGN(DenoisedGrid denoised,
                 denoise(std::move(imported.grid), imported.grid_name, options.denoise, options.estimate, run));
   const Estimates& estimates = denoised.steps.back().estimates;
@@ -39,12 +39,24 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
                                              settling, run));
   DUBSAR_ASSIGN(SeparatedModel separated, separate(std::move(settled.model), options.segment, options.fill_holes, run));
   PipelineResult result{std::move(separated.model), {}};
+  std::optional<ContactReport> contact;
+  if (options.fill_holes && options.trace_contact && !imported.detail.resample() && separated.segment.nested &&
+      !separated.segment.enclosure_refused) {
+    DUBSAR_ASSIGN(TracedModel traced, trace(std::move(result.model), options.import, imported.detail.resample(), run));
+    result.model = std::move(traced.model);
+    contact = traced.contact;
+    if (contact->traced && separated.holes) {
+      separated.holes->triangles = 0;
+      for (const FillPatch& patch : result.model.patches)
+        separated.holes->triangles += static_cast<std::int64_t>(patch.triangles.size());
+    }
+  }
   if (options.occlusion) {
     DUBSAR_ASSIGN(result.model, shade(std::move(result.model), *options.occlusion, run));
   }
   DUBSAR_ASSIGN(const MeshCheck check, check_product(result.model, run));
-  result.report =
-      make_report({imported, denoised, threshold, sampled, smoothed, settled, separated, check}, result.model, clock);
+  result.report = make_report({imported, denoised, threshold, sampled, smoothed, settled, separated, contact, check},
+                              result.model, clock);
   result.model.provenance = dump_json(provenance_json(result.report, options));
   return result;
 }

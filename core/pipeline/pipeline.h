@@ -14,7 +14,7 @@ namespace dubsar {
 
 struct PipelineOptions {
   ImportOptions import;
-  bool resample = true;    ///< Gauss 3x3x3 and 2:1
+  Detail detail = Detail::kHalf;
   DenoiseOptions denoise;  ///< sigma 0: estimated anew before each iteration
   EstimateOptions estimate;
   std::optional<float> threshold;  ///< isovalue; overrides the estimate
@@ -24,6 +24,7 @@ struct PipelineOptions {
   SettleOptions settle;  ///< its curvature method is the one above
   SegmentOptions segment;
   bool fill_holes = true;
+  bool trace_contact = true;                                       ///< on the scan's grid and with filled holes only
   std::optional<OcclusionOptions> occlusion = OcclusionOptions{};  ///< none: no ambient light
 };
 

@@ -15,7 +15,8 @@ json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 json parameters_json(const PipelineReport& report, const PipelineOptions& options) {
   const auto& denoise = options.denoise;
   return {
-      {"resample", options.resample},
+      {"detail", name_in(kDetails, report.detail.detail)},
+      {"resample", report.detail.resample()},
       {"denoise",
        {{"method", name_in(kDenoiseMethods, denoise.method)},
         {"range", name_in(kRangeWeights, denoise.range)},
@@ -84,6 +85,16 @@ json segment_json(const PipelineReport& report) {
   return segment;
 }
 
+json contact_json(const ContactReport& contact) {
+  json result{{"traced", contact.traced},
+              {"points", contact.points},
+              {"pockets", contact.pockets},
+              {"film_vertices", contact.film_vertices},
+              {"inferred_vertices", contact.inferred_vertices}};
+  if (!contact.traced) result["why"] = contact.why;
+  return result;
+}
+
 json exa_json(const ExaStats& stats) {
   json blocks = json::object();
   for (const ExaBlockStats& block : stats.blocks)
@@ -102,6 +113,8 @@ PipelineReport make_report(const StageResults& results, const SurfaceModel& mode
                         .settle = results.settled.stats,
                         .segment = results.separated.segment,
                         .holes = results.separated.holes,
+                        .contact = results.contact,
+                        .detail = results.imported.detail,
                         .mesh = results.check,
                         .vertices = model.mesh.vertex_count(),
                         .xquads = model.mesh.quad_count(),
@@ -184,7 +197,9 @@ json report_json(const PipelineReport& report, const PipelineOptions& options) {
           {"estimates", estimates_json(report)},
           {"stages", stages},
           {"mesh", mesh},
+          {"detail", {{"grid", name_in(kDetails, report.detail.detail)}, {"why", report.detail.why}}},
           {"segment", segment_json(report)},
+          {"contact", report.contact ? contact_json(*report.contact) : json(nullptr)},
           {"partitions", partitions_json(report.partitions)},
           {"exa", exa_json(report.exa)},
           {"parameters", parameters_json(report, options)},
@@ -206,6 +221,7 @@ std::string report_text(const PipelineReport& report) {
   for (const FilterStep& step : report.filters)
     text += fmt::format("noise {:<22} sigma {:<11.4g} SNR {:5.1f} dB\n", step.name, step.estimates.sigma,
                         step.estimates.snr_db);
+  text += fmt::format("detail {}: {}\n", name_in(kDetails, report.detail.detail), report.detail.why);
   text += fmt::format("threshold {:.6g}: {}\n", report.threshold.value, report.threshold.path);
   text +=
       fmt::format("mesh: {} vertices, {} x-quads, {} triangles, {} non-manifold edges, {} non-manifold vertices\n\n",
@@ -219,6 +235,11 @@ std::string report_text(const PipelineReport& report) {
   if (report.segment.nested) text += fmt::format(", cut along {:.0f} steps", report.segment.cut_length);
   if (report.holes)
     text += fmt::format(", {} holes and {} cracks filled", report.holes->loops, report.holes->membranes);
+  if (const auto& contact = report.contact; contact && contact->traced)
+    text += fmt::format(", contact: {} pockets, {} vertices of films, {} inferred", contact->pockets,
+                        contact->film_vertices, contact->inferred_vertices);
+  else if (contact)
+    text += fmt::format(", contact not traced: {}", contact->why);
   text += fmt::format("\n{:<4}{:<24}{:>14}{:>14}  {}\n", "id", "part", "area mm2", "volume mm3", "");
   for (const Partition& part : report.partitions)
     text += fmt::format("{:<4}{:<24}{:>14.1f}{:>14.1f}  {}\n", part.id, part.name, part.area_mm2, part.volume_mm3,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/exa/exa_file.h"
+#include "core/pipeline/contact_stage.h"
 #include "core/pipeline/surface_stages.h"
 #include "core/pipeline/volume_stages.h"
 
@@ -23,8 +24,10 @@ struct PipelineReport {
   SmoothStats smooth;
   SettleStats settle;
   SegmentReport segment;
-  std::optional<HoleReport> holes;  ///< when holes were filled
-  MeshCheck mesh;                   ///< of all parts together, with their fill patches
+  std::optional<HoleReport> holes;       ///< when holes were filled
+  std::optional<ContactReport> contact;  ///< when tablet and envelope were told apart where they touch
+  DetailChoice detail;
+  MeshCheck mesh;  ///< of all parts together, with their fill patches
   std::int64_t vertices = 0, xquads = 0;
   PartitionTable partitions;
   ExaStats exa;  ///< once the product is written
@@ -40,6 +43,7 @@ struct StageResults {
   const SmoothedMesh& smoothed;
   const SettledModel& settled;
   const SeparatedModel& separated;
+  const std::optional<ContactReport>& contact;
   const MeshCheck& check;
 };
 

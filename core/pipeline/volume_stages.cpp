@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/budget.h"
 #include "core/base/log.h"
 #include "core/extract/extract.h"
 #include "core/filter/resample.h"
@@ -49,10 +50,13 @@ constexpr double kSharpenFromDb = 26.0;
 
 }  // namespace
 
-Result<ImportedGrid> import_grid(const ImportOptions& options, bool resample, const EstimateOptions& estimate,
+Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, const EstimateOptions& estimate,
                                  StageRun run) {
   DUBSAR_ASSIGN(const std::unique_ptr<ImportedVolume> scan, open_volume(options));
   ImportedGrid imported;
+  imported.detail = choose_detail(detail, scan->dims(), available_memory_bytes());
+  const bool resample = imported.detail.resample();
+  log_info("detail {}: {}", name_in(kDetails, imported.detail.detail), imported.detail.why);
   imported.facts.info = scan->info();
   imported.facts.warnings = scan->info().warnings;
   SampledSource some(*scan, kRawSampleSlices, kRawSampleGroup);

@@ -9,6 +9,7 @@
 #include "core/extract/surface_samples.h"
 #include "core/filter/denoise.h"
 #include "core/filter/estimate.h"
+#include "core/pipeline/detail.h"
 #include "core/pipeline/stage_clock.h"
 #include "core/volume/import.h"
 
@@ -39,12 +40,14 @@ struct ImportedGrid {
   ScanFacts facts;
   FilterStep raw;  ///< of a sample of the scan
   Grid grid;
+  DetailChoice detail;
   std::string grid_name;  ///< how it was made, as a FilterStep is named
 };
 
-/// Opens the scan, estimates its noise from a sample, reads it, and halves it along each axis (`resample`: Gauss 3x3x3
-/// and 2:1). Errors: those of open_volume() and of its source; kTryAgain when the grid does not fit into memory.
-Result<ImportedGrid> import_grid(const ImportOptions& options, bool resample, const EstimateOptions& estimate,
+/// Opens the scan, estimates its noise from a sample, reads it, and halves it along each axis (Gauss 3x3x3 and 2:1)
+/// where `detail` says so. Errors: those of open_volume() and of its source; kTryAgain when the grid does not fit into
+/// memory.
+Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, const EstimateOptions& estimate,
                                  StageRun run);
 
 struct DenoisedGrid {

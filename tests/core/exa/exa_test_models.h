@@ -49,6 +49,7 @@ inline SurfaceModel sample_model(const Dims& dims, Kind kind, unsigned seed, boo
     model.attributes.k_max.push_back(uniform(random) * 30.0f);
     model.attributes.shape.push_back(static_cast<std::uint8_t>(random() % 127));
     model.attributes.ao.push_back(static_cast<std::uint8_t>(random() % 64));
+    model.attributes.evidence.push_back(static_cast<std::uint8_t>(model.attributes.ao.size() * 7 / 5 % 4));
   }
   for (std::size_t q = 0; q < model.mesh.quads.size(); ++q)
     model.quad_partition.push_back(static_cast<std::uint8_t>(q / 100 % 8));
@@ -59,6 +60,7 @@ inline SurfaceModel sample_model(const Dims& dims, Kind kind, unsigned seed, boo
   if (vertices > 3) {
     model.patches.resize(2);
     model.patches[0] = {0, 7, {{0.5f, 1.25f, -3.0f}}, {{0, 1, static_cast<std::uint32_t>(vertices)}, {1, 2, 3}}};
+    model.patches[0].evidence = {2};
     model.patches[1].partition = 3;
   }
   model.frame.scale = {2.0, 2.0, 2.0};
@@ -85,6 +87,7 @@ inline void expect_equal(const SurfaceModel& a, const SurfaceModel& b) {
   EXPECT_TRUE(same_bytes(a.attributes.k_max, b.attributes.k_max));
   EXPECT_EQ(a.attributes.shape, b.attributes.shape);
   EXPECT_EQ(a.attributes.ao, b.attributes.ao);
+  EXPECT_EQ(a.attributes.evidence, b.attributes.evidence);
   EXPECT_EQ(a.quad_partition, b.quad_partition);
   ASSERT_EQ(a.partitions.size(), b.partitions.size());
   for (std::size_t i = 0; i < a.partitions.size(); ++i) {
@@ -101,6 +104,7 @@ inline void expect_equal(const SurfaceModel& a, const SurfaceModel& b) {
     EXPECT_EQ(a.patches[i].reverse_partition, b.patches[i].reverse_partition);
     EXPECT_TRUE(same_bytes(a.patches[i].extra_positions, b.patches[i].extra_positions));
     EXPECT_EQ(a.patches[i].triangles, b.patches[i].triangles);
+    EXPECT_EQ(a.patches[i].evidence, b.patches[i].evidence);
   }
   EXPECT_EQ(a.frame.scale, b.frame.scale);
   EXPECT_EQ(a.frame.origin_vox, b.frame.origin_vox);

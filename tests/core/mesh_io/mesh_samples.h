@@ -31,6 +31,7 @@ inline TriMesh sample_mesh(int around = 24, int across = 12) {
         mesh.k_max.push_back(static_cast<float>(std::max(k, 0.1)));
         mesh.shape.push_back(static_cast<std::uint8_t>((i * across + j) % 127));
         mesh.ao.push_back(static_cast<std::uint8_t>((i + j) % 64));
+        mesh.evidence.push_back(static_cast<std::uint8_t>((i + 3 * j) % 4));
         mesh.colors.push_back({static_cast<std::uint8_t>(i * 7), static_cast<std::uint8_t>(j * 20), 200});
       }
     for (int i = 0; i < around; ++i)

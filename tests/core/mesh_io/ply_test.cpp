@@ -29,6 +29,7 @@ TEST_F(Ply, MeshReadBackInVoxelsEqualsTheMeshWritten) {
   EXPECT_EQ(read->triangle_partition, mesh.triangle_partition);
   EXPECT_EQ(read->shape, mesh.shape);
   EXPECT_EQ(read->ao, mesh.ao);
+  EXPECT_EQ(read->evidence, mesh.evidence);
   ASSERT_EQ(read->positions.size(), mesh.positions.size());
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     EXPECT_EQ(read->positions[v], glm::vec3(mesh.frame.input_vox_from_grid(glm::dvec3(mesh.positions[v]))));
@@ -87,7 +88,8 @@ TEST_F(Ply, HeaderListsThePropertiesInTheOrderOfTheContract) {
       "property float x\nproperty float y\nproperty float z\n"
       "property float nx\nproperty float ny\nproperty float nz\n"
       "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar partition\n"
-      "property float k_min\nproperty float k_max\nproperty uchar shape\nproperty uchar ao\nproperty float quality\n"
+      "property float k_min\nproperty float k_max\nproperty uchar shape\nproperty uchar ao\nproperty uchar "
+      "evidence\nproperty float quality\n"
       "element face 1152\nproperty list uchar int vertex_indices\nproperty uchar partition\nend_header\n";
   ASSERT_THAT(bytes, HasSubstr(expected));
   const std::size_t body = bytes.find("end_header\n") + 11;

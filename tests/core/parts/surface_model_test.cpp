@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include "core/mesh/evidence.h"
 #include "core/mesh/mesh_check.h"
 #include "tests/core/parts/scene.h"
 
@@ -232,6 +233,23 @@ TEST(SurfaceModel, ContradictionsAreRefused) {
   EXPECT_EQ(make_tri_mesh(model).error().kind, ErrorKind::kBadData);
   model = two_balls();
   model.patches.push_back({0, 1, {}, {{0, 1, 4000000}}});
+  EXPECT_EQ(make_tri_mesh(model).error().kind, ErrorKind::kBadData);
+}
+
+TEST(SurfaceModel, TrianglesOfFilmsAreKnownAndThoseOfOtherPatchesAreNot) {
+  SurfaceModel model = two_balls();
+  const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());
+  FillPatch patch{0, 1, {{20, 11, 11}, {20, 13, 11}}, {{0, 1, dual}, {1, 2, dual}, {2, 3, dual + 1}, {0, 1, 2}}};
+  model.patches = {patch};
+  const auto inferred = [&] {
+    const TriMesh mesh = make_tri_mesh(model, {.partition = PartitionId{0}}).value();
+    EXPECT_EQ(mesh.evidence.size(), mesh.positions.size());
+    return std::vector<std::uint8_t>(mesh.triangle_inferred.end() - 4, mesh.triangle_inferred.end());
+  };
+  EXPECT_EQ(inferred(), (std::vector<std::uint8_t>{1, 1, 1, 1}));
+  model.patches[0].evidence = {evidence_byte(Evidence::kFilm), evidence_byte(Evidence::kInferred)};
+  EXPECT_EQ(inferred(), (std::vector<std::uint8_t>{0, 0, 1, 1})) << "between rims alone nothing is known";
+  model.patches[0].evidence.pop_back();
   EXPECT_EQ(make_tri_mesh(model).error().kind, ErrorKind::kBadData);
 }
 

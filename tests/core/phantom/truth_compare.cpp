@@ -58,51 +58,19 @@ double hit(const std::array<glm::dvec3, 3>& t, const glm::dvec3& origin, const g
 }
 
 WedgeScore judge_wedges(const Phantom& phantom, const JudgedMesh& mesh) {
-  std::vector<Ball> balls;
-  balls.reserve(mesh.triangles.size());
-  const auto corners = [&](std::size_t triangle) {
-    const auto& t = mesh.triangles[triangle];
-    return std::array<glm::dvec3, 3>{glm::dvec3(mesh.positions[t[0]]), glm::dvec3(mesh.positions[t[1]]),
-                                     glm::dvec3(mesh.positions[t[2]])};
-  };
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto t = corners(i);
-    const glm::dvec3 centre = (t[0] + t[1] + t[2]) / 3.0;
-    balls.push_back(
-        {centre, std::max({glm::length(t[0] - centre), glm::length(t[1] - centre), glm::length(t[2] - centre)})});
-  }
-  const CellGrid grid(phantom.options().dims);
-  const CellLists cells(phantom.options().dims, balls);
+  const std::vector<double> depths = wedge_depths(phantom, mesh);
   WedgeScore result;
   double ratios = 0.0;
-  for (const Wedge& w : phantom.wedges()) {
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    const Wedge& w = phantom.wedges()[i];
     if (w.owner != Owner::kTablet || !w.open || phantom.gap_width(w.position) < kSlit * mesh.grid_step) continue;
     ++result.wedges;
-    const double start = 1.5 * mesh.grid_step;
-    const glm::dvec3 origin = w.position + start * w.outward;
-    double first = INFINITY;
-    const auto look = [&](std::int64_t cell) {
-      for (const std::uint32_t i : cells[cell]) {
-        const auto t = corners(i);
-        if (dot_normal(t, w.outward) <= 0.0) continue;
-        const double along = hit(t, origin, -w.outward);
-        if (along >= 0.0) first = std::min(first, along);
-      }
-    };
-    std::int64_t last = -1;
-    for (double along = 0.0; along < start + 2.5 * w.depth; along += 1.0) {
-      const glm::dvec3 p = origin - along * w.outward;
-      const std::int64_t cell = grid.index(p.x, p.y, p.z);
-      if (cell != last) look(cell);
-      last = cell;
-    }
-    const double depth = first - start;
-    if (!(depth < 2.5 * w.depth)) {
+    if (!(depths[i] < 2.5 * w.depth)) {
       ++result.missing;
       continue;
     }
-    ratios += depth / w.depth;
-    result.kept += std::abs(depth - w.depth) <= 0.2 * w.depth;
+    ratios += depths[i] / w.depth;
+    result.kept += std::abs(depths[i] - w.depth) <= 0.2 * w.depth;
   }
   if (result.wedges > result.missing) result.mean_ratio = ratios / (result.wedges - result.missing);
   return result;
@@ -129,6 +97,47 @@ void judge_parts(const JudgedMesh& mesh, const std::vector<VertexTruth>& truth, 
 }
 
 }  // namespace
+
+std::vector<double> wedge_depths(const Phantom& phantom, const JudgedMesh& mesh) {
+  std::vector<Ball> balls;
+  balls.reserve(mesh.triangles.size());
+  const auto corners = [&](std::size_t triangle) {
+    const auto& t = mesh.triangles[triangle];
+    return std::array<glm::dvec3, 3>{glm::dvec3(mesh.positions[t[0]]), glm::dvec3(mesh.positions[t[1]]),
+                                     glm::dvec3(mesh.positions[t[2]])};
+  };
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto t = corners(i);
+    const glm::dvec3 centre = (t[0] + t[1] + t[2]) / 3.0;
+    balls.push_back(
+        {centre, std::max({glm::length(t[0] - centre), glm::length(t[1] - centre), glm::length(t[2] - centre)})});
+  }
+  const CellGrid grid(phantom.options().dims);
+  const CellLists cells(phantom.options().dims, balls);
+  std::vector<double> depths;
+  for (const Wedge& w : phantom.wedges()) {
+    const double start = 1.5 * mesh.grid_step;
+    const glm::dvec3 origin = w.position + start * w.outward;
+    double first = INFINITY;
+    const auto look = [&](std::int64_t cell) {
+      for (const std::uint32_t i : cells[cell]) {
+        const auto t = corners(i);
+        if (dot_normal(t, w.outward) <= 0.0) continue;
+        const double along = hit(t, origin, -w.outward);
+        if (along >= 0.0) first = std::min(first, along);
+      }
+    };
+    std::int64_t last = -1;
+    for (double along = 0.0; along < start + 2.5 * w.depth; along += 1.0) {
+      const glm::dvec3 p = origin - along * w.outward;
+      const std::int64_t cell = grid.index(p.x, p.y, p.z);
+      if (cell != last) look(cell);
+      last = cell;
+    }
+    depths.push_back(first - start);
+  }
+  return depths;
+}
 
 TruthComparison compare(const Phantom& phantom, const JudgedMesh& mesh) {
   DUBSAR_CHECK(mesh.partition.empty() || mesh.partition.size() == mesh.positions.size());

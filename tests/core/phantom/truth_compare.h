@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/phantom/phantom.h"
 
@@ -52,6 +53,10 @@ struct JudgedMesh {
   std::span<const std::uint8_t> partition;
   double grid_step = 2.0;  ///< input voxels per voxel of the processed grid
 };
+
+/// Depth of every wedge as the mesh has it, from its place on the undisturbed surface to the first triangle that faces
+/// outwards; infinity where there is none.
+std::vector<double> wedge_depths(const Phantom& phantom, const JudgedMesh& mesh);
 
 /// Rules:
 /// - The true part of a vertex is that of the nearest true surface.

@@ -35,7 +35,7 @@ class Pipeline : public ::testing::Test {
   static PipelineOptions options() {
     PipelineOptions options;
     options.import.path = folder_ / "scan.h5";
-    options.resample = false;
+    options.detail = Detail::kScan;
     options.denoise.iterations = 1;
     options.occlusion->rays = 8;
     return options;
@@ -57,7 +57,7 @@ TEST_F(Pipeline, NothingThatAStageFoundIsMissingInTheReport) {
   for (const StageRecord& stage : report.stages) stages.push_back(stage.name);
   EXPECT_EQ(stages, (std::vector<std::string>{"estimate_raw", "import", "estimate", "denoise", "estimate", "extract",
                                               "mesh", "smooth", "curvature", "settle", "segment", "fill_holes",
-                                              "occlusion", "check", "write"}));
+                                              "contact", "occlusion", "check", "write"}));
   for (const StageRecord& stage : report.stages) {
     EXPECT_GE(stage.work, stage.name == "fill_holes" ? 0 : 1) << stage.name;
   }

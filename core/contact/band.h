@@ -1,0 +1,51 @@
+#pragma once
+// The clay around the patches between tablet and envelope: all grid points inside the object within some steps of a
+// patch, each with its height over it.
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/contact/brick_map.h"
+#include "core/parts/surface_model.h"
+
+namespace dubsar {
+
+/// Which side of the contact a point of clay is on.
+enum class ClaySide : std::uint8_t { kTablet, kEnvelope };
+
+/// A place on a patch: the smooth guess at where the two clays touch.
+struct PatchPoint {
+  glm::vec3 position{0.0f};
+  glm::vec3 normal{0.0f};  ///< unit, out of the tablet
+};
+
+/// Points of the patches whose `partition` is the tablet's and whose reverse is the envelope's, or the other way round,
+/// at most `spacing` grid steps apart.
+std::vector<PatchPoint> sample_patches(const SurfaceModel& model, float spacing);
+
+struct ContactBand {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  struct Node {
+    std::int32_t x = 0, y = 0, z = 0;
+    std::uint32_t sample = 0;  ///< the nearest
+    float height = 0.0f;       ///< over the patch, positive towards the envelope
+    float distance = 0.0f;     ///< from the sample
+  };
+  std::vector<PatchPoint> samples;
+  std::vector<Node> nodes;          ///< brick by brick
+  BrickMap<std::uint32_t> node_at;  ///< kNone: not in the band
+  float reach = 0.0f;
+
+  std::uint32_t at(const glm::ivec3& p) const noexcept { return node_at.get(p.x, p.y, p.z); }
+  glm::ivec3 point(std::uint32_t node) const noexcept { return {nodes[node].x, nodes[node].y, nodes[node].z}; }
+  const glm::vec3& normal(std::uint32_t node) const noexcept { return samples[nodes[node].sample].normal; }
+
+  /// About 0.3 us a point of the band; points one step from the border of the grid are left out. kCancelled.
+  static Result<ContactBand> make(const BitVolume& inside, std::vector<PatchPoint> samples, float reach,
+                                  Progress& progress);
+};
+
+}  // namespace dubsar

@@ -1,0 +1,39 @@
+#pragma once
+// Films of air between clay and clay: where the density dips across the contact, and how far out of the noise.
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/contact/band.h"
+#include "core/volume/slab_source.h"
+
+namespace dubsar {
+
+/// Density at and around the points of a band, low-passed by [1 2 1]/4 per axis.
+class BandDensity {
+ public:
+  /// Reads the slices that the band needs and keeps some bricks of them. `source` has the band's grid, unfiltered: the
+  /// less it was smoothed, the more is left of a film. Errors of the source, kCancelled.
+  static Result<BandDensity> read(const ContactBand& band, SlabSource& source, Progress& progress);
+  float get(std::int64_t x, std::int64_t y, std::int64_t z) const noexcept { return values_.get(x, y, z); }
+
+ private:
+  explicit BandDensity(BrickMap<float> values) : values_(std::move(values)) {}
+  BrickMap<float> values_;
+};
+
+struct Dips {
+  /// Of each node: how much denser the clay on both sides is than a small disk through the node, at the best of the
+  /// directions across the contact, in deviations of what clay without an interface shows.
+  std::vector<float> strength;
+  std::vector<float> density;  ///< of that disk
+  float deviation = 0.0f;      ///< of the noise in `strength`, density
+};
+
+/// Lines of `arm` grid steps each way, disks of `radius`. About 1 us a node and thread. kCancelled.
+Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
+                       Progress& progress);
+
+}  // namespace dubsar

@@ -1,0 +1,140 @@
+#include "core/contact/interface_rest.h"
+
+#include <algorithm>
+#include <tuple>
+#include <unordered_map>
+#include <vector>
+
+#include "core/parts/border_loops.h"
+
+namespace dubsar {
+namespace {
+
+bool is_envelope(PartitionKind kind) {
+  return kind == PartitionKind::kEnvelopeInside || kind == PartitionKind::kEnvelopeOutside;
+}
+
+/// Sides that the tablet's faces and the contact run along once more in one direction than in the other, turned round.
+std::vector<BorderEdge> unpaired(const SurfaceModel& model, const InterfaceMesh& mesh, const FaceGraph& graph) {
+  std::unordered_map<std::uint64_t, int> net;  // > 0: from the lower id to the higher
+  const auto count = [&](std::uint32_t from, std::uint32_t to) {
+    if (from < to)
+      ++net[std::uint64_t{from} << 32 | to];
+    else
+      --net[std::uint64_t{to} << 32 | from];
+  };
+  for (std::uint32_t f = 0; f < graph.faces(); ++f) {
+    if (model.partitions[model.quad_partition[f]].kind != PartitionKind::kTablet) continue;
+    for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
+      const std::uint32_t g = graph.neighbour[s];
+      if (g == FaceGraph::kNone || !is_envelope(model.partitions[model.quad_partition[g]].kind)) continue;
+      const Polygon polygon = model.mesh.polygon(f);
+      const auto i = static_cast<std::size_t>(s - graph.first_side[f]);
+      count(polygon.vertex[i], polygon.vertex[(i + 1) % static_cast<std::size_t>(polygon.size)]);
+    }
+  }
+  for (const Triangle& t : mesh.triangles)
+    for (std::size_t i = 0; i < 3; ++i) count(t[i], t[(i + 1) % 3]);
+  std::vector<BorderEdge> edges;
+  for (const auto& [key, times] : net)
+    for (int i = 0; i < std::abs(times); ++i) {
+      const auto low = static_cast<std::uint32_t>(key >> 32), high = static_cast<std::uint32_t>(key);
+      edges.push_back(times > 0 ? BorderEdge{high, low} : BorderEdge{low, high});
+    }
+  std::sort(edges.begin(), edges.end(),
+            [](const BorderEdge& a, const BorderEdge& b) { return a.from != b.from ? a.from < b.from : a.to < b.to; });
+  return edges;
+}
+
+/// Is the edge one of the surface with the same body on both sides?
+bool inside_body(const SurfaceModel& model, std::uint32_t a, std::uint32_t b) {
+  int sides = 0, tablet = 0;
+  for (const std::uint32_t q : model.mesh.quads_of(a)) {
+    const Polygon polygon = model.mesh.polygon(q);
+    const auto size = static_cast<std::size_t>(polygon.size);
+    for (std::size_t i = 0; i < size; ++i) {
+      const std::uint32_t v = polygon.vertex[i], w = polygon.vertex[(i + 1) % size];
+      if (!(v == a && w == b) && !(v == b && w == a)) continue;
+      ++sides;
+      tablet += model.partitions[model.quad_partition[q]].kind == PartitionKind::kTablet;
+    }
+  }
+  return sides == 2 && tablet != 1;
+}
+
+}  // namespace
+
+void part_shared_edges(const SurfaceModel& model, InterfaceMesh& mesh) {
+  const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());
+  struct Side {
+    std::uint32_t low, high, triangle;
+    bool rising;
+  };
+  std::vector<Side> sides;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = mesh.triangles[t][i], b = mesh.triangles[t][(i + 1) % 3];
+      sides.push_back({std::min(a, b), std::max(a, b), t, a < b});
+    }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::tie(a.low, a.high, a.rising, a.triangle) < std::tie(b.low, b.high, b.rising, b.triangle);
+  });
+  struct Cut {
+    std::uint32_t a, b, first, second;  ///< edge and its two triangles
+  };
+  std::vector<Cut> cuts;
+  for (std::size_t begin = 0, end; begin < sides.size(); begin = end) {
+    end = begin;
+    while (end < sides.size() && sides[end].low == sides[begin].low && sides[end].high == sides[begin].high) ++end;
+    const std::size_t count = end - begin;
+    const bool shared =
+        count == 2 && sides[begin].high < dual && inside_body(model, sides[begin].low, sides[begin].high);
+    if (!shared && count != 4) continue;
+    cuts.push_back({sides[begin].low, sides[begin].high, sides[begin].triangle, sides[end - 1].triangle});
+  }
+  const auto position = [&](std::uint32_t v) { return v < dual ? model.mesh.positions[v] : mesh.added[v - dual]; };
+  std::vector<bool> touched(mesh.triangles.size(), false);
+  for (const Cut& cut : cuts) {
+    if (touched[cut.first] || touched[cut.second])
+      continue;  // one cut a triangle; what is left keeps the model as it was
+    touched[cut.first] = touched[cut.second] = true;
+    const auto middle = static_cast<std::uint32_t>(dual + mesh.added.size());
+    const auto opposite = [&](std::uint32_t t) {
+      for (const std::uint32_t v : mesh.triangles[t])
+        if (v != cut.a && v != cut.b) return v;
+      return cut.a;
+    };
+    const glm::vec3 edge = 0.5f * (position(cut.a) + position(cut.b));
+    const glm::vec3 beside = 0.5f * (position(opposite(cut.first)) + position(opposite(cut.second)));
+    mesh.added.push_back(edge + 0.25f * (beside - edge));
+    mesh.strength.push_back(0.0f);
+    for (const std::uint32_t t : {cut.first, cut.second}) {
+      Triangle other = mesh.triangles[t];
+      for (std::uint32_t& v : mesh.triangles[t])
+        if (v == cut.a) v = middle;
+      for (std::uint32_t& v : other)
+        if (v == cut.b) v = middle;
+      mesh.triangles.push_back(other);
+    }
+  }
+}
+
+std::int64_t close_rest(const SurfaceModel& model, const FaceGraph& graph, InterfaceMesh& mesh) {
+  const std::vector<BorderEdge> edges = unpaired(model, mesh, graph);
+  const auto loops = join_loops(edges);
+  const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());
+  for (const auto& loop : loops) {
+    glm::vec3 sum(0.0f);
+    const auto centre = static_cast<std::uint32_t>(dual + mesh.added.size());
+    for (const std::uint32_t e : loop) {
+      const std::uint32_t v = edges[e].from;
+      sum += v < dual ? model.mesh.positions[v] : mesh.added[v - dual];
+      mesh.triangles.push_back({centre, edges[e].from, edges[e].to});
+    }
+    mesh.added.push_back(sum / static_cast<float>(loop.size()));
+    mesh.strength.push_back(0.0f);
+  }
+  return static_cast<std::int64_t>(loops.size());
+}
+
+}  // namespace dubsar

@@ -1,0 +1,149 @@
+#include "core/contact/pockets.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <unordered_map>
+
+#include "core/mesh/evidence.h"
+
+namespace dubsar {
+namespace {
+
+constexpr float kRim = 3.0f;         ///< steps from a patch within which the labels of faces are only a vote
+constexpr float kRimVote = 0.4f;     ///< for the label that a face has
+constexpr float kFacingVote = 0.6f;  ///< for the side that it looks like, times the cosine
+
+glm::ivec3 unit(int axis) { return {axis == 0, axis == 1, axis == 2}; }
+
+/// Area vector towards the air.
+glm::vec3 area_vector(const QuadMesh& mesh, std::uint32_t quad) {
+  const auto& v = mesh.quads[quad];
+  return 0.5f * glm::cross(mesh.positions[v[2]] - mesh.positions[v[0]], mesh.positions[v[3]] - mesh.positions[v[1]]);
+}
+
+/// What is neither tablet nor envelope: cavities in the clay and crumbs of it.
+bool is_rest(const SurfaceModel& model, std::uint32_t quad) {
+  return model.partitions[model.quad_partition[quad]].kind == PartitionKind::kPores;
+}
+
+struct RestPieces {
+  std::unordered_map<std::uint32_t, std::uint32_t> piece_of;  ///< by quad
+  std::vector<std::vector<std::uint32_t>> quads;
+  std::vector<double> volume;
+};
+
+/// The closed pieces that have faces in the band.
+RestPieces rest_pieces(const SurfaceModel& model, const FaceGraph& graph, const std::vector<BandFace>& faces) {
+  RestPieces pieces;
+  for (const BandFace& face : faces) {
+    if (!is_rest(model, face.quad) || pieces.piece_of.count(face.quad) != 0) continue;
+    const auto piece = static_cast<std::uint32_t>(pieces.quads.size());
+    std::vector<std::uint32_t> queue{face.quad};
+    pieces.piece_of.emplace(face.quad, piece);
+    double volume = 0.0;
+    const glm::vec3 origin = graph.centre[face.quad];
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+      const std::uint32_t f = queue[i];
+      volume += static_cast<double>(glm::dot(graph.centre[f] - origin, graph.normal[f]) * graph.area[f]) / 3.0;
+      for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
+        const std::uint32_t g = graph.neighbour[s];
+        if (g != FaceGraph::kNone && pieces.piece_of.emplace(g, piece).second) queue.push_back(g);
+      }
+    }
+    pieces.quads.push_back(std::move(queue));
+    pieces.volume.push_back(volume);
+  }
+  return pieces;
+}
+
+}  // namespace
+
+std::vector<BandFace> faces_of_band(const SurfaceModel& model, const EdgeIndex& index, const ContactBand& band) {
+  std::vector<BandFace> faces;
+  const BitVolume& signs = model.samples.signs;
+  for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int sense : {-1, 1}) {
+        const glm::ivec3 p = band.point(n), q = p + sense * unit(axis), start = sense < 0 ? q : p;
+        if (!signs.get(q.x, q.y, q.z)) faces.push_back({index.quad_of(axis, start.x, start.y, start.z), n});
+      }
+  return faces;
+}
+
+std::vector<SurfaceHint> hints_of_faces(const SurfaceModel& model, const ContactBand& band,
+                                        const std::vector<BandFace>& faces) {
+  std::vector<SurfaceHint> hints;
+  for (const BandFace& face : faces) {
+    const PartitionKind kind = model.partitions[model.quad_partition[face.quad]].kind;
+    const bool rest = kind == PartitionKind::kPores;
+    const bool tablet = kind == PartitionKind::kTablet;
+    const bool envelope = kind == PartitionKind::kEnvelopeInside || kind == PartitionKind::kEnvelopeOutside;
+    if (!rest && !tablet && !envelope) continue;
+    const ClaySide own = tablet ? ClaySide::kTablet : ClaySide::kEnvelope;
+    if (!rest && band.nodes[face.node].distance > kRim) {
+      hints.push_back({face.node, own, kCertain});
+      continue;
+    }
+    if (!rest) hints.push_back({face.node, own, kRimVote});
+    const glm::vec3 n = area_vector(model.mesh, face.quad);
+    const float length = glm::length(n);
+    if (!(length > 0.0f)) continue;
+    const float facing = glm::dot(n, band.normal(face.node)) / length;
+    hints.push_back(
+        {face.node, facing > 0.0f ? ClaySide::kTablet : ClaySide::kEnvelope, kFacingVote * std::abs(facing)});
+  }
+  return hints;
+}
+
+std::int64_t relabel_faces(SurfaceModel& model, const FaceGraph& graph, const std::vector<BandFace>& faces,
+                           const std::vector<ClaySide>& side) {
+  const PartitionId tablet = model.partitions.find(PartitionKind::kTablet)->id,
+                    inside = model.partitions.find(PartitionKind::kEnvelopeInside)->id;
+  const RestPieces pieces = rest_pieces(model, graph, faces);
+  std::vector<std::array<std::int64_t, 2>> votes(pieces.quads.size(), {0, 0});
+  for (const BandFace& face : faces)
+    if (const auto piece = pieces.piece_of.find(face.quad); piece != pieces.piece_of.end())
+      ++votes[piece->second][static_cast<std::size_t>(side[face.node])];
+  const auto joins = [&](std::uint32_t piece) {
+    return pieces.volume[piece] < 0.0 && votes[piece][0] > 0 && votes[piece][1] > 0;
+  };
+  std::vector<std::vector<std::uint32_t>> queue(pieces.quads.size());
+  std::int64_t pockets = 0;
+  model.attributes.evidence.resize(model.mesh.positions.size(), evidence_byte(Evidence::kMeasured));
+  for (std::uint32_t piece = 0; piece < pieces.quads.size(); ++piece) {
+    if (!joins(piece)) continue;
+    ++pockets;
+    for (const std::uint32_t q : pieces.quads[piece]) {
+      const Polygon polygon = model.mesh.polygon(q);
+      for (std::size_t i = 0; i < static_cast<std::size_t>(polygon.size); ++i)
+        model.attributes.evidence[polygon.vertex[i]] = evidence_byte(Evidence::kPocket);
+    }
+  }
+  for (const BandFace& face : faces) {
+    PartitionId& label = model.quad_partition[face.quad];
+    const PartitionKind kind = model.partitions[label].kind;
+    const auto piece = pieces.piece_of.find(face.quad);
+    const bool pocket = piece != pieces.piece_of.end();
+    if (pocket ? !joins(piece->second)
+               : kind != PartitionKind::kTablet && kind != PartitionKind::kEnvelopeInside &&
+                     kind != PartitionKind::kEnvelopeOutside)
+      continue;
+    if (side[face.node] == ClaySide::kTablet)
+      label = tablet;
+    else if (kind != PartitionKind::kEnvelopeInside && kind != PartitionKind::kEnvelopeOutside)
+      label = inside;
+    if (pocket) queue[piece->second].push_back(face.quad);
+  }
+  // Faces of a pocket beyond the band follow their neighbours.
+  for (std::vector<std::uint32_t>& front : queue)
+    for (std::size_t i = 0; i < front.size(); ++i)
+      for (std::uint32_t s = graph.first_side[front[i]]; s < graph.first_side[front[i] + 1]; ++s) {
+        const std::uint32_t g = graph.neighbour[s];
+        if (g == FaceGraph::kNone || !is_rest(model, g)) continue;
+        model.quad_partition[g] = model.quad_partition[front[i]];
+        front.push_back(g);
+      }
+  return pockets;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,36 @@
+#pragma once
+// Faces of the surface beside the contact: what they say about the clay behind them, and whose they are once the clay
+// is divided. Closed pockets of air that lie on the contact become relief of tablet and envelope.
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/contact/band.h"
+#include "core/contact/sides.h"
+#include "core/extract/edge_index.h"
+#include "core/parts/face_graph.h"
+#include "core/parts/surface_model.h"
+
+namespace dubsar {
+
+struct BandFace {
+  std::uint32_t quad = 0;
+  std::uint32_t node = 0;  ///< the point of clay behind it
+};
+
+/// All x-quads whose point of clay is in the band, by node.
+std::vector<BandFace> faces_of_band(const SurfaceModel& model, const EdgeIndex& index, const ContactBand& band);
+
+/// Faces of tablet and envelope away from the rim of the patches are certain; those at the rim and those of closed
+/// pockets vote by where they look.
+std::vector<SurfaceHint> hints_of_faces(const SurfaceModel& model, const ContactBand& band,
+                                        const std::vector<BandFace>& faces);
+
+/// Gives the faces the sides of their clay, and pockets with faces of both sides to tablet and envelope. Returns the
+/// number of such pockets.
+std::int64_t relabel_faces(SurfaceModel& model, const FaceGraph& graph, const std::vector<BandFace>& faces,
+                           const std::vector<ClaySide>& side);
+
+}  // namespace dubsar

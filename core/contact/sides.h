@@ -1,0 +1,31 @@
+#pragma once
+// Whose clay is it? A minimum cut through the band between tablet and envelope: it runs through pockets of air for
+// nothing, through films cheaply, and else as the patch does.
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/contact/band.h"
+#include "core/contact/dips.h"
+
+namespace dubsar {
+
+/// What a face of the surface says about the clay behind it.
+struct SurfaceHint {
+  std::uint32_t node = 0;
+  ClaySide side = ClaySide::kTablet;
+  float weight = 0.0f;  ///< faces; from kCertain on it is obeyed
+};
+inline constexpr float kCertain = 1e6f;
+
+/// Sides of all nodes of the band. Every node hangs together with clay at the border of the band through nodes of its
+/// side, or is cut off by air and counts as the tablet's. kCancelled.
+Result<std::vector<ClaySide>> divide_clay(const ContactBand& band, const Dips& dips,
+                                          const std::vector<SurfaceHint>& hints, Progress& progress);
+
+/// Removes points of a grid face that belong to tablet, envelope, tablet, envelope in turn.
+void unpinch_sides(const ContactBand& band, std::vector<ClaySide>& side);
+
+}  // namespace dubsar

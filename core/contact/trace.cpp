@@ -1,0 +1,189 @@
+#include "core/contact/trace.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/base/log.h"
+#include "core/contact/band.h"
+#include "core/contact/dips.h"
+#include "core/contact/interface_mesh.h"
+#include "core/contact/interface_rest.h"
+#include "core/contact/interface_shape.h"
+#include "core/contact/pockets.h"
+#include "core/contact/sides.h"
+#include "core/contact/uncross.h"
+#include "core/mesh/evidence.h"
+#include "core/mesh/mesh_check.h"
+#include "core/parts/holes.h"
+
+namespace dubsar {
+namespace {
+
+constexpr float kSpacing = 0.7f;  ///< of samples of the patches, grid steps
+/// Farthest that inferred contact is moved from the cut: staircases of the cut go, nothing runs through anything else.
+constexpr float kMostMove = 1.5f;
+constexpr int kMostAttempts = 6;  ///< to get round places where the contact would not close the parts
+
+/// What tracing changes in a model.
+struct Labels {
+  std::vector<PartitionId> quads;
+  PartitionTable table;
+  std::vector<FillPatch> patches;
+  std::vector<std::uint8_t> evidence;
+};
+Labels labels_of(const SurfaceModel& model) {
+  return {model.quad_partition, model.partitions, model.patches, model.attributes.evidence};
+}
+void restore(const Labels& labels, SurfaceModel& model) {
+  model.quad_partition = labels.quads;
+  model.partitions = labels.table;
+  model.patches = labels.patches;
+  model.attributes.evidence = labels.evidence;
+}
+
+struct Traced {
+  const ContactBand& band;
+  const Dips& dips;
+  const EdgeIndex& index;
+  const FaceGraph& graph;
+  std::vector<BandFace> faces;
+  std::vector<ClaySide> side;
+};
+
+void store_patch(SurfaceModel& model, InterfaceMesh mesh, std::vector<std::uint8_t> evidence) {
+  model.patches.clear();
+  FillPatch patch;
+  patch.partition = model.partitions.find(PartitionKind::kTablet)->id;
+  patch.reverse_partition = model.partitions.find(PartitionKind::kEnvelopeInside)->id;
+  patch.extra_positions = std::move(mesh.added);
+  patch.triangles = std::move(mesh.triangles);
+  patch.evidence = std::move(evidence);
+  model.patches.push_back(std::move(patch));
+}
+
+/// Puts the contact between the sides into the model.
+Result<void> build_contact(SurfaceModel& model, const Traced& traced, const ContactOptions& options,
+                           ContactReport& report, Progress& progress) {
+  report.pockets = relabel_faces(model, traced.graph, traced.faces, traced.side);
+  InterfaceMesh mesh = make_interface(model, traced.index, traced.band, traced.side, traced.dips);
+  const std::int64_t stars = close_rest(model, traced.graph, mesh);
+  part_shared_edges(model, mesh);
+  const std::vector<glm::vec3> home = mesh.added;
+  std::vector<std::uint8_t> evidence = shape_interface(mesh, model.mesh.positions, options.film_strength, kMostMove);
+  report.uncrossed = uncross(model, traced.faces, home, mesh);
+  report.film_vertices = std::count(evidence.begin(), evidence.end(), evidence_byte(Evidence::kFilm));
+  report.inferred_vertices = static_cast<std::int64_t>(evidence.size()) - report.film_vertices;
+  store_patch(model, std::move(mesh), std::move(evidence));
+  HoleOptions rest;
+  rest.keep_patches = true;
+  DUBSAR_ASSIGN(const HoleReport holes, fill_holes(model, traced.graph, rest, progress));
+  log_info("contact: {} points, {} pockets, {} film and {} inferred vertices, {} stars, {} holes left", report.points,
+           report.pockets, report.film_vertices, report.inferred_vertices, stars, holes.loops);
+  return {};
+}
+
+/// Middles of the edges of a body that have not two triangles.
+Result<void> add_open_places(const SurfaceModel& model, const char* body, std::vector<glm::vec3>& places) {
+  DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model, {.body = body}));
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  edges.reserve(3 * mesh.triangles.size());
+  for (const Triangle& t : mesh.triangles)
+    for (std::size_t i = 0; i < 3; ++i)
+      edges.push_back({std::min(t[i], t[(i + 1) % 3]), std::max(t[i], t[(i + 1) % 3])});
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t begin = 0, end; begin < edges.size(); begin = end) {
+    end = begin;
+    while (end < edges.size() && edges[end] == edges[begin]) ++end;
+    if (end - begin != 2) places.push_back(0.5f * (mesh.positions[edges[begin][0]] + mesh.positions[edges[begin][1]]));
+  }
+  return {};
+}
+
+/// All clay within some steps of the places gets one side, that of most of it: the contact goes round them.
+void step_aside(const ContactBand& band, const std::vector<glm::vec3>& places, int reach, std::vector<ClaySide>& side) {
+  for (const glm::vec3& place : places) {
+    const glm::ivec3 middle(glm::round(place));
+    std::vector<std::uint32_t> near;
+    std::int64_t tablet = 0;
+    for (int z = -reach; z <= reach; ++z)
+      for (int y = -reach; y <= reach; ++y)
+        for (int x = -reach; x <= reach; ++x) {
+          if (x * x + y * y + z * z > reach * reach) continue;
+          const std::uint32_t n = band.at(middle + glm::ivec3(x, y, z));
+          if (n == ContactBand::kNone) continue;
+          near.push_back(n);
+          tablet += side[n] == ClaySide::kTablet;
+        }
+    const bool to_tablet = 2 * tablet >= static_cast<std::int64_t>(near.size());
+    for (const std::uint32_t n : near) side[n] = to_tablet ? ClaySide::kTablet : ClaySide::kEnvelope;
+  }
+}
+
+/// Each of the two bodies is a closed 2-manifold.
+Result<bool> closed(const SurfaceModel& model) {
+  for (const char* body : {"tablet", "envelope"}) {
+    DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model, {.body = body}));
+    if (!check_mesh(mesh.positions, mesh.triangles).watertight()) return false;
+  }
+  return true;
+}
+
+/// Until tablet and envelope are closed, or not at all.
+Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const ContactOptions& options,
+                                ContactReport& report, Progress& progress) {
+  const Labels before = labels_of(model);
+  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+    DUBSAR_TRY(build_contact(model, traced, options, report, progress));
+    DUBSAR_ASSIGN(report.traced, closed(model));
+    if (report.traced) return {};
+    std::vector<glm::vec3> places;
+    DUBSAR_TRY(add_open_places(model, "tablet", places));
+    DUBSAR_TRY(add_open_places(model, "envelope", places));
+    restore(before, model);
+    if (places.empty()) break;
+    step_aside(traced.band, places, 2 + attempt / 2, traced.side);
+    unpinch_sides(traced.band, traced.side);
+  }
+  report.why = "the traced contact does not close tablet and envelope";
+  report.pockets = report.film_vertices = 0;
+  log_info("contact: {}; the smooth patches stay", report.why);
+  return {};
+}
+
+}  // namespace
+
+Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, const ContactOptions& options,
+                                    Progress& progress) {
+  ContactReport report;
+  if (model.partitions.find(PartitionKind::kTablet) == nullptr ||
+      model.partitions.find(PartitionKind::kEnvelopeInside) == nullptr) {
+    report.why = "no tablet in an envelope";
+    return report;
+  }
+  std::vector<PatchPoint> samples = sample_patches(model, kSpacing);
+  if (samples.empty()) {
+    report.why = "tablet and envelope do not touch";
+    return report;
+  }
+  progress.begin("contact", 0, "step");
+  DUBSAR_ASSIGN(const ContactBand band,
+                ContactBand::make(model.samples.signs, std::move(samples), options.reach, progress));
+  report.points = static_cast<std::int64_t>(band.nodes.size());
+  Dips dips;
+  {
+    DUBSAR_ASSIGN(const BandDensity values, BandDensity::read(band, density, progress));
+    DUBSAR_ASSIGN(dips, find_dips(band, model.samples.signs, values, progress));
+  }
+  DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(model.samples));
+  DUBSAR_ASSIGN(const FaceGraph graph, FaceGraph::build(model.mesh, progress));
+  Traced traced{band, dips, index, graph, faces_of_band(model, index, band), {}};
+  DUBSAR_ASSIGN(traced.side, divide_clay(band, dips, hints_of_faces(model, band, traced.faces), progress));
+  if (progress.cancelled()) return cancelled_error();
+  DUBSAR_TRY(trace_until_closed(model, std::move(traced), options, report, progress));
+  progress.end();
+  return report;
+}
+
+}  // namespace dubsar

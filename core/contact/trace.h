@@ -1,0 +1,36 @@
+#pragma once
+// Contact between tablet and envelope, traced through the scan: pockets of air join the relief of both, films of air
+// are followed, and only where neither is there does the smooth patch stay (docs/evidence.md).
+
+#include <cstdint>
+#include <string>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/parts/surface_model.h"
+#include "core/volume/slab_source.h"
+
+namespace dubsar {
+
+struct ContactOptions {
+  float reach = 12.0f;         ///< of the search on both sides of the smooth patch, grid steps
+  float film_strength = 2.0f;  ///< mean strength of dips around a vertex (dips.h) from which on a film is believed
+};
+
+struct ContactReport {
+  bool traced = false;  ///< false: the patches stay as they were, `why` says the reason
+  std::string why;
+  std::int64_t points = 0;     ///< of clay that was looked at
+  std::int64_t pockets = 0;    ///< closed surfaces that joined tablet and envelope
+  std::int64_t uncrossed = 0;  ///< triangles of the contact that were moved because they crossed others
+  std::int64_t film_vertices = 0, inferred_vertices = 0;
+};
+
+/// Replaces the fill patches between tablet and envelope (fill_holes() must have run) by the traced contact, moves the
+/// labels of faces beside it, and measures the partitions. `density` is the scan on the model's grid, unfiltered. The
+/// model stays as it was where tablet or envelope would not be closed. Deterministic for any thread count. Errors of
+/// `density`, kCancelled. About 5 us a point of the band.
+Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, const ContactOptions& options,
+                                    Progress& progress);
+
+}  // namespace dubsar

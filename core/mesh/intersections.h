@@ -1,0 +1,18 @@
+#pragma once
+// Does a surface run through itself? A check that knows nothing of how the surface was made.
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+namespace dubsar {
+
+/// Pairs of triangles, the lower first, of which a side of one properly crosses the inside of the other: more than
+/// touching. Triangles that share two vertices are neighbours and are not tested. A bounding volume hierarchy; about
+/// 2 us a triangle, more where the surface is crumpled. All threads; the same order for any number of them.
+std::vector<std::array<std::uint32_t, 2>> self_intersections(std::span<const glm::vec3> positions,
+                                                             std::span<const std::array<std::uint32_t, 3>> triangles);
+
+}  // namespace dubsar

@@ -1,0 +1,30 @@
+#include "core/pipeline/detail.h"
+
+#include <fmt/format.h>
+
+namespace dubsar {
+namespace {
+
+/// Of a run on the scan's grid: two volumes of floats while filters run; surfaces take less after that.
+constexpr double kBytesPerVoxel = 8.5;
+/// Some minutes on two cores; a scan of the paper's size would take most of an hour.
+constexpr std::int64_t kMostVoxels = 450'000'000;
+
+}  // namespace
+
+DetailChoice choose_detail(Detail wanted, const Dims& scan, std::uint64_t memory_left) {
+  if (wanted != Detail::kAuto) return {wanted, "given by the user"};
+  const double gib = 1024.0 * 1024.0 * 1024.0;
+  const double needed = kBytesPerVoxel * static_cast<double>(scan.count());
+  if (scan.count() > kMostVoxels)
+    return {Detail::kHalf,
+            fmt::format("{:.0f} million voxels take long at the scan's resolution, half is taken up "
+                        "from {:.0f} million",
+                        static_cast<double>(scan.count()) * 1e-6, static_cast<double>(kMostVoxels) * 1e-6)};
+  if (needed > 0.6 * static_cast<double>(memory_left))
+    return {Detail::kHalf, fmt::format("the scan's resolution takes {:.1f} GiB, and {:.1f} GiB are left", needed / gib,
+                                       static_cast<double>(memory_left) / gib)};
+  return {Detail::kScan, fmt::format("{:.0f} million voxels fit", static_cast<double>(scan.count()) * 1e-6)};
+}
+
+}  // namespace dubsar

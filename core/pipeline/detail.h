@@ -1,0 +1,31 @@
+#pragma once
+// On which grid the surface is found: that of the scan, or one of half its resolution.
+
+#include <cstdint>
+#include <string>
+
+#include "core/base/enum_names.h"
+#include "core/volume/volume.h"
+
+namespace dubsar {
+
+enum class Detail {
+  kAuto,  ///< that of the scan where time and memory allow it
+  kScan,
+  kHalf,  ///< after Gauss 3x3x3 and 2:1, as in the paper
+};
+
+inline constexpr EnumName<Detail> kDetails[] = {
+    {Detail::kAuto, "auto"}, {Detail::kScan, "scan"}, {Detail::kHalf, "half"}};
+static_assert(names_all(kDetails, static_cast<std::size_t>(Detail::kHalf) + 1));
+
+struct DetailChoice {
+  Detail detail = Detail::kHalf;  ///< kScan or kHalf
+  std::string why;                ///< one sentence
+  bool resample() const noexcept { return detail == Detail::kHalf; }
+};
+
+/// `memory_left` in bytes.
+DetailChoice choose_detail(Detail wanted, const Dims& scan, std::uint64_t memory_left);
+
+}  // namespace dubsar

@@ -1,0 +1,137 @@
+// Contact between tablet and envelope, traced in scans of phantoms whose truth is known.
+
+#include "core/contact/trace.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "core/mesh/evidence.h"
+#include "core/mesh/intersections.h"
+#include "core/mesh/mesh_check.h"
+#include "core/phantom/write_phantom.h"
+#include "core/pipeline/pipeline.h"
+#include "tests/core/phantom/contact_score.h"
+
+namespace dubsar {
+namespace {
+
+/// A model of half a scan's size, and the truth about it.
+struct TracedScan {
+  PipelineResult result;
+  std::unique_ptr<const phantom::Phantom> truth;
+
+  TriMesh body(const char* name) const { return make_tri_mesh(result.model, {.body = name}).value(); }
+  phantom::ContactScore score() const {
+    const TriMesh tablet = body("tablet");
+    std::vector<glm::vec3> positions;
+    for (const glm::vec3& p : tablet.positions) positions.push_back(glm::vec3(tablet.frame.input_vox_from_grid(p)));
+    return judge_contact(*truth, {positions, tablet.triangles, {}, 1.0}, tablet.evidence);
+  }
+};
+
+TracedScan traced_scan(phantom::Contact contact, double film, std::uint64_t seed, bool trace = true) {
+  phantom::PhantomOptions wanted;
+  wanted.dims = {224, 128, 208};
+  wanted.seed = seed;
+  wanted.contact = contact;
+  wanted.film_vox = film;
+  wanted.contact_share = 0.2;
+  const auto path = std::filesystem::temp_directory_path() / fmt::format("dubsar_trace_{}_{}.h5", ::getpid(), seed);
+  SilentProgress progress;
+  phantom::write_phantom(path, std::nullopt, wanted, progress).value();
+  PipelineOptions options;
+  options.import.path = path;
+  options.detail = Detail::kScan;
+  options.occlusion = std::nullopt;
+  options.trace_contact = trace;
+  TracedScan made{run_pipeline(options, progress).value(), phantom::Phantom::create(wanted).value()};
+  std::filesystem::remove(path);
+  return made;
+}
+
+void expect_closed_and_mating(const TracedScan& made) {
+  for (const char* name : {"tablet", "envelope"}) {
+    const TriMesh mesh = made.body(name);
+    EXPECT_TRUE(check_mesh(mesh.positions, mesh.triangles).watertight()) << name;
+  }
+  // Every triangle of the contact is in both, once each way round.
+  using Place = std::array<float, 3>;
+  std::map<std::array<Place, 3>, int> uses;
+  const auto add = [&](const TriMesh& mesh, int sense) {
+    for (const Triangle& t : mesh.triangles) {
+      bool contact = false;
+      std::array<Place, 3> places;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const glm::vec3& p = mesh.positions[t[i]];
+        places[i] = {p.x, p.y, p.z};
+        contact = contact || mesh.evidence[t[i]] >= evidence_byte(Evidence::kFilm);
+      }
+      if (!contact) continue;
+      if (sense < 0) std::swap(places[1], places[2]);
+      std::rotate(places.begin(), std::min_element(places.begin(), places.end()), places.end());
+      uses[places] += sense;
+    }
+  };
+  add(made.body("tablet"), 1);
+  add(made.body("envelope"), -1);
+  std::int64_t without_mate = 0;
+  for (const auto& [places, net] : uses) without_mate += net != 0;
+  EXPECT_GT(uses.size(), 1000u);
+  EXPECT_EQ(without_mate, 0);
+}
+
+TEST(TraceContact, FilmOfHalfAVoxelIsFollowed) {
+  const TracedScan made = traced_scan(phantom::Contact::kFilm, 0.5, 60617);
+  ASSERT_TRUE(made.result.report.contact && made.result.report.contact->traced);
+  expect_closed_and_mating(made);
+  const phantom::ContactScore score = made.score();
+  EXPECT_GE(score.near_fraction(), 0.92);
+  const auto film = static_cast<double>(score.evidence[2]), all = static_cast<double>(score.contact_vertices);
+  EXPECT_GE(film, 0.8 * all);
+  EXPECT_EQ(score.false_wedges, 0);
+  EXPECT_LT(traced_scan(phantom::Contact::kFilm, 0.5, 60617, false).score().near_fraction(), 0.7)
+      << "smooth patches do as well";
+}
+
+TEST(TraceContact, NothingIsInventedWhereTheEnvelopeFillsTheWedges) {
+  const TracedScan made = traced_scan(phantom::Contact::kFilled, 0.5, 60631);
+  ASSERT_TRUE(made.result.report.contact && made.result.report.contact->traced);
+  expect_closed_and_mating(made);
+  const phantom::ContactScore score = made.score();
+  EXPECT_EQ(score.false_wedges, 0);
+  EXPECT_GE(static_cast<double>(score.evidence[3]), 0.85 * static_cast<double>(score.contact_vertices));
+}
+
+TEST(TraceContact, PocketsBelongToTheTablet) {
+  const TracedScan made = traced_scan(phantom::Contact::kPockets, 0.5, 60649);
+  ASSERT_TRUE(made.result.report.contact && made.result.report.contact->traced);
+  expect_closed_and_mating(made);
+  const phantom::CaseScore pockets = made.score().cases[static_cast<std::size_t>(phantom::WedgeCase::kPocket)];
+  ASSERT_GT(pockets.wedges, 3);
+  EXPECT_GE(pockets.shown_fraction(), 0.9);
+}
+
+TEST(TraceContact, PatchesHardlyEverRunThroughTheSurface) {
+  const TracedScan made = traced_scan(phantom::Contact::kFilm, 0.3, 60659);
+  ASSERT_TRUE(made.result.report.contact && made.result.report.contact->traced);
+  const TriMesh tablet = made.body("tablet");
+  std::int64_t crossing = 0;
+  for (const auto& [a, b] : self_intersections(tablet.positions, tablet.triangles)) {
+    const auto of_patch = [&](std::uint32_t t) {
+      return std::any_of(tablet.triangles[t].begin(), tablet.triangles[t].end(), [&](std::uint32_t v) {
+        return tablet.evidence[v] == evidence_byte(Evidence::kFilm) ||
+               tablet.evidence[v] == evidence_byte(Evidence::kInferred);
+      });
+    };
+    crossing += of_patch(a) || of_patch(b);
+  }
+  fmt::print("{} pairs of triangles cross\n", crossing);
+  EXPECT_LT(static_cast<double>(crossing), 1e-3 * static_cast<double>(tablet.triangles.size()));
+}
+
+}  // namespace
+}  // namespace dubsar
