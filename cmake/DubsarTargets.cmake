@@ -18,10 +18,26 @@ if(DUBSAR_SANITIZE)
   target_link_options(dubsar_options INTERFACE -fsanitize=${DUBSAR_SANITIZE})
 endif()
 
-# dubsar_library(name SOURCES a.cpp ... [DEPS public targets] [PRIVATE_DEPS third-party targets])
+# dubsar_cold(target): code that is run once a command, a key press or a device's report; -O3 would take a third longer to compile, for nothing.
+function(dubsar_cold target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
+# The headers that most files read, read once for all rooms. Off where the includes of each file are to be proven (CI).
+if(DUBSAR_PCH)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/common_headers.cpp CONTENT "")
+  add_library(dubsar_common_headers STATIC ${PROJECT_BINARY_DIR}/common_headers.cpp)
+  target_link_libraries(dubsar_common_headers PUBLIC dubsar_options PRIVATE fmt::fmt tl::expected glm::glm nlohmann_json::nlohmann_json
+    OpenMP::OpenMP_CXX Threads::Threads)
+  target_precompile_headers(dubsar_common_headers PRIVATE
+    <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <vector>
+    <fmt/format.h> <tl/expected.hpp> <glm/glm.hpp> <nlohmann/json.hpp>)
+endif()
+
+# dubsar_library(name [COLD] SOURCES a.cpp ... [DEPS public targets] [PRIVATE_DEPS third-party targets])
 # One static library per room. Only what stands in DEPS can be included: the link line is the wall.
 function(dubsar_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
+  cmake_parse_arguments(ARG "COLD" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
   if(NOT ARG_SOURCES)  # a room that is laid out but empty
     add_library(${name} INTERFACE)
     target_link_libraries(${name} INTERFACE dubsar_options ${ARG_DEPS})
@@ -29,11 +45,12 @@ function(dubsar_library name)
   endif()
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC dubsar_options ${ARG_DEPS} PRIVATE ${ARG_PRIVATE_DEPS})
-endfunction()
-
-# dubsar_cold(target): code that is run once a command or a key press; -O3 would take twice as long to compile, for nothing.
-function(dubsar_cold target)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  if(ARG_COLD)
+    dubsar_cold(${name})
+  endif()
+  if(DUBSAR_PCH)
+    target_precompile_headers(${name} REUSE_FROM dubsar_common_headers)
+  endif()
 endfunction()
 
 # What `./do asan` builds: the tests of the labels unit and app, which need no window and no preloaded library.
