@@ -310,7 +310,8 @@ Verb add_render_verb(Arguments program) {
       "  dubsar render tablet.exa -o go.png --display lenticular:looking-glass-go\n"
       "  dubsar render tablet.exa -o seen.png --display lenticular:spatiallabs-15.6 --see-from 31.5,0,600\n"
       "  dubsar render --pattern -o pattern.png --display lenticular:calibration=visual.json");
-  return {command, [options, command](const CommonOptions&, Progress& progress) {
+  return {command,
+          [options, command](const CommonOptions&, Progress& progress) {
             options->display.sized = command.given("--size") && !options->window;
             for (const char* name : {"--view", "--style", "--partition", "--hide", "--colour-parts", "--light",
                                      "--shadows", "--unmarked", "--opacity", "--unpack", "--cut", "--fog", "--samples"})

@@ -1,6 +1,6 @@
 #pragma once
-// A shared library that is a plug-in: found, loaded, its entry and its table checked. Loading one runs its code with the
-// user's rights.
+// A shared library that is a plug-in: found, loaded, its entry and its table checked. Loading one runs its code with
+// the user's rights.
 
 #include <cstdint>
 #include <filesystem>

@@ -24,7 +24,7 @@ enum class MeshUnits { kMm, kVox };
 struct MeshWriteOptions {
   MeshUnits units = MeshUnits::kMm;
   bool colors_derived = false;  ///< the mesh's colours follow from its attributes: readers of ours need not keep them
-  bool compress = false;  ///< GLB only: quantised to 1/16 grid step, EXT_meshopt_compression; kUsage for others
+  bool compress = false;        ///< GLB only: quantised to 1/16 grid step, EXT_meshopt_compression; kUsage for others
 };
 
 struct MeshInfo {

@@ -83,7 +83,7 @@ class GlfwWindow final : public GlContext {
   bool take_damaged();
   bool should_close() const;
   void keep_open();  ///< should_close() is false again
-  void close();  ///< as if the user had closed it
+  void close();      ///< as if the user had closed it
 
   /// Covers the monitor whose name contains `monitor` (empty: the one that holds the window's middle), or goes back to
   /// where the window was. kUsage when there is no such monitor.

@@ -135,7 +135,8 @@ Result<void> ShadowMap::draw(const SceneView& scene, std::span<const View> views
   for (const DrawItem& item : scene.items)
     if (const auto* mesh = std::get_if<MeshItem>(&item)) {
       const int level = level_for_views(*mesh, views, coarse_px, width_px);
-      wanted.casters.push_back({mesh->mesh, level, mesh->mesh->level(level).version(), mesh->world_from_model, mesh->parts});
+      wanted.casters.push_back(
+          {mesh->mesh, level, mesh->mesh->level(level).version(), mesh->world_from_model, mesh->parts});
     }
   if (wanted == drawn_) return {};
   DUBSAR_TRY(use_texture(size));

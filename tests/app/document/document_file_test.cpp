@@ -34,8 +34,13 @@ Document rich(unsigned seed) {
   out.fog = 0.125;
   out.measures = {{MeasureKind::kDistance, "wedge", "tablet", {vector(), vector()}, {1.5, 2.25, 3, 4, {vector()}}},
                   {MeasureKind::kDepth, "", "", {vector()}, {}}};
-  out.notes = {
-      {"tablet", "o. 5", "a-na \u1e2ba-x, \"\u02bes\u2082\"\nsecond line", vector(), vector(), {vector(), vector()}, camera()}};
+  out.notes = {{"tablet",
+                "o. 5",
+                "a-na \u1e2ba-x, \"\u02bes\u2082\"\nsecond line",
+                vector(),
+                vector(),
+                {vector(), vector()},
+                camera()}};
   out.slices = {{1, {0, 0, 1}, real(), true}, {3, vector(), real(), false}};
   out.keyframes = {{1.5, camera(), {3, 4}, 0.5, "phong", {{"tablet", 0.5, vector()}}}, {}};
   return out;

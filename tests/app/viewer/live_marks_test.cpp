@@ -51,8 +51,8 @@ TEST_F(Live, ClicksWithAToolMeasureAndDragsStillTurn) {
   });
   ASSERT_TRUE(done) << done.error().message;
   ASSERT_EQ(done->document.measures.size(), 1u);
-  // 120 of 240 pixels of the window's height; the box is 40 mm wide and fits with a margin of 8 % on each side. Its front
-  // is nearer to the eye than its middle by 1 %.
+  // 120 of 240 pixels of the window's height; the box is 40 mm wide and fits with a margin of 8 % on each side. Its
+  // front is nearer to the eye than its middle by 1 %.
   const double mm_per_px = 40.0 / (240 * 0.84);
   EXPECT_NEAR(done->document.measures[0].figures.straight_mm, 0.99 * 120 * mm_per_px, 0.15);
   EXPECT_EQ(done->document.notes[0].label, "o. 1");
