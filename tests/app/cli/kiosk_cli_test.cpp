@@ -39,8 +39,9 @@ TEST_F(Kiosk, RefusesWhatIsWrongInOneSentence) {
   json wrong = profile();
   wrong["brightness"] = 7;
   write("wrong.json", wrong.dump());
+  write("nobody.json", R"({"seed": 3, "duration_s": 1, "hands": []})");
   write("good.json", profile().dump());
-  const auto bad = run_dubsar({"view", "--kiosk", file("wrong.json"), "--offscreen", "--script", file("none.json")});
+  const auto bad = run_dubsar({"view", "--kiosk", file("wrong.json"), "--offscreen", "--script", file("nobody.json")});
   EXPECT_EQ(bad.exit_code, 78);
   EXPECT_NE(bad.err.find("brightness is 7"), std::string::npos) << bad.err;
   EXPECT_EQ(run_dubsar({"view", "--kiosk", file("gone.json"), "--offscreen"}).exit_code, 66);
@@ -50,7 +51,7 @@ TEST_F(Kiosk, RefusesWhatIsWrongInOneSentence) {
   unknown["languages"] = {"tlh"};
   write("unknown.json", unknown.dump());
   EXPECT_EQ(
-      run_dubsar({"view", "--kiosk", file("unknown.json"), "--offscreen", "--script", file("none.json")}).exit_code,
+      run_dubsar({"view", "--kiosk", file("unknown.json"), "--offscreen", "--script", file("nobody.json")}).exit_code,
       78);
 }
 

@@ -98,7 +98,7 @@ TEST_F(ScriptedSession, AScholarsHeadMovesBeforeAWeavedPanelAndEachEyeSeesItsOwn
     ASSERT_TRUE(seen) << seen.error().message;
     EXPECT_EQ(seen->left_light.main_view, 0) << moment.time_s;
     EXPECT_EQ(seen->right_light.main_view, 1) << moment.time_s;
-    EXPECT_LE(std::max(seen->left_light.crosstalk, seen->right_light.crosstalk), 0.15) << moment.time_s;
+    EXPECT_LE(std::max(seen->left_light.crosstalk, seen->right_light.crosstalk), 0.05) << moment.time_s;
     EXPECT_GT(lit_share(seen->left), 0.1);
     EXPECT_GT(differing_share(seen->left, seen->right), 0.005) << "two eyes, two pictures";
     if (first_left.pixels.empty()) first_left = seen->left;
