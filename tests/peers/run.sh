@@ -29,7 +29,7 @@ row PEER RESULT FIGURES
 # libspnav, a client, before the simulated daemon
 if ! have cc || ! echo '#include <spnav.h>' | cc -E - >/dev/null 2>&1; then
   missing "libspnav client" "apt install libspnav-dev gcc"
-elif ! cc -o "$work/spnav_client" "$here/spnav_client.c" -lspnav 2>"$work/cc"; then
+elif ! cc -o "$work/spnav_client" "$here/spnav_client.c" -lspnav -lm 2>"$work/cc"; then
   bad "libspnav client" "does not compile: $(head -1 "$work/cc")"
 else
   begin spacenavd_sim "$dubsar" devices simulate spacenav --live --socket "$work/spnav.sock" --seconds 20 --seed 3
