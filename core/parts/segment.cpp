@@ -313,9 +313,9 @@ Result<SegmentReport> segment(SurfaceModel& model, const FaceGraph& graph, const
     report.cut_length = 0.0;
     store_bodies(model, whole, options, report);
   }
-  log_info("segment: {} surfaces, {} partitions, {}, cracks up to {} steps closed", report.components,
-           model.partitions.size(), report.nested ? "a body inside another" : "no body inside another",
-           report.crack_radius > 0 ? 2 * report.crack_radius + 1 : 0);
+  log_debug("segment: {} surfaces, {} partitions, {}, cracks up to {} steps closed", report.components,
+            model.partitions.size(), report.nested ? "a body inside another" : "no body inside another",
+            report.crack_radius > 0 ? 2 * report.crack_radius + 1 : 0);
   progress.advance(1);
   progress.end();
   return report;

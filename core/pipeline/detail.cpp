@@ -13,7 +13,7 @@ constexpr std::int64_t kMostVoxels = 450'000'000;
 }  // namespace
 
 DetailChoice choose_detail(Detail wanted, const Dims& scan, std::uint64_t memory_left) {
-  if (wanted != Detail::kAuto) return {wanted, "given by the user"};
+  if (wanted != Detail::kAuto) return {wanted, "as set"};
   const double gib = 1024.0 * 1024.0 * 1024.0;
   const double needed = kBytesPerVoxel * static_cast<double>(scan.count());
   if (scan.count() > kMostVoxels)

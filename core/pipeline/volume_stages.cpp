@@ -56,7 +56,8 @@ Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, co
   ImportedGrid imported;
   imported.detail = choose_detail(detail, scan->dims(), available_memory_bytes());
   const bool resample = imported.detail.resample();
-  log_info("detail {}: {}", name_in(kDetails, imported.detail.detail), imported.detail.why);
+  if (detail == Detail::kAuto)
+    log_info("detail {}: {}", name_in(kDetails, imported.detail.detail), imported.detail.why);
   imported.facts.info = scan->info();
   imported.facts.warnings = scan->info().warnings;
   SampledSource some(*scan, kRawSampleSlices, kRawSampleGroup);
@@ -108,7 +109,7 @@ Result<Threshold> choose_threshold(std::optional<float> given, const Estimates& 
   if (given) return Threshold{*given, "given by the user"};
   DUBSAR_ASSIGN(const double value, automatic_threshold(estimates));
   Threshold threshold{static_cast<float>(value), estimates.path};
-  log_info("threshold {:g}: {}", threshold.value, threshold.path);
+  log_debug("threshold {:g}: {}", threshold.value, threshold.path);
   return threshold;
 }
 

@@ -104,6 +104,7 @@ TEST(SurfaceMeasure, WedgesOnABentAndUnevenSideAreAsDeepAsTheyWereMadeWithinThre
   struct Wedge {
     glm::dvec2 at;
     double depth, half_width;
+    double made = 0.0;  ///< as deep as the vertices of the plate go: tips lie between them
   };
   std::vector<Wedge> wedges;
   while (wedges.size() < 60) {  // a third of the plate is written on, as dense text is
@@ -118,8 +119,11 @@ TEST(SurfaceMeasure, WedgesOnABentAndUnevenSideAreAsDeepAsTheyWereMadeWithinThre
   const TriMesh plate = sheet(500, 500, false, [&](double u, double v) {
     const double x = 40 * u, y = 40 * v;
     double hollow = 0.0;
-    for (const Wedge& w : wedges)
-      hollow = std::max(hollow, w.depth * (1.0 - glm::distance(w.at, glm::dvec2(x, y)) / w.half_width));
+    for (Wedge& w : wedges) {
+      const double here = w.depth * (1.0 - glm::distance(w.at, glm::dvec2(x, y)) / w.half_width);
+      w.made = std::max(w.made, here);
+      hollow = std::max(hollow, here);
+    }
     return glm::dvec3(x, y, side(x, y) - hollow + noise(random));
   });
   std::vector<double> ratio, error;
@@ -130,7 +134,7 @@ TEST(SurfaceMeasure, WedgesOnABentAndUnevenSideAreAsDeepAsTheyWereMadeWithinThre
         impression_depth(plate, place(plate, {at.x, at.y, side(at.x, at.y) - 0.6 * w.depth}), kDepthRadiusMm);
     ASSERT_TRUE(found) << found.error().message;
     const double slope = 1.0 / std::sqrt(1.0 + glm::dot(w.at - 20.0, w.at - 20.0) / 3600.0);  // along the normal
-    ratio.push_back(found->depth_mm / (w.depth * slope));
+    ratio.push_back(found->depth_mm / (w.made * slope));
     error.push_back(std::abs(ratio.back() - 1.0));
     EXPECT_NEAR(glm::distance(glm::dvec2(found->bottom_mm), w.at), 0.0, 0.25) << "seed " << seed;
     EXPECT_NEAR(glm::distance(found->rim_mm, found->bottom_mm), found->depth_mm, 1e-9);
