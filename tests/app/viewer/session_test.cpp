@@ -127,7 +127,7 @@ TEST_F(SessionTest, EachEyeOfAMovingScholarSeesItsOwnViewInEveryFrame) {
     ++checked;
   }).value();
   EXPECT_GT(checked, 140);
-  EXPECT_LE(worst, 0.05);  // 3 to 4 % at rest
+  EXPECT_LE(worst, 0.05);      // 3 to 4 % at rest
   EXPECT_GT(unfollowed, 0.5);  // without following, an eye gets the other one's view
   EXPECT_LE(std::sqrt(squares / checked), 2.5);
   RecordProperty("worst_crosstalk", std::to_string(worst));
