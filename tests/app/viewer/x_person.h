@@ -6,9 +6,11 @@
 #include <xcb/xtest.h>
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
+#include <thread>
 
 namespace dubsar::testing {
 
@@ -35,9 +37,15 @@ class XPerson {
   void release(int button) { fake(XCB_BUTTON_RELEASE, button); }
   void hold(const std::string& name) { fake(XCB_KEY_PRESS, code(name)); }
   void let_go(const std::string& name) { fake(XCB_KEY_RELEASE, code(name)); }
+  /// Waits a little before the same key again: GLFW takes a press within 20 ms of the release, while that is still in
+  /// its queue, for a repetition of a held key, and nobody types so fast.
   void key(const std::string& name) {
+    if (name == last_key_) std::this_thread::sleep_until(last_release_ + std::chrono::milliseconds(40));
     hold(name);
     let_go(name);
+    settle();
+    last_key_ = name;
+    last_release_ = std::chrono::steady_clock::now();
   }
   /// Returns when the server has done all that was asked of it.
   void settle() { std::free(xcb_get_input_focus_reply(connection_, xcb_get_input_focus(connection_), nullptr)); }
@@ -118,6 +126,8 @@ class XPerson {
   }
   xcb_connection_t* connection_;
   xcb_window_t root_ = 0, cover_ = 0;
+  std::string last_key_;
+  std::chrono::steady_clock::time_point last_release_;
 };
 
 }  // namespace dubsar::testing
