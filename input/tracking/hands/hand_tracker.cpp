@@ -56,15 +56,15 @@ void set_joints(const HandPose& pose, bool fits, HandFrame& hand) {
 HandTracker::HandTracker(const StereoLenses& lenses, const HandTrackerOptions& options)
     : rig_(lenses), options_(options), rays_{rays_of(lenses, 1), rays_of(lenses, 2)} {
   const auto pixels = static_cast<std::size_t>(rig_.width()) * static_cast<std::size_t>(rig_.height());
-  left_.resize(pixels);
-  right_.resize(pixels);
-  blurred_.resize(pixels);
-  labels_.resize(pixels);
+  pictures_.left.resize(pixels);
+  pictures_.right.resize(pixels);
+  pictures_.blurred.resize(pixels);
+  pictures_.labels.resize(pixels);
 }
 
 void HandTracker::reset() {
-  dark_.clear();
-  known_.clear();
+  pictures_.dark.clear();
+  known_.forget();
 }
 
 bool HandTracker::track(const Frame& frame, Hands& hands) {
@@ -72,38 +72,37 @@ bool HandTracker::track(const Frame& frame, Hands& hands) {
       frame.pixels.size() != 2 * frame.view_bytes())
     return false;
   if (frame.dark) {
-    dark_ = frame.pixels;
+    pictures_.dark = frame.pixels;
     return false;
   }
   pixels_ = frame.pixels;
-  if (dark_.size() == frame.pixels.size()) {
-    lit_.resize(dark_.size());
-    for (std::size_t i = 0; i < dark_.size(); ++i)
-      lit_[i] = static_cast<std::uint8_t>(std::max(0, int{frame.pixels[i]} - int{dark_[i]}) + 1);
-    pixels_ = lit_;
+  if (pictures_.dark.size() == frame.pixels.size()) {
+    pictures_.lit.resize(pictures_.dark.size());
+    for (std::size_t i = 0; i < pictures_.dark.size(); ++i)
+      pictures_.lit[i] = static_cast<std::uint8_t>(std::max(0, int{frame.pixels[i]} - int{pictures_.dark[i]}) + 1);
+    pixels_ = pictures_.lit;
   }
 
   const int width = rig_.width(), height = rig_.height();
-  rig_.rectify(0, eye_pixels(0), 0, 0, width, height, left_);
-  blur_121({left_.data(), width, height}, blurred_);
-  const GrayView picture{blurred_.data(), width, height};
+  rig_.rectify(0, eye_pixels(0), 0, 0, width, height, pictures_.left);
+  blur_121({pictures_.left.data(), width, height}, pictures_.blurred);
+  const GrayView picture{pictures_.blurred.data(), width, height};
   hands.clear();
-  previous_.swap(known_);
-  known_.clear();
+  known_.begin_frame();
   const auto threshold = skin_threshold(picture, options_.skin_fraction, options_.skin_margin);
   if (!threshold) return true;
   // The palm of a small hand at the far end of the range, and no less.
   const double palm_px = 0.035 * rig_.focal_px() / options_.farthest_m;
   const auto regions = find_regions(picture, threshold->grey, static_cast<int>(kPi * palm_px * palm_px),
-                                    options_.most_hands, labels_, stack_);
+                                    options_.most_hands, pictures_.labels, pictures_.stack);
   const int d_max = static_cast<int>(std::ceil(rig_.focal_px() * rig_.baseline_m() / options_.nearest_m)) + 1;
   for (const Region& region : regions) {
-    const auto silhouette = outline(labels_, width, height, region, distance_);
+    const auto silhouette = outline(pictures_.labels, width, height, region, pictures_.distance);
     if (!silhouette) continue;
     const int reach = static_cast<int>(1.5 * silhouette->radius_px);
     const glm::ivec2 palm(silhouette->palm_px);
     rig_.rectify(1, eye_pixels(1), std::max(0, palm.x - reach - d_max), std::max(0, palm.y - reach),
-                 std::min(width, palm.x + reach), std::min(height, palm.y + reach), right_);
+                 std::min(width, palm.x + reach), std::min(height, palm.y + reach), pictures_.right);
     double confidence = 0.0;
     const auto first = guess(*silhouette, confidence);
     if (!first) continue;
@@ -114,7 +113,8 @@ bool HandTracker::track(const Frame& frame, Hands& hands) {
 }
 
 std::optional<HandGuess> HandTracker::guess(const Silhouette& s, double& confidence) const {
-  const GrayView left{left_.data(), rig_.width(), rig_.height()}, right{right_.data(), rig_.width(), rig_.height()};
+  const GrayView left{pictures_.left.data(), rig_.width(), rig_.height()},
+      right{pictures_.right.data(), rig_.width(), rig_.height()};
   const double fb = rig_.focal_px() * rig_.baseline_m();
   const int d_min = std::max(1, static_cast<int>(fb / options_.farthest_m) - 1);
   const int d_max = static_cast<int>(std::ceil(fb / options_.nearest_m)) + 1;
@@ -124,12 +124,12 @@ std::optional<HandGuess> HandTracker::guess(const Silhouette& s, double& confide
     g.depth_m = fb / match->disparity_px;
   } else {
     // As far as a hand of the last frame that was seen in this place.
-    const auto here = std::find_if(previous_.begin(), previous_.end(), [&](const Known& known) {
+    const auto here = std::find_if(known_.previous().begin(), known_.previous().end(), [&](const KnownHand& known) {
       const glm::dvec3& palm = known.palm_m;
       const glm::dvec2 seen((palm.x + 0.5 * rig_.baseline_m()) / palm.y, -palm.z / palm.y);
       return glm::distance(seen, rig_.ray(s.palm_px)) < s.radius_px / rig_.focal_px();
     });
-    if (here == previous_.end()) return std::nullopt;
+    if (here == known_.previous().end()) return std::nullopt;
     g.depth_m = here->palm_m.y;
   }
   g.pixel_m = g.depth_m / rig_.focal_px();
@@ -182,7 +182,7 @@ void HandTracker::sample(int eye, const Region& region, const Silhouette& s, dou
       tile.skin[i] = static_cast<float>(static_cast<double>(picture[rays.pixel[i]] - background) / (z * z));
       const int x = static_cast<int>(std::lround(at.x)), y = static_cast<int>(std::lround(at.y));
       if (x < 0 || y < 0 || x >= rig_.width() || y >= rig_.height()) continue;
-      const std::uint8_t label = labels_[static_cast<std::size_t>(y * rig_.width() + x)];
+      const std::uint8_t label = pictures_.labels[static_cast<std::size_t>(y * rig_.width() + x)];
       const glm::dvec2 from_palm = at - s.palm_px;
       if (label == region.label && glm::dot(from_palm, from_palm) < r * r) palm.push_back(tile.skin[i]);
       const bool another = label != 0 && label != kDroppedRegion && label != region.label;
@@ -208,16 +208,7 @@ void HandTracker::sample(int eye, const Region& region, const Silhouette& s, dou
 
 HandFrame HandTracker::measure(const Region& region, const Silhouette& s, const HandGuess& guess, int background,
                                TimestampNs time) {
-  Known known;
-  const auto same = std::min_element(previous_.begin(), previous_.end(), [&](const Known& a, const Known& b) {
-    return glm::distance(a.palm_m, guess.palm_m) < glm::distance(b.palm_m, guess.palm_m);
-  });
-  if (same != previous_.end() && glm::distance(same->palm_m, guess.palm_m) < 0.12) {
-    known = *same;
-    previous_.erase(same);
-  } else {
-    known.id = next_id_++;
-  }
+  KnownHand known = known_.take(guess.palm_m);
   for (const int eye : {0, 1})
     sample(eye, region, s, guess.depth_m, background, samples_[static_cast<std::size_t>(eye)]);
   const FoundHand found = search_hand(fit_, samples_, guess, known.memory);
@@ -237,7 +228,7 @@ HandFrame HandTracker::measure(const Region& region, const Silhouette& s, const 
   known.palm_m = hand.palm.position_m;
   known.time = time;
   set_joints(found.pose, found.fits, hand);
-  known_.push_back(known);
+  known_.keep(known);
   return hand;
 }
 

@@ -13,6 +13,7 @@
 #include "input/tracking/hands/eye_samples.h"
 #include "input/tracking/hands/hand_picture.h"
 #include "input/tracking/hands/hand_search.h"
+#include "input/tracking/hands/known_hands.h"
 #include "input/tracking/hands/silhouette.h"
 #include "input/tracking/hands/stereo_rig.h"
 
@@ -43,11 +44,10 @@ class HandTracker {
   void reset();
 
  private:
-  struct Known {
-    std::uint32_t id = 0;
-    glm::dvec3 palm_m{};
-    TimestampNs time = 0;
-    HandMemory memory;
+  struct Pictures {  ///< of the frame in work; kept so that no frame needs memory of its own
+    std::vector<std::uint8_t> dark, lit, left, right, blurred, labels;
+    std::vector<std::uint32_t> stack;
+    std::vector<float> distance;
   };
 
   std::optional<HandGuess> guess(const Silhouette& silhouette, double& confidence) const;
@@ -65,11 +65,8 @@ class HandTracker {
   HandFit fit_;
   std::array<EyeSamples, 2> samples_;
   std::span<const std::uint8_t> pixels_;  ///< both eyes of the frame in work
-  std::vector<std::uint8_t> dark_, lit_, left_, right_, blurred_, labels_;
-  std::vector<std::uint32_t> stack_;
-  std::vector<float> distance_;
-  std::vector<Known> known_, previous_;
-  std::uint32_t next_id_ = 1;
+  Pictures pictures_;
+  KnownHands known_;
 };
 
 }  // namespace dubsar

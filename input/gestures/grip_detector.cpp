@@ -1,0 +1,77 @@
+#include "input/gestures/grip_detector.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace dubsar {
+namespace {
+
+constexpr double kForgetsOpen_per_s = 0.25;  // of the strength that an open hand had
+
+/// The index finger is stretched: from knuckle to tip it is 0.7 times as long as from wrist to knuckle then. False
+/// where the joints are not known.
+bool points(const HandFrame& hand) {
+  const auto &wrist = hand.joint(HandJoint::kWrist), &knuckle = hand.joint(HandJoint::kIndexProximal),
+             &tip = hand.joint(HandJoint::kIndexTip);
+  if (!wrist.valid || !knuckle.valid || !tip.valid) return false;
+  constexpr double kStretched = 0.6;
+  return glm::length(tip.pose.position_m - knuckle.pose.position_m) >
+         kStretched * glm::length(knuckle.pose.position_m - wrist.pose.position_m);
+}
+
+}  // namespace
+
+void GripDetector::lose(TimestampNs now, std::vector<GestureEvent>& events) {
+  if (grabbing_) events.push_back({now, GestureKind::kGrab, GesturePhase::kCancel});
+  if (pinching_) events.push_back({now, GestureKind::kPinch, GesturePhase::kCancel});
+  grabbing_ = pinching_ = grab_armed_ = pinch_armed_ = false;
+  open_grab_ = 1.0;
+}
+
+void GripDetector::grab(const Moment& moment, const HandFrame& hand, const GestureOptions& options,
+                        std::vector<GestureEvent>& events) {
+  const double grab = hand.grab_strength;
+  closest_grab_ = std::max(closest_grab_, grab);
+  const bool lets_go =
+      closest_grab_ >= options.grab_on ? grab <= options.grab_off : grab <= closest_grab_ - options.grab_let_go;
+  const bool gently = grab >= options.grab_gentle && grab - open_grab_ >= options.grab_rise && !points(hand) &&
+                      moment.speed_mps <= options.grab_rest_mps;
+  if (!grabbing_)
+    open_grab_ = std::min(grab, open_grab_ + kForgetsOpen_per_s * 1e-9 * static_cast<double>(moment.since_ns));
+  if (grabbing_ && lets_go) {
+    grabbing_ = false;
+    open_grab_ = grab;
+    pinch_armed_ = false;  // the fingers of an opening fist pass through a pinch
+    events.push_back({moment.now, GestureKind::kGrab, GesturePhase::kEnd});
+  } else if (!grabbing_ && moment.may_begin && grab_armed_ && (grab >= options.grab_on || gently)) {
+    if (pinching_) events.push_back({moment.now, GestureKind::kPinch, GesturePhase::kCancel});
+    pinching_ = false;
+    grabbing_ = true;
+    grab_armed_ = false;
+    closest_grab_ = grab;
+    events.push_back({moment.now, GestureKind::kGrab, GesturePhase::kBegin});
+  }
+  if (grab <= options.grab_off) grab_armed_ = true;
+}
+
+void GripDetector::pinch(const Moment& moment, const HandFrame& hand, const GestureOptions& options,
+                         std::vector<GestureEvent>& events) {
+  if (pinching_ && hand.pinch_distance_m >= options.pinch_off_m) {
+    pinching_ = false;
+    events.push_back({moment.now, GestureKind::kPinch, GesturePhase::kEnd});
+  } else if (!pinching_ && moment.may_begin && pinch_armed_ && hand.pinch_distance_m <= options.pinch_on_m &&
+             hand.grab_strength <= options.grab_off) {
+    pinching_ = true;
+    pinch_armed_ = false;
+    events.push_back({moment.now, GestureKind::kPinch, GesturePhase::kBegin});
+  }
+  if (hand.pinch_distance_m >= options.pinch_off_m) pinch_armed_ = true;
+}
+
+void GripDetector::update(const Moment& moment, const HandFrame& hand, const GestureOptions& options,
+                          std::vector<GestureEvent>& events) {
+  grab(moment, hand, options, events);
+  if (!grabbing_) pinch(moment, hand, options, events);
+}
+
+}  // namespace dubsar
