@@ -130,6 +130,7 @@ json volume_json(const VolumeInfo& info) {
   for (const VolumeCandidate& candidate : info.candidates)
     candidates.push_back({{"dataset", candidate.dataset}, {"dims_zyx", candidate.dims}, {"dtype", candidate.dtype}});
   return {{"path", info.path},
+          {"fingerprint", info.fingerprint.empty() ? json(nullptr) : json(info.fingerprint)},
           {"format", info.format},
           {"dataset", info.dataset},
           {"found_by", info.found_by},

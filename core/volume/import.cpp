@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/base/file_fingerprint.h"
 #include "core/base/input_file.h"
 #include "core/base/log.h"
 #include "core/hdf5/hdf5_file.h"
@@ -132,14 +133,21 @@ void check_voxel_size(VolumeInfo& info) {
 
 }  // namespace
 
-Result<std::unique_ptr<ImportedVolume>> open_volume(ImportOptions options) {
+Result<OpenedVoxels> open_voxels(ImportOptions options) {
   split_dataset(options);
   DUBSAR_ASSIGN(OpenedVolume opened, open_by_content(options));
   VolumeInfo& info = opened.info;
   info.path = options.path.string();
+  if (const auto found = file_fingerprint(options.path)) info.fingerprint = *found;  // of a folder there is none
   turn(opened, options);
-  DUBSAR_ASSIGN(info.box, box_of(info.file_dims, options));
   if (options.voxel_size_mm) info.voxel = {*options.voxel_size_mm, "given by the user"};
+  return OpenedVoxels{std::move(info), std::move(opened.reader)};
+}
+
+Result<std::unique_ptr<ImportedVolume>> open_volume(ImportOptions options) {
+  DUBSAR_ASSIGN(OpenedVoxels opened, open_voxels(options));
+  VolumeInfo& info = opened.info;
+  DUBSAR_ASSIGN(info.box, box_of(info.file_dims, options));
   check_voxel_size(info);
   for (const std::string& warning : info.warnings) log_warning("{}: {}", info.path, warning);
   std::unique_ptr<SlabSource> source =

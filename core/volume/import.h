@@ -41,4 +41,12 @@ class ImportedVolume final : public SlabSource {
 /// sentence for everything that is not a volume.
 Result<std::unique_ptr<ImportedVolume>> open_volume(ImportOptions options);
 
+/// The same as a reader of any box, along x, y, z of the object, in numbers as stored; for those who look at parts of a
+/// volume. options.crop, .stride and .nonfinite_fill do nothing here.
+struct OpenedVoxels {
+  VolumeInfo info;
+  std::unique_ptr<VoxelReader> reader;
+};
+Result<OpenedVoxels> open_voxels(ImportOptions options);
+
 }  // namespace dubsar

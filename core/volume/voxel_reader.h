@@ -65,12 +65,13 @@ struct VolumeCandidate {
 /// What is known of a volume in a file, for the report and `dubsar info`.
 struct VolumeInfo {
   std::string path;
-  std::string format;    ///< "hdf5", "raw", "nrrd", "tiff"
-  std::string dataset;   ///< HDF5 path, empty for other formats
-  std::string found_by;  ///< how the volume was found: "named by the user", "NeXus default", ...
-  Dims file_dims;        ///< of the whole array, along x, y, z of the object
-  AxisOrder axes;        ///< how these lie in the file
-  std::string dtype;     ///< "uint8" ... "float64"
+  std::string fingerprint;  ///< of that file (file_fingerprint.h); empty: a folder
+  std::string format;       ///< "hdf5", "raw", "nrrd", "tiff"
+  std::string dataset;      ///< HDF5 path, empty for other formats
+  std::string found_by;     ///< how the volume was found: "named by the user", "NeXus default", ...
+  Dims file_dims;           ///< of the whole array, along x, y, z of the object
+  AxisOrder axes;           ///< how these lie in the file
+  std::string dtype;        ///< "uint8" ... "float64"
   std::string byte_order;
   std::string layout;  ///< "contiguous", "chunked 32x32x32" (z, y, x), ...
   std::vector<std::string> filters;
