@@ -27,17 +27,17 @@ void begin(const char* name, float x, float y, float width, float height) {
 void draw_line(const Board& desk) {
   begin("line", 0.0f, 0.0f, desk.width, kTop);
   ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(desk.state.title.c_str());
-  if (!desk.state.side.empty()) {
+  ImGui::TextUnformatted(desk.state.line.title.c_str());
+  if (!desk.state.line.side.empty()) {
     ImGui::SameLine(0.0f, 24.0f);
-    ImGui::TextColored(ImColor(kDim), "%s", desk.state.side.c_str());
+    ImGui::TextColored(ImColor(kDim), "%s", desk.state.line.side.c_str());
   }
-  const std::string display = "F2  " + desk.state.display;
+  const std::string display = "F2  " + desk.state.line.display;
   const float right = button_width("undo") + button_width("redo") + button_width(display.c_str()) + button_width("?");
   ImGui::SameLine(std::max(ImGui::GetCursorPosX() + 8.0f, desk.width - right - 4.0f));
-  button(desk, "undo", "undo", false, !desk.state.undo.empty());
+  button(desk, "undo", "undo", false, !desk.state.line.undo.empty());
   ImGui::SameLine();
-  button(desk, "redo", "redo", false, !desk.state.redo.empty());
+  button(desk, "redo", "redo", false, !desk.state.line.redo.empty());
   ImGui::SameLine();
   button(desk, display.c_str(), "next_display", false);
   ImGui::SameLine();
@@ -65,11 +65,11 @@ void draw_strip(const Board& desk) {
   ImGui::SetCursorPosY(0.5f * (kStrip - ImGui::GetFrameHeight()));
   for (std::size_t i = 0; i < kSideNames.size(); ++i) {
     const std::string name(kSideNames[i]);
-    button(desk, name.c_str(), "side " + name, desk.state.side == name);
+    button(desk, name.c_str(), "side " + name, desk.state.line.side == name);
     ImGui::SameLine(0.0f, i == 3 ? 20.0f : -1.0f);
   }
-  if (desk.state.can_unpack) {
-    auto percent = static_cast<float>(100.0 * desk.state.unpack);
+  if (can_unpack(desk.state.document)) {
+    auto percent = static_cast<float>(100.0 * desk.state.document.unpack);
     ImGui::SameLine(0.0f, 28.0f);
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("unpack");
@@ -94,7 +94,8 @@ void draw_tools(const Board& desk) {
   const float row = ImGui::GetFrameHeightWithSpacing();
   begin("tools", 0.0f, kTop + kGap, kToolsWidth,
         row * static_cast<float>(kTools.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
-  for (const auto& [label, name] : kTools) button(desk, label, std::string("tool ") + name, desk.state.tool == name);
+  for (const auto& [label, name] : kTools)
+    button(desk, label, std::string("tool ") + name, desk.state.desk.tool == name);
   ImGui::End();
 }
 
@@ -104,7 +105,7 @@ void draw_drawers(const Board& desk) {
     void (*draw)(const Board&);
   };
   std::vector<Row> rows;
-  if (desk.state.parts.size() > 1) rows.push_back({"Parts", "parts", draw_parts});
+  if (desk.state.document.parts.size() > 1) rows.push_back({"Parts", "parts", draw_parts});
   rows.push_back({"Light", "light", draw_light});
   rows.push_back({"Style", "style", draw_styles});
   rows.push_back({"Measures", "measures", draw_measures});
@@ -115,10 +116,10 @@ void draw_drawers(const Board& desk) {
   begin("drawers", desk.width - kTab, kTop + kGap, kTab,
         row * static_cast<float>(rows.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
   for (const Row& each : rows)
-    button(desk, each.label, std::string("drawer ") + each.name, desk.state.drawer == each.name);
+    button(desk, each.label, std::string("drawer ") + each.name, desk.state.desk.drawer == each.name);
   ImGui::End();
   for (const Row& each : rows) {
-    if (desk.state.drawer != each.name) continue;
+    if (desk.state.desk.drawer != each.name) continue;
     ImGui::SetNextWindowPos(ImVec2(desk.width - kTab - kDrawer - 4.0f, kTop + kGap));
     ImGui::SetNextWindowSize(ImVec2(kDrawer, 0.0f));
     ImGui::Begin(each.name, nullptr, kFixed | ImGuiWindowFlags_AlwaysAutoResize);
@@ -156,14 +157,14 @@ void draw_panels(const PanelState& state, const KeyTable& keys, float width, flo
   ImGui::PushStyleVar(ImGuiStyleVar_FrameRounding, 3.0f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(16.0f, 16.0f));
-  if (state.panels) {
+  if (state.desk.panels) {
     draw_line(desk);
     draw_tools(desk);
     draw_strip(desk);
     draw_drawers(desk);
   }
   ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1.0f);
-  draw_palette(state.palette, keys, width, height, commands);
+  draw_palette(state.desk.palette, keys, width, height, commands);
   ImGui::PopStyleVar();
   ImGui::PopStyleVar(5);
   ImGui::PopStyleColor(12);

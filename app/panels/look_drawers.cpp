@@ -18,10 +18,10 @@ constexpr double kLowestDeg = 5.0, kHighestDeg = 85.0;
 
 /// What the hatch means, and how much of the surface it is.
 void draw_evidence(const Board& desk) {
-  bool evidence = desk.state.evidence;
+  bool evidence = desk.state.document.style.evidence;
   if (ImGui::Checkbox("mark what the scan does not show", &evidence)) desk.commands.push_back("evidence");
   explain(desk, "evidence");
-  const double all = desk.state.measured_mm2 + desk.state.inferred_mm2;
+  const double all = desk.state.evidence.measured_mm2 + desk.state.evidence.inferred_mm2;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float size = ImGui::GetTextLineHeight();
   ImDrawList* const draw = ImGui::GetWindowDrawList();
@@ -31,9 +31,10 @@ void draw_evidence(const Board& desk) {
     draw->AddRectFilled(ImVec2(x, corner.y), ImVec2(std::min(x + 4.0f, end.x), end.y), kStripe);
   ImGui::Dummy(ImVec2(2.0f * size + 4.0f, size));
   ImGui::SameLine();
-  ImGui::Text("%.1f mm\u00b2, %.1f %%", desk.state.inferred_mm2, all > 0 ? 100.0 * desk.state.inferred_mm2 / all : 0.0);
+  ImGui::Text("%.1f mm\u00b2, %.1f %%", desk.state.evidence.inferred_mm2,
+              all > 0 ? 100.0 * desk.state.evidence.inferred_mm2 / all : 0.0);
   say_dim("no surface in the scan here: closed so that the part is whole");
-  ImGui::Text("%.0f mm\u00b2", desk.state.measured_mm2);
+  ImGui::Text("%.0f mm\u00b2", desk.state.evidence.measured_mm2);
   ImGui::SameLine();
   ImGui::TextColored(ImColor(kDim), "seen in the scan");
 }
@@ -41,8 +42,8 @@ void draw_evidence(const Board& desk) {
 }  // namespace
 
 void draw_parts(const Board& desk) {
-  for (std::size_t i = 0; i < desk.state.parts.size(); ++i) {
-    const Part& part = desk.state.parts[i];
+  for (std::size_t i = 0; i < desk.state.document.parts.size(); ++i) {
+    const Part& part = desk.state.document.parts[i];
     bool visible = part.visible;
     if (ImGui::Checkbox(part.name.c_str(), &visible)) desk.commands.push_back(fmt::format("part {}", i + 1));
     explain(desk, fmt::format("part {}", i + 1));
@@ -71,20 +72,21 @@ void draw_light(const Board& desk) {
     const double x = (at.x - middle.x) / radius, y = (middle.y - at.y) / radius;
     const double azimuth = std::fmod(std::atan2(x, y) / kRad + 360.0, 360.0);
     const double elevation = std::clamp(std::acos(std::min(1.0, std::hypot(x, y))) / kRad, kLowestDeg, kHighestDeg);
-    if (std::abs(azimuth - desk.state.light.azimuth_deg) > 0.05 ||
-        std::abs(elevation - desk.state.light.elevation_deg) > 0.05)
+    if (std::abs(azimuth - desk.state.document.light.azimuth_deg) > 0.05 ||
+        std::abs(elevation - desk.state.document.light.elevation_deg) > 0.05)
       desk.commands.push_back(fmt::format("light {:.1f},{:.1f}", azimuth, elevation));
   }
   ImDrawList* const draw = ImGui::GetWindowDrawList();
   draw->AddCircleFilled(middle, radius, IM_COL32(0x2b, 0x2d, 0x31, 0xff), 48);
   draw->AddCircle(middle, radius, kLine, 48, 1.5f);
-  const double low = std::cos(desk.state.light.elevation_deg * kRad), azimuth = desk.state.light.azimuth_deg * kRad;
+  const double low = std::cos(desk.state.document.light.elevation_deg * kRad),
+               azimuth = desk.state.document.light.azimuth_deg * kRad;
   const ImVec2 light(middle.x + radius * static_cast<float>(low * std::sin(azimuth)),
                      middle.y - radius * static_cast<float>(low * std::cos(azimuth)));
   draw->AddLine(light, middle, kLine, 1.5f);
   draw->AddCircleFilled(light, 6.0f, kAccent, 24);
-  ImGui::TextColored(ImColor(kDim), "%.0f° round, %.0f° high", desk.state.light.azimuth_deg,
-                     desk.state.light.elevation_deg);
+  ImGui::TextColored(ImColor(kDim), "%.0f° round, %.0f° high", desk.state.document.light.azimuth_deg,
+                     desk.state.document.light.elevation_deg);
   constexpr std::array<std::array<const char*, 2>, 8> kPresets{{{"upper left", "upper_left"},
                                                                 {"top", "top"},
                                                                 {"upper right", "upper_right"},
@@ -102,12 +104,13 @@ void draw_light(const Board& desk) {
 void draw_styles(const Board& desk) {
   if (const Command* const style = desk.keys.commands().find("style"))
     for (const std::string& name : style->values) {
-      if (ImGui::RadioButton(name.c_str(), name == desk.state.style)) desk.commands.push_back("style " + name);
+      if (ImGui::RadioButton(name.c_str(), name == desk.state.document.style.name))
+        desk.commands.push_back("style " + name);
     }
-  bool occlusion = desk.state.occlusion;
+  bool occlusion = desk.state.document.style.occlusion;
   if (ImGui::Checkbox("dark hollows", &occlusion)) desk.commands.push_back("occlusion");
   explain(desk, "occlusion");
-  auto strength = static_cast<float>(100.0 * desk.state.strength);
+  auto strength = static_cast<float>(100.0 * desk.state.document.style.strength);
   ImGui::SetNextItemWidth(120.0f);
   if (ImGui::SliderFloat("strength", &strength, 0.0f, 200.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
     desk.commands.push_back(fmt::format("strength {:.4g}", strength));

@@ -43,9 +43,9 @@ void letter_buttons(const Board& desk, const std::string& command, const std::st
 }  // namespace
 
 void draw_measures(const Board& desk) {
-  if (desk.state.measures.empty()) say_dim("Take a tool at the left and click on the surface.");
-  for (std::size_t i = 0; i < desk.state.measures.size(); ++i) {
-    const Measure& measure = desk.state.measures[i];
+  if (desk.state.document.measures.empty()) say_dim("Take a tool at the left and click on the surface.");
+  for (std::size_t i = 0; i < desk.state.document.measures.size(); ++i) {
+    const Measure& measure = desk.state.document.measures[i];
     ImGui::PushID(static_cast<int>(i));
     std::string name;
     ImGui::AlignTextToFramePadding();
@@ -64,10 +64,10 @@ void draw_measures(const Board& desk) {
 }
 
 void draw_notes(const Board& desk) {
-  if (desk.state.notes.empty()) say_dim("Take the tool Note or Line at the left and click on the surface.");
-  for (std::size_t i = 0; i < desk.state.notes.size(); ++i) {
-    const Note& note = desk.state.notes[i];
-    const bool open = desk.state.note == i + 1;
+  if (desk.state.document.notes.empty()) say_dim("Take the tool Note or Line at the left and click on the surface.");
+  for (std::size_t i = 0; i < desk.state.document.notes.size(); ++i) {
+    const Note& note = desk.state.document.notes[i];
+    const bool open = desk.state.desk.note == i + 1;
     ImGui::PushID(static_cast<int>(i));
     const std::string title = fmt::format("{}  {}", note.label.empty() ? std::to_string(i + 1) : note.label,
                                           open ? std::string() : note.text.substr(0, note.text.find('\n')));
@@ -90,7 +90,7 @@ void draw_notes(const Board& desk) {
 
 void draw_cuts(const Board& desk) {
   button(desk, "across the view", "cut_here", false);
-  const bool any = desk.state.cuts > 0;
+  const bool any = !desk.state.document.clips.empty();
   button(desk, "deeper", "cut_deeper", false, any);
   ImGui::SameLine();
   button(desk, "less deep", "cut_back", false, any);
@@ -100,7 +100,7 @@ void draw_cuts(const Board& desk) {
     if (side != std::string("front") && side != std::string("left") && side != std::string("top")) ImGui::SameLine();
     button(desk, side, fmt::format("cut {} 20", side), false);
   }
-  auto percent = static_cast<float>(100.0 * desk.state.fog);
+  auto percent = static_cast<float>(100.0 * desk.state.document.fog);
   ImGui::SetNextItemWidth(120.0f);
   if (ImGui::SliderFloat("far side fades", &percent, 0.0f, 100.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
     desk.commands.push_back(fmt::format("fog {:.4g}", percent));
@@ -110,12 +110,14 @@ void draw_cuts(const Board& desk) {
 void draw_film(const Board& desk) {
   button(desk, "add what is seen", "keyframe", false);
   ImGui::SameLine();
-  button(desk, desk.state.playing ? "stop" : "play", "play", desk.state.playing, desk.state.keyframes_s.size() > 1);
-  if (desk.state.keyframes_s.empty()) say_dim("Turn, light and lift as it shall be, and add it; go on with the next.");
-  for (std::size_t i = 0; i < desk.state.keyframes_s.size(); ++i) {
+  button(desk, desk.state.playing ? "stop" : "play", "play", desk.state.playing,
+         desk.state.document.keyframes.size() > 1);
+  if (desk.state.document.keyframes.empty())
+    say_dim("Turn, light and lift as it shall be, and add it; go on with the next.");
+  for (std::size_t i = 0; i < desk.state.document.keyframes.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
-    button(desk, fmt::format("{:.1f} s", desk.state.keyframes_s[i]).c_str(), fmt::format("go_to_keyframe {}", i + 1),
-           false);
+    button(desk, fmt::format("{:.1f} s", desk.state.document.keyframes[i].time_s).c_str(),
+           fmt::format("go_to_keyframe {}", i + 1), false);
     ImGui::SameLine();
     button(desk, "x", fmt::format("delete_keyframe {}", i + 1), false);
     ImGui::PopID();

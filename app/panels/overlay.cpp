@@ -235,7 +235,7 @@ std::string typed_by(const InputEvent& event) {
 
 bool Overlay::take_key(const InputEvent& event, const glm::dvec2& layout) {
   ImGuiIO& io = ImGui::GetIO();
-  const bool palette = text_.panels->palette;
+  const bool palette = text_.panels->desk.palette;
   if (!palette && !io.WantTextInput) return false;
   const bool control = (event.modifiers & kControl) != 0;
   if (!palette && control && std::string_view("acvxz").find(event.key) == std::string_view::npos) return false;

@@ -30,13 +30,13 @@ using nlohmann::json;
 
 constexpr std::size_t kMostAges = 1'000'000;
 
-struct Options {
-  std::string driver, file, script, udp;
+/// Which device, and what is said to its driver.
+struct DeviceChoice {
+  std::string driver;
   std::string address, port, tracker, sensor, invert, sender, socket, library;
-  bool live = false, remote = false;
+  bool remote = false;
 
-  /// What was said, for the driver to judge.
-  DeviceSpec device() const {
+  DeviceSpec spec() const {
     DeviceSpec spec{driver};
     const auto add = [&](const char* key, const std::string& value) {
       if (!value.empty()) spec.options.push_back({key, value});
@@ -52,15 +52,25 @@ struct Options {
     if (remote) spec.options.push_back({"remote"});
     return spec;
   }
+};
+
+struct Actions {
+  std::optional<Arguments> list, probe, monitor, record, replay, simulate;
+};
+
+struct Options {
+  DeviceChoice device;
+  std::string file, script, udp;
+  bool live = false;
   std::optional<double> duration;
   double seconds = 10.0;
   double speed = 1.0;
   std::optional<std::uint64_t> seed;
-  std::optional<Arguments> list, probe, monitor, record, replay, simulate;
+  Actions actions;
 };
 
 Result<VerbResult> list(const Options& options) {
-  const std::vector<DeviceInfo> devices = list_devices(options.socket);
+  const std::vector<DeviceInfo> devices = list_devices(options.device.socket);
   VerbResult result;
   result.json["devices"] = json::array();
   for (const DeviceInfo& d : devices) {
@@ -168,19 +178,19 @@ Result<VerbResult> probe_looking_glass(const Clock& clock) {
 
 Result<VerbResult> run_live(const Options& options, bool print, Progress& progress) {
   const SteadyClock clock;
-  const DeviceSpec spec = options.device();
+  const DeviceSpec spec = options.device.spec();
   DUBSAR_ASSIGN(const DriverEntry* driver, find_driver(spec.driver, "devices", driver_table()));
   OpenTransport open;
   if (driver->bus != Bus::kService) {
     DUBSAR_ASSIGN(open, open_device(spec, clock));
-  } else if (options.record->chosen()) {
+  } else if (options.actions.record->chosen()) {
     return fail(ErrorKind::kUsage,
                 "devices: {} is a service and sends no bytes of a device: record its hands with dubsar "
                 "view --input {} --record FILE",
                 spec.driver, driver->input.source);
   }
   std::shared_ptr<RecordingWriter> writer;
-  if (options.record->chosen()) {
+  if (options.actions.record->chosen()) {
     DUBSAR_ASSIGN(writer, RecordingWriter::create(options.file, spec.driver, "", clock));
     open = [open = std::move(open), writer]() -> Result<std::unique_ptr<Transport>> {
       DUBSAR_ASSIGN(auto transport, open());
@@ -236,7 +246,7 @@ Result<PersonOptions> person_options(const Options& options, const DriverEntry& 
 }
 
 Result<VerbResult> run_simulate(const Options& options, bool print, Progress& progress) {
-  DeviceSpec spec = options.device();
+  DeviceSpec spec = options.device.spec();
   DUBSAR_ASSIGN(const DriverEntry* driver, find_driver(spec.driver, "devices simulate", driver_table()));
   DUBSAR_ASSIGN(PersonOptions person, person_options(options, *driver));
   VerbResult result;
@@ -260,9 +270,9 @@ Result<VerbResult> run_simulate(const Options& options, bool print, Progress& pr
   DUBSAR_ASSIGN(const SimulatedFeed feed, simulate_device(*driver, std::move(person), clock));
   const auto ready = [&](int port) {
     if (!print) return;
-    const std::string address = options.address.empty() ? "127.0.0.1" : options.address;
+    const std::string address = options.device.address.empty() ? "127.0.0.1" : options.device.address;
     fmt::print("simulated {} at {}\n", spec.driver,
-               driver->bus == Bus::kUnixSocket ? options.socket : fmt::format("{}:{}", address, port));
+               driver->bus == Bus::kUnixSocket ? options.device.socket : fmt::format("{}:{}", address, port));
     std::fflush(stdout);
   };
   DUBSAR_ASSIGN(const ServerResult served,
@@ -275,36 +285,39 @@ Result<VerbResult> run_simulate(const Options& options, bool print, Progress& pr
 
 Result<VerbResult> run(const Options& options, const CommonOptions& common, Progress& progress) {
   const bool print = common.json_path != "-" && !common.console.quiet;
-  if (options.list->chosen()) return list(options);
-  if (options.probe->chosen() && is_calibration(options.driver)) return probe_looking_glass(SteadyClock());
-  if (options.replay->chosen()) return run_replay(options, print, progress);
-  if (options.simulate->chosen()) return run_simulate(options, print, progress);
-  const auto driver = find_driver(options.driver, "devices", driver_table());
-  if (driver && (*driver)->bus == Bus::kVideo && !options.monitor->chosen())
-    return watch_camera(options.file, options.probe->chosen() ? 2.0 : options.seconds, progress);
+  if (options.actions.list->chosen()) return list(options);
+  if (options.actions.probe->chosen() && is_calibration(options.device.driver))
+    return probe_looking_glass(SteadyClock());
+  if (options.actions.replay->chosen()) return run_replay(options, print, progress);
+  if (options.actions.simulate->chosen()) return run_simulate(options, print, progress);
+  const auto driver = find_driver(options.device.driver, "devices", driver_table());
+  if (driver && (*driver)->bus == Bus::kVideo && !options.actions.monitor->chosen())
+    return watch_camera(options.file, options.actions.probe->chosen() ? 2.0 : options.seconds, progress);
   Options chosen = options;
-  if (options.probe->chosen()) chosen.seconds = 2.0;
-  return run_live(chosen, print && options.monitor->chosen(), progress);
+  if (options.actions.probe->chosen()) chosen.seconds = 2.0;
+  return run_live(chosen, print && options.actions.monitor->chosen(), progress);
 }
 
 void add_device_options(Arguments command, Options& options) {
   command
-      .value("driver", options.driver,
+      .value("driver", options.device.driver,
              driver_names(driver_table(), can_be_opened) + "; probe and monitor: leapc; probe and record: webcam")
       .required();
-  command.value("--address", options.address, "opentrack: to listen on; vrpn: of the server");
-  command.value("--port", options.port, "opentrack: 4242, vrpn: 3883 unless given");
-  command.flag("--allow-remote", options.remote, "opentrack: listen to other machines too");
-  command.value("--tracker", options.tracker, "vrpn: name of the tracker (the first)");
-  command.value("--sensor", options.sensor, "vrpn: which of its sensors");
-  command.value("--invert", options.invert, "opentrack: axes that count the other way, e.g. x+yaw").called("AXES");
-  command.value("--sender", options.sender, "opentrack: whose signs, opentrack or xrlinux").called("NAME");
-  command.value("--socket", options.socket, "spacenav: path of the daemon's socket");
-  command.value("--library", options.library, "leapc: Ultraleap's libLeapC.so").called("FILE");
+  command.value("--address", options.device.address, "opentrack: to listen on; vrpn: of the server");
+  command.value("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given");
+  command.flag("--allow-remote", options.device.remote, "opentrack: listen to other machines too");
+  command.value("--tracker", options.device.tracker, "vrpn: name of the tracker (the first)");
+  command.value("--sensor", options.device.sensor, "vrpn: which of its sensors");
+  command.value("--invert", options.device.invert, "opentrack: axes that count the other way, e.g. x+yaw")
+      .called("AXES");
+  command.value("--sender", options.device.sender, "opentrack: whose signs, opentrack or xrlinux").called("NAME");
+  command.value("--socket", options.device.socket, "spacenav: path of the daemon's socket");
+  command.value("--library", options.device.library, "leapc: Ultraleap's libLeapC.so").called("FILE");
 }
 
 void add_simulate_options(Arguments command, Options& options) {
-  command.value("driver", options.driver, "whose bytes: " + driver_names(driver_table(), can_be_simulated)).required();
+  command.value("driver", options.device.driver, "whose bytes: " + driver_names(driver_table(), can_be_simulated))
+      .required();
   command.writes("file", options.file, FileFormat::kOther, "the recording to write").called("FILE");
   command.reads("--script", options.script, "what the person does (docs/input.md); else looks about and turns things")
       .called("FILE");
@@ -312,10 +325,10 @@ void add_simulate_options(Arguments command, Options& options) {
   command.value("--seconds", options.duration, "how long, instead of the script's time").range(0.1, 3600.0).called("S");
   command.flag("--live", options.live, "in real time on sockets: opentrack, vrpn, spacenav");
   command.value("--udp", options.udp, "opentrack: live, to this receiver").called("HOST:PORT");
-  command.value("--address", options.address, "opentrack: of the receiver; vrpn: to serve on");
-  command.value("--port", options.port, "opentrack: 4242, vrpn: 3883 unless given");
-  command.flag("--allow-remote", options.remote, "vrpn: serve other machines too");
-  command.value("--socket", options.socket, "spacenav: the socket to serve");
+  command.value("--address", options.device.address, "opentrack: of the receiver; vrpn: to serve on");
+  command.value("--port", options.device.port, "opentrack: 4242, vrpn: 3883 unless given");
+  command.flag("--allow-remote", options.device.remote, "vrpn: serve other machines too");
+  command.value("--socket", options.device.socket, "spacenav: the socket to serve");
 }
 
 }  // namespace
@@ -332,19 +345,23 @@ Verb add_devices_verb(Arguments program) {
   const auto seconds = [&](Arguments sub) {
     sub.value("--seconds", options->seconds, "how long").range(0.1, 86400.0).called("S");
   };
-  options->list = add("list", "devices that are here, and why one cannot be used");
-  options->list->value("--socket", options->socket, "path of spacenavd's socket");
-  options->probe = add("probe", "open a device and see whether it answers (also looking_glass: its calibration)");
-  options->monitor = add("monitor", "show what a device says: bars in a terminal, else one JSON line per sample");
-  options->record = add("record", "write what a device says to a file");
-  for (const Arguments& sub : {*options->probe, *options->monitor, *options->record}) add_device_options(sub, *options);
-  options->replay = add("replay", "play a recording through its driver");
-  options->replay->value("--speed", options->speed, "2: twice as fast").range(0.01, 1000.0);
-  options->record->writes("file", options->file, FileFormat::kOther, "the recording").required().called("FILE");
-  options->replay->reads("file", options->file, "the recording").required().called("FILE");
-  for (const Arguments& sub : {*options->monitor, *options->record}) seconds(sub);
-  options->simulate = add("simulate", "a scripted person as bytes: a recording of any driver, or live on sockets");
-  add_simulate_options(*options->simulate, *options);
+  options->actions.list = add("list", "devices that are here, and why one cannot be used");
+  options->actions.list->value("--socket", options->device.socket, "path of spacenavd's socket");
+  options->actions.probe =
+      add("probe", "open a device and see whether it answers (also looking_glass: its calibration)");
+  options->actions.monitor =
+      add("monitor", "show what a device says: bars in a terminal, else one JSON line per sample");
+  options->actions.record = add("record", "write what a device says to a file");
+  for (const Arguments& sub : {*options->actions.probe, *options->actions.monitor, *options->actions.record})
+    add_device_options(sub, *options);
+  options->actions.replay = add("replay", "play a recording through its driver");
+  options->actions.replay->value("--speed", options->speed, "2: twice as fast").range(0.01, 1000.0);
+  options->actions.record->writes("file", options->file, FileFormat::kOther, "the recording").required().called("FILE");
+  options->actions.replay->reads("file", options->file, "the recording").required().called("FILE");
+  for (const Arguments& sub : {*options->actions.monitor, *options->actions.record}) seconds(sub);
+  options->actions.simulate =
+      add("simulate", "a scripted person as bytes: a recording of any driver, or live on sockets");
+  add_simulate_options(*options->actions.simulate, *options);
   return {command,
           [options](const CommonOptions& common, Progress& progress) { return run(*options, common, progress); }};
 }

@@ -24,16 +24,22 @@
 
 namespace dubsar::app {
 namespace {
+/// How the surface looks, and what of it is seen.
+struct Look {
+  std::string style = "relief", light;
+  bool colour_parts = false, transparent = false, shadows = false, unmarked = false;
+  std::vector<std::string> opacity, cut;
+  double unpack = 0.0, fog = 0.0;  ///< percent
+};
+
 struct Options {
-  std::string in, out, view = "front", style = "relief", size, light;
+  std::string in, out, view = "front", size;
   std::vector<std::string> partitions, hide;
   double mm_per_pixel = 0.0;
   int samples = 0;  ///< 0: enough for one picture, fewer for the many of a display
   DisplayRequest display;
-  bool perspective = false, colour_parts = false, transparent = false, window = false, shadows = false,
-       unmarked = false;
-  std::vector<std::string> opacity, cut;
-  double unpack = 0.0, fog = 0.0;  ///< percent
+  bool perspective = false, window = false;
+  Look look;
 };
 
 Result<void> read_size(const std::string& text, CameraOptions& camera) {
@@ -97,7 +103,7 @@ Box box_of(const TriMesh& mesh) {
 /// What the options say about the parts of this surface.
 Result<void> dress_parts(const Options& options, const TriMesh& mesh, Shading& shading) {
   const Box box = box_of(mesh);
-  for (const std::string& text : options.opacity) {
+  for (const std::string& text : options.look.opacity) {
     DUBSAR_ASSIGN(const auto wanted, named_number("--opacity", text, '='));
     bool found = false;
     for (const Partition& p : mesh.partitions)
@@ -109,14 +115,14 @@ Result<void> dress_parts(const Options& options, const TriMesh& mesh, Shading& s
     if (!(wanted.second >= 0 && wanted.second <= 1))
       return fail(ErrorKind::kUsage, "--opacity {} found, expected 0 to 1", wanted.second);
   }
-  for (const std::string& text : options.cut) {
+  for (const std::string& text : options.look.cut) {
     DUBSAR_ASSIGN(const auto wanted, named_number("--cut", text, ':'));
     DUBSAR_ASSIGN(const ClipPlane cut, cut_from_side(box, wanted.first, wanted.second / 100.0));
     shading.clips.push_back(cut);
   }
-  if (options.unpack > 0) {
+  if (options.look.unpack > 0) {
     const ObjectFrame frame = object_frame(box);
-    const double way = 1.1 * glm::dot(glm::abs(frame.up), box.size()) * options.unpack / 100.0;
+    const double way = 1.1 * glm::dot(glm::abs(frame.up), box.size()) * options.look.unpack / 100.0;
     bool found = false;
     for (const Partition& p : mesh.partitions)
       if (p.body_name() == "envelope") {
@@ -125,9 +131,9 @@ Result<void> dress_parts(const Options& options, const TriMesh& mesh, Shading& s
       }
     if (!found) return fail(ErrorKind::kUsage, "--unpack: there is no envelope in the file");
   }
-  shading.fog.strength = options.fog / 100.0;
-  shading.style.mark_inferred = !options.unmarked;
-  shading.light.shadows = shading.light.shadows || options.shadows;
+  shading.fog.strength = options.look.fog / 100.0;
+  shading.style.mark_inferred = !options.look.unmarked;
+  shading.light.shadows = shading.light.shadows || options.look.shadows;
   return {};
 }
 
@@ -143,7 +149,7 @@ Result<void> check_display_options(const Options& options) {
     if (options.in.empty()) return fail(ErrorKind::kUsage, "IN is missing, expected a surface to draw");
     return {};
   }
-  if (options.perspective || options.mm_per_pixel > 0 || options.transparent)
+  if (options.perspective || options.mm_per_pixel > 0 || options.look.transparent)
     return fail(ErrorKind::kUsage,
                 "--perspective, --mm-per-pixel and --transparent are not for displays: the viewer's place and "
                 "--magnification say how large things are");
@@ -196,7 +202,7 @@ void name_output(Options& options) {
 /// Of all options that name parts.
 Result<void> check_part_names(const Options& options) {
   std::vector<std::string> names = options.hide;
-  for (const std::string& text : options.opacity) names.push_back(text.substr(0, text.rfind('=')));
+  for (const std::string& text : options.look.opacity) names.push_back(text.substr(0, text.rfind('=')));
   return check_parts(options.in, names);
 }
 
@@ -214,15 +220,15 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
   DUBSAR_TRY(check_output(options));
   DUBSAR_TRY(check_display_options(options));
   RenderOptions render;
-  DUBSAR_ASSIGN(render.shading, shading_preset(options.style));
+  DUBSAR_ASSIGN(render.shading, shading_preset(options.look.style));
   DUBSAR_ASSIGN(render.camera.direction, parse_view_direction(options.view == "orbit" ? "orbit:35,25" : options.view));
   if (!options.size.empty()) DUBSAR_TRY(read_size(options.size, render.camera));
-  if (!options.light.empty()) DUBSAR_TRY(parse_light(options.light, render.shading));
+  if (!options.look.light.empty()) DUBSAR_TRY(parse_light(options.look.light, render.shading));
   render.camera.perspective = options.perspective;
   render.camera.mm_per_pixel = options.mm_per_pixel;
   if (options.samples > 0) render.samples = options.samples;
-  render.shading.background.transparent = options.transparent;
-  if (options.colour_parts) color_partitions(render.shading.parts, distinct_partition_colors());
+  render.shading.background.transparent = options.look.transparent;
+  if (options.look.colour_parts) color_partitions(render.shading.parts, distinct_partition_colors());
   const bool on_display = !options.display.display.empty();
   DisplayOptions shown;
   SinkSpec display;
@@ -258,7 +264,7 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
                  {"mm_per_pixel", picture.mm_per_pixel},
                  {"triangles", mesh.triangles.size()},
                  {"view", options.view},
-                 {"style", options.style}};
+                 {"style", options.look.style}};
   result.text = fmt::format("{}: {}x{} pixels, {:.4g} mm a pixel\n", options.out, picture.image.width,
                             picture.image.height, picture.mm_per_pixel);
   return result;
@@ -278,25 +284,26 @@ Verb add_render_verb(Arguments program) {
                 "WIDTHxHEIGHT in pixels (1200x1200; of a display 1920x1080, or the panel's own)");
   std::string styles;
   for (const std::string_view name : shading_preset_names()) styles += (styles.empty() ? "" : ", ") + std::string(name);
-  command.value("--style", options->style, "shading: " + styles);
+  command.value("--style", options->look.style, "shading: " + styles);
   command.value("--partition", options->partitions, "only these parts: names or ids, e.g. tablet").separated_by(',');
   command.value("--hide", options->hide, "not these parts").separated_by(',');
-  command.flag("--colour-parts,--color-parts", options->colour_parts, "each part in a colour of its own");
-  command.value("--light", options->light,
+  command.flag("--colour-parts,--color-parts", options->look.colour_parts, "each part in a colour of its own");
+  command.value("--light", options->look.light,
                 "AZIMUTH,ELEVATION of the light in degrees; 315,20 rakes from the upper left");
-  command.flag("--shadows", options->shadows, "what stands before the light casts shadows (--style raking: always)");
-  command.flag("--unmarked", options->unmarked, "surface that the scan does not show is not hatched");
-  command.value("--opacity", options->opacity, "NAME=0..1: parts that are seen through, e.g. envelope=0.3")
+  command.flag("--shadows", options->look.shadows,
+               "what stands before the light casts shadows (--style raking: always)");
+  command.flag("--unmarked", options->look.unmarked, "surface that the scan does not show is not hatched");
+  command.value("--opacity", options->look.opacity, "NAME=0..1: parts that are seen through, e.g. envelope=0.3")
       .separated_by(',');
-  command.value("--unpack", options->unpack, "lifts the envelope off the tablet, 0 to 100 percent").range(0, 100);
-  command.value("--cut", options->cut, "SIDE:PERCENT cut away, e.g. front:50; also back, left, right, top, bottom")
+  command.value("--unpack", options->look.unpack, "lifts the envelope off the tablet, 0 to 100 percent").range(0, 100);
+  command.value("--cut", options->look.cut, "SIDE:PERCENT cut away, e.g. front:50; also back, left, right, top, bottom")
       .separated_by(',');
-  command.value("--fog", options->fog, "0 to 100 percent: how much of the background the farthest point takes on")
+  command.value("--fog", options->look.fog, "0 to 100 percent: how much of the background the farthest point takes on")
       .range(0, 100);
   command.value("--mm-per-pixel", options->mm_per_pixel, "exact scale (orthographic), instead of fitting the picture")
       .positive();
   command.flag("--perspective", options->perspective, "perspective instead of orthographic");
-  command.flag("--transparent", options->transparent, "no background");
+  command.flag("--transparent", options->look.transparent, "no background");
   command.value("--samples", options->samples, "samples per pixel side (3; of displays 2)").range(1, 8);
   add_display_options(command, options->display);
   command.footer(

@@ -21,26 +21,49 @@
 namespace dubsar::app {
 namespace {
 
-struct Options {
-  std::string kiosk;
+struct What {
+  std::string in, kiosk, view = "front", style = "relief";
+  std::vector<std::string> partitions;
+};
+
+struct Panel {
+  std::string display = "mono", size, monitor;
   std::vector<std::string> plugins;  // files
-  std::string in, display = "mono", script, steps, mapping, view = "front", style = "relief", size, monitor, frames,
-                  record;
-  std::vector<std::string> inputs, partitions;
-  double fps = 0.0, seconds = 0.0, display_delay_ms = 0.0;
-  int every = 1, samples = 0, bridge_port = kBridgePort;
+  int samples = 0, bridge_port = kBridgePort;
   bool offscreen = false, fullscreen = false, windowed = false;
+};
+
+struct People {
+  std::vector<std::string> inputs;
+  std::string script, steps, mapping;
+};
+
+struct Made {
+  std::string frames, record;
+  int every = 1;
+};
+
+struct Pace {
+  double fps = 0.0, seconds = 0.0, display_delay_ms = 0.0;
+};
+
+struct Options {
+  What what;
+  Panel panel;
+  People people;
+  Made made;
+  Pace time;
 };
 
 /// What --input and --script say, one text for each source.
 Result<std::vector<std::string>> source_texts(const Options& options) {
   const std::vector<std::string_view> names = input_source_names();
   std::vector<std::string> out;
-  for (const std::string& text : options.inputs) {
+  for (const std::string& text : options.people.inputs) {
     DUBSAR_ASSIGN(const std::vector<SourceSpec> specs, parse_sources(text, names));
     for (const SourceSpec& spec : specs) out.push_back(spec.text());
   }
-  if (!options.script.empty()) out.push_back(SourceSpec{"scripted", {{"path", options.script}}}.text());
+  if (!options.people.script.empty()) out.push_back(SourceSpec{"scripted", {{"path", options.people.script}}}.text());
   return out;
 }
 
@@ -113,89 +136,91 @@ void add_sources(const std::vector<SourceRow>& rows, VerbResult& out) {
 
 Result<ViewOptions> view_options(const Options& options) {
   ViewOptions view;
-  DUBSAR_ASSIGN(DisplayChoice choice, choose_display(options.display, options.plugins, options.bridge_port));
+  DUBSAR_ASSIGN(DisplayChoice choice,
+                choose_display(options.panel.display, options.panel.plugins, options.panel.bridge_port));
   view.stage.display = std::move(choice.display);
   view.stage.catalog = std::move(choice.catalog);
-  DUBSAR_ASSIGN(view.stage.shading, shading_preset(options.style));
-  view.document.style.name = view.stage.style = options.style;
-  DUBSAR_ASSIGN(view.stage.direction, parse_view_direction(options.view));
-  view.model_folder = model_folder();
-  if (options.mapping.empty()) {
+  DUBSAR_ASSIGN(view.stage.shading, shading_preset(options.what.style));
+  view.work.document.style.name = view.stage.style = options.what.style;
+  DUBSAR_ASSIGN(view.stage.direction, parse_view_direction(options.what.view));
+  view.sources.model_folder = model_folder();
+  if (options.people.mapping.empty()) {
     DUBSAR_ASSIGN(view.mapping, default_mapping());
   } else {
-    DUBSAR_ASSIGN(const std::string text, read_text_file(options.mapping));
-    DUBSAR_ASSIGN(view.mapping, parse_mapping(text, options.mapping));
+    DUBSAR_ASSIGN(const std::string text, read_text_file(options.people.mapping));
+    DUBSAR_ASSIGN(view.mapping, parse_mapping(text, options.people.mapping));
   }
   DUBSAR_ASSIGN(view.inputs, source_texts(options));
-  if (!options.steps.empty()) {
-    DUBSAR_ASSIGN(const std::string steps, read_text_file(options.steps));
-    DUBSAR_ASSIGN(view.steps, parse_steps(steps, options.steps));
+  if (!options.people.steps.empty()) {
+    DUBSAR_ASSIGN(const std::string steps, read_text_file(options.people.steps));
+    DUBSAR_ASSIGN(view.steps, parse_steps(steps, options.people.steps));
   }
-  view.fps = options.fps;
-  view.longest_s = options.seconds;
-  view.display_delay_s = 1e-3 * options.display_delay_ms;
-  view.frames = options.frames;
-  view.every = options.every;
-  view.record = options.record;
+  view.time.fps = options.time.fps;
+  view.time.longest_s = options.time.seconds;
+  view.time.display_delay_s = 1e-3 * options.time.display_delay_ms;
+  view.files.frames = options.made.frames;
+  view.files.every = options.made.every;
+  view.files.record = options.made.record;
   return view;
 }
 
 Result<void> without_window(const Options& options, ViewOptions& view) {
-  if (!options.monitor.empty() || options.fullscreen || options.windowed)
+  if (!options.panel.monitor.empty() || options.panel.fullscreen || options.panel.windowed)
     return fail(ErrorKind::kUsage, "--monitor, --fullscreen and --windowed are for windows, expected no --offscreen");
-  DUBSAR_ASSIGN(view.stage.screen, parse_screen(options.size.empty() ? "960x540" : options.size));
+  DUBSAR_ASSIGN(view.stage.screen, parse_screen(options.panel.size.empty() ? "960x540" : options.panel.size));
   DUBSAR_ASSIGN(const auto sink, view.stage.catalog->make(view.stage.display));
   DUBSAR_TRY(sink->configure(view.stage.screen));
-  if (!options.size.empty() && sink->traits().own_pixels)
+  if (!options.panel.size.empty() && sink->traits().own_pixels)
     return fail(ErrorKind::kUsage,
                 "--size does nothing for display {}: its pixels are those of its panel or its layout",
                 sink->traits().name);
-  view.stage.samples = std::max(1, options.samples);
-  view.notices = false;
-  if (options.fps == 0) view.fps = 30.0;
-  if (options.seconds == 0) view.longest_s = 60.0;
+  view.stage.samples = std::max(1, options.panel.samples);
+  view.around.notices = false;
+  if (options.time.fps == 0) view.time.fps = 30.0;
+  if (options.time.seconds == 0) view.time.longest_s = 60.0;
   return {};
 }
 
 /// What a session that was killed left behind, and where this one keeps its own work.
 void keep_work(const Options& options, ViewOptions& view) {
   std::error_code error;
-  SourceFile source{std::filesystem::absolute(options.in, error).string(), 0};
-  source.bytes = static_cast<std::int64_t>(std::filesystem::file_size(options.in, error));
+  SourceFile source{std::filesystem::absolute(options.what.in, error).string(), 0};
+  source.bytes = static_cast<std::int64_t>(std::filesystem::file_size(options.what.in, error));
   if (error) return;  // reading it says why
-  view.document.source = source;
+  view.work.document.source = source;
   const std::filesystem::path folder = session_folder();
   if (folder.empty()) return;
-  view.autosave = Autosave::file_for(folder, source);
-  const Autosave autosave(view.autosave);
+  view.files.autosave = Autosave::file_for(folder, source);
+  const Autosave autosave(view.files.autosave);
   if (!autosave.has_left_behind()) return;
   auto left = autosave.left_behind(source);
   if (!left) return log_warning("{}", left.error().message);
-  view.document = *std::move(left);
-  view.upright = false;
-  view.restored = true;
+  view.work.document = *std::move(left);
+  view.work.upright = false;
+  view.work.restored = true;
   log_info("view: the work of the last session on this file is here again");
 }
 
 Result<void> with_window(const Options& options, ViewOptions& view) {
-  if (options.fullscreen && options.windowed)
+  if (options.panel.fullscreen && options.panel.windowed)
     return fail(ErrorKind::kUsage, "--fullscreen and --windowed found, expected one of them");
   view.stage.quality = Quality::kAdaptive;
-  view.stage.samples = options.samples > 0 ? options.samples : 2;
+  view.stage.samples = options.panel.samples > 0 ? options.panel.samples : 2;
   view.window = WindowOptions();
-  view.window->title = "dubsar: " + options.in;
-  view.window->monitor = options.monitor;
-  if (!options.size.empty()) {
-    DUBSAR_ASSIGN(const Screen screen, parse_screen(options.size));
+  view.window->title = "dubsar: " + options.what.in;
+  view.window->monitor = options.panel.monitor;
+  if (!options.panel.size.empty()) {
+    DUBSAR_ASSIGN(const Screen screen, parse_screen(options.panel.size));
     view.window->width = screen.window_w;
     view.window->height = screen.window_h;
   }
-  if (options.fullscreen || options.windowed || !options.size.empty()) view.fullscreen = options.fullscreen;
-  view.notices = view.panels = options.frames.empty();
-  if (view.panels) view.stage.margin = 0.12;  // room for the line above the surface and the strip below it
-  view.title = std::filesystem::path(options.in).filename().string();
-  view.upright = options.view == "front";
-  if (options.fps == 0) keep_work(options, view);
+  if (options.panel.fullscreen || options.panel.windowed || !options.panel.size.empty())
+    view.fullscreen = options.panel.fullscreen;
+  view.around.notices = view.around.panels = options.made.frames.empty();
+  if (view.around.panels) view.stage.margin = 0.12;  // room for the line above the surface and the strip below it
+  view.around.title = std::filesystem::path(options.what.in).filename().string();
+  view.work.upright = options.what.view == "front";
+  if (options.time.fps == 0) keep_work(options, view);
   DUBSAR_TRY(list_monitors());  // before a large file is read
   return {};
 }
@@ -203,27 +228,28 @@ Result<void> with_window(const Options& options, ViewOptions& view) {
 /// What the profile of a kiosk says takes the place of what was not given.
 Options kiosk_options(Options options, const KioskProfile& profile, const KioskObject& object,
                       const std::string& display) {
-  options.in = object.file.string();
-  options.display = display;
-  options.style = object.style;
-  if (options.inputs.empty()) options.inputs = profile.inputs;
-  if (options.monitor.empty() && !options.offscreen) options.monitor = profile.monitor;
-  if (options.size.empty() && !options.windowed && !options.offscreen) options.fullscreen = true;
+  options.what.in = object.file.string();
+  options.panel.display = display;
+  options.what.style = object.style;
+  if (options.people.inputs.empty()) options.people.inputs = profile.inputs;
+  if (options.panel.monitor.empty() && !options.panel.offscreen) options.panel.monitor = profile.monitor;
+  if (options.panel.size.empty() && !options.panel.windowed && !options.panel.offscreen)
+    options.panel.fullscreen = true;
   return options;
 }
 
 Result<VerbResult> run_kiosk_of(const Options& given, Progress& progress) {
-  if (!given.in.empty()) return fail(ErrorKind::kUsage, "view: a file and --kiosk found, expected one of them");
+  if (!given.what.in.empty()) return fail(ErrorKind::kUsage, "view: a file and --kiosk found, expected one of them");
   const auto options = [&](const KioskProfile& profile, const KioskObject& object,
                            const std::string& display) -> Result<ViewOptions> {
     const Options one = kiosk_options(given, profile, object, display);
     DUBSAR_ASSIGN(ViewOptions view, view_options(one));
-    DUBSAR_TRY(one.offscreen ? without_window(one, view) : with_window(one, view));
-    view.document.source = {};
+    DUBSAR_TRY(one.panel.offscreen ? without_window(one, view) : with_window(one, view));
+    view.work.document.source = {};
     return view;
   };
-  DUBSAR_ASSIGN(const KioskOutcome done, run_kiosk({given.kiosk, options}, progress));
-  VerbResult out = describe(done.display, done.last, done.triangles, given.offscreen || given.fps > 0);
+  DUBSAR_ASSIGN(const KioskOutcome done, run_kiosk({given.what.kiosk, options}, progress));
+  VerbResult out = describe(done.display, done.last, done.triangles, given.panel.offscreen || given.time.fps > 0);
   out.json["visits"] = done.counts.visits;
   out.json["resets"] = done.counts.resets;
   out.text += fmt::format("{} visits, {} times back to the beginning\n", done.counts.visits, done.counts.resets);
@@ -232,16 +258,17 @@ Result<VerbResult> run_kiosk_of(const Options& given, Progress& progress) {
 }
 
 Result<VerbResult> run(const Options& options, Progress& progress) {
-  if (!options.kiosk.empty()) return run_kiosk_of(options, progress);
-  if (options.in.empty()) return fail(ErrorKind::kUsage, "view: no file found, expected a surface such as tablet.exa");
+  if (!options.what.kiosk.empty()) return run_kiosk_of(options, progress);
+  if (options.what.in.empty())
+    return fail(ErrorKind::kUsage, "view: no file found, expected a surface such as tablet.exa");
   DUBSAR_ASSIGN(ViewOptions view, view_options(options));
-  DUBSAR_TRY(options.offscreen ? without_window(options, view) : with_window(options, view));
-  DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.in, options.partitions, true}, progress));
-  if (!options.offscreen) log_info("view: F1 shows help; Escape, closing the window or Ctrl-C end it");
+  DUBSAR_TRY(options.panel.offscreen ? without_window(options, view) : with_window(options, view));
+  DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.what.in, options.what.partitions, true}, progress));
+  if (!options.panel.offscreen) log_info("view: F1 shows help; Escape, closing the window or Ctrl-C end it");
   DUBSAR_ASSIGN(const ViewResult done, run_view(mesh, view, progress));
-  VerbResult out =
-      describe(options.offscreen ? options.display : done.display, done, mesh.triangles.size(), view.fps > 0);
-  if (!options.offscreen) {
+  VerbResult out = describe(options.panel.offscreen ? options.panel.display : done.display, done, mesh.triangles.size(),
+                            view.time.fps > 0);
+  if (!options.panel.offscreen) {
     out.json["frames_per_s_while_moving"] = done.fps;
     out.text += fmt::format("frames a second while things moved: {:.1f}\n", done.fps);
   }
@@ -254,48 +281,57 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 Verb add_view_verb(Arguments program) {
   auto options = std::make_shared<Options>();
   Arguments command = program.command("view", "turn a surface on a display with hands, head and mouse");
-  command.reads("IN", options->in, "EXA, PLY, OBJ, STL or GLB file");
+  command.reads("IN", options->what.in, "EXA, PLY, OBJ, STL or GLB file");
   command
-      .reads("--kiosk", options->kiosk, "a gallery's profile (docs/kiosk.md): its objects, until an operator ends it")
+      .reads("--kiosk", options->what.kiosk,
+             "a gallery's profile (docs/kiosk.md): its objects, until an operator ends it")
       .called("PROFILE.json");
   std::string sinks, sources;
   for (const SinkBackend& sink : output_sinks()) sinks += (sinks.empty() ? "" : ", ") + std::string(sink.name);
   for (const std::string_view source : input_source_names())
     sources += (sources.empty() ? "" : ", ") + std::string(source);
-  command.value("--display", options->display, "NAME[:options]: " + sinks);
-  command.value("--plugin", options->plugins, "a display from a shared library; loading it runs its code")
+  command.value("--display", options->panel.display, "NAME[:options]: " + sinks);
+  command.value("--plugin", options->panel.plugins, "a display from a shared library; loading it runs its code")
       .called("FILE.so")
       .one_word_each_time();
-  command.value("--input", options->inputs, "NAME[:options],...: " + sources);
-  command.reads("--script", options->script, "simulated people: the same as --input scripted:FILE").called("FILE");
-  command.reads("--steps", options->steps, "commands with the seconds when they are said, one a line (docs/guide.md)")
+  command.value("--input", options->people.inputs, "NAME[:options],...: " + sources);
+  command.reads("--script", options->people.script, "simulated people: the same as --input scripted:FILE")
       .called("FILE");
-  command.reads("--mapping", options->mapping, "which gesture does what (docs/input.md)").called("FILE");
-  command.flag("--offscreen", options->offscreen, "without a window, in simulated time");
-  command.value("--frames", options->frames, "folder for pictures of the frames").called("DIR");
-  command.value("--every", options->every, "write only each N-th frame").range(1, 100000);
-  command.writes("--record", options->record, FileFormat::kOther, "write the input for --input replay:FILE")
-      .called("FILE");
-  command.value("--size", options->size,
-                "WIDTHxHEIGHT of the window (1280x720; offscreen 960x540, or the panel's own)");
-  command.value("--monitor", options->monitor, "part of the name of the monitor to use (dubsar displays lists them)");
-  command.flag("--fullscreen", options->fullscreen,
-               "cover the monitor; displays that need exact pixels do so by themselves");
-  command.flag("--windowed", options->windowed, "never cover the monitor");
   command
-      .value("--fps", options->fps,
+      .reads("--steps", options->people.steps,
+             "commands with the seconds when they are said, one a line (docs/guide.md)")
+      .called("FILE");
+  command.reads("--mapping", options->people.mapping, "which gesture does what (docs/input.md)").called("FILE");
+  command.flag("--offscreen", options->panel.offscreen, "without a window, in simulated time");
+  command.value("--frames", options->made.frames, "folder for pictures of the frames").called("DIR");
+  command.value("--every", options->made.every, "write only each N-th frame").range(1, 100000);
+  command.writes("--record", options->made.record, FileFormat::kOther, "write the input for --input replay:FILE")
+      .called("FILE");
+  command.value("--size", options->panel.size,
+                "WIDTHxHEIGHT of the window (1280x720; offscreen 960x540, or the panel's own)");
+  command.value("--monitor", options->panel.monitor,
+                "part of the name of the monitor to use (dubsar displays lists them)");
+  command.flag("--fullscreen", options->panel.fullscreen,
+               "cover the monitor; displays that need exact pixels do so by themselves");
+  command.flag("--windowed", options->panel.windowed, "never cover the monitor");
+  command
+      .value("--fps", options->time.fps,
              "simulated time: N frames a second however long they take (offscreen 30; a window: real time)")
       .range(1.0, 240.0);
-  command.value("--seconds", options->seconds, "end after this time at the latest (offscreen 60, a window stays open)")
-      .range(0.1, 3600.0);
-  command.value("--bridge-port", options->bridge_port, "of Looking Glass Bridge, for panel auto").range(0, 65535);
   command
-      .value("--display-delay-ms", options->display_delay_ms, "time from cameras to light, for the prediction of heads")
+      .value("--seconds", options->time.seconds,
+             "end after this time at the latest (offscreen 60, a window stays open)")
+      .range(0.1, 3600.0);
+  command.value("--bridge-port", options->panel.bridge_port, "of Looking Glass Bridge, for panel auto").range(0, 65535);
+  command
+      .value("--display-delay-ms", options->time.display_delay_ms,
+             "time from cameras to light, for the prediction of heads")
       .range(0.0, 100.0);
-  command.value("--view", options->view, "the home view: front, back, left ... or orbit:AZIMUTH,ELEVATION[,ROLL]");
-  command.value("--style", options->style, "shading, as of render");
-  command.value("--partition", options->partitions, "only these parts: names or ids, e.g. tablet").separated_by(',');
-  command.value("--samples", options->samples, "samples per pixel side (2; offscreen 1)").range(1, 8);
+  command.value("--view", options->what.view, "the home view: front, back, left ... or orbit:AZIMUTH,ELEVATION[,ROLL]");
+  command.value("--style", options->what.style, "shading, as of render");
+  command.value("--partition", options->what.partitions, "only these parts: names or ids, e.g. tablet")
+      .separated_by(',');
+  command.value("--samples", options->panel.samples, "samples per pixel side (2; offscreen 1)").range(1, 8);
   command.footer(
       "In the window: F1 shows what mouse, keys and hands do and how the sources are; F2 goes to the next display, F11 "
       "covers\n"

@@ -74,8 +74,8 @@ Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) 
   for (std::size_t at = 0; at < meshes.size(); at = guide.object()) {
     DUBSAR_ASSIGN(ViewOptions view, session.options(profile, profile.objects[at], out.display));
     view.guide = &guide;
-    view.notices = view.panels = false;
-    view.autosave.clear();
+    view.around.notices = view.around.panels = false;
+    view.files.autosave.clear();
     guide.begin_object();
     DUBSAR_ASSIGN(out.last, run_view(meshes[at], view, progress));
     out.triangles = meshes[at].triangles.size();

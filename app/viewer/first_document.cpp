@@ -37,12 +37,12 @@ Box box_of(const TriMesh& mesh) {
 }  // namespace
 
 Document first_document(const ViewOptions& options, const TriMesh& mesh) {
-  Document out = options.document;
+  Document out = options.work.document;
   if (out.parts.empty()) out.parts = parts_of(mesh);
   const Light& light = options.stage.shading.light;
   if (out.home_light == LightPlace() && out.light == LightPlace())
     out.home_light = out.light = {light.azimuth_deg, light.elevation_deg};
-  if (options.upright && !mesh.triangles.empty()) {
+  if (options.work.upright && !mesh.triangles.empty()) {
     if (const auto turn = upright_turn(mesh, first_turn(box_of(mesh), options.stage.direction)))
       out.home.rotation = out.now.rotation = *turn;
   }

@@ -17,24 +17,24 @@ constexpr std::size_t kRecent = 300;  // measurements that the figures on the he
 constexpr int kMostFailures = 3;
 
 Result<void> check(const ViewOptions& options) {
-  const bool simulated = options.fps != 0;
-  if (simulated && !(options.fps >= 1 && options.fps <= 240))
-    return fail(ErrorKind::kUsage, "view: {} frames a second found, expected 1 to 240", options.fps);
+  const bool simulated = options.time.fps != 0;
+  if (simulated && !(options.time.fps >= 1 && options.time.fps <= 240))
+    return fail(ErrorKind::kUsage, "view: {} frames a second found, expected 1 to 240", options.time.fps);
   if (!simulated && !options.window)
     return fail(ErrorKind::kUsage, "view: no frames a second found, expected 1 to 240 without a window");
-  if (!(options.longest_s >= 0 && options.longest_s <= 86400 * 7) || options.every < 1 ||
-      !(options.display_delay_s >= 0 && options.display_delay_s <= 0.1))
+  if (!(options.time.longest_s >= 0 && options.time.longest_s <= 86400 * 7) || options.files.every < 1 ||
+      !(options.time.display_delay_s >= 0 && options.time.display_delay_s <= 0.1))
     return fail(ErrorKind::kUsage,
                 "view: {} s with a display delay of {} s found, expected up to a week and 0 to 0.1 s",
-                options.longest_s, options.display_delay_s);
+                options.time.longest_s, options.time.display_delay_s);
   if (!options.window && options.inputs.empty() && options.steps.empty())
     return fail(ErrorKind::kUsage,
                 "view: no input, expected --steps FILE, --script FILE or --input with scripted:FILE or replay:FILE");
-  if (options.frames.empty()) return {};
+  if (options.files.frames.empty()) return {};
   std::error_code error;
-  std::filesystem::create_directories(options.frames, error);
-  if (error || !std::filesystem::is_directory(options.frames))
-    return fail(ErrorKind::kCannotCreate, "view: cannot create the folder {}: {}", options.frames.string(),
+  std::filesystem::create_directories(options.files.frames, error);
+  if (error || !std::filesystem::is_directory(options.files.frames))
+    return fail(ErrorKind::kCannotCreate, "view: cannot create the folder {}: {}", options.files.frames.string(),
                 error.message());
   return {};
 }
@@ -78,8 +78,8 @@ class Loop {
   Result<ViewResult> run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look);
 
  private:
-  bool simulated() const noexcept { return options_.fps > 0; }
-  TimestampNs step() const { return static_cast<TimestampNs>(1e9 / options_.fps); }
+  bool simulated() const noexcept { return options_.time.fps > 0; }
+  TimestampNs step() const { return static_cast<TimestampNs>(1e9 / options_.time.fps); }
   const Clock& clock() const noexcept { return simulated() ? static_cast<const Clock&>(manual_) : steady_; }
   Result<void> draw(bool& drawn);
   Result<void> write_picture();
@@ -98,11 +98,11 @@ class Loop {
 };
 
 Result<void> Loop::write_picture() {
-  if (options_.frames.empty() || (!simulated() && out_.frames % options_.every != 0)) return {};
+  if (options_.files.frames.empty() || (!simulated() && out_.frames % options_.files.every != 0)) return {};
   DUBSAR_ASSIGN(const Image picture, presenter_->picture());
   const std::string name =
       fmt::format("frame-{:05}{}.png", simulated() ? steps_ : out_.frames, viewer_->stage().traits().file_suffix);
-  DUBSAR_TRY(write_png((options_.frames / name).string(), picture));
+  DUBSAR_TRY(write_png((options_.files.frames / name).string(), picture));
   ++out_.written;
   return {};
 }
@@ -127,9 +127,9 @@ bool Loop::ends(TimestampNs start) {
     if (presenter_->ended()) presenter_->keep_open();
   }
   if (presenter_->ended() || viewer_->over(now)) return true;
-  if (options_.longest_s <= 0) return false;
-  if (simulated()) return static_cast<double>(steps_ + 1) >= options_.longest_s * options_.fps;
-  return now - start >= static_cast<TimestampNs>(1e9 * options_.longest_s);
+  if (options_.time.longest_s <= 0) return false;
+  if (simulated()) return static_cast<double>(steps_ + 1) >= options_.time.longest_s * options_.time.fps;
+  return now - start >= static_cast<TimestampNs>(1e9 * options_.time.longest_s);
 }
 
 Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look) {
@@ -148,7 +148,7 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
   DUBSAR_ASSIGN(viewer_, Viewer::create(mesh, options_, *presenter_, clock(), std::move(sink), note));
   progress_.begin("view", 0, "frame");
   const TimestampNs start = clock().now();
-  const auto delay = static_cast<TimestampNs>(1e9 * options_.display_delay_s);
+  const auto delay = static_cast<TimestampNs>(1e9 * options_.time.display_delay_s);
   glm::dquat last_turn = view_of(viewer_->document()).rotation;
   for (bool over = false; !over; ++steps_) {
     if (progress_.cancelled()) {
@@ -171,7 +171,7 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
     last_turn = report.view.rotation;
     bool drawn = false;
     const bool due =
-        simulated() ? steps_ % options_.every == 0 : damaged || viewer_->needs_paint() || viewer_->fields() > 1;
+        simulated() ? steps_ % options_.files.every == 0 : damaged || viewer_->needs_paint() || viewer_->fields() > 1;
     if (due && presenter_->visible()) {
       const auto done = draw(drawn);
       failures_ = done ? 0 : failures_ + 1;

@@ -9,6 +9,7 @@ namespace dubsar::app {
 /// mm2 of the surface that the scan shows, and of that which was inferred.
 struct EvidenceShares {
   double measured_mm2 = 0.0, inferred_mm2 = 0.0;
+  friend bool operator==(const EvidenceShares&, const EvidenceShares&) = default;
 };
 EvidenceShares evidence_shares(const TriMesh& mesh);
 

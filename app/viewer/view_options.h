@@ -19,37 +19,60 @@ namespace dubsar::app {
 
 class SessionGuide;  // app/viewer/session_guide.h
 
+/// What a session begins with, besides the surface.
+struct SessionWork {
+  Document document{};    ///< its view and home are the stage's, and its parts the mesh's where it has none
+  bool upright = false;   ///< the obverse stands upright at home, as its writing says
+  bool restored = false;  ///< the document is that of an earlier session
+};
+
+struct SessionTime {
+  /// Simulated time: this many steps a second, however long they take; the same script gives the same pictures on every
+  /// machine. 0: real time, in a window only.
+  double fps = 0.0;
+  double longest_s = 0.0;        ///< 0: until somebody ends it, or its scripts and recordings are over (plus 1 s)
+  double display_delay_s = 0.0;  ///< from the presentation of a picture to its light, beyond the monitor's scan
+};
+
+/// What a session writes; none where it is empty.
+struct SessionFiles {
+  std::filesystem::path frames{};  ///< folder for frame-00000.png ..., what is presented
+  /// Only each n-th picture becomes a file; in simulated time nothing else is drawn, and pictures count steps.
+  int every = 1;
+  std::filesystem::path record{};    ///< recording of the input
+  std::filesystem::path autosave{};  ///< copy of the document while somebody works and after it
+};
+
+/// What stands around the surface.
+struct SessionWords {
+  bool panels = false;  ///< on displays of one view; a key shows them on all
+  std::string title{};  ///< what the panels call it
+  bool notices = true;  ///< a line for some seconds: how to get help and leave, which display this is now
+};
+
+struct SessionSources {
+  std::filesystem::path model_folder{};  ///< networks of the webcam source; empty: none
+  MakeInput make = make_input;
+};
+
 struct ViewOptions {
   StageOptions stage{};
-  Document document{};  ///< its view and home are the stage's, and its parts the mesh's where it has none
+  SessionWork work{};
   Mapping mapping{};
-  std::filesystem::path model_folder{};  ///< networks of the webcam source; empty: none
-  std::vector<std::string> inputs;       ///< none in a window: mouse, keyboard, and the devices that are plugged in
-  std::optional<WindowOptions> window;   ///< none: offscreen, pictures in memory and files
+  std::vector<std::string> inputs;  ///< none in a window: mouse, keyboard, and the devices that are plugged in
+  SessionSources sources{};
+  std::optional<WindowOptions> window;  ///< none: offscreen, pictures in memory and files
   /// Whether the window covers a monitor. None: displays that need exact pixels do, on the monitor of
   /// `window.monitor`, else the one that has the panel's pixels; others do not.
   std::optional<bool> fullscreen;
   std::vector<SinkSpec> displays;  ///< what the keys go through besides stage.display; none: what fits the window
-  /// Simulated time: this many steps a second, however long they take; the same script gives the same pictures on every
-  /// machine. 0: real time, in a window only.
-  double fps = 0.0;
-  double longest_s = 0.0;          ///< 0: until somebody ends it, or its scripts and recordings are over (plus 1 s)
-  double display_delay_s = 0.0;    ///< from the presentation of a picture to its light, beyond the monitor's scan
-  std::filesystem::path frames{};  ///< folder for frame-00000.png ..., what is presented; empty: none
-  /// Only each n-th picture becomes a file; in simulated time nothing else is drawn, and pictures count steps.
-  int every = 1;
+  SessionTime time{};
+  SessionFiles files{};
   std::vector<TimedCommand>
       steps{};                      ///< said at their times, from the first picture on; one that fails ends the session
-  std::filesystem::path record{};   ///< recording of the input; empty: none
-  bool panels = false;              ///< around the surface, on displays of one view; a key shows them on all
-  std::string title{};              ///< what the panels call it
-  bool notices = true;              ///< a line for some seconds: how to get help and leave, which display this is now
   std::vector<Command> commands{};  ///< in place of those that change what is looked at
-  bool upright = false;             ///< the obverse stands upright at home, as its writing says
-  std::filesystem::path autosave{};  ///< copy of the document while somebody works and after it; empty: none
-  bool restored = false;             ///< the document is that of an earlier session
-  SessionGuide* guide = nullptr;     ///< leads the session and says when it ends; null: nobody does. Outlives it
-  MakeInput make_input = dubsar::make_input;
+  SessionWords around{};
+  SessionGuide* guide = nullptr;  ///< leads the session and says when it ends; null: nobody does. Outlives it
 };
 
 /// What went into one picture. Times are those of the session's clock.

@@ -72,10 +72,10 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
     displays_.specs = given_.options.displays;
     displays_.specs.insert(displays_.specs.begin(), stage.display);
   }
-  editor_->desk().panels = given_.options.panels && stage_->traits().views == 1;
+  editor_->desk().panels = given_.options.around.panels && stage_->traits().views == 1;
   steering_ = std::make_unique<Steering>(mapping, view_of(document()), follow_options(stage));
   steering_->set_home(home_of(document()));
-  autosave_ = Autosave(given_.options.autosave);
+  autosave_ = Autosave(given_.options.files.autosave);
   DUBSAR_TRY(start_sources());
   if (GlfwWindow* const window = given_.presenter.window())
     window->on_event([this, window](const WindowEvent& event) { handle(to_input_event(event, window->size())); });
@@ -86,7 +86,7 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
   } else {
     say("Drag to turn. 1 to 6: sides. U: lift the envelope. Ctrl+K: everything. F1: help.");
   }
-  if (given_.options.fps == 0) steering_->run(given_.clock);
+  if (given_.options.time.fps == 0) steering_->run(given_.clock);
   return {};
 }
 
@@ -94,8 +94,8 @@ Result<void> Viewer::start_sources() {
   InputConfig config;
   config.seen_view = [seen = steering_->seen()] { return seen->look(); };
   config.clock = &given_.clock;
-  config.simulated_time = given_.options.fps > 0;
-  config.model_folder = given_.options.model_folder;
+  config.simulated_time = given_.options.time.fps > 0;
+  config.model_folder = given_.options.sources.model_folder;
   if (stage_->traits().worn) config.worn = displays_.worn = std::make_shared<WornFeed>();
   config.panel_m = 1e-3 * glm::dvec2(given_.options.stage.screen.width_mm, given_.options.stage.screen.height_mm);
   std::vector<std::string> inputs = given_.options.inputs;
@@ -108,11 +108,11 @@ Result<void> Viewer::start_sources() {
       if (displays_.worn) inputs.emplace_back("openxr");
     }
   }
-  if (!given_.options.record.empty()) {
-    DUBSAR_ASSIGN(recorder_, InputRecorder::create(given_.options.record));
+  if (!given_.options.files.record.empty()) {
+    DUBSAR_ASSIGN(recorder_, InputRecorder::create(given_.options.files.record));
     steering_->on_input([this](TimestampNs at, const InputFrame& frame) { recorder_->add(at, frame); });
   }
-  sources_ = std::make_unique<SourceSet>(steering_->input(), config, given_.options.make_input);
+  sources_ = std::make_unique<SourceSet>(steering_->input(), config, given_.options.sources.make);
   return sources_->start(inputs);
 }
 
@@ -144,7 +144,7 @@ Result<void> Viewer::switch_display(int step) {
     if (done) done = place_changed();
     if (done) {
       displays_.shown = next;
-      if (step != 0) editor_->desk().panels = given_.options.panels && stage_->traits().views == 1;
+      if (step != 0) editor_->desk().panels = given_.options.around.panels && stage_->traits().views == 1;
       if (step != 0) say("display " + display());
       log_info("display {}", display());
       return {};
@@ -173,12 +173,12 @@ bool Viewer::toggle_source(std::size_t index) {
 }
 
 void Viewer::say(std::string text) {
-  if (!given_.options.notices) return;
+  if (!given_.options.around.notices) return;
   notice_ = {std::move(text), given_.clock.now()};
 }
 
 void Viewer::handle(InputEvent event) {
-  if (given_.options.fps > 0) event.time = given_.clock.now();
+  if (given_.options.time.fps > 0) event.time = given_.clock.now();
   if (given_.options.guide != nullptr && given_.options.guide->takes(event, given_.clock.now())) return;
   if (overlay_->take(event, Overlay::layout(stage_->traits().view.height, stage_->window_mm()))) {
     stage_->set_overlay(overlay_.get());  // what the pointer is on looks different
@@ -334,7 +334,7 @@ Result<void> Viewer::finish(bool orderly) {
   steering_->stop();
   const Document& d = document();
   const bool made = !d.measures.empty() || !d.notes.empty() || !d.keyframes.empty() || !d.clips.empty() ||
-                    editor_->has_work() || given_.options.restored || d.home != editor_->opened().home;
+                    editor_->has_work() || given_.options.work.restored || d.home != editor_->opened().home;
   if (orderly && made) DUBSAR_TRY(autosave_.leave(d));
   if (orderly && !made) autosave_.discard();
   return recorder_ ? recorder_->finish() : Result<void>();

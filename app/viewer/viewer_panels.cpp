@@ -16,34 +16,15 @@ constexpr TimestampNs kNoticeNs = 6 * kSecond, kFadeNs = kSecond, kHelpRefreshNs
 }  // namespace
 
 PanelState Viewer::panel_state() const {
-  const Document& d = document();
   PanelState out;
-  out.title = given_.options.title;
-  out.display = display();
-  out.drawer = desk().drawer;
-  out.parts = d.parts;
-  out.can_unpack = can_unpack(d);
-  out.unpack = d.unpack;
-  out.light = d.light;
-  out.style = d.style.name;
-  out.occlusion = d.style.occlusion;
-  out.evidence = d.style.evidence;
-  out.strength = d.style.strength;
-  out.measured_mm2 = tools_.evidence.measured_mm2;
-  out.inferred_mm2 = tools_.evidence.inferred_mm2;
-  out.tool = desk().tool;
-  out.measures = d.measures;
-  out.notes = d.notes;
-  out.note = desk().note;
-  out.cuts = d.clips.size();
-  out.fog = d.fog;
-  for (const Keyframe& key : d.keyframes) out.keyframes_s.push_back(key.time_s);
+  out.line = {
+      given_.options.around.title, display(),
+      std::string(kSideNames[static_cast<std::size_t>(facing_side(report_.view.rotation, document().home.rotation))]),
+      editor_->history().undo_words(), editor_->history().redo_words()};
+  out.document = document();
+  out.desk = desk();
+  out.evidence = tools_.evidence;
   out.playing = at_.film_since >= 0;
-  out.panels = desk().panels;
-  out.palette = desk().palette;
-  out.undo = editor_->history().undo_words();
-  out.redo = editor_->history().redo_words();
-  out.side = kSideNames[static_cast<std::size_t>(facing_side(report_.view.rotation, d.home.rotation))];
   const glm::dvec2 window = stage_->window_mm();
   const double scale =
       glm::length(glm::dvec3(stage_->screen_from_model()[0]));  // of the screen for one mm of the object

@@ -100,7 +100,8 @@ Workplace::Reach Viewer::reach(const glm::dvec3& home_direction) {
 Workplace::Reach Viewer::reach_to_viewer() { return reach_of({0, 0, 1}, report_.view.rotation); }
 
 Result<void> Viewer::picture(const std::string& path, int factor) {
-  const std::string name = given_.options.title.empty() ? "dubsar" : fs::path(given_.options.title).stem().string();
+  const std::string name =
+      given_.options.around.title.empty() ? "dubsar" : fs::path(given_.options.around.title).stem().string();
   const fs::path target = path.empty() ? next_free(name) : fs::path(path);
   const std::string suffix = target.extension().string();
   if (suffix != ".png" && suffix != ".tif" && suffix != ".tiff")

@@ -50,8 +50,8 @@ class Live : public ::testing::Test {
     options_.window->decorated = false;
     options_.fullscreen = false;
     options_.inputs = {"mouse", "keyboard"};  // not what the machine of the test has
-    options_.notices = false;
-    options_.longest_s = 20;  // a test that waits for something that never comes
+    options_.around.notices = false;
+    options_.time.longest_s = 20;  // a test that waits for something that never comes
   }
 
   /// One thing after another: each step acts, and the next comes when its condition holds in a turn that had

@@ -60,7 +60,7 @@ TEST_F(Live, ClicksWithAToolMeasureAndDragsStillTurn) {
 }
 
 TEST_F(Live, WordsAreTypedIntoThePaletteAndKeysDoNothingElseMeanwhile) {
-  options_.panels = true;
+  options_.around.panels = true;
   options_.window->width = 800;
   options_.window->height = 600;
   const auto done = play({
@@ -89,7 +89,7 @@ TEST_F(Live, AScriptSaysEveryCommandThereIs) {
   const std::string text =
       std::regex_replace(read_text_file(DUBSAR_EVERY_COMMAND).value(), std::regex("FOLDER"), folder.string());
   options_.steps = parse_steps(text, "every_command.txt").value();
-  options_.longest_s = 60;
+  options_.time.longest_s = 60;
   options_.displays = {{"anaglyph"}};
   std::set<std::string> said;
   for (const TimedCommand& step : options_.steps) said.emplace(split_command(step.text).first);

@@ -77,7 +77,8 @@ TEST_F(Live, ALostSourceIsNamedAndUsedAgainAndAMissingOneIsTriedAgain) {
   auto device = std::make_shared<FakeDevice>();
   std::atomic<bool> second_is_there{false};
   options_.inputs = {"mouse", "fake", "absent"};
-  options_.make_input = [&](std::string_view spec, const InputConfig& config) -> Result<std::unique_ptr<InputSource>> {
+  options_.sources.make = [&](std::string_view spec,
+                              const InputConfig& config) -> Result<std::unique_ptr<InputSource>> {
     if (spec == "absent" && !second_is_there)
       return fail(ErrorKind::kUnavailable, "input absent: no such device is plugged in");
     if (spec == "absent" || spec == "fake") {
@@ -129,7 +130,7 @@ TEST_F(Live, MistakesInTheInputsAreRefusedAndNothingElseIsTriedInTheirPlace) {
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().kind, ErrorKind::kUsage) << done.error().message;
   options_.inputs = {"absent"};
-  options_.make_input = [](std::string_view, const InputConfig&) -> Result<std::unique_ptr<InputSource>> {
+  options_.sources.make = [](std::string_view, const InputConfig&) -> Result<std::unique_ptr<InputSource>> {
     return fail(ErrorKind::kPermission, "input absent: not allowed");
   };
   done = run_view(testing::lettered_box(), options_, progress);
@@ -139,13 +140,13 @@ TEST_F(Live, MistakesInTheInputsAreRefusedAndNothingElseIsTriedInTheirPlace) {
 
 TEST_F(Live, ItEndsByClosingByTimeAndBySignal) {
   SilentProgress cancelled;
-  options_.longest_s = 0.3;
+  options_.time.longest_s = 0.3;
   SilentProgress progress;
   auto done = run_view(testing::lettered_box(), options_, progress);
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_GE(done->seconds, 0.3);
   EXPECT_LT(done->seconds, 2.3);
-  options_.longest_s = 20;
+  options_.time.longest_s = 20;
   done = run_view(testing::lettered_box(), options_, progress, [](const ViewMoment& m) {
     if (m.frames > 0) m.presenter.window()->close();
   });
@@ -153,7 +154,7 @@ TEST_F(Live, ItEndsByClosingByTimeAndBySignal) {
   EXPECT_LT(done->seconds, 5.0);
   const TimestampNs start = SteadyClock().now();
   TimestampNs asked = start;
-  options_.record = std::filesystem::temp_directory_path() / fmt::format("dubsar_live_{}.jsonl", ::getpid());
+  options_.files.record = std::filesystem::temp_directory_path() / fmt::format("dubsar_live_{}.jsonl", ::getpid());
   done = run_view(testing::lettered_box(), options_, cancelled, [&](const ViewMoment& m) {
     if (m.frames == 0 || cancelled.cancelled()) return;
     asked = SteadyClock().now();
@@ -162,12 +163,12 @@ TEST_F(Live, ItEndsByClosingByTimeAndBySignal) {
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().kind, ErrorKind::kCancelled);
   EXPECT_LT(SteadyClock().now() - asked, 2'000'000'000);
-  EXPECT_TRUE(parse_input_recording(read_text_file(options_.record).value(), "what was recorded before Ctrl-C"));
-  std::filesystem::remove(options_.record);
+  EXPECT_TRUE(parse_input_recording(read_text_file(options_.files.record).value(), "what was recorded before Ctrl-C"));
+  std::filesystem::remove(options_.files.record);
 }
 
 TEST_F(Live, KeysThatTheSessionItselfTakesAreInItsRecording) {
-  options_.record = std::filesystem::temp_directory_path() / fmt::format("dubsar_live_keys_{}.jsonl", ::getpid());
+  options_.files.record = std::filesystem::temp_directory_path() / fmt::format("dubsar_live_keys_{}.jsonl", ::getpid());
   const auto help = [](bool open) { return [open](const ViewMoment& m) { return m.viewer.desk().help == open; }; };
   const auto done = play({{[] { person_->key("f1"); }, help(true)},
                           {[] { person_->key("f1"); }, help(false)},
@@ -177,14 +178,14 @@ TEST_F(Live, KeysThatTheSessionItselfTakesAreInItsRecording) {
                            }},
                           end()});
   ASSERT_TRUE(done) << done.error().message;
-  const auto frames = parse_input_recording(read_text_file(options_.record).value(), "recording");
+  const auto frames = parse_input_recording(read_text_file(options_.files.record).value(), "recording");
   ASSERT_TRUE(frames) << frames.error().message;
   std::string keys;
   for (const RecordedFrame& frame : *frames)
     for (const InputEvent& event : frame.frame.events)
       if (event.kind == EventKind::kKey && event.down) keys += event.key + " ";
   EXPECT_EQ(keys, "f1 f1 right escape ");
-  std::filesystem::remove(options_.record);
+  std::filesystem::remove(options_.files.record);
 }
 
 }  // namespace

@@ -146,7 +146,7 @@ TEST_F(Live, KeysTurnToSidesAndUndoAndRedoGoBackAndForth) {
 }
 
 TEST_F(Live, ButtonsOnThePanelsDoWhatTheirCommandsDoAndTabTakesThePanelsAway) {
-  options_.panels = true;
+  options_.around.panels = true;
   options_.window->width = 1000;
   options_.window->height = 600;
   const auto shot_of_all = [&] { return server_->screen(kX, kY, 1000, 600); };

@@ -107,7 +107,7 @@ TEST_F(Live, TenThousandMotionsDuringAPictureOfThreeSecondsEndTheDrag) {
   SilentProgress silent;
   int turns_after = -1;
   ViewState released, moved_on;
-  options_.longest_s = 60;
+  options_.time.longest_s = 60;
   const auto done = run_view(testing::lettered_box(), options_, silent, [&](const ViewMoment& m) {
     if (m.frames == 0) return;
     if (turns_after < 0) {  // the loop is held up here as by a slow picture, while steering goes on in its thread
@@ -191,7 +191,7 @@ TEST_F(Live, TheFirstPictureAndThoseOfAWindowThatIsResizedAreCoarseAndExactAtRes
   constexpr int kSizes = 12;
   int asked = 0, drawn = 0, coarse = 0;
   bool first_coarse = false, exact_at_rest = false;
-  options_.longest_s = 30;
+  options_.time.longest_s = 30;
   const auto done = run_view(testing::lettered_box(), options_, silent, [&](const ViewMoment& m) {
     if (m.frames == 0) return;
     const PixelSize now = m.viewer.stage().traits().output;

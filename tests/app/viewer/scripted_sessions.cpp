@@ -25,12 +25,12 @@ Result<StagedSession> play(const XvfbServer& server, const TriMesh& mesh, const 
   options.window->y = 0;
   options.window->decorated = false;
   options.fullscreen = false;
-  options.notices = false;
+  options.around.notices = false;
   options.inputs = inputs;
-  options.fps = stage.fps;
-  options.every = stage.every;
-  options.longest_s = stage.longest_s;
-  options.record = record;
+  options.time.fps = stage.fps;
+  options.files.every = stage.every;
+  options.time.longest_s = stage.longest_s;
+  options.files.record = record;
   SilentProgress progress;
   StagedSession out;
   int steps = 0;

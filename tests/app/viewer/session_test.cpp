@@ -31,9 +31,9 @@ class SessionTest : public ::testing::Test {
     fs::create_directories(folder_);
     options_.mapping = default_mapping().value();
     options_.stage.shading = shading_preset("relief").value();
-    options_.fps = 30.0;
-    options_.longest_s = 60.0;
-    options_.notices = false;
+    options_.time.fps = 30.0;
+    options_.time.longest_s = 60.0;
+    options_.around.notices = false;
   }
   void TearDown() override { fs::remove_all(folder_); }
   std::string file(const std::string& name, const std::string& text) {
@@ -64,8 +64,8 @@ TEST_F(SessionTest, AVisitorsHandsTurnAndZoomTheObjectOnAQuilt) {
   options_.inputs = {"scripted:" +
                      file("visitor.json", R"({"seed": 4, "duration_s": 60, "noise_mm": 0.5, "bystanders": 1,
       "hand_dropouts": {"per_s": 0.3}, "visitor": {"yaw_deg": 40, "pitch_deg": 15, "zoom": 1.3}})")};
-  options_.longest_s = 70;
-  options_.record = folder_ / "recording.jsonl";
+  options_.time.longest_s = 70;
+  options_.files.record = folder_ / "recording.jsonl";
   Image first, last;
   const ViewResult done =
       run_offscreen(testing::lettered_box(), options_, progress_, [&](const Image& picture, const PictureReport&) {
@@ -82,8 +82,8 @@ TEST_F(SessionTest, AVisitorsHandsTurnAndZoomTheObjectOnAQuilt) {
   EXPECT_LE(quantile(done.input_age_ms, 0.95), 20.0 + 11.2);
   EXPECT_LE(quantile(done.input_age_ms, 1.0), 33.4);  // the very first sample waits for its frame
 
-  options_.inputs = {"replay:" + options_.record.string()};
-  options_.record.clear();
+  options_.inputs = {"replay:" + options_.files.record.string()};
+  options_.files.record.clear();
   Image replayed;
   const ViewResult again =
       run_offscreen(testing::lettered_box(), options_, progress_, [&](const Image& picture, const PictureReport&) {
@@ -104,8 +104,8 @@ TEST_F(SessionTest, EachEyeOfAMovingScholarSeesItsOwnViewInEveryFrame) {
   const std::string text = R"({"duration_s": 3, "latency_ms": 40, "rate_hz": 60, "noise_mm": 0.3, "heads": [{"keys": [
       {"t": 0, "at_mm": [-80, 0, 600]}, {"t": 1.2, "at_mm": [60, 20, 560]}, {"t": 2.6, "at_mm": [-60, 0, 640]}, {"t": 3, "at_mm": [-60, 0, 640]}]}]})";
   options_.inputs = {"scripted:" + file("scholar.json", text)};
-  options_.fps = 60;
-  options_.longest_s = 2.9;
+  options_.time.fps = 60;
+  options_.time.longest_s = 2.9;
   const Script script = parse_script(text, "scholar").value();
   int frame = 0, checked = 0;
   double worst = 0.0, unfollowed = 0.0, squares = 0.0;
@@ -145,8 +145,8 @@ TEST_F(SessionTest, RefusesWhatCannotRun) {
   EXPECT_EQ(kind([](ViewOptions& o) { o.inputs.clear(); }), "64");
   EXPECT_EQ(kind([](ViewOptions& o) { o.inputs = {"mouse"}; }), "69");
   EXPECT_EQ(kind([](ViewOptions& o) { o.stage.display = {"hologram"}; }), "64");
-  EXPECT_EQ(kind([](ViewOptions& o) { o.fps = 0; }), "64");
-  EXPECT_EQ(kind([](ViewOptions& o) { o.frames = "/proc/nowhere/x"; }), "73");
+  EXPECT_EQ(kind([](ViewOptions& o) { o.time.fps = 0; }), "64");
+  EXPECT_EQ(kind([](ViewOptions& o) { o.files.frames = "/proc/nowhere/x"; }), "73");
 }
 
 TEST_F(SessionTest, AVisitorsHandsInInfraredPicturesTurnAndZoomTheObject) {
@@ -155,7 +155,7 @@ TEST_F(SessionTest, AVisitorsHandsInInfraredPicturesTurnAndZoomTheObject) {
   // The script's hands are rendered, sent as USB transfers, found again by the hand tracker, and steer the view.
   options_.inputs = {"leap:simulate=" + file("visitor.json", R"({"seed": 1, "duration_s": 40, "rate_hz": 115,
       "visitor": {"yaw_deg": -50, "pitch_deg": 10, "zoom": 1.3}})")};
-  options_.longest_s = 45;
+  options_.time.longest_s = 45;
   const ViewResult done = run_offscreen(testing::lettered_box(), options_, progress_).value();
   EXPECT_LE(turn_between_deg(done.view.rotation, turn_of({10 * kRad, 0, 0}) * turn_of({0, -50 * kRad, 0})), 5.0);
   EXPECT_NEAR(done.view.zoom, 1.3, 0.065);

@@ -24,8 +24,8 @@ class WornSession : public dubsar::testing::WornTest {
     options_.stage.display = dubsar::testing::spec("openxr");
     options_.stage.screen = {.width_px = 160, .height_px = 120, .window_w = 160, .window_h = 120};
     options_.inputs = {"openxr"};
-    options_.fps = 30.0;
-    options_.notices = false;
+    options_.time.fps = 30.0;
+    options_.around.notices = false;
   }
   double now_s() const { return made_->now_s; }
   ViewOptions options_;
@@ -41,7 +41,7 @@ TEST_F(WornSession, AHandThatGrabsAndMovesTurnsTheTabletAndTheHeadLooksAround) {
   made_->hand_speed = {0.15, 0, 0};  // of the runtime's time, in which a step of the session takes 11 ms
   made_->hold_from = now_s() + 0.5;
   made_->hold_to = now_s() + 1.5;
-  options_.longest_s = 7.0;
+  options_.time.longest_s = 7.0;
   const auto done = run_view(dubsar::testing::lettered_box(), options_, progress_);
   ASSERT_TRUE(done) << done.error().message;
   ASSERT_EQ(done->rows.size(), 1u);
@@ -65,7 +65,7 @@ TEST_F(WornSession, AHandThatGrabsAndMovesTurnsTheTabletAndTheHeadLooksAround) {
 
 TEST_F(WornSession, ASqueezedControllerIsAPuck) {
   made_->controller = true;
-  options_.longest_s = 3.0;
+  options_.time.longest_s = 3.0;
   int step = 0;
   const auto done = run_view(dubsar::testing::lettered_box(), options_, progress_, [&](const ViewMoment&) {
     const std::lock_guard lock(made_->mutex);
@@ -78,7 +78,7 @@ TEST_F(WornSession, ASqueezedControllerIsAPuck) {
 }
 
 TEST_F(WornSession, TheSessionGoesOnWhenTheHeadsetIsLostAndComesBack) {
-  options_.longest_s =
+  options_.time.longest_s =
       15.0;  // the runtime is asked again after a second, and nobody waits for the pictures of a lost one
   int step = 0;
   std::size_t before = 0;
@@ -97,7 +97,7 @@ TEST_F(WornSession, TheSessionGoesOnWhenTheHeadsetIsLostAndComesBack) {
 
 TEST_F(WornSession, WithoutAHeadsetTheSourceSaysWhatItNeeds) {
   options_.stage.display = dubsar::testing::spec("mono");
-  options_.longest_s = 0.2;
+  options_.time.longest_s = 0.2;
   const auto done = run_view(dubsar::testing::lettered_box(), options_, progress_);
   const std::string said = done ? done->rows[0].reason : done.error().message;
   EXPECT_NE(said.find("expected --display openxr"), std::string::npos) << said;
