@@ -105,11 +105,11 @@ int main(int argc, char** argv) {
       "I/O "
       "or disk full, 75 try again, 77 permission, 78 bad profile, 130 cancelled.");
   CommonOptions common;
-  std::vector<Verb> verbs{add_phantom_verb(program), add_process_verb(program), add_info_verb(program),
-                          add_exa_verb(program),     add_export_verb(program),  add_fatcross_verb(program),
-                          add_render_verb(program),  add_report_verb(program),  add_show_verb(program),
-                          add_view_verb(program),    add_doctor_verb(program),  add_displays_verb(program),
-                          add_devices_verb(program)};
+  std::vector<Verb> verbs{add_phantom_verb(program),  add_process_verb(program), add_info_verb(program),
+                          add_exa_verb(program),      add_export_verb(program),  add_fatcross_verb(program),
+                          add_render_verb(program),   add_animate_verb(program), add_report_verb(program),
+                          add_show_verb(program),     add_view_verb(program),    add_doctor_verb(program),
+                          add_displays_verb(program), add_devices_verb(program)};
   for (const Verb& verb : verbs) add_common_options(verb.command, common);
   if (const std::optional<int> over = program.parse(argc, argv)) return *over;
   for (const Verb& verb : verbs)

@@ -44,7 +44,7 @@ std::string stage_in_words(std::string_view stage) {
   struct Words {
     std::string_view stage, words;
   };
-  constexpr std::array<Words, 20> kWords{{{"estimate_raw", "judging noise"},
+  constexpr std::array<Words, 23> kWords{{{"estimate_raw", "judging noise"},
                                           {"estimate", "judging noise"},
                                           {"import", "reading"},
                                           {"denoise", "denoising"},
@@ -61,6 +61,9 @@ std::string stage_in_words(std::string_view stage) {
                                           {"decode signs", "reading"},
                                           {"decode offsets", "reading"},
                                           {"render", "drawing"},
+                                          {"animate", "drawing"},
+                                          {"look", "looking for some"},
+                                          {"video", "making the video"},
                                           {"phantom", "making a scan"},
                                           {"truth", "writing truth"},
                                           {"simplify", "simplifying"}}};

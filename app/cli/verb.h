@@ -34,6 +34,7 @@ struct Verb {
   std::function<std::vector<PlannedStage>()> plan = nullptr;  ///< of runs that take minutes; may be empty
 };
 
+Verb add_animate_verb(Arguments program);
 Verb add_phantom_verb(Arguments program);
 Verb add_process_verb(Arguments program);
 Verb add_info_verb(Arguments program);

@@ -129,6 +129,12 @@ Result<SinkSpec> read_display_options(const DisplayRequest& request, DisplayOpti
   return choice.display;
 }
 
+Result<Image> seen_picture(const DisplayRequest& request, const DisplayPicture& picture) {
+  if (request.see_from.empty()) return picture.image;
+  DUBSAR_ASSIGN(const glm::dvec3 eye, parse_place(request.see_from, "--see-from"));
+  return see_display(picture, eye);
+}
+
 Result<VerbResult> write_display_picture(const DisplayRequest& request, const SinkSpec& display,
                                          const DisplayOptions& options, const DisplayPicture& picture,
                                          const fs::path& out) {

@@ -40,6 +40,9 @@ Result<VerbResult> render_to_display(const DisplayRequest& request, const SinkSp
                                      const DisplayOptions& options, const TriMesh& mesh,
                                      const std::filesystem::path& out, Progress& progress);
 
+/// The picture, or with --see-from what that eye sees of it.
+Result<Image> seen_picture(const DisplayRequest& request, const DisplayPicture& picture);
+
 /// Writes `picture`, or with --see-from what that eye sees of it, to `out`, whose name gets the display's suffix; the
 /// JSON says which file, the text begins with it.
 Result<VerbResult> write_display_picture(const DisplayRequest& request, const SinkSpec& display,
