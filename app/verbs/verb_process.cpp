@@ -28,8 +28,8 @@ void add_filter_options(Arguments command, Options& options) {
   Arguments group = command.group("Filters and threshold");
   group.choice<Detail>(
       "--detail", p.detail, choices_of(kDetails),
-      "grid of the surface: half (default: Gauss 3x3x3 and 2:1, as in the paper), scan (all the scan "
-      "has, and the contact of tablet and envelope is traced), auto (scan where time and memory allow)");
+      "grid of the surface: scan (all the scan has, and the contact of tablet and envelope is traced), half "
+      "(Gauss 3x3x3 and 2:1, as in the paper), auto (default: scan where time and memory allow)");
   group.flag("--no-resample", options.no_resample, "the same as --detail scan");
   group.choice<DenoiseMethod>("--denoise", p.denoise.method, choices_of(kDenoiseMethods),
                               "denoising filter (default joint)");
@@ -72,22 +72,24 @@ void add_surface_options(Arguments command, Options& options) {
   group.value("--ao-radius", options.radius, "reach of the rays in grid steps").positive();
 }
 
-/// The stages of a run as Progress names them, with the seconds that they took on the phantom of `--preset demo`.
+/// The stages of a run as Progress names them, with the seconds of one core that they took on the phantom of `--preset
+/// demo`, at the scan's resolution.
 std::vector<PlannedStage> plan_of(const Options& options) {
-  std::vector<PlannedStage> plan{{"estimate_raw", 0.42}, {"import", 0.40}, {"estimate", 0.45}};
+  std::vector<PlannedStage> plan{{"estimate_raw", 0.37}, {"import", 0.37}, {"estimate", 0.85}};
   for (int pass = 0; pass < options.pipeline.denoise.iterations; ++pass) {
-    plan.push_back({"denoise", 1.12});
-    plan.push_back({"estimate", 0.4});
+    plan.push_back({"denoise", 0.77});
+    plan.push_back({"estimate", 0.85});
   }
-  plan.push_back({"extract", 1.37});
-  for (const auto& [name, seconds] : {std::pair{"mesh", 0.08},
-                                      {"smooth", 1.18},
-                                      {"curvature", 0.22},
-                                      {"settle", 1.9},
+  plan.push_back({"extract", 0.22});
+  for (const auto& [name, seconds] : {std::pair{"mesh", 0.11},
+                                      {"smooth", 1.33},
+                                      {"curvature", 0.23},
+                                      {"settle", 2.26},
                                       {"curvature", 0.2},
-                                      {"segment", 3.6},
-                                      {"fill holes", 1.36}})
+                                      {"segment", 1.27},
+                                      {"fill holes", 1.49}})
     plan.push_back({name, seconds, true});
+  if (!options.no_contact && options.pipeline.detail != Detail::kHalf) plan.push_back({"contact", 21.8, true});
   if (!options.no_ao) plan.push_back({"ambient occlusion", 22.5 * options.rays / 160.0, true});
   for (const auto& [name, seconds] : {std::pair{"curvature", 0.4}, {"encode signs", 0.8}, {"encode offsets", 0.7}})
     plan.push_back({name, seconds, true});
@@ -95,8 +97,9 @@ std::vector<PlannedStage> plan_of(const Options& options) {
 }
 
 /// What was found, in words, and what can be done with it.
-std::string summary(const std::string& out, const SurfaceFacts& facts) {
+std::string summary(const std::string& out, const SurfaceFacts& facts, const DetailChoice& detail) {
   std::string text = fmt::format("{}: {}\n\n{}", out, what_it_is(facts), facts_text(facts));
+  text += fmt::format("\nDetail: {}; {}\n", detail.resample() ? "half of the scan's" : "that of the scan", detail.why);
   if (!facts.millimetres) text += "\nThe scan does not say how large its voxels are: give --voxel-size.\n";
   text += "\nNext:\n";
   for (const char* const verb : {"view", "fatcross", "report"})
@@ -128,7 +131,8 @@ Result<VerbResult> run(Options options, const Arguments command, const CommonOpt
   out.json = report_json(result.report, p);
   out.json["output"] = options.out;
   out.json["facts"] = facts_json(facts);
-  out.text = (common.console.verbose ? report_text(result.report) + "\n" : "") + summary(options.out, facts);
+  out.text = (common.console.verbose ? report_text(result.report) + "\n" : "") +
+             summary(options.out, facts, result.report.detail);
   return out;
 }
 

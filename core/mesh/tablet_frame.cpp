@@ -114,9 +114,10 @@ Result<TabletFrame> find_tablet_frame(const TriMesh& mesh) {
   std::vector<glm::dvec3> points;
   points.reserve(mesh.positions.size());
   for (const glm::vec3& p : mesh.positions) points.push_back(mesh.frame.mm_from_grid(glm::dvec3(p)));
+  const std::vector<Triangle> seen = seen_triangles(mesh);
   glm::dmat3 areas(0.0);
   double edges = 0.0;
-  for (const Triangle& t : mesh.triangles) {
+  for (const Triangle& t : seen.empty() ? mesh.triangles : seen) {
     const glm::dvec3 n = glm::cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]);
     const double area = glm::length(n);
     if (!(area > 0.0)) continue;
@@ -127,8 +128,8 @@ Result<TabletFrame> find_tablet_frame(const TriMesh& mesh) {
     return fail(ErrorKind::kBadData, "the surface has no area, expected a tablet that can be turned upright");
   const glm::dmat3 found = eigenvectors(areas);
   const std::array<glm::dvec3, 3> axes{along_its_axis(found[0]), along_its_axis(found[1]), along_its_axis(found[2])};
-  const double step_mm = edges / static_cast<double>(mesh.triangles.size());
-  const Writing writing(points, seen_triangles(mesh), axes, step_mm);
+  const double step_mm = edges / static_cast<double>(seen.empty() ? mesh.triangles.size() : seen.size());
+  const Writing writing(points, seen, axes, step_mm);
 
   TabletFrame best, other;
   double best_fit = 0.0, next_fit = 0.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "core/base/disjoint_sets.h"
 #include "core/base/parallel.h"
@@ -111,6 +112,17 @@ bool plausible_enclosure(const SurfaceModel& model, const FaceGraph& graph) {
   const double* const inside = volume_of(PartitionKind::kEnvelopeInside);
   if (tablet == nullptr || outside == nullptr || inside == nullptr) return true;
   return plausible_enclosure(*tablet, -*inside, *outside);
+}
+
+bool plausible_enclosure(const PartitionTable& measured) {
+  constexpr double kLeastRound = 0.06;
+  const Partition* const tablet = measured.find(PartitionKind::kTablet);
+  const Partition* const outside = measured.find(PartitionKind::kEnvelopeOutside);
+  const Partition* const inside = measured.find(PartitionKind::kEnvelopeInside);
+  if (tablet == nullptr || outside == nullptr || inside == nullptr) return true;
+  const double area = tablet->area_mm2, volume = tablet->volume_mm3;
+  return plausible_enclosure(volume, -inside->volume_mm3, outside->volume_mm3) &&
+         36.0 * std::numbers::pi * volume * volume >= kLeastRound * area * area * area;
 }
 
 }  // namespace dubsar

@@ -21,4 +21,9 @@ bool plausible_enclosure(double tablet, double cavity, double outside) noexcept;
 /// does not have all three.
 bool plausible_enclosure(const SurfaceModel& model, const FaceGraph& graph);
 
+/// The same once the partitions were measured with all holes closed, so that nothing is estimated; and the tablet is a
+/// lump: 36 pi V^2 / A^3 is 1 for a ball, 0.24 for phantoms of tablets, 0.11 for a plate of 8 x 8 x 1, and below 0.04
+/// for a brain with its furrows or the fibres of a felt. True for a table that does not have all three.
+bool plausible_enclosure(const PartitionTable& measured);
+
 }  // namespace dubsar

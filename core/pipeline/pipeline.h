@@ -14,7 +14,7 @@ namespace dubsar {
 
 struct PipelineOptions {
   ImportOptions import;
-  Detail detail = Detail::kHalf;
+  Detail detail = Detail::kAuto;
   DenoiseOptions denoise;  ///< sigma 0: estimated anew before each iteration
   EstimateOptions estimate;
   std::optional<float> threshold;  ///< isovalue; overrides the estimate

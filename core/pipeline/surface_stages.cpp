@@ -1,8 +1,10 @@
 #include "core/pipeline/surface_stages.h"
 
+#include "core/base/log.h"
 #include "core/exa/attributes.h"
 #include "core/exa/patches.h"
 #include "core/extract/extract.h"
+#include "core/parts/enclosure.h"
 #include "core/pipeline/model_occlusion.h"
 #include "core/relief/shape_class.h"
 
@@ -54,6 +56,15 @@ Result<SeparatedModel> separate(SurfaceModel model, const SegmentOptions& option
   run.clock.start("fill_holes", "triangle");
   if (fill) {
     DUBSAR_ASSIGN(separated.holes, fill_holes(separated.model, graph, HoleOptions{}, run.progress));
+    if (separated.segment.nested && options.method == SegmentMethod::kNested &&
+        !plausible_enclosure(separated.model.partitions)) {
+      log_info("segment: the inner body, closed, is not the lump that a tablet is; the bodies stay whole");
+      SegmentOptions whole = options;
+      whole.method = SegmentMethod::kBodies;
+      DUBSAR_ASSIGN(separated.segment, segment(separated.model, graph, whole, run.progress));
+      separated.segment.enclosure_refused = true;
+      DUBSAR_ASSIGN(separated.holes, fill_holes(separated.model, graph, HoleOptions{}, run.progress));
+    }
     settle_patches(separated.model.patches, separated.model.mesh.vertex_count());
   } else {
     DUBSAR_TRY(measure_partitions(separated.model));

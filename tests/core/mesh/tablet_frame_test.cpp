@@ -115,6 +115,33 @@ TEST(TabletFrame, FewVerticalsOrFewHorizontalsAreEnough) {
   }
 }
 
+TEST(TabletFrame, ClosedHolesSayNothingOfTheAxes) {
+  TriMesh mesh = written_block(7);
+  mesh.triangle_inferred.assign(mesh.triangles.size(), 0);
+  // A patch before the obverse, folded along a diagonal: as large as the sides together.
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (int k = 0; k < 40; ++k)
+    for (const double along : {-15.0, 15.0}) {
+      const double fold = k % 2 ? 1.5 : 0.0, across = 0.5 * (k - 20);
+      const glm::dvec3 p(along + across, across - along, 8.0 + fold);
+      mesh.positions.push_back(glm::vec3(p));
+    }
+  for (std::uint32_t k = 0; k + 1 < 40; ++k) {
+    const std::uint32_t a = first + 2 * k;
+    mesh.triangles.push_back({a, a + 1, a + 3});
+    mesh.triangles.push_back({a, a + 3, a + 2});
+  }
+  mesh.triangle_inferred.resize(mesh.triangles.size(), 0);
+  const auto believed = find_tablet_frame(mesh);
+  ASSERT_TRUE(believed);
+  ASSERT_LT(std::abs(believed->right.x), 0.995) << "the patch does not ask the question";
+  std::fill(mesh.triangle_inferred.end() - 78, mesh.triangle_inferred.end(), std::uint8_t{1});
+  const auto found = find_tablet_frame(mesh);
+  ASSERT_TRUE(found);
+  EXPECT_GT(found->right.x, 0.999);
+  EXPECT_GT(found->front.z, 0.999);
+}
+
 TEST(TabletFrame, ABlankBlockIsAGuessAndSaysSo) {
   TriMesh blank;
   const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);

@@ -49,5 +49,22 @@ TEST(Enclosure, ATabletFillsAtLeastHalfOfItsCavityAndNoMoreThanAllOfIt) {
   EXPECT_FALSE(plausible_enclosure(84.0, 100.0, 99.0));
 }
 
+/// Figures of closed parts, in mm2 and mm3.
+PartitionTable measured(double area, double tablet, double cavity, double outside) {
+  return {{.id = 0, .name = "tablet", .area_mm2 = area, .volume_mm3 = tablet},
+          {.id = 1, .name = "envelope outside", .body = "envelope", .volume_mm3 = outside},
+          {.id = 2, .name = "envelope inside", .body = "envelope", .volume_mm3 = -cavity}};
+}
+
+TEST(Enclosure, ATabletIsALump) {
+  EXPECT_TRUE(plausible_enclosure(measured(7100, 27300, 31500, 57900))) << "a phantom of a tablet";
+  EXPECT_TRUE(plausible_enclosure(measured(2 * 64 + 32, 64, 80, 200))) << "a plate of 8 x 8 x 1";
+  EXPECT_TRUE(plausible_enclosure(measured(1.3 * 7100, 27300, 31500, 57900))) << "rough with noise";
+  EXPECT_FALSE(plausible_enclosure(measured(23140, 62330, 66760, 312100))) << "a brain with its furrows";
+  EXPECT_FALSE(plausible_enclosure(measured(30661, 55307, 60000, 892000))) << "a felt";
+  EXPECT_FALSE(plausible_enclosure(measured(7100, 27300, 90000, 157900))) << "it rattles";
+  EXPECT_TRUE(plausible_enclosure(PartitionTable{{.id = 0, .name = "object", .area_mm2 = 9, .volume_mm3 = 0.1}}));
+}
+
 }  // namespace
 }  // namespace dubsar
