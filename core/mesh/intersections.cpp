@@ -110,20 +110,8 @@ class Tree {
     return id;
   }
 
-  Corners corners(std::uint32_t triangle) const {
-    const auto& t = triangles_[triangle];
-    return {glm::dvec3(positions_[t[0]]), glm::dvec3(positions_[t[1]]), glm::dvec3(positions_[t[2]])};
-  }
-
   bool intersect(std::uint32_t a, std::uint32_t b) const {
-    int shared = 0;
-    for (const std::uint32_t v : triangles_[a])
-      shared += std::count(triangles_[b].begin(), triangles_[b].end(), v) != 0;
-    if (shared >= 2) return false;
-    const Corners ca = corners(a), cb = corners(b);
-    for (std::size_t i = 0; i < 3; ++i)
-      if (crosses(ca[i], ca[(i + 1) % 3], cb) || crosses(cb[i], cb[(i + 1) % 3], ca)) return true;
-    return false;
+    return triangles_cross(positions_, triangles_[a], triangles_[b]);
   }
 
   std::span<const glm::vec3> positions_;
@@ -134,6 +122,26 @@ class Tree {
 };
 
 }  // namespace
+
+bool triangles_cross(std::span<const glm::vec3> positions, const std::array<std::uint32_t, 3>& a,
+                     const std::array<std::uint32_t, 3>& b) {
+  int shared = 0;
+  for (const std::uint32_t v : a) shared += std::count(b.begin(), b.end(), v) != 0;
+  if (shared >= 2) return false;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto along = [&](std::uint32_t v) { return positions[v][axis]; };
+    if (std::max({along(a[0]), along(a[1]), along(a[2])}) < std::min({along(b[0]), along(b[1]), along(b[2])}) ||
+        std::max({along(b[0]), along(b[1]), along(b[2])}) < std::min({along(a[0]), along(a[1]), along(a[2])}))
+      return false;
+  }
+  const auto corners = [&](const std::array<std::uint32_t, 3>& t) {
+    return Corners{glm::dvec3(positions[t[0]]), glm::dvec3(positions[t[1]]), glm::dvec3(positions[t[2]])};
+  };
+  const Corners ca = corners(a), cb = corners(b);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (crosses(ca[i], ca[(i + 1) % 3], cb) || crosses(cb[i], cb[(i + 1) % 3], ca)) return true;
+  return false;
+}
 
 std::vector<std::array<std::uint32_t, 2>> self_intersections(std::span<const glm::vec3> positions,
                                                              std::span<const std::array<std::uint32_t, 3>> triangles) {

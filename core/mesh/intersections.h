@@ -15,4 +15,8 @@ namespace dubsar {
 std::vector<std::array<std::uint32_t, 2>> self_intersections(std::span<const glm::vec3> positions,
                                                              std::span<const std::array<std::uint32_t, 3>> triangles);
 
+/// One such pair; false for triangles that share two vertices.
+bool triangles_cross(std::span<const glm::vec3> positions, const std::array<std::uint32_t, 3>& a,
+                     const std::array<std::uint32_t, 3>& b);
+
 }  // namespace dubsar

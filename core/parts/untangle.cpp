@@ -1,0 +1,306 @@
+#include "core/parts/untangle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <tuple>
+#include <unordered_map>
+
+#include "core/base/log.h"
+#include "core/extract/triangulate.h"
+#include "core/mesh/evidence.h"
+#include "core/mesh/intersections.h"
+#include "core/parts/triangle_grid.h"
+
+namespace dubsar {
+namespace {
+
+constexpr int kRounds = 12;  ///< of moves between two attempts to add vertices
+constexpr int kMostSplits = 4;
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// Patches and the surface beside them as one list of triangles.
+class Tangle {
+ public:
+  Tangle(SurfaceModel& model, double step) : model_(model), step_(step), dual_(model.mesh.positions.size()) {
+    Triangulation surface = triangulate(model.mesh, model.attributes.normals);
+    positions_ = model.mesh.positions;
+    positions_.insert(positions_.end(), surface.steiner.begin(), surface.steiner.end());
+    first_extra_ = static_cast<std::uint32_t>(positions_.size());
+    for (std::size_t p = 0; p < model.patches.size(); ++p) add_patch(p);
+    add_surface(surface);
+  }
+
+  /// Pairs of crossing triangles that matter.
+  std::vector<std::array<std::uint32_t, 2>> crossings() const {
+    auto pairs = self_intersections(positions_, triangles_);
+    std::erase_if(pairs, [&](const auto& pair) { return !matters(pair[0], pair[1]); });
+    return pairs;
+  }
+
+  /// Moves vertices of the pairs and of those that they come to cross. True: nothing crosses any more, as far as is
+  /// seen from the vertices that were looked at.
+  bool move(const std::vector<std::array<std::uint32_t, 2>>& pairs) {
+    index_triangles();
+    std::vector<std::uint32_t> work;
+    for (const auto& pair : pairs)
+      for (const std::uint32_t t : pair) add_corners(t, work);
+    for (int round = 0; round < kRounds && !work.empty(); ++round) {
+      make_unique(work);
+      std::vector<std::uint32_t> next;
+      bool better = false;
+      for (const std::uint32_t v : work) {
+        better = relieve(v) || better;
+        if (crossings_at(v, positions_[v], &next) > 0) next.push_back(v);
+      }
+      if (!better)  // wider: neighbours make room
+        for (const std::uint32_t v : work)
+          for (const std::uint32_t t : star_[v - first_extra_]) add_corners(t, next);
+      work.swap(next);
+    }
+    return work.empty();
+  }
+
+  /// Puts a vertex on the longest edge inside a patch of each triangle in a pair. Returns how many.
+  std::int64_t split(const std::vector<std::array<std::uint32_t, 2>>& pairs) {
+    std::int64_t splits = 0;
+    std::vector<bool> touched(triangles_.size(), false);
+    for (const auto& pair : pairs)
+      for (const std::uint32_t t : pair)
+        if (owner_[t].patch != kNone && !touched[t]) splits += split_triangle(t, touched);
+    return splits;
+  }
+
+  std::int64_t moved() const { return std::count(moved_.begin(), moved_.end(), true); }
+
+  /// Back into the model.
+  void store() const {
+    for (std::size_t p = 0; p < model_.patches.size(); ++p) {
+      FillPatch& patch = model_.patches[p];
+      std::vector<std::uint32_t> extras;
+      for (std::uint32_t v = first_extra_; v < positions_.size(); ++v)
+        if (patch_of_vertex_[v - first_extra_] == p) extras.push_back(v);
+      const std::size_t before = patch.extra_positions.size();
+      patch.extra_positions.resize(extras.size());
+      if (!patch.evidence.empty()) patch.evidence.resize(extras.size(), evidence_byte(Evidence::kInferred));
+      for (std::size_t i = 0; i < extras.size(); ++i)
+        if (i >= before || moved_[extras[i] - first_extra_]) patch.extra_positions[i] = positions_[extras[i]];
+      patch.triangles.clear();
+      for (std::size_t t = 0; t < triangles_.size(); ++t) {
+        if (owner_[t].patch != p) continue;
+        Triangle out = triangles_[t];
+        for (std::uint32_t& v : out)
+          if (v >= first_extra_)
+            v = static_cast<std::uint32_t>(
+                dual_ + static_cast<std::size_t>(std::lower_bound(extras.begin(), extras.end(), v) - extras.begin()));
+        patch.triangles.push_back(out);
+      }
+    }
+  }
+
+ private:
+  struct Owner {
+    std::uint32_t patch = kNone;
+    PartitionId front = PartitionTable::kNone, back = PartitionTable::kNone;  ///< bodies
+  };
+
+  PartitionId body_of(PartitionId id) const {
+    return id == PartitionTable::kNone || model_.partitions.empty() ? id : model_.partitions.body_of(id);
+  }
+
+  void add_patch(std::size_t p) {
+    const FillPatch& patch = model_.patches[p];
+    const auto base = static_cast<std::uint32_t>(positions_.size());
+    positions_.insert(positions_.end(), patch.extra_positions.begin(), patch.extra_positions.end());
+    patch_of_vertex_.resize(positions_.size() - first_extra_, static_cast<std::uint32_t>(p));
+    for (Triangle t : patch.triangles) {
+      for (std::uint32_t& v : t)
+        if (v >= dual_) v = static_cast<std::uint32_t>(v - dual_ + base);
+      triangles_.push_back(t);
+      owner_.push_back({static_cast<std::uint32_t>(p), body_of(patch.partition), body_of(patch.reverse_partition)});
+    }
+  }
+
+  void add_surface(const Triangulation& surface) {
+    BrickSet near;
+    for (const Triangle& t : triangles_) near.add(box_of(positions_, t).grown(1.0f));
+    for (std::size_t q = 0; q < model_.mesh.quads.size(); ++q)
+      for (std::size_t t = surface.first_triangle[q]; t < surface.first_triangle[q + 1]; ++t) {
+        if (!near.meets(box_of(positions_, surface.triangles[t]))) continue;
+        triangles_.push_back(surface.triangles[t]);
+        const PartitionId body = body_of(model_.quad_partition.empty() ? PartitionId{0} : model_.quad_partition[q]);
+        owner_.push_back({kNone, body, PartitionTable::kNone});
+      }
+  }
+
+  bool matters(std::uint32_t a, std::uint32_t b) const {
+    const Owner &one = owner_[a], &other = owner_[b];
+    if (one.patch == kNone && other.patch == kNone) return false;
+    const auto is_of = [&](PartitionId body) {
+      return body != PartitionTable::kNone && (body == other.front || body == other.back);
+    };
+    return is_of(one.front) || is_of(one.back);
+  }
+
+  void index_triangles() {
+    grid_ = TriangleGrid();
+    star_.assign(positions_.size() - first_extra_, {});
+    moved_.resize(star_.size(), false);
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+      grid_.add(t, box_of(positions_, triangles_[t]));
+      for (const std::uint32_t v : triangles_[t])
+        if (v >= first_extra_) star_[v - first_extra_].push_back(t);
+    }
+  }
+
+  void add_corners(std::uint32_t t, std::vector<std::uint32_t>& vertices) const {
+    for (const std::uint32_t v : triangles_[t])
+      if (v >= first_extra_) vertices.push_back(v);
+  }
+
+  static void make_unique(std::vector<std::uint32_t>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+
+  /// How many triangles the star of a vertex at `place` crosses; `met`: movable vertices of those.
+  int crossings_at(std::uint32_t v, const glm::vec3& place, std::vector<std::uint32_t>* met = nullptr) {
+    const glm::vec3 before = positions_[v];
+    positions_[v] = place;
+    int count = 0;
+    const auto& star = star_[v - first_extra_];
+    for (const std::uint32_t t : star) {
+      grid_.near(box_of(positions_, triangles_[t]), near_);
+      for (const std::uint32_t other : near_) {
+        const bool both = std::find(star.begin(), star.end(), other) != star.end();
+        if (other == t || (both && other < t) || !matters(t, other)) continue;
+        if (!triangles_cross(positions_, triangles_[t], triangles_[other])) continue;
+        ++count;
+        if (met != nullptr) add_corners(other, *met);
+      }
+    }
+    positions_[v] = before;
+    return count;
+  }
+
+  glm::vec3 rounded(const glm::vec3& p) const {
+    const auto one = [&](float x) { return static_cast<float>(std::round(static_cast<double>(x) / step_) * step_); };
+    return {one(p.x), one(p.y), one(p.z)};
+  }
+
+  /// The nearest of some places where the vertex crosses least. True: less than before.
+  bool relieve(std::uint32_t v) {
+    int least = crossings_at(v, positions_[v]);
+    if (least == 0) return false;
+    const glm::vec3 start = positions_[v];
+    glm::vec3 mean(0.0f), best = start;
+    float around = 0.0f;
+    for (const std::uint32_t t : star_[v - first_extra_])
+      for (const std::uint32_t w : triangles_[t])
+        if (w != v) {
+          mean += positions_[w];
+          around += 1.0f;
+        }
+    mean /= around;
+    const auto attempt = [&](const glm::vec3& place) {
+      const int count = crossings_at(v, rounded(place));
+      if (count >= least) return;
+      least = count;
+      best = rounded(place);
+    };
+    for (const float share : {0.25f, 0.5f, 0.75f, 1.0f})
+      if (least > 0) attempt(start + share * (mean - start));
+    for (const float reach : {0.06f, 0.12f, 0.25f, 0.5f, 0.9f})
+      for (const glm::vec3& middle : {start, mean})
+        for (int k = 0; k < 27 && least > 0; ++k)
+          if (k != 13) attempt(middle + reach * glm::normalize(glm::vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
+    if (best == start) return false;
+    positions_[v] = best;
+    moved_[v - first_extra_] = true;
+    for (const std::uint32_t t : star_[v - first_extra_]) grid_.add(t, box_of(positions_, triangles_[t]));
+    return true;
+  }
+
+  std::int64_t split_triangle(std::uint32_t t, std::vector<bool>& touched) {
+    float longest = 0.0f;
+    std::uint32_t a = 0, b = 0, beyond = kNone;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t from = triangles_[t][i], to = triangles_[t][(i + 1) % 3];
+      const std::uint32_t other = across(t, from, to);
+      const float length = glm::distance(positions_[from], positions_[to]);
+      if (other == kNone || touched[other] || length <= longest) continue;
+      std::tie(longest, a, b, beyond) = std::tuple(length, from, to, other);
+    }
+    if (beyond == kNone) return 0;
+    touched[t] = touched[beyond] = true;
+    const auto middle = static_cast<std::uint32_t>(positions_.size());
+    positions_.push_back(rounded(0.5f * (positions_[a] + positions_[b])));
+    patch_of_vertex_.push_back(owner_[t].patch);
+    star_.emplace_back();
+    for (const std::uint32_t side : {t, beyond}) {
+      Triangle other = triangles_[side];
+      std::replace(triangles_[side].begin(), triangles_[side].end(), a, middle);
+      std::replace(other.begin(), other.end(), b, middle);
+      triangles_.push_back(other);
+      owner_.push_back(owner_[side]);
+    }
+    return 1;
+  }
+
+  /// The one other triangle of the patch on the edge that runs from `to` to `from`.
+  std::uint32_t across(std::uint32_t t, std::uint32_t from, std::uint32_t to) const {
+    std::uint32_t found = kNone;
+    for (std::uint32_t other = 0; other < triangles_.size(); ++other) {
+      if (other == t || owner_[other].patch != owner_[t].patch) continue;
+      const Triangle& c = triangles_[other];
+      const bool has = std::count(c.begin(), c.end(), from) != 0 && std::count(c.begin(), c.end(), to) != 0;
+      if (!has) continue;
+      if (found != kNone) return kNone;
+      found = other;
+    }
+    return found;
+  }
+
+  SurfaceModel& model_;
+  double step_;
+  std::size_t dual_;
+  std::uint32_t first_extra_ = 0;
+  std::vector<glm::vec3> positions_;
+  std::vector<Triangle> triangles_;  ///< those of patches, of the surface, then what splitting added
+  std::vector<Owner> owner_;
+  std::vector<std::uint32_t> patch_of_vertex_;  ///< of positions from first_extra_ on
+  TriangleGrid grid_;
+  std::vector<std::vector<std::uint32_t>> star_;
+  std::vector<bool> moved_;
+  std::vector<std::uint32_t> near_;
+};
+
+}  // namespace
+
+Result<UntangleReport> untangle_patches(SurfaceModel& model, double step, Progress& progress) {
+  UntangleReport report;
+  if (model.patches.empty()) return report;
+  progress.begin("untangle", kMostSplits + 1, "round");
+  Tangle tangle(model, step);
+  auto pairs = tangle.crossings();
+  report.crossings = static_cast<std::int64_t>(pairs.size());
+  for (int round = 0; round <= kMostSplits && !pairs.empty(); ++round) {
+    if (progress.cancelled()) return cancelled_error();
+    if (round > 0) report.added += tangle.split(pairs);
+    tangle.move(pairs);
+    pairs = tangle.crossings();
+    progress.advance(1);
+  }
+  report.left = static_cast<std::int64_t>(pairs.size());
+  report.moved = tangle.moved();
+  if (report.crossings > 0) {
+    tangle.store();
+    log_info("patches: {} pairs of triangles crossed, {} do after {} vertices were moved and {} added",
+             report.crossings, report.left, report.moved, report.added);
+  }
+  progress.end();
+  return report;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,101 @@
+#include "core/parts/untangle.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "core/base/parallel.h"
+#include "core/mesh/evidence.h"
+#include "core/mesh/intersections.h"
+#include "core/mesh/mesh_check.h"
+#include "core/parts/holes.h"
+#include "core/parts/segment.h"
+#include "tests/core/parts/scene.h"
+
+namespace dubsar {
+namespace {
+
+constexpr double kStep = 1.0 / 64.0;
+
+/// A tablet that is glued to its envelope at two places, with patches there.
+SurfaceModel glued() {
+  scene::Nested nested;
+  nested.glue = [](const glm::vec3& p) {
+    return (p.y < 22.0f && std::hypot(p.x - 40.0f, p.z - 47.0f) < 9.0f) ||
+           (p.y > 42.0f && std::hypot(p.x - 55.0f, p.z - 40.0f) < 7.0f);
+  };
+  nested.change = [nested](float v, const glm::vec3& p) { return std::min(v, nested.shell(p)); };
+  SurfaceModel model = scene::extract_model(nested.dims, nested);
+  SilentProgress progress;
+  const FaceGraph graph = FaceGraph::build(model.mesh, progress).value();
+  segment(model, graph, {}, progress).value();
+  fill_holes(model, graph, {}, progress).value();
+  return model;
+}
+
+/// Crossings of patches in the bodies as they are exported: shares no code with what moves vertices.
+std::int64_t crossings(const SurfaceModel& model) {
+  std::int64_t count = 0;
+  for (const char* body : {"tablet", "envelope"}) {
+    const TriMesh mesh = make_tri_mesh(model, {.body = body}).value();
+    const auto of_patch = [&](std::uint32_t t) { return !mesh.triangle_inferred.empty() && mesh.triangle_inferred[t]; };
+    for (const auto& [a, b] : self_intersections(mesh.positions, mesh.triangles)) count += of_patch(a) || of_patch(b);
+  }
+  return count;
+}
+
+/// Patch vertices thrown about: through the surface and through each other.
+void throw_about(SurfaceModel& model, unsigned seed, float reach) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> any(-reach, reach);
+  for (FillPatch& patch : model.patches)
+    for (glm::vec3& p : patch.extra_positions)
+      if (random() % 6 == 0) p += glm::vec3(any(random), any(random), any(random));
+}
+
+TEST(Untangle, PatchesThatRunThroughTheSurfaceAreTakenOut) {
+  SurfaceModel model = glued();
+  ASSERT_GE(model.patches.size(), 2u);
+  for (const unsigned seed : {5u, 6u}) {
+    throw_about(model, seed, 4.0f);
+    ASSERT_GT(crossings(model), 20) << "nothing to do";
+    SilentProgress progress;
+    const UntangleReport report = untangle_patches(model, kStep, progress).value();
+    EXPECT_GT(report.crossings, 0);
+    EXPECT_EQ(report.left, 0);
+    EXPECT_GT(report.moved, 0);
+    EXPECT_EQ(crossings(model), 0);
+    for (const char* body : {"tablet", "envelope"}) {
+      const TriMesh mesh = make_tri_mesh(model, {.body = body}).value();
+      EXPECT_TRUE(check_mesh(mesh.positions, mesh.triangles).watertight()) << body;
+    }
+  }
+}
+
+TEST(Untangle, WhatCrossesNothingStaysWhereItIs) {
+  SurfaceModel model = glued();
+  SilentProgress progress;
+  untangle_patches(model, kStep, progress).value();
+  const std::vector<glm::vec3> before = model.patches[0].extra_positions;
+  const UntangleReport report = untangle_patches(model, kStep, progress).value();
+  EXPECT_EQ(report.crossings, 0);
+  EXPECT_EQ(report.moved, 0);
+  EXPECT_EQ(model.patches[0].extra_positions, before);
+}
+
+TEST(Untangle, ThreadsDoNotChangeTheResult) {
+  std::vector<std::vector<glm::vec3>> found;
+  for (const int threads : {1, 7}) {
+    set_thread_count(threads);
+    SurfaceModel model = glued();
+    throw_about(model, 11, 3.0f);
+    SilentProgress progress;
+    untangle_patches(model, kStep, progress).value();
+    found.push_back(model.patches[0].extra_positions);
+  }
+  set_thread_count(0);
+  EXPECT_EQ(found[0], found[1]);
+}
+
+}  // namespace
+}  // namespace dubsar
