@@ -23,8 +23,8 @@ Result<void> check_traits(const SinkTraits& traits) {
 
 Document film_document(const Document& base, const TriMesh& mesh) {
   ViewOptions options;
-  options.document = base;
-  options.document.parts.clear();
+  options.work.document = base;
+  options.work.document.parts.clear();
   Document out = first_document(options, mesh);
   for (Part& part : out.parts) {
     const auto same = [&](const Part& given) { return given.name == part.name; };
