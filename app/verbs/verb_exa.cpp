@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "app/cli/verb.h"
 #include "core/exa/exa_file.h"
+#include "core/exa/paper_profile.h"
 #include "core/exa/settle.h"
 #include "core/mesh/mesh_check.h"
 #include "core/pipeline/report.h"
@@ -17,6 +21,7 @@ using nlohmann::json;
 struct Options {
   std::string in, out;
   float max_error = 1.0f / 16.0f;
+  ExaProfile profile = ExaProfile::kCompact;
 };
 
 json stats_json(const ExaStats& stats) {
@@ -37,10 +42,54 @@ std::string stats_text(const ExaStats& stats) {
   double signs = 0.0;
   for (const ExaBlockStats& block : stats.blocks) {
     text += fmt::format("{:<16}{:>12}{:>10}{:>16.4f}\n", block.name, block.bytes, block.chunks, block.bits_per_vertex);
-    if (block.name.starts_with("signs_")) signs += block.bits_per_vertex;
+    if (block.name.starts_with("signs_") || block.name == "paper_octets") signs += block.bits_per_vertex;
   }
   text += fmt::format("{:<16}{:>12}{:>10}{:>16.4f}\n", "all", stats.bytes, "", stats.bits_per_vertex);
   return text + fmt::format("topology {:.4f} bits a vertex, {} vertices\n", signs, stats.vertices);
+}
+
+/// What the paper prints for a scan of 10 million vertices (tables 2 and 3), in bits a vertex.
+struct PrintedFigure {
+  const char* what;
+  std::vector<std::string> blocks;
+  double bits;
+};
+const std::vector<PrintedFigure>& printed_figures() {
+  static const std::vector<PrintedFigure> figures{
+      {"topology", {"paper_octets", "paper_face_decisions"}, 1.168},
+      {"crossings of 4 bits", {"paper_offsets"}, 3.984},
+      {"places", {"paper_places"}, 19.9},
+      {"normals", {"paper_normals"}, 19.1},
+      {"shape, partition, light", {"paper_words", "paper_exceptions"}, 16.1},
+  };
+  return figures;
+}
+
+double bits_of(const ExaStats& stats, const std::vector<std::string>& blocks) {
+  double bits = 0.0;
+  for (const ExaBlockStats& block : stats.blocks)
+    if (std::find(blocks.begin(), blocks.end(), block.name) != blocks.end()) bits += block.bits_per_vertex;
+  return bits;
+}
+
+/// The same groups here and in the paper.
+std::string paper_text(const ExaStats& stats) {
+  std::string text = fmt::format("\n{:<28}{:>12}{:>12}\n", "bits a vertex", "here", "in the paper");
+  double here = 0.0;
+  for (const PrintedFigure& figure : printed_figures()) {
+    const double bits = bits_of(stats, figure.blocks);
+    here += bits;
+    text += fmt::format("{:<28}{:>12.3f}{:>12.3f}\n", figure.what, bits, figure.bits);
+  }
+  return text + fmt::format("{:<28}{:>12.3f}{:>12.3f}\n", "all of these", here, 60.223);
+}
+json paper_json(const ExaStats& stats) {
+  json figures = json::array();
+  for (const PrintedFigure& figure : printed_figures())
+    figures.push_back({{"what", figure.what},
+                       {"bits_per_vertex", bits_of(stats, figure.blocks)},
+                       {"bits_per_vertex_in_the_paper", figure.bits}});
+  return figures;
 }
 
 Result<VerbResult> stat(const Options& options) {
@@ -48,6 +97,12 @@ Result<VerbResult> stat(const Options& options) {
   VerbResult result;
   result.text = stats_text(info.stats);
   result.json = stats_json(info.stats);
+  result.json["version"] = info.major;
+  result.json["profile"] = name_in(kExaProfiles, info.header.profile);
+  if (info.header.profile == ExaProfile::kPaper) {
+    result.text += paper_text(info.stats);
+    result.json["paper"] = paper_json(info.stats);
+  }
   return result;
 }
 
@@ -74,8 +129,10 @@ Result<VerbResult> recompress(const Options& options, Progress& progress) {
   SettleOptions settle;
   settle.max_error = options.max_error;
   settle.curvature = before.header.curvature;
-  DUBSAR_ASSIGN(const SettleStats stats, settle_for_exa(model, settle, progress));
-  DUBSAR_ASSIGN(const ExaStats after, write_exa(options.out, model, progress));
+  DUBSAR_ASSIGN(const SettleStats stats, options.profile == ExaProfile::kPaper
+                                             ? settle_for_paper(model, settle, progress)
+                                             : settle_for_exa(model, settle, progress));
+  DUBSAR_ASSIGN(const ExaStats after, write_exa(options.out, model, progress, options.profile));
   VerbResult result;
   result.text = fmt::format(
       "{}: {} bytes, before {}; vertices moved off the surface by {:.4f} of a grid step at most, normals by "
@@ -107,9 +164,14 @@ Verb add_exa_verb(Arguments program) {
   recompress_command
       .value("--max-error", options->max_error, "largest distance of a vertex from the surface before, in grid steps")
       .positive();
+  recompress_command.choice<ExaProfile>("--exa-profile", options->profile, choices_of(kExaProfiles),
+                                        "compact (default), or as in the paper, to compare");
   command.footer(
-      "Examples:\n  dubsar exa stat tablet.exa\n  dubsar exa verify tablet.exa\n  dubsar exa recompress old.exa -o "
-      "new.exa");
+      "Examples:\n"
+      "  dubsar exa stat tablet.exa\n"
+      "  dubsar exa verify tablet.exa\n"
+      "  dubsar exa recompress old.exa -o new.exa\n"
+      "  dubsar exa recompress tablet.exa --exa-profile paper -o paper.exa");
   return {command, [options, stat_command, verify_command](const CommonOptions&, Progress& progress) {
             if (stat_command.chosen()) return stat(*options);
             if (verify_command.chosen()) return verify(*options, progress);

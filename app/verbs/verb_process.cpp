@@ -61,6 +61,8 @@ void add_surface_options(Arguments command, Options& options) {
              "largest distance of a stored vertex from the smoothed surface in grid steps (default 1/16)")
       .positive();
   group.flag("--exact-normals", p.settle.exact_normals, "store normals and curvatures to the last bit");
+  group.choice<ExaProfile>("--exa-profile", p.exa_profile, choices_of(kExaProfiles),
+                           "how the file is coded: compact (default), or as in the paper, to compare (docs/exa.md)");
   group.choice<SegmentMethod>(
       "--segment", p.segment.method, choices_of(kSegmentMethods),
       "how parts are separated: nested (default), the paper's concavity threshold, closed bodies, or none");
@@ -124,7 +126,7 @@ Result<VerbResult> run(Options options, const Arguments command, const CommonOpt
   if (!made && made.error().kind == ErrorKind::kTryAgain)
     made.error().message += "; take a part of the scan with --crop, or fewer voxels with --stride";
   DUBSAR_ASSIGN(PipelineResult result, std::move(made));
-  DUBSAR_TRY(write_product(options.out, result, progress));
+  DUBSAR_TRY(write_product(options.out, result, p.exa_profile, progress));
   DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(result.model));
   DUBSAR_ASSIGN(const SurfaceFacts facts, surface_facts(mesh));
   VerbResult out;

@@ -58,13 +58,14 @@ Result<std::uint64_t> exa_head_bytes(std::string_view prelude, std::uint64_t fil
   const auto announced = reader.little<std::uint64_t>();
   if (!reader.ok())
     return fail(ErrorKind::kBadData, "exa: {} bytes found, the head alone needs {}", prelude.size(), kExaPreludeBytes);
-  if (major < kExaMajor)
+  if (major < kExaOldest)
     return fail(ErrorKind::kBadData,
-                "exa: format version {} found, expected {}; that format was never kept: process the scan again", major,
-                kExaMajor);
+                "exa: format version {} found, expected {} or {}; that format was never kept: process the scan "
+                "again",
+                major, kExaOldest, kExaMajor);
   if (major > kExaMajor)
-    return fail(ErrorKind::kBadData, "exa: format version {} found, expected {}; it needs a later dubsar", major,
-                kExaMajor);
+    return fail(ErrorKind::kBadData, "exa: format version {} found, expected {} or {}; it needs a later dubsar", major,
+                kExaOldest, kExaMajor);
   if (blocks > kExaMaxBlocks)
     return fail(ErrorKind::kBadData, "exa: {} blocks announced, expected at most {}", blocks, kExaMaxBlocks);
   if (announced != file_bytes)

@@ -8,6 +8,8 @@
 #include "core/exa/exa_blocks.h"
 #include "core/exa/exact.h"
 #include "core/exa/offsets.h"
+#include "core/exa/paper_profile.h"
+#include "core/exa/paper_signs.h"
 #include "core/exa/patch_evidence.h"
 #include "core/exa/patches.h"
 #include "core/exa/settle.h"
@@ -27,6 +29,10 @@ Result<void> decode_positions(const ExaReader& reader, SurfaceModel& model, Prog
     DUBSAR_ASSIGN(const ExaChunks escapes, reader.chunks("ESCP", kCodec));
     DUBSAR_TRY(decode_escapes(escapes.chunks, model.mesh, progress));
   }
+  if (reader.has("PPOS")) {
+    DUBSAR_ASSIGN(const ExaChunks places, reader.chunks("PPOS", kCodec));
+    DUBSAR_TRY(decode_paper_positions(places.chunks, model.mesh.positions, progress));
+  }
   if (reader.has("POSN")) {
     DUBSAR_ASSIGN(const ExaChunks exact, reader.chunks("POSN", kCodec));
     DUBSAR_TRY(decode_floats(exact.chunks, 3, "positions", floats_of(model.mesh.positions), progress));
@@ -37,8 +43,13 @@ Result<void> decode_positions(const ExaReader& reader, SurfaceModel& model, Prog
 Result<void> decode_normals(const ExaReader& reader, const ExaHeader& header, SurfaceModel& model, Progress& progress) {
   VertexAttributes& a = model.attributes;
   const std::size_t vertices = model.mesh.positions.size();
-  if (header.normals == ExaNormals::kRecomputed) {
-    DUBSAR_ASSIGN(a.normals, recomputed_normals(model.mesh, progress));
+  if (header.normals == ExaNormals::kRecomputed || header.normals == ExaNormals::kQuantised) {
+    if (header.normals == ExaNormals::kQuantised) {
+      DUBSAR_ASSIGN(const ExaChunks steps, reader.chunks("PNRM", kCodec));
+      DUBSAR_ASSIGN(a.normals, decode_paper_normals(steps.chunks, vertices, progress));
+    } else {
+      DUBSAR_ASSIGN(a.normals, recomputed_normals(model.mesh, progress));
+    }
     if (!header.curvatures) return {};
     DUBSAR_ASSIGN(Curvatures k, principal_curvatures(model.mesh, a.normals, header.curvature, progress));
     a.k_min = std::move(k.k_min);
@@ -72,6 +83,14 @@ Result<void> decode_attributes(const ExaReader& reader, const ExaHeader& header,
     DUBSAR_ASSIGN(out, decode_labels(label, model.mesh, chunks.chunks, progress));
     return {};
   };
+  if (reader.has("PATT")) {
+    DUBSAR_ASSIGN(const ExaChunks words, reader.chunks("PATT", kCodec));
+    ExaChunks exceptions;
+    if (reader.has("PQEX")) {
+      DUBSAR_ASSIGN(exceptions, reader.chunks("PQEX", kCodec));
+    }
+    DUBSAR_TRY(decode_paper_words(words.chunks, exceptions.chunks, model));
+  }
   if (header.shapes && !model.attributes.k_min.empty()) {
     model.attributes.shape = shape_classes(model.attributes.k_min, model.attributes.k_max);
   } else if (!header.shapes) {
@@ -101,6 +120,23 @@ Result<void> decode_attributes(const ExaReader& reader, const ExaHeader& header,
   return {};
 }
 
+Result<void> decode_offsets(const ExaReader& reader, const ExaHeader& header, SurfaceSamples& samples,
+                            Progress& progress) {
+  if (header.profile == ExaProfile::kCompact) {
+    DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("OFFS", kCodec));
+    DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("FACE", kCodec));
+    return decode_samples(offsets.chunks, faces.chunks, samples, progress);
+  }
+  DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("POFF", kCodec));
+  DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("PFCE", kCodec));
+  samples.offsets.resize(static_cast<std::size_t>(header.edges));
+  DUBSAR_TRY(decode_paper_bits(offsets.chunks, samples.offset_bits, "offsets", samples.offsets));
+  std::vector<std::uint16_t> joined(static_cast<std::size_t>(header.faces));
+  DUBSAR_TRY(decode_paper_bits(faces.chunks, 1, "face decisions", joined));
+  samples.joined.assign(joined.begin(), joined.end());
+  return {};
+}
+
 }  // namespace
 
 Result<LoadedSigns> load_signs(const ExaReader& reader, int level, const std::function<bool(std::size_t)>& wanted) {
@@ -114,6 +150,20 @@ Result<LoadedSigns> load_signs(const ExaReader& reader, int level, const std::fu
     loaded.blocks.push_back(std::move(block));
   }
   return loaded;
+}
+
+Result<BitVolume> decode_level_signs(const ExaReader& reader, const ExaHeader& header, int level, Progress& progress) {
+  if (header.profile == ExaProfile::kPaper) {
+    const auto finest = static_cast<std::size_t>(std::max(0, paper_levels(header.dims) - level));
+    DUBSAR_ASSIGN(const ExaChunks octets,
+                  reader.chunks(
+                      "POCT", kCodec,
+                      level == 0 ? std::function<bool(std::size_t)>() : [=](std::size_t i) { return i <= finest; }));
+    return decode_signs_as_paper(octets.chunks, header.dims, level);
+  }
+  DUBSAR_ASSIGN(const LoadedSigns loaded, load_signs(reader, level, {}));
+  return decode_signs(loaded.chunks, header.dims, level, std::nullopt,
+                      most_coded_signs(static_cast<std::uint64_t>(header.edges)), progress);
 }
 
 SurfaceSamples empty_samples(const ExaHeader& header) {
@@ -133,20 +183,12 @@ Result<SurfaceModel> decode_model(const ExaReader& reader, const ExaReadOptions&
   model.frame = header.frame;
   model.samples = empty_samples(header);
   SurfaceSamples& samples = model.samples;
-  {
-    DUBSAR_ASSIGN(const LoadedSigns loaded, load_signs(reader, 0, {}));
-    DUBSAR_ASSIGN(samples.signs, decode_signs(loaded.chunks, header.dims, 0, std::nullopt,
-                                              most_coded_signs(static_cast<std::uint64_t>(header.edges)), progress));
-  }
+  DUBSAR_ASSIGN(samples.signs, decode_level_signs(reader, header, 0, progress));
   const SampleCounts counts = count_samples(samples.signs);
   if (counts.edges != header.edges || counts.faces != header.faces)
     return fail(ErrorKind::kBadData, "exa: {} active edges and {} ambiguous faces found, the header says {} and {}",
                 counts.edges, counts.faces, header.edges, header.faces);
-  {
-    DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("OFFS", kCodec));
-    DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("FACE", kCodec));
-    DUBSAR_TRY(decode_samples(offsets.chunks, faces.chunks, samples, progress));
-  }
+  DUBSAR_TRY(decode_offsets(reader, header, samples, progress));
   DUBSAR_ASSIGN(model.mesh, build_quad_mesh(samples, progress));
   if (model.mesh.vertex_count() != header.vertices || model.mesh.quad_count() != header.quads)
     return fail(ErrorKind::kBadData, "exa: {} vertices and {} x-quads found, the header says {} and {}",

@@ -27,6 +27,9 @@ struct LoadedSigns {
 /// The signs down to spacing 2^level; with `wanted`, only of the bricks i with wanted(i).
 Result<LoadedSigns> load_signs(const ExaReader& reader, int level, const std::function<bool(std::size_t)>& wanted);
 
+/// All points of spacing 2^level.
+Result<BitVolume> decode_level_signs(const ExaReader& reader, const ExaHeader& header, int level, Progress& progress);
+
 /// What the header says of the samples; signs, offsets and face decisions are empty.
 SurfaceSamples empty_samples(const ExaHeader& header);
 

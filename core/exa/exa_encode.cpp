@@ -8,6 +8,8 @@
 #include "core/exa/exa_file.h"
 #include "core/exa/exact.h"
 #include "core/exa/offsets.h"
+#include "core/exa/paper_profile.h"
+#include "core/exa/paper_signs.h"
 #include "core/exa/patch_evidence.h"
 #include "core/exa/patches.h"
 #include "core/exa/settle.h"
@@ -61,17 +63,23 @@ Result<void> find_normals(const SurfaceModel& model, ExaHeader& header, Progress
   header.normals = a.normals.empty() && a.k_min.empty() ? ExaNormals::kNone : ExaNormals::kExact;
   header.curvatures = !a.k_min.empty();
   if (a.normals.empty()) return {};
-  DUBSAR_ASSIGN(const std::vector<glm::vec3> normals, recomputed_normals(model.mesh, progress));
-  if (!same(normals, a.normals)) return {};
+  ExaNormals kind = ExaNormals::kRecomputed;
+  if (header.profile == ExaProfile::kPaper) {
+    if (!encode_paper_normals(a.normals, progress)) return {};
+    kind = ExaNormals::kQuantised;
+  } else {
+    DUBSAR_ASSIGN(const std::vector<glm::vec3> normals, recomputed_normals(model.mesh, progress));
+    if (!same(normals, a.normals)) return {};
+  }
   for (const CurvatureMethod method : {CurvatureMethod::kFit, CurvatureMethod::kPairs}) {
     header.curvature = method;
     if (a.k_min.empty()) {
-      header.normals = ExaNormals::kRecomputed;
+      header.normals = kind;
       return {};
     }
-    DUBSAR_ASSIGN(const Curvatures k, principal_curvatures(model.mesh, normals, method, progress));
+    DUBSAR_ASSIGN(const Curvatures k, principal_curvatures(model.mesh, a.normals, method, progress));
     if (!same(k.k_min, a.k_min) || !same(k.k_max, a.k_max)) continue;
-    header.normals = ExaNormals::kRecomputed;
+    header.normals = kind;
     return {};
   }
   header.curvature = CurvatureMethod::kFit;
@@ -94,22 +102,63 @@ class BlockList {
   std::vector<ExaBlock> blocks_;
 };
 
-Result<void> add_positions(const SurfaceModel& model, const QuadMesh& base, BlockList& blocks, Progress& progress) {
-  if (same(base.positions, model.mesh.positions)) return {};
-  if (const auto escapes = encode_escapes(base, model.mesh.positions, progress)) {
+void add_positions(const SurfaceModel& model, const QuadMesh& base, ExaProfile profile, BlockList& blocks,
+                   Progress& progress) {
+  if (same(base.positions, model.mesh.positions)) return;
+  if (profile == ExaProfile::kPaper) {
+    if (const auto places = encode_paper_positions(base.positions, model.mesh.positions, progress)) {
+      blocks.add("PPOS", true, *places);
+      return;
+    }
+  } else if (const auto escapes = encode_escapes(base, model.mesh.positions, progress)) {
     blocks.add("ESCP", true, *escapes);
-  } else {
-    blocks.add("POSN", true, encode_floats(floats_of(model.mesh.positions), 3, progress));
+    return;
   }
+  blocks.add("POSN", true, encode_floats(floats_of(model.mesh.positions), 3, progress));
+}
+
+/// Signs, offsets, face decisions.
+Result<void> add_samples(const SurfaceSamples& samples, ExaProfile profile, BlockList& blocks, Progress& progress) {
+  if (profile == ExaProfile::kPaper) {
+    blocks.add("POCT", true, encode_signs_as_paper(samples.signs));
+    const std::vector<std::uint16_t> joined(samples.joined.begin(), samples.joined.end());
+    blocks.add("PFCE", true, encode_paper_bits(joined, 1, progress));
+    blocks.add("POFF", true, encode_paper_bits(samples.offsets, samples.offset_bits, progress));
+    return {};
+  }
+  DUBSAR_ASSIGN(const SignCode signs, encode_signs(samples.signs, progress));
+  blocks.add("SIGC", true, signs.coarse);
+  for (std::size_t level = kBrickLevels; level-- > 0;) blocks.add(kSignBlocks[level], true, signs.bricks[level]);
+  DUBSAR_ASSIGN(const SampleCode code, encode_samples(samples, progress));
+  blocks.add("FACE", true, code.faces);
+  blocks.add("OFFS", true, code.offsets);
   return {};
+}
+
+/// Shape classes, light, partitions of x-quads.
+void add_labels(const SurfaceModel& model, const ExaHeader& header, BlockList& blocks, Progress& progress) {
+  const VertexAttributes& a = model.attributes;
+  if (header.profile == ExaProfile::kPaper) {
+    const PaperWords code = encode_paper_words(model, !header.shapes, progress);
+    if (!code.words.empty()) blocks.add("PATT", false, code.words);
+    if (!code.exceptions.empty()) blocks.add("PQEX", false, code.exceptions);
+    return;
+  }
+  const auto labels = [&](const char* type, ExaLabel label, const std::vector<std::uint8_t>& values) {
+    if (!values.empty()) blocks.add(type, false, encode_labels(label, model.mesh, values, progress));
+  };
+  if (!header.shapes) labels("SHAP", ExaLabel::kShape, a.shape);
+  labels("AMBO", ExaLabel::kLight, a.ao);
+  labels("QPAR", ExaLabel::kPartition, model.quad_partition);
 }
 
 }  // namespace
 
-Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& progress) {
+Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& progress, ExaProfile profile) {
   DUBSAR_ASSIGN(const QuadMesh base, build_quad_mesh(model.samples, progress));
   DUBSAR_TRY(check_model(model, base));
   ExaHeader header;
+  header.profile = profile;
   header.frame = model.frame;
   header.dims = model.samples.dims;
   header.isovalue = model.samples.isovalue;
@@ -124,7 +173,8 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   header.tool = "dubsar " DUBSAR_VERSION;
   DUBSAR_TRY(find_normals(model, header, progress));
   const VertexAttributes& a = model.attributes;
-  header.shapes = header.curvatures && !a.shape.empty() && same(a.shape, shape_classes(a.k_min, a.k_max));
+  header.shapes = profile == ExaProfile::kCompact && header.curvatures && !a.shape.empty() &&
+                  same(a.shape, shape_classes(a.k_min, a.k_max));
 
   BlockList blocks;
   DUBSAR_ASSIGN(std::string text, exa_header_json(header));
@@ -134,13 +184,9 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
     blocks.add("PART", false, {std::move(table)});
   }
   if (!model.provenance.empty()) blocks.add("PROV", false, {model.provenance});
-  DUBSAR_ASSIGN(const SignCode signs, encode_signs(model.samples.signs, progress));
-  blocks.add("SIGC", true, signs.coarse);
-  for (std::size_t level = kBrickLevels; level-- > 0;) blocks.add(kSignBlocks[level], true, signs.bricks[level]);
-  DUBSAR_ASSIGN(const SampleCode samples, encode_samples(model.samples, progress));
-  blocks.add("FACE", true, samples.faces);
-  blocks.add("OFFS", true, samples.offsets);
-  DUBSAR_TRY(add_positions(model, base, blocks, progress));
+  DUBSAR_TRY(add_samples(model.samples, profile, blocks, progress));
+  add_positions(model, base, profile, blocks, progress);
+  if (header.normals == ExaNormals::kQuantised) blocks.add("PNRM", false, *encode_paper_normals(a.normals, progress));
   if (header.normals == ExaNormals::kExact) {
     if (!a.normals.empty()) blocks.add("NORM", false, encode_floats(floats_of(a.normals), 3, progress));
     if (header.curvatures) {
@@ -152,13 +198,8 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
       blocks.add("CURV", false, encode_floats(pairs, 2, progress));
     }
   }
-  const auto labels = [&](const char* type, ExaLabel label, const std::vector<std::uint8_t>& values) {
-    if (!values.empty()) blocks.add(type, false, encode_labels(label, model.mesh, values, progress));
-  };
-  if (!header.shapes) labels("SHAP", ExaLabel::kShape, a.shape);
-  labels("AMBO", ExaLabel::kLight, a.ao);
-  labels("EVID", ExaLabel::kEnum, a.evidence);
-  labels("QPAR", ExaLabel::kPartition, model.quad_partition);
+  add_labels(model, header, blocks, progress);
+  if (!a.evidence.empty()) blocks.add("EVID", false, encode_labels(ExaLabel::kEnum, model.mesh, a.evidence, progress));
   if (!model.patches.empty())
     blocks.add("FILL", false, encode_patches(model.patches, {model.mesh, model.quad_partition}));
   if (has_patch_evidence(model.patches)) blocks.add("FEVI", false, encode_patch_evidence(model.patches));

@@ -27,13 +27,11 @@ Result<SurfaceModel> bare_model(SurfaceSamples samples, const GridFrame& frame, 
 Result<SurfaceModel> decode_level(const ExaReader& reader, int level, Progress& progress) {
   DUBSAR_ASSIGN(const ExaHeader header, reader.header());
   DUBSAR_TRY(check_memory("exa", exa_memory_bound(header)));
-  DUBSAR_ASSIGN(const LoadedSigns loaded, load_signs(reader, level, {}));
   SurfaceSamples samples = empty_samples(header);
   samples.dims = level_dims(header.dims, level);
   samples.closed = true;
   samples.offset_bits = 16;
-  DUBSAR_ASSIGN(samples.signs, decode_signs(loaded.chunks, header.dims, level, std::nullopt,
-                                            most_coded_signs(static_cast<std::uint64_t>(header.edges)), progress));
+  DUBSAR_ASSIGN(samples.signs, decode_level_signs(reader, header, level, progress));
   const SampleCounts counts = count_samples(samples.signs);
   if (static_cast<std::uint64_t>(counts.edges) > most_coded_signs(static_cast<std::uint64_t>(header.edges)))
     return fail(ErrorKind::kBadData, "exa: {} active edges found on level {}, the whole surface has {}", counts.edges,
@@ -45,6 +43,9 @@ Result<SurfaceModel> decode_level(const ExaReader& reader, int level, Progress& 
 
 Result<SurfaceModel> decode_box(const ExaReader& reader, const GridBox& box, Progress& progress) {
   DUBSAR_ASSIGN(const ExaHeader header, reader.header());
+  if (header.profile == ExaProfile::kPaper)
+    return fail(ErrorKind::kUsage,
+                "exa: a box of a file of the paper's profile was asked for, which has no bricks; recompress the file");
   const Dims& dims = header.dims;
   const std::array<std::int64_t, 3> size{dims.x, dims.y, dims.z};
   std::array<std::int64_t, 3> first{}, last{}, low{}, points{};  // bricks, points

@@ -7,6 +7,7 @@
 #include "core/base/bytes.h"
 #include "core/base/json_text.h"
 #include "core/exa/chunks.h"
+#include "core/exa/paper_signs.h"
 
 namespace dubsar {
 namespace {
@@ -72,7 +73,17 @@ constexpr std::uint64_t kMostPerByte = 16384;  ///< vertices, edges, faces or gr
 constexpr std::uint64_t kAlwaysItems = 1 << 16, kAlwaysPoints = std::uint64_t{1} << 32;
 
 std::string_view normals_name(ExaNormals normals) {
-  return normals == ExaNormals::kNone ? "none" : normals == ExaNormals::kRecomputed ? "recomputed" : "exact";
+  switch (normals) {
+    case ExaNormals::kNone:
+      return "none";
+    case ExaNormals::kRecomputed:
+      return "recomputed";
+    case ExaNormals::kExact:
+      return "exact";
+    case ExaNormals::kQuantised:
+      return "quantised";
+  }
+  return "";
 }
 }  // namespace
 
@@ -81,6 +92,7 @@ Result<std::string> exa_header_json(const ExaHeader& header) {
       !finite(header.frame.input_voxel.mm))
     return fail(ErrorKind::kBadData, "exa: isovalue, scale, origin and voxel size must be finite to be stored");
   nlohmann::ordered_json json;
+  if (header.profile == ExaProfile::kPaper) json["profile"] = "paper";
   json["dims"] = {header.dims.x, header.dims.y, header.dims.z};
   json["isovalue"] = static_cast<double>(header.isovalue);
   json["offset_bits"] = header.offset_bits;
@@ -108,6 +120,11 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
   DUBSAR_ASSIGN(const Json json, parse_json(text, "exa: header"));
   Members members(json);
   ExaHeader header;
+  if (json.is_object() && json.contains("profile")) {
+    if (json["profile"] != "paper")
+      return fail(ErrorKind::kBadData, "exa: profile {} found, expected \"paper\" or none", json["profile"].dump());
+    header.profile = ExaProfile::kPaper;
+  }
   const glm::dvec3 dims = members.vector("dims");
   header.isovalue = static_cast<float>(members.number("isovalue"));
   const std::int64_t bits = members.count("offset_bits");
@@ -153,10 +170,11 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
       return fail(ErrorKind::kBadData, "exa: a scale or voxel size is not positive");
   if (!std::isfinite(header.isovalue)) return fail(ErrorKind::kBadData, "exa: the isovalue is not finite");
   if (unit != "mm") return fail(ErrorKind::kBadData, "exa: voxel sizes in \"{}\" found, expected \"mm\"", unit);
-  for (const ExaNormals kind : {ExaNormals::kNone, ExaNormals::kRecomputed, ExaNormals::kExact})
+  for (const ExaNormals kind : {ExaNormals::kNone, ExaNormals::kRecomputed, ExaNormals::kExact, ExaNormals::kQuantised})
     if (normals == normals_name(kind)) header.normals = kind;
   if (normals != normals_name(header.normals))
-    return fail(ErrorKind::kBadData, "exa: normals \"{}\" found, expected none, recomputed or exact", normals);
+    return fail(ErrorKind::kBadData, "exa: normals \"{}\" found, expected none, recomputed, exact or quantised",
+                normals);
   if (method != "fit" && method != "pairs")
     return fail(ErrorKind::kBadData, "exa: curvature method \"{}\" found, expected fit or pairs", method);
   if ((shapes != "recomputed" && shapes != "stored") || (shapes == "recomputed" && !header.curvatures))
@@ -171,7 +189,8 @@ std::uint64_t exa_memory_bound(const ExaHeader& header) {
   const auto words = static_cast<std::uint64_t>((header.dims.x + 63) / 64 * header.dims.y * header.dims.z);
   const auto rows = static_cast<std::uint64_t>((header.dims.y + 1) * (header.dims.z + 1));
   const auto items = static_cast<std::uint64_t>(header.vertices + header.quads + header.edges + header.faces);
-  return words * 9 + rows * 48 + items * 80 + (std::uint64_t{64} << 20);
+  const std::uint64_t lattices = header.profile == ExaProfile::kPaper ? paper_sign_memory(header.dims) : 0;
+  return words * 9 + rows * 48 + items * 80 + lattices + (std::uint64_t{64} << 20);
 }
 
 Result<std::string> exa_partitions_json(const PartitionTable& partitions) {

@@ -2,236 +2,304 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
-#include <cstdint>
-#include <numeric>
-#include <vector>
+#include <cmath>
+#include <glm/geometric.hpp>
 
-#include "core/base/budget.h"
+#include "core/base/parallel.h"
+#include "core/exa/bit_string.h"
+#include "core/exa/paper_words.h"
+#include "core/exa/vertex_order.h"
+#include "core/extract/extract.h"
+#include "core/relief/shape_class.h"
 
 namespace dubsar {
 namespace {
-/// Points 0..cells along each axis; those beyond the volume are outside.
-class Lattice {
- public:
-  explicit Lattice(const std::array<std::int64_t, 3>& cells)
-      : cells_(cells), signs_(Dims{cells[0] + 1, cells[1] + 1, cells[2] + 1}) {}
-  const std::array<std::int64_t, 3>& cells() const { return cells_; }
-  bool get(std::int64_t x, std::int64_t y, std::int64_t z) const { return signs_.get(x, y, z); }
-  void set(std::int64_t x, std::int64_t y, std::int64_t z, bool sign) { signs_.set(x, y, z, sign); }
-  /// Signs of the corners of a cell, x first.
-  unsigned corners(std::int64_t x, std::int64_t y, std::int64_t z) const {
-    unsigned found = 0;
-    for (unsigned c = 0; c < 8; ++c) found |= (get(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)) ? 1u : 0u) << c;
-    return found;
-  }
+constexpr double kMostSteps = 1 << 20;
+constexpr std::uint8_t kHasShapes = 1, kHasLight = 2, kHasPartitions = 4;
 
- private:
-  std::array<std::int64_t, 3> cells_;
-  BitVolume signs_;
-};
-
-/// Every second point.
-Lattice coarser(const Lattice& fine) {
-  Lattice coarse({fine.cells()[0] / 2, fine.cells()[1] / 2, fine.cells()[2] / 2});
-  for (std::int64_t z = 0; z <= coarse.cells()[2]; ++z)
-    for (std::int64_t y = 0; y <= coarse.cells()[1]; ++y)
-      for (std::int64_t x = 0; x <= coarse.cells()[0]; ++x) coarse.set(x, y, z, fine.get(2 * x, 2 * y, 2 * z));
-  return coarse;
+bool same_bits(const glm::vec3& a, const glm::vec3& b) {
+  return std::bit_cast<std::array<std::uint32_t, 3>>(a) == std::bit_cast<std::array<std::uint32_t, 3>>(b);
 }
 
-template <class Visit>
-void for_each_cell(const Lattice& lattice, const Visit& visit) {
-  for (std::int64_t z = 0; z < lattice.cells()[2]; ++z)
-    for (std::int64_t y = 0; y < lattice.cells()[1]; ++y)
-      for (std::int64_t x = 0; x < lattice.cells()[0]; ++x) visit(x, y, z);
+glm::vec3 placed(const glm::vec3& base, const std::array<std::int32_t, 3>& k) {
+  return glm::vec3(glm::dvec3(base) + kPaperStep * glm::dvec3(k[0], k[1], k[2]));
+}
+std::optional<std::array<std::int32_t, 3>> steps_to(const glm::vec3& base, const glm::vec3& wanted) {
+  std::array<std::int32_t, 3> k{};
+  for (int a = 0; a < 3; ++a) {
+    const double steps = (double{wanted[a]} - double{base[a]}) / kPaperStep;
+    if (!(std::abs(steps) <= kMostSteps)) return std::nullopt;
+    k[static_cast<std::size_t>(a)] = static_cast<std::int32_t>(std::lround(steps));
+  }
+  return k;
 }
 
-/// Octets of a cell by how often they follow its corners, on spheres of radius 6 to 60.
-class RankTable {
- public:
-  static const RankTable& instance() {
-    static const RankTable table;
-    return table;
+using Octahedral = std::array<std::int32_t, 2>;
+Octahedral octahedral_of(const glm::vec3& normal) {
+  const glm::dvec3 n(normal);
+  const double sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
+  if (!(sum > 0.0)) return {0, 0};
+  double x = n.x / sum, y = n.y / sum;
+  if (n.z < 0.0) {
+    const double fx = (1.0 - std::abs(y)) * (x < 0.0 ? -1.0 : 1.0), fy = (1.0 - std::abs(x)) * (y < 0.0 ? -1.0 : 1.0);
+    x = fx, y = fy;
   }
-  unsigned rank(unsigned corners, unsigned octet) const { return rank_[corners][octet]; }
-  unsigned octet(unsigned corners, unsigned rank) const { return octet_[corners][rank]; }
+  return {static_cast<std::int32_t>(std::lround(x * kPaperNormalSteps)),
+          static_cast<std::int32_t>(std::lround(y * kPaperNormalSteps))};
+}
+glm::vec3 normal_at(const Octahedral& o) {
+  double x = double(o[0]) / kPaperNormalSteps, y = double(o[1]) / kPaperNormalSteps;
+  const double z = 1.0 - std::abs(x) - std::abs(y);
+  if (z < 0.0) {
+    const double fx = (1.0 - std::abs(y)) * (x < 0.0 ? -1.0 : 1.0), fy = (1.0 - std::abs(x)) * (y < 0.0 ? -1.0 : 1.0);
+    x = fx + 0.0, y = fy + 0.0;  // no -0: each normal has one form
+  }
+  const double length = std::sqrt(x * x + y * y + z * z);
+  return glm::vec3(static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length));
+}
+
+/// `columns` numbers an item, each as its difference to the one of the item before in the chunk.
+class Differences {
+ public:
+  explicit Differences(std::size_t columns) : before_(columns, 0) {}
+  void add(std::size_t column, std::int32_t value) {
+    numbers_.push_back(folded(value - before_[column]));
+    before_[column] = value;
+  }
+  std::span<const std::uint32_t> numbers() const { return numbers_; }
 
  private:
-  RankTable() {
-    std::vector<std::array<std::uint32_t, 256>> seen(256);
-    for (auto& row : seen) row.fill(0);
-    for (std::int64_t radius = 6; radius <= 60; radius += 3) {
-      Lattice sphere({128, 128, 128});
-      for_each_cell(sphere, [&](std::int64_t x, std::int64_t y, std::int64_t z) {
-        const std::int64_t dx = 2 * x - 127, dy = 2 * y - 127, dz = 2 * z - 127;
-        sphere.set(x, y, z, dx * dx + dy * dy + dz * dz < 4 * radius * radius);
-      });
-      const Lattice coarse = coarser(sphere);
-      for_each_cell(coarse, [&](std::int64_t x, std::int64_t y, std::int64_t z) {
-        const unsigned corners = coarse.corners(x, y, z);
-        if (corners != 0 && corners != 255) ++seen[corners][sphere.corners(2 * x, 2 * y, 2 * z)];
-      });
-    }
-    for (unsigned corners = 0; corners < 256; ++corners) {
-      std::array<std::uint8_t, 256>& order = octet_[corners];
-      std::iota(order.begin(), order.end(), std::uint8_t{0});
-      // Never seen: those that differ least from the corners first.
-      std::stable_sort(order.begin(), order.end(), [&](std::uint8_t a, std::uint8_t b) {
-        return seen[corners][a] != seen[corners][b] ? seen[corners][a] > seen[corners][b]
-                                                    : std::popcount(a ^ corners) < std::popcount(b ^ corners);
-      });
-      for (unsigned r = 0; r < 256; ++r) rank_[corners][order[r]] = static_cast<std::uint8_t>(r);
-    }
-  }
-  std::array<std::array<std::uint8_t, 256>, 256> rank_{}, octet_{};
+  std::vector<std::int32_t> before_;
+  std::vector<std::uint32_t> numbers_;
 };
 
-/// Ranks in 2 bits, or 3 and 4 bits more, or 15 and 8 bits more; other numbers in groups of 7 bits.
-class BitWriter {
- public:
-  void bits(std::uint64_t value, int count) {
-    for (int b = 0; b < count; ++b, ++size_) {
-      if (size_ % 8 == 0) bytes_.push_back('\0');
-      bytes_.back() = static_cast<char>(bytes_.back() | static_cast<char>((value >> b & 1) << size_ % 8));
+/// For every chunk of `columns` numbers an item: item(i, values).
+template <std::size_t Columns, class Item>
+Result<void> for_each_item(std::span<const std::string_view> chunks, std::size_t items, PaperWord word,
+                           std::string_view what, Progress& progress, const Item& item) {
+  if (static_cast<std::int64_t>(chunks.size()) != item_chunks(static_cast<std::int64_t>(items)))
+    return fail(ErrorKind::kBadData, "exa: {} chunks of {} found, {} expected", chunks.size(), what,
+                item_chunks(static_cast<std::int64_t>(items)));
+  std::atomic<bool> broken{false};
+  parallel_for(static_cast<std::int64_t>(chunks.size()), 1, [&](std::int64_t c) {
+    if (progress.cancelled()) return;
+    const std::size_t first = static_cast<std::size_t>(c * kItemsPerChunk),
+                      end = std::min(first + static_cast<std::size_t>(kItemsPerChunk), items);
+    const auto numbers = unpack_words(chunks[static_cast<std::size_t>(c)], Columns * (end - first), word, what);
+    if (!numbers) {
+      broken = true;
+      return;
     }
-  }
-  void rank(unsigned rank) {
-    bits(std::min(rank, 3u), 2);
-    if (rank >= 3) bits(std::min(rank - 3, 15u), 4);
-    if (rank >= 18) bits(rank - 18, 8);
-  }
-  void number(std::uint64_t n) {
-    for (; n >= 128; n >>= 7) bits((n & 127) | 128, 8);
-    bits(n, 8);
-  }
-  std::string take() { return std::move(bytes_); }
-
- private:
-  std::string bytes_;
-  std::size_t size_ = 0;
-};
-class BitReader {
- public:
-  explicit BitReader(std::string_view bytes) : bytes_(bytes) {}
-  std::uint64_t bits(int count) {
-    std::uint64_t value = 0;
-    for (int b = 0; b < count; ++b, ++at_)
-      if (at_ / 8 < bytes_.size())
-        value |= std::uint64_t{static_cast<unsigned char>(bytes_[at_ / 8]) >> at_ % 8 & 1u} << b;
-    return value;
-  }
-  unsigned rank() {
-    auto rank = static_cast<unsigned>(bits(2));
-    if (rank == 3) rank += static_cast<unsigned>(bits(4));
-    if (rank == 18) rank += static_cast<unsigned>(bits(8));
-    return std::min(rank, 255u);
-  }
-  std::uint64_t number() {
-    std::uint64_t n = 0;
-    for (int shift = 0; shift < 63; shift += 7) {
-      const std::uint64_t byte = bits(8);
-      n |= (byte & 127) << shift;
-      if (byte < 128) break;
+    std::array<std::uint32_t, Columns> sum{};
+    std::array<std::int32_t, Columns> values{};
+    for (std::size_t i = first; i < end; ++i) {
+      for (std::size_t k = 0; k < Columns; ++k) {
+        sum[k] += static_cast<std::uint32_t>(unfolded((*numbers)[(i - first) * Columns + k]));
+        values[k] = static_cast<std::int32_t>(sum[k]);
+      }
+      item(i, values);
     }
-    return n;
-  }
-  bool past_end() const { return at_ > 8 * bytes_.size(); }
-
- private:
-  std::string_view bytes_;
-  std::size_t at_ = 0;
-};
-
-/// Levels until one cell is left along the shortest axis; cells of the finest lattice.
-std::array<std::int64_t, 3> padded(const Dims& dims, int& levels) {
-  const std::int64_t longest = std::max({dims.x, dims.y, dims.z});
-  levels = std::min(6, static_cast<int>(std::bit_width(static_cast<std::uint64_t>(longest))));
-  const std::int64_t step = std::int64_t{1} << levels;
-  const auto up = [&](std::int64_t n) { return (n + step - 1) / step * step; };
-  return {up(dims.x), up(dims.y), up(dims.z)};
+  });
+  if (progress.cancelled()) return cancelled_error();
+  if (broken) return fail(ErrorKind::kBadData, "exa: a chunk of {} has another length than its numbers", what);
+  return {};
 }
 }  // namespace
 
-std::string encode_signs_as_paper(const BitVolume& signs) {
-  const RankTable& table = RankTable::instance();
-  int levels = 0;
-  std::vector<Lattice> lattices{Lattice(padded(signs.dims(), levels))};
-  for (std::int64_t z = 0; z < signs.dims().z; ++z)
-    for (std::int64_t y = 0; y < signs.dims().y; ++y)
-      for (std::int64_t x = 0; x < signs.dims().x; ++x) lattices[0].set(x, y, z, signs.get(x, y, z));
-  for (int level = 0; level < levels; ++level) lattices.push_back(coarser(lattices.back()));
-  BitWriter out;
-  const Lattice& top = lattices.back();
-  for_each_cell(top, [&](auto x, auto y, auto z) { out.bits(top.get(x, y, z) ? 1 : 0, 1); });
-  for (int level = levels; level-- > 0;) {
-    const Lattice &fine = lattices[static_cast<std::size_t>(level)],
-                  &coarse = lattices[static_cast<std::size_t>(level) + 1];
-    std::vector<std::uint64_t> hidden;
-    std::uint64_t number = 0, last = 0;
-    for_each_cell(coarse, [&](auto x, auto y, auto z) {
-      const unsigned corners = coarse.corners(x, y, z);
-      if (corners == 0 || corners == 255) {
-        if (fine.corners(2 * x, 2 * y, 2 * z) != corners) {
-          hidden.push_back(number - last);
-          last = number;
-        }
-      }
-      ++number;
-    });
-    out.number(hidden.size());
-    for (const std::uint64_t gap : hidden) out.number(gap);
-    number = last = 0;
-    std::size_t next = 0;
-    for_each_cell(coarse, [&](auto x, auto y, auto z) {
-      const unsigned corners = coarse.corners(x, y, z), octet = fine.corners(2 * x, 2 * y, 2 * z);
-      const bool listed = next < hidden.size() && number == last + hidden[next];
-      if (listed) last = number, ++next;
-      if (listed || (corners != 0 && corners != 255)) out.rank(table.rank(corners, octet));
-      ++number;
-    });
+Result<SettleStats> settle_for_paper(SurfaceModel& model, const SettleOptions& options, Progress& progress) {
+  SettleStats stats;
+  DUBSAR_ASSIGN(const QuadMesh base, build_quad_mesh(model.samples, progress));
+  if (base.positions.size() != model.mesh.positions.size() || base.quads != model.mesh.quads)
+    return fail(ErrorKind::kInternal, "exa: the mesh of {} vertices is not the one that the samples give ({} vertices)",
+                model.mesh.positions.size(), base.positions.size());
+  VertexAttributes& a = model.attributes;
+  std::vector<double> errors;
+  errors.reserve(base.positions.size());
+  for (std::size_t v = 0; v < base.positions.size(); ++v) {
+    const glm::vec3 wanted = model.mesh.positions[v];
+    if (const auto k = steps_to(base.positions[v], wanted)) model.mesh.positions[v] = placed(base.positions[v], *k);
+    errors.push_back(glm::length(glm::dvec3(model.mesh.positions[v]) - glm::dvec3(wanted)));
+    stats.mean_error_vox += errors.back();
   }
-  return out.take();
+  if (!errors.empty()) {
+    stats.mean_error_vox /= static_cast<double>(errors.size());
+    std::sort(errors.begin(), errors.end());
+    stats.p95_error_vox = errors[errors.size() * 95 / 100];
+    stats.max_error_vox = errors.back();
+  }
+  if (options.exact_normals || a.normals.empty()) return stats;
+  double angles = 0.0;
+  for (glm::vec3& n : a.normals) {
+    const glm::vec3 moved = normal_at(octahedral_of(n));
+    angles += std::acos(std::clamp<double>(glm::dot(glm::dvec3(moved), glm::dvec3(n)), -1.0, 1.0));
+    n = moved;
+  }
+  stats.normal_error_deg = angles / std::max(1.0, static_cast<double>(a.normals.size())) * 57.29577951308232;
+  if (a.k_min.empty()) return stats;
+  DUBSAR_ASSIGN(Curvatures k, principal_curvatures(model.mesh, a.normals, options.curvature, progress));
+  a.k_min = std::move(k.k_min);
+  a.k_max = std::move(k.k_max);
+  if (a.shape.empty()) return stats;
+  const std::vector<std::uint8_t> shapes = shape_classes(a.k_min, a.k_max);
+  std::int64_t changed = 0;
+  for (std::size_t v = 0; v < shapes.size(); ++v) changed += shapes[v] != a.shape[v];
+  stats.shape_changed_fraction = static_cast<double>(changed) / std::max(1.0, static_cast<double>(shapes.size()));
+  a.shape = shapes;
+  return stats;
 }
 
-Result<BitVolume> decode_signs_as_paper(std::string_view bytes, const Dims& dims) {
-  const RankTable& table = RankTable::instance();
-  int levels = 0;
-  std::array<std::int64_t, 3> cells = padded(dims, levels);
+std::optional<std::vector<std::string>> encode_paper_positions(std::span<const glm::vec3> base,
+                                                               std::span<const glm::vec3> moved, Progress& progress) {
+  std::atomic<bool> possible{true};
+  auto chunks =
+      encode_item_chunks(static_cast<std::int64_t>(base.size()), progress, [&](std::uint32_t first, std::uint32_t end) {
+        Differences numbers(3);
+        for (std::uint32_t v = first; v < end; ++v) {
+          const auto k = steps_to(base[v], moved[v]);
+          if (!k || !same_bits(placed(base[v], *k), moved[v])) {
+            possible = false;
+            return std::string();
+          }
+          for (std::size_t c = 0; c < 3; ++c) numbers.add(c, (*k)[c]);
+        }
+        return pack_words(numbers.numbers(), PaperWord::k64);
+      });
+  if (!possible) return std::nullopt;
+  return chunks;
+}
+
+Result<void> decode_paper_positions(std::span<const std::string_view> chunks, std::vector<glm::vec3>& positions,
+                                    Progress& progress) {
+  return for_each_item<3>(
+      chunks, positions.size(), PaperWord::k64, "places", progress,
+      [&](std::size_t v, const std::array<std::int32_t, 3>& k) { positions[v] = placed(positions[v], k); });
+}
+
+std::optional<std::vector<std::string>> encode_paper_normals(std::span<const glm::vec3> normals, Progress& progress) {
+  std::atomic<bool> possible{true};
+  auto chunks = encode_item_chunks(static_cast<std::int64_t>(normals.size()), progress,
+                                   [&](std::uint32_t first, std::uint32_t end) {
+                                     Differences numbers(2);
+                                     for (std::uint32_t v = first; v < end; ++v) {
+                                       const Octahedral o = octahedral_of(normals[v]);
+                                       if (!same_bits(normal_at(o), normals[v])) {
+                                         possible = false;
+                                         return std::string();
+                                       }
+                                       for (std::size_t c = 0; c < 2; ++c) numbers.add(c, o[c]);
+                                     }
+                                     return pack_words(numbers.numbers(), PaperWord::k128);
+                                   });
+  if (!possible) return std::nullopt;
+  return chunks;
+}
+
+Result<std::vector<glm::vec3>> decode_paper_normals(std::span<const std::string_view> chunks, std::size_t vertices,
+                                                    Progress& progress) {
+  std::vector<glm::vec3> normals(vertices);
+  std::atomic<bool> outside{false};
   DUBSAR_TRY(
-      check_memory("exa signs", static_cast<std::uint64_t>((cells[0] + 64) * (cells[1] + 1) * (cells[2] + 1)) / 2));
-  for (std::int64_t& c : cells) c >>= levels;
-  BitReader in(bytes);
-  Lattice coarse(cells);
-  for_each_cell(coarse, [&](auto x, auto y, auto z) { coarse.set(x, y, z, in.bits(1) != 0); });
-  for (int level = levels; level-- > 0;) {
-    for (std::int64_t& c : cells) c *= 2;
-    Lattice fine(cells);
-    const std::uint64_t count = in.number();
-    if (count > 8 * bytes.size())
-      return fail(ErrorKind::kBadData, "exa: {} hidden cells in {} bytes", count, bytes.size());
-    std::vector<std::uint64_t> hidden(count);
-    for (std::uint64_t& gap : hidden) gap = in.number();
-    std::uint64_t number = 0, last = 0;
-    std::size_t next = 0;
-    for_each_cell(coarse, [&](auto x, auto y, auto z) {
-      const unsigned corners = coarse.corners(x, y, z);
-      const bool listed = next < hidden.size() && number == last + hidden[next];
-      if (listed) last = number, ++next;
-      unsigned octet = corners;
-      if (listed || (corners != 0 && corners != 255)) octet = table.octet(corners, in.rank());
-      for (unsigned c = 0; c < 8; ++c)
-        fine.set(2 * x + (c & 1), 2 * y + (c >> 1 & 1), 2 * z + (c >> 2), (octet >> c & 1) != 0);
-      ++number;
-    });
-    coarse = std::move(fine);
+      for_each_item<2>(chunks, vertices, PaperWord::k128, "normals", progress, [&](std::size_t v, const Octahedral& o) {
+        if (std::max(std::abs(std::int64_t{o[0]}), std::abs(std::int64_t{o[1]})) > kPaperNormalSteps)
+          outside = true;
+        else
+          normals[v] = normal_at(o);
+      }));
+  if (outside)
+    return fail(ErrorKind::kBadData, "exa: a normal lies outside of the octahedron of {} steps", kPaperNormalSteps);
+  return normals;
+}
+
+std::vector<std::string> encode_paper_bits(std::span<const std::uint16_t> numbers, int bits, Progress& progress) {
+  return encode_item_chunks(static_cast<std::int64_t>(numbers.size()), progress,
+                            [&](std::uint32_t first, std::uint32_t end) {
+                              BitWriter out;
+                              for (std::uint32_t i = first; i < end; ++i) out.bits(numbers[i], bits);
+                              return out.take();
+                            });
+}
+
+Result<void> decode_paper_bits(std::span<const std::string_view> chunks, int bits, std::string_view what,
+                               std::span<std::uint16_t> numbers) {
+  if (static_cast<std::int64_t>(chunks.size()) != item_chunks(static_cast<std::int64_t>(numbers.size())))
+    return fail(ErrorKind::kBadData, "exa: {} chunks of {} found, {} expected", chunks.size(), what,
+                item_chunks(static_cast<std::int64_t>(numbers.size())));
+  for (std::size_t c = 0; c < chunks.size(); ++c) {
+    const std::span<std::uint16_t> own =
+        numbers.subspan(c * kItemsPerChunk, std::min<std::size_t>(kItemsPerChunk, numbers.size() - c * kItemsPerChunk));
+    if (chunks[c].size() != (own.size() * static_cast<std::size_t>(bits) + 7) / 8)
+      return fail(ErrorKind::kBadData, "exa: {} bytes of {} {} found, {} expected", chunks[c].size(), own.size(), what,
+                  (own.size() * static_cast<std::size_t>(bits) + 7) / 8);
+    BitReader in(chunks[c]);
+    for (std::uint16_t& n : own) n = static_cast<std::uint16_t>(in.bits(bits));
   }
-  if (in.past_end()) return fail(ErrorKind::kBadData, "exa: the code of the signs is cut off");
-  BitVolume signs(dims);
-  for (std::int64_t z = 0; z < dims.z; ++z)
-    for (std::int64_t y = 0; y < dims.y; ++y)
-      for (std::int64_t x = 0; x < dims.x; ++x) signs.set(x, y, z, coarse.get(x, y, z));
-  return signs;
+  return {};
+}
+
+PaperWords encode_paper_words(const SurfaceModel& model, bool shapes, Progress& progress) {
+  const VertexAttributes& a = model.attributes;
+  shapes = shapes && !a.shape.empty();
+  PaperWords code;
+  const std::uint8_t has = static_cast<std::uint8_t>((shapes ? kHasShapes : 0) | (a.ao.empty() ? 0 : kHasLight) |
+                                                     (model.quad_partition.empty() ? 0 : kHasPartitions));
+  if (has == 0) return code;
+  std::vector<std::uint16_t> words(model.mesh.positions.size(), 0);
+  for (std::uint32_t v = 0; v < words.size(); ++v) {
+    unsigned word = (shapes ? a.shape[v] : 0u) | (a.ao.empty() ? 0u : unsigned{a.ao[v]} << 7);
+    const auto quads = model.mesh.quads_of(v);
+    if (!model.quad_partition.empty() && !quads.empty()) word |= unsigned{model.quad_partition[quads[0]]} << 13;
+    words[v] = static_cast<std::uint16_t>(word);
+  }
+  code.words = encode_paper_bits(words, 16, progress);
+  code.words.insert(code.words.begin(), std::string(1, static_cast<char>(has)));
+  if (model.quad_partition.empty()) return code;
+  std::uint64_t count = 0, last = 0;
+  BitWriter list, out;
+  for (std::uint64_t q = 0; q < model.mesh.quads.size(); ++q) {
+    if (words[model.mesh.quads[q][0]] >> 13 == model.quad_partition[q]) continue;
+    list.number(q - last);
+    list.number(model.quad_partition[q]);
+    last = q;
+    ++count;
+  }
+  out.number(count);
+  code.exceptions = {out.take() + list.take()};
+  return code;
+}
+
+Result<void> decode_paper_words(std::span<const std::string_view> words, std::span<const std::string_view> exceptions,
+                                SurfaceModel& model) {
+  if (words.empty() || words[0].size() != 1 || words[0][0] < 1 || words[0][0] > 7)
+    return fail(ErrorKind::kBadData, "exa: the words of the vertices do not say what they hold");
+  const auto has = static_cast<unsigned>(words[0][0]);
+  std::vector<std::uint16_t> found(model.mesh.positions.size());
+  DUBSAR_TRY(decode_paper_bits(words.subspan(1), 16, "words", found));
+  VertexAttributes& a = model.attributes;
+  if (has & kHasShapes) a.shape.reserve(found.size());
+  if (has & kHasLight) a.ao.reserve(found.size());
+  for (const std::uint16_t word : found) {
+    if ((word & 127) > 126) return fail(ErrorKind::kBadData, "exa: shape class 127 found, expected at most 126");
+    if (has & kHasShapes) a.shape.push_back(static_cast<std::uint8_t>(word & 127));
+    if (has & kHasLight) a.ao.push_back(static_cast<std::uint8_t>(word >> 7 & 63));
+  }
+  if (!(has & kHasPartitions)) return {};
+  model.quad_partition.reserve(model.mesh.quads.size());
+  for (const auto& quad : model.mesh.quads)
+    model.quad_partition.push_back(static_cast<std::uint8_t>(found[quad[0]] >> 13));
+  if (exceptions.size() != 1)
+    return fail(ErrorKind::kBadData, "exa: {} lists of x-quads found, 1 expected", exceptions.size());
+  BitReader in(exceptions[0]);
+  std::uint64_t at = 0;
+  for (std::uint64_t left = in.number(); left > 0; --left) {
+    at += in.number();
+    const std::uint64_t partition = in.number();
+    if (in.past_end() || at >= model.mesh.quads.size() || partition > PartitionTable::kHighest)
+      return fail(ErrorKind::kBadData, "exa: the list of x-quads with another partition is damaged");
+    model.quad_partition[at] = static_cast<std::uint8_t>(partition);
+  }
+  return {};
 }
 
 }  // namespace dubsar

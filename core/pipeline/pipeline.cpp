@@ -36,7 +36,7 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   settling.curvature = options.curvature;
   DUBSAR_ASSIGN(SettledModel settled, settle(assemble(denoised.grid.frame, std::move(sampled.samples),
                                                       std::move(smoothed.mesh), std::move(smoothed.attributes)),
-                                             settling, run));
+                                             settling, options.exa_profile, run));
   DUBSAR_ASSIGN(SeparatedModel separated, separate(std::move(settled.model), options.segment, options.fill_holes, run));
   PipelineResult result{std::move(separated.model), {}};
   std::optional<ContactReport> contact;
@@ -61,10 +61,10 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   return result;
 }
 
-Result<void> write_product(const std::string& path, PipelineResult& result, Progress& progress) {
+Result<void> write_product(const std::string& path, PipelineResult& result, ExaProfile profile, Progress& progress) {
   StageClock clock;
   clock.start("write", "byte");
-  DUBSAR_ASSIGN(result.report.exa, write_exa(path, result.model, progress));
+  DUBSAR_ASSIGN(result.report.exa, write_exa(path, result.model, progress, profile));
   clock.finish(static_cast<std::int64_t>(result.report.exa.bytes));
   result.report.stages.push_back(clock.records().back());
   return {};

@@ -22,6 +22,7 @@ struct PipelineOptions {
   SmoothOptions smooth;
   CurvatureMethod curvature = CurvatureMethod::kFit;
   SettleOptions settle;  ///< its curvature method is the one above
+  ExaProfile exa_profile = ExaProfile::kCompact;
   SegmentOptions segment;
   bool fill_holes = true;
   bool trace_contact = true;                                       ///< on the scan's grid and with filled holes only
@@ -38,7 +39,7 @@ struct PipelineResult {
 Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& progress);
 
 /// Writes the model to `path` (as one more stage) and completes the report. An old file stays until the new one is
-/// whole.
-Result<void> write_product(const std::string& path, PipelineResult& result, Progress& progress);
+/// whole. `profile`: that of the options of the run.
+Result<void> write_product(const std::string& path, PipelineResult& result, ExaProfile profile, Progress& progress);
 
 }  // namespace dubsar

@@ -27,6 +27,7 @@ json parameters_json(const PipelineReport& report, const PipelineOptions& option
       {"threshold_method", options.threshold ? "given" : name_in(kThresholdMethods, options.estimate.method)},
       {"threshold", report.threshold.value},
       {"offset_bits", options.sample.offset_bits},
+      {"exa_profile", name_in(kExaProfiles, options.exa_profile)},
       {"boundary", options.sample.closed ? "closed" : "open"},
       {"normal_iterations", options.smooth.normals.iterations},
       {"vertex_iterations", options.smooth.vertex_iterations},

@@ -2,6 +2,7 @@
 
 #include "core/base/log.h"
 #include "core/exa/attributes.h"
+#include "core/exa/paper_profile.h"
 #include "core/exa/patches.h"
 #include "core/extract/extract.h"
 #include "core/parts/enclosure.h"
@@ -39,10 +40,11 @@ Result<SmoothedMesh> smooth_and_measure(QuadMesh mesh, const SmoothOptions& opti
   return smoothed;
 }
 
-Result<SettledModel> settle(SurfaceModel model, const SettleOptions& options, StageRun run) {
+Result<SettledModel> settle(SurfaceModel model, const SettleOptions& options, ExaProfile profile, StageRun run) {
   SettledModel settled{std::move(model), {}};
   run.clock.start("settle", "vertex");
-  DUBSAR_ASSIGN(settled.stats, settle_for_exa(settled.model, options, run.progress));
+  DUBSAR_ASSIGN(settled.stats, profile == ExaProfile::kPaper ? settle_for_paper(settled.model, options, run.progress)
+                                                             : settle_for_exa(settled.model, options, run.progress));
   run.clock.finish(settled.model.mesh.vertex_count());
   return settled;
 }

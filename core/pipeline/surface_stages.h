@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "core/exa/exa_text.h"
 #include "core/exa/settle.h"
 #include "core/mesh/mesh_check.h"
 #include "core/parts/holes.h"
@@ -31,8 +32,8 @@ struct SettledModel {
   SurfaceModel model;
   SettleStats stats;
 };
-/// From here on the model is what the file will hold.
-Result<SettledModel> settle(SurfaceModel model, const SettleOptions& options, StageRun run);
+/// From here on the model is what a file of this profile will hold.
+Result<SettledModel> settle(SurfaceModel model, const SettleOptions& options, ExaProfile profile, StageRun run);
 
 struct SeparatedModel {
   SurfaceModel model;

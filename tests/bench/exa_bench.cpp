@@ -16,7 +16,7 @@
 #include "core/exa/chunks.h"
 #include "core/exa/exa_file.h"
 #include "core/exa/offsets.h"
-#include "core/exa/paper_profile.h"
+#include "core/exa/paper_signs.h"
 #include "core/exa/topology.h"
 #include "core/extract/extract.h"
 #include "tests/bench/exa_peers.h"
@@ -92,8 +92,9 @@ std::size_t bytes_of(const std::vector<std::string>& chunks) { return join_chunk
 void print_samples(const std::string& name, const SurfaceSamples& samples) {
   SilentProgress progress;
   const double vertices = static_cast<double>(build_quad_mesh(samples, progress).value().vertex_count());
-  const std::string paper = encode_signs_as_paper(samples.signs);
-  const auto paper_back = decode_signs_as_paper(paper, samples.dims);
+  const std::vector<std::string> paper = encode_signs_as_paper(samples.signs);
+  const std::vector<std::string_view> paper_chunks(paper.begin(), paper.end());
+  const auto paper_back = decode_signs_as_paper(paper_chunks, samples.dims);
   SignCode signs;
   SampleCode code;
   const Seconds encode_s = best_of_three([&] {
@@ -118,7 +119,7 @@ void print_samples(const std::string& name, const SurfaceSamples& samples) {
   same = same && back == samples && paper_back && *paper_back == samples.signs;
   const double all = 8.0 * static_cast<double>(sign_bytes + bytes_of(code.offsets) + bytes_of(code.faces));
   fmt::print("{:<34}{:>10.0f}{:>9.4f}{:>9.4f}{:>10.4f}{}  {}\n", name, vertices,
-             8.0 * static_cast<double>(paper.size()) / vertices, 8.0 * static_cast<double>(sign_bytes) / vertices,
+             8.0 * static_cast<double>(bytes_of(paper)) / vertices, 8.0 * static_cast<double>(sign_bytes) / vertices,
              all / vertices, speeds(vertices, encode_s, decode_s), same ? "lossless" : "DIFFERENT");
 }
 

@@ -120,9 +120,9 @@ inline std::string file_of(const std::vector<ExaBlock>& blocks, std::uint16_t ma
   return bytes + std::string(kExaEnd);
 }
 
-inline std::vector<ExaBlock> encoded(const SurfaceModel& model) {
+inline std::vector<ExaBlock> encoded(const SurfaceModel& model, ExaProfile profile = ExaProfile::kCompact) {
   SilentProgress progress;
-  auto blocks = encode_exa(model, progress);
+  auto blocks = encode_exa(model, progress, profile);
   EXPECT_TRUE(blocks) << blocks.error().message;
   return blocks ? *blocks : std::vector<ExaBlock>();
 }

@@ -6,7 +6,6 @@
 #include <random>
 
 #include "core/base/parallel.h"
-#include "core/exa/paper_profile.h"
 
 namespace dubsar {
 namespace {
@@ -171,22 +170,6 @@ TEST(ExaTopology, DamagedCodesAreRefusedOrGiveAVolumeButNeverCrash) {
   EXPECT_EQ(decode_signs(borrowed(code), {65, 40, 970}, 0, std::nullopt, kAnyNumber, progress).error().kind,
             ErrorKind::kBadData);
   EXPECT_EQ(decode_signs(borrowed(code), dims, 0, std::nullopt, 100, progress).error().kind, ErrorKind::kBadData);
-}
-
-TEST(ExaTopology, ThePapersCodeIsLosslessAndTakesWhatThePaperPrints) {
-  std::mt19937 random(12);
-  for (const Dims& dims : kShapes)
-    for (const unsigned density : {2u, 500u}) {
-      const BitVolume signs = volume(dims, [&](auto, auto, auto) { return random() % 1000 < density; });
-      const auto back = decode_signs_as_paper(encode_signs_as_paper(signs), dims);
-      ASSERT_TRUE(back) << back.error().message;
-      ASSERT_TRUE(*back == signs);
-    }
-  const BitVolume signs = sphere(256);
-  const std::string code = encode_signs_as_paper(signs);
-  EXPECT_NEAR(8.0 * static_cast<double>(code.size()) / 248426.0, 0.87, 0.01);  // table 1: .869
-  EXPECT_TRUE(decode_signs_as_paper(code, signs.dims()).value() == signs);
-  EXPECT_EQ(decode_signs_as_paper(code.substr(0, 100), signs.dims()).error().kind, ErrorKind::kBadData);
 }
 
 }  // namespace
