@@ -2,6 +2,7 @@
 // What commands act on: the document with its history, what is open on the desk, and the place they are given in.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,8 +48,8 @@ class Workplace {
   virtual Reach reach_to_viewer() = 0;
   /// What is seen as a picture, `factor` times as large as in the window. Says where it is.
   virtual Result<void> picture(const std::string& path, int factor) = 0;
-  /// Shows the document's film from its beginning, or stops it.
-  virtual Result<void> play_film() = 0;
+  /// Shows the document's film from its beginning, or stops it; `from_s`: from then on, whether or not it is shown now.
+  virtual Result<void> play_film(std::optional<double> from_s) = 0;
 };
 
 /// How a view that a command changed is gone to.

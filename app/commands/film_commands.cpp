@@ -9,7 +9,7 @@
 namespace dubsar::app {
 namespace {
 
-constexpr double kUsualStepS = 2.0, kLongestS = 3600.0;
+constexpr double kUsualStepS = 2.0, kShortestS = 0.05, kLongestS = 3600.0;
 
 bool has_film(const Editor& editor) { return !editor.document().keyframes.empty(); }
 
@@ -52,9 +52,60 @@ Command on_keyframe(std::string name, std::string words, void (*change)(Document
 }
 
 Command play() {
-  Command out{"play", "Film", "show the film, or stop it", {{"shift+space"}}};
+  Command out{"play", "Film", "show the film, or stop it", {{"shift+space"}}, "number of a keyframe to begin with"};
+  out.optional = true;
   out.enabled = [](const Editor& editor) { return editor.document().keyframes.size() > 1; };
-  out.run = [](Editor& editor, const std::string&) { return editor.place().play_film(); };
+  out.run = [](Editor& editor, const std::string& text) -> Result<void> {
+    if (text.empty()) return editor.place().play_film(std::nullopt);
+    const auto& keys = editor.document().keyframes;
+    DUBSAR_ASSIGN(const std::size_t at, place_argument("play", text, keys.size()));
+    return editor.place().play_film(keys[at].time_s - keys.front().time_s);
+  };
+  return out;
+}
+
+/// Looks change places, times stay: a move back undoes it.
+Command move_keyframe() {
+  Command out{
+      "move_keyframe", "Film", "bring a keyframe to another place of the film", {}, "its number and the place's"};
+  out.enabled = has_film;
+  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+    const auto [which, where] = first_word(text);
+    Document next = editor.document();
+    auto& keys = next.keyframes;
+    DUBSAR_ASSIGN(const std::size_t from, place_argument("move_keyframe", which, keys.size()));
+    DUBSAR_ASSIGN(const std::size_t to, place_argument("move_keyframe", where, keys.size()));
+    std::vector<double> times;
+    for (const Keyframe& key : keys) times.push_back(key.time_s);
+    const auto at = [&](std::size_t i) { return keys.begin() + static_cast<std::ptrdiff_t>(i); };
+    if (from < to) std::rotate(at(from), at(from + 1), at(to + 1));
+    if (to < from) std::rotate(at(to), at(from), at(from + 1));
+    for (std::size_t i = 0; i < keys.size(); ++i) keys[i].time_s = times[i];
+    editor.change(std::move(next), why);
+    return {};
+  };
+  return out;
+}
+
+/// The keyframes behind it go on as they did, earlier or later.
+Command keyframe_seconds() {
+  Command out{
+      "keyframe_seconds", "Film", "how long it takes from a keyframe to the next", {}, "its number and seconds"};
+  out.enabled = [](const Editor& editor) { return editor.document().keyframes.size() > 1; };
+  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+    const auto [which, seconds] = first_word(text);
+    Document next = editor.document();
+    auto& keys = next.keyframes;
+    DUBSAR_ASSIGN(const std::size_t at, place_argument("keyframe_seconds", which, keys.size()));
+    if (at + 1 == keys.size())
+      return fail(ErrorKind::kUsage, "keyframe_seconds: {} is the last keyframe, expected one with another behind it",
+                  at + 1);
+    DUBSAR_ASSIGN(const double wanted, number_argument("keyframe_seconds", seconds, kShortestS, kLongestS));
+    const double later = wanted - (keys[at + 1].time_s - keys[at].time_s);
+    for (std::size_t i = at + 1; i < keys.size(); ++i) keys[i].time_s += later;
+    editor.change(std::move(next), why);
+    return {};
+  };
   return out;
 }
 
@@ -80,6 +131,11 @@ std::vector<Command> film_commands() {
   out.push_back(on_keyframe("delete_keyframe", "take a keyframe away", [](Document& next, std::size_t at) {
     next.keyframes.erase(next.keyframes.begin() + static_cast<std::ptrdiff_t>(at));
   }));
+  out.push_back(on_keyframe(
+      "replace_keyframe", "what is seen takes the place of a keyframe",
+      [](Document& next, std::size_t at) { next.keyframes[at] = keyframe_of(next, next.keyframes[at].time_s); }));
+  out.push_back(move_keyframe());
+  out.push_back(keyframe_seconds());
   out.push_back(play());
   out.push_back(write_film());
   return out;

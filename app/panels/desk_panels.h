@@ -2,6 +2,7 @@
 // What stands around the surface in a window: a line above it, tools at its left, the strip of sides below it, drawers
 // at its right, and all commands by typing. Panels never change anything: they post commands.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -25,9 +26,11 @@ struct PanelState {
   Document document{};
   Desk desk{};
   EvidenceShares evidence{};
-  bool playing = false;    ///< the document's film
-  double mm_per_px = 0.0;  ///< of the object, in its middle, by pixels of the layout; 0: no scale bar
-  bool faint = false;      ///< something moves: the surface owns the window
+  bool playing = false;                     ///< the document's film
+  std::vector<std::uint32_t> thumbnails{};  ///< names of textures, one for each keyframe; 0: not made yet
+  double thumbnail_aspect = 1.6;            ///< their width by their height
+  double mm_per_px = 0.0;                   ///< of the object, in its middle, by pixels of the layout; 0: no scale bar
+  bool faint = false;                       ///< something moves: the surface owns the window
   friend bool operator==(const PanelState&, const PanelState&) = default;
 };
 

@@ -107,21 +107,4 @@ void draw_cuts(const Board& desk) {
   explain(desk, "fog");
 }
 
-void draw_film(const Board& desk) {
-  button(desk, "add what is seen", "keyframe", false);
-  ImGui::SameLine();
-  button(desk, desk.state.playing ? "stop" : "play", "play", desk.state.playing,
-         desk.state.document.keyframes.size() > 1);
-  if (desk.state.document.keyframes.empty())
-    say_dim("Turn, light and lift as it shall be, and add it; go on with the next.");
-  for (std::size_t i = 0; i < desk.state.document.keyframes.size(); ++i) {
-    ImGui::PushID(static_cast<int>(i));
-    button(desk, fmt::format("{:.1f} s", desk.state.document.keyframes[i].time_s).c_str(),
-           fmt::format("go_to_keyframe {}", i + 1), false);
-    ImGui::SameLine();
-    button(desk, "x", fmt::format("delete_keyframe {}", i + 1), false);
-    ImGui::PopID();
-  }
-}
-
 }  // namespace dubsar::app

@@ -132,6 +132,10 @@ class Stage {
   /// seen from the middle of the eyes. kUsage: more than 16384 pixels on a side; kTryAgain.
   Result<Image> still(int factor);
 
+  /// `shown` as small as a thumbnail, with as many triangles as that needs; what the stage shows stays as it is.
+  /// Between a coarse picture and its exact one it is refused (kTryAgain).
+  Result<Image> thumbnail(const Shown& shown, int height);
+
   /// Where the object stands that was shown last: from mm of the model to mm of the screen.
   glm::dmat4 screen_from_model() const;
   /// Of what it was made with, in the model's frame.

@@ -1,6 +1,7 @@
 // Pictures of a stage that are not those of its display: stills, and pictures that exist already.
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/viewer/stage_parts.h"
 #include "display/render/test_pattern.h"
@@ -51,6 +52,27 @@ Result<Image> Stage::still(int factor) {
   }
   const auto drawn = p.object.renderer->render(p.scene(), std::span(&middle, 1), p.options.samples, array);
   p.painted = std::move(before);
+  if (!drawn) return tl::unexpected<Error>(drawn.error());
+  return array.read_layer(0);
+}
+
+Result<Image> Stage::thumbnail(const Shown& shown, int height) {
+  Parts& p = *parts_;
+  if (!p.has_mesh()) return fail(ErrorKind::kUsage, "thumbnail: there is no surface");
+  if (p.cost.coarse > 0) return fail(ErrorKind::kTryAgain, "thumbnail: a picture is being made exact");
+  const int width = std::max(1, static_cast<int>(std::lround(height * p.plane.window.x / p.plane.window.y)));
+  DUBSAR_ASSIGN(ViewArray array, ViewArray::create(width, height, 1));
+  const Parts::Next next = p.next;
+  const Parts::Painted painted = p.painted;
+  p.next.shown = shown;
+  p.next.viewer = p.viewer_at(FollowedEyes());
+  const std::span<const View> views = p.sink->views(p.next.viewer);
+  const View middle = views[views.size() / 2];
+  p.set_scene();
+  const auto drawn = p.object.multi ? p.object.multi->draw_moving(p.scene(), std::span(&middle, 1), array)
+                                    : p.object.renderer->render(p.scene(), std::span(&middle, 1), 1, array);
+  p.next = next;
+  p.painted = painted;
   if (!drawn) return tl::unexpected<Error>(drawn.error());
   return array.read_layer(0);
 }

@@ -8,6 +8,7 @@
 #include "app/commands/key_table.h"
 #include "app/document/document_file.h"
 #include "app/panels/overlay.h"
+#include "app/viewer/film_thumbnails.h"
 #include "app/viewer/picker.h"
 #include "app/viewer/presenter.h"
 #include "app/viewer/session_guide.h"
@@ -85,7 +86,7 @@ class Viewer final : public Workplace {
   Reach reach(const glm::dvec3& home_direction) override;
   Reach reach_to_viewer() override;
   Result<void> picture(const std::string& path, int factor) override;
-  Result<void> play_film() override;
+  Result<void> play_film(std::optional<double> from_s) override;
 
  private:
   struct Given {
@@ -111,6 +112,7 @@ class Viewer final : public Workplace {
   struct Progression {
     TimestampNs over_since = -1, help_made = -1;
     TimestampNs film_since = -1;  ///< while a film is shown
+    double film_from_s = 0.0;     ///< and how far it was then
     TimestampNs began = -1;       ///< when the first step was due at 0
     std::size_t steps = 0;        ///< how many were said
     std::optional<Error> failed;  ///< what became of one
@@ -122,6 +124,7 @@ class Viewer final : public Workplace {
   struct Tools {
     std::unique_ptr<LabelFont> font;
     EvidenceShares evidence;
+    FilmThumbnails thumbnails;
     std::optional<InputEvent> press;  ///< with a tool in the hand: it becomes a click, or a drag that turns
   };
   Viewer(const TriMesh& mesh, const ViewOptions& options, Presenter& presenter, const Clock& clock)
@@ -133,6 +136,7 @@ class Viewer final : public Workplace {
   Result<void> obey(std::string_view command, std::uint64_t merge);
   void say_steps(TimestampNs now);
   PanelState panel_state() const;
+  void add_thumbnails(PanelState& panels);
   void keep_up();
   void feed_worn();
   void follow();

@@ -5,6 +5,7 @@
 
 #include "app/commands/sides.h"
 #include "app/panels/state_page.h"
+#include "app/viewer/first_document.h"
 #include "app/viewer/viewer.h"
 
 namespace dubsar::app {
@@ -33,6 +34,17 @@ PanelState Viewer::panel_state() const {
   return out;
 }
 
+/// One at a time, while nothing else moves.
+void Viewer::add_thumbnails(PanelState& panels) {
+  const bool rests = !report_.moving && at_.film_since < 0 && !panels.faint;
+  panels.thumbnails = tools_.thumbnails.of(document().keyframes, *stage_, rests, [&](const Keyframe& key) {
+    Document seen = document();
+    show_keyframe(seen, key);
+    return shown_of(seen, view_of(seen), given_.options.stage, stage_->box_mm());
+  });
+  panels.thumbnail_aspect = stage_->window_mm().x / stage_->window_mm().y;
+}
+
 void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
   OverlayText text = overlay_->text();
   if (!desk().help) {
@@ -53,6 +65,7 @@ void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
   text.gallery = at_.guidance.picture;
   text.panels.reset();
   if ((desk().panels || desk().palette) && !desk().help) text.panels = panel_state();
+  if (text.panels && desk().drawer == "film") add_thumbnails(*text.panels);
   const TimestampNs age = now - notice_.since;
   if (notice_.since < 0 || age >= kNoticeNs) {
     text.notice.clear();

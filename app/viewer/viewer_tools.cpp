@@ -124,15 +124,16 @@ Result<void> Viewer::picture(const std::string& path, int factor) {
   return {};
 }
 
-Result<void> Viewer::play_film() {
-  at_.film_since = at_.film_since >= 0 ? -1 : given_.clock.now();
+Result<void> Viewer::play_film(std::optional<double> from_s) {
+  at_.film_since = at_.film_since >= 0 && !from_s ? -1 : given_.clock.now();
+  at_.film_from_s = from_s.value_or(0.0);
   return {};
 }
 
 /// The document as the film shows it now; its end is the film's end.
 Document Viewer::shown_document(TimestampNs now) {
   Document out = document();
-  const double since = 1e-9 * static_cast<double>(now - at_.film_since);
+  const double since = at_.film_from_s + 1e-9 * static_cast<double>(now - at_.film_since);
   if (out.keyframes.empty() || since > film_length_s(out.keyframes)) {
     at_.film_since = -1;
     return out;

@@ -49,12 +49,14 @@ class FakePlace final : public Workplace {
     pictures.push_back(fmt::format("{} x{}", path, factor));
     return {};
   }
-  Result<void> play_film() override {
+  Result<void> play_film(std::optional<double> from_s) override {
     ++plays;
+    played_from_s = from_s;
     return {};
   }
   std::vector<std::string> pictures;
   int plays = 0;
+  std::optional<double> played_from_s;
   int display = 0, retries = 0, recentred = 0;
   bool fullscreen = false, swapped = false, ended = false;
   std::vector<std::size_t> toggled;
@@ -106,6 +108,10 @@ inline std::vector<std::string> ways_to_say(const CommandTable& commands) {
                                       "write_annotations /nowhere/notes.jsonld",
                                       "go_to_keyframe 1",
                                       "delete_keyframe 1",
+                                      "replace_keyframe 2",
+                                      "move_keyframe 1 2",
+                                      "keyframe_seconds 1 0.75",
+                                      "play 2",
                                       "write_film /nowhere/film.json"};
   std::vector<std::string> out;
   for (const Command& command : commands.all()) {

@@ -179,6 +179,41 @@ TEST(MarkCommands, AFilmIsMadeOfWhatIsSeen) {
   fs::remove(file);
 }
 
+TEST(MarkCommands, KeyframesAreReplacedMovedTimedAndPlayedFrom) {
+  Bench bench;
+  for (const char* side : {"obverse", "bottom", "reverse", "top"}) {
+    bench.run(std::string("side ") + side);
+    bench.run("keyframe");
+  }
+  const auto film = bench.now().keyframes;
+  ASSERT_EQ(film.size(), 4u);
+  bench.run("move_keyframe 1 3");
+  const auto& moved = bench.now().keyframes;
+  EXPECT_EQ(moved[0].camera, film[1].camera);
+  EXPECT_EQ(moved[1].camera, film[2].camera);
+  EXPECT_EQ(moved[2].camera, film[0].camera);
+  EXPECT_EQ(moved[3].camera, film[3].camera);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(moved[i].time_s, film[i].time_s) << "times stay";
+  bench.run("move_keyframe 3 1");
+  EXPECT_EQ(bench.now().keyframes, film);
+  bench.run("keyframe_seconds 2 0.5");
+  EXPECT_DOUBLE_EQ(bench.now().keyframes[1].time_s, 2.0);
+  EXPECT_DOUBLE_EQ(bench.now().keyframes[2].time_s, 2.5);
+  EXPECT_DOUBLE_EQ(bench.now().keyframes[3].time_s, 4.5) << "what follows takes as long as before";
+  EXPECT_NE(bench.refusal("keyframe_seconds 4 1").find("last keyframe"), std::string::npos);
+  EXPECT_NE(bench.refusal("keyframe_seconds 1 0").find("0.05"), std::string::npos);
+  EXPECT_NE(bench.refusal("move_keyframe 1 9"), "accepted");
+  bench.run("play 3");
+  EXPECT_EQ(bench.place.played_from_s, 2.5);
+  bench.run("play");
+  EXPECT_FALSE(bench.place.played_from_s);
+  bench.run("side left");
+  bench.run("replace_keyframe 2");
+  EXPECT_EQ(bench.now().keyframes[1].camera, bench.now().now);
+  EXPECT_DOUBLE_EQ(bench.now().keyframes[1].time_s, 2.0);
+  EXPECT_EQ(bench.now().keyframes[0], film[0]);
+}
+
 TEST(MarkCommands, EscapeLaysTheToolDownAndAsksBeforeItEndsASessionWithWorkInIt) {
   Bench bench;
   bench.run("tool distance");

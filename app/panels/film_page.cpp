@@ -1,0 +1,104 @@
+#include "app/panels/film_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "app/panels/panel_kit.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr const char* kDragged = "keyframe";
+constexpr float kWidest = 1.7f;
+constexpr float kShortestS = 0.05f, kLongestS = 3600.0f;
+
+/// What a press of the mouse says, once it is let go; dragged, the keyframe goes where another one is.
+void draw_picture(const Board& desk, std::size_t i) {
+  const auto aspect = static_cast<float>(desk.state.thumbnail_aspect);
+  const float height = kFilmPicture, width = height * std::min(aspect, kWidest);
+  const float left = 0.5f - 0.5f * std::min(1.0f, kWidest / aspect);  // wider ones are cut at both sides
+  const std::uint32_t texture = i < desk.state.thumbnails.size() ? desk.state.thumbnails[i] : 0;
+  const std::string go = fmt::format("go_to_keyframe {}", i + 1);
+  const ImVec2 at = ImGui::GetCursorScreenPos(), end(at.x + width, at.y + height);
+  if (ImGui::InvisibleButton("picture", ImVec2(width, height))) desk.commands.push_back(go);
+  const bool over = ImGui::IsItemHovered();
+  explain(desk, go);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(at, end, IM_COL32(0x18, 0x18, 0x1a, 0xff));
+  if (texture != 0)
+    list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), at, end, ImVec2(left, 0.0f),
+                  ImVec2(1.0f - left, 1.0f));
+  list.AddRect(at, end, over ? kAccent : kLine);
+  if (ImGui::BeginDragDropSource(ImGuiDragDropFlags_SourceNoHoldToOpenOthers)) {
+    ImGui::SetDragDropPayload(kDragged, &i, sizeof i);
+    ImGui::Text("keyframe %d", static_cast<int>(i + 1));
+    ImGui::EndDragDropSource();
+  }
+}
+
+void take_dropped(const Board& desk, std::size_t i) {
+  if (!ImGui::BeginDragDropTarget()) return;
+  if (const ImGuiPayload* const payload = ImGui::AcceptDragDropPayload(kDragged)) {
+    const std::size_t from = *static_cast<const std::size_t*>(payload->Data);
+    if (from != i) desk.commands.push_back(fmt::format("move_keyframe {} {}", from + 1, i + 1));
+  }
+  ImGui::EndDragDropTarget();
+}
+
+/// How long it takes to the next one.
+void draw_duration(const Board& desk, std::size_t i) {
+  const auto& keys = desk.state.document.keyframes;
+  if (i + 1 >= keys.size()) return say_dim("the end");
+  auto seconds = static_cast<float>(keys[i + 1].time_s - keys[i].time_s);
+  ImGui::SetNextItemWidth(72.0f);
+  if (ImGui::DragFloat("to next", &seconds, 0.05f, kShortestS, kLongestS, "%.2f s", ImGuiSliderFlags_AlwaysClamp))
+    desk.commands.push_back(fmt::format("keyframe_seconds {} {:.4g}", i + 1, seconds));
+  explain(desk, "keyframe_seconds");
+}
+
+void draw_row(const Board& desk, std::size_t i) {
+  const auto& keys = desk.state.document.keyframes;
+  ImGui::BeginGroup();
+  draw_picture(desk, i);
+  ImGui::SameLine();
+  ImGui::BeginGroup();
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(4.0f, 1.0f));
+  ImGui::TextColored(ImColor(kDim), "%d   %.2f s", static_cast<int>(i + 1), keys[i].time_s - keys.front().time_s);
+  draw_duration(desk, i);
+  const std::string number = std::to_string(i + 1);
+  button(desk, "play", "play " + number, false, keys.size() > 1);
+  ImGui::SameLine();
+  button(desk, "replace", "replace_keyframe " + number, false);
+  ImGui::SameLine();
+  button(desk, "x", "delete_keyframe " + number, false);
+  ImGui::PopStyleVar();
+  ImGui::EndGroup();
+  ImGui::EndGroup();
+  take_dropped(desk, i);
+}
+
+}  // namespace
+
+void draw_film(const Board& desk) {
+  const auto& keys = desk.state.document.keyframes;
+  button(desk, "add what is seen", "keyframe", false);
+  ImGui::SameLine();
+  button(desk, desk.state.playing ? "stop" : "play", "play", desk.state.playing, keys.size() > 1);
+  if (keys.empty()) return say_dim("Turn, light and lift as it shall be, and add it; go on with the next.");
+  const auto rows = static_cast<float>(std::min<std::size_t>(keys.size(), kFilmRows));
+  const float room = desk.height - kTop - kStrip - 120.0f;
+  ImGui::BeginChild("keyframes", ImVec2(0.0f, std::min(rows * kFilmRow, room)));
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(6.0f, kFilmRow - kFilmPicture));
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    ImGui::PushID(static_cast<int>(i));
+    draw_row(desk, i);
+    ImGui::PopID();
+  }
+  ImGui::PopStyleVar();
+  ImGui::EndChild();
+  if (keys.size() > 1) say_dim("Drag a picture to another place. Replace: by what is seen.");
+}
+
+}  // namespace dubsar::app
