@@ -1,29 +1,11 @@
 #version 450 core
-// Ambient, diffuse and specular light (Blinn-Phong) in linear colours, or the vertex colours as they are. SHADOWED: the
-// key light is cast; PEELED: only what lies before the opaque and behind the peeled depths; INFERRED: hatched; FOGGY.
+// Ambient, diffuse and specular light (Blinn-Phong) in linear colours, or the vertex colours as they are, in one look
+// or two. SHADOWED: the key light is cast (QUICK: with harder rims); PEELED: only what lies before the opaque and
+// behind the peeled depths; INFERRED: hatched; FOGGY; BENT: radiance scaling; BLENDED: two looks.
+#include "style.glsl"
+#include "light.glsl"
 
-struct ViewData {
-  mat4 view_from_unit;
-  mat4 clip_from_view;
-  mat4 view_from_normal;
-};
-layout(std430, binding = 0) readonly buffer Views { ViewData views[]; };
 layout(location = 1) uniform vec4 part_color;  // linear; a: opacity
-
-layout(std140, binding = 1) uniform Style {
-  vec4 light;            // xyz: unit direction to the key light in the view frame; w: 1 = lit
-  vec4 weights;          // ambient, key, fill (from the eye), specular
-  vec4 back_color;       // linear; a: how much of it back faces take
-  vec4 shininess;        // x; y: linear light from which on highlights bend
-  vec4 inferred_color;   // linear
-  vec4 inferred_stripe;  // linear
-  vec4 hatch;            // stripes along the axes of the unit cube
-  vec4 fog_color;        // linear, premultiplied
-  vec4 fog_depth;        // from, to, how much at most
-  mat4 map_from_unit;    // shadow map: texture coordinates and depth
-  mat4 map_from_normal;  // of the offset along the normal
-  vec4 clip_plane[8];    // in the unit cube; what is below 0 goes
-};
 layout(binding = 1) uniform sampler2DShadow shadow_map;
 layout(binding = 2) uniform sampler2D opaque_depth;
 layout(binding = 3) uniform sampler2D peeled_depth;
@@ -32,59 +14,64 @@ flat in int view_of_vertex;
 in vec3 view_position;
 in vec3 view_normal;
 in vec3 albedo;
+#ifdef BLENDED
+in vec3 other_albedo;
+#endif
+#ifdef BENT
+in float bend;
+#else
+const float bend = 0.0;
+#endif
 #ifdef SHADOWED
 in vec3 map_position;
 #endif
 #ifdef INFERRED
 in float stripe;
+const bool kHatched = true;
+#else
+const bool kHatched = false;
 #endif
 layout(location = 0) out vec4 color;  // linear, premultiplied
 
-const float kLeastInferredLight = 0.35;
-
-/// How much of the key light comes here: 3 x 3 texels, each interpolated.
+/// How much of the key light comes here: 3 x 3 texels, each interpolated; where it has to be quick, one.
 float lit_part() {
 #ifdef SHADOWED
+#ifdef QUICK
+  return texture(shadow_map, map_position);
+#else
   vec2 texel = 1.0 / vec2(textureSize(shadow_map, 0));
   float sum = 0.0;
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x)
       sum += texture(shadow_map, vec3(map_position.xy + vec2(x, y) * texel, map_position.z));
   return sum / 9.0;
+#endif
 #else
   return 1.0;
 #endif
 }
 
-/// Linear up to the knee, then towards white without reaching it.
-vec3 bent(vec3 light) {
-  float knee = shininess.y;
-  if (knee >= 1.0) return light;
-  vec3 above = max(light - knee, 0.0);
-  return min(light, vec3(knee)) + (1.0 - knee) * (1.0 - exp(-above / (1.0 - knee)));
+vec3 base_color(Look look, vec3 own, bool from_behind) {
+#ifdef INFERRED
+  return mix(inferred_color.rgb, inferred_stripe.rgb, step(0.5, fract(stripe))) * part_color.rgb;
+#else
+  return from_behind ? mix(own, look.back_color.rgb, look.back_color.a) : own;
+#endif
 }
 
 vec3 surface_color() {
   vec3 to_eye = mix(normalize(-view_position), vec3(0.0, 0.0, 1.0), views[view_of_vertex].view_from_normal[3][3]);
   // A small triangle that folds over, as coarse levels have them, belongs to the front that its normals tell of.
   bool from_behind = !gl_FrontFacing && dot(view_normal, to_eye) < 0.0;
-#ifdef INFERRED
-  vec3 base = mix(inferred_color.rgb, inferred_stripe.rgb, step(0.5, fract(stripe))) * part_color.rgb;
-#else
-  vec3 base = from_behind ? mix(albedo, back_color.rgb, back_color.a) : albedo;
-#endif
-  if (light.w == 0.0) return base;
   vec3 normal = normalize(view_normal);
   if (from_behind) normal = -normal;
-  float key = max(dot(normal, light.xyz), 0.0);
-  float fill = max(dot(normal, to_eye), 0.0);
-  float gloss = key > 0.0 ? pow(max(dot(normal, normalize(light.xyz + to_eye)), 0.0), shininess.x) : 0.0;
-  float open = key > 0.0 ? lit_part() : 1.0;
-  float level = weights.x + weights.y * key * open + weights.z * fill;
-#ifdef INFERRED
-  level = max(level, kLeastInferredLight);
+  float open = dot(normal, looks[0].light.xyz) > 0.0 ? lit_part() : 1.0;
+  vec3 seen = lit(looks[0], base_color(looks[0], albedo, from_behind), normal, to_eye, bend, open, kHatched);
+#ifdef BLENDED
+  vec3 other = lit(looks[1], base_color(looks[1], other_albedo, from_behind), normal, to_eye, bend, open, kHatched);
+  seen = mix(seen, other, blend.x);
 #endif
-  return bent(base * level + vec3(weights.w * gloss * open));
+  return seen;
 }
 
 void main() {

@@ -25,8 +25,9 @@ std::pair<std::string_view, std::string> split_command(std::string_view text) {
 
 CommandTable CommandTable::standard(const std::vector<std::string>& styles) {
   CommandTable out;
-  for (std::vector<Command>& part : std::array{window_commands(), view_commands(), look_commands(styles),
-                                               mark_commands(), section_commands(), film_commands()})
+  for (std::vector<Command>& part :
+       std::array{window_commands(), view_commands(), look_commands(styles), shade_commands(styles), mark_commands(),
+                  section_commands(), film_commands()})
     for (Command& command : part) out.add(std::move(command));
   return out;
 }

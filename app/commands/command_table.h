@@ -62,8 +62,9 @@ inline constexpr std::string_view kWindowGroup = "This window";
 /// Parts of the table, each in a file of its own.
 std::vector<Command> view_commands();                                        ///< turning, zooming, sides, undo and redo
 std::vector<Command> look_commands(const std::vector<std::string>& styles);  ///< light, style, parts
-std::vector<Command> mark_commands();                                        ///< tools, measures, notes
-std::vector<Command> section_commands();                                     ///< cuts and fog
+std::vector<Command> shade_commands(const std::vector<std::string>& styles);  ///< blends, radiance, colours, legend
+std::vector<Command> mark_commands();                                         ///< tools, measures, notes
+std::vector<Command> section_commands();                                      ///< cuts and fog
 std::vector<Command> film_commands();
 std::vector<Command> window_commands();  ///< help, displays, sources, the window
 

@@ -63,6 +63,7 @@ struct Desk {
   bool help = false;
   bool panels = false;
   bool palette = false;               ///< all commands by typing
+  bool legend = true;                 ///< of colours that tell figures
   bool leaving = false;               ///< asked whether to end with work in it
   std::string drawer{};               ///< of the panels; empty: none is open
   std::string tool{"turn"};           ///< what a click does

@@ -32,6 +32,10 @@ void fields(auto& f, StyleChoice& v) {
   f("strength", v.strength);
   f("occlusion", v.occlusion);
   f("evidence", v.evidence);
+  f("other", v.other);
+  f("share", v.share);
+  f("radiance", v.radiance);
+  f("colours", v.colours);
 }
 void fields(auto& f, Cut& v) {
   f("normal", v.normal);

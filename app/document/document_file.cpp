@@ -11,7 +11,7 @@ namespace dubsar::app {
 namespace {
 using nlohmann::json;
 
-constexpr int kVersion = 2, kOldest = 1;
+constexpr int kVersion = 3, kOldest = 1;
 constexpr std::string_view kFormat = "dubsar document";
 constexpr TimestampNs kEveryNs = 10'000'000'000;
 
@@ -22,6 +22,10 @@ std::string complaint_about(const Document& d) {
   if (!(d.unpack >= 0 && d.unpack <= 1)) return fmt::format("unpack is {}, expected 0 to 1", d.unpack);
   if (!(d.style.strength >= 0 && d.style.strength <= 2))
     return fmt::format("style.strength is {}, expected 0 to 2", d.style.strength);
+  if (!(d.style.share >= 0 && d.style.share <= 1))
+    return fmt::format("style.share is {}, expected 0 to 1", d.style.share);
+  if (!(d.style.radiance >= 0 && d.style.radiance <= 2))
+    return fmt::format("style.radiance is {}, expected 0 to 2", d.style.radiance);
   for (const Part& part : d.parts)
     if (!(part.opacity >= 0 && part.opacity <= 1))
       return fmt::format("opacity of {} is {}, expected 0 to 1", part.name, part.opacity);

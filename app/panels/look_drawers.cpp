@@ -39,6 +39,49 @@ void draw_evidence(const Board& desk) {
   ImGui::TextColored(ImColor(kDim), "seen in the scan");
 }
 
+/// A second style, and how much of it.
+void draw_blend(const Board& desk) {
+  const Command* const style = desk.keys.commands().find("style");
+  if (style == nullptr) return;
+  const auto share = static_cast<float>(100.0 * desk.state.document.style.share);
+  ImGui::SetNextItemWidth(120.0f);
+  if (ImGui::BeginCombo("mixed with", desk.state.document.style.other.empty()
+                                          ? "nothing"
+                                          : desk.state.document.style.other.c_str())) {
+    for (const std::string& name : style->values)
+      if (ImGui::Selectable(name.c_str(), name == desk.state.document.style.other))
+        desk.commands.push_back(fmt::format("blend {} {:.4g}", name, share > 0 ? share : 50.0f));
+    ImGui::EndCombo();
+  }
+  explain(desk, "blend");
+  if (desk.state.document.style.other.empty()) return;
+  float percent = share;
+  ImGui::SetNextItemWidth(120.0f);
+  if (ImGui::SliderFloat("of it", &percent, 0.0f, 100.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
+    desk.commands.push_back(fmt::format("blend {} {:.4g}", desk.state.document.style.other, percent));
+  explain(desk, "blend");
+}
+
+/// Radiance scaling, and the colours of figures with their legend.
+void draw_shades(const Board& desk) {
+  auto percent = static_cast<float>(100.0 * desk.state.document.style.radiance);
+  ImGui::SetNextItemWidth(120.0f);
+  if (ImGui::SliderFloat("ridges", &percent, 0.0f, 200.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
+    desk.commands.push_back(fmt::format("radiance {:.4g}", percent));
+  explain(desk, "radiance");
+  const Command* const colours = desk.keys.commands().find("colours");
+  ImGui::SetNextItemWidth(120.0f);
+  if (colours != nullptr && ImGui::BeginCombo("colours", desk.state.document.style.colours.empty()
+                                                             ? "designed"
+                                                             : desk.state.document.style.colours.c_str())) {
+    for (const std::string& name : colours->values)
+      if (ImGui::Selectable(name.c_str(), name == desk.state.document.style.colours))
+        desk.commands.push_back("colours " + name);
+    ImGui::EndCombo();
+  }
+  explain(desk, "colours");
+}
+
 }  // namespace
 
 void draw_parts(const Board& desk) {
@@ -114,6 +157,8 @@ void draw_styles(const Board& desk) {
   ImGui::SetNextItemWidth(120.0f);
   if (ImGui::SliderFloat("strength", &strength, 0.0f, 200.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
     desk.commands.push_back(fmt::format("strength {:.4g}", strength));
+  draw_shades(desk);
+  draw_blend(desk);
   ImGui::Separator();
   draw_evidence(desk);
 }

@@ -11,6 +11,7 @@
 #include "app/panels/desk_panels.h"
 #include "app/panels/gallery_page.h"
 #include "app/panels/help_page.h"
+#include "app/panels/legend_page.h"
 #include "app/viewer/stage.h"
 
 namespace dubsar::app {
@@ -21,7 +22,8 @@ struct OverlayText {
   double notice_opacity = 1.0;
   std::optional<PanelState> panels{};  ///< while there is no help
   std::optional<GalleryPicture> gallery{};
-  bool empty() const noexcept { return help.empty() && notice.empty() && !panels && !gallery; }
+  std::optional<LegendPicture> legend{};
+  bool empty() const noexcept { return help.empty() && notice.empty() && !panels && !gallery && !legend; }
   friend bool operator==(const OverlayText&, const OverlayText&) = default;
 };
 

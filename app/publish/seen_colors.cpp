@@ -8,12 +8,16 @@
 
 namespace dubsar::app {
 
-void color_as_seen(TriMesh& mesh, const Style& style) {
+void color_as_seen(TriMesh& mesh, const Style& style, const SurfaceFields* fields) {
   const auto table = color_table(style);
   constexpr std::size_t kOpen = kAoColumns - 1;
   const std::vector<std::array<std::uint8_t, 3>> own = std::move(mesh.colors);
   mesh.colors.assign(mesh.positions.size(), {});
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    if (fields != nullptr && is_field(style.map)) {
+      mesh.colors[v] = field_color(style, field_figure(style.map, fields->values[v]));
+      continue;
+    }
     const std::size_t shape = mesh.shape.empty() ? 0 : mesh.shape[v];
     const std::size_t ao = mesh.ao.empty() ? kOpen : std::min<std::size_t>(mesh.ao[v], kOpen);
     const auto& seen = table[ao * kShapeRows + shape];

@@ -38,8 +38,9 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
   }
   MeshWriteOptions write = options.write;
   if (!options.style.empty()) {
-    color_as_seen(mesh, look.style);
-    write.colors_derived = !mesh.shape.empty() || !mesh.ao.empty();
+    DUBSAR_ASSIGN(const SurfaceFields fields, measure_fields(mesh, fields_needed(look.style), progress));
+    color_as_seen(mesh, look.style, &fields);
+    write.colors_derived = !mesh.shape.empty() || !mesh.ao.empty() || is_field(look.style.map);
   }
   DUBSAR_TRY(write_mesh(options.out, mesh, write, progress));
   const MeshCheck check = check_mesh(mesh.positions, mesh.triangles);

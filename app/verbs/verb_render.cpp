@@ -16,6 +16,7 @@
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
 #include "app/verbs/display_picture.h"
+#include "app/verbs/look_options.h"
 #include "app/viewer/run_view.h"
 #include "core/base/parse_number.h"
 #include "core/image_io/picture_file.h"
@@ -40,6 +41,7 @@ struct Options {
   DisplayRequest display;
   bool perspective = false, window = false;
   Look look;
+  LookOptions shade;
 };
 
 Result<void> read_size(const std::string& text, CameraOptions& camera) {
@@ -224,6 +226,7 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
   DUBSAR_ASSIGN(render.camera.direction, parse_view_direction(options.view == "orbit" ? "orbit:35,25" : options.view));
   if (!options.size.empty()) DUBSAR_TRY(read_size(options.size, render.camera));
   if (!options.look.light.empty()) DUBSAR_TRY(parse_light(options.look.light, render.shading));
+  DUBSAR_TRY(apply(options.shade, render.shading));
   render.camera.perspective = options.perspective;
   render.camera.mm_per_pixel = options.mm_per_pixel;
   if (options.samples > 0) render.samples = options.samples;
@@ -253,7 +256,8 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
     if (options.window) return show_in_window(options, display, shown, mesh, progress);
     return render_to_display(options.display, display, shown, mesh, options.out, progress);
   }
-  DUBSAR_ASSIGN(const Picture picture, render_picture(mesh, render, progress));
+  DUBSAR_ASSIGN(Picture picture, render_picture(mesh, render, progress));
+  DUBSAR_TRY(add_legend(options.shade, render.shading.style, picture.image));
   PictureOptions file;
   file.dpi = picture.dpi();
   DUBSAR_TRY(write_picture(options.out, picture.image, file));
@@ -290,6 +294,7 @@ Verb add_render_verb(Arguments program) {
   command.flag("--colour-parts,--color-parts", options->look.colour_parts, "each part in a colour of its own");
   command.value("--light", options->look.light,
                 "AZIMUTH,ELEVATION of the light in degrees; 315,20 rakes from the upper left");
+  add_look_options(command, options->shade);
   command.flag("--shadows", options->look.shadows,
                "what stands before the light casts shadows (--style raking: always)");
   command.flag("--unmarked", options->look.unmarked, "surface that the scan does not show is not hatched");

@@ -59,17 +59,29 @@ Shown shown_of(const Document& document, const ViewState& view, const StageOptio
   out.view = view;
   out.style = stage.shading.style;
   out.parts = stage.shading.parts;
+  out.other = stage.shading.other;
   if (document.style.name != stage.style)
     if (const auto preset = shading_preset(document.style.name)) {
       out.style = preset->style;
       out.light = preset->light;
     }
-  out.style.mark_inferred = out.style.mark_inferred && document.style.evidence;
+  const StyleChoice& choice = document.style;
+  if (const auto preset = shading_preset(choice.other); preset && choice.share > 0)
+    out.other = {preset->style, preset->light, choice.share};
+  const auto adapt = [&](Style& style) {
+    style.mark_inferred = style.mark_inferred && choice.evidence;
+    style.contrast *= choice.strength;
+    style.ambient_occlusion = style.ambient_occlusion && choice.occlusion;
+    style.radiance = std::max(style.radiance, choice.radiance);
+    if (choice.colours == "blue-orange") style.field_colors = FieldColors::kBlueOrange;
+    if (choice.colours == "cividis") style.field_colors = FieldColors::kCividis;
+    if (choice.colours == "grey") style.field_colors = FieldColors::kGrey;
+  };
+  adapt(out.style);
+  adapt(out.other.style);
   out.fog.strength = document.fog;
   for (const Cut& cut : document.clips)
     if (cut.on) out.clips.push_back({cut.normal * cut.distance_mm / glm::dot(cut.normal, cut.normal), -cut.normal});
-  out.style.contrast *= document.style.strength;
-  out.style.ambient_occlusion = out.style.ambient_occlusion && document.style.occlusion;
   const double unpack = can_unpack(document) ? document.unpack : 0.0;
   const ObjectFrame frame = object_frame(model);
   const double height = (1.0 + kGap) * std::abs(glm::dot(model.size(), frame.up));

@@ -107,8 +107,10 @@ Result<std::unique_ptr<Stage>> Stage::create(const TriMesh& mesh, const StageOpt
     return fail(ErrorKind::kUsage, "view: none of the partitions asked for has triangles, so there is nothing to draw");
   auto parts = std::make_unique<Parts>(options);
   parts->next.shown.style = options.shading.style;
+  parts->next.shown.other = options.shading.other;
   parts->next.shown.parts = options.shading.parts;
   Parts::Object& object = parts->object;
+  object.source = &mesh;
   if (has_mesh) object.box = packed.box_of(visible_partitions(options.shading.parts));
   if (!has_mesh) {
     // nothing to draw
@@ -184,6 +186,38 @@ void Stage::show(const Shown& shown, const FollowedEyes& eyes, TimestampNs now) 
   parts_->next.shown = shown;
   parts_->next.now = now;
   parts_->next.viewer = parts_->viewer_at(eyes);
+  if (mesh) parts_->measure(fields_needed(shown.style, shown.other));
+}
+
+/// Figures of the surface that a look tells: at once where every picture has to be exact, else beside the pictures,
+/// which show them when they are there.
+void Stage::Parts::measure(const FieldNeeds& needs) {
+  LodMesh& mesh = *object.mesh;
+  Result<void> done;
+  if (options.quality == Quality::kExact) {
+    SilentProgress progress;
+    done = carry_fields(mesh, *object.source, needs, progress);
+  } else if (object.maker) {
+    auto made = object.maker->take();
+    if (!made) return;
+    object.maker.reset();
+    if (*made) {
+      done = mesh.carry(std::make_shared<const SurfaceFields>(std::move(**made)));
+      painted.of.reset();
+    } else {
+      done = tl::unexpected<Error>(made->error());
+    }
+  } else if (needs.any() && (mesh.fields() == nullptr || !mesh.fields()->has.covers(needs))) {
+    const FieldNeeds had = mesh.fields() == nullptr ? FieldNeeds() : mesh.fields()->has;
+    object.maker = std::make_unique<FieldMaker>(
+        *object.source, FieldNeeds{needs.integral || had.integral, needs.curvature || had.curvature});
+  }
+  if (!done) log_warning("view: {}", done.error().message);
+}
+
+std::optional<double> Stage::measuring() const noexcept {
+  if (!parts_->object.maker) return std::nullopt;
+  return parts_->object.maker->share();
 }
 
 bool Stage::moved() const noexcept { return parts_->moved(); }
@@ -211,7 +245,7 @@ void Stage::Parts::set_scene() {
   painted.fog = shown.fog.strength > 0 ? shown.fog : options.shading.fog;
   painted.clips = dubsar::moved(options.shading.clips, world);
   for (const ClipPlane& clip : dubsar::moved(shown.clips, world)) painted.clips.push_back(clip);
-  painted.items = {MeshItem{&*object.mesh, world, shown.style, shown.parts}};
+  painted.items = {MeshItem{&*object.mesh, world, shown.style, shown.parts, shown.other}};
   for (const LinesItem& lines : shown.before) painted.items.emplace_back(lines);
   for (LinesItem lines : shown.marks.lines) {
     for (glm::dvec3& p : lines.points_mm) place(p);

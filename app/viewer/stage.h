@@ -62,6 +62,7 @@ struct Shown {
   ViewState view{};
   double fit = 1.0;  ///< times the size that fits at zoom 1: parts that stand apart need more room
   Style style{};
+  OtherLook other{};
   PartLooks parts{};
   std::optional<Light> light{};    ///< but for its place, which is the view's; none: the stage's own
   std::vector<ClipPlane> clips{};  ///< besides the stage's own; in the model's frame
@@ -73,7 +74,7 @@ struct Shown {
            a.view.rotation == b.view.rotation && a.view.zoom == b.view.zoom && a.view.pan == b.view.pan &&
            a.view.light_azimuth_deg == b.view.light_azimuth_deg &&
            a.view.light_elevation_deg == b.view.light_elevation_deg && a.fit == b.fit && a.style == b.style &&
-           a.parts == b.parts;
+           a.other == b.other && a.parts == b.parts;
   }
 };
 
@@ -89,8 +90,9 @@ class LayerPainter {
 /// One thread: that of the GL context, which must be current in every call and outlive the stage.
 class Stage {
  public:
-  /// kUnavailable without GL 4.5 or for a sink that needs a stereo visual; kUsage, kBadData, kTryAgain as pack_mesh(),
-  /// SinkCatalog::make(). `sink` is what options.display names, where somebody made it already.
+  /// `mesh` outlives it. kUnavailable without GL 4.5 or for a sink that needs a stereo visual; kUsage, kBadData,
+  /// kTryAgain as pack_mesh(), SinkCatalog::make(). `sink` is what options.display names, where somebody made it
+  /// already.
   static Result<std::unique_ptr<Stage>> create(const TriMesh& mesh, const StageOptions& options,
                                                std::unique_ptr<OutputSink> sink = nullptr);
   ~Stage();
@@ -127,6 +129,9 @@ class Stage {
   /// Drawn over the views from the next paint() on; call it again when it looks different. Null: nothing. It outlives
   /// the stage or is taken away.
   void set_overlay(LayerPainter* painter);
+
+  /// How much of the surface has been measured, 0..1, while what is shown waits for it; none: nothing is measured.
+  std::optional<double> measuring() const noexcept;
 
   /// The object as the next picture shows it, without what lies over it, at `factor` times the pixels of a view, exact;
   /// seen from the middle of the eyes. kUsage: more than 16384 pixels on a side; kTryAgain.

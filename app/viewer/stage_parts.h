@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/viewer/stage.h"
+#include "display/render/field_maker.h"
 #include "display/render/lod_mesh.h"
 #include "display/render/multi_view.h"
 #include "display/render/renderer.h"
@@ -19,9 +20,11 @@ inline constexpr TimestampNs kRestNs = 150'000'000;  // before coarse views are 
 struct Stage::Parts {
   struct Object {
     Box box;
+    const TriMesh* source = nullptr;
     std::optional<LodMesh> mesh;
-    std::optional<Renderer> renderer;  // kExact, and for stills
-    std::optional<MultiView> multi;    // kAdaptive
+    std::unique_ptr<FieldMaker> maker;  // while figures of the surface are measured
+    std::optional<Renderer> renderer;   // kExact, and for stills
+    std::optional<MultiView> multi;     // kAdaptive
   };
   struct Layers {
     std::optional<ViewArray> array, overlaid;
@@ -64,6 +67,7 @@ struct Stage::Parts {
 
   explicit Parts(const StageOptions& given) : options(given) {}
   Result<void> prepare(OutputSink& with);
+  void measure(const FieldNeeds& needs);
   Viewer viewer_at(const FollowedEyes& eyes) const;
   glm::dmat4 placed() const {
     return app::screen_from_model(object.box, options.direction, next.shown.view, plane.magnification * next.shown.fit,

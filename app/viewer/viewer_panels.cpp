@@ -66,6 +66,9 @@ void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
   text.panels.reset();
   if ((desk().panels || desk().palette) && !desk().help) text.panels = panel_state();
   if (text.panels && desk().drawer == "film") add_thumbnails(*text.panels);
+  text.legend = desk().legend
+                    ? legend_of(shown_of(document(), report_.view, given_.options.stage, stage_->box_mm()).style)
+                    : std::nullopt;
   const TimestampNs age = now - notice_.since;
   if (notice_.since < 0 || age >= kNoticeNs) {
     text.notice.clear();
@@ -73,6 +76,10 @@ void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
   } else {
     text.notice = notice_.text;
     text.notice_opacity = std::clamp(static_cast<double>(kNoticeNs - age) / static_cast<double>(kFadeNs), 0.0, 1.0);
+  }
+  if (const auto share = stage_->measuring()) {
+    text.notice = fmt::format("measuring the surface: {:.0f} %", 100.0 * *share);
+    text.notice_opacity = 1.0;
   }
   if (text == overlay_->text()) return;
   overlay_->set(std::move(text));

@@ -1,5 +1,6 @@
 #include "display/render/gl_objects.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -22,9 +23,29 @@ struct Shader {
   GLuint name;
 };
 
+/// The text with each line `#include "NAME"` replaced by the shader file of that name.
+std::string with_includes(std::string_view source) {
+  constexpr std::string_view kInclude = "#include \"";
+  std::string out;
+  for (std::size_t at = 0; at < source.size();) {
+    const std::size_t end = std::min(source.find('\n', at), source.size());
+    const std::string_view line = source.substr(at, end - at);
+    at = end + 1;
+    if (line.starts_with(kInclude)) {
+      const std::string_view text = shader_source(line.substr(kInclude.size(), line.rfind('"') - kInclude.size()));
+      DUBSAR_CHECK(!text.empty());
+      out += with_includes(text);
+    } else {
+      out += line;
+      out += '\n';
+    }
+  }
+  return out;
+}
+
 Result<void> compile(const Shader& shader, std::string_view file, std::string_view lines = {}) {
-  const std::string_view source = shader_source(file);
-  DUBSAR_CHECK(!source.empty());
+  DUBSAR_CHECK(!shader_source(file).empty());
+  const std::string source = with_includes(shader_source(file));
   const std::size_t version = source.find('\n') + 1;  // #version has to be the first line
   const std::array<const GLchar*, 3> texts{source.data(), lines.empty() ? "" : lines.data(), source.data() + version};
   const std::array<GLint, 3> lengths{static_cast<GLint>(version), static_cast<GLint>(lines.size()),

@@ -61,7 +61,8 @@ GlVertexArray make_vertex_array();
 GlTexture make_texture(GLenum target);
 
 /// Compiles and links two embedded shaders (names of files in shaders/). kInternal with the driver's log when it
-/// refuses them: they are ours. The lines go below the #version line of either shader (switches).
+/// refuses them: they are ours. The lines go below the #version line of either shader (switches). A line
+/// `#include "NAME"` of a shader stands for another file of shaders/.
 Result<GlProgram> make_program(std::string_view vertex_name, std::string_view fragment_name,
                                std::string_view vertex_lines = {}, std::string_view fragment_lines = {});
 

@@ -206,7 +206,7 @@ Result<PackedMesh> pack_mesh(const TriMesh& mesh) {
   const std::vector<glm::vec3> computed =
       compute_normals ? vertex_normals_mm(mesh, out.triangles) : std::vector<glm::vec3>();
   const glm::dvec3 inverse_size = 1.0 / glm::max(out.box_mm.size(), glm::dvec3(std::numeric_limits<double>::min()));
-  const LabelledVertices labelled = split_by_partition(out, count);
+  LabelledVertices labelled = split_by_partition(out, count);
   out.vertices.resize(labelled.source.size());
   parallel_for(static_cast<std::int64_t>(out.vertices.size()), kGrain, [&](std::int64_t at) {
     PackedVertex& v = out.vertices[static_cast<std::size_t>(at)];
@@ -222,6 +222,7 @@ Result<PackedMesh> pack_mesh(const TriMesh& mesh) {
   if (!mesh.colors.empty())
     for (const std::uint32_t v : labelled.source)
       out.colors.push_back({mesh.colors[v][0], mesh.colors[v][1], mesh.colors[v][2], 255});
+  out.source = std::move(labelled.source);
   return out;
 }
 
@@ -235,6 +236,7 @@ Result<GpuMesh> GpuMesh::upload(const PackedMesh& mesh) {
   out.version_ = ++uploads;
   out.chunks_ = mesh.chunks.empty() ? whole_partitions(mesh) : mesh.chunks;
   out.vertices_ = make_buffer(std::as_bytes(std::span(mesh.vertices)));
+  out.source_ = mesh.source;
   out.indices_ = make_buffer(std::as_bytes(std::span(mesh.triangles)));
   out.vertex_array_ = make_vertex_array();
   const GLuint vao = out.vertex_array_;
@@ -256,6 +258,19 @@ Result<GpuMesh> GpuMesh::upload(const PackedMesh& mesh) {
   }
   DUBSAR_TRY(check_gl("uploading the mesh"));
   return out;
+}
+
+Result<void> GpuMesh::carry(const SurfaceFields& fields) {
+  std::vector<CarriedField> values;
+  values.reserve(source_.size());
+  for (const std::uint32_t v : source_) values.push_back(fields.values[v]);
+  fields_ = make_buffer(std::as_bytes(std::span(values)));
+  constexpr GLuint kAttribute = 4, kBinding = 2;
+  glVertexArrayVertexBuffer(vertex_array_, kBinding, fields_, 0, sizeof(CarriedField));
+  glEnableVertexArrayAttrib(vertex_array_, kAttribute);
+  glVertexArrayAttribBinding(vertex_array_, kAttribute, kBinding);
+  glVertexArrayAttribFormat(vertex_array_, kAttribute, 4, GL_SHORT, GL_TRUE, 0);
+  return check_gl("uploading figures of the surface");
 }
 
 TriangleRanges GpuMesh::visible_ranges(std::uint8_t partitions, std::span<const View> views, Evidence evidence) const {

@@ -12,6 +12,7 @@
 #include "display/render/camera.h"
 #include "display/render/gl_objects.h"
 #include "display/render/shading.h"
+#include "display/render/surface_field.h"
 
 namespace dubsar {
 
@@ -39,6 +40,7 @@ struct PackedMesh {
   Box box_mm;  ///< of all finite vertices that triangles use
   std::vector<PackedVertex> vertices;
   std::vector<std::array<std::uint8_t, 4>> colors;  ///< only when the mesh has foreign colours
+  std::vector<std::uint32_t> source;                ///< which vertex of the mesh it was made from each one is
   /// Sorted by partition, within one those that the scan shows before those that are inferred; else order is kept.
   std::vector<Triangle> triangles;
   std::array<std::int64_t, kMaxPartitions + 1> first_triangle{};  ///< of each partition
@@ -71,6 +73,9 @@ class GpuMesh {
  public:
   static Result<GpuMesh> upload(const PackedMesh& mesh);
 
+  /// Figures of the surface that its vertices carry, by the vertices of the mesh it was made from. kTryAgain.
+  Result<void> carry(const SurfaceFields& fields);
+
   GLuint vertex_array() const noexcept { return vertex_array_; }
   const Box& box_mm() const noexcept { return box_mm_; }
   bool mirrored() const noexcept { return mirrored_; }
@@ -83,7 +88,8 @@ class GpuMesh {
 
  private:
   GlVertexArray vertex_array_;
-  GlBuffer vertices_, colors_, indices_;
+  GlBuffer vertices_, colors_, indices_, fields_;
+  std::vector<std::uint32_t> source_;
   Box box_mm_;
   std::vector<TriangleChunk> chunks_;  ///< of a mesh without chunks: one a partition and evidence
   bool mirrored_ = false;

@@ -98,6 +98,7 @@ PackedMesh cluster_vertices(const PackedMesh& mesh, double cell_mm) {
     for (std::size_t k = i; k < end; ++k) new_id[order[k].vertex] = static_cast<std::uint32_t>(out.vertices.size());
     out.vertices.push_back(merged(mesh, order.data() + i, order.data() + end, representative));
     if (!mesh.colors.empty()) out.colors.push_back(mesh.colors[representative]);
+    if (!mesh.source.empty()) out.source.push_back(mesh.source[representative]);
     i = end;
   }
   const auto add = [&](std::int64_t first, std::int64_t last) {
@@ -146,6 +147,7 @@ PackedMesh quick_clusters(const PackedMesh& mesh, double cell_mm) {
       slots[at] = {key, static_cast<std::uint32_t>(out.vertices.size())};
       out.vertices.push_back(v);
       if (!mesh.colors.empty()) out.colors.push_back(mesh.colors[i]);
+      if (!mesh.source.empty()) out.source.push_back(mesh.source[i]);
     }
     new_id[i] = slots[at].id;
   }

@@ -106,6 +106,7 @@ void LodMesh::describe(const PackedMesh& mesh) {
 
 Result<void> LodMesh::add(const PackedMesh& level, double cell_mm) {
   DUBSAR_ASSIGN(GpuMesh gpu, GpuMesh::upload(level));
+  if (fields_) DUBSAR_TRY(gpu.carry(*fields_));
   const auto place = std::find_if(levels_.begin(), levels_.end(), [&](const Level& l) { return l.cell_mm > cell_mm; });
   levels_.insert(place, {std::move(gpu), cell_mm, static_cast<std::int64_t>(level.triangles.size()), false});
   return {};
@@ -143,6 +144,23 @@ Result<LodMesh> LodMesh::growing(PackedMesh mesh) {
   out.levels_.front().quick = true;
   out.growth_ = std::make_unique<Growth>(std::move(mesh));
   return out;
+}
+
+Result<void> LodMesh::carry(std::shared_ptr<const SurfaceFields> fields) {
+  for (Level& level : levels_) DUBSAR_TRY(level.mesh.carry(*fields));
+  fields_ = std::move(fields);
+  return {};
+}
+
+Result<void> carry_fields(LodMesh& levels, const TriMesh& mesh, const FieldNeeds& needs, Progress& progress) {
+  FieldNeeds all = needs;
+  if (levels.fields() != nullptr) {
+    if (levels.fields()->has.covers(needs)) return {};
+    all = {all.integral || levels.fields()->has.integral, all.curvature || levels.fields()->has.curvature};
+  }
+  if (!all.any()) return {};
+  DUBSAR_ASSIGN(SurfaceFields made, measure_fields(mesh, all, progress));
+  return levels.carry(std::make_shared<const SurfaceFields>(std::move(made)));
 }
 
 Result<bool> LodMesh::update() {

@@ -29,6 +29,10 @@ class LodMesh {
 
   /// Takes in what is ready, a level a call. True when level 0 is another one than before. kTryAgain without memory.
   Result<bool> update();
+  /// Gives all levels, also those that come later, figures that their vertices carry; replaces others. kTryAgain.
+  Result<void> carry(std::shared_ptr<const SurfaceFields> fields);
+  /// What was measured of it; null: nothing yet.
+  const SurfaceFields* fields() const noexcept { return fields_.get(); }
   /// Whether level 0 is the mesh as it is.
   bool has_exact() const noexcept { return !levels_.empty() && levels_.front().cell_mm == 0.0; }
   /// Whether all levels are there.
@@ -60,7 +64,12 @@ class LodMesh {
   std::vector<Level> levels_;  ///< finest first
   std::array<Box, kMaxPartitions> partition_box_mm_{};
   std::uint8_t has_triangles_ = 0;  ///< bit p: partition p
+  std::shared_ptr<const SurfaceFields> fields_;
   std::unique_ptr<Growth> growth_;  ///< while levels are missing
 };
+
+/// Measures what `needs` names and the levels of detail do not carry yet, `mesh` being what they were made from. Errors
+/// of measure_fields() and LodMesh::carry().
+Result<void> carry_fields(LodMesh& levels, const TriMesh& mesh, const FieldNeeds& needs, Progress& progress);
 
 }  // namespace dubsar

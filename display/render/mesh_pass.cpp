@@ -19,22 +19,36 @@ namespace dubsar {
 namespace {
 
 constexpr GLint kViewIndex = 0, kPartColor = 1, kPartOffset = 2;  // shaders/mesh.vert
-constexpr GLuint kViewsBinding = 0, kStyleBinding = 1, kForeignColor = 3;
-constexpr GLuint kTableUnit = 0, kShadowUnit = 1, kOpaqueUnit = 2, kPeeledUnit = 3;
+constexpr GLuint kViewsBinding = 0, kStyleBinding = 1, kForeignColor = 3, kCarried = 4;
+constexpr GLuint kTableUnit = 0, kShadowUnit = 1, kOpaqueUnit = 2, kPeeledUnit = 3, kOtherTableUnit = 4;
 constexpr std::size_t kMostTables = 8;
 constexpr double kHatchStripes = 90;         // along the longest side of a mesh
 constexpr double kLeastSineEven = 0.12;      // Light::even: 7 degrees
 constexpr double kShadowOffsetTexels = 1.5;  // along the normal, before the map is asked
 
-enum Variant : unsigned { kLayered = 1, kClipped = 2, kShadowed = 4, kPeeled = 8, kInferredSurface = 16, kFoggy = 32 };
+enum Variant : unsigned {
+  kLayered = 1,
+  kClipped = 2,
+  kShadowed = 4,
+  kPeeled = 8,
+  kInferredSurface = 16,
+  kFoggy = 32,
+  kQuick = 64,
+  kBent = 128,
+  kBlended = 256,
+};
 
-struct ViewData {  // std430, as in shaders/mesh.vert
+struct ViewData {  // std430, as in shaders/style.glsl
   glm::mat4 view_from_unit, clip_from_view, view_from_normal;
 };
 
-struct StyleData {  // std140, as in shaders/mesh.vert
-  glm::vec4 light, weights, back_color, shininess;
-  glm::vec4 inferred_color, inferred_stripe, hatch;
+struct LookData {  // std140, as in shaders/style.glsl
+  glm::vec4 light, weights, back_color, gloss, field;
+};
+
+struct StyleData {
+  std::array<LookData, 2> looks;
+  glm::vec4 blend, inferred_color, inferred_stripe, hatch;
   glm::vec4 fog_color, fog_depth;
   glm::mat4 map_from_unit, map_from_normal;
   std::array<glm::vec4, kMostClipPlanes> clip_plane;
@@ -58,18 +72,30 @@ glm::dvec2 fog_depths(const SceneView& scene, const View& view) {
   return out;
 }
 
-StyleData style_data(const MeshItem& item, const SceneView& scene, const View& view, const ShadowMap* shadows) {
-  const Style& s = item.style;
-  const Light& light = scene.light;
-  const Box& box = item.mesh->box_mm();
-  const glm::dmat4 world_from_unit = item.world_from_model * model_from_unit(box);
-  const glm::dvec3 direction = light_direction(light);
-  StyleData out{};
-  out.light = glm::vec4(glm::vec3(direction), s.lit ? 1.0f : 0.0f);
+LookData look_data(const Style& style, const Light& light, const glm::dvec3& direction) {
+  LookData out{};
+  out.light = glm::vec4(glm::vec3(direction), style.lit ? 1.0f : 0.0f);
   const double key = light.even ? light.key / std::max(direction.z, kLeastSineEven) : light.key;
   out.weights = glm::vec4(glm::dvec4(light.ambient, key, light.fill, light.specular));
-  out.back_color = glm::vec4(linear_color(s.back_color), s.back_faces == BackFaces::kTint ? 1.0f : 0.0f);
-  out.shininess = glm::vec4(static_cast<float>(light.shininess), static_cast<float>(light.knee), 0.0f, 0.0f);
+  out.back_color = glm::vec4(linear_color(style.back_color), style.back_faces == BackFaces::kTint ? 1.0f : 0.0f);
+  out.gloss = glm::vec4(glm::dvec4(light.shininess, light.knee, style.radiance, light.shadows ? 1.0 : 0.0));
+  if (is_field(style.map)) {
+    const FieldScale scale = field_scale(style);
+    const double slope = 1.0 / (scale.to - scale.from);
+    const int which = 1 + static_cast<int>(style.map) - static_cast<int>(ColorMap::kIntegral);
+    out.field = glm::vec4(glm::dvec4(which, slope, -scale.from * slope, 0.0));
+  }
+  return out;
+}
+
+StyleData style_data(const MeshItem& item, const SceneView& scene, const View& view, const ShadowMap* shadows) {
+  const Style& s = item.style;
+  const Box& box = item.mesh->box_mm();
+  const glm::dmat4 world_from_unit = item.world_from_model * model_from_unit(box);
+  const glm::dvec3 direction = light_direction(scene.light);
+  StyleData out{};
+  out.looks = {look_data(s, scene.light, direction), look_data(item.other.style, item.other.light, direction)};
+  out.blend = glm::vec4(static_cast<float>(item.other.share), 0.0f, 0.0f, 0.0f);
   out.inferred_color = glm::vec4(linear_color(s.inferred_color), 1.0f);
   out.inferred_stripe = glm::vec4(linear_color(s.inferred_stripe), 1.0f);
   const glm::dvec3 size = box.size();
@@ -178,6 +204,9 @@ Result<GLuint> MeshPass::program(unsigned variant) {
   define(kPeeled, "PEELED");
   define(kInferredSurface, "INFERRED");
   define(kFoggy, "FOGGY");
+  define(kQuick, "QUICK");
+  define(kBent, "BENT");
+  define(kBlended, "BLENDED");
   const std::string_view extension =
       (variant & kLayered) != 0 ? "#extension GL_ARB_shader_viewport_layer_array : require\n" : "";
   DUBSAR_ASSIGN(GlProgram made, make_program("mesh.vert", "mesh.frag", std::string(extension) + lines, lines));
@@ -188,7 +217,7 @@ GLuint MeshPass::table_of(const Style& style) {
   const auto same = [&](const Table& t) {
     return t.style.map == style.map && t.style.contrast == style.contrast && t.style.base_color == style.base_color &&
            t.style.ambient_occlusion == style.ambient_occlusion && t.style.occlusion_power == style.occlusion_power &&
-           t.style.shoulder == style.shoulder;
+           t.style.shoulder == style.shoulder && t.style.field_colors == style.field_colors;
   };
   if (const auto found = std::find_if(tables_.begin(), tables_.end(), same); found != tables_.end()) {
     std::rotate(found, found + 1, tables_.end());
@@ -202,6 +231,11 @@ GLuint MeshPass::table_of(const Style& style) {
   glTextureSubImage2D(texture, 0, 0, 0, kShapeRows, kAoColumns, GL_RGBA, GL_FLOAT, linear.data());
   tables_.push_back({style, std::move(texture)});
   return tables_.back().texture;
+}
+
+void MeshPass::bind_tables(const MeshItem& item) {
+  glBindTextureUnit(kTableUnit, table_of(item.style));
+  if (item.other.share > 0) glBindTextureUnit(kOtherTableUnit, table_of(item.other.style));
 }
 
 Result<void> MeshPass::draw(const MeshItem& item, const SceneView& scene, const PassViews& target,
@@ -220,13 +254,18 @@ Result<void> MeshPass::draw(const MeshItem& item, const SceneView& scene, const 
     data.push_back(view_data(views.back(), model_from_unit(box), target.layers.empty() ? 0 : target.layers[i]));
   }
   stream(views_, std::as_bytes(std::span(data)));
-  const ShadowMap* const shadows = item.style.lit ? mode.shadows : nullptr;
+  const bool blended = item.other.share > 0;
+  const bool cast =
+      (item.style.lit && scene.light.shadows) || (blended && item.other.style.lit && item.other.light.shadows);
+  const ShadowMap* const shadows = cast ? mode.shadows : nullptr;
+  const bool bent = item.style.radiance > 0 || (blended && item.other.style.radiance > 0);
   const StyleData style = style_data(item, scene, target.views[0], shadows);
   stream(style_, std::as_bytes(std::span(&style, 1)));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kViewsBinding, views_);
   glBindBufferBase(GL_UNIFORM_BUFFER, kStyleBinding, style_);
   glVertexAttrib4f(kForeignColor, 1, 1, 1, 1);
-  glBindTextureUnit(kTableUnit, table_of(item.style));
+  glVertexAttrib4f(kCarried, 0, 0, 0, 0);
+  bind_tables(item);
   if (shadows != nullptr) glBindTextureUnit(kShadowUnit, shadows->texture());
   if (transparent) {
     glBindTextureUnit(kOpaqueUnit, mode.opaque_depth);
@@ -236,7 +275,8 @@ Result<void> MeshPass::draw(const MeshItem& item, const SceneView& scene, const 
   glBindVertexArray(level.vertex_array());
   const unsigned variant = (target.layers.empty() ? 0u : kLayered) | (scene.clips.empty() ? 0u : kClipped) |
                            (shadows == nullptr ? 0u : kShadowed) | (transparent ? kPeeled : 0u) |
-                           (scene.fog.strength > 0 ? kFoggy : 0u);
+                           (scene.fog.strength > 0 ? kFoggy : 0u) | (target.coarse_px > 0 ? kQuick : 0u) |
+                           (bent ? kBent : 0u) | (blended ? kBlended : 0u);
   for (std::size_t p = 0; p < item.parts.size(); ++p)
     if (drawn(item.parts[p])) DUBSAR_TRY(draw_part(level, item, p, views, variant));
   glDisable(GL_CULL_FACE);

@@ -35,6 +35,7 @@ bool only_background(const Image& image, const Shading& shading) {
 struct PictureRenderer::Parts {  // destroyed from the bottom to the top: the context last
   std::unique_ptr<EglContext> context;
   LodMesh mesh;
+  const TriMesh* source = nullptr;  // for figures that are measured when a style asks for them
   bool has_shape = false, has_ao = false;
   std::optional<Renderer> renderer;
 
@@ -53,6 +54,7 @@ Result<PictureRenderer> PictureRenderer::create(const TriMesh& mesh) {
   DUBSAR_ASSIGN(const PackedMesh packed, pack_mesh(mesh));
   parts->has_shape = packed.has_shape;
   parts->has_ao = packed.has_ao;
+  parts->source = &mesh;
   DUBSAR_ASSIGN(parts->context, EglContext::create());
   DUBSAR_ASSIGN(parts->mesh, LodMesh::exact(packed));
   DUBSAR_ASSIGN(parts->renderer, Renderer::create());
@@ -69,7 +71,7 @@ Result<Picture> PictureRenderer::render(const RenderOptions& options, Progress& 
   if (options.samples < 1 || options.samples > 8)
     return fail(ErrorKind::kUsage, "render: {0} x {0} samples a pixel asked for, expected 1 x 1 to 8 x 8",
                 options.samples);
-  if (shading.style.map != ColorMap::kPlain && !parts_->has_shape)
+  if (shading.style.map != ColorMap::kPlain && !is_field(shading.style.map) && !parts_->has_shape)
     log_info("render: the mesh carries no shape classes, so it is drawn without curvature colouring");
   if (shading.style.ambient_occlusion && !parts_->has_ao)
     log_info("render: the mesh carries no ambient occlusion, so it is drawn without");
@@ -77,6 +79,7 @@ Result<Picture> PictureRenderer::render(const RenderOptions& options, Progress& 
   const int channels = shading.background.transparent ? 4 : 3;
   DUBSAR_TRY(check_memory("render", static_cast<std::uint64_t>(camera.width) * camera.height * channels));
   DUBSAR_TRY(parts_->context->make_current());
+  DUBSAR_TRY(carry_fields(parts_->mesh, *parts_->source, fields_needed(shading.style, shading.other), progress));
 
   const MeshScene scene(parts_->mesh, shading);
   const int side = kTileSamples / options.samples;

@@ -30,7 +30,7 @@ struct Picture {
 /// A mesh in graphics memory with its own offscreen context, for several pictures of it. One thread.
 class PictureRenderer {
  public:
-  /// kUnavailable without GL 4.5, kBadData when the mesh contradicts itself or has no triangles.
+  /// `mesh` outlives it. kUnavailable without GL 4.5, kBadData when the mesh contradicts itself or has no triangles.
   static Result<PictureRenderer> create(const TriMesh& mesh);
   PictureRenderer(PictureRenderer&&) noexcept;
   PictureRenderer& operator=(PictureRenderer&&) noexcept;

@@ -87,7 +87,7 @@ Result<void> Renderer::use_layer_depth(const ViewArray& target) {
 
 Result<const ShadowMap*> Renderer::cast_shadows(const SceneView& scene, std::span<const View> views, int size,
                                                 double coarse_px, int width_px) {
-  if (!scene.light.shadows) return nullptr;
+  if (!casts_shadows(scene)) return nullptr;
   DUBSAR_TRY(shadows_.draw(scene, views, size, coarse_px, width_px));
   return &shadows_;
 }
@@ -115,7 +115,7 @@ Result<void> Renderer::render_layers(const SceneView& scene, std::span<const Vie
   DUBSAR_TRY(check_scene(scene));
   DUBSAR_TRY(use_layer_depth(target));
   const bool together =
-      meshes_.layered() && !has_transparency(scene) && (!scene.light.shadows || same_direction(views));
+      meshes_.layered() && !has_transparency(scene) && (!casts_shadows(scene) || same_direction(views));
   const ShadowMap* shadows = nullptr;
   if (together) {
     DUBSAR_ASSIGN(shadows, cast_shadows(scene, views, kQuickShadowTexels, coarse_px, target.width()));

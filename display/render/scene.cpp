@@ -62,6 +62,8 @@ Result<void> check_item(const LabelItem& item) {
 Result<void> check_item(const MeshItem& item) {
   if (item.mesh == nullptr) return fail(ErrorKind::kUsage, "scene: a mesh item has no mesh");
   if (!finite(item.world_from_model)) return fail(ErrorKind::kUsage, "scene: the place of a mesh is not finite");
+  if (!fraction(item.other.share))
+    return fail(ErrorKind::kUsage, "scene: a second look's share of {} found, expected 0 to 1", item.other.share);
   for (const PartLook& part : item.parts)
     if (!finite(part.offset_mm) || !fraction(part.opacity))
       return fail(ErrorKind::kUsage, "scene: a part with opacity {} or an offset that is not finite, expected 0 to 1",
@@ -124,6 +126,14 @@ bool has_transparency(const SceneView& scene) {
     if (const auto* mesh = std::get_if<MeshItem>(&item))
       for (const PartLook& part : mesh->parts)
         if (part.visible && part.opacity < 1.0) return true;
+  return false;
+}
+
+bool casts_shadows(const SceneView& scene) {
+  if (scene.light.shadows) return true;
+  for (const DrawItem& item : scene.items)
+    if (const auto* mesh = std::get_if<MeshItem>(&item))
+      if (mesh->other.share > 0 && mesh->other.light.shadows) return true;
   return false;
 }
 

@@ -27,6 +27,7 @@ struct MeshItem {
   glm::dmat4 world_from_model{1.0};  ///< rotation, one scale for all axes, translation
   Style style;
   PartLooks parts{};
+  OtherLook other{};
 };
 
 /// A cut through the scan: a rectangle in the world with grey values on it.
@@ -92,7 +93,7 @@ Result<ClipPlane> cut_from_side(const Box& box, std::string_view side, double sh
 class MeshScene {
  public:
   MeshScene(const LodMesh& mesh, const Shading& shading, const glm::dmat4& world_from_model = glm::dmat4(1.0))
-      : item_(MeshItem{&mesh, world_from_model, shading.style, shading.parts}),
+      : item_(MeshItem{&mesh, world_from_model, shading.style, shading.parts, shading.other}),
         light_(shading.light),
         clips_(moved(shading.clips, world_from_model)),
         background_(shading.background),
@@ -109,6 +110,9 @@ class MeshScene {
 
 /// True when parts of a mesh are drawn with an opacity below 1.
 bool has_transparency(const SceneView& scene);
+
+/// Whether the light of a look casts shadows in this scene.
+bool casts_shadows(const SceneView& scene);
 
 /// World box of everything that is drawn; clip planes are not looked at. A box of size 0 for an empty scene.
 Box scene_box_mm(const SceneView& scene);

@@ -8,6 +8,7 @@
 
 #include "core/base/near_word.h"
 #include "core/relief/shape_colors.h"
+#include "display/render/surface_field.h"
 
 namespace dubsar {
 namespace {
@@ -18,8 +19,7 @@ ShapeColors shape_colors_of(ColorMap map) {
       return ShapeColors::kTable;
     case ColorMap::kSkySun:
       return ShapeColors::kSkySun;
-    case ColorMap::kPlain:
-    case ColorMap::kBlackWhite:
+    default:
       break;
   }
   return ShapeColors::kBlackWhite;
@@ -33,7 +33,7 @@ struct Preset {
   bool ambient_occlusion, lit;
   bool rakes = false;
 };
-constexpr std::array<Preset, 10> kPresets{{{"relief", ColorMap::kBlackWhite, true, true},
+constexpr std::array<Preset, 16> kPresets{{{"relief", ColorMap::kBlackWhite, true, true},
                                            {"phong", ColorMap::kPlain, false, true},
                                            {"raking", ColorMap::kPlain, false, true, true},
                                            {"table", ColorMap::kTable, false, false},
@@ -42,7 +42,13 @@ constexpr std::array<Preset, 10> kPresets{{{"relief", ColorMap::kBlackWhite, tru
                                            {"ao", ColorMap::kPlain, true, false},
                                            {"table-ao", ColorMap::kTable, true, false},
                                            {"black-white-ao", ColorMap::kBlackWhite, true, false},
-                                           {"sky-sun-ao", ColorMap::kSkySun, true, false}}};
+                                           {"sky-sun-ao", ColorMap::kSkySun, true, false},
+                                           {"msii", ColorMap::kIntegral, false, false},
+                                           {"radiance", ColorMap::kPlain, false, true},
+                                           {"mean-curvature", ColorMap::kMean, false, false},
+                                           {"gaussian-curvature", ColorMap::kGaussian, false, false},
+                                           {"shape-index", ColorMap::kShapeIndex, false, false},
+                                           {"curvedness", ColorMap::kCurvedness, false, false}}};
 
 /// A lamp beside the tablet in a dark room. Level clay is a middle grey; walls towards the lamp come close to white.
 Light raking_light() {
@@ -81,7 +87,10 @@ Result<Shading> shading_preset(std::string_view name) {
       style.map = preset.map;
       style.ambient_occlusion = preset.ambient_occlusion;
       style.lit = preset.lit;
-      if (!preset.lit) {  // figure 14: the table's own colours; ambient light alone is white
+      if (name == "radiance") style.radiance = 1.0;
+      if (is_field(preset.map)) {
+        style.contrast = style.occlusion_power = 1.0;
+      } else if (!preset.lit) {  // figure 14: the table's own colours; ambient light alone is white
         style.base_color =
             preset.map == ColorMap::kPlain ? Rgb8{255, 255, 255} : shape_color_table(shape_colors_of(preset.map))[0];
         style.contrast = 1.0;
@@ -119,6 +128,17 @@ void color_partitions(PartLooks& parts, const std::array<Rgb8, 8>& colors) {
 }
 
 std::vector<std::array<std::uint8_t, 4>> color_table(const Style& style) {
+  if (is_field(style.map)) {
+    const auto colors = field_colors(style);
+    std::vector<std::array<std::uint8_t, 4>> table;
+    for (int ao = 0; ao < kAoColumns; ++ao)
+      for (const Rgb8& own : colors) {
+        const double open = std::pow(ao / (kAoColumns - 1.0), style.occlusion_power) * (kAoColumns - 1);
+        const Rgb8 c = style.ambient_occlusion ? shade(own, static_cast<std::uint8_t>(std::lround(open))) : own;
+        table.push_back({c[0], c[1], c[2], 255});
+      }
+    return table;
+  }
   const auto& shapes = shape_color_table(shape_colors_of(style.map));
   const double contrast = style.map == ColorMap::kPlain ? 0.0 : style.contrast;
   std::vector<std::array<std::uint8_t, 4>> table;

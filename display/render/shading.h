@@ -20,6 +20,20 @@ enum class ColorMap {
   kTable,       ///< one hue per shape class (figure 14a)
   kBlackWhite,  ///< concave dark, convex light (14b)
   kSkySun,      ///< sky-blue shadows, sun-orange lights (14c)
+  // Figures of the surface (surface_field.h), with a legend:
+  kIntegral,    ///< multi-scale integral invariants: distance from those of a plane
+  kMean,        ///< mean curvature
+  kGaussian,    ///< Gaussian curvature
+  kShapeIndex,  ///< from cup (-1) over saddle (0) to cap (1)
+  kCurvedness,  ///< how much it is bent, whichever way
+};
+
+/// Colours of figures of the surface. All are told apart by people who do not see red and green.
+enum class FieldColors {
+  kDesigned,    ///< those of the style: greys of clay for integral invariants, cividis for curvedness, else blue-orange
+  kBlueOrange,  ///< concave blue, flat white, convex orange
+  kCividis,     ///< J. Nunez, C. Anderton, R. Renslow, 2018: from dark blue to yellow, lightness rises evenly
+  kGrey,        ///< from dark to light
 };
 
 enum class BackFaces {
@@ -45,6 +59,9 @@ struct Style {
   /// full light. False: it looks like all the rest.
   bool mark_inferred = true;
   Rgb8 inferred_color{122, 158, 204}, inferred_stripe{38, 70, 128};
+  FieldColors field_colors = FieldColors::kDesigned;  ///< of maps of figures
+  /// Radiance scaling: how much brighter the light on ridges is and how much darker that in hollows; 0 not, 1 clearly.
+  double radiance = 0.0;
 
   bool operator==(const Style&) const = default;
 };
@@ -62,6 +79,15 @@ struct Light {
   double knee = 1.0;     ///< linear light from which on highlights are bent into white instead of clipped, 0..1
 
   bool operator==(const Light&) const = default;
+};
+
+/// A second look that the first one is mixed with, in linear light.
+struct OtherLook {
+  Style style;
+  Light light;         ///< its place is that of the first look's
+  double share = 0.0;  ///< 0: the first look alone, 1: this one alone
+
+  bool operator==(const OtherLook&) const = default;
 };
 
 /// One partition of a mesh.
@@ -116,17 +142,21 @@ struct Shading {
   Background background;
   std::vector<ClipPlane> clips{};  ///< in the mesh's frame
   Fog fog{};
+  OtherLook other{};
 
   bool operator==(const Shading&) const = default;
 };
 
 /// Names of presets for the command line: "relief" (default), "phong", "raking" (low light with shadows), "table",
-/// "black-white", "sky-sun", "ao", "sky-sun-ao", "black-white-ao", "table-ao". kUsage, with the list, for another name.
+/// "black-white", "sky-sun", "ao", "sky-sun-ao", "black-white-ao", "table-ao", "msii" (integral invariants),
+/// "radiance", "mean-curvature", "gaussian-curvature", "shape-index", "curvedness". kUsage, with the list, for another
+/// name.
 Result<Shading> shading_preset(std::string_view name);
 std::vector<std::string_view> shading_preset_names();
 
 constexpr int kShapeRows = 128, kAoColumns = 64;
-/// Colour of shape class s (0..127) under ambient light a (0..63) at [a * 128 + s]: what the vertex shader looks up.
+/// Colour of shape class s (0..127) under ambient light a (0..63) at [a * 128 + s]: what the vertex shader looks up. Of
+/// maps of figures: colour s of its field_colors().
 std::vector<std::array<std::uint8_t, 4>> color_table(const Style& style);
 
 /// Unit vector towards the key light in the view frame (+X right, +Y up, +Z to the eye).

@@ -121,7 +121,8 @@ Result<DisplayPicture> render_display(const TriMesh& mesh, const SinkSpec& displ
   viewer.back_mm = options.place_mm.z - half_depth;
   const glm::dmat4 screen_from_model = place_object(box, options.direction, options.place_mm, magnification);
 
-  DUBSAR_ASSIGN(const LodMesh gpu, LodMesh::exact(packed));
+  DUBSAR_ASSIGN(LodMesh gpu, LodMesh::exact(packed));
+  DUBSAR_TRY(carry_fields(gpu, mesh, fields_needed(options.shading.style, options.shading.other), progress));
   const MeshScene scene(gpu, options.shading, screen_from_model);
   DUBSAR_ASSIGN(Renderer renderer, Renderer::create());
   DUBSAR_ASSIGN(ViewArray array, ViewArray::create(traits.view.width, traits.view.height, traits.views));

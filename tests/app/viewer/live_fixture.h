@@ -102,7 +102,7 @@ class Live : public ::testing::Test {
     auto surface = OffscreenSurface::create(stage->traits().output).value();
     FollowedEyes eyes;
     eyes.presence = Presence::kOff;
-    stage->show({view, 1.0, options.shading.style, options.shading.parts}, eyes, 1);
+    stage->show({view, 1.0, options.shading.style, options.shading.other, options.shading.parts}, eyes, 1);
     EXPECT_TRUE(stage->paint(surface.surface()));
     return surface.read().value();
   }

@@ -1,0 +1,50 @@
+#include "app/panels/legend_page.h"
+
+#include <fmt/format.h>
+
+#include "app/panels/panel_kit.h"
+#include "display/render/legend_image.h"
+#include "display/render/surface_field.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr float kBar = 200.0f, kTall = 12.0f, kPad = 10.0f;
+
+}  // namespace
+
+std::optional<LegendPicture> legend_of(const Style& style) {
+  if (!is_field(style.map)) return std::nullopt;
+  const FieldScale scale = field_scale(style);
+  return LegendPicture{std::string(scale.name), std::string(scale.unit), scale.from, scale.to, field_colors(style)};
+}
+
+void draw_legend(const LegendPicture& legend, float left, float bottom) {
+  const float line = ImGui::GetTextLineHeight(), width = kBar + 2 * kPad + 40.0f,
+              height = 2 * line + kTall + 2 * kPad + 6.0f;
+  ImGui::SetNextWindowPos(ImVec2(left, bottom - height));
+  ImGui::SetNextWindowSize(ImVec2(width, height));
+  ImGui::SetNextWindowBgAlpha(0.8f);
+  ImGui::Begin("legend", nullptr, kFixed | ImGuiWindowFlags_NoInputs);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const std::string title = legend.unit.empty() ? legend.name : fmt::format("{}, {}", legend.name, legend.unit);
+  const ImVec2 corner(left + kPad + 20.0f, bottom - height + kPad);
+  list.AddText(corner, kText, title.c_str());
+  const float top = corner.y + line + 2.0f;
+  const float step = kBar / static_cast<float>(legend.colors.size());
+  for (std::size_t i = 0; i < legend.colors.size(); ++i) {
+    const auto& c = legend.colors[i];
+    const float x = corner.x + step * static_cast<float>(i);
+    list.AddRectFilled(ImVec2(x, top), ImVec2(x + step + 0.5f, top + kTall), IM_COL32(c[0], c[1], c[2], 255));
+  }
+  for (int tick = 0; tick < kLegendTicks; ++tick) {
+    const double part = tick / (kLegendTicks - 1.0);
+    const std::string number = legend_number(legend.from + part * (legend.to - legend.from));
+    const float x = corner.x + static_cast<float>(part) * kBar;
+    list.AddLine(ImVec2(x, top + kTall), ImVec2(x, top + kTall + 4.0f), kText);
+    list.AddText(ImVec2(x - 0.5f * ImGui::CalcTextSize(number.c_str()).x, top + kTall + 4.0f), kText, number.c_str());
+  }
+  ImGui::End();
+}
+
+}  // namespace dubsar::app
