@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/base/result.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/exa/sign_model.cpp"
 #include <hwy/foreach_target.h>
@@ -16,36 +18,47 @@ namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_TARGET == HWY_SCALAR
 std::int32_t weigh(const SignModel::Place& place, const unsigned char* here, int shift) {
   const SignModel::Phase& phase = *place.phase;
-  SignModel::Sums sum = phase.bias;
+  std::array<std::int16_t, kSignUnits> sum{};
+  std::copy_n(phase.bias.front().data(), place.units, sum.data());
+  const std::int16_t* sums = phase.sums.front().data();
   for (std::size_t r = 0; r < phase.rows.size(); ++r) {
     std::uint16_t bits;
     std::memcpy(&bits, here + place.steps[r], sizeof bits);
-    const SignModel::Sums& add = phase.rows[r].sums[bits >> shift & 127];
-    for (std::size_t u = 0; u < sum.size(); ++u) sum[u] = static_cast<std::int16_t>(sum[u] + add[u]);
+    const std::int16_t* add = sums + phase.rows[r].at[bits >> shift & 127] * place.units;
+    for (std::size_t u = 0; u < place.units; ++u) sum[u] = static_cast<std::int16_t>(sum[u] + add[u]);
   }
+  const std::int16_t* out = phase.out.front().data();
   std::int32_t total = 0;
-  for (std::size_t u = 0; u < sum.size(); ++u)
-    total += std::int32_t{std::clamp<std::int16_t>(sum[u], 0, 1023)} * phase.out[u];
+  for (std::size_t u = 0; u < place.units; ++u)
+    total += std::int32_t{std::clamp<std::int16_t>(sum[u], 0, 1023)} * out[u];
   return total;
 }
 #else
-std::int32_t weigh(const SignModel::Place& place, const unsigned char* here, int shift) {
-  const hn::CappedTag<std::int16_t, kSignUnits> d;
+template <std::size_t kUnits>
+HWY_INLINE std::int32_t weigh_units(const SignModel::Place& place, const unsigned char* here, int shift) {
+  const hn::CappedTag<std::int16_t, std::min<std::size_t>(kUnits, 32)> d;
   const hn::RepartitionToWide<decltype(d)> d32;
+  constexpr std::size_t kWidth = hn::MaxLanes(decltype(d)()), kVectors = kUnits / kWidth;
   const SignModel::Phase& phase = *place.phase;
-  const std::size_t width = hn::Lanes(d), rows = phase.rows.size();
+  const std::int16_t* sums = phase.sums.front().data();
+  const SignModel::Row* rows = phase.rows.data();
+  hn::Vec<decltype(d)> sum[kVectors];
+  for (std::size_t v = 0; v < kVectors; ++v) sum[v] = hn::Load(d, phase.bias.front().data() + v * kWidth);
+  for (std::size_t r = 0, count = phase.rows.size(); r < count; ++r) {
+    std::uint16_t bits;
+    std::memcpy(&bits, here + place.steps[r], sizeof bits);
+    const std::int16_t* add = sums + rows[r].at[bits >> shift & 127] * kUnits;
+    for (std::size_t v = 0; v < kVectors; ++v) sum[v] = hn::Add(sum[v], hn::Load(d, add + v * kWidth));
+  }
   auto even = hn::Zero(d32), odd = hn::Zero(d32);
-  for (std::size_t u = 0; u < kSignUnits; u += width) {
-    auto sum = hn::Load(d, phase.bias.data() + u);
-    for (std::size_t r = 0; r < rows; ++r) {
-      std::uint16_t bits;
-      std::memcpy(&bits, here + place.steps[r], sizeof bits);
-      sum = hn::Add(sum, hn::Load(d, phase.rows[r].sums[bits >> shift & 127].data() + u));
-    }
-    sum = hn::Min(hn::Max(sum, hn::Zero(d)), hn::Set(d, std::int16_t{1023}));
-    even = hn::ReorderWidenMulAccumulate(d32, sum, hn::Load(d, phase.out.data() + u), even, odd);
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    const auto unit = hn::Min(hn::Max(sum[v], hn::Zero(d)), hn::Set(d, std::int16_t{1023}));
+    even = hn::ReorderWidenMulAccumulate(d32, unit, hn::Load(d, phase.out.front().data() + v * kWidth), even, odd);
   }
   return hn::GetLane(hn::SumOfLanes(d32, hn::Add(even, odd)));
+}
+std::int32_t weigh(const SignModel::Place& place, const unsigned char* here, int shift) {
+  return place.units == 16 ? weigh_units<16>(place, here, shift) : weigh_units<64>(place, here, shift);
 }
 #endif
 
@@ -57,6 +70,7 @@ HWY_AFTER_NAMESPACE();
 namespace dubsar {
 namespace {
 #include "core/exa/sign_weights.inc"
+#include "core/exa/sign_weights_wide.inc"
 HWY_EXPORT(weigh);
 }  // namespace
 
@@ -76,24 +90,35 @@ std::vector<SignTap> sign_taps(int phase) {
   return taps;
 }
 
-SignModel::SignModel(const std::array<SignWeights, 7>& weights) {
+SignModel::SignModel(const std::array<SignWeights, 7>& weights, std::size_t units) : units_(units) {
+  DUBSAR_CHECK(units == 16 || units == 64);
   for (std::size_t p = 0; p < 7; ++p) {
     const std::vector<SignTap> taps = sign_taps(kSignPhases[p]);
     Phase& phase = phases_[p];
-    static_cast<std::array<std::int16_t, kSignUnits>&>(phase.bias) = weights[p].in_bias;
-    static_cast<std::array<std::int16_t, kSignUnits>&>(phase.out) = weights[p].out;
+    std::copy_n(weights[p].in_bias.data(), units, phase.bias.front().data());
+    std::copy_n(weights[p].out.data(), units, phase.out.front().data());
     phase.out_bias = weights[p].out_bias;
+    std::vector<std::int16_t> sums;
     for (std::size_t t = 0; t < taps.size();) {
       Row row{taps[t].y, taps[t].z, {}};
-      for (; t < taps.size() && taps[t].y == row.y && taps[t].z == row.z; ++t)
-        for (unsigned bits = 0; bits < 128; ++bits)
-          for (std::size_t u = 0; u < kSignUnits; ++u) {
-            const int weight = weights[p].in[t * kSignUnits + u];
-            auto& sum = row.sums[bits][u];
-            sum = static_cast<std::int16_t>(sum + (bits >> (taps[t].x + 3) & 1 ? weight : -weight));
-          }
+      const std::size_t first = t, start = sums.size() / units;
+      while (t < taps.size() && taps[t].y == row.y && taps[t].z == row.z) ++t;
+      for (std::size_t set = 0; set < std::size_t{1} << (t - first); ++set)
+        for (std::size_t u = 0; u < units; ++u) {
+          int sum = 0;
+          for (std::size_t k = first; k < t; ++k)
+            sum += (set >> (k - first) & 1 ? 1 : -1) * weights[p].in[k * kSignUnits + u];
+          sums.push_back(static_cast<std::int16_t>(sum));
+        }
+      for (unsigned bits = 0; bits < 128; ++bits) {
+        std::size_t set = 0;
+        for (std::size_t k = first; k < t; ++k) set |= std::size_t{bits >> (taps[k].x + 3) & 1} << (k - first);
+        row.at[bits] = static_cast<std::uint16_t>(start + set);
+      }
       phase.rows.push_back(row);
     }
+    phase.sums.resize((sums.size() + 31) / 32);
+    std::copy(sums.begin(), sums.end(), phase.sums.front().data());
     const auto own =
         std::find_if(phase.rows.begin(), phase.rows.end(), [](const Row& r) { return r.y == 0 && r.z == 0; });
     if (own != phase.rows.end()) std::rotate(own, own + 1, phase.rows.end());
@@ -104,6 +129,7 @@ SignModel::Place SignModel::place(const SignLattice& lattice, std::size_t phase_
   Place place;
   place.lattice = &lattice;
   place.phase = &phases_[phase_index];
+  place.units = units_;
   place.out_bias = place.phase->out_bias[level_class];
   for (std::size_t r = 0; r < place.phase->rows.size(); ++r)
     place.steps[r] = lattice.step(place.phase->rows[r].y, place.phase->rows[r].z);
@@ -117,23 +143,33 @@ int SignModel::logit(const Place& place, int x, int y, int z) noexcept {
 }
 
 namespace {
-SignModel read_model(const std::int16_t* at) {
+/// `units`: those that are stored.
+std::array<SignWeights, 7> read_weights(const std::int16_t* at, std::size_t units) {
   std::array<SignWeights, 7> weights;
   for (std::size_t p = 0; p < 7; ++p) {
     SignWeights& w = weights[p];
-    w.in.resize(sign_taps(kSignPhases[p]).size() * kSignUnits);
-    for (std::int8_t& v : w.in) v = static_cast<std::int8_t>(*at++);
-    for (std::int16_t& v : w.in_bias) v = *at++;
-    for (std::int16_t& v : w.out) v = *at++;
+    const std::size_t taps = sign_taps(kSignPhases[p]).size();
+    w.in.resize(taps * kSignUnits);
+    for (std::size_t t = 0; t < taps; ++t)
+      for (std::size_t u = 0; u < units; ++u) w.in[t * kSignUnits + u] = static_cast<std::int8_t>(*at++);
+    for (std::size_t u = 0; u < units; ++u) w.in_bias[u] = *at++;
+    for (std::size_t u = 0; u < units; ++u) w.out[u] = *at++;
     for (std::int16_t& v : w.out_bias) v = *at++;
   }
-  return SignModel(weights);
+  return weights;
 }
 }  // namespace
 
-const SignModel& SignModel::instance(std::size_t which) {
-  static const std::array<SignModel, kSignModels> models{read_model(kSignWeightsScan), read_model(kSignWeightsSmooth)};
-  return models[which];
+std::array<SignWeights, 7> SignModel::stored_weights(std::size_t model) {
+  return model == 0   ? read_weights(kSignWeightsScan, 16)
+         : model == 1 ? read_weights(kSignWeightsSmooth, 16)
+                      : read_weights(kSignWeightsWide, 64);
+}
+
+const SignModel& SignModel::instance(std::size_t model) {
+  static const std::array<SignModel, kSignModels> models{
+      SignModel(stored_weights(0), 16), SignModel(stored_weights(1), 16), SignModel(stored_weights(2), 64)};
+  return models[model];
 }
 
 }  // namespace dubsar

@@ -1,7 +1,7 @@
 #pragma once
 // How likely is a point inside, given the signs around it? A small network per phase with fixed integer weights
-// (docs/exa.md, "Signs"). They were fitted by gradient descent on the logarithmic loss: scan on phantoms of 23 to 33 dB
-// and two CT volumes, smooth on spheres; test surfaces were others.
+// (docs/exa.md, "Signs"). They were fitted by gradient descent on the logarithmic loss (training/): scan on phantoms of
+// 20 to 36 dB and CT volumes, smooth on spheres; test surfaces were others.
 
 #include <array>
 #include <cstdint>
@@ -21,8 +21,10 @@ struct SignTap {
 inline constexpr int kSignReach2 = 11;
 std::vector<SignTap> sign_taps(int phase);
 
-inline constexpr std::size_t kSignModels = 2;
-inline constexpr int kSignUnits = 16;  ///< hidden units
+/// Models: 0 scan and 1 smooth of 16 units, as in version 3; 2 scan of 64 units.
+inline constexpr std::size_t kSignModels = 3;
+inline constexpr std::array<std::size_t, 2> kSignModelsTried{2, 1};  ///< by the encoder: 0 is worse than 2 everywhere
+inline constexpr int kSignUnits = 64;  ///< hidden units; those that a model has not got are 0
 
 /// Weights of one phase: units x taps; a hidden unit is clamp(sum of +-weight + bias, 0, 1023), the logit in 1 / 256 is
 /// (sum of weight x unit) / 8 rounded down + bias of the level.
@@ -34,19 +36,22 @@ struct SignWeights {
 
 class SignModel {
  public:
-  /// Built on first use from the tables of weights; thread-safe. `which`: 0 for surfaces with the noise of a scan, 1
-  /// for smooth ones.
-  static const SignModel& instance(std::size_t which);
-  explicit SignModel(const std::array<SignWeights, 7>& weights);
+  /// The network of a model, built on first use from the tables of weights; thread-safe.
+  static const SignModel& instance(std::size_t model);
+  /// Its weights as they are stored.
+  static std::array<SignWeights, 7> stored_weights(std::size_t model);
+  /// `units`: 16 or 64; the weights of further ones are not looked at.
+  SignModel(const std::array<SignWeights, 7>& weights, std::size_t units);
 
-  struct alignas(32) Sums : std::array<std::int16_t, kSignUnits> {};
   struct Row {
     int y = 0, z = 0;
-    std::array<Sums, 128> sums;  ///< by the signs at x - 3 .. x + 3
+    std::array<std::uint16_t, 128> at{};  ///< which of the phase's sums, by the signs at x - 3 .. x + 3
   };
+  struct alignas(64) Line : std::array<std::int16_t, 32> {};
   struct Phase {
-    std::vector<Row> rows;  ///< that of the point itself last: its signs are known last
-    Sums bias{}, out{};
+    std::vector<Row> rows;   ///< that of the point itself last: its signs are known last
+    std::vector<Line> sums;  ///< of a row's weights, with the units of the model for each set of its taps
+    std::array<Line, 2> bias{}, out{};
     std::array<std::int16_t, 3> out_bias{};
   };
   /// A phase on a lattice.
@@ -54,6 +59,7 @@ class SignModel {
     static constexpr std::size_t kRows = 37;  ///< rows at most sqrt(11) away
     const SignLattice* lattice = nullptr;
     const Phase* phase = nullptr;
+    std::size_t units = 0;
     int out_bias = 0;
     std::array<std::ptrdiff_t, kRows> steps{};  ///< bytes from the row of a point to those of phase->rows
   };
@@ -63,6 +69,7 @@ class SignModel {
   static int logit(const Place& place, int x, int y, int z) noexcept;
 
  private:
+  std::size_t units_;
   std::array<Phase, 7> phases_;
 };
 

@@ -191,7 +191,7 @@ std::array<std::string, 3> encode_brick(const BrickTruth& truth, const SignLatti
     std::size_t bytes() const { return code[1].size() + code[2].size(); }
   };
   std::optional<Attempt> best;
-  for (std::size_t model = 0; model < kSignModels; ++model) {
+  for (const std::size_t model : kSignModelsTried) {
     Attempt attempt{SignBrick(top), SignStatistics(model, is_coarse), {}};
     attempt.refine(truth, 2);
     attempt.refine(truth, 1);

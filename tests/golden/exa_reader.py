@@ -202,13 +202,15 @@ def sign_taps(phase):
 
 @lru_cache(None)
 def sign_model(which):
-    values, at, phases = weight_tables("sign_weights.inc")[which], 0, {}
+    units = 64 if which == 2 else 16
+    values = weight_tables("sign_weights_wide.inc")[0] if which == 2 else weight_tables("sign_weights.inc")[which]
+    at, phases = 0, {}
     for phase in PHASES:
         taps = sign_taps(phase)
-        n = len(taps) * 16
-        w = values[at:at + n].reshape(-1, 16)
-        bias, out, level = values[at + n:at + n + 16], values[at + n + 16:at + n + 32], values[at + n + 32:at + n + 35]
-        at += n + 35
+        n, end = len(taps) * units, (len(taps) + 2) * units
+        w = values[at:at + n].reshape(-1, units)
+        bias, out, level = values[at + n:at + n + units], values[at + n + units:at + end], values[at + end:at + end + 3]
+        at += end + 3
         phases[phase] = (np.array(taps), w, bias, out, level)
     return phases
 

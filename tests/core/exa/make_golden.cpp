@@ -91,8 +91,6 @@ int main(int argc, char** argv) {
   }
   for (const Sample& sample :
        {Sample{"exa4_smoothed.exa", {37, 33, 29}, .15, true, 4, true, false, 1},
-        Sample{"exa4_open_exact.exa", {21, 19, 23}, .3, false, 5, true, true, 2},
-        Sample{"exa4_noise.exa", {13, 11, 12}, 3.0, true, 9, false, false, 3},
         Sample{"exa4_two_bricks.exa", {141, 9, 8}, .1, false, 4, false, false, 4},
         Sample{"exa4_paper.exa", {33, 29, 26}, .15, true, 4, true, false, 5, ExaProfile::kPaper}}) {
     SilentProgress progress;
