@@ -128,4 +128,108 @@ std::array<double, 2> slope_skew(const HeightMap& map) {
   return skew;
 }
 
+namespace {
+
+constexpr double kInner = 0.8;       // of the extents each way
+constexpr int kFitSteps = 160;       // places looked at each way
+constexpr int kTerms = 6;            // 1 x y x2 xy y2
+constexpr double kImpression = 0.6;  // deviations below the sheet: an impression
+constexpr double kBump = 2.5;        // and above it: something that does not belong to it
+
+using Terms = std::array<double, kTerms>;
+
+/// Solves the normal equations by Gauss with pivots; all 0 where they say too little.
+Terms solve(std::array<std::array<double, kTerms + 1>, kTerms> m) {
+  for (int k = 0; k < kTerms; ++k) {
+    int pivot = k;
+    for (int r = k + 1; r < kTerms; ++r)
+      if (std::abs(m[r][k]) > std::abs(m[pivot][k])) pivot = r;
+    if (std::abs(m[pivot][k]) < 1e-9) return {};
+    std::swap(m[k], m[pivot]);
+    for (int r = 0; r < kTerms; ++r) {
+      if (r == k) continue;
+      const double part = m[r][k] / m[k][k];
+      for (int c = k; c <= kTerms; ++c) m[r][c] -= part * m[k][c];
+    }
+  }
+  Terms out{};
+  for (int k = 0; k < kTerms; ++k) out[k] = m[k][kTerms] / m[k][k];
+  return out;
+}
+
+}  // namespace
+
+double side_rise_mm(const HeightMap& map) {
+  struct Place {
+    Terms terms;
+    double mm;
+    bool used = true;
+  };
+  std::vector<Place> places;
+  for (int j = 0; j < kFitSteps; ++j)
+    for (int i = 0; i < kFitSteps; ++i) {
+      const auto place = [](int step, int size) {
+        return static_cast<int>(std::lround(0.5 * (size - 1) * (1.0 + kInner * (2.0 * step / (kFitSteps - 1) - 1.0))));
+      };
+      const int column = place(i, map.width), row = place(j, map.height);
+      const double x = 2.0 * column / std::max(1, map.width - 1) - 1.0;
+      const double y = 2.0 * row / std::max(1, map.height - 1) - 1.0;
+      const float mm = map.at(column, row);
+      if (!std::isnan(mm)) places.push_back({{1.0, x, y, x * x, x * y, y * y}, static_cast<double>(mm)});
+    }
+  Terms sheet{};
+  for (int turn = 0; turn < 12; ++turn) {
+    std::array<std::array<double, kTerms + 1>, kTerms> m{};
+    for (const Place& place : places) {
+      if (!place.used) continue;
+      for (int r = 0; r < kTerms; ++r) {
+        for (int c = 0; c < kTerms; ++c) m[r][c] += place.terms[r] * place.terms[c];
+        m[r][kTerms] += place.terms[r] * place.mm;
+      }
+    }
+    sheet = solve(m);
+    const auto above = [&](const Place& place) {
+      double at = 0.0;
+      for (int k = 0; k < kTerms; ++k) at += sheet[k] * place.terms[k];
+      return place.mm - at;
+    };
+    double squares = 0.0;
+    int count = 0;
+    for (const Place& place : places) {
+      if (!place.used) continue;
+      squares += above(place) * above(place);
+      ++count;
+    }
+    if (count < 10 * kTerms) return 0.0;
+    const double deviation = std::sqrt(squares / count);
+    for (Place& place : places) {
+      const double d = above(place);
+      place.used = d > -kImpression * deviation && d < kBump * deviation;
+    }
+  }
+  return -kInner * kInner * (sheet[3] + sheet[5]);
+}
+
+double written_below(const HeightMap& map) {
+  const std::vector<float> right = slopes(map, 1, 0), up = slopes(map, 0, 1);
+  const Sums mean_right(right, map.width, map.height), mean_up(up, map.width, map.height);
+  std::array<double, 2> steep{}, area{};  // of the lower quarter, of the rest
+  const int low = map.height / 10, quarter = 3 * map.height / 10, high = map.height - low;
+  for (int y = low; y < high; ++y)
+    for (int x = map.width / 10; x < map.width - map.width / 10; ++x) {
+      const std::size_t i =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) + static_cast<std::size_t>(x);
+      if (std::isnan(right[i]) || std::isnan(up[i])) continue;
+      const auto [broad_right, known] = mean_right.mean(x, y, kReach);
+      if (known < 0.85) continue;
+      const double a = static_cast<double>(right[i]) - broad_right;
+      const double b = static_cast<double>(up[i]) - mean_up.mean(x, y, kReach)[0];
+      const std::size_t where = y < quarter ? 0 : 1;
+      area[where] += 1.0;
+      steep[where] += std::hypot(a, b) > 0.3 ? 1.0 : 0.0;
+    }
+  if (area[0] < 100 || area[1] < 100 || steep[1] <= 0.01 * area[1]) return 1.0;
+  return std::min(1.0, (steep[0] / area[0]) / (steep[1] / area[1]));
+}
+
 }  // namespace dubsar

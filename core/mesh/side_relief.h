@@ -34,4 +34,13 @@ HeightMap height_map(std::span<const glm::dvec3> points_mm, std::span<const Tria
 /// steep walls face left, that is, surfaces rise steeply to the right.
 std::array<double, 2> slope_skew(const HeightMap& map);
 
+/// How far the middle of the side stands above its rim, mm: of the curved sheet (a quadratic one) that touches what
+/// nobody wrote on. Impressions and holes are left out. 0 where too little is known. The sheet is that of the inner
+/// four fifths each way, where edges are not yet rounded.
+double side_rise_mm(const HeightMap& map);
+
+/// How much is written in the lower quarter of the side beside the rest of it, for the same area: 0 nothing, 1 as much.
+/// Text ends above the lower border on the side where it ends. 1 where nothing is written at all.
+double written_below(const HeightMap& map);
+
 }  // namespace dubsar

@@ -11,6 +11,8 @@
 namespace dubsar {
 namespace {
 
+constexpr double kLevel_mm = 0.1;  // what makes no side flat or curved
+
 /// Eigenvectors of a symmetric matrix as columns, by falling eigenvalue: cyclic Jacobi rotations.
 glm::dmat3 eigenvectors(glm::dmat3 m) {
   glm::dmat3 v(1.0);
@@ -92,6 +94,18 @@ double edges_beside(const Writing& writing, const TabletFrame& f) {
   return writing.fit(f.right, -f.front, f.up) + writing.fit(-f.right, -f.up, f.front);
 }
 
+/// What else tells the obverse, -1 (it is the other side) to 1: it is the flatter one of the broad sides, because wet
+/// clay is laid on it when the reverse is written (J. Taylor: Tablets as artefacts, scribes as artisans, 2011), and the
+/// text begins on it, so that the side with room left at its end is the reverse.
+double obverse_by_shape(std::span<const glm::dvec3> points, std::span<const Triangle> triangles, const TabletFrame& f,
+                        double step_mm) {
+  const HeightMap front = height_map(points, triangles, {f.right, f.up, f.front}, step_mm);
+  const HeightMap back = height_map(points, triangles, {f.right, -f.up, -f.front}, step_mm);
+  const double rises = side_rise_mm(front), falls = side_rise_mm(back);
+  const double flatter = (falls - rises) / (std::abs(falls) + std::abs(rises) + kLevel_mm);
+  return flatter + written_below(front) - written_below(back);
+}
+
 /// Without those that fill holes: nobody wrote there, and their rims are steps.
 std::vector<Triangle> seen_triangles(const TriMesh& mesh) {
   if (mesh.triangle_inferred.empty()) return mesh.triangles;
@@ -148,9 +162,11 @@ Result<TabletFrame> find_tablet_frame(const TriMesh& mesh) {
   }
   best.up_share = share(best_fit, next_fit);
   other = turned(best, FrameTurn::kOver);
-  const double this_way = edges_beside(writing, best), that_way = edges_beside(writing, other);
-  if (best_fit > 0.0) best.obverse_share = std::clamp(std::abs(this_way - that_way) / best_fit, 0.0, 1.0);
-  if (that_way <= this_way) return best;
+  if (!(best_fit > 0.0)) return best;
+  const double by_edges = (edges_beside(writing, best) - edges_beside(writing, other)) / best_fit;
+  const double evidence = std::clamp(by_edges, -1.0, 1.0) + obverse_by_shape(points, seen, best, step_mm);
+  best.obverse_share = std::clamp(std::abs(evidence), 0.0, 1.0);
+  if (evidence >= 0.0) return best;
   other.up_share = best.up_share;
   other.obverse_share = best.obverse_share;
   return other;

@@ -16,8 +16,7 @@ namespace dubsar {
 struct TabletFrame {
   glm::dvec3 right{1, 0, 0}, up{0, 1, 0}, front{0, 0, 1};
   /// 0 (a guess) to 1: how much of the evidence of the writing speaks for this way up and not for the next best; and
-  /// how strong what the edges say of the obverse is beside what the broad sides say of the way up. Below .05 that is
-  /// in doubt: obverse and reverse may be exchanged, each of them upright.
+  /// how much speaks for this obverse. Below .05 that is in doubt: obverse and reverse may be exchanged, each upright.
   double up_share = 0.0, obverse_share = 0.0;
 
   /// Rows right, up, front: a point in mm to the tablet's own axes.
@@ -27,9 +26,10 @@ struct TabletFrame {
 /// The box: axes from the areas of the faces that look along them (eigenvectors of the sum of n n^T by area, without
 /// inferred ones, whose normals are noise), the broad sides first. The way up: an impression of the stylus is steep at
 /// its head and rises slowly along its tail, horizontal wedges have their head at the left, vertical ones at the top;
-/// so the third moments of the slopes of each side's relief say which way its lines run. The obverse: lines run on over
-/// the right edge, and the left edge is read downwards. Without writing (shares of 0) the broad side and the way up are
-/// arbitrary but always the same. Deterministic. kBadData: no triangles, no area. Cost: about .3 s a million triangles.
+/// so the third moments of the slopes of each side's relief say which way its lines run. The obverse: it is the flatter
+/// broad side; where one of them has room left below its text, that is the reverse; lines run on over the right edge,
+/// and the left edge is read downwards. Without writing (shares of 0) the broad side and the way up are arbitrary but
+/// always the same. Deterministic. kBadData: no triangles, no area. Cost: about .3 s a million triangles.
 Result<TabletFrame> find_tablet_frame(const TriMesh& mesh);
 
 enum class FrameTurn { kNone, kHalf, kLeft, kRight, kOver };

@@ -17,6 +17,7 @@ namespace {
 struct Side {
   glm::dvec3 front, right, up;
   double half_width, half_height, distance;
+  double rise = 0.0;  ///< of its middle over its rim, mm
 };
 
 /// A groove: its head at `at`, running `along` for 2.4 mm; deepest .3 mm after the head.
@@ -42,7 +43,9 @@ void add_side(TriMesh& mesh, const Side& side, const std::vector<Groove>& groove
                          -side.half_height + 2 * side.half_height * y / ny);
       double depth = 0.0;
       for (const Groove& g : grooves) depth = std::max(depth, depth_of(g, p));
-      mesh.positions.push_back(glm::vec3(p.x * side.right + p.y * side.up + (side.distance - depth) * side.front));
+      const double u = p.x / side.half_width, v = p.y / side.half_height;
+      const double height = side.distance - depth - side.rise * 0.5 * (u * u + v * v);
+      mesh.positions.push_back(glm::vec3(p.x * side.right + p.y * side.up + height * side.front));
     }
   for (int y = 0; y < ny; ++y)
     for (int x = 0; x < nx; ++x) {
@@ -64,19 +67,29 @@ std::vector<Groove> writing(const Side& side, std::mt19937& random, double share
   return grooves;
 }
 
+struct Shape {
+  double obverse_rise = 0.0, reverse_rise = 0.0;  ///< mm
+  bool edges = true;                              ///< the right edge is written on
+  double blank_below = 0.0;                       ///< mm of the reverse
+};
+
 /// A block of 46 x 38 x 14 mm, written on five sides as its scribe turned it; x right, y up, z out of the obverse.
-TriMesh written_block(unsigned seed, double verticals = 0.5) {
+TriMesh written_block(unsigned seed, double verticals = 0.5, const Shape& shape = {}) {
   std::mt19937 random(seed);
   const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-  const std::array<Side, 6> sides{{{z, x, y, 23, 19, 7},     // obverse
-                                   {-z, x, -y, 23, 19, 7},   // reverse
+  const std::array<Side, 6> sides{{{z, x, y, 23, 19, 7, shape.obverse_rise},
+                                   {-z, x, -y, 23, 19, 7, shape.reverse_rise},
                                    {-y, x, z, 23, 7, 19},    // lower edge
                                    {y, x, -z, 23, 7, 19},    // upper edge
                                    {x, -z, y, 7, 19, 23},    // right edge: lines run on
                                    {-x, z, y, 7, 19, 23}}};  // left edge: blank
   TriMesh mesh;
-  for (std::size_t k = 0; k < sides.size(); ++k)
-    add_side(mesh, sides[k], k == 5 ? std::vector<Groove>{} : writing(sides[k], random, verticals), 0.15);
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    std::vector<Groove> grooves = writing(sides[k], random, verticals);
+    if (k == 5 || (k == 4 && !shape.edges)) grooves.clear();
+    if (k == 1) std::erase_if(grooves, [&](const Groove& g) { return g.at.y < -19 + shape.blank_below; });
+    add_side(mesh, sides[k], grooves, 0.15);
+  }
   mesh.frame.input_voxel.provenance = "made";
   return mesh;
 }
@@ -113,6 +126,23 @@ TEST(TabletFrame, FewVerticalsOrFewHorizontalsAreEnough) {
     EXPECT_GT(found->right.x, 0.995) << verticals;
     EXPECT_GT(found->front.z, 0.995) << verticals;
   }
+}
+
+TEST(TabletFrame, TheFlatterSideIsTheObverseAndTheOneWithRoomLeftTheReverse) {
+  std::mt19937 random(77);
+  const std::array<Shape, 4> shapes{
+      {{0.4, 2.0, false}, {0.8, 1.4, true}, {0.0, 0.0, false, 14.0}, {1.0, 1.0, false, 12}}};
+  for (const Shape& shape : shapes)
+    for (unsigned seed = 31; seed < 34; ++seed) {
+      const glm::dmat3 turn = any_rotation(random);
+      const auto found = find_tablet_frame(rotated(written_block(seed, 0.5, shape), turn));
+      ASSERT_TRUE(found) << found.error().message;
+      EXPECT_GT(glm::dot(found->right, turn[0]), 0.99) << seed;
+      EXPECT_GT(glm::dot(found->front, turn[2]), 0.99) << shape.reverse_rise << " " << shape.blank_below;
+      EXPECT_GT(found->obverse_share, 0.1);
+    }
+  // The same of both sides and nothing on the edges: in doubt, and it says so.
+  EXPECT_LT(find_tablet_frame(written_block(9, 0.5, {1.0, 1.0, false}))->obverse_share, 0.05);
 }
 
 TEST(TabletFrame, ClosedHolesSayNothingOfTheAxes) {
