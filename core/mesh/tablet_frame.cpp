@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <glm/geometric.hpp>
 #include <vector>
 
@@ -11,7 +12,11 @@
 namespace dubsar {
 namespace {
 
-constexpr double kLevel_mm = 0.1;  // what makes no side flat or curved
+constexpr double kLevel_mm = 0.1;   // what makes no side flat or curved
+constexpr double kSparse = 0.5;     // of the writing elsewhere: less is room left
+constexpr double kEdges = 0.6;      // what little is written there beside what is seen of whole sides
+constexpr double kUpright = 0.75;   // squared sine of the angle to the broad side: 60 degrees
+constexpr double kFourFold = 0.03;  // of the edges' area: less is a round tablet
 
 /// Eigenvectors of a symmetric matrix as columns, by falling eigenvalue: cyclic Jacobi rotations.
 glm::dmat3 eigenvectors(glm::dmat3 m) {
@@ -32,6 +37,28 @@ glm::dmat3 eigenvectors(glm::dmat3 m) {
   std::array<int, 3> order{0, 1, 2};
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return m[a][a] > m[b][b]; });
   return {v[order[0]], v[order[1]], v[order[2]]};
+}
+
+/// Which way the edges of the broad side look: of a square tablet its areas do not say it. They repeat by quarters of a
+/// turn, so that the fourth harmonic of the directions, by area, does. Turns the second and third axis in their plane.
+glm::dmat3 along_the_edges(const glm::dmat3& axes, std::span<const glm::dvec3> points,
+                           std::span<const Triangle> triangles) {
+  std::complex<double> sum = 0.0;
+  double all = 0.0;
+  for (const Triangle& t : triangles) {
+    const glm::dvec3 n = glm::cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]);
+    const double area = glm::length(n);
+    if (!(area > 0.0)) continue;
+    const std::complex<double> direction(glm::dot(n, axes[1]) / area, glm::dot(n, axes[2]) / area);
+    if (std::norm(direction) < kUpright) continue;  // of the broad sides, or the wall of an impression
+    const std::complex<double> square = direction * direction;
+    sum += area * square * square;
+    all += area;
+  }
+  if (std::abs(sum) < kFourFold * all) return axes;
+  const double turn = std::arg(sum) / 4.0;
+  return {axes[0], std::cos(turn) * axes[1] + std::sin(turn) * axes[2],
+          std::cos(turn) * axes[2] - std::sin(turn) * axes[1]};
 }
 
 /// The same direction or its opposite, whichever looks along the axis it is nearest to.
@@ -103,7 +130,8 @@ double obverse_by_shape(std::span<const glm::dvec3> points, std::span<const Tria
   const HeightMap back = height_map(points, triangles, {f.right, -f.up, -f.front}, step_mm);
   const double rises = side_rise_mm(front), falls = side_rise_mm(back);
   const double flatter = (falls - rises) / (std::abs(falls) + std::abs(rises) + kLevel_mm);
-  return flatter + written_below(front) - written_below(back);
+  const auto room_left = [](const HeightMap& side) { return std::max(0.0, 1.0 - written_below(side) / kSparse); };
+  return flatter + room_left(back) - room_left(front);
 }
 
 /// Without those that fill holes: nobody wrote there, and their rims are steps.
@@ -140,7 +168,7 @@ Result<TabletFrame> find_tablet_frame(const TriMesh& mesh) {
   }
   if (!(areas[0][0] + areas[1][1] + areas[2][2] > 0.0))
     return fail(ErrorKind::kBadData, "the surface has no area, expected a tablet that can be turned upright");
-  const glm::dmat3 found = eigenvectors(areas);
+  const glm::dmat3 found = along_the_edges(eigenvectors(areas), points, seen.empty() ? mesh.triangles : seen);
   const std::array<glm::dvec3, 3> axes{along_its_axis(found[0]), along_its_axis(found[1]), along_its_axis(found[2])};
   const double step_mm = edges / static_cast<double>(seen.empty() ? mesh.triangles.size() : seen.size());
   const Writing writing(points, seen, axes, step_mm);
@@ -164,7 +192,7 @@ Result<TabletFrame> find_tablet_frame(const TriMesh& mesh) {
   other = turned(best, FrameTurn::kOver);
   if (!(best_fit > 0.0)) return best;
   const double by_edges = (edges_beside(writing, best) - edges_beside(writing, other)) / best_fit;
-  const double evidence = std::clamp(by_edges, -1.0, 1.0) + obverse_by_shape(points, seen, best, step_mm);
+  const double evidence = kEdges * std::clamp(by_edges, -1.0, 1.0) + obverse_by_shape(points, seen, best, step_mm);
   best.obverse_share = std::clamp(std::abs(evidence), 0.0, 1.0);
   if (evidence >= 0.0) return best;
   other.up_share = best.up_share;

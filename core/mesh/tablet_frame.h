@@ -24,12 +24,13 @@ struct TabletFrame {
 };
 
 /// The box: axes from the areas of the faces that look along them (eigenvectors of the sum of n n^T by area, without
-/// inferred ones, whose normals are noise), the broad sides first. The way up: an impression of the stylus is steep at
-/// its head and rises slowly along its tail, horizontal wedges have their head at the left, vertical ones at the top;
-/// so the third moments of the slopes of each side's relief say which way its lines run. The obverse: it is the flatter
-/// broad side; where one of them has room left below its text, that is the reverse; lines run on over the right edge,
-/// and the left edge is read downwards. Without writing (shares of 0) the broad side and the way up are arbitrary but
-/// always the same. Deterministic. kBadData: no triangles, no area. Cost: about .3 s a million triangles.
+/// inferred ones, whose normals are noise), the broad sides first, the others turned to where the edges look. The way
+/// up: an impression of the stylus is steep at its head and rises slowly along its tail, horizontal wedges have their
+/// head at the left, vertical ones at the top; so the third moments of the slopes of each side's relief say which way
+/// its lines run. The obverse: it is the flatter broad side; where one of them has room left below its text, that is
+/// the reverse; lines run on over the right edge, and the left edge is read downwards. Without writing (shares of 0)
+/// the broad side and the way up are arbitrary but always the same. Deterministic. kBadData: no triangles, no area.
+/// Cost: about .3 s a million triangles.
 Result<TabletFrame> find_tablet_frame(const TriMesh& mesh);
 
 enum class FrameTurn { kNone, kHalf, kLeft, kRight, kOver };

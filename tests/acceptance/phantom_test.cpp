@@ -71,6 +71,7 @@ TEST_P(EnclosedTablet, IsSeparatedAccuratelyAndReadably) {
   EXPECT_GT(lies->right.x, within);
   EXPECT_GT(std::abs(lies->up.z), within) << "a broad side stands on its head";
   EXPECT_LT(lies->front.y * lies->up.z, -within * within) << "obverse and reverse are not each upright";
+  EXPECT_LT(lies->front.y, -within) << "the obverse is taken for the reverse";
 
   // Judged without the patches: they stand where no surface can be seen.
   const auto mesh = make_tri_mesh(result->model, {.fill_holes = false});

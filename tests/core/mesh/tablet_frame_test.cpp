@@ -71,23 +71,25 @@ struct Shape {
   double obverse_rise = 0.0, reverse_rise = 0.0;  ///< mm
   bool edges = true;                              ///< the right edge is written on
   double blank_below = 0.0;                       ///< mm of the reverse
+  double half_height = 19.0;                      ///< mm
 };
 
 /// A block of 46 x 38 x 14 mm, written on five sides as its scribe turned it; x right, y up, z out of the obverse.
 TriMesh written_block(unsigned seed, double verticals = 0.5, const Shape& shape = {}) {
   std::mt19937 random(seed);
+  const double h = shape.half_height;
   const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-  const std::array<Side, 6> sides{{{z, x, y, 23, 19, 7, shape.obverse_rise},
-                                   {-z, x, -y, 23, 19, 7, shape.reverse_rise},
-                                   {-y, x, z, 23, 7, 19},    // lower edge
-                                   {y, x, -z, 23, 7, 19},    // upper edge
-                                   {x, -z, y, 7, 19, 23},    // right edge: lines run on
-                                   {-x, z, y, 7, 19, 23}}};  // left edge: blank
+  const std::array<Side, 6> sides{{{z, x, y, 23, h, 7, shape.obverse_rise},
+                                   {-z, x, -y, 23, h, 7, shape.reverse_rise},
+                                   {-y, x, z, 23, 7, h},    // lower edge
+                                   {y, x, -z, 23, 7, h},    // upper edge
+                                   {x, -z, y, 7, h, 23},    // right edge: lines run on
+                                   {-x, z, y, 7, h, 23}}};  // left edge: blank
   TriMesh mesh;
   for (std::size_t k = 0; k < sides.size(); ++k) {
     std::vector<Groove> grooves = writing(sides[k], random, verticals);
     if (k == 5 || (k == 4 && !shape.edges)) grooves.clear();
-    if (k == 1) std::erase_if(grooves, [&](const Groove& g) { return g.at.y < -19 + shape.blank_below; });
+    if (k == 1) std::erase_if(grooves, [&](const Groove& g) { return g.at.y < -h + shape.blank_below; });
     add_side(mesh, sides[k], grooves, 0.15);
   }
   mesh.frame.input_voxel.provenance = "made";
@@ -125,6 +127,20 @@ TEST(TabletFrame, FewVerticalsOrFewHorizontalsAreEnough) {
     ASSERT_TRUE(found);
     EXPECT_GT(found->right.x, 0.995) << verticals;
     EXPECT_GT(found->front.z, 0.995) << verticals;
+  }
+}
+
+// Areas that look left, right, up and down are the same on a square one, so that they do not tell its axes.
+TEST(TabletFrame, ASquareTabletLiesAlongItsEdges) {
+  std::mt19937 random(4);
+  for (unsigned seed = 41; seed < 45; ++seed) {
+    Shape square{0.4, 2.0};
+    square.half_height = 23.0;
+    const glm::dmat3 turn = any_rotation(random);
+    const auto found = find_tablet_frame(rotated(written_block(seed, 0.5, square), turn));
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_GT(glm::dot(found->right, turn[0]), 0.99) << seed;
+    EXPECT_GT(glm::dot(found->front, turn[2]), 0.99) << seed;
   }
 }
 
