@@ -20,6 +20,7 @@ struct Options {
   PipelineOptions pipeline;
   double threshold = 0.0, sharpen = 1.0, radius = 64.0;
   int rays = 160;
+  OcclusionEngine ao_engine = OcclusionEngine::kBricks;
   bool no_resample = false, no_holes = false, no_contact = false, no_ao = false, open_boundary = false;
 };
 
@@ -70,6 +71,9 @@ void add_surface_options(Arguments command, Options& options) {
   group.flag("--no-fill-holes", options.no_holes, "leave the holes that segmentation cuts");
   group.flag("--no-contact", options.no_contact, "leave smooth patches where tablet and envelope touch");
   group.flag("--no-ao", options.no_ao, "skip ambient occlusion");
+  group.choice<OcclusionEngine>("--ao-by", options.ao_engine, choices_of(kOcclusionEngines),
+                                "what rays of ambient occlusion meet: march (default), distances on the grid, or "
+                                "triangles, exact and slower");
   group.value("--ao-rays", options.rays, "rays per vertex").range(1, 65536);
   group.value("--ao-radius", options.radius, "reach of the rays in grid steps").positive();
 }
@@ -92,7 +96,9 @@ std::vector<PlannedStage> plan_of(const Options& options) {
                                       {"fill holes", 1.49}})
     plan.push_back({name, seconds, true});
   if (!options.no_contact && options.pipeline.detail != Detail::kHalf) plan.push_back({"contact", 21.8, true});
-  if (!options.no_ao) plan.push_back({"ambient occlusion", 22.5 * options.rays / 160.0, true});
+  if (!options.no_ao)
+    plan.push_back({"ambient occlusion",
+                    (options.ao_engine == OcclusionEngine::kBricks ? 9.5 : 22.5) * options.rays / 160.0, true});
   for (const auto& [name, seconds] : {std::pair{"curvature", 0.4}, {"encode signs", 0.8}, {"encode offsets", 0.7}})
     plan.push_back({name, seconds, true});
   return plan;
@@ -119,7 +125,8 @@ Result<VerbResult> run(Options options, const Arguments command, const CommonOpt
   if (options.no_ao)
     p.occlusion.reset();
   else
-    p.occlusion = OcclusionOptions{.rays = options.rays, .radius_vox = static_cast<float>(options.radius)};
+    p.occlusion = OcclusionOptions{
+        .engine = options.ao_engine, .rays = options.rays, .radius_vox = static_cast<float>(options.radius)};
   if (command.given("--sharpen")) p.sample.sharpen = static_cast<float>(options.sharpen);
   if (command.given("--threshold")) p.threshold = static_cast<float>(options.threshold);
   Result<PipelineResult> made = run_pipeline(p, progress);

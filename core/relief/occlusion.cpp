@@ -6,13 +6,15 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/parallel.h"
+#include "core/relief/march_kernels.h"
 #include "core/relief/ray_scene.h"
+#include "core/relief/surface_bricks.h"
 
 namespace dubsar {
 namespace {
 
 constexpr std::int64_t kGrain = 256;  // vertices: 41 k rays, some 10 ms
-constexpr std::size_t kLanes = RayPacket::kRays;
+constexpr std::size_t kLanes = kernels::MarchStart::kMost;
 constexpr PartitionId kNoBody = PartitionTable::kNone;
 
 struct Frame {
@@ -27,57 +29,120 @@ Frame frame_about(glm::vec3 n) {
 
 bool finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-/// Traces the rays of up to 16 vertices: ray i of all of them together, since neighbours look the same way.
-class VertexGroup {
- public:
-  VertexGroup(const RayScene& scene, const SkyRays& sky, const OcclusionOptions& options)
-      : scene_(scene), sky_(sky), options_(options) {}
+/// Up to 16 vertices whose rays are followed together, since neighbours look the same way.
+struct VertexGroup {
+  std::array<std::uint32_t, kLanes> ids{};
+  std::array<glm::vec3, kLanes> origins{};
+  std::array<Frame, kLanes> frames{};
+  std::size_t count = 0;
 
-  void add(std::uint32_t vertex, glm::vec3 position, glm::vec3 normal) {
-    ids_[count_] = vertex;
-    frames_[count_] = frame_about(normal);
-    const glm::vec3 origin = position + options_.offset_vox * normal;
-    packet_.origin_x[count_] = origin.x;
-    packet_.origin_y[count_] = origin.y;
-    packet_.origin_z[count_] = origin.z;
-    packet_.active[count_] = true;
-    ++count_;
+  void add(std::uint32_t vertex, glm::vec3 origin, glm::vec3 normal) {
+    ids[count] = vertex;
+    origins[count] = origin;
+    frames[count] = frame_about(normal);
+    ++count;
   }
-  bool full() const noexcept { return count_ == kLanes; }
+};
 
-  void trace(std::vector<float>& light) {
-    if (count_ == 0) return;
-    std::array<float, kLanes> taken{};
-    for (std::size_t ray = 0; ray < sky_.directions.size(); ++ray) {
-      const glm::vec3 local = sky_.directions[ray];
-      for (std::size_t i = 0; i < count_; ++i) {
-        const Frame& f = frames_[i];
-        packet_.direction_x[i] = f.x.x * local.x + f.y.x * local.y + f.z.x * local.z;
-        packet_.direction_y[i] = f.x.y * local.x + f.y.y * local.y + f.z.y * local.z;
-        packet_.direction_z[i] = f.x.z * local.x + f.y.z * local.y + f.z.z * local.z;
-      }
-      packet_.distance.fill(options_.radius_vox);
-      scene_.intersect(packet_);
-      for (std::size_t i = 0; i < count_; ++i) {
-        if (!packet_.hit[i]) continue;
-        const float near = packet_.from_behind[i] ? 1.0f : 1.0f - packet_.distance[i] / options_.radius_vox;
-        taken[i] += sky_.weights[ray] * std::max(near, 0.0f);
-      }
-    }
-    const auto sum = static_cast<float>(sky_.weight_sum);
-    for (std::size_t i = 0; i < count_; ++i) light[ids_[i]] = std::clamp(1.0f - taken[i] / sum, 0.0f, 1.0f);
-    packet_.active.fill(false);
-    count_ = 0;
+/// What the surface takes from each of a group's vertices, summed over the rays. Any thread.
+class Tracer {
+ public:
+  virtual ~Tracer() = default;
+  virtual std::array<float, kLanes> taken(const VertexGroup& group) const = 0;
+};
+
+/// Exact, by Embree: one direction of the sky for all vertices at a time.
+class TriangleTracer final : public Tracer {
+ public:
+  static Result<std::unique_ptr<Tracer>> create(RayDevice& device, std::span<const Triangle> triangles,
+                                                const SkyRays& sky, float radius_vox, Progress& progress) {
+    auto out = std::make_unique<TriangleTracer>(sky, radius_vox);
+    DUBSAR_ASSIGN(out->scene_, RayScene::build(device, triangles, progress));
+    return out;
+  }
+  TriangleTracer(const SkyRays& sky, float radius_vox) : sky_(sky), radius_vox_(radius_vox) {}
+
+  std::array<float, kLanes> taken(const VertexGroup& group) const override {
+    std::array<float, kLanes> out{};
+    for (std::size_t first = 0; first < group.count; first += RayPacket::kRays) trace(group, first, out);
+    return out;
   }
 
  private:
-  const RayScene& scene_;
+  void trace(const VertexGroup& group, std::size_t first, std::array<float, kLanes>& out) const {
+    const std::size_t count = std::min<std::size_t>(group.count - first, RayPacket::kRays);
+    RayPacket packet;
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::vec3& origin = group.origins[first + i];
+      packet.origin_x[i] = origin.x;
+      packet.origin_y[i] = origin.y;
+      packet.origin_z[i] = origin.z;
+      packet.active[i] = true;
+    }
+    for (std::size_t ray = 0; ray < sky_.directions.size(); ++ray) {
+      const glm::vec3 local = sky_.directions[ray];
+      for (std::size_t i = 0; i < count; ++i) {
+        const Frame& f = group.frames[first + i];
+        packet.direction_x[i] = f.x.x * local.x + f.y.x * local.y + f.z.x * local.z;
+        packet.direction_y[i] = f.x.y * local.x + f.y.y * local.y + f.z.y * local.z;
+        packet.direction_z[i] = f.x.z * local.x + f.y.z * local.y + f.z.z * local.z;
+      }
+      packet.distance.fill(radius_vox_);
+      scene_->intersect(packet);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (!packet.hit[i]) continue;
+        const float near = packet.from_behind[i] ? 1.0f : 1.0f - packet.distance[i] / radius_vox_;
+        out[first + i] += sky_.weights[ray] * std::max(near, 0.0f);
+      }
+    }
+  }
+
   const SkyRays& sky_;
-  const OcclusionOptions& options_;
-  RayPacket packet_;
-  std::array<std::uint32_t, kLanes> ids_{};
-  std::array<Frame, kLanes> frames_{};
-  std::size_t count_ = 0;
+  float radius_vox_;
+  std::unique_ptr<RayScene> scene_;
+};
+
+/// Through distances on the voxels, several times as fast.
+class BrickTracer final : public Tracer {
+ public:
+  static Result<std::unique_ptr<Tracer>> create(std::span<const glm::vec3> positions,
+                                                std::span<const Triangle> triangles, const SkyRays& sky,
+                                                float radius_vox, Progress& progress) {
+    auto out = std::make_unique<BrickTracer>(sky, radius_vox);
+    DUBSAR_ASSIGN(out->bricks_, SurfaceBricks::build(positions, triangles, progress));
+    return out;
+  }
+  BrickTracer(const SkyRays& sky, float radius_vox) : radius_vox_(radius_vox), weights_(sky.weights) {
+    for (const glm::vec3& d : sky.directions)
+      for (std::size_t axis = 0; axis < 3; ++axis) directions_[axis].push_back(d[static_cast<int>(axis)]);
+  }
+
+  std::array<float, kLanes> taken(const VertexGroup& group) const override {
+    kernels::MarchStart start;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const std::size_t from = i < group.count ? i : 0;
+      const Frame& f = group.frames[from];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int a = static_cast<int>(axis);
+        start.origin[axis][i] = group.origins[from][a];
+        start.frame[axis][i] = f.x[a];
+        start.frame[axis + 3][i] = f.y[a];
+        start.frame[axis + 6][i] = f.z[a];
+      }
+    }
+    std::array<float, kLanes> out{};
+    kernels::march(
+        bricks_,
+        {directions_[0].data(), directions_[1].data(), directions_[2].data(), weights_.data(), weights_.size()},
+        radius_vox_, start, out);
+    return out;
+  }
+
+ private:
+  float radius_vox_;
+  std::span<const float> weights_;
+  std::array<std::vector<float>, 3> directions_;
+  SurfaceBricks bricks_;
 };
 
 std::uint64_t spread3(std::uint64_t x) {  // 21 bits to every third bit
@@ -166,7 +231,10 @@ Result<std::vector<float>> ambient_light(const LitSurface& surface, const Occlus
   const auto count = static_cast<std::int64_t>(positions.size());
   progress.begin("ambient occlusion", count * options.rays, "ray");
   std::vector<float> light(positions.size(), 1.0f);
-  DUBSAR_ASSIGN(const auto device, RayDevice::create(positions, thread_count()));
+  std::unique_ptr<RayDevice> device;
+  if (options.engine == OcclusionEngine::kTriangles) {
+    DUBSAR_ASSIGN(device, RayDevice::create(positions, thread_count()));
+  }
 
   const std::vector<PartitionId> body_of = bodies_of_vertices(surface);
   std::array<bool, 256> used{};
@@ -182,7 +250,8 @@ Result<std::vector<float>> ambient_light(const LitSurface& surface, const Occlus
         if (bodies[t] == id) own.push_back(triangles[t]);
       part = own;
     }
-    DUBSAR_ASSIGN(const auto scene, RayScene::build(*device, part, progress));
+    DUBSAR_ASSIGN(const auto tracer, device ? TriangleTracer::create(*device, part, sky, options.radius_vox, progress)
+                                            : BrickTracer::create(positions, part, sky, options.radius_vox, progress));
     ids.clear();
     std::int64_t skipped = 0;
     for (std::uint32_t v = 0; v < positions.size(); ++v) {
@@ -194,14 +263,17 @@ Result<std::vector<float>> ambient_light(const LitSurface& surface, const Occlus
     }
     sort_by_place_and_side(positions, normals, ids);
     parallel_chunks(static_cast<std::int64_t>(ids.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      VertexGroup group(*scene, sky, options);
+      const auto sum = static_cast<float>(sky.weight_sum);
+      VertexGroup group;
       for (std::int64_t i = begin; i < end; ++i) {
         const std::uint32_t v = ids[static_cast<std::size_t>(i)];
-        group.add(v, positions[v], normals[v]);
-        if (group.full() || i + 1 == end) {
-          if (progress.cancelled()) return;
-          group.trace(light);
-        }
+        group.add(v, positions[v] + options.offset_vox * normals[v], normals[v]);
+        if (group.count < kLanes && i + 1 < end) continue;
+        if (progress.cancelled()) return;
+        const auto taken = tracer->taken(group);
+        for (std::size_t k = 0; k < group.count; ++k)
+          light[group.ids[k]] = std::clamp(1.0f - taken[k] / sum, 0.0f, 1.0f);
+        group.count = 0;
       }
       progress.advance((end - begin) * options.rays);
     });

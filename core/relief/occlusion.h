@@ -6,13 +6,25 @@
 #include <span>
 #include <vector>
 
+#include "core/base/enum_names.h"
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/mesh/tri_mesh.h"
 
 namespace dubsar {
 
+/// How rays find the surface.
+enum class OcclusionEngine : std::uint8_t {
+  kBricks,     ///< march through distances on the voxels (surface_bricks.h): within .02 RMS of the triangles
+  kTriangles,  ///< exact, by Embree
+};
+
+inline constexpr EnumName<OcclusionEngine> kOcclusionEngines[] = {{OcclusionEngine::kBricks, "march"},
+                                                                  {OcclusionEngine::kTriangles, "triangles"}};
+static_assert(names_all(kOcclusionEngines, static_cast<std::size_t>(OcclusionEngine::kTriangles) + 1));
+
 struct OcclusionOptions {
+  OcclusionEngine engine = OcclusionEngine::kBricks;
   int rays = 160;            ///< per vertex (paper); 1..65536
   float radius_vox = 64.0f;  ///< surfaces further away take no light (paper)
   /// Rays start this far above the vertex along its normal, so that neither rounding nor the roughness that the 4-bit
@@ -42,8 +54,8 @@ SkyRays sky_rays(int count);
 /// d < radius, 0 for others. A ray that first meets the back of a triangle started under the surface: d = 0. (In open
 /// meshes this darkens what looks at their inner side.) A ray only meets triangles of its vertex's body: each is lit as
 /// if it lay alone in the hand. A vertex whose normal or position is not finite gets 1. kBadData: a triangle names a
-/// vertex that is not there. kTryAgain: out of memory. Deterministic for any thread count. Progress in rays. Memory:
-/// about 100 bytes a triangle of the largest body.
+/// vertex that is not there. kTryAgain: out of memory. Deterministic for any thread count and vectors. Progress in
+/// rays. Memory of the largest body: by kTriangles about 100 bytes a triangle; by kBricks see surface_bricks.h.
 Result<std::vector<float>> ambient_light(const LitSurface& surface, const OcclusionOptions& options,
                                          Progress& progress);
 
