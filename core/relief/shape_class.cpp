@@ -1,6 +1,7 @@
 #include "core/relief/shape_class.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -9,18 +10,30 @@
 
 namespace dubsar {
 
+namespace {
+/// Cosine and sine of the angles between the kinds of shape: -123.75 + 22.5 j degrees, j = 0..7.
+constexpr std::array<double, 8> kCosine{-0.555570233019602, -0.195090322016128, 0.19509032201612825,
+                                        0.5555702330196023, 0.8314696123025452, 0.9807852804032304,
+                                        0.9807852804032304, 0.8314696123025452};
+constexpr std::array<double, 8> kSine{-0.8314696123025452, -0.9807852804032304, -0.9807852804032304,
+                                      -0.8314696123025452, -0.5555702330196022, -0.1950903220161282,
+                                      0.1950903220161283,  0.5555702330196022};
+}  // namespace
+
 std::uint8_t shape_class(float k_min, float k_max) noexcept {
   if (!std::isfinite(k_min) || !std::isfinite(k_max)) return 0;
   if (k_min > k_max) std::swap(k_min, k_max);
   const double low = static_cast<double>(k_min), high = static_cast<double>(k_max);
-  const double curvedness = std::hypot(low, high);
-  if (curvedness == 0.0) return 0;
-  const double step = std::round(2.0 * std::log2(curvedness / static_cast<double>(kSmallestCurvedness)));
-  if (step < 0.0) return 0;
-  // k_min <= k_max keeps atan2 in [-135, 45] degrees; the clamp absorbs its rounding at both ends.
-  const double phi_deg = std::atan2(low, high) * 57.29577951308232;
-  const double shape = std::clamp(std::round((phi_deg + 135.0) / 22.5), 0.0, 8.0);
-  return static_cast<std::uint8_t>(1 + kShapes * static_cast<int>(std::min(step, 13.0)) + static_cast<int>(shape));
+  // The step is round(2 log2 of the curvedness over the smallest): that of the square lies between 2^(step -+ 1/2).
+  constexpr double kScale = 1.0 / (double{kSmallestCurvedness} * double{kSmallestCurvedness});
+  int step = 0;
+  const double part = std::frexp(kScale * (low * low + high * high), &step);
+  if (part < 0.7071067811865476) --step;
+  if (part == 0.0 || step < 0) return 0;
+  // The kind is round((atan2(low, high) + 135 degrees) / 22.5): how many of the angles between kinds lie below.
+  int shape = 0;
+  for (std::size_t j = 0; j < kCosine.size(); ++j) shape += low * kCosine[j] >= high * kSine[j] ? 1 : 0;
+  return static_cast<std::uint8_t>(1 + kShapes * std::min(step, 13) + shape);
 }
 
 std::vector<std::uint8_t> shape_classes(std::span<const float> k_min, std::span<const float> k_max) {
