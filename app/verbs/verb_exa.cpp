@@ -1,8 +1,10 @@
-// dubsar exa stat|verify|recompress: what an EXA file consists of, whether it is whole, and the same surface anew.
+// dubsar exa stat|verify|recompress|part: what an EXA file consists of, whether it is whole, the same surface anew, and
+// a coarser level or a box of it without reading the rest.
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "core/exa/settle.h"
 #include "core/mesh/mesh_check.h"
 #include "core/pipeline/report.h"
+#include "core/volume/import_options.h"
 
 namespace dubsar::app {
 namespace {
@@ -22,6 +25,8 @@ struct Options {
   std::string in, out;
   float max_error = 1.0f / 16.0f;
   ExaProfile profile = ExaProfile::kCompact;
+  std::string box;
+  int level = 0;
 };
 
 json stats_json(const ExaStats& stats) {
@@ -147,6 +152,32 @@ Result<VerbResult> recompress(const Options& options, Progress& progress) {
   result.json["shape_changed_fraction"] = stats.shape_changed_fraction;
   return result;
 }
+
+Result<VerbResult> part(const Options& options, Progress& progress) {
+  if (options.box.empty() == (options.level == 0))
+    return fail(ErrorKind::kUsage, "exa part: either --level or --box is needed");
+  DUBSAR_ASSIGN(const ExaInfo whole, read_exa_info(options.in));
+  const auto read = [&]() -> Result<SurfaceModel> {
+    if (options.level > 0) return read_exa_level(options.in, options.level, progress);
+    DUBSAR_ASSIGN(const CropRange range, parse_crop(options.box));
+    const Dims& dims = whole.header.dims;
+    const std::array<std::int64_t, 3> size{dims.x, dims.y, dims.z};
+    GridBox box;
+    for (std::size_t a = 0; a < 3; ++a) {
+      box.low[a] = range.begin[a];
+      box.high[a] = range.end[a] > 0 ? range.end[a] - 1 : size[a] - 1;
+    }
+    return read_exa_box(options.in, box, progress);
+  };
+  DUBSAR_ASSIGN(const SurfaceModel model, read());
+  DUBSAR_ASSIGN(const ExaStats stats, write_exa(options.out, model, progress));
+  VerbResult result;
+  result.text =
+      fmt::format("{}: {} of {} vertices, {} bytes\n", options.out, stats.vertices, whole.stats.vertices, stats.bytes);
+  result.json = stats_json(stats);
+  result.json["vertices_of_the_whole"] = whole.stats.vertices;
+  return result;
+}
 }  // namespace
 
 Verb add_exa_verb(Arguments program) {
@@ -166,15 +197,23 @@ Verb add_exa_verb(Arguments program) {
       .positive();
   recompress_command.choice<ExaProfile>("--exa-profile", options->profile, choices_of(kExaProfiles),
                                         "compact (default), or as in the paper, to compare");
+  Arguments part_command = command.subcommand("part", "a coarser level or a box, without reading the rest");
+  part_command.reads("IN", options->in, "EXA file").required();
+  part_command.writes("-o,--output", options->out, FileFormat::kExa, "EXA file to write").required();
+  part_command.value("--level", options->level, "every 2nd, 4th or 8th grid point: 1, 2, 3").range(1, 3);
+  part_command.value("--box", options->box,
+                     "x0:x1,y0:y1,z0:z1 in grid points; the bricks of 128 that touch it, open where they end");
   command.footer(
       "Examples:\n"
       "  dubsar exa stat tablet.exa\n"
       "  dubsar exa verify tablet.exa\n"
       "  dubsar exa recompress old.exa -o new.exa\n"
-      "  dubsar exa recompress tablet.exa --exa-profile paper -o paper.exa");
-  return {command, [options, stat_command, verify_command](const CommonOptions&, Progress& progress) {
+      "  dubsar exa recompress tablet.exa --exa-profile paper -o paper.exa\n"
+      "  dubsar exa part tablet.exa --level 2 -o preview.exa");
+  return {command, [options, stat_command, verify_command, part_command](const CommonOptions&, Progress& progress) {
             if (stat_command.chosen()) return stat(*options);
             if (verify_command.chosen()) return verify(*options, progress);
+            if (part_command.chosen()) return part(*options, progress);
             return recompress(*options, progress);
           }};
 }
