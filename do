@@ -32,6 +32,7 @@ usage() {
               ./do bench exa: bits and speed of the surface format, beside Draco and meshoptimizer
               ./do bench contact [X Y Z SEED]: what is read where tablet and envelope touch
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
+./do glb FILE...  the Khronos validator over GLB files (fetches it with npm)
 ./do asan     the tests that need no window under AddressSanitizer and UndefinedBehaviorSanitizer; asan core: of core
 ./do tsan     devices and inputs under ThreadSanitizer (clang)
 ./do core     build and test the core alone: no graphics, no devices
@@ -62,6 +63,12 @@ deps() {
 build_target() {
   cmake --preset "$preset" >/dev/null
   cmake --build "$build" -j "$jobs" "$@"
+}
+
+glb() {
+  command -v npm >/dev/null || deps npm
+  local here=$PWD
+  (cd "${OLDPWD:-.}" && "$here/docs/scripts/validate_glb.sh" "$@")  # names of files are those of the caller
 }
 
 models() {
@@ -227,6 +234,7 @@ case "$verb" in
   core) core "$@" ;;
   lint) lint "$@" ;;
   models) models "$@" ;;
+  glb) glb "$@" ;;
   deps) deps ;;
   strips) strips "$@" ;;
   format) git ls-files '*.cpp' '*.h' | xargs clang-format -i ;;
