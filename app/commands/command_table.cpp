@@ -27,7 +27,7 @@ CommandTable CommandTable::standard(const std::vector<std::string>& styles) {
   CommandTable out;
   for (std::vector<Command>& part :
        std::array{window_commands(), view_commands(), look_commands(styles), shade_commands(styles), mark_commands(),
-                  section_commands(), film_commands()})
+                  section_commands(), slice_commands(), film_commands()})
     for (Command& command : part) out.add(std::move(command));
   return out;
 }

@@ -65,7 +65,11 @@ std::vector<Command> look_commands(const std::vector<std::string>& styles);  ///
 std::vector<Command> shade_commands(const std::vector<std::string>& styles);  ///< blends, radiance, colours, legend
 std::vector<Command> mark_commands();                                         ///< tools, measures, notes
 std::vector<Command> section_commands();                                      ///< cuts and fog
+std::vector<Command> slice_commands();                                        ///< slices of the scan
 std::vector<Command> film_commands();
 std::vector<Command> window_commands();  ///< help, displays, sources, the window
+
+/// Lays the slices through a place of the surface, the free one upright on it, and opens them.
+void slice_through(Editor& editor, const SurfacePin& pin);
 
 }  // namespace dubsar::app

@@ -2,6 +2,7 @@
 // What commands act on: the document with its history, what is open on the desk, and the place they are given in.
 
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -46,6 +47,13 @@ class Workplace {
   virtual Reach reach(const glm::dvec3& home_direction) = 0;
   /// The direction of the scan towards the viewer, as things stand.
   virtual Reach reach_to_viewer() = 0;
+  /// The place of the surface under the pointer, in the middle of the window where there is none. kUsage: no surface.
+  virtual Result<SurfacePin> pin_seen() = 0;
+  /// Directions of the scan, as things stand: to the right of the window, upwards, to the viewer.
+  virtual glm::dmat3 seen_axes() = 0;
+  /// Slice `which` (0 x, 1 y, 2 z, 3 free) of the scan as a picture, a pixel for each voxel, with the outline of the
+  /// surface.
+  virtual Result<void> write_slice(const std::string& path, std::size_t which) = 0;
   /// What is seen as a picture, `factor` times as large as in the window. Says where it is.
   virtual Result<void> picture(const std::string& path, int factor) = 0;
   /// Shows the document's film from its beginning, or stops it; `from_s`: from then on, whether or not it is shown now.

@@ -10,7 +10,8 @@ namespace dubsar::app {
 namespace {
 
 constexpr std::string_view kMeasures = "Measures", kNotes = "Notes";
-constexpr std::array<std::string_view, 7> kTools{"turn", "distance", "angle", "depth", "profile", "note", "line"};
+constexpr std::array<std::string_view, 8> kTools{"turn",    "distance", "angle", "depth",
+                                                 "profile", "note",     "line",  "slice"};
 
 /// As editions count lines: o. 1, lo.e. 2, r. 3 ...
 std::string next_label(const Document& document, const std::string& side) {
@@ -73,19 +74,20 @@ Command tool() {
   Command out{"tool", std::string(kMeasures), "what a click does", {}, "a tool"};
   out.values.assign(kTools.begin(), kTools.end());
   out.keys = {{"v", "turn"},    {"d", "distance"}, {"a", "angle"}, {"w", "depth"},
-              {"f", "profile"}, {"n", "note"},     {"i", "line"}};
+              {"f", "profile"}, {"n", "note"},     {"i", "line"},  {"shift+b", "slice"}};
   out.closed = true;
   out.run = [](Editor& editor, const std::string& name) -> Result<void> {
     Desk& desk = editor.desk();
     desk.tool = desk.tool == name ? "turn" : name;
     desk.pending.clear();
-    constexpr std::array<const char*, 7> kWords{"",
+    constexpr std::array<const char*, 8> kWords{"",
                                                 "Click two places: the distance between them.",
                                                 "Click three places: the angle at the second.",
                                                 "Click into a wedge: its depth below the surface around it.",
                                                 "Click two places: the section between them.",
                                                 "Click where the note belongs.",
-                                                "Click the beginning and the end of a line of text."};
+                                                "Click the beginning and the end of a line of text.",
+                                                "Click where the scan shall be cut."};
     const auto* const at = std::find(kTools.begin(), kTools.end(), desk.tool);
     if (const char* const words = kWords[static_cast<std::size_t>(at - kTools.begin())]; *words != '\0')
       editor.place().say(words);
@@ -103,6 +105,10 @@ Command point() {
     DUBSAR_ASSIGN(const auto points, points_argument("point", text, 1, rest));
     DUBSAR_ASSIGN(SurfacePin pin, editor.place().pin(points[0]));
     Desk& desk = editor.desk();
+    if (desk.tool == "slice") {
+      slice_through(editor, pin);
+      return {};
+    }
     desk.pending.push_back(std::move(pin));
     const auto kind = measure_kind(desk.tool);
     const std::size_t wanted = kind ? points_of(*kind) : desk.tool == "line" ? 2 : 1;

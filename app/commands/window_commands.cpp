@@ -34,9 +34,9 @@ Command toggle_source() {
 Command drawer() {
   Command out{"drawer", std::string(kWindowGroup), "panel", {}};
   out.argument = "a panel";
-  out.values = {"parts", "light", "style", "measures", "notes", "cuts", "film"};
-  out.keys = {{"p", "parts"},       {"l", "light"}, {"t", "style"},     {"m", "measures"},
-              {"shift+n", "notes"}, {"c", "cuts"},  {"shift+k", "film"}};
+  out.values = {"parts", "light", "style", "measures", "notes", "cuts", "slices", "film"};
+  out.keys = {{"p", "parts"},       {"l", "light"}, {"t", "style"},        {"m", "measures"},
+              {"shift+n", "notes"}, {"c", "cuts"},  {"shift+s", "slices"}, {"shift+k", "film"}};
   out.closed = true;
   out.run = [](Editor& editor, const std::string& name) -> Result<void> {
     Desk& desk = editor.desk();

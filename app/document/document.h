@@ -56,12 +56,16 @@ struct Note {
   friend bool operator==(const Note&, const Note&) = default;
 };
 
-struct SliceView {
-  int axis = 2;                      ///< 0 x, 1 y, 2 z of the scan; 3: free, across `normal`
-  glm::dvec3 normal{0.0, 0.0, 1.0};  ///< of a free one
-  double position_mm = 0.0;          ///< along the axis or the normal, from the scan's origin
-  bool visible = false;
-  friend bool operator==(const SliceView&, const SliceView&) = default;
+/// Where slices of the scan are laid, and how they are seen: three across its axes and a free one, all of them through
+/// one place.
+struct ScanView {
+  glm::dvec3 cursor_mm{0.0};                                   ///< that place, in the frame of the scan
+  glm::dvec3 centre_mm{0.0};                                   ///< what stands in the middle of the pictures
+  glm::dvec3 free_right{1.0, 0.0, 0.0}, free_up{0.0, 0, 1.0};  ///< of the free one's picture: unit, across each other
+  double zoom = 1.0;                                           ///< 1: the whole surface fits
+  double black = 0.0, white = 0.0;                             ///< values of the scan; equal: as the scan has them
+  int large = 0;                                               ///< 1 x, 2 y, 3 z, 4 free: this one alone; 0: all four
+  friend bool operator==(const ScanView&, const ScanView&) = default;
 };
 
 struct SourceFile {
@@ -81,7 +85,7 @@ struct Document {
   double fog = 0.0;  ///< 0..1: how much the far side fades
   std::vector<Measure> measures;
   std::vector<Note> notes;
-  std::vector<SliceView> slices;
+  ScanView scan;
   std::vector<Keyframe> keyframes;
   friend bool operator==(const Document&, const Document&) = default;
 };

@@ -65,11 +65,15 @@ void fields(auto& f, Note& v) {
   f("line_mm", v.line_mm);
   f("camera", v.camera);
 }
-void fields(auto& f, SliceView& v) {
-  f("axis", v.axis);
-  f("normal", v.normal);
-  f("position_mm", v.position_mm);
-  f("visible", v.visible);
+void fields(auto& f, ScanView& v) {
+  f("cursor_mm", v.cursor_mm);
+  f("centre_mm", v.centre_mm);
+  f("free_right", v.free_right);
+  f("free_up", v.free_up);
+  f("zoom", v.zoom);
+  f("black", v.black);
+  f("white", v.white);
+  f("large", v.large);
 }
 void fields(auto& f, KeyedPart& v) {
   f("name", v.name);
@@ -97,7 +101,7 @@ void fields(auto& f, Document& v) {
   f("fog", v.fog);
   f("measures", v.measures);
   f("notes", v.notes);
-  f("slices", v.slices);
+  f("scan", v.scan);
   f("keyframes", v.keyframes);
 }
 

@@ -1,5 +1,7 @@
 #include "app/document/document_file.h"
 
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
@@ -29,9 +31,14 @@ std::string complaint_about(const Document& d) {
   for (const Part& part : d.parts)
     if (!(part.opacity >= 0 && part.opacity <= 1))
       return fmt::format("opacity of {} is {}, expected 0 to 1", part.name, part.opacity);
-  for (const SliceView& slice : d.slices)
-    if (slice.axis < 0 || slice.axis > 3 || slice.normal == glm::dvec3(0.0))
-      return fmt::format("axis is {}, expected 0 to 3 and a direction", slice.axis);
+  const ScanView& scan = d.scan;
+  const auto off = [](double value, double wanted) { return !(std::abs(value - wanted) <= 1e-6); };
+  if (!(scan.zoom > 0) || scan.large < 0 || scan.large > 4 || off(glm::length(scan.free_right), 1) ||
+      off(glm::length(scan.free_up), 1) || off(glm::dot(scan.free_right, scan.free_up), 0))
+    return fmt::format(
+        "scan has zoom {}, slice {} and a free slice that lies so or not at all, expected more than 0, 0 "
+        "to 4 and two directions across each other",
+        scan.zoom, scan.large);
   if (!(d.fog >= 0 && d.fog <= 1)) return fmt::format("fog is {}, expected 0 to 1", d.fog);
   for (const Measure& measure : d.measures)
     if (measure.points_mm.size() != points_of(measure.kind))

@@ -84,13 +84,14 @@ void draw_strip(const Board& desk) {
 }
 
 void draw_tools(const Board& desk) {
-  constexpr std::array<std::array<const char*, 2>, 7> kTools{{{"Turn", "turn"},
+  constexpr std::array<std::array<const char*, 2>, 8> kTools{{{"Turn", "turn"},
                                                               {"Distance", "distance"},
                                                               {"Angle", "angle"},
                                                               {"Depth", "depth"},
                                                               {"Profile", "profile"},
                                                               {"Note", "note"},
-                                                              {"Line", "line"}}};
+                                                              {"Line", "line"},
+                                                              {"Slice", "slice"}}};
   const float row = ImGui::GetFrameHeightWithSpacing();
   begin("tools", 0.0f, kTop + kGap, kToolsWidth,
         row * static_cast<float>(kTools.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
@@ -111,6 +112,7 @@ void draw_drawers(const Board& desk) {
   rows.push_back({"Measures", "measures", draw_measures});
   rows.push_back({"Notes", "notes", draw_notes});
   rows.push_back({"Cuts", "cuts", draw_cuts});
+  rows.push_back({"Slices", "slices", nullptr});
   rows.push_back({"Film", "film", draw_film});
   const float row = ImGui::GetFrameHeightWithSpacing();
   begin("drawers", desk.width - kTab, kTop + kGap, kTab,
@@ -120,6 +122,10 @@ void draw_drawers(const Board& desk) {
   ImGui::End();
   for (const Row& each : rows) {
     if (desk.state.desk.drawer != each.name) continue;
+    if (each.draw == nullptr) {
+      draw_slices(desk);
+      continue;
+    }
     ImGui::SetNextWindowPos(ImVec2(desk.width - kTab - kDrawer - 4.0f, kTop + kGap));
     ImGui::SetNextWindowSize(ImVec2(kDrawer, 0.0f));
     ImGui::Begin(each.name, nullptr, kFixed | ImGuiWindowFlags_AlwaysAutoResize);

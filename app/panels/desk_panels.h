@@ -8,6 +8,7 @@
 
 #include "app/commands/editor.h"
 #include "app/commands/key_table.h"
+#include "app/panels/slice_panel.h"
 #include "app/viewer/surface_tools.h"
 
 namespace dubsar::app {
@@ -26,6 +27,7 @@ struct PanelState {
   Document document{};
   Desk desk{};
   EvidenceShares evidence{};
+  SlicePanelState slices{};
   bool playing = false;                     ///< the document's film
   std::vector<std::uint32_t> thumbnails{};  ///< names of textures, one for each keyframe; 0: not made yet
   double thumbnail_aspect = 1.6;            ///< their width by their height

@@ -50,7 +50,7 @@ HelpSection mouse_section(const MouseMapping& mouse) {
   return out;
 }
 
-constexpr std::size_t kMostValues = 7;
+constexpr std::size_t kLongestList = 72;  // letters; what is longer is for the palette
 
 /// "1", "2", "3" ... or "alt+1", "alt+2" ...
 bool is_row(const std::vector<std::string>& keys) {
@@ -73,8 +73,8 @@ void add_command(HelpSection& section, const Command& command, const KeyTable& k
   std::string words = command.words;
   if (found.empty() && told.size() > 2) {
     found = is_row(told) ? std::vector<std::string>{told.front() + " to " + told.back()} : told;
-    if (command.closed && command.values.size() <= kMostValues)
-      words += fmt::format(": {}", fmt::join(command.values, ", "));
+    const std::string values = fmt::format("{}", fmt::join(command.values, ", "));
+    if (command.closed && values.size() <= kLongestList) words += ": " + values;
   } else {
     found.insert(found.end(), told.begin(), told.end());
   }

@@ -265,6 +265,8 @@ bool Overlay::take(const InputEvent& event, const glm::dvec2& layout) {
   if (event.kind == EventKind::kKey) return take_key(event, layout);
   if (!event.at) return false;
   ImGuiIO& io = ImGui::GetIO();
+  io.KeyCtrl = (event.modifiers & kControl) != 0;
+  io.KeyShift = (event.modifiers & kShift) != 0;
   const auto button = static_cast<std::size_t>(event.button);
   const bool releases_ours = event.kind == EventKind::kButton && !event.down && held_[button];
   io.MousePos = ImVec2(static_cast<float>(0.5 * layout.x + event.at->x * layout.y),
@@ -277,6 +279,7 @@ bool Overlay::take(const InputEvent& event, const glm::dvec2& layout) {
   }
   if (event.kind == EventKind::kButton && !event.down && !releases_ours) object_held_ = false;
   if (!ours && !releases_ours) return false;
+  if (event.kind == EventKind::kWheel) io.MouseWheel = static_cast<float>(event.motion.y);
   if (event.kind == EventKind::kButton) {
     held_[button] = event.down;
     constexpr std::array<int, 3> kTheirs{0, 2, 1};

@@ -15,6 +15,7 @@
 #include "core/base/log.h"
 #include "core/base/parse_number.h"
 #include "core/base/quantile.h"
+#include "core/volume/import.h"
 #include "devices/looking_glass/bridge_client.h"
 #include "input/source_spec.h"
 
@@ -22,7 +23,7 @@ namespace dubsar::app {
 namespace {
 
 struct What {
-  std::string in, kiosk, view = "front", style = "relief";
+  std::string in, scan, kiosk, view = "front", style = "relief";
   std::vector<std::string> partitions;
 };
 
@@ -155,6 +156,8 @@ Result<ViewOptions> view_options(const Options& options) {
     DUBSAR_ASSIGN(const std::string steps, read_text_file(options.people.steps));
     DUBSAR_ASSIGN(view.steps, parse_steps(steps, options.people.steps));
   }
+  view.work.surface = options.what.in;
+  view.work.scan = options.what.scan;
   view.time.fps = options.time.fps;
   view.time.longest_s = options.time.seconds;
   view.time.display_delay_s = 1e-3 * options.time.display_delay_ms;
@@ -263,6 +266,11 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
     return fail(ErrorKind::kUsage, "view: no file found, expected a surface such as tablet.exa");
   DUBSAR_ASSIGN(ViewOptions view, view_options(options));
   DUBSAR_TRY(options.panel.offscreen ? without_window(options, view) : with_window(options, view));
+  if (!options.what.scan.empty()) {  // before a large file is read
+    ImportOptions scan;
+    scan.path = options.what.scan;
+    DUBSAR_TRY(open_voxels(scan));
+  }
   DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.what.in, options.what.partitions, true}, progress));
   if (!options.panel.offscreen) log_info("view: F1 shows help; Escape, closing the window or Ctrl-C end it");
   DUBSAR_ASSIGN(const ViewResult done, run_view(mesh, view, progress));
@@ -286,6 +294,10 @@ Verb add_view_verb(Arguments program) {
       .reads("--kiosk", options->what.kiosk,
              "a gallery's profile (docs/kiosk.md): its objects, until an operator ends it")
       .called("PROFILE.json");
+  command
+      .reads("--scan", options->what.scan,
+             "the scan that the surface was made of, for slices; else one of its name beside it")
+      .called("SCAN.h5");
   std::string sinks, sources;
   for (const SinkBackend& sink : output_sinks()) sinks += (sinks.empty() ? "" : ", ") + std::string(sink.name);
   for (const std::string_view source : input_source_names())

@@ -42,6 +42,10 @@ Document first_document(const ViewOptions& options, const TriMesh& mesh) {
   const Light& light = options.stage.shading.light;
   if (out.home_light == LightPlace() && out.light == LightPlace())
     out.home_light = out.light = {light.azimuth_deg, light.elevation_deg};
+  if (out.scan == ScanView() && !mesh.triangles.empty()) {
+    const Box box = box_of(mesh);
+    out.scan.cursor_mm = out.scan.centre_mm = 0.5 * (box.min + box.max);
+  }
   if (options.work.upright && !mesh.triangles.empty()) {
     if (const auto turn = upright_turn(mesh, first_turn(box_of(mesh), options.stage.direction)))
       out.home.rotation = out.now.rotation = *turn;

@@ -21,9 +21,11 @@ class SessionGuide;  // app/viewer/session_guide.h
 
 /// What a session begins with, besides the surface.
 struct SessionWork {
-  Document document{};    ///< its view and home are the stage's, and its parts the mesh's where it has none
-  bool upright = false;   ///< the obverse stands upright at home, as its writing says
-  bool restored = false;  ///< the document is that of an earlier session
+  Document document{};              ///< its view and home are the stage's, and its parts the mesh's where it has none
+  bool upright = false;             ///< the obverse stands upright at home, as its writing says
+  bool restored = false;            ///< the document is that of an earlier session
+  std::filesystem::path surface{};  ///< the file of the surface; beside it its scan is looked for
+  std::filesystem::path scan{};     ///< the scan it was made of; empty: looked for
 };
 
 struct SessionTime {

@@ -41,6 +41,7 @@ Result<std::unique_ptr<Viewer>> Viewer::create(const TriMesh& mesh, const ViewOp
 Viewer::~Viewer() {
   if (steering_) steering_->stop();
   if (stage_) stage_->set_overlay(nullptr);
+  tools_.slices.reset();
   sources_.reset();
 }
 
@@ -65,6 +66,8 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
   DUBSAR_ASSIGN(stage_, Stage::create(given_.mesh, stage, std::move(sink)));
   DUBSAR_ASSIGN(tools_.font, LabelFont::create(panel_font()));
   tools_.evidence = evidence_shares(given_.mesh);
+  tools_.slices = std::make_unique<SliceDesk>(
+      given_.mesh, stage_->box_mm(), scan_of(given_.mesh, given_.options.work.surface, given_.options.work.scan));
   DUBSAR_ASSIGN(overlay_, Overlay::create(*said_.keys));
   if (given_.options.displays.empty()) {
     displays_.specs = displays_for_window(stage.display, stage.screen, stage.stereo_window, stage.catalog->panels());
@@ -179,6 +182,7 @@ void Viewer::say(std::string text) {
 
 void Viewer::handle(InputEvent event) {
   if (given_.options.time.fps > 0) event.time = given_.clock.now();
+  if (event.at) tools_.pointer = *event.at;
   if (given_.options.guide != nullptr && given_.options.guide->takes(event, given_.clock.now())) return;
   if (overlay_->take(event, Overlay::layout(stage_->traits().view.height, stage_->window_mm()))) {
     stage_->set_overlay(overlay_.get());  // what the pointer is on looks different
@@ -190,6 +194,7 @@ void Viewer::handle(InputEvent event) {
   if (event.kind == EventKind::kButton && event.down && event.at && !given_.options.stage.pattern &&
       !given_.options.stage.pictures)
     event.lever = lever_at(*event.at);
+  if (event.at) event.at->x -= aside();  // who turns and zooms knows nothing of what stands beside the surface
   const auto rows = sources_->rows();
   const bool keyboard = std::any_of(rows.begin(), rows.end(), [](const SourceRow& row) {
     return row.spec == "keyboard" && row.health == SourceHealth::kPresent;
@@ -290,6 +295,7 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
   Shown shown = shown_of(seen, view, given_.options.stage, stage_->box_mm());
   shown.before = at_.guidance.lines;
   shown.marks = marks_of(seen, desk(), shown.parts, *tools_.font);
+  if (shows_slices()) lay_slices(shown);
   stage_->show(shown, steered.eyes, now);
   report_.view = view;
   report_.viewer = stage_->viewer();

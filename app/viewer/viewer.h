@@ -12,6 +12,7 @@
 #include "app/viewer/picker.h"
 #include "app/viewer/presenter.h"
 #include "app/viewer/session_guide.h"
+#include "app/viewer/slice_desk.h"
 #include "app/viewer/steering.h"
 #include "app/viewer/surface_tools.h"
 #include "display/render/label_font.h"
@@ -69,6 +70,7 @@ class Viewer final : public Workplace {
   const Stage& stage() const noexcept { return *stage_; }
   const Document& document() const noexcept { return editor_->document(); }
   const Desk& desk() const noexcept { return editor_->desk(); }
+  const SlicePanelState& slices() const noexcept { return tools_.slices->state(); }
   std::string display() const { return displays_.specs[displays_.shown].text(); }
   std::vector<SourceRow> sources() const { return sources_->rows(); }
   std::vector<SourceState> source_states() const { return steering_->input().states(); }
@@ -85,6 +87,9 @@ class Viewer final : public Workplace {
   Result<MeasureFigures> figures(const Measure& measure) override;
   Reach reach(const glm::dvec3& home_direction) override;
   Reach reach_to_viewer() override;
+  Result<SurfacePin> pin_seen() override;
+  glm::dmat3 seen_axes() override;
+  Result<void> write_slice(const std::string& path, std::size_t which) override;
   Result<void> picture(const std::string& path, int factor) override;
   Result<void> play_film(std::optional<double> from_s) override;
 
@@ -126,6 +131,8 @@ class Viewer final : public Workplace {
     EvidenceShares evidence;
     FilmThumbnails thumbnails;
     std::optional<InputEvent> press;  ///< with a tool in the hand: it becomes a click, or a drag that turns
+    glm::dvec2 pointer{0.0};          ///< where it was last, as InputEvent::at
+    std::unique_ptr<SliceDesk> slices;
   };
   Viewer(const TriMesh& mesh, const ViewOptions& options, Presenter& presenter, const Clock& clock)
       : given_{mesh, options, presenter, clock} {}
@@ -145,7 +152,12 @@ class Viewer final : public Workplace {
   std::optional<Picked> picked_at(const glm::dvec2& at) const;
   bool take_click(const InputEvent& event);
   void click(const glm::dvec2& at);
+  static Result<std::filesystem::path> new_picture(const std::filesystem::path& path);
+  glm::dvec3 scan_place(const Picked& picked) const;
   Document shown_document(TimestampNs now);
+  bool shows_slices() const { return desk().panels && desk().drawer == "slices"; }
+  double aside() const;
+  void lay_slices(Shown& shown);
   Reach reach_of(const glm::dvec3& direction, const glm::dquat& rotation) const;
 
   Given given_;

@@ -25,6 +25,7 @@ PanelState Viewer::panel_state() const {
   out.document = document();
   out.desk = desk();
   out.evidence = tools_.evidence;
+  if (shows_slices()) out.slices = tools_.slices->state();
   out.playing = at_.film_since >= 0;
   const glm::dvec2 window = stage_->window_mm();
   const double scale =

@@ -66,16 +66,22 @@ bool Viewer::take_click(const InputEvent& event) {
   InputEvent begun = *press;
   press.reset();
   begun.lever = lever_at(*begun.at);
+  begun.at->x -= aside();
   events_.push(begun);
   return false;
+}
+
+/// Where a place that is seen lies in the scan: parts stand apart.
+glm::dvec3 Viewer::scan_place(const Picked& picked) const {
+  const PartitionId id = given_.mesh.partition_of(picked.triangle);
+  const Shown shown = shown_of(document(), report_.view, given_.options.stage, stage_->box_mm());
+  return picked.at_mm - shown.parts[std::min<std::size_t>(id, shown.parts.size() - 1)].offset_mm;
 }
 
 void Viewer::click(const glm::dvec2& at) {
   const auto picked = picked_at(at);
   if (!picked) return say("There is no surface here.");
-  const PartitionId id = given_.mesh.partition_of(picked->triangle);
-  const Shown shown = shown_of(document(), report_.view, given_.options.stage, stage_->box_mm());
-  const glm::dvec3 there = picked->at_mm - shown.parts[std::min<std::size_t>(id, shown.parts.size() - 1)].offset_mm;
+  const glm::dvec3 there = scan_place(*picked);
   ++at_.presses;
   run(fmt::format("point {:.6f},{:.6f},{:.6f}", there.x, there.y, there.z));
 }
@@ -99,22 +105,26 @@ Workplace::Reach Viewer::reach(const glm::dvec3& home_direction) {
 }
 Workplace::Reach Viewer::reach_to_viewer() { return reach_of({0, 0, 1}, report_.view.rotation); }
 
+Result<fs::path> Viewer::new_picture(const fs::path& path) {
+  const std::string suffix = path.extension().string();
+  if (suffix != ".png" && suffix != ".tif" && suffix != ".tiff")
+    return fail(ErrorKind::kUsage, "picture: cannot write {}, expected a name that ends in .png or .tif",
+                path.string());
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(path, error)))
+    return fail(ErrorKind::kUsage, "picture: {} is there already; give another name", path.string());
+  return path;
+}
+
 Result<void> Viewer::picture(const std::string& path, int factor) {
   const std::string name =
       given_.options.around.title.empty() ? "dubsar" : fs::path(given_.options.around.title).stem().string();
-  const fs::path target = path.empty() ? next_free(name) : fs::path(path);
-  const std::string suffix = target.extension().string();
-  if (suffix != ".png" && suffix != ".tif" && suffix != ".tiff")
-    return fail(ErrorKind::kUsage, "picture: cannot write {}, expected a name that ends in .png or .tif",
-                target.string());
-  std::error_code error;
-  if (fs::exists(fs::symlink_status(target, error)))
-    return fail(ErrorKind::kUsage, "picture: {} is there already; give another name", target.string());
+  DUBSAR_ASSIGN(const fs::path target, new_picture(path.empty() ? next_free(name) : fs::path(path)));
   DUBSAR_ASSIGN(const Image image, stage_->still(factor));
   // Dots an inch of the object itself, in its middle: printed so, it has its size.
   const double scale = glm::length(glm::dvec3(stage_->screen_from_model()[0]));
   const double dpi = image.height / stage_->window_mm().y * scale * kMmPerInch;
-  if (suffix == ".png") {
+  if (target.extension() == ".png") {
     DUBSAR_TRY(write_png(target, image, {.dpi = dpi}));
   } else {
     DUBSAR_TRY(write_tiff(target, image, dpi));

@@ -45,6 +45,12 @@ class FakePlace final : public Workplace {
   }
   Reach reach(const glm::dvec3& direction) override { return {direction, -20, 10}; }
   Reach reach_to_viewer() override { return {{0, 1, 0}, -4, 6}; }
+  Result<SurfacePin> pin_seen() override { return SurfacePin{{1, 2, 5}, {0, 0, 1}, "tablet", "obverse"}; }
+  glm::dmat3 seen_axes() override { return {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}; }
+  Result<void> write_slice(const std::string& path, std::size_t which) override {
+    pictures.push_back(fmt::format("{} slice {}", path, which));
+    return {};
+  }
   Result<void> picture(const std::string& path, int factor) override {
     pictures.push_back(fmt::format("{} x{}", path, factor));
     return {};
@@ -112,7 +118,10 @@ inline std::vector<std::string> ways_to_say(const CommandTable& commands) {
                                       "move_keyframe 1 2",
                                       "keyframe_seconds 1 0.75",
                                       "play 2",
-                                      "write_film /nowhere/film.json"};
+                                      "write_film /nowhere/film.json",
+                                      "slice_at 1,2,3",
+                                      "slice_centre 3,2,1",
+                                      "write_slice /nowhere/slice.png z"};
   std::vector<std::string> out;
   for (const Command& command : commands.all()) {
     const std::size_t before = out.size();

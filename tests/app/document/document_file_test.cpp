@@ -41,7 +41,7 @@ Document rich(unsigned seed) {
                 vector(),
                 {vector(), vector()},
                 camera()}};
-  out.slices = {{1, {0, 0, 1}, real(), true}, {3, vector(), real(), false}};
+  out.scan = {vector(), vector(), {0, 1, 0}, {0.6, 0, 0.8}, 2.5, real(), real(), 4};
   out.keyframes = {{1.5, camera(), {3, 4}, 0.5, "phong", {{"tablet", 0.5, vector()}}}, {}};
   return out;
 }
@@ -103,11 +103,14 @@ TEST_F(DocumentFile, AnOlderVersionIsReadAndWhatItDidNotKnowIsAsUsual) {
   old["style"].erase("evidence");
   for (auto& note : old["notes"]) note.erase("label"), note.erase("line_mm"), note.erase("part");
   old.erase("fog");
+  old.erase("scan");
+  old["slices"] = nlohmann::json::array();  // as they once were
   const auto back = parse_document(old.dump(), "old");
   ASSERT_TRUE(back) << back.error().message;
   Document expected = rich(11);
   expected.style.evidence = true;
   expected.fog = 0;
+  expected.scan = {};
   expected.notes[0].label.clear();
   expected.notes[0].part.clear();
   expected.notes[0].line_mm.clear();
@@ -123,6 +126,9 @@ TEST_F(DocumentFile, RangesAndOtherVersionsAreRefusedByName) {
   };
   EXPECT_EQ(refusal([](Document& d) { d.now.zoom = 0; }), "k.json: zoom is 0, expected more than 0");
   EXPECT_EQ(refusal([](Document& d) { d.unpack = 2; }), "k.json: unpack is 2, expected 0 to 1");
+  EXPECT_NE(refusal([](Document& d) { d.scan.zoom = 0; }).find("zoom 0"), std::string::npos);
+  EXPECT_NE(refusal([](Document& d) { d.scan.large = 5; }).find("slice 5"), std::string::npos);
+  EXPECT_NE(refusal([](Document& d) { d.scan.free_up = d.scan.free_right; }).find("across"), std::string::npos);
   EXPECT_NE(refusal([](Document& d) { d.now.rotation = {0, 0, 0, 0}; }).find("now.rotation_wxyz"), std::string::npos);
   EXPECT_NE(refusal([](Document& d) { d.notes[0].at_mm.x = 1e9; }).find("notes[0].at_mm"), std::string::npos);
   std::string text = format_document(rich(7));

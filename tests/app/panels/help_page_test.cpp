@@ -27,11 +27,11 @@ TEST(HelpPage, SaysWhatTheMappingSays) {
   EXPECT_EQ(find(page, "Mouse", "shift+left drag"), "move");
   EXPECT_EQ(find(page, "Mouse", "wheel"), "zoom");
   EXPECT_EQ(find(page, "Back", "backspace ctrl+z"), "undo");
-  EXPECT_EQ(find(page, "This window", "p l t m shift+n c shift+k"),
-            "panel: parts, light, style, measures, notes, cuts, film");
+  EXPECT_EQ(find(page, "This window", "p l t m shift+n c shift+s shift+k"),
+            "panel: parts, light, style, measures, notes, cuts, slices, film");
   EXPECT_EQ(find(page, "Light", "alt+1 to alt+8"), "raking light from one of eight directions");
-  EXPECT_EQ(find(page, "Measures", "v d a w f n i"),
-            "what a click does: turn, distance, angle, depth, profile, note, line");
+  EXPECT_EQ(find(page, "Measures", "v d a w f n i shift+b"),
+            "what a click does: turn, distance, angle, depth, profile, note, line, slice");
   EXPECT_EQ(find(page, "Sides", "1 to 6"), "turn to a side: obverse, bottom, reverse, top, left, right");
   EXPECT_EQ(find(page, "Hands", "pinch and move"), "move the light");
   EXPECT_EQ(find(page, "This window", "f1 ?"), "this help");

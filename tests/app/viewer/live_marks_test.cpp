@@ -111,7 +111,8 @@ TEST_F(Live, AScriptSaysEveryCommandThereIs) {
   EXPECT_EQ(done->document.notes.size(), 2u);
   EXPECT_EQ(done->document.notes[0].text, "q\u00ed-bi\u2084-ma");
   EXPECT_EQ(done->document.keyframes.size(), 1u);
-  for (const char* name : {"measures.json", "notes.json", "notes.jsonld", "film.json", "seen.png", "seen.tif"})
+  for (const char* name :
+       {"measures.json", "notes.json", "notes.jsonld", "film.json", "seen.png", "seen.tif", "slice.png"})
     EXPECT_TRUE(fs::exists(folder / name)) << name;
   fs::remove_all(folder);
 }

@@ -96,6 +96,7 @@ class XPerson {
     if (name == "0") return 19;
     if (name == "s") return 39;
     if (name == "a") return 38;
+    if (name == "b") return 56;
     if (name == "d") return 40;
     if (name == "e") return 26;
     if (name == "i") return 31;

@@ -1,0 +1,38 @@
+#pragma once
+// Which scan a surface was made of, where that is, and whether it is really that one.
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/mesh/tri_mesh.h"
+#include "core/volume/import_options.h"
+#include "core/volume/plane_sampler.h"
+
+namespace dubsar::app {
+
+struct ScanLink {
+  ImportOptions import{};
+  glm::dvec3 voxel_mm{1.0};   ///< as the surface has it
+  std::string fingerprint{};  ///< of the scan that the surface was made of; empty: not known
+  Dims dims{};                ///< of that scan; 0: not known
+  bool given = false;         ///< by the user, else found
+};
+
+/// `surface` is the file of the mesh, whose provenance names its scan. `given` is what the user says; without it a file
+/// of the scan's name beside the surface. None: there is no such file, or nothing that it could be known by.
+std::optional<ScanLink> scan_of(const TriMesh& mesh, const std::filesystem::path& surface,
+                                const std::filesystem::path& given = {});
+
+struct OpenedScan {
+  std::unique_ptr<PlaneSampler> sampler;
+  glm::dvec3 voxel_mm{1.0};
+  std::string note;  ///< for people; empty: nothing
+};
+
+/// Reads headers only. kBadData: not the scan of this surface, by its size in voxels or, for one that was found by its
+/// name, by its fingerprint; for one that was given the note says so. Else the importer's errors.
+Result<OpenedScan> open_scan(const ScanLink& link);
+
+}  // namespace dubsar::app
