@@ -74,7 +74,7 @@ Command tool() {
   Command out{"tool", std::string(kMeasures), "what a click does", {}, "a tool"};
   out.values.assign(kTools.begin(), kTools.end());
   out.keys = {{"v", "turn"},    {"d", "distance"}, {"a", "angle"}, {"w", "depth"},
-              {"f", "profile"}, {"n", "note"},     {"i", "line"},  {"shift+b", "slice"}};
+              {"f", "profile"}, {"n", "note"},     {"i", "line"},  {"j", "slice"}};
   out.closed = true;
   out.run = [](Editor& editor, const std::string& name) -> Result<void> {
     Desk& desk = editor.desk();

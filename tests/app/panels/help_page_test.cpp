@@ -30,7 +30,7 @@ TEST(HelpPage, SaysWhatTheMappingSays) {
   EXPECT_EQ(find(page, "This window", "p l t m shift+n c shift+s shift+k"),
             "panel: parts, light, style, measures, notes, cuts, slices, film");
   EXPECT_EQ(find(page, "Light", "alt+1 to alt+8"), "raking light from one of eight directions");
-  EXPECT_EQ(find(page, "Measures", "v d a w f n i shift+b"),
+  EXPECT_EQ(find(page, "Measures", "v d a w f n i j"),
             "what a click does: turn, distance, angle, depth, profile, note, line, slice");
   EXPECT_EQ(find(page, "Sides", "1 to 6"), "turn to a side: obverse, bottom, reverse, top, left, right");
   EXPECT_EQ(find(page, "Hands", "pinch and move"), "move the light");
