@@ -10,6 +10,7 @@
 #include "app/cli/verb.h"
 #include "app/publish/fat_cross.h"
 #include "app/publish/xmp.h"
+#include "core/image_io/picture_file.h"
 #include "core/image_io/tiff_file.h"
 
 namespace dubsar::app {
@@ -23,7 +24,7 @@ struct Options {
   int samples = 3;
   Rgb8 ground{0, 0, 0};
   FrameTurn turn = FrameTurn::kNone;
-  bool over = false, no_sides = false;
+  bool over = false, no_sides = false, apart = false;
   Publication publication;
 };
 
@@ -45,18 +46,91 @@ Result<TriMesh> load_part(const Options& options, Progress& progress) {
   return load_mesh({options.in, {}, true}, progress);
 }
 
-Result<void> write_cross(const Options& options, const FatCross& cross, const fs::path& out, bool sides) {
-  const TiffTags tags{options.publication.title, options.publication.rights, xmp_packet(options.publication)};
-  DUBSAR_TRY(write_tiff(out, cross.whole, options.dpi, tags));
-  for (std::size_t k = 0; sides && k < cross.sides.size(); ++k)
-    DUBSAR_TRY(write_tiff(with_suffix(out, kSideSuffix[k]), cross.sides[k], options.dpi, tags));
+PictureOptions file_of(const Options& options) {
+  PictureOptions out;
+  out.dpi = options.dpi;
+  out.description = options.publication.title;
+  out.copyright = options.publication.rights;
+  out.xmp = xmp_packet(options.publication);
+  return out;
+}
+
+Result<void> write_sides(const Options& options, const FatCross& cross, const fs::path& out) {
+  for (std::size_t k = 0; !options.no_sides && k < cross.sides.size(); ++k)
+    DUBSAR_TRY(write_picture(with_suffix(out, kSideSuffix[k]), cross.sides[k], file_of(options)));
   return {};
 }
 
+/// Draws the cross in each of the styles: as one file with a page for each, or a file for each.
+class CrossFiles {
+ public:
+  CrossFiles(const Options& options, const std::vector<std::string>& styles, const TriMesh& upright, Progress& progress)
+      : options_(options), styles_(styles), upright_(upright), progress_(progress) {}
+
+  Result<void> write(VerbResult& result) {
+    result.json["files"] = nlohmann::json::array();
+    const int count = static_cast<int>(styles_.size());
+    if (count > 1 && !options_.apart) {
+      const PictureOptions file = file_of(options_);
+      DUBSAR_TRY(write_tiff_layers(options_.out, count,
+                                   [&](int k) -> Result<TiffLayer> {
+                                     DUBSAR_ASSIGN(FatCross cross, draw(k));
+                                     return TiffLayer{std::move(cross.whole), styles_[static_cast<std::size_t>(k)]};
+                                   },
+                                   options_.dpi, {file.description, file.copyright, file.xmp}));
+      tell(options_.out, result);
+      result.json["layers"] = styles_;
+      return {};
+    }
+    for (int k = 0; k < count; ++k) {
+      const fs::path out =
+          count == 1 ? fs::path(options_.out) : with_suffix(options_.out, "_" + styles_[static_cast<std::size_t>(k)]);
+      DUBSAR_ASSIGN(const FatCross cross, draw(k));
+      DUBSAR_TRY(write_picture(out, cross.whole, file_of(options_)));
+      tell(out, result);
+    }
+    return {};
+  }
+
+ private:
+  /// The first of them gives the six sides, too.
+  Result<FatCross> draw(int k) {
+    FatCrossOptions draw;
+    draw.dpi = options_.dpi;
+    draw.ground = options_.ground;
+    draw.samples = options_.samples;
+    DUBSAR_ASSIGN(draw.shading, shading_preset(styles_[static_cast<std::size_t>(k)]));
+    DUBSAR_ASSIGN(FatCross cross, draw_fat_cross(upright_, draw, progress_));
+    if (k == 0) DUBSAR_TRY(write_sides(options_, cross, options_.out));
+    size_ = {cross.whole.width, cross.whole.height};
+    ruler_ = {cross.ruler_mm, cross.ruler_px};
+    return cross;
+  }
+  void tell(const fs::path& out, VerbResult& result) const {
+    result.json["files"].push_back(out.string());
+    result.json["width"] = size_.width;
+    result.json["height"] = size_.height;
+    result.json["ruler_mm"] = ruler_.width;
+    result.json["ruler_px"] = ruler_.height;
+    result.text += fmt::format("{}: {}x{} pixels, {:g} dots an inch, ruler {} mm\n", out.string(), size_.width,
+                               size_.height, options_.dpi, ruler_.width);
+  }
+
+  const Options& options_;
+  const std::vector<std::string>& styles_;
+  const TriMesh& upright_;
+  Progress& progress_;
+  PixelExtent size_, ruler_;  // ruler: mm and pixels
+};
+
 Result<VerbResult> run(const Options& options, Progress& progress) {
   const std::string suffix = fs::path(options.out).extension().string();
-  if (suffix != ".tif" && suffix != ".tiff")
-    return fail(ErrorKind::kUsage, "cannot write {}: expected a name that ends in .tif or .tiff", options.out);
+  const bool tiff = suffix == ".tif" || suffix == ".tiff";
+  if (!tiff && suffix != ".png")
+    return fail(ErrorKind::kUsage, "cannot write {}: expected a name that ends in .tif, .tiff or .png", options.out);
+  if (!tiff && options.layers.size() > 1 && !options.apart)
+    return fail(ErrorKind::kUsage, "--layers are pages of one TIFF, and {} is none; expected .tif, or --apart",
+                options.out);
   std::vector<std::string> styles = options.layers;
   if (styles.empty()) styles = {options.style};
   for (const std::string& style : styles) DUBSAR_TRY(shading_preset(style));
@@ -76,24 +150,7 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
   const TriMesh upright = in_tablet_frame(mesh, frame);
 
   VerbResult result;
-  result.json["files"] = nlohmann::json::array();
-  for (std::size_t layer = 0; layer < styles.size(); ++layer) {
-    FatCrossOptions draw;
-    draw.dpi = options.dpi;
-    draw.ground = options.ground;
-    draw.samples = options.samples;
-    DUBSAR_ASSIGN(draw.shading, shading_preset(styles[layer]));
-    DUBSAR_ASSIGN(const FatCross cross, draw_fat_cross(upright, draw, progress));
-    const fs::path out = styles.size() == 1 ? fs::path(options.out) : with_suffix(options.out, "_" + styles[layer]);
-    DUBSAR_TRY(write_cross(options, cross, out, !options.no_sides && layer == 0));
-    result.json["files"].push_back(out.string());
-    result.json["width"] = cross.whole.width;
-    result.json["height"] = cross.whole.height;
-    result.json["ruler_mm"] = cross.ruler_mm;
-    result.json["ruler_px"] = cross.ruler_px;
-    result.text += fmt::format("{}: {}x{} pixels, {:g} dots an inch, ruler {} mm\n", out.string(), cross.whole.width,
-                               cross.whole.height, options.dpi, cross.ruler_mm);
-  }
+  DUBSAR_TRY(CrossFiles(options, styles, upright, progress).write(result));
   result.json["dpi"] = options.dpi;
   result.json["up_share"] = frame.up_share;
   result.json["obverse_share"] = frame.obverse_share;
@@ -115,9 +172,10 @@ Verb add_fatcross_verb(Arguments program) {
   Arguments command =
       program.command("fatcross", "all six sides of a tablet in one picture at one scale, for publication");
   command.reads("IN", options->in, "EXA, PLY, OBJ, STL or GLB file").required();
-  command.writes("-o,--output", options->out, FileFormat::kPicture,
-                 "TIFF file to write; the six sides go beside it as NAME_01 (obverse), _02 (reverse), _03 (top), _04 "
-                 "(bottom), _05 (left), _06 (right). Unless given: beside IN, NAME_fatcross.tif");
+  command.writes(
+      "-o,--output", options->out, FileFormat::kPicture,
+      "TIFF or PNG file to write; the six sides go beside it as NAME_01 (obverse), _02 (reverse), _03 (top), _04 "
+      "(bottom), _05 (left), _06 (right). Unless given: beside IN, NAME_fatcross.tif");
   command.value("--part", options->part, "which part: tablet where there is one (auto), all, envelope, ...");
   command.value("--dpi", options->dpi, "dots an inch at life size").range(50.0, 4800.0);
   command.choice<Rgb8>("--ground", options->ground,
@@ -131,8 +189,9 @@ Verb add_fatcross_verb(Arguments program) {
                             "turn the found orientation in the picture, where the text does not stand upright");
   command.flag("--over", options->over, "the found obverse is the reverse");
   command.value("--style", options->style, "shading, as of render (phong)");
-  command.value("--layers", options->layers, "several shadings of the same picture: NAME_style.tif each")
+  command.value("--layers", options->layers, "several shadings of the same picture, as named pages of one TIFF")
       .separated_by(',');
+  command.flag("--apart", options->apart, "each of --layers in a file of its own, NAME_style.tif");
   command.value("--samples", options->samples, "samples per pixel side").range(1, 8);
   command.flag("--no-sides", options->no_sides, "only the cross, not the six sides");
   command.value("--title", options->publication.title, "goes into the file, e.g. \"AO 8295\"");

@@ -41,6 +41,7 @@ Result<void> write_picture(const std::filesystem::path& path, const Image& image
     case PictureFormat::kPng: {
       PngOptions png;
       png.dpi = options.dpi;
+      png.xmp = options.xmp;
       return write_png(path, image, png);
     }
     case PictureFormat::kJpeg:

@@ -20,7 +20,7 @@ struct PictureOptions {
   double dpi = 0.0;                        ///< dots an inch; 0: not said
   int jpeg_quality = 92;                   ///< 1..100
   std::string description{}, copyright{};  ///< TIFF tags; empty: not said
-  std::string xmp{};                       ///< a whole XMP packet, in TIFF and JPEG; empty: none
+  std::string xmp{};                       ///< a whole XMP packet, in all formats; empty: none
 };
 
 /// Writes RGB or RGBA (JPEG: opaque) whole or not at all; the same picture gives the same bytes. kUsage: the suffix,

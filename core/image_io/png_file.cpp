@@ -60,6 +60,7 @@ void on_flush(png_structp) {}
 
 bool encode(Writer* writer, const Image* image, const PngOptions* options) {
   png_structp png = writer->png;
+  char keyword[] = "XML:com.adobe.xmp", language[] = "";
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_write_fn(png, writer, on_write, on_flush);
   png_set_compression_level(png, options->compression);
@@ -70,6 +71,15 @@ bool encode(Writer* writer, const Image* image, const PngOptions* options) {
   if (options->dpi > 0) {
     const auto per_metre = static_cast<png_uint_32>(std::lround(options->dpi / kMetresPerInch));
     png_set_pHYs(png, writer->info, per_metre, per_metre, PNG_RESOLUTION_METER);
+  }
+  if (!options->xmp.empty()) {
+    png_text packet{};
+    packet.compression = PNG_ITXT_COMPRESSION_NONE;
+    packet.key = keyword;
+    packet.text = const_cast<char*>(options->xmp.c_str());  // libpng does not write to it
+    packet.itxt_length = options->xmp.size();
+    packet.lang = packet.lang_key = language;
+    png_set_text(png, writer->info, &packet, 1);
   }
   png_write_info(png, writer->info);
   for (int y = 0; y < image->height; ++y) png_write_row(png, image->at(0, y));

@@ -2,6 +2,7 @@
 // PNG files, by libpng.
 
 #include <filesystem>
+#include <string>
 
 #include "core/base/budget.h"
 #include "core/base/result.h"
@@ -12,6 +13,7 @@ namespace dubsar {
 struct PngOptions {
   double dpi = 0.0;     ///< written as pHYs when > 0 (rounded to whole pixels per metre)
   int compression = 6;  ///< zlib level 0..9
+  std::string xmp{};    ///< a whole XMP packet, as an iTXt chunk; empty: none
 };
 
 /// Writes an RGB or RGBA picture, sRGB. The file appears whole or not at all; the same picture gives the same bytes.

@@ -146,6 +146,8 @@ Result<TiffPage> TiffFile::describe() {
   const char* text = nullptr;
   if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text) == 1 && text != nullptr)
     page.description = std::string(text).substr(0, 65536);
+  if (TIFFGetField(tiff, TIFFTAG_PAGENAME, &text) == 1 && text != nullptr)
+    page.name = std::string(text).substr(0, 65536);
   page.big_endian = TIFFIsBigEndian(tiff) != 0;
   if (scheme == COMPRESSION_NONE && TIFFIsTiled(tiff) == 0 && TIFFNumberOfStrips(tiff) == 1)
     page.data_offset = static_cast<std::int64_t>(TIFFGetStrileOffset(tiff, 0));
@@ -268,18 +270,16 @@ Result<Image> read_tiff_picture(const std::filesystem::path& path, const Budget&
   return file.read_picture(budget);
 }
 
-Result<void> write_tiff(const std::filesystem::path& path, const Image& image, double dpi, const TiffTags& tags) {
-  DUBSAR_CHECK(image.width > 0 && image.height > 0 && (image.channels == 3 || image.channels == 4));
-  DUBSAR_CHECK(image.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
-                                          static_cast<std::size_t>(image.channels));
-  DUBSAR_ASSIGN(AtomicFile file, AtomicFile::create(path));
-  std::string message;
-  const auto failed = [&] {
-    return fail(ErrorKind::kIo, "tiff: cannot write {} ({}); is the disk full?", path.string(), message);
-  };
-  const bool big = image.pixels.size() > (std::size_t{3} << 30);
-  TIFF* const tiff = open_tiff(file.temporary_path(), big ? "w8" : "w", &message);
-  if (tiff == nullptr) return failed();
+namespace {
+
+/// What stands in one page of a file.
+struct PageText {
+  const TiffTags* tags = nullptr;
+  std::string name{};
+  int number = 0, count = 1;
+};
+
+bool write_page(TIFF* tiff, const Image& image, double dpi, const PageText& text) {
   TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(image.width));
   TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(image.height));
   TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
@@ -290,10 +290,17 @@ Result<void> write_tiff(const std::filesystem::path& path, const Image& image, d
   TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_LZW);
   TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
   TIFFSetField(tiff, TIFFTAG_SOFTWARE, "dubsar");
-  if (!tags.description.empty()) TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, tags.description.c_str());
-  if (!tags.copyright.empty()) TIFFSetField(tiff, TIFFTAG_COPYRIGHT, tags.copyright.c_str());
-  if (!tags.xmp.empty())
-    TIFFSetField(tiff, TIFFTAG_XMLPACKET, static_cast<std::uint32_t>(tags.xmp.size()), tags.xmp.data());
+  if (!text.name.empty()) TIFFSetField(tiff, TIFFTAG_PAGENAME, text.name.c_str());
+  if (text.count > 1)
+    TIFFSetField(tiff, TIFFTAG_PAGENUMBER, static_cast<std::uint16_t>(text.number),
+                 static_cast<std::uint16_t>(text.count));
+  if (text.tags != nullptr) {
+    const TiffTags& tags = *text.tags;
+    if (!tags.description.empty()) TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, tags.description.c_str());
+    if (!tags.copyright.empty()) TIFFSetField(tiff, TIFFTAG_COPYRIGHT, tags.copyright.c_str());
+    if (!tags.xmp.empty())
+      TIFFSetField(tiff, TIFFTAG_XMLPACKET, static_cast<std::uint32_t>(tags.xmp.size()), tags.xmp.data());
+  }
   const auto profile = srgb_profile();
   TIFFSetField(tiff, TIFFTAG_ICCPROFILE, static_cast<std::uint32_t>(profile.size()), profile.data());
   if (image.channels == 4) {
@@ -309,18 +316,66 @@ Result<void> write_tiff(const std::filesystem::path& path, const Image& image, d
   TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, kRowsPerStrip);
   const std::size_t row = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
   std::vector<std::uint8_t> strip;  // libtiff changes the buffer it encodes
-  bool good = true;
-  for (int y = 0; y < image.height && good; y += kRowsPerStrip) {
+  for (int y = 0; y < image.height; y += kRowsPerStrip) {
     const auto rows = static_cast<std::size_t>(std::min(kRowsPerStrip, image.height - y));
     const auto from = image.pixels.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * row);
     strip.assign(from, from + static_cast<std::ptrdiff_t>(rows * row));
-    good = TIFFWriteEncodedStrip(tiff, static_cast<std::uint32_t>(y / kRowsPerStrip), strip.data(),
-                                 static_cast<tmsize_t>(strip.size())) >= 0;
+    if (TIFFWriteEncodedStrip(tiff, static_cast<std::uint32_t>(y / kRowsPerStrip), strip.data(),
+                              static_cast<tmsize_t>(strip.size())) < 0)
+      return false;
   }
-  good = good && TIFFFlush(tiff) == 1;
-  TIFFClose(tiff);
-  if (!good) return failed();
+  return true;
+}
+
+struct TiffCloser {
+  void operator()(TIFF* tiff) const noexcept { TIFFClose(tiff); }
+};
+
+struct NamedImage {
+  const Image* image = nullptr;
+  std::string name{};
+};
+
+Result<void> write_pages(const std::filesystem::path& path, int count,
+                         const std::function<Result<NamedImage>(int)>& page, double dpi, const TiffTags& tags) {
+  DUBSAR_CHECK(count > 0);
+  DUBSAR_ASSIGN(AtomicFile file, AtomicFile::create(path));
+  std::string message;
+  const auto failed = [&] {
+    return fail(ErrorKind::kIo, "tiff: cannot write {} ({}); is the disk full?", path.string(), message);
+  };
+  std::unique_ptr<TIFF, TiffCloser> tiff;
+  for (int k = 0; k < count; ++k) {
+    DUBSAR_ASSIGN(const NamedImage one, page(k));
+    const Image& image = *one.image;
+    DUBSAR_CHECK(image.width > 0 && image.height > 0 && (image.channels == 3 || image.channels == 4));
+    DUBSAR_CHECK(image.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
+                                            static_cast<std::size_t>(image.channels));
+    const bool big = static_cast<std::size_t>(count) * image.pixels.size() > (std::size_t{3} << 30);
+    if (!tiff) tiff.reset(open_tiff(file.temporary_path(), big ? "w8" : "w", &message));
+    if (!tiff || !write_page(tiff.get(), image, dpi, {k == 0 ? &tags : nullptr, one.name, k, count})) return failed();
+    if (k + 1 < count && TIFFWriteDirectory(tiff.get()) != 1) return failed();
+  }
+  if (TIFFFlush(tiff.get()) != 1) return failed();
+  tiff.reset();
   return file.commit();
+}
+
+}  // namespace
+
+Result<void> write_tiff_layers(const std::filesystem::path& path, int count,
+                               const std::function<Result<TiffLayer>(int)>& layer, double dpi, const TiffTags& tags) {
+  TiffLayer now;
+  const auto page = [&](int k) -> Result<NamedImage> {
+    DUBSAR_ASSIGN(now, layer(k));
+    return NamedImage{&now.image, now.name};
+  };
+  return write_pages(path, count, page, dpi, tags);
+}
+
+Result<void> write_tiff(const std::filesystem::path& path, const Image& image, double dpi, const TiffTags& tags) {
+  return write_pages(
+      path, 1, [&](int) -> Result<NamedImage> { return NamedImage{&image}; }, dpi, tags);
 }
 
 }  // namespace dubsar

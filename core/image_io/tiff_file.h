@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -29,9 +30,9 @@ struct TiffPage {
   std::string compression;                    ///< "none", "LZW", ...
   double x_per_unit = 0.0, y_per_unit = 0.0;  ///< pixels per unit; 0: not stated
   double unit_mm = 0.0;                       ///< length of that unit; 0: not stated
-  std::string description;
-  std::int64_t data_offset = -1;  ///< of uncompressed pixels that lie in one piece; -1: they do not
-  bool big_endian = false;        ///< byte order of the file
+  std::string description, name;              ///< tags 270 and 285; empty: not stated
+  std::int64_t data_offset = -1;              ///< of uncompressed pixels that lie in one piece; -1: they do not
+  bool big_endian = false;                    ///< byte order of the file
 };
 
 /// A TIFF or BigTIFF file, read without memory mapping. One thread per object; open the file several times to read
@@ -74,6 +75,19 @@ struct TiffTags {
 /// Writes an RGB or RGBA picture, LZW-compressed, with the sRGB profile and its resolution in dots per inch (0: none).
 /// The file appears whole or not at all. The same picture gives the same bytes. kCannotCreate, kPermission, kIo.
 Result<void> write_tiff(const std::filesystem::path& path, const Image& image, double dpi, const TiffTags& tags = {});
+
+/// One of several pictures of a file, with the name that programs with layers show.
+struct TiffLayer {
+  Image image;
+  std::string name;
+};
+
+/// The same with `count` pages, each named, which `layer(k)` makes when its turn comes, so that one at a time is in
+/// memory. The tags stand in the first page, which is the picture for programs that know only one. Errors of `layer`
+/// besides.
+Result<void> write_tiff_layers(const std::filesystem::path& path, int count,
+                               const std::function<Result<TiffLayer>(int)>& layer, double dpi,
+                               const TiffTags& tags = {});
 
 /// The first page of any TIFF that libtiff can show (grey, palette, CMYK, YCbCr, 1 to 16 bits, strips or tiles) as
 /// 8-bit RGB, or RGBA where it has transparency; 8-bit RGB and RGBA to the last bit. Sizes are checked against `budget`

@@ -96,6 +96,16 @@ TEST_F(PictureFiles, TiffHasTheProfileAndPngTheChunkThatSayTheColoursAreSrgb) {
   EXPECT_THAT(bytes_of(in("a.png")), HasSubstr("sRGB"));
 }
 
+TEST_F(PictureFiles, PngCarriesAnXmpPacketAsAdobeSaysItDoes) {
+  const std::string packet =
+      "<x:xmpmeta>Mus\xc3\xa9"
+      "e</x:xmpmeta>";
+  ASSERT_TRUE(write_picture(in("a.png"), picture(40, 30, 3), {.dpi = 600, .xmp = packet}));
+  // Key, end of it, not compressed, method 0, no language, no translated key, text (XMP specification part 3, 1.1.5).
+  EXPECT_THAT(bytes_of(in("a.png")), HasSubstr(std::string("iTXtXML:com.adobe.xmp\0\0\0\0\0", 26) + packet));
+  EXPECT_EQ(read_picture(in("a.png")).value().pixels, picture(40, 30, 3).pixels);
+}
+
 TEST_F(PictureFiles, TransparencyIsNotLostInAJpegUnseen) {
   const auto refused = write_picture(in("a.jpg"), picture(20, 10, 4));
   ASSERT_FALSE(refused);

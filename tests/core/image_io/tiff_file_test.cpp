@@ -118,5 +118,38 @@ TEST_F(TiffFiles, APictureIsWrittenWithItsResolution) {
   EXPECT_EQ(write_tiff(in("no/folder.tif"), Image(2, 2, 3), 72.0).error().kind, ErrorKind::kCannotCreate);
 }
 
+TEST_F(TiffFiles, LayersArePagesWithNamesAndTheFirstIsThePicture) {
+  const auto colour = [](int k) {
+    Image image(90, 70, 3);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<std::uint8_t>(i * 3 + 50 * k);
+    return image;
+  };
+  const std::vector<std::string> names{"phong", "raking", "sky-sun-ao"};
+  const auto layer = [&](int k) -> Result<TiffLayer> {
+    return TiffLayer{colour(k), names[static_cast<std::size_t>(k)]};
+  };
+  ASSERT_TRUE(write_tiff_layers(in("layers.tif"), 3, layer, 600.0, {"AO 8295", "CC BY 4.0", "<xmp/>"}));
+  auto file = TiffFile::open(in("layers.tif"));
+  ASSERT_TRUE(file);
+  const auto pages = file->pages();
+  ASSERT_TRUE(pages);
+  ASSERT_EQ(pages->size(), 3u);
+  for (int k = 0; k < 3; ++k) {
+    const TiffPage& page = (*pages)[static_cast<std::size_t>(k)];
+    EXPECT_EQ(page.name, names[static_cast<std::size_t>(k)]);
+    EXPECT_EQ(page.x_per_unit, 600.0);
+    ASSERT_TRUE(file->select(page.offset));
+    EXPECT_EQ(file->read_picture({}).value().pixels, colour(k).pixels) << k;
+  }
+  EXPECT_EQ(pages->front().description, "AO 8295");
+  EXPECT_EQ(read_tiff_picture(in("layers.tif")).value().pixels, colour(0).pixels);
+  const auto fails = [](int k) -> Result<TiffLayer> {
+    if (k == 1) return fail(ErrorKind::kCancelled, "stopped");
+    return TiffLayer{Image(4, 4, 3), "one"};
+  };
+  EXPECT_EQ(write_tiff_layers(in("half.tif"), 2, fails, 0.0).error().kind, ErrorKind::kCancelled);
+  EXPECT_FALSE(std::filesystem::exists(in("half.tif")));
+}
+
 }  // namespace
 }  // namespace dubsar
