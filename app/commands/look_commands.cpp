@@ -138,6 +138,48 @@ Command part_opacity() {
   return out;
 }
 
+Command part_colour() {
+  Command out{"part_colour", "Parts", "paint a part in a colour, or as the style has it", {}};
+  out.argument = "its number or name, and RRGGBB or none";
+  out.values = {"1 d9a441", "1 none"};
+  out.enabled = [](const Editor& editor) { return !editor.document().parts.empty(); };
+  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+    const std::size_t space = std::min(text.rfind(' '), text.size());
+    const std::string colour = text.substr(std::min(space + 1, text.size()));
+    unsigned value = 0xffffff;  // white: as the style has it
+    const auto [end, error] = std::from_chars(colour.data(), colour.data() + colour.size(), value, 16);
+    if (colour != "none" && (error != std::errc() || end != colour.data() + colour.size() || colour.size() != 6))
+      return fail(ErrorKind::kUsage, "part_colour: \"{}\" found, expected a colour such as d9a441, or none", colour);
+    if (colour == "none") value = 0xffffff;
+    Document next = editor.document();
+    DUBSAR_ASSIGN(Part* const which, part_of("part_colour", next, text.substr(0, space)));
+    which->colour = {static_cast<std::uint8_t>(value >> 16), static_cast<std::uint8_t>(value >> 8 & 255),
+                     static_cast<std::uint8_t>(value & 255)};
+    editor.change(std::move(next), why);
+    return {};
+  };
+  return out;
+}
+
+Command part_offset() {
+  Command out{"part_offset", "Parts", "where a part stands beside its place in the scan", {}};
+  out.argument = "its number or name, and x,y,z in mm";
+  out.values = {"1 0,0,10", "1 0,0,0"};
+  out.enabled = [](const Editor& editor) { return !editor.document().parts.empty(); };
+  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+    const std::size_t space = std::min(text.rfind(' '), text.size());
+    std::string rest;
+    DUBSAR_ASSIGN(const auto places,
+                  points_argument("part_offset", text.substr(std::min(space + 1, text.size())), 1, rest));
+    Document next = editor.document();
+    DUBSAR_ASSIGN(Part* const which, part_of("part_offset", next, text.substr(0, space)));
+    which->offset_mm = places[0];
+    editor.change(std::move(next), why);
+    return {};
+  };
+  return out;
+}
+
 Command part() {
   Command out{"part", "Parts", "a part on or off", {}};
   out.argument = "its number or name";
@@ -207,6 +249,8 @@ std::vector<Command> look_commands(const std::vector<std::string>& styles) {
   out.push_back(strength());
   out.push_back(part());
   out.push_back(part_opacity());
+  out.push_back(part_colour());
+  out.push_back(part_offset());
   out.push_back(all_parts());
   out.push_back(unpack("unpack", "how far the envelope is lifted, in percent", 0.0, {}));
   out.push_back(unpack("unpack_more", "lift the envelope", kUnpackStep, {{"u"}}));

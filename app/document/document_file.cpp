@@ -15,7 +15,7 @@ using nlohmann::json;
 
 constexpr int kVersion = 3, kOldest = 1;
 constexpr std::string_view kFormat = "dubsar document";
-constexpr TimestampNs kEveryNs = 10'000'000'000;
+constexpr TimestampNs kEveryNs = 5'000'000'000;  // half of what may be lost: writing takes its time, too
 
 /// What ranges alone do not say.
 std::string complaint_about(const Document& d) {

@@ -97,6 +97,21 @@ void draw_parts(const Board& desk) {
     if (ImGui::SliderFloat("##opacity", &percent, 0.0f, 100.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
       desk.commands.push_back(fmt::format("part_opacity {} {:.4g}", i + 1, percent));
     explain(desk, "part_opacity");
+    std::array<float, 3> colour{}, offset{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      colour[c] = static_cast<float>(part.colour[c]) / 255.0f;
+      offset[c] = static_cast<float>(part.offset_mm[static_cast<int>(c)]);
+    }
+    if (ImGui::ColorEdit3("##colour", colour.data(), ImGuiColorEditFlags_NoInputs))
+      desk.commands.push_back(fmt::format("part_colour {} {:02x}{:02x}{:02x}", i + 1, std::lround(255 * colour[0]),
+                                          std::lround(255 * colour[1]), std::lround(255 * colour[2])));
+    explain(desk, "part_colour");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(196.0f);
+    if (ImGui::DragFloat3("##offset", offset.data(), 0.2f, -500.0f, 500.0f, "%.1f mm"))
+      desk.commands.push_back(
+          fmt::format("part_offset {} {:.4g},{:.4g},{:.4g}", i + 1, offset[0], offset[1], offset[2]));
+    explain(desk, "part_offset");
     ImGui::PopID();
   }
   button(desk, "all parts", "all_parts", false);
