@@ -38,6 +38,7 @@ usage() {
 ./do core     build and test the core alone: no graphics, no devices
 ./do lint     is every source formatted, and clang-tidy over what changed since the last commit (or since REVISION)
 ./do deps     install the packages of Debian 12 that dubsar needs
+./do visitors [SEED [OF_EACH_KIND [why]]]   naive visitors before the kiosk, simulated: how many turn, zoom, open
 ./do strips   make the strips of pictures in docs/ again (minutes)
 ./do format   clang-format over all sources
 TEXT
@@ -208,6 +209,14 @@ demo() {
   fi
 }
 
+# Figures of 500 simulated people who were never told, before the kiosk as it is; another SEED, other people.
+visitors() {
+  deps
+  cmake --preset "$preset" >/dev/null
+  cmake --build "$build" -j "$jobs" --target naive_visitors
+  "$build/tests/app/naive_visitors" "$@"
+}
+
 strips() {
   deps
   cmake --preset "$preset" >/dev/null
@@ -237,6 +246,7 @@ case "$verb" in
   glb) glb "$@" ;;
   deps) deps ;;
   strips) strips "$@" ;;
+  visitors) visitors "$@" ;;
   format) git ls-files '*.cpp' '*.h' | xargs clang-format -i ;;
   *) usage; [ -z "$verb" ] || [ "$verb" = help ] || exit 64 ;;
 esac

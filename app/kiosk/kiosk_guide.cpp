@@ -98,7 +98,7 @@ VisitMoment KioskGuide::notice(const GuideMoment& moment) {
     if (view_) out.turned_deg = turn_between_deg(view_->rotation, steered.view.rotation);
   }
   out.swiped = steered.swiped;
-  out.rested = steered.selected_m.has_value();
+  out.can_open = can_unpack(moment.document);
   view_ = steered.view;
   return out;
 }
@@ -132,6 +132,27 @@ void KioskGuide::obey(OperatorWish wish, Guidance& out) {
   write("operator", fmt::format("\"wish\": {}", static_cast<int>(wish)));
 }
 
+/// Signs that hands may rest on, and what they chose.
+std::optional<Sign> KioskGuide::choose(const GuideMoment& moment) {
+  std::vector<Sign> shown;
+  if (phase_ == VisitPhase::kFree || (phase_ == VisitPhase::kArrived && motion_.unpack_goal > 0.5)) {
+    if (can_unpack(moment.document) && motion_.unpack == motion_.unpack_goal)  // not while it moves
+      shown.push_back(motion_.unpack_goal > 0.5 ? Sign::kClose : Sign::kOpen);
+  }
+  const double aspect = moment.window_mm.x / moment.window_mm.y;
+  signs_ = place_signs(shown, aspect);
+  std::vector<SignHand> hands;
+  const RingStage stage{parts_.zone, moment.window_mm, moment.middle_mm};
+  for (const HandMark& hand : moment.steered.hands)
+    if (hand.state <= HandState::kFist)
+      hands.push_back({(glm::dvec2(ring_place_mm(stage, hand.place_m)) - moment.middle_mm) / moment.window_mm,
+                       hand.state == HandState::kReady});
+  const auto chosen = rest_.update(moment.now, hands, signs_, aspect);
+  for (SignPicture& sign : signs_) sign.filled = rest_.filled(sign.sign);
+  if (chosen == Sign::kOpen || chosen == Sign::kClose) motion_.unpack_goal = chosen == Sign::kOpen ? 1.0 : 0.0;
+  return chosen;
+}
+
 /// What goes on by itself: the sway of an object that nobody holds, the envelope, the light of the room.
 void KioskGuide::move_on(const GuideMoment& moment, const VisitPicture& visit, Guidance& out) {
   const double dt =
@@ -148,8 +169,6 @@ void KioskGuide::move_on(const GuideMoment& moment, const VisitPicture& visit, G
   if (visit.reset) {
     motion_.unpack_goal = 0.0;
     out.commands.emplace_back("reset");
-  } else if (visit.open && can_unpack(moment.document)) {
-    motion_.unpack_goal = motion_.unpack_goal > 0.5 ? 0.0 : 1.0;
   }
   const double unpack = towards(motion_.unpack, motion_.unpack_goal, dt / kUnpackS);
   if (unpack != motion_.unpack && can_unpack(moment.document)) {
@@ -175,6 +194,7 @@ GalleryPicture KioskGuide::picture(const VisitPicture& visit) const {
     out.title = text_in(parts_.profile.objects[object_].title, spoken);
   out.letter_mm = letter_height_mm(parts_.profile.reading_distance_m);
   out.dark = motion_.dark;
+  out.signs = signs_;
   if (menu_.open())
     for (const OperatorRow& row : OperatorMenu::rows()) out.menu.push_back(fmt::format("{}  {}", row.key, row.words));
   return out;
@@ -190,7 +210,11 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
   }
   looked_ = wall.unix_s;
   for (const OperatorWish wish : std::exchange(wishes_, {})) obey(wish, out);
-  const VisitPicture visit = visit_.update(moment.now, notice(moment));
+  VisitMoment noticed = notice(moment);
+  const auto chosen = choose(moment);
+  noticed.chose_open = chosen == Sign::kOpen || chosen == Sign::kClose;
+  const VisitPicture visit = visit_.update(moment.now, noticed);
+  phase_ = visit.phase;
   if (visit.arrived) write("visit");
   if (visit.reset) write("reset");
   if (const std::int64_t hour = wall.unix_s / 3600; hour != hour_) {

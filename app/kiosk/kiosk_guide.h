@@ -11,6 +11,7 @@
 #include "app/kiosk/kiosk_profile.h"
 #include "app/kiosk/operator_menu.h"
 #include "app/kiosk/service_notify.h"
+#include "app/kiosk/signs.h"
 #include "app/viewer/session_guide.h"
 
 namespace dubsar::app {
@@ -56,6 +57,7 @@ class KioskGuide final : public SessionGuide {
     bool shown = false;
   };
   VisitMoment notice(const GuideMoment& moment);
+  std::optional<Sign> choose(const GuideMoment& moment);
   void obey(OperatorWish wish, Guidance& out);
   void move_on(const GuideMoment& moment, const VisitPicture& visit, Guidance& out);
   GalleryPicture picture(const VisitPicture& visit) const;
@@ -68,6 +70,9 @@ class KioskGuide final : public SessionGuide {
   ServiceNotify notify_;
   std::vector<OperatorWish> wishes_;
   Motion motion_;
+  SignRest rest_;
+  std::vector<SignPicture> signs_;
+  VisitPhase phase_ = VisitPhase::kAttract;
   std::optional<ViewState> view_;  // of the last moment
   std::string journal_trouble_;
   std::size_t object_ = 0, language_ = 0;

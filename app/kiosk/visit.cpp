@@ -10,6 +10,7 @@ constexpr double kTurnedDeg = 25.0;             // on purpose: further than a ha
 constexpr double kZoomed = 0.15;                // a sixth larger or smaller
 constexpr TimestampNs kPatience = 2 * kSecond;  // before the next thing is shown to somebody who is busy
 constexpr TimestampNs kLessonTime = 9 * kSecond, kLessonRest = 6 * kSecond;
+constexpr TimestampNs kFirstRest = kSecond;  // as long as nothing was ever turned, nobody waits for the next picture
 constexpr TimestampNs kTroubleTime = 700'000'000;  // a hand that passes by is not spoken to
 constexpr TimestampNs kGone = 2 * kSecond;         // a lost hand mostly comes back
 constexpr int kMostShown = 3;
@@ -53,13 +54,16 @@ void Visit::done(Lesson lesson) {
 void Visit::learn(const VisitMoment& moment) {
   course_.turned_deg += moment.turned_deg;
   course_.zoomed += moment.zoomed;
-  if (moment.hands > 0) done(Lesson::kShowHand);
+  if (moment.hands > 0 && moment.hand <= HandState::kFist) done(Lesson::kShowHand);
   if (moment.hands > 0 && moment.hand == HandState::kHolding) done(Lesson::kGrab);
   if (course_.turned_deg >= kTurnedDeg) done(Lesson::kTurn);
   if (course_.zoomed >= kZoomed) done(Lesson::kTwoHands);
-  if (moment.rested && (course_.done[index(Lesson::kTurn)] || course_.now == Lesson::kRest)) done(Lesson::kRest);
+  if (moment.chose_open) {
+    done(Lesson::kRest);
+    ++counts_.openings;
+  }
   if (moment.swiped) done(Lesson::kSwipe);
-  touched_ = touched_ || moment.turned_deg > 0 || moment.zoomed > 0 || moment.rested || moment.swiped;
+  touched_ = touched_ || moment.turned_deg > 0 || moment.zoomed > 0 || moment.chose_open || moment.swiped;
   if (course_.done[index(Lesson::kTurn)]) phase_ = VisitPhase::kFree;
 }
 
@@ -68,6 +72,7 @@ std::optional<Lesson> Visit::next(const VisitMoment& moment) const {
     const auto lesson = static_cast<Lesson>(i);
     if (course_.done[i] || course_.shown[i] >= kMostShown) continue;
     if (lesson == Lesson::kTurn && !(moment.hands > 0 && moment.hand == HandState::kHolding)) continue;
+    if (lesson == Lesson::kRest && !moment.can_open) continue;
     return lesson;
   }
   return std::nullopt;
@@ -81,7 +86,8 @@ void Visit::teach(TimestampNs now, const VisitMoment& moment) {
     if (!course_.done[shown] && !again && now - course_.since < kLessonTime) return;
     const bool success = course_.done[shown];
     course_.now.reset();
-    course_.rests_until = now + (success ? kPatience : again ? 0 : kLessonRest);
+    const bool beginner = !course_.done[index(Lesson::kTurn)];
+    course_.rests_until = now + (again ? 0 : beginner ? kFirstRest : success ? kPatience : kLessonRest);
   }
   // Nobody is interrupted while the object turns in the hand.
   if (holds && course_.done[index(Lesson::kTurn)]) course_.rests_until = std::max(course_.rests_until, now + kPatience);
@@ -108,7 +114,6 @@ VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
   last_ = first ? now : std::max(now, last_);  // a clock that jumps back holds the visit still
   if (first) last_hand_ = last_somebody_ = last_ - ns(figures_.attract_after_s);
   const bool somebody = moment.head || moment.hands > 0;
-  const std::optional<Lesson> was_taught = course_.now;
   if (moment.hands > 0) last_hand_ = last_;
   if (somebody) last_somebody_ = last_;
   const bool trouble = moment.hands > 0 && moment.hand > HandState::kReady;
@@ -145,11 +150,13 @@ VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
     touched_ = false;
     ++counts_.resets;
   }
-  // A hand that only waits opens nothing; one that has turned the object, or was shown how, means it.
-  out.open = moment.rested && (course_.done[index(Lesson::kTurn)] || was_taught == Lesson::kRest);
   out.phase = phase_;
   out.lesson = course_.now;
   if (course_.now) out.lesson_s = 1e-9 * static_cast<double>(last_ - course_.since);
+  if (phase_ == VisitPhase::kAttract && moment.tracker) {  // the invitation
+    out.lesson = Lesson::kShowHand;
+    out.lesson_s = 1e-9 * static_cast<double>(last_);
+  }
   if (phase_ == VisitPhase::kAttract) out.line = moment.tracker ? Line::kInvite : Line::kNoTracker;
   if (phase_ == VisitPhase::kArrived || phase_ == VisitPhase::kFree) out.line = line(moment);
   return out;

@@ -26,7 +26,8 @@ struct VisitMoment {
   bool two_hold = false;               ///< both of a person's hands hold
   double turned_deg = 0.0;             ///< by hands, since the last moment
   double zoomed = 0.0;                 ///< |logarithm| of the zoom by hands, since the last moment
-  bool swiped = false, rested = false;
+  bool swiped = false;
+  bool can_open = false, chose_open = false;  ///< there is an envelope; a hand rested on its sign
 };
 
 enum class VisitPhase : std::uint8_t { kAsleep, kAttract, kArrived, kFree, kLeaving };
@@ -36,7 +37,6 @@ struct VisitPicture {
   std::optional<Line> line;      ///< said now
   std::optional<Lesson> lesson;  ///< shown as a moving hand
   double lesson_s = 0.0;         ///< since it is shown
-  bool open = false;             ///< now, once: the visitor asked for the envelope to be opened or closed
   bool reset = false;            ///< now, once: all is to go back to the beginning
   bool arrived = false;          ///< now, once: a visit began
 };
@@ -53,8 +53,8 @@ class Visit {
   VisitPicture update(TimestampNs now, const VisitMoment& moment);
 
   struct Counts {
-    std::int64_t visits = 0, resets = 0;
-    std::array<std::int64_t, kLessonCount> done{};  ///< visits in which it was done
+    std::int64_t visits = 0, resets = 0, openings = 0;  ///< of the envelope, and closings
+    std::array<std::int64_t, kLessonCount> done{};      ///< visits in which it was done
   };
   const Counts& counts() const noexcept { return counts_; }
 

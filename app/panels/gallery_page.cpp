@@ -48,6 +48,47 @@ void draw_menu(const std::vector<std::string>& rows, float size_px, float width,
   }
 }
 
+/// A sign is a disc with a picture that needs no words, and a ring that fills while a hand rests on it.
+void draw_sign(const SignPicture& sign, float width, float height) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float r = static_cast<float>(sign.radius) * height;
+  const ImVec2 at((0.5f + static_cast<float>(sign.at.x)) * width, (0.5f - static_cast<float>(sign.at.y)) * height);
+  const ImU32 ground = ImGui::GetColorU32(ImVec4(0.09f, 0.09f, 0.1f, 0.82f));
+  const ImU32 pale = ImGui::GetColorU32(ImVec4(0.95f, 0.93f, 0.88f, 1.0f));
+  const ImU32 amber = ImGui::GetColorU32(ImVec4(0.85f, 0.64f, 0.25f, 1.0f));
+  const ImU32 clay = ImGui::GetColorU32(ImVec4(0.66f, 0.52f, 0.38f, 1.0f));
+  const auto place = [&](float x, float y) { return ImVec2(at.x + r * x, at.y + r * y); };
+  const float stroke = 0.07f * r;
+  list.AddCircleFilled(at, r, ground, 48);
+  list.AddCircle(at, r, pale, 48, 0.5f * stroke);
+  const bool open = sign.sign == Sign::kOpen;
+  switch (sign.sign) {
+    case Sign::kOpen:  // the envelope goes up from the tablet, or comes back
+    case Sign::kClose:
+      list.AddRectFilled(place(-0.22f, 0.05f), place(0.22f, 0.6f), clay, 0.1f * r);
+      list.AddRect(place(-0.32f, open ? -0.62f : -0.1f), place(0.32f, open ? -0.05f : 0.68f), pale, 0.15f * r, 0,
+                   stroke);
+      list.AddTriangleFilled(place(-0.72f, open ? 0.1f : -0.1f), place(-0.4f, open ? 0.1f : -0.1f),
+                             place(-0.56f, open ? -0.25f : 0.25f), pale);
+      break;
+    case Sign::kTour:
+      list.AddTriangleFilled(place(-0.3f, -0.45f), place(-0.3f, 0.45f), place(0.5f, 0.0f), pale);
+      break;
+    case Sign::kNext:
+      list.AddTriangleFilled(place(-0.4f, -0.4f), place(-0.4f, 0.4f), place(0.2f, 0.0f), pale);
+      list.AddRectFilled(place(0.25f, -0.4f), place(0.4f, 0.4f), pale);
+      break;
+    case Sign::kLeave:
+      list.AddLine(place(-0.35f, -0.35f), place(0.35f, 0.35f), pale, 2.0f * stroke);
+      list.AddLine(place(-0.35f, 0.35f), place(0.35f, -0.35f), pale, 2.0f * stroke);
+      break;
+  }
+  if (sign.filled <= 0.0) return;
+  constexpr float kTop = -0.5f * std::numbers::pi_v<float>;
+  list.PathArcTo(at, 1.08f * r, kTop, kTop + 2.0f * std::numbers::pi_v<float> * static_cast<float>(sign.filled), 48);
+  list.PathStroke(amber, 0, 0.16f * r);
+}
+
 }  // namespace
 
 double letter_height_mm(double reading_distance_m) noexcept {
@@ -83,6 +124,7 @@ void draw_gallery(const GalleryPicture& picture, float width, float height, floa
       draw_words(picture.text, 0.8f * size, width, first + 1.2f * size + text.y, picture.right_to_left);
     }
   }
+  for (const SignPicture& sign : picture.signs) draw_sign(sign, width, height);
   if (!picture.menu.empty()) draw_menu(picture.menu, std::max(size * 0.6f, 14.0f), width, height);
   ImGui::End();
   ImGui::PopStyleVar();

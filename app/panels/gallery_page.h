@@ -1,11 +1,12 @@
 #pragma once
-// What lies over the object in a gallery: one line at reading distance, a hand that shows what can be done, the caption
-// of a tour, the operator's menu.
+// What lies over the object in a gallery: one line at reading distance, a hand that shows what can be done, signs to
+// rest a hand on, the caption of a tour, the operator's menu.
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/kiosk/signs.h"
 #include "app/kiosk/visit.h"
 
 namespace dubsar::app {
@@ -15,10 +16,11 @@ struct GalleryPicture {
   bool right_to_left = false;  ///< how it is set
   std::string title, text;     ///< of what is shown now; both may be empty
   std::optional<Lesson> lesson;
-  double lesson_s = 0.0;          ///< how far its moving hand is
-  double letter_mm = 8.0;         ///< height of the letters on the panel
-  double dark = 0.0;              ///< 0..1: how much of the light is taken away
-  std::vector<std::string> menu;  ///< rows of the operator's menu; empty: closed
+  double lesson_s = 0.0;           ///< how far its moving hand is
+  double letter_mm = 8.0;          ///< height of the letters on the panel
+  double dark = 0.0;               ///< 0..1: how much of the light is taken away
+  std::vector<SignPicture> signs;  ///< that hands may rest on
+  std::vector<std::string> menu;   ///< rows of the operator's menu; empty: closed
   friend bool operator==(const GalleryPicture&, const GalleryPicture&) = default;
 };
 

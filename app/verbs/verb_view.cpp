@@ -247,6 +247,9 @@ Result<VerbResult> run_kiosk_of(const Options& given, Progress& progress) {
                            const std::string& display) -> Result<ViewOptions> {
     const Options one = kiosk_options(given, profile, object, display);
     DUBSAR_ASSIGN(ViewOptions view, view_options(one));
+    if (one.people.mapping.empty()) {
+      DUBSAR_ASSIGN(view.mapping, gallery_mapping());
+    }
     DUBSAR_TRY(one.panel.offscreen ? without_window(one, view) : with_window(one, view));
     view.work.document.source = {};
     return view;

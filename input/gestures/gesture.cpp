@@ -1,5 +1,7 @@
 #include "input/gestures/gesture.h"
 
+#include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 namespace dubsar {
@@ -17,6 +19,7 @@ void GestureRecognizer::lose(TimestampNs now) {
   grip_.lose(now, events_);
   swipe_.lose();
   dwell_.lose();
+  stillness_.lose();
   came_.reset();
   velocity_mps_ = glm::dvec3(0.0);
   filter_.reset();
@@ -38,9 +41,16 @@ void GestureRecognizer::update(TimestampNs now, const HandFrame* hand) {
   history_.add({hand->time, hand->palm.position_m});
   velocity_mps_ = history_.velocity_mps();
   const bool may_begin = now - *came_ >= options_.cooldown_ns;
-  grip_.update({now, since_ns, glm::length(velocity_mps_), may_begin}, *hand, options_, events_);
+  stillness_.update(now, position_m_);
+  const TimestampNs still_ns = stillness_.still_for(now);
+  const bool at_signs = position_m_.x >= options_.signs_from_x_m && position_m_.y >= options_.signs_from_y_m;
+  const bool acts = may_begin && !at_signs && position_m_.z <= options_.acts_to_z_m;
+  const bool within = std::max(std::abs(position_m_.x), std::abs(position_m_.y)) <= options_.swipes_within_m;
+  grip_.update({now, since_ns, glm::length(velocity_mps_), still_ns, acts}, *hand, options_, events_);
   const bool free = may_begin && !grip_.holds();
-  if (const auto swiped = swipe_.update(now, history_.newest().position_m, velocity_mps_, free, options_))
+  if (const auto swiped = swipe_.update(
+          {now, still_ns, history_.newest().position_m, velocity_mps_, hand->grab_strength, free && acts && within},
+          options_))
     events_.push_back({now, GestureKind::kSwipe, GesturePhase::kDone, *swiped});
   if (dwell_.update(now, cursor_m_, free, options_)) events_.push_back({now, GestureKind::kDwell, GesturePhase::kDone});
 }

@@ -10,6 +10,7 @@
 #include "input/gestures/gesture_event.h"
 #include "input/gestures/gesture_options.h"
 #include "input/gestures/grip_detector.h"
+#include "input/gestures/stillness.h"
 #include "input/gestures/swipe_detector.h"
 #include "input/hand_frame.h"
 #include "input/people/one_euro.h"
@@ -46,6 +47,7 @@ class GestureRecognizer {
   GripDetector grip_;
   SwipeDetector swipe_;
   DwellDetector dwell_;
+  Stillness stillness_;
   std::vector<GestureEvent> events_;
   std::optional<TimestampNs> came_;
   TimestampNs last_seen_ = 0, last_sample_ = -1;

@@ -24,46 +24,79 @@ bool points(const HandFrame& hand) {
 void GripDetector::lose(TimestampNs now, std::vector<GestureEvent>& events) {
   if (grabbing_) events.push_back({now, GestureKind::kGrab, GesturePhase::kCancel});
   if (pinching_) events.push_back({now, GestureKind::kPinch, GesturePhase::kCancel});
-  grabbing_ = pinching_ = grab_armed_ = pinch_armed_ = false;
-  open_grab_ = 1.0;
+  *this = {};
+}
+
+/// What closed is held for long enough, by a hand that was still when it closed. One that closed on its way, or moves
+/// on before that is sure, must open before it can take hold.
+GripDetector::Closing GripDetector::judge(const Moment& moment, const GestureOptions& options, bool closed,
+                                          TimestampNs& since) {
+  if (!closed) {
+    since = -1;
+    return Closing::kOpen;
+  }
+  if (moment.still_ns < options.grab_still_ns) {
+    since = -1;
+    return Closing::kOnItsWay;
+  }
+  if (since < 0) since = moment.now;
+  return moment.now - since >= options.grab_sure_ns ? Closing::kSure : Closing::kPerhaps;
 }
 
 void GripDetector::grab(const Moment& moment, const HandFrame& hand, const GestureOptions& options,
                         std::vector<GestureEvent>& events) {
   const double grab = hand.grab_strength;
-  closest_grab_ = std::max(closest_grab_, grab);
-  const bool lets_go =
-      closest_grab_ >= options.grab_on ? grab <= options.grab_off : grab <= closest_grab_ - options.grab_let_go;
-  const bool gently = grab >= options.grab_gentle && grab - open_grab_ >= options.grab_rise && !points(hand) &&
-                      moment.speed_mps <= options.grab_rest_mps;
-  if (!grabbing_)
-    open_grab_ = std::min(grab, open_grab_ + kForgetsOpen_per_s * 1e-9 * static_cast<double>(moment.since_ns));
-  if (grabbing_ && lets_go) {
-    grabbing_ = false;
-    open_grab_ = grab;
-    pinch_armed_ = false;  // the fingers of an opening fist pass through a pinch
-    events.push_back({moment.now, GestureKind::kGrab, GesturePhase::kEnd});
-  } else if (!grabbing_ && moment.may_begin && grab_armed_ && (grab >= options.grab_on || gently)) {
-    if (pinching_) events.push_back({moment.now, GestureKind::kPinch, GesturePhase::kCancel});
-    pinching_ = false;
-    grabbing_ = true;
-    grab_armed_ = false;
-    closest_grab_ = grab;
-    events.push_back({moment.now, GestureKind::kGrab, GesturePhase::kBegin});
+  if (grabbing_) {
+    closest_grab_ = std::max(closest_grab_, grab);
+    const bool lets_go =
+        closest_grab_ >= options.grab_on ? grab <= options.grab_off : grab <= closest_grab_ - options.grab_let_go;
+    if (!lets_go) opened_since_ = -1;
+    if (lets_go && opened_since_ < 0) opened_since_ = moment.now;
+    if (lets_go && moment.now - opened_since_ >= options.grab_open_ns) {
+      grabbing_ = false;
+      open_grab_ = grab;
+      pinch_armed_ = false;  // the fingers of an opening fist pass through a pinch
+      events.push_back({moment.now, GestureKind::kGrab, GesturePhase::kEnd});
+    }
+  } else {
+    const bool gently = grab >= options.grab_gentle && grab - open_grab_ >= options.grab_rise && !points(hand) &&
+                        moment.speed_mps <= options.grab_rest_mps;
+    const bool closed = moment.may_begin && grab_armed_ && (grab >= options.grab_on || gently);
+    const Closing closing = judge(moment, options, closed, closed_since_);
+    if (closing == Closing::kOpen)
+      open_grab_ = std::min(grab, open_grab_ + kForgetsOpen_per_s * 1e-9 * static_cast<double>(moment.since_ns));
+    if (closing == Closing::kOnItsWay) {
+      grab_armed_ = false;
+      open_grab_ = grab;
+    } else if (closing == Closing::kSure) {
+      if (pinching_) events.push_back({moment.now, GestureKind::kPinch, GesturePhase::kCancel});
+      pinching_ = false;
+      grabbing_ = true;
+      grab_armed_ = false;
+      closest_grab_ = grab;
+      opened_since_ = closed_since_ = -1;
+      events.push_back({moment.now, GestureKind::kGrab, GesturePhase::kBegin});
+    }
   }
-  if (grab <= options.grab_off) grab_armed_ = true;
+  if (grab <= (options.grab_still_ns > 0 ? options.grab_gentle : options.grab_off)) grab_armed_ = true;
 }
 
 void GripDetector::pinch(const Moment& moment, const HandFrame& hand, const GestureOptions& options,
                          std::vector<GestureEvent>& events) {
-  if (pinching_ && hand.pinch_distance_m >= options.pinch_off_m) {
-    pinching_ = false;
-    events.push_back({moment.now, GestureKind::kPinch, GesturePhase::kEnd});
-  } else if (!pinching_ && moment.may_begin && pinch_armed_ && hand.pinch_distance_m <= options.pinch_on_m &&
-             hand.grab_strength <= options.grab_off) {
-    pinching_ = true;
-    pinch_armed_ = false;
-    events.push_back({moment.now, GestureKind::kPinch, GesturePhase::kBegin});
+  if (pinching_) {
+    if (hand.pinch_distance_m >= options.pinch_off_m) {
+      pinching_ = false;
+      events.push_back({moment.now, GestureKind::kPinch, GesturePhase::kEnd});
+    }
+  } else {
+    const bool closed = moment.may_begin && pinch_armed_ && hand.pinch_distance_m <= options.pinch_on_m &&
+                        hand.grab_strength <= options.grab_off;
+    const Closing closing = judge(moment, options, closed, pinched_since_);
+    if (closing == Closing::kOnItsWay || closing == Closing::kSure) pinch_armed_ = false;
+    if (closing == Closing::kSure) {
+      pinching_ = true;
+      events.push_back({moment.now, GestureKind::kPinch, GesturePhase::kBegin});
+    }
   }
   if (hand.pinch_distance_m >= options.pinch_off_m) pinch_armed_ = true;
 }

@@ -14,6 +14,7 @@ class GripDetector {
   struct Moment {
     TimestampNs now = 0, since_ns = 0;  ///< since the sample before
     double speed_mps = 0.0;             ///< of the palm
+    TimestampNs still_ns = 0;           ///< for how long the hand has been held still
     bool may_begin = true;
   };
   /// What began and ended is added to `events`. One thread.
@@ -30,12 +31,16 @@ class GripDetector {
  private:
   void grab(const Moment& moment, const HandFrame& hand, const GestureOptions& options,
             std::vector<GestureEvent>& events);
+  enum class Closing { kOpen, kOnItsWay, kPerhaps, kSure };
+  static Closing judge(const Moment& moment, const GestureOptions& options, bool closed, TimestampNs& since);
   void pinch(const Moment& moment, const HandFrame& hand, const GestureOptions& options,
              std::vector<GestureEvent>& events);
 
   bool grabbing_ = false, pinching_ = false;
-  bool grab_armed_ = false, pinch_armed_ = false;  // the hand was seen open
-  double open_grab_ = 1.0, closest_grab_ = 0.0;    // how open it was lately; how closed in this grab
+  bool grab_armed_ = false, pinch_armed_ = false;       // the hand was seen open
+  double open_grab_ = 1.0, closest_grab_ = 0.0;         // how open it was lately; how closed in this grab
+  TimestampNs closed_since_ = -1, pinched_since_ = -1;  // of a hold that is not sure yet
+  TimestampNs opened_since_ = -1;                       // of a grab that may be over
 };
 
 }  // namespace dubsar

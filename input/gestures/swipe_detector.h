@@ -11,20 +11,29 @@ namespace dubsar {
 
 class SwipeDetector {
  public:
-  /// The palm as it was measured, and its velocity; `may_begin` false: the hand holds something, or has just come.
+  struct Moment {
+    TimestampNs now = 0, still_ns = 0;        ///< for how long the hand has been held still
+    glm::dvec3 at_m{0.0}, velocity_mps{0.0};  ///< of the palm, as it was measured
+    double closing = 0.0;                     ///< 0: open, 1: a fist
+    bool may_begin = true;                    ///< false: the hand holds something, or has just come
+  };
   /// The direction when a swipe happened now. One thread.
-  std::optional<SwipeDirection> update(TimestampNs now, const glm::dvec3& at_m, const glm::dvec3& velocity_mps,
-                                       bool may_begin, const GestureOptions& options);
+  std::optional<SwipeDirection> update(const Moment& moment, const GestureOptions& options);
   /// The hand is gone.
   void lose() { *this = {}; }
 
  private:
+  std::optional<SwipeDirection> on_the_way(const Moment& moment, const GestureOptions& options);
+  std::optional<SwipeDirection> at_its_end(const Moment& moment, const GestureOptions& options);
+
   std::optional<TimestampNs> swiped_;
   TimestampNs slow_since_ = 0;
   bool ended_ = true, rested_ = true;
   int axis_ = 0;
   double sign_ = 0.0;
-  std::optional<glm::dvec3> from_m_;
+  std::optional<glm::dvec3> from_m_;  // where it was fast first, or still last
+  TimestampNs left_ = 0;              // that place
+  double peak_mps_ = 0.0;
 };
 
 }  // namespace dubsar

@@ -21,7 +21,7 @@ std::optional<HandMode> HandHold::wanted(const Hands& hands, const HandMapping& 
     wanted = needs_new_grab_ ? HandMode::kNone : HandMode::kTwoGrabs;
   } else if (grab0 || grab1) {
     wanted = needs_new_grab_ || mapping.grab == Action::kNone ? HandMode::kNone : HandMode::kOneGrab;
-  } else if (hands[0].pinching() || hands[1].pinching()) {
+  } else if (mapping.pinch != Action::kNone && (hands[0].pinching() || hands[1].pinching())) {
     wanted = HandMode::kPinch;
   }
   if (mode_ == HandMode::kTwoGrabs && wanted == HandMode::kOneGrab) {

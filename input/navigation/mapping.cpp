@@ -97,6 +97,9 @@ Result<GestureOptions> read_gestures(const json& object, const std::string& wher
   out.grab_rise = f.number("grab_rise", 0.05, 1);
   out.grab_let_go = f.number("grab_let_go", 0.05, 1);
   out.grab_rest_mps = 1e-3 * f.number("grab_rest_mm_per_s", 1, 5000);
+  out.grab_still_ns = from_ms(f.number("grab_still_ms", 0, 2000));
+  out.grab_sure_ns = from_ms(f.number("grab_sure_ms", 0, 1000));
+  out.grab_open_ns = from_ms(f.number("grab_open_ms", 0, 1000));
   out.pull_start_m = 1e-3 * f.number("pull_start_mm", 1, 200);
   out.pinch_on_m = 1e-3 * f.number("pinch_on_mm", 5, 60);
   out.pinch_off_m = 1e-3 * f.number("pinch_off_mm", 5, 100);
@@ -110,6 +113,11 @@ Result<GestureOptions> read_gestures(const json& object, const std::string& wher
   out.swipe_opposing_mps = 1e-3 * f.number("swipe_opposing_mm_per_s", 1, 5000);
   out.swipe_lockout_ns = from_ms(f.number("swipe_lockout_ms", 0, 5000));
   out.swipe_travel_m = 1e-3 * f.number("swipe_travel_mm", 0, 500);
+  out.swipe_still_ns = from_ms(f.number("swipe_still_ms", 0, 2000));
+  out.signs_from_x_m = 1e-3 * f.number("signs_from_x_mm", -10000, 10000);
+  out.signs_from_y_m = 1e-3 * f.number("signs_from_y_mm", -10000, 10000);
+  out.acts_to_z_m = 1e-3 * f.number("acts_to_z_mm", -10000, 10000);
+  out.swipes_within_m = 1e-3 * f.number("swipes_within_mm", 0, 10000);
   out.dwell_radius_m = 1e-3 * f.number("dwell_radius_mm", 1, 200);
   out.dwell_start_ns = from_ms(f.number("dwell_start_ms", 0, 10000));
   out.dwell_fill_ns = from_ms(f.number("dwell_fill_ms", 50, 10000));
@@ -214,6 +222,12 @@ Result<Mapping> parse_mapping(std::string_view json_text, std::string_view sourc
 }
 
 Result<Mapping> default_mapping() { return parse_mapping("{}", "the program's own mapping"); }
+
+Result<Mapping> gallery_mapping() {
+  for (const auto& [name, text] : embedded_mappings())
+    if (name == "gallery.json") return parse_mapping(text, "the program's mapping for galleries");
+  return fail(ErrorKind::kInternal, "the program's mapping for galleries is not embedded");
+}
 
 Action chord_action(const MouseMapping& mapping, std::uint8_t modifiers, std::string_view what) {
   std::string chord;

@@ -67,6 +67,9 @@ struct Mapping {
 /// The mapping of the program (input/navigation/mappings/default.json).
 Result<Mapping> default_mapping();
 
+/// That for places where nobody was told (input/navigation/mappings/gallery.json).
+Result<Mapping> gallery_mapping();
+
 /// The default with the changes that the JSON text makes: only what differs needs to be said, null removes a key or a
 /// mouse chord. kConfig, by name and range, for unknown names, wrong types and figures out of range; whether commands
 /// exist is for their table to say.

@@ -3,15 +3,12 @@
 #include <algorithm>
 
 namespace dubsar {
-namespace {
 
-bool inside(const HandZone& zone, const glm::dvec3& at) {
+bool in_zone(const HandZone& zone, const glm::dvec3& at_m) noexcept {
   for (int a = 0; a < 3; ++a)
-    if (at[a] < zone.min_m[a] || at[a] > zone.max_m[a]) return false;
+    if (at_m[a] < zone.min_m[a] || at_m[a] > zone.max_m[a]) return false;
   return true;
 }
-
-}  // namespace
 
 std::vector<HandMark> hand_marks(const InputFrame& frame, const KeptPerson& person,
                                  const std::array<GestureRecognizer, 2>& hands, const HandZone& zone) {
@@ -32,7 +29,7 @@ std::vector<HandMark> hand_marks(const InputFrame& frame, const KeptPerson& pers
         std::any_of(person.hands.begin(), person.hands.end(), [&](const HandFrame* kept) { return kept == &hand; });
     if (followed || !hand.valid || !hand.tracked) continue;
     out.push_back({hand.palm.position_m, hand.grab_strength, 0.0,
-                   inside(zone, hand.palm.position_m) ? HandState::kStranger : HandState::kTooFar});
+                   in_zone(zone, hand.palm.position_m) ? HandState::kStranger : HandState::kTooFar});
   }
   return out;
 }

@@ -27,6 +27,9 @@ struct HandMark {
   bool operator==(const HandMark&) const = default;
 };
 
+/// Whether a place is inside.
+bool in_zone(const HandZone& zone, const glm::dvec3& at_m) noexcept;
+
 /// One mark for each hand of `frame` that is tracked now, those of the followed person first. `hands` are the gestures
 /// of person.hands, after their update.
 std::vector<HandMark> hand_marks(const InputFrame& frame, const KeptPerson& person,

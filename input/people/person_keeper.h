@@ -42,11 +42,15 @@ class HandKeeper {
   /// zone, points roughly at the screen, belongs to the kept head rather than to another one (where heads are known)
   /// and, as the second hand, is the other hand of a plausible pair: not crossed, 60 to 700 mm apart, not 300 mm
   /// behind, and both arms come from shoulders of one body (back along the fingers). A slot is free again when its hand
-  /// has been away for 1.5 s.
+  /// has been away for 1.5 s. Where no head is seen, the body whose fingers point here must stand before the panel, and
+  /// owns it until no hand of it was seen for 4 s.
   std::array<const HandFrame*, 2> update(TimestampNs now, std::span<const HandFrame> hands,
                                          std::span<const HeadFrame> heads, std::optional<glm::dvec3> kept_head_m);
   /// All slots are free.
-  void let_go() { slots_ = {}; }
+  void let_go() {
+    slots_ = {};
+    owner_x_m_.reset();
+  }
   /// Nobody's hand is kept.
   bool empty() const noexcept { return !slots_[0].taken && !slots_[1].taken; }
 
@@ -57,13 +61,18 @@ class HandKeeper {
     std::uint32_t id = 0;
     Chirality chirality = Chirality::kUnknown;
     glm::dvec3 place_m{0.0}, shoulder_m{0.0};
-    TimestampNs seen = 0;
+    TimestampNs seen = 0, came = 0;
     std::vector<std::uint32_t> strangers;  // seen beside this hand, so never it under a new id; the newest 16
   };
   bool may_enter(const HandFrame& hand, const Slot& other, std::span<const HeadFrame> heads,
                  const std::optional<glm::dvec3>& kept_head_m) const;
+  bool is_the_owners(const HandFrame& hand, std::span<const HeadFrame> heads,
+                     const std::optional<glm::dvec3>& kept_head_m) const;
+  void remember_owner(TimestampNs now, const std::array<const HandFrame*, 2>& kept);
   HandZone zone_;
   std::array<Slot, 2> slots_{};
+  std::optional<double> owner_x_m_;  // where the body stands whose hands were kept last
+  TimestampNs owner_seen_ = 0;
 };
 
 /// The person that is kept, as seen now.

@@ -216,10 +216,10 @@ bool Gallery::visitor_is_here(double t_s) const noexcept {
 }
 bool Gallery::is_the_visitors(std::uint32_t id) noexcept { return id < kIdsOfOne; }
 
-bool Gallery::step(double t_s, const ViewState& seen, Lesson lesson, bool hand_shown, InputFrame& frame) {
+bool Gallery::step(double t_s, const SeenScreen& seen, InputFrame& frame) {
   Parts& p = *parts_;
   const double here_s = t_s - p.options.arrives_s;
-  if (visitor_is_here(t_s)) p.visitor.look(here_s, seen, lesson, hand_shown);
+  if (visitor_is_here(t_s)) p.visitor.look(here_s, seen);
   for (const auto& other : p.others) other->act(t_s);
   const auto sample = static_cast<std::int64_t>(std::floor((t_s - p.late_s) * p.rate_hz));
   if (sample < 0 || sample == p.sample) return false;

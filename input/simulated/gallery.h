@@ -31,7 +31,7 @@ class Gallery {
 
   /// The people look at the display, and the tracker says what it sees; false: nothing new since the last call. Rising
   /// times, from the session's start.
-  bool step(double t_s, const ViewState& seen, Lesson lesson, bool hand_shown, InputFrame& frame);
+  bool step(double t_s, const SeenScreen& seen, InputFrame& frame);
 
   const NaiveVisitor& visitor() const noexcept;
   bool visitor_is_here(double t_s) const noexcept;

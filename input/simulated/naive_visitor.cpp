@@ -12,6 +12,7 @@ constexpr double kRad = std::numbers::pi / 180.0;
 constexpr double kNoticed_rad = 5.0 * kRad, kNoticedZoom = 0.08;
 constexpr double kAfter_s = 0.5;  // what happens so soon after a movement came of it
 constexpr double kHelped = 5.0, kOddly = 1.4, kDidNothing = 0.4, kUnderstood = 4.0;
+constexpr double kKnownByNow = 1.0;
 constexpr int kEnough = 2;  // successes until something else is wanted
 
 Body body_of(std::uint64_t seed) {
@@ -27,7 +28,7 @@ NaiveVisitor::NaiveVisitor(NaiveKind kind, std::uint64_t seed, double leaves_s)
       body_(body_of(seed)),
       arms_{Arm(body_, body_.left_handed, seed * 3 + 1), Arm(body_, !body_.left_handed, seed * 3 + 2)},
       leaves_s_(leaves_s) {
-  belief_ = {0.4, 0.4, 0.4, 0.4, 0.8, 0.3, 0.05, 0.05};
+  belief_ = {0.4, 0.4, 0.4, 0.4, 0.8, 0.3, 0.05, 0.05, 0.2};
   switch (kind) {
     case NaiveKind::kWaves:
       belief_[kWave] = 4.0;
@@ -70,15 +71,20 @@ glm::dvec3 NaiveVisitor::spot() {
 }
 
 double NaiveVisitor::ready(double t_s) {
-  if (!arms_[0].is_up()) t_s = arms_[0].raise(t_s, spot());
+  if (!arms_[0].is_up())
+    t_s = arms_[0].raise(t_s, spot());
+  else if (manner_.lost)  // who saw no trace of his hand holds it elsewhere
+    t_s = arms_[0].move(t_s, spot());
+  manner_.lost = false;
   arms_[0].grip(t_s, 0.0);
   return arms_[0].hold(t_s, random_.uniform(0.15, 0.5));
 }
 
-void NaiveVisitor::begin(Intention intention, double t_s, const ViewState& seen) {
+void NaiveVisitor::begin(Intention intention, double t_s, const SeenScreen& seen) {
   trial_.intention = intention;
   trial_.end_s = t_s;
-  trial_.before = seen;
+  trial_.before = seen.view;
+  trial_.opened = seen.opened;
   trial_.shown = false;
 }
 
@@ -164,6 +170,52 @@ void NaiveVisitor::pull(double t_s) {
   trial_.end_s = arms_[0].grip(t_s, 0.0);
 }
 
+/// Brings the mark of the hand over the sign, one movement after the other, and rests there; without a mark, the hand
+/// itself is held between eye and sign.
+void NaiveVisitor::touch(double t_s, const SeenScreen& seen) {
+  Arm& arm = arms_[0];
+  const auto give_up = [&] {
+    aim_.left = 0;
+    trial_.end_s = t_s;
+  };
+  if (seen.sign && seen.sign_filled > 0.0) {  // something goes on: wait and see
+    trial_.end_s = arm.hold(t_s, random_.uniform(0.2, 0.5));
+    return;
+  }
+  if (!seen.sign || aim_.left-- <= 0) return give_up();
+  if (!arm.is_up()) {
+    arm.grip(t_s, 0.0);
+    trial_.end_s = arm.hold(arm.raise(t_s, spot()), body_.reaction_s);
+    return;
+  }
+  if (!seen.my_mark) {
+    const glm::dvec3 sign_m(0.3 * *seen.sign, 0.0);  // a panel is about a foot high
+    const glm::dvec3 to = glm::mix(body_.eyes_m, sign_m, manner_.stretch * body_.arm_m / glm::length(body_.eyes_m));
+    trial_.end_s = arm.hold(arm.move(t_s, to, 0.04), 1.0);
+    aim_.mark.reset();
+    return;
+  }
+  const glm::dvec2 error = *seen.sign - *seen.my_mark;
+  if (aim_.mark && glm::length(aim_.step_m) > 0.02) {  // what came of the last movement
+    const double done =
+        glm::dot(*seen.my_mark - *aim_.mark, glm::dvec2(aim_.step_m)) / glm::dot(aim_.step_m, aim_.step_m);
+    if (done > 0.1) aim_.heights_per_m = std::clamp(done, 0.3, 5.0);
+  }
+  if (glm::length(error) < 0.6 * seen.sign_radius) {
+    trial_.end_s = arm.hold(t_s, random_.uniform(1.2, 2.2));
+    aim_.mark.reset();
+    return;
+  }
+  aim_.mark = seen.my_mark;
+  aim_.step_m = glm::dvec3(error / aim_.heights_per_m, 0.0);
+  if (const double length = glm::length(aim_.step_m); length > 0.35) aim_.step_m *= 0.35 / length;
+  const glm::dvec3 shoulder = shoulder_m(body_, arm.left());
+  glm::dvec3 to = arm.place_m() + aim_.step_m;
+  if (const double far = glm::length(to - shoulder); far > 0.97 * body_.arm_m)
+    to = shoulder + (0.97 * body_.arm_m / far) * (to - shoulder);
+  trial_.end_s = arm.hold(arm.move(t_s, to, 0.03), 0.5 * body_.reaction_s);
+}
+
 /// What people do between: let the arm hang, talk with the hand, scratch, rest the hand in the air.
 void NaiveVisitor::idle(double t_s) {
   const double what = random_.uniform(0.0, 1.0);
@@ -207,12 +259,13 @@ void NaiveVisitor::attempt(Idea idea, double t_s) {
     case kTwoHands:
       return two_hands(t_s);
     case kPull:
+    case kTouch:  // goes on as long as he looks
     case kIdeas:
       return pull(t_s);
   }
 }
 
-NaiveVisitor::Idea NaiveVisitor::choose() {
+NaiveVisitor::Idea NaiveVisitor::choose(const SeenScreen& seen) {
   const bool zooms = manner_.turned >= kEnough && manner_.zoomed < kEnough;
   std::array<double, kIdeas> weight = belief_;
   if (zooms) {
@@ -220,6 +273,11 @@ NaiveVisitor::Idea NaiveVisitor::choose() {
     weight[kTwoHands] += 0.6;
     weight[kPull] += 0.6;
   }
+  if (manner_.turned >= kEnough && manner_.zoomed >= kEnough && manner_.opened < kEnough)
+    for (double& w : weight) w = std::min(w, kKnownByNow);  // what has worked often draws less than what is new
+  if (!zooms) weight[kTouch] = belief_[kTouch];
+  if (!seen.sign) weight[kTouch] = 0.0;
+  if (manner_.opened >= kEnough) weight[kTouch] = std::min(weight[kTouch], 0.5);
   double total = 0.0;
   for (const double w : weight) total += w;
   double drawn = random_.uniform(0.0, total);
@@ -228,10 +286,19 @@ NaiveVisitor::Idea NaiveVisitor::choose() {
   return kGrab;
 }
 
-void NaiveVisitor::judge(const ViewState& seen) {
+void NaiveVisitor::judge(const SeenScreen& seen) {
   if (trial_.intention == Intention::kNone || trial_.idea == kIdeas) return;
-  const glm::dvec3 turn = vector_of(seen.rotation * glm::conjugate(trial_.before.rotation));
-  const double zoom = std::log(seen.zoom / trial_.before.zoom);
+  manner_.lost = !trial_.shown;
+  if (trial_.idea == kTouch) {
+    const bool worked = seen.opened != trial_.opened;
+    belief_[kTouch] = worked ? std::min(40.0, std::max(belief_[kTouch], 0.5) * kHelped) : belief_[kTouch] * kDidNothing;
+    if (worked) ++manner_.opened;
+    aim_.left = 0;
+    trial_.idea = kIdeas;
+    return;
+  }
+  const glm::dvec3 turn = vector_of(seen.view.rotation * glm::conjugate(trial_.before.rotation));
+  const double zoom = std::log(seen.view.zoom / trial_.before.zoom);
   const bool zooms = trial_.intention == Intention::kZoom;
   const double along = zooms ? zoom * sense_.x : glm::dot(glm::dvec2(turn.y, -turn.x), sense_);
   const bool any = glm::length(turn) > kNoticed_rad || std::abs(zoom) > kNoticedZoom;
@@ -248,7 +315,7 @@ void NaiveVisitor::judge(const ViewState& seen) {
     manner_.effort =
         std::min(1.15, manner_.effort + 0.08);  // what does not help is done again, harder, faster and nearer
     manner_.hurry = std::min(1.8, manner_.hurry * 1.12);
-    const double nearer = trial_.shown ? 0.04 : 0.15;  // who sees no trace of his hand holds it elsewhere
+    const double nearer = trial_.shown ? 0.04 : 0.15;  // further to where something may see it
     manner_.stretch = std::min(0.85, manner_.stretch + nearer);
     manner_.wants = std::min(0.9, manner_.wants + nearer);
   }
@@ -258,20 +325,45 @@ void NaiveVisitor::judge(const ViewState& seen) {
 void NaiveVisitor::study(Lesson lesson) {
   const double wit = kind_ == NaiveKind::kImitates ? 0.85 : kind_ == NaiveKind::kWaves ? 0.5 : 0.4;
   if (lesson == Lesson::kNone || random_.uniform(0.0, 1.0) > wit) return;
+  if (lesson == Lesson::kShowHand) {  // the picture's hand reaches out for the panel
+    manner_.stretch = std::min(0.85, manner_.stretch + 0.15);
+    manner_.wants = std::min(0.9, manner_.wants + 0.15);
+  }
   if (lesson == Lesson::kGrabAndMove) belief_[kGrab] = std::max(belief_[kGrab], 0.5) + kUnderstood;
   if (lesson == Lesson::kSwipe) belief_[kSweep] = std::max(belief_[kSweep], 0.5) + kUnderstood;
+  if (lesson == Lesson::kRestOnSign) belief_[kTouch] += kUnderstood;
   if (lesson == Lesson::kNearer) belief_[random_.uniform(0.0, 1.0) < 0.5 ? kTwoHands : kPull] += kUnderstood;
 }
 
-void NaiveVisitor::look(double t_s, const ViewState& seen, Lesson lesson, bool hand_shown) {
+void NaiveVisitor::act(double t_s, const SeenScreen& seen) {
+  if (manner_.turned + manner_.zoomed > 0 ? random_.uniform(0.0, 1.0) < 0.35 : random_.uniform(0.0, 1.0) < 0.12) {
+    begin(Intention::kNone, t_s, seen);
+    return idle(t_s);
+  }
+  const Idea idea = choose(seen);
+  if (idea == kTouch) {
+    begin(Intention::kOpen, t_s, seen);
+    trial_.idea = kTouch;
+    aim_ = {{}, glm::dvec3(0.0), random_.uniform(0.7, 2.5), 7};
+    return touch(t_s, seen);
+  }
+  const bool zooms = idea == kTwoHands || idea == kPull, probes = idea == kWave || idea == kPoke;
+  begin(probes ? Intention::kProbe : zooms ? Intention::kZoom : Intention::kTurn, t_s, seen);
+  attempt(idea, t_s);
+  wakes_s_ = trial_.end_s + kAfter_s + body_.reaction_s * random_.uniform(0.8, 2.0);
+}
+
+void NaiveVisitor::look(double t_s, const SeenScreen& seen) {
   if (left_) return;
-  trial_.shown = trial_.shown || hand_shown;
+  trial_.shown = trial_.shown || seen.my_mark.has_value();
   if (t_s >= studies_s_) {
-    study(lesson);
+    study(seen.lesson);
     studies_s_ = t_s + random_.uniform(1.5, 4.0);
   }
   const double busy = std::max(arms_[0].busy_until_s(), arms_[1].busy_until_s());
-  if (t_s < wakes_s_ || t_s < busy || t_s < trial_.end_s + kAfter_s) return;
+  if (t_s < busy) return;
+  if (aim_.left > 0 && seen.opened == trial_.opened) return touch(t_s, seen);
+  if (t_s < wakes_s_ || t_s < trial_.end_s + kAfter_s) return;
   judge(seen);
   if (t_s > leaves_s_) {
     left_ = true;
@@ -279,15 +371,7 @@ void NaiveVisitor::look(double t_s, const ViewState& seen, Lesson lesson, bool h
       if (arm.is_up()) arm.lower(t_s);
     return begin(Intention::kNone, t_s, seen);
   }
-  if (manner_.turned + manner_.zoomed > 0 ? random_.uniform(0.0, 1.0) < 0.35 : random_.uniform(0.0, 1.0) < 0.12) {
-    begin(Intention::kNone, t_s, seen);
-    return idle(t_s);
-  }
-  const Idea idea = choose();
-  const bool zooms = idea == kTwoHands || idea == kPull, probes = idea == kWave || idea == kPoke;
-  begin(probes ? Intention::kProbe : zooms ? Intention::kZoom : Intention::kTurn, t_s, seen);
-  attempt(idea, t_s);
-  wakes_s_ = trial_.end_s + kAfter_s + body_.reaction_s * random_.uniform(0.8, 2.0);
+  act(t_s, seen);
 }
 
 }  // namespace dubsar

@@ -6,8 +6,8 @@
 #include <glm/vec2.hpp>
 #include <optional>
 
-#include "input/navigation/view_state.h"
 #include "input/simulated/body.h"
+#include "input/simulated/seen_screen.h"
 
 namespace dubsar {
 
@@ -19,18 +19,15 @@ enum class Intention {
   kProbe,  ///< something should happen, whatever it is
   kTurn,
   kZoom,
+  kOpen,  ///< what is inside should come out, or go back
 };
-
-/// A picture beside the object that shows a gesture.
-enum class Lesson { kNone, kGrabAndMove, kSwipe, kNearer };
 
 class NaiveVisitor {
  public:
   NaiveVisitor(NaiveKind kind, std::uint64_t seed, double leaves_s);
 
-  /// Decides what to do next when the last attempt is over. Rising times; what the display shows: the object, a lesson,
-  /// and whether a mark shows where his hand is.
-  void look(double t_s, const ViewState& seen, Lesson lesson, bool hand_shown);
+  /// Decides what to do next when the last attempt is over. Rising times.
+  void look(double t_s, const SeenScreen& seen);
 
   Intention intention(double t_s) const;
   /// The way of the hand in an attempt to turn, or its sign in one to zoom (x).
@@ -40,11 +37,12 @@ class NaiveVisitor {
   glm::dvec3 eyes_m(double t_s) const;
 
  private:
-  enum Idea { kWave, kSweep, kPush, kPoke, kGrab, kPinch, kTwoHands, kPull, kIdeas };
-  void begin(Intention intention, double t_s, const ViewState& seen);
-  void judge(const ViewState& seen);
+  enum Idea { kWave, kSweep, kPush, kPoke, kGrab, kPinch, kTwoHands, kPull, kTouch, kIdeas };
+  void begin(Intention intention, double t_s, const SeenScreen& seen);
+  void judge(const SeenScreen& seen);
   void study(Lesson lesson);
-  Idea choose();
+  Idea choose(const SeenScreen& seen);
+  void act(double t_s, const SeenScreen& seen);
   void attempt(Idea idea, double t_s);
   void idle(double t_s);
   void wave(double t_s);
@@ -53,6 +51,7 @@ class NaiveVisitor {
   void poke(double t_s);
   void two_hands(double t_s);
   void pull(double t_s);
+  void touch(double t_s, const SeenScreen& seen);
   double ready(double t_s);
   glm::dvec3 spot();
   glm::dvec2 some_way();
@@ -68,13 +67,21 @@ class NaiveVisitor {
     Intention intention = Intention::kNone;
     double end_s = 0.0;
     ViewState before{};
-    bool shown = false;  ///< a mark of the hand was to be seen
+    bool opened = false;  ///< before
+    bool shown = false;   ///< a mark of the hand was to be seen
   } trial_;
   glm::dvec2 sense_{0.0};
   struct Manner {
     double effort = 1.0, hurry = 1.0, stretch = 0.6, wants = 0.6;
-    int turned = 0, zoomed = 0;  ///< how often that worked
+    int turned = 0, zoomed = 0, opened = 0;  ///< how often that worked
+    bool lost = false;                       ///< no mark showed the hand lately
   } manner_;
+  struct Aim {                       ///< a mark is to be brought to a sign, by looking at it
+    std::optional<glm::dvec2> mark;  ///< where it was before the last step
+    glm::dvec3 step_m{0.0};
+    double heights_per_m = 1.0;  ///< what a metre of the hand does to the mark, as he believes
+    int left = 0;
+  } aim_;
   bool left_ = false;
 };
 

@@ -102,17 +102,33 @@ TEST(KioskGuide, SaysTheTitleAndInvitesInTheLanguageOfTheOperator) {
   EXPECT_EQ(kiosk.go_on(0.1).picture->title, "A");
 }
 
-TEST(KioskGuide, HoldingStillOpensTheEnvelopeSmoothlyAfterTheObjectWasTurned) {
+/// A hand whose ring lies on the first sign of a panel of 600 x 340 mm.
+Steered on_the_sign(double turned_deg = 0.0) {
+  Steered out = with_hand(HandState::kReady, Control::kNone, turned_deg);
+  const HandZone zone;
+  const auto sign = place_signs(std::array{Sign::kOpen}, 600.0 / 340.0).front();
+  const glm::dvec2 middle = 0.5 * glm::dvec2(zone.min_m + zone.max_m), half = 0.5 * glm::dvec2(zone.max_m - zone.min_m);
+  out.hands[0].place_m = glm::dvec3(middle + half * sign.at / 0.45, 0.2);
+  return out;
+}
+
+TEST(KioskGuide, RestingOnTheSignOpensTheEnvelopeSmoothlyAfterTheObjectWasTurned) {
   Kiosk kiosk;
   kiosk.go_on(1, with_hand(HandState::kReady));
-  Steered rests = with_hand(HandState::kReady);
-  rests.selected_m = glm::dvec3(0.0);
-  kiosk.go_on(1, rests);
-  EXPECT_EQ(kiosk.document().unpack, 0.0);  // who only waits opens nothing
+  kiosk.go_on(4, on_the_sign());
+  EXPECT_EQ(kiosk.document().unpack, 0.0) << "there is no sign yet";
   for (int i = 0; i < 20; ++i) kiosk.go_on(0.05, with_hand(HandState::kHolding, Control::kHands, 2.0 * i));
-  rests.view = with_hand(HandState::kReady, Control::kNone, 38.0).view;
-  kiosk.go_on(3, rests);
+  kiosk.go_on(4, with_hand(HandState::kReady, Control::kNone, 38.0));
+  EXPECT_EQ(kiosk.document().unpack, 0.0) << "a hand beside the sign";
+  const auto half = kiosk.go_on(1, on_the_sign(38.0));
+  ASSERT_EQ(half.picture->signs.size(), 1U);
+  EXPECT_GT(half.picture->signs[0].filled, 0.3);
+  EXPECT_LT(half.picture->signs[0].filled, 0.9);
+  kiosk.go_on(4, on_the_sign(38.0));
   EXPECT_EQ(kiosk.document().unpack, 1.0);
+  const auto later = kiosk.go_on(10, on_the_sign(38.0));  // the hand stays: it does not close again
+  EXPECT_EQ(kiosk.document().unpack, 1.0);
+  EXPECT_EQ(later.picture->signs.at(0).sign, Sign::kClose);
   double last = 0.0, largest = 0.0;
   for (const std::string& command : kiosk.commands)
     if (command.rfind("unpack ", 0) == 0) {

@@ -38,6 +38,7 @@ VisitMoment hand(HandState state, double turned_deg = 0.0) {
   out.hands = 1;
   out.hand = state;
   out.turned_deg = turned_deg;
+  out.can_open = true;
   return out;
 }
 
@@ -46,7 +47,7 @@ TEST(Visit, NobodyIsInvited) {
   const auto picture = story.go_on(5, nobody());
   EXPECT_EQ(picture.phase, VisitPhase::kAttract);
   EXPECT_EQ(picture.line, Line::kInvite);
-  EXPECT_FALSE(picture.lesson);
+  EXPECT_EQ(picture.lesson, Lesson::kShowHand);  // a hand that reaches out
   EXPECT_EQ(story.arrivals, 0);
 }
 

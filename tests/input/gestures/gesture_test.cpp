@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "input/navigation/mapping.h"
+
 namespace dubsar {
 namespace {
 
@@ -290,6 +292,85 @@ TEST(Gesture, DwellTakesElevenTenthsOfASecondAndHappensOnceARest) {
   p.move({0.2, 0, 0}, 30);
   p.steps(150);
   EXPECT_EQ(p.count(GestureKind::kDwell, GesturePhase::kDone), 2);
+}
+
+/// As galleries have it, where nobody was told.
+GestureOptions gallery() { return gallery_mapping().value().gestures; }
+
+TEST(GestureInGalleries, AHandThatClosesAtRestTakesHoldAndOneThatClosesOnItsWayMustOpenFirst) {
+  Person rests{gallery()}, walks{gallery()};
+  rests.steps(60);
+  rests.hand.grab_strength = 1.0;
+  rests.steps(5);
+  EXPECT_FALSE(rests.recognizer.grabbing()) << "not sure yet";
+  rests.steps(10);
+  EXPECT_TRUE(rests.recognizer.grabbing());
+  walks.steps(60);
+  walks.move({0.4, 0.0, 0.0}, 15);
+  walks.hand.grab_strength = 1.0;
+  walks.move({0.4, 0.0, 0.0}, 15);
+  walks.steps(200);
+  EXPECT_FALSE(walks.recognizer.grabbing());
+  walks.hand.grab_strength = 0.2;
+  walks.steps(20);
+  walks.hand.grab_strength = 1.0;
+  walks.steps(20);
+  EXPECT_TRUE(walks.recognizer.grabbing());
+}
+
+TEST(GestureInGalleries, WhatATrackerMisreadsForFiveHundredthsOfASecondNeitherTakesHoldNorLetsGo) {
+  Person p{gallery()};
+  for (int i = 0; i < 20; ++i) {
+    p.hand.grab_strength = 0.1;
+    p.steps(40);
+    p.hand.grab_strength = 1.0;
+    p.steps(5);
+  }
+  EXPECT_EQ(p.count(GestureKind::kGrab, GesturePhase::kBegin), 0);
+  p.hand.grab_strength = 0.1;
+  p.steps(40);
+  p.hand.grab_strength = 1.0;
+  p.steps(20);
+  for (int i = 0; i < 10; ++i) {
+    p.hand.grab_strength = 0.2;
+    p.steps(5);
+    p.hand.grab_strength = 1.0;
+    p.steps(20);
+  }
+  EXPECT_EQ(p.count(GestureKind::kGrab, GesturePhase::kBegin), 1);
+  EXPECT_EQ(p.count(GestureKind::kGrab, GesturePhase::kEnd), 0);
+}
+
+TEST(GestureInGalleries, ASwipeGoesFromRestAndAHandThatComesLeavesOrTalksDoesNotSwipe) {
+  Person wipes{gallery()};
+  wipes.hand.palm.position_m.x = -0.12;
+  wipes.steps(60);
+  wipes.move({1.0, 0.0, 0.0}, 20);
+  wipes.steps(30);
+  EXPECT_EQ(wipes.count(GestureKind::kSwipe, GesturePhase::kDone), 1);
+  Person comes{gallery()};
+  comes.hand.palm.position_m = {-0.3, -0.2, 0.3};
+  comes.move({1.0, 0.3, 0.0}, 40);  // never at rest before
+  comes.steps(30);
+  EXPECT_EQ(comes.count(GestureKind::kSwipe, GesturePhase::kDone), 0);
+  Person leaves{gallery()};
+  leaves.steps(60);
+  leaves.move({0.0, -0.9, 0.6}, 30);  // down and to the body
+  leaves.steps(30, false);
+  EXPECT_EQ(leaves.count(GestureKind::kSwipe, GesturePhase::kDone), 0);
+  Person talks{gallery()};
+  talks.steps(60);
+  for (int i = 0; i < 20; ++i) talks.move({i % 2 == 0 ? 0.5 : -0.5, 0.05, 0.0}, 30);
+  EXPECT_EQ(talks.count(GestureKind::kSwipe, GesturePhase::kDone), 0);
+}
+
+TEST(GestureInGalleries, NothingButRestingBeginsAtTheSigns) {
+  Person p{gallery()};
+  p.hand.palm.position_m = {0.33, 0.3, 0.3};
+  p.steps(60);
+  p.hand.grab_strength = 1.0;
+  p.steps(30);
+  EXPECT_FALSE(p.recognizer.grabbing());
 }
 
 }  // namespace

@@ -142,5 +142,29 @@ TEST(HandKeeper, AHandThatAppearsTooFarAwayTooSoonIsSomebodyElses) {
   EXPECT_NE(later.update(300 * kMs, found, {}, {})[0], nullptr);
 }
 
+TEST(HandKeeper, WithoutACameraThoseWhoStandBesideHoldNothing) {
+  HandKeeper keeper;
+  // A right hand in the middle of the zone, of an arm that comes from far to the left.
+  HandFrame beside = hand_at(1, Chirality::kRight, {-0.1, 0.0, 0.3});
+  beside.palm.rotation = glm::angleAxis(-0.4, glm::dvec3(0, 1, 0));
+  const std::vector<HandFrame> hands{beside};
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(keeper.update(i * 16 * kMs, hands, {}, {})[0], nullptr);
+  const std::vector<HandFrame> both{beside, hand_at(2, Chirality::kRight, {0.15, 0.0, 0.3})};
+  const auto kept = keeper.update(900 * kMs, both, {}, {});
+  ASSERT_NE(kept[0], nullptr);
+  EXPECT_EQ(kept[0]->id, 2u);
+}
+
+TEST(HandKeeper, TheOwnerMayLetTheHandSinkForAWhileAndNobodyElseTakesOver) {
+  HandKeeper keeper;
+  const std::vector<HandFrame> owner{hand_at(1, Chirality::kRight, {0.35, 0.0, 0.3})};
+  const std::vector<HandFrame> other{hand_at(7, Chirality::kRight, {0.0, 0.0, 0.3})};
+  for (int i = 0; i < 60; ++i) ASSERT_NE(keeper.update(i * 16 * kMs, owner, {}, {})[0], nullptr);
+  EXPECT_EQ(keeper.update(3500 * kMs, other, {}, {})[0], nullptr);
+  const std::vector<HandFrame> again{hand_at(3, Chirality::kRight, {0.3, 0.1, 0.3})};
+  EXPECT_NE(keeper.update(3600 * kMs, again, {}, {})[0], nullptr);
+  EXPECT_NE(keeper.update(9000 * kMs, other, {}, {})[0], nullptr) << "the owner is gone";
+}
+
 }  // namespace
 }  // namespace dubsar

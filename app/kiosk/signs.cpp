@@ -1,0 +1,72 @@
+#include "app/kiosk/signs.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace dubsar::app {
+namespace {
+
+constexpr TimestampNs kBegins = 250'000'000;    // a hand that passes fills nothing
+constexpr TimestampNs kFills = 1'250'000'000;   // a hand that ends there by chance has mostly left by then
+constexpr TimestampNs kForgives = 300'000'000;  // a tremble over the edge, or a hand that is lost for a moment
+constexpr TimestampNs kGone = 1'000'000'000;
+constexpr double kEdge = 1.25;  // of the radius, for a hand that is on the sign already
+
+}  // namespace
+
+std::vector<SignPicture> place_signs(std::span<const Sign> signs, double aspect) {
+  std::vector<SignPicture> out;
+  const double radius = std::min(0.095, 0.14 * aspect), margin = 0.035;
+  const double x = 0.5 - (radius + margin) / aspect;
+  // What takes a sign's place when it was chosen stands elsewhere: a hand that stays where it is chooses nothing more.
+  constexpr std::array<int, kSignCount> kRow{0, 1, 2, 0, 2};
+  for (const Sign sign : signs) {
+    const int row = kRow[static_cast<std::size_t>(sign)];
+    out.push_back({sign, {x, 0.5 - (radius + margin) - row * (2.0 * radius + margin)}, radius, 0.0});
+  }
+  return out;
+}
+
+double SignRest::filled(Sign sign) const noexcept { return rests_[static_cast<std::size_t>(sign)].filled; }
+
+std::optional<Sign> SignRest::update(TimestampNs now, std::span<const SignHand> hands,
+                                     std::span<const SignPicture> signs, double aspect) {
+  std::optional<Sign> chosen;
+  std::array<bool, kSignCount> there{};
+  bool any = false;
+  for (const SignPicture& sign : signs) {
+    Rest& rest = rests_[static_cast<std::size_t>(sign.sign)];
+    there[static_cast<std::size_t>(sign.sign)] = true;
+    const double radius = sign.radius * (rest.since >= 0 ? kEdge : 1.0);
+    bool on = false;
+    for (const SignHand& hand : hands) {
+      const glm::dvec2 apart = hand.at - sign.at;
+      const double far = glm::length(glm::dvec2(apart.x * aspect, apart.y));
+      if (far > kEdge * sign.radius) continue;
+      any = true;
+      if (!hand.free) waits_ = true;
+      on = on || far <= radius;
+    }
+    if (waits_) {
+      rest = {};
+    } else if (on) {
+      rest.seen = now;
+      if (rest.since < 0) rest.since = now;
+    } else if (rest.since >= 0 && now - rest.seen > kForgives) {
+      rest = {};
+    }
+    if (rest.since < 0) continue;
+    rest.filled =
+        std::clamp(static_cast<double>(rest.seen - rest.since - kBegins) / static_cast<double>(kFills), 0.0, 1.0);
+    if (rest.filled < 1.0 || chosen) continue;
+    chosen = sign.sign;
+  }
+  for (std::size_t s = 0; s < kSignCount; ++s)
+    if (!there[s] || chosen) rests_[s] = {};
+  if (!hands.empty()) hands_seen_ = now;
+  const bool left = hands.empty() ? now - hands_seen_ > kGone : !any;
+  waits_ = chosen.has_value() || (waits_ && !left);
+  return chosen;
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,197 @@
+#include "tests/app/kiosk/gallery_visit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "app/document/document.h"
+#include "app/kiosk/hand_rings.h"
+#include "app/kiosk/kiosk_guide.h"
+#include "input/navigation/navigation.h"
+
+namespace dubsar::app::test {
+namespace {
+
+constexpr double kRad = std::numbers::pi / 180.0;
+constexpr double kTurn_rad = 8.0 * kRad, kZoom = 0.1;         // what counts as done
+constexpr double kMoved_rad = 2.0 * kRad, kMovedZoom = 0.02;  // what is seen as a movement
+constexpr double kInTime_s = 20.0, kFrame_s = 1.0 / 60.0;
+constexpr glm::dvec2 kWindow_mm{600.0, 340.0};
+
+glm::dvec3 turned_from(const ViewState& before, const ViewState& now) {
+  return vector_of(now.rotation * glm::conjugate(before.rotation));
+}
+
+bool steers(const GestureRecognizer& hand) {
+  return hand.grabbing() || hand.pinching() ||
+         std::any_of(hand.events().begin(), hand.events().end(), [](const GestureEvent& event) {
+           return event.kind != GestureKind::kDwell && event.phase != GesturePhase::kCancel;
+         });
+}
+
+dubsar::Lesson as_seen(const std::optional<Lesson>& lesson) {
+  if (!lesson) return dubsar::Lesson::kNone;
+  switch (*lesson) {
+    case Lesson::kShowHand:
+      return dubsar::Lesson::kShowHand;
+    case Lesson::kGrab:
+    case Lesson::kTurn:
+      return dubsar::Lesson::kGrabAndMove;
+    case Lesson::kRest:
+      return dubsar::Lesson::kRestOnSign;
+    case Lesson::kTwoHands:
+      return dubsar::Lesson::kNearer;
+    case Lesson::kSwipe:
+      break;
+  }
+  return dubsar::Lesson::kSwipe;
+}
+
+/// The kiosk without its pictures.
+class Session {
+ public:
+  Session() : navigator_(kMapping), people_(zone()), guide_(parts()) {
+    document_.parts = {{"tablet", 1}, {"envelope", 2}};
+  }
+  void go_on(TimestampNs now, const InputFrame& frame) {
+    person_ = people_.update(now, frame);
+    navigator_.update(now, frame, person_.hands);
+    Steered steered;
+    steered.view = navigator_.view();
+    steered.control = navigator_.control();
+    steered.hands = hand_marks(frame, person_, navigator_.hands(), zone());
+    for (const GestureRecognizer& hand : navigator_.hands())
+      for (const GestureEvent& event : hand.events())
+        steered.swiped = steered.swiped || event.kind == GestureKind::kSwipe;
+    if (person_.head) steered.eyes.presence = Presence::kTracked;
+    const Guidance guidance = guide_.lead({now, steered, document_, rows_, kWindow_mm, {0, 0}});
+    for (const std::string& command : guidance.commands) {
+      if (command.rfind("unpack ", 0) == 0) document_.unpack = 0.01 * std::stod(command.substr(7));
+      if (command == "reset") navigator_.go_to({}, now, true);
+    }
+    screen_ = {};
+    screen_.view = navigator_.view();
+    screen_.opened = document_.unpack > 0.05;  // it is seen to begin
+    screen_.lesson = as_seen(guidance.picture->lesson);
+    for (std::size_t h = 0; h < 2; ++h)
+      if (person_.hands[h] != nullptr && Gallery::is_the_visitors(person_.hands[h]->id) && !screen_.my_mark)
+        screen_.my_mark =
+            glm::dvec2(ring_place_mm({zone(), kWindow_mm, {0, 0}}, navigator_.hands()[h].position_m())) / kWindow_mm.y;
+    for (const SignPicture& sign : guidance.picture->signs)
+      if (sign.sign == Sign::kOpen || sign.sign == Sign::kClose) {
+        screen_.sign = sign.at * glm::dvec2(kWindow_mm.x / kWindow_mm.y, 1.0);
+        screen_.sign_radius = sign.radius;
+        screen_.sign_filled = sign.filled;
+      }
+  }
+  /// How often the envelope was asked for, by anybody.
+  std::int64_t chosen() const { return guide_.visit().counts().openings; }
+  const SeenScreen& screen() const { return screen_; }
+  const Navigator& navigator() const { return navigator_; }
+  const KeptPerson& person() const { return person_; }
+
+ private:
+  static HandZone zone() { return {1e-3 * kMapping.hands.zone_min_mm, 1e-3 * kMapping.hands.zone_max_mm}; }
+  static KioskParts parts() {
+    KioskParts out;
+    out.profile.objects = {{.file = "a.exa"}};
+    out.profile.pin = "8302";
+    out.zone = zone();
+    out.wall = [] { return WallTime{1'790'000'000, 720}; };
+    return out;
+  }
+  static const Mapping kMapping;
+  Navigator navigator_;
+  PersonKeeper people_;
+  KioskGuide guide_;
+  Document document_;
+  std::vector<SourceRow> rows_{{"leap", SourceHealth::kPresent, ""}};
+  KeptPerson person_;
+  SeenScreen screen_;
+};
+const Mapping Session::kMapping = gallery_mapping().value();
+
+}  // namespace
+
+GalleryVisit visit(const GalleryOptions& room) {
+  GalleryVisit out;
+  Gallery gallery(room);
+  Session session;
+  InputFrame frame;
+  SeenScreen at_trial = session.screen(), at_movement = at_trial;
+  Intention before = Intention::kNone;
+  std::uint64_t movement = 0;
+  bool suspect = false;
+  std::string steered_by;
+  std::int64_t chosen = 0;
+  for (double t = 0.0; t < room.leaves_s + 4.0; t += kFrame_s) {
+    const double here_s = t - room.arrives_s;
+    static_cast<void>(gallery.step(t, session.screen(), frame));
+    const SeenScreen was = session.screen();
+    session.go_on(static_cast<TimestampNs>(1e9 * t), frame);
+    const SeenScreen& now = session.screen();
+    const NaiveVisitor& visitor = gallery.visitor();
+    const bool here = gallery.visitor_is_here(t);
+    const Intention wants = here ? visitor.intention(here_s) : Intention::kNone;
+    if (wants != before) at_trial = was;
+    before = wants;
+    if (wants == Intention::kTurn && !out.turned_s) {
+      const glm::dvec3 turn = turned_from(at_trial.view, now.view);
+      if (glm::dot(glm::dvec2(turn.y, -turn.x), visitor.sense()) > kTurn_rad) out.turned_s = here_s;
+    }
+    if (wants == Intention::kZoom && !out.zoomed_s &&
+        std::log(now.view.zoom / at_trial.view.zoom) * visitor.sense().x > std::log1p(kZoom))
+      out.zoomed_s = here_s;
+    if (now.opened && here && !out.opened_s) out.opened_s = here_s;
+    if (session.chosen() != chosen) {
+      chosen = session.chosen();
+      if (wants == Intention::kNone && here) {
+        ++out.unwanted;
+        out.causes += fmt::format("  {:.2f} s: opened or closed unasked\n", here_s);
+      }
+    }
+    const Navigator& navigator = session.navigator();
+    if (navigator.movement() != movement) {
+      movement = navigator.movement();
+      at_movement = was;
+      suspect = wants == Intention::kNone && here;
+      std::string who;
+      for (std::size_t h = 0; h < 2; ++h) {
+        const HandFrame* const hand = session.person().hands[h];
+        if (!here || hand == nullptr || !steers(navigator.hands()[h])) continue;
+        who += fmt::format(" {} ({:.2f} {:.2f} {:.2f}) grab {:.2f} v {:.2f} {}", hand->id, hand->palm.position_m.x,
+                           hand->palm.position_m.y, hand->palm.position_m.z, hand->grab_strength,
+                           glm::length(navigator.hands()[h].velocity_mps()),
+                           navigator.hands()[h].grabbing()   ? "grabs"
+                           : navigator.hands()[h].pinching() ? "pinches"
+                                                             : "swipes");
+        if (Gallery::is_the_visitors(hand->id)) continue;
+        ++out.takeovers;
+        out.causes += fmt::format("  {:.2f} s: somebody else's{}\n", here_s, who);
+      }
+      steered_by = who;
+    }
+    if (suspect && (glm::length(turned_from(at_movement.view, now.view)) > kMoved_rad ||
+                    std::abs(std::log(now.view.zoom / at_movement.view.zoom)) > kMovedZoom)) {
+      ++out.unwanted;
+      out.causes += fmt::format("  {:.2f} s: unwanted:{}\n", here_s, steered_by);
+      suspect = false;
+    }
+  }
+  out.minutes = (room.leaves_s - room.arrives_s) / 60.0;
+  return out;
+}
+
+void GalleryFigures::add(const GalleryVisit& visit) {
+  ++visitors;
+  turned += visit.turned_s && *visit.turned_s <= kInTime_s ? 1 : 0;
+  zoomed += visit.zoomed_s ? 1 : 0;
+  opened += visit.opened_s && *visit.opened_s <= 60.0 ? 1 : 0;
+  unwanted += visit.unwanted;
+  takeovers += visit.takeovers;
+  minutes += visit.minutes;
+}
+
+}  // namespace dubsar::app::test
