@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 
 #include "core/base/log.h"
 #include "core/contact/band.h"
@@ -13,10 +14,10 @@
 #include "core/contact/interface_shape.h"
 #include "core/contact/pockets.h"
 #include "core/contact/sides.h"
-#include "core/contact/uncross.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh/mesh_check.h"
 #include "core/parts/holes.h"
+#include "core/parts/untangle.h"
 
 namespace dubsar {
 namespace {
@@ -24,7 +25,9 @@ namespace {
 constexpr float kSpacing = 0.7f;  ///< of samples of the patches, grid steps
 /// Farthest that inferred contact is moved from the cut: staircases of the cut go, nothing runs through anything else.
 constexpr float kMostMove = 1.5f;
-constexpr int kMostAttempts = 6;  ///< to get round places where the contact would not close the parts
+constexpr int kMostAttempts = 6;       ///< to get round places where the contact would not close the parts
+constexpr int kMostCrossed = 3;        ///< of those, to get round places where it would run through the surface
+constexpr std::size_t kHopeless = 60;  ///< such places, from which on the next attempt does not better
 
 /// What tracing changes in a model.
 struct Labels {
@@ -70,9 +73,7 @@ Result<void> build_contact(SurfaceModel& model, const Traced& traced, const Cont
   InterfaceMesh mesh = make_interface(model, traced.index, traced.band, traced.side, traced.dips);
   const std::int64_t stars = close_rest(model, traced.graph, mesh);
   part_shared_edges(model, mesh);
-  const std::vector<glm::vec3> home = mesh.added;
   std::vector<std::uint8_t> evidence = shape_interface(mesh, model.mesh.positions, options.film_strength, kMostMove);
-  report.uncrossed = uncross(model, traced.faces, home, mesh);
   report.film_vertices = std::count(evidence.begin(), evidence.end(), evidence_byte(Evidence::kFilm));
   report.inferred_vertices = static_cast<std::int64_t>(evidence.size()) - report.film_vertices;
   store_patch(model, std::move(mesh), std::move(evidence));
@@ -84,9 +85,12 @@ Result<void> build_contact(SurfaceModel& model, const Traced& traced, const Cont
   return {};
 }
 
-/// Middles of the edges of a body that have not two triangles.
-Result<void> add_open_places(const SurfaceModel& model, const char* body, std::vector<glm::vec3>& places) {
-  DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model, {.body = body}));
+/// Middles of the edges of a body that have not two triangles; `closed`: it is a closed 2-manifold.
+Result<void> add_open_places(const SurfaceModel& model, const char* body, std::vector<glm::vec3>& places,
+                             bool& closed) {
+  DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model, {.body = body, .attributes = false}));
+  if (check_mesh(mesh.positions, mesh.triangles).watertight()) return {};
+  closed = false;
   std::vector<std::array<std::uint32_t, 2>> edges;
   edges.reserve(3 * mesh.triangles.size());
   for (const Triangle& t : mesh.triangles)
@@ -121,30 +125,39 @@ void step_aside(const ContactBand& band, const std::vector<glm::vec3>& places, i
   }
 }
 
-/// Each of the two bodies is a closed 2-manifold.
-Result<bool> closed(const SurfaceModel& model) {
-  for (const char* body : {"tablet", "envelope"}) {
-    DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model, {.body = body}));
-    if (!check_mesh(mesh.positions, mesh.triangles).watertight()) return false;
-  }
-  return true;
-}
-
-/// Until tablet and envelope are closed, or not at all.
+/// Until tablet and envelope are closed and nothing runs through anything else, or at least closed, or not at all.
 Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const ContactOptions& options,
                                 ContactReport& report, Progress& progress) {
   const Labels before = labels_of(model);
+  struct Closed {
+    Labels labels;
+    ContactReport report;
+  };
+  int crossed = 0;
+  std::optional<Closed> best;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     DUBSAR_TRY(build_contact(model, traced, options, report, progress));
-    DUBSAR_ASSIGN(report.traced, closed(model));
-    if (report.traced) return {};
     std::vector<glm::vec3> places;
-    DUBSAR_TRY(add_open_places(model, "tablet", places));
-    DUBSAR_TRY(add_open_places(model, "envelope", places));
+    report.traced = true;
+    DUBSAR_TRY(add_open_places(model, "tablet", places, report.traced));
+    DUBSAR_TRY(add_open_places(model, "envelope", places, report.traced));
+    if (report.traced) {
+      DUBSAR_ASSIGN(report.patches, untangle_patches(model, options.step, progress));
+      places = report.patches.left;
+      if (places.empty()) return {};
+      if (!best || best->report.patches.left.size() > places.size()) best = Closed{labels_of(model), report};
+      if (++crossed == kMostCrossed || places.size() > kHopeless) break;
+    }
     restore(before, model);
     if (places.empty()) break;
     step_aside(traced.band, places, 2 + attempt / 2, traced.side);
     unpinch_sides(traced.band, traced.side);
+  }
+  if (best) {
+    restore(best->labels, model);
+    report = best->report;
+    log_info("contact: closed, but {} pairs of triangles of patches cross others", report.patches.left.size());
+    return measure_partitions(model);
   }
   report.why = "the traced contact does not close tablet and envelope";
   report.pockets = report.film_vertices = 0;

@@ -8,21 +8,23 @@
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/parts/surface_model.h"
+#include "core/parts/untangle.h"
 #include "core/volume/slab_source.h"
 
 namespace dubsar {
 
 struct ContactOptions {
   float reach = 12.0f;         ///< of the search on both sides of the smooth patch, grid steps
+  double step = 1.0 / 64.0;    ///< positions are multiples of it, as in files
   float film_strength = 2.0f;  ///< mean strength of dips around a vertex (dips.h) from which on a film is believed
 };
 
 struct ContactReport {
   bool traced = false;  ///< false: the patches stay as they were, `why` says the reason
   std::string why;
-  std::int64_t points = 0;     ///< of clay that was looked at
-  std::int64_t pockets = 0;    ///< closed surfaces that joined tablet and envelope
-  std::int64_t uncrossed = 0;  ///< triangles of the contact that were moved because they crossed others
+  std::int64_t points = 0;   ///< of clay that was looked at
+  std::int64_t pockets = 0;  ///< closed surfaces that joined tablet and envelope
+  UntangleReport patches;    ///< whether the contact runs through anything
   std::int64_t film_vertices = 0, inferred_vertices = 0;
 };
 

@@ -125,15 +125,15 @@ class Tree {
 
 bool triangles_cross(std::span<const glm::vec3> positions, const std::array<std::uint32_t, 3>& a,
                      const std::array<std::uint32_t, 3>& b) {
-  int shared = 0;
-  for (const std::uint32_t v : a) shared += std::count(b.begin(), b.end(), v) != 0;
-  if (shared >= 2) return false;
   for (int axis = 0; axis < 3; ++axis) {
     const auto along = [&](std::uint32_t v) { return positions[v][axis]; };
     if (std::max({along(a[0]), along(a[1]), along(a[2])}) < std::min({along(b[0]), along(b[1]), along(b[2])}) ||
         std::max({along(b[0]), along(b[1]), along(b[2])}) < std::min({along(a[0]), along(a[1]), along(a[2])}))
       return false;
   }
+  int shared = 0;
+  for (const std::uint32_t v : a) shared += std::count(b.begin(), b.end(), v) != 0;
+  if (shared >= 2) return false;
   const auto corners = [&](const std::array<std::uint32_t, 3>& t) {
     return Corners{glm::dvec3(positions[t[0]]), glm::dvec3(positions[t[1]]), glm::dvec3(positions[t[2]])};
   };

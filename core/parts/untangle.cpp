@@ -16,9 +16,12 @@
 namespace dubsar {
 namespace {
 
-constexpr int kRounds = 12;  ///< of moves between two attempts to add vertices
-constexpr int kMostSplits = 4;
+constexpr int kRounds = 6;  ///< of moves between two attempts to add vertices
+constexpr int kMostSplits = 2;
+constexpr int kMostCounted = 1000;
 constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr float kBeside = 6.0f;  ///< steps that moves reach
+using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
 /// Patches and the surface beside them as one list of triangles.
 class Tangle {
@@ -28,21 +31,43 @@ class Tangle {
     positions_ = model.mesh.positions;
     positions_.insert(positions_.end(), surface.steiner.begin(), surface.steiner.end());
     first_extra_ = static_cast<std::uint32_t>(positions_.size());
-    for (std::size_t p = 0; p < model.patches.size(); ++p) add_patch(p);
+    for (std::size_t p = 0; p < model.patches.size(); ++p)
+      if (!inside_body(model.patches[p])) add_patch(p);
     add_surface(surface);
   }
 
-  /// Pairs of crossing triangles that matter.
-  std::vector<std::array<std::uint32_t, 2>> crossings() const {
-    auto pairs = self_intersections(positions_, triangles_);
+  /// Pairs of crossing triangles that matter; `near`: only among triangles beside these.
+  Pairs crossings(const Pairs* near = nullptr) const {
+    Pairs pairs;
+    if (near == nullptr) {
+      pairs = self_intersections(positions_, triangles_);
+    } else {
+      const std::vector<std::uint32_t> some = beside(*near);
+      std::vector<Triangle> triangles;
+      for (const std::uint32_t t : some) triangles.push_back(triangles_[t]);
+      pairs = self_intersections(positions_, triangles);
+      for (auto& [a, b] : pairs) a = some[a], b = some[b];
+    }
     std::erase_if(pairs, [&](const auto& pair) { return !matters(pair[0], pair[1]); });
     return pairs;
   }
 
+  /// The middles of the pairs.
+  std::vector<glm::vec3> places(const Pairs& pairs) const {
+    std::vector<glm::vec3> middles;
+    for (const auto& pair : pairs) {
+      glm::vec3 sum(0.0f);
+      for (const std::uint32_t t : pair)
+        for (const std::uint32_t v : triangles_[t]) sum += positions_[v];
+      middles.push_back(sum / 6.0f);
+    }
+    return middles;
+  }
+
   /// Moves vertices of the pairs and of those that they come to cross. True: nothing crosses any more, as far as is
   /// seen from the vertices that were looked at.
-  bool move(const std::vector<std::array<std::uint32_t, 2>>& pairs) {
-    index_triangles();
+  bool move(const Pairs& pairs) {
+    index_triangles(pairs);
     std::vector<std::uint32_t> work;
     for (const auto& pair : pairs)
       for (const std::uint32_t t : pair) add_corners(t, work);
@@ -51,8 +76,9 @@ class Tangle {
       std::vector<std::uint32_t> next;
       bool better = false;
       for (const std::uint32_t v : work) {
+        look_around(v);
         better = relieve(v) || better;
-        if (crossings_at(v, positions_[v], &next) > 0) next.push_back(v);
+        if (crossings_at(v, positions_[v], kMostCounted, &next) > 0) next.push_back(v);
       }
       if (!better)  // wider: neighbours make room
         for (const std::uint32_t v : work)
@@ -63,7 +89,7 @@ class Tangle {
   }
 
   /// Puts a vertex on the longest edge inside a patch of each triangle in a pair. Returns how many.
-  std::int64_t split(const std::vector<std::array<std::uint32_t, 2>>& pairs) {
+  std::int64_t split(const Pairs& pairs) {
     std::int64_t splits = 0;
     std::vector<bool> touched(triangles_.size(), false);
     for (const auto& pair : pairs)
@@ -78,14 +104,13 @@ class Tangle {
   void store() const {
     for (std::size_t p = 0; p < model_.patches.size(); ++p) {
       FillPatch& patch = model_.patches[p];
+      if (inside_body(patch)) continue;
       std::vector<std::uint32_t> extras;
       for (std::uint32_t v = first_extra_; v < positions_.size(); ++v)
         if (patch_of_vertex_[v - first_extra_] == p) extras.push_back(v);
-      const std::size_t before = patch.extra_positions.size();
       patch.extra_positions.resize(extras.size());
       if (!patch.evidence.empty()) patch.evidence.resize(extras.size(), evidence_byte(Evidence::kInferred));
-      for (std::size_t i = 0; i < extras.size(); ++i)
-        if (i >= before || moved_[extras[i] - first_extra_]) patch.extra_positions[i] = positions_[extras[i]];
+      for (std::size_t i = 0; i < extras.size(); ++i) patch.extra_positions[i] = positions_[extras[i]];
       patch.triangles.clear();
       for (std::size_t t = 0; t < triangles_.size(); ++t) {
         if (owner_[t].patch != p) continue;
@@ -109,10 +134,15 @@ class Tangle {
     return id == PartitionTable::kNone || model_.partitions.empty() ? id : model_.partitions.body_of(id);
   }
 
+  /// A membrane across a crack: bodies are shown without it.
+  bool inside_body(const FillPatch& patch) const {
+    return body_of(patch.partition) == body_of(patch.reverse_partition);
+  }
+
   void add_patch(std::size_t p) {
     const FillPatch& patch = model_.patches[p];
     const auto base = static_cast<std::uint32_t>(positions_.size());
-    positions_.insert(positions_.end(), patch.extra_positions.begin(), patch.extra_positions.end());
+    for (const glm::vec3& place : patch.extra_positions) positions_.push_back(rounded(place));
     patch_of_vertex_.resize(positions_.size() - first_extra_, static_cast<std::uint32_t>(p));
     for (Triangle t : patch.triangles) {
       for (std::uint32_t& v : t)
@@ -143,15 +173,24 @@ class Tangle {
     return is_of(one.front) || is_of(one.back);
   }
 
-  void index_triangles() {
+  std::vector<std::uint32_t> beside(const Pairs& pairs) const {
+    BrickSet bricks;
+    for (const auto& pair : pairs)
+      for (const std::uint32_t t : pair) bricks.add(box_of(positions_, triangles_[t]).grown(kBeside));
+    std::vector<std::uint32_t> some;
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+      if (bricks.meets(box_of(positions_, triangles_[t]))) some.push_back(t);
+    return some;
+  }
+
+  void index_triangles(const Pairs& pairs) {
     grid_ = TriangleGrid();
+    for (const std::uint32_t t : beside(pairs)) grid_.add(t, box_of(positions_, triangles_[t]));
     star_.assign(positions_.size() - first_extra_, {});
     moved_.resize(star_.size(), false);
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-      grid_.add(t, box_of(positions_, triangles_[t]));
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
       for (const std::uint32_t v : triangles_[t])
         if (v >= first_extra_) star_[v - first_extra_].push_back(t);
-    }
   }
 
   void add_corners(std::uint32_t t, std::vector<std::uint32_t>& vertices) const {
@@ -164,22 +203,30 @@ class Tangle {
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
 
-  /// How many triangles the star of a vertex at `place` crosses; `met`: movable vertices of those.
-  int crossings_at(std::uint32_t v, const glm::vec3& place, std::vector<std::uint32_t>* met = nullptr) {
+  /// Triangles beside the star of a vertex, wherever it may be moved.
+  void look_around(std::uint32_t v) {
+    TriangleBox box{positions_[v], positions_[v]};
+    for (const std::uint32_t t : star_[v - first_extra_]) {
+      const TriangleBox one = box_of(positions_, triangles_[t]);
+      box = {glm::min(box.low, one.low), glm::max(box.high, one.high)};
+    }
+    grid_.near(box.grown(1.0f), near_);
+  }
+
+  /// How many of them the star of a vertex at `place` crosses, counted up to `most`; `met`: movable vertices of those.
+  int crossings_at(std::uint32_t v, const glm::vec3& place, int most, std::vector<std::uint32_t>* met = nullptr) {
     const glm::vec3 before = positions_[v];
     positions_[v] = place;
     int count = 0;
     const auto& star = star_[v - first_extra_];
-    for (const std::uint32_t t : star) {
-      grid_.near(box_of(positions_, triangles_[t]), near_);
+    for (const std::uint32_t t : star)
       for (const std::uint32_t other : near_) {
-        const bool both = std::find(star.begin(), star.end(), other) != star.end();
-        if (other == t || (both && other < t) || !matters(t, other)) continue;
-        if (!triangles_cross(positions_, triangles_[t], triangles_[other])) continue;
+        if (count >= most) break;
+        if (!triangles_cross(positions_, triangles_[t], triangles_[other]) || !matters(t, other)) continue;
+        if (other < t && std::find(star.begin(), star.end(), other) != star.end()) continue;
         ++count;
         if (met != nullptr) add_corners(other, *met);
       }
-    }
     positions_[v] = before;
     return count;
   }
@@ -191,7 +238,7 @@ class Tangle {
 
   /// The nearest of some places where the vertex crosses least. True: less than before.
   bool relieve(std::uint32_t v) {
-    int least = crossings_at(v, positions_[v]);
+    int least = crossings_at(v, positions_[v], kMostCounted);
     if (least == 0) return false;
     const glm::vec3 start = positions_[v];
     glm::vec3 mean(0.0f), best = start;
@@ -204,7 +251,7 @@ class Tangle {
         }
     mean /= around;
     const auto attempt = [&](const glm::vec3& place) {
-      const int count = crossings_at(v, rounded(place));
+      const int count = crossings_at(v, rounded(place), least);
       if (count >= least) return;
       least = count;
       best = rounded(place);
@@ -244,6 +291,7 @@ class Tangle {
       std::replace(other.begin(), other.end(), b, middle);
       triangles_.push_back(other);
       owner_.push_back(owner_[side]);
+      touched.push_back(true);
     }
     return 1;
   }
@@ -289,15 +337,16 @@ Result<UntangleReport> untangle_patches(SurfaceModel& model, double step, Progre
     if (progress.cancelled()) return cancelled_error();
     if (round > 0) report.added += tangle.split(pairs);
     tangle.move(pairs);
-    pairs = tangle.crossings();
+    pairs = tangle.crossings(&pairs);
+    if (pairs.empty()) pairs = tangle.crossings();
     progress.advance(1);
   }
-  report.left = static_cast<std::int64_t>(pairs.size());
+  report.left = tangle.places(pairs);
   report.moved = tangle.moved();
+  tangle.store();
   if (report.crossings > 0) {
-    tangle.store();
     log_info("patches: {} pairs of triangles crossed, {} do after {} vertices were moved and {} added",
-             report.crossings, report.left, report.moved, report.added);
+             report.crossings, report.left.size(), report.moved, report.added);
   }
   progress.end();
   return report;

@@ -2,6 +2,8 @@
 // No place where a patch runs through itself or through the surface that it closes.
 
 #include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
@@ -10,14 +12,14 @@
 namespace dubsar {
 
 struct UntangleReport {
-  std::int64_t crossings = 0;  ///< pairs of triangles, one of a patch at least, that crossed
-  std::int64_t left = 0;       ///< that still do
-  std::int64_t moved = 0;      ///< vertices that patches added and that were moved
-  std::int64_t added = 0;      ///< vertices that had to be added to have something to move
+  std::int64_t crossings = 0;   ///< pairs of triangles, one of a patch at least, that crossed
+  std::vector<glm::vec3> left;  ///< where some still do, one for each pair: the surface crosses itself at the rim
+  std::int64_t moved = 0;       ///< vertices that patches added and that were moved
+  std::int64_t added = 0;       ///< vertices that had to be added to have something to move
 };
 
 /// Moves vertices that patches added, as little as it takes, until no triangle of a patch crosses a triangle of a body
-/// that it closes (intersections.h). Positions that change are multiples of `step`, which is what files hold. Every
+/// that it closes (intersections.h). All positions become multiples of `step`, which is what files hold. Every
 /// body stays as closed as it was. Deterministic for any thread count. kBadData as make_tri_mesh(); kCancelled. About
 /// 3 us a triangle of patches and of the surface beside them.
 Result<UntangleReport> untangle_patches(SurfaceModel& model, double step, Progress& progress);

@@ -45,18 +45,27 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
     DUBSAR_ASSIGN(TracedModel traced, trace(std::move(result.model), options.import, imported.detail.resample(), run));
     result.model = std::move(traced.model);
     contact = traced.contact;
-    if (contact->traced && separated.holes) {
-      separated.holes->triangles = 0;
-      for (const FillPatch& patch : result.model.patches)
-        separated.holes->triangles += static_cast<std::int64_t>(patch.triangles.size());
-    }
+  }
+  std::optional<UntangleReport> patches;
+  if (contact && contact->traced) {
+    patches = contact->patches;
+  } else if (options.fill_holes) {
+    DUBSAR_ASSIGN(UntangledModel untangled, untangle(std::move(result.model), run));
+    result.model = std::move(untangled.model);
+    patches = untangled.patches;
+  }
+  if (separated.holes) {
+    separated.holes->triangles = 0;
+    for (const FillPatch& patch : result.model.patches)
+      separated.holes->triangles += static_cast<std::int64_t>(patch.triangles.size());
   }
   if (options.occlusion) {
     DUBSAR_ASSIGN(result.model, shade(std::move(result.model), *options.occlusion, run));
   }
   DUBSAR_ASSIGN(const MeshCheck check, check_product(result.model, run));
-  result.report = make_report({imported, denoised, threshold, sampled, smoothed, settled, separated, contact, check},
-                              result.model, clock);
+  result.report =
+      make_report({imported, denoised, threshold, sampled, smoothed, settled, separated, contact, patches, check},
+                  result.model, clock);
   result.model.provenance = dump_json(provenance_json(result.report, options));
   return result;
 }

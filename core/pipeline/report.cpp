@@ -96,6 +96,13 @@ json contact_json(const ContactReport& contact) {
   return result;
 }
 
+json patches_json(const UntangleReport& patches) {
+  return {{"crossings_found", patches.crossings},
+          {"crossings_left", patches.left.size()},
+          {"moved_vertices", patches.moved},
+          {"added_vertices", patches.added}};
+}
+
 json exa_json(const ExaStats& stats) {
   json blocks = json::object();
   for (const ExaBlockStats& block : stats.blocks)
@@ -115,6 +122,7 @@ PipelineReport make_report(const StageResults& results, const SurfaceModel& mode
                         .segment = results.separated.segment,
                         .holes = results.separated.holes,
                         .contact = results.contact,
+                        .patches = results.patches,
                         .detail = results.imported.detail,
                         .mesh = results.check,
                         .vertices = model.mesh.vertex_count(),
@@ -202,6 +210,7 @@ json report_json(const PipelineReport& report, const PipelineOptions& options) {
           {"detail", {{"grid", name_in(kDetails, report.detail.detail)}, {"why", report.detail.why}}},
           {"segment", segment_json(report)},
           {"contact", report.contact ? contact_json(*report.contact) : json(nullptr)},
+          {"patches", report.patches ? patches_json(*report.patches) : json(nullptr)},
           {"partitions", partitions_json(report.partitions)},
           {"exa", exa_json(report.exa)},
           {"parameters", parameters_json(report, options)},
@@ -242,6 +251,9 @@ std::string report_text(const PipelineReport& report) {
                         contact->film_vertices, contact->inferred_vertices);
   else if (contact)
     text += fmt::format(", contact not traced: {}", contact->why);
+  if (const auto& patches = report.patches; patches && patches->crossings > 0)
+    text +=
+        fmt::format("\npatches: {} pairs of triangles crossed, {} do now", patches->crossings, patches->left.size());
   text += fmt::format("\n{:<4}{:<24}{:>14}{:>14}  {}\n", "id", "part", "area mm2", "volume mm3", "");
   for (const Partition& part : report.partitions)
     text += fmt::format("{:<4}{:<24}{:>14.1f}{:>14.1f}  {}\n", part.id, part.name, part.area_mm2, part.volume_mm3,

@@ -24,8 +24,9 @@ struct PipelineReport {
   SmoothStats smooth;
   SettleStats settle;
   SegmentReport segment;
-  std::optional<HoleReport> holes;       ///< when holes were filled
-  std::optional<ContactReport> contact;  ///< when tablet and envelope were told apart where they touch
+  std::optional<HoleReport> holes;        ///< when holes were filled
+  std::optional<ContactReport> contact;   ///< when tablet and envelope were told apart where they touch
+  std::optional<UntangleReport> patches;  ///< when holes were filled
   DetailChoice detail;
   MeshCheck mesh;  ///< of all parts together, with their fill patches
   std::int64_t vertices = 0, xquads = 0;
@@ -44,13 +45,14 @@ struct StageResults {
   const SettledModel& settled;
   const SeparatedModel& separated;
   const std::optional<ContactReport>& contact;
+  const std::optional<UntangleReport>& patches;
   const MeshCheck& check;
 };
 
 /// The one place where a report is made.
 PipelineReport make_report(const StageResults& results, const SurfaceModel& model, const StageClock& clock);
 
-/// Keys: input, estimates, stages, mesh, segment, partitions, exa, parameters, warnings.
+/// Keys: input, estimates, stages, mesh, detail, segment, contact, patches, partitions, exa, parameters, warnings.
 nlohmann::json report_json(const PipelineReport& report, const PipelineOptions& options);
 
 /// The stage table, the estimates and the parts, in lines of at most 110 characters.

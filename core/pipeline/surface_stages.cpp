@@ -3,6 +3,7 @@
 #include "core/base/log.h"
 #include "core/exa/attributes.h"
 #include "core/exa/paper_profile.h"
+#include "core/exa/patch_disk.h"
 #include "core/exa/patches.h"
 #include "core/extract/extract.h"
 #include "core/parts/enclosure.h"
@@ -73,6 +74,18 @@ Result<SeparatedModel> separate(SurfaceModel model, const SegmentOptions& option
   }
   run.clock.finish(separated.holes ? separated.holes->triangles : 0);
   return separated;
+}
+
+Result<UntangledModel> untangle(SurfaceModel model, StageRun run) {
+  UntangledModel result{std::move(model), {}};
+  run.clock.start("untangle", "crossing");
+  DUBSAR_ASSIGN(result.patches, untangle_patches(result.model, kPatchStep, run.progress));
+  if (result.patches.crossings > 0) {
+    settle_patches(result.model.patches, result.model.mesh.vertex_count());
+    DUBSAR_TRY(measure_partitions(result.model));
+  }
+  run.clock.finish(result.patches.crossings);
+  return result;
 }
 
 Result<SurfaceModel> shade(SurfaceModel model, const OcclusionOptions& options, StageRun run) {
