@@ -63,7 +63,21 @@ std::string evidence(const SurfaceFacts& facts) {
         escaped(part.name), 100.0 * (1.0 - part.inferred_share()), 100.0 * part.inferred_share(),
         100.0 * part.inferred_share());
   }
-  return out.empty() ? "<p>All of the surface is in the scan.</p>\n" : out;
+  if (out.empty()) return "<p>All of the surface is in the scan.</p>\n";
+  const char* const unit = facts.millimetres ? "mm²" : "voxel faces";
+  for (const PartFacts& part : facts.parts) {
+    if (part.area - part.evidence_area(Evidence::kMeasured) <= 0.0) continue;
+    out += fmt::format("<div class=\"scroll\"><table><tr><th>{}, {}</th>", escaped(part.name), unit);
+    for (const auto& [evidence, name, short_name] : kEvidences) out += fmt::format("<th>{}</th>", name);
+    out += "</tr>\n";
+    for (std::size_t side = 0; side < kSideNames.size(); ++side) {
+      out += fmt::format("<tr><td>{}</td>", kSideNames[side]);
+      for (const double area : part.sides[side]) out += fmt::format("<td>{:.1f}</td>", area);
+      out += "</tr>\n";
+    }
+    out += "</table></div>\n";
+  }
+  return out;
 }
 
 /// What a reader wants to know of how it was made, and all of it below.

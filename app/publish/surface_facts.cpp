@@ -52,6 +52,24 @@ TriMesh written_part(const TriMesh& mesh) {
   return part.triangles.empty() ? mesh : part;
 }
 
+/// How a triangle is known: as the least certain of its corners, but what is not inferred as a whole is at worst a
+/// film.
+Evidence evidence_of(const TriMesh& mesh, std::size_t t) {
+  if (!mesh.triangle_inferred.empty() && mesh.triangle_inferred[t] != 0) return Evidence::kInferred;
+  if (mesh.evidence.empty()) return Evidence::kMeasured;
+  std::uint8_t worst = 0;
+  for (const std::uint32_t v : mesh.triangles[t]) worst = std::max(worst, mesh.evidence[v]);
+  return static_cast<Evidence>(std::min(worst, evidence_byte(Evidence::kFilm)));
+}
+
+/// Index into kSideNames of a direction in the tablet's own axes.
+std::size_t side_of(const glm::dvec3& n) {
+  const glm::dvec3 a = glm::abs(n);
+  if (a.z >= a.x && a.z >= a.y) return n.z >= 0.0 ? 0 : 1;
+  if (a.y >= a.x) return n.y >= 0.0 ? 2 : 3;
+  return n.x < 0.0 ? 4 : 5;
+}
+
 bool crumbs(const PartFacts& part) { return part.kind == PartitionKind::kPores; }
 
 std::string area_text(double area, bool mm) {
@@ -83,7 +101,9 @@ Result<SurfaceFacts> surface_facts(const TriMesh& mesh) {
     const double area = 0.5 * glm::length(normal);
     body.facts.area += area;
     body.facts.volume += glm::dot(points[v[0]], normal) / 6.0;
-    if (!mesh.triangle_inferred.empty() && mesh.triangle_inferred[t] != 0) body.facts.inferred_area += area;
+    const auto known = static_cast<std::size_t>(evidence_of(mesh, t));
+    if (known == static_cast<std::size_t>(Evidence::kInferred)) body.facts.inferred_area += area;
+    body.facts.sides[side_of(turn * normal)][known] += area;
     body.triangles.push_back(v);
   }
   facts.box = all.size();
@@ -100,29 +120,47 @@ Result<SurfaceFacts> surface_facts(const TriMesh& mesh) {
   return facts;
 }
 
+double PartFacts::evidence_area(Evidence evidence) const {
+  double sum = 0.0;
+  for (const EvidenceAreas& side : sides) sum += side[static_cast<std::size_t>(evidence)];
+  return sum;
+}
+
 nlohmann::json facts_json(const SurfaceFacts& facts) {
   using nlohmann::json;
   const auto vector = [](const glm::dvec3& v) { return json{v.x, v.y, v.z}; };
   json parts = json::array();
-  double area = 0.0, inferred = 0.0;
+  double area = 0.0;
+  EvidenceAreas all{};
   for (const PartFacts& part : facts.parts) {
     area += part.area;
-    inferred += part.inferred_area;
+    json known, sides;
+    for (const auto& [evidence, name, short_name] : kEvidences) {
+      known[std::string(name)] = part.evidence_area(evidence);
+      all[static_cast<std::size_t>(evidence)] += part.evidence_area(evidence);
+      for (std::size_t side = 0; side < kSideNames.size(); ++side)
+        sides[kSideNames[side]][std::string(name)] = part.sides[side][static_cast<std::size_t>(evidence)];
+    }
     parts.push_back({{"name", part.name},
                      {"size", vector(part.size)},
                      {"area", part.area},
                      {"volume", part.volume},
                      {"watertight", part.watertight},
                      {"inferred_area", part.inferred_area},
-                     {"inferred_share", part.inferred_share()}});
+                     {"inferred_share", part.inferred_share()},
+                     {"evidence", std::move(known)},
+                     {"sides", std::move(sides)}});
   }
+  const auto [measured, pocket, film, inferred] = all;
   return {{"unit", facts.millimetres ? "mm" : "voxel"},
           {"upright", facts.upright},
           {"box", vector(facts.box)},
           {"parts", std::move(parts)},
           {"evidence",
            {{"area", area},
-            {"measured_area", area - inferred},
+            {"measured_area", measured},
+            {"pocket_area", pocket},
+            {"film_area", film},
             {"inferred_area", inferred},
             {"inferred_share", area > 0.0 ? inferred / area : 0.0}}}};
 }
@@ -152,6 +190,16 @@ std::string facts_text(const SurfaceFacts& facts) {
       inferred += fmt::format("  {:<{}}  {}, {:.1f} % of its surface\n", part.name, longest,
                               area_text(part.inferred_area, mm), 100.0 * part.inferred_share());
   if (!inferred.empty()) text += "\nNot in the scan, closed smoothly, hatched in pictures:\n" + inferred;
+  for (const PartFacts& part : facts.parts) {
+    if (part.kind != PartitionKind::kTablet || part.area - part.evidence_area(Evidence::kMeasured) <= 0.0) continue;
+    text += fmt::format("\nHow the {} is known, {}:\n  {:<12}{:>11}{:>11}{:>11}{:>11}\n", part.name,
+                        mm ? "mm2" : "voxel faces", "", "measured", "pocket", "film", "inferred");
+    for (std::size_t side = 0; side < kSideNames.size(); ++side) {
+      const auto& [measured, pocket, film, none] = part.sides[side];
+      text +=
+          fmt::format("  {:<12}{:>11.1f}{:>11.1f}{:>11.1f}{:>11.1f}\n", kSideNames[side], measured, pocket, film, none);
+    }
+  }
   return text;
 }
 

@@ -2,15 +2,22 @@
 // What a surface is, in figures that a person wants to read: its parts, how large they are, how much of them the scan
 // shows.
 
+#include <array>
 #include <glm/vec3.hpp>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/mesh/evidence.h"
 #include "core/mesh/tri_mesh.h"
 
 namespace dubsar::app {
+
+/// Sides of a body as the reader holds the tablet; the obverse is a guess where SurfaceFacts::upright is false.
+inline constexpr std::array<const char*, 6> kSideNames{"obverse",    "reverse",   "upper edge",
+                                                       "lower edge", "left edge", "right edge"};
+using EvidenceAreas = std::array<double, kEvidenceCount>;  ///< by Evidence
 
 /// A body: the tablet, its envelope (outside and inside together), a fragment. Lengths in mm, or in voxels where the
 /// file does not say how large a voxel is.
@@ -19,8 +26,10 @@ struct PartFacts {
   PartitionKind kind = PartitionKind::kOther;
   glm::dvec3 size{0.0};  ///< width, height, thickness as a reader holds the tablet; the axes of the whole surface
   double area = 0.0, volume = 0.0;
-  double inferred_area = 0.0;  ///< of surface that the scan does not show
+  double inferred_area = 0.0;                            ///< of surface that the scan does not show
+  std::array<EvidenceAreas, kSideNames.size()> sides{};  ///< by what a face looks to, and how it is known
   bool watertight = false;
+  double evidence_area(Evidence evidence) const;
   double inferred_share() const { return area > 0.0 ? inferred_area / area : 0.0; }
 };
 
@@ -36,10 +45,12 @@ struct SurfaceFacts {
 Result<SurfaceFacts> surface_facts(const TriMesh& mesh);
 
 /// {"unit": "mm", "box": [..], "parts": [{"name", "size", "area", "volume", "watertight", "inferred_area",
-/// "inferred_share"}], "evidence": {"area", "measured_area", "inferred_area", "inferred_share"}}
+/// "inferred_share", "evidence": {"measured", "pocket", "film", "inferred"}, "sides": {"obverse": the same, ...}}],
+/// "evidence": {"area", "measured_area", "pocket_area", "film_area", "inferred_area", "inferred_share"}}. Areas.
 nlohmann::json facts_json(const SurfaceFacts& facts);
 
-/// Lines of at most 60 characters: the parts with their sizes, and what of them is inferred.
+/// Lines of at most 60 characters: the parts with their sizes, what of them is inferred, and how each side of the
+/// written body is known.
 std::string facts_text(const SurfaceFacts& facts);
 
 /// "a tablet inside its envelope", "one object", ...

@@ -59,6 +59,32 @@ TEST(SurfaceFacts, SizesAreThoseOfABoxHoweverItLiesInTheScan) {
   }
 }
 
+TEST(SurfaceFacts, EachKindOfEvidenceIsMeasuredPerSide) {
+  TriMesh mesh = envelope_and_tablet(glm::dmat3(1.0));
+  mesh.evidence.assign(mesh.positions.size(), evidence_byte(Evidence::kMeasured));
+  // Of the tablet's twelve triangles one broad side is inferred, the other is a film, but for what it shares.
+  for (const std::uint32_t v : mesh.triangles[0]) mesh.evidence[v] = evidence_byte(Evidence::kFilm);
+  const SurfaceFacts facts = surface_facts(mesh).value();
+  const PartFacts& tablet = facts.parts[0];
+  double all = 0.0;
+  for (const auto& [evidence, name, short_name] : kEvidences) all += tablet.evidence_area(evidence);
+  EXPECT_NEAR(all, tablet.area, 1e-6);
+  EXPECT_NEAR(tablet.evidence_area(Evidence::kInferred), 1200.0, 0.01);
+  const auto inferred = static_cast<std::size_t>(Evidence::kInferred), film = static_cast<std::size_t>(Evidence::kFilm);
+  EXPECT_NEAR(tablet.sides[0][inferred] + tablet.sides[1][inferred], 1200.0, 0.01) << "a broad side";
+  EXPECT_NEAR(tablet.sides[0][film] + tablet.sides[1][film], 1200.0, 0.01) << "the other one";
+  EXPECT_EQ(std::min(tablet.sides[0][film], tablet.sides[1][film]), 0.0);
+  for (std::size_t side = 2; side < 6; ++side) EXPECT_EQ(tablet.sides[side][inferred], 0.0) << kSideNames[side];
+  EXPECT_EQ(facts.parts[1].evidence_area(Evidence::kFilm), 0.0);
+  const nlohmann::json json = facts_json(facts);
+  EXPECT_NEAR(json["parts"][0]["evidence"]["inferred"], 1200.0, 0.01);
+  EXPECT_NEAR(json["evidence"]["film_area"], tablet.evidence_area(Evidence::kFilm), 1e-6);
+  EXPECT_EQ(json["parts"][0]["sides"].size(), 6u);
+  const std::string text = facts_text(facts);
+  EXPECT_THAT(text, HasSubstr("How the tablet is known, mm2"));
+  EXPECT_THAT(text, HasSubstr("obverse"));
+}
+
 TEST(SurfaceFacts, TheTextFitsSixtyColumnsAndSaysWhatItIs) {
   const auto facts = surface_facts(envelope_and_tablet(glm::dmat3(1.0)));
   ASSERT_TRUE(facts);
