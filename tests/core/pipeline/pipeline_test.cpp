@@ -42,7 +42,7 @@ class Pipeline : public ::testing::Test {
   }
   static Result<PipelineResult> process(const fs::path& out, Progress& progress) {
     DUBSAR_ASSIGN(PipelineResult result, run_pipeline(options(), progress));
-    DUBSAR_TRY(write_product(out, result, progress));
+    DUBSAR_TRY(write_product(out, result, options().exa_profile, progress));
     return result;
   }
   static inline fs::path folder_;
