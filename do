@@ -162,9 +162,9 @@ bench() {
     [ -e "$folder/scan28.h5" ] || "$app" phantom "$folder/scan28.h5" --preset demo --snr 14.3 -q >/dev/null
     [ -e "$folder/scan23.h5" ] || "$app" phantom "$folder/scan23.h5" --preset demo --snr 16.8 -q >/dev/null
     [ -e "$folder/scan.h5" ] || "$app" phantom "$folder/scan.h5" --preset demo -q >/dev/null
-    local bare="--detail half --sharpen 0 --segment none --no-ao -q"
-    "$app" process "$folder/scan28.h5" -o "$folder/phantom28.exa" --iterations 1 $bare >/dev/null
-    "$app" process "$folder/scan23.h5" -o "$folder/phantom23.exa" --iterations 0 $bare >/dev/null
+    local bare=(--detail half --sharpen 0 --segment none --no-ao -q)
+    "$app" process "$folder/scan28.h5" -o "$folder/phantom28.exa" --iterations 1 "${bare[@]}" >/dev/null
+    "$app" process "$folder/scan23.h5" -o "$folder/phantom23.exa" --iterations 0 "${bare[@]}" >/dev/null
     "$app" process "$folder/scan.h5" -o "$folder/demo.exa" -q >/dev/null
     "$app" process "$folder/scan.h5" -o "$folder/demo_as_paper.exa" --detail half --exa-profile paper -q >/dev/null
     "$app" exa stat "$folder/demo.exa"
