@@ -31,6 +31,7 @@ usage() {
 ./do bench    run the benchmarks; ./do bench displays: only those of many views;
               ./do bench exa: bits and speed of the surface format, beside Draco and meshoptimizer
               ./do bench contact [X Y Z SEED]: what is read where tablet and envelope touch
+              ./do bench view: first pictures, pictures a second and memory, beside f3d and MeshLab
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
 ./do glb FILE...  the Khronos validator over GLB files (fetches it with npm)
 ./do asan     the tests that need no window under AddressSanitizer and UndefinedBehaviorSanitizer; asan core: of core
@@ -40,6 +41,7 @@ usage() {
 ./do deps     install the packages of Debian 12 that dubsar needs
 ./do visitors [SEED [OF_EACH_KIND [why]]]   naive visitors before the kiosk, simulated: how many turn, zoom, open
 ./do strips   make the strips of pictures in docs/ again (minutes)
+./do pictures make the other pictures of docs/ again, from docs/scripts (minutes)
 ./do format   clang-format over all sources
 TEXT
 }
@@ -174,6 +176,12 @@ bench() {
     DUBSAR_SOAK=1 "$build/tests/core/exa/test_exa" --gtest_filter='ExaSoak.*' --gtest_brief=1
     return
   fi
+  if [ "${1:-}" = view ]; then
+    (deps f3d meshlab xdotool) || echo "do: going on without f3d and MeshLab beside it" >&2
+    build_target --target dubsar
+    /usr/bin/python3 tests/bench/view_bench.py "$build/app/dubsar" --json "$build/view_bench.json" "${@:2}"
+    return
+  fi
   if [ "${1:-}" = contact ]; then
     build_target --target contact_bench
     "$build/tests/bench/contact_bench" "${@:2}"
@@ -217,6 +225,19 @@ visitors() {
   "$build/tests/app/naive_visitors" "$@"
 }
 
+# Those of sessions are made anew by a test, too, and compared.
+pictures() {
+  deps
+  build_target --target dubsar
+  local dubsar=$build/app/dubsar work=$build/strips
+  mkdir -p "$work"
+  [ -f "$work/scan.h5" ] || "$dubsar" phantom "$work/scan.h5" --preset demo
+  [ -f "$work/tablet.exa" ] || "$dubsar" process "$work/scan.h5" -o "$work/tablet.exa"
+  "$dubsar" render "$work/tablet.exa" -o docs/tablet.png --partition tablet --style raking --light 315,20 --size 900x900
+  "$dubsar" fatcross "$work/tablet.exa" -o docs/fatcross.png --dpi 240 --no-sides
+  docs/scripts/make_pictures.sh "$dubsar" docs
+}
+
 strips() {
   deps
   cmake --preset "$preset" >/dev/null
@@ -247,6 +268,7 @@ case "$verb" in
   deps) deps ;;
   strips) strips "$@" ;;
   visitors) visitors "$@" ;;
+  pictures) pictures ;;
   format) git ls-files '*.cpp' '*.h' | xargs clang-format -i ;;
   *) usage; [ -z "$verb" ] || [ "$verb" = help ] || exit 64 ;;
 esac

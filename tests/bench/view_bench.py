@@ -7,13 +7,14 @@ Each viewer opens a PLY file in its window on an X server in memory (1280x720, l
 is looked at in the server's memory, so that nobody is asked how quick he is: the first picture is the first one that looks
 like the one that stays; then the mouse turns the object, and different pictures are counted.
 """
-import argparse, json, mmap, os, platform, shutil, struct, subprocess, sys, tempfile, time, zlib
+import argparse, collections, json, mmap, os, platform, shutil, struct, subprocess, sys, tempfile, time, zlib
 import numpy as np
 
 WIDTH, HEIGHT = 1280, 720
 LEFT, TOP, RIGHT, BOTTOM = 200, 200, 700, 560  # what is looked at: beside all panels
 LIKE, SAME = 0.25, 1.5  # share of the object's contrast; grey levels
 POLL_S, QUIET_S, LONGEST_S = 0.02, 3.0, 240.0
+IDLE = 0.1  # of a core: whoever works more is still loading
 
 
 def write_mesh(path, millions):
@@ -68,6 +69,11 @@ class Screen:
     def look(self):
         return self.pixels[TOP:BOTTOM:4, LEFT:RIGHT:4, 1].astype(np.int16)
 
+    def serves(self):
+        found = subprocess.run(["xdotool", "getmouselocation"], env={**os.environ, "DISPLAY": self.display},
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+        return found.returncode == 0
+
     def save(self, path):
         rows = np.pad(self.pixels[:, :, 2::-1], ((0, 0), (1, 0), (0, 0))).reshape(HEIGHT, -1)[:, 2:]
         rows[:, 0] = 0
@@ -103,9 +109,24 @@ def memory_mib(process):
     return 0.0
 
 
+def cpu_s(process):
+    try:
+        with open(f"/proc/{process.pid}/stat") as stat:
+            fields = stat.read().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    except OSError:
+        return 0.0
+
+
+def contrast(picture):
+    """Grey levels along rows: 0 for a ground that is brighter below than above."""
+    return float(picture.std(axis=1).mean())
+
+
 def wait_for_picture(screen, process):
     """Seconds to the first picture that looks like the one that stays, and to the one that stays."""
     start, seen, last_change, fitted = time.monotonic(), [], time.monotonic(), 0.0
+    worked = collections.deque()
     while time.monotonic() - start < LONGEST_S and process.poll() is None:
         if time.monotonic() - fitted > 0.25:  # nobody else does it: there is no window manager
             screen.fit(process)
@@ -114,13 +135,17 @@ def wait_for_picture(screen, process):
         if not seen or np.abs(picture - seen[-1][1]).mean() > 0.05:
             seen.append((now - start, picture))
             last_change = now
-        if picture.std() > 8 and now - last_change > QUIET_S:
+        worked.append((now, cpu_s(process)))
+        while now - worked[0][0] > QUIET_S:
+            worked.popleft()
+        rests = now - start > QUIET_S and worked[-1][1] - worked[0][1] < IDLE * QUIET_S
+        if contrast(picture) > 8 and now - last_change > QUIET_S and rests:
             break
         time.sleep(POLL_S)
-    if process.poll() is not None or not seen or seen[-1][1].std() <= 8:
+    if process.poll() is not None or not seen or contrast(seen[-1][1]) <= 8:
         return None
     final = seen[-1][1]
-    like = next(t for t, p in seen if np.abs(p - final).mean() < LIKE * final.std())
+    like = next(t for t, p in seen if np.abs(p - final).mean() < LIKE * contrast(final))
     same = next(t for k, (t, p) in enumerate(seen) if all(np.abs(q - final).mean() < SAME for _, q in seen[k:]))
     return like, same
 
@@ -150,7 +175,7 @@ def turn(screen, seconds):
 
 def measure(name, command, mesh, work, seconds, pictures):
     folder = tempfile.mkdtemp(dir=work)
-    screen = Screen(folder)
+    screen = next(s for s in (Screen(folder) for _ in range(10)) if s.serves())
     home = os.path.join(folder, "home")
     os.mkdir(home)
     env = {**os.environ, "DISPLAY": screen.display, "HOME": home, "XDG_STATE_HOME": home, "QT_QPA_PLATFORM": "xcb"}
@@ -186,6 +211,7 @@ def main():
     parser.add_argument("--sizes", default="0.4,1.4,12", help="millions of vertices")
     parser.add_argument("--seconds", type=float, default=4.0, help="how long the object is turned")
     parser.add_argument("--json", help="file for the figures")
+    parser.add_argument("--only", help="one viewer: dubsar, f3d or MeshLab")
     parser.add_argument("--pictures", help="folder for pictures of the screen, to see what was measured")
     parser.add_argument("--work", default=tempfile.gettempdir(), help="folder with room for the meshes (430 MB)")
     options = parser.parse_args()
@@ -206,6 +232,8 @@ def main():
         vertices, triangles = write_mesh(mesh, millions)
         try:
             for name, command in viewers:
+                if options.only not in (None, name):
+                    continue
                 row = measure(name, command, mesh, options.work, options.seconds, options.pictures)
                 row.update({"vertices": vertices, "triangles": triangles, "load": round(os.getloadavg()[0], 1)})
                 out["rows"].append(row)
