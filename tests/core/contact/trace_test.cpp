@@ -33,13 +33,15 @@ struct TracedScan {
   }
 };
 
-TracedScan traced_scan(phantom::Contact contact, double film, std::uint64_t seed, bool trace = true) {
+TracedScan traced_scan(phantom::Contact contact, double film, std::uint64_t seed, bool trace = true,
+                       bool written = true) {
   phantom::PhantomOptions wanted;
   wanted.dims = {224, 128, 208};
   wanted.seed = seed;
   wanted.contact = contact;
   wanted.film_vox = film;
   wanted.contact_share = 0.2;
+  wanted.written = written;
   const auto path = std::filesystem::temp_directory_path() / fmt::format("dubsar_trace_{}_{}.h5", ::getpid(), seed);
   SilentProgress progress;
   phantom::write_phantom(path, std::nullopt, wanted, progress).value();
@@ -114,6 +116,25 @@ TEST(TraceContact, NothingIsInventedWhereTheEnvelopeFillsTheWedges) {
   const phantom::ContactScore score = made.score();
   EXPECT_EQ(score.false_wedges, 0);
   EXPECT_GE(static_cast<double>(score.evidence[3]), 0.85 * static_cast<double>(score.contact_vertices));
+}
+
+TEST(TraceContact, NothingIsReadOnATabletThatNobodyWroteOn) {
+  const TracedScan made = traced_scan(phantom::Contact::kFilm, 0.5, 60673, true, false);
+  ASSERT_TRUE(made.result.report.contact && made.result.report.contact->traced);
+  const phantom::ContactScore score = made.score();
+  EXPECT_GE(score.near_fraction(), 0.98);
+  EXPECT_EQ(score.false_wedges, 0);
+  // Where the tablet is free, nothing stands out of the noise: a wedge is 7 voxels deep, a stroke of 1 can be read.
+  const TriMesh tablet = made.body("tablet");
+  std::int64_t free = 0, off = 0;
+  for (std::size_t i = 0; i < tablet.positions.size(); ++i) {
+    const glm::dvec3 p = tablet.frame.input_vox_from_grid(glm::dvec3(tablet.positions[i]));
+    if (tablet.evidence[i] != evidence_byte(Evidence::kMeasured) || made.truth->gap_width(p) < 2.0) continue;
+    ++free;
+    off += std::abs(made.truth->tablet_distance(p)) > 1.0;
+  }
+  EXPECT_GT(free, 1000);
+  EXPECT_LE(static_cast<double>(off), 0.002 * static_cast<double>(free));
 }
 
 TEST(TraceContact, PocketsBelongToTheTablet) {
