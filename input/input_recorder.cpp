@@ -29,17 +29,16 @@ InputRecorder::~InputRecorder() { static_cast<void>(finish()); }
 void InputRecorder::add(TimestampNs polled, const InputFrame& frame) {
   std::unique_lock lock(mutex_);
   if (finished_ || !status_) return;
-  if (frame.events.empty() && events_.empty() && added_ > 0 && same(frame, last_)) return;
+  if (frame.events.empty() && events_.empty() && added_ > 0 && same(frame, last_.frame)) return;
   written_.wait(lock, [this] { return pending_.size() < kMostPending || !status_; });
-  newest_ = std::max(newest_, polled);
-  RecordedFrame& recorded = pending_.emplace_back(RecordedFrame{newest_, frame});
+  last_ = {std::max(last_.polled, polled), frame};
+  RecordedFrame& recorded = pending_.emplace_back(last_);
   auto& events = recorded.frame.events;
   events.insert(events.end(), events_.begin(), events_.end());
   std::stable_sort(events.begin(), events.end(),
                    [](const InputEvent& a, const InputEvent& b) { return a.time < b.time; });
   if (events.size() > kMostEvents) events.resize(kMostEvents);
   events_.clear();
-  last_ = frame;
   ++added_;
 }
 

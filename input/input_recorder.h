@@ -50,9 +50,8 @@ class InputRecorder {
   std::condition_variable wake_, written_;
   std::vector<RecordedFrame> pending_;
   std::vector<InputEvent> events_;
-  InputFrame last_;
+  RecordedFrame last_{};               // that was added, without the events that add_event() told of
   std::int64_t added_ = 0, done_ = 0;  // frames
-  TimestampNs newest_ = 0;
   bool hurry_ = false, ending_ = false, finished_ = false;
   Result<void> status_;
   std::thread thread_;

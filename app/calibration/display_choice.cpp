@@ -24,7 +24,8 @@ Result<DisplayChoice> choose_display(std::string_view text, const std::vector<st
   const PanelFacts facts{find_calibrations(search_this_machine(bridge_port, clock), out.catalog->panels(), clock),
                          read_connected_edids()};
   DUBSAR_ASSIGN(PanelProfile panel, choose_auto_panel(facts, out.catalog->panels()));
-  log_info("panel {}{}", panel.name, panel.calibration.empty() ? "" : ", calibration " + panel.calibration);
+  log_info("panel {}{}", panel.name,
+           panel.lenses.calibration.empty() ? "" : ", calibration " + panel.lenses.calibration);
   out.display = with_panel(std::move(out.display), panel);
   out.catalog->put(std::move(panel));
   return out;

@@ -55,7 +55,7 @@ Result<EyeCheckFigures> check_eyes(InputSource& source, const PanelProfile& pane
   if (panel.kind != PanelKind::kTracked)
     return fail(ErrorKind::kConfig, "panel {}: its views are made for all places at once, expected a tracked panel",
                 panel.name);
-  DUBSAR_ASSIGN(const TrackedPanel optics, panel_optics(panel, panel.design_distance_mm));
+  DUBSAR_ASSIGN(const TrackedPanel optics, panel_optics(panel, panel.zone.design_distance_mm));
   const SteadyClock clock;
   EyeCheck check(optics, options);
   EyeCheckFigures out;

@@ -65,10 +65,12 @@ Result<TriMesh> load_exa(const MeshRequest& request, Progress& progress) {
   DUBSAR_ASSIGN(const SurfaceModel model, read_exa(request.path, progress));
   MeshOptions all;
   all.fill_holes = request.fill_holes;
+  all.progress = &progress;
   if (request.partitions.empty()) return make_tri_mesh(model, all);
   std::optional<TriMesh> joined;
   for (const std::string& wanted : request.partitions) {
-    DUBSAR_ASSIGN(const MeshOptions options, mesh_options(model, wanted, request.fill_holes));
+    DUBSAR_ASSIGN(MeshOptions options, mesh_options(model, wanted, request.fill_holes));
+    options.progress = &progress;
     DUBSAR_ASSIGN(TriMesh part, make_tri_mesh(model, options));
     if (joined)
       append(*joined, part);

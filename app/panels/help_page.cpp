@@ -84,6 +84,7 @@ void add_command(HelpSection& section, const Command& command, const KeyTable& k
 HelpSection hand_section(const HandMapping& hands) {
   HelpSection out{"Hands", {}};
   add(out, "grab and move", drag_words(hands.grab));
+  add(out, "grab and pull", drag_words(hands.pull));
   add(out, "grab with both", drag_words(hands.two_hands));
   add(out, "pinch and move", drag_words(hands.pinch));
   add(out, "swipe", drag_words(hands.swipe));

@@ -68,13 +68,13 @@ void add_panels(const PanelSet& panels, VerbResult& result) {
                          {"views", p.views},
                          {"lens_figures", p.sheet.has_value() || p.optics.has_value()},
                          {"note", p.note}};
-    if (p.adjustment.pitch) entry["adjusted"]["pitch"] = *p.adjustment.pitch;
-    if (p.adjustment.slope) entry["adjusted"]["slope"] = *p.adjustment.slope;
-    if (p.adjustment.center) entry["adjusted"]["center"] = *p.adjustment.center;
+    if (p.lenses.adjustment.pitch) entry["adjusted"]["pitch"] = *p.lenses.adjustment.pitch;
+    if (p.lenses.adjustment.slope) entry["adjusted"]["slope"] = *p.lenses.adjustment.slope;
+    if (p.lenses.adjustment.center) entry["adjusted"]["center"] = *p.lenses.adjustment.center;
     result.json["panels"].push_back(std::move(entry));
     result.text += fmt::format("  {:<32} {}x{}, {} views{}{}\n", p.name, p.width_px, p.height_px, p.views,
                                p.sheet || p.optics ? "" : "; no lens figures, give calibration=FILE",
-                               p.adjustment.empty() ? "" : "; adjusted by you");
+                               p.lenses.adjustment.empty() ? "" : "; adjusted by you");
   }
   result.json["panel_problems"] = nlohmann::json::array();
   for (const PanelProblem& problem : panels.problems) {

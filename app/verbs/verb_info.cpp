@@ -53,11 +53,13 @@ Result<VerbResult> volume_info(const Options& options) {
               ? "\n"
               : fmt::format(" of {} x {} x {}\n", info.file_dims.x, info.file_dims.y, info.file_dims.z);
   text += fmt::format("  axes         {}\n", describe(info.axes));
-  text += fmt::format("  type         {}, {} endian, {}\n", info.dtype, info.byte_order, info.layout);
-  for (const std::string& filter : info.filters) text += fmt::format("  filter       {}\n", filter);
+  text +=
+      fmt::format("  type         {}, {} endian, {}\n", info.stored.dtype, info.stored.byte_order, info.stored.layout);
+  for (const std::string& filter : info.stored.filters) text += fmt::format("  filter       {}\n", filter);
   text += fmt::format("  voxel size   {}\n", length_text(info.voxel));
-  text += fmt::format("  in the file  {:.1f} MiB of {:.1f} MiB\n", static_cast<double>(info.storage_bytes) / 1048576.0,
-                      static_cast<double>(info.logical_bytes) / 1048576.0);
+  text += fmt::format("  in the file  {:.1f} MiB of {:.1f} MiB\n",
+                      static_cast<double>(info.stored.storage_bytes) / 1048576.0,
+                      static_cast<double>(info.stored.logical_bytes) / 1048576.0);
   text += fmt::format("  process      needs about {:.0f} MiB for volumes, and 200 bytes for each vertex\n",
                       static_cast<double>(process_bytes(dims)) / 1048576.0);
   for (const VolumeCandidate& other : info.candidates)

@@ -167,16 +167,22 @@ Result<ViewOptions> view_options(const Options& options) {
   return view;
 }
 
+/// Whether the display can be what is asked for; --size is refused where it takes none of it.
+Result<void> check_display(const Panel& panel, const Screen& screen, const StageOptions& stage) {
+  DUBSAR_ASSIGN(const auto sink, stage.catalog->make(stage.display));
+  DUBSAR_TRY(sink->configure(screen));
+  if (!panel.size.empty() && sink->traits().own_pixels)
+    return fail(ErrorKind::kUsage,
+                "--size does nothing for display {}: its pixels are those of its panel or its layout",
+                sink->traits().name);
+  return {};
+}
+
 Result<void> without_window(const Options& options, ViewOptions& view) {
   if (!options.panel.monitor.empty() || options.panel.fullscreen || options.panel.windowed)
     return fail(ErrorKind::kUsage, "--monitor, --fullscreen and --windowed are for windows, expected no --offscreen");
   DUBSAR_ASSIGN(view.stage.screen, parse_screen(options.panel.size.empty() ? "960x540" : options.panel.size));
-  DUBSAR_ASSIGN(const auto sink, view.stage.catalog->make(view.stage.display));
-  DUBSAR_TRY(sink->configure(view.stage.screen));
-  if (!options.panel.size.empty() && sink->traits().own_pixels)
-    return fail(ErrorKind::kUsage,
-                "--size does nothing for display {}: its pixels are those of its panel or its layout",
-                sink->traits().name);
+  DUBSAR_TRY(check_display(options.panel, view.stage.screen, view.stage));
   view.stage.samples = std::max(1, options.panel.samples);
   view.around.notices = false;
   if (options.time.fps == 0) view.time.fps = 30.0;
@@ -214,6 +220,7 @@ Result<void> with_window(const Options& options, ViewOptions& view) {
   view.window->monitor = options.panel.monitor;
   if (!options.panel.size.empty()) {
     DUBSAR_ASSIGN(const Screen screen, parse_screen(options.panel.size));
+    DUBSAR_TRY(check_display(options.panel, screen, view.stage));
     view.window->width = screen.window_w;
     view.window->height = screen.window_h;
   }

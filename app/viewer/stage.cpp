@@ -179,7 +179,7 @@ bool Stage::Parts::moved() const noexcept {
 
 void Stage::show(const Shown& shown, const FollowedEyes& eyes, TimestampNs now) {
   auto& mesh = parts_->object.mesh;
-  if (mesh && !mesh->complete()) {
+  if (mesh && !mesh->complete() && parts_->painted.of) {  // the first picture has the machine for itself
     const auto updated = mesh->update();
     if (!updated) log_warning("view: {}; it stays coarse", updated.error().message);
   }
@@ -303,6 +303,7 @@ Result<void> Stage::paint(const Surface& target, Field field) {
     DUBSAR_TRY(p.refine());
   }
   Parts::Layers& layers = p.layers;
+  if (layers.overlay != nullptr && p.sink->traits().worn) DUBSAR_TRY(p.paint_page());
   layers.overlay_changed = false;
   if (layers.overlay == nullptr || p.sink->traits().worn) return p.sink->compose(*layers.array, target, field);
   const ViewArray& array = *layers.array;
@@ -322,7 +323,9 @@ void Stage::set_overlay(LayerPainter* painter) {
   Parts::Layers& layers = parts_->layers;
   layers.overlay_changed = layers.overlay_changed || painter != nullptr || layers.overlay != nullptr;
   layers.overlay = painter;
-  if (painter == nullptr) layers.overlaid.reset();
+  if (painter != nullptr) return;
+  layers.overlaid.reset();
+  layers.page.reset();
 }
 
 }  // namespace dubsar::app

@@ -10,6 +10,7 @@
 #include "display/render/field_maker.h"
 #include "display/render/lod_mesh.h"
 #include "display/render/multi_view.h"
+#include "display/render/page_pass.h"
 #include "display/render/renderer.h"
 #include "display/render/view_array.h"
 
@@ -26,8 +27,14 @@ struct Stage::Parts {
     std::optional<Renderer> renderer;   // kExact, and for stills
     std::optional<MultiView> multi;     // kAdaptive
   };
+  /// What a wearer reads: it stands in the room.
+  struct Page {
+    ViewArray text;
+    PagePass pass;
+  };
   struct Layers {
     std::optional<ViewArray> array, overlaid;
+    std::optional<Page> page;
     LayerPainter* overlay = nullptr;
     bool overlay_changed = false;
     std::vector<int> chosen;  // without a mesh: what each layer shows; empty: nothing yet
@@ -82,6 +89,7 @@ struct Stage::Parts {
   Result<void> fill_layers();
   Result<void> paint_moved();
   Result<void> refine();
+  Result<void> paint_page();
   bool may_refine() const noexcept {
     return cost.coarse > 0 && object.mesh->has_exact() && next.now - painted.moved_at >= kRestNs;
   }

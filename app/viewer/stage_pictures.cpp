@@ -1,6 +1,7 @@
 // Pictures of a stage that are not those of its display: stills, and pictures that exist already.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "app/viewer/stage_parts.h"
@@ -25,6 +26,27 @@ Result<void> Stage::Parts::fill_layers() {
                                 : numbered_view(traits.view.width, traits.view.height, wanted, traits.views)));
   }
   return {};
+}
+
+/// Upright behind the object: what has the same place in both views, as on panels, would be seen double.
+Result<void> Stage::Parts::paint_page() {
+  constexpr glm::dvec2 kPageMm{800.0, 600.0};
+  constexpr int kPageHeightPx = 960;
+  constexpr double kBehindMm = 250.0;
+  if (!layers.page) {
+    DUBSAR_ASSIGN(ViewArray text, ViewArray::create(kPageHeightPx * 4 / 3, kPageHeightPx, 1));
+    DUBSAR_ASSIGN(PagePass pass, PagePass::create());
+    layers.page = Page{std::move(text), std::move(pass)};
+    layers.overlay_changed = true;
+  }
+  if (layers.overlay_changed) {
+    const std::array<GLubyte, 4> nothing{};
+    glClearTexImage(layers.page->text.coded(), 0, GL_RGBA, GL_UNSIGNED_BYTE, nothing.data());
+    DUBSAR_TRY(layers.overlay->paint(layers.page->text, kPageMm));
+  }
+  return layers.page->pass.draw(layers.page->text,
+                                {{-0.5 * kPageMm.x, 0.0, -kBehindMm}, {kPageMm.x, 0.0, 0.0}, {0.0, kPageMm.y, 0.0}},
+                                painted.views, *layers.array);
 }
 
 Result<Image> Stage::still(int factor) {

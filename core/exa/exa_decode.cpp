@@ -194,7 +194,7 @@ Result<SurfaceModel> decode_model(const ExaReader& reader, const ExaReadOptions&
     return fail(ErrorKind::kBadData, "exa: {} vertices and {} x-quads found, the header says {} and {}",
                 model.mesh.vertex_count(), model.mesh.quad_count(), header.vertices, header.quads);
   DUBSAR_TRY(decode_positions(reader, model, progress));
-  if (position_sum_of(model) != header.position_sum || quad_sum_of(model.mesh) != header.quad_sum)
+  if (position_sum_of(model) != header.sums.positions || quad_sum_of(model.mesh) != header.sums.quads)
     return fail(ErrorKind::kBadData, "exa: the mesh built from this file is not the one that was written");
   if (options.recompute || header.normals != ExaNormals::kRecomputed)
     DUBSAR_TRY(decode_normals(reader, header, model, progress));

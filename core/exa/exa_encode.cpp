@@ -168,8 +168,8 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   header.quads = model.mesh.quad_count();
   header.edges = static_cast<std::int64_t>(model.samples.offsets.size());
   header.faces = static_cast<std::int64_t>(model.samples.joined.size());
-  header.position_sum = position_sum_of(model);
-  header.quad_sum = quad_sum_of(model.mesh);
+  header.sums.positions = position_sum_of(model);
+  header.sums.quads = quad_sum_of(model.mesh);
   header.tool = "dubsar " DUBSAR_VERSION;
   DUBSAR_TRY(find_normals(model, header, progress));
   const VertexAttributes& a = model.attributes;

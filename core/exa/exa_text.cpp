@@ -101,8 +101,8 @@ Result<std::string> exa_header_json(const ExaHeader& header) {
   json["quads"] = header.quads;
   json["edges"] = header.edges;
   json["faces"] = header.faces;
-  json["position_sum"] = header.position_sum;
-  json["quad_sum"] = header.quad_sum;
+  json["position_sum"] = header.sums.positions;
+  json["quad_sum"] = header.sums.quads;
   json["normals"] = normals_name(header.normals);
   json["curvatures"] = header.curvatures;
   json["shapes"] = header.shapes ? "recomputed" : "stored";
@@ -133,8 +133,8 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
   header.quads = members.count("quads");
   header.edges = members.count("edges");
   header.faces = members.count("faces");
-  header.position_sum = static_cast<std::uint32_t>(members.count("position_sum"));
-  header.quad_sum = static_cast<std::uint32_t>(members.count("quad_sum"));
+  header.sums.positions = static_cast<std::uint32_t>(members.count("position_sum"));
+  header.sums.quads = static_cast<std::uint32_t>(members.count("quad_sum"));
   const std::string normals = members.text("normals"), method = members.text("curvature_method");
   header.curvatures = members.flag("curvatures");
   const std::string shapes = members.text("shapes");

@@ -30,6 +30,11 @@ enum class ExaNormals {
   kQuantised,   ///< stored in the steps of an octahedron; curvatures are principal_curvatures() with them
 };
 
+/// position_sum_of() and quad_sum_of() of the mesh that was written.
+struct MeshSums {
+  std::uint32_t positions = 0, quads = 0;
+};
+
 struct ExaHeader {
   ExaProfile profile = ExaProfile::kCompact;
   GridFrame frame;
@@ -43,8 +48,8 @@ struct ExaHeader {
   bool curvatures = false;  ///< kRecomputed, kQuantised: k_min and k_max follow
   bool shapes = false;      ///< shape_classes() of the curvatures; not stored
   CurvatureMethod curvature = CurvatureMethod::kFit;
-  std::string tool;                              ///< program and version that wrote the file
-  std::uint32_t position_sum = 0, quad_sum = 0;  ///< position_sum_of(), quad_sum_of() of the mesh that was written
+  std::string tool;  ///< program and version that wrote the file
+  MeshSums sums;
 };
 
 /// kBadData when a number is not finite (JSON cannot hold it).

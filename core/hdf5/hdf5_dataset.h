@@ -32,6 +32,12 @@ struct Hdf5ExternalPart {
   std::uint64_t bytes = 0;
 };
 
+/// What stands where nothing was written.
+struct Hdf5Fill {
+  double value = 0.0;
+  std::array<std::byte, 8> stored{};  ///< the same as a stored number (plain_scalar)
+};
+
 /// What is known of a dataset without reading it.
 struct Hdf5DatasetInfo {
   std::string path;
@@ -45,8 +51,7 @@ struct Hdf5DatasetInfo {
   std::vector<Hdf5Filter> filters;   ///< in the order of writing
   std::uint64_t storage_bytes = 0;   ///< bytes allocated in the file
   std::int64_t file_offset = -1;     ///< of a contiguous dataset from the first byte of the file; -1: none
-  double fill_value = 0.0;
-  std::array<std::byte, 8> fill_stored{};  ///< the same as a stored number (plain_scalar)
+  Hdf5Fill fill;
   std::vector<Hdf5ExternalPart> external;
   std::vector<std::string> virtual_files;  ///< source files of a virtual dataset
   std::uint64_t address = 0;               ///< identity: hard links to one dataset share it

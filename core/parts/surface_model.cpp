@@ -240,7 +240,8 @@ Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& opti
   std::vector<bool> border = find_border(model, selection);
   border.resize(soup.first_patch_vertex, false);
   border.resize(first_copy, true);  // a patch may touch itself, too
-  const std::vector<std::uint32_t> copies = split_fans(soup, border, static_cast<std::uint32_t>(first_copy));
+  DUBSAR_ASSIGN(const std::vector<std::uint32_t> copies,
+                split_fans(soup, border, static_cast<std::uint32_t>(first_copy), options.progress));
   const Numbering numbering = number_vertices(soup, first_copy, copies);
 
   TriMesh out;

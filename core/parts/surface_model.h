@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/extract/quad_mesh.h"
 #include "core/extract/surface_samples.h"
@@ -44,15 +45,16 @@ struct MeshOptions {
   bool fill_holes = true;                               ///< add the fill patches
   bool separate_partitions = false;                     ///< those of one body do not stay joined
   bool attributes = true;                               ///< of vertices; false: positions only
+  const Progress* progress = nullptr;                   ///< whose cancellation ends the work
 };
 
 /// The triangle mesh of a model (curvature-guided diagonals, docs/manifold.md). Bodies are separate: vertices
 /// on a cut are doubled, as are those where one body touches itself, so every closed body is a 2-manifold. Partitions
 /// of one body stay joined: their triangles share vertices. Vertices that fill patches and Steiner points add have
 /// averaged attributes; those of patches are flat. Deterministic. kUsage: no such partition or body. kBadData: arrays,
-/// partition ids or patches that contradict each other. kTryAgain: more than 2^31 vertices. `source`, if given,
-/// receives the dual vertex that each mesh vertex is or copies; kNoSource for those that Steiner points and patches
-/// add.
+/// partition ids or patches that contradict each other. kTryAgain: more than 2^31 vertices. kCancelled. `source`, if
+/// given, receives the dual vertex that each mesh vertex is or copies; kNoSource for those that Steiner points and
+/// patches add.
 inline constexpr std::uint32_t kNoSource = 0xffffffff;
 Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& options = {},
                               std::vector<std::uint32_t>* source = nullptr);

@@ -98,7 +98,9 @@ VertexAttributes attributes_of_added(const SurfaceModel& model, const TriangleSo
   return added;
 }
 
-std::vector<std::uint32_t> split_fans(TriangleSoup& soup, const std::vector<bool>& border, std::uint32_t first_copy) {
+Result<std::vector<std::uint32_t>> split_fans(TriangleSoup& soup, const std::vector<bool>& border,
+                                              std::uint32_t first_copy, const Progress* progress) {
+  const auto cancelled = [&] { return progress != nullptr && progress->cancelled(); };
   struct Corner {
     std::uint32_t vertex;
     std::uint8_t group;
@@ -113,6 +115,7 @@ std::vector<std::uint32_t> split_fans(TriangleSoup& soup, const std::vector<bool
         corners.push_back(
             {triangle[c], soup.group[t], static_cast<std::uint32_t>(t), triangle[(c + 1) % 3], triangle[(c + 2) % 3]});
   }
+  if (cancelled()) return cancelled_error();
   std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
     return std::tie(a.vertex, a.group, a.triangle) < std::tie(b.vertex, b.group, b.triangle);
   });
@@ -121,6 +124,7 @@ std::vector<std::uint32_t> split_fans(TriangleSoup& soup, const std::vector<bool
   Fans fans;
   bool original_taken = false;
   for (std::size_t begin = 0, end; begin < corners.size(); begin = end) {
+    if (cancelled()) return cancelled_error();
     const std::uint32_t vertex = corners[begin].vertex;
     if (begin == 0 || corners[begin - 1].vertex != vertex) original_taken = false;
     fans.clear();

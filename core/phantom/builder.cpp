@@ -39,7 +39,7 @@ std::unique_ptr<const Phantom> PhantomBuilder::build(const PhantomOptions& optio
 
 void PhantomBuilder::place_in_grid() {
   const Dims d = p_.options_.dims;
-  p_.voxels_per_mm_ = static_cast<float>(1.0 / p_.options_.voxel_mm);
+  p_.place_.voxels_per_mm = static_cast<float>(1.0 / p_.options_.voxel_mm);
   Random random(seed(), 1);
   // Nobody can put a tablet quite straight into a scanner.
   const auto turn = [&](double degrees) { return random.uniform(-degrees, degrees) * std::numbers::pi / 180.0; };
@@ -50,22 +50,23 @@ void PhantomBuilder::place_in_grid() {
   const glm::dvec3 centre =
       0.5 * glm::dvec3(static_cast<double>(d.x - 1), static_cast<double>(d.y - 1), static_cast<double>(d.z - 1)) +
       glm::dvec3(turn(30.0), turn(30.0), turn(30.0));
-  p_.axis_x_ = float4(glm::dvec3(rotation[0]));
-  p_.axis_y_ = float4(glm::dvec3(rotation[1]));
-  p_.axis_z_ = float4(glm::dvec3(rotation[2]));
-  p_.origin_ = -(p_.axis_x_ * static_cast<float>(centre.x) + p_.axis_y_ * static_cast<float>(centre.y) +
-                 p_.axis_z_ * static_cast<float>(centre.z));
+  p_.place_.axis_x = float4(glm::dvec3(rotation[0]));
+  p_.place_.axis_y = float4(glm::dvec3(rotation[1]));
+  p_.place_.axis_z = float4(glm::dvec3(rotation[2]));
+  p_.place_.origin =
+      -(p_.place_.axis_x * static_cast<float>(centre.x) + p_.place_.axis_y * static_cast<float>(centre.y) +
+        p_.place_.axis_z * static_cast<float>(centre.z));
 }
 
 void PhantomBuilder::shape_bodies() {
   Random random(seed(), 2);
   // Sizes that a coarse grid could not show are kept at some voxels: a small phantom is coarser, not empty.
   const float half_y = mm(kEnvelopeHalfMm[1]);
-  p_.gap_open_ = p_.options_.gap_vox > 0.0 ? static_cast<float>(p_.options_.gap_vox)
+  p_.gap_.open = p_.options_.gap_vox > 0.0 ? static_cast<float>(p_.options_.gap_vox)
                                            : std::max(mm(0.30), std::min(5.5f, 0.075f * half_y));
   const float wall = std::max(mm(3.0), 4.5f);
 
-  ClayBody& outer = p_.outer_;
+  ClayBody& outer = p_.outer_.body;
   outer.half = {mm(kEnvelopeHalfMm[0]), half_y, mm(kEnvelopeHalfMm[2])};
   outer.bulge = {mm(2.0), mm(2.8), mm(1.7), mm(1.7), mm(1.5), mm(1.5)};
   outer.edge_radius = mm(6.0);
@@ -74,14 +75,14 @@ void PhantomBuilder::shape_bodies() {
   outer.seal = &p_.seal_;
   outer.band_depth = mm(0.22);
 
-  ClayBody& tablet = p_.tablet_;
-  for (std::size_t a = 0; a < 3; ++a) tablet.half[a] = outer.half[a] - wall - p_.gap_open_;
+  ClayBody& tablet = p_.tablet_.body;
+  for (std::size_t a = 0; a < 3; ++a) tablet.half[a] = outer.half[a] - wall - p_.gap_.open;
   tablet.bulge = {mm(1.6), mm(2.4), mm(1.3), mm(1.3), mm(1.2), mm(1.2)};
   tablet.edge_radius = std::min(mm(4.4), 0.6f * tablet.half[1]);
   tablet.undulation = Waves(random, 6, mm(8.0), mm(24.0), mm(0.13));
 
   for (ClayBody* body : {&outer, &tablet}) {
-    body->voxels_per_mm = p_.voxels_per_mm_;
+    body->voxels_per_mm = p_.place_.voxels_per_mm;
     body->ruling_depth = std::max(mm(0.13), 0.6f);
     body->ruling_half_width = std::max(mm(0.30), 1.6f);
     for (int i = 0; i < 6; ++i) {
@@ -92,8 +93,8 @@ void PhantomBuilder::shape_bodies() {
       body->finger_marks.push_back({place, radius * radius, mm(random.uniform(0.2, 0.4))});
     }
   }
-  p_.outer_relief_ = mm(0.8);  // band and ruling below, figures above
-  p_.tablet_relief_ = std::max(1.5f * p_.gap_open_, mm(0.6));
+  p_.outer_.relief = mm(0.8);  // band and ruling below, figures above
+  p_.tablet_.relief = std::max(1.5f * p_.gap_.open, mm(0.6));
   // Wedges shallower than some 7 voxels do not survive: PSF, resampling and denoising take 1.2 voxels from a tip.
   constexpr float kPitchOfDepth = 8.0f;  // a line of 56 voxels has wedges of about 7
   const float pitch = p_.options_.wedge_depth_vox > 0.0
@@ -101,25 +102,25 @@ void PhantomBuilder::shape_bodies() {
                           : std::max(mm(3.6), 56.0f);
   line_pitch_ = std::min(pitch, 0.6f * tablet.half[2]);
   tip_rounding_ = std::min(std::max(mm(0.08), 4.0f), 0.07f * line_pitch_);
-  p_.rim_rounding_ = std::max(mm(0.05), 1.0f);
-  p_.join_rounding_ = std::max(mm(0.04), 1.0f);
+  p_.edges_.rim_rounding = std::max(mm(0.05), 1.0f);
+  p_.edges_.join_rounding = std::max(mm(0.04), 1.0f);
 }
 
 void PhantomBuilder::shape_gap() {
   Random random(seed(), 3);
-  p_.gap_variation_ = Waves(random, 4, mm(6.0), mm(15.0), 0.16f);
-  p_.glue_field_ = Waves(random, 8, mm(12.0), mm(32.0), 1.0f);
-  p_.glue_ramp_ = 0.5f;
+  p_.gap_.variation = Waves(random, 4, mm(6.0), mm(15.0), 0.16f);
+  p_.gap_.glue = Waves(random, 8, mm(12.0), mm(32.0), 1.0f);
+  p_.gap_.ramp = 0.5f;
   const int touches = 6 + random.index(5);
   for (int i = 0; i < touches; ++i) {
     const auto side = static_cast<Side>(random.index(kSides));
     const SideFrame& frame = kSideFrames[static_cast<std::size_t>(side)];
     const auto somewhere = [&](int axis) {
-      return static_cast<float>(random.uniform(-0.85, 0.85)) * p_.tablet_.half[static_cast<std::size_t>(axis)];
+      return static_cast<float>(random.uniform(-0.85, 0.85)) * p_.tablet_.body.half[static_cast<std::size_t>(axis)];
     };
     const float right = somewhere(frame.right.axis), up = somewhere(frame.up.axis),
                 radius = mm(random.uniform(1.2, 2.4));
-    p_.touches_.push_back({p_.tablet_.surface_point(side, right, up), radius * radius, 1.06f});
+    p_.gap_.touches.push_back({p_.tablet_.body.surface_point(side, right, up), radius * radius, 1.06f});
   }
 }
 
@@ -138,18 +139,18 @@ void PhantomBuilder::measure_glue() {
       for (int i = 0; i < kRaster; ++i) {
         const auto at = [&](int k, int axis) {
           return (2.0f * (static_cast<float>(k) + 0.5f) / kRaster - 1.0f) *
-                 p_.tablet_.half[static_cast<std::size_t>(axis)];
+                 p_.tablet_.body.half[static_cast<std::size_t>(axis)];
         };
         Point point;
-        point.p = p_.tablet_.surface_point(static_cast<Side>(s), at(i, frame.right.axis), at(j, frame.up.axis));
-        const Dual surface = p_.tablet_.smooth(point);
+        point.p = p_.tablet_.body.surface_point(static_cast<Side>(s), at(i, frame.right.axis), at(j, frame.up.axis));
+        const Dual surface = p_.tablet_.body.smooth(point);
         if (std::abs(surface.v) > 0.5f) continue;  // beside the tablet
         const Float4 g = surface.g;
         const float slope = std::sqrt(dot(g, g)), facing = frame.normal.sign * g[frame.normal.axis] / slope;
         if (facing < std::max(std::abs(g[frame.right.axis]), std::abs(g[frame.up.axis])) / slope) continue;
-        const float cell = 4.0f * p_.tablet_.half[static_cast<std::size_t>(frame.right.axis)] *
-                           p_.tablet_.half[static_cast<std::size_t>(frame.up.axis)] / (kRaster * kRaster);
-        spots.push_back({p_.glue_field_.evaluate(point).v, cell / facing, point});
+        const float cell = 4.0f * p_.tablet_.body.half[static_cast<std::size_t>(frame.right.axis)] *
+                           p_.tablet_.body.half[static_cast<std::size_t>(frame.up.axis)] / (kRaster * kRaster);
+        spots.push_back({p_.gap_.glue.evaluate(point).v, cell / facing, point});
       }
   }
   std::sort(spots.begin(), spots.end(), [](const Spot& a, const Spot& b) { return a.glue > b.glue; });
@@ -161,21 +162,21 @@ void PhantomBuilder::measure_glue() {
   double sum = 0.0;
   for (const Spot& spot : spots) {
     sum += static_cast<double>(spot.area);
-    p_.glue_threshold_ = spot.glue;
+    p_.gap_.threshold = spot.glue;
     if (sum >= wanted) break;
   }
   // Where the envelope only lies on the tablet, half a voxel makes sure that no air is left.
-  p_.overlap_ = p_.options_.contact == Contact::kPockets ? 0.5f : std::max(mm(0.5), 3.0f);
-  p_.film_ = static_cast<float>(p_.options_.film_vox);
+  p_.gap_.overlap = p_.options_.contact == Contact::kPockets ? 0.5f : std::max(mm(0.5), 3.0f);
+  if (p_.options_.contact == Contact::kFilm) p_.gap_.film = static_cast<float>(p_.options_.film_vox);
   double glued = 0.0;
   for (const Spot& spot : spots)
-    if (p_.touches(p_.gap(spot.point).v)) glued += static_cast<double>(spot.area);
+    if (p_.touches(p_.gap_.width(spot.point).v)) glued += static_cast<double>(spot.area);
   p_.glued_fraction_ = glued / total;
 }
 
 void PhantomBuilder::index_wedges() {
-  p_.tablet_cells_ = CellLists(p_.options_.dims, tablet_balls_);
-  p_.outer_cells_ = CellLists(p_.options_.dims, outer_balls_);
+  p_.tablet_.cells = CellLists(p_.options_.dims, tablet_balls_);
+  p_.outer_.cells = CellLists(p_.options_.dims, outer_balls_);
 }
 
 void PhantomBuilder::crack_envelope() {
@@ -184,9 +185,9 @@ void PhantomBuilder::crack_envelope() {
   if (!cracked) return;
   // From the rim of the envelope inwards through its wall; at most 2.6 voxels wide, closing towards its end.
   const float sign = random.uniform() < 0.5 ? -1.0f : 1.0f;
-  Phantom::Crack& crack = p_.crack_;
-  crack.centre = p_.outer_.surface_point(Side::kReverse, sign * 0.93f * p_.outer_.half[0],
-                                         static_cast<float>(random.uniform(-0.5, 0.5)) * p_.outer_.half[2]);
+  Crack& crack = p_.crack_;
+  crack.centre = p_.outer_.body.surface_point(Side::kReverse, sign * 0.93f * p_.outer_.body.half[0],
+                                              static_cast<float>(random.uniform(-0.5, 0.5)) * p_.outer_.body.half[2]);
   const auto tilt = static_cast<float>(random.uniform(-0.3, 0.3));
   crack.normal = Float4{tilt, 0.0f, 1.0f, 0.0f} * (1.0f / std::sqrt(1.0f + tilt * tilt));
   crack.bend = Waves(random, 5, mm(2.0), mm(8.0), mm(0.25));
@@ -220,12 +221,12 @@ void PhantomBuilder::fill_clay() {
     const glm::dvec3 e0 = random.direction(), e1 = glm::normalize(glm::cross(e0, random.direction())),
                      e2 = glm::cross(e0, e1);
     const std::array<double, 3> stretch{random.uniform(1.0, 1.6), 1.0, random.uniform(0.7, 1.0)};
-    const glm::dvec3 place = p_.grid_point(centre);
+    const glm::dvec3 place = p_.place_.grid_point(centre);
     if (!buried(place, 1.6f * radius) || !free_place(place, 1.6 * static_cast<double>(radius))) continue;
-    Phantom::Pore pore{centre, {}, radius * static_cast<float>(stretch[2])};
+    Pore pore{centre, {}, radius * static_cast<float>(stretch[2])};
     const std::array<glm::dvec3, 3> axes{e0, e1, e2};
     for (std::size_t a = 0; a < 3; ++a) pore.axis[a] = float4(axes[a] / (stretch[a] * static_cast<double>(radius)));
-    p_.pores_.push_back(pore);
+    p_.pores_.all.push_back(pore);
     taken.push_back({place, 1.6 * static_cast<double>(radius)});
     pores.push_back({place, 1.6 * static_cast<double>(radius) + 8.0});
   }
@@ -234,27 +235,27 @@ void PhantomBuilder::fill_clay() {
     const float radius = std::max(mm(random.uniform(0.10, 0.28)), 1.3f), half_length = mm(random.uniform(0.6, 2.4));
     const Float4 direction = float4(random.direction());
     const Float4 a = centre - direction * half_length, b = centre + direction * half_length;
-    const glm::dvec3 place = p_.grid_point(centre);
+    const glm::dvec3 place = p_.place_.grid_point(centre);
     bool fits = free_place(place, static_cast<double>(half_length + radius));
     for (int k = -4; k <= 4 && fits; ++k)
-      fits = buried(p_.grid_point(centre + direction * (half_length * 0.25f * static_cast<float>(k))), radius);
+      fits = buried(p_.place_.grid_point(centre + direction * (half_length * 0.25f * static_cast<float>(k))), radius);
     if (!fits) continue;
-    p_.straws_.push_back({a, b, radius});
+    p_.straws_.all.push_back({a, b, radius});
     taken.push_back({place, static_cast<double>(half_length + radius)});
     straws.push_back({place, static_cast<double>(half_length + radius) + 8.0});
   }
   for (int i = count(2.0); i > 0; --i) {  // mineral grains
     const Float4 centre = somewhere(random);
     const float radius = std::max(mm(random.uniform(0.08, 0.3)), 0.9f);
-    const glm::dvec3 place = p_.grid_point(centre);
+    const glm::dvec3 place = p_.place_.grid_point(centre);
     if (!buried(place, radius) || !free_place(place, static_cast<double>(radius))) continue;
-    p_.grains_.push_back({centre, radius});
+    p_.grains_.all.push_back({centre, radius});
     taken.push_back({place, static_cast<double>(radius)});
     grains.push_back({place, static_cast<double>(radius) + 8.0});
   }
-  p_.pore_cells_ = CellLists(p_.options_.dims, pores);
-  p_.straw_cells_ = CellLists(p_.options_.dims, straws);
-  p_.grain_cells_ = CellLists(p_.options_.dims, grains);
+  p_.pores_.cells = CellLists(p_.options_.dims, pores);
+  p_.straws_.cells = CellLists(p_.options_.dims, straws);
+  p_.grains_.cells = CellLists(p_.options_.dims, grains);
 }
 
 }  // namespace dubsar::phantom

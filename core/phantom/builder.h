@@ -34,7 +34,7 @@ class PhantomBuilder {
   void press(Owner owner, Side side, float right, float up, const Stroke& stroke, int sign, float sign_height);
   void measure_wedges();
 
-  float mm(double length) const { return static_cast<float>(length) * p_.voxels_per_mm_; }
+  float mm(double length) const { return static_cast<float>(length) * p_.place_.voxels_per_mm; }
   std::uint64_t seed() const { return p_.options_.seed; }
 
   Phantom& p_;

@@ -16,11 +16,6 @@ float metric(const Dual& d) { return d.v / std::max(length(d.g), 0.2f); }
 
 Phantom::Phantom(const PhantomOptions& options) : options_(options), grid_(options.dims) {}
 
-glm::dvec3 Phantom::grid_vector(Float4 model) const {
-  return {dot(axis_x_, model), dot(axis_y_, model), dot(axis_z_, model)};
-}
-glm::dvec3 Phantom::grid_point(Float4 model) const { return grid_vector(model - origin_); }
-
 Dual Phantom::impressions(const std::vector<Impression>& all, std::span<const std::uint32_t> ids, const Point& point,
                           const Dual& depth) const {
   Dual hollow = far_away();
@@ -28,84 +23,85 @@ Dual Phantom::impressions(const std::vector<Impression>& all, std::span<const st
     const Impression& impression = all[id];
     const Float4 d = point.p - impression.middle;
     if (dot(d, d) < impression.radius2)
-      hollow = smooth_min(hollow, impression.field.evaluate(point, depth), rim_rounding_);
+      hollow = smooth_min(hollow, impression.field.evaluate(point, depth), edges_.rim_rounding);
   }
   return hollow;
 }
 
 Dual Phantom::carve(const Dual& body, const Dual& decor, const Dual& hollow) const {
   Dual surface = body + decor;
-  if (hollow.v < lip_width_) {  // the stylus pushes up a low lip around the impression
-    const float t = 1.0f - std::max(hollow.v, 0.0f) / lip_width_;
-    surface = surface -
-              Dual{lip_height_ * t * t, hollow.v > 0.0f ? hollow.g * (-2.0f * lip_height_ * t / lip_width_) : Float4{}};
+  if (hollow.v < edges_.lip_width) {  // the stylus pushes up a low lip around the impression
+    const float t = 1.0f - std::max(hollow.v, 0.0f) / edges_.lip_width;
+    surface =
+        surface - Dual{edges_.lip_height * t * t,
+                       hollow.v > 0.0f ? hollow.g * (-2.0f * edges_.lip_height * t / edges_.lip_width) : Float4{}};
   }
-  return smooth_max(surface, -hollow, rim_rounding_);
+  return smooth_max(surface, -hollow, edges_.rim_rounding);
 }
 
-Dual Phantom::gap(const Point& point) const {
-  const Dual q = (glue_field_.evaluate(point) - glue_threshold_) * (-1.0f / glue_ramp_);  // < 0: glued
+Dual ClayGap::width(const Point& point) const {
+  const Dual q = (glue.evaluate(point) - threshold) * (-1.0f / ramp);  // < 0: glued
   Dual gap;
   if (q.v >= 1.0f) {
-    gap = {gap_open_, Float4{}};
+    gap = {open, Float4{}};
   } else if (q.v >= 0.0f) {
     const float t = 1.0f - q.v;
-    gap = {gap_open_ * (1.0f - t * t * t), q.g * (3.0f * gap_open_ * t * t)};
+    gap = {open * (1.0f - t * t * t), q.g * (3.0f * open * t * t)};
   } else {
     const float t = std::max(1.0f + q.v, 0.0f);
-    gap = {-overlap_ * (1.0f - t * t * t), q.g * (3.0f * overlap_ * t * t)};
+    gap = {-overlap * (1.0f - t * t * t), q.g * (3.0f * overlap * t * t)};
   }
   if (gap.v > 0.0f) {
-    gap = gap * (gap_variation_.evaluate(point) + 1.0f);
-    for (const auto& touch : touches_)
+    gap = gap * (variation.evaluate(point) + 1.0f);
+    for (const auto& touch : touches)
       gap = gap * (Dual{1.0f, Float4{}} - bump(point.distance2(touch.centre), touch.radius2) * touch.depth);
   }
-  return options_.contact == Contact::kFilm ? max(gap, Dual{film_, Float4{}}) : gap;
+  return film > 0.0f ? max(gap, Dual{film, Float4{}}) : gap;
 }
 
 Fields Phantom::fields(float x, float y, float z, float reach) const {
-  const Point point = model_point(x, y, z);
+  const Point point = place_.point(x, y, z);
   const std::int64_t cell = grid_.index(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
   Fields f;
   f.pore = f.organic = f.grain = f.crack = far_away();
 
-  const float outer_range = outer_relief_ + reach;
+  const float outer_range = outer_.relief + reach;
   Dual decor;
-  const Dual outer_base = outer_.evaluate(point, &decor, outer_range);
+  const Dual outer_base = outer_.body.evaluate(point, &decor, outer_range);
   if (outer_base.v > outer_range) {
-    f.outer = f.clay = outer_base - outer_relief_;
+    f.outer = f.clay = outer_base - outer_.relief;
     f.tablet = far_away();
     f.wall = -f.tablet;
     f.tablet_base = kFar;
     return f;
   }
   if (outer_base.v < -outer_range)
-    f.outer = outer_base + outer_relief_;
+    f.outer = outer_base + outer_.relief;
   else
-    f.outer = carve(outer_base, decor, impressions(outer_wedges_, outer_cells_[cell], point, -outer_base));
+    f.outer = carve(outer_base, decor, impressions(outer_.wedges, outer_.cells[cell], point, -outer_base));
 
-  const float range = tablet_relief_ + reach;
+  const float range = tablet_.relief + reach;
   Dual joint = far_away();
-  const Dual base = tablet_.evaluate(point, &decor, range);
+  const Dual base = tablet_.body.evaluate(point, &decor, range);
   f.tablet_base = base.v;
   if (base.v > range) {  // in the shell
-    f.tablet = base - tablet_relief_;
+    f.tablet = base - tablet_.relief;
     f.wall = -f.tablet;
   } else if (base.v < -range) {
-    f.tablet = base + tablet_relief_;
+    f.tablet = base + tablet_.relief;
     f.wall = -f.tablet;
   } else {
-    const Dual hollow = impressions(tablet_wedges_, tablet_cells_[cell], point, -base);
+    const Dual hollow = impressions(tablet_.wedges, tablet_.cells[cell], point, -base);
     f.tablet = carve(base, decor, hollow);
     // The envelope was pressed on: its inner wall follows the tablet at the gap's width and sinks into the wedges.
     const Dual followed = options_.contact == Contact::kPressed
-                              ? smooth_max(base, -(hollow + hint_), 2.0f * rim_rounding_)
+                              ? smooth_max(base, -(hollow + edges_.hint), 2.0f * edges_.rim_rounding)
                           : options_.contact == Contact::kPockets ? base
                                                                   : f.tablet;
-    const Dual width = gap(point);
+    const Dual width = gap_.width(point);
     f.wall = width - followed;
     // Where both are one, neither's surface exists: the way out leads along the joint to where the gap opens.
-    joint = max(width, smooth_abs(base + 0.5f * overlap_, 1.0f) - 2.0f * overlap_);
+    joint = max(width, smooth_abs(base + 0.5f * gap_.overlap, 1.0f) - 2.0f * gap_.overlap);
   }
   Dual envelope = max(f.outer, f.wall);
   if (crack_.radius2 > 0.0f) {
@@ -117,9 +113,9 @@ Fields Phantom::fields(float x, float y, float z, float reach) const {
     }
   }
   f.clay = options_.contact == Contact::kFilm ? min(f.tablet, envelope)
-                                              : min(smooth_min(f.tablet, envelope, join_rounding_), joint);
-  for (const std::uint32_t id : pore_cells_[cell]) {
-    const Pore& pore = pores_[id];
+                                              : min(smooth_min(f.tablet, envelope, edges_.join_rounding), joint);
+  for (const std::uint32_t id : pores_.cells[cell]) {
+    const Pore& pore = pores_.all[id];
     Dual r2;
     for (const Float4 axis : pore.axis) {
       const Dual c = point.along(pore.centre, axis);
@@ -127,14 +123,14 @@ Fields Phantom::fields(float x, float y, float z, float reach) const {
     }
     f.pore = min(f.pore, (sqrt(r2) - 1.0f) * pore.smallest);
   }
-  for (const std::uint32_t id : straw_cells_[cell]) {
-    const Straw& straw = straws_[id];
+  for (const std::uint32_t id : straws_.cells[cell]) {
+    const Straw& straw = straws_.all[id];
     const Float4 d = straw.b - straw.a;
     const float t = std::clamp(dot(point.p - straw.a, d) / dot(d, d), 0.0f, 1.0f);
     f.organic = min(f.organic, sqrt(point.distance2(straw.a + d * t)) - straw.radius);
   }
-  for (const std::uint32_t id : grain_cells_[cell])
-    f.grain = min(f.grain, sqrt(point.distance2(grains_[id].centre)) - grains_[id].radius);
+  for (const std::uint32_t id : grains_.cells[cell])
+    f.grain = min(f.grain, sqrt(point.distance2(grains_.all[id].centre)) - grains_.all[id].radius);
   f.clay = max(max(f.clay, -f.pore), -f.organic);
   return f;
 }
@@ -145,7 +141,9 @@ template <class Field>
 double Phantom::project(const glm::dvec3& point, const Field& field) const {
   const auto at = [&](Float4 p) { return field(p[0], p[1], p[2]); };
   const Float4 start{static_cast<float>(point.x), static_cast<float>(point.y), static_cast<float>(point.z), 0.0f};
-  const auto to_grid = [&](Float4 g) { return Float4{dot(axis_x_, g), dot(axis_y_, g), dot(axis_z_, g), 0.0f}; };
+  const auto to_grid = [&](Float4 g) {
+    return Float4{dot(place_.axis_x, g), dot(place_.axis_y, g), dot(place_.axis_z, g), 0.0f};
+  };
   Dual f = at(start);
   const float first_order = metric(f);
   if (std::abs(first_order) > 2.5f) return std::clamp(static_cast<double>(first_order), -kReach, kReach);
@@ -192,13 +190,13 @@ Label Phantom::label(const glm::dvec3& p) const {
 }
 
 bool Phantom::on_tablet_side(const glm::dvec3& p) const {
-  return tablet_.smooth(model_point(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z))).v <
-         0.0f;
+  return tablet_.body.smooth(place_.point(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)))
+             .v < 0.0f;
 }
 
 double Phantom::gap_width(const glm::dvec3& p) const {
   return static_cast<double>(
-      gap(model_point(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z))).v);
+      gap_.width(place_.point(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z))).v);
 }
 
 Part Phantom::nearest_part(const glm::dvec3& p) const {

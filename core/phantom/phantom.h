@@ -2,7 +2,6 @@
 // An enclosed Old Assyrian tablet as an implicit model, evaluated at any point: what a scan of it should give, and the
 // truth a result is judged by.
 
-#include <array>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
@@ -10,12 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "core/phantom/cell_lists.h"
-#include "core/phantom/clay_body.h"
-#include "core/phantom/dual.h"
 #include "core/phantom/options.h"
+#include "core/phantom/phantom_parts.h"
 #include "core/phantom/side.h"
-#include "core/phantom/stylus.h"
 
 namespace dubsar::phantom {
 
@@ -85,7 +81,7 @@ class Phantom {
   /// Part of the tablet's surface where there is no air between it and the envelope, or a film of it, 0..1.
   double glued_fraction() const noexcept { return glued_fraction_; }
   bool cracked() const noexcept { return crack_.radius2 > 0.0f; }
-  int pore_count() const noexcept { return static_cast<int>(pores_.size()); }
+  int pore_count() const noexcept { return static_cast<int>(pores_.all.size()); }
 
   // All points are in input voxel coordinates (voxel centres at integers). Any thread.
 
@@ -117,67 +113,25 @@ class Phantom {
   explicit Phantom(const PhantomOptions& options);
   friend class PhantomBuilder;
 
-  struct Impression {
-    WedgeField field;
-    Float4 middle;
-    float radius2;  ///< farther from the middle it changes nothing
-  };
-  struct Pore {
-    Float4 centre;
-    std::array<Float4, 3> axis;  ///< unit axes divided by the radii
-    float smallest;
-  };
-  struct Straw {
-    Float4 a, b;
-    float radius;
-  };
-  struct Grain {
-    Float4 centre;
-    float radius;
-  };
-  struct Crack {  ///< a bent sheet, thinner towards its rim
-    Float4 centre{}, normal{};
-    float radius2 = 0.0f, half_width = 0.0f;
-    Waves bend;
-  };
-
-  Point model_point(float x, float y, float z) const {
-    Point point;
-    point.p = origin_ + axis_x_ * x + axis_y_ * y + axis_z_ * z;
-    return point;
-  }
-  glm::dvec3 grid_point(Float4 model) const;
-  glm::dvec3 grid_vector(Float4 model) const;
   /// Union of the impressions in `ids`: large when there are none.
   Dual impressions(const std::vector<Impression>& all, std::span<const std::uint32_t> ids, const Point& point,
                    const Dual& depth) const;
   Dual carve(const Dual& body, const Dual& decor, const Dual& hollow) const;
-  Dual gap(const Point& point) const;
-  bool touches(float gap) const noexcept { return gap <= (options_.contact == Contact::kFilm ? film_ : 0.0f); }
+  bool touches(float gap) const noexcept { return gap <= gap_.film; }
   template <class Field>
   double project(const glm::dvec3& point, const Field& field) const;
 
   PhantomOptions options_;
-  float voxels_per_mm_ = 1.0f;
-  Float4 origin_{}, axis_x_{}, axis_y_{}, axis_z_{};
-  SealRelief seal_;
-  ClayBody tablet_, outer_;
-  // Gap between tablet and envelope (all in voxels).
-  Waves gap_variation_, glue_field_;
-  float glue_threshold_ = 0.0f, glue_ramp_ = 1.0f, gap_open_ = 1.0f, overlap_ = 1.0f, film_ = 0.0f;
-  std::vector<ClayBody::FingerMark> touches_;  ///< depth: share of the gap that closes
-  // Fine features.
-  float rim_rounding_ = 1.0f, join_rounding_ = 1.0f, lip_height_ = 0.0f, lip_width_ = 1.0f, hint_ = 0.0f;
-  std::vector<Impression> tablet_wedges_, outer_wedges_;
-  float tablet_relief_ = 0.0f,
-        outer_relief_ = 0.0f;  ///< no decoration or impression is farther from the smooth surface
-  std::vector<Pore> pores_;
-  std::vector<Straw> straws_;
-  std::vector<Grain> grains_;
-  Crack crack_;
+  ModelPlace place_;
   CellGrid grid_;
-  CellLists tablet_cells_, outer_cells_, pore_cells_, straw_cells_, grain_cells_;
-
+  SealRelief seal_;
+  WrittenBody tablet_, outer_;
+  ClayGap gap_;
+  ClayEdges edges_;
+  Strewn<Pore> pores_;
+  Strewn<Straw> straws_;
+  Strewn<Grain> grains_;
+  Crack crack_;
   std::vector<Wedge> wedges_;
   double glued_fraction_ = 0.0;
 };

@@ -16,7 +16,7 @@ Float4 unit(Float4 v) { return v * (1.0f / std::sqrt(dot(v, v))); }
 }  // namespace
 
 void PhantomBuilder::write_tablet() {
-  ClayBody& body = p_.tablet_;
+  ClayBody& body = p_.tablet_.body;
   const float inset = 0.42f * body.edge_radius;
   for (const Side side : {Side::kObverse, Side::kReverse, Side::kLower, Side::kUpper, Side::kLeft, Side::kRight}) {
     const SideFrame& frame = kSideFrames[static_cast<std::size_t>(side)];
@@ -31,10 +31,10 @@ void PhantomBuilder::write_tablet() {
 }
 
 void PhantomBuilder::write_envelope() {
-  ClayBody& body = p_.outer_;
+  ClayBody& body = p_.outer_.body;
   Random random(seed(), 7);
   const float inset = 0.36f * body.edge_radius;
-  const float seal_height = SealRelief::kHeightMm * p_.voxels_per_mm_;
+  const float seal_height = SealRelief::kHeightMm * p_.place_.voxels_per_mm;
   const auto roll = [&](Side side, float bottom) {
     body.bands[static_cast<std::size_t>(side)].push_back(
         {bottom, static_cast<float>(random.uniform(0.0, static_cast<double>(SealRelief::kTurnMm)))});
@@ -47,7 +47,7 @@ void PhantomBuilder::write_envelope() {
       write_block(Owner::kEnvelope,
                   {side, top - slack, body.half[static_cast<std::size_t>(frame.right.axis)] - inset, lines, 1.0});
   };
-  const float margin = 0.8f * p_.voxels_per_mm_;
+  const float margin = 0.8f * p_.place_.voxels_per_mm;
   const float reach = body.half[2] - inset;
   roll(Side::kObverse, reach - seal_height);
   roll(Side::kObverse, -reach);
@@ -63,7 +63,7 @@ void PhantomBuilder::write_envelope() {
 }
 
 void PhantomBuilder::write_block(Owner owner, const TextBlock& block) {
-  ClayBody& body = owner == Owner::kTablet ? p_.tablet_ : p_.outer_;
+  ClayBody& body = owner == Owner::kTablet ? p_.tablet_.body : p_.outer_.body;
   Random random(seed(), 0x100 + 16 * static_cast<std::uint64_t>(owner) + static_cast<std::uint64_t>(block.side) +
                             1000 * static_cast<std::uint64_t>(signs_));
   const float pitch = line_pitch_, sign_height = kSignHeight * pitch;
@@ -84,7 +84,7 @@ void PhantomBuilder::write_block(Owner owner, const TextBlock& block) {
 
 void PhantomBuilder::press(Owner owner, Side side, float right, float up, const Stroke& stroke, int sign,
                            float sign_height) {
-  ClayBody& body = owner == Owner::kTablet ? p_.tablet_ : p_.outer_;
+  ClayBody& body = owner == Owner::kTablet ? p_.tablet_.body : p_.outer_.body;
   const SideFrame& frame = kSideFrames[static_cast<std::size_t>(side)];
   Point point;
   point.p = body.surface_point(side, right, up);
@@ -98,22 +98,22 @@ void PhantomBuilder::press(Owner owner, Side side, float right, float up, const 
   along = unit(along - normal * dot(along, normal));
   const WedgeSize size = stylus_wedge(stroke.head * sign_height, stroke.length * sign_height, tip_rounding_);
 
-  auto& impressions = owner == Owner::kTablet ? p_.tablet_wedges_ : p_.outer_wedges_;
+  auto& impressions = owner == Owner::kTablet ? p_.tablet_.wedges : p_.outer_.wedges;
   auto& balls = owner == Owner::kTablet ? tablet_balls_ : outer_balls_;
   const float back = size.head_back, front = std::max(size.tail_length, size.head_front);
   const Float4 middle = point.p + along * (0.5f * (front - back));
   // The lip, the wall that follows through the gap, and the rasteriser's distance band.
   const float radius = std::hypot(0.5f * (front + back), std::max(size.head_half_width, size.depth)) * 1.05f +
-                       0.5f * size.head_half_width + 0.5f * p_.gap_open_ + 5.0f;
+                       0.5f * size.head_half_width + 0.5f * p_.gap_.open + 5.0f;
   impressions.push_back({WedgeField(size, point.p, along, cross(normal, along)), middle, radius * radius});
-  balls.push_back({p_.grid_point(middle), static_cast<double>(radius)});
-  float& relief = owner == Owner::kTablet ? p_.tablet_relief_ : p_.outer_relief_;
+  balls.push_back({p_.place_.grid_point(middle), static_cast<double>(radius)});
+  float& relief = owner == Owner::kTablet ? p_.tablet_.relief : p_.outer_.relief;
   relief = std::max(relief, 1.1f * size.depth + 1.0f);
 
   Wedge wedge;
-  wedge.position = p_.grid_point(point.p);
-  wedge.outward = p_.grid_vector(normal);
-  wedge.tail = p_.grid_vector(along);
+  wedge.position = p_.place_.grid_point(point.p);
+  wedge.outward = p_.place_.grid_vector(normal);
+  wedge.tail = p_.place_.grid_vector(along);
   wedge.depth = static_cast<double>(size.depth);
   wedge.length = static_cast<double>(size.tail_length);
   wedge.head_half_width = static_cast<double>(size.head_half_width);
@@ -121,9 +121,9 @@ void PhantomBuilder::press(Owner owner, Side side, float right, float up, const 
   wedge.owner = owner;
   wedge.sign = sign;
   p_.wedges_.push_back(wedge);
-  p_.lip_width_ = 0.5f * size.head_half_width;
-  p_.lip_height_ = 0.06f * size.depth;
-  p_.hint_ = 0.45f * size.depth;
+  p_.edges_.lip_width = 0.5f * size.head_half_width;
+  p_.edges_.lip_height = 0.06f * size.depth;
+  p_.edges_.hint = 0.45f * size.depth;
 }
 
 // The depth of each impression as it is now, after neighbours, rounding and lips: the first clay below its place.

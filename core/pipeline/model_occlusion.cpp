@@ -8,7 +8,7 @@ namespace dubsar {
 Result<void> occlusion_of_model(SurfaceModel& model, const OcclusionOptions& options, Progress& progress) {
   model.attributes.ao.clear();
   std::vector<std::uint32_t> source;
-  DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model, {}, &source));
+  DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model, {.progress = &progress}, &source));
   std::array<PartitionId, PartitionTable::kMost> body_of{};
   for (const Partition& p : model.partitions) body_of[p.id] = model.partitions.body_of(p.id);
   std::vector<PartitionId> bodies = mesh.triangle_partition;  // the two walls of an envelope are one body

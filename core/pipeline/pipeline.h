@@ -34,7 +34,7 @@ struct PipelineResult {
   PipelineReport report;
 };
 
-/// Runs all stages; memory for about two volumes of the resampled grid in float, then about 200 bytes a vertex. Cancel
+/// Runs all stages; memory for about one volume of the resampled grid in float, then about 200 bytes a vertex. Cancel
 /// leaves nothing behind. Errors: those of the stages.
 Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& progress);
 

@@ -125,8 +125,7 @@ PipelineReport make_report(const StageResults& results, const SurfaceModel& mode
                         .patches = results.patches,
                         .detail = results.imported.detail,
                         .mesh = results.check,
-                        .vertices = model.mesh.vertex_count(),
-                        .xquads = model.mesh.quad_count(),
+                        .surface = {model.mesh.vertex_count(), model.mesh.quad_count()},
                         .partitions = model.partitions,
                         .exa = {},
                         .stages = clock.records()};
@@ -149,12 +148,12 @@ json volume_json(const VolumeInfo& info) {
            {{"order", info.axes.letters()},
             {"stated_by", info.axes.known() ? json(info.axes.provenance) : json(nullptr)},
             {"mirrored_as_stored", info.axes.mirrored_as_stored()}}},
-          {"dtype", info.dtype},
-          {"byte_order", info.byte_order},
-          {"layout", info.layout},
-          {"filters", info.filters},
-          {"storage_bytes", info.storage_bytes},
-          {"logical_bytes", info.logical_bytes},
+          {"dtype", info.stored.dtype},
+          {"byte_order", info.stored.byte_order},
+          {"layout", info.stored.layout},
+          {"filters", info.stored.filters},
+          {"storage_bytes", info.stored.storage_bytes},
+          {"logical_bytes", info.stored.logical_bytes},
           {"voxel_size_mm", info.voxel.known() ? vector_json(info.voxel.mm) : json(nullptr)},
           {"provenance", info.voxel.known() ? info.voxel.provenance : "unknown"},
           {"other_datasets", candidates}};
@@ -191,8 +190,8 @@ json report_json(const PipelineReport& report, const PipelineOptions& options) {
                       {"work", stage.work},
                       {"work_unit", stage.unit}});
   json mesh = mesh_check_json(report.mesh);
-  mesh["vertices"] = report.vertices;
-  mesh["xquads"] = report.xquads;
+  mesh["vertices"] = report.surface.vertices;
+  mesh["xquads"] = report.surface.xquads;
   mesh["export_vertices"] = report.mesh.vertices;
   mesh["smooth"] = {{"mean_displacement_vox", report.smooth.mean_displacement_vox},
                     {"max_displacement_vox", report.smooth.max_displacement_vox},
@@ -236,7 +235,7 @@ std::string report_text(const PipelineReport& report) {
   text += fmt::format("threshold {:.6g}: {}\n", report.threshold.value, report.threshold.path);
   text +=
       fmt::format("mesh: {} vertices, {} x-quads, {} triangles, {} non-manifold edges, {} non-manifold vertices\n\n",
-                  report.vertices, report.xquads, report.mesh.triangles, report.mesh.nonmanifold_edges,
+                  report.surface.vertices, report.surface.xquads, report.mesh.triangles, report.mesh.nonmanifold_edges,
                   report.mesh.nonmanifold_vertices);
   text += fmt::format("parts: {} surfaces, {}{}", report.segment.components,
                       report.segment.nested ? "a body inside another" : "no body inside another",

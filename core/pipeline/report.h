@@ -16,6 +16,11 @@ namespace dubsar {
 
 struct PipelineOptions;
 
+/// Of the product, where neighbouring parts share their vertices.
+struct SurfaceSize {
+  std::int64_t vertices = 0, xquads = 0;
+};
+
 struct PipelineReport {
   ScanFacts scan;
   std::vector<FilterStep> filters;  ///< the raw scan, then before and after each pass; the last ones gave the threshold
@@ -29,7 +34,7 @@ struct PipelineReport {
   std::optional<UntangleReport> patches;  ///< when holes were filled
   DetailChoice detail;
   MeshCheck mesh;  ///< of all parts together, with their fill patches
-  std::int64_t vertices = 0, xquads = 0;
+  SurfaceSize surface;
   PartitionTable partitions;
   ExaStats exa;  ///< once the product is written
   std::vector<StageRecord> stages;

@@ -189,7 +189,7 @@ class ChunkReader final : public LibraryReader {
         std::byte* const row = out.data() + ((k * size.y + j) * size.x + first[2]) * element;
         if (bytes.empty()) {
           for (std::int64_t i = 0; i < x.count(); ++i)
-            std::memcpy(row + i * element, dataset_.info().fill_stored.data(), static_cast<std::size_t>(element));
+            std::memcpy(row + i * element, dataset_.info().fill.stored.data(), static_cast<std::size_t>(element));
           continue;
         }
         const std::int64_t at =

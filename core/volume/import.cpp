@@ -153,7 +153,7 @@ Result<std::unique_ptr<ImportedVolume>> open_volume(ImportOptions options) {
   std::unique_ptr<SlabSource> source =
       std::make_unique<GridSource>(std::move(opened.reader), info.box, info.voxel, options.budget);
   FiniteSource* finite = nullptr;
-  if (info.may_have_nonfinite) {
+  if (info.stored.may_have_nonfinite) {
     auto decorated = std::make_unique<FiniteSource>(std::move(source), options.nonfinite_fill);
     finite = decorated.get();
     source = std::move(decorated);

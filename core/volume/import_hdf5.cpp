@@ -146,7 +146,7 @@ Result<void> check_storage(const Hdf5Volume& volume, const ImportOptions& option
     return fail(ErrorKind::kBadData,
                 "import_hdf5: dataset \"{}\" is sparse or was not written to its end: {} of {} chunks are missing; "
                 "if sparse data are allowed they are read as {}",
-                info.path, chunks - std::min(written, chunks), chunks, info.fill_value);
+                info.path, chunks - std::min(written, chunks), chunks, info.fill.value);
   return {};
 }
 
@@ -239,14 +239,14 @@ Result<OpenedVolume> open_hdf5(const ImportOptions& options) {
   opened.info.format = "hdf5";
   opened.info.dataset = volume.named;
   opened.info.found_by = volume.found_by;
-  opened.info.dtype = info.type_text;
-  opened.info.byte_order = order_name(info.order);
-  opened.info.layout = layout_text(info, axes);
-  for (const Hdf5Filter& filter : info.filters) opened.info.filters.push_back(filter_text(filter));
-  opened.info.storage_bytes = static_cast<std::int64_t>(info.storage_bytes);
-  opened.info.logical_bytes = logical;
+  opened.info.stored.dtype = info.type_text;
+  opened.info.stored.byte_order = order_name(info.order);
+  opened.info.stored.layout = layout_text(info, axes);
+  for (const Hdf5Filter& filter : info.filters) opened.info.stored.filters.push_back(filter_text(filter));
+  opened.info.stored.storage_bytes = static_cast<std::int64_t>(info.storage_bytes);
+  opened.info.stored.logical_bytes = logical;
   opened.info.candidates = volume.others;
-  opened.info.may_have_nonfinite = can_be_nonfinite(*info.scalar, opened.info.map);
+  opened.info.stored.may_have_nonfinite = can_be_nonfinite(*info.scalar, opened.info.map);
   const StatedVoxelSize stated = hdf5_voxel_size(volume, opened.info.warnings);
   opened.info.voxel = stated.size;
   opened.voxel_by_name = stated.by_name;

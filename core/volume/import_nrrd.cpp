@@ -290,7 +290,7 @@ Result<OpenedVolume> open_nrrd(const ImportOptions& options) {
   VolumeInfo& info = opened.info;
   const auto size_of = [&](std::size_t i) { return static_cast<std::int64_t>(sizes[axes[i]]); };
   info.file_dims = {size_of(0), size_of(1), size_of(2)};
-  info.logical_bytes = count * scalar_bytes(*type);
+  info.stored.logical_bytes = count * scalar_bytes(*type);
   const std::string endian = lower(header.text("endian"));
   if (endian.empty() && scalar_bytes(*type) > 1)
     info.warnings.emplace_back("the NRRD header states no endian, little is taken");
@@ -303,23 +303,23 @@ Result<OpenedVolume> open_nrrd(const ImportOptions& options) {
   if (lines != 0.0 || skip < -1.0 || skip > 1e15 || skip != std::floor(skip))
     return fail(ErrorKind::kBadData, "import_nrrd: {} skips {} lines and {} bytes, expected no lines and whole bytes",
                 path, lines, skip);
-  info.storage_bytes = std::max<std::int64_t>(0, data.file.size() - data.offset);
+  info.stored.storage_bytes = std::max<std::int64_t>(0, data.file.size() - data.offset);
   if (encoding == "raw") {
     const std::int64_t offset =
-        skip < 0.0 ? data.file.size() - info.logical_bytes : data.offset + static_cast<std::int64_t>(skip);
-    info.layout = "contiguous";
+        skip < 0.0 ? data.file.size() - info.stored.logical_bytes : data.offset + static_cast<std::int64_t>(skip);
+    info.stored.layout = "contiguous";
     std::vector<FlatSegment> segments;
-    segments.push_back({std::move(data.file), offset, info.logical_bytes});
+    segments.push_back({std::move(data.file), offset, info.stored.logical_bytes});
     DUBSAR_ASSIGN(opened.reader, make_flat_reader({info.file_dims, {*type, order, {}}, std::move(segments)}));
   } else if ((encoding == "gzip" || encoding == "gz") && skip == 0.0) {
-    if (info.logical_bytes > (std::int64_t{64} << 20) && info.logical_bytes / 250 > info.storage_bytes &&
-        !options.trust)
+    if (info.stored.logical_bytes > (std::int64_t{64} << 20) &&
+        info.stored.logical_bytes / 250 > info.stored.storage_bytes && !options.trust)
       return fail(ErrorKind::kBadData,
                   "import_nrrd: {} unpacks {} bytes to {}, expected at most 250:1; if you know the file, "
                   "say that it is trusted",
-                  path, info.storage_bytes, info.logical_bytes);
-    info.layout = "stream";
-    info.filters = {"gzip"};
+                  path, info.stored.storage_bytes, info.stored.logical_bytes);
+    info.stored.layout = "stream";
+    info.stored.filters = {"gzip"};
     opened.reader =
         std::make_unique<GzipReader>(GzipStream(std::move(data.file), data.offset), info.file_dims, *type, order);
   } else {
@@ -330,9 +330,9 @@ Result<OpenedVolume> open_nrrd(const ImportOptions& options) {
   }
   info.format = "nrrd";
   info.found_by = "header";
-  info.dtype = scalar_name(*type);
-  info.byte_order = order_name(order);
-  info.may_have_nonfinite = is_float(*type);
+  info.stored.dtype = scalar_name(*type);
+  info.stored.byte_order = order_name(order);
+  info.stored.may_have_nonfinite = is_float(*type);
   info.voxel = voxel_size(header, {axes[0], axes[1], axes[2]}, info.warnings);
   info.axes = axis_order(header, {axes[0], axes[1], axes[2]}, info.warnings);
   return opened;

@@ -32,11 +32,11 @@ Result<OpenedVolume> open_raw(const ImportOptions& options) {
   info.format = "raw";
   info.found_by = "named by the user";
   info.file_dims = {raw.dims[0], raw.dims[1], raw.dims[2]};
-  info.dtype = scalar_name(raw.type);
-  info.byte_order = order_name(raw.order);
-  info.layout = "contiguous";
-  info.storage_bytes = info.logical_bytes = bytes;
-  info.may_have_nonfinite = is_float(raw.type);
+  info.stored.dtype = scalar_name(raw.type);
+  info.stored.byte_order = order_name(raw.order);
+  info.stored.layout = "contiguous";
+  info.stored.storage_bytes = info.stored.logical_bytes = bytes;
+  info.stored.may_have_nonfinite = is_float(raw.type);
   std::vector<FlatSegment> segments;
   segments.push_back({std::move(file), raw.skip, bytes});
   DUBSAR_ASSIGN(opened.reader, make_flat_reader({info.file_dims, {raw.type, raw.order, {}}, std::move(segments)}));

@@ -261,25 +261,27 @@ Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
                                           static_cast<std::uint64_t>(first->width)};
   DUBSAR_ASSIGN(const std::int64_t count, check_dims("import_tiff: the stack", dims,
                                                      static_cast<std::uint64_t>(scalar_bytes(type)), options.budget));
-  info.logical_bytes = count * scalar_bytes(type);
-  for (const fs::path& path : files) info.storage_bytes += static_cast<std::int64_t>(fs::file_size(path, ignored));
-  if (info.logical_bytes > (std::int64_t{64} << 20) && info.logical_bytes / 250 > info.storage_bytes && !options.trust)
+  info.stored.logical_bytes = count * scalar_bytes(type);
+  for (const fs::path& path : files)
+    info.stored.storage_bytes += static_cast<std::int64_t>(fs::file_size(path, ignored));
+  if (info.stored.logical_bytes > (std::int64_t{64} << 20) &&
+      info.stored.logical_bytes / 250 > info.stored.storage_bytes && !options.trust)
     return fail(ErrorKind::kBadData,
                 "import_tiff: {} unpacks {} bytes to {}, expected at most 250:1; if you know the files, "
                 "say that they are trusted",
-                options.path.string(), info.storage_bytes, info.logical_bytes);
+                options.path.string(), info.stored.storage_bytes, info.stored.logical_bytes);
   info.format = "tiff";
   info.found_by = files.size() > 1 ? fmt::format("{} files", files.size()) : "pages of one file";
-  info.dtype = scalar_name(type);
-  info.byte_order = order_name(first->big_endian ? ByteOrder::kBig : ByteOrder::kLittle);
-  info.layout = "slices";
-  if (first->compression != "none") info.filters = {first->compression};
-  info.may_have_nonfinite = is_float(type);
+  info.stored.dtype = scalar_name(type);
+  info.stored.byte_order = order_name(first->big_endian ? ByteOrder::kBig : ByteOrder::kLittle);
+  info.stored.layout = "slices";
+  if (first->compression != "none") info.stored.filters = {first->compression};
+  info.stored.may_have_nonfinite = is_float(type);
   info.voxel = voxel_size(*first, info.warnings);
   if (behind > 1) {
     DUBSAR_ASSIGN(InputFile file, InputFile::open(files.front()));
     std::vector<FlatSegment> segments;
-    segments.push_back({std::move(file), first->data_offset, info.logical_bytes});
+    segments.push_back({std::move(file), first->data_offset, info.stored.logical_bytes});
     const ByteOrder order = first->big_endian ? ByteOrder::kBig : ByteOrder::kLittle;
     DUBSAR_ASSIGN(opened.reader, make_flat_reader({info.file_dims, {type, order, {}}, std::move(segments)}));
   } else {

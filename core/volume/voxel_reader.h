@@ -62,6 +62,17 @@ struct VolumeCandidate {
   std::string dtype;
 };
 
+/// How the numbers of a volume lie in its file.
+struct StoredNumbers {
+  std::string dtype;  ///< "uint8" ... "float64"
+  std::string byte_order;
+  std::string layout;  ///< "contiguous", "chunked 32x32x32" (z, y, x), ...
+  std::vector<std::string> filters;
+  std::int64_t storage_bytes = 0;  ///< in the file, compressed
+  std::int64_t logical_bytes = 0;  ///< of the whole array
+  bool may_have_nonfinite = true;  ///< a float type
+};
+
 /// What is known of a volume in a file, for the report and `dubsar info`.
 struct VolumeInfo {
   std::string path;
@@ -71,18 +82,12 @@ struct VolumeInfo {
   std::string found_by;     ///< how the volume was found: "named by the user", "NeXus default", ...
   Dims file_dims;           ///< of the whole array, along x, y, z of the object
   AxisOrder axes;           ///< how these lie in the file
-  std::string dtype;        ///< "uint8" ... "float64"
-  std::string byte_order;
-  std::string layout;  ///< "contiguous", "chunked 32x32x32" (z, y, x), ...
-  std::vector<std::string> filters;
+  StoredNumbers stored;
   ScalarMap map;  ///< applied to the stored numbers
   VoxelSize voxel;
-  std::int64_t storage_bytes = 0;           ///< in the file, compressed
-  std::int64_t logical_bytes = 0;           ///< of the whole array
   VoxelBox box;                             ///< crop and stride that are read
   std::vector<VolumeCandidate> candidates;  ///< other volumes in the file
   std::vector<std::string> warnings;        ///< for people, one sentence each
-  bool may_have_nonfinite = true;           ///< a float type
 };
 
 /// A file opened by an importer: dims and voxel size of the info follow the stored axes, fastest first, and the reader

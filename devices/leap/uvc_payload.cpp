@@ -15,7 +15,6 @@ UvcAssembler::UvcAssembler(std::size_t frame_bytes) : frame_bytes_(frame_bytes) 
 void UvcAssembler::begin() noexcept {
   frame_.clear();
   announced_ = 0;
-  presentation_time_ = 0;
   frame_id_ = -1;
   complete_ = spoiled_ = false;
 }
@@ -35,8 +34,6 @@ bool UvcAssembler::add(std::span<const std::byte> transfer) {
     begin();
   }
   frame_id_ = id;
-  if ((flags & kHasPresentationTime) != 0 && header >= 6)
-    std::memcpy(&presentation_time_, transfer.data() + 2, sizeof presentation_time_);
   if ((flags & kError) != 0) spoiled_ = true;
 
   const auto data = transfer.subspan(header);

@@ -19,7 +19,6 @@ class UvcAssembler {
   /// One bulk transfer as it came. True: frame() is complete and stays until the next call.
   bool add(std::span<const std::byte> transfer);
   std::span<const std::byte> frame() const noexcept { return frame_; }
-  std::uint32_t presentation_time() const noexcept { return presentation_time_; }  ///< device ticks; 0: none came
 
   std::uint64_t frames() const noexcept { return frames_; }
   std::uint64_t dropped_frames() const noexcept { return dropped_; }       ///< wrong length, error flag, cut short
@@ -31,8 +30,7 @@ class UvcAssembler {
   std::size_t frame_bytes_;
   std::vector<std::byte> frame_;
   std::size_t announced_ = 0;  ///< bytes seen of this frame, also those beyond its length
-  std::uint32_t presentation_time_ = 0;
-  int frame_id_ = -1;  ///< -1: between frames
+  int frame_id_ = -1;          ///< -1: between frames
   bool complete_ = false, spoiled_ = false;
   std::uint64_t frames_ = 0, dropped_ = 0, bad_transfers_ = 0;
 };

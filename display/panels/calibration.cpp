@@ -24,8 +24,8 @@ bool printable(std::string_view text) {
 const PanelProfile* model_of(const PanelSet& panels, const Calibration& calibration) {
   const PanelProfile* best = nullptr;
   for (const PanelProfile& profile : panels.profiles)
-    if (!profile.serial_prefix.empty() && calibration.serial.starts_with(profile.serial_prefix) &&
-        (best == nullptr || profile.serial_prefix.size() > best->serial_prefix.size()))
+    if (!profile.marks.serial_prefix.empty() && calibration.serial.starts_with(profile.marks.serial_prefix) &&
+        (best == nullptr || profile.marks.serial_prefix.size() > best->marks.serial_prefix.size()))
       best = &profile;
   if (best != nullptr) return best;
   for (const PanelProfile& profile : panels.profiles)
@@ -93,9 +93,9 @@ Result<PanelProfile> calibrated_profile(const PanelSet& panels, const Calibratio
   profile.height_px = figures.screen_height;
   profile.width_mm = figures.screen_width / figures.dpi * kMmPerInch;
   profile.aspect = static_cast<double>(figures.screen_width) / figures.screen_height;
-  profile.view_cone_deg = calibration.view_cone_deg;
-  profile.calibration = calibration.source;
-  DUBSAR_TRY(apply_adjustment(profile.adjustment, profile));
+  profile.zone.cone_deg = calibration.view_cone_deg;
+  profile.lenses.calibration = calibration.source;
+  DUBSAR_TRY(apply_adjustment(profile.lenses.adjustment, profile));
   return profile;
 }
 

@@ -26,19 +26,19 @@ Result<CrosstalkCurve> crosstalk_curve(const PanelProfile& profile, const Crosst
                 "panel {}: many views, expected a tracked panel with two; render --see-from tells what an "
                 "eye sees of it",
                 profile.name);
-  DUBSAR_ASSIGN(const TrackedPanel panel, panel_optics(profile, profile.design_distance_mm));
+  DUBSAR_ASSIGN(const TrackedPanel panel, panel_optics(profile, profile.zone.design_distance_mm));
   CrosstalkCurve out;
-  out.eye_distance_mm = profile.ipd_mm;
-  out.design_distance_mm = profile.design_distance_mm;
+  out.eye_distance_mm = profile.zone.ipd_mm;
+  out.design_distance_mm = profile.zone.design_distance_mm;
   const auto wrong = [&](const glm::dvec3& woven_for, const glm::dvec3& head, bool exact) {
-    return wrong_eye_light(panel, eyes_at(woven_for, profile.ipd_mm), eyes_at(head, profile.ipd_mm), exact,
+    return wrong_eye_light(panel, eyes_at(woven_for, profile.zone.ipd_mm), eyes_at(head, profile.zone.ipd_mm), exact,
                            question.step_px)
         .worst();
   };
-  const glm::dvec3 front(0.0, 0.0, profile.design_distance_mm);
+  const glm::dvec3 front(0.0, 0.0, profile.zone.design_distance_mm);
   out.nominal = wrong(front, front, true);
   for (int i = -kSidewaysSteps; i <= kSidewaysSteps; ++i) {
-    const glm::dvec3 head = front + glm::dvec3(profile.ipd_mm * i / kSidewaysSteps, 0.0, 0.0);
+    const glm::dvec3 head = front + glm::dvec3(profile.zone.ipd_mm * i / kSidewaysSteps, 0.0, 0.0);
     out.worst_sideways = std::max(out.worst_sideways, wrong(head, head, true));
   }
   std::map<double, double> of_move;
@@ -50,7 +50,7 @@ Result<CrosstalkCurve> crosstalk_curve(const PanelProfile& profile, const Crosst
       out.lags.push_back({speed, latency, moved, known->second});
     }
   for (const glm::dvec3& head :
-       question.places_mm.empty() ? usual_places(profile.design_distance_mm) : question.places_mm)
+       question.places_mm.empty() ? usual_places(profile.zone.design_distance_mm) : question.places_mm)
     out.places.push_back({head, wrong(head, head, true), wrong(head, head, false)});
   return out;
 }

@@ -74,7 +74,7 @@ Result<void> apply_adjustment(const PanelAdjustment& adjustment, PanelProfile& p
   pitch_of = pitch.value_or(pitch_of);
   slope_of = slope.value_or(slope_of);
   center_of = center.value_or(center_of);
-  profile.adjustment = adjustment;
+  profile.lenses.adjustment = adjustment;
   return {};
 }
 
@@ -99,7 +99,7 @@ Result<void> read_adjustment(const fs::path& file, PanelSet& panels, std::string
   for (PanelProfile& profile : panels.profiles)
     if (profile.name == panel) {
       const bool waits = !profile.sheet && !profile.optics;  // for a calibration
-      if (waits) profile.adjustment = adjustment;
+      if (waits) profile.lenses.adjustment = adjustment;
       const auto applied = waits ? Result<void>() : apply_adjustment(adjustment, profile);
       if (!applied) return fail(ErrorKind::kConfig, "{}: {}", file.string(), applied.error().message);
       return {};
@@ -124,7 +124,7 @@ Result<fs::path> save_adjustment(const fs::path& folder, std::string_view panel,
 }
 
 Result<fs::path> save_adjustment(const fs::path& folder, PanelProfile profile, const PanelAdjustment& adjustment) {
-  PanelAdjustment all = profile.adjustment;
+  PanelAdjustment all = profile.lenses.adjustment;
   if (adjustment.pitch) all.pitch = adjustment.pitch;
   if (adjustment.slope) all.slope = adjustment.slope;
   if (adjustment.center) all.center = adjustment.center;

@@ -41,7 +41,7 @@ void read_edids(const json& list, JsonFields& fields, PanelProfile& profile) {
         entry[0].get_ref<const std::string&>().size() != 3 || !entry[1].is_number_integer() || entry[1] < 0 ||
         entry[1] > kMostProduct)
       return wrong();
-    profile.edids.push_back({entry[0].get<std::string>(), entry[1].get<int>()});
+    profile.marks.edids.push_back({entry[0].get<std::string>(), entry[1].get<int>()});
   }
 }
 
@@ -100,8 +100,8 @@ Result<void> read_optics(const json& object, JsonFields& fields, PanelProfile& p
   DUBSAR_TRY(optics.finish());
   lens.pixel_mm = glm::dvec2(profile.width_mm / profile.width_px);
   profile.optics = lens;
-  profile.design_distance_mm = fields.number("design_distance_mm", 50.0, 10000.0);
-  profile.ipd_mm = fields.number("ipd_mm", 40.0, 80.0);
+  profile.zone.design_distance_mm = fields.number("design_distance_mm", 50.0, 10000.0);
+  profile.zone.ipd_mm = fields.number("ipd_mm", 40.0, 80.0);
   return {};
 }
 
@@ -139,20 +139,20 @@ Result<PanelProfile> parse_profile(const json& object, std::string_view source) 
   if (profile.kind == PanelKind::kTracked) {
     DUBSAR_TRY(read_optics(object, fields, profile));
   } else {
-    profile.view_cone_deg = fields.number("view_cone_deg", 1.0, 170.0);
+    profile.zone.cone_deg = fields.number("view_cone_deg", 1.0, 170.0);
     if (fields.has("lens")) DUBSAR_TRY(read_sheet(object, dpi, fields, profile));
   }
   if (profile.kind == PanelKind::kLookingGlass) DUBSAR_TRY(read_quilt(object, fields, profile));
   if (profile.kind == PanelKind::kLensSheet) profile.views = fields.integer("views", 2, 512);
   if (fields.has("edid")) read_edids(object.at("edid"), fields, profile);
-  profile.serial_prefix = fields.text("serial_prefix", "");
-  profile.hardware = fields.text("hardware", "");
+  profile.marks.serial_prefix = fields.text("serial_prefix", "");
+  profile.marks.hardware = fields.text("hardware", "");
   DUBSAR_TRY(fields.finish());
   return profile;
 }
 
 double viewing_distance_mm(const PanelProfile& profile) noexcept {
-  if (profile.design_distance_mm > 0) return profile.design_distance_mm;
+  if (profile.zone.design_distance_mm > 0) return profile.zone.design_distance_mm;
   return profile.height_mm() / 2 / std::tan(kFieldOfViewDeg * std::numbers::pi / 360);
 }
 
@@ -167,7 +167,7 @@ Result<TrackedPanel> panel_optics(const PanelProfile& profile, double distance_m
   if (!profile.sheet)
     return fail(ErrorKind::kConfig, "panel profile {}: no lens figures are known, give the unit's calibration file",
                 profile.name);
-  return optics_of_sheet(lens_sheet(*profile.sheet), profile.width_mm, profile.view_cone_deg * std::numbers::pi / 180.0,
+  return optics_of_sheet(lens_sheet(*profile.sheet), profile.width_mm, profile.zone.cone_deg * std::numbers::pi / 180.0,
                          distance_mm);
 }
 

@@ -40,22 +40,38 @@ struct EdidId {
   int product = 0;
 };
 
+/// What a panel is known by when it is plugged in.
+struct PanelMarks {
+  std::string serial_prefix, hardware;  ///< of a Looking Glass, as its calibration and its monitor call it
+  std::vector<EdidId> edids;            ///< of a tracked panel
+};
+
+/// From where a panel is looked at.
+struct ViewingZone {
+  double cone_deg = 0.0;            ///< horizontal cone over all views (not of kTracked)
+  double design_distance_mm = 0.0;  ///< 0: not known
+  double ipd_mm = 63.0;
+};
+
+/// Where the figures of the lenses come from.
+struct LensOrigin {
+  std::string calibration;     ///< empty: they are those of the profile
+  PanelAdjustment adjustment;  ///< the user's corrections; applied already
+};
+
 struct PanelProfile {
   std::string name, title, note;
   PanelKind kind = PanelKind::kLookingGlass;
   int width_px = 0, height_px = 0;
   double width_mm = 0.0;
-  double aspect = 0.0;         ///< of the picture, width / height
-  double view_cone_deg = 0.0;  ///< horizontal cone over all views (not of kTracked)
+  double aspect = 0.0;  ///< of the picture, width / height
   int views = 2;
   QuiltLayout quilt;  ///< Looking Glass only
-  std::string serial_prefix, hardware;
-  std::vector<EdidId> edids;                 ///< tracked panels; a Looking Glass is known by its monitor name
+  PanelMarks marks;
+  ViewingZone zone;
   std::optional<LookingGlassFigures> sheet;  ///< none: no lens figures are known, quilts only
   std::optional<LensOptics> optics;          ///< kTracked
-  double design_distance_mm = 0.0, ipd_mm = 63.0;
-  std::string calibration;     ///< where the lens figures come from; empty: those of the profile
-  PanelAdjustment adjustment;  ///< the user's corrections; applied already
+  LensOrigin lenses;
   double height_mm() const noexcept { return width_mm * height_px / width_px; }
 };
 

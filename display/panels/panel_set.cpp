@@ -106,9 +106,10 @@ std::vector<const PanelProfile*> panels_of_edid(const PanelSet& panels, const Ed
     if (!same_size(p)) continue;
     if (p.kind == PanelKind::kLookingGlass && edid.name.starts_with("LKG")) {
       by_size.push_back(&p);
-      if (starts_like(edid.name, p.serial_prefix) || starts_like(edid.serial, p.serial_prefix)) by_serial.push_back(&p);
+      if (starts_like(edid.name, p.marks.serial_prefix) || starts_like(edid.serial, p.marks.serial_prefix))
+        by_serial.push_back(&p);
     }
-    if (std::any_of(p.edids.begin(), p.edids.end(), [&](const EdidId& id) {
+    if (std::any_of(p.marks.edids.begin(), p.marks.edids.end(), [&](const EdidId& id) {
           return id.manufacturer == edid.manufacturer && id.product == edid.product;
         }))
       tracked.push_back(&p);

@@ -48,8 +48,13 @@ class LodMesh::Growth {
     PackedMesh mesh;
     double cell_mm = 0.0;
   };
-  explicit Growth(PackedMesh mesh)
-      : thread_([this, mesh = std::move(mesh)](const std::stop_token& stop) mutable { run(std::move(mesh), stop); }) {}
+  explicit Growth(PackedMesh mesh) : source_(std::move(mesh)) {}
+
+  /// Once; nothing comes before.
+  void begin() {
+    if (!thread_.joinable())
+      thread_ = std::jthread([this](const std::stop_token& stop) { run(std::move(source_), stop); });
+  }
 
   std::optional<Made> take() {
     const std::scoped_lock lock(mutex_);
@@ -86,7 +91,8 @@ class LodMesh::Growth {
     over_ = true;
   }
 
-  std::mutex mutex_;  // for the three below
+  PackedMesh source_;  // the thread's from begin() on
+  std::mutex mutex_;   // for the three below
   std::deque<Made> made_;
   bool over_ = false, out_of_memory_ = false;
   std::jthread thread_;  // goes first
@@ -165,6 +171,7 @@ Result<void> carry_fields(LodMesh& levels, const TriMesh& mesh, const FieldNeeds
 
 Result<bool> LodMesh::update() {
   if (growth_ == nullptr) return false;
+  growth_->begin();
   if (growth_->out_of_memory())
     return fail(ErrorKind::kTryAgain, "render: no memory for the levels of detail of this mesh");
   const auto made = growth_->take();

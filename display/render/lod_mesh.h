@@ -19,7 +19,8 @@ class LodMesh {
   /// less than 3/4 of the triangles of the one before. Takes the triangles' order from `mesh`.
   static Result<LodMesh> with_levels(PackedMesh mesh);
   /// A quick level of 1/90 of its longest side at once (small meshes: as they are); all that with_levels() has is made
-  /// in a thread of its own and comes in by update(), the mesh as it is first. Keeps a copy in memory until then.
+  /// in a thread of its own, which the first update() begins, so that nothing stands in the way of a first picture. It
+  /// comes in by update(), the mesh as it is first. Keeps a copy in memory until then.
   static Result<LodMesh> growing(PackedMesh mesh);
 
   LodMesh();

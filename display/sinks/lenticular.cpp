@@ -80,7 +80,7 @@ class ViewsSink : public OutputSink {
   std::span<const View> views(const Viewer& viewer) override {
     const double distance = viewing_distance_mm(profile_);
     views_.clear();
-    for (const glm::dvec3& eye : cone_eyes(profile_.views, profile_.view_cone_deg * std::numbers::pi / 180, distance))
+    for (const glm::dvec3& eye : cone_eyes(profile_.views, profile_.zone.cone_deg * std::numbers::pi / 180, distance))
       views_.push_back(focused_view(viewer_view(screen_.window_rect(), viewer, eye), focus_,
                                     static_cast<int>(views_.size()), profile_.views));
     return views_;
@@ -107,8 +107,8 @@ class ViewsSink : public OutputSink {
     const auto optics = panel_optics(profile_, viewing_distance_mm(profile_));
     if (!optics) return std::nullopt;
     // Half the way to the other eye, in views.
-    const double eyes_deg = profile_.ipd_mm / viewing_distance_mm(profile_) * 180 / std::numbers::pi;
-    const int own = static_cast<int>(0.5 * eyes_deg / profile_.view_cone_deg * profile_.views);
+    const double eyes_deg = profile_.zone.ipd_mm / viewing_distance_mm(profile_) * 180 / std::numbers::pi;
+    const int own = static_cast<int>(0.5 * eyes_deg / profile_.zone.cone_deg * profile_.views);
     return PanelLight{*optics, sheet_, {}, profile_.views, std::max(1, own)};
   }
 
@@ -205,7 +205,7 @@ Result<std::unique_ptr<OutputSink>> make_lenticular_sink(SinkOptions options) {
                   "display lenticular: panel {} weaves two views and filters none, expected {} and no filter",
                   profile.name, kOfTracked);
     DUBSAR_TRY(options.finish(fmt::format("{}, {}", kPanels, kOfTracked)));
-    DUBSAR_ASSIGN(const TrackedPanel panel, panel_optics(profile, profile.design_distance_mm));
+    DUBSAR_ASSIGN(const TrackedPanel panel, panel_optics(profile, profile.zone.design_distance_mm));
     if (panel.subpixels.cells.size() != 1)
       return fail(ErrorKind::kConfig, "display lenticular: panel {} has {} subpixel cells, expected 1 for tracked eyes",
                   profile.name, panel.subpixels.cells.size());

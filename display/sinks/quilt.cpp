@@ -182,9 +182,9 @@ Result<std::unique_ptr<OutputSink>> make_quilt_sink(SinkOptions options) {
                   profile.name);
     setup = {.layout = profile.quilt,
              .aspect = profile.aspect,
-             .cone_deg = profile.view_cone_deg,
+             .cone_deg = profile.zone.cone_deg,
              .height_mm = profile.height_mm(),
-             .distance_mm = profile.design_distance_mm};
+             .distance_mm = profile.zone.design_distance_mm};
   }
   QuiltLayout& layout = setup.layout;
   layout = {options.whole("columns", 1, kMaxTiles, layout.columns), options.whole("rows", 1, kMaxTiles, layout.rows),

@@ -24,35 +24,52 @@ struct MadeFrame {
   int layers = 0;
   std::array<MadePose, 2> poses{};
   std::array<std::array<float, 4>, 2> fov{};          ///< left, right, up, down
+  std::array<double, 2> light{};                      ///< mean of the red bytes
   std::array<std::optional<glm::dvec2>, 2> bright{};  ///< mean place of pixels lighter than half, from the lower left
 };
 
-/// All that a test may change, and what happened.
-struct MadeFacts {
-  // The wearer. The head turns about the vertical and nods, and sways; times are in seconds.
+/// The head turns about the vertical and nods, and sways; times are in seconds.
+struct MadeWearer {
   double yaw_amplitude = 0.0, yaw_hz = 0.7, nod_amplitude = 0.0, sway_m = 0.0;
   double yaw_middle = 0.0;                ///< radians, to the left
   glm::dvec3 head_middle{0.0, 0.0, 0.0};  ///< between the eyes
   double eyes_apart_m = 0.064;
   double floor_m = -1.5;
   bool has_floor = true;
-  // Hands: at rest in front of the wearer; while hold_from <= t < hold_to the right one pinches or is a fist, and
-  // moves.
+};
+
+/// Hands at rest in front of the wearer; while hold_from <= t < hold_to the right one pinches or is a fist, and moves.
+struct MadeHands {
   bool right_hand = false, fist = false;
   double hold_from = 0.0, hold_to = 0.0;
   glm::dvec3 hand_from{0.15, -0.2, -0.35}, hand_speed{0.0};  ///< m and m/s from hold_from on
   bool controller = false;
   double squeeze = 0.0;
   MadePose grip{};
-  // Faults, taken when they are met.
+};
+
+/// Taken when they are met.
+struct MadeFaults {
   bool lose_session = false, no_headset = false, recentre = false, end_instance = false;
+};
+
+/// Handles that were given and not taken back.
+struct MadeHandles {
+  int instances = 0, sessions = 0, swapchains = 0, spaces = 0, hand_trackers = 0;
+};
+
+/// All that a test may change, and what happened.
+struct MadeFacts {
+  MadeWearer wearer;
+  MadeHands hands;
+  MadeFaults faults;
+  bool read_pictures = true;
   // What happened.
   std::vector<MadeFrame> frames;
-  int instances = 0, sessions = 0, swapchains = 0, spaces = 0, hand_trackers = 0;  ///< alive
+  MadeHandles alive;
   int sessions_ever = 0, wrong_calls = 0;
   const char* binding = "";  ///< "EGL", "GLX"
-  bool read_pictures = true;
-  double now_s = 0.0;  ///< of the last xrWaitFrame: its display time
+  double now_s = 0.0;        ///< of the last xrWaitFrame: its display time
 };
 
 /// Hold `mutex` to read or change anything while a session runs.
@@ -64,10 +81,13 @@ struct MadeHeadset : MadeFacts {
 
 /// The head at a time, in seconds: the middle between the eyes.
 inline MadePose made_head(const MadeFacts& h, double t) {
-  const double turn = 2.0 * 3.14159265358979323846 * h.yaw_hz * t;
-  const glm::dquat yaw = glm::angleAxis(h.yaw_middle + h.yaw_amplitude * std::sin(turn), glm::dvec3(0, 1, 0));
-  const glm::dquat nod = glm::angleAxis(h.nod_amplitude * std::sin(1.3 * turn), glm::dvec3(1, 0, 0));
-  return {h.head_middle + glm::dvec3(h.sway_m * std::sin(0.8 * turn), 0.3 * h.sway_m * std::cos(turn), 0.0), yaw * nod};
+  const double turn = 2.0 * 3.14159265358979323846 * h.wearer.yaw_hz * t;
+  const glm::dquat yaw =
+      glm::angleAxis(h.wearer.yaw_middle + h.wearer.yaw_amplitude * std::sin(turn), glm::dvec3(0, 1, 0));
+  const glm::dquat nod = glm::angleAxis(h.wearer.nod_amplitude * std::sin(1.3 * turn), glm::dvec3(1, 0, 0));
+  return {h.wearer.head_middle +
+              glm::dvec3(h.wearer.sway_m * std::sin(0.8 * turn), 0.3 * h.wearer.sway_m * std::cos(turn), 0.0),
+          yaw * nod};
 }
 
 inline constexpr double kMadePeriod_s = 1.0 / 90.0;

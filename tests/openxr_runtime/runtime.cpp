@@ -25,11 +25,11 @@ MadePose place_of(const MadeSpace& space, double t) {
     case SpaceKind::kLocal:
       return {};
     case SpaceKind::kStage:
-      return {{0.4, h.floor_m, 0.2}, glm::angleAxis(0.6, glm::dvec3(0, 1, 0))};  // somewhere else, turned
+      return {{0.4, h.wearer.floor_m, 0.2}, glm::angleAxis(0.6, glm::dvec3(0, 1, 0))};  // somewhere else, turned
     case SpaceKind::kView:
       return made_head(h, t);
     case SpaceKind::kGrip:
-      return h.grip;
+      return h.hands.grip;
   }
   return {};
 }
@@ -40,7 +40,7 @@ MadePose in_space(const MadePose& thing, const MadeSpace& base, double t) {
   return {back * (thing.position - frame.position), back * thing.rotation};
 }
 
-bool session_lost() { return state().headset.lose_session || state().headset.end_instance; }
+bool session_lost() { return state().headset.faults.lose_session || state().headset.faults.end_instance; }
 
 namespace {
 
@@ -80,16 +80,16 @@ XrResult XRAPI_CALL enumerate_extensions(const char*, std::uint32_t capacity, st
 XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo*, XrInstance* out) {
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
-  if (s.headset.instances != 0) return XR_ERROR_LIMIT_REACHED;
-  if (s.headset.end_instance) return XR_ERROR_RUNTIME_UNAVAILABLE;
-  ++s.headset.instances;
+  if (s.headset.alive.instances != 0) return XR_ERROR_LIMIT_REACHED;
+  if (s.headset.faults.end_instance) return XR_ERROR_RUNTIME_UNAVAILABLE;
+  ++s.headset.alive.instances;
   s.instance = s.next_handle++;
   *out = handle_of<XrInstance>(s.instance);
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL destroy_instance(XrInstance) {
   const std::lock_guard lock(state().headset.mutex);
-  --state().headset.instances;
+  --state().headset.alive.instances;
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL instance_properties(XrInstance, XrInstanceProperties* out) {
@@ -100,13 +100,13 @@ XrResult XRAPI_CALL instance_properties(XrInstance, XrInstanceProperties* out) {
 XrResult XRAPI_CALL poll_event(XrInstance, XrEventDataBuffer* out) {
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
-  if (s.headset.end_instance) return XR_ERROR_INSTANCE_LOST;
-  if (s.headset.lose_session && s.session != 0 && !s.loss_told) {
+  if (s.headset.faults.end_instance) return XR_ERROR_INSTANCE_LOST;
+  if (s.headset.faults.lose_session && s.session != 0 && !s.loss_told) {
     s.loss_told = true;
     s.news.push_back(XR_SESSION_STATE_LOSS_PENDING);
   }
-  if (s.headset.recentre) {
-    s.headset.recentre = false;
+  if (s.headset.faults.recentre) {
+    s.headset.faults.recentre = false;
     auto& change = *reinterpret_cast<XrEventDataReferenceSpaceChangePending*>(out);
     change = {};
     change.type = XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING;
@@ -125,7 +125,7 @@ XrResult XRAPI_CALL poll_event(XrInstance, XrEventDataBuffer* out) {
 }
 XrResult XRAPI_CALL get_system(XrInstance, const XrSystemGetInfo* info, XrSystemId* out) {
   if (info->formFactor != XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY) return XR_ERROR_FORM_FACTOR_UNSUPPORTED;
-  if (state().headset.no_headset) return XR_ERROR_FORM_FACTOR_UNAVAILABLE;
+  if (state().headset.faults.no_headset) return XR_ERROR_FORM_FACTOR_UNAVAILABLE;
   *out = 7;
   return XR_SUCCESS;
 }
@@ -176,8 +176,8 @@ XrResult XRAPI_CALL create_session(XrInstance, const XrSessionCreateInfo* info, 
     return XR_ERROR_GRAPHICS_DEVICE_INVALID;
   }
   s.session = s.next_handle++;
-  s.running = s.waited = s.begun = s.loss_told = false;
-  ++s.headset.sessions;
+  s.running = s.frame.waited = s.frame.begun = s.loss_told = false;
+  ++s.headset.alive.sessions;
   ++s.headset.sessions_ever;
   s.news = {XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY};
   *out = handle_of<XrSession>(s.session);
@@ -186,7 +186,7 @@ XrResult XRAPI_CALL create_session(XrInstance, const XrSessionCreateInfo* info, 
 XrResult XRAPI_CALL destroy_session(XrSession) {
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
-  --s.headset.sessions;
+  --s.headset.alive.sessions;
   s.session = 0;
   s.running = false;
   s.news.clear();
@@ -209,19 +209,19 @@ XrResult XRAPI_CALL end_session(XrSession) {
 XrResult XRAPI_CALL create_reference_space(XrSession, const XrReferenceSpaceCreateInfo* info, XrSpace* out) {
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
-  if (info->referenceSpaceType == XR_REFERENCE_SPACE_TYPE_STAGE && !s.headset.has_floor)
+  if (info->referenceSpaceType == XR_REFERENCE_SPACE_TYPE_STAGE && !s.headset.wearer.has_floor)
     return XR_ERROR_REFERENCE_SPACE_UNSUPPORTED;
   const SpaceKind kind = info->referenceSpaceType == XR_REFERENCE_SPACE_TYPE_STAGE  ? SpaceKind::kStage
                          : info->referenceSpaceType == XR_REFERENCE_SPACE_TYPE_VIEW ? SpaceKind::kView
                                                                                     : SpaceKind::kLocal;
   s.spaces[s.next_handle] = {kind, 0};
-  ++s.headset.spaces;
+  ++s.headset.alive.spaces;
   *out = handle_of<XrSpace>(s.next_handle++);
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL destroy_space(XrSpace space) {
   const std::lock_guard lock(state().headset.mutex);
-  state().headset.spaces -= static_cast<int>(state().spaces.erase(id_of(space)));
+  state().headset.alive.spaces -= static_cast<int>(state().spaces.erase(id_of(space)));
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL locate_space(XrSpace space, XrSpace base, XrTime time, XrSpaceLocation* out) {
@@ -238,10 +238,10 @@ XrResult XRAPI_CALL wait_frame(XrSession, const XrFrameWaitInfo*, XrFrameState* 
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
   if (session_lost()) return XR_ERROR_SESSION_LOST;
-  if (!s.running || s.waited) return wrong();
-  s.waited = true;
-  ++s.frame;  // time goes on by frames: a slow renderer sees the same world as a quick one
-  out->predictedDisplayTime = (s.frame + 2) * kPeriodNs;
+  if (!s.running || s.frame.waited) return wrong();
+  s.frame.waited = true;
+  ++s.frame.number;  // time goes on by frames: a slow renderer sees the same world as a quick one
+  out->predictedDisplayTime = (s.frame.number + 2) * kPeriodNs;
   out->predictedDisplayPeriod = kPeriodNs;
   out->shouldRender = XR_TRUE;
   s.headset.now_s = 1e-9 * static_cast<double>(out->predictedDisplayTime);
@@ -250,9 +250,9 @@ XrResult XRAPI_CALL wait_frame(XrSession, const XrFrameWaitInfo*, XrFrameState* 
 XrResult XRAPI_CALL begin_frame(XrSession, const XrFrameBeginInfo*) {
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
-  if (!s.waited || s.begun) return wrong();
-  s.waited = false;
-  s.begun = true;
+  if (!s.frame.waited || s.frame.begun) return wrong();
+  s.frame.waited = false;
+  s.frame.begun = true;
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL locate_views(XrSession, const XrViewLocateInfo* info, XrViewState* view_state,
@@ -264,7 +264,7 @@ XrResult XRAPI_CALL locate_views(XrSession, const XrViewLocateInfo* info, XrView
   const double t = 1e-9 * static_cast<double>(info->displayTime);
   const MadePose head = made_head(s.headset, t);
   for (int eye = 0; eye < 2; ++eye) {
-    const double side = (eye == 0 ? -0.5 : 0.5) * s.headset.eyes_apart_m;
+    const double side = (eye == 0 ? -0.5 : 0.5) * s.headset.wearer.eyes_apart_m;
     const MadePose at{head.position + head.rotation * glm::dvec3(side, 0, 0), head.rotation};
     out[eye].pose = posef(in_space(at, s.spaces[id_of(info->space)], t));
     const auto fov = fov_of(eye);
@@ -279,7 +279,7 @@ XrResult XRAPI_CALL convert_time(XrInstance, XrTime time, timespec* out) {
   RuntimeState& s = state();
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
-  const std::int64_t at = now.tv_sec * 1'000'000'000LL + now.tv_nsec + time - (s.frame + 1) * kPeriodNs;
+  const std::int64_t at = now.tv_sec * 1'000'000'000LL + now.tv_nsec + time - (s.frame.number + 1) * kPeriodNs;
   *out = {at / 1'000'000'000, at % 1'000'000'000};
   return XR_SUCCESS;
 }

@@ -34,7 +34,7 @@ XrResult XRAPI_CALL create_swapchain(XrSession, const XrSwapchainCreateInfo* inf
     glTextureStorage2D(texture, 1, static_cast<GLenum>(info->format), chain.width, chain.height);
   }
   s.swapchains[s.next_handle] = chain;
-  ++s.headset.swapchains;
+  ++s.headset.alive.swapchains;
   *out = handle_of<XrSwapchain>(s.next_handle++);
   return XR_SUCCESS;
 }
@@ -42,7 +42,7 @@ XrResult XRAPI_CALL destroy_swapchain(XrSwapchain swapchain) {
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
   glDeleteTextures(3, s.swapchains[id_of(swapchain)].textures.data());
-  s.headset.swapchains -= static_cast<int>(s.swapchains.erase(id_of(swapchain)));
+  s.headset.alive.swapchains -= static_cast<int>(s.swapchains.erase(id_of(swapchain)));
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL swapchain_images(XrSwapchain swapchain, std::uint32_t capacity, std::uint32_t* count,
@@ -58,7 +58,7 @@ XrResult XRAPI_CALL acquire_image(XrSwapchain swapchain, const XrSwapchainImageA
   const std::lock_guard lock(s.headset.mutex);
   if (session_lost()) return XR_ERROR_SESSION_LOST;
   MadeSwapchain& chain = s.swapchains[id_of(swapchain)];
-  if (chain.acquired || !s.begun) return wrong();
+  if (chain.acquired || !s.frame.begun) return wrong();
   chain.acquired = true;
   *index = static_cast<std::uint32_t>(chain.next);
   return XR_SUCCESS;
@@ -82,31 +82,34 @@ XrResult XRAPI_CALL release_image(XrSwapchain swapchain, const XrSwapchainImageR
   return XR_SUCCESS;
 }
 
-/// Mean place of pixels that are lighter than half, from the lower left; nothing without any.
-std::optional<glm::dvec2> bright_place(const MadeSwapchain& chain) {
+/// Mean of the picture's red, and mean place of pixels that are lighter than half, from the lower left.
+void look_at(const MadeSwapchain& chain, double& light, std::optional<glm::dvec2>& bright) {
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(chain.width) * chain.height * 4);
   glGetTextureImage(chain.textures[static_cast<std::size_t>(chain.shown)], 0, GL_RGBA, GL_UNSIGNED_BYTE,
                     static_cast<GLsizei>(pixels.size()), pixels.data());
   glm::dvec2 sum(0.0);
   int count = 0;
+  double red = 0.0;
   for (int y = 0; y < chain.height; ++y)
-    for (int x = 0; x < chain.width; ++x)
-      if (pixels[4 * (static_cast<std::size_t>(y) * chain.width + x)] > 127) {
-        sum += glm::dvec2(x + 0.5, y + 0.5);
-        ++count;
-      }
-  if (count == 0) return std::nullopt;
-  return sum / static_cast<double>(count);
+    for (int x = 0; x < chain.width; ++x) {
+      const std::uint8_t value = pixels[4 * (static_cast<std::size_t>(y) * chain.width + x)];
+      red += value;
+      if (value <= 127) continue;
+      sum += glm::dvec2(x + 0.5, y + 0.5);
+      ++count;
+    }
+  light = red / (static_cast<double>(chain.width) * chain.height);
+  bright = count == 0 ? std::nullopt : std::optional(sum / static_cast<double>(count));
 }
 
 XrResult XRAPI_CALL end_frame(XrSession, const XrFrameEndInfo* info) {
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
   if (session_lost()) return XR_ERROR_SESSION_LOST;
-  if (!s.begun) return wrong();
-  s.begun = false;
+  if (!s.frame.begun) return wrong();
+  s.frame.begun = false;
   MadeFrame frame;
-  frame.predicted = (s.frame + 2) * kPeriodNs;
+  frame.predicted = (s.frame.number + 2) * kPeriodNs;
   frame.displayed = info->displayTime;
   frame.layers = static_cast<int>(info->layerCount);
   if (info->layerCount == 1) {
@@ -123,7 +126,7 @@ XrResult XRAPI_CALL end_frame(XrSession, const XrFrameEndInfo* info) {
       frame.fov[eye] = {view.fov.angleLeft, view.fov.angleRight, view.fov.angleUp, view.fov.angleDown};
       const auto chain = s.swapchains.find(id_of(view.subImage.swapchain));
       if (chain == s.swapchains.end() || chain->second.acquired || chain->second.shown < 0) return wrong();
-      if (s.headset.read_pictures) frame.bright[eye] = bright_place(chain->second);
+      if (s.headset.read_pictures) look_at(chain->second, frame.light[eye], frame.bright[eye]);
     }
   }
   s.headset.frames.push_back(frame);

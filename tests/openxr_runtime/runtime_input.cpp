@@ -12,14 +12,14 @@ XrResult XRAPI_CALL create_tracker(XrSession, const XrHandTrackerCreateInfoEXT* 
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
   s.trackers[s.next_handle] = info->hand == XR_HAND_LEFT_EXT ? 0 : 1;
-  ++s.headset.hand_trackers;
+  ++s.headset.alive.hand_trackers;
   *out = handle_of<XrHandTrackerEXT>(s.next_handle++);
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL destroy_tracker(XrHandTrackerEXT tracker) {
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
-  s.headset.hand_trackers -= static_cast<int>(s.trackers.erase(id_of(tracker)));
+  s.headset.alive.hand_trackers -= static_cast<int>(s.trackers.erase(id_of(tracker)));
   return XR_SUCCESS;
 }
 
@@ -59,14 +59,14 @@ XrResult XRAPI_CALL locate_joints(XrHandTrackerEXT tracker, const XrHandJointsLo
   const std::lock_guard lock(s.headset.mutex);
   const MadeHeadset& h = s.headset;
   if (session_lost()) return XR_ERROR_SESSION_LOST;
-  const bool there = s.trackers[id_of(tracker)] == 1 && h.right_hand;
+  const bool there = s.trackers[id_of(tracker)] == 1 && h.hands.right_hand;
   out->isActive = there ? XR_TRUE : XR_FALSE;
   if (!there) return XR_SUCCESS;
   const double t = 1e-9 * static_cast<double>(info->time);
-  const bool holds = t >= h.hold_from && t < h.hold_to;
-  const double moving = std::clamp(t - h.hold_from, 0.0, h.hold_to - h.hold_from);
-  const glm::dvec3 palm = h.hand_from + h.hand_speed * moving;
-  const auto places = made_hand(holds && !h.fist, holds && h.fist);
+  const bool holds = t >= h.hands.hold_from && t < h.hands.hold_to;
+  const double moving = std::clamp(t - h.hands.hold_from, 0.0, h.hands.hold_to - h.hands.hold_from);
+  const glm::dvec3 palm = h.hands.hand_from + h.hands.hand_speed * moving;
+  const auto places = made_hand(holds && !h.hands.fist, holds && h.hands.fist);
   for (std::uint32_t i = 0; i < out->jointCount && i < places.size(); ++i) {
     out->jointLocations[i].pose =
         posef(in_space({palm + places[i], {1, 0, 0, 0}}, s.spaces[id_of(info->baseSpace)], t));
@@ -128,7 +128,7 @@ XrResult XRAPI_CALL create_action_space(XrSession, const XrActionSpaceCreateInfo
   const std::lock_guard lock(s.headset.mutex);
   const bool left = info->subactionPath == s.paths["/user/hand/left"];
   s.spaces[s.next_handle] = {SpaceKind::kGrip, left ? 0 : 1};
-  ++s.headset.spaces;
+  ++s.headset.alive.spaces;
   *out = handle_of<XrSpace>(s.next_handle++);
   return XR_SUCCESS;
 }
@@ -137,7 +137,7 @@ XrResult XRAPI_CALL sync(XrSession, const XrActionsSyncInfo*) {
 }
 /// There is a right controller, or none.
 bool held(const XrActionStateGetInfo* info) {
-  return state().headset.controller && info->subactionPath == state().paths["/user/hand/right"];
+  return state().headset.hands.controller && info->subactionPath == state().paths["/user/hand/right"];
 }
 XrResult XRAPI_CALL pose_state(XrSession, const XrActionStateGetInfo* info, XrActionStatePose* out) {
   const std::lock_guard lock(state().headset.mutex);
@@ -147,7 +147,7 @@ XrResult XRAPI_CALL pose_state(XrSession, const XrActionStateGetInfo* info, XrAc
 XrResult XRAPI_CALL float_state(XrSession, const XrActionStateGetInfo* info, XrActionStateFloat* out) {
   const std::lock_guard lock(state().headset.mutex);
   out->isActive = held(info) ? XR_TRUE : XR_FALSE;
-  out->currentState = static_cast<float>(state().headset.squeeze);
+  out->currentState = static_cast<float>(state().headset.hands.squeeze);
   return XR_SUCCESS;
 }
 XrResult XRAPI_CALL boolean_state(XrSession, const XrActionStateGetInfo* info, XrActionStateBoolean* out) {

@@ -38,6 +38,12 @@ struct MadeAction {
   XrActionType type = XR_ACTION_TYPE_POSE_INPUT;
 };
 
+/// Where the application is between xrWaitFrame and xrEndFrame.
+struct FrameState {
+  bool waited = false, begun = false;
+  std::int64_t number = 0;  // of the one that was waited for
+};
+
 /// One instance, one session, as runtimes have it.
 struct RuntimeState {
   MadeHeadset headset;
@@ -48,8 +54,8 @@ struct RuntimeState {
   std::map<std::uint64_t, int> trackers;  // side
   std::map<std::string, XrPath> paths;
   std::uint64_t next_handle = 1, session = 0, instance = 0;
-  bool running = false, waited = false, begun = false, recentred = false, loss_told = false;
-  std::int64_t frame = 0;  // number of the one that was waited for
+  bool running = false, recentred = false, loss_told = false;
+  FrameState frame;
 };
 
 RuntimeState& state();

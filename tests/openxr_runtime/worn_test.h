@@ -24,11 +24,11 @@ class WornTest : public ::testing::Test {
   }
   /// By the runtime's own count: everything that was made is gone, and nothing was called out of turn.
   void TearDown() override {
-    EXPECT_EQ(made_->instances, 0);
-    EXPECT_EQ(made_->sessions, 0);
-    EXPECT_EQ(made_->swapchains, 0);
-    EXPECT_EQ(made_->spaces, 0);
-    EXPECT_EQ(made_->hand_trackers, 0);
+    EXPECT_EQ(made_->alive.instances, 0);
+    EXPECT_EQ(made_->alive.sessions, 0);
+    EXPECT_EQ(made_->alive.swapchains, 0);
+    EXPECT_EQ(made_->alive.spaces, 0);
+    EXPECT_EQ(made_->alive.hand_trackers, 0);
     EXPECT_EQ(made_->wrong_calls, 0);
   }
   MadeHeadset* made_ = nullptr;

@@ -119,7 +119,7 @@ TEST_F(Panels, AutoTakesTheOneUnitHoweverManyRoutesItHas) {
   const PanelProfile panel = choose().value();
   EXPECT_EQ(panel.name, "looking-glass-portrait");
   EXPECT_EQ(panel.sheet->pitch, 52.5);
-  EXPECT_EQ(panel.calibration, (folder_ / "media/LKG-P/LKG_calibration/visual.json").string());
+  EXPECT_EQ(panel.lenses.calibration, (folder_ / "media/LKG-P/LKG_calibration/visual.json").string());
 }
 
 TEST_F(Panels, SinksTakeACalibrationThatIsNoFile) {

@@ -13,7 +13,7 @@ EyeCheck laptop(double delay_ms) {
   const PanelProfile panel = built_in_panels().find("spatiallabs-15.6").value();
   EyeCheckOptions options;
   options.delay_ms = delay_ms;
-  return EyeCheck(panel_optics(panel, panel.design_distance_mm).value(), options);
+  return EyeCheck(panel_optics(panel, panel.zone.design_distance_mm).value(), options);
 }
 
 EyePair eyes_at(double x) { return {{x - 31.5, 0, 600}, {x + 31.5, 0, 600}}; }

@@ -213,6 +213,8 @@ TEST_F(DisplaysCommand, OptionsThatADisplayDoesNotLookAtAreRefused) {
                         "--display", "quilt:looking-glass-go"})
                 .exit_code,
             64);
+  for (const char* display : {"quilt:looking-glass-go", "lenticular:spatiallabs-15.6"})  // in a window, too
+    EXPECT_EQ(run_dubsar({"view", file("card.obj"), "--size", "320x240", "--display", display}).exit_code, 64);
   EXPECT_FALSE(fs::exists(file("y.png")));
 }
 

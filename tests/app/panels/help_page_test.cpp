@@ -34,6 +34,7 @@ TEST(HelpPage, SaysWhatTheMappingSays) {
             "what a click does: turn, distance, angle, depth, profile, note, line, slice");
   EXPECT_EQ(find(page, "Sides", "1 to 6"), "turn to a side: obverse, bottom, reverse, top, left, right");
   EXPECT_EQ(find(page, "Hands", "pinch and move"), "move the light");
+  EXPECT_EQ(find(page, "Hands", "grab and pull"), "zoom");
   EXPECT_EQ(find(page, "This window", "f1 ?"), "this help");
   const auto museum =
       help_page(parse_mapping(R"({"hands": {"pinch": "none"}, "mouse": {"alt+left": "light", "wheel": null},

@@ -46,9 +46,9 @@ TEST_F(Live, KeysOnAPanelChangeItsFiguresAndSaveThem) {
   EXPECT_TRUE(tuner->saved());
   const auto profile = load_panels(folder).find("lens-sheet-24-5-views");
   ASSERT_TRUE(profile) << profile.error().message;
-  ASSERT_TRUE(profile->adjustment.center);
+  ASSERT_TRUE(profile->lenses.adjustment.center);
   const auto untouched = built_in_panels().find("lens-sheet-24-5-views");
-  EXPECT_NEAR(*profile->adjustment.center - untouched->sheet->center, 0.02, 1e-9);
+  EXPECT_NEAR(*profile->lenses.adjustment.center - untouched->sheet->center, 0.02, 1e-9);
   EXPECT_EQ(turn_between_deg(done->view.rotation, {1, 0, 0, 0}), 0.0) << "the arrows belong to the panel";
   std::filesystem::remove_all(root);
 }

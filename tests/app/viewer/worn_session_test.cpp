@@ -1,5 +1,6 @@
 // A whole session on a head: the wearer looks around and turns the tablet with a hand, in the made OpenXR runtime.
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -17,7 +18,7 @@ class WornSession : public dubsar::testing::WornTest {
   void SetUp() override {
     WornTest::SetUp();
     if (HasFatalFailure()) return;
-    made_->floor_m = -1.2;  // the object is 35 cm under the eyes
+    made_->wearer.floor_m = -1.2;  // the object is 35 cm under the eyes
     made_->read_pictures = false;
     options_.mapping = default_mapping().value();
     options_.stage.shading = shading_preset("relief").value();
@@ -35,12 +36,12 @@ class WornSession : public dubsar::testing::WornTest {
 double degrees_about_up(const glm::dquat& turn) { return 2.0 * std::atan2(turn.y, turn.w) * 180.0 / std::numbers::pi; }
 
 TEST_F(WornSession, AHandThatGrabsAndMovesTurnsTheTabletAndTheHeadLooksAround) {
-  made_->yaw_amplitude = 0.3;
-  made_->right_hand = made_->fist = true;
-  made_->hand_from = {-0.08, -0.25, -0.45};
-  made_->hand_speed = {0.15, 0, 0};  // of the runtime's time, in which a step of the session takes 11 ms
-  made_->hold_from = now_s() + 0.5;
-  made_->hold_to = now_s() + 1.5;
+  made_->wearer.yaw_amplitude = 0.3;
+  made_->hands.right_hand = made_->hands.fist = true;
+  made_->hands.hand_from = {-0.08, -0.25, -0.45};
+  made_->hands.hand_speed = {0.15, 0, 0};  // of the runtime's time, in which a step of the session takes 11 ms
+  made_->hands.hold_from = now_s() + 0.5;
+  made_->hands.hold_to = now_s() + 1.5;
   options_.time.longest_s = 7.0;
   const auto done = run_view(dubsar::testing::lettered_box(), options_, progress_);
   ASSERT_TRUE(done) << done.error().message;
@@ -63,15 +64,33 @@ TEST_F(WornSession, AHandThatGrabsAndMovesTurnsTheTabletAndTheHeadLooksAround) {
   }
 }
 
+TEST_F(WornSession, HelpStandsInTheRoomBeforeTheWearerAndGoesAgain) {
+  made_->read_pictures = true;
+  options_.time.longest_s = 3.0;
+  options_.steps = {{1.0, "help"}, {2.0, "help"}};
+  std::vector<bool> help;
+  const auto done = run_view(dubsar::testing::lettered_box(), options_, progress_,
+                             [&](const ViewMoment& m) { help.push_back(m.viewer.desk().help); });
+  ASSERT_TRUE(done) << done.error().message;
+  ASSERT_EQ(std::count(help.begin(), help.end(), true), 30);
+  const auto light = [&](double part, std::size_t eye) {
+    return made_->frames[static_cast<std::size_t>(part * static_cast<double>(made_->frames.size()))].light[eye];
+  };
+  for (const std::size_t eye : {0u, 1u}) {
+    EXPECT_GT(std::abs(light(0.5, eye) - light(0.2, eye)), 1.0) << eye << ": the page covers a part of what is seen";
+    EXPECT_NEAR(light(0.9, eye), light(0.2, eye), 0.1) << eye;
+  }
+}
+
 TEST_F(WornSession, ASqueezedControllerIsAPuck) {
-  made_->controller = true;
+  made_->hands.controller = true;
   options_.time.longest_s = 3.0;
   int step = 0;
   const auto done = run_view(dubsar::testing::lettered_box(), options_, progress_, [&](const ViewMoment&) {
     const std::lock_guard lock(made_->mutex);
-    made_->grip.position = {0.1, -0.3, -0.4};
-    made_->squeeze = ++step > 20 && step < 70 ? 1.0 : 0.0;
-    made_->grip.rotation = glm::angleAxis(step > 22 ? 0.5 : 0.0, glm::dvec3(0, 1, 0));
+    made_->hands.grip.position = {0.1, -0.3, -0.4};
+    made_->hands.squeeze = ++step > 20 && step < 70 ? 1.0 : 0.0;
+    made_->hands.grip.rotation = glm::angleAxis(step > 22 ? 0.5 : 0.0, glm::dvec3(0, 1, 0));
   });
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_GT(degrees_about_up(done->view.rotation), 15.0) << "twisted to the left seen from above";
@@ -85,7 +104,7 @@ TEST_F(WornSession, TheSessionGoesOnWhenTheHeadsetIsLostAndComesBack) {
   const auto done = run_view(dubsar::testing::lettered_box(), options_, progress_, [&](const ViewMoment&) {
     const std::lock_guard lock(made_->mutex);
     if (++step == 30) before = made_->frames.size();
-    made_->lose_session = step >= 30 && step < 40;
+    made_->faults.lose_session = step >= 30 && step < 40;
   });
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_EQ(done->frames, 450);

@@ -116,6 +116,7 @@ class XPerson {
     if (name == "right") return 114;
     if (name == "left") return 113;
     if (name == "z") return 52;
+    if (name == "x") return 53;
     if (name == "tab") return 23;
     if (name == "home") return 110;
     return 0;

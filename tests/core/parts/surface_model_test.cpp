@@ -236,6 +236,13 @@ TEST(SurfaceModel, ContradictionsAreRefused) {
   EXPECT_EQ(make_tri_mesh(model).error().kind, ErrorKind::kBadData);
 }
 
+TEST(SurfaceModel, AMeshThatNobodyWaitsForAnyMoreIsNotMade) {
+  SilentProgress progress;
+  EXPECT_TRUE(make_tri_mesh(two_balls(), {.progress = &progress}));
+  progress.cancel();
+  EXPECT_EQ(make_tri_mesh(two_balls(), {.progress = &progress}).error().kind, ErrorKind::kCancelled);
+}
+
 TEST(SurfaceModel, TrianglesOfFilmsAreKnownAndThoseOfOtherPatchesAreNot) {
   SurfaceModel model = two_balls();
   const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());

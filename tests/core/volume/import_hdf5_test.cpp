@@ -77,9 +77,9 @@ TEST_F(ImportHdf5, EveryTypeAndByteOrderIsRead) {
         { Hdf5Fixture(in("a.h5")).array("/volume", type, order, kShape, values, packing); }
         expect_values(in("a.h5"), values, what);
         const auto volume = open(in("a.h5"));
-        EXPECT_EQ((*volume)->info().dtype, scalar_name(type));
+        EXPECT_EQ((*volume)->info().stored.dtype, scalar_name(type));
         if (scalar_bytes(type) > 1) {
-          EXPECT_EQ((*volume)->info().byte_order, order_name(order)) << what;
+          EXPECT_EQ((*volume)->info().stored.byte_order, order_name(order)) << what;
         }
       }
   }

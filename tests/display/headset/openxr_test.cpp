@@ -99,7 +99,7 @@ class OpenXr : public testing::WornTest {
 /// Truth: where an eye is at the time that a frame is displayed.
 MadePose true_eye(const testing::MadeFacts& made, const MadeFrame& frame, int eye) {
   const MadePose head = made_head(made, 1e-9 * static_cast<double>(frame.displayed));
-  const double side = (eye == 0 ? -0.5 : 0.5) * made.eyes_apart_m;
+  const double side = (eye == 0 ? -0.5 : 0.5) * made.wearer.eyes_apart_m;
   return {head.position + head.rotation * glm::dvec3(side, 0, 0), head.rotation};
 }
 
@@ -118,9 +118,9 @@ void expect_predicted_poses(const testing::MadeFacts& made, std::size_t from) {
 }
 
 TEST_F(OpenXr, LayersHaveThePosesPredictedForTheDisplayTimeWhileTheHeadTurns) {
-  made_->yaw_amplitude = 0.5;  // up to 126 degrees a second: 1.4 from one frame to the next
-  made_->nod_amplitude = 0.2;
-  made_->sway_m = 0.05;
+  made_->wearer.yaw_amplitude = 0.5;  // up to 126 degrees a second: 1.4 from one frame to the next
+  made_->wearer.nod_amplitude = 0.2;
+  made_->wearer.sway_m = 0.05;
   open();
   pictures_until_worn();
   for (int i = 0; i < 60; ++i) ASSERT_TRUE(picture());
@@ -133,16 +133,16 @@ TEST_F(OpenXr, LayersHaveThePosesPredictedForTheDisplayTimeWhileTheHeadTurns) {
 glm::dvec3 expected_place(const testing::MadeFacts& made, const MadePose& first_head) {
   glm::dvec3 ahead = first_head.rotation * glm::dvec3(0, 0, -1);
   ahead = glm::normalize(glm::dvec3(ahead.x, 0, ahead.z));
-  return {first_head.position.x + 0.5 * ahead.x, made.floor_m + 0.85, first_head.position.z + 0.5 * ahead.z};
+  return {first_head.position.x + 0.5 * ahead.x, made.wearer.floor_m + 0.85, first_head.position.z + 0.5 * ahead.z};
 }
 
 TEST_F(OpenXr, TheObjectStaysOnItsTableInBothEyesPictures) {
-  made_->yaw_amplitude = 0.25;
-  made_->nod_amplitude = 0.1;
-  made_->sway_m = 0.06;
-  made_->yaw_middle = 1.1;  // whichever way the wearer sits
-  made_->head_middle = {0.3, 0.1, -0.7};
-  made_->floor_m = -1.05;  // the object's middle is 30 cm under the eyes
+  made_->wearer.yaw_amplitude = 0.25;
+  made_->wearer.nod_amplitude = 0.1;
+  made_->wearer.sway_m = 0.06;
+  made_->wearer.yaw_middle = 1.1;  // whichever way the wearer sits
+  made_->wearer.head_middle = {0.3, 0.1, -0.7};
+  made_->wearer.floor_m = -1.05;  // the object's middle is 30 cm under the eyes
   open();
   pictures_until_worn();
   for (int i = 0; i < 40; ++i) ASSERT_TRUE(picture());
@@ -169,7 +169,7 @@ TEST_F(OpenXr, TheObjectStaysOnItsTableInBothEyesPictures) {
 }
 
 TEST_F(OpenXr, ALostSessionAndALostRuntimeComeBack) {
-  made_->yaw_amplitude = 0.3;
+  made_->wearer.yaw_amplitude = 0.3;
   open();
   pictures_until_worn();
   for (const bool whole_runtime : {false, true}) {
@@ -177,20 +177,20 @@ TEST_F(OpenXr, ALostSessionAndALostRuntimeComeBack) {
     const Pose before = sink_->wearer()->eyes[0].pose;
     {
       const std::lock_guard lock(made_->mutex);
-      (whole_runtime ? made_->end_instance : made_->lose_session) = true;
+      (whole_runtime ? made_->faults.end_instance : made_->faults.lose_session) = true;
     }
     for (int i = 0; i < 5; ++i) EXPECT_FALSE(picture());
     EXPECT_FALSE(sink_->note().empty());
     const std::size_t seen = made_->frames.size();
     {
       const std::lock_guard lock(made_->mutex);
-      made_->end_instance = made_->lose_session = false;
+      made_->faults.end_instance = made_->faults.lose_session = false;
     }
     pictures_until_worn();
     for (int i = 0; i < 5; ++i) ASSERT_TRUE(picture());
     EXPECT_TRUE(sink_->note().empty());
-    EXPECT_EQ(made_->sessions, 1);
-    EXPECT_EQ(made_->swapchains, 2);
+    EXPECT_EQ(made_->alive.sessions, 1);
+    EXPECT_EQ(made_->alive.swapchains, 2);
     expect_predicted_poses(*made_, seen);
     EXPECT_NEAR(glm::length(before.position_m), glm::length(sink_->wearer()->eyes[0].pose.position_m), 0.05)
         << "the object stands where it stood";
@@ -210,18 +210,18 @@ TEST_F(OpenXr, TheWearersMiddleIsBeforeTheWearerAgainAfterRecentring) {
   EXPECT_NEAR(*sink_->wearer()->floor_m, -1.2, 1e-6);
   {
     const std::lock_guard lock(made_->mutex);
-    made_->yaw_middle = 2.0;
-    made_->head_middle = {1, 0, 1};
+    made_->wearer.yaw_middle = 2.0;
+    made_->wearer.head_middle = {1, 0, 1};
   }
   ASSERT_TRUE(picture());
   EXPECT_GT(std::abs(head().x), 0.2);
   for (const bool by_runtime : {true, false}) {
     if (by_runtime) {
       const std::lock_guard lock(made_->mutex);
-      made_->recentre = true;
+      made_->faults.recentre = true;
     } else {
       const std::lock_guard lock(made_->mutex);
-      made_->yaw_middle = -1.0;
+      made_->wearer.yaw_middle = -1.0;
       sink_->recentre();
     }
     ASSERT_TRUE(picture());
@@ -231,7 +231,7 @@ TEST_F(OpenXr, TheWearersMiddleIsBeforeTheWearerAgainAfterRecentring) {
 }
 
 TEST_F(OpenXr, WithoutAFloorTheObjectIsUnderTheEyes) {
-  made_->has_floor = false;
+  made_->wearer.has_floor = false;
   open();
   pictures_until_worn();
   EXPECT_NEAR(sink_->wearer()->eyes[0].pose.position_m.y, 0.35, 1e-6);
@@ -239,13 +239,13 @@ TEST_F(OpenXr, WithoutAFloorTheObjectIsUnderTheEyes) {
 }
 
 TEST_F(OpenXr, WhatIsMissingIsSaid) {
-  made_->no_headset = true;
+  made_->faults.no_headset = true;
   auto sink = SinkCatalog().make("openxr");
   ASSERT_FALSE(sink);
   EXPECT_EQ(sink.error().kind, ErrorKind::kUnavailable);
   EXPECT_NE(sink.error().message.find("Made Runtime 1.2.3 has no headset"), std::string::npos) << sink.error().message;
   EXPECT_NE(headset_facts().words.find("no headset"), std::string::npos);
-  made_->no_headset = false;
+  made_->faults.no_headset = false;
   EXPECT_EQ(headset_facts().words, "runtime Made Runtime 1.2.3, headset Made Headset, hands, EGL and GLX");
   ::setenv("XR_RUNTIME_JSON", "/nonexistent/runtime.json", 1);
   sink = SinkCatalog().make("openxr");
@@ -281,8 +281,8 @@ class OpenXrInWindow : public OpenXr {
 };
 
 TEST_F(OpenXrInWindow, AContextOfGlxIsBoundAndShowsTheSame) {
-  made_->yaw_amplitude = 0.5;
-  made_->floor_m = -1.05;
+  made_->wearer.yaw_amplitude = 0.5;
+  made_->wearer.floor_m = -1.05;
   open();
   pictures_until_worn();
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(picture());

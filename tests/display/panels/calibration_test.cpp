@@ -41,7 +41,7 @@ TEST(Calibration, PicksTheModelBySerial) {
   const auto profile = calibrated_profile(built_in_panels(), *parse_calibration(kWrapped, "visual.json"));
   ASSERT_TRUE(profile);
   EXPECT_EQ(profile->name, "looking-glass-portrait");
-  EXPECT_EQ(profile->calibration, "visual.json");
+  EXPECT_EQ(profile->lenses.calibration, "visual.json");
   EXPECT_NEAR(profile->width_mm, 120.415, 1e-3);
   EXPECT_EQ(profile->aspect, 1536.0 / 2048.0);
 }

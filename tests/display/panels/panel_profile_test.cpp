@@ -40,11 +40,11 @@ TEST(PanelProfile, EveryLookingGlassModelHasItsFigures) {
   for (const Row& row : rows) {
     const auto profile = built_in_panels().find(row.name);
     ASSERT_TRUE(profile) << row.name;
-    EXPECT_EQ(profile->serial_prefix, row.serial) << row.name;
+    EXPECT_EQ(profile->marks.serial_prefix, row.serial) << row.name;
     EXPECT_EQ(profile->width_px, row.width) << row.name;
     EXPECT_EQ(profile->height_px, row.height) << row.name;
     EXPECT_NEAR(profile->width_mm, row.width / row.dpi * 25.4, 1e-9) << row.name;
-    EXPECT_EQ(profile->view_cone_deg, row.cone) << row.name;
+    EXPECT_EQ(profile->zone.cone_deg, row.cone) << row.name;
     EXPECT_EQ(profile->quilt.width_px, row.quilt_width) << row.name;
     EXPECT_EQ(profile->quilt.height_px, row.quilt_height) << row.name;
     EXPECT_EQ(profile->quilt.columns, row.columns) << row.name;
@@ -97,8 +97,8 @@ TEST(PanelProfile, AnUnknownNameListsTheKnownOnes) {
 TEST(PanelProfile, ATrackedPanelSeparatesTheEyesAtItsDesignDistance) {
   for (const char* name : {"spatiallabs-15.6", "sr-32"}) {
     const PanelProfile profile = *built_in_panels().find(name);
-    const TrackedPanel panel = panel_optics(profile, profile.design_distance_mm).value();
-    const double half = 0.5 * profile.ipd_mm, z = profile.design_distance_mm;
+    const TrackedPanel panel = panel_optics(profile, profile.zone.design_distance_mm).value();
+    const double half = 0.5 * profile.zone.ipd_mm, z = profile.zone.design_distance_mm;
     const EyePair eyes{{-half, 0, z}, {half, 0, z}};
     EXPECT_LE(wrong_eye_light(panel, eyes, eyes, true, 64).worst(), 0.04) << name;
   }

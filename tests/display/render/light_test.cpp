@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <glm/gtc/matrix_transform.hpp>
 #include <memory>
 #include <numbers>
@@ -307,7 +308,13 @@ TEST_F(Transparency, FogGrowsFromTheNearestToTheFarthestPoint) {
 TEST(Growing, ACoarseMeshIsThereAtOnceAndTheExactOneSoonAfter) {
   const auto context = EglContext::create().value();
   const PackedMesh mesh = pack_mesh(testing::sphere(25, 500, 1000)).value();
+  const auto threads = [] {
+    const std::filesystem::directory_iterator tasks("/proc/self/task");
+    return std::distance(begin(tasks), end(tasks));
+  };
+  const auto before = threads();
   LodMesh lod = LodMesh::growing(mesh).value();
+  EXPECT_EQ(threads(), before) << "nothing works beside the first picture";
   EXPECT_FALSE(lod.has_exact());
   EXPECT_EQ(lod.levels(), 1);
   EXPECT_LT(lod.triangles(0), static_cast<std::int64_t>(mesh.triangles.size()) / 2);
@@ -318,7 +325,9 @@ TEST(Growing, ACoarseMeshIsThereAtOnceAndTheExactOneSoonAfter) {
   const LodMesh whole = LodMesh::with_levels(mesh).value();
   ASSERT_EQ(lod.levels(), whole.levels());
   for (int i = 0; i < lod.levels(); ++i) EXPECT_EQ(lod.triangles(i), whole.triangles(i)) << "level " << i;
-  const LodMesh stopped = LodMesh::growing(mesh).value();  // goes while its thread works
+  LodMesh stopped = LodMesh::growing(mesh).value();  // goes while its thread works
+  EXPECT_TRUE(stopped.update());
+  EXPECT_EQ(threads(), before + 1);
 }
 
 }  // namespace

@@ -197,7 +197,7 @@ class Directions : public ::testing::Test {
     ASSERT_TRUE(light);
     const PanelProfile profile = load_panels(folder_).find(panel).value();
     const int views = sink_->traits().views;
-    const double half_cone = 0.5 * profile.view_cone_deg * std::numbers::pi / 180, z = viewing_distance_mm(profile);
+    const double half_cone = 0.5 * profile.zone.cone_deg * std::numbers::pi / 180, z = viewing_distance_mm(profile);
     for (int k = filter == "linear" ? 2 : 1;
          k<views - 1; k += views> 6 ? 3 : 1) {                              // the outer ones mix with each other
       const double place = (k + (filter == "linear" ? 0.0 : 0.5)) / views;  // 0..1 across the cone

@@ -250,7 +250,7 @@ TEST_F(SinksGl, TrackedWeaveEqualsTheReference) {
   viewer.right_mm = {151.5, 55, 510};
   sink->views(viewer);
   const Image out = compose(*sink, {white, black});
-  const TrackedPanel panel = panel_optics(profile, profile.design_distance_mm).value();
+  const TrackedPanel panel = panel_optics(profile, profile.zone.design_distance_mm).value();
   const Image expected = weave_tracked(white, black, panel, {viewer.left_mm, viewer.right_mm});
   EXPECT_LE(differing(out, expected), 0.0005);
 }

@@ -165,7 +165,7 @@ TEST(ShownPictures, OfAQuiltEachPlaceBeforeTheGlassSeesItsView) {
   const auto shown = show_small(ramp(48), panel, ",nearest");
   ASSERT_TRUE(shown) << shown.error().message;
   EXPECT_EQ(shown->views, 48);
-  const double z = viewing_distance_mm(panel), half_cone = 0.5 * panel.view_cone_deg * std::numbers::pi / 180;
+  const double z = viewing_distance_mm(panel), half_cone = 0.5 * panel.zone.cone_deg * std::numbers::pi / 180;
   for (const int view : {6, 15, 24, 33, 41}) {
     const double across = 2 * (view + 0.5) / 48 - 1;
     const double light = seen_light(*shown, {z * across * std::tan(half_cone), 0, z}).g;
@@ -179,7 +179,7 @@ TEST(ShownPictures, OfAPairALensSheetSendsTheLeftOneToTheLeft) {
   const PanelProfile panel = small("lens-sheet-24-5-views", 400, 60);
   const auto shown = show_small(pair, panel, ",nearest");
   ASSERT_TRUE(shown) << shown.error().message;
-  const double z = viewing_distance_mm(panel), half_cone = 0.5 * panel.view_cone_deg * std::numbers::pi / 180;
+  const double z = viewing_distance_mm(panel), half_cone = 0.5 * panel.zone.cone_deg * std::numbers::pi / 180;
   EXPECT_NEAR(seen_light(*shown, {-0.5 * z * std::tan(half_cone), 0, z}).g, 1.0 / 3, 0.03);
   EXPECT_NEAR(seen_light(*shown, {0.5 * z * std::tan(half_cone), 0, z}).g, 2.0 / 3, 0.03);
 }

@@ -1,0 +1,71 @@
+// How much work a first picture is: of a large surface, on the display with the most views, without a graphics card.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "app/viewer/stage.h"
+#include "core/base/clock.h"
+#include "display/render/context_egl.h"
+#include "tests/display/spec.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr int kAround = 1696, kAlong = 848;  // 1.44 million vertices
+constexpr double kMostCpu_s = 1.5;
+
+/// A pillow of 60 x 20 x 62 mm whose surface is as uneven as writing makes it.
+TriMesh written_pillow() {
+  TriMesh mesh;
+  for (int j = 0; j <= kAlong; ++j)
+    for (int i = 0; i < kAround; ++i) {
+      const double along = 3.14159265358979 * j / kAlong, around = 2 * 3.14159265358979 * i / kAround;
+      const double relief = 1.0 + 0.01 * std::sin(40 * along) * std::sin(60 * around);
+      mesh.positions.emplace_back(30 * relief * std::sin(along) * std::cos(around), 31 * relief * std::cos(along),
+                                  10 * relief * std::sin(along) * std::sin(around));
+    }
+  const auto id = [](int i, int j) { return static_cast<std::uint32_t>(j * kAround + i % kAround); };
+  for (int j = 0; j < kAlong; ++j)
+    for (int i = 0; i < kAround; ++i) {
+      mesh.triangles.push_back({id(i, j), id(i, j + 1), id(i + 1, j)});
+      mesh.triangles.push_back({id(i + 1, j), id(i, j + 1), id(i + 1, j + 1)});
+    }
+  return mesh;
+}
+
+TEST(FirstPicture, OfAMillionVerticesOnFortyEightViewsIsLittleWork) {
+  const TriMesh mesh = written_pillow();
+  const auto context = EglContext::create();
+  ASSERT_TRUE(context) << context.error().message;
+  StageOptions options;
+  options.display = testing::spec("quilt:looking-glass-portrait");
+  options.quality = Quality::kAdaptive;
+  options.samples = 2;
+  options.shading = shading_preset("relief").value();
+  const double before = process_cpu_seconds();
+  auto stage = Stage::create(mesh, options).value();
+  const SinkTraits traits = stage->traits();
+  ASSERT_EQ(traits.views, 48);
+  auto surface = OffscreenSurface::create(traits.output).value();
+  FollowedEyes eyes;
+  eyes.presence = Presence::kOff;
+  stage->show({ViewState(), 1.0, options.shading.style, options.shading.parts}, eyes, 1);
+  ASSERT_TRUE(stage->paint(surface.surface()));
+  const Image picture = surface.read().value();
+  const double cpu_s = process_cpu_seconds() - before;
+  RecordProperty("cpu_ms", static_cast<int>(1e3 * cpu_s));
+  EXPECT_LT(cpu_s, kMostCpu_s) << "of all threads together";
+  EXPECT_EQ(stage->coarse_views(), 48);
+  // Every tile shows the surface in its middle, and the background beside it.
+  for (int row = 0; row < 6; ++row)
+    for (int column = 0; column < 8; ++column) {
+      const int x = column * traits.view.width, y = row * traits.view.height;
+      const auto* const middle = picture.at(x + traits.view.width / 2, y + traits.view.height / 2);
+      EXPECT_NE(std::vector(middle, middle + 3), std::vector(picture.at(x + 4, y + 4), picture.at(x + 4, y + 4) + 3))
+          << column << ", " << row;
+    }
+}
+
+}  // namespace
+}  // namespace dubsar::app

@@ -1,0 +1,90 @@
+// Nothing of the house grows beyond what one can hold in mind (CONTRIBUTING.md, Code): files of at most 400 lines,
+// classes of at most 15 data members.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include "tests/core/base/class_scan.h"
+
+namespace dubsar {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr int kMostMembers = 15;
+constexpr int kMostLines = 400;
+
+std::map<std::string, std::string> sources(std::initializer_list<const char*> rooms) {
+  std::map<std::string, std::string> texts;
+  const fs::path root(DUBSAR_SOURCE_DIR);
+  for (const char* room : rooms)
+    for (const auto& entry : fs::recursive_directory_iterator(root / room)) {
+      const auto extension = entry.path().extension();
+      if (extension != ".h" && extension != ".cpp" && extension != ".c") continue;
+      std::ifstream stream(entry.path());
+      texts[fs::relative(entry.path(), root).string()] = {std::istreambuf_iterator<char>(stream), {}};
+    }
+  return texts;
+}
+
+int members_of(const char* source, const std::string& name = "A") {
+  for (const ScannedClass& found : scan_classes(source))
+    if (found.name == name) return found.members;
+  return -1;
+}
+
+TEST(ClassScan, CountsWhatAClassHolds) {
+  EXPECT_EQ(members_of("struct A { int a; float b = 1, c{2}; std::map<int, float> d; };"), 4);
+  EXPECT_EQ(members_of("class A : public B<int, 2> { public: A() : a_{1}, b_(2) {} int f(int, int) const; private:\n "
+                       "int a_, b_; };"),
+            2);
+  EXPECT_EQ(
+      members_of(
+          "struct A { static constexpr int k = 1; using T = int; friend class B; enum E { x, y }; struct C; E e; };"),
+      1);
+  EXPECT_EQ(members_of("struct A { std::function<void(int, int)> f; void (*g)(int); int h[3][2] = {{1, 2}}; };"), 3);
+  EXPECT_EQ(
+      members_of("struct A { int a : 3, b : 4; char c = ';'; const char* d = \"{;\"; // int e;\n /* int f; */ };"), 4);
+  EXPECT_EQ(members_of("struct A { int f() { struct L { int x; } l; return 1 < 2; } bool big = 1 << 20, b; };"), 2);
+  EXPECT_EQ(members_of("template <class T, class U>\nstruct alignas(16) A final { T t; [[maybe_unused]] U u; };"), 2);
+  EXPECT_EQ(members_of("namespace n { namespace { class A { A& operator=(const A&) = delete; ~A(); int a; }; } }"), 1);
+  EXPECT_EQ(members_of("struct A { int n = 1'000'000, m = 2; std::string raw = R\"(};)\"; };"), 3);
+}
+
+TEST(ClassScan, NestedClassesCountForThemselvesUnlessTheyHaveNoName) {
+  const char* source =
+      "class A { struct Inner { int a, b; }; Inner inner_; struct { int c, d, e; } hidden_; union { int f; float g; }; "
+      "};";
+  EXPECT_EQ(members_of(source, "A::Inner"), 2);
+  EXPECT_EQ(members_of(source), 1 + 3 + 2);
+}
+
+TEST(Sizes, NoClassHasMoreThanFifteenDataMembers) {
+  int classes = 0, members = 0;
+  for (const auto& [file, text] : sources({"core", "devices", "input", "display", "app", "examples", "tests"}))
+    for (const ScannedClass& found : scan_classes(text)) {
+      ++classes;
+      members += found.members;
+      EXPECT_LE(found.members, kMostMembers)
+          << file << ": " << found.name << " does too much: make parts of it, each with a name of its own";
+    }
+  EXPECT_GT(classes, 800) << "the scan does not see the house";
+  EXPECT_GT(members, 3 * classes / 2) << "the scan does not see what the classes hold";
+}
+
+TEST(Sizes, NoFileHasMoreThanFourHundredLinesButGeneratedTables) {
+  int files = 0;
+  for (const auto& [file, text] : sources({"core", "devices", "input", "display", "app", "examples", "tests"})) {
+    ++files;
+    if (text.find("enerated by") != std::string::npos && text.find("class ") == std::string::npos) continue;
+    EXPECT_LE(std::count(text.begin(), text.end(), '\n'), kMostLines) << file;
+  }
+  EXPECT_GT(files, 600);
+}
+
+}  // namespace
+}  // namespace dubsar
