@@ -129,9 +129,9 @@ Result<void> decode_offsets(const ExaReader& reader, const ExaHeader& header, Su
   }
   DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("POFF", kCodec));
   DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("PFCE", kCodec));
-  samples.offsets.resize(static_cast<std::size_t>(header.edges));
+  samples.offsets.resize(static_cast<std::size_t>(header.samples.edges));
   DUBSAR_TRY(decode_paper_bits(offsets.chunks, samples.offset_bits, "offsets", samples.offsets));
-  std::vector<std::uint16_t> joined(static_cast<std::size_t>(header.faces));
+  std::vector<std::uint16_t> joined(static_cast<std::size_t>(header.samples.faces));
   DUBSAR_TRY(decode_paper_bits(faces.chunks, 1, "face decisions", joined));
   samples.joined.assign(joined.begin(), joined.end());
   return {};
@@ -163,7 +163,7 @@ Result<BitVolume> decode_level_signs(const ExaReader& reader, const ExaHeader& h
   }
   DUBSAR_ASSIGN(const LoadedSigns loaded, load_signs(reader, level, {}));
   return decode_signs(loaded.chunks, header.dims, level, std::nullopt,
-                      most_coded_signs(static_cast<std::uint64_t>(header.edges)), progress);
+                      most_coded_signs(static_cast<std::uint64_t>(header.samples.edges)), progress);
 }
 
 SurfaceSamples empty_samples(const ExaHeader& header) {
@@ -185,9 +185,9 @@ Result<SurfaceModel> decode_model(const ExaReader& reader, const ExaReadOptions&
   SurfaceSamples& samples = model.samples;
   DUBSAR_ASSIGN(samples.signs, decode_level_signs(reader, header, 0, progress));
   const SampleCounts counts = count_samples(samples.signs);
-  if (counts.edges != header.edges || counts.faces != header.faces)
+  if (counts.edges != header.samples.edges || counts.faces != header.samples.faces)
     return fail(ErrorKind::kBadData, "exa: {} active edges and {} ambiguous faces found, the header says {} and {}",
-                counts.edges, counts.faces, header.edges, header.faces);
+                counts.edges, counts.faces, header.samples.edges, header.samples.faces);
   DUBSAR_TRY(decode_offsets(reader, header, samples, progress));
   DUBSAR_ASSIGN(model.mesh, build_quad_mesh(samples, progress));
   if (model.mesh.vertex_count() != header.vertices || model.mesh.quad_count() != header.quads)

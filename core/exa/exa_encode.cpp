@@ -166,8 +166,8 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   header.closed = model.samples.closed;
   header.vertices = model.mesh.vertex_count();
   header.quads = model.mesh.quad_count();
-  header.edges = static_cast<std::int64_t>(model.samples.offsets.size());
-  header.faces = static_cast<std::int64_t>(model.samples.joined.size());
+  header.samples.edges = static_cast<std::int64_t>(model.samples.offsets.size());
+  header.samples.faces = static_cast<std::int64_t>(model.samples.joined.size());
   header.sums.positions = position_sum_of(model);
   header.sums.quads = quad_sum_of(model.mesh);
   header.tool = "dubsar " DUBSAR_VERSION;

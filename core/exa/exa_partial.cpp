@@ -33,9 +33,9 @@ Result<SurfaceModel> decode_level(const ExaReader& reader, int level, Progress& 
   samples.offset_bits = 16;
   DUBSAR_ASSIGN(samples.signs, decode_level_signs(reader, header, level, progress));
   const SampleCounts counts = count_samples(samples.signs);
-  if (static_cast<std::uint64_t>(counts.edges) > most_coded_signs(static_cast<std::uint64_t>(header.edges)))
+  if (static_cast<std::uint64_t>(counts.edges) > most_coded_signs(static_cast<std::uint64_t>(header.samples.edges)))
     return fail(ErrorKind::kBadData, "exa: {} active edges found on level {}, the whole surface has {}", counts.edges,
-                level, header.edges);
+                level, header.samples.edges);
   samples.offsets.assign(static_cast<std::size_t>(counts.edges), 1 << 15);
   samples.joined.assign(static_cast<std::size_t>(counts.faces), 0);
   return bare_model(std::move(samples), header.frame, glm::dvec3(0.0), std::exp2(level), progress);
@@ -74,8 +74,8 @@ Result<SurfaceModel> decode_box(const ExaReader& reader, const GridBox& box, Pro
     closed.high[a] = low[a] + points[a] - 2;
   }
   DUBSAR_ASSIGN(const BitVolume whole,
-                decode_signs(loaded.chunks, dims, 0, closed, most_coded_signs(static_cast<std::uint64_t>(header.edges)),
-                             progress));
+                decode_signs(loaded.chunks, dims, 0, closed,
+                             most_coded_signs(static_cast<std::uint64_t>(header.samples.edges)), progress));
   SurfaceSamples samples = empty_samples(header);
   samples.dims = {points[0], points[1], points[2]};
   samples.closed = false;

@@ -99,8 +99,8 @@ Result<std::string> exa_header_json(const ExaHeader& header) {
   json["closed"] = header.closed;
   json["vertices"] = header.vertices;
   json["quads"] = header.quads;
-  json["edges"] = header.edges;
-  json["faces"] = header.faces;
+  json["edges"] = header.samples.edges;
+  json["faces"] = header.samples.faces;
   json["position_sum"] = header.sums.positions;
   json["quad_sum"] = header.sums.quads;
   json["normals"] = normals_name(header.normals);
@@ -131,8 +131,8 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
   header.closed = members.flag("closed");
   header.vertices = members.count("vertices");
   header.quads = members.count("quads");
-  header.edges = members.count("edges");
-  header.faces = members.count("faces");
+  header.samples.edges = members.count("edges");
+  header.samples.faces = members.count("faces");
   header.sums.positions = static_cast<std::uint32_t>(members.count("position_sum"));
   header.sums.quads = static_cast<std::uint32_t>(members.count("quad_sum"));
   const std::string normals = members.text("normals"), method = members.text("curvature_method");
@@ -158,7 +158,7 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
   if (static_cast<std::uint64_t>(header.dims.count()) > kAlwaysPoints + kMostPerByte * file_bytes)
     return fail(ErrorKind::kBadData, "exa: {} grid points in a file of {} bytes, expected at most {}",
                 header.dims.count(), file_bytes, kAlwaysPoints + kMostPerByte * file_bytes);
-  for (const std::int64_t count : {header.vertices, header.quads, header.edges, header.faces})
+  for (const std::int64_t count : {header.vertices, header.quads, header.samples.edges, header.samples.faces})
     if (static_cast<std::uint64_t>(count) > kAlwaysItems + kMostPerByte * file_bytes)
       return fail(ErrorKind::kBadData,
                   "exa: {} vertices, x-quads, edges or faces in a file of {} bytes, expected at most {}", count,
@@ -188,7 +188,8 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
 std::uint64_t exa_memory_bound(const ExaHeader& header) {
   const auto words = static_cast<std::uint64_t>((header.dims.x + 63) / 64 * header.dims.y * header.dims.z);
   const auto rows = static_cast<std::uint64_t>((header.dims.y + 1) * (header.dims.z + 1));
-  const auto items = static_cast<std::uint64_t>(header.vertices + header.quads + header.edges + header.faces);
+  const auto items =
+      static_cast<std::uint64_t>(header.vertices + header.quads + header.samples.edges + header.samples.faces);
   const std::uint64_t lattices = header.profile == ExaProfile::kPaper ? paper_sign_memory(header.dims) : 0;
   return words * 9 + rows * 48 + items * 80 + lattices + (std::uint64_t{64} << 20);
 }

@@ -43,7 +43,7 @@ struct ExaHeader {
   int offset_bits = 4;
   bool closed = true;
   std::int64_t vertices = 0, quads = 0;
-  std::int64_t edges = 0, faces = 0;  ///< offsets and face decisions
+  SampleCounts samples;  ///< as many offsets as edges, as many decisions as faces
   ExaNormals normals = ExaNormals::kNone;
   bool curvatures = false;  ///< kRecomputed, kQuantised: k_min and k_max follow
   bool shapes = false;      ///< shape_classes() of the curvatures; not stored

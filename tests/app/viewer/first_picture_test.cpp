@@ -6,6 +6,7 @@
 
 #include "app/viewer/stage.h"
 #include "core/base/clock.h"
+#include "display/render/compose_pass.h"
 #include "display/render/context_egl.h"
 #include "tests/display/spec.h"
 
@@ -13,7 +14,7 @@ namespace dubsar::app {
 namespace {
 
 constexpr int kAround = 1696, kAlong = 848;  // 1.44 million vertices
-constexpr double kMostCpu_s = 1.5;
+constexpr double kMostCpu_s = 3.0;           // 1.2 where it was measured; two threads draw
 
 /// A pillow of 60 x 20 x 62 mm whose surface is as uneven as writing makes it.
 TriMesh written_pillow() {
@@ -50,7 +51,10 @@ TEST(FirstPicture, OfAMillionVerticesOnFortyEightViewsIsLittleWork) {
   auto surface = OffscreenSurface::create(traits.output).value();
   FollowedEyes eyes;
   eyes.presence = Presence::kOff;
-  stage->show({ViewState(), 1.0, options.shading.style, options.shading.parts}, eyes, 1);
+  Shown shown;
+  shown.style = options.shading.style;
+  shown.parts = options.shading.parts;
+  stage->show(shown, eyes, 1);
   ASSERT_TRUE(stage->paint(surface.surface()));
   const Image picture = surface.read().value();
   const double cpu_s = process_cpu_seconds() - before;
