@@ -58,12 +58,12 @@ KioskGuide::~KioskGuide() {
 
 void KioskGuide::write(std::string_view what, std::string_view figures) {
   const auto done = journal_.add(parts_.wall().unix_s, what, figures);
-  if (!done && done.error().message != journal_trouble_) log_warning("{}", done.error().message);
-  journal_trouble_ = done ? std::string() : done.error().message;
+  if (!done && done.error().message != told_.trouble) log_warning("{}", done.error().message);
+  told_.trouble = done ? std::string() : done.error().message;
 }
 
 void KioskGuide::begin_object() {
-  ended_ = false;
+  told_.ended = false;
   motion_ = {};
   view_.reset();
 }
@@ -204,11 +204,11 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
   Guidance out;
   menu_.tick(moment.now);
   const WallTime wall = parts_.wall();
-  if (!parts_.profile.key_file.empty() && wall.unix_s != looked_) {  // once a second
+  if (!parts_.profile.key_file.empty() && wall.unix_s != told_.looked) {  // once a second
     std::error_code error;
     menu_.file_present(std::filesystem::exists(parts_.profile.key_file, error), moment.now);
   }
-  looked_ = wall.unix_s;
+  told_.looked = wall.unix_s;
   for (const OperatorWish wish : std::exchange(wishes_, {})) obey(wish, out);
   VisitMoment noticed = notice(moment);
   const auto chosen = choose(moment);
@@ -217,8 +217,8 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
   phase_ = visit.phase;
   if (visit.arrived) write("visit");
   if (visit.reset) write("reset");
-  if (const std::int64_t hour = wall.unix_s / 3600; hour != hour_) {
-    if (hour_ >= 0) {
+  if (const std::int64_t hour = wall.unix_s / 3600; hour != told_.hour) {
+    if (told_.hour >= 0) {
       const Visit::Counts& counts = visit_.counts();
       write("hour", fmt::format("\"visits\": {}, \"resets\": {}, \"turned\": {}, \"zoomed\": {}, \"opened\": {}",
                                 counts.visits, counts.resets, counts.done[static_cast<std::size_t>(Lesson::kTurn)],
@@ -226,10 +226,10 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
                                 counts.done[static_cast<std::size_t>(Lesson::kRest)]));
       notify_.status(fmt::format("{} visits", counts.visits));
     }
-    hour_ = hour;
+    told_.hour = hour;
   }
   move_on(moment, visit, out);
-  ended_ = out.end;
+  told_.ended = out.end;
   if (visit.phase != VisitPhase::kAsleep)
     out.lines = hand_rings({parts_.zone, moment.window_mm, moment.middle_mm}, moment.steered.hands);
   out.picture = picture(visit);
@@ -237,8 +237,8 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
 }
 
 void KioskGuide::presented(TimestampNs now) {
-  if (!ready_) notify_.ready();
-  ready_ = true;
+  if (!told_.ready) notify_.ready();
+  told_.ready = true;
   notify_.alive(now);
 }
 

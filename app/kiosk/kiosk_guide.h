@@ -44,7 +44,7 @@ class KioskGuide final : public SessionGuide {
   /// Another object, or the same again, is shown from now on.
   void begin_object();
   /// Whether an operator ended the session.
-  bool ended() const noexcept { return ended_; }
+  bool ended() const noexcept { return told_.ended; }
   /// Which object the operator wants next, from 0 on; as many as there are: none, the kiosk is over.
   std::size_t object() const noexcept { return object_; }
   const Visit& visit() const noexcept { return visit_; }
@@ -55,6 +55,12 @@ class KioskGuide final : public SessionGuide {
     double unpack = 0.0, unpack_goal = 0.0, sway = 0.0, dark = 0.0;
     TimestampNs last = -1, sway_since = 0;
     bool shown = false;
+  };
+  /// What was told to others, and when.
+  struct Told {
+    std::string trouble;  ///< of the journal
+    std::int64_t hour = -1, looked = -1;
+    bool ended = false, ready = false;  ///< ready: to the service manager
   };
   VisitMoment notice(const GuideMoment& moment);
   std::optional<Sign> choose(const GuideMoment& moment);
@@ -74,11 +80,8 @@ class KioskGuide final : public SessionGuide {
   std::vector<SignPicture> signs_;
   VisitPhase phase_ = VisitPhase::kAttract;
   std::optional<ViewState> view_;  // of the last moment
-  std::string journal_trouble_;
   std::size_t object_ = 0, language_ = 0;
-  std::int64_t hour_ = -1, looked_ = -1;
-  bool ended_ = false;
-  bool ready_ = false;  // said to the service manager
+  Told told_;
 };
 
 }  // namespace dubsar::app

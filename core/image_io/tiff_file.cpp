@@ -139,10 +139,10 @@ Result<TiffPage> TiffFile::describe() {
   const auto scheme = field<std::uint16_t>(tiff, TIFFTAG_COMPRESSION, COMPRESSION_NONE);
   page.compression = compression_name(scheme);
   float x = 0.0F, y = 0.0F;
-  if (TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &x) == 1) page.x_per_unit = static_cast<double>(x);
-  if (TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &y) == 1) page.y_per_unit = static_cast<double>(y);
+  if (TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &x) == 1) page.resolution.x_per_unit = static_cast<double>(x);
+  if (TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &y) == 1) page.resolution.y_per_unit = static_cast<double>(y);
   const auto unit = field<std::uint16_t>(tiff, TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);
-  page.unit_mm = unit == RESUNIT_INCH ? 25.4 : unit == RESUNIT_CENTIMETER ? 10.0 : 0.0;
+  page.resolution.unit_mm = unit == RESUNIT_INCH ? 25.4 : unit == RESUNIT_CENTIMETER ? 10.0 : 0.0;
   const char* text = nullptr;
   if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text) == 1 && text != nullptr)
     page.description = std::string(text).substr(0, 65536);

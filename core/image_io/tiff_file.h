@@ -17,6 +17,11 @@
 
 namespace dubsar {
 
+struct TiffResolution {
+  double x_per_unit = 0.0, y_per_unit = 0.0;  ///< pixels per unit; 0: not stated
+  double unit_mm = 0.0;                       ///< length of that unit; 0: not stated
+};
+
 /// Facts about one page.
 struct TiffPage {
   enum class Sample { kUnsigned, kSigned, kFloat, kOther };
@@ -25,14 +30,13 @@ struct TiffPage {
   int bits = 0;      ///< per sample
   int channels = 1;  ///< samples per pixel
   Sample sample = Sample::kUnsigned;
-  bool palette = false;                       ///< colours by table
-  bool reduced = false;                       ///< a thumbnail or a coarser level of another page
-  std::string compression;                    ///< "none", "LZW", ...
-  double x_per_unit = 0.0, y_per_unit = 0.0;  ///< pixels per unit; 0: not stated
-  double unit_mm = 0.0;                       ///< length of that unit; 0: not stated
-  std::string description, name;              ///< tags 270 and 285; empty: not stated
-  std::int64_t data_offset = -1;              ///< of uncompressed pixels that lie in one piece; -1: they do not
-  bool big_endian = false;                    ///< byte order of the file
+  bool palette = false;     ///< colours by table
+  bool reduced = false;     ///< a thumbnail or a coarser level of another page
+  std::string compression;  ///< "none", "LZW", ...
+  TiffResolution resolution;
+  std::string description, name;  ///< tags 270 and 285; empty: not stated
+  std::int64_t data_offset = -1;  ///< of uncompressed pixels that lie in one piece; -1: they do not
+  bool big_endian = false;        ///< byte order of the file
 };
 
 /// A TIFF or BigTIFF file, read without memory mapping. One thread per object; open the file several times to read

@@ -117,8 +117,7 @@ PipelineReport make_report(const StageResults& results, const SurfaceModel& mode
                         .filters = {results.imported.raw},
                         .threshold = results.threshold,
                         .sharpen = results.sampled.sharpen,
-                        .smooth = results.smoothed.stats,
-                        .settle = results.settled.stats,
+                        .moves = {results.smoothed.stats, results.settled.stats},
                         .segment = results.separated.segment,
                         .holes = results.separated.holes,
                         .contact = results.contact,
@@ -193,15 +192,15 @@ json report_json(const PipelineReport& report, const PipelineOptions& options) {
   mesh["vertices"] = report.surface.vertices;
   mesh["xquads"] = report.surface.xquads;
   mesh["export_vertices"] = report.mesh.vertices;
-  mesh["smooth"] = {{"mean_displacement_vox", report.smooth.mean_displacement_vox},
-                    {"max_displacement_vox", report.smooth.max_displacement_vox},
-                    {"clamped_fraction", report.smooth.clamped_fraction},
-                    {"residual_angle_deg", report.smooth.residual_angle_deg}};
-  mesh["settle"] = {{"mean_error_vox", report.settle.mean_error_vox},
-                    {"p95_error_vox", report.settle.p95_error_vox},
-                    {"max_error_vox", report.settle.max_error_vox},
-                    {"escaped_fraction", report.settle.escaped_fraction},
-                    {"normal_error_deg", report.settle.normal_error_deg}};
+  mesh["smooth"] = {{"mean_displacement_vox", report.moves.smooth.mean_displacement_vox},
+                    {"max_displacement_vox", report.moves.smooth.max_displacement_vox},
+                    {"clamped_fraction", report.moves.smooth.clamped_fraction},
+                    {"residual_angle_deg", report.moves.smooth.residual_angle_deg}};
+  mesh["settle"] = {{"mean_error_vox", report.moves.settle.mean_error_vox},
+                    {"p95_error_vox", report.moves.settle.p95_error_vox},
+                    {"max_error_vox", report.moves.settle.max_error_vox},
+                    {"escaped_fraction", report.moves.settle.escaped_fraction},
+                    {"normal_error_deg", report.moves.settle.normal_error_deg}};
   return {{"input", input_json(report)},
           {"estimates", estimates_json(report)},
           {"stages", stages},

@@ -21,13 +21,18 @@ struct SurfaceSize {
   std::int64_t vertices = 0, xquads = 0;
 };
 
+/// How far vertices were moved: by smoothing, and to where the product's file can say that they are.
+struct VertexMoves {
+  SmoothStats smooth;
+  SettleStats settle;
+};
+
 struct PipelineReport {
   ScanFacts scan;
   std::vector<FilterStep> filters;  ///< the raw scan, then before and after each pass; the last ones gave the threshold
   Threshold threshold;
   float sharpen = 0.0f;  ///< amount that was used
-  SmoothStats smooth;
-  SettleStats settle;
+  VertexMoves moves;
   SegmentReport segment;
   std::optional<HoleReport> holes;        ///< when holes were filled
   std::optional<ContactReport> contact;   ///< when tablet and envelope were told apart where they touch

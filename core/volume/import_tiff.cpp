@@ -141,9 +141,9 @@ VoxelSize voxel_size(const TiffPage& page, std::vector<std::string>& warnings) {
   const auto fields = imagej_fields(page.description);
   const auto stated = fields.find("unit");
   const auto unit = stated != fields.end() ? mm_per_unit(stated->second) : std::nullopt;
-  const double unit_mm = unit ? *unit : page.unit_mm;
-  if (page.x_per_unit <= 0.0 || page.y_per_unit <= 0.0 || unit_mm <= 0.0) return {};
-  const glm::dvec3 mm(unit_mm / page.x_per_unit, unit_mm / page.y_per_unit, 0.0);
+  const double unit_mm = unit ? *unit : page.resolution.unit_mm;
+  if (page.resolution.x_per_unit <= 0.0 || page.resolution.y_per_unit <= 0.0 || unit_mm <= 0.0) return {};
+  const glm::dvec3 mm(unit_mm / page.resolution.x_per_unit, unit_mm / page.resolution.y_per_unit, 0.0);
   if (!std::isfinite(mm.x + mm.y)) return {};
   if (number_or(fields, "spacing", 0.0) < 0.0)
     warnings.emplace_back(

@@ -30,8 +30,8 @@ TEST_F(TiffFiles, GrayPagesOfBothByteOrdersAndBigTiffAreRead) {
       EXPECT_EQ(page.width, 3);
       EXPECT_EQ(page.height, 2);
       EXPECT_EQ(page.bits, 16);
-      EXPECT_EQ(page.x_per_unit, 500.0);
-      EXPECT_EQ(page.unit_mm, 10.0);
+      EXPECT_EQ(page.resolution.x_per_unit, 500.0);
+      EXPECT_EQ(page.resolution.unit_mm, 10.0);
       EXPECT_EQ(page.description, "a long description");
       EXPECT_EQ(page.big_endian, big_endian);
       std::vector<std::uint16_t> out(6);
@@ -137,7 +137,7 @@ TEST_F(TiffFiles, LayersArePagesWithNamesAndTheFirstIsThePicture) {
   for (int k = 0; k < 3; ++k) {
     const TiffPage& page = (*pages)[static_cast<std::size_t>(k)];
     EXPECT_EQ(page.name, names[static_cast<std::size_t>(k)]);
-    EXPECT_EQ(page.x_per_unit, 600.0);
+    EXPECT_EQ(page.resolution.x_per_unit, 600.0);
     ASSERT_TRUE(file->select(page.offset));
     EXPECT_EQ(file->read_picture({}).value().pixels, colour(k).pixels) << k;
   }
