@@ -1,6 +1,5 @@
 // A whole session on a head: the wearer looks around and turns the tablet with a hand, in the made OpenXR runtime.
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -61,24 +60,6 @@ TEST_F(WornSession, AHandThatGrabsAndMovesTurnsTheTabletAndTheHeadLooksAround) {
       ASSERT_LE(turn * 180.0 / std::numbers::pi, 0.2);
       ASSERT_NEAR(glm::distance(head.position, pose.position), 0.032, 1e-3);
     }
-  }
-}
-
-TEST_F(WornSession, HelpStandsInTheRoomBeforeTheWearerAndGoesAgain) {
-  made_->read_pictures = true;
-  options_.time.longest_s = 3.0;
-  options_.steps = {{1.0, "help"}, {2.0, "help"}};
-  std::vector<bool> help;
-  const auto done = run_view(dubsar::testing::lettered_box(), options_, progress_,
-                             [&](const ViewMoment& m) { help.push_back(m.viewer.desk().help); });
-  ASSERT_TRUE(done) << done.error().message;
-  ASSERT_EQ(std::count(help.begin(), help.end(), true), 30);
-  const auto light = [&](double part, std::size_t eye) {
-    return made_->frames[static_cast<std::size_t>(part * static_cast<double>(made_->frames.size()))].light[eye];
-  };
-  for (const std::size_t eye : {0u, 1u}) {
-    EXPECT_GT(std::abs(light(0.5, eye) - light(0.2, eye)), 1.0) << eye << ": the page covers a part of what is seen";
-    EXPECT_NEAR(light(0.9, eye), light(0.2, eye), 0.1) << eye;
   }
 }
 
