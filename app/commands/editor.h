@@ -71,6 +71,7 @@ struct Desk {
   bool help = false;
   bool panels = false;
   bool palette = false;               ///< all commands by typing
+  double ui_scale = 0.0;              ///< of letters and panels; 0: as the monitor wants it
   bool legend = true;                 ///< of colours that tell figures
   bool leaving = false;               ///< asked whether to end with work in it
   std::string drawer{};               ///< of the panels; empty: none is open

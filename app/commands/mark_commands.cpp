@@ -52,8 +52,12 @@ void add_note(Editor& editor, const std::vector<SurfacePin>& pins, std::string t
   note.text = std::move(text);
   note.at_mm = pins.front().at_mm;
   note.normal = pins.front().normal;
-  if (pins.size() > 1)
-    for (const SurfacePin& pin : pins) note.line_mm.push_back(pin.at_mm);
+  if (pins.size() > 1) {  // along the surface, where it leads from one end to the other
+    Measure way{MeasureKind::kDistance, {}, note.part, {}, {}};
+    for (const SurfacePin& pin : pins) way.points_mm.push_back(pin.at_mm);
+    const auto found = editor.place().figures(way);
+    note.line_mm = found && found->path_mm.size() > 1 ? found->path_mm : way.points_mm;
+  }
   note.camera = next.now;
   next.notes.push_back(std::move(note));
   editor.change(std::move(next), "note");

@@ -1,5 +1,7 @@
 // Commands for the window and what it is connected to. They change no document and are not undone.
 
+#include <algorithm>
+
 #include "app/commands/command_table.h"
 #include "app/commands/number_argument.h"
 
@@ -67,6 +69,34 @@ Command picture() {
   return out;
 }
 
+constexpr double kLeastScale = 0.5, kMostScale = 4.0;
+
+Command ui_scale() {
+  Command out{
+      "ui_scale", std::string(kWindowGroup), "size of letters and panels, in percent", {}, "50 to 400, or auto"};
+  out.values = {"100", "150", "200", "auto"};
+  out.run = [](Editor& editor, const std::string& text) -> Result<void> {
+    if (text == "auto") {
+      editor.desk().ui_scale = 0.0;
+      return {};
+    }
+    DUBSAR_ASSIGN(const double percent, number_argument("ui_scale", text, 100 * kLeastScale, 100 * kMostScale));
+    editor.desk().ui_scale = 0.01 * percent;
+    return {};
+  };
+  return out;
+}
+
+Command scale_by(std::string name, std::string words, double factor, std::vector<DefaultKey> keys) {
+  Command out = plain(std::move(name), std::move(words), std::move(keys), [factor](Editor& editor) -> Result<void> {
+    double& scale = editor.desk().ui_scale;
+    scale = std::clamp((scale > 0 ? scale : 1.0) * factor, kLeastScale, kMostScale);
+    return {};
+  });
+  out.repeats = true;
+  return out;
+}
+
 /// What was opened last goes first; a session with work in it asks.
 Result<void> close(Editor& editor) {
   Desk& desk = editor.desk();
@@ -121,6 +151,9 @@ std::vector<Command> window_commands() {
     editor.desk().palette = !editor.desk().palette;
     return {};
   }));
+  out.push_back(ui_scale());
+  out.push_back(scale_by("letters_larger", "letters and panels larger", 1.1, {{"ctrl++"}, {"ctrl+="}}));
+  out.push_back(scale_by("letters_smaller", "letters and panels smaller", 1.0 / 1.1, {{"ctrl+-"}}));
   out.push_back(picture());
   out.push_back(plain("close", "close what is open, lay down the tool, or end", {{"escape"}}, close));
   return out;

@@ -20,9 +20,10 @@ constexpr float kFontPx = 26.0f;       // of the help and its like, sharp when i
 constexpr float kPanelFontPx = 15.0f;  // of panels on monitors of 96 dpi
 constexpr double kLargeScale = 1.2;    // from here on panels are drawn with the large font
 constexpr float kLinePx = 13.0f;
-constexpr float kGlyphPx = 7.4f;        // its usual width, at kLinePx
-constexpr double kLeastHeight = 540.0;  // of the layout; smaller views show it smaller
-constexpr double kMostHeight = 900.0;   // larger ones larger
+constexpr float kGlyphPx = 7.4f;              // its usual width, at kLinePx
+constexpr double kLeastHeight = 540.0;        // of the layout; smaller views show it smaller
+constexpr double kLeastScaledHeight = 400.0;  // what panels need where somebody wants them larger
+constexpr double kMostHeight = 900.0;         // larger ones larger
 constexpr float kMargin = 12.0f;
 constexpr float kLegendLeft = 96.0f;  // beside the tools
 
@@ -192,8 +193,9 @@ Overlay::~Overlay() {
   ImGui::DestroyContext();
 }
 
-glm::dvec2 Overlay::layout(int view_height, const glm::dvec2& window_mm) {
-  const double height = std::clamp(static_cast<double>(view_height), kLeastHeight, kMostHeight);
+glm::dvec2 Overlay::layout(int view_height, const glm::dvec2& window_mm, double scale) {
+  const double height = scale > 0 ? std::max(view_height / scale, kLeastScaledHeight)
+                                  : std::clamp(static_cast<double>(view_height), kLeastHeight, kMostHeight);
   return {height * window_mm.x / window_mm.y, height};
 }
 
@@ -293,7 +295,7 @@ std::vector<std::string> Overlay::take_commands() { return std::exchange(command
 
 Result<void> Overlay::paint(ViewArray& layers, const glm::dvec2& window_mm) {
   if (text_.empty()) return {};
-  const glm::dvec2 size = layout(layers.height(), window_mm);
+  const glm::dvec2 size = layout(layers.height(), window_mm, wanted_scale_);
   px_per_mm_ = static_cast<float>(size.y / window_mm.y);
   ImGui_ImplOpenGL3_NewFrame();
   for (int pass = 0; pass < 2; ++pass)  // sizes that follow from text are known in the second

@@ -40,7 +40,11 @@ class Overlay final : public LayerPainter {
   Result<void> paint(ViewArray& layers, const glm::dvec2& window_mm) override;
 
   /// Pixels of the layout for views of this size on a window of this shape.
-  static glm::dvec2 layout(int view_height, const glm::dvec2& window_mm);
+  /// `scale` is how many pixels of a view one of the layout has; 0: what suits the height, at most 900 pixels of
+  /// layout.
+  static glm::dvec2 layout(int view_height, const glm::dvec2& window_mm, double scale = 0.0);
+  /// For paint(); as of layout().
+  void set_scale(double scale) noexcept { wanted_scale_ = scale; }
 
   /// An event, before the object sees it: true when a panel takes it. Keys are taken while something is typed.
   /// `layout` as above.
@@ -58,6 +62,7 @@ class Overlay final : public LayerPainter {
   OverlayText text_;
   std::vector<std::string> commands_;
   glm::dvec2 scale_{1.0, 1.0};
+  double wanted_scale_ = 0.0;
   float px_per_mm_ = 3.0f;
   std::array<bool, 3> held_{};  ///< buttons that went down on a panel
   bool object_held_ = false;    ///< one went down beside them

@@ -30,7 +30,7 @@ struct What {
 struct Panel {
   std::string display = "mono", size, monitor;
   std::vector<std::string> plugins;  // files
-  int samples = 0, bridge_port = kBridgePort;
+  int samples = 0, bridge_port = kBridgePort, ui_scale = 0;
   bool offscreen = false, fullscreen = false, windowed = false;
 };
 
@@ -157,6 +157,7 @@ Result<ViewOptions> view_options(const Options& options) {
     DUBSAR_ASSIGN(view.steps, parse_steps(steps, options.people.steps));
   }
   view.work.surface = options.what.in;
+  view.around.scale = 0.01 * options.panel.ui_scale;
   view.work.scan = options.what.scan;
   view.time.fps = options.time.fps;
   view.time.longest_s = options.time.seconds;
@@ -353,6 +354,8 @@ Verb add_view_verb(Arguments program) {
   command.value("--style", options->what.style, "shading, as of render");
   command.value("--partition", options->what.partitions, "only these parts: names or ids, e.g. tablet")
       .separated_by(',');
+  command.value("--ui-scale", options->panel.ui_scale, "size of letters and panels in percent (as the desktop says)")
+      .range(50, 400);
   command.value("--samples", options->panel.samples, "samples per pixel side (2; offscreen 1)").range(1, 8);
   command.footer(
       "In the window: F1 shows what mouse, keys and hands do and how the sources are; F2 goes to the next display, F11 "

@@ -48,6 +48,7 @@ struct SessionFiles {
 /// What stands around the surface.
 struct SessionWords {
   bool panels = false;  ///< on displays of one view; a key shows them on all
+  double scale = 0.0;   ///< of letters and panels; 0: as the monitor wants it
   std::string title{};  ///< what the panels call it
   bool notices = true;  ///< a line for some seconds: how to get help and leave, which display this is now
 };

@@ -76,6 +76,7 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
     displays_.specs.insert(displays_.specs.begin(), stage.display);
   }
   editor_->desk().panels = given_.options.around.panels && stage_->traits().views == 1;
+  editor_->desk().ui_scale = given_.options.around.scale;
   steering_ = std::make_unique<Steering>(mapping, view_of(document()), follow_options(stage));
   steering_->set_home(home_of(document()));
   autosave_ = Autosave(given_.options.files.autosave);
@@ -184,7 +185,7 @@ void Viewer::handle(InputEvent event) {
   if (given_.options.time.fps > 0) event.time = given_.clock.now();
   if (event.at) tools_.pointer = *event.at;
   if (given_.options.guide != nullptr && given_.options.guide->takes(event, given_.clock.now())) return;
-  if (overlay_->take(event, Overlay::layout(stage_->traits().view.height, stage_->window_mm()))) {
+  if (overlay_->take(event, layout())) {
     stage_->set_overlay(overlay_.get());  // what the pointer is on looks different
     if ((event.kind == EventKind::kButton && event.down) || event.key == "enter") ++at_.presses;
     for (const std::string& command : overlay_->take_commands()) run(command, kKeySteps + at_.presses);

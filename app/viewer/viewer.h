@@ -156,6 +156,8 @@ class Viewer final : public Workplace {
   glm::dvec3 scan_place(const Picked& picked) const;
   Document shown_document(TimestampNs now);
   bool shows_slices() const { return desk().panels && desk().drawer == "slices"; }
+  double ui_scale() const;
+  glm::dvec2 layout() const;
   double aside() const;
   void lay_slices(Shown& shown);
   Reach reach_of(const glm::dvec3& direction, const glm::dquat& rotation) const;

@@ -16,6 +16,19 @@ constexpr TimestampNs kNoticeNs = 6 * kSecond, kFadeNs = kSecond, kHelpRefreshNs
 
 }  // namespace
 
+/// What somebody said, else the desktop; 0: neither, what suits the window.
+double Viewer::ui_scale() const {
+  if (desk().ui_scale > 0) return desk().ui_scale;
+  const GlfwWindow* const window = given_.presenter.window();
+  const double wanted = window != nullptr ? window->content_scale() : 1.0;
+  return wanted > 1.01 ? wanted : 0.0;
+}
+
+/// Pixels of the panels' layout.
+glm::dvec2 Viewer::layout() const {
+  return Overlay::layout(stage_->traits().view.height, stage_->window_mm(), ui_scale());
+}
+
 PanelState Viewer::panel_state() const {
   PanelState out;
   out.line = {
@@ -30,7 +43,7 @@ PanelState Viewer::panel_state() const {
   const glm::dvec2 window = stage_->window_mm();
   const double scale =
       glm::length(glm::dvec3(stage_->screen_from_model()[0]));  // of the screen for one mm of the object
-  out.mm_per_px = window.y / (Overlay::layout(stage_->traits().view.height, window).y * scale);
+  out.mm_per_px = window.y / (layout().y * scale);
   out.faint = report_.control == Control::kMouse || report_.control == Control::kHands;
   return out;
 }
@@ -82,6 +95,7 @@ void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
     text.notice = fmt::format("measuring the surface: {:.0f} %", 100.0 * *share);
     text.notice_opacity = 1.0;
   }
+  overlay_->set_scale(ui_scale());
   if (text == overlay_->text()) return;
   overlay_->set(std::move(text));
   stage_->set_overlay(overlay_->text().empty() ? nullptr : overlay_.get());

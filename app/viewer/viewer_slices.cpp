@@ -18,14 +18,14 @@ constexpr float kToolsWidth = 82.0f, kTabWidth = 90.0f;  // what stands at the s
 /// How far the surface stands to the right of the window's middle while slices are beside it, in heights of the window.
 double Viewer::aside() const {
   if (!shows_slices()) return 0.0;
-  const glm::dvec2 layout = Overlay::layout(stage_->traits().view.height, stage_->window_mm());
+  const glm::dvec2 layout = this->layout();
   const auto taken = static_cast<double>(slices_width(static_cast<float>(layout.x)) + kTabWidth - kToolsWidth);
   return -0.5 * taken / layout.y;
 }
 
 void Viewer::lay_slices(Shown& shown) {
   const SinkTraits traits = stage_->traits();
-  const glm::dvec2 layout = Overlay::layout(traits.view.height, stage_->window_mm());
+  const glm::dvec2 layout = this->layout();
   const ScanView& view = document().scan;
   const glm::dvec2 px = glm::dvec2(traits.view.width, traits.view.height) / layout;
   tools_.slices->update(view, layout, px);

@@ -5,6 +5,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/base/log.h"
@@ -341,6 +342,12 @@ bool GlfwWindow::take_place_changed() { return std::exchange(place_changed_, fal
 bool GlfwWindow::take_damaged() { return std::exchange(damaged_, false); }
 void GlfwWindow::close() { glfwSetWindowShouldClose(as_window(window_), GLFW_TRUE); }
 bool GlfwWindow::fullscreen() const { return glfwGetWindowMonitor(as_window(window_)) != nullptr; }
+
+double GlfwWindow::content_scale() const {
+  float x = 1.0f, y = 1.0f;
+  glfwGetWindowContentScale(as_window(window_), &x, &y);
+  return std::isfinite(y) && y > 0 ? double{y} : 1.0;
+}
 
 double GlfwWindow::refresh_hz() const {
   GLFWmonitor* const monitor = monitor_of(as_window(window_));

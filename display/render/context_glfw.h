@@ -90,6 +90,8 @@ class GlfwWindow final : public GlContext {
   Result<void> set_fullscreen(const std::string& monitor = {});
   void set_windowed();
   bool fullscreen() const;
+  /// How many times larger than on a plain monitor things shall be here, as the desktop says: 1, 1.5, 2 ...
+  double content_scale() const;
   double refresh_hz() const;  ///< of the monitor the window is on; 0 when it does not say
   /// RGB, top row first: what was drawn since the last present(). `eye` 1 reads the right buffer of a stereo window.
   Result<Image> read(int eye = 0) const;

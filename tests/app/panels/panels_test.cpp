@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/panels/desk_panels.h"
+#include "app/panels/overlay.h"
 #include "app/panels/panel_font.h"
 
 namespace dubsar::app {
@@ -35,6 +36,15 @@ TEST(ScaleBar, IsTheLongestRoundLengthThatFits) {
     EXPECT_TRUE(std::abs(mantissa - 1) < 1e-9 || std::abs(mantissa - 2) < 1e-9 || std::abs(mantissa - 5) < 1e-9)
         << mantissa;
   }
+}
+
+TEST(Overlay, LettersAreAsLargeAsTheMonitorOrSomebodyWantsThem) {
+  const glm::dvec2 window(600.0, 337.5);
+  EXPECT_EQ(Overlay::layout(2160, window), glm::dvec2(1600, 900)) << "4K: 2.4 pixels for one";
+  EXPECT_EQ(Overlay::layout(2160, window, 2.0), glm::dvec2(1920, 1080));
+  EXPECT_EQ(Overlay::layout(2160, window, 3.0), glm::dvec2(1280, 720));
+  EXPECT_EQ(Overlay::layout(1080, window, 1.0), glm::dvec2(1920, 1080));
+  EXPECT_EQ(Overlay::layout(1080, window, 4.0).y, 400) << "panels need some room";
 }
 
 }  // namespace

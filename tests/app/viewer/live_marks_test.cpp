@@ -110,6 +110,7 @@ TEST_F(Live, AScriptSaysEveryCommandThereIs) {
   EXPECT_EQ(done->document.measures.size(), 4u);
   EXPECT_EQ(done->document.notes.size(), 2u);
   EXPECT_EQ(done->document.notes[0].text, "q\u00ed-bi\u2084-ma");
+  EXPECT_GT(done->document.notes[1].line_mm.size(), 20u) << "the line follows the surface";
   EXPECT_EQ(done->document.keyframes.size(), 1u);
   for (const char* name :
        {"measures.json", "notes.json", "notes.jsonld", "film.json", "seen.png", "seen.tif", "slice.png"})
