@@ -24,6 +24,7 @@ struct Arguments::State {
   };
   std::unique_ptr<CLI::App> root;
   std::vector<File> files;
+  std::vector<std::string> words;
 };
 
 namespace {
@@ -210,6 +211,8 @@ std::vector<FileUse> Arguments::files() const {
   return uses;
 }
 
+std::vector<std::string> Arguments::words() const { return state_->words; }
+
 std::optional<int> Arguments::parse(int argc, char** argv) {
   CLI::App& root = app(app_);
   std::vector<std::string> words(argv + 1, argv + std::max(argc, 1));
@@ -221,6 +224,7 @@ std::optional<int> Arguments::parse(int argc, char** argv) {
     words.erase(words.begin());
     words.push_back("--help");
   }
+  state_->words.assign(words.begin() + 1, words.end());
   try {
     std::vector<std::string> backwards(words.rbegin(), words.rend());
     root.parse(backwards);

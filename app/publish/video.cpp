@@ -1,33 +1,25 @@
 #include "app/publish/video.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
-#include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <sstream>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "core/base/atomic_file.h"
-
-extern char** environ;
+#include "core/base/child_process.h"
 
 namespace dubsar::app {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr int kPollMs = 200;
 constexpr std::size_t kSaid = 2000;  // characters of what ffmpeg said last
 
 struct Coding {
@@ -86,84 +78,6 @@ std::vector<std::string> arguments_of(const VideoRequest& request, const Coding&
   return words;
 }
 
-/// A program that runs, with what it says on both streams.
-class Child {
- public:
-  static Result<Child> start(std::vector<std::string> words) {
-    Child out;
-    std::array<std::array<int, 2>, 2> pipes{};
-    for (auto& pipe : pipes)
-      if (::pipe2(pipe.data(), O_CLOEXEC) != 0) return fail_errno(errno, "cannot start " + words[0]);
-    posix_spawn_file_actions_t actions;
-    ::posix_spawn_file_actions_init(&actions);
-    for (int stream = 0; stream < 2; ++stream)
-      ::posix_spawn_file_actions_adddup2(&actions, pipes[static_cast<std::size_t>(stream)][1], stream + 1);
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    const int error = ::posix_spawn(&out.id_, words[0].c_str(), &actions, nullptr, argv.data(), environ);
-    ::posix_spawn_file_actions_destroy(&actions);
-    for (std::size_t stream = 0; stream < 2; ++stream) {
-      ::close(pipes[stream][1]);
-      out.streams_[stream] = {pipes[stream][0], POLLIN, 0};
-    }
-    if (error != 0) {
-      out.id_ = -1;
-      return fail_errno(error, "cannot start " + words[0]);
-    }
-    return out;
-  }
-  Child(Child&& other) noexcept : id_(std::exchange(other.id_, -1)), streams_(other.streams_) {
-    for (pollfd& stream : other.streams_) stream.fd = -1;
-  }
-  Child& operator=(Child&&) = delete;
-  ~Child() {
-    if (id_ > 0) {
-      ::kill(id_, SIGTERM);
-      wait();
-    }
-    for (const pollfd& stream : streams_)
-      if (stream.fd >= 0) ::close(stream.fd);
-  }
-
-  /// What came within kPollMs, of each stream; false when both have ended.
-  bool read(std::array<std::string, 2>& came) {
-    ::poll(streams_.data(), streams_.size(), kPollMs);
-    bool open = false;
-    for (std::size_t i = 0; i < streams_.size(); ++i) {
-      pollfd& stream = streams_[i];
-      if (stream.fd < 0) continue;
-      if ((stream.revents & (POLLIN | POLLHUP | POLLERR)) == 0) {
-        open = true;
-        continue;
-      }
-      std::array<char, 4096> part;
-      const ssize_t got = ::read(stream.fd, part.data(), part.size());
-      if (got > 0) came[i].append(part.data(), static_cast<std::size_t>(got));
-      if (got > 0 || (got < 0 && errno == EINTR)) {
-        open = true;
-        continue;
-      }
-      ::close(stream.fd);
-      stream.fd = -1;
-    }
-    return open;
-  }
-  /// Its exit code; 128 + signal when it was ended.
-  int wait() {
-    int status = 0;
-    while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
-    }
-    id_ = -1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  }
-
- private:
-  Child() = default;
-  pid_t id_ = -1;
-  std::array<pollfd, 2> streams_{{{-1, 0, 0}, {-1, 0, 0}}};
-};
-
 /// The number in the last "frame=N" of what ffmpeg told so far.
 int frames_told(std::string_view text) {
   const std::size_t at = text.rfind("frame=");
@@ -209,7 +123,8 @@ Result<fs::path> find_ffmpeg() {
 Result<void> make_video(const VideoRequest& request, Progress& progress) {
   DUBSAR_TRY(check_video_name(request.out));
   DUBSAR_ASSIGN(AtomicFile file, AtomicFile::create(request.out));
-  DUBSAR_ASSIGN(Child child, Child::start(arguments_of(request, *coding_of(request.out), file.temporary_path())));
+  DUBSAR_ASSIGN(ChildProcess child,
+                ChildProcess::start(arguments_of(request, *coding_of(request.out), file.temporary_path())));
   progress.begin("video", request.pictures, "picture");
   std::array<std::string, 2> said;
   for (int told = 0; child.read(said);) {

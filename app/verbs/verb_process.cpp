@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "app/cli/default_output.h"
 #include "app/cli/input_options.h"
 #include "app/cli/verb.h"
 #include "app/publish/surface_facts.h"
+#include "app/verbs/process_batch.h"
 #include "core/pipeline/pipeline.h"
 #include "core/pipeline/report.h"
 
@@ -15,7 +19,10 @@ namespace dubsar::app {
 namespace {
 
 struct Options {
-  std::string in, out;
+  std::vector<std::string> inputs;
+  std::string in, out;  ///< of one scan
+  std::string target;   ///< of many: their folder, or the surface of a run that may be resumed
+  bool resume = false, many = false;
   InputOptionTexts input;
   PipelineOptions pipeline;
   double threshold = 0.0, sharpen = 1.0, radius = 64.0;
@@ -145,14 +152,40 @@ Result<VerbResult> run(Options options, const Arguments command, const CommonOpt
   return out;
 }
 
+Result<VerbResult> run_many(const Options& options, const Arguments command, Progress& progress) {
+  ScanBatch batch;
+  batch.resume = options.resume;
+  batch.options = options_for_each(command.words(), options.inputs);
+  if (options.inputs.size() == 1 && !is_scan_folder(options.inputs[0])) {
+    batch.items = {{options.inputs[0], options.target}};
+  } else {
+    DUBSAR_ASSIGN(batch.items, batch_items(options.inputs, options.target));
+  }
+  return process_batch(batch, progress);
+}
+
+/// What is one scan, and what many: a run that may be resumed is a batch of one.
+void settle(Options& options) {
+  options.many = options.inputs.size() > 1 || options.resume || is_scan_folder(options.inputs[0]);
+  const bool one = options.inputs.size() == 1 && !is_scan_folder(options.inputs[0]);
+  if (one && options.out.empty()) options.out = output_beside(options.inputs[0], ".exa");
+  if (options.many) options.target = std::exchange(options.out, {});
+  if (one) options.in = options.inputs[0];
+}
+
 }  // namespace
 
 Verb add_process_verb(Arguments program) {
   auto options = std::make_shared<Options>();
   Arguments command = program.command("process", "turn a CT scan into separated, watertight surfaces (EXA)");
-  command.reads("IN", options->in, "HDF5, NRRD, TIFF (file or folder) or raw volume").required();
+  command
+      .reads("IN", options->inputs,
+             "HDF5, NRRD, TIFF (file or folder) or raw volume; several, or a folder of scans: one after another")
+      .required();
   command.writes("-o,--output", options->out, FileFormat::kExa,
-                 "EXA file to write (default: beside IN, with the suffix .exa)");
+                 "EXA file to write, or the folder for those of several scans (default: beside IN, suffix .exa)");
+  command.flag("--resume", options->resume,
+               "keep surfaces that an earlier run of the same command made, and make the rest");
   add_input_options(command, options->input);
   add_filter_options(command, *options);
   add_surface_options(command, *options);
@@ -160,17 +193,15 @@ Verb add_process_verb(Arguments program) {
       "Examples:\n"
       "  dubsar process scan.h5\n"
       "  dubsar process scan.h5 -o tablet.exa --verbose\n"
+      "  dubsar process scans/ -o surfaces/ --resume\n"
       "  dubsar process scan.h5 -o part.exa --crop 0:512,0:512,0:512 --no-ao\n"
       "  dubsar process scan.raw --dims 512x512x300 --type uint16 --voxel-size 38um -o tablet.exa\n"
       "  dubsar process scan.h5 -o tablet.exa --json report.json");
   return {command,
           [options, command](const CommonOptions& common, Progress& progress) {
-            return run(*options, command, common, progress);
+            return options->many ? run_many(*options, command, progress) : run(*options, command, common, progress);
           },
-          [options] {
-            if (options->out.empty()) options->out = output_beside(options->in, ".exa");
-          },
-          [options] { return plan_of(*options); }};
+          [options] { settle(*options); }, [options] { return plan_of(*options); }};
 }
 
 }  // namespace dubsar::app
