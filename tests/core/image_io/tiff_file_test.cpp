@@ -111,8 +111,8 @@ TEST_F(TiffFiles, APictureIsWrittenWithItsResolution) {
     EXPECT_EQ(page->width, 150);
     EXPECT_EQ(page->height, 131);
     EXPECT_EQ(page->channels, channels);
-    EXPECT_EQ(page->x_per_unit, 600.0);
-    EXPECT_EQ(page->unit_mm, 25.4);
+    EXPECT_EQ(page->resolution.x_per_unit, 600.0);
+    EXPECT_EQ(page->resolution.unit_mm, 25.4);
     EXPECT_EQ(page->compression, "LZW");
   }
   EXPECT_EQ(write_tiff(in("no/folder.tif"), Image(2, 2, 3), 72.0).error().kind, ErrorKind::kCannotCreate);
