@@ -124,8 +124,8 @@ TEST(FatCross, FilesSayTheirScaleAndWhoseTheyAre) {
   ASSERT_TRUE(tiff);
   const auto page = tiff->select(0);
   ASSERT_TRUE(page);
-  EXPECT_EQ(page->x_per_unit, 600.0);
-  EXPECT_EQ(page->unit_mm, 25.4);
+  EXPECT_EQ(page->resolution.x_per_unit, 600.0);
+  EXPECT_EQ(page->resolution.unit_mm, 25.4);
   EXPECT_EQ(page->description, "AO 8295");
   fs::remove(file);
 }
