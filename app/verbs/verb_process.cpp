@@ -18,6 +18,11 @@
 namespace dubsar::app {
 namespace {
 
+/// Steps that are left out.
+struct Without {
+  bool resample = false, holes = false, contact = false, ao = false;
+};
+
 struct Options {
   std::vector<std::string> inputs;
   std::string in, out;  ///< of one scan
@@ -28,7 +33,8 @@ struct Options {
   double threshold = 0.0, sharpen = 1.0, radius = 64.0;
   int rays = 160;
   OcclusionEngine ao_engine = OcclusionEngine::kBricks;
-  bool no_resample = false, no_holes = false, no_contact = false, no_ao = false, open_boundary = false;
+  Without without;
+  bool open_boundary = false;
 };
 
 void add_filter_options(Arguments command, Options& options) {
@@ -38,7 +44,7 @@ void add_filter_options(Arguments command, Options& options) {
       "--detail", p.detail, choices_of(kDetails),
       "grid of the surface: scan (all the scan has, and the contact of tablet and envelope is traced), half "
       "(Gauss 3x3x3 and 2:1, as in the paper), auto (default: scan where time and memory allow)");
-  group.flag("--no-resample", options.no_resample, "the same as --detail scan");
+  group.flag("--no-resample", options.without.resample, "the same as --detail scan");
   group.choice<DenoiseMethod>("--denoise", p.denoise.method, choices_of(kDenoiseMethods),
                               "denoising filter (default joint)");
   group.choice<RangeWeight>("--range-weight", p.denoise.range, choices_of(kRangeWeights),
@@ -75,9 +81,9 @@ void add_surface_options(Arguments command, Options& options) {
       "--segment", p.segment.method, choices_of(kSegmentMethods),
       "how parts are separated: nested (default), the paper's concavity threshold, closed bodies, or none");
   group.value("--concavity", p.segment.concavity, "k_min per grid step below which --segment concavity cuts");
-  group.flag("--no-fill-holes", options.no_holes, "leave the holes that segmentation cuts");
-  group.flag("--no-contact", options.no_contact, "leave smooth patches where tablet and envelope touch");
-  group.flag("--no-ao", options.no_ao, "skip ambient occlusion");
+  group.flag("--no-fill-holes", options.without.holes, "leave the holes that segmentation cuts");
+  group.flag("--no-contact", options.without.contact, "leave smooth patches where tablet and envelope touch");
+  group.flag("--no-ao", options.without.ao, "skip ambient occlusion");
   group.choice<OcclusionEngine>("--ao-by", options.ao_engine, choices_of(kOcclusionEngines),
                                 "what rays of ambient occlusion meet: march (default), distances on the grid, or "
                                 "triangles, exact and slower");
@@ -102,8 +108,8 @@ std::vector<PlannedStage> plan_of(const Options& options) {
                                       {"segment", 1.27},
                                       {"fill holes", 1.49}})
     plan.push_back({name, seconds, true});
-  if (!options.no_contact && options.pipeline.detail != Detail::kHalf) plan.push_back({"contact", 21.8, true});
-  if (!options.no_ao)
+  if (!options.without.contact && options.pipeline.detail != Detail::kHalf) plan.push_back({"contact", 21.8, true});
+  if (!options.without.ao)
     plan.push_back({"ambient occlusion",
                     (options.ao_engine == OcclusionEngine::kBricks ? 9.5 : 22.5) * options.rays / 160.0, true});
   for (const auto& [name, seconds] : {std::pair{"curvature", 0.4}, {"encode signs", 0.8}, {"encode offsets", 0.7}})
@@ -125,11 +131,11 @@ std::string summary(const std::string& out, const SurfaceFacts& facts, const Det
 Result<VerbResult> run(Options options, const Arguments command, const CommonOptions& common, Progress& progress) {
   PipelineOptions& p = options.pipeline;
   DUBSAR_ASSIGN(p.import, parse_input_options(options.in, options.input));
-  if (options.no_resample) p.detail = Detail::kScan;
-  p.trace_contact = !options.no_contact;
+  if (options.without.resample) p.detail = Detail::kScan;
+  p.trace_contact = !options.without.contact;
   p.sample.closed = !options.open_boundary;
-  p.fill_holes = !options.no_holes;
-  if (options.no_ao)
+  p.fill_holes = !options.without.holes;
+  if (options.without.ao)
     p.occlusion.reset();
   else
     p.occlusion = OcclusionOptions{
