@@ -70,8 +70,8 @@ std::string evidence(const SurfaceFacts& facts) {
     out += fmt::format("<div class=\"scroll\"><table><tr><th>{}, {}</th>", escaped(part.name), unit);
     for (const auto& [evidence, name, short_name] : kEvidences) out += fmt::format("<th>{}</th>", name);
     out += "</tr>\n";
-    for (std::size_t side = 0; side < kSideNames.size(); ++side) {
-      out += fmt::format("<tr><td>{}</td>", kSideNames[side]);
+    for (std::size_t side = 0; side < kEvidenceSides.size(); ++side) {
+      out += fmt::format("<tr><td>{}</td>", kEvidenceSides[side]);
       for (const double area : part.sides[side]) out += fmt::format("<td>{:.1f}</td>", area);
       out += "</tr>\n";
     }

@@ -62,7 +62,7 @@ Evidence evidence_of(const TriMesh& mesh, std::size_t t) {
   return static_cast<Evidence>(std::min(worst, evidence_byte(Evidence::kFilm)));
 }
 
-/// Index into kSideNames of a direction in the tablet's own axes.
+/// Index into kEvidenceSides of a direction in the tablet's own axes.
 std::size_t side_of(const glm::dvec3& n) {
   const glm::dvec3 a = glm::abs(n);
   if (a.z >= a.x && a.z >= a.y) return n.z >= 0.0 ? 0 : 1;
@@ -138,8 +138,8 @@ nlohmann::json facts_json(const SurfaceFacts& facts) {
     for (const auto& [evidence, name, short_name] : kEvidences) {
       known[std::string(name)] = part.evidence_area(evidence);
       all[static_cast<std::size_t>(evidence)] += part.evidence_area(evidence);
-      for (std::size_t side = 0; side < kSideNames.size(); ++side)
-        sides[kSideNames[side]][std::string(name)] = part.sides[side][static_cast<std::size_t>(evidence)];
+      for (std::size_t side = 0; side < kEvidenceSides.size(); ++side)
+        sides[kEvidenceSides[side]][std::string(name)] = part.sides[side][static_cast<std::size_t>(evidence)];
     }
     parts.push_back({{"name", part.name},
                      {"size", vector(part.size)},
@@ -194,10 +194,10 @@ std::string facts_text(const SurfaceFacts& facts) {
     if (part.kind != PartitionKind::kTablet || part.area - part.evidence_area(Evidence::kMeasured) <= 0.0) continue;
     text += fmt::format("\nHow the {} is known, {}:\n  {:<12}{:>11}{:>11}{:>11}{:>11}\n", part.name,
                         mm ? "mm2" : "voxel faces", "", "measured", "pocket", "film", "inferred");
-    for (std::size_t side = 0; side < kSideNames.size(); ++side) {
+    for (std::size_t side = 0; side < kEvidenceSides.size(); ++side) {
       const auto& [measured, pocket, film, none] = part.sides[side];
-      text +=
-          fmt::format("  {:<12}{:>11.1f}{:>11.1f}{:>11.1f}{:>11.1f}\n", kSideNames[side], measured, pocket, film, none);
+      text += fmt::format("  {:<12}{:>11.1f}{:>11.1f}{:>11.1f}{:>11.1f}\n", kEvidenceSides[side], measured, pocket,
+                          film, none);
     }
   }
   return text;

@@ -15,8 +15,8 @@
 namespace dubsar::app {
 
 /// Sides of a body as the reader holds the tablet; the obverse is a guess where SurfaceFacts::upright is false.
-inline constexpr std::array<const char*, 6> kSideNames{"obverse",    "reverse",   "upper edge",
-                                                       "lower edge", "left edge", "right edge"};
+inline constexpr std::array<const char*, 6> kEvidenceSides{"obverse",    "reverse",   "upper edge",
+                                                           "lower edge", "left edge", "right edge"};
 using EvidenceAreas = std::array<double, kEvidenceCount>;  ///< by Evidence
 
 /// A body: the tablet, its envelope (outside and inside together), a fragment. Lengths in mm, or in voxels where the
@@ -26,8 +26,8 @@ struct PartFacts {
   PartitionKind kind = PartitionKind::kOther;
   glm::dvec3 size{0.0};  ///< width, height, thickness as a reader holds the tablet; the axes of the whole surface
   double area = 0.0, volume = 0.0;
-  double inferred_area = 0.0;                            ///< of surface that the scan does not show
-  std::array<EvidenceAreas, kSideNames.size()> sides{};  ///< by what a face looks to, and how it is known
+  double inferred_area = 0.0;                                ///< of surface that the scan does not show
+  std::array<EvidenceAreas, kEvidenceSides.size()> sides{};  ///< by what a face looks to, and how it is known
   bool watertight = false;
   double evidence_area(Evidence evidence) const;
   double inferred_share() const { return area > 0.0 ? inferred_area / area : 0.0; }

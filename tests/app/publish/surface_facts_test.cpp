@@ -74,7 +74,7 @@ TEST(SurfaceFacts, EachKindOfEvidenceIsMeasuredPerSide) {
   EXPECT_NEAR(tablet.sides[0][inferred] + tablet.sides[1][inferred], 1200.0, 0.01) << "a broad side";
   EXPECT_NEAR(tablet.sides[0][film] + tablet.sides[1][film], 1200.0, 0.01) << "the other one";
   EXPECT_EQ(std::min(tablet.sides[0][film], tablet.sides[1][film]), 0.0);
-  for (std::size_t side = 2; side < 6; ++side) EXPECT_EQ(tablet.sides[side][inferred], 0.0) << kSideNames[side];
+  for (std::size_t side = 2; side < 6; ++side) EXPECT_EQ(tablet.sides[side][inferred], 0.0) << kEvidenceSides[side];
   EXPECT_EQ(facts.parts[1].evidence_area(Evidence::kFilm), 0.0);
   const nlohmann::json json = facts_json(facts);
   EXPECT_NEAR(json["parts"][0]["evidence"]["inferred"], 1200.0, 0.01);
