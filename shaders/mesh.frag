@@ -31,6 +31,10 @@ const bool kHatched = true;
 #else
 const bool kHatched = false;
 #endif
+#ifdef FILLED
+in vec3 unit_place;
+in vec3 way_to_eye;
+#endif
 layout(location = 0) out vec4 color;  // linear, premultiplied
 
 /// How much of the key light comes here: 3 x 3 texels, each interpolated; where it has to be quick, one.
@@ -59,8 +63,12 @@ vec3 base_color(Look look, vec3 own, bool from_behind) {
 #endif
 }
 
+vec3 way_from(vec3 position) {
+  return mix(normalize(-position), vec3(0.0, 0.0, 1.0), views[view_of_vertex].view_from_normal[3][3]);
+}
+
 vec3 surface_color() {
-  vec3 to_eye = mix(normalize(-view_position), vec3(0.0, 0.0, 1.0), views[view_of_vertex].view_from_normal[3][3]);
+  vec3 to_eye = way_from(view_position);
   // A small triangle that folds over, as coarse levels have them, belongs to the front that its normals tell of.
   bool from_behind = !gl_FrontFacing && dot(view_normal, to_eye) < 0.0;
   vec3 normal = normalize(view_normal);
@@ -74,11 +82,35 @@ vec3 surface_color() {
   return seen;
 }
 
+#ifdef FILLED
+const vec3 kSection = vec3(0.30, 0.19, 0.12), kSectionLine = vec3(0.10, 0.055, 0.03);  // burnt clay
+#include "section.glsl"
+#endif
+
 void main() {
 #ifdef PEELED
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   if (gl_FragCoord.z >= texelFetch(opaque_depth, pixel, 0).r || gl_FragCoord.z <= texelFetch(peeled_depth, pixel, 0).r)
     discard;
+#endif
+#ifdef FILLED
+  // What is behind planes that lie behind the body is drawn as well: a closed surface whose inner side comes first says
+  // that the line of sight came out of a plane inside of the body; its outer side, or nothing left: that there is none.
+  float from, to;
+  kept_part(unit_place, way_to_eye, from, to);
+  bool inner = !gl_FrontFacing && dot(view_normal, way_from(view_position)) < 0.0;
+  if (from > 0.0 && (!inner || from >= to)) {
+#ifdef PEELED
+    discard;
+#endif
+    color = background;
+    return;
+  }
+  if (inner && to < 1.0) {
+    float line = step(0.72, fract(0.7 * dot(hatch.xyz, unit_place + to * way_to_eye)));
+    color = vec4(mix(kSection, kSectionLine, line) * part_color.rgb, 1.0) * part_color.a;
+    return;
+  }
 #endif
   color = vec4(surface_color(), 1.0);
 #ifdef FOGGY

@@ -36,6 +36,10 @@ out float stripe;
 #ifdef CLIPPED
 out float gl_ClipDistance[8];
 #endif
+#ifdef FILLED
+out vec3 unit_place;
+out vec3 way_to_eye;  // in the unit cube; of parallel projections longer than it
+#endif
 
 vec3 linear_from_srgb(vec3 c) {
   return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
@@ -84,8 +88,21 @@ void main() {
   other_albedo = table_color(other_table, looks[1]) * own;
 #endif
   gl_Position = view.clip_from_view * position;
+#ifdef FILLED
+  unit_place = unit.xyz;
+  mat4 unit_from_view = inverse(view.view_from_unit);
+  way_to_eye = view.view_from_normal[3][3] == 1.0
+                   ? unit_from_view[2].xyz * 4.0 / max(length(unit_from_view[2].xyz), 1e-9)
+                   : unit_from_view[3].xyz - unit.xyz;
+#endif
 #ifdef CLIPPED
-  for (int i = 0; i < 8; ++i) gl_ClipDistance[i] = dot(clip_plane[i], unit);
+  for (int i = 0; i < 8; ++i) {
+    gl_ClipDistance[i] = dot(clip_plane[i], unit);
+#ifdef FILLED
+    // Planes behind the body: the fragment shader looks after them.
+    if (dot(clip_plane[i], vec4(unit.xyz + way_to_eye, 1.0)) >= 0.0) gl_ClipDistance[i] = 1.0;
+#endif
+  }
 #endif
 #ifdef LAYERED
   gl_Layer = int(view.view_from_normal[3][0]);

@@ -21,6 +21,7 @@ layout(std140, binding = 1) uniform Style {
   vec4 inferred_stripe;  // linear
   vec4 hatch;            // stripes along the axes of the unit cube
   vec4 fog_color;        // linear, premultiplied
+  vec4 background;       // linear, premultiplied
   vec4 fog_depth;        // from, to, how much at most
   mat4 map_from_unit;    // shadow map: texture coordinates and depth
   mat4 map_from_normal;  // of the offset along the normal

@@ -26,8 +26,8 @@ std::pair<std::string_view, std::string> split_command(std::string_view text) {
 CommandTable CommandTable::standard(const std::vector<std::string>& styles) {
   CommandTable out;
   for (std::vector<Command>& part :
-       std::array{window_commands(), view_commands(), look_commands(styles), shade_commands(styles), mark_commands(),
-                  section_commands(), slice_commands(), film_commands()})
+       std::array{window_commands(), view_commands(), look_commands(styles), shade_commands(styles), light_commands(),
+                  back_face_commands(), mark_commands(), section_commands(), slice_commands(), film_commands()})
     for (Command& command : part) out.add(std::move(command));
   return out;
 }

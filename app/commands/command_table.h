@@ -63,6 +63,8 @@ inline constexpr std::string_view kWindowGroup = "This window";
 std::vector<Command> view_commands();                                        ///< turning, zooming, sides, undo and redo
 std::vector<Command> look_commands(const std::vector<std::string>& styles);  ///< light, style, parts
 std::vector<Command> shade_commands(const std::vector<std::string>& styles);  ///< blends, radiance, colours, legend
+std::vector<Command> light_commands();                                        ///< light that goes round
+std::vector<Command> back_face_commands();                                    ///< the inner side of surfaces
 std::vector<Command> mark_commands();                                         ///< tools, measures, notes
 std::vector<Command> section_commands();                                      ///< cuts and fog
 std::vector<Command> slice_commands();                                        ///< slices of the scan

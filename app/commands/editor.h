@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -66,6 +67,20 @@ enum class Way {
   kGlide,  ///< as a hand would turn the object
 };
 
+/// Light that goes round the picture.
+struct LightSweep {
+  double elevation_deg = 15.0, period_s = 8.0;
+  friend bool operator==(const LightSweep&, const LightSweep&) = default;
+};
+
+/// Where the pointer is, and what follows it.
+struct Pointing {
+  double magnify = 0.0;            ///< of the glass; 0: there is none
+  bool cursor = false;             ///< a ring on the surface
+  std::optional<glm::dvec2> at{};  ///< heights of the window from its middle, x to the right, y up; none: not seen
+  friend bool operator==(const Pointing&, const Pointing&) = default;
+};
+
 /// What is open; not part of the document, and not undone.
 struct Desk {
   bool help = false;
@@ -77,7 +92,11 @@ struct Desk {
   std::string drawer{};               ///< of the panels; empty: none is open
   std::string tool{"turn"};           ///< what a click does
   std::vector<SurfacePin> pending{};  ///< places that the tool was told and still waits with
-  std::size_t note = 0;               ///< which is open, counted from 1; 0: none
+  std::optional<LightSweep> sweep{};
+  Pointing pointing{};
+  std::optional<Document> beside;  ///< a state that stands beside the present one
+  bool linked = true;              ///< both are seen from the same place, by the same light
+  std::size_t note = 0;            ///< which is open, counted from 1; 0: none
   friend bool operator==(const Desk&, const Desk&) = default;
 };
 

@@ -51,6 +51,48 @@ Command cut() {
   return out;
 }
 
+/// One number for all sides, or one for each: left, right, bottom, top, back, front.
+Command cut_box() {
+  Command out{"cut_box", "Cuts", "cut away from all six sides, in percent of the object", {}};
+  out.argument = "0 to 49, or six of them: left,right,bottom,top,back,front";
+  out.values = {"10", "0,0,0,0,0,40", "0"};
+  out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
+    constexpr std::array<glm::dvec3, 6> kOutward{{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+    std::array<double, 6> percent{};
+    const bool all = text.find(',') == std::string::npos;
+    std::string rest = text;
+    for (double& each : percent) {
+      const std::size_t comma = std::min(rest.find(','), rest.size());
+      DUBSAR_ASSIGN(each, number_argument("cut_box", all ? text : rest.substr(0, comma), 0.0, all ? 49.0 : 100.0));
+      rest.erase(0, comma + 1);
+    }
+    if (!rest.empty() && !all)
+      return fail(ErrorKind::kUsage, "cut_box: \"{}\" found, expected one number or six", text);
+    Document next = editor.document();
+    next.clips.clear();
+    for (std::size_t side = 0; side < percent.size(); ++side) {
+      if (percent[side] == 0.0) continue;
+      const Workplace::Reach reach = editor.place().reach(kOutward[side]);
+      set_cut(next, reach.direction, reach.to_mm - 0.01 * percent[side] * (reach.to_mm - reach.from_mm));
+    }
+    editor.change(std::move(next), why);
+    return {};
+  };
+  return out;
+}
+
+/// Whether what is cut through is filled.
+Command section() {
+  Command out{"section", "Cuts", "fill what is cut through, or look inside", {{"shift+x"}}};
+  out.run = [why = out.words](Editor& editor, const std::string&) -> Result<void> {
+    Document next = editor.document();
+    next.style.section = !next.style.section;
+    editor.change(std::move(next), why);
+    return {};
+  };
+  return out;
+}
+
 Command cut_here() {
   Command out{"cut_here", "Cuts", "cut through the middle, across the view", {{"h"}}};
   out.run = [why = out.words](Editor& editor, const std::string&) -> Result<void> {
@@ -107,6 +149,8 @@ Command fog() {
 std::vector<Command> section_commands() {
   std::vector<Command> out;
   out.push_back(cut());
+  out.push_back(cut_box());
+  out.push_back(section());
   out.push_back(cut_here());
   out.push_back(move_cut("cut_deeper", "cut deeper", -kStep, {{"]"}}));
   out.push_back(move_cut("cut_back", "cut less deep", kStep, {{"["}}));

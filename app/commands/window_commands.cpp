@@ -97,6 +97,57 @@ Command scale_by(std::string name, std::string words, double factor, std::vector
   return out;
 }
 
+Command magnify() {
+  Command out{"magnify", std::string(kWindowGroup), "a magnifying glass under the pointer, or none", {{"g"}}};
+  out.argument = "2 to 8";
+  out.values = {"2", "4", "8"};
+  out.optional = true;
+  out.run = [](Editor& editor, const std::string& text) -> Result<void> {
+    double factor = editor.desk().pointing.magnify > 0 ? 0.0 : 3.0;
+    if (!text.empty()) {
+      DUBSAR_ASSIGN(factor, number_argument("magnify", text, 2.0, 8.0));
+    }
+    editor.desk().pointing.magnify = factor;
+    return {};
+  };
+  return out;
+}
+
+/// The state of now stays on the left while one goes on on the right.
+Command beside() {
+  Command out{"beside", std::string(kWindowGroup), "this state stays beside what comes next, or is put away", {{"y"}}};
+  out.argument = "linked: both seen from one place; apart: each as it is; none";
+  out.values = {"linked", "apart", "none"};
+  out.closed = out.optional = true;
+  out.run = [](Editor& editor, const std::string& text) -> Result<void> {
+    Desk& desk = editor.desk();
+    if (text == "none" || (text.empty() && desk.beside)) {
+      desk.beside.reset();
+      return {};
+    }
+    if (!desk.beside) desk.beside = editor.document();
+    desk.linked = text != "apart";
+    return {};
+  };
+  return out;
+}
+
+/// For scripts, which have no mouse.
+Command pointer() {
+  Command out{"pointer", std::string(kWindowGroup), "the pointer stands there", {}};
+  out.argument = "x,y in heights of the window from its middle";
+  out.values = {"0,0", "-0.2,0.1"};
+  out.run = [](Editor& editor, const std::string& text) -> Result<void> {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    glm::dvec2 at(0.0);
+    DUBSAR_ASSIGN(at.x, number_argument("pointer", text.substr(0, comma), -4.0, 4.0));
+    DUBSAR_ASSIGN(at.y, number_argument("pointer", text.substr(std::min(comma + 1, text.size())), -4.0, 4.0));
+    editor.desk().pointing.at = at;
+    return {};
+  };
+  return out;
+}
+
 /// What was opened last goes first; a session with work in it asks.
 Result<void> close(Editor& editor) {
   Desk& desk = editor.desk();
@@ -154,6 +205,14 @@ std::vector<Command> window_commands() {
   out.push_back(ui_scale());
   out.push_back(scale_by("letters_larger", "letters and panels larger", 1.1, {{"ctrl++"}, {"ctrl+="}}));
   out.push_back(scale_by("letters_smaller", "letters and panels smaller", 1.0 / 1.1, {{"ctrl+-"}}));
+  out.push_back(magnify());
+  out.push_back(plain("cursor", "a ring on the surface under the pointer, in its depth", {{"z"}},
+                      [](Editor& editor) -> Result<void> {
+                        editor.desk().pointing.cursor = !editor.desk().pointing.cursor;
+                        return {};
+                      }));
+  out.push_back(pointer());
+  out.push_back(beside());
   out.push_back(picture());
   out.push_back(plain("close", "close what is open, lay down the tool, or end", {{"escape"}}, close));
   return out;

@@ -34,6 +34,8 @@ struct StyleChoice {
   std::string other{};          ///< a second style that it is mixed with; empty: none
   double share = 0.0;           ///< of that, 0..1
   double radiance = 0.0;        ///< radiance scaling besides that of the style, 0..2
+  std::string back_faces{};     ///< as the command says them; empty: shown
+  bool section = true;          ///< what is cut through is filled
   std::string colours{};        ///< of figures of the surface, as the command says them; empty: as designed
   friend bool operator==(const StyleChoice&, const StyleChoice&) = default;
 };

@@ -36,6 +36,8 @@ void fields(auto& f, StyleChoice& v) {
   f("share", v.share);
   f("radiance", v.radiance);
   f("colours", v.colours);
+  f("back_faces", v.back_faces);
+  f("section", v.section);
 }
 void fields(auto& f, Cut& v) {
   f("normal", v.normal);

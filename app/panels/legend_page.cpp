@@ -9,7 +9,7 @@
 namespace dubsar::app {
 namespace {
 
-constexpr float kBar = 200.0f, kTall = 12.0f, kPad = 10.0f;
+constexpr float kBarEm = 15.0f, kTall = 12.0f, kPad = 10.0f;
 
 }  // namespace
 
@@ -20,7 +20,8 @@ std::optional<LegendPicture> legend_of(const Style& style) {
 }
 
 void draw_legend(const LegendPicture& legend, float left, float bottom) {
-  const float line = ImGui::GetTextLineHeight(), width = kBar + 2 * kPad + 40.0f,
+  const float line = ImGui::GetTextLineHeight(), bar = kBarEm * ImGui::GetFontSize(),
+              aside = 1.5f * ImGui::GetFontSize(), width = bar + 2 * kPad + 2 * aside,
               height = 2 * line + kTall + 2 * kPad + 6.0f;
   ImGui::SetNextWindowPos(ImVec2(left, bottom - height));
   ImGui::SetNextWindowSize(ImVec2(width, height));
@@ -28,10 +29,10 @@ void draw_legend(const LegendPicture& legend, float left, float bottom) {
   ImGui::Begin("legend", nullptr, kFixed | ImGuiWindowFlags_NoInputs);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const std::string title = legend.unit.empty() ? legend.name : fmt::format("{}, {}", legend.name, legend.unit);
-  const ImVec2 corner(left + kPad + 20.0f, bottom - height + kPad);
+  const ImVec2 corner(left + kPad + aside, bottom - height + kPad);
   list.AddText(corner, kText, title.c_str());
   const float top = corner.y + line + 2.0f;
-  const float step = kBar / static_cast<float>(legend.colors.size());
+  const float step = bar / static_cast<float>(legend.colors.size());
   for (std::size_t i = 0; i < legend.colors.size(); ++i) {
     const auto& c = legend.colors[i];
     const float x = corner.x + step * static_cast<float>(i);
@@ -40,7 +41,7 @@ void draw_legend(const LegendPicture& legend, float left, float bottom) {
   for (int tick = 0; tick < kLegendTicks; ++tick) {
     const double part = tick / (kLegendTicks - 1.0);
     const std::string number = legend_number(legend.from + part * (legend.to - legend.from));
-    const float x = corner.x + static_cast<float>(part) * kBar;
+    const float x = corner.x + static_cast<float>(part) * bar;
     list.AddLine(ImVec2(x, top + kTall), ImVec2(x, top + kTall + 4.0f), kText);
     list.AddText(ImVec2(x - 0.5f * ImGui::CalcTextSize(number.c_str()).x, top + kTall + 4.0f), kText, number.c_str());
   }

@@ -26,6 +26,7 @@ constexpr double kLeastScaledHeight = 400.0;  // what panels need where somebody
 constexpr double kMostHeight = 900.0;         // larger ones larger
 constexpr float kMargin = 12.0f;
 constexpr float kLegendLeft = 96.0f;  // beside the tools
+constexpr float kBallAside = 372.0f;  // beside the drawers
 
 constexpr float kLineStepPx = kLinePx + 4.0f;
 constexpr float kLargest = 1.6f, kSmallest = 0.45f, kScaleStep = 0.05f;
@@ -211,6 +212,9 @@ void Overlay::draw_all(float width, float height) {
   }
   if (text_.legend && text_.help.empty())
     draw_legend(*text_.legend, kLegendLeft, height - (text_.panels && text_.panels->desk.panels ? 120.0f : 24.0f));
+  if (text_.light && text_.help.empty())
+    draw_light_ball(*text_.light, width - (text_.panels && text_.panels->desk.panels ? kBallAside : 16.0f),
+                    height - (text_.panels && text_.panels->desk.panels ? 72.0f : 16.0f));
   if (!text_.help.empty()) draw_help(text_.help, width, height);
   if (text_.gallery) draw_gallery(*text_.gallery, width, height, px_per_mm_);
   if (!text_.notice.empty()) draw_notice(text_.notice, text_.notice_opacity, width, height - (text_.panels ? 56 : 0));

@@ -12,6 +12,7 @@
 #include "app/panels/gallery_page.h"
 #include "app/panels/help_page.h"
 #include "app/panels/legend_page.h"
+#include "app/panels/light_ball.h"
 #include "app/viewer/stage.h"
 
 namespace dubsar::app {
@@ -23,7 +24,8 @@ struct OverlayText {
   std::optional<PanelState> panels{};  ///< while there is no help
   std::optional<GalleryPicture> gallery{};
   std::optional<LegendPicture> legend{};
-  bool empty() const noexcept { return help.empty() && notice.empty() && !panels && !gallery && !legend; }
+  std::optional<LightPlace> light{};  ///< the ball on the stage, while it moves
+  bool empty() const noexcept { return help.empty() && notice.empty() && !panels && !gallery && !legend && !light; }
   friend bool operator==(const OverlayText&, const OverlayText&) = default;
 };
 

@@ -25,12 +25,14 @@ void add_look_options(Arguments& command, LookOptions& options) {
                                {"cividis", FieldColors::kCividis},
                                {"grey", FieldColors::kGrey}},
                               "colours of msii and of the curvatures (designed)");
+  command.flag("--section", options.section, "what --cut goes through is filled, as solid clay is");
   command.flag("--legend", options.legend, "a legend with numbers, of msii and of the curvatures");
 }
 
 Result<void> apply(const LookOptions& options, Shading& shading) {
   shading.style.contrast *= 0.01 * options.strength;
   shading.style.field_colors = options.colours;
+  shading.style.section = options.section;
   shading.style.radiance = std::max(shading.style.radiance, 0.01 * options.radiance);
   if (options.legend && !is_field(shading.style.map))
     return fail(ErrorKind::kUsage,

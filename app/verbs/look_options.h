@@ -14,7 +14,7 @@ struct LookOptions {
   double radiance = 0.0;    ///< percent
   double strength = 100.0;  ///< percent
   FieldColors colours = FieldColors::kDesigned;
-  bool legend = false;
+  bool legend = false, section = false;
 };
 
 void add_look_options(Arguments& command, LookOptions& options);

@@ -290,6 +290,12 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
   if (!options.panel.offscreen) {
     out.json["frames_per_s_while_moving"] = done.fps;
     out.text += fmt::format("frames a second while things moved: {:.1f}\n", done.fps);
+    out.json["intervals"] = latency_json(done.interval_ms);
+    if (!done.interval_ms.empty())
+      out.text += fmt::format(
+          "from picture to picture while things moved, all {}: median {:.1f} ms, 95 % {:.1f} ms, longest {:.1f} ms\n",
+          done.interval_ms.size(), quantile(done.interval_ms, 0.5), quantile(done.interval_ms, 0.95),
+          quantile(done.interval_ms, 1.0));
   }
   add_sources(done.rows, out);
   return out;

@@ -78,6 +78,9 @@ Shown shown_of(const Document& document, const ViewState& view, const StageOptio
     style.ambient_occlusion = style.ambient_occlusion && choice.occlusion;
     style.radiance = std::max(style.radiance, choice.radiance);
     if (choice.colours == "blue-orange") style.field_colors = FieldColors::kBlueOrange;
+    style.section = choice.section && !document.parts.empty();  // what parts are made of is closed
+    if (choice.back_faces == "tint") style.back_faces = BackFaces::kTint;
+    if (choice.back_faces == "hide") style.back_faces = BackFaces::kCull;
     if (choice.colours == "cividis") style.field_colors = FieldColors::kCividis;
     if (choice.colours == "grey") style.field_colors = FieldColors::kGrey;
   };

@@ -12,7 +12,6 @@
 namespace dubsar::app {
 namespace {
 
-constexpr TimestampNs kSecond = 1'000'000'000;
 constexpr std::size_t kRecent = 300;  // measurements that the figures on the help page come from
 constexpr int kMostFailures = 3;
 
@@ -49,12 +48,16 @@ class Figures {
   }
   /// A picture was presented at `at` of the real clock.
   void presented(TimestampNs at, bool moving) {
-    if (moving && last_ >= 0 && at - last_ < kSecond / 4) {
+    if (moving && last_ >= 0 && !rested_) {
       intervals_all_ms_.push_back(1e-6 * static_cast<double>(at - last_));
       keep(intervals_ms_, intervals_all_ms_.back());
     }
     last_ = at;
+    rested_ = !moving;
   }
+  /// A turn of the loop at which there was nothing new to show.
+  void rested() { rested_ = true; }
+  const std::vector<double>& intervals_ms() const { return intervals_all_ms_; }
   RecentFigures recent() const {
     return {{intervals_ms_.begin(), intervals_ms_.end()}, {ages_ms_.begin(), ages_ms_.end()}};
   }
@@ -68,6 +71,7 @@ class Figures {
     if (values.size() > kRecent) values.pop_front();
   }
   TimestampNs last_ = -1;
+  bool rested_ = true;
   std::deque<double> ages_ms_, intervals_ms_;
   std::vector<double> intervals_all_ms_;
 };
@@ -166,6 +170,7 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
       return tl::unexpected<Error>(*viewer_->failed());
     }
     const PictureReport& report = viewer_->report();
+    if (!report.moving) figures_.rested();
     figures_.took_part(out_, report);
     out_.largest_turn_deg = std::max(out_.largest_turn_deg, turn_between_deg(last_turn, report.view.rotation));
     last_turn = report.view.rotation;
@@ -195,6 +200,7 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
   progress_.end();
   out_.seconds = 1e-9 * static_cast<double>(clock().now() - start);
   out_.fps = figures_.fps();
+  out_.interval_ms = figures_.intervals_ms();
   out_.view = viewer_->report().view;
   out_.display = viewer_->display();
   out_.rows = viewer_->sources();

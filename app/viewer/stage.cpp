@@ -186,7 +186,13 @@ void Stage::show(const Shown& shown, const FollowedEyes& eyes, TimestampNs now) 
   parts_->next.shown = shown;
   parts_->next.now = now;
   parts_->next.viewer = parts_->viewer_at(eyes);
-  if (mesh) parts_->measure(fields_needed(shown.style, shown.other));
+  if (!mesh) return;
+  FieldNeeds needs = fields_needed(shown.style, shown.other);
+  if (shown.beside) {
+    const FieldNeeds more = fields_needed(shown.beside->style, shown.beside->other);
+    needs = {needs.integral || more.integral, needs.curvature || more.curvature};
+  }
+  parts_->measure(needs);
 }
 
 /// Figures of the surface that a look tells: at once where every picture has to be exact, else beside the pictures,
@@ -234,9 +240,8 @@ void Stage::Parts::took(double ms, std::size_t count) {
 }
 
 /// The scene of the next picture, in mm of the screen.
-void Stage::Parts::set_scene() {
-  const Shown& shown = next.shown;
-  const glm::dmat4 world = placed();
+void Stage::Parts::set_scene(const Shown& shown, int half) {
+  const glm::dmat4 world = placed(shown, half);
   const double scale = glm::length(glm::dvec3(world[0]));  // lifts count mm of the object
   const auto place = [&](glm::dvec3& p) { p = glm::dvec3(world * glm::dvec4(p, 1.0)); };
   painted.light = shown.light.value_or(options.shading.light);
@@ -268,6 +273,7 @@ Result<void> Stage::Parts::paint_moved() {
   painted.moved_at = next.now;
   cost.coarse = 0;
   if (!has_mesh()) return fill_layers();
+  if (next.shown.beside) return paint_halves(!object.multi);
   set_scene();
   ViewArray& array = *layers.array;
   if (!object.multi) return object.renderer->render(scene(), painted.views, options.samples, array);
@@ -285,6 +291,7 @@ Result<void> Stage::Parts::paint_moved() {
 }
 
 Result<void> Stage::Parts::refine() {
+  if (next.shown.beside) return paint_halves(true);
   const TimestampNs start = SteadyClock().now();
   const int before = cost.coarse;
   do {
@@ -305,14 +312,16 @@ Result<void> Stage::paint(const Surface& target, Field field) {
   Parts::Layers& layers = p.layers;
   if (layers.overlay != nullptr && p.sink->traits().worn) DUBSAR_TRY(p.paint_page());
   layers.overlay_changed = false;
-  if (layers.overlay == nullptr || p.sink->traits().worn) return p.sink->compose(*layers.array, target, field);
+  const bool over = layers.overlay != nullptr || p.decor.shown.any();
+  if (!over || p.sink->traits().worn) return p.sink->compose(*layers.array, target, field);
   const ViewArray& array = *layers.array;
   if (!layers.overlaid) {
     DUBSAR_ASSIGN(layers.overlaid, ViewArray::create(array.width(), array.height(), array.layers()));
   }
   glCopyImageSubData(array.coded(), GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, layers.overlaid->coded(), GL_TEXTURE_2D_ARRAY, 0,
                      0, 0, 0, array.width(), array.height(), array.layers());
-  DUBSAR_TRY(layers.overlay->paint(*layers.overlaid, p.plane.window));
+  DUBSAR_TRY(p.paint_decor(*layers.overlaid));
+  if (layers.overlay != nullptr) DUBSAR_TRY(layers.overlay->paint(*layers.overlaid, p.plane.window));
   return p.sink->compose(*layers.overlaid, target, field);
 }
 

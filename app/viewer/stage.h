@@ -69,13 +69,30 @@ struct Shown {
   Fog fog{};                       ///< none: the stage's own
   Marks marks{};
   std::vector<LinesItem> before{};  ///< people's hands: mm of the screen frame
+  /// Another one in the left half of every view, this one in the right half; null: this one alone. What that shows
+  /// beside it is not looked at.
+  std::shared_ptr<const Shown> beside{};
   friend bool operator==(const Shown& a, const Shown& b) {
     return a.light == b.light && a.clips == b.clips && a.fog == b.fog && a.marks == b.marks && a.before == b.before &&
            a.view.rotation == b.view.rotation && a.view.zoom == b.view.zoom && a.view.pan == b.view.pan &&
            a.view.light_azimuth_deg == b.view.light_azimuth_deg &&
            a.view.light_elevation_deg == b.view.light_elevation_deg && a.fit == b.fit && a.style == b.style &&
-           a.other == b.other && a.parts == b.parts;
+           a.other == b.other && a.parts == b.parts && !a.beside == !b.beside && (!a.beside || *a.beside == *b.beside);
   }
+};
+
+/// What stands over the surface in its own depth, in every view where it is there.
+struct Lens {
+  glm::dvec3 at_mm{0.0};  ///< of the model
+  double factor = 3.0;    ///< 2 to 8
+  double size = 0.34;     ///< across, of the view's height
+  friend bool operator==(const Lens&, const Lens&) = default;
+};
+struct Decor {
+  std::optional<Lens> lens{};
+  std::optional<glm::dvec3> cursor_mm{};  ///< of the model
+  bool any() const noexcept { return lens || cursor_mm; }
+  friend bool operator==(const Decor&, const Decor&) = default;
 };
 
 /// Draws over all views before they are composed, so that it stands at the same place for both eyes: on the panel's
@@ -132,6 +149,12 @@ class Stage {
 
   /// How much of the surface has been measured, 0..1, while what is shown waits for it; none: nothing is measured.
   std::optional<double> measuring() const noexcept;
+
+  /// Drawn over the pictures from the next paint() on; what is under the glass is exact.
+  void set_decor(const Decor& decor);
+  /// Where the middle of the eyes sees the surface at a place of the window (heights of it from its middle, y up), in
+  /// mm of the model; none: there is none. Draws that pixel alone. Errors of the renderer.
+  Result<std::optional<glm::dvec3>> place_at(const glm::dvec2& at);
 
   /// The object as the next picture shows it, without what lies over it, at `factor` times the pixels of a view, exact;
   /// seen from the middle of the eyes. kUsage: more than 16384 pixels on a side; kTryAgain.

@@ -16,6 +16,7 @@
 
 namespace dubsar::app {
 
+inline constexpr int kMostLensPx = 2048, kLensSamples = 2;
 inline constexpr TimestampNs kRestNs = 150'000'000;  // before coarse views are made exact
 
 struct Stage::Parts {
@@ -33,7 +34,7 @@ struct Stage::Parts {
     PagePass pass;
   };
   struct Layers {
-    std::optional<ViewArray> array, overlaid;
+    std::optional<ViewArray> array, overlaid, half;
     std::optional<Page> page;
     LayerPainter* overlay = nullptr;
     bool overlay_changed = false;
@@ -58,6 +59,13 @@ struct Stage::Parts {
     Fog fog;
     TimestampNs moved_at = 0;
   };
+  struct Over {
+    Decor shown;
+    GlProgram program;
+    GlVertexArray no_vertices;
+    GlFramebuffer framebuffer;
+    std::optional<ViewArray> pictures, probe;  // of the glass; of one pixel
+  };
   struct Cost {
     int coarse = 0;              // views of the last picture
     double exact_view_ms = 0.0;  // what one exact view takes; 0: not known yet
@@ -71,23 +79,27 @@ struct Stage::Parts {
   Next next;
   Painted painted;
   Cost cost;
+  Over decor;
 
   explicit Parts(const StageOptions& given) : options(given) {}
   Result<void> prepare(OutputSink& with);
   void measure(const FieldNeeds& needs);
   Viewer viewer_at(const FollowedEyes& eyes) const;
-  glm::dmat4 placed() const {
-    return app::screen_from_model(object.box, options.direction, next.shown.view, plane.magnification * next.shown.fit,
-                                  plane.window.y, plane.middle);
-  }
+  /// Where what is shown stands: with another one beside it in the middle of its half, 0 left, 1 right.
+  glm::dmat4 placed(const Shown& shown, int half) const;
+  glm::dmat4 placed() const { return placed(next.shown, 1); }
   bool moved() const noexcept;
   SceneView scene() const {
     return {painted.items, painted.light, painted.clips, options.shading.background, painted.fog};
   }
   bool has_mesh() const noexcept { return !options.pattern && !options.pictures; }
-  void set_scene();
+  void set_scene() { set_scene(next.shown, 1); }
+  void set_scene(const Shown& shown, int half);
+  Result<void> paint_halves(bool exact);
   Result<void> fill_layers();
   Result<void> paint_moved();
+  Result<void> paint_decor(ViewArray& array);
+  Result<void> stamp(ViewArray& array, int layer, const glm::dvec2& corner, int side, bool ring);
   Result<void> refine();
   Result<void> paint_page();
   bool may_refine() const noexcept {

@@ -95,6 +95,9 @@ struct ViewResult {
   double seconds = 0.0;  ///< of the session's clock
   double fps = 0.0;      ///< in real time, while things moved: from one presented picture to the next
   ViewState view{};
+  /// In real time: from one presented picture to the next, of all that were presented while things moved, however
+  /// long it took. A rest in between is no interval.
+  std::vector<double> interval_ms{};
   std::vector<double> input_age_ms{};  ///< one for every turn that had new input
   std::vector<double> frame_cpu_ms{};  ///< CPU time of each picture, all threads
   double largest_turn_deg = 0.0;       ///< between two turns

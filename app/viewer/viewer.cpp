@@ -191,7 +191,8 @@ void Viewer::handle(InputEvent event) {
     for (const std::string& command : overlay_->take_commands()) run(command, kKeySteps + at_.presses);
     return;
   }
-  if (take_click(event)) return;
+  if (event.at && event.kind != EventKind::kKey) editor_->desk().pointing.at = event.at;
+  if (take_light(event) || take_click(event)) return;
   if (event.kind == EventKind::kButton && event.down && event.at && !given_.options.stage.pattern &&
       !given_.options.stage.pictures)
     event.lever = lever_at(*event.at);
@@ -292,12 +293,15 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
   steered.view.rotation = at_.guidance.turn * steered.view.rotation;
   const bool film = at_.film_since >= 0;
   const Document seen = film ? shown_document(now) : document();
-  const ViewState view = film ? view_of(seen) : steered.view;
+  ViewState view = film ? view_of(seen) : steered.view;
+  move_light(now, view);
   Shown shown = shown_of(seen, view, given_.options.stage, stage_->box_mm());
   shown.before = at_.guidance.lines;
   shown.marks = marks_of(seen, desk(), shown.parts, *tools_.font);
+  if (desk().beside) shown.beside = beside(view);
   if (shows_slices()) lay_slices(shown);
   stage_->show(shown, steered.eyes, now);
+  point();
   report_.view = view;
   report_.viewer = stage_->viewer();
   report_.head = steered.eyes.presence;

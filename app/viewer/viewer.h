@@ -117,6 +117,8 @@ class Viewer final : public Workplace {
   struct Progression {
     TimestampNs over_since = -1, help_made = -1;
     TimestampNs film_since = -1;  ///< while a film is shown
+    TimestampNs sweep_since = -1, light_moved = -1;
+    bool light_known = false;
     double film_from_s = 0.0;     ///< and how far it was then
     TimestampNs began = -1;       ///< when the first step was due at 0
     std::size_t steps = 0;        ///< how many were said
@@ -130,8 +132,10 @@ class Viewer final : public Workplace {
     std::unique_ptr<LabelFont> font;
     EvidenceShares evidence;
     FilmThumbnails thumbnails;
-    std::optional<InputEvent> press;  ///< with a tool in the hand: it becomes a click, or a drag that turns
-    glm::dvec2 pointer{0.0};          ///< where it was last, as InputEvent::at
+    std::optional<InputEvent> press;      ///< with a tool in the hand: it becomes a click, or a drag that turns
+    std::optional<InputEvent> light_key;  ///< held: a drag moves the light
+    bool light_dragged = false;           ///< since it went down
+    glm::dvec2 pointer{0.0};              ///< where it was last, as InputEvent::at
     std::unique_ptr<SliceDesk> slices;
   };
   Viewer(const TriMesh& mesh, const ViewOptions& options, Presenter& presenter, const Clock& clock)
@@ -151,6 +155,10 @@ class Viewer final : public Workplace {
   std::optional<double> lever_at(const glm::dvec2& at) const;
   std::optional<Picked> picked_at(const glm::dvec2& at) const;
   bool take_click(const InputEvent& event);
+  bool take_light(const InputEvent& event);
+  void move_light(TimestampNs now, ViewState& view);
+  void point();
+  std::shared_ptr<const Shown> beside(const ViewState& view) const;
   void click(const glm::dvec2& at);
   static Result<std::filesystem::path> new_picture(const std::filesystem::path& path);
   glm::dvec3 scan_place(const Picked& picked) const;

@@ -12,6 +12,7 @@ namespace dubsar::app {
 namespace {
 
 constexpr TimestampNs kSecond = 1'000'000'000;
+constexpr TimestampNs kBallNs = kSecond;  // after the light has moved
 constexpr TimestampNs kNoticeNs = 6 * kSecond, kFadeNs = kSecond, kHelpRefreshNs = kSecond / 2;
 
 }  // namespace
@@ -37,6 +38,8 @@ PanelState Viewer::panel_state() const {
       editor_->history().undo_words(), editor_->history().redo_words()};
   out.document = document();
   out.desk = desk();
+  out.desk.beside.reset();
+  out.desk.pointing.at.reset();  // it moves, and nothing here shows it
   out.evidence = tools_.evidence;
   if (shows_slices()) out.slices = tools_.slices->state();
   out.playing = at_.film_since >= 0;
@@ -83,6 +86,9 @@ void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
   text.legend = desk().legend
                     ? legend_of(shown_of(document(), report_.view, given_.options.stage, stage_->box_mm()).style)
                     : std::nullopt;
+  text.light.reset();
+  if (given_.options.around.notices && at_.light_moved >= 0 && now - at_.light_moved < kBallNs)
+    text.light = LightPlace{report_.view.light_azimuth_deg, report_.view.light_elevation_deg};
   const TimestampNs age = now - notice_.since;
   if (notice_.since < 0 || age >= kNoticeNs) {
     text.notice.clear();

@@ -36,6 +36,7 @@ enum Variant : unsigned {
   kQuick = 64,
   kBent = 128,
   kBlended = 256,
+  kFilled = 512,
 };
 
 struct ViewData {  // std430, as in shaders/style.glsl
@@ -49,7 +50,7 @@ struct LookData {  // std140, as in shaders/style.glsl
 struct StyleData {
   std::array<LookData, 2> looks;
   glm::vec4 blend, inferred_color, inferred_stripe, hatch;
-  glm::vec4 fog_color, fog_depth;
+  glm::vec4 fog_color, background, fog_depth;
   glm::mat4 map_from_unit, map_from_normal;
   std::array<glm::vec4, kMostClipPlanes> clip_plane;
 };
@@ -100,9 +101,10 @@ StyleData style_data(const MeshItem& item, const SceneView& scene, const View& v
   out.inferred_stripe = glm::vec4(linear_color(s.inferred_stripe), 1.0f);
   const glm::dvec3 size = box.size();
   out.hatch = glm::vec4(glm::vec3(size * (kHatchStripes / std::max({size.x, size.y, size.z, 1e-9}))), 0.0f);
+  out.background = scene.background.transparent ? glm::vec4(0.0f) : glm::vec4(linear_color(scene.background.color), 1);
   if (scene.fog.strength > 0) {
     const glm::dvec2 depth = fog_depths(scene, view);
-    out.fog_color = scene.background.transparent ? glm::vec4(0.0f) : glm::vec4(linear_color(scene.background.color), 1);
+    out.fog_color = out.background;
     out.fog_depth = glm::vec4(glm::vec2(depth), static_cast<float>(scene.fog.strength), 0.0f);
   }
   if (shadows != nullptr) {
@@ -125,7 +127,8 @@ void set_state(const MeshItem& item, bool mirrored, std::size_t clips) {
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glFrontFace(mirrored != (glm::determinant(glm::dmat3(item.world_from_model)) < 0) ? GL_CW : GL_CCW);
   glCullFace(GL_BACK);
-  (item.style.back_faces == BackFaces::kCull ? glEnable : glDisable)(GL_CULL_FACE);
+  const bool inside = item.style.section && clips > 0;  // seen as the filling of what is cut through
+  (item.style.back_faces == BackFaces::kCull && !inside ? glEnable : glDisable)(GL_CULL_FACE);
   for (GLuint i = 0; i < static_cast<GLuint>(kMostClipPlanes); ++i)
     (i < clips ? glEnable : glDisable)(GL_CLIP_DISTANCE0 + i);
 }
@@ -207,6 +210,7 @@ Result<GLuint> MeshPass::program(unsigned variant) {
   define(kQuick, "QUICK");
   define(kBent, "BENT");
   define(kBlended, "BLENDED");
+  define(kFilled, "FILLED");
   const std::string_view extension =
       (variant & kLayered) != 0 ? "#extension GL_ARB_shader_viewport_layer_array : require\n" : "";
   DUBSAR_ASSIGN(GlProgram made, make_program("mesh.vert", "mesh.frag", std::string(extension) + lines, lines));
@@ -258,6 +262,7 @@ Result<void> MeshPass::draw(const MeshItem& item, const SceneView& scene, const 
   const bool cast =
       (item.style.lit && scene.light.shadows) || (blended && item.other.style.lit && item.other.light.shadows);
   const ShadowMap* const shadows = cast ? mode.shadows : nullptr;
+  const bool filled = item.style.section && !scene.clips.empty();
   const bool bent = item.style.radiance > 0 || (blended && item.other.style.radiance > 0);
   const StyleData style = style_data(item, scene, target.views[0], shadows);
   stream(style_, std::as_bytes(std::span(&style, 1)));
@@ -276,7 +281,7 @@ Result<void> MeshPass::draw(const MeshItem& item, const SceneView& scene, const 
   const unsigned variant = (target.layers.empty() ? 0u : kLayered) | (scene.clips.empty() ? 0u : kClipped) |
                            (shadows == nullptr ? 0u : kShadowed) | (transparent ? kPeeled : 0u) |
                            (scene.fog.strength > 0 ? kFoggy : 0u) | (target.coarse_px > 0 ? kQuick : 0u) |
-                           (bent ? kBent : 0u) | (blended ? kBlended : 0u);
+                           (bent ? kBent : 0u) | (blended ? kBlended : 0u) | (filled ? kFilled : 0u);
   for (std::size_t p = 0; p < item.parts.size(); ++p)
     if (drawn(item.parts[p])) DUBSAR_TRY(draw_part(level, item, p, views, variant));
   glDisable(GL_CULL_FACE);

@@ -60,6 +60,9 @@ struct Style {
   bool mark_inferred = true;
   Rgb8 inferred_color{122, 158, 204}, inferred_stripe{38, 70, 128};
   FieldColors field_colors = FieldColors::kDesigned;  ///< of maps of figures
+  /// What planes cut through is filled and hatched, as if it were solid clay. Needs closed surfaces: behind a hole of
+  /// one the filling reaches too far.
+  bool section = false;
   /// Radiance scaling: how much brighter the light on ridges is and how much darker that in hollows; 0 not, 1 clearly.
   double radiance = 0.0;
 

@@ -1,0 +1,15 @@
+#pragma once
+// The ball on the stage that shows where the light stands, while it moves.
+
+#include "app/document/pose.h"
+
+namespace dubsar::app {
+
+/// Draws it into the current Dear ImGui frame; its lower right corner stands at `right`, `bottom`.
+void draw_light_ball(const LightPlace& light, float right, float bottom);
+
+/// The light that stands over a place of a ball of radius 1, seen from the front, x to the right, y up; places beyond
+/// its rim are on it. Elevations are held between 5 and 85 degrees.
+LightPlace light_over(double x, double y) noexcept;
+
+}  // namespace dubsar::app

@@ -1,0 +1,171 @@
+// Light that goes round, the glass and the ring under the pointer: sessions in simulated time against geometry.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "app/panels/light_ball.h"
+#include "app/viewer/run_view.h"
+#include "display/render/shading.h"
+#include "tests/display/spec.h"
+#include "tests/display/test_meshes.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr int kWidth = 640, kHeight = 400;
+
+class Seeing : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    options_.mapping = default_mapping().value();
+    options_.stage.shading = shading_preset("phong").value();
+    Screen& screen = options_.stage.screen;
+    screen.width_px = screen.window_w = kWidth;
+    screen.height_px = screen.window_h = kHeight;
+    screen.width_mm = 320;
+    screen.height_mm = 200;
+    options_.time.fps = 10.0;
+    options_.time.longest_s = 3.0;
+    options_.around.notices = options_.around.panels = false;
+  }
+  /// Pictures and what led to them, by tenths of a second.
+  struct Seen {
+    Image image;
+    PictureReport report;
+    glm::dmat4 screen_from_model{1.0};
+  };
+  std::vector<Seen> run(const TriMesh& mesh, std::vector<TimedCommand> steps) {
+    options_.steps = std::move(steps);
+    std::vector<Seen> out;
+    const auto done = run_view(mesh, options_, progress_, [&](const ViewMoment& moment) {
+      out.push_back({moment.presenter.picture().value(), moment.report, moment.viewer.stage().screen_from_model()});
+    });
+    EXPECT_TRUE(done) << done.error().message;
+    return out;
+  }
+  ViewOptions options_;
+  SilentProgress progress_;
+};
+
+TEST_F(Seeing, SweepingLightGoesRoundInItsPeriodAndStopsWhereItBegan) {
+  const auto seen = run(testing::lettered_box(), {{0.0, "light 90,40"}, {0.2, "sweep 20 4"}, {2.0, "sweep"}});
+  ASSERT_GT(seen.size(), 25u);
+  std::size_t begin = 0;
+  while (begin < seen.size() && seen[begin].report.view.light_elevation_deg != 20.0) ++begin;
+  ASSERT_LT(begin, 6u);
+  for (std::size_t k = 0; k < 15; ++k) {
+    const ViewState& view = seen[begin + k].report.view;
+    EXPECT_NEAR(view.light_azimuth_deg, std::fmod(90.0 + 360.0 * 0.1 * static_cast<double>(k) / 4.0, 360.0), 0.1) << k;
+    EXPECT_EQ(view.light_elevation_deg, 20.0);
+  }
+  EXPECT_NEAR(seen.back().report.view.light_azimuth_deg, 90.0, 1e-9);
+  EXPECT_NEAR(seen.back().report.view.light_elevation_deg, 40.0, 1e-9);
+}
+
+TEST_F(Seeing, TheLightStandsOverThePlaceOfTheBallThatWasTouched) {
+  for (double x = -0.9; x < 1.0; x += 0.3)
+    for (double y = -0.9; y < 1.0; y += 0.3) {
+      if (std::hypot(x, y) > 0.98 || std::hypot(x, y) < 0.1) continue;
+      const LightPlace place = light_over(x, y);
+      Light light;
+      light.azimuth_deg = place.azimuth_deg;
+      light.elevation_deg = place.elevation_deg;
+      const glm::dvec3 way = light_direction(light);
+      EXPECT_NEAR(way.x, x, 1e-9);
+      EXPECT_NEAR(way.y, y, 1e-9);
+    }
+  EXPECT_EQ(light_over(3.0, 0.0).elevation_deg, 5.0);
+  EXPECT_EQ(light_over(3.0, 0.0).azimuth_deg, 90.0);
+}
+
+TEST_F(Seeing, TheGlassShowsWhatIsUnderItLargerAndNothingElseChanges) {
+  TriMesh mesh = testing::lettered_box();
+  const glm::dvec2 at(0.03, 0.02);  // heights of the window from its middle
+  const auto seen = run(mesh, {{0.5, "pointer 0.03,0.02"}, {0.6, "magnify 4"}, {2.0, "magnify"}});
+  ASSERT_GT(seen.size(), 25u);
+  const Image &before = seen[2].image, &with = seen[15].image, &after = seen.back().image;
+  EXPECT_EQ(before.pixels, after.pixels);
+  const double x0 = kWidth / 2 + at.x * kHeight, y0 = kHeight / 2 - at.y * kHeight, radius = 0.17 * kHeight;
+  int compared = 0, same = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const double dx = x + 0.5 - x0, dy = y + 0.5 - y0, r = std::hypot(dx, dy);
+      if (r > radius + 2) {
+        for (int c = 0; c < 3; ++c) ASSERT_EQ(with.at(x, y)[c], before.at(x, y)[c]) << x << " " << y;
+      } else if (r < radius - 8) {
+        const int sx = static_cast<int>(std::floor(x0 + dx / 4)), sy = static_cast<int>(std::floor(y0 + dy / 4));
+        bool level = true;  // where the small picture has an edge the large one may be on either side of it
+        for (int k = -1; k <= 1; ++k)
+          for (int c = 0; c < 3; ++c)
+            level = level && std::abs(before.at(sx + k, sy)[c] - before.at(sx, sy)[c]) < 6 &&
+                    std::abs(before.at(sx, sy + k)[c] - before.at(sx, sy)[c]) < 6;
+        if (!level) continue;
+        ++compared;
+        bool equal = true;
+        for (int c = 0; c < 3; ++c) equal = equal && std::abs(with.at(x, y)[c] - before.at(sx, sy)[c]) < 10;
+        same += equal ? 1 : 0;
+      }
+    }
+  EXPECT_GT(compared, 3000);
+  EXPECT_GT(same, 0.98 * compared) << same << " of " << compared;
+}
+
+TEST_F(Seeing, AStateThatIsKeptStandsBesideTheOneThatGoesOn) {
+  options_.time.longest_s = 4.6;
+  const auto seen = run(testing::lettered_box(),
+                        {{0.2, "beside"}, {0.5, "side left"}, {3.3, "beside apart"}, {3.8, "beside none"}});
+  ASSERT_GT(seen.size(), 41u);
+  const auto half = [](const Image& image, bool right) {
+    std::vector<int> out;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth / 2; ++x) out.push_back(image.at(x + (right ? kWidth / 2 : 0), y)[1]);
+    return out;
+  };
+  const auto differing = [](const std::vector<int>& a, const std::vector<int>& b) {
+    int count = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) count += std::abs(a[i] - b[i]) > 20 ? 1 : 0;
+    return count;
+  };
+  const Image &first = seen[4].image, &linked = seen[31].image, &apart = seen[36].image, &alone = seen.back().image;
+  const int turned = differing(half(first, false), half(linked, false));
+  EXPECT_GT(turned, 500) << "both are turned";
+  EXPECT_LT(differing(half(linked, false), half(linked, true)), 20000) << "the same state twice, but for perspective";
+  EXPECT_EQ(half(first, false), half(apart, false)) << "the one that is kept is as it was";
+  EXPECT_LT(differing(half(linked, true), half(apart, true)), 20) << "the other goes on as it is";
+  EXPECT_GT(differing(half(alone, false), half(apart, false)), 5000);
+}
+
+/// Middle of what is amber in these columns.
+glm::dvec2 amber_middle(const Image& image, int from, int to) {
+  glm::dvec2 sum(0.0);
+  int count = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = from; x < to; ++x) {
+      const auto* p = image.at(x, y);
+      if (std::abs(p[0] - 217) > 4 || std::abs(p[1] - 164) > 4 || std::abs(p[2] - 65) > 4) continue;
+      sum += glm::dvec2(x + 0.5 - from, y + 0.5);
+      ++count;
+    }
+  EXPECT_GT(count, 20);
+  return sum / static_cast<double>(std::max(count, 1));
+}
+
+TEST_F(Seeing, TheRingStandsAtTheDepthOfTheSurfaceForBothEyes) {
+  options_.stage.display = testing::spec("side_by_side");
+  const auto seen = run(testing::lettered_box(), {{0.2, "pointer 0.1,-0.05"}, {0.3, "cursor"}});
+  const Seen& last = seen.back();
+  const int half = last.image.width / 2;
+  const glm::dvec2 left = amber_middle(last.image, 0, half), right = amber_middle(last.image, half, 2 * half);
+  EXPECT_NEAR(left.y, right.y, 0.6);
+  // The front of the box (raised letters: 5.05 mm) is at this depth before the panel; eyes are 63 mm apart.
+  const double front = (last.screen_from_model * glm::dvec4(0, 0, 5.0, 1.0)).z;
+  ASSERT_GT(front, 5.0) << "well before the panel";
+  const double eye = last.report.viewer.centre_mm().z;
+  const double mm_per_px = options_.stage.screen.width_mm / half;
+  EXPECT_NEAR((left.x - right.x) * mm_per_px, 63.0 * front / (eye - front), 1.2 * mm_per_px);
+}
+
+}  // namespace
+}  // namespace dubsar::app

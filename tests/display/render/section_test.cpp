@@ -1,0 +1,98 @@
+// What planes cut through is filled: areas, depths and colours of sections of bodies that are known.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <memory>
+#include <numbers>
+
+#include "display/render/context_egl.h"
+#include "display/render/lod_mesh.h"
+#include "display/render/renderer.h"
+#include "tests/display/test_meshes.h"
+
+namespace dubsar {
+namespace {
+
+constexpr int kSide = 400;
+constexpr double kHalf = 12.0;  // mm of the world across the picture, from its middle
+
+class Section : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    context_ = EglContext::create().value();
+    renderer_.emplace(Renderer::create().value());
+    shading_ = shading_preset("phong").value();
+    shading_.style.section = true;
+    shading_.background.color = {0, 0, 0};
+    view_.clip_from_view = glm::ortho(-kHalf, kHalf, -kHalf, kHalf, -100.0, 100.0);
+  }
+  Image picture(const SceneView& scene) {
+    auto array = ViewArray::create(kSide, kSide, 1).value();
+    const auto drawn = renderer_->render(scene, std::span(&view_, 1), 1, array);
+    EXPECT_TRUE(drawn) << drawn.error().message;
+    return array.read_layer(0).value();
+  }
+  /// Burnt clay, which light never makes of this style: red at least twice blue, and dark.
+  static bool filled(const std::uint8_t* p) { return p[0] > 60 && p[0] < 165 && 10 * p[2] < 8 * p[0]; }
+  static double filled_mm2(const Image& image) {
+    int count = 0;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) count += filled(image.at(x, y)) ? 1 : 0;
+    return count * std::pow(2 * kHalf / kSide, 2);
+  }
+  std::unique_ptr<EglContext> context_;
+  std::optional<Renderer> renderer_;
+  Shading shading_;
+  View view_;
+};
+
+/// A ball of 10 mm, and one of 6 mm in it that is turned inside out: a shell.
+TriMesh shell() {
+  TriMesh mesh = testing::sphere(10.0f, 120, 240);
+  TriMesh hole = testing::sphere(6.0f, 120, 240);
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (std::size_t v = 0; v < hole.positions.size(); ++v) {
+    mesh.positions.push_back(hole.positions[v]);
+    mesh.normals.push_back(-hole.normals[v]);
+  }
+  for (const Triangle& t : hole.triangles) mesh.triangles.push_back({first + t[0], first + t[2], first + t[1]});
+  return mesh;
+}
+
+TEST_F(Section, OfABallIsTheDiskWhereThePlaneMeetsIt) {
+  const LodMesh ball = LodMesh::exact(pack_mesh(testing::sphere(10.0f, 160, 320)).value()).value();
+  for (const double height : {0.0, 4.0, -6.0}) {
+    shading_.clips = {{{0, 0, height}, {0, 0, -1}}};
+    const double disk = std::numbers::pi * (100 - height * height);
+    EXPECT_NEAR(filled_mm2(picture(MeshScene(ball, shading_))), disk, 0.02 * disk) << height;
+  }
+  shading_.style.section = false;
+  EXPECT_LT(filled_mm2(picture(MeshScene(ball, shading_))), 1.0) << "only where it is asked for";
+  shading_.style.section = true;
+  shading_.clips.clear();
+  EXPECT_LT(filled_mm2(picture(MeshScene(ball, shading_))), 1.0) << "nothing is cut";
+}
+
+TEST_F(Section, OfAShellIsARing) {
+  const LodMesh mesh = LodMesh::exact(pack_mesh(shell()).value()).value();
+  shading_.clips = {{{0, 0, 0}, {0, 0, -1}}};
+  const double ring = std::numbers::pi * (100 - 36);
+  const Image image = picture(MeshScene(mesh, shading_));
+  EXPECT_NEAR(filled_mm2(image), ring, 0.03 * ring);
+  EXPECT_FALSE(filled(image.at(kSide / 2, kSide / 2))) << "into the hollow one looks";
+}
+
+TEST_F(Section, BetweenTwoPlanesIsSeenWhereTheEyeComesIn) {
+  const LodMesh ball = LodMesh::exact(pack_mesh(testing::sphere(10.0f, 160, 320)).value()).value();
+  shading_.clips = {{{0, 0, 3}, {0, 0, -1}}, {{1, 0, 0}, {-1, 0, 0}}, {{0, 0, -3}, {0, 0, 1}}};
+  const Image image = picture(MeshScene(ball, shading_));
+  // The disk of the front plane, as far as x = 1: a circular segment of radius sqrt(91).
+  const double r = std::sqrt(91.0), area = std::numbers::pi * r * r - (r * r * std::acos(1 / r) - std::sqrt(r * r - 1));
+  EXPECT_NEAR(filled_mm2(image), area, 0.03 * area);
+  EXPECT_EQ(image.at(kSide / 2 + 40, kSide / 2)[0], 0) << "beyond the second plane there is nothing";
+}
+
+}  // namespace
+}  // namespace dubsar
