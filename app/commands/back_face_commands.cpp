@@ -14,7 +14,7 @@ Command back_faces() {
   Command out{"back_faces",
               "Parts",
               "the inner side of surfaces: as the outer one, in a colour of its own, or not at all",
-              {{"q"}}};
+              {{"shift+q"}}};
   out.argument = "show, tint or hide";
   for (const std::string_view name : kBackFaces) out.values.emplace_back(name);
   out.closed = out.optional = true;
