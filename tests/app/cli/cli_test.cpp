@@ -42,7 +42,8 @@ const std::string& scan() {
 const std::string& tablet() {
   static const std::string path = [] {
     const std::string file = in_folder("tablet.exa");
-    const ProgramRun run = run_dubsar({"process", scan(), "-o", file, "--json", in_folder("report.json"), "--quiet"});
+    const ProgramRun run =
+        run_dubsar({"process", scan(), "-o", file, "--detail", "half", "--json", in_folder("report.json"), "--quiet"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     return file;
   }();
@@ -192,7 +193,8 @@ TEST(CommandLine, SimplifyingKeepsAPartWatertightWithFewerTriangles) {
 TEST(CommandLine, OneThreadAndSevenGiveTheSameBytes) {
   const auto bytes = [](const char* name, const char* threads) {
     const std::string file = in_folder(name);
-    EXPECT_EQ(run_dubsar({"process", scan(), "-o", file, "--threads", threads, "--quiet"}).exit_code, 0);
+    EXPECT_EQ(
+        run_dubsar({"process", scan(), "-o", file, "--detail", "half", "--threads", threads, "--quiet"}).exit_code, 0);
     std::ifstream stream(file, std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(stream), {});
   };

@@ -23,7 +23,9 @@ class Outputs : public ::testing::Test {
     folder() = fs::temp_directory_path() / fmt::format("dubsar_outputs_{}", ::getpid());
     fs::create_directories(folder());
     ASSERT_EQ(run_dubsar({"phantom", at("scan.h5"), "--preset", "tiny", "--seed", "77"}).exit_code, 0);
-    ASSERT_EQ(run_dubsar({"process", at("scan.h5"), "-o", at("tablet.exa"), "--no-ao", "-q"}).exit_code, 0);
+    ASSERT_EQ(
+        run_dubsar({"process", at("scan.h5"), "-o", at("tablet.exa"), "--detail", "half", "--no-ao", "-q"}).exit_code,
+        0);
   }
   static void TearDownTestSuite() { fs::remove_all(folder()); }
   static fs::path& folder() {
@@ -91,8 +93,10 @@ TEST_F(Outputs, APhantomReplacesOnlyPhantoms) {
 TEST_F(Outputs, ReportsAndSurfacesReplaceOlderOnes) {
   EXPECT_EQ(run_dubsar({"info", at("tablet.exa"), "--json", at("report.json")}).exit_code, 0);
   EXPECT_EQ(run_dubsar({"info", at("tablet.exa"), "--json", at("report.json")}).exit_code, 0);
-  ASSERT_EQ(run_dubsar({"process", at("scan.h5"), "-o", at("made.exa"), "--no-ao", "-q"}).exit_code, 0);
-  EXPECT_EQ(run_dubsar({"process", at("scan.h5"), "-o", at("made.exa"), "--no-ao", "-q"}).exit_code, 0);
+  ASSERT_EQ(run_dubsar({"process", at("scan.h5"), "-o", at("made.exa"), "--detail", "half", "--no-ao", "-q"}).exit_code,
+            0);
+  EXPECT_EQ(run_dubsar({"process", at("scan.h5"), "-o", at("made.exa"), "--detail", "half", "--no-ao", "-q"}).exit_code,
+            0);
 }
 
 TEST_F(Outputs, LinksStayLinksAndTheFileBehindThemIsReplaced) {

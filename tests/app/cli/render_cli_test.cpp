@@ -23,7 +23,8 @@ class RenderCommand : public ::testing::Test {
     folder_ = fs::temp_directory_path() / fmt::format("dubsar_render_{}", ::getpid());
     fs::create_directories(folder_);
     ASSERT_EQ(run_dubsar({"phantom", file("scan.h5"), "--preset", "tiny"}).exit_code, 0);
-    ASSERT_EQ(run_dubsar({"process", file("scan.h5"), "-o", file("tablet.exa"), "--quiet"}).exit_code, 0);
+    ASSERT_EQ(
+        run_dubsar({"process", file("scan.h5"), "-o", file("tablet.exa"), "--detail", "half", "--quiet"}).exit_code, 0);
   }
   static void TearDownTestSuite() { fs::remove_all(folder_); }
   static std::string file(const char* name) { return (folder_ / name).string(); }

@@ -102,7 +102,8 @@ TEST_F(Words, AfterProcessTheSizeThePartsWhatIsInferredAndWhatToDoNext) {
   EXPECT_THAT(text, ::testing::ContainsRegex("tablet +[0-9.]+ mm2, [0-9.]+ % of its surface"));
   EXPECT_THAT(text, HasSubstr("dubsar view " + at("scan.exa")));
   EXPECT_THAT(text, Not(HasSubstr("wall s"))) << "the table is for --verbose";
-  const ProgramRun verbose = run_dubsar({"process", at("scan.h5"), "-o", at("v.exa"), "--no-ao", "--verbose"});
+  const ProgramRun verbose =
+      run_dubsar({"process", at("scan.h5"), "-o", at("v.exa"), "--detail", "half", "--no-ao", "--verbose"});
   EXPECT_THAT(verbose.out, HasSubstr("wall s"));
   EXPECT_THAT(verbose.out, HasSubstr("dubsar view"));
 }
