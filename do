@@ -32,6 +32,7 @@ usage() {
               ./do bench exa: bits and speed of the surface format, beside Draco and meshoptimizer
               ./do bench contact [X Y Z SEED]: what is read where tablet and envelope touch
               ./do bench view: first pictures, pictures a second and memory, beside f3d and MeshLab
+./do workflow examples/snakemake: a dry run, and three scans for real
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
 ./do glb FILE...  the Khronos validator over GLB files (fetches it with npm)
 ./do asan     the tests that need no window under AddressSanitizer and UndefinedBehaviorSanitizer; asan core: of core
@@ -217,6 +218,25 @@ demo() {
   fi
 }
 
+# The workflow of examples/snakemake: a dry run, a run of three scans, and one that finds nothing to do.
+workflow() {
+  deps snakemake
+  build_target --target dubsar
+  local dubsar=$PWD/$build/app/dubsar work=$PWD/$build/workflow seed
+  rm -rf "$work" && mkdir -p "$work/scans"
+  cp -r examples/snakemake/. "$work"
+  for seed in 1 2 3; do
+    "$dubsar" phantom "$work/scans/tablet $seed.h5" --dims 160x112x144 --seed "$seed" -q >/dev/null
+  done
+  local settings=(--directory "$work" --snakefile "$work/Snakefile" --config "dubsar=$dubsar" "threads=$jobs" "options=--ao-rays 16")
+  snakemake --dry-run --quiet "${settings[@]}"
+  snakemake --cores "$jobs" "${settings[@]}"
+  ls -l "$work/surfaces"
+  [ "$(ls "$work"/surfaces/*.exa "$work"/surfaces/*_report.html | wc -l)" = 6 ]
+  snakemake --cores "$jobs" "${settings[@]}" 2>&1 | tee "$work/again.log"
+  grep -q "Nothing to be done" "$work/again.log"
+}
+
 # Figures of 500 simulated people who were never told, before the kiosk as it is; another SEED, other people.
 visitors() {
   deps
@@ -268,6 +288,7 @@ case "$verb" in
   deps) deps ;;
   strips) strips "$@" ;;
   visitors) visitors "$@" ;;
+  workflow) workflow ;;
   pictures) pictures ;;
   format) git ls-files '*.cpp' '*.h' | xargs clang-format -i ;;
   *) usage; [ -z "$verb" ] || [ "$verb" = help ] || exit 64 ;;
