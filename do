@@ -226,7 +226,7 @@ workflow() {
   rm -rf "$work" && mkdir -p "$work/scans"
   cp -r examples/snakemake/. "$work"
   for seed in 1 2 3; do
-    "$dubsar" phantom "$work/scans/tablet $seed.h5" --dims 160x112x144 --seed "$seed" -q >/dev/null
+    "$dubsar" phantom "$work/scans/tablet_$seed.h5" --size 160x112x144 --seed "$seed" -q >/dev/null
   done
   local settings=(--directory "$work" --snakefile "$work/Snakefile" --config "dubsar=$dubsar" "threads=$jobs" "options=--ao-rays 16")
   snakemake --dry-run --quiet "${settings[@]}"
