@@ -85,7 +85,7 @@ class Arguments {
   bool given(const std::string& name) const;  ///< this option does
   std::string name() const;
   std::vector<std::string> words() const;  ///< of the command line behind the program and the verb, as they were typed
-  std::vector<FileUse> files() const;  ///< of this verb and its subcommands that were chosen; empty paths left out
+  std::vector<FileUse> files() const;      ///< of this verb and its subcommands that were chosen; empty paths left out
 
   /// Nothing when the program shall go on; else its exit code (help and version are printed, and errors).
   std::optional<int> parse(int argc, char** argv);

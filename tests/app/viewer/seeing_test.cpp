@@ -114,8 +114,8 @@ TEST_F(Seeing, TheGlassShowsWhatIsUnderItLargerAndNothingElseChanges) {
 
 TEST_F(Seeing, AStateThatIsKeptStandsBesideTheOneThatGoesOn) {
   options_.time.longest_s = 4.6;
-  const auto seen = run(testing::lettered_box(),
-                        {{0.2, "beside"}, {0.5, "side left"}, {3.3, "beside apart"}, {3.8, "beside none"}});
+  const auto seen =
+      run(testing::lettered_box(), {{0.2, "beside"}, {0.5, "side left"}, {3.3, "beside apart"}, {3.8, "beside none"}});
   ASSERT_GT(seen.size(), 41u);
   const auto half = [](const Image& image, bool right) {
     std::vector<int> out;
