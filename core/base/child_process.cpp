@@ -23,6 +23,7 @@ Result<ChildProcess> ChildProcess::start(std::vector<std::string> words) {
   for (int stream = 0; stream < 2; ++stream)
     ::posix_spawn_file_actions_adddup2(&actions, pipes[static_cast<std::size_t>(stream)][1], stream + 1);
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   const int error = ::posix_spawn(&out.id_, words[0].c_str(), &actions, nullptr, argv.data(), environ);

@@ -157,7 +157,7 @@ std::uint64_t spread3(std::uint64_t x) {  // 21 bits to every third bit
 /// Vertices `ids` in an order where neighbours lie in the same small box and look to the same side.
 void sort_by_place_and_side(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
                             std::vector<std::uint32_t>& ids) {
-  constexpr float kBox_vox = 4.0f;
+  constexpr float kBoxEdge = 4.0f;
   glm::vec3 low(INFINITY);
   for (const std::uint32_t v : ids) low = glm::min(low, positions[v]);
   struct Item {
@@ -167,10 +167,10 @@ void sort_by_place_and_side(std::span<const glm::vec3> positions, std::span<cons
   std::vector<Item> items(ids.size());
   parallel_for(static_cast<std::int64_t>(ids.size()), 1 << 14, [&](std::int64_t i) {
     const std::uint32_t v = ids[static_cast<std::size_t>(i)];
-    const glm::vec3 box = glm::min((positions[v] - low) / kBox_vox, glm::vec3(1e6f)), n = normals[v];
+    const glm::vec3 box = glm::min((positions[v] - low) / kBoxEdge, glm::vec3(1e6f)), n = normals[v];
     const glm::vec3 size = glm::abs(n);
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const auto side = static_cast<std::uint64_t>(2 * axis + (n[axis] < 0.0f));
+    const auto side = 2 * static_cast<std::uint64_t>(axis) + (n[axis] < 0.0f ? 1 : 0);
     const std::uint64_t place = spread3(static_cast<std::uint64_t>(box.x)) |
                                 spread3(static_cast<std::uint64_t>(box.y)) << 1 |
                                 spread3(static_cast<std::uint64_t>(box.z)) << 2;
@@ -267,7 +267,7 @@ Result<std::vector<float>> ambient_light(const LitSurface& surface, const Occlus
       VertexGroup group;
       for (std::int64_t i = begin; i < end; ++i) {
         const std::uint32_t v = ids[static_cast<std::size_t>(i)];
-        group.add(v, positions[v] + options.offset_vox * normals[v], normals[v]);
+        group.add(v, surface.positions[v] + options.offset_vox * surface.normals[v], surface.normals[v]);
         if (group.count < kLanes && i + 1 < end) continue;
         if (progress.cancelled()) return;
         const auto taken = tracer->taken(group);

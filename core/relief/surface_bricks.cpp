@@ -103,7 +103,10 @@ class BlockCorners {
   }
 
  private:
-  static std::size_t index(int x, int y, int z) { return static_cast<std::size_t>((z * kCorners + y) * kCorners + x); }
+  static std::size_t index(int x, int y, int z) {
+    return (static_cast<std::size_t>(z) * kCorners + static_cast<std::size_t>(y)) * kCorners +
+           static_cast<std::size_t>(x);
+  }
   std::array<float, std::size_t{kCorners} * kCorners * kCorners> nearest2_{}, distance_{};
 };
 
@@ -198,7 +201,7 @@ Result<SurfaceBricks> SurfaceBricks::build(std::span<const glm::vec3> positions,
     for (int z = range.first.z; z <= range.last.z; ++z)
       for (int y = range.first.y; y <= range.last.y; ++y)
         for (int x = range.first.x; x <= range.last.x; ++x)
-          use(static_cast<std::size_t>((z * blocks.y + y) * blocks.x + x));
+          use(static_cast<std::size_t>((std::int64_t{z} * blocks.y + y) * blocks.x + x));
   };
   BlockLists lists;
   {

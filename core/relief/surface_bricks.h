@@ -27,7 +27,7 @@ class SurfaceBricks {
   /// Which cells of a brick have surface, x first: their places behind first_cell, or kNone.
   struct Brick {
     std::uint32_t first_cell;  ///< index into `corners`
-    std::array<std::uint8_t, kEdge * kEdge * kEdge> cells;
+    std::array<std::uint8_t, std::size_t{kEdge} * kEdge * kEdge> cells;
   };
   using Corners = std::array<std::int8_t, 8>;  ///< of a cell: corner x + 2 y + 4 z
 
