@@ -87,7 +87,7 @@ TEST_F(Seeing, TheGlassShowsWhatIsUnderItLargerAndNothingElseChanges) {
   ASSERT_GT(seen.size(), 25u);
   const Image &before = seen[2].image, &with = seen[15].image, &after = seen.back().image;
   EXPECT_EQ(before.pixels, after.pixels);
-  const double x0 = kWidth / 2 + at.x * kHeight, y0 = kHeight / 2 - at.y * kHeight, radius = 0.17 * kHeight;
+  const double x0 = 0.5 * kWidth + at.x * kHeight, y0 = 0.5 * kHeight - at.y * kHeight, radius = 0.17 * kHeight;
   int compared = 0, same = 0;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
