@@ -254,6 +254,7 @@ pictures() {
   [ -f "$work/scan.h5" ] || "$dubsar" phantom "$work/scan.h5" --preset demo
   [ -f "$work/tablet.exa" ] || "$dubsar" process "$work/scan.h5" -o "$work/tablet.exa"
   "$dubsar" render "$work/tablet.exa" -o docs/tablet.png --partition tablet --style raking --light 315,20 --size 900x900
+  "$dubsar" render "$work/tablet.exa" -o docs/msii.png --partition tablet --style msii --size 900x900
   "$dubsar" fatcross "$work/tablet.exa" -o docs/fatcross.png --dpi 240 --no-sides
   docs/scripts/make_pictures.sh "$dubsar" docs
 }
