@@ -18,7 +18,7 @@ TEST(Unpack, ThereAndBackShowsTheSameTabletToTheLastByte) {
   fs::create_directories(folder);
   const auto in = [&](const char* name) { return (folder / name).string(); };
   ASSERT_EQ(run_dubsar({"phantom", in("s.h5"), "--preset", "tiny", "-q"}).exit_code, 0);
-  ASSERT_EQ(run_dubsar({"process", in("s.h5"), "-o", in("s.exa"), "--detail", "half", "--no-ao", "-q"}).exit_code, 0);
+  ASSERT_EQ(run_dubsar({"process", in("s.h5"), "-o", in("s.exa"), "--no-ao", "-q"}).exit_code, 0);
   std::ofstream(in("steps.txt")) << "0 picture " << in("first.png") << "\n+0.2 unpack 100\n+0.2 picture "
                                  << in("apart.png") << "\n+0.2 unpack 37\n+0.2 unpack 0\n+0.2 picture "
                                  << in("back.png") << "\n+0.2 unpack_more\n+0.2 unpack_less\n+0.2 picture "
