@@ -9,8 +9,10 @@
 
 namespace dubsar::app {
 
-inline std::string error_json(const Error& error) {
-  return dump_json_lines({{"error", {{"message", error.message}, {"exit_code", exit_code(error.kind)}}}}) + "\n";
+inline nlohmann::json error_object(const Error& error) {
+  return {{"message", error.message}, {"exit_code", exit_code(error.kind)}};
 }
+
+inline std::string error_json(const Error& error) { return dump_json_lines({{"error", error_object(error)}}) + "\n"; }
 
 }  // namespace dubsar::app

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/atomic_file.h"
+#include "core/base/file_suffix.h"
 #include "core/base/near_word.h"
 #include "core/exa/container.h"
 #include "core/hdf5/hdf5_file.h"
@@ -33,12 +34,6 @@ bool same_file(const fs::path& a, const fs::path& b) {
   if (fs::equivalent(a, b, error) && !error) return true;
   const fs::path left = fs::weakly_canonical(a, error), right = fs::weakly_canonical(b, error);
   return !error && left == right;
-}
-
-std::string lower_suffix(const std::string& path) {
-  std::string suffix = fs::path(path).extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
-  return suffix;
 }
 
 Result<void> check_place(const FileUse& file) {

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/base/file_suffix.h"
 #include "core/base/near_word.h"
 
 namespace dubsar::app {
@@ -125,8 +126,7 @@ std::vector<std::string> names_in(const CLI::App& app, bool option) {
 std::string verb_for_file(const std::string& word) {
   std::error_code ignored;
   if (!std::filesystem::exists(word, ignored)) return {};
-  std::string suffix = std::filesystem::path(word).extension().string();
-  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string suffix = lower_suffix(word);
   for (const char* const surface : {".exa", ".ply", ".stl", ".obj", ".glb"})
     if (suffix == surface) return "; to see this surface: dubsar view " + word;
   for (const char* const scan : {".h5", ".hdf5", ".nxs", ".nrrd", ".nhdr", ".tif", ".tiff"})

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cstdlib>
 #include <sstream>
@@ -15,6 +14,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/child_process.h"
+#include "core/base/file_suffix.h"
 
 namespace dubsar::app {
 namespace {
@@ -47,8 +47,7 @@ const std::vector<Coding>& codings() {
 }
 
 const Coding* coding_of(const fs::path& path) {
-  std::string suffix = path.extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string suffix = lower_suffix(path);
   const auto at = std::find_if(codings().begin(), codings().end(), [&](const Coding& c) { return c.suffix == suffix; });
   return at == codings().end() ? nullptr : &*at;
 }

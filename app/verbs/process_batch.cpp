@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -14,9 +13,11 @@
 #include <string_view>
 
 #include "app/cli/default_output.h"
+#include "app/cli/error_json.h"
 #include "core/base/atomic_file.h"
 #include "core/base/child_process.h"
 #include "core/base/file_fingerprint.h"
+#include "core/base/file_suffix.h"
 #include "core/base/input_file.h"
 #include "core/base/json_text.h"
 
@@ -28,9 +29,7 @@ using nlohmann::json;
 constexpr std::array<std::string_view, 6> kScanSuffixes{".h5", ".hdf5", ".hdf", ".nxs", ".nrrd", ".nhdr"};
 
 bool has_suffix(const fs::path& path, std::span<const std::string_view> suffixes) {
-  std::string suffix = path.extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
-  return std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end();
+  return std::find(suffixes.begin(), suffixes.end(), lower_suffix(path)) != suffixes.end();
 }
 
 std::vector<std::string> scans_in(const fs::path& folder) {
@@ -211,7 +210,7 @@ Result<VerbResult> process_batch(const ScanBatch& batch, Progress& progress) {
     } else {
       if (!out.failed) out.failure = report.error().kind;
       out.failed = true;
-      row["error"] = {{"message", report.error().message}, {"exit_code", exit_code(report.error().kind)}};
+      row["error"] = error_object(report.error());
       line = "failed: " + report.error().message;
     }
     out.text += fmt::format("{}: {}\n", row.contains("error") ? item.scan : item.out, line);

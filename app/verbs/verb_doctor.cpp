@@ -10,6 +10,7 @@
 
 #include "app/cli/config_folder.h"
 #include "app/cli/verb.h"
+#include "app/publish/video.h"
 #include "core/base/budget.h"
 #include "core/volume/import_hdf5.h"
 #include "devices/camera/capture.h"
@@ -91,14 +92,7 @@ std::vector<Finding> check_devices() {
 
 /// A program on the PATH that films are made with.
 Finding check_ffmpeg() {
-  const char* const path = std::getenv("PATH");
-  std::string_view folders = path != nullptr ? path : "";
-  while (!folders.empty()) {
-    const std::size_t end = std::min(folders.find(':'), folders.size());
-    const std::string program = std::string(folders.substr(0, end)) + "/ffmpeg";
-    if (::access(program.c_str(), X_OK) == 0) return {"ffmpeg", "ok", program, ""};
-    folders.remove_prefix(std::min(end + 1, folders.size()));
-  }
+  if (const auto program = find_ffmpeg()) return {"ffmpeg", "ok", program->string(), ""};
   return {"ffmpeg", "note", "not here: films are written as single pictures", "apt install ffmpeg"};
 }
 

@@ -162,8 +162,8 @@ Result<VerbResult> run_many(const Options& options, const Arguments command, Pro
   ScanBatch batch;
   batch.resume = options.resume;
   batch.options = options_for_each(command.words(), options.inputs);
-  if (options.inputs.size() == 1 && !is_scan_folder(options.inputs[0])) {
-    batch.items = {{options.inputs[0], options.target}};
+  if (!options.in.empty()) {
+    batch.items = {{options.in, options.target}};
   } else {
     DUBSAR_ASSIGN(batch.items, batch_items(options.inputs, options.target));
   }
@@ -172,11 +172,13 @@ Result<VerbResult> run_many(const Options& options, const Arguments command, Pro
 
 /// What is one scan, and what many: a run that may be resumed is a batch of one.
 void settle(Options& options) {
-  options.many = options.inputs.size() > 1 || options.resume || is_scan_folder(options.inputs[0]);
   const bool one = options.inputs.size() == 1 && !is_scan_folder(options.inputs[0]);
-  if (one && options.out.empty()) options.out = output_beside(options.inputs[0], ".exa");
+  options.many = !one || options.resume;
+  if (one) {
+    options.in = options.inputs[0];
+    if (options.out.empty()) options.out = output_beside(options.in, ".exa");
+  }
   if (options.many) options.target = std::exchange(options.out, {});
-  if (one) options.in = options.inputs[0];
 }
 
 }  // namespace

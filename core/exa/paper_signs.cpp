@@ -7,30 +7,12 @@
 #include <numeric>
 
 #include "core/base/budget.h"
+#include "core/exa/bit_spread.h"
 #include "core/exa/bit_string.h"
 
 namespace dubsar {
 namespace {
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
-
-/// Bit i to bit 2 i, for the lower 32 bits.
-std::uint64_t spread(std::uint64_t w) {
-  w &= 0xFFFFFFFFu;
-  w = (w | w << 16) & 0x0000FFFF0000FFFFu;
-  w = (w | w << 8) & 0x00FF00FF00FF00FFu;
-  w = (w | w << 4) & 0x0F0F0F0F0F0F0F0Fu;
-  w = (w | w << 2) & 0x3333333333333333u;
-  return (w | w << 1) & 0x5555555555555555u;
-}
-/// Bit 2 i to bit i.
-std::uint64_t even_bits(std::uint64_t w) {
-  w &= 0x5555555555555555u;
-  w = (w | w >> 1) & 0x3333333333333333u;
-  w = (w | w >> 2) & 0x0F0F0F0F0F0F0F0Fu;
-  w = (w | w >> 4) & 0x00FF00FF00FF00FFu;
-  w = (w | w >> 8) & 0x0000FFFF0000FFFFu;
-  return (w | w >> 16) & 0xFFFFFFFFu;
-}
 
 /// A lattice is the volume of the lowest corners of its cells; the points beyond them are outside.
 BitVolume coarser(const BitVolume& fine) {
@@ -93,7 +75,7 @@ struct FineWords {
   /// All eight points of a cell have the sign of its lowest corner.
   static FineWords doubled(std::uint64_t lowest) {
     FineWords f;
-    const std::uint64_t low = spread(lowest), high = spread(lowest >> 32);
+    const std::uint64_t low = spread_bits(lowest), high = spread_bits(lowest >> 32);
     f.word.fill({low | low << 1, high | high << 1});
     return f;
   }

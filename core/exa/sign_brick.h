@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/exa/bit_spread.h"
 #include "core/exa/sign_lattice.h"
 
 namespace dubsar {
@@ -69,7 +70,7 @@ class SignBrick {
         std::uint64_t candidates = low_bits(n[0]);
         if (!parents.empty()) {
           const std::uint64_t parent = parents[static_cast<std::size_t>((z / 2) * (n[1] / 2) + y / 2)];
-          candidates &= spread(parent) | spread(parent) << 1;
+          candidates &= spread_bits(parent) | spread_bits(parent) << 1;
         }
         for (std::uint64_t rest = candidates & ~mixed[at(y, z)]; rest != 0; rest &= rest - 1) {
           const int x = std::countr_zero(rest);
@@ -89,20 +90,10 @@ class SignBrick {
       }
   }
 
-  /// Bit i to bit 2 i, for the lower 32 bits.
-  static std::uint64_t spread(std::uint64_t w) {
-    w &= 0xFFFFFFFFu;
-    w = (w | w << 16) & 0x0000FFFF0000FFFFu;
-    w = (w | w << 8) & 0x00FF00FF00FF00FFu;
-    w = (w | w << 4) & 0x0F0F0F0F0F0F0F0Fu;
-    w = (w | w << 2) & 0x3333333333333333u;
-    return (w | w << 1) & 0x5555555555555555u;
-  }
-
   /// 129 signs of a row.
   using RowSigns = std::array<std::uint64_t, 3>;
   /// Bit i to bit 2 i.
-  static RowSigns doubled(std::uint64_t w) { return {spread(w), spread(w >> 32), 0}; }
+  static RowSigns doubled(std::uint64_t w) { return {spread_bits(w), spread_bits(w >> 32), 0}; }
 
   /// The next finer lattice with the signs that are known: those of this one, and those of inactive cells.
   void refine_without_surface() {

@@ -6,6 +6,7 @@
 
 #include "core/base/budget.h"
 #include "core/base/parallel.h"
+#include "core/exa/bit_spread.h"
 #include "core/exa/sign_coder.h"
 
 namespace dubsar {
@@ -105,14 +106,6 @@ class BrickTruth {
     else if (points < 128)
       bits.high |= ~std::uint64_t{0} << (points - 64);
     return bits;
-  }
-  static std::uint64_t even_bits(std::uint64_t w) {
-    w &= 0x5555555555555555u;
-    w = (w | w >> 1) & 0x3333333333333333u;
-    w = (w | w >> 2) & 0x0F0F0F0F0F0F0F0Fu;
-    w = (w | w >> 4) & 0x00FF00FF00FF00FFu;
-    w = (w | w >> 8) & 0x0000FFFF0000FFFFu;
-    return (w | w >> 16) & 0xFFFFFFFFu;
   }
   std::uint64_t pairs(int y, int z) const {
     RowBits any, all{~std::uint64_t{0}, ~std::uint64_t{0}, true};

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
 
+#include "core/base/file_suffix.h"
 #include "core/base/input_file.h"
 #include "core/image_io/jpeg_file.h"
 #include "core/image_io/png_file.h"
@@ -26,8 +26,7 @@ constexpr std::array<Suffix, 5> kSuffixes{{{".png", PictureFormat::kPng},
 }  // namespace
 
 Result<PictureFormat> picture_format_from_path(const std::filesystem::path& path) {
-  std::string suffix = path.extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string suffix = lower_suffix(path);
   for (const Suffix& known : kSuffixes)
     if (suffix == known.text) return known.format;
   return fail(ErrorKind::kUsage, "cannot write {}: expected a name that ends in .png, .tif or .jpg", path.string());

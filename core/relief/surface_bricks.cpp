@@ -158,127 +158,164 @@ struct BlockLists {
   std::vector<std::uint32_t> triangles;
 };
 
+/// The steps from triangles to bricks.
+class Builder {
+ public:
+  Builder(std::span<const glm::vec3> positions, std::span<const Triangle> triangles, Progress& progress)
+      : positions_(positions), triangles_(triangles), progress_(progress) {}
+
+  Result<SurfaceBricks> run() {
+    SurfaceBricks out;
+    const Box box = bounds();
+    if (!(box.low.x <= box.high.x)) return out;
+    out.origin = origin_ = glm::floor(box.low) - float{kMargin};
+    const glm::vec3 extent = (glm::floor(box.high) - origin_ + float{kMargin + 1}) / float{kBlock};
+    if (extent.x * extent.y * extent.z > 3e7f)
+      return fail(ErrorKind::kTryAgain, "occlusion: a surface of {:.0f} x {:.0f} x {:.0f} voxels is too large to march",
+                  extent.x * kBlock, extent.y * kBlock, extent.z * kBlock);
+    blocks_ = glm::ivec3(glm::ceil(extent));
+    out.size = blocks_ * kBlockBricks;
+    std::vector<BlockOut> found = fill_blocks(lists());
+    if (progress_.cancelled()) return cancelled_error();
+    DUBSAR_TRY(join(found, out));
+    DUBSAR_TRY(measure_away(out, progress_));
+    return out;
+  }
+
+ private:
+  const glm::vec3& corner(std::int64_t t, std::size_t k) const {
+    return positions_[triangles_[static_cast<std::size_t>(t)][k]];
+  }
+  std::int64_t count() const { return static_cast<std::int64_t>(triangles_.size()); }
+  std::size_t block_count() const {
+    return static_cast<std::size_t>(blocks_.x) * static_cast<std::size_t>(blocks_.y) *
+           static_cast<std::size_t>(blocks_.z);
+  }
+  glm::ivec3 place_of(std::size_t block) const {
+    const auto n = static_cast<int>(block);
+    return {n % blocks_.x, n / blocks_.x % blocks_.y, n / (blocks_.x * blocks_.y)};
+  }
+
+  Box bounds() const {
+    return parallel_reduce(
+        count(), 1 << 16, Box{},
+        [&](std::int64_t begin, std::int64_t end) {
+          Box part;
+          for (std::int64_t t = begin; t < end; ++t) {
+            const glm::vec3 &a = corner(t, 0), &b = corner(t, 1), &c = corner(t, 2);
+            if (!usable(a, b, c)) continue;
+            part.low = glm::min(part.low, glm::min(glm::min(a, b), c));
+            part.high = glm::max(part.high, glm::max(glm::max(a, b), c));
+          }
+          return part;
+        },
+        [](const Box& a, const Box& b) {
+          return Box{glm::min(a.low, b.low), glm::max(a.high, b.high)};
+        });
+  }
+
+  /// use(block) for each block that triangle t reaches.
+  template <class Use>
+  void each_block(std::int64_t t, const Use& use) const {
+    const glm::vec3 a = corner(t, 0) - origin_, b = corner(t, 1) - origin_, c = corner(t, 2) - origin_;
+    if (!usable(a, b, c)) return;
+    const BlockRange range = blocks_of(a, b, c, blocks_);
+    for (int z = range.first.z; z <= range.last.z; ++z)
+      for (int y = range.first.y; y <= range.last.y; ++y)
+        for (int x = range.first.x; x <= range.last.x; ++x)
+          use(static_cast<std::size_t>((std::int64_t{z} * blocks_.y + y) * blocks_.x + x));
+  }
+
+  /// Counted, then filled; the order of a block's triangles is left open, and plays no part.
+  BlockLists lists() const {
+    BlockLists out;
+    std::vector<std::atomic<std::int64_t>> fill(block_count());
+    parallel_for(count(), 1 << 14, [&](std::int64_t t) {
+      each_block(t, [&](std::size_t b) { fill[b].fetch_add(1, std::memory_order_relaxed); });
+    });
+    out.first.resize(fill.size() + 1);
+    if (progress_.cancelled()) return out;
+    for (std::size_t b = 0; b < fill.size(); ++b) {
+      out.first[b + 1] = out.first[b] + fill[b].load();
+      fill[b].store(out.first[b]);
+    }
+    out.triangles.resize(static_cast<std::size_t>(out.first.back()));
+    parallel_for(count(), 1 << 14, [&](std::int64_t t) {
+      each_block(t, [&](std::size_t b) {
+        out.triangles[static_cast<std::size_t>(fill[b].fetch_add(1, std::memory_order_relaxed))] =
+            static_cast<std::uint32_t>(t);
+      });
+    });
+    return out;
+  }
+
+  std::vector<BlockOut> fill_blocks(const BlockLists& lists) const {
+    std::vector<BlockOut> out(block_count());
+    parallel_chunks(static_cast<std::int64_t>(out.size()), 16, [&](std::int64_t begin, std::int64_t end) {
+      const auto work = std::make_unique<BlockCorners>();
+      for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
+        if (lists.first[b] == lists.first[b + 1]) continue;
+        if (progress_.cancelled()) return;
+        const glm::vec3 low = origin_ + glm::vec3(kBlock * place_of(b));
+        work->clear();
+        for (std::int64_t i = lists.first[b]; i < lists.first[b + 1]; ++i) {
+          const std::int64_t t = lists.triangles[static_cast<std::size_t>(i)];
+          const glm::vec3 p = corner(t, 0) - low, q = corner(t, 1) - low, r = corner(t, 2) - low;
+          work->add(p, q, r, glm::normalize(glm::cross(q - p, r - p)));
+        }
+        find_bricks(*work, out[b]);
+      }
+    });
+    return out;
+  }
+
+  /// Blocks in their order, each let go when it is copied.
+  Result<void> join(std::vector<BlockOut>& found, SurfaceBricks& out) const {
+    std::vector<std::size_t> first_brick(found.size() + 1), first_corners(found.size() + 1);
+    for (std::size_t b = 0; b < found.size(); ++b) {
+      first_brick[b + 1] = first_brick[b] + found[b].bricks.size();
+      first_corners[b + 1] = first_corners[b] + found[b].corners.size();
+    }
+    constexpr auto kLargest = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
+    if (first_brick.back() > kLargest / sizeof(SurfaceBricks::Brick) ||
+        first_corners.back() > kLargest / sizeof(SurfaceBricks::Corners))
+      return fail(ErrorKind::kTryAgain, "occlusion: a surface through {} cells is too large to march",
+                  first_corners.back());
+    out.bricks.resize(first_brick.back());
+    out.corners.resize(first_corners.back());
+    out.table.assign(found.size() * kBlockBricks * kBlockBricks * kBlockBricks, -1);
+    parallel_for(static_cast<std::int64_t>(found.size()), 64, [&](std::int64_t i) {
+      const auto b = static_cast<std::size_t>(i);
+      std::copy(found[b].corners.begin(), found[b].corners.end(),
+                out.corners.begin() + static_cast<std::ptrdiff_t>(first_corners[b]));
+      for (std::size_t k = 0; k < found[b].bricks.size(); ++k) {
+        const int place = found[b].places[k];
+        const glm::ivec3 at =
+            place_of(b) * kBlockBricks + glm::ivec3(place % kBlockBricks, place / kBlockBricks % kBlockBricks,
+                                                    place / (kBlockBricks * kBlockBricks));
+        SurfaceBricks::Brick brick = found[b].bricks[k];
+        brick.first_cell += static_cast<std::uint32_t>(first_corners[b]);
+        out.bricks[first_brick[b] + k] = brick;
+        out.table[static_cast<std::size_t>((std::int64_t{at.z} * out.size.y + at.y) * out.size.x + at.x)] =
+            static_cast<std::int32_t>(first_brick[b] + k);
+      }
+      found[b] = {};
+    });
+    return {};
+  }
+
+  std::span<const glm::vec3> positions_;
+  std::span<const Triangle> triangles_;
+  Progress& progress_;
+  glm::vec3 origin_{0.0f};
+  glm::ivec3 blocks_{0};
+};
+
 }  // namespace
 
 Result<SurfaceBricks> SurfaceBricks::build(std::span<const glm::vec3> positions, std::span<const Triangle> triangles,
                                            Progress& progress) try {
-  SurfaceBricks out;
-  const auto count = static_cast<std::int64_t>(triangles.size());
-  const auto corner_of = [&](std::int64_t t, std::size_t k) -> const glm::vec3& {
-    return positions[triangles[static_cast<std::size_t>(t)][k]];
-  };
-  const Box box = parallel_reduce(
-      count, 1 << 16, Box{},
-      [&](std::int64_t begin, std::int64_t end) {
-        Box part;
-        for (std::int64_t t = begin; t < end; ++t) {
-          const glm::vec3 &a = corner_of(t, 0), &b = corner_of(t, 1), &c = corner_of(t, 2);
-          if (!usable(a, b, c)) continue;
-          part.low = glm::min(part.low, glm::min(glm::min(a, b), c));
-          part.high = glm::max(part.high, glm::max(glm::max(a, b), c));
-        }
-        return part;
-      },
-      [](const Box& a, const Box& b) {
-        return Box{glm::min(a.low, b.low), glm::max(a.high, b.high)};
-      });
-  if (!(box.low.x <= box.high.x)) return out;
-  out.origin = glm::floor(box.low) - float{kMargin};
-  const glm::vec3 extent = (glm::floor(box.high) - out.origin + float{kMargin + 1}) / float{kBlock};
-  if (extent.x * extent.y * extent.z > 3e7f)
-    return fail(ErrorKind::kTryAgain, "occlusion: a surface of {:.0f} x {:.0f} x {:.0f} voxels is too large to march",
-                extent.x * kBlock, extent.y * kBlock, extent.z * kBlock);
-  const glm::ivec3 blocks(glm::ceil(extent));
-  out.size = blocks * kBlockBricks;
-
-  const auto block_count =
-      static_cast<std::size_t>(blocks.x) * static_cast<std::size_t>(blocks.y) * static_cast<std::size_t>(blocks.z);
-  const auto each_block = [&](std::int64_t t, const auto& use) {
-    const glm::vec3 a = corner_of(t, 0) - out.origin, b = corner_of(t, 1) - out.origin,
-                    c = corner_of(t, 2) - out.origin;
-    if (!usable(a, b, c)) return;
-    const BlockRange range = blocks_of(a, b, c, blocks);
-    for (int z = range.first.z; z <= range.last.z; ++z)
-      for (int y = range.first.y; y <= range.last.y; ++y)
-        for (int x = range.first.x; x <= range.last.x; ++x)
-          use(static_cast<std::size_t>((std::int64_t{z} * blocks.y + y) * blocks.x + x));
-  };
-  BlockLists lists;
-  {
-    std::vector<std::atomic<std::int64_t>> fill(block_count);
-    parallel_for(count, 1 << 14, [&](std::int64_t t) {
-      each_block(t, [&](std::size_t b) { fill[b].fetch_add(1, std::memory_order_relaxed); });
-    });
-    if (progress.cancelled()) return cancelled_error();
-    lists.first.resize(block_count + 1);
-    for (std::size_t b = 0; b < block_count; ++b) {
-      lists.first[b + 1] = lists.first[b] + fill[b].load();
-      fill[b].store(lists.first[b]);
-    }
-    lists.triangles.resize(static_cast<std::size_t>(lists.first.back()));
-    parallel_for(count, 1 << 14, [&](std::int64_t t) {  // their order in a block is left open, and plays no part
-      each_block(t, [&](std::size_t b) {
-        lists.triangles[static_cast<std::size_t>(fill[b].fetch_add(1, std::memory_order_relaxed))] =
-            static_cast<std::uint32_t>(t);
-      });
-    });
-  }
-
-  std::vector<BlockOut> found(block_count);
-  parallel_chunks(static_cast<std::int64_t>(block_count), 16, [&](std::int64_t begin, std::int64_t end) {
-    const auto work = std::make_unique<BlockCorners>();
-    for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
-      if (lists.first[b] == lists.first[b + 1]) continue;
-      if (progress.cancelled()) return;
-      const auto n = static_cast<int>(b);
-      const glm::vec3 corner =
-          out.origin + glm::vec3(kBlock * glm::ivec3(n % blocks.x, n / blocks.x % blocks.y, n / (blocks.x * blocks.y)));
-      work->clear();
-      for (std::int64_t i = lists.first[b]; i < lists.first[b + 1]; ++i) {
-        const std::int64_t t = lists.triangles[static_cast<std::size_t>(i)];
-        const glm::vec3 p = corner_of(t, 0) - corner, q = corner_of(t, 1) - corner, r = corner_of(t, 2) - corner;
-        work->add(p, q, r, glm::normalize(glm::cross(q - p, r - p)));
-      }
-      find_bricks(*work, found[b]);
-    }
-  });
-  if (progress.cancelled()) return cancelled_error();
-  lists = {};
-
-  std::vector<std::size_t> first_brick(block_count + 1), first_corners(block_count + 1);
-  for (std::size_t b = 0; b < block_count; ++b) {
-    first_brick[b + 1] = first_brick[b] + found[b].bricks.size();
-    first_corners[b + 1] = first_corners[b] + found[b].corners.size();
-  }
-  constexpr auto kLargest = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
-  if (first_brick.back() > kLargest / sizeof(Brick) || first_corners.back() > kLargest / sizeof(Corners))
-    return fail(ErrorKind::kTryAgain, "occlusion: a surface through {} cells is too large to march",
-                first_corners.back());
-  // Vectors read 4 bytes at a time: a few more than there are at both ends.
-  out.bricks.reserve(first_brick.back() + 1);
-  out.bricks.resize(first_brick.back());
-  out.corners.resize(first_corners.back());
-  out.table.assign(block_count * kBlockBricks * kBlockBricks * kBlockBricks, -1);
-  parallel_for(static_cast<std::int64_t>(block_count), 64, [&](std::int64_t i) {
-    const auto b = static_cast<std::size_t>(i);
-    const int n = static_cast<int>(i);
-    const glm::ivec3 block(n % blocks.x, n / blocks.x % blocks.y, n / (blocks.x * blocks.y));
-    std::copy(found[b].corners.begin(), found[b].corners.end(),
-              out.corners.begin() + static_cast<std::ptrdiff_t>(first_corners[b]));
-    for (std::size_t k = 0; k < found[b].bricks.size(); ++k) {
-      const int place = found[b].places[k];
-      const glm::ivec3 at = block * kBlockBricks + glm::ivec3(place % kBlockBricks, place / kBlockBricks % kBlockBricks,
-                                                              place / (kBlockBricks * kBlockBricks));
-      Brick brick = found[b].bricks[k];
-      brick.first_cell += static_cast<std::uint32_t>(first_corners[b]);
-      out.bricks[first_brick[b] + k] = brick;
-      out.table[static_cast<std::size_t>((at.z * out.size.y + at.y)) * static_cast<std::size_t>(out.size.x) +
-                static_cast<std::size_t>(at.x)] = static_cast<std::int32_t>(first_brick[b] + k);
-    }
-    found[b] = {};
-  });
-  DUBSAR_TRY(measure_away(out, progress));
-  return out;
+  return Builder(positions, triangles, progress).run();
 } catch (const std::bad_alloc&) {
   return fail(ErrorKind::kTryAgain,
               "occlusion: not enough memory for the cells of {} triangles: close programs or use a "

@@ -60,12 +60,6 @@ TEST_F(ExaFile, LaterVersionsAreRefusedOrSkippedAsTheirNumberSays) {
   }
 }
 
-/// The chunks of a block, for damage behind sums that are repaired.
-std::vector<std::string> chunks_of(const ExaBlock& block) {
-  const auto chunks = split_chunks(block.bytes, block.chunks, "test");
-  return {chunks->begin(), chunks->end()};
-}
-
 TEST_F(ExaFile, DamageBehindRepairedSumsNeverCrashes) {
   for (const bool settled : {false, true}) {
     SurfaceModel model = sample_model({14, 9, 10}, Kind::kNoise, 6);
@@ -77,19 +71,7 @@ TEST_F(ExaFile, DamageBehindRepairedSumsNeverCrashes) {
     int accepted = 0;
     for (int round = 0; round < 500; ++round) {
       std::vector<ExaBlock> damaged = blocks;
-      ExaBlock& block = damaged[random() % damaged.size()];
-      std::vector<std::string> chunks = chunks_of(block);
-      std::string& bytes = chunks[random() % chunks.size()];
-      if (bytes.empty()) continue;
-      if (round % 3 == 0)
-        bytes[random() % bytes.size()] ^= static_cast<char>(1u << random() % 8);
-      else if (round % 3 == 1)
-        bytes.resize(random() % bytes.size());
-      else
-        bytes.insert(random() % bytes.size(), std::string(1 + random() % 9, static_cast<char>(random())));
-      if (round % 50 == 0) chunks.pop_back();
-      block.chunks = static_cast<std::uint32_t>(chunks.size());
-      block.bytes = join_chunks(chunks);
+      if (!damage_a_chunk(damaged, round, random)) continue;
       const auto read = decode_exa(file_of(damaged), progress_);
       if (!read) {
         ASSERT_TRUE(read.error().kind == ErrorKind::kBadData || read.error().kind == ErrorKind::kTryAgain)

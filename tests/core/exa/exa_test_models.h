@@ -140,4 +140,30 @@ class ExaFile : public ::testing::Test {
   SilentProgress progress_;
 };
 
+/// The chunks of a block, for damage behind sums that are repaired.
+inline std::vector<std::string> chunks_of(const ExaBlock& block) {
+  const auto chunks = split_chunks(block.bytes, block.chunks, "test");
+  return {chunks->begin(), chunks->end()};
+}
+
+/// Changes, cuts or lengthens a chunk of one of the blocks, and takes one away every 50th round; the sums are right
+/// afterwards. False when what was drawn is empty.
+inline bool damage_a_chunk(std::vector<ExaBlock>& blocks, int round, std::mt19937& random) {
+  ExaBlock& block = blocks[random() % blocks.size()];
+  std::vector<std::string> chunks = chunks_of(block);
+  if (chunks.empty()) return false;  // no face is ambiguous
+  std::string& bytes = chunks[random() % chunks.size()];
+  if (bytes.empty()) return false;
+  if (round % 3 == 0)
+    bytes[random() % bytes.size()] ^= static_cast<char>(1u << random() % 8);
+  else if (round % 3 == 1)
+    bytes.resize(random() % bytes.size());
+  else
+    bytes.insert(random() % bytes.size(), std::string(1 + random() % 9, static_cast<char>(random())));
+  if (round % 50 == 0) chunks.pop_back();
+  block.chunks = static_cast<std::uint32_t>(chunks.size());
+  block.bytes = join_chunks(chunks);
+  return true;
+}
+
 }  // namespace dubsar

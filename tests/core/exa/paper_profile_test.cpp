@@ -4,19 +4,12 @@
 #include "core/exa/paper_words.h"
 #include "core/exa/topology.h"
 #include "tests/core/exa/exa_test_models.h"
+#include "tests/core/exa/sign_volume.h"
 
 namespace dubsar {
 namespace {
 using ::testing::HasSubstr;
 
-template <class Inside>
-BitVolume volume(const Dims& dims, const Inside& inside) {
-  BitVolume signs(dims);
-  for (std::int64_t z = 0; z < dims.z; ++z)
-    for (std::int64_t y = 0; y < dims.y; ++y)
-      for (std::int64_t x = 0; x < dims.x; ++x) signs.set(x, y, z, inside(x, y, z));
-  return signs;
-}
 std::vector<std::string_view> views_of(const std::vector<std::string>& chunks) {
   return {chunks.begin(), chunks.end()};
 }
@@ -157,21 +150,7 @@ TEST_F(ExaFile, DamageOfThePapersProfileIsRefusedOrGivesTheSameMesh) {
   int refused = 0;
   for (int round = 0; round < 800; ++round) {
     std::vector<ExaBlock> damaged = blocks;
-    ExaBlock& block = damaged[random() % damaged.size()];
-    const auto parts = split_chunks(block.bytes, block.chunks, "test");
-    std::vector<std::string> chunks(parts->begin(), parts->end());
-    if (chunks.empty()) continue;  // no face is ambiguous
-    std::string& bytes = chunks[random() % chunks.size()];
-    if (bytes.empty()) continue;
-    if (round % 3 == 0)
-      bytes[random() % bytes.size()] ^= static_cast<char>(1u << random() % 8);
-    else if (round % 3 == 1)
-      bytes.resize(random() % bytes.size());
-    else
-      bytes.insert(random() % bytes.size(), std::string(1 + random() % 9, static_cast<char>(random())));
-    if (round % 50 == 0) chunks.pop_back();
-    block.chunks = static_cast<std::uint32_t>(chunks.size());
-    block.bytes = join_chunks(chunks);
+    if (!damage_a_chunk(damaged, round, random)) continue;
     const auto read = decode_exa(file_of(damaged), progress_);
     if (!read) {
       ASSERT_TRUE(read.error().kind == ErrorKind::kBadData || read.error().kind == ErrorKind::kTryAgain)

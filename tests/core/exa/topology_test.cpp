@@ -6,18 +6,10 @@
 #include <random>
 
 #include "core/base/parallel.h"
+#include "tests/core/exa/sign_volume.h"
 
 namespace dubsar {
 namespace {
-
-template <class Inside>
-BitVolume volume(const Dims& dims, const Inside& inside) {
-  BitVolume signs(dims);
-  for (std::int64_t z = 0; z < dims.z; ++z)
-    for (std::int64_t y = 0; y < dims.y; ++y)
-      for (std::int64_t x = 0; x < dims.x; ++x) signs.set(x, y, z, inside(x, y, z));
-  return signs;
-}
 
 BitVolume sphere(std::int64_t n) {
   const double c = 0.5 * static_cast<double>(n - 1);
