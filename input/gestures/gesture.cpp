@@ -43,9 +43,10 @@ void GestureRecognizer::update(TimestampNs now, const HandFrame* hand) {
   const bool may_begin = now - *came_ >= options_.cooldown_ns;
   stillness_.update(now, position_m_);
   const TimestampNs still_ns = stillness_.still_for(now);
-  const bool at_signs = position_m_.x >= options_.signs_from_x_m && position_m_.y >= options_.signs_from_y_m;
-  const bool acts = may_begin && !at_signs && position_m_.z <= options_.acts_to_z_m;
-  const bool within = std::max(std::abs(position_m_.x), std::abs(position_m_.y)) <= options_.swipes_within_m;
+  const bool at_signs =
+      position_m_.x >= options_.place.signs_from_x_m && position_m_.y >= options_.place.signs_from_y_m;
+  const bool acts = may_begin && !at_signs && position_m_.z <= options_.place.acts_to_z_m;
+  const bool within = std::max(std::abs(position_m_.x), std::abs(position_m_.y)) <= options_.swipe.within_m;
   grip_.update({now, since_ns, glm::length(velocity_mps_), still_ns, acts}, *hand, options_, events_);
   const bool free = may_begin && !grip_.holds();
   if (const auto swiped = swipe_.update(

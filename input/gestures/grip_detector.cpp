@@ -35,12 +35,12 @@ GripDetector::Closing GripDetector::judge(const Moment& moment, const GestureOpt
     since = -1;
     return Closing::kOpen;
   }
-  if (moment.still_ns < options.grab_still_ns) {
+  if (moment.still_ns < options.grab.still_ns) {
     since = -1;
     return Closing::kOnItsWay;
   }
   if (since < 0) since = moment.now;
-  return moment.now - since >= options.grab_sure_ns ? Closing::kSure : Closing::kPerhaps;
+  return moment.now - since >= options.grab.sure_ns ? Closing::kSure : Closing::kPerhaps;
 }
 
 void GripDetector::grab(const Moment& moment, const HandFrame& hand, const GestureOptions& options,
@@ -49,19 +49,19 @@ void GripDetector::grab(const Moment& moment, const HandFrame& hand, const Gestu
   if (grabbing_) {
     closest_grab_ = std::max(closest_grab_, grab);
     const bool lets_go =
-        closest_grab_ >= options.grab_on ? grab <= options.grab_off : grab <= closest_grab_ - options.grab_let_go;
+        closest_grab_ >= options.grab.on ? grab <= options.grab.off : grab <= closest_grab_ - options.grab.let_go;
     if (!lets_go) opened_since_ = -1;
     if (lets_go && opened_since_ < 0) opened_since_ = moment.now;
-    if (lets_go && moment.now - opened_since_ >= options.grab_open_ns) {
+    if (lets_go && moment.now - opened_since_ >= options.grab.open_ns) {
       grabbing_ = false;
       open_grab_ = grab;
       pinch_armed_ = false;  // the fingers of an opening fist pass through a pinch
       events.push_back({moment.now, GestureKind::kGrab, GesturePhase::kEnd});
     }
   } else {
-    const bool gently = grab >= options.grab_gentle && grab - open_grab_ >= options.grab_rise && !points(hand) &&
-                        moment.speed_mps <= options.grab_rest_mps;
-    const bool closed = moment.may_begin && grab_armed_ && (grab >= options.grab_on || gently);
+    const bool gently = grab >= options.grab.gentle && grab - open_grab_ >= options.grab.rise && !points(hand) &&
+                        moment.speed_mps <= options.grab.rest_mps;
+    const bool closed = moment.may_begin && grab_armed_ && (grab >= options.grab.on || gently);
     const Closing closing = judge(moment, options, closed, closed_since_);
     if (closing == Closing::kOpen)
       open_grab_ = std::min(grab, open_grab_ + kForgetsOpen_per_s * 1e-9 * static_cast<double>(moment.since_ns));
@@ -78,19 +78,19 @@ void GripDetector::grab(const Moment& moment, const HandFrame& hand, const Gestu
       events.push_back({moment.now, GestureKind::kGrab, GesturePhase::kBegin});
     }
   }
-  if (grab <= (options.grab_still_ns > 0 ? options.grab_gentle : options.grab_off)) grab_armed_ = true;
+  if (grab <= (options.grab.still_ns > 0 ? options.grab.gentle : options.grab.off)) grab_armed_ = true;
 }
 
 void GripDetector::pinch(const Moment& moment, const HandFrame& hand, const GestureOptions& options,
                          std::vector<GestureEvent>& events) {
   if (pinching_) {
-    if (hand.pinch_distance_m >= options.pinch_off_m) {
+    if (hand.pinch_distance_m >= options.pinch.off_m) {
       pinching_ = false;
       events.push_back({moment.now, GestureKind::kPinch, GesturePhase::kEnd});
     }
   } else {
-    const bool closed = moment.may_begin && pinch_armed_ && hand.pinch_distance_m <= options.pinch_on_m &&
-                        hand.grab_strength <= options.grab_off;
+    const bool closed = moment.may_begin && pinch_armed_ && hand.pinch_distance_m <= options.pinch.on_m &&
+                        hand.grab_strength <= options.grab.off;
     const Closing closing = judge(moment, options, closed, pinched_since_);
     if (closing == Closing::kOnItsWay || closing == Closing::kSure) pinch_armed_ = false;
     if (closing == Closing::kSure) {
@@ -98,7 +98,7 @@ void GripDetector::pinch(const Moment& moment, const HandFrame& hand, const Gest
       events.push_back({moment.now, GestureKind::kPinch, GesturePhase::kBegin});
     }
   }
-  if (hand.pinch_distance_m >= options.pinch_off_m) pinch_armed_ = true;
+  if (hand.pinch_distance_m >= options.pinch.off_m) pinch_armed_ = true;
 }
 
 void GripDetector::update(const Moment& moment, const HandFrame& hand, const GestureOptions& options,

@@ -20,7 +20,7 @@ SwipeDirection direction_of(int axis, double sign) {
 }  // namespace
 
 std::optional<SwipeDirection> SwipeDetector::update(const Moment& moment, const GestureOptions& options) {
-  return options.swipe_still_ns > 0 ? at_its_end(moment, options) : on_the_way(moment, options);
+  return options.swipe.still_ns > 0 ? at_its_end(moment, options) : on_the_way(moment, options);
 }
 
 /// From rest, to one side, to rest again: neither a hand that comes nor one that leaves does that.
@@ -30,17 +30,17 @@ std::optional<SwipeDirection> SwipeDetector::at_its_end(const Moment& moment, co
     return std::nullopt;
   }
   const double speed = glm::length(moment.velocity_mps);
-  const bool brisk = peak_mps_ >= kBrisk * options.swipe_mps && speed <= 0.5 * peak_mps_;
-  if (from_m_ && peak_mps_ >= options.swipe_mps && (brisk || moment.still_ns >= kSettled)) {  // it came to its end
+  const bool brisk = peak_mps_ >= kBrisk * options.swipe.fast_mps && speed <= 0.5 * peak_mps_;
+  if (from_m_ && peak_mps_ >= options.swipe.fast_mps && (brisk || moment.still_ns >= kSettled)) {  // it came to its end
     const glm::dvec3 way = moment.at_m - *from_m_;
     const int axis = std::abs(way.x) >= std::abs(way.y) ? 0 : 1;
     const double along = std::abs(way[axis]);
-    const bool swiped = along >= options.swipe_travel_m && std::abs(way[1 - axis]) <= kSlanted * along &&
+    const bool swiped = along >= options.swipe.travel_m && std::abs(way[1 - axis]) <= kSlanted * along &&
                         std::abs(way.z) <= kDeep * along && moment.closing <= kOpen && moment.now - left_ <= kLongest;
     from_m_.reset();
     if (swiped) return direction_of(axis, way[axis]);
   }
-  if (moment.still_ns >= options.swipe_still_ns) {
+  if (moment.still_ns >= options.swipe.still_ns) {
     from_m_ = moment.at_m;
     left_ = moment.now;
     peak_mps_ = 0.0;
@@ -55,8 +55,8 @@ std::optional<SwipeDirection> SwipeDetector::on_the_way(const Moment& moment, co
   const glm::dvec3 &at_m = moment.at_m, &velocity_mps = moment.velocity_mps;
   if (swiped_) {
     const double along = velocity_mps[axis_] * sign_;
-    if (std::abs(along) < options.swipe_end_mps) ended_ = true;
-    if (std::abs(along) >= options.swipe_opposing_mps) slow_since_ = now;
+    if (std::abs(along) < options.swipe.end_mps) ended_ = true;
+    if (std::abs(along) >= options.swipe.opposing_mps) slow_since_ = now;
     if (now - slow_since_ >= kRest) rested_ = true;  // a hand that turns round is slow for a moment only
   }
   if (!moment.may_begin) {
@@ -65,15 +65,15 @@ std::optional<SwipeDirection> SwipeDetector::on_the_way(const Moment& moment, co
   }
   const int axis = std::abs(velocity_mps.x) >= std::abs(velocity_mps.y) ? 0 : 1;
   const double speed = std::abs(velocity_mps[axis]), sign = velocity_mps[axis] < 0 ? -1.0 : 1.0;
-  const bool fast = speed > options.swipe_mps && std::abs(velocity_mps[1 - axis]) < options.swipe_lateral_mps &&
-                    std::abs(velocity_mps.z) < options.swipe_lateral_mps;
+  const bool fast = speed > options.swipe.fast_mps && std::abs(velocity_mps[1 - axis]) < options.swipe.lateral_mps &&
+                    std::abs(velocity_mps.z) < options.swipe.lateral_mps;
   if (!fast) {
     from_m_.reset();
     return std::nullopt;
   }
   if (!from_m_) from_m_ = at_m;
-  if (std::abs((at_m - *from_m_)[axis]) < options.swipe_travel_m) return std::nullopt;
-  if (swiped_ && (now - *swiped_ < options.swipe_lockout_ns || !ended_)) return std::nullopt;
+  if (std::abs((at_m - *from_m_)[axis]) < options.swipe.travel_m) return std::nullopt;
+  if (swiped_ && (now - *swiped_ < options.swipe.lockout_ns || !ended_)) return std::nullopt;
   // The hand that comes back after a swipe is not a swipe to the other side: it must have rested first.
   if (swiped_ && axis == axis_ && sign != sign_ && !rested_) return std::nullopt;
   swiped_ = slow_since_ = now;

@@ -69,14 +69,14 @@ HandPull HandHold::follow_one(const GestureRecognizer& hand, const Mapping& mapp
   const glm::dvec3 moved = hand.position_m() - anchor_m_;
   const double sideways = std::hypot(moved.x, moved.y);
   const bool deep = std::abs(moved.z) > kPullsRatherThanTurns * sideways;
-  if (!past_dead_zone_ && may_pull && !pulls_) pulls_ = std::abs(moved.z) >= mapping.gestures.pull_start_m && deep;
+  if (!past_dead_zone_ && may_pull && !pulls_) pulls_ = std::abs(moved.z) >= mapping.gestures.held.pull_start_m && deep;
   if (pulls_) {
     if (past_dead_zone_) out.zoom = kPullPerMetre * moved.z;
     past_dead_zone_ = true;
     anchor_m_ = hand.position_m();
     return out;
   }
-  if (!past_dead_zone_ && grabs && sideways < mapping.gestures.drag_start_m) return out;
+  if (!past_dead_zone_ && grabs && sideways < mapping.gestures.held.drag_start_m) return out;
   if (!past_dead_zone_ && may_pull && deep) return out;  // not decided yet
   anchor_m_ = hand.position_m();
   if (std::exchange(past_dead_zone_, true) || !grabs) out.dragged_m = glm::dvec2(moved);
@@ -90,7 +90,7 @@ HandPull HandHold::follow_two(const Hands& hands, const Mapping& mapping) {
   const double span = glm::length(between);
   if (span < kShortestSpanM) return out;
   const double turned = std::remainder(std::atan2(between.y, between.x) - angle_rad_, 2.0 * std::numbers::pi);
-  if (!zooms_ && std::abs(span - span_m_) >= mapping.gestures.drag_start_m) {
+  if (!zooms_ && std::abs(span - span_m_) >= mapping.gestures.held.drag_start_m) {
     zooms_ = true;
     span_m_ = span;
   } else if (zooms_) {
@@ -98,7 +98,7 @@ HandPull HandHold::follow_two(const Hands& hands, const Mapping& mapping) {
     span_m_ = span;
   }
   if (mapping.hands.two_hands != Action::kZoomAndRoll) return out;
-  if (!rolls_ && std::abs(turned) >= mapping.gestures.roll_start_rad) {
+  if (!rolls_ && std::abs(turned) >= mapping.gestures.held.roll_start_rad) {
     rolls_ = true;
     angle_rad_ += turned;
   } else if (rolls_) {

@@ -14,7 +14,7 @@ constexpr TimestampNs kMs = 1'000'000, kStep = 10 * kMs;
 /// Fists only.
 GestureOptions firm() {
   GestureOptions options;
-  options.grab_gentle = 2.0;
+  options.grab.gentle = 2.0;
   return options;
 }
 

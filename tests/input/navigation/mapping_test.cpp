@@ -21,11 +21,11 @@ TEST(Mapping, DefaultHasThePapersMouseAndTheShippedGestureFigures) {
   EXPECT_EQ(chord_action(m.mouse, kControl, "left"), Action::kZoom);
   EXPECT_EQ(chord_action(m.mouse, kShift | kControl, "left"), Action::kNone);
   const GestureOptions figures;  // gesture_options.h has the same figures
-  EXPECT_EQ(m.gestures.grab_on, figures.grab_on);
-  EXPECT_EQ(m.gestures.grab_off, figures.grab_off);
-  EXPECT_DOUBLE_EQ(m.gestures.pinch_on_m, figures.pinch_on_m);
-  EXPECT_DOUBLE_EQ(m.gestures.pinch_off_m, figures.pinch_off_m);
-  EXPECT_DOUBLE_EQ(m.gestures.swipe_mps, figures.swipe_mps);
+  EXPECT_EQ(m.gestures.grab.on, figures.grab.on);
+  EXPECT_EQ(m.gestures.grab.off, figures.grab.off);
+  EXPECT_DOUBLE_EQ(m.gestures.pinch.on_m, figures.pinch.on_m);
+  EXPECT_DOUBLE_EQ(m.gestures.pinch.off_m, figures.pinch.off_m);
+  EXPECT_DOUBLE_EQ(m.gestures.swipe.fast_mps, figures.swipe.fast_mps);
   EXPECT_EQ(m.gestures.cooldown_ns, figures.cooldown_ns);
   EXPECT_EQ(m.priority.size(), 4u);
 }
