@@ -24,7 +24,7 @@ struct MadeFrame {
   int layers = 0;
   std::array<MadePose, 2> poses{};
   std::array<std::array<float, 4>, 2> fov{};          ///< left, right, up, down
-  std::array<double, 2> light{};                      ///< mean of the red bytes
+  std::array<std::vector<std::uint8_t>, 2> red{};     ///< the eyes' pictures, rows from below
   std::array<std::optional<glm::dvec2>, 2> bright{};  ///< mean place of pixels lighter than half, from the lower left
 };
 

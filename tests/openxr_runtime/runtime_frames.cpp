@@ -82,23 +82,22 @@ XrResult XRAPI_CALL release_image(XrSwapchain swapchain, const XrSwapchainImageR
   return XR_SUCCESS;
 }
 
-/// Mean of the picture's red, and mean place of pixels that are lighter than half, from the lower left.
-void look_at(const MadeSwapchain& chain, double& light, std::optional<glm::dvec2>& bright) {
+/// The picture's red, and mean place of pixels that are lighter than half, from the lower left.
+void look_at(const MadeSwapchain& chain, std::vector<std::uint8_t>& red, std::optional<glm::dvec2>& bright) {
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(chain.width) * chain.height * 4);
   glGetTextureImage(chain.textures[static_cast<std::size_t>(chain.shown)], 0, GL_RGBA, GL_UNSIGNED_BYTE,
                     static_cast<GLsizei>(pixels.size()), pixels.data());
   glm::dvec2 sum(0.0);
   int count = 0;
-  double red = 0.0;
+  red.reserve(pixels.size() / 4);
   for (int y = 0; y < chain.height; ++y)
     for (int x = 0; x < chain.width; ++x) {
       const std::uint8_t value = pixels[4 * (static_cast<std::size_t>(y) * chain.width + x)];
-      red += value;
+      red.push_back(value);
       if (value <= 127) continue;
       sum += glm::dvec2(x + 0.5, y + 0.5);
       ++count;
     }
-  light = red / (static_cast<double>(chain.width) * chain.height);
   bright = count == 0 ? std::nullopt : std::optional(sum / static_cast<double>(count));
 }
 
@@ -126,7 +125,7 @@ XrResult XRAPI_CALL end_frame(XrSession, const XrFrameEndInfo* info) {
       frame.fov[eye] = {view.fov.angleLeft, view.fov.angleRight, view.fov.angleUp, view.fov.angleDown};
       const auto chain = s.swapchains.find(id_of(view.subImage.swapchain));
       if (chain == s.swapchains.end() || chain->second.acquired || chain->second.shown < 0) return wrong();
-      if (s.headset.read_pictures) look_at(chain->second, frame.light[eye], frame.bright[eye]);
+      if (s.headset.read_pictures) look_at(chain->second, frame.red[eye], frame.bright[eye]);
     }
   }
   s.headset.frames.push_back(frame);

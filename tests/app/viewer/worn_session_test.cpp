@@ -1,5 +1,6 @@
 // A whole session on a head: the wearer looks around and turns the tablet with a hand, in the made OpenXR runtime.
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -60,6 +61,53 @@ TEST_F(WornSession, AHandThatGrabsAndMovesTurnsTheTabletAndTheHeadLooksAround) {
       ASSERT_LE(turn * 180.0 / std::numbers::pi, 0.2);
       ASSERT_NEAR(glm::distance(head.position, pose.position), 0.032, 1e-3);
     }
+  }
+}
+
+/// What a frame shows an eye otherwise than another does, pixels from the lower left.
+struct Changed {
+  int left = testing::kMadeEyePx, right = 0, bottom = testing::kMadeEyePx, top = 0;
+};
+Changed changed(const std::vector<std::uint8_t>& from, const std::vector<std::uint8_t>& to) {
+  Changed out;
+  for (int y = 0; y < testing::kMadeEyePx; ++y)
+    for (int x = 0; x < testing::kMadeEyePx; ++x) {
+      const auto at = static_cast<std::size_t>(y * testing::kMadeEyePx + x);
+      if (from[at] == to[at]) continue;
+      out = {std::min(out.left, x), std::max(out.right, x + 1), std::min(out.bottom, y), std::max(out.top, y + 1)};
+    }
+  return out;
+}
+
+TEST_F(WornSession, HelpStandsInTheRoomBehindTheObjectForBothEyesAndGoesAgain) {
+  made_->read_pictures = true;
+  options_.time.longest_s = 3.0;
+  options_.steps = {{1.0, "help"}, {2.0, "help"}};
+  std::vector<bool> help;
+  const auto done = run_view(testing::lettered_box(), options_, progress_,
+                             [&](const ViewMoment& m) { help.push_back(m.viewer.desk().help); });
+  ASSERT_TRUE(done) << done.error().message;
+  ASSERT_EQ(std::count(help.begin(), help.end(), true), 30);
+  const auto& frames = made_->frames;
+  ASSERT_GT(frames.size(), 80u);
+  const auto frame = [&](double part) -> const testing::MadeFrame& {
+    return frames[static_cast<std::size_t>(part * static_cast<double>(frames.size()))];
+  };
+  // The object's middle is half a metre before the eyes and 35 cm under them. The page, 800 x 600 mm, stands 25 cm
+  // behind it, its lower edge as high as its middle.
+  for (const std::size_t eye : {0u, 1u}) {
+    const auto& fov = frame(0.5).fov[eye];
+    const auto pixel = [&](double along_m, float low, float high) {
+      return testing::kMadeEyePx * (along_m / 0.75 - std::tan(low)) / (std::tan(high) - std::tan(low));
+    };
+    const double aside = eye == 0 ? 0.032 : -0.032;
+    const Changed page = changed(frame(0.2).red[eye], frame(0.5).red[eye]);
+    EXPECT_NEAR(page.left, pixel(-0.4 + aside, fov[0], fov[1]), 4.0) << eye;
+    EXPECT_NEAR(page.right, pixel(0.4 + aside, fov[0], fov[1]), 4.0) << eye;
+    EXPECT_NEAR(page.top, pixel(0.6 - 0.35, fov[3], fov[2]), 4.0) << eye;
+    EXPECT_GE(page.bottom, pixel(-0.35, fov[3], fov[2]) - 1.0) << eye;
+    EXPECT_LT(page.bottom, pixel(-0.05, fov[3], fov[2])) << eye << ": the page has text";
+    EXPECT_EQ(frame(0.9).red[eye], frame(0.2).red[eye]) << eye << ": nothing of it is left";
   }
 }
 
