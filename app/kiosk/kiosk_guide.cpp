@@ -69,10 +69,12 @@ void KioskGuide::begin_object() {
 }
 
 bool KioskGuide::takes(const InputEvent& event, TimestampNs now) {
+  if (event.kind == EventKind::kButton && event.down && event.at)
+    asked_.press = *event.at * glm::dvec2(1.0 / asked_.aspect, 1.0);
   if (event.kind != EventKind::kKey) return false;  // a finger or a mouse may turn the object as a hand does
   const bool plain = (event.modifiers & (kControl | kAlt)) == 0;
   if (event.down && !event.repeat && plain)
-    if (const auto wish = menu_.key(event.key, now)) wishes_.push_back(*wish);
+    if (const auto wish = menu_.key(event.key, now)) asked_.wishes.push_back(*wish);
   return true;
 }
 
@@ -99,6 +101,7 @@ VisitMoment KioskGuide::notice(const GuideMoment& moment) {
   }
   out.swiped = steered.swiped;
   out.can_open = can_unpack(moment.document);
+  out.toured = tour_.walks();
   view_ = steered.view;
   return out;
 }
@@ -116,6 +119,8 @@ void KioskGuide::obey(OperatorWish wish, Guidance& out) {
       break;
     case OperatorWish::kReset:
       motion_.unpack_goal = 0.0;
+      tour_.leave();
+      tour_.forget();
       out.commands.emplace_back("reset");
       break;
     case OperatorWish::kRetryDevices:
@@ -135,11 +140,17 @@ void KioskGuide::obey(OperatorWish wish, Guidance& out) {
 /// Signs that hands may rest on, and what they chose.
 std::optional<Sign> KioskGuide::choose(const GuideMoment& moment) {
   std::vector<Sign> shown;
-  if (phase_ == VisitPhase::kFree || (phase_ == VisitPhase::kArrived && motion_.unpack_goal > 0.5)) {
+  const bool there = phase_ == VisitPhase::kFree || phase_ == VisitPhase::kArrived;
+  if (tour_.walks()) {
+    shown = {Sign::kNext, Sign::kLeave};
+  } else if (tour_.settling()) {  // not while things move
+  } else if (phase_ == VisitPhase::kFree || (phase_ == VisitPhase::kArrived && motion_.unpack_goal > 0.5)) {
     if (can_unpack(moment.document) && motion_.unpack == motion_.unpack_goal)  // not while it moves
       shown.push_back(motion_.unpack_goal > 0.5 ? Sign::kClose : Sign::kOpen);
   }
-  const double aspect = moment.window_mm.x / moment.window_mm.y;
+  if (there && tour_.any() && !tour_.walks() && !tour_.settling() && motion_.unpack == motion_.unpack_goal)
+    shown.push_back(Sign::kTour);
+  const double aspect = asked_.aspect = moment.window_mm.x / moment.window_mm.y;
   signs_ = place_signs(shown, aspect);
   std::vector<SignHand> hands;
   const RingStage stage{parts_.zone, moment.window_mm, moment.middle_mm};
@@ -147,10 +158,68 @@ std::optional<Sign> KioskGuide::choose(const GuideMoment& moment) {
     if (hand.state <= HandState::kFist)
       hands.push_back({(glm::dvec2(ring_place_mm(stage, hand.place_m)) - moment.middle_mm) / moment.window_mm,
                        hand.state == HandState::kReady});
-  const auto chosen = rest_.update(moment.now, hands, signs_, aspect);
+  auto chosen = rest_.update(moment.now, hands, signs_, aspect);
   for (SignPicture& sign : signs_) sign.filled = rest_.filled(sign.sign);
-  if (chosen == Sign::kOpen || chosen == Sign::kClose) motion_.unpack_goal = chosen == Sign::kOpen ? 1.0 : 0.0;
+  if (const auto press = std::exchange(asked_.press, {}); press && !chosen) chosen = sign_at(*press, signs_, aspect);
+  if (chosen) take_sign(*chosen, moment);
   return chosen;
+}
+
+void KioskGuide::take_sign(Sign sign, const GuideMoment& moment) {
+  switch (sign) {
+    case Sign::kOpen:
+    case Sign::kClose:
+      motion_.unpack_goal = sign == Sign::kOpen ? 1.0 : 0.0;
+      break;
+    case Sign::kTour: {
+      Keyframe now = keyframe_of(moment.document, 0.0);
+      now.camera = {moment.steered.view.rotation, moment.steered.view.zoom, moment.steered.view.pan};
+      now.light = {moment.steered.view.light_azimuth_deg, moment.steered.view.light_elevation_deg};
+      tour_.go(now);
+      ++told_.tours;
+      write("tour", fmt::format("\"step\": {}", tour_.at() + 1));
+      break;
+    }
+    case Sign::kNext:
+      tour_.next();
+      break;
+    case Sign::kLeave:
+      tour_.leave();
+      break;
+  }
+}
+
+/// What a tour shows now. A hand that takes hold leaves it where it is.
+void KioskGuide::walk(const GuideMoment& moment, Guidance& out) {
+  const std::vector<HandMark>& hands = moment.steered.hands;
+  const bool held =
+      moment.steered.control == Control::kMouse ||
+      std::any_of(hands.begin(), hands.end(), [](const HandMark& hand) { return hand.state == HandState::kHolding; });
+  if (held) tour_.leave();
+  if (moment.steered.swiped) tour_.next();
+  const auto now = tour_.update(moment.now);
+  if (!now) return;
+  GuidedScene scene{now->frame, now->camera, now->settles};
+  if (const TourStep* const step = tour_.step())
+    for (const TourLabel& label : step->labels)
+      scene.notes.push_back(
+          {label.part, {}, std::string(text_in(label.text, language())), label.at_mm, label.normal, {}, {}});
+  out.scene = std::move(scene);
+  if (!now->settles) return;
+  view_.reset();  // what the tour turned no hand has turned
+  motion_.unpack = motion_.unpack_goal = now->frame.unpack > 0.5 ? 1.0 : 0.0;
+}
+
+/// The tour of the object that is shown from now on.
+void KioskGuide::begin_tour(const GuideMoment& moment) {
+  const Document& document = moment.document;
+  Keyframe home = keyframe_of(document, 0.0);
+  home.camera = document.home;
+  home.light = document.home_light;
+  motion_.begun = true;
+  if (object_ < parts_.profile.objects.size() && !parts_.profile.objects[object_].toured) return tour_.begin({}, home);
+  const bool own = object_ < parts_.tours.size() && !parts_.tours[object_].steps.empty();
+  tour_.begin(own ? parts_.tours[object_] : default_tour(document, parts_.words), home);
 }
 
 /// What goes on by itself: the sway of an object that nobody holds, the envelope, the light of the room.
@@ -168,9 +237,11 @@ void KioskGuide::move_on(const GuideMoment& moment, const VisitPicture& visit, G
 
   if (visit.reset) {
     motion_.unpack_goal = 0.0;
+    tour_.forget();
     out.commands.emplace_back("reset");
   }
-  const double unpack = towards(motion_.unpack, motion_.unpack_goal, dt / kUnpackS);
+  const bool toured = tour_.walks() || tour_.settling();  // the envelope is the tour's
+  const double unpack = toured ? motion_.unpack : towards(motion_.unpack, motion_.unpack_goal, dt / kUnpackS);
   if (unpack != motion_.unpack && can_unpack(moment.document)) {
     const double smooth = unpack * unpack * (3.0 - 2.0 * unpack);
     out.commands.push_back(fmt::format("unpack {:.3f}", 100.0 * smooth));
@@ -190,6 +261,13 @@ GalleryPicture KioskGuide::picture(const VisitPicture& visit) const {
   out.right_to_left = Words::right_to_left(spoken);
   out.lesson = visit.lesson;
   out.lesson_s = visit.lesson_s;
+  if (const TourStep* const step = tour_.step()) {
+    out.title = text_in(step->title, spoken);
+    out.line = text_in(step->text, spoken);
+    out.lesson.reset();
+    out.step = tour_.at() + 1;
+    out.steps = tour_.steps();
+  }
   if (visit.phase == VisitPhase::kAttract && object_ < parts_.profile.objects.size())
     out.title = text_in(parts_.profile.objects[object_].title, spoken);
   out.letter_mm = letter_height_mm(parts_.profile.reading_distance_m);
@@ -209,7 +287,8 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
     menu_.file_present(std::filesystem::exists(parts_.profile.key_file, error), moment.now);
   }
   told_.looked = wall.unix_s;
-  for (const OperatorWish wish : std::exchange(wishes_, {})) obey(wish, out);
+  for (const OperatorWish wish : std::exchange(asked_.wishes, {})) obey(wish, out);
+  if (!motion_.begun) begin_tour(moment);
   VisitMoment noticed = notice(moment);
   const auto chosen = choose(moment);
   noticed.chose_open = chosen == Sign::kOpen || chosen == Sign::kClose;
@@ -220,14 +299,16 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
   if (const std::int64_t hour = wall.unix_s / 3600; hour != told_.hour) {
     if (told_.hour >= 0) {
       const Visit::Counts& counts = visit_.counts();
-      write("hour", fmt::format("\"visits\": {}, \"resets\": {}, \"turned\": {}, \"zoomed\": {}, \"opened\": {}",
-                                counts.visits, counts.resets, counts.done[static_cast<std::size_t>(Lesson::kTurn)],
-                                counts.done[static_cast<std::size_t>(Lesson::kTwoHands)],
-                                counts.done[static_cast<std::size_t>(Lesson::kRest)]));
+      write("hour",
+            fmt::format("\"visits\": {}, \"resets\": {}, \"turned\": {}, \"zoomed\": {}, \"opened\": {}, \"tours\": {}",
+                        counts.visits, counts.resets, counts.done[static_cast<std::size_t>(Lesson::kTurn)],
+                        counts.done[static_cast<std::size_t>(Lesson::kTwoHands)],
+                        counts.done[static_cast<std::size_t>(Lesson::kRest)], told_.tours));
       notify_.status(fmt::format("{} visits", counts.visits));
     }
     told_.hour = hour;
   }
+  walk(moment, out);
   move_on(moment, visit, out);
   told_.ended = out.end;
   if (visit.phase != VisitPhase::kAsleep)

@@ -12,6 +12,7 @@
 #include "app/kiosk/operator_menu.h"
 #include "app/kiosk/service_notify.h"
 #include "app/kiosk/signs.h"
+#include "app/kiosk/tour_walk.h"
 #include "app/viewer/session_guide.h"
 
 namespace dubsar::app {
@@ -25,6 +26,7 @@ struct WallTime {
 struct KioskParts {
   KioskProfile profile{};
   Words words{};
+  std::vector<Tour> tours{};  ///< of the profile's objects, in their order; missing or empty: what any tablet has
   HandZone zone{};
   std::string trouble{};             ///< said at the beginning, e.g. of a display that is not there
   std::function<WallTime()> wall{};  ///< none: that of this machine
@@ -55,16 +57,26 @@ class KioskGuide final : public SessionGuide {
     double unpack = 0.0, unpack_goal = 0.0, sway = 0.0, dark = 0.0;
     TimestampNs last = -1, sway_since = 0;
     bool shown = false;
+    bool begun = false;  ///< the object's tour is known
+  };
+  /// What operators and fingers asked for since the last moment.
+  struct Asked {
+    std::vector<OperatorWish> wishes;
+    std::optional<glm::dvec2> press;  ///< shares of the panel, as signs
+    double aspect = 1.0;              ///< of the panel
   };
   /// What was told to others, and when.
   struct Told {
     std::string trouble;  ///< of the journal
-    std::int64_t hour = -1, looked = -1;
+    std::int64_t hour = -1, looked = -1, tours = 0;
     bool ended = false, ready = false;  ///< ready: to the service manager
   };
   VisitMoment notice(const GuideMoment& moment);
   std::optional<Sign> choose(const GuideMoment& moment);
   void obey(OperatorWish wish, Guidance& out);
+  void begin_tour(const GuideMoment& moment);
+  void take_sign(Sign sign, const GuideMoment& moment);
+  void walk(const GuideMoment& moment, Guidance& out);
   void move_on(const GuideMoment& moment, const VisitPicture& visit, Guidance& out);
   GalleryPicture picture(const VisitPicture& visit) const;
   void write(std::string_view what, std::string_view figures = {});
@@ -74,7 +86,8 @@ class KioskGuide final : public SessionGuide {
   OperatorMenu menu_;
   Journal journal_;
   ServiceNotify notify_;
-  std::vector<OperatorWish> wishes_;
+  Asked asked_;
+  TourWalk tour_;
   Motion motion_;
   SignRest rest_;
   std::vector<SignPicture> signs_;

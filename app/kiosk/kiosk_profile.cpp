@@ -105,7 +105,9 @@ KioskObject read_object(Reader& reader, const json& object, std::size_t index) {
   JsonFields fields(object, fmt::format("objects[{}]", index));
   out.file = reader.path(fields.text("file", ""));
   if (out.file.empty()) reader.complain(where + "\"file\" is missing, expected a surface such as tablet.exa");
-  out.tour = reader.path(fields.text("tour", ""));
+  const std::string tour = fields.text("tour", "");
+  out.toured = tour != "none";
+  if (out.toured) out.tour = reader.path(tour);
   out.style = fields.text("style", out.style.c_str());
   out.parts = reader.strings(object, "parts", 8);
   out.title = reader.texts(object, "title");

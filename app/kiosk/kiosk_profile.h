@@ -16,7 +16,8 @@ namespace dubsar::app {
 using Texts = std::map<std::string, std::string, std::less<>>;
 
 struct KioskObject {
-  std::filesystem::path file, tour{};  ///< surface; film with captions, empty: none
+  std::filesystem::path file, tour{};  ///< surface; tour.h, empty: the one that any tablet has
+  bool toured = true;                  ///< false: none at all
   Texts title{};
   std::vector<std::string> parts{};  ///< shown; empty: all
   std::string style = "relief";

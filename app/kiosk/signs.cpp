@@ -27,6 +27,14 @@ std::vector<SignPicture> place_signs(std::span<const Sign> signs, double aspect)
   return out;
 }
 
+std::optional<Sign> sign_at(const glm::dvec2& at, std::span<const SignPicture> signs, double aspect) {
+  for (const SignPicture& sign : signs) {
+    const glm::dvec2 apart = at - sign.at;
+    if (glm::length(glm::dvec2(apart.x * aspect, apart.y)) <= sign.radius) return sign.sign;
+  }
+  return std::nullopt;
+}
+
 double SignRest::filled(Sign sign) const noexcept { return rests_[static_cast<std::size_t>(sign)].filled; }
 
 std::optional<Sign> SignRest::update(TimestampNs now, std::span<const SignHand> hands,

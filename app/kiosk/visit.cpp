@@ -113,8 +113,9 @@ VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
   const bool first = last_ < 0;
   last_ = first ? now : std::max(now, last_);  // a clock that jumps back holds the visit still
   if (first) last_hand_ = last_somebody_ = last_ - ns(figures_.attract_after_s);
-  const bool somebody = moment.head || moment.hands > 0;
-  if (moment.hands > 0) last_hand_ = last_;
+  const bool somebody = moment.head || moment.hands > 0 || moment.toured;
+  touched_ = touched_ || moment.toured;
+  if (moment.hands > 0 || moment.toured) last_hand_ = last_;
   if (somebody) last_somebody_ = last_;
   const bool trouble = moment.hands > 0 && moment.hand > HandState::kReady;
   if (!trouble) trouble_since_ = -1;
@@ -135,7 +136,10 @@ VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
     phase_ = course_.done[index(Lesson::kTurn)] ? VisitPhase::kFree : VisitPhase::kArrived;  // back in time
   if (phase_ == VisitPhase::kArrived || phase_ == VisitPhase::kFree) {
     learn(moment);
-    teach(last_, moment);
+    if (moment.toured)
+      course_.now.reset();
+    else
+      teach(last_, moment);
     if (!somebody && last_ - last_somebody_ >= kGone) phase_ = VisitPhase::kLeaving;
   }
   if (phase_ == VisitPhase::kLeaving) course_.now.reset();

@@ -27,6 +27,7 @@ struct VisitMoment {
   double turned_deg = 0.0;             ///< by hands, since the last moment
   double zoomed = 0.0;                 ///< |logarithm| of the zoom by hands, since the last moment
   bool swiped = false;
+  bool toured = false;                        ///< a tour is shown: somebody looks on, and is not taught
   bool can_open = false, chose_open = false;  ///< there is an envelope; a hand rested on its sign
 };
 

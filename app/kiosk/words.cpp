@@ -41,6 +41,30 @@ constexpr std::array<Sentence, kLineCount> kSentences{{
      "L'écran n'est pas celui qui a été réglé : cette image est plate"},
     {Line::kNoObject, "no_object", "This object cannot be shown today", "Dieses Stück kann heute nicht gezeigt werden",
      "Cet objet ne peut pas être montré aujourd'hui"},
+    {Line::kTourSealed, "tour_sealed", "A sealed envelope", "Eine versiegelte Hülle", "Une enveloppe scellée"},
+    {Line::kTourSealedText, "tour_sealed_text", "Clay around clay: nobody has read what is inside since it was closed.",
+     "Ton um Ton: Seit sie verschlossen wurde, hat niemand gelesen, was darin ist.",
+     "De l'argile autour de l'argile : personne n'a lu l'intérieur depuis qu'elle fut fermée."},
+    {Line::kTourSeals, "tour_seals", "Seals and signs", "Siegel und Zeichen", "Sceaux et signes"},
+    {Line::kTourSealsText, "tour_seals_text", "Pressed into wet clay on every side. Low light shows them.",
+     "Rundum in den feuchten Ton gedrückt. Flaches Licht macht sie sichtbar.",
+     "Imprimés dans l'argile humide, sur chaque face. La lumière rasante les révèle."},
+    {Line::kTourPeel, "tour_peel", "The envelope opens", "Die Hülle öffnet sich", "L'enveloppe s'ouvre"},
+    {Line::kTourPeelText, "tour_peel_text", "Nobody breaks it: X-rays have seen through the clay.",
+     "Niemand zerbricht sie: Röntgenstrahlen haben durch den Ton gesehen.",
+     "Personne ne la brise : les rayons X ont traversé l'argile."},
+    {Line::kTourTablet, "tour_tablet", "The tablet inside", "Die Tafel darin", "La tablette cachée"},
+    {Line::kTourTabletText, "tour_tablet_text", "Written first, then wrapped in a thin sheet of clay.",
+     "Zuerst beschrieben, dann in eine dünne Tonschicht gehüllt.",
+     "Écrite d'abord, puis enveloppée d'une fine couche d'argile."},
+    {Line::kTourBare, "tour_bare", "A tablet of clay", "Eine Tafel aus Ton", "Une tablette d'argile"},
+    {Line::kTourBareText, "tour_bare_text", "All six sides may carry text: it is turned upwards, not like a page.",
+     "Alle sechs Seiten können Text tragen: Man dreht sie nach oben, nicht wie ein Blatt.",
+     "Ses six faces peuvent porter du texte : on la tourne vers le haut, pas comme une page."},
+    {Line::kTourLine, "tour_line", "A line is read", "Eine Zeile wird gelesen", "Une ligne se lit"},
+    {Line::kTourLineText, "tour_line_text", "From left to right: light from the side shows each wedge of a sign.",
+     "Von links nach rechts: Licht von der Seite zeigt jeden Keil eines Zeichens.",
+     "De gauche à droite : la lumière latérale montre chaque coin d'un signe."},
 }};
 
 constexpr std::array<std::string_view, 3> kSpoken{"en", "de", "fr"};
@@ -99,6 +123,12 @@ Result<Words> Words::parse(std::string_view json_text, std::string_view source) 
         return fail(ErrorKind::kConfig, "{}: {} is a new language and lacks the line \"{}\"", source, language,
                     sentence.name);
   }
+  return out;
+}
+
+std::vector<std::string> Words::languages() const {
+  std::vector<std::string> out;
+  for (const auto& [language, lines] : languages_) out.push_back(language);
   return out;
 }
 

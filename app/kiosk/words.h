@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/result.h"
 
@@ -28,8 +29,20 @@ enum class Line : std::uint8_t {
   kNoTracker,     ///< there is no hand sensor
   kNoPanel,       ///< the display is not the one that was set up
   kNoObject,      ///< the object cannot be shown
+  kTourSealed,    ///< titles of the tour that any tablet has, and what is said below them
+  kTourSealedText,
+  kTourSeals,
+  kTourSealsText,
+  kTourPeel,
+  kTourPeelText,
+  kTourTablet,
+  kTourTabletText,
+  kTourBare,  ///< a tablet without an envelope
+  kTourBareText,
+  kTourLine,
+  kTourLineText,
 };
-inline constexpr std::size_t kLineCount = 13;
+inline constexpr std::size_t kLineCount = 25;
 
 /// Name of a line in files of words: "show_hand".
 std::string_view line_name(Line line) noexcept;
@@ -48,6 +61,7 @@ class Words {
   static Result<Words> parse(std::string_view json_text, std::string_view source);
 
   bool has(std::string_view language) const;
+  std::vector<std::string> languages() const;
   /// In English where the language is unknown.
   const std::string& say(Line line, std::string_view language) const;
   /// Whether it is written from right to left.

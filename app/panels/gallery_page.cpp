@@ -33,6 +33,25 @@ float draw_words(const std::string& words, float size_px, float width, float bot
   return at.y - pad;
 }
 
+/// A dot for each step of a tour, those that were seen and the present one full; from the right where one reads so.
+void draw_steps(const GalleryPicture& picture, float width, float y, float radius) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImU32 amber = ImGui::GetColorU32(ImVec4(0.85f, 0.64f, 0.25f, 1.0f));
+  if (picture.steps == 0) return;
+  const float apart = 4.0f * radius, middle = 0.5f * static_cast<float>(picture.steps + 1);
+  const float half = apart * middle;
+  list.AddRectFilled(ImVec2(0.5f * width - half, y - 2.0f * radius), ImVec2(0.5f * width + half, y + 2.0f * radius),
+                     ImGui::GetColorU32(ImVec4(0.09f, 0.09f, 0.1f, 0.82f)), 2.0f * radius);
+  for (std::size_t i = 1; i <= picture.steps; ++i) {
+    const float aside = apart * (static_cast<float>(i) - middle);
+    const ImVec2 at(0.5f * width + (picture.right_to_left ? -aside : aside), y);
+    if (i <= picture.step)
+      list.AddCircleFilled(at, radius, amber, 24);
+    else
+      list.AddCircle(at, radius, amber, 24, 0.35f * radius);
+  }
+}
+
 void draw_menu(const std::vector<std::string>& rows, float size_px, float width, float height) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImFont* const font = ImGui::GetFont();
@@ -116,14 +135,9 @@ void draw_gallery(const GalleryPicture& picture, float width, float height, floa
     const float x = wide ? 1.25f * radius : 0.5f * width, y = wide ? 0.55f * height : bottom - 1.15f * radius;
     draw_lesson(lesson_pose(*picture.lesson, picture.lesson_s), x, y, radius);
   }
-  if (!picture.title.empty() || !picture.text.empty()) {
-    const float first = 0.03f * height + 2.0f * size;
-    draw_words(picture.title, 1.1f * size, width, first, picture.right_to_left);
-    if (!picture.text.empty()) {
-      const ImVec2 text = ImGui::GetFont()->CalcTextSizeA(0.8f * size, 1e6f, 0.88f * width, picture.text.c_str());
-      draw_words(picture.text, 0.8f * size, width, first + 1.2f * size + text.y, picture.right_to_left);
-    }
-  }
+  if (!picture.title.empty())
+    draw_words(picture.title, 1.1f * size, width, 0.03f * height + 2.0f * size, picture.right_to_left);
+  draw_steps(picture, width, 0.03f * height + 2.5f * size, 0.16f * size);
   for (const SignPicture& sign : picture.signs) draw_sign(sign, width, height);
   if (!picture.menu.empty()) draw_menu(picture.menu, std::max(size * 0.6f, 14.0f), width, height);
   ImGui::End();

@@ -1,6 +1,6 @@
 #pragma once
 // What lies over the object in a gallery: one line at reading distance, a hand that shows what can be done, signs to
-// rest a hand on, the caption of a tour, the operator's menu.
+// rest a hand on, where one is in a tour, the operator's menu.
 
 #include <optional>
 #include <string>
@@ -12,9 +12,10 @@
 namespace dubsar::app {
 
 struct GalleryPicture {
-  std::string line;            ///< one sentence; empty: none
-  bool right_to_left = false;  ///< how it is set
-  std::string title, text;     ///< of what is shown now; both may be empty
+  std::string line;                 ///< one sentence; empty: none
+  bool right_to_left = false;       ///< how it is set
+  std::string title;                ///< of what is shown now; may be empty
+  std::size_t step = 0, steps = 0;  ///< of a tour, counted from 1; 0: there is none
   std::optional<Lesson> lesson;
   double lesson_s = 0.0;           ///< how far its moving hand is
   double letter_mm = 8.0;          ///< height of the letters on the panel

@@ -40,7 +40,7 @@ struct People {
 };
 
 struct Made {
-  std::string frames, record;
+  std::string frames, record, tour;
   int every = 1;
 };
 
@@ -276,13 +276,17 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
   if (options.what.in.empty())
     return fail(ErrorKind::kUsage, "view: no file found, expected a surface such as tablet.exa");
   DUBSAR_ASSIGN(ViewOptions view, view_options(options));
-  DUBSAR_TRY(options.panel.offscreen ? without_window(options, view) : with_window(options, view));
+  if (options.made.tour.empty())
+    DUBSAR_TRY(options.panel.offscreen ? without_window(options, view) : with_window(options, view));
+  else
+    view.work.upright = options.what.view == "front";
   if (!options.what.scan.empty()) {  // before a large file is read
     ImportOptions scan;
     scan.path = options.what.scan;
     DUBSAR_TRY(open_voxels(scan));
   }
   DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.what.in, options.what.partitions, true}, progress));
+  if (!options.made.tour.empty()) return write_tour(options.made.tour, mesh, view);
   if (!options.panel.offscreen) log_info("view: F1 shows help; Escape, closing the window or Ctrl-C end it");
   DUBSAR_ASSIGN(const ViewResult done, run_view(mesh, view, progress));
   VerbResult out = describe(options.panel.offscreen ? options.panel.display : done.display, done, mesh.triangles.size(),
@@ -335,6 +339,10 @@ Verb add_view_verb(Arguments program) {
   command.value("--frames", options->made.frames, "folder for pictures of the frames").called("DIR");
   command.value("--every", options->made.every, "write only each N-th frame").range(1, 100000);
   command.writes("--record", options->made.record, FileFormat::kOther, "write the input for --input replay:FILE")
+      .called("FILE");
+  command
+      .writes("--tour", options->made.tour, FileFormat::kOther,
+              "write the tour of a gallery that this tablet has by itself, and end")
       .called("FILE");
   command.value("--size", options->panel.size,
                 "WIDTHxHEIGHT of the window (1280x720; offscreen 960x540, or the panel's own)");

@@ -4,6 +4,7 @@
 
 #include "app/cli/mesh_input.h"
 #include "app/kiosk/kiosk_guide.h"
+#include "app/viewer/first_document.h"
 #include "core/base/atomic_file.h"
 #include "core/base/log.h"
 #include "core/base/parse_number.h"
@@ -20,6 +21,17 @@ Result<Words> words_of(const KioskProfile& profile) {
   if (profile.words.empty()) return Words();
   DUBSAR_ASSIGN(const std::string text, read_text_file(profile.words));
   return Words::parse(text, profile.words.string());
+}
+
+/// Of each object; empty: it has none of its own.
+Result<std::vector<Tour>> tours_of(const KioskProfile& profile) {
+  std::vector<Tour> out;
+  for (const KioskObject& object : profile.objects) {
+    out.emplace_back();
+    if (object.tour.empty()) continue;
+    DUBSAR_ASSIGN(out.back(), read_tour(object.tour));
+  }
+  return out;
 }
 
 Result<std::vector<TriMesh>> load_objects(KioskProfile& profile, Progress& progress) {
@@ -51,6 +63,7 @@ Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) 
     if (!words.has(language))
       return fail(ErrorKind::kConfig, "{}: language \"{}\" found, expected en, de, fr or one of the file of words",
                   session.profile.string(), language);
+  DUBSAR_TRY(tours_of(profile));  // before large files are read
   KioskOutcome out;
   out.display = profile.display;
   std::string trouble;
@@ -63,6 +76,7 @@ Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) 
   if (!options) return tl::unexpected<Error>(options.error());
   DUBSAR_ASSIGN(const std::vector<TriMesh> meshes, load_objects(profile, progress));
   KioskParts parts;
+  DUBSAR_ASSIGN(parts.tours, tours_of(profile));
   parts.profile = profile;
   parts.words = words;
   const HandMapping& hands = options->mapping.hands;
@@ -83,6 +97,15 @@ Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) 
     if (!guide.ended()) break;  // its time or its scripts are over
   }
   out.counts = guide.visit().counts();
+  return out;
+}
+
+Result<VerbResult> write_tour(const std::filesystem::path& path, const TriMesh& mesh, const ViewOptions& view) {
+  const Tour tour = default_tour(first_document(view, mesh), Words());
+  DUBSAR_TRY(write_file_atomically(path, format_tour(tour)));
+  VerbResult out;
+  out.json = {{"output", path.string()}, {"steps", tour.steps.size()}};
+  out.text = fmt::format("{}: a tour of {} steps\n", path.string(), tour.steps.size());
   return out;
 }
 

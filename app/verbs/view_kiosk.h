@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "app/cli/verb.h"
 #include "app/kiosk/kiosk_profile.h"
 #include "app/kiosk/visit.h"
 #include "app/viewer/run_view.h"
@@ -29,5 +30,8 @@ struct KioskOutcome {
 /// be had is replaced by a flat picture, which is said on the screen. Errors: the profile's, of the only object, of the
 /// session.
 Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress);
+
+/// The tour that a tablet has by itself, as a file to be changed.
+Result<VerbResult> write_tour(const std::filesystem::path& path, const TriMesh& mesh, const ViewOptions& view);
 
 }  // namespace dubsar::app

@@ -8,14 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "app/document/document.h"
 #include "app/panels/gallery_page.h"
 #include "app/viewer/source_set.h"
 #include "app/viewer/steering.h"
 #include "display/render/scene.h"
 
 namespace dubsar::app {
-
-struct Document;
 
 struct GuideMoment {
   TimestampNs now = 0;
@@ -25,10 +24,19 @@ struct GuideMoment {
   glm::dvec2 window_mm{1.0}, middle_mm{0.0};  ///< what the panel shows across, and its middle in the screen frame
 };
 
+/// What is shown in place of the document's own state, such as a step of a tour.
+struct GuidedScene {
+  Keyframe frame{};
+  bool camera = true;         ///< its camera and light as well; false: those of whoever steers
+  bool keep = false;          ///< now, once: the document becomes this, and hands go on from here
+  std::vector<Note> notes{};  ///< on the surface, while it is shown
+};
+
 struct Guidance {
   std::vector<std::string> commands{};      ///< done now
   glm::dquat turn{1.0, 0.0, 0.0, 0.0};      ///< the object is turned this much further in this picture
   std::vector<LinesItem> lines{};           ///< in the screen frame, mm
+  std::optional<GuidedScene> scene{};       ///< none: the document
   std::optional<GalleryPicture> picture{};  ///< over everything else; none: what there always is
   bool end = false;                         ///< the session is over
 };

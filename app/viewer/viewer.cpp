@@ -275,6 +275,25 @@ void Viewer::lead(TimestampNs now, const Steered& steered) {
   const std::vector<SourceRow> rows = sources_->rows();
   at_.guidance = guide->lead({now, steered, document(), rows, stage_->window_mm(), stage_->middle_mm()});
   for (const std::string& command : at_.guidance.commands) run(command, kGuideSteps);
+  if (!at_.guidance.scene || !at_.guidance.scene->keep) return;
+  keep_up();
+  Document next = guided_document(*at_.guidance.scene);
+  next.notes = document().notes;
+  editor_->merge_with(kGuideSteps);
+  editor_->change(std::move(next), "shown");
+  editor_->merge_with(0);
+  follow();
+}
+
+/// The document as whoever leads the session wants it shown.
+Document Viewer::guided_document(const GuidedScene& scene) const {
+  Document out = document();
+  show_keyframe(out, scene.frame);
+  out.notes = scene.notes;
+  if (scene.camera) return out;
+  out.now = document().now;
+  out.light = document().light;
+  return out;
 }
 
 void Viewer::presented(TimestampNs now) {
@@ -292,8 +311,9 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
   lead(now, steered);
   steered.view.rotation = at_.guidance.turn * steered.view.rotation;
   const bool film = at_.film_since >= 0;
-  const Document seen = film ? shown_document(now) : document();
-  ViewState view = film ? view_of(seen) : steered.view;
+  const std::optional<GuidedScene>& scene = at_.guidance.scene;
+  const Document seen = film ? shown_document(now) : scene ? guided_document(*scene) : document();
+  ViewState view = film || (scene && scene->camera) ? view_of(seen) : steered.view;
   move_light(now, view);
   Shown shown = shown_of(seen, view, given_.options.stage, stage_->box_mm());
   shown.before = at_.guidance.lines;

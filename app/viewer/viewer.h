@@ -163,6 +163,7 @@ class Viewer final : public Workplace {
   static Result<std::filesystem::path> new_picture(const std::filesystem::path& path);
   glm::dvec3 scan_place(const Picked& picked) const;
   Document shown_document(TimestampNs now);
+  Document guided_document(const GuidedScene& scene) const;
   bool shows_slices() const { return desk().panels && desk().drawer == "slices"; }
   double ui_scale() const;
   glm::dvec2 layout() const;

@@ -89,6 +89,43 @@ TEST_F(Kiosk, AVisitIsSeenTaughtAndForgotten) {
   EXPECT_GT(different, 500);
 }
 
+TEST_F(Kiosk, ATourIsWrittenChangedWalkedAndRefusedInOneSentence) {
+  const auto written = run_dubsar({"view", file("block.obj"), "--tour", file("tour.json")});
+  ASSERT_EQ(written.exit_code, 0) << written.err;
+  std::ifstream in(file("tour.json"));
+  json tour = json::parse(in);
+  ASSERT_EQ(tour.at("steps").size(), 2U);
+  tour["steps"][0]["title"] = {{"en", "Mine"}};
+  tour["steps"][0]["keyframes"] = json::array({{{"time_s", 2}, {"camera", {{"zoom", 0.3}}}}});
+  write("mine.json", tour.dump());
+  json with = profile();
+  with["objects"][0]["tour"] = "mine.json";
+  write("kiosk.json", with.dump());
+  // A hand rests on the second sign from above of the right side, and goes; seen before and while the tour goes on.
+  write("visitor.json",
+        R"({"seed": 3, "duration_s": 11, "rate_hz": 60, "hands": [{"chirality": "right", "keys": [
+        {"t": 1.0, "at_mm": [100, -90, 270]}, {"t": 1.8, "at_mm": [200, 10, 250]}, {"t": 2.6, "at_mm": [200, 10, 250]},
+        {"t": 3.4, "at_mm": [332, 3, 250]}, {"t": 6, "at_mm": [332, 3, 250]}, {"t": 6.8, "at_mm": [150, -90, 300]}]}]})");
+  const auto run =
+      run_dubsar({"view", "--kiosk", file("kiosk.json"), "--offscreen", "--script", file("visitor.json"), "--fps", "10",
+                  "--every", "5", "--size", "480x270", "--frames", file("p"), "--seconds", "9.5", "--json", "-"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto before = read_png(file("p/frame-00030.png")), told = read_png(file("p/frame-00085.png"));
+  ASSERT_TRUE(before && told);
+  const auto clay = [](const Image& image) {  // of the right half of the middle row: signs are lower and higher
+    int count = 0;
+    for (int x = image.width / 2; x < image.width * 3 / 4; ++x) count += *image.at(x, image.height * 2 / 5) > 90;
+    return count;
+  };
+  EXPECT_GT(clay(*before), 2 * clay(*told)) << "the tour's own keyframe makes it smaller";
+  tour["steps"][1]["keyframes"][0]["unpack"] = 4;
+  write("mine.json", tour.dump());
+  const auto bad = run_dubsar({"view", "--kiosk", file("kiosk.json"), "--offscreen", "--script", file("visitor.json")});
+  EXPECT_EQ(bad.exit_code, 65);
+  EXPECT_NE(bad.err.find("mine.json: steps[1]: keyframes[0].unpack is 4, expected 0 to 1"), std::string::npos)
+      << bad.err;
+}
+
 TEST_F(Kiosk, AnObjectThatCannotBeReadIsLeftOut) {
   json two = profile();
   write("broken.ply", "ply\nformat ascii 1.0\nelement vertex three\n");

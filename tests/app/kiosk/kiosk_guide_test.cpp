@@ -32,6 +32,14 @@ class Kiosk {
     for (int i = 0; i < static_cast<int>(20 * seconds); ++i, now_ += kStep) {
       last = guide_->lead({now_, steered, document_, rows_, {600, 340}, {0, 0}});
       steered.selected_m.reset();
+      if (last.scene) {
+        if (last.scene->camera) {
+          fastest_deg_per_s =
+              std::max(fastest_deg_per_s, turn_between_deg(last.scene->frame.camera.rotation, seen_) / 0.05);
+        }
+        seen_ = last.scene->frame.camera.rotation;
+        if (last.scene->keep) show_keyframe(document_, last.scene->frame);
+      }
       for (const std::string& command : last.commands) {
         commands.push_back(command);
         if (command.rfind("unpack ", 0) == 0) document_.unpack = 0.01 * std::stod(command.substr(7));
@@ -65,7 +73,7 @@ class Kiosk {
   Document document_;
   TimestampNs now_ = 3'000'000'000;
   int minute_;
-  glm::dquat turn_{1, 0, 0, 0};
+  glm::dquat turn_{1, 0, 0, 0}, seen_{1, 0, 0, 0};
 };
 
 Steered with_hand(HandState state, Control control = Control::kNone, double turned_deg = 0.0) {
@@ -102,11 +110,11 @@ TEST(KioskGuide, SaysTheTitleAndInvitesInTheLanguageOfTheOperator) {
   EXPECT_EQ(kiosk.go_on(0.1).picture->title, "A");
 }
 
-/// A hand whose ring lies on the first sign of a panel of 600 x 340 mm.
-Steered on_the_sign(double turned_deg = 0.0) {
+/// A hand whose ring lies on a sign of a panel of 600 x 340 mm.
+Steered on_the_sign(double turned_deg = 0.0, Sign which = Sign::kOpen) {
   Steered out = with_hand(HandState::kReady, Control::kNone, turned_deg);
   const HandZone zone;
-  const auto sign = place_signs(std::array{Sign::kOpen}, 600.0 / 340.0).front();
+  const auto sign = place_signs(std::array{which}, 600.0 / 340.0).front();
   const glm::dvec2 middle = 0.5 * glm::dvec2(zone.min_m + zone.max_m), half = 0.5 * glm::dvec2(zone.max_m - zone.min_m);
   out.hands[0].place_m = glm::dvec3(middle + half * sign.at / 0.45, 0.2);
   return out;
@@ -121,7 +129,7 @@ TEST(KioskGuide, RestingOnTheSignOpensTheEnvelopeSmoothlyAfterTheObjectWasTurned
   kiosk.go_on(4, with_hand(HandState::kReady, Control::kNone, 38.0));
   EXPECT_EQ(kiosk.document().unpack, 0.0) << "a hand beside the sign";
   const auto half = kiosk.go_on(1, on_the_sign(38.0));
-  ASSERT_EQ(half.picture->signs.size(), 1U);
+  ASSERT_EQ(half.picture->signs.size(), 2U);
   EXPECT_GT(half.picture->signs[0].filled, 0.3);
   EXPECT_LT(half.picture->signs[0].filled, 0.9);
   kiosk.go_on(4, on_the_sign(38.0));
@@ -136,6 +144,49 @@ TEST(KioskGuide, RestingOnTheSignOpensTheEnvelopeSmoothlyAfterTheObjectWasTurned
       last = std::stod(command.substr(7));
     }
   EXPECT_LT(largest, 5.0);  // percent a picture
+}
+
+TEST(KioskGuide, AHandWalksTheTourLeavesItWhereItIsAndComesBack) {
+  KioskProfile profile;
+  profile.objects = {{.file = "a.exa"}};
+  profile.idle_reset_s = 20;
+  Kiosk kiosk(profile);
+  kiosk.go_on(1, with_hand(HandState::kReady));
+  const auto starts = kiosk.go_on(2.0, on_the_sign(0.0, Sign::kTour));
+  ASSERT_TRUE(starts.scene) << "a hand that rests on the sign begins it, without ever having closed";
+  EXPECT_EQ(starts.picture->title, Words().say(Line::kTourSealed, "en"));
+  EXPECT_EQ(starts.picture->steps, 5U);
+  EXPECT_FALSE(starts.picture->lesson);
+  const auto peel = kiosk.go_on(38.0);  // the hand sinks: one looks on
+  ASSERT_TRUE(peel.scene) << "the tour goes on for somebody who only looks";
+  EXPECT_GE(peel.picture->step, 3U);
+  EXPECT_LT(kiosk.fastest_deg_per_s, 120.0);
+  const auto back = kiosk.go_on(0.3, with_hand(HandState::kHolding));
+  ASSERT_TRUE(back.scene);
+  EXPECT_FALSE(back.scene->camera) << "a hand that takes hold has it at once";
+  const auto free = kiosk.go_on(3.0, with_hand(HandState::kReady));
+  EXPECT_FALSE(free.scene);
+  const auto again = kiosk.go_on(2.0, on_the_sign(0.0, Sign::kTour));
+  ASSERT_TRUE(again.scene);
+  EXPECT_EQ(again.picture->step, peel.picture->step) << "where it was left";
+  kiosk.go_on(32.0);
+  EXPECT_FALSE(kiosk.go_on(0.05).scene) << "it ends";
+  EXPECT_EQ(kiosk.document().unpack, 1.0);
+  kiosk.go_on(30.0);
+  EXPECT_EQ(kiosk.document().unpack, 0.0) << "nobody came back";
+  EXPECT_TRUE(kiosk.document().parts[1].visible);
+}
+
+TEST(KioskGuide, AFingerOnTheGlassChoosesASignAtOnce) {
+  Kiosk kiosk;
+  kiosk.go_on(1, with_hand(HandState::kReady));
+  InputEvent event;
+  event.kind = EventKind::kButton;
+  event.down = true;
+  const auto sign = place_signs(std::array{Sign::kTour}, 600.0 / 340.0).front();
+  event.at = sign.at * glm::dvec2(600.0 / 340.0, 1.0);
+  kiosk.guide().takes(event, 0);
+  EXPECT_TRUE(kiosk.go_on(0.1, with_hand(HandState::kReady)).scene);
 }
 
 TEST(KioskGuide, GoesBackToTheBeginningWhenNobodyComesBack) {

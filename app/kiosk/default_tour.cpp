@@ -1,0 +1,98 @@
+// A tour of any tablet, made from nothing but its home view and its parts.
+
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+
+#include "app/document/document.h"
+#include "app/kiosk/tour.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr double kRad = std::numbers::pi / 180.0;
+constexpr LightPlace kEven{315.0, 35.0}, kLow{285.0, 9.0}, kLowOther{20.0, 9.0}, kReading{300.0, 14.0};
+// Where the first lines of a tablet stand that fills the window at zoom 1: above its middle, by heights of the window.
+constexpr double kWhole = 0.86, kWholeUp = 0.05;  // there is room for words below it
+constexpr double kLineUp = 0.24, kLineAside = 0.15, kLineZoom = 2.4;
+
+/// Keyframes from the home view of a document.
+class Maker {
+ public:
+  Maker(const Document& document, const Words& words) : document_(document), words_(words) {}
+
+  TourStep step(Line title, Line text, double stays_s, std::vector<Keyframe> keys) const {
+    TourStep out;
+    for (const std::string& language : words_.languages()) {
+      out.title[language] = words_.say(title, language);
+      out.text[language] = words_.say(text, language);
+    }
+    out.stays_s = stays_s;
+    out.keyframes = std::move(keys);
+    return out;
+  }
+  /// Turned from home about the upright and the horizontal axis.
+  Keyframe key(double time_s, double aside_deg, double up_deg, double zoom, LightPlace light) const {
+    Keyframe out;
+    out.time_s = time_s;
+    out.camera.rotation =
+        glm::normalize(glm::angleAxis(up_deg * kRad, glm::dvec3(1, 0, 0)) *
+                       glm::angleAxis(aside_deg * kRad, glm::dvec3(0, 1, 0)) * document_.home.rotation);
+    out.camera.zoom = kWhole * zoom;
+    out.camera.pan = {0.0, kWholeUp};
+    out.light = light;
+    for (const Part& part : document_.parts) out.parts.push_back({part.name, 1.0, part.offset_mm});
+    return out;
+  }
+  static Keyframe unpacked(Keyframe key, double unpack) {
+    key.unpack = unpack;
+    return key;
+  }
+  static Keyframe without_envelope(Keyframe key) {
+    for (KeyedPart& part : key.parts)
+      if (part.name == "envelope") part.opacity = 0.0;
+    return key;
+  }
+  static Keyframe moved(Keyframe key, const glm::dvec2& pan) {
+    key.camera.pan = pan;
+    return key;
+  }
+
+ private:
+  const Document& document_;
+  const Words& words_;
+};
+
+}  // namespace
+
+Tour default_tour(const Document& document, const Words& words) {
+  const Maker make(document, words);
+  const bool enclosed = can_unpack(document);
+  const auto bare = [&](Keyframe key) { return enclosed ? Maker::without_envelope(std::move(key)) : key; };
+  Tour tour;
+  if (enclosed) {
+    tour.steps.push_back(make.step(Line::kTourSealed, Line::kTourSealedText, 1.0,
+                                   {make.key(2.5, -18, 8, 1.0, kEven), make.key(7.0, 18, 8, 1.0, kEven)}));
+    tour.steps.push_back(make.step(Line::kTourSeals, Line::kTourSealsText, 1.0,
+                                   {make.key(2.5, 0, 0, 1.5, kLow), make.key(6.0, 0, -40, 1.5, kLowOther),
+                                    make.key(10.0, 0, -110, 1.4, kLow), make.key(14.0, 0, -180, 1.3, kLow)}));
+    tour.steps.push_back(
+        make.step(Line::kTourPeel, Line::kTourPeelText, 3.0,
+                  {make.key(4.5, 0, 0, 1.0, kEven), Maker::unpacked(make.key(8.5, 0, 8, 1.0, kEven), 1.0)}));
+    tour.steps.push_back(
+        make.step(Line::kTourTablet, Line::kTourTabletText, 1.5,
+                  {Maker::unpacked(bare(make.key(2.0, 0, 8, 1.0, kEven)), 1.0), bare(make.key(4.5, 0, 0, 1.1, kEven)),
+                   bare(make.key(8.5, 30, 10, 1.1, kEven)), bare(make.key(11.5, 0, 0, 1.1, kEven))}));
+  } else {
+    tour.steps.push_back(make.step(Line::kTourBare, Line::kTourBareText, 1.0,
+                                   {make.key(2.5, 0, 0, 1.0, kEven), make.key(6.0, 0, -60, 1.1, kEven),
+                                    make.key(9.0, 0, -120, 1.1, kEven), make.key(12.5, 0, -180, 1.0, kEven)}));
+  }
+  const double up = -kLineZoom * kLineUp, aside = kLineZoom * kLineAside;
+  tour.steps.push_back(
+      make.step(Line::kTourLine, Line::kTourLineText, 2.0,
+                {Maker::moved(bare(make.key(3.5, 0, 0, kLineZoom / kWhole, kReading)), {aside, up}),
+                 Maker::moved(bare(make.key(10.5, 0, 0, kLineZoom / kWhole, kReading)), {-aside, up})}));
+  return tour;
+}
+
+}  // namespace dubsar::app

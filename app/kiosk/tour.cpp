@@ -1,0 +1,172 @@
+#include "app/kiosk/tour.h"
+
+#include <algorithm>
+#include <array>
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "core/base/atomic_file.h"
+#include "core/base/json_fields.h"
+#include "core/base/json_text.h"
+
+namespace dubsar::app {
+namespace {
+using nlohmann::json;
+
+constexpr std::string_view kFormat = "dubsar tour";
+constexpr std::size_t kMostSteps = 64, kMostLabels = 16, kLongestText = 400;
+constexpr double kLongestS = 600.0;
+constexpr std::array<std::string_view, 4> kTourMembers{"format", "version", "steps", "comment"};
+constexpr std::array<std::string_view, 5> kStepMembers{"title", "text", "labels", "stays_s", "keyframes"};
+constexpr std::array<std::string_view, 4> kLabelMembers{"text", "part", "at_mm", "normal"};
+constexpr std::array<std::string_view, 6> kKeyMembers{"time_s", "camera", "light", "unpack", "style", "parts"};
+constexpr std::array<std::string_view, 3> kCameraMembers{"rotation_wxyz", "zoom", "pan"};
+constexpr std::array<std::string_view, 2> kLightMembers{"azimuth_deg", "elevation_deg"};
+
+template <std::size_t N>
+Result<void> only(const json& object, const std::array<std::string_view, N>& known, const std::string& where) {
+  if (!object.is_object()) return fail(ErrorKind::kBadData, "{} is no JSON object", where);
+  for (const auto& [name, value] : object.items())
+    if (std::find(known.begin(), known.end(), std::string_view(name)) == known.end())
+      return fail(ErrorKind::kBadData, "{}: \"{}\" is unknown", where, name);
+  return {};
+}
+
+Result<Texts> texts(const json& object, const char* name, const std::string& where) {
+  if (!object.contains(name)) return Texts();
+  const json& value = object.at(name);
+  const json by_language = value.is_string() ? json{{"en", value}} : value;
+  if (!by_language.is_object())
+    return fail(ErrorKind::kBadData, "{}: \"{}\" is neither a text nor texts by language", where, name);
+  Texts out;
+  for (const auto& [language, text] : by_language.items()) {
+    if (!text.is_string() || text.get_ref<const std::string&>().size() > kLongestText)
+      return fail(ErrorKind::kBadData, "{}: \"{}\" in {} is no text of at most {} bytes", where, name, language,
+                  kLongestText);
+    out[language] = text.get<std::string>();
+  }
+  return out;
+}
+
+Result<glm::dvec3> place(const json& object, const char* name, const glm::dvec3& otherwise, const std::string& where) {
+  if (!object.contains(name)) return otherwise;
+  const json& value = object.at(name);
+  glm::dvec3 out{0.0};
+  const bool three = value.is_array() && value.size() == 3 &&
+                     std::all_of(value.begin(), value.end(), [](const json& number) { return number.is_number(); });
+  if (!three) return fail(ErrorKind::kBadData, "{}: \"{}\" is no list of 3 numbers", where, name);
+  for (int a = 0; a < 3; ++a) out[a] = value[static_cast<std::size_t>(a)].get<double>();
+  return out;
+}
+
+Result<TourLabel> read_label(const json& object, const std::string& where) {
+  DUBSAR_TRY(only(object, kLabelMembers, where));
+  TourLabel out;
+  DUBSAR_ASSIGN(out.text, texts(object, "text", where));
+  if (out.text.empty()) return fail(ErrorKind::kBadData, "{}: \"text\" is missing", where);
+  if (!object.contains("at_mm")) return fail(ErrorKind::kBadData, "{}: \"at_mm\" is missing", where);
+  DUBSAR_ASSIGN(out.at_mm, place(object, "at_mm", {}, where));
+  DUBSAR_ASSIGN(out.normal, place(object, "normal", {0.0, 0.0, 1.0}, where));
+  if (!(glm::length(out.normal) > 1e-6)) return fail(ErrorKind::kBadData, "{}: \"normal\" has no direction", where);
+  out.normal = glm::normalize(out.normal);
+  JsonFields fields(object, where);
+  out.part = fields.text("part", "");
+  if (const auto done = fields.finish(); !done) return fail(ErrorKind::kBadData, "{}", done.error().message);
+  return out;
+}
+
+/// What is not said is as before: the text of a whole film, for parse_film().
+Result<std::vector<Keyframe>> read_keys(const json& object, json& before, const std::string& where) {
+  if (!object.contains("keyframes") || !object.at("keyframes").is_array() || object.at("keyframes").empty())
+    return fail(ErrorKind::kBadData, "{}: no keyframe found, expected at least one", where);
+  json film{{"format", "dubsar film"}, {"version", 1}, {"keyframes", json::array()}};
+  for (const json& key : object.at("keyframes")) {
+    const std::string at = fmt::format("{}: keyframes[{}]", where, film.at("keyframes").size());
+    DUBSAR_TRY(only(key, kKeyMembers, at));
+    if (key.contains("camera")) DUBSAR_TRY(only(key.at("camera"), kCameraMembers, at + ".camera"));
+    if (key.contains("light")) DUBSAR_TRY(only(key.at("light"), kLightMembers, at + ".light"));
+    before.merge_patch(key);
+    film.at("keyframes").push_back(before);
+    before.erase("time_s");
+  }
+  DUBSAR_ASSIGN(std::vector<Keyframe> out, parse_film(dump_json(film), where));
+  if (!(out.front().time_s > 0.0) || out.back().time_s > kLongestS)
+    return fail(ErrorKind::kBadData, "{}: keyframes from {} to {} s found, expected times above 0, up to {}", where,
+                out.front().time_s, out.back().time_s, kLongestS);
+  return out;
+}
+
+Result<TourStep> read_step(const json& object, json& before, const std::string& where) {
+  DUBSAR_TRY(only(object, kStepMembers, where));
+  TourStep out;
+  DUBSAR_ASSIGN(out.title, texts(object, "title", where));
+  DUBSAR_ASSIGN(out.text, texts(object, "text", where));
+  JsonFields fields(object, where);
+  out.stays_s = fields.number("stays_s", 0.0, kLongestS, &out.stays_s);
+  if (const auto done = fields.finish(); !done) return fail(ErrorKind::kBadData, "{}", done.error().message);
+  if (object.contains("labels")) {
+    const json& labels = object.at("labels");
+    if (!labels.is_array() || labels.size() > kMostLabels)
+      return fail(ErrorKind::kBadData, "{}: \"labels\" is no list of at most {} labels", where, kMostLabels);
+    for (const json& label : labels) {
+      DUBSAR_ASSIGN(TourLabel read, read_label(label, fmt::format("{}: labels[{}]", where, out.labels.size())));
+      out.labels.push_back(std::move(read));
+    }
+  }
+  DUBSAR_ASSIGN(out.keyframes, read_keys(object, before, where));
+  return out;
+}
+
+json json_of(const TourLabel& label) {
+  return {{"text", label.text},
+          {"part", label.part},
+          {"at_mm", {label.at_mm.x, label.at_mm.y, label.at_mm.z}},
+          {"normal", {label.normal.x, label.normal.y, label.normal.z}}};
+}
+
+}  // namespace
+
+Result<Tour> parse_tour(std::string_view json_text, std::string_view source) {
+  DUBSAR_ASSIGN(const json object, parse_json(json_text, source));
+  if (!object.is_object() || !object.contains("format") || object.at("format") != kFormat)
+    return fail(ErrorKind::kBadData, "{}: found other JSON, expected \"format\": \"{}\"", source, kFormat);
+  if (!object.contains("version") || object.at("version") != 1)
+    return fail(ErrorKind::kBadData, "{}: version {} found, expected 1", source,
+                object.contains("version") ? dump_json(object.at("version")) : "none");
+  DUBSAR_TRY(only(object, kTourMembers, std::string(source)));
+  if (!object.contains("steps") || !object.at("steps").is_array() || object.at("steps").empty() ||
+      object.at("steps").size() > kMostSteps)
+    return fail(ErrorKind::kBadData, "{}: \"steps\" is no list of 1 to {} steps", source, kMostSteps);
+  Tour out;
+  json before{{"camera", {{"rotation_wxyz", {1, 0, 0, 0}}, {"zoom", 1}, {"pan", {0, 0}}}},
+              {"light", {{"azimuth_deg", LightPlace().azimuth_deg}, {"elevation_deg", LightPlace().elevation_deg}}},
+              {"unpack", 0},
+              {"style", ""},
+              {"parts", json::array()}};
+  for (const json& step : object.at("steps")) {
+    DUBSAR_ASSIGN(TourStep read, read_step(step, before, fmt::format("{}: steps[{}]", source, out.steps.size())));
+    out.steps.push_back(std::move(read));
+  }
+  return out;
+}
+
+Result<Tour> read_tour(const std::filesystem::path& path) {
+  DUBSAR_ASSIGN(const std::string text, read_text_file(path));
+  return parse_tour(text, path.string());
+}
+
+std::string format_tour(const Tour& tour) {
+  json out{{"format", kFormat}, {"version", 1}, {"steps", json::array()}};
+  for (const TourStep& step : tour.steps) {
+    json one{{"title", step.title}, {"text", step.text}, {"stays_s", step.stays_s}};
+    if (!step.labels.empty()) one["labels"] = json::array();
+    for (const TourLabel& label : step.labels) one["labels"].push_back(json_of(label));
+    one["keyframes"] = json::parse(format_film(step.keyframes)).at("keyframes");
+    out["steps"].push_back(std::move(one));
+  }
+  return out.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+double step_length_s(const TourStep& step) { return step.keyframes.back().time_s + step.stays_s; }
+
+}  // namespace dubsar::app
