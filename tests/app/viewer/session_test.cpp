@@ -134,6 +134,34 @@ TEST_F(SessionTest, EachEyeOfAMovingScholarSeesItsOwnViewInEveryFrame) {
   RecordProperty("head_rms_mm", std::to_string(std::sqrt(squares / checked)));
 }
 
+TEST_F(SessionTest, AHead120MillimetresToTheRightAsOpentrackSendsItSeesWhatIsSeenFromThere) {
+  options_.stage.display = testing::spec("side_by_side");
+  options_.stage.screen = {.width_px = 480, .height_px = 270, .window_w = 480, .window_h = 270};
+  options_.time.longest_s = 0.5;
+  const auto last_picture = [&](const std::string& input) {
+    options_.inputs = {input};
+    Image last;
+    const auto done = run_offscreen(testing::lettered_box(), options_, progress_,
+                                    [&](const Image& picture, const PictureReport&) { last = picture; });
+    EXPECT_TRUE(done) << done.error().message;
+    return last;
+  };
+  // opentrack's datagram: x = -12.0 cm as a double, then y, z, yaw, pitch and roll, all 0.
+  std::string datagrams = "dubsar-recording 1\ndriver opentrack\n0 o\n";
+  for (int i = 0; i < 70; ++i)
+    datagrams += std::to_string(i * 16'000'000) + " r 00000000000028c0" + std::string(80, '0') + "\n";
+  const auto person_at = [](int x_mm) {
+    const std::string key = ", \"at_mm\": [" + std::to_string(x_mm) + ", 0, 600]}";
+    return R"({"duration_s": 2, "latency_ms": 0, "noise_mm": 0, "heads": [{"ipd_mm": 63, "keys": [{"t": 0)" + key +
+           R"(, {"t": 2)" + key + "]}]}";
+  };
+  const Image seen = last_picture("head:opentrack,replay=" + file("head.txt", datagrams));
+  const Image truth = last_picture("scripted:" + file("right.json", person_at(120)));
+  const Image mirrored = last_picture("scripted:" + file("left.json", person_at(-120)));
+  EXPECT_EQ(seen.pixels, truth.pixels);
+  EXPECT_GT(differing_share(seen, mirrored), 0.01) << "the picture says where the head is";
+}
+
 TEST_F(SessionTest, RefusesWhatCannotRun) {
   const auto kind = [&](auto change) {
     ViewOptions options = options_;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -115,21 +116,38 @@ TEST(SourcePlugin, WhatCannotBeIsRefusedAndTimesToComeAreNow) {
   EXPECT_LE(frame.time, SteadyClock().now());
 }
 
-TEST(SourcePlugin, AThousandLoadsAndUnloadsLeaveNothingBehind) {
+TEST(SourcePlugin, AThousandLoadsAndUnloadsOfWhateverBehavesBadlyLeaveNothingBehind) {
   const auto maps = [] {
     std::ifstream file("/proc/self/maps");
     return std::count(std::istreambuf_iterator<char>(file), {}, '\n');
   };
-  (void)make(DUBSAR_DEPTH_CAMERA, {});
+  const SteadyClock clock;
+  constexpr std::array kWays{"", "flood", "throw_read", "throw_open", "lost", "absent", "nan", "short", "future"};
+  const auto load = [&](int i) {
+    const char* const way = i % 25 == 24 ? "stall" : kWays[static_cast<std::size_t>(i) % kWays.size()];
+    const bool camera = i % 2 == 0 && *way == '\0';
+    auto source = make(camera ? DUBSAR_DEPTH_CAMERA : DUBSAR_UNRULY,
+                       *way == '\0' ? std::vector<Option>{} : std::vector<Option>{{way}});
+    ASSERT_TRUE(source) << source.error().message;
+    if (i % 3 == 0) return;  // unloaded before, while or after it opens
+    InputFrame frame;
+    EXPECT_TRUE(eventually([&] {
+      return (*source)->poll(clock.now(), frame) == Freshness::kNew ||
+             (*source)->note().find("not opened yet") == std::string::npos;
+    })) << way;
+    EXPECT_LE(frame.events.size(), 4096U);
+  };
+  for (int i = 0; i < 50; ++i) load(i);
   const auto descriptors = entries_of("/proc/self/fd"), threads = entries_of("/proc/self/task");
   const auto before = maps();
-  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(make(i % 2 == 0 ? DUBSAR_DEPTH_CAMERA : DUBSAR_UNRULY, {}));
+  for (int i = 0; i < 1000; ++i) load(i);
   EXPECT_EQ(entries_of("/proc/self/fd"), descriptors);
   EXPECT_EQ(entries_of("/proc/self/task"), threads);
   EXPECT_LE(maps(), before + 8);  // the allocator's own
   std::ifstream file("/proc/self/maps");
   const std::string all{std::istreambuf_iterator<char>(file), {}};
   EXPECT_EQ(all.find("depth_camera"), std::string::npos);
+  EXPECT_EQ(all.find("unruly"), std::string::npos);
 }
 
 TEST(SourcePlugin, FilesThatAreNoPluginSayWhy) {

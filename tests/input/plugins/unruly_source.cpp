@@ -36,6 +36,7 @@ int read(void* self, uint32_t, const dubsar_source_sink* sink, char* error, size
   const std::string& way = *static_cast<std::string*>(self);
   if (way == "throw_read") throw std::logic_error("index 7 of 3");
   if (way == "block") std::this_thread::sleep_for(std::chrono::seconds(5));
+  if (way == "stall") std::this_thread::sleep_for(std::chrono::milliseconds(40));  // twice what it was told
   if (way == "lost") {
     std::memset(error, 'x', error_size);  // without an end
     return DUBSAR_SOURCE_LOST;
