@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 
 #include "core/base/budget.h"
 #include "core/base/parallel.h"
 #include "core/exa/brick_items.h"
+#include "core/exa/offset_choice.h"
 #include "core/exa/offset_model.h"
 #include "core/exa/range_coder.h"
 #include "core/exa/topology.h"
@@ -56,15 +58,47 @@ std::string encode_offsets(const SurfaceSamples& samples, const BrickItems& item
   return count == 0 ? std::string() : static_cast<char>(model) + out.take();
 }
 
-/// With the model that is better for the first edges.
-std::string encode_offsets(const SurfaceSamples& samples, const BrickItems& items) {
-  std::size_t best = 0, least = ~std::size_t{0};
+/// The model that is better for the first edges; kOffsetModels: the brick has none.
+std::size_t better_model(const SurfaceSamples& samples, const BrickItems& items) {
+  std::size_t best = kOffsetModels, least = ~std::size_t{0};
   for (std::size_t model = 0; model < kOffsetModels; ++model) {
     const std::size_t bytes = encode_offsets(samples, items, model, kTrial).size();
-    if (bytes == 0) return {};
-    if (bytes < least) best = model, least = bytes;
+    if (bytes != 0 && bytes < least) best = model, least = bytes;
   }
-  return encode_offsets(samples, items, best, std::numeric_limits<int>::max());
+  return best;
+}
+
+std::string encode_offsets(const SurfaceSamples& samples, const BrickItems& items) {
+  const std::size_t model = better_model(samples, items);
+  if (model == kOffsetModels) return {};
+  return encode_offsets(samples, items, model, std::numeric_limits<int>::max());
+}
+
+void choose_brick_offsets(SurfaceSamples& samples, const BrickItems& items, OffsetPrices& prices) {
+  const std::size_t model = better_model(samples, items);
+  if (model == kOffsetModels) return;
+  const OffsetModel& network = OffsetModel::instance(model);
+  OffsetWindow window(items.signs());
+  OffsetInputs inputs;
+  items.edges([&](int z) { window.begin_slice(z); },
+              [&](int axis, int x, int y, int z, std::uint32_t number) {
+                const auto [first, last] = prices.range(number);
+                if (first < last) {
+                  window.inputs(axis, x, y, z, inputs);
+                  const OffsetDistribution likely(network.predict(axis, inputs), samples.offset_bits);
+                  double least = std::numeric_limits<double>::infinity();
+                  int best = first;
+                  for (int offset = first; offset <= last; ++offset) {
+                    const auto symbol = static_cast<std::uint32_t>(offset);
+                    const double share = static_cast<double>(likely.start(symbol + 1) - likely.start(symbol)) / 65536.0;
+                    const double price = prices.price(number, offset) - std::log2(share);
+                    if (price < least) best = offset, least = price;
+                  }
+                  prices.take(number, best);
+                  samples.offsets[number] = static_cast<std::uint16_t>(best);
+                }
+                window.store(axis, x, y, z, middle_of(samples.offsets[number], samples.offset_bits));
+              });
 }
 
 std::string encode_faces(const SurfaceSamples& samples, const BrickItems& items) {
@@ -98,6 +132,20 @@ Result<SampleCode> encode_samples(const SurfaceSamples& samples, Progress& progr
   if (progress.cancelled()) return cancelled_error();
   progress.end();
   return code;
+}
+
+Result<void> choose_offsets(SurfaceSamples& samples, OffsetPrices& prices, Progress& progress) {
+  DUBSAR_CHECK(samples.offset_bits <= kModelledBits);
+  DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(samples));
+  const Dims grid = brick_grid(samples.dims);
+  for (std::int64_t turn = 0; turn < 8; ++turn)  // bricks side by side have vertices in common: not at the same time
+    parallel_for(grid.count(), 1, [&](std::int64_t i) {
+      const std::int64_t x = i % grid.x, y = i / grid.x % grid.y, z = i / grid.slice();
+      if (progress.cancelled() || (x & 1) + 2 * (y & 1) + 4 * (z & 1) != turn) return;
+      choose_brick_offsets(samples, BrickItems(samples, index, brick_low(grid, i)), prices);
+    });
+  if (progress.cancelled()) return cancelled_error();
+  return {};
 }
 
 Result<void> decode_samples(std::span<const std::string_view> offsets, std::span<const std::string_view> faces,

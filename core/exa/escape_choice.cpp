@@ -1,0 +1,112 @@
+#include "core/exa/escape_choice.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <optional>
+
+#include "core/base/parallel.h"
+#include "core/exa/exact.h"
+
+namespace dubsar {
+namespace {
+constexpr std::int64_t kGrain = 1 << 13;
+constexpr double kOutsideHalf = 0.045;  // vertices that may lie further than half the bound
+constexpr double kAlong = 0.4;          // least cosine between normal and axis of a short escape
+
+double triangle_distance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::dvec3 ab = b - a, ac = c - a, n = glm::cross(ab, ac);
+  const double area = glm::dot(n, n);
+  const auto inside = [&](const glm::dvec3& from, const glm::dvec3& to) {
+    return glm::dot(glm::cross(to - from, p - from), n) >= 0.0;
+  };
+  if (area > 0.0 && inside(a, b) && inside(b, c) && inside(c, a)) return std::abs(glm::dot(p - a, n)) / std::sqrt(area);
+  const auto side = [&](const glm::dvec3& from, const glm::dvec3& to) {
+    const glm::dvec3 along = to - from;
+    const double length = glm::dot(along, along);
+    const double t = length > 0.0 ? std::clamp(glm::dot(p - from, along) / length, 0.0, 1.0) : 0.0;
+    return glm::length(p - from - t * along);
+  };
+  return std::min({side(a, b), side(b, c), side(c, a)});
+}
+
+/// From a place to the x-quads around a vertex, each cut in both ways.
+double distance_to_fan(const QuadMesh& mesh, std::uint32_t v, const glm::dvec3& p) {
+  double least = glm::length(p - glm::dvec3(mesh.positions[v]));
+  for (const std::uint32_t q : mesh.quads_of(v)) {
+    const Polygon polygon = mesh.polygon(q);
+    const auto at = [&](int i) {
+      return glm::dvec3(mesh.positions[polygon.vertex[static_cast<std::size_t>(i % polygon.size)]]);
+    };
+    for (int start = 0; start < 2; ++start)
+      for (int i = 1; i + 1 < polygon.size; ++i)
+        least = std::min(least, triangle_distance(p, at(start), at(start + i), at(start + i + 1)));
+  }
+  return least;
+}
+
+/// The fewest steps along one axis that bring a vertex within `near` of the surface.
+std::optional<glm::ivec3> steps_back(const QuadMesh& wanted, std::uint32_t v, const glm::vec3& normal,
+                                     const glm::vec3& from, double near) {
+  const glm::dvec3 n(normal);
+  const double away = glm::dot(n, glm::dvec3(wanted.positions[v]) - glm::dvec3(from));
+  std::array<int, 3> axes{0, 1, 2};
+  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return std::abs(n[a]) > std::abs(n[b]); });
+  for (const int axis : axes) {
+    if (std::abs(n[axis]) < kAlong) break;
+    const double step = std::abs(n[axis]) * kEscapeStep;
+    const int sign = (away < 0.0) == (n[axis] < 0.0) ? 1 : -1;
+    const int first = std::max(1, static_cast<int>(std::ceil((std::abs(away) - near) / step)));
+    const int last = static_cast<int>(std::floor((std::abs(away) + near) / step));
+    for (int k = first; k <= last; ++k) {
+      glm::ivec3 steps(0);
+      steps[axis] = sign * k;
+      if (distance_to_fan(wanted, v, glm::dvec3(escaped(from, steps))) <= near) return steps;
+    }
+  }
+  return std::nullopt;
+}
+}  // namespace
+
+void let_escape(const QuadMesh& wanted, std::span<const glm::vec3> normals, double bound,
+                std::vector<glm::vec3>& positions, SettleStats& stats) {
+  if (positions.empty()) return;
+  std::vector<float> error(positions.size());
+  parallel_for(static_cast<std::int64_t>(positions.size()), kGrain, [&](std::int64_t i) {
+    const auto v = static_cast<std::size_t>(i);
+    error[v] = static_cast<float>(distance_to_fan(wanted, static_cast<std::uint32_t>(v), glm::dvec3(positions[v])));
+  });
+  std::vector<float> sorted = error;
+  std::sort(sorted.begin(), sorted.end());
+  const auto kept = static_cast<std::size_t>((1.0 - kOutsideHalf) * static_cast<double>(sorted.size()));
+  double limit = bound;
+  if (kept < sorted.size() && sorted[kept] > 0.5 * bound) {
+    // The worst go first: those left between half the bound and the limit are few enough.
+    const auto within = static_cast<std::size_t>(
+        std::upper_bound(sorted.begin(), sorted.end(), static_cast<float>(0.5 * bound)) - sorted.begin());
+    const auto spare = static_cast<std::size_t>(kOutsideHalf * static_cast<double>(sorted.size()));
+    limit = std::min<double>(bound, within + spare < sorted.size() ? sorted[within + spare] : bound);
+  }
+  std::vector<std::uint8_t> gone(positions.size(), 0);
+  parallel_for(static_cast<std::int64_t>(positions.size()), kGrain, [&](std::int64_t i) {
+    const auto v = static_cast<std::size_t>(i);
+    if (!(error[v] > limit)) return;
+    auto k = steps_back(wanted, static_cast<std::uint32_t>(v), normals[v], positions[v], 0.5 * bound);
+    if (!k) k = escape_to(positions[v], wanted.positions[v]);
+    if (!k) return;
+    positions[v] = escaped(positions[v], *k);
+    error[v] = static_cast<float>(distance_to_fan(wanted, static_cast<std::uint32_t>(v), glm::dvec3(positions[v])));
+    gone[v] = 1;
+  });
+  const auto count = static_cast<double>(error.size());
+  stats.escaped_fraction = static_cast<double>(std::count(gone.begin(), gone.end(), 1)) / count;
+  double sum = 0.0;
+  for (const float e : error) sum += e;
+  stats.mean_error_vox = sum / count;
+  std::sort(error.begin(), error.end());
+  stats.p95_error_vox = error[error.size() * 95 / 100];
+  stats.max_error_vox = error.back();
+}
+
+}  // namespace dubsar

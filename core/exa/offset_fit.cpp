@@ -1,0 +1,168 @@
+#include "core/exa/offset_fit.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "core/base/parallel.h"
+#include "core/exa/offset_model.h"
+
+namespace dubsar {
+namespace {
+constexpr std::int64_t kGrain = 1 << 13;
+constexpr double kSteep = 0.15;  // cosine between edge and normal below which they hardly cross
+constexpr double kDamping = 0.05;
+constexpr std::uint32_t kNoEdge = std::numeric_limits<std::uint32_t>::max();
+// What a vertex costs, in bits, at x times half the bound: kPrice (x^2 + x^4), at most what an escape takes. On
+// phantoms of 28 and 23 dB the files are 8 and 13 % smaller than with rounded crossings; the mean error grows from
+// .0103 to .0114 of a step, the error of the normals from .84 to .85 and from .89 to .92 degrees.
+constexpr double kPrice = 2.0, kPriceOfEscape = 10.0;
+
+/// One per x-quad of real edges: quad q is that of edge q.
+std::vector<FitEdge> edges_of_quads(const SurfaceSamples& samples) {
+  const Dims& d = samples.dims;
+  const std::array<std::int64_t, 3> size{d.x, d.y, d.z};
+  std::vector<FitEdge> edges;
+  edges.reserve(samples.offsets.size());
+  std::uint32_t number = 0;
+  for (std::int64_t z = 0; z < d.z; ++z)
+    for (std::int64_t y = 0; y < d.y; ++y) {
+      const std::uint64_t* here = samples.signs.row(y, z);
+      for (std::int32_t axis = 0; axis < 3; ++axis) {
+        if ((axis == 1 && y + 1 == d.y) || (axis == 2 && z + 1 == d.z)) continue;
+        const std::uint64_t* other = axis == 1 ? samples.signs.row(y + 1, z) : samples.signs.row(y, z + (axis == 2));
+        const std::int64_t words = samples.signs.words_per_row();
+        for (std::int64_t w = 0; w < words; ++w) {
+          std::uint64_t active =
+              axis == 0 ? here[w] ^ (here[w] >> 1 | (w + 1 < words ? here[w + 1] << 63 : 0)) : here[w] ^ other[w];
+          const std::int64_t end = axis == 0 ? d.x - 1 : d.x;
+          if (end - 64 * w < 64) active &= (std::uint64_t{1} << std::max<std::int64_t>(0, end - 64 * w)) - 1;
+          for (; active != 0; active &= active - 1, ++number) {
+            const std::array<std::int64_t, 3> p{64 * w + std::countr_zero(active), y, z};
+            bool in_face = false;  // an open mesh has no x-quad for the edges in its boundary
+            for (int a = 0; a < 3 && !samples.closed; ++a) {
+              const auto i = static_cast<std::size_t>(a);
+              in_face = in_face || (a != axis && (p[i] == 0 || p[i] == size[i] - 1));
+            }
+            if (!in_face)
+              edges.push_back(
+                  {{static_cast<std::int32_t>(p[0]), static_cast<std::int32_t>(p[1]), static_cast<std::int32_t>(p[2])},
+                   axis,
+                   number});
+          }
+        }
+      }
+    }
+  return edges;
+}
+
+}  // namespace
+
+OffsetFit::OffsetFit(const SurfaceModel& model, const QuadMesh& base, std::span<const glm::vec3> normals, double bound)
+    : mesh_(model.mesh), base_(base), normals_(normals), bound_(bound), edges_(edges_of_quads(model.samples)) {
+  steps_ = 1 << model.samples.offset_bits;
+  DUBSAR_CHECK(edges_.size() <= model.mesh.quads.size());
+  before_.resize(edges_.size());
+  t_.resize(edges_.size());
+  edge_of_.assign(model.samples.offsets.size(), kNoEdge);
+  parallel_for(static_cast<std::int64_t>(edges_.size()), kGrain, [&](std::int64_t i) {
+    const auto e = static_cast<std::size_t>(i);
+    edge_of_[edges_[e].offset] = static_cast<std::uint32_t>(e);
+    before_[e] = crossing(model.samples.offsets[edges_[e].offset]);
+    t_[e] = static_cast<float>(std::clamp(cut(static_cast<std::uint32_t>(e)), 0.0, 1.0));
+  });
+  residual_.resize(base.positions.size());
+}
+
+void OffsetFit::find_residuals() {
+  parallel_for(static_cast<std::int64_t>(residual_.size()), kGrain, [&](std::int64_t i) {
+    const auto v = static_cast<std::size_t>(i);
+    residual_[v] = glm::dot(normals_[v], mesh_.positions[v] - place(static_cast<std::uint32_t>(v)));
+  });
+}
+
+void OffsetFit::improve() {
+  find_residuals();
+  parallel_for(static_cast<std::int64_t>(edges_.size()), kGrain, [&](std::int64_t i) {
+    const auto e = static_cast<std::size_t>(i);
+    const Polygon polygon = mesh_.polygon(static_cast<std::uint32_t>(e));
+    double sum = 0.0, weight = kDamping;
+    for (int k = 0; k < polygon.size; ++k) {
+      const std::uint32_t v = polygon.vertex[static_cast<std::size_t>(k)];
+      const double along = normals_[v][edges_[e].axis];
+      sum += residual_[v] * along;
+      weight += along * along;
+    }
+    t_[e] = static_cast<float>(std::clamp(t_[e] + sum / weight, 0.0, 1.0));
+  });
+}
+
+int OffsetFit::nearest(float t) const { return std::min(steps_ - 1, static_cast<int>(t * static_cast<float>(steps_))); }
+
+Result<void> OffsetFit::store(SurfaceSamples& samples, Progress& progress) {
+  for (std::size_t e = 0; e < edges_.size(); ++e)
+    samples.offsets[edges_[e].offset] = static_cast<std::uint16_t>(nearest(t_[e]));
+  if (samples.offset_bits > kModelledBits) return {};
+  find_residuals();
+  return choose_offsets(samples, *this, progress);
+}
+
+std::pair<int, int> OffsetFit::range(std::uint32_t number) const {
+  const std::uint32_t e = edge_of_[number];
+  if (e == kNoEdge) return {0, -1};
+  const int middle = nearest(t_[e]), reach = std::max(1, steps_ / 16);
+  return {std::max(0, middle - reach), std::min(steps_ - 1, middle + reach)};
+}
+
+double OffsetFit::price(std::uint32_t number, int offset) const {
+  const std::uint32_t e = edge_of_[number];
+  const Polygon polygon = mesh_.polygon(e);
+  const double moved = crossing(offset) - t_[e], half = 0.5 * bound_;
+  double sum = 0.0;
+  for (int k = 0; k < polygon.size; ++k) {
+    const std::uint32_t v = polygon.vertex[static_cast<std::size_t>(k)];
+    const double left =
+        residual_[v] - moved * normals_[v][edges_[e].axis] / static_cast<double>(mesh_.quads_of(v).size());
+    const double x2 = left * left / (half * half);
+    sum += std::min(kPriceOfEscape, kPrice * x2 * (1.0 + x2));
+  }
+  return sum;
+}
+
+void OffsetFit::take(std::uint32_t number, int offset) {
+  const std::uint32_t e = edge_of_[number];
+  const Polygon polygon = mesh_.polygon(e);
+  const float moved = crossing(offset) - t_[e];
+  for (int k = 0; k < polygon.size; ++k) {
+    const std::uint32_t v = polygon.vertex[static_cast<std::size_t>(k)];
+    residual_[v] -= moved * normals_[v][edges_[e].axis] / static_cast<float>(mesh_.quads_of(v).size());
+  }
+}
+
+/// Where the mean plane of an edge's x-quad cuts it.
+double OffsetFit::cut(std::uint32_t e) const {
+  const Polygon polygon = mesh_.polygon(e);
+  const auto at = [&](int i) {
+    return glm::dvec3(mesh_.positions[polygon.vertex[static_cast<std::size_t>(i % polygon.size)]]);
+  };
+  glm::dvec3 centre(0.0), normal(0.0);
+  for (int i = 0; i < polygon.size; ++i) centre += at(i);
+  centre /= polygon.size;
+  for (int i = 0; i < polygon.size; ++i) normal += glm::cross(at(i) - centre, at(i + 1) - centre);
+  const FitEdge& edge = edges_[e];
+  const glm::dvec3 from = centre - glm::dvec3(edge.low[0], edge.low[1], edge.low[2]);
+  const double length = glm::length(normal), along = normal[edge.axis];
+  return std::abs(along) > kSteep * length ? glm::dot(normal, from) / along : from[edge.axis];
+}
+/// The vertex that the present crossings give.
+glm::vec3 OffsetFit::place(std::uint32_t v) const {
+  glm::vec3 moved(0.0f);
+  const auto quads = mesh_.quads_of(v);
+  for (const std::uint32_t q : quads)
+    if (q < edges_.size()) moved[edges_[q].axis] += t_[q] - before_[q];
+  return base_.positions[v] + moved / static_cast<float>(quads.size());
+}
+
+}  // namespace dubsar

@@ -1,0 +1,54 @@
+#pragma once
+// Crossings of the active edges such that the vertices between them lie on a given surface.
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "core/exa/offset_choice.h"
+#include "core/parts/surface_model.h"
+
+namespace dubsar {
+
+/// An active edge inside the grid and its x-quad.
+struct FitEdge {
+  std::array<std::int32_t, 3> low{};
+  std::int32_t axis = 0;
+  std::uint32_t offset = 0;  ///< its place in samples.offsets
+};
+
+class OffsetFit : public OffsetPrices {
+ public:
+  /// `model`: the samples and the wanted surface, with its vertex normals; `base`: the mesh of the samples. `bound`:
+  /// the largest distance of a vertex from the surface. All must outlive it.
+  OffsetFit(const SurfaceModel& model, const QuadMesh& base, std::span<const glm::vec3> normals, double bound);
+
+  /// Moves the crossings until the vertices lie on the surface, as far as the edges reach.
+  void improve();
+  /// Rounds the crossings to samples.offsets. Those that cost fewer bits are preferred, while vertices stay in bounds.
+  Result<void> store(SurfaceSamples& samples, Progress& progress);
+
+  std::pair<int, int> range(std::uint32_t number) const override;
+  double price(std::uint32_t number, int offset) const override;
+  void take(std::uint32_t number, int offset) override;
+
+ private:
+  double cut(std::uint32_t e) const;
+  glm::vec3 place(std::uint32_t v) const;
+  void find_residuals();
+  float crossing(int offset) const { return (static_cast<float>(offset) + 0.5f) / static_cast<float>(steps_); }
+  int nearest(float t) const;
+
+  const QuadMesh& mesh_;
+  const QuadMesh& base_;
+  std::span<const glm::vec3> normals_;
+  double bound_;
+  std::vector<FitEdge> edges_;
+  std::vector<std::uint32_t> edge_of_;        ///< by place in samples.offsets; kNoEdge: without an x-quad
+  std::vector<float> before_, t_, residual_;  ///< crossings of the edges before and now; of vertices, along the normal
+  int steps_ = 1;
+};
+
+}  // namespace dubsar

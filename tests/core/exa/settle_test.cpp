@@ -1,0 +1,129 @@
+#include "core/exa/settle.h"
+
+#include "core/base/parallel.h"
+#include "core/exa/escape_choice.h"
+#include "core/exa/exact.h"
+#include "core/exa/offset_choice.h"
+#include "core/exa/offsets.h"
+#include "core/relief/smooth.h"
+#include "tests/core/exa/exa_test_models.h"
+
+namespace dubsar {
+namespace {
+
+/// A noisy blob whose vertices lie at the mean of the x-quads around them.
+SurfaceModel smoothed_model(unsigned seed) {
+  SurfaceModel model = sample_model({44, 41, 150}, Kind::kBlob, seed);
+  SilentProgress progress;
+  QuadMesh& mesh = model.mesh;
+  mesh.positions = build_quad_mesh(model.samples, progress)->positions;
+  const std::vector<glm::vec3> before = mesh.positions;
+  for (std::size_t v = 0; v < before.size(); ++v) {
+    glm::vec3 sum(0.0f);
+    for (const std::uint32_t q : mesh.quads_of(static_cast<std::uint32_t>(v)))
+      for (const std::uint32_t w : mesh.quads[q]) sum += 0.25f * before[w];
+    mesh.positions[v] = sum / static_cast<float>(mesh.quads_of(static_cast<std::uint32_t>(v)).size());
+  }
+  model.attributes = {};
+  return model;
+}
+
+struct Every : OffsetPrices {
+  explicit Every(double price_of_step, const SurfaceSamples& samples) : step(price_of_step), wanted(samples.offsets) {}
+  std::pair<int, int> range(std::uint32_t) const override { return {0, 15}; }
+  double price(std::uint32_t number, int offset) const override { return step * std::abs(offset - wanted[number]); }
+  void take(std::uint32_t number, int offset) override { taken[number] = offset; }
+  double step;
+  std::vector<std::uint16_t> wanted;
+  std::vector<int> taken = std::vector<int>(wanted.size(), -1);
+};
+
+std::size_t offset_bytes(const SurfaceSamples& samples) {
+  SilentProgress progress;
+  std::size_t bytes = 0;
+  const SampleCode code = encode_samples(samples, progress).value();
+  for (const std::string& chunk : code.offsets) bytes += chunk.size();
+  return bytes;
+}
+
+TEST(ExaSettle, OffsetsThatMayBeAnyAreThoseThatTheNetworkExpects) {
+  SilentProgress progress;
+  SurfaceSamples samples = sample_model({30, 140, 20}, Kind::kNoise, 21).samples;
+  const std::size_t before = offset_bytes(samples);
+  const SurfaceSamples original = samples;
+  Every dear(1e6, samples);
+  ASSERT_TRUE(choose_offsets(samples, dear, progress));
+  EXPECT_TRUE(samples == original) << "none is worth a million bits";
+  EXPECT_EQ(std::count(dear.taken.begin(), dear.taken.end(), -1), 0) << "every edge is asked for";
+  Every free(0.0, samples);
+  ASSERT_TRUE(choose_offsets(samples, free, progress));
+  EXPECT_LT(offset_bytes(samples), before * 2 / 3);
+}
+
+TEST(ExaSettle, TheOffsetsOfASmoothedSurfaceAreTheSameForAnyNumberOfThreads) {
+  SilentProgress progress;
+  SurfaceModel first;
+  for (const int threads : {1, 2, 5}) {
+    set_thread_count(threads);
+    SurfaceModel model = smoothed_model(5);
+    const auto stats = settle_for_exa(model, {}, progress);
+    ASSERT_TRUE(stats) << stats.error().message;
+    EXPECT_LE(stats->max_error_vox, 1.0 / 16.0);
+    EXPECT_LE(stats->p95_error_vox, 1.0 / 32.0);
+    EXPECT_LT(stats->escaped_fraction, 0.1);
+    if (threads == 1) first = model;
+    EXPECT_TRUE(model.samples == first.samples) << threads << " threads";
+    EXPECT_TRUE(same_bytes(model.mesh.positions, first.mesh.positions)) << threads << " threads";
+  }
+  set_thread_count(0);
+}
+
+/// From p to the triangles of all x-quads near it, cut in both ways: dense points of them, so at most .01 too large.
+double distance(const QuadMesh& mesh, const glm::vec3& p) {
+  double least = 1e9;
+  for (const auto& quad : mesh.quads) {
+    const auto at = [&](std::size_t i) { return glm::dvec3(mesh.positions[quad[i % 4]]); };
+    if (glm::length(at(0) - glm::dvec3(p)) > 3.0) continue;
+    for (std::size_t cut = 0; cut < 4; ++cut)
+      for (int i = 0; i <= 128; ++i)
+        for (int j = 0; i + j <= 128; ++j)
+          least = std::min(
+              least,
+              glm::length((at(cut) * double(128 - i - j) + at(cut + 1) * double(i) + at(cut + 2) * double(j)) / 128.0 -
+                          glm::dvec3(p)));
+  }
+  return least;
+}
+
+TEST(ExaSettle, VerticesThatLeaveTakeTheFewestStepsThatBringThemBack) {
+  SilentProgress progress;
+  SurfaceModel model = sample_model({14, 12, 13}, Kind::kBlob, 3);
+  const QuadMesh base = build_quad_mesh(model.samples, progress).value();
+  QuadMesh wanted = base;
+  for (glm::vec3& p : wanted.positions) p += glm::vec3(0.02f, -0.03f, 0.1f);
+  std::vector<glm::vec3> moved = base.positions;
+  SettleStats stats;
+  constexpr double kBound = 1.0 / 16.0;
+  let_escape(wanted, vertex_normals(wanted, face_normals(wanted)), kBound, moved, stats);
+  EXPECT_LE(stats.max_error_vox, kBound);
+  EXPECT_LE(stats.p95_error_vox, 0.5 * kBound);
+  int gone = 0, short_ones = 0, looked = 0;
+  for (std::size_t v = 0; v < moved.size(); ++v) {
+    const glm::vec3 k = 64.0f * (moved[v] - base.positions[v]);
+    const int axes = (std::abs(k.x) > 0.5f) + (std::abs(k.y) > 0.5f) + (std::abs(k.z) > 0.5f);
+    gone += axes > 0;
+    short_ones += axes == 1;
+    if (axes != 1 || v % 29 != 0) continue;
+    ++looked;
+    EXPECT_LE(distance(wanted, moved[v]), 0.5 * kBound + 0.01) << v;
+    const glm::vec3 one_less = moved[v] - (moved[v] - base.positions[v]) / std::round(glm::length(k));
+    EXPECT_GT(distance(wanted, one_less), 0.5 * kBound - 0.005) << v;
+  }
+  EXPECT_GT(gone, 100);
+  EXPECT_GT(short_ones, gone * 9 / 10);
+  EXPECT_GT(looked, 5);
+  EXPECT_NEAR(stats.escaped_fraction, double(gone) / double(moved.size()), 1e-12);
+}
+
+}  // namespace
+}  // namespace dubsar
