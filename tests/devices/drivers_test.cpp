@@ -34,11 +34,13 @@ TEST(Enumerate, SaysWhyADeviceCannotBeUsedAndNamesTheRule) {
                                    {"/dev/hidraw3", 0x3318, 0x0424, 0xff00, 1, 3, "", "XREAL Air", ""},
                                    {"/dev/hidraw4", 0x3318, 0x0424, 0xff00, 1, 4, "", "XREAL Air", ""},
                                    {"/dev/hidraw5", 0x256f, 0xc652, 1, 6, 0, "", "Universal Receiver", ""},
-                                   {"/dev/hidraw6", 0x04d8, 0xef7e, 0, 0, 0, "", "HoloPlay", ""}};
+                                   {"/dev/hidraw6", 0x04d8, 0xef7e, 0, 0, 0, "", "HoloPlay", ""},
+                                   {"/dev/hidraw7", 0x04d8, 0xef7e, 0, 0, 0, "", "Somebody's thermometer", ""},
+                                   {"/dev/hidraw8", 0x04d8, 0xef7e, 0, 0, 0, "", "", ""}};
   const auto found = known_hid_devices(nodes, [](const std::string& path) {
     return path == "/dev/hidraw0" ? EACCES : path == "/dev/hidraw6" ? EIO : 0;
   });
-  ASSERT_EQ(found.size(), 4U);
+  ASSERT_EQ(found.size(), 4U) << "04d8:ef7e is a chip maker's number, and a Looking Glass only with its own name";
   EXPECT_EQ(found[0].driver, "spacemouse");
   EXPECT_EQ(found[0].state, DeviceState::kNoPermission);
   EXPECT_NE(found[0].remedy.find(R"(SUBSYSTEM=="hidraw", ATTRS{idVendor}=="256f", ATTRS{idProduct}=="c635")"),

@@ -39,10 +39,10 @@ else
   end "$server"
 fi
 
-# spacenavd, the daemon: the greeting; motions need a puck
+# spacenavd, the daemon: the greeting; motions need a puck. Debian's binds run/spnav.sock where it is started.
 if ! have spacenavd; then
   missing "spacenavd daemon" "apt install spacenavd"
-elif [ ! -S /var/run/spnav.sock ] && { [ "$(id -u)" -ne 0 ] || ! begin spacenavd spacenavd -d || ! wait_for_socket; }; then
+elif [ ! -S /var/run/spnav.sock ] && { [ "$(id -u)" -ne 0 ] || ! begin spacenavd env -C / spacenavd -d || ! wait_for_socket; }; then
   missing "spacenavd daemon" "installed, but it does not run: systemctl start spacenavd"
 elif told=$("$dubsar" devices probe spacenav --json "$work/probe.json" 2>&1); then
   good "spacenavd daemon" "$(head -1 <<<"$told")"

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
@@ -314,6 +315,17 @@ TEST_F(DisplaysCommand, APairThatExistsIsShownOnAnyDisplay) {
   EXPECT_FALSE(fs::exists(file("e.png")));
 }
 
+TEST_F(DisplaysCommand, PicturesSayHowManyDotsAnInchThePanelHas) {
+  ASSERT_EQ(run_dubsar({"render", "-o", file("dots.png"), "--pattern", "--display", "interlaced", "--size", "640x360",
+                        "--screen-mm", "320x180"})
+                .exit_code,
+            0);
+  std::ifstream stream(file("dots.png"), std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  // PNG, pHYs: pixels a metre across and down, then 1 for metres. 640 pixels on 320 mm are 2000.
+  EXPECT_NE(bytes.find(std::string("pHYs\0\0\x07\xd0\0\0\x07\xd0\x01", 13)), std::string::npos);
+}
+
 TEST_F(DisplaysCommand, OptionsThatContradictAreUsageErrors) {
   const auto code = [&](std::vector<std::string> extra) {
     std::vector<std::string> arguments{"render", "-o", file("x.png")};
@@ -329,6 +341,8 @@ TEST_F(DisplaysCommand, OptionsThatContradictAreUsageErrors) {
   EXPECT_EQ(code({"--pattern", "--display", "lenticular:sr-32", "--see-from", "0,0"}), 64);
   EXPECT_EQ(code({file("card.obj"), "--display", "mono", "--perspective"}), 64);
   EXPECT_EQ(code({"--pattern", "--display", "quad_buffer"}), 69);
+  for (const char* viewer : {"0,0,-600", "0,0,0", "0,0,19"})
+    EXPECT_EQ(code({"--pattern", "--display", "anaglyph", "--viewer", viewer}), 64) << "behind the panel, or in it";
   EXPECT_FALSE(fs::exists(file("x.png")));
 }
 
