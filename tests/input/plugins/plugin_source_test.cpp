@@ -61,7 +61,8 @@ TEST(SourcePlugin, WhatIsThrownIsALossWithItsReason) {
         std::pair{"absent", "no camera is plugged in"}, std::pair{"lost", "xxxx"}}) {
     const auto source = make(DUBSAR_UNRULY, {{way}});
     ASSERT_TRUE(source) << source.error().message;
-    EXPECT_TRUE(eventually([&] { return (*source)->note().find(reason) != std::string::npos; })) << (*source)->note();
+    EXPECT_TRUE(eventually([&, why = reason] { return (*source)->note().find(why) != std::string::npos; }))
+        << (*source)->note();
     InputFrame frame;
     EXPECT_EQ((*source)->poll(SteadyClock().now(), frame), Freshness::kLost);
   }
@@ -70,6 +71,7 @@ TEST(SourcePlugin, WhatIsThrownIsALossWithItsReason) {
 }
 
 TEST(SourcePlugin, ABlockedOneIsLostAndNobodyWaitsForIt) {
+  const auto threads = entries_of("/proc/self/task");
   auto source = make(DUBSAR_UNRULY, {{"block"}}).value();
   const SteadyClock clock;
   InputFrame frame;
@@ -87,7 +89,7 @@ TEST(SourcePlugin, ABlockedOneIsLostAndNobodyWaitsForIt) {
   source.reset();
   EXPECT_LT(std::chrono::duration<double>(steady_clock::now() - begun).count(), 4.0);
   // it comes back after 5 s and finds that it is not wanted: its thread ends, its library goes
-  EXPECT_TRUE(eventually([] { return entries_of("/proc/self/task") == 1; }));
+  EXPECT_TRUE(eventually([&] { return entries_of("/proc/self/task") == threads; }));
 }
 
 TEST(SourcePlugin, AFloodIsBounded) {
