@@ -97,11 +97,8 @@ Result<DepthField> DepthField::make(const BitVolume& inside, int seal_radius, Pr
   BitVolume exterior;
   {
     const int margin = seal_radius + 2;
-    BitVolume blocked = pad(inside, margin);
-    for (int r = 0; r < seal_radius; ++r) {
-      if (progress.cancelled()) return cancelled_error();
-      blocked = dilate(blocked, 1);
-    }
+    const BitVolume blocked = dilate(pad(inside, margin), seal_radius);
+    if (progress.cancelled()) return cancelled_error();
     exterior = crop(flood_from_border(blocked), margin);
   }
   if (progress.cancelled()) return cancelled_error();

@@ -15,6 +15,9 @@ namespace {
 
 constexpr std::int64_t kGrain = 1 << 13;
 
+/// One of each face; bytes, since several threads write them.
+using Flags = std::vector<std::uint8_t>;
+
 /// Relief up to this many grid steps wide does not bend the depth field.
 constexpr int kSealRadius = 6;
 
@@ -34,9 +37,9 @@ std::uint32_t air_in_front(const BitVolume& inside, const BitVolume& exterior, c
 
 /// Two labels on the faces where active[f]. preference > 0: the face wants `true`, in units of area.
 /// Faces that clearly agree and meet without a crease are one node, which leaves a small graph with the same
-/// cut.
-Result<std::vector<bool>> cut_faces(const SurfaceModel& model, const FaceScene& scene, const std::vector<bool>& active,
-                                    const std::vector<float>& preference, Progress& progress) {
+/// cut. All but the cut itself, and the numbering of its nodes, runs on all threads.
+Result<Flags> cut_faces(const SurfaceModel& model, const FaceScene& scene, const Flags& active,
+                        const std::vector<float>& preference, Progress& progress) {
   // Crease weight exp(-(max(0, -k - 0.2) / 0.25)), lambda 2 to 4.
   constexpr float kLambda = 3.0f, kFlat = 0.2f, kFall = 0.25f;
   constexpr float kClear = 0.3f;    // preference per area
@@ -44,23 +47,36 @@ Result<std::vector<bool>> cut_faces(const SurfaceModel& model, const FaceScene& 
   constexpr double kMostCost = 1 << 29;
   const FaceGraph& graph = scene.graph;
   const std::uint32_t faces = graph.faces();
+  /// The active faces across the sides of one, each pair once.
+  const auto each_pair = [&](std::uint32_t f, const auto& visit) {
+    for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
+      const std::uint32_t g = graph.neighbour[s];
+      if (g != FaceGraph::kNone && g >= f && active[g]) visit(g, s - graph.first_side[f]);
+    }
+  };
   const auto clear_side = [&](std::uint32_t f) {
     return preference[f] > kClear * graph.area[f] ? 1 : preference[f] < -kClear * graph.area[f] ? -1 : 0;
   };
-  DisjointSets sets(faces);
-  for (std::uint32_t f = 0; f < faces; ++f) {
-    if (!active[f] || clear_side(f) == 0) continue;
-    for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
-      const std::uint32_t g = graph.neighbour[s];
-      if (g == FaceGraph::kNone || g < f || !active[g] || clear_side(g) != clear_side(f)) continue;
-      if (graph.curvature(f, g) > -kFlat) sets.join(f, g);
-    }
-  }
-  if (progress.cancelled()) return cancelled_error();
   std::vector<std::uint32_t> node(faces, FaceGraph::kNone);
+  {
+    ConcurrentSets sets(faces);
+    parallel_for(faces, kGrain, [&](std::int64_t i) {
+      const auto f = static_cast<std::uint32_t>(i);
+      const int side = active[f] ? clear_side(f) : 0;
+      if (side == 0) return;
+      each_pair(f, [&](std::uint32_t g, std::uint32_t) {
+        if (clear_side(g) == side && graph.curvature(f, g) > -kFlat) sets.join(f, g);
+      });
+    });
+    if (progress.cancelled()) return cancelled_error();
+    parallel_for(faces, kGrain, [&](std::int64_t i) {
+      const auto f = static_cast<std::uint32_t>(i);
+      if (active[f]) node[f] = sets.root(f);
+    });
+  }
   std::uint32_t nodes = 0;
-  for (std::uint32_t f = 0; f < faces; ++f)
-    if (active[f]) node[f] = sets.root(f) == f ? nodes++ : node[sets.root(f)];
+  for (std::uint32_t f = 0; f < faces; ++f)  // a root is the first face of its set
+    if (active[f]) node[f] = node[f] == f ? nodes++ : node[node[f]];
   std::vector<double> wish(nodes, 0.0);
   for (std::uint32_t f = 0; f < faces; ++f)
     if (active[f]) wish[node[f]] += static_cast<double>(preference[f]);
@@ -69,21 +85,36 @@ Result<std::vector<bool>> cut_faces(const SurfaceModel& model, const FaceScene& 
     const auto cost = static_cast<std::int32_t>(std::lround(std::clamp(wish[n] * kUnits, -kMostCost, kMostCost)));
     cut.add_node_cost(n, cost < 0 ? -cost : 0, cost > 0 ? cost : 0);
   }
-  for (std::uint32_t f = 0; f < faces; ++f) {
-    if (!active[f]) continue;
-    for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
-      const std::uint32_t g = graph.neighbour[s];
-      if (g == FaceGraph::kNone || g < f || !active[g] || node[g] == node[f]) continue;
-      const float crease = std::exp(-std::max(0.0f, -graph.curvature(f, g) - kFlat) / kFall);
-      const float length = side_length(model.mesh, f, s - graph.first_side[f]);
-      cut.add_edge(node[f], node[g],
-                   1 + static_cast<std::int32_t>(std::lround(kUnits * static_cast<double>(kLambda * crease * length))));
+  struct Edge {
+    std::uint32_t a, b;
+    std::int32_t cost;
+  };
+  using Edges = std::vector<Edge>;
+  const std::int64_t chunks = (std::int64_t{faces} + kGrain - 1) / kGrain;
+  std::vector<Edges> edges(static_cast<std::size_t>(chunks));
+  parallel_chunks(faces, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    Edges& here = edges[static_cast<std::size_t>(begin / kGrain)];
+    for (auto f = static_cast<std::uint32_t>(begin); f < static_cast<std::uint64_t>(end); ++f) {
+      if (!active[f]) continue;
+      each_pair(f, [&](std::uint32_t g, std::uint32_t side) {
+        if (node[g] == node[f]) return;
+        const float crease = std::exp(-std::max(0.0f, -graph.curvature(f, g) - kFlat) / kFall);
+        const float length = side_length(model.mesh, f, side);
+        here.push_back(
+            {node[f], node[g],
+             1 + static_cast<std::int32_t>(std::lround(kUnits * static_cast<double>(kLambda * crease * length)))});
+      });
     }
-  }
+  });
+  for (const Edges& some : edges)
+    for (const Edge& e : some) cut.add_edge(e.a, e.b, e.cost);
+  edges = {};
   DUBSAR_TRY(cut.solve(progress));
-  std::vector<bool> result(faces, false);
-  for (std::uint32_t f = 0; f < faces; ++f)
-    if (active[f]) result[f] = cut.on_source_side(node[f]);
+  Flags result(faces, 0);
+  parallel_for(faces, kGrain, [&](std::int64_t i) {
+    const auto f = static_cast<std::size_t>(i);
+    result[f] = active[f] && cut.on_source_side(node[f]) ? 1 : 0;
+  });
   return result;
 }
 
@@ -257,55 +288,62 @@ FaceComponents find_components(const SurfaceModel& model, const FaceScene& scene
 }
 
 Result<std::vector<FaceRole>> roles_by_cut(const SurfaceModel& model, const FaceScene& scene,
-                                           const SegmentOptions& options, Progress& progress) {
+                                           const FaceComponents& whole, const SegmentOptions& options,
+                                           Progress& progress) {
   const FaceGraph& graph = scene.graph;
   const std::uint32_t faces = graph.faces();
-  const FaceComponents whole = find_components(model, scene, std::vector<std::uint8_t>(faces, 0));
   constexpr double kStray = 0.02;  // share of a surface whose faces may have looked through a thin wall
   double total = 0.0;
   for (const auto& info : whole.info) total += info.area;
 
+  enum class Kind : std::uint8_t { kCore, kGap, kPore, kOutside, kUndecided };
+  std::vector<Kind> kind;  // of each surface
+  for (const FaceComponents::Info& info : whole.info)
+    kind.push_back(info.exterior_area >= (1.0 - kStray) * info.area && info.exterior_area > kStray * info.area
+                       ? Kind::kOutside
+                   : info.exterior_area > kStray * info.area    ? Kind::kUndecided
+                   : info.volume > 0.0                          ? Kind::kCore  // a body that touches nothing
+                   : info.area >= options.smallest_area * total ? Kind::kGap
+                                                                : Kind::kPore);
+  const auto each_face = [&](const auto& visit) {
+    parallel_for(faces, kGrain, [&](std::int64_t i) { visit(static_cast<std::size_t>(i)); });
+  };
   std::vector<FaceRole> roles(faces, FaceRole::kInside);
-  std::vector<bool> undecided(faces, false), enclosed(faces, false);
-  bool any_undecided = false;
-  for (std::uint32_t f = 0; f < faces; ++f) {
-    const FaceComponents::Info& info = whole.info[whole.of_face[f]];
-    if (info.exterior_area <= kStray * info.area) {
-      if (info.volume > 0.0)
-        roles[f] = FaceRole::kCore;  // a body that touches nothing
-      else
-        enclosed[f] = info.area >= options.smallest_area * total;  // the gap, or a pore
-    } else if (info.exterior_area >= (1.0 - kStray) * info.area) {
-      roles[f] = FaceRole::kOutside;
-    } else {
-      undecided[f] = any_undecided = true;
-    }
-  }
+  Flags undecided(faces, 0), enclosed(faces, 0);
+  each_face([&](std::size_t f) {
+    const Kind of_face = kind[whole.of_face[f]];
+    if (of_face == Kind::kCore) roles[f] = FaceRole::kCore;
+    if (of_face == Kind::kOutside) roles[f] = FaceRole::kOutside;
+    enclosed[f] = of_face == Kind::kGap;
+    undecided[f] = of_face == Kind::kUndecided;
+  });
   std::vector<float> preference(faces, 0.0f);
-  if (any_undecided) {
+  if (std::find(kind.begin(), kind.end(), Kind::kUndecided) != kind.end()) {
     // What can be seen through a crack lies deeper than the wall is thick.
     const float wall = wall_thickness(scene);
-    for (std::uint32_t f = 0; f < faces; ++f)
+    each_face([&](std::size_t f) {
       if (undecided[f] && scene.air[f] != EnclosedAir::kNone)
         preference[f] = graph.area[f] * (scene.air[f] == FaceScene::kExterior
                                              ? std::clamp(2.0f - 2.0f * scene.depth[f] / wall, -1.0f, 1.0f)
                                              : -1.0f);
-    DUBSAR_ASSIGN(const std::vector<bool> outside, cut_faces(model, scene, undecided, preference, progress));
-    for (std::uint32_t f = 0; f < faces; ++f)
-      if (undecided[f]) {
-        if (outside[f])
-          roles[f] = FaceRole::kOutside;
-        else
-          enclosed[f] = true;
-      }
+    });
+    DUBSAR_ASSIGN(const Flags outside, cut_faces(model, scene, undecided, preference, progress));
+    each_face([&](std::size_t f) {
+      if (!undecided[f]) return;
+      if (outside[f])
+        roles[f] = FaceRole::kOutside;
+      else
+        enclosed[f] = 1;
+    });
   }
   // Where the envelope's clay was pressed onto the tablet, the rim of the contact is envelope: walls across
   // the gap lean to it. On phantoms 0 to 0.35 are equal to 0.3 %, more takes tablet.
   constexpr float kLean = 0.2f;
-  for (std::uint32_t f = 0; f < faces; ++f) preference[f] = -graph.area[f] * vote(scene.inward[f] + kLean);
-  DUBSAR_ASSIGN(const std::vector<bool> core, cut_faces(model, scene, enclosed, preference, progress));
-  for (std::uint32_t f = 0; f < faces; ++f)
+  each_face([&](std::size_t f) { preference[f] = -graph.area[f] * vote(scene.inward[f] + kLean); });
+  DUBSAR_ASSIGN(const Flags core, cut_faces(model, scene, enclosed, preference, progress));
+  each_face([&](std::size_t f) {
     if (enclosed[f]) roles[f] = core[f] ? FaceRole::kCore : FaceRole::kInside;
+  });
   return roles;
 }
 

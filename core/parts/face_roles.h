@@ -50,9 +50,11 @@ struct FaceComponents {
 FaceComponents find_components(const SurfaceModel& model, const FaceScene& scene,
                                const std::vector<std::uint8_t>& label);
 
-/// Minimum cut along concave creases, nested: outside | rest, then inside | core. kCancelled.
+/// Minimum cut along concave creases, nested: outside | rest, then inside | core. `whole`: the components of all faces,
+/// whatever their label. kCancelled.
 Result<std::vector<FaceRole>> roles_by_cut(const SurfaceModel& model, const FaceScene& scene,
-                                           const SegmentOptions& options, Progress& progress);
+                                           const FaceComponents& whole, const SegmentOptions& options,
+                                           Progress& progress);
 
 /// Components of what the concavity threshold leaves; each gets the role that most of its area votes for.
 Result<std::vector<FaceRole>> roles_by_concavity(const SurfaceModel& model, const FaceScene& scene,

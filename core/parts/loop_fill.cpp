@@ -19,22 +19,22 @@ constexpr float kImpossible = std::numeric_limits<float>::infinity();
 class OptimalTriangulation {
  public:
   OptimalTriangulation(const Loop& loop, std::vector<std::uint32_t> polygon)
-      : loop_(loop),
-        polygon_(std::move(polygon)),
-        n_(polygon_.size()),
-        best_(n_ * n_, kImpossible),
-        apex_(n_ * n_, 0) {}
+      : loop_(loop), polygon_(std::move(polygon)), n_(polygon_.size()), apex_(n_ * n_, 0), beyond_(n_ * n_) {}
 
   /// Appends triangles in loop indices; false when every triangulation needs a forbidden edge.
   Result<bool> solve(std::vector<Triangle>& triangles, Progress& progress) {
     constexpr float kStiffness = 1.0f / 16.0f;  // of the loop's length: two fifths of its radius
     for (std::size_t i = 0; i < n_; ++i) stiffness_ += kStiffness * glm::distance(at(i), at((i + 1) % n_));
-    for (std::size_t i = 0; i + 1 < n_; ++i) best_[i * n_ + i + 1] = 0.0f;
+    for (std::size_t i = 0; i + 1 < n_; ++i) {
+      Beyond edge{.cost = 0.0f, .length = glm::distance(at(i), at(i + 1))};
+      edge.known = rim_normal(polygon_[i], polygon_[i + 1], edge.normal);
+      keep(i, i + 1, edge);
+    }
     for (std::size_t gap = 2; gap < n_; ++gap) {
       if (progress.cancelled()) return cancelled_error();
       for (std::size_t i = 0; i + gap < n_; ++i) find_apex(i, i + gap);
     }
-    if (best_[n_ - 1] == kImpossible) return false;
+    if (beyond_[n_ - 1].cost == kImpossible) return false;
     std::vector<std::pair<std::size_t, std::size_t>> todo{{0, n_ - 1}};
     while (!todo.empty()) {
       const auto [i, j] = todo.back();
@@ -51,18 +51,15 @@ class OptimalTriangulation {
  private:
   const glm::vec3& at(std::size_t i) const { return loop_.positions[polygon_[i]]; }
 
-  /// Normal on the far side of polygon edge or chord i, j (i < j); false when not known.
-  bool far_normal(std::size_t i, std::size_t j, glm::vec3& normal) const {
-    if (j > i + 1) {
-      const std::size_t k = apex_[i * n_ + j];
-      normal = glm::cross(at(k) - at(i), at(j) - at(i));
-      const float length = glm::length(normal);
-      if (length <= 0.0f) return false;
-      normal /= length;
-      return true;
-    }
-    return rim_normal(polygon_[i], polygon_[j], normal);
-  }
+  /// What lies beyond an edge or chord i, j of the polygon (i < j): the best triangulation of what it cuts off.
+  struct Beyond {
+    float cost = kImpossible, length = 0.0f;
+    glm::vec3 normal{0.0f};  ///< of the triangle at the chord, or of the rim at an edge
+    bool known = false;      ///< the normal
+  };
+
+  /// Under both orders, so that the chords of one vertex lie side by side.
+  void keep(std::size_t i, std::size_t j, const Beyond& beyond) { beyond_[i * n_ + j] = beyond_[j * n_ + i] = beyond; }
 
   /// Of the loop between two of its vertices, halfway.
   bool rim_normal(std::uint32_t from, std::uint32_t to, glm::vec3& normal) const {
@@ -75,29 +72,35 @@ class OptimalTriangulation {
   void find_apex(std::size_t i, std::size_t j) {
     const bool closing = i == 0 && j == n_ - 1;
     if (!closing && loop_.forbidden && loop_.forbidden(polygon_[i], polygon_[j])) return;
-    float best = kImpossible;
-    const auto bend = [&](const glm::vec3& a, const glm::vec3& b, std::size_t from, std::size_t to) {
-      return stiffness_ * (1.0f - glm::dot(a, b)) * glm::distance(at(from), at(to));
+    const auto bend = [&](const glm::vec3& a, const glm::vec3& b, float length) {
+      return stiffness_ * (1.0f - glm::dot(a, b)) * length;
     };
+    Beyond best;
     std::size_t apex = i + 1;
     const glm::vec3 side = at(j) - at(i);
+    best.length = glm::distance(at(i), at(j));
+    glm::vec3 behind;
+    const bool rim_behind = closing && rim_normal(polygon_[j], polygon_[0], behind);
+    const Beyond *const from_i = beyond_.data() + i * n_, *const from_j = beyond_.data() + j * n_;
     for (std::size_t k = i + 1; k < j; ++k) {
-      float cost = best_[i * n_ + k] + best_[k * n_ + j];
-      if (cost == kImpossible) continue;
+      const Beyond &left = from_i[k], &right = from_j[k];
+      float cost = left.cost + right.cost;
+      if (cost >= best.cost) continue;  // angles and areas only add to it
       const glm::vec3 vector = glm::cross(at(k) - at(i), side);
       const float twice_area = glm::length(vector);
       cost += 0.5f * twice_area;
       const glm::vec3 normal = twice_area > 0.0f ? vector / twice_area : glm::vec3(0.0f);
-      glm::vec3 other;
-      if (far_normal(i, k, other)) cost += bend(normal, other, i, k);
-      if (far_normal(k, j, other)) cost += bend(normal, other, k, j);
-      if (closing && rim_normal(polygon_[j], polygon_[0], other)) cost += bend(normal, other, i, j);
-      if (cost < best) {
-        best = cost;
+      if (left.known) cost += bend(normal, left.normal, left.length);
+      if (right.known) cost += bend(normal, right.normal, right.length);
+      if (rim_behind) cost += bend(normal, behind, best.length);
+      if (cost < best.cost) {
+        best.cost = cost;
+        best.normal = normal;
+        best.known = twice_area > 0.0f;
         apex = k;
       }
     }
-    best_[i * n_ + j] = best;
+    keep(i, j, best);
     apex_[i * n_ + j] = static_cast<std::uint32_t>(apex);
   }
 
@@ -105,8 +108,8 @@ class OptimalTriangulation {
   std::vector<std::uint32_t> polygon_;
   float stiffness_ = 0.0f;
   std::size_t n_;
-  std::vector<float> best_;
   std::vector<std::uint32_t> apex_;
+  std::vector<Beyond> beyond_;
 };
 
 /// A fan around one new vertex: needs no inner edge between vertices of the loop.

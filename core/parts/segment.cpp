@@ -300,7 +300,7 @@ Result<SegmentReport> segment(SurfaceModel& model, const FaceGraph& graph, const
     return report;
   }
   DUBSAR_ASSIGN(std::vector<FaceRole> roles, options.method == SegmentMethod::kNested
-                                                 ? roles_by_cut(model, scene, options, progress)
+                                                 ? roles_by_cut(model, scene, whole, options, progress)
                                                  : roles_by_concavity(model, scene, options, progress));
   progress.advance(1);
   merge_small(model, scene, options, roles);

@@ -3,6 +3,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <atomic>
+#include <numeric>
 #include <utility>
 
 #include "core/base/parallel.h"
@@ -14,6 +16,7 @@
 namespace dubsar {
 namespace {
 
+constexpr std::int64_t kGrain = 1 << 14;
 constexpr std::uint8_t kNotSelected = PartitionTable::kNone;
 
 /// Triangles are counted in 32 bits; a polygon with doubled corners gives at most four more each.
@@ -88,15 +91,29 @@ Result<Selection> select(const SurfaceModel& model, const MeshOptions& options) 
 void add_quads(const SurfaceModel& model, const Selection& selection, Triangulation triangulation, TriangleSoup& soup) {
   const std::size_t quads = model.mesh.quads.size();
   soup.added = std::move(triangulation.steiner);
-  const bool everything =
-      std::none_of(selection.group.begin(), selection.group.end(), [](std::uint8_t g) { return g == kNotSelected; });
-  std::size_t kept = 0;
   soup.partition.resize(triangulation.triangles.size());
   soup.group.resize(triangulation.triangles.size());
   soup.triangles = std::move(triangulation.triangles);
+  const auto id_of = [&](std::size_t q) {
+    return model.quad_partition.empty() ? std::uint8_t{0} : model.quad_partition[q];
+  };
+  const bool everything =
+      std::none_of(selection.group.begin(), selection.group.end(), [](std::uint8_t g) { return g == kNotSelected; });
+  if (everything) {
+    parallel_for(static_cast<std::int64_t>(quads), kGrain, [&](std::int64_t i) {
+      const auto q = static_cast<std::size_t>(i);
+      const std::uint8_t id = id_of(q), group = selection.group[id];
+      for (std::size_t t = triangulation.first_triangle[q]; t < triangulation.first_triangle[q + 1]; ++t) {
+        soup.partition[t] = id;
+        soup.group[t] = group;
+      }
+    });
+    return;
+  }
+  std::size_t kept = 0;
   for (std::size_t q = 0; q < quads; ++q) {
-    const std::uint8_t id = model.quad_partition.empty() ? std::uint8_t{0} : model.quad_partition[q];
-    if (!everything && selection.group[id] == kNotSelected) continue;
+    const std::uint8_t id = id_of(q);
+    if (selection.group[id] == kNotSelected) continue;
     for (std::size_t t = triangulation.first_triangle[q]; t < triangulation.first_triangle[q + 1]; ++t) {
       soup.triangles[kept] = soup.triangles[t];
       soup.partition[kept] = id;
@@ -140,25 +157,30 @@ void add_patches(const SurfaceModel& model, const Selection& selection, Triangle
 }
 
 /// Dual vertices where partitions meet or that a patch uses; only there can a vertex have more than one fan.
-std::vector<bool> find_border(const SurfaceModel& model, const Selection& selection) {
+std::vector<std::uint8_t> find_border(const SurfaceModel& model, const Selection& selection) {
   constexpr std::uint8_t kUnseen = 254;
   const QuadMesh& mesh = model.mesh;
-  std::vector<bool> border(mesh.positions.size(), false);
+  std::vector<std::uint8_t> border(mesh.positions.size(), 0);
   if (!model.quad_partition.empty()) {
+    // Whoever comes first, what is left is the same: a vertex that two groups have seen.
     std::vector<std::uint8_t> seen(mesh.positions.size(), kUnseen);
     const auto visit = [&](std::uint32_t v, std::uint32_t q) {
       const std::uint8_t group = selection.group[model.quad_partition[q]];
-      if (seen[v] == kUnseen) seen[v] = group;
-      if (seen[v] != group) border[v] = true;
+      const std::atomic_ref of_vertex(seen[v]);
+      std::uint8_t before = of_vertex.load(std::memory_order_relaxed);
+      if (before == kUnseen && of_vertex.compare_exchange_strong(before, group, std::memory_order_relaxed)) return;
+      if (before != group) std::atomic_ref(border[v]).store(1, std::memory_order_relaxed);
     };
-    for (std::uint32_t q = 0; q < mesh.quads.size(); ++q)
+    parallel_for(mesh.quad_count(), kGrain, [&](std::int64_t i) {
+      const auto q = static_cast<std::uint32_t>(i);
       for (const std::uint32_t v : mesh.quads[q]) visit(v, q);
+    });
     for (const DoubledCorner& d : mesh.doubled) visit(d.vertex, d.quad);
   }
   for (const FillPatch& patch : model.patches)
     for (const Triangle& t : patch.triangles)
       for (const std::uint32_t v : t)
-        if (v < border.size()) border[v] = true;
+        if (v < border.size()) border[v] = 1;
   return border;
 }
 
@@ -170,14 +192,27 @@ struct Numbering {
 
 Numbering number_vertices(const TriangleSoup& soup, std::size_t first_copy, const std::vector<std::uint32_t>& copies) {
   Numbering numbering;
-  numbering.new_id.assign(first_copy + copies.size(), 0);
-  for (const Triangle& t : soup.triangles)
-    for (const std::uint32_t v : t) numbering.new_id[v] = 1;
-  for (std::size_t v = 0; v < numbering.new_id.size(); ++v) {
-    if (numbering.new_id[v] == 0) continue;
-    numbering.new_id[v] = static_cast<std::uint32_t>(numbering.source.size());
-    numbering.source.push_back(v < first_copy ? static_cast<std::uint32_t>(v) : copies[v - first_copy]);
-  }
+  std::vector<std::uint32_t>& id = numbering.new_id;
+  id.assign(first_copy + copies.size(), 0);
+  const auto vertices = static_cast<std::int64_t>(id.size());
+  parallel_for(static_cast<std::int64_t>(soup.triangles.size()), kGrain, [&](std::int64_t t) {
+    for (const std::uint32_t v : soup.triangles[static_cast<std::size_t>(t)])
+      std::atomic_ref(id[v]).store(1, std::memory_order_relaxed);
+  });
+  std::vector<std::int64_t> start(static_cast<std::size_t>((vertices + kGrain - 1) / kGrain));
+  const auto chunk_of = [](std::int64_t begin) { return static_cast<std::size_t>(begin / kGrain); };
+  parallel_chunks(vertices, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    start[chunk_of(begin)] = std::accumulate(id.begin() + begin, id.begin() + end, std::int64_t{0});
+  });
+  numbering.source.resize(static_cast<std::size_t>(exclusive_scan(start)));
+  parallel_chunks(vertices, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    auto next = static_cast<std::uint32_t>(start[chunk_of(begin)]);
+    for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
+      if (id[v] == 0) continue;
+      id[v] = next;
+      numbering.source[next++] = v < first_copy ? static_cast<std::uint32_t>(v) : copies[v - first_copy];
+    }
+  });
   return numbering;
 }
 
@@ -187,7 +222,7 @@ void fill_vertices(const SurfaceModel& model, const TriangleSoup& soup, const Nu
   const std::size_t dual = model.mesh.positions.size();
   const auto gather = [&](const auto& from, const auto& from_added, auto& to) {
     to.resize(numbering.source.size());
-    parallel_for(static_cast<std::int64_t>(to.size()), 1 << 14, [&](std::int64_t k) {
+    parallel_for(static_cast<std::int64_t>(to.size()), kGrain, [&](std::int64_t k) {
       const auto i = static_cast<std::size_t>(k);
       const std::uint32_t v = numbering.source[i];
       to[i] = v < dual ? from[v] : from_added[v - dual];
@@ -237,17 +272,18 @@ Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& opti
   if (first_copy > (std::size_t{1} << 31))
     return fail(ErrorKind::kTryAgain, "surface_model: {} vertices found, expected at most 2^31", first_copy);
   const VertexAttributes added = options.attributes ? attributes_of_added(model, soup) : VertexAttributes{};
-  std::vector<bool> border = find_border(model, selection);
-  border.resize(soup.first_patch_vertex, false);
-  border.resize(first_copy, true);  // a patch may touch itself, too
+  std::vector<std::uint8_t> border = find_border(model, selection);
+  border.resize(soup.first_patch_vertex, 0);
+  border.resize(first_copy, 1);  // a patch may touch itself, too
   DUBSAR_ASSIGN(const std::vector<std::uint32_t> copies,
                 split_fans(soup, border, static_cast<std::uint32_t>(first_copy), options.progress));
   const Numbering numbering = number_vertices(soup, first_copy, copies);
 
   TriMesh out;
   fill_vertices(model, soup, numbering, added, options.attributes, out);
-  for (Triangle& t : soup.triangles)
-    for (std::uint32_t& v : t) v = numbering.new_id[v];
+  parallel_for(static_cast<std::int64_t>(soup.triangles.size()), kGrain, [&](std::int64_t t) {
+    for (std::uint32_t& v : soup.triangles[static_cast<std::size_t>(t)]) v = numbering.new_id[v];
+  });
   out.triangles = std::move(soup.triangles);
   out.triangle_partition = std::move(soup.partition);
   fill_evidence(soup, numbering, out);

@@ -98,7 +98,7 @@ VertexAttributes attributes_of_added(const SurfaceModel& model, const TriangleSo
   return added;
 }
 
-Result<std::vector<std::uint32_t>> split_fans(TriangleSoup& soup, const std::vector<bool>& border,
+Result<std::vector<std::uint32_t>> split_fans(TriangleSoup& soup, const std::vector<std::uint8_t>& border,
                                               std::uint32_t first_copy, const Progress* progress) {
   const auto cancelled = [&] { return progress != nullptr && progress->cancelled(); };
   struct Corner {
@@ -111,7 +111,7 @@ Result<std::vector<std::uint32_t>> split_fans(TriangleSoup& soup, const std::vec
   for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
     const Triangle& triangle = soup.triangles[t];
     for (std::size_t c = 0; c < 3; ++c)
-      if (triangle[c] < border.size() && border[triangle[c]])
+      if (triangle[c] < border.size() && border[triangle[c]] != 0)
         corners.push_back(
             {triangle[c], soup.group[t], static_cast<std::uint32_t>(t), triangle[(c + 1) % 3], triangle[(c + 2) % 3]});
   }

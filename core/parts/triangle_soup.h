@@ -26,7 +26,7 @@ VertexAttributes attributes_of_added(const SurfaceModel& model, const TriangleSo
 
 /// Gives every fan of triangles of one group around a border vertex its own copy of it. O(n log n), whatever the
 /// triangles are. Copy i gets the id first_copy + i; the result holds the id that each copy stands for. kCancelled.
-Result<std::vector<std::uint32_t>> split_fans(TriangleSoup& soup, const std::vector<bool>& border,
+Result<std::vector<std::uint32_t>> split_fans(TriangleSoup& soup, const std::vector<std::uint8_t>& border,
                                               std::uint32_t first_copy, const Progress* progress);
 
 }  // namespace dubsar
