@@ -30,6 +30,9 @@ usage() {
 ./do peers    talk to VRPN, spacenavd, libspnav and opentrack, as far as they are installed, and print a table
 ./do bench    run the benchmarks; ./do bench displays: only those of many views;
               ./do bench exa: bits and speed of the surface format, beside Draco and meshoptimizer
+              ./do bench paper [--size XxYxZ] [--no-ao]: Table 2 of the paper line by line, per core too
+              ./do bench linear: four sizes, how cost grows; exit code 1 where an exponent is off 1.0 by more than .1
+              ./do bench scanner [--size XxYxZ] [--memory 6G]: a scan larger than memory, 3072x3072x1944 by default
               ./do bench contact [X Y Z SEED]: what is read where tablet and envelope touch
               ./do bench view: first pictures, pictures a second and memory, beside f3d and MeshLab
 ./do workflow examples/snakemake: a dry run, and three scans for real
@@ -183,6 +186,14 @@ bench() {
     /usr/bin/python3 tests/bench/view_bench.py "$build/app/dubsar" --json "$build/view_bench.json" "${@:2}"
     return
   fi
+  case "${1:-}" in
+    paper | linear | scanner)
+      build_target --target dubsar
+      [ "$1" != scanner ] || build_target --target scanner_scan
+      /usr/bin/python3 tests/bench/paper_bench.py "$build/app/dubsar" "$1" --maker "$build/tests/bench/scanner_scan" \
+        --json "$build/bench_$1.json" --history "$build/bench_history.jsonl" "${@:2}"
+      return ;;
+  esac
   if [ "${1:-}" = contact ]; then
     build_target --target contact_bench
     "$build/tests/bench/contact_bench" "${@:2}"

@@ -11,6 +11,7 @@
 #include "app/publish/surface_facts.h"
 #include "core/exa/exa_file.h"
 #include "core/mesh_io/mesh_io.h"
+#include "core/pipeline/forecast.h"
 #include "core/pipeline/report.h"
 #include "core/volume/import.h"
 
@@ -22,6 +23,7 @@ namespace fs = std::filesystem;
 struct Options {
   std::string in;
   InputOptionTexts input;
+  Detail detail = Detail::kAuto;
 };
 
 std::string length_text(const VoxelSize& voxel) {
@@ -29,13 +31,39 @@ std::string length_text(const VoxelSize& voxel) {
   return fmt::format("{:g} x {:g} x {:g} mm ({})", voxel.mm.x, voxel.mm.y, voxel.mm.z, voxel.provenance);
 }
 
-/// Memory that `process` needs, from the grid after 2:1: two float volumes while filtering.
-std::int64_t process_bytes(const Dims& dims) {
-  const auto half = [](std::int64_t n) { return std::max<std::int64_t>(1, n / 2); };
-  return 2 * half(dims.x) * half(dims.y) * half(dims.z) * static_cast<std::int64_t>(sizeof(float));
+constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
+
+/// What `process` will take, in one line; why not, where that cannot be said.
+std::string forecast_text(const Result<Forecast>& forecast) {
+  if (!forecast) return fmt::format("  process      cannot be foretold: {}\n", forecast.error().message);
+  const Forecast& f = *forecast;
+  const double minutes = f.wall_s / 60.0;
+  std::string text =
+      fmt::format("  process      about {}, {:.1f} GiB of memory, {:.1f} MiB for the surface{}\n",
+                  minutes < 2.0 ? fmt::format("{:.0f} s", f.wall_s) : fmt::format("{:.0f} minutes", minutes),
+                  static_cast<double>(f.memory_bytes) / kGib, static_cast<double>(f.product_bytes) / 1048576.0,
+                  f.scratch_bytes == 0
+                      ? std::string()
+                      : fmt::format(" and {:.1f} GiB of disk meanwhile", static_cast<double>(f.scratch_bytes) / kGib));
+  return text + fmt::format("               {} resolution, about {:.1f} million vertices, nobody else at work\n",
+                            f.detail.resample() ? "half the scan's" : "the scan's",
+                            static_cast<double>(f.vertices) * 1e-6);
 }
 
-Result<VerbResult> volume_info(const Options& options) {
+json forecast_json(const Result<Forecast>& forecast) {
+  if (!forecast) return {{"refusal", forecast.error().message}};
+  const Forecast& f = *forecast;
+  return {{"detail", name_in(kDetails, f.detail.detail)},
+          {"grid", {f.grid.x, f.grid.y, f.grid.z}},
+          {"vertices", f.vertices},
+          {"core_s", f.core_s},
+          {"wall_s", f.wall_s},
+          {"memory_bytes", f.memory_bytes},
+          {"scratch_bytes", f.scratch_bytes},
+          {"product_bytes", f.product_bytes}};
+}
+
+Result<VerbResult> volume_info(const Options& options, Progress& progress) {
   DUBSAR_ASSIGN(const ImportOptions import, parse_input_options(options.in, options.input));
   DUBSAR_ASSIGN(const std::unique_ptr<ImportedVolume> volume, open_volume(import));
   const VolumeInfo& info = volume->info();
@@ -44,7 +72,9 @@ Result<VerbResult> volume_info(const Options& options) {
   result.json = volume_json(info);
   result.json["kind"] = "volume";
   result.json["warnings"] = info.warnings;
-  result.json["process_memory_bytes"] = process_bytes(dims);
+  Result<Forecast> expected = forecast(*volume, {.detail = options.detail, .budget = import.budget}, progress);
+  if (!expected && expected.error().kind == ErrorKind::kCancelled) return tl::unexpected<Error>(expected.error());
+  result.json["process"] = forecast_json(expected);
   std::string& text = result.text;
   text = fmt::format("volume ({}{}{})\n", info.format, info.dataset.empty() ? "" : ", ", info.dataset);
   if (!info.found_by.empty()) text += fmt::format("  found by     {}\n", info.found_by);
@@ -60,8 +90,7 @@ Result<VerbResult> volume_info(const Options& options) {
   text += fmt::format("  in the file  {:.1f} MiB of {:.1f} MiB\n",
                       static_cast<double>(info.stored.storage_bytes) / 1048576.0,
                       static_cast<double>(info.stored.logical_bytes) / 1048576.0);
-  text += fmt::format("  process      needs about {:.0f} MiB for volumes, and 200 bytes for each vertex\n",
-                      static_cast<double>(process_bytes(dims)) / 1048576.0);
+  text += forecast_text(expected);
   for (const VolumeCandidate& other : info.candidates)
     text += fmt::format("  also there   {} ({})\n", other.dataset, other.dtype);
   return result;
@@ -157,7 +186,7 @@ Result<VerbResult> run(const Options& options, bool verbose, Progress& progress)
   const bool raw = !options.input.dims.empty() || !options.input.type.empty();
   if (!raw && is_exa_file(options.in)) return exa_info(options, verbose, progress);
   if (!raw && mesh_format_from_path(options.in)) return describe_mesh(options, progress);
-  return volume_info(options);
+  return volume_info(options, progress);
 }
 }  // namespace
 
@@ -165,6 +194,8 @@ Verb add_info_verb(Arguments program) {
   auto options = std::make_shared<Options>();
   Arguments command = program.command("info", "say what is in a volume, surface or mesh file");
   command.reads("FILE", options->in, "volume (HDF5, NRRD, TIFF, raw), EXA, PLY, STL, OBJ or GLB").required();
+  command.choice<Detail>("--detail", options->detail, choices_of(kDetails),
+                         "for what process will take: grid of the surface, as there (auto, scan, half)");
   add_input_options(command, options->input);
   command.footer(
       "Examples:\n  dubsar info scan.h5\n  dubsar info scan.h5:/entry/data/data\n  dubsar info tablet.exa --json -");

@@ -12,6 +12,8 @@
 #include "app/cli/verb.h"
 #include "app/publish/surface_facts.h"
 #include "app/verbs/process_batch.h"
+#include "core/base/budget.h"
+#include "core/base/units.h"
 #include "core/pipeline/pipeline.h"
 #include "core/pipeline/report.h"
 
@@ -20,7 +22,12 @@ namespace {
 
 /// Steps that are left out.
 struct Without {
-  bool resample = false, holes = false, contact = false, ao = false;
+  bool resample = false, holes = false, contact = false, ao = false, cap = false;
+};
+
+/// What the machine is to give.
+struct Room {
+  std::string memory, scratch;
 };
 
 struct Options {
@@ -34,7 +41,7 @@ struct Options {
   int rays = 160;
   OcclusionEngine ao_engine = OcclusionEngine::kBricks;
   Without without;
-  bool open_boundary = false;
+  Room room;
 };
 
 void add_filter_options(Arguments command, Options& options) {
@@ -64,7 +71,7 @@ void add_surface_options(Arguments command, Options& options) {
   PipelineOptions& p = options.pipeline;
   Arguments group = command.group("Surface");
   group.value("--offset-bits", p.sample.offset_bits, "bits per edge crossing, N").range(1, 16);
-  group.flag("--open-boundary", options.open_boundary, "leave the surface open at the border of the volume");
+  group.flag("--open-boundary", options.without.cap, "leave the surface open at the border of the volume");
   group.value("--smooth", p.smooth.normals.iterations, "iterations of the normal filter").range(0, 1000);
   group.value("--vertex-iterations", p.smooth.vertex_iterations, "iterations of the vertex update").range(0, 1000);
   group.choice<CurvatureMethod>("--curvature", p.curvature,
@@ -91,13 +98,23 @@ void add_surface_options(Arguments command, Options& options) {
   group.value("--ao-radius", options.radius, "reach of the rays in grid steps").positive();
 }
 
+void add_resource_options(Arguments command, Options& options) {
+  Arguments group = command.group("Memory and disk");
+  group
+      .value("--memory", options.room.memory,
+             "most memory the program may take, such as 6G (default: what the machine has left); a grid that does not "
+             "fit goes to the disk")
+      .called("SIZE");
+  group.value("--scratch", options.room.scratch, "folder on a disk for that (default /var/tmp)").called("FOLDER");
+}
+
 /// The stages of a run as Progress names them, with the seconds of one core that they took on the phantom of `--preset
 /// demo`, at the scan's resolution.
 std::vector<PlannedStage> plan_of(const Options& options) {
-  std::vector<PlannedStage> plan{{"estimate_raw", 0.37}, {"import", 0.37}, {"estimate", 0.85}};
+  std::vector<PlannedStage> plan{{"estimate_raw", 0.37}, {"import", 0.5}, {"estimate", 0.02}};
   for (int pass = 0; pass < options.pipeline.denoise.iterations; ++pass) {
-    plan.push_back({"denoise", 0.77});
-    plan.push_back({"estimate", 0.85});
+    plan.push_back({"denoise", 0.9});
+    plan.push_back({"estimate", 0.02});
   }
   plan.push_back({"extract", 0.22});
   for (const auto& [name, seconds] : {std::pair{"mesh", 0.11},
@@ -131,9 +148,14 @@ std::string summary(const std::string& out, const SurfaceFacts& facts, const Det
 Result<VerbResult> run(Options options, const Arguments command, const CommonOptions& common, Progress& progress) {
   PipelineOptions& p = options.pipeline;
   DUBSAR_ASSIGN(p.import, parse_input_options(options.in, options.input));
+  if (!options.room.memory.empty()) {
+    DUBSAR_ASSIGN(const std::uint64_t bytes, parse_bytes(options.room.memory));
+    set_memory_limit(bytes);
+  }
+  if (!options.room.scratch.empty()) p.import.budget.scratch_folder = options.room.scratch;
   if (options.without.resample) p.detail = Detail::kScan;
   p.trace_contact = !options.without.contact;
-  p.sample.closed = !options.open_boundary;
+  p.sample.closed = !options.without.cap;
   p.fill_holes = !options.without.holes;
   if (options.without.ao)
     p.occlusion.reset();
@@ -144,7 +166,7 @@ Result<VerbResult> run(Options options, const Arguments command, const CommonOpt
   if (command.given("--threshold")) p.threshold = static_cast<float>(options.threshold);
   Result<PipelineResult> made = run_pipeline(p, progress);
   if (!made && made.error().kind == ErrorKind::kTryAgain)
-    made.error().message += "; take a part of the scan with --crop, or fewer voxels with --stride";
+    made.error().message += "; take --detail half, a part of the scan with --crop, or fewer voxels with --stride";
   DUBSAR_ASSIGN(PipelineResult result, std::move(made));
   DUBSAR_TRY(write_product(options.out, result, p.exa_profile, progress));
   DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(result.model));
@@ -197,12 +219,14 @@ Verb add_process_verb(Arguments program) {
   add_input_options(command, options->input);
   add_filter_options(command, *options);
   add_surface_options(command, *options);
+  add_resource_options(command, *options);
   command.footer(
       "Examples:\n"
       "  dubsar process scan.h5\n"
       "  dubsar process scan.h5 -o tablet.exa --verbose\n"
       "  dubsar process scans/ -o surfaces/ --resume\n"
       "  dubsar process scan.h5 -o part.exa --crop 0:512,0:512,0:512 --no-ao\n"
+      "  dubsar process scan.h5 --memory 6G --scratch /data/tmp\n"
       "  dubsar process scan.raw --dims 512x512x300 --type uint16 --voxel-size 38um -o tablet.exa\n"
       "  dubsar process scan.h5 -o tablet.exa --json report.json");
   return {command,

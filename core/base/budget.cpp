@@ -1,5 +1,10 @@
 #include "core/base/budget.h"
 
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <fstream>
 #include <limits>
 
 #include "core/base/memory_left.h"
@@ -9,9 +14,26 @@ namespace {
 constexpr double kMiB = 1024.0 * 1024.0;
 __extension__ using Uint128 = unsigned __int128;
 
+std::atomic<std::uint64_t> g_limit{0};  // 0: none
+
+/// Of this process, now.
+std::uint64_t resident_bytes() {
+  std::ifstream statm("/proc/self/statm");
+  std::uint64_t size = 0, resident = 0;
+  statm >> size >> resident;
+  return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
 }  // namespace
 
-std::uint64_t available_memory_bytes() { return memory_left({}); }
+std::uint64_t available_memory_bytes() {
+  const std::uint64_t left = memory_left({}), limit = g_limit;
+  if (limit == 0) return left;
+  const std::uint64_t used = resident_bytes();
+  return std::min(left, limit - std::min(limit, used));
+}
+
+void set_memory_limit(std::uint64_t bytes) noexcept { g_limit = bytes; }
 
 std::uint64_t Budget::limit_bytes() const {
   return memory_bytes > 0 ? memory_bytes : available_memory_bytes() / 10 * 8;

@@ -23,8 +23,12 @@ struct Budget {
   std::uint64_t kept_bytes() const { return limit_bytes() / 4; }
 };
 
-/// Bytes of memory this process may still take (MemAvailable, or the cgroup limit if smaller).
+/// Bytes of memory this process may still take: MemAvailable, or the cgroup limit if smaller, or what the limit set
+/// below leaves. Everything that has a budget asks here, so that this is the one accountant.
 std::uint64_t available_memory_bytes();
+
+/// The whole process is to keep below `bytes` from now on; 0: as much as there is. Call before work begins.
+void set_memory_limit(std::uint64_t bytes) noexcept;
 
 /// Checks that `dims` are 1..max_dimension each and their product times `element_bytes` fits the voxel count limit.
 /// Returns the number of elements. `what` names the object in the error text.

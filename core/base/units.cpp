@@ -1,5 +1,6 @@
 #include "core/base/units.h"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
@@ -44,6 +45,39 @@ Result<double> parse_length_mm(std::string_view text) {
     return fail(ErrorKind::kUsage,
                 "length \"{}\" not understood, expected a number with a unit such as 38um or 0.038mm", text);
   return value * *unit;
+}
+
+Result<std::uint64_t> parse_bytes(std::string_view text) {
+  static constexpr std::array<std::pair<std::string_view, int>, 15> kShifts{{
+      {"", 0},
+      {"b", 0},
+      {"k", 10},
+      {"kb", 10},
+      {"kib", 10},
+      {"m", 20},
+      {"mb", 20},
+      {"mib", 20},
+      {"g", 30},
+      {"gb", 30},
+      {"gib", 30},
+      {"t", 40},
+      {"tb", 40},
+      {"tib", 40},
+      {"bytes", 0},
+  }};
+  constexpr double kMost = 0x1p60;
+  const std::string compact = lower_trimmed(text);
+  double value = 0.0;
+  const char* const last = compact.data() + compact.size();
+  const auto [end, error] = std::from_chars(compact.data(), last, value);
+  const std::string_view unit(end, static_cast<std::size_t>(last - end));
+  const auto* const shift =
+      std::find_if(kShifts.begin(), kShifts.end(), [&](const auto& known) { return known.first == unit; });
+  if (error == std::errc() && shift != kShifts.end()) value = std::ldexp(value, shift->second);
+  if (error != std::errc() || shift == kShifts.end() || !(value >= 1.0 && value <= kMost))
+    return fail(ErrorKind::kUsage, "size \"{}\" not understood, expected a number with a unit such as 6G or 512M",
+                text);
+  return static_cast<std::uint64_t>(value);
 }
 
 }  // namespace dubsar

@@ -1,6 +1,7 @@
 #pragma once
-// Lengths with units. Inside dubsar a length is a double with its unit in the name.
+// Lengths and sizes with units. Inside dubsar a length is a double with its unit in the name.
 
+#include <cstdint>
 #include <optional>
 #include <string_view>
 
@@ -13,5 +14,9 @@ std::optional<double> mm_per_unit(std::string_view unit);
 
 /// "38um", "0.038 mm", "3.8e-5m" to millimetres. A number without a unit is refused: units are never guessed.
 Result<double> parse_length_mm(std::string_view text);
+
+/// "6G", "6 GiB", "512M", "1.5T": powers of 1024; a number without a unit is bytes. kUsage for what is no size, and for
+/// less than one byte or more than 2^60.
+Result<std::uint64_t> parse_bytes(std::string_view text);
 
 }  // namespace dubsar

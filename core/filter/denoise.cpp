@@ -213,24 +213,34 @@ Result<std::unique_ptr<SlabSource>> make_denoised(SlabSource& source, const Deno
   return std::make_unique<FilterChain>(source, options);
 }
 
-Result<void> denoise_in_place(Volume<float>& volume, const DenoiseOptions& options, Progress& progress) {
+Result<void> denoise_in_place(GridStore& grid, const DenoiseOptions& options, Progress& progress,
+                              ParallelCounts* counts) {
   DUBSAR_TRY(check(options));
-  if (volume.dims.count() == 0) return {};
-  const Dims dims = volume.dims;
+  const Dims dims = grid.dims();
+  if (dims.count() == 0) return {};
   const std::int64_t batch = batch_for(dims);
   for (int k = 0; k < options.iterations; ++k) {
-    VolumeSource source(volume);
-    FilterSource filter(source, options);
+    FilterSource filter(grid, options);
     // The filter has taken the slices around a batch into its ring before the batch is written, and never asks for a
     // slice twice while it is read in rising order.
     for (std::int64_t z = 0; z < dims.z; z += batch) {
       if (progress.cancelled()) return cancelled_error();
-      const std::int64_t end = std::min(dims.z, z + batch), count = (end - z) * dims.slice();
-      DUBSAR_TRY(filter.read(z, end, {volume.row(0, z), static_cast<std::size_t>(count)}));
-      progress.advance(count);
+      const std::int64_t end = std::min(dims.z, z + batch);
+      const std::span<float> page = grid.page(z, end);
+      DUBSAR_TRY(filter.read(z, end, page));
+      if (counts != nullptr && k + 1 == options.iterations) counts->add(page);
+      DUBSAR_TRY(grid.store(z, end));
+      progress.advance((end - z) * dims.slice());
     }
   }
   return {};
+}
+
+Result<void> denoise_in_place(Volume<float>& volume, const DenoiseOptions& options, Progress& progress) {
+  GridStore grid(std::move(volume));
+  const Result<void> done = denoise_in_place(grid, options, progress);
+  volume = grid.take_volume();
+  return done;
 }
 
 }  // namespace dubsar

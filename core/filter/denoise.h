@@ -7,6 +7,8 @@
 #include "core/base/enum_names.h"
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/filter/histogram.h"
+#include "core/volume/grid_store.h"
 #include "core/volume/slab_source.h"
 #include "core/volume/volume.h"
 
@@ -64,8 +66,11 @@ Result<void> check(const DenoiseOptions& options);
 /// Errors: those of check() and of the source.
 Result<std::unique_ptr<SlabSource>> make_denoised(SlabSource& source, const DenoiseOptions& options);
 
-/// The same result written over the volume itself; extra memory is that of the slices above. Advances `progress` by
-/// voxels (iterations * count in all). kCancelled leaves the volume half filtered.
+/// The same result written over the grid itself, in memory or on the disk; extra memory is that of the slices above.
+/// Advances `progress` by voxels (iterations * count in all). `counts`, if given, gets the values of the result.
+/// kCancelled leaves the grid half filtered.
+Result<void> denoise_in_place(GridStore& grid, const DenoiseOptions& options, Progress& progress,
+                              ParallelCounts* counts = nullptr);
 Result<void> denoise_in_place(Volume<float>& volume, const DenoiseOptions& options, Progress& progress);
 
 }  // namespace dubsar

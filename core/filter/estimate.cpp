@@ -342,6 +342,11 @@ const SplitAttempt* taken(const Estimates& estimates) noexcept {
 
 Result<Estimates> estimate(SlabSource& source, const EstimateOptions& options, Progress& progress) {
   DUBSAR_ASSIGN(const ValueCounts counts, count_values(source, progress));
+  return estimate(counts, source, options, progress);
+}
+
+Result<Estimates> estimate(const ValueCounts& counts, SlabSource& source, const EstimateOptions& options,
+                           Progress& progress) {
   if (counts.count() == 0)
     return fail(ErrorKind::kBadData, "threshold: the volume has no finite voxel, choose another dataset");
   const Histogram histogram = make_histogram(counts);

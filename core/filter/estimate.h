@@ -88,6 +88,11 @@ const SplitAttempt* taken(const Estimates& estimates) noexcept;
 /// (0: not known; see laplacian_noise). Never fails: `refusal` says when no threshold can be given.
 Estimates estimate(const Histogram& histogram, double laplacian_sigma, const EstimateOptions& options = {});
 
+/// The same from counts of all voxels of `source`, which is read only where the Laplacian noise is needed. Errors:
+/// those of the source, kCancelled, and kBadData without a finite voxel.
+Result<Estimates> estimate(const ValueCounts& counts, SlabSource& source, const EstimateOptions& options,
+                           Progress& progress);
+
 /// Counts the source and estimates; measures the Laplacian noise, in a second pass, only where it is needed.
 /// Errors: those of the source, kCancelled, and kBadData for a source without voxels.
 Result<Estimates> estimate(SlabSource& source, const EstimateOptions& options, Progress& progress);

@@ -9,14 +9,9 @@
 namespace dubsar {
 namespace {
 
-constexpr std::uint32_t kSign = 0x80000000U;
+constexpr std::uint32_t kSign = 0x80000000U, kInfinite = 0x7F800000U;
 
-/// Unsigned integers in the order of the floats.
-std::uint32_t key_of(float value) {
-  const std::uint32_t bits = std::bit_cast<std::uint32_t>(value);
-  return (bits & kSign) != 0 ? ~bits : bits | kSign;
-}
-
+/// Of keys, which are unsigned integers in the order of the floats.
 double value_of(std::uint32_t key) { return std::bit_cast<float>((key & kSign) != 0 ? key ^ kSign : ~key); }
 
 /// Adds `mass`, spread evenly over [begin, end), to the bins.
@@ -52,20 +47,49 @@ ValueCounts::Block& ValueCounts::block(std::size_t index) {
   return *blocks_[index];
 }
 
+/// Values are turned into keys some at a time by vectors, and then counted: the counters of the values of a scan fit
+/// the second-level cache, so that the two loops cost about as much as reading them.
 void ValueCounts::add(std::span<const float> values) {
-  std::int64_t bad = 0;
-  for (const float value : values) {
-    if (!(std::abs(value) <= std::numeric_limits<float>::max())) {
-      ++bad;
-      continue;
+  constexpr std::size_t kBatch = 2048;
+  std::array<std::uint32_t, kBatch> keys;
+  for (std::size_t from = 0; from < values.size(); from += kBatch) {
+    const std::size_t size = std::min(kBatch, values.size() - from);
+    const float* const batch = values.data() + from;
+    std::uint32_t lowest = ~0U, highest = 0, bad = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      const std::uint32_t bits = std::bit_cast<std::uint32_t>(batch[i] + 0.0F);  // -0 is 0
+      bad += (bits & ~kSign) >= kInfinite ? 1U : 0U;
+      const std::uint32_t key = bits ^ (static_cast<std::uint32_t>(static_cast<std::int32_t>(bits) >> 31) | kSign);
+      keys[i] = key;
+      lowest = std::min(lowest, key);
+      highest = std::max(highest, key);
     }
-    min_ = std::min(min_, value);
-    max_ = std::max(max_, value);
-    const std::uint32_t key = key_of(value == 0.0F ? 0.0F : value);  // -0 is 0
-    ++block(key >> 16)[(key >> 8) & 0xFFU];
+    std::size_t kept = size;
+    if (bad > 0) {
+      kept = 0;
+      lowest = ~0U, highest = 0;
+      for (std::size_t i = 0; i < size; ++i) {
+        if (!(std::abs(batch[i]) <= std::numeric_limits<float>::max())) continue;
+        keys[kept++] = keys[i];
+        lowest = std::min(lowest, keys[i]);
+        highest = std::max(highest, keys[i]);
+      }
+    }
+    nonfinite_ += bad;
+    if (kept == 0) continue;
+    min_ = std::min(min_, static_cast<float>(value_of(lowest)));
+    max_ = std::max(max_, static_cast<float>(value_of(highest)));
+    count({keys.data(), kept});
   }
-  nonfinite_ += bad;
-  count_ += static_cast<std::int64_t>(values.size()) - bad;
+}
+
+void ValueCounts::count(std::span<const std::uint32_t> keys) {
+  for (const std::uint32_t key : keys) {
+    Block* counters = blocks_[key >> 16].get();
+    if (counters == nullptr) counters = &block(key >> 16);
+    ++(*counters)[(key >> 8) & 0xFFU];
+  }
+  count_ += static_cast<std::int64_t>(keys.size());
 }
 
 void ValueCounts::merge(const ValueCounts& other) {
@@ -96,26 +120,39 @@ std::vector<ValueCounts::Value> ValueCounts::values() const {
   return all;
 }
 
+void ParallelCounts::add(std::span<const float> values) {
+  const auto parts = static_cast<std::size_t>(thread_count());
+  if (partial_.size() < parts) partial_.resize(parts);
+  parallel_for(static_cast<std::int64_t>(parts), 1, [&](std::int64_t i) {
+    const auto part = static_cast<std::size_t>(i);
+    const std::size_t from = values.size() * part / parts, to = values.size() * (part + 1) / parts;
+    partial_[part].add(values.subspan(from, to - from));
+  });
+}
+
+ValueCounts ParallelCounts::take() {
+  ValueCounts all;
+  for (const ValueCounts& part : partial_) all.merge(part);
+  partial_.clear();
+  return all;
+}
+
 Result<ValueCounts> count_values(SlabSource& source, Progress& progress) {
   const Dims dims = source.dims();
   if (dims.count() == 0) return ValueCounts{};
-  constexpr std::int64_t kSlabVoxels = 4 << 20;
+  constexpr std::int64_t kSlabVoxels = 1 << 19;  // stays in the cache between reading and counting
   const std::int64_t height = std::clamp<std::int64_t>(kSlabVoxels / dims.slice(), 1, dims.z);
-  const std::int64_t parts = thread_count();
-  std::vector<ValueCounts> partial(static_cast<std::size_t>(parts));
+  ParallelCounts counts;
   Buffer<float> slab(dims.slice() * height);
   for (std::int64_t z = 0; z < dims.z; z += height) {
     if (progress.cancelled()) return cancelled_error();
     const std::int64_t end = std::min(dims.z, z + height), count = (end - z) * dims.slice();
-    DUBSAR_TRY(source.read(z, end, slab.span().first(static_cast<std::size_t>(count))));
-    parallel_for(parts, 1, [&](std::int64_t part) {
-      const std::int64_t from = count * part / parts, to = count * (part + 1) / parts;
-      partial[static_cast<std::size_t>(part)].add({slab.data() + from, static_cast<std::size_t>(to - from)});
-    });
+    const std::span<float> part = slab.span().first(static_cast<std::size_t>(count));
+    DUBSAR_TRY(source.read(z, end, part));
+    counts.add(part);
     progress.advance(count);
   }
-  for (std::size_t part = 1; part < partial.size(); ++part) partial[0].merge(partial[part]);
-  return std::move(partial[0]);
+  return counts.take();
 }
 
 Histogram make_histogram(const ValueCounts& counts, int bins, double tail) {

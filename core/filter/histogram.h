@@ -39,10 +39,22 @@ class ValueCounts {
  private:
   using Block = std::array<std::int64_t, 256>;
   Block& block(std::size_t index);
+  void count(std::span<const std::uint32_t> keys);
 
   std::vector<std::unique_ptr<Block>> blocks_ = std::vector<std::unique_ptr<Block>>(1 << 16);
   std::int64_t count_ = 0, nonfinite_ = 0;
   float min_ = std::numeric_limits<float>::infinity(), max_ = -std::numeric_limits<float>::infinity();
+};
+
+/// Counts slabs by all threads; of a volume that is being made, so that nobody has to read it again for its histogram.
+class ParallelCounts {
+ public:
+  void add(std::span<const float> values);
+  /// Everything counted so far; the same for any slab height and thread count. Begins anew.
+  ValueCounts take();
+
+ private:
+  std::vector<ValueCounts> partial_;
 };
 
 /// Counts a whole source in slabs; the same for any slab height and thread count. Advances `progress` by voxels.

@@ -1,7 +1,11 @@
 #include "core/pipeline/pipeline.h"
 
+#include <fmt/format.h>
+
+#include "core/base/budget.h"
 #include "core/base/json_text.h"
 #include "core/exa/exa_file.h"
+#include "core/pipeline/forecast.h"
 
 namespace dubsar {
 namespace {
@@ -28,13 +32,16 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   DUBSAR_ASSIGN(const Threshold threshold, choose_threshold(options.threshold, estimates));
   DUBSAR_ASSIGN(SampledSurface sampled,
                 sample(denoised.grid, threshold.value, estimates, options.denoise.iterations > 0, options.sample, run));
-  denoised.grid.volume = {};  // from here on the samples are enough
+  denoised.grid.release();  // from here on the samples are enough
 
+  DUBSAR_TRY(check_memory(
+      fmt::format("the surface of {:.1f} million vertices", static_cast<double>(sampled.samples.offsets.size()) * 1e-6),
+      static_cast<std::uint64_t>(kSurfaceBytesPerVertex * static_cast<double>(sampled.samples.offsets.size()))));
   DUBSAR_ASSIGN(QuadMesh mesh, mesh_of_samples(sampled.samples, threshold.value, run));
   DUBSAR_ASSIGN(SmoothedMesh smoothed, smooth_and_measure(std::move(mesh), options.smooth, options.curvature, run));
   SettleOptions settling = options.settle;
   settling.curvature = options.curvature;
-  DUBSAR_ASSIGN(SettledModel settled, settle(assemble(denoised.grid.frame, std::move(sampled.samples),
+  DUBSAR_ASSIGN(SettledModel settled, settle(assemble(denoised.grid.frame(), std::move(sampled.samples),
                                                       std::move(smoothed.mesh), std::move(smoothed.attributes)),
                                              settling, options.exa_profile, run));
   DUBSAR_ASSIGN(SeparatedModel separated, separate(std::move(settled.model), options.segment, options.fill_holes, run));

@@ -24,25 +24,27 @@ Result<Estimates> estimate_source(SlabSource& source, std::string_view stage, co
   return estimates;
 }
 
-/// Reads and resamples; two records, since both run interleaved.
-Result<Grid> read_grid(SlabSource& scan, bool resample, StageRun run) {
-  run.clock.start(resample ? "resample" : "import", "voxel");
-  run.progress.begin("import", scan.dims().count(), "voxel");
-  TappedSource tap(scan, run.progress);
-  SilentProgress silent;
-  Grid grid;
-  if (!resample) {
-    grid.frame = scan.frame();
-    DUBSAR_ASSIGN(grid.volume, read_all(tap, silent));
-    run.clock.finish(scan.dims().count());
-    return grid;
+/// The whole source, slab by slab, into a store.
+Result<CountedGrid> fill_grid(SlabSource& source, const Budget& budget) {
+  constexpr std::int64_t kSlabBytes = 16 << 20;  // in the caches, as far as possible, until its values are counted
+  const Dims dims = source.dims();
+  DUBSAR_ASSIGN(GridStore grid, GridStore::create(dims, source.frame(), place_for(dims, budget), budget));
+  if (!grid.in_memory())
+    log_info("the grid of {:.1f} GiB goes to the disk, in {}",
+             static_cast<double>(grid.scratch_bytes()) / (1024.0 * 1024.0 * 1024.0), budget.scratch_folder.string());
+  const std::int64_t slice_bytes = dims.slice() * std::int64_t{sizeof(float)}, layer = source.preferred_height();
+  std::int64_t height = std::clamp<std::int64_t>(kSlabBytes / slice_bytes, 1, dims.z);
+  if (static_cast<std::uint64_t>(layer * slice_bytes) <= budget.kept_bytes())
+    height = (height + layer - 1) / layer * layer;
+  ParallelCounts counts;
+  for (std::int64_t z = 0; z < dims.z; z += height) {
+    const std::int64_t end = std::min(dims.z, z + height);
+    const std::span<float> page = grid.page(z, end);
+    DUBSAR_TRY(source.read(z, end, page));
+    counts.add(page);
+    DUBSAR_TRY(grid.store(z, end));
   }
-  HalfResolutionSource half(tap);
-  grid.frame = half.frame();
-  DUBSAR_ASSIGN(grid.volume, read_all(half, silent));
-  run.clock.finish(scan.dims().count());
-  run.clock.split_before_last("import", tap.wall_s(), tap.cpu_s(), scan.dims().count(), "voxel");
-  return grid;
+  return CountedGrid{std::move(grid), counts.take()};
 }
 
 /// Sharpening by 1 may double the noise: from here on it leaves at least what a raw scan of the paper has (17 dB).
@@ -55,6 +57,22 @@ float sharpen_amount(double snr_db) {
 }
 
 }  // namespace
+
+Result<CountedGrid> read_grid(SlabSource& scan, bool resample, const Budget& budget, StageRun run) {
+  run.clock.start(resample ? "resample" : "import", "voxel");
+  run.progress.begin("import", scan.dims().count(), "voxel");
+  TappedSource tap(scan, run.progress);
+  if (!resample) {
+    DUBSAR_ASSIGN(CountedGrid grid, fill_grid(tap, budget));
+    run.clock.finish(scan.dims().count());
+    return grid;
+  }
+  HalfResolutionSource half(tap);
+  DUBSAR_ASSIGN(CountedGrid grid, fill_grid(half, budget));
+  run.clock.finish(scan.dims().count());
+  run.clock.split_before_last("import", tap.wall_s(), tap.cpu_s(), scan.dims().count(), "voxel");
+  return grid;
+}
 
 Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, const EstimateOptions& estimate,
                                  StageRun run) {
@@ -69,10 +87,10 @@ Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, co
   SampledSource some(*scan, kRawSampleSlices, kRawSampleGroup);
   imported.raw.name = "raw";
   DUBSAR_ASSIGN(imported.raw.estimates, estimate_source(some, "estimate_raw", estimate, run));
-  DUBSAR_ASSIGN(imported.grid, read_grid(*scan, resample, run));
+  DUBSAR_ASSIGN(imported.grid, read_grid(*scan, resample, options.budget, run));
   imported.grid_name = resample ? "gauss 2:1" : "imported";
   ScanFacts& facts = imported.facts;
-  facts.grid = imported.grid.volume.dims;
+  facts.grid = imported.grid.grid.dims();
   facts.nonfinite_voxels = scan->nonfinite_count();
   facts.nonfinite_fill = scan->nonfinite_fill();
   if (facts.nonfinite_voxels > 0) {
@@ -83,17 +101,20 @@ Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, co
   return imported;
 }
 
-Result<DenoisedGrid> denoise(Grid grid, std::string name, const DenoiseOptions& options,
-                             const EstimateOptions& estimate, StageRun run) {
-  DenoisedGrid denoised{std::move(grid), {}};
-  Volume<float>& volume = denoised.grid.volume;
-  VolumeSource source(volume);
-  const auto add_step = [&](std::string step) -> Result<void> {
-    DUBSAR_ASSIGN(Estimates estimates, estimate_source(source, "estimate", estimate, run));
+Result<DenoisedGrid> denoise(CountedGrid grid, std::string name, const DenoiseOptions& options,
+                             const EstimateOptions& estimating, StageRun run) {
+  DenoisedGrid denoised{std::move(grid.grid), {}};
+  GridStore& volume = denoised.grid;
+  const std::int64_t voxels = volume.dims().count();
+  const auto add_step = [&](std::string step, const ValueCounts& values) -> Result<void> {
+    run.clock.start("estimate", "voxel");
+    run.progress.begin("estimate", voxels, "voxel");
+    DUBSAR_ASSIGN(Estimates estimates, estimate(values, volume, estimating, run.progress));
+    run.clock.finish(voxels);
     denoised.steps.push_back({std::move(step), std::move(estimates)});
     return {};
   };
-  DUBSAR_TRY(add_step(std::move(name)));
+  DUBSAR_TRY(add_step(std::move(name), grid.counts));
   for (int iteration = 1; iteration <= options.iterations; ++iteration) {
     DenoiseOptions pass = options;
     pass.iterations = 1;
@@ -103,10 +124,11 @@ Result<DenoisedGrid> denoise(Grid grid, std::string name, const DenoiseOptions& 
       break;
     }
     run.clock.start("denoise", "voxel");
-    run.progress.begin("denoise", volume.dims.count(), "voxel");
-    DUBSAR_TRY(denoise_in_place(volume, pass, run.progress));
-    run.clock.finish(volume.dims.count());
-    DUBSAR_TRY(add_step(fmt::format("{} {}", name_in(kDenoiseMethods, pass.method), iteration)));
+    run.progress.begin("denoise", voxels, "voxel");
+    ParallelCounts filtered;
+    DUBSAR_TRY(denoise_in_place(volume, pass, run.progress, &filtered));
+    run.clock.finish(voxels);
+    DUBSAR_TRY(add_step(fmt::format("{} {}", name_in(kDenoiseMethods, pass.method), iteration), filtered.take()));
   }
   return denoised;
 }
@@ -119,18 +141,17 @@ Result<Threshold> choose_threshold(std::optional<float> given, const Estimates& 
   return threshold;
 }
 
-Result<SampledSurface> sample(const Grid& grid, float threshold, const Estimates& estimates, bool denoised,
+Result<SampledSurface> sample(GridStore& grid, float threshold, const Estimates& estimates, bool denoised,
                               const SampleOptions& options, StageRun run) {
   SampledSurface sampled;
   sampled.sharpen = options.sharpen.value_or(denoised ? sharpen_amount(estimates.snr_db) : 0.0f);
-  VolumeSource filtered(grid.volume, grid.frame);
-  SharpenedSource sharpened(filtered, sampled.sharpen);
-  SlabSource& source = sampled.sharpen > 0.0f ? static_cast<SlabSource&>(sharpened) : filtered;
+  SharpenedSource sharpened(grid, sampled.sharpen);
+  SlabSource& source = sampled.sharpen > 0.0f ? static_cast<SlabSource&>(sharpened) : grid;
   run.clock.start("extract", "voxel");
-  run.progress.begin("extract", grid.volume.dims.count(), "voxel");
+  run.progress.begin("extract", grid.dims().count(), "voxel");
   DUBSAR_ASSIGN(sampled.samples,
                 sample_surface(source, {threshold, options.offset_bits, options.closed}, run.progress));
-  run.clock.finish(grid.volume.dims.count());
+  run.clock.finish(grid.dims().count());
   return sampled;
 }
 

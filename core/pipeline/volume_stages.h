@@ -11,15 +11,10 @@
 #include "core/filter/estimate.h"
 #include "core/pipeline/detail.h"
 #include "core/pipeline/stage_clock.h"
+#include "core/volume/grid_store.h"
 #include "core/volume/import.h"
 
 namespace dubsar {
-
-/// A volume in memory and where it lies in the scan.
-struct Grid {
-  GridFrame frame;
-  Volume<float> volume;
-};
 
 /// What a filter left, or what was there before the first: noise, air and material.
 struct FilterStep {
@@ -36,28 +31,36 @@ struct ScanFacts {
   Dims grid;                          ///< after resampling
 };
 
+struct CountedGrid {
+  GridStore grid;
+  ValueCounts counts;  ///< of the grid, made while it was
+};
+
 struct ImportedGrid {
   ScanFacts facts;
   FilterStep raw;  ///< of a sample of the scan
-  Grid grid;
+  CountedGrid grid;
   DetailChoice detail;
   std::string grid_name;  ///< how it was made, as a FilterStep is named
 };
 
 /// Opens the scan, estimates its noise from a sample, reads it, and halves it along each axis (Gauss 3x3x3 and 2:1)
-/// where `detail` says so. Errors: those of open_volume() and of its source; kTryAgain when the grid does not fit into
-/// memory.
+/// where `detail` says so. A grid that does not fit into memory lies on the disk (place_for). Errors: those of
+/// open_volume() and of its source; kTryAgain when there is no room for the grid.
 Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, const EstimateOptions& estimate,
                                  StageRun run);
 
+/// Reads all of a source and, if wanted, halves it; two records, "import" and "resample", since both run interleaved.
+Result<CountedGrid> read_grid(SlabSource& scan, bool resample, const Budget& budget, StageRun run);
+
 struct DenoisedGrid {
-  Grid grid;
+  GridStore grid;
   std::vector<FilterStep> steps;  ///< before the first pass (`name`) and after each one
 };
 
-/// One pass at a time, each with the noise that the one before has left, unless options.sigma is given. A volume
-/// without noise stays as it is.
-Result<DenoisedGrid> denoise(Grid grid, std::string name, const DenoiseOptions& options,
+/// One pass at a time, each with the noise that the one before has left, unless options.sigma is given; it is judged by
+/// values that were counted while they were made. A volume without noise stays as it is.
+Result<DenoisedGrid> denoise(CountedGrid grid, std::string name, const DenoiseOptions& options,
                              const EstimateOptions& estimate, StageRun run);
 
 struct Threshold {
@@ -81,7 +84,7 @@ struct SampledSurface {
 
 /// Sharpens and samples the isosurface. `denoised`: whether a filter pass was asked for; without one the default is no
 /// sharpening.
-Result<SampledSurface> sample(const Grid& grid, float threshold, const Estimates& estimates, bool denoised,
+Result<SampledSurface> sample(GridStore& grid, float threshold, const Estimates& estimates, bool denoised,
                               const SampleOptions& options, StageRun run);
 
 }  // namespace dubsar

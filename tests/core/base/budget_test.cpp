@@ -38,5 +38,19 @@ TEST(Budget, TheMessageNamesNoFlagOfAnyProgram) {
   EXPECT_EQ(check_memory("png", 3 << 20, budget).error().message.find("--"), std::string::npos);
 }
 
+TEST(Budget, TheLimitOfTheProcessCountsWhatItHasAlready) {
+  const std::uint64_t unlimited = available_memory_bytes();
+  constexpr std::uint64_t kGib = std::uint64_t{1} << 30;
+  set_memory_limit(kGib);
+  const std::uint64_t left = available_memory_bytes();
+  set_memory_limit(1);
+  const std::uint64_t nothing = available_memory_bytes();
+  set_memory_limit(0);
+  EXPECT_LT(left, kGib);  // the program itself is there
+  EXPECT_GT(left, std::min(unlimited, kGib) / 2);
+  EXPECT_EQ(nothing, 0U);
+  EXPECT_GT(available_memory_bytes(), nothing);
+}
+
 }  // namespace
 }  // namespace dubsar

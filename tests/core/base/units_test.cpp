@@ -18,5 +18,15 @@ TEST(Units, ALengthWithoutUnitIsNeverGuessed) {
     EXPECT_FALSE(parse_length_mm(text)) << text;
 }
 
+TEST(Units, SizesArePowersOf1024) {
+  EXPECT_EQ(*parse_bytes("6G"), std::uint64_t{6} << 30);
+  EXPECT_EQ(*parse_bytes("6 GiB"), std::uint64_t{6} << 30);
+  EXPECT_EQ(*parse_bytes("512m"), std::uint64_t{512} << 20);
+  EXPECT_EQ(*parse_bytes("1.5T"), std::uint64_t{3} << 39);
+  EXPECT_EQ(*parse_bytes("4096"), 4096U);
+  for (const char* text : {"", "G", "-6G", "0", "6 apples", "nan", "inf", "1e30T", "6GG"})
+    EXPECT_FALSE(parse_bytes(text)) << text;
+}
+
 }  // namespace
 }  // namespace dubsar

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "core/base/parallel.h"
@@ -61,6 +62,39 @@ TEST(ValueCounts, NotFiniteValuesAreCountedApart) {
   ASSERT_EQ(counts.values().size(), 2U);
   EXPECT_EQ(counts.values()[0].centre, 0.0);
   EXPECT_EQ(counts.values()[0].count, 2);
+}
+
+/// One value after the other, by the definition: 24 bits of the pattern, in the order of the floats.
+TEST(ValueCounts, BatchesWithAndWithoutBadValuesCountWhatIsThere) {
+  std::mt19937 random(3);
+  for (const int bad_in : {0, 100, 3}) {
+    std::vector<float> values(5000);
+    std::map<double, std::int64_t> expected;
+    std::int64_t bad = 0;
+    for (float& value : values) {
+      value = std::bit_cast<float>(static_cast<std::uint32_t>(random()) & 0xFFFFFF00U & ~0x40000000U);
+      if (bad_in > 0 && random() % static_cast<unsigned>(bad_in) == 0)
+        value = random() % 2 == 0 ? std::nanf("") : -std::numeric_limits<float>::infinity();
+      if (std::isfinite(value))
+        ++expected[std::abs(value)];
+      else
+        ++bad;
+    }
+    ValueCounts counts;
+    counts.add(values);
+    EXPECT_EQ(counts.nonfinite(), bad);
+    EXPECT_EQ(counts.count(), 5000 - bad);
+    std::map<double, std::int64_t> found;
+    double before = -std::numeric_limits<double>::infinity();
+    for (const ValueCounts::Value& v : counts.values()) {
+      EXPECT_GT(v.centre, before);
+      before = v.centre;
+      // Positive centres are the last of 256 patterns of their counter, negative ones the first.
+      const std::uint32_t bits = std::bit_cast<std::uint32_t>(static_cast<float>(v.centre)) & 0x7FFFFF00U;
+      found[std::bit_cast<float>(bits)] += v.count;
+    }
+    EXPECT_EQ(found, expected);
+  }
 }
 
 TEST(Histogram, ThreadsChangeNoBit) {

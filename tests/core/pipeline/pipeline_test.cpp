@@ -111,6 +111,27 @@ TEST_F(Pipeline, OneAndSevenThreadsGiveTheSameBytes) {
   EXPECT_TRUE(bytes[0] == bytes[1]);
 }
 
+TEST_F(Pipeline, AGridOnTheDiskGivesTheSameBytes) {
+  std::vector<std::string> bytes;
+  for (const Detail detail : {Detail::kScan, Detail::kHalf})
+    for (const std::uint64_t memory : {std::uint64_t{0}, std::uint64_t{1} << 15}) {
+      PipelineOptions wanted = options();
+      wanted.detail = detail;
+      wanted.denoise.iterations = 2;
+      wanted.occlusion.reset();
+      wanted.import.budget.memory_bytes = memory;  // 32 KiB: the grid and layers of chunks go to the disk
+      wanted.import.budget.scratch_folder = folder_;
+      SilentProgress progress;
+      auto result = run_pipeline(wanted, progress);
+      ASSERT_TRUE(result) << result.error().message;
+      ASSERT_TRUE(write_product(folder_ / "d.exa", *result, wanted.exa_profile, progress));
+      bytes.push_back(read_file_bytes(folder_ / "d.exa").value());
+    }
+  EXPECT_TRUE(bytes[0] == bytes[1]);
+  EXPECT_TRUE(bytes[2] == bytes[3]);
+  EXPECT_FALSE(bytes[0] == bytes[2]);
+}
+
 /// Stops when the n-th stage begins, or that of a name.
 class StopAt final : public Progress {
  public:

@@ -1,0 +1,138 @@
+#include "core/pipeline/forecast.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/extract/bit_volume.h"
+#include "core/extract/extract.h"
+#include "core/filter/resample.h"
+#include "core/pipeline/tapped_source.h"
+
+namespace dubsar {
+namespace {
+
+/// Groups of slices that are filtered together; what lies next to a group's border is not looked at.
+constexpr std::int64_t kGroups = 8, kGroupAfter = 6;
+
+// Seconds of one core for a million vertices, of the stages that work on surfaces; measured on phantoms
+// (docs/speed.md).
+constexpr double kSurfaceSeconds = 5.5;
+constexpr double kSecondsPerRay = 1.0 / 13e6;
+constexpr double kContactSeconds = 14.0;  ///< at the scan's resolution
+// The rest of memory: the program, its slabs and threads; and, where contact is traced, of each voxel of the grid.
+constexpr double kProgramBytes = 80e6, kContactBytesPerVoxel = 12.6;
+constexpr double kProductBytesPerVertex = 0.45, kLightBytesPerVertex = 0.35;
+constexpr double kExtractOfDenoising = 0.3;  ///< what sharpening and extraction take of the time of the filter's passes
+constexpr double kEfficiency = 0.85;         ///< of more than one thread
+
+/// Cells with corners on both sides between two slices.
+std::int64_t active_cells(const BitVolume& signs) {
+  const Dims d = signs.dims();
+  std::int64_t cells = 0;
+  for (std::int64_t z = 0; z + 1 < d.z; ++z)
+    for (std::int64_t y = 0; y + 1 < d.y; ++y)
+      for (std::int64_t x = 0; x + 1 < d.x; ++x) {
+        int inside = 0;
+        for (int corner = 0; corner < 8; ++corner)
+          inside += signs.get(x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)) ? 1 : 0;
+        cells += inside != 0 && inside != 8 ? 1 : 0;
+      }
+  return cells;
+}
+
+/// Some slices of a grid as a volume of their own.
+class Slices final : public SlabSource {
+ public:
+  Slices(SlabSource& source, std::int64_t begin, std::int64_t count)
+      : source_(&source), begin_(begin), dims_{source.dims().x, source.dims().y, count} {}
+  Dims dims() const noexcept override { return dims_; }
+  const GridFrame& frame() const noexcept override { return source_->frame(); }
+  Result<void> read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) override {
+    return source_->read(begin_ + z_begin, begin_ + z_end, out);
+  }
+
+ private:
+  SlabSource* source_;
+  std::int64_t begin_;
+  Dims dims_;
+};
+
+/// Layers of chunks that have to be decoded for one slice that is read: more than one where groups lie in deep layers.
+double decoded_per_read(const SlabSource& scan, std::int64_t slices, std::int64_t group) {
+  const std::int64_t layer = std::max<std::int64_t>(1, scan.preferred_height()), all = scan.dims().z;
+  if (slices >= all || layer <= 1) return 1.0;
+  const double layers =
+      static_cast<double>(slices / group) * std::ceil(static_cast<double>(group) / static_cast<double>(layer));
+  return std::max(
+      1.0, std::min(layers * static_cast<double>(layer), static_cast<double>(all)) / static_cast<double>(slices));
+}
+
+}  // namespace
+
+Result<Forecast> forecast(SlabSource& scan, const ForecastOptions& options, Progress& progress) {
+  Forecast result;
+  const std::uint64_t left = options.budget.limit_bytes();
+  result.detail = choose_detail(options.detail, scan.dims(), left);
+  const bool half = result.detail.resample();
+  const std::int64_t group = half ? 2 * kGroupAfter : kGroupAfter;
+  SampledSource some(scan, kGroups * group, group);
+  StageClock clock;
+  SilentProgress silent;
+  const StageRun run{clock, silent};
+  if (progress.cancelled()) return cancelled_error();
+  DUBSAR_ASSIGN(CountedGrid sampled, read_grid(some, half, options.budget, run));
+  const double reading = 1.0 / decoded_per_read(scan, some.dims().z, group);
+  if (progress.cancelled()) return cancelled_error();
+  DUBSAR_ASSIGN(DenoisedGrid denoised, denoise(std::move(sampled), "sample", {}, {}, run));
+  DUBSAR_ASSIGN(const Threshold threshold, choose_threshold(std::nullopt, denoised.steps.back().estimates));
+
+  const Dims part = denoised.grid.dims();
+  const auto halved = [&](std::int64_t n) { return half && n > 1 ? n / 2 : n; };
+  result.grid = {halved(scan.dims().x), halved(scan.dims().y), halved(scan.dims().z)};
+  const std::int64_t depth = std::min(part.z, kGroupAfter);
+  std::int64_t cells = 0, layers = 0;
+  for (std::int64_t z = 0; z + depth <= part.z; z += depth) {
+    const std::int64_t first = part.z <= kGroupAfter ? 0 : z + depth / 2 - 1;
+    const std::int64_t count = part.z <= kGroupAfter ? part.z : 2;
+    Slices middle(denoised.grid, first, count);
+    DUBSAR_ASSIGN(const SurfaceSamples samples, sample_surface(middle, {threshold.value, 4, false}, silent));
+    cells += active_cells(samples.signs);
+    layers += std::max<std::int64_t>(1, count - 1);
+  }
+  if (cells == 0)
+    return fail(ErrorKind::kBadData, "there is no surface at threshold {:g} in the slices looked at", threshold.value);
+  const auto all = static_cast<double>(result.grid.count());
+  const double vertices = static_cast<double>(cells) / static_cast<double>(layers) * static_cast<double>(result.grid.z);
+  result.vertices = static_cast<std::int64_t>(vertices);
+
+  // What the stages took for these slices, for all.
+  const double times = all / static_cast<double>(part.count());
+  for (const StageRecord& stage : clock.records()) {
+    if (stage.name == "estimate") continue;  // of a histogram: the same for any size
+    result.core_s += stage.cpu_s * times *
+                     (stage.name == "import"    ? reading
+                      : stage.name == "denoise" ? 1.0 + kExtractOfDenoising
+                                                : 1.0);
+  }
+  const double millions = vertices * 1e-6;
+  result.core_s += kSurfaceSeconds * millions + kSecondsPerRay * vertices * options.occlusion_rays;
+  const bool contact = options.contact && !half;
+  if (contact) result.core_s += kContactSeconds * millions;
+  const int threads = thread_count();
+  result.wall_s = threads > 1 ? result.core_s / (kEfficiency * threads) : result.core_s;
+
+  const GridPlace place = place_for(result.grid, options.budget);
+  const double floats = place == GridPlace::kMemory ? 4.0 * all : 0.0, signs = all / 8.0;
+  const double surface = signs + vertices * kSurfaceBytesPerVertex;
+  const double volume = signs + floats + 4.0 * vertices;
+  const double traced = contact ? kContactBytesPerVoxel * all : 0.0;
+  result.memory_bytes = static_cast<std::uint64_t>(kProgramBytes + std::max({surface, volume, traced}));
+  result.scratch_bytes = place == GridPlace::kScratch ? static_cast<std::uint64_t>(4.0 * all) : 0;
+  result.product_bytes = static_cast<std::uint64_t>(
+      vertices * (kProductBytesPerVertex + (options.occlusion_rays > 0 ? kLightBytesPerVertex : 0.0)));
+  return result;
+}
+
+}  // namespace dubsar

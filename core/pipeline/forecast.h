@@ -1,0 +1,36 @@
+#pragma once
+// What a run will take, from some slices of the scan: they go through the stages that work on voxels, which says how
+// much surface there is and how quick this machine is.
+
+#include <cstdint>
+
+#include "core/pipeline/volume_stages.h"
+
+namespace dubsar {
+
+struct ForecastOptions {
+  Detail detail = Detail::kAuto;
+  bool contact = true;       ///< is looked for where tablet and envelope touch, at the scan's resolution
+  int occlusion_rays = 160;  ///< per vertex; 0: none
+  Budget budget = {};
+};
+
+struct Forecast {
+  DetailChoice detail;
+  Dims grid;                        ///< after resampling
+  std::int64_t vertices = 0;        ///< of the surface, about
+  double core_s = 0.0;              ///< seconds of one core
+  double wall_s = 0.0;              ///< by the clock, with the threads that are set (parallel.h), nobody else at work
+  std::uint64_t memory_bytes = 0;   ///< most at any time
+  std::uint64_t scratch_bytes = 0;  ///< on the disk while it runs
+  std::uint64_t product_bytes = 0;  ///< of the EXA file
+};
+
+/// Memory of the stages that work on the surface, for each vertex: measured (docs/speed.md).
+inline constexpr double kSurfaceBytesPerVertex = 250.0;
+
+/// Reads about 96 slices of the scan. Within 30 % on phantoms of 10 to 3,000 million voxels (docs/speed.md). Errors:
+/// those of the source; kBadData when no threshold can be given or there is no surface; kCancelled.
+Result<Forecast> forecast(SlabSource& scan, const ForecastOptions& options, Progress& progress);
+
+}  // namespace dubsar

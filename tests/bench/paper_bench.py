@@ -1,0 +1,213 @@
+#!/usr/bin/env python3
+"""The program at the sizes of the paper and of the scanner, beside the paper's figures.
+
+paper_bench.py PROGRAM paper  [--size 1871x999x1723] [--no-ao] ...   Table 2 line by line, per core too
+paper_bench.py PROGRAM linear [--size 512x272x472] ...               four sizes, fitted exponents of cost
+paper_bench.py PROGRAM scanner --maker PROGRAM [--size 3072x3072x1944] [--memory 6G]   a scan larger than memory
+
+Common: [--threads N] [--work FOLDER] [--json FILE] [--history FILE] [--seed N]
+
+Scans are phantoms; they are made where they are not in the folder yet and stay there. Seconds of a core are user and
+system time of all threads: they can be compared on a busy machine, too, seconds of the clock cannot.
+"""
+import argparse, json, math, os, platform, re, resource, subprocess, sys, time
+
+PAPER_CORES = 8
+PAPER_VOXELS, PAPER_GRID, PAPER_VERTICES = 1871 * 999 * 1723, 935 * 499 * 861, 10_011_300
+# Lines of Table 2: what it says, its seconds, our stages, what their cost grows with. Stages of ours that a line leaves out
+# have no counterpart there: they come below.
+TABLE_2 = [
+    ("import of the HDF5 file", 6.699, ["import"], "voxels"),
+    ("Gauss 3x3x3 and 2:1", 0.601, ["resample"], "voxels"),
+    ("noise, threshold", 0.233 + 0.232, ["estimate"], "grid"),
+    ("denoising, 2 passes", 5.757, ["denoise"], "grid"),
+    ("isosurface", 1.273, ["extract", "mesh"], "grid"),
+    ("vertices, normals, smoothing (32 + 8)", 1.770 + 9.636 + 0.224 + 2.663, ["smooth"], "vertices"),
+    ("curvatures", 0.425, ["curvature"], "vertices"),
+    ("segmentation", 1.639, ["segment"], "vertices"),
+    ("writing EXA", 2.058, ["write"], "vertices"),
+    ("ambient occlusion, 160 rays, radius 64", 28.6 * 60, ["occlusion"], "vertices"),
+]
+VOLUME_STAGES = {"import", "resample", "estimate", "denoise", "extract"}
+NOT_FITTED = {"estimate_raw", "untangle", "fill_holes", "contact", "occlusion"}  # samples, loops, bands: not of the whole
+
+
+def run(command, **more):
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    start = time.monotonic()
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, **more)
+    wall = time.monotonic() - start
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(command)}: exit code {done.returncode}")
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return done.stdout, wall, cpu
+
+
+def dims_of(text):
+    if not re.fullmatch(r"\d+x\d+x\d+", text):
+        sys.exit(f'size "{text}" not understood, expected XxYxZ')
+    return [int(n) for n in text.split("x")]
+
+
+def phantom(options, size):
+    path = os.path.join(options.work, f"phantom_{size}_{options.seed}.h5")
+    if not os.path.exists(path):
+        print(f"making {path}", file=sys.stderr)
+        run([options.program, "phantom", path, "--size", size, "--seed", str(options.seed), "-q"])
+    return path
+
+
+def process(options, scan, *more):
+    """The report of a run, its stages summed by name."""
+    out = os.path.join(options.work, "surface.exa")
+    command = [options.program, "process", scan, "-o", out, "--json", "-", "-q", "--threads", str(options.threads), *more]
+    text, wall, cpu = run(command)
+    report = json.loads(text)
+    stages = {}
+    for stage in report["stages"]:
+        sums = stages.setdefault(stage["name"], {"wall_s": 0.0, "cpu_s": 0.0, "peak_rss_mib": 0.0})
+        sums["wall_s"] += stage["wall_s"]
+        sums["cpu_s"] += stage["cpu_s"]
+        sums["peak_rss_mib"] = max(sums["peak_rss_mib"], stage["peak_rss_mib"])
+    return {"wall_s": wall, "cpu_s": cpu, "stages": stages, "dims": report["input"]["dims"], "grid": report["input"]["grid"],
+            "vertices": report["mesh"]["vertices"], "bytes": report["exa"]["bytes"],
+            "peak_mib": max(s["peak_rss_mib"] for s in stages.values())}
+
+
+def paper(options):
+    scan = phantom(options, options.size)
+    with open(scan, "rb") as file:  # into the page cache, as in the paper after a first look
+        while file.read(1 << 24):
+            pass
+    more = ["--detail", "half"] + (["--no-ao"] if options.no_ao else [])
+    result = process(options, scan, *more)
+    work = {"voxels": math.prod(result["dims"]), "grid": math.prod(result["grid"]), "vertices": result["vertices"]}
+    theirs = {"voxels": PAPER_VOXELS, "grid": PAPER_GRID, "vertices": PAPER_VERTICES}
+    print(f"{'x'.join(map(str, result['dims']))} voxels, {result['vertices']:,} vertices, {options.threads or os.cpu_count()} threads")
+    print(f"{'Table 2':<40}{'paper s':>10}{'here s':>10}{'core s':>10}{'times as fast a core':>24}")
+    rows, taken = [], set()
+    for name, seconds, stages, by in TABLE_2:
+        here = [result["stages"][s] for s in stages if s in result["stages"]]
+        taken.update(stages)
+        if not here:
+            continue
+        wall, cpu = sum(s["wall_s"] for s in here), sum(s["cpu_s"] for s in here)
+        ratio = seconds * PAPER_CORES / theirs[by] / (max(cpu, 1e-3) / work[by])
+        rows.append({"line": name, "paper_s": seconds, "wall_s": wall, "cpu_s": cpu, "per_core": ratio})
+        print(f"{name:<40}{seconds:>10.2f}{wall:>10.2f}{cpu:>10.2f}{ratio:>24.2f}")
+    print("not in the paper's table:")
+    for name, stage in result["stages"].items():
+        if name not in taken:
+            rows.append({"line": name, "paper_s": None, "wall_s": stage["wall_s"], "cpu_s": stage["cpu_s"], "per_core": None})
+            print(f"  {name:<38}{'':>10}{stage['wall_s']:>10.2f}{stage['cpu_s']:>10.2f}")
+    print(f"{'the whole program':<40}{'':>10}{result['wall_s']:>10.2f}{result['cpu_s']:>10.2f}")
+    print(f"most memory {result['peak_mib']:.0f} MiB, EXA {result['bytes']:,} bytes, {8 * result['bytes'] / result['vertices']:.2f} bits a vertex"
+          " (paper: 60.67)")
+    return {**result, "rows": rows}, True
+
+
+def slope(points):
+    xs, ys = [math.log(x) for x, _ in points], [math.log(max(y, 1e-3)) for _, y in points]
+    mx, my = sum(xs) / len(xs), sum(ys) / len(ys)
+    return sum((x - mx) * (y - my) for x, y in zip(xs, ys)) / sum((x - mx) ** 2 for x in xs)
+
+
+def linear(options):
+    """Cost against work: voxels of the grid for volume stages, vertices for surface stages."""
+    largest = dims_of(options.size)
+    runs = []
+    for share in (0.5, 0.63, 0.79, 1.0):  # steps of 2 in the number of voxels
+        size = "x".join(str(max(96, round(n * share))) for n in largest)
+        best = None
+        for _ in range(options.repeat):  # the least of some runs: what disturbs only adds
+            one = process(options, phantom(options, size), "--detail", "scan", "--no-ao", "--no-contact")
+            one["volume_s"] = sum(s["cpu_s"] for n, s in one["stages"].items() if n in VOLUME_STAGES)
+            one["surface_s"] = sum(s["cpu_s"] for n, s in one["stages"].items() if n not in VOLUME_STAGES | NOT_FITTED)
+            if best is None:
+                best = one
+            best["volume_s"] = min(best["volume_s"], one["volume_s"])
+            best["surface_s"] = min(best["surface_s"], one["surface_s"])
+            for name, stage in one["stages"].items():
+                best["stages"][name]["cpu_s"] = min(best["stages"][name]["cpu_s"], stage["cpu_s"])
+        best["voxels"] = math.prod(best["grid"])
+        runs.append(best)
+        print(f"{size:>16}: {best['voxels'] / 1e6:8.1f} million voxels {best['volume_s']:8.2f} s, "
+              f"{best['vertices'] / 1e6:6.2f} million vertices {best['surface_s']:8.2f} s of a core")
+    volume = slope([(r["voxels"], r["volume_s"]) for r in runs])
+    surface = slope([(r["vertices"], r["surface_s"]) for r in runs])
+    good = abs(volume - 1.0) <= 0.1 and abs(surface - 1.0) <= 0.1
+    print(f"exponents: volume stages {volume:.3f}, surface stages {surface:.3f} (1.0 +- 0.1 wanted): {'good' if good else 'NOT LINEAR'}")
+    stages = {}
+    for name in runs[0]["stages"]:
+        by = "voxels" if name in VOLUME_STAGES else "vertices"
+        if name not in NOT_FITTED and all(name in r["stages"] for r in runs):
+            stages[name] = slope([(r[by], r["stages"][name]["cpu_s"]) for r in runs])
+    print("each stage: " + ", ".join(f"{n} {e:.2f}" for n, e in stages.items()))
+    return {"volume": volume, "surface": surface, "stages": stages, "runs": runs}, good
+
+
+def limited(command, memory):
+    """Under a limit of its own for memory and page cache, where this machine lets us have one."""
+    scope = ["systemd-run", "--quiet", "--scope", f"--property=MemoryMax={memory}", "--property=MemorySwapMax=0"]
+    try:
+        if subprocess.run(scope + ["true"], stderr=subprocess.DEVNULL).returncode == 0:
+            return scope + command, "in a scope of systemd"
+    except OSError:
+        pass
+    return command, "without a cgroup: systemd gives none here"
+
+
+def scanner(options):
+    scan = os.path.join(options.work, f"scanner_{options.size}_{options.depth}_{options.seed}.h5")
+    if not os.path.exists(scan):
+        run([options.maker, scan, *map(str, dims_of(options.size)), str(options.depth), str(options.seed)])
+    out = os.path.join(options.work, "scanner.exa")
+    command, how = limited([options.program, "process", scan, "-o", out, "--memory", options.memory, "--scratch", options.work,
+                            "--detail", "half", "--json", "-", "--threads", str(options.threads)]
+                           + (["--no-ao"] if options.no_ao else []), options.memory)
+    text, wall, cpu = run(command)
+    report = json.loads(text)
+    peak = max(s["peak_rss_mib"] for s in report["stages"])
+    print(f"{options.size}, {os.path.getsize(scan) / 1e9:.1f} GB in the file, {report['mesh']['vertices']:,} vertices: {wall:.0f} s, "
+          f"{cpu:.0f} s of a core, at most {peak:.0f} MiB resident, {how}")
+    for s in report["stages"]:
+        print(f"  {s['name']:<14}{s['wall_s']:>10.1f}{s['cpu_s']:>10.1f}{s['peak_rss_mib']:>10.0f} MiB")
+    return {"size": options.size, "wall_s": wall, "cpu_s": cpu, "peak_mib": peak, "vertices": report["mesh"]["vertices"]}, True
+
+
+def main():
+    sizes = {"paper": "1871x999x1723", "linear": "512x272x472", "scanner": "3072x3072x1944"}
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("what", choices=sizes)
+    parser.add_argument("--size")
+    parser.add_argument("--no-ao", action="store_true")
+    parser.add_argument("--threads", type=int)
+    parser.add_argument("--repeat", type=int, default=2)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--memory", default="6G")
+    parser.add_argument("--depth", type=int, default=64, help="slices in a chunk")
+    parser.add_argument("--maker", help="the program scanner_scan")
+    parser.add_argument("--work", default="/var/tmp/dubsar-bench")
+    parser.add_argument("--json")
+    parser.add_argument("--history", help="a line of JSON is added to it")
+    options = parser.parse_args()
+    options.size = options.size or sizes[options.what]
+    if options.threads is None:
+        options.threads = 1 if options.what == "linear" else 0
+    os.makedirs(options.work, exist_ok=True)
+    result, good = {"paper": paper, "linear": linear, "scanner": scanner}[options.what](options)
+    result = {"what": options.what, "size": options.size, "machine": platform.processor() or platform.machine(), "cores": os.cpu_count(),
+              "load": os.getloadavg()[0], "time": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()), **result}
+    if options.json:
+        with open(options.json, "w") as file:
+            json.dump(result, file, indent=1)
+    if options.history:
+        with open(options.history, "a") as file:
+            file.write(json.dumps(result) + "\n")
+    sys.exit(0 if good else 1)
+
+
+if __name__ == "__main__":
+    main()
