@@ -35,6 +35,11 @@ fs::path session_folder() {
   return home.empty() ? fs::path() : home / ".local" / "state" / "dubsar" / "sessions";
 }
 
+fs::path recent_list() {
+  const fs::path sessions = session_folder();
+  return sessions.empty() ? sessions : sessions.parent_path() / "recent.json";
+}
+
 std::vector<fs::path> mount_folders() {
   fs::path user = from_environment("USER");
   if (user.empty()) user = from_environment("LOGNAME");

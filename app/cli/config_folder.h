@@ -20,6 +20,9 @@ std::filesystem::path model_folder();
 /// $HOME/.local/state/dubsar/sessions; empty when neither variable is set.
 std::filesystem::path session_folder();
 
+/// The list of the files that were opened last, beside session_folder().
+std::filesystem::path recent_list();
+
 /// Where desktops mount USB storage of the user: /media/$USER and /run/media/$USER.
 std::vector<std::filesystem::path> mount_folders();
 

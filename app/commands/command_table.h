@@ -59,6 +59,9 @@ std::pair<std::string_view, std::string> split_command(std::string_view text);
 /// Heading of those that concern the window and change no document.
 inline constexpr std::string_view kWindowGroup = "This window";
 
+/// Heading of those that open files.
+inline constexpr std::string_view kFileGroup = "Files";
+
 /// Parts of the table, each in a file of its own.
 std::vector<Command> view_commands();                                        ///< turning, zooming, sides, undo and redo
 std::vector<Command> look_commands(const std::vector<std::string>& styles);  ///< light, style, parts
@@ -69,6 +72,7 @@ std::vector<Command> mark_commands();                                         //
 std::vector<Command> section_commands();                                      ///< cuts and fog
 std::vector<Command> slice_commands();                                        ///< slices of the scan
 std::vector<Command> film_commands();
+std::vector<Command> file_commands();    ///< opening surfaces
 std::vector<Command> window_commands();  ///< help, displays, sources, the window
 
 /// Lays the slices through a place of the surface, the free one upright on it, and opens them.

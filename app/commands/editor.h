@@ -32,7 +32,14 @@ class Workplace {
   virtual void retry_sources() = 0;
   virtual void recentre_heads() = 0;  ///< trackers whose heading drifts: the present one is straight ahead
   virtual bool toggle_source(std::size_t index) = 0;  ///< false: there is no such source
-  virtual void say(std::string words) = 0;            ///< one line over the picture, for some seconds
+  /// Begins to read a surface, which takes the place of the present one when it is there. kUsage: not here, or no
+  /// surface by its name; kNoInput.
+  virtual Result<void> open_file(const std::string& path) = 0;
+  virtual Result<void> open_recent(std::size_t number) = 0;  ///< counted from 1
+  virtual Result<void> switch_file(int step) = 0;            ///< of those that are open; kUsage: there is no other
+  virtual bool stop_opening() = 0;                           ///< false: none is being read
+  virtual std::string present_folder() const = 0;            ///< where the open dialogue begins
+  virtual void say(std::string words) = 0;                   ///< one line over the picture, for some seconds
   virtual void end() = 0;
 
   /// The place of the surface that is nearest to a point.
@@ -81,11 +88,19 @@ struct Pointing {
   friend bool operator==(const Pointing&, const Pointing&) = default;
 };
 
+/// The dialogue that opens files.
+struct Choosing {
+  bool open = false;
+  std::string folder{};  ///< that is looked into; empty: the one of the present file
+  friend bool operator==(const Choosing&, const Choosing&) = default;
+};
+
 /// What is open; not part of the document, and not undone.
 struct Desk {
   bool help = false;
   bool panels = false;
-  bool palette = false;               ///< all commands by typing
+  bool palette = false;  ///< all commands by typing
+  Choosing choosing{};
   double ui_scale = 0.0;              ///< of letters and panels; 0: as the monitor wants it
   bool legend = true;                 ///< of colours that tell figures
   bool leaving = false;               ///< asked whether to end with work in it

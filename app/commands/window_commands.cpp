@@ -155,6 +155,10 @@ Result<void> close(Editor& editor) {
     desk.help = false;
   } else if (desk.palette) {
     desk.palette = false;
+  } else if (editor.place().stop_opening()) {
+    // a file that was being read
+  } else if (desk.choosing.open) {
+    desk.choosing.open = false;
   } else if (desk.tool != "turn") {
     desk.tool = "turn";
     desk.pending.clear();

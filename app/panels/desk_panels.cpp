@@ -28,13 +28,21 @@ void draw_line(const Board& desk) {
   begin("line", 0.0f, 0.0f, desk.width, kTop);
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(desk.state.line.title.c_str());
+  const FilesState& files = desk.state.files;
+  if (files.names.size() > 1) {
+    ImGui::SameLine(0.0f, 12.0f);
+    button(desk, fmt::format("{} of {}", files.shown + 1, files.names.size()).c_str(), "next_file", false);
+  }
   if (!desk.state.line.side.empty()) {
     ImGui::SameLine(0.0f, 24.0f);
     ImGui::TextColored(ImColor(kDim), "%s", desk.state.line.side.c_str());
   }
   const std::string display = "F2  " + desk.state.line.display;
-  const float right = button_width("undo") + button_width("redo") + button_width(display.c_str()) + button_width("?");
+  const float right = button_width("open") + button_width("undo") + button_width("redo") +
+                      button_width(display.c_str()) + button_width("?");
   ImGui::SameLine(std::max(ImGui::GetCursorPosX() + 8.0f, desk.width - right - 4.0f));
+  button(desk, "open", "open", desk.state.desk.choosing.open);
+  ImGui::SameLine();
   button(desk, "undo", "undo", false, !desk.state.line.undo.empty());
   ImGui::SameLine();
   button(desk, "redo", "redo", false, !desk.state.line.redo.empty());
@@ -165,11 +173,15 @@ void draw_panels(const PanelState& state, const KeyTable& keys, float width, flo
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(16.0f, 16.0f));
   if (state.desk.panels) {
     draw_line(desk);
-    draw_tools(desk);
-    draw_strip(desk);
-    draw_drawers(desk);
+    if (state.files.has_surface) {
+      draw_tools(desk);
+      draw_strip(desk);
+      draw_drawers(desk);
+    }
   }
   ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1.0f);
+  draw_open_dialogue(state.desk.choosing.open, state.files, width, height, commands);
+  draw_opening(state.files, width, height, commands);
   draw_palette(state.desk.palette, keys, width, height, commands);
   ImGui::PopStyleVar();
   ImGui::PopStyleVar(5);

@@ -8,6 +8,7 @@
 
 #include "app/commands/editor.h"
 #include "app/commands/key_table.h"
+#include "app/panels/open_dialogue.h"
 #include "app/panels/slice_panel.h"
 #include "app/viewer/surface_tools.h"
 
@@ -28,6 +29,7 @@ struct PanelState {
   Desk desk{};
   EvidenceShares evidence{};
   SlicePanelState slices{};
+  FilesState files{};
   bool playing = false;                     ///< the document's film
   std::vector<std::uint32_t> thumbnails{};  ///< names of textures, one for each keyframe; 0: not made yet
   double thumbnail_aspect = 1.6;            ///< their width by their height

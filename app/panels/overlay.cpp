@@ -244,11 +244,13 @@ std::string typed_by(const InputEvent& event) {
 
 bool Overlay::take_key(const InputEvent& event, const glm::dvec2& layout) {
   ImGuiIO& io = ImGui::GetIO();
-  const bool palette = text_.panels->desk.palette;
+  const Desk& desk = text_.panels->desk;
+  const bool palette = desk.palette || desk.choosing.open;  // what lists things takes the keys
   if (!palette && !io.WantTextInput) return false;
   const bool control = (event.modifiers & kControl) != 0;
   if (!palette && control && std::string_view("acvxz").find(event.key) == std::string_view::npos) return false;
-  if (palette && (event.key == "escape" || (control && event.key == "k"))) return false;  // they close it
+  if (palette && (event.key == "escape" || (control && (event.key == "k" || event.key == "o"))))
+    return false;  // they close it
   const auto at =
       std::find_if(kEditKeys.begin(), kEditKeys.end(), [&](const auto& row) { return row.first == event.key; });
   io.KeyCtrl = control;

@@ -267,7 +267,7 @@ Result<VerbResult> adjust_in_window(const Options& options, Progress& progress) 
   DUBSAR_ASSIGN(view.stage.catalog, user_catalog({}));
   DUBSAR_ASSIGN(LensTuner tuner, LensTuner::create(view.stage.catalog, folder, options.adjust[0], options.calibration));
   view.stage.display = tuner.display();
-  view.stage.pattern = true;
+  view.stage.subject = Subject::kPattern;
   DUBSAR_ASSIGN(view.mapping, default_mapping());
   view.inputs = {"keyboard"};
   view.window->title = "dubsar: " + options.adjust[0];

@@ -176,7 +176,7 @@ Result<VerbResult> show_in_window(const Options& options, const SinkSpec& displa
   view.stage.margin = shown.margin;
   view.stage.magnification = shown.magnification;
   view.stage.samples = shown.samples;
-  view.stage.pattern = request.pattern;
+  if (request.pattern) view.stage.subject = Subject::kPattern;
   DUBSAR_ASSIGN(view.mapping, default_mapping());
   view.inputs = {"mouse", "keyboard"};
   view.window->title = "dubsar: " + (request.pattern ? request.display : options.in);

@@ -10,11 +10,12 @@
 #include "app/cli/config_folder.h"
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
+#include "app/verbs/view_files.h"
 #include "app/verbs/view_kiosk.h"
+#include "app/verbs/view_outcome.h"
 #include "core/base/atomic_file.h"
 #include "core/base/log.h"
 #include "core/base/parse_number.h"
-#include "core/base/quantile.h"
 #include "core/volume/import.h"
 #include "devices/looking_glass/bridge_client.h"
 #include "input/source_spec.h"
@@ -23,7 +24,8 @@ namespace dubsar::app {
 namespace {
 
 struct What {
-  std::string in, scan, kiosk, view = "front", style = "relief";
+  std::vector<std::string> in;
+  std::string scan, kiosk, view = "front", style = "relief";
   std::vector<std::string> partitions;
 };
 
@@ -80,61 +82,6 @@ Result<Screen> parse_screen(const std::string& text) {
   return screen;
 }
 
-nlohmann::json latency_json(const std::vector<double>& ms) {
-  return {{"frames", ms.size()},
-          {"median_ms", quantile(ms, 0.5)},
-          {"p95_ms", quantile(ms, 0.95)},
-          {"worst_ms", quantile(ms, 1.0)}};
-}
-
-nlohmann::json view_json(const ViewState& view) {
-  return {{"rotation_wxyz", {view.rotation.w, view.rotation.x, view.rotation.y, view.rotation.z}},
-          {"turned_deg", turn_between_deg(view.rotation, {1, 0, 0, 0})},
-          {"zoom", view.zoom},
-          {"pan", {view.pan.x, view.pan.y}},
-          {"light_azimuth_deg", view.light_azimuth_deg},
-          {"light_elevation_deg", view.light_elevation_deg}};
-}
-
-VerbResult describe(const std::string& display, const ViewResult& done, std::size_t triangles, bool simulated) {
-  VerbResult out;
-  const glm::dvec3 turn = vector_of(done.view.rotation) * 180.0 / 3.14159265358979323846;
-  out.json = {{"display", display},
-              {"frames", done.frames},
-              {"pictures", done.written},
-              {simulated ? "simulated_s" : "seconds", done.seconds},
-              {"triangles", triangles},
-              {"view", view_json(done.view)},
-              {"largest_turn_in_a_frame_deg", done.largest_turn_deg},
-              {simulated ? "input_age_at_cameras_simulated" : "input_age_at_cameras", latency_json(done.input_age_ms)},
-              {"frame_cpu", latency_json(done.frame_cpu_ms)}};
-  out.text = fmt::format(
-      "{} frames of {:.1f} s, {} pictures\n"
-      "turned by ({:.1f}, {:.1f}, {:.1f}) degrees about right, up, viewer; zoom {:.3f}; at most {:.2f} degrees a "
-      "frame\n"
-      "device time to cameras{}: median {:.1f} ms, 95 % {:.1f} ms, worst {:.1f} ms over {} frames with new input\n"
-      "CPU time of a frame: median {:.1f} ms, worst {:.1f} ms\n",
-      done.frames, done.seconds, done.written, turn.x, turn.y, turn.z, done.view.zoom, done.largest_turn_deg,
-      simulated ? " (simulated clock)" : "", quantile(done.input_age_ms, 0.5), quantile(done.input_age_ms, 0.95),
-      quantile(done.input_age_ms, 1.0), done.input_age_ms.size(), quantile(done.frame_cpu_ms, 0.5),
-      quantile(done.frame_cpu_ms, 1.0));
-  return out;
-}
-
-std::string_view health_name(SourceHealth health) {
-  constexpr std::array<std::string_view, 4> kNames{"present", "lost", "missing", "off"};
-  return kNames[static_cast<std::size_t>(health)];
-}
-
-void add_sources(const std::vector<SourceRow>& rows, VerbResult& out) {
-  out.json["sources"] = nlohmann::json::array();
-  for (const SourceRow& row : rows) {
-    out.json["sources"].push_back({{"source", row.spec}, {"state", health_name(row.health)}, {"reason", row.reason}});
-    out.text += fmt::format("source {}: {}{}{}\n", row.spec, health_name(row.health), row.reason.empty() ? "" : ", ",
-                            row.reason);
-  }
-}
-
 Result<ViewOptions> view_options(const Options& options) {
   ViewOptions view;
   DUBSAR_ASSIGN(DisplayChoice choice,
@@ -156,9 +103,7 @@ Result<ViewOptions> view_options(const Options& options) {
     DUBSAR_ASSIGN(const std::string steps, read_text_file(options.people.steps));
     DUBSAR_ASSIGN(view.steps, parse_steps(steps, options.people.steps));
   }
-  view.work.surface = options.what.in;
   view.around.scale = 0.01 * options.panel.ui_scale;
-  view.work.scan = options.what.scan;
   view.time.fps = options.time.fps;
   view.time.longest_s = options.time.seconds;
   view.time.display_delay_s = 1e-3 * options.time.display_delay_ms;
@@ -191,33 +136,13 @@ Result<void> without_window(const Options& options, ViewOptions& view) {
   return {};
 }
 
-/// What a session that was killed left behind, and where this one keeps its own work.
-void keep_work(const Options& options, ViewOptions& view) {
-  std::error_code error;
-  SourceFile source{std::filesystem::absolute(options.what.in, error).string(), 0};
-  source.bytes = static_cast<std::int64_t>(std::filesystem::file_size(options.what.in, error));
-  if (error) return;  // reading it says why
-  view.work.document.source = source;
-  const std::filesystem::path folder = session_folder();
-  if (folder.empty()) return;
-  view.files.autosave = Autosave::file_for(folder, source);
-  const Autosave autosave(view.files.autosave);
-  if (!autosave.has_left_behind()) return;
-  auto left = autosave.left_behind(source);
-  if (!left) return log_warning("{}", left.error().message);
-  view.work.document = *std::move(left);
-  view.work.upright = false;
-  view.work.restored = true;
-  log_info("view: the work of the last session on this file is here again");
-}
-
 Result<void> with_window(const Options& options, ViewOptions& view) {
   if (options.panel.fullscreen && options.panel.windowed)
     return fail(ErrorKind::kUsage, "--fullscreen and --windowed found, expected one of them");
   view.stage.quality = Quality::kAdaptive;
   view.stage.samples = options.panel.samples > 0 ? options.panel.samples : 2;
   view.window = WindowOptions();
-  view.window->title = "dubsar: " + options.what.in;
+  view.window->title = options.what.in.empty() ? "dubsar" : "dubsar: " + options.what.in.front();
   view.window->monitor = options.panel.monitor;
   if (!options.panel.size.empty()) {
     DUBSAR_ASSIGN(const Screen screen, parse_screen(options.panel.size));
@@ -229,17 +154,14 @@ Result<void> with_window(const Options& options, ViewOptions& view) {
     view.fullscreen = options.panel.fullscreen;
   view.around.notices = view.around.panels = options.made.frames.empty();
   if (view.around.panels) view.stage.margin = 0.12;  // room for the line above the surface and the strip below it
-  view.around.title = std::filesystem::path(options.what.in).filename().string();
-  view.work.upright = options.what.view == "front";
-  if (options.time.fps == 0) keep_work(options, view);
-  DUBSAR_TRY(list_monitors());  // before a large file is read
+  DUBSAR_TRY(list_monitors());                       // before a large file is read
   return {};
 }
 
 /// What the profile of a kiosk says takes the place of what was not given.
 Options kiosk_options(Options options, const KioskProfile& profile, const KioskObject& object,
                       const std::string& display) {
-  options.what.in = object.file.string();
+  options.what.in = {object.file.string()};
   options.panel.display = display;
   options.what.style = object.style;
   if (options.people.inputs.empty()) options.people.inputs = profile.inputs;
@@ -259,11 +181,14 @@ Result<VerbResult> run_kiosk_of(const Options& given, Progress& progress) {
       DUBSAR_ASSIGN(view.mapping, gallery_mapping());
     }
     DUBSAR_TRY(one.panel.offscreen ? without_window(one, view) : with_window(one, view));
-    view.work.document.source = {};
+    view.work.upright = !one.panel.offscreen && one.what.view == "front";
+    view.work.surface = object.file;
+    view.around.title = object.file.filename().string();
     return view;
   };
   DUBSAR_ASSIGN(const KioskOutcome done, run_kiosk({given.what.kiosk, options}, progress));
-  VerbResult out = describe(done.display, done.last, done.triangles, given.panel.offscreen || given.time.fps > 0);
+  VerbResult out =
+      describe_session(done.display, done.last, done.triangles, given.panel.offscreen || given.time.fps > 0);
   out.json["visits"] = done.counts.visits;
   out.json["resets"] = done.counts.resets;
   out.text += fmt::format("{} visits, {} times back to the beginning\n", done.counts.visits, done.counts.resets);
@@ -271,36 +196,56 @@ Result<VerbResult> run_kiosk_of(const Options& given, Progress& progress) {
   return out;
 }
 
+FileReading file_reading(const Options& options) {
+  const bool window = !options.panel.offscreen;
+  return {options.what.partitions, options.what.scan, window && options.what.view == "front",
+          window && options.time.fps == 0};
+}
+
+/// What can be wrong with files is known before a large one is read.
+Result<void> check_files(const Options& options) {
+  const What& what = options.what;
+  if (what.in.empty() && (options.panel.offscreen || options.time.fps > 0 || !options.made.tour.empty()))
+    return fail(ErrorKind::kUsage, "view: no file found, expected a surface such as tablet.exa");
+  if (what.in.size() > 1 && !what.scan.empty())
+    return fail(ErrorKind::kUsage, "view: {} files and one --scan found, expected one file with it", what.in.size());
+  for (const std::string& file : what.in) DUBSAR_TRY(check_surface(file, what.partitions));
+  if (what.scan.empty()) return {};
+  ImportOptions scan;
+  scan.path = what.scan;
+  DUBSAR_TRY(open_voxels(scan));
+  return {};
+}
+
 Result<VerbResult> run(const Options& options, Progress& progress) {
   if (!options.what.kiosk.empty()) return run_kiosk_of(options, progress);
-  if (options.what.in.empty())
-    return fail(ErrorKind::kUsage, "view: no file found, expected a surface such as tablet.exa");
   DUBSAR_ASSIGN(ViewOptions view, view_options(options));
   if (options.made.tour.empty())
     DUBSAR_TRY(options.panel.offscreen ? without_window(options, view) : with_window(options, view));
-  else
+  DUBSAR_TRY(check_files(options));
+  if (!options.made.tour.empty()) {
     view.work.upright = options.what.view == "front";
-  if (!options.what.scan.empty()) {  // before a large file is read
-    ImportOptions scan;
-    scan.path = options.what.scan;
-    DUBSAR_TRY(open_voxels(scan));
+    view.work.surface = options.what.in.front();
+    DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.what.in.front(), options.what.partitions, true}, progress));
+    return write_tour(options.made.tour, mesh, view);
   }
-  DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.what.in, options.what.partitions, true}, progress));
-  if (!options.made.tour.empty()) return write_tour(options.made.tour, mesh, view);
-  if (!options.panel.offscreen) log_info("view: F1 shows help; Escape, closing the window or Ctrl-C end it");
-  DUBSAR_ASSIGN(const ViewResult done, run_view(mesh, view, progress));
-  VerbResult out = describe(options.panel.offscreen ? options.panel.display : done.display, done, mesh.triangles.size(),
-                            view.time.fps > 0);
-  if (!options.panel.offscreen) {
-    out.json["frames_per_s_while_moving"] = done.fps;
-    out.text += fmt::format("frames a second while things moved: {:.1f}\n", done.fps);
-    out.json["intervals"] = latency_json(done.interval_ms);
-    if (!done.interval_ms.empty())
-      out.text += fmt::format(
-          "from picture to picture while things moved, all {}: median {:.1f} ms, 95 % {:.1f} ms, longest {:.1f} ms\n",
-          done.interval_ms.size(), quantile(done.interval_ms, 0.5), quantile(done.interval_ms, 0.95),
-          quantile(done.interval_ms, 1.0));
+  const bool live = !options.panel.offscreen && options.time.fps == 0;
+  const std::vector<std::filesystem::path> files(options.what.in.begin(), options.what.in.end());
+  Shelf shelf(surface_reader(view, file_reading(options)), live ? recent_list() : std::filesystem::path());
+  OpenedSurface first;
+  if (live) {  // the window is there before what it shows
+    DUBSAR_TRY(shelf.open(files));
+    log_info("view: F1 shows help; Escape, closing the window or Ctrl-C end it");
+  } else {
+    DUBSAR_ASSIGN(first, surface_reader(view, file_reading(options))(files.front(), progress));
+    shelf.has(files);
+    view.work = first.work;
+    view.around.title = first.title;
   }
+  DUBSAR_ASSIGN(const ViewResult done, run_view(first.mesh, view, progress, {}, &shelf));
+  VerbResult out = describe_session(options.panel.offscreen ? options.panel.display : done.display, done,
+                                    done.triangles, view.time.fps > 0);
+  if (!options.panel.offscreen) add_intervals(done, out);
   add_sources(done.rows, out);
   return out;
 }
@@ -310,7 +255,9 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 Verb add_view_verb(Arguments program) {
   auto options = std::make_shared<Options>();
   Arguments command = program.command("view", "turn a surface on a display with hands, head and mouse");
-  command.reads("IN", options->what.in, "EXA, PLY, OBJ, STL or GLB file");
+  command.reads("IN", options->what.in, "EXA, PLY, OBJ, STL or GLB files; none: the window asks")
+      .called("FILE...")
+      .words(0, 100);
   command
       .reads("--kiosk", options->what.kiosk,
              "a gallery's profile (docs/kiosk.md): its objects, until an operator ends it")
@@ -377,6 +324,7 @@ Verb add_view_verb(Arguments program) {
       "the monitor, Escape ends.\n"
       "Examples:\n"
       "  dubsar view tablet.exa\n"
+      "  dubsar view obverse.exa reverse.exa\n"
       "  dubsar view tablet.exa --display anaglyph --partition tablet\n"
       "  dubsar view tablet.exa --display lenticular:auto --input mouse,keyboard,leapc\n"
       "  dubsar view tablet.exa --offscreen --display quilt:looking-glass-portrait --script visitor.json --frames "

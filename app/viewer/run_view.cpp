@@ -79,7 +79,7 @@ class Figures {
 class Loop {
  public:
   Loop(const ViewOptions& options, Progress& progress) : options_(options), progress_(progress) {}
-  Result<ViewResult> run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look);
+  Result<ViewResult> run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look, Shelf* shelf);
 
  private:
   bool simulated() const noexcept { return options_.time.fps > 0; }
@@ -92,6 +92,7 @@ class Loop {
   ViewOptions options_;
   Progress& progress_;
   SteadyClock steady_;
+  const TimestampNs began_ = steady_.now();
   ManualClock manual_;                    // of simulated time; outlives the sources
   std::unique_ptr<Presenter> presenter_;  // all else has GL objects
   std::unique_ptr<Viewer> viewer_;
@@ -118,6 +119,9 @@ Result<void> Loop::draw(bool& drawn) {
   DUBSAR_TRY(presenter_->present());
   figures_.presented(steady_.now(), viewer_->report().moving);
   viewer_->presented(steady_.now());
+  const double since_s = 1e-9 * static_cast<double>(steady_.now() - began_);
+  if (!out_.first.window_s) out_.first.window_s = since_s;
+  if (!out_.first.surface_s && viewer_->has_surface()) out_.first.surface_s = since_s;
   out_.frame_cpu_ms.push_back(1e3 * (process_cpu_seconds() - cpu));
   ++out_.frames;
   drawn = true;
@@ -136,7 +140,7 @@ bool Loop::ends(TimestampNs start) {
   return now - start >= static_cast<TimestampNs>(1e9 * options_.time.longest_s);
 }
 
-Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look) {
+Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look, Shelf* shelf) {
   DUBSAR_TRY(check(options_));
   std::string note;
   std::unique_ptr<OutputSink> sink;
@@ -149,7 +153,7 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
     options_.stage.quality = Quality::kExact;
     manual_.set(step());
   }
-  DUBSAR_ASSIGN(viewer_, Viewer::create(mesh, options_, *presenter_, clock(), std::move(sink), note));
+  DUBSAR_ASSIGN(viewer_, Viewer::create(mesh, options_, *presenter_, clock(), std::move(sink), note, shelf));
   progress_.begin("view", 0, "frame");
   const TimestampNs start = clock().now();
   const auto delay = static_cast<TimestampNs>(1e9 * options_.time.display_delay_s);
@@ -206,6 +210,7 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
   out_.rows = viewer_->sources();
   out_.sources = viewer_->source_states();
   out_.document = viewer_->document();
+  out_.triangles = viewer_->mesh().triangles.size();
   DUBSAR_TRY(viewer_->finish(true));
   return std::move(out_);
 }
@@ -213,9 +218,9 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
 }  // namespace
 
 Result<ViewResult> run_view(const TriMesh& mesh, const ViewOptions& options, Progress& progress,
-                            const std::function<void(const ViewMoment&)>& look) {
+                            const std::function<void(const ViewMoment&)>& look, Shelf* shelf) {
   Loop loop(options, progress);
-  return loop.run(mesh, look);
+  return loop.run(mesh, look, shelf);
 }
 
 }  // namespace dubsar::app

@@ -17,6 +17,7 @@ namespace {
 constexpr std::uint64_t kBytesPerViewPixel = 4;
 constexpr double kEyeStepMm = 0.05;  // what an eye may move before there is a new picture
 constexpr double kMovingMs = 28.0;   // for 30 pictures a second
+constexpr double kGroundMm = 30.0;   // of nothing, so that there is a scale
 constexpr double kForget = 0.3;      // of the mean time that a view takes
 
 double milliseconds_since(TimestampNs start) { return 1e-6 * static_cast<double>(SteadyClock().now() - start); }
@@ -101,32 +102,48 @@ Result<std::unique_ptr<Stage>> Stage::create(const TriMesh& mesh, const StageOpt
   if (!(options.margin >= 0 && options.margin <= 0.45) || options.samples < 1 || options.samples > 8)
     return fail(ErrorKind::kUsage, "view: margin {} and {} samples found, expected 0 to 0.45 and 1 to 8",
                 options.margin, options.samples);
-  DUBSAR_ASSIGN(PackedMesh packed, pack_mesh(mesh));
-  const bool has_mesh = !options.pattern && !options.pictures;
-  if (has_mesh && packed.triangles_of(visible_partitions(options.shading.parts)) == 0)
-    return fail(ErrorKind::kUsage, "view: none of the partitions asked for has triangles, so there is nothing to draw");
   auto parts = std::make_unique<Parts>(options);
   parts->next.shown.style = options.shading.style;
   parts->next.shown.other = options.shading.other;
   parts->next.shown.parts = options.shading.parts;
-  Parts::Object& object = parts->object;
-  object.source = &mesh;
-  if (has_mesh) object.box = packed.box_of(visible_partitions(options.shading.parts));
-  if (!has_mesh) {
-    // nothing to draw
-  } else if (options.quality == Quality::kAdaptive) {
-    DUBSAR_ASSIGN(object.mesh, LodMesh::growing(std::move(packed)));
-    DUBSAR_ASSIGN(object.multi, MultiView::create({.budget_ms = kMovingMs}));
-  } else {
-    DUBSAR_ASSIGN(object.mesh, LodMesh::exact(packed));
-    DUBSAR_ASSIGN(object.renderer, Renderer::create());
-  }
+  DUBSAR_ASSIGN(parts->object, Parts::make_object(mesh, options));
   parts->sink = std::move(sink);
   if (!parts->sink) {
     DUBSAR_ASSIGN(parts->sink, options.catalog->make(options.display));
   }
   DUBSAR_TRY(parts->prepare(*parts->sink));
   return std::unique_ptr<Stage>(new Stage(std::move(parts)));
+}
+
+/// What there is to draw, in graphics memory; without a mesh nothing.
+Result<Stage::Parts::Object> Stage::Parts::make_object(const TriMesh& mesh, const StageOptions& options) {
+  Object object;
+  object.source = &mesh;
+  const bool later = options.subject == Subject::kLater && mesh.triangles.empty();
+  if (later) object.box = {glm::dvec3(-kGroundMm), glm::dvec3(kGroundMm)};
+  if (later || options.subject == Subject::kPattern || options.pictures) return object;
+  DUBSAR_ASSIGN(PackedMesh packed, pack_mesh(mesh));
+  if (packed.triangles_of(visible_partitions(options.shading.parts)) == 0)
+    return fail(ErrorKind::kUsage, "view: none of the partitions asked for has triangles, so there is nothing to draw");
+  object.box = packed.box_of(visible_partitions(options.shading.parts));
+  if (options.quality == Quality::kAdaptive) {
+    DUBSAR_ASSIGN(object.mesh, LodMesh::growing(std::move(packed)));
+    DUBSAR_ASSIGN(object.multi, MultiView::create({.budget_ms = kMovingMs}));
+  } else {
+    DUBSAR_ASSIGN(object.mesh, LodMesh::exact(packed));
+    DUBSAR_ASSIGN(object.renderer, Renderer::create());
+  }
+  return object;
+}
+
+Result<void> Stage::set_mesh(const TriMesh& mesh) {
+  DUBSAR_ASSIGN(Parts::Object object, Parts::make_object(mesh, parts_->options));
+  std::swap(parts_->object, object);
+  parts_->cost.exact_view_ms = 0.0;
+  parts_->next.shown.marks = {};
+  parts_->next.shown.beside.reset();
+  parts_->painted = {};
+  return parts_->prepare(*parts_->sink);
 }
 
 std::optional<WearerFrame> Stage::wearer() const { return parts_->sink->wearer(); }

@@ -31,6 +31,12 @@ enum class Quality {
               ///< they take, and while the window's size changes; exact ones at rest
 };
 
+enum class Subject {
+  kSurface,
+  kLater,    ///< there may be no surface yet, set_mesh() brings it; until then the ground is shown
+  kPattern,  ///< numbered views (display/render/test_pattern.h) in place of the mesh
+};
+
 struct StageOptions {
   SinkSpec display{"mono"};
   /// Displays and panels that may be named; who owns it, too, may put other figures into it and set the display again.
@@ -46,7 +52,7 @@ struct StageOptions {
   double budget_ms = 14.0;     ///< kAdaptive: for the views of one picture
   bool stereo_window = false;  ///< the target has a left and a right buffer
   double magnification = 0.0;  ///< 1: life size at zoom 1; 0: as large as fits
-  bool pattern = false;        ///< numbered views (display/render/test_pattern.h) in place of the mesh
+  Subject subject = Subject::kSurface;
   std::shared_ptr<const ViewPictures> pictures{};  ///< these in place of the mesh
 };
 
@@ -113,6 +119,9 @@ class Stage {
   static Result<std::unique_ptr<Stage>> create(const TriMesh& mesh, const StageOptions& options,
                                                std::unique_ptr<OutputSink> sink = nullptr);
   ~Stage();
+
+  /// Another surface, which outlives it, in the place of the present one. Errors of create(); then nothing changes.
+  Result<void> set_mesh(const TriMesh& mesh);
 
   /// May be changed at any time; when one fails nothing changes.
   Result<void> set_display(const SinkSpec& spec);

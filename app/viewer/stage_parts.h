@@ -82,6 +82,7 @@ struct Stage::Parts {
   Over decor;
 
   explicit Parts(const StageOptions& given) : options(given) {}
+  static Result<Object> make_object(const TriMesh& mesh, const StageOptions& options);
   Result<void> prepare(OutputSink& with);
   void measure(const FieldNeeds& needs);
   Viewer viewer_at(const FollowedEyes& eyes) const;
@@ -92,7 +93,7 @@ struct Stage::Parts {
   SceneView scene() const {
     return {painted.items, painted.light, painted.clips, options.shading.background, painted.fog};
   }
-  bool has_mesh() const noexcept { return !options.pattern && !options.pictures; }
+  bool has_mesh() const noexcept { return object.mesh.has_value(); }
   void set_scene() { set_scene(next.shown, 1); }
   void set_scene(const Shown& shown, int half);
   Result<void> paint_halves(bool exact);

@@ -90,10 +90,18 @@ struct PictureReport {
   std::optional<glm::dvec3> selected_m{};  ///< a dwelling hand chose this place
 };
 
+/// In real time, from the beginning of the session: to the first picture in the window, and to the first one of a
+/// surface; none: there was none.
+struct FirstPictures {
+  std::optional<double> window_s{}, surface_s{};
+};
+
 struct ViewResult {
   int frames = 0, written = 0;
-  double seconds = 0.0;  ///< of the session's clock
-  double fps = 0.0;      ///< in real time, while things moved: from one presented picture to the next
+  FirstPictures first{};
+  std::size_t triangles = 0;  ///< of the surface that was shown last
+  double seconds = 0.0;       ///< of the session's clock
+  double fps = 0.0;           ///< in real time, while things moved: from one presented picture to the next
   ViewState view{};
   /// In real time: from one presented picture to the next, of all that were presented while things moved, however
   /// long it took. A rest in between is no interval.

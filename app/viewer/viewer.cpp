@@ -32,8 +32,8 @@ HeadFollowOptions follow_options(const StageOptions& stage) {
 
 Result<std::unique_ptr<Viewer>> Viewer::create(const TriMesh& mesh, const ViewOptions& options, Presenter& presenter,
                                                const Clock& clock, std::unique_ptr<OutputSink> sink,
-                                               const std::string& note) {
-  std::unique_ptr<Viewer> out(new Viewer(mesh, options, presenter, clock));
+                                               const std::string& note, Shelf* shelf) {
+  std::unique_ptr<Viewer> out(new Viewer(mesh, options, presenter, clock, shelf));
   DUBSAR_TRY(out->open(std::move(sink), note));
   return out;
 }
@@ -60,14 +60,11 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
   DUBSAR_ASSIGN(KeyTable keys, KeyTable::create(*said_.commands, given_.options.mapping.keys));
   said_.keys = std::make_unique<KeyTable>(std::move(keys));
   const Mapping& mapping = given_.options.mapping;
-  editor_ =
-      std::make_unique<Editor>(first_document(given_.options, given_.mesh), *this,
-                               StepFigures{mapping.key_step_deg, mapping.key_zoom, mapping.zoom_min, mapping.zoom_max});
-  DUBSAR_ASSIGN(stage_, Stage::create(given_.mesh, stage, std::move(sink)));
+  editor_ = make_editor(first_document(given_.options, *given_.mesh));
+  if (given_.shelf != nullptr) given_.options.stage.subject = Subject::kLater;
+  DUBSAR_ASSIGN(stage_, Stage::create(*given_.mesh, stage, std::move(sink)));
   DUBSAR_ASSIGN(tools_.font, LabelFont::create(panel_font()));
-  tools_.evidence = evidence_shares(given_.mesh);
-  tools_.slices = std::make_unique<SliceDesk>(
-      given_.mesh, stage_->box_mm(), scan_of(given_.mesh, given_.options.work.surface, given_.options.work.scan));
+  find_tools();
   DUBSAR_ASSIGN(overlay_, Overlay::create(*said_.keys));
   if (given_.options.displays.empty()) {
     displays_.specs = displays_for_window(stage.display, stage.screen, stage.stereo_window, stage.catalog->panels());
@@ -79,15 +76,19 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
   editor_->desk().ui_scale = given_.options.around.scale;
   steering_ = std::make_unique<Steering>(mapping, view_of(document()), follow_options(stage));
   steering_->set_home(home_of(document()));
-  autosave_ = Autosave(given_.options.files.autosave);
+  files_.autosave = Autosave(given_.options.files.autosave);
+  files_.first = given_.shelf != nullptr && given_.shelf->busy();
+  editor_->desk().choosing.open = given_.shelf != nullptr && !has_surface() && !files_.first;
   DUBSAR_TRY(start_sources());
-  if (GlfwWindow* const window = given_.presenter.window())
+  if (GlfwWindow* const window = given_.presenter.window()) {
     window->on_event([this, window](const WindowEvent& event) { handle(to_input_event(event, window->size())); });
+    window->on_drop([this](const std::vector<std::string>& files) { drop(files); });
+  }
   DUBSAR_TRY(place_changed());
   if (!note.empty()) {
     log_warning("{}", note);
     say(note);
-  } else {
+  } else if (has_surface()) {
     say("Drag to turn. 1 to 6: sides. U: lift the envelope. Ctrl+K: everything. F1: help.");
   }
   if (given_.options.time.fps == 0) steering_->run(given_.clock);
@@ -193,7 +194,7 @@ void Viewer::handle(InputEvent event) {
   }
   if (event.at && event.kind != EventKind::kKey) editor_->desk().pointing.at = event.at;
   if (take_light(event) || take_click(event)) return;
-  if (event.kind == EventKind::kButton && event.down && event.at && !given_.options.stage.pattern &&
+  if (event.kind == EventKind::kButton && event.down && event.at && given_.options.stage.subject != Subject::kPattern &&
       !given_.options.stage.pictures)
     event.lever = lever_at(*event.at);
   if (event.at) event.at->x -= aside();  // who turns and zooms knows nothing of what stands beside the surface
@@ -231,6 +232,10 @@ void Viewer::run(std::string_view text, std::uint64_t merge) {
 Result<void> Viewer::obey(std::string_view command, std::uint64_t merge) {
   keep_up();
   editor_->merge_with(merge);
+  const Command* const known = said_.commands->find(split_command(command).first);
+  if (known != nullptr && !has_surface() && given_.shelf != nullptr && known->group != kWindowGroup &&
+      known->group != kFileGroup)
+    return fail(ErrorKind::kUsage, "{}: there is no surface yet; Ctrl+O opens one", known->name);
   auto done = said_.commands->run(command, *editor_);
   editor_->merge_with(0);
   at_.help_made = -1;
@@ -242,8 +247,13 @@ Result<void> Viewer::obey(std::string_view command, std::uint64_t merge) {
 void Viewer::say_steps(TimestampNs now) {
   const std::vector<TimedCommand>& steps = given_.options.steps;
   if (at_.began < 0) at_.began = now;
+  const bool waits = opening() && (at_.steps >= steps.size() || steps[at_.steps].text != "stop_opening");
+  if (waits && at_.stepped >= 0) at_.began += now - at_.stepped;
+  at_.stepped = now;
+  if (waits) return;  // what follows is about what is being read
   for (; at_.steps < steps.size() && !at_.failed; ++at_.steps) {
     const TimedCommand& step = steps[at_.steps];
+    if (opening() && step.text != "stop_opening") return;
     if (1e-9 * static_cast<double>(now - at_.began) < step.time_s) return;
     if (const auto done = obey(step.text, 0); !done)
       at_.failed = Error{done.error().kind, fmt::format("at {} s: {}", step.time_s, done.error().message)};
@@ -302,6 +312,7 @@ void Viewer::presented(TimestampNs now) {
 
 void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures& figures) {
   sources_->tick(now);
+  take_surface();
   steering_->steer(now);
   for (const InputEvent& event : steering_->take_keys())
     if (given_.options.guide == nullptr || !given_.options.guide->takes(event, now)) use_key(event);
@@ -336,7 +347,8 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
       say("the recording has ended: " + kept.error().message);
     }
   update_overlay(now, figures);
-  if (const auto kept = autosave_.keep(now, document()); !kept) log_warning("{}", kept.error().message);
+  if (!has_surface()) return;
+  if (const auto kept = files_.autosave.keep(now, document()); !kept) log_warning("{}", kept.error().message);
 }
 
 Result<void> Viewer::paint(const Surface& target, Field field) {
@@ -352,7 +364,8 @@ bool Viewer::over(TimestampNs now) {
   const bool waits_for_people = input.endless() || std::any_of(rows.begin(), rows.end(), [](const SourceRow& row) {
                                   return row.health == SourceHealth::kMissing;
                                 });
-  const bool steps_over = at_.steps == given_.options.steps.size();
+  const bool busy = given_.shelf != nullptr && given_.shelf->busy();
+  const bool steps_over = at_.steps == given_.options.steps.size() && !busy;
   if (waits_for_people || !(input.finished() || given_.options.inputs.empty()) || !steps_over) {
     at_.over_since = -1;
     return false;
@@ -363,11 +376,7 @@ bool Viewer::over(TimestampNs now) {
 
 Result<void> Viewer::finish(bool orderly) {
   steering_->stop();
-  const Document& d = document();
-  const bool made = !d.measures.empty() || !d.notes.empty() || !d.keyframes.empty() || !d.clips.empty() ||
-                    editor_->has_work() || given_.options.work.restored || d.home != editor_->opened().home;
-  if (orderly && made) DUBSAR_TRY(autosave_.leave(d));
-  if (orderly && !made) autosave_.discard();
+  if (has_surface()) DUBSAR_TRY(leave_work(orderly));
   return recorder_ ? recorder_->finish() : Result<void>();
 }
 

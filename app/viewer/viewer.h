@@ -12,6 +12,7 @@
 #include "app/viewer/picker.h"
 #include "app/viewer/presenter.h"
 #include "app/viewer/session_guide.h"
+#include "app/viewer/shelf.h"
 #include "app/viewer/slice_desk.h"
 #include "app/viewer/steering.h"
 #include "app/viewer/surface_tools.h"
@@ -33,11 +34,12 @@ struct RecentFigures {
 /// One thread: that of the GL context.
 class Viewer final : public Workplace {
  public:
-  /// Starts the sources, too. `mesh`, `options`, `presenter` and `clock` outlive it; events of the presenter's window
-  /// come here. Errors of Stage::create, SourceSet::start, the recording, and of the mapping's keys.
+  /// Starts the sources, too. `mesh`, `presenter`, `clock` and `shelf` outlive it; events of the presenter's window
+  /// come here. A mesh without triangles: the surface comes from the shelf; null: there is no other than `mesh`. Errors
+  /// of Stage::create, SourceSet::start, the recording, and of the mapping's keys.
   static Result<std::unique_ptr<Viewer>> create(const TriMesh& mesh, const ViewOptions& options, Presenter& presenter,
                                                 const Clock& clock, std::unique_ptr<OutputSink> sink,
-                                                const std::string& note);
+                                                const std::string& note, Shelf* shelf = nullptr);
   ~Viewer() override;
 
   /// Everything up to `now`: sources, keys, commands; then what the next picture shows, whose light reaches the eye at
@@ -58,7 +60,7 @@ class Viewer final : public Workplace {
 
   /// Does what a command says. What cannot be done becomes a line over the picture.
   void run(std::string_view command, std::uint64_t merge = 0);
-  /// A step of the options that could not be done.
+  /// A step of the options that could not be done, or the only file that could not be read.
   const std::optional<Error>& failed() const noexcept { return at_.failed; }
   /// An event of a window.
   void handle(InputEvent event);
@@ -67,6 +69,9 @@ class Viewer final : public Workplace {
   Result<void> flush() { return recorder_ ? recorder_->flush() : Result<void>(); }
   Result<void> finish(bool orderly);
 
+  bool has_surface() const noexcept { return !given_.mesh->triangles.empty(); }
+  bool opening() const noexcept { return given_.shelf != nullptr && given_.shelf->busy(); }  ///< a file is being read
+  const TriMesh& mesh() const noexcept { return *given_.mesh; }
   const Stage& stage() const noexcept { return *stage_; }
   const Document& document() const noexcept { return editor_->document(); }
   const Desk& desk() const noexcept { return editor_->desk(); }
@@ -81,6 +86,11 @@ class Viewer final : public Workplace {
   void retry_sources() override { sources_->retry_now(); }
   void recentre_heads() override;
   bool toggle_source(std::size_t index) override;
+  Result<void> open_file(const std::string& path) override;
+  Result<void> open_recent(std::size_t number) override;
+  Result<void> switch_file(int step) override;
+  bool stop_opening() override;
+  std::string present_folder() const override;
   void say(std::string words) override;
   void end() override { given_.presenter.end(); }
   Result<SurfacePin> pin(const glm::dvec3& at_mm) override;
@@ -95,10 +105,20 @@ class Viewer final : public Workplace {
 
  private:
   struct Given {
-    const TriMesh& mesh;
-    const ViewOptions& options;
+    const TriMesh* mesh;
+    ViewOptions options;  ///< what belongs to a file changes with it
     Presenter& presenter;
     const Clock& clock;
+    Shelf* shelf;
+  };
+  /// What belongs to the file that is shown, and what the dialogue lists.
+  struct Files {
+    std::unique_ptr<OpenedSurface> opened;
+    Autosave autosave{{}};
+    FolderListing listing;
+    std::vector<RecentFile> recent;
+    TimestampNs listed = -1;
+    bool first = false;  ///< the session was begun with a file
   };
   struct Vocabulary {
     std::unique_ptr<CommandTable> commands;
@@ -121,6 +141,7 @@ class Viewer final : public Workplace {
     bool light_known = false;
     double film_from_s = 0.0;     ///< and how far it was then
     TimestampNs began = -1;       ///< when the first step was due at 0
+    TimestampNs stepped = -1;     ///< when steps were looked at last
     std::size_t steps = 0;        ///< how many were said
     std::optional<Error> failed;  ///< what became of one
     std::uint64_t presses = 0;
@@ -138,15 +159,23 @@ class Viewer final : public Workplace {
     glm::dvec2 pointer{0.0};              ///< where it was last, as InputEvent::at
     std::unique_ptr<SliceDesk> slices;
   };
-  Viewer(const TriMesh& mesh, const ViewOptions& options, Presenter& presenter, const Clock& clock)
-      : given_{mesh, options, presenter, clock} {}
+  Viewer(const TriMesh& mesh, const ViewOptions& options, Presenter& presenter, const Clock& clock, Shelf* shelf)
+      : given_{&mesh, options, presenter, clock, shelf} {}
   Result<void> open(std::unique_ptr<OutputSink> sink, const std::string& note);
   Result<void> start_sources();
+  std::unique_ptr<Editor> make_editor(Document document);
+  void find_tools();
+  Result<void> put(OpenedSurface surface);
+  void take_surface();
+  Result<void> take_if_simulated();
+  Result<void> leave_work(bool orderly);
+  void drop(const std::vector<std::string>& files);
+  FilesState files_state(TimestampNs now);
   void use_key(const InputEvent& event);
   void lead(TimestampNs now, const Steered& steered);
   Result<void> obey(std::string_view command, std::uint64_t merge);
   void say_steps(TimestampNs now);
-  PanelState panel_state() const;
+  PanelState panel_state(TimestampNs now);
   void add_thumbnails(PanelState& panels);
   void keep_up();
   void feed_worn();
@@ -164,7 +193,7 @@ class Viewer final : public Workplace {
   glm::dvec3 scan_place(const Picked& picked) const;
   Document shown_document(TimestampNs now);
   Document guided_document(const GuidedScene& scene) const;
-  bool shows_slices() const { return desk().panels && desk().drawer == "slices"; }
+  bool shows_slices() const { return desk().panels && desk().drawer == "slices" && has_surface(); }
   double ui_scale() const;
   glm::dvec2 layout() const;
   double aside() const;
@@ -172,6 +201,7 @@ class Viewer final : public Workplace {
   Reach reach_of(const glm::dvec3& direction, const glm::dquat& rotation) const;
 
   Given given_;
+  Files files_;  // goes behind all that shows its surface
   Vocabulary said_;
   std::unique_ptr<Editor> editor_;
   Tools tools_;
@@ -185,7 +215,6 @@ class Viewer final : public Workplace {
   Displays displays_;
   Notice notice_;
   Progression at_;
-  Autosave autosave_{{}};
 };
 
 }  // namespace dubsar::app

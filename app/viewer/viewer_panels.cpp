@@ -30,17 +30,21 @@ glm::dvec2 Viewer::layout() const {
   return Overlay::layout(stage_->traits().view.height, stage_->window_mm(), ui_scale());
 }
 
-PanelState Viewer::panel_state() const {
+PanelState Viewer::panel_state(TimestampNs now) {
   PanelState out;
   out.line = {
-      given_.options.around.title, display(),
-      std::string(kSideNames[static_cast<std::size_t>(facing_side(report_.view.rotation, document().home.rotation))]),
+      has_surface() ? given_.options.around.title : "dubsar", display(),
+      has_surface()
+          ? std::string(
+                kSideNames[static_cast<std::size_t>(facing_side(report_.view.rotation, document().home.rotation))])
+          : std::string(),
       editor_->history().undo_words(), editor_->history().redo_words()};
   out.document = document();
   out.desk = desk();
   out.desk.beside.reset();
   out.desk.pointing.at.reset();  // it moves, and nothing here shows it
   out.evidence = tools_.evidence;
+  out.files = files_state(now);
   if (shows_slices()) out.slices = tools_.slices->state();
   out.playing = at_.film_since >= 0;
   const glm::dvec2 window = stage_->window_mm();
@@ -81,9 +85,10 @@ void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
   }
   text.gallery = at_.guidance.picture;
   text.panels.reset();
-  if ((desk().panels || desk().palette) && !desk().help) text.panels = panel_state();
+  const bool files = desk().choosing.open || (given_.shelf != nullptr && given_.shelf->busy());
+  if ((desk().panels || desk().palette || files) && !desk().help) text.panels = panel_state(now);
   if (text.panels && desk().drawer == "film") add_thumbnails(*text.panels);
-  text.legend = desk().legend
+  text.legend = desk().legend && has_surface()
                     ? legend_of(shown_of(document(), report_.view, given_.options.stage, stage_->box_mm()).style)
                     : std::nullopt;
   text.light.reset();

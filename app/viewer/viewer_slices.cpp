@@ -55,7 +55,7 @@ glm::dmat3 Viewer::seen_axes() {
 Result<void> Viewer::write_slice(const std::string& path, std::size_t which) {
   DUBSAR_ASSIGN(const std::filesystem::path target, new_picture(path));
   DUBSAR_ASSIGN(const Image image, tools_.slices->whole(document().scan, which));
-  const glm::dvec3& voxel = given_.mesh.frame.input_voxel.mm;
+  const glm::dvec3& voxel = given_.mesh->frame.input_voxel.mm;
   const double dpi = kMmPerInch / std::min({voxel.x, voxel.y, voxel.z});
   if (target.extension() == ".png") {
     DUBSAR_TRY(write_png(target, image, {.dpi = dpi}));

@@ -34,7 +34,7 @@ std::optional<Picked> Viewer::picked_at(const glm::dvec2& at) const {
   const glm::dmat4 model_from_screen = glm::inverse(stage_->screen_from_model());
   const glm::dvec3 from(model_from_screen * glm::dvec4(eye, 1.0)), to(model_from_screen * glm::dvec4(target, 1.0));
   const Shown shown = shown_of(document(), report_.view, given_.options.stage, stage_->box_mm());
-  return pick(given_.mesh, shown.parts, {from, glm::normalize(to - from)}, shown.clips);
+  return pick(*given_.mesh, shown.parts, {from, glm::normalize(to - from)}, shown.clips);
 }
 
 /// How far the surface at this place of the window stands before the object's centre, in heights of the window.
@@ -73,7 +73,7 @@ bool Viewer::take_click(const InputEvent& event) {
 
 /// Where a place that is seen lies in the scan: parts stand apart.
 glm::dvec3 Viewer::scan_place(const Picked& picked) const {
-  const PartitionId id = given_.mesh.partition_of(picked.triangle);
+  const PartitionId id = given_.mesh->partition_of(picked.triangle);
   const Shown shown = shown_of(document(), report_.view, given_.options.stage, stage_->box_mm());
   return picked.at_mm - shown.parts[std::min<std::size_t>(id, shown.parts.size() - 1)].offset_mm;
 }
@@ -87,18 +87,18 @@ void Viewer::click(const glm::dvec2& at) {
 }
 
 Result<SurfacePin> Viewer::pin(const glm::dvec3& at_mm) {
-  DUBSAR_ASSIGN(SurfacePin out, pin_on(given_.mesh, document().parts, at_mm));
+  DUBSAR_ASSIGN(SurfacePin out, pin_on(*given_.mesh, document().parts, at_mm));
   const glm::dmat3 home =
       glm::mat3_cast(document().home.rotation) * first_turn(stage_->box_mm(), given_.options.stage.direction);
   out.side = side_of(out.normal, home);
   return out;
 }
 
-Result<MeasureFigures> Viewer::figures(const Measure& measure) { return figures_of(given_.mesh, measure); }
+Result<MeasureFigures> Viewer::figures(const Measure& measure) { return figures_of(*given_.mesh, measure); }
 
 Workplace::Reach Viewer::reach_of(const glm::dvec3& direction, const glm::dquat& rotation) const {
   const glm::dmat3 turn = glm::mat3_cast(rotation) * first_turn(stage_->box_mm(), given_.options.stage.direction);
-  return reach_along(given_.mesh, glm::normalize(glm::transpose(turn) * direction));
+  return reach_along(*given_.mesh, glm::normalize(glm::transpose(turn) * direction));
 }
 Workplace::Reach Viewer::reach(const glm::dvec3& home_direction) {
   return reach_of(home_direction, document().home.rotation);

@@ -85,43 +85,24 @@ GLFWmonitor* monitor_of(GLFWwindow* window) {
 
 /// Keys that type nothing; what others type comes from the layout.
 std::string key_name(int key) {
-  switch (key) {
-    case GLFW_KEY_LEFT:
-      return "left";
-    case GLFW_KEY_RIGHT:
-      return "right";
-    case GLFW_KEY_UP:
-      return "up";
-    case GLFW_KEY_DOWN:
-      return "down";
-    case GLFW_KEY_PAGE_UP:
-      return "page_up";
-    case GLFW_KEY_PAGE_DOWN:
-      return "page_down";
-    case GLFW_KEY_HOME:
-      return "home";
-    case GLFW_KEY_END:
-      return "end";
-    case GLFW_KEY_INSERT:
-      return "insert";
-    case GLFW_KEY_DELETE:
-      return "delete";
-    case GLFW_KEY_BACKSPACE:
-      return "backspace";
-    case GLFW_KEY_TAB:
-      return "tab";
-    case GLFW_KEY_ENTER:
-    case GLFW_KEY_KP_ENTER:
-      return "enter";
-    case GLFW_KEY_ESCAPE:
-      return "escape";
-    case GLFW_KEY_SPACE:
-      return "space";
-    case GLFW_KEY_PAUSE:
-      return "pause";
-    default:
-      break;
-  }
+  static const std::map<int, const char*> kNames{{GLFW_KEY_LEFT, "left"},
+                                                 {GLFW_KEY_RIGHT, "right"},
+                                                 {GLFW_KEY_UP, "up"},
+                                                 {GLFW_KEY_DOWN, "down"},
+                                                 {GLFW_KEY_PAGE_UP, "page_up"},
+                                                 {GLFW_KEY_PAGE_DOWN, "page_down"},
+                                                 {GLFW_KEY_HOME, "home"},
+                                                 {GLFW_KEY_END, "end"},
+                                                 {GLFW_KEY_INSERT, "insert"},
+                                                 {GLFW_KEY_DELETE, "delete"},
+                                                 {GLFW_KEY_BACKSPACE, "backspace"},
+                                                 {GLFW_KEY_TAB, "tab"},
+                                                 {GLFW_KEY_ENTER, "enter"},
+                                                 {GLFW_KEY_KP_ENTER, "enter"},
+                                                 {GLFW_KEY_ESCAPE, "escape"},
+                                                 {GLFW_KEY_SPACE, "space"},
+                                                 {GLFW_KEY_PAUSE, "pause"}};
+  if (const auto found = kNames.find(key); found != kNames.end()) return found->second;
   return key >= GLFW_KEY_F1 && key <= GLFW_KEY_F25 ? fmt::format("f{}", key - GLFW_KEY_F1 + 1) : std::string();
 }
 
@@ -204,6 +185,10 @@ struct GlfwWindow::Callbacks {
       if (glfwGetMouseButton(handle, button) == GLFW_PRESS) return;  // a drag goes on outside
     of(handle).cursor_.reset();
   }
+  static void drop(GLFWwindow* handle, int count, const char** paths) {
+    const GlfwWindow& window = of(handle);
+    if (window.dropped_) window.dropped_(std::vector<std::string>(paths, paths + count));
+  }
   static void moved(GLFWwindow* handle, int, int) { of(handle).place_changed_ = true; }
   static void damaged(GLFWwindow* handle) { of(handle).damaged_ = true; }
   static void iconified(GLFWwindow* handle, int) { of(handle).damaged_ = true; }
@@ -224,6 +209,7 @@ struct GlfwWindow::Callbacks {
     glfwSetScrollCallback(handle, wheel);
     glfwSetCursorPosCallback(handle, cursor);
     glfwSetCursorEnterCallback(handle, enter);
+    glfwSetDropCallback(handle, drop);
     glfwSetWindowPosCallback(handle, moved);
     glfwSetFramebufferSizeCallback(handle, moved);
     glfwSetWindowRefreshCallback(handle, damaged);
@@ -376,6 +362,8 @@ void GlfwWindow::set_windowed() {
                        GLFW_DONT_CARE);
   place_changed_ = true;
 }
+
+void GlfwWindow::set_title(const std::string& title) { glfwSetWindowTitle(as_window(window_), title.c_str()); }
 
 void GlfwWindow::keep_open() { glfwSetWindowShouldClose(as_window(window_), GLFW_FALSE); }
 

@@ -76,6 +76,9 @@ class GlfwWindow final : public GlContext {
   void wait_events(double timeout_s);
   /// Told every event, in order, while poll_events() or wait_events() runs. There is no queue here.
   void on_event(std::function<void(const WindowEvent&)> told) { told_ = std::move(told); }
+  /// Told the names of files that somebody lets fall on the window, while events are taken.
+  void on_drop(std::function<void(const std::vector<std::string>&)> told) { dropped_ = std::move(told); }
+  void set_title(const std::string& title);
   /// True when the window was moved, resized or put on another monitor since the last call.
   bool take_place_changed();
   /// True when a part of what was shown is lost since the last call: another window stood before it, or it was
@@ -115,6 +118,7 @@ class GlfwWindow final : public GlContext {
   void* window_;
   bool stereo_ = false;
   std::function<void(const WindowEvent&)> told_;
+  std::function<void(const std::vector<std::string>&)> dropped_;
   std::optional<std::array<double, 2>> cursor_;  // none: the next place is no movement
   std::optional<Typing> typing_;
   std::map<int, std::string> held_;  // scan codes of keys that are down, by the names that they went down with

@@ -30,6 +30,21 @@ class FakePlace final : public Workplace {
     toggled.push_back(index);
     return index < 3;
   }
+  Result<void> open_file(const std::string& path) override {
+    if (path == "missing.exa") return fail(ErrorKind::kNoInput, "missing.exa: there is no such file");
+    opened.push_back(path);
+    return {};
+  }
+  Result<void> open_recent(std::size_t number) override {
+    opened.push_back(fmt::format("recent {}", number));
+    return {};
+  }
+  Result<void> switch_file(int step) override {
+    opened.push_back(fmt::format("step {}", step));
+    return {};
+  }
+  bool stop_opening() override { return std::exchange(opening, false); }
+  std::string present_folder() const override { return "/"; }
   void say(std::string words) override { said = std::move(words); }
   void end() override { ended = true; }
   // A surface that is level at z = 5 of the scan.
@@ -65,6 +80,8 @@ class FakePlace final : public Workplace {
   std::optional<double> played_from_s;
   int display = 0, retries = 0, recentred = 0;
   bool fullscreen = false, swapped = false, ended = false;
+  std::vector<std::string> opened;
+  bool opening = false;
   std::vector<std::size_t> toggled;
   std::string said;
 };

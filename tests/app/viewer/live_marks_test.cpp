@@ -103,9 +103,18 @@ TEST_F(Live, AScriptSaysEveryCommandThereIs) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     mesh.triangle_partition.push_back(2 * t < mesh.triangles.size() ? 0 : 1);
   mesh.partitions = {{.id = 0, .name = "tablet"}, {.id = 1, .name = "envelope"}};
+  for (const char* name : {"a.ply", "b.ply"}) std::ofstream(folder / name) << name;
+  const auto read = [&](const fs::path& path, Progress&) -> Result<OpenedSurface> {
+    OpenedSurface out{mesh, {}, {}, path.filename().string()};
+    out.work.surface = path;
+    return out;
+  };
+  Shelf shelf(read, folder / "recent.json");
+  ASSERT_TRUE(shelf.open({folder / "a.ply"}));
   SilentProgress silent;
-  const auto done = run_view(mesh, options_, silent);
+  const auto done = run_view(TriMesh(), options_, silent, {}, &shelf);
   ASSERT_TRUE(done) << done.error().message;
+  EXPECT_EQ(shelf.files().size(), 2u);
   EXPECT_LT(done->seconds, 40.0) << "its last command ends the session";
   EXPECT_EQ(done->document.measures.size(), 4u);
   EXPECT_EQ(done->document.notes.size(), 2u);

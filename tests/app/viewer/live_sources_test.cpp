@@ -17,7 +17,7 @@ TEST_F(Live, KeysOnAPanelChangeItsFiguresAndSaveThem) {
   ASSERT_TRUE(tuner) << tuner.error().message;
   const std::string first = tuner->text();
   options_.stage.display = tuner->display();
-  options_.stage.pattern = true;
+  options_.stage.subject = Subject::kPattern;
   options_.displays = {{"mono"}};
   std::string taken;
   options_.commands = tuner->commands();

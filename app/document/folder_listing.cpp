@@ -1,0 +1,66 @@
+#include "app/document/folder_listing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <system_error>
+
+namespace dubsar::app {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostEntries = 2000;
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return text;
+}
+
+}  // namespace
+
+std::span<const std::string_view> surface_suffixes() {
+  static constexpr std::array<std::string_view, 5> kSuffixes{".exa", ".ply", ".obj", ".stl", ".glb"};
+  return kSuffixes;
+}
+
+bool names_a_surface(const fs::path& path) {
+  const auto suffixes = surface_suffixes();
+  return std::find(suffixes.begin(), suffixes.end(), lower(path.extension().string())) != suffixes.end();
+}
+
+FolderListing list_folder(const fs::path& folder) {
+  FolderListing out;
+  std::error_code error;
+  out.folder = fs::absolute(folder, error).lexically_normal().string();
+  fs::directory_iterator at(folder, fs::directory_options::skip_permission_denied, error);
+  if (error) {
+    out.problem = fmt::format("{} cannot be looked into: {}", out.folder, error.message());
+    return out;
+  }
+  for (const fs::directory_iterator end; at != end && out.entries.size() < kMostEntries; at.increment(error)) {
+    if (error) break;
+    const std::string name = at->path().filename().string();
+    std::error_code ignored;
+    const bool is_folder = at->is_directory(ignored);
+    if (name.starts_with(".") || (!is_folder && !names_a_surface(at->path()))) continue;
+    const auto bytes = is_folder ? 0 : at->file_size(ignored);
+    out.entries.push_back({name, is_folder, ignored ? 0 : static_cast<std::int64_t>(bytes)});
+  }
+  std::sort(out.entries.begin(), out.entries.end(), [](const FolderEntry& a, const FolderEntry& b) {
+    if (a.folder != b.folder) return a.folder;
+    const std::string first = lower(a.name), second = lower(b.name);
+    return first != second ? first < second : a.name < b.name;
+  });
+  return out;
+}
+
+std::string size_words(std::int64_t bytes) {
+  const auto size = static_cast<double>(bytes);
+  if (bytes < 1000) return fmt::format("{} B", bytes);
+  if (size < 1e6) return fmt::format("{:.0f} kB", size / 1e3);
+  return size < 1e9 ? fmt::format("{:.1f} MB", size / 1e6) : fmt::format("{:.1f} GB", size / 1e9);
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,71 @@
+#include "app/verbs/view_files.h"
+
+#include <fstream>
+#include <system_error>
+
+#include "app/cli/config_folder.h"
+#include "app/cli/mesh_input.h"
+#include "app/document/document_file.h"
+#include "app/viewer/first_document.h"
+#include "core/base/log.h"
+#include "core/exa/exa_file.h"
+
+namespace dubsar::app {
+namespace {
+
+/// What a session that was killed left behind, and where this one keeps its own work.
+void keep_work(const std::filesystem::path& file, OpenedSurface& out) {
+  std::error_code error;
+  SourceFile source{std::filesystem::absolute(file, error).string(), 0};
+  source.bytes = static_cast<std::int64_t>(std::filesystem::file_size(file, error));
+  if (error) return;
+  out.work.document.source = source;
+  const std::filesystem::path folder = session_folder();
+  if (folder.empty()) return;
+  out.autosave = Autosave::file_for(folder, source);
+  const Autosave autosave(out.autosave);
+  if (!autosave.has_left_behind()) return;
+  auto left = autosave.left_behind(source);
+  if (!left) return log_warning("{}", left.error().message);
+  out.work.document = *std::move(left);
+  out.work.upright = false;
+  out.work.restored = true;
+  log_info("view: the work of the last session on this file is here again");
+}
+
+}  // namespace
+
+ReadSurface surface_reader(const ViewOptions& options, const FileReading& reading) {
+  return [options, reading](const std::filesystem::path& file, Progress& progress) -> Result<OpenedSurface> {
+    OpenedSurface out;
+    DUBSAR_ASSIGN(out.mesh, load_mesh({file, reading.partitions, true}, progress));
+    if (out.mesh.triangles.empty())
+      return fail(ErrorKind::kBadData, "{}: there is no triangle in it, so there is nothing to show", file.string());
+    ViewOptions with = options;
+    out.work = options.work;
+    out.work.surface = file;
+    out.work.scan = reading.scan;
+    out.work.upright = reading.upright;
+    out.title = file.filename().string();
+    if (reading.keeps_work) keep_work(file, out);
+    if (progress.cancelled()) return cancelled_error();
+    progress.begin("open", 0, "surface");
+    with.work = out.work;
+    out.work.document = first_document(with, out.mesh);
+    out.work.upright = false;
+    progress.end();
+    return out;
+  };
+}
+
+Result<void> check_surface(const std::string& file, const std::vector<std::string>& partitions) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return fail(ErrorKind::kNoInput, "{}: there is no such file", file);
+  if (std::filesystem::is_directory(file, error))
+    return fail(ErrorKind::kUsage, "{} is a folder, expected a surface such as tablet.exa", file);
+  if (!std::ifstream(file).good()) return fail(ErrorKind::kPermission, "{}: it may not be read", file);
+  if (std::filesystem::path(file).extension() == ".exa") DUBSAR_TRY(read_exa_info(file));
+  return check_parts(file, partitions);
+}
+
+}  // namespace dubsar::app

@@ -1,0 +1,26 @@
+#pragma once
+// Surfaces of a session from files, with the work on them.
+
+#include <string>
+#include <vector>
+
+#include "app/viewer/shelf.h"
+
+namespace dubsar::app {
+
+/// How the files of a session are read.
+struct FileReading {
+  std::vector<std::string> partitions;  ///< only these parts; empty: all
+  std::filesystem::path scan;           ///< that the surface was made of; empty: looked for
+  bool upright = false;                 ///< the obverse stands upright, as its writing says
+  bool keeps_work = false;              ///< what earlier sessions left is taken up, and this one leaves its own
+};
+
+/// Reads a file as a session with these options wants it; any thread. Errors of load_mesh().
+ReadSurface surface_reader(const ViewOptions& options, const FileReading& reading);
+
+/// What can be known at once: kNoInput, kPermission, kUsage for parts that are not in it, kBadData for the head of an
+/// EXA file.
+Result<void> check_surface(const std::string& file, const std::vector<std::string>& partitions);
+
+}  // namespace dubsar::app
