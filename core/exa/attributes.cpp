@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cstdlib>
+#include <cstring>
 
 #include "core/exa/symbol_coder.h"
 #include "core/exa/vertex_order.h"
@@ -95,22 +97,35 @@ bool light_in_steps(const QuadMesh& mesh, std::span<const std::uint8_t> light, s
   return true;
 }
 
+/// The value with most votes, the lowest of equals. One value with all votes, the usual case, is found without looking.
+std::size_t most_votes(const std::array<std::uint8_t, 8>& votes) {
+  std::uint64_t all;
+  std::memcpy(&all, votes.data(), sizeof all);
+  if (all == 0) return 0;
+  const auto lowest = static_cast<std::size_t>(std::countr_zero(all)) / 8;
+  if (all >> 8 * lowest < 256) return lowest;
+  return static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
+}
+
 /// That of the x-quad coded before around one of the corners, or another one.
 class PartitionCode {
  public:
   template <class Coder>
   std::uint8_t code(Coder& coder, const QuadMesh& mesh, const std::uint8_t* values, std::uint32_t q,
                     std::uint32_t first) {
-    std::array<int, 8> votes{};
+    std::array<std::uint8_t, 8> votes{};
     int all = 0;
     for (const std::uint32_t v : mesh.quads[q]) {
-      const auto around = mesh.quads_of(v);
-      const auto here = std::lower_bound(around.begin(), around.end(), q);
-      if (here == around.begin() || here[-1] < first) continue;
-      ++votes[values[here[-1]] & 7];
+      std::uint32_t before = q;
+      for (const std::uint32_t other : mesh.quads_of(v)) {
+        if (other >= q) break;
+        before = other;
+      }
+      if (before - first >= q - first) continue;
+      ++votes[values[before] & 7];
       ++all;
     }
-    const auto best = static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
+    const std::size_t best = most_votes(votes);
     const auto context = static_cast<std::size_t>(all * 5 + votes[best]);
     if (coder.bit(same_[context], values[q] == best)) return static_cast<std::uint8_t>(best);
     return static_cast<std::uint8_t>(other_[best].code(coder, values[q]));
@@ -127,6 +142,20 @@ class EnumCode {
   template <class Coder>
   std::uint8_t code(Coder& coder, const QuadMesh& mesh, const std::uint8_t* values, std::uint32_t v,
                     std::uint32_t first) {
+    if (v == first) one_value_ = true;
+    const std::size_t context = one_value_ && v != first ? context_of_one(mesh, values[first], v, first)
+                                                         : context_of_votes(mesh, values, v, first);
+    const std::size_t best = context / 16;
+    std::uint8_t value = static_cast<std::uint8_t>(best);
+    if (!coder.bit(same_[context], values[v] == best))
+      value = static_cast<std::uint8_t>(other_[best].code(coder, values[v]));
+    one_value_ = one_value_ && (v == first || value == values[first]);
+    return value;
+  }
+
+ private:
+  static std::size_t context_of_votes(const QuadMesh& mesh, const std::uint8_t* values, std::uint32_t v,
+                                      std::uint32_t first) {
     std::array<int, 8> votes{};
     int all = 0;
     known_surroundings(mesh, v, first, [&](std::uint32_t w, int share) {
@@ -134,13 +163,14 @@ class EnumCode {
       all += share;
     });
     const auto best = static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
-    const int others = std::min(7, all - votes[best]);
-    const auto context = best * 16 + (all == 0 ? 8 : static_cast<std::size_t>(others));
-    if (coder.bit(same_[context], values[v] == best)) return static_cast<std::uint8_t>(best);
-    return static_cast<std::uint8_t>(other_[best].code(coder, values[v]));
+    return best * 16 + (all == 0 ? 8 : static_cast<std::size_t>(std::min(7, all - votes[best])));
+  }
+  /// The same where all values so far are one.
+  static std::size_t context_of_one(const QuadMesh& mesh, std::uint8_t value, std::uint32_t v, std::uint32_t first) {
+    return has_known_surroundings(mesh, v, first) ? std::size_t{value & 7u} * 16 : 8;
   }
 
- private:
+  bool one_value_ = true;
   std::array<AdaptiveBit, 128> same_;
   std::array<BitTree<3>, 8> other_;
 };

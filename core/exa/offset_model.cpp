@@ -28,20 +28,25 @@ void weigh(const OffsetModel::Axis& axis, const OffsetInputs& inputs, std::int32
 void weigh(const OffsetModel::Axis& axis, const OffsetInputs& inputs, std::int32_t* sums) {
   const hn::CappedTag<std::int32_t, 8> d;
   const hn::Repartition<std::int16_t, decltype(d)> d16;
-  const std::size_t width = hn::Lanes(d);
+  constexpr std::size_t kWidth = hn::MaxLanes(decltype(d)()), kVectors = kOffsetUnits / kWidth;
+  hn::Vec<decltype(d)> even[kVectors], odd[kVectors];
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    even[v] = hn::Load(d, axis.bias.data() + v * kWidth);
+    odd[v] = hn::Zero(d);
+  }
+  for (std::size_t p = 0; p < axis.in.size(); ++p) {  // one pair of inputs for all units at a time
+    std::int32_t pair;
+    std::memcpy(&pair, inputs.data() + 2 * p, sizeof pair);
+    const auto both = hn::BitCast(d16, hn::Set(d, pair));
+    for (std::size_t v = 0; v < kVectors; ++v)
+      even[v] = hn::ReorderWidenMulAccumulate(d, hn::Load(d16, axis.in[p][v * kWidth].data()), both, even[v], odd[v]);
+  }
   auto mean = hn::Zero(d), spread = hn::Zero(d);
-  for (std::size_t u = 0; u < kOffsetUnits; u += width) {
-    auto even = hn::Load(d, axis.bias.data() + u), odd = hn::Zero(d);
-    for (std::size_t p = 0; p < axis.in.size(); ++p) {
-      std::int32_t pair;
-      std::memcpy(&pair, inputs.data() + 2 * p, sizeof pair);
-      even = hn::ReorderWidenMulAccumulate(d, hn::Load(d16, axis.in[p][u].data()), hn::BitCast(d16, hn::Set(d, pair)),
-                                           even, odd);
-    }
-    auto unit = hn::ShiftRight<7>(hn::RearrangeToOddPlusEven(even, odd));
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    auto unit = hn::ShiftRight<7>(hn::RearrangeToOddPlusEven(even[v], odd[v]));
     unit = hn::Min(hn::Max(unit, hn::Zero(d)), hn::Set(d, 8191));
-    mean = hn::Add(mean, hn::Mul(unit, hn::Load(d, axis.out[0].data() + u)));
-    spread = hn::Add(spread, hn::Mul(unit, hn::Load(d, axis.out[1].data() + u)));
+    mean = hn::Add(mean, hn::Mul(unit, hn::Load(d, axis.out[0].data() + v * kWidth)));
+    spread = hn::Add(spread, hn::Mul(unit, hn::Load(d, axis.out[1].data() + v * kWidth)));
   }
   sums[0] = hn::GetLane(hn::SumOfLanes(d, mean));
   sums[1] = hn::GetLane(hn::SumOfLanes(d, spread));

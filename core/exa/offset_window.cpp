@@ -104,8 +104,15 @@ void OffsetWindow::gather(int x, int y, int z, OffsetInputs& out) const noexcept
       patterns[c] = (side[static_cast<std::size_t>(other + 2)] >> (8 * (dx + 3)) & 15) ^ turned;
     }
   }
-#pragma GCC unroll 12
-  for (std::size_t c = 0; c < 12; ++c) {
+  // Two inputs a store: the network reads them in pairs, at once.
+  const auto put = [&out](std::size_t i, int first, int second) {
+    const std::uint32_t pair = static_cast<std::uint16_t>(first) | static_cast<std::uint32_t>(second) << 16;
+    std::memcpy(out.data() + i, &pair, sizeof pair);
+  };
+  struct Column {
+    int known, sign, seen;
+  };
+  const auto column = [&](std::size_t c) -> Column {
     const Crossing& crossing = kCrossings[patterns[c]];
     std::array<int, 3> at{0, 0, 0};
     at[kU] = kColumns[c][0];
@@ -113,9 +120,14 @@ void OffsetWindow::gather(int x, int y, int z, OffsetInputs& out) const noexcept
     at[kAxis] = crossing.cell;
     const int middle = known(kAxis, at[0], at[1], at[2]);
     const int seen = crossing.found & (middle == kUnknown ? 0 : -1);
-    out[3 * c] = static_cast<std::int16_t>((crossing.value + middle - 32) & seen);
-    out[3 * c + 1] = static_cast<std::int16_t>(crossing.value & ~seen);
-    out[3 * c + 2] = static_cast<std::int16_t>(64 & seen);
+    return {(crossing.value + middle - 32) & seen, crossing.value & ~seen, 64 & seen};
+  };
+#pragma GCC unroll 6
+  for (std::size_t c = 0; c < 12; c += 2) {
+    const Column left = column(c), right = column(c + 1);
+    put(3 * c, left.known, left.sign);
+    put(3 * c + 2, left.seen, right.known);
+    put(3 * c + 4, right.sign, right.seen);
   }
 #pragma GCC unroll 2
   for (int end = 0; end < 2; ++end) {
@@ -131,9 +143,8 @@ void OffsetWindow::gather(int x, int y, int z, OffsetInputs& out) const noexcept
       const auto& start = back ? to : from;
       const int middle = known(s < 2 ? kU : kV, start[0], start[1], start[2]);
       const int seen = active & (middle == kUnknown ? 0 : -1);
-      const std::size_t i = 36 + static_cast<std::size_t>(end) * 8 + 2 * s;
-      out[i] = static_cast<std::int16_t>((back ? middle + 1 : 64 - middle) & seen);
-      out[i + 1] = static_cast<std::int16_t>(64 & active & ~seen);
+      put(36 + static_cast<std::size_t>(end) * 8 + 2 * s, (back ? middle + 1 : 64 - middle) & seen,
+          64 & active & ~seen);
     }
   }
 }

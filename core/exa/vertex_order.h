@@ -44,9 +44,10 @@ void known_surroundings(const QuadMesh& mesh, std::uint32_t v, std::uint32_t fir
   for (const std::uint32_t q : mesh.quads_of(v)) {
     if (!mesh.has_doubled(q)) {
       const auto& quad = mesh.quads[q];
-      const std::uint32_t at = quad[0] == v ? 0 : quad[1] == v ? 1 : quad[2] == v ? 2 : 3;
+      const std::uint32_t at = quad[0] == v ? 0 : quad[1] == v ? 1 : quad[2] == v ? 2 : 3, known = v - first;
+#pragma GCC unroll 3
       for (std::uint32_t step = 1; step < 4; ++step)
-        if (const std::uint32_t w = quad[(at + step) % 4]; w >= first && w < v) visit(w, step == 2 ? 1 : 2);
+        if (const std::uint32_t w = quad[(at + step) % 4]; w - first < known) visit(w, step == 2 ? 1 : 2);
       continue;
     }
     const Polygon polygon = mesh.polygon(q);
@@ -57,6 +58,21 @@ void known_surroundings(const QuadMesh& mesh, std::uint32_t v, std::uint32_t fir
           w >= first && w < v)
         visit(w, step == 1 || step + 1 == polygon.size ? 2 : 1);
   }
+}
+
+/// Would known_surroundings() visit any?
+inline bool has_known_surroundings(const QuadMesh& mesh, std::uint32_t v, std::uint32_t first) {
+  for (const std::uint32_t q : mesh.quads_of(v)) {
+    if (!mesh.has_doubled(q)) {
+      for (const std::uint32_t w : mesh.quads[q])
+        if (w - first < v - first) return true;
+      continue;
+    }
+    const Polygon polygon = mesh.polygon(q);
+    for (int i = 0; i < polygon.size; ++i)
+      if (polygon.vertex[static_cast<std::size_t>(i)] - first < v - first) return true;
+  }
+  return false;
 }
 
 /// Encodes chunks on all threads: encode(first, end) -> bytes.
