@@ -69,8 +69,11 @@ class Members {
 }  // namespace
 
 namespace {
-constexpr std::uint64_t kMostPerByte = 16384;  ///< vertices, edges, faces or grid points of a byte of the file
-constexpr std::uint64_t kAlwaysItems = 1 << 16, kAlwaysPoints = std::uint64_t{1} << 32;
+constexpr std::uint64_t kMostPerByte = 16384;  ///< vertices, edges, faces of a byte of the file
+constexpr std::uint64_t kAlwaysItems = 1 << 16;
+// Points and rows that are passed through take time, whatever is in them.
+constexpr std::uint64_t kMostPointsPerByte = 4096, kAlwaysPoints = std::uint64_t{1} << 32;
+constexpr std::uint64_t kMostRowsPerByte = 8, kAlwaysRows = 1 << 23;
 
 std::string_view normals_name(ExaNormals normals) {
   switch (normals) {
@@ -155,9 +158,12 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
   DUBSAR_TRY(check_dims("exa", size, 1));
   header.dims = {static_cast<std::int64_t>(size[0]), static_cast<std::int64_t>(size[1]),
                  static_cast<std::int64_t>(size[2])};
-  if (static_cast<std::uint64_t>(header.dims.count()) > kAlwaysPoints + kMostPerByte * file_bytes)
+  if (static_cast<std::uint64_t>(header.dims.count()) > kAlwaysPoints + kMostPointsPerByte * file_bytes)
     return fail(ErrorKind::kBadData, "exa: {} grid points in a file of {} bytes, expected at most {}",
-                header.dims.count(), file_bytes, kAlwaysPoints + kMostPerByte * file_bytes);
+                header.dims.count(), file_bytes, kAlwaysPoints + kMostPointsPerByte * file_bytes);
+  if (size[1] * size[2] > kAlwaysRows + kMostRowsPerByte * file_bytes)
+    return fail(ErrorKind::kBadData, "exa: {} rows of grid points in a file of {} bytes, expected at most {}",
+                size[1] * size[2], file_bytes, kAlwaysRows + kMostRowsPerByte * file_bytes);
   for (const std::int64_t count : {header.vertices, header.quads, header.samples.edges, header.samples.faces})
     if (static_cast<std::uint64_t>(count) > kAlwaysItems + kMostPerByte * file_bytes)
       return fail(ErrorKind::kBadData,

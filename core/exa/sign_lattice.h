@@ -3,6 +3,7 @@
 // are read without looking where the brick ends.
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -56,6 +57,23 @@ class SignLattice {
   std::uint64_t word(int y, int z, int from = 0) const noexcept { return load(row(y, z) + 1 + from / 8); }
   /// Signs 1..64 of a row.
   std::uint64_t next_word(int y, int z) const noexcept { return word(y, z) >> 1 | std::uint64_t{row(y, z)[9]} << 63; }
+  /// Edges between points of different sign.
+  std::uint64_t active_edges() const noexcept {
+    std::uint64_t edges = 0;
+    const auto count = [&edges](std::uint64_t apart, int points) {
+      const std::uint64_t mask = points >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << points) - 1;
+      edges += static_cast<std::uint64_t>(std::popcount(apart & mask));
+    };
+    for (int z = 0; z <= cells_[2]; ++z)
+      for (int y = 0; y <= cells_[1]; ++y)
+        for (int x = 0; x <= cells_[0]; x += 64) {
+          const std::uint64_t here = word(y, z, x);
+          if (x < cells_[0]) count(here ^ (here >> 1 | word(y, z, x + 64) << 63), cells_[0] - x);
+          if (y < cells_[1]) count(here ^ word(y + 1, z, x), cells_[0] + 1 - x);
+          if (z < cells_[2]) count(here ^ word(y, z + 1, x), cells_[0] + 1 - x);
+        }
+    return edges;
+  }
   /// From a row to the one (dy, dz) further.
   std::ptrdiff_t step(int dy, int dz) const noexcept { return dz * plane_ + dy * kRowBytes; }
 

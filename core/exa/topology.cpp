@@ -250,6 +250,9 @@ void store(const Owned& owned, const BitsOf& bits_of, BitVolume& out) {
       }
 }
 
+/// Signs of a brick that are not worth a second look.
+constexpr std::uint64_t kAlwaysCoded = 1 << 17;
+
 /// `out`: the points of spacing 2^level of a volume of `dims` points.
 Result<void> decode_bricks(const std::array<std::vector<std::string_view>, 3>& chunks, const Dims& dims,
                            const BitVolume& coarse, bool is_coarse, int level, const std::optional<GridBox>& box,
@@ -262,11 +265,11 @@ Result<void> decode_bricks(const std::array<std::vector<std::string_view>, 3>& c
   // Words of 64 points are shared by bricks of a row at coarse levels: one row of bricks at a time.
   // Bricks of a box write their far sides, too: all in one row.
   const std::int64_t row = box ? bricks : brick_grid(dims).x;
-  std::atomic<bool> broken{false};
+  std::atomic<bool> broken{false}, too_many{false};
   std::atomic<std::uint64_t> points{0};
   parallel_for(bricks / row, 1, [&](std::int64_t r) {
     for (std::int64_t index = r * row; index < (r + 1) * row; ++index) {
-      if (progress.cancelled()) return;
+      if (progress.cancelled() || too_many) return;
       const auto i = static_cast<std::size_t>(index);
       const Brick at = brick_at(dims, index);
       bool wanted = true;
@@ -288,13 +291,19 @@ Result<void> decode_bricks(const std::array<std::vector<std::string_view>, 3>& c
         }
         SignBrick brick(std::move(top));
         SignStatistics statistics(model, is_coarse);
+        std::uint64_t coder_points = 0;
         for (int l = kBrickLevels - 1; l >= level; --l) {
           RangeDecoder in(chunks[static_cast<std::size_t>(l)][i].substr(l == 2 ? 1 : 0));
           DecodeBrick coder{statistics, in};
           brick.refine(coder, l);
-          if ((points += coder.points) > most_points) return;
+          coder_points += coder.points;
+          if ((points += coder.points) > most_points || too_many) return;
         }
         const SignLattice& lattice = brick.lattice();
+        if (level == 0 && coder_points > kAlwaysCoded && coder_points > most_coded_signs(lattice.active_edges())) {
+          too_many = true;
+          return;
+        }
         store(
             owned, [&](int y, int z, int from) { return lattice.word(y, z, from); }, out);
       }
@@ -302,6 +311,7 @@ Result<void> decode_bricks(const std::array<std::vector<std::string_view>, 3>& c
     }
   });
   if (progress.cancelled()) return cancelled_error();
+  if (too_many) return fail(ErrorKind::kBadData, "exa: a brick codes more signs than its surface can need");
   if (points > most_points)
     return fail(ErrorKind::kBadData, "exa: more than {} signs are coded, which the surface cannot need", most_points);
   if (broken) return fail(ErrorKind::kBadData, "exa: a brick of signs names a model that is not known");

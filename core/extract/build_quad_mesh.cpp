@@ -80,6 +80,8 @@ Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, Progress& progre
     output.in_layer = samples.closed ? nullptr : &in_layer;
     for (std::int64_t r = begin; r < end; ++r) {
       const CellRowCounts& start = counts[static_cast<std::size_t>(r)];
+      const std::int64_t next = r + 1 < rows ? counts[static_cast<std::size_t>(r + 1)].vertices : vertices;
+      if (next == std::int64_t{start.vertices}) continue;
       output.first_vertex = start.vertices;
       output.first_incidence = start.incidences;
       write_cells(samples, index, row_of(r), output);

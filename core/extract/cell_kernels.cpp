@@ -35,6 +35,12 @@ class PointRows {
       row_[r] = inside ? samples.signs.row(y, z) : nullptr;
     }
   }
+  bool all_outside() const {
+    std::uint64_t any = 0;
+    for (const std::uint64_t* row : row_)
+      for (std::int64_t w = 0; row != nullptr && w < words_; ++w) any |= row[w];
+    return any == 0;
+  }
   // Moves to the next word and returns the cells of mixed sign.
   HWY_INLINE std::uint64_t next() {
     ++at_;
@@ -115,8 +121,9 @@ struct FaceStreams {
 CellRowCounts count_cells(const SurfaceSamples& samples, const EdgeIndex& index, const CellRow& row) {
   const CellTable& table = CellTable::instance();
   PointRows points(samples, row);
-  FaceStreams faces(samples, index, row);
   CellRowCounts counts;
+  if (points.all_outside()) return counts;
+  FaceStreams faces(samples, index, row);
   const std::int64_t words = samples.dims.x / 64 + 1;
   for (std::int64_t w = 0; w < words; ++w) {
     std::uint64_t rest = points.next();

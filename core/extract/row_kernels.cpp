@@ -91,9 +91,22 @@ HWY_INLINE WordItems word_items(const SignRows& rows, std::int64_t w, std::int64
   return items;
 }
 
+// Are all rows alike and of one sign? Then nothing starts in them. Most rows of a volume are such.
+HWY_INLINE bool is_uniform(const SignRows& rows, std::int64_t words, std::int64_t nx) {
+  const std::uint64_t *a = rows.here, *b = rows.next_y != nullptr ? rows.next_y : a,
+                      *c = rows.next_z != nullptr ? rows.next_z : a, *d = rows.next_yz != nullptr ? rows.next_yz : a;
+  const std::uint64_t sign = a[0] & 1 ? ~std::uint64_t{0} : 0;
+  std::uint64_t apart = 0;
+  for (std::int64_t w = 0; w + 1 < words; ++w) apart |= (a[w] ^ sign) | (a[w] ^ b[w]) | (a[w] ^ c[w]) | (a[w] ^ d[w]);
+  const std::int64_t w = words - 1;
+  const std::uint64_t used = nx % 64 == 0 ? ~std::uint64_t{0} : (std::uint64_t{1} << (nx % 64)) - 1;
+  return (apart | (((a[w] ^ sign) | (a[w] ^ b[w]) | (a[w] ^ c[w]) | (a[w] ^ d[w])) & used)) == 0;
+}
+
 RowItems count_row(const SignRows& rows, std::int64_t nx) {
   RowItems counts;
   const std::int64_t words = (nx + 63) / 64;
+  if (is_uniform(rows, words, nx)) return counts;
   for (std::int64_t w = 0; w < words; ++w) {
     const WordItems items = word_items(rows, w, words, nx);
     if ((items.edges[0] | items.edges[1] | items.edges[2]) == 0) continue;

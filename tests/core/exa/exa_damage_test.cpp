@@ -1,3 +1,5 @@
+#include <ctime>
+
 #include "core/base/atomic_file.h"
 #include "core/exa/settle.h"
 #include "tests/core/exa/exa_test_models.h"
@@ -102,7 +104,8 @@ TEST_F(ExaFile, HeadersThatLieAreRefusedWithASentence) {
     const auto read = decode_exa(file_of(lying), progress_);
     return read ? std::string("accepted") : read.error().message;
   };
-  EXPECT_THAT(says("[12,9,10]", "[65535,65535,16]"), HasSubstr("grid points in a file of"));
+  EXPECT_THAT(says("[12,9,10]", "[65535,65535,16]"), HasSubstr("68717379600 grid points in a file of"));
+  EXPECT_THAT(says("[12,9,10]", "[8,8192,8192]"), HasSubstr("67108864 rows of grid points in a file of"));
   EXPECT_THAT(says("[12,9,10]", "[65535,65535,65535]"), HasSubstr("2^36"));
   EXPECT_THAT(says("[12,9,10]", "[0,9,10]"), HasSubstr("dimension 0"));
   EXPECT_THAT(says("[12,9,10]", "[12,9]"), HasSubstr("\"dims\""));
@@ -113,6 +116,29 @@ TEST_F(ExaFile, HeadersThatLieAreRefusedWithASentence) {
   EXPECT_THAT(says("\"closed\":true", "\"closed\":1"), HasSubstr("\"closed\""));
   EXPECT_THAT(says("\"vertices\":", "\"vertices\":1"), HasSubstr("the header says"));
   EXPECT_THAT(says("{", std::string(100, '[')), HasSubstr("nested"));
+}
+
+// Behind the end of a code all bits are 1: a byte a brick would be millions of signs.
+TEST_F(ExaFile, BricksThatCodeMoreSignsThanTheirSurfaceNeedsAreRefusedAtTheFirst) {
+  SurfaceModel model;
+  model.samples.dims = {1000, 1000, 1000};
+  model.samples.signs = BitVolume(model.samples.dims);
+  model.mesh = build_quad_mesh(model.samples, progress_).value();
+  model.frame.input_voxel = {{1, 1, 1}, ""};
+  std::vector<ExaBlock> blocks = encoded(model);
+  for (ExaBlock& block : blocks) {
+    if (block.type == "SIG2") block.bytes = join_chunks(std::vector<std::string>(512, std::string(1, '\0')));
+    if (block.type != "HEAD") continue;
+    std::string text = chunks_of(block)[0];
+    const std::string from = "\"edges\":0";
+    text.replace(text.find(from), from.size(), "\"edges\":8000000");
+    block.bytes = join_chunks(std::vector<std::string>{text});
+  }
+  const std::clock_t start = std::clock();
+  const auto read = decode_exa(file_of(blocks), progress_);
+  ASSERT_FALSE(read);
+  EXPECT_THAT(read.error().message, HasSubstr("more signs than its surface can need"));
+  EXPECT_LT(std::clock() - start, 20 * CLOCKS_PER_SEC) << "512 bricks of two million signs would take a minute";
 }
 
 }  // namespace
