@@ -53,9 +53,11 @@ function(dubsar_library name)
   endif()
 endfunction()
 
-# What `./do asan` builds: the tests of the labels unit and app, which need no window and no preloaded library.
-add_custom_target(dubsar_checked_tests)
-add_custom_target(dubsar_checked_core_tests)  # of `./do asan core`
+# What `./do asan ROOM` builds: of each folder of tests/ those of the labels unit and app, which need no window and no
+# preloaded library.
+foreach(room core devices input display app)
+  add_custom_target(dubsar_checked_${room}_tests)
+endforeach()
 
 # dubsar_test(name SOURCES a_test.cpp ... DEPS rooms [LABEL unit|gl|device|slow] [TIMEOUT seconds]
 #             [ENVIRONMENT NAME=value])
@@ -72,10 +74,9 @@ function(dubsar_test name)
   target_link_libraries(${name} PRIVATE dubsar_options ${ARG_DEPS} GTest::gtest GTest::gmock GTest::gtest_main)
   dubsar_cold(${name})  # a test is compiled more often than its loops are run
   if(ARG_LABEL MATCHES "^(unit|app)$")
-    add_dependencies(dubsar_checked_tests ${name})
-    if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/core/")
-      add_dependencies(dubsar_checked_core_tests ${name})
-    endif()
+    file(RELATIVE_PATH room "${PROJECT_SOURCE_DIR}/tests" "${CMAKE_CURRENT_SOURCE_DIR}")
+    string(REGEX REPLACE "/.*" "" room "${room}")
+    add_dependencies(dubsar_checked_${room}_tests ${name})
   endif()
   include(GoogleTest)
   set(environment)

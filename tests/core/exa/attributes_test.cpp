@@ -1,5 +1,8 @@
 #include "core/exa/attributes.h"
 
+#include <cmath>
+
+#include "core/exa/exact.h"
 #include "tests/core/exa/exa_test_models.h"
 
 namespace dubsar {
@@ -83,6 +86,31 @@ TEST(ExaAttributes, WrongChunksAreRefused) {
   for (const std::string_view chunk : {std::string_view(), std::string_view("\x02zz"), std::string_view("\x7f")}) {
     const std::vector<std::string_view> chunks{chunk};
     EXPECT_EQ(decode_labels(ExaLabel::kLight, model.mesh, chunks, progress).error().kind, ErrorKind::kBadData);
+  }
+}
+
+TEST(ExactNumbers, OnesThatAreNoneAreRefusedWhenTheyAreReadAndWhenTheyAreWritten) {
+  SilentProgress progress;
+  for (const float bad : {std::nanf(""), INFINITY, -INFINITY}) {
+    std::vector<float> values(99, 0.25f), back(99);
+    ASSERT_TRUE(decode_floats(views_of(encode_floats(values, 3, progress)), 3, "normals", back, progress));
+    EXPECT_EQ(back, values);
+    values[57] = bad;
+    const auto read = decode_floats(views_of(encode_floats(values, 3, progress)), 3, "normals", back, progress);
+    ASSERT_FALSE(read) << bad;
+    EXPECT_EQ(read.error().kind, ErrorKind::kBadData);
+    EXPECT_EQ(read.error().message, "exa: a number of normals is not finite");
+
+    const SurfaceModel sound = sample_model({9, 8, 7}, Kind::kBlob, 3);
+    for (const int which : {0, 1, 2}) {
+      SurfaceModel model = sound;
+      (which == 0   ? model.attributes.normals.at(5).y
+       : which == 1 ? model.attributes.k_min.at(5)
+                    : model.attributes.k_max.at(5)) = bad;
+      const auto written = encode_exa(model, progress);
+      ASSERT_FALSE(written) << which;
+      EXPECT_NE(written.error().message.find("not finite"), std::string::npos) << written.error().message;
+    }
   }
 }
 
