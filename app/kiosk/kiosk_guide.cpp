@@ -90,7 +90,8 @@ VisitMoment KioskGuide::notice(const GuideMoment& moment) {
                  steered.hands[1].state == HandState::kHolding;
   if (view_ && steered.control == Control::kHands) {
     const double turned = turn_between_deg(view_->rotation, steered.view.rotation);
-    if (turned > kHandTurnDeg) out.turned_deg = turned;
+    const bool held = !steered.hands.empty() && steered.hands.front().state == HandState::kHolding;
+    if (held && turned > kHandTurnDeg) out.turned_deg = turned;  // who only wipes has not learnt to take hold
     if (out.two_hold) out.zoomed = std::abs(std::log(steered.view.zoom / view_->zoom));
   }
   // A mouse or a finger on the glass is a visitor's hand as well.

@@ -93,6 +93,7 @@ class XPerson {
     if (name == "1") return 10;
     if (name == "2") return 11;
     if (name == "3") return 12;
+    if (name.size() == 1 && name[0] >= '4' && name[0] <= '9') return 13 + name[0] - '4';
     if (name == "0") return 19;
     if (name == "s") return 39;
     if (name == "a") return 38;

@@ -1,0 +1,129 @@
+// The kiosk in a window that covers the screen, among people who try everything.
+
+#include <filesystem>
+#include <fstream>
+
+#include "app/kiosk/kiosk_guide.h"
+#include "tests/app/viewer/live_fixture.h"
+#include "tests/app/viewer/x_desktop.h"
+
+namespace dubsar::app {
+namespace {
+
+constexpr int kEvents = 10'000, kAtOnce = 100;
+
+class LiveKiosk : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { server_ = std::make_unique<testing::XvfbServer>(320, 240); }
+  static void TearDownTestSuite() { server_.reset(); }
+  void SetUp() override {
+    if (!server_->problem().empty()) GTEST_SKIP() << server_->problem();
+    person_ = std::make_unique<testing::XPerson>();
+    desktop_ = std::make_unique<testing::XDesktop>();
+    ASSERT_TRUE(person_->here());
+    person_->point(160, 120);
+    options_.mapping = gallery_mapping().value();
+    options_.stage.shading = shading_preset("relief").value();
+    options_.window = WindowOptions();
+    options_.fullscreen = true;
+    options_.inputs = {"mouse"};
+    options_.around.notices = false;
+    options_.time.longest_s = 120;  // a test that waits for something that never comes
+    key_file_ = std::filesystem::path(::testing::TempDir()) / fmt::format("operator_{}", ::getpid());
+    std::filesystem::remove(key_file_);
+    KioskParts parts;
+    parts.profile.objects = {{.file = "box"}};
+    parts.profile.pin = "90210735";
+    parts.profile.key_file = key_file_;
+    parts.wall = [this] { return WallTime{++seconds_, 12 * 60}; };  // each picture is a second: the file is looked for
+    guide_ = std::make_unique<KioskGuide>(std::move(parts));
+    options_.guide = guide_.get();
+  }
+  void TearDown() override { std::filesystem::remove(key_file_); }
+  /// Magenta pixels on the screen: of what lies behind the kiosk.
+  int seen_of_the_desktop() const {
+    const Image screen = server_->screen(0, 0, 320, 240);
+    int count = 0;
+    for (int y = 0; y < screen.height; ++y)
+      for (int x = 0; x < screen.width; ++x) {
+        const std::uint8_t* const p = screen.at(x, y);
+        count += p[0] > 240 && p[1] < 15 && p[2] > 240;
+      }
+    return count;
+  }
+  void type(std::string_view digits) {
+    for (const char digit : digits) person_->key(std::string(1, digit));
+    person_->key("enter");
+  }
+
+  inline static std::unique_ptr<testing::XvfbServer> server_;  // one for all: windows keep their connection
+  std::unique_ptr<testing::XPerson> person_;
+  std::unique_ptr<testing::XDesktop> desktop_;
+  std::unique_ptr<KioskGuide> guide_;
+  ViewOptions options_;
+  std::filesystem::path key_file_;
+  std::int64_t seconds_ = 1'790'000'000;
+};
+
+TEST_F(LiveKiosk, TenThousandEventsAtRandomNeitherReachTheDesktopNorEndItAndTheOperatorsFileDoes) {
+  EXPECT_GT(seen_of_the_desktop(), 70'000) << "else nothing is shown by its absence";
+  std::mt19937 random(60220);
+  int sent = 0, reached = 0, seen = 0, pictures = 0;
+  bool ready = false, ended_early = true;
+  SilentProgress progress;
+  const auto out = run_view(testing::lettered_box(), options_, progress, [&](const ViewMoment& moment) {
+    if (moment.frames < 2) return;
+    if (!ready) {
+      person_->type_where_the_pointer_is();
+      static_cast<void>(desktop_->reached());  // before the window stood there
+      ready = true;
+    }
+    if (sent < kEvents) {
+      for (int i = 0; i < kAtOnce; ++i, ++sent) desktop_->anything(random);
+      desktop_->settle();
+      reached += desktop_->reached();
+      if (sent % 1000 == 0) {
+        seen += seen_of_the_desktop();
+        ++pictures;
+      }
+      return;
+    }
+    if (!std::filesystem::exists(key_file_)) {
+      desktop_->let_go();
+      ended_early = false;
+      std::ofstream(key_file_) << "here\n";
+      return;
+    }
+    person_->key("9");
+  });
+  ASSERT_TRUE(out) << out.error().message;
+  EXPECT_FALSE(ended_early) << "after " << sent << " events";
+  EXPECT_EQ(sent, kEvents);
+  EXPECT_EQ(reached, 0) << "events behind the kiosk";
+  EXPECT_EQ(pictures, 10);
+  EXPECT_EQ(seen, 0) << "pixels of what is behind the kiosk";
+  EXPECT_TRUE(guide_->ended());
+  EXPECT_EQ(guide_->object(), 1U) << "as many as there are: over";
+}
+
+TEST_F(LiveKiosk, TheNumberOpensTheMenuThatEndsIt) {
+  int turn = 0;
+  SilentProgress progress;
+  const auto out = run_view(testing::lettered_box(), options_, progress, [&](const ViewMoment& moment) {
+    if (moment.frames < 2) return;
+    if (turn == 0) {
+      person_->type_where_the_pointer_is();
+      person_->key("9");  // does nothing yet
+      person_->key("escape");
+      type("90210735");
+    }
+    if (turn > 0 && turn % 5 == 0) person_->key("9");
+    ++turn;
+  });
+  ASSERT_TRUE(out) << out.error().message;
+  EXPECT_TRUE(guide_->ended());
+  EXPECT_GT(turn, 1);
+}
+
+}  // namespace
+}  // namespace dubsar::app
