@@ -11,12 +11,19 @@ constexpr TimestampNs kFills = 1'250'000'000;   // a hand that ends there by cha
 constexpr TimestampNs kForgives = 300'000'000;  // a tremble over the edge, or a hand that is lost for a moment
 constexpr TimestampNs kGone = 1'000'000'000;
 constexpr double kEdge = 1.25;  // of the radius, for a hand that is on the sign already
+constexpr double kMargin = 0.035;
+double radius_on(double aspect) { return std::min(0.095, 0.14 * aspect); }
+
+/// Above, below or on one of the signs, whether or not one is shown there now.
+bool in_their_column(const glm::dvec2& at, double aspect) {
+  return at.x > 0.5 - (kEdge * 2.0 * radius_on(aspect) + kMargin) / aspect;
+}
 
 }  // namespace
 
 std::vector<SignPicture> place_signs(std::span<const Sign> signs, double aspect) {
   std::vector<SignPicture> out;
-  const double radius = std::min(0.095, 0.14 * aspect), margin = 0.035;
+  const double radius = radius_on(aspect), margin = kMargin;
   const double x = 0.5 - (radius + margin) / aspect;
   // What takes a sign's place when it was chosen stands elsewhere: a hand that stays where it is chooses nothing more.
   constexpr std::array<int, kSignCount> kRow{0, 1, 2, 0, 2};
@@ -41,7 +48,8 @@ std::optional<Sign> SignRest::update(TimestampNs now, std::span<const SignHand> 
                                      std::span<const SignPicture> signs, double aspect) {
   std::optional<Sign> chosen;
   std::array<bool, kSignCount> there{};
-  bool any = false;
+  const bool any =
+      std::any_of(hands.begin(), hands.end(), [&](const SignHand& hand) { return in_their_column(hand.at, aspect); });
   for (const SignPicture& sign : signs) {
     Rest& rest = rests_[static_cast<std::size_t>(sign.sign)];
     there[static_cast<std::size_t>(sign.sign)] = true;
@@ -51,7 +59,6 @@ std::optional<Sign> SignRest::update(TimestampNs now, std::span<const SignHand> 
       const glm::dvec2 apart = hand.at - sign.at;
       const double far = glm::length(glm::dvec2(apart.x * aspect, apart.y));
       if (far > kEdge * sign.radius) continue;
-      any = true;
       if (!hand.free) waits_ = true;
       on = on || far <= radius;
     }

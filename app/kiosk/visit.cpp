@@ -10,10 +10,10 @@ constexpr double kTurnedDeg = 25.0;             // on purpose: further than a ha
 constexpr double kZoomed = 0.15;                // a sixth larger or smaller
 constexpr TimestampNs kPatience = 2 * kSecond;  // before the next thing is shown to somebody who is busy
 constexpr TimestampNs kLessonTime = 9 * kSecond, kLessonRest = 6 * kSecond;
-constexpr TimestampNs kFirstRest = kSecond;  // as long as nothing was ever turned, nobody waits for the next picture
+constexpr TimestampNs kFirstRest = 300'000'000;    // as long as nothing was turned, nobody waits for the next picture
 constexpr TimestampNs kTroubleTime = 700'000'000;  // a hand that passes by is not spoken to
 constexpr TimestampNs kGone = 2 * kSecond;         // a lost hand mostly comes back
-constexpr int kMostShown = 3;
+constexpr int kMostShown = 3, kGrabMostShown = 6;  // nothing else goes without it
 
 constexpr std::size_t index(Lesson lesson) { return static_cast<std::size_t>(lesson); }
 TimestampNs ns(double seconds) { return static_cast<TimestampNs>(1e9 * seconds); }
@@ -70,8 +70,13 @@ void Visit::learn(const VisitMoment& moment) {
 std::optional<Lesson> Visit::next(const VisitMoment& moment) const {
   for (std::size_t i = 0; i < kLessonCount; ++i) {
     const auto lesson = static_cast<Lesson>(i);
+    const bool holds = moment.hands > 0 && moment.hand == HandState::kHolding;
+    if (lesson == Lesson::kGrab) {  // taken, moved and let go: until the object was turned so
+      if (course_.done[index(Lesson::kTurn)] || holds || course_.shown[i] >= kGrabMostShown) continue;
+      return lesson;
+    }
     if (course_.done[i] || course_.shown[i] >= kMostShown) continue;
-    if (lesson == Lesson::kTurn && !(moment.hands > 0 && moment.hand == HandState::kHolding)) continue;
+    if (lesson == Lesson::kTurn && !holds) continue;
     if (lesson == Lesson::kRest && !moment.can_open) continue;
     return lesson;
   }
@@ -83,11 +88,14 @@ void Visit::teach(TimestampNs now, const VisitMoment& moment) {
   if (course_.now) {
     const std::size_t shown = index(*course_.now);
     const bool again = *course_.now == Lesson::kTurn && !holds;  // it let go: back to taking hold
-    if (!course_.done[shown] && !again && now - course_.since < kLessonTime) return;
-    const bool success = course_.done[shown];
+    const bool success = *course_.now == Lesson::kGrab ? holds : course_.done[shown];
+    if (!success && !again && now - course_.since < kLessonTime) return;
     course_.now.reset();
     const bool beginner = !course_.done[index(Lesson::kTurn)];
-    course_.rests_until = now + (again ? 0 : beginner ? kFirstRest : success ? kPatience : kLessonRest);
+    if (beginner)  // who has just taken hold may know how to go on
+      course_.rests_until = now + (again ? 0 : success ? kSecond : kFirstRest);
+    else
+      course_.rests_until = now + (success ? kPatience : kLessonRest);
   }
   // Nobody is interrupted while the object turns in the hand.
   if (holds && course_.done[index(Lesson::kTurn)]) course_.rests_until = std::max(course_.rests_until, now + kPatience);
@@ -158,7 +166,7 @@ VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
   out.lesson = course_.now;
   if (course_.now) out.lesson_s = 1e-9 * static_cast<double>(last_ - course_.since);
   if (phase_ == VisitPhase::kAttract && moment.tracker) {  // the invitation
-    out.lesson = Lesson::kShowHand;
+    out.lesson = Lesson::kGrab;
     out.lesson_s = 1e-9 * static_cast<double>(last_);
   }
   if (phase_ == VisitPhase::kAttract) out.line = moment.tracker ? Line::kInvite : Line::kNoTracker;

@@ -82,8 +82,11 @@ LessonPose lesson_pose(Lesson lesson, double seconds) noexcept {
       out.opacity = ease(t, 0.0f, 0.8f) * (1.0f - ease(t, 3.4f, 4.0f));
       break;
     case Lesson::kGrab:
-      out.y = 0.15f;
-      out.closing = ease(t, 1.0f, 1.7f) * (1.0f - ease(t, 3.2f, 3.8f));
+      out.y = 0.75f - 0.5f * ease(t, 0.0f, 0.9f);  // it comes, takes hold, turns, lets go
+      out.opacity = ease(t, 0.0f, 0.6f) * (1.0f - ease(t, 3.6f, 4.0f));
+      out.closing = ease(t, 1.0f, 1.6f) * (1.0f - ease(t, 3.1f, 3.6f));
+      out.x = -0.2f + 0.5f * ease(t, 1.8f, 2.9f);
+      out.object_turn = 0.85f * ease(t, 1.8f, 2.9f) * (1.0f - ease(t, 3.3f, 4.0f));
       break;
     case Lesson::kTurn:
       out.closing = 1.0f;

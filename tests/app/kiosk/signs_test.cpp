@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace dubsar::app {
 namespace {
@@ -68,6 +69,20 @@ TEST(Signs, WhatEndsThereByChanceChoosesNothing) {
     panel.go_on(0.8, {on});
   }
   EXPECT_TRUE(panel.chosen.empty());
+}
+
+TEST(Signs, AHandThatSinksFromAChosenSignToTheNextChoosesNothing) {
+  Panel panel;
+  panel.go_on(2.0, {SignHand{panel.signs[0].at}});
+  ASSERT_EQ(panel.chosen.size(), 1U);
+  const auto there = std::exchange(panel.signs, {});  // while the envelope moves there are none
+  panel.go_on(2.0, {SignHand{there[0].at - glm::dvec2(0.0, 0.1)}});
+  panel.signs = there;
+  panel.go_on(10.0, {SignHand{there[1].at}});
+  EXPECT_EQ(panel.chosen.size(), 1U);
+  panel.go_on(0.2, {SignHand{{0.1, 0.0}}});
+  panel.go_on(2.0, {SignHand{there[1].at}});
+  EXPECT_EQ(panel.chosen.size(), 2U);
 }
 
 TEST(Signs, ATrembleOverTheEdgeAndAHandThatIsLostForAMomentBreakNoRest) {

@@ -47,7 +47,7 @@ TEST(Visit, NobodyIsInvited) {
   const auto picture = story.go_on(5, nobody());
   EXPECT_EQ(picture.phase, VisitPhase::kAttract);
   EXPECT_EQ(picture.line, Line::kInvite);
-  EXPECT_EQ(picture.lesson, Lesson::kShowHand);  // a hand that reaches out
+  EXPECT_EQ(picture.lesson, Lesson::kGrab);  // a hand that reaches out
   EXPECT_EQ(story.arrivals, 0);
 }
 
@@ -88,7 +88,7 @@ TEST(Visit, ALessonThatDoesNotHelpRestsAndIsGivenUp) {
     shown += is && !was;
     was = is;
   });
-  EXPECT_EQ(shown, 3);
+  EXPECT_EQ(shown, 6);
 }
 
 TEST(Visit, SaysWhatIsWrongWithAHandButNotWithOneThatPassesBy) {
