@@ -45,6 +45,7 @@ usage() {
 ./do lint     is every source formatted, and clang-tidy over what changed since the last commit (or since REVISION)
 ./do deps     install the packages of Debian 12 that dubsar needs
 ./do visitors [SEED [OF_EACH_KIND [why]]]   naive visitors before the kiosk, simulated: how many turn, zoom, open
+./do soak [HOURS [MINUTES [SURFACE]]]   a day of the kiosk: 8 simulated hours, 30 minutes of drawing, a fault a minute
 ./do strips   make the strips of pictures in docs/ again (minutes)
 ./do pictures make the other pictures of docs/ again, from docs/scripts (minutes)
 ./do format   clang-format over all sources
@@ -262,6 +263,13 @@ visitors() {
   "$build/tests/app/naive_visitors" "$@"
 }
 
+soak() {
+  deps
+  cmake --preset "$preset" >/dev/null
+  cmake --build "$build" -j "$jobs" --target soak
+  "$build/tests/app/soak" "$@"
+}
+
 # Those of sessions are made anew by a test, too, and compared.
 pictures() {
   deps
@@ -306,6 +314,7 @@ case "$verb" in
   deps) deps ;;
   strips) strips "$@" ;;
   visitors) visitors "$@" ;;
+  soak) soak "$@" ;;
   workflow) workflow ;;
   pictures) pictures ;;
   format) git ls-files '*.cpp' '*.h' | xargs clang-format -i ;;

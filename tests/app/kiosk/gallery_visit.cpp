@@ -6,10 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/document/document.h"
-#include "app/kiosk/hand_rings.h"
-#include "app/kiosk/kiosk_guide.h"
-#include "input/navigation/navigation.h"
+#include "tests/app/kiosk/gallery_session.h"
 
 namespace dubsar::app::test {
 namespace {
@@ -18,7 +15,6 @@ constexpr double kRad = std::numbers::pi / 180.0;
 constexpr double kTurn_rad = 8.0 * kRad, kZoom = 0.1;         // what counts as done
 constexpr double kMoved_rad = 2.0 * kRad, kMovedZoom = 0.02;  // what is seen as a movement
 constexpr double kInTime_s = 20.0, kFrame_s = 1.0 / 60.0;
-constexpr glm::dvec2 kWindow_mm{600.0, 340.0};
 
 glm::dvec3 turned_from(const ViewState& before, const ViewState& now) {
   return vector_of(now.rotation * glm::conjugate(before.rotation));
@@ -31,94 +27,12 @@ bool steers(const GestureRecognizer& hand) {
          });
 }
 
-dubsar::Lesson as_seen(const std::optional<Lesson>& lesson) {
-  if (!lesson) return dubsar::Lesson::kNone;
-  switch (*lesson) {
-    case Lesson::kShowHand:
-      return dubsar::Lesson::kShowHand;
-    case Lesson::kGrab:
-    case Lesson::kTurn:
-      return dubsar::Lesson::kGrabAndMove;
-    case Lesson::kRest:
-      return dubsar::Lesson::kRestOnSign;
-    case Lesson::kTwoHands:
-      return dubsar::Lesson::kNearer;
-    case Lesson::kSwipe:
-      break;
-  }
-  return dubsar::Lesson::kSwipe;
-}
-
-/// The kiosk without its pictures.
-class Session {
- public:
-  Session() : navigator_(kMapping), people_(zone()), guide_(parts()) {
-    document_.parts = {{"tablet", 1}, {"envelope", 2}};
-  }
-  void go_on(TimestampNs now, const InputFrame& frame) {
-    person_ = people_.update(now, frame);
-    navigator_.update(now, frame, person_.hands);
-    Steered steered;
-    steered.view = navigator_.view();
-    steered.control = navigator_.control();
-    steered.hands = hand_marks(frame, person_, navigator_.hands(), zone());
-    for (const GestureRecognizer& hand : navigator_.hands())
-      for (const GestureEvent& event : hand.events())
-        steered.swiped = steered.swiped || event.kind == GestureKind::kSwipe;
-    if (person_.head) steered.eyes.presence = Presence::kTracked;
-    const Guidance guidance = guide_.lead({now, steered, document_, rows_, kWindow_mm, {0, 0}});
-    for (const std::string& command : guidance.commands) {
-      if (command.rfind("unpack ", 0) == 0) document_.unpack = 0.01 * std::stod(command.substr(7));
-      if (command == "reset") navigator_.go_to({}, now, true);
-    }
-    screen_ = {};
-    screen_.view = navigator_.view();
-    screen_.opened = document_.unpack > 0.05;  // it is seen to begin
-    screen_.lesson = as_seen(guidance.picture->lesson);
-    for (std::size_t h = 0; h < 2; ++h)
-      if (person_.hands[h] != nullptr && Gallery::is_the_visitors(person_.hands[h]->id) && !screen_.my_mark)
-        screen_.my_mark =
-            glm::dvec2(ring_place_mm({zone(), kWindow_mm, {0, 0}}, navigator_.hands()[h].position_m())) / kWindow_mm.y;
-    for (const SignPicture& sign : guidance.picture->signs)
-      if (sign.sign == Sign::kOpen || sign.sign == Sign::kClose) {
-        screen_.sign = sign.at * glm::dvec2(kWindow_mm.x / kWindow_mm.y, 1.0);
-        screen_.sign_radius = sign.radius;
-        screen_.sign_filled = sign.filled;
-      }
-  }
-  /// How often the envelope was asked for, by anybody.
-  std::int64_t chosen() const { return guide_.visit().counts().openings; }
-  const SeenScreen& screen() const { return screen_; }
-  const Navigator& navigator() const { return navigator_; }
-  const KeptPerson& person() const { return person_; }
-
- private:
-  static HandZone zone() { return {1e-3 * kMapping.hands.zone_min_mm, 1e-3 * kMapping.hands.zone_max_mm}; }
-  static KioskParts parts() {
-    KioskParts out;
-    out.profile.objects = {{.file = "a.exa"}};
-    out.profile.pin = "8302";
-    out.zone = zone();
-    out.wall = [] { return WallTime{1'790'000'000, 720}; };
-    return out;
-  }
-  static const Mapping kMapping;
-  Navigator navigator_;
-  PersonKeeper people_;
-  KioskGuide guide_;
-  Document document_;
-  std::vector<SourceRow> rows_{{"leap", SourceHealth::kPresent, ""}};
-  KeptPerson person_;
-  SeenScreen screen_;
-};
-const Mapping Session::kMapping = gallery_mapping().value();
-
 }  // namespace
 
 GalleryVisit visit(const GalleryOptions& room) {
   GalleryVisit out;
   Gallery gallery(room);
-  Session session;
+  GallerySession session;
   InputFrame frame;
   SeenScreen at_trial = session.screen(), at_movement = at_trial;
   Intention before = Intention::kNone;

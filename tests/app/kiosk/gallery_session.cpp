@@ -1,0 +1,85 @@
+#include "tests/app/kiosk/gallery_session.h"
+
+#include <algorithm>
+
+namespace dubsar::app::test {
+namespace {
+
+constexpr glm::dvec2 kWindow_mm{600.0, 340.0};
+
+dubsar::Lesson as_seen(const std::optional<Lesson>& lesson) {
+  if (!lesson) return dubsar::Lesson::kNone;
+  switch (*lesson) {
+    case Lesson::kShowHand:
+      return dubsar::Lesson::kShowHand;
+    case Lesson::kGrab:
+    case Lesson::kTurn:
+      return dubsar::Lesson::kGrabAndMove;
+    case Lesson::kRest:
+      return dubsar::Lesson::kRestOnSign;
+    case Lesson::kTwoHands:
+      return dubsar::Lesson::kNearer;
+    case Lesson::kSwipe:
+      break;
+  }
+  return dubsar::Lesson::kSwipe;
+}
+
+}  // namespace
+
+const Mapping GallerySession::kMapping = gallery_mapping().value();
+
+GallerySession::GallerySession() : navigator_(kMapping), people_(zone()), guide_(parts()) {
+  document_.parts = {{"tablet", 1}, {"envelope", 2}};
+}
+
+HandZone GallerySession::zone() { return {1e-3 * kMapping.hands.zone_min_mm, 1e-3 * kMapping.hands.zone_max_mm}; }
+
+KioskParts GallerySession::parts() {
+  KioskParts out;
+  out.profile.objects = {{.file = "a.exa"}};
+  out.profile.pin = "8302";
+  out.zone = zone();
+  out.wall = [] { return WallTime{1'790'000'000, 720}; };
+  return out;
+}
+
+void GallerySession::go_on(TimestampNs now, const InputFrame& frame) {
+  person_ = people_.update(now, frame);
+  navigator_.update(now, frame, person_.hands);
+  Steered steered;
+  steered.view = navigator_.view();
+  steered.control = navigator_.control();
+  steered.hands = hand_marks(frame, person_, navigator_.hands(), zone());
+  for (const GestureRecognizer& hand : navigator_.hands())
+    for (const GestureEvent& event : hand.events())
+      steered.swiped = steered.swiped || event.kind == GestureKind::kSwipe;
+  if (person_.head) steered.eyes.presence = Presence::kTracked;
+  guidance_ = guide_.lead({now, steered, document_, rows_, kWindow_mm, {0, 0}});
+  for (const std::string& command : guidance_.commands) {
+    if (command.rfind("unpack ", 0) == 0) document_.unpack = 0.01 * std::stod(command.substr(7));
+    if (command == "reset") navigator_.go_to({}, now, true);
+  }
+  screen_ = {};
+  screen_.view = navigator_.view();
+  screen_.opened = document_.unpack > 0.05;  // it is seen to begin
+  if (const auto& scene = guidance_.scene) {
+    if (scene->keep) show_keyframe(document_, scene->frame);
+    if (scene->keep && scene->camera) navigator_.go_to(view_of(document_), now, false);
+    if (scene->camera) screen_.view.rotation = scene->frame.camera.rotation;
+    screen_.opened = scene->frame.unpack > 0.05;
+  }
+  screen_.lesson = as_seen(guidance_.picture->lesson);
+  for (std::size_t h = 0; h < 2; ++h)
+    if (person_.hands[h] != nullptr && Gallery::is_the_visitors(person_.hands[h]->id) && !screen_.my_mark)
+      screen_.my_mark =
+          glm::dvec2(ring_place_mm({zone(), kWindow_mm, {0, 0}}, navigator_.hands()[h].position_m())) / kWindow_mm.y;
+  for (const SignPicture& sign : guidance_.picture->signs)
+    if (sign.sign == Sign::kOpen || sign.sign == Sign::kClose) {
+      screen_.sign = sign.at * glm::dvec2(kWindow_mm.x / kWindow_mm.y, 1.0);
+      screen_.sign_radius = sign.radius;
+      screen_.sign_filled = sign.filled;
+    }
+}
+
+}  // namespace dubsar::app::test

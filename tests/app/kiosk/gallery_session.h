@@ -1,0 +1,46 @@
+#pragma once
+// The kiosk without its pictures: what people do goes through its recogniser and its guide, and comes back as what they
+// see.
+
+#include <string>
+#include <vector>
+
+#include "app/document/document.h"
+#include "app/kiosk/hand_rings.h"
+#include "app/kiosk/kiosk_guide.h"
+#include "input/navigation/navigation.h"
+#include "input/simulated/gallery.h"
+
+namespace dubsar::app::test {
+
+/// One thread.
+class GallerySession {
+ public:
+  GallerySession();
+  void go_on(TimestampNs now, const InputFrame& frame);
+  /// The tracker is there, or not.
+  void set_tracker(SourceHealth health) { rows_[0].health = health; }
+  /// How often the envelope was asked for, by anybody.
+  std::int64_t chosen() const { return guide_.visit().counts().openings; }
+  const SeenScreen& screen() const { return screen_; }
+  const Navigator& navigator() const { return navigator_; }
+  const KeptPerson& person() const { return person_; }
+  const Visit& visit() const { return guide_.visit(); }
+  /// What was led to last.
+  const Guidance& guidance() const { return guidance_; }
+
+ private:
+  static HandZone zone();
+  static KioskParts parts();
+  static const Mapping kMapping;
+  Navigator navigator_;
+  PersonKeeper people_;
+  KioskGuide guide_;
+  Document document_;
+  std::vector<SourceRow> rows_{{"leap", SourceHealth::kPresent, ""}};
+  KeptPerson person_;
+  SeenScreen screen_;
+  Guidance guidance_;
+};
+
+}  // namespace dubsar::app::test
