@@ -56,7 +56,7 @@ class People {
   double from_s_ = 0.0, until_s_ = 0.0;
 };
 
-/// Simulated time, no pictures: memory, and how soon the guide follows a hand after a fault.
+/// Simulated time, no pictures: memory, and how soon a hand that is seen after a fault has its ring.
 SoakFigures simulate(double hours) {
   SoakFigures out;
   GallerySession session;
@@ -64,7 +64,7 @@ SoakFigures simulate(double hours) {
   InputFrame frame;
   constexpr double kStepS = 1.0 / 60.0;
   double away_s = 0.0;  // suspended, in all
-  double fault_end = -1.0;
+  double fault_end = -1.0, hand_since = -1.0;
   std::int64_t minute = -1;
   for (double t = 0.0; t < 3600.0 * hours; t += kStepS) {
     const auto fault = static_cast<Fault>(static_cast<std::int64_t>(t / kFaultEveryS) % 5);
@@ -73,8 +73,8 @@ SoakFigures simulate(double hours) {
     const bool blind = broken && (fault == Fault::kUnplugged || fault == Fault::kServiceDies);
     if (const auto now = static_cast<std::int64_t>(t / kFaultEveryS); now != minute) {
       minute = now;
-      out.never_back += fault_end >= 0.0;
-      fault_end = -1.0;
+      out.never_back += hand_since >= 0.0;
+      fault_end = hand_since = -1.0;
       out.memory.push_back({t / 3600.0, resident_mib()});
     }
     if (broken && fault == Fault::kSuspended && in_minute - kFaultAtS < kStepS) away_s += 1800.0;
@@ -88,11 +88,11 @@ SoakFigures simulate(double hours) {
     if (blind) seen = {};
     session.go_on(static_cast<TimestampNs>(1e9 * (t + away_s)), seen);
     if (in_minute >= kFaultAtS + kFaultS && in_minute - kStepS < kFaultAtS + kFaultS) fault_end = t;
-    const bool follows = session.guidance().lines.size() >= seen.hands.size() && session.guidance().picture;
-    if (fault_end >= 0.0 && t > fault_end && follows) {
-      out.recovery_s[std::string(kFaultNames[static_cast<std::size_t>(fault)])].push_back(t - fault_end);
-      fault_end = -1.0;
-    }
+    if (fault_end >= 0.0 && hand_since < 0.0 && !seen.hands.empty()) hand_since = t;  // nobody may be there
+    if (hand_since < 0.0) continue;
+    if (session.guidance().lines.size() < seen.hands.size() || seen.hands.empty()) continue;
+    out.recovery_s[std::string(kFaultNames[static_cast<std::size_t>(fault)])].push_back(t - hand_since);
+    fault_end = hand_since = -1.0;
   }
   out.visits = session.visit().counts().visits;
   return out;
