@@ -10,7 +10,7 @@
 
 namespace dubsar {
 namespace {
-using Tables = std::array<std::array<std::uint32_t, 256>, 8>;
+using Tables = std::array<std::array<std::uint32_t, 256>, 16>;
 constexpr Tables kTables = [] {
   Tables tables{};
   for (std::uint32_t i = 0; i < 256; ++i) {
@@ -18,7 +18,7 @@ constexpr Tables kTables = [] {
     for (int bit = 0; bit < 8; ++bit) c = c & 1 ? 0xEDB88320u ^ c >> 1 : c >> 1;
     tables[0][i] = c;
   }
-  for (std::size_t t = 1; t < 8; ++t)
+  for (std::size_t t = 1; t < 16; ++t)
     for (std::size_t i = 0; i < 256; ++i) tables[t][i] = tables[t - 1][i] >> 8 ^ tables[0][tables[t - 1][i] & 255];
   return tables;
 }();
@@ -27,12 +27,17 @@ constexpr Tables kTables = [] {
 std::uint32_t crc32_of(std::string_view bytes, std::uint32_t before) noexcept {
   std::uint32_t crc = ~before;
   std::size_t at = 0;
-  for (; at + 8 <= bytes.size(); at += 8) {
-    std::uint64_t word;
-    std::memcpy(&word, bytes.data() + at, sizeof word);
-    word ^= crc;
-    crc = 0;
-    for (std::size_t b = 0; b < 8; ++b) crc ^= kTables[7 - b][word >> (8 * b) & 255];
+  for (; at + 16 <= bytes.size(); at += 16) {
+    std::array<std::uint64_t, 2> words;
+    std::memcpy(words.data(), bytes.data() + at, sizeof words);
+    words[0] ^= crc;
+    std::uint32_t first = 0, second = 0;
+#pragma GCC unroll 8
+    for (std::size_t b = 0; b < 8; ++b) {
+      first ^= kTables[15 - b][words[0] >> (8 * b) & 255];
+      second ^= kTables[7 - b][words[1] >> (8 * b) & 255];
+    }
+    crc = first ^ second;
   }
   for (; at < bytes.size(); ++at) crc = crc >> 8 ^ kTables[0][(crc ^ static_cast<unsigned char>(bytes[at])) & 255];
   return ~crc;

@@ -30,13 +30,15 @@ class DifferenceCode {
 
 class EscapeCode {
  public:
-  /// `escaped`: 1 per escaped vertex so far.
+  /// For vertices [first, end) of a mesh.
+  EscapeCode(const QuadMesh& mesh, std::uint32_t first, std::uint32_t end)
+      : mesh_(mesh), first_(first), near_(end - first, 0) {}
+  /// Does a vertex escape? Asked in rising order.
   template <class Coder>
-  bool flag(Coder& coder, const QuadMesh& mesh, std::span<const std::uint8_t> escaped_before, std::uint32_t v,
-            std::uint32_t first, bool value) {
-    int near = 0;
-    known_neighbours(mesh, v, first, [&](std::uint32_t w) { near += escaped_before[w - first]; });
-    return coder.bit(flags_[static_cast<std::size_t>(std::min(near, 7))], value);
+  bool flag(Coder& coder, std::uint32_t v, bool value) {
+    const bool gone = coder.bit(flags_[near_[v - first_]], value);
+    if (gone) tell_neighbours(v);
+    return gone;
   }
   template <class Coder>
   glm::ivec3 steps(Coder& coder, const glm::ivec3& k) {
@@ -46,6 +48,23 @@ class EscapeCode {
   }
 
  private:
+  /// Few vertices escape: they tell the later ones around them, instead of those asking all before.
+  void tell_neighbours(std::uint32_t v) {
+    const std::uint32_t end = first_ + static_cast<std::uint32_t>(near_.size());
+    for (const std::uint32_t q : mesh_.quads_of(v)) {
+      const Polygon polygon = mesh_.polygon(q);
+      int at = 0;
+      while (polygon.vertex[static_cast<std::size_t>(at)] != v) ++at;
+      for (const int side : {at + polygon.size - 1, at + 1}) {
+        const std::uint32_t w = polygon.vertex[static_cast<std::size_t>(side % polygon.size)];
+        if (w > v && w < end && near_[w - first_] < 7) ++near_[w - first_];
+      }
+    }
+  }
+
+  const QuadMesh& mesh_;
+  std::uint32_t first_;
+  std::vector<std::uint8_t> near_;  ///< neighbours that have escaped, at most 7
   std::array<AdaptiveBit, 8> flags_;
   std::array<SignedNumber, 3> numbers_;
 };
@@ -121,12 +140,10 @@ std::optional<std::vector<std::string>> encode_escapes(const QuadMesh& mesh, std
   auto chunks = encode_item_chunks(mesh.vertex_count(), progress, [&](std::uint32_t first, std::uint32_t end) {
     RangeEncoder out;
     BitSink sink{out};
-    EscapeCode code;
-    std::vector<std::uint8_t> flags(end - first);
+    EscapeCode code(mesh, first, end);
     for (std::uint32_t v = first; v < end; ++v) {
       const bool gone = !same_bits(mesh.positions[v], moved[v]);
-      code.flag(sink, mesh, flags, v, first, gone);
-      flags[v - first] = gone ? 1 : 0;
+      code.flag(sink, v, gone);
       if (!gone) continue;
       const auto k = escape_to(mesh.positions[v], moved[v]);
       if (!k || !same_bits(escaped(mesh.positions[v], *k), moved[v])) {
@@ -149,13 +166,11 @@ Result<void> decode_escapes(std::span<const std::string_view> chunks, QuadMesh& 
     if (progress.cancelled()) return;
     RangeDecoder in(chunks[static_cast<std::size_t>(c)]);
     BitSource source{in};
-    EscapeCode code;
-    const std::int64_t first = c * kItemsPerChunk, end = std::min(first + kItemsPerChunk, mesh.vertex_count());
-    std::vector<std::uint8_t> flags(static_cast<std::size_t>(end - first));
-    for (auto v = static_cast<std::uint32_t>(first); v < static_cast<std::uint32_t>(end); ++v) {
-      const bool gone = code.flag(source, mesh, flags, v, static_cast<std::uint32_t>(first), false);
-      flags[v - static_cast<std::uint32_t>(first)] = gone ? 1 : 0;
-      if (gone) mesh.positions[v] = escaped(mesh.positions[v], code.steps(source, {}));
+    const auto first = static_cast<std::uint32_t>(c * kItemsPerChunk);
+    const auto end = static_cast<std::uint32_t>(std::min((c + 1) * kItemsPerChunk, mesh.vertex_count()));
+    EscapeCode code(mesh, first, end);
+    for (std::uint32_t v = first; v < end; ++v) {
+      if (code.flag(source, v, false)) mesh.positions[v] = escaped(mesh.positions[v], code.steps(source, {}));
     }
   });
   if (progress.cancelled()) return cancelled_error();

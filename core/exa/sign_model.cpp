@@ -131,6 +131,8 @@ SignModel::Place SignModel::place(const SignLattice& lattice, std::size_t phase_
   place.phase = &phases_[phase_index];
   place.units = units_;
   place.out_bias = place.phase->out_bias[level_class];
+  if (!hwy::GetChosenTarget().IsInitialized()) hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  place.weigh = &HWY_DYNAMIC_DISPATCH(weigh);  // looked up once a phase, not once a point
   for (std::size_t r = 0; r < place.phase->rows.size(); ++r)
     place.steps[r] = lattice.step(place.phase->rows[r].y, place.phase->rows[r].z);
   return place;
@@ -138,7 +140,7 @@ SignModel::Place SignModel::place(const SignLattice& lattice, std::size_t phase_
 
 int SignModel::logit(const Place& place, int x, int y, int z) noexcept {
   const unsigned char* here = place.lattice->row(y, z) + ((x + 5) >> 3);
-  const std::int32_t total = HWY_DYNAMIC_DISPATCH(weigh)(place, here, (x + 5) & 7);
+  const std::int32_t total = place.weigh(place, here, (x + 5) & 7);
   return std::clamp((total >> 3) + place.out_bias, -2047, 2047);
 }
 

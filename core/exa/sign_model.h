@@ -61,6 +61,7 @@ class SignModel {
     const Phase* phase = nullptr;
     std::size_t units = 0;
     int out_bias = 0;
+    std::int32_t (*weigh)(const Place&, const unsigned char* here, int shift) = nullptr;  ///< for this processor
     std::array<std::ptrdiff_t, kRows> steps{};  ///< bytes from the row of a point to those of phase->rows
   };
   /// `phase_index`: place in kSignPhases. The lattice must outlive it and not be exchanged.
