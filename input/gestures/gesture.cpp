@@ -10,6 +10,7 @@ namespace {
 // Hz.
 constexpr OneEuroOptions kPalmFilter{2.0, 30.0, 3.0};
 constexpr TimestampNs kVelocityWindow = 60'000'000;
+constexpr TimestampNs kSetBack = 1'000'000'000;  // no sample is so late: its device's clock was set back
 }  // namespace
 
 GestureRecognizer::GestureRecognizer(const GestureOptions& options)
@@ -28,6 +29,10 @@ void GestureRecognizer::lose(TimestampNs now) {
 
 void GestureRecognizer::update(TimestampNs now, const HandFrame* hand) {
   events_.clear();
+  if (hand != nullptr && hand->time < last_sample_ - kSetBack) {
+    lose(now);
+    last_sample_ = -1;
+  }
   seen_now_ = hand != nullptr && hand->valid && hand->tracked && hand->time > last_sample_;
   // A gap of hands that are polled rarely shows only when they are back.
   if (came_ && now - last_seen_ > options_.hold_ns) lose(now);

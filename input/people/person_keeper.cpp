@@ -89,6 +89,8 @@ const HeadFrame* foremost(std::span<const HeadFrame> heads) {
 }  // namespace
 
 const HeadFrame* HeadKeeper::update(TimestampNs now, std::span<const HeadFrame> heads, bool rests) {
+  seen_ = std::min(seen_, now);  // a clock that was set back
+  better_since_ = std::min(better_since_, now);
   const HeadFrame* best = nullptr;
   double least = std::numeric_limits<double>::max();
   if (place_m_ && now - seen_ <= kGone) {
@@ -183,6 +185,11 @@ bool HandKeeper::may_enter(const HandFrame& hand, const Slot& other, std::span<c
 std::array<const HandFrame*, 2> HandKeeper::update(TimestampNs now, std::span<const HandFrame> hands,
                                                    std::span<const HeadFrame> heads,
                                                    std::optional<glm::dvec3> kept_head_m) {
+  owner_seen_ = std::min(owner_seen_, now);  // a clock that was set back
+  for (Slot& slot : slots_) {
+    slot.seen = std::min(slot.seen, now);
+    slot.came = std::min(slot.came, now);
+  }
   if (owner_x_m_ && now - owner_seen_ > kOwnerGone) owner_x_m_.reset();
   std::array<const HandFrame*, 2> kept{};
   std::array<const HandFrame*, kMaxHands> left{};

@@ -242,8 +242,7 @@ Result<SoakFigures> draw(double minutes, const TriMesh& mesh) {
       case Fault::kServiceDies:
         tracker.gone = broken;
         if (broken) {  // what was made with it is given up; it is looked for every two seconds
-          guide.say("toggle_source 1");
-          guide.say("toggle_source 1");
+          for (const char* command : {"help", "toggle_source 1", "toggle_source 1", "help"}) guide.say(command);
         }
         break;
       case Fault::kMonitorLost:  // the window falls onto what is left, and covers the monitor again

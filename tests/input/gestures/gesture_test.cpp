@@ -373,5 +373,23 @@ TEST(GestureInGalleries, NothingButRestingBeginsAtTheSigns) {
   EXPECT_FALSE(p.recognizer.grabbing());
 }
 
+TEST(Gesture, AClockThatIsSetBackEndsAHoldAndTheNextHandIsSeenAtOnce) {
+  Person p;
+  p.now = 600'000 * kMs;
+  p.steps(40);
+  p.hand.grab_strength = 1.0;
+  p.steps(20);
+  ASSERT_TRUE(p.recognizer.grabbing());
+  p.now -= 300'000 * kMs;
+  p.hand.grab_strength = 0.0;
+  p.step();
+  EXPECT_TRUE(p.recognizer.seen_now());
+  EXPECT_EQ(p.count(GestureKind::kGrab, GesturePhase::kCancel), 1) << "a lost hand throws nothing";
+  p.steps(60);
+  p.hand.grab_strength = 1.0;
+  p.steps(20);
+  EXPECT_TRUE(p.recognizer.grabbing());
+}
+
 }  // namespace
 }  // namespace dubsar
