@@ -32,6 +32,7 @@ usage() {
               ./do bench exa: bits and speed of the surface format, beside Draco and meshoptimizer
               ./do bench paper [--size XxYxZ] [--no-ao]: Table 2 of the paper line by line, per core too
               ./do bench linear: four sizes, how cost grows; exit code 1 where an exponent is off 1.0 by more than .1
+              ./do bench killed: kill -9 at 20 random moments, then --resume; exit code 1 where bytes differ
               ./do bench scanner [--size XxYxZ] [--memory 6G]: a scan larger than memory, 3072x3072x1944 by default
               ./do bench contact [X Y Z SEED]: what is read where tablet and envelope touch
               ./do bench view: first pictures, pictures a second and memory, beside f3d and MeshLab
@@ -194,7 +195,7 @@ bench() {
     return
   fi
   case "${1:-}" in
-    paper | linear | scanner)
+    paper | linear | killed | scanner)
       build_target --target dubsar
       [ "$1" != scanner ] || build_target --target scanner_scan
       /usr/bin/python3 tests/bench/paper_bench.py "$build/app/dubsar" "$1" --maker "$build/tests/bench/scanner_scan" \

@@ -20,10 +20,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<float>;
 using V = hn::Vec<D>;
 
+// Rounded twice, as processors without fused multiplication do: a scan gives the same surface on all of them, to the
+// byte. (Where a factor is a power of two, both are the same.)
+HWY_INLINE V add_product(V a, V b, V sum) { return hn::Add(sum, hn::Mul(a, b)); }
+
 struct Tukey {
   HWY_INLINE static V weight(V difference) {
     const D d;
-    const V t = hn::Max(hn::NegMulAdd(difference, difference, hn::Set(d, 1.0F)), hn::Zero(d));
+    const V t = hn::Max(hn::Sub(hn::Set(d, 1.0F), hn::Mul(difference, difference)), hn::Zero(d));
     return hn::Mul(t, t);
   }
 };
@@ -57,7 +61,7 @@ struct Window3 {
       const D d;
       const V w = Range::weight(hn::Sub(hn::LoadU(d, guide[kRow] + x + kDx), centre));
       weights[kClass - 1] = hn::Add(weights[kClass - 1], w);
-      values[kClass - 1] = hn::MulAdd(w, hn::LoadU(d, image[kRow] + x + kDx), values[kClass - 1]);
+      values[kClass - 1] = add_product(w, hn::LoadU(d, image[kRow] + x + kDx), values[kClass - 1]);
     }
   }
   template <int kRow>
@@ -121,10 +125,10 @@ struct WindowAny {
         const V range = Range::weight(hn::Sub(hn::LoadU(d, guide[row] + x + k - radius), centre));
         const V w = hn::Mul(range, hn::Set(d, binomial[k]));
         row_weights = hn::Add(row_weights, w);
-        row_values = hn::MulAdd(w, hn::Sub(hn::LoadU(d, image[row] + x + k - radius), own), row_values);
+        row_values = add_product(w, hn::Sub(hn::LoadU(d, image[row] + x + k - radius), own), row_values);
       }
-      weights = hn::MulAdd(hn::Set(d, row_weight), row_weights, weights);
-      values = hn::MulAdd(hn::Set(d, row_weight), row_values, values);
+      weights = add_product(hn::Set(d, row_weight), row_weights, weights);
+      values = add_product(hn::Set(d, row_weight), row_values, values);
     }
     return Window3<Range>::finite_or(hn::Add(own, hn::Div(values, weights)), own);
   }

@@ -64,7 +64,7 @@ void Gauss3XHalf(const float* HWY_RESTRICT in, std::int64_t n, float* HWY_RESTRI
 void WeightedRows(const float* const* rows, const float* weights, int count, std::int64_t n, float* HWY_RESTRICT out) {
   for_lanes(n, [&](std::int64_t x, auto d) HWY_ATTR {
     auto sum = hn::Zero(d);
-    for (int k = 0; k < count; ++k) sum = hn::MulAdd(hn::Set(d, weights[k]), hn::LoadU(d, rows[k] + x), sum);
+    for (int k = 0; k < count; ++k) sum = hn::Add(sum, hn::Mul(hn::Set(d, weights[k]), hn::LoadU(d, rows[k] + x)));
     hn::StoreU(sum, d, out + x);
   });
 }
@@ -73,7 +73,8 @@ void WeightedTaps(const float* HWY_RESTRICT in, const float* weights, int taps, 
                   float* HWY_RESTRICT out) {
   for_lanes(n, [&](std::int64_t x, auto d) HWY_ATTR {
     auto sum = hn::Zero(d);
-    for (int k = 0; k < taps; ++k) sum = hn::MulAdd(hn::Set(d, weights[k]), hn::LoadU(d, in + x + k - taps / 2), sum);
+    for (int k = 0; k < taps; ++k)
+      sum = hn::Add(sum, hn::Mul(hn::Set(d, weights[k]), hn::LoadU(d, in + x + k - taps / 2)));
     hn::StoreU(sum, d, out + x);
   });
 }

@@ -3,6 +3,7 @@
 
 paper_bench.py PROGRAM paper  [--size 1871x999x1723] [--no-ao] ...   Table 2 line by line, per core too
 paper_bench.py PROGRAM linear [--size 512x272x472] ...               four sizes, fitted exponents of cost
+paper_bench.py PROGRAM killed [--size 200x106x184]                   kill -9 at 20 random moments, then --resume: same bytes?
 paper_bench.py PROGRAM scanner --maker PROGRAM [--size 3072x3072x1944] [--memory 6G]   a scan larger than memory
 
 Common: [--threads N] [--work FOLDER] [--json FILE] [--history FILE] [--seed N]
@@ -10,7 +11,7 @@ Common: [--threads N] [--work FOLDER] [--json FILE] [--history FILE] [--seed N]
 Scans are phantoms; they are made where they are not in the folder yet and stay there. Seconds of a core are user and
 system time of all threads: they can be compared on a busy machine, too, seconds of the clock cannot.
 """
-import argparse, json, math, os, platform, re, resource, subprocess, sys, time
+import argparse, json, math, os, platform, random, re, resource, shutil, signal, subprocess, sys, time
 
 PAPER_CORES = 8
 PAPER_VOXELS, PAPER_GRID, PAPER_VERTICES = 1871 * 999 * 1723, 935 * 499 * 861, 10_011_300
@@ -28,8 +29,8 @@ TABLE_2 = [
     ("writing EXA", 2.058, ["write"], "vertices"),
     ("ambient occlusion, 160 rays, radius 64", 28.6 * 60, ["occlusion"], "vertices"),
 ]
-VOLUME_STAGES = {"import", "resample", "estimate", "denoise", "extract"}
-NOT_FITTED = {"estimate_raw", "untangle", "fill_holes", "contact", "occlusion"}  # samples, loops, bands: not of the whole
+VOLUME_STAGES = {"import", "resample", "denoise", "extract"}
+NOT_FITTED = {"estimate_raw", "estimate", "untangle", "fill_holes", "contact", "occlusion"}  # samples, histograms, loops, bands
 
 
 def run(command, **more):
@@ -147,6 +148,47 @@ def linear(options):
     return {"volume": volume, "surface": surface, "stages": stages, "runs": runs}, good
 
 
+def killed(options):
+    """Many scans in one run, killed -9 at random moments: what --resume makes of it is what one whole run makes."""
+    folder = os.path.join(options.work, "killed")
+    for name in ("whole", "resumed"):
+        shutil.rmtree(os.path.join(folder, name), ignore_errors=True)
+    scans = os.path.join(folder, "scans")
+    os.makedirs(scans, exist_ok=True)
+    for seed in (1, 2, 3):
+        path = os.path.join(scans, f"scan_{options.size}_{seed}.h5")
+        if not os.path.exists(path):
+            run([options.program, "phantom", path, "--size", options.size, "--seed", str(seed), "-q"])
+    command = [options.program, "process", scans, "-q", "--no-ao", "--no-contact", "--threads", str(options.threads)]
+    _, wall, _ = run(command + ["-o", os.path.join(folder, "whole")])
+    moments = random.Random(options.seed)
+    resume = command + ["-o", os.path.join(folder, "resumed"), "--resume"]
+    kills = finished = 0
+    while kills < options.kills:
+        child = subprocess.Popen(resume, stdout=subprocess.DEVNULL, start_new_session=True)
+        try:
+            child.wait(timeout=moments.uniform(0.02, 0.4 * wall))
+            finished += 1  # all is made: once more from the start
+            if kills < options.kills:
+                shutil.rmtree(os.path.join(folder, "resumed"))
+        except subprocess.TimeoutExpired:
+            os.killpg(child.pid, signal.SIGKILL)
+            child.wait()
+            kills += 1
+    run(resume)
+
+    def surfaces(name):
+        path = os.path.join(folder, name)
+        return {n: open(os.path.join(path, n), "rb").read() for n in sorted(os.listdir(path)) if n.endswith(".exa")}
+
+    whole, resumed = surfaces("whole"), surfaces("resumed")
+    good = whole == resumed and len(whole) == 3
+    left = [n for n in os.listdir(os.path.join(folder, "resumed")) if not n.endswith((".exa", ".run.json"))]
+    print(f"{kills} runs killed within {0.4 * wall:.1f} s, {finished} were quicker and began anew; then --resume: "
+          f"{len(resumed)} surfaces, {'the same bytes' if good else 'OTHER BYTES'}; left over: {', '.join(left) or 'nothing'}")
+    return {"wall_s": wall, "killed": kills, "finished": finished, "same": good, "left": left}, good
+
+
 def limited(command, memory):
     """Under a limit of its own for memory and page cache, where this machine lets us have one."""
     scope = ["systemd-run", "--quiet", "--scope", f"--property=MemoryMax={memory}", "--property=MemorySwapMax=0"]
@@ -177,7 +219,7 @@ def scanner(options):
 
 
 def main():
-    sizes = {"paper": "1871x999x1723", "linear": "512x272x472", "scanner": "3072x3072x1944"}
+    sizes = {"paper": "1871x999x1723", "linear": "512x272x472", "killed": "200x106x184", "scanner": "3072x3072x1944"}
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("what", choices=sizes)
@@ -186,6 +228,7 @@ def main():
     parser.add_argument("--threads", type=int)
     parser.add_argument("--repeat", type=int, default=2)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--kills", type=int, default=20)
     parser.add_argument("--memory", default="6G")
     parser.add_argument("--depth", type=int, default=64, help="slices in a chunk")
     parser.add_argument("--maker", help="the program scanner_scan")
@@ -197,7 +240,7 @@ def main():
     if options.threads is None:
         options.threads = 1 if options.what == "linear" else 0
     os.makedirs(options.work, exist_ok=True)
-    result, good = {"paper": paper, "linear": linear, "scanner": scanner}[options.what](options)
+    result, good = {"paper": paper, "linear": linear, "killed": killed, "scanner": scanner}[options.what](options)
     result = {"what": options.what, "size": options.size, "machine": platform.processor() or platform.machine(), "cores": os.cpu_count(),
               "load": os.getloadavg()[0], "time": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()), **result}
     if options.json:

@@ -3,6 +3,7 @@
 #include "core/pipeline/pipeline.h"
 
 #include <gtest/gtest.h>
+#include <hwy/highway.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -99,9 +100,9 @@ TEST_F(Pipeline, NothingThatAStageFoundIsMissingInTheReport) {
   EXPECT_NE(report_text(report).find("surfaces, "), std::string::npos);
 }
 
-TEST_F(Pipeline, OneAndSevenThreadsGiveTheSameBytes) {
+TEST_F(Pipeline, OneTwoAndSevenThreadsGiveTheSameBytes) {
   std::vector<std::string> bytes;
-  for (const int threads : {1, 7}) {
+  for (const int threads : {1, 2, 7}) {
     set_thread_count(threads);
     SilentProgress progress;
     ASSERT_TRUE(process(folder_ / "b.exa", progress));
@@ -109,6 +110,24 @@ TEST_F(Pipeline, OneAndSevenThreadsGiveTheSameBytes) {
   }
   set_thread_count(0);
   EXPECT_TRUE(bytes[0] == bytes[1]);
+  EXPECT_TRUE(bytes[0] == bytes[2]);
+}
+
+TEST_F(Pipeline, EveryInstructionSetGivesTheSameBytes) {
+  const auto choose = [](std::int64_t targets) {
+    hwy::SetSupportedTargetsForTest(targets);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  };
+  std::string first;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    choose(target);
+    SilentProgress progress;
+    ASSERT_TRUE(process(folder_ / "t.exa", progress, false));
+    const std::string bytes = read_file_bytes(folder_ / "t.exa").value();
+    if (first.empty()) first = bytes;
+    EXPECT_TRUE(bytes == first) << hwy::TargetName(target);
+  }
+  choose(0);
 }
 
 TEST_F(Pipeline, AGridOnTheDiskGivesTheSameBytes) {
