@@ -73,7 +73,7 @@ constexpr std::uint64_t kMostPerByte = 16384;  ///< vertices, edges, faces of a 
 constexpr std::uint64_t kAlwaysItems = 1 << 16;
 // Points and rows that are passed through take time, whatever is in them.
 constexpr std::uint64_t kMostPointsPerByte = 4096, kAlwaysPoints = std::uint64_t{1} << 32;
-constexpr std::uint64_t kMostRowsPerByte = 8, kAlwaysRows = 1 << 23;
+constexpr std::uint64_t kMostRowsPerByte = 8, kAlwaysRows = 1 << 24;
 
 std::string_view normals_name(ExaNormals normals) {
   switch (normals) {
