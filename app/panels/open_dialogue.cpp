@@ -162,8 +162,7 @@ void draw_open_dialogue(bool open, const FilesState& files, float width, float h
 
 void draw_opening(const FilesState& files, float width, float height, std::vector<std::string>& commands) {
   if (!files.opening) return;
-  const float y = files.has_surface ? height - kStrip - kGap : 0.5f * height;
-  ImGui::SetNextWindowPos(ImVec2(0.5f * width, y), ImGuiCond_Always, ImVec2(0.5f, files.has_surface ? 1.0f : 0.5f));
+  ImGui::SetNextWindowPos(ImVec2(0.5f * width, height - kStrip - kGap), ImGuiCond_Always, ImVec2(0.5f, 1.0f));
   ImGui::SetNextWindowSize(ImVec2(std::min(kOpeningWidth, width - 24.0f), 0.0f));
   ImGui::Begin("opening", nullptr, kFixed | ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PushTextWrapPos(0.0f);

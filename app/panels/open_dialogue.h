@@ -49,8 +49,8 @@ std::string opening_words(const Opening& opening);
 void draw_open_dialogue(bool open, const FilesState& files, float width, float height,
                         std::vector<std::string>& commands);
 
-/// How far the file is that is being read, with a way to stop it: in the middle while nothing is shown, else at the
-/// lower edge.
+/// How far the file is that is being read, and a way to stop it. It stands at the lower edge, so that the surface stays
+/// free.
 void draw_opening(const FilesState& files, float width, float height, std::vector<std::string>& commands);
 
 }  // namespace dubsar::app

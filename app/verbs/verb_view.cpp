@@ -237,7 +237,7 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
     DUBSAR_TRY(shelf.open(files));
     log_info("view: F1 shows help; Escape, closing the window or Ctrl-C end it");
   } else {
-    DUBSAR_ASSIGN(first, surface_reader(view, file_reading(options))(files.front(), progress));
+    DUBSAR_ASSIGN(first, surface_reader(view, file_reading(options))(files.front(), progress, {}));
     shelf.has(files);
     view.work = first.work;
     view.around.title = first.title;

@@ -9,6 +9,7 @@
 #include "app/viewer/first_document.h"
 #include "core/base/log.h"
 #include "core/exa/exa_file.h"
+#include "core/parts/surface_model.h"
 
 namespace dubsar::app {
 namespace {
@@ -33,11 +34,26 @@ void keep_work(const std::filesystem::path& file, OpenedSurface& out) {
   log_info("view: the work of the last session on this file is here again");
 }
 
+/// Of an EXA file with many vertices: every fourth point of the scan each way, or every second.
+void tell_coarse(const std::filesystem::path& file, Progress& progress, const TellCoarse& tell) {
+  constexpr std::int64_t kMany = 300'000, kFar = 800'000;
+  const auto info = read_exa_info(file);
+  if (!info || info->stats.vertices < kMany) return;
+  const auto model = read_exa_level(file, info->stats.vertices < kFar ? 1 : 2, progress);
+  if (!model) return;  // what is wrong with it, reading all of it says
+  MeshOptions options;
+  options.fill_holes = false;
+  auto mesh = make_tri_mesh(*model, options);
+  if (mesh && !mesh->triangles.empty()) tell(*std::move(mesh));
+}
+
 }  // namespace
 
 ReadSurface surface_reader(const ViewOptions& options, const FileReading& reading) {
-  return [options, reading](const std::filesystem::path& file, Progress& progress) -> Result<OpenedSurface> {
+  return [options, reading](const std::filesystem::path& file, Progress& progress,
+                            const TellCoarse& tell) -> Result<OpenedSurface> {
     OpenedSurface out;
+    if (tell && reading.partitions.empty()) tell_coarse(file, progress, tell);
     DUBSAR_ASSIGN(out.mesh, load_mesh({file, reading.partitions, true}, progress));
     if (out.mesh.triangles.empty())
       return fail(ErrorKind::kBadData, "{}: there is no triangle in it, so there is nothing to show", file.string());

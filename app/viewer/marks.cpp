@@ -80,7 +80,14 @@ class Marker {
     label.border = kDark;
     return out_.labels.emplace_back(std::move(label));
   }
-  Marks take() { return std::move(out_); }
+  Marks take(double scale) {
+    for (LinesItem& line : out_.lines) line.width_px *= scale;
+    for (LabelItem& label : out_.labels) {
+      label.height_px *= scale;
+      label.shift_px *= scale;
+    }
+    return std::move(out_);
+  }
 
  private:
   const Document& document_;
@@ -146,13 +153,13 @@ glm::dvec3 middle_of(const std::vector<glm::dvec3>& path_mm) {
   return path_mm.back();
 }
 
-Marks marks_of(const Document& document, const Desk& desk, const PartLooks& parts, LabelFont& font) {
+Marks marks_of(const Document& document, const Desk& desk, const PartLooks& parts, LabelFont& font, double scale) {
   Marker marker(document, parts, font);
   for (std::size_t i = 0; i < document.measures.size(); ++i) mark(marker, document.measures[i], i + 1);
   for (const Note& note : document.notes) mark(marker, note);
   for (const SurfacePin& pin : desk.pending)
     if (const auto offset = marker.offset(pin.part)) marker.dot(pin.at_mm + *offset, kMeasured);
-  return marker.take();
+  return marker.take(scale);
 }
 
 }  // namespace dubsar::app

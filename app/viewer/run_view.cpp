@@ -121,7 +121,7 @@ Result<void> Loop::draw(bool& drawn) {
   viewer_->presented(steady_.now());
   const double since_s = 1e-9 * static_cast<double>(steady_.now() - began_);
   if (!out_.first.window_s) out_.first.window_s = since_s;
-  if (!out_.first.surface_s && viewer_->has_surface()) out_.first.surface_s = since_s;
+  if (!out_.first.surface_s && viewer_->shows_surface()) out_.first.surface_s = since_s;
   out_.frame_cpu_ms.push_back(1e3 * (process_cpu_seconds() - cpu));
   ++out_.frames;
   drawn = true;

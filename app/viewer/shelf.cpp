@@ -47,7 +47,10 @@ class Shelf::Reading final : public Progress {
     thread_ = std::jthread([this, read] {
       Result<OpenedSurface> made = fail(ErrorKind::kTryAgain, "{}: there is not enough memory for it", file_.string());
       try {
-        made = read(file_, *this);
+        made = read(file_, *this, [this](TriMesh mesh) {
+          const std::scoped_lock lock(mutex_);
+          coarse_ = std::move(mesh);
+        });
       } catch (const std::bad_alloc&) {  // said above
       }
       const std::scoped_lock lock(mutex_);
@@ -71,6 +74,10 @@ class Shelf::Reading final : public Progress {
   Result<OpenedSurface> take() {
     const std::scoped_lock lock(mutex_);
     return std::move(*made_);
+  }
+  std::optional<TriMesh> take_coarse() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(coarse_, std::nullopt);
   }
   Opening state() const {
     const std::scoped_lock lock(mutex_);
@@ -99,6 +106,7 @@ class Shelf::Reading final : public Progress {
   std::condition_variable changed_;
   OverallProgress whole_;
   std::int64_t total_ = 0;
+  std::optional<TriMesh> coarse_;
   std::optional<Result<OpenedSurface>> made_;
   bool done_ = false;
   std::jthread thread_;  // goes first
@@ -164,6 +172,8 @@ std::optional<Result<OpenedSurface>> Shelf::take() {
   }
   return out;
 }
+
+std::optional<TriMesh> Shelf::take_coarse() { return reading_ ? reading_->take_coarse() : std::nullopt; }
 
 void Shelf::wait() {
   if (reading_) reading_->wait();

@@ -24,8 +24,11 @@ struct OpenedSurface {
   std::string title;
 };
 
+/// Told a coarse surface of a file that takes a while, before that itself is read.
+using TellCoarse = std::function<void(TriMesh)>;
+
 /// Any thread; the errors of reading.
-using ReadSurface = std::function<Result<OpenedSurface>(const std::filesystem::path&, Progress&)>;
+using ReadSurface = std::function<Result<OpenedSurface>(const std::filesystem::path&, Progress&, const TellCoarse&)>;
 
 /// One thread: that of the session.
 class Shelf {
@@ -47,6 +50,8 @@ class Shelf {
   bool stop();
   /// The file that was read, or why it cannot be, once. A file that can be is shown from now on.
   std::optional<Result<OpenedSurface>> take();
+  /// A coarse surface of the file that is being read, once.
+  std::optional<TriMesh> take_coarse();
   /// Returns when take() has something, or nothing is being read.
   void wait();
 

@@ -90,8 +90,8 @@ struct PictureReport {
   std::optional<glm::dvec3> selected_m{};  ///< a dwelling hand chose this place
 };
 
-/// In real time, from the beginning of the session: to the first picture in the window, and to the first one of a
-/// surface; none: there was none.
+/// In real time, from the beginning of the session: to the first picture in the window, and to the first one that shows
+/// something of a surface; none: there was none.
 struct FirstPictures {
   std::optional<double> window_s{}, surface_s{};
 };

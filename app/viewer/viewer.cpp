@@ -307,6 +307,7 @@ Document Viewer::guided_document(const GuidedScene& scene) const {
 }
 
 void Viewer::presented(TimestampNs now) {
+  at_.window_shown = true;
   if (given_.options.guide != nullptr) given_.options.guide->presented(now);
 }
 
@@ -328,7 +329,7 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
   move_light(now, view);
   Shown shown = shown_of(seen, view, given_.options.stage, stage_->box_mm());
   shown.before = at_.guidance.lines;
-  shown.marks = marks_of(seen, desk(), shown.parts, *tools_.font);
+  shown.marks = marks_of(seen, desk(), shown.parts, *tools_.font, letters_scale());
   if (desk().beside) shown.beside = beside(view);
   if (shows_slices()) lay_slices(shown);
   stage_->show(shown, steered.eyes, now);

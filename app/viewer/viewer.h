@@ -69,6 +69,7 @@ class Viewer final : public Workplace {
   Result<void> flush() { return recorder_ ? recorder_->flush() : Result<void>(); }
   Result<void> finish(bool orderly);
 
+  bool shows_surface() const noexcept { return has_surface() || files_.coarse != nullptr; }  ///< or a coarse one
   bool has_surface() const noexcept { return !given_.mesh->triangles.empty(); }
   bool opening() const noexcept { return given_.shelf != nullptr && given_.shelf->busy(); }  ///< a file is being read
   const TriMesh& mesh() const noexcept { return *given_.mesh; }
@@ -114,6 +115,7 @@ class Viewer final : public Workplace {
   /// What belongs to the file that is shown, and what the dialogue lists.
   struct Files {
     std::unique_ptr<OpenedSurface> opened;
+    std::unique_ptr<TriMesh> coarse;  ///< what stands for it until it is there
     Autosave autosave{{}};
     FolderListing listing;
     std::vector<RecentFile> recent;
@@ -146,6 +148,7 @@ class Viewer final : public Workplace {
     std::optional<Error> failed;  ///< what became of one
     std::uint64_t presses = 0;
     Guidance guidance{};            ///< of whoever leads the session
+    bool window_shown = false;      ///< a picture was presented
     bool recording_failed = false;  // and told
   };
   /// What tools need, and what is known of the surface.
@@ -167,6 +170,7 @@ class Viewer final : public Workplace {
   void find_tools();
   Result<void> put(OpenedSurface surface);
   void take_surface();
+  void take_coarse();
   Result<void> take_if_simulated();
   Result<void> leave_work(bool orderly);
   void drop(const std::vector<std::string>& files);
@@ -196,6 +200,7 @@ class Viewer final : public Workplace {
   bool shows_slices() const { return desk().panels && desk().drawer == "slices" && has_surface(); }
   double ui_scale() const;
   glm::dvec2 layout() const;
+  double letters_scale() const;
   double aside() const;
   void lay_slices(Shown& shown);
   Reach reach_of(const glm::dvec3& direction, const glm::dquat& rotation) const;

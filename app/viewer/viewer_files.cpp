@@ -64,9 +64,19 @@ std::string Viewer::present_folder() const {
   return fs::current_path(error).string();
 }
 
+/// Until the first file is there, what is known of it stands in its place.
+void Viewer::take_coarse() {
+  auto coarse = given_.shelf->take_coarse();
+  if (!coarse || has_surface()) return;
+  auto mesh = std::make_unique<TriMesh>(*std::move(coarse));
+  if (const auto done = stage_->set_mesh(*mesh); !done) return log_warning("{}", done.error().message);
+  files_.coarse = std::move(mesh);
+}
+
 /// Takes in a file that was read meanwhile.
 void Viewer::take_surface() {
-  if (given_.shelf == nullptr) return;
+  if (given_.shelf == nullptr || !at_.window_shown) return;  // the window comes first
+  take_coarse();
   auto read = given_.shelf->take();
   if (!read) return;
   Result<void> done;
@@ -140,7 +150,9 @@ Result<void> Viewer::put(OpenedSurface surface) {
   at_.film_since = at_.sweep_since = -1;
   editor_->desk().sweep.reset();
   steering_->set_home(home_of(this->document()));
-  steering_->go_to(view_of(this->document()), given_.clock.now(), false);
+  // What was coarse stood as it was scanned: it turns to where its writing is upright.
+  steering_->go_to(view_of(this->document()), given_.clock.now(), files_.coarse != nullptr);
+  files_.coarse.reset();
   files_.autosave = Autosave(options.files.autosave);
   if (GlfwWindow* const window = given_.presenter.window()) window->set_title("dubsar: " + options.around.title);
   say(options.work.restored ? "What you measured and noted here last time is here again."

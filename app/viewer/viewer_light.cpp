@@ -90,7 +90,7 @@ std::shared_ptr<const Shown> Viewer::beside(const ViewState& view) const {
   const Document& kept = *desk().beside;
   auto out = std::make_shared<Shown>(
       shown_of(kept, desk().linked ? view : view_of(kept), given_.options.stage, stage_->box_mm()));
-  out->marks = marks_of(kept, desk(), out->parts, *tools_.font);
+  out->marks = marks_of(kept, desk(), out->parts, *tools_.font, letters_scale());
   return out;
 }
 

@@ -30,6 +30,9 @@ glm::dvec2 Viewer::layout() const {
   return Overlay::layout(stage_->traits().view.height, stage_->window_mm(), ui_scale());
 }
 
+/// Letters on the surface are as large as those of the panels, and never smaller than on a plain monitor.
+double Viewer::letters_scale() const { return std::max(1.0, stage_->traits().view.height / layout().y); }
+
 PanelState Viewer::panel_state(TimestampNs now) {
   PanelState out;
   out.line = {

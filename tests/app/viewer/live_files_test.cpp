@@ -27,12 +27,13 @@ class LiveFiles : public Live {
   ~LiveFiles() override { fs::remove_all(folder_); }
   fs::path file(const char* name) const { return folder_ / name; }
 
-  Result<OpenedSurface> read(const fs::path& path, Progress& progress) {
+  Result<OpenedSurface> read(const fs::path& path, Progress& progress, const TellCoarse& tell) {
     const std::string name = path.filename().string();
     if (name == "bad.ply") return fail(ErrorKind::kBadData, "bad.ply: it is torn");
     progress.begin("read ply vertex", 100, "item");
     progress.advance(40);
     if (name == "slow.ply") {
+      if (tells_) tell(testing::sphere(20.0f, 12, 24));
       std::unique_lock lock(mutex_);
       while (!may_come_ && !progress.cancelled()) changed_.wait_for(lock, std::chrono::milliseconds(20));
       if (progress.cancelled()) {
@@ -64,8 +65,9 @@ class LiveFiles : public Live {
   }
   /// As play(), of a session that begins with these files. Steps see every turn, drawn or not.
   Result<ViewResult> open_and(const std::vector<fs::path>& files, const std::vector<Step>& steps) {
-    Shelf shelf([this](const fs::path& path, Progress& progress) { return read(path, progress); },
-                folder_ / "state" / "recent.json");
+    Shelf shelf(
+        [this](const fs::path& path, Progress& progress, const TellCoarse& tell) { return read(path, progress, tell); },
+        folder_ / "state" / "recent.json");
     EXPECT_TRUE(shelf.open(files));
     SilentProgress silent;
     std::size_t at = 0;
@@ -90,6 +92,7 @@ class LiveFiles : public Live {
 
   const std::size_t all_ = testing::lettered_box().triangles.size();
   std::vector<fs::path> shown_;
+  bool tells_ = false;  ///< something coarse of the slow one
 
  private:
   fs::path folder_ =
@@ -111,6 +114,25 @@ TEST_F(LiveFiles, TheWindowIsThereBeforeTheSurfaceAndAnswersWhileItIsRead) {
   EXPECT_EQ(done->triangles, all_);
   ASSERT_TRUE(done->first.window_s && done->first.surface_s);
   EXPECT_LT(*done->first.window_s, *done->first.surface_s);
+}
+
+TEST_F(LiveFiles, SomethingCoarseStandsThereUntilTheSurfaceIsRead) {
+  tells_ = true;
+  Image coarse;
+  const auto grey_at = [](const Image& image) { return static_cast<int>(image.at(kWidth / 2, 60)[1]); };
+  const auto done = open_and(
+      {file("slow.ply")},
+      {until([](const ViewMoment& m) { return m.viewer.shows_surface() && m.drawn; }),
+       until([&](const ViewMoment& m) {
+         screen_ = m.presenter.window()->screen();
+         coarse = shot();
+         return !m.viewer.has_surface() && grey_at(coarse) > 60;
+       }),
+       {[this] { let_come(); }, [this](const ViewMoment& m) { return triangles(m) == all_ && !m.report.moving; }},
+       end()});
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_EQ(done->triangles, all_);
+  ASSERT_TRUE(done->first.surface_s);
 }
 
 TEST_F(LiveFiles, WithoutAFileTheDialogueIsOpenAndEscapeClosesItThenEnds) {

@@ -104,7 +104,7 @@ TEST_F(Live, AScriptSaysEveryCommandThereIs) {
     mesh.triangle_partition.push_back(2 * t < mesh.triangles.size() ? 0 : 1);
   mesh.partitions = {{.id = 0, .name = "tablet"}, {.id = 1, .name = "envelope"}};
   for (const char* name : {"a.ply", "b.ply"}) std::ofstream(folder / name) << name;
-  const auto read = [&](const fs::path& path, Progress&) -> Result<OpenedSurface> {
+  const auto read = [&](const fs::path& path, Progress&, const TellCoarse&) -> Result<OpenedSurface> {
     OpenedSurface out{mesh, {}, {}, path.filename().string()};
     out.work.surface = path;
     return out;
