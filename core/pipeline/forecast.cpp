@@ -18,12 +18,12 @@ constexpr std::int64_t kGroups = 8, kGroupAfter = 6;
 
 // Seconds of one core for a million vertices, of the stages that work on surfaces; measured on phantoms
 // (docs/speed.md).
-constexpr double kSurfaceSeconds = 5.5;
+constexpr double kSurfaceSeconds = 6.0;
 constexpr double kSecondsPerRay = 1.0 / 13e6;
 constexpr double kContactSeconds = 14.0;  ///< at the scan's resolution
 // The rest of memory: the program, its slabs and threads; and, where contact is traced, of each voxel of the grid.
 constexpr double kProgramBytes = 80e6, kContactBytesPerVoxel = 12.6;
-constexpr double kProductBytesPerVertex = 0.45, kLightBytesPerVertex = 0.35;
+constexpr double kProductBytesPerVertex = 0.45, kLightBytesPerVertex = 0.07;
 constexpr double kExtractOfDenoising = 0.3;  ///< what sharpening and extraction take of the time of the filter's passes
 constexpr double kEfficiency = 0.85;         ///< of more than one thread
 
