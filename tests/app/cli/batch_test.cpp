@@ -12,8 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "core/hdf5/hdf5_writer.h"
 #include "tests/app/cli/run_program.h"
+#include "tests/core/volume/written_scan.h"
 
 namespace dubsar::test {
 namespace {
@@ -34,12 +34,9 @@ class Batch : public testing::Test {
                    z = static_cast<double>(i / kEdge / kEdge) - 19.5;
       values[i] = x * x + y * y + z * z < radius * radius ? 100.0F : 10.0F;
     }
-    auto writer = Hdf5Writer::create(path);
-    ASSERT_TRUE(writer) << writer.error().message;
     Hdf5Storage storage;
     storage.dims = {kEdge, kEdge, kEdge};
-    ASSERT_TRUE(writer->write<float>("scan", storage, values));
-    ASSERT_TRUE(writer->commit());
+    write_scan(path, "scan", storage, values);
   }
   /// Surfaces by name, with their bytes.
   std::map<std::string, std::string> surfaces(const std::string& folder) const {

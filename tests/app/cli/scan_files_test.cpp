@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/exa/exa_file.h"
-#include "core/hdf5/hdf5_writer.h"
 #include "tests/app/cli/run_program.h"
+#include "tests/core/volume/written_scan.h"
 
 namespace dubsar::test {
 namespace {
@@ -34,15 +34,9 @@ class ScanFiles : public testing::Test {
           const bool small = x >= 3 && x < 8 && y >= 3 && y < 13 && z >= 3 && z < 26;
           values[x_first ? (x * kY + y) * kZ + z : (z * kY + y) * kX + x] = large || small ? 100.0F : 10.0F;
         }
-    auto writer = Hdf5Writer::create(path);
-    ASSERT_TRUE(writer) << writer.error().message;
     Hdf5Storage storage;
     storage.dims = x_first ? std::vector<std::uint64_t>{kX, kY, kZ} : std::vector<std::uint64_t>{kZ, kY, kX};
-    ASSERT_TRUE(writer->write<float>(dataset, storage, values));
-    if (!attribute.empty()) {
-      ASSERT_TRUE(writer->set_attribute(dataset, "axis_order", attribute));
-    }
-    ASSERT_TRUE(writer->commit());
+    write_scan(path, dataset, storage, values, attribute);
   }
 
  private:

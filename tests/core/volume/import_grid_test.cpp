@@ -8,9 +8,9 @@
 #include <random>
 
 #include "core/base/parallel.h"
-#include "core/hdf5/hdf5_writer.h"
 #include "core/volume/import.h"
 #include "tests/core/volume/temp_folder.h"
+#include "tests/core/volume/written_scan.h"
 
 namespace dubsar {
 namespace {
@@ -29,12 +29,9 @@ class ImportGrid : public testing_tools::TempFolder {
     return static_cast<float>((box.z.at(z) * kDims.y + box.y.at(y)) * kDims.x + box.x.at(x));
   }
   void write(const std::string& name, std::vector<std::uint64_t> chunk, const std::vector<float>& all) {
-    auto writer = Hdf5Writer::create(in(name));
-    ASSERT_TRUE(writer);
     Hdf5Storage storage{.dims = {17, 19, 23}, .chunk = std::move(chunk)};
     storage.deflate = storage.chunk.empty() ? 0 : 3;
-    ASSERT_TRUE(writer->write<float>("/v", storage, all));
-    ASSERT_TRUE(writer->commit());
+    test::write_scan(in(name), "/v", storage, all);
   }
   static Result<std::vector<float>> read(SlabSource& source, std::int64_t slab, std::int64_t overlap = 0) {
     const Dims dims = source.dims();
