@@ -83,7 +83,7 @@ TEST(ExaSoak, FlippedBitsAreRefused) {
   ASSERT_TRUE(settle_for_exa(model, {}, progress));
   const std::string whole = file_of(encoded(model));
   std::mt19937 random(soak() ? std::random_device()() : 8u);
-  for (int round = 0; round < (soak() ? 50000 : 3000); ++round) {
+  for (int round = 0; round < (soak() ? 100000 : 3000); ++round) {
     std::string bytes = whole;
     for (auto flips = 1 + random() % 3; flips > 0; --flips)
       bytes[random() % bytes.size()] ^= static_cast<char>(1u << random() % 8);
@@ -103,7 +103,7 @@ TEST(ExaSoak, FlippedBitsBehindRepairedSumsGiveAnErrorOrTheSameMesh) {
   const std::vector<ExaBlock> blocks = encoded(model);
   const long before_kib = peak_kib();
   double slowest = 0.0;
-  for (int round = 0; round < (soak() ? 50000 : 2000); ++round) {
+  for (int round = 0; round < (soak() ? 100000 : 2000); ++round) {
     std::vector<ExaBlock> damaged = blocks;
     ExaBlock& block = damaged[random() % damaged.size()];
     const auto parts = split_chunks(block.bytes, block.chunks, "test");
