@@ -42,7 +42,8 @@ struct SignHand {
 class SignRest {
  public:
   /// The sign that is chosen now. Afterwards, and when a hand that is not free came to a sign, none is chosen until all
-  /// hands were seen beside the column of signs, or were gone for a while: a tired hand sinks from one sign to the next.
+  /// hands were seen beside the column of signs, or were gone for a while: a tired hand sinks from one sign to the
+  /// next.
   std::optional<Sign> update(TimestampNs now, std::span<const SignHand> hands, std::span<const SignPicture> signs,
                              double aspect);
   double filled(Sign sign) const noexcept;
