@@ -42,27 +42,31 @@ Result<void> check_file(const fs::path& file) {
 /// One file that is read in a thread.
 class Shelf::Reading final : public Progress {
  public:
-  Reading(const ReadSurface& read, fs::path file, std::size_t index)
-      : index_(index), file_(std::move(file)), whole_(file_.extension() == ".ply" ? ply_plan() : reading_plan()) {
-    thread_ = std::jthread([this, read] {
-      Result<OpenedSurface> made = fail(ErrorKind::kTryAgain, "{}: there is not enough memory for it", file_.string());
-      try {
-        made = read(file_, *this, [this](TriMesh mesh) {
-          const std::scoped_lock lock(mutex_);
-          coarse_ = std::move(mesh);
-        });
-      } catch (const std::bad_alloc&) {  // said above
-      }
-      const std::scoped_lock lock(mutex_);
-      made_ = std::move(made);
-      done_ = true;
-      changed_.notify_all();
-    });
+  Reading(fs::path file, std::size_t index)
+      : index_(index), file_(std::move(file)), whole_(file_.extension() == ".ply" ? ply_plan() : reading_plan()) {}
+  void start(const ReadSurface& read) {
+    if (!thread_.joinable())
+      thread_ = std::jthread([this, read] {
+        Result<OpenedSurface> made =
+            fail(ErrorKind::kTryAgain, "{}: there is not enough memory for it", file_.string());
+        try {
+          made = read(file_, *this, [this](TriMesh mesh) {
+            const std::scoped_lock lock(mutex_);
+            coarse_ = std::move(mesh);
+          });
+        } catch (const std::bad_alloc&) {  // said above
+        }
+        const std::scoped_lock lock(mutex_);
+        made_ = std::move(made);
+        done_ = true;
+        changed_.notify_all();
+      });
   }
   ~Reading() override { cancel(); }
 
   std::size_t index() const noexcept { return index_; }
   const fs::path& file() const noexcept { return file_; }
+  bool started() const { return thread_.joinable(); }
   bool done() const {
     const std::scoped_lock lock(mutex_);
     return done_;
@@ -120,7 +124,7 @@ Shelf::~Shelf() {
 
 void Shelf::begin(std::size_t file) {
   stop();
-  reading_ = std::make_unique<Reading>(read_, files_[file], file);
+  reading_ = std::make_unique<Reading>(files_[file], file);
 }
 
 Result<void> Shelf::open(const std::vector<fs::path>& files) {
@@ -155,7 +159,8 @@ bool Shelf::stop() {
   std::erase_if(left_, [](const auto& each) { return each->done(); });
   if (!reading_) return false;
   reading_->cancel();
-  left_.push_back(std::move(reading_));
+  if (reading_->started()) left_.push_back(std::move(reading_));
+  reading_.reset();
   return true;
 }
 
@@ -175,7 +180,12 @@ std::optional<Result<OpenedSurface>> Shelf::take() {
 
 std::optional<TriMesh> Shelf::take_coarse() { return reading_ ? reading_->take_coarse() : std::nullopt; }
 
+void Shelf::start() {
+  if (reading_) reading_->start(read_);
+}
+
 void Shelf::wait() {
+  start();
   if (reading_) reading_->wait();
 }
 

@@ -39,13 +39,15 @@ class Shelf {
   Shelf(const Shelf&) = delete;
   Shelf& operator=(const Shelf&) = delete;
 
-  /// Puts these files beside those that are open, and begins to read the first. What was being read before is left.
-  /// kNoInput: one of them is not there; kUsage: a folder, or no surface by its name.
+  /// Puts these files beside those that are open, and the first is the next to be read. What was being read before is
+  /// left. kNoInput: one of them is not there; kUsage: a folder, or no surface by its name.
   Result<void> open(const std::vector<std::filesystem::path>& files);
   /// These are open, and the first of them is shown.
   void has(const std::vector<std::filesystem::path>& files);
-  /// Begins to read the next (1) or previous (-1) of the open files. kUsage: there is no other.
+  /// The next (1) or previous (-1) of the open files is the next to be read. kUsage: there is no other.
   Result<void> step(int by);
+  /// What is to be read is read from now on; until then a window has the machine for itself. Again: nothing.
+  void start();
   /// Leaves what is being read. False: nothing is.
   bool stop();
   /// The file that was read, or why it cannot be, once. A file that can be is shown from now on.

@@ -76,6 +76,7 @@ void Viewer::take_coarse() {
 /// Takes in a file that was read meanwhile.
 void Viewer::take_surface() {
   if (given_.shelf == nullptr || !at_.window_shown) return;  // the window comes first
+  given_.shelf->start();
   take_coarse();
   auto read = given_.shelf->take();
   if (!read) return;
