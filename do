@@ -34,7 +34,7 @@ usage() {
               ./do bench linear: four sizes, how cost grows; exit code 1 where an exponent is off 1.0 by more than .1
               ./do bench killed: kill -9 at 20 random moments, then --resume; exit code 1 where bytes differ
               ./do bench scanner [--size XxYxZ] [--memory 6G]: a scan larger than memory, 3072x3072x1944 by default
-              ./do bench contact [X Y Z SEED]: what is read where tablet and envelope touch
+              ./do bench wedges [--quick | --size XxYxZ] [--seed N]: what is read of a hidden tablet, beside what is wanted
               ./do bench view: first pictures, pictures a second and memory, beside f3d and MeshLab
 ./do workflow examples/snakemake: a dry run, and three scans for real
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
@@ -203,9 +203,9 @@ bench() {
         --json "$build/bench_$1.json" --history "$build/bench_history.jsonl" "${@:2}"
       return ;;
   esac
-  if [ "${1:-}" = contact ]; then
-    build_target --target contact_bench
-    "$build/tests/bench/contact_bench" "${@:2}"
+  if [ "${1:-}" = wedges ]; then
+    build_target --target wedges_bench
+    "$build/tests/bench/wedges_bench" "${@:2}"
     return
   fi
   build_target --target dubsar_bench

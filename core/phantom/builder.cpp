@@ -62,8 +62,9 @@ void PhantomBuilder::shape_bodies() {
   Random random(seed(), 2);
   // Sizes that a coarse grid could not show are kept at some voxels: a small phantom is coarser, not empty.
   const float half_y = mm(kEnvelopeHalfMm[1]);
+  constexpr float kLeastGap = 2.4f;  // narrower ones close at half of the resolution, and nothing is separate
   p_.gap_.open = p_.options_.gap_vox > 0.0 ? static_cast<float>(p_.options_.gap_vox)
-                                           : std::max(mm(0.30), std::min(5.5f, 0.075f * half_y));
+                                           : std::max({mm(0.30), std::min(5.5f, 0.075f * half_y), kLeastGap});
   const float wall = std::max(mm(3.0), 4.5f);
 
   ClayBody& outer = p_.outer_.body;

@@ -104,7 +104,7 @@ TEST(TraceContact, FilmOfHalfAVoxelIsFollowed) {
   EXPECT_GE(score.near_fraction(), 0.92);
   const auto film = static_cast<double>(score.evidence[2]), all = static_cast<double>(score.contact_vertices);
   EXPECT_GE(film, 0.8 * all);
-  EXPECT_EQ(score.false_wedges, 0);
+  EXPECT_EQ(score.false_wedges(), 0);
   EXPECT_LT(traced_scan(phantom::Contact::kFilm, 0.5, 60617, false).score().near_fraction(), 0.7)
       << "smooth patches do as well";
 }
@@ -114,7 +114,7 @@ TEST(TraceContact, NothingIsInventedWhereTheEnvelopeFillsTheWedges) {
   ASSERT_TRUE(made.result.report.contact && made.result.report.contact->traced);
   expect_closed_and_mating(made);
   const phantom::ContactScore score = made.score();
-  EXPECT_EQ(score.false_wedges, 0);
+  EXPECT_EQ(score.false_wedges(), 0);
   EXPECT_GE(static_cast<double>(score.evidence[3]), 0.85 * static_cast<double>(score.contact_vertices));
 }
 
@@ -123,7 +123,7 @@ TEST(TraceContact, NothingIsReadOnATabletThatNobodyWroteOn) {
   ASSERT_TRUE(made.result.report.contact && made.result.report.contact->traced);
   const phantom::ContactScore score = made.score();
   EXPECT_GE(score.near_fraction(), 0.98);
-  EXPECT_EQ(score.false_wedges, 0);
+  EXPECT_EQ(score.false_wedges(), 0);
   // Where the tablet is free, nothing stands out of the noise: a wedge is 7 voxels deep, a stroke of 1 can be read.
   const TriMesh tablet = made.body("tablet");
   std::int64_t free = 0, off = 0;

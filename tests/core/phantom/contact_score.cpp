@@ -34,17 +34,28 @@ ContactScore judge_contact(const Phantom& phantom, const JudgedMesh& tablet, std
     places[i].off = static_cast<float>(phantom.tablet_distance(p));
     places[i].below = -places[i].off;
   });
-  std::map<std::array<std::int64_t, 3>, int> known_below;  // by cubes of 8 voxels
+  std::map<std::array<std::int64_t, 3>, FalseWedge> known_below;  // by cubes of 8 voxels
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (!places[i].contact) continue;
     ++score.contact_vertices;
     score.near_truth += std::abs(places[i].off) <= 1.0f;
     ++score.evidence[evidence[i]];
-    if ((evidence[i] == kPocket || evidence[i] == kFilm) && static_cast<double>(places[i].below) > kFalseDepth)
-      ++known_below[{std::lround(tablet.positions[i].x / 8.0f), std::lround(tablet.positions[i].y / 8.0f),
-                     std::lround(tablet.positions[i].z / 8.0f)}];
+    if ((evidence[i] != kPocket && evidence[i] != kFilm) || static_cast<double>(places[i].below) <= kFalseDepth)
+      continue;
+    const glm::dvec3 p(tablet.positions[i]);
+    FalseWedge& wedge = known_below[{std::lround(p.x / 8.0), std::lround(p.y / 8.0), std::lround(p.z / 8.0)}];
+    wedge.place += p;
+    wedge.deepest = std::max(wedge.deepest, static_cast<double>(places[i].below));
+    ++wedge.vertices;
+    wedge.of_pockets += evidence[i] == kPocket;
+    wedge.of_pores += phantom.nearest_part(p) == Part::kPore;
   }
-  for (const auto& [cube, vertices] : known_below) score.false_wedges += vertices >= 6;
+  constexpr int kLeastVertices = 6;
+  for (auto& [cube, wedge] : known_below) {
+    if (wedge.vertices < kLeastVertices) continue;
+    wedge.place /= wedge.vertices;
+    score.invented.push_back(wedge);
+  }
   return score;
 }
 

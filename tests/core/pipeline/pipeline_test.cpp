@@ -192,5 +192,24 @@ TEST_F(Pipeline, StoppedInAnyStageItLeavesNothing) {
   expect_only_the_scan("contact");
 }
 
+TEST(SmallestPhantom, HoldsATabletAtEitherResolution) {
+  for (const std::uint64_t seed : {3u, 77u}) {
+    phantom::PhantomOptions wanted = phantom::parse_preset("tiny").value();
+    wanted.seed = seed;
+    SilentProgress progress;
+    PipelineOptions options;
+    options.import.path = fs::temp_directory_path() / fmt::format("dubsar_smallest_{}.h5", ::getpid());
+    ASSERT_TRUE(phantom::write_phantom(options.import.path, std::nullopt, wanted, progress));
+    options.occlusion.reset();
+    for (const Detail detail : {Detail::kScan, Detail::kHalf}) {
+      options.detail = detail;
+      const auto result = run_pipeline(options, progress);
+      ASSERT_TRUE(result) << result.error().message;
+      EXPECT_TRUE(result->report.segment.nested) << "seed " << seed << ", " << name_in(kDetails, detail);
+    }
+    fs::remove(options.import.path);
+  }
+}
+
 }  // namespace
 }  // namespace dubsar

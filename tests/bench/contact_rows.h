@@ -1,0 +1,49 @@
+#pragma once
+// Phantoms of all kinds of contact between tablet and envelope, processed without options and judged by their truth.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/phantom/options.h"
+#include "core/pipeline/detail.h"
+#include "tests/core/phantom/contact_score.h"
+
+namespace dubsar {
+
+struct ContactRow {
+  std::string name;
+  phantom::PhantomOptions options;
+};
+
+/// "text", "pressed", "pockets", "film 1.0" to "film 0.2", "filled", "unwritten", "unwritten film", "hard": the first
+/// with `seed`, each other with one of its own.
+std::vector<ContactRow> contact_rows(const Dims& dims, std::uint64_t seed);
+
+struct JudgedRow {
+  phantom::ContactScore contact;
+  phantom::TruthComparison seen;  ///< tablet and envelope, without what is inferred
+  /// Of the tablet's vertices that are not inferred: how far from the tablet's true surface, voxels of the scan, where
+  /// the gap is at least as wide as seen by the scan; and the share of all of them farther than three voxels.
+  double tablet_rms = 0.0, stray = 0.0;
+  std::int64_t crossings = 0;       ///< pairs of triangles, one of a patch, that cross on tablet or envelope
+  std::int64_t self_crossings = 0;  ///< pairs of the surface itself
+  bool traced = false;
+  double step = 1.0;   ///< voxels of the scan in one of the grid
+  std::string remark;  ///< why nothing was traced
+  double wall_s = 0.0, cpu_s = 0.0, peak_mib = 0.0, contact_cpu_s = 0.0;
+};
+
+struct JudgeOptions {
+  Detail detail = Detail::kAuto;
+  bool light = false;   ///< with ambient occlusion, so that the times are those of `dubsar process`
+  bool judge = true;    ///< false: times and memory only
+  bool places = false;  ///< prints where a wedge was invented
+};
+
+/// Writes the scan to a folder for temporary files, processes it and judges the result. Ends the program with a
+/// sentence where something fails.
+JudgedRow judge_row(const ContactRow& row, const JudgeOptions& how);
+
+}  // namespace dubsar
