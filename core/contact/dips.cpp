@@ -12,7 +12,7 @@ namespace {
 constexpr std::int64_t kEdge = BrickMap<float>::kEdge;
 /// Beyond the reach of the point spread: at two steps the dip of a film is still deep, at three it is over.
 constexpr float kArm = 3.0f;
-constexpr float kDisk = 2.3f, kDiskDeviation = 1.4f;
+constexpr float kDisk = 3.2f, kDiskDeviation = 1.8f;
 constexpr float kLeastCosine = 0.45f;  ///< flanks of wedges stand up to 60 degrees from the contact
 constexpr float kNoDip = -1e30f;
 
@@ -31,9 +31,9 @@ std::vector<Direction> directions() {
     d.unit = glm::normalize(glm::vec3(step));
     d.arm = step * static_cast<int>(std::lround(kArm / glm::length(glm::vec3(step))));
     float sum = 0.0f;
-    for (int z = -2; z <= 2; ++z)
-      for (int y = -2; y <= 2; ++y)
-        for (int x = -2; x <= 2; ++x) {
+    for (int z = -3; z <= 3; ++z)
+      for (int y = -3; y <= 3; ++y)
+        for (int x = -3; x <= 3; ++x) {
           const glm::vec3 q(x, y, z);
           if (glm::length(q) > kDisk || std::abs(glm::dot(q, d.unit)) > 0.45f) continue;
           d.disk.emplace_back(x, y, z);
@@ -146,7 +146,7 @@ Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const B
         if (std::abs(glm::dot(d.unit, band.normal(node))) < kLeastCosine) continue;
         if (!in_clay(inside, p + d.arm) || !in_clay(inside, p - d.arm)) continue;
         const float middle = mean(density, d, p);
-        const float dip = std::min(mean(density, d, p + d.arm), mean(density, d, p - d.arm)) - middle;
+        const float dip = 0.5f * (mean(density, d, p + d.arm) + mean(density, d, p - d.arm)) - middle;
         if (dip > best) {
           best = dip;
           least = middle;

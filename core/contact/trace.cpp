@@ -25,9 +25,9 @@ namespace {
 constexpr float kSpacing = 0.7f;  ///< of samples of the patches, grid steps
 /// Farthest that inferred contact is moved from the cut: staircases of the cut go, nothing runs through anything else.
 constexpr float kMostMove = 1.5f;
-constexpr int kMostAttempts = 6;       ///< to get round places where the contact would not close the parts
-constexpr int kMostCrossed = 3;        ///< of those, to get round places where it would run through the surface
-constexpr std::size_t kHopeless = 60;  ///< such places, from which on the next attempt does not better
+constexpr int kMostAttempts = 8;       ///< to get round places where the contact would not close the parts
+constexpr int kMostCrossed = 5;        ///< of those, to get round places where it would run through the surface
+constexpr std::size_t kHopeless = 60;  ///< such places after the first attempt, from which on the next does not better
 
 /// What tracing changes in a model.
 struct Labels {
@@ -48,11 +48,13 @@ void restore(const Labels& labels, SurfaceModel& model) {
 
 struct Traced {
   const ContactBand& band;
+  const BandDensity& density;
   const Dips& dips;
   const EdgeIndex& index;
   const FaceGraph& graph;
   std::vector<BandFace> faces;
   std::vector<ClaySide> side;
+  std::vector<glm::vec3> crossed;  ///< where following the dips made the contact run through something
 };
 
 void store_patch(SurfaceModel& model, InterfaceMesh mesh, std::vector<std::uint8_t> evidence) {
@@ -73,7 +75,8 @@ Result<void> build_contact(SurfaceModel& model, const Traced& traced, const Cont
   InterfaceMesh mesh = make_interface(model, traced.index, traced.band, traced.side, traced.dips);
   const std::int64_t stars = close_rest(model, traced.graph, mesh);
   part_shared_edges(model, mesh);
-  std::vector<std::uint8_t> evidence = shape_interface(mesh, model.mesh.positions, options.film_strength, kMostMove);
+  std::vector<std::uint8_t> evidence =
+      shape_interface(mesh, model.mesh.positions, traced.density, traced.crossed, options.film_strength, kMostMove);
   report.film_vertices = std::count(evidence.begin(), evidence.end(), evidence_byte(Evidence::kFilm));
   report.inferred_vertices = static_cast<std::int64_t>(evidence.size()) - report.film_vertices;
   store_patch(model, std::move(mesh), std::move(evidence));
@@ -146,7 +149,12 @@ Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const Contac
       places = report.patches.left;
       if (places.empty()) return {};
       if (!best || best->report.patches.left.size() > places.size()) best = Closed{labels_of(model), report};
-      if (++crossed == kMostCrossed || places.size() > kHopeless) break;
+      if (++crossed == kMostCrossed || (crossed > 1 && places.size() > kHopeless)) break;
+      traced.crossed.insert(traced.crossed.end(), places.begin(), places.end());
+      if (crossed == 1) {  // most of them are gone when dips are not followed there
+        restore(before, model);
+        continue;
+      }
     }
     restore(before, model);
     if (places.empty()) break;
@@ -184,14 +192,11 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   DUBSAR_ASSIGN(const ContactBand band,
                 ContactBand::make(model.samples.signs, std::move(samples), options.reach, progress));
   report.points = static_cast<std::int64_t>(band.nodes.size());
-  Dips dips;
-  {
-    DUBSAR_ASSIGN(const BandDensity values, BandDensity::read(band, density, progress));
-    DUBSAR_ASSIGN(dips, find_dips(band, model.samples.signs, values, progress));
-  }
+  DUBSAR_ASSIGN(const BandDensity values, BandDensity::read(band, density, progress));
+  DUBSAR_ASSIGN(const Dips dips, find_dips(band, model.samples.signs, values, progress));
   DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(model.samples));
   DUBSAR_ASSIGN(const FaceGraph graph, FaceGraph::build(model.mesh, progress));
-  Traced traced{band, dips, index, graph, faces_of_band(model, index, band), {}};
+  Traced traced{band, values, dips, index, graph, faces_of_band(model, index, band), {}, {}};
   DUBSAR_ASSIGN(traced.side, divide_clay(band, dips, hints_of_faces(model, band, traced.faces), progress));
   if (progress.cancelled()) return cancelled_error();
   DUBSAR_TRY(trace_until_closed(model, std::move(traced), options, report, progress));

@@ -16,7 +16,7 @@ namespace dubsar {
 struct ContactOptions {
   float reach = 12.0f;         ///< of the search on both sides of the smooth patch, grid steps
   double step = 1.0 / 64.0;    ///< positions are multiples of it, as in files
-  float film_strength = 2.0f;  ///< mean strength of dips around a vertex (dips.h) from which on a film is believed
+  float film_strength = 1.3f;  ///< mean strength of dips around a vertex (dips.h) from which on a film is believed
 };
 
 struct ContactReport {

@@ -1,0 +1,220 @@
+#include "core/contact/film_refine.h"
+
+#include <algorithm>
+#include <array>
+#include <glm/geometric.hpp>
+
+#include "core/base/parallel.h"
+
+namespace dubsar {
+namespace {
+
+constexpr int kReach = 5;             ///< samples of a profile, each way
+constexpr float kStep = 0.5f;         ///< between them, grid steps
+constexpr int kRounds = 4;            ///< of search and move
+constexpr float kLeap = 0.75f;        ///< most that a round moves a vertex
+constexpr int kProfileRings = 2;      ///< over which profiles are averaged, and moves
+constexpr int kBendRings = 3;         ///< over which the curvature is
+constexpr float kSpread = 0.5f;       ///< of the way to the middle of its neighbours, along the contact
+constexpr float kLeastCosine = 0.3f;  ///< between a triangle before and after
+/// Variance of what blurs a film, grid steps squared: the point spread of a scan and the low pass of BandDensity.
+constexpr float kBlur = 0.8f;
+
+using Profile = std::array<float, 2 * kReach + 1>;
+
+float trilinear(const BandDensity& density, const glm::vec3& p) {
+  const glm::vec3 f = glm::floor(p), t = p - f;
+  float sum = 0.0f;
+  for (int k = 0; k < 8; ++k) {
+    const int dx = k & 1, dy = k >> 1 & 1, dz = k >> 2;
+    const float w = (dx ? t.x : 1.0f - t.x) * (dy ? t.y : 1.0f - t.y) * (dz ? t.z : 1.0f - t.z);
+    sum += w * density.get(static_cast<std::int64_t>(f.x) + dx, static_cast<std::int64_t>(f.y) + dy,
+                           static_cast<std::int64_t>(f.z) + dz);
+  }
+  return sum;
+}
+
+void add(float& sum, float v) { sum += v; }
+void add(glm::vec3& sum, const glm::vec3& v) { sum += v; }
+void add(Profile& sum, const Profile& v) {
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += v[i];
+}
+void scale(float& v, float by) { v *= by; }
+void scale(glm::vec3& v, float by) { v *= by; }
+void scale(Profile& v, float by) {
+  for (float& x : v) x *= by;
+}
+
+/// Each value becomes the mean of itself and its neighbours', `rings` times.
+template <class T>
+void average(const InterfaceRings& around, int rings, std::vector<T>& values) {
+  std::vector<T> next(values.size());
+  for (int ring = 0; ring < rings; ++ring) {
+    parallel_for(static_cast<std::int64_t>(values.size()), 1024, [&](std::int64_t k) {
+      const auto i = static_cast<std::size_t>(k);
+      next[i] = values[i];
+      for (const std::uint32_t w : around.added[i]) add(next[i], values[w]);
+      scale(next[i], 1.0f / static_cast<float>(around.added[i].size() + 1));
+    });
+    values.swap(next);
+  }
+}
+
+/// The nearest dip of a profile: downhill from its middle, the vertex of a parabola; steps from the middle.
+float nearest_dip(const Profile& profile) {
+  std::size_t at = kReach;
+  while (at > 0 && profile[at - 1] < profile[at]) --at;
+  if (at == kReach)
+    while (at + 1 < profile.size() && profile[at + 1] < profile[at]) ++at;
+  float steps = static_cast<float>(static_cast<int>(at) - kReach);
+  if (at > 0 && at + 1 < profile.size()) {
+    const float a = profile[at - 1], b = profile[at], c = profile[at + 1], bend = a - 2.0f * b + c;
+    if (bend > 0.0f) steps += std::clamp(0.5f * (a - c) / bend, -0.5f, 0.5f);
+  }
+  return kStep * steps;
+}
+
+class Follower {
+ public:
+  Follower(InterfaceMesh& mesh, const InterfaceRings& rings, const std::vector<glm::vec3>& dual_positions,
+           const std::vector<bool>& follows, float most)
+      : mesh_(mesh),
+        rings_(rings),
+        dual_(dual_positions),
+        start_(mesh.added),
+        share_(mesh.added.size(), 0.0f),
+        most_(most) {
+    const auto at_rim = [&](std::size_t i) { return rings.all[i].size() != rings.added[i].size(); };
+    for (std::size_t i = 0; i < share_.size(); ++i) {
+      if (!follows[i] || at_rim(i)) continue;
+      const bool second = std::any_of(rings.added[i].begin(), rings.added[i].end(), at_rim);
+      share_[i] = second ? 0.5f : 1.0f;
+    }
+  }
+
+  void find_normals() {
+    normal_.assign(mesh_.added.size(), glm::vec3(0.0f));
+    for (const Triangle& t : mesh_.triangles) {
+      const glm::vec3 n = area_vector(t, mesh_.added);
+      for (const std::uint32_t v : t)
+        if (v >= dual_.size()) normal_[v - dual_.size()] += n;
+    }
+    average(rings_, 1, normal_);
+    for (glm::vec3& n : normal_) n = glm::length(n) > 0.0f ? glm::normalize(n) : glm::vec3(0.0f);
+  }
+
+  std::vector<float> ways_to_dips(const BandDensity& density) const {
+    std::vector<Profile> profiles(mesh_.added.size());
+    each([&](std::size_t i) {
+      for (std::size_t s = 0; s < profiles[i].size(); ++s)
+        profiles[i][s] =
+            trilinear(density, mesh_.added[i] + kStep * static_cast<float>(static_cast<int>(s) - kReach) * normal_[i]);
+    });
+    average(rings_, kProfileRings, profiles);
+    std::vector<float> ways(profiles.size(), 0.0f);
+    each([&](std::size_t i) {
+      if (share_[i] > 0.0f) ways[i] = std::clamp(nearest_dip(profiles[i]), -kLeap, kLeap);
+    });
+    average(rings_, kProfileRings, ways);
+    return ways;
+  }
+
+  /// A blurred sheet is darkest on the hollow side of where it is, by the variance of the blur times its mean
+  /// curvature.
+  std::vector<float> ways_out_of_the_hollow() const {
+    std::vector<float> ways(mesh_.added.size(), 0.0f);
+    each([&](std::size_t i) {
+      float bend = 0.0f, squares = 0.0f;
+      for (const std::uint32_t w : rings_.all[i]) {
+        const glm::vec3 off = position(w, mesh_.added) - mesh_.added[i];
+        bend += glm::dot(off, normal_[i]);
+        squares += glm::dot(off, off);
+      }
+      if (squares > 0.0f) ways[i] = -2.0f * kBlur * bend / squares;
+    });
+    average(rings_, kBendRings, ways);
+    for (float& way : ways) way = std::clamp(way, -1.0f, 1.0f);
+    return ways;
+  }
+
+  void move(const std::vector<float>& ways) {
+    each([&](std::size_t i) {
+      const glm::vec3 way = mesh_.added[i] + share_[i] * ways[i] * normal_[i] - start_[i];
+      const float length = glm::length(way);
+      mesh_.added[i] = start_[i] + (length > most_ ? most_ / length : 1.0f) * way;
+    });
+  }
+
+  /// Corners stay evenly apart, so that triangles do not fold.
+  void spread() {
+    std::vector<glm::vec3> moved = mesh_.added;
+    each([&](std::size_t i) {
+      if (share_[i] <= 0.0f || rings_.all[i].empty()) return;
+      glm::vec3 off(0.0f);
+      for (const std::uint32_t w : rings_.all[i]) off += position(w, mesh_.added);
+      off = off / static_cast<float>(rings_.all[i].size()) - mesh_.added[i];
+      moved[i] += kSpread * share_[i] * (off - glm::dot(off, normal_[i]) * normal_[i]);
+    });
+    mesh_.added.swap(moved);
+  }
+
+  /// Corners of triangles that turned over go back to where they were.
+  void unfold() {
+    constexpr int kMostRounds = 10;  // what goes back may fold its neighbours
+    std::vector<bool> back(mesh_.added.size(), false);
+    bool any = true;
+    for (int round = 0; round < kMostRounds && any; ++round) {
+      any = false;
+      for (const Triangle& t : mesh_.triangles) {
+        const glm::vec3 now = area_vector(t, mesh_.added), before = area_vector(t, start_);
+        if (glm::dot(now, before) > kLeastCosine * glm::length(now) * glm::length(before)) continue;
+        for (const std::uint32_t v : t)
+          if (v >= dual_.size() && !back[v - dual_.size()]) back[v - dual_.size()] = any = true;
+      }
+      for (std::size_t i = 0; i < back.size(); ++i)
+        if (back[i]) mesh_.added[i] = start_[i];
+    }
+  }
+
+ private:
+  glm::vec3 position(std::uint32_t v, const std::vector<glm::vec3>& added) const {
+    return v < dual_.size() ? dual_[v] : added[v - dual_.size()];
+  }
+  glm::vec3 area_vector(const Triangle& t, const std::vector<glm::vec3>& added) const {
+    const glm::vec3 a = position(t[0], added);
+    return glm::cross(position(t[1], added) - a, position(t[2], added) - a);
+  }
+  template <class Work>
+  void each(const Work& work) const {
+    parallel_for(static_cast<std::int64_t>(mesh_.added.size()), 256,
+                 [&](std::int64_t i) { work(static_cast<std::size_t>(i)); });
+  }
+
+  InterfaceMesh& mesh_;
+  const InterfaceRings& rings_;
+  const std::vector<glm::vec3>& dual_;
+  std::vector<glm::vec3> start_, normal_;
+  std::vector<float> share_;  ///< of every move: less at the rim
+  float most_;
+};
+
+}  // namespace
+
+void follow_dips(InterfaceMesh& mesh, const InterfaceRings& rings, const std::vector<glm::vec3>& dual_positions,
+                 const std::vector<bool>& follows, const BandDensity& density, float most) {
+  Follower follower(mesh, rings, dual_positions, follows, most);
+  for (int round = 0; round < kRounds; ++round) {
+    follower.find_normals();
+    follower.move(follower.ways_to_dips(density));
+    follower.spread();
+  }
+  follower.find_normals();
+  follower.move(follower.ways_out_of_the_hollow());
+  for (int round = 0; round < 2; ++round) {
+    follower.find_normals();
+    follower.spread();
+  }
+  follower.unfold();
+}
+
+}  // namespace dubsar
