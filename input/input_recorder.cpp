@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <chrono>
 
+#include "input/event_limit.h"
+
 namespace dubsar {
 namespace {
 
 constexpr auto kWriteEvery = std::chrono::milliseconds(200);
 constexpr std::size_t kMostPending = 4096;  // frames; 45 s of two hands at 90 Hz, 25 MB
-constexpr std::size_t kMostEvents = 4096;
 
 /// Whether both say the same, events aside.
 bool same(const InputFrame& a, const InputFrame& b) {

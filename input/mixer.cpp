@@ -2,11 +2,12 @@
 
 #include <algorithm>
 
+#include "input/event_limit.h"
+
 namespace dubsar {
 namespace {
 
 constexpr TimestampNs kKeeps = 300'000'000;
-constexpr std::size_t kMostEvents = 4096;
 
 template <class T>
 bool any_tracked(const std::vector<T>& things) {

@@ -7,13 +7,13 @@
 #include <thread>
 
 #include "core/base/quantile.h"
+#include "core/base/second.h"
 #include "display/optics/optics.h"
 
 namespace dubsar::app {
 namespace {
 
-constexpr TimestampNs kSecond = 1'000'000'000;
-constexpr TimestampNs kTellNs = kSecond / 2;
+constexpr TimestampNs kTellNs = kSecondNs / 2;
 constexpr auto kBetweenPolls = std::chrono::milliseconds(4);
 
 /// The first head with both eyes.
@@ -27,7 +27,7 @@ const HeadFrame* head_with_eyes(const InputFrame& frame) {
 
 void EyeCheck::add(TimestampNs at, const EyePair& eyes_mm) {
   known_.push_back({at, eyes_mm});
-  while (known_.front().at < at - 2 * kSecond) known_.pop_front();
+  while (known_.front().at < at - 2 * kSecondNs) known_.pop_front();
 }
 
 std::optional<double> EyeCheck::wrong_light() const {
@@ -47,7 +47,7 @@ std::optional<double> EyeCheck::own_light() const {
 
 int EyeCheck::a_second() const {
   return static_cast<int>(std::count_if(known_.begin(), known_.end(),
-                                        [&](const Known& known) { return known.at > known_.back().at - kSecond; }));
+                                        [&](const Known& known) { return known.at > known_.back().at - kSecondNs; }));
 }
 
 Result<EyeCheckFigures> check_eyes(InputSource& source, const PanelProfile& panel, const EyeCheckOptions& options,

@@ -23,12 +23,12 @@ void on_signal(int) {
   target->cancel();
 }
 
-void put(const std::string& text) {
+}  // namespace
+
+void put_on_stderr(const std::string& text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
-
-}  // namespace
 
 bool stderr_is_terminal() {
   const char* const terminal = std::getenv("TERM");
@@ -58,7 +58,7 @@ void install_log(const ConsoleOptions& options) {
                                 : level == LogLevel::kWarning ? "\x1b[33m"
                                                               : "";
     const std::string_view start = stderr_is_terminal() ? "\r\x1b[K" : "";
-    put(fmt::format("{}{}{}{}{}\n", start, on, prefix, on.empty() ? "" : "\x1b[0m", message));
+    put_on_stderr(fmt::format("{}{}{}{}{}\n", start, on, prefix, on.empty() ? "" : "\x1b[0m", message));
   });
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 // How the program talks: results on stdout, everything else on stderr, and one way to be stopped.
 
+#include <string>
+
 #include "core/base/log.h"
 #include "core/base/progress.h"
 
@@ -13,6 +15,8 @@ struct ConsoleOptions {
   bool quiet = false;    ///< errors only
   bool verbose = false;  ///< debug messages and tables too
 };
+
+void put_on_stderr(const std::string& text);  ///< at once
 
 /// True when stderr is a terminal that understands cursor movement, and NO_COLOR is not set for colours.
 bool stderr_is_terminal();

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/cli/console.h"
 #include "core/base/clock.h"
 #include "core/base/json_text.h"
 
@@ -31,11 +32,6 @@ std::string with_prefix(double value) {
   for (const auto& [scale, prefix] : {std::pair{1e9, " G"}, std::pair{1e6, " M"}, std::pair{1e3, " k"}})
     if (value >= scale) return fmt::format("{:.1f}{}", value / scale, prefix);
   return fmt::format("{:.0f} ", value);
-}
-
-void put(const std::string& text) {
-  std::fwrite(text.data(), 1, text.size(), stderr);
-  std::fflush(stderr);
 }
 
 }  // namespace
@@ -111,7 +107,7 @@ void ConsoleProgress::close() {
   }
   const std::lock_guard lock(mutex_);
   finish_stage();
-  if (line_open_) put("\r\x1b[K");
+  if (line_open_) put_on_stderr("\r\x1b[K");
   line_open_ = false;
 }
 
@@ -179,7 +175,7 @@ void ConsoleProgress::print_json(bool finished, double now) {
     object["overall_elapsed_s"] = all.elapsed_s;
     object["overall_eta_s"] = all.remaining_s ? nlohmann::json(*all.remaining_s) : nlohmann::json(nullptr);
   }
-  put(dump_json(object) + "\n");
+  put_on_stderr(dump_json(object) + "\n");
 }
 
 void ConsoleProgress::print(bool finished) {
@@ -190,7 +186,7 @@ void ConsoleProgress::print(bool finished) {
     case ProgressStyle::kJson:
       return print_json(finished, now);
     case ProgressStyle::kBar:
-      put("\r\x1b[K" + progress_line(line(now), stderr_columns()));
+      put_on_stderr("\r\x1b[K" + progress_line(line(now), stderr_columns()));
       line_open_ = true;
       return;
     case ProgressStyle::kAuto:
@@ -199,10 +195,10 @@ void ConsoleProgress::print(bool finished) {
   if (finished && verbose_) {
     const double elapsed = now - stage_.started_s;
     const auto done = static_cast<double>(stage_.total > 0 ? stage_.total : done_.load(std::memory_order_relaxed));
-    put(fmt::format("{:<18} {:8.2f} s  {}{}/s\n", stage_.name, elapsed, with_prefix(elapsed > 0 ? done / elapsed : 0.0),
-                    stage_.unit));
+    put_on_stderr(fmt::format("{:<18} {:8.2f} s  {}{}/s\n", stage_.name, elapsed,
+                              with_prefix(elapsed > 0 ? done / elapsed : 0.0), stage_.unit));
   } else if (now - said_s_ >= kQuietLinesEvery_s) {
-    put(progress_line(line(now), kPlainColumns) + "\n");
+    put_on_stderr(progress_line(line(now), kPlainColumns) + "\n");
     said_s_ = now;
   }
 }

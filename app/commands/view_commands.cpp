@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "app/commands/command_table.h"
 #include "app/commands/number_argument.h"
 #include "app/commands/sides.h"
+#include "core/base/angle.h"
 #include "input/navigation/square_turn.h"
 
 namespace dubsar::app {
 namespace {
-
-constexpr double kRad = std::numbers::pi / 180.0;
 
 /// "turn_left", "turn_left 1": about an axis of the screen.
 Command turn(std::string name, std::string words, const glm::dvec3& axis, std::vector<DefaultKey> keys) {
@@ -24,7 +22,7 @@ Command turn(std::string name, std::string words, const glm::dvec3& axis, std::v
       DUBSAR_ASSIGN(degrees, number_argument(what, argument, 0.0, 360.0));
     }
     Document next = editor.document();
-    next.now.rotation = glm::normalize(turn_of(degrees * kRad * axis) * next.now.rotation);
+    next.now.rotation = glm::normalize(turn_of(degrees * kRadPerDeg * axis) * next.now.rotation);
     editor.change(std::move(next), why);
     return {};
   };

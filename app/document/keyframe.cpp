@@ -13,8 +13,8 @@ namespace dubsar::app {
 namespace {
 using nlohmann::json;
 
-constexpr int kVersion = 1;
-constexpr std::string_view kFormat = "dubsar film", kDocument = "dubsar document";
+constexpr int kFilmVersion = 1;
+constexpr std::string_view kFilmFormat = "dubsar film", kDocument = "dubsar document";
 
 /// At t (0..1) of a cubic from a to b with the speeds `from` and `to` a second.
 double cubic(double a, double b, double from, double to, double length, double t) {
@@ -186,8 +186,8 @@ std::string format_film(std::span<const Keyframe> keys) {
   stored::Writer writer;
   fields(writer, film);
   json out = writer.take();
-  out["format"] = kFormat;
-  out["version"] = kVersion;
+  out["format"] = kFilmFormat;
+  out["version"] = kFilmVersion;
   return out.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
@@ -199,11 +199,11 @@ Result<std::vector<Keyframe>> parse_film(std::string_view text, std::string_view
     DUBSAR_ASSIGN(Document whole, parse_document(text, source));
     film.keyframes = std::move(whole.keyframes);
   } else {
-    if (!object.is_object() || !object.contains("format") || object.at("format") != kFormat)
-      return fail(ErrorKind::kBadData, "{}: found other JSON, expected \"format\": \"{}\"", source, kFormat);
-    if (!object.contains("version") || object.at("version") != kVersion)
+    if (!object.is_object() || !object.contains("format") || object.at("format") != kFilmFormat)
+      return fail(ErrorKind::kBadData, "{}: found other JSON, expected \"format\": \"{}\"", source, kFilmFormat);
+    if (!object.contains("version") || object.at("version") != kFilmVersion)
       return fail(ErrorKind::kBadData, "{}: version {} found, expected {}; a newer dubsar may have written it", source,
-                  object.contains("version") ? dump_json(object.at("version")) : "none", kVersion);
+                  object.contains("version") ? dump_json(object.at("version")) : "none", kFilmVersion);
     std::string complaint;
     stored::Reader reader(object, "", complaint);
     fields(reader, film);

@@ -13,7 +13,7 @@ namespace dubsar::app {
 namespace {
 using nlohmann::json;
 
-constexpr std::string_view kFormat = "dubsar kiosk";
+constexpr std::string_view kProfileFormat = "dubsar kiosk";
 constexpr std::size_t kMostObjects = 64, kMostTexts = 32;
 
 constexpr std::array<std::string_view, 17> kMembers{"format",
@@ -133,8 +133,8 @@ Result<KioskProfile> parse_kiosk_profile(std::string_view json_text, std::string
   auto parsed = parse_json(json_text, source);
   if (!parsed) return fail(ErrorKind::kConfig, "{}", parsed.error().message);
   const json& object = *parsed;
-  if (!object.is_object() || !object.contains("format") || object.at("format") != kFormat)
-    return fail(ErrorKind::kConfig, "{}: found other JSON, expected \"format\": \"{}\"", source, kFormat);
+  if (!object.is_object() || !object.contains("format") || object.at("format") != kProfileFormat)
+    return fail(ErrorKind::kConfig, "{}: found other JSON, expected \"format\": \"{}\"", source, kProfileFormat);
   if (!object.contains("version") || object.at("version") != 1)
     return fail(ErrorKind::kConfig, "{}: version {} found, expected 1", source,
                 object.contains("version") ? dump_json(object.at("version")) : "none");

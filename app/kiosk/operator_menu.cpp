@@ -2,11 +2,12 @@
 
 #include <algorithm>
 
+#include "core/base/second.h"
+
 namespace dubsar::app {
 namespace {
 
-constexpr TimestampNs kSecond = 1'000'000'000;
-constexpr TimestampNs kForgets = 10 * kSecond, kLocks = 30 * kSecond, kCloses = 60 * kSecond;
+constexpr TimestampNs kForgets = 10 * kSecondNs, kLocks = 30 * kSecondNs, kCloses = 60 * kSecondNs;
 constexpr std::size_t kLongest = 16;
 constexpr int kMostWrong = 5;
 

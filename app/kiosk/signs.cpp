@@ -9,7 +9,7 @@ namespace {
 constexpr TimestampNs kBegins = 250'000'000;    // a hand that passes fills nothing
 constexpr TimestampNs kFills = 1'250'000'000;   // a hand that ends there by chance has mostly left by then
 constexpr TimestampNs kForgives = 300'000'000;  // a tremble over the edge, or a hand that is lost for a moment
-constexpr TimestampNs kGone = 1'000'000'000;
+constexpr TimestampNs kSignGone = 1'000'000'000;
 constexpr double kEdge = 1.25;  // of the radius, for a hand that is on the sign already
 constexpr double kMargin = 0.035;
 double radius_on(double aspect) { return std::min(0.095, 0.14 * aspect); }
@@ -79,7 +79,7 @@ std::optional<Sign> SignRest::update(TimestampNs now, std::span<const SignHand> 
   for (std::size_t s = 0; s < kSignCount; ++s)
     if (!there[s] || chosen) rests_[s] = {};
   if (!hands.empty()) hands_seen_ = now;
-  const bool left = hands.empty() ? now - hands_seen_ > kGone : !any;
+  const bool left = hands.empty() ? now - hands_seen_ > kSignGone : !any;
   waits_ = chosen.has_value() || (waits_ && !left);
   return chosen;
 }

@@ -13,7 +13,7 @@ namespace dubsar::app {
 namespace {
 using nlohmann::json;
 
-constexpr std::string_view kFormat = "dubsar tour";
+constexpr std::string_view kTourFormat = "dubsar tour";
 constexpr std::size_t kMostSteps = 64, kMostLabels = 16, kLongestText = 400;
 constexpr double kLongestS = 600.0;
 constexpr std::array<std::string_view, 4> kTourMembers{"format", "version", "steps", "comment"};
@@ -128,8 +128,8 @@ json json_of(const TourLabel& label) {
 
 Result<Tour> parse_tour(std::string_view json_text, std::string_view source) {
   DUBSAR_ASSIGN(const json object, parse_json(json_text, source));
-  if (!object.is_object() || !object.contains("format") || object.at("format") != kFormat)
-    return fail(ErrorKind::kBadData, "{}: found other JSON, expected \"format\": \"{}\"", source, kFormat);
+  if (!object.is_object() || !object.contains("format") || object.at("format") != kTourFormat)
+    return fail(ErrorKind::kBadData, "{}: found other JSON, expected \"format\": \"{}\"", source, kTourFormat);
   if (!object.contains("version") || object.at("version") != 1)
     return fail(ErrorKind::kBadData, "{}: version {} found, expected 1", source,
                 object.contains("version") ? dump_json(object.at("version")) : "none");
@@ -156,7 +156,7 @@ Result<Tour> read_tour(const std::filesystem::path& path) {
 }
 
 std::string format_tour(const Tour& tour) {
-  json out{{"format", kFormat}, {"version", 1}, {"steps", json::array()}};
+  json out{{"format", kTourFormat}, {"version", 1}, {"steps", json::array()}};
   for (const TourStep& step : tour.steps) {
     json one{{"title", step.title}, {"text", step.text}, {"stays_s", step.stays_s}};
     if (!step.labels.empty()) one["labels"] = json::array();

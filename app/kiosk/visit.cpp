@@ -2,17 +2,18 @@
 
 #include <algorithm>
 
+#include "core/base/second.h"
+
 namespace dubsar::app {
 namespace {
 
-constexpr TimestampNs kSecond = 1'000'000'000;
-constexpr double kTurnedDeg = 25.0;             // on purpose: further than a hand that only takes hold
-constexpr double kZoomed = 0.15;                // a sixth larger or smaller
-constexpr TimestampNs kPatience = 2 * kSecond;  // before the next thing is shown to somebody who is busy
-constexpr TimestampNs kLessonTime = 9 * kSecond, kLessonRest = 6 * kSecond;
+constexpr double kTurnedDeg = 25.0;               // on purpose: further than a hand that only takes hold
+constexpr double kZoomed = 0.15;                  // a sixth larger or smaller
+constexpr TimestampNs kPatience = 2 * kSecondNs;  // before the next thing is shown to somebody who is busy
+constexpr TimestampNs kLessonTime = 9 * kSecondNs, kLessonRest = 6 * kSecondNs;
 constexpr TimestampNs kFirstRest = 300'000'000;    // as long as nothing was turned, nobody waits for the next picture
 constexpr TimestampNs kTroubleTime = 700'000'000;  // a hand that passes by is not spoken to
-constexpr TimestampNs kGone = 2 * kSecond;         // a lost hand mostly comes back
+constexpr TimestampNs kGone = 2 * kSecondNs;       // a lost hand mostly comes back
 constexpr int kMostShown = 3, kGrabMostShown = 6;  // nothing else goes without it
 
 constexpr std::size_t index(Lesson lesson) { return static_cast<std::size_t>(lesson); }
@@ -93,7 +94,7 @@ void Visit::teach(TimestampNs now, const VisitMoment& moment) {
     course_.now.reset();
     const bool beginner = !course_.done[index(Lesson::kTurn)];
     if (beginner)  // who has just taken hold may know how to go on
-      course_.rests_until = now + (again ? 0 : success ? kSecond : kFirstRest);
+      course_.rests_until = now + (again ? 0 : success ? kSecondNs : kFirstRest);
     else
       course_.rests_until = now + (success ? kPatience : kLessonRest);
   }

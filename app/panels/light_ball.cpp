@@ -7,19 +7,20 @@
 #include <numbers>
 
 #include "app/panels/panel_kit.h"
+#include "core/base/angle.h"
 
 namespace dubsar::app {
 namespace {
 
 constexpr float kRadius = 46.0f;
 constexpr int kRings = 10, kRound = 32;
-constexpr double kRad = std::numbers::pi / 180.0, kLowestDeg = 5.0, kHighestDeg = 85.0;
 
 }  // namespace
 
 LightPlace light_over(double x, double y) noexcept {
-  const double azimuth = std::fmod(std::atan2(x, y) / kRad + 360.0, 360.0);
-  return {azimuth, std::clamp(std::acos(std::min(1.0, std::hypot(x, y))) / kRad, kLowestDeg, kHighestDeg)};
+  const double azimuth = std::fmod(std::atan2(x, y) / kRadPerDeg + 360.0, 360.0);
+  return {azimuth,
+          std::clamp(std::acos(std::min(1.0, std::hypot(x, y))) / kRadPerDeg, kLowestLightDeg, kHighestLightDeg)};
 }
 
 void draw_light_ball(const LightPlace& light, float right, float bottom) {
@@ -30,8 +31,9 @@ void draw_light_ball(const LightPlace& light, float right, float bottom) {
   ImGui::Begin("light ball", nullptr, kFixed | ImGuiWindowFlags_NoInputs);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 middle(right - 0.5f * side, bottom - 0.5f * side);
-  const double low = std::cos(light.elevation_deg * kRad), azimuth = light.azimuth_deg * kRad;
-  const double lx = low * std::sin(azimuth), ly = low * std::cos(azimuth), lz = std::sin(light.elevation_deg * kRad);
+  const double low = std::cos(light.elevation_deg * kRadPerDeg), azimuth = light.azimuth_deg * kRadPerDeg;
+  const double lx = low * std::sin(azimuth), ly = low * std::cos(azimuth),
+               lz = std::sin(light.elevation_deg * kRadPerDeg);
   const auto tone = [&](double x, double y) {  // clay under that light alone
     const double z = std::sqrt(std::max(0.0, 1.0 - x * x - y * y));
     const double lit = 0.1 + 0.9 * std::max(0.0, x * lx + y * ly + z * lz);

@@ -5,6 +5,8 @@
 
 namespace dubsar::app {
 
+inline constexpr double kLowestLightDeg = 5.0, kHighestLightDeg = 85.0;  ///< above the panel, as far as the ball goes
+
 /// Draws it into the current Dear ImGui frame; its lower right corner stands at `right`, `bottom`.
 void draw_light_ball(const LightPlace& light, float right, float bottom);
 

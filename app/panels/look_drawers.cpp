@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "app/panels/light_ball.h"
 #include "app/panels/panel_kit.h"
+#include "core/base/angle.h"
 
 namespace dubsar::app {
 namespace {
 
 constexpr float kBall = 110.0f;
 constexpr ImU32 kHatch = IM_COL32(122, 158, 204, 255), kStripe = IM_COL32(38, 70, 128, 255);  // as the surface has it
-constexpr double kLowestDeg = 5.0, kHighestDeg = 85.0;
 
 /// What the hatch means, and how much of the surface it is.
 void draw_evidence(const Board& desk) {
@@ -124,12 +124,12 @@ void draw_light(const Board& desk) {
   ImGui::InvisibleButton("ball", ImVec2(kBall, kBall));
   const ImVec2 middle(corner.x + 0.5f * kBall, corner.y + 0.5f * kBall);
   const float radius = 0.5f * kBall - 4.0f;
-  constexpr double kRad = std::numbers::pi / 180.0;
   if (ImGui::IsItemActive()) {
     const ImVec2 at = ImGui::GetIO().MousePos;
     const double x = (at.x - middle.x) / radius, y = (middle.y - at.y) / radius;
-    const double azimuth = std::fmod(std::atan2(x, y) / kRad + 360.0, 360.0);
-    const double elevation = std::clamp(std::acos(std::min(1.0, std::hypot(x, y))) / kRad, kLowestDeg, kHighestDeg);
+    const double azimuth = std::fmod(std::atan2(x, y) / kRadPerDeg + 360.0, 360.0);
+    const double elevation =
+        std::clamp(std::acos(std::min(1.0, std::hypot(x, y))) / kRadPerDeg, kLowestLightDeg, kHighestLightDeg);
     if (std::abs(azimuth - desk.state.document.light.azimuth_deg) > 0.05 ||
         std::abs(elevation - desk.state.document.light.elevation_deg) > 0.05)
       desk.commands.push_back(fmt::format("light {:.1f},{:.1f}", azimuth, elevation));
@@ -137,8 +137,8 @@ void draw_light(const Board& desk) {
   ImDrawList* const draw = ImGui::GetWindowDrawList();
   draw->AddCircleFilled(middle, radius, IM_COL32(0x2b, 0x2d, 0x31, 0xff), 48);
   draw->AddCircle(middle, radius, kLine, 48, 1.5f);
-  const double low = std::cos(desk.state.document.light.elevation_deg * kRad),
-               azimuth = desk.state.document.light.azimuth_deg * kRad;
+  const double low = std::cos(desk.state.document.light.elevation_deg * kRadPerDeg),
+               azimuth = desk.state.document.light.azimuth_deg * kRadPerDeg;
   const ImVec2 light(middle.x + radius * static_cast<float>(low * std::sin(azimuth)),
                      middle.y - radius * static_cast<float>(low * std::cos(azimuth)));
   draw->AddLine(light, middle, kLine, 1.5f);

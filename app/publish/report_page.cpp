@@ -6,30 +6,10 @@
 
 #include "app/publish/page_files.h"
 #include "core/base/json_text.h"
+#include "core/base/markup_text.h"
 
 namespace dubsar::app {
 namespace {
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  return out;
-}
 
 std::string_view page_file(std::string_view name) {
   for (const auto& [file, text] : page_files())
@@ -47,7 +27,7 @@ std::string parts_table(const SurfaceFacts& facts) {
     out += fmt::format(
         "<tr><td>{}</td><td>{:.1f} × {:.1f} × {:.1f}</td><td>{:.0f}</td><td>{:.0f}</td><td>{:.0f} {}² ({:.1f} %)</td>"
         "<td>{}</td></tr>\n",
-        escaped(part.name), part.size.x, part.size.y, part.size.z, part.area, part.volume, part.inferred_area, unit,
+        markup_text(part.name), part.size.x, part.size.y, part.size.z, part.area, part.volume, part.inferred_area, unit,
         100.0 * part.inferred_share(), part.watertight ? "watertight" : "open");
   return out + "</table></div>\n";
 }
@@ -60,14 +40,14 @@ std::string evidence(const SurfaceFacts& facts) {
         "<p>{}: {:.1f} % of the surface is measured, {:.1f} % is not in the scan: there it was closed smoothly, and is "
         "blue in the picture above and hatched in those below.</p><div class=\"bar\"><i "
         "style=\"width:{:.2f}%\"></i></div>\n",
-        escaped(part.name), 100.0 * (1.0 - part.inferred_share()), 100.0 * part.inferred_share(),
+        markup_text(part.name), 100.0 * (1.0 - part.inferred_share()), 100.0 * part.inferred_share(),
         100.0 * part.inferred_share());
   }
   if (out.empty()) return "<p>All of the surface is in the scan.</p>\n";
   const char* const unit = facts.millimetres ? "mm²" : "voxel faces";
   for (const PartFacts& part : facts.parts) {
     if (part.area - part.evidence_area(Evidence::kMeasured) <= 0.0) continue;
-    out += fmt::format("<div class=\"scroll\"><table><tr><th>{}, {}</th>", escaped(part.name), unit);
+    out += fmt::format("<div class=\"scroll\"><table><tr><th>{}, {}</th>", markup_text(part.name), unit);
     for (const auto& [evidence, name, short_name] : kEvidences) out += fmt::format("<th>{}</th>", name);
     out += "</tr>\n";
     for (std::size_t side = 0; side < kEvidenceSides.size(); ++side) {
@@ -83,17 +63,17 @@ std::string evidence(const SurfaceFacts& facts) {
 /// What a reader wants to know of how it was made, and all of it below.
 std::string provenance(const ReportContent& content) {
   if (content.provenance.empty()) return "<p class=\"dim\">The file does not say how it was made.</p>\n";
-  const auto json = nlohmann::json::parse(content.provenance, nullptr, false);
-  if (json.is_discarded()) return "<pre>" + escaped(content.provenance) + "</pre>\n";
+  const auto facts = nlohmann::json::parse(content.provenance, nullptr, false);
+  if (facts.is_discarded()) return "<pre>" + markup_text(content.provenance) + "</pre>\n";
   std::string rows;
   const auto row = [&](const char* name, const nlohmann::json::json_pointer& at) {
-    if (!json.contains(at) || json.at(at).is_null()) return;
-    const nlohmann::json& value = json.at(at);
+    if (!facts.contains(at) || facts.at(at).is_null()) return;
+    const nlohmann::json& value = facts.at(at);
     const std::string text = value.is_string() ? value.get<std::string>()
                              : value.is_number_float()
                                  ? fmt::format("{:.6g}", value.get<double>())
                                  : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-    rows += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", name, escaped(text));
+    rows += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", name, markup_text(text));
   };
   using Pointer = nlohmann::json::json_pointer;
   row("scan", Pointer("/input/path"));
@@ -104,7 +84,7 @@ std::string provenance(const ReportContent& content) {
   row("noise, dB", Pointer("/estimates/snr_db"));
   row("threshold", Pointer("/estimates/threshold"));
   return "<div class=\"scroll\"><table>" + rows + "</table></div>\n<details><summary>all parameters</summary><pre>" +
-         escaped(dump_json_lines(json)) + "</pre></details>\n";
+         markup_text(dump_json_lines(facts)) + "</pre></details>\n";
 }
 
 }  // namespace
@@ -128,8 +108,8 @@ std::string report_page(const ReportContent& content) {
       "<meta name=\"viewport\" content=\"width=device-width, "
       "initial-scale=1\">\n<title>{0}</title>\n<style>\n{1}</style>\n"
       "</head>\n<body>\n<h1>{0}</h1>\n<p class=\"dim\">{2}{3}</p>\n",
-      escaped(content.title), page_file("page.css"), escaped(what_it_is(content.facts)),
-      content.institution.empty() ? "" : ", " + escaped(content.institution));
+      markup_text(content.title), page_file("page.css"), markup_text(what_it_is(content.facts)),
+      content.institution.empty() ? "" : ", " + markup_text(content.institution));
   out +=
       "<div id=\"stage\"><canvas></canvas><p>This page shows the surface with JavaScript.</p></div>\n<div "
       "class=\"desk\"></div>\n";
@@ -143,10 +123,10 @@ std::string report_page(const ReportContent& content) {
   for (const ReportPicture& picture : content.pictures)
     out += fmt::format(
         "<figure><img alt=\"{0}\" src=\"data:image/jpeg;base64,{1}\"><figcaption>{0}</figcaption></figure>\n",
-        escaped(picture.caption), base64(picture.jpeg));
+        markup_text(picture.caption), base64(picture.jpeg));
   out += "</div>\n<h2>How it was made</h2>\n" + provenance(content);
-  out += fmt::format("<p class=\"dim\">Made by {}.{}</p>\n", escaped(content.made_by),
-                     content.rights.empty() ? "" : " " + escaped(content.rights));
+  out += fmt::format("<p class=\"dim\">Made by {}.{}</p>\n", markup_text(content.made_by),
+                     content.rights.empty() ? "" : " " + markup_text(content.rights));
   out += "<script type=\"application/octet-stream\" id=\"surface\">" + base64(content.glb) + "</script>\n<script>\n";
   out += page_file("viewer.js");
   return out + "</script>\n</body>\n</html>\n";

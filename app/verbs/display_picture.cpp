@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/calibration/display_choice.h"
+#include "core/base/inch.h"
 #include "core/base/parse_number.h"
 #include "core/image_io/picture_file.h"
 #include "display/sinks/quilt.h"
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kMmPerInch = 25.4, kEyeDistanceMm = 63.0;
+constexpr double kEyeDistanceMm = 63.0;
 
 Result<glm::dvec3> parse_place(const std::string& text, const char* option) {
   const auto place = parse_numbers<3>(text);

@@ -9,7 +9,7 @@
 namespace dubsar::app {
 namespace {
 
-constexpr double kGap = 0.1;  // between what is taken apart, of the object's height
+constexpr double kPartsGap = 0.1;  // between what is taken apart, of the object's height
 
 std::vector<Part> parts_of(const TriMesh& mesh) {
   std::vector<Part> out;
@@ -91,8 +91,8 @@ Shown shown_of(const Document& document, const ViewState& view, const StageOptio
     if (cut.on) out.clips.push_back({cut.normal * cut.distance_mm / glm::dot(cut.normal, cut.normal), -cut.normal});
   const double unpack = can_unpack(document) ? document.unpack : 0.0;
   const ObjectFrame frame = object_frame(model);
-  const double height = (1.0 + kGap) * std::abs(glm::dot(model.size(), frame.up));
-  out.fit = 1.0 / (1.0 + (1.0 + kGap) * unpack);
+  const double height = (1.0 + kPartsGap) * std::abs(glm::dot(model.size(), frame.up));
+  out.fit = 1.0 / (1.0 + (1.0 + kPartsGap) * unpack);
   for (const Part& part : document.parts)
     for (int p = 0; p < kMaxPartitions; ++p) {
       if ((part.partitions >> p & 1) == 0) continue;

@@ -9,12 +9,12 @@ namespace {
 
 constexpr double kRoom = 1.1;                             // around the surface at zoom 1
 constexpr double kDarkShare = 0.01, kLightShare = 0.995;  // of the values that are black and white
-constexpr Rgb8 kNothing{0x17, 0x18, 0x1b}, kSurface{0xe8, 0xb4, 0x4c}, kPatch{0x56, 0xb4, 0xff};
+constexpr Rgb8 kNothingColour{0x17, 0x18, 0x1b}, kSurfaceColour{0xe8, 0xb4, 0x4c}, kPatchColour{0x56, 0xb4, 0xff};
 constexpr int kMostSide = 8192;
 constexpr double kOutlineSide = 1024.0;  // pixels where there is no scan
 
 Rgb8 grey_of(float value, double black, double white) {
-  if (std::isnan(value)) return kNothing;
+  if (std::isnan(value)) return kNothingColour;
   const double share = std::clamp((double{value} - black) / (white - black), 0.0, 1.0);
   const auto grey = static_cast<std::uint8_t>(std::lround(255.0 * share));
   return {grey, grey, grey};
@@ -148,7 +148,7 @@ std::vector<LinesItem> SliceDesk::lines(const ScanView& view, const PartLooks& p
   if (const SharedSlice& picture = state_.panes[which].picture) {
     LinesItem cut;
     cut.width_px = 2.0;
-    cut.color = kSurface;
+    cut.color = kSurfaceColour;
     cut.hidden_opacity = 0.1;
     for (const OutlinePiece& piece : picture->outline) {
       const PartLook& look = parts[std::min<std::size_t>(piece.partition, parts.size() - 1)];
@@ -186,7 +186,7 @@ Result<Image> SliceDesk::whole(const ScanView& view, std::size_t which) {
   all.zoom = 1.0;
   const SliceFrame frame = slice_frame(all, which, static_cast<int>(side), static_cast<int>(side), side * voxel);
   Image out(frame.width, frame.height, 3);
-  for (std::size_t i = 0; i < out.pixels.size(); ++i) out.pixels[i] = kNothing[i % 3];
+  for (std::size_t i = 0; i < out.pixels.size(); ++i) out.pixels[i] = kNothingColour[i % 3];
   if (scan.sampler) {
     DUBSAR_ASSIGN(const PlaneImage values, scan.sampler->sample(frame.grid(scan.voxel_mm)));
     std::array greys{view.black, view.white};
@@ -197,7 +197,7 @@ Result<Image> SliceDesk::whole(const ScanView& view, std::size_t which) {
     }
   }
   for (const OutlinePiece& piece : outline_in(mesh_, frame))
-    draw_line(out, piece.a, piece.b, piece.inferred ? kPatch : kSurface);
+    draw_line(out, piece.a, piece.b, piece.inferred ? kPatchColour : kSurfaceColour);
   return out;
 }
 

@@ -10,12 +10,12 @@
 #include "app/viewer/window_place.h"
 #include "app/viewer/worn_input.h"
 #include "core/base/log.h"
+#include "core/base/second.h"
 
 namespace dubsar::app {
 namespace {
 
-constexpr TimestampNs kSecond = 1'000'000'000;
-constexpr TimestampNs kSettleNs = kSecond;
+constexpr TimestampNs kSettleNs = kSecondNs;
 constexpr std::uint64_t kKeySteps = std::uint64_t{1} << 63;  // told apart from movements
 constexpr std::uint64_t kGuideSteps = std::uint64_t{1} << 62;
 

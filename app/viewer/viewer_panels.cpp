@@ -7,13 +7,13 @@
 #include "app/panels/state_page.h"
 #include "app/viewer/first_document.h"
 #include "app/viewer/viewer.h"
+#include "core/base/second.h"
 
 namespace dubsar::app {
 namespace {
 
-constexpr TimestampNs kSecond = 1'000'000'000;
-constexpr TimestampNs kBallNs = kSecond;  // after the light has moved
-constexpr TimestampNs kNoticeNs = 6 * kSecond, kFadeNs = kSecond, kHelpRefreshNs = kSecond / 2;
+constexpr TimestampNs kBallNs = kSecondNs;  // after the light has moved
+constexpr TimestampNs kNoticeNs = 6 * kSecondNs, kFadeNs = kSecondNs, kHelpRefreshNs = kSecondNs / 2;
 
 }  // namespace
 

@@ -4,13 +4,13 @@
 
 #include "app/viewer/first_document.h"
 #include "app/viewer/viewer.h"
+#include "core/base/inch.h"
 #include "core/image_io/png_file.h"
 #include "core/image_io/tiff_file.h"
 
 namespace dubsar::app {
 namespace {
 
-constexpr double kMmPerInch = 25.4;
 constexpr float kToolsWidth = 82.0f, kTabWidth = 90.0f;  // what stands at the sides besides
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "app/viewer/first_document.h"
 #include "app/viewer/viewer.h"
+#include "core/base/inch.h"
 #include "core/image_io/png_file.h"
 #include "core/image_io/tiff_file.h"
 
@@ -14,7 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kClick = 0.006;  // heights of the window: what moves less is a click
-constexpr double kMmPerInch = 25.4;
 
 /// The first of NAME-001.png, NAME-002.png ... that is not there yet.
 fs::path next_free(const std::string& name) {

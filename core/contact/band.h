@@ -13,6 +13,8 @@
 
 namespace dubsar {
 
+inline glm::ivec3 unit_step(int axis) { return {axis == 0, axis == 1, axis == 2}; }
+
 /// Which side of the contact a point of clay is on.
 enum class ClaySide : std::uint8_t { kTablet, kEnvelope };
 

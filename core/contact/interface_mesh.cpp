@@ -12,7 +12,6 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 
 enum Corner : std::uint8_t { kAir, kTablet, kEnvelope };
 
-glm::ivec3 unit(int axis) { return {axis == 0, axis == 1, axis == 2}; }
 glm::ivec3 offset(int corner) { return {corner & 1, corner >> 1 & 1, corner >> 2}; }
 
 /// Edge of a cell between two of its corners (cell_table.h).
@@ -43,7 +42,7 @@ class Maker {
   InterfaceMesh run() {
     for (std::uint32_t n = 0; n < band_.nodes.size(); ++n)
       for (int axis = 0; axis < 3; ++axis) {
-        const std::uint32_t m = band_.at(band_.point(n) + unit(axis));
+        const std::uint32_t m = band_.at(band_.point(n) + unit_step(axis));
         if (m != ContactBand::kNone && side_[m] != side_[n]) add_polygon(n, m, axis);
       }
     for (std::size_t i = 0; i < mesh_.added.size(); ++i) {
@@ -177,8 +176,8 @@ class Maker {
   float dip_between(std::uint32_t n, std::uint32_t m, int axis) const {
     const bool first = dips_.density[n] <= dips_.density[m];
     const std::uint32_t middle = first ? n : m;
-    const std::uint32_t below = band_.at(band_.point(middle) - unit(axis)),
-                        above = band_.at(band_.point(middle) + unit(axis));
+    const std::uint32_t below = band_.at(band_.point(middle) - unit_step(axis)),
+                        above = band_.at(band_.point(middle) + unit_step(axis));
     if (below == ContactBand::kNone || above == ContactBand::kNone) return 0.5f;
     const float a = dips_.density[below], b = dips_.density[middle], c = dips_.density[above];
     const float bend = a - 2.0f * b + c;
@@ -189,7 +188,7 @@ class Maker {
   void add_polygon(std::uint32_t n, std::uint32_t m, int axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     const glm::ivec3 start = band_.point(n);
-    const glm::vec3 crossing = glm::vec3(start) + dip_between(n, m, axis) * glm::vec3(unit(axis));
+    const glm::vec3 crossing = glm::vec3(start) + dip_between(n, m, axis) * glm::vec3(unit_step(axis));
     const float strength = std::max(dips_.strength[n], dips_.strength[m]);
     // Counter-clockwise seen from the upper end: cells at (+u +v), (-u +v), (-u -v), (+u -v).
     struct Step {
@@ -200,7 +199,7 @@ class Maker {
     std::array<std::uint32_t, 9> polygon{};
     std::size_t size = 0;
     for (const Step& step : steps) {
-      const glm::ivec3 cell = start + step.du * unit(u) + step.dv * unit(v);
+      const glm::ivec3 cell = start + step.du * unit_step(u) + step.dv * unit_step(v);
       const int e = 4 * axis + (step.du < 0 ? 1 : 0) + (step.dv < 0 ? 2 : 0);
       const std::uint32_t in = vertex(cell, e, step.in, crossing, strength);
       const std::uint32_t out = vertex(cell, e, step.out, crossing, strength);

@@ -13,8 +13,6 @@ constexpr float kRim = 3.0f;         ///< steps from a patch within which the la
 constexpr float kRimVote = 0.4f;     ///< for the label that a face has
 constexpr float kFacingVote = 0.6f;  ///< for the side that it looks like, times the cosine
 
-glm::ivec3 unit(int axis) { return {axis == 0, axis == 1, axis == 2}; }
-
 /// Area vector towards the air.
 glm::vec3 area_vector(const QuadMesh& mesh, std::uint32_t quad) {
   const auto& v = mesh.quads[quad];
@@ -64,7 +62,7 @@ std::vector<BandFace> faces_of_band(const SurfaceModel& model, const EdgeIndex& 
   for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
     for (int axis = 0; axis < 3; ++axis)
       for (const int sense : {-1, 1}) {
-        const glm::ivec3 p = band.point(n), q = p + sense * unit(axis), start = sense < 0 ? q : p;
+        const glm::ivec3 p = band.point(n), q = p + sense * unit_step(axis), start = sense < 0 ? q : p;
         if (!signs.get(q.x, q.y, q.z)) faces.push_back({index.quad_of(axis, start.x, start.y, start.z), n});
       }
   return faces;

@@ -11,7 +11,7 @@
 
 namespace dubsar {
 namespace {
-constexpr std::int64_t kGrain = 1 << 13;
+constexpr std::int64_t kEscapeGrain = 1 << 13;
 constexpr double kOutsideHalf = 0.045;  // vertices that may lie further than half the bound
 constexpr double kAlong = 0.4;          // least cosine between normal and axis of a short escape
 
@@ -73,7 +73,7 @@ void let_escape(const QuadMesh& wanted, std::span<const glm::vec3> normals, doub
                 std::vector<glm::vec3>& positions, SettleStats& stats) {
   if (positions.empty()) return;
   std::vector<float> error(positions.size());
-  parallel_for(static_cast<std::int64_t>(positions.size()), kGrain, [&](std::int64_t i) {
+  parallel_for(static_cast<std::int64_t>(positions.size()), kEscapeGrain, [&](std::int64_t i) {
     const auto v = static_cast<std::size_t>(i);
     error[v] = static_cast<float>(distance_to_fan(wanted, static_cast<std::uint32_t>(v), glm::dvec3(positions[v])));
   });
@@ -89,7 +89,7 @@ void let_escape(const QuadMesh& wanted, std::span<const glm::vec3> normals, doub
     limit = std::min<double>(bound, within + spare < sorted.size() ? sorted[within + spare] : bound);
   }
   std::vector<std::uint8_t> gone(positions.size(), 0);
-  parallel_for(static_cast<std::int64_t>(positions.size()), kGrain, [&](std::int64_t i) {
+  parallel_for(static_cast<std::int64_t>(positions.size()), kEscapeGrain, [&](std::int64_t i) {
     const auto v = static_cast<std::size_t>(i);
     if (!(error[v] > limit)) return;
     auto k = steps_back(wanted, static_cast<std::uint32_t>(v), normals[v], positions[v], 0.5 * bound);

@@ -11,7 +11,7 @@
 
 namespace dubsar {
 namespace {
-constexpr std::int64_t kGrain = 1 << 13;
+constexpr std::int64_t kFitGrain = 1 << 13;
 constexpr double kSteep = 0.15;  // cosine between edge and normal below which they hardly cross
 constexpr double kDamping = 0.05;
 constexpr std::uint32_t kNoEdge = std::numeric_limits<std::uint32_t>::max();
@@ -67,7 +67,7 @@ OffsetFit::OffsetFit(const SurfaceModel& model, const QuadMesh& base, std::span<
   before_.resize(edges_.size());
   t_.resize(edges_.size());
   edge_of_.assign(model.samples.offsets.size(), kNoEdge);
-  parallel_for(static_cast<std::int64_t>(edges_.size()), kGrain, [&](std::int64_t i) {
+  parallel_for(static_cast<std::int64_t>(edges_.size()), kFitGrain, [&](std::int64_t i) {
     const auto e = static_cast<std::size_t>(i);
     edge_of_[edges_[e].offset] = static_cast<std::uint32_t>(e);
     before_[e] = crossing(model.samples.offsets[edges_[e].offset]);
@@ -77,7 +77,7 @@ OffsetFit::OffsetFit(const SurfaceModel& model, const QuadMesh& base, std::span<
 }
 
 void OffsetFit::find_residuals() {
-  parallel_for(static_cast<std::int64_t>(residual_.size()), kGrain, [&](std::int64_t i) {
+  parallel_for(static_cast<std::int64_t>(residual_.size()), kFitGrain, [&](std::int64_t i) {
     const auto v = static_cast<std::size_t>(i);
     residual_[v] = glm::dot(normals_[v], mesh_.positions[v] - place(static_cast<std::uint32_t>(v)));
   });
@@ -85,7 +85,7 @@ void OffsetFit::find_residuals() {
 
 void OffsetFit::improve() {
   find_residuals();
-  parallel_for(static_cast<std::int64_t>(edges_.size()), kGrain, [&](std::int64_t i) {
+  parallel_for(static_cast<std::int64_t>(edges_.size()), kFitGrain, [&](std::int64_t i) {
     const auto e = static_cast<std::size_t>(i);
     const Polygon polygon = mesh_.polygon(static_cast<std::uint32_t>(e));
     double sum = 0.0, weight = kDamping;

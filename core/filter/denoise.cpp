@@ -19,7 +19,7 @@ constexpr std::int64_t kBatchBytes = 4 << 20;  // output slices made at a time: 
 constexpr std::int64_t kTile = 256;            // voxels in x: the window's rows of a tile stay in the first-level cache
 constexpr std::int64_t kTileRows = 32;
 
-std::int64_t batch_for(Dims dims) {
+std::int64_t slices_at_a_time(Dims dims) {
   return std::clamp<std::int64_t>(kBatchBytes / (dims.slice() * static_cast<std::int64_t>(sizeof(float))), 1, 16);
 }
 
@@ -39,7 +39,7 @@ class FilterSource final : public SlabSource {
         radius_(options.window / 2),
         guide_radius_(options.method == DenoiseMethod::kJointBilateral ? 1 : 0),
         scale_(guide_scale(options)),
-        batch_(batch_for(source.dims())),
+        batch_(slices_at_a_time(source.dims())),
         image_(source.dims(), batch_ + 2 * (radius_ + guide_radius_), SliceRing::Rows::kPadded),
         guide_(needs_sigma(options.method) ? SliceRing(source.dims(), batch_ + 2 * radius_, SliceRing::Rows::kPadded)
                                            : SliceRing({1, 1, 1}, 1, SliceRing::Rows::kPadded)) {}
@@ -218,7 +218,7 @@ Result<void> denoise_in_place(GridStore& grid, const DenoiseOptions& options, Pr
   DUBSAR_TRY(check(options));
   const Dims dims = grid.dims();
   if (dims.count() == 0) return {};
-  const std::int64_t batch = batch_for(dims);
+  const std::int64_t batch = slices_at_a_time(dims);
   for (int k = 0; k < options.iterations; ++k) {
     FilterSource filter(grid, options);
     // The filter has taken the slices around a batch into its ring before the batch is written, and never asks for a

@@ -13,7 +13,7 @@ constexpr std::int64_t kRingBytes = 24 << 20;  // input slices kept: small enoug
 
 std::int64_t halved(std::int64_t n) { return n > 1 ? n / 2 : n; }
 
-std::int64_t batch_for(Dims in) {
+std::int64_t output_slices_at_a_time(Dims in) {
   const std::int64_t fits = kRingBytes / (in.slice() * static_cast<std::int64_t>(sizeof(float)));
   return std::clamp<std::int64_t>((fits - 1) / 2, 1, 32);
 }
@@ -27,7 +27,7 @@ HalfResolutionSource::HalfResolutionSource(SlabSource& source)
     : source_(&source),
       dims_{halved(source.dims().x), halved(source.dims().y), halved(source.dims().z)},
       frame_(source.frame()),
-      batch_(batch_for(source.dims())),
+      batch_(output_slices_at_a_time(source.dims())),
       ring_(source.dims(), 2 * batch_ + 1, SliceRing::Rows::kContiguous) {
   const Dims in = source.dims();
   const std::array<std::int64_t, 3> n{in.x, in.y, in.z};

@@ -7,55 +7,30 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/mesh/quadratic_sheet.h"
 #include "core/mesh/surface_measure.h"
 
 namespace dubsar {
 namespace {
 
-constexpr std::size_t kTerms = 6, kLeastVertices = 30;
+constexpr std::size_t kLeastVertices = 30;
 constexpr int kRounds = 40;
 constexpr double kWindowMm = 0.35;      // within which a way down is looked for
 constexpr double kLeastScaleMm = 0.01;  // below it the surface counts as smooth
-
-using Terms = std::array<double, kTerms>;
-
-Terms terms_at(double u, double v) { return {1.0, u, v, u * u, u * v, v * v}; }
-double sum_of(const Terms& a, const Terms& b) {
-  double out = 0.0;
-  for (std::size_t i = 0; i < kTerms; ++i) out += a[i] * b[i];
-  return out;
-}
 
 struct Sample {
   double u, v, height, area;
   glm::dvec3 at_mm;
 };
 
-/// Weighted least squares by the normal equations (Gauss with pivots); the terms are of the size of 1.
-Terms fit(const std::vector<Sample>& samples, const std::vector<double>& weights, double radius) {
-  std::array<std::array<double, kTerms + 1>, kTerms> m{};
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Terms t = terms_at(samples[i].u / radius, samples[i].v / radius);
-    for (std::size_t r = 0; r < kTerms; ++r) {
-      for (std::size_t c = 0; c < kTerms; ++c) m[r][c] += weights[i] * t[r] * t[c];
-      m[r][kTerms] += weights[i] * t[r] * samples[i].height;
-    }
-  }
-  for (std::size_t r = 0; r < kTerms; ++r) m[r][r] += 1e-12 * (m[0][0] + 1.0);
-  for (std::size_t c = 0; c < kTerms; ++c) {
-    std::size_t pivot = c;
-    for (std::size_t r = c + 1; r < kTerms; ++r)
-      if (std::abs(m[r][c]) > std::abs(m[pivot][c])) pivot = r;
-    std::swap(m[c], m[pivot]);
-    for (std::size_t r = 0; r < kTerms; ++r) {
-      if (r == c || m[c][c] == 0.0) continue;
-      const double factor = m[r][c] / m[c][c];
-      for (std::size_t k = c; k <= kTerms; ++k) m[r][k] -= factor * m[c][k];
-    }
-  }
-  Terms out{};
-  for (std::size_t i = 0; i < kTerms; ++i) out[i] = m[i][i] != 0.0 ? m[i][kTerms] / m[i][i] : 0.0;
-  return out;
+SheetTerms terms_of(const Sample& sample, double radius) { return sheet_terms(sample.u / radius, sample.v / radius); }
+
+SheetTerms fit(const std::vector<Sample>& samples, const std::vector<double>& weights, double radius) {
+  SheetEquations equations;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    equations.add(terms_of(samples[i], radius), samples[i].height, weights[i]);
+  equations.regularize();
+  return equations.solved().value_or(SheetTerms{});
 }
 
 double median(std::vector<double> values) {
@@ -120,12 +95,12 @@ Result<ImpressionDepth> impression_depth(const TriMesh& mesh, const SurfacePlace
                 radius_mm, kLeastVertices);
   std::vector<double> weights(samples.size()), below(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) weights[i] = samples[i].area;
-  Terms level = fit(samples, weights, radius_mm);
+  SheetTerms level = fit(samples, weights, radius_mm);
   double scale = 0.0;
   for (int round = 0; round < kRounds; ++round) {
     std::vector<double> above;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      below[i] = sum_of(level, terms_at(samples[i].u / radius_mm, samples[i].v / radius_mm)) - samples[i].height;
+      below[i] = sheet_height(level, terms_of(samples[i], radius_mm)) - samples[i].height;
       if (below[i] < 0) above.push_back(-below[i]);
     }
     // What is above has no impressions in it: it says how rough the surface is.
@@ -134,9 +109,9 @@ Result<ImpressionDepth> impression_depth(const TriMesh& mesh, const SurfacePlace
       const double x = below[i] / scale;
       weights[i] = samples[i].area * (x <= 0 ? 1.0 : x >= 1 ? 0.0 : (1 - x * x) * (1 - x * x));
     }
-    const Terms next = fit(samples, weights, radius_mm);
+    const SheetTerms next = fit(samples, weights, radius_mm);
     double moved = 0.0;
-    for (std::size_t k = 0; k < kTerms; ++k) moved = std::max(moved, std::abs(next[k] - level[k]));
+    for (std::size_t k = 0; k < kSheetTerms; ++k) moved = std::max(moved, std::abs(next[k] - level[k]));
     level = next;
     if (moved < 1e-6) break;
   }
@@ -145,7 +120,7 @@ Result<ImpressionDepth> impression_depth(const TriMesh& mesh, const SurfacePlace
     const double u = samples[i].u / radius_mm, v = samples[i].v / radius_mm;
     const double slope =
         std::hypot(level[1] + 2 * level[3] * u + level[4] * v, level[2] + level[4] * u + 2 * level[5] * v);
-    below[i] = (sum_of(level, terms_at(u, v)) - samples[i].height) / std::hypot(1.0, slope / radius_mm);
+    below[i] = (sheet_height(level, sheet_terms(u, v)) - samples[i].height) / std::hypot(1.0, slope / radius_mm);
     all += samples[i].area;
     if (std::abs(below[i]) < scale) on_level += samples[i].area;
   }

@@ -7,6 +7,8 @@
 #include <glm/vec2.hpp>
 #include <limits>
 
+#include "core/mesh/quadratic_sheet.h"
+
 namespace dubsar {
 namespace {
 
@@ -132,36 +134,14 @@ namespace {
 
 constexpr double kInner = 0.8;       // of the extents each way
 constexpr int kFitSteps = 160;       // places looked at each way
-constexpr int kTerms = 6;            // 1 x y x2 xy y2
 constexpr double kImpression = 0.6;  // deviations below the sheet: an impression
 constexpr double kBump = 2.5;        // and above it: something that does not belong to it
-
-using Terms = std::array<double, kTerms>;
-
-/// Solves the normal equations by Gauss with pivots; all 0 where they say too little.
-Terms solve(std::array<std::array<double, kTerms + 1>, kTerms> m) {
-  for (int k = 0; k < kTerms; ++k) {
-    int pivot = k;
-    for (int r = k + 1; r < kTerms; ++r)
-      if (std::abs(m[r][k]) > std::abs(m[pivot][k])) pivot = r;
-    if (std::abs(m[pivot][k]) < 1e-9) return {};
-    std::swap(m[k], m[pivot]);
-    for (int r = 0; r < kTerms; ++r) {
-      if (r == k) continue;
-      const double part = m[r][k] / m[k][k];
-      for (int c = k; c <= kTerms; ++c) m[r][c] -= part * m[k][c];
-    }
-  }
-  Terms out{};
-  for (int k = 0; k < kTerms; ++k) out[k] = m[k][kTerms] / m[k][k];
-  return out;
-}
 
 }  // namespace
 
 double side_rise_mm(const HeightMap& map) {
   struct Place {
-    Terms terms;
+    SheetTerms terms;
     double mm;
     bool used = true;
   };
@@ -175,24 +155,15 @@ double side_rise_mm(const HeightMap& map) {
       const double x = 2.0 * column / std::max(1, map.width - 1) - 1.0;
       const double y = 2.0 * row / std::max(1, map.height - 1) - 1.0;
       const float mm = map.at(column, row);
-      if (!std::isnan(mm)) places.push_back({{1.0, x, y, x * x, x * y, y * y}, static_cast<double>(mm)});
+      if (!std::isnan(mm)) places.push_back({sheet_terms(x, y), static_cast<double>(mm)});
     }
-  Terms sheet{};
+  SheetTerms sheet{};
   for (int turn = 0; turn < 12; ++turn) {
-    std::array<std::array<double, kTerms + 1>, kTerms> m{};
-    for (const Place& place : places) {
-      if (!place.used) continue;
-      for (int r = 0; r < kTerms; ++r) {
-        for (int c = 0; c < kTerms; ++c) m[r][c] += place.terms[r] * place.terms[c];
-        m[r][kTerms] += place.terms[r] * place.mm;
-      }
-    }
-    sheet = solve(m);
-    const auto above = [&](const Place& place) {
-      double at = 0.0;
-      for (int k = 0; k < kTerms; ++k) at += sheet[k] * place.terms[k];
-      return place.mm - at;
-    };
+    SheetEquations equations;
+    for (const Place& place : places)
+      if (place.used) equations.add(place.terms, place.mm);
+    sheet = equations.solved(1e-9).value_or(SheetTerms{});
+    const auto above = [&](const Place& place) { return place.mm - sheet_height(sheet, place.terms); };
     double squares = 0.0;
     int count = 0;
     for (const Place& place : places) {
@@ -200,7 +171,7 @@ double side_rise_mm(const HeightMap& map) {
       squares += above(place) * above(place);
       ++count;
     }
-    if (count < 10 * kTerms) return 0.0;
+    if (count < 10 * static_cast<int>(kSheetTerms)) return 0.0;
     const double deviation = std::sqrt(squares / count);
     for (Place& place : places) {
       const double d = above(place);

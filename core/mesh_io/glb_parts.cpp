@@ -6,13 +6,13 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
+#include "core/mesh_io/glb_words.h"
 #include "core/mesh_io/mesh_io.h"
 #include "core/mesh_io/mesh_text.h"
 
 namespace dubsar {
 namespace {
 using Json = nlohmann::json;
-constexpr std::uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;
 }  // namespace
 
 std::vector<GlbPart> glb_parts(const TriMesh& mesh) {
@@ -74,13 +74,13 @@ Result<void> write_glb_file(const std::filesystem::path& path, const Json& json,
                 total);
   DUBSAR_ASSIGN(AtomicFile file, AtomicFile::create(path, static_cast<std::int64_t>(total)));
   BufferedWriter out(file);
-  for (const std::uint32_t word : {kMagic, std::uint32_t{2}, static_cast<std::uint32_t>(total),
-                                   static_cast<std::uint32_t>(text.size()), kJsonChunk})
+  for (const std::uint32_t word : {kGlbMagic, std::uint32_t{2}, static_cast<std::uint32_t>(total),
+                                   static_cast<std::uint32_t>(text.size()), kGlbJsonChunk})
     out.little(word);
   out.text(text);
   if (binary_bytes > 0) {
     out.little(static_cast<std::uint32_t>(binary_bytes));
-    out.little(kBinChunk);
+    out.little(kGlbBinChunk);
   }
   DUBSAR_TRY(write_binary(out));
   DUBSAR_TRY(out.flush());

@@ -9,13 +9,13 @@
 
 #include "core/base/bytes.h"
 #include "core/base/json_text.h"
+#include "core/mesh_io/glb_words.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_text.h"
 
 namespace dubsar {
 namespace {
 using Json = nlohmann::json;
-constexpr std::uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;
 constexpr std::uint64_t kMost = std::uint64_t{1} << 40;  // larger offsets and counts cannot be meant
 constexpr double kMmPerM = 1000.0;
 
@@ -258,18 +258,18 @@ Result<TriMesh> parse_glb(std::string_view bytes, Progress& progress) {
   ByteReader reader(bytes);
   const auto magic = reader.little<std::uint32_t>(), version = reader.little<std::uint32_t>(),
              length = reader.little<std::uint32_t>();
-  if (!reader.ok() || magic != kMagic) return broken("the file does not start with \"glTF\"");
+  if (!reader.ok() || magic != kGlbMagic) return broken("the file does not start with \"glTF\"");
   if (version != 2) return fail(ErrorKind::kBadData, "glb: version {} found, expected 2", version);
   if (length != bytes.size())
     return fail(ErrorKind::kBadData, "glb: {} bytes announced, {} found", length, bytes.size());
   const auto json_bytes = reader.little<std::uint32_t>(), json_type = reader.little<std::uint32_t>();
   const std::string_view text = reader.take(json_bytes);
-  if (!reader.ok() || json_type != kJsonChunk) return broken("the first chunk is not a whole JSON chunk");
+  if (!reader.ok() || json_type != kGlbJsonChunk) return broken("the first chunk is not a whole JSON chunk");
   std::string_view bin;
   if (reader.left() > 0) {
     const auto bin_bytes = reader.little<std::uint32_t>(), bin_type = reader.little<std::uint32_t>();
     bin = reader.take(bin_bytes);
-    if (!reader.ok() || bin_type != kBinChunk) return broken("the second chunk is not a whole BIN chunk");
+    if (!reader.ok() || bin_type != kGlbBinChunk) return broken("the second chunk is not a whole BIN chunk");
   }
   DUBSAR_ASSIGN(Json root, parse_json(text, "glb"));
   if (const Json* required = member(root, "extensionsRequired"); required && !required->empty())

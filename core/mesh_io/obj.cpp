@@ -7,17 +7,17 @@
 #include "core/mesh_io/mesh_output.h"
 #include "core/mesh_io/mesh_text.h"
 #include "core/mesh_io/polygon_soup.h"
+#include "core/mesh_io/progress_step.h"
 #include "core/mesh_io/text_scanner.h"
 
 namespace dubsar {
 namespace {
-constexpr std::size_t kStep = std::size_t{1} << 14;  // lines between looks at `progress`
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kMaxLine = std::size_t{1} << 20;
 
 bool finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-struct Parser {
+struct ObjParser {
   std::string_view bytes;
   Progress& progress;
   TriMesh mesh;
@@ -126,7 +126,7 @@ struct Parser {
       }
       if (line.size() > kMaxLine) return broken(line, "a line of at most 1 MiB");
       DUBSAR_TRY(one_line(line));
-      if (line_number % kStep == 0) {
+      if (line_number % kProgressStep == 0) {
         progress.advance(static_cast<std::int64_t>(seen - scanner.rest().size()));
         seen = scanner.rest().size();
         if (progress.cancelled()) return cancelled_error();
@@ -171,7 +171,7 @@ struct Parser {
 }  // namespace
 
 Result<TriMesh> parse_obj(std::string_view bytes, Progress& progress) {
-  Parser parser{bytes, progress, {}, {}, {}, {}, {}};
+  ObjParser parser{bytes, progress, {}, {}, {}, {}, {}};
   DUBSAR_TRY(parser.lines());
   DUBSAR_TRY(parser.finish());
   return std::move(parser.mesh);
@@ -190,8 +190,8 @@ Result<void> write_obj(const std::filesystem::path& path, const TriMesh& mesh, c
   progress.begin("write obj", static_cast<std::int64_t>(mesh.positions.size() + mesh.triangles.size()), "item");
   std::int64_t items = 0;
   const auto stopped = [&]() {  // after every item
-    if (++items % static_cast<std::int64_t>(kStep) != 0) return false;
-    progress.advance(static_cast<std::int64_t>(kStep));
+    if (++items % static_cast<std::int64_t>(kProgressStep) != 0) return false;
+    progress.advance(static_cast<std::int64_t>(kProgressStep));
     return progress.cancelled() || !out.ok();
   };
   const auto stop = [&]() -> Result<void> { return out.ok() ? cancelled_error() : out.flush(); };

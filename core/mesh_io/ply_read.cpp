@@ -11,11 +11,11 @@
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/ply_header.h"
 #include "core/mesh_io/polygon_soup.h"
+#include "core/mesh_io/progress_step.h"
 #include "core/mesh_io/text_scanner.h"
 
 namespace dubsar {
 namespace {
-constexpr std::uint64_t kStep = 1 << 14;  // items between looks at `progress`
 
 /// Values of a binary body; every type fits a double exactly.
 template <bool kBigEndian>
@@ -109,7 +109,7 @@ Result<T> checked_byte(double value, int highest, std::string_view name) {
   return static_cast<T>(value);
 }
 
-struct Parser {
+struct PlyParser {
   const PlyHeader& header;
   Progress& progress;
   TriMesh mesh;
@@ -187,7 +187,7 @@ struct Parser {
         constexpr int kHighest = static_cast<int>(kEvidenceCount) - 1;
         DUBSAR_ASSIGN(mesh.evidence[v], checked_byte<std::uint8_t>(row[kEvidence], kHighest, "evidence"));
       }
-      if (v % kStep == 0 && progress.cancelled()) return cancelled_error();
+      if (v % kProgressStep == 0 && progress.cancelled()) return cancelled_error();
     }
     return {};
   }
@@ -254,7 +254,7 @@ struct Parser {
         return fail(ErrorKind::kBadData, "ply: the file ends or has a broken number in face {} of {}", f,
                     element.count);
       if (labelled) soup.partitions.insert(soup.partitions.end(), soup.sizes.size() - polygons, label);
-      if (f % kStep == 0 && progress.cancelled()) return cancelled_error();
+      if (f % kProgressStep == 0 && progress.cancelled()) return cancelled_error();
     }
     return {};
   }
@@ -270,7 +270,7 @@ struct Parser {
       }
       if (!values.ok())
         return fail(ErrorKind::kBadData, "ply: the file ends or has a broken number in element \"{}\"", element.name);
-      if (i % kStep == 0 && progress.cancelled()) return cancelled_error();
+      if (i % kProgressStep == 0 && progress.cancelled()) return cancelled_error();
     }
     return {};
   }
@@ -309,7 +309,7 @@ struct Parser {
 
 Result<TriMesh> parse_ply(std::string_view bytes, Progress& progress) {
   DUBSAR_ASSIGN(const PlyHeader header, parse_ply_header(bytes));
-  Parser parser{header, progress, {}, {}};
+  PlyParser parser{header, progress, {}, {}};
   bool has_vertices = false;
   for (const PlyElement& element : header.elements) {
     if (element.name == "tristrips")

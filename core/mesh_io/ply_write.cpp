@@ -5,10 +5,10 @@
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_output.h"
 #include "core/mesh_io/mesh_text.h"
+#include "core/mesh_io/progress_step.h"
 
 namespace dubsar {
 namespace {
-constexpr std::size_t kStep = std::size_t{1} << 14;  // items between looks at `progress`
 
 void append(std::string& row, const glm::vec3& v) {
   append_little(row, v.x);
@@ -84,8 +84,8 @@ Result<void> write_ply(const std::filesystem::path& path, const TriMesh& mesh, c
     if (!mesh.evidence.empty()) append_little(row, mesh.evidence[v]);
     if (curvatures) append_little(row, 0.5f * (k_min + k_max));
     out.text(row);
-    if ((v + 1) % kStep == 0) {
-      progress.advance(kStep);
+    if ((v + 1) % kProgressStep == 0) {
+      progress.advance(kProgressStep);
       if (progress.cancelled()) return cancelled_error();
       if (!out.ok()) return out.flush();
     }
@@ -95,8 +95,8 @@ Result<void> write_ply(const std::filesystem::path& path, const TriMesh& mesh, c
     for (const std::uint32_t v : mesh.triangles[t]) append_little(row, v);
     if (labelled) append_little(row, mesh.triangle_partition[t]);
     out.text(row);
-    if ((t + 1) % kStep == 0) {
-      progress.advance(kStep);
+    if ((t + 1) % kProgressStep == 0) {
+      progress.advance(kProgressStep);
       if (progress.cancelled()) return cancelled_error();
       if (!out.ok()) return out.flush();
     }

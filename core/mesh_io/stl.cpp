@@ -6,13 +6,13 @@
 #include "core/base/buffered_writer.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_output.h"
+#include "core/mesh_io/progress_step.h"
 #include "core/mesh_io/text_scanner.h"
 #include "core/mesh_io/weld.h"
 
 namespace dubsar {
 namespace {
 constexpr std::size_t kHeaderBytes = 80, kFacetBytes = 50;
-constexpr std::size_t kStep = std::size_t{1} << 14;  // facets between looks at `progress`
 constexpr std::string_view kMaker = "dubsar STL, units ";
 
 bool finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
@@ -38,8 +38,8 @@ Result<TriMesh> parse_binary(std::string_view bytes, Progress& progress) {
       id = welder.id(p);
     }
     reader.take(2);
-    if ((t + 1) % kStep == 0) {
-      progress.advance(kStep);
+    if ((t + 1) % kProgressStep == 0) {
+      progress.advance(kProgressStep);
       if (progress.cancelled()) return cancelled_error();
     }
   }
@@ -99,8 +99,8 @@ Result<TriMesh> parse_ascii(std::string_view bytes, Progress& progress) {
     if (word = scanner.word(); word != "endloop") return broken(word, "\"endloop\"");
     if (word = scanner.word(); word != "endfacet") return broken(word, "\"endfacet\"");
     mesh.triangles.push_back(triangle);
-    if (mesh.triangles.size() % kStep == 0) {
-      progress.advance(kStep);
+    if (mesh.triangles.size() % kProgressStep == 0) {
+      progress.advance(kProgressStep);
       if (progress.cancelled()) return cancelled_error();
     }
   }
@@ -166,8 +166,8 @@ Result<void> write_stl(const std::filesystem::path& path, const TriMesh& mesh, c
       for (int axis = 0; axis < 3; ++axis) append_little(facet, row[axis]);
     append_little(facet, std::uint16_t{0});
     out.text(facet);
-    if ((t + 1) % kStep == 0) {
-      progress.advance(kStep);
+    if ((t + 1) % kProgressStep == 0) {
+      progress.advance(kProgressStep);
       if (progress.cancelled()) return cancelled_error();
       if (!out.ok()) return out.flush();
     }

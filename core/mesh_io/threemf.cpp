@@ -5,14 +5,15 @@
 #include <limits>
 #include <map>
 
+#include "core/base/markup_text.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_output.h"
+#include "core/mesh_io/progress_step.h"
 #include "core/mesh_io/zip_writer.h"
 
 namespace dubsar {
 namespace {
 
-constexpr std::size_t kStep = std::size_t{1} << 14;  // items between looks at `progress`
 constexpr std::size_t kPiece = std::size_t{1} << 20;
 constexpr int kColours = 1;  // id of the colour group; objects come after
 
@@ -30,20 +31,6 @@ constexpr std::string_view kModelHead =
 <metadata name="Application">dubsar</metadata>
 <resources>
 )";
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text)
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '"')
-      out += "&quot;";
-    else if (static_cast<unsigned char>(c) >= 32)
-      out += c;
-  return out;
-}
 
 /// Entry 3D/3dmodel.model, in pieces.
 class ModelWriter {
@@ -99,7 +86,7 @@ class ModelWriter {
   Result<void> write_object(PartitionId body, int id) {
     const Partition* const row = mesh_.partitions.find(body);
     text_ += fmt::format("<object id=\"{}\" type=\"model\" name=\"{}\"{}>\n<mesh>\n<vertices>\n", id,
-                         escaped(row != nullptr ? row->body_name() : "object"),
+                         markup_text(row != nullptr ? row->body_name() : "object"),
                          color_of_.empty() ? "" : fmt::format(" pid=\"{}\" pindex=\"0\"", kColours));
     constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
     std::vector<std::uint32_t> local(mesh_.positions.size(), kNone);
@@ -125,7 +112,7 @@ class ModelWriter {
         fmt::format_to(std::back_inserter(text_), " pid=\"{}\" p1=\"{}\" p2=\"{}\" p3=\"{}\"", kColours,
                        color_of_[v[0]], color_of_[v[1]], color_of_[v[2]]);
       text_ += "/>\n";
-      if (t % kStep == 0) progress_.advance(kStep);
+      if (t % kProgressStep == 0) progress_.advance(kProgressStep);
       DUBSAR_TRY(spill());
     }
     text_ += "</triangles>\n</mesh>\n</object>\n";

@@ -12,7 +12,7 @@ namespace dubsar {
 namespace {
 
 using Volumes = std::array<double, PartitionTable::kMost>;
-constexpr std::int64_t kGrain = 1 << 14;
+constexpr std::int64_t kEnclosureGrain = 1 << 14;
 
 /// A side of a face beyond which another partition begins.
 struct BorderSide {
@@ -23,7 +23,7 @@ struct BorderSide {
 /// Six times the volume of the cones from `origin` over the faces of each partition.
 Volumes cones(const SurfaceModel& model, const FaceGraph& graph, const glm::dvec3& origin) {
   return parallel_reduce<Volumes>(
-      graph.faces(), kGrain, {},
+      graph.faces(), kEnclosureGrain, {},
       [&](std::int64_t begin, std::int64_t end) {
         Volumes sum{};
         for (auto f = static_cast<std::size_t>(begin); f < static_cast<std::size_t>(end); ++f)
@@ -39,7 +39,7 @@ Volumes cones(const SurfaceModel& model, const FaceGraph& graph, const glm::dvec
 
 std::vector<BorderSide> find_border(const SurfaceModel& model, const FaceGraph& graph) {
   return parallel_reduce<std::vector<BorderSide>>(
-      graph.faces(), kGrain, {},
+      graph.faces(), kEnclosureGrain, {},
       [&](std::int64_t begin, std::int64_t end) {
         std::vector<BorderSide> sides;
         for (auto f = static_cast<std::uint32_t>(begin); f < static_cast<std::uint32_t>(end); ++f)

@@ -7,7 +7,7 @@
 namespace dubsar {
 namespace {
 
-constexpr std::int64_t kGrain = 1 << 14;
+constexpr std::int64_t kGraphGrain = 1 << 14;
 
 /// The face other than `face` with the directed side from -> to.
 std::uint32_t find_face(const QuadMesh& mesh, std::uint32_t from, std::uint32_t to) {
@@ -43,7 +43,7 @@ Result<FaceGraph> FaceGraph::build(const QuadMesh& mesh, Progress& progress) {
   graph.centre.resize(faces);
   graph.normal.resize(faces);
   graph.area.resize(faces);
-  parallel_chunks(static_cast<std::int64_t>(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_chunks(static_cast<std::int64_t>(faces), kGraphGrain, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) return;
     for (auto q = static_cast<std::uint32_t>(begin); q < static_cast<std::uint32_t>(end); ++q) {
       const Polygon polygon = mesh.polygon(q);

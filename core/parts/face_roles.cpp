@@ -13,7 +13,7 @@
 namespace dubsar {
 namespace {
 
-constexpr std::int64_t kGrain = 1 << 13;
+constexpr std::int64_t kRoleGrain = 1 << 13;
 
 /// One of each face; bytes, since several threads write them.
 using Flags = std::vector<std::uint8_t>;
@@ -60,7 +60,7 @@ Result<Flags> cut_faces(const SurfaceModel& model, const FaceScene& scene, const
   std::vector<std::uint32_t> node(faces, FaceGraph::kNone);
   {
     ConcurrentSets sets(faces);
-    parallel_for(faces, kGrain, [&](std::int64_t i) {
+    parallel_for(faces, kRoleGrain, [&](std::int64_t i) {
       const auto f = static_cast<std::uint32_t>(i);
       const int side = active[f] ? clear_side(f) : 0;
       if (side == 0) return;
@@ -69,7 +69,7 @@ Result<Flags> cut_faces(const SurfaceModel& model, const FaceScene& scene, const
       });
     });
     if (progress.cancelled()) return cancelled_error();
-    parallel_for(faces, kGrain, [&](std::int64_t i) {
+    parallel_for(faces, kRoleGrain, [&](std::int64_t i) {
       const auto f = static_cast<std::uint32_t>(i);
       if (active[f]) node[f] = sets.root(f);
     });
@@ -90,10 +90,10 @@ Result<Flags> cut_faces(const SurfaceModel& model, const FaceScene& scene, const
     std::int32_t cost;
   };
   using Edges = std::vector<Edge>;
-  const std::int64_t chunks = (std::int64_t{faces} + kGrain - 1) / kGrain;
+  const std::int64_t chunks = (std::int64_t{faces} + kRoleGrain - 1) / kRoleGrain;
   std::vector<Edges> edges(static_cast<std::size_t>(chunks));
-  parallel_chunks(faces, kGrain, [&](std::int64_t begin, std::int64_t end) {
-    Edges& here = edges[static_cast<std::size_t>(begin / kGrain)];
+  parallel_chunks(faces, kRoleGrain, [&](std::int64_t begin, std::int64_t end) {
+    Edges& here = edges[static_cast<std::size_t>(begin / kRoleGrain)];
     for (auto f = static_cast<std::uint32_t>(begin); f < static_cast<std::uint64_t>(end); ++f) {
       if (!active[f]) continue;
       each_pair(f, [&](std::uint32_t g, std::uint32_t side) {
@@ -111,7 +111,7 @@ Result<Flags> cut_faces(const SurfaceModel& model, const FaceScene& scene, const
   edges = {};
   DUBSAR_TRY(cut.solve(progress));
   Flags result(faces, 0);
-  parallel_for(faces, kGrain, [&](std::int64_t i) {
+  parallel_for(faces, kRoleGrain, [&](std::int64_t i) {
     const auto f = static_cast<std::size_t>(i);
     result[f] = active[f] && cut.on_source_side(node[f]) ? 1 : 0;
   });
@@ -159,7 +159,7 @@ Result<FaceScene> observe_faces(const SurfaceModel& model, const FaceGraph& grap
   scene.air.resize(faces);
   scene.inward.resize(faces);
   scene.depth.resize(faces);
-  parallel_chunks(faces, kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_chunks(faces, kRoleGrain, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) return;
     for (auto f = static_cast<std::size_t>(begin); f < static_cast<std::size_t>(end); ++f) {
       const glm::vec3 &centre = scene.graph.centre[f], &normal = scene.graph.normal[f];
@@ -235,7 +235,7 @@ FaceComponents find_components(const SurfaceModel& model, const FaceScene& scene
   const FaceGraph& graph = scene.graph;
   const std::uint32_t faces = graph.faces();
   ConcurrentSets sets(faces);
-  parallel_for(faces, kGrain, [&](std::int64_t i) {
+  parallel_for(faces, kRoleGrain, [&](std::int64_t i) {
     const auto f = static_cast<std::uint32_t>(i);
     for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
       const std::uint32_t g = graph.neighbour[s];
@@ -244,7 +244,7 @@ FaceComponents find_components(const SurfaceModel& model, const FaceScene& scene
   });
   FaceComponents components;
   components.of_face.resize(faces);
-  parallel_for(faces, kGrain, [&](std::int64_t i) {
+  parallel_for(faces, kRoleGrain, [&](std::int64_t i) {
     components.of_face[static_cast<std::size_t>(i)] = sets.root(static_cast<std::uint32_t>(i));
   });
   for (std::uint32_t f = 0; f < faces; ++f) {  // roots come before all others of their component
@@ -306,7 +306,7 @@ Result<std::vector<FaceRole>> roles_by_cut(const SurfaceModel& model, const Face
                    : info.area >= options.smallest_area * total ? Kind::kGap
                                                                 : Kind::kPore);
   const auto each_face = [&](const auto& visit) {
-    parallel_for(faces, kGrain, [&](std::int64_t i) { visit(static_cast<std::size_t>(i)); });
+    parallel_for(faces, kRoleGrain, [&](std::int64_t i) { visit(static_cast<std::size_t>(i)); });
   };
   std::vector<FaceRole> roles(faces, FaceRole::kInside);
   Flags undecided(faces, 0), enclosed(faces, 0);

@@ -16,7 +16,7 @@
 namespace dubsar {
 namespace {
 
-constexpr std::int64_t kGrain = 1 << 14;
+constexpr std::int64_t kModelGrain = 1 << 14;
 constexpr std::uint8_t kNotSelected = PartitionTable::kNone;
 
 /// Triangles are counted in 32 bits; a polygon with doubled corners gives at most four more each.
@@ -100,7 +100,7 @@ void add_quads(const SurfaceModel& model, const Selection& selection, Triangulat
   const bool everything =
       std::none_of(selection.group.begin(), selection.group.end(), [](std::uint8_t g) { return g == kNotSelected; });
   if (everything) {
-    parallel_for(static_cast<std::int64_t>(quads), kGrain, [&](std::int64_t i) {
+    parallel_for(static_cast<std::int64_t>(quads), kModelGrain, [&](std::int64_t i) {
       const auto q = static_cast<std::size_t>(i);
       const std::uint8_t id = id_of(q), group = selection.group[id];
       for (std::size_t t = triangulation.first_triangle[q]; t < triangulation.first_triangle[q + 1]; ++t) {
@@ -171,7 +171,7 @@ std::vector<std::uint8_t> find_border(const SurfaceModel& model, const Selection
       if (before == kUnseen && of_vertex.compare_exchange_strong(before, group, std::memory_order_relaxed)) return;
       if (before != group) std::atomic_ref(border[v]).store(1, std::memory_order_relaxed);
     };
-    parallel_for(mesh.quad_count(), kGrain, [&](std::int64_t i) {
+    parallel_for(mesh.quad_count(), kModelGrain, [&](std::int64_t i) {
       const auto q = static_cast<std::uint32_t>(i);
       for (const std::uint32_t v : mesh.quads[q]) visit(v, q);
     });
@@ -195,17 +195,17 @@ Numbering number_vertices(const TriangleSoup& soup, std::size_t first_copy, cons
   std::vector<std::uint32_t>& id = numbering.new_id;
   id.assign(first_copy + copies.size(), 0);
   const auto vertices = static_cast<std::int64_t>(id.size());
-  parallel_for(static_cast<std::int64_t>(soup.triangles.size()), kGrain, [&](std::int64_t t) {
+  parallel_for(static_cast<std::int64_t>(soup.triangles.size()), kModelGrain, [&](std::int64_t t) {
     for (const std::uint32_t v : soup.triangles[static_cast<std::size_t>(t)])
       std::atomic_ref(id[v]).store(1, std::memory_order_relaxed);
   });
-  std::vector<std::int64_t> start(static_cast<std::size_t>((vertices + kGrain - 1) / kGrain));
-  const auto chunk_of = [](std::int64_t begin) { return static_cast<std::size_t>(begin / kGrain); };
-  parallel_chunks(vertices, kGrain, [&](std::int64_t begin, std::int64_t end) {
+  std::vector<std::int64_t> start(static_cast<std::size_t>((vertices + kModelGrain - 1) / kModelGrain));
+  const auto chunk_of = [](std::int64_t begin) { return static_cast<std::size_t>(begin / kModelGrain); };
+  parallel_chunks(vertices, kModelGrain, [&](std::int64_t begin, std::int64_t end) {
     start[chunk_of(begin)] = std::accumulate(id.begin() + begin, id.begin() + end, std::int64_t{0});
   });
   numbering.source.resize(static_cast<std::size_t>(exclusive_scan(start)));
-  parallel_chunks(vertices, kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_chunks(vertices, kModelGrain, [&](std::int64_t begin, std::int64_t end) {
     auto next = static_cast<std::uint32_t>(start[chunk_of(begin)]);
     for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
       if (id[v] == 0) continue;
@@ -222,7 +222,7 @@ void fill_vertices(const SurfaceModel& model, const TriangleSoup& soup, const Nu
   const std::size_t dual = model.mesh.positions.size();
   const auto gather = [&](const auto& from, const auto& from_added, auto& to) {
     to.resize(numbering.source.size());
-    parallel_for(static_cast<std::int64_t>(to.size()), kGrain, [&](std::int64_t k) {
+    parallel_for(static_cast<std::int64_t>(to.size()), kModelGrain, [&](std::int64_t k) {
       const auto i = static_cast<std::size_t>(k);
       const std::uint32_t v = numbering.source[i];
       to[i] = v < dual ? from[v] : from_added[v - dual];
@@ -281,7 +281,7 @@ Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& opti
 
   TriMesh out;
   fill_vertices(model, soup, numbering, added, options.attributes, out);
-  parallel_for(static_cast<std::int64_t>(soup.triangles.size()), kGrain, [&](std::int64_t t) {
+  parallel_for(static_cast<std::int64_t>(soup.triangles.size()), kModelGrain, [&](std::int64_t t) {
     for (std::uint32_t& v : soup.triangles[static_cast<std::size_t>(t)]) v = numbering.new_id[v];
   });
   out.triangles = std::move(soup.triangles);

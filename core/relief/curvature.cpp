@@ -11,7 +11,7 @@
 namespace dubsar {
 namespace {
 
-constexpr std::int64_t kGrain = 8192;
+constexpr std::int64_t kCurvatureGrain = 8192;
 
 struct Corners {
   std::array<glm::vec3, 4> position, normal;
@@ -128,14 +128,14 @@ Result<Curvatures> principal_curvatures(const QuadMesh& mesh, std::span<const gl
   std::vector<glm::vec2> pairs;
   if (method == CurvatureMethod::kPairs) {
     pairs.resize(mesh.quads.size());
-    parallel_for(mesh.quad_count(), kGrain, [&](std::int64_t q) {
+    parallel_for(mesh.quad_count(), kCurvatureGrain, [&](std::int64_t q) {
       pairs[static_cast<std::size_t>(q)] = diagonal_extremes(mesh, normals, static_cast<std::uint32_t>(q));
     });
   }
   Curvatures result;
   result.k_min.resize(normals.size());
   result.k_max.resize(normals.size());
-  parallel_chunks(mesh.vertex_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_chunks(mesh.vertex_count(), kCurvatureGrain, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) return;
     for (std::int64_t i = begin; i < end; ++i) {
       const auto v = static_cast<std::uint32_t>(i);

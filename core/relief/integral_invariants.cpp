@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kRadiusMm = 1.0, kLeastEdges = 4.0, kUnknownEdges = 12.0;
 constexpr double kCells = 12.0;  // of the outer radius of a band
-constexpr std::int64_t kGrain = 2048;
+constexpr std::int64_t kInvariantGrain = 2048;
 
 /// Solid angle of the triangle that three directions span, seen from their origin (A. van Oosterom, J. Strackee, 1983).
 double solid_angle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
@@ -147,25 +147,26 @@ Result<std::vector<InvariantShares>> integral_invariants(const TriMesh& mesh, do
     const SurfaceCells far(merged_places(places, radius_mm / kCells), radius_mm);
     const SurfaceCells middle(merged_places(places, 0.5 * radius_mm / kCells), 0.5 * radius_mm);
     const SurfaceCells near(std::move(places), 0.25 * radius_mm);
-    parallel_chunks(static_cast<std::int64_t>(vertices.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      if (progress.cancelled()) return;
-      for (std::int64_t i = begin; i < end; ++i) {
-        const std::uint32_t v = vertices[static_cast<std::size_t>(i)];
-        const glm::vec3 at(mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[v])));
-        const auto r = static_cast<float>(radius_mm);
-        const BandSums inner = near.sums(at, 0.0f, 0.25f * r, 0.25f * r);
-        const BandSums band = middle.sums(at, 0.25f * r, 0.5f * r, 0.5f * r);
-        const BandSums outer = far.sums(at, 0.5f * r, 0.75f * r, r);
-        const float third_half = inner.third_all + band.third_all, plain_half = inner.plain_all + band.plain_all;
-        const std::array<float, kInvariantScales> third{inner.third_all, third_half, third_half + outer.third_first,
-                                                        third_half + outer.third_all};
-        const std::array<float, kInvariantScales> plain{inner.plain_all, plain_half, plain_half + outer.plain_first,
-                                                        plain_half + outer.plain_all};
-        for (std::size_t k = 0; k < kInvariantScales; ++k)
-          out[v][k] = std::clamp(enclosed[v] - kPerDirection * (third[k] - plain[k] * cubed[k]), 0.0f, 1.0f);
-      }
-      progress.advance(end - begin);
-    });
+    parallel_chunks(
+        static_cast<std::int64_t>(vertices.size()), kInvariantGrain, [&](std::int64_t begin, std::int64_t end) {
+          if (progress.cancelled()) return;
+          for (std::int64_t i = begin; i < end; ++i) {
+            const std::uint32_t v = vertices[static_cast<std::size_t>(i)];
+            const glm::vec3 at(mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[v])));
+            const auto r = static_cast<float>(radius_mm);
+            const BandSums inner = near.sums(at, 0.0f, 0.25f * r, 0.25f * r);
+            const BandSums band = middle.sums(at, 0.25f * r, 0.5f * r, 0.5f * r);
+            const BandSums outer = far.sums(at, 0.5f * r, 0.75f * r, r);
+            const float third_half = inner.third_all + band.third_all, plain_half = inner.plain_all + band.plain_all;
+            const std::array<float, kInvariantScales> third{inner.third_all, third_half, third_half + outer.third_first,
+                                                            third_half + outer.third_all};
+            const std::array<float, kInvariantScales> plain{inner.plain_all, plain_half, plain_half + outer.plain_first,
+                                                            plain_half + outer.plain_all};
+            for (std::size_t k = 0; k < kInvariantScales; ++k)
+              out[v][k] = std::clamp(enclosed[v] - kPerDirection * (third[k] - plain[k] * cubed[k]), 0.0f, 1.0f);
+          }
+          progress.advance(end - begin);
+        });
     if (progress.cancelled()) return cancelled_error();
   }
   progress.end();

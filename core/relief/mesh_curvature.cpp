@@ -12,11 +12,11 @@ namespace {
 constexpr double kCubeTolerance = 1e-6;
 constexpr std::int64_t kTell = 1 << 16;
 
-struct Frame {
+struct VertexFrame {
   glm::dvec3 u{0.0}, v{0.0}, n{0.0};
 };
 
-Frame frame_of(const glm::dvec3& normal) {
+VertexFrame frame_of(const glm::dvec3& normal) {
   const glm::dvec3 aside = std::abs(normal.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
   const glm::dvec3 u = glm::normalize(glm::cross(aside, normal));
   return {u, glm::cross(normal, u), normal};
@@ -26,7 +26,7 @@ Frame frame_of(const glm::dvec3& normal) {
 using Tensor = glm::dvec3;
 
 /// From one tangent plane into another one, which is turned about the line that both share.
-Tensor turned(const Tensor& t, const Frame& from, const Frame& to) {
+Tensor turned(const Tensor& t, const VertexFrame& from, const VertexFrame& to) {
   const double along = glm::dot(from.n, to.n);
   const glm::dvec3 axis = glm::cross(to.n, from.n);
   const auto tilt = [&](const glm::dvec3& x) {  // Rodrigues, from to.n to from.n
@@ -114,7 +114,7 @@ Result<MeshCurvatures> mesh_curvatures(const TriMesh& mesh, Progress& progress) 
     const glm::dvec3 area = sign * glm::cross(at[t[1]] - at[t[0]], at[t[2]] - at[t[0]]);
     const double size = glm::length(area);
     if (!(size > 0) || !std::isfinite(size)) continue;
-    const Frame frame = frame_of(area / size);
+    const VertexFrame frame = frame_of(area / size);
     std::array<glm::dvec2, 3> edges, turns;
     for (std::size_t e = 0; e < 3; ++e) {
       const std::uint32_t a = t[(e + 1) % 3], b = t[(e + 2) % 3];

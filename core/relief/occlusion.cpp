@@ -13,16 +13,16 @@
 namespace dubsar {
 namespace {
 
-constexpr std::int64_t kGrain = 256;  // vertices: 41 k rays, some 10 ms
+constexpr std::int64_t kOcclusionGrain = 256;  // vertices: 41 k rays, some 10 ms
 constexpr std::size_t kLanes = kernels::MarchStart::kMost;
 constexpr PartitionId kNoBody = PartitionTable::kNone;
 
-struct Frame {
+struct RayFrame {
   glm::vec3 x, y, z;
 };
 
 /// Right-handed frame about a unit vector, without branches (Duff et al. 2017).
-Frame frame_about(glm::vec3 n) {
+RayFrame frame_about(glm::vec3 n) {
   const float sign = std::copysign(1.0f, n.z), p = -1.0f / (sign + n.z), q = n.x * n.y * p;
   return {{1.0f + sign * n.x * n.x * p, sign * q, -sign * n.x}, {q, sign + n.y * n.y * p, -n.y}, n};
 }
@@ -33,7 +33,7 @@ bool finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && st
 struct VertexGroup {
   std::array<std::uint32_t, kLanes> ids{};
   std::array<glm::vec3, kLanes> origins{};
-  std::array<Frame, kLanes> frames{};
+  std::array<RayFrame, kLanes> frames{};
   std::size_t count = 0;
 
   void add(std::uint32_t vertex, glm::vec3 origin, glm::vec3 normal) {
@@ -82,7 +82,7 @@ class TriangleTracer final : public Tracer {
     for (std::size_t ray = 0; ray < sky_.directions.size(); ++ray) {
       const glm::vec3 local = sky_.directions[ray];
       for (std::size_t i = 0; i < count; ++i) {
-        const Frame& f = group.frames[first + i];
+        const RayFrame& f = group.frames[first + i];
         packet.direction_x[i] = f.x.x * local.x + f.y.x * local.y + f.z.x * local.z;
         packet.direction_y[i] = f.x.y * local.x + f.y.y * local.y + f.z.y * local.z;
         packet.direction_z[i] = f.x.z * local.x + f.y.z * local.y + f.z.z * local.z;
@@ -121,7 +121,7 @@ class BrickTracer final : public Tracer {
     kernels::MarchStart start;
     for (std::size_t i = 0; i < kLanes; ++i) {
       const std::size_t from = i < group.count ? i : 0;
-      const Frame& f = group.frames[from];
+      const RayFrame& f = group.frames[from];
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const int a = static_cast<int>(axis);
         start.origin[axis][i] = group.origins[from][a];
@@ -262,7 +262,7 @@ Result<std::vector<float>> ambient_light(const LitSurface& surface, const Occlus
         ++skipped;
     }
     sort_by_place_and_side(positions, normals, ids);
-    parallel_chunks(static_cast<std::int64_t>(ids.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallel_chunks(static_cast<std::int64_t>(ids.size()), kOcclusionGrain, [&](std::int64_t begin, std::int64_t end) {
       const auto sum = static_cast<float>(sky.weight_sum);
       VertexGroup group;
       for (std::int64_t i = begin; i < end; ++i) {

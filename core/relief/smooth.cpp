@@ -9,7 +9,7 @@
 namespace dubsar {
 namespace {
 
-constexpr std::int64_t kGrain = 16384;
+constexpr std::int64_t kSmoothGrain = 16384;
 
 std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
@@ -40,7 +40,7 @@ glm::vec3 area_vector(const QuadMesh& mesh, std::span<const glm::vec3> positions
 
 std::vector<glm::vec4> normals_of(const QuadMesh& mesh, std::span<const glm::vec3> positions) {
   std::vector<glm::vec4> faces(mesh.quads.size());
-  parallel_for(mesh.quad_count(), kGrain, [&](std::int64_t f) {
+  parallel_for(mesh.quad_count(), kSmoothGrain, [&](std::int64_t f) {
     const glm::vec3 a = area_vector(mesh, positions, index(f));
     const float area = glm::length(a);
     faces[index(f)] = area > 1e-12f ? glm::vec4(a / area, area) : glm::vec4(0.0f);
@@ -78,7 +78,7 @@ struct AngleSum {
 /// Mean angle in degrees between `faces` and the polygons as they lie.
 double mean_angle_deg(const QuadMesh& mesh, std::span<const glm::vec3> positions, std::span<const glm::vec4> faces) {
   const AngleSum sum = parallel_reduce(
-      mesh.quad_count(), kGrain, AngleSum{},
+      mesh.quad_count(), kSmoothGrain, AngleSum{},
       [&](std::int64_t begin, std::int64_t end) {
         AngleSum part;
         for (std::int64_t f = begin; f < end; ++f) {
@@ -100,7 +100,7 @@ double mean_angle_deg(const QuadMesh& mesh, std::span<const glm::vec3> positions
 void move_vertices(const QuadMesh& mesh, std::span<const glm::vec3> start, const std::vector<glm::vec3>& from,
                    std::vector<glm::vec3>& to, std::vector<glm::vec4>& planes, float max_displacement,
                    Progress& progress) {
-  parallel_chunks(mesh.quad_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_chunks(mesh.quad_count(), kSmoothGrain, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) return;
     for (std::int64_t f = begin; f < end; ++f) {
       glm::vec3 sum{0.0f};
@@ -110,7 +110,7 @@ void move_vertices(const QuadMesh& mesh, std::span<const glm::vec3> start, const
     }
     progress.advance(end - begin);
   });
-  parallel_chunks(mesh.vertex_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_chunks(mesh.vertex_count(), kSmoothGrain, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) return;
     for (std::int64_t v = begin; v < end; ++v) {
       const glm::vec3 p = from[index(v)];
@@ -137,7 +137,7 @@ struct Displacement {
 
 Displacement displacement(std::span<const glm::vec3> a, std::span<const glm::vec3> b, double limit) {
   return parallel_reduce(
-      static_cast<std::int64_t>(a.size()), kGrain, Displacement{},
+      static_cast<std::int64_t>(a.size()), kSmoothGrain, Displacement{},
       [&](std::int64_t begin, std::int64_t end) {
         Displacement part;
         for (std::int64_t v = begin; v < end; ++v) {
@@ -160,7 +160,7 @@ std::vector<glm::vec4> face_normals(const QuadMesh& mesh) { return normals_of(me
 std::vector<glm::vec3> vertex_normals(const QuadMesh& mesh, std::span<const glm::vec4> faces) {
   DUBSAR_CHECK(faces.size() == mesh.quads.size());
   std::vector<glm::vec3> normals(mesh.positions.size());
-  parallel_for(mesh.vertex_count(), kGrain, [&](std::int64_t i) {
+  parallel_for(mesh.vertex_count(), kSmoothGrain, [&](std::int64_t i) {
     const auto v = static_cast<std::uint32_t>(i);
     glm::vec3 sum{0.0f};
     for (const std::uint32_t q : mesh.quads_of(v)) sum += corner_weight(mesh, q, v) * glm::vec3(faces[q]);

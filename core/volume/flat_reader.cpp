@@ -9,7 +9,7 @@
 namespace dubsar {
 namespace {
 
-constexpr std::int64_t kPieceBytes = 4 << 20;  // large enough for disks and network shares, small enough for threads
+constexpr std::int64_t kReadBytes = 4 << 20;   // large enough for disks and network shares, small enough for threads
 constexpr std::int64_t kGrainBytes = 1 << 20;  // less is not worth waking a thread for
 
 class FlatReader final : public VoxelReader {
@@ -27,7 +27,7 @@ class FlatReader final : public VoxelReader {
     // Whole rows, and of them whole runs, are cheaper than many small reads unless most bytes would be thrown away.
     const bool narrow = (box.x.end - box.x.begin) * 4 < layout_.dims.x;
     const bool runs = box.y.step == 1 && !narrow;
-    const std::int64_t rows_at_once = runs ? std::clamp<std::int64_t>(kPieceBytes / row, 1, size.y) : 1;
+    const std::int64_t rows_at_once = runs ? std::clamp<std::int64_t>(kReadBytes / row, 1, size.y) : 1;
     const std::int64_t pieces_per_slice = (size.y + rows_at_once - 1) / rows_at_once;
     const bool in_place = runs && size.x == layout_.dims.x;
     std::mutex mutex;

@@ -8,7 +8,7 @@
 namespace dubsar {
 namespace {
 
-constexpr std::int64_t kPieceBytes = 16 << 20;   // stored numbers on their way to floats
+constexpr std::int64_t kCopyBytes = 16 << 20;    // stored numbers on their way to floats
 constexpr std::int64_t kConvertGrain = 1 << 16;  // voxels
 
 std::span<std::byte> bytes_of(Buffer<std::byte>& buffer, std::int64_t count) {
@@ -61,7 +61,7 @@ Result<void> GridSource::fetch(const Slices& slices, std::span<float> out) {
   const std::int64_t slice_bytes = dims_.slice() * scalar_bytes(format.type);
   // A layer of chunks is not split: its chunks would be decoded for each part.
   const std::int64_t whole = layer_of(slices.begin).end - slices.begin;
-  const std::int64_t step = std::max<std::int64_t>({1, whole, kPieceBytes / slice_bytes});
+  const std::int64_t step = std::max<std::int64_t>({1, whole, kCopyBytes / slice_bytes});
   for (std::int64_t k = slices.begin; k < slices.end; k += step) {
     const Slices part{k, std::min(k + step, slices.end)};
     const auto stored = bytes_of(piece_, (part.end - part.begin) * slice_bytes);

@@ -6,21 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/json_text.h"
+#include "core/volume/hdf5_path.h"
 
 namespace dubsar {
 namespace {
 
 constexpr const char* kOrderNames[] = {"axis_order",      "axes_order", "axisOrder",   "axesOrder",
                                        "dimension_order", "dim_order",  "axis_labels", "dimension_labels"};
-
-std::string parent_of(const std::string& path) {
-  const auto slash = path.rfind('/');
-  return slash == std::string::npos || slash == 0 ? "/" : path.substr(0, slash);
-}
-
-std::string child(const std::string& group, const std::string& name) {
-  return (group == "/" ? "" : group) + "/" + name;
-}
 
 bool all_empty(const std::vector<std::string>& labels) {
   return std::all_of(labels.begin(), labels.end(), [](const std::string& label) { return label.empty(); });
@@ -51,7 +43,7 @@ class Reader {
     by_emd(file, path);
     by_vtk(file, path);
     for (std::string at = path; at != "/";) {
-      at = parent_of(at);
+      at = hdf5_parent(at);
       by_order_names(file, at);
     }
     if (!found_ && file.string(path, "MATLAB_class"))
@@ -104,7 +96,7 @@ class Reader {
   }
 
   void by_openpmd(const Hdf5File& file, const std::string& path) {
-    for (const std::string& object : {path, parent_of(path)}) {
+    for (const std::string& object : {path, hdf5_parent(path)}) {
       auto labels = file.strings(object, "axisLabels");
       if (!labels) continue;
       if (file.string(object, "dataOrder") == "F") std::reverse(labels->begin(), labels->end());
@@ -113,7 +105,7 @@ class Reader {
   }
 
   void by_axes(const Hdf5File& file, const std::string& path) {
-    for (const std::string& object : {path, parent_of(path)}) {
+    for (const std::string& object : {path, hdf5_parent(path)}) {
       auto labels = file.strings(object, "axes");
       if (!labels) continue;
       // N5 counts axes from the fastest one
@@ -123,11 +115,11 @@ class Reader {
   }
 
   void by_emd(const Hdf5File& file, const std::string& path) {
-    const std::string group = parent_of(path);
+    const std::string group = hdf5_parent(path);
     if (!file.numbers(group, "emd_group_type")) return;
     std::vector<std::string> labels;
     for (std::size_t axis = 0; axis < volume_.info.dims.size(); ++axis)
-      labels.push_back(file.string(child(group, fmt::format("dim{}", axis + 1)), "name").value_or(""));
+      labels.push_back(file.string(hdf5_child(group, fmt::format("dim{}", axis + 1)), "name").value_or(""));
     offer(labels, group + "/dim1@name ...", false);
   }
 

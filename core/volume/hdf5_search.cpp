@@ -8,23 +8,14 @@
 #include <set>
 
 #include "core/volume/external_access.h"
+#include "core/volume/hdf5_path.h"
 
 namespace dubsar {
 namespace {
 
 using Kind = Hdf5Target::Kind;
 
-std::string parent_of(const std::string& path) {
-  const auto slash = path.rfind('/');
-  return slash == std::string::npos || slash == 0 ? "/" : path.substr(0, slash);
-}
-
 std::string name_of(const std::string& path) { return path.substr(path.rfind('/') + 1); }
-
-std::string child(const std::string& group, const std::string& name) {
-  if (!name.empty() && name.front() == '/') return name;
-  return (group == "/" ? "" : group) + "/" + name;
-}
 
 std::uint64_t count_of(const Hdf5DatasetInfo& info) {
   double count = 1.0;  // the shape is not checked yet: saturate instead of wrapping
@@ -159,7 +150,7 @@ class Search {
   std::optional<Error> projections(const Hdf5Volume& volume, bool insisted) const {
     const Hdf5File& file = *volume.file;
     const std::string& path = volume.info.path;
-    const std::string group = parent_of(path);
+    const std::string group = hdf5_parent(path);
     const auto is_dataset = [&](const std::string& at) {
       const auto target = file.resolve(at);
       return target && target->kind == Kind::kDataset;
@@ -172,20 +163,21 @@ class Search {
                       path, why)};
     };
     for (const char* key : {"image_key", "image_key_control"})
-      if (is_dataset(child(group, key))) return refusal(fmt::format("\"{}\" lies beside it", child(group, key)));
+      if (is_dataset(hdf5_child(group, key)))
+        return refusal(fmt::format("\"{}\" lies beside it", hdf5_child(group, key)));
     if (const auto definition = file.string_dataset("/" + path.substr(1, path.find('/', 1) - 1) + "/definition");
         definition == "NXtomo" && path.find("/reconstruction/") == std::string::npos)
       return refusal("the definition of its entry is NXtomo");
-    if (name_of(group).rfind("exchange", 0) != 0 || !is_dataset(child(group, "theta"))) return std::nullopt;
+    if (name_of(group).rfind("exchange", 0) != 0 || !is_dataset(hdf5_child(group, "theta"))) return std::nullopt;
     std::string said = file.string(path, "axes").value_or("") + " " + file.string(path, "description").value_or("");
     std::transform(said.begin(), said.end(), said.begin(), [](unsigned char c) { return std::tolower(c); });
     if (said.rfind("theta", 0) == 0) return refusal("its first axis is theta");
     if (said.rfind("z:", 0) == 0 || said.find("recon") != std::string::npos) return std::nullopt;
-    const auto theta = file.inspect(child(group, "theta"));
+    const auto theta = file.inspect(hdf5_child(group, "theta"));
     const bool one_each =
         theta && !theta->dims.empty() && !volume.info.dims.empty() && theta->dims.front() == volume.info.dims.front();
     if (insisted && !one_each) return std::nullopt;
-    return refusal(fmt::format("\"{}\" lies beside it", child(group, "theta")));
+    return refusal(fmt::format("\"{}\" lies beside it", hdf5_child(group, "theta")));
   }
 
   Result<std::vector<std::string>> entries() {
@@ -201,18 +193,18 @@ class Search {
     for (int hops = 0; hops < 8; ++hops) {
       const auto next = file_->string(group, "default");
       if (!next) break;
-      group = child(group, *next);
+      group = hdf5_child(group, *next);
       const auto target = file_->resolve(group);
       if (!target || (target->kind != Kind::kGroup && target->kind != Kind::kDataset)) return group;
       if (target->kind == Kind::kDataset) return group;
     }
-    if (const auto signal = file_->string(group, "signal")) return child(group, *signal);
+    if (const auto signal = file_->string(group, "signal")) return hdf5_child(group, *signal);
     if (file_->string(group, "NX_class") != "NXdata") return std::nullopt;
     if (const auto links = file_->list(group))
       for (const Hdf5Link& link : *links)
-        if (parent_of(link.path) == group && file_->numbers(link.path, "signal") == std::vector<double>{1.0})
+        if (hdf5_parent(link.path) == group && file_->numbers(link.path, "signal") == std::vector<double>{1.0})
           return link.path;
-    return child(group, "data");
+    return hdf5_child(group, "data");
   }
 
   Result<std::vector<std::string>> nexus_default() {
@@ -232,7 +224,8 @@ class Search {
     std::vector<std::string> paths;
     DUBSAR_ASSIGN(const auto groups, entries());
     for (const std::string& group : groups)
-      if (file_->string_dataset(child(group, "definition")) == "NXtomoproc") paths.push_back(child(group, "data/data"));
+      if (file_->string_dataset(hdf5_child(group, "definition")) == "NXtomoproc")
+        paths.push_back(hdf5_child(group, "data/data"));
     return paths;
   }
 
@@ -240,7 +233,7 @@ class Search {
     std::vector<std::string> paths;
     DUBSAR_ASSIGN(const auto groups, entries());
     for (const std::string& group : groups) {
-      const std::string path = child(group, "reconstruction/results/data");
+      const std::string path = hdf5_child(group, "reconstruction/results/data");
       const auto target = file_->resolve(path);
       if (target && (target->kind == Kind::kDataset || target->kind == Kind::kExternal)) paths.push_back(path);
     }
@@ -257,7 +250,7 @@ class Search {
     std::vector<std::string> paths;
     if (file_->string("/VTKHDF", "Type") != "ImageData") return paths;
     for (const char* group : {"/VTKHDF/PointData", "/VTKHDF/CellData"}) {
-      if (const auto scalars = file_->string(group, "Scalars")) return std::vector{child(group, *scalars)};
+      if (const auto scalars = file_->string(group, "Scalars")) return std::vector{hdf5_child(group, *scalars)};
       if (const auto links = file_->list(group))
         for (const Hdf5Link& link : *links)
           if (link.kind == Hdf5Link::Kind::kDataset) paths.push_back(link.path);

@@ -6,18 +6,10 @@
 #include <optional>
 
 #include "core/base/units.h"
+#include "core/volume/hdf5_path.h"
 
 namespace dubsar {
 namespace {
-
-std::string parent_of(const std::string& path) {
-  const auto slash = path.rfind('/');
-  return slash == std::string::npos || slash == 0 ? "/" : path.substr(0, slash);
-}
-
-std::string child(const std::string& group, const std::string& name) {
-  return (group == "/" ? "" : group) + "/" + name;
-}
 
 std::vector<std::string> split_axes(const std::string& text) {
   std::vector<std::string> parts(1);
@@ -78,7 +70,7 @@ class Finder {
 
   bool from_axes(const Hdf5File& file, const std::string& path, VoxelSize& size) {
     const auto axes = volume_axes(volume_.info.dims);
-    const std::string group = parent_of(path);
+    const std::string group = hdf5_parent(path);
     auto names = file.strings(group, "axes");
     if (!names) names = file.strings(path, "axes");
     if (names && names->size() == 1) names = split_axes(names->front());
@@ -91,7 +83,7 @@ class Finder {
     glm::dvec3 mm(0.0);
     for (int i = 0; i < 3; ++i) {
       const std::size_t axis = (*axes)[static_cast<std::size_t>(i)];
-      const auto spacing = axis_spacing(file, child(group, (*names)[axis]), volume_.info.dims[axis]);
+      const auto spacing = axis_spacing(file, hdf5_child(group, (*names)[axis]), volume_.info.dims[axis]);
       if (!spacing) return false;
       mm[2 - i] = *spacing;
     }
@@ -149,7 +141,7 @@ class Finder {
 
   // Attributes of the volume and of the groups above it, and datasets beside these.
   bool from_names(const Hdf5File& file, const std::string& path, VoxelSize& size) {
-    for (std::string at = path;; at = parent_of(at)) {
+    for (std::string at = path;; at = hdf5_parent(at)) {
       for (const Name& name : kNames) {
         if (const auto values = file.numbers(at, name.name)) {
           std::optional<std::string> unit;
@@ -161,7 +153,7 @@ class Finder {
           if (accept(*values, name, unit, fmt::format("{}@{}", at, name.name), size)) return true;
         }
         if (at == path) continue;
-        const std::string sibling = child(at, name.name);
+        const std::string sibling = hdf5_child(at, name.name);
         if (const auto values = file.number_dataset(sibling)) {
           auto unit = file.string(sibling, "units");
           if (!unit) unit = file.string(sibling, "unit");
@@ -178,7 +170,7 @@ class Finder {
     for (const char* kind : {"voxel_size", "pixel_size"}) {
       glm::dvec3 mm(0.0);
       for (int axis = 0; axis < 3; ++axis) {
-        const std::string path = child(group, fmt::format("{}_{}", "xyz"[axis], kind));
+        const std::string path = hdf5_child(group, fmt::format("{}_{}", "xyz"[axis], kind));
         const auto values = file.number_dataset(path);
         const auto unit = file.string(path, "units");
         if (values && values->size() == 1 && unit && length_unit(*unit))

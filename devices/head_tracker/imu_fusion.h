@@ -6,6 +6,8 @@
 
 namespace dubsar {
 
+inline constexpr double kStandardGravity_m_s2 = 9.81;
+
 /// One reading, in the head's axes: x right, y up, z backwards.
 struct ImuSample {
   glm::dvec3 acceleration_m_s2{0.0};  ///< specific force: +9.81 along y when level and at rest

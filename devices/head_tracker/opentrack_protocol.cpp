@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numbers>
+
+#include "core/base/angle.h"
 
 namespace dubsar {
 namespace {
 
-constexpr double kDeg = std::numbers::pi / 180.0;
 static_assert(sizeof(OpentrackPacket) == kOpentrackBytes);
 
 /// What x, y, z, yaw, pitch and roll on the wire are multiplied with to be ours: x right, y up, z back, right-handed
@@ -50,9 +50,9 @@ std::array<std::byte, kOpentrackBytes> format_opentrack(const OpentrackPacket& p
 Pose opentrack_pose(const OpentrackPacket& packet, OpentrackSender sender, const OpentrackInvert& invert) noexcept {
   std::array<double, 6> v{packet.x_cm, packet.y_cm, packet.z_cm, packet.yaw_deg, packet.pitch_deg, packet.roll_deg};
   for (std::size_t i = 0; i < v.size(); ++i) v[i] *= signs_of(sender)[i] * (invert[i] ? -1.0 : 1.0);
-  return {glm::dvec3(v[0], v[1], v[2]) * 0.01, glm::angleAxis(v[3] * kDeg, glm::dvec3(0, 1, 0)) *
-                                                   glm::angleAxis(v[4] * kDeg, glm::dvec3(1, 0, 0)) *
-                                                   glm::angleAxis(v[5] * kDeg, glm::dvec3(0, 0, 1))};
+  return {glm::dvec3(v[0], v[1], v[2]) * 0.01, glm::angleAxis(v[3] * kRadPerDeg, glm::dvec3(0, 1, 0)) *
+                                                   glm::angleAxis(v[4] * kRadPerDeg, glm::dvec3(1, 0, 0)) *
+                                                   glm::angleAxis(v[5] * kRadPerDeg, glm::dvec3(0, 0, 1))};
 }
 
 OpentrackPacket opentrack_packet(const Pose& pose, OpentrackSender sender) noexcept {
@@ -62,12 +62,8 @@ OpentrackPacket opentrack_packet(const Pose& pose, OpentrackSender sender) noexc
   const double yaw = std::atan2(2.0 * (q.x * q.z + q.w * q.y), 1.0 - 2.0 * (q.x * q.x + q.y * q.y));
   const double roll = std::atan2(2.0 * (q.x * q.y + q.w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z));
   const std::array<double, 6>& sign = signs_of(sender);
-  return {sign[0] * pose.position_m.x * 100.0,
-          sign[1] * pose.position_m.y * 100.0,
-          sign[2] * pose.position_m.z * 100.0,
-          sign[3] * yaw / kDeg,
-          sign[4] * pitch / kDeg,
-          sign[5] * roll / kDeg};
+  return {sign[0] * pose.position_m.x * 100.0, sign[1] * pose.position_m.y * 100.0, sign[2] * pose.position_m.z * 100.0,
+          sign[3] * yaw / kRadPerDeg,          sign[4] * pitch / kRadPerDeg,        sign[5] * roll / kRadPerDeg};
 }
 
 bool OpentrackProtocol::accept(std::span<const std::byte> datagram, TimestampNs now) {

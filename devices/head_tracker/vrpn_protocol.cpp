@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "core/base/bytes.h"
+#include "devices/head_tracker/byte_text.h"
 
 namespace dubsar {
 namespace {
@@ -11,12 +12,8 @@ namespace {
 constexpr std::string_view kCookie = "vrpn: ver. 07.38  0";
 constexpr std::size_t kHeaderBytes = 24;
 constexpr std::size_t kPosQuatBytes = 64;
-constexpr std::int32_t kSenderName = -1, kTypeName = -2, kGoodbye = -5;
-constexpr std::size_t kMaxNames = 2000, kMaxNameBytes = 100;  // vrpn's own limits
-
-std::string_view as_text(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
+constexpr std::int32_t kGoodbye = -5;
+constexpr std::size_t kMaxNameBytes = 100;  // vrpn's own limit
 
 template <class T>
 void append_big(std::vector<std::byte>& out, T value) {
@@ -152,14 +149,14 @@ std::string VrpnProtocol::note() const {
 
 bool VrpnProtocol::handle(const VrpnMessage& message, TimestampNs now) {
   ByteReader reader(as_text(message.payload));
-  if (message.type == kSenderName || message.type == kTypeName) {
+  if (message.type == kVrpnSenderName || message.type == kVrpnTypeName) {
     const auto length = reader.big<std::uint32_t>();
     if (length > kMaxNameBytes) return false;
     std::string_view name = reader.take(length);
     if (!reader.ok()) return false;
     name = name.substr(0, name.find('\0'));
-    auto& names = message.type == kSenderName ? senders_ : types_;
-    if (names.size() >= kMaxNames && !names.contains(message.sender)) return false;
+    auto& names = message.type == kVrpnSenderName ? senders_ : types_;
+    if (names.size() >= kVrpnMaxNames && !names.contains(message.sender)) return false;
     names[message.sender] = std::string(name);
     return true;
   }

@@ -21,6 +21,8 @@ namespace dubsar {
 inline constexpr std::uint16_t kVrpnPort = 3883;
 inline constexpr std::size_t kVrpnCookieBytes = 24;
 inline constexpr std::size_t kVrpnMaxMessageBytes = 65536;
+inline constexpr std::int32_t kVrpnSenderName = -1, kVrpnTypeName = -2;  ///< types of the messages that give names
+inline constexpr std::size_t kVrpnMaxNames = 2000;                       ///< vrpn's own limit
 
 /// What both sides send first. The part up to the last full stop (the major version) must agree.
 std::array<std::byte, kVrpnCookieBytes> vrpn_cookie();

@@ -2,12 +2,13 @@
 
 #include <charconv>
 
+#include "devices/head_tracker/byte_text.h"
+
 namespace dubsar {
 namespace {
 
-constexpr std::int32_t kSenderName = -1, kTypeName = -2;
 constexpr std::int32_t kTracker = 0, kPosQuat = 0, kPong = 1;  // our numbers
-constexpr std::size_t kMaxNames = 2000, kMaxCallBytes = 256;
+constexpr std::size_t kMaxCallBytes = 256;
 
 void append(std::vector<std::byte>& out, std::span<const std::byte> bytes) {
   out.insert(out.end(), bytes.begin(), bytes.end());
@@ -16,10 +17,6 @@ void append(std::vector<std::byte>& out, std::span<const std::byte> bytes) {
 void set_time(VrpnMessage& message, TimestampNs time) {
   message.seconds = static_cast<std::uint32_t>(time / 1'000'000'000);
   message.microseconds = static_cast<std::uint32_t>(time / 1000 % 1'000'000);
-}
-
-std::string_view as_text(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 }  // namespace
@@ -44,14 +41,14 @@ Result<std::vector<std::byte>> VrpnServerSide::accept(std::span<const std::byte>
   if (stream_.greeted() && !answered_) {
     answered_ = true;
     append(answer, vrpn_cookie());
-    append(answer, format_vrpn(vrpn_name_message(kSenderName, kTracker, tracker_)));
-    append(answer, format_vrpn(vrpn_name_message(kTypeName, kPosQuat, "vrpn_Tracker Pos_Quat")));
-    append(answer, format_vrpn(vrpn_name_message(kTypeName, kPong, "vrpn_Base pong_message")));
+    append(answer, format_vrpn(vrpn_name_message(kVrpnSenderName, kTracker, tracker_)));
+    append(answer, format_vrpn(vrpn_name_message(kVrpnTypeName, kPosQuat, "vrpn_Tracker Pos_Quat")));
+    append(answer, format_vrpn(vrpn_name_message(kVrpnTypeName, kPong, "vrpn_Base pong_message")));
   }
   for (; message; message = stream_.next()) {
-    if (message->type == kSenderName || message->type == kTypeName) {
-      auto& names = message->type == kSenderName ? senders_ : types_;
-      if (message->payload.size() <= sizeof(std::uint32_t) || names.size() >= kMaxNames) continue;
+    if (message->type == kVrpnSenderName || message->type == kVrpnTypeName) {
+      auto& names = message->type == kVrpnSenderName ? senders_ : types_;
+      if (message->payload.size() <= sizeof(std::uint32_t) || names.size() >= kVrpnMaxNames) continue;
       const std::string_view name = as_text(std::span(message->payload).subspan(sizeof(std::uint32_t)));
       names[message->sender] = name.substr(0, name.find('\0'));
       continue;

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/base/angle.h"
 #include "core/base/bytes.h"
+#include "devices/head_tracker/byte_text.h"
 
 namespace dubsar {
 namespace {
@@ -25,8 +26,6 @@ constexpr std::array<XrealProduct, 12> kProducts{{{0x0424, "XREAL Air", 3, {}},
                                                   {0x0440, "XREAL xbx a01", -1, kNotKnown},
                                                   {0x0442, "XREAL xbx a01+", -1, kNotKnown}}};
 
-constexpr double kGravity_m_s2 = 9.81;
-constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kMaxTurn_deg_s = 4000.0, kMaxForce_g = 64.0;
 constexpr std::size_t kReportBytes = 64, kGyroAt = 12, kAccelAt = 27;
 constexpr std::size_t kCommandDataAt = 8, kCommandMaxData = kReportBytes - kCommandDataAt;
@@ -39,10 +38,6 @@ std::uint32_t crc32(std::span<const std::byte> bytes) noexcept {
     for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (0xEDB88320U & (0U - (crc & 1U)));
   }
   return ~crc;
-}
-
-std::string_view as_text(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 double signed_24(ByteReader& reader) {
@@ -97,8 +92,8 @@ std::optional<XrealReport> parse_xreal(std::span<const std::byte> report) noexce
   if (!turn_deg_s) return std::nullopt;
   const auto force_g = scaled_vector(reader, kMaxForce_g);
   if (!force_g) return std::nullopt;
-  parsed.sample.turn_rate_rad_s = head_from_sensor(*turn_deg_s) * kDeg;
-  parsed.sample.acceleration_m_s2 = head_from_sensor(*force_g) * kGravity_m_s2;
+  parsed.sample.turn_rate_rad_s = head_from_sensor(*turn_deg_s) * kRadPerDeg;
+  parsed.sample.acceleration_m_s2 = head_from_sensor(*force_g) * kStandardGravity_m_s2;
   return parsed;
 }
 
@@ -108,8 +103,8 @@ std::array<std::byte, 64> format_xreal(const XrealReport& report) noexcept {
   bytes[1] = std::byte{2};
   put(std::span(bytes), 4, report.time_ns);
   // the swap of axes is its own inverse
-  put_vector(bytes, kGyroAt, head_from_sensor(report.sample.turn_rate_rad_s / kDeg), 2000);
-  put_vector(bytes, kAccelAt, head_from_sensor(report.sample.acceleration_m_s2 / kGravity_m_s2), 16);
+  put_vector(bytes, kGyroAt, head_from_sensor(report.sample.turn_rate_rad_s / kRadPerDeg), 2000);
+  put_vector(bytes, kAccelAt, head_from_sensor(report.sample.acceleration_m_s2 / kStandardGravity_m_s2), 16);
   return bytes;
 }
 

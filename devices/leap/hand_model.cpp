@@ -3,11 +3,12 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "core/base/angle.h"
+
 namespace dubsar {
 namespace {
 
 constexpr double kMm = 1e-3;
-constexpr double kDegree = glm::pi<double>() / 180.0;
 
 // In millimetres, right hand in the palm frame: -Z to the fingers, +Y to the back, the thumb on -X.
 struct Finger {
@@ -48,14 +49,14 @@ PosedHand pose_hand(const HandPose& pose) {
     cone(wide(finger.carpal), 13.5, wide(finger.knuckle), finger.metacarpal_radius * 0.85);
     hand.joints_m[f + 1][0] = place(wide(finger.carpal));
     hand.radii_m[f + 1][0] = 13.5 * thickness;
-    glm::dquat turn = glm::angleAxis(-finger.fan_degrees * pose.spread * (1.0 - 0.8 * pose.flexion[f + 1]) * kDegree,
+    glm::dquat turn = glm::angleAxis(-finger.fan_degrees * pose.spread * (1.0 - 0.8 * pose.flexion[f + 1]) * kRadPerDeg,
                                      glm::dvec3(0, 1, 0));
     glm::dvec3 joint = wide(finger.knuckle);
     for (std::size_t bone = 0; bone < 3; ++bone) {
       hand.joints_m[f + 1][bone + 1] = place(joint);
       hand.radii_m[f + 1][bone + 1] = finger.radii[bone] * thickness;
       // +X turns -Z towards... the palm side is -Y: a negative turn about X bends the finger to it.
-      turn = turn * glm::angleAxis(-kFlexionDegrees[bone] * pose.flexion[f + 1] * kDegree, glm::dvec3(1, 0, 0));
+      turn = turn * glm::angleAxis(-kFlexionDegrees[bone] * pose.flexion[f + 1] * kRadPerDeg, glm::dvec3(1, 0, 0));
       const glm::dvec3 next = joint + turn * glm::dvec3(0, 0, -finger.bones[bone] * pose.finger_length);
       cone(joint, finger.radii[bone], next, finger.radii[bone + 1]);
       joint = next;
@@ -72,14 +73,14 @@ PosedHand pose_hand(const HandPose& pose) {
   const double bent = pose.flexion[0];
   const glm::dvec3 thumb_root = wide({-17, -6, 34});
   const glm::dquat out =
-      glm::angleAxis((52.0 - 22.0 * bent - 22.0 * (1.0 - pose.spread)) * kDegree, glm::dvec3(0, 1, 0)) *
-      glm::angleAxis((-14.0 - 18.0 * bent) * kDegree, glm::dvec3(1, 0, 0));
+      glm::angleAxis((52.0 - 22.0 * bent - 22.0 * (1.0 - pose.spread)) * kRadPerDeg, glm::dvec3(0, 1, 0)) *
+      glm::angleAxis((-14.0 - 18.0 * bent) * kRadPerDeg, glm::dvec3(1, 0, 0));
   glm::dvec3 joint = thumb_root;
   glm::dquat turn = out;
   constexpr std::array<double, 3> kThumbBones{44, 32, 22}, kThumbBend{0.0, -50.0, -60.0};
   constexpr std::array<double, 4> kThumbRadii{15, 11.5, 10, 8.5};
   for (std::size_t bone = 0; bone < 3; ++bone) {
-    turn = turn * glm::angleAxis(kThumbBend[bone] * bent * kDegree, glm::dvec3(0, 1, 0));
+    turn = turn * glm::angleAxis(kThumbBend[bone] * bent * kRadPerDeg, glm::dvec3(0, 1, 0));
     const glm::dvec3 next = joint + turn * glm::dvec3(0, 0, -kThumbBones[bone] * pose.finger_length);
     cone(joint, kThumbRadii[bone], next, kThumbRadii[bone + 1]);
     hand.joints_m[0][bone] = place(joint);

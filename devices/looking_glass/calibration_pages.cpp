@@ -6,7 +6,7 @@
 namespace dubsar {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 4;
+constexpr std::size_t kPageHeaderBytes = 4;
 constexpr std::size_t kLengthBytes = 4;
 constexpr milliseconds kReadTimeout{30};
 constexpr int kReadsPerRequest = 64;         // then the page is asked for again
@@ -36,7 +36,7 @@ class Reports {
     }
     if (bytes.size() == kLookingGlassPageBytes) {
       first_.assign(bytes.begin(), bytes.end());
-    } else if (bytes.size() == kHeaderBytes && first_.size() == kLookingGlassPageBytes) {
+    } else if (bytes.size() == kPageHeaderBytes && first_.size() == kLookingGlassPageBytes) {
       first_.insert(first_.end(), bytes.begin(), bytes.end());
       const auto page = parse_looking_glass(first_);
       first_.clear();
@@ -91,14 +91,14 @@ std::optional<LookingGlassPage> parse_looking_glass(std::span<const std::byte> r
   page.buttons = std::to_integer<std::uint8_t>(report[0]);
   page.number =
       static_cast<std::uint16_t>(std::to_integer<unsigned>(report[2]) << 8 | std::to_integer<unsigned>(report[3]));
-  std::copy(report.begin() + kHeaderBytes, report.end(), page.data.begin());
+  std::copy(report.begin() + kPageHeaderBytes, report.end(), page.data.begin());
   return page;
 }
 
 std::array<std::byte, kLookingGlassReportBytes> format_looking_glass(const LookingGlassPage& page) noexcept {
   std::array<std::byte, kLookingGlassReportBytes> report = looking_glass_request(page.number);
   report[0] = static_cast<std::byte>(page.buttons);
-  std::copy(page.data.begin(), page.data.end(), report.begin() + kHeaderBytes);
+  std::copy(page.data.begin(), page.data.end(), report.begin() + kPageHeaderBytes);
   return report;
 }
 

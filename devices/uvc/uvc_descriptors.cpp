@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint8_t kConfiguration = 2, kInterface = 4, kEndpoint = 5, kClassInterface = 36;
 constexpr std::uint8_t kVideo = 14, kControlSubclass = 1, kStreamSubclass = 2;
 constexpr std::size_t kConfigurationBytes = 9, kLongest = 4096;
-constexpr milliseconds kTimeout{1000};
+constexpr milliseconds kDescriptorTimeout{1000};
 
 /// One descriptor, bytes beyond its end read as 0.
 class Descriptor {
@@ -109,13 +109,13 @@ Result<Camera> parse_configuration(std::span<const std::byte> bytes) {
 
 Result<Camera> read_camera(Transport& transport) {
   std::array<std::byte, kConfigurationBytes> head{};
-  DUBSAR_ASSIGN(const std::size_t head_bytes, transport.control(kGetConfiguration, head, kTimeout));
+  DUBSAR_ASSIGN(const std::size_t head_bytes, transport.control(kGetConfiguration, head, kDescriptorTimeout));
   const std::size_t total = Descriptor(head).u16(2);
   if (head_bytes < head.size() || total < head.size() || total > kLongest)
     return fail(ErrorKind::kBadData, "uvc: configuration descriptor of {} bytes that says {}, expected {} to {}",
                 head_bytes, total, head.size(), kLongest);
   std::vector<std::byte> bytes(total);
-  DUBSAR_ASSIGN(const std::size_t length, transport.control(kGetConfiguration, bytes, kTimeout));
+  DUBSAR_ASSIGN(const std::size_t length, transport.control(kGetConfiguration, bytes, kDescriptorTimeout));
   return parse_configuration(std::span(bytes).first(std::min(length, total)));
 }
 

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::uint8_t kClassToInterface = 0x21;
 constexpr std::uint8_t kClassFromInterface = 0xa1;
-constexpr milliseconds kTimeout{1000};
+constexpr milliseconds kRequestTimeout{1000};
 
 ControlRequest request(std::uint8_t type, std::uint8_t code, std::uint8_t interface, std::uint8_t unit,
                        std::uint8_t selector) noexcept {
@@ -63,20 +63,20 @@ Result<StreamBlock> decode_stream_block(std::span<const std::byte> bytes) {
 
 Result<StreamBlock> commit_stream(Transport& transport, std::uint8_t stream_interface, const StreamBlock& asked) {
   auto block = encode(asked);
-  DUBSAR_TRY(transport.control(set_current(stream_interface, 0, kProbeControl), block, kTimeout));
+  DUBSAR_TRY(transport.control(set_current(stream_interface, 0, kProbeControl), block, kRequestTimeout));
   DUBSAR_ASSIGN(const std::size_t length,
-                transport.control(get_current(stream_interface, 0, kProbeControl), block, kTimeout));
+                transport.control(get_current(stream_interface, 0, kProbeControl), block, kRequestTimeout));
   DUBSAR_ASSIGN(const StreamBlock agreed, decode_stream_block(std::span(block).first(length)));
   if (agreed.format_index != asked.format_index || agreed.frame_index != asked.frame_index)
     return fail(ErrorKind::kBadData, "uvc: the device offers video mode {} of format {}, expected {} of {}",
                 agreed.frame_index, agreed.format_index, asked.frame_index, asked.format_index);
-  DUBSAR_TRY(transport.control(set_current(stream_interface, 0, kCommitControl), block, kTimeout));
+  DUBSAR_TRY(transport.control(set_current(stream_interface, 0, kCommitControl), block, kRequestTimeout));
   return agreed;
 }
 
 Result<void> send(Transport& transport, const ControlWrite& write) {
   auto data = write.data;
-  DUBSAR_TRY(transport.control(write.request, std::span(data).first(write.bytes), kTimeout));
+  DUBSAR_TRY(transport.control(write.request, std::span(data).first(write.bytes), kRequestTimeout));
   return {};
 }
 

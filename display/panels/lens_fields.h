@@ -1,13 +1,13 @@
 #pragma once
 // The figures of a lens sheet in JSON, under the names that profiles and calibrations have for them.
 
+#include "core/base/inch.h"
 #include "core/base/json_fields.h"
 #include "display/optics/lens.h"
 
 namespace dubsar {
 
 constexpr int kMostPanelPx = 16384;  ///< a side
-constexpr double kMmPerInch = 25.4;
 
 /// Fills pitch, slope, center, fringe, inversion and cell pattern; what is wrong becomes a complaint of `fields`.
 void read_lens_figures(JsonFields& fields, LookingGlassFigures& sheet, const char* invert_name,

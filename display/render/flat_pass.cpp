@@ -6,11 +6,12 @@
 
 #include "display/render/flat_views.h"
 #include "display/render/slice_image.h"
+#include "display/render/views_binding.h"
 
 namespace dubsar {
 namespace {
 
-constexpr GLuint kViewsBinding = 0, kPointsBinding = 1;
+constexpr GLuint kPointsBinding = 1;
 
 void blend() {
   glEnable(GL_BLEND);

@@ -2,11 +2,12 @@
 
 #include "display/render/label_font.h"
 #include "display/render/utf8.h"
+#include "display/render/views_binding.h"
 
 namespace dubsar {
 namespace {
 
-constexpr GLuint kViewsBinding = 0, kLettersBinding = 1;
+constexpr GLuint kLettersBinding = 1;
 constexpr double kBorderEm = 0.07;
 
 struct Letter {  // std430, as in shaders/labels.vert

@@ -14,12 +14,13 @@
 #include "display/optics/srgb.h"
 #include "display/render/lod_mesh.h"
 #include "display/render/shadow_map.h"
+#include "display/render/views_binding.h"
 
 namespace dubsar {
 namespace {
 
 constexpr GLint kViewIndex = 0, kPartColor = 1, kPartOffset = 2;  // shaders/mesh.vert
-constexpr GLuint kViewsBinding = 0, kStyleBinding = 1, kForeignColor = 3, kCarried = 4;
+constexpr GLuint kStyleBinding = 1, kForeignColor = 3, kCarried = 4;
 constexpr GLuint kTableUnit = 0, kShadowUnit = 1, kOpaqueUnit = 2, kPeeledUnit = 3, kOtherTableUnit = 4;
 constexpr std::size_t kMostTables = 8;
 constexpr double kHatchStripes = 90;         // along the longest side of a mesh

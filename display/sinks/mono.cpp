@@ -2,11 +2,10 @@
 
 #include "display/render/compose_pass.h"
 #include "display/render/view_array.h"
+#include "display/sinks/copy_locations.h"
 
 namespace dubsar {
 namespace {
-
-constexpr GLint kLayerLocation = 0, kOriginLocation = 1;  // shaders/copy.frag
 
 class MonoSink : public OutputSink {
  public:

@@ -4,13 +4,13 @@
 
 #include "display/render/compose_pass.h"
 #include "display/render/view_array.h"
+#include "display/sinks/copy_locations.h"
 #include "display/sinks/stereo_views.h"
 
 namespace dubsar {
 namespace {
 
-constexpr int kGapFraction = 24;                          // HDMI 1.4a, 3D frame packing: 45 lines for 1080, 30 for 720
-constexpr GLint kLayerLocation = 0, kOriginLocation = 1;  // shaders/copy.frag
+constexpr int kGapFraction = 24;  // HDMI 1.4a, 3D frame packing: 45 lines for 1080, 30 for 720
 
 class PackedSink : public OutputSink {
  public:

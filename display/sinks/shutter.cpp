@@ -4,12 +4,11 @@
 
 #include "display/render/compose_pass.h"
 #include "display/render/view_array.h"
+#include "display/sinks/copy_locations.h"
 #include "display/sinks/stereo_views.h"
 
 namespace dubsar {
 namespace {
-
-constexpr GLint kLayerLocation = 0, kOriginLocation = 1;  // shaders/copy.frag
 
 class ShutterSink : public OutputSink {
  public:

@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "core/base/angle.h"
 
 namespace dubsar {
 namespace {
 
-constexpr double kRad = std::numbers::pi / 180.0;
 constexpr double kThrowDegPerS = 12.0;  // slower releases do not glide on
 constexpr double kRestDegPerS = 1.0;
-constexpr double kLongestStepS = 1.0 / 60.0;     // a late frame may not make up for its lateness in one jump
-constexpr double kMostPendingRad = 20.0 * kRad;  // a hand that is faster than the object slips on it
+constexpr double kLongestStepS = 1.0 / 60.0;           // a late frame may not make up for its lateness in one jump
+constexpr double kMostPendingRad = 20.0 * kRadPerDeg;  // a hand that is faster than the object slips on it
 constexpr double kMostPendingZoom = 0.4;
 
 }  // namespace
@@ -25,7 +25,7 @@ void Momentum::throw_by(const glm::dvec3& velocity_mps, const HandMapping& hands
   const glm::dvec3 v = velocity_mps * 1e3 * hands.turn_deg_per_mm;
   const double speed = std::hypot(v.x, v.y);
   if (speed > kThrowDegPerS && hands.inertia_s > 0)
-    inertia_rad_per_s_ = kRad * std::min(1.0, hands.fastest_turn_deg_per_s / speed) * glm::dvec3(-v.y, v.x, 0);
+    inertia_rad_per_s_ = kRadPerDeg * std::min(1.0, hands.fastest_turn_deg_per_s / speed) * glm::dvec3(-v.y, v.x, 0);
 }
 
 void Momentum::drop() {
@@ -34,7 +34,7 @@ void Momentum::drop() {
 }
 
 void Momentum::spend(double dt_s, const HandMapping& hands, ViewState& view) {
-  const double fastest = hands.fastest_turn_deg_per_s * kRad;
+  const double fastest = hands.fastest_turn_deg_per_s * kRadPerDeg;
   const double dt = std::min(dt_s, kLongestStepS);
   double asked = glm::length(turn_rad_);
   if (asked > kMostPendingRad) turn_rad_ *= kMostPendingRad / asked;
@@ -45,7 +45,7 @@ void Momentum::spend(double dt_s, const HandMapping& hands, ViewState& view) {
   if (asked == 0.0 && glm::length(inertia_rad_per_s_) > 0.0) {
     now_rad = inertia_rad_per_s_ * dt;
     inertia_rad_per_s_ *= std::exp(-dt / hands.inertia_s);
-    if (glm::length(inertia_rad_per_s_) < kRestDegPerS * kRad) inertia_rad_per_s_ = glm::dvec3(0.0);
+    if (glm::length(inertia_rad_per_s_) < kRestDegPerS * kRadPerDeg) inertia_rad_per_s_ = glm::dvec3(0.0);
   }
   const double most = std::log(hands.fastest_zoom_per_s) * dt;
   const double zoom = std::clamp(zoom_, -most, most);

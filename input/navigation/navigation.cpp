@@ -6,12 +6,12 @@
 #include <numbers>
 #include <utility>
 
+#include "core/base/angle.h"
 #include "input/navigation/square_turn.h"
 
 namespace dubsar {
 namespace {
 
-constexpr double kRad = std::numbers::pi / 180.0;
 constexpr double kMmPerWindow = 200.0;      // of a hand's way, when it pans by a window's height
 constexpr double kPixelsPerWindow = 900.0;  // the same for the mouse
 constexpr TimestampNs kDoubleClickNs = 400'000'000;
@@ -106,7 +106,7 @@ void Navigator::drag_by_mouse(const InputEvent& event) {
   const std::optional<glm::dvec2> before = std::exchange(mouse_.at, event.at);
   const glm::dvec2 moved = event.at && before ? *event.at - *before : glm::dvec2(px.x, -px.y) / kPixelsPerWindow;
   if (mouse_.action == Action::kRotate || mouse_.action == Action::kRotateFine) {
-    double gain = mouse.turn_deg_per_px * kRad * glm::length(px);
+    double gain = mouse.turn_deg_per_px * kRadPerDeg * glm::length(px);
     if (mouse_.held && event.at && before) gain = std::min(gain, glm::length(moved) / std::max(mouse_.held->z, 1e-3));
     if (mouse_.action == Action::kRotateFine) gain *= kFine;
     const double length = glm::length(px);
@@ -151,7 +151,7 @@ void Navigator::use_puck(TimestampNs now, const std::optional<PuckMotion>& puck,
     for (double& a : axes) a = std::abs(a) == strongest ? a : 0.0;
   if (claims_.fresh()) ++movement_;
   glide_.stop();
-  turn_view(view_, mapping_.puck.turn_deg_per_s * kRad * dt_s * glm::dvec3(axes[3], axes[4], axes[5]));
+  turn_view(view_, mapping_.puck.turn_deg_per_s * kRadPerDeg * dt_s * glm::dvec3(axes[3], axes[4], axes[5]));
   view_.pan += mapping_.puck.pan_per_s * dt_s * glm::dvec2(axes[0], axes[1]);
   view_.zoom *= std::pow(mapping_.puck.zoom_per_s, axes[2] * dt_s);
 }
@@ -161,7 +161,7 @@ void Navigator::drag(Action action, const glm::dvec2& moved, double deg_per_unit
     view_.light_azimuth_deg = std::fmod(view_.light_azimuth_deg + deg_per_unit * moved.x + 360.0, 360.0);
     view_.light_elevation_deg = std::clamp(view_.light_elevation_deg + deg_per_unit * moved.y, kLightLow, kLightHigh);
   } else if (action == Action::kRotate) {
-    momentum_.ask_turn(deg_per_unit * kRad * glm::dvec3(-moved.y, moved.x, 0.0));
+    momentum_.ask_turn(deg_per_unit * kRadPerDeg * glm::dvec3(-moved.y, moved.x, 0.0));
   } else if (action == Action::kPan) {
     view_.pan += moved / kMmPerWindow;
   } else if (action == Action::kZoom) {

@@ -9,6 +9,7 @@
 #include "core/base/log.h"
 #include "core/base/option_reader.h"
 #include "devices/transport/retry_pause.h"
+#include "input/event_limit.h"
 #include "input/plugins/plugin_frame.h"
 #include "input/plugins/source_plugin.h"
 
@@ -18,7 +19,6 @@ namespace {
 constexpr std::uint32_t kReadTimeoutMs = 20;
 constexpr TimestampNs kStaleNs = 300'000'000;
 constexpr std::chrono::microseconds kShortestTurn{500};  // a plug-in that floods is read 2000 times a second
-constexpr std::size_t kMostEvents = 4096;
 using ErrorText = std::array<char, 512>;
 
 std::string sentence(ErrorText& text) {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numbers>
+
+#include "core/base/angle.h"
 
 namespace dubsar {
 namespace {
 
-constexpr double kRad = std::numbers::pi / 180.0;
-constexpr double kNoticed_rad = 5.0 * kRad, kNoticedZoom = 0.08;
+constexpr double kNoticed_rad = 5.0 * kRadPerDeg, kNoticedZoom = 0.08;
 constexpr double kAfter_s = 0.5;  // what happens so soon after a movement came of it
 constexpr double kHelped = 5.0, kOddly = 1.4, kDidNothing = 0.4, kUnderstood = 4.0;
 constexpr double kKnownByNow = 1.0;

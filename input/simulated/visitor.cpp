@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kRad = std::numbers::pi / 180.0;
 constexpr double kDeadZoneM = 0.010, kRollDeadRad = 0.105;  // what it takes until the object follows
-constexpr double kContentRad = 2.0 * kRad, kContentRollRad = 2.5 * kRad, kContentZoom = 0.02;
+constexpr double kContentRad = 2.0 * kRad, kContentRollRad = 2.5 * kRad, kVisitorContentZoom = 0.02;
 constexpr double kFistPinchM = 0.015, kOpenPinchM = 0.06;
 constexpr std::size_t kRight = 0, kLeft = 1;
 
@@ -80,7 +80,7 @@ void SimulatedVisitor::stroke(const glm::dvec3& error_rad) {
 void SimulatedVisitor::two_hands(double zoom_error, double roll_error_rad) {
   const double span = zoom_error > 0 ? 0.20 : 0.40;
   const glm::dvec3 middle{0.0, 0.0, 0.25};
-  const bool zooms = std::abs(zoom_error) > kContentZoom, rolls = std::abs(roll_error_rad) > kContentRollRad;
+  const bool zooms = std::abs(zoom_error) > kVisitorContentZoom, rolls = std::abs(roll_error_rad) > kContentRollRad;
   hands_[kLeft].keys = {with_grab({busy_until_s_ + 0.1, middle - glm::dvec3(span / 2, 0, 0)}, 0.0)};
   left_in_ = true;
   move(kRight, middle + glm::dvec3(span / 2, 0, 0), 0.7);
@@ -118,7 +118,7 @@ void SimulatedVisitor::look(double t_s, const ViewState& seen) {
   const glm::dvec3 error = vector_of(wished_ * glm::conjugate(seen.rotation));
   const double zoom_error = std::log(goal_.zoom / seen.zoom);
   const bool turned = std::hypot(error.x, error.y) <= kContentRad;
-  content_ = turned && std::abs(error.z) <= kContentRollRad && std::abs(zoom_error) <= kContentZoom;
+  content_ = turned && std::abs(error.z) <= kContentRollRad && std::abs(zoom_error) <= kVisitorContentZoom;
   if (content_ || t_s > goal_.patience_s) {
     gone_ = true;
     return;
@@ -127,7 +127,7 @@ void SimulatedVisitor::look(double t_s, const ViewState& seen) {
   hold(random_.uniform(0.2, 0.35));  // thinking
   // A large turn first: what it leaves over as roll and zoom goes to both hands.
   if (std::hypot(error.x, error.y) > 15.0 * kRad ||
-      (!turned && std::abs(error.z) <= kContentRollRad && std::abs(zoom_error) <= kContentZoom)) {
+      (!turned && std::abs(error.z) <= kContentRollRad && std::abs(zoom_error) <= kVisitorContentZoom)) {
     stroke(error);
   } else {
     two_hands(zoom_error, error.z);

@@ -13,7 +13,7 @@ namespace dubsar {
 namespace {
 
 constexpr int kMostButtons = 64;
-constexpr TimestampNs kSilentNs = 1'000'000'000, kServerRetryNs = 900'000'000;
+constexpr TimestampNs kDeviceSilentNs = 1'000'000'000, kServerRetryNs = 900'000'000;
 
 class DeviceReader final : public SourceReader {
  public:
@@ -113,7 +113,7 @@ Result<std::unique_ptr<InputSource>> make_device_source(const DriverEntry& drive
   if (!driver.input.lacks.empty()) traits.note = fmt::format("{}: {}", driver.input.source, driver.input.lacks);
   traits.has_end = feed.ended != nullptr;
   traits.before_poll = std::move(feed.before_poll);
-  if (driver.gives != Gives::kPuck) traits.silent_ns = kSilentNs;  // a puck at rest says nothing
+  if (driver.gives != Gives::kPuck) traits.silent_ns = kDeviceSilentNs;  // a puck at rest says nothing
   if (driver.bus == Bus::kUdp || driver.bus == Bus::kTcp || driver.bus == Bus::kUnixSocket)
     traits.retry_ns = kServerRetryNs;
   return make_threaded_source(

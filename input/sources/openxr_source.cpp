@@ -8,7 +8,7 @@
 namespace dubsar {
 namespace {
 
-constexpr TimestampNs kSilentNs = 500'000'000;
+constexpr TimestampNs kSessionSilentNs = 500'000'000;
 constexpr double kSqueezed = 0.6, kLetGo = 0.4;          // of a trigger's way
 constexpr double kWholePush_m = 0.1;                     // for a deflection of 1
 constexpr double kWholeTwist = std::numbers::pi / 4;     // the same
@@ -45,7 +45,7 @@ class OpenXrSource final : public InputSource {
     const WornSample sample = feed_->newest();
     const bool fresh = sample.time != 0 && sample.time != last_.time;
     if (fresh) heard_ = now;
-    if (!heard_ || now - *heard_ > kSilentNs || !feed_->reason().empty()) {
+    if (!heard_ || now - *heard_ > kSessionSilentNs || !feed_->reason().empty()) {
       newest.hands.clear();
       newest.puck.reset();
       held_.reset();

@@ -20,7 +20,7 @@ namespace {
 constexpr const char* kCascade = "/usr/share/opencv4/haarcascades/haarcascade_frontalface_default.xml";
 constexpr double kAbovePanelM = 0.01;
 constexpr double kRadians = std::numbers::pi / 180.0;
-constexpr TimestampNs kSilentNs = 2'000'000'000;
+constexpr TimestampNs kCameraSilentNs = 2'000'000'000;
 
 class WebcamReader final : public SourceReader {
  public:
@@ -140,7 +140,7 @@ Result<std::unique_ptr<InputSource>> make_source(WebcamFrames frames, const Webc
   ThreadedSourceTraits traits;
   traits.name = "webcam";
   traits.has_end = frames.ended != nullptr;
-  traits.silent_ns = traits.has_end ? 0 : kSilentNs;
+  traits.silent_ns = traits.has_end ? 0 : kCameraSilentNs;
   if (detector->name() != "network")
     traits.note = fmt::format("webcam: faces without their network: depth is coarse; {} fetches it", kModelCommand);
   auto reader = std::make_unique<WebcamReader>(std::move(frames), FaceTracker(std::move(detector), options.tracking),

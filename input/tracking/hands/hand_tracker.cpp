@@ -9,8 +9,6 @@
 namespace dubsar {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // First guess, in units of the palm radius R, the largest circle in the silhouette of the palm: how far before its
 // centre and how much deeper than what correlation finds the centre of the palm lies, open hand and fist.
 constexpr double kForwardOpen = 0.0, kForwardFist = -0.06;
@@ -93,7 +91,7 @@ bool HandTracker::track(const Frame& frame, Hands& hands) {
   if (!threshold) return true;
   // The palm of a small hand at the far end of the range, and no less.
   const double palm_px = 0.035 * rig_.focal_px() / options_.farthest_m;
-  const auto regions = find_regions(picture, threshold->grey, static_cast<int>(kPi * palm_px * palm_px),
+  const auto regions = find_regions(picture, threshold->grey, static_cast<int>(std::numbers::pi * palm_px * palm_px),
                                     options_.most_hands, pictures_.labels, pictures_.stack);
   const int d_max = static_cast<int>(std::ceil(rig_.focal_px() * rig_.baseline_m() / options_.nearest_m)) + 1;
   for (const Region& region : regions) {

@@ -9,8 +9,7 @@
 namespace dubsar {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180.0;
+constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kTipReach = 1.75;  // in palm radii: what reaches this far is a finger
 
 glm::dvec2 rotated(const glm::dvec2& v, double angle) {
@@ -74,7 +73,7 @@ std::optional<Silhouette> outline(std::span<const std::uint8_t> labels, int widt
   for (const double circle : {1.5, 1.8, 2.1}) {
     std::array<bool, kDirections> in{};
     for (int i = 0; i < kDirections; ++i) {
-      const double angle = 2.0 * kPi * i / kDirections;
+      const double angle = 2.0 * std::numbers::pi * i / kDirections;
       in[static_cast<std::size_t>(i)] =
           inside(s.palm_px + circle * s.radius_px * glm::dvec2(std::cos(angle), std::sin(angle)));
     }
@@ -85,7 +84,7 @@ std::optional<Silhouette> outline(std::span<const std::uint8_t> labels, int widt
         continue;
       int length = 0;
       while (length < kDirections && in[static_cast<std::size_t>((i + length) % kDirections)]) ++length;
-      const double middle = 2.0 * kPi * (i + 0.5 * (length - 1)) / kDirections;
+      const double middle = 2.0 * std::numbers::pi * (i + 0.5 * (length - 1)) / kDirections;
       const glm::dvec2 direction(std::cos(middle), std::sin(middle));
       const double score = length * (0.5 - direction.y);  // nothing of what points well to the fingers' side
       if (score > best) {

@@ -1,0 +1,7 @@
+#pragma once
+
+namespace dubsar {
+
+inline constexpr double kMmPerInch = 25.4;
+
+}  // namespace dubsar
