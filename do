@@ -142,8 +142,8 @@ lint() {
   git ls-files '*.cpp' '*.h' | xargs clang-format --dry-run --Werror
   local since=${1:-HEAD~1} changed
   git rev-parse -q --verify "$since" >/dev/null || return 0  # a checkout without history
-  preset=ci build=build/ci  # clang cannot read the precompiled headers of g++
-  cmake --preset "$preset" >/dev/null
+  build=build/lint  # file by file; clang cannot read the precompiled headers of g++
+  cmake --preset ci -B "$build" -DDUBSAR_UNITY=OFF >/dev/null
   changed=$(git diff --name-only --diff-filter=AM "$since" -- '*.cpp' | head -n "${LINT_FILES:-12}")
   [ -z "$changed" ] || clang-tidy -p "$build" --quiet --extra-arg=-Wno-unknown-warning-option --warnings-as-errors='*' $changed
 }

@@ -6,17 +6,13 @@
 #include <array>
 #include <system_error>
 
+#include "core/base/lower_text.h"
+
 namespace dubsar::app {
 namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostEntries = 2000;
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return text;
-}
 
 }  // namespace
 
@@ -27,7 +23,7 @@ std::span<const std::string_view> surface_suffixes() {
 
 bool names_a_surface(const fs::path& path) {
   const auto suffixes = surface_suffixes();
-  return std::find(suffixes.begin(), suffixes.end(), lower(path.extension().string())) != suffixes.end();
+  return std::find(suffixes.begin(), suffixes.end(), lower_text(path.extension().string())) != suffixes.end();
 }
 
 FolderListing list_folder(const fs::path& folder) {
@@ -50,7 +46,7 @@ FolderListing list_folder(const fs::path& folder) {
   }
   std::sort(out.entries.begin(), out.entries.end(), [](const FolderEntry& a, const FolderEntry& b) {
     if (a.folder != b.folder) return a.folder;
-    const std::string first = lower(a.name), second = lower(b.name);
+    const std::string first = lower_text(a.name), second = lower_text(b.name);
     return first != second ? first < second : a.name < b.name;
   });
   return out;

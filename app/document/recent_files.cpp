@@ -10,7 +10,7 @@
 namespace dubsar::app {
 namespace {
 using nlohmann::json;
-constexpr const char* kFormat = "dubsar recent files";
+constexpr const char* kListFormat = "dubsar recent files";
 }  // namespace
 
 std::vector<std::string> read_recent(const std::filesystem::path& list) {
@@ -19,7 +19,7 @@ std::vector<std::string> read_recent(const std::filesystem::path& list) {
   const auto text = read_text_file(list);
   if (!text) return out;
   const auto object = parse_json(*text, list.string());
-  if (!object || !object->is_object() || object->value("format", json()) != kFormat) return out;
+  if (!object || !object->is_object() || object->value("format", json()) != kListFormat) return out;
   const json files = object->value("files", json());
   if (!files.is_array()) return out;
   for (const json& file : files)
@@ -39,7 +39,7 @@ Result<void> remember_recent(const std::filesystem::path& list, const std::files
   files.insert(files.begin(), path);
   files.resize(std::min(files.size(), kMostRecent));
   std::filesystem::create_directories(list.parent_path(), error);
-  const json out{{"format", kFormat}, {"version", 1}, {"files", files}};
+  const json out{{"format", kListFormat}, {"version", 1}, {"files", files}};
   return write_file_atomically(list, out.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
 

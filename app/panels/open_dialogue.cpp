@@ -10,29 +10,23 @@
 
 #include "app/cli/overall_progress.h"
 #include "app/panels/panel_kit.h"
+#include "core/base/lower_text.h"
 
 namespace dubsar::app {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr float kWidth = 640.0f, kHeight = 460.0f, kOpeningWidth = 420.0f;
+constexpr float kDialogueWidth = 640.0f, kHeight = 460.0f, kOpeningWidth = 420.0f;
 
 /// What is typed, between frames.
-struct Typed {
+struct Entered {
   std::array<char, 1024> text{};
   std::size_t marked = 0;
   bool was_open = false, focus = false, scroll = false;
 };
-Typed& typed_now() {
-  static Typed typed;
+Entered& entered_now() {
+  static Entered typed;
   return typed;
-}
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return out;
 }
 
 bool can_choose(const DialogueRow& row) { return !row.command.empty(); }
@@ -46,7 +40,7 @@ std::size_t next_row(const std::vector<DialogueRow>& rows, std::size_t from, int
   return from;
 }
 
-void draw_rows(const std::vector<DialogueRow>& rows, Typed& typed, std::vector<std::string>& commands) {
+void draw_rows(const std::vector<DialogueRow>& rows, Entered& typed, std::vector<std::string>& commands) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const DialogueRow& row = rows[i];
     ImGui::PushID(static_cast<int>(i));
@@ -77,8 +71,8 @@ void draw_rows(const std::vector<DialogueRow>& rows, Typed& typed, std::vector<s
 
 std::vector<DialogueRow> dialogue_rows(const FilesState& files, std::string_view typed) {
   std::vector<DialogueRow> out;
-  const std::string wanted = lower(typed);
-  const auto fits = [&](const std::string& name) { return lower(name).find(wanted) != std::string::npos; };
+  const std::string wanted = lower_text(typed);
+  const auto fits = [&](const std::string& name) { return lower_text(name).find(wanted) != std::string::npos; };
   if (typed.find('/') != std::string_view::npos || typed == "..") {
     const bool surface = names_a_surface(fs::path(typed));
     out.push_back({std::string(typed), surface ? "open" : "folder",
@@ -122,7 +116,7 @@ std::string opening_words(const Opening& opening) {
 
 void draw_open_dialogue(bool open, const FilesState& files, float width, float height,
                         std::vector<std::string>& commands) {
-  Typed& typed = typed_now();
+  Entered& typed = entered_now();
   const bool fresh = open && !typed.was_open;
   typed.was_open = open;
   if (!open) return;
@@ -131,7 +125,8 @@ void draw_open_dialogue(bool open, const FilesState& files, float width, float h
   if (fresh || folder != last_folder) typed = {{}, 0, true, true, true};
   last_folder = folder;
   ImGui::SetNextWindowPos(ImVec2(0.5f * width, kTop + kGap), ImGuiCond_Always, ImVec2(0.5f, 0.0f));
-  ImGui::SetNextWindowSize(ImVec2(std::min(kWidth, width - 24.0f), std::min(kHeight, height - kTop - kStrip - 16.0f)));
+  ImGui::SetNextWindowSize(
+      ImVec2(std::min(kDialogueWidth, width - 24.0f), std::min(kHeight, height - kTop - kStrip - 16.0f)));
   ImGui::Begin("open", nullptr, (kFixed & ~ImGuiWindowFlags_NoBringToFrontOnFocus));
   ImGui::TextColored(ImColor(kAccent), "Open a surface");
   ImGui::SameLine();

@@ -7,12 +7,13 @@
 #include <utility>
 
 #include "app/panels/panel_kit.h"
+#include "core/base/lower_text.h"
 
 namespace dubsar::app {
 namespace {
 
 constexpr std::size_t kRows = 12;
-constexpr float kWidth = 560.0f;
+constexpr float kPaletteWidth = 560.0f;
 
 /// What is typed, between frames.
 struct Typed {
@@ -27,16 +28,9 @@ Typed& typed_now() {
   return typed;
 }
 
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return out;
-}
-
 std::vector<std::string> words_of(std::string_view text) {
   std::vector<std::string> out(1);
-  for (const char c : lower(text)) {
+  for (const char c : lower_text(text)) {
     const bool splits = c == ' ' || c == '_' || c == ',' || c == ':';
     if (splits && !out.back().empty()) out.emplace_back();
     if (!splits) out.back() += c;
@@ -61,7 +55,7 @@ int put_cursor(ImGuiInputTextCallbackData* data) {
 }  // namespace
 
 std::vector<PaletteRow> palette_rows(const KeyTable& keys, std::string_view typed, std::size_t most) {
-  const std::string wanted = lower(typed);
+  const std::string wanted = lower_text(typed);
   const std::vector<std::string> words = words_of(typed);
   std::vector<PaletteRow> first, out;
   if (!typed.empty() && typed.find(' ') != std::string_view::npos && keys.commands().check(typed))
@@ -96,7 +90,7 @@ void draw_palette(bool open, const KeyTable& keys, float width, float height, st
   if (!open) return;
   if (fresh) typed = {{}, 0, true, true, false};
   ImGui::SetNextWindowPos(ImVec2(0.5f * width, kTop + kGap), ImGuiCond_Always, ImVec2(0.5f, 0.0f));
-  ImGui::SetNextWindowSize(ImVec2(std::min(kWidth, width - 24.0f), 0.0f));
+  ImGui::SetNextWindowSize(ImVec2(std::min(kPaletteWidth, width - 24.0f), 0.0f));
   ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(width, height - 2.0f * kTop));
   ImGui::Begin("palette", nullptr,
                (kFixed & ~ImGuiWindowFlags_NoBringToFrontOnFocus) | ImGuiWindowFlags_AlwaysAutoResize);

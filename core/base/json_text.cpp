@@ -31,17 +31,17 @@ Result<nlohmann::json> parse_json(std::string_view text, std::string_view what) 
                 kJsonMaxBytes);
   if (const int depth = nesting_depth(text); depth > kJsonMaxDepth)
     return fail(ErrorKind::kBadData, "{}: JSON is nested {} deep, expected at most {}", what, depth, kJsonMaxDepth);
-  nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-  if (json.is_discarded()) return fail(ErrorKind::kBadData, "{}: the JSON text is broken", what);
-  return json;
+  nlohmann::json parsed = nlohmann::json::parse(text, nullptr, false);
+  if (parsed.is_discarded()) return fail(ErrorKind::kBadData, "{}: the JSON text is broken", what);
+  return parsed;
 }
 
-std::string dump_json(const nlohmann::json& json) {
-  return json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+std::string dump_json(const nlohmann::json& value) {
+  return value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
 
-std::string dump_json_lines(const nlohmann::json& json) {
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+std::string dump_json_lines(const nlohmann::json& value) {
+  return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace dubsar

@@ -13,7 +13,7 @@ constexpr std::int64_t kEdge = BrickMap<float>::kEdge;
 /// Beyond the reach of the point spread: at two steps the dip of a film is still deep, at three it is over.
 constexpr float kArm = 3.0f;
 constexpr float kDisk = 3.2f, kDiskDeviation = 1.8f;
-constexpr float kLeastCosine = 0.45f;  ///< flanks of wedges stand up to 60 degrees from the contact
+constexpr float kLeastDipCosine = 0.45f;  ///< flanks of wedges stand up to 60 degrees from the contact
 constexpr float kNoDip = -1e30f;
 
 struct Direction {
@@ -143,7 +143,7 @@ Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const B
       const glm::ivec3 p = band.point(node);
       float best = kNoDip, least = density.get(p.x, p.y, p.z);
       for (const Direction& d : kDirections) {
-        if (std::abs(glm::dot(d.unit, band.normal(node))) < kLeastCosine) continue;
+        if (std::abs(glm::dot(d.unit, band.normal(node))) < kLeastDipCosine) continue;
         if (!in_clay(inside, p + d.arm) || !in_clay(inside, p - d.arm)) continue;
         const float middle = mean(density, d, p);
         const float dip = 0.5f * (mean(density, d, p + d.arm) + mean(density, d, p - d.arm)) - middle;

@@ -9,7 +9,7 @@
 namespace dubsar {
 namespace {
 
-constexpr float kRim = 3.0f;         ///< steps from a patch within which the labels of faces are only a vote
+constexpr float kVoteRim = 3.0f;     ///< steps from a patch within which the labels of faces are only a vote
 constexpr float kRimVote = 0.4f;     ///< for the label that a face has
 constexpr float kFacingVote = 0.6f;  ///< for the side that it looks like, times the cosine
 
@@ -78,7 +78,7 @@ std::vector<SurfaceHint> hints_of_faces(const SurfaceModel& model, const Contact
     const bool envelope = kind == PartitionKind::kEnvelopeInside || kind == PartitionKind::kEnvelopeOutside;
     if (!rest && !tablet && !envelope) continue;
     const ClaySide own = tablet ? ClaySide::kTablet : ClaySide::kEnvelope;
-    if (!rest && band.nodes[face.node].distance > kRim) {
+    if (!rest && band.nodes[face.node].distance > kVoteRim) {
       hints.push_back({face.node, own, kCertain});
       continue;
     }
