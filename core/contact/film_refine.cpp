@@ -77,7 +77,7 @@ float nearest_dip(const Profile& profile) {
 class Follower {
  public:
   Follower(InterfaceMesh& mesh, const InterfaceRings& rings, const std::vector<glm::vec3>& dual_positions,
-           const std::vector<bool>& follows, float most)
+           const std::vector<float>& follows, float most)
       : mesh_(mesh),
         rings_(rings),
         dual_(dual_positions),
@@ -86,9 +86,9 @@ class Follower {
         most_(most) {
     const auto at_rim = [&](std::size_t i) { return rings.all[i].size() != rings.added[i].size(); };
     for (std::size_t i = 0; i < share_.size(); ++i) {
-      if (!follows[i] || at_rim(i)) continue;
+      if (follows[i] <= 0.0f || at_rim(i)) continue;
       const bool second = std::any_of(rings.added[i].begin(), rings.added[i].end(), at_rim);
-      share_[i] = second ? 0.5f : 1.0f;
+      share_[i] = second ? 0.5f * follows[i] : follows[i];
     }
   }
 
@@ -201,7 +201,7 @@ class Follower {
 }  // namespace
 
 void follow_dips(InterfaceMesh& mesh, const InterfaceRings& rings, const std::vector<glm::vec3>& dual_positions,
-                 const std::vector<bool>& follows, const BandDensity& density, float most) {
+                 const std::vector<float>& follows, const BandDensity& density, float most) {
   Follower follower(mesh, rings, dual_positions, follows, most);
   for (int round = 0; round < kRounds; ++round) {
     follower.find_normals();

@@ -12,10 +12,11 @@
 
 namespace dubsar {
 
-/// Moves the added vertices that are to follow, by at most `most` steps. `dual_positions` are those of the
-/// surface beside the contact; they stay, and so do vertices beside them. No triangle turns over. About 20 us a vertex;
+/// Moves the added vertices by at most `most` steps; `follows` is the share of every move that each makes, 0..1.
+/// `dual_positions` are those of the surface beside the contact; they stay, and so do vertices beside them. No triangle
+/// turns over. About 20 us a vertex;
 /// the same for any number of threads.
 void follow_dips(InterfaceMesh& mesh, const InterfaceRings& rings, const std::vector<glm::vec3>& dual_positions,
-                 const std::vector<bool>& follows, const BandDensity& density, float most);
+                 const std::vector<float>& follows, const BandDensity& density, float most);
 
 }  // namespace dubsar

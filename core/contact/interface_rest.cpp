@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <tuple>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "core/parts/border_loops.h"
+#include "core/parts/loop_fill.h"
 
 namespace dubsar {
 namespace {
+
+/// Edges of a loop that is closed by a star. The triangles of a wider one are long, and cross the staircase of its rim.
+constexpr std::size_t kMostStar = 8;
 
 bool is_envelope(PartitionKind kind) {
   return kind == PartitionKind::kEnvelopeInside || kind == PartitionKind::kEnvelopeOutside;
@@ -61,6 +66,59 @@ bool inside_body(const SurfaceModel& model, std::uint32_t a, std::uint32_t b) {
   }
   return sides == 2 && tablet != 1;
 }
+
+/// Triangles in loops, between vertices of the loops and new ones.
+class Rest {
+ public:
+  Rest(std::uint32_t dual, InterfaceMesh& mesh) : dual_(dual), mesh_(mesh) {}
+
+  void add_star(const SurfaceModel& model, const std::vector<std::uint32_t>& loop) {
+    glm::vec3 sum(0.0f);
+    const std::uint32_t centre = next_vertex();
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      sum += position(model, loop[i]);
+      mesh_.triangles.push_back({centre, loop[i], loop[(i + 1) % loop.size()]});
+    }
+    add_vertex(sum / static_cast<float>(loop.size()));
+  }
+
+  Result<void> add_fill(const SurfaceModel& model, const std::vector<std::uint32_t>& loop, Progress& progress) {
+    std::unordered_set<std::uint64_t> taken;
+    for (const Triangle& t : mesh_.triangles)
+      for (std::size_t i = 0; i < 3; ++i) taken.insert(key(t[i], t[(i + 1) % 3]));
+    Loop rim;
+    for (const std::uint32_t v : loop) rim.positions.push_back(position(model, v));
+    // The surface may have any edge between two vertices of its own.
+    rim.forbidden = [&](std::uint32_t a, std::uint32_t b) {
+      return (loop[a] < dual_ && loop[b] < dual_) || taken.count(key(loop[a], loop[b])) != 0;
+    };
+    DUBSAR_ASSIGN(const LoopFill fill, fill_loop(rim, {}, progress));
+    const std::uint32_t first = next_vertex();
+    const auto rims = static_cast<std::uint32_t>(loop.size());
+    for (Triangle t : fill.triangles) {
+      for (std::uint32_t& v : t) v = v < rims ? loop[v] : first + v - rims;
+      mesh_.triangles.push_back(t);
+    }
+    for (const glm::vec3& p : fill.added) add_vertex(p);
+    return {};
+  }
+
+ private:
+  static std::uint64_t key(std::uint32_t a, std::uint32_t b) {
+    return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+  }
+  std::uint32_t next_vertex() const { return static_cast<std::uint32_t>(dual_ + mesh_.added.size()); }
+  glm::vec3 position(const SurfaceModel& model, std::uint32_t v) const {
+    return v < dual_ ? model.mesh.positions[v] : mesh_.added[v - dual_];
+  }
+  void add_vertex(const glm::vec3& p) {
+    mesh_.added.push_back(p);
+    mesh_.strength.push_back(0.0f);
+  }
+
+  std::uint32_t dual_;
+  InterfaceMesh& mesh_;
+};
 
 }  // namespace
 
@@ -119,20 +177,19 @@ void part_shared_edges(const SurfaceModel& model, InterfaceMesh& mesh) {
   }
 }
 
-std::int64_t close_rest(const SurfaceModel& model, const FaceGraph& graph, InterfaceMesh& mesh) {
+Result<std::int64_t> close_rest(const SurfaceModel& model, const FaceGraph& graph, InterfaceMesh& mesh,
+                                Progress& progress) {
   const std::vector<BorderEdge> edges = unpaired(model, mesh, graph);
   const auto loops = join_loops(edges);
-  const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());
+  Rest rest(static_cast<std::uint32_t>(model.mesh.positions.size()), mesh);
   for (const auto& loop : loops) {
-    glm::vec3 sum(0.0f);
-    const auto centre = static_cast<std::uint32_t>(dual + mesh.added.size());
-    for (const std::uint32_t e : loop) {
-      const std::uint32_t v = edges[e].from;
-      sum += v < dual ? model.mesh.positions[v] : mesh.added[v - dual];
-      mesh.triangles.push_back({centre, edges[e].from, edges[e].to});
-    }
-    mesh.added.push_back(sum / static_cast<float>(loop.size()));
-    mesh.strength.push_back(0.0f);
+    std::vector<std::uint32_t> vertices;
+    vertices.reserve(loop.size());
+    for (const std::uint32_t e : loop) vertices.push_back(edges[e].from);
+    if (vertices.size() <= kMostStar)
+      rest.add_star(model, vertices);
+    else
+      DUBSAR_TRY(rest.add_fill(model, vertices, progress));
   }
   return static_cast<std::int64_t>(loops.size());
 }

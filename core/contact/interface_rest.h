@@ -1,18 +1,21 @@
 #pragma once
-// What is left open between the traced contact and the surface beside it: tiny loops where cells hold several surfaces
-// or the band ends.
+// What is left open between the traced contact and the surface beside it: tiny loops where cells hold several surfaces,
+// and wider ones where the band ends.
 
 #include <cstdint>
 
+#include "core/base/progress.h"
+#include "core/base/result.h"
 #include "core/contact/interface_mesh.h"
 #include "core/parts/face_graph.h"
 #include "core/parts/surface_model.h"
 
 namespace dubsar {
 
-/// Closes every loop of sides of tablet, envelope and contact that do not pair up with a star around a new vertex.
-/// Returns the number of loops.
-std::int64_t close_rest(const SurfaceModel& model, const FaceGraph& graph, InterfaceMesh& mesh);
+/// Closes every loop of sides of tablet, envelope and contact that do not pair up: a tiny one with a star around a new
+/// vertex, a wider one with a smooth patch (loop_fill.h). Returns the number of loops. kCancelled.
+Result<std::int64_t> close_rest(const SurfaceModel& model, const FaceGraph& graph, InterfaceMesh& mesh,
+                                Progress& progress);
 
 /// Where the contact runs along an edge of the surface that tablet or envelope has already on both sides, or twice
 /// along an edge of its own, its two triangles get a vertex of their own in the middle, a little apart.

@@ -1,7 +1,10 @@
 #include "core/contact/interface_shape.h"
 
 #include <algorithm>
+#include <array>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <map>
 
 #include "core/contact/film_refine.h"
 #include "core/contact/interface_rings.h"
@@ -22,7 +25,8 @@ constexpr std::size_t kLeastFilm = 1500, kLeastClearFilm = 400;
 constexpr float kClear = 2.0f;
 constexpr int kFilmRounds = 1;
 constexpr int kMembraneRounds = 200;
-constexpr float kMostRefined = 2.5f, kKeepAway = 6.0f;  ///< grid steps
+constexpr float kMostRefined = 2.5f;          ///< grid steps
+constexpr float kTied = 3.0f, kSlack = 4.0f;  ///< steps from a crossing: nothing moves; all moves are free again
 
 constexpr std::uint8_t kFilm = evidence_byte(Evidence::kFilm), kInferred = evidence_byte(Evidence::kInferred);
 
@@ -88,6 +92,30 @@ void drop_small_films(const InterfaceRings& rings, const std::vector<float>& str
   }
 }
 
+/// How much of its moves each vertex may make, 0..1: in the cut itself every vertex lies in a cell of its own, so that
+/// what crosses after it was moved does not where it stays.
+std::vector<float> leashes(const std::vector<glm::vec3>& added, const std::vector<glm::vec3>& crossed) {
+  std::vector<float> leash(added.size(), 1.0f);
+  if (crossed.empty()) return leash;
+  constexpr float kFree = kTied + kSlack;
+  const auto bin = [](const glm::vec3& p) {
+    const glm::ivec3 b(glm::floor(p / kFree));
+    return std::array<int, 3>{b.x, b.y, b.z};
+  };
+  std::map<std::array<int, 3>, std::vector<glm::vec3>> bins;
+  for (const glm::vec3& place : crossed) bins[bin(place)].push_back(place);
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    const std::array<int, 3> here = bin(added[i]);
+    for (int k = 0; k < 27; ++k) {
+      const auto found = bins.find({here[0] + k % 3 - 1, here[1] + k / 3 % 3 - 1, here[2] + k / 9 - 1});
+      if (found == bins.end()) continue;
+      for (const glm::vec3& place : found->second)
+        leash[i] = std::min(leash[i], std::max(0.0f, (glm::distance(place, added[i]) - kTied) / kSlack));
+    }
+  }
+  return leash;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector<glm::vec3>& dual_positions,
@@ -100,6 +128,7 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
   for (std::size_t i = 0; i < evidence.size(); ++i) evidence[i] = strength[i] >= film_strength ? kFilm : kInferred;
   drop_small_films(rings, strength, evidence);
 
+  const std::vector<float> leash = leashes(mesh.added, crossed);
   const std::vector<glm::vec3> start = mesh.added;
   std::vector<glm::vec3> moved = mesh.added;
   const auto position = [&](std::uint32_t v) { return v < dual ? dual_positions[v] : mesh.added[v - dual]; };
@@ -112,17 +141,15 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
       mean /= static_cast<float>(rings.all[i].size());
       const glm::vec3 step = mesh.added[i] + share * (mean - mesh.added[i]) - start[i];
       const float length = glm::length(step);
-      moved[i] = start[i] + (length > most ? most / length : 1.0f) * step;
+      const float free = leash[i] * most;
+      moved[i] = start[i] + (length > free ? free / length : 1.0f) * step;
     }
     mesh.added.swap(moved);
   };
   for (int round = 0; round < kFilmRounds; ++round) relax(kFilm, 0.5f);
   for (int round = 0; round < kMembraneRounds; ++round) relax(kInferred, 1.0f);
-  std::vector<bool> follows(evidence.size());
-  for (std::size_t i = 0; i < follows.size(); ++i)
-    follows[i] = evidence[i] == kFilm && std::none_of(crossed.begin(), crossed.end(), [&](const glm::vec3& place) {
-                   return glm::distance(place, mesh.added[i]) < kKeepAway;
-                 });
+  std::vector<float> follows(evidence.size());
+  for (std::size_t i = 0; i < follows.size(); ++i) follows[i] = evidence[i] == kFilm ? leash[i] : 0.0f;
   follow_dips(mesh, rings, dual_positions, follows, density, kMostRefined);
   return evidence;
 }

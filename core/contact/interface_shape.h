@@ -11,8 +11,8 @@ namespace dubsar {
 
 /// Evidence of the added vertices (evidence.h): film where the strength of the dip, averaged far along the contact and
 /// without its rim, is at least `film_strength` over a region as large as a wedge, else inferred. Films are followed in
-/// the density (film_refine.h), but for those near `crossed`; what is inferred becomes a membrane between them and the
-/// surface, no farther than `most` steps from where it was.
+/// the density (film_refine.h); what is inferred becomes a membrane between them and the surface, no farther than
+/// `most` steps from where it was. Within 3 steps of `crossed` nothing moves, and less than elsewhere within 7.
 std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector<glm::vec3>& dual_positions,
                                           const BandDensity& density, const std::vector<glm::vec3>& crossed,
                                           float film_strength, float most);

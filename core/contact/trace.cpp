@@ -25,9 +25,8 @@ namespace {
 constexpr float kSpacing = 0.7f;  ///< of samples of the patches, grid steps
 /// Farthest that inferred contact is moved from the cut: staircases of the cut go, nothing runs through anything else.
 constexpr float kMostMove = 1.5f;
-constexpr int kMostAttempts = 8;       ///< to get round places where the contact would not close the parts
-constexpr int kMostCrossed = 5;        ///< of those, to get round places where it would run through the surface
-constexpr std::size_t kHopeless = 60;  ///< such places after the first attempt, from which on the next does not better
+constexpr int kMostAttempts = 8;  ///< to get round places where the contact would not close the parts
+constexpr int kMostCrossed = 5;   ///< of those, to get round places where it would run through the surface
 
 /// What tracing changes in a model.
 struct Labels {
@@ -54,7 +53,7 @@ struct Traced {
   const FaceGraph& graph;
   std::vector<BandFace> faces;
   std::vector<ClaySide> side;
-  std::vector<glm::vec3> crossed;  ///< where following the dips made the contact run through something
+  std::vector<glm::vec3> crossed;  ///< where moving its vertices made the contact run through something
 };
 
 void store_patch(SurfaceModel& model, InterfaceMesh mesh, std::vector<std::uint8_t> evidence) {
@@ -73,7 +72,7 @@ Result<void> build_contact(SurfaceModel& model, const Traced& traced, const Cont
                            ContactReport& report, Progress& progress) {
   report.pockets = relabel_faces(model, traced.graph, traced.faces, traced.side);
   InterfaceMesh mesh = make_interface(model, traced.index, traced.band, traced.side, traced.dips);
-  const std::int64_t stars = close_rest(model, traced.graph, mesh);
+  DUBSAR_ASSIGN(const std::int64_t rest_loops, close_rest(model, traced.graph, mesh, progress));
   part_shared_edges(model, mesh);
   std::vector<std::uint8_t> evidence =
       shape_interface(mesh, model.mesh.positions, traced.density, traced.crossed, options.film_strength, kMostMove);
@@ -83,8 +82,8 @@ Result<void> build_contact(SurfaceModel& model, const Traced& traced, const Cont
   HoleOptions rest;
   rest.keep_patches = true;
   DUBSAR_ASSIGN(const HoleReport holes, fill_holes(model, traced.graph, rest, progress));
-  log_info("contact: {} points, {} pockets, {} film and {} inferred vertices, {} stars, {} holes left", report.points,
-           report.pockets, report.film_vertices, report.inferred_vertices, stars, holes.loops);
+  log_info("contact: {} points, {} pockets, {} film and {} inferred vertices, {} loops closed, {} holes left",
+           report.points, report.pockets, report.film_vertices, report.inferred_vertices, rest_loops, holes.loops);
   return {};
 }
 
@@ -149,9 +148,9 @@ Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const Contac
       places = report.patches.left;
       if (places.empty()) return {};
       if (!best || best->report.patches.left.size() > places.size()) best = Closed{labels_of(model), report};
-      if (++crossed == kMostCrossed || (crossed > 1 && places.size() > kHopeless)) break;
+      if (++crossed == kMostCrossed) break;
       traced.crossed.insert(traced.crossed.end(), places.begin(), places.end());
-      if (crossed == 1) {  // most of them are gone when dips are not followed there
+      if (crossed == 1) {  // most of them are gone when the cut is not smoothed there
         restore(before, model);
         continue;
       }
