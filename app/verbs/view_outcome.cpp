@@ -4,16 +4,16 @@
 
 #include <array>
 
-#include "core/base/quantile.h"
+#include "core/base/measurements.h"
 
 namespace dubsar::app {
 namespace {
 
-nlohmann::json latency_json(const std::vector<double>& ms) {
+nlohmann::json latency_json(const Measurements& ms) {
   return {{"frames", ms.size()},
-          {"median_ms", quantile(ms, 0.5)},
-          {"p95_ms", quantile(ms, 0.95)},
-          {"worst_ms", quantile(ms, 1.0)}};
+          {"median_ms", ms.quantile(0.5)},
+          {"p95_ms", ms.quantile(0.95)},
+          {"worst_ms", ms.quantile(1.0)}};
 }
 
 nlohmann::json view_json(const ViewState& view) {
@@ -46,9 +46,9 @@ VerbResult describe_session(const std::string& display, const ViewResult& done, 
       "device time to cameras{}: median {:.1f} ms, 95 % {:.1f} ms, worst {:.1f} ms over {} frames with new input\n"
       "CPU time of a frame: median {:.1f} ms, worst {:.1f} ms\n",
       done.frames, done.seconds, done.written, turn.x, turn.y, turn.z, done.view.zoom, done.largest_turn_deg,
-      simulated ? " (simulated clock)" : "", quantile(done.input_age_ms, 0.5), quantile(done.input_age_ms, 0.95),
-      quantile(done.input_age_ms, 1.0), done.input_age_ms.size(), quantile(done.frame_cpu_ms, 0.5),
-      quantile(done.frame_cpu_ms, 1.0));
+      simulated ? " (simulated clock)" : "", done.input_age_ms.quantile(0.5), done.input_age_ms.quantile(0.95),
+      done.input_age_ms.quantile(1.0), done.input_age_ms.size(), done.frame_cpu_ms.quantile(0.5),
+      done.frame_cpu_ms.quantile(1.0));
   return out;
 }
 
@@ -85,8 +85,8 @@ void add_intervals(const ViewResult& done, VerbResult& out) {
   if (!done.interval_ms.empty())
     out.text += fmt::format(
         "from picture to picture while things moved, all {}: median {:.1f} ms, 95 % {:.1f} ms, longest {:.1f} ms\n",
-        done.interval_ms.size(), quantile(done.interval_ms, 0.5), quantile(done.interval_ms, 0.95),
-        quantile(done.interval_ms, 1.0));
+        done.interval_ms.size(), done.interval_ms.quantile(0.5), done.interval_ms.quantile(0.95),
+        done.interval_ms.quantile(1.0));
 }
 
 }  // namespace dubsar::app

@@ -5,8 +5,8 @@
 #include <system_error>
 
 #include "app/viewer/window_presenter.h"
+#include "core/base/large_blocks.h"
 #include "core/base/log.h"
-#include "core/base/quantile.h"
 #include "core/image_io/png_file.h"
 
 namespace dubsar::app {
@@ -43,27 +43,26 @@ class Figures {
   void took_part(ViewResult& out, const PictureReport& report) {
     if (!report.input_age) return;
     const double ms = 1e-6 * static_cast<double>(*report.input_age);
-    out.input_age_ms.push_back(ms);
+    out.input_age_ms.add(ms);
     keep(ages_ms_, ms);
   }
   /// A picture was presented at `at` of the real clock.
   void presented(TimestampNs at, bool moving) {
     if (moving && last_ >= 0 && !rested_) {
-      intervals_all_ms_.push_back(1e-6 * static_cast<double>(at - last_));
-      keep(intervals_ms_, intervals_all_ms_.back());
+      const double ms = 1e-6 * static_cast<double>(at - last_);
+      intervals_all_ms_.add(ms);
+      keep(intervals_ms_, ms);
     }
     last_ = at;
     rested_ = !moving;
   }
   /// A turn of the loop at which there was nothing new to show.
   void rested() { rested_ = true; }
-  const std::vector<double>& intervals_ms() const { return intervals_all_ms_; }
+  const Measurements& intervals_ms() const { return intervals_all_ms_; }
   RecentFigures recent() const {
     return {{intervals_ms_.begin(), intervals_ms_.end()}, {ages_ms_.begin(), ages_ms_.end()}};
   }
-  double fps() const {
-    return intervals_all_ms_.empty() ? 0.0 : 1e3 / std::max(quantile(intervals_all_ms_, 0.5), 1e-3);
-  }
+  double fps() const { return intervals_all_ms_.empty() ? 0.0 : 1e3 / std::max(intervals_all_ms_.quantile(0.5), 1e-3); }
 
  private:
   static void keep(std::deque<double>& values, double value) {
@@ -73,7 +72,7 @@ class Figures {
   TimestampNs last_ = -1;
   bool rested_ = true;
   std::deque<double> ages_ms_, intervals_ms_;
-  std::vector<double> intervals_all_ms_;
+  Measurements intervals_all_ms_;
 };
 
 class Loop {
@@ -122,7 +121,7 @@ Result<void> Loop::draw(bool& drawn) {
   const double since_s = 1e-9 * static_cast<double>(steady_.now() - began_);
   if (!out_.first.window_s) out_.first.window_s = since_s;
   if (!out_.first.surface_s && viewer_->shows_surface()) out_.first.surface_s = since_s;
-  out_.frame_cpu_ms.push_back(1e3 * (process_cpu_seconds() - cpu));
+  out_.frame_cpu_ms.add(1e3 * (process_cpu_seconds() - cpu));
   ++out_.frames;
   drawn = true;
   return {};
@@ -142,6 +141,7 @@ bool Loop::ends(TimestampNs start) {
 
 Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look, Shelf* shelf) {
   DUBSAR_TRY(check(options_));
+  return_large_blocks();  // textures, each time the window changes
   std::string note;
   std::unique_ptr<OutputSink> sink;
   if (options_.window) {

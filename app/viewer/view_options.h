@@ -12,6 +12,7 @@
 #include "app/document/document.h"
 #include "app/viewer/source_set.h"
 #include "app/viewer/stage.h"
+#include "core/base/measurements.h"
 #include "display/render/context_glfw.h"
 #include "input/navigation/mapping.h"
 
@@ -105,11 +106,11 @@ struct ViewResult {
   ViewState view{};
   /// In real time: from one presented picture to the next, of all that were presented while things moved, however
   /// long it took. A rest in between is no interval.
-  std::vector<double> interval_ms{};
-  std::vector<double> input_age_ms{};  ///< one for every turn that had new input
-  std::vector<double> frame_cpu_ms{};  ///< CPU time of each picture, all threads
-  double largest_turn_deg = 0.0;       ///< between two turns
-  std::string display{};               ///< shown at the end
+  Measurements interval_ms{};
+  Measurements input_age_ms{};    ///< one for every turn that had new input
+  Measurements frame_cpu_ms{};    ///< CPU time of each picture, all threads
+  double largest_turn_deg = 0.0;  ///< between two turns
+  std::string display{};          ///< shown at the end
   std::vector<SourceRow> rows{};
   std::vector<SourceState> sources{};
   Document document{};

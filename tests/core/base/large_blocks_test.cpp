@@ -1,0 +1,47 @@
+#include "core/base/large_blocks.h"
+
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+namespace dubsar {
+namespace {
+
+constexpr std::size_t kMiB = 1 << 20, kBlocks = 32;
+
+/// How much of 32 MiB, freed while small blocks between them live on, stays with this process, after an even larger
+/// block was freed.
+std::size_t held_bytes() {
+  std::make_unique<std::vector<char>>(8 * kMiB).reset();
+  const std::size_t before = mallinfo2().fordblks;
+  std::vector<std::vector<char>> large(kBlocks), small(kBlocks);
+  for (std::size_t i = 0; i < kBlocks; ++i) {
+    large[i].resize(kMiB);
+    small[i].resize(64 + i);
+  }
+  large.clear();
+  const std::size_t now = mallinfo2().fordblks;
+  return now > before ? now - before : 0;
+}
+
+[[noreturn]] void exit_with(bool good) { std::exit(good ? 0 : 1); }
+
+// Each in a new process: it cannot be taken back, and what other tests freed would be taken first.
+TEST(LargeBlocks, GoBackToTheSystemWhenTheyAreFreed) {
+  if (mallinfo2().arena == 0) GTEST_SKIP() << "the C library's memory is not used here";
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(exit_with(held_bytes() > kBlocks * kMiB / 2), ::testing::ExitedWithCode(0), "")
+      << "else nothing is shown";
+  EXPECT_EXIT(
+      {
+        return_large_blocks();
+        exit_with(held_bytes() < kMiB);
+      },
+      ::testing::ExitedWithCode(0), "");
+}
+
+}  // namespace
+}  // namespace dubsar
