@@ -8,6 +8,7 @@
 #include "core/base/input_file.h"
 #include "core/exa/exa_decode.h"
 #include "core/exa/exa_reader.h"
+#include "core/exa/exa_text.h"
 #include "core/exa/sign_brick.h"
 
 namespace dubsar {
@@ -69,6 +70,7 @@ Result<ExaStats> write_exa(const std::filesystem::path& path, const SurfaceModel
   const std::string head = exa_head(blocks);
   std::uint64_t total = head.size() + kExaEnd.size();
   for (const ExaBlock& block : blocks) total += block.bytes.size();
+  DUBSAR_TRY(check_exa_size(model.samples.dims, total));  // what no reader takes is not written
   progress.begin("write exa", static_cast<std::int64_t>(total), "byte");
   DUBSAR_ASSIGN(AtomicFile file, AtomicFile::create(path, static_cast<std::int64_t>(total)));
   const auto put = [&](std::string_view bytes) -> Result<void> {

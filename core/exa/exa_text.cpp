@@ -119,6 +119,17 @@ Result<std::string> exa_header_json(const ExaHeader& header) {
   return json.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
 }
 
+Result<void> check_exa_size(const Dims& dims, std::uint64_t file_bytes) {
+  if (static_cast<std::uint64_t>(dims.count()) > kAlwaysPoints + kMostPointsPerByte * file_bytes)
+    return fail(ErrorKind::kBadData, "exa: {} grid points in a file of {} bytes, expected at most {}", dims.count(),
+                file_bytes, kAlwaysPoints + kMostPointsPerByte * file_bytes);
+  const auto rows = static_cast<std::uint64_t>(dims.y * dims.z);
+  if (rows > kAlwaysRows + kMostRowsPerByte * file_bytes)
+    return fail(ErrorKind::kBadData, "exa: {} rows of grid points in a file of {} bytes, expected at most {}", rows,
+                file_bytes, kAlwaysRows + kMostRowsPerByte * file_bytes);
+  return {};
+}
+
 Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_bytes) {
   DUBSAR_ASSIGN(const Json json, parse_json(text, "exa: header"));
   Members members(json);
@@ -158,12 +169,7 @@ Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_byt
   DUBSAR_TRY(check_dims("exa", size, 1));
   header.dims = {static_cast<std::int64_t>(size[0]), static_cast<std::int64_t>(size[1]),
                  static_cast<std::int64_t>(size[2])};
-  if (static_cast<std::uint64_t>(header.dims.count()) > kAlwaysPoints + kMostPointsPerByte * file_bytes)
-    return fail(ErrorKind::kBadData, "exa: {} grid points in a file of {} bytes, expected at most {}",
-                header.dims.count(), file_bytes, kAlwaysPoints + kMostPointsPerByte * file_bytes);
-  if (size[1] * size[2] > kAlwaysRows + kMostRowsPerByte * file_bytes)
-    return fail(ErrorKind::kBadData, "exa: {} rows of grid points in a file of {} bytes, expected at most {}",
-                size[1] * size[2], file_bytes, kAlwaysRows + kMostRowsPerByte * file_bytes);
+  DUBSAR_TRY(check_exa_size(header.dims, file_bytes));
   for (const std::int64_t count : {header.vertices, header.quads, header.samples.edges, header.samples.faces})
     if (static_cast<std::uint64_t>(count) > kAlwaysItems + kMostPerByte * file_bytes)
       return fail(ErrorKind::kBadData,

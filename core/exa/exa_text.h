@@ -54,6 +54,8 @@ struct ExaHeader {
 
 /// kBadData when a number is not finite (JSON cannot hold it).
 Result<std::string> exa_header_json(const ExaHeader& header);
+/// kBadData: a grid so large for so small a file that a reader would spend its time on nothing; docs/exa.md, bounds.
+Result<void> check_exa_size(const Dims& dims, std::uint64_t file_bytes);
 /// kBadData: missing or wrong members, dimensions out of bounds, or counts that no file of `file_bytes` can have.
 Result<ExaHeader> parse_exa_header(std::string_view text, std::uint64_t file_bytes);
 

@@ -155,6 +155,17 @@ TEST_F(ExaFile, CancelLeavesTheOldFile) {
             ErrorKind::kCannotCreate);
 }
 
+TEST_F(ExaFile, WhatNoReaderWouldTakeIsNotWritten) {
+  const SurfaceModel model = sample_model({8, 8, 8}, Kind::kEmpty, 1);
+  ASSERT_TRUE(write_exa(folder_ / "a.exa", model, progress_));
+  const SurfaceModel wide = sample_model({1, 8192, 4096}, Kind::kEmpty, 1);
+  const auto written = write_exa(folder_ / "a.exa", wide, progress_);
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().kind, ErrorKind::kBadData);
+  EXPECT_THAT(written.error().message, HasSubstr("33554432 rows of grid points in a file of"));
+  EXPECT_TRUE(read_exa(folder_ / "a.exa", progress_)) << "the old file stays";
+}
+
 TEST_F(ExaFile, ModelsThatContradictThemselvesAreNotWritten) {
   SurfaceModel model = sample_model({20, 20, 20}, Kind::kBlob, 2);
   const auto kind_of = [&](const SurfaceModel& broken) {
