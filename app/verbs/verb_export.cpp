@@ -11,6 +11,7 @@
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
 #include "app/publish/seen_colors.h"
+#include "core/mesh/folds.h"
 #include "core/mesh/simplify.h"
 #include "core/mesh_io/mesh_io.h"
 #include "core/pipeline/report.h"
@@ -42,8 +43,9 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
     color_as_seen(mesh, look.style, &fields);
     write.colors_derived = !mesh.shape.empty() || !mesh.ao.empty() || is_field(look.style.map);
   }
-  DUBSAR_TRY(write_mesh(options.out, mesh, write, progress));
   const MeshCheck check = check_mesh(mesh.positions, mesh.triangles);
+  if (format == MeshFormat::kStl) remove_folds(mesh);
+  DUBSAR_TRY(write_mesh(options.out, mesh, write, progress));
   // STL knows no parts: whoever reads it joins equal points, and patches of two parts lie on each other.
   const std::int64_t coincident = format == MeshFormat::kStl ? coincident_triangles(mesh) : 0;
   const bool watertight = check.watertight() && coincident == 0;

@@ -46,7 +46,7 @@ TEST_F(Kiosk, RefusesWhatIsWrongInOneSentence) {
   EXPECT_NE(bad.err.find("brightness is 7"), std::string::npos) << bad.err;
   EXPECT_EQ(run_dubsar({"view", "--kiosk", file("gone.json"), "--offscreen"}).exit_code, 66);
   EXPECT_EQ(run_dubsar({"view", file("block.obj"), "--kiosk", file("good.json"), "--offscreen"}).exit_code, 64);
-  EXPECT_EQ(run_dubsar({"view"}).exit_code, 64);
+  EXPECT_EQ(run_dubsar({"view", "--offscreen"}).exit_code, 64);
   json unknown = profile();
   unknown["languages"] = {"tlh"};
   write("unknown.json", unknown.dump());

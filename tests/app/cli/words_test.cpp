@@ -142,6 +142,8 @@ TEST_F(Words, StlOfSeveralPartsSaysThatTheirPatchesLieOnEachOther) {
       json::parse(run_dubsar({"export", at("scan.exa"), at("t.stl"), "--partition", "tablet", "--json", "-"}).out);
   EXPECT_EQ(one["coincident_triangles"], 0);
   EXPECT_TRUE(one["watertight"].get<bool>());
+  EXPECT_TRUE(json::parse(run_dubsar({"info", at("t.stl"), "--json", "-"}).out)["watertight"].get<bool>())
+      << "a reader that joins equal points agrees";
 }
 
 }  // namespace
