@@ -34,6 +34,7 @@ struct MadeWearer {
   double yaw_middle = 0.0;                ///< radians, to the left
   glm::dvec3 head_middle{0.0, 0.0, 0.0};  ///< between the eyes
   double eyes_apart_m = 0.064;
+  double refresh_hz = 90.0;  ///< pictures a second that the headset shows; not changed while a session runs
   double floor_m = -1.5;
   bool has_floor = true;
 };
@@ -90,7 +91,6 @@ inline MadePose made_head(const MadeFacts& h, double t) {
           yaw * nod};
 }
 
-inline constexpr double kMadePeriod_s = 1.0 / 90.0;
 inline constexpr int kMadeEyePx = 240;
 
 }  // namespace dubsar::testing

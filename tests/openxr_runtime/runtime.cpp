@@ -241,8 +241,8 @@ XrResult XRAPI_CALL wait_frame(XrSession, const XrFrameWaitInfo*, XrFrameState* 
   if (!s.running || s.frame.waited) return wrong();
   s.frame.waited = true;
   ++s.frame.number;  // time goes on by frames: a slow renderer sees the same world as a quick one
-  out->predictedDisplayTime = (s.frame.number + 2) * kPeriodNs;
-  out->predictedDisplayPeriod = kPeriodNs;
+  out->predictedDisplayTime = (s.frame.number + 2) * period_ns(s.headset);
+  out->predictedDisplayPeriod = period_ns(s.headset);
   out->shouldRender = XR_TRUE;
   s.headset.now_s = 1e-9 * static_cast<double>(out->predictedDisplayTime);
   return XR_SUCCESS;
@@ -279,7 +279,8 @@ XrResult XRAPI_CALL convert_time(XrInstance, XrTime time, timespec* out) {
   RuntimeState& s = state();
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
-  const std::int64_t at = now.tv_sec * 1'000'000'000LL + now.tv_nsec + time - (s.frame.number + 1) * kPeriodNs;
+  const std::int64_t at =
+      now.tv_sec * 1'000'000'000LL + now.tv_nsec + time - (s.frame.number + 1) * period_ns(s.headset);
   *out = {at / 1'000'000'000, at % 1'000'000'000};
   return XR_SUCCESS;
 }

@@ -108,7 +108,7 @@ XrResult XRAPI_CALL end_frame(XrSession, const XrFrameEndInfo* info) {
   if (!s.frame.begun) return wrong();
   s.frame.begun = false;
   MadeFrame frame;
-  frame.predicted = (s.frame.number + 2) * kPeriodNs;
+  frame.predicted = (s.frame.number + 2) * period_ns(s.headset);
   frame.displayed = info->displayTime;
   frame.layers = static_cast<int>(info->layerCount);
   if (info->layerCount == 1) {

@@ -60,7 +60,10 @@ struct RuntimeState {
 
 RuntimeState& state();
 
-constexpr std::int64_t kPeriodNs = 11'111'111;
+/// From one picture of the headset to the next; call under its mutex.
+inline std::int64_t period_ns(const MadeHeadset& headset) {
+  return static_cast<std::int64_t>(1e9 / headset.wearer.refresh_hz);
+}
 
 template <class Handle>
 std::uint64_t id_of(Handle handle) {

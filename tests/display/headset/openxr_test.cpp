@@ -129,6 +129,24 @@ TEST_F(OpenXr, LayersHaveThePosesPredictedForTheDisplayTimeWhileTheHeadTurns) {
   expect_predicted_poses(*made_, 0);
 }
 
+TEST_F(OpenXr, TheLoopGoesAtTheHeadsetsOwnRate) {
+  for (const double refresh_hz : {72.0, 80.0, 120.0}) {
+    made_->reset();
+    made_->wearer.refresh_hz = refresh_hz;
+    made_->wearer.yaw_amplitude = 0.5;
+    open();
+    pictures_until_worn();
+    for (int i = 0; i < 30; ++i) ASSERT_TRUE(picture());
+    ASSERT_EQ(made_->frames.size(), 31u) << "one picture for each that the headset waits for, at " << refresh_hz;
+    for (std::size_t i = 1; i < made_->frames.size(); ++i)
+      EXPECT_NEAR(static_cast<double>(made_->frames[i].displayed - made_->frames[i - 1].displayed), 1e9 / refresh_hz,
+                  1.0);
+    expect_predicted_poses(*made_, 0);
+    scene_.reset();
+    sink_.reset();
+  }
+}
+
 /// Where the object stands, from the first head and the floor.
 glm::dvec3 expected_place(const testing::MadeFacts& made, const MadePose& first_head) {
   glm::dvec3 ahead = first_head.rotation * glm::dvec3(0, 0, -1);
