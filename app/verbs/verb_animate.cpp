@@ -29,7 +29,7 @@ constexpr double kMargin = 0.12;  // as in a window with its panels, where films
 constexpr int kMostPictures = 1'000'000;
 constexpr std::string_view kKeep = "_pictures";
 
-struct Options {
+struct AnimateRequest {
   std::string film, in, out, size = "1920x1080", style, pictures = "png";
   double fps = 25.0;
   int samples = 3;
@@ -42,7 +42,7 @@ struct FilmFile {
   std::vector<Keyframe> keys;
 };
 
-Result<FilmFile> read_film(const Options& options) {
+Result<FilmFile> read_film(const AnimateRequest& options) {
   FilmFile out;
   DUBSAR_ASSIGN(const std::string text, read_text_file(options.film));
   DUBSAR_ASSIGN(out.keys, parse_film(text, options.film));
@@ -64,7 +64,7 @@ Result<int> pictures_of(const std::vector<Keyframe>& keys, double fps) {
               kMostPictures);
 }
 
-Result<StageOptions> stage_options(const Options& options, const std::string& style) {
+Result<StageOptions> stage_options(const AnimateRequest& options, const std::string& style) {
   DisplayOptions shown;
   const auto [width, height] = parse_size(options.size).value_or(std::array{0, 0});
   if (width < 16 || height < 16 || width > 16384 || height > 16384)
@@ -90,7 +90,7 @@ struct Places {
   fs::path folder, video, ffmpeg;
 };
 
-Result<Places> find_places(const Options& options, const SinkTraits& traits) {
+Result<Places> find_places(const AnimateRequest& options, const SinkTraits& traits) {
   Places out;
   out.folder = options.out;
   if (!fs::path(options.out).has_extension() || fs::is_directory(options.out)) return out;
@@ -104,7 +104,7 @@ Result<Places> find_places(const Options& options, const SinkTraits& traits) {
 }
 
 /// While one picture is drawn the one before it is written.
-Result<void> make_pictures(const Options& options, FilmPainter& painter, const std::vector<Keyframe>& keys,
+Result<void> make_pictures(const AnimateRequest& options, FilmPainter& painter, const std::vector<Keyframe>& keys,
                            const PictureSeries& series, const std::vector<int>& wanted, Progress& progress) {
   std::future<Result<void>> writing;
   const auto written = [&]() -> Result<void> {
@@ -127,11 +127,11 @@ Result<void> make_pictures(const Options& options, FilmPainter& painter, const s
   return {};
 }
 
-Result<VerbResult> run(const Options& options, bool sized, Progress& progress) {
+Result<VerbResult> run(const AnimateRequest& options, bool sized, Progress& progress) {
   DUBSAR_ASSIGN(const FilmFile film, read_film(options));
   DUBSAR_ASSIGN(const int count, pictures_of(film.keys, options.fps));
   std::string style = film.keys.front().style.empty() ? film.base.style.name : film.keys.front().style;
-  Options asked = options;
+  AnimateRequest asked = options;
   asked.display.sized = sized;
   DUBSAR_ASSIGN(const StageOptions stage, stage_options(asked, style));
   DUBSAR_ASSIGN(const auto sink, stage.catalog->make(stage.display));
@@ -202,7 +202,7 @@ Result<VerbResult> run(const Options& options, bool sized, Progress& progress) {
 }  // namespace
 
 Verb add_animate_verb(Arguments program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<AnimateRequest>();
   options->display.display = "mono";
   Arguments command = program.command("animate", "the pictures of a film, or a video, from keyframes of a session");
   command.reads("FILM", options->film, "keyframes: what `write_film` wrote in a session, or a whole session's file")

@@ -58,7 +58,7 @@ struct Actions {
   std::optional<Arguments> list, probe, monitor, record, replay, simulate;
 };
 
-struct Options {
+struct DevicesRequest {
   DeviceChoice device;
   std::string file, script, udp;
   bool live = false;
@@ -69,7 +69,7 @@ struct Options {
   Actions actions;
 };
 
-Result<VerbResult> list(const Options& options) {
+Result<VerbResult> list(const DevicesRequest& options) {
   const std::vector<DeviceInfo> devices = list_devices(options.device.socket);
   VerbResult result;
   result.json["devices"] = json::array();
@@ -176,7 +176,7 @@ Result<VerbResult> probe_looking_glass(const Clock& clock) {
   return result;
 }
 
-Result<VerbResult> run_live(const Options& options, bool print, Progress& progress) {
+Result<VerbResult> run_live(const DevicesRequest& options, bool print, Progress& progress) {
   const SteadyClock clock;
   const DeviceSpec spec = options.device.spec();
   DUBSAR_ASSIGN(const DriverEntry* driver, find_driver(spec.driver, "devices", driver_table()));
@@ -216,7 +216,7 @@ Result<VerbResult> run_live(const Options& options, bool print, Progress& progre
   return result;
 }
 
-Result<VerbResult> run_replay(const Options& options, bool print, Progress& progress) {
+Result<VerbResult> run_replay(const DevicesRequest& options, bool print, Progress& progress) {
   const SteadyClock clock;
   DUBSAR_ASSIGN(Recording recording, read_recording(options.file));
   const DeviceSpec spec{recording.driver};
@@ -231,7 +231,7 @@ Result<VerbResult> run_replay(const Options& options, bool print, Progress& prog
 }
 
 /// A script, or somebody; where the device stands is where its source expects it.
-Result<PersonOptions> person_options(const Options& options, const DriverEntry& driver) {
+Result<PersonOptions> person_options(const DevicesRequest& options, const DriverEntry& driver) {
   PersonOptions person;
   if (options.script.empty()) {
     person.script = somebody(options.seed.value_or(1), options.duration.value_or(10.0));
@@ -245,7 +245,7 @@ Result<PersonOptions> person_options(const Options& options, const DriverEntry& 
   return person;
 }
 
-Result<VerbResult> run_simulate(const Options& options, bool print, Progress& progress) {
+Result<VerbResult> run_simulate(const DevicesRequest& options, bool print, Progress& progress) {
   DeviceSpec spec = options.device.spec();
   DUBSAR_ASSIGN(const DriverEntry* driver, find_driver(spec.driver, "devices simulate", driver_table()));
   DUBSAR_ASSIGN(PersonOptions person, person_options(options, *driver));
@@ -283,7 +283,7 @@ Result<VerbResult> run_simulate(const Options& options, bool print, Progress& pr
   return result;
 }
 
-Result<VerbResult> run(const Options& options, const CommonOptions& common, Progress& progress) {
+Result<VerbResult> run(const DevicesRequest& options, const CommonOptions& common, Progress& progress) {
   const bool print = common.json_path != "-" && !common.console.quiet;
   if (options.actions.list->chosen()) return list(options);
   if (options.actions.probe->chosen() && is_calibration(options.device.driver))
@@ -293,12 +293,12 @@ Result<VerbResult> run(const Options& options, const CommonOptions& common, Prog
   const auto driver = find_driver(options.device.driver, "devices", driver_table());
   if (driver && (*driver)->bus == Bus::kVideo && !options.actions.monitor->chosen())
     return watch_camera(options.file, options.actions.probe->chosen() ? 2.0 : options.seconds, progress);
-  Options chosen = options;
+  DevicesRequest chosen = options;
   if (options.actions.probe->chosen()) chosen.seconds = 2.0;
   return run_live(chosen, print && options.actions.monitor->chosen(), progress);
 }
 
-void add_device_options(Arguments command, Options& options) {
+void add_device_options(Arguments command, DevicesRequest& options) {
   command
       .value("driver", options.device.driver,
              driver_names(driver_table(), can_be_opened) + "; probe and monitor: leapc; probe and record: webcam")
@@ -315,7 +315,7 @@ void add_device_options(Arguments command, Options& options) {
   command.value("--library", options.device.library, "leapc: Ultraleap's libLeapC.so").called("FILE");
 }
 
-void add_simulate_options(Arguments command, Options& options) {
+void add_simulate_options(Arguments command, DevicesRequest& options) {
   command.value("driver", options.device.driver, "whose bytes: " + driver_names(driver_table(), can_be_simulated))
       .required();
   command.writes("file", options.file, FileFormat::kOther, "the recording to write").called("FILE");
@@ -340,7 +340,7 @@ Verb add_devices_verb(Arguments program) {
       "Examples:\n  dubsar devices list\n  dubsar devices monitor opentrack --seconds 30\n"
       "  dubsar devices simulate spacemouse turn.txt\n  dubsar devices replay turn.txt\n"
       "  dubsar devices simulate opentrack --script scholar.json --udp 127.0.0.1:4242");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DevicesRequest>();
   const auto add = [&](const char* name, const char* what) { return command.subcommand(name, what); };
   const auto seconds = [&](Arguments sub) {
     sub.value("--seconds", options->seconds, "how long").range(0.1, 86400.0).called("S");

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Options {
+struct DisplaysRequest {
   std::vector<std::string> adjust;  ///< PANEL, figures or "reset"
   bool window = false;              ///< adjust by eye
   std::string monitor;
@@ -43,7 +43,7 @@ const char* kind_name(PanelKind kind) {
   return kind == PanelKind::kLookingGlass ? "looking_glass" : kind == PanelKind::kLensSheet ? "lens_sheet" : "tracked";
 }
 
-void add_sinks(const SinkCatalog& catalog, const Options& options, VerbResult& result) {
+void add_sinks(const SinkCatalog& catalog, const DisplaysRequest& options, VerbResult& result) {
   result.text += "displays (--display NAME[:options])\n";
   for (const SinkBackend& sink : output_sinks()) {
     result.json["displays"].push_back({{"name", sink.name}, {"summary", sink.summary}});
@@ -84,7 +84,7 @@ void add_panels(const PanelSet& panels, VerbResult& result) {
   }
 }
 
-Result<void> add_calibrations(const Options& options, const PanelSet& panels, VerbResult& result) {
+Result<void> add_calibrations(const DisplaysRequest& options, const PanelSet& panels, VerbResult& result) {
   result.json["calibrations"] = nlohmann::json::array();
   result.text += "calibrations of Looking Glass units\n";
   const SteadyClock clock;
@@ -143,7 +143,7 @@ std::string add_identity(const Edid& edid, const Monitor& monitor, const PanelSe
   return words;
 }
 
-void add_monitors(const Options& options, const PanelSet& panels, VerbResult& result) {
+void add_monitors(const DisplaysRequest& options, const PanelSet& panels, VerbResult& result) {
   result.json["monitors"] = nlohmann::json::array();
   result.text += "monitors\n";
   const std::vector<ConnectedEdid> edids = read_connected_edids(options.edids);
@@ -228,7 +228,7 @@ Result<VerbResult> crosstalk(const std::string& panel) {
 }
 
 /// A tracker before a tracked panel, while somebody moves.
-Result<VerbResult> check_tracker(const Options& options, Progress& progress) {
+Result<VerbResult> check_tracker(const DisplaysRequest& options, Progress& progress) {
   DUBSAR_ASSIGN(const PanelProfile panel, load_panels(panel_folder()).find(options.check_eyes));
   DUBSAR_ASSIGN(const auto source, make_input(options.input));
   const auto told = [](const std::string& line) { log_info("{}", line); };
@@ -256,7 +256,7 @@ Result<VerbResult> check_tracker(const Options& options, Progress& progress) {
   return result;
 }
 
-Result<VerbResult> adjust_in_window(const Options& options, Progress& progress) {
+Result<VerbResult> adjust_in_window(const DisplaysRequest& options, Progress& progress) {
   const fs::path folder = panel_folder();
   if (options.adjust.size() != 1)
     return fail(ErrorKind::kUsage, "--adjust: figures and --window found, expected one of them");
@@ -309,7 +309,7 @@ Result<VerbResult> adjust(const std::vector<std::string>& words) {
   return result;
 }
 
-Result<VerbResult> run(const Options& options, Progress& progress) {
+Result<VerbResult> run(const DisplaysRequest& options, Progress& progress) {
   if (options.window && options.adjust.empty())
     return fail(ErrorKind::kUsage, "--window found, expected --adjust PANEL too");
   if (options.window) return adjust_in_window(options, progress);
@@ -335,7 +335,7 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 }  // namespace
 
 Verb add_displays_verb(Arguments program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DisplaysRequest>();
   Arguments command =
       program.command("displays", "what pictures can be shown on: displays, panels, calibrations, monitors");
   command

@@ -21,7 +21,7 @@ namespace dubsar::app {
 namespace {
 using nlohmann::json;
 
-struct Options {
+struct ExaRequest {
   std::string in, out;
   float max_error = 1.0f / 16.0f;
   ExaProfile profile = ExaProfile::kCompact;
@@ -97,7 +97,7 @@ json paper_json(const ExaStats& stats) {
   return figures;
 }
 
-Result<VerbResult> stat(const Options& options) {
+Result<VerbResult> stat(const ExaRequest& options) {
   DUBSAR_ASSIGN(const ExaInfo info, read_exa_info(options.in));
   VerbResult result;
   result.text = stats_text(info.stats);
@@ -111,7 +111,7 @@ Result<VerbResult> stat(const Options& options) {
   return result;
 }
 
-Result<VerbResult> verify(const Options& options, Progress& progress) {
+Result<VerbResult> verify(const ExaRequest& options, Progress& progress) {
   DUBSAR_TRY(check_exa_sums(options.in));
   DUBSAR_ASSIGN(const SurfaceModel model, read_exa(options.in, progress));
   DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model));
@@ -128,7 +128,7 @@ Result<VerbResult> verify(const Options& options, Progress& progress) {
   return result;
 }
 
-Result<VerbResult> recompress(const Options& options, Progress& progress) {
+Result<VerbResult> recompress(const ExaRequest& options, Progress& progress) {
   DUBSAR_ASSIGN(const ExaInfo before, read_exa_info(options.in));
   DUBSAR_ASSIGN(SurfaceModel model, read_exa(options.in, progress));
   SettleOptions settle;
@@ -153,7 +153,7 @@ Result<VerbResult> recompress(const Options& options, Progress& progress) {
   return result;
 }
 
-Result<VerbResult> part(const Options& options, Progress& progress) {
+Result<VerbResult> part(const ExaRequest& options, Progress& progress) {
   if (options.box.empty() == (options.level == 0))
     return fail(ErrorKind::kUsage, "exa part: either --level or --box is needed");
   DUBSAR_ASSIGN(const ExaInfo whole, read_exa_info(options.in));
@@ -181,7 +181,7 @@ Result<VerbResult> part(const Options& options, Progress& progress) {
 }  // namespace
 
 Verb add_exa_verb(Arguments program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExaRequest>();
   Arguments command = program.command("exa", "look into EXA files, check them, write them anew");
   command.needs_command();
   Arguments stat_command = command.subcommand("stat", "bits by block and level");

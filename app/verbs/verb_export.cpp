@@ -18,7 +18,7 @@
 
 namespace dubsar::app {
 namespace {
-struct Options {
+struct ExportRequest {
   std::string in, out, style;
   std::vector<std::string> partitions;
   MeshWriteOptions write;
@@ -26,7 +26,7 @@ struct Options {
   double simplify_angle_deg = 20.0, simplify_distance_vox = 0.1;
 };
 
-Result<VerbResult> run(const Options& options, Progress& progress) {
+Result<VerbResult> run(const ExportRequest& options, Progress& progress) {
   DUBSAR_ASSIGN(const MeshFormat format, mesh_format_from_path(options.out));
   Shading look;
   if (!options.style.empty()) {
@@ -71,7 +71,7 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 }  // namespace
 
 Verb add_export_verb(Arguments program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportRequest>();
   Arguments command = program.command("export", "write surfaces as PLY, STL, OBJ, GLB or 3MF");
   command.reads("IN", options->in, "EXA file (or a mesh file, to convert it)").required();
   command.writes("OUT", options->out, FileFormat::kMesh,

@@ -17,7 +17,7 @@ namespace dubsar::app {
 namespace {
 namespace fs = std::filesystem;
 
-struct Options {
+struct FatCrossRequest {
   std::string in, out, part = "auto", style = "phong";
   std::vector<std::string> layers;
   double dpi = 600.0;
@@ -37,7 +37,7 @@ fs::path with_suffix(const fs::path& path, const std::string& suffix) {
 }
 
 /// The tablet where there is one, else everything.
-Result<TriMesh> load_part(const Options& options, Progress& progress) {
+Result<TriMesh> load_part(const FatCrossRequest& options, Progress& progress) {
   if (options.part != "auto" && options.part != "all") return load_mesh({options.in, {options.part}, true}, progress);
   if (options.part == "auto")
     if (Result<TriMesh> tablet = load_mesh({options.in, {"tablet"}, true}, progress);
@@ -46,7 +46,7 @@ Result<TriMesh> load_part(const Options& options, Progress& progress) {
   return load_mesh({options.in, {}, true}, progress);
 }
 
-PictureOptions file_of(const Options& options) {
+PictureOptions file_of(const FatCrossRequest& options) {
   PictureOptions out;
   out.dpi = options.dpi;
   out.description = options.publication.title;
@@ -55,7 +55,7 @@ PictureOptions file_of(const Options& options) {
   return out;
 }
 
-Result<void> write_sides(const Options& options, const FatCross& cross, const fs::path& out) {
+Result<void> write_sides(const FatCrossRequest& options, const FatCross& cross, const fs::path& out) {
   for (std::size_t k = 0; !options.no_sides && k < cross.sides.size(); ++k)
     DUBSAR_TRY(write_picture(with_suffix(out, kSideSuffix[k]), cross.sides[k], file_of(options)));
   return {};
@@ -64,7 +64,8 @@ Result<void> write_sides(const Options& options, const FatCross& cross, const fs
 /// Draws the cross in each of the styles: as one file with a page for each, or a file for each.
 class CrossFiles {
  public:
-  CrossFiles(const Options& options, const std::vector<std::string>& styles, const TriMesh& upright, Progress& progress)
+  CrossFiles(const FatCrossRequest& options, const std::vector<std::string>& styles, const TriMesh& upright,
+             Progress& progress)
       : options_(options), styles_(styles), upright_(upright), progress_(progress) {}
 
   Result<void> write(VerbResult& result) {
@@ -116,14 +117,14 @@ class CrossFiles {
                                size_.height, options_.dpi, ruler_.width);
   }
 
-  const Options& options_;
+  const FatCrossRequest& options_;
   const std::vector<std::string>& styles_;
   const TriMesh& upright_;
   Progress& progress_;
   PixelExtent size_, ruler_;  // ruler: mm and pixels
 };
 
-Result<VerbResult> run(const Options& options, Progress& progress) {
+Result<VerbResult> run(const FatCrossRequest& options, Progress& progress) {
   const std::string suffix = fs::path(options.out).extension().string();
   const bool tiff = suffix == ".tif" || suffix == ".tiff";
   if (!tiff && suffix != ".png")
@@ -167,7 +168,7 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 }  // namespace
 
 Verb add_fatcross_verb(Arguments program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<FatCrossRequest>();
   options->publication.made_by = "dubsar " DUBSAR_VERSION;
   Arguments command =
       program.command("fatcross", "all six sides of a tablet in one picture at one scale, for publication");

@@ -20,7 +20,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-struct Options {
+struct InfoRequest {
   std::string in;
   InputOptionTexts input;
   Detail detail = Detail::kAuto;
@@ -63,7 +63,7 @@ json forecast_json(const Result<Forecast>& forecast) {
           {"product_bytes", f.product_bytes}};
 }
 
-Result<VerbResult> volume_info(const Options& options, Progress& progress) {
+Result<VerbResult> volume_info(const InfoRequest& options, Progress& progress) {
   DUBSAR_ASSIGN(const ImportOptions import, parse_input_options(options.in, options.input));
   DUBSAR_ASSIGN(const std::unique_ptr<ImportedVolume> volume, open_volume(import));
   const VolumeInfo& info = volume->info();
@@ -102,7 +102,7 @@ void add_partitions_text(std::string& text, const PartitionTable& partitions) {
                         p.watertight ? "watertight" : "open");
 }
 
-Result<VerbResult> exa_info(const Options& options, bool verbose, Progress& progress) {
+Result<VerbResult> exa_info(const InfoRequest& options, bool verbose, Progress& progress) {
   DUBSAR_ASSIGN(const ExaInfo info, read_exa_info(options.in));
   DUBSAR_TRY(check_exa_sums(options.in));
   DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.in, {}, true}, progress));
@@ -151,7 +151,7 @@ Result<VerbResult> exa_info(const Options& options, bool verbose, Progress& prog
   return result;
 }
 
-Result<VerbResult> describe_mesh(const Options& options, Progress& progress) {
+Result<VerbResult> describe_mesh(const InfoRequest& options, Progress& progress) {
   DUBSAR_ASSIGN(const MeshInfo info, mesh_info(options.in, progress));
   const MeshCheck& check = info.check;
   VerbResult result;
@@ -182,7 +182,7 @@ Result<VerbResult> describe_mesh(const Options& options, Progress& progress) {
   return result;
 }
 
-Result<VerbResult> run(const Options& options, bool verbose, Progress& progress) {
+Result<VerbResult> run(const InfoRequest& options, bool verbose, Progress& progress) {
   const bool raw = !options.input.dims.empty() || !options.input.type.empty();
   if (!raw && is_exa_file(options.in)) return exa_info(options, verbose, progress);
   if (!raw && mesh_format_from_path(options.in)) return describe_mesh(options, progress);
@@ -191,7 +191,7 @@ Result<VerbResult> run(const Options& options, bool verbose, Progress& progress)
 }  // namespace
 
 Verb add_info_verb(Arguments program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InfoRequest>();
   Arguments command = program.command("info", "say what is in a volume, surface or mesh file");
   command.reads("FILE", options->in, "volume (HDF5, NRRD, TIFF, raw), EXA, PLY, STL, OBJ or GLB").required();
   command.choice<Detail>("--detail", options->detail, choices_of(kDetails),

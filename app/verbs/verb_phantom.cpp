@@ -10,14 +10,14 @@
 
 namespace dubsar::app {
 namespace {
-struct Options {
+struct PhantomRequest {
   std::string out, size, preset = "demo", truth;
   std::uint64_t seed = 1;
   phantom::PhantomOptions model;
   bool unwritten = false;
 };
 
-Result<VerbResult> run(const Options& options, Progress& progress) {
+Result<VerbResult> run(const PhantomRequest& options, Progress& progress) {
   DUBSAR_ASSIGN(phantom::PhantomOptions wanted, phantom::parse_preset(options.preset));
   if (!options.size.empty()) {
     DUBSAR_ASSIGN(const auto dims, parse_dims(options.size));
@@ -71,7 +71,7 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 }  // namespace
 
 Verb add_phantom_verb(Arguments program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PhantomRequest>();
   Arguments command = program.command("phantom", "make the scan of an enclosed tablet with known truth");
   command.writes("OUT", options->out, FileFormat::kPhantom, "HDF5 file to write").required();
   command.value("--preset", options->preset, "size: tiny, demo (512x272x472) or paper (1871x999x1723)")

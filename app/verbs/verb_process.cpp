@@ -30,7 +30,7 @@ struct Room {
   std::string memory, scratch;
 };
 
-struct Options {
+struct ProcessRequest {
   std::vector<std::string> inputs;
   std::string in, out;  ///< of one scan
   std::string target;   ///< of many: their folder, or the surface of a run that may be resumed
@@ -44,7 +44,7 @@ struct Options {
   Room room;
 };
 
-void add_filter_options(Arguments command, Options& options) {
+void add_filter_options(Arguments command, ProcessRequest& options) {
   PipelineOptions& p = options.pipeline;
   Arguments group = command.group("Filters and threshold");
   group.choice<Detail>(
@@ -67,7 +67,7 @@ void add_filter_options(Arguments command, Options& options) {
   group.value("--threshold-factor", p.estimate.factor, "the paper's f (default 2 for valley, 3 for sigmas)").positive();
 }
 
-void add_surface_options(Arguments command, Options& options) {
+void add_surface_options(Arguments command, ProcessRequest& options) {
   PipelineOptions& p = options.pipeline;
   Arguments group = command.group("Surface");
   group.value("--offset-bits", p.sample.offset_bits, "bits per edge crossing, N").range(1, 16);
@@ -98,7 +98,7 @@ void add_surface_options(Arguments command, Options& options) {
   group.value("--ao-radius", options.radius, "reach of the rays in grid steps").positive();
 }
 
-void add_resource_options(Arguments command, Options& options) {
+void add_resource_options(Arguments command, ProcessRequest& options) {
   Arguments group = command.group("Memory and disk");
   group
       .value("--memory", options.room.memory,
@@ -110,7 +110,7 @@ void add_resource_options(Arguments command, Options& options) {
 
 /// The stages of a run as Progress names them, with the seconds of one core that they took on the phantom of `--preset
 /// demo`, at the scan's resolution.
-std::vector<PlannedStage> plan_of(const Options& options) {
+std::vector<PlannedStage> plan_of(const ProcessRequest& options) {
   std::vector<PlannedStage> plan{{"estimate_raw", 0.37}, {"import", 0.5}, {"estimate", 0.02}};
   for (int pass = 0; pass < options.pipeline.denoise.iterations; ++pass) {
     plan.push_back({"denoise", 0.9});
@@ -145,7 +145,8 @@ std::string summary(const std::string& out, const SurfaceFacts& facts, const Det
   return text;
 }
 
-Result<VerbResult> run(Options options, const Arguments command, const CommonOptions& common, Progress& progress) {
+Result<VerbResult> run(ProcessRequest options, const Arguments command, const CommonOptions& common,
+                       Progress& progress) {
   PipelineOptions& p = options.pipeline;
   DUBSAR_ASSIGN(p.import, parse_input_options(options.in, options.input));
   if (!options.room.memory.empty()) {
@@ -180,7 +181,7 @@ Result<VerbResult> run(Options options, const Arguments command, const CommonOpt
   return out;
 }
 
-Result<VerbResult> run_many(const Options& options, const Arguments command, Progress& progress) {
+Result<VerbResult> run_many(const ProcessRequest& options, const Arguments command, Progress& progress) {
   ScanBatch batch;
   batch.resume = options.resume;
   batch.options = options_for_each(command.words(), options.inputs);
@@ -193,7 +194,7 @@ Result<VerbResult> run_many(const Options& options, const Arguments command, Pro
 }
 
 /// What is one scan, and what many: a run that may be resumed is a batch of one.
-void settle(Options& options) {
+void settle(ProcessRequest& options) {
   const bool one = options.inputs.size() == 1 && !is_scan_folder(options.inputs[0]);
   options.many = !one || options.resume;
   if (one) {
@@ -206,7 +207,7 @@ void settle(Options& options) {
 }  // namespace
 
 Verb add_process_verb(Arguments program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ProcessRequest>();
   Arguments command = program.command("process", "turn a CT scan into separated, watertight surfaces (EXA)");
   command
       .reads("IN", options->inputs,

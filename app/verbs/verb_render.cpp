@@ -33,7 +33,7 @@ struct Look {
   double unpack = 0.0, fog = 0.0;  ///< percent
 };
 
-struct Options {
+struct RenderRequest {
   std::string in, out, view = "front", size;
   std::vector<std::string> partitions, hide;
   double mm_per_pixel = 0.0;
@@ -103,7 +103,7 @@ Box box_of(const TriMesh& mesh) {
 }
 
 /// What the options say about the parts of this surface.
-Result<void> dress_parts(const Options& options, const TriMesh& mesh, Shading& shading) {
+Result<void> dress_parts(const RenderRequest& options, const TriMesh& mesh, Shading& shading) {
   const Box box = box_of(mesh);
   for (const std::string& text : options.look.opacity) {
     DUBSAR_ASSIGN(const auto wanted, named_number("--opacity", text, '='));
@@ -140,7 +140,7 @@ Result<void> dress_parts(const Options& options, const TriMesh& mesh, Shading& s
 }
 
 /// Options that make no sense together; said before any work.
-Result<void> check_display_options(const Options& options) {
+Result<void> check_display_options(const RenderRequest& options) {
   const DisplayRequest& request = options.display;
   if (request.display.empty()) {
     if (request.pattern || !request.see_from.empty() || !request.viewer.empty() || !request.screen_mm.empty() ||
@@ -162,7 +162,7 @@ Result<void> check_display_options(const Options& options) {
 }
 
 /// The display's picture in a window, until it is closed; mouse and keyboard turn it.
-Result<VerbResult> show_in_window(const Options& options, const SinkSpec& display, const DisplayOptions& shown,
+Result<VerbResult> show_in_window(const RenderRequest& options, const SinkSpec& display, const DisplayOptions& shown,
                                   const TriMesh& mesh, Progress& progress) {
   const DisplayRequest& request = options.display;
   if (!request.see_from.empty()) return fail(ErrorKind::kUsage, "--see-from makes a file, expected no --window");
@@ -193,7 +193,7 @@ Result<VerbResult> show_in_window(const Options& options, const SinkSpec& displa
 }
 
 /// Beside the surface, named after what is seen: tablet_front.png.
-void name_output(Options& options) {
+void name_output(RenderRequest& options) {
   if (options.window || !options.out.empty() || options.in.empty()) return;
   std::string what = options.view;
   std::replace_if(
@@ -202,13 +202,13 @@ void name_output(Options& options) {
 }
 
 /// Of all options that name parts.
-Result<void> check_part_names(const Options& options) {
+Result<void> check_part_names(const RenderRequest& options) {
   std::vector<std::string> names = options.hide;
   for (const std::string& text : options.look.opacity) names.push_back(text.substr(0, text.rfind('=')));
   return check_parts(options.in, names);
 }
 
-Result<void> check_output(const Options& options) {
+Result<void> check_output(const RenderRequest& options) {
   if (options.window && (!options.out.empty() || options.display.display.empty()))
     return fail(ErrorKind::kUsage, "--window found {}",
                 options.out.empty() ? "without --display NAME" : "with -o, expected one of them");
@@ -218,7 +218,7 @@ Result<void> check_output(const Options& options) {
   return picture_format_from_path(options.out).map([](PictureFormat) {});
 }
 
-Result<VerbResult> run(const Options& options, Progress& progress) {
+Result<VerbResult> run(const RenderRequest& options, Progress& progress) {
   DUBSAR_TRY(check_output(options));
   DUBSAR_TRY(check_display_options(options));
   RenderOptions render;
@@ -276,7 +276,7 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 }  // namespace
 
 Verb add_render_verb(Arguments program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RenderRequest>();
   Arguments command = program.command("render", "make a picture of a surface, or show what a display's panel shows");
   command.reads("IN", options->in, "EXA, PLY, OBJ, STL or GLB file");
   command.writes("-o,--output", options->out, FileFormat::kPicture,

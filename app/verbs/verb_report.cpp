@@ -23,7 +23,7 @@ namespace dubsar::app {
 namespace {
 namespace fs = std::filesystem;
 
-struct Options {
+struct ReportRequest {
   std::string in, out, title, style = "raking", institution, rights;
   double dpi = 150.0;
   std::int64_t triangles = 300000;
@@ -52,8 +52,8 @@ Result<std::string> jpeg_bytes(const Image& image, double dpi) {
 }
 
 /// The sides of what was written on: the tablet where there is one.
-Result<std::vector<ReportPicture>> pictures_of(const Options& options, const TriMesh& upright, const Shading& look,
-                                               Progress& progress) {
+Result<std::vector<ReportPicture>> pictures_of(const ReportRequest& options, const TriMesh& upright,
+                                               const Shading& look, Progress& progress) {
   FatCrossOptions draw;
   draw.dpi = options.dpi;
   draw.shading = look;
@@ -67,7 +67,7 @@ Result<std::vector<ReportPicture>> pictures_of(const Options& options, const Tri
   return pictures;
 }
 
-Result<VerbResult> run(const Options& options, Progress& progress) {
+Result<VerbResult> run(const ReportRequest& options, Progress& progress) {
   DUBSAR_ASSIGN(const Shading look, shading_preset(options.style));
   DUBSAR_ASSIGN(const Shading relief, shading_preset("relief"));
   DUBSAR_ASSIGN(TriMesh mesh, load_mesh({options.in, {}, true}, progress));
@@ -110,7 +110,7 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 }  // namespace
 
 Verb add_report_verb(Arguments program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReportRequest>();
   Arguments command =
       program.command("report", "a page to send to a colleague: figures, six sides, the surface to turn in a browser");
   command.reads("IN", options->in, "EXA, PLY, OBJ, STL or GLB file").required();

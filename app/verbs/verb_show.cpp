@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Options {
+struct ShowRequest {
   std::string in, out, layout, size, monitor;
   double cone_deg = 40.0;
   bool swap = false, window = false, cone_given = false;
@@ -40,7 +40,7 @@ std::string layout_words(const PictureLayout& layout) {
   return {};
 }
 
-Result<void> check(const Options& options) {
+Result<void> check(const ShowRequest& options) {
   if (options.display.display.empty())
     return fail(ErrorKind::kUsage, "--display is missing, expected the display to show {} on", options.in);
   if (options.window != options.out.empty())
@@ -54,7 +54,7 @@ Result<void> check(const Options& options) {
   return {};
 }
 
-Result<ViewPictures> read_views(const Options& options, PictureLayout& layout) {
+Result<ViewPictures> read_views(const ShowRequest& options, PictureLayout& layout) {
   DUBSAR_ASSIGN(const Image picture, read_picture(options.in));
   layout = layout_of_name(options.in);
   if (!options.layout.empty()) {
@@ -73,7 +73,7 @@ Result<ViewPictures> read_views(const Options& options, PictureLayout& layout) {
   return views;
 }
 
-Result<VerbResult> in_window(const Options& options, const SinkSpec& display, const DisplayOptions& shown,
+Result<VerbResult> in_window(const ShowRequest& options, const SinkSpec& display, const DisplayOptions& shown,
                              ViewPictures pictures, Progress& progress) {
   DUBSAR_ASSIGN(const auto sink, shown.catalog->make(display));
   if (sink->traits().worn)
@@ -101,7 +101,7 @@ Result<VerbResult> in_window(const Options& options, const SinkSpec& display, co
   return result;
 }
 
-Result<VerbResult> run(const Options& options, Progress& progress) {
+Result<VerbResult> run(const ShowRequest& options, Progress& progress) {
   DUBSAR_TRY(check(options));
   DisplayOptions shown;
   if (!options.size.empty()) {
@@ -137,7 +137,7 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 }  // namespace
 
 Verb add_show_verb(Arguments program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ShowRequest>();
   Arguments command =
       program.command("show", "show a quilt, a side-by-side or a top-bottom picture that exists already on a display");
   command.reads("IN", options->in, "PNG, TIFF or JPEG file").required();

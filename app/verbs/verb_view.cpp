@@ -50,7 +50,7 @@ struct Pace {
   double fps = 0.0, seconds = 0.0, display_delay_ms = 0.0;
 };
 
-struct Options {
+struct ViewRequest {
   What what;
   Panel panel;
   People people;
@@ -59,7 +59,7 @@ struct Options {
 };
 
 /// What --input and --script say, one text for each source.
-Result<std::vector<std::string>> source_texts(const Options& options) {
+Result<std::vector<std::string>> source_texts(const ViewRequest& options) {
   const std::vector<std::string_view> names = input_source_names();
   std::vector<std::string> out;
   for (const std::string& text : options.people.inputs) {
@@ -82,7 +82,7 @@ Result<Screen> parse_screen(const std::string& text) {
   return screen;
 }
 
-Result<ViewOptions> view_options(const Options& options) {
+Result<ViewOptions> view_options(const ViewRequest& options) {
   ViewOptions view;
   DUBSAR_ASSIGN(DisplayChoice choice,
                 choose_display(options.panel.display, options.panel.plugins, options.panel.bridge_port));
@@ -124,7 +124,7 @@ Result<void> check_display(const Panel& panel, const Screen& screen, const Stage
   return {};
 }
 
-Result<void> without_window(const Options& options, ViewOptions& view) {
+Result<void> without_window(const ViewRequest& options, ViewOptions& view) {
   if (!options.panel.monitor.empty() || options.panel.fullscreen || options.panel.windowed)
     return fail(ErrorKind::kUsage, "--monitor, --fullscreen and --windowed are for windows, expected no --offscreen");
   DUBSAR_ASSIGN(view.stage.screen, parse_screen(options.panel.size.empty() ? "960x540" : options.panel.size));
@@ -136,7 +136,7 @@ Result<void> without_window(const Options& options, ViewOptions& view) {
   return {};
 }
 
-Result<void> with_window(const Options& options, ViewOptions& view) {
+Result<void> with_window(const ViewRequest& options, ViewOptions& view) {
   if (options.panel.fullscreen && options.panel.windowed)
     return fail(ErrorKind::kUsage, "--fullscreen and --windowed found, expected one of them");
   view.stage.quality = Quality::kAdaptive;
@@ -159,8 +159,8 @@ Result<void> with_window(const Options& options, ViewOptions& view) {
 }
 
 /// What the profile of a kiosk says takes the place of what was not given.
-Options kiosk_options(Options options, const KioskProfile& profile, const KioskObject& object,
-                      const std::string& display) {
+ViewRequest kiosk_options(ViewRequest options, const KioskProfile& profile, const KioskObject& object,
+                          const std::string& display) {
   options.what.in = {object.file.string()};
   options.panel.display = display;
   options.what.style = object.style;
@@ -171,11 +171,11 @@ Options kiosk_options(Options options, const KioskProfile& profile, const KioskO
   return options;
 }
 
-Result<VerbResult> run_kiosk_of(const Options& given, Progress& progress) {
+Result<VerbResult> run_kiosk_of(const ViewRequest& given, Progress& progress) {
   if (!given.what.in.empty()) return fail(ErrorKind::kUsage, "view: a file and --kiosk found, expected one of them");
   const auto options = [&](const KioskProfile& profile, const KioskObject& object,
                            const std::string& display) -> Result<ViewOptions> {
-    const Options one = kiosk_options(given, profile, object, display);
+    const ViewRequest one = kiosk_options(given, profile, object, display);
     DUBSAR_ASSIGN(ViewOptions view, view_options(one));
     if (one.people.mapping.empty()) {
       DUBSAR_ASSIGN(view.mapping, gallery_mapping());
@@ -196,14 +196,14 @@ Result<VerbResult> run_kiosk_of(const Options& given, Progress& progress) {
   return out;
 }
 
-FileReading file_reading(const Options& options) {
+FileReading file_reading(const ViewRequest& options) {
   const bool window = !options.panel.offscreen;
   return {options.what.partitions, options.what.scan, window && options.what.view == "front",
           window && options.time.fps == 0};
 }
 
 /// What can be wrong with files is known before a large one is read.
-Result<void> check_files(const Options& options) {
+Result<void> check_files(const ViewRequest& options) {
   const What& what = options.what;
   if (what.in.empty() && (options.panel.offscreen || options.time.fps > 0 || !options.made.tour.empty()))
     return fail(ErrorKind::kUsage, "view: no file found, expected a surface such as tablet.exa");
@@ -217,7 +217,7 @@ Result<void> check_files(const Options& options) {
   return {};
 }
 
-Result<VerbResult> run(const Options& options, Progress& progress) {
+Result<VerbResult> run(const ViewRequest& options, Progress& progress) {
   if (!options.what.kiosk.empty()) return run_kiosk_of(options, progress);
   DUBSAR_ASSIGN(ViewOptions view, view_options(options));
   if (options.made.tour.empty())
@@ -253,7 +253,7 @@ Result<VerbResult> run(const Options& options, Progress& progress) {
 }  // namespace
 
 Verb add_view_verb(Arguments program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ViewRequest>();
   Arguments command = program.command("view", "turn a surface on a display with hands, head and mouse");
   command.reads("IN", options->what.in, "EXA, PLY, OBJ, STL or GLB files; none: the window asks")
       .called("FILE...")

@@ -1,6 +1,7 @@
 #include "app/viewer/shelf.h"
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <new>
@@ -50,10 +51,7 @@ class Shelf::Reading final : public Progress {
         Result<OpenedSurface> made =
             fail(ErrorKind::kTryAgain, "{}: there is not enough memory for it", file_.string());
         try {
-          made = read(file_, *this, [this](TriMesh mesh) {
-            const std::scoped_lock lock(mutex_);
-            coarse_ = std::move(mesh);
-          });
+          made = read(file_, *this, [this](TriMesh mesh) { show_first(std::move(mesh)); });
         } catch (const std::bad_alloc&) {  // said above
         }
         const std::scoped_lock lock(mutex_);
@@ -62,7 +60,17 @@ class Shelf::Reading final : public Progress {
         changed_.notify_all();
       });
   }
-  ~Reading() override { cancel(); }
+  ~Reading() override { leave(); }
+  void leave() {
+    cancel();
+    go_on();
+  }
+  /// Waits no longer for the coarse surface to be seen.
+  void go_on() {
+    const std::scoped_lock lock(mutex_);
+    seen_ = true;
+    changed_.notify_all();
+  }
 
   std::size_t index() const noexcept { return index_; }
   const fs::path& file() const noexcept { return file_; }
@@ -104,6 +112,15 @@ class Shelf::Reading final : public Progress {
   }
 
  private:
+  /// For as long as the first picture may take, it has the processor for itself.
+  void show_first(TriMesh mesh) {
+    constexpr std::chrono::seconds kLongest(3);
+    std::unique_lock lock(mutex_);
+    if (seen_) return;
+    coarse_ = std::move(mesh);
+    changed_.wait_for(lock, kLongest, [this] { return seen_; });
+  }
+
   const std::size_t index_;
   const fs::path file_;
   mutable std::mutex mutex_;  // for those below
@@ -112,14 +129,14 @@ class Shelf::Reading final : public Progress {
   std::int64_t total_ = 0;
   std::optional<TriMesh> coarse_;
   std::optional<Result<OpenedSurface>> made_;
-  bool done_ = false;
+  bool done_ = false, seen_ = false;
   std::jthread thread_;  // goes first
 };
 
 Shelf::Shelf(ReadSurface read, fs::path recent) : read_(std::move(read)), recent_(std::move(recent)) {}
 
 Shelf::~Shelf() {
-  for (const auto& each : left_) each->cancel();
+  for (const auto& each : left_) each->leave();
 }
 
 void Shelf::begin(std::size_t file) {
@@ -158,7 +175,7 @@ Result<void> Shelf::step(int by) {
 bool Shelf::stop() {
   std::erase_if(left_, [](const auto& each) { return each->done(); });
   if (!reading_) return false;
-  reading_->cancel();
+  reading_->leave();
   if (reading_->started()) left_.push_back(std::move(reading_));
   reading_.reset();
   return true;
@@ -180,13 +197,19 @@ std::optional<Result<OpenedSurface>> Shelf::take() {
 
 std::optional<TriMesh> Shelf::take_coarse() { return reading_ ? reading_->take_coarse() : std::nullopt; }
 
+void Shelf::coarse_was_shown() {
+  if (reading_) reading_->go_on();
+}
+
 void Shelf::start() {
   if (reading_) reading_->start(read_);
 }
 
 void Shelf::wait() {
+  if (!reading_) return;
+  reading_->go_on();  // nobody looks meanwhile
   start();
-  if (reading_) reading_->wait();
+  reading_->wait();
 }
 
 std::optional<Opening> Shelf::opening() const { return reading_ ? std::optional(reading_->state()) : std::nullopt; }

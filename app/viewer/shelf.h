@@ -24,7 +24,7 @@ struct OpenedSurface {
   std::string title;
 };
 
-/// Told a coarse surface of a file that takes a while, before that itself is read.
+/// Told a coarse surface of a file that takes a while, before that itself is read. Returns when somebody has seen it.
 using TellCoarse = std::function<void(TriMesh)>;
 
 /// Any thread; the errors of reading.
@@ -54,6 +54,8 @@ class Shelf {
   std::optional<Result<OpenedSurface>> take();
   /// A coarse surface of the file that is being read, once.
   std::optional<TriMesh> take_coarse();
+  /// What take_coarse() gave is on the screen: the rest is read now, and not while the first picture is drawn.
+  void coarse_was_shown();
   /// Returns when take() has something, or nothing is being read.
   void wait();
 

@@ -308,6 +308,7 @@ Document Viewer::guided_document(const GuidedScene& scene) const {
 
 void Viewer::presented(TimestampNs now) {
   at_.window_shown = true;
+  if (files_.coarse) given_.shelf->coarse_was_shown();
   if (given_.options.guide != nullptr) given_.options.guide->presented(now);
 }
 

@@ -67,9 +67,13 @@ std::string Viewer::present_folder() const {
 /// Until the first file is there, what is known of it stands in its place.
 void Viewer::take_coarse() {
   auto coarse = given_.shelf->take_coarse();
-  if (!coarse || has_surface()) return;
+  if (!coarse) return;
+  if (has_surface()) return given_.shelf->coarse_was_shown();  // it is not wanted
   auto mesh = std::make_unique<TriMesh>(*std::move(coarse));
-  if (const auto done = stage_->set_mesh(*mesh); !done) return log_warning("{}", done.error().message);
+  if (const auto done = stage_->set_mesh(*mesh); !done) {
+    log_warning("{}", done.error().message);
+    return given_.shelf->coarse_was_shown();
+  }
   files_.coarse = std::move(mesh);
 }
 
