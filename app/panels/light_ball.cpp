@@ -8,6 +8,7 @@
 
 #include "app/panels/panel_kit.h"
 #include "core/base/angle.h"
+#include "display/render/shading.h"
 
 namespace dubsar::app {
 namespace {
@@ -23,6 +24,13 @@ LightPlace light_over(double x, double y) noexcept {
           std::clamp(std::acos(std::min(1.0, std::hypot(x, y))) / kRadPerDeg, kLowestLightDeg, kHighestLightDeg)};
 }
 
+glm::dvec3 place_over(const LightPlace& light) {
+  Light same;
+  same.azimuth_deg = light.azimuth_deg;
+  same.elevation_deg = light.elevation_deg;
+  return light_direction(same);
+}
+
 void draw_light_ball(const LightPlace& light, float right, float bottom) {
   const float side = 2.0f * kRadius + 12.0f;
   ImGui::SetNextWindowPos(ImVec2(right - side, bottom - side));
@@ -31,12 +39,10 @@ void draw_light_ball(const LightPlace& light, float right, float bottom) {
   ImGui::Begin("light ball", nullptr, kFixed | ImGuiWindowFlags_NoInputs);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 middle(right - 0.5f * side, bottom - 0.5f * side);
-  const double low = std::cos(light.elevation_deg * kRadPerDeg), azimuth = light.azimuth_deg * kRadPerDeg;
-  const double lx = low * std::sin(azimuth), ly = low * std::cos(azimuth),
-               lz = std::sin(light.elevation_deg * kRadPerDeg);
+  const glm::dvec3 from = place_over(light);
   const auto tone = [&](double x, double y) {  // clay under that light alone
     const double z = std::sqrt(std::max(0.0, 1.0 - x * x - y * y));
-    const double lit = 0.1 + 0.9 * std::max(0.0, x * lx + y * ly + z * lz);
+    const double lit = 0.1 + 0.9 * std::max(0.0, x * from.x + y * from.y + z * from.z);
     const auto part = [&](int most) { return static_cast<int>(most * std::sqrt(lit)); };
     return IM_COL32(part(222), part(210), part(192), 255);
   };
@@ -53,7 +59,7 @@ void draw_light_ball(const LightPlace& light, float right, float bottom) {
                          tone(r * std::cos(a), r * std::sin(a)));
     }
   list.AddCircle(middle, kRadius + 1.0f, kLine, 48, 2.0f);
-  list.AddCircleFilled(at(lx, ly), 5.0f, kAccent, 20);
+  list.AddCircleFilled(at(from.x, from.y), 5.0f, kAccent, 20);
   ImGui::End();
 }
 

@@ -8,7 +8,6 @@
 
 #include "app/panels/light_ball.h"
 #include "app/panels/panel_kit.h"
-#include "core/base/angle.h"
 
 namespace dubsar::app {
 namespace {
@@ -126,21 +125,17 @@ void draw_light(const Board& desk) {
   const float radius = 0.5f * kBall - 4.0f;
   if (ImGui::IsItemActive()) {
     const ImVec2 at = ImGui::GetIO().MousePos;
-    const double x = (at.x - middle.x) / radius, y = (middle.y - at.y) / radius;
-    const double azimuth = std::fmod(std::atan2(x, y) / kRadPerDeg + 360.0, 360.0);
-    const double elevation =
-        std::clamp(std::acos(std::min(1.0, std::hypot(x, y))) / kRadPerDeg, kLowestLightDeg, kHighestLightDeg);
-    if (std::abs(azimuth - desk.state.document.light.azimuth_deg) > 0.05 ||
-        std::abs(elevation - desk.state.document.light.elevation_deg) > 0.05)
-      desk.commands.push_back(fmt::format("light {:.1f},{:.1f}", azimuth, elevation));
+    const LightPlace asked = light_over((at.x - middle.x) / radius, (middle.y - at.y) / radius);
+    if (std::abs(asked.azimuth_deg - desk.state.document.light.azimuth_deg) > 0.05 ||
+        std::abs(asked.elevation_deg - desk.state.document.light.elevation_deg) > 0.05)
+      desk.commands.push_back(fmt::format("light {:.1f},{:.1f}", asked.azimuth_deg, asked.elevation_deg));
   }
   ImDrawList* const draw = ImGui::GetWindowDrawList();
   draw->AddCircleFilled(middle, radius, IM_COL32(0x2b, 0x2d, 0x31, 0xff), 48);
   draw->AddCircle(middle, radius, kLine, 48, 1.5f);
-  const double low = std::cos(desk.state.document.light.elevation_deg * kRadPerDeg),
-               azimuth = desk.state.document.light.azimuth_deg * kRadPerDeg;
-  const ImVec2 light(middle.x + radius * static_cast<float>(low * std::sin(azimuth)),
-                     middle.y - radius * static_cast<float>(low * std::cos(azimuth)));
+  const glm::dvec3 stands = place_over(desk.state.document.light);
+  const ImVec2 light(middle.x + radius * static_cast<float>(stands.x),
+                     middle.y - radius * static_cast<float>(stands.y));
   draw->AddLine(light, middle, kLine, 1.5f);
   draw->AddCircleFilled(light, 6.0f, kAccent, 24);
   ImGui::TextColored(ImColor(kDim), "%.0f° round, %.0f° high", desk.state.document.light.azimuth_deg,
