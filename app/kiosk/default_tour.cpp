@@ -1,15 +1,14 @@
 // A tour of any tablet, made from nothing but its home view and its parts.
 
 #include <glm/gtc/quaternion.hpp>
-#include <numbers>
 
 #include "app/document/document.h"
 #include "app/kiosk/tour.h"
+#include "core/base/angle.h"
 
 namespace dubsar::app {
 namespace {
 
-constexpr double kRad = std::numbers::pi / 180.0;
 constexpr LightPlace kEven{315.0, 35.0}, kLow{285.0, 9.0}, kLowOther{20.0, 9.0}, kReading{300.0, 14.0};
 // Where the first lines of a tablet stand that fills the window at zoom 1: above its middle, by heights of the window.
 constexpr double kWhole = 0.86, kWholeUp = 0.05;  // there is room for words below it
@@ -35,8 +34,8 @@ class Maker {
     Keyframe out;
     out.time_s = time_s;
     out.camera.rotation =
-        glm::normalize(glm::angleAxis(up_deg * kRad, glm::dvec3(1, 0, 0)) *
-                       glm::angleAxis(aside_deg * kRad, glm::dvec3(0, 1, 0)) * document_.home.rotation);
+        glm::normalize(glm::angleAxis(up_deg * kRadPerDeg, glm::dvec3(1, 0, 0)) *
+                       glm::angleAxis(aside_deg * kRadPerDeg, glm::dvec3(0, 1, 0)) * document_.home.rotation);
     out.camera.zoom = kWhole * zoom;
     out.camera.pan = {0.0, kWholeUp};
     out.light = light;

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "core/base/angle.h"
 #include "core/base/measurements.h"
 
 namespace dubsar::app {
@@ -25,11 +26,16 @@ nlohmann::json view_json(const ViewState& view) {
           {"light_elevation_deg", view.light_elevation_deg}};
 }
 
+std::string_view health_name(SourceHealth health) {
+  constexpr std::array<std::string_view, 4> kNames{"present", "lost", "missing", "off"};
+  return kNames[static_cast<std::size_t>(health)];
+}
+
 }  // namespace
 
 VerbResult describe_session(const std::string& display, const ViewResult& done, std::size_t triangles, bool simulated) {
   VerbResult out;
-  const glm::dvec3 turn = vector_of(done.view.rotation) * 180.0 / 3.14159265358979323846;
+  const glm::dvec3 turn = vector_of(done.view.rotation) / kRadPerDeg;
   out.json = {{"display", display},
               {"frames", done.frames},
               {"pictures", done.written},
@@ -51,14 +57,6 @@ VerbResult describe_session(const std::string& display, const ViewResult& done, 
       done.frame_cpu_ms.quantile(1.0));
   return out;
 }
-
-namespace {
-std::string_view health_name(SourceHealth health) {
-  constexpr std::array<std::string_view, 4> kNames{"present", "lost", "missing", "off"};
-  return kNames[static_cast<std::size_t>(health)];
-}
-
-}  // namespace
 
 void add_sources(const std::vector<SourceRow>& rows, VerbResult& out) {
   out.json["sources"] = nlohmann::json::array();

@@ -1,16 +1,11 @@
 #include "core/base/near_word.h"
 
 #include <algorithm>
-#include <cctype>
+
+#include "core/base/lower_text.h"
 
 namespace dubsar {
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return std::tolower(c); });
-  return out;
-}
 
 /// Damerau and Levenshtein's distance with neighbours exchanged at most once.
 std::size_t slips(std::string_view a, std::string_view b) {
@@ -33,17 +28,17 @@ constexpr std::size_t kLongestWord = 64;  // longer ones are no slips, and cost 
 
 std::string near_word(std::string_view word, std::span<const std::string> known) {
   if (word.size() < 2 || word.size() > kLongestWord) return {};
-  const std::string wanted = lower(word);
+  const std::string wanted = lower_text(word);
   std::string best;
   std::size_t least = word.size() < 5 ? 2 : 3;  // nearer than this
   for (const std::string& candidate : known) {
     if (candidate.empty() || candidate.size() > kLongestWord || candidate == word) continue;
-    const std::size_t distance = slips(wanted, lower(candidate));
+    const std::size_t distance = slips(wanted, lower_text(candidate));
     if (distance < least) least = distance, best = candidate;
   }
   if (!best.empty() || wanted.size() < 3) return best;
   for (const std::string& candidate : known)
-    if (lower(candidate).starts_with(wanted)) {
+    if (lower_text(candidate).starts_with(wanted)) {
       if (!best.empty()) return {};
       best = candidate;
     }

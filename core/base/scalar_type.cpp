@@ -2,12 +2,13 @@
 
 #include <array>
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <string>
 #include <type_traits>
 #include <utility>
+
+#include "core/base/lower_text.h"
 
 namespace dubsar {
 namespace {
@@ -157,8 +158,7 @@ std::optional<ScalarType> parse_scalar_type(std::string_view text) {
       {"double", kF64},
       {"double precision", kF64},
   }};
-  std::string lower;
-  for (const char c : text) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string lower = lower_text(text);
   for (const auto& [name, type] : kSpellings)
     if (lower == name) return type;
   return std::nullopt;

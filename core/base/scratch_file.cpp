@@ -37,7 +37,7 @@ Result<void> ScratchFile::write_at(std::int64_t offset, std::span<const std::byt
   while (!bytes.empty()) {
     const ::ssize_t count = ::pwrite(descriptor_, bytes.data(), bytes.size(), offset);
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0)
+    if (count < 0)
       return fail(ErrorKind::kIo, "cannot write a scratch file: {}", std::generic_category().message(errno));
     bytes = bytes.subspan(static_cast<std::size_t>(count));
     offset += count;
@@ -46,13 +46,18 @@ Result<void> ScratchFile::write_at(std::int64_t offset, std::span<const std::byt
 }
 
 Result<void> ScratchFile::read_at(std::int64_t offset, std::span<std::byte> out) const {
+  std::int64_t read = 0;
   while (!out.empty()) {
     const ::ssize_t count = ::pread(descriptor_, out.data(), out.size(), offset);
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0)
+    if (count < 0)
       return fail(ErrorKind::kIo, "cannot read back a scratch file: {}", std::generic_category().message(errno));
+    if (count == 0)
+      return fail(ErrorKind::kIo, "a scratch file ends too early: {} bytes found behind byte {}, expected {}", read,
+                  offset - read, read + static_cast<std::int64_t>(out.size()));
     out = out.subspan(static_cast<std::size_t>(count));
     offset += count;
+    read += count;
   }
   return {};
 }

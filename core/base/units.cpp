@@ -8,13 +8,13 @@
 #include <string>
 #include <utility>
 
+#include "core/base/lower_text.h"
+
 namespace dubsar {
 namespace {
 std::string lower_trimmed(std::string_view text) {
-  std::string out;
-  for (const char c : text)
-    if (!std::isspace(static_cast<unsigned char>(c)))
-      out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::string out = lower_text(text);
+  std::erase_if(out, [](unsigned char c) { return std::isspace(c) != 0; });
   return out;
 }
 }  // namespace

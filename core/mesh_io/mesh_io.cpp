@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "core/base/file_suffix.h"
 #include "core/base/input_file.h"
 #include "core/mesh/vertex_attributes.h"
 #include "core/mesh_io/mesh_formats.h"
@@ -66,9 +67,7 @@ Result<Loaded> load(const std::filesystem::path& path, Progress& progress) {
 std::string_view mesh_format_name(MeshFormat format) noexcept { return row(format).name; }
 
 Result<MeshFormat> mesh_format_from_path(const std::filesystem::path& path) {
-  std::string suffix = path.extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  const std::string suffix = lower_suffix(path);
   for (const Format& format : kFormats)
     if (format.suffix == suffix) return format.format;
   return fail(ErrorKind::kUsage, "{}: suffix \"{}\" found, expected .ply, .stl, .obj, .glb or .3mf", path.string(),

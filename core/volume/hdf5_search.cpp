@@ -7,6 +7,7 @@
 #include <functional>
 #include <set>
 
+#include "core/base/lower_text.h"
 #include "core/volume/external_access.h"
 #include "core/volume/hdf5_path.h"
 
@@ -169,8 +170,8 @@ class Search {
         definition == "NXtomo" && path.find("/reconstruction/") == std::string::npos)
       return refusal("the definition of its entry is NXtomo");
     if (name_of(group).rfind("exchange", 0) != 0 || !is_dataset(hdf5_child(group, "theta"))) return std::nullopt;
-    std::string said = file.string(path, "axes").value_or("") + " " + file.string(path, "description").value_or("");
-    std::transform(said.begin(), said.end(), said.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string said =
+        lower_text(file.string(path, "axes").value_or("") + " " + file.string(path, "description").value_or(""));
     if (said.rfind("theta", 0) == 0) return refusal("its first axis is theta");
     if (said.rfind("z:", 0) == 0 || said.find("recon") != std::string::npos) return std::nullopt;
     const auto theta = file.inspect(hdf5_child(group, "theta"));

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <utility>
 
+#include "core/base/lower_text.h"
 #include "core/base/units.h"
 #include "core/volume/external_access.h"
 #include "core/volume/flat_reader.h"
@@ -36,11 +37,6 @@ std::string trimmed(std::string text) {
   const auto space = [](unsigned char c) { return std::isspace(c) != 0; };
   text.erase(text.begin(), std::find_if_not(text.begin(), text.end(), space));
   text.erase(std::find_if_not(text.rbegin(), text.rend(), space).base(), text.end());
-  return text;
-}
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
 }
 
@@ -85,7 +81,7 @@ Result<Header> read_header(const InputFile& file) {
     if (line.empty()) return header;
     const auto colon = line.find(": ");
     if (line.front() == '#' || colon == std::string::npos) continue;
-    header.fields[lower(line.substr(0, colon))] = trimmed(line.substr(colon + 2));
+    header.fields[lower_text(line.substr(0, colon))] = trimmed(line.substr(colon + 2));
   }
   if (file.size() > kMostHeader)
     return fail(ErrorKind::kBadData, "import_nrrd: {} has a header of more than 1 MiB, expected less",
@@ -167,7 +163,7 @@ std::optional<std::array<glm::dvec3, 3>> directions_of(const Header& header, con
 }
 
 AxisOrder axis_order(const Header& header, const std::array<std::size_t, 3>& axes, std::vector<std::string>& warnings) {
-  const std::string space = lower(header.text("space"));
+  const std::string space = lower_text(header.text("space"));
   if (!header.text("space directions").empty()) {
     const bool left_handed = space == "las" || space == "last" || space.starts_with("left-anterior-superior") ||
                              space.starts_with("3d-left-handed");
@@ -226,7 +222,7 @@ VoxelSize voxel_size(const Header& header, const std::array<std::size_t, 3>& axe
   }
   if (!(size.x > 0.0 && size.y > 0.0 && size.z > 0.0) || !std::isfinite(size.x + size.y + size.z)) return {};
   if (unit.x > 0.0 && unit.y > 0.0 && unit.z > 0.0) return {size * unit, "NRRD " + where};
-  const std::string space = lower(header.text("space"));
+  const std::string space = lower_text(header.text("space"));
   if (space.find("left") != std::string::npos || space.find("right") != std::string::npos ||
       space.starts_with("scanner") || space == "las" || space == "lps" || space == "ras") {
     warnings.push_back(
@@ -291,13 +287,13 @@ Result<OpenedVolume> open_nrrd(const ImportOptions& options) {
   const auto size_of = [&](std::size_t i) { return static_cast<std::int64_t>(sizes[axes[i]]); };
   info.file_dims = {size_of(0), size_of(1), size_of(2)};
   info.stored.logical_bytes = count * scalar_bytes(*type);
-  const std::string endian = lower(header.text("endian"));
+  const std::string endian = lower_text(header.text("endian"));
   if (endian.empty() && scalar_bytes(*type) > 1)
     info.warnings.emplace_back("the NRRD header states no endian, little is taken");
   const ByteOrder order = endian == "big" ? ByteOrder::kBig : ByteOrder::kLittle;
 
   DUBSAR_ASSIGN(Data data, find_data(options, std::move(header_file), header));
-  const std::string encoding = lower(header.text("encoding"));
+  const std::string encoding = lower_text(header.text("encoding"));
   const double skip = to_number(header.text("byte skip", "byteskip")).value_or(0.0);
   const double lines = to_number(header.text("line skip", "lineskip")).value_or(0.0);
   if (lines != 0.0 || skip < -1.0 || skip > 1e15 || skip != std::floor(skip))

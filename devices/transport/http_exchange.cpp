@@ -4,6 +4,8 @@
 #include <array>
 #include <charconv>
 
+#include "core/base/lower_text.h"
+
 namespace dubsar {
 namespace {
 
@@ -13,11 +15,7 @@ constexpr milliseconds kReadPiece{50};
 constexpr int kMostInterim = 8;
 constexpr int kMaxSilentReads = 1000;  // ends also when the clock stands still
 
-char lower(char c) noexcept { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
-bool same_word(std::string_view a, std::string_view b) noexcept {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
-}
+bool same_word(std::string_view a, std::string_view b) { return lower_text(a) == lower_text(b); }
 
 std::string_view trimmed(std::string_view text) noexcept {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 
+#include "core/base/lower_text.h"
 #include "core/base/parallel.h"
 #include "display/optics/srgb.h"
 #include "display/render/view_array.h"
@@ -18,13 +18,6 @@ using Kind = PictureLayout::Kind;
 
 constexpr double kSameShape = 0.01;
 constexpr int kLeastTilePx = 8;
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
 
 /// Takes one word into `layout`; false when it is none of ours.
 bool take_word(std::string_view word, PictureLayout& layout) {
@@ -92,7 +85,7 @@ Taps taps_at(double from, double step, int size) {
 
 PictureLayout layout_of_name(std::string_view file_name) {
   const auto slash = file_name.find_last_of('/');
-  std::string name = lower(slash == std::string_view::npos ? file_name : file_name.substr(slash + 1));
+  std::string name = lower_text(slash == std::string_view::npos ? file_name : file_name.substr(slash + 1));
   if (const auto quilt = parse_quilt_name(name)) return quilt_layout(*quilt);
   if (const auto dot = name.rfind('.'); dot != std::string::npos) name.erase(dot);
   PictureLayout layout;
@@ -109,7 +102,7 @@ PictureLayout layout_of_name(std::string_view file_name) {
 Result<PictureLayout> parse_picture_layout(std::string_view text) {
   constexpr std::string_view kExpected =
       "expected plain, sbs, lr, rl, tb, ou or bt, with half, or qsCOLUMNSxROWSaASPECT";
-  const std::string words = lower(text);
+  const std::string words = lower_text(text);
   if (words == "plain") return PictureLayout{};
   if (const auto quilt = parse_quilt_name('_' + words); quilt && words.find(',') == std::string::npos)
     return quilt_layout(*quilt);

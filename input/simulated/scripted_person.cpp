@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/angle.h"
 #include "input/simulated/scripted_source.h"
 
 namespace dubsar {
@@ -30,8 +31,7 @@ class ScriptedPerson final : public SimulatedPerson {
       : script_(script), goal_(steers), seen_(std::move(seen)) {
     actor_ = play_script(std::move(script), [this] { return view_; }).value();
     if (!goal_) return;
-    constexpr double kRad = std::numbers::pi / 180.0;
-    wished_ = turn_of({goal_->pitch_deg * kRad, 0, 0}) * turn_of({0, goal_->yaw_deg * kRad, 0});
+    wished_ = turn_of({goal_->pitch_deg * kRadPerDeg, 0, 0}) * turn_of({0, goal_->yaw_deg * kRadPerDeg, 0});
   }
 
   bool act(TimestampNs now) override {

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "core/base/angle.h"
 
 namespace dubsar {
 namespace {
 
-constexpr double kRad = std::numbers::pi / 180.0;
 constexpr double kDeadZoneM = 0.010, kRollDeadRad = 0.105;  // what it takes until the object follows
-constexpr double kContentRad = 2.0 * kRad, kContentRollRad = 2.5 * kRad, kVisitorContentZoom = 0.02;
+constexpr double kContentRad = 2.0 * kRadPerDeg, kContentRollRad = 2.5 * kRadPerDeg, kVisitorContentZoom = 0.02;
 constexpr double kFistPinchM = 0.015, kOpenPinchM = 0.06;
 constexpr std::size_t kRight = 0, kLeft = 1;
 
@@ -24,7 +24,7 @@ HandKey with_grab(HandKey key, double grab) {
 
 SimulatedVisitor::SimulatedVisitor(const VisitorGoal& goal, std::uint64_t seed)
     : goal_(goal),
-      wished_(turn_of({goal.pitch_deg * kRad, 0, 0}) * turn_of({0, goal.yaw_deg * kRad, 0})),
+      wished_(turn_of({goal.pitch_deg * kRadPerDeg, 0, 0}) * turn_of({0, goal.yaw_deg * kRadPerDeg, 0})),
       random_(seed),
       gain_deg_per_mm_(0.5 * random_.uniform(0.85, 1.15)) {
   hands_[kLeft].chirality = Chirality::kLeft;
@@ -60,7 +60,7 @@ void SimulatedVisitor::close(double seconds, bool both, double grab) {
 }
 
 void SimulatedVisitor::stroke(const glm::dvec3& error_rad) {
-  glm::dvec2 way = glm::dvec2(error_rad.y, -error_rad.x) / kRad / gain_deg_per_mm_ * 1e-3;
+  glm::dvec2 way = glm::dvec2(error_rad.y, -error_rad.x) / kRadPerDeg / gain_deg_per_mm_ * 1e-3;
   const double length = std::min(glm::length(way) * random_.uniform(0.9, 1.1), 0.13);
   way = glm::normalize(way) * (length + kDeadZoneM);
   const glm::dvec3 from = hands_[kRight].keys.back().at_m;
@@ -126,7 +126,7 @@ void SimulatedVisitor::look(double t_s, const ViewState& seen) {
   busy_until_s_ = t_s;
   hold(random_.uniform(0.2, 0.35));  // thinking
   // A large turn first: what it leaves over as roll and zoom goes to both hands.
-  if (std::hypot(error.x, error.y) > 15.0 * kRad ||
+  if (std::hypot(error.x, error.y) > 15.0 * kRadPerDeg ||
       (!turned && std::abs(error.z) <= kContentRollRad && std::abs(zoom_error) <= kVisitorContentZoom)) {
     stroke(error);
   } else {

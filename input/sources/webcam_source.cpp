@@ -1,8 +1,8 @@
 #include "input/sources/webcam_source.h"
 
 #include <array>
-#include <numbers>
 
+#include "core/base/angle.h"
 #include "core/base/option_reader.h"
 #include "core/base/parse_number.h"
 #include "devices/camera/camera.h"
@@ -19,7 +19,6 @@ namespace {
 
 constexpr const char* kCascade = "/usr/share/opencv4/haarcascades/haarcascade_frontalface_default.xml";
 constexpr double kAbovePanelM = 0.01;
-constexpr double kRadians = std::numbers::pi / 180.0;
 constexpr TimestampNs kCameraSilentNs = 2'000'000'000;
 
 class WebcamReader final : public SourceReader {
@@ -104,9 +103,9 @@ Result<WebcamSourceOptions> read_options(const InputConfig& config, bool with_ca
     read.replay = options.text("replay");
   }
   const glm::dvec3 top_mm(0.0, 1e3 * (0.5 * config.panel_m.y + kAbovePanelM), 0.0);
-  read.tracking.camera.horizontal_field_rad = kRadians * options.number("hfov", 20.0, 150.0, 60.0);
+  read.tracking.camera.horizontal_field_rad = kRadPerDeg * options.number("hfov", 20.0, 150.0, 60.0);
   read.tracking.camera.at_m = 1e-3 * options.triple("at", 10'000.0, top_mm);
-  read.tracking.camera.tilt_rad = kRadians * options.number("tilt", -90.0, 90.0, 0.0);
+  read.tracking.camera.tilt_rad = kRadPerDeg * options.number("tilt", -90.0, 90.0, 0.0);
   read.tracking.ipd_m = 1e-3 * options.number("ipd", 40.0, 90.0, 63.0);
   read.hands = options.flag("hands");
   read.hand_size = options.number("hand", 0.5, 1.5, 1.0);

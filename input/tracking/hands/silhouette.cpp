@@ -6,10 +6,11 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "core/base/angle.h"
+
 namespace dubsar {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kTipReach = 1.75;  // in palm radii: what reaches this far is a finger
 
 glm::dvec2 rotated(const glm::dvec2& v, double angle) {
@@ -101,7 +102,7 @@ std::optional<Silhouette> outline(std::span<const std::uint8_t> labels, int widt
   constexpr int kRays = 121;  // -120 to 120 degrees
   std::array<double, kRays> reach{};
   for (int i = 0; i < kRays; ++i) {
-    const glm::dvec2 direction = rotated(s.forward, (2.0 * i - 120.0) * kDegree);
+    const glm::dvec2 direction = rotated(s.forward, (2.0 * i - 120.0) * kRadPerDeg);
     double r = 0.8 * s.radius_px;
     while (r < 4.0 * s.radius_px && inside(s.palm_px + r * direction)) r += 0.5;
     reach[static_cast<std::size_t>(i)] = r / s.radius_px;
@@ -120,7 +121,7 @@ std::optional<Silhouette> outline(std::span<const std::uint8_t> labels, int widt
     while (low > 0 && reach[low - 1] > 0.85 * reach[at]) is_top = (reach[--low] < reach[at]) && is_top;
     while (high + 1 < kRays && reach[high + 1] > 0.85 * reach[at]) is_top = (reach[++high] <= reach[at]) && is_top;
     if (!is_top || low == 0 || high + 1 == kRays) continue;
-    s.finger_rad.push_back((static_cast<double>(low + high) - 120.0) * kDegree);
+    s.finger_rad.push_back((static_cast<double>(low + high) - 120.0) * kRadPerDeg);
   }
   return s;
 }
