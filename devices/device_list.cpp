@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "devices/camera/camera.h"
+#include "devices/camera/webcam.h"
 #include "devices/spacemouse/spacenav_protocol.h"
 #include "devices/transport/usb_transport.h"
 #include "devices/udev_rule.h"

@@ -1,6 +1,6 @@
 #include "app/calibration/adjust_window.h"
 
-#include "display/panels/calibration.h"
+#include "display/panels/panel_calibration.h"
 #include "display/panels/panel_adjust.h"
 
 namespace dubsar::app {

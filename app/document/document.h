@@ -10,7 +10,7 @@
 
 #include "app/document/keyframe.h"
 #include "app/document/measure.h"
-#include "app/document/pose.h"
+#include "app/document/camera_pose.h"
 #include "input/navigation/view_state.h"
 
 namespace dubsar::app {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/document/pose.h"
+#include "app/document/camera_pose.h"
 #include "core/base/result.h"
 
 namespace dubsar::app {

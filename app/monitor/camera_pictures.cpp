@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "core/base/clock.h"
-#include "devices/camera/camera.h"
+#include "devices/camera/webcam.h"
 #include "devices/camera/capture.h"
 #include "devices/camera/picture_frames.h"
 

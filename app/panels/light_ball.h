@@ -3,7 +3,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "app/document/pose.h"
+#include "app/document/camera_pose.h"
 
 namespace dubsar::app {
 

@@ -8,7 +8,7 @@
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/contact/band.h"
-#include "core/contact/sides.h"
+#include "core/contact/clay_sides.h"
 #include "core/extract/edge_index.h"
 #include "core/parts/face_graph.h"
 #include "core/parts/surface_model.h"

@@ -13,7 +13,7 @@
 #include "core/contact/interface_rest.h"
 #include "core/contact/interface_shape.h"
 #include "core/contact/pockets.h"
-#include "core/contact/sides.h"
+#include "core/contact/clay_sides.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh/mesh_check.h"
 #include "core/parts/holes.h"

@@ -2,7 +2,7 @@
 // Builds the model: sizes, text, seals, gap, pores. Part of phantom.cpp's house; not for users.
 
 #include "core/phantom/phantom.h"
-#include "core/phantom/signs.h"
+#include "core/phantom/sign_list.h"
 
 namespace dubsar::phantom {
 

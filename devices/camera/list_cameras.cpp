@@ -12,7 +12,7 @@
 #include <fstream>
 #include <optional>
 
-#include "devices/camera/camera.h"
+#include "devices/camera/webcam.h"
 
 namespace dubsar {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "core/base/near_word.h"
 #include "display/sinks/anaglyph.h"
-#include "display/sinks/image.h"
+#include "display/sinks/single_image.h"
 #include "display/sinks/interlaced.h"
 #include "display/sinks/lenticular.h"
 #include "display/sinks/mono.h"

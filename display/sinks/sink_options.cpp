@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/base/parse_number.h"
-#include "display/panels/calibration.h"
+#include "display/panels/panel_calibration.h"
 
 namespace dubsar {
 

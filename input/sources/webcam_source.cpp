@@ -5,7 +5,7 @@
 #include "core/base/angle.h"
 #include "core/base/option_reader.h"
 #include "core/base/parse_number.h"
-#include "devices/camera/camera.h"
+#include "devices/camera/webcam.h"
 #include "devices/camera/capture.h"
 #include "devices/camera/picture_frames.h"
 #include "devices/transport/retry_pause.h"

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/base/parallel.h"
-#include "tests/core/parts/scene.h"
+#include "tests/core/parts/grid_scene.h"
 
 namespace dubsar {
 namespace {

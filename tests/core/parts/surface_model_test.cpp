@@ -8,7 +8,7 @@
 
 #include "core/mesh/evidence.h"
 #include "core/mesh/mesh_check.h"
-#include "tests/core/parts/scene.h"
+#include "tests/core/parts/grid_scene.h"
 
 namespace dubsar {
 namespace {

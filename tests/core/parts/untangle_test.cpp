@@ -10,7 +10,7 @@
 #include "core/mesh/mesh_check.h"
 #include "core/parts/holes.h"
 #include "core/parts/segment.h"
-#include "tests/core/parts/scene.h"
+#include "tests/core/parts/grid_scene.h"
 
 namespace dubsar {
 namespace {

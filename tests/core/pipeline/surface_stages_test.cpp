@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/core/parts/scene.h"
+#include "tests/core/parts/grid_scene.h"
 
 namespace dubsar {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/relief/shape_class.h"
 #include "core/relief/smooth.h"
-#include "tests/core/mesh/test_meshes.h"
+#include "tests/core/mesh/shape_meshes.h"
 
 namespace dubsar {
 namespace {

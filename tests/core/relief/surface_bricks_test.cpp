@@ -8,7 +8,7 @@
 #include <random>
 
 #include "core/base/parallel.h"
-#include "tests/core/mesh/test_meshes.h"
+#include "tests/core/mesh/shape_meshes.h"
 
 namespace dubsar {
 namespace {

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "core/base/atomic_file.h"
-#include "display/panels/calibration.h"
+#include "display/panels/panel_calibration.h"
 #include "display/sinks/sink_catalog.h"
 
 namespace dubsar {

@@ -15,7 +15,7 @@
 #include "core/parts/segment.h"
 #include "core/pipeline/model_occlusion.h"
 #include "display/render/gpu_mesh.h"
-#include "tests/core/parts/scene.h"
+#include "tests/core/parts/grid_scene.h"
 
 namespace dubsar {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/contact/sides.h"
+#include "core/contact/clay_sides.h"
 
 #include <algorithm>
 #include <array>

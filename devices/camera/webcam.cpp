@@ -1,4 +1,4 @@
-#include "devices/camera/camera.h"
+#include "devices/camera/webcam.h"
 
 #include <atomic>
 #include <exception>

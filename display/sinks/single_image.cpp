@@ -1,4 +1,4 @@
-#include "display/sinks/image.h"
+#include "display/sinks/single_image.h"
 
 #include <algorithm>
 

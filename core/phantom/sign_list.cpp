@@ -1,4 +1,4 @@
-#include "core/phantom/signs.h"
+#include "core/phantom/sign_list.h"
 
 #include <cmath>
 #include <initializer_list>

@@ -1,6 +1,6 @@
 // The reader thread over a capture that the test plays.
 
-#include "devices/camera/camera.h"
+#include "devices/camera/webcam.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "display/panels/calibration.h"
+#include "display/panels/panel_calibration.h"
 
 #include <algorithm>
 

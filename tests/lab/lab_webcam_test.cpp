@@ -1,6 +1,6 @@
 // A webcam of a real kernel (vivid): its pictures through unmodified OpenCV, as the program loads it.
 
-#include "devices/camera/camera.h"
+#include "devices/camera/webcam.h"
 
 #include <array>
 #include <fstream>
