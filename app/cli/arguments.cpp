@@ -68,40 +68,40 @@ CLI::Validator one_word_of(std::vector<std::string> words) {
 }
 
 template <class T>
-Option add(void* to, const std::string& name, T& target, const std::string& help) {
-  return Option(app(to).add_option(name, target, help));
+Argument add(void* to, const std::string& name, T& target, const std::string& help) {
+  return Argument(app(to).add_option(name, target, help));
 }
 }  // namespace
 
-Option& Option::required() { return option(option_).required(), *this; }
-Option& Option::range(int least, int most) {
+Argument& Argument::required() { return option(option_).required(), *this; }
+Argument& Argument::range(int least, int most) {
   const std::string words = fmt::format("{} to {}", least, most);
   says(option_, words).check(expects(words, number_that<std::int64_t>([=](std::int64_t v) {
                                        return v >= least && v <= most;
                                      })));
   return *this;
 }
-Option& Option::range(double least, double most) {
+Argument& Argument::range(double least, double most) {
   const std::string words = fmt::format("{:g} to {:g}", least, most);
   says(option_, words).check(expects(words, number_that<double>([=](double v) { return v >= least && v <= most; })));
   return *this;
 }
-Option& Option::positive() {
+Argument& Argument::positive() {
   option(option_).check(expects("more than 0", number_that<double>([](double v) { return v > 0.0; })));
   return *this;
 }
-Option& Option::not_negative() {
+Argument& Argument::not_negative() {
   option(option_).check(expects("0 or more", number_that<double>([](double v) { return v >= 0.0; })));
   return *this;
 }
-Option& Option::one_of(std::vector<std::string> words) {
+Argument& Argument::one_of(std::vector<std::string> words) {
   says(option_, fmt::format("{}", fmt::join(words, ", "))).check(one_word_of(words));
   return *this;
 }
-Option& Option::called(const std::string& type) { return option(option_).type_name(type), *this; }
-Option& Option::separated_by(char separator) { return option(option_).delimiter(separator), *this; }
-Option& Option::words(int least, int most) { return option(option_).expected(least, most), *this; }
-Option& Option::one_word_each_time() { return option(option_).allow_extra_args(false), *this; }
+Argument& Argument::called(const std::string& type) { return option(option_).type_name(type), *this; }
+Argument& Argument::separated_by(char separator) { return option(option_).delimiter(separator), *this; }
+Argument& Argument::words(int least, int most) { return option(option_).expected(least, most), *this; }
+Argument& Argument::one_word_each_time() { return option(option_).allow_extra_args(false), *this; }
 
 Arguments Arguments::program(const std::string& words, const std::string& name, const std::string& version) {
   auto state = std::make_shared<State>();
@@ -125,65 +125,65 @@ Arguments Arguments::group(const std::string& title) { return Arguments(state_, 
 void Arguments::needs_command() { app(app_).require_subcommand(1); }
 void Arguments::footer(const std::string& text) { app(app_).footer(text); }
 
-Option Arguments::value(const std::string& name, std::string& target, const std::string& help) {
+Argument Arguments::value(const std::string& name, std::string& target, const std::string& help) {
   return add(app_, name, target, help);
 }
-Option Arguments::value(const std::string& name, int& target, const std::string& help) {
+Argument Arguments::value(const std::string& name, int& target, const std::string& help) {
   return add(app_, name, target, help);
 }
-Option Arguments::value(const std::string& name, std::int64_t& target, const std::string& help) {
+Argument Arguments::value(const std::string& name, std::int64_t& target, const std::string& help) {
   return add(app_, name, target, help);
 }
-Option Arguments::value(const std::string& name, std::uint64_t& target, const std::string& help) {
+Argument Arguments::value(const std::string& name, std::uint64_t& target, const std::string& help) {
   return add(app_, name, target, help);
 }
-Option Arguments::value(const std::string& name, float& target, const std::string& help) {
+Argument Arguments::value(const std::string& name, float& target, const std::string& help) {
   return add(app_, name, target, help);
 }
-Option Arguments::value(const std::string& name, double& target, const std::string& help) {
+Argument Arguments::value(const std::string& name, double& target, const std::string& help) {
   return add(app_, name, target, help);
 }
-Option Arguments::value(const std::string& name, std::vector<std::string>& target, const std::string& help) {
+Argument Arguments::value(const std::string& name, std::vector<std::string>& target, const std::string& help) {
   return add(app_, name, target, help);
 }
-Option Arguments::value(const std::string& name, std::optional<int>& target, const std::string& help) {
+Argument Arguments::value(const std::string& name, std::optional<int>& target, const std::string& help) {
   return add(app_, name, target, help);
 }
-Option Arguments::value(const std::string& name, std::optional<std::uint64_t>& target, const std::string& help) {
+Argument Arguments::value(const std::string& name, std::optional<std::uint64_t>& target, const std::string& help) {
   return add(app_, name, target, help);
 }
-Option Arguments::value(const std::string& name, std::optional<float>& target, const std::string& help) {
+Argument Arguments::value(const std::string& name, std::optional<float>& target, const std::string& help) {
   return add(app_, name, target, help);
 }
-Option Arguments::value(const std::string& name, std::optional<double>& target, const std::string& help) {
+Argument Arguments::value(const std::string& name, std::optional<double>& target, const std::string& help) {
   return add(app_, name, target, help);
 }
 
-Option Arguments::flag(const std::string& name, bool& target, const std::string& help) {
-  return Option(app(app_).add_flag(name, target, help));
+Argument Arguments::flag(const std::string& name, bool& target, const std::string& help) {
+  return Argument(app(app_).add_flag(name, target, help));
 }
 
-Option Arguments::choice_of(const std::string& name, const std::vector<std::string>& words,
-                            std::function<void(std::size_t)> chosen, const std::string& help) {
+Argument Arguments::choice_of(const std::string& name, const std::vector<std::string>& words,
+                              std::function<void(std::size_t)> chosen, const std::string& help) {
   const auto use = [words, chosen = std::move(chosen)](const std::string& word) {
     chosen(static_cast<std::size_t>(std::find(words.begin(), words.end(), word) - words.begin()));
   };
   CLI::Option* const made = app(app_).add_option_function<std::string>(name, use, help);
   says(made, fmt::format("{}", fmt::join(words, ", "))).check(one_word_of(words))->type_name("WORD");
-  return Option(made);
+  return Argument(made);
 }
 
-Option Arguments::reads(const std::string& name, std::string& target, const std::string& help) {
+Argument Arguments::reads(const std::string& name, std::string& target, const std::string& help) {
   state_->files.push_back({app_, name, [&target] { return std::vector{target}; }, false, FileFormat::kOther});
   return value(name, target, help).called("FILE");
 }
 
-Option Arguments::reads(const std::string& name, std::vector<std::string>& target, const std::string& help) {
+Argument Arguments::reads(const std::string& name, std::vector<std::string>& target, const std::string& help) {
   state_->files.push_back({app_, name, [&target] { return target; }, false, FileFormat::kOther});
   return value(name, target, help).called("FILE");
 }
 
-Option Arguments::writes(const std::string& name, std::string& target, FileFormat format, const std::string& help) {
+Argument Arguments::writes(const std::string& name, std::string& target, FileFormat format, const std::string& help) {
   state_->files.push_back({app_, name, [&target] { return std::vector{target}; }, true, format});
   return value(name, target, help).called("FILE");
 }

@@ -18,19 +18,19 @@ namespace dubsar::app {
 
 /// One option, to be narrowed: `arguments.value("--threads", threads, "...").range(0, 1024)`. Good as long as its
 /// Arguments.
-class Option {
+class Argument {
  public:
-  explicit Option(void* option) : option_(option) {}
-  Option& required();
-  Option& range(int least, int most);
-  Option& range(double least, double most);
-  Option& positive();
-  Option& not_negative();
-  Option& one_of(std::vector<std::string> words);
-  Option& called(const std::string& type);  ///< what the help calls the value, e.g. "FILE"
-  Option& separated_by(char separator);     ///< a list in one word: "a,b"
-  Option& words(int least, int most);       ///< how many words the option takes
-  Option& one_word_each_time();             ///< may be repeated, each time with one word
+  explicit Argument(void* option) : option_(option) {}
+  Argument& required();
+  Argument& range(int least, int most);
+  Argument& range(double least, double most);
+  Argument& positive();
+  Argument& not_negative();
+  Argument& one_of(std::vector<std::string> words);
+  Argument& called(const std::string& type);  ///< what the help calls the value, e.g. "FILE"
+  Argument& separated_by(char separator);     ///< a list in one word: "a,b"
+  Argument& words(int least, int most);       ///< how many words the option takes
+  Argument& one_word_each_time();             ///< may be repeated, each time with one word
 
  private:
   void* option_;
@@ -49,22 +49,22 @@ class Arguments {
   void needs_command();
   void footer(const std::string& text);
 
-  Option value(const std::string& name, std::string& target, const std::string& help);
-  Option value(const std::string& name, int& target, const std::string& help);
-  Option value(const std::string& name, std::int64_t& target, const std::string& help);
-  Option value(const std::string& name, std::uint64_t& target, const std::string& help);
-  Option value(const std::string& name, float& target, const std::string& help);
-  Option value(const std::string& name, double& target, const std::string& help);
-  Option value(const std::string& name, std::vector<std::string>& target, const std::string& help);
-  Option value(const std::string& name, std::optional<int>& target, const std::string& help);
-  Option value(const std::string& name, std::optional<std::uint64_t>& target, const std::string& help);
-  Option value(const std::string& name, std::optional<float>& target, const std::string& help);
-  Option value(const std::string& name, std::optional<double>& target, const std::string& help);
-  Option flag(const std::string& name, bool& target, const std::string& help);
+  Argument value(const std::string& name, std::string& target, const std::string& help);
+  Argument value(const std::string& name, int& target, const std::string& help);
+  Argument value(const std::string& name, std::int64_t& target, const std::string& help);
+  Argument value(const std::string& name, std::uint64_t& target, const std::string& help);
+  Argument value(const std::string& name, float& target, const std::string& help);
+  Argument value(const std::string& name, double& target, const std::string& help);
+  Argument value(const std::string& name, std::vector<std::string>& target, const std::string& help);
+  Argument value(const std::string& name, std::optional<int>& target, const std::string& help);
+  Argument value(const std::string& name, std::optional<std::uint64_t>& target, const std::string& help);
+  Argument value(const std::string& name, std::optional<float>& target, const std::string& help);
+  Argument value(const std::string& name, std::optional<double>& target, const std::string& help);
+  Argument flag(const std::string& name, bool& target, const std::string& help);
   /// One word of a table for one value of an enum.
   template <class T>
-  Option choice(const std::string& name, T& target, const std::vector<std::pair<std::string, T>>& table,
-                const std::string& help) {
+  Argument choice(const std::string& name, T& target, const std::vector<std::pair<std::string, T>>& table,
+                  const std::string& help) {
     std::vector<std::string> words;
     std::vector<T> values;
     for (const auto& [word, meaning] : table) {
@@ -77,9 +77,9 @@ class Arguments {
 
   /// Files: the same as value(), and known as read or written, so that a verb that would write over what it reads is
   /// refused before it begins (file_uses.h).
-  Option reads(const std::string& name, std::string& target, const std::string& help);
-  Option reads(const std::string& name, std::vector<std::string>& target, const std::string& help);
-  Option writes(const std::string& name, std::string& target, FileFormat format, const std::string& help);
+  Argument reads(const std::string& name, std::string& target, const std::string& help);
+  Argument reads(const std::string& name, std::vector<std::string>& target, const std::string& help);
+  Argument writes(const std::string& name, std::string& target, FileFormat format, const std::string& help);
 
   bool chosen() const;                        ///< this verb or subcommand stands on the command line
   bool given(const std::string& name) const;  ///< this option does
@@ -93,8 +93,8 @@ class Arguments {
  private:
   struct State;
   explicit Arguments(std::shared_ptr<State> state, void* app) : state_(std::move(state)), app_(app) {}
-  Option choice_of(const std::string& name, const std::vector<std::string>& words,
-                   std::function<void(std::size_t)> chosen, const std::string& help);
+  Argument choice_of(const std::string& name, const std::vector<std::string>& words,
+                     std::function<void(std::size_t)> chosen, const std::string& help);
   std::shared_ptr<State> state_;
   void* app_;
 };

@@ -64,7 +64,7 @@ Result<void> Stage::Parts::prepare(OutputSink& with) {
   painted.of.reset();
   cost.coarse = 0;
   cost.prepared_at = next.now;
-  const ShownRect rect = shown_mm(with.views(dubsar::Viewer())[0]);
+  const ShownRect rect = shown_mm(with.views(Observer())[0]);
   plane.window = rect.size;
   plane.middle = rect.middle;
   // A window on a plain monitor is looked at straight; before a panel of lenses people are where the panel wants them.
@@ -78,8 +78,8 @@ Result<void> Stage::Parts::prepare(OutputSink& with) {
   return {};
 }
 
-dubsar::Viewer Stage::Parts::viewer_at(const FollowedEyes& eyes) const {
-  dubsar::Viewer out = options.viewer;
+Observer Stage::Parts::viewer_at(const FollowedEyes& eyes) const {
+  Observer out = options.viewer;
   out.left_mm += plane.aside_mm;
   out.right_mm += plane.aside_mm;
   out.nominal_mm += plane.aside_mm;
@@ -161,7 +161,7 @@ Result<void> Stage::swap_eyes() {
 
 SinkTraits Stage::traits() const { return parts_->sink->traits(); }
 glm::dvec3 Stage::rest_m() const { return 1e-3 * (parts_->options.viewer.centre_mm() + parts_->plane.aside_mm); }
-const dubsar::Viewer& Stage::viewer() const noexcept { return parts_->next.viewer; }
+const Observer& Stage::viewer() const noexcept { return parts_->next.viewer; }
 glm::dvec2 Stage::window_mm() const noexcept { return parts_->plane.window; }
 const Box& Stage::box_mm() const noexcept { return parts_->object.box; }
 glm::dvec2 Stage::middle_mm() const noexcept { return parts_->plane.middle; }

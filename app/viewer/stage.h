@@ -41,8 +41,8 @@ struct StageOptions {
   SinkSpec display{"mono"};
   /// Displays and panels that may be named; who owns it, too, may put other figures into it and set the display again.
   std::shared_ptr<SinkCatalog> catalog = std::make_shared<SinkCatalog>();
-  Screen screen{};          ///< without a window, what the sink does not know better
-  dubsar::Viewer viewer{};  ///< where the eyes are while no head is tracked
+  Screen screen{};    ///< without a window, what the sink does not know better
+  Observer viewer{};  ///< where the eyes are while no head is tracked
   Shading shading{};
   std::string style = "relief";  ///< the name of the shading's style and light
   ViewDirection direction{};     ///< the front of the home view
@@ -146,9 +146,9 @@ class Stage {
   /// Renders the views and composes them on `target`: the field that is due, where traits() has two.
   Result<void> paint(const Surface& target, Field field = Field::kFirst);
 
-  const dubsar::Viewer& viewer() const noexcept;  ///< the eyes that cameras are made for
-  std::optional<PanelLight> light() const;        ///< where the panel's lenses send what was painted last
-  int coarse_views() const noexcept;              ///< of the last picture; 0: all are exact
+  const Observer& viewer() const noexcept;  ///< the eyes that cameras are made for
+  std::optional<PanelLight> light() const;  ///< where the panel's lenses send what was painted last
+  int coarse_views() const noexcept;        ///< of the last picture; 0: all are exact
   /// Of worn displays: who wears it, as of the last paint(), in the screen frame; and why nobody does.
   std::optional<WearerFrame> wearer() const;
   std::string display_note() const;

@@ -47,11 +47,11 @@ struct Stage::Parts {
   };
   struct Next {
     Shown shown;
-    dubsar::Viewer viewer;
+    Observer viewer;
     TimestampNs now = 0;
   };
   struct Painted {
-    std::optional<std::pair<Shown, dubsar::Viewer>> of;
+    std::optional<std::pair<Shown, Observer>> of;
     std::vector<View> views;
     std::vector<DrawItem> items;
     std::vector<ClipPlane> clips;
@@ -85,7 +85,7 @@ struct Stage::Parts {
   static Result<Object> make_object(const TriMesh& mesh, const StageOptions& options);
   Result<void> prepare(OutputSink& with);
   void measure(const FieldNeeds& needs);
-  dubsar::Viewer viewer_at(const FollowedEyes& eyes) const;
+  Observer viewer_at(const FollowedEyes& eyes) const;
   /// Where what is shown stands: with another one beside it in the middle of its half, 0 left, 1 right.
   glm::dmat4 placed(const Shown& shown, int half) const;
   glm::dmat4 placed() const { return placed(next.shown, 1); }

@@ -82,7 +82,7 @@ struct ViewOptions {
 /// What went into one picture. Times are those of the session's clock.
 struct PictureReport {
   ViewState view{};
-  dubsar::Viewer viewer{};  ///< the eyes that cameras were made for
+  Observer viewer{};  ///< the eyes that cameras were made for
   Presence head = Presence::kOff;
   Control control = Control::kNone;
   bool moving = false;                     ///< it differs from the last one

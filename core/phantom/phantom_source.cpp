@@ -68,12 +68,12 @@ void PhantomSource::fill_raw(std::int64_t z_begin, std::int64_t z_end) {
   const std::uint64_t seed_key = hash64(phantom_->options().seed ^ 0x6e6f697365);
   parallel_for(y_bricks * z_bricks, 1, [&](std::int64_t item) {
     const std::int64_t y_lo = (y_first + item % y_bricks) * kBrickEdge, z_lo = (z_first + item / y_bricks) * kBrickEdge;
-    const VoxelBox clip{{-1, std::max<std::int64_t>(y_lo, -1), std::max(z_lo, z_begin)},
-                        {d.x + 1, std::min(y_lo + kBrickEdge, d.y + 1), std::min(z_lo + kBrickEdge, z_end)}};
+    const VoxelBounds clip{{-1, std::max<std::int64_t>(y_lo, -1), std::max(z_lo, z_begin)},
+                           {d.x + 1, std::min(y_lo + kBrickEdge, d.y + 1), std::min(z_lo + kBrickEdge, z_end)}};
     for (std::int64_t bx = brick_of(-1); bx <= brick_of(d.x); ++bx)
       visit_brick(
           *phantom_, {1.0f, tells_clays_apart(phantom_->options())}, {bx * kBrickEdge, y_lo, z_lo}, kBrickEdge, clip,
-          [&](const VoxelBox& box, const Fields& f) {
+          [&](const VoxelBounds& box, const Fields& f) {
             const float value = density(f, phantom_->options());
             for (std::int64_t z = box.lo[2]; z < box.hi[2]; ++z)
               for (std::int64_t y = box.lo[1]; y < box.hi[1]; ++y)

@@ -11,7 +11,7 @@
 
 namespace dubsar::phantom {
 
-struct VoxelBox {
+struct VoxelBounds {
   std::array<std::int64_t, 3> lo, hi;  ///< [lo, hi), x y z
 };
 
@@ -31,8 +31,8 @@ struct RasterRule {
 /// Calls constant(box, fields at its middle) or voxel(x, y, z, fields) for the part of a brick inside `clip`.
 template <class Constant, class VoxelCall>
 void visit_brick(const Phantom& phantom, const RasterRule& rule, std::array<std::int64_t, 3> lo, std::int64_t edge,
-                 const VoxelBox& clip, const Constant& constant, const VoxelCall& voxel) {
-  VoxelBox box;
+                 const VoxelBounds& clip, const Constant& constant, const VoxelCall& voxel) {
+  VoxelBounds box;
   for (std::size_t a = 0; a < 3; ++a) {
     box.lo[a] = std::max(lo[a], clip.lo[a]);
     box.hi[a] = std::min(lo[a] + edge, clip.hi[a]);

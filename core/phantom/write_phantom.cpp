@@ -137,13 +137,13 @@ void rasterise_truth(const Phantom& phantom, std::int64_t z_begin, std::int64_t 
   const std::int64_t z_first = brick_of(z_begin), z_bricks = brick_of(z_end - 1) - z_first + 1;
   parallel_for(y_bricks * z_bricks, 1, [&](std::int64_t item) {
     const std::int64_t y_lo = item % y_bricks * kBrickEdge, z_lo = (z_first + item / y_bricks) * kBrickEdge;
-    const VoxelBox clip{{0, y_lo, std::max(z_lo, z_begin)},
-                        {d.x, std::min(y_lo + kBrickEdge, d.y), std::min(z_lo + kBrickEdge, z_end)}};
+    const VoxelBounds clip{{0, y_lo, std::max(z_lo, z_begin)},
+                           {d.x, std::min(y_lo + kBrickEdge, d.y), std::min(z_lo + kBrickEdge, z_end)}};
     const auto row = [&](std::int64_t y, std::int64_t z) { return (z - z_begin) * d.slice() + y * d.x; };
     for (std::int64_t bx = 0; bx <= brick_of(d.x - 1); ++bx)
       visit_brick(
           phantom, {static_cast<float>(Phantom::kReach), true}, {bx * kBrickEdge, y_lo, z_lo}, kBrickEdge, clip,
-          [&](const VoxelBox& box, const Fields& f) {
+          [&](const VoxelBounds& box, const Fields& f) {
             const auto name = static_cast<std::uint8_t>(label_of(f));
             const std::int16_t far = quantise(f.clay.v < 0.0f ? -Phantom::kReach : Phantom::kReach);
             for (std::int64_t z = box.lo[2]; z < box.hi[2]; ++z)

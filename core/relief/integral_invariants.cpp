@@ -129,7 +129,7 @@ Result<std::vector<InvariantShares>> integral_invariants(const TriMesh& mesh, do
     cubed[k] = static_cast<float>(1.0 / std::pow(radius_mm * static_cast<double>(k + 1) / kInvariantScales, 3));
   constexpr float kPerDirection = static_cast<float>(1.0 / (4.0 * std::numbers::pi));
   for (int b = 0; b < bodies; ++b) {
-    std::vector<SurfacePlace> places;
+    std::vector<SurfaceElement> places;
     std::vector<std::uint32_t> vertices;
     std::vector<bool> taken(count);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -144,8 +144,8 @@ Result<std::vector<InvariantShares>> integral_invariants(const TriMesh& mesh, do
         }
     }
     if (vertices.empty()) continue;
-    const SurfaceCells far(merged_places(places, radius_mm / kCells), radius_mm);
-    const SurfaceCells middle(merged_places(places, 0.5 * radius_mm / kCells), 0.5 * radius_mm);
+    const SurfaceCells far(merged_elements(places, radius_mm / kCells), radius_mm);
+    const SurfaceCells middle(merged_elements(places, 0.5 * radius_mm / kCells), 0.5 * radius_mm);
     const SurfaceCells near(std::move(places), 0.25 * radius_mm);
     parallel_chunks(
         static_cast<std::int64_t>(vertices.size()), kInvariantGrain, [&](std::int64_t begin, std::int64_t end) {

@@ -17,9 +17,9 @@ constexpr float kNearest = 1e-6f;  // mm: a place on the point itself has no dir
 struct Bounds {
   glm::vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
 };
-Bounds bounds_of(const std::vector<SurfacePlace>& places) {
+Bounds bounds_of(const std::vector<SurfaceElement>& places) {
   Bounds out;
-  for (const SurfacePlace& place : places) {
+  for (const SurfaceElement& place : places) {
     out.low = glm::min(out.low, place.at);
     out.high = glm::max(out.high, place.at);
   }
@@ -56,7 +56,7 @@ void add(const Columns& c, std::size_t begin, std::size_t end, const glm::vec3& 
 
 }  // namespace
 
-std::vector<SurfacePlace> merged_places(const std::vector<SurfacePlace>& places, double cell) {
+std::vector<SurfaceElement> merged_elements(const std::vector<SurfaceElement>& places, double cell) {
   struct Keyed {
     std::uint64_t key;
     std::uint32_t place;
@@ -72,13 +72,13 @@ std::vector<SurfacePlace> merged_places(const std::vector<SurfacePlace>& places,
   }
   std::sort(order.begin(), order.end(),
             [](const Keyed& a, const Keyed& b) { return a.key != b.key ? a.key < b.key : a.place < b.place; });
-  std::vector<SurfacePlace> out;
+  std::vector<SurfaceElement> out;
   for (std::size_t i = 0; i < order.size();) {
     glm::dvec3 middle(0.0), area(0.0);
     double weight = 0.0;
     std::size_t end = i;
     for (; end < order.size() && order[end].key == order[i].key; ++end) {
-      const SurfacePlace& place = places[order[end].place];
+      const SurfaceElement& place = places[order[end].place];
       const double size = std::max<double>(glm::length(place.area), 1e-20);
       middle += size * glm::dvec3(place.at);
       area += glm::dvec3(place.area);
@@ -94,7 +94,7 @@ glm::ivec3 SurfaceCells::cell_of(const glm::vec3& at) const {
   return glm::clamp(glm::ivec3(glm::floor((at - corner_) / cell_)), glm::ivec3(0), cells_ - 1);
 }
 
-SurfaceCells::SurfaceCells(std::vector<SurfacePlace> places, double reach) {
+SurfaceCells::SurfaceCells(std::vector<SurfaceElement> places, double reach) {
   const Bounds bounds = bounds_of(places);
   corner_ = bounds.low;
   for (double cell = reach / kCellsPerReach;; cell *= 2) {
@@ -109,11 +109,11 @@ SurfaceCells::SurfaceCells(std::vector<SurfacePlace> places, double reach) {
                (static_cast<std::size_t>(c.y) + static_cast<std::size_t>(cells_.y) * static_cast<std::size_t>(c.z));
   };
   begin_.assign(index(cells_ - 1) + 2, 0);
-  for (const SurfacePlace& place : places) ++begin_[index(cell_of(place.at)) + 1];
+  for (const SurfaceElement& place : places) ++begin_[index(cell_of(place.at)) + 1];
   for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
   for (auto& column : columns_) column.resize(places.size());
   std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-  for (const SurfacePlace& place : places) {
+  for (const SurfaceElement& place : places) {
     const std::size_t at = next[index(cell_of(place.at))]++;
     for (int a = 0; a < 3; ++a) {
       columns_[static_cast<std::size_t>(a)][at] = place.at[a];

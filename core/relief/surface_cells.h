@@ -9,13 +9,13 @@
 namespace dubsar {
 
 /// A small piece of surface: its middle, and its area along its normal.
-struct SurfacePlace {
+struct SurfaceElement {
   glm::vec3 at{0.0f}, area{0.0f};  ///< mm, mm2
 };
 
 /// Places within one cube of `cell` and of one octant of normals become one: areas added, middles weighted by them.
 /// As they are where that saves less than a quarter of them. Deterministic.
-std::vector<SurfacePlace> merged_places(const std::vector<SurfacePlace>& places, double cell);
+std::vector<SurfaceElement> merged_elements(const std::vector<SurfaceElement>& places, double cell);
 
 /// Sums of x . area around a point, x being the way to a place: over those nearer than the first radius and over all,
 /// as they are (`plain`) and divided by |x|^3 (`third`).
@@ -26,7 +26,7 @@ struct BandSums {
 class SurfaceCells {
  public:
   /// For sums of at most `reach`.
-  SurfaceCells(std::vector<SurfacePlace> places, double reach);
+  SurfaceCells(std::vector<SurfaceElement> places, double reach);
   /// Over places from `from` to `to` away; `first` lies between them. Any thread.
   BandSums sums(const glm::vec3& point, float from, float first, float to) const;
 

@@ -42,7 +42,7 @@ Result<std::unique_ptr<StereoCameraKind>> find_kind(const LeapCameraOptions& opt
   RigelOptions rigel;
   rigel.exposure_us = options.exposure_us;
   rigel.dark_frame_interval = options.dark_frame_interval;
-  DUBSAR_ASSIGN(const uvc::Camera camera, uvc::read_camera(transport));
+  DUBSAR_ASSIGN(const uvc::VideoFunction camera, uvc::read_camera(transport));
   if (camera.find(640, 240) != nullptr) rigel.height = 240;
   return rigel_kind(rigel);
 }

@@ -97,7 +97,7 @@ class LibraryConnection final : public Connection {
     box_.tell(State::kStopped, {}, false);
   }
 
-  bool poll(Frame& newest) override { return box_.take(newest); }
+  bool poll(ServiceFrame& newest) override { return box_.take(newest); }
   State state() const override { return box_.state(); }
   std::string reason() const override { return box_.reason(); }
   Counters counters() const override {
@@ -119,7 +119,7 @@ class LibraryConnection final : public Connection {
     std::string trouble;     // of the device that failed last
     bool right_mode = true;  // false: somebody has switched the device to another mode
     steady_clock::time_point silent_since = steady_clock::now();
-    Frame frame;
+    ServiceFrame frame;
   };
 
   void run(Handle handle) {
@@ -324,7 +324,7 @@ class LibraryConnection final : public Connection {
   bool stopping_ = false;
   Counters counters_;
 
-  Mailbox<Frame, State> box_{State::kStopped};
+  Mailbox<ServiceFrame, State> box_{State::kStopped};
 };
 
 }  // namespace

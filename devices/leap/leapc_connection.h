@@ -24,7 +24,7 @@ struct Options {
 };
 
 /// Everything the service saw at one moment, in the device's frame (leapc_protocol.h).
-struct Frame {
+struct ServiceFrame {
   TimestampNs time = 0;  ///< when the device measured, on our clock
   std::int64_t number = 0;
   double frames_per_s = 0;
@@ -57,7 +57,7 @@ class Connection {
 
   /// Never waits. True: `newest` is a frame not returned before. `newest` lends its memory: hand in the same
   /// object.
-  virtual bool poll(Frame& newest) = 0;
+  virtual bool poll(ServiceFrame& newest) = 0;
   virtual State state() const = 0;
   /// Why there are no hands, one sentence; empty while tracking.
   virtual std::string reason() const = 0;

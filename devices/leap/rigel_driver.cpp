@@ -15,7 +15,7 @@ class RigelKind final : public StereoCameraKind {
   explicit RigelKind(const RigelOptions& options) : options_(options) {}
 
   Result<Stream> prepare(Transport& transport) override {
-    DUBSAR_ASSIGN(const uvc::Camera camera, uvc::read_camera(transport));
+    DUBSAR_ASSIGN(const uvc::VideoFunction camera, uvc::read_camera(transport));
     DUBSAR_ASSIGN(units_, rigel::find_units(camera));
     if (camera.bulk_endpoint == 0)
       return fail(ErrorKind::kUnavailable,
@@ -66,7 +66,7 @@ class RigelKind final : public StereoCameraKind {
   }
 
  private:
-  Result<uvc::FrameSize> wanted_size(const uvc::Camera& camera) const {
+  Result<uvc::FrameSize> wanted_size(const uvc::VideoFunction& camera) const {
     std::string sizes;
     for (const uvc::FrameSize& size : camera.frames) {
       // Two grey pixels pose as one of 16 bits, so that the advertised width is one eye's.

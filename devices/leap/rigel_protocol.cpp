@@ -27,7 +27,7 @@ uvc::ControlWrite write(const Units& units, Selector selector, std::uint32_t val
 
 }  // namespace
 
-Result<Units> find_units(const uvc::Camera& camera) {
+Result<Units> find_units(const uvc::VideoFunction& camera) {
   Units units;
   units.control_interface = camera.control_interface;
   units.processing = camera.processing_unit.value_or(0);

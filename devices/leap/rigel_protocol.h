@@ -45,7 +45,7 @@ struct Units {
   std::uint8_t processing = 0;
 };
 /// kBadData: the camera has no such extension unit.
-Result<Units> find_units(const uvc::Camera& camera);
+Result<Units> find_units(const uvc::VideoFunction& camera);
 
 ControlRequest set_extension(const Units& units, Selector selector) noexcept;
 ControlRequest get_extension(const Units& units, Selector selector) noexcept;

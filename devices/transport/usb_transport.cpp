@@ -83,7 +83,7 @@ class UsbTransport final : public Transport {
 
   /// Takes interfaces and endpoint from the device's own description.
   Result<void> find_camera() {
-    DUBSAR_ASSIGN(const uvc::Camera camera, uvc::read_camera(*this));
+    DUBSAR_ASSIGN(const uvc::VideoFunction camera, uvc::read_camera(*this));
     options_.interfaces = {camera.control_interface, camera.stream_interface};
     options_.read_endpoint = camera.bulk_endpoint;
     return {};

@@ -29,7 +29,7 @@ class Descriptor {
   std::span<const std::byte> bytes_;
 };
 
-void read_control(const Descriptor& d, Camera& camera) {
+void read_control(const Descriptor& d, VideoFunction& camera) {
   constexpr std::uint8_t kInputTerminal = 2, kProcessingUnit = 5, kExtensionUnit = 6;
   constexpr std::uint16_t kCameraTerminalType = 0x0201;
   if (d.subtype() == kInputTerminal && d.u16(4) == kCameraTerminalType && d.size() >= 8)
@@ -48,7 +48,7 @@ struct Format {
   int bits_per_pixel = 0;
 };
 
-void read_stream(const Descriptor& d, Format& format, Camera& camera) {
+void read_stream(const Descriptor& d, Format& format, VideoFunction& camera) {
   constexpr std::uint8_t kUncompressedFormat = 4, kUncompressedFrame = 5;
   if (d.subtype() == kUncompressedFormat && d.size() >= 22) format = {d.u8(3), d.u8(21)};
   if (d.subtype() != kUncompressedFrame || d.size() < 26 || format.index == 0) return;
@@ -64,18 +64,18 @@ void read_stream(const Descriptor& d, Format& format, Camera& camera) {
 
 }  // namespace
 
-const FrameSize* Camera::find(int width, int height) const noexcept {
+const FrameSize* VideoFunction::find(int width, int height) const noexcept {
   const auto found = std::find_if(frames.begin(), frames.end(),
                                   [&](const FrameSize& f) { return f.width == width && f.height == height; });
   return found == frames.end() ? nullptr : &*found;
 }
 
-Result<Camera> parse_configuration(std::span<const std::byte> bytes) {
+Result<VideoFunction> parse_configuration(std::span<const std::byte> bytes) {
   const Descriptor head(bytes.first(std::min(bytes.size(), kConfigurationBytes)));
   if (bytes.size() < kConfigurationBytes || head.type() != kConfiguration || head.u16(2) != bytes.size())
     return fail(ErrorKind::kBadData, "uvc: configuration descriptor of {} bytes that says {}", bytes.size(),
                 head.u16(2));
-  Camera camera;
+  VideoFunction camera;
   Format format;
   int controls = 0, streams = 0;
   std::uint8_t subclass = 0;  // of the video interface that the descriptors belong to; 0: another one
@@ -107,7 +107,7 @@ Result<Camera> parse_configuration(std::span<const std::byte> bytes) {
   return camera;
 }
 
-Result<Camera> read_camera(Transport& transport) {
+Result<VideoFunction> read_camera(Transport& transport) {
   std::array<std::byte, kConfigurationBytes> head{};
   DUBSAR_ASSIGN(const std::size_t head_bytes, transport.control(kGetConfiguration, head, kDescriptorTimeout));
   const std::size_t total = Descriptor(head).u16(2);

@@ -35,7 +35,7 @@ struct FrameSize {
 };
 
 /// The first camera of a device.
-struct Camera {
+struct VideoFunction {
   std::uint8_t control_interface = 0, stream_interface = 0;
   std::uint8_t bulk_endpoint = 0;  ///< to the host; 0: the pictures come isochronously
   std::optional<std::uint8_t> camera_terminal, processing_unit;
@@ -46,9 +46,9 @@ struct Camera {
 };
 
 /// Any bytes may come in. kBadData: lengths that do not fit, or no camera in it.
-Result<Camera> parse_configuration(std::span<const std::byte> bytes);
+Result<VideoFunction> parse_configuration(std::span<const std::byte> bytes);
 
 /// Asks the device for its configuration descriptor and parses it.
-Result<Camera> read_camera(Transport& transport);
+Result<VideoFunction> read_camera(Transport& transport);
 
 }  // namespace dubsar::uvc

@@ -34,7 +34,7 @@ Result<void> check_screen(const Screen& s) {
   return {};
 }
 
-CameraPair camera_pair(const Viewer& viewer) {
+CameraPair camera_pair(const Observer& viewer) {
   const glm::dvec3 centre = viewer.nominal_mm + viewer.parallax_factor * (viewer.centre_mm() - viewer.nominal_mm);
   const glm::dvec3 half = 0.5 * viewer.ipd_factor * (viewer.right_mm - viewer.left_mm);
   return {centre - half, centre + half};
@@ -61,7 +61,7 @@ View off_axis_view(const WindowRect& window, const glm::dvec3& eye_mm, double ne
   return view;
 }
 
-View viewer_view(const WindowRect& window, const Viewer& viewer, const glm::dvec3& eye_mm) {
+View viewer_view(const WindowRect& window, const Observer& viewer, const glm::dvec3& eye_mm) {
   const auto screen_z = [&](double world_z) { return viewer.depth_factor * (world_z - viewer.zero_parallax_mm); };
   const double distance = std::max(eye_mm.z, kNearestEyeMm);
   const double near_mm = std::max(distance - screen_z(viewer.front_mm), kNearestPlaneMm);

@@ -31,7 +31,7 @@ struct Screen {
 Result<void> check_screen(const Screen& screen);
 
 /// Who looks, and how deep the picture shall be.
-struct Viewer {
+struct Observer {
   glm::dvec3 left_mm{-31.5, 0.0, 600.0};  ///< eyes in the screen frame
   glm::dvec3 right_mm{31.5, 0.0, 600.0};
   glm::dvec3 nominal_mm{0.0, 0.0, 600.0};  ///< where the viewer is expected; centre for parallax_factor
@@ -51,7 +51,7 @@ struct CameraPair {
   glm::dvec3 left_mm, right_mm;
   glm::dvec3 centre_mm() const { return 0.5 * (left_mm + right_mm); }
 };
-CameraPair camera_pair(const Viewer& viewer);
+CameraPair camera_pair(const Observer& viewer);
 
 constexpr double kNearestEyeMm = 20.0;  ///< an eye nearer to the window's plane, or behind it, is moved here
 
@@ -61,7 +61,7 @@ View off_axis_view(const WindowRect& window, const glm::dvec3& eye_mm, double ne
 
 /// The same for a viewer's scene: clip planes around front_mm and back_mm, depth factor and zero-parallax plane
 /// applied.
-View viewer_view(const WindowRect& window, const Viewer& viewer, const glm::dvec3& eye_mm);
+View viewer_view(const WindowRect& window, const Observer& viewer, const glm::dvec3& eye_mm);
 
 /// Eyes of an N-view panel: camera i looks from angle cone * ((i + 1/2) / count - 1/2) off the normal at `distance_mm`,
 /// all at the same height, 0 leftmost. That is the middle of the bin that a lens of `count` views shows. Looking Glass

@@ -21,7 +21,7 @@ bool printable(std::string_view text) {
 }
 
 /// The model by the longest serial prefix, else by size; null when none fits.
-const PanelProfile* model_of(const PanelSet& panels, const Calibration& calibration) {
+const PanelProfile* model_of(const PanelSet& panels, const PanelCalibration& calibration) {
   const PanelProfile* best = nullptr;
   for (const PanelProfile& profile : panels.profiles)
     if (!profile.marks.serial_prefix.empty() && calibration.serial.starts_with(profile.marks.serial_prefix) &&
@@ -37,7 +37,7 @@ const PanelProfile* model_of(const PanelSet& panels, const Calibration& calibrat
 
 }  // namespace
 
-Result<Calibration> parse_calibration(std::string_view json_text, std::string_view source) {
+Result<PanelCalibration> parse_calibration(std::string_view json_text, std::string_view source) {
   if (json_text.size() > kMaxCalibrationBytes)
     return fail(ErrorKind::kConfig, "calibration {}: {} bytes, expected at most 64 KiB", source, json_text.size());
   const auto parsed = parse_json(json_text, fmt::format("calibration {}", source));
@@ -45,7 +45,7 @@ Result<Calibration> parse_calibration(std::string_view json_text, std::string_vi
   const json& object = *parsed;
   if (!object.is_object())
     return fail(ErrorKind::kConfig, "calibration {}: {} found, expected an object", source, object.type_name());
-  Calibration calibration;
+  PanelCalibration calibration;
   calibration.source = source;
   JsonFields fields(object, fmt::format("calibration {}", source));
   LookingGlassFigures& sheet = calibration.figures;
@@ -64,7 +64,7 @@ Result<Calibration> parse_calibration(std::string_view json_text, std::string_vi
   return calibration;
 }
 
-Result<Calibration> read_calibration(const fs::path& file) {
+Result<PanelCalibration> read_calibration(const fs::path& file) {
   const auto text = read_text_file(file, static_cast<std::int64_t>(kMaxCalibrationBytes));
   if (!text && text.error().kind == ErrorKind::kBadData)
     return fail(ErrorKind::kConfig, "calibration {}: {}", file.string(), text.error().message);
@@ -72,7 +72,7 @@ Result<Calibration> read_calibration(const fs::path& file) {
   return parse_calibration(*text, file.string());
 }
 
-Result<PanelProfile> calibrated_profile(const PanelSet& panels, const Calibration& calibration,
+Result<PanelProfile> calibrated_profile(const PanelSet& panels, const PanelCalibration& calibration,
                                         std::string_view model) {
   const LookingGlassFigures& figures = calibration.figures;
   PanelProfile profile;
@@ -101,7 +101,7 @@ Result<PanelProfile> calibrated_profile(const PanelSet& panels, const Calibratio
 
 Result<PanelProfile> choose_panel(const PanelSet& panels, std::string_view name, const fs::path& calibration_file) {
   if (calibration_file.empty()) return panels.find(name);
-  DUBSAR_ASSIGN(const Calibration calibration, read_calibration(calibration_file));
+  DUBSAR_ASSIGN(const PanelCalibration calibration, read_calibration(calibration_file));
   return calibrated_profile(panels, calibration, name);
 }
 

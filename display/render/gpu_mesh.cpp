@@ -273,13 +273,14 @@ Result<void> GpuMesh::carry(const SurfaceFields& fields) {
   return check_gl("uploading figures of the surface");
 }
 
-TriangleRanges GpuMesh::visible_ranges(std::uint8_t partitions, std::span<const View> views, Evidence evidence) const {
+TriangleRanges GpuMesh::visible_ranges(std::uint8_t partitions, std::span<const View> views,
+                                       ShownEvidence evidence) const {
   std::vector<glm::dmat4> clips;
   for (const View& view : views) clips.push_back(view.clip_from_world());
   TriangleRanges out;
   for (const TriangleChunk& chunk : chunks_) {
     if ((partitions >> chunk.partition & 1) == 0) continue;
-    if (evidence != Evidence::kBoth && chunk.inferred != (evidence == Evidence::kInferred)) continue;
+    if (evidence != ShownEvidence::kBoth && chunk.inferred != (evidence == ShownEvidence::kInferred)) continue;
     if (std::none_of(clips.begin(), clips.end(),
                      [&](const glm::dmat4& clip) { return may_be_seen(clip, chunk.box_mm); }))
       continue;

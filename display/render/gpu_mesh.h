@@ -66,7 +66,7 @@ std::array<std::int16_t, 2> encode_octahedral(const glm::dvec3& unit);
 glm::dvec3 decode_octahedral(const std::array<std::int16_t, 2>& code);
 
 using TriangleRanges = std::vector<std::pair<std::int64_t, std::int64_t>>;
-enum class Evidence { kMeasured, kInferred, kBoth };
+enum class ShownEvidence { kMeasured, kInferred, kBoth };
 
 /// The packed mesh in buffers of the current context.
 class GpuMesh {
@@ -84,7 +84,7 @@ class GpuMesh {
   /// Index ranges (first triangle, count) to draw for the partitions whose bit is set, neighbours joined, without the
   /// chunks that none of the views (world: the mesh's) can see.
   TriangleRanges visible_ranges(std::uint8_t partitions, std::span<const View> views,
-                                Evidence evidence = Evidence::kBoth) const;
+                                ShownEvidence evidence = ShownEvidence::kBoth) const;
 
  private:
   GlVertexArray vertex_array_;

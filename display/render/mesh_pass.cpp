@@ -296,9 +296,9 @@ Result<void> MeshPass::draw_part(const GpuMesh& level, const MeshItem& item, std
   std::vector<View> moved;
   for (const View& view : views) moved.push_back(model_view(view, glm::translate(glm::dmat4(1.0), part.offset_mm)));
   for (const bool inferred : {false, true}) {
-    const auto evidence = !item.style.mark_inferred ? Evidence::kBoth
-                          : inferred                ? Evidence::kInferred
-                                                    : Evidence::kMeasured;
+    const auto evidence = !item.style.mark_inferred ? ShownEvidence::kBoth
+                          : inferred                ? ShownEvidence::kInferred
+                                                    : ShownEvidence::kMeasured;
     if (inferred && !item.style.mark_inferred) continue;
     const TriangleRanges ranges = level.visible_ranges(static_cast<std::uint8_t>(1 << p), moved, evidence);
     if (ranges.empty()) continue;

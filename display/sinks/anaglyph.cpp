@@ -56,7 +56,7 @@ class AnaglyphSink : public OutputSink {
     screen_ = screen;
     return {};
   }
-  std::span<const View> views(const Viewer& viewer) override { return views_ = stereo_views(screen_, viewer); }
+  std::span<const View> views(const Observer& viewer) override { return views_ = stereo_views(screen_, viewer); }
 
   Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
     DUBSAR_TRY(pass_.begin(target, views.coded()));

@@ -77,7 +77,7 @@ class ViewsSink : public OutputSink {
     screen_ = panel_screen(profile_, screen);
     return {};
   }
-  std::span<const View> views(const Viewer& viewer) override {
+  std::span<const View> views(const Observer& viewer) override {
     const double distance = viewing_distance_mm(profile_);
     views_.clear();
     for (const glm::dvec3& eye : cone_eyes(profile_.views, profile_.zone.cone_deg * std::numbers::pi / 180, distance))
@@ -151,7 +151,7 @@ class TrackedSink : public OutputSink {
     screen_ = panel_screen(profile_, screen);
     return {};
   }
-  std::span<const View> views(const Viewer& viewer) override {
+  std::span<const View> views(const Observer& viewer) override {
     // Light goes to the true eyes, whatever the factors.
     eyes_ = {glm::vec3(right_first_ ? viewer.right_mm : viewer.left_mm),
              glm::vec3(right_first_ ? viewer.left_mm : viewer.right_mm)};
@@ -182,7 +182,7 @@ class TrackedSink : public OutputSink {
   bool right_first_;  ///< layer 0 is for the right eye
   Screen screen_;
   std::array<View, 2> views_;
-  std::array<glm::vec3, 2> eyes_{glm::vec3(Viewer().left_mm), glm::vec3(Viewer().right_mm)};  ///< of layers 0 and 1
+  std::array<glm::vec3, 2> eyes_{glm::vec3(Observer().left_mm), glm::vec3(Observer().right_mm)};  ///< of layers 0 and 1
   ComposePass pass_{"lens_tracked.frag"};
 };
 

@@ -20,7 +20,7 @@ class MonoSink : public OutputSink {
     screen_ = screen;
     return {};
   }
-  std::span<const View> views(const Viewer& viewer) override {
+  std::span<const View> views(const Observer& viewer) override {
     view_ = viewer_view(screen_.window_rect(), viewer, camera_pair(viewer).centre_mm());
     return {&view_, 1};
   }

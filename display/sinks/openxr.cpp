@@ -38,7 +38,7 @@ class OpenXrSink final : public OutputSink {
     return {};
   }
   /// The first ones after configure() are cameras of somebody before the place; then those of the wearer.
-  std::span<const View> views(const Viewer& viewer) override {
+  std::span<const View> views(const Observer& viewer) override {
     if (std::exchange(nominal_, false) || !begin()) {
       const PixelSize eye = headset_->eye_size();
       const double half_h = 0.5 * kNominalHeightMm, half_w = half_h * eye.width / eye.height;

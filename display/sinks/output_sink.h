@@ -51,7 +51,7 @@ class OutputSink {
   virtual Result<void> configure(const Screen& screen) = 0;
   /// The cameras for this viewer, traits().views of them; world is the screen frame. No GL. The span is good until the
   /// next call.
-  virtual std::span<const View> views(const Viewer& viewer) = 0;
+  virtual std::span<const View> views(const Observer& viewer) = 0;
   /// Draws the panel's picture from the layers; nothing is kept between fields. GL thread, with the context current
   /// that the sink is destroyed in.
   virtual Result<void> compose(const ViewArray& views, const Surface& target, Field field) = 0;

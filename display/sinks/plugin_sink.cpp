@@ -37,7 +37,7 @@ void host_off_axis_view(const dubsar_sink_screen* s, const dubsar_sink_viewer* v
                         dubsar_sink_view* out) {
   const Screen screen{s->width_mm, s->height_mm, s->width_px, s->height_px,
                       s->window_x, s->window_y,  s->window_w, s->window_h};
-  Viewer viewer;
+  Observer viewer;
   viewer.left_mm = glm::make_vec3(v->left_mm);
   viewer.right_mm = glm::make_vec3(v->right_mm);
   viewer.front_mm = v->front_mm;
@@ -90,7 +90,7 @@ class PluginSink : public OutputSink {
     traits_ = made;
     return {};
   }
-  std::span<const View> views(const Viewer& viewer) override {
+  std::span<const View> views(const Observer& viewer) override {
     dubsar_sink_viewer given{};
     given.size = sizeof(given);
     std::copy_n(glm::value_ptr(viewer.left_mm), 3, given.left_mm);

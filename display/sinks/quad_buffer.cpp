@@ -23,7 +23,7 @@ class QuadBufferSink : public OutputSink {
     screen_ = screen;
     return {};
   }
-  std::span<const View> views(const Viewer& viewer) override { return views_ = stereo_views(screen_, viewer); }
+  std::span<const View> views(const Observer& viewer) override { return views_ = stereo_views(screen_, viewer); }
 
   Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
     if (std::count(target.eye_buffers.begin(), target.eye_buffers.end(), 0u) != 0)

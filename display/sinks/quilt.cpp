@@ -65,7 +65,7 @@ class QuiltSink : public OutputSink {
     screen_height_mm_ = screen.height_mm;
     return {};
   }
-  std::span<const View> views(const Viewer& viewer) override {
+  std::span<const View> views(const Observer& viewer) override {
     const double half_h = (setup_.height_mm > 0 ? setup_.height_mm : screen_height_mm_) / 2;
     const double half_w = half_h * setup_.aspect;
     const double distance =

@@ -112,10 +112,10 @@ Result<DisplayPicture> render_display(const TriMesh& mesh, const SinkSpec& displ
   const glm::dvec3 extents = picture_extents(box, options.direction);
   double magnification = options.magnification;
   if (magnification == 0) {
-    const glm::dvec2 window = window_mm(stage.sink->views(Viewer())[0]) * (1.0 - 2.0 * options.margin);
+    const glm::dvec2 window = window_mm(stage.sink->views(Observer())[0]) * (1.0 - 2.0 * options.margin);
     magnification = std::min(window.x / std::max(extents.x, 1e-9), window.y / std::max(extents.y, 1e-9));
   }
-  Viewer viewer = options.viewer;
+  Observer viewer = options.viewer;
   const double half_depth = (0.5 + kDepthMargin) * magnification * extents.z + 1.0;
   viewer.front_mm = options.place_mm.z + half_depth;
   viewer.back_mm = options.place_mm.z - half_depth;

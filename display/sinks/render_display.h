@@ -23,7 +23,7 @@ namespace dubsar {
 /// says.
 struct DisplayOptions {
   Screen screen{};
-  Viewer viewer{};  ///< front_mm and back_mm are set from the object
+  Observer viewer{};  ///< front_mm and back_mm are set from the object
   ViewDirection direction{};
   glm::dvec3 place_mm{0.0, 0.0, 0.0};
   double magnification = 0.0;  ///< 1: life size; 0: as large as fits into the window

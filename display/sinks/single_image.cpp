@@ -20,7 +20,7 @@ class ImageSink : public OutputSink {
     return traits;
   }
   Result<void> configure(const Screen& screen) override { return mono_->configure(screen); }
-  std::span<const View> views(const Viewer& viewer) override { return mono_->views(viewer); }
+  std::span<const View> views(const Observer& viewer) override { return mono_->views(viewer); }
 
   Result<void> compose(const ViewArray& views, const Surface& target, Field field) override {
     DUBSAR_TRY(mono_->compose(views, target, field));

@@ -4,7 +4,7 @@
 
 namespace dubsar {
 
-std::array<View, 2> stereo_views(const Screen& screen, const Viewer& viewer) {
+std::array<View, 2> stereo_views(const Screen& screen, const Observer& viewer) {
   const WindowRect window = screen.window_rect();
   const CameraPair cameras = camera_pair(viewer);
   std::array<View, 2> views{viewer_view(window, viewer, cameras.left_mm),

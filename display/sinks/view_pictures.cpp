@@ -141,7 +141,7 @@ Result<ViewPictures> split_picture(const Image& picture, const PictureLayout& la
   return out;
 }
 
-int picture_for_layer(const ViewPictures& pictures, const SinkTraits& traits, int layer, const Viewer& viewer) {
+int picture_for_layer(const ViewPictures& pictures, const SinkTraits& traits, int layer, const Observer& viewer) {
   const int count = static_cast<int>(pictures.views.size());
   if (count == 1) return 0;
   if (traits.views == 1) return count == 2 ? 0 : count / 2;
@@ -193,7 +193,7 @@ Image layer_of_picture(const Image& picture, double picture_aspect, const SinkTr
   return out;
 }
 
-Result<void> write_pictures(const ViewPictures& pictures, const SinkTraits& traits, const Viewer& viewer,
+Result<void> write_pictures(const ViewPictures& pictures, const SinkTraits& traits, const Observer& viewer,
                             ViewArray& layers) {
   DUBSAR_CHECK(!pictures.views.empty());
   for (int layer = 0; layer < traits.views; ++layer) {

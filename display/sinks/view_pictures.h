@@ -48,14 +48,14 @@ Result<ViewPictures> split_picture(const Image& picture, const PictureLayout& la
 /// Which picture a display's layer gets. A display of two views gets those of many that the viewer's eyes would see
 /// from where they are; one of many gets a pair's left picture in the layers left of the middle; one of as many gets
 /// each its own. Exchanged where viewer.swap_eyes says so and the display has two views.
-int picture_for_layer(const ViewPictures& pictures, const SinkTraits& traits, int layer, const Viewer& viewer);
+int picture_for_layer(const ViewPictures& pictures, const SinkTraits& traits, int layer, const Observer& viewer);
 
 /// The layer itself, traits.view pixels, RGBA: the picture as large as fits what is seen of it (black beside it; shapes
 /// that differ by less than 1 % fill), moved and zoomed by traits.focus, resampled in linear light.
 Image layer_of_picture(const Image& picture, double picture_aspect, const SinkTraits& traits, int layer);
 
 /// Fills all layers of a display. GL thread.
-Result<void> write_pictures(const ViewPictures& pictures, const SinkTraits& traits, const Viewer& viewer,
+Result<void> write_pictures(const ViewPictures& pictures, const SinkTraits& traits, const Observer& viewer,
                             ViewArray& layers);
 
 }  // namespace dubsar

@@ -322,17 +322,17 @@ void NaiveVisitor::judge(const SeenScreen& seen) {
   trial_.idea = kIdeas;
 }
 
-void NaiveVisitor::study(Lesson lesson) {
+void NaiveVisitor::study(SeenLesson lesson) {
   const double wit = kind_ == NaiveKind::kImitates ? 0.85 : kind_ == NaiveKind::kWaves ? 0.5 : 0.4;
-  if (lesson == Lesson::kNone || random_.uniform(0.0, 1.0) > wit) return;
-  if (lesson == Lesson::kShowHand) {  // the picture's hand reaches out for the panel
+  if (lesson == SeenLesson::kNone || random_.uniform(0.0, 1.0) > wit) return;
+  if (lesson == SeenLesson::kShowHand) {  // the picture's hand reaches out for the panel
     manner_.stretch = std::min(0.85, manner_.stretch + 0.15);
     manner_.wants = std::min(0.9, manner_.wants + 0.15);
   }
-  if (lesson == Lesson::kGrabAndMove) belief_[kGrab] = std::max(belief_[kGrab], 0.5) + kUnderstood;
-  if (lesson == Lesson::kSwipe) belief_[kSweep] = std::max(belief_[kSweep], 0.5) + kUnderstood;
-  if (lesson == Lesson::kRestOnSign) belief_[kTouch] += kUnderstood;
-  if (lesson == Lesson::kNearer) belief_[random_.uniform(0.0, 1.0) < 0.5 ? kTwoHands : kPull] += kUnderstood;
+  if (lesson == SeenLesson::kGrabAndMove) belief_[kGrab] = std::max(belief_[kGrab], 0.5) + kUnderstood;
+  if (lesson == SeenLesson::kSwipe) belief_[kSweep] = std::max(belief_[kSweep], 0.5) + kUnderstood;
+  if (lesson == SeenLesson::kRestOnSign) belief_[kTouch] += kUnderstood;
+  if (lesson == SeenLesson::kNearer) belief_[random_.uniform(0.0, 1.0) < 0.5 ? kTwoHands : kPull] += kUnderstood;
 }
 
 void NaiveVisitor::act(double t_s, const SeenScreen& seen) {

@@ -40,7 +40,7 @@ class NaiveVisitor {
   enum Idea { kWave, kSweep, kPush, kPoke, kGrab, kPinch, kTwoHands, kPull, kTouch, kIdeas };
   void begin(Intention intention, double t_s, const SeenScreen& seen);
   void judge(const SeenScreen& seen);
-  void study(Lesson lesson);
+  void study(SeenLesson lesson);
   Idea choose(const SeenScreen& seen);
   void act(double t_s, const SeenScreen& seen);
   void attempt(Idea idea, double t_s);

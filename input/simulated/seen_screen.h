@@ -10,12 +10,12 @@
 namespace dubsar {
 
 /// A picture beside the object that shows a gesture.
-enum class Lesson : std::uint8_t { kNone, kShowHand, kGrabAndMove, kSwipe, kNearer, kRestOnSign };
+enum class SeenLesson : std::uint8_t { kNone, kShowHand, kGrabAndMove, kSwipe, kNearer, kRestOnSign };
 
 /// Places are heights of the panel from its middle, to the right and up.
 struct SeenScreen {
   ViewState view{};
-  Lesson lesson = Lesson::kNone;
+  SeenLesson lesson = SeenLesson::kNone;
   bool opened = false;                          ///< what was inside is to be seen
   std::optional<glm::dvec2> my_mark{};          ///< where a mark shows one's own hand
   std::optional<glm::dvec2> sign{};             ///< something that looks as if it could be touched

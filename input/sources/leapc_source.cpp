@@ -47,7 +47,7 @@ class LeapcSource final : public InputSource {
   std::unique_ptr<leapc::Connection> connection_;
   const Pose screen_from_device_;
   const bool simulated_time_;
-  leapc::Frame frame_;
+  leapc::ServiceFrame frame_;
   bool silent_ = false;
   std::optional<TimestampNs> heard_;  // when something fresh was polled, or the first poll
 };

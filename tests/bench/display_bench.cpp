@@ -53,7 +53,7 @@ std::vector<View> views_of_panel(int count) {
                       .window_h = kHeight};
   std::vector<View> views;
   for (const glm::dvec3& eye : cone_eyes(count, kConeRad, kDistanceMm))
-    views.push_back(viewer_view(screen.window_rect(), Viewer(), eye));
+    views.push_back(viewer_view(screen.window_rect(), Observer(), eye));
   return views;
 }
 

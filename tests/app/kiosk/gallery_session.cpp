@@ -7,22 +7,22 @@ namespace {
 
 constexpr glm::dvec2 kWindow_mm{600.0, 340.0};
 
-dubsar::Lesson as_seen(const std::optional<Lesson>& lesson) {
-  if (!lesson) return dubsar::Lesson::kNone;
+SeenLesson as_seen(const std::optional<Lesson>& lesson) {
+  if (!lesson) return SeenLesson::kNone;
   switch (*lesson) {
     case Lesson::kShowHand:
-      return dubsar::Lesson::kShowHand;
+      return SeenLesson::kShowHand;
     case Lesson::kGrab:
     case Lesson::kTurn:
-      return dubsar::Lesson::kGrabAndMove;
+      return SeenLesson::kGrabAndMove;
     case Lesson::kRest:
-      return dubsar::Lesson::kRestOnSign;
+      return SeenLesson::kRestOnSign;
     case Lesson::kTwoHands:
-      return dubsar::Lesson::kNearer;
+      return SeenLesson::kNearer;
     case Lesson::kSwipe:
       break;
   }
-  return dubsar::Lesson::kSwipe;
+  return SeenLesson::kSwipe;
 }
 
 }  // namespace

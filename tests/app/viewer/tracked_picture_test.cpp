@@ -37,7 +37,7 @@ TEST(TrackedPicture, AHead120MillimetresToTheRightAsOpentrackSendsItSeesThePictu
   ASSERT_EQ(frame.heads.size(), 1U);
 
   const Screen screen;
-  Viewer viewer;
+  Observer viewer;
   viewer.left_mm = 1e3 * *frame.heads[0].left_eye_m;
   viewer.right_mm = 1e3 * *frame.heads[0].right_eye_m;
   const CameraPair cameras = camera_pair(viewer);

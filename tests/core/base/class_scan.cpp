@@ -130,20 +130,26 @@ class Scanner {
 
   // Behind an opening brace whose statement began with `head`; returns what of the statement goes on behind it.
   std::string braces(const std::string& outer, int* members, const std::string& head) {
-    static const std::regex kScope(R"(^((inline\s+)?namespace\b|extern\s+0)[^(]*$)");
+    static const std::regex kScope(R"(^(?:(?:inline\s+)?namespace\b\s*([\w:]*)|extern\s+0)[^(]*$)");
+    static const std::regex kEnum(R"(^enum\b(?:\s+class\b|\s+struct\b)?\s*(\w+)[^=(]*$)");
     static const std::regex kClass(
         R"(^(?:template\s*<[\s\S]*>\s*(?:requires[\s\S]*)?)?(?:typedef\s+)?(?:class|struct|union)\b\s*([\w:]*)[^=(]*$)");
     std::smatch match;
-    if (std::regex_search(head, kScope)) {
+    if (std::regex_search(head, match, kScope)) {
+      const std::string around = namespaces_, own = match[1].str().empty() ? "(unnamed)" : match[1].str();
+      namespaces_ = around.empty() ? own : around + "::" + own;
       scope(outer, nullptr);
+      namespaces_ = around;
       return "";
     }
+    if (std::regex_search(head, match, kEnum))
+      classes_.push_back({outer.empty() ? match[1].str() : outer + "::" + match[1].str(), 0, namespaces_, true});
     if (std::regex_search(head, match, kClass)) {
       const std::string own = match[1].str().empty() ? "(unnamed)" : match[1].str();
       const std::string name = outer.empty() ? own : outer + "::" + own;
       int count = 0;
       scope(name, &count);
-      classes_.push_back({name, count});
+      classes_.push_back({name, count, namespaces_});
       const bool more =
           code_.find_first_not_of(" \n", at_) < code_.size() && code_[code_.find_first_not_of(" \n", at_)] != ';';
       if (own == "(unnamed)" && members != nullptr) *members += more ? std::max(0, count - 1) : count;
@@ -168,6 +174,7 @@ class Scanner {
 
   std::string code_;
   std::size_t at_ = 0;
+  std::string namespaces_;  // around at_
   std::vector<ScannedClass> classes_;
 };
 

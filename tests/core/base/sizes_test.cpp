@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
 #include <string>
 
 #include "tests/core/base/class_scan.h"
@@ -63,10 +64,50 @@ TEST(ClassScan, NestedClassesCountForThemselvesUnlessTheyHaveNoName) {
   EXPECT_EQ(members_of(source), 1 + 3 + 2);
 }
 
+TEST(ClassScan, SaysInWhichNamespaceATypeIs) {
+  const auto found = scan_classes(
+      "namespace a::b {\nenum class E : unsigned char { x, y };\nnamespace { struct S { enum F { z }; int i; }; }\n} "
+      "// namespace a::b\nextern \"C\" { struct C { int j; }; }");
+  std::map<std::string, std::string> scopes;
+  for (const ScannedClass& type : found) scopes[type.name] = type.scope + (type.enumeration ? " enum" : "");
+  const std::map<std::string, std::string> expected{
+      {"E", "a::b enum"}, {"S::F", "a::b::(unnamed) enum"}, {"S", "a::b::(unnamed)"}, {"C", "(unnamed)"}};
+  EXPECT_EQ(scopes, expected);
+}
+
+// Of two types of one name in namespaces of which one lies in the other, one hides the other; in the same namespace
+// they are one type to the linker. Types of a source of its own and those within classes are seen by nobody else.
+TEST(Names, NoTypeOfAHeaderHidesAnotherOne) {
+  std::map<std::string, std::map<std::string, std::set<std::string>>> places;  // by name: scopes and their files
+  for (const auto& [file, text] : sources({"core", "devices", "input", "display", "app"}))
+    for (const ScannedClass& found : scan_classes(text))
+      if (file.ends_with(".h") && found.name.find("::") == std::string::npos && found.name != "(unnamed)")
+        places[found.name][found.scope].insert(file);
+  EXPECT_GT(places.size(), 400U) << "the scan does not see the house";
+  for (const auto& [name, scopes] : places)
+    for (const auto& [scope, files] : scopes) {
+      EXPECT_EQ(files.size(), 1U) << name << " is defined in " << ::testing::PrintToString(files);
+      for (const auto& [inner, others] : scopes)
+        EXPECT_FALSE(inner.starts_with(scope + "::"))
+            << name << " of " << *others.begin() << " hides that of " << *files.begin();
+    }
+}
+
+TEST(Names, NoTwoFilesHaveOneName) {
+  std::map<std::string, std::string> stems;  // a header and its source are one
+  for (const auto& [file, text] : sources({"core", "devices", "input", "display", "app", "tests"})) {
+    const std::string whole = fs::path(file).replace_extension().string(), stem = fs::path(whole).filename().string();
+    const auto [before, fresh] = stems.emplace(stem, whole);
+    EXPECT_TRUE(fresh || before->second == whole) << file << " has the name of " << before->second;
+  }
+  EXPECT_GT(stems.size(), 500U);
+}
+
 TEST(Sizes, NoClassHasMoreThanFifteenDataMembers) {
   int classes = 0, members = 0;
   for (const auto& [file, text] : sources({"core", "devices", "input", "display", "app", "examples", "tests"}))
     for (const ScannedClass& found : scan_classes(text)) {
+      if (found.enumeration) continue;
       ++classes;
       members += found.members;
       EXPECT_LE(found.members, kMostMembers)

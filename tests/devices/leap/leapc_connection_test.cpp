@@ -56,7 +56,7 @@ TEST_F(LeapcConnection, DeliversTheNewestFrameWithItsHandsAndItsTimeOnOurClock) 
   const FakeHand hands[2] = {flat_fake_hand(3, true, 10, 200, 0), flat_fake_hand(4, false, -50, 220, 5, 1.0F)};
   const TimestampNs now = clock.now();
   fake_leapc_send_frame(900, now / 1000 + 3'600'000'000 - 20'000, hands, 2);  // measured 20 ms ago
-  Frame frame;
+  ServiceFrame frame;
   ASSERT_TRUE(eventually([&] { return connection->poll(frame); }));
   EXPECT_FALSE(connection->poll(frame));
   EXPECT_EQ(frame.number, 900);
@@ -185,7 +185,7 @@ TEST_F(LeapcConnection, HandsOfAnotherMountingAreNotDelivered) {
   fake_leapc_send_frame(1, 0, &hand, 1);
   fake_leapc_switch_mode(0);
   ASSERT_TRUE(reaches(*connection, State::kTracking));
-  Frame frame;
+  ServiceFrame frame;
   EXPECT_FALSE(connection->poll(frame));
 }
 
@@ -202,7 +202,7 @@ TEST_F(LeapcConnection, ImpossibleMessagesAreCountedAndTheRestGoesOn) {
   FakeHand hands[2] = {flat_fake_hand(1, true, 0, 200, 0), flat_fake_hand(2, true, 0, 200, 0)};
   hands[0].arm.next_joint.x = NAN;
   fake_leapc_send_frame(2, 0, hands, 2);
-  Frame frame;
+  ServiceFrame frame;
   ASSERT_TRUE(eventually([&] { return connection->poll(frame); }));
   ASSERT_EQ(frame.hands.size(), 1U);
   EXPECT_EQ(frame.hands[0].id, 2U);

@@ -159,7 +159,7 @@ class ScriptedConnection final : public leapc::Connection {
  public:
   Result<void> start() override { return {}; }
   void stop() noexcept override {}
-  bool poll(leapc::Frame& newest) override {
+  bool poll(leapc::ServiceFrame& newest) override {
     if (!fresh) return false;
     newest = frame;
     fresh = false;
@@ -169,7 +169,7 @@ class ScriptedConnection final : public leapc::Connection {
   std::string reason() const override { return {}; }
   leapc::Counters counters() const override { return {}; }
 
-  leapc::Frame frame;
+  leapc::ServiceFrame frame;
   leapc::State now = leapc::State::kTracking;
   bool fresh = false;
 };

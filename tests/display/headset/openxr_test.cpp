@@ -53,14 +53,14 @@ class OpenXr : public testing::WornTest {
     ASSERT_TRUE(sink) << sink.error().message;
     sink_ = std::move(*sink);
     ASSERT_TRUE(sink_->configure({.window_w = 320, .window_h = 200}));
-    sink_->views(Viewer());  // the nominal cameras
-    TriMesh card;            // 30 mm square, upright, its middle at the origin
+    sink_->views(Observer());  // the nominal cameras
+    TriMesh card;              // 30 mm square, upright, its middle at the origin
     testing::add_rectangle(card, {-15, -15, 0}, {30, 0, 0}, {0, 30, 0}, 0);
     scene_ = std::make_unique<Scene>(card);
   }
   /// One picture: cameras, rendering, compose. True when somebody was there to see it.
   bool picture() {
-    const std::span<const View> views = sink_->views(Viewer());
+    const std::span<const View> views = sink_->views(Observer());
     EXPECT_TRUE(scene_->renderer.render(scene_->scene, views, 1, scene_->array));
     const auto done = sink_->compose(scene_->array, scene_->mirror.surface());
     EXPECT_TRUE(done) << done.error().message;

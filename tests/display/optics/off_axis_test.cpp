@@ -98,8 +98,8 @@ TEST(OffAxis, EyesInOrBehindThePanelAreMovedBeforeIt) {
   }
 }
 
-TEST(Viewer, FactorsScaleTheEyesAndTheirWay) {
-  Viewer viewer;
+TEST(Observer, FactorsScaleTheEyesAndTheirWay) {
+  Observer viewer;
   viewer.left_mm = {68.5, 20, 500};
   viewer.right_mm = {131.5, 20, 500};
   CameraPair pair = camera_pair(viewer);
@@ -114,8 +114,8 @@ TEST(Viewer, FactorsScaleTheEyesAndTheirWay) {
   EXPECT_EQ(pair.right_mm.x - pair.left_mm.x, 31.5);
 }
 
-TEST(Viewer, HeadToTheRightMovesWhatIsBehindThePanelToTheRight) {
-  Viewer viewer;
+TEST(Observer, HeadToTheRightMovesWhatIsBehindThePanelToTheRight) {
+  Observer viewer;
   const glm::dvec3 behind(0, 0, -100), before(0, 0, 100);
   const auto seen = [&](double head_x, const glm::dvec3& p) {
     return ndc(viewer_view(kScreen.window_rect(), viewer, {head_x, 0, 600}), p).x;
@@ -125,8 +125,8 @@ TEST(Viewer, HeadToTheRightMovesWhatIsBehindThePanelToTheRight) {
   EXPECT_EQ(seen(0, behind), 0);
 }
 
-TEST(Viewer, ZeroParallaxPlaneAndDepthFactorPlaceTheScene) {
-  Viewer viewer;
+TEST(Observer, ZeroParallaxPlaneAndDepthFactorPlaceTheScene) {
+  Observer viewer;
   viewer.zero_parallax_mm = -40;
   const WindowRect window = kScreen.window_rect();
   const auto disparity = [&](double z) {
@@ -140,8 +140,8 @@ TEST(Viewer, ZeroParallaxPlaneAndDepthFactorPlaceTheScene) {
   EXPECT_NEAR(disparity(-80), 0, 1e-12);
 }
 
-TEST(Viewer, ClipPlanesHoldTheScene) {
-  Viewer viewer;
+TEST(Observer, ClipPlanesHoldTheScene) {
+  Observer viewer;
   viewer.front_mm = 120;
   viewer.back_mm = -300;
   viewer.zero_parallax_mm = 10;

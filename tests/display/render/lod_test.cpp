@@ -126,7 +126,7 @@ TEST(MultiView, KeyViewsGoEvenlyFromTheFirstToTheLast) {
 TEST(MultiView, PixelsHaveTheSizeThatTheWindowGivesThem) {
   const Screen screen{
       .width_mm = 200, .height_mm = 100, .width_px = 400, .height_px = 200, .window_w = 400, .window_h = 200};
-  View view = viewer_view(screen.window_rect(), Viewer(), {80, 30, 500});
+  View view = viewer_view(screen.window_rect(), Observer(), {80, 30, 500});
   EXPECT_NEAR(mm_per_pixel_at(view, {0, 0, 0}, 400), 0.5, 1e-9) << "in the panel's plane";
   EXPECT_NEAR(mm_per_pixel_at(view, {0, 0, -500}, 400), 1.0, 1e-9) << "twice as far away";
   glm::dmat4 magnified(1.0);

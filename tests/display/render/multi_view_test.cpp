@@ -30,7 +30,7 @@ class MultiViewGl : public ::testing::Test {
         .width_mm = 90, .height_mm = 60, .width_px = 90, .height_px = 60, .window_w = 90, .window_h = 60};
     std::vector<View> out;
     for (const glm::dvec3& eye : cone_eyes(count, 40 * std::numbers::pi / 180, 300))
-      out.push_back(viewer_view(screen.window_rect(), Viewer(), eye));
+      out.push_back(viewer_view(screen.window_rect(), Observer(), eye));
     return out;
   }
   std::unique_ptr<EglContext> context_;
@@ -140,7 +140,7 @@ TEST_F(MultiViewGl, AMillionTrianglesFrom48PlacesAreDrawnAtLeastFiveTimesFasterT
                       .window_h = kHeight};
   std::vector<View> wanted;
   for (const glm::dvec3& eye : cone_eyes(kViews, 40 * std::numbers::pi / 180, 490))
-    wanted.push_back(viewer_view(screen.window_rect(), Viewer(), eye));
+    wanted.push_back(viewer_view(screen.window_rect(), Observer(), eye));
   auto array = ViewArray::create(kWidth, kHeight, kViews).value();
   // CPU time of all threads: the machine may be busy with other things. The first draw compiles shaders.
   const auto seconds = [](const auto& draw) {

@@ -41,7 +41,7 @@ TEST(PagePass, EachEyeSeesThePageWhereItStands) {
   auto target = ViewArray::create(kPx, kPx, 2).value();
   // A window of 200 mm before eyes 600 mm away; the page stands as far behind it, 80 mm wide and 40 mm high.
   const WindowRect window{{-100, -100, 0}, {100, -100, 0}, {-100, 100, 0}};
-  Viewer viewer;
+  Observer viewer;
   viewer.left_mm = {-60, 0, 600};
   viewer.right_mm = {60, 0, 600};
   viewer.back_mm = -2000;
@@ -68,7 +68,7 @@ TEST(PagePass, WhatIsHalfTransparentShinesThrough) {
   auto page = ViewArray::create(8, 8, 1).value();
   auto target = ViewArray::create(kPx, kPx, 1).value();
   const WindowRect window{{-100, -100, 0}, {100, -100, 0}, {-100, 100, 0}};
-  Viewer viewer;
+  Observer viewer;
   const std::array<View, 1> views{viewer_view(window, viewer, {0, 0, 600})};
   const PagePlace whole{{-100, -100, 0}, {200, 0, 0}, {0, 200, 0}};
   ASSERT_TRUE(target.write_layer(0, plain(kPx, {200, 100, 0, 255})));

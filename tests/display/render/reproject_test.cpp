@@ -28,7 +28,7 @@ constexpr Screen kScreen{.width_mm = 90,
                          .window_w = kWidth,
                          .window_h = kHeight};
 
-View seen_from(const glm::dvec3& eye) { return viewer_view(kScreen.window_rect(), Viewer(), eye); }
+View seen_from(const glm::dvec3& eye) { return viewer_view(kScreen.window_rect(), Observer(), eye); }
 
 std::vector<View> row_of_views(int count, double cone_deg = 40) {
   std::vector<View> out;

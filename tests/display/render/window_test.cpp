@@ -31,7 +31,7 @@ void compose(OutputSink& sink, const Surface& target) {
   const SinkTraits traits = sink.traits();
   auto array = ViewArray::create(traits.view.width, traits.view.height, traits.views);
   ASSERT_TRUE(array) << array.error().message;
-  static_cast<void>(sink.views(Viewer()));
+  static_cast<void>(sink.views(Observer()));
   for (int i = 0; i < traits.views; ++i)
     ASSERT_TRUE(array->write_layer(i, numbered_view(traits.view.width, traits.view.height, i, traits.views)));
   const auto done = sink.compose(*array, target);

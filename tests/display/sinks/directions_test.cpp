@@ -96,7 +96,7 @@ class Directions : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  void open(const std::string& spec, const Viewer& viewer = {}) {
+  void open(const std::string& spec, const Observer& viewer = {}) {
     auto made = SinkCatalog(load_panels(folder_)).make(spec);
     ASSERT_TRUE(made) << made.error().message;
     sink_ = std::move(*made);
@@ -248,7 +248,7 @@ TEST_F(Directions, EveryViewArrivesAtTheEyeItIsFor) {
          for (const char* panel : {"small-sheet", "small-glass", "small-gen3"}) lenses(panel, "nearest");
          lenses("small-glass", "linear");
          ramp_ = false;
-         Viewer viewer;
+         Observer viewer;
          viewer.left_mm = {-11.5, 20, 590};
          viewer.right_mm = {51.5, 20, 590};
          open("lenticular:small-tracked", viewer);

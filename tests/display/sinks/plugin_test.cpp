@@ -51,7 +51,7 @@ TEST(Plugin, ItsViewIsThatOfTheMirroredViewer) {
   const auto sink = plugin->create("").value(), mono = SinkCatalog().make("mono").value();
   const Screen screen = small_screen().screen;
   ASSERT_TRUE(sink->configure(screen) && mono->configure(screen));
-  Viewer viewer;
+  Observer viewer;
   viewer.left_mm = {40, 20, 500};
   viewer.right_mm = {100, 20, 520};
   const View made = sink->views(viewer)[0];

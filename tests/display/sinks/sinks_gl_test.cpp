@@ -134,7 +134,7 @@ TEST_F(SinksGl, ExchangedEyesAreTheOtherViewsPicture) {
     for (const bool exchanged : {false, true}) {
       auto sink = SinkCatalog(panels).make(std::string(spec) + (exchanged ? ",right_first" : "")).value();
       ASSERT_TRUE(sink->configure({.window_w = 120, .window_h = 40}));
-      sink->views(Viewer());
+      sink->views(Observer());
       state_ = 7;
       auto views = noise(sink->traits());
       if (exchanged) std::swap(views[0], views[1]);
@@ -245,7 +245,7 @@ TEST_F(SinksGl, TrackedWeaveEqualsTheReference) {
   const SinkTraits traits = sink->traits();
   Image white(traits.view.width, traits.view.height, 4), black = white;
   std::fill(white.pixels.begin(), white.pixels.end(), std::uint8_t{255});
-  Viewer viewer;
+  Observer viewer;
   viewer.left_mm = {88.5, 60, 500};
   viewer.right_mm = {151.5, 55, 510};
   sink->views(viewer);
@@ -288,7 +288,7 @@ TEST_F(SinksGl, AMeshThroughARowInterlacedPanelShowsEachEyeItsView) {
   const Screen screen{
       .width_mm = 60, .height_mm = 40, .width_px = 120, .height_px = 80, .window_w = 120, .window_h = 80};
   ASSERT_TRUE(sink->configure(screen));
-  Viewer viewer;
+  Observer viewer;
   viewer.front_mm = 10;
   viewer.back_mm = -10;
   auto array = ViewArray::create(120, 80, 2).value();

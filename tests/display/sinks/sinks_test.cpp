@@ -39,7 +39,7 @@ TEST(SinkCatalogTest, EverySinkIsMadeByItsNameAndAsksForWhatItSays) {
     ASSERT_TRUE((*sink)->configure(screen));
     const SinkTraits traits = (*sink)->traits();
     EXPECT_EQ(traits.name, backend.name);
-    EXPECT_EQ((*sink)->views(Viewer()).size(), static_cast<std::size_t>(traits.views)) << spec;
+    EXPECT_EQ((*sink)->views(Observer()).size(), static_cast<std::size_t>(traits.views)) << spec;
     EXPECT_GE(traits.view.width, 1);
     EXPECT_GE(traits.output.height, traits.view.height);
     screen.window_w = 0;
@@ -118,7 +118,7 @@ TEST(Packed, HalfViewsLookThroughTheWholeWindow) {
   ASSERT_TRUE(half && full);
   ASSERT_TRUE((*half)->configure({}) && (*full)->configure({}));
   for (int eye = 0; eye < 2; ++eye)
-    EXPECT_EQ((*half)->views(Viewer())[eye].clip_from_world(), (*full)->views(Viewer())[eye].clip_from_world());
+    EXPECT_EQ((*half)->views(Observer())[eye].clip_from_world(), (*full)->views(Observer())[eye].clip_from_world());
 }
 
 TEST(Stereo, TheFirstViewIsTheLeftEyesInEveryTwoViewSink) {
@@ -126,7 +126,7 @@ TEST(Stereo, TheFirstViewIsTheLeftEyesInEveryTwoViewSink) {
     auto sink = SinkCatalog().make(spec);
     ASSERT_TRUE(sink);
     ASSERT_TRUE((*sink)->configure({}));
-    const auto views = (*sink)->views(Viewer());
+    const auto views = (*sink)->views(Observer());
     EXPECT_EQ(views[0].view_from_world[3][0], 31.5) << spec;
     EXPECT_EQ(views[1].view_from_world[3][0], -31.5) << spec;
   }
@@ -267,7 +267,7 @@ TEST(Quilt, SinkTakesItsLayoutFromThePanelProfile) {
   EXPECT_EQ(traits.view, (PixelSize{420, 560}));
   EXPECT_EQ(traits.output, (PixelSize{3360, 3360}));
   EXPECT_EQ(traits.file_suffix, "_qs8x6a0.75");
-  const auto views = (*sink)->views(Viewer());
+  const auto views = (*sink)->views(Observer());
   for (std::size_t i = 0; i < views.size(); ++i) {
     const auto eye_x = [&](std::size_t view) { return -views[view].view_from_world[3][0]; };
     EXPECT_NEAR(eye_x(i), -eye_x(views.size() - 1 - i), 1e-9) << "cameras are not symmetric";
@@ -280,7 +280,7 @@ TEST(Quilt, SizesCanBeGiven) {
   ASSERT_TRUE(sink) << sink.error().message;
   EXPECT_EQ((*sink)->traits().view, (PixelSize{100, 100}));
   EXPECT_EQ((*sink)->traits().file_suffix, "_qs4x2a1.5");
-  const View first = (*sink)->views(Viewer())[0];
+  const View first = (*sink)->views(Observer())[0];
   EXPECT_NEAR(first.clip_from_view[1][1] / first.clip_from_view[0][0], 1.5, 1e-9) << "panel aspect, not tile aspect";
 }
 

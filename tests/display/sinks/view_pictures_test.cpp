@@ -187,7 +187,7 @@ TEST(ShownPictures, OfAPairALensSheetSendsTheLeftOneToTheLeft) {
 TEST(ShownPictures, OfAQuiltTwoEyesGetTheViewsTheyWouldSeeFromThere) {
   ViewPictures quilt = ramp(40);
   quilt.cone_deg = 40;
-  Viewer viewer;
+  Observer viewer;
   const SinkTraits stereo{.name = "made", .views = 2, .view = {8, 8}, .output = {16, 8}};
   for (const double x : {-150.0, 0.0, 80.0}) {
     viewer.left_mm = {x - 31.5, 0, 600};
