@@ -12,6 +12,7 @@
 #include "app/cli/verb.h"
 #include "app/publish/video.h"
 #include "core/base/budget.h"
+#include "core/base/units.h"
 #include "core/volume/import_hdf5.h"
 #include "devices/camera/capture.h"
 #include "devices/device_list.h"
@@ -34,7 +35,7 @@ Finding check_gl() {
 }
 
 Finding check_memory_size() {
-  const double gib = static_cast<double>(available_memory_bytes()) / (1024.0 * 1024.0 * 1024.0);
+  const double gib = gib_of(available_memory_bytes());
   const std::string detail = fmt::format("{:.1f} GiB available", gib);
   if (gib < 4.0) return {"memory", "note", detail, "large scans need more: use --crop or --stride"};
   return {"memory", "ok", detail, ""};
@@ -44,7 +45,7 @@ Finding check_disk() {
   std::error_code error;
   const auto space = std::filesystem::space(".", error);
   if (error) return {"disk", "note", "free space unknown: " + error.message(), ""};
-  return {"disk", "ok", fmt::format("{:.1f} GiB free here", static_cast<double>(space.available) / 1073741824.0), ""};
+  return {"disk", "ok", fmt::format("{:.1f} GiB free here", gib_of(space.available)), ""};
 }
 
 std::vector<Finding> check_hdf5_filters() {

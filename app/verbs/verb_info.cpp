@@ -9,6 +9,7 @@
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
 #include "app/publish/surface_facts.h"
+#include "core/base/units.h"
 #include "core/exa/exa_file.h"
 #include "core/mesh_io/mesh_io.h"
 #include "core/pipeline/forecast.h"
@@ -31,20 +32,16 @@ std::string length_text(const VoxelSize& voxel) {
   return fmt::format("{:g} x {:g} x {:g} mm ({})", voxel.mm.x, voxel.mm.y, voxel.mm.z, voxel.provenance);
 }
 
-constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
-
 /// What `process` will take, in one line; why not, where that cannot be said.
 std::string forecast_text(const Result<Forecast>& forecast) {
   if (!forecast) return fmt::format("  process      cannot be foretold: {}\n", forecast.error().message);
   const Forecast& f = *forecast;
   const double minutes = f.wall_s / 60.0;
-  std::string text =
-      fmt::format("  process      about {}, {:.1f} GiB of memory, {:.1f} MiB for the surface{}\n",
-                  minutes < 2.0 ? fmt::format("{:.0f} s", f.wall_s) : fmt::format("{:.0f} minutes", minutes),
-                  static_cast<double>(f.memory_bytes) / kGib, static_cast<double>(f.product_bytes) / 1048576.0,
-                  f.scratch_bytes == 0
-                      ? std::string()
-                      : fmt::format(" and {:.1f} GiB of disk meanwhile", static_cast<double>(f.scratch_bytes) / kGib));
+  std::string text = fmt::format(
+      "  process      about {}, {:.1f} GiB of memory, {:.1f} MiB for the surface{}\n",
+      minutes < 2.0 ? fmt::format("{:.0f} s", f.wall_s) : fmt::format("{:.0f} minutes", minutes),
+      gib_of(f.memory_bytes), mib_of(f.product_bytes),
+      f.scratch_bytes == 0 ? std::string() : fmt::format(" and {:.1f} GiB of disk meanwhile", gib_of(f.scratch_bytes)));
   return text + fmt::format("               {} resolution, about {:.1f} million vertices, nobody else at work\n",
                             f.detail.resample() ? "half the scan's" : "the scan's",
                             static_cast<double>(f.vertices) * 1e-6);
@@ -87,9 +84,8 @@ Result<VerbResult> volume_info(const InfoRequest& options, Progress& progress) {
       fmt::format("  type         {}, {} endian, {}\n", info.stored.dtype, info.stored.byte_order, info.stored.layout);
   for (const std::string& filter : info.stored.filters) text += fmt::format("  filter       {}\n", filter);
   text += fmt::format("  voxel size   {}\n", length_text(info.voxel));
-  text += fmt::format("  in the file  {:.1f} MiB of {:.1f} MiB\n",
-                      static_cast<double>(info.stored.storage_bytes) / 1048576.0,
-                      static_cast<double>(info.stored.logical_bytes) / 1048576.0);
+  text += fmt::format("  in the file  {:.1f} MiB of {:.1f} MiB\n", mib_of(info.stored.storage_bytes),
+                      mib_of(info.stored.logical_bytes));
   text += forecast_text(expected);
   for (const VolumeCandidate& other : info.candidates)
     text += fmt::format("  also there   {} ({})\n", other.dataset, other.dtype);

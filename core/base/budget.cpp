@@ -8,10 +8,10 @@
 #include <limits>
 
 #include "core/base/memory_left.h"
+#include "core/base/units.h"
 
 namespace dubsar {
 namespace {
-constexpr double kMiB = 1024.0 * 1024.0;
 __extension__ using Uint128 = unsigned __int128;
 
 std::atomic<std::uint64_t> g_limit{0};  // 0: none
@@ -67,8 +67,8 @@ Result<void> check_count(std::string_view what, std::uint64_t count, std::uint64
 Result<void> check_memory(std::string_view what, std::uint64_t bytes, const Budget& budget) {
   const std::uint64_t limit = budget.limit_bytes();
   if (bytes > limit)
-    return fail(ErrorKind::kTryAgain, "{}: {:.0f} MiB of memory needed, {:.0f} MiB allowed", what,
-                static_cast<double>(bytes) / kMiB, static_cast<double>(limit) / kMiB);
+    return fail(ErrorKind::kTryAgain, "{}: {:.0f} MiB of memory needed, {:.0f} MiB allowed", what, mib_of(bytes),
+                mib_of(limit));
   return {};
 }
 

@@ -19,4 +19,14 @@ Result<double> parse_length_mm(std::string_view text);
 /// less than one byte or more than 2^60.
 Result<std::uint64_t> parse_bytes(std::string_view text);
 
+/// Bytes in the units that sizes are said in.
+template <class Count>
+constexpr double gib_of(Count bytes) noexcept {
+  return static_cast<double>(bytes) / 1073741824.0;
+}
+template <class Count>
+constexpr double mib_of(Count bytes) noexcept {
+  return static_cast<double>(bytes) / 1048576.0;
+}
+
 }  // namespace dubsar

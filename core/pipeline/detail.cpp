@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/units.h"
+
 namespace dubsar {
 namespace {
 
@@ -14,7 +16,6 @@ constexpr std::int64_t kMostVoxels = 450'000'000;
 
 DetailChoice choose_detail(Detail wanted, const Dims& scan, std::uint64_t memory_left) {
   if (wanted != Detail::kAuto) return {wanted, "as set"};
-  const double gib = 1024.0 * 1024.0 * 1024.0;
   const double needed = kBytesPerVoxel * static_cast<double>(scan.count());
   if (scan.count() > kMostVoxels)
     return {Detail::kHalf,
@@ -22,11 +23,11 @@ DetailChoice choose_detail(Detail wanted, const Dims& scan, std::uint64_t memory
                         "from {:.0f} million",
                         static_cast<double>(scan.count()) * 1e-6, static_cast<double>(kMostVoxels) * 1e-6)};
   if (needed > 0.6 * static_cast<double>(memory_left))
-    return {Detail::kHalf, fmt::format("the scan's resolution takes {:.1f} GiB, and {:.1f} GiB are left", needed / gib,
-                                       static_cast<double>(memory_left) / gib)};
+    return {Detail::kHalf, fmt::format("the scan's resolution takes {:.1f} GiB, and {:.1f} GiB are left",
+                                       gib_of(needed), gib_of(memory_left))};
   return {Detail::kScan,
           fmt::format("{:.{}f} million voxels fit in {:.1f} GiB", static_cast<double>(scan.count()) * 1e-6,
-                      scan.count() < 10'000'000 ? 1 : 0, static_cast<double>(memory_left) / gib)};
+                      scan.count() < 10'000'000 ? 1 : 0, gib_of(memory_left))};
 }
 
 }  // namespace dubsar

@@ -4,6 +4,7 @@
 
 #include "core/base/budget.h"
 #include "core/base/log.h"
+#include "core/base/units.h"
 #include "core/extract/extract.h"
 #include "core/filter/resample.h"
 #include "core/filter/sharpen.h"
@@ -30,8 +31,8 @@ Result<CountedGrid> fill_grid(SlabSource& source, const Budget& budget) {
   const Dims dims = source.dims();
   DUBSAR_ASSIGN(GridStore grid, GridStore::create(dims, source.frame(), place_for(dims, budget), budget));
   if (!grid.in_memory())
-    log_info("the grid of {:.1f} GiB goes to the disk, in {}",
-             static_cast<double>(grid.scratch_bytes()) / (1024.0 * 1024.0 * 1024.0), budget.scratch_folder.string());
+    log_info("the grid of {:.1f} GiB goes to the disk, in {}", gib_of(grid.scratch_bytes()),
+             budget.scratch_folder.string());
   const std::int64_t slice_bytes = dims.slice() * std::int64_t{sizeof(float)}, layer = source.preferred_height();
   std::int64_t height = std::clamp<std::int64_t>(kSlabBytes / slice_bytes, 1, dims.z);
   if (static_cast<std::uint64_t>(layer * slice_bytes) <= budget.kept_bytes())

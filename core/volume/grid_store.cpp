@@ -10,11 +10,10 @@
 #include <system_error>
 
 #include "core/base/parallel.h"
+#include "core/base/units.h"
 
 namespace dubsar {
 namespace {
-
-constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
 
 /// Of a slice: eight sums side by side, so that it costs less than reading the slice. Never 0, which is a slice that
 /// was not written.
@@ -62,8 +61,7 @@ Result<GridStore> GridStore::create(const Dims& dims, GridFrame frame, GridPlace
   if (!error && disk.available < static_cast<std::uintmax_t>(bytes_of(dims)))
     return fail(ErrorKind::kTryAgain,
                 "volume: {:.1f} GiB do not fit into memory, and {} has {:.1f} GiB left; name a folder on another disk",
-                static_cast<double>(bytes_of(dims)) / kGib, budget.scratch_folder.string(),
-                static_cast<double>(disk.available) / kGib);
+                gib_of(bytes_of(dims)), budget.scratch_folder.string(), gib_of(disk.available));
   DUBSAR_ASSIGN(grid.scratch_, ScratchFile::create(budget.scratch_folder));
   grid.sums_.assign(static_cast<std::size_t>(dims.z), 0);
   return grid;
