@@ -11,7 +11,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/base/file_suffix.h"
+#include "app/document/file_kinds.h"
 #include "core/base/near_word.h"
 
 namespace dubsar::app {
@@ -126,11 +126,8 @@ std::vector<std::string> names_in(const CLI::App& app, bool option) {
 std::string verb_for_file(const std::string& word) {
   std::error_code ignored;
   if (!std::filesystem::exists(word, ignored)) return {};
-  const std::string suffix = lower_suffix(word);
-  for (const char* const surface : {".exa", ".ply", ".stl", ".obj", ".glb"})
-    if (suffix == surface) return "; to see this surface: dubsar view " + word;
-  for (const char* const scan : {".h5", ".hdf5", ".nxs", ".nrrd", ".nhdr", ".tif", ".tiff"})
-    if (suffix == scan) return "; to make surfaces of this scan: dubsar process " + word;
+  if (names_a_surface(word)) return "; to see this surface: dubsar view " + word;
+  if (names_a_scan(word) || names_a_slice(word)) return "; to make surfaces of this scan: dubsar process " + word;
   return "; to see what is in this file: dubsar info " + word;
 }
 

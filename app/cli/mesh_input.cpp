@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "core/base/file_suffix.h"
 #include "core/base/near_word.h"
 #include "core/exa/exa_file.h"
 #include "core/mesh/vertex_attributes.h"
@@ -84,7 +85,7 @@ Result<TriMesh> load_exa(const MeshRequest& request, Progress& progress) {
 
 bool is_exa_file(const std::filesystem::path& path) {
   const auto info = read_exa_info(path);
-  return info.has_value() || path.extension() == ".exa";
+  return info.has_value() || lower_suffix(path) == ".exa";
 }
 
 Result<void> check_parts(const std::filesystem::path& path, std::span<const std::string> names) {

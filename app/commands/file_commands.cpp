@@ -5,6 +5,7 @@
 
 #include "app/commands/command_table.h"
 #include "app/commands/number_argument.h"
+#include "app/document/file_kinds.h"
 
 namespace dubsar::app {
 namespace {
@@ -16,7 +17,7 @@ Command file_command(std::string name, std::string words, std::vector<DefaultKey
 
 Command open() {
   Command out = file_command("open", "open a surface; without a name: the folder to choose from", {{"ctrl+o"}},
-                             "FILE.exa, .ply, .obj, .stl or .glb");
+                             "FILE" + std::string(kSurfaceSuffixes));
   out.optional = true;
   out.run = [](Editor& editor, const std::string& file) -> Result<void> {
     Choosing& choosing = editor.desk().choosing;

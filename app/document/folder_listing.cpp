@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <system_error>
 
+#include "app/document/file_kinds.h"
 #include "core/base/lower_text.h"
 
 namespace dubsar::app {
@@ -15,16 +15,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostEntries = 2000;
 
 }  // namespace
-
-std::span<const std::string_view> surface_suffixes() {
-  static constexpr std::array<std::string_view, 5> kSuffixes{".exa", ".ply", ".obj", ".stl", ".glb"};
-  return kSuffixes;
-}
-
-bool names_a_surface(const fs::path& path) {
-  const auto suffixes = surface_suffixes();
-  return std::find(suffixes.begin(), suffixes.end(), lower_text(path.extension().string())) != suffixes.end();
-}
 
 FolderListing list_folder(const fs::path& folder) {
   FolderListing out;

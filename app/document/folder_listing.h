@@ -3,17 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace dubsar::app {
-
-/// Suffixes of surfaces that can be read, in lower case.
-std::span<const std::string_view> surface_suffixes();
-/// Whether a name ends in one of them, in capitals or not.
-bool names_a_surface(const std::filesystem::path& path);
 
 struct FolderEntry {
   std::string name;

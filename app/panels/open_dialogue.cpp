@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "app/cli/overall_progress.h"
+#include "app/document/file_kinds.h"
 #include "app/panels/panel_kit.h"
 #include "core/base/lower_text.h"
 

@@ -9,15 +9,14 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 #include <string_view>
 
 #include "app/cli/default_output.h"
 #include "app/cli/error_json.h"
+#include "app/document/file_kinds.h"
 #include "core/base/atomic_file.h"
 #include "core/base/child_process.h"
 #include "core/base/file_fingerprint.h"
-#include "core/base/file_suffix.h"
 #include "core/base/input_file.h"
 #include "core/base/json_text.h"
 
@@ -26,17 +25,11 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 6> kScanSuffixes{".h5", ".hdf5", ".hdf", ".nxs", ".nrrd", ".nhdr"};
-
-bool has_suffix(const fs::path& path, std::span<const std::string_view> suffixes) {
-  return std::find(suffixes.begin(), suffixes.end(), lower_suffix(path)) != suffixes.end();
-}
-
 std::vector<std::string> scans_in(const fs::path& folder) {
   std::vector<std::string> out;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-    if (it->is_regular_file(error) && has_suffix(it->path(), kScanSuffixes)) out.push_back(it->path().string());
+    if (it->is_regular_file(error) && names_a_scan(it->path())) out.push_back(it->path().string());
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -127,9 +120,8 @@ std::string parts_in_words(const json& report) {
 bool is_scan_folder(const std::string& path) {
   std::error_code error;
   if (!fs::is_directory(path, error)) return false;
-  constexpr std::array<std::string_view, 2> kTiff{".tif", ".tiff"};
   for (fs::directory_iterator it(path, error), end; !error && it != end; it.increment(error))
-    if (has_suffix(it->path(), kTiff)) return false;
+    if (names_a_slice(it->path())) return false;
   return !scans_in(path).empty();
 }
 

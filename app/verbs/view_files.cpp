@@ -6,7 +6,9 @@
 #include "app/cli/config_folder.h"
 #include "app/cli/mesh_input.h"
 #include "app/document/document_file.h"
+#include "app/document/file_kinds.h"
 #include "app/viewer/first_document.h"
+#include "core/base/file_suffix.h"
 #include "core/base/log.h"
 #include "core/exa/exa_file.h"
 #include "core/parts/surface_model.h"
@@ -75,12 +77,9 @@ ReadSurface surface_reader(const ViewOptions& options, const FileReading& readin
 }
 
 Result<void> check_surface(const std::string& file, const std::vector<std::string>& partitions) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) return fail(ErrorKind::kNoInput, "{}: there is no such file", file);
-  if (std::filesystem::is_directory(file, error))
-    return fail(ErrorKind::kUsage, "{} is a folder, expected a surface such as tablet.exa", file);
+  DUBSAR_TRY(check_surface_file(file));
   if (!std::ifstream(file).good()) return fail(ErrorKind::kPermission, "{}: it may not be read", file);
-  if (std::filesystem::path(file).extension() == ".exa") DUBSAR_TRY(read_exa_info(file));
+  if (lower_suffix(file) == ".exa") DUBSAR_TRY(read_exa_info(file));
   return check_parts(file, partitions);
 }
 

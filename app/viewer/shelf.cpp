@@ -10,9 +10,10 @@
 #include <utility>
 
 #include "app/cli/overall_progress.h"
-#include "app/document/folder_listing.h"
+#include "app/document/file_kinds.h"
 #include "app/document/recent_files.h"
 #include "core/base/clock.h"
+#include "core/base/file_suffix.h"
 #include "core/base/log.h"
 
 namespace dubsar::app {
@@ -28,13 +29,9 @@ std::vector<PlannedStage> ply_plan() { return {{"read ply vertex", 2.0}, {"read 
 double seconds_now() { return 1e-9 * static_cast<double>(SteadyClock().now()); }
 
 Result<void> check_file(const fs::path& file) {
-  std::error_code error;
-  if (!fs::exists(file, error)) return fail(ErrorKind::kNoInput, "{}: there is no such file", file.string());
-  if (fs::is_directory(file, error))
-    return fail(ErrorKind::kUsage, "{} is a folder, expected a surface such as tablet.exa", file.string());
+  DUBSAR_TRY(check_surface_file(file));
   if (!names_a_surface(file))
-    return fail(ErrorKind::kUsage, "{} is no surface by its name, expected .exa, .ply, .obj, .stl or .glb",
-                file.string());
+    return fail(ErrorKind::kUsage, "{} is no surface by its name, expected {}", file.string(), kSurfaceSuffixes);
   return {};
 }
 
@@ -44,7 +41,7 @@ Result<void> check_file(const fs::path& file) {
 class Shelf::Reading final : public Progress {
  public:
   Reading(fs::path file, std::size_t index)
-      : index_(index), file_(std::move(file)), whole_(file_.extension() == ".ply" ? ply_plan() : reading_plan()) {}
+      : index_(index), file_(std::move(file)), whole_(lower_suffix(file_) == ".ply" ? ply_plan() : reading_plan()) {}
   void start(const ReadSurface& read) {
     if (!thread_.joinable())
       thread_ = std::jthread([this, read] {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/document/file_kinds.h"
 #include "app/document/folder_listing.h"
 #include "app/document/recent_files.h"
 #include "core/base/atomic_file.h"
