@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/panels/ground_color.h"
 #include "app/panels/panel_kit.h"
 
 namespace dubsar::app {
@@ -12,7 +13,8 @@ namespace {
 
 constexpr float kLeastWidth = 280.0f, kShare = 0.44f, kBetween = 4.0f, kHead = 58.0f, kFoot = 22.0f;
 constexpr ImU32 kSurface = IM_COL32(0xe8, 0xb4, 0x4c, 0xff), kPatch = IM_COL32(0x56, 0xb4, 0xff, 0xff),
-                kNothing = IM_COL32(0x17, 0x18, 0x1b, 0xff), kCross = IM_COL32(0xe8, 0xe4, 0xdc, 0x70);
+                kNothing = IM_COL32(kGroundColor[0], kGroundColor[1], kGroundColor[2], 0xff),
+                kCross = IM_COL32(0xe8, 0xe4, 0xdc, 0x70);
 constexpr float kCrossGap = 7.0f, kOutline = 1.4f, kPatchOutline = 3.0f;
 constexpr double kWheelMm = 0.1, kNearer = 1.25, kContrastPx = 200.0, kSamePx = 0.25;
 constexpr double kBarPx = 80.0;

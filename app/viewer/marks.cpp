@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
+#include "app/panels/ground_color.h"
+
 namespace dubsar::app {
 namespace {
 
 // Amber is what was measured, bright what is written; both with a dark border, so that they are read on any clay.
-constexpr Rgb8 kMeasured{0xe8, 0xb4, 0x4c}, kWritten{0xf4, 0xf0, 0xe8}, kDark{0x17, 0x18, 0x1b};
+constexpr Rgb8 kMeasured{0xe8, 0xb4, 0x4c}, kWritten{0xf4, 0xf0, 0xe8};
 constexpr double kDotPx = 7.0, kDotBorderPx = 11.0, kLinePx = 2.2, kLineBorderPx = 5.0;
 constexpr double kHidden = 0.18;  // of what lies behind the surface
 constexpr std::size_t kMostLetters = 48;
@@ -56,7 +58,7 @@ class Marker {
   }
   void path(const std::vector<glm::dvec3>& at, const Rgb8& color) {
     if (at.size() < 2) return;
-    out_.lines.push_back(lines(pairs_of(at), kLineBorderPx, kDark, 0.0));
+    out_.lines.push_back(lines(pairs_of(at), kLineBorderPx, kGroundColor, 0.0));
     out_.lines.push_back(lines(pairs_of(at), kLinePx, color, kHidden));
   }
   void straight(const glm::dvec3& a, const glm::dvec3& b, const Rgb8& color) {
@@ -65,7 +67,7 @@ class Marker {
     out_.lines.push_back(std::move(line));
   }
   void dot(const glm::dvec3& at, const Rgb8& color) {
-    out_.lines.push_back(lines({at, at}, kDotBorderPx, kDark, 0.0));
+    out_.lines.push_back(lines({at, at}, kDotBorderPx, kGroundColor, 0.0));
     out_.lines.push_back(lines({at, at}, kDotPx, color, kHidden));
     out_.lines.back().lift_mm = 0.1;  // before its border
   }
@@ -77,7 +79,7 @@ class Marker {
     label.shift_px = {9.0, 7.0};
     label.height_px = 19.0;
     label.color = color;
-    label.border = kDark;
+    label.border = kGroundColor;
     return out_.labels.emplace_back(std::move(label));
   }
   Marks take(double scale) {

@@ -4,17 +4,19 @@
 #include <cmath>
 #include <glm/common.hpp>
 
+#include "app/panels/ground_color.h"
+
 namespace dubsar::app {
 namespace {
 
 constexpr double kRoom = 1.1;                             // around the surface at zoom 1
 constexpr double kDarkShare = 0.01, kLightShare = 0.995;  // of the values that are black and white
-constexpr Rgb8 kNothingColour{0x17, 0x18, 0x1b}, kSurfaceColour{0xe8, 0xb4, 0x4c}, kPatchColour{0x56, 0xb4, 0xff};
+constexpr Rgb8 kSurfaceColour{0xe8, 0xb4, 0x4c}, kPatchColour{0x56, 0xb4, 0xff};
 constexpr int kMostSide = 8192;
 constexpr double kOutlineSide = 1024.0;  // pixels where there is no scan
 
 Rgb8 grey_of(float value, double black, double white) {
-  if (std::isnan(value)) return kNothingColour;
+  if (std::isnan(value)) return kGroundColor;
   const double share = std::clamp((double{value} - black) / (white - black), 0.0, 1.0);
   const auto grey = static_cast<std::uint8_t>(std::lround(255.0 * share));
   return {grey, grey, grey};
@@ -186,7 +188,7 @@ Result<Image> SliceDesk::whole(const ScanView& view, std::size_t which) {
   all.zoom = 1.0;
   const SliceFrame frame = slice_frame(all, which, static_cast<int>(side), static_cast<int>(side), side * voxel);
   Image out(frame.width, frame.height, 3);
-  for (std::size_t i = 0; i < out.pixels.size(); ++i) out.pixels[i] = kNothingColour[i % 3];
+  for (std::size_t i = 0; i < out.pixels.size(); ++i) out.pixels[i] = kGroundColor[i % 3];
   if (scan.sampler) {
     DUBSAR_ASSIGN(const PlaneImage values, scan.sampler->sample(frame.grid(scan.voxel_mm)));
     std::array greys{view.black, view.white};

@@ -4,20 +4,17 @@
 #include <array>
 #include <cmath>
 
+#include "app/panels/ground_color.h"
 #include "app/viewer/stage_parts.h"
 #include "display/render/test_pattern.h"
 
 namespace dubsar::app {
-namespace {
-constexpr std::array<std::uint8_t, 4> kGround{0x17, 0x18, 0x1b, 0xff};
-}
-
 /// Pictures that exist already, where another one is wanted than is there.
 Result<void> Stage::Parts::fill_layers() {
   const SinkTraits traits = sink->traits();
   if (!options.pictures && options.subject != Subject::kPattern) {  // the ground alone
     Image ground(traits.view.width, traits.view.height, 4);
-    for (std::size_t i = 0; i < ground.pixels.size(); ++i) ground.pixels[i] = kGround[i % 4];
+    for (std::size_t i = 0; i < ground.pixels.size(); ++i) ground.pixels[i] = i % 4 < 3 ? kGroundColor[i % 4] : 0xff;
     for (int layer = 0; layer < traits.views; ++layer) DUBSAR_TRY(layers.array->write_layer(layer, ground));
     return {};
   }
