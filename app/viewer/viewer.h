@@ -172,6 +172,7 @@ class Viewer final : public Workplace {
   void take_surface();
   void take_coarse();
   Result<void> take_if_simulated();
+  std::optional<Result<void>> put_read();
   Result<void> leave_work(bool orderly);
   void drop(const std::vector<std::string>& files);
   FilesState files_state(TimestampNs now);

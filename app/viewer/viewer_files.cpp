@@ -11,25 +11,32 @@ namespace dubsar::app {
 namespace {
 namespace fs = std::filesystem;
 constexpr TimestampNs kListEveryNs = 2'000'000'000;  // files that come and go while the dialogue is open
+
+/// The shelf of a session that has one.
+Result<Shelf*> shelf_of(Shelf* shelf) {
+  if (shelf == nullptr) return fail(ErrorKind::kUsage, "this session shows one surface, and no other");
+  return shelf;
+}
+
 }  // namespace
 
 Result<void> Viewer::open_file(const std::string& path) {
-  if (given_.shelf == nullptr) return fail(ErrorKind::kUsage, "open: this session shows one surface, and no other");
-  DUBSAR_TRY(given_.shelf->open({fs::path(path)}));
+  DUBSAR_ASSIGN(Shelf* const shelf, shelf_of(given_.shelf));
+  DUBSAR_TRY(shelf->open({fs::path(path)}));
   return take_if_simulated();
 }
 
 Result<void> Viewer::open_recent(std::size_t number) {
-  if (given_.shelf == nullptr) return fail(ErrorKind::kUsage, "open_recent: this session shows one surface");
-  const std::vector<std::string> recent = read_recent(given_.shelf->recent_list());
+  DUBSAR_ASSIGN(Shelf* const shelf, shelf_of(given_.shelf));
+  const std::vector<std::string> recent = read_recent(shelf->recent_list());
   if (number < 1 || number > recent.size())
     return fail(ErrorKind::kUsage, "open_recent: {} found, expected 1 to {}", number, recent.size());
   return open_file(recent[number - 1]);
 }
 
 Result<void> Viewer::switch_file(int step) {
-  if (given_.shelf == nullptr) return fail(ErrorKind::kUsage, "this session shows one surface");
-  DUBSAR_TRY(given_.shelf->step(step));
+  DUBSAR_ASSIGN(Shelf* const shelf, shelf_of(given_.shelf));
+  DUBSAR_TRY(shelf->step(step));
   return take_if_simulated();
 }
 
@@ -39,8 +46,13 @@ bool Viewer::stop_opening() { return given_.shelf != nullptr && given_.shelf->st
 Result<void> Viewer::take_if_simulated() {
   if (given_.options.time.fps == 0) return {};
   given_.shelf->wait();
+  return put_read().value_or(Result<void>());
+}
+
+/// Shows the file that was read meanwhile, or says why it cannot be; nothing where none was.
+std::optional<Result<void>> Viewer::put_read() {
   auto read = given_.shelf->take();
-  if (!read) return {};
+  if (!read) return std::nullopt;
   if (!*read) return tl::unexpected<Error>(read->error());
   return put(*std::move(*read));
 }
@@ -82,20 +94,15 @@ void Viewer::take_surface() {
   if (given_.shelf == nullptr || !at_.window_shown) return;  // the window comes first
   given_.shelf->start();
   take_coarse();
-  auto read = given_.shelf->take();
-  if (!read) return;
-  Result<void> done;
-  if (*read)
-    done = put(*std::move(*read));
-  else
-    done = tl::unexpected<Error>(read->error());
-  if (done) return;
+  const std::optional<Result<void>> done = put_read();
+  if (!done || *done) return;
+  const Error& why = done->error();
   if (!has_surface() && given_.shelf->files().empty() && files_.first) {
-    at_.failed = done.error();  // what the session was begun for
+    at_.failed = why;  // what the session was begun for
     return;
   }
-  log_warning("{}", done.error().message);
-  say(done.error().message);
+  log_warning("{}", why.message);
+  say(why.message);
   if (!has_surface()) editor_->desk().choosing.open = true;
 }
 
