@@ -61,16 +61,10 @@ std::string format_document(const Document& document) {
 
 Result<Document> parse_document(std::string_view text, std::string_view source) {
   DUBSAR_ASSIGN(const json object, parse_json(text, source));
-  if (!object.is_object() || !object.contains("format") || object.at("format") != kFormat)
-    return fail(ErrorKind::kBadData, "{}: found other JSON, expected \"format\": \"{}\"", source, kFormat);
-  const bool known = object.contains("version") && object.at("version").is_number_integer() &&
-                     object.at("version") >= kOldest && object.at("version") <= kVersion;
-  if (!known)
-    return fail(ErrorKind::kBadData, "{}: version {} found, expected {} to {}; a newer dubsar may have written it",
-                source, object.contains("version") ? dump_json(object.at("version")) : "none", kOldest, kVersion);
+  DUBSAR_ASSIGN(const int version, json_version(object, kFormat, kOldest, kVersion, source));
   Document out;
   std::string complaint;
-  stored::Reader reader(object, "", complaint, object.at("version") != kVersion);
+  stored::Reader reader(object, "", complaint, version != kVersion);
   fields(reader, out);
   if (complaint.empty()) complaint = complaint_about(out);
   if (!complaint.empty()) return fail(ErrorKind::kBadData, "{}: {}", source, complaint);

@@ -199,11 +199,7 @@ Result<std::vector<Keyframe>> parse_film(std::string_view text, std::string_view
     DUBSAR_ASSIGN(Document whole, parse_document(text, source));
     film.keyframes = std::move(whole.keyframes);
   } else {
-    if (!object.is_object() || !object.contains("format") || object.at("format") != kFilmFormat)
-      return fail(ErrorKind::kBadData, "{}: found other JSON, expected \"format\": \"{}\"", source, kFilmFormat);
-    if (!object.contains("version") || object.at("version") != kFilmVersion)
-      return fail(ErrorKind::kBadData, "{}: version {} found, expected {}; a newer dubsar may have written it", source,
-                  object.contains("version") ? dump_json(object.at("version")) : "none", kFilmVersion);
+    DUBSAR_TRY(json_version(object, kFilmFormat, kFilmVersion, kFilmVersion, source));
     std::string complaint;
     stored::Reader reader(object, "", complaint);
     fields(reader, film);

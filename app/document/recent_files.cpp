@@ -19,7 +19,7 @@ std::vector<std::string> read_recent(const std::filesystem::path& list) {
   const auto text = read_text_file(list);
   if (!text) return out;
   const auto object = parse_json(*text, list.string());
-  if (!object || !object->is_object() || object->value("format", json()) != kListFormat) return out;
+  if (!object || !json_version(*object, kListFormat, 1, 1, list.string())) return out;
   const json files = object->value("files", json());
   if (!files.is_array()) return out;
   for (const json& file : files)

@@ -133,11 +133,8 @@ Result<KioskProfile> parse_kiosk_profile(std::string_view json_text, std::string
   auto parsed = parse_json(json_text, source);
   if (!parsed) return fail(ErrorKind::kConfig, "{}", parsed.error().message);
   const json& object = *parsed;
-  if (!object.is_object() || !object.contains("format") || object.at("format") != kProfileFormat)
-    return fail(ErrorKind::kConfig, "{}: found other JSON, expected \"format\": \"{}\"", source, kProfileFormat);
-  if (!object.contains("version") || object.at("version") != 1)
-    return fail(ErrorKind::kConfig, "{}: version {} found, expected 1", source,
-                object.contains("version") ? dump_json(object.at("version")) : "none");
+  if (const auto version = json_version(object, kProfileFormat, 1, 1, source); !version)
+    return fail(ErrorKind::kConfig, "{}", version.error().message);
   Reader reader{std::string(source), folder};
   reader.only(object, kMembers, "");
   KioskProfile out;

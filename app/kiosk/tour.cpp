@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::string_view kTourFormat = "dubsar tour";
-constexpr std::size_t kMostSteps = 64, kMostLabels = 16, kLongestText = 400;
+constexpr std::size_t kMostSteps = 64, kMostLabels = 16, kMostKeys = 1000, kLongestText = 400;
 constexpr double kLongestS = 600.0;
 constexpr std::array<std::string_view, 4> kTourMembers{"format", "version", "steps", "comment"};
 constexpr std::array<std::string_view, 5> kStepMembers{"title", "text", "labels", "stays_s", "keyframes"};
@@ -77,18 +77,17 @@ Result<TourLabel> read_label(const json& object, const std::string& where) {
 
 /// What is not said is as before: the text of a whole film, for parse_film().
 Result<std::vector<Keyframe>> read_keys(const json& object, json& before, const std::string& where) {
-  if (!object.contains("keyframes") || !object.at("keyframes").is_array() || object.at("keyframes").empty())
-    return fail(ErrorKind::kBadData, "{}: no keyframe found, expected at least one", where);
-  json film{{"format", "dubsar film"}, {"version", 1}, {"keyframes", json::array()}};
-  for (const json& key : object.at("keyframes")) {
-    const std::string at = fmt::format("{}: keyframes[{}]", where, film.at("keyframes").size());
+  const auto read = [&](const json& key, const std::string& at) -> Result<json> {
     DUBSAR_TRY(only(key, kKeyMembers, at));
     if (key.contains("camera")) DUBSAR_TRY(only(key.at("camera"), kCameraMembers, at + ".camera"));
     if (key.contains("light")) DUBSAR_TRY(only(key.at("light"), kLightMembers, at + ".light"));
     before.merge_patch(key);
-    film.at("keyframes").push_back(before);
+    json whole = before;
     before.erase("time_s");
-  }
+    return whole;
+  };
+  DUBSAR_ASSIGN(std::vector<json> keys, read_list<json>(object, "keyframes", 0, kMostKeys, where, read));
+  const json film{{"format", "dubsar film"}, {"version", 1}, {"keyframes", std::move(keys)}};
   DUBSAR_ASSIGN(std::vector<Keyframe> out, parse_film(dump_json(film), where));
   if (!(out.front().time_s > 0.0) || out.back().time_s > kLongestS)
     return fail(ErrorKind::kBadData, "{}: keyframes from {} to {} s found, expected times above 0, up to {}", where,
@@ -104,15 +103,7 @@ Result<TourStep> read_step(const json& object, json& before, const std::string& 
   JsonFields fields(object, where);
   out.stays_s = fields.number("stays_s", 0.0, kLongestS, &out.stays_s);
   if (const auto done = fields.finish(); !done) return fail(ErrorKind::kBadData, "{}", done.error().message);
-  if (object.contains("labels")) {
-    const json& labels = object.at("labels");
-    if (!labels.is_array() || labels.size() > kMostLabels)
-      return fail(ErrorKind::kBadData, "{}: \"labels\" is no list of at most {} labels", where, kMostLabels);
-    for (const json& label : labels) {
-      DUBSAR_ASSIGN(TourLabel read, read_label(label, fmt::format("{}: labels[{}]", where, out.labels.size())));
-      out.labels.push_back(std::move(read));
-    }
-  }
+  DUBSAR_ASSIGN(out.labels, read_list<TourLabel>(object, "labels", 0, kMostLabels, where, read_label));
   DUBSAR_ASSIGN(out.keyframes, read_keys(object, before, where));
   return out;
 }
@@ -128,25 +119,16 @@ json json_of(const TourLabel& label) {
 
 Result<Tour> parse_tour(std::string_view json_text, std::string_view source) {
   DUBSAR_ASSIGN(const json object, parse_json(json_text, source));
-  if (!object.is_object() || !object.contains("format") || object.at("format") != kTourFormat)
-    return fail(ErrorKind::kBadData, "{}: found other JSON, expected \"format\": \"{}\"", source, kTourFormat);
-  if (!object.contains("version") || object.at("version") != 1)
-    return fail(ErrorKind::kBadData, "{}: version {} found, expected 1", source,
-                object.contains("version") ? dump_json(object.at("version")) : "none");
+  DUBSAR_TRY(json_version(object, kTourFormat, 1, 1, source));
   DUBSAR_TRY(only(object, kTourMembers, std::string(source)));
-  if (!object.contains("steps") || !object.at("steps").is_array() || object.at("steps").empty() ||
-      object.at("steps").size() > kMostSteps)
-    return fail(ErrorKind::kBadData, "{}: \"steps\" is no list of 1 to {} steps", source, kMostSteps);
   Tour out;
   json before{{"camera", {{"rotation_wxyz", {1, 0, 0, 0}}, {"zoom", 1}, {"pan", {0, 0}}}},
               {"light", {{"azimuth_deg", LightPlace().azimuth_deg}, {"elevation_deg", LightPlace().elevation_deg}}},
               {"unpack", 0},
               {"style", ""},
               {"parts", json::array()}};
-  for (const json& step : object.at("steps")) {
-    DUBSAR_ASSIGN(TourStep read, read_step(step, before, fmt::format("{}: steps[{}]", source, out.steps.size())));
-    out.steps.push_back(std::move(read));
-  }
+  const auto read = [&](const json& step, const std::string& where) { return read_step(step, before, where); };
+  DUBSAR_ASSIGN(out.steps, read_list<TourStep>(object, "steps", 1, kMostSteps, std::string(source), read));
   return out;
 }
 

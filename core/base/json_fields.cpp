@@ -63,6 +63,24 @@ std::string JsonFields::text(const char* name, const char* fallback) {
   return {};
 }
 
+const json& JsonFields::list(const char* name, std::size_t most) {
+  static const json kEmpty = json::array();
+  if (!has(name)) return kEmpty;
+  const json& value = object_->at(name);
+  if (value.is_array() && value.size() <= most) return value;
+  complain(fmt::format("{} is not a list of at most {} things", name, most));
+  return kEmpty;
+}
+
+Result<void> check_list(const json& object, const char* name, std::size_t least, std::size_t most,
+                        const std::string& where) {
+  const bool fits = object.is_object() && object.contains(name) && object.at(name).is_array() &&
+                    object.at(name).size() >= least && object.at(name).size() <= most;
+  if (fits) return {};
+  return fail(ErrorKind::kBadData, "{}: \"{}\" is no list of {} {} {}", where, name,
+              least == 0 ? "at most" : fmt::format("{} to", least), most, name);
+}
+
 Result<void> JsonFields::finish() const {
   if (!complaint_.empty()) return fail(ErrorKind::kConfig, "{}", complaint_);
   return {};

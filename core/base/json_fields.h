@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/base/result.h"
 
@@ -20,6 +22,8 @@ class JsonFields {
   /// true, false, or a number (>= 0.5 is true), bare or wrapped.
   bool flag(const char* name, bool fallback);
   std::string text(const char* name, const char* fallback);
+  /// A list of at most so many things; empty where it is missing.
+  const nlohmann::json& list(const char* name, std::size_t most);
 
   bool has(const char* name) const { return object_->is_object() && object_->contains(name); }
   const std::string& where() const noexcept { return where_; }
@@ -32,5 +36,24 @@ class JsonFields {
   const nlohmann::json* object_;
   std::string where_, complaint_;
 };
+
+/// kBadData: `name` is no list of `least` to `most` things in this object.
+Result<void> check_list(const nlohmann::json& object, const char* name, std::size_t least, std::size_t most,
+                        const std::string& where);
+
+/// The things of the list `name`, each as read(thing, "where: name[2]") returns it, a Result<T>. The list may be
+/// missing where `least` is 0. Errors of check_list() and of read().
+template <class T, class Read>
+Result<std::vector<T>> read_list(const nlohmann::json& object, const char* name, std::size_t least, std::size_t most,
+                                 const std::string& where, const Read& read) {
+  std::vector<T> out;
+  if (least == 0 && !object.contains(name)) return out;
+  DUBSAR_TRY(check_list(object, name, least, most, where));
+  for (const nlohmann::json& thing : object.at(name)) {
+    DUBSAR_ASSIGN(T one, read(thing, fmt::format("{}: {}[{}]", where, name, out.size())));
+    out.push_back(std::move(one));
+  }
+  return out;
+}
 
 }  // namespace dubsar

@@ -36,6 +36,17 @@ Result<nlohmann::json> parse_json(std::string_view text, std::string_view what) 
   return parsed;
 }
 
+Result<int> json_version(const nlohmann::json& object, std::string_view format, int oldest, int newest,
+                         std::string_view what) {
+  if (!object.is_object() || !object.contains("format") || object.at("format") != format)
+    return fail(ErrorKind::kBadData, "{}: found other JSON, expected \"format\": \"{}\"", what, format);
+  const nlohmann::json version = object.value("version", nlohmann::json("none"));
+  if (version.is_number_integer() && version >= oldest && version <= newest) return version.get<int>();
+  return fail(ErrorKind::kBadData, "{}: version {} found, expected {}; a newer dubsar may have written it", what,
+              version == "none" ? "none" : dump_json(version),
+              oldest == newest ? fmt::format("{}", newest) : fmt::format("{} to {}", oldest, newest));
+}
+
 std::string dump_json(const nlohmann::json& value) {
   return value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }

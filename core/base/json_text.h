@@ -16,6 +16,11 @@ inline constexpr int kJsonMaxDepth = 32;
 /// Parses one JSON text (UTF-8, no comments). `what` names it in the error text. kBadData: too long, too deep, broken.
 Result<nlohmann::json> parse_json(std::string_view text, std::string_view what);
 
+/// The version that a file of ours says it has: {"format": FORMAT, "version": N, ...}. kBadData: another format, or a
+/// version outside of oldest..newest. `what` names it.
+Result<int> json_version(const nlohmann::json& object, std::string_view format, int oldest, int newest,
+                         std::string_view what);
+
 /// One line of plain ASCII; characters that are not UTF-8 are replaced.
 std::string dump_json(const nlohmann::json& json);
 

@@ -61,15 +61,6 @@ glm::dvec3 place(JsonFields& f, const json& object, const char* name, const glm:
   return 1e-3 * glm::dvec3(value[0].get<double>(), value[1].get<double>(), value[2].get<double>());
 }
 
-const json& list(JsonFields& f, const json& object, const char* name) {
-  static const json kEmpty = json::array();
-  if (!f.has(name)) return kEmpty;
-  const json& value = object.at(name);
-  if (value.is_array() && value.size() <= kMostKeys) return value;
-  f.complain(fmt::format("{} is not a list of at most {} things", name, kMostKeys));
-  return kEmpty;
-}
-
 Result<Dropouts> read_dropouts(const json& object, const std::string& where, Dropouts out) {
   JsonFields f(object, where);
   only(f, object, {"per_s", "shortest_ms", "longest_ms"});
@@ -91,7 +82,7 @@ Result<HandTrack> read_hand(const json& object, const std::string& where, double
   out.shoulder_m = place(f, object, "shoulder_mm", {side == "left" ? -0.2 : 0.2, -0.2, 0.75});
   HandKey last;
   last.t_s = -1;
-  for (const json& item : list(f, object, "keys")) {
+  for (const json& item : f.list("keys", kMostKeys)) {
     JsonFields k(item, where + ": key " + std::to_string(out.keys.size()));
     only(k, item, {"t", "at_mm", "grab", "pinch_mm"});
     HandKey key;
@@ -115,7 +106,7 @@ Result<HeadTrack> read_head(const json& object, const std::string& where, double
   out.ipd_m = 1e-3 * real(f, "ipd_mm", 40, 90, 63);
   HeadKey last;
   last.t_s = -1;
-  for (const json& item : list(f, object, "keys")) {
+  for (const json& item : f.list("keys", kMostKeys)) {
     JsonFields k(item, where + ": key " + std::to_string(out.keys.size()));
     only(k, item, {"t", "at_mm"});
     HeadKey key{k.number("t", 0, duration_s), place(k, item, "at_mm", last.at_m)};
@@ -228,18 +219,18 @@ Result<Script> parse_script(std::string_view json_text, std::string_view source)
     DUBSAR_ASSIGN(out.eye_dropouts,
                   read_dropouts(object.at("eye_dropouts"), where + ": eye_dropouts", out.eye_dropouts));
   }
-  for (const json& item : list(f, object, "hands")) {
+  for (const json& item : f.list("hands", kMostKeys)) {
     DUBSAR_ASSIGN(HandTrack hand,
                   read_hand(item, where + ": hand " + std::to_string(out.hands.size()), out.duration_s));
     out.hands.push_back(std::move(hand));
   }
   if (out.hands.size() > 4) f.complain("hands has more than 4 things");
-  for (const json& item : list(f, object, "heads")) {
+  for (const json& item : f.list("heads", kMostKeys)) {
     DUBSAR_ASSIGN(HeadTrack head,
                   read_head(item, where + ": head " + std::to_string(out.heads.size()), out.duration_s));
     out.heads.push_back(std::move(head));
   }
-  for (const json& item : list(f, object, "events")) {
+  for (const json& item : f.list("events", kMostKeys)) {
     DUBSAR_ASSIGN(InputEvent event,
                   read_event(item, where + ": event " + std::to_string(out.events.size()), out.duration_s));
     out.events.push_back(std::move(event));
