@@ -20,39 +20,45 @@ constexpr std::uint32_t kNoEdge = std::numeric_limits<std::uint32_t>::max();
 // .0103 to .0114 of a step, the error of the normals from .84 to .85 and from .89 to .92 degrees.
 constexpr double kPrice = 2.0, kPriceOfEscape = 10.0;
 
+/// Of the 64 edges along `axis` from word w of the row (y, z) on: those with a crossing. The row beside it is there.
+std::uint64_t active_edges(const SurfaceSamples& samples, int axis, std::int64_t w, std::int64_t y, std::int64_t z) {
+  const std::uint64_t* const here = samples.signs.row(y, z);
+  const std::uint64_t* const other = axis == 1 ? samples.signs.row(y + 1, z) : samples.signs.row(y, z + (axis == 2));
+  const bool last = w + 1 == samples.signs.words_per_row();
+  const std::uint64_t next = axis == 0 ? here[w] >> 1 | (last ? 0 : here[w + 1] << 63) : other[w];
+  const std::int64_t left = samples.dims.x - (axis == 0 ? 1 : 0) - 64 * w;
+  const std::uint64_t row = left < 64 ? (std::uint64_t{1} << std::max<std::int64_t>(0, left)) - 1 : ~std::uint64_t{0};
+  return (here[w] ^ next) & row;
+}
+
+/// An open mesh has no x-quad for the edges in its boundary.
+bool in_boundary(const Dims& d, int axis, const std::array<std::int64_t, 3>& p) {
+  const std::array<std::int64_t, 3> size{d.x, d.y, d.z};
+  for (int a = 0; a < 3; ++a)
+    if (const auto i = static_cast<std::size_t>(a); a != axis && (p[i] == 0 || p[i] == size[i] - 1)) return true;
+  return false;
+}
+
 /// One per x-quad of real edges: quad q is that of edge q.
 std::vector<FitEdge> edges_of_quads(const SurfaceSamples& samples) {
   const Dims& d = samples.dims;
-  const std::array<std::int64_t, 3> size{d.x, d.y, d.z};
   std::vector<FitEdge> edges;
   edges.reserve(samples.offsets.size());
   std::uint32_t number = 0;
   for (std::int64_t z = 0; z < d.z; ++z)
     for (std::int64_t y = 0; y < d.y; ++y) {
-      const std::uint64_t* here = samples.signs.row(y, z);
       for (std::int32_t axis = 0; axis < 3; ++axis) {
         if ((axis == 1 && y + 1 == d.y) || (axis == 2 && z + 1 == d.z)) continue;
-        const std::uint64_t* other = axis == 1 ? samples.signs.row(y + 1, z) : samples.signs.row(y, z + (axis == 2));
-        const std::int64_t words = samples.signs.words_per_row();
-        for (std::int64_t w = 0; w < words; ++w) {
-          std::uint64_t active =
-              axis == 0 ? here[w] ^ (here[w] >> 1 | (w + 1 < words ? here[w + 1] << 63 : 0)) : here[w] ^ other[w];
-          const std::int64_t end = axis == 0 ? d.x - 1 : d.x;
-          if (end - 64 * w < 64) active &= (std::uint64_t{1} << std::max<std::int64_t>(0, end - 64 * w)) - 1;
-          for (; active != 0; active &= active - 1, ++number) {
-            const std::array<std::int64_t, 3> p{64 * w + std::countr_zero(active), y, z};
-            bool in_face = false;  // an open mesh has no x-quad for the edges in its boundary
-            for (int a = 0; a < 3 && !samples.closed; ++a) {
-              const auto i = static_cast<std::size_t>(a);
-              in_face = in_face || (a != axis && (p[i] == 0 || p[i] == size[i] - 1));
-            }
-            if (!in_face)
+        for (std::int64_t w = 0; w < samples.signs.words_per_row(); ++w)
+          for (std::uint64_t active = active_edges(samples, axis, w, y, z); active != 0;
+               active &= active - 1, ++number) {
+            const std::int64_t x = 64 * w + std::countr_zero(active);
+            if (samples.closed || !in_boundary(d, axis, {x, y, z}))
               edges.push_back(
-                  {{static_cast<std::int32_t>(p[0]), static_cast<std::int32_t>(p[1]), static_cast<std::int32_t>(p[2])},
+                  {{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), static_cast<std::int32_t>(z)},
                    axis,
                    number});
           }
-        }
       }
     }
   return edges;
