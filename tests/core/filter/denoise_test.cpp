@@ -34,16 +34,12 @@ struct Case {
 std::vector<Case> all_filters(int iterations, double sigma) {
   std::vector<Case> cases;
   for (const int window : {3, 5, 7}) {
-    const auto add = [&](DenoiseMethod method, RangeWeight range, const char* name) {
-      cases.push_back({{method, range, window, iterations, sigma}, name + std::to_string(window)});
-    };
-    add(DenoiseMethod::kMedian, RangeWeight::kTukey, "median");
-    add(DenoiseMethod::kGauss, RangeWeight::kTukey, "gauss");
-    for (const RangeWeight range : {RangeWeight::kTukey, RangeWeight::kGauss}) {
-      const bool tukey = range == RangeWeight::kTukey;
-      add(DenoiseMethod::kBilateral, range, tukey ? "bilateral tukey" : "bilateral gauss");
-      add(DenoiseMethod::kJointBilateral, range, tukey ? "joint tukey" : "joint gauss");
-    }
+    for (const auto& method : kDenoiseMethods)
+      for (const auto& range : kRangeWeights) {
+        if (!needs_sigma(method.value) && range.value != RangeWeight::kTukey) continue;
+        cases.push_back({{method.value, range.value, window, iterations, sigma},
+                         fmt::format("{} {} {}", method.name, range.name, window)});
+      }
   }
   return cases;
 }

@@ -6,49 +6,49 @@ namespace dubsar {
 namespace {
 
 /// A mesh with one attribute more, and the list with one entry more: all that it takes to carry it along.
-struct MeshWithEvidence : TriMesh {
-  std::vector<float> evidence;
+struct MeshWithGloss : TriMesh {
+  std::vector<float> gloss;
 };
-constexpr auto kWithEvidence =
-    std::tuple_cat(kVertexAttributes, std::tuple{VertexAttribute{"evidence", &MeshWithEvidence::evidence}});
+constexpr auto kWithGloss =
+    std::tuple_cat(kVertexAttributes, std::tuple{VertexAttribute{"gloss", &MeshWithGloss::gloss}});
 
-MeshWithEvidence triangle_and_spare() {
-  MeshWithEvidence mesh;
+MeshWithGloss triangle_and_spare() {
+  MeshWithGloss mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {9, 9, 9}};
   mesh.triangles = {{0, 1, 2}};
   mesh.k_min = {0, 1, 2, 3};
   mesh.colors = {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {4, 4, 4}};
-  mesh.evidence = {0.5f, 1.5f, 2.5f, 3.5f};
+  mesh.gloss = {0.5f, 1.5f, 2.5f, 3.5f};
   return mesh;
 }
 
 TEST(VertexAttributes, ASampleAttributeIsGatheredJoinedAndCheckedByItsEntryAlone) {
-  const MeshWithEvidence mesh = triangle_and_spare();
-  MeshWithEvidence some;
-  gather_vertices(mesh, std::vector<std::uint32_t>{3, 1}, some, kWithEvidence);
-  EXPECT_EQ(some.evidence, (std::vector<float>{3.5f, 1.5f}));
+  const MeshWithGloss mesh = triangle_and_spare();
+  MeshWithGloss some;
+  gather_vertices(mesh, std::vector<std::uint32_t>{3, 1}, some, kWithGloss);
+  EXPECT_EQ(some.gloss, (std::vector<float>{3.5f, 1.5f}));
   EXPECT_EQ(some.k_min, (std::vector<float>{3, 1}));
   EXPECT_EQ(some.positions[0], glm::vec3(9.0f));
   EXPECT_TRUE(some.normals.empty());
 
-  append_vertices(some, mesh, kWithEvidence);
-  EXPECT_EQ(some.evidence, (std::vector<float>{3.5f, 1.5f, 0.5f, 1.5f, 2.5f, 3.5f}));
+  append_vertices(some, mesh, kWithGloss);
+  EXPECT_EQ(some.gloss, (std::vector<float>{3.5f, 1.5f, 0.5f, 1.5f, 2.5f, 3.5f}));
   EXPECT_EQ(some.positions.size(), 6u);
 
-  MeshWithEvidence broken = mesh;
-  broken.evidence.pop_back();
+  MeshWithGloss broken = mesh;
+  broken.gloss.pop_back();
   EXPECT_TRUE(check_arrays(broken, ErrorKind::kBadData, "test"));
-  EXPECT_EQ(check_arrays(broken, ErrorKind::kBadData, "test", kWithEvidence).error().message,
-            "test: the mesh has 4 vertices but 3 evidence, expected as many or none");
+  EXPECT_EQ(check_arrays(broken, ErrorKind::kBadData, "test", kWithGloss).error().message,
+            "test: the mesh has 4 vertices but 3 gloss, expected as many or none");
 }
 
 TEST(VertexAttributes, WhatOnlyOneOfTwoMeshesKnowsIsDropped) {
-  MeshWithEvidence joined = triangle_and_spare(), other = triangle_and_spare();
+  MeshWithGloss joined = triangle_and_spare(), other = triangle_and_spare();
   other.colors.clear();
-  append_vertices(joined, other, kWithEvidence);
+  append_vertices(joined, other, kWithGloss);
   EXPECT_TRUE(joined.colors.empty());
-  EXPECT_EQ(joined.evidence.size(), 8u);
-  EXPECT_TRUE(check_arrays(joined, ErrorKind::kBadData, "test", kWithEvidence));
+  EXPECT_EQ(joined.gloss.size(), 8u);
+  EXPECT_TRUE(check_arrays(joined, ErrorKind::kBadData, "test", kWithGloss));
 }
 
 TEST(VertexAttributes, EveryContradictionOfAMeshIsFound) {
