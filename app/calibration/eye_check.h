@@ -33,7 +33,6 @@ class EyeCheck {
   /// The same for a weave without delay: what is left of the lenses' own.
   std::optional<double> own_light() const;
   const EyePair& newest() const { return known_.back().eyes; }
-  bool knows_eyes() const noexcept { return !known_.empty(); }
   /// Samples of the last second.
   int a_second() const;
 

@@ -51,11 +51,6 @@ SharedSlice SliceReader::picture(std::size_t which) const {
   return slots_[which].picture;
 }
 
-std::uint64_t SliceReader::revision() const {
-  const std::scoped_lock lock(mutex_);
-  return revision_;
-}
-
 std::string SliceReader::note() const {
   const std::scoped_lock lock(mutex_);
   return note_;
@@ -93,7 +88,6 @@ void SliceReader::run(const std::stop_token& stop, const OpenScan& open) {
     }
     has_scan_ = sampler_ != nullptr;
     opened_ = true;
-    ++revision_;
   }
   changed_.notify_all();
   while (!stop.stop_requested()) {
@@ -115,7 +109,6 @@ void SliceReader::publish(std::size_t which, std::uint64_t question, SlicePictur
     slot.coarse = true;
     slot.exact = slot.exact || done;
     slot.picture = std::make_shared<const SlicePicture>(std::move(picture));
-    ++revision_;
   }
   changed_.notify_all();
 }

@@ -51,8 +51,6 @@ class SliceReader {
   void ask(std::size_t which, const SliceFrame& frame);
   /// What is there of a slice; null: nothing yet. It may be of an earlier question.
   SharedSlice picture(std::size_t which) const;
-  /// Counts up with every picture and word there is.
-  std::uint64_t revision() const;
   /// Why there is no scan, or what is to be known of it; empty: nothing.
   std::string note() const;
   bool has_scan() const;
@@ -79,7 +77,6 @@ class SliceReader {
   mutable std::condition_variable_any changed_;
   std::array<Slot, kSlices> slots_;
   std::string note_;
-  std::uint64_t revision_ = 0;
   bool opened_ = false, has_scan_ = false;
   std::jthread thread_;  // ends first
 };

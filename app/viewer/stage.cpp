@@ -244,7 +244,6 @@ std::optional<double> Stage::measuring() const noexcept {
 }
 
 bool Stage::moved() const noexcept { return parts_->moved(); }
-void Stage::repaint() { parts_->painted.of.reset(); }
 
 bool Stage::needs_paint() const noexcept {
   const Parts& p = *parts_;

@@ -141,8 +141,6 @@ class Stage {
   /// True when paint() would make another picture than it did last: moved(), the overlay or the display changed, or
   /// views are still coarse and things rest.
   bool needs_paint() const noexcept;
-  /// The next picture is drawn whether or not something changed.
-  void repaint();
   /// Renders the views and composes them on `target`: the field that is due, where traits() has two.
   Result<void> paint(const Surface& target, Field field = Field::kFirst);
 

@@ -45,9 +45,7 @@ enum class Event : std::uint32_t {
 enum class Mode : std::uint32_t { kDesktop = 0, kHeadMounted = 1, kScreenTop = 2 };
 inline constexpr std::uint64_t kPolicyBackgroundFrames = 0x1;
 inline constexpr std::uint64_t kPolicyImages = 0x2;
-inline constexpr std::uint64_t kPolicyHeadMounted = 0x4;
 inline constexpr std::uint64_t kPolicyMapPoints = 0x80;
-inline constexpr std::uint64_t kPolicyScreenTop = 0x100;
 
 // --- where things lie ---
 

@@ -40,8 +40,6 @@ ControlRequest set_current(std::uint8_t unit, std::uint8_t selector) noexcept {
 ControlRequest get_current(std::uint8_t unit, std::uint8_t selector) noexcept {
   return uvc::get_current(kControlInterface, unit, selector);
 }
-ControlRequest set_stream(std::uint8_t selector) noexcept { return uvc::set_current(kStreamInterface, 0, selector); }
-ControlRequest get_stream(std::uint8_t selector) noexcept { return uvc::get_current(kStreamInterface, 0, selector); }
 
 Result<ControlWrite> exposure_us(int us) {
   DUBSAR_TRY(check_range("exposure in us", us, 10, 65535));
@@ -51,11 +49,6 @@ Result<ControlWrite> exposure_us(int us) {
 Result<ControlWrite> analog_gain(int sixteenths) {
   DUBSAR_TRY(check_range("analog gain in sixteenths", sixteenths, 16, 63));
   return write_processing(Selector::kGain, sixteenths);
-}
-
-Result<ControlWrite> digital_gain(int quarters) {
-  DUBSAR_TRY(check_range("digital gain in quarters", quarters, 0, 16));
-  return write_processing(Selector::kBrightness, quarters);
 }
 
 ControlWrite gamma(bool square_root) noexcept { return write_processing(Selector::kGamma, square_root ? 1 : 0); }

@@ -69,9 +69,6 @@ using uvc::kProbeControl;
 /// Requests to unit `unit` of the control interface: wValue = selector << 8, wIndex = unit << 8 | interface.
 ControlRequest set_current(std::uint8_t unit, std::uint8_t selector) noexcept;
 ControlRequest get_current(std::uint8_t unit, std::uint8_t selector) noexcept;
-/// Requests to the video streaming interface: kProbeControl or kCommitControl.
-ControlRequest set_stream(std::uint8_t selector) noexcept;
-ControlRequest get_stream(std::uint8_t selector) noexcept;
 
 using uvc::ControlWrite;  ///< all settings have 2 bytes
 
@@ -79,7 +76,6 @@ enum class Switch : std::uint8_t { kHdr = 0, kRotate180 = 1, kLedLeft = 2, kLedC
 
 Result<ControlWrite> exposure_us(int us);          ///< 10..65535
 Result<ControlWrite> analog_gain(int sixteenths);  ///< 16..63: gain 1 to 3.94
-Result<ControlWrite> digital_gain(int quarters);   ///< 0..16
 ControlWrite gamma(bool square_root) noexcept;
 ControlWrite switch_on(Switch which,
                        bool on) noexcept;  ///< switches 5 and 6 of the device crash it and do not exist here

@@ -183,10 +183,6 @@ bool UvcSimulator::plugged() const {
   const std::lock_guard guard(device_->mutex);
   return device_->plugged;
 }
-std::uint64_t UvcSimulator::frames_begun() const {
-  const std::lock_guard guard(device_->mutex);
-  return device_->begun;
-}
 
 class UvcSimulatedTransport final : public Transport {
  public:

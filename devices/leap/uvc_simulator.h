@@ -59,7 +59,6 @@ class UvcSimulator {
   bool plugged() const;
   /// kUnavailable while unplugged. Lost for good once unplugged.
   Result<std::unique_ptr<Transport>> open();
-  std::uint64_t frames_begun() const;
 
  protected:
   /// Keeps the model to oneself.

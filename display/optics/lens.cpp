@@ -116,8 +116,4 @@ double eye_phase(const LensOptics& lens, const glm::dvec3& eye_mm, const glm::dv
   return phase - std::round(phase);
 }
 
-double best_pitch_mm(double reduced_gap_mm, double ipd_mm, double distance_mm) noexcept {
-  return 2.0 * reduced_gap_mm * ipd_mm / distance_mm;
-}
-
 }  // namespace dubsar

@@ -88,11 +88,14 @@ struct ViewWeight {
   int view;
   double weight;
 };
+/// Width of the Gaussians in lens positions, as the maker has it.
+inline constexpr double kViewSigma = 0.01;
+
 /// Views that make up a subpixel and their weights (sum 1). `sigma` is the Gaussian's width in lens position units and
 /// is used by kGaussian3 (3 views) and kGaussian10 (21 views). Linear mixes the views floor(p) and floor(p) + 1 by the
 /// fraction, clamped at the ends; for both Gaussians, too, view v lies at p = v, as the maker has it: half a view from
 /// where kNearest has its middle.
-std::vector<ViewWeight> view_weights(double position, int views, ViewFilter filter, double sigma = 0.01);
+std::vector<ViewWeight> view_weights(double position, int views, ViewFilter filter, double sigma = kViewSigma);
 
 /// A sheet in the terms of optics, for eyes at known places (millimetres, panel frame: centre, x right, y up, z to
 /// the viewer).
@@ -116,8 +119,5 @@ glm::dvec2 paraxial_shift_mm(const LensOptics& lens, const glm::dvec3& eye_mm, c
 /// Lens phase of a subpixel as seen from an eye, -0.5..0.5 periods; 0: the eye sees the subpixel's centre.
 double eye_phase(const LensOptics& lens, const glm::dvec3& eye_mm, const glm::dvec2& point_mm,
                  bool exact = true) noexcept;
-
-/// Pitch at which two eyes `ipd_mm` apart at distance `distance_mm` are half a period apart: 2 (d/n) IPD / z.
-double best_pitch_mm(double reduced_gap_mm, double ipd_mm, double distance_mm) noexcept;
 
 }  // namespace dubsar

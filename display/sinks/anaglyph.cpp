@@ -79,19 +79,6 @@ class AnaglyphSink : public OutputSink {
 
 std::span<const AnaglyphVariant> anaglyph_variants() { return kVariants; }
 
-Image anaglyph_views(const Image& left, const Image& right, const AnaglyphVariant& variant) {
-  Image out(left.width, left.height, 3);
-  for (int y = 0; y < out.height; ++y)
-    for (int x = 0; x < out.width; ++x) {
-      const std::uint8_t *l = left.at(x, y), *r = right.at(x, y);
-      const glm::dvec3 sum =
-          variant.left * glm::dvec3(linear_from_srgb(l[0]), linear_from_srgb(l[1]), linear_from_srgb(l[2])) +
-          variant.right * glm::dvec3(linear_from_srgb(r[0]), linear_from_srgb(r[1]), linear_from_srgb(r[2]));
-      for (int c = 0; c < 3; ++c) out.at(x, y)[c] = srgb_from_linear(sum[c]);
-    }
-  return out;
-}
-
 Result<std::unique_ptr<OutputSink>> make_anaglyph_sink(SinkOptions options) {
   const bool right_first = options.eyes_swapped();
   std::vector<std::string_view> names;

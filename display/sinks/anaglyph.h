@@ -22,9 +22,6 @@ struct AnaglyphVariant {
 /// Half: the left eye's channels become its luminance. Mono: all channels become luminance (Rec. 709 weights).
 std::span<const AnaglyphVariant> anaglyph_variants();
 
-/// Reference: what compose() draws. Views of the same size. RGB.
-Image anaglyph_views(const Image& left, const Image& right, const AnaglyphVariant& variant);
-
 /// Options: a variant's name, and left_first or right_first: which eye the first colour of that name is for.
 Result<std::unique_ptr<OutputSink>> make_anaglyph_sink(SinkOptions options);
 

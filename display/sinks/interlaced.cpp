@@ -48,32 +48,6 @@ bool bottom_exchanges(InterlacePattern pattern, int panel_height) noexcept {
   return (pattern == InterlacePattern::kRows || pattern == InterlacePattern::kCheckerboard) && panel_height % 2 == 0;
 }
 
-int interlace_parity(InterlacePattern pattern, int panel_x, int panel_y, int channel) noexcept {
-  switch (pattern) {
-    case InterlacePattern::kRows:
-      return panel_y & 1;
-    case InterlacePattern::kColumns:
-      return panel_x & 1;
-    case InterlacePattern::kCheckerboard:
-      return (panel_x + panel_y) & 1;
-    case InterlacePattern::kSubpixels:
-      return (3 * panel_x + channel) & 1;
-  }
-  return 0;
-}
-
-Image interlace_views(const Image& left, const Image& right, const Screen& screen, InterlacePattern pattern,
-                      bool right_first) {
-  Image out(screen.window_w, screen.window_h, 3);
-  for (int y = 0; y < out.height; ++y)
-    for (int x = 0; x < out.width; ++x)
-      for (int k = 0; k < 3; ++k) {
-        const int parity = interlace_parity(pattern, screen.window_x + x, screen.window_y + y, k);
-        out.at(x, y)[k] = ((parity == 1) != right_first ? right : left).at(x, y)[k];
-      }
-  return out;
-}
-
 Result<std::unique_ptr<OutputSink>> make_interlaced_sink(SinkOptions options) {
   const bool right_first = options.eyes_swapped();
   const auto pattern = static_cast<InterlacePattern>(options.choice({"rows", "columns", "checkerboard", "subpixels"}));

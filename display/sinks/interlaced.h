@@ -10,13 +10,6 @@ namespace dubsar {
 
 enum class InterlacePattern : int { kRows = 0, kColumns = 1, kCheckerboard = 2, kSubpixels = 3 };
 
-/// 0: the even place, 1: the odd one, for channel k of the panel pixel (x, y), counted from the panel's upper left.
-int interlace_parity(InterlacePattern pattern, int panel_x, int panel_y, int channel) noexcept;
-
-/// Reference: what compose() draws. Both views have the window's size. RGB.
-Image interlace_views(const Image& left, const Image& right, const Screen& screen, InterlacePattern pattern,
-                      bool right_first);
-
 /// Whether counting rows from the panel's bottom exchanges the eyes: on panels with an even number of rows.
 bool bottom_exchanges(InterlacePattern pattern, int panel_height) noexcept;
 

@@ -95,7 +95,7 @@ class ViewsSink : public OutputSink {
     glUniform1f(kStart, static_cast<float>(start - std::floor(start)));
     glUniform4i(kMode, profile_.views, static_cast<int>(filter_), sheet_.invert_views ? 1 : 0,
                 static_cast<int>(sheet_.subpixels.pattern));
-    glUniform1f(kSigma, static_cast<float>(WeaveOptions().gaussian_sigma * profile_.views));
+    glUniform1f(kSigma, static_cast<float>(kViewSigma * profile_.views));
     const auto offsets = flat_offsets(sheet_.subpixels);
     glUniform1f(kFringe, static_cast<float>(sheet_.fringe));
     glUniform1i(kCells, static_cast<int>(sheet_.subpixels.cells.size()));

@@ -94,18 +94,6 @@ PixelSize Packing::place(PixelSize window, int eye) const noexcept {
   return vertical ? PixelSize{0, output.height - view.height} : PixelSize{output.width - view.width, 0};
 }
 
-Image pack_views(const Image& left, const Image& right, PixelSize window, const Packing& packing) {
-  const PixelSize size = packing.output_size(window);
-  Image out(size.width, size.height, 3);
-  for (int eye = 0; eye < 2; ++eye) {
-    const Image& view = eye == 0 ? left : right;
-    const PixelSize corner = packing.place(window, eye);
-    for (int y = 0; y < view.height; ++y)
-      for (int x = 0; x < view.width; ++x) std::copy_n(view.at(x, y), 3, out.at(corner.width + x, corner.height + y));
-  }
-  return out;
-}
-
 Result<std::unique_ptr<OutputSink>> make_side_by_side_sink(SinkOptions options) {
   return make_packed(std::move(options), {.vertical = false}, "half or full, left_first or right_first");
 }

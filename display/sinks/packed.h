@@ -21,9 +21,6 @@ struct Packing {
   PixelSize place(PixelSize window, int eye) const noexcept;
 };
 
-/// Reference: what compose() draws. RGB.
-Image pack_views(const Image& left, const Image& right, PixelSize window, const Packing& packing);
-
 Result<std::unique_ptr<OutputSink>> make_side_by_side_sink(SinkOptions options);
 Result<std::unique_ptr<OutputSink>> make_top_bottom_sink(SinkOptions options);
 

@@ -130,33 +130,8 @@ std::optional<QuiltName> parse_quilt_name(std::string_view file_name) {
   return name;
 }
 
-Result<QuiltLayout> quilt_layout_of(std::string_view file_name, const Image& quilt) {
-  const auto name = parse_quilt_name(file_name);
-  if (!name)
-    return fail(ErrorKind::kUsage, "quilt: \"{}\" does not say its layout, expected a name like tablet_qs8x6a0.75.png",
-                file_name);
-  const QuiltLayout layout{name->columns, name->rows, quilt.width, quilt.height};
-  if (layout.tile_width() < kMinTilePx || layout.tile_height() < kMinTilePx)
-    return fail(ErrorKind::kBadData, "quilt: \"{}\" says {} x {} tiles, but the picture has only {} x {} pixels",
-                file_name, layout.columns, layout.rows, quilt.width, quilt.height);
-  return layout;
-}
-
 PixelSize quilt_tile_corner(const QuiltLayout& layout, int view) noexcept {
   return {view % layout.columns * layout.tile_width(), view / layout.columns * layout.tile_height()};
-}
-
-Image make_quilt(std::span<const Image> views, const QuiltLayout& layout) {
-  DUBSAR_CHECK(static_cast<int>(views.size()) == layout.views());
-  Image out(layout.width_px, layout.height_px, 3);
-  for (int i = 0; i < layout.views(); ++i) {
-    DUBSAR_CHECK(views[i].width == layout.tile_width() && views[i].height == layout.tile_height());
-    const PixelSize corner = quilt_tile_corner(layout, i);
-    const int top = layout.height_px - corner.height - layout.tile_height();
-    for (int y = 0; y < views[i].height; ++y)
-      for (int x = 0; x < views[i].width; ++x) std::copy_n(views[i].at(x, y), 3, out.at(corner.width + x, top + y));
-  }
-  return out;
 }
 
 std::vector<Image> split_quilt(const Image& quilt, const QuiltLayout& layout) {

@@ -32,16 +32,9 @@ std::filesystem::path name_with_suffix(const std::filesystem::path& path, std::s
 /// out of range (1 to 100 a side, aspect 0.05 to 20).
 std::optional<QuiltName> parse_quilt_name(std::string_view file_name);
 
-/// The layout of a quilt file from its name, checked against the picture: each tile must have at least 8 x 8 pixels.
-/// kBadData with both when they do not agree, kUsage when the name does not say.
-Result<QuiltLayout> quilt_layout_of(std::string_view file_name, const Image& quilt);
-
 /// Lower left corner of a view's tile, from the lower left of the quilt. What does not divide is left black at the
 /// right and on top.
 PixelSize quilt_tile_corner(const QuiltLayout& layout, int view) noexcept;
-
-/// Reference: what compose() draws. layout.views() pictures of the tile's size. RGB.
-Image make_quilt(std::span<const Image> views, const QuiltLayout& layout);
 
 /// The tiles of a quilt as views, RGB.
 std::vector<Image> split_quilt(const Image& quilt, const QuiltLayout& layout);

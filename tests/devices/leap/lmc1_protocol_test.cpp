@@ -123,7 +123,6 @@ TEST(Lmc1Protocol, ControlWritesAreTheBytesOfTheManual) {
   EXPECT_EQ(exposure->data[0], std::byte{0x23});
   EXPECT_EQ(exposure->data[1], std::byte{0x01});
   EXPECT_EQ(lmc1::analog_gain(63)->request, (ControlRequest{0x21, 0x01, 0x0400, 0x0500}));
-  EXPECT_EQ(lmc1::digital_gain(16)->request.value, 0x0200);
   EXPECT_EQ(lmc1::gamma(true).request.value, 0x0900);
   EXPECT_EQ(lmc1::dark_frame_interval(2)->request.value, 0x0a00);
   EXPECT_EQ(lmc1::switch_on(lmc1::Switch::kLedLeft, true).data[0], std::byte{0x42});
@@ -131,13 +130,13 @@ TEST(Lmc1Protocol, ControlWritesAreTheBytesOfTheManual) {
   EXPECT_EQ(lmc1::switch_on(lmc1::Switch::kLedRight, true).data[0], std::byte{0x44});
   EXPECT_EQ(lmc1::switch_on(lmc1::Switch::kHdr, false).data[0], std::byte{0x00});
   EXPECT_EQ(lmc1::get_current(5, 7), (ControlRequest{0xa1, 0x81, 0x0700, 0x0500}));
-  EXPECT_EQ(lmc1::set_stream(lmc1::kCommitControl), (ControlRequest{0x21, 0x01, 0x0200, 0x0001}));
+  EXPECT_EQ(uvc::set_current(lmc1::kStreamInterface, 0, lmc1::kCommitControl),
+            (ControlRequest{0x21, 0x01, 0x0200, 0x0001}));
 }
 
 TEST(Lmc1Protocol, SettingsOutsideTheirRangeAreRefused) {
   for (const int us : {-1, 9, 65536}) EXPECT_FALSE(lmc1::exposure_us(us));
   for (const int gain : {15, 64}) EXPECT_FALSE(lmc1::analog_gain(gain));
-  for (const int gain : {-1, 17}) EXPECT_FALSE(lmc1::digital_gain(gain));
   EXPECT_FALSE(lmc1::dark_frame_interval(0x4000));
   EXPECT_EQ(lmc1::dark_frame_interval(-1).error().kind, ErrorKind::kUsage);
 }

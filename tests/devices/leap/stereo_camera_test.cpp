@@ -11,7 +11,7 @@
 #include "devices/leap/leap_camera.h"
 #include "devices/leap/lmc1_simulator.h"
 #include "devices/leap/rigel_simulator.h"
-#include "devices/transport/fault_transport.h"
+#include "tests/devices/transport/fault_transport.h"
 
 namespace dubsar {
 namespace {

@@ -11,7 +11,6 @@
 #include <filesystem>
 
 #include "core/base/atomic_file.h"
-#include "devices/transport/fault_transport.h"
 #include "devices/transport/hotplug_watch.h"
 #include "devices/transport/reconnector.h"
 #include "devices/transport/record_transport.h"
@@ -19,6 +18,7 @@
 #include "devices/transport/sim_transport.h"
 #include "devices/transport/socket_transport.h"
 #include "tests/devices/device_bytes.h"
+#include "tests/devices/transport/fault_transport.h"
 
 namespace dubsar {
 namespace {

@@ -8,9 +8,12 @@
 #include <numeric>
 
 #include "display/optics/srgb.h"
+#include "tests/display/reference_pictures.h"
 
 namespace dubsar {
 namespace {
+using testing::weave_tracked;
+using testing::weave_views;
 
 /// A 15.6" 4K panel: 6.7 subpixels a lens, slant atan(1/3), made for eyes 63 mm apart at 600 mm.
 TrackedPanel laptop() {

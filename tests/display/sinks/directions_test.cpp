@@ -26,6 +26,7 @@
 #include "display/sinks/openxr.h"
 #include "display/sinks/quilt.h"
 #include "display/sinks/sink_catalog.h"
+#include "tests/display/reference_pictures.h"
 
 namespace dubsar {
 namespace {
@@ -162,7 +163,8 @@ class Directions : public ::testing::Test {
     for (int eye = 0; eye < 2; ++eye) {
       Light sum(0.0);
       for (int c = 0; c < 3; ++c)  // a polariser passes subpixel by subpixel
-        sum[c] = mean_light(picture, 0, [&](int x, int y) { return interlace_parity(pattern, x, y, c) == eye; })[c];
+        sum[c] =
+            mean_light(picture, 0, [&](int x, int y) { return testing::interlace_parity(pattern, x, y, c) == eye; })[c];
       expect_view(eye, sum, 1e-9, spec);
     }
   }

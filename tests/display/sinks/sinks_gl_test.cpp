@@ -19,10 +19,17 @@
 #include "display/sinks/packed.h"
 #include "display/sinks/quilt.h"
 #include "display/sinks/sink_catalog.h"
+#include "tests/display/reference_pictures.h"
 #include "tests/display/test_meshes.h"
 
 namespace dubsar {
 namespace {
+using testing::anaglyph_views;
+using testing::interlace_views;
+using testing::make_quilt;
+using testing::pack_views;
+using testing::weave_tracked;
+using testing::weave_views;
 
 class SinksGl : public ::testing::Test {
  protected:

@@ -10,9 +10,13 @@
 #include "display/sinks/packed.h"
 #include "display/sinks/quilt.h"
 #include "display/sinks/sink_catalog.h"
+#include "tests/display/reference_pictures.h"
 
 namespace dubsar {
 namespace {
+using testing::anaglyph_views;
+using testing::interlace_views;
+using testing::make_quilt;
 
 Image painted(int width, int height, std::array<std::uint8_t, 3> color) {
   Image image(width, height, 3);
@@ -236,12 +240,6 @@ TEST(Quilt, NamesAreWrittenStrictlyAndReadTolerantly) {
   for (const char* bad : {"", "tablet.png", "tablet_qs.png", "tablet_qs8.png", "_qs8x.png", "_qsx6", "_qs0x6",
                           "_qs-8x6", "_qs101x2", "_qs8x6a0", "_qs8x6ax", "_qs8x6a-1", "_qs99999999999x1"})
     EXPECT_FALSE(parse_quilt_name(bad)) << bad;
-}
-
-TEST(Quilt, LayoutMustFitThePicture) {
-  EXPECT_EQ(quilt_layout_of("a_qs8x6a0.75.png", Image(3360, 3360, 3))->tile_height(), 560);
-  EXPECT_EQ(quilt_layout_of("a_qs8x6a0.75.png", Image(40, 3360, 3)).error().kind, ErrorKind::kBadData);
-  EXPECT_EQ(quilt_layout_of("a.png", Image(3360, 3360, 3)).error().kind, ErrorKind::kUsage);
 }
 
 TEST(Quilt, ViewZeroIsAtTheLowerLeftAndPaddingIsBlack) {

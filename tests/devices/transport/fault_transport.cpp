@@ -1,4 +1,4 @@
-#include "devices/transport/fault_transport.h"
+#include "tests/devices/transport/fault_transport.h"
 
 #include <algorithm>
 #include <charconv>
