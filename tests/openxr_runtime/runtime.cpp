@@ -297,7 +297,7 @@ PFN_xrVoidFunction plain(F* function) {
 }
 
 XrResult XRAPI_CALL get_proc(XrInstance, const char* name, PFN_xrVoidFunction* out) {
-  static const std::map<std::string, PFN_xrVoidFunction> kFunctions{
+  static const std::map<std::string, PFN_xrVoidFunction> functions{
       {"xrGetInstanceProcAddr", plain(&get_proc)},
       {"xrEnumerateInstanceExtensionProperties", plain(&enumerate_extensions)},
       {"xrCreateInstance", plain(&create_instance)},
@@ -320,8 +320,8 @@ XrResult XRAPI_CALL get_proc(XrInstance, const char* name, PFN_xrVoidFunction* o
       {"xrBeginFrame", plain(&begin_frame)},
       {"xrLocateViews", plain(&locate_views)},
       {"xrConvertTimeToTimespecTimeKHR", plain(&convert_time)}};
-  const auto found = kFunctions.find(name);
-  *out = found != kFunctions.end() ? found->second : frame_function(name);
+  const auto found = functions.find(name);
+  *out = found != functions.end() ? found->second : frame_function(name);
   if (*out == nullptr) *out = input_function(name);
   return *out != nullptr ? XR_SUCCESS : XR_ERROR_FUNCTION_UNSUPPORTED;
 }

@@ -138,6 +138,7 @@ PFN_xrVoidFunction plain(F* function) {
 }
 
 // What the loader and a runtime say to each other (OpenXR loader specification, "Runtime Interface Negotiation").
+// NOLINTBEGIN(readability-identifier-naming): names as that specification has them
 struct LoaderInfo {
   int structType;
   std::uint32_t structVersion;
@@ -153,11 +154,12 @@ struct RuntimeRequest {
   XrVersion runtimeApiVersion;
   PFN_xrGetInstanceProcAddr getInstanceProcAddr;
 };
+// NOLINTEND(readability-identifier-naming)
 
 }  // namespace
 
 PFN_xrVoidFunction frame_function(const std::string& name) {
-  static const std::map<std::string, PFN_xrVoidFunction> kFunctions{
+  static const std::map<std::string, PFN_xrVoidFunction> functions{
       {"xrEnumerateSwapchainFormats", plain(&swapchain_formats)},
       {"xrCreateSwapchain", plain(&create_swapchain)},
       {"xrDestroySwapchain", plain(&destroy_swapchain)},
@@ -166,12 +168,13 @@ PFN_xrVoidFunction frame_function(const std::string& name) {
       {"xrWaitSwapchainImage", plain(&wait_image)},
       {"xrReleaseSwapchainImage", plain(&release_image)},
       {"xrEndFrame", plain(&end_frame)}};
-  const auto found = kFunctions.find(name);
-  return found != kFunctions.end() ? found->second : nullptr;
+  const auto found = functions.find(name);
+  return found != functions.end() ? found->second : nullptr;
 }
 
 }  // namespace dubsar::testing
 
+// NOLINTNEXTLINE(readability-identifier-naming): the loader looks for it
 extern "C" XrResult xrNegotiateLoaderRuntimeInterface(const dubsar::testing::LoaderInfo* loader,
                                                       dubsar::testing::RuntimeRequest* request) {
   if (loader == nullptr || request == nullptr || loader->minInterfaceVersion > 1 || loader->maxInterfaceVersion < 1)

@@ -100,7 +100,7 @@ XrResult XRAPI_CALL suggest_bindings(XrInstance, const XrInteractionProfileSugge
   RuntimeState& s = state();
   const std::lock_guard lock(s.headset.mutex);
   // As strict as runtimes are: profiles and their components must be known.
-  static const std::map<std::string, std::vector<std::string>> kProfiles{
+  static const std::map<std::string, std::vector<std::string>> profiles{
       {"/interaction_profiles/khr/simple_controller", {"/input/select/click", "/input/menu/click", "/input/grip/pose"}},
       {"/interaction_profiles/oculus/touch_controller",
        {"/input/squeeze/value", "/input/trigger/value", "/input/grip/pose"}}};
@@ -109,8 +109,8 @@ XrResult XRAPI_CALL suggest_bindings(XrInstance, const XrInteractionProfileSugge
       if (known == path) return text;
     return std::string();
   };
-  const auto profile = kProfiles.find(text_of(suggestion->interactionProfile));
-  if (profile == kProfiles.end()) return XR_ERROR_PATH_UNSUPPORTED;
+  const auto profile = profiles.find(text_of(suggestion->interactionProfile));
+  if (profile == profiles.end()) return XR_ERROR_PATH_UNSUPPORTED;
   for (std::uint32_t i = 0; i < suggestion->countSuggestedBindings; ++i) {
     const std::string to = text_of(suggestion->suggestedBindings[i].binding);
     const auto component = to.find("/input/");
@@ -165,7 +165,7 @@ PFN_xrVoidFunction plain(F* function) {
 }  // namespace
 
 PFN_xrVoidFunction input_function(const std::string& name) {
-  static const std::map<std::string, PFN_xrVoidFunction> kFunctions{
+  static const std::map<std::string, PFN_xrVoidFunction> functions{
       {"xrCreateHandTrackerEXT", plain(&create_tracker)},
       {"xrDestroyHandTrackerEXT", plain(&destroy_tracker)},
       {"xrLocateHandJointsEXT", plain(&locate_joints)},
@@ -180,8 +180,8 @@ PFN_xrVoidFunction input_function(const std::string& name) {
       {"xrGetActionStatePose", plain(&pose_state)},
       {"xrGetActionStateFloat", plain(&float_state)},
       {"xrGetActionStateBoolean", plain(&boolean_state)}};
-  const auto found = kFunctions.find(name);
-  return found != kFunctions.end() ? found->second : nullptr;
+  const auto found = functions.find(name);
+  return found != functions.end() ? found->second : nullptr;
 }
 
 }  // namespace dubsar::testing

@@ -71,7 +71,7 @@ std::uint64_t id_of(Handle handle) {
 }
 template <class Handle>
 Handle handle_of(std::uint64_t id) {
-  return reinterpret_cast<Handle>(id);
+  return reinterpret_cast<Handle>(id);  // NOLINT(performance-no-int-to-ptr): handles are numbers here
 }
 
 XrPosef posef(const MadePose& pose);

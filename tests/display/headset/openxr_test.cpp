@@ -281,7 +281,7 @@ class OpenXrInWindow : public OpenXr {
   static void SetUpTestSuite() { server_ = std::make_unique<testing::XvfbServer>(); }
   static void TearDownTestSuite() { server_.reset(); }
   void SetUp() override {
-    WornTest::SetUp();
+    WornTest::SetUp();  // NOLINT(bugprone-parent-virtual-call): OpenXr makes a context of EGL, this one is of GLX
     if (!server_->problem().empty()) GTEST_SKIP() << server_->problem();
     WindowOptions options;
     options.width = 320;
