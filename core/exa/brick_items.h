@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <span>
 
 #include "core/exa/offset_window.h"
 #include "core/extract/edge_index.h"
@@ -17,15 +18,23 @@ class BrickItems {
 
   const BrickSigns& signs() const noexcept { return signs_; }
 
-  /// Calls slice(z) before the rows of a slice, then edge(axis, x, y, z, number) for every active edge that starts in
-  /// the brick, in canonical order; with_faces: face(number) for every ambiguous face instead.
-  template <class Slice, class Edge>
-  void edges(const Slice& slice, const Edge& edge) const {
+  /// Calls slice(z) before the rows of a slice, then row(axis, y, z, xs, number) for every row of active edges that
+  /// start in the brick, in canonical order; number is that of the first. faces: face(number) for ambiguous faces.
+  template <class Slice, class Row>
+  void edges(const Slice& slice, const Row& row) const {
+    std::array<std::uint8_t, 128> xs;
     for (int z = 0; z < owned(2); ++z) {
       slice(z);
       for (int y = 0; y < owned(1); ++y)
-        for (int axis = 0; axis < 3; ++axis)
-          visit(y, z, axis, false, [&](int x, std::uint32_t number) { edge(axis, x, y, z, number); });
+        for (int axis = 0; axis < 3; ++axis) {
+          std::size_t count = 0;
+          std::uint32_t first_number = 0;
+          visit(y, z, axis, false, [&](int x, std::uint32_t number) {
+            if (count == 0) first_number = number;
+            xs[count++] = static_cast<std::uint8_t>(x);
+          });
+          if (count > 0) row(axis, y, z, std::span<const std::uint8_t>(xs.data(), count), first_number);
+        }
     }
   }
   template <class Face>

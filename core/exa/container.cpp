@@ -60,11 +60,11 @@ Result<std::uint64_t> exa_head_bytes(std::string_view prelude, std::uint64_t fil
     return fail(ErrorKind::kBadData, "exa: {} bytes found, the head alone needs {}", prelude.size(), kExaPreludeBytes);
   if (major < kExaOldest)
     return fail(ErrorKind::kBadData,
-                "exa: format version {} found, expected {} or {}; that format was never kept: process the scan "
+                "exa: format version {} found, expected {} to {}; that format was never kept: process the scan "
                 "again",
                 major, kExaOldest, kExaMajor);
   if (major > kExaMajor)
-    return fail(ErrorKind::kBadData, "exa: format version {} found, expected {} or {}; it needs a later dubsar", major,
+    return fail(ErrorKind::kBadData, "exa: format version {} found, expected {} to {}; it needs a later dubsar", major,
                 kExaOldest, kExaMajor);
   if (blocks > kExaMaxBlocks)
     return fail(ErrorKind::kBadData, "exa: {} blocks announced, expected at most {}", blocks, kExaMaxBlocks);

@@ -3,7 +3,7 @@
 // checked against its only legal value or covered by a sum (docs/exa.md, "Container").
 //
 //   magic      8  89 45 58 41 0D 0A 1A 0A ("EXA"; shows damage by text-mode transfers)
-//   major      2  4; readers refuse a major version that they do not know; 3 is read as 4
+//   major      2  5; readers refuse a major version that they do not know; 3 and 4 are read, too
 //   minor      2  0; readers skip blocks that they do not know
 //   blocks     4
 //   file bytes 8
@@ -29,7 +29,7 @@ inline constexpr std::string_view kExaMagic(
     "EXA\r\n\x1a\n",
     8);
 inline constexpr std::string_view kExaEnd = "EXA.END\n";
-inline constexpr std::uint16_t kExaMajor = 4, kExaOldest = 3, kExaMinor = 0;
+inline constexpr std::uint16_t kExaMajor = 5, kExaOldest = 3, kExaMinor = 0;
 inline constexpr std::size_t kExaPreludeBytes = 24, kExaRowBytes = 28, kExaMaxBlocks = 256;
 inline constexpr std::uint16_t kExaRequired = 1;
 

@@ -141,6 +141,7 @@ Result<void> decode_offsets(const ExaReader& reader, const ExaHeader& header, Su
 
 Result<LoadedSigns> load_signs(const ExaReader& reader, int level, const std::function<bool(std::size_t)>& wanted) {
   LoadedSigns loaded;
+  loaded.chunks.apart = reader.table().major < 5;
   DUBSAR_ASSIGN(ExaChunks coarse, reader.chunks("SIGC", kCodec));
   loaded.chunks.coarse = coarse.chunks;
   loaded.blocks.push_back(std::move(coarse));

@@ -67,12 +67,14 @@ Result<SurfaceModel> decode_box(const ExaReader& reader, const GridBox& box, Pro
     return at[0] >= first[0] && at[0] <= last[0] && at[1] >= first[1] && at[1] <= last[1] && at[2] >= first[2] &&
            at[2] <= last[2];
   };
-  DUBSAR_ASSIGN(const LoadedSigns loaded, load_signs(reader, 0, wanted));
   GridBox closed;
   for (std::size_t a = 0; a < 3; ++a) {
     closed.low[a] = low[a] + 1;  // inside, so that bricks that only touch a side stay out
-    closed.high[a] = low[a] + points[a] - 2;
+    closed.high[a] = std::max(low[a], low[a] + points[a] - 2);
   }
+  const std::vector<std::uint8_t> needed = bricks_of_box(dims, closed, reader.table().major < 5);
+  DUBSAR_ASSIGN(const LoadedSigns loaded,
+                load_signs(reader, 0, [&](std::size_t i) { return i < needed.size() && needed[i] != 0; }));
   DUBSAR_ASSIGN(const BitVolume whole,
                 decode_signs(loaded.chunks, dims, 0, closed,
                              most_coded_signs(static_cast<std::uint64_t>(header.samples.edges)), progress));

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/exa/offset_window.h"
@@ -68,13 +69,19 @@ class OffsetModel {
  public:
   static const OffsetModel& instance(std::size_t which);
   explicit OffsetModel(const std::int16_t* weights);
-  OffsetEstimate predict(int axis, const OffsetInputs& inputs) const noexcept;
+  using Pairs = std::array<std::array<std::int16_t, 2>, kOffsetUnits>;  ///< weights of two inputs for all units
+  struct alignas(64) Sums : std::array<std::int32_t, kOffsetUnits> {};  ///< of the units, before they are clamped
 
-  /// Weights of two inputs at a time for all units, and what makes an estimate of the units.
+  /// Adds up what is known of edges before their row is begun.
+  void begin(int axis, std::span<const OffsetInputs> inputs, Sums* sums) const noexcept;
+  /// With the two edges before it along the row: value and 64 if it crosses beside this one, else two zeros.
+  OffsetEstimate finish(int axis, const Sums& sums, const OffsetNear& near) const noexcept;
+
   struct alignas(64) Axis {
-    std::array<std::array<std::array<std::int16_t, 2>, kOffsetUnits>, kOffsetInputs / 2> in{};
-    std::array<std::int32_t, kOffsetUnits> bias{};
-    std::array<std::array<std::int32_t, kOffsetUnits>, 2> out{};
+    std::array<Pairs, kOffsetInputs / 2> in{};
+    std::array<Pairs, 2> near{};  ///< inputs of the columns one and two steps before along the row; none for axis 0
+    Sums bias{};
+    std::array<Pairs, 2> out{};  ///< the second of a pair is 0
     std::array<std::int32_t, 2> out_bias{};
   };
 

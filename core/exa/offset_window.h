@@ -13,6 +13,8 @@ namespace dubsar {
 
 inline constexpr int kOffsetInputs = 52;
 using OffsetInputs = std::array<std::int16_t, kOffsetInputs>;
+/// Value and "known" of the columns one and two steps before an edge along its row.
+using OffsetNear = std::array<std::array<std::int16_t, 2>, 2>;
 
 /// Signs of the points of a brick; places outside have the sign of the nearest point of the brick.
 class BrickSigns {

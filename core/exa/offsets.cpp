@@ -10,6 +10,7 @@
 #include "core/exa/brick_items.h"
 #include "core/exa/offset_choice.h"
 #include "core/exa/offset_model.h"
+#include "core/exa/offset_rows.h"
 #include "core/exa/range_coder.h"
 #include "core/exa/topology.h"
 
@@ -34,26 +35,26 @@ std::string encode_offsets(const SurfaceSamples& samples, const BrickItems& item
   const OffsetModel& network = OffsetModel::instance(model);
   const OffsetTable& table = OffsetTable::instance();
   OffsetWindow window(items.signs());
+  OffsetRows rows(network, window, items.signs());
   RangeEncoder out;
-  OffsetInputs inputs;
   int count = 0;
   items.edges([&](int z) { window.begin_slice(z); },
-              [&](int axis, int x, int y, int z, std::uint32_t number) {
+              [&](int axis, int y, int z, std::span<const std::uint8_t> xs, std::uint32_t number) {
                 if (count >= most) return;
-                ++count;
-                const std::uint32_t offset = samples.offsets[number], symbol = offset >> rest;
-                window.inputs(axis, x, y, z, inputs);
-                const OffsetEstimate estimate = network.predict(axis, inputs);
-                if (bits == OffsetTable::kBits) {
-                  const OffsetTable::Starts& starts = table.starts(estimate);
-                  out.symbol(starts[symbol], OffsetTable::end(starts, symbol) - starts[symbol]);
-                } else {
-                  const OffsetDistribution likely(estimate, bits);
-                  const std::uint32_t start = likely.start(symbol);
-                  out.symbol(start, likely.start(symbol + 1) - start);
-                }
-                out.raw(offset & ((1u << rest) - 1), rest);
-                window.store(axis, x, y, z, middle_of(offset, samples.offset_bits));
+                count += static_cast<int>(xs.size());
+                rows.row(axis, y, z, xs, [&](std::size_t i, const OffsetEstimate& estimate) {
+                  const std::uint32_t offset = samples.offsets[number + i], symbol = offset >> rest;
+                  if (bits == OffsetTable::kBits) {
+                    const OffsetTable::Starts& starts = table.starts(estimate);
+                    out.symbol(starts[symbol], OffsetTable::end(starts, symbol) - starts[symbol]);
+                  } else {
+                    const OffsetDistribution likely(estimate, bits);
+                    const std::uint32_t start = likely.start(symbol);
+                    out.symbol(start, likely.start(symbol + 1) - start);
+                  }
+                  out.raw(offset & ((1u << rest) - 1), rest);
+                  return middle_of(offset, samples.offset_bits);
+                });
               });
   return count == 0 ? std::string() : static_cast<char>(model) + out.take();
 }
@@ -79,25 +80,29 @@ void choose_brick_offsets(SurfaceSamples& samples, const BrickItems& items, Offs
   if (model == kOffsetModels) return;
   const OffsetModel& network = OffsetModel::instance(model);
   OffsetWindow window(items.signs());
-  OffsetInputs inputs;
+  OffsetRows rows(network, window, items.signs());
+  const auto choose = [&](std::uint32_t number, const OffsetEstimate& estimate) {
+    const auto [first, last] = prices.range(number);
+    if (first >= last) return;
+    const OffsetDistribution likely(estimate, samples.offset_bits);
+    double least = std::numeric_limits<double>::infinity();
+    int best = first;
+    for (int offset = first; offset <= last; ++offset) {
+      const auto symbol = static_cast<std::uint32_t>(offset);
+      const double share = static_cast<double>(likely.start(symbol + 1) - likely.start(symbol)) / 65536.0;
+      const double price = prices.price(number, offset) - std::log2(share);
+      if (price < least) best = offset, least = price;
+    }
+    prices.take(number, best);
+    samples.offsets[number] = static_cast<std::uint16_t>(best);
+  };
   items.edges([&](int z) { window.begin_slice(z); },
-              [&](int axis, int x, int y, int z, std::uint32_t number) {
-                const auto [first, last] = prices.range(number);
-                if (first < last) {
-                  window.inputs(axis, x, y, z, inputs);
-                  const OffsetDistribution likely(network.predict(axis, inputs), samples.offset_bits);
-                  double least = std::numeric_limits<double>::infinity();
-                  int best = first;
-                  for (int offset = first; offset <= last; ++offset) {
-                    const auto symbol = static_cast<std::uint32_t>(offset);
-                    const double share = static_cast<double>(likely.start(symbol + 1) - likely.start(symbol)) / 65536.0;
-                    const double price = prices.price(number, offset) - std::log2(share);
-                    if (price < least) best = offset, least = price;
-                  }
-                  prices.take(number, best);
-                  samples.offsets[number] = static_cast<std::uint16_t>(best);
-                }
-                window.store(axis, x, y, z, middle_of(samples.offsets[number], samples.offset_bits));
+              [&](int axis, int y, int z, std::span<const std::uint8_t> xs, std::uint32_t number) {
+                rows.row(axis, y, z, xs, [&](std::size_t i, const OffsetEstimate& estimate) {
+                  const auto edge = static_cast<std::uint32_t>(number + i);
+                  choose(edge, estimate);
+                  return middle_of(samples.offsets[edge], samples.offset_bits);
+                });
               });
 }
 
@@ -179,25 +184,29 @@ Result<void> decode_samples(std::span<const std::string_view> offsets, std::span
       const OffsetTable& table = OffsetTable::instance();
       OffsetWindow window(items.signs());
       RangeDecoder in(offsets[slot].substr(1));
-      OffsetInputs inputs;
+      OffsetRows rows(network, window, items.signs());
       items.edges([&](int z) { window.begin_slice(z); },
-                  [&](int axis, int x, int y, int z, std::uint32_t number) {
-                    window.inputs(axis, x, y, z, inputs);
-                    const OffsetEstimate estimate = network.predict(axis, inputs);
-                    std::uint32_t symbol = 0;
-                    if (bits == OffsetTable::kBits) {
-                      const OffsetTable::Starts& starts = table.starts(estimate);
-                      symbol = OffsetTable::find(starts, in.place());
-                      in.symbol(starts[symbol], OffsetTable::end(starts, symbol) - starts[symbol]);
-                    } else {
-                      const OffsetDistribution likely(estimate, bits);
-                      symbol = likely.find(in.place());
-                      const std::uint32_t start = likely.start(symbol);
-                      in.symbol(start, likely.start(symbol + 1) - start);
-                    }
-                    const std::uint32_t offset = symbol << rest | in.raw(rest);
-                    samples.offsets[number] = static_cast<std::uint16_t>(offset);
-                    window.store(axis, x, y, z, middle_of(offset, samples.offset_bits));
+                  [&](int axis, int y, int z, std::span<const std::uint8_t> xs, std::uint32_t number) {
+                    RangeDecoder own = in;  // in registers
+                    std::uint16_t* to = samples.offsets.data() + number;
+                    rows.row(axis, y, z, xs,
+                             [&own, &table, to, bits, rest](std::size_t k, const OffsetEstimate& estimate) {
+                               std::uint32_t symbol = 0;
+                               if (bits == OffsetTable::kBits) {
+                                 const OffsetTable::Starts& starts = table.starts(estimate);
+                                 symbol = OffsetTable::find(starts, own.place());
+                                 own.symbol(starts[symbol], OffsetTable::end(starts, symbol) - starts[symbol]);
+                               } else {
+                                 const OffsetDistribution likely(estimate, bits);
+                                 symbol = likely.find(own.place());
+                                 const std::uint32_t start = likely.start(symbol);
+                                 own.symbol(start, likely.start(symbol + 1) - start);
+                               }
+                               const std::uint32_t offset = symbol << rest | own.raw(rest);
+                               to[k] = static_cast<std::uint16_t>(offset);
+                               return middle_of(offset, bits + rest);
+                             });
+                    in = own;
                   });
     }
     if (!faces[slot].empty()) {

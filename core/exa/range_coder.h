@@ -117,12 +117,9 @@ class RangeDecoder {
   bool bit(std::uint32_t p) noexcept {
     const std::uint32_t bound = (range_ >> 16) * p;
     const bool value = code_ < bound;
-    if (value) {
-      range_ = bound;
-    } else {
-      code_ -= bound;
-      range_ -= bound;
-    }
+    const std::uint32_t above = std::uint32_t{value} - 1;  // all ones for a 0: no branch, it would be guessed wrong
+    code_ -= bound & above;
+    range_ = bound + ((range_ - 2 * bound) & above);
     normalise();
     return value;
   }
@@ -140,7 +137,11 @@ class RangeDecoder {
   void symbol(std::uint32_t start, std::uint32_t size) noexcept {
     code_ -= range_ * start;
     range_ *= size;
-    normalise();
+    // Two bytes at most, without a branch, as in a third of all symbols there is one.
+    const unsigned bytes = (range_ < (1u << 24) ? 1u : 0u) + (range_ < (1u << 16) ? 1u : 0u);
+    code_ = code_ << (8 * bytes) | peek_two() >> (16 - 8 * bytes);
+    range_ <<= 8 * bytes;
+    used_ += bytes;
   }
   std::uint32_t raw(int count) noexcept {
     if (count == 0) return 0;
@@ -156,7 +157,11 @@ class RangeDecoder {
       code_ = code_ << 8 | next();
     }
   }
-  std::uint32_t next() noexcept { return used_ < bytes_.size() ? static_cast<unsigned char>(bytes_[used_++]) : 0u; }
+  std::uint32_t at(std::size_t i) const noexcept {
+    return i < bytes_.size() ? static_cast<unsigned char>(bytes_[i]) : 0u;
+  }
+  std::uint32_t next() noexcept { return at(used_++); }
+  std::uint32_t peek_two() const noexcept { return at(used_) << 8 | at(used_ + 1); }
   std::string_view bytes_;
   std::size_t used_ = 0;
   std::uint32_t code_ = 0, range_ = 0xFFFFFFFFu;

@@ -2,18 +2,20 @@
 // The walk over a brick of signs from a lattice of spacing 8 to one of spacing 1 (docs/exa.md, "Signs"). Encoder and
 // decoder walk the same way; a Coder says what a bit is:
 //   bool flag(int context, int level, int x, int y, int z)   does this cell of equal corners hide a surface?
-//   void begin(const SignLattice&, int level, int phase)                  points of this phase follow
-//   bool point(const SignLattice&, int level, int x, int y, int z)        the sign of a point
+//   void begin(const SignLattice&, int level, int phase)           points of this phase follow
+//   void row(SignLattice&, int level, int y, int z, std::span<const std::uint8_t> xs)    sets the signs of some points
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "core/exa/bit_spread.h"
 #include "core/exa/sign_lattice.h"
+#include "core/exa/sign_surroundings.h"
 
 namespace dubsar {
 
@@ -24,14 +26,16 @@ inline constexpr int kFlagContexts = 3 * 28;  ///< level 3, 2, 1; corners; mixed
 
 class SignBrick {
  public:
-  /// `top`: signs of the lattice of spacing 8, at most 16 cells along an axis.
-  explicit SignBrick(SignLattice top) : lattice_(std::move(top)) {}
+  /// `top`: signs of the lattice of spacing 8, at most 16 cells along an axis. `around`: nullptr when nothing is known
+  /// of other bricks; must outlive the refining.
+  explicit SignBrick(SignLattice top, const SignSurroundings* around = nullptr)
+      : lattice_(std::move(top)), around_(around) {}
 
   /// From the lattice of spacing 2^(level + 1) to that of 2^level, level = 2, 1, 0 in this order.
   template <class Coder>
   void refine(Coder& coder, int level) {
     find_active(coder, level + 1);
-    refine_without_surface();
+    refine_without_surface(level);
     for (const int phase : kSignPhases) code_phase(coder, level, phase);
   }
   const SignLattice& lattice() const noexcept { return lattice_; }
@@ -96,9 +100,9 @@ class SignBrick {
   static RowSigns doubled(std::uint64_t w) { return {spread_bits(w), spread_bits(w >> 32), 0}; }
 
   /// The next finer lattice with the signs that are known: those of this one, and those of inactive cells.
-  void refine_without_surface() {
+  void refine_without_surface(int level) {
     const auto& n = lattice_.cells();
-    SignLattice fine({2 * n[0], 2 * n[1], 2 * n[2]});
+    SignLattice fine({2 * n[0], 2 * n[1], 2 * n[2]}, around_ ? around_->open() : 0);
     std::vector<RowSigns> inside(rows(lattice_));  // points of inactive cells of sign 1, by rows of cells
     for (int z = 0; z < n[2]; ++z)
       for (int y = 0; y < n[1]; ++y) {
@@ -119,6 +123,7 @@ class SignBrick {
             for (std::size_t w = 0; w < 3; ++w) row[w] |= inside[at(cy, cz)][w];
         if ((row[0] | row[1] | row[2]) != 0) fine.assign_row(y, z, row);
       }
+    if (around_) around_->fill(fine, level);
     fine.mirror();
     lattice_ = std::move(fine);
   }
@@ -128,6 +133,7 @@ class SignBrick {
   void code_phase(Coder& coder, int level, int phase) {
     const auto& n = lattice_.cells();
     const int parents_x = n[0] / 2, parents_y = n[1] / 2, parents_z = n[2] / 2;
+    std::array<std::uint8_t, 130> xs;
     coder.begin(lattice_, level, phase);
     for (int z = phase >> 2 & 1; z <= n[2]; z += 2)
       for (int y = phase >> 1 & 1; y <= n[1]; y += 2) {
@@ -137,22 +143,33 @@ class SignBrick {
             if (pz >= 0 && py >= 0 && pz < parents_z && py < parents_y)
               all &= active_[static_cast<std::size_t>(pz * parents_y + py)];
         if (all == 0) continue;
+        int count = 0;
         if (phase & 1) {
-          for (; all != 0; all &= all - 1) code_point(coder, level, 2 * std::countr_zero(all) + 1, y, z);
-          continue;
+          for (; all != 0; all &= all - 1) xs[count++] = static_cast<std::uint8_t>(2 * std::countr_zero(all) + 1);
+        } else {
+          const bool last = all >> (parents_x - 1) & 1;
+          for (std::uint64_t even = (all << 1 | 1) & all; even != 0; even &= even - 1)
+            xs[count++] = static_cast<std::uint8_t>(2 * std::countr_zero(even));
+          if (last) xs[count++] = static_cast<std::uint8_t>(n[0]);
         }
-        const bool last = all >> (parents_x - 1) & 1;
-        std::uint64_t even = (all << 1 | 1) & all;
-        for (; even != 0; even &= even - 1) code_point(coder, level, 2 * std::countr_zero(even), y, z);
-        if (last) code_point(coder, level, n[0], y, z);
+        const std::span<const std::uint8_t> open = unknown({xs.data(), static_cast<std::size_t>(count)}, y, z, level);
+        if (!open.empty()) coder.row(lattice_, level, y, z, open);
       }
   }
-  template <class Coder>
-  void code_point(Coder& coder, int level, int x, int y, int z) {
-    if (coder.point(lattice_, level, x, y, z)) lattice_.set(x, y, z);
+  /// Those of rising points of a row that the bricks beside this one do not have.
+  std::span<const std::uint8_t> unknown(std::span<const std::uint8_t> xs, int y, int z, int level) const {
+    if (!around_ || lattice_.open_sides() == 0 || !around_->inside(y, z, level)) return xs;
+    const auto& n = lattice_.cells();
+    const bool side = (y == 0 && lattice_.open(1, 0)) || (y == n[1] && lattice_.open(1, 1)) ||
+                      (z == 0 && lattice_.open(2, 0)) || (z == n[2] && lattice_.open(2, 1));
+    const int known = side ? around_->last_x(level) : lattice_.open(0, 0) ? 0 : -1;
+    while (!xs.empty() && xs.front() <= known) xs = xs.subspan(1);
+    if (!xs.empty() && xs.back() == n[0] && lattice_.open(0, 1)) xs = xs.first(xs.size() - 1);
+    return xs;
   }
 
   SignLattice lattice_;
+  const SignSurroundings* around_;
   std::vector<std::uint64_t> active_;  ///< one word of cells for each row (z, y) of the lattice before the last refine
 };
 

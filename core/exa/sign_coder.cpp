@@ -29,9 +29,4 @@ void SignStatistics::begin(const SignLattice& lattice, int level, int phase) noe
   place_ = model_->place(lattice, index, level_class);
 }
 
-std::uint32_t SignStatistics::predict(int x, int y, int z) noexcept {
-  const std::uint32_t p = refiner_->predict(SignModel::logit(place_, x, y, z));
-  return std::clamp<std::uint32_t>(p, 16, kProbabilityOne - 16);
-}
-
 }  // namespace dubsar

@@ -1,6 +1,6 @@
 #pragma once
-// Signs of a brick on one lattice, with a border in which the brick is mirrored, so that the surroundings of a point
-// are read without looking where the brick ends.
+// Signs of a brick on one lattice, with a border in which the brick is mirrored or the bricks beside it continue, so
+// that the surroundings of a point are read without looking where the brick ends.
 
 #include <array>
 #include <bit>
@@ -15,13 +15,17 @@ class SignLattice {
   static constexpr int kReach = 3;  ///< the border is as wide as the window of the model
 
   SignLattice() = default;
-  /// `cells` along each axis, at most 128; points 0..cells. All signs are 0.
-  explicit SignLattice(const std::array<int, 3>& cells)
+  /// `cells` along each axis, at most 128; points 0..cells. All signs are 0. `open`: bit 2 axis + (0 low, 1 high): on
+  /// this side another brick is known (sign_surroundings.h), whose signs stand in the border instead of the mirror.
+  explicit SignLattice(const std::array<int, 3>& cells, unsigned open = 0)
       : cells_(cells),
+        open_(open),
         plane_((cells[1] + 1 + 2 * kReach) * kRowBytes),
         bytes_(static_cast<std::size_t>((cells[2] + 1 + 2 * kReach) * plane_ + 2 * kRowBytes)) {}
 
   const std::array<int, 3>& cells() const noexcept { return cells_; }
+  unsigned open_sides() const noexcept { return open_; }
+  bool open(std::size_t axis, int side) const noexcept { return open_ >> (2 * axis + static_cast<unsigned>(side)) & 1; }
   bool get(int x, int y, int z) const noexcept { return row(y, z)[(x + 8) >> 3] >> (x & 7) & 1; }
   /// Sets a sign to 1, here and in the mirror. A place outside the brick, up to 3 away, mirrors the point at the same
   /// distance on the other side of the border, if the brick has it, and otherwise is 0.
@@ -42,9 +46,32 @@ class SignLattice {
     if (cells_[0] <= kReach && get(cells_[0], y, z)) set_row(cells_[0], y, z);
     if (cells_[0] <= kReach && get(0, y, z)) set_row(0, y, z);
   }
-  /// Fills the border from rows set by assign_row().
+  /// Sets the signs of x = -3..0 of a row, in this order from bit 0 on; of x = cells..cells + 3.
+  void assign_low(int y, int z, std::uint64_t signs) noexcept { assign_four(y, z, -kReach, signs); }
+  void assign_high(int y, int z, std::uint64_t signs) noexcept { assign_four(y, z, cells_[0], signs); }
+  /// Sets signs of a row that bits x + 8 of three words say to 1, and their mirrors.
+  void merge(int y, int z, const std::array<std::uint64_t, 3>& words) noexcept {
+    if (inner(y, 1) && inner(z, 2)) {
+      unsigned char* at = bytes_.data() + offset(y, z);
+      for (std::size_t w = 0; w < 3; ++w) {
+        const std::uint64_t word = load(at + 8 * w) | words[w];
+        std::memcpy(at + 8 * w, &word, sizeof word);
+      }
+      for (const int x : {1, 2, 3, cells_[0] - 3, cells_[0] - 2, cells_[0] - 1})
+        if (words[static_cast<std::size_t>((x + 8) >> 6)] >> ((x + 8) & 63) & 1) set_row(x, y, z);
+      return;
+    }
+    for (std::size_t w = 0; w < 3; ++w)
+      for (std::uint64_t rest = words[w]; rest != 0; rest &= rest - 1)
+        set(static_cast<int>(64 * w) + std::countr_zero(rest) - 8, y, z);
+  }
+  /// Could a sign of this row, once set, be seen again in the mirror by later points of the row?
+  bool mirrors_itself(int y, int z) const noexcept {
+    return y < 2 || z < 2 || y > cells_[1] - 2 || z > cells_[2] - 2 || cells_[0] <= 2 * kReach;
+  }
+  /// Fills the border from rows set by assign_row(), where no other brick is known.
   void mirror() noexcept {
-    for (int z = 0; z <= cells_[2]; ++z)
+    for (int z = -kReach; z <= cells_[2] + kReach; ++z)
       mirror_axis(
           1, [&](int y) { return bytes_.data() + offset(y, z); }, kRowBytes);
     const std::size_t bytes = static_cast<std::size_t>(plane_);
@@ -84,9 +111,15 @@ class SignLattice {
   void mirror_axis(std::size_t axis, const At& at, std::ptrdiff_t bytes) noexcept {
     const int n = cells_[axis];
     for (int k = 1; k <= kReach && k <= n; ++k) {
-      std::memcpy(at(-k), at(k), static_cast<std::size_t>(bytes));
-      std::memcpy(at(n + k), at(n - k), static_cast<std::size_t>(bytes));
+      if (!open(axis, 0)) std::memcpy(at(-k), at(k), static_cast<std::size_t>(bytes));
+      if (!open(axis, 1)) std::memcpy(at(n + k), at(n - k), static_cast<std::size_t>(bytes));
     }
+  }
+  void assign_four(int y, int z, int x, std::uint64_t signs) noexcept {
+    unsigned char* at = bytes_.data() + offset(y, z) + ((x + 8) >> 3);
+    const int shift = (x + 8) & 7;
+    const std::uint64_t word = (load(at) & ~(std::uint64_t{15} << shift)) | signs << shift;
+    std::memcpy(at, &word, sizeof word);
   }
   static constexpr int kNone = -100;
 
@@ -101,7 +134,8 @@ class SignLattice {
   bool inner(int c, std::size_t axis) const noexcept { return c > kReach && c < cells_[axis] - kReach; }
   std::array<int, 3> mirrors(int c, std::size_t axis) const noexcept {
     const int n = cells_[axis];
-    return {c, c >= 1 && c <= kReach ? -c : kNone, c <= n - 1 && c >= n - kReach ? 2 * n - c : kNone};
+    return {c, c >= 1 && c <= kReach && !open(axis, 0) ? -c : kNone,
+            c <= n - 1 && c >= n - kReach && !open(axis, 1) ? 2 * n - c : kNone};
   }
   void set_bit(int x, int y, int z) noexcept {
     // A whole word, so that reading the bits next to it does not wait for a store of another width.
@@ -118,6 +152,7 @@ class SignLattice {
   }
 
   std::array<int, 3> cells_{};
+  unsigned open_ = 0;
   std::ptrdiff_t plane_ = 0;
   std::vector<unsigned char> bytes_;
 };

@@ -14,51 +14,86 @@ namespace dubsar::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Sum of the units times their weights. Integers: the same on every target.
+constexpr unsigned kBefore = 2;  ///< of a window x - 3 .. x + 3: the bit of x - 2
+
+/// Sums of the units times their weights. Integers: the same on every target.
 #if HWY_TARGET == HWY_SCALAR
-std::int32_t weigh(const SignModel::Place& place, const unsigned char* here, int shift) {
-  const SignModel::Phase& phase = *place.phase;
-  std::array<std::int16_t, kSignUnits> sum{};
-  std::copy_n(phase.bias.front().data(), place.units, sum.data());
-  const std::int16_t* sums = phase.sums.front().data();
-  for (std::size_t r = 0; r < phase.rows.size(); ++r) {
-    std::uint16_t bits;
-    std::memcpy(&bits, here + place.steps[r], sizeof bits);
-    const std::int16_t* add = sums + phase.rows[r].at[bits >> shift & 127] * place.units;
-    for (std::size_t u = 0; u < place.units; ++u) sum[u] = static_cast<std::int16_t>(sum[u] + add[u]);
-  }
-  const std::int16_t* out = phase.out.front().data();
+std::int32_t scaled_sum(const SignModel::Place& place, const std::int16_t* sum, const std::int16_t* add) {
+  const std::int16_t* out = place.phase->out.front().data();
   std::int32_t total = 0;
   for (std::size_t u = 0; u < place.units; ++u)
-    total += std::int32_t{std::clamp<std::int16_t>(sum[u], 0, 1023)} * out[u];
+    total += std::int32_t{std::clamp<std::int16_t>(static_cast<std::int16_t>(sum[u] + add[u]), 0, 1023)} * out[u];
   return total;
+}
+
+void weigh(const SignModel::Place& place, const unsigned char* row, std::span<const std::uint8_t> xs,
+           std::int32_t* totals) {
+  const SignModel::Phase& phase = *place.phase;
+  const std::int16_t* sums = phase.sums.front().data();
+  for (std::size_t i = 0; i < xs.size(); ++i) {
+    const unsigned char* here = row + ((xs[i] + 5) >> 3);
+    const int shift = (xs[i] + 5) & 7;
+    const auto window = [&](std::size_t r) {
+      std::uint16_t bits;
+      std::memcpy(&bits, here + place.steps[r], sizeof bits);
+      return bits >> shift & 127u;
+    };
+    std::array<std::int16_t, kSignUnits> sum{};
+    std::copy_n(phase.bias.front().data(), place.units, sum.data());
+    const std::size_t own = phase.rows.size() - 1;
+    for (std::size_t r = 0; r < own; ++r) {
+      const std::int16_t* add = sums + phase.rows[r].at[window(r)] * place.units;
+      for (std::size_t u = 0; u < place.units; ++u) sum[u] = static_cast<std::int16_t>(sum[u] + add[u]);
+    }
+    const auto& at = phase.rows[own].at;
+    totals[2 * i] = scaled_sum(place, sum.data(), sums + at[window(own)] * place.units);
+    const bool open = i > 0 && xs[i] == xs[i - 1] + 2;
+    totals[2 * i + 1] =
+        open ? scaled_sum(place, sum.data(), sums + at[window(own) | kBefore] * place.units) : totals[2 * i];
+  }
 }
 #else
 template <std::size_t kUnits>
-HWY_INLINE std::int32_t weigh_units(const SignModel::Place& place, const unsigned char* here, int shift) {
+HWY_INLINE void weigh_units(const SignModel::Place& place, const unsigned char* row, std::span<const std::uint8_t> xs,
+                            std::int32_t* totals) {
   const hn::CappedTag<std::int16_t, std::min<std::size_t>(kUnits, 32)> d;
   const hn::RepartitionToWide<decltype(d)> d32;
   constexpr std::size_t kWidth = hn::MaxLanes(decltype(d)()), kVectors = kUnits / kWidth;
+  using V = hn::Vec<decltype(d)>;
   const SignModel::Phase& phase = *place.phase;
-  const std::int16_t* sums = phase.sums.front().data();
+  const std::int16_t *sums = phase.sums.front().data(), *out = phase.out.front().data();
   const SignModel::Row* rows = phase.rows.data();
-  hn::Vec<decltype(d)> sum[kVectors];
-  for (std::size_t v = 0; v < kVectors; ++v) sum[v] = hn::Load(d, phase.bias.front().data() + v * kWidth);
-  for (std::size_t r = 0, count = phase.rows.size(); r < count; ++r) {
-    std::uint16_t bits;
-    std::memcpy(&bits, here + place.steps[r], sizeof bits);
-    const std::int16_t* add = sums + rows[r].at[bits >> shift & 127] * kUnits;
-    for (std::size_t v = 0; v < kVectors; ++v) sum[v] = hn::Add(sum[v], hn::Load(d, add + v * kWidth));
+  const std::size_t own = phase.rows.size() - 1;
+  for (std::size_t i = 0; i < xs.size(); ++i) {
+    const unsigned char* here = row + ((xs[i] + 5) >> 3);
+    const int shift = (xs[i] + 5) & 7;
+    const auto weights = [&](std::size_t r, unsigned set) HWY_ATTR {
+      std::uint16_t bits;
+      std::memcpy(&bits, here + place.steps[r], sizeof bits);
+      return sums + rows[r].at[(bits >> shift & 127u) | set] * kUnits;
+    };
+    V sum[kVectors];
+    for (std::size_t v = 0; v < kVectors; ++v) sum[v] = hn::Load(d, phase.bias.front().data() + v * kWidth);
+    for (std::size_t r = 0; r < own; ++r) {
+      const std::int16_t* add = weights(r, 0);
+      for (std::size_t v = 0; v < kVectors; ++v) sum[v] = hn::Add(sum[v], hn::Load(d, add + v * kWidth));
+    }
+    const auto total = [&](const std::int16_t* add) HWY_ATTR {
+      auto even = hn::Zero(d32), odd = hn::Zero(d32);
+      for (std::size_t v = 0; v < kVectors; ++v) {
+        const V all = hn::Add(sum[v], hn::Load(d, add + v * kWidth));
+        const V unit = hn::Min(hn::Max(all, hn::Zero(d)), hn::Set(d, std::int16_t{1023}));
+        even = hn::ReorderWidenMulAccumulate(d32, unit, hn::Load(d, out + v * kWidth), even, odd);
+      }
+      return hn::GetLane(hn::SumOfLanes(d32, hn::Add(even, odd)));
+    };
+    totals[2 * i] = total(weights(own, 0));
+    totals[2 * i + 1] = i > 0 && xs[i] == xs[i - 1] + 2 ? total(weights(own, kBefore)) : totals[2 * i];
   }
-  auto even = hn::Zero(d32), odd = hn::Zero(d32);
-  for (std::size_t v = 0; v < kVectors; ++v) {
-    const auto unit = hn::Min(hn::Max(sum[v], hn::Zero(d)), hn::Set(d, std::int16_t{1023}));
-    even = hn::ReorderWidenMulAccumulate(d32, unit, hn::Load(d, phase.out.front().data() + v * kWidth), even, odd);
-  }
-  return hn::GetLane(hn::SumOfLanes(d32, hn::Add(even, odd)));
 }
-std::int32_t weigh(const SignModel::Place& place, const unsigned char* here, int shift) {
-  return place.units == 16 ? weigh_units<16>(place, here, shift) : weigh_units<64>(place, here, shift);
+void weigh(const SignModel::Place& place, const unsigned char* row, std::span<const std::uint8_t> xs,
+           std::int32_t* totals) {
+  place.units == 16 ? weigh_units<16>(place, row, xs, totals) : weigh_units<64>(place, row, xs, totals);
 }
 #endif
 
@@ -138,10 +173,25 @@ SignModel::Place SignModel::place(const SignLattice& lattice, std::size_t phase_
   return place;
 }
 
+namespace {
+std::int16_t logit_of(const SignModel::Place& place, std::int32_t total) {
+  return static_cast<std::int16_t>(std::clamp((total >> 3) + place.out_bias, -2047, 2047));
+}
+}  // namespace
+
 int SignModel::logit(const Place& place, int x, int y, int z) noexcept {
-  const unsigned char* here = place.lattice->row(y, z) + ((x + 5) >> 3);
-  const std::int32_t total = place.weigh(place, here, (x + 5) & 7);
-  return std::clamp((total >> 3) + place.out_bias, -2047, 2047);
+  const auto at = static_cast<std::uint8_t>(x);
+  std::array<std::int32_t, 2> totals;
+  place.weigh(place, place.lattice->row(y, z), {&at, 1}, totals.data());
+  return logit_of(place, totals[0]);
+}
+
+void SignModel::row_logits(const Place& place, int y, int z, std::span<const std::uint8_t> xs,
+                           SignLogits* out) noexcept {
+  std::array<std::int32_t, 260> totals;
+  place.weigh(place, place.lattice->row(y, z), xs, totals.data());
+  for (std::size_t i = 0; i < xs.size(); ++i)
+    out[i] = {logit_of(place, totals[2 * i]), logit_of(place, totals[2 * i + 1])};
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <vector>
 
 #include "core/exa/sign_brick.h"
@@ -34,6 +35,9 @@ struct SignWeights {
   std::array<std::int16_t, 3> out_bias{};  ///< by level_class
 };
 
+/// Logits of a point, if the one two before it is outside, and if it is inside.
+using SignLogits = std::array<std::int16_t, 2>;
+
 class SignModel {
  public:
   /// The network of a model, built on first use from the tables of weights; thread-safe.
@@ -61,13 +65,18 @@ class SignModel {
     const Phase* phase = nullptr;
     std::size_t units = 0;
     int out_bias = 0;
-    std::int32_t (*weigh)(const Place&, const unsigned char* here, int shift) = nullptr;  ///< for this processor
+    /// For this processor: sums of some points of a row; both of each the same, where the point before is known.
+    void (*weigh)(const Place&, const unsigned char* row, std::span<const std::uint8_t> xs,
+                  std::int32_t* sums) = nullptr;
     std::array<std::ptrdiff_t, kRows> steps{};  ///< bytes from the row of a point to those of phase->rows
   };
   /// `phase_index`: place in kSignPhases. The lattice must outlive it and not be exchanged.
   Place place(const SignLattice& lattice, std::size_t phase_index, std::size_t level_class) const;
   /// In 1 / 256, clamped to +-2047.
   static int logit(const Place& place, int x, int y, int z) noexcept;
+  /// Of rising points of a row, none of which is set yet; the first of a pair is the only one that counts where x - 2
+  /// is not among them, and the second is the same then.
+  static void row_logits(const Place& place, int y, int z, std::span<const std::uint8_t> xs, SignLogits* out) noexcept;
 
  private:
   std::size_t units_;

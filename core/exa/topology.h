@@ -1,6 +1,6 @@
 #pragma once
-// The signs of a volume as bytes (docs/exa.md, "Signs"). In bricks of 128 cells, each of which can be read without the
-// others, and in levels: every eighth point first, then spacing 4, 2 and 1.
+// The signs of a volume as bytes (docs/exa.md, "Signs"). In bricks of 128 cells, which can be read alone or with those
+// beside them, and in levels: every eighth point first, then spacing 4, 2 and 1.
 
 #include <array>
 #include <optional>
@@ -30,6 +30,7 @@ struct SignCode {
 
 /// The same chunks, borrowed. A level that is not wanted may be empty.
 struct SignChunks {
+  bool apart = false;  ///< as before version 5: bricks do not know of each other
   std::vector<std::string_view> coarse;
   std::array<std::vector<std::string_view>, 3> bricks;
 };
@@ -45,11 +46,15 @@ struct GridBox {
   std::array<std::int64_t, 3> low{}, high{};
 };
 
+/// The bricks that decode_signs() needs for a box, 1 for each: those that touch it, and unless they are `apart` those
+/// beside them that they know.
+std::vector<std::uint8_t> bricks_of_box(const Dims& dims, const GridBox& box, bool apart);
+
 /// `dims` must have passed check_dims. `level` 0..3: only the points of spacing 2^level, whose volume has
-/// level_dims(dims, level) points. `box`: only bricks that touch it, with the points of all their sides; elsewhere the
-/// signs are 0. kBadData when the number of chunks is wrong or more than `most_points` signs are coded, which bounds
-/// the time that damaged bytes can take; kTryAgain when the volume does not fit in memory. Bytes that are no sign code
-/// give other signs. All threads.
+/// level_dims(dims, level) points. `box`: only bricks_of_box(), with the points of all their sides; elsewhere
+/// the signs are 0. kBadData when the number of chunks is wrong or more than `most_points` signs are coded, which
+/// bounds the time that damaged bytes can take; kTryAgain when the volume does not fit in memory. Bytes that are no
+/// sign code give other signs. All threads.
 Result<BitVolume> decode_signs(const SignChunks& chunks, const Dims& dims, int level, const std::optional<GridBox>& box,
                                std::uint64_t most_points, Progress& progress);
 

@@ -5,13 +5,14 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
+#include <optional>
 
 #include "core/base/parallel.h"
 
 namespace dubsar {
 namespace {
 
-constexpr std::int64_t kCurvatureGrain = 8192;
+constexpr std::int64_t kCurvatureGrain = 8192, kBlockVertices = 32768;
 
 struct Corners {
   std::array<glm::vec3, 4> position, normal;
@@ -36,55 +37,89 @@ Corners corners_of(const QuadMesh& mesh, std::span<const glm::vec3> normals, std
   return corners;
 }
 
-/// Sums of the normal equations of min sum |S u - d|^2, S = [a b; b c].
-class ShapeOperatorFit {
- public:
-  void add(glm::vec2 u, glm::vec2 d) {
-    uu_ += u.x * u.x;
-    uv_ += u.x * u.y;
-    vv_ += u.y * u.y;
-    a_ += u.x * d.x;
-    b_ += u.x * d.y + u.y * d.x;
-    c_ += u.y * d.y;
-  }
-  /// Eigenvalues of S, smaller first.
-  glm::vec2 principal() const {
-    // The small ridge keeps collinear differences solvable (S is then 0 across them); relative error 1e-5.
-    const double ridge = 1e-5 * (static_cast<double>(uu_) + static_cast<double>(vv_));
-    if (!(ridge > 0.0)) return glm::vec2(0.0f);
-    const double uu = static_cast<double>(uu_) + ridge, vv = static_cast<double>(vv_) + ridge;
-    const double uv = static_cast<double>(uv_), x = static_cast<double>(a_), z = static_cast<double>(c_);
-    const double b = (static_cast<double>(b_) - uv * (x / uu + z / vv)) / ((uu + vv) * (1.0 - uv * uv / (uu * vv)));
-    const double a = (x - b * uv) / uu, c = (z - b * uv) / vv;
-    const double mean = 0.5 * (a + c), half = std::sqrt(0.25 * (a - c) * (a - c) + b * b);
-    return {static_cast<float>(mean - half), static_cast<float>(mean + half)};
-  }
+/// What an x-quad adds to the normal equations of min sum |S u - d|^2 around each of its vertices, before it is known
+/// in which plane: sums over its differences u of positions and d of normals of u u^T (xx xy xz yy yz zz) and u d^T
+/// (rows), and one number that is not used.
+struct alignas(64) Moments : std::array<float, 16> {};
 
- private:
-  float uu_ = 0, uv_ = 0, vv_ = 0, a_ = 0, b_ = 0, c_ = 0;
-};
+Moments moments_of(const Corners& corners) {
+  const auto &p = corners.position, &n = corners.normal;
+  const std::array<glm::vec3, 4> u{p[2] - p[0], p[3] - p[1], 0.5f * (p[1] + p[2] - p[0] - p[3]),
+                                   0.5f * (p[2] + p[3] - p[0] - p[1])},
+      d{n[2] - n[0], n[3] - n[1], 0.5f * (n[1] + n[2] - n[0] - n[3]), 0.5f * (n[2] + n[3] - n[0] - n[1])};
+  Moments m{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const glm::vec3 a = u[k], b = d[k];
+    const std::array<float, 15> add{a.x * a.x, a.x * a.y, a.x * a.z, a.y * a.y, a.y * a.z,
+                                    a.z * a.z, a.x * b.x, a.x * b.y, a.x * b.z, a.y * b.x,
+                                    a.y * b.y, a.y * b.z, a.z * b.x, a.z * b.y, a.z * b.z};
+    for (std::size_t i = 0; i < 15; ++i) m[i] += add[i];
+  }
+  return m;
+}
 
-glm::vec2 fitted(const QuadMesh& mesh, std::span<const glm::vec3> normals, std::uint32_t vertex) {
-  const glm::vec3 origin = mesh.positions[vertex], n = normals[vertex];
+/// Eigenvalues of S = [a b; b c], smaller first, in the tangent plane of a normal.
+glm::vec2 principal(const Moments& m, const glm::vec3& n) {
   // Tangent frame without branches (Duff et al. 2017).
   const float sign = std::copysign(1.0f, n.z), p = -1.0f / (sign + n.z), q = n.x * n.y * p;
   const glm::vec3 e0(1.0f + sign * n.x * n.x * p, sign * q, -sign * n.x), e1(q, sign + n.y * n.y * p, -n.y);
-  ShapeOperatorFit fit;
-  for (const std::uint32_t quad : mesh.quads_of(vertex)) {
-    const Corners corners = corners_of(mesh, normals, quad);
-    std::array<glm::vec2, 4> u, d;
-    for (std::size_t c = 0; c < 4; ++c) {
-      const glm::vec3 r = corners.position[c] - origin;
-      u[c] = {glm::dot(r, e0), glm::dot(r, e1)};
-      d[c] = {glm::dot(corners.normal[c], e0), glm::dot(corners.normal[c], e1)};
-    }
-    fit.add(u[2] - u[0], d[2] - d[0]);
-    fit.add(u[3] - u[1], d[3] - d[1]);
-    fit.add(0.5f * (u[1] + u[2] - u[0] - u[3]), 0.5f * (d[1] + d[2] - d[0] - d[3]));
-    fit.add(0.5f * (u[2] + u[3] - u[0] - u[1]), 0.5f * (d[2] + d[3] - d[0] - d[1]));
-  }
-  return fit.principal();
+  const auto squared = [&m](const glm::vec3& e) {
+    return glm::vec3(m[0] * e.x + m[1] * e.y + m[2] * e.z, m[1] * e.x + m[3] * e.y + m[4] * e.z,
+                     m[2] * e.x + m[4] * e.y + m[5] * e.z);
+  };
+  const auto turned = [&m](const glm::vec3& e) {
+    return glm::vec3(m[6] * e.x + m[7] * e.y + m[8] * e.z, m[9] * e.x + m[10] * e.y + m[11] * e.z,
+                     m[12] * e.x + m[13] * e.y + m[14] * e.z);
+  };
+  const glm::vec3 u1 = squared(e1), d0 = turned(e0), d1 = turned(e1);
+  const double uu0 = static_cast<double>(glm::dot(e0, squared(e0))), vv0 = static_cast<double>(glm::dot(e1, u1));
+  // The small ridge keeps collinear differences solvable (S is then 0 across them); relative error 1e-5.
+  const double ridge = 1e-5 * (uu0 + vv0);
+  if (!(ridge > 0.0)) return glm::vec2(0.0f);
+  const double uu = uu0 + ridge, vv = vv0 + ridge, uv = static_cast<double>(glm::dot(e0, u1));
+  const double x = static_cast<double>(glm::dot(e0, d0)), z = static_cast<double>(glm::dot(e1, d1));
+  const double y = static_cast<double>(glm::dot(e0, d1)) + static_cast<double>(glm::dot(e1, d0));
+  const double b = (y - uv * (x / uu + z / vv)) / ((uu + vv) * (1.0 - uv * uv / (uu * vv)));
+  const double a = (x - b * uv) / uu, c = (z - b * uv) / vv;
+  const double mean = 0.5 * (a + c), half = std::sqrt(0.25 * (a - c) * (a - c) + b * b);
+  return {static_cast<float>(mean - half), static_cast<float>(mean + half)};
 }
+
+/// Moments of the x-quads around a block of vertices: their numbers lie close together, but for a few.
+class BlockMoments {
+ public:
+  BlockMoments(const QuadMesh& mesh, std::span<const glm::vec3> normals, std::int64_t begin, std::int64_t end)
+      : mesh_(mesh), normals_(normals) {
+    const auto around = std::span(mesh.incident)
+                            .subspan(mesh.first_incident[static_cast<std::size_t>(begin)],
+                                     mesh.first_incident[static_cast<std::size_t>(end)] -
+                                         mesh.first_incident[static_cast<std::size_t>(begin)]);
+    if (around.empty()) return;
+    first_ = *std::min_element(around.begin(), around.end());
+    const auto most = first_ + static_cast<std::uint64_t>(3 * (end - begin));
+    std::uint32_t last = first_;
+    for (const std::uint32_t quad : around)
+      if (quad > last && quad < most) last = quad;
+    moments_.resize(last - first_ + 1);
+    for (std::size_t i = 0; i < moments_.size(); ++i) moments_[i] = of(first_ + static_cast<std::uint32_t>(i));
+  }
+  glm::vec2 fitted(std::uint32_t vertex) const {
+    Moments sum{};
+    for (const std::uint32_t quad : mesh_.quads_of(vertex)) {
+      const Moments other = quad - first_ < moments_.size() ? Moments{} : of(quad);
+      const Moments& m = quad - first_ < moments_.size() ? moments_[quad - first_] : other;
+      for (std::size_t i = 0; i < 16; ++i) sum[i] += m[i];
+    }
+    return principal(sum, normals_[vertex]);
+  }
+
+ private:
+  Moments of(std::uint32_t quad) const { return moments_of(corners_of(mesh_, normals_, quad)); }
+  const QuadMesh& mesh_;
+  std::span<const glm::vec3> normals_;
+  std::uint32_t first_ = 0;
+  std::vector<Moments> moments_;
+};
 
 glm::vec2 diagonal_extremes(const QuadMesh& mesh, std::span<const glm::vec3> normals, std::uint32_t quad) {
   const Corners corners = corners_of(mesh, normals, quad);
@@ -135,12 +170,13 @@ Result<Curvatures> principal_curvatures(const QuadMesh& mesh, std::span<const gl
   Curvatures result;
   result.k_min.resize(normals.size());
   result.k_max.resize(normals.size());
-  parallel_chunks(mesh.vertex_count(), kCurvatureGrain, [&](std::int64_t begin, std::int64_t end) {
+  parallel_chunks(mesh.vertex_count(), kBlockVertices, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) return;
+    std::optional<BlockMoments> moments;
+    if (method == CurvatureMethod::kFit) moments.emplace(mesh, normals, begin, end);
     for (std::int64_t i = begin; i < end; ++i) {
       const auto v = static_cast<std::uint32_t>(i);
-      const glm::vec2 k =
-          method == CurvatureMethod::kPairs ? median_pair(mesh.quads_of(v), pairs) : fitted(mesh, normals, v);
+      const glm::vec2 k = moments ? moments->fitted(v) : median_pair(mesh.quads_of(v), pairs);
       result.k_min[v] = k.x;
       result.k_max[v] = k.y;
     }

@@ -35,10 +35,10 @@ def read_blocks(data):
 
     need(data[:8] == b"\x89EXA\r\n\x1a\n", "magic")
     major, _, count, size = struct.unpack_from("<HHIQ", data, 8)
-    need(major in (3, 4) and count <= 256 and size == len(data), "head")
+    need(major in (3, 4, 5) and count <= 256 and size == len(data), "head")
     end = 24 + 28 * count
     need(zlib.crc32(data[:end]) == struct.unpack_from("<I", data, end)[0], "sum of the table")
-    blocks, at = {}, end + 4
+    blocks, at = {"major": major}, end + 4
     for row in range(count):
         kind, codec, flags, offset, length, chunks = struct.unpack_from("<4sHHQQI", data, 24 + 28 * row)
         need(offset == at and codec == 0 and kind not in blocks, "table")
@@ -238,23 +238,51 @@ def bricks_of(dims):
     return [(x, y, z) for z, y, x in itertools.product(along[2], along[1], along[0])]
 
 
-class Lattice:
-    """Signs [z, y, x] with a border of 3 that mirrors."""
+class Around:
+    """What a brick knows of those beside it: `signs` [z, y, x] of the volume, its `low` and `cells`, z y x."""
 
-    def __init__(self, values):
+    def __init__(self, signs, low, cells):
+        self.signs, self.low = signs, low
+        self.open = [(low[a] > 0, low[a] + cells[a] < padded(signs.shape[a])) for a in range(3)]
+
+    def get(self, places, spacing):
+        """Signs at places of the brick's lattice; None beyond the volume."""
+        at = [self.low[a] + spacing * places[a] for a in range(3)]
+        return self.signs[tuple(at)] if all(0 <= at[a] < self.signs.shape[a] for a in range(3)) else None
+
+    def sides(self, n):
+        """The points of the open sides."""
+        for place in itertools.product(*(range(k + 1) for k in n)):
+            if any(self.open[a][side] and place[a] == (0, n[a])[side] for a in range(3) for side in range(2)):
+                yield place
+
+
+class Lattice:
+    """Signs [z, y, x] with a border of 3 that mirrors, or has the points of the bricks `around`."""
+
+    def __init__(self, values, around, spacing):
         self.n = [s - 1 for s in values.shape]
         self.a = np.zeros([s + 6 for s in values.shape], dtype=np.int8)
-        index = [[c if 0 <= c <= n else -c if -n <= c < 0 else 2 * n - c if n < c <= 2 * n else None
-                  for c in range(-3, n + 4)] for n in self.n]
-        self.sources = index
+        # Along each axis: the place that is read; None: outside, of no brick; behind: of a brick beside this one.
+        index, behind = [], []
+        for axis, n in enumerate(self.n):
+            low, high = around.open[axis] if around else (False, False)
+            behind.append([(low and c < 0) or (high and c > n) for c in range(-3, n + 4)])
+            mirrored = [c if 0 <= c <= n or b else -c if -n <= c < 0 else 2 * n - c if n < c <= 2 * n else None
+                        for c, b in zip(range(-3, n + 4), behind[-1])]
+            index.append(mirrored)
         for z, y, x in np.ndindex(*self.a.shape):
             s = index[0][z], index[1][y], index[2][x]
-            if None not in s:
+            others = behind[0][z] + behind[1][y] + behind[2][x]
+            if None not in s and others == 0:
                 self.a[z, y, x] = values[s]
+            elif None not in s and others == 1:
+                self.a[z, y, x] = around.get(s, spacing) or 0
         self.images = [{} for _ in range(3)]
         for axis in range(3):
             for place, source in enumerate(index[axis]):
-                self.images[axis].setdefault(source, []).append(place)
+                if not behind[axis][place]:
+                    self.images[axis].setdefault(source, []).append(place)
 
     def set(self, z, y, x):
         self.a[np.ix_(self.images[0][z], self.images[1][y], self.images[2][x])] = 1
@@ -269,8 +297,8 @@ def uniform_cells(values):
     return corners.min(0) == corners.max(0)
 
 
-def decode_brick(chunks, top, coarse):
-    """`chunks`: spacing 4, 2, 1; `top`: signs of spacing 8. Signs of spacing 1."""
+def decode_brick(chunks, top, coarse, beside):
+    """`chunks`: spacing 4, 2, 1; `top`: signs of spacing 8; `beside`: None or what is known. Signs of spacing 1."""
     if not chunks[0]:
         return np.full([(s - 1) * 8 + 1 for s in top.shape], top[0, 0, 0], dtype=np.int8)
     model = sign_model(chunks[0][0])
@@ -300,7 +328,12 @@ def decode_brick(chunks, top, coarse):
         known = np.zeros(fine.shape, bool)
         for z, y, x in np.argwhere(~active):
             known[2 * z:2 * z + 3, 2 * y:2 * y + 3, 2 * x:2 * x + 3] = True
-        lattice = Lattice(fine)
+        spacing = (4, 2, 1)[step]
+        for place in beside.sides([k - 1 for k in fine.shape]) if beside else ():
+            sign = beside.get(place, spacing)
+            if sign is not None:
+                fine[place], known[place] = sign, True
+        lattice = Lattice(fine, beside, spacing)
         for phase in PHASES:
             taps, weights, bias, out, level_bias = model[phase]
             refiner = refiners.setdefault((level, phase), Refiner())
@@ -318,13 +351,16 @@ def decode_brick(chunks, top, coarse):
     return np.array(values)
 
 
-def decode_tier(chunks, dims, top, coarse):
+def decode_tier(chunks, dims, top, coarse, major):
     """`chunks`: three lists, spacing 4, 2, 1; `top`: every 8th point. Signs [z, y, x]."""
     signs = np.zeros(dims[::-1], dtype=np.int8)
-    for i, brick in enumerate(bricks_of(dims)):
+    bricks = list(enumerate(bricks_of(dims)))
+    late = [sum(b[0] // 128 for b in brick) % 2 if major >= 5 else 0 for _, brick in bricks]
+    for i, brick in sorted(bricks, key=lambda item: late[item[0]]):
         low = [b[0] for b in brick]
         part = tuple(slice(b[0] // 8, (b[0] + b[1]) // 8 + 1) for b in reversed(brick))
-        values = decode_brick([c[i] for c in chunks], top[part], coarse)
+        beside = Around(signs, low[::-1], [b[1] for b in reversed(brick)]) if late[i] else None
+        values = decode_brick([c[i] for c in chunks], top[part], coarse, beside)
         ends = [min(low[a] + values.shape[2 - a], dims[a]) for a in range(3)]
         signs[low[2]:ends[2], low[1]:ends[1], low[0]:ends[0]] = values[:ends[2] - low[2], :ends[1] - low[1],
                                                                        :ends[0] - low[0]]
@@ -338,8 +374,8 @@ def decode_signs(blocks, dims):
     top = np.unpackbits(np.frombuffer(blocks["SIGC"][0], np.uint8), bitorder="little")[:count].reshape(dims2[::-1])
     n = len(bricks_of(dims1))
     middle = [blocks["SIGC"][1 + n * s:1 + n * (s + 1)] for s in range(3)]
-    return decode_tier([blocks["SIG2"], blocks["SIG1"], blocks["SIG0"]], dims,
-                       decode_tier(middle, dims1, top.astype(np.int8), True), False)
+    eighth = decode_tier(middle, dims1, top.astype(np.int8), True, blocks["major"])
+    return decode_tier([blocks["SIG2"], blocks["SIG1"], blocks["SIG0"]], dims, eighth, False, blocks["major"])
 
 
 # Offsets and faces ---------------------------------------------------------------------------------------------------

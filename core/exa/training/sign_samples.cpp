@@ -39,6 +39,10 @@ struct Collector {
     phase_index =
         static_cast<std::size_t>(std::find(kSignPhases.begin(), kSignPhases.end(), phase) - kSignPhases.begin());
   }
+  void row(SignLattice& lattice, int level, int y, int z, std::span<const std::uint8_t> xs) {
+    for (const int x : xs)
+      if (point(lattice, level, x, y, z)) lattice.set(x, y, z);
+  }
   bool point(const SignLattice& lattice, int level, int x, int y, int z) {
     SignSample sample;
     std::size_t t = 0;

@@ -1,6 +1,7 @@
 // Parts of a file: a coarser level is a closed surface of every second, fourth or eighth point; a box is the surface of
 // its bricks, where the whole has it, and a file of its own when it is written.
 
+#include <algorithm>
 #include <cstdio>
 
 #include "core/mesh/mesh_check.h"
@@ -75,29 +76,37 @@ TEST_F(ExaFile, ABoxIsTheSurfaceOfItsBricksAndAFileOfItsOwn) {
 }
 
 TEST_F(ExaFile, ABoxDoesNotLookAtOtherBricks) {
-  const SurfaceModel model = bare_model_of({290, 34, 30}, 5);
-  std::vector<ExaBlock> blocks = encoded(model);
-  for (ExaBlock& block : blocks) {
-    if (block.type != "SIG0" && block.type != "OFFS") continue;
-    const auto parts = split_chunks(block.bytes, block.chunks, "test");
-    std::vector<std::string> chunks(parts->begin(), parts->end());
-    ASSERT_EQ(chunks.size(), 3u);
-    chunks[0] = chunks[2] = "no code at all";
-    block.bytes = join_chunks(chunks);
+  const SurfaceModel model = bare_model_of({540, 34, 30}, 5);
+  struct Case {
+    GridBox box;
+    std::vector<std::size_t> signs;  // whose are needed, of five bricks in a row
+    std::size_t offsets;
+  };
+  for (const Case& c : {Case{{{270, 3, 3}, {300, 9, 9}}, {2}, 2}, Case{{{140, 3, 3}, {150, 9, 9}}, {0, 1, 2}, 1}}) {
+    std::vector<ExaBlock> blocks = encoded(model);
+    for (ExaBlock& block : blocks) {
+      if (block.type != "SIG0" && block.type != "OFFS") continue;
+      const auto parts = split_chunks(block.bytes, block.chunks, "test");
+      std::vector<std::string> chunks(parts->begin(), parts->end());
+      ASSERT_EQ(chunks.size(), 5u);
+      for (std::size_t i = 0; i < chunks.size(); ++i)
+        if (block.type == "OFFS" ? i != c.offsets : std::find(c.signs.begin(), c.signs.end(), i) == c.signs.end())
+          chunks[i] = "no code at all";
+      block.bytes = join_chunks(chunks);
+    }
+    const auto file = folder_ / "damaged.exa", whole = folder_ / "whole.exa";
+    const std::string bytes = file_of(blocks);
+    std::FILE* out = std::fopen(file.c_str(), "wb");
+    ASSERT_NE(out, nullptr);
+    ASSERT_EQ(std::fwrite(bytes.data(), 1, bytes.size(), out), bytes.size());
+    std::fclose(out);
+    ASSERT_TRUE(write_exa(whole, model, progress_));
+    const auto a = read_exa_box(file, c.box, progress_), b = read_exa_box(whole, c.box, progress_);
+    ASSERT_TRUE(a) << a.error().message;
+    ASSERT_TRUE(b);
+    expect_equal(*a, *b);
+    EXPECT_FALSE(read_exa(file, progress_));
   }
-  const auto file = folder_ / "damaged.exa", whole = folder_ / "whole.exa";
-  const std::string bytes = file_of(blocks);
-  std::FILE* out = std::fopen(file.c_str(), "wb");
-  ASSERT_NE(out, nullptr);
-  ASSERT_EQ(std::fwrite(bytes.data(), 1, bytes.size(), out), bytes.size());
-  std::fclose(out);
-  ASSERT_TRUE(write_exa(whole, model, progress_));
-  const GridBox box{{140, 3, 3}, {150, 9, 9}};
-  const auto a = read_exa_box(file, box, progress_), b = read_exa_box(whole, box, progress_);
-  ASSERT_TRUE(a) << a.error().message;
-  ASSERT_TRUE(b);
-  expect_equal(*a, *b);
-  EXPECT_FALSE(read_exa(file, progress_));
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <random>
 
 #include "core/exa/exa_file.h"
-#include "core/exa/paper_profile.h"
 #include "core/exa/patches.h"
 #include "core/exa/settle.h"
 #include "core/extract/extract.h"
@@ -27,7 +26,6 @@ struct Sample {
   int bits;
   bool smoothed, exact;
   unsigned seed;
-  ExaProfile profile = ExaProfile::kCompact;
 };
 
 SurfaceModel make(const Sample& sample) {
@@ -63,10 +61,7 @@ SurfaceModel make(const Sample& sample) {
         std::clamp(40.0 + 20.0 * std::sin(.1 * double{p.x} + .07 * double{p.z}) + 2.0 * uniform(), 0.0, 63.0)));
   SettleOptions settle;
   settle.exact_normals = sample.exact;
-  if (sample.profile == ExaProfile::kPaper)
-    settle_for_paper(model, settle, progress).value();
-  else
-    settle_for_exa(model, settle, progress).value();
+  settle_for_exa(model, settle, progress).value();
   if (sample.exact) a.shape[5] = static_cast<std::uint8_t>((a.shape[5] + 1) % 127);  // so that the classes are stored
   for (const auto& quad : model.mesh.quads)
     model.quad_partition.push_back(model.mesh.positions[quad[0]].x > static_cast<float>(sample.dims.x) / 2 ? 1 : 0);
@@ -89,12 +84,10 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "make_golden FOLDER\n");
     return 64;
   }
-  for (const Sample& sample :
-       {Sample{"exa4_smoothed.exa", {37, 33, 29}, .15, true, 4, true, false, 1},
-        Sample{"exa4_two_bricks.exa", {141, 9, 8}, .1, false, 4, false, false, 4},
-        Sample{"exa4_paper.exa", {33, 29, 26}, .15, true, 4, true, false, 5, ExaProfile::kPaper}}) {
+  for (const Sample& sample : {Sample{"exa5_smoothed.exa", {37, 33, 29}, .15, true, 4, true, false, 1},
+                               Sample{"exa5_bricks.exa", {133, 131, 4}, .05, false, 4, false, false, 4}}) {
     SilentProgress progress;
-    const auto stats = write_exa(std::string(argv[1]) + "/" + sample.name, make(sample), progress, sample.profile);
+    const auto stats = write_exa(std::string(argv[1]) + "/" + sample.name, make(sample), progress);
     if (!stats) {
       fmt::print(stderr, "{}\n", stats.error().message);
       return exit_code(stats.error().kind);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -47,9 +48,9 @@ void expect_lossless(const BitVolume& signs) {
   EXPECT_TRUE(*decoded == signs) << signs.dims().x << "x" << signs.dims().y << "x" << signs.dims().z;
 }
 
-const Dims kShapes[] = {{1, 1, 1},    {2, 1, 1},   {1, 2, 3},    {1, 33, 70},  {64, 64, 1},
-                        {65, 1, 65},  {3, 3, 3},   {31, 33, 32}, {32, 32, 32}, {33, 33, 33},
-                        {34, 63, 65}, {129, 5, 2}, {70, 40, 97}, {128, 64, 20}};
+const Dims kShapes[] = {{1, 1, 1},    {2, 1, 1},     {1, 2, 3},     {1, 33, 70},   {64, 64, 1},  {65, 1, 65},
+                        {3, 3, 3},    {31, 33, 32},  {32, 32, 32},  {33, 33, 33},  {34, 63, 65}, {129, 5, 2},
+                        {70, 40, 97}, {128, 64, 20}, {131, 260, 3}, {5, 132, 139}, {259, 2, 130}};
 
 TEST(ExaTopology, RandomVolumesOfAnyShapeAndDensityAreLossless) {
   std::mt19937 random(3);
@@ -122,21 +123,42 @@ TEST(ExaTopology, CoarseLevelsAreEverySecondFourthAndEighthPoint) {
   }
 }
 
-TEST(ExaTopology, ABoxIsReadFromItsOwnBricks) {
+TEST(ExaTopology, ABoxIsReadFromItsOwnBricksAndThoseThatTheyKnow) {
   SilentProgress progress;
   const Dims dims{300, 200, 140};
   const BitVolume signs = volume(dims, [&](auto x, auto y, auto z) { return (x / 3 + y / 5 + z / 4) % 9 < 4; });
   const SignCode code = encoded(signs);
-  SignChunks chunks = borrowed(code);
-  const std::size_t own = 1;  // brick (1, 0, 0)
-  for (auto& level : chunks.bricks)
-    for (std::size_t i = 0; i < level.size(); ++i)
-      if (i != own) level[i] = "\xff damaged";
-  const auto decoded = decode_signs(chunks, dims, 0, GridBox{{129, 1, 1}, {254, 100, 100}}, kAnyNumber, progress);
-  ASSERT_TRUE(decoded) << decoded.error().message;
-  for (std::int64_t z = 0; z <= 128; ++z)
-    for (std::int64_t y = 0; y <= 128; ++y)
-      for (std::int64_t x = 128; x <= 256; ++x) ASSERT_EQ(decoded->get(x, y, z), signs.get(x, y, z));
+  struct Case {
+    std::int64_t brick;              // of 3 x 2 x 2
+    std::vector<std::size_t> known;  // with those beside it, if it is a late one
+  };
+  for (const Case& c : {Case{0, {0}}, Case{1, {0, 1, 2, 4, 7}}, Case{2, {2}}}) {
+    SignChunks chunks = borrowed(code);
+    for (auto& level : chunks.bricks)
+      for (std::size_t i = 0; i < level.size(); ++i)
+        if (std::find(c.known.begin(), c.known.end(), i) == c.known.end()) level[i] = "\xff damaged";
+    const std::int64_t low = 128 * c.brick, high = std::min<std::int64_t>(low + 128, 299);
+    const GridBox box{{low + 1, 1, 1}, {high - 2, 100, 100}};
+    const std::vector<std::uint8_t> needed = bricks_of_box(dims, box, false);
+    for (std::size_t i = 0; i < needed.size(); ++i)
+      EXPECT_EQ(needed[i] != 0, std::find(c.known.begin(), c.known.end(), i) != c.known.end()) << i;
+    const auto decoded = decode_signs(chunks, dims, 0, box, kAnyNumber, progress);
+    ASSERT_TRUE(decoded) << decoded.error().message;
+    for (std::int64_t z = 0; z <= 128; ++z)
+      for (std::int64_t y = 0; y <= 128; ++y)
+        for (std::int64_t x = low; x <= high; ++x) ASSERT_EQ(decoded->get(x, y, z), signs.get(x, y, z));
+  }
+}
+
+TEST(ExaTopology, BricksBesideEachOtherCodeTheirSideOnce) {
+  // A slab that crosses two bricks only in their common side: the second one has nothing to say about that side.
+  const Dims dims{257, 129, 129};
+  std::mt19937 random(17);
+  const BitVolume signs = volume(dims, [&](auto x, auto, auto) { return x == 128 && random() % 2 != 0; });
+  const SignCode code = encoded(signs);
+  EXPECT_GT(code.bricks[0][0].size(), 1000u);
+  EXPECT_LT(code.bricks[0][1].size(), code.bricks[0][0].size() / 2) << "only the points next to the side";
+  expect_lossless(signs);
 }
 
 TEST(ExaTopology, DamagedCodesAreRefusedOrGiveAVolumeButNeverCrash) {
