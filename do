@@ -39,8 +39,8 @@ usage() {
 ./do workflow examples/snakemake: a dry run, and three scans for real
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
 ./do glb FILE...  the Khronos validator over GLB files (fetches it with npm)
-./do asan     the tests under AddressSanitizer and UndefinedBehaviorSanitizer, those of windows and of GL too; asan core
-              devices input display app: of these rooms only; and what ctest takes, as asan devices -R Vrpn
+./do asan     the tests that need no window under AddressSanitizer and UndefinedBehaviorSanitizer; asan core devices
+              input display app: of these rooms only; and what ctest takes, as asan devices -R Vrpn
 ./do tsan     devices and inputs under ThreadSanitizer (clang)
 ./do core     build and test the core alone: no graphics, no devices
 ./do lint     is every source formatted, and clang-tidy over what changed since the last commit (or since REVISION)
@@ -107,8 +107,8 @@ lab() {
   tests/lab/run_in_kernel.sh "$PWD/$build/tests/lab/test_lab" "$@"
 }
 
-# The same cases as in `test`, less those that need a kernel of their own or minutes without a sanitizer. asan ROOM...:
-# of these folders of tests/ only; a pattern of names for ctest may follow, as `-R Leap`.
+# The same cases as in `test`, less those that need windows, a kernel of their own or most of an hour. asan ROOM...: of
+# these folders of tests/ only; a pattern of names for ctest may follow, as `-R Leap`.
 asan() {
   deps
   preset=asan build=build/asan
@@ -122,12 +122,11 @@ asan() {
   targets=("${targets[@]/%/_tests}")
   cmake --preset "$preset" >/dev/null
   cmake --build "$build" -j "$jobs" --target "${targets[@]}"
-  # verify_asan_link_order: umockdev is preloaded, and stands before the sanitizer.
   # No detect_stack_use_after_return: g++ 12 does not align its stand-in frames for the 64-byte registers of AVX-512.
-  export ASAN_OPTIONS="strict_string_checks=1:verify_asan_link_order=0:${ASAN_OPTIONS:-}" UBSAN_OPTIONS="print_stacktrace=1:${UBSAN_OPTIONS:-}"
+  export ASAN_OPTIONS="strict_string_checks=1:${ASAN_OPTIONS:-}" UBSAN_OPTIONS="print_stacktrace=1:${UBSAN_OPTIONS:-}"
   export LSAN_OPTIONS="suppressions=$PWD/tests/leaks_of_others.txt:print_suppressions=0:${LSAN_OPTIONS:-}"
   for room in "${rooms[@]}"; do
-    ctest --test-dir "$build/tests/$room" --output-on-failure -j "$jobs" -LE '^(slow|vm)$' "$@"
+    ctest --test-dir "$build/tests/$room" --output-on-failure -j "$jobs" -L '^(unit|app)$' "$@"
   done
 }
 

@@ -72,7 +72,8 @@ function(dubsar_library name)
   endif()
 endfunction()
 
-# What `./do asan ROOM` builds: of each folder of tests/ all but what takes minutes without a sanitizer.
+# What `./do asan ROOM` builds: of each folder of tests/ those of the labels unit and app, which need no window and no
+# preloaded library.
 foreach(room core devices input display app)
   add_custom_target(dubsar_checked_${room}_tests)
 endforeach()
@@ -91,7 +92,7 @@ function(dubsar_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE dubsar_options ${ARG_DEPS} GTest::gtest GTest::gmock GTest::gtest_main)
   dubsar_cold(${name})  # a test is compiled more often than its loops are run
-  if(NOT ARG_LABEL STREQUAL "slow")
+  if(ARG_LABEL MATCHES "^(unit|app)$")
     file(RELATIVE_PATH room "${PROJECT_SOURCE_DIR}/tests" "${CMAKE_CURRENT_SOURCE_DIR}")
     string(REGEX REPLACE "/.*" "" room "${room}")
     add_dependencies(dubsar_checked_${room}_tests ${name})
