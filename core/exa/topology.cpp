@@ -71,8 +71,8 @@ void store(const Owned& owned, const BitsOf& bits_of, BitVolume& out) {
     }
 }
 
-/// Signs of a brick that are not worth a second look.
-constexpr std::uint64_t kAlwaysCoded = 1 << 17;
+/// No brick with so many active edges has more coded signs.
+constexpr std::uint64_t most_in_brick(std::uint64_t edges) { return 64 * edges + 4096; }
 
 /// What decode_bricks() is asked for.
 struct BrickOrder {
@@ -120,7 +120,7 @@ class BrickDecoder {
       if ((points_ += coder.points) > order_.most_points || too_many_) return;
     }
     const SignLattice& lattice = brick.lattice();
-    if (order_.level == 0 && coded > kAlwaysCoded && coded > most_coded_signs(lattice.active_edges())) {
+    if (order_.level == 0 && coded > 4096 && coded > most_in_brick(lattice.active_edges())) {
       too_many_ = true;
       return;
     }

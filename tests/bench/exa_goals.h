@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ class ExaGoals {
   }
   void holds(const std::string& what, bool yes) { lines_.push_back({what, yes ? "yes" : "no", "yes", yes}); }
 
+  bool all_met() const {
+    return std::all_of(lines_.begin(), lines_.end(), [](const Line& line) { return line.met; });
+  }
   std::string text() const {
     std::string text = fmt::format("\n{:<78}{:>10}{:>14}\n", "goals", "found", "goal");
     for (const Line& line : lines_)
