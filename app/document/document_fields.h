@@ -82,6 +82,12 @@ void fields(auto& f, KeyedPart& v) {
   f("opacity", v.opacity);
   f("offset_mm", v.offset_mm);
 }
+void fields(auto& f, KeyedShade& v) {
+  f("other", v.other);
+  f("share", v.share);
+  f("radiance", v.radiance);
+  f("strength", v.strength);
+}
 void fields(auto& f, Keyframe& v) {
   f("time_s", v.time_s);
   f("camera", v.camera);
@@ -89,6 +95,7 @@ void fields(auto& f, Keyframe& v) {
   f("unpack", v.unpack);
   f("style", v.style);
   f("parts", v.parts);
+  f("shade", v.shade);
 }
 void fields(auto& f, Document& v) {
   f("source", v.source);

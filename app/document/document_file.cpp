@@ -13,7 +13,7 @@ namespace dubsar::app {
 namespace {
 using nlohmann::json;
 
-constexpr int kVersion = 3, kOldest = 1;
+constexpr int kVersion = 4, kOldest = 1;
 constexpr std::string_view kFormat = "dubsar document";
 constexpr TimestampNs kEveryNs = 5'000'000'000;  // half of what may be lost: writing takes its time, too
 

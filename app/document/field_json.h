@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +26,11 @@ class Writer {
   template <class T>
   void operator()(const char* name, const T& value) {
     out_[name] = write(value);
+  }
+  /// What has no value is not written.
+  template <class T>
+  void operator()(const char* name, const std::optional<T>& value) {
+    if (value) out_[name] = write(*value);
   }
   json take() { return std::move(out_); }
 
@@ -71,6 +77,13 @@ class Reader {
       return;
     }
     read(object_.at(name), at, value);
+  }
+  /// What is missing has no value.
+  template <class T>
+  void operator()(const char* name, std::optional<T>& value) {
+    value.reset();
+    if (object_.is_object() && object_.contains(name))
+      read(object_.at(name), where_.empty() ? name : where_ + "." + name, value.emplace());
   }
 
  private:

@@ -13,7 +13,7 @@ namespace dubsar::app {
 namespace {
 using nlohmann::json;
 
-constexpr int kFilmVersion = 1;
+constexpr int kFilmVersion = 2, kOldestFilm = 1;
 constexpr std::string_view kFilmFormat = "dubsar film", kDocument = "dubsar document";
 
 /// At t (0..1) of a cubic from a to b with the speeds `from` and `to` a second.
@@ -109,6 +109,55 @@ std::string style_at(std::span<const Keyframe> keys, std::size_t last) {
   return {};
 }
 
+/// What key i says or those before it; none: nobody says anything.
+const KeyedShade* shade_of(std::span<const Keyframe> keys, std::size_t i) {
+  for (std::size_t k = i + 1; k-- > 0;)
+    if (keys[k].shade) return &*keys[k].shade;
+  return nullptr;
+}
+
+/// From 0 to 1 without a jump of speed.
+double eased(double t) { return t * t * (3.0 - 2.0 * t); }
+
+std::optional<KeyedShade> shade_between(const Around& around) {
+  const std::size_t i = around.at;
+  const KeyedShade *const from = shade_of(around.keys, i), *const to = shade_of(around.keys, i + 1);
+  if (from == nullptr) return std::nullopt;
+  const auto mixes = [](const KeyedShade& s) { return s.share > 0 && !s.other.empty(); };
+  const auto changes = [&](const KeyedShade& a, const KeyedShade& b) {
+    return mixes(a) && mixes(b) && a.other != b.other;
+  };
+  const auto value = [&](const auto& get, bool rests) {  // `rests`: where the second style is another one next
+    return around.number(get(*from), [&](std::size_t k) {
+      const KeyedShade *const a = shade_of(around.keys, k), *const b = shade_of(around.keys, k + 1);
+      return a == nullptr || b == nullptr || (rests && changes(*a, *b)) ? 0.0 : get(*b) - get(*a);
+    });
+  };
+  KeyedShade out = *from;
+  out.radiance = std::clamp(value([](const KeyedShade& s) { return s.radiance; }, false), 0.0, 2.0);
+  out.strength = std::clamp(value([](const KeyedShade& s) { return s.strength; }, false), 0.0, 2.0);
+  if (changes(*from, *to)) {
+    const bool first = around.t < 0.5;
+    out.other = first ? from->other : to->other;
+    out.share = first ? from->share * eased(1.0 - 2.0 * around.t) : to->share * eased(2.0 * around.t - 1.0);
+    return out;
+  }
+  out.other = mixes(*from) ? from->other : to->other;
+  const auto share = [&](const KeyedShade& s) { return s.other == out.other ? s.share : 0.0; };
+  out.share = std::clamp(value(share, true), 0.0, 1.0);
+  return out;
+}
+
+std::string complaint_about(const KeyedShade& shade, std::size_t i) {
+  const auto wrong = [i](const char* name, double found, int most) {
+    return fmt::format("keyframes[{}].shade.{} is {}, expected 0 to {}", i, name, found, most);
+  };
+  if (!(shade.share >= 0 && shade.share <= 1)) return wrong("share", shade.share, 1);
+  if (!(shade.radiance >= 0 && shade.radiance <= 2)) return wrong("radiance", shade.radiance, 2);
+  if (!(shade.strength >= 0 && shade.strength <= 2)) return wrong("strength", shade.strength, 2);
+  return {};
+}
+
 std::string complaint_about(std::span<const Keyframe> keys) {
   if (keys.empty()) return "no keyframe found, expected at least one";
   for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -120,6 +169,8 @@ std::string complaint_about(std::span<const Keyframe> keys) {
     for (const KeyedPart& part : key.parts)
       if (!(part.opacity >= 0 && part.opacity <= 1))
         return fmt::format("keyframes[{}]: opacity of {} is {}, expected 0 to 1", i, part.name, part.opacity);
+    if (key.shade)
+      if (std::string wrong = complaint_about(*key.shade, i); !wrong.empty()) return wrong;
     if (i > 0 && !(key.time_s > keys[i - 1].time_s))
       return fmt::format("keyframes[{}].time_s is {}, expected more than {}", i, key.time_s, keys[i - 1].time_s);
   }
@@ -137,6 +188,7 @@ Keyframe keyframe_of(const Document& document, double time_s) {
   Keyframe out{time_s, document.now, document.light, document.unpack, document.style.name, {}};
   for (const Part& part : document.parts)
     out.parts.push_back({part.name, part.visible ? part.opacity : 0.0, part.offset_mm});
+  out.shade = KeyedShade{document.style.other, document.style.share, document.style.radiance, document.style.strength};
   return out;
 }
 
@@ -145,6 +197,12 @@ void show_keyframe(Document& document, const Keyframe& frame) {
   document.light = frame.light;
   document.unpack = frame.unpack;
   if (!frame.style.empty()) document.style.name = frame.style;
+  if (frame.shade) {
+    document.style.other = frame.shade->other;
+    document.style.share = frame.shade->share;
+    document.style.radiance = frame.shade->radiance;
+    document.style.strength = frame.shade->strength;
+  }
   for (const KeyedPart& keyed : frame.parts)
     for (Part& part : document.parts) {
       if (part.name != keyed.name) continue;
@@ -161,6 +219,8 @@ Keyframe moment_at(std::span<const Keyframe> keys, double time_s) {
   const auto at = static_cast<std::size_t>(after - keys.begin());
   Keyframe out = at == 0 ? keys.front() : keys[at - 1];
   out.style = style_at(keys, at == 0 ? 0 : at - 1);
+  const KeyedShade* const shade = shade_of(keys, at == 0 ? 0 : at - 1);
+  out.shade = shade != nullptr ? std::optional(*shade) : std::nullopt;
   if (at == 0 || after == keys.end() || time_s == out.time_s) return out;
   const Around around{keys, at - 1, (time_s - out.time_s) / (after->time_s - out.time_s)};
   out.time_s = time_s;
@@ -174,6 +234,7 @@ Keyframe moment_at(std::span<const Keyframe> keys, double time_s) {
   out.light.elevation_deg = around.value([](const Keyframe& key) { return key.light.elevation_deg; });
   out.unpack = std::clamp(around.value([](const Keyframe& key) { return key.unpack; }), 0.0, 1.0);
   out.parts = parts_between(around);
+  out.shade = shade_between(around);
   return out;
 }
 
@@ -199,7 +260,7 @@ Result<std::vector<Keyframe>> parse_film(std::string_view text, std::string_view
     DUBSAR_ASSIGN(Document whole, parse_document(text, source));
     film.keyframes = std::move(whole.keyframes);
   } else {
-    DUBSAR_TRY(json_version(object, kFilmFormat, kFilmVersion, kFilmVersion, source));
+    DUBSAR_TRY(json_version(object, kFilmFormat, kOldestFilm, kFilmVersion, source));
     std::string complaint;
     stored::Reader reader(object, "", complaint);
     fields(reader, film);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,15 @@ struct KeyedPart {
   friend bool operator==(const KeyedPart&, const KeyedPart&) = default;
 };
 
+/// How a style is shaded at some time.
+struct KeyedShade {
+  std::string other{};    ///< a second style that it is mixed with; empty: none
+  double share = 0.0;     ///< of that, 0..1
+  double radiance = 0.0;  ///< radiance scaling, 0..2
+  double strength = 1.0;  ///< of the style's colours, 0..2
+  friend bool operator==(const KeyedShade&, const KeyedShade&) = default;
+};
+
 struct Keyframe {
   double time_s = 0.0;
   CameraPose camera;
@@ -28,6 +38,7 @@ struct Keyframe {
   double unpack = 0.0;  ///< 0 to 1
   std::string style;    ///< from this time on; empty: as before
   std::vector<KeyedPart> parts;
+  std::optional<KeyedShade> shade{};  ///< none: as before; films of version 1 have none
   friend bool operator==(const Keyframe&, const Keyframe&) = default;
 };
 
@@ -38,15 +49,17 @@ Keyframe keyframe_of(const Document& document, double time_s);
 void show_keyframe(Document& document, const Keyframe& frame);
 
 /// How things stand at `time_s`: exactly a keyframe at its time, before the first and after the last as those. Cameras,
-/// lights and parts move without jumps of speed (piecewise cubic, the speed at a key that of its neighbours, and none
-/// at the ends), turns the shorter way round; numbers never leave the range between two keys (F. Fritsch, R. Carlson:
-/// Monotone piecewise cubic interpolation, 1980). `keys` are in rising order of time, at least one.
+/// lights, parts, shares of a second style and radiance move without jumps of speed (piecewise cubic, the speed at a
+/// key that of its neighbours, and none at the ends), turns the shorter way round; numbers never leave the range
+/// between two keys (F. Fritsch, R. Carlson: Monotone piecewise cubic interpolation, 1980). From one second style to
+/// another the first fades out until half-way, then the other one in. `keys` are in rising order of time, at least one.
 Keyframe moment_at(std::span<const Keyframe> keys, double time_s);
 
 /// From the first key to the last; 0 for fewer than two.
 double film_length_s(std::span<const Keyframe> keys);
 
-/// As JSON, exactly: {"format": "dubsar film", "version": 1, "keyframes": [...]}.
+/// As JSON, exactly: {"format": "dubsar film", "version": 2, "keyframes": [...]}. Version 1, which knew no "shade", is
+/// read as well.
 std::string format_film(std::span<const Keyframe> keys);
 /// kBadData in one sentence for text that is no film, a newer version, no keyframe, times that do not rise, or figures
 /// out of range. A document's text is a film as well: that of its keyframes.

@@ -52,8 +52,10 @@ Result<FilmFile> read_film(const AnimateRequest& options) {
     out.base.style.name = options.style;
   }
   DUBSAR_TRY(shading_preset(out.base.style.name));
-  for (const Keyframe& key : out.keys)
+  for (const Keyframe& key : out.keys) {
     if (!key.style.empty()) DUBSAR_TRY(shading_preset(key.style));
+    if (key.shade && !key.shade->other.empty()) DUBSAR_TRY(shading_preset(key.shade->other));
+  }
   return out;
 }
 

@@ -107,6 +107,53 @@ TEST_F(Animate, MakesAPictureForEachMomentAndTheLastKeyToo) {
   EXPECT_NEAR(lit(*last), lit(*first), 0.03 * lit(*first));
 }
 
+TEST_F(Animate, AStyleGoesOverIntoTheOneItIsMixedWith) {
+  const auto still = [&](const std::string& name, const std::string& style, double share, double radiance) {
+    auto film = nlohmann::json::parse(Animate::film(1.0));
+    for (std::size_t i = 0; i < 3; ++i) {
+      auto& key = film["keyframes"][i];
+      key["camera"] = film["keyframes"][0]["camera"];
+      key["light"] = film["keyframes"][0]["light"];
+      key["style"] = style;
+      const double part = static_cast<double>(i) / 2;
+      key["shade"] = {{"other", share > 0 ? "raking" : ""},
+                      {"share", part * share},
+                      {"radiance", part * radiance},
+                      {"strength", 1.0}};
+    }
+    film["version"] = 2;
+    std::ofstream(in("film.json")) << film.dump();
+    const ProgramRun run = run_dubsar(words(name, {"4"}));
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    std::vector<Image> out;
+    for (int i = 1; i <= 5; ++i) {
+      auto image = read_picture(in(fmt::format("{}/picture_{:05}.png", name, i)));
+      EXPECT_TRUE(image);
+      if (image) out.push_back(*std::move(image));
+    }
+    return out;
+  };
+  const auto apart = [](const Image& a, const Image& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) sum += std::abs(a.pixels[i] - b.pixels[i]);
+    return sum / static_cast<double>(a.pixels.size());
+  };
+  const auto phong = still("phong", "phong", 0, 0), raking = still("raking", "raking", 0, 0),
+             mixed = still("mixed", "phong", 1, 0);
+  ASSERT_TRUE(phong.size() == 5 && raking.size() == 5 && mixed.size() == 5);
+  EXPECT_GT(apart(phong[0], raking[0]), 2.0) << "they look different, or nothing is seen here";
+  EXPECT_EQ(mixed[0].pixels, phong[0].pixels);
+  EXPECT_LT(apart(mixed[4], raking[4]), 0.5);
+  for (std::size_t i = 1; i < 5; ++i)
+    EXPECT_GT(apart(mixed[i], phong[0]), apart(mixed[i - 1], phong[0])) << "it comes in by and by";
+  nlohmann::json wrong = nlohmann::json::parse(Animate::film(1.0));
+  wrong["keyframes"][0]["shade"] = {{"other", "rakin"}, {"share", 0.5}, {"radiance", 0.0}, {"strength", 1.0}};
+  std::ofstream(in("film.json")) << wrong.dump();
+  const ProgramRun refused = run_dubsar(words("wrong"));
+  EXPECT_EQ(refused.exit_code, 64) << refused.err;
+  EXPECT_NE(refused.err.find("raking"), std::string::npos) << "did you mean: " << refused.err;
+}
+
 TEST_F(Animate, GoesOnAfterKillWithTheSameBytes) {
   ASSERT_EQ(run_dubsar(words("whole")).exit_code, 0);
   RunOptions killed;

@@ -132,10 +132,10 @@ TEST_F(DocumentFile, RangesAndOtherVersionsAreRefusedByName) {
   EXPECT_NE(refusal([](Document& d) { d.now.rotation = {0, 0, 0, 0}; }).find("now.rotation_wxyz"), std::string::npos);
   EXPECT_NE(refusal([](Document& d) { d.notes[0].at_mm.x = 1e9; }).find("notes[0].at_mm"), std::string::npos);
   std::string text = format_document(rich(7));
-  text.replace(text.find("\"version\": 3"), 12, "\"version\": 4");
+  text.replace(text.find("\"version\": 4"), 12, "\"version\": 5");
   const auto newer = parse_document(text, "k.json");
   ASSERT_FALSE(newer);
-  EXPECT_EQ(newer.error().message, "k.json: version 4 found, expected 1 to 3; a newer dubsar may have written it");
+  EXPECT_EQ(newer.error().message, "k.json: version 5 found, expected 1 to 4; a newer dubsar may have written it");
   EXPECT_FALSE(parse_document("[]", "k.json"));
 }
 

@@ -26,6 +26,7 @@ std::vector<Keyframe> some_film(unsigned seed) {
     key.unpack = real(0, 1);
     key.style = i % 2 == 0 ? "relief" : "";
     key.parts = {{"tablet", 1.0, {}}, {"envelope", real(0, 1), {real(-9, 9), 0, 0}}};
+    key.shade = KeyedShade{i < 4 ? "raking" : "msii", real(0.1, 1), real(0, 2), real(0, 2)};
     out.push_back(key);
   }
   return out;
@@ -66,7 +67,10 @@ TEST(Film, SpeedHasNoJumpsAndEndsAtRest) {
                       (b.camera.pan.x - a.camera.pan.x) / h,
                       std::remainder(b.light.azimuth_deg - a.light.azimuth_deg, 360.0) / h / 57.3,
                       (b.unpack - a.unpack) / h,
-                      (b.parts[1].offset_mm.x - a.parts[1].offset_mm.x) / h};
+                      (b.parts[1].offset_mm.x - a.parts[1].offset_mm.x) / h,
+                      (b.shade->share - a.shade->share) / h,
+                      (b.shade->radiance - a.shade->radiance) / h,
+                      (b.shade->strength - a.shade->strength) / h};
   };
   for (std::size_t i = 0; i < film.size(); ++i) {
     const auto before = speeds(film[i].time_s - 2 * h), after = speeds(film[i].time_s + h);
@@ -93,6 +97,10 @@ TEST(Film, NumbersStayBetweenTheirKeysAndTurnsTakeTheShorterWay) {
         between(film[i].camera.zoom, now.camera.zoom, film[i + 1].camera.zoom);
         between(film[i].light.elevation_deg, now.light.elevation_deg, film[i + 1].light.elevation_deg);
         between(film[i].parts[1].opacity, now.parts[1].opacity, film[i + 1].parts[1].opacity);
+        between(film[i].shade->radiance, now.shade->radiance, film[i + 1].shade->radiance);
+        between(film[i].shade->strength, now.shade->strength, film[i + 1].shade->strength);
+        if (film[i].shade->other == film[i + 1].shade->other)
+          between(film[i].shade->share, now.shade->share, film[i + 1].shade->share);
         EXPECT_NEAR(glm::length(now.camera.rotation), 1.0, 1e-12);
       }
   }
@@ -105,6 +113,58 @@ TEST(Film, NumbersStayBetweenTheirKeysAndTurnsTakeTheShorterWay) {
   EXPECT_NEAR(turn_between_deg(moment_at(light, 0.5).camera.rotation, turn_of({0, 0.5, 0})), 0.0, 1e-9);
 }
 
+TEST(Film, ASecondStyleFadesInAndOutAndGivesWayToAnother) {
+  std::vector<Keyframe> film(4);
+  for (std::size_t i = 0; i < film.size(); ++i) film[i].time_s = static_cast<double>(i);
+  film[0].shade = KeyedShade{};
+  film[1].shade = KeyedShade{"raking", 0.8, 1.0, 1.0};
+  film[2].shade = KeyedShade{"msii", 0.4, 0.0, 1.0};
+  film[3].shade = KeyedShade{};
+  const auto at = [&](double time) { return *moment_at(film, time).shade; };
+  EXPECT_EQ(at(0.5).other, "raking") << "it comes in from nothing";
+  EXPECT_NEAR(at(0.5).share, 0.4, 0.1);
+  EXPECT_NEAR(at(0.5).radiance, 0.5, 0.1);
+  EXPECT_EQ(at(1.25).other, "raking");
+  EXPECT_NEAR(at(1.25).share, 0.4, 1e-9);
+  EXPECT_NEAR(at(1.5).share, 0.0, 1e-9) << "half-way neither of them is seen, so that none jumps";
+  EXPECT_EQ(at(1.75).other, "msii");
+  EXPECT_NEAR(at(1.75).share, 0.2, 1e-9);
+  EXPECT_EQ(at(2.5).other, "msii") << "it goes";
+  EXPECT_NEAR(at(2.5).share, 0.2, 0.05);
+  double before = 0.0;
+  std::string name;
+  for (double time = 0; time <= 3; time += 1e-3) {
+    const KeyedShade now = at(time);
+    EXPECT_NEAR(now.share, before, 0.005) << "no jump at " << time;
+    if (now.other != name) {
+      EXPECT_LT(before, 0.005) << time;
+    }
+    before = now.share;
+    name = now.other;
+  }
+  film[1].shade.reset();  // it says nothing: as before
+  film[2].shade.reset();
+  EXPECT_EQ(at(2.0), KeyedShade{});
+}
+
+TEST(Film, OneThatWasMadeBeforeShadesWereKeptIsReadAndChangesNone) {
+  auto film = some_film(3);
+  for (Keyframe& key : film) key.shade.reset();
+  std::string text = format_film(film);
+  text.replace(text.find("\"version\": 2"), 12, "\"version\": 1");
+  const auto back = parse_film(text, "old");
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(*back, film);
+  EXPECT_FALSE(moment_at(*back, film[1].time_s + 0.1).shade);
+  Document document;
+  document.style.other = "raking";
+  document.style.share = 0.3;
+  document.style.radiance = 0.7;
+  const StyleChoice before = document.style;
+  show_keyframe(document, back->front());
+  EXPECT_EQ(document.style, before) << "as the session has it";
+}
+
 TEST(Film, IsWhatTheDocumentShowsAndBack) {
   Document document;
   document.parts = {{"tablet", 1}, {"envelope", 6, false, {255, 255, 255}, 0.5, {0, 0, 7}}};
@@ -112,6 +172,10 @@ TEST(Film, IsWhatTheDocumentShowsAndBack) {
   document.light = {90, 15};
   document.unpack = 0.25;
   document.style.name = "raking";
+  document.style.other = "msii";
+  document.style.share = 0.3;
+  document.style.radiance = 1.2;
+  document.style.strength = 0.5;
   const Keyframe frame = keyframe_of(document, 3.0);
   EXPECT_EQ(frame.parts[1].opacity, 0.0) << "not there";
   Document other;
@@ -119,6 +183,7 @@ TEST(Film, IsWhatTheDocumentShowsAndBack) {
   show_keyframe(other, frame);
   EXPECT_EQ(keyframe_of(other, 3.0), frame);
   EXPECT_FALSE(other.parts[1].visible);
+  EXPECT_EQ(other.style, document.style);
 }
 
 TEST(Film, FilesAreExactAndMistakesAreSentences) {
@@ -147,8 +212,12 @@ TEST(Film, FilesAreExactAndMistakesAreSentences) {
               f[0].time_s = 3;
             }),
             "f.json: keyframes[2].time_s is 4, expected more than 4");
+  EXPECT_EQ(refusal([](auto& f) { f[1].shade->share = 1.5; }),
+            "f.json: keyframes[1].shade.share is 1.5, expected 0 to 1");
+  EXPECT_EQ(refusal([](auto& f) { f[3].shade->radiance = -1; }),
+            "f.json: keyframes[3].shade.radiance is -1, expected 0 to 2");
   EXPECT_FALSE(parse_film("[]", "x"));
-  EXPECT_FALSE(parse_film(R"({"format": "dubsar film", "version": 2, "keyframes": []})", "x"));
+  EXPECT_FALSE(parse_film(R"({"format": "dubsar film", "version": 3, "keyframes": []})", "x"));
 }
 
 }  // namespace
