@@ -28,14 +28,15 @@ void paste(const Image& part, const CrossPlace& place, Image& whole) {
 
 }  // namespace
 
-CrossLayout lay_out_cross(const std::array<PixelExtent, kTabletSides.size()>& sides, PixelExtent ruler, int gap) {
+CrossLayout lay_out_cross(const std::array<PixelExtent, kTabletSides.size()>& sides, PixelExtent ruler, int gap,
+                          PixelExtent legend) {
   const auto of = [&](TabletSide side) { return sides[index(side)]; };
   const std::array spine{TabletSide::kObverse, TabletSide::kLower, TabletSide::kReverse, TabletSide::kUpper};
   const int wing = std::max(of(TabletSide::kLeft).width, of(TabletSide::kRight).width);
   int column = ruler.width;
   for (const TabletSide side : spine) column = std::max(column, of(side).width);
   CrossLayout out;
-  out.width = column + 2 * wing + 4 * gap;
+  out.width = std::max(column + 2 * wing + 4 * gap, legend.width + 2 * gap);
   const int middle = out.width / 2;
   int y = gap;
   for (std::size_t k = 0; k < spine.size(); ++k) {
@@ -44,6 +45,8 @@ CrossLayout lay_out_cross(const std::array<PixelExtent, kTabletSides.size()>& si
   }
   out.ruler = {middle - ruler.width / 2, y, false};
   out.height = y + ruler.height + gap;
+  out.legend = {middle - legend.width / 2, out.height, false};
+  if (legend.height > 0) out.height += legend.height + gap;
   const int left_end = middle - column / 2 - gap, right_begin = middle + (column + 1) / 2 + gap;
   const auto beside = [&](std::size_t row, TabletSide side, bool left, bool half_turned) {
     const PixelExtent extent = of(side);
@@ -84,7 +87,11 @@ Result<FatCross> draw_fat_cross(const TriMesh& mesh, const FatCrossOptions& opti
   cross.ruler_mm = ruler_length_mm(renderer.box_mm().size().x);
   const Image ruler = draw_ruler(cross.ruler_mm, options.dpi, options.ground);
   cross.ruler_px = ruler.width;
-  const CrossLayout layout = lay_out_cross(extents, {ruler.width, ruler.height}, options.gap_px);
+  const int width = lay_out_cross(extents, {ruler.width, ruler.height}, options.gap_px).width;
+  DUBSAR_ASSIGN(const Image legend, draw_sheet_legend(options.shading.style, options.legend, options.dpi,
+                                                      width - 2 * options.gap_px, options.ground));
+  const CrossLayout layout =
+      lay_out_cross(extents, {ruler.width, ruler.height}, options.gap_px, {legend.width, legend.height});
   DUBSAR_TRY(check_memory("fatcross",
                           static_cast<std::uint64_t>(layout.width) * static_cast<std::uint64_t>(layout.height) * 3));
   cross.whole = Image(layout.width, layout.height, 3);
@@ -108,6 +115,7 @@ Result<FatCross> draw_fat_cross(const TriMesh& mesh, const FatCrossOptions& opti
     paste(image, layout.wings[k], cross.whole);
   }
   paste(ruler, layout.ruler, cross.whole);
+  paste(legend, layout.legend, cross.whole);
   return cross;
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <string_view>
 
+#include "app/publish/sheet_legend.h"
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/image_io/image.h"
@@ -25,6 +26,7 @@ struct FatCrossOptions {
   int gap_px = 100;      ///< between sides, around the ruler, and at the margin
   Shading shading{};     ///< its background is not used
   int samples = 3;       ///< samples x samples a pixel
+  SheetLegend legend{};  ///< below the ruler
 };
 
 struct FatCross {
@@ -46,12 +48,13 @@ struct CrossLayout {
   int width = 0, height = 0;
   std::array<CrossPlace, 4> spine;  ///< obverse, lower edge, reverse, upper edge
   std::array<CrossPlace, 4> wings;  ///< left and right of the obverse; right and left edge beside the reverse
-  CrossPlace ruler;
+  CrossPlace ruler, legend;
 };
 struct PixelExtent {
   int width = 0, height = 0;
 };
-CrossLayout lay_out_cross(const std::array<PixelExtent, kTabletSides.size()>& sides, PixelExtent ruler, int gap_px);
+CrossLayout lay_out_cross(const std::array<PixelExtent, kTabletSides.size()>& sides, PixelExtent ruler, int gap_px,
+                          PixelExtent legend = {});
 
 /// Length of the ruler in mm for a tablet of this width: 10, 20 or 50, the longest that is not longer.
 int ruler_length_mm(double tablet_width_mm);

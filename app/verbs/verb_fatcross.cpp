@@ -8,10 +8,13 @@
 #include "app/cli/default_output.h"
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
+#include "app/panels/panel_font.h"
 #include "app/publish/fat_cross.h"
 #include "app/publish/xmp.h"
+#include "app/viewer/surface_tools.h"
 #include "core/image_io/picture_file.h"
 #include "core/image_io/tiff_file.h"
+#include "display/render/surface_field.h"
 
 namespace dubsar::app {
 namespace {
@@ -24,7 +27,7 @@ struct FatCrossRequest {
   int samples = 3;
   Rgb8 ground{0, 0, 0};
   FrameTurn turn = FrameTurn::kNone;
-  bool over = false, no_sides = false, apart = false;
+  bool over = false, no_sides = false, no_legend = false, apart = false;
   Publication publication;
 };
 
@@ -69,6 +72,7 @@ class CrossFiles {
       : options_(options), styles_(styles), upright_(upright), progress_(progress) {}
 
   Result<void> write(VerbResult& result) {
+    DUBSAR_TRY(find_legend());
     result.json["files"] = nlohmann::json::array();
     const int count = static_cast<int>(styles_.size());
     if (count > 1 && !options_.apart) {
@@ -94,12 +98,24 @@ class CrossFiles {
   }
 
  private:
+  Result<void> find_legend() {
+    if (options_.no_legend) return {};
+    DUBSAR_ASSIGN(font_, LabelFont::create(panel_font()));
+    const EvidenceShares shares = evidence_shares(upright_);
+    const double all = shares.measured_mm2 + shares.inferred_mm2;
+    legend_ = {font_.get(), shares.inferred_mm2, all > 0 ? shares.inferred_mm2 / all : 0.0, false};
+    for (const std::string& style : styles_)
+      if (const auto preset = shading_preset(style); preset && styles_.size() > 1 && !options_.apart)
+        legend_.figure_room = legend_.figure_room || is_field(preset->style.map);
+    return {};
+  }
   /// The first of them gives the six sides, too.
   Result<FatCross> draw(int k) {
     FatCrossOptions draw;
     draw.dpi = options_.dpi;
     draw.ground = options_.ground;
     draw.samples = options_.samples;
+    draw.legend = legend_;
     DUBSAR_ASSIGN(draw.shading, shading_preset(styles_[static_cast<std::size_t>(k)]));
     DUBSAR_ASSIGN(FatCross cross, draw_fat_cross(upright_, draw, progress_));
     if (k == 0) DUBSAR_TRY(write_sides(options_, cross, options_.out));
@@ -121,6 +137,8 @@ class CrossFiles {
   const std::vector<std::string>& styles_;
   const TriMesh& upright_;
   Progress& progress_;
+  std::unique_ptr<LabelFont> font_;
+  SheetLegend legend_;
   PixelExtent size_, ruler_;  // ruler: mm and pixels
 };
 
@@ -194,6 +212,9 @@ Verb add_fatcross_verb(Arguments program) {
       .separated_by(',');
   command.flag("--apart", options->apart, "each of --layers in a file of its own, NAME_style.tif");
   command.value("--samples", options->samples, "samples per pixel side").range(1, 8);
+  command.flag(
+      "--no-legend", options->no_legend,
+      "without the scale of colours that tell a figure and what the hatch means, which else stand below the ruler");
   command.flag("--no-sides", options->no_sides, "only the cross, not the six sides");
   command.value("--title", options->publication.title, "goes into the file, e.g. \"AO 8295\"");
   command.value("--rights", options->publication.rights, "goes into the file");

@@ -8,8 +8,10 @@
 
 #include <filesystem>
 
+#include "app/panels/panel_font.h"
 #include "app/publish/xmp.h"
 #include "core/image_io/tiff_file.h"
+#include "display/render/surface_field.h"
 
 namespace dubsar::app {
 namespace {
@@ -66,7 +68,7 @@ TEST(FatCross, SidesOfAPlateHaveItsThreeEdges) {
 
 TEST(FatCross, PicturesOfTheLayoutNeverOverlap) {
   const std::array<PixelExtent, 6> sides{{{520, 310}, {520, 310}, {500, 120}, {510, 121}, {120, 310}, {90, 300}}};
-  const CrossLayout layout = lay_out_cross(sides, {200, 60}, 100);
+  const CrossLayout layout = lay_out_cross(sides, {200, 60}, 100, {420, 90});
   struct Rectangle {
     int x0, y0, x1, y1;
   };
@@ -80,6 +82,7 @@ TEST(FatCross, PicturesOfTheLayoutNeverOverlap) {
     add(layout.wings[k], sides[wings[k]]);
   }
   add(layout.ruler, {200, 60});
+  add(layout.legend, {420, 90});
   for (std::size_t a = 0; a < placed.size(); ++a) {
     EXPECT_GE(placed[a].x0, 100 - 1);
     EXPECT_GE(placed[a].y0, 100);
@@ -100,6 +103,79 @@ TEST(FatCross, TheRulerIsTheLongestThatIsNotLongerThanTheTablet) {
   EXPECT_EQ(ruler_length_mm(19.9), 10);
   EXPECT_EQ(ruler_length_mm(20.0), 20);
   EXPECT_EQ(ruler_length_mm(61.0), 50);
+}
+
+/// How many pixels of these rows have exactly this colour.
+int count_of(const Image& image, const Rgb8& color, int from_row) {
+  int out = 0;
+  for (int y = from_row; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) out += std::equal(color.begin(), color.end(), image.at(x, y)) ? 1 : 0;
+  return out;
+}
+
+TEST(FatCross, AStyleThatTellsAFigureHasItsScaleBelowTheRulerAndTheHatchItsMeaning) {
+  SilentProgress progress;
+  TriMesh mesh = box(40.0, 30.0, 12.0);
+  mesh.triangle_inferred.assign(mesh.triangles.size(), 0);
+  mesh.triangle_inferred[2] = 1;
+  const auto font = LabelFont::create(panel_font()).value();
+  FatCrossOptions options;
+  options.dpi = 300.0;
+  options.shading = shading_preset("mean-curvature").value();
+  const Style& style = options.shading.style;
+  for (const Rgb8& ground : {Rgb8{255, 255, 255}, Rgb8{0, 0, 0}}) {
+    options.ground = ground;
+    options.legend = {};
+    const auto without = draw_fat_cross(mesh, options, progress);
+    options.legend = {font.get(), 600.0, 0.147};
+    const auto with = draw_fat_cross(mesh, options, progress);
+    ASSERT_TRUE(without && with);
+    const Image &sheet = with->whole, &plain = without->whole;
+    ASSERT_EQ(sheet.width, plain.width);
+    ASSERT_GT(sheet.height, plain.height + options.gap_px);
+    const auto same = static_cast<std::ptrdiff_t>(plain.pixels.size());
+    EXPECT_TRUE(std::equal(plain.pixels.begin(), plain.pixels.begin() + same, sheet.pixels.begin()))
+        << "all that stood there stands there still";
+    // The bar: 13 letters of 2.5 mm long, its colours in their order.
+    const auto colors = field_colors(style);
+    const int letter = static_cast<int>(std::lround(2.5 / 25.4 * 300.0));
+    int rows = 0;
+    for (int y = plain.height; y < sheet.height; ++y) {
+      std::vector<int> at;
+      for (int x = 0; x < sheet.width; ++x)
+        if (std::equal(colors[0].begin(), colors[0].end(), sheet.at(x, y))) at.push_back(x);
+      if (at.empty() || at.front() + 13 * letter > sheet.width) continue;
+      bool bar = true;
+      for (const double part : {0.25, 0.5, 0.75, 0.995})
+        for (int c = 0; c < 3; ++c)
+          bar = bar &&
+                std::abs(sheet.at(at.front() + static_cast<int>(part * 13 * letter), y)[c] -
+                         colors[static_cast<std::size_t>(std::lround(part * 127))][static_cast<std::size_t>(c)]) < 10;
+      rows += bar ? 1 : 0;
+    }
+    EXPECT_NEAR(rows, 0.8 * letter, 2);
+    EXPECT_GT(count_of(sheet, style.inferred_color, plain.height), letter * letter);
+    EXPECT_GT(count_of(sheet, style.inferred_stripe, plain.height), letter * letter);
+    const Rgb8 ink = ground[0] == 0 ? Rgb8{255, 255, 255} : Rgb8{0, 0, 0};
+    EXPECT_GT(count_of(sheet, ink, plain.height), letter * letter) << "words";
+  }
+}
+
+TEST(FatCross, SheetsOfSeveralStylesAreAsLargeAndAPlainOneHasNoLegend) {
+  SilentProgress progress;
+  const auto font = LabelFont::create(panel_font()).value();
+  FatCrossOptions options;
+  options.dpi = 150.0;
+  const auto height = [&](const char* style, bool room) {
+    options.shading = shading_preset(style).value();
+    options.legend = {font.get(), 0.0, 0.0, room};
+    return draw_fat_cross(box(20.0, 30.0, 12.0), options, progress).value().whole.height;
+  };
+  EXPECT_EQ(height("phong", true), height("msii", true));
+  EXPECT_LT(height("phong", false), height("phong", true));
+  options.legend = {};
+  options.shading = shading_preset("phong").value();
+  EXPECT_EQ(draw_fat_cross(box(20.0, 30.0, 12.0), options, progress).value().whole.height, height("phong", false));
 }
 
 TEST(FatCross, FilesSayTheirScaleAndWhoseTheyAre) {
