@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 
@@ -29,9 +30,12 @@ struct InputEvent {
   bool repeat = false;  ///< kKey: the keyboard says again that it is down; nobody pressed it
   /// Where the pointer is, in heights of the window from its middle, to the right and up; none: nobody knows.
   std::optional<glm::dvec2> at{};
-  /// kButton: how far the surface under the pointer stands before the object's centre, in heights of the window; none:
-  /// there is no surface, or nobody looked.
+  /// kButton, kWheel: how far the surface under the pointer stands before the object's centre, in heights of the
+  /// window; none: there is no surface, or nobody looked.
   std::optional<double> lever{};
+  /// With a lever: where the eye is, heights of the window from its middle, z towards the viewer; none: so far away
+  /// that all it sees lies behind the pointer's place.
+  std::optional<glm::dvec3> eye{};
 };
 
 }  // namespace dubsar

@@ -56,6 +56,7 @@ json event_json(const InputEvent& event) {
   if (event.repeat) out["repeat"] = true;
   if (event.at) out["at"] = {event.at->x, event.at->y};
   if (event.lever) out["lever"] = *event.lever;
+  if (event.eye) out["eye"] = {event.eye->x, event.eye->y, event.eye->z};
   if (event.kind == EventKind::kButton || event.kind == EventKind::kKey) out["down"] = event.down;
   return out;
 }
@@ -177,6 +178,7 @@ InputEvent read_event(LineReader& read, const json& object) {
   if (event.kind == EventKind::kButton || event.kind == EventKind::kKey) event.down = read.truth(object, "down");
   if (object.is_object() && object.contains("repeat")) event.repeat = read.truth(object, "repeat");
   if (object.is_object() && object.contains("lever")) event.lever = read.real(object.at("lever"), "lever");
+  if (object.is_object() && object.contains("eye")) event.eye = read.vector(object, "eye");
   if (object.is_object() && object.contains("at")) {
     const auto at = read.reals<2>(object.at("at"), "at");
     event.at = {at[0], at[1]};

@@ -58,8 +58,8 @@ std::string stage_in_words(std::string_view stage) {
                                           {"decode offsets", "reading"},
                                           {"render", "drawing"},
                                           {"animate", "drawing"},
-                                          {"look", "looking for some"},
-                                          {"video", "making the video"},
+                                          {"look", "looking"},
+                                          {"video", "making video"},
                                           {"phantom", "making a scan"},
                                           {"truth", "writing truth"},
                                           {"simplify", "simplifying"}}};

@@ -80,10 +80,11 @@ struct LightSweep {
   friend bool operator==(const LightSweep&, const LightSweep&) = default;
 };
 
-/// Where the pointer is, and what follows it.
+/// Where the pointer is, what follows it, and what there is for it to take.
 struct Pointing {
   double magnify = 0.0;            ///< of the glass; 0: there is none
   bool cursor = false;             ///< a ring on the surface
+  bool cut_box = false;            ///< the box of cuts, with a handle for each side
   std::optional<glm::dvec2> at{};  ///< heights of the window from its middle, x to the right, y up; none: not seen
   friend bool operator==(const Pointing&, const Pointing&) = default;
 };

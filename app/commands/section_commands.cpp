@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "app/commands/box_sides.h"
 #include "app/commands/command_table.h"
 #include "app/commands/number_argument.h"
 
@@ -13,10 +14,12 @@ namespace {
 constexpr std::size_t kMostCuts = 6;  // of eight planes that the renderer has
 constexpr double kStep = 0.02;        // of the object's depth
 
+bool across(const Cut& cut, const glm::dvec3& direction) { return glm::distance(cut.normal, direction) < 1e-9; }
+
 /// The cut across a direction, once: a second one of the same direction takes its place.
 void set_cut(Document& document, const glm::dvec3& normal, double distance_mm) {
-  const auto same = std::find_if(document.clips.begin(), document.clips.end(),
-                                 [&](const Cut& cut) { return glm::distance(cut.normal, normal) < 1e-9; });
+  const auto same =
+      std::find_if(document.clips.begin(), document.clips.end(), [&](const Cut& cut) { return across(cut, normal); });
   if (same != document.clips.end()) {
     *same = {normal, distance_mm, true};
   } else {
@@ -25,26 +28,26 @@ void set_cut(Document& document, const glm::dvec3& normal, double distance_mm) {
   }
 }
 
+/// A share of the object away from a side; nothing of it takes the cut away.
+void cut_side(Document& document, const Workplace::Reach& reach, double percent) {
+  if (percent > 0)
+    set_cut(document, reach.direction, reach.to_mm - 0.01 * percent * (reach.to_mm - reach.from_mm));
+  else
+    std::erase_if(document.clips, [&](const Cut& cut) { return across(cut, reach.direction); });
+}
+
 Command cut() {
   Command out{"cut", "Cuts", "cut away from a side, in percent of the object", {}, "a side and 0 to 100"};
   out.values = {"front 20", "left 50", "front 0"};
   out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
-    constexpr std::array<std::pair<std::string_view, glm::dvec3>, 6> kSides{{{"front", {0, 0, 1}},
-                                                                             {"back", {0, 0, -1}},
-                                                                             {"left", {-1, 0, 0}},
-                                                                             {"right", {1, 0, 0}},
-                                                                             {"top", {0, 1, 0}},
-                                                                             {"bottom", {0, -1, 0}}}};
     const auto [side, share] = first_word(text);
     const auto* const at =
-        std::find_if(kSides.begin(), kSides.end(), [&](const auto& row) { return row.first == side; });
-    if (at == kSides.end())
+        std::find_if(kBoxSides.begin(), kBoxSides.end(), [&](const BoxSide& row) { return row.name == side; });
+    if (at == kBoxSides.end())
       return fail(ErrorKind::kUsage, "cut: \"{}\" found, expected front, back, left, right, top or bottom", side);
     DUBSAR_ASSIGN(const double percent, number_argument("cut", share, 0.0, 100.0));
-    const Workplace::Reach reach = editor.place().reach(at->second);
     Document next = editor.document();
-    set_cut(next, reach.direction, reach.to_mm - 0.01 * percent * (reach.to_mm - reach.from_mm));
-    if (percent == 0.0) next.clips.pop_back();
+    cut_side(next, editor.place().reach(at->outward), percent);
     editor.change(std::move(next), why);
     return {};
   };
@@ -57,7 +60,6 @@ Command cut_box() {
   out.argument = "0 to 49, or six of them: left,right,bottom,top,back,front";
   out.values = {"10", "0,0,0,0,0,40", "0"};
   out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
-    constexpr std::array<glm::dvec3, 6> kOutward{{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
     std::array<double, 6> percent{};
     const bool all = text.find(',') == std::string::npos;
     std::string rest = text;
@@ -70,12 +72,20 @@ Command cut_box() {
       return fail(ErrorKind::kUsage, "cut_box: \"{}\" found, expected one number or six", text);
     Document next = editor.document();
     next.clips.clear();
-    for (std::size_t side = 0; side < percent.size(); ++side) {
-      if (percent[side] == 0.0) continue;
-      const Workplace::Reach reach = editor.place().reach(kOutward[side]);
-      set_cut(next, reach.direction, reach.to_mm - 0.01 * percent[side] * (reach.to_mm - reach.from_mm));
-    }
+    for (std::size_t side = 0; side < percent.size(); ++side)
+      if (percent[side] > 0) cut_side(next, editor.place().reach(kBoxSides[side].outward), percent[side]);
     editor.change(std::move(next), why);
+    return {};
+  };
+  return out;
+}
+
+/// Dragging one is "cut SIDE PERCENT", again and again, as one step.
+Command cut_handles() {
+  Command out{"cut_handles", "Cuts", "a box round the object whose six sides are dragged, or none", {{"alt+h"}}};
+  out.run = [](Editor& editor, const std::string&) -> Result<void> {
+    bool& box = editor.desk().pointing.cut_box;
+    box = !box;
     return {};
   };
   return out;
@@ -146,10 +156,17 @@ Command fog() {
 
 }  // namespace
 
+const Cut* cut_across(const Document& document, const glm::dvec3& direction) {
+  const auto at = std::find_if(document.clips.begin(), document.clips.end(),
+                               [&](const Cut& cut) { return cut.on && across(cut, direction); });
+  return at == document.clips.end() ? nullptr : &*at;
+}
+
 std::vector<Command> section_commands() {
   std::vector<Command> out;
   out.push_back(cut());
   out.push_back(cut_box());
+  out.push_back(cut_handles());
   out.push_back(section());
   out.push_back(cut_here());
   out.push_back(move_cut("cut_deeper", "cut deeper", -kStep, {{"]"}}));

@@ -159,6 +159,8 @@ Result<void> close(Editor& editor) {
     // a file that was being read
   } else if (desk.choosing.open) {
     desk.choosing.open = false;
+  } else if (desk.pointing.cut_box) {
+    desk.pointing.cut_box = false;
   } else if (desk.tool != "turn") {
     desk.tool = "turn";
     desk.pending.clear();

@@ -25,7 +25,7 @@ void begin(const char* name, float x, float y, float width, float height) {
 }
 
 void draw_line(const Board& desk) {
-  begin("line", 0.0f, 0.0f, desk.width, kTop);
+  begin("line", 0.0f, 0.0f, desk.width, kTopLine);
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(desk.state.line.title.c_str());
   const FilesState& files = desk.state.files;
@@ -101,7 +101,7 @@ void draw_tools(const Board& desk) {
                                                               {"Line", "line"},
                                                               {"Slice", "slice"}}};
   const float row = ImGui::GetFrameHeightWithSpacing();
-  begin("tools", 0.0f, kTop + kGap, kToolsWidth,
+  begin("tools", 0.0f, kTopLine + kGap, kToolsWidth,
         row * static_cast<float>(kTools.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
   for (const auto& [label, name] : kTools)
     button(desk, label, std::string("tool ") + name, desk.state.desk.tool == name);
@@ -123,7 +123,7 @@ void draw_drawers(const Board& desk) {
   rows.push_back({"Slices", "slices", nullptr});
   rows.push_back({"Film", "film", draw_film});
   const float row = ImGui::GetFrameHeightWithSpacing();
-  begin("drawers", desk.width - kTab, kTop + kGap, kTab,
+  begin("drawers", desk.width - kTab, kTopLine + kGap, kTab,
         row * static_cast<float>(rows.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
   for (const Row& each : rows)
     button(desk, each.label, std::string("drawer ") + each.name, desk.state.desk.drawer == each.name);
@@ -134,7 +134,7 @@ void draw_drawers(const Board& desk) {
       draw_slices(desk);
       continue;
     }
-    ImGui::SetNextWindowPos(ImVec2(desk.width - kTab - kDrawer - 4.0f, kTop + kGap));
+    ImGui::SetNextWindowPos(ImVec2(desk.width - kTab - kDrawer - 4.0f, kTopLine + kGap));
     ImGui::SetNextWindowSize(ImVec2(kDrawer, 0.0f));
     ImGui::Begin(each.name, nullptr, kFixed | ImGuiWindowFlags_AlwaysAutoResize);
     each.draw(desk);

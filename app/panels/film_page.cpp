@@ -88,7 +88,7 @@ void draw_film(const Board& desk) {
   button(desk, desk.state.playing ? "stop" : "play", "play", desk.state.playing, keys.size() > 1);
   if (keys.empty()) return say_dim("Turn, light and lift as it shall be, and add it; go on with the next.");
   const auto rows = static_cast<float>(std::min<std::size_t>(keys.size(), kFilmRows));
-  const float room = desk.height - kTop - kStrip - 120.0f;
+  const float room = desk.height - kTopLine - kStrip - 120.0f;
   ImGui::BeginChild("keyframes", ImVec2(0.0f, std::min(rows * kFilmRow, room)));
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(6.0f, kFilmRow - kFilmPicture));
   for (std::size_t i = 0; i < keys.size(); ++i) {

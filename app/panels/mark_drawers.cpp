@@ -89,6 +89,7 @@ void draw_notes(const Board& desk) {
 }
 
 void draw_cuts(const Board& desk) {
+  button(desk, "box to drag", "cut_handles", desk.state.desk.pointing.cut_box);
   button(desk, "across the view", "cut_here", false);
   const bool any = !desk.state.document.clips.empty();
   button(desk, "deeper", "cut_deeper", false, any);

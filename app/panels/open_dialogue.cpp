@@ -125,9 +125,9 @@ void draw_open_dialogue(bool open, const FilesState& files, float width, float h
   static std::string last_folder;
   if (fresh || folder != last_folder) typed = {{}, 0, true, true, true};
   last_folder = folder;
-  ImGui::SetNextWindowPos(ImVec2(0.5f * width, kTop + kGap), ImGuiCond_Always, ImVec2(0.5f, 0.0f));
+  ImGui::SetNextWindowPos(ImVec2(0.5f * width, kTopLine + kGap), ImGuiCond_Always, ImVec2(0.5f, 0.0f));
   ImGui::SetNextWindowSize(
-      ImVec2(std::min(kDialogueWidth, width - 24.0f), std::min(kHeight, height - kTop - kStrip - 16.0f)));
+      ImVec2(std::min(kDialogueWidth, width - 24.0f), std::min(kHeight, height - kTopLine - kStrip - 16.0f)));
   ImGui::Begin("open", nullptr, (kFixed & ~ImGuiWindowFlags_NoBringToFrontOnFocus));
   ImGui::TextColored(ImColor(kAccent), "Open a surface");
   ImGui::SameLine();

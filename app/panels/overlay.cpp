@@ -201,6 +201,14 @@ glm::dvec2 Overlay::layout(int view_height, const glm::dvec2& window_mm, double 
 }
 
 void Overlay::draw_all(float width, float height) {
+  if (text_.box && text_.help.empty()) {
+    ImFont* const font = ImGui::GetIO().Fonts->Fonts[scale_.y >= kLargeScale ? 0 : 1];
+    const float before = std::exchange(font->Scale, kPanelFontPx / font->FontSize);
+    ImGui::PushFont(font);
+    draw_box(*text_.box, width, height);
+    ImGui::PopFont();
+    font->Scale = before;
+  }
   if (text_.panels && text_.help.empty()) {
     ImFont* const font = ImGui::GetIO().Fonts->Fonts[scale_.y >= kLargeScale ? 0 : 1];
     const float before = font->Scale;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/panels/box_page.h"
 #include "app/panels/desk_panels.h"
 #include "app/panels/gallery_page.h"
 #include "app/panels/help_page.h"
@@ -25,7 +26,10 @@ struct OverlayText {
   std::optional<GalleryPicture> gallery{};
   std::optional<LegendPicture> legend{};
   std::optional<LightPlace> light{};  ///< the ball on the stage, while it moves
-  bool empty() const noexcept { return help.empty() && notice.empty() && !panels && !gallery && !legend && !light; }
+  std::optional<BoxPicture> box{};    ///< of cuts, to be dragged
+  bool empty() const noexcept {
+    return help.empty() && notice.empty() && !panels && !gallery && !legend && !light && !box;
+  }
   friend bool operator==(const OverlayText&, const OverlayText&) = default;
 };
 

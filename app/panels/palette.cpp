@@ -89,9 +89,9 @@ void draw_palette(bool open, const KeyTable& keys, float width, float height, st
   typed.was_open = open;
   if (!open) return;
   if (fresh) typed = {{}, 0, true, true, false};
-  ImGui::SetNextWindowPos(ImVec2(0.5f * width, kTop + kGap), ImGuiCond_Always, ImVec2(0.5f, 0.0f));
+  ImGui::SetNextWindowPos(ImVec2(0.5f * width, kTopLine + kGap), ImGuiCond_Always, ImVec2(0.5f, 0.0f));
   ImGui::SetNextWindowSize(ImVec2(std::min(kPaletteWidth, width - 24.0f), 0.0f));
-  ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(width, height - 2.0f * kTop));
+  ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(width, height - 2.0f * kTopLine));
   ImGui::Begin("palette", nullptr,
                (kFixed & ~ImGuiWindowFlags_NoBringToFrontOnFocus) | ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::SetNextItemWidth(-1.0f);

@@ -13,7 +13,7 @@ namespace dubsar::app {
 // One accent and warm neutrals; text stands out 7:1 from the panels.
 inline constexpr ImU32 kAccent = IM_COL32(0xd9, 0xa4, 0x41, 0xff), kDim = IM_COL32(0x9a, 0x96, 0x8e, 0xff),
                        kText = IM_COL32(0xe8, 0xe4, 0xdc, 0xff), kLine = IM_COL32(0x3a, 0x3b, 0x3f, 0xff);
-inline constexpr float kTop = 32.0f, kStrip = 48.0f, kTab = 90.0f, kDrawer = 264.0f, kGap = 8.0f;
+inline constexpr float kTopLine = 32.0f, kStrip = 48.0f, kTab = 90.0f, kDrawer = 264.0f, kGap = 8.0f;
 inline constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                            ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
                                            ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBringToFrontOnFocus;

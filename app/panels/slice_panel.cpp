@@ -137,8 +137,8 @@ float slices_width(float width) noexcept { return std::max(kLeastWidth, kShare *
 
 std::array<PanelRect, kSlices> slice_rects(float width, float height, int large) noexcept {
   const float panel = slices_width(width);
-  const PanelRect all{width - kTab - panel, kTop + kGap + kHead, panel - kGap,
-                      height - kTop - kStrip - 2 * kGap - kHead - kFoot};
+  const PanelRect all{width - kTab - panel, kTopLine + kGap + kHead, panel - kGap,
+                      height - kTopLine - kStrip - 2 * kGap - kHead - kFoot};
   std::array<PanelRect, kSlices> out{};
   if (large > 0) {
     out[static_cast<std::size_t>(large - 1)] = all;
@@ -155,8 +155,8 @@ std::array<PanelRect, kSlices> slice_rects(float width, float height, int large)
 void draw_slices(const Board& desk) {
   const float panel = slices_width(desk.width);
   ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1.0f);
-  ImGui::SetNextWindowPos(ImVec2(desk.width - kTab - panel - kGap, kTop + kGap));
-  ImGui::SetNextWindowSize(ImVec2(panel + kGap - 2.0f, desk.height - kTop - kStrip - 2 * kGap));
+  ImGui::SetNextWindowPos(ImVec2(desk.width - kTab - panel - kGap, kTopLine + kGap));
+  ImGui::SetNextWindowSize(ImVec2(panel + kGap - 2.0f, desk.height - kTopLine - kStrip - 2 * kGap));
   ImGui::Begin("slices", nullptr, kFixed | ImGuiWindowFlags_NoScrollWithMouse);
   draw_head(desk);
   const SlicePanelState& slices = desk.state.slices;

@@ -209,12 +209,31 @@ Result<void> check_files(const ViewRequest& options) {
     return fail(ErrorKind::kUsage, "view: no file found, expected a surface such as tablet.exa");
   if (what.in.size() > 1 && !what.scan.empty())
     return fail(ErrorKind::kUsage, "view: {} files and one --scan found, expected one file with it", what.in.size());
-  for (const std::string& file : what.in) DUBSAR_TRY(check_surface(file, what.partitions));
   if (what.scan.empty()) return {};
   ImportOptions scan;
   scan.path = what.scan;
   DUBSAR_TRY(open_voxels(scan));
   return {};
+}
+
+/// Those that can be shown as far as that is known before they are read. Of several in a window the others are told and
+/// left out; else the first that cannot be is an error.
+Result<std::vector<std::filesystem::path>> good_files(const ViewRequest& options, bool live) {
+  std::vector<std::filesystem::path> out;
+  std::optional<Error> wrong;
+  std::vector<std::string> told;
+  for (const std::string& file : options.what.in) {
+    const auto done = check_surface(file, options.what.partitions);
+    if (done) {
+      out.emplace_back(file);
+      continue;
+    }
+    if (!wrong) wrong = done.error();
+    told.push_back(done.error().message);
+  }
+  if (wrong && (!live || out.empty())) return tl::unexpected<Error>(*std::move(wrong));
+  for (const std::string& sentence : told) log_warning("{}; it is left out", sentence);
+  return out;
 }
 
 Result<VerbResult> run(const ViewRequest& options, Progress& progress) {
@@ -223,14 +242,14 @@ Result<VerbResult> run(const ViewRequest& options, Progress& progress) {
   if (options.made.tour.empty())
     DUBSAR_TRY(options.panel.offscreen ? without_window(options, view) : with_window(options, view));
   DUBSAR_TRY(check_files(options));
+  const bool live = !options.panel.offscreen && options.time.fps == 0;
+  DUBSAR_ASSIGN(const std::vector<std::filesystem::path> files, good_files(options, live && options.made.tour.empty()));
   if (!options.made.tour.empty()) {
     view.work.upright = options.what.view == "front";
     view.work.surface = options.what.in.front();
     DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.what.in.front(), options.what.partitions, true}, progress));
     return write_tour(options.made.tour, mesh, view);
   }
-  const bool live = !options.panel.offscreen && options.time.fps == 0;
-  const std::vector<std::filesystem::path> files(options.what.in.begin(), options.what.in.end());
   Shelf shelf(surface_reader(view, file_reading(options)), live ? recent_list() : std::filesystem::path());
   OpenedSurface first;
   if (live) {  // the window is there before what it shows

@@ -169,6 +169,12 @@ Result<void> Shelf::step(int by) {
   return {};
 }
 
+bool Shelf::go_on() {
+  if (shown_ || reading_ || files_.empty()) return false;
+  begin(0);
+  return true;
+}
+
 bool Shelf::stop() {
   std::erase_if(left_, [](const auto& each) { return each->done(); });
   if (!reading_) return false;

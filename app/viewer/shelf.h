@@ -46,6 +46,9 @@ class Shelf {
   void has(const std::vector<std::filesystem::path>& files);
   /// The next (1) or previous (-1) of the open files is the next to be read. kUsage: there is no other.
   Result<void> step(int by);
+  /// When nothing is shown and nothing is being read: the first of the open files is the next to be. False: there is
+  /// none.
+  bool go_on();
   /// What is to be read is read from now on; until then a window has the machine for itself. Again: nothing.
   void start();
   /// Leaves what is being read. False: nothing is.

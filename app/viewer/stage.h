@@ -54,6 +54,7 @@ struct StageOptions {
   double magnification = 0.0;  ///< 1: life size at zoom 1; 0: as large as fits
   Subject subject = Subject::kSurface;
   std::shared_ptr<const ViewPictures> pictures{};  ///< these in place of the mesh
+  bool lens_zoom = true;  ///< of one view: as camera_mm() says; false: the eyes stay where they are
 };
 
 /// What stands on and around the surface: measures, notes. In mm of the model.
@@ -144,7 +145,11 @@ class Stage {
   /// Renders the views and composes them on `target`: the field that is due, where traits() has two.
   Result<void> paint(const Surface& target, Field field = Field::kFirst);
 
-  const Observer& viewer() const noexcept;  ///< the eyes that cameras are made for
+  const Observer& viewer() const noexcept;  ///< where the eyes are
+  /// Between the eyes that cameras are made for. A picture of one view is enlarged by its zoom as a whole, as a lens
+  /// does it: its camera stands so many times farther away, so that what is near does not swell, and nobody gets into
+  /// the clay.
+  glm::dvec3 camera_mm() const;
   std::optional<PanelLight> light() const;  ///< where the panel's lenses send what was painted last
   int coarse_views() const noexcept;        ///< of the last picture; 0: all are exact
   /// Of worn displays: who wears it, as of the last paint(), in the screen frame; and why nobody does.

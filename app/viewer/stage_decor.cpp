@@ -107,7 +107,8 @@ Result<std::optional<glm::dvec3>> Stage::place_at(const glm::dvec2& at) {
   const glm::dvec2 half = 0.5 * p.plane.window, middle = p.plane.middle;
   const WindowRect window{
       {middle - half, 0.0}, {middle.x + half.x, middle.y - half.y, 0.0}, {middle.x - half.x, middle.y + half.y, 0.0}};
-  const View whole = viewer_view(window, p.next.viewer, p.next.viewer.centre_mm());
+  const Observer eyes = p.cameras();
+  const View whole = viewer_view(window, eyes, eyes.centre_mm());
   const double aspect = p.plane.window.y / p.plane.window.x;
   const int x = static_cast<int>(std::floor((0.5 + at.x * aspect) * kProbe)),
             y = static_cast<int>(std::floor((0.5 + at.y) * kProbe));

@@ -86,6 +86,8 @@ struct Stage::Parts {
   Result<void> prepare(OutputSink& with);
   void measure(const FieldNeeds& needs);
   Observer viewer_at(const FollowedEyes& eyes) const;
+  /// The eyes that cameras are made for.
+  Observer cameras() const;
   /// Where what is shown stands: with another one beside it in the middle of its half, 0 left, 1 right.
   glm::dmat4 placed(const Shown& shown, int half) const;
   glm::dmat4 placed() const { return placed(next.shown, 1); }

@@ -67,7 +67,7 @@ Result<Image> Stage::still(int factor) {
     DUBSAR_ASSIGN(p.object.renderer, Renderer::create());
   }
   DUBSAR_ASSIGN(ViewArray array, ViewArray::create(factor * view.width, factor * view.height, 1));
-  const std::span<const View> views = p.sink->views(p.next.viewer);
+  const std::span<const View> views = p.sink->views(p.cameras());
   const View middle = views[views.size() / 2];
   Parts::Painted before = p.painted;
   p.set_scene();
@@ -94,7 +94,7 @@ Result<Image> Stage::thumbnail(const Shown& shown, int height) {
   const Parts::Painted painted = p.painted;
   p.next.shown = shown;
   p.next.viewer = p.viewer_at(FollowedEyes());
-  const std::span<const View> views = p.sink->views(p.next.viewer);
+  const std::span<const View> views = p.sink->views(p.cameras());
   const View middle = views[views.size() / 2];
   p.set_scene();
   const auto drawn = p.object.multi ? p.object.multi->draw_moving(p.scene(), std::span(&middle, 1), array)

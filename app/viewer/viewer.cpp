@@ -46,6 +46,8 @@ Viewer::~Viewer() {
 }
 
 Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& note) {
+  // Who leads a session shows hands, which are as far away as they are.
+  given_.options.stage.lens_zoom = given_.options.guide == nullptr;
   const StageOptions& stage = given_.options.stage;
   said_.commands = std::make_unique<CommandTable>();
   if (given_.options.commands.empty()) {
@@ -185,6 +187,7 @@ void Viewer::say(std::string text) {
 void Viewer::handle(InputEvent event) {
   if (given_.options.time.fps > 0) event.time = given_.clock.now();
   if (event.at) tools_.pointer = *event.at;
+  if (event.kind != EventKind::kWheel) tools_.wheeled.reset();
   if (given_.options.guide != nullptr && given_.options.guide->takes(event, given_.clock.now())) return;
   if (overlay_->take(event, layout())) {
     stage_->set_overlay(overlay_.get());  // what the pointer is on looks different
@@ -193,11 +196,9 @@ void Viewer::handle(InputEvent event) {
     return;
   }
   if (event.at && event.kind != EventKind::kKey) editor_->desk().pointing.at = event.at;
-  if (take_light(event) || take_click(event)) return;
-  if (event.kind == EventKind::kButton && event.down && event.at && given_.options.stage.subject != Subject::kPattern &&
-      !given_.options.stage.pictures)
-    event.lever = lever_at(*event.at);
-  if (event.at) event.at->x -= aside();  // who turns and zooms knows nothing of what stands beside the surface
+  if (take_light(event) || take_handle(event) || take_click(event)) return;
+  if (event.kind == EventKind::kWheel || (event.kind == EventKind::kButton && event.down)) tell_depth(event);
+  event = without_aside(std::move(event));
   const auto rows = sources_->rows();
   const bool keyboard = std::any_of(rows.begin(), rows.end(), [](const SourceRow& row) {
     return row.spec == "keyboard" && row.health == SourceHealth::kPresent;

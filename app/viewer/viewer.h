@@ -8,6 +8,7 @@
 #include "app/commands/key_table.h"
 #include "app/document/document_file.h"
 #include "app/panels/overlay.h"
+#include "app/viewer/cut_box.h"
 #include "app/viewer/film_thumbnails.h"
 #include "app/viewer/picker.h"
 #include "app/viewer/presenter.h"
@@ -151,6 +152,11 @@ class Viewer final : public Workplace {
     bool window_shown = false;      ///< a picture was presented
     bool recording_failed = false;  // and told
   };
+  struct ReachedSides {
+    const TriMesh* mesh = nullptr;
+    glm::dquat home{1.0, 0.0, 0.0, 0.0};
+    std::array<Reach, kBoxSides.size()> reach{};
+  };
   /// What tools need, and what is known of the surface.
   struct Tools {
     std::unique_ptr<LabelFont> font;
@@ -159,8 +165,11 @@ class Viewer final : public Workplace {
     std::optional<InputEvent> press;      ///< with a tool in the hand: it becomes a click, or a drag that turns
     std::optional<InputEvent> light_key;  ///< held: a drag moves the light
     bool light_dragged = false;           ///< since it went down
+    std::optional<InputEvent> wheeled;    ///< the last turn of the wheel, with what was found under it
     glm::dvec2 pointer{0.0};              ///< where it was last, as InputEvent::at
     std::unique_ptr<SliceDesk> slices;
+    std::optional<ReachedSides> reached;
+    std::optional<BoxDrag> held_side;  ///< of the box of cuts
   };
   Viewer(const TriMesh& mesh, const ViewOptions& options, Presenter& presenter, const Clock& clock, Shelf* shelf)
       : given_{&mesh, options, presenter, clock, shelf} {}
@@ -186,10 +195,15 @@ class Viewer final : public Workplace {
   void feed_worn();
   void follow();
   void update_overlay(TimestampNs now, const RecentFigures& figures);
-  std::optional<double> lever_at(const glm::dvec2& at) const;
+  void tell_depth(InputEvent& event);
+  InputEvent without_aside(InputEvent event) const;
   std::optional<Picked> picked_at(const glm::dvec2& at) const;
   bool take_click(const InputEvent& event);
   bool take_light(const InputEvent& event);
+  bool take_handle(const InputEvent& event);
+  CutBox cut_box();
+  std::optional<BoxPicture> box_picture();
+  std::optional<std::size_t> touched_handle(const BoxPicture& picture) const;
   void move_light(TimestampNs now, ViewState& view);
   void point();
   std::shared_ptr<const Shown> beside(const ViewState& view) const;

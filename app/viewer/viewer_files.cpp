@@ -103,7 +103,7 @@ void Viewer::take_surface() {
   }
   log_warning("{}", why.message);
   say(why.message);
-  if (!has_surface()) editor_->desk().choosing.open = true;
+  if (!has_surface() && !given_.shelf->go_on()) editor_->desk().choosing.open = true;
 }
 
 /// What the next session on this file finds.

@@ -97,6 +97,7 @@ void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
   text.light.reset();
   if (given_.options.around.notices && at_.light_moved >= 0 && now - at_.light_moved < kBallNs)
     text.light = LightPlace{report_.view.light_azimuth_deg, report_.view.light_elevation_deg};
+  text.box = box_picture();
   const TimestampNs age = now - notice_.since;
   if (notice_.since < 0 || age >= kNoticeNs) {
     text.notice.clear();

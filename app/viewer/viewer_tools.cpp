@@ -2,9 +2,9 @@
 
 #include <filesystem>
 #include <glm/geometric.hpp>
-#include <glm/gtc/matrix_inverse.hpp>
 
 #include "app/viewer/first_document.h"
+#include "app/viewer/sight.h"
 #include "app/viewer/viewer.h"
 #include "core/base/inch.h"
 #include "core/image_io/png_file.h"
@@ -29,19 +29,35 @@ fs::path next_free(const std::string& name) {
 
 /// What is under this place of the window, with parts where they stand.
 std::optional<Picked> Viewer::picked_at(const glm::dvec2& at) const {
-  const glm::dvec2 window = stage_->window_mm();
-  const glm::dvec3 target(stage_->middle_mm() + at * window.y, 0.0), eye = stage_->viewer().centre_mm();
-  const glm::dmat4 model_from_screen = glm::inverse(stage_->screen_from_model());
-  const glm::dvec3 from(model_from_screen * glm::dvec4(eye, 1.0)), to(model_from_screen * glm::dvec4(target, 1.0));
   const Shown shown = shown_of(document(), report_.view, given_.options.stage, stage_->box_mm());
-  return pick(*given_.mesh, shown.parts, {from, glm::normalize(to - from)}, shown.clips);
+  return pick(*given_.mesh, shown.parts, Sight::of(*stage_).ray(at), shown.clips);
 }
 
-/// How far the surface at this place of the window stands before the object's centre, in heights of the window.
-std::optional<double> Viewer::lever_at(const glm::dvec2& at) const {
-  const auto picked = picked_at(at);
-  if (!picked) return std::nullopt;
-  return glm::dvec4(stage_->screen_from_model() * glm::dvec4(picked->at_mm, 1.0)).z / stage_->window_mm().y;
+/// An event at a place of the window is told where the surface under it stands and where it is seen from. While the
+/// wheel turns at one place that is looked for once.
+void Viewer::tell_depth(InputEvent& event) {
+  if (!event.at || given_.options.stage.subject == Subject::kPattern || given_.options.stage.pictures) return;
+  const bool wheel = event.kind == EventKind::kWheel;
+  std::optional<InputEvent>& same = tools_.wheeled;
+  if (wheel && same && same->at == event.at) {
+    event.lever = same->lever;
+    event.eye = same->eye;
+    return;
+  }
+  same.reset();
+  const double height = stage_->window_mm().y;
+  if (const auto picked = picked_at(*event.at)) {
+    event.lever = glm::dvec4(stage_->screen_from_model() * glm::dvec4(picked->at_mm, 1.0)).z / height;
+    event.eye = (stage_->camera_mm() - glm::dvec3(stage_->middle_mm(), 0.0)) / height;
+  }
+  if (wheel) same = event;
+}
+
+/// Who turns and zooms knows nothing of what stands beside the surface.
+InputEvent Viewer::without_aside(InputEvent event) const {
+  if (event.at) event.at->x -= aside();
+  if (event.eye) event.eye->x -= aside();
+  return event;
 }
 
 /// With a tool in the hand a press waits: when it is let go where it began it is a click, else the drag turns as ever.
@@ -65,9 +81,8 @@ bool Viewer::take_click(const InputEvent& event) {
   if (glm::distance(*event.at, *press->at) <= kClick) return true;
   InputEvent begun = *press;
   press.reset();
-  begun.lever = lever_at(*begun.at);
-  begun.at->x -= aside();
-  events_.push(begun);
+  tell_depth(begun);
+  events_.push(without_aside(begun));
   return false;
 }
 

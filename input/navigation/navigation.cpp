@@ -88,33 +88,33 @@ void Navigator::use_button(const InputEvent& event, TimestampNs now) {
   mouse_.pressed = event.time;
   mouse_.pressed_at = event.at;
   mouse_.held.reset();
-  if (event.at && event.lever) mouse_.held = glm::dvec3(*event.at - view_.pan, *event.lever);
+  if (event.at && event.lever) mouse_.held.emplace(event, view_.pan);
   mouse_.dragging = true;
   if (twice && mouse_.action == Action::kRotate) {  // what is pointed at goes to the middle
     ViewState target = view_;
-    target.pan -= *event.at;
+    target.pan -= held_at(event);
     return glide_to(target, now);
   }
   glide_.stop();
 }
 
-/// Places of the pointer count in heights of the window, so that what is held stays under it; movements that come
-/// without a place go by pixels.
+/// What is held stays under the pointer; where nothing is, the turn goes by the pointer's way.
+void Navigator::turn_by_mouse(const glm::dvec2& px, const std::optional<glm::dvec2>& moved, double gain) {
+  if (mouse_.held && moved)
+    if (const auto turn = mouse_.held->follow(gain * *moved)) return turn_view(view_, *turn);
+  mouse_.held.reset();
+  turn_view(view_, gain * mapping_.mouse.turn_deg_per_px * kRadPerDeg * glm::dvec3(px.y, px.x, 0));
+}
+
+/// Places of the pointer count in heights of the window; movements that come without a place go by pixels.
 void Navigator::drag_by_mouse(const InputEvent& event) {
   const MouseMapping& mouse = mapping_.mouse;
   const glm::dvec2 px = event.motion;
   const std::optional<glm::dvec2> before = std::exchange(mouse_.at, event.at);
-  const glm::dvec2 moved = event.at && before ? *event.at - *before : glm::dvec2(px.x, -px.y) / kPixelsPerWindow;
-  if (mouse_.action == Action::kRotate || mouse_.action == Action::kRotateFine) {
-    double gain = mouse.turn_deg_per_px * kRadPerDeg * glm::length(px);
-    if (mouse_.held && event.at && before) gain = std::min(gain, glm::length(moved) / std::max(mouse_.held->z, 1e-3));
-    if (mouse_.action == Action::kRotateFine) gain *= kFine;
-    const double length = glm::length(px);
-    if (length == 0.0) return;
-    const glm::dvec3 vector = gain / length * glm::dvec3(px.y, px.x, 0);
-    turn_view(view_, vector);
-    if (mouse_.held) mouse_.held = turn_of(vector) * *mouse_.held;
-  }
+  const bool known = event.at && before;
+  const glm::dvec2 moved = known ? *event.at - *before : glm::dvec2(px.x, -px.y) / kPixelsPerWindow;
+  if (mouse_.action == Action::kRotate || mouse_.action == Action::kRotateFine)
+    turn_by_mouse(px, known ? std::optional(moved) : std::nullopt, mouse_.action == Action::kRotateFine ? kFine : 1.0);
   if (mouse_.action == Action::kPan) view_.pan += moved;
   if (mouse_.action == Action::kZoom) zoom_about(mouse_.pressed_at, std::pow(mouse.zoom_per_100_px, -px.y / 100.0));
   if (mouse_.action == Action::kLight) drag(Action::kLight, glm::dvec2(px.x, -px.y), mouse.light_deg_per_px);
@@ -126,7 +126,8 @@ void Navigator::use_mouse(const InputEvent& event, TimestampNs now) {
     if (chord_action(mapping_.mouse, event.modifiers, "wheel") != Action::kZoom || !claim(Control::kMouse, now)) return;
     if (claims_.fresh()) ++movement_;
     glide_.stop();
-    return zoom_about(event.at, std::pow(mapping_.mouse.zoom_per_notch, event.motion.y));
+    return zoom_about(event.at ? std::optional(held_at(event)) : std::nullopt,
+                      std::pow(mapping_.mouse.zoom_per_notch, event.motion.y));
   }
   if (event.kind == EventKind::kMotion && mouse_.dragging && !glide_.running() && claim(Control::kMouse, now))
     drag_by_mouse(event);

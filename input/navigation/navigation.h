@@ -9,6 +9,7 @@
 #include "input/input_source.h"
 #include "input/navigation/control_claims.h"
 #include "input/navigation/hand_hold.h"
+#include "input/navigation/held_place.h"
 #include "input/navigation/mapping.h"
 #include "input/navigation/momentum.h"
 #include "input/navigation/view_glide.h"
@@ -22,7 +23,7 @@ struct MouseDrag {
   Action action = Action::kNone;
   bool dragging = false;
   std::optional<glm::dvec2> at, pressed_at;  ///< heights of the window
-  std::optional<glm::dvec3> held;            ///< the point of the surface under the pointer, from the object's centre
+  std::optional<HeldPlace> held;             ///< of the surface, under the pointer; none: the drag turns by its length
   TimestampNs pressed = -1;                  ///< the last press, for clicks that come in pairs
 };
 
@@ -66,6 +67,7 @@ class Navigator {
   void use_mouse(const InputEvent& event, TimestampNs now);
   void use_button(const InputEvent& event, TimestampNs now);
   void drag_by_mouse(const InputEvent& event);
+  void turn_by_mouse(const glm::dvec2& px, const std::optional<glm::dvec2>& moved, double gain);
   void zoom_about(const std::optional<glm::dvec2>& at, double factor);
   void use_puck(TimestampNs now, const std::optional<PuckMotion>& puck, double dt_s);
   void use_hands(TimestampNs now, const SteeringHands& hands, double dt_s);

@@ -61,6 +61,29 @@ TEST(CutBox, TakesTheSameOrSixSharesOfTheReach) {
   EXPECT_FALSE(bench.editor.document().style.section);
 }
 
+TEST(CutBox, ASideThatIsCutNoMoreTakesItsOwnCutAwayAndNoOther) {
+  Bench bench;
+  bench.run("cut left 30");
+  bench.run("cut front 20");
+  bench.run("cut left 0");
+  ASSERT_EQ(bench.editor.document().clips.size(), 1u);
+  EXPECT_EQ(bench.editor.document().clips[0].normal, glm::dvec3(0, 0, 1));
+  bench.run("cut left 0");
+  EXPECT_EQ(bench.editor.document().clips.size(), 1u) << "there was none";
+}
+
+TEST(CutBox, ItsHandlesComeAndGoAndEscapeTakesThemAway) {
+  Bench bench;
+  bench.run("cut_handles");
+  EXPECT_TRUE(bench.editor.desk().pointing.cut_box);
+  bench.run("cut_handles");
+  EXPECT_FALSE(bench.editor.desk().pointing.cut_box);
+  bench.run("cut_handles");
+  bench.run("close");
+  EXPECT_FALSE(bench.editor.desk().pointing.cut_box);
+  EXPECT_EQ(bench.editor.history().undo_depth(), 0u) << "nothing of the document";
+}
+
 TEST(PointerCommands, AreOfTheDeskAndAreNotUndone) {
   Bench bench;
   bench.run("magnify");

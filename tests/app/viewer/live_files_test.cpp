@@ -188,6 +188,14 @@ TEST_F(LiveFiles, AFileThatCannotBeReadIsSaidAndThePresentOneStays) {
   EXPECT_EQ(alone.error().message, "bad.ply: it is torn") << "what the session was begun for";
 }
 
+TEST_F(LiveFiles, ADamagedOneAmongOthersIsSaidAndTheNextIsShown) {
+  const auto done = open_and({file("bad.ply"), file("b.ply"), file("a.ply")},
+                             {until([this](const ViewMoment& m) { return triangles(m) == all_ / 2; }), end()});
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_EQ(done->triangles, all_ / 2);
+  EXPECT_EQ(shown_, (std::vector<fs::path>{file("b.ply"), file("a.ply")}));
+}
+
 TEST_F(LiveFiles, DroppedFilesAreOpened) {
   std::optional<testing::XDrop> drop;
   const auto done = open_and(

@@ -78,10 +78,10 @@ TEST_F(Live, AFloodOfMotionsWhileAPictureIsMadeNeitherLosesTheReleaseNorTheDrag)
   ViewState dragged;
   const auto done = play({
       {[&] {
-         person_->point(kX + 100, kY + 100);
+         person_->point(kX + 100, kY + 20);  // beside the surface: by the pointer's way
          person_->press(1);
-         for (int i = 0; i < 5000; ++i) person_->point(kX + 100 + i % 100, kY + 100);
-         person_->point(kX + 150, kY + 100);
+         for (int i = 0; i < 5000; ++i) person_->point(kX + 100 + i % 100, kY + 20);
+         person_->point(kX + 150, kY + 20);
          person_->release(1);
          for (int i = 0; i < 5000; ++i) person_->point(kX + 150 + i % 40, kY + 120);
          person_->settle();  // all of it has come before the next turn of the loop
@@ -111,16 +111,16 @@ TEST_F(Live, TenThousandMotionsDuringAPictureOfThreeSecondsEndTheDrag) {
   const auto done = run_view(testing::lettered_box(), options_, silent, [&](const ViewMoment& m) {
     if (m.frames == 0) return;
     if (turns_after < 0) {  // the loop is held up here as by a slow picture, while steering goes on in its thread
-      person_->point(kX + 100, kY + 100);
+      person_->point(kX + 100, kY + 20);  // beside the surface: by the pointer's way
       person_->press(1);
       const TimestampNs start = SteadyClock().now();
       for (int i = 0; i < 10'000; ++i) {
-        person_->point(kX + 100 + i % 100, kY + 100);
+        person_->point(kX + 100 + i % 100, kY + 20);
         if (i % 100 == 99) person_->settle();
         const auto due = start + i * TimestampNs{300'000};
         std::this_thread::sleep_for(std::chrono::nanoseconds(std::max<TimestampNs>(0, due - SteadyClock().now())));
       }
-      person_->point(kX + 150, kY + 100);
+      person_->point(kX + 150, kY + 20);
       person_->release(1);
       for (int i = 0; i < 100; ++i) person_->point(kX + 150 + i % 40, kY + 130);
       person_->settle();

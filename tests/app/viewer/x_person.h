@@ -109,6 +109,8 @@ class XPerson {
     if (name == "enter") return 36;
     if (name == "f5") return 71;
     if (name == "slash") return 61;
+    if (name == "h") return 43;
+    if (name == "alt") return 64;
     if (name == "shift") return 50;
     if (name == "control") return 37;
     if (name == "f1") return 67;
