@@ -34,6 +34,7 @@ Result<VerbResult> run(const PhantomRequest& options, Progress& progress) {
   wanted.wedge_depth_vox = model.wedge_depth_vox;
   wanted.envelope_density = model.envelope_density;
   wanted.rings = model.rings;
+  wanted.blur_vox = model.blur_vox;
   wanted.written = !options.unwritten;
   std::optional<std::filesystem::path> truth;
   if (!options.truth.empty()) truth = options.truth;
@@ -55,6 +56,7 @@ Result<VerbResult> run(const PhantomRequest& options, Progress& progress) {
                  {"voxel_size_mm", made.voxel_mm},
                  {"seed", made.seed},
                  {"snr_db", made.snr_db},
+                 {"blur_vox", made.blur_vox},
                  {"sigma", report.sigma},
                  {"glued_fraction", report.glued_fraction},
                  {"cracked", report.cracked},
@@ -80,6 +82,8 @@ Verb add_phantom_verb(Arguments program) {
   command.value("--seed", options->seed, "another number, another tablet");
   phantom::PhantomOptions& model = options->model;
   command.value("--snr", model.snr_db, "signal-to-noise ratio of the raw scan in dB").range(0.0, 120.0);
+  command.value("--blur", model.blur_vox, "standard deviation of the point spread in voxels (default 0.577)")
+      .range(0.3, 0.8);
   command.writes("--truth", options->truth, FileFormat::kPhantom,
                  "HDF5 file for labels, signed distances, the true interface and the table of wedges");
   Arguments contact = command.group("Tablet and envelope");

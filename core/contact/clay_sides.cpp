@@ -81,7 +81,8 @@ void unpinch_sides(const ContactBand& band, std::vector<ClaySide>& side) {
 }
 
 Result<std::vector<ClaySide>> divide_clay(const ContactBand& band, const Dips& dips,
-                                          const std::vector<SurfaceHint>& hints, Progress& progress) {
+                                          const std::vector<SurfaceHint>& hints, const std::vector<float>& votes,
+                                          Progress& progress) {
   const auto count = static_cast<std::uint32_t>(band.nodes.size());
   MinCut cut(count);                         // source side: tablet
   std::vector<std::int64_t> wish(count, 0);  // > 0: tablet
@@ -92,7 +93,7 @@ Result<std::vector<ClaySide>> divide_clay(const ContactBand& band, const Dips& d
       wish[n] = node.height < 0.0f ? kHard : -kHard;
       certain[n] = true;
     } else {
-      wish[n] = std::lround(-kUnit * kPull * node.height);
+      wish[n] = std::lround(kUnit * ((votes.empty() ? 0.0f : votes[n]) - kPull * node.height));
     }
   }
   for (const SurfaceHint& hint : hints) {

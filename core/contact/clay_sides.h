@@ -20,10 +20,12 @@ struct SurfaceHint {
 };
 inline constexpr float kCertain = 1e6f;
 
-/// Sides of all nodes of the band. Every node hangs together with clay at the border of the band through nodes of its
+/// Sides of all nodes of the band. `votes`: of each node, faces of the cut that its density is worth to the tablet
+/// (clays.h), or empty. Every node hangs together with clay at the border of the band through nodes of its
 /// side, or is cut off by air and counts as the tablet's. kCancelled.
 Result<std::vector<ClaySide>> divide_clay(const ContactBand& band, const Dips& dips,
-                                          const std::vector<SurfaceHint>& hints, Progress& progress);
+                                          const std::vector<SurfaceHint>& hints, const std::vector<float>& votes,
+                                          Progress& progress);
 
 /// Removes points of a grid face that belong to tablet, envelope, tablet, envelope in turn.
 void unpinch_sides(const ContactBand& band, std::vector<ClaySide>& side);

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <memory>
 
 #include "core/base/parallel.h"
+#include "core/contact/median.h"
 
 namespace dubsar {
 namespace {
@@ -46,25 +48,57 @@ std::vector<Direction> directions() {
   return all;
 }
 
-float mean(const BandDensity& density, const Direction& d, const glm::ivec3& p) {
-  float sum = 0.0f;
-  for (std::size_t i = 0; i < d.disk.size(); ++i) {
-    const glm::ivec3 q = p + d.disk[i];
-    sum += d.weight[i] * density.get(q.x, q.y, q.z);
-  }
-  return sum;
-}
-
 bool in_clay(const BitVolume& inside, const glm::ivec3& p) {
   const Dims d = inside.dims();
   return p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < d.x && p.y < d.y && p.z < d.z && inside.get(p.x, p.y, p.z);
 }
 
-float median(std::vector<float> values) {
-  if (values.empty()) return 0.0f;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+/// A brick and what lies around it, as an array.
+template <int kHalo>
+struct Block {
+  static constexpr int kSide = static_cast<int>(kEdge) + 2 * kHalo;
+  std::array<float, static_cast<std::size_t>(kSide) * kSide * kSide> value{};
+
+  static std::size_t place(int x, int y, int z) { return static_cast<std::size_t>((z * kSide + y) * kSide + x); }
+  template <class Get>
+  void fill(const glm::ivec3& corner, const Get& get) {
+    for (int z = 0; z < kSide; ++z)
+      for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x)
+          value[place(x, y, z)] = get(corner.x + x - kHalo, corner.y + y - kHalo, corner.z + z - kHalo);
+  }
+};
+
+constexpr int kArmHalo = 3, kDiskHalo = 3;  ///< of directions(): no arm and no disk reaches farther along an axis
+using Around = Block<kArmHalo + kDiskHalo>;
+using Means = Block<kArmHalo>;
+
+/// Of a disk around each point.
+void disk_means(const Around& around, const Direction& d, Means& means) {
+  means.value.fill(0.0f);
+  for (int z = 0; z < Means::kSide; ++z)
+    for (int y = 0; y < Means::kSide; ++y) {
+      float* const out = &means.value[Means::place(0, y, z)];
+      for (std::size_t i = 0; i < d.disk.size(); ++i) {
+        const glm::ivec3 q = d.disk[i] + glm::ivec3(0, y, z) + kDiskHalo;
+        const float* const in = &around.value[Around::place(q.x, q.y, q.z)];
+        const float weight = d.weight[i];
+        for (int x = 0; x < Means::kSide; ++x) out[x] += weight * in[x];
+      }
+    }
+}
+
+/// Nodes [first of a brick, first of the next): they stand brick by brick.
+std::vector<std::uint32_t> brick_starts(const ContactBand& band) {
+  std::vector<std::uint32_t> starts;
+  glm::ivec3 last(-1);
+  for (std::uint32_t n = 0; n < band.nodes.size(); ++n) {
+    const glm::ivec3 brick = band.point(n) / static_cast<int>(kEdge);
+    if (brick != last) starts.push_back(n);
+    last = brick;
+  }
+  starts.push_back(static_cast<std::uint32_t>(band.nodes.size()));
+  return starts;
 }
 
 }  // namespace
@@ -114,17 +148,18 @@ Result<BandDensity> BandDensity::read(const ContactBand& band, SlabSource& sourc
         }
   parallel_for(static_cast<std::int64_t>(places.size()), 8, [&](std::int64_t i) {
     const auto [bx, by, bz] = places[static_cast<std::size_t>(i)];
+    using Raw = Block<1>;
+    Raw block;
+    block.fill({bx * kEdge, by * kEdge, bz * kEdge}, [&](int x, int y, int z) { return raw.get(x, y, z); });
+    // In place: what stands before a value was filtered already, and is not needed any more.
+    for (const std::size_t step : {Raw::place(1, 0, 0), Raw::place(0, 1, 0), Raw::place(0, 0, 1)})
+      for (std::size_t k = 0; k + 2 * step < block.value.size(); ++k)
+        block.value[k] = 0.25f * (block.value[k] + block.value[k + 2 * step]) + 0.5f * block.value[k + step];
     for (std::int64_t z = bz * kEdge; z < std::min((bz + 1) * kEdge, d.z); ++z)
       for (std::int64_t y = by * kEdge; y < std::min((by + 1) * kEdge, d.y); ++y)
-        for (std::int64_t x = bx * kEdge; x < std::min((bx + 1) * kEdge, d.x); ++x) {
-          float sum = 0.0f;
-          for (std::int64_t k = 0; k < 27; ++k) {
-            const std::int64_t dx = k % 3 - 1, dy = k / 3 % 3 - 1, dz = k / 9 - 1;
-            const auto weight = static_cast<float>(1 << (3 - std::abs(dx) - std::abs(dy) - std::abs(dz)));
-            sum += weight * raw.get(x + dx, y + dy, z + dz);
-          }
-          smooth.at(x, y, z) = sum / 64.0f;
-        }
+        for (std::int64_t x = bx * kEdge; x < std::min((bx + 1) * kEdge, d.x); ++x)
+          smooth.at(x, y, z) = block.value[Raw::place(
+              static_cast<int>(x - bx * kEdge), static_cast<int>(y - by * kEdge), static_cast<int>(z - bz * kEdge))];
   });
   progress.end();
   return BandDensity(std::move(smooth));
@@ -136,24 +171,39 @@ Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const B
   Dips dips;
   dips.strength.assign(band.nodes.size(), kNoDip);
   dips.density.assign(band.nodes.size(), 0.0f);
-  parallel_chunks(static_cast<std::int64_t>(band.nodes.size()), 4096, [&](std::int64_t begin, std::int64_t end) {
+  const std::vector<std::uint32_t> starts = brick_starts(band);
+  parallel_chunks(static_cast<std::int64_t>(starts.size()) - 1, 8, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) return;
-    for (std::int64_t i = begin; i < end; ++i) {
-      const auto node = static_cast<std::uint32_t>(i);
-      const glm::ivec3 p = band.point(node);
-      float best = kNoDip, least = density.get(p.x, p.y, p.z);
+    const auto around = std::make_unique<Around>();
+    const auto means = std::make_unique<Means>();
+    for (std::int64_t brick = begin; brick < end; ++brick) {
+      const std::uint32_t first = starts[static_cast<std::size_t>(brick)],
+                          last = starts[static_cast<std::size_t>(brick) + 1];
+      const glm::ivec3 corner = band.point(first) / static_cast<int>(kEdge) * static_cast<int>(kEdge);
+      around->fill(corner, [&](int x, int y, int z) { return density.get(x, y, z); });
+      for (std::uint32_t node = first; node < last; ++node) {
+        const glm::ivec3 p = band.point(node);
+        dips.density[node] = density.get(p.x, p.y, p.z);
+      }
       for (const Direction& d : kDirections) {
-        if (std::abs(glm::dot(d.unit, band.normal(node))) < kLeastDipCosine) continue;
-        if (!in_clay(inside, p + d.arm) || !in_clay(inside, p - d.arm)) continue;
-        const float middle = mean(density, d, p);
-        const float dip = 0.5f * (mean(density, d, p + d.arm) + mean(density, d, p - d.arm)) - middle;
-        if (dip > best) {
-          best = dip;
-          least = middle;
+        bool filled = false;
+        for (std::uint32_t node = first; node < last; ++node) {
+          if (std::abs(glm::dot(d.unit, band.normal(node))) < kLeastDipCosine) continue;
+          const glm::ivec3 p = band.point(node);
+          if (!in_clay(inside, p + d.arm) || !in_clay(inside, p - d.arm)) continue;
+          if (!filled) disk_means(*around, d, *means);
+          filled = true;
+          const auto mean = [&](const glm::ivec3& q) {
+            const glm::ivec3 at = q - corner + kArmHalo;
+            return means->value[Means::place(at.x, at.y, at.z)];
+          };
+          const float middle = mean(p), dip = 0.5f * (mean(p + d.arm) + mean(p - d.arm)) - middle;
+          if (dip > dips.strength[node]) {
+            dips.strength[node] = dip;
+            dips.density[node] = middle;
+          }
         }
       }
-      dips.strength[node] = best;
-      dips.density[node] = least;
     }
   });
   if (progress.cancelled()) return cancelled_error();

@@ -28,7 +28,7 @@ struct Dips {
   /// Of each node: how much denser the clay on both sides is on average than a disk through the node, at the best of
   /// the directions across the contact, in deviations of what clay without an interface shows.
   std::vector<float> strength;
-  std::vector<float> density;  ///< of that disk
+  std::vector<float> density;  ///< of that disk; empty: it does not say where the contact is
   float deviation = 0.0f;      ///< of the noise in `strength`, density
 };
 

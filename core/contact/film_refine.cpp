@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/parallel.h"
+#include "core/contact/median.h"
 
 namespace dubsar {
 namespace {
@@ -14,11 +15,20 @@ constexpr float kStep = 0.5f;         ///< between them, grid steps
 constexpr int kRounds = 4;            ///< of search and move
 constexpr float kLeap = 0.75f;        ///< most that a round moves a vertex
 constexpr int kProfileRings = 2;      ///< over which profiles are averaged, and moves
+constexpr int kStepRings = 4;         ///< and moves to where one clay becomes the other
 constexpr int kBendRings = 3;         ///< over which the curvature is
 constexpr float kSpread = 0.5f;       ///< of the way to the middle of its neighbours, along the contact
 constexpr float kLeastCosine = 0.3f;  ///< between a triangle before and after
-/// Variance of what blurs a film, grid steps squared: the point spread of a scan and the low pass of BandDensity.
-constexpr float kBlur = 0.8f;
+/// Depth of a dip, in deviations of the noise, that is trusted by half; and how much of a move nobody is sure of.
+constexpr float kDoubt = 4.0f, kFloor = 0.1f;
+constexpr float kSettle = 0.5f;  ///< of the way to the middle of the neighbours, where nothing is trusted
+constexpr int kSettleRounds = 2;
+constexpr int kDentRings = 6;  ///< around a dent
+/// Steps below what is around it, and trust in its dips, from which on a dent needs them, or below which it has none.
+constexpr float kDent = 0.8f, kDentTrust = 0.5f;
+constexpr float kMostHollow = 1.0f;  ///< steps out of the hollow
+constexpr float kLowPass = 0.5f;     ///< variance of that of BandDensity
+constexpr float kQuiet = 6.0f;       ///< steps from the contact to the sheets in clay that show the noise
 
 using Profile = std::array<float, 2 * kReach + 1>;
 
@@ -60,8 +70,17 @@ void average(const InterfaceRings& around, int rings, std::vector<T>& values) {
   }
 }
 
-/// The nearest dip of a profile: downhill from its middle, the vertex of a parabola; steps from the middle.
-float nearest_dip(const Profile& profile) {
+struct Dip {
+  float way = 0.0f;    ///< steps from the middle of the profile
+  float depth = 0.0f;  ///< below its ends
+};
+
+float depth_at(const Profile& profile, std::size_t at) {
+  return 0.5f * (profile.front() + profile.back()) - profile[at];
+}
+
+/// The nearest dip of a profile: downhill from its middle, the vertex of a parabola.
+Dip nearest_dip(const Profile& profile) {
   std::size_t at = kReach;
   while (at > 0 && profile[at - 1] < profile[at]) --at;
   if (at == kReach)
@@ -71,24 +90,35 @@ float nearest_dip(const Profile& profile) {
     const float a = profile[at - 1], b = profile[at], c = profile[at + 1], bend = a - 2.0f * b + c;
     if (bend > 0.0f) steps += std::clamp(0.5f * (a - c) / bend, -0.5f, 0.5f);
   }
-  return kStep * steps;
+  return {kStep * steps, depth_at(profile, at)};
+}
+
+/// Where the density of one clay becomes that of the other: both have as much of the profile as this divides it.
+float step_of(const Profile& profile, const ClayContrast& clays) {
+  const float most = 0.5f * std::abs(clays.step()) + 2.0f * clays.deviation;  // beyond it are pores, grains and straw
+  float sum = 0.0f;
+  for (const float v : profile) sum += std::clamp(v - clays.middle(), -most, most);
+  return -kStep * sum / clays.step();
 }
 
 class Follower {
  public:
   Follower(InterfaceMesh& mesh, const InterfaceRings& rings, const std::vector<glm::vec3>& dual_positions,
-           const std::vector<float>& follows, float most)
+           const Following& follows, const BandDensity& density, const FollowOptions& options)
       : mesh_(mesh),
         rings_(rings),
         dual_(dual_positions),
+        density_(density),
+        options_(options),
         start_(mesh.added),
         share_(mesh.added.size(), 0.0f),
-        most_(most) {
+        step_(follows.step),
+        trust_(mesh.added.size(), 0.0f) {
     const auto at_rim = [&](std::size_t i) { return rings.all[i].size() != rings.added[i].size(); };
     for (std::size_t i = 0; i < share_.size(); ++i) {
-      if (follows[i] <= 0.0f || at_rim(i)) continue;
+      if (follows.share[i] <= 0.0f || at_rim(i)) continue;
       const bool second = std::any_of(rings.added[i].begin(), rings.added[i].end(), at_rim);
-      share_[i] = second ? 0.5f * follows[i] : follows[i];
+      share_[i] = second ? 0.5f * follows.share[i] : follows.share[i];
     }
   }
 
@@ -103,20 +133,52 @@ class Follower {
     for (glm::vec3& n : normal_) n = glm::length(n) > 0.0f ? glm::normalize(n) : glm::vec3(0.0f);
   }
 
-  std::vector<float> ways_to_dips(const BandDensity& density) const {
-    std::vector<Profile> profiles(mesh_.added.size());
-    each([&](std::size_t i) {
-      for (std::size_t s = 0; s < profiles[i].size(); ++s)
-        profiles[i][s] =
-            trilinear(density, mesh_.added[i] + kStep * static_cast<float>(static_cast<int>(s) - kReach) * normal_[i]);
-    });
-    average(rings_, kProfileRings, profiles);
+  /// The depth that a dip has by chance: that of sheets in the clay on both sides.
+  void measure_noise() {
+    std::vector<float> depths;
+    for (const float away : {-kQuiet, kQuiet}) {
+      const std::vector<Profile> profiles = mean_profiles(away);
+      for (std::size_t i = 0; i < profiles.size(); ++i)
+        if (share_[i] > 0.0f) depths.push_back(std::abs(depth_at(profiles[i], kReach)));
+    }
+    noise_ = 1.4826f * median(std::move(depths));
+  }
+
+  std::vector<float> ways_to_dips() {
+    const std::vector<Profile> profiles = mean_profiles(0.0f);
+    const float doubt = kDoubt * noise_;
     std::vector<float> ways(profiles.size(), 0.0f);
     each([&](std::size_t i) {
-      if (share_[i] > 0.0f) ways[i] = std::clamp(nearest_dip(profiles[i]), -kLeap, kLeap);
+      trust_[i] = 0.0f;
+      if (share_[i] <= 0.0f) return;
+      const bool step = step_[i] && options_.clays;
+      const Dip dip = step ? Dip{step_of(profiles[i], *options_.clays), std::abs(options_.clays->step())}
+                           : nearest_dip(profiles[i]);
+      const float depth = std::max(dip.depth, 0.0f);
+      trust_[i] = depth * depth / std::max(depth * depth + doubt * doubt, 1e-30f);
+      ways[i] = trust_[i] * std::clamp(dip.way, -kLeap, kLeap);
     });
-    average(rings_, kProfileRings, ways);
+    std::vector<float> weights = trust_;
+    const int rings = options_.clays ? kStepRings : kProfileRings;
+    average(rings_, rings, ways);
+    average(rings_, rings, weights);
+    each([&](std::size_t i) { ways[i] /= weights[i] + kFloor; });
     return ways;
+  }
+
+  /// Where dips say little, the contact becomes smooth.
+  void settle() {
+    for (int round = 0; round < kSettleRounds; ++round) {
+      std::vector<float> ways(mesh_.added.size(), 0.0f);
+      each([&](std::size_t i) {
+        if (share_[i] <= 0.0f || rings_.all[i].empty()) return;
+        glm::vec3 off(0.0f);
+        for (const std::uint32_t w : rings_.all[i]) off += position(w, mesh_.added);
+        off = off / static_cast<float>(rings_.all[i].size()) - mesh_.added[i];
+        ways[i] = kSettle * (1.0f - trust_[i]) * glm::dot(off, normal_[i]);
+      });
+      move(ways, options_.most);
+    }
   }
 
   /// A blurred sheet is darkest on the hollow side of where it is, by the variance of the blur times its mean
@@ -130,18 +192,18 @@ class Follower {
         bend += glm::dot(off, normal_[i]);
         squares += glm::dot(off, off);
       }
-      if (squares > 0.0f) ways[i] = -2.0f * kBlur * bend / squares;
+      if (squares > 0.0f) ways[i] = -2.0f * (options_.blur_variance + kLowPass) * bend / squares;
     });
     average(rings_, kBendRings, ways);
-    for (float& way : ways) way = std::clamp(way, -1.0f, 1.0f);
+    for (float& way : ways) way = std::clamp(way, -kMostHollow, kMostHollow);
     return ways;
   }
 
-  void move(const std::vector<float>& ways) {
+  void move(const std::vector<float>& ways, float most) {
     each([&](std::size_t i) {
       const glm::vec3 way = mesh_.added[i] + share_[i] * ways[i] * normal_[i] - start_[i];
       const float length = glm::length(way);
-      mesh_.added[i] = start_[i] + (length > most_ ? most_ / length : 1.0f) * way;
+      mesh_.added[i] = start_[i] + (length > most ? most / length : 1.0f) * way;
     });
   }
 
@@ -176,7 +238,34 @@ class Follower {
     }
   }
 
+  /// Dents that dips do not support, and what touches them.
+  std::vector<bool> doubtful() const {
+    std::vector<glm::vec3> around = mesh_.added;
+    average(rings_, kDentRings, around);
+    std::vector<float> trust = trust_;
+    average(rings_, 1, trust);
+    std::vector<bool> doubtful(around.size(), false);
+    for (std::size_t i = 0; i < around.size(); ++i) {
+      if (step_[i] || trust[i] >= kDentTrust) continue;
+      if (glm::dot(mesh_.added[i] - around[i], normal_[i]) > -kDent) continue;
+      doubtful[i] = true;
+      for (const std::uint32_t w : rings_.added[i]) doubtful[w] = true;
+    }
+    return doubtful;
+  }
+
  private:
+  /// Density along lines across the contact, averaged along it; their middles are `away` from it.
+  std::vector<Profile> mean_profiles(float away) const {
+    std::vector<Profile> profiles(mesh_.added.size());
+    each([&](std::size_t i) {
+      for (std::size_t s = 0; s < profiles[i].size(); ++s)
+        profiles[i][s] = trilinear(
+            density_, mesh_.added[i] + (away + kStep * static_cast<float>(static_cast<int>(s) - kReach)) * normal_[i]);
+    });
+    average(rings_, kProfileRings, profiles);
+    return profiles;
+  }
   glm::vec3 position(std::uint32_t v, const std::vector<glm::vec3>& added) const {
     return v < dual_.size() ? dual_[v] : added[v - dual_.size()];
   }
@@ -193,28 +282,37 @@ class Follower {
   InterfaceMesh& mesh_;
   const InterfaceRings& rings_;
   const std::vector<glm::vec3>& dual_;
+  const BandDensity& density_;
+  const FollowOptions& options_;
   std::vector<glm::vec3> start_, normal_;
   std::vector<float> share_;  ///< of every move: less at the rim
-  float most_;
+  const std::vector<bool>& step_;
+  std::vector<float> trust_;  ///< in the place of each dip, 0..1
+  float noise_ = 0.0f;        ///< of the depth of a dip
 };
 
 }  // namespace
 
-void follow_dips(InterfaceMesh& mesh, const InterfaceRings& rings, const std::vector<glm::vec3>& dual_positions,
-                 const std::vector<float>& follows, const BandDensity& density, float most) {
-  Follower follower(mesh, rings, dual_positions, follows, most);
+std::vector<bool> follow_dips(InterfaceMesh& mesh, const InterfaceRings& rings,
+                              const std::vector<glm::vec3>& dual_positions, const Following& follows,
+                              const BandDensity& density, const FollowOptions& options) {
+  Follower follower(mesh, rings, dual_positions, follows, density, options);
+  follower.find_normals();
+  follower.measure_noise();
   for (int round = 0; round < kRounds; ++round) {
     follower.find_normals();
-    follower.move(follower.ways_to_dips(density));
+    follower.move(follower.ways_to_dips(), options.most);
+    follower.settle();
     follower.spread();
   }
   follower.find_normals();
-  follower.move(follower.ways_out_of_the_hollow());
+  follower.move(follower.ways_out_of_the_hollow(), options.most + kMostHollow);
   for (int round = 0; round < 2; ++round) {
     follower.find_normals();
     follower.spread();
   }
   follower.unfold();
+  return follower.doubtful();
 }
 
 }  // namespace dubsar

@@ -4,19 +4,33 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
+#include "core/contact/clays.h"
 #include "core/contact/dips.h"
 #include "core/contact/interface_mesh.h"
 #include "core/contact/interface_rings.h"
 
 namespace dubsar {
 
-/// Moves the added vertices by at most `most` steps; `follows` is the share of every move that each makes, 0..1.
-/// `dual_positions` are those of the surface beside the contact; they stay, and so do vertices beside them. No triangle
-/// turns over. About 20 us a vertex;
-/// the same for any number of threads.
-void follow_dips(InterfaceMesh& mesh, const InterfaceRings& rings, const std::vector<glm::vec3>& dual_positions,
-                 const std::vector<float>& follows, const BandDensity& density, float most);
+/// What each added vertex is to do.
+struct Following {
+  std::vector<float> share;  ///< of every move, 0..1
+  std::vector<bool> step;    ///< to where one clay becomes the other, not to a dip
+};
+struct FollowOptions {
+  float most = 1.25f;           ///< steps that a vertex is moved to dips; a cut is not farther off
+  float blur_variance = 0.42f;  ///< of the scan
+  std::optional<ClayContrast> clays = std::nullopt;
+};
+
+/// Moves the added vertices. Dips that do not stand out of the noise, as parallel sheets in the clay on both sides show
+/// it, move little, and the contact is smooth there. `dual_positions` are those of the surface beside the contact; they
+/// stay, and so do vertices beside them. No triangle turns over. About 20 us a vertex; the same for any number of
+/// threads. Returns which vertices lie in dents that no dip supports: their place is not known.
+std::vector<bool> follow_dips(InterfaceMesh& mesh, const InterfaceRings& rings,
+                              const std::vector<glm::vec3>& dual_positions, const Following& follows,
+                              const BandDensity& density, const FollowOptions& options);
 
 }  // namespace dubsar

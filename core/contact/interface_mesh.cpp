@@ -174,6 +174,7 @@ class Maker {
 
   /// Where along the edge the density is least, 0..1: the vertex of a parabola.
   float dip_between(std::uint32_t n, std::uint32_t m, int axis) const {
+    if (dips_.density.empty()) return 0.5f;
     const bool first = dips_.density[n] <= dips_.density[m];
     const std::uint32_t middle = first ? n : m;
     const std::uint32_t below = band_.at(band_.point(middle) - unit_step(axis)),

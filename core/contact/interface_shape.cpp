@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
@@ -23,9 +24,14 @@ constexpr float kMostStrength = 2.5f;  ///< of one vertex: the fringe of a pore 
 /// Vertices of a film that is believed, and of a clear one; a wedge has 300 to 600, and chance makes no clear film.
 constexpr std::size_t kLeastFilm = 1500, kLeastClearFilm = 400;
 constexpr float kClear = 2.0f;
+/// Whole patches: the mean of clay without a film, how much more one has, at least and by vertices (four deviations of
+/// the mean: one of .24 for some 80 vertices); then a piece of film may be small.
+constexpr float kLeastPatch = 400.0f, kClayMean = 0.9f, kPatchMargin = 0.3f, kPatchSigmas = 4.0f * 2.15f;
+constexpr std::size_t kLeastPatchFilm = 200;
+constexpr float kWithin = 1.2f;     ///< strength of a film in such a patch
+constexpr float kLeastStep = 0.5f;  ///< of the difference of the clays
 constexpr int kFilmRounds = 1;
 constexpr int kMembraneRounds = 200;
-constexpr float kMostRefined = 2.5f;          ///< grid steps
 constexpr float kTied = 3.0f, kSlack = 4.0f;  ///< steps from a crossing: nothing moves; all moves are free again
 
 constexpr std::uint8_t kFilm = evidence_byte(Evidence::kFilm), kInferred = evidence_byte(Evidence::kInferred);
@@ -71,8 +77,71 @@ std::vector<float> mean_strength(const InterfaceMesh& mesh, const InterfaceRings
   return mean;
 }
 
+/// How much of the difference of the two clays there is across the contact, averaged along it.
+std::vector<float> mean_steps(const InterfaceMesh& mesh, const InterfaceRings& rings,
+                              const std::vector<glm::vec3>& dual_positions, const BandDensity& density,
+                              const ClayContrast& clays) {
+  const auto dual = static_cast<std::uint32_t>(dual_positions.size());
+  const auto position = [&](std::uint32_t v) { return v < dual ? dual_positions[v] : mesh.added[v - dual]; };
+  std::vector<glm::vec3> normals(mesh.added.size(), glm::vec3(0.0f));
+  for (const Triangle& t : mesh.triangles) {
+    const glm::vec3 a = position(t[0]), n = glm::cross(position(t[1]) - a, position(t[2]) - a);
+    for (const std::uint32_t v : t)
+      if (v >= dual) normals[v - dual] += n;
+  }
+  const float low = std::min(clays.tablet, clays.envelope) - 2.0f * clays.deviation,
+              high = std::max(clays.tablet, clays.envelope) + 2.0f * clays.deviation;
+  std::vector<float> now(mesh.added.size()), next(now.size());
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const float length = glm::length(normals[i]);
+    if (!(length > 0.0f)) continue;
+    const auto beside = [&](float steps) {
+      const glm::ivec3 p(glm::round(mesh.added[i] + steps / length * normals[i]));
+      return std::clamp(density.get(p.x, p.y, p.z), low, high);
+    };
+    now[i] = 0.5f * (beside(2.5f) + beside(4.0f) - beside(-2.5f) - beside(-4.0f)) / clays.step();
+  }
+  for (int round = 0; round < kEvidenceRounds; ++round) {
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      next[i] = now[i];
+      for (const std::uint32_t w : rings.added[i]) next[i] += now[w];
+      next[i] /= static_cast<float>(rings.added[i].size() + 1);
+    }
+    now.swap(next);
+  }
+  return now;
+}
+
+/// Vertices of patches that are a film as a whole, as far as their mean can tell it: nothing was chosen in it, so that
+/// chance is small even where the patch is.
+std::vector<bool> film_patches(const InterfaceMesh& mesh, const InterfaceRings& rings) {
+  const std::vector<bool> rim = rim_of(rings);
+  std::vector<bool> film(rim.size(), false), seen(rim.size(), false);
+  for (std::uint32_t i = 0; i < rim.size(); ++i) {
+    if (seen[i]) continue;
+    std::vector<std::uint32_t> patch{i};
+    seen[i] = true;
+    float sum = 0.0f, count = 0.0f;
+    for (std::size_t k = 0; k < patch.size(); ++k) {
+      if (!rim[patch[k]]) {
+        sum += std::min(mesh.strength[patch[k]], kMostStrength);
+        count += 1.0f;
+      }
+      for (const std::uint32_t w : rings.added[patch[k]])
+        if (!seen[w]) {
+          seen[w] = true;
+          patch.push_back(w);
+        }
+    }
+    if (count < kLeastPatch || sum < count * (kClayMean + std::max(kPatchMargin, kPatchSigmas / std::sqrt(count))))
+      continue;
+    for (const std::uint32_t w : patch) film[w] = true;
+  }
+  return film;
+}
+
 void drop_small_films(const InterfaceRings& rings, const std::vector<float>& strength,
-                      std::vector<std::uint8_t>& evidence) {
+                      const std::vector<bool>& in_film_patch, std::vector<std::uint8_t>& evidence) {
   std::vector<bool> seen(evidence.size(), false);
   for (std::uint32_t i = 0; i < evidence.size(); ++i) {
     if (seen[i] || evidence[i] != kFilm) continue;
@@ -87,7 +156,7 @@ void drop_small_films(const InterfaceRings& rings, const std::vector<float>& str
     float sum = 0.0f;
     for (const std::uint32_t w : film) sum += strength[w];
     const bool clear = sum >= kClear * static_cast<float>(film.size());
-    if (film.size() < (clear ? kLeastClearFilm : kLeastFilm))
+    if (film.size() < (in_film_patch[i] ? kLeastPatchFilm : clear ? kLeastClearFilm : kLeastFilm))
       for (const std::uint32_t w : film) evidence[w] = kInferred;
   }
 }
@@ -120,13 +189,25 @@ std::vector<float> leashes(const std::vector<glm::vec3>& added, const std::vecto
 
 std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector<glm::vec3>& dual_positions,
                                           const BandDensity& density, const std::vector<glm::vec3>& crossed,
-                                          float film_strength, float most) {
+                                          const ShapeOptions& options) {
   const auto dual = static_cast<std::uint32_t>(dual_positions.size());
   const InterfaceRings rings(mesh, dual);
   const std::vector<float> strength = mean_strength(mesh, rings);
   std::vector<std::uint8_t> evidence(strength.size());
-  for (std::size_t i = 0; i < evidence.size(); ++i) evidence[i] = strength[i] >= film_strength ? kFilm : kInferred;
-  drop_small_films(rings, strength, evidence);
+  const std::vector<bool> in_film_patch = film_patches(mesh, rings);
+  for (std::size_t i = 0; i < evidence.size(); ++i)
+    evidence[i] = strength[i] >= (in_film_patch[i] ? kWithin : options.film_strength) ? kFilm : kInferred;
+  drop_small_films(rings, strength, in_film_patch, evidence);
+  std::vector<bool> clay_step(evidence.size(), false);  // not a film: where one clay ends and the other begins
+  if (options.clays) {
+    const std::vector<float> steps = mean_steps(mesh, rings, dual_positions, density, *options.clays);
+    for (std::size_t i = 0; i < clay_step.size(); ++i) {
+      const bool dip = strength[i] * options.dip_deviation > kLeastStep * std::abs(options.clays->step());
+      if (dip || steps[i] < kLeastStep) continue;
+      clay_step[i] = true;
+      evidence[i] = kFilm;
+    }
+  }
 
   const std::vector<float> leash = leashes(mesh.added, crossed);
   const std::vector<glm::vec3> start = mesh.added;
@@ -141,7 +222,7 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
       mean /= static_cast<float>(rings.all[i].size());
       const glm::vec3 step = mesh.added[i] + share * (mean - mesh.added[i]) - start[i];
       const float length = glm::length(step);
-      const float free = leash[i] * most;
+      const float free = leash[i] * options.most;
       moved[i] = start[i] + (length > free ? free / length : 1.0f) * step;
     }
     mesh.added.swap(moved);
@@ -150,7 +231,10 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
   for (int round = 0; round < kMembraneRounds; ++round) relax(kInferred, 1.0f);
   std::vector<float> follows(evidence.size());
   for (std::size_t i = 0; i < follows.size(); ++i) follows[i] = evidence[i] == kFilm ? leash[i] : 0.0f;
-  follow_dips(mesh, rings, dual_positions, follows, density, kMostRefined);
+  const std::vector<bool> doubtful = follow_dips(mesh, rings, dual_positions, {follows, clay_step}, density,
+                                                 {.blur_variance = options.blur_variance, .clays = options.clays});
+  for (std::size_t i = 0; i < evidence.size(); ++i)
+    if (doubtful[i]) evidence[i] = kInferred;
   return evidence;
 }
 

@@ -2,19 +2,30 @@
 // The traced contact in its final shape: which of it is a film, where its vertices lie.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "core/contact/clays.h"
 #include "core/contact/dips.h"
 #include "core/contact/interface_mesh.h"
 
 namespace dubsar {
 
+struct ShapeOptions {
+  float film_strength = 1.3f;   ///< mean of dips from which on a film is believed
+  float most = 1.5f;            ///< steps that inferred contact is moved
+  float blur_variance = 0.42f;  ///< of the scan
+  std::optional<ClayContrast> clays = std::nullopt;
+  float dip_deviation = 0.0f;  ///< density that a strength of 1 stands for; read where clays differ
+};
+
 /// Evidence of the added vertices (evidence.h): film where the strength of the dip, averaged far along the contact and
-/// without its rim, is at least `film_strength` over a region as large as a wedge, else inferred. Films are followed in
-/// the density (film_refine.h); what is inferred becomes a membrane between them and the surface, no farther than
-/// `most` steps from where it was. Within 3 steps of `crossed` nothing moves, and less than elsewhere within 7.
+/// without its rim, is at least `film_strength` over a region as large as a wedge, or where the clays differ and their
+/// densities around it say so, else inferred. Films are followed in the density (film_refine.h); what is inferred
+/// becomes a membrane between them and the surface, no farther than `most` steps from where it was. Within 3 steps of
+/// `crossed` nothing moves, and less than elsewhere within 7.
 std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector<glm::vec3>& dual_positions,
                                           const BandDensity& density, const std::vector<glm::vec3>& crossed,
-                                          float film_strength, float most);
+                                          const ShapeOptions& options);
 
 }  // namespace dubsar

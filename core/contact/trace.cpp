@@ -8,6 +8,7 @@
 
 #include "core/base/log.h"
 #include "core/contact/band.h"
+#include "core/contact/clays.h"
 #include "core/contact/dips.h"
 #include "core/contact/interface_mesh.h"
 #include "core/contact/interface_rest.h"
@@ -53,6 +54,7 @@ struct Traced {
   const FaceGraph& graph;
   std::vector<BandFace> faces;
   std::vector<ClaySide> side;
+  std::optional<ClayContrast> clays;
   std::vector<glm::vec3> crossed;  ///< where moving its vertices made the contact run through something
 };
 
@@ -75,7 +77,8 @@ Result<void> build_contact(SurfaceModel& model, const Traced& traced, const Cont
   DUBSAR_ASSIGN(const std::int64_t rest_loops, close_rest(model, traced.graph, mesh, progress));
   part_shared_edges(model, mesh);
   std::vector<std::uint8_t> evidence =
-      shape_interface(mesh, model.mesh.positions, traced.density, traced.crossed, options.film_strength, kMostMove);
+      shape_interface(mesh, model.mesh.positions, traced.density, traced.crossed,
+                      {options.film_strength, kMostMove, options.blur_variance, traced.clays, traced.dips.deviation});
   report.film_vertices = std::count(evidence.begin(), evidence.end(), evidence_byte(Evidence::kFilm));
   report.inferred_vertices = static_cast<std::int64_t>(evidence.size()) - report.film_vertices;
   store_patch(model, std::move(mesh), std::move(evidence));
@@ -192,11 +195,20 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
                 ContactBand::make(model.samples.signs, std::move(samples), options.reach, progress));
   report.points = static_cast<std::int64_t>(band.nodes.size());
   DUBSAR_ASSIGN(const BandDensity values, BandDensity::read(band, density, progress));
-  DUBSAR_ASSIGN(const Dips dips, find_dips(band, model.samples.signs, values, progress));
+  DUBSAR_ASSIGN(Dips dips, find_dips(band, model.samples.signs, values, progress));
   DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(model.samples));
   DUBSAR_ASSIGN(const FaceGraph graph, FaceGraph::build(model.mesh, progress));
-  Traced traced{band, values, dips, index, graph, faces_of_band(model, index, band), {}, {}};
-  DUBSAR_ASSIGN(traced.side, divide_clay(band, dips, hints_of_faces(model, band, traced.faces), progress));
+  Traced traced{band, values, dips, index, graph, faces_of_band(model, index, band), {}, {}, {}};
+  traced.clays = compare_clays(band, model.samples.signs, values, options.blur_variance);
+  report.clays_differ = traced.clays.has_value();
+  std::vector<float> votes;
+  if (traced.clays) {
+    dips.density.clear();  // it is least in the lighter clay, not between them
+    votes = clay_votes(band, model.samples.signs, values, *traced.clays);
+    log_info("contact: the envelope's clay has {:.1f} % of the density of the tablet's",
+             100.0f * traced.clays->envelope / traced.clays->tablet);
+  }
+  DUBSAR_ASSIGN(traced.side, divide_clay(band, dips, hints_of_faces(model, band, traced.faces), votes, progress));
   if (progress.cancelled()) return cancelled_error();
   DUBSAR_TRY(trace_until_closed(model, std::move(traced), options, report, progress));
   progress.end();

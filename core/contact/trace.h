@@ -14,17 +14,20 @@
 namespace dubsar {
 
 struct ContactOptions {
-  float reach = 12.0f;         ///< of the search on both sides of the smooth patch, grid steps
+  float reach = 12.0f;         ///< of the search on both sides of the smooth patch, grid steps: the deepest wedge
   double step = 1.0 / 64.0;    ///< positions are multiples of it, as in files
   float film_strength = 1.3f;  ///< mean strength of dips around a vertex (dips.h) from which on a film is believed
+  /// Variance of the scan's edges, voxels squared (core/filter/edge_spread.h); this is that of a good scan.
+  float blur_variance = 0.42f;
 };
 
 struct ContactReport {
   bool traced = false;  ///< false: the patches stay as they were, `why` says the reason
   std::string why;
-  std::int64_t points = 0;   ///< of clay that was looked at
-  std::int64_t pockets = 0;  ///< closed surfaces that joined tablet and envelope
-  UntangleReport patches;    ///< whether the contact runs through anything
+  std::int64_t points = 0;    ///< of clay that was looked at
+  std::int64_t pockets = 0;   ///< closed surfaces that joined tablet and envelope
+  UntangleReport patches;     ///< whether the contact runs through anything
+  bool clays_differ = false;  ///< in density, and the contact follows that
   std::int64_t film_vertices = 0, inferred_vertices = 0;
 };
 

@@ -51,23 +51,23 @@ void AddNoise(std::uint64_t row_key, std::int64_t x_first, float sigma, float* H
 }
 
 template <class D, class V>
-HWY_INLINE V one_four_one(D d, V a, V b, V c) {
-  return hn::Add(hn::Add(a, c), hn::Mul(hn::Set(d, 4.0f), b));
+HWY_INLINE V around_middle(D d, V a, V b, V c, float middle) {
+  return hn::Add(hn::Add(a, c), hn::Mul(hn::Set(d, middle), b));
 }
 
-void BlurYz(const float* const rows[9], float* HWY_RESTRICT out, std::int64_t n) {
+void BlurYz(const float* const rows[9], float middle, float* HWY_RESTRICT out, std::int64_t n) {
   for_lanes(n, [&](std::int64_t i, auto d) HWY_ATTR {
     const auto at = [&](int k) HWY_ATTR { return hn::LoadU(d, rows[k] + i); };
-    hn::StoreU(one_four_one(d, one_four_one(d, at(0), at(1), at(2)), one_four_one(d, at(3), at(4), at(5)),
-                            one_four_one(d, at(6), at(7), at(8))),
-               d, out + i);
+    const auto row = [&](int k) HWY_ATTR { return around_middle(d, at(k), at(k + 1), at(k + 2), middle); };
+    hn::StoreU(around_middle(d, row(0), row(3), row(6), middle), d, out + i);
   });
 }
 
-void BlurX(const float* HWY_RESTRICT in, float* HWY_RESTRICT out, std::int64_t n) {
+void BlurX(const float* HWY_RESTRICT in, float middle, float* HWY_RESTRICT out, std::int64_t n) {
+  const float sum_of_weights = 2.0f + middle, share = 1.0f / (sum_of_weights * sum_of_weights * sum_of_weights);
   for_lanes(n, [&](std::int64_t i, auto d) HWY_ATTR {
-    const auto sum = one_four_one(d, hn::LoadU(d, in + i), hn::LoadU(d, in + i + 1), hn::LoadU(d, in + i + 2));
-    hn::StoreU(hn::Mul(sum, hn::Set(d, 1.0f / 216.0f)), d, out + i);
+    const auto sum = around_middle(d, hn::LoadU(d, in + i), hn::LoadU(d, in + i + 1), hn::LoadU(d, in + i + 2), middle);
+    hn::StoreU(hn::Mul(sum, hn::Set(d, share)), d, out + i);
   });
 }
 
@@ -85,11 +85,11 @@ HWY_EXPORT(BlurX);
 void add_noise(std::uint64_t row_key, std::int64_t x_first, float sigma, std::span<float> row) {
   HWY_DYNAMIC_DISPATCH(AddNoise)(row_key, x_first, sigma, row.data(), static_cast<std::int64_t>(row.size()));
 }
-void blur_yz(const float* const rows[9], std::span<float> out) {
-  HWY_DYNAMIC_DISPATCH(BlurYz)(rows, out.data(), static_cast<std::int64_t>(out.size()));
+void blur_yz(const float* const rows[9], float middle, std::span<float> out) {
+  HWY_DYNAMIC_DISPATCH(BlurYz)(rows, middle, out.data(), static_cast<std::int64_t>(out.size()));
 }
-void blur_x(std::span<const float> in, std::span<float> out) {
-  HWY_DYNAMIC_DISPATCH(BlurX)(in.data(), out.data(), static_cast<std::int64_t>(out.size()));
+void blur_x(std::span<const float> in, float middle, std::span<float> out) {
+  HWY_DYNAMIC_DISPATCH(BlurX)(in.data(), middle, out.data(), static_cast<std::int64_t>(out.size()));
 }
 
 }  // namespace dubsar::phantom::kernels

@@ -47,12 +47,13 @@ Result<PhantomOptions> complete(PhantomOptions options) {
     double value, least, most;
     bool zero;  ///< 0 is allowed too
   };
-  for (const Limit& limit : {Limit{"film", options.film_vox, 0.05, 2.0, false},
-                             Limit{"share of contact", options.contact_share, 0.01, 0.6, true},
-                             Limit{"gap", options.gap_vox, 1.0, 64.0, true},
-                             Limit{"depth of wedges", options.wedge_depth_vox, 2.0, 64.0, true},
-                             Limit{"density of the envelope", options.envelope_density, 0.5, 1.5, false},
-                             Limit{"rings", options.rings, 0.0, 1.0, true}})
+  for (const Limit& limit :
+       {Limit{"film", options.film_vox, 0.05, 2.0, false},
+        Limit{"share of contact", options.contact_share, 0.01, 0.6, true},
+        Limit{"gap", options.gap_vox, 1.0, 64.0, true},
+        Limit{"depth of wedges", options.wedge_depth_vox, 2.0, 64.0, true},
+        Limit{"density of the envelope", options.envelope_density, 0.5, 1.5, false},
+        Limit{"rings", options.rings, 0.0, 1.0, true}, Limit{"blur", options.blur_vox, 0.3, 0.8, false}})
     if (!(limit.value >= limit.least && limit.value <= limit.most) && !(limit.zero && limit.value == 0.0))
       return fail(ErrorKind::kUsage, "phantom: {} {} found, expected {} to {}", limit.what, limit.value, limit.least,
                   limit.most);

@@ -24,6 +24,9 @@ inline constexpr EnumName<Contact> kContacts[] = {{Contact::kPressed, "pressed"}
                                                   {Contact::kFilm, "film"}};
 static_assert(names_all(kContacts, static_cast<std::size_t>(Contact::kFilm) + 1));
 
+/// Of a point spread [1 4 1]/6 along each axis: sqrt(1/3), voxels.
+inline constexpr double kUsualBlur = 0.57735026918962576;
+
 struct PhantomOptions {
   Dims dims{512, 272, 472};
   std::uint64_t seed = 1;
@@ -37,6 +40,7 @@ struct PhantomOptions {
   bool written = true;            ///< false: nobody wrote on the tablet
   double envelope_density = 1.0;  ///< of the envelope's clay, relative to the tablet's
   double rings = 0.0;             ///< standard deviation of ring artefacts, relative to clay
+  double blur_vox = kUsualBlur;   ///< standard deviation of the point spread along each axis, 0.3 to 0.8
 };
 
 /// "tiny" 96x64x96, "demo" 512x272x472, "paper" 1871x999x1723 (38 um). kUsage for any other name.
@@ -44,7 +48,7 @@ Result<PhantomOptions> parse_preset(std::string_view name);
 
 /// Checks size (32 voxels to 65535 along each axis, and the memory budget's voxel limit), noise (0..120 dB or
 /// infinity), voxel edge, film (0.05 to 2 voxels), share of contact (up to 0.6), gap (1 to 64 voxels), wedges (2 to 64
-/// voxels), density (0.5 to 1.5) and rings (up to 1), and fills in voxel_mm when it is 0. kUsage.
+/// voxels), density (0.5 to 1.5), rings (up to 1) and blur (0.3 to 0.8), and fills in voxel_mm when it is 0. kUsage.
 Result<PhantomOptions> complete(PhantomOptions options);
 
 /// The scan shows a border between the two clays: a film of air, or different densities.

@@ -64,7 +64,8 @@ void PhantomSource::fill_raw(std::int64_t z_begin, std::int64_t z_end) {
   const Dims d = dims();
   const std::int64_t y_first = brick_of(-1), y_bricks = brick_of(d.y) - y_first + 1;
   const std::int64_t z_first = brick_of(z_begin), z_bricks = brick_of(z_end - 1) - z_first + 1;
-  const auto white = static_cast<float>(sigma_ / kernels::kNoiseLeft);
+  const auto white =
+      static_cast<float>(sigma_ / kernels::noise_left(kernels::psf_middle(phantom_->options().blur_vox)));
   const std::uint64_t seed_key = hash64(phantom_->options().seed ^ 0x6e6f697365);
   parallel_for(y_bricks * z_bricks, 1, [&](std::int64_t item) {
     const std::int64_t y_lo = (y_first + item % y_bricks) * kBrickEdge, z_lo = (z_first + item / y_bricks) * kBrickEdge;
@@ -96,6 +97,7 @@ Result<void> PhantomSource::read(std::int64_t z_begin, std::int64_t z_end, std::
   DUBSAR_CHECK(0 <= z_begin && z_begin <= z_end && z_end <= d.z &&
                static_cast<std::int64_t>(out.size()) >= d.slice() * (z_end - z_begin));
   const std::int64_t slice = (d.x + 2) * (d.y + 2);
+  const auto middle = static_cast<float>(kernels::psf_middle(phantom_->options().blur_vox));
   for (std::int64_t z0 = z_begin; z0 < z_end; z0 += kSlicesAtATime) {
     const std::int64_t z1 = std::min(z0 + kSlicesAtATime, z_end);
     // Slices z0 - 1 and z0 are often left from the request before.
@@ -114,10 +116,10 @@ Result<void> PhantomSource::read(std::int64_t z_begin, std::int64_t z_end, std::
       sum.resize(static_cast<std::size_t>(d.x + 2));
       const float* rows[9];
       for (std::int64_t k = 0; k < 9; ++k) rows[k] = raw_row(y + k % 3 - 1, z + k / 3 - 1);
-      kernels::blur_yz(rows, sum);
+      kernels::blur_yz(rows, middle, sum);
       const std::span<float> row =
           out.subspan(static_cast<std::size_t>((z - z_begin) * d.slice() + y * d.x), static_cast<std::size_t>(d.x));
-      kernels::blur_x(sum, row);
+      kernels::blur_x(sum, middle, row);
       if (rings_.empty()) return;
       const double off = static_cast<double>(y) - 0.5 * static_cast<double>(d.y - 1);
       for (std::int64_t x = 0; x < d.x; ++x) {

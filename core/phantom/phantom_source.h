@@ -9,10 +9,11 @@
 
 namespace dubsar::phantom {
 
-/// density = PSF * (partial volume of clay, organic matter and grains + white noise). The PSF is [1 4 1]/6 per axis, so
-/// the noise is correlated as in a CT scan, and Gauss with 2:1 takes 17 dB to 23 dB as in the paper (table 2); with the
-/// voxel's own extent the edge spread has a standard deviation of 0.65 voxel. The bits of a voxel depend on the options
-/// and its place only, not on slabs, threads or processor.
+/// density = PSF * (partial volume of clay, organic matter and grains + white noise). The PSF has three
+/// voxels per axis and the deviation of the options, usually that of [1 4 1]/6: the noise is correlated as in a CT
+/// scan, and Gauss with 2:1 takes 17 dB to 23 dB as in the paper (table 2); with the voxel's own extent the edge spread
+/// has a standard deviation of 0.65 voxel. The bits of a voxel depend on the options and its place only, not on slabs,
+/// threads or processor.
 ///
 /// Cost: about 30 Mvox/s a core on the paper preset; keeps the slices of one request of up to 16 plus 2.
 class PhantomSource final : public SlabSource {

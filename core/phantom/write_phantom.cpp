@@ -26,6 +26,7 @@ Result<void> describe(Hdf5Writer& file, const Phantom& phantom, const std::strin
   DUBSAR_TRY(file.set_attribute("/", "creator", "dubsar phantom"));
   DUBSAR_TRY(file.set_attribute("/", "seed", static_cast<std::int64_t>(o.seed)));
   DUBSAR_TRY(file.set_attribute("/", "snr_db", o.snr_db));
+  DUBSAR_TRY(file.set_attribute("/", "blur_vox", o.blur_vox));
   DUBSAR_TRY(file.set_attribute("/", "glued_fraction", phantom.glued_fraction()));
   const std::vector<double> element_um(3, o.voxel_mm * 1000.0);
   return file.set_attribute(data, "element_size_um", std::span<const double>(element_um));

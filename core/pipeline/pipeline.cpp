@@ -31,7 +31,8 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   const Estimates& estimates = denoised.steps.back().estimates;
   DUBSAR_ASSIGN(const Threshold threshold, choose_threshold(options.threshold, estimates));
   DUBSAR_ASSIGN(SampledSurface sampled,
-                sample(denoised.grid, threshold.value, estimates, options.denoise.iterations > 0, options.sample, run));
+                sample(denoised.grid, threshold.value, estimates, options.denoise.iterations > 0,
+                       imported.detail.resample(), options.sample, run));
   denoised.grid.release();  // from here on the samples are enough
 
   DUBSAR_TRY(check_memory(
@@ -49,7 +50,7 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   std::optional<ContactReport> contact;
   if (options.fill_holes && options.trace_contact && !imported.detail.resample() && separated.segment.nested &&
       !separated.segment.enclosure_refused) {
-    DUBSAR_ASSIGN(TracedModel traced, trace(std::move(result.model), options.import, imported.detail.resample(), run));
+    DUBSAR_ASSIGN(TracedModel traced, trace(std::move(result.model), options.import, imported.blur, run));
     result.model = std::move(traced.model);
     contact = traced.contact;
   }

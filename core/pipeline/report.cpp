@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/pipeline/pipeline.h"
 
 namespace dubsar {
@@ -49,6 +51,14 @@ json input_json(const PipelineReport& report) {
   return input;
 }
 
+json blur_json(const std::optional<EdgeSpread>& blur) {
+  if (!blur) return nullptr;
+  return {{"deviation_vox", std::sqrt(blur->variance)},
+          {"variance_vox2", blur->variance},
+          {"uncertainty_vox2", blur->uncertainty},
+          {"places", blur->places}};
+}
+
 json estimates_json(const PipelineReport& report) {
   json filters = json::array();
   for (const FilterStep& step : report.filters)
@@ -68,6 +78,7 @@ json estimates_json(const PipelineReport& report) {
           {"threshold", report.threshold.value},
           {"threshold_valley", last.threshold_valley},
           {"path", report.threshold.path},
+          {"blur", blur_json(report.blur)},
           {"filters", filters}};
 }
 
@@ -91,7 +102,8 @@ json contact_json(const ContactReport& contact) {
               {"points", contact.points},
               {"pockets", contact.pockets},
               {"film_vertices", contact.film_vertices},
-              {"inferred_vertices", contact.inferred_vertices}};
+              {"inferred_vertices", contact.inferred_vertices},
+              {"clays_differ", contact.clays_differ}};
   if (!contact.traced) result["why"] = contact.why;
   return result;
 }
@@ -114,6 +126,7 @@ json exa_json(const ExaStats& stats) {
 
 PipelineReport make_report(const StageResults& results, const SurfaceModel& model, const StageClock& clock) {
   PipelineReport report{.scan = results.imported.facts,
+                        .blur = results.imported.blur,
                         .filters = {results.imported.raw},
                         .threshold = results.threshold,
                         .sharpen = results.sampled.sharpen,
@@ -230,6 +243,9 @@ std::string report_text(const PipelineReport& report) {
   for (const FilterStep& step : report.filters)
     text += fmt::format("noise {:<22} sigma {:<11.4g} SNR {:5.1f} dB\n", step.name, step.estimates.sigma,
                         step.estimates.snr_db);
+  if (report.blur)
+    text += fmt::format("blur of edges {:.2f} voxel, measured at {} flat places\n", std::sqrt(report.blur->variance),
+                        report.blur->places);
   text += fmt::format("detail {}: {}\n", name_in(kDetails, report.detail.detail), report.detail.why);
   text += fmt::format("threshold {:.6g}: {}\n", report.threshold.value, report.threshold.path);
   text +=

@@ -51,6 +51,9 @@ Result<CountedGrid> fill_grid(SlabSource& source, const Budget& budget) {
 /// Sharpening by 1 may double the noise: from here on it leaves at least what a raw scan of the paper has (17 dB).
 constexpr double kSharpenFromDb = 23.0, kAllFromDb = 27.0;
 
+/// Variance of the Gauss 3x3x3 of SharpenedSource: an amount of 1 takes as much off the variance of an edge.
+constexpr double kGaussVariance = 0.5;
+
 /// All of it where there is little noise, none where there is much, in between in proportion: at the scan's resolution
 /// filters leave 24 to 26 dB of 17.
 float sharpen_amount(double snr_db) {
@@ -89,6 +92,10 @@ Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, co
   imported.raw.name = "raw";
   DUBSAR_ASSIGN(imported.raw.estimates, estimate_source(some, "estimate_raw", estimate, run));
   DUBSAR_ASSIGN(imported.grid, read_grid(*scan, resample, options.budget, run));
+  run.clock.start("blur", "place");
+  DUBSAR_ASSIGN(imported.blur, measure_edge_spread(imported.grid.grid, imported.raw.estimates.m_lo,
+                                                   imported.raw.estimates.m_hi, run.progress));
+  run.clock.finish(imported.blur ? imported.blur->places : 0);
   imported.grid_name = resample ? "gauss 2:1" : "imported";
   ScanFacts& facts = imported.facts;
   facts.grid = imported.grid.grid.dims();
@@ -143,9 +150,13 @@ Result<Threshold> choose_threshold(std::optional<float> given, const Estimates& 
 }
 
 Result<SampledSurface> sample(GridStore& grid, float threshold, const Estimates& estimates, bool denoised,
-                              const SampleOptions& options, StageRun run) {
+                              bool resampled, const SampleOptions& options, StageRun run) {
   SampledSurface sampled;
   sampled.sharpen = options.sharpen.value_or(denoised ? sharpen_amount(estimates.snr_db) : 0.0f);
+  if (!options.sharpen && sampled.sharpen > 0.0f && !resampled) {
+    DUBSAR_ASSIGN(sampled.blur, measure_edge_spread(grid, estimates.m_lo, estimates.m_hi, run.progress));
+    if (sampled.blur) sampled.sharpen *= static_cast<float>(std::min(sampled.blur->variance / kGaussVariance, 1.0));
+  }
   SharpenedSource sharpened(grid, sampled.sharpen);
   SlabSource& source = sampled.sharpen > 0.0f ? static_cast<SlabSource&>(sharpened) : grid;
   run.clock.start("extract", "voxel");

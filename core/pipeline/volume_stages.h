@@ -8,6 +8,7 @@
 
 #include "core/extract/surface_samples.h"
 #include "core/filter/denoise.h"
+#include "core/filter/edge_spread.h"
 #include "core/filter/estimate.h"
 #include "core/pipeline/detail.h"
 #include "core/pipeline/stage_clock.h"
@@ -38,7 +39,8 @@ struct CountedGrid {
 
 struct ImportedGrid {
   ScanFacts facts;
-  FilterStep raw;  ///< of a sample of the scan
+  FilterStep raw;                  ///< of a sample of the scan
+  std::optional<EdgeSpread> blur;  ///< of the grid as it was imported; nothing where it has no flat surface
   CountedGrid grid;
   DetailChoice detail;
   std::string grid_name;  ///< how it was made, as a FilterStep is named
@@ -72,19 +74,21 @@ struct Threshold {
 Result<Threshold> choose_threshold(std::optional<float> given, const Estimates& estimates);
 
 struct SampleOptions {
-  std::optional<float> sharpen;  ///< amount (sharpen.h); default: 1 where the noise allows it
+  std::optional<float> sharpen;  ///< amount (sharpen.h); default: what the blur asks for and the noise allows
   int offset_bits = 4;           ///< N
   bool closed = true;            ///< at the border of the volume
 };
 
 struct SampledSurface {
   SurfaceSamples samples;
-  float sharpen = 0.0f;  ///< amount that was used
+  float sharpen = 0.0f;            ///< amount that was used
+  std::optional<EdgeSpread> blur;  ///< of the grid before it was sharpened, where that was decided by it
 };
 
 /// Sharpens and samples the isosurface. `denoised`: whether a filter pass was asked for; without one the default is no
-/// sharpening.
+/// sharpening. `resampled`: what 2:1 took is known; else the blur of the grid is measured and given back as far as the
+/// noise allows it.
 Result<SampledSurface> sample(GridStore& grid, float threshold, const Estimates& estimates, bool denoised,
-                              const SampleOptions& options, StageRun run);
+                              bool resampled, const SampleOptions& options, StageRun run);
 
 }  // namespace dubsar

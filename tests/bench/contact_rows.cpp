@@ -124,6 +124,21 @@ std::vector<ContactRow> contact_rows(const Dims& dims, std::uint64_t seed) {
     o.rings = 0.03;
     o.gap_vox = 3.0;
   });
+  add("sharp", [](auto& o) {
+    o.contact = Contact::kFilm;
+    o.contact_share = kShare;
+    o.blur_vox = 0.4;
+  });
+  add("soft", [](auto& o) {
+    o.contact = Contact::kFilm;
+    o.contact_share = kShare;
+    o.blur_vox = 0.75;
+  });
+  add("two clays", [](auto& o) {
+    o.contact = Contact::kFilled;
+    o.contact_share = kShare;
+    o.envelope_density = 1.3;
+  });
   return all;
 }
 
@@ -150,6 +165,7 @@ JudgedRow judge_row(const ContactRow& row, const JudgeOptions& how) {
     judged.peak_mib = std::max(judged.peak_mib, stage.peak_rss_mib);
     if (stage.name == "contact") judged.contact_cpu_s = stage.cpu_s;
   }
+  judged.blur = result.report.blur;
   judged.traced = result.report.contact && result.report.contact->traced;
   if (result.report.contact) judged.remark = result.report.contact->why;
   if (!how.judge) return judged;

@@ -2,10 +2,12 @@
 // Phantoms of all kinds of contact between tablet and envelope, processed without options and judged by their truth.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/filter/edge_spread.h"
 #include "core/phantom/options.h"
 #include "core/pipeline/detail.h"
 #include "tests/core/phantom/contact_score.h"
@@ -17,8 +19,9 @@ struct ContactRow {
   phantom::PhantomOptions options;
 };
 
-/// "text", "pressed", "pockets", "film 1.0" to "film 0.2", "filled", "unwritten", "unwritten film", "hard": the first
-/// with `seed`, each other with one of its own.
+/// "text", "pressed", "pockets", "film 1.0" to "film 0.2", "filled", "unwritten", "unwritten film", "hard", "sharp",
+/// "soft" (other point spreads) and "two clays" (the envelope fills the wedges and is denser): the first with `seed`,
+/// each other with one of its own.
 std::vector<ContactRow> contact_rows(const Dims& dims, std::uint64_t seed);
 
 struct JudgedRow {
@@ -30,6 +33,7 @@ struct JudgedRow {
   std::int64_t crossings = 0;       ///< pairs of triangles, one of a patch, that cross on tablet or envelope
   std::int64_t self_crossings = 0;  ///< pairs of the surface itself
   bool traced = false;
+  std::optional<EdgeSpread> blur;
   double step = 1.0;   ///< voxels of the scan in one of the grid
   std::string remark;  ///< why nothing was traced
   double wall_s = 0.0, cpu_s = 0.0, peak_mib = 0.0, contact_cpu_s = 0.0;

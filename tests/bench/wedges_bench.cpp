@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/log.h"
 #include "tests/bench/contact_rows.h"
+#include "tests/bench/real_volumes.h"
 
 namespace dubsar {
 namespace {
@@ -21,20 +24,23 @@ struct Arguments {
   std::uint64_t seed = 0;
   int seeds = 1;
   Detail detail = Detail::kAuto;
-  std::string only;  ///< names of rows, with commas
-  bool large = false, places = false;
+  std::string only;     ///< names of rows, with commas
+  std::string volumes;  ///< a folder of scans that are not of tablets
+  bool large = false, costs = false, places = false;
 };
 
 constexpr std::string_view kHelp =
     "wedges_bench [--quick | --size XxYxZ] [--seed N] [--seeds COUNT] [--only ROW,ROW] [--detail auto|scan|half]\n"
-    "             [--places] [--large]\n"
+    "             [--places] [--costs] [--large] | --volumes FOLDER\n"
     "  --quick   256x160x240, minutes; else 512x320x480\n"
     "  --seed    phantoms of this seed, --seeds: so many of each kind; none: a fresh one, which is printed\n"
     "  --only    rows: text, pressed, pockets, film 1, film 0.5, film 0.35, film 0.2, filled, unwritten,\n"
-    "            unwritten film, hard\n"
+    "            unwritten film, hard, sharp, soft, two clays\n"
     "  --places  says where wedges were invented\n"
-    "  --large   then time and memory at 935x499x861 and at the paper's size, 1871x999x1723 (most of an hour, 15 GB "
-    "disk)\n";
+    "  --costs   time and memory of --detail half and scan instead\n"
+    "  --large   time and memory at 935x499x861 and at the paper's size, 1871x999x1723 instead (most of an hour, 15 GB "
+    "disk)\n"
+    "  --volumes FOLDER  processes the HDF5 files in it; exit code 1 where one fails or has a tablet\n";
 
 [[noreturn]] void usage(int code) {
   fmt::print(code == 0 ? stdout : stderr, "{}", kHelp);
@@ -53,6 +59,8 @@ Arguments parse(int argc, char** argv) {
       a.dims = {256, 160, 240};
     } else if (word == "--large") {
       a.large = true;
+    } else if (word == "--costs") {
+      a.costs = true;
     } else if (word == "--places") {
       a.places = true;
     } else if (i + 1 == argc) {
@@ -61,6 +69,8 @@ Arguments parse(int argc, char** argv) {
       a.seed = std::strtoull(value, nullptr, 10);
     } else if (word == "--seeds") {
       a.seeds = std::max(1, std::atoi(value));
+    } else if (word == "--volumes") {
+      a.volumes = value;
     } else if (word == "--only") {
       a.only = value;
     } else if (word == "--detail") {
@@ -107,9 +117,9 @@ struct Kind {
 using Kinds = std::map<std::string, Kind>;
 
 void print_row_heads() {
-  fmt::print("{:<15}{:>7}{:>7}{:>6}{:>6}{:>6}{:>7}{:>7}{:>7}{:>6}{:>8}{:>8}{:>6}{:>6}{:>7}{:>7}{:>7}\n", "phantom",
-             "seed", "free", "rms", "pock.", "shown", "film w", "near", "% film", "% inf", "purity", "recall", "false",
-             "cross", "cpu s", "contact", "MiB");
+  fmt::print("{:<15}{:>7}{:>7}{:>6}{:>6}{:>6}{:>7}{:>7}{:>7}{:>6}{:>8}{:>8}{:>6}{:>6}{:>6}{:>6}{:>7}{:>7}{:>7}\n",
+             "phantom", "seed", "free", "rms", "pock.", "shown", "film w", "near", "% film", "% inf", "purity",
+             "recall", "false", "cross", "self", "blur", "cpu s", "contact", "MiB");
 }
 
 void print_row(const ContactRow& row, const JudgedRow& j) {
@@ -118,14 +128,14 @@ void print_row(const ContactRow& row, const JudgedRow& j) {
     return 100.0 * static_cast<double>(c.evidence[e]) / std::max<double>(1.0, static_cast<double>(c.contact_vertices));
   };
   fmt::print(
-      "{:<15}{:>7}{:>7.3f}{:>6.3f}{:>6.3f}{:>6.3f}{:>7.3f}{:>7.3f}{:>7.1f}{:>6.1f}{:>8.4f}{:>8.4f}{:>6}{:>6}{:>7.1f}{:>"
-      "7.1f}"
-      "{:>7.0f}  {}\n",
+      "{:<15}{:>7}{:>7.3f}{:>6.3f}{:>6.3f}{:>6.3f}{:>7.3f}{:>7.3f}{:>7.1f}{:>6.1f}{:>8.4f}{:>8.4f}{:>6}{:>6}{:>6}{:>6."
+      "2f}"
+      "{:>7.1f}{:>7.1f}{:>7.0f}  {}\n",
       row.name, row.options.seed, c.cases[0].kept_fraction(), j.tablet_rms, c.cases[1].kept_fraction(),
       c.cases[1].shown_fraction(), c.cases[2].kept_fraction(), c.near_fraction(), percent(2), percent(3),
       std::min(j.seen.owner[0].purity(), j.seen.owner[1].purity()),
-      std::min(j.seen.owner[0].recall(), j.seen.owner[1].recall()), c.false_wedges(), j.crossings, j.cpu_s,
-      j.contact_cpu_s, j.peak_mib, j.remark);
+      std::min(j.seen.owner[0].recall(), j.seen.owner[1].recall()), c.false_wedges(), j.crossings, j.self_crossings,
+      j.blur ? std::sqrt(j.blur->variance) : NAN, j.cpu_s, j.contact_cpu_s, j.peak_mib, j.remark);
   std::fflush(stdout);
 }
 
@@ -174,13 +184,22 @@ int print_wanted(const Kinds& kinds) {
   with("film 0.5", [&](const Kind& k) {
     table.at_least("film of 0.5 voxel: interface within 1 voxel over this share", 0.92, 0.98, k.mean(near));
   });
+  for (const char* name : {"sharp", "soft"})
+    with(name, [&](const Kind& k) {
+      table.at_least(fmt::format("{} scan, film of 0.5 voxel: interface within 1 voxel", name), 0.92, 0.98,
+                     k.mean(near));
+    });
+  with("two clays", [&](const Kind& k) {
+    table.at_least("clays of densities 1 and 1.3: interface within 1 voxel", 0.80, 0.92, k.mean(near));
+  });
   with("film 0.2", [&](const Kind& k) { table.at_least("film of 0.2 voxel, the same", 0.80, 0.92, k.mean(near)); });
   for (const char* film : {"0.5", "0.35", "0.2"})
     with(fmt::format("film {}", film), [&](const Kind& k) {
       table.at_least(fmt::format("wedges under a film of {} voxel, depth within 20 %", film), 0.75, 0.90,
                      k.share(WedgeCase::kFilm, &CaseScore::kept));
     });
-  for (const char* name : {"filled", "unwritten", "unwritten film", "text", "pressed"})
+  for (const char* name : {"filled", "unwritten", "unwritten film", "text", "pressed", "film 0.5", "film 0.35",
+                           "film 0.2", "sharp", "soft", "two clays"})
     with(name, [&](const Kind& k) {
       table.at_most(fmt::format("{}: false wedges", name), 0, 0,
                     k.largest([](const JudgedRow& r) { return r.contact.false_wedges(); }));
@@ -228,6 +247,12 @@ void print_costs(const Dims& dims, Detail detail) {
 
 int run(int argc, char** argv) {
   const Arguments a = parse(argc, argv);
+  if (!a.volumes.empty()) return print_real_volumes(a.volumes) > 0 ? 1 : 0;
+  if (a.costs || a.large) {
+    for (const Dims& dims : a.large ? std::vector<Dims>{{935, 499, 861}, {1871, 999, 1723}} : std::vector<Dims>{a.dims})
+      for (const Detail detail : {Detail::kHalf, a.large ? Detail::kAuto : Detail::kScan}) print_costs(dims, detail);
+    return 0;
+  }
   fmt::print("{}x{}x{}, seed {}, no options{}\n", a.dims.x, a.dims.y, a.dims.z, a.seed,
              a.detail == Detail::kAuto ? "" : fmt::format(" but --detail {}", name_in(kDetails, a.detail)));
   print_row_heads();
@@ -243,9 +268,6 @@ int run(int argc, char** argv) {
   if (const auto text = kinds.find("text"); text != kinds.end())
     fmt::print("time and memory of text, everything: {:.0f} s, {:.0f} s of processors, {:.0f} MiB\n",
                text->second.rows[0].wall_s, text->second.rows[0].cpu_s, text->second.rows[0].peak_mib);
-  if (a.large)
-    for (const Dims& dims : {Dims{935, 499, 861}, Dims{1871, 999, 1723}})
-      for (const Detail detail : {Detail::kHalf, Detail::kAuto}) print_costs(dims, detail);
   return failed > 0 ? 1 : 0;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -35,6 +36,8 @@ struct FilmScene {
   static constexpr std::int64_t kEdge = 48;
   glm::vec3 normal = glm::normalize(glm::vec3(0.31f, -0.23f, 0.92f));
   glm::vec3 middle{23.4f, 24.1f, 23.7f};
+  float depth = 0.5f;  ///< of the dip
+  float noise = 0.0f;  ///< deviation, of each voxel
 
   float distance(const glm::vec3& p) const { return glm::dot(p - middle, normal); }
   /// The point of the plane at some steps from its middle, lifted out of it.
@@ -47,12 +50,15 @@ struct FilmScene {
     const Dims dims{kEdge, kEdge, kEdge};
     BitVolume inside(dims);
     Volume<float> scan(dims);
+    std::mt19937 bits(11);
+    const auto uniform = [&] { return (static_cast<float>(bits()) + 0.5f) / 4294967296.0f; };
     for (int z = 0; z < kEdge; ++z)
       for (int y = 0; y < kEdge; ++y)
         for (int x = 0; x < kEdge; ++x) {
           const float d = distance(glm::vec3(x, y, z));
           inside.set(x, y, z, true);
-          scan.at(x, y, z) = 1.0f - 0.5f * std::exp(-0.5f * d * d);
+          const float gauss = std::sqrt(-2.0f * std::log(uniform())) * std::cos(6.2831853f * uniform());
+          scan.at(x, y, z) = 1.0f - depth * std::exp(-0.5f * d * d) + noise * gauss;
         }
     std::vector<PatchPoint> samples;
     for (int i = 0; i < 400; ++i)

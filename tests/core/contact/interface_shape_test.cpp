@@ -17,8 +17,8 @@ TEST(ShapeInterface, NothingMovesWhereMovingMadeItCross) {
   });
   const glm::vec3 place(16.0f, 16.0f, 20.5f);
   InterfaceMesh free = stairs, tied = stairs;
-  shape_interface(free, {}, density, {}, 1.3f, 1.5f);
-  const std::vector<std::uint8_t> evidence = shape_interface(tied, {}, density, {place}, 1.3f, 1.5f);
+  shape_interface(free, {}, density, {}, {});
+  const std::vector<std::uint8_t> evidence = shape_interface(tied, {}, density, {place}, {});
   int near = 0, smoothed = 0;
   for (std::size_t i = 0; i < tied.added.size(); ++i) {
     EXPECT_EQ(evidence[i], evidence_byte(Evidence::kInferred));

@@ -72,6 +72,20 @@ Statistics measure(const Volume<float>& volume, const Phantom& phantom, const Gr
   return {clay, air, 20.0 * std::log10((clay - air) / sigma)};
 }
 
+TEST(PhantomScan, IsAsNoisyAsAskedForWhateverItsBlur) {
+  for (const double blur : {0.35, 0.8}) {
+    PhantomOptions options;
+    options.dims = {192, 120, 180};
+    options.seed = 5511;
+    options.blur_vox = blur;
+    const auto phantom = std::shared_ptr<const Phantom>(Phantom::create(options).value());
+    PhantomSource source(phantom);
+    SilentProgress progress;
+    const Volume<float> raw = read_all(source, progress).value();
+    EXPECT_NEAR(measure(raw, *phantom, source.frame(), 2).snr_db, 17.0, 0.3) << blur;
+  }
+}
+
 TEST(PhantomScan, ClayAirAndNoiseAreThoseOfThePaper) {
   const auto phantom = make({192, 102, 177}, 1, 17.0);
   PhantomSource source(phantom);

@@ -1,0 +1,109 @@
+#include "core/contact/clays.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "core/base/parallel.h"
+#include "core/contact/median.h"
+
+namespace dubsar {
+namespace {
+
+constexpr int kFromAir = 3;  ///< steps; nearer than that the blur of a surface darkens the clay
+constexpr std::int32_t kBlock = 24;
+constexpr std::size_t kLeastNodes = 150;  ///< of each layer of a block
+constexpr std::size_t kLeastBlocks = 6;
+constexpr float kSignificance = 5.0f;
+/// Layers of clay by their height over the patch, in parts of the band's reach: deep in the tablet, in the tablet, in
+/// the envelope.
+constexpr std::array<std::array<float, 2>, 3> kLayers{{{-0.95f, -0.65f}, {-0.6f, -0.3f}, {0.3f, 0.95f}}};
+/// Between the middles of the second and third layer, in parts of that between the first two.
+constexpr float kGradientReach = 1.075f / 0.35f;
+/// Votes of a node that is one (white) deviation off the middle. Less leaves filled wedges to the patch, more follows
+/// the noise: both grow with the area.
+constexpr float kVote = 3.0f;
+
+bool air_near(const BitVolume& inside, const glm::ivec3& p) {
+  const Dims d = inside.dims();
+  for (int axis = 0; axis < 3; ++axis)
+    for (int away = -kFromAir; away <= kFromAir; ++away) {
+      const glm::ivec3 q = p + away * unit_step(axis);
+      if (q.x < 0 || q.y < 0 || q.z < 0 || q.x >= d.x || q.y >= d.y || q.z >= d.z || !inside.get(q.x, q.y, q.z))
+        return true;
+    }
+  return false;
+}
+
+struct Mean {
+  float value = 0.0f, error = 0.0f;  ///< error: standard
+};
+Mean mean_of(const std::vector<float>& values) {
+  double sum = 0.0, squares = 0.0;
+  for (const float v : values) sum += static_cast<double>(v);
+  const auto n = static_cast<double>(values.size());
+  const double mean = sum / n;
+  for (const float v : values) squares += (static_cast<double>(v) - mean) * (static_cast<double>(v) - mean);
+  return {static_cast<float>(mean), static_cast<float>(std::sqrt(squares / (n - 1.0) / n))};
+}
+
+}  // namespace
+
+std::optional<ClayContrast> compare_clays(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
+                                          float blur_variance) {
+  std::map<std::array<std::int32_t, 3>, std::array<std::vector<float>, 3>> blocks;
+  for (const ContactBand::Node& node : band.nodes) {
+    if (std::abs(node.height) < 0.8f * node.distance) continue;
+    const float height = node.height / band.reach;
+    for (std::size_t layer = 0; layer < kLayers.size(); ++layer) {
+      if (height < kLayers[layer][0] || height > kLayers[layer][1]) continue;
+      if (!air_near(inside, {node.x, node.y, node.z}))
+        blocks[{node.x / kBlock, node.y / kBlock, node.z / kBlock}][layer].push_back(
+            density.get(node.x, node.y, node.z));
+    }
+  }
+  std::vector<float> steps, without_gradient, tablet, envelope, deviations;
+  for (auto& [place, layers] : blocks) {
+    if (layers[1].size() < kLeastNodes || layers[2].size() < kLeastNodes) continue;
+    const float near = median(layers[1]), beyond = median(layers[2]);
+    steps.push_back(beyond - near);
+    tablet.push_back(near);
+    envelope.push_back(beyond);
+    if (layers[0].size() >= kLeastNodes)
+      without_gradient.push_back(beyond - near - kGradientReach * (near - median(layers[0])));
+    for (float& v : layers[1]) v = std::abs(v - near);
+    deviations.push_back(1.4826f * median(layers[1]));
+  }
+  if (steps.size() < kLeastBlocks || without_gradient.size() < kLeastBlocks) return std::nullopt;
+  const Mean step = mean_of(steps), own = mean_of(without_gradient);
+  ClayContrast contrast;
+  contrast.deviation = median(deviations);
+  const bool significant = std::abs(step.value) > kSignificance * step.error &&
+                           std::abs(own.value) > 0.5f * kSignificance * own.error &&
+                           own.value * step.value > 0.5f * step.value * step.value;
+  if (!significant || std::abs(step.value) < contrast.deviation) return std::nullopt;
+  contrast.tablet = median(tablet);
+  contrast.envelope = median(envelope);
+  // Noise that was blurred with the scan (not with the extent of its voxels) and with BandDensity's own low pass is
+  // shared by so many voxels.
+  const float shared = 4.0f * static_cast<float>(M_PI) * (std::max(blur_variance - 1.0f / 12.0f, 0.0f) + 0.5f);
+  contrast.white_deviation = contrast.deviation * std::sqrt(shared * std::sqrt(shared));
+  return contrast;
+}
+
+std::vector<float> clay_votes(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
+                              const ClayContrast& contrast) {
+  std::vector<float> votes(band.nodes.size(), 0.0f);
+  const float sense = contrast.step() > 0.0f ? -1.0f : 1.0f;                        // of the tablet's clay
+  const float most = 0.5f * std::abs(contrast.step()) + 2.0f * contrast.deviation;  // beyond it are grains and straw
+  parallel_for(static_cast<std::int64_t>(votes.size()), 4096, [&](std::int64_t i) {
+    const glm::ivec3 p = band.point(static_cast<std::uint32_t>(i));
+    if (air_near(inside, p)) return;
+    const float off = std::clamp(density.get(p.x, p.y, p.z) - contrast.middle(), -most, most);
+    votes[static_cast<std::size_t>(i)] = sense * kVote * off / contrast.white_deviation;
+  });
+  return votes;
+}
+
+}  // namespace dubsar

@@ -1,0 +1,224 @@
+#include "core/filter/edge_spread.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/base/parallel.h"
+
+namespace dubsar {
+namespace {
+
+constexpr int kRadius = 5, kInnerRadius = 3;  ///< of the balls, voxels
+constexpr std::int64_t kMostGroups = 16, kGroupSlices = 2 * kRadius + 2;
+constexpr double kBin = 0.25;  ///< of the distance from the plane, voxels
+constexpr int kBins = 10;      ///< they end where the sides have their own density
+constexpr double kCylinder = 2.0;
+constexpr double kBeyondBlur = 2.5;  ///< voxels from the plane at which its sides have their own density
+constexpr double kLevelError = 0.15, kMostBend = 0.15, kMostTilt = 0.3;
+constexpr int kFolds = 16;  ///< parts of the places, each of which gives a variance
+constexpr int kLeastPlaces = 200;
+
+struct Offset {
+  int x, y, z;
+  double length2;
+};
+std::vector<Offset> ball() {
+  std::vector<Offset> offsets;
+  for (int z = -kRadius; z <= kRadius; ++z)
+    for (int y = -kRadius; y <= kRadius; ++y)
+      for (int x = -kRadius; x <= kRadius; ++x)
+        if (const int square = x * x + y * y + z * z; square <= kRadius * kRadius)
+          offsets.push_back({x, y, z, static_cast<double>(square)});
+  return offsets;
+}
+
+/// Distance from the middle of a ball of this volume, towards air, of the plane below which `share` of it lies.
+double plane_at(double share, double voxels) {
+  const double radius = std::cbrt(voxels * 3.0 / (4.0 * M_PI));
+  double u = 0.0;  // share = (2 + 3 u - u^3) / 4
+  for (int i = 0; i < 6; ++i) u += (4.0 * share - 2.0 - 3.0 * u + u * u * u) / std::max(3.0 * (1.0 - u * u), 0.3);
+  return radius * std::clamp(u, -1.0, 1.0);
+}
+
+/// What the flat places of one fold say, by distance from the plane.
+struct Spread {
+  std::array<double, 2 * kBins> sum{}, count{};
+  int places = 0;
+  std::vector<double> halves_apart;  ///< of each place: how far apart two halves of it put the plane
+
+  double variance() const {
+    double twice = 0.0;
+    for (int b = 0; b < 2 * kBins; ++b) {
+      const auto i = static_cast<std::size_t>(b);
+      if (count[i] == 0.0) continue;
+      const double at = kBin * (b + 0.5 - kBins), share = sum[i] / count[i];  // of material; it lies at at < 0
+      twice += kBin * std::abs(at) * (at < 0.0 ? 1.0 - share : share);
+    }
+    return 2.0 * twice;
+  }
+};
+using Folds = std::array<Spread, kFolds>;
+
+class Group {
+ public:
+  Group(const std::vector<float>& voxels, const Dims& dims, double air, double material)
+      : voxels_(voxels), dims_(dims), air_(air), contrast_(material - air) {}
+
+  /// Is there an edge close by, as far as single voxels say?
+  bool candidate(std::int64_t x, std::int64_t y, std::int64_t z) const {
+    const double middle = air_ + 0.5 * contrast_, here = at(x, y, z) - middle;
+    return here * (at(x + 2, y, z) - middle) < 0.0 || here * (at(x, y + 2, z) - middle) < 0.0 ||
+           here * (at(x, y, z + 2) - middle) < 0.0 || std::abs(here) < 0.2 * std::abs(contrast_);
+  }
+
+  void look(std::int64_t x, std::int64_t y, std::int64_t z, Spread& spread) const {
+    static const std::vector<Offset> kBall = ball();
+    glm::dvec3 slope(0.0);
+    double sum = 0.0, inner = 0.0, inner_count = 0.0;
+    for (const Offset& o : kBall) {
+      const double v = (at(x + o.x, y + o.y, z + o.z) - air_) / contrast_;
+      sum += v;
+      slope += v * glm::dvec3(o.x, o.y, o.z);
+      if (o.length2 <= kInnerRadius * kInnerRadius) {
+        inner += v;
+        ++inner_count;
+      }
+    }
+    const auto all = static_cast<double>(kBall.size());
+    // A half-space through the middle has 3/16 of the radius times the volume.
+    if (glm::length(slope) < 0.6 * all * 3.0 / 16.0 * kRadius) return;
+    const glm::dvec3 normal = -glm::normalize(slope);  // towards air
+    const double rough = plane_at(sum / all, all);
+    if (std::abs(rough) > 1.0) return;
+    // The densities of both sides as they are here.
+    std::array<double, 2> level{}, level_count{};
+    for (const Offset& o : kBall) {
+      const double d = glm::dot(normal, glm::dvec3(o.x, o.y, o.z)) - rough;
+      if (std::abs(d) < kBeyondBlur) continue;
+      level[d > 0.0] += (at(x + o.x, y + o.y, z + o.z) - air_) / contrast_;
+      ++level_count[d > 0.0];
+    }
+    if (level_count[0] < 20.0 || level_count[1] < 20.0) return;
+    const double clay = level[0] / level_count[0], empty = level[1] / level_count[1];
+    if (std::abs(clay - 1.0) > kLevelError || std::abs(empty) > kLevelError) return;
+    const auto share = [&](double s, double n) { return (s / n - empty) / (clay - empty); };
+    const double plane = plane_at(share(sum, all), all);
+    // A sphere bulges: the plane of a smaller ball is another one. A tilt or a step shows in the halves of the ball.
+    if (std::abs(plane_at(share(inner, inner_count), inner_count) - plane) > kMostBend) return;
+    const glm::dvec3 along =
+        glm::normalize(glm::cross(normal, std::abs(normal.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+    std::array<glm::dvec3, 2> ways{along, glm::cross(normal, along)};
+    std::array<double, 2> apart{};
+    for (std::size_t w = 0; w < 2; ++w) {
+      std::array<double, 2> half{}, count{};
+      for (const Offset& o : kBall) {
+        const double side = glm::dot(ways[w], glm::dvec3(o.x, o.y, o.z));
+        if (std::abs(side) < 1e-9) continue;
+        half[side > 0.0] += (at(x + o.x, y + o.y, z + o.z) - air_) / contrast_;
+        ++count[side > 0.0];
+      }
+      apart[w] = plane_at(share(half[0], count[0]), all) - plane_at(share(half[1], count[1]), all);
+      if (std::abs(apart[w]) > kMostTilt) return;
+    }
+    ++spread.places;
+    spread.halves_apart.push_back(apart[0]);
+    spread.halves_apart.push_back(apart[1]);
+    for (const Offset& o : kBall) {
+      const glm::dvec3 q(o.x, o.y, o.z);
+      const double across = glm::dot(normal, q), d = across - plane;
+      if (o.length2 - across * across > kCylinder * kCylinder) continue;
+      const int bin = static_cast<int>(std::floor(d / kBin)) + kBins;
+      if (bin < 0 || bin >= 2 * kBins) continue;
+      const double v = (at(x + o.x, y + o.y, z + o.z) - air_) / contrast_;
+      spread.sum[static_cast<std::size_t>(bin)] += (v - empty) / (clay - empty);
+      ++spread.count[static_cast<std::size_t>(bin)];
+    }
+  }
+
+ private:
+  double at(std::int64_t x, std::int64_t y, std::int64_t z) const {
+    return static_cast<double>(voxels_[static_cast<std::size_t>(z * dims_.slice() + y * dims_.x + x)]);
+  }
+  const std::vector<float>& voxels_;
+  Dims dims_;
+  double air_, contrast_;
+};
+
+Folds merge(Folds all, const Folds& more) {
+  for (std::size_t f = 0; f < all.size(); ++f) {
+    for (std::size_t b = 0; b < all[f].sum.size(); ++b) {
+      all[f].sum[b] += more[f].sum[b];
+      all[f].count[b] += more[f].count[b];
+    }
+    all[f].places += more[f].places;
+    all[f].halves_apart.insert(all[f].halves_apart.end(), more[f].halves_apart.begin(), more[f].halves_apart.end());
+  }
+  return all;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::optional<EdgeSpread> summary(const Folds& folds) {
+  EdgeSpread result;
+  std::vector<double> variances, apart;
+  for (const Spread& fold : folds) {
+    result.places += fold.places;
+    if (fold.places == 0) continue;
+    variances.push_back(fold.variance());
+    for (const double way : fold.halves_apart) apart.push_back(std::abs(way));
+  }
+  if (result.places < kLeastPlaces) return std::nullopt;
+  // Planes are put a little wrong by the noise, and halves by twice as much: that is no blur.
+  const double off = 0.5 * 1.4826 * median(std::move(apart));
+  const double spread = median(variances);
+  for (double& v : variances) v = std::abs(v - spread);
+  const auto count = static_cast<double>(variances.size());
+  result.uncertainty = 1.4826 * median(std::move(variances)) / std::sqrt(count);
+  result.variance = std::max(0.0, spread - off * off);
+  return result;
+}
+
+}  // namespace
+
+Result<std::optional<EdgeSpread>> measure_edge_spread(SlabSource& source, double air, double material,
+                                                      Progress& progress) {
+  const Dims d = source.dims();
+  if (!(material > air) || std::min({d.x, d.y, d.z}) < 2 * kRadius + 3) return std::optional<EdgeSpread>{};
+  const std::int64_t slices = std::min(kGroupSlices, d.z),
+                     groups = std::clamp<std::int64_t>(d.z / slices, 1, kMostGroups);
+  std::vector<float> voxels(static_cast<std::size_t>(slices * d.slice()));
+  Folds all{};
+  for (std::int64_t g = 0; g < groups; ++g) {
+    if (progress.cancelled()) return cancelled_error();
+    const std::int64_t z0 = groups == 1 ? (d.z - slices) / 2 : g * (d.z - slices) / (groups - 1);
+    DUBSAR_TRY(source.read(z0, z0 + slices, voxels));
+    const Group group(voxels, {d.x, d.y, slices}, air, material);
+    constexpr std::int64_t kStride = 2;
+    const std::int64_t rows = (d.y - 2 * kRadius - 2) / kStride, columns = (d.x - 2 * kRadius - 2) / kStride;
+    all = parallel_reduce<Folds>(
+        rows, 4, std::move(all),
+        [&](std::int64_t begin, std::int64_t end) {
+          Folds part{};
+          for (std::int64_t row = begin; row < end; ++row)
+            for (std::int64_t column = 0; column < columns; ++column) {
+              const std::int64_t x = kRadius + kStride * column, y = kRadius + kStride * row, z = kRadius;
+              // Neighbouring places share voxels: a fold is a coarse field of them, so that folds do not.
+              const auto fold = static_cast<std::size_t>((x / 16 + 4 * (y / 16) + 5 * g) % kFolds);
+              if (group.candidate(x, y, z)) group.look(x, y, z, part[fold]);
+            }
+          return part;
+        },
+        merge);
+  }
+  return summary(all);
+}
+
+}  // namespace dubsar

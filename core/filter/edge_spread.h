@@ -1,0 +1,26 @@
+#pragma once
+// How blurred a scan is: the spread of its edges, measured where its surface is flat.
+
+#include <optional>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/volume/slab_source.h"
+
+namespace dubsar {
+
+struct EdgeSpread {
+  double variance = 0.0;     ///< across a flat edge, voxels squared; the extent of a voxel (1/12) is in it
+  double uncertainty = 0.0;  ///< of the variance, one standard deviation
+  int places = 0;            ///< flat pieces of surface that it was measured at
+};
+
+/// Measures the spread between `air` and `material` (grey values) in balls of 5 voxels around the surface: where a
+/// plane divides a ball, all its voxels are sorted by their distance from that plane (a slanted edge, so that nothing
+/// is interpolated). Places with anything else in them (curves, gaps, pores) do not count. Nothing where fewer than 200
+/// flat places are found. At most 16 groups of 12 slices are read: memory for one group. The same for any number of
+/// threads. Errors of the source, kCancelled.
+Result<std::optional<EdgeSpread>> measure_edge_spread(SlabSource& source, double air, double material,
+                                                      Progress& progress);
+
+}  // namespace dubsar

@@ -1,0 +1,71 @@
+#include "core/filter/edge_spread.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include "core/base/parallel.h"
+#include "tests/core/filter/filter_oracle.h"
+
+namespace dubsar {
+namespace {
+
+/// A turned brick of half sizes 30, 26 and 34, blurred by a Gauss: a product of error functions.
+Volume<float> brick(double deviation, double noise, std::uint64_t seed) {
+  const glm::dvec3 a = glm::normalize(glm::dvec3(0.82, 0.31, -0.21)),
+                   b = glm::normalize(glm::cross(a, glm::dvec3(0.1, 0.2, 1.0))), c = glm::cross(a, b),
+                   middle(48.3, 47.2, 46.9);
+  const auto across = [&](double half, double at) {
+    const double s = std::sqrt(2.0) * deviation;
+    return 0.5 * (std::erf((half - at) / s) + std::erf((half + at) / s));
+  };
+  oracle::Noise random(seed);
+  return oracle::make_volume({96, 96, 96}, [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+    const glm::dvec3 p = glm::dvec3(x, y, z) - middle;
+    return 3.0 + 2.0 * (across(30.0, glm::dot(p, a)) * across(26.0, glm::dot(p, b)) * across(34.0, glm::dot(p, c)) +
+                        noise * random());
+  });
+}
+
+std::optional<EdgeSpread> measured(const Volume<float>& volume) {
+  VolumeSource source(volume);
+  SilentProgress progress;
+  return measure_edge_spread(source, 3.0, 5.0, progress).value();
+}
+
+TEST(EdgeSpread, IsTheVarianceOfAGaussThroughTheNoiseOf17Decibels) {
+  for (const double deviation : {0.4, 0.6, 0.8, 1.0})
+    for (const double noise : {0.0, 0.141}) {
+      const auto spread = measured(brick(deviation, noise, 71));
+      ASSERT_TRUE(spread.has_value()) << deviation;
+      EXPECT_NEAR(spread->variance, deviation * deviation, 0.06 * deviation * deviation + 0.04)
+          << deviation << " with noise " << noise;
+      EXPECT_LT(spread->uncertainty, 0.1);
+    }
+}
+
+TEST(EdgeSpread, IsTheSameForAnyNumberOfThreads) {
+  const Volume<float> volume = brick(0.7, 0.1, 5);
+  const auto first = measured(volume);
+  set_thread_count(1);
+  const auto second = measured(volume);
+  set_thread_count(0);
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->variance, second->variance);
+  EXPECT_EQ(first->places, second->places);
+}
+
+TEST(EdgeSpread, WhatIsNotFlatSaysNothing) {
+  const Volume<float> balls = oracle::make_volume({64, 64, 64}, [](std::int64_t x, std::int64_t y, std::int64_t z) {
+    const double u = static_cast<double>(x % 16) - 7.5, v = static_cast<double>(y % 16) - 7.5,
+                 w = static_cast<double>(z % 16) - 7.5;
+    return 3.0 + 1.0 * (1.0 + std::erf((6.0 - std::sqrt(u * u + v * v + w * w)) / 0.85));
+  });
+  EXPECT_FALSE(measured(balls).has_value());
+  EXPECT_FALSE(measured(Volume<float>(Dims{64, 64, 64})).has_value());
+}
+
+}  // namespace
+}  // namespace dubsar
