@@ -18,12 +18,26 @@ std::uint64_t read_number(const std::string& path) {
   return file >> value ? value : kUnlimited;
 }
 
+/// Contents of files that are only kept because nobody asked for the memory: a group that has read or written large
+/// files is full of them.
+std::uint64_t file_pages(const std::string& folder) {
+  std::ifstream file(folder + "memory.stat");
+  std::string key;
+  std::uint64_t value = 0, own = 0, with_children = 0;
+  while (file >> key >> value) {
+    if (key == "inactive_file" || key == "active_file") own += value;
+    if (key == "total_inactive_file" || key == "total_active_file") with_children += value;  // version 1
+  }
+  return std::max(own, with_children);
+}
+
 /// What the limit of one group leaves; a group that is over its limit leaves nothing.
 std::uint64_t left_in_group(const std::string& folder, const char* limit_name, const char* used_name) {
   const std::uint64_t limit = read_number(folder + limit_name);
   if (limit == kUnlimited) return kUnlimited;
   const std::uint64_t used = read_number(folder + used_name);
-  return used == kUnlimited ? limit : limit - std::min(limit, used);
+  if (used == kUnlimited) return limit;
+  return limit - std::min(limit, used - std::min(used, file_pages(folder)));
 }
 
 /// The smallest of what the group at `path` and the groups around it leave; the mount itself is the outermost.

@@ -5,6 +5,8 @@
 #include <atomic>
 #include <exception>
 
+#include "core/base/worker_team.h"
+
 namespace dubsar {
 namespace {
 int g_threads = 0;  // 0: all cores
@@ -20,15 +22,19 @@ void parallel_chunks(std::int64_t count, std::int64_t grain,
   const std::int64_t chunks = (count + step - 1) / step;
   std::exception_ptr first_error;
   std::atomic<bool> failed{false};
-#pragma omp parallel for schedule(dynamic, 1) num_threads(thread_count()) if (chunks > 1)
-  for (std::int64_t chunk = 0; chunk < chunks; ++chunk) {
-    if (failed.load(std::memory_order_relaxed)) continue;
-    try {
-      body(chunk * step, std::min(count, (chunk + 1) * step));
-    } catch (...) {
-      if (!failed.exchange(true)) first_error = std::current_exception();
+  std::atomic<std::int64_t> next{0};
+  const auto work = [&]() noexcept {
+    for (;;) {
+      const std::int64_t chunk = next.fetch_add(1, std::memory_order_relaxed);
+      if (chunk >= chunks || failed.load(std::memory_order_relaxed)) return;
+      try {
+        body(chunk * step, std::min(count, (chunk + 1) * step));
+      } catch (...) {
+        if (!failed.exchange(true)) first_error = std::current_exception();
+      }
     }
-  }
+  };
+  WorkerTeam::instance().run(static_cast<int>(std::min<std::int64_t>(thread_count(), chunks)), work);
   if (first_error) std::rethrow_exception(first_error);
 }
 

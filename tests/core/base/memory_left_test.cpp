@@ -56,5 +56,20 @@ TEST_F(MemoryLeft, VersionOneOfGroupsCountsToo) {
   EXPECT_EQ(available(), 800'000u);
 }
 
+// A run that has gone through a large scan fills its group with pages of files, which are given back when asked for.
+TEST_F(MemoryLeft, PagesOfFilesAreNotInTheWay) {
+  put("proc/self/cgroup", "0::/run\n");
+  put("sys/fs/cgroup/run/memory.max", "6000000\n");
+  put("sys/fs/cgroup/run/memory.current", "5990000\n");
+  put("sys/fs/cgroup/run/memory.stat", "anon 390000\nfile 5600000\ninactive_file 5000000\nactive_file 600000\n");
+  EXPECT_EQ(available(), 5'610'000u);
+  put("proc/self/cgroup", "4:memory:/job\n0::/\n");
+  put("sys/fs/cgroup/memory/job/memory.limit_in_bytes", "6000000\n");
+  put("sys/fs/cgroup/memory/job/memory.usage_in_bytes", "6000000\n");
+  put("sys/fs/cgroup/memory/job/memory.stat",
+      "cache 100\ninactive_file 60\nactive_file 40\ntotal_inactive_file 5000000\ntotal_active_file 500000\n");
+  EXPECT_EQ(available(), 5'500'000u);
+}
+
 }  // namespace
 }  // namespace dubsar
