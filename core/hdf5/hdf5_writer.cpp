@@ -1,8 +1,11 @@
 #include "core/hdf5/hdf5_writer.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
+#include "core/base/parallel.h"
+#include "core/hdf5/chunk_encoder.h"
 #include "core/hdf5/library.h"
 
 namespace dubsar {
@@ -37,6 +40,28 @@ Handle without_times(hid_t property_class) {
   return list;
 }
 
+/// Entries of the slowest axis that are whole layers of chunks which we can compress ourselves.
+bool are_layers(const Hdf5Storage& storage, ScalarType type, std::uint64_t first, std::uint64_t count) {
+  if (storage.deflate == 0 || storage.dims.size() != 3 || storage.type != type || storage.order != kNativeOrder)
+    return false;
+  return first % storage.chunk[0] == 0 && (count % storage.chunk[0] == 0 || first + count == storage.dims[0]);
+}
+
+/// The numbers of a chunk out of a slab of `size` entries; 0 where the chunk reaches beyond it.
+void cut_out(std::span<const std::byte> slab, const std::array<std::uint64_t, 3>& size,
+             const std::array<std::uint64_t, 3>& origin, std::span<const std::uint64_t> chunk, std::uint64_t element,
+             std::span<std::byte> out) {
+  const auto reach = [&](std::size_t axis) { return std::min(chunk[axis], size[axis] - origin[axis]); };
+  if (reach(0) < chunk[0] || reach(1) < chunk[1] || reach(2) < chunk[2])
+    std::fill(out.begin(), out.end(), std::byte{0});
+  for (std::uint64_t z = 0; z < reach(0); ++z)
+    for (std::uint64_t y = 0; y < reach(1); ++y) {
+      const std::uint64_t from = ((origin[0] + z) * size[1] + origin[1] + y) * size[2] + origin[2];
+      std::copy_n(slab.data() + from * element, reach(2) * element,
+                  out.data() + (z * chunk[1] + y) * chunk[2] * element);
+    }
+}
+
 }  // namespace
 
 Result<Hdf5Writer> Hdf5Writer::create(const std::filesystem::path& path) {
@@ -68,7 +93,7 @@ void Hdf5Writer::abandon() noexcept {
 
 bool Hdf5Writer::flush_and_close() noexcept {
   bool good = H5Fflush(id_, H5F_SCOPE_LOCAL) >= 0;
-  for (const auto& [path, id] : datasets_) good = good && H5Dclose(id) >= 0;
+  for (const auto& [path, dataset] : datasets_) good = good && H5Dclose(dataset.id) >= 0;
   good = good && H5Fclose(id_) >= 0;
   abandon();
   return good;
@@ -100,7 +125,7 @@ Result<void> Hdf5Writer::create_dataset(const std::string& path, const Hdf5Stora
   const hid_t id = H5Dcreate2(id_, path.c_str(), file_type(storage.type, storage.order), space.get(), parents.get(),
                               creation.get(), H5P_DEFAULT);
   if (id < 0) return give_up(fmt::format("dataset \"{}\"", path));
-  datasets_[path] = id;
+  datasets_[path] = {id, storage};
   return {};
 }
 
@@ -109,8 +134,9 @@ Result<void> Hdf5Writer::write_slab_bytes(const std::string& path, std::uint64_t
   if (id_ < 0) return abandoned();
   const auto found = datasets_.find(path);
   DUBSAR_CHECK(found != datasets_.end());
+  const hid_t id = found->second.id;
   const Library library;
-  const Handle space(H5Dget_space(found->second), H5Sclose);
+  const Handle space(H5Dget_space(id), H5Sclose);
   std::vector<hsize_t> count(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.get())));
   H5Sget_simple_extent_dims(space.get(), count.data(), nullptr);
   std::uint64_t entry = static_cast<std::uint64_t>(scalar_bytes(type));
@@ -118,12 +144,58 @@ Result<void> Hdf5Writer::write_slab_bytes(const std::string& path, std::uint64_t
   DUBSAR_CHECK(bytes.size() % entry == 0 && first + bytes.size() / entry <= count[0]);
   count[0] = bytes.size() / entry;
   if (count[0] == 0) return {};
+  if (are_layers(found->second.storage, type, first, count[0])) return write_layers(found->second, path, first, bytes);
   std::vector<std::uint64_t> start(count.size(), 0), size(count.begin(), count.end());
   start[0] = first;
-  const auto selection = select(found->second, start, size);
-  if (!selection || H5Dwrite(found->second, file_type(type, kNativeOrder), selection->memory.get(),
-                             selection->file.get(), H5P_DEFAULT, bytes.data()) < 0)
+  const auto selection = select(id, start, size);
+  if (!selection || H5Dwrite(id, file_type(type, kNativeOrder), selection->memory.get(), selection->file.get(),
+                             H5P_DEFAULT, bytes.data()) < 0)
     return give_up(fmt::format("dataset \"{}\"", path));
+  return {};
+}
+
+Result<void> Hdf5Writer::write_encoded_chunk(const std::string& path, std::span<const std::uint64_t> origin,
+                                             std::span<const std::byte> stored) {
+  if (id_ < 0) return abandoned();
+  const auto found = datasets_.find(path);
+  DUBSAR_CHECK(found != datasets_.end() && origin.size() == found->second.storage.chunk.size());
+  const Library library;
+  const std::vector<hsize_t> at(origin.begin(), origin.end());
+  if (H5Dwrite_chunk(found->second.id, H5P_DEFAULT, 0, at.data(), stored.size(), stored.data()) < 0)
+    return give_up(fmt::format("dataset \"{}\"", path));
+  return {};
+}
+
+Result<void> Hdf5Writer::write_layers(const Dataset& dataset, const std::string& path, std::uint64_t first,
+                                      std::span<const std::byte> bytes) {
+  constexpr std::uint64_t kAtOnce = 64;  // chunks that are in memory at a time
+  const Hdf5Storage& storage = dataset.storage;
+  const auto element = static_cast<std::uint64_t>(scalar_bytes(storage.type));
+  const std::vector<std::uint64_t>& chunk = storage.chunk;
+  const std::array<std::uint64_t, 3> size{bytes.size() / (element * storage.dims[1] * storage.dims[2]), storage.dims[1],
+                                          storage.dims[2]};
+  std::array<std::uint64_t, 3> chunks{};
+  for (std::size_t axis = 0; axis < 3; ++axis) chunks[axis] = (size[axis] + chunk[axis] - 1) / chunk[axis];
+  const std::uint64_t all = chunks[0] * chunks[1] * chunks[2];
+  const auto origin_of = [&](std::uint64_t c) {
+    return std::array<std::uint64_t, 3>{c / (chunks[1] * chunks[2]) * chunk[0], c / chunks[2] % chunks[1] * chunk[1],
+                                        c % chunks[2] * chunk[2]};
+  };
+  std::vector<std::vector<std::byte>> stored(std::min(all, kAtOnce));
+  for (std::uint64_t from = 0; from < all; from += kAtOnce) {
+    const std::uint64_t count = std::min(kAtOnce, all - from);
+    parallel_for(static_cast<std::int64_t>(count), 1, [&](std::int64_t i) {
+      thread_local std::vector<std::byte> numbers;
+      numbers.resize(chunk[0] * chunk[1] * chunk[2] * element);
+      cut_out(bytes, size, origin_of(from + static_cast<std::uint64_t>(i)), chunk, element, numbers);
+      stored[static_cast<std::size_t>(i)] = encode_chunk(numbers, {element, storage.shuffle, storage.deflate});
+    });
+    for (std::uint64_t i = 0; i < count; ++i) {
+      std::array<std::uint64_t, 3> origin = origin_of(from + i);
+      origin[0] += first;
+      DUBSAR_TRY(write_encoded_chunk(path, origin, stored[i]));
+    }
+  }
   return {};
 }
 

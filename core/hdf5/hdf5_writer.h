@@ -26,7 +26,8 @@ struct Hdf5Storage {
 
 /// Writes a new HDF5 file that appears at its place only on commit() (AtomicFile). The same calls give the same bytes:
 /// no time stamps are stored. Groups on the way to a path are created. After the first error (kIo: disk full) every
-/// further call fails, and the library keeps its few buffers until the program ends.
+/// further call fails, and the library keeps its few buffers until the program ends. Whole layers of compressed chunks
+/// of three-dimensional datasets are compressed by all threads.
 class Hdf5Writer {
  public:
   /// kCannotCreate, kPermission, kIo.
@@ -43,6 +44,10 @@ class Hdf5Writer {
   Result<void> write_slab(const std::string& path, std::uint64_t first, std::span<const T> values) {
     return write_slab_bytes(path, first, scalar_type_of<T>(), std::as_bytes(values));
   }
+
+  /// One chunk as encode_chunk() of the same coding made it (chunk_encoder.h), at a multiple of the size of chunks.
+  Result<void> write_encoded_chunk(const std::string& path, std::span<const std::uint64_t> origin,
+                                   std::span<const std::byte> stored);
 
   /// A dataset in one call.
   template <class T>
@@ -72,6 +77,13 @@ class Hdf5Writer {
   explicit Hdf5Writer(AtomicFile file) : file_(std::move(file)) {}
   Result<void> write_slab_bytes(const std::string& path, std::uint64_t first, ScalarType type,
                                 std::span<const std::byte> bytes);
+  struct Dataset {
+    std::int64_t id = -1;
+    Hdf5Storage storage;
+  };
+  /// Whole layers of chunks, compressed by us.
+  Result<void> write_layers(const Dataset& dataset, const std::string& path, std::uint64_t first,
+                            std::span<const std::byte> bytes);
   Result<void> write_attribute(const std::string& object, const std::string& name, std::int64_t type,
                                std::int64_t count, const void* values);
   tl::unexpected<Error> give_up(const std::string& what);
@@ -80,7 +92,7 @@ class Hdf5Writer {
 
   AtomicFile file_;
   std::int64_t id_ = -1;
-  std::map<std::string, std::int64_t> datasets_;  ///< open until close()
+  std::map<std::string, Dataset> datasets_;  ///< open until close()
 };
 
 }  // namespace dubsar

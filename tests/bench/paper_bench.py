@@ -4,14 +4,14 @@
 paper_bench.py PROGRAM paper  [--size 1871x999x1723] [--no-ao] ...   Table 2 line by line, per core too
 paper_bench.py PROGRAM linear [--size 512x272x472] ...               four sizes, fitted exponents of cost
 paper_bench.py PROGRAM killed [--size 200x106x184]                   kill -9 at 20 random moments, then --resume: same bytes?
-paper_bench.py PROGRAM scanner --maker PROGRAM [--size 3072x3072x1944] [--memory 6G]   a scan larger than memory
+paper_bench.py PROGRAM scanner --maker PROGRAM [--size 3072x3072x1944] [--memory 6G] [--scan FILE]   larger than memory
 
 Common: [--threads N] [--work FOLDER] [--json FILE] [--history FILE] [--seed N]
 
 Scans are phantoms; they are made where they are not in the folder yet and stay there. Seconds of a core are user and
 system time of all threads: they can be compared on a busy machine, too, seconds of the clock cannot.
 """
-import argparse, json, math, os, platform, random, re, resource, shutil, signal, subprocess, sys, time
+import argparse, json, math, os, platform, random, re, shutil, signal, subprocess, sys, time
 
 PAPER_CORES = 8
 PAPER_VOXELS, PAPER_GRID, PAPER_VERTICES = 1871 * 999 * 1723, 935 * 499 * 861, 10_011_300
@@ -33,16 +33,24 @@ VOLUME_STAGES = {"import", "resample", "denoise", "extract"}
 NOT_FITTED = {"estimate_raw", "blur", "estimate", "untangle", "fill_holes", "contact", "occlusion"}  # samples, histograms, loops, bands
 
 
-def run(command, **more):
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+class Run:
+    """A program that was run to its end: what it printed, seconds by the clock and of a core, most memory."""
+
+    def __init__(self, text, wall, usage):
+        self.text, self.wall = text, wall
+        self.cpu = usage.ru_utime + usage.ru_stime
+        self.peak_mib = usage.ru_maxrss / 1024
+
+
+def run(command):
     start = time.monotonic()
-    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, **more)
-    wall = time.monotonic() - start
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    if done.returncode != 0:
-        sys.exit(f"{' '.join(command)}: exit code {done.returncode}")
-    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return done.stdout, wall, cpu
+    child = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    text = child.stdout.read()
+    _, status, usage = os.wait4(child.pid, 0)
+    child.returncode = os.waitstatus_to_exitcode(status)
+    if child.returncode != 0:
+        sys.exit(f"{' '.join(command)}: exit code {child.returncode}")
+    return Run(text, time.monotonic() - start, usage)
 
 
 def dims_of(text):
@@ -59,21 +67,26 @@ def phantom(options, size):
     return path
 
 
-def process(options, scan, *more):
-    """The report of a run, its stages summed by name."""
-    out = os.path.join(options.work, "surface.exa")
-    command = [options.program, "process", scan, "-o", out, "--json", "-", "-q", "--threads", str(options.threads), *more]
-    text, wall, cpu = run(command)
-    report = json.loads(text)
+def summed(records):
+    """The stages of a report, those of one name together."""
     stages = {}
-    for stage in report["stages"]:
+    for stage in records:
         sums = stages.setdefault(stage["name"], {"wall_s": 0.0, "cpu_s": 0.0, "peak_rss_mib": 0.0})
         sums["wall_s"] += stage["wall_s"]
         sums["cpu_s"] += stage["cpu_s"]
         sums["peak_rss_mib"] = max(sums["peak_rss_mib"], stage["peak_rss_mib"])
-    return {"wall_s": wall, "cpu_s": cpu, "stages": stages, "dims": report["input"]["dims"], "grid": report["input"]["grid"],
-            "vertices": report["mesh"]["vertices"], "bytes": report["exa"]["bytes"],
-            "peak_mib": max(s["peak_rss_mib"] for s in stages.values())}
+    return stages
+
+
+def process(options, scan, *more):
+    """The report of a run, its stages summed by name."""
+    out = os.path.join(options.work, "surface.exa")
+    done = run([options.program, "process", scan, "-o", out, "--json", "-", "-q", "--threads", str(options.threads), *more,
+                *options.with_options])
+    report = json.loads(done.text)
+    return {"wall_s": done.wall, "cpu_s": done.cpu, "stages": summed(report["stages"]), "dims": report["input"]["dims"],
+            "grid": report["input"]["grid"], "vertices": report["mesh"]["vertices"], "bytes": report["exa"]["bytes"],
+            "peak_mib": done.peak_mib}
 
 
 def paper(options):
@@ -160,7 +173,7 @@ def killed(options):
         if not os.path.exists(path):
             run([options.program, "phantom", path, "--size", options.size, "--seed", str(seed), "-q"])
     command = [options.program, "process", scans, "-q", "--no-ao", "--no-contact", "--threads", str(options.threads)]
-    _, wall, _ = run(command + ["-o", os.path.join(folder, "whole")])
+    wall = run(command + ["-o", os.path.join(folder, "whole")]).wall
     moments = random.Random(options.seed)
     resume = command + ["-o", os.path.join(folder, "resumed"), "--resume"]
     kills = finished = 0
@@ -189,33 +202,74 @@ def killed(options):
     return {"wall_s": wall, "killed": kills, "finished": finished, "same": good, "left": left}, good
 
 
+def own_groups():
+    """Where this process stands in the trees of cgroups that can limit memory: (folder, file of the limit)."""
+    for line in open("/proc/self/cgroup"):
+        _, controllers, path = line.strip().split(":", 2)
+        if controllers == "":
+            yield "/sys/fs/cgroup" + path.rstrip("/"), "memory.max"
+        elif "memory" in controllers.split(","):
+            yield "/sys/fs/cgroup/memory" + path.rstrip("/"), "memory.limit_in_bytes"
+
+
 def limited(command, memory):
-    """Under a limit of its own for memory and page cache, where this machine lets us have one."""
+    """Under a limit of its own for memory and page cache, where this machine lets us have one: the command, what was
+    done, and the folder of a group that is to be removed afterwards."""
     scope = ["systemd-run", "--quiet", "--scope", f"--property=MemoryMax={memory}", "--property=MemorySwapMax=0"]
     try:
         if subprocess.run(scope + ["true"], stderr=subprocess.DEVNULL).returncode == 0:
-            return scope + command, "in a scope of systemd"
+            return scope + command, "in a scope of systemd", None
     except OSError:
         pass
-    return command, "without a cgroup: systemd gives none here"
+    for folder, limit in own_groups():
+        group = os.path.join(folder, f"dubsar-bench-{os.getpid()}")
+        try:
+            os.mkdir(group)
+        except OSError:
+            continue
+        try:
+            with open(os.path.join(group, limit), "w") as file:
+                file.write(memory)
+            enter = 'echo $$ > "$0/cgroup.procs" && exec "$@"'
+            if subprocess.run(["sh", "-c", enter, group, "true"], stderr=subprocess.DEVNULL).returncode == 0:
+                return ["sh", "-c", enter, group, *command], "in a cgroup", group
+        except OSError:
+            pass
+        os.rmdir(group)
+    return command, "without a cgroup: none can be made here", None
 
 
 def scanner(options):
-    scan = os.path.join(options.work, f"scanner_{options.size}_{options.depth}_{options.seed}.h5")
+    scan = options.scan or os.path.join(options.work, f"scanner_{options.size}_{options.depth}_{options.seed}.h5")
+    maker = None
     if not os.path.exists(scan):
-        run([options.maker, scan, *map(str, dims_of(options.size)), str(options.depth), str(options.seed)])
+        maker = run([options.maker, scan, *map(str, dims_of(options.size)), str(options.depth), str(options.seed),
+                     str(options.threads)])
+        print(f"made {scan}: {maker.wall:.0f} s, {maker.cpu:.0f} s of a core, {maker.peak_mib:.0f} MiB")
     out = os.path.join(options.work, "scanner.exa")
-    command, how = limited([options.program, "process", scan, "-o", out, "--memory", options.memory, "--scratch", options.work,
-                            "--detail", "half", "--json", "-", "--threads", str(options.threads)]
-                           + (["--no-ao"] if options.no_ao else []), options.memory)
-    text, wall, cpu = run(command)
-    report = json.loads(text)
-    peak = max(s["peak_rss_mib"] for s in report["stages"])
-    print(f"{options.size}, {os.path.getsize(scan) / 1e9:.1f} GB in the file, {report['mesh']['vertices']:,} vertices: {wall:.0f} s, "
-          f"{cpu:.0f} s of a core, at most {peak:.0f} MiB resident, {how}")
-    for s in report["stages"]:
-        print(f"  {s['name']:<14}{s['wall_s']:>10.1f}{s['cpu_s']:>10.1f}{s['peak_rss_mib']:>10.0f} MiB")
-    return {"size": options.size, "wall_s": wall, "cpu_s": cpu, "peak_mib": peak, "vertices": report["mesh"]["vertices"]}, True
+    command = [options.program, "process", scan, "-o", out, "--memory", options.memory, "--scratch", options.work, "--json", "-", "-q",
+               "--threads", str(options.threads), *(["--no-ao"] if options.no_ao else []), *options.with_options]
+    told = json.loads(run([options.program, "info", scan, "--memory", options.memory, "--threads", str(options.threads),
+                             "--json", "-", "-q"]).text)["process"]
+    command, how, group = limited(command, options.memory)
+    try:
+        done = run(command)
+    finally:
+        if group:
+            os.rmdir(group)
+    report = json.loads(done.text)
+    stages = summed(report["stages"])
+    vertices = report["mesh"]["vertices"]
+    print(f"{options.size}, {os.path.getsize(scan) / 1e9:.1f} GB in the file, {vertices:,} vertices: {done.wall:.0f} s, "
+          f"{done.cpu:.0f} s of a core, at most {done.peak_mib:.0f} MiB resident, {how}")
+    if "core_s" in told:
+        print(f"told by info: {told['vertices']:,} vertices, {told['core_s']:.0f} s of a core, {told['memory_bytes'] / 2**20:.0f} MiB, "
+              f"{told['scratch_bytes'] / 1e9:.1f} GB of scratch, {told['product_bytes'] / 1e6:.1f} MB of surface "
+              f"(found: {os.path.getsize(out) / 1e6:.1f} MB)")
+    for name, s in stages.items():
+        print(f"  {name:<14}{s['wall_s']:>10.1f}{s['cpu_s']:>10.1f}{s['peak_rss_mib']:>10.0f} MiB")
+    return {"wall_s": done.wall, "cpu_s": done.cpu, "peak_mib": done.peak_mib, "limit": how, "told": told, "stages": stages,
+            "vertices": vertices, "maker_cpu_s": maker.cpu if maker else None}, True
 
 
 def main():
@@ -230,8 +284,10 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--kills", type=int, default=20)
     parser.add_argument("--memory", default="6G")
-    parser.add_argument("--depth", type=int, default=64, help="slices in a chunk")
+    parser.add_argument("--depth", type=int, default=32, help="slices in a chunk")
     parser.add_argument("--maker", help="the program scanner_scan")
+    parser.add_argument("--scan", help="take this scan instead")
+    parser.add_argument("--with-options", nargs=argparse.REMAINDER, default=[], help="of process; comes last")
     parser.add_argument("--work", default="/var/tmp/dubsar-bench")
     parser.add_argument("--json")
     parser.add_argument("--history", help="a line of JSON is added to it")

@@ -105,6 +105,38 @@ TEST_F(Hdf5Files, WhatWasWrittenIsReadBack) {
   EXPECT_EQ(packed->filters[1].id, 1);
 }
 
+// The library reads what our threads compressed: whole layers of chunks that reach beyond the dataset on all sides, and
+// slabs that are no whole layers, which go through the library.
+TEST_F(Hdf5Files, TheLibraryReadsChunksThatWereCompressedByThreads) {
+  constexpr std::uint64_t kZ = 11, kY = 21, kX = 35;
+  const auto values = ramp(kZ * kY * kX);
+  const auto whole = std::as_bytes(std::span(values));
+  for (const bool shuffle : {false, true}) {
+    for (const std::vector<std::uint64_t>& slabs : {std::vector<std::uint64_t>{11}, {4, 4, 3}, {8, 3}, {3, 5, 3}}) {
+      auto writer = Hdf5Writer::create(in("layers.h5"));
+      ASSERT_TRUE(writer);
+      ASSERT_TRUE(writer->create_dataset(
+          "/data", {.dims = {kZ, kY, kX}, .chunk = {4, 8, 16}, .deflate = 1, .shuffle = shuffle}));
+      std::uint64_t z = 0;
+      for (const std::uint64_t height : slabs) {
+        ASSERT_TRUE(writer->write_slab<float>("/data", z, std::span(values).subspan(z * kY * kX, height * kY * kX)));
+        z += height;
+      }
+      ASSERT_TRUE(writer->commit());
+      const auto file = Hdf5File::open(in("layers.h5"));
+      ASSERT_TRUE(file);
+      const auto dataset = file->open_dataset("/data");
+      ASSERT_TRUE(dataset);
+      std::vector<std::byte> read(whole.size());
+      const std::vector<std::uint64_t> offset{0, 0, 0}, count{kZ, kY, kX};
+      const auto done = dataset->read_stored(offset, count, read);
+      ASSERT_TRUE(done) << done.error().message;
+      EXPECT_TRUE(std::equal(read.begin(), read.end(), whole.begin())) << slabs.size() << " slabs";
+      EXPECT_LT(dataset->info().storage_bytes, whole.size());
+    }
+  }
+}
+
 TEST_F(Hdf5Files, TheSameCallsGiveTheSameBytes) {
   ASSERT_TRUE(write_sample(in("a.h5")));
   ::sleep(1);  // the resolution of HDF5's time stamps
