@@ -228,7 +228,7 @@ Result<void> denoise_in_place(GridStore& grid, const DenoiseOptions& options, Pr
       const std::int64_t end = std::min(dims.z, z + batch);
       const std::span<float> page = grid.page(z, end);
       DUBSAR_TRY(filter.read(z, end, page));
-      if (counts != nullptr && k + 1 == options.iterations) counts->add(page);
+      if (counts != nullptr && k + 1 == options.iterations) counts->add(z, page);
       DUBSAR_TRY(grid.store(z, end));
       progress.advance((end - z) * dims.slice());
     }

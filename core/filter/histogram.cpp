@@ -120,13 +120,22 @@ std::vector<ValueCounts::Value> ValueCounts::values() const {
   return all;
 }
 
-void ParallelCounts::add(std::span<const float> values) {
+void ParallelCounts::add(std::int64_t z_begin, std::span<const float> slices) {
   const auto parts = static_cast<std::size_t>(thread_count());
   if (partial_.size() < parts) partial_.resize(parts);
+  const std::int64_t rows = static_cast<std::int64_t>(slices.size()) / std::max<std::int64_t>(dims_.x, 1);
   parallel_for(static_cast<std::int64_t>(parts), 1, [&](std::int64_t i) {
-    const auto part = static_cast<std::size_t>(i);
-    const std::size_t from = values.size() * part / parts, to = values.size() * (part + 1) / parts;
-    partial_[part].add(values.subspan(from, to - from));
+    const auto part = static_cast<std::size_t>(i), width = static_cast<std::size_t>(dims_.x);
+    const auto from = rows * i / static_cast<std::int64_t>(parts),
+               to = rows * (i + 1) / static_cast<std::int64_t>(parts);
+    if (step_ == 1) {
+      partial_[part].add(
+          slices.subspan(static_cast<std::size_t>(from) * width, static_cast<std::size_t>(to - from) * width));
+      return;
+    }
+    for (std::int64_t row = from; row < to; ++row)
+      if ((row % dims_.y + z_begin + row / dims_.y) % step_ == 0)
+        partial_[part].add(slices.subspan(static_cast<std::size_t>(row) * width, width));
   });
 }
 
@@ -142,14 +151,14 @@ Result<ValueCounts> count_values(SlabSource& source, Progress& progress) {
   if (dims.count() == 0) return ValueCounts{};
   constexpr std::int64_t kSlabVoxels = 1 << 19;  // stays in the cache between reading and counting
   const std::int64_t height = std::clamp<std::int64_t>(kSlabVoxels / dims.slice(), 1, dims.z);
-  ParallelCounts counts;
+  ParallelCounts counts(dims);
   Buffer<float> slab(dims.slice() * height);
   for (std::int64_t z = 0; z < dims.z; z += height) {
     if (progress.cancelled()) return cancelled_error();
     const std::int64_t end = std::min(dims.z, z + height), count = (end - z) * dims.slice();
     const std::span<float> part = slab.span().first(static_cast<std::size_t>(count));
     DUBSAR_TRY(source.read(z, end, part));
-    counts.add(part);
+    counts.add(z, part);
     progress.advance(count);
   }
   return counts.take();

@@ -1,6 +1,7 @@
 #pragma once
 // Which grey values a volume has, and how often: exact to 24 bits in one pass, then bins over any range.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -47,13 +48,22 @@ class ValueCounts {
 };
 
 /// Counts slabs by all threads; of a volume that is being made, so that nobody has to read it again for its histogram.
+/// Of large volumes some rows are enough, spread evenly: counting a voxel costs more than filtering it.
 class ParallelCounts {
  public:
-  void add(std::span<const float> values);
+  /// Of a volume of more than kMostCounted voxels every second, third, ... row.
+  static constexpr std::int64_t kMostCounted = 100'000'000;
+  explicit ParallelCounts(const Dims& dims)
+      : dims_(dims), step_(std::max<std::int64_t>(1, (dims.count() + kMostCounted - 1) / kMostCounted)) {}
+
+  /// Slices from `z_begin` on, as many as there are.
+  void add(std::int64_t z_begin, std::span<const float> slices);
   /// Everything counted so far; the same for any slab height and thread count. Begins anew.
   ValueCounts take();
 
  private:
+  Dims dims_;
+  std::int64_t step_;
   std::vector<ValueCounts> partial_;
 };
 

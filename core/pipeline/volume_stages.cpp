@@ -37,12 +37,12 @@ Result<CountedGrid> fill_grid(SlabSource& source, const Budget& budget) {
   std::int64_t height = std::clamp<std::int64_t>(kSlabBytes / slice_bytes, 1, dims.z);
   if (static_cast<std::uint64_t>(layer * slice_bytes) <= budget.kept_bytes())
     height = (height + layer - 1) / layer * layer;
-  ParallelCounts counts;
+  ParallelCounts counts(dims);
   for (std::int64_t z = 0; z < dims.z; z += height) {
     const std::int64_t end = std::min(dims.z, z + height);
     const std::span<float> page = grid.page(z, end);
     DUBSAR_TRY(source.read(z, end, page));
-    counts.add(page);
+    counts.add(z, page);
     DUBSAR_TRY(grid.store(z, end));
   }
   return CountedGrid{std::move(grid), counts.take()};
@@ -88,7 +88,10 @@ Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, co
     log_info("detail {}: {}", name_in(kDetails, imported.detail.detail), imported.detail.why);
   imported.facts.info = scan->info();
   imported.facts.warnings = scan->info().warnings;
-  SampledSource some(*scan, kRawSampleSlices, kRawSampleGroup);
+  // Of deep layers of chunks a few are decoded for it, not one for every group.
+  const std::int64_t layer = scan->preferred_height();
+  const std::int64_t group = std::clamp(std::min(layer, kRawSampleSlices / 4), kRawSampleGroup, kRawSampleSlices);
+  SampledSource some(*scan, kRawSampleSlices, group);
   imported.raw.name = "raw";
   DUBSAR_ASSIGN(imported.raw.estimates, estimate_source(some, "estimate_raw", estimate, run));
   DUBSAR_ASSIGN(imported.grid, read_grid(*scan, resample, options.budget, run));
@@ -133,7 +136,7 @@ Result<DenoisedGrid> denoise(CountedGrid grid, std::string name, const DenoiseOp
     }
     run.clock.start("denoise", "voxel");
     run.progress.begin("denoise", voxels, "voxel");
-    ParallelCounts filtered;
+    ParallelCounts filtered(volume.dims());
     DUBSAR_TRY(denoise_in_place(volume, pass, run.progress, &filtered));
     run.clock.finish(voxels);
     DUBSAR_TRY(add_step(fmt::format("{} {}", name_in(kDenoiseMethods, pass.method), iteration), filtered.take()));

@@ -112,6 +112,31 @@ TEST(Histogram, ThreadsChangeNoBit) {
   set_thread_count(0);
 }
 
+// A volume of a thousand million voxels, of which some slices are added: every value says in which row it lies.
+TEST(ParallelCounts, OfALargeVolumeTheSameTenthOfTheRowsCountsWhateverTheSlabs) {
+  const Dims large{1000, 1000, 1000};
+  constexpr std::int64_t kSlices = 6;
+  std::vector<float> slices(static_cast<std::size_t>(large.slice() * kSlices));
+  for (std::size_t i = 0; i < slices.size(); ++i) slices[i] = static_cast<float>(i / 1000);
+  const auto count_by = [&](std::int64_t height, int threads) {
+    set_thread_count(threads);
+    ParallelCounts counts(large);
+    for (std::int64_t z = 0; z < kSlices; z += height)
+      counts.add(z, std::span<const float>(slices).subspan(static_cast<std::size_t>(z * large.slice()),
+                                                           static_cast<std::size_t>(height * large.slice())));
+    set_thread_count(0);
+    const ValueCounts all = counts.take();
+    EXPECT_EQ(all.count(), large.slice() * kSlices / 10);
+    std::map<double, std::int64_t> by_value;
+    for (const auto& value : all.values()) by_value[value.centre] = value.count;
+    return by_value;
+  };
+  const auto whole = count_by(6, 1);
+  EXPECT_EQ(whole, count_by(1, 2));
+  EXPECT_EQ(whole, count_by(3, 7));
+  for (const auto& [row, count] : whole) EXPECT_EQ(count % 1000, 0) << "a part of row " << row;
+}
+
 TEST(Histogram, TheRangeLeavesTheTailsOut) {
   // 100,000 values rising from 0 to 1 and ten wild ones: the quantiles .01 % and 99.99 % do not see these.
   const Volume<float> v = make_volume({100, 100, 10}, [](auto x, auto y, auto z) {
