@@ -67,6 +67,13 @@ std::optional<glm::ivec3> steps_back(const QuadMesh& wanted, std::uint32_t v, co
   }
   return std::nullopt;
 }
+/// The value at `place` in rising order; moves values about. Linear, where sorting is not.
+float nth(std::vector<float>& values, std::size_t place) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(place);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
 }  // namespace
 
 void let_escape(const QuadMesh& wanted, std::span<const glm::vec3> normals, double bound,
@@ -77,17 +84,18 @@ void let_escape(const QuadMesh& wanted, std::span<const glm::vec3> normals, doub
     const auto v = static_cast<std::size_t>(i);
     error[v] = static_cast<float>(distance_to_fan(wanted, static_cast<std::uint32_t>(v), glm::dvec3(positions[v])));
   });
-  std::vector<float> sorted = error;
-  std::sort(sorted.begin(), sorted.end());
-  const auto kept = static_cast<std::size_t>((1.0 - kOutsideHalf) * static_cast<double>(sorted.size()));
+  const auto kept = static_cast<std::size_t>((1.0 - kOutsideHalf) * static_cast<double>(error.size()));
   double limit = bound;
-  if (kept < sorted.size() && sorted[kept] > 0.5 * bound) {
+  std::vector<float> ranked = error;
+  if (kept < ranked.size() && nth(ranked, kept) > 0.5 * bound) {
     // The worst go first: those left between half the bound and the limit are few enough.
-    const auto within = static_cast<std::size_t>(
-        std::upper_bound(sorted.begin(), sorted.end(), static_cast<float>(0.5 * bound)) - sorted.begin());
-    const auto spare = static_cast<std::size_t>(kOutsideHalf * static_cast<double>(sorted.size()));
-    limit = std::min<double>(bound, within + spare < sorted.size() ? sorted[within + spare] : bound);
+    const auto half = static_cast<float>(0.5 * bound);
+    const auto within =
+        static_cast<std::size_t>(std::count_if(error.begin(), error.end(), [&](float e) { return !(half < e); }));
+    const auto spare = static_cast<std::size_t>(kOutsideHalf * static_cast<double>(error.size()));
+    limit = std::min<double>(bound, within + spare < ranked.size() ? nth(ranked, within + spare) : bound);
   }
+  ranked = {};
   std::vector<std::uint8_t> gone(positions.size(), 0);
   parallel_for(static_cast<std::int64_t>(positions.size()), kEscapeGrain, [&](std::int64_t i) {
     const auto v = static_cast<std::size_t>(i);
@@ -104,9 +112,8 @@ void let_escape(const QuadMesh& wanted, std::span<const glm::vec3> normals, doub
   double sum = 0.0;
   for (const float e : error) sum += e;
   stats.mean_error_vox = sum / count;
-  std::sort(error.begin(), error.end());
-  stats.p95_error_vox = error[error.size() * 95 / 100];
-  stats.max_error_vox = error.back();
+  stats.p95_error_vox = nth(error, error.size() * 95 / 100);
+  stats.max_error_vox = *std::max_element(error.begin(), error.end());
 }
 
 }  // namespace dubsar

@@ -96,6 +96,9 @@ class BlockList {
     blocks_.push_back({type, kCodec, required ? kExaRequired : std::uint16_t{0},
                        static_cast<std::uint32_t>(chunks.size()), join_chunks(chunks)});
   }
+  void add(BlockList others) {
+    for (ExaBlock& block : others.blocks_) blocks_.push_back(std::move(block));
+  }
   std::vector<ExaBlock> take() { return std::move(blocks_); }
 
  private:
@@ -155,8 +158,12 @@ void add_labels(const SurfaceModel& model, const ExaHeader& header, BlockList& b
 }  // namespace
 
 Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& progress, ExaProfile profile) {
-  DUBSAR_ASSIGN(const QuadMesh base, build_quad_mesh(model.samples, progress));
-  DUBSAR_TRY(check_model(model, base));
+  BlockList positions;
+  {
+    DUBSAR_ASSIGN(const QuadMesh base, build_quad_mesh(model.samples, progress));
+    DUBSAR_TRY(check_model(model, base));
+    add_positions(model, base, profile, positions, progress);
+  }
   ExaHeader header;
   header.profile = profile;
   header.frame = model.frame;
@@ -185,7 +192,7 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   }
   if (!model.provenance.empty()) blocks.add("PROV", false, {model.provenance});
   DUBSAR_TRY(add_samples(model.samples, profile, blocks, progress));
-  add_positions(model, base, profile, blocks, progress);
+  blocks.add(std::move(positions));
   if (header.normals == ExaNormals::kQuantised) blocks.add("PNRM", false, *encode_paper_normals(a.normals, progress));
   if (header.normals == ExaNormals::kExact) {
     if (!a.normals.empty()) blocks.add("NORM", false, encode_floats(floats_of(a.normals), 3, progress));

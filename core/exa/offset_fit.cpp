@@ -66,7 +66,8 @@ std::vector<FitEdge> edges_of_quads(const SurfaceSamples& samples) {
 
 }  // namespace
 
-OffsetFit::OffsetFit(const SurfaceModel& model, const QuadMesh& base, std::span<const glm::vec3> normals, double bound)
+OffsetFit::OffsetFit(const SurfaceModel& model, std::span<const glm::vec3> base, std::span<const glm::vec3> normals,
+                     double bound)
     : mesh_(model.mesh), base_(base), normals_(normals), bound_(bound), edges_(edges_of_quads(model.samples)) {
   steps_ = 1 << model.samples.offset_bits;
   DUBSAR_CHECK(edges_.size() <= model.mesh.quads.size());
@@ -79,7 +80,7 @@ OffsetFit::OffsetFit(const SurfaceModel& model, const QuadMesh& base, std::span<
     before_[e] = crossing(model.samples.offsets[edges_[e].offset]);
     t_[e] = static_cast<float>(std::clamp(cut(static_cast<std::uint32_t>(e)), 0.0, 1.0));
   });
-  residual_.resize(base.positions.size());
+  residual_.resize(base.size());
 }
 
 void OffsetFit::find_residuals() {
@@ -168,7 +169,7 @@ glm::vec3 OffsetFit::place(std::uint32_t v) const {
   const auto quads = mesh_.quads_of(v);
   for (const std::uint32_t q : quads)
     if (q < edges_.size()) moved[edges_[q].axis] += t_[q] - before_[q];
-  return base_.positions[v] + moved / static_cast<float>(quads.size());
+  return base_[v] + moved / static_cast<float>(quads.size());
 }
 
 }  // namespace dubsar

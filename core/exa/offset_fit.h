@@ -21,9 +21,10 @@ struct FitEdge {
 
 class OffsetFit : public OffsetPrices {
  public:
-  /// `model`: the samples and the wanted surface, with its vertex normals; `base`: the mesh of the samples. `bound`:
-  /// the largest distance of a vertex from the surface. All must outlive it.
-  OffsetFit(const SurfaceModel& model, const QuadMesh& base, std::span<const glm::vec3> normals, double bound);
+  /// `model`: the samples and the wanted surface, with its vertex normals; `base`: where the samples alone put the
+  /// vertices. `bound`: the largest distance of a vertex from the surface. All must outlive it.
+  OffsetFit(const SurfaceModel& model, std::span<const glm::vec3> base, std::span<const glm::vec3> normals,
+            double bound);
 
   /// Moves the crossings until the vertices lie on the surface, as far as the edges reach.
   void improve();
@@ -42,8 +43,7 @@ class OffsetFit : public OffsetPrices {
   int nearest(float t) const;
 
   const QuadMesh& mesh_;
-  const QuadMesh& base_;
-  std::span<const glm::vec3> normals_;
+  std::span<const glm::vec3> base_, normals_;
   double bound_;
   std::vector<FitEdge> edges_;
   std::vector<std::uint32_t> edge_of_;        ///< by place in samples.offsets; kNoEdge: without an x-quad

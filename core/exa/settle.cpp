@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "core/base/parallel.h"
 #include "core/exa/attributes.h"
 #include "core/exa/escape_choice.h"
 #include "core/exa/exact.h"
@@ -20,9 +21,25 @@ constexpr int kFitSteps = 8;  // more than 8 change the error by less than 1 %
 // Seven wide steps come nearer to 32 narrow ones than 16 narrow ones do: .9 degrees on a phantom of 31 dB.
 constexpr int kNormalIterations = 7;
 constexpr float kNormalEpsilon = 0.03f;
+constexpr std::int64_t kAngleGrain = 1 << 14;
 
 bool same_positions(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end());
+}
+/// Gives the samples the crossings with which the vertices lie on the surface of the model. `places`: those of its
+/// vertices with the crossings as they are.
+Result<void> fit_offsets(SurfaceModel& model, std::span<const glm::vec3> places, std::span<const glm::vec3> normals,
+                         float bound, Progress& progress) {
+  progress.begin("settle", kFitSteps, "step");
+  OffsetFit fit(model, places, normals, bound);
+  for (int step = 0; step < kFitSteps; ++step) {
+    if (progress.cancelled()) return cancelled_error();
+    fit.improve();
+    progress.advance(1);
+  }
+  DUBSAR_TRY(fit.store(model.samples, progress));
+  progress.end();
+  return {};
 }
 }  // namespace
 
@@ -48,27 +65,32 @@ Result<SettleStats> settle_for_exa(SurfaceModel& model, const SettleOptions& opt
   settle_light(model.mesh, attributes.ao, progress);
   const bool settled = same_positions(base.positions, model.mesh.positions) ||
                        encode_escapes(base, model.mesh.positions, progress).has_value();
+  std::vector<glm::vec3> places = std::move(base.positions);
+  base = {};  // memory is scarcest here: nothing stays that is not needed any more
   if (!settled) {
-    progress.begin("settle", kFitSteps, "step");
-    const std::vector<glm::vec3> normals =
-        attributes.normals.empty() ? vertex_normals(model.mesh, face_normals(model.mesh)) : attributes.normals;
-    OffsetFit fit(model, base, normals, options.max_error);
-    for (int step = 0; step < kFitSteps; ++step) {
-      if (progress.cancelled()) return cancelled_error();
-      fit.improve();
-      progress.advance(1);
-    }
-    DUBSAR_TRY(fit.store(model.samples, progress));
-    progress.end();
+    std::vector<glm::vec3> made;
+    if (attributes.normals.empty()) made = vertex_normals(model.mesh, face_normals(model.mesh));
+    const std::span<const glm::vec3> normals = attributes.normals.empty() ? made : attributes.normals;
+    DUBSAR_TRY(fit_offsets(model, places, normals, options.max_error, progress));
+    places = {};
     DUBSAR_ASSIGN(QuadMesh fitted, build_quad_mesh(model.samples, progress));
-    let_escape(model.mesh, normals, options.max_error, fitted.positions, stats);
-    model.mesh.positions = std::move(fitted.positions);
+    std::vector<glm::vec3> positions = std::move(fitted.positions);
+    fitted = {};
+    let_escape(model.mesh, normals, options.max_error, positions, stats);
+    model.mesh.positions = std::move(positions);
   }
   if (options.exact_normals || attributes.normals.empty()) return stats;
   DUBSAR_ASSIGN(std::vector<glm::vec3> normals, recomputed_normals(model.mesh, progress));
-  double angles = 0.0;
-  for (std::size_t v = 0; v < normals.size(); ++v)
-    angles += std::acos(std::clamp<double>(glm::dot(glm::dvec3(normals[v]), glm::dvec3(attributes.normals[v])), -1, 1));
+  const double angles = parallel_reduce(
+      static_cast<std::int64_t>(normals.size()), kAngleGrain, 0.0,
+      [&](std::int64_t begin, std::int64_t end) {
+        double sum = 0.0;
+        for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v)
+          sum +=
+              std::acos(std::clamp<double>(glm::dot(glm::dvec3(normals[v]), glm::dvec3(attributes.normals[v])), -1, 1));
+        return sum;
+      },
+      [](double a, double b) { return a + b; });
   if (!normals.empty()) stats.normal_error_deg = angles / static_cast<double>(normals.size()) * 57.29577951308232;
   attributes.normals = std::move(normals);
   if (attributes.k_min.empty()) return stats;
