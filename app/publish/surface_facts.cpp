@@ -7,35 +7,48 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 
+#include "core/base/parallel.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/tablet_frame.h"
 
 namespace dubsar::app {
 namespace {
 
+constexpr std::int64_t kFactGrain = 1 << 16;
 constexpr double kUnsure = 0.05;  // share of the evidence below which the way up is a guess
 
 struct Box {
   glm::dvec3 least{std::numeric_limits<double>::infinity()}, most{-std::numeric_limits<double>::infinity()};
   void add(const glm::dvec3& p) { least = glm::min(least, p), most = glm::max(most, p); }
+  void add(const Box& b) { least = glm::min(least, b.least), most = glm::max(most, b.most); }
   glm::dvec3 size() const { return most.x >= least.x ? most - least : glm::dvec3(0.0); }
 };
 
-struct Body {
-  PartFacts facts;
-  Box box;
-  std::vector<Triangle> triangles;
+/// What the triangles of a body add up to.
+struct BodySum {
+  double area = 0.0, volume = 0.0, inferred_area = 0.0;
+  std::array<EvidenceAreas, kEvidenceSides.size()> sides{};
+  Box box;  ///< along the tablet's axes
+  std::int64_t triangles = 0;
+
+  void add(const BodySum& other) {
+    area += other.area;
+    volume += other.volume;
+    inferred_area += other.inferred_area;
+    for (std::size_t side = 0; side < sides.size(); ++side)
+      for (std::size_t known = 0; known < kEvidenceCount; ++known) sides[side][known] += other.sides[side][known];
+    box.add(other.box);
+    triangles += other.triangles;
+  }
 };
 
-std::vector<glm::dvec3> points_of(const TriMesh& mesh) {
-  std::vector<glm::dvec3> points;
-  points.reserve(mesh.positions.size());
-  for (const glm::vec3& p : mesh.positions) points.push_back(mesh.frame.mm_from_grid(glm::dvec3(p)));
-  return points;
-}
+/// By the id of the body, and the box of everything along the axes of the scan.
+struct Sums {
+  std::array<BodySum, PartitionTable::kMost> bodies;
+  Box all;
+};
 
 /// What the writing is on: the tablet where there is one, else everything.
 TriMesh written_part(const TriMesh& mesh) {
@@ -70,6 +83,72 @@ std::size_t side_of(const glm::dvec3& n) {
   return n.x < 0.0 ? 4 : 5;
 }
 
+/// Of each triangle.
+std::vector<PartitionId> bodies_of(const TriMesh& mesh) {
+  std::array<PartitionId, 256> body_of{};
+  for (std::size_t id = 0; id < body_of.size(); ++id)
+    body_of[id] = mesh.partitions.body_of(static_cast<PartitionId>(id));
+  std::vector<PartitionId> bodies(mesh.triangles.size());
+  parallel_for(static_cast<std::int64_t>(bodies.size()), kFactGrain, [&](std::int64_t i) {
+    const auto t = static_cast<std::size_t>(i);
+    bodies[t] = body_of[mesh.partition_of(t)];
+  });
+  return bodies;
+}
+
+Sums sum_bodies(const TriMesh& mesh, const std::vector<PartitionId>& bodies, const glm::dmat3& turn) {
+  return parallel_reduce<Sums>(
+      static_cast<std::int64_t>(mesh.triangles.size()), kFactGrain, {},
+      [&](std::int64_t begin, std::int64_t end) {
+        Sums part;
+        for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
+          BodySum& body = part.bodies[bodies[t]];
+          std::array<glm::dvec3, 3> p;
+          for (std::size_t corner = 0; corner < 3; ++corner) {
+            p[corner] = mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[mesh.triangles[t][corner]]));
+            body.box.add(turn * p[corner]);
+            part.all.add(p[corner]);
+          }
+          const glm::dvec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
+          const double area = 0.5 * glm::length(normal);
+          body.area += area;
+          body.volume += glm::dot(p[0], normal) / 6.0;
+          const auto known = static_cast<std::size_t>(evidence_of(mesh, t));
+          if (known == static_cast<std::size_t>(Evidence::kInferred)) body.inferred_area += area;
+          body.sides[side_of(turn * normal)][known] += area;
+          ++body.triangles;
+        }
+        return part;
+      },
+      [](Sums all, const Sums& part) {
+        for (std::size_t id = 0; id < all.bodies.size(); ++id) all.bodies[id].add(part.bodies[id]);
+        all.all.add(part.all);
+        return all;
+      });
+}
+
+/// By the id of the body. Bodies of our own surfaces share no vertices, so that one check is enough for all; those of
+/// others may.
+std::vector<bool> watertight_bodies(const TriMesh& mesh, const std::vector<PartitionId>& bodies) {
+  constexpr PartitionId kNobody = PartitionTable::kNone;
+  std::vector<PartitionId> owner(mesh.positions.size(), kNobody);
+  bool apart = true;
+  for (std::size_t t = 0; apart && t < bodies.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      if (owner[v] == kNobody) owner[v] = bodies[t];
+      apart = apart && owner[v] == bodies[t];
+    }
+  if (apart) return watertight_parts(mesh.positions, mesh.triangles, bodies);
+  std::vector<bool> watertight(PartitionTable::kMost, false);
+  for (std::size_t id = 0; id < watertight.size(); ++id) {
+    std::vector<Triangle> own;
+    for (std::size_t t = 0; t < bodies.size(); ++t)
+      if (bodies[t] == id) own.push_back(mesh.triangles[t]);
+    if (!own.empty()) watertight[id] = check_mesh(mesh.positions, own).watertight();
+  }
+  return watertight;
+}
+
 bool crumbs(const PartFacts& part) { return part.kind == PartitionKind::kPores; }
 
 std::string area_text(double area, bool mm) {
@@ -88,32 +167,24 @@ Result<SurfaceFacts> surface_facts(const TriMesh& mesh) {
   facts.millimetres = mesh.frame.input_voxel.known();
   DUBSAR_ASSIGN(const TabletFrame frame, find_tablet_frame(written_part(mesh)));
   facts.upright = frame.up_share >= kUnsure;
-  const glm::dmat3 turn = frame.tablet_from_model();
-  const std::vector<glm::dvec3> points = points_of(mesh);
-  std::map<PartitionId, Body> bodies;
-  Box all;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const PartitionId id = mesh.partitions.body_of(mesh.partition_of(t));
-    Body& body = bodies[id];
-    const Triangle& v = mesh.triangles[t];
-    for (const std::uint32_t corner : v) body.box.add(turn * points[corner]), all.add(points[corner]);
-    const glm::dvec3 normal = glm::cross(points[v[1]] - points[v[0]], points[v[2]] - points[v[0]]);
-    const double area = 0.5 * glm::length(normal);
-    body.facts.area += area;
-    body.facts.volume += glm::dot(points[v[0]], normal) / 6.0;
-    const auto known = static_cast<std::size_t>(evidence_of(mesh, t));
-    if (known == static_cast<std::size_t>(Evidence::kInferred)) body.facts.inferred_area += area;
-    body.facts.sides[side_of(turn * normal)][known] += area;
-    body.triangles.push_back(v);
-  }
-  facts.box = all.size();
-  for (auto& [id, body] : bodies) {
-    const Partition* const row = mesh.partitions.find(id);
-    body.facts.name = row != nullptr ? row->body_name() : "object";
-    body.facts.kind = row != nullptr ? row->kind : PartitionKind::kObject;
-    body.facts.size = body.box.size();
-    body.facts.watertight = check_mesh(mesh.positions, body.triangles).watertight();
-    facts.parts.push_back(std::move(body.facts));
+  const std::vector<PartitionId> bodies = bodies_of(mesh);
+  const Sums sums = sum_bodies(mesh, bodies, frame.tablet_from_model());
+  const std::vector<bool> watertight = watertight_bodies(mesh, bodies);
+  facts.box = sums.all.size();
+  for (std::size_t id = 0; id < sums.bodies.size(); ++id) {
+    const BodySum& body = sums.bodies[id];
+    if (body.triangles == 0) continue;
+    const Partition* const row = mesh.partitions.find(static_cast<PartitionId>(id));
+    PartFacts part;
+    part.name = row != nullptr ? row->body_name() : "object";
+    part.kind = row != nullptr ? row->kind : PartitionKind::kObject;
+    part.size = body.box.size();
+    part.area = body.area;
+    part.volume = body.volume;
+    part.inferred_area = body.inferred_area;
+    part.sides = body.sides;
+    part.watertight = watertight[id];
+    facts.parts.push_back(std::move(part));
   }
   std::stable_sort(facts.parts.begin(), facts.parts.end(),
                    [](const PartFacts& a, const PartFacts& b) { return crumbs(a) != crumbs(b) ? crumbs(b) : false; });

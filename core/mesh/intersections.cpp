@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <numeric>
+#include <utility>
 
 #include "core/base/parallel.h"
+#include "core/base/result.h"
 
 namespace dubsar {
 namespace {
@@ -42,83 +43,89 @@ bool crosses(const glm::dvec3& from, const glm::dvec3& to, const Corners& t) {
   return (a > 0.0 && b > 0.0 && c > 0.0) || (a < 0.0 && b < 0.0 && c < 0.0);
 }
 
+std::uint64_t spread3(std::uint64_t x) {  // 21 bits to every third bit
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x1f00000000ffffULL;
+  x = (x | x << 16) & 0x1f0000ff0000ffULL;
+  x = (x | x << 8) & 0x100f00f00f00f00fULL;
+  x = (x | x << 4) & 0x10c30c30c30c30c3ULL;
+  return (x | x << 2) & 0x1249249249249249ULL;
+}
+
+/// Boxes of triangles in the order of a curve that fills space, and of eight of them together, and of eight of those.
 class Tree {
  public:
   Tree(std::span<const glm::vec3> positions, std::span<const std::array<std::uint32_t, 3>> triangles)
-      : positions_(positions), triangles_(triangles), order_(triangles.size()), box_(triangles.size()) {
-    std::iota(order_.begin(), order_.end(), 0u);
-    for (std::size_t i = 0; i < triangles.size(); ++i)
-      for (const std::uint32_t v : triangles[i]) box_[i].add(positions[v]);
-    if (!order_.empty()) build(0, order_.size());
+      : positions_(positions), triangles_(triangles), box_(triangles.size()), order_(triangles.size()) {
+    parallel_for(count(), kTreeGrain, [&](std::int64_t i) {
+      for (const std::uint32_t v : triangles_[at(i)]) box_[at(i)].add(positions_[v]);
+    });
+    sort_by_place();
+    levels_.emplace_back(triangles.size());
+    parallel_for(count(), kTreeGrain, [&](std::int64_t i) { levels_[0][at(i)] = box_[order_[at(i)]]; });
+    while (levels_.back().size() > kFan) {
+      const std::vector<Box>& below = levels_.back();
+      std::vector<Box> level((below.size() + kFan - 1) / kFan);
+      for (std::size_t i = 0; i < below.size(); ++i) level[i / kFan].add(below[i]);
+      levels_.push_back(std::move(level));
+    }
   }
 
-  /// Partners of a triangle with higher numbers, rising.
-  void partners(std::uint32_t triangle, std::vector<std::uint32_t>& found) const {
+  /// Partners of a triangle for which keep(partner) holds, rising.
+  template <class Keep>
+  void partners(std::uint32_t triangle, std::vector<std::uint32_t>& found, const Keep& keep) const {
     found.clear();
-    std::vector<std::uint32_t> stack{0};
-    while (!stack.empty()) {
-      const Node& node = nodes_[stack.back()];
-      stack.pop_back();
-      if (!node.box.meets(box_[triangle])) continue;
-      if (node.count == 0) {
-        stack.push_back(node.first);
-        stack.push_back(node.second);
-        continue;
-      }
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-        if (order_[i] > triangle && box_[order_[i]].meets(box_[triangle]) && intersect(triangle, order_[i]))
-          found.push_back(order_[i]);
-    }
+    const std::size_t top = levels_.size() - 1;
+    look(triangle, top, 0, levels_[top].size(), found, keep);
     std::sort(found.begin(), found.end());
   }
 
  private:
-  static constexpr std::size_t kLeaf = 8;
-  struct Node {
-    Box box;
-    std::uint32_t first = 0, second = 0;  ///< children, or where the leaf begins
-    std::uint32_t count = 0;              ///< of the leaf; 0: a branch
-  };
+  static constexpr std::size_t kFan = 8;
+  static constexpr std::int64_t kTreeGrain = 1 << 14;
 
-  std::uint32_t build(std::size_t begin, std::size_t end) {
-    const auto id = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.emplace_back();
-    Box box, middles;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Box& b = box_[order_[i]];
-      box.add(b);
-      middles.add(0.5f * (b.low + b.high));
-    }
-    nodes_[id].box = box;
-    if (end - begin <= kLeaf) {
-      nodes_[id].first = static_cast<std::uint32_t>(begin);
-      nodes_[id].count = static_cast<std::uint32_t>(end - begin);
-      return id;
-    }
-    const glm::vec3 size = middles.high - middles.low;
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const std::size_t middle = (begin + end) / 2;
-    std::nth_element(
-        order_.begin() + static_cast<std::ptrdiff_t>(begin), order_.begin() + static_cast<std::ptrdiff_t>(middle),
-        order_.begin() + static_cast<std::ptrdiff_t>(end), [&](std::uint32_t a, std::uint32_t b) {
-          const float pa = box_[a].low[axis] + box_[a].high[axis], pb = box_[b].low[axis] + box_[b].high[axis];
-          return pa != pb ? pa < pb : a < b;
-        });
-    const std::uint32_t first = build(begin, middle), second = build(middle, end);
-    nodes_[id].first = first;
-    nodes_[id].second = second;
-    return id;
+  std::int64_t count() const { return static_cast<std::int64_t>(triangles_.size()); }
+  static std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+  void sort_by_place() {
+    Box all;
+    for (const Box& b : box_) all.add(b);
+    const glm::vec3 size = glm::max(all.high - all.low, glm::vec3(1e-30f));
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(box_.size());
+    parallel_for(count(), kTreeGrain, [&](std::int64_t i) {
+      const glm::vec3 middle = 0.5f * (box_[at(i)].low + box_[at(i)].high);
+      const glm::vec3 share = glm::clamp((middle - all.low) / size, 0.0f, 1.0f) * 2097151.0f;
+      keys[at(i)] = {spread3(static_cast<std::uint64_t>(share.x)) | spread3(static_cast<std::uint64_t>(share.y)) << 1 |
+                         spread3(static_cast<std::uint64_t>(share.z)) << 2,
+                     static_cast<std::uint32_t>(i)};
+    });
+    std::sort(keys.begin(), keys.end());
+    for (std::size_t i = 0; i < keys.size(); ++i) order_[i] = keys[i].second;
   }
 
-  bool intersect(std::uint32_t a, std::uint32_t b) const {
-    return triangles_cross(positions_, triangles_[a], triangles_[b]);
+  /// Boxes [begin, end) of a level.
+  template <class Keep>
+  void look(std::uint32_t triangle, std::size_t level, std::size_t begin, std::size_t end,
+            std::vector<std::uint32_t>& found, const Keep& keep) const {
+    const Box& own = box_[triangle];
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!levels_[level][i].meets(own)) continue;
+      if (level > 0) {
+        look(triangle, level - 1, i * kFan, std::min((i + 1) * kFan, levels_[level - 1].size()), found, keep);
+      } else if (const std::uint32_t other = order_[i];
+                 other != triangle && keep(other) &&
+                 triangles_cross(positions_, triangles_[std::min(triangle, other)],
+                                 triangles_[std::max(triangle, other)])) {
+        found.push_back(other);
+      }
+    }
   }
 
   std::span<const glm::vec3> positions_;
   std::span<const std::array<std::uint32_t, 3>> triangles_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Box> box_;
-  std::vector<Node> nodes_;
+  std::vector<Box> box_;                  ///< of each triangle
+  std::vector<std::uint32_t> order_;      ///< triangles along the curve
+  std::vector<std::vector<Box>> levels_;  ///< the lowest: boxes of the triangles in that order
 };
 
 }  // namespace
@@ -144,24 +151,31 @@ bool triangles_cross(std::span<const glm::vec3> positions, const std::array<std:
 }
 
 std::vector<std::array<std::uint32_t, 2>> self_intersections(std::span<const glm::vec3> positions,
-                                                             std::span<const std::array<std::uint32_t, 3>> triangles) {
+                                                             std::span<const std::array<std::uint32_t, 3>> triangles,
+                                                             std::span<const std::uint8_t> wanted) {
+  DUBSAR_CHECK(wanted.empty() || wanted.size() == triangles.size());
+  if (triangles.empty()) return {};
   const Tree tree(positions, triangles);
   using Pairs = std::vector<std::array<std::uint32_t, 2>>;
-  return parallel_reduce(
+  const auto is_wanted = [&](std::uint32_t t) { return wanted.empty() || wanted[t] != 0; };
+  Pairs pairs = parallel_reduce(
       static_cast<std::int64_t>(triangles.size()), 4096, Pairs{},
       [&](std::int64_t begin, std::int64_t end) {
-        Pairs pairs;
+        Pairs part;
         std::vector<std::uint32_t> found;
         for (auto t = static_cast<std::uint32_t>(begin); t < static_cast<std::uint32_t>(end); ++t) {
-          tree.partners(t, found);
-          for (const std::uint32_t other : found) pairs.push_back({t, other});
+          if (!is_wanted(t)) continue;
+          tree.partners(t, found, [&](std::uint32_t other) { return other > t || !is_wanted(other); });
+          for (const std::uint32_t other : found) part.push_back({std::min(t, other), std::max(t, other)});
         }
-        return pairs;
+        return part;
       },
       [](Pairs a, const Pairs& b) {
         a.insert(a.end(), b.begin(), b.end());
         return a;
       });
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
 }
 
 }  // namespace dubsar

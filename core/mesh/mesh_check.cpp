@@ -92,15 +92,21 @@ class Link {
 
 std::int64_t count_components(std::size_t vertices, std::span<const Triangle> triangles,
                               std::span<const std::uint32_t> first) {
-  DisjointSets sets(vertices);
-  std::int64_t joined = 0;
-  for (const Triangle& t : triangles) {
-    if (is_degenerate(t)) continue;
-    for (std::size_t i = 1; i < 3; ++i) joined += sets.join(t[0], t[i]);
-  }
-  std::int64_t used = 0;
-  for (std::size_t v = 0; v < vertices; ++v) used += first[v + 1] > first[v];
-  return used - joined;
+  ConcurrentSets sets(vertices);
+  parallel_for(static_cast<std::int64_t>(triangles.size()), 1 << 14, [&](std::int64_t i) {
+    const Triangle& t = triangles[static_cast<std::size_t>(i)];
+    if (is_degenerate(t)) return;
+    for (std::size_t k = 1; k < 3; ++k) sets.join(t[0], t[k]);
+  });
+  return parallel_reduce<std::int64_t>(
+      static_cast<std::int64_t>(vertices), 1 << 16, 0,
+      [&](std::int64_t begin, std::int64_t end) {
+        std::int64_t roots = 0;
+        for (auto v = static_cast<std::uint32_t>(begin); v < static_cast<std::uint64_t>(end); ++v)
+          roots += first[v + 1] > first[v] && sets.root(v) == v ? 1 : 0;
+        return roots;
+      },
+      [](std::int64_t one, std::int64_t other) { return one + other; });
 }
 
 MeshCheck add(MeshCheck a, const MeshCheck& b) {

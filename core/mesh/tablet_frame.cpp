@@ -7,11 +7,13 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "core/base/parallel.h"
 #include "core/mesh/side_relief.h"
 
 namespace dubsar {
 namespace {
 
+constexpr std::int64_t kFrameGrain = 1 << 16;
 constexpr double kLevel_mm = 0.1;   // what makes no side flat or curved
 constexpr double kSparse = 0.5;     // of the writing elsewhere: less is room left
 constexpr double kEdges = 0.6;      // what little is written there beside what is seen of whole sides
@@ -43,18 +45,30 @@ glm::dmat3 eigenvectors(glm::dmat3 m) {
 /// turn, so that the fourth harmonic of the directions, by area, does. Turns the second and third axis in their plane.
 glm::dmat3 along_the_edges(const glm::dmat3& axes, std::span<const glm::dvec3> points,
                            std::span<const Triangle> triangles) {
-  std::complex<double> sum = 0.0;
-  double all = 0.0;
-  for (const Triangle& t : triangles) {
-    const glm::dvec3 n = glm::cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]);
-    const double area = glm::length(n);
-    if (!(area > 0.0)) continue;
-    const std::complex<double> direction(glm::dot(n, axes[1]) / area, glm::dot(n, axes[2]) / area);
-    if (std::norm(direction) < kUpright) continue;  // of the broad sides, or the wall of an impression
-    const std::complex<double> square = direction * direction;
-    sum += area * square * square;
-    all += area;
-  }
+  struct Directions {
+    std::complex<double> sum = 0.0;
+    double all = 0.0;
+  };
+  const auto [sum, all] = parallel_reduce(
+      static_cast<std::int64_t>(triangles.size()), kFrameGrain, Directions{},
+      [&](std::int64_t begin, std::int64_t end) {
+        Directions part;
+        for (const Triangle& t :
+             triangles.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin))) {
+          const glm::dvec3 n = glm::cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]);
+          const double area = glm::length(n);
+          if (!(area > 0.0)) continue;
+          const std::complex<double> direction(glm::dot(n, axes[1]) / area, glm::dot(n, axes[2]) / area);
+          if (std::norm(direction) < kUpright) continue;  // of the broad sides, or the wall of an impression
+          const std::complex<double> square = direction * direction;
+          part.sum += area * square * square;
+          part.all += area;
+        }
+        return part;
+      },
+      [](const Directions& one, const Directions& other) {
+        return Directions{one.sum + other.sum, one.all + other.all};
+      });
   if (std::abs(sum) < kFourFold * all) return axes;
   const double turn = std::arg(sum) / 4.0;
   return {axes[0], std::cos(turn) * axes[1] + std::sin(turn) * axes[2],
@@ -76,15 +90,15 @@ class Writing {
   Writing(std::span<const glm::dvec3> points, std::span<const Triangle> triangles,
           const std::array<glm::dvec3, 3>& axes, double step_mm)
       : axes_(axes) {
-    for (int axis = 0; axis < 3; ++axis)
-      for (int sign = 0; sign < 2; ++sign) {
-        const double s = sign ? -1.0 : 1.0;
-        const glm::dvec3 front = s * axes[axis], right = axes[(axis + 1) % 3];
-        const auto skew = slope_skew(height_map(points, triangles, {right, glm::cross(front, right), front}, step_mm));
-        const glm::dvec3 up = glm::cross(front, right);
-        const double along = glm::dot(up, axes[(axis + 2) % 3]) > 0 ? 1.0 : -1.0;
-        skew_[axis][sign] = {skew[0], along * skew[1]};
-      }
+    parallel_for(6, 1, [&](std::int64_t side) {
+      const auto axis = static_cast<std::size_t>(side / 2), sign = static_cast<std::size_t>(side % 2);
+      const double s = sign ? -1.0 : 1.0;
+      const glm::dvec3 front = s * axes[axis], right = axes[(axis + 1) % 3];
+      const auto skew = slope_skew(height_map(points, triangles, {right, glm::cross(front, right), front}, step_mm));
+      const glm::dvec3 up = glm::cross(front, right);
+      const double along = glm::dot(up, axes[(axis + 2) % 3]) > 0 ? 1.0 : -1.0;
+      skew_[axis][sign] = {skew[0], along * skew[1]};
+    });
   }
 
   /// How well impressions on the side `front` fit lines that run to `right` with their tops towards `up`.
@@ -143,6 +157,31 @@ std::vector<Triangle> seen_triangles(const TriMesh& mesh) {
   return seen;
 }
 
+/// Areas by direction, and the lengths of one side of each triangle.
+struct Extent {
+  glm::dmat3 areas{0.0};
+  double edges = 0.0;
+};
+Extent add_up(std::span<const glm::dvec3> points, std::span<const Triangle> triangles) {
+  return parallel_reduce(
+      static_cast<std::int64_t>(triangles.size()), kFrameGrain, Extent{},
+      [&](std::int64_t begin, std::int64_t end) {
+        Extent part;
+        for (const Triangle& t :
+             triangles.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin))) {
+          const glm::dvec3 n = glm::cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]);
+          const double area = glm::length(n);
+          if (!(area > 0.0)) continue;
+          part.areas += glm::outerProduct(n, n / area);
+          part.edges += glm::distance(points[t[0]], points[t[1]]);
+        }
+        return part;
+      },
+      [](const Extent& one, const Extent& other) {
+        return Extent{one.areas + other.areas, one.edges + other.edges};
+      });
+}
+
 double share(double best, double next) {
   const double all = std::abs(best) + std::abs(next);
   return all > 0.0 ? std::clamp((best - next) / all, 0.0, 1.0) : 0.0;
@@ -153,19 +192,13 @@ double share(double best, double next) {
 glm::dmat3 TabletFrame::tablet_from_model() const { return glm::transpose(glm::dmat3(right, up, front)); }
 
 Result<TabletFrame> find_tablet_frame(const TriMesh& mesh) {
-  std::vector<glm::dvec3> points;
-  points.reserve(mesh.positions.size());
-  for (const glm::vec3& p : mesh.positions) points.push_back(mesh.frame.mm_from_grid(glm::dvec3(p)));
+  std::vector<glm::dvec3> points(mesh.positions.size());
+  parallel_for(static_cast<std::int64_t>(points.size()), kFrameGrain, [&](std::int64_t i) {
+    const auto v = static_cast<std::size_t>(i);
+    points[v] = mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[v]));
+  });
   const std::vector<Triangle> seen = seen_triangles(mesh);
-  glm::dmat3 areas(0.0);
-  double edges = 0.0;
-  for (const Triangle& t : seen.empty() ? mesh.triangles : seen) {
-    const glm::dvec3 n = glm::cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]);
-    const double area = glm::length(n);
-    if (!(area > 0.0)) continue;
-    areas += glm::outerProduct(n, n / area);
-    edges += glm::distance(points[t[0]], points[t[1]]);
-  }
+  const auto [areas, edges] = add_up(points, seen.empty() ? mesh.triangles : seen);
   if (!(areas[0][0] + areas[1][1] + areas[2][2] > 0.0))
     return fail(ErrorKind::kBadData, "the surface has no area, expected a tablet that can be turned upright");
   const glm::dmat3 found = along_the_edges(eigenvectors(areas), points, seen.empty() ? mesh.triangles : seen);

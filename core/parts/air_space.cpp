@@ -1,6 +1,7 @@
 #include "core/parts/air_space.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <utility>
 
@@ -104,7 +105,7 @@ void clear_runs(const std::uint64_t* row, std::int64_t width, std::vector<RowRun
 struct RunGraph {
   std::vector<std::int64_t> first;  ///< first run of each row
   std::vector<RowRun> runs;
-  DisjointSets sets;
+  ConcurrentSets sets{0};
 
   explicit RunGraph(const BitVolume& blocked) {
     const Dims d = blocked.dims();
@@ -119,15 +120,20 @@ struct RunGraph {
         all.insert(all.end(), row_runs.begin(), row_runs.end());
       }
     });
-    runs.reserve(static_cast<std::size_t>(exclusive_scan(first)));
-    for (const auto& slice : of_slice) runs.insert(runs.end(), slice.begin(), slice.end());
+    runs.resize(static_cast<std::size_t>(exclusive_scan(first)));
     DUBSAR_CHECK(runs.size() < 0xffffffffu);
-    sets.reset(runs.size());
-    for (std::int64_t z = 0; z < d.z; ++z)
+    parallel_for(d.z, 1, [&](std::int64_t z) {
+      auto& slice = of_slice[static_cast<std::size_t>(z)];
+      std::copy(slice.begin(), slice.end(), runs.begin() + first[static_cast<std::size_t>(z * d.y)]);
+      slice = {};
+    });
+    sets = ConcurrentSets(runs.size());
+    parallel_for(d.z, slice_grain(blocked.words_per_row() * d.y), [&](std::int64_t z) {
       for (std::int64_t y = 0; y < d.y; ++y) {
         if (y > 0) join_rows(z * d.y + y - 1, z * d.y + y);
         if (z > 0) join_rows((z - 1) * d.y + y, z * d.y + y);
       }
+    });
   }
 
   void join_rows(std::int64_t row_a, std::int64_t row_b) {
@@ -195,12 +201,14 @@ Exterior grow_back(const BitVolume& inside, BitVolume eroded, int r) {
   e.air = std::move(eroded);
   for (int step = 0; r > 0 && step <= r; ++step) e.air = dilate_once(e.air, &inside);
   BitVolume enclosed(inside.dims());
-  const auto in = inside.words(), air = std::as_const(e.air).words();
-  const auto to = enclosed.words();
-  for (std::size_t w = 0; w < to.size(); ++w) to[w] = ~(in[w] | air[w]);
   const std::uint64_t tail = tail_mask(inside.dims().x);
-  const auto words = static_cast<std::size_t>(inside.words_per_row());
-  for (std::size_t w = words - 1; w < to.size(); w += words) to[w] &= tail;
+  const std::int64_t words = inside.words_per_row(), slice = words * inside.dims().y;
+  parallel_for(inside.dims().z, slice_grain(slice), [&](std::int64_t z) {
+    const std::uint64_t *in = inside.row(0, z), *air = std::as_const(e.air).row(0, z);
+    std::uint64_t* const to = enclosed.row(0, z);
+    for (std::int64_t w = 0; w < slice; ++w) to[w] = ~(in[w] | air[w]);
+    for (std::int64_t w = words - 1; w < slice; w += words) to[w] &= tail;
+  });
   e.enclosed_faces = count_faces(inside, enclosed);
   return e;
 }
@@ -210,9 +218,10 @@ Exterior grow_back(const BitVolume& inside, BitVolume eroded, int r) {
 BitVolume pad(const BitVolume& bits, int margin) {
   const Dims d = bits.dims();
   BitVolume result({d.x + 2 * kPadX, d.y + 2 * margin, d.z + 2 * margin});
-  for (std::int64_t z = 0; z < d.z; ++z)
+  parallel_for(d.z, slice_grain(bits.words_per_row() * d.y), [&](std::int64_t z) {
     for (std::int64_t y = 0; y < d.y; ++y)
       std::copy_n(bits.row(y, z), bits.words_per_row(), result.row(y + margin, z + margin) + 1);
+  });
   return result;
 }
 
@@ -220,11 +229,12 @@ BitVolume crop(const BitVolume& bits, int margin) {
   const Dims d = bits.dims();
   BitVolume result({d.x - 2 * kPadX, d.y - 2 * margin, d.z - 2 * margin});
   const std::int64_t words = result.words_per_row();
-  for (std::int64_t z = 0; z < result.dims().z; ++z)
+  parallel_for(result.dims().z, slice_grain(words * result.dims().y), [&](std::int64_t z) {
     for (std::int64_t y = 0; y < result.dims().y; ++y) {
       std::copy_n(bits.row(y + margin, z + margin) + 1, words, result.row(y, z));
       result.row(y, z)[words - 1] &= tail_mask(result.dims().x);
     }
+  });
   return result;
 }
 
@@ -282,21 +292,26 @@ BitVolume dilate(const BitVolume& inside, int r) {
 BitVolume flood_from_border(const BitVolume& blocked) {
   const Dims d = blocked.dims();
   RunGraph graph(blocked);
-  std::vector<bool> reached(graph.runs.size(), false);
-  const auto each_run = [&](const auto& visit) {
-    for (std::int64_t row = 0; row < d.y * d.z; ++row)
-      for (std::int64_t i = graph.first[static_cast<std::size_t>(row)];
-           i < graph.first[static_cast<std::size_t>(row + 1)]; ++i)
-        visit(row % d.y, row / d.y, static_cast<std::uint32_t>(i));
+  std::vector<std::uint8_t> reached(graph.runs.size(), 0);  // bytes, since several threads write them
+  const std::int64_t grain = slice_grain(blocked.words_per_row() * d.y);
+  const auto each_run = [&](std::int64_t z, const auto& visit) {
+    for (std::int64_t y = 0; y < d.y; ++y)
+      for (std::int64_t i = graph.first[static_cast<std::size_t>(z * d.y + y)];
+           i < graph.first[static_cast<std::size_t>(z * d.y + y + 1)]; ++i)
+        visit(y, static_cast<std::uint32_t>(i));
   };
-  each_run([&](std::int64_t y, std::int64_t z, std::uint32_t i) {
-    const RowRun& run = graph.runs[i];
-    if (y == 0 || y == d.y - 1 || z == 0 || z == d.z - 1 || run.begin == 0 || run.end == d.x)
-      reached[graph.sets.root(i)] = true;
+  parallel_for(d.z, grain, [&](std::int64_t z) {
+    each_run(z, [&](std::int64_t y, std::uint32_t i) {
+      const RowRun& run = graph.runs[i];
+      if (y == 0 || y == d.y - 1 || z == 0 || z == d.z - 1 || run.begin == 0 || run.end == d.x)
+        std::atomic_ref(reached[graph.sets.root(i)]).store(1, std::memory_order_relaxed);
+    });
   });
   BitVolume result(d);
-  each_run([&](std::int64_t y, std::int64_t z, std::uint32_t i) {
-    if (reached[graph.sets.root(i)]) set_run(result.row(y, z), graph.runs[i]);
+  parallel_for(d.z, grain, [&](std::int64_t z) {
+    each_run(z, [&](std::int64_t y, std::uint32_t i) {
+      if (reached[graph.sets.root(i)] != 0) set_run(result.row(y, z), graph.runs[i]);
+    });
   });
   return result;
 }
@@ -307,7 +322,11 @@ Result<Exterior> find_exterior(const BitVolume& inside, int largest_radius, Prog
   constexpr double kEnough = 0.85;
   const int margin = largest_radius + 2;  // so that a dilated object near the border does not block the way around it
   const BitVolume padded = pad(inside, margin);
-  const auto close = [&](int r) { return grow_back(padded, flood_from_border(dilate(padded, r)), r); };
+  const auto eroded = [&](int r) { return flood_from_border(dilate(padded, r)); };
+  const auto close = [&](int r) {
+    BitVolume air = eroded(r);  // apart, so that what was dilated is gone before the air grows back
+    return grow_back(padded, std::move(air), r);
+  };
   Exterior chosen = close(0);
   if (largest_radius > 0) {
     if (progress.cancelled()) return cancelled_error();
@@ -335,9 +354,12 @@ Result<Exterior> find_exterior(const BitVolume& inside, int largest_radius, Prog
 
 EnclosedAir::EnclosedAir(const BitVolume& inside, const BitVolume& exterior) : dims_(inside.dims()) {
   BitVolume blocked = inside;
-  const auto from = exterior.words();
-  const auto to = blocked.words();
-  for (std::size_t w = 0; w < to.size(); ++w) to[w] |= from[w];
+  const std::int64_t slice = blocked.words_per_row() * dims_.y;
+  parallel_for(dims_.z, slice_grain(slice), [&](std::int64_t z) {
+    const std::uint64_t* const from = exterior.row(0, z);
+    std::uint64_t* const to = blocked.row(0, z);
+    for (std::int64_t w = 0; w < slice; ++w) to[w] |= from[w];
+  });
   RunGraph graph(blocked);
   std::vector<std::uint32_t> id(graph.runs.size(), kNone);
   runs_.reserve(graph.runs.size());

@@ -15,6 +15,7 @@ namespace dubsar {
 namespace {
 
 constexpr std::uint32_t kNoFace = 0xffffffffu;
+constexpr std::int64_t kHoleGrain = 1 << 14;
 
 std::uint64_t key(std::uint32_t a, std::uint32_t b) {
   return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
@@ -57,19 +58,28 @@ class HoleFiller {
   /// Sides of faces whose neighbour `differs` from them.
   template <class Differs>
   std::vector<BorderEdge> collect(const Differs& differs) const {
-    std::vector<BorderEdge> edges;
-    for (std::uint32_t f = 0; f < graph_.faces(); ++f)
-      for (std::uint32_t s = graph_.first_side[f]; s < graph_.first_side[f + 1]; ++s) {
-        const std::uint32_t g = graph_.neighbour[s];
-        if (g == FaceGraph::kNone) continue;
-        const std::uint8_t left = model_.quad_partition[f], right = model_.quad_partition[g];
-        if (left == right || !differs(left, right)) continue;
-        const Polygon polygon = model_.mesh.polygon(f);
-        const auto i = static_cast<std::size_t>(s - graph_.first_side[f]);
-        edges.push_back(
-            {polygon.vertex[i], polygon.vertex[(i + 1) % static_cast<std::size_t>(polygon.size)], f, left, right});
-      }
-    return edges;
+    using Edges = std::vector<BorderEdge>;
+    return parallel_reduce<Edges>(
+        graph_.faces(), kHoleGrain, {},
+        [&](std::int64_t begin, std::int64_t end) {
+          Edges edges;
+          for (auto f = static_cast<std::uint32_t>(begin); f < static_cast<std::uint64_t>(end); ++f)
+            for (std::uint32_t s = graph_.first_side[f]; s < graph_.first_side[f + 1]; ++s) {
+              const std::uint32_t g = graph_.neighbour[s];
+              if (g == FaceGraph::kNone) continue;
+              const std::uint8_t left = model_.quad_partition[f], right = model_.quad_partition[g];
+              if (left == right || !differs(left, right)) continue;
+              const Polygon polygon = model_.mesh.polygon(f);
+              const auto i = static_cast<std::size_t>(s - graph_.first_side[f]);
+              edges.push_back({polygon.vertex[i], polygon.vertex[(i + 1) % static_cast<std::size_t>(polygon.size)], f,
+                               left, right});
+            }
+          return edges;
+        },
+        [](Edges all, const Edges& part) {
+          all.insert(all.end(), part.begin(), part.end());
+          return all;
+        });
   }
 
   /// Mean normal of the part's faces within some rings of a face: the very rim is rounded.

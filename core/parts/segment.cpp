@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/base/log.h"
+#include "core/base/parallel.h"
 #include "core/parts/enclosure.h"
 #include "core/parts/face_roles.h"
 
@@ -16,6 +17,8 @@ namespace {
 /// The hidden body fills at least this share of what the outer surface encloses; smaller ones are loose
 /// pieces.
 constexpr double kSmallestCore = 0.03;
+
+constexpr std::int64_t kPartGrain = 1 << 14;
 
 using Infos = std::vector<FaceComponents::Info>;
 
@@ -38,7 +41,7 @@ std::vector<FaceRole> strongest_neighbours(const SurfaceModel& model, const Face
                                            const std::vector<bool>& wanted) {
   std::vector<std::map<std::uint32_t, double>> border(components.info.size());
   const FaceGraph& graph = scene.graph;
-  for (std::uint32_t f = 0; f < graph.faces(); ++f) {
+  for (std::uint32_t f = 0; f < graph.faces(); ++f) {  // of small components only: few
     const std::uint32_t c = components.of_face[f];
     if (!wanted[c]) continue;
     for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
@@ -75,8 +78,10 @@ void merge_small(const SurfaceModel& model, const FaceScene& scene, const Segmen
     }
     if (!any) return;
     const std::vector<FaceRole> target = strongest_neighbours(model, scene, components, roles, small);
-    for (std::uint32_t f = 0; f < scene.graph.faces(); ++f)
+    parallel_for(scene.graph.faces(), kPartGrain, [&](std::int64_t i) {
+      const auto f = static_cast<std::size_t>(i);
       if (small[components.of_face[f]]) roles[f] = target[components.of_face[f]];
+    });
   }
 }
 
@@ -161,7 +166,10 @@ class Partitioning {
 
   void store(SurfaceModel& model) && {
     model.quad_partition.resize(components_.of_face.size());
-    for (std::size_t f = 0; f < components_.of_face.size(); ++f) model.quad_partition[f] = id_[components_.of_face[f]];
+    parallel_for(static_cast<std::int64_t>(components_.of_face.size()), kPartGrain, [&](std::int64_t i) {
+      const auto f = static_cast<std::size_t>(i);
+      model.quad_partition[f] = id_[components_.of_face[f]];
+    });
     model.partitions = std::move(partitions_);
   }
 
@@ -205,13 +213,19 @@ void store_nested(SurfaceModel& model, const FaceScene& scene, const SegmentOpti
   }
   partitioning.assign(shell, outside);
   for (std::size_t f = 0; f < components.of_face.size(); ++f)
-    if (core[components.of_face[f]] && scene.air[f] < FaceScene::kExterior) tablet_air.push_back(scene.air[f]);
+    if (core[components.of_face[f]] && scene.air[f] < FaceScene::kExterior &&
+        (tablet_air.empty() || tablet_air.back() != scene.air[f]))
+      tablet_air.push_back(scene.air[f]);
   std::sort(tablet_air.begin(), tablet_air.end());
   tablet_air.erase(std::unique(tablet_air.begin(), tablet_air.end()), tablet_air.end());
-  // The inner wall: whatever was cut from the tablet or the outer wall, and walls around the tablet's air.
+  // The inner wall: whatever was cut from the tablet or the outer wall, and walls around the tablet's air. Of the other
+  // components nothing is asked.
   std::vector<double> at_tablet_air(infos.size(), 0.0);
+  std::vector<bool> asked(infos.size());
+  for (std::size_t c = 0; c < asked.size(); ++c)
+    asked[c] = partitioning.free(c) && infos[c].volume < 0.0 && infos[c].border == 0.0;
   for (std::size_t f = 0; f < components.of_face.size(); ++f)
-    if (std::binary_search(tablet_air.begin(), tablet_air.end(), scene.air[f]))
+    if (asked[components.of_face[f]] && std::binary_search(tablet_air.begin(), tablet_air.end(), scene.air[f]))
       at_tablet_air[components.of_face[f]] += static_cast<double>(scene.graph.area[f]);
   for (std::size_t c = 0; c < infos.size(); ++c) {
     if (!partitioning.free(c)) continue;
@@ -227,14 +241,19 @@ void store_nested(SurfaceModel& model, const FaceScene& scene, const SegmentOpti
 }
 
 double length_of_cuts(const SurfaceModel& model, const FaceGraph& graph) {
-  double length = 0.0;
-  for (std::uint32_t f = 0; f < graph.faces(); ++f)
-    for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
-      const std::uint32_t g = graph.neighbour[s];
-      if (g != FaceGraph::kNone && g > f && model.quad_partition[g] != model.quad_partition[f])
-        length += static_cast<double>(side_length(model.mesh, f, s - graph.first_side[f]));
-    }
-  return length;
+  return parallel_reduce<double>(
+      graph.faces(), kPartGrain, 0.0,
+      [&](std::int64_t begin, std::int64_t end) {
+        double length = 0.0;
+        for (auto f = static_cast<std::uint32_t>(begin); f < static_cast<std::uint64_t>(end); ++f)
+          for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
+            const std::uint32_t g = graph.neighbour[s];
+            if (g != FaceGraph::kNone && g > f && model.quad_partition[g] != model.quad_partition[f])
+              length += static_cast<double>(side_length(model.mesh, f, s - graph.first_side[f]));
+          }
+        return length;
+      },
+      [](double a, double b) { return a + b; });
 }
 
 /// Partitions of closed bodies as they are.
@@ -254,11 +273,17 @@ bool partition_by_roles(SurfaceModel& model, const FaceScene& scene, const Segme
   if (!nesting.core.empty()) {
     // Core pieces that are not the hidden body fall back to the wall around them. The wall may then reach beyond the
     // shell, so that nothing is nested any more.
-    for (std::size_t f = 0; f < roles.size(); ++f) {
-      const std::uint32_t c = nesting.components.of_face[f];
-      if (nesting.role[c] == FaceRole::kCore && !nesting.core[c]) roles[f] = FaceRole::kInside;
+    bool others = false;
+    for (std::size_t c = 0; c < nesting.role.size(); ++c)
+      others = others || (nesting.role[c] == FaceRole::kCore && !nesting.core[c]);
+    if (others) {
+      parallel_for(static_cast<std::int64_t>(roles.size()), kPartGrain, [&](std::int64_t i) {
+        const auto f = static_cast<std::size_t>(i);
+        const std::uint32_t c = nesting.components.of_face[f];
+        if (nesting.role[c] == FaceRole::kCore && !nesting.core[c]) roles[f] = FaceRole::kInside;
+      });
+      nesting = find_nesting(model, scene, options, roles);
     }
-    nesting = find_nesting(model, scene, options, roles);
   }
   if (nesting.core.empty()) {
     store_bodies(model, find_components(model, scene, std::vector<std::uint8_t>(roles.size(), 0)), options, report);

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "core/base/parallel.h"
 #include "core/mesh/fans.h"
 #include "core/mesh/vertex_attributes.h"
 
@@ -18,15 +19,31 @@ struct Around {
   bool patch;  ///< the triangle is of a fill patch
 };
 
+/// What add(triangle, items) finds of all triangles, in their order.
+template <class Item, class Add>
+std::vector<Item> gather_from(const TriangleSoup& soup, const Add& add) {
+  using Items = std::vector<Item>;
+  return parallel_reduce<Items>(
+      static_cast<std::int64_t>(soup.triangles.size()), 1 << 16, {},
+      [&](std::int64_t begin, std::int64_t end) {
+        Items part;
+        for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) add(t, part);
+        return part;
+      },
+      [](Items all, const Items& part) {
+        all.insert(all.end(), part.begin(), part.end());
+        return all;
+      });
+}
+
 std::vector<Around> find_around(const TriangleSoup& soup, std::uint32_t dual) {
-  std::vector<Around> around;
-  for (std::size_t i = 0; i < soup.triangles.size(); ++i)
+  return gather_from<Around>(soup, [&](std::size_t i, std::vector<Around>& around) {
     for (const std::uint32_t v : soup.triangles[i]) {
       if (v < dual) continue;
       for (const std::uint32_t w : soup.triangles[i])
         if (w < dual) around.push_back({v - dual, w, i >= soup.first_patch_triangle});
     }
-  return around;
+  });
 }
 
 std::vector<glm::vec3> normals_of_added(const SurfaceModel& model, const TriangleSoup& soup,
@@ -107,14 +124,13 @@ Result<std::vector<std::uint32_t>> split_fans(TriangleSoup& soup, const std::vec
     std::uint32_t triangle;
     std::uint32_t next, previous;  ///< the other two vertices, in order
   };
-  std::vector<Corner> corners;
-  for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
+  auto corners = gather_from<Corner>(soup, [&](std::size_t t, std::vector<Corner>& found) {
     const Triangle& triangle = soup.triangles[t];
     for (std::size_t c = 0; c < 3; ++c)
       if (triangle[c] < border.size() && border[triangle[c]] != 0)
-        corners.push_back(
+        found.push_back(
             {triangle[c], soup.group[t], static_cast<std::uint32_t>(t), triangle[(c + 1) % 3], triangle[(c + 2) % 3]});
-  }
+  });
   if (cancelled()) return cancelled_error();
   std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
     return std::tie(a.vertex, a.group, a.triangle) < std::tie(b.vertex, b.group, b.triangle);

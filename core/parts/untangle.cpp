@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "core/base/log.h"
+#include "core/base/parallel.h"
 #include "core/extract/triangulate.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh/intersections.h"
@@ -20,6 +21,7 @@ constexpr int kRounds = 6;  ///< of moves between two attempts to add vertices
 constexpr int kMostSplits = 2;
 constexpr int kMostCounted = 1000;
 constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr std::int64_t kTangleGrain = 1 << 14;
 constexpr float kBeside = 6.0f;  ///< steps that moves reach
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
@@ -38,16 +40,19 @@ class Tangle {
 
   /// Pairs of crossing triangles that matter; `near`: only among triangles beside these.
   Pairs crossings(const Pairs* near = nullptr) const {
-    Pairs pairs;
-    if (near == nullptr) {
-      pairs = self_intersections(positions_, triangles_);
-    } else {
-      const std::vector<std::uint32_t> some = beside(*near);
-      std::vector<Triangle> triangles;
-      for (const std::uint32_t t : some) triangles.push_back(triangles_[t]);
-      pairs = self_intersections(positions_, triangles);
-      for (auto& [a, b] : pairs) a = some[a], b = some[b];
+    std::vector<std::uint32_t> some;
+    if (near != nullptr) some = beside(*near);
+    const std::size_t count = near == nullptr ? triangles_.size() : some.size();
+    std::vector<Triangle> triangles(near == nullptr ? 0 : count);
+    std::vector<std::uint8_t> of_patch(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t t = near == nullptr ? i : some[i];
+      if (near != nullptr) triangles[i] = triangles_[t];
+      of_patch[i] = owner_[t].patch != kNone;
     }
+    Pairs pairs = self_intersections(positions_, near == nullptr ? triangles_ : triangles, of_patch);
+    if (near != nullptr)
+      for (auto& [a, b] : pairs) a = some[a], b = some[b];
     std::erase_if(pairs, [&](const auto& pair) { return !matters(pair[0], pair[1]); });
     return pairs;
   }
@@ -92,6 +97,7 @@ class Tangle {
   std::int64_t split(const Pairs& pairs) {
     std::int64_t splits = 0;
     std::vector<bool> touched(triangles_.size(), false);
+    index_sides(pairs);
     for (const auto& pair : pairs)
       for (const std::uint32_t t : pair)
         if (owner_[t].patch != kNone && !touched[t]) splits += split_triangle(t, touched);
@@ -102,23 +108,26 @@ class Tangle {
 
   /// Back into the model.
   void store() const {
+    std::vector<std::uint32_t> place(patch_of_vertex_.size());  // of an added vertex among those of its patch
+    std::vector<std::vector<std::uint32_t>> extras(model_.patches.size()), own(model_.patches.size());
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      std::vector<std::uint32_t>& of_patch = extras[patch_of_vertex_[i]];
+      place[i] = static_cast<std::uint32_t>(of_patch.size());
+      of_patch.push_back(first_extra_ + static_cast<std::uint32_t>(i));
+    }
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+      if (owner_[t].patch != kNone) own[owner_[t].patch].push_back(t);
     for (std::size_t p = 0; p < model_.patches.size(); ++p) {
       FillPatch& patch = model_.patches[p];
       if (inside_body(patch)) continue;
-      std::vector<std::uint32_t> extras;
-      for (std::uint32_t v = first_extra_; v < positions_.size(); ++v)
-        if (patch_of_vertex_[v - first_extra_] == p) extras.push_back(v);
-      patch.extra_positions.resize(extras.size());
-      if (!patch.evidence.empty()) patch.evidence.resize(extras.size(), evidence_byte(Evidence::kInferred));
-      for (std::size_t i = 0; i < extras.size(); ++i) patch.extra_positions[i] = positions_[extras[i]];
+      patch.extra_positions.resize(extras[p].size());
+      if (!patch.evidence.empty()) patch.evidence.resize(extras[p].size(), evidence_byte(Evidence::kInferred));
+      for (std::size_t i = 0; i < extras[p].size(); ++i) patch.extra_positions[i] = positions_[extras[p][i]];
       patch.triangles.clear();
-      for (std::size_t t = 0; t < triangles_.size(); ++t) {
-        if (owner_[t].patch != p) continue;
+      for (const std::uint32_t t : own[p]) {
         Triangle out = triangles_[t];
         for (std::uint32_t& v : out)
-          if (v >= first_extra_)
-            v = static_cast<std::uint32_t>(
-                dual_ + static_cast<std::size_t>(std::lower_bound(extras.begin(), extras.end(), v) - extras.begin()));
+          if (v >= first_extra_) v = static_cast<std::uint32_t>(dual_ + place[v - first_extra_]);
         patch.triangles.push_back(out);
       }
     }
@@ -152,16 +161,30 @@ class Tangle {
     }
   }
 
+  /// The triangles of the surface beside those of patches, in their order.
   void add_surface(const Triangulation& surface) {
-    BrickSet near;
-    for (const Triangle& t : triangles_) near.add(box_of(positions_, t).grown(1.0f));
-    for (std::size_t q = 0; q < model_.mesh.quads.size(); ++q)
-      for (std::size_t t = surface.first_triangle[q]; t < surface.first_triangle[q + 1]; ++t) {
-        if (!near.meets(box_of(positions_, surface.triangles[t]))) continue;
-        triangles_.push_back(surface.triangles[t]);
-        const PartitionId body = body_of(model_.quad_partition.empty() ? PartitionId{0} : model_.quad_partition[q]);
-        owner_.push_back({kNone, body, PartitionTable::kNone});
-      }
+    std::vector<TriangleBox> boxes;
+    for (const Triangle& t : triangles_) boxes.push_back(box_of(positions_, t).grown(1.0f));
+    const BrickSet near(boxes);
+    using Found = std::vector<std::array<std::uint32_t, 2>>;  // a triangle and its x-quad
+    const Found found = parallel_reduce<Found>(
+        model_.mesh.quad_count(), kTangleGrain, {},
+        [&](std::int64_t begin, std::int64_t end) {
+          Found part;
+          for (auto q = static_cast<std::uint32_t>(begin); q < static_cast<std::uint64_t>(end); ++q)
+            for (std::uint32_t t = surface.first_triangle[q]; t < surface.first_triangle[q + 1]; ++t)
+              if (near.meets(box_of(positions_, surface.triangles[t]))) part.push_back({t, q});
+          return part;
+        },
+        [](Found all, const Found& part) {
+          all.insert(all.end(), part.begin(), part.end());
+          return all;
+        });
+    for (const auto& [t, q] : found) {
+      triangles_.push_back(surface.triangles[t]);
+      const PartitionId body = body_of(model_.quad_partition.empty() ? PartitionId{0} : model_.quad_partition[q]);
+      owner_.push_back({kNone, body, PartitionTable::kNone});
+    }
   }
 
   bool matters(std::uint32_t a, std::uint32_t b) const {
@@ -174,9 +197,10 @@ class Tangle {
   }
 
   std::vector<std::uint32_t> beside(const Pairs& pairs) const {
-    BrickSet bricks;
+    std::vector<TriangleBox> boxes;
     for (const auto& pair : pairs)
-      for (const std::uint32_t t : pair) bricks.add(box_of(positions_, triangles_[t]).grown(kBeside));
+      for (const std::uint32_t t : pair) boxes.push_back(box_of(positions_, triangles_[t]).grown(kBeside));
+    const BrickSet bricks(boxes);
     std::vector<std::uint32_t> some;
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
       if (bricks.meets(box_of(positions_, triangles_[t]))) some.push_back(t);
@@ -203,14 +227,22 @@ class Tangle {
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
 
-  /// Triangles beside the star of a vertex, wherever it may be moved.
+  /// Triangles beside the star of a vertex, wherever it may be moved, and those of the star among them.
   void look_around(std::uint32_t v) {
+    const auto& star = star_[v - first_extra_];
     TriangleBox box{positions_[v], positions_[v]};
-    for (const std::uint32_t t : star_[v - first_extra_]) {
+    for (const std::uint32_t t : star) {
       const TriangleBox one = box_of(positions_, triangles_[t]);
       box = {glm::min(box.low, one.low), glm::max(box.high, one.high)};
     }
     grid_.near(box.grown(1.0f), near_);
+    const auto of_star = std::stable_partition(near_.begin(), near_.end(), [&](std::uint32_t t) {
+      return std::find(star.begin(), star.end(), t) == star.end();
+    });
+    near_star_.assign(of_star, near_.end());
+    near_.erase(of_star, near_.end());
+    near_boxes_.clear();
+    for (const std::uint32_t t : near_) near_boxes_.push_back(box_of(positions_, triangles_[t]));
   }
 
   /// How many of them the star of a vertex at `place` crosses, counted up to `most`; `met`: movable vertices of those.
@@ -218,15 +250,18 @@ class Tangle {
     const glm::vec3 before = positions_[v];
     positions_[v] = place;
     int count = 0;
-    const auto& star = star_[v - first_extra_];
-    for (const std::uint32_t t : star)
-      for (const std::uint32_t other : near_) {
-        if (count >= most) break;
-        if (!triangles_cross(positions_, triangles_[t], triangles_[other]) || !matters(t, other)) continue;
-        if (other < t && std::find(star.begin(), star.end(), other) != star.end()) continue;
-        ++count;
-        if (met != nullptr) add_corners(other, *met);
-      }
+    const auto look_at = [&](std::uint32_t t, std::uint32_t other) {
+      if (count >= most || !matters(t, other) || !triangles_cross(positions_, triangles_[t], triangles_[other])) return;
+      ++count;
+      if (met != nullptr) add_corners(other, *met);
+    };
+    for (const std::uint32_t t : star_[v - first_extra_]) {
+      const TriangleBox box = box_of(positions_, triangles_[t]);
+      for (std::size_t i = 0; i < near_.size(); ++i)
+        if (box.meets(near_boxes_[i])) look_at(t, near_[i]);
+      for (const std::uint32_t other : near_star_)
+        if (other > t) look_at(t, other);
+    }
     positions_[v] = before;
     return count;
   }
@@ -296,14 +331,22 @@ class Tangle {
     return 1;
   }
 
+  /// The sides of triangles of patches in pairs, as all are now. Splitting leaves those of triangles that it does not
+  /// touch.
+  void index_sides(const Pairs& pairs) {
+    sides_ = {};
+    for (const auto& pair : pairs)
+      for (const std::uint32_t t : pair)
+        for (std::size_t i = 0; i < 3; ++i) sides_.want(triangles_[t][i], triangles_[t][(i + 1) % 3]);
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+      if (owner_[t].patch != kNone) sides_.add(t, triangles_[t]);
+  }
+
   /// The one other triangle of the patch on the edge that runs from `to` to `from`.
   std::uint32_t across(std::uint32_t t, std::uint32_t from, std::uint32_t to) const {
     std::uint32_t found = kNone;
-    for (std::uint32_t other = 0; other < triangles_.size(); ++other) {
+    for (const std::uint32_t other : sides_.triangles(from, to)) {
       if (other == t || owner_[other].patch != owner_[t].patch) continue;
-      const Triangle& c = triangles_[other];
-      const bool has = std::count(c.begin(), c.end(), from) != 0 && std::count(c.begin(), c.end(), to) != 0;
-      if (!has) continue;
       if (found != kNone) return kNone;
       found = other;
     }
@@ -320,8 +363,10 @@ class Tangle {
   std::vector<std::uint32_t> patch_of_vertex_;  ///< of positions from first_extra_ on
   TriangleGrid grid_;
   std::vector<std::vector<std::uint32_t>> star_;
+  SideTable sides_;  ///< see index_sides()
   std::vector<bool> moved_;
-  std::vector<std::uint32_t> near_;
+  std::vector<std::uint32_t> near_, near_star_;  ///< see look_around()
+  std::vector<TriangleBox> near_boxes_;          ///< of near_
 };
 
 }  // namespace
