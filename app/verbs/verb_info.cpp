@@ -9,6 +9,7 @@
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
 #include "app/publish/surface_facts.h"
+#include "core/base/budget.h"
 #include "core/base/units.h"
 #include "core/exa/exa_file.h"
 #include "core/mesh_io/mesh_io.h"
@@ -25,6 +26,7 @@ struct InfoRequest {
   std::string in;
   InputOptionTexts input;
   Detail detail = Detail::kAuto;
+  std::string memory;
 };
 
 std::string length_text(const VoxelSize& voxel) {
@@ -62,6 +64,10 @@ json forecast_json(const Result<Forecast>& forecast) {
 
 Result<VerbResult> volume_info(const InfoRequest& options, Progress& progress) {
   DUBSAR_ASSIGN(const ImportOptions import, parse_input_options(options.in, options.input));
+  if (!options.memory.empty()) {
+    DUBSAR_ASSIGN(const std::uint64_t bytes, parse_bytes(options.memory));
+    set_memory_limit(bytes);
+  }
   DUBSAR_ASSIGN(const std::unique_ptr<ImportedVolume> volume, open_volume(import));
   const VolumeInfo& info = volume->info();
   const Dims dims = volume->dims();
@@ -192,6 +198,7 @@ Verb add_info_verb(Arguments program) {
   command.reads("FILE", options->in, "volume (HDF5, NRRD, TIFF, raw), EXA, PLY, STL, OBJ or GLB").required();
   command.choice<Detail>("--detail", options->detail, choices_of(kDetails),
                          "for what process will take: grid of the surface, as there (auto, scan, half)");
+  command.value("--memory", options->memory, "for the same: most memory that it may take, such as 6G").called("SIZE");
   add_input_options(command, options->input);
   command.footer(
       "Examples:\n  dubsar info scan.h5\n  dubsar info scan.h5:/entry/data/data\n  dubsar info tablet.exa --json -");

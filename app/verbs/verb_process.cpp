@@ -167,10 +167,13 @@ Result<VerbResult> run(ProcessRequest options, const Arguments command, const Co
   if (command.given("--threshold")) p.threshold = static_cast<float>(options.threshold);
   Result<PipelineResult> made = run_pipeline(p, progress);
   if (!made && made.error().kind == ErrorKind::kTryAgain)
-    made.error().message += "; take --detail half, a part of the scan with --crop, or fewer voxels with --stride";
+    made.error().message +=
+        "; allow more with --memory, take --detail half where it is not taken yet, a part of the scan with --crop, or "
+        "fewer voxels with --stride";
   DUBSAR_ASSIGN(PipelineResult result, std::move(made));
   DUBSAR_TRY(write_product(options.out, result, p.exa_profile, progress));
   DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(result.model));
+  result.model = {};  // it is in the file
   DUBSAR_ASSIGN(const SurfaceFacts facts, surface_facts(mesh));
   VerbResult out;
   out.json = report_json(result.report, p);

@@ -23,6 +23,8 @@ constexpr double kSecondsPerRay = 1.0 / 13e6;
 constexpr double kContactSeconds = 14.0;  ///< at the scan's resolution
 // The rest of memory: the program, its slabs and threads; and, where contact is traced, of each voxel of the grid.
 constexpr double kProgramBytes = 80e6, kContactBytesPerVoxel = 12.6;
+// Where the outside is looked for: volumes of signs that are there at a time, and what is known of each vertex.
+constexpr double kSignVolumes = 6.5, kSegmentBytesPerVertex = 125.0;
 constexpr double kProductBytesPerVertex = 0.45, kLightBytesPerVertex = 0.07;
 constexpr double kExtractOfDenoising = 0.3;  ///< what sharpening and extraction take of the time of the filter's passes
 constexpr double kEfficiency = 0.85;         ///< of more than one thread
@@ -71,6 +73,21 @@ double decoded_per_read(const SlabSource& scan, std::int64_t slices, std::int64_
 
 }  // namespace
 
+Dims grid_of(const Dims& scan, bool half) {
+  const auto halved = [&](std::int64_t n) { return half && n > 1 ? n / 2 : n; };
+  return {halved(scan.x), halved(scan.y), halved(scan.z)};
+}
+
+std::uint64_t bytes_of_run(const Dims& grid, double vertices, GridPlace place, bool contact) {
+  const auto voxels = static_cast<double>(grid.count());
+  const double floats = place == GridPlace::kMemory ? 4.0 * voxels : 0.0, signs = voxels / 8.0;
+  const double volume = signs + floats + 4.0 * vertices;
+  const double surface = signs + vertices * kSurfaceBytesPerVertex;
+  const double outside = kSignVolumes * signs + vertices * kSegmentBytesPerVertex;
+  const double traced = contact ? kContactBytesPerVoxel * voxels : 0.0;
+  return static_cast<std::uint64_t>(std::max({surface, volume, outside, traced}));
+}
+
 Result<Forecast> forecast(SlabSource& scan, const ForecastOptions& options, Progress& progress) {
   Forecast result;
   const std::uint64_t left = options.budget.limit_bytes();
@@ -89,8 +106,7 @@ Result<Forecast> forecast(SlabSource& scan, const ForecastOptions& options, Prog
   DUBSAR_ASSIGN(const Threshold threshold, choose_threshold(std::nullopt, denoised.steps.back().estimates));
 
   const Dims part = denoised.grid.dims();
-  const auto halved = [&](std::int64_t n) { return half && n > 1 ? n / 2 : n; };
-  result.grid = {halved(scan.dims().x), halved(scan.dims().y), halved(scan.dims().z)};
+  result.grid = grid_of(scan.dims(), half);
   const std::int64_t depth = std::min(part.z, kGroupAfter);
   std::int64_t cells = 0, layers = 0;
   for (std::int64_t z = 0; z + depth <= part.z; z += depth) {
@@ -124,11 +140,7 @@ Result<Forecast> forecast(SlabSource& scan, const ForecastOptions& options, Prog
   result.wall_s = threads > 1 ? result.core_s / (kEfficiency * threads) : result.core_s;
 
   const GridPlace place = place_for(result.grid, options.budget);
-  const double floats = place == GridPlace::kMemory ? 4.0 * all : 0.0, signs = all / 8.0;
-  const double surface = signs + vertices * kSurfaceBytesPerVertex;
-  const double volume = signs + floats + 4.0 * vertices;
-  const double traced = contact ? kContactBytesPerVoxel * all : 0.0;
-  result.memory_bytes = static_cast<std::uint64_t>(kProgramBytes + std::max({surface, volume, traced}));
+  result.memory_bytes = static_cast<std::uint64_t>(kProgramBytes) + bytes_of_run(result.grid, vertices, place, contact);
   result.scratch_bytes = place == GridPlace::kScratch ? static_cast<std::uint64_t>(4.0 * all) : 0;
   result.product_bytes = static_cast<std::uint64_t>(
       vertices * (kProductBytesPerVertex + (options.occlusion_rays > 0 ? kLightBytesPerVertex : 0.0)));

@@ -27,7 +27,13 @@ struct Forecast {
 };
 
 /// Memory of the stages that work on the surface, for each vertex: measured (docs/speed.md).
-inline constexpr double kSurfaceBytesPerVertex = 250.0;
+inline constexpr double kSurfaceBytesPerVertex = 200.0;
+
+/// The grid on which the surface of a scan is found.
+Dims grid_of(const Dims& scan, bool half);
+
+/// Most that a run takes at any time beside the program itself. `contact`: it is traced.
+std::uint64_t bytes_of_run(const Dims& grid, double vertices, GridPlace place, bool contact);
 
 /// Reads about 96 slices of the scan. Within 30 % on phantoms of 10 to 3,000 million voxels (docs/speed.md). Errors:
 /// those of the source; kBadData when no threshold can be given or there is no surface; kCancelled.

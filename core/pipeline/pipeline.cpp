@@ -6,6 +6,7 @@
 #include "core/base/json_text.h"
 #include "core/exa/exa_file.h"
 #include "core/pipeline/forecast.h"
+#include "core/pipeline/room_check.h"
 
 namespace dubsar {
 namespace {
@@ -25,6 +26,7 @@ SurfaceModel assemble(GridFrame frame, SurfaceSamples samples, QuadMesh mesh, Ve
 Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& progress) {
   StageClock clock;
   const StageRun run{clock, progress};
+  DUBSAR_TRY(check_room(options.import, options.detail, run));
   DUBSAR_ASSIGN(ImportedGrid imported, import_grid(options.import, options.detail, options.estimate, run));
   DUBSAR_ASSIGN(DenoisedGrid denoised,
                 denoise(std::move(imported.grid), imported.grid_name, options.denoise, options.estimate, run));

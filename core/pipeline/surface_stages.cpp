@@ -98,7 +98,7 @@ Result<SurfaceModel> shade(SurfaceModel model, const OcclusionOptions& options, 
 
 Result<MeshCheck> check_product(const SurfaceModel& model, StageRun run) {
   run.clock.start("check", "triangle");
-  DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model, {.progress = &run.progress}));
+  DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model, {.attributes = false, .progress = &run.progress}));
   const MeshCheck check = check_mesh(mesh.positions, mesh.triangles);
   run.clock.finish(check.triangles);
   return check;

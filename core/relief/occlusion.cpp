@@ -204,6 +204,20 @@ std::vector<PartitionId> bodies_of_vertices(const LitSurface& surface) {
   return bodies;
 }
 
+/// The triangles of a body: where they lie together as they are, else copied to `own`.
+std::span<const Triangle> triangles_of(const LitSurface& surface, PartitionId id, std::vector<Triangle>& own) {
+  const auto& bodies = surface.bodies;
+  const auto first = std::find(bodies.begin(), bodies.end(), id);
+  const auto end = std::find_if(first, bodies.end(), [&](PartitionId other) { return other != id; });
+  if (std::find(end, bodies.end(), id) == bodies.end())
+    return surface.triangles.subspan(static_cast<std::size_t>(first - bodies.begin()),
+                                     static_cast<std::size_t>(end - first));
+  own.clear();
+  for (std::size_t t = 0; t < bodies.size(); ++t)
+    if (bodies[t] == id) own.push_back(surface.triangles[t]);
+  return own;
+}
+
 }  // namespace
 
 SkyRays sky_rays(int count) {
@@ -244,12 +258,7 @@ Result<std::vector<float>> ambient_light(const LitSurface& surface, const Occlus
   for (std::size_t id = 0; id < used.size(); ++id) {
     if (!used[id]) continue;
     std::span<const Triangle> part = triangles;
-    if (!bodies.empty()) {
-      own.clear();
-      for (std::size_t t = 0; t < triangles.size(); ++t)
-        if (bodies[t] == id) own.push_back(triangles[t]);
-      part = own;
-    }
+    if (!bodies.empty()) part = triangles_of(surface, static_cast<PartitionId>(id), own);
     DUBSAR_ASSIGN(const auto tracer, device ? TriangleTracer::create(*device, part, sky, options.radius_vox, progress)
                                             : BrickTracer::create(positions, part, sky, options.radius_vox, progress));
     ids.clear();

@@ -253,6 +253,7 @@ class Builder {
     std::vector<BlockOut> out(block_count());
     parallel_chunks(static_cast<std::int64_t>(out.size()), 16, [&](std::int64_t begin, std::int64_t end) {
       const auto work = std::make_unique<BlockCorners>();
+      BlockOut found;
       for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
         if (lists.first[b] == lists.first[b + 1]) continue;
         if (progress_.cancelled()) return;
@@ -263,7 +264,11 @@ class Builder {
           const glm::vec3 p = corner(t, 0) - low, q = corner(t, 1) - low, r = corner(t, 2) - low;
           work->add(p, q, r, glm::normalize(glm::cross(q - p, r - p)));
         }
-        find_bricks(*work, out[b]);
+        found.places.clear();
+        found.bricks.clear();
+        found.corners.clear();
+        find_bricks(*work, found);
+        out[b] = found;  // a copy has no room to spare
       }
     });
     return out;
