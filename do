@@ -31,6 +31,7 @@ usage() {
 ./do bench    run the benchmarks; ./do bench displays: only those of many views;
               ./do bench exa: bits and speed of the surface format, beside Draco and meshoptimizer
               ./do bench paper [--size XxYxZ] [--no-ao]: Table 2 of the paper line by line, per core too
+              ./do bench stages [--size N] [--no-meshlab]: every stage on one core beside VTK, ITK, Embree and MeshLab
               ./do bench linear: four sizes, how cost grows; exit code 1 where an exponent is off 1.0 by more than .1
               ./do bench killed: kill -9 at 20 random moments, then --resume; exit code 1 where bytes differ
               ./do bench scanner [--size XxYxZ] [--memory 6G]: a scan larger than memory, 3072x3072x1944 by default
@@ -194,6 +195,14 @@ bench() {
     (deps f3d meshlab xdotool) || echo "do: going on without f3d and MeshLab beside it" >&2
     build_target --target dubsar
     /usr/bin/python3 tests/bench/view_bench.py "$build/app/dubsar" --json "$build/view_bench.json" "${@:2}"
+    return
+  fi
+  if [ "${1:-}" = stages ]; then
+    (deps python3-vtk9 libinsighttoolkit5-dev meshlab xvfb xauth) || echo "do: going on without VTK, ITK and MeshLab beside it" >&2
+    build_target --target stage_bench
+    build_target --target itk_stages || echo "do: ITK is not there" >&2
+    /usr/bin/python3 tests/bench/stage_bench.py "$build/tests/bench/stage_bench" --itk "$build/tests/bench/itk_stages" \
+      --json "$build/bench_stages.json" --history "$build/bench_history.jsonl" "${@:2}"
     return
   fi
   case "${1:-}" in
