@@ -97,7 +97,7 @@ Observer Stage::Parts::viewer_at(const FollowedEyes& eyes) const {
 Observer Stage::Parts::cameras() const {
   Observer out = next.viewer;
   const SinkTraits traits = sink->traits();
-  if (!options.lens_zoom || traits.views > 1 || traits.worn) return out;
+  if (!next.shown.lens_zoom || traits.views > 1 || traits.worn) return out;
   for (glm::dvec3* const eye : {&out.left_mm, &out.right_mm, &out.nominal_mm})
     *eye = plane.aside_mm + next.shown.view.zoom * (*eye - plane.aside_mm);
   return out;

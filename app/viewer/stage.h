@@ -54,7 +54,6 @@ struct StageOptions {
   double magnification = 0.0;  ///< 1: life size at zoom 1; 0: as large as fits
   Subject subject = Subject::kSurface;
   std::shared_ptr<const ViewPictures> pictures{};  ///< these in place of the mesh
-  bool lens_zoom = true;  ///< of one view: as camera_mm() says; false: the eyes stay where they are
 };
 
 /// What stands on and around the surface: measures, notes. In mm of the model.
@@ -79,12 +78,14 @@ struct Shown {
   /// Another one in the left half of every view, this one in the right half; null: this one alone. What that shows
   /// beside it is not looked at.
   std::shared_ptr<const Shown> beside{};
+  bool lens_zoom = true;  ///< of one view: as Stage::camera_mm() says; false: the eyes stay where they are
   friend bool operator==(const Shown& a, const Shown& b) {
     return a.light == b.light && a.clips == b.clips && a.fog == b.fog && a.marks == b.marks && a.before == b.before &&
            a.view.rotation == b.view.rotation && a.view.zoom == b.view.zoom && a.view.pan == b.view.pan &&
            a.view.light_azimuth_deg == b.view.light_azimuth_deg &&
            a.view.light_elevation_deg == b.view.light_elevation_deg && a.fit == b.fit && a.style == b.style &&
-           a.other == b.other && a.parts == b.parts && !a.beside == !b.beside && (!a.beside || *a.beside == *b.beside);
+           a.other == b.other && a.parts == b.parts && a.lens_zoom == b.lens_zoom && !a.beside == !b.beside &&
+           (!a.beside || *a.beside == *b.beside);
   }
 };
 

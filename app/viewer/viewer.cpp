@@ -46,8 +46,6 @@ Viewer::~Viewer() {
 }
 
 Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& note) {
-  // Who leads a session shows hands, which are as far away as they are.
-  given_.options.stage.lens_zoom = given_.options.guide == nullptr;
   const StageOptions& stage = given_.options.stage;
   said_.commands = std::make_unique<CommandTable>();
   if (given_.options.commands.empty()) {
@@ -331,6 +329,7 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
   move_light(now, view);
   Shown shown = shown_of(seen, view, given_.options.stage, stage_->box_mm());
   shown.before = at_.guidance.lines;
+  shown.lens_zoom = given_.options.guide == nullptr;  // who leads shows hands, which are as far away as they are
   shown.marks = marks_of(seen, desk(), shown.parts, *tools_.font, letters_scale());
   if (desk().beside) shown.beside = beside(view);
   if (shows_slices()) lay_slices(shown);
