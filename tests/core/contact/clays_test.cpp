@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/contact/sides.h"
+#include "core/contact/clay_sides.h"
 
 namespace dubsar {
 namespace {
