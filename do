@@ -299,13 +299,14 @@ pictures() {
 strips() {
   deps
   cmake --preset "$preset" >/dev/null
-  cmake --build "$build" -j "$jobs" --target dubsar make_strips
+  cmake --build "$build" -j "$jobs" --target dubsar make_strips make_gallery_strips
   local dubsar=$build/app/dubsar work=$build/strips
   mkdir -p "$work"
   [ -f "$work/scan.h5" ] || "$dubsar" phantom "$work/scan.h5" --preset demo
   [ -f "$work/tablet.exa" ] || "$dubsar" process "$work/scan.h5" -o "$work/tablet.exa"
   "$dubsar" export "$work/tablet.exa" "$work/tablet.ply" --partition tablet
-  "$build/tests/app/make_strips" "$work/tablet.ply" docs/scripts docs "$@"
+  [ "${1:-gallery}" != gallery ] || "$build/tests/app/make_gallery_strips" "$work/tablet.exa" docs/scripts/gallery.json docs
+  [ "${1:-}" = gallery ] || "$build/tests/app/make_strips" "$work/tablet.ply" docs/scripts docs "$@"
 }
 
 verb=${1:-}

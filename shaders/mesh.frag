@@ -1,7 +1,8 @@
 #version 450 core
 // Ambient, diffuse and specular light (Blinn-Phong) in linear colours, or the vertex colours as they are, in one look
 // or two. SHADOWED: the key light is cast (QUICK: with harder rims); PEELED: only what lies before the opaque and
-// behind the peeled depths; INFERRED: hatched; FOGGY; BENT: radiance scaling; BLENDED: two looks.
+// behind the peeled depths; INFERRED: hatched; FOGGY; BENT: radiance scaling; BLENDED: two looks;
+// GLOWING: warm light around a line of sight.
 #include "style.glsl"
 #include "light.glsl"
 
@@ -82,6 +83,17 @@ vec3 surface_color() {
   return seen;
 }
 
+#ifdef GLOWING
+const vec3 kWarm = vec3(0.69, 0.37, 0.053);
+
+/// Most in its middle, nothing with no edge where it has faded; clay that is dark by itself glows, too.
+vec3 glowing(vec3 seen) {
+  vec2 aside = view_position.xy - (views[view_of_vertex].view_from_unit * vec4(glow.xyz, 1.0)).xy;
+  float near = max(1.0 - dot(aside, aside) / (fog_depth.w * fog_depth.w), 0.0);
+  return seen + glow.w * near * near * kWarm * (0.12 + 1.1 * seen);
+}
+#endif
+
 #ifdef FILLED
 const vec3 kSection = vec3(0.30, 0.19, 0.12), kSectionLine = vec3(0.10, 0.055, 0.03);  // burnt clay
 #include "section.glsl"
@@ -113,6 +125,9 @@ void main() {
   }
 #endif
   color = vec4(surface_color(), 1.0);
+#ifdef GLOWING
+  color.rgb = glowing(color.rgb);
+#endif
 #ifdef FOGGY
   float far = clamp((-view_position.z - fog_depth.x) / (fog_depth.y - fog_depth.x), 0.0, 1.0);
   color = mix(color, fog_color, far * fog_depth.z);

@@ -22,7 +22,8 @@ layout(std140, binding = 1) uniform Style {
   vec4 hatch;            // stripes along the axes of the unit cube
   vec4 fog_color;        // linear, premultiplied
   vec4 background;       // linear, premultiplied
-  vec4 fog_depth;        // from, to, how much at most
+  vec4 fog_depth;        // from, to, how much at most; w: of the glow, where it has faded, mm
+  vec4 glow;             // place in the unit cube, strength
   mat4 map_from_unit;    // shadow map: texture coordinates and depth
   mat4 map_from_normal;  // of the offset along the normal
   vec4 clip_plane[8];    // in the unit cube; what is below 0 goes

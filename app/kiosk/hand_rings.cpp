@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 
 namespace dubsar::app {
@@ -10,6 +13,8 @@ namespace {
 constexpr double kAcross = 0.45;                  // of the panel's width and height, to each side
 constexpr double kBefore = 0.12, kBehind = 0.05;  // of its height
 constexpr double kOpenRadius = 0.055, kClosedRadius = 0.026, kRestRadius = 0.072;
+constexpr double kWithin = 0.72;  // of the object's extent: there is object, whatever its shape
+constexpr double kGlowRadius = 0.2, kNear = 0.8, kFar = 0.4, kGlowEase_s = 0.35;
 constexpr int kSegments = 40;
 constexpr Rgb8 kAmber{217, 164, 65}, kGrey{150, 150, 150};
 
@@ -55,6 +60,43 @@ std::vector<LinesItem> hand_rings(const RingStage& stage, std::span<const HandMa
     if (hand.resting > 0.0) out.push_back(arc(at, height * kRestRadius, std::min(hand.resting, 1.0), 6.0, kAmber));
   }
   return out;
+}
+
+Glow object_glow(const RingStage& stage, std::span<const HandMark> hands, std::span<const ScreenRect> objects) {
+  Glow out;
+  double nearest = std::numeric_limits<double>::max();
+  const double height = stage.window_mm.y;
+  for (const HandMark& hand : hands) {
+    const bool holds = hand.state == HandState::kHolding;
+    if (!holds && hand.state != HandState::kReady) continue;
+    const glm::dvec2 ring(ring_place_mm(stage, hand.place_m));
+    for (const ScreenRect& rect : objects) {
+      const glm::dvec2 middle = 0.5 * (rect.min_mm + rect.max_mm);
+      const glm::dvec2 half = glm::max(kWithin * 0.5 * (rect.max_mm - rect.min_mm), glm::dvec2(1e-3));
+      const double out_by = glm::length((ring - middle) / half);
+      const glm::dvec2 at = out_by > 1.0 ? middle + (ring - middle) / out_by : ring;
+      const double apart = glm::distance(ring, at);
+      const double rank = apart - (holds ? 10.0 * height : 0.0);
+      if (rank >= nearest) continue;
+      nearest = rank;
+      out.at_mm = glm::dvec3(at, 0.0);
+      out.radius_mm = kGlowRadius * height;
+      out.strength = holds ? 1.0 : std::lerp(kNear, kFar, std::min(1.0, apart / (0.5 * height)));
+    }
+  }
+  return out;
+}
+
+const Glow& EasedGlow::update(const Glow& wanted, double dt_s) {
+  const double step = dt_s / kGlowEase_s, left = std::exp(-3.0 * step);
+  if (wanted.strength > 0) {
+    const bool was = shown_.strength > 0;
+    shown_.at_mm = was ? glm::mix(wanted.at_mm, shown_.at_mm, left) : wanted.at_mm;
+    shown_.radius_mm = wanted.radius_mm;
+  }
+  const double apart = wanted.strength - shown_.strength;
+  shown_.strength = std::clamp(shown_.strength + std::clamp(apart, -step, step), 0.0, 1.0);
+  return shown_;
 }
 
 }  // namespace dubsar::app

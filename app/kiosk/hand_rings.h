@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "app/viewer/object_places.h"
 #include "display/render/scene.h"
 #include "input/people/hand_marks.h"
 
@@ -21,5 +22,18 @@ glm::dvec3 ring_place_mm(const RingStage& stage, const glm::dvec3& place_m) noex
 /// One ring a hand that closes as the hand does, amber when it may take hold or holds, grey otherwise; around it the
 /// share of a selection by holding still.
 std::vector<LinesItem> hand_rings(const RingStage& stage, std::span<const HandMark> hands);
+
+/// Where the nearest hand that holds or may take hold would take the object: on it, on the side where the hand is, the
+/// brighter the nearer the hand's ring is. Strength 0: nobody could.
+Glow object_glow(const RingStage& stage, std::span<const HandMark> hands, std::span<const ScreenRect> objects);
+
+/// Follows a glow without a jump: it comes and goes, and moves on, within a third of a second. One thread.
+class EasedGlow {
+ public:
+  const Glow& update(const Glow& wanted, double dt_s);
+
+ private:
+  Glow shown_{};
+};
 
 }  // namespace dubsar::app

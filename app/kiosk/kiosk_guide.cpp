@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "app/document/document.h"
-#include "app/kiosk/hand_rings.h"
 #include "core/base/log.h"
 
 namespace dubsar::app {
@@ -227,6 +226,11 @@ void KioskGuide::begin_tour(const GuideMoment& moment) {
 void KioskGuide::move_on(const GuideMoment& moment, const VisitPicture& visit, Guidance& out) {
   const double dt =
       motion_.last < 0 ? 0.0 : std::clamp(1e-9 * static_cast<double>(moment.now - motion_.last), 0.0, 0.2);
+  const bool takes = visit.phase != VisitPhase::kAsleep;
+  out.glow = motion_.glow.update(
+      takes ? object_glow({parts_.zone, moment.window_mm, moment.middle_mm}, moment.steered.hands, moment.objects)
+            : Glow(),
+      dt);
   motion_.last = moment.now;
   const bool sways = visit.phase == VisitPhase::kAttract;
   if (sways && motion_.sway == 0.0) motion_.sway_since = moment.now;
@@ -257,7 +261,7 @@ GalleryPicture KioskGuide::picture(const VisitPicture& visit) const {
   GalleryPicture out;
   const std::string& spoken = language();
   if (visit.line) out.line = parts_.words.say(*visit.line, spoken);
-  if (visit.phase == VisitPhase::kAttract && !parts_.trouble.empty())
+  if (visit.phase == VisitPhase::kAttract && (!parts_.trouble.empty() || !told_.panel.empty()))
     out.line = parts_.words.say(Line::kNoPanel, spoken);
   out.right_to_left = Words::right_to_left(spoken);
   out.lesson = visit.lesson;
@@ -297,6 +301,10 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
   phase_ = visit.phase;
   if (visit.arrived) write("visit");
   if (visit.reset) write("reset");
+  if (moment.trouble != told_.panel) {
+    told_.panel = moment.trouble;
+    if (!told_.panel.empty()) write("trouble");
+  }
   if (const std::int64_t hour = wall.unix_s / 3600; hour != told_.hour) {
     if (told_.hour >= 0) {
       const Visit::Counts& counts = visit_.counts();

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "app/kiosk/hand_rings.h"
 #include "app/kiosk/journal.h"
 #include "app/kiosk/kiosk_profile.h"
 #include "app/kiosk/operator_menu.h"
@@ -56,6 +57,7 @@ class KioskGuide final : public SessionGuide {
   struct Motion {  ///< what goes on by itself
     double unpack = 0.0, unpack_goal = 0.0, sway = 0.0, dark = 0.0;
     TimestampNs last = -1, sway_since = 0;
+    EasedGlow glow{};
     bool shown = false;
     bool begun = false;  ///< the object's tour is known
   };
@@ -68,6 +70,7 @@ class KioskGuide final : public SessionGuide {
   /// What was told to others, and when.
   struct Told {
     std::string trouble;  ///< of the journal
+    std::string panel;    ///< that cannot be shown
     std::int64_t hour = -1, looked = -1, tours = 0;
     bool ended = false, ready = false;  ///< ready: to the service manager
   };

@@ -14,25 +14,13 @@ namespace {
 using nlohmann::json;
 
 constexpr std::string_view kProfileFormat = "dubsar kiosk";
-constexpr std::size_t kMostObjects = 64, kMostTexts = 32;
+constexpr std::size_t kMostObjects = 64, kMostTexts = 32, kMostPanels = 4;
 
-constexpr std::array<std::string_view, 17> kMembers{"format",
-                                                    "version",
-                                                    "objects",
-                                                    "languages",
-                                                    "words",
-                                                    "display",
-                                                    "monitor",
-                                                    "inputs",
-                                                    "idle_reset_s",
-                                                    "attract_after_s",
-                                                    "quiet",
-                                                    "brightness",
-                                                    "reading_distance_m",
-                                                    "pin",
-                                                    "key_file",
-                                                    "journal",
-                                                    "comment"};
+constexpr std::array<std::string_view, 18> kMembers{
+    "format", "version",  "objects",      "languages",       "words", "display",    "monitor",
+    "panels", "inputs",   "idle_reset_s", "attract_after_s", "quiet", "brightness", "reading_distance_m",
+    "pin",    "key_file", "journal",      "comment"};
+constexpr std::array<std::string_view, 3> kPanelMembers{"display", "monitor", "size"};
 constexpr std::array<std::string_view, 5> kObjectMembers{"file", "tour", "title", "parts", "style"};
 
 /// Reads, and keeps the first thing wrong.
@@ -115,6 +103,24 @@ KioskObject read_object(Reader& reader, const json& object, std::size_t index) {
   return out;
 }
 
+KioskPanel read_panel(Reader& reader, const json& object, std::size_t index) {
+  KioskPanel out;
+  const std::string where = fmt::format("panels[{}]: ", index);
+  if (!object.is_object()) {
+    reader.complain(where + "no panel found, expected {\"display\": \"anaglyph\", \"monitor\": \"HDMI-2\"}");
+    return out;
+  }
+  reader.only(object, kPanelMembers, where);
+  JsonFields fields(object, fmt::format("panels[{}]", index));
+  out.display = fields.text("display", "mono");
+  out.monitor = fields.text("monitor", "");
+  out.size = fields.text("size", "");
+  if (out.monitor.empty() && out.size.empty())
+    reader.complain(where + "neither \"monitor\" nor \"size\" is given: it would stand before the first panel");
+  if (const auto done = fields.finish(); !done) reader.complain(done.error().message);
+  return out;
+}
+
 bool is_pin(std::string_view text) {
   return text.size() >= 4 && text.size() <= 12 &&
          std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
@@ -143,6 +149,12 @@ Result<KioskProfile> parse_kiosk_profile(std::string_view json_text, std::string
     reader.complain(fmt::format("\"objects\" is no list of 1 to {} objects", kMostObjects));
   else
     for (const json& item : object.at("objects")) out.objects.push_back(read_object(reader, item, out.objects.size()));
+  if (object.contains("panels")) {
+    if (!object.at("panels").is_array() || object.at("panels").size() > kMostPanels)
+      reader.complain(fmt::format("\"panels\" is no list of at most {} panels", kMostPanels));
+    else
+      for (const json& item : object.at("panels")) out.panels.push_back(read_panel(reader, item, out.panels.size()));
+  }
   if (object.contains("languages")) out.languages = reader.strings(object, "languages", 16);
   if (out.languages.empty()) reader.complain("\"languages\" names none");
   out.inputs = reader.strings(object, "inputs", 16);

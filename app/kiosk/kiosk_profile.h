@@ -23,14 +23,20 @@ struct KioskObject {
   std::string style = "relief";
 };
 
+/// A further panel that shows the same.
+struct KioskPanel {
+  std::string display, monitor{}, size{};  ///< as of `dubsar view --also`
+};
+
 struct KioskProfile {
   std::vector<KioskObject> objects;          ///< at least one
   std::vector<std::string> languages{"en"};  ///< the first one is spoken at first
   std::filesystem::path words{};             ///< changes to the program's sentences; empty: none
   std::string display = "mono", monitor{};   ///< as of `dubsar view`; monitor empty: where the panel is
-  std::vector<std::string> inputs{};         ///< as of `dubsar view --input`; empty: what is plugged in, no keyboard
-  double idle_reset_s = 90.0;                ///< without a hand, until all is as at the beginning
-  double attract_after_s = 8.0;              ///< without a hand, until the object moves by itself
+  std::vector<KioskPanel> panels{};
+  std::vector<std::string> inputs{};  ///< as of `dubsar view --input`; empty: what is plugged in, no keyboard
+  double idle_reset_s = 90.0;         ///< without a hand, until all is as at the beginning
+  double attract_after_s = 8.0;       ///< without a hand, until the object moves by itself
   std::vector<QuietHours> quiet{};
   double brightness = 1.0;  ///< 0.1..1
   double reading_distance_m = 1.5;

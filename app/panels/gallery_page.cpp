@@ -6,11 +6,13 @@
 #include <numbers>
 
 #include "app/panels/lesson_picture.h"
+#include "app/panels/panel_font.h"
 
 namespace dubsar::app {
 namespace {
 
-constexpr float kCapital = 0.73f;  // height of a capital, of the size of the panels' font
+constexpr float kSentenceRoom = 0.88f;  // for a sentence, of the panel's width
+constexpr double kLargestLetters = 0.075, kSmallerLetters = 0.8;
 constexpr ImGuiWindowFlags kBare = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav |
                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
                                    ImGuiWindowFlags_NoBackground;
@@ -19,10 +21,10 @@ constexpr ImGuiWindowFlags kBare = ImGuiWindowFlags_NoDecoration | ImGuiWindowFl
 float draw_words(const std::string& words, float size_px, float width, float bottom, bool right_to_left) {
   if (words.empty()) return bottom;
   ImFont* const font = ImGui::GetFont();
-  const float room = 0.88f * width;
-  const ImVec2 whole = font->CalcTextSizeA(size_px, 1e6f, 0.0f, words.c_str());
-  const float fitted = std::max(size_px * std::min(1.0f, 2.0f * room / std::max(whole.x, 1.0f)), 0.5f * size_px);
-  const ImVec2 text = font->CalcTextSizeA(fitted, 1e6f, room, words.c_str());
+  const float room = kSentenceRoom * width;
+  const SetWords set = set_words(words, size_px, width);
+  const auto fitted = static_cast<float>(set.size);
+  const ImVec2 text(static_cast<float>(set.wide), static_cast<float>(set.tall));
   const float left = right_to_left ? 0.5f * (width + room) - text.x : 0.5f * (width - text.x);
   const float pad = 0.4f * fitted;
   const ImVec2 at(left, bottom - text.y - pad);
@@ -115,6 +117,20 @@ double letter_height_mm(double reading_distance_m) noexcept {
   return 1e3 * reading_distance_m * kArcMinutes / 60.0 * std::numbers::pi / 180.0;
 }
 
+double letters_size(double letter_mm, double height, double per_mm) noexcept {
+  return std::min(letter_mm * per_mm / panel_capital(), kLargestLetters * height);
+}
+
+SetWords set_words(const std::string& words, double size, double width) {
+  ImFont* const font = ImGui::GetFont();
+  const float room = kSentenceRoom * static_cast<float>(width);
+  const float whole = font->CalcTextSizeA(static_cast<float>(size), 1e6f, 0.0f, words.c_str()).x;
+  const double fits = 1.9 * room / std::max(whole, 1.0f);  // on two lines that are not quite full
+  const auto set = static_cast<float>(size * std::clamp(fits, kSmallerLetters, 1.0));
+  const ImVec2 text = font->CalcTextSizeA(set, 1e6f, room, words.c_str());
+  return {static_cast<double>(set), static_cast<double>(text.x), static_cast<double>(text.y)};
+}
+
 void draw_gallery(const GalleryPicture& picture, float width, float height, float px_per_mm) {
   ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
   ImGui::SetNextWindowSize(ImVec2(width, height));
@@ -124,8 +140,7 @@ void draw_gallery(const GalleryPicture& picture, float width, float height, floa
   if (picture.dark > 0.0)
     list.AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(width, height),
                        ImGui::GetColorU32(ImVec4(0.0f, 0.0f, 0.0f, static_cast<float>(picture.dark))));
-  // No letter is larger than what leaves the object its place.
-  const float size = std::min(static_cast<float>(picture.letter_mm) * px_per_mm / kCapital, 0.07f * height);
+  const auto size = static_cast<float>(letters_size(picture.letter_mm, height, px_per_mm));
   float bottom = height - 0.03f * height;
   bottom = draw_words(picture.line, size, width, bottom, picture.right_to_left);
   if (picture.lesson) {

@@ -1,6 +1,9 @@
 #include "app/panels/panel_font.h"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
+#include <string_view>
 
 // The file goes into the program as it is; the assembler reads it, which takes
 // no time for a compiler.
@@ -24,6 +27,32 @@ extern const unsigned char dubsar_panel_font_end[];
 namespace dubsar::app {
 
 std::span<const unsigned char> panel_font() { return {dubsar_panel_font, dubsar_panel_font_end}; }
+
+/// From the font's own tables: "OS/2" tells capitals, "hhea" the size.
+double panel_capital() noexcept {
+  const std::span<const unsigned char> font = panel_font();
+  const auto word = [&](std::size_t at) {
+    return at + 2 <= font.size() ? static_cast<std::int16_t>(font[at] << 8 | font[at + 1]) : std::int16_t{0};
+  };
+  const auto table = [&](std::string_view tag) {
+    constexpr std::size_t kFirst = 12, kEach = 16;
+    for (std::size_t i = 0; i < static_cast<std::uint16_t>(word(4)); ++i) {
+      const std::size_t row = kFirst + kEach * i;
+      if (row + kEach > font.size()) break;
+      if (std::equal(tag.begin(), tag.end(), font.begin() + static_cast<std::ptrdiff_t>(row)))
+        return static_cast<std::size_t>(static_cast<std::uint16_t>(word(row + 8))) << 16 |
+               static_cast<std::uint16_t>(word(row + 10));
+    }
+    return font.size();
+  };
+  const std::size_t metrics = table("OS/2"), lines = table("hhea");
+  constexpr std::size_t kCapital = 88, kAscent = 4, kDescent = 6;
+  const double size = word(lines + kAscent) - word(lines + kDescent);
+  constexpr double kUsual = 0.626;  // DejaVu Sans, whose table is too old to tell
+  const bool tells = word(metrics) >= 2 && size > 0;
+  const double capital = tells ? word(metrics + kCapital) / size : 0.0;
+  return capital > 0.3 && capital < 1.0 ? capital : kUsual;
+}
 
 const std::uint16_t* panel_letters() {
   static constexpr std::array<std::uint16_t, 13> kLetters{0x20,   0x17f,  0x1e00, 0x1eff, 0x2b0,  0x2ff, 0x2070,

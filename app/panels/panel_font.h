@@ -9,6 +9,9 @@ namespace dubsar::app {
 
 std::span<const unsigned char> panel_font();
 
+/// Height of its capitals, of the size that text is set in (from the lowest to the highest letter).
+double panel_capital() noexcept;
+
 /// The letters that panels use of it, as ranges (first, last ... 0): those of European languages, of transliterations
 /// of Akkadian and Sumerian, and digits above and below the line.
 const std::uint16_t* panel_letters();

@@ -13,6 +13,7 @@
 #include "app/verbs/view_files.h"
 #include "app/verbs/view_kiosk.h"
 #include "app/verbs/view_outcome.h"
+#include "app/verbs/view_panels.h"
 #include "core/base/atomic_file.h"
 #include "core/base/log.h"
 #include "core/base/parse_number.h"
@@ -32,6 +33,7 @@ struct What {
 struct Panel {
   std::string display = "mono", size, monitor;
   std::vector<std::string> plugins;  // files
+  std::vector<std::string> also;     // displays
   int samples = 0, bridge_port = kBridgePort, ui_scale = 0;
   bool offscreen = false, fullscreen = false, windowed = false;
 };
@@ -82,6 +84,34 @@ Result<Screen> parse_screen(const std::string& text) {
   return screen;
 }
 
+Result<void> add_panels(const ViewRequest& options, ViewOptions& view) {
+  for (const std::string& text : options.panel.also) {
+    DUBSAR_ASSIGN(const AskedPanel asked, parse_asked_panel(text));
+    if (options.panel.offscreen && !asked.monitor.empty())
+      return fail(ErrorKind::kUsage, "--also {}: a monitor is for windows, expected no --offscreen", text);
+    DUBSAR_ASSIGN(SidePanelOptions panel, side_panel(asked, options.panel.plugins, options.panel.bridge_port));
+    view.also.push_back(std::move(panel));
+  }
+  return {};
+}
+
+/// Those of a kiosk: one that cannot be is said, and the others are shown.
+void add_panels(const ViewRequest& options, const KioskProfile& profile, ViewOptions& view) {
+  for (const KioskPanel& panel : profile.panels) {
+    const AskedPanel asked{panel.display, options.panel.offscreen ? std::string() : panel.monitor, panel.size};
+    auto made = side_panel(asked, options.panel.plugins, options.panel.bridge_port);
+    if (made) {
+      view.also.push_back(*std::move(made));
+      continue;
+    }
+    SidePanelOptions missing;
+    missing.name = panel.display;
+    missing.window.monitor = asked.monitor;
+    missing.problem = made.error().message;
+    view.also.push_back(std::move(missing));
+  }
+}
+
 Result<ViewOptions> view_options(const ViewRequest& options) {
   ViewOptions view;
   DUBSAR_ASSIGN(DisplayChoice choice,
@@ -99,6 +129,7 @@ Result<ViewOptions> view_options(const ViewRequest& options) {
     DUBSAR_ASSIGN(view.mapping, parse_mapping(text, options.people.mapping));
   }
   DUBSAR_ASSIGN(view.inputs, source_texts(options));
+  DUBSAR_TRY(add_panels(options, view));
   if (!options.people.steps.empty()) {
     DUBSAR_ASSIGN(const std::string steps, read_text_file(options.people.steps));
     DUBSAR_ASSIGN(view.steps, parse_steps(steps, options.people.steps));
@@ -181,6 +212,7 @@ Result<VerbResult> run_kiosk_of(const ViewRequest& given, Progress& progress) {
       DUBSAR_ASSIGN(view.mapping, gallery_mapping());
     }
     DUBSAR_TRY(one.panel.offscreen ? without_window(one, view) : with_window(one, view));
+    add_panels(one, profile, view);
     view.work.upright = !one.panel.offscreen && one.what.view == "front";
     view.work.surface = object.file;
     view.around.title = object.file.filename().string();
@@ -193,6 +225,7 @@ Result<VerbResult> run_kiosk_of(const ViewRequest& given, Progress& progress) {
   out.json["resets"] = done.counts.resets;
   out.text += fmt::format("{} visits, {} times back to the beginning\n", done.counts.visits, done.counts.resets);
   add_sources(done.last.rows, out);
+  add_panel_states(done.last, out);
   return out;
 }
 
@@ -266,6 +299,7 @@ Result<VerbResult> run(const ViewRequest& options, Progress& progress) {
                                     done.triangles, view.time.fps > 0);
   if (!options.panel.offscreen) add_intervals(done, out);
   add_sources(done.rows, out);
+  add_panel_states(done, out);
   return out;
 }
 
@@ -290,6 +324,11 @@ Verb add_view_verb(Arguments program) {
   for (const std::string_view source : input_source_names())
     sources += (sources.empty() ? "" : ", ") + std::string(source);
   command.value("--display", options->panel.display, "NAME[:options]: " + sinks);
+  command
+      .value("--also", options->panel.also,
+             "another panel that shows the same: NAME[:options][,monitor=NAME][,size=WxH]")
+      .called("DISPLAY")
+      .one_word_each_time();
   command.value("--plugin", options->panel.plugins, "a display from a shared library; loading it runs its code")
       .called("FILE.so")
       .one_word_each_time();

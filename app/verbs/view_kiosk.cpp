@@ -85,13 +85,14 @@ Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) 
   parts.notify_socket = environment("NOTIFY_SOCKET");
   parts.watchdog_us = static_cast<std::int64_t>(parse_number(environment("WATCHDOG_USEC")).value_or(0.0));
   KioskGuide guide(std::move(parts));
+  KeptPanels kept;  // no desktop is seen between two objects
   for (std::size_t at = 0; at < meshes.size(); at = guide.object()) {
     DUBSAR_ASSIGN(ViewOptions view, session.options(profile, profile.objects[at], out.display));
     view.guide = &guide;
     view.around.notices = view.around.panels = false;
     view.files.autosave.clear();
     guide.begin_object();
-    DUBSAR_ASSIGN(out.last, run_view(meshes[at], view, progress));
+    DUBSAR_ASSIGN(out.last, run_view(meshes[at], view, progress, {}, nullptr, &kept));
     out.triangles = meshes[at].triangles.size();
     ++out.sessions;
     if (!guide.ended()) break;  // its time or its scripts are over

@@ -67,6 +67,16 @@ void add_sources(const std::vector<SourceRow>& rows, VerbResult& out) {
   }
 }
 
+void add_panel_states(const ViewResult& done, VerbResult& out) {
+  if (done.also.empty()) return;
+  out.json["also"] = nlohmann::json::array();
+  for (const PanelOutcome& panel : done.also) {
+    out.json["also"].push_back({{"display", panel.display}, {"frames", panel.frames}, {"trouble", panel.trouble}});
+    out.text += panel.trouble.empty() ? fmt::format("panel {}: {} frames\n", panel.display, panel.frames)
+                                      : fmt::format("panel {}: {}\n", panel.display, panel.trouble);
+  }
+}
+
 void add_intervals(const ViewResult& done, VerbResult& out) {
   if (done.first.window_s) {
     out.json["window_s"] = *done.first.window_s;

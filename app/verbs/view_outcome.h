@@ -15,6 +15,9 @@ VerbResult describe_session(const std::string& display, const ViewResult& done, 
 /// How the sources were at the end.
 void add_sources(const std::vector<SourceRow>& rows, VerbResult& out);
 
+/// How the further panels were at the end.
+void add_panel_states(const ViewResult& done, VerbResult& out);
+
 /// From picture to picture, of all that were presented while things moved.
 void add_intervals(const ViewResult& done, VerbResult& out);
 

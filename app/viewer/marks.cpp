@@ -77,7 +77,7 @@ class Marker {
     label.text = std::move(text);
     label.at_mm = at;
     label.shift_px = {9.0, 7.0};
-    label.height_px = 19.0;
+    label.height_px = kMarkLettersPx;
     label.color = color;
     label.border = kGroundColor;
     return out_.labels.emplace_back(std::move(label));

@@ -6,6 +6,8 @@
 
 namespace dubsar::app {
 
+inline constexpr double kMarkLettersPx = 19.0;  ///< of a label on a plain monitor
+
 /// Those of parts that are shown, where their parts stand. `font` outlives the pictures of them. `scale` times as large
 /// as on a plain monitor.
 Marks marks_of(const Document& document, const Desk& desk, const PartLooks& parts, LabelFont& font, double scale = 1.0);

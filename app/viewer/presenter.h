@@ -15,6 +15,8 @@ namespace dubsar::app {
 class Presenter {
  public:
   virtual ~Presenter() = default;
+  /// Its GL context is that of the thread from now on.
+  virtual Result<void> make_current() = 0;
   /// The stage may have another display or place now: makes surfaces that fit it.
   virtual Result<void> fit(const SinkTraits& traits) = 0;
   virtual Surface surface() = 0;
@@ -52,6 +54,7 @@ class FilePresenter final : public Presenter {
  public:
   /// kUnavailable without EGL.
   static Result<std::unique_ptr<FilePresenter>> create();
+  Result<void> make_current() override { return context_->make_current(); }
   Result<void> fit(const SinkTraits& traits) override;
   Surface surface() override { return surface_->surface(); }
   Result<Image> picture() override { return surface_->read(); }

@@ -4,6 +4,7 @@
 #include <deque>
 #include <system_error>
 
+#include "app/viewer/side_panels.h"
 #include "app/viewer/window_presenter.h"
 #include "core/base/large_blocks.h"
 #include "core/base/log.h"
@@ -78,14 +79,20 @@ class Figures {
 class Loop {
  public:
   Loop(const ViewOptions& options, Progress& progress) : options_(options), progress_(progress) {}
-  Result<ViewResult> run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look, Shelf* shelf);
+  Result<ViewResult> run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look, Shelf* shelf,
+                         KeptPanels* kept);
 
  private:
   bool simulated() const noexcept { return options_.time.fps > 0; }
   TimestampNs step() const { return static_cast<TimestampNs>(1e9 / options_.time.fps); }
   const Clock& clock() const noexcept { return simulated() ? static_cast<const Clock&>(manual_) : steady_; }
   Result<void> draw(bool& drawn);
+  /// Where the next picture becomes a file, without its ending; empty: nowhere.
+  std::string frame_file() const;
+  Result<void> take(KeptPanels& kept, std::unique_ptr<OutputSink>& sink);
+  void give(KeptPanels& kept);
   Result<void> write_picture();
+  Result<void> follow(bool due, const std::string& frame);
   bool ends(TimestampNs start);
 
   ViewOptions options_;
@@ -95,18 +102,23 @@ class Loop {
   ManualClock manual_;                    // of simulated time; outlives the sources
   std::unique_ptr<Presenter> presenter_;  // all else has GL objects
   std::unique_ptr<Viewer> viewer_;
+  std::unique_ptr<SidePanels> also_;  // what they show is the viewer's
   Figures figures_;
   ViewResult out_;
   std::int64_t steps_ = 0;
   int failures_ = 0;
 };
 
-Result<void> Loop::write_picture() {
+std::string Loop::frame_file() const {
   if (options_.files.frames.empty() || (!simulated() && out_.frames % options_.files.every != 0)) return {};
+  return (options_.files.frames / fmt::format("frame-{:05}", simulated() ? steps_ : out_.frames)).string();
+}
+
+Result<void> Loop::write_picture() {
+  const std::string file = frame_file();
+  if (file.empty()) return {};
   DUBSAR_ASSIGN(const Image picture, presenter_->picture());
-  const std::string name =
-      fmt::format("frame-{:05}{}.png", simulated() ? steps_ : out_.frames, viewer_->stage().traits().file_suffix);
-  DUBSAR_TRY(write_png((options_.files.frames / name).string(), picture));
+  DUBSAR_TRY(write_png(fmt::format("{}{}.png", file, viewer_->stage().traits().file_suffix), picture));
   ++out_.written;
   return {};
 }
@@ -127,6 +139,39 @@ Result<void> Loop::draw(bool& drawn) {
   return {};
 }
 
+/// The windows of the session before, with what is on them.
+Result<void> Loop::take(KeptPanels& kept, std::unique_ptr<OutputSink>& sink) {
+  presenter_ = std::move(kept.main);
+  also_ = std::move(kept.also);
+  DUBSAR_TRY(presenter_->make_current());
+  StageOptions& stage = options_.stage;
+  stage.display = kept.display;
+  stage.screen = presenter_->screen(stage.screen);
+  stage.stereo_window = presenter_->window() != nullptr && presenter_->window()->stereo();
+  DUBSAR_ASSIGN(sink, stage.catalog->make(stage.display));
+  return {};
+}
+
+void Loop::give(KeptPanels& kept) {
+  also_->drop_surface();
+  kept.display = options_.stage.display;
+  if (GlfwWindow* const window = presenter_->window()) {
+    window->on_event({});
+    window->on_drop({});
+  }
+  viewer_.reset();
+  kept.also = std::move(also_);
+  kept.main = std::move(presenter_);
+}
+
+/// The other panels.
+Result<void> Loop::follow(bool due, const std::string& frame) {
+  if (also_->empty() || (simulated() && !due)) return {};
+  DUBSAR_TRY(also_->follow(*viewer_, clock().now(), frame));
+  viewer_->set_trouble(also_->trouble());
+  return {};
+}
+
 bool Loop::ends(TimestampNs start) {
   const TimestampNs now = clock().now();
   if (options_.guide != nullptr) {
@@ -139,12 +184,15 @@ bool Loop::ends(TimestampNs start) {
   return now - start >= static_cast<TimestampNs>(1e9 * options_.time.longest_s);
 }
 
-Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look, Shelf* shelf) {
+Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const ViewMoment&)>& look, Shelf* shelf,
+                             KeptPanels* kept) {
   DUBSAR_TRY(check(options_));
   return_large_blocks();  // textures, each time the window changes
   std::string note;
   std::unique_ptr<OutputSink> sink;
-  if (options_.window) {
+  if (kept != nullptr && kept->main) {
+    DUBSAR_TRY(take(*kept, sink));
+  } else if (options_.window) {
     DUBSAR_ASSIGN(presenter_, WindowPresenter::create(options_, sink, note));
   } else {
     DUBSAR_ASSIGN(presenter_, FilePresenter::create());
@@ -154,6 +202,11 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
     manual_.set(step());
   }
   DUBSAR_ASSIGN(viewer_, Viewer::create(mesh, options_, *presenter_, clock(), std::move(sink), note, shelf));
+  if (also_)
+    also_->begin(options_);
+  else
+    also_ = std::make_unique<SidePanels>(options_, *presenter_);
+  viewer_->on_surface_change([this] { also_->drop_surface(); });
   progress_.begin("view", 0, "frame");
   const TimestampNs start = clock().now();
   const auto delay = static_cast<TimestampNs>(1e9 * options_.time.display_delay_s);
@@ -181,6 +234,7 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
     bool drawn = false;
     const bool due =
         simulated() ? steps_ % options_.files.every == 0 : damaged || viewer_->needs_paint() || viewer_->fields() > 1;
+    const std::string frame = due && presenter_->visible() ? frame_file() : std::string();
     if (due && presenter_->visible()) {
       const auto done = draw(drawn);
       failures_ = done ? 0 : failures_ + 1;
@@ -191,6 +245,7 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
       }
       progress_.advance(1);
     }
+    DUBSAR_TRY(follow(due, frame));
     if (look)
       look({.report = report, .drawn = drawn, .frames = out_.frames, .viewer = *viewer_, .presenter = *presenter_});
     over = ends(start);
@@ -198,7 +253,7 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
       DUBSAR_TRY(viewer_->flush());
       manual_.advance(step());
     } else if (!over) {
-      presenter_->wait(viewer_->needs_paint() || report.moving);
+      presenter_->wait(viewer_->needs_paint() || report.moving || also_->need_paint());
     }
   }
   progress_.end();
@@ -209,18 +264,23 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
   out_.display = viewer_->display();
   out_.rows = viewer_->sources();
   out_.sources = viewer_->source_states();
+  out_.also = also_->states();
   out_.document = viewer_->document();
   out_.triangles = viewer_->mesh().triangles.size();
   DUBSAR_TRY(viewer_->finish(true));
+  if (kept != nullptr && options_.window) give(*kept);
   return std::move(out_);
 }
 
 }  // namespace
 
+KeptPanels::KeptPanels() = default;
+KeptPanels::~KeptPanels() = default;
+
 Result<ViewResult> run_view(const TriMesh& mesh, const ViewOptions& options, Progress& progress,
-                            const std::function<void(const ViewMoment&)>& look, Shelf* shelf) {
+                            const std::function<void(const ViewMoment&)>& look, Shelf* shelf, KeptPanels* kept) {
   Loop loop(options, progress);
-  return loop.run(mesh, look, shelf);
+  return loop.run(mesh, look, shelf, kept);
 }
 
 }  // namespace dubsar::app

@@ -6,10 +6,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/document/document.h"
 #include "app/panels/gallery_page.h"
+#include "app/viewer/object_places.h"
 #include "app/viewer/source_set.h"
 #include "app/viewer/steering.h"
 #include "display/render/scene.h"
@@ -22,6 +24,8 @@ struct GuideMoment {
   const Document& document;
   std::span<const SourceRow> sources;
   glm::dvec2 window_mm{1.0}, middle_mm{0.0};  ///< what the panel shows across, and its middle in the screen frame
+  std::span<const ScreenRect> objects{};      ///< where what is shown stands, one or more that stand apart
+  std::string_view trouble{};                 ///< a panel of the session that cannot be shown now, in words
 };
 
 /// What is shown in place of the document's own state, such as a step of a tour.
@@ -36,6 +40,7 @@ struct Guidance {
   std::vector<std::string> commands{};      ///< done now
   glm::dquat turn{1.0, 0.0, 0.0, 0.0};      ///< the object is turned this much further in this picture
   std::vector<LinesItem> lines{};           ///< in the screen frame, mm
+  Glow glow{};                              ///< on the object; in the screen frame
   std::optional<GuidedScene> scene{};       ///< none: the document
   std::optional<GalleryPicture> picture{};  ///< over everything else; none: what there always is
   bool end = false;                         ///< the session is over

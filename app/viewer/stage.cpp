@@ -254,6 +254,7 @@ std::optional<double> Stage::measuring() const noexcept {
 }
 
 bool Stage::moved() const noexcept { return parts_->moved(); }
+const Shown& Stage::shown() const noexcept { return parts_->next.shown; }
 
 bool Stage::needs_paint() const noexcept {
   const Parts& p = *parts_;
@@ -274,6 +275,7 @@ void Stage::Parts::set_scene(const Shown& shown, int half) {
   painted.light.azimuth_deg = shown.view.light_azimuth_deg;
   painted.light.elevation_deg = shown.view.light_elevation_deg;
   painted.fog = shown.fog.strength > 0 ? shown.fog : options.shading.fog;
+  painted.glow = shown.glow;
   painted.clips = dubsar::moved(options.shading.clips, world);
   for (const ClipPlane& clip : dubsar::moved(shown.clips, world)) painted.clips.push_back(clip);
   painted.items = {MeshItem{&*object.mesh, world, shown.style, shown.parts, shown.other}};

@@ -75,14 +75,15 @@ struct Shown {
   Fog fog{};                       ///< none: the stage's own
   Marks marks{};
   std::vector<LinesItem> before{};  ///< people's hands: mm of the screen frame
+  Glow glow{};                      ///< where one would take hold, in the screen frame
   /// Another one in the left half of every view, this one in the right half; null: this one alone. What that shows
   /// beside it is not looked at.
   std::shared_ptr<const Shown> beside{};
   bool lens_zoom = true;  ///< of one view: as Stage::camera_mm() says; false: the eyes stay where they are
   friend bool operator==(const Shown& a, const Shown& b) {
     return a.light == b.light && a.clips == b.clips && a.fog == b.fog && a.marks == b.marks && a.before == b.before &&
-           a.view.rotation == b.view.rotation && a.view.zoom == b.view.zoom && a.view.pan == b.view.pan &&
-           a.view.light_azimuth_deg == b.view.light_azimuth_deg &&
+           a.glow == b.glow && a.view.rotation == b.view.rotation && a.view.zoom == b.view.zoom &&
+           a.view.pan == b.view.pan && a.view.light_azimuth_deg == b.view.light_azimuth_deg &&
            a.view.light_elevation_deg == b.view.light_elevation_deg && a.fit == b.fit && a.style == b.style &&
            a.other == b.other && a.parts == b.parts && a.lens_zoom == b.lens_zoom && !a.beside == !b.beside &&
            (!a.beside || *a.beside == *b.beside);
@@ -138,6 +139,7 @@ class Stage {
 
   /// What the next picture shows, at `now`.
   void show(const Shown& shown, const FollowedEyes& eyes, TimestampNs now);
+  const Shown& shown() const noexcept;
   /// Whether it differs from the last picture: an eye moved by more than 0.05 mm, or anything else.
   bool moved() const noexcept;
   /// True when paint() would make another picture than it did last: moved(), the overlay or the display changed, or

@@ -57,6 +57,7 @@ struct Stage::Parts {
     std::vector<ClipPlane> clips;
     Light light;
     Fog fog;
+    Glow glow;
     TimestampNs moved_at = 0;
   };
   struct Over {
@@ -93,7 +94,7 @@ struct Stage::Parts {
   glm::dmat4 placed() const { return placed(next.shown, 1); }
   bool moved() const noexcept;
   SceneView scene() const {
-    return {painted.items, painted.light, painted.clips, options.shading.background, painted.fog};
+    return {painted.items, painted.light, painted.clips, options.shading.background, painted.fog, painted.glow};
   }
   bool has_mesh() const noexcept { return object.mesh.has_value(); }
   void set_scene() { set_scene(next.shown, 1); }

@@ -46,6 +46,23 @@ struct SessionFiles {
   std::filesystem::path autosave{};  ///< copy of the document while somebody works and after it
 };
 
+/// Another panel of the same session (side_panels.h).
+struct SidePanelOptions {
+  std::string name{};  ///< what messages call its display
+  SinkSpec display{"mono"};
+  std::shared_ptr<SinkCatalog> catalog = std::make_shared<SinkCatalog>();
+  WindowOptions window{};            ///< where the session has windows
+  std::optional<bool> fullscreen{};  ///< as ViewOptions::fullscreen
+  Screen screen{};                   ///< where it has none, what the display does not know better
+  std::string problem{};             ///< not empty: why it cannot be shown, now or ever
+};
+
+/// How one stands when the session is over.
+struct PanelOutcome {
+  std::string display{}, trouble{};  ///< trouble: why it could not be shown at last; empty: it could
+  int frames = 0;
+};
+
 /// What stands around the surface.
 struct SessionWords {
   bool panels = false;  ///< on displays of one view; a key shows them on all
@@ -76,7 +93,8 @@ struct ViewOptions {
       steps{};                      ///< said at their times, from the first picture on; one that fails ends the session
   std::vector<Command> commands{};  ///< in place of those that change what is looked at
   SessionWords around{};
-  SessionGuide* guide = nullptr;  ///< leads the session and says when it ends; null: nobody does. Outlives it
+  std::vector<SidePanelOptions> also{};  ///< further panels, which show the same
+  SessionGuide* guide = nullptr;         ///< leads the session and says when it ends; null: nobody does. Outlives it
 };
 
 /// What went into one picture. Times are those of the session's clock.
@@ -97,7 +115,12 @@ struct FirstPictures {
   std::optional<double> window_s{}, surface_s{};
 };
 
-struct ViewResult {
+/// Of the further panels.
+struct SidePanelResults {
+  std::vector<PanelOutcome> also{};
+};
+
+struct ViewResult : SidePanelResults {
   int frames = 0, written = 0;
   FirstPictures first{};
   std::size_t triangles = 0;  ///< of the surface that was shown last

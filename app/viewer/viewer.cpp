@@ -282,7 +282,8 @@ void Viewer::lead(TimestampNs now, const Steered& steered) {
   SessionGuide* const guide = given_.options.guide;
   if (guide == nullptr) return;
   const std::vector<SourceRow> rows = sources_->rows();
-  at_.guidance = guide->lead({now, steered, document(), rows, stage_->window_mm(), stage_->middle_mm()});
+  at_.guidance = guide->lead(
+      {now, steered, document(), rows, stage_->window_mm(), stage_->middle_mm(), displays_.objects, displays_.trouble});
   for (const std::string& command : at_.guidance.commands) run(command, kGuideSteps);
   if (!at_.guidance.scene || !at_.guidance.scene->keep) return;
   keep_up();
@@ -303,6 +304,12 @@ Document Viewer::guided_document(const GuidedScene& scene) const {
   out.now = document().now;
   out.light = document().light;
   return out;
+}
+
+void Viewer::set_trouble(const std::string& words) {
+  if (words == displays_.trouble) return;
+  displays_.trouble = words;
+  say(words.empty() ? "all panels are there" : words);
 }
 
 void Viewer::presented(TimestampNs now) {
@@ -330,10 +337,12 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
   Shown shown = shown_of(seen, view, given_.options.stage, stage_->box_mm());
   shown.before = at_.guidance.lines;
   shown.lens_zoom = given_.options.guide == nullptr;  // who leads shows hands, which are as far away as they are
+  shown.glow = at_.guidance.glow;
   shown.marks = marks_of(seen, desk(), shown.parts, *tools_.font, letters_scale());
   if (desk().beside) shown.beside = beside(view);
   if (shows_slices()) lay_slices(shown);
   stage_->show(shown, steered.eyes, now);
+  if (given_.options.guide != nullptr) displays_.objects = object_places(*stage_, seen, shown.parts);
   point();
   report_.view = view;
   report_.viewer = stage_->viewer();

@@ -1,6 +1,7 @@
 #pragma once
 // A session: the document and who may change it. Commands, people and keys change it; the stage shows it.
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -56,6 +57,10 @@ class Viewer final : public Workplace {
   /// Whether whoever leads the session has ended it.
   bool led_to_end() const noexcept { return at_.guidance.end; }
   void presented(TimestampNs now);
+  /// Another panel of the session cannot be shown, in words; empty: all can. What is new is said over the picture.
+  void set_trouble(const std::string& words);
+  /// Called before the present surface goes.
+  void on_surface_change(std::function<void()> told) { given_.surface_goes = std::move(told); }
   /// Scripts and recordings were the only input, and are over for 1 s.
   bool over(TimestampNs now);
 
@@ -112,6 +117,7 @@ class Viewer final : public Workplace {
     Presenter& presenter;
     const Clock& clock;
     Shelf* shelf;
+    std::function<void()> surface_goes{};
   };
   /// What belongs to the file that is shown, and what the dialogue lists.
   struct Files {
@@ -130,7 +136,9 @@ class Viewer final : public Workplace {
   struct Displays {
     std::vector<SinkSpec> specs;
     std::size_t shown = 0;
-    std::shared_ptr<WornFeed> worn;  ///< who wears the display, for the source of their hands; null: none is worn
+    std::vector<ScreenRect> objects;  ///< where what is shown stands
+    std::string trouble;              ///< of another panel of the session; empty: none
+    std::shared_ptr<WornFeed> worn;   ///< who wears the display, for the source of their hands; null: none is worn
   };
   struct Notice {
     std::string text;
@@ -172,7 +180,7 @@ class Viewer final : public Workplace {
     std::optional<BoxDrag> held_side;  ///< of the box of cuts
   };
   Viewer(const TriMesh& mesh, const ViewOptions& options, Presenter& presenter, const Clock& clock, Shelf* shelf)
-      : given_{&mesh, options, presenter, clock, shelf} {}
+      : given_{&mesh, options, presenter, clock, shelf, {}} {}
   Result<void> open(std::unique_ptr<OutputSink> sink, const std::string& note);
   Result<void> start_sources();
   std::unique_ptr<Editor> make_editor(Document document);

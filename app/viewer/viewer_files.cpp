@@ -143,6 +143,7 @@ Result<void> Viewer::put(OpenedSurface surface) {
   options.files.autosave = std::move(next->autosave);
   options.around.title = std::move(next->title);
   tools_.slices.reset();
+  if (given_.surface_goes) given_.surface_goes();
   files_.opened = std::move(next);
   given_.mesh = &files_.opened->mesh;
   Document document = first_document(options, *given_.mesh);

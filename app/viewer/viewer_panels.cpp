@@ -6,6 +6,7 @@
 #include "app/commands/sides.h"
 #include "app/panels/state_page.h"
 #include "app/viewer/first_document.h"
+#include "app/viewer/marks.h"
 #include "app/viewer/viewer.h"
 #include "core/base/second.h"
 
@@ -31,7 +32,13 @@ glm::dvec2 Viewer::layout() const {
 }
 
 /// Letters on the surface are as large as those of the panels, and never smaller than on a plain monitor.
-double Viewer::letters_scale() const { return std::max(1.0, stage_->traits().view.height / layout().y); }
+/// What a gallery writes on the surface is read from where its sentences are read.
+double Viewer::letters_scale() const {
+  const double height = stage_->traits().view.height, plain = std::max(1.0, height / layout().y);
+  if (!at_.guidance.picture) return plain;
+  const double size = letters_size(at_.guidance.picture->letter_mm, height, height / stage_->window_mm().y);
+  return std::max(plain, size / kMarkLettersPx);
+}
 
 PanelState Viewer::panel_state(TimestampNs now) {
   PanelState out;

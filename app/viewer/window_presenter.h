@@ -15,6 +15,7 @@ class WindowPresenter final : public Presenter {
   static Result<std::unique_ptr<WindowPresenter>> create(ViewOptions& options, std::unique_ptr<OutputSink>& sink,
                                                          std::string& note);
 
+  Result<void> make_current() override { return window_->make_current(); }
   Result<void> fit(const SinkTraits& traits) override;
   Surface surface() override;
   bool visible() const override;

@@ -38,6 +38,7 @@ enum Variant : unsigned {
   kBent = 128,
   kBlended = 256,
   kFilled = 512,
+  kGlowing = 1024,
 };
 
 struct ViewData {  // std430, as in shaders/style.glsl
@@ -51,7 +52,7 @@ struct LookData {  // std140, as in shaders/style.glsl
 struct StyleData {
   std::array<LookData, 2> looks;
   glm::vec4 blend, inferred_color, inferred_stripe, hatch;
-  glm::vec4 fog_color, background, fog_depth;
+  glm::vec4 fog_color, background, fog_depth, glow;
   glm::mat4 map_from_unit, map_from_normal;
   std::array<glm::vec4, kMostClipPlanes> clip_plane;
 };
@@ -108,6 +109,10 @@ StyleData style_data(const MeshItem& item, const SceneView& scene, const View& v
     out.fog_color = out.background;
     out.fog_depth = glm::vec4(glm::vec2(depth), static_cast<float>(scene.fog.strength), 0.0f);
   }
+  if (scene.glow.strength > 0)
+    out.glow = glm::vec4(glm::vec3(glm::inverse(world_from_unit) * glm::dvec4(scene.glow.at_mm, 1.0)), 0.0f);
+  out.fog_depth.w = static_cast<float>(scene.glow.radius_mm);
+  out.glow.w = static_cast<float>(scene.glow.strength);
   if (shadows != nullptr) {
     out.map_from_unit = glm::mat4(shadows->map_from_world() * world_from_unit);
     const glm::dmat3 turn = glm::inverseTranspose(glm::dmat3(item.world_from_model));
@@ -212,6 +217,7 @@ Result<GLuint> MeshPass::program(unsigned variant) {
   define(kBent, "BENT");
   define(kBlended, "BLENDED");
   define(kFilled, "FILLED");
+  define(kGlowing, "GLOWING");
   const std::string_view extension =
       (variant & kLayered) != 0 ? "#extension GL_ARB_shader_viewport_layer_array : require\n" : "";
   DUBSAR_ASSIGN(GlProgram made, make_program("mesh.vert", "mesh.frag", std::string(extension) + lines, lines));
@@ -282,7 +288,8 @@ Result<void> MeshPass::draw(const MeshItem& item, const SceneView& scene, const 
   const unsigned variant = (target.layers.empty() ? 0u : kLayered) | (scene.clips.empty() ? 0u : kClipped) |
                            (shadows == nullptr ? 0u : kShadowed) | (transparent ? kPeeled : 0u) |
                            (scene.fog.strength > 0 ? kFoggy : 0u) | (target.coarse_px > 0 ? kQuick : 0u) |
-                           (bent ? kBent : 0u) | (blended ? kBlended : 0u) | (filled ? kFilled : 0u);
+                           (bent ? kBent : 0u) | (blended ? kBlended : 0u) | (filled ? kFilled : 0u) |
+                           (scene.glow.strength > 0 ? kGlowing : 0u);
   for (std::size_t p = 0; p < item.parts.size(); ++p)
     if (drawn(item.parts[p])) DUBSAR_TRY(draw_part(level, item, p, views, variant));
   glDisable(GL_CULL_FACE);

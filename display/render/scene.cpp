@@ -150,6 +150,10 @@ Result<void> check_scene(const SceneView& scene) {
                 kMostClipPlanes);
   if (!fraction(scene.fog.strength))
     return fail(ErrorKind::kUsage, "scene: fog of {} found, expected 0 to 1", scene.fog.strength);
+  if (!fraction(scene.glow.strength) || !finite(scene.glow.at_mm) ||
+      (scene.glow.strength > 0 && !(scene.glow.radius_mm > 0 && std::isfinite(scene.glow.radius_mm))))
+    return fail(ErrorKind::kUsage, "scene: a glow of {} over {} mm found, expected 0 to 1 around a place",
+                scene.glow.strength, scene.glow.radius_mm);
   for (const ClipPlane& clip : scene.clips)
     if (!finite(clip.point_mm) || !finite(clip.normal) || clip.normal == glm::dvec3(0.0))
       return fail(ErrorKind::kUsage, "scene: a clip plane has no direction, expected a point and a normal");

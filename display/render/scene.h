@@ -72,6 +72,15 @@ struct LabelItem {
 
 using DrawItem = std::variant<MeshItem, SliceItem, LinesItem, LabelItem>;
 
+/// Warm light on surfaces around a line through a place towards the eye, such as where a hand would take hold: it lies
+/// on what is seen there, in its depth.
+struct Glow {
+  glm::dvec3 at_mm{0.0};   ///< in the world
+  double radius_mm = 0.0;  ///< where it has faded
+  double strength = 0.0;   ///< 0: none, 1: as bright as it gets
+  bool operator==(const Glow&) const = default;
+};
+
 /// A moment's view of what there is to draw; borrows all of it for the time of one call.
 struct SceneView {
   std::span<const DrawItem> items;
@@ -80,6 +89,7 @@ struct SceneView {
       clips;  ///< in the world; they cut meshes and slices, not lines and labels. At most kMostClipPlanes
   Background background;
   Fog fog{};
+  Glow glow{};
 };
 
 /// Planes of a model's frame in the world.
@@ -98,7 +108,7 @@ class MeshScene {
         clips_(moved(shading.clips, world_from_model)),
         background_(shading.background),
         fog_(shading.fog) {}
-  operator SceneView() const { return {std::span(&item_, 1), light_, clips_, background_, fog_}; }
+  operator SceneView() const { return {std::span(&item_, 1), light_, clips_, background_, fog_, {}}; }
 
  private:
   DrawItem item_;

@@ -59,6 +59,12 @@ Intention NaiveVisitor::intention(double t_s) const {
   return t_s <= trial_.end_s + kAfter_s ? trial_.intention : Intention::kNone;
 }
 
+std::string_view NaiveVisitor::tries() const {
+  constexpr std::array<std::string_view, kIdeas + 1> kNames{"wave",  "sweep",     "push", "poke",  "grab",
+                                                            "pinch", "two hands", "pull", "touch", "nothing"};
+  return kNames[trial_.idea];
+}
+
 glm::dvec2 NaiveVisitor::some_way() {
   const double side = random_.uniform(0.0, 1.0) < 0.5 ? -1.0 : 1.0;
   const double steep = random_.uniform(0.0, 1.0) < 0.75 ? 0.25 * random_.normal() : 1.2 * random_.normal();

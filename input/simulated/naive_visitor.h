@@ -5,6 +5,7 @@
 #include <array>
 #include <glm/vec2.hpp>
 #include <optional>
+#include <string_view>
 
 #include "input/simulated/body.h"
 #include "input/simulated/seen_screen.h"
@@ -30,6 +31,8 @@ class NaiveVisitor {
   void look(double t_s, const SeenScreen& seen);
 
   Intention intention(double t_s) const;
+  /// What he tries now, in a word.
+  std::string_view tries() const;
   /// The way of the hand in an attempt to turn, or its sign in one to zoom (x).
   const glm::dvec2& sense() const noexcept { return sense_; }
   const Body& body() const noexcept { return body_; }

@@ -126,6 +126,33 @@ TEST_F(Kiosk, ATourIsWrittenChangedWalkedAndRefusedInOneSentence) {
       << bad.err;
 }
 
+TEST_F(Kiosk, FurtherPanelsShowTheSameAndOneThatIsWrongIsSaid) {
+  json with = profile();
+  with["panels"] =
+      json::array({{{"display", "anaglyph"}, {"size", "200x150"}}, {{"display", "hologram"}, {"monitor", "DP-9"}}});
+  write("kiosk.json", with.dump());
+  write("visitor.json", R"({"seed": 3, "duration_s": 2, "hands": []})");
+  const auto run =
+      run_dubsar({"view", "--kiosk", file("kiosk.json"), "--offscreen", "--script", file("visitor.json"), "--size",
+                  "160x120", "--fps", "5", "--frames", file("p"), "--also", "mono,size=90x60", "--json", "-"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json also = json::parse(run.out).at("also");
+  ASSERT_EQ(also.size(), 3U);
+  EXPECT_EQ(also[0].at("trouble"), "");
+  EXPECT_EQ(also[1].at("trouble"), "");
+  EXPECT_NE(also[2].at("trouble").get<std::string>().find("hologram"), std::string::npos);
+  const auto small = read_png(file("p/frame-00005-2.png")), wall = read_png(file("p/frame-00005-3.png"));
+  ASSERT_TRUE(small && wall);
+  EXPECT_EQ(small->width, 90);
+  EXPECT_EQ(wall->width, 200);
+  EXPECT_EQ(wall->height, 150);
+  for (const char* wrong : {"mono,size=huge", ",size=10x10", "mono,monitor=", "shutter", "mono,monitor=DP-1"})
+    EXPECT_EQ(run_dubsar({"view", file("block.obj"), "--offscreen", "--script", file("visitor.json"), "--also", wrong})
+                  .exit_code,
+              64)
+        << wrong;
+}
+
 TEST_F(Kiosk, AnObjectThatCannotBeReadIsLeftOut) {
   json two = profile();
   write("broken.ply", "ply\nformat ascii 1.0\nelement vertex three\n");

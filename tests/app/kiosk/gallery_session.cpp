@@ -27,13 +27,13 @@ SeenLesson as_seen(const std::optional<Lesson>& lesson) {
 
 }  // namespace
 
-const Mapping GallerySession::kMapping = gallery_mapping().value();
+Mapping GallerySession::mapping_ = gallery_mapping().value();
 
-GallerySession::GallerySession() : navigator_(kMapping), people_(zone()), guide_(parts()) {
+GallerySession::GallerySession() : navigator_(mapping_), people_(zone()), guide_(parts()) {
   document_.parts = {{"tablet", 1}, {"envelope", 2}};
 }
 
-HandZone GallerySession::zone() { return {1e-3 * kMapping.hands.zone_min_mm, 1e-3 * kMapping.hands.zone_max_mm}; }
+HandZone GallerySession::zone() { return {1e-3 * mapping_.hands.zone_min_mm, 1e-3 * mapping_.hands.zone_max_mm}; }
 
 KioskParts GallerySession::parts() {
   KioskParts out;

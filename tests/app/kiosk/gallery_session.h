@@ -17,6 +17,8 @@ namespace dubsar::app::test {
 class GallerySession {
  public:
   GallerySession();
+  /// In place of the gallery's own, for all that are made afterwards.
+  static void set_mapping(const Mapping& mapping) { mapping_ = mapping; }
   void go_on(TimestampNs now, const InputFrame& frame);
   /// The tracker is there, or not.
   void set_tracker(SourceHealth health) { rows_[0].health = health; }
@@ -32,7 +34,7 @@ class GallerySession {
  private:
   static HandZone zone();
   static KioskParts parts();
-  static const Mapping kMapping;
+  static Mapping mapping_;
   Navigator navigator_;
   PersonKeeper people_;
   KioskGuide guide_;

@@ -27,6 +27,33 @@ bool steers(const GestureRecognizer& hand) {
          });
 }
 
+void note(GalleryAttempt& attempt, const SeenScreen& before, const GallerySession& session, const InputFrame& frame,
+          const glm::dvec2& sense) {
+  ++attempt.moments;
+  const auto his = [](const HandFrame& hand) { return Gallery::is_the_visitors(hand.id); };
+  attempt.seen += std::any_of(frame.hands.begin(), frame.hands.end(), his);
+  for (const HandFrame& hand : frame.hands) {
+    if (!his(hand)) continue;
+    attempt.at_m = hand.palm.position_m;
+    attempt.closed = std::max(attempt.closed, hand.grab_strength);
+  }
+  bool kept = false, held = false;
+  for (std::size_t h = 0; h < 2; ++h) {
+    const HandFrame* const hand = session.person().hands[h];
+    const GestureRecognizer& gestures = session.navigator().hands()[h];
+    if (hand == nullptr || !his(*hand)) continue;
+    kept = true;
+    held = held || gestures.grabbing() || gestures.pinching();
+    for (const GestureEvent& event : gestures.events()) attempt.swipes += event.kind == GestureKind::kSwipe;
+  }
+  attempt.kept += kept;
+  attempt.held += held;
+  const glm::dvec3 turn = turned_from(before.view, session.screen().view);
+  attempt.turned_deg = glm::length(turn) / kRad;
+  attempt.along_deg = glm::dot(glm::dvec2(turn.y, -turn.x), sense) / kRad;
+  attempt.zoomed = std::log(session.screen().view.zoom / before.view.zoom);
+}
+
 }  // namespace
 
 GalleryVisit visit(const GalleryOptions& room) {
@@ -49,8 +76,12 @@ GalleryVisit visit(const GalleryOptions& room) {
     const NaiveVisitor& visitor = gallery.visitor();
     const bool here = gallery.visitor_is_here(t);
     const Intention wants = here ? visitor.intention(here_s) : Intention::kNone;
-    if (wants != before) at_trial = was;
+    if (wants != before) {
+      at_trial = was;
+      if (wants != Intention::kNone) out.attempts.push_back({here_s, wants, std::string(visitor.tries())});
+    }
     before = wants;
+    if (wants != Intention::kNone) note(out.attempts.back(), at_trial, session, frame, visitor.sense());
     if (wants == Intention::kTurn && !out.turned_s) {
       const glm::dvec3 turn = turned_from(at_trial.view, now.view);
       if (glm::dot(glm::dvec2(turn.y, -turn.x), visitor.sense()) > kTurn_rad) out.turned_s = here_s;

@@ -14,7 +14,7 @@ constexpr const char* kWhole = R"({"format": "dubsar kiosk", "version": 1,
   "objects": [{"file": "contract.exa", "title": {"en": "A sealed contract", "de": "Ein gesiegelter Vertrag"}, "style": "raking"},
               {"file": "/data/letter.exa", "tour": "letter.json", "parts": ["tablet"]}],
   "languages": ["de", "en"], "display": "lenticular:looking-glass-go", "monitor": "HDMI-1", "inputs": ["leap", "head:opentrack"],
-  "idle_reset_s": 60, "attract_after_s": 5, "quiet": ["18:00-09:30"], "brightness": 0.8, "pin": "4711", "journal": "log"})";
+  "panels": [{"display": "anaglyph", "monitor": "DP-2"}], "idle_reset_s": 60, "attract_after_s": 5, "quiet": ["18:00-09:30"], "brightness": 0.8, "pin": "4711", "journal": "log"})";
 
 TEST(KioskProfile, SaysWhatIsShownHowAndToWhom) {
   const auto profile = parse_kiosk_profile(kWhole, "lobby.json", "/etc/kiosk");
@@ -29,11 +29,14 @@ TEST(KioskProfile, SaysWhatIsShownHowAndToWhom) {
   EXPECT_EQ(profile->idle_reset_s, 60);
   EXPECT_EQ(profile->quiet, (std::vector<QuietHours>{{18 * 60, 9 * 60 + 30}}));
   EXPECT_EQ(profile->journal, "/etc/kiosk/log");
+  ASSERT_EQ(profile->panels.size(), 1U);
+  EXPECT_EQ(profile->panels[0].display, "anaglyph");
+  EXPECT_EQ(profile->panels[0].monitor, "DP-2");
 }
 
 TEST(KioskProfile, RefusesWhatItDoesNotUnderstandInOneSentence) {
   const std::string base = R"({"format": "dubsar kiosk", "version": 1, "objects": [{"file": "a.exa"}], "pin": "1234")";
-  const std::array<std::pair<std::string, std::string>, 13> wrong{{
+  const std::array<std::pair<std::string, std::string>, 15> wrong{{
       {"{}", "format"},
       {R"({"format": "dubsar kiosk", "version": 2})", "version 2 found"},
       {R"({"format": "dubsar kiosk", "version": 1, "pin": "1234"})", "objects"},
@@ -46,6 +49,8 @@ TEST(KioskProfile, RefusesWhatItDoesNotUnderstandInOneSentence) {
       {base + R"(, "quiet": ["25:00-09:00"]})", "25:00-09:00"},
       {base + R"(, "languages": []})", "languages"},
       {base + R"(, "inputs": [3]})", "inputs"},
+      {base + R"(, "panels": [{"display": "mono"}]})", "stand before the first panel"},
+      {base + R"(, "panels": [{"monitor": "A", "dsplay": "mono"}]})", "panels[0]: \"dsplay\" is unknown"},
       {R"({"format": "dubsar kiosk", "version": 1, "objects": [{"file": "a.exa"}], "pin": "12"})", "4 to 12 digits"},
   }};
   for (const auto& [text, said] : wrong) {

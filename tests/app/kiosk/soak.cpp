@@ -139,6 +139,9 @@ class WatchedGuide final : public SessionGuide {
   Guidance lead(const GuideMoment& moment) override {
     begun_ = moment.now;
     present_ = !moment.sources.empty() && moment.sources[0].health == SourceHealth::kPresent;
+    const bool hands = !moment.steered.hands.empty();
+    if (hands && !hands_) appeared_ = moment.now - moment.steered.input_age.value_or(0);
+    hands_ = hands;
     Guidance out = guide_.lead(moment);
     for (std::string& command : std::exchange(commands_, {})) out.commands.push_back(std::move(command));
     return out;
@@ -149,6 +152,8 @@ class WatchedGuide final : public SessionGuide {
     ++figures_.pictures;
     if (figures_.pictures > 1 && !stopped_)
       figures_.longest_ms = std::max(figures_.longest_ms, 1e-6 * static_cast<double>(now - begun_));
+    if (appeared_ >= 0 && !stopped_) figures_.hand_ms.add(1e-6 * static_cast<double>(now - appeared_));
+    appeared_ = -1;
     stopped_ = false;
     if (fault_end_ && now > *fault_end_ && present_) {
       figures_.recovery_s[kind_].push_back(1e-9 * static_cast<double>(now - *fault_end_));
@@ -169,7 +174,8 @@ class WatchedGuide final : public SessionGuide {
  private:
   KioskGuide guide_;
   SoakFigures& figures_;
-  TimestampNs begun_ = 0;
+  TimestampNs begun_ = 0, appeared_ = -1;
+  bool hands_ = false;
   std::optional<TimestampNs> fault_end_;
   std::string kind_;
   std::vector<std::string> commands_;

@@ -43,7 +43,8 @@ bool holds(const SoakFigures& figures, bool drawn, const Limits& limits) {
         return std::all_of(kind.second.begin(), kind.second.end(), [&](double s) { return s <= limits.recovery_s; });
       });
   const bool pictures =
-      !drawn || (figures.pictures > 0 && figures.gl_errors == 0 && figures.longest_ms <= limits.picture_ms);
+      !drawn || (figures.pictures > 0 && figures.gl_errors == 0 && figures.longest_ms <= limits.picture_ms &&
+                 figures.hand_ms.quantile(0.95) <= limits.hand_ms);
   return memory && back && pictures;
 }
 
@@ -59,6 +60,12 @@ std::string describe(const SoakFigures& figures, bool drawn, const Limits& limit
   if (drawn)
     out += fmt::format("pictures: {}, longest {:.0f} ms after the first (limit {:.0f}), GL errors: {}\n",
                        figures.pictures, figures.longest_ms, limits.picture_ms, figures.gl_errors);
+  if (drawn && !figures.hand_ms.empty())
+    out += fmt::format(
+        "a hand that comes is in a picture after {:.0f} ms, 95 of 100 after {:.0f} ms, at most {:.0f} ms ({} hands; "
+        "limit {:.0f} for 95)\n",
+        figures.hand_ms.quantile(0.5), figures.hand_ms.quantile(0.95), figures.hand_ms.quantile(1.0),
+        figures.hand_ms.size(), limits.hand_ms);
   return out + (holds(figures, drawn, limits) ? "holds\n" : "does NOT hold\n");
 }
 

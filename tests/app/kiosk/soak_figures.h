@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/measurements.h"
+
 namespace dubsar::app::test {
 
 /// Memory of this process now, MiB (resident, of Linux).
@@ -20,7 +22,7 @@ double slope_mib_per_h(const std::vector<MemoryAt>& samples);
 double settled_slope_mib_per_h(const std::vector<MemoryAt>& samples);
 
 struct Limits {
-  double slope_mib_per_h = 1.0, picture_ms = 250.0, recovery_s = 5.0;
+  double slope_mib_per_h = 1.0, picture_ms = 250.0, recovery_s = 5.0, hand_ms = 100.0;
 };
 
 struct SoakFigures {
@@ -28,6 +30,7 @@ struct SoakFigures {
   std::map<std::string, std::vector<double>> recovery_s;  ///< by the kind of fault, each from its end
   int never_back = 0;                                     ///< faults after which nothing came back before the next one
   std::int64_t pictures = 0, gl_errors = 0, visits = 0;
+  Measurements hand_ms{};   ///< from a hand's first measurement to the presentation of the picture with its ring
   double longest_ms = 0.0;  ///< of a picture after the first, from its beginning to its presentation
 };
 /// What is printed, and whether all limits hold. `drawn`: pictures were.

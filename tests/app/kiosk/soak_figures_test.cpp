@@ -42,6 +42,9 @@ TEST(SoakFigures, EachLimitAloneBreaksIt) {
   EXPECT_FALSE(holds(bad, true));
   EXPECT_TRUE(holds(bad, false)) << "nothing was drawn";
   bad = good;
+  for (int i = 0; i < 20; ++i) bad.hand_ms.add(i < 18 ? 30.0 : 101.0);
+  EXPECT_FALSE(holds(bad, true));
+  bad = good;
   bad.gl_errors = 1;
   EXPECT_FALSE(holds(bad, true));
   EXPECT_NE(describe(bad, true).find("does NOT hold"), std::string::npos);

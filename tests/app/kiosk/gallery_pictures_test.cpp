@@ -1,0 +1,153 @@
+// The kiosk's pictures over a whole visit: no flashes, nobody waits for them, and the object answers.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "app/kiosk/kiosk_guide.h"
+#include "app/viewer/run_view.h"
+#include "tests/app/kiosk/flashes.h"
+#include "tests/display/test_meshes.h"
+
+namespace dubsar::app::test {
+namespace {
+
+Image flat(int value) {
+  Image out(64, 32, 3);
+  std::fill(out.pixels.begin(), out.pixels.end(), static_cast<std::uint8_t>(value));
+  return out;
+}
+
+TEST(Flashes, AreCountedAsPairsOfOpposingChanges) {
+  const auto most = [](double hz, int low, int high, bool half) {
+    Flashes flashes;
+    for (int i = 0; i < 120; ++i) {
+      Image picture = flat(low);
+      const bool bright = std::fmod(i / 60.0 * hz, 1.0) < 0.5;
+      for (int y = 0; bright && y < 32; ++y)
+        for (int x = 0; x < (half ? 8 : 64); ++x) std::fill_n(picture.at(x, y), 3, static_cast<std::uint8_t>(high));
+      flashes.add(i / 60.0, picture);
+    }
+    return std::pair(flashes.most_in_a_block(), flashes.most_in_a_quarter());
+  };
+  EXPECT_NEAR(most(5.0, 20, 220, false).second, 5, 1);
+  EXPECT_LE(most(2.0, 20, 220, false).second, 3);
+  EXPECT_EQ(most(5.0, 20, 60, false).first, 0) << "too small a change";
+  EXPECT_NEAR(most(5.0, 20, 220, true).first, 5, 1);
+  EXPECT_EQ(most(5.0, 20, 220, true).second, 0) << "a small part of the picture";
+}
+
+/// Nobody, somebody who takes hold, turns, wipes, opens, waves about, and leaves.
+constexpr const char* kVisit =
+    R"({"seed": 3, "duration_s": 34, "rate_hz": 60, "latency_ms": 15, "noise_mm": 0.4, "hands": [
+  {"chirality": "right", "keys": [
+  {"t": 2.0, "at_mm": [50, -90, 270]}, {"t": 2.6, "at_mm": [50, 10, 250]}, {"t": 4.0, "at_mm": [50, 10, 250]},
+  {"t": 4.3, "grab": 1}, {"t": 5.5, "at_mm": [-60, 25, 250], "grab": 1}, {"t": 5.8, "grab": 0},
+  {"t": 7.0, "at_mm": [-60, 25, 250], "grab": 0}, {"t": 7.3, "at_mm": [120, 25, 250]}, {"t": 8.0, "at_mm": [120, 25, 250]},
+  {"t": 8.3, "at_mm": [-100, 25, 250]}, {"t": 9.5, "at_mm": [-100, 25, 250]},
+  {"t": 10.5, "at_mm": [332, 297, 250]}, {"t": 13.5, "at_mm": [332, 297, 250]},
+  {"t": 14, "at_mm": [0, 0, 200]}, {"t": 14.3, "at_mm": [150, 60, 200]}, {"t": 14.6, "at_mm": [-150, 60, 200]},
+  {"t": 14.9, "at_mm": [150, -60, 200]}, {"t": 15.2, "at_mm": [-150, -60, 200]}, {"t": 15.5, "at_mm": [0, -120, 250]}]}]})";
+
+class GalleryPictures : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    file_ = std::filesystem::path(::testing::TempDir()) / ("visit_" + std::to_string(::getpid()) + ".json");
+    std::ofstream(file_) << kVisit;
+    mesh_ = testing::lettered_box();
+    mesh_.partitions = {{.id = 0, .name = "tablet"}, {.id = 6, .name = "envelope"}};
+    options_.mapping = gallery_mapping().value();
+    options_.stage.shading = shading_preset("relief").value();
+    options_.stage.screen.width_px = options_.stage.screen.window_w = 192;
+    options_.stage.screen.height_px = options_.stage.screen.window_h = 108;
+    options_.stage.screen.height_mm = options_.stage.screen.width_mm * 108 / 192;
+    options_.inputs = {"scripted:path=" + file_.string()};
+    options_.around.notices = false;
+    KioskParts parts;
+    parts.profile.objects = {{.file = "box"}};
+    parts.profile.pin = "90210735";
+    parts.profile.idle_reset_s = 8.0;
+    parts.profile.attract_after_s = 2.0;
+    parts.zone = {1e-3 * options_.mapping.hands.zone_min_mm, 1e-3 * options_.mapping.hands.zone_max_mm};
+    parts.wall = [] { return WallTime{1'790'000'000, 720}; };
+    guide_ = std::make_unique<KioskGuide>(std::move(parts));
+    options_.guide = guide_.get();
+  }
+  void TearDown() override { std::filesystem::remove(file_); }
+
+  std::filesystem::path file_;
+  TriMesh mesh_;
+  ViewOptions options_;
+  std::unique_ptr<KioskGuide> guide_;
+  SilentProgress progress_;
+};
+
+TEST_F(GalleryPictures, NothingFlashesFromTheArrivalToTheReset) {
+  options_.time.fps = 24.0;
+  options_.time.longest_s = 33.0;
+  Flashes flashes;
+  double turned = 0.0;
+  const auto done = run_view(mesh_, options_, progress_, [&](const ViewMoment& moment) {
+    if (!moment.drawn) return;
+    flashes.add(moment.frames / 24.0, moment.presenter.picture().value());
+    turned = std::max(turned, turn_between_deg(moment.report.view.rotation, {1, 0, 0, 0}));
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_GT(turned, 40.0);
+  EXPECT_EQ(guide_->visit().counts().visits, 1);
+  EXPECT_GE(guide_->visit().counts().openings, 1);
+  EXPECT_EQ(guide_->visit().counts().resets, 1);
+  EXPECT_LE(flashes.most_in_a_quarter(), 3);
+  EXPECT_LE(flashes.most_in_a_quarter(), 1) << "nothing like a flash of the whole picture";
+}
+
+TEST_F(GalleryPictures, AHandIsInAPictureATenthOfASecondAfterItCameWithTenPicturesASecond) {
+  constexpr double kCame_s = 0.1 + 2.0, kTracker_s = 0.015;  // the script begins with the first picture
+  options_.time.fps = 10.0;
+  options_.time.longest_s = 4.0;
+  Image before;
+  double seen_s = 0.0;
+  const auto done = run_view(mesh_, options_, progress_, [&](const ViewMoment& moment) {
+    const Image picture = moment.presenter.picture().value();
+    const double at_s = (moment.frames - 1) / 10.0 + 0.1;  // the first picture is that of the first step
+    if (moment.viewer.stage().shown().before.empty() || seen_s > 0) {
+      if (seen_s == 0) before = picture;
+      return;
+    }
+    seen_s = at_s;
+    int amber = 0;
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 0; x < picture.width; ++x) {
+        const std::uint8_t *const p = picture.at(x, y), *const q = before.at(x, y);
+        amber += std::abs(p[0] - q[0]) > 30;
+      }
+    EXPECT_GT(amber, 10) << "its ring is to be seen";
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_GE(seen_s, kCame_s);
+  EXPECT_LE(seen_s, kCame_s + kTracker_s + 0.1 + 1e-6);
+}
+
+TEST_F(GalleryPictures, TheObjectGlowsWhereTheHandWouldTakeItBeforeItDoes) {
+  options_.time.fps = 20.0;
+  options_.time.longest_s = 4.0;
+  double glow_s = 0.0;
+  Glow last;
+  bool held = false;
+  const auto done = run_view(mesh_, options_, progress_, [&](const ViewMoment& moment) {
+    last = moment.viewer.stage().shown().glow;
+    if (last.strength > 0.3 && glow_s == 0.0) glow_s = moment.frames / 20.0;
+    held = held || moment.report.control != Control::kNone;
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_GT(glow_s, 2.0);
+  EXPECT_LT(glow_s, 3.5) << "soon after it came";
+  EXPECT_FALSE(held) << "before the gesture";
+  EXPECT_GT(last.at_mm.x, 0.0) << "on its side";
+}
+
+}  // namespace
+}  // namespace dubsar::app::test
