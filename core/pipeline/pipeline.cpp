@@ -52,7 +52,7 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   std::optional<ContactReport> contact;
   if (options.fill_holes && options.trace_contact && !imported.detail.resample() && separated.segment.nested &&
       !separated.segment.enclosure_refused) {
-    DUBSAR_ASSIGN(TracedModel traced, trace(std::move(result.model), options.import, imported.blur, run));
+    DUBSAR_ASSIGN(TracedModel traced, trace(std::move(result.model), options.import, imported.facts.blur, run));
     result.model = std::move(traced.model);
     contact = traced.contact;
   }

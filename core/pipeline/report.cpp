@@ -78,7 +78,7 @@ json estimates_json(const PipelineReport& report) {
           {"threshold", report.threshold.value},
           {"threshold_valley", last.threshold_valley},
           {"path", report.threshold.path},
-          {"blur", blur_json(report.blur)},
+          {"blur", blur_json(report.scan.blur)},
           {"filters", filters}};
 }
 
@@ -126,7 +126,6 @@ json exa_json(const ExaStats& stats) {
 
 PipelineReport make_report(const StageResults& results, const SurfaceModel& model, const StageClock& clock) {
   PipelineReport report{.scan = results.imported.facts,
-                        .blur = results.imported.blur,
                         .filters = {results.imported.raw},
                         .threshold = results.threshold,
                         .sharpen = results.sampled.sharpen,
@@ -243,9 +242,9 @@ std::string report_text(const PipelineReport& report) {
   for (const FilterStep& step : report.filters)
     text += fmt::format("noise {:<22} sigma {:<11.4g} SNR {:5.1f} dB\n", step.name, step.estimates.sigma,
                         step.estimates.snr_db);
-  if (report.blur)
-    text += fmt::format("blur of edges {:.2f} voxel, measured at {} flat places\n", std::sqrt(report.blur->variance),
-                        report.blur->places);
+  if (const auto& blur = report.scan.blur; blur && blur->variance > blur->uncertainty)
+    text += fmt::format("blur of edges {:.2f} voxel, measured at {} flat places\n", std::sqrt(blur->variance),
+                        blur->places);
   text += fmt::format("detail {}: {}\n", name_in(kDetails, report.detail.detail), report.detail.why);
   text += fmt::format("threshold {:.6g}: {}\n", report.threshold.value, report.threshold.path);
   text +=

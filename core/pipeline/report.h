@@ -29,7 +29,6 @@ struct VertexMoves {
 
 struct PipelineReport {
   ScanFacts scan;
-  std::optional<EdgeSpread> blur;   ///< of the grid as it was imported
   std::vector<FilterStep> filters;  ///< the raw scan, then before and after each pass; the last ones gave the threshold
   Threshold threshold;
   float sharpen = 0.0f;  ///< amount that was used

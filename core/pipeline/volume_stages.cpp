@@ -96,11 +96,11 @@ Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, co
   DUBSAR_ASSIGN(imported.raw.estimates, estimate_source(some, "estimate_raw", estimate, run));
   DUBSAR_ASSIGN(imported.grid, read_grid(*scan, resample, options.budget, run));
   run.clock.start("blur", "place");
-  DUBSAR_ASSIGN(imported.blur, measure_edge_spread(imported.grid.grid, imported.raw.estimates.m_lo,
-                                                   imported.raw.estimates.m_hi, run.progress));
-  run.clock.finish(imported.blur ? imported.blur->places : 0);
-  imported.grid_name = resample ? "gauss 2:1" : "imported";
   ScanFacts& facts = imported.facts;
+  DUBSAR_ASSIGN(facts.blur, measure_edge_spread(imported.grid.grid, imported.raw.estimates.m_lo,
+                                                imported.raw.estimates.m_hi, run.progress));
+  run.clock.finish(facts.blur ? facts.blur->places : 0);
+  imported.grid_name = resample ? "gauss 2:1" : "imported";
   facts.grid = imported.grid.grid.dims();
   facts.nonfinite_voxels = scan->nonfinite_count();
   facts.nonfinite_fill = scan->nonfinite_fill();

@@ -30,6 +30,7 @@ struct ScanFacts {
   float nonfinite_fill = 0.0f;        ///< what they count as
   std::vector<std::string> warnings;  ///< of the file and of its voxels
   Dims grid;                          ///< after resampling
+  std::optional<EdgeSpread> blur;     ///< of that grid before any filter; nothing where it has no flat surface
 };
 
 struct CountedGrid {
@@ -39,8 +40,7 @@ struct CountedGrid {
 
 struct ImportedGrid {
   ScanFacts facts;
-  FilterStep raw;                  ///< of a sample of the scan
-  std::optional<EdgeSpread> blur;  ///< of the grid as it was imported; nothing where it has no flat surface
+  FilterStep raw;  ///< of a sample of the scan
   CountedGrid grid;
   DetailChoice detail;
   std::string grid_name;  ///< how it was made, as a FilterStep is named

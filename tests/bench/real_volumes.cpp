@@ -46,8 +46,8 @@ int print_real_volumes(const std::string& folder) {
     const Dims& d = report.scan.info.box.dims();
     fmt::print("{:<34}{:>16}{:>7}{:>10}{:>7}{:>7.1f}{:>7.0f}  {}{}\n", file.filename().string(),
                fmt::format("{}x{}x{}", d.x, d.y, d.z), name_in(kDetails, report.detail.detail), report.surface.vertices,
-               report.blur ? fmt::format("{:.2f}", std::sqrt(report.blur->variance)) : "-", cpu_s, peak_mib, parts,
-               tablet ? "  A TABLET" : "");
+               report.scan.blur ? fmt::format("{:.2f}", std::sqrt(report.scan.blur->variance)) : "-", cpu_s, peak_mib,
+               parts, tablet ? "  A TABLET" : "");
     std::fflush(stdout);
     failed += tablet;
   }
