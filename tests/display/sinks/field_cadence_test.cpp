@@ -15,8 +15,8 @@ struct Seen {
 };
 
 /// A monitor whose glasses open the left eye at even beats. A picture takes `most_cost` beats at most, is shown at the
-/// first beat after it is ready, and the present call comes back up to `jitter_ms` later.
-Seen watch(double said_hz, double true_hz, double jitter_ms, double most_cost, double seconds, std::uint32_t seed) {
+/// first beat after it is ready, and the present call comes back up to `jitter` of a beat later.
+Seen watch(double said_hz, double true_hz, double jitter, double most_cost, double seconds, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   FieldCadence cadence;
@@ -31,9 +31,9 @@ Seen watch(double said_hz, double true_hz, double jitter_ms, double most_cost, d
     ready = static_cast<double>(cadence.turn(static_cast<TimestampNs>(ready)));
     const Field field = cadence.next(static_cast<TimestampNs>(ready));
     const std::int64_t beat = beat_after(ready);
-    now = start + static_cast<double>(beat) * period + 1e6 * jitter_ms * unit(random);
+    now = start + static_cast<double>(beat) * period + jitter * period * unit(random);
     cadence.presented(static_cast<TimestampNs>(now));
-    if (++seen.pictures < 60) {  // the phase is found, and the viewer turns the glasses' switch if need be
+    if (++seen.pictures < 300) {  // the phase is found, and the viewer turns the glasses' switch if need be
       glasses_of_first = (beat + static_cast<int>(field)) % 2;
       continue;
     }
@@ -47,7 +47,7 @@ TEST(FieldCadenceTest, PicturesThatMissBeatsDoNotSwapTheEyes) {
   for (const double true_hz : {120.0, 119.88, 119.9, 100.0, 144.0}) {
     const double said_hz = std::round(true_hz);
     for (const double cost : {0.5, 3.0, 12.0}) {
-      const Seen seen = watch(said_hz, true_hz, 2.0, cost, 600.0, seed);
+      const Seen seen = watch(said_hz, true_hz, 0.24, cost, 600.0, seed);
       EXPECT_GT(seen.pictures, 5000);
       EXPECT_EQ(seen.wrong, 0) << true_hz << " Hz, pictures of up to " << cost << " beats, seed " << seed;
     }
