@@ -1,7 +1,7 @@
 #include "app/calibration/adjust_window.h"
 
-#include "display/panels/panel_calibration.h"
 #include "display/panels/panel_adjust.h"
+#include "display/panels/panel_calibration.h"
 
 namespace dubsar::app {
 namespace fs = std::filesystem;

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "app/document/camera_pose.h"
 #include "app/document/keyframe.h"
 #include "app/document/measure.h"
-#include "app/document/camera_pose.h"
 #include "input/navigation/view_state.h"
 
 namespace dubsar::app {

@@ -4,9 +4,9 @@
 #include <thread>
 
 #include "core/base/clock.h"
-#include "devices/camera/webcam.h"
 #include "devices/camera/capture.h"
 #include "devices/camera/picture_frames.h"
+#include "devices/camera/webcam.h"
 
 namespace dubsar::app {
 

@@ -25,8 +25,8 @@ struct ClayContrast {
 std::optional<ClayContrast> compare_clays(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
                                           float blur_variance);
 
-/// Of each node: how clearly its density is that of one clay, in faces of the cut (clay_sides.h), positive for the tablet's;
-/// 0 where air is near.
+/// Of each node: how clearly its density is that of one clay, in faces of the cut (clay_sides.h), positive for the
+/// tablet's; 0 where air is near.
 std::vector<float> clay_votes(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
                               const ClayContrast& contrast);
 

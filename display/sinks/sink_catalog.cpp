@@ -4,7 +4,6 @@
 
 #include "core/base/near_word.h"
 #include "display/sinks/anaglyph.h"
-#include "display/sinks/single_image.h"
 #include "display/sinks/interlaced.h"
 #include "display/sinks/lenticular.h"
 #include "display/sinks/mono.h"
@@ -14,6 +13,7 @@
 #include "display/sinks/quad_buffer.h"
 #include "display/sinks/quilt.h"
 #include "display/sinks/shutter.h"
+#include "display/sinks/single_image.h"
 
 namespace dubsar {
 namespace {

@@ -1,10 +1,9 @@
 // A webcam of a real kernel (vivid): its pictures through unmodified OpenCV, as the program loads it.
 
-#include "devices/camera/webcam.h"
-
 #include <array>
 #include <fstream>
 
+#include "devices/camera/webcam.h"
 #include "tests/lab/lab_kernel.h"
 
 namespace dubsar::lab {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <thread>
 
-#include "devices/camera/webcam.h"
 #include "devices/camera/opencv_capture.h"
+#include "devices/camera/webcam.h"
 #include "tests/core/image_io/jpeg_picture.h"
 #include "tests/devices/camera/v4l2_testbed.h"
 
