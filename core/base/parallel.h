@@ -1,5 +1,5 @@
 #pragma once
-// Threads: OpenMP loops whose results do not depend on the number of threads.
+// Threads: loops whose results do not depend on the number of threads.
 
 #include <algorithm>
 #include <cstdint>

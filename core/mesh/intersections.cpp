@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "core/base/morton_code.h"
 #include "core/base/parallel.h"
 #include "core/base/result.h"
 
@@ -41,15 +42,6 @@ bool crosses(const glm::dvec3& from, const glm::dvec3& to, const Corners& t) {
   if (!((above > 0.0 && below < 0.0) || (above < 0.0 && below > 0.0))) return false;
   const double a = volume(from, to, t[0], t[1]), b = volume(from, to, t[1], t[2]), c = volume(from, to, t[2], t[0]);
   return (a > 0.0 && b > 0.0 && c > 0.0) || (a < 0.0 && b < 0.0 && c < 0.0);
-}
-
-std::uint64_t spread3(std::uint64_t x) {  // 21 bits to every third bit
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x1f00000000ffffULL;
-  x = (x | x << 16) & 0x1f0000ff0000ffULL;
-  x = (x | x << 8) & 0x100f00f00f00f00fULL;
-  x = (x | x << 4) & 0x10c30c30c30c30c3ULL;
-  return (x | x << 2) & 0x1249249249249249ULL;
 }
 
 /// Boxes of triangles in the order of a curve that fills space, and of eight of them together, and of eight of those.
@@ -95,9 +87,7 @@ class Tree {
     parallel_for(count(), kTreeGrain, [&](std::int64_t i) {
       const glm::vec3 middle = 0.5f * (box_[at(i)].low + box_[at(i)].high);
       const glm::vec3 share = glm::clamp((middle - all.low) / size, 0.0f, 1.0f) * 2097151.0f;
-      keys[at(i)] = {spread3(static_cast<std::uint64_t>(share.x)) | spread3(static_cast<std::uint64_t>(share.y)) << 1 |
-                         spread3(static_cast<std::uint64_t>(share.z)) << 2,
-                     static_cast<std::uint32_t>(i)};
+      keys[at(i)] = {morton_code(share), static_cast<std::uint32_t>(i)};
     });
     std::sort(keys.begin(), keys.end());
     for (std::size_t i = 0; i < keys.size(); ++i) order_[i] = keys[i].second;

@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "core/base/morton_code.h"
 #include "core/base/parallel.h"
 #include "core/relief/march_kernels.h"
 #include "core/relief/ray_scene.h"
@@ -145,15 +146,6 @@ class BrickTracer final : public Tracer {
   SurfaceBricks bricks_;
 };
 
-std::uint64_t spread3(std::uint64_t x) {  // 21 bits to every third bit
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x1f00000000ffffULL;
-  x = (x | x << 16) & 0x1f0000ff0000ffULL;
-  x = (x | x << 8) & 0x100f00f00f00f00fULL;
-  x = (x | x << 4) & 0x10c30c30c30c30c3ULL;
-  return (x | x << 2) & 0x1249249249249249ULL;
-}
-
 /// Vertices `ids` in an order where neighbours lie in the same small box and look to the same side.
 void sort_by_place_and_side(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
                             std::vector<std::uint32_t>& ids) {
@@ -171,10 +163,7 @@ void sort_by_place_and_side(std::span<const glm::vec3> positions, std::span<cons
     const glm::vec3 size = glm::abs(n);
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const auto side = 2 * static_cast<std::uint64_t>(axis) + (n[axis] < 0.0f ? 1 : 0);
-    const std::uint64_t place = spread3(static_cast<std::uint64_t>(box.x)) |
-                                spread3(static_cast<std::uint64_t>(box.y)) << 1 |
-                                spread3(static_cast<std::uint64_t>(box.z)) << 2;
-    items[static_cast<std::size_t>(i)] = {(place << 3) | side, v};
+    items[static_cast<std::size_t>(i)] = {(morton_code(box) << 3) | side, v};
   });
   std::sort(items.begin(), items.end(),
             [](const Item& a, const Item& b) { return a.key != b.key ? a.key < b.key : a.vertex < b.vertex; });
