@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
+#include <utility>
 
 #include "core/parts/min_cut.h"
 
@@ -72,6 +74,20 @@ bool unpinch(const ContactBand& band, std::vector<ClaySide>& side) {
   return changed;
 }
 
+/// Nodes over the same piece of the patches: flow runs across the band, and most of it stays in one block.
+void set_blocks(const ContactBand& band, MinCut& cut) {
+  constexpr float kBlock = 64.0f;
+  const Dims d = band.node_at.dims();
+  const auto along = [](std::int64_t n) { return static_cast<std::uint32_t>(static_cast<float>(n) / kBlock) + 1; };
+  const std::uint32_t x = along(d.x), y = along(d.y), z = along(d.z);
+  std::vector<std::uint32_t> block(band.nodes.size());
+  for (std::size_t n = 0; n < block.size(); ++n) {
+    const glm::uvec3 cube(glm::max(band.samples[band.nodes[n].sample].position, glm::vec3(0.0f)) / kBlock);
+    block[n] = (std::min(cube.z, z - 1) * y + std::min(cube.y, y - 1)) * x + std::min(cube.x, x - 1);
+  }
+  cut.set_blocks(std::move(block), x * y * z);
+}
+
 }  // namespace
 
 void unpinch_sides(const ContactBand& band, std::vector<ClaySide>& side) {
@@ -118,6 +134,7 @@ Result<std::vector<ClaySide>> divide_clay(const ContactBand& band, const Dips& d
       cut.add_edge(n, m, 1 + static_cast<std::int32_t>(std::lround(kUnit * face * cost_here)));
     }
   }
+  set_blocks(band, cut);
   DUBSAR_TRY(cut.solve(progress));
   std::vector<ClaySide> side(count);
   for (std::uint32_t n = 0; n < count; ++n) side[n] = cut.on_source_side(n) ? ClaySide::kTablet : ClaySide::kEnvelope;

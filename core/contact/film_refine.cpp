@@ -23,9 +23,6 @@ constexpr float kLeastCosine = 0.3f;  ///< between a triangle before and after
 constexpr float kDoubt = 4.0f, kFloor = 0.1f;
 constexpr float kSettle = 0.5f;  ///< of the way to the middle of the neighbours, where nothing is trusted
 constexpr int kSettleRounds = 2;
-constexpr int kDentRings = 6;  ///< around a dent
-/// Steps below what is around it, and trust in its dips, from which on a dent needs them, or below which it has none.
-constexpr float kDent = 0.8f, kDentTrust = 0.5f;
 constexpr float kMostHollow = 1.0f;  ///< steps out of the hollow
 constexpr float kLowPass = 0.5f;     ///< variance of that of BandDensity
 constexpr float kQuiet = 6.0f;       ///< steps from the contact to the sheets in clay that show the noise
@@ -238,22 +235,6 @@ class Follower {
     }
   }
 
-  /// Dents that dips do not support, and what touches them.
-  std::vector<bool> doubtful() const {
-    std::vector<glm::vec3> around = mesh_.added;
-    average(rings_, kDentRings, around);
-    std::vector<float> trust = trust_;
-    average(rings_, 1, trust);
-    std::vector<bool> doubtful(around.size(), false);
-    for (std::size_t i = 0; i < around.size(); ++i) {
-      if (step_[i] || trust[i] >= kDentTrust) continue;
-      if (glm::dot(mesh_.added[i] - around[i], normal_[i]) > -kDent) continue;
-      doubtful[i] = true;
-      for (const std::uint32_t w : rings_.added[i]) doubtful[w] = true;
-    }
-    return doubtful;
-  }
-
  private:
   /// Density along lines across the contact, averaged along it; their middles are `away` from it.
   std::vector<Profile> mean_profiles(float away) const {
@@ -293,9 +274,8 @@ class Follower {
 
 }  // namespace
 
-std::vector<bool> follow_dips(InterfaceMesh& mesh, const InterfaceRings& rings,
-                              const std::vector<glm::vec3>& dual_positions, const Following& follows,
-                              const BandDensity& density, const FollowOptions& options) {
+void follow_dips(InterfaceMesh& mesh, const InterfaceRings& rings, const std::vector<glm::vec3>& dual_positions,
+                 const Following& follows, const BandDensity& density, const FollowOptions& options) {
   Follower follower(mesh, rings, dual_positions, follows, density, options);
   follower.find_normals();
   follower.measure_noise();
@@ -312,7 +292,6 @@ std::vector<bool> follow_dips(InterfaceMesh& mesh, const InterfaceRings& rings,
     follower.spread();
   }
   follower.unfold();
-  return follower.doubtful();
 }
 
 }  // namespace dubsar

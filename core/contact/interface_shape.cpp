@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <map>
 
+#include "core/base/parallel.h"
+#include "core/contact/dents.h"
 #include "core/contact/film_refine.h"
 #include "core/contact/interface_rings.h"
 #include "core/mesh/evidence.h"
@@ -24,9 +26,9 @@ constexpr float kMostStrength = 2.5f;  ///< of one vertex: the fringe of a pore 
 /// Vertices of a film that is believed, and of a clear one; a wedge has 300 to 600, and chance makes no clear film.
 constexpr std::size_t kLeastFilm = 1500, kLeastClearFilm = 400;
 constexpr float kClear = 2.0f;
-/// Whole patches: the mean of clay without a film, how much more one has, at least and by vertices (four deviations of
-/// the mean: one of .24 for some 80 vertices); then a piece of film may be small.
-constexpr float kLeastPatch = 400.0f, kClayMean = 0.9f, kPatchMargin = 0.3f, kPatchSigmas = 4.0f * 2.15f;
+/// Whole patches: how much more than clay without a film one has, at least and by vertices (deviations of the mean);
+/// then a piece of film may be small.
+constexpr float kLeastPatch = 400.0f, kPatchMargin = 0.3f, kPatchSigmas = 4.0f * kStrengthDeviation;
 constexpr std::size_t kLeastPatchFilm = 200;
 constexpr float kWithin = 1.2f;     ///< strength of a film in such a patch
 constexpr float kLeastStep = 0.5f;  ///< of the difference of the clays
@@ -35,6 +37,11 @@ constexpr int kMembraneRounds = 200;
 constexpr float kTied = 3.0f, kSlack = 4.0f;  ///< steps from a crossing: nothing moves; all moves are free again
 
 constexpr std::uint8_t kFilm = evidence_byte(Evidence::kFilm), kInferred = evidence_byte(Evidence::kInferred);
+
+template <class Work>
+void each(std::size_t count, const Work& work) {
+  parallel_for(static_cast<std::int64_t>(count), 1024, [&](std::int64_t i) { work(static_cast<std::size_t>(i)); });
+}
 
 /// Is a vertex within kRim rings of the surface?
 std::vector<bool> rim_of(const InterfaceRings& rings) {
@@ -60,7 +67,7 @@ std::vector<float> mean_strength(const InterfaceMesh& mesh, const InterfaceRings
     now[i] = {weight * std::min(mesh.strength[i], rim[i] ? kRimStrength : kMostStrength), weight};
   }
   for (int round = 0; round < kEvidenceRounds; ++round) {
-    for (std::size_t i = 0; i < now.size(); ++i) {
+    each(now.size(), [&](std::size_t i) {
       next[i] = now[i];
       for (const std::uint32_t w : rings.added[i]) {
         next[i].sum += now[w].sum;
@@ -69,7 +76,7 @@ std::vector<float> mean_strength(const InterfaceMesh& mesh, const InterfaceRings
       const float share = 1.0f / static_cast<float>(rings.added[i].size() + 1);
       next[i].sum *= share;
       next[i].weight *= share;
-    }
+    });
     now.swap(next);
   }
   std::vector<float> mean(now.size());
@@ -102,11 +109,11 @@ std::vector<float> mean_steps(const InterfaceMesh& mesh, const InterfaceRings& r
     now[i] = 0.5f * (beside(2.5f) + beside(4.0f) - beside(-2.5f) - beside(-4.0f)) / clays.step();
   }
   for (int round = 0; round < kEvidenceRounds; ++round) {
-    for (std::size_t i = 0; i < now.size(); ++i) {
+    each(now.size(), [&](std::size_t i) {
       next[i] = now[i];
       for (const std::uint32_t w : rings.added[i]) next[i] += now[w];
       next[i] /= static_cast<float>(rings.added[i].size() + 1);
-    }
+    });
     now.swap(next);
   }
   return now;
@@ -133,7 +140,7 @@ std::vector<bool> film_patches(const InterfaceMesh& mesh, const InterfaceRings& 
           patch.push_back(w);
         }
     }
-    if (count < kLeastPatch || sum < count * (kClayMean + std::max(kPatchMargin, kPatchSigmas / std::sqrt(count))))
+    if (count < kLeastPatch || sum < count * (kClayStrength + std::max(kPatchMargin, kPatchSigmas / std::sqrt(count))))
       continue;
     for (const std::uint32_t w : patch) film[w] = true;
   }
@@ -214,9 +221,9 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
   std::vector<glm::vec3> moved = mesh.added;
   const auto position = [&](std::uint32_t v) { return v < dual ? dual_positions[v] : mesh.added[v - dual]; };
   const auto relax = [&](std::uint8_t which, float share) {
-    for (std::size_t i = 0; i < evidence.size(); ++i) {
+    each(evidence.size(), [&](std::size_t i) {
       moved[i] = mesh.added[i];
-      if (evidence[i] != which || rings.all[i].empty()) continue;
+      if (evidence[i] != which || rings.all[i].empty()) return;
       glm::vec3 mean(0.0f);
       for (const std::uint32_t w : rings.all[i]) mean += position(w);
       mean /= static_cast<float>(rings.all[i].size());
@@ -224,15 +231,18 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
       const float length = glm::length(step);
       const float free = leash[i] * options.most;
       moved[i] = start[i] + (length > free ? free / length : 1.0f) * step;
-    }
+    });
     mesh.added.swap(moved);
   };
   for (int round = 0; round < kFilmRounds; ++round) relax(kFilm, 0.5f);
   for (int round = 0; round < kMembraneRounds; ++round) relax(kInferred, 1.0f);
   std::vector<float> follows(evidence.size());
   for (std::size_t i = 0; i < follows.size(); ++i) follows[i] = evidence[i] == kFilm ? leash[i] : 0.0f;
-  const std::vector<bool> doubtful = follow_dips(mesh, rings, dual_positions, {follows, clay_step}, density,
-                                                 {.blur_variance = options.blur_variance, .clays = options.clays});
+  follow_dips(mesh, rings, dual_positions, {follows, clay_step}, density,
+              {.blur_variance = options.blur_variance, .clays = options.clays});
+  std::vector<bool> film(evidence.size());
+  for (std::size_t i = 0; i < film.size(); ++i) film[i] = evidence[i] == kFilm && !clay_step[i];
+  const std::vector<bool> doubtful = doubtful_dents(mesh, rings, dual_positions, film);
   for (std::size_t i = 0; i < evidence.size(); ++i)
     if (doubtful[i]) evidence[i] = kInferred;
   return evidence;

@@ -58,55 +58,90 @@ struct Traced {
   std::vector<glm::vec3> crossed;  ///< where moving its vertices made the contact run through something
 };
 
-void store_patch(SurfaceModel& model, InterfaceMesh mesh, std::vector<std::uint8_t> evidence) {
-  model.patches.clear();
+/// The contact between the sides, as the grid gives it: its vertices have not moved yet.
+struct Laid {
+  InterfaceMesh mesh;
+  std::vector<FillPatch> others;  ///< patches beside it
+  std::int64_t pockets = 0;
+  std::vector<glm::vec3> open;  ///< middles of the edges at which tablet or envelope are not closed
+  bool closed = true;
+};
+
+FillPatch contact_patch(const SurfaceModel& model, InterfaceMesh mesh, std::vector<std::uint8_t> evidence) {
   FillPatch patch;
   patch.partition = model.partitions.find(PartitionKind::kTablet)->id;
   patch.reverse_partition = model.partitions.find(PartitionKind::kEnvelopeInside)->id;
   patch.extra_positions = std::move(mesh.added);
   patch.triangles = std::move(mesh.triangles);
   patch.evidence = std::move(evidence);
-  model.patches.push_back(std::move(patch));
+  return patch;
 }
 
-/// Puts the contact between the sides into the model.
-Result<void> build_contact(SurfaceModel& model, const Traced& traced, const ContactOptions& options,
-                           ContactReport& report, Progress& progress) {
-  report.pockets = relabel_faces(model, traced.graph, traced.faces, traced.side);
-  InterfaceMesh mesh = make_interface(model, traced.index, traced.band, traced.side, traced.dips);
-  DUBSAR_ASSIGN(const std::int64_t rest_loops, close_rest(model, traced.graph, mesh, progress));
-  part_shared_edges(model, mesh);
-  std::vector<std::uint8_t> evidence =
-      shape_interface(mesh, model.mesh.positions, traced.density, traced.crossed,
-                      {options.film_strength, kMostMove, options.blur_variance, traced.clays, traced.dips.deviation});
-  report.film_vertices = std::count(evidence.begin(), evidence.end(), evidence_byte(Evidence::kFilm));
-  report.inferred_vertices = static_cast<std::int64_t>(evidence.size()) - report.film_vertices;
-  store_patch(model, std::move(mesh), std::move(evidence));
-  HoleOptions rest;
-  rest.keep_patches = true;
-  DUBSAR_ASSIGN(const HoleReport holes, fill_holes(model, traced.graph, rest, progress));
-  log_info("contact: {} points, {} pockets, {} film and {} inferred vertices, {} loops closed, {} holes left",
-           report.points, report.pockets, report.film_vertices, report.inferred_vertices, rest_loops, holes.loops);
+/// Are tablet and envelope closed 2-manifolds? Where vertices lie does not matter.
+Result<void> check_closed(const SurfaceModel& model, Laid& laid) {
+  DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model, {.attributes = false}));
+  std::array<PartitionId, std::size_t{PartitionTable::kHighest} + 1> body{};
+  for (const Partition& partition : model.partitions) body[partition.id] = model.partitions.body_of(partition.id);
+  std::vector<PartitionId> bodies(mesh.triangles.size());
+  for (std::size_t t = 0; t < bodies.size(); ++t) bodies[t] = body[mesh.partition_of(t)];
+  const std::vector<bool> watertight = watertight_parts(mesh.positions, mesh.triangles, bodies);
+  for (const PartitionKind kind : {PartitionKind::kTablet, PartitionKind::kEnvelopeInside}) {
+    const PartitionId id = body[model.partitions.find(kind)->id];
+    if (watertight[id]) continue;
+    laid.closed = false;
+    std::vector<std::array<std::uint32_t, 2>> edges;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      if (bodies[k] != id) continue;
+      const Triangle& t = mesh.triangles[k];
+      for (std::size_t i = 0; i < 3; ++i)
+        edges.push_back({std::min(t[i], t[(i + 1) % 3]), std::max(t[i], t[(i + 1) % 3])});
+    }
+    std::sort(edges.begin(), edges.end());
+    for (std::size_t begin = 0, end; begin < edges.size(); begin = end) {
+      end = begin;
+      while (end < edges.size() && edges[end] == edges[begin]) ++end;
+      if (end - begin != 2)
+        laid.open.push_back(0.5f * (mesh.positions[edges[begin][0]] + mesh.positions[edges[begin][1]]));
+    }
+  }
   return {};
 }
 
-/// Middles of the edges of a body that have not two triangles; `closed`: it is a closed 2-manifold.
-Result<void> add_open_places(const SurfaceModel& model, const char* body, std::vector<glm::vec3>& places,
-                             bool& closed) {
-  DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model, {.body = body, .attributes = false}));
-  if (check_mesh(mesh.positions, mesh.triangles).watertight()) return {};
-  closed = false;
-  std::vector<std::array<std::uint32_t, 2>> edges;
-  edges.reserve(3 * mesh.triangles.size());
-  for (const Triangle& t : mesh.triangles)
-    for (std::size_t i = 0; i < 3; ++i)
-      edges.push_back({std::min(t[i], t[(i + 1) % 3]), std::max(t[i], t[(i + 1) % 3])});
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t begin = 0, end; begin < edges.size(); begin = end) {
-    end = begin;
-    while (end < edges.size() && edges[end] == edges[begin]) ++end;
-    if (end - begin != 2) places.push_back(0.5f * (mesh.positions[edges[begin][0]] + mesh.positions[edges[begin][1]]));
-  }
+/// Moves the labels of faces beside the contact and puts it between the sides.
+Result<Laid> lay_contact(SurfaceModel& model, const Traced& traced, Progress& progress) {
+  Laid laid;
+  laid.pockets = relabel_faces(model, traced.graph, traced.faces, traced.side);
+  laid.mesh = make_interface(model, traced.index, traced.band, traced.side, traced.dips);
+  DUBSAR_ASSIGN(const std::int64_t rest_loops, close_rest(model, traced.graph, laid.mesh, progress));
+  part_shared_edges(model, laid.mesh);
+  model.patches.clear();
+  model.patches.push_back(contact_patch(model, laid.mesh, {}));
+  HoleOptions beside;
+  beside.keep_patches = true;
+  beside.measure = false;
+  DUBSAR_ASSIGN(const HoleReport holes, fill_holes(model, traced.graph, beside, progress));
+  laid.others.assign(model.patches.begin() + 1, model.patches.end());
+  log_info("contact: {} points, {} pockets, {} loops closed, {} holes left", traced.band.nodes.size(), laid.pockets,
+           rest_loops, holes.loops);
+  DUBSAR_TRY(check_closed(model, laid));
+  return laid;
+}
+
+/// Moves its vertices to where the scan shows it and stores it in the model.
+Result<void> shape_contact(SurfaceModel& model, const Laid& laid, const Traced& traced, const ContactOptions& options,
+                           ContactReport& report, Progress& progress) {
+  InterfaceMesh mesh = laid.mesh;
+  std::vector<std::uint8_t> evidence =
+      shape_interface(mesh, model.mesh.positions, traced.density, traced.crossed,
+                      {options.film_strength, kMostMove, options.blur_variance, traced.clays, traced.dips.deviation});
+  report.traced = true;
+  report.pockets = laid.pockets;
+  report.film_vertices = std::count(evidence.begin(), evidence.end(), evidence_byte(Evidence::kFilm));
+  report.inferred_vertices = static_cast<std::int64_t>(evidence.size()) - report.film_vertices;
+  log_info("contact: {} film and {} inferred vertices", report.film_vertices, report.inferred_vertices);
+  model.patches = laid.others;
+  model.patches.insert(model.patches.begin(), contact_patch(model, std::move(mesh), std::move(evidence)));
+  DUBSAR_ASSIGN(report.patches, untangle_patches(model, options.step, progress));
   return {};
 }
 
@@ -140,26 +175,24 @@ Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const Contac
   };
   int crossed = 0;
   std::optional<Closed> best;
+  std::optional<Laid> laid;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
-    DUBSAR_TRY(build_contact(model, traced, options, report, progress));
-    std::vector<glm::vec3> places;
-    report.traced = true;
-    DUBSAR_TRY(add_open_places(model, "tablet", places, report.traced));
-    DUBSAR_TRY(add_open_places(model, "envelope", places, report.traced));
-    if (report.traced) {
-      DUBSAR_ASSIGN(report.patches, untangle_patches(model, options.step, progress));
+    if (!laid) {
+      DUBSAR_ASSIGN(laid, lay_contact(model, traced, progress));
+    }
+    std::vector<glm::vec3> places = laid->open;
+    if (laid->closed) {
+      DUBSAR_TRY(shape_contact(model, *laid, traced, options, report, progress));
       places = report.patches.left;
-      if (places.empty()) return {};
+      if (places.empty()) return measure_partitions(model);
       if (!best || best->report.patches.left.size() > places.size()) best = Closed{labels_of(model), report};
       if (++crossed == kMostCrossed) break;
       traced.crossed.insert(traced.crossed.end(), places.begin(), places.end());
-      if (crossed == 1) {  // most of them are gone when the cut is not smoothed there
-        restore(before, model);
-        continue;
-      }
+      if (crossed == 1) continue;  // most of them are gone when the cut is not smoothed there
     }
     restore(before, model);
     if (places.empty()) break;
+    laid.reset();
     step_aside(traced.band, places, 2 + attempt / 2, traced.side);
     unpinch_sides(traced.band, traced.side);
   }
@@ -169,8 +202,8 @@ Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const Contac
     log_info("contact: closed, but {} pairs of triangles of patches cross others", report.patches.left.size());
     return measure_partitions(model);
   }
+  restore(before, model);
   report.why = "the traced contact does not close tablet and envelope";
-  report.pockets = report.film_vertices = 0;
   log_info("contact: {}; the smooth patches stay", report.why);
   return {};
 }

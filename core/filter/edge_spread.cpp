@@ -21,6 +21,7 @@ constexpr double kBeyondBlur = 2.5;  ///< voxels from the plane at which its sid
 constexpr double kLevelError = 0.15, kMostBend = 0.15, kMostTilt = 0.3;
 constexpr int kFolds = 16;  ///< parts of the places, each of which gives a variance
 constexpr int kLeastPlaces = 200;
+constexpr double kSignificant = 2.0;  ///< uncertainties that a variance is above nothing, or it says nothing
 
 struct Offset {
   int x, y, z;
@@ -182,7 +183,8 @@ std::optional<EdgeSpread> summary(const Folds& folds) {
   for (double& v : variances) v = std::abs(v - spread);
   const auto count = static_cast<double>(variances.size());
   result.uncertainty = 1.4826 * median(std::move(variances)) / std::sqrt(count);
-  result.variance = std::max(0.0, spread - off * off);
+  result.variance = spread - off * off;
+  if (result.variance <= kSignificant * result.uncertainty) return std::nullopt;
   return result;
 }
 

@@ -36,10 +36,24 @@ double volume(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, con
   return glm::dot(glm::cross(b - a, c - a), d - a);
 }
 
-/// The segment passes through the inside of the triangle, both ends off its plane.
-bool crosses(const glm::dvec3& from, const glm::dvec3& to, const Corners& t) {
-  const double above = volume(t[0], t[1], t[2], from), below = volume(t[0], t[1], t[2], to);
-  if (!((above > 0.0 && below < 0.0) || (above < 0.0 && below > 0.0))) return false;
+/// On which side of the plane of a triangle points are.
+class Sides {
+ public:
+  Sides(const Corners& triangle, const Corners& points) {
+    const glm::dvec3 across = glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+    for (std::size_t i = 0; i < 3; ++i) side_[i] = glm::dot(across, points[i] - triangle[0]);
+  }
+  bool differ(std::size_t i, std::size_t j) const {
+    return (side_[i] > 0.0 && side_[j] < 0.0) || (side_[i] < 0.0 && side_[j] > 0.0);
+  }
+  bool any_differ() const { return differ(0, 1) || differ(1, 2) || differ(2, 0); }
+
+ private:
+  std::array<double, 3> side_;
+};
+
+/// A segment whose ends are on both sides of the plane of a triangle passes through its inside.
+bool passes(const glm::dvec3& from, const glm::dvec3& to, const Corners& t) {
   const double a = volume(from, to, t[0], t[1]), b = volume(from, to, t[1], t[2]), c = volume(from, to, t[2], t[0]);
   return (a > 0.0 && b > 0.0 && c > 0.0) || (a < 0.0 && b < 0.0 && c < 0.0);
 }
@@ -135,8 +149,16 @@ bool triangles_cross(std::span<const glm::vec3> positions, const std::array<std:
     return Corners{glm::dvec3(positions[t[0]]), glm::dvec3(positions[t[1]]), glm::dvec3(positions[t[2]])};
   };
   const Corners ca = corners(a), cb = corners(b);
-  for (std::size_t i = 0; i < 3; ++i)
-    if (crosses(ca[i], ca[(i + 1) % 3], cb) || crosses(cb[i], cb[(i + 1) % 3], ca)) return true;
+  // Both go through the plane of the other, or none goes through the other.
+  const Sides of_b(ca, cb);
+  if (!of_b.any_differ()) return false;
+  const Sides of_a(cb, ca);
+  if (!of_a.any_differ()) return false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t next = (i + 1) % 3;
+    if ((of_a.differ(i, next) && passes(ca[i], ca[next], cb)) || (of_b.differ(i, next) && passes(cb[i], cb[next], ca)))
+      return true;
+  }
   return false;
 }
 

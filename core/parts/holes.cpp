@@ -285,6 +285,10 @@ Result<HoleReport> fill_holes(SurfaceModel& model, const FaceGraph& graph, const
   if (!options.keep_patches) model.patches.clear();
   progress.begin("fill holes", 0, "vertex");
   DUBSAR_ASSIGN(HoleReport report, HoleFiller(model, graph, options, progress).run());
+  if (!options.measure) {
+    progress.end();
+    return report;
+  }
   DUBSAR_TRY(measure_partitions(model));
   report.watertight = true;
   for (const Partition& partition : model.partitions) {

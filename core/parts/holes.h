@@ -15,6 +15,7 @@ namespace dubsar {
 struct HoleOptions {
   LoopFillOptions fill;
   bool keep_patches = false;  ///< the model's patches between parts stay, and what they close is no hole
+  bool measure = true;        ///< false: the partitions are not measured, and `watertight` says nothing
 };
 
 struct HoleReport {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/base/parallel.h"
+
 namespace dubsar {
 
 void MinCut::build() {
@@ -30,23 +32,69 @@ void MinCut::build() {
     tree_[i] = terminal_[i] > 0 ? kSource : kSink;
     parent_[i] = kTerminal;
     distance_[i] = 1;
-    activate(i);
   }
 }
 
-void MinCut::activate(std::uint32_t node) {
-  if (active_[node]) return;
-  active_[node] = 1;
-  queue_.push_back(node);
-}
+/// Growing, augmenting and adopting from a queue of active nodes; `kInBlock`: of one block, whose arcs to other blocks
+/// do not exist for it.
+template <bool kInBlock>
+class MinCut::Search {
+ public:
+  Search(MinCut& cut, std::uint32_t block, std::uint32_t time)
+      : terminal_(cut.terminal_),
+        block_of_(cut.block_),
+        first_arc_(cut.first_arc_),
+        arcs_(cut.arcs_),
+        parent_(cut.parent_),
+        tree_(cut.tree_),
+        distance_(cut.distance_),
+        stamp_(cut.stamp_),
+        active_(cut.active_),
+        block_(block),
+        time_(time) {}
+
+  void activate(std::uint32_t node) {
+    if (active_[node]) return;
+    active_[node] = 1;
+    queue_.push_back(node);
+  }
+  /// False: cancelled.
+  bool run(Progress& progress);
+  std::uint32_t time() const noexcept { return time_; }
+
+ private:
+  std::uint32_t grow(std::uint32_t node);
+  void augment(std::uint32_t middle);
+  void make_orphan(std::uint32_t node);
+  void adopt(std::uint32_t orphan);
+  bool reaches_terminal(std::uint32_t node, std::uint32_t& distance) const;
+  void mark_path(std::uint32_t node, std::uint32_t distance);
+  bool elsewhere(std::uint32_t node) const { return kInBlock && block_of_[node] != block_; }
+  std::int32_t residual_from(Tree tree, std::uint32_t arc) const {
+    return tree == kSource ? arcs_[arc].residual : arcs_[arcs_[arc].sister].residual;
+  }
+
+  std::vector<std::int32_t>& terminal_;
+  const std::vector<std::uint32_t>&block_of_, &first_arc_;
+  std::vector<Arc>& arcs_;
+  std::vector<std::uint32_t>& parent_;
+  std::vector<std::uint8_t>& tree_;
+  std::vector<std::uint32_t>&distance_, &stamp_;
+  std::vector<std::uint8_t>& active_;
+  std::vector<std::uint32_t> queue_, orphans_;
+  std::size_t queue_head_ = 0;
+  std::uint32_t block_, time_;
+};
 
 /// Looks for an arc from the source tree to the sink tree around an active node, and adds free neighbours to
 /// its tree.
-std::uint32_t MinCut::grow(std::uint32_t node) {
+template <bool kInBlock>
+std::uint32_t MinCut::Search<kInBlock>::grow(std::uint32_t node) {
   const Tree tree = static_cast<Tree>(tree_[node]);
   for (std::uint32_t a = first_arc_[node]; a < first_arc_[node + 1]; ++a) {
     if (residual_from(tree, a) <= 0) continue;
     const std::uint32_t other = arcs_[a].head;
+    if (elsewhere(other)) continue;
     if (tree_[other] == kFree) {
       tree_[other] = tree;
       parent_[other] = arcs_[a].sister;
@@ -64,12 +112,14 @@ std::uint32_t MinCut::grow(std::uint32_t node) {
   return kNone;
 }
 
-void MinCut::make_orphan(std::uint32_t node) {
+template <bool kInBlock>
+void MinCut::Search<kInBlock>::make_orphan(std::uint32_t node) {
   parent_[node] = kOrphan;
   orphans_.push_back(node);
 }
 
-void MinCut::augment(std::uint32_t middle) {
+template <bool kInBlock>
+void MinCut::Search<kInBlock>::augment(std::uint32_t middle) {
   const std::uint32_t source_end = arcs_[arcs_[middle].sister].head, sink_end = arcs_[middle].head;
   std::int32_t flow = arcs_[middle].residual;
   std::uint32_t node = source_end;
@@ -99,7 +149,8 @@ void MinCut::augment(std::uint32_t middle) {
 }
 
 /// Follows the parents; on success `distance` is that of `node` from its terminal.
-bool MinCut::reaches_terminal(std::uint32_t node, std::uint32_t& distance) const {
+template <bool kInBlock>
+bool MinCut::Search<kInBlock>::reaches_terminal(std::uint32_t node, std::uint32_t& distance) const {
   distance = 0;
   for (;;) {
     if (stamp_[node] == time_) {
@@ -114,7 +165,8 @@ bool MinCut::reaches_terminal(std::uint32_t node, std::uint32_t& distance) const
   }
 }
 
-void MinCut::mark_path(std::uint32_t node, std::uint32_t distance) {
+template <bool kInBlock>
+void MinCut::Search<kInBlock>::mark_path(std::uint32_t node, std::uint32_t distance) {
   while (stamp_[node] != time_) {
     stamp_[node] = time_;
     distance_[node] = distance--;
@@ -123,12 +175,13 @@ void MinCut::mark_path(std::uint32_t node, std::uint32_t distance) {
   }
 }
 
-void MinCut::adopt(std::uint32_t orphan) {
+template <bool kInBlock>
+void MinCut::Search<kInBlock>::adopt(std::uint32_t orphan) {
   const Tree tree = static_cast<Tree>(tree_[orphan]);
   std::uint32_t best = kNone, best_distance = 0xffffffffu;
   for (std::uint32_t a = first_arc_[orphan]; a < first_arc_[orphan + 1]; ++a) {
     const std::uint32_t other = arcs_[a].head;
-    if (tree_[other] != tree || residual_from(tree, arcs_[a].sister) <= 0) continue;
+    if (elsewhere(other) || tree_[other] != tree || residual_from(tree, arcs_[a].sister) <= 0) continue;
     std::uint32_t distance = 0;
     if (!reaches_terminal(other, distance)) continue;
     if (distance < best_distance) {
@@ -145,7 +198,7 @@ void MinCut::adopt(std::uint32_t orphan) {
   }
   for (std::uint32_t a = first_arc_[orphan]; a < first_arc_[orphan + 1]; ++a) {
     const std::uint32_t other = arcs_[a].head;
-    if (tree_[other] != tree) continue;
+    if (elsewhere(other) || tree_[other] != tree) continue;
     if (residual_from(tree, arcs_[a].sister) > 0) activate(other);
     const std::uint32_t up = parent_[other];
     if (up != kTerminal && up != kOrphan && up != kNone && arcs_[up].head == orphan) make_orphan(other);
@@ -154,11 +207,11 @@ void MinCut::adopt(std::uint32_t orphan) {
   parent_[orphan] = kNone;
 }
 
-Result<void> MinCut::solve(Progress& progress) {
-  build();
+template <bool kInBlock>
+bool MinCut::Search<kInBlock>::run(Progress& progress) {
   std::uint32_t node = kNone;
   for (std::uint64_t step = 0;; ++step) {
-    if ((step & 0xfff) == 0 && progress.cancelled()) return cancelled_error();
+    if ((step & 0xfff) == 0 && progress.cancelled()) return false;
     if (node == kNone || tree_[node] == kFree) {
       node = kNone;
       while (queue_head_ < queue_.size()) {
@@ -173,7 +226,7 @@ Result<void> MinCut::solve(Progress& progress) {
         queue_.erase(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(queue_head_));
         queue_head_ = 0;
       }
-      if (node == kNone) return {};
+      if (node == kNone) return true;
     }
     const std::uint32_t middle = grow(node);
     if (middle == kNone) {
@@ -185,6 +238,37 @@ Result<void> MinCut::solve(Progress& progress) {
     for (std::size_t i = 0; i < orphans_.size(); ++i) adopt(orphans_[i]);
     orphans_.clear();
   }
+}
+
+Result<void> MinCut::solve(Progress& progress) {
+  build();
+  const auto nodes = static_cast<std::uint32_t>(terminal_.size());
+  DUBSAR_CHECK(block_.empty() || block_.size() == nodes);
+  std::uint32_t time = 0;
+  if (blocks_ > 1) {
+    std::vector<std::vector<std::uint32_t>> inside(blocks_);
+    for (std::uint32_t n = 0; n < nodes; ++n)
+      if (tree_[n] != kFree) inside[block_[n]].push_back(n);
+    std::vector<std::uint32_t> times(blocks_, 0);
+    parallel_for(blocks_, 1, [&](std::int64_t b) {
+      const auto block = static_cast<std::uint32_t>(b);
+      Search<true> search(*this, block, 0);
+      for (const std::uint32_t n : inside[block]) search.activate(n);
+      if (search.run(progress)) times[block] = search.time();
+    });
+    if (progress.cancelled()) return cancelled_error();
+    time = *std::max_element(times.begin(), times.end());
+  }
+  Search<false> search(*this, 0, time);
+  for (std::uint32_t n = 0; n < nodes; ++n) {
+    if (tree_[n] == kFree) continue;
+    bool at_border = blocks_ <= 1;
+    for (std::uint32_t a = first_arc_[n]; a < first_arc_[n + 1] && !at_border; ++a)
+      at_border = block_[arcs_[a].head] != block_[n];
+    if (at_border) search.activate(n);
+  }
+  if (!search.run(progress)) return cancelled_error();
+  return {};
 }
 
 }  // namespace dubsar

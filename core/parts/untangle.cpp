@@ -38,23 +38,34 @@ class Tangle {
     add_surface(surface);
   }
 
-  /// Pairs of crossing triangles that matter; `near`: only among triangles beside these.
-  Pairs crossings(const Pairs* near = nullptr) const {
-    std::vector<std::uint32_t> some;
-    if (near != nullptr) some = beside(*near);
-    const std::size_t count = near == nullptr ? triangles_.size() : some.size();
-    std::vector<Triangle> triangles(near == nullptr ? 0 : count);
-    std::vector<std::uint8_t> of_patch(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t t = near == nullptr ? i : some[i];
-      if (near != nullptr) triangles[i] = triangles_[t];
-      of_patch[i] = owner_[t].patch != kNone;
-    }
-    Pairs pairs = self_intersections(positions_, near == nullptr ? triangles_ : triangles, of_patch);
-    if (near != nullptr)
-      for (auto& [a, b] : pairs) a = some[a], b = some[b];
+  /// Pairs of crossing triangles that matter, rising.
+  Pairs crossings() const {
+    std::vector<std::uint8_t> of_patch(triangles_.size());
+    for (std::size_t t = 0; t < of_patch.size(); ++t) of_patch[t] = owner_[t].patch != kNone;
+    Pairs pairs = self_intersections(positions_, triangles_, of_patch);
     std::erase_if(pairs, [&](const auto& pair) { return !matters(pair[0], pair[1]); });
     return pairs;
+  }
+
+  /// The same where they were `before` all that has changed since the last call.
+  Pairs crossings_after(Pairs before) {
+    changed_.resize(triangles_.size(), 0);
+    std::vector<TriangleBox> boxes;
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+      if (changed_[t]) boxes.push_back(box_of(positions_, triangles_[t]));
+    const std::vector<std::uint32_t> some = that_meet(BrickSet(boxes));
+    std::vector<Triangle> triangles;
+    std::vector<std::uint8_t> changed;
+    for (const std::uint32_t t : some) {
+      triangles.push_back(triangles_[t]);
+      changed.push_back(changed_[t]);
+    }
+    std::erase_if(before, [&](const auto& pair) { return changed_[pair[0]] || changed_[pair[1]]; });
+    for (const auto& [a, b] : self_intersections(positions_, triangles, changed))
+      if (matters(some[a], some[b])) before.push_back({some[a], some[b]});
+    std::sort(before.begin(), before.end());
+    std::fill(changed_.begin(), changed_.end(), std::uint8_t{0});
+    return before;
   }
 
   /// The middles of the pairs.
@@ -200,7 +211,9 @@ class Tangle {
     std::vector<TriangleBox> boxes;
     for (const auto& pair : pairs)
       for (const std::uint32_t t : pair) boxes.push_back(box_of(positions_, triangles_[t]).grown(kBeside));
-    const BrickSet bricks(boxes);
+    return that_meet(BrickSet(boxes));
+  }
+  std::vector<std::uint32_t> that_meet(const BrickSet& bricks) const {
     std::vector<std::uint32_t> some;
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
       if (bricks.meets(box_of(positions_, triangles_[t]))) some.push_back(t);
@@ -300,7 +313,11 @@ class Tangle {
     if (best == start) return false;
     positions_[v] = best;
     moved_[v - first_extra_] = true;
-    for (const std::uint32_t t : star_[v - first_extra_]) grid_.add(t, box_of(positions_, triangles_[t]));
+    changed_.resize(triangles_.size(), 0);
+    for (const std::uint32_t t : star_[v - first_extra_]) {
+      changed_[t] = 1;
+      grid_.add(t, box_of(positions_, triangles_[t]));
+    }
     return true;
   }
 
@@ -320,7 +337,9 @@ class Tangle {
     positions_.push_back(rounded(0.5f * (positions_[a] + positions_[b])));
     patch_of_vertex_.push_back(owner_[t].patch);
     star_.emplace_back();
+    changed_.resize(triangles_.size() + 2, 1);
     for (const std::uint32_t side : {t, beyond}) {
+      changed_[side] = 1;
       Triangle other = triangles_[side];
       std::replace(triangles_[side].begin(), triangles_[side].end(), a, middle);
       std::replace(other.begin(), other.end(), b, middle);
@@ -365,6 +384,7 @@ class Tangle {
   std::vector<std::vector<std::uint32_t>> star_;
   SideTable sides_;  ///< see index_sides()
   std::vector<bool> moved_;
+  std::vector<std::uint8_t> changed_;            ///< triangles, see crossings_after()
   std::vector<std::uint32_t> near_, near_star_;  ///< see look_around()
   std::vector<TriangleBox> near_boxes_;          ///< of near_
 };
@@ -382,8 +402,7 @@ Result<UntangleReport> untangle_patches(SurfaceModel& model, double step, Progre
     if (progress.cancelled()) return cancelled_error();
     if (round > 0) report.added += tangle.split(pairs);
     tangle.move(pairs);
-    pairs = tangle.crossings(&pairs);
-    if (pairs.empty()) pairs = tangle.crossings();
+    pairs = tangle.crossings_after(std::move(pairs));
     progress.advance(1);
   }
   report.left = tangle.places(pairs);

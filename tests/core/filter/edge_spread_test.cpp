@@ -67,5 +67,11 @@ TEST(EdgeSpread, WhatIsNotFlatSaysNothing) {
   EXPECT_FALSE(measured(Volume<float>(Dims{64, 64, 64})).has_value());
 }
 
+TEST(EdgeSpread, WhatDoesNotStandOutOfItsUncertaintySaysNothing) {
+  // A mask: whole voxels of one value or the other, as no scanner sees them, through noise.
+  EXPECT_FALSE(measured(brick(1e-3, 0.141, 71)).has_value());
+  EXPECT_TRUE(measured(brick(0.3, 0.141, 71)).has_value()) << "the sharpest that a scan can be";
+}
+
 }  // namespace
 }  // namespace dubsar

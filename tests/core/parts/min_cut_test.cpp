@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace dubsar {
 namespace {
@@ -86,6 +88,38 @@ TEST(MinCut, GridIsCutAtItsCheapestColumn) {
   SilentProgress progress;
   ASSERT_TRUE(cut.solve(progress).has_value());
   for (std::uint32_t i = 0; i < kSide * kSide; ++i) ASSERT_EQ(cut.on_source_side(i), i % kSide <= 123);
+}
+
+/// Costs are small, so that many cuts are equally cheap: the sides are still the same.
+TEST(MinCut, BlocksOfNodesDoNotChangeTheSides) {
+  constexpr std::uint32_t kEdge = 24, kNodes = kEdge * kEdge * kEdge;
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const auto sides = [&](std::uint32_t blocks) {
+      std::mt19937 random(seed);
+      MinCut cut(kNodes);
+      for (std::uint32_t n = 0; n < kNodes; ++n) {
+        const std::uint32_t x = n % kEdge, y = n / kEdge % kEdge, z = n / (kEdge * kEdge);
+        cut.add_node_cost(n, z == 0 ? 0 : static_cast<int>(random() % 6), z == kEdge - 1 ? 0 : z == 0 ? 1000 : 2);
+        if (x + 1 < kEdge) cut.add_edge(n, n + 1, static_cast<int>(random() % 5));
+        if (y + 1 < kEdge) cut.add_edge(n, n + kEdge, static_cast<int>(random() % 5));
+        if (z + 1 < kEdge) cut.add_edge(n, n + kEdge * kEdge, static_cast<int>(random() % 7));
+      }
+      if (blocks > 0) {
+        std::vector<std::uint32_t> block(kNodes);
+        for (std::uint32_t n = 0; n < kNodes; ++n) block[n] = n % kEdge / 8 % blocks;
+        cut.set_blocks(std::move(block), blocks);
+      }
+      SilentProgress progress;
+      EXPECT_TRUE(cut.solve(progress).has_value());
+      std::vector<bool> source(kNodes);
+      for (std::uint32_t n = 0; n < kNodes; ++n) source[n] = cut.on_source_side(n);
+      return source;
+    };
+    const std::vector<bool> whole = sides(0);
+    EXPECT_GT(std::count(whole.begin(), whole.end(), true), kNodes / 20);
+    EXPECT_LT(std::count(whole.begin(), whole.end(), true), kNodes - kNodes / 20);
+    for (const std::uint32_t blocks : {1u, 2u, 3u}) EXPECT_EQ(sides(blocks), whole) << blocks << ", seed " << seed;
+  }
 }
 
 }  // namespace

@@ -1,0 +1,25 @@
+#pragma once
+// Dents of the traced contact that look like wedges: are they there, or did the contact follow the noise?
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/contact/interface_mesh.h"
+#include "core/contact/interface_rings.h"
+
+namespace dubsar {
+
+/// Mean strength of dips along a cut through clay without a film: it seeks what is dark.
+inline constexpr float kClayStrength = 0.9f;
+/// Deviation of the mean of so many of their neighbours: this over the root of their number (one of .24 for some 80).
+inline constexpr float kStrengthDeviation = 2.15f;
+
+/// Added vertices in dents, more than 1.2 steps below a sheet that spans them towards the envelope, whose dips do not
+/// stand out of what chance makes of clay: the mean strength of the nearest 64 vertices of the dent, or of all where it
+/// has fewer, is not 2.5 deviations above kClayStrength. What touches such vertices is doubtful, too. `film`: of each
+/// added vertex; others are no part of a dent. The same for any number of threads.
+std::vector<bool> doubtful_dents(const InterfaceMesh& mesh, const InterfaceRings& rings,
+                                 const std::vector<glm::vec3>& dual_positions, const std::vector<bool>& film);
+
+}  // namespace dubsar
