@@ -12,6 +12,7 @@
 #include "core/extract/triangulate.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh/intersections.h"
+#include "core/parts/crossing_pairs.h"
 #include "core/parts/triangle_grid.h"
 
 namespace dubsar {
@@ -23,7 +24,7 @@ constexpr int kMostCounted = 1000;
 constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr std::int64_t kTangleGrain = 1 << 14;
 constexpr float kBeside = 6.0f;  ///< steps that moves reach
-using Pairs = std::vector<std::array<std::uint32_t, 2>>;
+using Pairs = CrossingPairs;
 
 /// Patches and the surface beside them as one list of triangles.
 class Tangle {
@@ -42,30 +43,16 @@ class Tangle {
   Pairs crossings() const {
     std::vector<std::uint8_t> of_patch(triangles_.size());
     for (std::size_t t = 0; t < of_patch.size(); ++t) of_patch[t] = owner_[t].patch != kNone;
-    Pairs pairs = self_intersections(positions_, triangles_, of_patch);
-    std::erase_if(pairs, [&](const auto& pair) { return !matters(pair[0], pair[1]); });
-    return pairs;
+    return crossing_pairs(positions_, triangles_, of_patch, [this](auto a, auto b) { return matters(a, b); });
   }
 
   /// The same where they were `before` all that has changed since the last call.
   Pairs crossings_after(Pairs before) {
-    changed_.resize(triangles_.size(), 0);
-    std::vector<TriangleBox> boxes;
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-      if (changed_[t]) boxes.push_back(box_of(positions_, triangles_[t]));
-    const std::vector<std::uint32_t> some = that_meet(BrickSet(boxes));
-    std::vector<Triangle> triangles;
-    std::vector<std::uint8_t> changed;
-    for (const std::uint32_t t : some) {
-      triangles.push_back(triangles_[t]);
-      changed.push_back(changed_[t]);
-    }
-    std::erase_if(before, [&](const auto& pair) { return changed_[pair[0]] || changed_[pair[1]]; });
-    for (const auto& [a, b] : self_intersections(positions_, triangles, changed))
-      if (matters(some[a], some[b])) before.push_back({some[a], some[b]});
-    std::sort(before.begin(), before.end());
-    std::fill(changed_.begin(), changed_.end(), std::uint8_t{0});
-    return before;
+    std::vector<std::uint8_t> changed(triangles_.size(), 0);
+    changed_.resize(changed.size(), 0);
+    changed.swap(changed_);
+    return crossing_pairs_after(std::move(before), positions_, triangles_, changed,
+                                [this](auto a, auto b) { return matters(a, b); });
   }
 
   /// The middles of the pairs.
@@ -177,17 +164,16 @@ class Tangle {
     std::vector<TriangleBox> boxes;
     for (const Triangle& t : triangles_) boxes.push_back(box_of(positions_, t).grown(1.0f));
     const BrickSet near(boxes);
-    using Found = std::vector<std::array<std::uint32_t, 2>>;  // a triangle and its x-quad
-    const Found found = parallel_reduce<Found>(
+    const Pairs found = parallel_reduce<Pairs>(  // a triangle and its x-quad
         model_.mesh.quad_count(), kTangleGrain, {},
         [&](std::int64_t begin, std::int64_t end) {
-          Found part;
+          Pairs part;
           for (auto q = static_cast<std::uint32_t>(begin); q < static_cast<std::uint64_t>(end); ++q)
             for (std::uint32_t t = surface.first_triangle[q]; t < surface.first_triangle[q + 1]; ++t)
               if (near.meets(box_of(positions_, surface.triangles[t]))) part.push_back({t, q});
           return part;
         },
-        [](Found all, const Found& part) {
+        [](Pairs all, const Pairs& part) {
           all.insert(all.end(), part.begin(), part.end());
           return all;
         });
@@ -201,7 +187,7 @@ class Tangle {
   bool matters(std::uint32_t a, std::uint32_t b) const {
     const Owner &one = owner_[a], &other = owner_[b];
     if (one.patch == kNone && other.patch == kNone) return false;
-    const auto is_of = [&](PartitionId body) {
+    const auto is_of = [&](auto body) {
       return body != PartitionTable::kNone && (body == other.front || body == other.back);
     };
     return is_of(one.front) || is_of(one.back);
@@ -211,13 +197,7 @@ class Tangle {
     std::vector<TriangleBox> boxes;
     for (const auto& pair : pairs)
       for (const std::uint32_t t : pair) boxes.push_back(box_of(positions_, triangles_[t]).grown(kBeside));
-    return that_meet(BrickSet(boxes));
-  }
-  std::vector<std::uint32_t> that_meet(const BrickSet& bricks) const {
-    std::vector<std::uint32_t> some;
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-      if (bricks.meets(box_of(positions_, triangles_[t]))) some.push_back(t);
-    return some;
+    return triangles_in(BrickSet(boxes), positions_, triangles_);
   }
 
   void index_triangles(const Pairs& pairs) {
@@ -248,14 +228,14 @@ class Tangle {
       const TriangleBox one = box_of(positions_, triangles_[t]);
       box = {glm::min(box.low, one.low), glm::max(box.high, one.high)};
     }
-    grid_.near(box.grown(1.0f), near_);
-    const auto of_star = std::stable_partition(near_.begin(), near_.end(), [&](std::uint32_t t) {
+    grid_.near(box.grown(1.0f), near_.others);
+    const auto of_star = std::stable_partition(near_.others.begin(), near_.others.end(), [&](std::uint32_t t) {
       return std::find(star.begin(), star.end(), t) == star.end();
     });
-    near_star_.assign(of_star, near_.end());
-    near_.erase(of_star, near_.end());
-    near_boxes_.clear();
-    for (const std::uint32_t t : near_) near_boxes_.push_back(box_of(positions_, triangles_[t]));
+    near_.of_star.assign(of_star, near_.others.end());
+    near_.others.erase(of_star, near_.others.end());
+    near_.boxes.clear();
+    for (const std::uint32_t t : near_.others) near_.boxes.push_back(box_of(positions_, triangles_[t]));
   }
 
   /// How many of them the star of a vertex at `place` crosses, counted up to `most`; `met`: movable vertices of those.
@@ -270,9 +250,9 @@ class Tangle {
     };
     for (const std::uint32_t t : star_[v - first_extra_]) {
       const TriangleBox box = box_of(positions_, triangles_[t]);
-      for (std::size_t i = 0; i < near_.size(); ++i)
-        if (box.meets(near_boxes_[i])) look_at(t, near_[i]);
-      for (const std::uint32_t other : near_star_)
+      for (std::size_t i = 0; i < near_.others.size(); ++i)
+        if (box.meets(near_.boxes[i])) look_at(t, near_.others[i]);
+      for (const std::uint32_t other : near_.of_star)
         if (other > t) look_at(t, other);
     }
     positions_[v] = before;
@@ -384,9 +364,11 @@ class Tangle {
   std::vector<std::vector<std::uint32_t>> star_;
   SideTable sides_;  ///< see index_sides()
   std::vector<bool> moved_;
-  std::vector<std::uint8_t> changed_;            ///< triangles, see crossings_after()
-  std::vector<std::uint32_t> near_, near_star_;  ///< see look_around()
-  std::vector<TriangleBox> near_boxes_;          ///< of near_
+  std::vector<std::uint8_t> changed_;  ///< triangles, see crossings_after()
+  struct Near {
+    std::vector<std::uint32_t> others, of_star;
+    std::vector<TriangleBox> boxes;  ///< of `others`
+  } near_;                           ///< see look_around()
 };
 
 }  // namespace
@@ -408,10 +390,9 @@ Result<UntangleReport> untangle_patches(SurfaceModel& model, double step, Progre
   report.left = tangle.places(pairs);
   report.moved = tangle.moved();
   tangle.store();
-  if (report.crossings > 0) {
+  if (report.crossings > 0)
     log_info("patches: {} pairs of triangles crossed, {} do after {} vertices were moved and {} added",
              report.crossings, report.left.size(), report.moved, report.added);
-  }
   progress.end();
   return report;
 }
