@@ -127,7 +127,7 @@ class PartitionCode {
     }
     const std::size_t best = most_votes(votes);
     const auto context = static_cast<std::size_t>(all * 5 + votes[best]);
-    if (coder.bit(same_[context], values[q] == best)) return static_cast<std::uint8_t>(best);
+    if (coder.steady_bit(same_[context], values[q] == best)) return static_cast<std::uint8_t>(best);
     return static_cast<std::uint8_t>(other_[best].code(coder, values[q]));
   }
 
@@ -147,7 +147,7 @@ class EnumCode {
                                                          : context_of_votes(mesh, values, v, first);
     const std::size_t best = context / 16;
     std::uint8_t value = static_cast<std::uint8_t>(best);
-    if (!coder.bit(same_[context], values[v] == best))
+    if (!coder.steady_bit(same_[context], values[v] == best))
       value = static_cast<std::uint8_t>(other_[best].code(coder, values[v]));
     one_value_ = one_value_ && (v == first || value == values[first]);
     return value;

@@ -74,6 +74,7 @@ namespace {
 constexpr std::uint64_t kMostPerByte = 16384, kMostEdgesPerByte = 1024, kAlwaysItems = 1 << 16;
 // Points and rows that are passed through take time, whatever is in them: .2 ns a point, 50 ns a row.
 constexpr std::uint64_t kPointsOfRow = 256, kMostPointsPerByte = 4096, kAlwaysPoints = std::uint64_t{1} << 31;
+constexpr std::uint64_t kMostRowsPerByte = 5, kAlwaysRows = std::uint64_t{5} << 19;
 
 std::string_view normals_name(ExaNormals normals) {
   switch (normals) {
@@ -127,6 +128,11 @@ Result<void> check_exa_size(const Dims& dims, std::uint64_t file_bytes) {
     return fail(ErrorKind::kBadData,
                 "exa: {} x {} x {} grid points in a file of {} bytes: {} with {} for each row, expected at most {}",
                 dims.x, dims.y, dims.z, file_bytes, work, kPointsOfRow, most);
+  const auto rows = static_cast<std::uint64_t>(dims.y * dims.z);
+  const std::uint64_t most_rows = std::max(kAlwaysRows, kMostRowsPerByte * file_bytes);
+  if (rows > most_rows)
+    return fail(ErrorKind::kBadData, "exa: {} x {} grid rows in a file of {} bytes: {}, expected at most {}", dims.y,
+                dims.z, file_bytes, rows, most_rows);
   return {};
 }
 

@@ -36,7 +36,7 @@ class EscapeCode {
   /// Does a vertex escape? Asked in rising order.
   template <class Coder>
   bool flag(Coder& coder, std::uint32_t v, bool value) {
-    const bool gone = coder.bit(flags_[near_[v - first_]], value);
+    const bool gone = coder.steady_bit(flags_[near_[v - first_]], value);
     if (gone) tell_neighbours(v);
     return gone;
   }

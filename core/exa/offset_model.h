@@ -8,8 +8,10 @@
 #include <span>
 #include <vector>
 
+#include "core/exa/offset_layout.h"
 #include "core/exa/offset_window.h"
 #include "core/exa/probability.h"
+#include "core/exa/range_coder.h"
 
 namespace dubsar {
 
@@ -65,28 +67,45 @@ class OffsetTable {
   std::vector<Starts> rows_;
 };
 
+/// The network of one axis. Its inputs are in the order of kOffsetLayouts.
+struct alignas(64) OffsetNetwork {
+  static constexpr std::size_t kPadded = 32;                       ///< units in whole vectors; the last ones are 0
+  using Pairs = std::array<std::array<std::int16_t, 2>, kPadded>;  ///< weights of two inputs for all units
+  /// Of the units, before they are clamped.
+  struct alignas(64) Sums : std::array<std::int32_t, kPadded> {};
+  std::array<Pairs, kMostOffsetInputs / 2> in{};
+  std::array<Pairs, 2>
+      near{};  ///< value and flag of the columns one and two steps before along the row; not for axis 0
+  Sums bias{};
+  std::array<Pairs, 2> out{};  ///< the second of a pair is 0
+  std::array<std::int32_t, 2> out_bias{};
+};
+
+/// Value and flag of the columns one and two steps before an edge along its row.
+using OffsetNear = std::array<std::array<std::int16_t, 2>, 2>;
+
+/// A row of edges, as far as all of it is known before the first of them is coded.
+struct OffsetRow {
+  static constexpr std::size_t kMost = 128;
+  std::array<OffsetNetwork::Sums, kMost> sums;
+  std::array<OffsetEstimate, kMost> estimates;  ///< of those without an edge before beside them in the row
+  std::array<std::uint8_t, kMost> own;          ///< signs of the points that the edges start at
+};
+
 class OffsetModel {
  public:
   static const OffsetModel& instance(std::size_t which);
   explicit OffsetModel(const std::int16_t* weights);
-  using Pairs = std::array<std::array<std::int16_t, 2>, kOffsetUnits>;  ///< weights of two inputs for all units
-  struct alignas(64) Sums : std::array<std::int32_t, kOffsetUnits> {};  ///< of the units, before they are clamped
-
-  /// Adds up what is known of edges before their row is begun.
-  void begin(int axis, std::span<const OffsetInputs> inputs, Sums* sums) const noexcept;
-  /// With the two edges before it along the row: value and 64 if it crosses beside this one, else two zeros.
-  OffsetEstimate finish(int axis, const Sums& sums, const OffsetNear& near) const noexcept;
-
-  struct alignas(64) Axis {
-    std::array<Pairs, kOffsetInputs / 2> in{};
-    std::array<Pairs, 2> near{};  ///< inputs of the columns one and two steps before along the row; none for axis 0
-    Sums bias{};
-    std::array<Pairs, 2> out{};  ///< the second of a pair is 0
-    std::array<std::int32_t, 2> out_bias{};
-  };
+  /// `xs`: rising, at most OffsetRow::kMost.
+  void begin(int axis, const OffsetPlace& place, std::span<const std::uint8_t> xs, OffsetRow& row) const noexcept;
+  /// With the two edges before: value and 64 if one crosses beside this one, else two zeros.
+  OffsetEstimate finish(int axis, const OffsetNetwork::Sums& sums, const OffsetNear& near) const noexcept;
+  /// The offsets of a row that was begun, of OffsetTable::kBits bits; `known` as OffsetWindow::open_row().
+  void decode(int axis, std::span<const std::uint8_t> xs, const OffsetRow& row, RangeDecoder& in, std::uint8_t* known,
+              std::uint16_t* offsets) const noexcept;
 
  private:
-  std::array<Axis, 3> axes_;
+  std::array<OffsetNetwork, 3> axes_;
 };
 
 }  // namespace dubsar

@@ -11,48 +11,66 @@
 
 namespace dubsar {
 
-class OffsetRows {
+/// The two edges before an edge in its row.
+class OffsetsBefore {
  public:
-  /// Both must outlive this.
-  OffsetRows(const OffsetModel& model, OffsetWindow& window, const BrickSigns& signs)
-      : model_(model), window_(window), signs_(signs) {}
-
-  /// For every edge code(i, estimate) gives the middle of its offset, as OffsetWindow::store() takes it.
-  template <class Code>
-  void row(int axis, int y, int z, std::span<const std::uint8_t> xs, const Code& code) {
-    for (std::size_t i = 0; i < xs.size(); ++i) window_.inputs(axis, xs[i], y, z, inputs_[i]);
-    model_.begin(axis, {inputs_.data(), xs.size()}, sums_.data());
-    std::array<Before, 2> before{};
-    for (std::size_t i = 0; i < xs.size(); ++i) {
-      const int x = xs[i];
-      OffsetNear near{};
-      const bool own = axis != 0 && signs_.get(x, y, z);
-      if (axis != 0) {
-        // No branches: they would be guessed wrong.
-        const auto mask = [&](const Before& b, int steps) {
-          return -static_cast<int>((x - b.x == steps) & (b.sign == own));
-        };
-        const int one = mask(before[1], 1), last = mask(before[1], 2), other = mask(before[0], 2);
-        near[0] = {static_cast<std::int16_t>((before[1].middle - 32) & one), static_cast<std::int16_t>(64 & one)};
-        near[1] = {static_cast<std::int16_t>(((before[1].middle - 32) & last) | ((before[0].middle - 32) & other)),
-                   static_cast<std::int16_t>(64 & (last | other))};
-      }
-      const int middle = code(i, model_.finish(axis, sums_[i], near));
-      window_.store(axis, x, y, z, middle);
-      before = {before[1], Before{x, middle, own}};
-    }
+  /// Does one of them cross beside the edge from x, in the same direction? Whether is known early, so that a wrong
+  /// guess costs a processor little. `near` must be 0.
+  bool near(int x, bool own, OffsetNear& near) const noexcept {
+    const bool one = x - last_.x == 1 && last_.own == own, two = x - last_.x == 2 && last_.own == own,
+               far = x - other_.x == 2 && other_.own == own;
+    if (!(one | two | far)) return false;
+    if (one) near[0] = {static_cast<std::int16_t>(last_.middle - 32), 64};
+    if (two | far) near[1] = {static_cast<std::int16_t>((two ? last_.middle : other_.middle) - 32), 64};
+    return true;
+  }
+  /// The same question alone.
+  bool beside(int x, bool own) const noexcept {
+    return (x - last_.x <= 2 && last_.own == own) || (x - other_.x == 2 && other_.own == own);
+  }
+  void note(int x, bool own, int middle) noexcept {
+    other_ = last_;
+    last_ = {x, middle, own};
   }
 
  private:
-  struct Before {
+  struct Edge {
     int x = -10, middle = 0;
-    bool sign = false;
+    bool own = false;
   };
+  Edge last_, other_;
+};
+
+class OffsetRows {
+ public:
+  /// Both must outlive this.
+  OffsetRows(const OffsetModel& model, OffsetWindow& window) : model_(model), window_(window) {}
+
+  /// For every edge code(i, estimate) gives the middle of its offset in 1 / 64 of a grid step, 0..63.
+  template <class Code>
+  void row(int axis, int y, int z, std::span<const std::uint8_t> xs, const Code& code) {
+    model_.begin(axis, window_.place(y, z), xs, row_);
+    std::uint8_t* const known = window_.open_row(axis, y, z);
+    OffsetsBefore before;
+    for (std::size_t i = 0; i < xs.size(); ++i) {
+      const bool own = row_.own[i] != 0;
+      OffsetNear near{};
+      const bool beside = axis != 0 && before.near(xs[i], own, near);
+      const int middle = code(i, beside ? model_.finish(axis, row_.sums[i], near) : row_.estimates[i]);
+      known[xs[i]] = static_cast<std::uint8_t>(1 + middle);
+      before.note(xs[i], own, middle);
+    }
+  }
+  /// The same for offsets of OffsetTable::kBits bits, decoded.
+  void decode(int axis, int y, int z, std::span<const std::uint8_t> xs, RangeDecoder& in, std::uint16_t* offsets) {
+    model_.begin(axis, window_.place(y, z), xs, row_);
+    model_.decode(axis, xs, row_, in, window_.open_row(axis, y, z), offsets);
+  }
+
+ private:
   const OffsetModel& model_;
   OffsetWindow& window_;
-  const BrickSigns& signs_;
-  std::array<OffsetInputs, 128> inputs_;
-  std::array<OffsetModel::Sums, 128> sums_;
+  OffsetRow row_;
 };
 
 }  // namespace dubsar

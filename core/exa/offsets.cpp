@@ -35,7 +35,7 @@ std::string encode_offsets(const SurfaceSamples& samples, const BrickItems& item
   const OffsetModel& network = OffsetModel::instance(model);
   const OffsetTable& table = OffsetTable::instance();
   OffsetWindow window(items.signs());
-  OffsetRows rows(network, window, items.signs());
+  OffsetRows rows(network, window);
   RangeEncoder out;
   int count = 0;
   items.edges([&](int z) { window.begin_slice(z); },
@@ -80,7 +80,7 @@ void choose_brick_offsets(SurfaceSamples& samples, const BrickItems& items, Offs
   if (model == kOffsetModels) return;
   const OffsetModel& network = OffsetModel::instance(model);
   OffsetWindow window(items.signs());
-  OffsetRows rows(network, window, items.signs());
+  OffsetRows rows(network, window);
   const auto choose = [&](std::uint32_t number, const OffsetEstimate& estimate) {
     const auto [first, last] = prices.range(number);
     if (first >= last) return;
@@ -181,32 +181,21 @@ Result<void> decode_samples(std::span<const std::string_view> offsets, std::span
         return;
       }
       const OffsetModel& network = OffsetModel::instance(model);
-      const OffsetTable& table = OffsetTable::instance();
       OffsetWindow window(items.signs());
       RangeDecoder in(offsets[slot].substr(1));
-      OffsetRows rows(network, window, items.signs());
+      OffsetRows rows(network, window);
       items.edges([&](int z) { window.begin_slice(z); },
                   [&](int axis, int y, int z, std::span<const std::uint8_t> xs, std::uint32_t number) {
-                    RangeDecoder own = in;  // in registers
                     std::uint16_t* to = samples.offsets.data() + number;
-                    rows.row(axis, y, z, xs,
-                             [&own, &table, to, bits, rest](std::size_t k, const OffsetEstimate& estimate) {
-                               std::uint32_t symbol = 0;
-                               if (bits == OffsetTable::kBits) {
-                                 const OffsetTable::Starts& starts = table.starts(estimate);
-                                 symbol = OffsetTable::find(starts, own.place());
-                                 own.symbol(starts[symbol], OffsetTable::end(starts, symbol) - starts[symbol]);
-                               } else {
-                                 const OffsetDistribution likely(estimate, bits);
-                                 symbol = likely.find(own.place());
-                                 const std::uint32_t start = likely.start(symbol);
-                                 own.symbol(start, likely.start(symbol + 1) - start);
-                               }
-                               const std::uint32_t offset = symbol << rest | own.raw(rest);
-                               to[k] = static_cast<std::uint16_t>(offset);
-                               return middle_of(offset, bits + rest);
-                             });
-                    in = own;
+                    if (bits + rest == OffsetTable::kBits) return rows.decode(axis, y, z, xs, in, to);
+                    rows.row(axis, y, z, xs, [&](std::size_t k, const OffsetEstimate& estimate) {
+                      const OffsetDistribution likely(estimate, bits);
+                      const std::uint32_t symbol = likely.find(in.place()), start = likely.start(symbol);
+                      in.symbol(start, likely.start(symbol + 1) - start);
+                      const std::uint32_t offset = symbol << rest | in.raw(rest);
+                      to[k] = static_cast<std::uint16_t>(offset);
+                      return middle_of(offset, bits + rest);
+                    });
                   });
     }
     if (!faces[slot].empty()) {

@@ -128,12 +128,30 @@ class RangeDecoder {
     model.learn(value);
     return value;
   }
+  /// The same for bits that are mostly what was seen before: with a branch, which is then guessed right.
+  bool steady_bit(AdaptiveBit& model) noexcept {
+    const std::uint32_t bound = (range_ >> 16) * model.probability();
+    const bool value = code_ < bound;
+    if (value) {
+      range_ = bound;
+    } else {
+      code_ -= bound;
+      range_ -= bound;
+    }
+    normalise();
+    model.learn(value);
+    return value;
+  }
   /// The place, 0..65535, that the next symbol holds; symbol() with its interval must follow.
   std::uint32_t place() noexcept {
     range_ >>= 16;
     const std::uint32_t at = code_ / range_;
     return at < kProbabilityOne ? at : kProbabilityOne - 1;
   }
+  /// For who finds the symbol without a place: the share of 65536 that one of it has in code(), which the symbol's
+  /// start, times this, does not exceed; symbol() must follow.
+  std::uint32_t split() noexcept { return range_ >>= 16; }
+  std::uint32_t code() const noexcept { return code_; }
   void symbol(std::uint32_t start, std::uint32_t size) noexcept {
     code_ -= range_ * start;
     range_ *= size;
@@ -161,7 +179,11 @@ class RangeDecoder {
     return i < bytes_.size() ? static_cast<unsigned char>(bytes_[i]) : 0u;
   }
   std::uint32_t next() noexcept { return at(used_++); }
-  std::uint32_t peek_two() const noexcept { return at(used_) << 8 | at(used_ + 1); }
+  std::uint32_t peek_two() const noexcept {
+    if (used_ + 2 > bytes_.size()) return at(used_) << 8;
+    return std::uint32_t{static_cast<unsigned char>(bytes_[used_])} << 8 |
+           static_cast<unsigned char>(bytes_[used_ + 1]);
+  }
   std::string_view bytes_;
   std::size_t used_ = 0;
   std::uint32_t code_ = 0, range_ = 0xFFFFFFFFu;

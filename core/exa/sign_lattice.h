@@ -8,6 +8,8 @@
 #include <cstring>
 #include <vector>
 
+#include "core/exa/bit_spread.h"
+
 namespace dubsar {
 
 class SignLattice {
@@ -89,7 +91,7 @@ class SignLattice {
     std::uint64_t edges = 0;
     const auto count = [&edges](std::uint64_t apart, int points) {
       const std::uint64_t mask = points >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << points) - 1;
-      edges += static_cast<std::uint64_t>(std::popcount(apart & mask));
+      edges += count_ones_of(apart & mask);
     };
     for (int z = 0; z <= cells_[2]; ++z)
       for (int y = 0; y <= cells_[1]; ++y)

@@ -16,6 +16,7 @@ struct BitSink {
     out.bit(model, value);
     return value;
   }
+  bool steady_bit(AdaptiveBit& model, bool value) { return bit(model, value); }
   std::uint32_t raw(std::uint32_t value, int count) {
     out.raw(value, count);
     return value;
@@ -25,6 +26,7 @@ struct BitSource {
   static constexpr bool kWrites = false;
   RangeDecoder& in;
   bool bit(AdaptiveBit& model, bool) { return in.bit(model); }
+  bool steady_bit(AdaptiveBit& model, bool) { return in.steady_bit(model); }
   std::uint32_t raw(std::uint32_t, int count) { return in.raw(count); }
 };
 
@@ -37,6 +39,14 @@ class BitTree {
     std::uint32_t node = 1;
     for (int b = Bits - 1; b >= 0; --b) node = node << 1 | (coder.bit(models_[node], (value >> b & 1) != 0) ? 1u : 0u);
     return node - (1u << Bits);
+  }
+  /// The same code, faster where all but the last bit are mostly alike.
+  template <class Coder>
+  std::uint32_t code_steady(Coder& coder, std::uint32_t value) {
+    std::uint32_t node = 1;
+    for (int b = Bits - 1; b > 0; --b)
+      node = node << 1 | (coder.steady_bit(models_[node], (value >> b & 1) != 0) ? 1u : 0u);
+    return (node << 1 | (coder.bit(models_[node], (value & 1) != 0) ? 1u : 0u)) - (1u << Bits);
   }
 
  private:
@@ -51,7 +61,7 @@ class SignedNumber {
     const std::uint32_t size = static_cast<std::uint32_t>(value < 0 ? -value : value);
     std::uint32_t length = 0;
     while (size >> length != 0) ++length;
-    length = length_.code(coder, length);
+    length = length_.code_steady(coder, length);
     if (length == 0) return 0;
     const bool negative = coder.bit(sign_, value < 0);
     const auto below = static_cast<int>(length) - 1;

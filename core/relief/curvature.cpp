@@ -37,10 +37,16 @@ Corners corners_of(const QuadMesh& mesh, std::span<const glm::vec3> normals, std
   return corners;
 }
 
+/// Four numbers in a vector unit; of a vec3 the fourth is 0.
+typedef float Float4 __attribute__((vector_size(16)));
+Float4 wide(const glm::vec3& v) { return Float4{v.x, v.y, v.z, 0.0f}; }
+
 /// What an x-quad adds to the normal equations of min sum |S u - d|^2 around each of its vertices, before it is known
-/// in which plane: sums over its differences u of positions and d of normals of u u^T (xx xy xz yy yz zz) and u d^T
-/// (rows), and one number that is not used.
-struct alignas(64) Moments : std::array<float, 16> {};
+/// in which plane: sums over its differences u of positions and d of normals of u.x u, u.y u, u.z u, d.x u, d.y u, d.z
+/// u.
+struct Moments {
+  Float4 of[6] = {};
+};
 
 Moments moments_of(const Corners& corners) {
   const auto &p = corners.position, &n = corners.normal;
@@ -49,11 +55,13 @@ Moments moments_of(const Corners& corners) {
       d{n[2] - n[0], n[3] - n[1], 0.5f * (n[1] + n[2] - n[0] - n[3]), 0.5f * (n[2] + n[3] - n[0] - n[1])};
   Moments m{};
   for (std::size_t k = 0; k < 4; ++k) {
-    const glm::vec3 a = u[k], b = d[k];
-    const std::array<float, 15> add{a.x * a.x, a.x * a.y, a.x * a.z, a.y * a.y, a.y * a.z,
-                                    a.z * a.z, a.x * b.x, a.x * b.y, a.x * b.z, a.y * b.x,
-                                    a.y * b.y, a.y * b.z, a.z * b.x, a.z * b.y, a.z * b.z};
-    for (std::size_t i = 0; i < 15; ++i) m[i] += add[i];
+    const Float4 a = wide(u[k]);
+    m.of[0] += u[k].x * a;
+    m.of[1] += u[k].y * a;
+    m.of[2] += u[k].z * a;
+    m.of[3] += d[k].x * a;
+    m.of[4] += d[k].y * a;
+    m.of[5] += d[k].z * a;
   }
   return m;
 }
@@ -63,14 +71,12 @@ glm::vec2 principal(const Moments& m, const glm::vec3& n) {
   // Tangent frame without branches (Duff et al. 2017).
   const float sign = std::copysign(1.0f, n.z), p = -1.0f / (sign + n.z), q = n.x * n.y * p;
   const glm::vec3 e0(1.0f + sign * n.x * n.x * p, sign * q, -sign * n.x), e1(q, sign + n.y * n.y * p, -n.y);
-  const auto squared = [&m](const glm::vec3& e) {
-    return glm::vec3(m[0] * e.x + m[1] * e.y + m[2] * e.z, m[1] * e.x + m[3] * e.y + m[4] * e.z,
-                     m[2] * e.x + m[4] * e.y + m[5] * e.z);
+  const auto sum = [&m](std::size_t first, const glm::vec3& e) {
+    const Float4 v = m.of[first] * e.x + m.of[first + 1] * e.y + m.of[first + 2] * e.z;
+    return glm::vec3(v[0], v[1], v[2]);
   };
-  const auto turned = [&m](const glm::vec3& e) {
-    return glm::vec3(m[6] * e.x + m[7] * e.y + m[8] * e.z, m[9] * e.x + m[10] * e.y + m[11] * e.z,
-                     m[12] * e.x + m[13] * e.y + m[14] * e.z);
-  };
+  const auto squared = [&sum](const glm::vec3& e) { return sum(0, e); };
+  const auto turned = [&sum](const glm::vec3& e) { return sum(3, e); };
   const glm::vec3 u1 = squared(e1), d0 = turned(e0), d1 = turned(e1);
   const double uu0 = static_cast<double>(glm::dot(e0, squared(e0))), vv0 = static_cast<double>(glm::dot(e1, u1));
   // The small ridge keeps collinear differences solvable (S is then 0 across them); relative error 1e-5.
@@ -108,7 +114,7 @@ class BlockMoments {
     for (const std::uint32_t quad : mesh_.quads_of(vertex)) {
       const Moments other = quad - first_ < moments_.size() ? Moments{} : of(quad);
       const Moments& m = quad - first_ < moments_.size() ? moments_[quad - first_] : other;
-      for (std::size_t i = 0; i < 16; ++i) sum[i] += m[i];
+      for (std::size_t i = 0; i < 6; ++i) sum.of[i] += m.of[i];
     }
     return principal(sum, normals_[vertex]);
   }

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "core/base/parallel.h"
+#include "core/relief/id_merge.h"
 
 namespace dubsar {
 namespace {
@@ -15,17 +16,14 @@ class Gatherer {
 
   /// Appends the entries of `face`, rising by face id, to `out`; returns how many.
   std::uint32_t append(std::uint32_t face, std::vector<std::uint32_t>& out) {
+    if (!mesh_.has_doubled(face) && append_few(face, out)) return static_cast<std::uint32_t>(few_);
     found_.clear();
     const auto visit = [&](std::uint32_t vertex) {
       for (const std::uint32_t other : mesh_.quads_of(vertex))
         if (other != face) found_.push_back(other);
     };
-    if (!mesh_.has_doubled(face)) {
-      for (const std::uint32_t v : mesh_.quads[face]) visit(v);
-    } else {
-      const Polygon polygon = mesh_.polygon(face);
-      for (int i = 0; i < polygon.size; ++i) visit(polygon.vertex[static_cast<std::size_t>(i)]);
-    }
+    const Polygon polygon = mesh_.polygon(face);
+    for (int i = 0; i < polygon.size; ++i) visit(polygon.vertex[static_cast<std::size_t>(i)]);
     std::sort(found_.begin(), found_.end());
     const std::size_t before = out.size();
     for (std::size_t i = 0; i < found_.size();) {
@@ -39,9 +37,47 @@ class Gatherer {
   }
 
  private:
+  /// The usual case: at most kMergedIds quads around the four vertices.
+  bool append_few(std::uint32_t face, std::vector<std::uint32_t>& out) {
+    std::array<std::uint32_t, kMergedIds + 1> ids;
+    std::size_t count = 0;
+    for (const std::uint32_t vertex : mesh_.quads[face])
+      for (const std::uint32_t other : mesh_.quads_of(vertex)) {
+        ids[count] = other;
+        count += other != face ? 1 : 0;
+        if (count > kMergedIds) return false;
+      }
+    std::fill(ids.begin() + static_cast<std::ptrdiff_t>(count), ids.end(), ~std::uint32_t{0});
+    const std::size_t before = out.size();
+    out.resize(before + kMergedIds);
+    few_ = merge_ids(ids.data(), count, out.data() + before);
+    out.resize(before + few_);
+    return true;
+  }
+
   const QuadMesh& mesh_;
   std::vector<std::uint32_t> found_;
+  std::size_t few_ = 0;
 };
+
+/// Places by falling degree, equal ones in order.
+template <std::size_t kCount>
+void rank_by_degree(const std::array<std::uint32_t, kCount>& degree, int count,
+                    std::array<std::uint16_t, kCount>& rank) {
+  const auto end = degree.begin() + count;
+  const std::uint32_t most = count == 0 ? 0 : *std::max_element(degree.begin(), end);
+  constexpr std::uint32_t kCounted = 256;
+  if (most >= kCounted) {
+    std::iota(rank.begin(), rank.end(), std::uint16_t{0});
+    std::stable_sort(rank.begin(), rank.begin() + count, [&](auto a, auto b) { return degree[a] > degree[b]; });
+    return;
+  }
+  std::array<std::uint16_t, kCounted + 1> place{};  // of those of degree most - i
+  for (auto d = degree.begin(); d != end; ++d) ++place[most - *d + 1];
+  for (std::size_t i = 1; i <= most; ++i) place[i] = static_cast<std::uint16_t>(place[i] + place[i - 1]);
+  for (int i = 0; i < count; ++i)
+    rank[place[most - degree[static_cast<std::size_t>(i)]]++] = static_cast<std::uint16_t>(i);
+}
 
 void fill_chunk(Gatherer& gatherer, std::uint32_t first_face, int faces, std::vector<std::uint32_t>& lists,
                 FaceNeighbours::Chunk& chunk) {
@@ -52,9 +88,8 @@ void fill_chunk(Gatherer& gatherer, std::uint32_t first_face, int faces, std::ve
     start[static_cast<std::size_t>(i)] = static_cast<std::uint32_t>(lists.size());
     degree[static_cast<std::size_t>(i)] = gatherer.append(first_face + static_cast<std::uint32_t>(i), lists);
   }
-  std::array<std::uint16_t, FaceNeighbours::kChunkFaces> rank;
-  std::iota(rank.begin(), rank.end(), std::uint16_t{0});
-  std::stable_sort(rank.begin(), rank.begin() + faces, [&](auto a, auto b) { return degree[a] > degree[b]; });
+  std::array<std::uint16_t, FaceNeighbours::kChunkFaces> rank{};
+  rank_by_degree(degree, faces, rank);
 
   chunk.faces = faces;
   for (int slice = 0; slice < FaceNeighbours::kSlices; ++slice) {

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/parallel.h"
+#include "core/relief/corner_weights.h"
 
 namespace dubsar {
 namespace {
@@ -28,7 +29,12 @@ int for_polygon(const QuadMesh& mesh, std::span<const glm::vec3> positions, std:
 
 glm::vec3 area_vector(const QuadMesh& mesh, std::span<const glm::vec3> positions, std::size_t face) {
   // Relative to the first vertex, so that large coordinates do not cancel.
-  const glm::vec3 origin = positions[mesh.quads[face][0]];
+  const auto& quad = mesh.quads[face];
+  const glm::vec3 origin = positions[quad[0]];
+  if (!mesh.has_doubled(static_cast<std::uint32_t>(face))) {  // as below, without what is 0
+    const glm::vec3 a = positions[quad[1]] - origin, b = positions[quad[2]] - origin, c = positions[quad[3]] - origin;
+    return 0.5f * (glm::vec3(0.0f) + glm::cross(a, b) + glm::cross(b, c));
+  }
   glm::vec3 sum{0.0f}, previous{0.0f};
   for_polygon(mesh, positions, face, [&](const glm::vec3& p) {
     const glm::vec3 here = p - origin;
@@ -46,28 +52,6 @@ std::vector<glm::vec4> normals_of(const QuadMesh& mesh, std::span<const glm::vec
     faces[index(f)] = area > 1e-12f ? glm::vec4(a / area, area) : glm::vec4(0.0f);
   });
   return faces;
-}
-
-/// sin(angle) / (|a| |b|) for the two edges of polygon `quad` that meet at `vertex`.
-float corner_weight(const QuadMesh& mesh, std::uint32_t quad, std::uint32_t vertex) {
-  std::uint32_t before = vertex, after = vertex;
-  const auto find_in = [&](const auto& ids, std::size_t size) {
-    for (std::size_t k = 0; k < size; ++k)
-      if (ids[k] == vertex) {
-        before = ids[(k + size - 1) % size];
-        after = ids[(k + 1) % size];
-        return;
-      }
-  };
-  if (!mesh.has_doubled(quad)) {
-    find_in(mesh.quads[quad], 4);
-  } else {
-    const Polygon polygon = mesh.polygon(quad);
-    find_in(polygon.vertex, static_cast<std::size_t>(polygon.size));
-  }
-  const glm::vec3 p = mesh.positions[vertex], a = mesh.positions[after] - p, b = mesh.positions[before] - p;
-  constexpr float kGuard = 1e-6f;  // both edges shorter than 0.03 grid steps: too short to trust
-  return glm::length(glm::cross(a, b)) / (glm::dot(a, a) * glm::dot(b, b) + kGuard);
 }
 
 struct AngleSum {
@@ -160,10 +144,15 @@ std::vector<glm::vec4> face_normals(const QuadMesh& mesh) { return normals_of(me
 std::vector<glm::vec3> vertex_normals(const QuadMesh& mesh, std::span<const glm::vec4> faces) {
   DUBSAR_CHECK(faces.size() == mesh.quads.size());
   std::vector<glm::vec3> normals(mesh.positions.size());
+  const std::vector<std::array<float, 4>> weights = corner_weights(mesh);
   parallel_for(mesh.vertex_count(), kSmoothGrain, [&](std::int64_t i) {
     const auto v = static_cast<std::uint32_t>(i);
     glm::vec3 sum{0.0f};
-    for (const std::uint32_t q : mesh.quads_of(v)) sum += corner_weight(mesh, q, v) * glm::vec3(faces[q]);
+    for (const std::uint32_t q : mesh.quads_of(v)) {
+      const auto& quad = mesh.quads[q];
+      const std::size_t corner = quad[0] == v ? 0 : quad[1] == v ? 1 : quad[2] == v ? 2 : 3;
+      sum += (mesh.has_doubled(q) ? corner_weight(mesh, q, v) : weights[q][corner]) * glm::vec3(faces[q]);
+    }
     const float length = glm::length(sum);
     normals[v] = length > 1e-12f ? sum / length : glm::vec3(0.0f, 0.0f, 1.0f);
   });

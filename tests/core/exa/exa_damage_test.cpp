@@ -107,6 +107,7 @@ TEST_F(ExaFile, HeadersThatLieAreRefusedWithASentence) {
   EXPECT_THAT(says("[12,9,10]", "[65535,65535,16]"), HasSubstr("65535 x 65535 x 16 grid points in a file of"));
   EXPECT_THAT(says("[12,9,10]", "[8,8192,8192]"), HasSubstr("8 x 8192 x 8192 grid points in a file of"));
   EXPECT_THAT(says("[12,9,10]", "[1300,1300,1300]"), HasSubstr("2629640000 with 256 for each row, expected at most"));
+  EXPECT_THAT(says("[12,9,10]", "[64,1700,1700]"), HasSubstr("1700 x 1700 grid rows in a file of"));
   EXPECT_THAT(says("\"edges\":", "\"edges\":99999999"), HasSubstr("edges in a file of"));
   EXPECT_THAT(says("[12,9,10]", "[65535,65535,65535]"), HasSubstr("2^36"));
   EXPECT_THAT(says("[12,9,10]", "[0,9,10]"), HasSubstr("dimension 0"));
