@@ -253,6 +253,7 @@ void begin_axis(const OffsetNetwork& network, const OffsetPlace& place, std::spa
     }
     Units units;
     load_units(network.bias, units);
+#pragma GCC unroll 4
     for (std::size_t p = 0; p < kPairs; ++p) add_pair(network.in[p], inputs + 2 * p, units);
     if constexpr (kAxis != 0) store_units(units, row.sums[i]);
     row.own[i] = own ? 1 : 0;

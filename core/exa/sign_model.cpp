@@ -14,7 +14,8 @@ namespace dubsar::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr unsigned kBefore = 2;  ///< of a window x - 3 .. x + 3: the bit of x - 2
+constexpr std::size_t kRowsAtOnce = 4;  ///< all phases have a multiple of it besides the row of the point itself
+constexpr unsigned kBefore = 2;         ///< of a window x - 3 .. x + 3: the bit of x - 2
 
 /// Sums of the units times their weights. Integers: the same on every target.
 #if HWY_TARGET == HWY_SCALAR
@@ -74,10 +75,12 @@ HWY_INLINE void weigh_units(const SignModel::Place& place, const unsigned char* 
     };
     V sum[kVectors];
     for (std::size_t v = 0; v < kVectors; ++v) sum[v] = hn::Load(d, phase.bias.front().data() + v * kWidth);
-    for (std::size_t r = 0; r < own; ++r) {
-      const std::int16_t* add = weights(r, 0);
-      for (std::size_t v = 0; v < kVectors; ++v) sum[v] = hn::Add(sum[v], hn::Load(d, add + v * kWidth));
-    }
+    for (std::size_t r = 0; r < own; r += kRowsAtOnce)
+#pragma GCC unroll 4
+      for (std::size_t k = 0; k < kRowsAtOnce; ++k) {
+        const std::int16_t* add = weights(r + k, 0);
+        for (std::size_t v = 0; v < kVectors; ++v) sum[v] = hn::Add(sum[v], hn::Load(d, add + v * kWidth));
+      }
     const auto total = [&](const std::int16_t* add) HWY_ATTR {
       auto even = hn::Zero(d32), odd = hn::Zero(d32);
       for (std::size_t v = 0; v < kVectors; ++v) {
@@ -157,6 +160,7 @@ SignModel::SignModel(const std::array<SignWeights, 7>& weights, std::size_t unit
     const auto own =
         std::find_if(phase.rows.begin(), phase.rows.end(), [](const Row& r) { return r.y == 0 && r.z == 0; });
     if (own != phase.rows.end()) std::rotate(own, own + 1, phase.rows.end());
+    DUBSAR_CHECK(phase.rows.size() % 4 == 1);  // kRowsAtOnce
   }
 }
 
