@@ -76,13 +76,13 @@ bool unpinch(const ContactBand& band, std::vector<ClaySide>& side) {
 
 /// Nodes over the same piece of the patches: flow runs across the band, and most of it stays in one block.
 void set_blocks(const ContactBand& band, MinCut& cut) {
-  constexpr float kBlock = 64.0f;
+  constexpr float kBlockSide = 64.0f;
   const Dims d = band.node_at.dims();
-  const auto along = [](std::int64_t n) { return static_cast<std::uint32_t>(static_cast<float>(n) / kBlock) + 1; };
+  const auto along = [](std::int64_t n) { return static_cast<std::uint32_t>(static_cast<float>(n) / kBlockSide) + 1; };
   const std::uint32_t x = along(d.x), y = along(d.y), z = along(d.z);
   std::vector<std::uint32_t> block(band.nodes.size());
   for (std::size_t n = 0; n < block.size(); ++n) {
-    const glm::uvec3 cube(glm::max(band.samples[band.nodes[n].sample].position, glm::vec3(0.0f)) / kBlock);
+    const glm::uvec3 cube(glm::max(band.samples[band.nodes[n].sample].position, glm::vec3(0.0f)) / kBlockSide);
     block[n] = (std::min(cube.z, z - 1) * y + std::min(cube.y, y - 1)) * x + std::min(cube.x, x - 1);
   }
   cut.set_blocks(std::move(block), x * y * z);

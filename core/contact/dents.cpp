@@ -13,11 +13,11 @@ constexpr int kNormalRounds = 20;  ///< of averages, so that the normals in a we
 constexpr int kSpanRounds = 60;    ///< a sheet spans what is some 12 steps wide
 constexpr float kDent = 1.2f;      ///< steps below it
 constexpr std::size_t kNearest = 64;
-constexpr float kSignificance = 2.5f;
-constexpr float kMostStrength = 2.5f;  ///< of one vertex: the fringe of a pore is no film, however dark
+constexpr float kDentSignificance = 2.5f;
+constexpr float kMostDentStrength = 2.5f;  ///< of one vertex: the fringe of a pore is no film, however dark
 
 template <class Work>
-void each(std::size_t count, const Work& work) {
+void each_vertex_of(std::size_t count, const Work& work) {
   parallel_for(static_cast<std::int64_t>(count), 1024, [&](std::int64_t i) { work(static_cast<std::size_t>(i)); });
 }
 
@@ -32,7 +32,7 @@ std::vector<glm::vec3> wide_normals(const InterfaceMesh& mesh, const InterfaceRi
       if (v >= dual) normals[v - dual] += n;
   }
   for (int round = 0; round < kNormalRounds; ++round) {
-    each(next.size(), [&](std::size_t i) {
+    each_vertex_of(next.size(), [&](std::size_t i) {
       next[i] = normals[i];
       for (const std::uint32_t w : rings.added[i]) next[i] += normals[w];
       next[i] /= static_cast<float>(rings.added[i].size() + 1);
@@ -51,7 +51,7 @@ std::vector<float> depths(const InterfaceMesh& mesh, const InterfaceRings& rings
   const std::vector<glm::vec3> up = wide_normals(mesh, rings, dual_positions);
   std::vector<glm::vec3> sheet = mesh.added, next = mesh.added;
   for (int round = 0; round < kSpanRounds; ++round) {
-    each(sheet.size(), [&](std::size_t i) {
+    each_vertex_of(sheet.size(), [&](std::size_t i) {
       next[i] = sheet[i];
       if (rings.all[i].empty()) return;
       glm::vec3 mean(0.0f);
@@ -73,18 +73,18 @@ std::vector<bool> doubtful_dents(const InterfaceMesh& mesh, const InterfaceRings
   const std::vector<float> depth = depths(mesh, rings, dual_positions);
   const auto in_dent = [&](std::size_t i) { return film[i] && depth[i] > kDent; };
   std::vector<std::uint8_t> by_chance(depth.size(), 0);
-  each(depth.size(), [&](std::size_t i) {
+  each_vertex_of(depth.size(), [&](std::size_t i) {
     if (!in_dent(i)) return;
     std::vector<std::uint32_t> nearest{static_cast<std::uint32_t>(i)};
     float sum = 0.0f;
     for (std::size_t k = 0; k < nearest.size(); ++k) {
-      sum += std::min(mesh.strength[nearest[k]], kMostStrength);
+      sum += std::min(mesh.strength[nearest[k]], kMostDentStrength);
       for (const std::uint32_t w : rings.added[nearest[k]])
         if (nearest.size() < kNearest && in_dent(w) && std::find(nearest.begin(), nearest.end(), w) == nearest.end())
           nearest.push_back(w);
     }
     const auto count = static_cast<float>(nearest.size());
-    by_chance[i] = sum / count < kClayStrength + kSignificance * kStrengthDeviation / std::sqrt(count);
+    by_chance[i] = sum / count < kClayStrength + kDentSignificance * kStrengthDeviation / std::sqrt(count);
   });
   std::vector<bool> doubtful(depth.size(), false);
   for (std::size_t i = 0; i < doubtful.size(); ++i) {
