@@ -107,31 +107,66 @@ std::size_t most_votes(const std::array<std::uint8_t, 8>& votes) {
   return static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
 }
 
+/// The value of the last x-quad of a chunk around each vertex. X-quads and vertices are in the order of their cells, so
+/// the vertices of a chunk lie within two slices and a few rows of the grid.
+class LastAround {
+ public:
+  LastAround(const QuadMesh& mesh, std::uint32_t first, std::uint32_t end) : mesh_(mesh) {
+    if (first == end) return;
+    std::uint32_t last = 0;
+    low_ = ~std::uint32_t{0};
+    for (std::uint32_t q = first; q < end; ++q)
+      each_vertex(q, [&](std::uint32_t v) {
+        low_ = std::min(low_, v);
+        last = std::max(last, v);
+      });
+    values_.assign(last - low_ + 1, kNone);
+  }
+  static constexpr std::uint8_t kNone = 255;
+  std::uint8_t of(std::uint32_t v) const { return values_[v - low_]; }
+  void set(std::uint32_t q, std::uint8_t value) {
+    each_vertex(q, [&](std::uint32_t v) { values_[v - low_] = value; });
+  }
+
+ private:
+  template <class Visit>
+  void each_vertex(std::uint32_t q, const Visit& visit) const {
+    for (const std::uint32_t v : mesh_.quads[q]) visit(v);
+    if (!mesh_.has_doubled(q)) return;
+    const Polygon polygon = mesh_.polygon(q);
+    for (int i = 0; i < polygon.size; ++i) visit(polygon.vertex[static_cast<std::size_t>(i)]);
+  }
+
+  const QuadMesh& mesh_;
+  std::uint32_t low_ = 0;
+  std::vector<std::uint8_t> values_;
+};
+
 /// That of the x-quad coded before around one of the corners, or another one.
 class PartitionCode {
  public:
+  PartitionCode(const QuadMesh& mesh, std::uint32_t first, std::uint32_t end) : last_(mesh, first, end) {}
   template <class Coder>
-  std::uint8_t code(Coder& coder, const QuadMesh& mesh, const std::uint8_t* values, std::uint32_t q,
-                    std::uint32_t first) {
+  std::uint8_t code(Coder& coder, const QuadMesh& mesh, const std::uint8_t* values, std::uint32_t q, std::uint32_t) {
     std::array<std::uint8_t, 8> votes{};
     int all = 0;
     for (const std::uint32_t v : mesh.quads[q]) {
-      std::uint32_t before = q;
-      for (const std::uint32_t other : mesh.quads_of(v)) {
-        if (other >= q) break;
-        before = other;
-      }
-      if (before - first >= q - first) continue;
-      ++votes[values[before] & 7];
+      const std::uint8_t before = last_.of(v);
+      if (before == LastAround::kNone) continue;
+      ++votes[before & 7];
       ++all;
     }
     const std::size_t best = most_votes(votes);
     const auto context = static_cast<std::size_t>(all * 5 + votes[best]);
-    if (coder.steady_bit(same_[context], values[q] == best)) return static_cast<std::uint8_t>(best);
-    return static_cast<std::uint8_t>(other_[best].code(coder, values[q]));
+    auto value = static_cast<std::uint8_t>(best);
+    if (!coder.steady_bit(same_[context], values[q] == best))
+      value = static_cast<std::uint8_t>(other_[best].code(coder, values[q]));
+    last_.set(q, value);
+    return value;
   }
 
  private:
+  LastAround last_;
   std::array<AdaptiveBit, 25> same_;
   std::array<BitTree<3>, 8> other_;
 };
@@ -177,7 +212,7 @@ class EnumCode {
 
 template <class Code, class... Args>
 std::string encode_chunk(const QuadMesh& mesh, std::span<const std::uint8_t> values, std::uint32_t first,
-                         std::uint32_t end, Args... args) {
+                         std::uint32_t end, const Args&... args) {
   RangeEncoder out;
   BitSink sink{out};
   Code code(args...);
@@ -213,7 +248,7 @@ bool decode_chunk(ExaLabel label, std::string_view bytes, const QuadMesh& mesh, 
     case ExaLabel::kEnum:
       return decode_chunk(EnumCode(), RangeDecoder(bytes), mesh, first, end, highest, values);
     case ExaLabel::kPartition:
-      return decode_chunk(PartitionCode(), RangeDecoder(bytes), mesh, first, end, highest, values);
+      return decode_chunk(PartitionCode(mesh, first, end), RangeDecoder(bytes), mesh, first, end, highest, values);
     case ExaLabel::kLight: {
       const int step = bytes.empty() ? 0 : bytes[0];
       return (step == 1 || step == kLightStep) &&
@@ -249,7 +284,7 @@ std::vector<std::string> encode_labels(ExaLabel label, const QuadMesh& mesh, std
                                 case ExaLabel::kEnum:
                                   return encode_chunk<EnumCode>(mesh, values, first, end);
                                 default:
-                                  return encode_chunk<PartitionCode>(mesh, values, first, end);
+                                  return encode_chunk<PartitionCode>(mesh, values, first, end, mesh, first, end);
                               }
                             });
 }
