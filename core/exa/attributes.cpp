@@ -87,16 +87,6 @@ class LightCode {
   std::array<SignedNumber, 10> numbers_;
 };
 
-/// Are all levels where steps of this size lead?
-bool light_in_steps(const QuadMesh& mesh, std::span<const std::uint8_t> light, std::uint32_t first, std::uint32_t end,
-                    int step) {
-  for (std::uint32_t v = first; v < end; ++v) {
-    const int expected = light_context(mesh, light.data(), v, first).expected;
-    if (light_at(expected, light_steps(light[v], expected, step), step) != light[v]) return false;
-  }
-  return true;
-}
-
 /// The value with most votes, the lowest of equals. One value with all votes, the usual case, is found without looking.
 std::size_t most_votes(const std::array<std::uint8_t, 8>& votes) {
   std::uint64_t all;
@@ -220,11 +210,20 @@ std::string encode_chunk(const QuadMesh& mesh, std::span<const std::uint8_t> val
   return out.take();
 }
 
-/// The first byte of a chunk of light is the step.
+/// The first byte of a chunk of light is the step. Nothing where steps of this size do not lead to all levels.
+std::string encode_light_chunk(const QuadMesh& mesh, std::span<const std::uint8_t> values, std::uint32_t first,
+                               std::uint32_t end, int step) {
+  RangeEncoder out;
+  BitSink sink{out};
+  LightCode code(step);
+  for (std::uint32_t i = first; i < end; ++i)
+    if (code.code(sink, mesh, values.data(), i, first) != values[i]) return {};
+  return static_cast<char>(step) + out.take();
+}
 std::string encode_light_chunk(const QuadMesh& mesh, std::span<const std::uint8_t> values, std::uint32_t first,
                                std::uint32_t end) {
-  const int step = light_in_steps(mesh, values, first, end, kLightStep) ? kLightStep : 1;
-  return static_cast<char>(step) + encode_chunk<LightCode>(mesh, values, first, end, step);
+  std::string code = encode_light_chunk(mesh, values, first, end, kLightStep);
+  return code.empty() ? encode_light_chunk(mesh, values, first, end, 1) : code;
 }
 
 /// False: a value out of range.
