@@ -294,6 +294,7 @@ pictures() {
   "$dubsar" render "$work/tablet.exa" -o docs/msii.png --partition tablet --style msii --size 900x900
   "$dubsar" fatcross "$work/tablet.exa" -o docs/fatcross.png --dpi 240 --no-sides
   docs/scripts/make_pictures.sh "$dubsar" docs
+  docs/scripts/make_contact_pictures.sh "$dubsar" docs
 }
 
 strips() {

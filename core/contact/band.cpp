@@ -67,10 +67,10 @@ Result<ContactBand> ContactBand::make(const BitVolume& inside, std::vector<Patch
   };
   const auto offer = [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t s) {
     if (x < 1 || y < 1 || z < 1 || x >= d.x - 1 || y >= d.y - 1 || z >= d.z - 1) return;
-    const float far = distance(x, y, z, s);
-    if (far > reach) return;
     const std::uint32_t known = nearest.get(x, y, z);
-    if (known != kNone && distance(x, y, z, known) <= far) return;
+    if (known == s) return;
+    const float far = distance(x, y, z, s);
+    if (far > reach || (known != kNone && distance(x, y, z, known) <= far)) return;
     nearest.at(x, y, z) = s;
     buckets[static_cast<std::size_t>(far / kBucket)].push_back({x, y, z, s});
   };
