@@ -22,7 +22,14 @@ WedgeSize stylus_wedge(float head_half_width, float tail_length, float rounding)
 }
 
 WedgeField::WedgeField(const WedgeSize& size, Float4 place, Float4 along, Float4 across)
-    : place_(place), along_(along), across_(across), rounding_(size.rounding), tail_length_(size.tail_length) {
+    : place_(place),
+      along_(along),
+      across_(across),
+      rounding_(size.rounding),
+      tail_length_(size.tail_length),
+      back_(size.head_back),
+      front_(size.head_front),
+      nominal_(size.depth) {
   const auto flank = [](float length, float back, float half_width, float depth) {
     // Through (length, 0, 0), (-back, half_width, 0) and (0, 0, depth).
     const float u = 1.0f / length, v = (1.0f + back / length) / half_width, s = 1.0f / depth;
@@ -45,6 +52,32 @@ Dual WedgeField::evaluate(const Point& point, const Dual& depth_below_surface) c
   const Dual ends = max(-u, u - tail_length_);
   const Dual tail = smooth_max(ends, tail_flank_.at(u, v, depth_below_surface), rounding_);
   return smooth_min(head, tail, rounding_);
+}
+
+/// How far below the undisturbed surface clay begins, above the middle of the tail.
+float WedgeField::depth_at(float along) const {
+  Point point;
+  point.p = place_ + along_ * along;
+  float air = 0.0f, clay = 1.5f * nominal_;
+  for (int i = 0; i < 24; ++i) {
+    const float middle = 0.5f * (air + clay);
+    (evaluate(point, Dual{middle, Float4{}}).v < 0.0f ? air : clay) = middle;
+  }
+  return air;
+}
+
+float WedgeField::deepest_along() const {
+  // It has one deepest place: golden sections.
+  constexpr float kShare = 0.618034f;
+  float low = -back_, high = front_;
+  for (int i = 0; i < 32; ++i) {
+    const float part = kShare * (high - low);
+    if (depth_at(high - part) > depth_at(low + part))
+      high = low + part;
+    else
+      low = high - part;
+  }
+  return 0.5f * (low + high);
 }
 
 }  // namespace dubsar::phantom

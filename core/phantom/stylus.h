@@ -32,15 +32,21 @@ class WedgeField {
   /// impression follows a curved surface.
   Dual evaluate(const Point& point, const Dual& depth_below_surface) const;
 
+  /// Voxels along the tail from its place to where the impression is deepest: rounding moves it there.
+  float deepest_along() const;
+
  private:
   struct Plane {
     float u, v, s, offset;
     Dual at(const Dual& pu, const Dual& pv, const Dual& ps) const { return pu * u + pv * v + ps * s + offset; }
   };
+  float depth_at(float along) const;
+
   Float4 place_{}, along_{}, across_{};
   Plane head_back_{}, head_flank_{}, tail_flank_{};
   float rounding_ = 1.0f;
-  float tail_length_ = 0.0f;  ///< 0: none
+  float tail_length_ = 0.0f;                           ///< 0: none
+  float back_ = 0.0f, front_ = 0.0f, nominal_ = 0.0f;  ///< of the head, as in WedgeSize
 };
 
 }  // namespace dubsar::phantom

@@ -110,10 +110,21 @@ void PhantomBuilder::press(Owner owner, Side side, float right, float up, const 
   float& relief = owner == Owner::kTablet ? p_.tablet_.relief : p_.outer_.relief;
   relief = std::max(relief, 1.1f * size.depth + 1.0f);
 
+  // Of the undisturbed surface, above the deepest place.
+  Point above;
+  above.p = point.p + along * impressions.back().field.deepest_along();
+  Dual there = body.smooth(above);
+  for (int i = 0; i < 4; ++i) {
+    above.p = above.p - there.g * (there.v / dot(there.g, there.g));
+    there = body.smooth(above);
+  }
+
+  const Float4 outward = unit(there.g);
+
   Wedge wedge;
-  wedge.position = p_.place_.grid_point(point.p);
-  wedge.outward = p_.place_.grid_vector(normal);
-  wedge.tail = p_.place_.grid_vector(along);
+  wedge.position = p_.place_.grid_point(above.p);
+  wedge.outward = p_.place_.grid_vector(outward);
+  wedge.tail = p_.place_.grid_vector(unit(along - outward * dot(along, outward)));
   wedge.depth = static_cast<double>(size.depth);
   wedge.length = static_cast<double>(size.tail_length);
   wedge.head_half_width = static_cast<double>(size.head_half_width);

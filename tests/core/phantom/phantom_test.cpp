@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -144,6 +145,40 @@ TEST(PhantomModel, WedgeTableHoldsTheDepthOfTheClay) {
   EXPECT_EQ(sides.size(), 6u);
   EXPECT_GT(wedges, 300);
   EXPECT_GT(open, wedges / 2);
+}
+
+TEST(PhantomModel, TheDepthOfAWedgeIsThatOfItsDeepestPlace) {
+  for (const double depth : {3.0, 7.0, 14.0}) {
+    PhantomOptions options;
+    options.dims = {256, 144, 240};
+    options.seed = 3;
+    options.wedge_depth_vox = depth;
+    const auto phantom = Phantom::create(options);
+    ASSERT_TRUE(phantom) << phantom.error().message;
+    std::vector<double> deeper;
+    for (const Wedge& w : (*phantom)->wedges()) {
+      if (w.owner != Owner::kEnvelope) continue;
+      // Below the places around it, along the same direction: how deep the clay lies there at most.
+      double most = 0.0;
+      const double reach = 0.3 * w.head_half_width;
+      for (int i = -6; i <= 6; ++i) {
+        const glm::dvec3 above = w.position + reach / 6.0 * i * w.tail;
+        double air = 0.0, clay = 1.5 * w.depth;
+        for (int k = 0; k < 30; ++k) {
+          const double middle = 0.5 * (air + clay);
+          const glm::dvec3 p = above - middle * w.outward;
+          const Fields f =
+              (*phantom)->fields(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
+          (f.outer.v > 0.0f ? air : clay) = middle;
+        }
+        most = std::max(most, air);
+      }
+      deeper.push_back(most / w.depth);
+    }
+    ASSERT_GT(deeper.size(), 8u);
+    std::nth_element(deeper.begin(), deeper.begin() + deeper.size() / 2, deeper.end());
+    EXPECT_LT(deeper[deeper.size() / 2], 1.005) << depth << " voxels";
+  }
 }
 
 TEST(PhantomModel, SignsHaveOneToNineWedges) {
