@@ -49,6 +49,7 @@ void fields(auto& f, MeasureFigures& v) {
   f("surface_mm", v.surface_mm);
   f("angle_deg", v.angle_deg);
   f("depth_mm", v.depth_mm);
+  f("uncertainty_mm", v.uncertainty_mm);
   f("path_mm", v.path_mm);
 }
 void fields(auto& f, Measure& v) {

@@ -60,6 +60,7 @@ std::string format_measures(const Document& document) {
     }
     if (measure.kind == MeasureKind::kAngle) row["angle_deg"] = f.angle_deg;
     if (measure.kind == MeasureKind::kDepth || measure.kind == MeasureKind::kProfile) row["depth_mm"] = f.depth_mm;
+    if (f.uncertainty_mm) row["uncertainty_mm"] = *f.uncertainty_mm;
     if (!f.path_mm.empty()) row["path_mm"] = path_json(f.path_mm);
     out["measures"].push_back(std::move(row));
   }

@@ -39,7 +39,9 @@ std::string figures_text(const Measure& measure) {
     case MeasureKind::kAngle:
       return fmt::format("{:.2f}\u00b0", f.angle_deg);
     case MeasureKind::kDepth:
-      return fmt::format("{} deep", length_text(f.depth_mm));
+      return f.uncertainty_mm
+                 ? fmt::format("{} deep \u00b1 {}", length_text(f.depth_mm), length_text(*f.uncertainty_mm))
+                 : fmt::format("{} deep", length_text(f.depth_mm));
     case MeasureKind::kProfile:
       return fmt::format("{}{}, {} deep", length_text(f.straight_mm), along, length_text(f.depth_mm));
     case MeasureKind::kDistance:

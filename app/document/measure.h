@@ -29,7 +29,9 @@ struct MeasureFigures {
   double straight_mm = 0.0;
   double surface_mm = 0.0;  ///< 0: the surface does not lead from one place to the other
   double angle_deg = 0.0;
-  double depth_mm = 0.0;            ///< of a profile: below the straight line between its ends
+  double depth_mm = 0.0;  ///< of a profile: below the straight line between its ends
+  std::optional<double>
+      uncertainty_mm{};             ///< of the depth of a wedge, one standard deviation; files of before have none
   std::vector<glm::dvec3> path_mm;  ///< along the surface; of a depth: from the plane down to the deepest place
   friend bool operator==(const MeasureFigures&, const MeasureFigures&) = default;
 };
@@ -43,7 +45,7 @@ struct Measure {
   friend bool operator==(const Measure&, const Measure&) = default;
 };
 
-/// "12.35 mm, 12.61 mm along the surface", "37.2\u00b0", "0.412 mm deep".
+/// "12.35 mm, 12.61 mm along the surface", "37.2\u00b0", "0.412 mm deep \u00b1 0.021 mm".
 std::string figures_text(const Measure& measure);
 
 /// 12.3456 is "12.35" and 0.01234 is "0.0123": four digits, three behind the point at most from 0.1 on.

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "app/commands/sides.h"
+#include "core/base/json_text.h"
 #include "core/mesh/surface_measure.h"
 #include "core/mesh/tablet_frame.h"
 
@@ -30,6 +32,34 @@ TriMesh tablet_of(const TriMesh& mesh) {
     if (row != nullptr && row->body_name() == "tablet") out.triangles.push_back(mesh.triangles[t]);
   }
   return out;
+}
+
+double number_at(const nlohmann::json& object, const char* name, double otherwise) {
+  return object.is_object() && object.contains(name) && object.at(name).is_number() ? object.at(name).get<double>()
+                                                                                    : otherwise;
+}
+
+/// Variance of what blurred a surface, mm2, as its file says: the scan, the filters where there was noise, and what
+/// makes a surface of voxels, which sharpening takes back. 0: the file does not say. The shares are those with which
+/// wedges of eight phantoms (3 to 10 voxels deep, 17 to 100 dB, blurs of 0.45 to 0.75 voxel) keep their depth
+/// within 1.3 %.
+double blur_of(const TriMesh& mesh) {
+  constexpr double kSurface = 0.3, kFilters = 0.2, kAnyNoise = 1e-3;
+  if (mesh.provenance.empty()) return 0.0;
+  const auto all = parse_json(mesh.provenance, "provenance");
+  if (!all || !all->is_object() || !all->contains("estimates") || !all->contains("parameters")) return 0.0;
+  const nlohmann::json& estimates = all->at("estimates");
+  if (!estimates.is_object() || !estimates.contains("blur")) return 0.0;
+  double variance = number_at(estimates.at("blur"), "variance_vox2", 0.0);
+  if (!(variance > 0)) return 0.0;
+  variance += kSurface * (1.0 - std::clamp(number_at(all->at("parameters"), "sharpen", 0.0), 0.0, 1.0));
+  // "raw" is the scan's sample, the next one the grid before the first pass.
+  if (estimates.contains("filters") && estimates.at("filters").is_array() && estimates.at("filters").size() > 2) {
+    const double noise = std::pow(10.0, -number_at(estimates.at("filters")[1], "snr_db", 100.0) / 20.0);
+    variance += kFilters * noise / (noise + kAnyNoise);
+  }
+  const glm::dvec3 voxel = mesh.frame.grid_voxel_mm();
+  return variance * std::pow(voxel.x * voxel.y * voxel.z, 2.0 / 3.0);
 }
 
 }  // namespace
@@ -72,8 +102,9 @@ Result<MeasureFigures> figures_of(const TriMesh& mesh, const Measure& measure) {
     return out;
   }
   if (measure.kind == MeasureKind::kDepth) {
-    DUBSAR_ASSIGN(const ImpressionDepth depth, impression_depth(mesh, places[0], kDepthRadiusMm));
+    DUBSAR_ASSIGN(const ImpressionDepth depth, impression_depth(mesh, places[0], {.blur_mm2 = blur_of(mesh)}));
     out.depth_mm = depth.depth_mm;
+    out.uncertainty_mm = depth.uncertainty_mm;
     out.path_mm = {depth.rim_mm, depth.bottom_mm};
     return out;
   }

@@ -35,18 +35,26 @@ double deepest_below_chord(const std::vector<glm::dvec3>& path_mm, const glm::dv
 
 struct ImpressionDepth {
   double depth_mm = 0.0;
+  double uncertainty_mm = 0.0;  ///< one standard deviation
+  double filled_mm = 0.0;       ///< of the depth: what the scan's blur had filled; 0 where that is not known
   glm::dvec3 bottom_mm{0.0};    ///< the deepest place that leads down from where it was asked for
   glm::dvec3 rim_mm{0.0};       ///< above it, on the surface as it was before the impression
   glm::dvec3 outward{0, 0, 1};  ///< unit, from bottom to rim
   double level_share = 0.0;     ///< of the neighbourhood that lies on that surface: little where all is written on
 };
 
-/// How deep the impression is that a place lies in: below the surface around it. That is fitted to the neighbourhood
-/// (within `radius_mm`) as a plane that is bent as the side is, by weighted least squares in which what lies below it
-/// loses its weight (an upper envelope; P. Eilers, H. Boelens: Baseline correction with asymmetric least squares
-/// smoothing, 2005). kUsage: a radius that is not positive, or a neighbourhood of fewer than 30 vertices.
-Result<ImpressionDepth> impression_depth(const TriMesh& mesh, const SurfacePlace& place, double radius_mm);
-/// Wide enough for the largest wedges of a tablet, and flat enough not to see its edges (tuned on two phantoms).
+/// Wide enough for the wedges of a tablet, and flat enough not to see its edges (tuned on two phantoms).
 inline constexpr double kDepthRadiusMm = 3.5;
+
+struct DepthOptions {
+  double radius_mm = kDepthRadiusMm;  ///< of the neighbourhood; wider around impressions that are deeper than usual
+  double blur_mm2 = 0.0;              ///< variance of the blur of scan and filters along each axis; 0: not known
+};
+
+/// How deep the impression is that a place lies in: from its deepest place to the surface as it was before, which is
+/// fitted to what is level around it (level_ground.h). Blur fills narrow bottoms; what it took is given back as far as
+/// the blur is known. kUsage: a radius that is not positive, or a neighbourhood of fewer than 30 vertices.
+Result<ImpressionDepth> impression_depth(const TriMesh& mesh, const SurfacePlace& place,
+                                         const DepthOptions& options = {});
 
 }  // namespace dubsar

@@ -43,6 +43,18 @@ TEST(MarkCommands, ClicksWithAToolMakeAMeasureAsSoonAsThereAreEnough) {
   EXPECT_EQ(bench.editor.desk().tool, "turn") << "said again, it is laid down";
 }
 
+TEST(MarkCommands, TheDepthOfAWedgeIsToldWithItsUncertainty) {
+  Measure measure;
+  measure.kind = MeasureKind::kDepth;
+  measure.figures.depth_mm = 0.4123;
+  EXPECT_EQ(figures_text(measure), "0.412 mm deep") << "of a session of an earlier version";
+  measure.figures.uncertainty_mm = 0.0211;
+  EXPECT_EQ(figures_text(measure), "0.412 mm deep \u00b1 0.0211 mm");
+  Document document;
+  document.measures = {measure};
+  EXPECT_NE(format_measures(document).find("\"uncertainty_mm\": 0.0211"), std::string::npos);
+}
+
 TEST(MarkCommands, MeasuresAreNamedTakenAwayAndUndone) {
   Bench bench;
   bench.run("measure_profile 0,0,0 10,0,0 the rim");

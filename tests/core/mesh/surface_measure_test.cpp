@@ -131,7 +131,7 @@ TEST(SurfaceMeasure, WedgesOnABentAndUnevenSideAreAsDeepAsTheyWereMadeWithinThre
     // Asked for on the wall, not at the bottom.
     const glm::dvec2 at = w.at + glm::dvec2(0.25 * w.half_width, 0.1 * w.half_width);
     const auto found =
-        impression_depth(plate, place(plate, {at.x, at.y, side(at.x, at.y) - 0.6 * w.depth}), kDepthRadiusMm);
+        impression_depth(plate, place(plate, {at.x, at.y, side(at.x, at.y) - 0.6 * w.depth}), {kDepthRadiusMm});
     ASSERT_TRUE(found) << found.error().message;
     const double slope = 1.0 / std::sqrt(1.0 + glm::dot(w.at - 20.0, w.at - 20.0) / 3600.0);  // along the normal
     ratio.push_back(found->depth_mm / (w.made * slope));
@@ -145,14 +145,64 @@ TEST(SurfaceMeasure, WedgesOnABentAndUnevenSideAreAsDeepAsTheyWereMadeWithinThre
   EXPECT_NEAR(ratio[30], 1.0, 0.03) << "seed " << seed;
 }
 
+TEST(SurfaceMeasure, WhatABlurFilledOfABottomIsGivenBackWhereTheBlurIsKnown) {
+  constexpr int kCells = 160;
+  constexpr double kSide = 8.0, kStep = kSide / kCells, kSlope = 0.8, kRounding = 0.1, kDepth = 0.5, kBlur = 0.12;
+  std::vector<double> height, blurred;
+  for (int v = 0; v <= kCells; ++v)
+    for (int u = 0; u <= kCells; ++u)
+      height.push_back(
+          -std::max(0.0, kDepth - kSlope * (std::hypot(kStep * u - 4, kStep * v - 4, kRounding) - kRounding)));
+  for (int v = 0; v <= kCells; ++v)
+    for (int u = 0; u <= kCells; ++u) {
+      double sum = 0.0, all = 0.0;
+      for (int y = std::max(0, v - 10); y <= std::min(kCells, v + 10); ++y)
+        for (int x = std::max(0, u - 10); x <= std::min(kCells, u + 10); ++x) {
+          const double weight =
+              std::exp(-0.5 * kStep * kStep * ((x - u) * (x - u) + (y - v) * (y - v)) / (kBlur * kBlur));
+          sum += weight * height[static_cast<std::size_t>(y * (kCells + 1) + x)];
+          all += weight;
+        }
+      blurred.push_back(sum / all);
+    }
+  const TriMesh plate = sheet(kCells, kCells, false, [&](double u, double v) {
+    const auto at = static_cast<std::size_t>(std::lround(v * kCells) * (kCells + 1) + std::lround(u * kCells));
+    return glm::dvec3(kSide * u, kSide * v, blurred[at]);
+  });
+  const SurfacePlace wall = place(plate, {4.2, 4.1, -0.3});
+  const auto unknown = impression_depth(plate, wall),
+             known = impression_depth(plate, wall, {.blur_mm2 = kBlur * kBlur});
+  ASSERT_TRUE(unknown && known);
+  EXPECT_LT(unknown->depth_mm, 0.92 * kDepth);
+  EXPECT_EQ(unknown->filled_mm, 0.0);
+  EXPECT_NEAR(known->depth_mm, kDepth, 0.04 * kDepth);
+  EXPECT_NEAR(known->depth_mm - known->filled_mm, unknown->depth_mm, 1e-12);
+  EXPECT_GT(known->uncertainty_mm, unknown->uncertainty_mm);
+  EXPECT_LT(std::abs(known->depth_mm - kDepth), 2 * known->uncertainty_mm);
+}
+
+TEST(SurfaceMeasure, ClayThatWasPushedUpRoundAWedgeDoesNotCountAsGround) {
+  // Lips of a twentieth of the depth, falling off over half of the wedge's width.
+  const TriMesh plate = sheet(320, 320, false, [](double u, double v) {
+    const double x = 16 * u, y = 16 * v;
+    const double r = std::hypot(std::remainder(x - 8, 2.6), std::remainder(y - 8, 2.6));  // dense: one each 2.6 mm
+    const double beyond = std::max(0.0, r - 0.8);
+    const double lip = r > 0.8 && beyond < 0.4 ? 0.04 * (1 - beyond / 0.4) * (1 - beyond / 0.4) : 0.0;
+    return glm::dvec3(x, y, r < 0.8 ? -0.8 + 1.05 * r : lip);
+  });
+  const auto found = impression_depth(plate, place(plate, {8.2, 8.1, -0.5}));
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->depth_mm, 0.8, 0.01);
+}
+
 TEST(SurfaceMeasure, WhatCannotBeMeasuredIsRefusedInASentence) {
   const TriMesh plate = sheet(10, 10, false, [](double u, double v) { return glm::dvec3(5 * u, 5 * v, 0); });
   EXPECT_EQ(nearest_place(TriMesh(), {0, 0, 0}).error().kind, ErrorKind::kBadData);
-  EXPECT_EQ(impression_depth(plate, place(plate, {2, 2, 0}), 0.0).error().kind, ErrorKind::kUsage);
-  const auto few = impression_depth(plate, place(plate, {2, 2, 0}), 0.6);
+  EXPECT_EQ(impression_depth(plate, place(plate, {2, 2, 0}), {0.0}).error().kind, ErrorKind::kUsage);
+  const auto few = impression_depth(plate, place(plate, {2, 2, 0}), {0.6});
   ASSERT_FALSE(few);
   EXPECT_NE(few.error().message.find("expected at least 30"), std::string::npos) << few.error().message;
-  EXPECT_NEAR(impression_depth(plate, place(plate, {2, 2, 0}), 3.0)->depth_mm, 0.0, 1e-6) << "level is level";
+  EXPECT_NEAR(impression_depth(plate, place(plate, {2, 2, 0}), {3.0})->depth_mm, 0.0, 1e-6) << "level is level";
 }
 
 }  // namespace
