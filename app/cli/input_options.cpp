@@ -2,14 +2,12 @@
 
 namespace dubsar::app {
 
-void add_input_options(Arguments command, InputOptionTexts& texts) {
-  Arguments group = command.group("Input");
+namespace {
+
+void add_reading(Arguments group, InputOptionTexts& texts) {
   group.value("--dataset", texts.dataset, "HDF5 path of the volume (also FILE:/path); default: found by itself");
-  group.value("--voxel-size", texts.voxel_size, "voxel size, e.g. 38um or 10um,10um,25um (x,y,z)");
   group.value("--axis-order", texts.axis_order,
               "order of the stored axes, slowest first: zyx, xyz, ...; a minus before one that runs backwards");
-  group.value("--crop", texts.crop, "part of the volume, x0:x1,y0:y1,z0:z1; empty bounds are the borders");
-  group.value("--stride", texts.stride, "take every N-th voxel: N or NX,NY,NZ");
   group.value("--dims", texts.dims, "raw file: size NXxNYxNZ");
   group.value("--type", texts.type, "raw file: uint8, int16, float32, ...");
   group.value("--endian", texts.endian, "raw file: little or big").one_of({"little", "big"});
@@ -19,6 +17,19 @@ void add_input_options(Arguments command, InputOptionTexts& texts) {
   group.flag("--trust", texts.trust, "accept compression ratios above 250:1");
   group.flag("--allow-sparse", texts.allow_sparse, "accept chunks that were never written");
 }
+
+}  // namespace
+
+void add_input_options(Arguments command, InputOptionTexts& texts) {
+  const Arguments group = command.group("Input");
+  add_reading(group, texts);
+  Arguments taken = group;
+  taken.value("--voxel-size", texts.voxel_size, "voxel size, e.g. 38um or 10um,10um,25um (x,y,z)");
+  taken.value("--crop", texts.crop, "part of the volume, x0:x1,y0:y1,z0:z1; empty bounds are the borders");
+  taken.value("--stride", texts.stride, "take every N-th voxel: N or NX,NY,NZ");
+}
+
+void add_scan_options(Arguments command, InputOptionTexts& texts) { add_reading(command.group("Scan"), texts); }
 
 Result<ImportOptions> parse_input_options(const std::string& path, const InputOptionTexts& texts) {
   ImportOptions options;

@@ -1,5 +1,5 @@
 #pragma once
-// Options that say how a volume file is read; shared by `process` and `info`.
+// Options that say how a volume file is read; shared by `process`, `info` and `view`.
 
 #include <string>
 
@@ -15,6 +15,8 @@ struct InputOptionTexts {
 };
 
 void add_input_options(Arguments command, InputOptionTexts& texts);
+/// Those that say how its file is read, not which part of it is taken: for verbs that look into a scan.
+void add_scan_options(Arguments command, InputOptionTexts& texts);
 
 /// Texts to options; kUsage with the text that is wrong.
 Result<ImportOptions> parse_input_options(const std::string& path, const InputOptionTexts& texts);

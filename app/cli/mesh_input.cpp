@@ -97,9 +97,13 @@ Result<void> check_parts(const std::filesystem::path& path, std::span<const std:
   return {};
 }
 
-Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress) {
+Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress) { return load_mesh(request, progress, {}); }
+
+Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress,
+                          const std::function<void(TriMesh)>& tell_coarse) {
   if (is_exa_file(request.path)) return load_exa(request, progress);
-  DUBSAR_ASSIGN(TriMesh mesh, read_mesh(request.path, progress));
+  DUBSAR_ASSIGN(TriMesh mesh, read_mesh(request.path, progress,
+                                        request.partitions.empty() ? tell_coarse : std::function<void(TriMesh)>()));
   if (request.partitions.empty()) return mesh;
   std::optional<TriMesh> joined;
   for (const std::string& wanted : request.partitions) {

@@ -1,5 +1,6 @@
 #include "app/slices/scan_link.h"
 
+#include <charconv>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
@@ -12,9 +13,9 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// What surface files say of the scan they were made of; null when they do not.
-json input_of(const TriMesh& mesh) {
-  if (mesh.provenance.empty()) return nullptr;
-  const auto all = parse_json(mesh.provenance, "provenance");
+json input_of(std::string_view provenance) {
+  if (provenance.empty()) return nullptr;
+  const auto all = parse_json(provenance, "provenance");
   if (!all || !all->is_object() || !all->contains("input") || !all->at("input").is_object()) return nullptr;
   return all->at("input");
 }
@@ -34,8 +35,27 @@ Dims dims_at(const json& object, const char* name) {
 
 }  // namespace
 
-std::optional<ScanLink> scan_of(const TriMesh& mesh, const fs::path& surface, const fs::path& given) {
-  const json input = input_of(mesh);
+std::optional<RawSpec> raw_volume_of(std::string_view provenance) {
+  const json input = input_of(provenance);
+  if (text_at(input, "format") != "raw" || !input.contains("axes") || text_at(input.at("axes"), "order") != "zyx")
+    return std::nullopt;
+  const Dims dims = dims_at(input, "file_dims");
+  const auto type = parse_scalar_type(text_at(input, "dtype"));
+  if (dims.count() <= 0 || !type) return std::nullopt;
+  RawSpec raw{{dims.x, dims.y, dims.z}, *type, ByteOrder::kLittle, 0};
+  if (const auto order = parse_byte_order(text_at(input, "byte_order"))) raw.order = *order;
+  constexpr std::string_view kBehind = "contiguous behind ";  // as import_raw.cpp says it
+  const std::string layout = text_at(input, "layout");
+  if (layout.starts_with(kBehind)) {
+    const char* const digits = layout.data() + kBehind.size();
+    if (std::from_chars(digits, layout.data() + layout.size(), raw.skip).ec != std::errc()) return std::nullopt;
+  }
+  return raw;
+}
+
+std::optional<ScanLink> scan_of(const TriMesh& mesh, const fs::path& surface,
+                                const std::optional<ImportOptions>& given) {
+  const json input = input_of(mesh.provenance);
   ScanLink out;
   out.voxel_mm = mesh.frame.input_voxel.mm;
   out.fingerprint = text_at(input, "fingerprint");
@@ -43,10 +63,16 @@ std::optional<ScanLink> scan_of(const TriMesh& mesh, const fs::path& surface, co
   out.import.dataset = text_at(input, "dataset");
   if (input.is_object() && input.contains("axes") && text_at(input.at("axes"), "stated_by") == "given by the user")
     if (const auto order = parse_axis_order(text_at(input.at("axes"), "order"))) out.import.axis_order = *order;
-  if (!given.empty()) {
-    out.import.path = given;
+  out.import.raw = raw_volume_of(mesh.provenance);
+  if (given) {
+    ImportOptions import = *given;
+    if (import.dataset.empty() && import.path.string().find(":/") == std::string::npos)  // else it names its own
+      import.dataset = out.import.dataset;
+    if (!import.axis_order) import.axis_order = out.import.axis_order;
+    // A volume with a header needs nobody to say how it is read.
+    if (!import.raw && !open_voxels(import)) import.raw = out.import.raw;
+    out.import = std::move(import);
     out.given = true;
-    if (given.string().find(":/") != std::string::npos) out.import.dataset.clear();  // it names its own
     return out;
   }
   const fs::path name = fs::path(text_at(input, "path")).filename();

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "core/mesh/tri_mesh.h"
 #include "core/volume/import_options.h"
@@ -20,10 +21,15 @@ struct ScanLink {
   bool given = false;         ///< by the user, else found
 };
 
-/// `surface` is the file of the mesh, whose provenance names its scan. `given` is what the user says; without it a file
-/// of the scan's name beside the surface. None: there is no such file, or nothing that it could be known by.
+/// `surface` is the file of the mesh, whose provenance names its scan and says how that was read. `given` is what the
+/// user says, which goes before that; without it a file of the scan's name beside the surface. None: there is no such
+/// file, or nothing that it could be known by.
 std::optional<ScanLink> scan_of(const TriMesh& mesh, const std::filesystem::path& surface,
-                                const std::filesystem::path& given = {});
+                                const std::optional<ImportOptions>& given = {});
+
+/// How the file of a raw volume is laid out, as the provenance of a surface that was made of it says; none: it was no
+/// raw volume, or one whose axes lie in another order than z, y, x.
+std::optional<RawSpec> raw_volume_of(std::string_view provenance);
 
 struct OpenedScan {
   std::unique_ptr<PlaneSampler> sampler;

@@ -8,6 +8,7 @@
 
 #include "app/calibration/display_choice.h"
 #include "app/cli/config_folder.h"
+#include "app/cli/input_options.h"
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
 #include "app/verbs/view_files.h"
@@ -17,7 +18,6 @@
 #include "core/base/atomic_file.h"
 #include "core/base/log.h"
 #include "core/base/parse_number.h"
-#include "core/volume/import.h"
 #include "devices/looking_glass/bridge_client.h"
 #include "input/source_spec.h"
 
@@ -27,6 +27,7 @@ namespace {
 struct What {
   std::vector<std::string> in;
   std::string scan, kiosk, view = "front", style = "relief";
+  InputOptionTexts scan_reading;
   std::vector<std::string> partitions;
 };
 
@@ -229,10 +230,9 @@ Result<VerbResult> run_kiosk_of(const ViewRequest& given, Progress& progress) {
   return out;
 }
 
-FileReading file_reading(const ViewRequest& options) {
+FileReading file_reading(const ViewRequest& options, const std::optional<ImportOptions>& scan) {
   const bool window = !options.panel.offscreen;
-  return {options.what.partitions, options.what.scan, window && options.what.view == "front",
-          window && options.time.fps == 0};
+  return {options.what.partitions, scan, window && options.what.view == "front", window && options.time.fps == 0};
 }
 
 /// What can be wrong with files is known before a large one is read.
@@ -242,10 +242,6 @@ Result<void> check_files(const ViewRequest& options) {
     return fail(ErrorKind::kUsage, "view: no file found, expected a surface such as tablet.exa");
   if (what.in.size() > 1 && !what.scan.empty())
     return fail(ErrorKind::kUsage, "view: {} files and one --scan found, expected one file with it", what.in.size());
-  if (what.scan.empty()) return {};
-  ImportOptions scan;
-  scan.path = what.scan;
-  DUBSAR_TRY(open_voxels(scan));
   return {};
 }
 
@@ -275,6 +271,8 @@ Result<VerbResult> run(const ViewRequest& options, Progress& progress) {
   if (options.made.tour.empty())
     DUBSAR_TRY(options.panel.offscreen ? without_window(options, view) : with_window(options, view));
   DUBSAR_TRY(check_files(options));
+  DUBSAR_ASSIGN(const std::optional<ImportOptions> scan,
+                asked_scan(options.what.scan, options.what.scan_reading, options.what.in));
   const bool live = !options.panel.offscreen && options.time.fps == 0;
   DUBSAR_ASSIGN(const std::vector<std::filesystem::path> files, good_files(options, live && options.made.tour.empty()));
   if (!options.made.tour.empty()) {
@@ -283,13 +281,13 @@ Result<VerbResult> run(const ViewRequest& options, Progress& progress) {
     DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.what.in.front(), options.what.partitions, true}, progress));
     return write_tour(options.made.tour, mesh, view);
   }
-  Shelf shelf(surface_reader(view, file_reading(options)), live ? recent_list() : std::filesystem::path());
+  Shelf shelf(surface_reader(view, file_reading(options, scan)), live ? recent_list() : std::filesystem::path());
   OpenedSurface first;
   if (live) {  // the window is there before what it shows
     DUBSAR_TRY(shelf.open(files));
     log_info("view: F1 shows help; Escape, closing the window or Ctrl-C end it");
   } else {
-    DUBSAR_ASSIGN(first, surface_reader(view, file_reading(options))(files.front(), progress, {}));
+    DUBSAR_ASSIGN(first, surface_reader(view, file_reading(options, scan))(files.front(), progress, {}));
     shelf.has(files);
     view.work = first.work;
     view.around.title = first.title;
@@ -319,6 +317,7 @@ Verb add_view_verb(Arguments program) {
       .reads("--scan", options->what.scan,
              "the scan that the surface was made of, for slices; else one of its name beside it")
       .called("SCAN.h5");
+  add_scan_options(command, options->what.scan_reading);
   std::string sinks, sources;
   for (const SinkBackend& sink : output_sinks()) sinks += (sinks.empty() ? "" : ", ") + std::string(sink.name);
   for (const std::string_view source : input_source_names())

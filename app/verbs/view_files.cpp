@@ -7,11 +7,13 @@
 #include "app/cli/mesh_input.h"
 #include "app/document/document_file.h"
 #include "app/document/file_kinds.h"
+#include "app/slices/scan_link.h"
 #include "app/viewer/first_document.h"
 #include "core/base/file_suffix.h"
 #include "core/base/log.h"
 #include "core/exa/exa_file.h"
 #include "core/parts/surface_model.h"
+#include "core/volume/import.h"
 
 namespace dubsar::app {
 namespace {
@@ -56,7 +58,7 @@ ReadSurface surface_reader(const ViewOptions& options, const FileReading& readin
                             const TellCoarse& tell) -> Result<OpenedSurface> {
     OpenedSurface out;
     if (tell && reading.partitions.empty()) tell_coarse(file, progress, tell);
-    DUBSAR_ASSIGN(out.mesh, load_mesh({file, reading.partitions, true}, progress));
+    DUBSAR_ASSIGN(out.mesh, load_mesh({file, reading.partitions, true}, progress, tell));
     if (out.mesh.triangles.empty())
       return fail(ErrorKind::kBadData, "{}: there is no triangle in it, so there is nothing to show", file.string());
     ViewOptions with = options;
@@ -74,6 +76,25 @@ ReadSurface surface_reader(const ViewOptions& options, const FileReading& readin
     progress.end();
     return out;
   };
+}
+
+Result<std::optional<ImportOptions>> asked_scan(const std::string& scan, const InputOptionTexts& reading,
+                                                const std::vector<std::string>& surfaces) {
+  DUBSAR_ASSIGN(ImportOptions asked, parse_input_options(scan, reading));
+  if (scan.empty()) {
+    if (asked.raw || !asked.dataset.empty() || asked.axis_order)
+      return fail(ErrorKind::kUsage, "view: options on how a scan is read found, expected --scan SCAN with them");
+    return std::optional<ImportOptions>();
+  }
+  const auto opened = open_voxels(asked);
+  if (!opened) {
+    if (asked.raw || surfaces.empty()) return tl::unexpected<Error>(opened.error());
+    const auto info = read_exa_info(surfaces.front());
+    if (info) asked.raw = raw_volume_of(info->provenance);
+    if (!asked.raw) return tl::unexpected<Error>(opened.error());
+    DUBSAR_TRY(open_voxels(asked));
+  }
+  return std::optional(std::move(asked));
 }
 
 Result<void> check_surface(const std::string& file, const std::vector<std::string>& partitions) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "app/cli/input_options.h"
 #include "app/viewer/shelf.h"
 
 namespace dubsar::app {
@@ -11,13 +12,18 @@ namespace dubsar::app {
 /// How the files of a session are read.
 struct FileReading {
   std::vector<std::string> partitions;  ///< only these parts; empty: all
-  std::filesystem::path scan;           ///< that the surface was made of; empty: looked for
+  std::optional<ImportOptions> scan;    ///< that the surface was made of; none: looked for
   bool upright = false;                 ///< the obverse stands upright, as its writing says
   bool keeps_work = false;              ///< what earlier sessions left is taken up, and this one leaves its own
 };
 
 /// Reads a file as a session with these options wants it; any thread. Errors of load_mesh().
 ReadSurface surface_reader(const ViewOptions& options, const FileReading& reading);
+
+/// The scan of that name, read as the options say, or the surface that was made of it; none without a name. kUsage:
+/// options without a scan; errors of open_voxels(), so that slips are known before a large surface is read.
+Result<std::optional<ImportOptions>> asked_scan(const std::string& scan, const InputOptionTexts& reading,
+                                                const std::vector<std::string>& surfaces);
 
 /// What can be known at once: kNoInput, kPermission, kUsage for parts that are not in it, kBadData for the head of an
 /// EXA file.

@@ -13,6 +13,7 @@
 #include "app/viewer/source_set.h"
 #include "app/viewer/stage.h"
 #include "core/base/measurements.h"
+#include "core/volume/import_options.h"
 #include "display/render/context_glfw.h"
 #include "input/navigation/mapping.h"
 
@@ -26,7 +27,7 @@ struct SessionWork {
   bool upright = false;             ///< the obverse stands upright at home, as its writing says
   bool restored = false;            ///< the document is that of an earlier session
   std::filesystem::path surface{};  ///< the file of the surface; beside it its scan is looked for
-  std::filesystem::path scan{};     ///< the scan it was made of; empty: looked for
+  std::optional<ImportOptions> scan{};  ///< the scan it was made of; none: looked for
 };
 
 struct SessionTime {

@@ -7,6 +7,7 @@
 #include "core/base/file_suffix.h"
 #include "core/base/input_file.h"
 #include "core/mesh/vertex_attributes.h"
+#include "core/mesh_io/coarse_surface.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_output.h"
 
@@ -46,10 +47,13 @@ struct Loaded {
   TriMesh mesh;
 };
 
-Result<Loaded> load(const std::filesystem::path& path, Progress& progress) {
+Result<Loaded> load(const std::filesystem::path& path, Progress& progress,
+                    const std::function<void(TriMesh)>& tell_coarse = {}) {
   DUBSAR_ASSIGN(const std::string bytes, read_file_bytes(path));
   DUBSAR_ASSIGN(const MeshFormat format, recognise(path, bytes));
   try {
+    if (tell_coarse)
+      if (auto coarse = coarse_surface(format, bytes)) tell_coarse(*std::move(coarse));
     auto mesh = row(format).parse(bytes, progress);
     if (!mesh) {
       Error error = std::move(mesh).error();
@@ -84,6 +88,12 @@ Result<void> write_mesh(const std::filesystem::path& path, const TriMesh& mesh, 
 
 Result<TriMesh> read_mesh(const std::filesystem::path& path, Progress& progress) {
   DUBSAR_ASSIGN(Loaded loaded, load(path, progress));
+  return std::move(loaded.mesh);
+}
+
+Result<TriMesh> read_mesh(const std::filesystem::path& path, Progress& progress,
+                          const std::function<void(TriMesh)>& tell_coarse) {
+  DUBSAR_ASSIGN(Loaded loaded, load(path, progress, tell_coarse));
   return std::move(loaded.mesh);
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <string>
 #include <string_view>
@@ -54,6 +55,9 @@ Result<void> write_mesh(const std::filesystem::path& path, const TriMesh& mesh, 
 /// the frame says what one unit is. Equal STL corners become one vertex; polygons become triangles.
 /// Errors: kNoInput, kPermission, kIo, kBadData (damaged or hostile; positions that are not finite), kTryAgain.
 Result<TriMesh> read_mesh(const std::filesystem::path& path, Progress& progress);
+/// The same, told a coarse surface (coarse_surface.h) before the whole is read, where there is one.
+Result<TriMesh> read_mesh(const std::filesystem::path& path, Progress& progress,
+                          const std::function<void(TriMesh)>& tell_coarse);
 
 /// Reads the file and describes it.
 Result<MeshInfo> mesh_info(const std::filesystem::path& path, Progress& progress);

@@ -34,7 +34,7 @@ Result<OpenedVolume> open_raw(const ImportOptions& options) {
   info.file_dims = {raw.dims[0], raw.dims[1], raw.dims[2]};
   info.stored.dtype = scalar_name(raw.type);
   info.stored.byte_order = order_name(raw.order);
-  info.stored.layout = "contiguous";
+  info.stored.layout = raw.skip > 0 ? fmt::format("contiguous behind {} bytes", raw.skip) : "contiguous";
   info.stored.storage_bytes = info.stored.logical_bytes = bytes;
   info.stored.may_have_nonfinite = is_float(raw.type);
   std::vector<FlatSegment> segments;

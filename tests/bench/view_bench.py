@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """First pictures, pictures a second and memory of viewers of the same meshes, in one run on one machine.
 
-view_bench.py PROGRAM [--sizes 0.4,1.4,12] [--seconds 4] [--json FILE] [--work FOLDER]
+view_bench.py PROGRAM [--sizes 0.4,1.4,12] [--format ply|stl|obj] [--style STYLE] [--seconds 4] [--json FILE] [--work FOLDER]
 
-Each viewer opens a PLY file in its window on an X server in memory (1280x720, llvmpipe where there is no GPU). The picture
+Each viewer opens the same file in its window on an X server in memory (1280x720, llvmpipe where there is no GPU). The picture
 is looked at in the server's memory, so that nobody is asked how quick he is: the first picture is the first one that looks
-like the one that stays; then the mouse turns the object, and different pictures are counted.
+like the one that stays; then the mouse turns the object, and different pictures are counted; then it rests, and the last
+change after that says when what is shown is exact.
 """
 import argparse, collections, json, mmap, os, platform, shutil, struct, subprocess, sys, tempfile, time, zlib
 import numpy as np
@@ -18,7 +19,7 @@ IDLE = 0.1  # of a core: whoever works more is still loading
 
 
 def write_mesh(path, millions):
-    """A pillow of 60 x 45 x 20 mm with waves like wedges, written as binary PLY."""
+    """A pillow of 60 x 45 x 20 mm with waves like wedges, in the format of the suffix: binary PLY or STL, or OBJ."""
     n = int(round((millions * 1e6) ** 0.5))
     u = np.linspace(0, 2 * np.pi, n, endpoint=False, dtype=np.float32)[None, :]
     v = np.linspace(1e-3, np.pi - 1e-3, n, dtype=np.float32)[:, None]
@@ -34,6 +35,18 @@ def write_mesh(path, millions):
     faces["n"] = 3
     faces["v"][: a.size] = np.stack([a, a + n, b + n], -1).reshape(-1, 3)
     faces["v"][a.size :] = np.stack([a, b + n, b], -1).reshape(-1, 3)
+    if path.endswith(".stl"):
+        facets = np.zeros(len(faces), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+        facets["corners"] = points[faces["v"]]
+        with open(path, "wb") as out:
+            out.write(b"bench".ljust(80) + struct.pack("<I", len(faces)))
+            facets.tofile(out)
+        return len(points), len(faces)
+    if path.endswith(".obj"):
+        with open(path, "w") as out:
+            out.writelines("v %.5f %.5f %.5f\n" % tuple(p) for p in points.tolist())
+            out.writelines("f %d %d %d\n" % tuple(f) for f in (faces["v"] + 1).tolist())
+        return len(points), len(faces)
     with open(path, "wb") as out:
         out.write(
             f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\nproperty float x\nproperty float y\n"
@@ -173,6 +186,23 @@ def turn(screen, seconds):
     return {"pictures": len(times), "per_s": float(1 / np.mean(gaps)), "worst_ms": float(1000 * gaps.max())}
 
 
+def rest(screen, process):
+    """Seconds from the mouse's rest to the last change of the picture."""
+    start, last, before = time.monotonic(), 0.0, screen.look()
+    worked = collections.deque()
+    while time.monotonic() - start < LONGEST_S and process.poll() is None:
+        time.sleep(POLL_S)
+        now, picture = time.monotonic() - start, screen.look()
+        if np.abs(picture - before).mean() > 0.05:
+            last, before = now, picture
+        worked.append((now, cpu_s(process)))
+        while now - worked[0][0] > QUIET_S:
+            worked.popleft()
+        if now - last > QUIET_S and worked[-1][1] - worked[0][1] < IDLE * QUIET_S:
+            return last
+    return None
+
+
 def measure(name, command, mesh, work, seconds, pictures):
     folder = tempfile.mkdtemp(dir=work)
     screen = next(s for s in (Screen(folder) for _ in range(10)) if s.serves())
@@ -191,6 +221,7 @@ def measure(name, command, mesh, work, seconds, pictures):
             if pictures:
                 screen.save(os.path.join(pictures, f"{name}_first.png"))
             row.update(turn(screen, seconds))
+            row["rest_s"] = rest(screen, process)
             if pictures:
                 screen.save(os.path.join(pictures, f"{name}_turned.png"))
         else:
@@ -211,24 +242,28 @@ def main():
     parser.add_argument("--sizes", default="0.4,1.4,12", help="millions of vertices")
     parser.add_argument("--seconds", type=float, default=4.0, help="how long the object is turned")
     parser.add_argument("--json", help="file for the figures")
+    parser.add_argument("--format", default="ply", choices=("ply", "stl", "obj"), help="of the files")
+    parser.add_argument("--style", help="that dubsar shows them in, such as raking")
     parser.add_argument("--only", help="one viewer: dubsar, f3d or MeshLab")
     parser.add_argument("--pictures", help="folder for pictures of the screen, to see what was measured")
     parser.add_argument("--work", default=tempfile.gettempdir(), help="folder with room for the meshes (430 MB)")
     options = parser.parse_args()
-    viewers = [("dubsar", [os.path.abspath(options.program), "view", "-q"])]
+    style = ["--style", options.style] if options.style else []
+    viewers = [("dubsar", [os.path.abspath(options.program), "view", "-q", *style])]
     for name, program in (("f3d", ["f3d", f"--resolution={WIDTH},{HEIGHT}"]), ("MeshLab", ["meshlab"])):
         if shutil.which(program[0]):
             viewers.append((name, program))
         else:
             print(f"{name} is not installed and is left out", file=sys.stderr)
     out = {"machine": platform.processor() or platform.machine(), "cores": os.cpu_count(),
-           "load": os.getloadavg()[0], "window": [WIDTH, HEIGHT], "rows": []}
+           "load": os.getloadavg()[0], "window": [WIDTH, HEIGHT], "format": options.format,
+           "style": options.style, "rows": []}
     print(f"load {out['load']:.1f} on {out['cores']} cores\n")
-    print("| vertices | viewer | first picture | it stays | pictures a second | longest wait | memory |")
-    print("|---|---|---|---|---|---|---|", flush=True)
+    print("| vertices | viewer | first picture | it stays | pictures a second | longest wait | exact after rest | memory |")
+    print("|---|---|---|---|---|---|---|---|", flush=True)
     text = lambda value, unit, digits=1: "none" if value is None else f"{value:.{digits}f} {unit}"
     for millions in map(float, options.sizes.split(",")):
-        mesh = os.path.join(options.work, f"view_bench_{millions:g}.ply")
+        mesh = os.path.join(options.work, f"view_bench_{millions:g}.{options.format}")
         vertices, triangles = write_mesh(mesh, millions)
         try:
             for name, command in viewers:
@@ -238,7 +273,7 @@ def main():
                 row.update({"vertices": vertices, "triangles": triangles, "load": round(os.getloadavg()[0], 1)})
                 out["rows"].append(row)
                 print(f"| {vertices:,} | {name} | {text(row['first_s'], 's', 2)} | {text(row['exact_s'], 's', 2)} | "
-                      f"{text(row.get('per_s'), '')} | {text(row.get('worst_ms'), 'ms', 0)} | "
+                      f"{text(row.get('per_s'), '')} | {text(row.get('worst_ms'), 'ms', 0)} | {text(row.get('rest_s'), 's', 2)} | "
                       f"{row['memory_mib']} MiB |", flush=True)
         finally:
             os.remove(mesh)

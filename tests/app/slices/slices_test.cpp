@@ -12,6 +12,7 @@
 #include "app/slices/slice_reader.h"
 #include "core/base/file_fingerprint.h"
 #include "core/phantom/phantom_source.h"
+#include "core/volume/import.h"
 #include "core/volume/slab_source.h"
 #include "tests/display/test_meshes.h"
 
@@ -185,6 +186,11 @@ class ScanLinks : public ::testing::Test {
                     path, file_fingerprint(scan).value());
     return out;
   }
+  ImportOptions named(const std::string& name) const {
+    ImportOptions out;
+    out.path = folder_ / name;
+    return out;
+  }
   const fs::path folder_ = fs::temp_directory_path() / fmt::format("dubsar_scan_link_{}", ::getpid());
 };
 
@@ -205,14 +211,49 @@ TEST_F(ScanLinks, TheScanBesideTheSurfaceIsFoundByItsNameAndKnownByItsBytes) {
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().message,
             "slices: scan.nrrd is not the scan that this surface was made of, though it has its name");
-  const auto given = open_scan(scan_of(mesh, folder_ / "tablet.exa", folder_ / "scan.nrrd").value());
+  const auto given = open_scan(scan_of(mesh, folder_ / "tablet.exa", named("scan.nrrd")).value());
   ASSERT_TRUE(given) << "who names it gets it, and is told";
   EXPECT_NE(given->note.find("not the file"), std::string::npos);
 
   write(folder_ / "small.nrrd", 11);
-  const auto small = open_scan(scan_of(mesh, folder_ / "tablet.exa", folder_ / "small.nrrd").value());
+  const auto small = open_scan(scan_of(mesh, folder_ / "tablet.exa", named("small.nrrd")).value());
   ASSERT_FALSE(small);
   EXPECT_NE(small.error().message.find("11 x 11 x 11 voxels, expected 12 x 12 x 12"), std::string::npos);
+}
+
+TEST_F(ScanLinks, ARawVolumeIsReadAsItWasWhenTheSurfaceWasMade) {
+  std::string bytes(16, 'h');  // that are skipped
+  for (int i = 0; i < 6 * 5 * 4; ++i) {
+    bytes += static_cast<char>(i / 256);  // big endian
+    bytes += static_cast<char>(i % 256);
+  }
+  std::ofstream(folder_ / "scan.raw", std::ios::binary) << bytes;
+  ImportOptions import = named("scan.raw");
+  import.raw = RawSpec{{6, 5, 4}, ScalarType::kU16, ByteOrder::kBig, 16};
+  const auto read = open_voxels(import);
+  ASSERT_TRUE(read) << read.error().message;
+  TriMesh mesh = testing::sphere(1.0f, 8, 16);
+  mesh.provenance = fmt::format(
+      R"({{"input": {{"path": "scan.raw", "dataset": "", "format": "{}", "file_dims": [6, 5, 4], "dtype": "{}",
+          "byte_order": "{}", "layout": "{}", "axes": {{"order": "{}"}}, "fingerprint": "{}"}}}})",
+      read->info.format, read->info.stored.dtype, read->info.stored.byte_order, read->info.stored.layout,
+      read->info.axes.letters(), read->info.fingerprint);
+  for (const bool given : {false, true}) {
+    const auto link =
+        given ? scan_of(mesh, folder_ / "tablet.exa", named("scan.raw")) : scan_of(mesh, folder_ / "tablet.exa");
+    ASSERT_TRUE(link);
+    ASSERT_TRUE(link->import.raw);
+    EXPECT_EQ(link->import.raw->skip, 16);
+    EXPECT_EQ(link->import.raw->order, ByteOrder::kBig);
+    const auto opened = open_scan(*link);
+    ASSERT_TRUE(opened) << opened.error().message;
+    EXPECT_EQ(opened->sampler->dims(), (Dims{6, 5, 4}));
+    EXPECT_EQ(opened->note, "");
+  }
+  import.raw->skip = 8;  // who says how it is read is believed
+  EXPECT_EQ(scan_of(mesh, folder_ / "tablet.exa", import)->import.raw->skip, 8);
+  EXPECT_FALSE(raw_volume_of(R"({"input": {"format": "hdf5"}})"));
+  EXPECT_FALSE(raw_volume_of("not JSON"));
 }
 
 }  // namespace
