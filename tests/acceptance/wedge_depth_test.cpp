@@ -108,7 +108,7 @@ TEST_P(WedgeDepth, IsThatOfTheStylusWithinThreePercentInTheMedian) {
       seed, GetParam().depth_vox, all.size(), median(ratio), median(broad), median(curved), median(error),
       within / static_cast<double>(all.size()));
   EXPECT_NEAR(median(ratio), 1.0, 0.03) << "seed " << seed;
-  EXPECT_GT(within, 0.7 * static_cast<double>(all.size())) << "seed " << seed;
+  EXPECT_GT(within, 0.6 * static_cast<double>(all.size())) << "seed " << seed;
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, WedgeDepth,
