@@ -37,13 +37,13 @@ usage() {
               ./do bench scanner [--size XxYxZ] [--memory 6G]: a scan larger than memory, 3072x3072x1944 by default
               ./do bench wedges [--quick | --size XxYxZ] [--seed N]: what is read of a hidden tablet, beside what is wanted
               ./do bench view: first pictures, pictures a second and memory, beside f3d and MeshLab
-./do workflow examples/snakemake: a dry run, and three scans for real
+./do workflow examples/snakemake: a dry run, and three scans for real; workflow core: with the program of a core build
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
 ./do glb FILE...  the Khronos validator over GLB files (fetches it with npm)
 ./do asan     the tests that need no window under AddressSanitizer and UndefinedBehaviorSanitizer; asan core devices
               input display app: of these rooms only; and what ctest takes, as asan devices -R Vrpn
 ./do tsan     devices and inputs under ThreadSanitizer (clang)
-./do core     build and test the core alone: no graphics, no devices
+./do core     build and test the core alone, no graphics, no devices: build/core/app/dubsar has process, info, exa, phantom
 ./do lint     is every source formatted, and clang-tidy over what changed since the last commit (or since REVISION)
 ./do deps     install the packages of Debian 12 that dubsar needs
 ./do visitors [SEED [OF_EACH_KIND [why]]]   naive visitors before the kiosk, simulated: how many turn, zoom, open
@@ -251,6 +251,10 @@ demo() {
 # The workflow of examples/snakemake: a dry run, a run of three scans, and one that finds nothing to do.
 workflow() {
   deps snakemake
+  local made=6 reports=true
+  if [ "${1:-}" = core ]; then
+    preset=core build=build/core made=3 reports=false
+  fi
   build_target --target dubsar
   local dubsar=$PWD/$build/app/dubsar work=$PWD/$build/workflow seed
   rm -rf "$work" && mkdir -p "$work/scans"
@@ -258,11 +262,11 @@ workflow() {
   for seed in 1 2 3; do
     "$dubsar" phantom "$work/scans/tablet_$seed.h5" --size 160x112x144 --seed "$seed" -q >/dev/null
   done
-  local settings=(--directory "$work" --snakefile "$work/Snakefile" --config "dubsar=$dubsar" "threads=$jobs" "options=--ao-rays 16")
+  local settings=(--directory "$work" --snakefile "$work/Snakefile" --config "dubsar=$dubsar" "threads=$jobs" "reports=$reports" "options=--ao-rays 16")
   snakemake --dry-run --quiet "${settings[@]}"
   snakemake --cores "$jobs" "${settings[@]}"
   ls -l "$work/surfaces"
-  [ "$(ls "$work"/surfaces/*.exa "$work"/surfaces/*_report.html | wc -l)" = 6 ]
+  [ "$(ls "$work"/surfaces | grep -cE '\.exa$|_report\.html$')" = "$made" ]
   snakemake --cores "$jobs" "${settings[@]}" 2>&1 | tee "$work/again.log"
   grep -q "Nothing to be done" "$work/again.log"
 }
@@ -329,7 +333,7 @@ case "$verb" in
   strips) strips "$@" ;;
   visitors) visitors "$@" ;;
   soak) soak "$@" ;;
-  workflow) workflow ;;
+  workflow) workflow "$@" ;;
   pictures) pictures ;;
   format) git ls-files '*.cpp' '*.h' | xargs clang-format -i ;;
   *) usage; [ -z "$verb" ] || [ "$verb" = help ] || exit 64 ;;

@@ -1,118 +1,26 @@
-// dubsar: verbs, exit codes, and what is common to all of them.
+// dubsar: all its verbs.
 
-#include <fmt/format.h>
-
-#include <cerrno>
-#include <cstdio>
 #include <cstdlib>
-#include <exception>
-#include <new>
-#include <vector>
+#include <string>
 
-#include "app/cli/console_progress.h"
-#include "app/cli/error_json.h"
-#include "app/cli/verb.h"
-#include "core/base/atomic_file.h"
-#include "core/base/json_text.h"
-#include "core/base/parallel.h"
-#include "core/base/plain_text.h"
-
-namespace {
-using namespace dubsar;
-using namespace dubsar::app;
-
-void add_common_options(Arguments command, CommonOptions& common) {
-  Arguments group = command.group("Common");
-  group.writes("--json", common.json_path, FileFormat::kJson, "write the result as JSON to FILE (- for stdout)")
-      .called("FILE");
-  group.choice<ProgressStyle>("--progress", common.console.progress,
-                              {{"auto", ProgressStyle::kAuto},
-                               {"bar", ProgressStyle::kBar},
-                               {"json", ProgressStyle::kJson},
-                               {"none", ProgressStyle::kNone}},
-                              "how progress is shown on stderr");
-  group.value("--threads", common.threads, "number of threads (0: all cores)").range(0, 1024).called("N");
-  group.flag("-q,--quiet", common.console.quiet, "errors only");
-  group.flag("-v,--verbose", common.console.verbose, "more messages");
-}
-
-Result<void> print(std::string_view text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return {};
-  return fail_errno(errno, "cannot write the result to stdout");
-}
-
-/// On stderr, and as an object on stdout for programs that asked for one there.
-int report_error(const Error& error, const CommonOptions& common) {
-  log(LogLevel::kError, error.message);
-  if (common.json_path == "-") {
-    if (!print(error_json(error))) log(LogLevel::kError, "cannot write the error to stdout");
-  }
-  return exit_code(error.kind);
-}
-
-Result<VerbResult> run_verb(const Verb& verb, const CommonOptions& common, Progress& progress) {
-  try {
-    return verb.run(common, progress);
-  } catch (const std::bad_alloc&) {
-    return fail(ErrorKind::kTryAgain, "out of memory; close other programs, or work on a part of the data");
-  } catch (const std::exception& e) {
-    return fail(ErrorKind::kInternal, "internal error, please report: {}", e.what());
-  }
-}
-
-Result<void> deliver(const VerbResult& result, const CommonOptions& common) {
-  if (common.json_path == "-") return print(dump_json_lines(result.json) + "\n");
-  DUBSAR_TRY(print(plain_text(result.text, true)));
-  if (common.json_path.empty()) return {};
-  return write_file_atomically(common.json_path, dump_json_lines(result.json) + "\n");
-}
-
-int run(const Verb& verb, const CommonOptions& common) {
-  install_log(common.console);
-  set_thread_count(common.threads);
-  if (verb.settle) verb.settle();
-  if (const auto ok = check_file_uses(verb.command.files()); !ok) return report_error(ok.error(), common);
-  ConsoleProgress progress(common.console, verb.plan ? verb.plan() : std::vector<PlannedStage>());
-  cancel_on_signals(progress);
-  const Result<VerbResult> result = run_verb(verb, common, progress);
-  progress.close();
-  if (!result && result.error().kind != ErrorKind::kUsage)  // whatever went wrong: a file that is not there comes first
-    if (const auto there = check_inputs(verb.command.files()); !there) return report_error(there.error(), common);
-  if (!result) return report_error(result.error(), common);
-  if (const auto ok = deliver(*result, common); !ok) {
-    log(LogLevel::kError, ok.error().message);
-    return exit_code(ok.error().kind);
-  }
-  return result->failed ? exit_code(result->failure) : 0;
-}
-
-}  // namespace
+#include "app/cli/program.h"
 
 int main(int argc, char** argv) {
+  using namespace dubsar::app;
   // The loader of OpenXR prints what our own sentences say; who wants to read it sets another value.
   ::setenv("XR_LOADER_DEBUG", "none", 0);
-  Arguments program =
-      Arguments::program("dubsar: from a CT scan of an enclosed cuneiform tablet to surfaces that can be read",
-                         "dubsar", "dubsar " DUBSAR_VERSION);
-  program.needs_command();
-  program.footer(
-      "Examples:\n"
-      "  dubsar phantom scan.h5 --preset demo\n"
-      "  dubsar process scan.h5\n"
-      "  dubsar view scan.exa\n"
-      "  dubsar fatcross scan.exa\n\n"
-      "Exit codes: 0 done, 64 usage, 65 bad data, 66 no input, 69 device missing, 70 internal, 73 cannot create, 74 "
-      "I/O "
-      "or disk full, 75 try again, 77 permission, 78 bad profile, 130 cancelled.");
-  CommonOptions common;
-  std::vector<Verb> verbs{add_phantom_verb(program),  add_process_verb(program), add_info_verb(program),
-                          add_exa_verb(program),      add_export_verb(program),  add_fatcross_verb(program),
-                          add_render_verb(program),   add_animate_verb(program), add_report_verb(program),
-                          add_show_verb(program),     add_view_verb(program),    add_doctor_verb(program),
-                          add_displays_verb(program), add_devices_verb(program)};
-  for (const Verb& verb : verbs) add_common_options(verb.command, common);
-  if (const std::optional<int> over = program.parse(argc, argv)) return *over;
-  for (const Verb& verb : verbs)
-    if (verb.command.chosen()) return run(verb, common);
-  return exit_code(ErrorKind::kUsage);
+  Arguments program = begin_program();
+  program.footer(std::string("Examples:\n"
+                             "  dubsar phantom scan.h5 --preset demo\n"
+                             "  dubsar process scan.h5\n"
+                             "  dubsar view scan.exa\n"
+                             "  dubsar fatcross scan.exa\n\n") +
+                 kExitCodes);
+  return run_program(
+      program,
+      {add_phantom_verb(program), add_process_verb(program), add_info_verb(program), add_exa_verb(program),
+       add_export_verb(program), add_fatcross_verb(program), add_render_verb(program), add_animate_verb(program),
+       add_report_verb(program), add_show_verb(program), add_view_verb(program), add_doctor_verb(program),
+       add_displays_verb(program), add_devices_verb(program)},
+      argc, argv);
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -129,15 +130,20 @@ Sums sum_bodies(const TriMesh& mesh, const std::vector<PartitionId>& bodies, con
 
 /// By the id of the body. Bodies of our own surfaces share no vertices, so that one check is enough for all; those of
 /// others may.
-std::vector<bool> watertight_bodies(const TriMesh& mesh, const std::vector<PartitionId>& bodies) {
+std::vector<bool> watertight_bodies(const TriMesh& mesh, const std::vector<PartitionId>& bodies, bool closed) {
   constexpr PartitionId kNobody = PartitionTable::kNone;
   std::vector<PartitionId> owner(mesh.positions.size(), kNobody);
-  bool apart = true;
-  for (std::size_t t = 0; apart && t < bodies.size(); ++t)
+  std::atomic<bool> apart = true;
+  parallel_for(static_cast<std::int64_t>(bodies.size()), kFactGrain, [&](std::int64_t i) {
+    const auto t = static_cast<std::size_t>(i);
     for (const std::uint32_t v : mesh.triangles[t]) {
-      if (owner[v] == kNobody) owner[v] = bodies[t];
-      apart = apart && owner[v] == bodies[t];
+      PartitionId before = kNobody;  // whoever comes first: another body than its own sees it
+      if (!std::atomic_ref(owner[v]).compare_exchange_strong(before, bodies[t], std::memory_order_relaxed) &&
+          before != bodies[t])
+        apart.store(false, std::memory_order_relaxed);
     }
+  });
+  if (apart && closed) return std::vector<bool>(std::size_t{PartitionTable::kHighest} + 1, true);
   if (apart) return watertight_parts(mesh.positions, mesh.triangles, bodies);
   std::vector<bool> watertight(PartitionTable::kMost, false);
   for (std::size_t id = 0; id < watertight.size(); ++id) {
@@ -162,14 +168,14 @@ std::string volume_text(double volume, bool mm) {
 
 }  // namespace
 
-Result<SurfaceFacts> surface_facts(const TriMesh& mesh) {
+Result<SurfaceFacts> surface_facts(const TriMesh& mesh, bool closed) {
   SurfaceFacts facts;
   facts.millimetres = mesh.frame.input_voxel.known();
   DUBSAR_ASSIGN(const TabletFrame frame, find_tablet_frame(written_part(mesh)));
   facts.upright = frame.up_share >= kUnsure;
   const std::vector<PartitionId> bodies = bodies_of(mesh);
   const Sums sums = sum_bodies(mesh, bodies, frame.tablet_from_model());
-  const std::vector<bool> watertight = watertight_bodies(mesh, bodies);
+  const std::vector<bool> watertight = watertight_bodies(mesh, bodies, closed);
   facts.box = sums.all.size();
   for (std::size_t id = 0; id < sums.bodies.size(); ++id) {
     const BodySum& body = sums.bodies[id];

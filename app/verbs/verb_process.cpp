@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <memory>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "app/publish/surface_facts.h"
 #include "app/verbs/process_batch.h"
 #include "core/base/budget.h"
+#include "core/base/large_blocks.h"
 #include "core/base/units.h"
 #include "core/pipeline/pipeline.h"
 #include "core/pipeline/report.h"
@@ -140,8 +142,12 @@ std::string summary(const std::string& out, const SurfaceFacts& facts, const Det
   text += fmt::format("\nDetail: {}; {}\n", detail.resample() ? "half of the scan's" : "that of the scan", detail.why);
   if (!facts.millimetres) text += "\nThe scan does not say how large its voxels are: give --voxel-size.\n";
   text += "\nNext:\n";
-  for (const char* const verb : {"view", "fatcross", "report"})
-    text += fmt::format("  dubsar {} {}\n", verb, quoted(out));
+#ifdef DUBSAR_CORE_PROGRAM
+  constexpr std::array kNext{"info", "exa verify"};
+#else
+  constexpr std::array kNext{"view", "fatcross", "report"};
+#endif
+  for (const char* const verb : kNext) text += fmt::format("  dubsar {} {}\n", verb, quoted(out));
   return text;
 }
 
@@ -149,7 +155,9 @@ Result<VerbResult> run(ProcessRequest options, const Arguments command, const Co
                        Progress& progress) {
   PipelineOptions& p = options.pipeline;
   DUBSAR_ASSIGN(p.import, parse_input_options(options.in, options.input));
-  if (!options.room.memory.empty()) {
+  if (options.room.memory.empty()) {
+    keep_large_blocks();
+  } else {
     DUBSAR_ASSIGN(const std::uint64_t bytes, parse_bytes(options.room.memory));
     set_memory_limit(bytes);
   }
@@ -172,9 +180,8 @@ Result<VerbResult> run(ProcessRequest options, const Arguments command, const Co
         "fewer voxels with --stride";
   DUBSAR_ASSIGN(PipelineResult result, std::move(made));
   DUBSAR_TRY(write_product(options.out, result, p.exa_profile, progress));
-  DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(result.model));
   result.model = {};  // it is in the file
-  DUBSAR_ASSIGN(const SurfaceFacts facts, surface_facts(mesh));
+  DUBSAR_ASSIGN(const SurfaceFacts facts, surface_facts(result.mesh, result.report.mesh.watertight()));
   VerbResult out;
   out.json = report_json(result.report, p);
   out.json["output"] = options.out;

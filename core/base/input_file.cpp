@@ -56,6 +56,10 @@ Result<void> InputFile::read_at(std::int64_t offset, std::span<std::byte> out) c
   return {};
 }
 
+void InputFile::will_read(std::int64_t offset, std::int64_t bytes) const noexcept {
+  ::posix_fadvise(descriptor_, offset, bytes, POSIX_FADV_WILLNEED);
+}
+
 Result<std::string> read_bytes(const InputFile& file, std::int64_t offset, std::int64_t count) {
   if (offset < 0 || count < 0 || offset > file.size() || count > file.size() - offset)
     return fail(ErrorKind::kBadData, "{}: {} bytes wanted at {}, but the file has {}", file.path().string(), count,

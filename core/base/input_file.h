@@ -30,6 +30,9 @@ class InputFile {
   /// Fills `out` from `offset` by pread. kBadData when the file ends before (it was cut, or shrank since). Any thread.
   Result<void> read_at(std::int64_t offset, std::span<std::byte> out) const;
 
+  /// The system may fetch these bytes from the disk while the program does something else. Any thread; never fails.
+  void will_read(std::int64_t offset, std::int64_t bytes) const noexcept;
+
  private:
   InputFile() = default;
   int descriptor_ = -1;

@@ -2,7 +2,14 @@
 
 #include <malloc.h>
 
+#include <limits>
+
 namespace dubsar {
+
+void keep_large_blocks() noexcept {
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+}
 
 void return_large_blocks() noexcept {
   constexpr int kLargeBytes = 256 * 1024;

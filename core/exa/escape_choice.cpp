@@ -15,33 +15,50 @@ constexpr std::int64_t kEscapeGrain = 1 << 13;
 constexpr double kOutsideHalf = 0.045;  // vertices that may lie further than half the bound
 constexpr double kAlong = 0.4;          // least cosine between normal and axis of a short escape
 
-double triangle_distance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+/// From a place to a triangle, or `least` where that is nearer. Most triangles of a fan are found to be further away by
+/// the plane or a side that the place lies beyond, before distances to sides have to be known.
+double nearer(double least, const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  constexpr double kMore = 1.0 + 1e-9, kRounding = 1e-20;  // what is left out is further away for certain
   const glm::dvec3 ab = b - a, ac = c - a, n = glm::cross(ab, ac);
   const double area = glm::dot(n, n);
-  const auto inside = [&](const glm::dvec3& from, const glm::dvec3& to) {
-    return glm::dot(glm::cross(to - from, p - from), n) >= 0.0;
-  };
-  if (area > 0.0 && inside(a, b) && inside(b, c) && inside(c, a)) return std::abs(glm::dot(p - a, n)) / std::sqrt(area);
+  if (area > 0.0) {
+    const double height = glm::dot(p - a, n), far = (least * least * kMore + kRounding) * area;
+    if (height * height > far) return least;
+    bool inside = true, away = false;
+    const auto look_beyond = [&](const glm::dvec3& from, const glm::dvec3& to) {
+      const glm::dvec3 along = to - from;
+      const double within = glm::dot(glm::cross(along, p - from), n);
+      if (within >= 0.0) return;
+      inside = false;
+      const double length = glm::dot(along, along);
+      away = away || height * height * length + within * within > far * length;
+    };
+    look_beyond(a, b);
+    look_beyond(b, c);
+    look_beyond(c, a);
+    if (inside) return std::min(least, std::abs(height) / std::sqrt(area));
+    if (away) return least;
+  }
   const auto side = [&](const glm::dvec3& from, const glm::dvec3& to) {
     const glm::dvec3 along = to - from;
     const double length = glm::dot(along, along);
     const double t = length > 0.0 ? std::clamp(glm::dot(p - from, along) / length, 0.0, 1.0) : 0.0;
     return glm::length(p - from - t * along);
   };
-  return std::min({side(a, b), side(b, c), side(c, a)});
+  return std::min({least, side(a, b), side(b, c), side(c, a)});
 }
 
 /// From a place to the x-quads around a vertex, each cut in both ways.
 double distance_to_fan(const QuadMesh& mesh, std::uint32_t v, const glm::dvec3& p) {
   double least = glm::length(p - glm::dvec3(mesh.positions[v]));
+  std::array<glm::dvec3, 8> corner;
   for (const std::uint32_t q : mesh.quads_of(v)) {
     const Polygon polygon = mesh.polygon(q);
-    const auto at = [&](int i) {
-      return glm::dvec3(mesh.positions[polygon.vertex[static_cast<std::size_t>(i % polygon.size)]]);
-    };
+    for (std::size_t i = 0; i < static_cast<std::size_t>(polygon.size); ++i)
+      corner[i] = glm::dvec3(mesh.positions[polygon.vertex[i]]);
+    const auto at = [&](int i) { return corner[static_cast<std::size_t>(i % polygon.size)]; };
     for (int start = 0; start < 2; ++start)
-      for (int i = 1; i + 1 < polygon.size; ++i)
-        least = std::min(least, triangle_distance(p, at(start), at(start + i), at(start + i + 1)));
+      for (int i = 1; i + 1 < polygon.size; ++i) least = nearer(least, p, at(start), at(start + i), at(start + i + 1));
   }
   return least;
 }

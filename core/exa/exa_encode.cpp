@@ -63,6 +63,10 @@ Result<void> find_normals(const SurfaceModel& model, ExaHeader& header, Progress
   header.normals = a.normals.empty() && a.k_min.empty() ? ExaNormals::kNone : ExaNormals::kExact;
   header.curvatures = !a.k_min.empty();
   if (a.normals.empty()) return {};
+  if (header.profile == ExaProfile::kCompact && model.settled_sum != 0 && model.settled_sum == settled_sum(model)) {
+    header.normals = ExaNormals::kRecomputed;  // settle_for_exa() did
+    return {};
+  }
   ExaNormals kind = ExaNormals::kRecomputed;
   if (header.profile == ExaProfile::kPaper) {
     if (!encode_paper_normals(a.normals, progress)) return {};

@@ -1,7 +1,9 @@
 #include "core/exa/settle.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <glm/geometric.hpp>
 #include <vector>
 
@@ -23,6 +25,27 @@ constexpr int kNormalIterations = 7;
 constexpr float kNormalEpsilon = 0.03f;
 constexpr std::int64_t kAngleGrain = 1 << 14;
 
+/// Of some numbers, 8 bytes at a time: each step can be undone, so that no single change gets lost.
+template <class T>
+std::uint64_t sum_of(std::uint64_t sum, const std::vector<T>& items) {
+  constexpr std::uint64_t kPrime = 0x9E3779B97F4A7C15U;
+  constexpr std::int64_t kSumGrain = 1 << 16;
+  const auto step = [](std::uint64_t before, std::uint64_t word) { return std::rotl((before ^ word) * kPrime, 29); };
+  const auto sum_part = [&](std::int64_t begin, std::int64_t end) {
+    const auto bytes =
+        std::as_bytes(std::span(items))
+            .subspan(static_cast<std::size_t>(begin) * sizeof(T), static_cast<std::size_t>(end - begin) * sizeof(T));
+    std::uint64_t part = kPrime;
+    for (std::size_t at = 0; at < bytes.size(); at += sizeof part) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, bytes.data() + at, std::min(sizeof word, bytes.size() - at));
+      part = step(part, word);
+    }
+    return part;
+  };
+  return parallel_reduce(static_cast<std::int64_t>(items.size()), kSumGrain, step(sum, items.size()), sum_part, step);
+}
+
 bool same_positions(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end());
 }
@@ -42,6 +65,12 @@ Result<void> fit_offsets(SurfaceModel& model, std::span<const glm::vec3> places,
   return {};
 }
 }  // namespace
+
+std::uint64_t settled_sum(const SurfaceModel& model) {
+  const VertexAttributes& a = model.attributes;
+  return std::max<std::uint64_t>(1,
+                                 sum_of(sum_of(sum_of(sum_of(0, model.mesh.positions), a.normals), a.k_min), a.k_max));
+}
 
 Result<std::vector<glm::vec3>> recomputed_normals(const QuadMesh& mesh, Progress& progress) {
   std::vector<glm::vec4> faces = face_normals(mesh);
@@ -98,6 +127,7 @@ Result<SettleStats> settle_for_exa(SurfaceModel& model, const SettleOptions& opt
                 principal_curvatures(model.mesh, attributes.normals, options.curvature, progress));
   attributes.k_min = std::move(curvatures.k_min);
   attributes.k_max = std::move(curvatures.k_max);
+  if (options.curvature == CurvatureMethod::kFit) model.settled_sum = settled_sum(model);
   if (attributes.shape.empty()) return stats;
   std::vector<std::uint8_t> shape = shape_classes(attributes.k_min, attributes.k_max);
   std::size_t changed = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "core/base/parallel.h"
 
@@ -42,10 +43,13 @@ double quantile(const std::vector<ValueCounts::Value>& values, double rank) {
 
 }  // namespace
 
-ValueCounts::Block& ValueCounts::block(std::size_t index) {
-  if (!blocks_[index]) blocks_[index] = std::make_unique<Block>();
-  return *blocks_[index];
+namespace {
+template <class Blocks>
+auto& block_of(Blocks& blocks, std::size_t index) {
+  if (!blocks[index]) blocks[index] = std::make_unique<typename Blocks::value_type::element_type>();
+  return *blocks[index];
 }
+}  // namespace
 
 /// Values are turned into keys some at a time by vectors, and then counted: the counters of the values of a scan fit
 /// the second-level cache, so that the two loops cost about as much as reading them.
@@ -84,19 +88,37 @@ void ValueCounts::add(std::span<const float> values) {
 }
 
 void ValueCounts::count(std::span<const std::uint32_t> keys) {
+  const auto size = static_cast<std::int64_t>(keys.size());
+  if (recent_count_ + size > std::int64_t{std::numeric_limits<std::uint32_t>::max()}) settle();
   for (const std::uint32_t key : keys) {
-    Block* counters = blocks_[key >> 16].get();
-    if (counters == nullptr) counters = &block(key >> 16);
+    auto* counters = recent_[key >> 16].get();
+    if (counters == nullptr) counters = &block_of(recent_, key >> 16);
     ++(*counters)[(key >> 8) & 0xFFU];
   }
-  count_ += static_cast<std::int64_t>(keys.size());
+  recent_count_ += size;
+  count_ += size;
+}
+
+/// No counter of 32 bits may overflow.
+void ValueCounts::settle() {
+  for (std::size_t i = 0; i < recent_.size(); ++i) {
+    if (!recent_[i]) continue;
+    auto& sums = block_of(settled_, i);
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += std::exchange((*recent_[i])[k], 0U);
+  }
+  recent_count_ = 0;
+}
+
+std::int64_t ValueCounts::count_at(std::size_t block, std::size_t place) const {
+  return (recent_[block] ? std::int64_t{(*recent_[block])[place]} : 0) +
+         (settled_[block] ? (*settled_[block])[place] : 0);
 }
 
 void ValueCounts::merge(const ValueCounts& other) {
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    if (!other.blocks_[i]) continue;
-    Block& mine = block(i);
-    for (std::size_t k = 0; k < mine.size(); ++k) mine[k] += (*other.blocks_[i])[k];
+  for (std::size_t i = 0; i < settled_.size(); ++i) {
+    if (!other.recent_[i] && !other.settled_[i]) continue;
+    auto& mine = block_of(settled_, i);
+    for (std::size_t k = 0; k < mine.size(); ++k) mine[k] += other.count_at(i, k);
   }
   count_ += other.count_;
   nonfinite_ += other.nonfinite_;
@@ -106,10 +128,10 @@ void ValueCounts::merge(const ValueCounts& other) {
 
 std::vector<ValueCounts::Value> ValueCounts::values() const {
   std::vector<Value> all;
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    if (!blocks_[i]) continue;
-    for (std::size_t k = 0; k < blocks_[i]->size(); ++k) {
-      const std::int64_t count = (*blocks_[i])[k];
+  for (std::size_t i = 0; i < settled_.size(); ++i) {
+    if (!recent_[i] && !settled_[i]) continue;
+    for (std::size_t k = 0; k < 256; ++k) {
+      const std::int64_t count = count_at(i, k);
       if (count == 0) continue;
       const auto key = static_cast<std::uint32_t>(i << 16 | k << 8);
       // Numbers with few digits, such as integers, are the first of their 256 patterns on the positive side and the

@@ -16,8 +16,8 @@
 namespace dubsar {
 
 /// Counts of floats by the upper 24 bits of their order-preserving bit pattern: relative precision 2^-15, no range to
-/// be known before, no floating-point sums. Memory: 2 KiB per 256 neighbouring patterns that occur, a few MiB for a
-/// scan.
+/// be known before, no floating-point sums. Memory: 1 to 3 KiB per 256 neighbouring patterns that occur, a few MiB for
+/// a scan.
 class ValueCounts {
  public:
   /// NaN and infinities are counted apart.
@@ -38,11 +38,15 @@ class ValueCounts {
   std::vector<Value> values() const;
 
  private:
-  using Block = std::array<std::int64_t, 256>;
-  Block& block(std::size_t index);
+  template <class Count>
+  using Blocks = std::vector<std::unique_ptr<std::array<Count, 256>>>;
   void count(std::span<const std::uint32_t> keys);
+  void settle();
+  std::int64_t count_at(std::size_t block, std::size_t place) const;
 
-  std::vector<std::unique_ptr<Block>> blocks_ = std::vector<std::unique_ptr<Block>>(1 << 16);
+  Blocks<std::uint32_t> recent_ = Blocks<std::uint32_t>(1 << 16);  ///< half the size: more of them lie in the caches
+  Blocks<std::int64_t> settled_ = Blocks<std::int64_t>(1 << 16);
+  std::int64_t recent_count_ = 0;  ///< values in recent_
   std::int64_t count_ = 0, nonfinite_ = 0;
   float min_ = std::numeric_limits<float>::infinity(), max_ = -std::numeric_limits<float>::infinity();
 };

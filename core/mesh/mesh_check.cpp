@@ -90,6 +90,41 @@ class Link {
   DisjointSets fans_;
 };
 
+/// Triangles around each vertex, rising, one vertex after another: three times 4 bytes a triangle, no edge is ever
+/// stored. `first`: where those of each begin, and the end. Every thread looks through all triangles for those of its
+/// own range of vertices, so that nobody has to wait and the order is that of one thread.
+std::vector<std::uint32_t> triangles_around(std::size_t vertices, std::span<const Triangle> triangles,
+                                            std::vector<std::uint32_t>& first) {
+  constexpr std::int64_t kLeast = 1 << 16, kMostRanges = 8;
+  const auto count = static_cast<std::int64_t>(vertices);
+  const std::int64_t ranges =
+      std::clamp<std::int64_t>(count / kLeast, 1, std::min<std::int64_t>(thread_count(), kMostRanges));
+  const std::int64_t length = (count + ranges - 1) / ranges;
+  first.assign(vertices + 1, 0);
+  parallel_for(ranges, 1, [&](std::int64_t range) {
+    const auto low = static_cast<std::uint32_t>(range * length),
+               size = static_cast<std::uint32_t>(std::min(length, count - range * length));
+    for (const Triangle& t : triangles) {
+      if (is_degenerate(t)) continue;
+      for (const std::uint32_t v : t)
+        if (v - low < size) ++first[v];
+    }
+  });
+  std::uint32_t total = 0;
+  for (std::uint32_t& f : first) f = total += f;
+  std::vector<std::uint32_t> around(total);
+  parallel_for(ranges, 1, [&](std::int64_t range) {
+    const auto low = static_cast<std::uint32_t>(range * length),
+               size = static_cast<std::uint32_t>(std::min(length, count - range * length));
+    for (std::size_t i = triangles.size(); i-- > 0;) {
+      if (is_degenerate(triangles[i])) continue;
+      for (const std::uint32_t v : triangles[i])
+        if (v - low < size) around[--first[v]] = static_cast<std::uint32_t>(i);
+    }
+  });
+  return around;
+}
+
 std::int64_t count_components(std::size_t vertices, std::span<const Triangle> triangles,
                               std::span<const std::uint32_t> first) {
   ConcurrentSets sets(vertices);
@@ -157,19 +192,7 @@ std::vector<MeshCheck> check_labelled(std::span<const glm::vec3> positions, std:
       },
       add_all);
 
-  // Triangles around each vertex: three times 4 bytes a triangle, no edge is ever stored.
-  first.assign(vertices + 1, 0);
-  for (const Triangle& t : triangles) {
-    if (is_degenerate(t)) continue;
-    for (const std::uint32_t v : t) ++first[v];
-  }
-  std::uint32_t total = 0;
-  for (std::uint32_t& f : first) f = total += f;
-  std::vector<std::uint32_t> around(total);
-  for (std::size_t i = triangles.size(); i-- > 0;) {
-    if (is_degenerate(triangles[i])) continue;
-    for (const std::uint32_t v : triangles[i]) around[--first[v]] = static_cast<std::uint32_t>(i);
-  }
+  const std::vector<std::uint32_t> around = triangles_around(vertices, triangles, first);
   return parallel_reduce<Checks>(
       static_cast<std::int64_t>(vertices), 1 << 14, std::move(sum),
       [&](std::int64_t begin, std::int64_t end) {

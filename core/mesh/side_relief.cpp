@@ -66,12 +66,12 @@ std::vector<float> slopes(const HeightMap& map, int dx, int dy) {
 }
 
 void fill(HeightMap& map, const std::array<glm::dvec3, 3>& p) {  // in steps; z in mm
+  const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
+  if (!(area > 1e-12)) return;  // turned away, or edge on
   const int x0 = std::max(0, static_cast<int>(std::ceil(std::min({p[0].x, p[1].x, p[2].x}))));
   const int x1 = std::min(map.width - 1, static_cast<int>(std::floor(std::max({p[0].x, p[1].x, p[2].x}))));
   const int y0 = std::max(0, static_cast<int>(std::ceil(std::min({p[0].y, p[1].y, p[2].y}))));
   const int y1 = std::min(map.height - 1, static_cast<int>(std::floor(std::max({p[0].y, p[1].y, p[2].y}))));
-  const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
-  if (!(area > 1e-12)) return;  // turned away, or edge on
   for (int y = y0; y <= y1; ++y)
     for (int x = x0; x <= x1; ++x) {
       const double a = ((p[1].x - x) * (p[2].y - y) - (p[2].x - x) * (p[1].y - y)) / area;
@@ -90,22 +90,23 @@ void fill(HeightMap& map, const std::array<glm::dvec3, 3>& p) {  // in steps; z 
 HeightMap height_map(std::span<const glm::dvec3> points_mm, std::span<const Triangle> triangles, const SideAxes& side,
                      double step_mm) {
   glm::dvec2 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
-  for (const glm::dvec3& p : points_mm) {
-    const glm::dvec2 at(glm::dot(p, side.right), glm::dot(p, side.up));
-    low = glm::min(low, at);
-    high = glm::max(high, at);
+  std::vector<glm::dvec3> places(points_mm.size());  // along the axes of the side; a vertex is of six triangles
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    const glm::dvec3& p = points_mm[v];
+    places[v] = {glm::dot(p, side.right), glm::dot(p, side.up), glm::dot(p, side.front)};
+    low = glm::min(low, glm::dvec2(places[v]));
+    high = glm::max(high, glm::dvec2(places[v]));
   }
   HeightMap map;
   map.step_mm = std::max({step_mm, (high.x - low.x) / kMostSteps, (high.y - low.y) / kMostSteps});
   map.width = static_cast<int>((high.x - low.x) / map.step_mm) + 1;
   map.height = static_cast<int>((high.y - low.y) / map.step_mm) + 1;
   map.mm.assign(static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height), kNothing);
-  const auto place = [&](std::uint32_t v) {
-    const glm::dvec3& p = points_mm[v];
-    return glm::dvec3((glm::dot(p, side.right) - low.x) / map.step_mm, (glm::dot(p, side.up) - low.y) / map.step_mm,
-                      glm::dot(p, side.front));
-  };
-  for (const Triangle& t : triangles) fill(map, {place(t[0]), place(t[1]), place(t[2])});
+  for (glm::dvec3& p : places) {
+    p.x = (p.x - low.x) / map.step_mm;
+    p.y = (p.y - low.y) / map.step_mm;
+  }
+  for (const Triangle& t : triangles) fill(map, {places[t[0]], places[t[1]], places[t[2]]});
   return map;
 }
 

@@ -140,12 +140,19 @@ double edges_beside(const Writing& writing, const TabletFrame& f) {
 /// text begins on it, so that the side with room left at its end is the reverse.
 double obverse_by_shape(std::span<const glm::dvec3> points, std::span<const Triangle> triangles, const TabletFrame& f,
                         double step_mm) {
-  const HeightMap front = height_map(points, triangles, {f.right, f.up, f.front}, step_mm);
-  const HeightMap back = height_map(points, triangles, {f.right, -f.up, -f.front}, step_mm);
-  const double rises = side_rise_mm(front), falls = side_rise_mm(back);
-  const double flatter = (falls - rises) / (std::abs(falls) + std::abs(rises) + kLevel_mm);
-  const auto room_left = [](const HeightMap& side) { return std::max(0.0, 1.0 - written_below(side) / kSparse); };
-  return flatter + room_left(back) - room_left(front);
+  struct Side {
+    double rise_mm, room_left;
+  };
+  std::array<Side, 2> sides{};  // front, back
+  parallel_for(2, 1, [&](std::int64_t side) {
+    const double s = side == 0 ? 1.0 : -1.0;
+    const HeightMap map = height_map(points, triangles, {f.right, s * f.up, s * f.front}, step_mm);
+    sides[static_cast<std::size_t>(side)] = {side_rise_mm(map), std::max(0.0, 1.0 - written_below(map) / kSparse)};
+  });
+  const auto& [front, back] = sides;
+  const double flatter =
+      (back.rise_mm - front.rise_mm) / (std::abs(back.rise_mm) + std::abs(front.rise_mm) + kLevel_mm);
+  return flatter + back.room_left - front.room_left;
 }
 
 /// Without those that fill holes: nobody wrote there, and their rims are steps.

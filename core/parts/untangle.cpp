@@ -13,15 +13,14 @@
 #include "core/mesh/evidence.h"
 #include "core/mesh/intersections.h"
 #include "core/parts/crossing_pairs.h"
+#include "core/parts/patch_moves.h"
 #include "core/parts/triangle_grid.h"
 
 namespace dubsar {
 namespace {
 
-constexpr int kRounds = 6;  ///< of moves between two attempts to add vertices
 constexpr int kMostSplits = 2;
-constexpr int kMostCounted = 1000;
-constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr std::uint32_t kNone = TangleOwner::kNoPatch;
 constexpr std::int64_t kTangleGrain = 1 << 14;
 constexpr float kBeside = 6.0f;  ///< steps that moves reach
 using Pairs = CrossingPairs;
@@ -67,28 +66,11 @@ class Tangle {
     return middles;
   }
 
-  /// Moves vertices of the pairs and of those that they come to cross. True: nothing crosses any more, as far as is
-  /// seen from the vertices that were looked at.
-  bool move(const Pairs& pairs) {
-    index_triangles(pairs);
-    std::vector<std::uint32_t> work;
-    for (const auto& pair : pairs)
-      for (const std::uint32_t t : pair) add_corners(t, work);
-    for (int round = 0; round < kRounds && !work.empty(); ++round) {
-      make_unique(work);
-      std::vector<std::uint32_t> next;
-      bool better = false;
-      for (const std::uint32_t v : work) {
-        look_around(v);
-        better = relieve(v) || better;
-        if (crossings_at(v, positions_[v], kMostCounted, &next) > 0) next.push_back(v);
-      }
-      if (!better)  // wider: neighbours make room
-        for (const std::uint32_t v : work)
-          for (const std::uint32_t t : star_[v - first_extra_]) add_corners(t, next);
-      work.swap(next);
-    }
-    return work.empty();
+  /// Moves vertices of the pairs and of those that they come to cross.
+  void move(const Pairs& pairs) {
+    changed_.resize(triangles_.size(), 0);
+    moved_.resize(positions_.size() - first_extra_, 0);
+    PatchMoves(mesh_, step_, beside(pairs)).run(pairs, moved_, changed_);
   }
 
   /// Puts a vertex on the longest edge inside a patch of each triangle in a pair. Returns how many.
@@ -102,7 +84,7 @@ class Tangle {
     return splits;
   }
 
-  std::int64_t moved() const { return std::count(moved_.begin(), moved_.end(), true); }
+  std::int64_t moved() const { return std::count(moved_.begin(), moved_.end(), 1); }
 
   /// Back into the model.
   void store() const {
@@ -132,11 +114,6 @@ class Tangle {
   }
 
  private:
-  struct Owner {
-    std::uint32_t patch = kNone;
-    PartitionId front = PartitionTable::kNone, back = PartitionTable::kNone;  ///< bodies
-  };
-
   PartitionId body_of(PartitionId id) const {
     return id == PartitionTable::kNone || model_.partitions.empty() ? id : model_.partitions.body_of(id);
   }
@@ -149,7 +126,7 @@ class Tangle {
   void add_patch(std::size_t p) {
     const FillPatch& patch = model_.patches[p];
     const auto base = static_cast<std::uint32_t>(positions_.size());
-    for (const glm::vec3& place : patch.extra_positions) positions_.push_back(rounded(place));
+    for (const glm::vec3& place : patch.extra_positions) positions_.push_back(in_steps(place, step_));
     patch_of_vertex_.resize(positions_.size() - first_extra_, static_cast<std::uint32_t>(p));
     for (Triangle t : patch.triangles) {
       for (std::uint32_t& v : t)
@@ -184,121 +161,13 @@ class Tangle {
     }
   }
 
-  bool matters(std::uint32_t a, std::uint32_t b) const {
-    const Owner &one = owner_[a], &other = owner_[b];
-    if (one.patch == kNone && other.patch == kNone) return false;
-    const auto is_of = [&](auto body) {
-      return body != PartitionTable::kNone && (body == other.front || body == other.back);
-    };
-    return is_of(one.front) || is_of(one.back);
-  }
+  bool matters(std::uint32_t a, std::uint32_t b) const { return owner_[a].matters_to(owner_[b]); }
 
   std::vector<std::uint32_t> beside(const Pairs& pairs) const {
     std::vector<TriangleBox> boxes;
     for (const auto& pair : pairs)
       for (const std::uint32_t t : pair) boxes.push_back(box_of(positions_, triangles_[t]).grown(kBeside));
     return triangles_in(BrickSet(boxes), positions_, triangles_);
-  }
-
-  void index_triangles(const Pairs& pairs) {
-    grid_ = TriangleGrid();
-    for (const std::uint32_t t : beside(pairs)) grid_.add(t, box_of(positions_, triangles_[t]));
-    star_.assign(positions_.size() - first_extra_, {});
-    moved_.resize(star_.size(), false);
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-      for (const std::uint32_t v : triangles_[t])
-        if (v >= first_extra_) star_[v - first_extra_].push_back(t);
-  }
-
-  void add_corners(std::uint32_t t, std::vector<std::uint32_t>& vertices) const {
-    for (const std::uint32_t v : triangles_[t])
-      if (v >= first_extra_) vertices.push_back(v);
-  }
-
-  static void make_unique(std::vector<std::uint32_t>& list) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
-
-  /// Triangles beside the star of a vertex, wherever it may be moved, and those of the star among them.
-  void look_around(std::uint32_t v) {
-    const auto& star = star_[v - first_extra_];
-    TriangleBox box{positions_[v], positions_[v]};
-    for (const std::uint32_t t : star) {
-      const TriangleBox one = box_of(positions_, triangles_[t]);
-      box = {glm::min(box.low, one.low), glm::max(box.high, one.high)};
-    }
-    grid_.near(box.grown(1.0f), near_.others);
-    const auto of_star = std::stable_partition(near_.others.begin(), near_.others.end(), [&](std::uint32_t t) {
-      return std::find(star.begin(), star.end(), t) == star.end();
-    });
-    near_.of_star.assign(of_star, near_.others.end());
-    near_.others.erase(of_star, near_.others.end());
-    near_.boxes.clear();
-    for (const std::uint32_t t : near_.others) near_.boxes.push_back(box_of(positions_, triangles_[t]));
-  }
-
-  /// How many of them the star of a vertex at `place` crosses, counted up to `most`; `met`: movable vertices of those.
-  int crossings_at(std::uint32_t v, const glm::vec3& place, int most, std::vector<std::uint32_t>* met = nullptr) {
-    const glm::vec3 before = positions_[v];
-    positions_[v] = place;
-    int count = 0;
-    const auto look_at = [&](std::uint32_t t, std::uint32_t other) {
-      if (count >= most || !matters(t, other) || !triangles_cross(positions_, triangles_[t], triangles_[other])) return;
-      ++count;
-      if (met != nullptr) add_corners(other, *met);
-    };
-    for (const std::uint32_t t : star_[v - first_extra_]) {
-      const TriangleBox box = box_of(positions_, triangles_[t]);
-      for (std::size_t i = 0; i < near_.others.size(); ++i)
-        if (box.meets(near_.boxes[i])) look_at(t, near_.others[i]);
-      for (const std::uint32_t other : near_.of_star)
-        if (other > t) look_at(t, other);
-    }
-    positions_[v] = before;
-    return count;
-  }
-
-  glm::vec3 rounded(const glm::vec3& p) const {
-    const auto one = [&](float x) { return static_cast<float>(std::round(static_cast<double>(x) / step_) * step_); };
-    return {one(p.x), one(p.y), one(p.z)};
-  }
-
-  /// The nearest of some places where the vertex crosses least. True: less than before.
-  bool relieve(std::uint32_t v) {
-    int least = crossings_at(v, positions_[v], kMostCounted);
-    if (least == 0) return false;
-    const glm::vec3 start = positions_[v];
-    glm::vec3 mean(0.0f), best = start;
-    float around = 0.0f;
-    for (const std::uint32_t t : star_[v - first_extra_])
-      for (const std::uint32_t w : triangles_[t])
-        if (w != v) {
-          mean += positions_[w];
-          around += 1.0f;
-        }
-    mean /= around;
-    const auto attempt = [&](const glm::vec3& place) {
-      const int count = crossings_at(v, rounded(place), least);
-      if (count >= least) return;
-      least = count;
-      best = rounded(place);
-    };
-    for (const float share : {0.25f, 0.5f, 0.75f, 1.0f})
-      if (least > 0) attempt(start + share * (mean - start));
-    for (const float reach : {0.06f, 0.12f, 0.25f, 0.5f, 0.9f})
-      for (const glm::vec3& middle : {start, mean})
-        for (int k = 0; k < 27 && least > 0; ++k)
-          if (k != 13) attempt(middle + reach * glm::normalize(glm::vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
-    if (best == start) return false;
-    positions_[v] = best;
-    moved_[v - first_extra_] = true;
-    changed_.resize(triangles_.size(), 0);
-    for (const std::uint32_t t : star_[v - first_extra_]) {
-      changed_[t] = 1;
-      grid_.add(t, box_of(positions_, triangles_[t]));
-    }
-    return true;
   }
 
   std::int64_t split_triangle(std::uint32_t t, std::vector<bool>& touched) {
@@ -314,9 +183,8 @@ class Tangle {
     if (beyond == kNone) return 0;
     touched[t] = touched[beyond] = true;
     const auto middle = static_cast<std::uint32_t>(positions_.size());
-    positions_.push_back(rounded(0.5f * (positions_[a] + positions_[b])));
+    positions_.push_back(in_steps(0.5f * (positions_[a] + positions_[b]), step_));
     patch_of_vertex_.push_back(owner_[t].patch);
-    star_.emplace_back();
     changed_.resize(triangles_.size() + 2, 1);
     for (const std::uint32_t side : {t, beyond}) {
       changed_[side] = 1;
@@ -355,20 +223,15 @@ class Tangle {
   SurfaceModel& model_;
   double step_;
   std::size_t dual_;
-  std::uint32_t first_extra_ = 0;
-  std::vector<glm::vec3> positions_;
-  std::vector<Triangle> triangles_;  ///< those of patches, of the surface, then what splitting added
-  std::vector<Owner> owner_;
+  TangleMesh mesh_;  ///< triangles: those of patches, of the surface, then what splitting added
+  std::vector<glm::vec3>& positions_ = mesh_.positions;
+  std::vector<Triangle>& triangles_ = mesh_.triangles;
+  std::vector<TangleOwner>& owner_ = mesh_.owner;
+  std::uint32_t& first_extra_ = mesh_.first_extra;
   std::vector<std::uint32_t> patch_of_vertex_;  ///< of positions from first_extra_ on
-  TriangleGrid grid_;
-  std::vector<std::vector<std::uint32_t>> star_;
-  SideTable sides_;  ///< see index_sides()
-  std::vector<bool> moved_;
-  std::vector<std::uint8_t> changed_;  ///< triangles, see crossings_after()
-  struct Near {
-    std::vector<std::uint32_t> others, of_star;
-    std::vector<TriangleBox> boxes;  ///< of `others`
-  } near_;                           ///< see look_around()
+  SideTable sides_;                             ///< see index_sides()
+  std::vector<std::uint8_t> moved_;             ///< of positions from first_extra_ on, as far as moves have come
+  std::vector<std::uint8_t> changed_;           ///< triangles, see crossings_after()
 };
 
 }  // namespace

@@ -48,7 +48,7 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
                                                       std::move(smoothed.mesh), std::move(smoothed.attributes)),
                                              settling, options.exa_profile, run));
   DUBSAR_ASSIGN(SeparatedModel separated, separate(std::move(settled.model), options.segment, options.fill_holes, run));
-  PipelineResult result{std::move(separated.model), {}};
+  PipelineResult result{std::move(separated.model), {}, {}};
   std::optional<ContactReport> contact;
   if (options.fill_holes && options.trace_contact && !imported.detail.resample() && separated.segment.nested &&
       !separated.segment.enclosure_refused) {
@@ -72,10 +72,11 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   if (options.occlusion) {
     DUBSAR_ASSIGN(result.model, shade(std::move(result.model), *options.occlusion, run));
   }
-  DUBSAR_ASSIGN(const MeshCheck check, check_product(result.model, run));
-  result.report =
-      make_report({imported, denoised, threshold, sampled, smoothed, settled, separated, contact, patches, check},
-                  result.model, clock);
+  DUBSAR_ASSIGN(CheckedProduct product, check_product(result.model, run));
+  result.mesh = std::move(product.mesh);
+  result.report = make_report(
+      {imported, denoised, threshold, sampled, smoothed, settled, separated, contact, patches, product.check},
+      result.model, clock);
   result.model.provenance = dump_json(provenance_json(result.report, options));
   return result;
 }

@@ -32,6 +32,7 @@ struct PipelineOptions {
 struct PipelineResult {
   SurfaceModel model;
   PipelineReport report;
+  TriMesh mesh;  ///< the model as it was checked: all parts with their patches; positions, and how places are known
 };
 
 /// Runs all stages; memory for about one volume of the resampled grid in float, then about 200 bytes a vertex. Cancel

@@ -96,12 +96,17 @@ Result<SurfaceModel> shade(SurfaceModel model, const OcclusionOptions& options, 
   return model;
 }
 
-Result<MeshCheck> check_product(const SurfaceModel& model, StageRun run) {
+Result<CheckedProduct> check_product(const SurfaceModel& model, StageRun run) {
   run.clock.start("check", "triangle");
-  DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model, {.attributes = false, .progress = &run.progress}));
-  const MeshCheck check = check_mesh(mesh.positions, mesh.triangles);
-  run.clock.finish(check.triangles);
-  return check;
+  CheckedProduct product;
+  const bool known = !model.attributes.evidence.empty();
+  DUBSAR_ASSIGN(product.mesh, make_tri_mesh(model, {.attributes = known, .progress = &run.progress}));
+  std::vector<std::uint8_t> evidence = std::move(product.mesh.evidence);
+  static_cast<VertexAttributes&>(product.mesh) = {};  // of all that is known no more is wanted
+  product.mesh.evidence = std::move(evidence);
+  product.check = check_mesh(product.mesh.positions, product.mesh.triangles);
+  run.clock.finish(product.check.triangles);
+  return product;
 }
 
 }  // namespace dubsar

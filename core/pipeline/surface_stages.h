@@ -53,7 +53,11 @@ Result<UntangledModel> untangle(SurfaceModel model, StageRun run);
 /// The light of each dual vertex, from the triangles of its own body.
 Result<SurfaceModel> shade(SurfaceModel model, const OcclusionOptions& options, StageRun run);
 
+struct CheckedProduct {
+  TriMesh mesh;  ///< positions, and how places are known
+  MeshCheck check;
+};
 /// All parts together, with their fill patches.
-Result<MeshCheck> check_product(const SurfaceModel& model, StageRun run);
+Result<CheckedProduct> check_product(const SurfaceModel& model, StageRun run);
 
 }  // namespace dubsar

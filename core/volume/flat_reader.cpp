@@ -4,6 +4,7 @@
 #include <mutex>
 #include <utility>
 
+#include "core/base/clock.h"
 #include "core/base/parallel.h"
 
 namespace dubsar {
@@ -11,6 +12,7 @@ namespace {
 
 constexpr std::int64_t kReadBytes = 4 << 20;   // large enough for disks and network shares, small enough for threads
 constexpr std::int64_t kGrainBytes = 1 << 20;  // less is not worth waking a thread for
+constexpr double kMemoryRate = 4e9;            // bytes a second, all threads: slower ones come from a disk
 
 class FlatReader final : public VoxelReader {
  public:
@@ -33,6 +35,7 @@ class FlatReader final : public VoxelReader {
     std::mutex mutex;
     Result<void> result;
     const std::int64_t grain = std::max<std::int64_t>(1, kGrainBytes / (rows_at_once * row));
+    const TimestampNs started = SteadyClock().now();
     parallel_chunks(size.z * pieces_per_slice, grain, [&](std::int64_t begin, std::int64_t end) {
       std::vector<std::byte> buffer;
       for (std::int64_t piece = begin; piece < end; ++piece) {
@@ -57,10 +60,30 @@ class FlatReader final : public VoxelReader {
           copy_row(from + r * row, element, box.x, target.data() + r * size.x * element);
       }
     });
+    // What comes from the disk comes while the slices read so far are worked on; what lies in memory needs no such
+    // call.
+    const double seconds = 1e-9 * static_cast<double>(SteadyClock().now() - started);
+    const std::int64_t slice = layout_.dims.y * row, next = box.z.at(size.z - 1) + 1;
+    const std::int64_t ahead = std::min(box.z.end - box.z.begin, layout_.dims.z - next);
+    if (result && runs && ahead > 0 && static_cast<double>(size.z * slice) < kMemoryRate * seconds)
+      expect(next * slice, ahead * slice);
     return result;
   }
 
  private:
+  /// Bytes of the array that will be asked for next.
+  void expect(std::int64_t at, std::int64_t bytes) const {
+    for (const FlatSegment& segment : layout_.segments) {
+      if (const std::int64_t here = std::min(bytes, segment.bytes - at); here > 0) {
+        segment.file.will_read(segment.offset + at, here);
+        bytes -= here;
+        at += here;
+      }
+      at -= segment.bytes;
+      if (bytes == 0) return;
+    }
+  }
+
   Result<void> fetch(std::int64_t at, std::span<std::byte> out) const {
     for (const FlatSegment& segment : layout_.segments) {
       if (out.empty()) break;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/base/clock.h"
+#include "core/base/large_blocks.h"
 #include "core/base/parallel.h"
 #include "core/exa/settle.h"
 #include "core/extract/extract.h"
@@ -220,5 +221,6 @@ int main(int argc, char** argv) {
     std::fputs("use: stage_bench FOLDER [SIZE] [RUNS]\n", stderr);
     return 64;
   }
+  dubsar::keep_large_blocks();  // as `dubsar process` does
   return dubsar::run(argv[1], argc > 2 ? std::atoll(argv[2]) : 512, argc > 3 ? std::atoi(argv[3]) : 3);
 }

@@ -5,7 +5,7 @@ import json, sys, time
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import vtkSMPTools
+from vtkmodules.vtkCommonCore import vtkObject, vtkSMPTools
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D, vtkPolyDataConnectivityFilter
 from vtkmodules.vtkFiltersGeneral import vtkCurvatures
@@ -15,6 +15,7 @@ from vtkmodules.vtkIOPLY import vtkPLYReader, vtkPLYWriter
 
 volume, size, mesh, runs = sys.argv[1], int(sys.argv[2]), sys.argv[3], int(sys.argv[4]) if len(sys.argv) > 4 else 3
 vtkSMPTools.SetBackend("Sequential")
+vtkObject.GlobalWarningDisplayOff()  # a line for each vertex whose curvature it doubts
 
 
 def least(make):

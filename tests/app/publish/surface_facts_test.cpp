@@ -110,6 +110,19 @@ TEST(SurfaceFacts, WithoutAVoxelSizeNothingIsCalledAMillimetre) {
   EXPECT_EQ(facts_json(*facts)["unit"], "voxel");
 }
 
+TEST(SurfaceFacts, BodiesOfAClosedSurfaceAreClosedWhereTheyShareNothing) {
+  TriMesh mesh = envelope_and_tablet(glm::dmat3(1.0));
+  const auto tight = [&](bool closed) {
+    std::vector<bool> out;
+    for (const PartFacts& part : surface_facts(mesh, closed).value().parts) out.push_back(part.watertight);
+    return out;
+  };
+  EXPECT_EQ(tight(true), (std::vector<bool>{true, true}));
+  EXPECT_EQ(tight(false), tight(true));
+  mesh.triangle_partition[1] = 1;  // a triangle of the tablet is said to be of the envelope: neither is closed
+  EXPECT_EQ(tight(true), (std::vector<bool>{false, false})) << "they share vertices: each is looked at";
+}
+
 TEST(SurfaceFacts, AnEmptySurfaceIsRefused) { EXPECT_EQ(surface_facts(TriMesh()).error().kind, ErrorKind::kBadData); }
 
 }  // namespace

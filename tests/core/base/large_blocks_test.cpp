@@ -43,5 +43,19 @@ TEST(LargeBlocks, GoBackToTheSystemWhenTheyAreFreed) {
       ::testing::ExitedWithCode(0), "");
 }
 
+TEST(LargeBlocks, StayForTheNextOnesWhereThatIsWanted) {
+  if (mallinfo2().arena == 0) GTEST_SKIP() << "the C library's memory is not used here";
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        keep_large_blocks();
+        const std::size_t before = mallinfo2().hblkhd;
+        { std::vector<char> large(256 * kMiB); }
+        const struct mallinfo2 now = mallinfo2();
+        exit_with(now.hblkhd == before && now.fordblks >= 256 * kMiB);
+      },
+      ::testing::ExitedWithCode(0), "");
+}
+
 }  // namespace
 }  // namespace dubsar

@@ -5,6 +5,7 @@
 #include "core/exa/exact.h"
 #include "core/exa/offset_choice.h"
 #include "core/exa/offsets.h"
+#include "core/relief/curvature.h"
 #include "core/relief/smooth.h"
 #include "tests/core/exa/exa_test_models.h"
 
@@ -123,6 +124,48 @@ TEST(ExaSettle, VerticesThatLeaveTakeTheFewestStepsThatBringThemBack) {
   EXPECT_GT(short_ones, gone * 9 / 10);
   EXPECT_GT(looked, 5);
   EXPECT_NEAR(stats.escaped_fraction, double(gone) / double(moved.size()), 1e-12);
+}
+
+/// A settled model with normals and curvatures.
+SurfaceModel settled_model(unsigned seed) {
+  SurfaceModel model = smoothed_model(seed);
+  SilentProgress progress;
+  VertexAttributes& a = model.attributes;
+  a.normals = vertex_normals(model.mesh, face_normals(model.mesh));
+  Curvatures k = principal_curvatures(model.mesh, a.normals, CurvatureMethod::kFit, progress).value();
+  a.k_min = std::move(k.k_min);
+  a.k_max = std::move(k.k_max);
+  EXPECT_TRUE(settle_for_exa(model, {}, progress));
+  return model;
+}
+
+TEST(ExaSettle, WhatIsKnownToFollowIsNotComputedAgainAndTheFileIsTheSame) {
+  SurfaceModel model = settled_model(5);
+  ASSERT_NE(model.settled_sum, 0U);
+  EXPECT_EQ(model.settled_sum, settled_sum(model));
+  const std::string quick = file_of(encoded(model));
+  model.settled_sum = 0;
+  EXPECT_EQ(quick, file_of(encoded(model)));
+}
+
+TEST(ExaSettle, ANumberThatWasChangedSinceIsSeen) {
+  const SurfaceModel settled = settled_model(6);
+  const std::size_t usual = file_of(encoded(settled)).size();
+  SilentProgress progress;
+  for (int what = 0; what < 3; ++what) {
+    SurfaceModel model = settled;
+    VertexAttributes& a = model.attributes;
+    const std::size_t v = a.normals.size() - 1;
+    float& number = what == 0 ? a.normals[v].z : what == 1 ? a.k_min[v] : a.k_max[0];
+    number = std::nextafter(number, 1.0f);
+    EXPECT_NE(settled_sum(model), model.settled_sum);
+    const std::string file = file_of(encoded(model));
+    EXPECT_GT(file.size(), usual) << "it is stored then";
+    const SurfaceModel back = decode_exa(file, progress).value();
+    EXPECT_TRUE(same_bytes(back.attributes.normals, a.normals));
+    EXPECT_TRUE(same_bytes(back.attributes.k_min, a.k_min));
+    EXPECT_TRUE(same_bytes(back.attributes.k_max, a.k_max));
+  }
 }
 
 }  // namespace

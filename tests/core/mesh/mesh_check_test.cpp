@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/base/parallel.h"
+
 namespace dubsar {
 namespace {
 
@@ -108,6 +110,45 @@ TEST(MeshCheck, AFanOfManyTrianglesIsCheckedInLinearTime) {
   EXPECT_TRUE(c.manifold());
   EXPECT_EQ(c.boundary_edges, n);
   EXPECT_EQ(c.euler, 1);
+}
+
+TEST(MeshCheck, ThreadsDoNotChangeWhatIsFoundInALargeMesh) {
+  // A plate of many vertices with faults all over it: a hole, a triangle turned over, one that is there twice.
+  constexpr std::uint32_t kSide = 700;
+  std::vector<glm::vec3> points;
+  std::vector<Triangle> triangles;
+  for (std::uint32_t y = 0; y < kSide; ++y)
+    for (std::uint32_t x = 0; x < kSide; ++x) {
+      points.emplace_back(static_cast<float>(x), static_cast<float>(y), 0.0f);
+      if (x + 1 == kSide || y + 1 == kSide) continue;
+      const std::uint32_t v = y * kSide + x;
+      if ((x * 31 + y * 17) % 1009 != 0) triangles.push_back({v, v + 1, v + kSide + 1});
+      triangles.push_back({v, v + kSide + 1, v + kSide});
+      if ((x * 13 + y * 29) % 2003 == 0) std::swap(triangles.back()[0], triangles.back()[1]);
+      if ((x * 7 + y * 3) % 3001 == 0) triangles.push_back(triangles.back());
+    }
+  std::vector<PartitionId> parts(triangles.size());
+  for (std::size_t t = 0; t < parts.size(); ++t) parts[t] = static_cast<PartitionId>(t % 3);
+  std::vector<MeshCheck> found;
+  std::vector<std::vector<bool>> tight;
+  for (const int threads : {1, 2, 7}) {
+    set_thread_count(threads);
+    found.push_back(check_mesh(points, triangles));
+    tight.push_back(watertight_parts(points, triangles, parts));
+  }
+  set_thread_count(0);
+  EXPECT_GT(found[0].nonmanifold_edges, 100);
+  EXPECT_GT(found[0].inconsistent_edges, 100);
+  for (const MeshCheck& c : found) {
+    EXPECT_EQ(c.edges, found[0].edges);
+    EXPECT_EQ(c.boundary_edges, found[0].boundary_edges);
+    EXPECT_EQ(c.nonmanifold_edges, found[0].nonmanifold_edges);
+    EXPECT_EQ(c.inconsistent_edges, found[0].inconsistent_edges);
+    EXPECT_EQ(c.nonmanifold_vertices, found[0].nonmanifold_vertices);
+    EXPECT_EQ(c.euler, found[0].euler);
+  }
+  EXPECT_EQ(tight[0], tight[1]);
+  EXPECT_EQ(tight[0], tight[2]);
 }
 
 }  // namespace

@@ -1,0 +1,218 @@
+#include "core/parts/patch_moves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "core/base/disjoint_sets.h"
+#include "core/base/parallel.h"
+#include "core/mesh/intersections.h"
+
+namespace dubsar {
+namespace {
+
+constexpr int kRounds = 6;  ///< of moves between two attempts to add vertices
+constexpr int kMostCounted = 1000;
+constexpr float kHomeCube = 8.0f;  ///< steps
+constexpr float kRoom = 4.0f;      ///< around the star of a vertex that is its group's alone
+constexpr float kSafe = 2.0f;  ///< of which this is left when it is moved: what it reads and where it may come to lie
+
+TriangleBox together(const TriangleBox& a, const TriangleBox& b) {
+  return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
+}
+
+void make_unique(std::vector<std::uint32_t>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+}  // namespace
+
+bool TangleOwner::matters_to(const TangleOwner& other) const {
+  if (patch == kNoPatch && other.patch == kNoPatch) return false;
+  const auto is_of = [&](PartitionId body) {
+    return body != PartitionTable::kNone && (body == other.front || body == other.back);
+  };
+  return is_of(front) || is_of(back);
+}
+
+glm::vec3 in_steps(const glm::vec3& place, double step) {
+  const auto one = [&](float x) { return static_cast<float>(std::round(static_cast<double>(x) / step) * step); };
+  return {one(place.x), one(place.y), one(place.z)};
+}
+
+PatchMoves::PatchMoves(TangleMesh& mesh, double step, std::span<const std::uint32_t> beside)
+    : mesh_(mesh), step_(step), star_(mesh.positions.size() - mesh.first_extra) {
+  for (const std::uint32_t t : beside) grid_.add(t, box_of(mesh.positions, mesh.triangles[t]));
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t])
+      if (v >= mesh.first_extra) star_[v - mesh.first_extra].push_back(t);
+}
+
+void PatchMoves::run(const CrossingPairs& pairs, std::span<std::uint8_t> moved, std::span<std::uint8_t> changed) {
+  DUBSAR_CHECK(moved.size() == star_.size() && changed.size() == mesh_.triangles.size());
+  std::vector<std::uint32_t> work;
+  for (const auto& pair : pairs)
+    for (const std::uint32_t t : pair) mesh_.add_extras(t, work);
+  for (int round = 0; round < kRounds && !work.empty(); ++round) {
+    make_unique(work);
+    Homes homes;
+    const std::vector<Group> groups = far_apart(work, homes);
+    std::vector<Outcome> outcomes(groups.size());
+    parallel_for(static_cast<std::int64_t>(groups.size()), 1, [&](std::int64_t i) {
+      const auto g = static_cast<std::size_t>(i);
+      outcomes[g] = move_group(groups[g], static_cast<std::uint32_t>(g), homes);
+    });
+    std::vector<std::uint32_t> next;
+    bool better = false;
+    for (const Outcome& outcome : outcomes) {
+      next.insert(next.end(), outcome.next.begin(), outcome.next.end());
+      better = better || !outcome.moved.empty();
+      for (const std::uint32_t v : outcome.moved) {
+        moved[v - mesh_.first_extra] = 1;
+        for (const std::uint32_t t : star_of(v)) {
+          const TriangleBox box = box_of(mesh_.positions, mesh_.triangles[t]);
+          grid_.add(t, box);
+          changed[t] = 1;
+          const auto [before, is_new] = reach_.try_emplace(t, box);
+          if (!is_new) before->second = together(before->second, box);
+        }
+      }
+    }
+    if (!better)  // wider: neighbours make room
+      for (const std::uint32_t v : work)
+        for (const std::uint32_t t : star_of(v)) mesh_.add_extras(t, next);
+    work.swap(next);
+  }
+}
+
+TriangleBox PatchMoves::star_box(std::uint32_t v) const {
+  TriangleBox box{mesh_.positions[v], mesh_.positions[v]};
+  for (const std::uint32_t t : star_of(v)) box = together(box, box_of(mesh_.positions, mesh_.triangles[t]));
+  return box;
+}
+
+/// Vertices around which the same cubes lie are of one group, and whatever triangle lies or lay in its cubes and is
+/// moved, is moved by the group.
+std::vector<PatchMoves::Group> PatchMoves::far_apart(const std::vector<std::uint32_t>& work, Homes& homes) const {
+  DisjointSets sets(work.size());
+  for (std::uint32_t i = 0; i < work.size(); ++i) {
+    TriangleBox box = star_box(work[i]);
+    for (const std::uint32_t t : star_of(work[i]))
+      if (const auto been = reach_.find(t); been != reach_.end()) box = together(box, been->second);
+    for_each_cube(box.grown(kRoom), kHomeCube, [&](std::int64_t key) {
+      if (const auto [place, is_new] = homes.try_emplace(key, i); !is_new) sets.join(place->second, i);
+    });
+  }
+  std::vector<Group> groups;
+  std::vector<std::uint32_t> number(work.size());
+  for (std::uint32_t i = 0; i < work.size(); ++i) {
+    const std::uint32_t root = sets.root(i);  // the first of its group
+    if (root == i) {
+      number[i] = static_cast<std::uint32_t>(groups.size());
+      groups.emplace_back();
+    }
+    number[i] = number[root];
+    groups[number[i]].vertices.push_back(work[i]);
+  }
+  for (auto& [key, owner] : homes) owner = number[owner];
+  return groups;
+}
+
+PatchMoves::Outcome PatchMoves::move_group(const Group& group, std::uint32_t number, const Homes& homes) {
+  Outcome outcome;
+  Around around;
+  for (const std::uint32_t v : group.vertices) {
+    bool home = true;  // else it has come too far from where the group began: next round
+    for_each_cube(star_box(v).grown(kSafe), kHomeCube, [&](std::int64_t key) {
+      const auto owner = homes.find(key);
+      home = home && owner != homes.end() && owner->second == number;
+    });
+    if (!home) {
+      outcome.next.push_back(v);
+      continue;
+    }
+    look_around(v, around);
+    if (relieve(v, around)) outcome.moved.push_back(v);
+    if (crossings_at(v, mesh_.positions[v], kMostCounted, around, &outcome.next) > 0) outcome.next.push_back(v);
+  }
+  return outcome;
+}
+
+/// Triangles beside the star of a vertex that matter to it, wherever it may be moved, and those of the star among them.
+void PatchMoves::look_around(std::uint32_t v, Around& around) const {
+  const auto& star = star_of(v);
+  const TriangleBox box = star_box(v).grown(1.0f);
+  grid_.near(box, around.near);
+  std::vector<std::uint32_t> added;
+  around.added.near(box, added);
+  if (!added.empty()) {
+    around.near.insert(around.near.end(), added.begin(), added.end());
+    make_unique(around.near);
+  }
+  around.star.clear();
+  around.boxes.clear();
+  std::erase_if(around.near, [&](std::uint32_t t) {
+    const bool of_star = std::find(star.begin(), star.end(), t) != star.end();
+    if (of_star) around.star.push_back(t);
+    return of_star || !mesh_.owner[star.front()].matters_to(mesh_.owner[t]);  // the star is of one patch
+  });
+  for (const std::uint32_t t : around.near) around.boxes.push_back(box_of(mesh_.positions, mesh_.triangles[t]));
+}
+
+/// How many of them the star of a vertex at `place` crosses, counted up to `most`; `met`: movable vertices of those.
+int PatchMoves::crossings_at(std::uint32_t v, const glm::vec3& place, int most, const Around& around,
+                             std::vector<std::uint32_t>* met) {
+  const glm::vec3 before = mesh_.positions[v];
+  mesh_.positions[v] = place;
+  int count = 0;
+  const auto look_at = [&](std::uint32_t t, std::uint32_t other) {
+    if (count >= most || !triangles_cross(mesh_.positions, mesh_.triangles[t], mesh_.triangles[other])) return;
+    ++count;
+    if (met != nullptr) mesh_.add_extras(other, *met);
+  };
+  for (const std::uint32_t t : star_of(v)) {
+    const TriangleBox box = box_of(mesh_.positions, mesh_.triangles[t]);
+    for (std::size_t i = 0; i < around.near.size(); ++i)
+      if (box.meets(around.boxes[i])) look_at(t, around.near[i]);
+    for (const std::uint32_t other : around.star)
+      if (other > t && mesh_.owner[t].matters_to(mesh_.owner[other])) look_at(t, other);
+  }
+  mesh_.positions[v] = before;
+  return count;
+}
+
+/// The nearest of some places where the vertex crosses least. True: less than before.
+bool PatchMoves::relieve(std::uint32_t v, Around& around) {
+  int least = crossings_at(v, mesh_.positions[v], kMostCounted, around);
+  if (least == 0) return false;
+  const glm::vec3 start = mesh_.positions[v];
+  glm::vec3 mean(0.0f), best = start;
+  float count_around = 0.0f;
+  for (const std::uint32_t t : star_of(v))
+    for (const std::uint32_t w : mesh_.triangles[t])
+      if (w != v) {
+        mean += mesh_.positions[w];
+        count_around += 1.0f;
+      }
+  mean /= count_around;
+  const auto attempt = [&](const glm::vec3& place) {
+    const int count = crossings_at(v, in_steps(place, step_), least, around);
+    if (count >= least) return;
+    least = count;
+    best = in_steps(place, step_);
+  };
+  for (const float share : {0.25f, 0.5f, 0.75f, 1.0f})
+    if (least > 0) attempt(start + share * (mean - start));
+  for (const float reach : {0.06f, 0.12f, 0.25f, 0.5f, 0.9f})
+    for (const glm::vec3& middle : {start, mean})
+      for (int k = 0; k < 27 && least > 0; ++k)
+        if (k != 13) attempt(middle + reach * glm::normalize(glm::vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
+  if (best == start) return false;
+  mesh_.positions[v] = best;
+  for (const std::uint32_t t : star_of(v)) around.added.add(t, box_of(mesh_.positions, mesh_.triangles[t]));
+  return true;
+}
+
+}  // namespace dubsar
