@@ -28,10 +28,10 @@ double nearer(double least, const glm::dvec3& p, const glm::dvec3& a, const glm:
     const auto look_beyond = [&](const glm::dvec3& from, const glm::dvec3& to) {
       const glm::dvec3 along = to - from;
       const double within = glm::dot(glm::cross(along, p - from), n);
-      if (within >= 0.0) return;
+      if (away || within >= 0.0) return;
       inside = false;
       const double length = glm::dot(along, along);
-      away = away || height * height * length + within * within > far * length;
+      away = height * height * length + within * within > far * length;
     };
     look_beyond(a, b);
     look_beyond(b, c);

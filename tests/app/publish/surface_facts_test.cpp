@@ -114,7 +114,8 @@ TEST(SurfaceFacts, BodiesOfAClosedSurfaceAreClosedWhereTheyShareNothing) {
   TriMesh mesh = envelope_and_tablet(glm::dmat3(1.0));
   const auto tight = [&](bool closed) {
     std::vector<bool> out;
-    for (const PartFacts& part : surface_facts(mesh, closed).value().parts) out.push_back(part.watertight);
+    const SurfaceFacts facts = surface_facts(mesh, closed).value();
+    for (const PartFacts& part : facts.parts) out.push_back(part.watertight);
     return out;
   };
   EXPECT_EQ(tight(true), (std::vector<bool>{true, true}));
