@@ -26,9 +26,10 @@ double nearer(double least, const glm::dvec3& p, const glm::dvec3& a, const glm:
     if (height * height > far) return least;
     bool inside = true, away = false;
     const auto look_beyond = [&](const glm::dvec3& from, const glm::dvec3& to) {
+      if (away) return;
       const glm::dvec3 along = to - from;
       const double within = glm::dot(glm::cross(along, p - from), n);
-      if (away || within >= 0.0) return;
+      if (within >= 0.0) return;
       inside = false;
       const double length = glm::dot(along, along);
       away = height * height * length + within * within > far * length;
