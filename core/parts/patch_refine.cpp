@@ -174,6 +174,9 @@ Result<void> Patch::continue_surface(int steps, Progress& progress) {
     if (largest < kRest) break;
   }
   for (glm::vec3& n : normals) n = unit(n);
+  std::vector<std::vector<glm::vec3>> between(inner);  // the normal half way to each neighbour: they stay as they are
+  for (std::size_t i = 0; i < inner; ++i)
+    for (const std::uint32_t v : neighbours[i]) between[i].push_back(unit(normals[rim_ + i] + normals[v]));
   for (int step = 0; step < steps; ++step) {
     if (progress.cancelled()) return cancelled_error();
     float largest = 0.0f;
@@ -181,10 +184,10 @@ Result<void> Patch::continue_surface(int steps, Progress& progress) {
       const glm::vec3 here = positions_[rim_ + i], normal = normals[rim_ + i];
       glm::vec3 mean(0.0f);
       float rise = 0.0f;
-      for (const std::uint32_t v : neighbours[i]) {
-        const glm::vec3 edge = positions_[v] - here;
+      for (std::size_t k = 0; k < neighbours[i].size(); ++k) {
+        const glm::vec3 edge = positions_[neighbours[i][k]] - here;
         mean += edge;
-        rise += glm::dot(edge, unit(normal + normals[v]));
+        rise += glm::dot(edge, between[i][k]);
       }
       const auto count = static_cast<float>(neighbours[i].size());
       mean /= count;
