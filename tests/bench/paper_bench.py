@@ -11,7 +11,9 @@ Common: [--threads N] [--work FOLDER] [--json FILE] [--history FILE] [--seed N]
 Scans are phantoms; they are made where they are not in the folder yet and stay there. Seconds of a core are user and
 system time of all threads: they can be compared on a busy machine, too, seconds of the clock cannot.
 """
-import argparse, json, math, os, platform, random, re, shutil, signal, subprocess, sys, time
+import argparse, json, math, os, random, re, shutil, signal, subprocess, sys, time
+
+import figures
 
 PAPER_CORES = 8
 PAPER_VOXELS, PAPER_GRID, PAPER_VERTICES = 1871 * 999 * 1723, 935 * 499 * 861, 10_011_300
@@ -295,22 +297,14 @@ def main():
     parser.add_argument("--scan", help="take this scan instead")
     parser.add_argument("--with-options", nargs=argparse.REMAINDER, default=[], help="of process; comes last")
     parser.add_argument("--work", default="/var/tmp/dubsar-bench")
-    parser.add_argument("--json")
-    parser.add_argument("--history", help="a line of JSON is added to it")
+    figures.add_options(parser)
     options = parser.parse_args()
     options.size = options.size or sizes[options.what]
     if options.threads is None:
         options.threads = 1 if options.what == "linear" else 0
     os.makedirs(options.work, exist_ok=True)
     result, good = {"paper": paper, "linear": linear, "killed": killed, "scanner": scanner}[options.what](options)
-    result = {"what": options.what, "size": options.size, "machine": platform.processor() or platform.machine(), "cores": os.cpu_count(),
-              "load": os.getloadavg()[0], "time": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()), **result}
-    if options.json:
-        with open(options.json, "w") as file:
-            json.dump(result, file, indent=1)
-    if options.history:
-        with open(options.history, "a") as file:
-            file.write(json.dumps(result) + "\n")
+    figures.keep(options, {"what": options.what, "size": options.size, **figures.machine(), **result})
     sys.exit(0 if good else 1)
 
 

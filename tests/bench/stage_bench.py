@@ -7,7 +7,9 @@ OURS is the program stage_bench, which makes the volume and the mesh that all of
 (user and system time), the least of some runs, so that they can be compared on a busy machine, too. A ratio is how many
 times as long a peer takes; the floor is what memory or arithmetic alone would take, whichever is more, at the rates that
 this machine has in the same run. A peer that is not installed is named as such."""
-import argparse, json, os, platform, resource, shutil, subprocess, sys, time
+import argparse, json, os, resource, shutil, subprocess, sys
+
+import figures
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 PEERS = ["VTK", "ITK", "Embree", "MeshLab"]
@@ -64,8 +66,7 @@ def main():
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--no-meshlab", action="store_true", help="it takes minutes")
     parser.add_argument("--work", default="/var/tmp/dubsar-bench/stages")
-    parser.add_argument("--json")
-    parser.add_argument("--history", help="a line of JSON is added to it")
+    figures.add_options(parser)
     options = parser.parse_args()
     os.makedirs(options.work, exist_ok=True)
     text, why = run([options.ours, options.work, str(options.size), str(options.runs)])
@@ -80,14 +81,14 @@ def main():
     peers["Embree"], absent["Embree"] = ({"light": embree["core_s"]}, None) if embree else ({}, "not built in")
     peers["MeshLab"], absent["MeshLab"] = ({}, "left out") if options.no_meshlab else meshlab(options)
 
-    machine = ours["machine"]
-    print(f"{options.size}^3 floats, {ours['vertices']:,} vertices, one core; memory {machine['bytes_per_s'] / 1e9:.1f} GB/s, arithmetic "
-          f"{machine['operations_per_s'] / 1e9:.0f} billion operations/s")
+    rates = ours["machine"]
+    print(f"{options.size}^3 floats, {ours['vertices']:,} vertices, one core; memory {rates['bytes_per_s'] / 1e9:.1f} GB/s, arithmetic "
+          f"{rates['operations_per_s'] / 1e9:.0f} billion operations/s")
     print(f"{'stage':<12}{'core s':>9}{'million/s':>11}{'floor s':>9}{'ours/floor':>11}" +
           "".join(f"{name:>10}{'ratio':>8}" for name in PEERS))
     rows = []
     for name, stage in stages.items():
-        floor = max(stage["bytes"] / machine["bytes_per_s"], stage["operations"] / machine["operations_per_s"])
+        floor = max(stage["bytes"] / rates["bytes_per_s"], stage["operations"] / rates["operations_per_s"])
         row = {**stage, "floor_s": floor, "peers": {p: peers[p][name] for p in PEERS if name in peers[p]}}
         row["ratios"] = {p: s / stage["core_s"] for p, s in row["peers"].items()}
         rows.append(row)
@@ -101,15 +102,8 @@ def main():
     for peer in PEERS:
         if absent[peer]:
             print(f"  {peer}: {absent[peer]}")
-    result = {"what": "stages", "size": options.size, "vertices": ours["vertices"], "machine": machine, "rows": rows,
-              "absent": {p: w for p, w in absent.items() if w}, "processor": platform.processor() or platform.machine(),
-              "load": os.getloadavg()[0], "time": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())}
-    if options.json:
-        with open(options.json, "w") as file:
-            json.dump(result, file, indent=1)
-    if options.history:
-        with open(options.history, "a") as file:
-            file.write(json.dumps(result) + "\n")
+    figures.keep(options, {"what": "stages", "size": options.size, "vertices": ours["vertices"], "rates": rates, "rows": rows,
+                           "absent": {p: w for p, w in absent.items() if w}, **figures.machine()})
 
 
 if __name__ == "__main__":

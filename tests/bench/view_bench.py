@@ -8,7 +8,8 @@ is looked at in the server's memory, so that nobody is asked how quick he is: th
 like the one that stays; then the mouse turns the object, and different pictures are counted; then it rests, and the last
 change after that says when what is shown is exact.
 """
-import argparse, collections, json, mmap, os, platform, shutil, struct, subprocess, sys, tempfile, time, zlib
+import argparse, collections, mmap, os, shutil, struct, subprocess, sys, tempfile, time, zlib
+import figures
 import numpy as np
 
 WIDTH, HEIGHT = 1280, 720
@@ -241,7 +242,7 @@ def main():
     parser.add_argument("program", help="the dubsar that is measured")
     parser.add_argument("--sizes", default="0.4,1.4,12", help="millions of vertices")
     parser.add_argument("--seconds", type=float, default=4.0, help="how long the object is turned")
-    parser.add_argument("--json", help="file for the figures")
+    figures.add_options(parser)
     parser.add_argument("--format", default="ply", choices=("ply", "stl", "obj"), help="of the files")
     parser.add_argument("--style", help="that dubsar shows them in, such as raking")
     parser.add_argument("--only", help="one viewer: dubsar, f3d or MeshLab")
@@ -255,9 +256,7 @@ def main():
             viewers.append((name, program))
         else:
             print(f"{name} is not installed and is left out", file=sys.stderr)
-    out = {"machine": platform.processor() or platform.machine(), "cores": os.cpu_count(),
-           "load": os.getloadavg()[0], "window": [WIDTH, HEIGHT], "format": options.format,
-           "style": options.style, "rows": []}
+    out = {**figures.machine(), "window": [WIDTH, HEIGHT], "format": options.format, "style": options.style, "rows": []}
     print(f"load {out['load']:.1f} on {out['cores']} cores\n")
     print("| vertices | viewer | first picture | it stays | pictures a second | longest wait | exact after rest | memory |")
     print("|---|---|---|---|---|---|---|---|", flush=True)
@@ -277,9 +276,7 @@ def main():
                       f"{row['memory_mib']} MiB |", flush=True)
         finally:
             os.remove(mesh)
-    if options.json:
-        with open(options.json, "w") as file:
-            json.dump(out, file, indent=1)
+    figures.keep(options, out)
 
 
 if __name__ == "__main__":
