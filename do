@@ -40,7 +40,7 @@ usage() {
 ./do workflow examples/snakemake: a dry run, and three scans for real; workflow core: with the program of a core build
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
 ./do glb FILE...  the Khronos validator over GLB files (fetches it with npm)
-./do asan     the tests that need no window under AddressSanitizer and UndefinedBehaviorSanitizer; asan core devices
+./do asan     the tests under AddressSanitizer and UndefinedBehaviorSanitizer, windows and pictures too; asan core devices
               input display app: of these rooms only; and what ctest takes, as asan devices -R Vrpn
 ./do tsan     devices and inputs under ThreadSanitizer (clang)
 ./do core     build and test the core alone, no graphics, no devices: build/core/app/dubsar has process, info, exa, phantom
@@ -108,8 +108,8 @@ lab() {
   tests/lab/run_in_kernel.sh "$PWD/$build/tests/lab/test_lab" "$@"
 }
 
-# The same cases as in `test`, less those that need windows, a kernel of their own or most of an hour. asan ROOM...: of
-# these folders of tests/ only; a pattern of names for ctest may follow, as `-R Leap`.
+# The cases of `test`, less those that need a kernel of their own or most of an hour. asan ROOM...: of these folders of tests/ only; a
+# pattern of names for ctest may follow, as `-R Leap`.
 asan() {
   deps
   preset=asan build=build/asan
@@ -127,7 +127,7 @@ asan() {
   export ASAN_OPTIONS="strict_string_checks=1:${ASAN_OPTIONS:-}" UBSAN_OPTIONS="print_stacktrace=1:${UBSAN_OPTIONS:-}"
   export LSAN_OPTIONS="suppressions=$PWD/tests/leaks_of_others.txt:print_suppressions=0:${LSAN_OPTIONS:-}"
   for room in "${rooms[@]}"; do
-    ctest --test-dir "$build/tests/$room" --output-on-failure -j "$jobs" -L '^(unit|app)$' "$@"
+    ctest --test-dir "$build/tests/$room" --output-on-failure -j "$jobs" -L '^(unit|app|gl)$' "$@"
   done
 }
 

@@ -17,6 +17,13 @@ if(DUBSAR_SANITIZE)
     -fsanitize=${DUBSAR_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(dubsar_options INTERFACE -fsanitize=${DUBSAR_SANITIZE})
 endif()
+# Every program and test of a build with AddressSanitizer ends as sanitized_end.cpp says.
+if(DUBSAR_SANITIZE MATCHES "address")
+  add_library(dubsar_sanitized_end OBJECT ${CMAKE_CURRENT_LIST_DIR}/sanitized_end.cpp)
+  target_compile_options(dubsar_sanitized_end PRIVATE -fsanitize=${DUBSAR_SANITIZE})
+  target_sources(dubsar_options INTERFACE
+    $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:$<TARGET_OBJECTS:dubsar_sanitized_end>>)
+endif()
 
 # dubsar_cold(target): code that is run once a command, a key press or a device's report; -O3 would take a third longer to compile, for nothing.
 function(dubsar_cold target)
@@ -32,6 +39,17 @@ if(DUBSAR_PCH)
   target_precompile_headers(dubsar_common_headers PRIVATE
     <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <vector>
     <fmt/format.h> <tl/expected.hpp> <glm/glm.hpp> <nlohmann/json.hpp>)
+endif()
+# The same for tests, which take twice as long to read their headers as to compile. An executable, as tests are: -fPIE.
+if(DUBSAR_PCH AND DUBSAR_TESTS)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/test_headers.cpp CONTENT "int main() {}\n")
+  add_executable(dubsar_test_headers EXCLUDE_FROM_ALL ${PROJECT_BINARY_DIR}/test_headers.cpp)
+  target_link_libraries(dubsar_test_headers PRIVATE dubsar_options fmt::fmt tl::expected glm::glm OpenMP::OpenMP_CXX
+    Threads::Threads GTest::gtest GTest::gmock)
+  dubsar_cold(dubsar_test_headers)
+  target_precompile_headers(dubsar_test_headers PRIVATE
+    <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <map> <memory> <optional> <random> <span> <string> <vector>
+    <fmt/format.h> <tl/expected.hpp> <glm/glm.hpp> <gtest/gtest.h> <gmock/gmock.h>)
 endif()
 
 # Twelve files a compilation: headers are two thirds of a compiler's work here. Kernels that Highway compiles once per vector
@@ -72,8 +90,8 @@ function(dubsar_library name)
   endif()
 endfunction()
 
-# What `./do asan ROOM` builds: of each folder of tests/ those of the labels unit and app, which need no window and no
-# preloaded library.
+# What `./do asan ROOM` builds: of each folder of tests/ those of the labels unit, app and gl, which need
+# no preloaded library.
 foreach(room core devices input display app)
   add_custom_target(dubsar_checked_${room}_tests)
 endforeach()
@@ -92,7 +110,10 @@ function(dubsar_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE dubsar_options ${ARG_DEPS} GTest::gtest GTest::gmock GTest::gtest_main)
   dubsar_cold(${name})  # a test is compiled more often than its loops are run
-  if(ARG_LABEL MATCHES "^(unit|app)$")
+  if(DUBSAR_PCH)
+    target_precompile_headers(${name} REUSE_FROM dubsar_test_headers)
+  endif()
+  if(ARG_LABEL MATCHES "^(unit|app|gl)$")
     file(RELATIVE_PATH room "${PROJECT_SOURCE_DIR}/tests" "${CMAKE_CURRENT_SOURCE_DIR}")
     string(REGEX REPLACE "/.*" "" room "${room}")
     add_dependencies(dubsar_checked_${room}_tests ${name})
