@@ -3,12 +3,15 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -69,6 +72,32 @@ inline Result<Address> parse_address(const std::string& text, std::uint16_t port
   return address;
 }
 
+inline Result<Address> unix_address(const std::string& path) {
+  Address address;
+  auto& named = reinterpret_cast<sockaddr_un&>(address.storage);
+  if (path.empty() || path.size() >= sizeof named.sun_path)
+    return fail(ErrorKind::kUsage, "socket: path of {} bytes, expected 1 to {}", path.size(),
+                sizeof named.sun_path - 1);
+  named.sun_family = AF_UNIX;
+  path.copy(named.sun_path, path.size());
+  address.length = sizeof named;
+  return address;
+}
+
+/// The port that the system chose for one bound to port 0.
+inline Result<std::uint16_t> bound_port(const Socket& socket) {
+  Address bound;
+  if (::getsockname(socket.get(), bound.get(), &bound.length) != 0) return fail_errno(errno, "socket: getsockname");
+  return ntohs(reinterpret_cast<const sockaddr_in&>(bound.storage).sin_port);  // at one place for both families
+}
+static_assert(offsetof(sockaddr_in, sin_port) == offsetof(sockaddr_in6, sin6_port));
+
+/// Small messages leave at once; refused for UNIX sockets, which need none.
+inline void send_at_once(const Socket& socket) {
+  const int on = 1;
+  ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+}
+
 inline bool is_loopback(const Address& address) {
   if (address.storage.ss_family == AF_INET)
     return ntohl(reinterpret_cast<const sockaddr_in&>(address.storage).sin_addr.s_addr) >> 24 == 127;
@@ -82,9 +111,9 @@ inline bool wait_for(const Socket& socket, short events, std::int64_t timeout_ms
 }
 
 /// Connects without blocking for longer than `timeout`.
-inline Result<void> connect_within(const Socket& socket, const sockaddr* address, socklen_t length,
-                                   milliseconds timeout, const std::string& name) {
-  if (::connect(socket.get(), address, length) == 0) return {};
+inline Result<void> connect_within(const Socket& socket, const Address& address, milliseconds timeout,
+                                   const std::string& name) {
+  if (::connect(socket.get(), address.get(), address.length) == 0) return {};
   int error = errno;
   if (error == EINPROGRESS) {
     error = ETIMEDOUT;

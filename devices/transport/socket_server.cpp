@@ -1,10 +1,6 @@
 #include "devices/transport/socket_server.h"
 
-#include <netinet/tcp.h>
-#include <sys/un.h>
-
 #include <array>
-#include <cstddef>
 
 #include "devices/transport/socket_detail.h"
 #include "devices/transport/socket_transport.h"
@@ -24,9 +20,7 @@ class Listener final : public StreamServer {
     if (!wait_for(socket_, POLLIN, timeout.count())) return nullptr;
     Socket client(::accept4(socket_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (client.get() < 0) return nullptr;
-    const int on = 1;
-    ::setsockopt(client.get(), IPPROTO_TCP, TCP_NODELAY, &on,
-                 sizeof on);  // refused for UNIX sockets, which need none
+    send_at_once(client);
     return std::make_unique<StreamTransport>(std::move(client), name_);
   }
   std::uint16_t port() const noexcept override { return port_; }
@@ -54,13 +48,11 @@ class CalledListener final : public StreamServer {
     if (length <= 0) return nullptr;
     const auto port = called_port_(std::span(datagram).first(static_cast<std::size_t>(length)));
     if (!port) return nullptr;
-    // the port lies at the same place for both families
     reinterpret_cast<sockaddr_in&>(caller.storage).sin_port = htons(*port);
     Socket client(::socket(caller.storage.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     const std::string name = fmt::format("caller at port {}", *port);
-    if (client.get() < 0 || !connect_within(client, caller.get(), caller.length, kCallTimeout, name)) return nullptr;
-    const int on = 1;
-    ::setsockopt(client.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    if (client.get() < 0 || !connect_within(client, caller, kCallTimeout, name)) return nullptr;
+    send_at_once(client);
     return std::make_unique<StreamTransport>(std::move(client), name);
   }
   std::uint16_t port() const noexcept override { return tcp_->port(); }
@@ -71,7 +63,6 @@ class CalledListener final : public StreamServer {
   Socket udp_;
   CalledPort called_port_;
 };
-static_assert(offsetof(sockaddr_in, sin_port) == offsetof(sockaddr_in6, sin6_port));
 
 class UdpSender final : public Transport {
  public:
@@ -91,15 +82,10 @@ class UdpSender final : public Transport {
 }  // namespace
 
 Result<std::unique_ptr<StreamServer>> listen_unix(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.empty() || path.size() >= sizeof address.sun_path)
-    return fail(ErrorKind::kUsage, "socket: path of {} bytes, expected 1 to {}", path.size(),
-                sizeof address.sun_path - 1);
-  path.copy(address.sun_path, path.size());
+  DUBSAR_ASSIGN(const Address address, unix_address(path));
   Socket socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (socket.get() < 0) return fail_errno(errno, "socket: cannot make a socket");
-  if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+  if (::bind(socket.get(), address.get(), address.length) != 0)
     return fail(ErrorKind::kCannotCreate, "socket: cannot listen at {}: {}", path, std::strerror(errno));
   if (::listen(socket.get(), 4) != 0) return fail_errno(errno, "socket: cannot listen at " + path);
   return std::make_unique<Listener>(std::move(socket), path, std::uint16_t{0}, path);
@@ -114,9 +100,7 @@ Result<std::unique_ptr<StreamServer>> listen_tcp(const std::string& text, std::u
   ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   if (::bind(socket.get(), address.get(), address.length) != 0 || ::listen(socket.get(), 4) != 0)
     return fail(ErrorKind::kUnavailable, "socket: cannot listen on {} port {}: {}", text, port, std::strerror(errno));
-  Address bound;
-  if (::getsockname(socket.get(), bound.get(), &bound.length) != 0) return fail_errno(errno, "socket: getsockname");
-  const std::uint16_t chosen = ntohs(reinterpret_cast<const sockaddr_in&>(bound.storage).sin_port);
+  DUBSAR_ASSIGN(const std::uint16_t chosen, bound_port(socket));
   return std::make_unique<Listener>(std::move(socket), fmt::format("{} port {}", text, chosen), chosen, std::string());
 }
 

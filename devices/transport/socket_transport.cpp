@@ -1,10 +1,6 @@
 #include "devices/transport/socket_transport.h"
 
 #include <netdb.h>
-#include <netinet/tcp.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -115,11 +111,10 @@ Result<std::unique_ptr<Transport>> connect_tcp(const Address& address, const std
                                                TcpClosing closing) {
   Socket socket(::socket(address.storage.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (socket.get() < 0) return fail_errno(errno, "socket: cannot make a socket");
-  const int on = 1;
-  ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  send_at_once(socket);
   const linger at_once{1, 0};
   if (closing == TcpClosing::kAtOnce) ::setsockopt(socket.get(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
-  DUBSAR_TRY(connect_within(socket, address.get(), address.length, timeout, name));
+  DUBSAR_TRY(connect_within(socket, address, timeout, name));
   return std::make_unique<StreamTransport>(std::move(socket), name);
 }
 
@@ -152,23 +147,15 @@ Result<std::unique_ptr<UdpTransport>> open_udp(const UdpOptions& options, const 
   if (::bind(socket.get(), address.get(), address.length) != 0)
     return fail(ErrorKind::kUnavailable, "udp: cannot listen on {} port {}: {}; another program may use it",
                 options.address, options.port, std::strerror(errno));
-  Address bound;
-  if (::getsockname(socket.get(), bound.get(), &bound.length) != 0) return fail_errno(errno, "udp: getsockname");
-  const std::uint16_t port = ntohs(reinterpret_cast<const sockaddr_in&>(bound.storage).sin_port);
+  DUBSAR_ASSIGN(const std::uint16_t port, bound_port(socket));
   return std::make_unique<UdpListener>(std::move(socket), options, port, clock);
 }
 
 Result<std::unique_ptr<Transport>> open_unix_stream(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.empty() || path.size() >= sizeof address.sun_path)
-    return fail(ErrorKind::kUsage, "socket: path of {} bytes, expected 1 to {}", path.size(),
-                sizeof address.sun_path - 1);
-  path.copy(address.sun_path, path.size());
+  DUBSAR_ASSIGN(const Address address, unix_address(path));
   Socket socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (socket.get() < 0) return fail_errno(errno, "socket: cannot make a socket");
-  DUBSAR_TRY(
-      connect_within(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address, milliseconds(0), path));
+  DUBSAR_TRY(connect_within(socket, address, milliseconds(0), path));
   return std::make_unique<StreamTransport>(std::move(socket), path);
 }
 
