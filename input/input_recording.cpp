@@ -1,9 +1,9 @@
 #include "input/input_recording.h"
 
-#include <algorithm>
 #include <fstream>
 #include <functional>
 #include <sstream>
+#include <vector>
 
 #include "input/source_options.h"
 
@@ -128,26 +128,6 @@ Result<std::optional<RecordedFrame>> RecordingReader::next() {
     return std::optional<RecordedFrame>(*std::move(frame));
   }
   return std::nullopt;
-}
-
-Result<std::vector<RecordedFrame>> parse_input_recording(std::string text, std::string name) {
-  RecordingReader reader = RecordingReader::over(std::move(text), std::move(name));
-  std::vector<RecordedFrame> frames;
-  for (;;) {
-    DUBSAR_ASSIGN(std::optional<RecordedFrame> frame, reader.next());
-    if (!frame) return frames;
-    frames.push_back(*std::move(frame));
-  }
-}
-
-std::unique_ptr<InputSource> replay_frames(std::vector<RecordedFrame> frames) {
-  auto held = std::make_shared<std::vector<RecordedFrame>>(std::move(frames));
-  return std::make_unique<ReplaySource>(
-      [held, next = std::size_t{0}]() mutable -> Result<std::optional<RecordedFrame>> {
-        if (next == held->size()) return std::nullopt;
-        return std::optional<RecordedFrame>((*held)[next++]);
-      },
-      std::string());
 }
 
 Result<std::unique_ptr<InputSource>> make_replay_source(const InputConfig& config) {

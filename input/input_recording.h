@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "input/recorded_frame.h"
 
@@ -40,12 +39,6 @@ class RecordingReader {
   TimestampNs last_polled_ = 0;
   bool whole_line_ = true, cut_off_ = false;
 };
-
-/// All frames of a text. Errors as RecordingReader.
-Result<std::vector<RecordedFrame>> parse_input_recording(std::string text, std::string name);
-
-/// Plays frames at the speed they were recorded at, from the first poll on; device times keep their age.
-std::unique_ptr<InputSource> replay_frames(std::vector<RecordedFrame> frames);
 
 /// Options: path=FILE, or the file as a bare word. The whole file is checked first (60 MB a second), then read as it is
 /// played. kConfig: broken, or no frames in it.

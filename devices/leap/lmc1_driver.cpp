@@ -73,10 +73,4 @@ Result<lmc1::Calibration> read_lmc1_calibration(Transport& transport, millisecon
 
 std::unique_ptr<StereoCameraKind> lmc1_kind(const Lmc1Options& options) { return std::make_unique<Lmc1Kind>(options); }
 
-std::unique_ptr<StereoCamera> make_lmc1_driver(OpenTransport open, const Lmc1Options& options, const Clock& clock) {
-  return make_stereo_camera(
-      std::move(open),
-      [options](Transport&) -> Result<std::unique_ptr<StereoCameraKind>> { return lmc1_kind(options); }, clock);
-}
-
 }  // namespace dubsar

@@ -1,5 +1,5 @@
 #pragma once
-// The Leap Motion Controller as a source of stereo pictures, over any transport that carries USB requests.
+// The Leap Motion Controller as a kind of stereo camera, over any transport that carries USB requests.
 
 #include <cstdint>
 #include <memory>
@@ -22,9 +22,8 @@ struct Lmc1Options {
   milliseconds calibration_settle{4};
 };
 
-/// start() opens, reads the calibration (0.7 s on a device), commits the mode and lights the LEDs. Every
-/// 640x240 pair is one Frame with two views.
-std::unique_ptr<StereoCamera> make_lmc1_driver(OpenTransport open, const Lmc1Options& options, const Clock& clock);
+/// For make_stereo_camera(), whose start() reads the calibration (0.7 s on a device), commits the mode and lights the
+/// LEDs. Every 640x240 pair is one Frame with two views.
 std::unique_ptr<StereoCameraKind> lmc1_kind(const Lmc1Options& options);
 
 /// Calibration by the sharpness and saturation knock. `settle` as in Lmc1Options.

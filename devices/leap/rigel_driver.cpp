@@ -104,10 +104,4 @@ std::unique_ptr<StereoCameraKind> rigel_kind(const RigelOptions& options) {
   return std::make_unique<RigelKind>(options);
 }
 
-std::unique_ptr<StereoCamera> make_rigel_driver(OpenTransport open, const RigelOptions& options, const Clock& clock) {
-  return make_stereo_camera(
-      std::move(open),
-      [options](Transport&) -> Result<std::unique_ptr<StereoCameraKind>> { return rigel_kind(options); }, clock);
-}
-
 }  // namespace dubsar

@@ -1,5 +1,5 @@
 #pragma once
-// Rigel and Stereo IR 170 as sources of stereo pictures, over any transport that carries USB requests.
+// Rigel and Stereo IR 170 as a kind of stereo camera, over any transport that carries USB requests.
 
 #include <memory>
 
@@ -16,11 +16,9 @@ struct RigelOptions {
   bool leds = true;
 };
 
-/// start() opens, reads the descriptors and the calibration, commits the mode and lights the LEDs.
-/// kUnavailable: the pictures come isochronously. kBadData: another camera, or no such size (lists those
-/// there are). The last line of a picture, where the device writes numbers, is a copy of the one above.
-std::unique_ptr<StereoCamera> make_rigel_driver(OpenTransport open, const RigelOptions& options, const Clock& clock);
-
+/// For make_stereo_camera(), whose start() reads the descriptors and the calibration, commits the mode and lights the
+/// LEDs. kUnavailable: the pictures come isochronously. kBadData: another camera, or no such size (lists those there
+/// are). The last line of a picture, where the device writes numbers, is a copy of the one above.
 std::unique_ptr<StereoCameraKind> rigel_kind(const RigelOptions& options);
 
 }  // namespace dubsar

@@ -15,11 +15,11 @@
 #include <thread>
 
 #include "core/base/atomic_file.h"
-#include "input/input_recording.h"
 #include "input/mixer.h"
 #include "input/navigation/navigation.h"
 #include "input/people/person_keeper.h"
 #include "input/simulated/scripted_source.h"
+#include "tests/input/recorded_frames.h"
 
 namespace dubsar {
 namespace {
@@ -142,7 +142,7 @@ TEST_F(KilledRecording, ShowsTheSameViewWithinTheLastSecond) {
   EXPECT_GT(2 * with_two_hands, frames.size());
 
   InputMixer mixer;
-  mixer.add(replay_frames(frames));
+  mixer.add(replay_of(frames));
   Navigator navigator(default_mapping().value());
   PersonKeeper people;
   double worst_deg = 0, worst_zoom = 0;
@@ -189,7 +189,7 @@ TEST(InputRecorder, KeepsWhatTheSessionItselfTookAndLeavesOutRepetitions) {
   ASSERT_TRUE(recorder->finish());
   ASSERT_TRUE(recorder->finish());
   EXPECT_EQ(recorder->frames(), 3);
-  const auto read = parse_input_recording(read_text_file(path).value(), "r").value();
+  const auto read = frames_of(read_text_file(path).value(), "r").value();
   ASSERT_EQ(read.size(), 3u);
   EXPECT_EQ(read[1].polled, 30);
   ASSERT_EQ(read[1].frame.events.size(), 1u);
@@ -210,7 +210,7 @@ TEST(InputRecorder, AnOldRecordingStaysWhereNothingCameOrTheDiskIsFull) {
     ASSERT_TRUE(recorder->flush());
     EXPECT_EQ(read_text_file(path).value(), "old");
   }  // an error ended the session
-  EXPECT_EQ(parse_input_recording(read_text_file(path).value(), "r").value().size(), 1u);
+  EXPECT_EQ(frames_of(read_text_file(path).value(), "r").value().size(), 1u);
   fs::remove(path);
   auto full = InputRecorder::create("/dev/full").value();
   full->add(1, {});

@@ -10,6 +10,7 @@
 #include "input/navigation/navigation.h"
 #include "input/people/person_keeper.h"
 #include "input/simulated/scripted_source.h"
+#include "tests/input/recorded_frames.h"
 
 namespace dubsar {
 namespace {
@@ -49,7 +50,7 @@ TEST(Recording, AReplayedSessionEndsInTheSameView) {
   const Session original = run(live, seen, 1'000'000'000);
   ASSERT_GT(turn_between_deg(original.view.rotation, {1, 0, 0, 0}), 5.0);
   InputMixer replayed;
-  replayed.add(replay_frames(parse_input_recording(original.recording, "test").value()));
+  replayed.add(replay_of(frames_of(original.recording, "test").value()));
   ViewState unused;
   const Session again = run(replayed, unused, 77'000'000'000);  // another day
   EXPECT_LT(turn_between_deg(original.view.rotation, again.view.rotation), 0.01);
@@ -80,7 +81,7 @@ TEST(Recording, EverythingInAFrameSurvives) {
   head.right_eye_m = glm::dvec3(0.03, 0.01, 0.6);
   frame.frame.heads = {head};
   const std::string line = record_line(frame);
-  const auto back = parse_input_recording(line, "test").value();
+  const auto back = frames_of(line, "test").value();
   ASSERT_EQ(back.size(), 1u);
   EXPECT_EQ(record_line(back[0]), line);
   EXPECT_EQ(back[0].frame.hands[0].id, 4'000'000'000u);
@@ -104,7 +105,7 @@ TEST(Recording, ALastLineThatIsNotWholeIsLeftOutAndNothingElseIs) {
     EXPECT_EQ(reader.next().value().value().polled, 400) << n;
     EXPECT_FALSE(reader.next().value()) << n;
     EXPECT_TRUE(reader.cut_off()) << n;
-    EXPECT_FALSE(parse_input_recording(before + line.substr(0, n) + "\n", "cut")) << n;  // a broken line is none
+    EXPECT_FALSE(frames_of(before + line.substr(0, n) + "\n", "cut")) << n;  // a broken line is none
   }
   RecordingReader whole = RecordingReader::over(before + line, "whole");  // a line feed is not what makes it whole
   EXPECT_TRUE(whole.next().value());
@@ -124,7 +125,7 @@ TEST(Recording, ABrokenByteIsRefusedWithItsLineOrReadAsWhatItSays) {
     for (const char c : {'0', '9', '-', '"', '{', ']', 'e', '\0', '\xff'}) {
       std::string broken = line;
       broken[i] = c;
-      const auto parsed = parse_input_recording(broken, "broken");
+      const auto parsed = frames_of(broken, "broken");
       if (!parsed) {
         ++refused;
         EXPECT_EQ(parsed.error().kind, ErrorKind::kConfig);
@@ -134,7 +135,7 @@ TEST(Recording, ABrokenByteIsRefusedWithItsLineOrReadAsWhatItSays) {
       ++read;  // another number, or a name that is not known: what it says is what is kept
       ASSERT_EQ(parsed->size(), 1u) << broken;
       const std::string again = record_line(parsed->front());
-      EXPECT_EQ(record_line(parse_input_recording(again, "again").value().front()), again) << broken;
+      EXPECT_EQ(record_line(frames_of(again, "again").value().front()), again) << broken;
     }
   EXPECT_GT(refused, 3 * read) << refused << " refused, " << read << " read";
 }
@@ -166,11 +167,11 @@ TEST(Recording, LengthDoesNotMatter) {
 
 TEST(Recording, ALineWithoutEndIsNotReadToItsEnd) {
   const std::string endless(3 * kLongestLine, ' ');
-  EXPECT_NE(parse_input_recording(endless, "r.jsonl").error().message.find("longer than"), std::string::npos);
+  EXPECT_NE(frames_of(endless, "r.jsonl").error().message.find("longer than"), std::string::npos);
 }
 
 TEST(Recording, RefusesWhatCannotBe) {
-  const auto refused = [](const char* text) { return parse_input_recording(text, "r.jsonl").error().message; };
+  const auto refused = [](const char* text) { return frames_of(text, "r.jsonl").error().message; };
   EXPECT_EQ(refused("{\"polled\": 5, \"t\": 4}\n{\"polled\": 4, \"t\": 4}"),
             "r.jsonl: line 2: polled goes back in time");
   EXPECT_EQ(refused("{\"polled\": -5, \"t\": 4}"),

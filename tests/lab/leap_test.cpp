@@ -2,8 +2,8 @@
 // takes it from there, our driver reads calibration and pictures, the tracker sees the hand.
 
 #include "devices/device_list.h"
-#include "devices/leap/lmc1_driver.h"
 #include "input/tracking/hands/hand_tracker.h"
+#include "tests/devices/leap/one_kind.h"
 #include "tests/lab/lab_kernel.h"
 #include "tests/lab/leap_gadget.h"
 
@@ -42,7 +42,7 @@ TEST_F(LabLeap, IsTakenFromTheKernelsCameraDriverAndShowsAHand) {
   Lmc1Options options;
   options.calibration_settle = milliseconds(0);
   {
-    const auto driver = make_lmc1_driver([this] { return open_leap(clock_); }, options, clock_);
+    const auto driver = lmc1_camera([this] { return open_leap(clock_); }, options, clock_);
     const auto started = driver->start();
     ASSERT_TRUE(started) << started.error().message;
     EXPECT_FALSE(kernel_has_it());

@@ -4,8 +4,8 @@
 
 #include "app/calibration/adjust_window.h"
 #include "core/base/atomic_file.h"
-#include "input/input_recording.h"
 #include "tests/app/viewer/live_fixture.h"
+#include "tests/input/recorded_frames.h"
 
 namespace dubsar::app {
 namespace {
@@ -163,7 +163,7 @@ TEST_F(Live, ItEndsByClosingByTimeAndBySignal) {
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().kind, ErrorKind::kCancelled);
   EXPECT_LT(SteadyClock().now() - asked, 2'000'000'000);
-  EXPECT_TRUE(parse_input_recording(read_text_file(options_.files.record).value(), "what was recorded before Ctrl-C"));
+  EXPECT_TRUE(frames_of(read_text_file(options_.files.record).value(), "what was recorded before Ctrl-C"));
   std::filesystem::remove(options_.files.record);
 }
 
@@ -178,7 +178,7 @@ TEST_F(Live, KeysThatTheSessionItselfTakesAreInItsRecording) {
                            }},
                           end()});
   ASSERT_TRUE(done) << done.error().message;
-  const auto frames = parse_input_recording(read_text_file(options_.files.record).value(), "recording");
+  const auto frames = frames_of(read_text_file(options_.files.record).value(), "recording");
   ASSERT_TRUE(frames) << frames.error().message;
   std::string keys;
   for (const RecordedFrame& frame : *frames)

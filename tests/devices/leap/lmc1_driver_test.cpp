@@ -1,4 +1,3 @@
-#include "devices/leap/lmc1_driver.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,6 +6,7 @@
 #include <thread>
 
 #include "devices/leap/lmc1_simulator.h"
+#include "tests/devices/leap/one_kind.h"
 
 namespace dubsar {
 namespace {
@@ -45,7 +45,7 @@ TEST(Lmc1Driver, DeliversTheFramesThatTheDeviceRendered) {
   device.hands = [](std::uint64_t) { return std::vector{hand_above()}; };
   Lmc1Simulator simulator(device);
   SteadyClock clock;
-  auto driver = make_lmc1_driver([&] { return simulator.open(); }, quick(), clock);
+  auto driver = lmc1_camera([&] { return simulator.open(); }, quick(), clock);
   ASSERT_TRUE(driver->start());
   EXPECT_EQ(driver->calibration(), device.calibration);
   EXPECT_TRUE(simulator.led_on(lmc1::Switch::kLedCentre));
@@ -94,7 +94,7 @@ TEST(Lmc1Driver, PausesWithinAFrameDoNotLoseIt) {
   device.frame_limit = 5;
   Lmc1Simulator simulator(device);
   SteadyClock clock;
-  auto driver = make_lmc1_driver(
+  auto driver = lmc1_camera(
       [&]() -> Result<std::unique_ptr<Transport>> {
         DUBSAR_ASSIGN(auto opened, simulator.open());
         return std::make_unique<PausingTransport>(std::move(opened));
@@ -112,7 +112,7 @@ TEST(Lmc1Driver, UnpluggedIsAStateAndReplugStartsAgain) {
   device.paced = true;
   Lmc1Simulator simulator(device);
   SteadyClock clock;
-  auto driver = make_lmc1_driver([&] { return simulator.open(); }, quick(), clock);
+  auto driver = lmc1_camera([&] { return simulator.open(); }, quick(), clock);
   ASSERT_TRUE(driver->start());
   Frame frame;
   ASSERT_TRUE(eventually([&] { return driver->poll(frame); }));
@@ -133,7 +133,7 @@ TEST(Lmc1Driver, HundredCyclesOfPlugAndUnplugLeaveNoThread) {
   SteadyClock clock;
   const auto before = threads_now();
   for (int i = 0; i < 100; ++i) {
-    auto driver = make_lmc1_driver([&] { return simulator.open(); }, quick(), clock);
+    auto driver = lmc1_camera([&] { return simulator.open(); }, quick(), clock);
     ASSERT_TRUE(driver->start());
     simulator.unplug();
     if (i % 2 == 0) {
@@ -154,14 +154,14 @@ TEST(Lmc1Driver, ExposureAndDarkFramesAreTheDevices) {
   Lmc1Options options = quick();
   options.exposure_us = 333;
   options.dark_frame_interval = 2;
-  auto driver = make_lmc1_driver([&] { return simulator.open(); }, options, clock);
+  auto driver = lmc1_camera([&] { return simulator.open(); }, options, clock);
   ASSERT_TRUE(driver->start());
   EXPECT_EQ(simulator.exposure_us(), 333);
   Frame frame;
   EXPECT_TRUE(eventually([&] { return driver->wait(frame, milliseconds(50)) && frame.dark; }));
   EXPECT_TRUE(eventually([&] { return driver->wait(frame, milliseconds(50)) && !frame.dark; }));
   options.exposure_us = 5;
-  EXPECT_FALSE(make_lmc1_driver([&] { return simulator.open(); }, options, clock)->start());
+  EXPECT_FALSE(lmc1_camera([&] { return simulator.open(); }, options, clock)->start());
 }
 
 TEST(Lmc1Driver, WithoutDarkFramesEveryFrameIsLitWhateverItsLabelIs) {
@@ -186,7 +186,7 @@ TEST(Lmc1Driver, ADeviceThatStallsItsCalibrationIsRefusedInOneSentence) {
   device.calibration.baseline_mm = 0.0F;
   Lmc1Simulator simulator(device);
   SteadyClock clock;
-  auto driver = make_lmc1_driver([&] { return simulator.open(); }, quick(), clock);
+  auto driver = lmc1_camera([&] { return simulator.open(); }, quick(), clock);
   const auto started = driver->start();
   ASSERT_FALSE(started);
   EXPECT_EQ(started.error().kind, ErrorKind::kBadData);
@@ -199,7 +199,7 @@ TEST(Lmc1Driver, UnknownModesAreRefused) {
   SteadyClock clock;
   Lmc1Options options = quick();
   options.width = 320;
-  auto driver = make_lmc1_driver([&] { return simulator.open(); }, options, clock);
+  auto driver = lmc1_camera([&] { return simulator.open(); }, options, clock);
   EXPECT_EQ(driver->start().error().kind, ErrorKind::kUsage);
 }
 

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "devices/leap/lmc1_driver.h"
 #include "devices/leap/lmc1_simulator.h"
 #include "devices/transport/usb_transport.h"
+#include "tests/devices/leap/one_kind.h"
 #include "usb_kernel.h"
 
 namespace dubsar {
@@ -45,7 +45,7 @@ TEST_F(Lmc1OverLibusb, IsListedReadCalibratedAndStreamedUntilItIsUnplugged) {
   SteadyClock clock;
   Lmc1Options options;
   options.calibration_settle = milliseconds(0);
-  auto driver = make_lmc1_driver(
+  auto driver = lmc1_camera(
       [&] { return open_usb_transport(lmc1::kVendorId, lmc1::kProductId, leap_options(), listed->front().path); },
       options, clock);
   const auto started = driver->start();
@@ -81,8 +81,8 @@ TEST_F(Lmc1OverLibusb, BuffersThatTheKernelRefusedAreOfferedAgain) {
   options.calibration_settle = milliseconds(0);
   UsbOpenOptions one_buffer = leap_options();
   one_buffer.transfers_in_flight = 1;
-  auto driver = make_lmc1_driver([&] { return open_usb_transport(lmc1::kVendorId, lmc1::kProductId, one_buffer); },
-                                 options, clock);
+  auto driver =
+      lmc1_camera([&] { return open_usb_transport(lmc1::kVendorId, lmc1::kProductId, one_buffer); }, options, clock);
   kernel.refuse(2);  // the first ones already
   ASSERT_TRUE(driver->start());
   Frame frame;

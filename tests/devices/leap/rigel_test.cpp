@@ -7,9 +7,9 @@
 #include <random>
 #include <thread>
 
-#include "devices/leap/rigel_driver.h"
 #include "devices/leap/rigel_simulator.h"
 #include "devices/leap/uvc_payload.h"
+#include "tests/devices/leap/one_kind.h"
 
 namespace dubsar {
 namespace {
@@ -211,7 +211,7 @@ TEST(RigelDriver, DeliversThePicturesThatTheDeviceRendered) {
     device.payload_bytes = payload;
     RigelSimulator simulator(device);
     SteadyClock clock;
-    auto driver = make_rigel_driver([&] { return simulator.open(); }, quick(), clock);
+    auto driver = rigel_camera([&] { return simulator.open(); }, quick(), clock);
     const auto started = driver->start();
     ASSERT_TRUE(started) << started.error().message;
     EXPECT_EQ(driver->calibration(), device.calibration);
@@ -248,7 +248,7 @@ TEST(RigelDriver, ASir170WithoutTheEmbeddedLineWorksToo) {
   RigelSimulator simulator(device);
   SteadyClock clock;
   RigelOptions options = quick();
-  auto driver = make_rigel_driver([&] { return simulator.open(); }, options, clock);
+  auto driver = rigel_camera([&] { return simulator.open(); }, options, clock);
   ASSERT_TRUE(driver->start());
   Frame frame;
   ASSERT_TRUE(driver->poll(frame));
@@ -264,17 +264,17 @@ TEST(RigelDriver, ExposureAndDarkFramesAreTheDevices) {
   RigelOptions options = quick();
   options.exposure_us = 777;
   options.dark_frame_interval = 4;
-  auto driver = make_rigel_driver([&] { return simulator.open(); }, options, clock);
+  auto driver = rigel_camera([&] { return simulator.open(); }, options, clock);
   ASSERT_TRUE(driver->start());
   EXPECT_EQ(simulator.exposure_us(), 777);
   Frame frame;
   EXPECT_TRUE(eventually([&] { return driver->wait(frame, milliseconds(50)) && frame.dark; }));
   EXPECT_TRUE(eventually([&] { return driver->wait(frame, milliseconds(50)) && !frame.dark; }));
   options.exposure_us = 5000;
-  EXPECT_FALSE(make_rigel_driver([&] { return simulator.open(); }, options, clock)->start());
+  EXPECT_FALSE(rigel_camera([&] { return simulator.open(); }, options, clock)->start());
   options = quick();
   options.dark_frame_interval = 3;
-  EXPECT_FALSE(make_rigel_driver([&] { return simulator.open(); }, options, clock)->start());
+  EXPECT_FALSE(rigel_camera([&] { return simulator.open(); }, options, clock)->start());
 }
 
 TEST(RigelDriver, UnpluggedIsAStateAndReplugStartsAgain) {
@@ -282,7 +282,7 @@ TEST(RigelDriver, UnpluggedIsAStateAndReplugStartsAgain) {
   device.stream.paced = true;
   RigelSimulator simulator(device);
   SteadyClock clock;
-  auto driver = make_rigel_driver([&] { return simulator.open(); }, quick(), clock);
+  auto driver = rigel_camera([&] { return simulator.open(); }, quick(), clock);
   ASSERT_TRUE(driver->start());
   Frame frame;
   ASSERT_TRUE(eventually([&] { return driver->poll(frame); }));
@@ -307,7 +307,7 @@ TEST(RigelDriver, AThousandCyclesLeaveNoThreadAndNoDescriptor) {
   RigelOptions options = quick();
   options.width = options.height = 384;  // the cheapest picture
   for (int i = 0; i < 1000; ++i) {
-    auto driver = make_rigel_driver([&] { return simulator.open(); }, options, clock);
+    auto driver = rigel_camera([&] { return simulator.open(); }, options, clock);
     ASSERT_TRUE(driver->start());
     simulator.unplug();
     if (i % 10 == 0) {
@@ -346,7 +346,7 @@ TEST(RigelDriver, CamerasThatCannotBeUsedSayWhy) {
   RigelSimulator simulator{RigelSimulatorOptions{}};
   SteadyClock clock;
   const auto error_of = [&](std::vector<std::byte> descriptors, RigelOptions options) {
-    auto driver = make_rigel_driver(
+    auto driver = rigel_camera(
         [&]() -> Result<std::unique_ptr<Transport>> {
           DUBSAR_ASSIGN(auto inner, simulator.open());
           return std::make_unique<AlteredTransport>(std::move(inner), descriptors);

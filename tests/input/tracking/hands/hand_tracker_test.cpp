@@ -6,8 +6,8 @@
 
 #include "core/base/clock.h"
 #include "devices/leap/hand_renderer.h"
-#include "devices/leap/lmc1_driver.h"
 #include "devices/leap/lmc1_simulator.h"
+#include "tests/devices/leap/one_kind.h"
 #include "tests/input/tracking/hands/hand_trials.h"
 
 namespace dubsar {
@@ -82,7 +82,7 @@ TEST(HandTracker, SimulatorDriverAndTrackerTogetherFollowOneHand) {
   SteadyClock clock;
   Lmc1Options options;
   options.calibration_settle = milliseconds(0);
-  auto driver = make_lmc1_driver([&] { return simulator.open(); }, options, clock);
+  auto driver = lmc1_camera([&] { return simulator.open(); }, options, clock);
   ASSERT_TRUE(driver->start());
   HandTracker tracker(stereo_lenses(*driver->calibration(), options.width, options.height));
   Frame frame;
