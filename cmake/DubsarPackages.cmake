@@ -24,6 +24,7 @@ if(DUBSAR_APP)
   pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
   pkg_check_modules(egl REQUIRED IMPORTED_TARGET egl)
   pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)
+  pkg_check_modules(fribidi REQUIRED IMPORTED_TARGET fribidi)  # scripts from right to left
   pkg_check_modules(openxr IMPORTED_TARGET openxr)  # head-mounted displays; without it they say so
   if(openxr_FOUND)
     pkg_check_modules(x11 REQUIRED IMPORTED_TARGET x11)

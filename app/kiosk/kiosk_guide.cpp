@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "app/document/document.h"
+#include "app/panels/right_to_left.h"
 #include "core/base/log.h"
 
 namespace dubsar::app {
@@ -202,8 +203,13 @@ void KioskGuide::walk(const GuideMoment& moment, Guidance& out) {
   GuidedScene scene{now->frame, now->camera, now->settles};
   if (const TourStep* const step = tour_.step())
     for (const TourLabel& label : step->labels)
-      scene.notes.push_back(
-          {label.part, {}, std::string(text_in(label.text, language())), label.at_mm, label.normal, {}, {}});
+      scene.notes.push_back({label.part,
+                             {},
+                             as_seen(text_in(label.text, language()), Words::right_to_left(language())),
+                             label.at_mm,
+                             label.normal,
+                             {},
+                             {}});
   out.scene = std::move(scene);
   if (!now->settles) return;
   view_.reset();  // what the tour turned no hand has turned
@@ -275,7 +281,7 @@ GalleryPicture KioskGuide::picture(const VisitPicture& visit) const {
   }
   if (visit.phase == VisitPhase::kAttract && object_ < parts_.profile.objects.size())
     out.title = text_in(parts_.profile.objects[object_].title, spoken);
-  out.letter_mm = letter_height_mm(parts_.profile.reading_distance_m);
+  out.letter_mm = letter_height_mm(parts_.profile.eyes.reading_distance_m);
   out.dark = motion_.dark;
   out.signs = signs_;
   if (menu_.open())

@@ -16,10 +16,10 @@ using nlohmann::json;
 constexpr std::string_view kProfileFormat = "dubsar kiosk";
 constexpr std::size_t kMostObjects = 64, kMostTexts = 32, kMostPanels = 4;
 
-constexpr std::array<std::string_view, 18> kMembers{
-    "format", "version",  "objects",      "languages",       "words", "display",    "monitor",
-    "panels", "inputs",   "idle_reset_s", "attract_after_s", "quiet", "brightness", "reading_distance_m",
-    "pin",    "key_file", "journal",      "comment"};
+constexpr std::array<std::string_view, 19> kMembers{
+    "format",       "version", "objects",      "languages",       "words",  "display",    "monitor",
+    "panels",       "inputs",  "idle_reset_s", "attract_after_s", "quiet",  "brightness", "reading_distance_m",
+    "parallax_deg", "pin",     "key_file",     "journal",         "comment"};
 constexpr std::array<std::string_view, 3> kPanelMembers{"display", "monitor", "size"};
 constexpr std::array<std::string_view, 5> kObjectMembers{"file", "tour", "title", "parts", "style"};
 
@@ -172,7 +172,8 @@ Result<KioskProfile> parse_kiosk_profile(std::string_view json_text, std::string
   out.idle_reset_s = fields.number("idle_reset_s", 5, 3600, &out.idle_reset_s);
   out.attract_after_s = fields.number("attract_after_s", 1, 3600, &out.attract_after_s);
   out.brightness = fields.number("brightness", 0.1, 1.0, &out.brightness);
-  out.reading_distance_m = fields.number("reading_distance_m", 0.3, 10.0, &out.reading_distance_m);
+  out.eyes.reading_distance_m = fields.number("reading_distance_m", 0.3, 10.0, &out.eyes.reading_distance_m);
+  out.eyes.parallax_deg = fields.number("parallax_deg", 0.1, 3.0, &out.eyes.parallax_deg);
   out.pin = fields.text("pin", "");
   out.key_file = reader.path(fields.text("key_file", ""));
   out.journal = reader.path(fields.text("journal", ""));

@@ -28,6 +28,11 @@ struct KioskPanel {
   std::string display, monitor{}, size{};  ///< as of `dubsar view --also`
 };
 
+struct VisitorEyes {
+  double reading_distance_m = 1.5;
+  double parallax_deg = 1.0;  ///< that they may converge more or less than on the panel, 0.1..3
+};
+
 struct KioskProfile {
   std::vector<KioskObject> objects;          ///< at least one
   std::vector<std::string> languages{"en"};  ///< the first one is spoken at first
@@ -39,7 +44,7 @@ struct KioskProfile {
   double attract_after_s = 8.0;       ///< without a hand, until the object moves by itself
   std::vector<QuietHours> quiet{};
   double brightness = 1.0;  ///< 0.1..1
-  double reading_distance_m = 1.5;
+  VisitorEyes eyes{};
   std::string pin{};                 ///< 4 to 12 digits; empty: no menu by keys
   std::filesystem::path key_file{};  ///< a file whose presence opens the operator's menu; empty: none
   std::filesystem::path journal{};   ///< folder; empty: none

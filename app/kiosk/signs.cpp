@@ -7,7 +7,7 @@ namespace dubsar::app {
 namespace {
 
 constexpr TimestampNs kBegins = 250'000'000;    // a hand that passes fills nothing
-constexpr TimestampNs kFills = 1'250'000'000;   // a hand that ends there by chance has mostly left by then
+constexpr TimestampNs kFills = 2'000'000'000;   // a hand that ends there by chance has mostly left by then
 constexpr TimestampNs kForgives = 300'000'000;  // a tremble over the edge, or a hand that is lost for a moment
 constexpr TimestampNs kSignGone = 1'000'000'000;
 constexpr double kEdge = 1.25;  // of the radius, for a hand that is on the sign already
@@ -31,6 +31,14 @@ std::vector<SignPicture> place_signs(std::span<const Sign> signs, double aspect)
     const int row = kRow[static_cast<std::size_t>(sign)];
     out.push_back({sign, {x, 0.5 - (radius + margin) - row * (2.0 * radius + margin)}, radius, 0.0});
   }
+  return out;
+}
+
+std::vector<SignPicture> signs_on(std::span<const SignPicture> signs, double aspect) {
+  std::vector<Sign> kinds;
+  for (const SignPicture& sign : signs) kinds.push_back(sign.sign);
+  std::vector<SignPicture> out = place_signs(kinds, aspect);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].filled = signs[i].filled;
   return out;
 }
 

@@ -29,6 +29,9 @@ struct SignPicture {
 /// that play with the object rarely rest.
 std::vector<SignPicture> place_signs(std::span<const Sign> signs, double aspect);
 
+/// The same signs on a panel of another shape, as full as they are.
+std::vector<SignPicture> signs_on(std::span<const SignPicture> signs, double aspect);
+
 /// The sign at a place, such as a finger's on the glass; none: there is none.
 std::optional<Sign> sign_at(const glm::dvec2& at, std::span<const SignPicture> signs, double aspect);
 

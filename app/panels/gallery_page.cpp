@@ -7,6 +7,7 @@
 
 #include "app/panels/lesson_picture.h"
 #include "app/panels/panel_font.h"
+#include "app/panels/right_to_left.h"
 
 namespace dubsar::app {
 namespace {
@@ -22,7 +23,7 @@ float draw_words(const std::string& words, float size_px, float width, float bot
   if (words.empty()) return bottom;
   ImFont* const font = ImGui::GetFont();
   const float room = kSentenceRoom * width;
-  const SetWords set = set_words(words, size_px, width);
+  const SetWords set = set_words(words, size_px, width, right_to_left);
   const auto fitted = static_cast<float>(set.size);
   const ImVec2 text(static_cast<float>(set.wide), static_cast<float>(set.tall));
   const float left = right_to_left ? 0.5f * (width + room) - text.x : 0.5f * (width - text.x);
@@ -31,7 +32,13 @@ float draw_words(const std::string& words, float size_px, float width, float bot
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(ImVec2(at.x - 1.5f * pad, at.y - pad), ImVec2(at.x + text.x + 1.5f * pad, bottom),
                      ImGui::GetColorU32(ImVec4(0.09f, 0.09f, 0.1f, 0.82f)), pad);
-  list.AddText(font, fitted, at, ImGui::GetColorU32(ImVec4(0.95f, 0.93f, 0.88f, 1.0f)), words.c_str(), nullptr, room);
+  const ImU32 pale = ImGui::GetColorU32(ImVec4(0.95f, 0.93f, 0.88f, 1.0f));
+  if (set.lines.empty()) list.AddText(font, fitted, at, pale, words.c_str(), nullptr, room);
+  for (std::size_t i = 0; i < set.lines.size(); ++i) {
+    const float wide = font->CalcTextSizeA(fitted, 1e6f, 0.0f, set.lines[i].c_str()).x;
+    const ImVec2 line(right_to_left ? at.x + text.x - wide : at.x, at.y + fitted * static_cast<float>(i));
+    list.AddText(font, fitted, line, pale, set.lines[i].c_str());
+  }
   return at.y - pad;
 }
 
@@ -121,12 +128,23 @@ double letters_size(double letter_mm, double height, double per_mm) noexcept {
   return std::min(letter_mm * per_mm / panel_capital(), kLargestLetters * height);
 }
 
-SetWords set_words(const std::string& words, double size, double width) {
+SetWords set_words(const std::string& words, double size, double width, bool right_to_left) {
   ImFont* const font = ImGui::GetFont();
   const float room = kSentenceRoom * static_cast<float>(width);
-  const float whole = font->CalcTextSizeA(static_cast<float>(size), 1e6f, 0.0f, words.c_str()).x;
+  const auto long_at = [&](float at, const std::string& line) {
+    return font->CalcTextSizeA(at, 1e6f, 0.0f, line.c_str()).x;
+  };
+  const float whole = long_at(static_cast<float>(size), as_seen(words, right_to_left));
   const double fits = 1.9 * room / std::max(whole, 1.0f);  // on two lines that are not quite full
   const auto set = static_cast<float>(size * std::clamp(fits, kSmallerLetters, 1.0));
+  if (has_right_to_left(words)) {
+    SetWords out{static_cast<double>(set)};
+    out.lines =
+        lines_as_seen(words, right_to_left, [&](const std::string& line) { return long_at(set, line) <= room; });
+    for (const std::string& line : out.lines) out.wide = std::max(out.wide, static_cast<double>(long_at(set, line)));
+    out.tall = static_cast<double>(set) * static_cast<double>(out.lines.size());
+    return out;
+  }
   const ImVec2 text = font->CalcTextSizeA(set, 1e6f, room, words.c_str());
   return {static_cast<double>(set), static_cast<double>(text.x), static_cast<double>(text.y)};
 }

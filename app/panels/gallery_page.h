@@ -37,10 +37,11 @@ double letters_size(double letter_mm, double height, double per_mm) noexcept;
 /// takes.
 struct SetWords {
   double size = 0.0;
-  double wide = 0.0, tall = 0.0;  ///< of all lines
+  double wide = 0.0, tall = 0.0;     ///< of all lines
+  std::vector<std::string> lines{};  ///< as they are seen, of texts with letters from right to left; else none
 };
 /// Within a frame of Dear ImGui. `size` as of letters_size().
-SetWords set_words(const std::string& words, double size, double width);
+SetWords set_words(const std::string& words, double size, double width, bool right_to_left = false);
 
 /// Within a frame of Dear ImGui of `width` x `height` pixels, of which `px_per_mm` are a millimetre of the panel.
 void draw_gallery(const GalleryPicture& picture, float width, float height, float px_per_mm);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "app/panels/panel_font.h"
+#include "app/panels/right_to_left.h"
 #include "display/render/gl_objects.h"
 #include "display/render/view_array.h"
 
@@ -57,14 +58,18 @@ struct Layout {
   std::vector<std::size_t> starts{0};  ///< first section of each column
 };
 
-/// Letters of European languages, of transliterations of Akkadian and Sumerian,
-void add_font(float size_px) {
+void add_font(float size_px, const std::uint16_t* letters) {
   ImFontConfig font;
   font.FontDataOwnedByAtlas = false;
   const std::span<const unsigned char> data = panel_font();
   // ImGui does not write to what it does not own.
   ImGui::GetIO().Fonts->AddFontFromMemoryTTF(const_cast<unsigned char*>(data.data()), static_cast<int>(data.size()),
-                                             size_px, &font, panel_letters());
+                                             size_px, &font, letters);
+}
+
+void add_fonts(const std::uint16_t* letters) {
+  add_font(kFontPx, letters);
+  add_font(kPanelFontPx, letters);
 }
 
 std::size_t lines_of(const HelpSection& section, std::size_t glyphs, std::size_t second) {
@@ -167,31 +172,44 @@ void draw_notice(const std::string& notice, double opacity, float width, float h
 
 }  // namespace
 
+/// Dear ImGui works on one state at a time: that of an overlay while it is called, then the one before.
+class Overlay::Turn {
+ public:
+  explicit Turn(ImGuiContext* state) : before_(ImGui::GetCurrentContext()) { ImGui::SetCurrentContext(state); }
+  ~Turn() { ImGui::SetCurrentContext(before_); }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  ImGuiContext* before_;
+};
+
 Result<std::unique_ptr<Overlay>> Overlay::create(const KeyTable& keys) {
-  DUBSAR_CHECK(ImGui::GetCurrentContext() == nullptr);
-  ImGui::CreateContext();
+  const Turn turn(nullptr);
+  ImGuiContext* const state = ImGui::CreateContext();
+  ImGui::SetCurrentContext(state);
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
   io.DeltaTime = 1.0f / 60.0f;
   io.KeyRepeatDelay = 1e9f;  // the window's keyboard repeats
   for (const auto& [name, key] : kEditKeys) io.KeyMap[key] = key;
-  add_font(kFontPx);
-  add_font(kPanelFontPx);
+  add_fonts(panel_letters());
   ImGui::StyleColorsDark();
   ImGui::GetStyle().WindowBorderSize = 0.0f;
   ImGui::GetStyle().WindowRounding = 4.0f;
   if (!ImGui_ImplOpenGL3_Init("#version 430")) {
-    ImGui::DestroyContext();
+    ImGui::DestroyContext(state);
     return fail(ErrorKind::kUnavailable, "overlay: Dear ImGui found no OpenGL library that it can use");
   }
   ImGui_ImplOpenGL3_NewFrame();  // makes the picture of the letters
-  return std::unique_ptr<Overlay>(new Overlay(keys));
+  return std::unique_ptr<Overlay>(new Overlay(keys, state));
 }
 
 Overlay::~Overlay() {
+  const Turn turn(state_);
   ImGui_ImplOpenGL3_Shutdown();
-  ImGui::DestroyContext();
+  ImGui::DestroyContext(state_);
 }
 
 glm::dvec2 Overlay::layout(int view_height, const glm::dvec2& window_mm, double scale) {
@@ -226,6 +244,17 @@ void Overlay::draw_all(float width, float height) {
   if (!text_.help.empty()) draw_help(text_.help, width, height);
   if (text_.gallery) draw_gallery(*text_.gallery, width, height, px_per_mm_);
   if (!text_.notice.empty()) draw_notice(text_.notice, text_.notice_opacity, width, height - (text_.panels ? 56 : 0));
+}
+
+/// Only museums that need them wait for them, .1 s once.
+void Overlay::take_letters() {
+  if (all_letters_ || !text_.gallery) return;
+  if (!has_right_to_left(text_.gallery->line) && !has_right_to_left(text_.gallery->title)) return;
+  all_letters_ = true;
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui::GetIO().Fonts->Clear();
+  add_fonts(panel_letters_of_all());
+  ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
 void Overlay::frame(const glm::dvec2& layout, const glm::dvec2& scale) {
@@ -277,6 +306,7 @@ bool Overlay::take_key(const InputEvent& event, const glm::dvec2& layout) {
 }
 
 bool Overlay::take(const InputEvent& event, const glm::dvec2& layout) {
+  const Turn turn(state_);
   if (!text_.panels || !text_.help.empty()) return false;
   if (event.kind == EventKind::kKey) return take_key(event, layout);
   if (!event.at) return false;
@@ -309,8 +339,10 @@ std::vector<std::string> Overlay::take_commands() { return std::exchange(command
 
 Result<void> Overlay::paint(ViewArray& layers, const glm::dvec2& window_mm) {
   if (text_.empty()) return {};
+  const Turn turn(state_);
   const glm::dvec2 size = layout(layers.height(), window_mm, wanted_scale_);
   px_per_mm_ = static_cast<float>(size.y / window_mm.y);
+  take_letters();
   ImGui_ImplOpenGL3_NewFrame();
   for (int pass = 0; pass < 2; ++pass)  // sizes that follow from text are known in the second
     frame(size, {layers.width() / size.x, layers.height() / size.y});

@@ -16,6 +16,8 @@
 #include "app/panels/light_ball.h"
 #include "app/viewer/stage.h"
 
+struct ImGuiContext;
+
 namespace dubsar::app {
 
 struct OverlayText {
@@ -34,13 +36,15 @@ struct OverlayText {
 };
 
 /// Drawn by Dear ImGui into every view at the same place, so that both eyes of
-/// every display see it on the panel's plane. One at a time; the GL context
-/// that made it is current in every call and at its end.
+/// every display see it on the panel's plane. The GL context that made it is
+/// current in every call and at its end; each has its own state of Dear ImGui.
+/// One thread for all.
 class Overlay final : public LayerPainter {
  public:
   /// `keys` outlives it. kUnavailable when Dear ImGui cannot use this context.
   static Result<std::unique_ptr<Overlay>> create(const KeyTable& keys);
   ~Overlay() override;
+  /// Letters that were not needed yet are made with the next picture.
   void set(OverlayText text) { text_ = std::move(text); }
   const OverlayText& text() const noexcept { return text_; }
   Result<void> paint(ViewArray& layers, const glm::dvec2& window_mm) override;
@@ -59,12 +63,15 @@ class Overlay final : public LayerPainter {
   std::vector<std::string> take_commands();
 
  private:
-  explicit Overlay(const KeyTable& keys) : keys_(keys) {}
+  class Turn;
+  Overlay(const KeyTable& keys, ImGuiContext* state) : keys_(keys), state_(state) {}
   bool take_key(const InputEvent& event, const glm::dvec2& layout);
   void frame(const glm::dvec2& layout, const glm::dvec2& scale);
   void draw_all(float width, float height);
+  void take_letters();
 
   const KeyTable& keys_;
+  ImGuiContext* state_;
   OverlayText text_;
   std::vector<std::string> commands_;
   glm::dvec2 scale_{1.0, 1.0};
@@ -72,6 +79,7 @@ class Overlay final : public LayerPainter {
   float px_per_mm_ = 3.0f;
   std::array<bool, 3> held_{};  ///< buttons that went down on a panel
   bool object_held_ = false;    ///< one went down beside them
+  bool all_letters_ = false;    ///< those of Hebrew and Arabic are there
 };
 
 }  // namespace dubsar::app

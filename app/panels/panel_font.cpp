@@ -60,4 +60,11 @@ const std::uint16_t* panel_letters() {
   return kLetters.data();
 }
 
+const std::uint16_t* panel_letters_of_all() {
+  static constexpr std::array<std::uint16_t, 19> kLetters{0x20,   0x17f,  0x2b0,  0x2ff,  0x590,  0x6ff,  0x1e00,
+                                                          0x1eff, 0x2010, 0x203a, 0x2070, 0x209f, 0x2190, 0x21ff,
+                                                          0xfb1d, 0xfbff, 0xfe70, 0xfefc, 0};
+  return kLetters.data();
+}
+
 }  // namespace dubsar::app

@@ -16,4 +16,7 @@ double panel_capital() noexcept;
 /// of Akkadian and Sumerian, and digits above and below the line.
 const std::uint16_t* panel_letters();
 
+/// The same and those of Hebrew and Arabic, joined ones too (app/panels/right_to_left.h).
+const std::uint16_t* panel_letters_of_all();
+
 }  // namespace dubsar::app

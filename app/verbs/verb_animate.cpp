@@ -82,7 +82,7 @@ Result<StageOptions> stage_options(const AnimateRequest& options, const std::str
   out.viewer = shown.viewer;
   DUBSAR_ASSIGN(out.shading, shading_preset(style));
   out.style = style;
-  out.margin = kMargin;
+  out.room.margin = kMargin;
   out.samples = options.samples;
   return out;
 }

@@ -173,7 +173,7 @@ Result<VerbResult> show_in_window(const RenderRequest& options, const SinkSpec& 
   view.stage.viewer = shown.viewer;
   view.stage.shading = shown.shading;
   view.stage.direction = shown.direction;
-  view.stage.margin = shown.margin;
+  view.stage.room.margin = shown.margin;
   view.stage.magnification = shown.magnification;
   view.stage.samples = shown.samples;
   if (request.pattern) view.stage.subject = Subject::kPattern;

@@ -185,8 +185,8 @@ Result<void> with_window(const ViewRequest& options, ViewOptions& view) {
   if (options.panel.fullscreen || options.panel.windowed || !options.panel.size.empty())
     view.fullscreen = options.panel.fullscreen;
   view.around.notices = view.around.panels = options.made.frames.empty();
-  if (view.around.panels) view.stage.margin = 0.12;  // room for the line above the surface and the strip below it
-  DUBSAR_TRY(list_monitors());                       // before a large file is read
+  if (view.around.panels) view.stage.room.margin = 0.12;  // room for the line above the surface and the strip below it
+  DUBSAR_TRY(list_monitors());                            // before a large file is read
   return {};
 }
 

@@ -91,6 +91,7 @@ Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) 
     view.guide = &guide;
     view.around.notices = view.around.panels = false;
     view.files.autosave.clear();
+    view.stage.room.most_parallax_deg = profile.eyes.parallax_deg;
     guide.begin_object();
     DUBSAR_ASSIGN(out.last, run_view(meshes[at], view, progress, {}, nullptr, &kept));
     out.triangles = meshes[at].triangles.size();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/panels/overlay.h"
 #include "app/panels/panel_font.h"
 #include "app/viewer/viewer.h"
 #include "app/viewer/window_input.h"
@@ -40,7 +41,14 @@ Shown shown_on(const Shown& main, const PanelPlane& of_main, const PanelPlane& h
   return out;
 }
 
-/// Goes from the bottom up: what is made of a surface, the stage, then the window with its context.
+GalleryPicture gallery_on(const GalleryPicture& main, double aspect) {
+  GalleryPicture out = main;
+  out.signs = signs_on(main.signs, aspect);
+  out.menu.clear();
+  return out;
+}
+
+/// Goes from the bottom up: what is made of a surface, the stage, what lies over it, then the window with its context.
 struct SidePanels::Panel {
   Panel(const SidePanelOptions& given, const ViewOptions& session, std::size_t number) : options(session) {
     options.also.clear();
@@ -60,6 +68,7 @@ struct SidePanels::Panel {
   std::unique_ptr<Presenter> presenter;
   std::unique_ptr<OutputSink> sink;  // until there is a stage
   std::unique_ptr<LabelFont> font;
+  std::unique_ptr<Overlay> words;
   std::unique_ptr<Stage> stage;
   PanelOutcome state;
   TimestampNs tried = -1, painted = -1;
@@ -69,6 +78,7 @@ struct SidePanels::Panel {
   void take_down() {
     if (presenter) static_cast<void>(presenter->make_current());
     stage.reset();
+    words.reset();
     font.reset();
     sink.reset();
     presenter.reset();
@@ -197,6 +207,21 @@ Result<void> SidePanels::follow(Viewer& viewer, TimestampNs now, const std::stri
   return done;
 }
 
+/// Sentences and signs of whoever leads the session, as large as the reader needs them here.
+Result<void> SidePanels::say(Panel& panel, const Viewer& viewer) {
+  if (!viewer.gallery()) return {};
+  if (!panel.words) {
+    DUBSAR_ASSIGN(panel.words, Overlay::create(viewer.keys()));
+  }
+  const glm::dvec2 window = panel.stage->window_mm();
+  OverlayText text;
+  text.gallery = gallery_on(*viewer.gallery(), window.x / window.y);
+  if (text == panel.words->text()) return {};
+  panel.words->set(std::move(text));
+  panel.stage->set_overlay(panel.words.get());
+  return {};
+}
+
 /// Whether it has something to paint.
 Result<bool> SidePanels::show(Panel& panel, const Viewer& viewer, TimestampNs now) {
   DUBSAR_TRY(panel.presenter->make_current());
@@ -208,6 +233,7 @@ Result<bool> SidePanels::show(Panel& panel, const Viewer& viewer, TimestampNs no
     return PanelPlane{of.window_mm(), of.middle_mm(), of.traits().view.height, panel.font.get()};
   };
   panel.stage->show(shown_on(main.shown(), plane(main), plane(stage)), FollowedEyes(), now);
+  DUBSAR_TRY(say(panel, viewer));
   return panel.damaged || stage.needs_paint();
 }
 
@@ -243,6 +269,7 @@ void SidePanels::drop_surface() {
     if (!panel->stage) continue;
     static_cast<void>(panel->presenter->make_current());
     panel->stage.reset();
+    panel->words.reset();  // it knows the session's keys
   }
   if (!panels_.empty()) static_cast<void>(main_.make_current());
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/panels/gallery_page.h"
 #include "app/viewer/view_options.h"
 
 namespace dubsar::app {
@@ -20,6 +21,9 @@ struct PanelPlane {
   LabelFont* font = nullptr;  ///< of its context
 };
 Shown shown_on(const Shown& main, const PanelPlane& of_main, const PanelPlane& here);
+/// What a gallery says on a panel that is `aspect` times as wide as high: the same sentences, lesson, light and signs;
+/// the operator's menu is the main panel's.
+GalleryPicture gallery_on(const GalleryPicture& main, double aspect);
 
 /// One that cannot be had is tried again every 2 s where time is real, and one whose monitor is gone is taken down
 /// until that is back; meanwhile the session goes on. One thread: that of the session. Each has a GL context of its
@@ -54,6 +58,7 @@ class SidePanels {
   struct Panel;
   Result<void> follow_all(Viewer& viewer, TimestampNs now, const std::string& frame);
   Result<bool> show(Panel& panel, const Viewer& viewer, TimestampNs now);
+  static Result<void> say(Panel& panel, const Viewer& viewer);
   void open(Panel& panel);
   void look_after(Panel& panel, TimestampNs now);
   void hear(Panel& panel);

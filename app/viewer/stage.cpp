@@ -7,6 +7,7 @@
 #include "app/viewer/stage_parts.h"
 #include "core/base/budget.h"
 #include "core/base/log.h"
+#include "display/optics/comfort.h"
 #include "display/render/test_pattern.h"
 #include "display/render/view_array.h"
 #include "display/sinks/render_display.h"
@@ -73,7 +74,7 @@ Result<void> Stage::Parts::prepare(OutputSink& with) {
   const glm::dvec3 size = object.box.size();
   plane.magnification = options.magnification > 0 ? options.magnification
                         : traits.worn             ? 1.0  // life size
-                                                  : (1.0 - 2.0 * options.margin) * std::min(rect.size.x, rect.size.y) /
+                                      : (1.0 - 2.0 * options.room.margin) * std::min(rect.size.x, rect.size.y) /
                                             std::max({size.x, size.y, size.z, 1e-9});
   return {};
 }
@@ -91,7 +92,21 @@ Observer Stage::Parts::viewer_at(const FollowedEyes& eyes) const {
       0.51 * plane.magnification * next.shown.fit * next.shown.view.zoom * glm::length(object.box.size()) + 1.0;
   out.front_mm = half_depth;
   out.back_mm = -half_depth;
+  out.depth_factor = depth_factor(out);
   return out;
+}
+
+/// People's hands reach farther than a small object.
+double Stage::Parts::depth_factor(const Observer& viewer) const {
+  if (options.room.most_parallax_deg <= 0 || sink->traits().worn) return 1.0;
+  double front = viewer.front_mm, back = viewer.back_mm;
+  for (const LinesItem& lines : next.shown.before)
+    for (const glm::dvec3& p : lines.points_mm) {
+      front = std::max(front, p.z);
+      back = std::min(back, p.z);
+    }
+  const double apart = glm::distance(options.viewer.left_mm, options.viewer.right_mm);
+  return easy_depth_factor(eyes_before(sink->views(viewer), apart), front, back, options.room.most_parallax_deg);
 }
 
 Observer Stage::Parts::cameras() const {
@@ -108,9 +123,9 @@ Stage::~Stage() = default;
 
 Result<std::unique_ptr<Stage>> Stage::create(const TriMesh& mesh, const StageOptions& options,
                                              std::unique_ptr<OutputSink> sink) {
-  if (!(options.margin >= 0 && options.margin <= 0.45) || options.samples < 1 || options.samples > 8)
+  if (!(options.room.margin >= 0 && options.room.margin <= 0.45) || options.samples < 1 || options.samples > 8)
     return fail(ErrorKind::kUsage, "view: margin {} and {} samples found, expected 0 to 0.45 and 1 to 8",
-                options.margin, options.samples);
+                options.room.margin, options.samples);
   auto parts = std::make_unique<Parts>(options);
   parts->next.shown.style = options.shading.style;
   parts->next.shown.other = options.shading.other;

@@ -37,6 +37,14 @@ enum class Subject {
   kPattern,  ///< numbered views (display/render/test_pattern.h) in place of the mesh
 };
 
+/// What the object may take up.
+struct StageRoom {
+  double margin = 0.08;  ///< free border around it at zoom 1
+  /// Degrees that the eyes may converge more or less than on the panel (display/optics/comfort.h): what would be deeper
+  /// makes the picture flatter. 0: as deep as things are. Worn displays show the world as it is.
+  double most_parallax_deg = 0.0;
+};
+
 struct StageOptions {
   SinkSpec display{"mono"};
   /// Displays and panels that may be named; who owns it, too, may put other figures into it and set the display again.
@@ -46,8 +54,8 @@ struct StageOptions {
   Shading shading{};
   std::string style = "relief";  ///< the name of the shading's style and light
   ViewDirection direction{};     ///< the front of the home view
-  double margin = 0.08;          ///< free border around the object at zoom 1
-  int samples = 1;               ///< samples x samples a pixel
+  StageRoom room{};
+  int samples = 1;  ///< samples x samples a pixel
   Quality quality = Quality::kExact;
   double budget_ms = 14.0;     ///< kAdaptive: for the views of one picture
   bool stereo_window = false;  ///< the target has a left and a right buffer

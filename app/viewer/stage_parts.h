@@ -87,6 +87,7 @@ struct Stage::Parts {
   Result<void> prepare(OutputSink& with);
   void measure(const FieldNeeds& needs);
   Observer viewer_at(const FollowedEyes& eyes) const;
+  double depth_factor(const Observer& viewer) const;
   /// The eyes that cameras are made for.
   Observer cameras() const;
   /// Where what is shown stands: with another one beside it in the middle of its half, 0 left, 1 right.

@@ -82,6 +82,9 @@ class Viewer final : public Workplace {
   const Stage& stage() const noexcept { return *stage_; }
   const Document& document() const noexcept { return editor_->document(); }
   const Desk& desk() const noexcept { return editor_->desk(); }
+  /// What whoever leads the session has over the picture; none: nobody leads.
+  const std::optional<GalleryPicture>& gallery() const noexcept { return at_.guidance.picture; }
+  const KeyTable& keys() const noexcept { return *said_.keys; }
   const SlicePanelState& slices() const noexcept { return tools_.slices->state(); }
   std::string display() const { return displays_.specs[displays_.shown].text(); }
   std::vector<SourceRow> sources() const { return sources_->rows(); }

@@ -53,10 +53,10 @@ void GestureRecognizer::update(TimestampNs now, const HandFrame* hand) {
   const bool acts = may_begin && !at_signs && position_m_.z <= options_.place.acts_to_z_m;
   const bool within = std::max(std::abs(position_m_.x), std::abs(position_m_.y)) <= options_.swipe.within_m;
   grip_.update({now, since_ns, glm::length(velocity_mps_), still_ns, acts}, *hand, options_, events_);
-  const bool free = may_begin && !grip_.holds();
-  if (const auto swiped = swipe_.update(
-          {now, still_ns, history_.newest().position_m, velocity_mps_, hand->grab_strength, free && acts && within},
-          options_))
+  const bool free = may_begin && !grip_.holds(), known = now - *came_ >= options_.swipe.known_ns;
+  if (const auto swiped = swipe_.update({now, still_ns, history_.newest().position_m, velocity_mps_,
+                                         hand->grab_strength, since_ns, free && acts && within && known},
+                                        options_))
     events_.push_back({now, GestureKind::kSwipe, GesturePhase::kDone, *swiped});
   if (dwell_.update(now, cursor_m_, free, options_)) events_.push_back({now, GestureKind::kDwell, GesturePhase::kDone});
 }

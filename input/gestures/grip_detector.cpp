@@ -65,6 +65,8 @@ void GripDetector::grab(const Moment& moment, const HandFrame& hand, const Gestu
     const Closing closing = judge(moment, options, closed, closed_since_);
     if (closing == Closing::kOpen)
       open_grab_ = std::min(grab, open_grab_ + kForgetsOpen_per_s * 1e-9 * static_cast<double>(moment.since_ns));
+    // What closes while the hand is on its way does not take hold when it has come: hands at the chin are half closed.
+    if (closing == Closing::kOpen && moment.still_ns < options.grab.still_ns) open_grab_ = std::max(open_grab_, grab);
     if (closing == Closing::kOnItsWay) {
       grab_armed_ = false;
       open_grab_ = grab;

@@ -8,8 +8,10 @@ namespace dubsar {
 namespace {
 constexpr TimestampNs kRest = 100'000'000;
 // A swipe that is counted at its end: straight enough, in one go, by a hand that stays where it ends.
-constexpr double kBrisk = 1.2;  // times the speed of a swipe: nobody talks with such a hand, it need not stay
+constexpr double kBriskMps = 0.96;  // nobody talks with such a hand, it need not stay
 constexpr double kSlanted = 0.6, kDeep = 0.45, kOpen = 0.3;
+constexpr double kClosing_s = 0.08;
+constexpr double kAsOpen = 0.08;  // who talks or points bends the fingers a little
 constexpr TimestampNs kLongest = 1'400'000'000, kSettled = 120'000'000;
 
 SwipeDirection direction_of(int axis, double sign) {
@@ -20,6 +22,9 @@ SwipeDirection direction_of(int axis, double sign) {
 }  // namespace
 
 std::optional<SwipeDirection> SwipeDetector::update(const Moment& moment, const GestureOptions& options) {
+  if (!closing_) closing_ = most_open_ = moment.closing;
+  *closing_ += std::min(1.0, 1e-9 * static_cast<double>(moment.since_ns) / kClosing_s) * (moment.closing - *closing_);
+  most_open_ = std::min(most_open_, *closing_);
   return options.swipe.still_ns > 0 ? at_its_end(moment, options) : on_the_way(moment, options);
 }
 
@@ -30,13 +35,14 @@ std::optional<SwipeDirection> SwipeDetector::at_its_end(const Moment& moment, co
     return std::nullopt;
   }
   const double speed = glm::length(moment.velocity_mps);
-  const bool brisk = peak_mps_ >= kBrisk * options.swipe.fast_mps && speed <= 0.5 * peak_mps_;
+  const bool brisk = peak_mps_ >= std::max(kBriskMps, options.swipe.fast_mps) && speed <= 0.5 * peak_mps_;
   if (from_m_ && peak_mps_ >= options.swipe.fast_mps && (brisk || moment.still_ns >= kSettled)) {  // it came to its end
     const glm::dvec3 way = moment.at_m - *from_m_;
     const int axis = std::abs(way.x) >= std::abs(way.y) ? 0 : 1;
     const double along = std::abs(way[axis]);
     const bool swiped = along >= options.swipe.travel_m && std::abs(way[1 - axis]) <= kSlanted * along &&
-                        std::abs(way.z) <= kDeep * along && moment.closing <= kOpen && moment.now - left_ <= kLongest;
+                        std::abs(way.z) <= kDeep * along && moment.closing <= kOpen &&
+                        (brisk || *closing_ - most_open_ <= kAsOpen) && moment.now - left_ <= kLongest;
     from_m_.reset();
     if (swiped) return direction_of(axis, way[axis]);
   }

@@ -15,6 +15,7 @@ class SwipeDetector {
     TimestampNs now = 0, still_ns = 0;        ///< for how long the hand has been held still
     glm::dvec3 at_m{0.0}, velocity_mps{0.0};  ///< of the palm, as it was measured
     double closing = 0.0;                     ///< 0: open, 1: a fist
+    TimestampNs since_ns = 0;                 ///< since the sample before
     bool may_begin = true;                    ///< false: the hand holds something, or has just come
   };
   /// The direction when a swipe happened now. One thread.
@@ -34,6 +35,8 @@ class SwipeDetector {
   std::optional<glm::dvec3> from_m_;  // where it was fast first, or still last
   TimestampNs left_ = 0;              // that place
   double peak_mps_ = 0.0;
+  std::optional<double> closing_;  // without noise
+  double most_open_ = 1.0;         // how open the hand was at most
 };
 
 }  // namespace dubsar

@@ -113,6 +113,7 @@ Result<GestureOptions> read_gestures(const json& object, const std::string& wher
   out.swipe.opposing_mps = 1e-3 * f.number("swipe_opposing_mm_per_s", 1, 5000);
   out.swipe.lockout_ns = from_ms(f.number("swipe_lockout_ms", 0, 5000));
   out.swipe.travel_m = 1e-3 * f.number("swipe_travel_mm", 0, 500);
+  out.swipe.known_ns = from_ms(f.number("swipe_known_ms", 0, 60000));
   out.swipe.still_ns = from_ms(f.number("swipe_still_ms", 0, 2000));
   out.place.signs_from_x_m = 1e-3 * f.number("signs_from_x_mm", -10000, 10000);
   out.place.signs_from_y_m = 1e-3 * f.number("signs_from_y_mm", -10000, 10000);

@@ -16,12 +16,13 @@ constexpr double kSameShoulderM = 0.2, kShouldersMinM = 0.15, kShouldersMaxM = 0
 constexpr std::size_t kMostStrangers = 16;
 constexpr double kClearlyBetterM = 0.25;
 constexpr TimestampNs kMakesRoom = 500'000'000;
+constexpr double kMoreCentralM = 0.2;
 // A hand's shoulder, as its fingers tell it, is on its side of the head, and not far from it; without a camera the head
 // is somewhere before the panel's middle.
 constexpr double kFarthestShoulderM = 0.33, kWrongSideM = 0.05, kHeadUnknownM = 0.12;
 constexpr double kHalfShouldersM = 0.19;
 // Bodies that fingers tell of: 95 of 100 within 0.2 m of where they stand, 500 simulated visitors.
-constexpr double kBeforeThePanelM = 0.3, kSameBodyM = 0.22, kNearestHeadM = 0.32;
+constexpr double kBeforeThePanelM = 0.3, kSameBodyM = 0.22, kNearestHeadM = 0.32, kMistakenM = 0.2;
 constexpr TimestampNs kOwns = 500'000'000, kOwnerGone = 4'000'000'000;
 constexpr double kOwnerFollows = 0.02;  // of the way at each sample
 constexpr double kHeadMarginM = 0.03;   // shoulders of two who stand close are as near to one head as to the other
@@ -125,6 +126,19 @@ const HeadFrame* HeadKeeper::update(TimestampNs now, std::span<const HeadFrame> 
   return best;
 }
 
+/// A left hand that is taken for a right one, or the other way round: the kept head has the shoulder that it comes
+/// from, and nobody else there has that of the hand as it is called.
+bool HandKeeper::is_mistaken(const HandFrame& hand, std::span<const HeadFrame> heads,
+                             const std::optional<glm::dvec3>& kept_head_m) {
+  if (!kept_head_m || hand.chirality == Chirality::kUnknown) return false;
+  const double body = body_x_m(hand), mirrored = 2.0 * shoulder_of(hand).x - body;
+  if (std::abs(mirrored - kept_head_m->x) > kSameBodyM) return false;
+  return std::none_of(heads.begin(), heads.end(), [&](const HeadFrame& head) {
+    const auto eyes = place_of(head);
+    return eyes && glm::length(*eyes - *kept_head_m) > kSameHeadM && std::abs(body - eyes->x) <= kMistakenM;
+  });
+}
+
 bool HandKeeper::is_the_owners(const HandFrame& hand, std::span<const HeadFrame> heads,
                                const std::optional<glm::dvec3>& kept_head_m) const {
   const double body = body_x_m(hand);
@@ -137,10 +151,26 @@ bool HandKeeper::is_the_owners(const HandFrame& hand, std::span<const HeadFrame>
   for (const HeadFrame& head : heads)
     if (const auto eyes = place_of(head); eyes && glm::length(*eyes - *kept_head_m) > kSameHeadM)
       nearest = std::min(nearest, std::abs(body - eyes->x));
-  if (apart <= kNearestHeadM + unsure) return apart + kHeadMarginM <= nearest;
-  // A left hand that is taken for a right one, with nobody there whose right hand it could be.
-  const double mirrored = 2.0 * shoulder_of(hand).x - body;
-  return std::abs(mirrored - kept_head_m->x) <= kSameBodyM && nearest > kNearestHeadM;
+  if (apart <= kNearestHeadM + unsure && apart + kHeadMarginM <= nearest) return true;
+  return is_mistaken(hand, heads, kept_head_m);
+}
+
+/// Where no head is seen: who stands before the middle for a while takes the place of one who reaches in from beside.
+bool HandKeeper::make_room(TimestampNs now, std::span<const HandFrame* const> others) {
+  const bool better = owner_x_m_ && std::any_of(others.begin(), others.end(), [&](const HandFrame* hand) {
+                        return hand != nullptr && inside(zone_, hand->palm.position_m) && points_at_screen(*hand) &&
+                               std::abs(body_x_m(*hand)) + kMoreCentralM <= std::abs(*owner_x_m_);
+                      });
+  if (!better) {
+    better_since_ = -1;
+  } else if (better_since_ < 0) {
+    better_since_ = now;
+  } else if (now - better_since_ >= kMakesRoom) {
+    let_go();
+    better_since_ = -1;
+    return true;
+  }
+  return false;
 }
 
 void HandKeeper::remember_owner(TimestampNs now, const std::array<const HandFrame*, 2>& kept) {
@@ -167,7 +197,7 @@ bool HandKeeper::may_enter(const HandFrame& hand, const Slot& other, std::span<c
   const double beside = shoulder.x - (kept_head_m ? kept_head_m->x : 0.0);
   const double unsure = kept_head_m ? 0.0 : kHeadUnknownM;
   if (std::abs(beside) > kFarthestShoulderM + 0.5 * unsure) return false;
-  if (hand.chirality != Chirality::kUnknown &&
+  if (hand.chirality != Chirality::kUnknown && !is_mistaken(hand, heads, kept_head_m) &&
       (hand.chirality == Chirality::kRight ? beside : -beside) < -kWrongSideM - unsure)
     return false;
   if (!other.taken) return true;
@@ -186,6 +216,7 @@ std::array<const HandFrame*, 2> HandKeeper::update(TimestampNs now, std::span<co
                                                    std::span<const HeadFrame> heads,
                                                    std::optional<glm::dvec3> kept_head_m) {
   owner_seen_ = std::min(owner_seen_, now);  // a clock that was set back
+  better_since_ = std::min(better_since_, now);
   for (Slot& slot : slots_) {
     slot.seen = std::min(slot.seen, now);
     slot.came = std::min(slot.came, now);
@@ -223,6 +254,7 @@ std::array<const HandFrame*, 2> HandKeeper::update(TimestampNs now, std::span<co
           glm::length(shoulder_of(*left[i]) - slots_[s].shoulder_m) <= kSameShoulderM &&
           (left[i]->chirality == slots_[s].chirality || left[i]->chirality == Chirality::kUnknown))
         take(s, i);
+  if (!kept_head_m && make_room(now, {left.data(), count})) kept = {};
   for (std::size_t s = 0; s < slots_.size(); ++s) {
     if (slots_[s].taken) continue;
     std::optional<std::size_t> best;

@@ -43,7 +43,9 @@ class HandKeeper {
   /// and, as the second hand, is the other hand of a plausible pair: not crossed, 60 to 700 mm apart, not 300 mm
   /// behind, and both arms come from shoulders of one body (back along the fingers). A slot is free again when its hand
   /// has been away for 1.5 s. Where no head is seen, the body whose fingers point here must stand before the panel, and
-  /// owns it until no hand of it was seen for 4 s.
+  /// owns it until no hand of it was seen for 4 s, or until the hand of one who stands 200 mm more before the middle
+  /// was seen for 0.5 s. A hand that is called left and comes from the kept head's right shoulder is let in, unless it
+  /// could be the left one of another head; trackers mistake some, for as long as they see them.
   std::array<const HandFrame*, 2> update(TimestampNs now, std::span<const HandFrame> hands,
                                          std::span<const HeadFrame> heads, std::optional<glm::dvec3> kept_head_m);
   /// All slots are free.
@@ -68,11 +70,14 @@ class HandKeeper {
                  const std::optional<glm::dvec3>& kept_head_m) const;
   bool is_the_owners(const HandFrame& hand, std::span<const HeadFrame> heads,
                      const std::optional<glm::dvec3>& kept_head_m) const;
+  static bool is_mistaken(const HandFrame& hand, std::span<const HeadFrame> heads,
+                          const std::optional<glm::dvec3>& kept_head_m);
+  bool make_room(TimestampNs now, std::span<const HandFrame* const> others);
   void remember_owner(TimestampNs now, const std::array<const HandFrame*, 2>& kept);
   HandZone zone_;
   std::array<Slot, 2> slots_{};
-  std::optional<double> owner_x_m_;  // where the body stands whose hands were kept last
-  TimestampNs owner_seen_ = 0;
+  std::optional<double> owner_x_m_;                 // where the body stands whose hands were kept last
+  TimestampNs owner_seen_ = 0, better_since_ = -1;  // better: somebody more before the middle is there
 };
 
 /// The person that is kept, as seen now.

@@ -9,7 +9,10 @@
 
 #include "app/kiosk/kiosk_guide.h"
 #include "app/viewer/run_view.h"
+#include "app/viewer/side_panels.h"
+#include "core/image_io/png_file.h"
 #include "tests/app/kiosk/flashes.h"
+#include "tests/display/spec.h"
 #include "tests/display/test_meshes.h"
 
 namespace dubsar::app::test {
@@ -66,17 +69,20 @@ class GalleryPictures : public ::testing::Test {
     options_.stage.screen.height_mm = options_.stage.screen.width_mm * 108 / 192;
     options_.inputs = {"scripted:path=" + file_.string()};
     options_.around.notices = false;
-    KioskParts parts;
-    parts.profile.objects = {{.file = "box"}};
-    parts.profile.pin = "90210735";
-    parts.profile.idle_reset_s = 8.0;
-    parts.profile.attract_after_s = 2.0;
-    parts.zone = {1e-3 * options_.mapping.hands.zone_min_mm, 1e-3 * options_.mapping.hands.zone_max_mm};
-    parts.wall = [] { return WallTime{1'790'000'000, 720}; };
-    guide_ = std::make_unique<KioskGuide>(std::move(parts));
+    guide_ = std::make_unique<KioskGuide>(parts());
     options_.guide = guide_.get();
   }
   void TearDown() override { std::filesystem::remove(file_); }
+  KioskParts parts() const {
+    KioskParts out;
+    out.profile.objects = {{.file = "box"}};
+    out.profile.pin = "90210735";
+    out.profile.idle_reset_s = 8.0;
+    out.profile.attract_after_s = 2.0;
+    out.zone = {1e-3 * options_.mapping.hands.zone_min_mm, 1e-3 * options_.mapping.hands.zone_max_mm};
+    out.wall = [] { return WallTime{1'790'000'000, 720}; };
+    return out;
+  }
 
   std::filesystem::path file_;
   TriMesh mesh_;
@@ -102,6 +108,63 @@ TEST_F(GalleryPictures, NothingFlashesFromTheArrivalToTheReset) {
   EXPECT_EQ(guide_->visit().counts().resets, 1);
   EXPECT_LE(flashes.most_in_a_quarter(), 3);
   EXPECT_LE(flashes.most_in_a_quarter(), 1) << "nothing like a flash of the whole picture";
+}
+
+/// Every tenth picture of a session, by panel.
+std::vector<std::vector<Image>> pictures_of(const TriMesh& mesh, ViewOptions options, KioskParts parts) {
+  const auto folder = std::filesystem::path(::testing::TempDir()) / ("said_" + std::to_string(::getpid()));
+  std::filesystem::remove_all(folder);
+  KioskGuide guide(std::move(parts));
+  options.guide = &guide;
+  options.time.fps = 20.0;
+  options.time.longest_s = 13.0;
+  options.files.frames = folder;
+  options.files.every = 20;
+  SilentProgress progress;
+  const auto done = run_view(mesh, options, progress);
+  EXPECT_TRUE(done) << done.error().message;
+  std::vector<std::vector<Image>> out(1 + options.also.size());
+  for (int at = 0; at <= 260; at += 20)
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const auto file = folder / (fmt::format("frame-{:05}", at) + (i == 0 ? "" : fmt::format("-{}", i + 1)) + ".png");
+      if (auto read = read_png(file.string())) out[i].push_back(*std::move(read));
+    }
+  std::filesystem::remove_all(folder);
+  return out;
+}
+
+TEST_F(GalleryPictures, AFurtherPanelSaysAndShowsWhatItWouldAsTheOnlyOne) {
+  ViewOptions alone = options_, both = options_;
+  alone.stage.display = testing::spec("anaglyph");
+  SidePanelOptions further;
+  further.name = "anaglyph";
+  further.display = alone.stage.display;
+  further.screen = options_.stage.screen;
+  both.also = {further};
+  const auto own = pictures_of(mesh_, alone, parts()), beside = pictures_of(mesh_, both, parts());
+  ASSERT_EQ(beside.size(), 2U);
+  ASSERT_GE(own[0].size(), 10U);
+  ASSERT_EQ(own[0].size(), beside[1].size());
+  for (std::size_t i = 0; i < own[0].size(); ++i) EXPECT_EQ(own[0][i].pixels, beside[1][i].pixels) << i;
+  EXPECT_NE(beside[1].front().pixels, beside[0].front().pixels);
+}
+
+TEST(GalleryOn, SignsStandAtTheEdgeOfEveryPanelAndTheMenuOnTheFirstOnly) {
+  GalleryPicture main;
+  main.line = "Reach out your hand";
+  main.signs = place_signs(std::array{Sign::kOpen, Sign::kTour}, 16.0 / 9.0);
+  main.signs[1].filled = 0.4;
+  main.menu = {"9  end"};
+  const GalleryPicture here = gallery_on(main, 9.0 / 16.0);
+  EXPECT_EQ(here.line, main.line);
+  EXPECT_TRUE(here.menu.empty());
+  ASSERT_EQ(here.signs.size(), 2U);
+  for (const SignPicture& sign : here.signs) {
+    const double right = (0.5 - sign.at.x) * 9.0 / 16.0;  // of the panel's height, to its edge
+    EXPECT_GT(right, sign.radius);
+    EXPECT_LT(right, sign.radius + 0.05);
+  }
+  EXPECT_EQ(here.signs[1].filled, 0.4);
 }
 
 TEST_F(GalleryPictures, AHandIsInAPictureATenthOfASecondAfterItCameWithTenPicturesASecond) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "tests/app/kiosk/gallery_session.h"
@@ -66,12 +67,15 @@ GalleryVisit visit(const GalleryOptions& room) {
   std::uint64_t movement = 0;
   bool suspect = false;
   std::string steered_by;
+  std::map<std::uint32_t, double> kept_since;
   std::int64_t chosen = 0;
   for (double t = 0.0; t < room.leaves_s + 4.0; t += kFrame_s) {
     const double here_s = t - room.arrives_s;
     static_cast<void>(gallery.step(t, session.screen(), frame));
     const SeenScreen was = session.screen();
     session.go_on(static_cast<TimestampNs>(1e9 * t), frame);
+    for (const HandFrame* const hand : session.person().hands)
+      if (hand != nullptr) kept_since.try_emplace(hand->id, t);
     const SeenScreen& now = session.screen();
     const NaiveVisitor& visitor = gallery.visitor();
     const bool here = gallery.visitor_is_here(t);
@@ -106,15 +110,18 @@ GalleryVisit visit(const GalleryOptions& room) {
       for (std::size_t h = 0; h < 2; ++h) {
         const HandFrame* const hand = session.person().hands[h];
         if (!here || hand == nullptr || !steers(navigator.hands()[h])) continue;
-        who += fmt::format(" {} ({:.2f} {:.2f} {:.2f}) grab {:.2f} v {:.2f} {}", hand->id, hand->palm.position_m.x,
-                           hand->palm.position_m.y, hand->palm.position_m.z, hand->grab_strength,
-                           glm::length(navigator.hands()[h].velocity_mps()),
+        who += fmt::format(" {} {} for {:.1f} s ({:.2f} {:.2f} {:.2f}) grab {:.2f} v {:.2f} {}", hand->id,
+                           hand->chirality == Chirality::kRight ? "right" : "left", t - kept_since[hand->id],
+                           hand->palm.position_m.x, hand->palm.position_m.y, hand->palm.position_m.z,
+                           hand->grab_strength, glm::length(navigator.hands()[h].velocity_mps()),
                            navigator.hands()[h].grabbing()   ? "grabs"
                            : navigator.hands()[h].pinching() ? "pinches"
                                                              : "swipes");
         if (Gallery::is_the_visitors(hand->id)) continue;
         ++out.takeovers;
-        out.causes += fmt::format("  {:.2f} s: somebody else's{}\n", here_s, who);
+        out.causes +=
+            fmt::format("  {:.2f} s: somebody else's, kept is {}:{}\n", here_s,
+                        session.person().head ? fmt::format("head {}", session.person().head->id) : "no head", who);
       }
       steered_by = who;
     }

@@ -152,7 +152,7 @@ TEST(KioskGuide, AHandWalksTheTourLeavesItWhereItIsAndComesBack) {
   profile.idle_reset_s = 20;
   Kiosk kiosk(profile);
   kiosk.go_on(1, with_hand(HandState::kReady));
-  const auto starts = kiosk.go_on(2.0, on_the_sign(0.0, Sign::kTour));
+  const auto starts = kiosk.go_on(2.5, on_the_sign(0.0, Sign::kTour));
   ASSERT_TRUE(starts.scene) << "a hand that rests on the sign begins it, without ever having closed";
   EXPECT_EQ(starts.picture->title, Words().say(Line::kTourSealed, "en"));
   EXPECT_EQ(starts.picture->steps, 5U);
@@ -166,7 +166,7 @@ TEST(KioskGuide, AHandWalksTheTourLeavesItWhereItIsAndComesBack) {
   EXPECT_FALSE(back.scene->camera) << "a hand that takes hold has it at once";
   const auto free = kiosk.go_on(3.0, with_hand(HandState::kReady));
   EXPECT_FALSE(free.scene);
-  const auto again = kiosk.go_on(2.0, on_the_sign(0.0, Sign::kTour));
+  const auto again = kiosk.go_on(2.5, on_the_sign(0.0, Sign::kTour));
   ASSERT_TRUE(again.scene);
   EXPECT_EQ(again.picture->step, peel.picture->step) << "where it was left";
   kiosk.go_on(32.0);

@@ -45,15 +45,15 @@ TEST(Signs, ARestChoosesOnceAndNothingElseUntilTheHandHasLeft) {
   const SignHand on{panel.signs[0].at}, off{{0.0, 0.0}};
   panel.go_on(1.0, {on});
   EXPECT_TRUE(panel.chosen.empty());
-  EXPECT_GT(panel.rest.filled(Sign::kOpen), 0.4);
-  panel.go_on(1.0, {on});
+  EXPECT_GT(panel.rest.filled(Sign::kOpen), 0.3);
+  panel.go_on(1.4, {on});
   ASSERT_EQ(panel.chosen.size(), 1U);
   EXPECT_EQ(panel.chosen[0], Sign::kOpen);
   panel.go_on(20.0, {on});
   panel.go_on(3.0, {SignHand{panel.signs[1].at}});  // from one sign to the next without leaving
   EXPECT_EQ(panel.chosen.size(), 1U);
   panel.go_on(0.2, {off});
-  panel.go_on(2.0, {SignHand{panel.signs[1].at}});
+  panel.go_on(2.5, {SignHand{panel.signs[1].at}});
   ASSERT_EQ(panel.chosen.size(), 2U);
   EXPECT_EQ(panel.chosen[1], Sign::kTour);
 }
@@ -66,22 +66,25 @@ TEST(Signs, WhatEndsThereByChanceChoosesNothing) {
   EXPECT_TRUE(panel.chosen.empty());
   for (int i = 0; i < 20; ++i) {  // it passes again and again
     panel.go_on(0.6, {SignHand{{0.0, 0.0}}});
-    panel.go_on(0.8, {on});
+    panel.go_on(1.4, {on});
   }
+  EXPECT_TRUE(panel.chosen.empty());
+  panel.go_on(0.5, {SignHand{{0.0, 0.0}}});
+  panel.go_on(2.0, {on});  // where a movement ended, until the next one begins
   EXPECT_TRUE(panel.chosen.empty());
 }
 
 TEST(Signs, AHandThatSinksFromAChosenSignToTheNextChoosesNothing) {
   Panel panel;
-  panel.go_on(2.0, {SignHand{panel.signs[0].at}});
+  panel.go_on(2.5, {SignHand{panel.signs[0].at}});
   ASSERT_EQ(panel.chosen.size(), 1U);
   const auto there = std::exchange(panel.signs, {});  // while the envelope moves there are none
-  panel.go_on(2.0, {SignHand{there[0].at - glm::dvec2(0.0, 0.1)}});
+  panel.go_on(2.5, {SignHand{there[0].at - glm::dvec2(0.0, 0.1)}});
   panel.signs = there;
   panel.go_on(10.0, {SignHand{there[1].at}});
   EXPECT_EQ(panel.chosen.size(), 1U);
   panel.go_on(0.2, {SignHand{{0.1, 0.0}}});
-  panel.go_on(2.0, {SignHand{there[1].at}});
+  panel.go_on(2.5, {SignHand{there[1].at}});
   EXPECT_EQ(panel.chosen.size(), 2U);
 }
 

@@ -11,6 +11,7 @@
 
 #include "app/kiosk/words.h"
 #include "app/panels/panel_font.h"
+#include "display/render/utf8.h"
 
 namespace dubsar::app {
 namespace {
@@ -30,7 +31,7 @@ class GalleryPage : public ::testing::Test {
     config.FontDataOwnedByAtlas = false;
     const auto data = panel_font();
     io.Fonts->AddFontFromMemoryTTF(const_cast<unsigned char*>(data.data()), static_cast<int>(data.size()), kFontPx,
-                                   &config, panel_letters());
+                                   &config, panel_letters_of_all());
     unsigned char* pixels = nullptr;
     int width = 0, height = 0;
     io.Fonts->GetTexDataAsAlpha8(&pixels, &width, &height);
@@ -74,6 +75,27 @@ TEST_F(GalleryPage, EverySentenceIsReadFromAMetreAndAHalfOnEveryPanelAndLeavesTh
         EXPECT_LE(set.tall, 0.36 * panel.height_px) << panel.name << ": " << text;
       }
   }
+}
+
+TEST_F(GalleryPage, ArabicAndHebrewSentencesHaveAllTheirLettersAndLinesThatFit) {
+  for (const std::string text :
+       {"مد يدك وأدر اللوح الطيني بنفسك لترى جميع جوانبه الستة واحدا بعد الآخر (٦)",
+        "دست خود را دراز کنید و لوح گلی را بچرخانید پیش از آنکه باز شود", "הושיטו יד וסובבו את לוח החומר"}) {
+    const SetWords set = set_words(text, 60.0, 1200.0, true);
+    ASSERT_FALSE(set.lines.empty());
+    EXPECT_LE(set.wide, 0.9 * 1200.0);
+    EXPECT_NEAR(set.tall, set.size * static_cast<double>(set.lines.size()), 1e-6);
+    std::size_t letters = 0;
+    for (const std::string& line : set.lines)
+      for (const unsigned code : code_points(line)) {
+        EXPECT_NE(ImGui::GetFont()->FindGlyphNoFallback(static_cast<ImWchar>(code)), nullptr) << std::hex << code;
+        letters += code != ' ';
+      }
+    EXPECT_GT(letters, 20U);
+  }
+  EXPECT_GT(set_words("مد يدك وأدر اللوح الطيني بنفسك لترى جميع جوانبه الستة واحدا بعد الآخر", 60.0, 900.0, true)
+                .lines.size(),
+            1U);
 }
 
 }  // namespace

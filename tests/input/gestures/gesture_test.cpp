@@ -2,54 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <array>
+#include <utility>
 
-#include "input/navigation/mapping.h"
+#include "tests/input/gestures/gesture_person.h"
 
-namespace dubsar {
+namespace dubsar::test {
 namespace {
-
-constexpr TimestampNs kMs = 1'000'000, kStep = 10 * kMs;
-
-/// Fists only.
-GestureOptions firm() {
-  GestureOptions options;
-  options.grab.gentle = 2.0;
-  return options;
-}
-
-/// A hand that is moved by hand, 100 samples a second.
-struct Person {
-  GestureRecognizer recognizer;
-  HandFrame hand;
-  TimestampNs now = 0;
-  std::vector<GestureEvent> events;
-
-  explicit Person(const GestureOptions& options = firm()) : recognizer(options) {
-    hand.valid = hand.tracked = true;
-    hand.palm.position_m = {0, 0, 0.3};
-    hand.pinch_distance_m = 0.06;
-  }
-  void step(bool seen = true) {
-    now += kStep;
-    hand.time = now;
-    recognizer.update(now, seen ? &hand : nullptr);
-    events.insert(events.end(), recognizer.events().begin(), recognizer.events().end());
-  }
-  void steps(int n, bool seen = true) {
-    for (int i = 0; i < n; ++i) step(seen);
-  }
-  void move(const glm::dvec3& velocity_mps, int n) {
-    for (int i = 0; i < n; ++i) {
-      hand.palm.position_m += velocity_mps * 0.01;
-      step();
-    }
-  }
-  int count(GestureKind kind, GesturePhase phase) const {
-    return static_cast<int>(std::count_if(events.begin(), events.end(),
-                                          [&](const GestureEvent& e) { return e.kind == kind && e.phase == phase; }));
-  }
-};
 
 TEST(Gesture, GrabBeginsAtEightTenthsAndEndsAtSeven) {
   Person p;
@@ -124,12 +83,6 @@ TEST(Gesture, AGrabTakesOverFromAPinchByCancellingIt) {
   EXPECT_FALSE(p.recognizer.pinching());
   EXPECT_EQ(p.count(GestureKind::kPinch, GesturePhase::kCancel), 1);
   EXPECT_EQ(p.count(GestureKind::kPinch, GesturePhase::kEnd), 0);
-}
-
-void set_index(HandFrame& hand, double tip_m) {
-  hand.joint(HandJoint::kWrist) = {Pose{{0, 0, 0.36}, {1, 0, 0, 0}}, 0.01, true, true};
-  hand.joint(HandJoint::kIndexProximal) = {Pose{{0, 0, 0.26}, {1, 0, 0, 0}}, 0.01, true, true};
-  hand.joint(HandJoint::kIndexTip) = {Pose{{0, 0, 0.26 - tip_m}, {1, 0, 0, 0}}, 0.01, true, true};
 }
 
 TEST(Gesture, AHandThatHoldsTheAirAsAnObjectGrabsAndLetsGoWhenItOpens) {
@@ -294,85 +247,6 @@ TEST(Gesture, DwellTakesElevenTenthsOfASecondAndHappensOnceARest) {
   EXPECT_EQ(p.count(GestureKind::kDwell, GesturePhase::kDone), 2);
 }
 
-/// As galleries have it, where nobody was told.
-GestureOptions gallery() { return gallery_mapping().value().gestures; }
-
-TEST(GestureInGalleries, AHandThatClosesAtRestTakesHoldAndOneThatClosesOnItsWayMustOpenFirst) {
-  Person rests{gallery()}, walks{gallery()};
-  rests.steps(60);
-  rests.hand.grab_strength = 1.0;
-  rests.steps(5);
-  EXPECT_FALSE(rests.recognizer.grabbing()) << "not sure yet";
-  rests.steps(10);
-  EXPECT_TRUE(rests.recognizer.grabbing());
-  walks.steps(60);
-  walks.move({0.4, 0.0, 0.0}, 15);
-  walks.hand.grab_strength = 1.0;
-  walks.move({0.4, 0.0, 0.0}, 15);
-  walks.steps(200);
-  EXPECT_FALSE(walks.recognizer.grabbing());
-  walks.hand.grab_strength = 0.2;
-  walks.steps(20);
-  walks.hand.grab_strength = 1.0;
-  walks.steps(20);
-  EXPECT_TRUE(walks.recognizer.grabbing());
-}
-
-TEST(GestureInGalleries, WhatATrackerMisreadsForFiveHundredthsOfASecondNeitherTakesHoldNorLetsGo) {
-  Person p{gallery()};
-  for (int i = 0; i < 20; ++i) {
-    p.hand.grab_strength = 0.1;
-    p.steps(40);
-    p.hand.grab_strength = 1.0;
-    p.steps(5);
-  }
-  EXPECT_EQ(p.count(GestureKind::kGrab, GesturePhase::kBegin), 0);
-  p.hand.grab_strength = 0.1;
-  p.steps(40);
-  p.hand.grab_strength = 1.0;
-  p.steps(20);
-  for (int i = 0; i < 10; ++i) {
-    p.hand.grab_strength = 0.2;
-    p.steps(5);
-    p.hand.grab_strength = 1.0;
-    p.steps(20);
-  }
-  EXPECT_EQ(p.count(GestureKind::kGrab, GesturePhase::kBegin), 1);
-  EXPECT_EQ(p.count(GestureKind::kGrab, GesturePhase::kEnd), 0);
-}
-
-TEST(GestureInGalleries, ASwipeGoesFromRestAndAHandThatComesLeavesOrTalksDoesNotSwipe) {
-  Person wipes{gallery()};
-  wipes.hand.palm.position_m.x = -0.12;
-  wipes.steps(60);
-  wipes.move({1.0, 0.0, 0.0}, 20);
-  wipes.steps(30);
-  EXPECT_EQ(wipes.count(GestureKind::kSwipe, GesturePhase::kDone), 1);
-  Person comes{gallery()};
-  comes.hand.palm.position_m = {-0.3, -0.2, 0.3};
-  comes.move({1.0, 0.3, 0.0}, 40);  // never at rest before
-  comes.steps(30);
-  EXPECT_EQ(comes.count(GestureKind::kSwipe, GesturePhase::kDone), 0);
-  Person leaves{gallery()};
-  leaves.steps(60);
-  leaves.move({0.0, -0.9, 0.6}, 30);  // down and to the body
-  leaves.steps(30, false);
-  EXPECT_EQ(leaves.count(GestureKind::kSwipe, GesturePhase::kDone), 0);
-  Person talks{gallery()};
-  talks.steps(60);
-  for (int i = 0; i < 20; ++i) talks.move({i % 2 == 0 ? 0.5 : -0.5, 0.05, 0.0}, 30);
-  EXPECT_EQ(talks.count(GestureKind::kSwipe, GesturePhase::kDone), 0);
-}
-
-TEST(GestureInGalleries, NothingButRestingBeginsAtTheSigns) {
-  Person p{gallery()};
-  p.hand.palm.position_m = {0.33, 0.3, 0.3};
-  p.steps(60);
-  p.hand.grab_strength = 1.0;
-  p.steps(30);
-  EXPECT_FALSE(p.recognizer.grabbing());
-}
-
 TEST(Gesture, AClockThatIsSetBackEndsAHoldAndTheNextHandIsSeenAtOnce) {
   Person p;
   p.now = 600'000 * kMs;
@@ -392,4 +266,4 @@ TEST(Gesture, AClockThatIsSetBackEndsAHoldAndTheNextHandIsSeenAtOnce) {
 }
 
 }  // namespace
-}  // namespace dubsar
+}  // namespace dubsar::test

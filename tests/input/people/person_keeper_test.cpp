@@ -65,7 +65,8 @@ TEST(HandKeeper, AHandWhoseShoulderIsOnTheWrongSideOfTheHeadIsSomebodyElses) {
        {std::pair{0.1, true}, std::pair{-0.02, true}, std::pair{-0.15, false}, std::pair{0.34, false}}) {
     HandKeeper keeper;
     const std::vector<HandFrame> hands{hand_at(1, Chirality::kRight, {x, 0, 0.3})};
-    const std::vector<HeadFrame> heads{head_at(1, {0.0, 0, 0.7})};
+    std::vector<HeadFrame> heads{head_at(1, {0.0, 0, 0.7})};
+    if (!in) heads.push_back(head_at(2, {x < 0 ? -0.4 : 0.6, 0, 0.7}));  // else the tracker may have mistaken it
     EXPECT_EQ(keeper.update(0, hands, heads, glm::dvec3(0.0, 0.0, 0.7))[0] != nullptr, in) << x;
   }
 }
@@ -153,6 +154,41 @@ TEST(HandKeeper, WithoutACameraThoseWhoStandBesideHoldNothing) {
   const auto kept = keeper.update(900 * kMs, both, {}, {});
   ASSERT_NE(kept[0], nullptr);
   EXPECT_EQ(kept[0]->id, 2u);
+}
+
+TEST(HandKeeper, AHandThatTheTrackerTakesForTheOtherOneIsLetInWhereNobodyElseThereCouldHaveIt) {
+  const std::vector<HandFrame> called_left{hand_at(1, Chirality::kLeft, {0.15, 0.0, 0.3})};
+  const std::vector<HeadFrame> alone{head_at(1, {0.0, 0.0, 0.7})};
+  const std::vector<HeadFrame> two{head_at(1, {0.0, 0.0, 0.7}), head_at(2, {0.4, 0.0, 0.7})};
+  HandKeeper keeper, in_a_crowd, without_a_camera;
+  EXPECT_NE(keeper.update(0, called_left, alone, glm::dvec3(0.0, 0.0, 0.7))[0], nullptr);
+  EXPECT_EQ(in_a_crowd.update(0, called_left, two, glm::dvec3(0.0, 0.0, 0.7))[0], nullptr) << "the other's left hand";
+  EXPECT_EQ(without_a_camera.update(0, called_left, {}, {})[0], nullptr) << "of somebody beside, as far as one knows";
+}
+
+TEST(HandKeeper, WithoutACameraWhoStandsBeforeTheMiddleTakesThePlaceOfOneWhoReachesInFromBeside) {
+  const HandFrame beside = hand_at(1, Chirality::kLeft, {0.09, 0.0, 0.3});  // of a body at 0.28
+  const HandFrame before = hand_at(2, Chirality::kRight, {0.2, 0.0, 0.3});
+  const std::vector<HandFrame> first{beside}, both{beside, before};
+  HandKeeper keeper;
+  TimestampNs now = 0;
+  for (; now < 1000 * kMs; now += 16 * kMs) ASSERT_NE(keeper.update(now, first, {}, {})[0], nullptr);
+  for (const TimestampNs came = now; now - came < 480 * kMs; now += 16 * kMs)
+    ASSERT_EQ(keeper.update(now, both, {}, {})[0]->id, 1U);
+  for (int i = 0; i < 4; ++i) (void)keeper.update(now += 16 * kMs, both, {}, {});
+  const auto kept = keeper.update(now += 16 * kMs, both, {}, {});
+  ASSERT_NE(kept[0], nullptr);
+  EXPECT_EQ(kept[0]->id, 2U);
+  EXPECT_EQ(kept[1], nullptr);
+}
+
+TEST(HandKeeper, WithoutACameraWhoStandsAlmostBeforeTheMiddleStaysTheOwner) {
+  const std::vector<HandFrame> both{hand_at(1, Chirality::kRight, {0.3, 0.0, 0.3}),  // of bodies at 0.11 and 0.01
+                                    hand_at(2, Chirality::kRight, {0.2, 0.0, 0.3})};
+  HandKeeper keeper;
+  (void)keeper.update(0, std::vector{both[0]}, {}, {});
+  for (TimestampNs now = 16 * kMs; now < 3000 * kMs; now += 16 * kMs)
+    ASSERT_EQ(keeper.update(now, both, {}, {})[0]->id, 1U);
 }
 
 TEST(HandKeeper, TheOwnerMayLetTheHandSinkForAWhileAndNobodyElseTakesOver) {
