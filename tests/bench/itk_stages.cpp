@@ -53,8 +53,9 @@ int run(const std::string& path, std::size_t size, int runs) {
   import->Update();
   Image* const input = import->GetOutput();
 
+  itk::DiscreteGaussianImageFilter<Image, Image>::Pointer gauss;  // an image does not keep the filter that makes it
   const double resample = least(runs, [&] {
-    const auto gauss = itk::DiscreteGaussianImageFilter<Image, Image>::New();
+    gauss = itk::DiscreteGaussianImageFilter<Image, Image>::New();
     gauss->SetInput(input);
     gauss->SetVariance(0.72134752);  // 1 2 1
     gauss->SetMaximumKernelWidth(3);
