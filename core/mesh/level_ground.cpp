@@ -15,8 +15,8 @@ constexpr int kRounds = 40;
 constexpr double kSettledMm = 1e-6;
 constexpr double kLeastRoughnessMm = 0.01;  // below it the surface counts as smooth
 constexpr double kDegree = std::numbers::pi / 180.0;
-// Measured on the exact surfaces of phantoms: clay that a stylus pushed up looks more than 5 degrees away from the
-// ground, and within 3 deviations of it lies what is level (the envelope alone is 2.5 to 6 % of a wedge too high).
+// Chosen of several on the exact surfaces of phantoms: the envelope alone is 2.5 to 6 % of a wedge too high there,
+// these leave 0.5 to 2.5 %.
 constexpr double kLeastAngle = 5 * kDegree, kMostAngle = 15 * kDegree, kDeviations = 3.0;
 constexpr double kLeastShare = 0.02;  // with less on it there is no ground
 

@@ -31,7 +31,7 @@ struct Told {
 struct Size {
   double depth_vox;
   std::int64_t width;  ///< of the phantom, voxels: the smallest with some sixty wedges
-  std::uint64_t seed;  ///< drawn once: nothing was tuned on it
+  std::uint64_t seed;  ///< drawn once; depths were not tuned on it, their deviation was
 };
 
 double median(std::vector<double> values) {
