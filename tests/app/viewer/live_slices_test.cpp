@@ -38,7 +38,7 @@ TEST_F(Live, ClicksInASliceMoveThePlaceAndTheKeyLaysThemThroughThePointersPlace)
   options_.around.panels = true;
   options_.window->width = 1000;
   options_.window->height = 640;
-  options_.work.scan = ramp(folder);
+  options_.work.scan.emplace().path = ramp(folder);
   const auto rects = slice_rects(1000.0f, 640.0f, 0);
   const PanelRect z = rects[2];
   const auto at = [](float place) { return static_cast<int>(std::lround(place)); };
@@ -95,7 +95,7 @@ TEST_F(Live, TheSlicesPictureHasTheValuesOfTheScanAndTheOutline) {
   options_.stage.screen.height_px = options_.stage.screen.window_h = 640;
   options_.stage.screen.height_mm = 0.64 * options_.stage.screen.width_mm;  // square pixels
   options_.files.frames = folder.path / "frames";
-  options_.work.scan = ramp(folder);
+  options_.work.scan.emplace().path = ramp(folder);
   options_.steps = parse_steps(
                        "0 panels\n0.1 drawer slices\n0.1 slice_grey 0 40\n0.1 slice_at 5,5,1\n0.2 slice_large z\n"
                        "0.3 write_slice " +
