@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/filter/bilateral_kernels.h"
 #include "core/filter/gauss_kernels.h"
+#include "core/filter/sharpen.h"
 #include "core/filter/slice_ring.h"
 
 namespace dubsar {
@@ -30,14 +31,21 @@ float guide_scale(const DenoiseOptions& options) {
   return static_cast<float>(std::min(1.0 / width, static_cast<double>(std::numeric_limits<float>::max())));
 }
 
-/// One iteration of one filter.
+std::int64_t guide_radius(const DenoiseOptions& options) {
+  return options.method == DenoiseMethod::kJointBilateral ? 1 : 0;
+}
+
+/// One iteration of one filter; of the points of each row that are wanted.
 class FilterSource final : public SlabSource {
  public:
-  FilterSource(SlabSource& source, const DenoiseOptions& options)
+  /// `sharpen`, with Gauss: the source plus so much of its difference from it.
+  FilterSource(SlabSource& source, const DenoiseOptions& options, const Wanted& wanted = {}, float sharpen = 0.0F)
       : source_(&source),
         options_(options),
+        wanted_(wanted),
+        sharpen_(sharpen),
         radius_(options.window / 2),
-        guide_radius_(options.method == DenoiseMethod::kJointBilateral ? 1 : 0),
+        guide_radius_(guide_radius(options)),
         scale_(guide_scale(options)),
         batch_(slices_at_a_time(source.dims())),
         image_(source.dims(), batch_ + 2 * (radius_ + guide_radius_), SliceRing::Rows::kPadded),
@@ -52,8 +60,9 @@ class FilterSource final : public SlabSource {
     DUBSAR_CHECK(static_cast<std::int64_t>(out.size()) >= (z_end - z_begin) * dims().slice());
     for (std::int64_t z = z_begin; z < z_end; z += batch_) {
       const std::int64_t end = std::min(z_end, z + batch_);
+      if (!wanted_.any(z, end)) continue;
       const std::int64_t halo = radius_ + guide_radius_;
-      DUBSAR_TRY(image_.load(*source_, {z - halo, end + halo}));
+      DUBSAR_TRY(image_.load(*source_, {z - halo, end + halo}, wanted_.wider(halo)));
       if (needs_sigma(options_.method)) make_guide({z - radius_, end + radius_});
       float* to = out.data() + (z - z_begin) * dims().slice();
       if (options_.method == DenoiseMethod::kGauss) {
@@ -70,27 +79,38 @@ class FilterSource final : public SlabSource {
     const SliceRange part = guide_.missing(wanted);
     if (part.empty()) return;
     const Dims d = dims();
+    const Wanted seen = wanted_.wider(radius_);
     parallel_chunks((part.end - part.begin) * d.y, 16, [&](std::int64_t begin, std::int64_t end) {
       Buffer<float> padded(d.x + 2);
       float* line = padded.data() + 1;
+      std::vector<Span> spans;
       for (std::int64_t i = begin; i < end; ++i) {
         const std::int64_t y = i % d.y, z = part.begin + i / d.y;
+        seen.spans(d.x, y, z, spans);
+        if (spans.empty()) continue;
         float* to = guide_.row(y, z);
-        if (guide_radius_ == 0) {
-          const float* from = image_.row(y, z);
-          for (std::int64_t x = 0; x < d.x; ++x) to[x] = from[x] * scale_;
-        } else {
-          std::array<const float*, 9> rows{};
-          for (int k = 0; k < 9; ++k) rows[static_cast<std::size_t>(k)] = image_.row(y + k % 3 - 1, z + k / 3 - 1);
-          kernels::gauss3_yz(rows.data(), d.x, line);
-          line[-1] = line[0];
-          line[d.x] = line[d.x - 1];
-          kernels::gauss3_x(line, d.x, scale_, to);
+        std::array<const float*, 9> rows{};
+        for (int k = 0; k < 9; ++k) rows[static_cast<std::size_t>(k)] = image_.row(y + k % 3 - 1, z + k / 3 - 1);
+        for (const Span& span : spans) {
+          if (guide_radius_ == 0) {
+            for (std::int64_t x = span.begin; x < span.end; ++x) to[x] = rows[4][x] * scale_;
+            continue;
+          }
+          const std::array<const float*, 9> from = moved(rows, span.begin - 1);  // rows are padded
+          kernels::gauss3_yz(from.data(), span.end - span.begin + 2, line - 1);
+          kernels::gauss3_x(line, span.end - span.begin, scale_, to + span.begin);
         }
         guide_.pad_row(to);
       }
     });
     guide_.hold(part);
+  }
+
+  template <std::size_t kCount>
+  static std::array<const float*, kCount> moved(std::array<const float*, kCount> rows, std::int64_t by) {
+    for (const float*& row : rows)
+      if (row != nullptr) row += by;
+    return rows;
   }
 
   /// Row pointers of the window around row y of slice z, `rows[side * dz + dy]`.
@@ -104,26 +124,35 @@ class FilterSource final : public SlabSource {
   /// Bilateral filters and median: every output row sees the rows of a window.
   void window_filter(SliceRange slices, float* out) {
     const Dims d = dims();
-    const std::int64_t tiles_x = (d.x + kTile - 1) / kTile, tiles_y = (d.y + kTileRows - 1) / kTileRows;
+    const std::int64_t tile_x = wanted_.mask != nullptr ? d.x : kTile;  // spans are found once a row
+    const std::int64_t tiles_x = (d.x + tile_x - 1) / tile_x, tiles_y = (d.y + kTileRows - 1) / kTileRows;
     parallel_for((slices.end - slices.begin) * tiles_x * tiles_y, 1, [&](std::int64_t tile) {
-      const std::int64_t x0 = tile % tiles_x * kTile, y0 = tile / tiles_x % tiles_y * kTileRows;
-      const std::int64_t x1 = std::min(x0 + kTile, d.x), y1 = std::min(y0 + kTileRows, d.y);
+      const std::int64_t x0 = tile % tiles_x * tile_x, y0 = tile / tiles_x % tiles_y * kTileRows;
+      const std::int64_t x1 = std::min(x0 + tile_x, d.x), y1 = std::min(y0 + kTileRows, d.y);
       const std::int64_t z = slices.begin + tile / tiles_x / tiles_y;
       std::array<const float*, 49> image{}, guide{};
       const kernels::Window window{image.data(), guide.data(), static_cast<int>(radius_)};
+      std::vector<Span> spans;
       for (std::int64_t y = y0; y < y1; ++y) {
+        wanted_.spans(d.x, y, z, spans);
+        if (spans.empty()) continue;
         gather(image_, y, z, image.data());
         if (needs_sigma(options_.method)) gather(guide_, y, z, guide.data());
         float* to = out + (z - slices.begin) * d.slice() + y * d.x;
-        if (options_.method == DenoiseMethod::kMedian) {
-          kernels::median(window, x0, x1, to);
-        } else if (options_.range == RangeWeight::kTukey) {
-          kernels::bilateral_tukey(window, x0, x1, to);
-        } else {
-          kernels::bilateral_gauss(window, x0, x1, to);
-        }
+        for (const Span& span : spans) filter_row(window, std::max(span.begin, x0), std::min(span.end, x1), to);
       }
     });
+  }
+
+  void filter_row(const kernels::Window& window, std::int64_t begin, std::int64_t end, float* to) const {
+    if (begin >= end) return;
+    if (options_.method == DenoiseMethod::kMedian) {
+      kernels::median(window, begin, end, to);
+    } else if (options_.range == RangeWeight::kTukey) {
+      kernels::bilateral_tukey(window, begin, end, to);
+    } else {
+      kernels::bilateral_gauss(window, begin, end, to);
+    }
   }
 
   void gauss(SliceRange slices, float* out) {
@@ -137,20 +166,26 @@ class FilterSource final : public SlabSource {
       Buffer<float> padded(d.x + 2 * radius_);
       float* line = padded.data() + radius_;
       std::array<const float*, 49> rows{};
+      std::vector<Span> spans;
       for (std::int64_t i = begin; i < end; ++i) {
         const std::int64_t y = i % d.y, z = slices.begin + i / d.y;
+        wanted_.spans(d.x, y, z, spans);
+        if (spans.empty()) continue;
         gather(image_, y, z, rows.data());
-        if (side == 3) {
-          kernels::gauss3_yz(rows.data(), d.x, line);
-        } else {
-          kernels::weighted_rows(rows.data(), plane.data(), side * side, d.x, line);
-        }
-        std::fill(line - radius_, line, line[0]);
-        std::fill(line + d.x, line + d.x + radius_, line[d.x - 1]);
-        if (side == 3) {
-          kernels::gauss3_x(line, d.x, 1.0F, out + i * d.x);
-        } else {
-          kernels::weighted_taps(line, taps.data(), side, d.x, out + i * d.x);
+        for (const Span& span : spans) {
+          const std::array<const float*, 49> from = moved(rows, span.begin - radius_);  // rows are padded
+          const std::int64_t count = span.end - span.begin;
+          float* to = out + i * d.x + span.begin;
+          if (side == 3) {
+            kernels::gauss3_yz(from.data(), count + 2, line - 1);
+            kernels::gauss3_x(line, count, 1.0F, to);
+          } else {
+            kernels::weighted_rows(from.data(), plane.data(), side * side, count + 2 * radius_, line - radius_);
+            kernels::weighted_taps(line, taps.data(), side, count, to);
+          }
+          if (sharpen_ == 0.0F) continue;
+          const float* own = image_.row(y, z) + span.begin;
+          for (std::int64_t x = 0; x < count; ++x) to[x] = own[x] + sharpen_ * (own[x] - to[x]);
         }
       }
     });
@@ -169,6 +204,8 @@ class FilterSource final : public SlabSource {
 
   SlabSource* source_;
   DenoiseOptions options_;
+  Wanted wanted_;
+  float sharpen_;
   std::int64_t radius_, guide_radius_;
   float scale_;
   std::int64_t batch_;
@@ -178,9 +215,11 @@ class FilterSource final : public SlabSource {
 /// Owns the iterations; the last one is the result.
 class FilterChain final : public SlabSource {
  public:
-  FilterChain(SlabSource& source, const DenoiseOptions& options) : last_(&source) {
+  FilterChain(SlabSource& source, const DenoiseOptions& options, const Wanted& wanted) : last_(&source) {
+    const std::int64_t each = options.window / 2 + guide_radius(options);
     for (int k = 0; k < options.iterations; ++k) {
-      filters_.push_back(std::make_unique<FilterSource>(*last_, options));
+      filters_.push_back(
+          std::make_unique<FilterSource>(*last_, options, wanted.wider(each * (options.iterations - 1 - k))));
       last_ = filters_.back().get();
     }
   }
@@ -208,9 +247,20 @@ Result<void> check(const DenoiseOptions& options) {
   return {};
 }
 
-Result<std::unique_ptr<SlabSource>> make_denoised(SlabSource& source, const DenoiseOptions& options) {
+Result<std::unique_ptr<SlabSource>> make_denoised(SlabSource& source, const DenoiseOptions& options,
+                                                  const Wanted& wanted) {
   DUBSAR_TRY(check(options));
-  return std::make_unique<FilterChain>(source, options);
+  return std::make_unique<FilterChain>(source, options, wanted);
+}
+
+std::int64_t reach_of(const DenoiseOptions& options) noexcept {
+  return options.iterations * (options.window / 2 + guide_radius(options));
+}
+
+std::unique_ptr<SlabSource> make_sharpened(SlabSource& source, float amount, const Wanted& wanted) {
+  DenoiseOptions gauss;
+  gauss.method = DenoiseMethod::kGauss;
+  return std::make_unique<FilterSource>(source, gauss, wanted, amount);
 }
 
 Result<void> denoise_in_place(GridStore& grid, const DenoiseOptions& options, Progress& progress,

@@ -8,6 +8,7 @@
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/filter/histogram.h"
+#include "core/volume/brick_mask.h"
 #include "core/volume/grid_store.h"
 #include "core/volume/slab_source.h"
 #include "core/volume/volume.h"
@@ -64,7 +65,14 @@ Result<void> check(const DenoiseOptions& options);
 /// The output depends on neither slab height, order nor threads, to the bit. Memory: per iteration about 2 window + 2
 /// slices and a few megabytes. Cost per voxel and iteration: 26 taps of 6 operations for the 3x3x3 bilateral filters.
 /// Errors: those of check() and of the source.
-Result<std::unique_ptr<SlabSource>> make_denoised(SlabSource& source, const DenoiseOptions& options);
+///
+/// With a mask in `wanted` only its points are made, the same to the bit, and whatever stands elsewhere in a slab is
+/// nothing; the source is asked for slices that are seen from there. The cost is that of the points, besides copies.
+Result<std::unique_ptr<SlabSource>> make_denoised(SlabSource& source, const DenoiseOptions& options,
+                                                  const Wanted& wanted = {});
+
+/// How far, along each axis, all iterations look from a voxel.
+std::int64_t reach_of(const DenoiseOptions& options) noexcept;
 
 /// The same result written over the grid itself, in memory or on the disk; extra memory is that of the slices above.
 /// Advances `progress` by voxels (iterations * count in all). `counts`, if given, gets the values of the result.

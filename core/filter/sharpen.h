@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "core/volume/brick_mask.h"
 #include "core/volume/slab_source.h"
 
 namespace dubsar {
@@ -13,19 +14,8 @@ namespace dubsar {
 /// wedges of the tablet keep 0.90 instead of 0.86 of their depth, and the distance of the surface from the truth falls
 /// from 0.116 to 0.104 voxel RMS. Noise grows by up to (1 + amount).
 ///
-/// Borrows `source`, which must outlive it. Memory: a few slices. Deterministic for any slab height and thread count.
-class SharpenedSource final : public SlabSource {
- public:
-  SharpenedSource(SlabSource& source, float amount);
-  Dims dims() const noexcept override { return source_->dims(); }
-  const GridFrame& frame() const noexcept override { return source_->frame(); }
-  Result<void> read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) override;
-
- private:
-  SlabSource* source_;
-  std::unique_ptr<SlabSource> smooth_;
-  float amount_;
-  Buffer<float> original_;
-};
+/// Borrows `source`, which must outlive it, and the mask of `wanted`, as make_denoised() does (denoise.h). Memory: a
+/// few slices. Deterministic for any slab height and thread count.
+std::unique_ptr<SlabSource> make_sharpened(SlabSource& source, float amount, const Wanted& wanted = {});
 
 }  // namespace dubsar

@@ -1,5 +1,7 @@
 #include "core/filter/slice_ring.h"
 
+#include <vector>
+
 #include "core/base/parallel.h"
 
 namespace dubsar {
@@ -42,7 +44,7 @@ SliceRange SliceRing::missing(SliceRange wanted) noexcept {
   return {held_.end, std::max(wanted.end, held_.end)};
 }
 
-Result<void> SliceRing::load(SlabSource& source, SliceRange wanted) {
+Result<void> SliceRing::load(SlabSource& source, SliceRange wanted, const Wanted& points) {
   DUBSAR_CHECK(std::min(wanted.end, dims_.z) - std::max<std::int64_t>(wanted.begin, 0) <= capacity_);
   const SliceRange part = missing(wanted);
   if (part.empty()) return {};
@@ -63,13 +65,20 @@ Result<void> SliceRing::load(SlabSource& source, SliceRange wanted) {
     if (staging_.size() < step * slice) staging_ = Buffer<float>(step * slice);
     for (std::int64_t z = part.begin; z < part.end; z += step) {
       const std::int64_t end = std::min(part.end, z + step);
+      if (!points.any(z, end)) continue;
       if (auto ok = source.read(z, end, staging_.span().first(static_cast<std::size_t>((end - z) * slice))); !ok)
         return give_up(ok);
-      parallel_for((end - z) * dims_.y, 64, [&](std::int64_t i) {
-        float* to = row(i % dims_.y, z + i / dims_.y);
-        const float* from = staging_.data() + i * dims_.x;
-        std::copy(from, from + dims_.x, to);
-        pad_row(to);
+      parallel_chunks((end - z) * dims_.y, 64, [&](std::int64_t begin, std::int64_t stop) {
+        std::vector<Span> spans;
+        for (std::int64_t i = begin; i < stop; ++i) {
+          const std::int64_t y = i % dims_.y, at = z + i / dims_.y;
+          points.spans(dims_.x, y, at, spans);
+          if (spans.empty()) continue;
+          float* to = row(y, at);
+          const float* from = staging_.data() + i * dims_.x;
+          for (const Span& span : spans) std::copy(from + span.begin, from + span.end, to + span.begin);
+          pad_row(to);
+        }
       });
     }
   }

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/base/result.h"
+#include "core/volume/brick_mask.h"
 #include "core/volume/slab_source.h"
 #include "core/volume/volume.h"
 
@@ -55,7 +56,8 @@ class SliceRing {
   void forget() noexcept { held_ = {}; }
 
   /// Makes `wanted` (cut to the volume, at most `capacity` slices) available, reading what is not held from `source`.
-  Result<void> load(SlabSource& source, SliceRange wanted);
+  /// Padded rows get only their points in `points`; what else stands in them is nothing.
+  Result<void> load(SlabSource& source, SliceRange wanted, const Wanted& points = {});
 
  private:
   Dims dims_;

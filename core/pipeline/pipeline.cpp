@@ -6,6 +6,7 @@
 #include "core/base/json_text.h"
 #include "core/exa/exa_file.h"
 #include "core/pipeline/forecast.h"
+#include "core/pipeline/refine_stage.h"
 #include "core/pipeline/room_check.h"
 
 namespace dubsar {
@@ -21,6 +22,41 @@ SurfaceModel assemble(GridFrame frame, SurfaceSamples samples, QuadMesh mesh, Ve
   return model;
 }
 
+/// What is known of voxels when they are not needed any more.
+struct FoundSurface {
+  SampledSurface sampled;
+  Threshold threshold;
+  GridFrame frame;
+  std::vector<FilterStep> steps;
+  std::optional<BandReport> band;  ///< at the scan's resolution
+};
+
+/// The surface of the halved grid, or that of the scan around it. The grid is released.
+Result<FoundSurface> find_surface(const PipelineOptions& options, ImportedGrid& imported, DenoisedGrid& half,
+                                  StageRun run) {
+  const Estimates& estimates = half.steps.back().estimates;
+  FoundSurface found;
+  found.steps = half.steps;
+  if (imported.detail.resample()) {
+    found.frame = half.grid.frame();
+    DUBSAR_ASSIGN(found.threshold, choose_threshold(options.threshold, estimates));
+    DUBSAR_ASSIGN(found.sampled, sample(half.grid, found.threshold.value, estimates, options.denoise.iterations > 0,
+                                        options.sample, run));
+    half.grid.release();  // from here on the samples are enough
+  } else {
+    found.frame = imported.scan->frame();
+    DUBSAR_ASSIGN(RefinedSurface refined, refine(*imported.scan, half.grid, estimates.sigma,
+                                                 {options.denoise, options.estimate, options.threshold, options.sample},
+                                                 options.import.budget, run));
+    found.sampled = std::move(refined.sampled);
+    found.threshold = std::move(refined.threshold);
+    found.band = refined.band;
+    found.steps.insert(found.steps.end(), refined.steps.begin(), refined.steps.end());
+  }
+  imported.scan.reset();
+  return found;
+}
+
 }  // namespace
 
 Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& progress) {
@@ -29,22 +65,18 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   DUBSAR_TRY(check_room(options.import, options.detail, run));
   DUBSAR_ASSIGN(ImportedGrid imported, import_grid(options.import, options.detail, options.estimate, run));
   DUBSAR_ASSIGN(DenoisedGrid denoised,
-                denoise(std::move(imported.grid), imported.grid_name, options.denoise, options.estimate, run));
-  const Estimates& estimates = denoised.steps.back().estimates;
-  DUBSAR_ASSIGN(const Threshold threshold, choose_threshold(options.threshold, estimates));
-  DUBSAR_ASSIGN(SampledSurface sampled,
-                sample(denoised.grid, threshold.value, estimates, options.denoise.iterations > 0,
-                       imported.detail.resample(), options.sample, run));
-  denoised.grid.release();  // from here on the samples are enough
+                denoise(std::move(imported.grid), kHalvedGrid, options.denoise, options.estimate, run));
+  DUBSAR_ASSIGN(FoundSurface found, find_surface(options, imported, denoised, run));
+  SampledSurface& sampled = found.sampled;
 
   DUBSAR_TRY(check_memory(
       fmt::format("the surface of {:.1f} million vertices", static_cast<double>(sampled.samples.offsets.size()) * 1e-6),
       static_cast<std::uint64_t>(kSurfaceBytesPerVertex * static_cast<double>(sampled.samples.offsets.size()))));
-  DUBSAR_ASSIGN(QuadMesh mesh, mesh_of_samples(sampled.samples, threshold.value, run));
+  DUBSAR_ASSIGN(QuadMesh mesh, mesh_of_samples(sampled.samples, found.threshold.value, run));
   DUBSAR_ASSIGN(SmoothedMesh smoothed, smooth_and_measure(std::move(mesh), options.smooth, options.curvature, run));
   SettleOptions settling = options.settle;
   settling.curvature = options.curvature;
-  DUBSAR_ASSIGN(SettledModel settled, settle(assemble(denoised.grid.frame(), std::move(sampled.samples),
+  DUBSAR_ASSIGN(SettledModel settled, settle(assemble(std::move(found.frame), std::move(sampled.samples),
                                                       std::move(smoothed.mesh), std::move(smoothed.attributes)),
                                              settling, options.exa_profile, run));
   DUBSAR_ASSIGN(SeparatedModel separated, separate(std::move(settled.model), options.segment, options.fill_holes, run));
@@ -74,9 +106,9 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   }
   DUBSAR_ASSIGN(CheckedProduct product, check_product(result.model, run));
   result.mesh = std::move(product.mesh);
-  result.report = make_report(
-      {imported, denoised, threshold, sampled, smoothed, settled, separated, contact, patches, product.check},
-      result.model, clock);
+  result.report = make_report({imported, found.steps, found.threshold, sampled, found.band, smoothed, settled,
+                               separated, contact, patches, product.check},
+                              result.model, clock);
   result.model.provenance = dump_json(provenance_json(result.report, options));
   return result;
 }

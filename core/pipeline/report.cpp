@@ -97,6 +97,11 @@ json segment_json(const PipelineReport& report) {
   return segment;
 }
 
+json band_json(const std::optional<BandReport>& band) {
+  if (!band) return nullptr;
+  return {{"share", band->share}, {"bricks", band->bricks}, {"bricks_added", band->added}, {"bricks_cut", band->cut}};
+}
+
 json contact_json(const ContactReport& contact) {
   json result{{"traced", contact.traced},
               {"points", contact.points},
@@ -134,13 +139,13 @@ PipelineReport make_report(const StageResults& results, const SurfaceModel& mode
                         .holes = results.separated.holes,
                         .contact = results.contact,
                         .patches = results.patches,
-                        .detail = results.imported.detail,
+                        .detail = {results.imported.detail, results.band},
                         .mesh = results.check,
                         .surface = {model.mesh.vertex_count(), model.mesh.quad_count()},
                         .partitions = model.partitions,
                         .exa = {},
                         .stages = clock.records()};
-  report.filters.insert(report.filters.end(), results.denoised.steps.begin(), results.denoised.steps.end());
+  report.filters.insert(report.filters.end(), results.filters.begin(), results.filters.end());
   return report;
 }
 
@@ -218,6 +223,7 @@ json report_json(const PipelineReport& report, const PipelineOptions& options) {
           {"stages", stages},
           {"mesh", mesh},
           {"detail", {{"grid", name_in(kDetails, report.detail.detail)}, {"why", report.detail.why}}},
+          {"band", band_json(report.detail.band)},
           {"segment", segment_json(report)},
           {"contact", report.contact ? contact_json(*report.contact) : json(nullptr)},
           {"patches", report.patches ? patches_json(*report.patches) : json(nullptr)},
@@ -246,6 +252,8 @@ std::string report_text(const PipelineReport& report) {
     text += fmt::format("blur of edges {:.2f} voxel, measured at {} flat places\n", std::sqrt(blur->variance),
                         blur->places);
   text += fmt::format("detail {}: {}\n", name_in(kDetails, report.detail.detail), report.detail.why);
+  if (const auto& band = report.detail.band)
+    text += fmt::format("band: {:.1f} % of the scan is near the surface and was filtered\n", 100.0 * band->share);
   text += fmt::format("threshold {:.6g}: {}\n", report.threshold.value, report.threshold.path);
   text +=
       fmt::format("mesh: {} vertices, {} x-quads, {} triangles, {} non-manifold edges, {} non-manifold vertices\n\n",

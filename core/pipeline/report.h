@@ -11,6 +11,7 @@
 #include "core/pipeline/contact_stage.h"
 #include "core/pipeline/surface_stages.h"
 #include "core/pipeline/volume_stages.h"
+#include "core/refine/surface_band.h"
 
 namespace dubsar {
 
@@ -27,6 +28,10 @@ struct VertexMoves {
   SettleStats settle;
 };
 
+struct DetailTaken : DetailChoice {
+  std::optional<BandReport> band;  ///< at the scan's resolution: how much of it was filtered
+};
+
 struct PipelineReport {
   ScanFacts scan;
   std::vector<FilterStep> filters;  ///< the raw scan, then before and after each pass; the last ones gave the threshold
@@ -37,7 +42,7 @@ struct PipelineReport {
   std::optional<HoleReport> holes;        ///< when holes were filled
   std::optional<ContactReport> contact;   ///< when tablet and envelope were told apart where they touch
   std::optional<UntangleReport> patches;  ///< when holes were filled
-  DetailChoice detail;
+  DetailTaken detail;
   MeshCheck mesh;  ///< of all parts together, with their fill patches
   SurfaceSize surface;
   PartitionTable partitions;
@@ -48,9 +53,10 @@ struct PipelineReport {
 /// What the stages returned; what a later stage took over from it (grids, meshes) may be gone.
 struct StageResults {
   const ImportedGrid& imported;
-  const DenoisedGrid& denoised;
+  const std::vector<FilterStep>& filters;
   const Threshold& threshold;
   const SampledSurface& sampled;
+  const std::optional<BandReport>& band;
   const SmoothedMesh& smoothed;
   const SettledModel& settled;
   const SeparatedModel& separated;

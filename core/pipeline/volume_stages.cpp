@@ -51,15 +51,6 @@ Result<CountedGrid> fill_grid(SlabSource& source, const Budget& budget) {
 /// Sharpening by 1 may double the noise: from here on it leaves at least what a raw scan of the paper has (17 dB).
 constexpr double kSharpenFromDb = 23.0, kAllFromDb = 27.0;
 
-/// Variance of the Gauss 3x3x3 of SharpenedSource: an amount of 1 takes as much off the variance of an edge.
-constexpr double kGaussVariance = 0.5;
-
-/// All of it where there is little noise, none where there is much, in between in proportion: at the scan's resolution
-/// filters leave 24 to 26 dB of 17.
-float sharpen_amount(double snr_db) {
-  return static_cast<float>(std::clamp((snr_db - kSharpenFromDb) / (kAllFromDb - kSharpenFromDb), 0.0, 1.0));
-}
-
 }  // namespace
 
 Result<CountedGrid> read_grid(SlabSource& scan, bool resample, const Budget& budget, StageRun run) {
@@ -80,10 +71,11 @@ Result<CountedGrid> read_grid(SlabSource& scan, bool resample, const Budget& bud
 
 Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, const EstimateOptions& estimate,
                                  StageRun run) {
-  DUBSAR_ASSIGN(const std::unique_ptr<ImportedVolume> scan, open_volume(options));
   ImportedGrid imported;
+  DUBSAR_ASSIGN(imported.scan, open_volume(options));
+  ImportedVolume* const scan = imported.scan.get();
   imported.detail = choose_detail(detail, scan->dims(), available_memory_bytes());
-  const bool resample = imported.detail.resample();
+  const bool half = imported.detail.resample();
   if (detail == Detail::kAuto)
     log_info("detail {}: {}", name_in(kDetails, imported.detail.detail), imported.detail.why);
   imported.facts.info = scan->info();
@@ -94,14 +86,14 @@ Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, co
   SampledSource some(*scan, kRawSampleSlices, group);
   imported.raw.name = "raw";
   DUBSAR_ASSIGN(imported.raw.estimates, estimate_source(some, "estimate_raw", estimate, run));
-  DUBSAR_ASSIGN(imported.grid, read_grid(*scan, resample, options.budget, run));
+  DUBSAR_ASSIGN(imported.grid, read_grid(*scan, true, options.budget, run));
   run.clock.start("blur", "place");
   ScanFacts& facts = imported.facts;
-  DUBSAR_ASSIGN(facts.blur, measure_edge_spread(imported.grid.grid, imported.raw.estimates.m_lo,
-                                                imported.raw.estimates.m_hi, run.progress));
+  SlabSource& grid = half ? static_cast<SlabSource&>(imported.grid.grid) : *scan;
+  DUBSAR_ASSIGN(facts.blur,
+                measure_edge_spread(grid, imported.raw.estimates.m_lo, imported.raw.estimates.m_hi, run.progress));
   run.clock.finish(facts.blur ? facts.blur->places : 0);
-  imported.grid_name = resample ? "gauss 2:1" : "imported";
-  facts.grid = imported.grid.grid.dims();
+  facts.grid = grid.dims();
   facts.nonfinite_voxels = scan->nonfinite_count();
   facts.nonfinite_fill = scan->nonfinite_fill();
   if (facts.nonfinite_voxels > 0) {
@@ -152,21 +144,29 @@ Result<Threshold> choose_threshold(std::optional<float> given, const Estimates& 
   return threshold;
 }
 
+// All of it where there is little noise, none where there is much, in between in proportion: at the scan's resolution
+// filters leave 24 to 26 dB of 17.
+float sharpen_amount(double snr_db) {
+  return static_cast<float>(std::clamp((snr_db - kSharpenFromDb) / (kAllFromDb - kSharpenFromDb), 0.0, 1.0));
+}
+
+Result<SurfaceSamples> extract_surface(SlabSource& source, float threshold, const SampleOptions& options,
+                                       StageRun run) {
+  run.clock.start("extract", "voxel");
+  run.progress.begin("extract", source.dims().count(), "voxel");
+  DUBSAR_ASSIGN(SurfaceSamples samples,
+                sample_surface(source, {threshold, options.offset_bits, options.closed}, run.progress));
+  run.clock.finish(source.dims().count());
+  return samples;
+}
+
 Result<SampledSurface> sample(GridStore& grid, float threshold, const Estimates& estimates, bool denoised,
-                              bool resampled, const SampleOptions& options, StageRun run) {
+                              const SampleOptions& options, StageRun run) {
   SampledSurface sampled;
   sampled.sharpen = options.sharpen.value_or(denoised ? sharpen_amount(estimates.snr_db) : 0.0f);
-  if (!options.sharpen && sampled.sharpen > 0.0f && !resampled) {
-    DUBSAR_ASSIGN(sampled.blur, measure_edge_spread(grid, estimates.m_lo, estimates.m_hi, run.progress));
-    if (sampled.blur) sampled.sharpen *= static_cast<float>(std::min(sampled.blur->variance / kGaussVariance, 1.0));
-  }
-  SharpenedSource sharpened(grid, sampled.sharpen);
-  SlabSource& source = sampled.sharpen > 0.0f ? static_cast<SlabSource&>(sharpened) : grid;
-  run.clock.start("extract", "voxel");
-  run.progress.begin("extract", grid.dims().count(), "voxel");
-  DUBSAR_ASSIGN(sampled.samples,
-                sample_surface(source, {threshold, options.offset_bits, options.closed}, run.progress));
-  run.clock.finish(grid.dims().count());
+  const std::unique_ptr<SlabSource> sharpened = make_sharpened(grid, sampled.sharpen);
+  SlabSource& source = sampled.sharpen > 0.0f ? *sharpened : static_cast<SlabSource&>(grid);
+  DUBSAR_ASSIGN(sampled.samples, extract_surface(source, threshold, options, run));
   return sampled;
 }
 

@@ -2,6 +2,7 @@
 // The stages that work on voxels: import and resampling, denoising, the threshold, sampling of the isosurface. Each is
 // a function of values; a report is made from their results (report.h).
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,12 +44,16 @@ struct ImportedGrid {
   FilterStep raw;  ///< of a sample of the scan
   CountedGrid grid;
   DetailChoice detail;
-  std::string grid_name;  ///< how it was made, as a FilterStep is named
+  std::unique_ptr<ImportedVolume> scan;  ///< to be read again
 };
 
-/// Opens the scan, estimates its noise from a sample, reads it, and halves it along each axis (Gauss 3x3x3 and 2:1)
-/// where `detail` says so. A grid that does not fit into memory lies on the disk (place_for). Errors: those of
-/// open_volume() and of its source; kTryAgain when there is no room for the grid.
+/// How the grid of import_grid() was made, as a FilterStep is named.
+inline constexpr const char* kHalvedGrid = "gauss 2:1";
+
+/// Opens the scan, estimates its noise from a sample, reads it, and halves it along each axis (Gauss 3x3x3 and 2:1):
+/// the surface is found there. Where `detail` is that of the scan, facts are those of the scan itself, and the surface
+/// is refined afterwards (refine_stage.h). A grid that does not fit into memory lies on the disk (place_for). Errors:
+/// those of open_volume() and of its source; kTryAgain when there is no room for the grid.
 Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, const EstimateOptions& estimate,
                                  StageRun run);
 
@@ -85,10 +90,15 @@ struct SampledSurface {
   std::optional<EdgeSpread> blur;  ///< of the grid before it was sharpened, where that was decided by it
 };
 
-/// Sharpens and samples the isosurface. `denoised`: whether a filter pass was asked for; without one the default is no
-/// sharpening. `resampled`: what 2:1 took is known; else the blur of the grid is measured and given back as far as the
-/// noise allows it.
+/// How much sharpening the noise allows, in dB of what filters left.
+float sharpen_amount(double snr_db);
+
+/// One record, "extract".
+Result<SurfaceSamples> extract_surface(SlabSource& source, float threshold, const SampleOptions& options, StageRun run);
+
+/// Sharpens the halved grid, of which is known what 2:1 took, and samples the isosurface. `denoised`: whether a filter
+/// pass was asked for; without one the default is no sharpening.
 Result<SampledSurface> sample(GridStore& grid, float threshold, const Estimates& estimates, bool denoised,
-                              bool resampled, const SampleOptions& options, StageRun run);
+                              const SampleOptions& options, StageRun run);
 
 }  // namespace dubsar

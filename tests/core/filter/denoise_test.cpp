@@ -97,6 +97,35 @@ TEST(Denoise, EveryInstructionSetAgreesWithTheDefinitionAndWithTheOthers) {
   set_thread_count(0);
 }
 
+TEST(Denoise, WhatIsWantedIsTheSameToTheBitAsInTheWhole) {
+  oracle::Noise noise(23);
+  const Dims dims{83, 30, 27};
+  const Volume<float> v = make_volume(dims, [&](auto x, auto, auto) { return (x > 41 ? 5.0 : 0.0) + noise(); });
+  BrickMask mask(dims);
+  mask.set(0, 0, 0);  // at a corner, in the middle, beside another, at the last voxels
+  mask.set(4, 2, 1);
+  mask.set(5, 2, 1);
+  mask.set(10, 3, 3);
+  for (const Case& c : all_filters(2, 1.1)) {
+    const Volume<float> whole = denoised(v, c.options);
+    for (const std::int64_t reach : {0, 2}) {
+      VolumeSource source(v);
+      const auto filter = make_denoised(source, c.options, {&mask, reach});
+      ASSERT_TRUE(filter) << filter.error().message;
+      const Volume<float> part = read_in_slabs(**filter, 4);
+      std::vector<Span> spans;
+      for (std::int64_t z = 0; z < dims.z; ++z)
+        for (std::int64_t y = 0; y < dims.y; ++y) {
+          mask.spans(y, z, reach, spans);
+          for (const Span& span : spans)
+            ASSERT_EQ(0, std::memcmp(part.row(y, z) + span.begin, whole.row(y, z) + span.begin,
+                                     static_cast<std::size_t>(span.end - span.begin) * sizeof(float)))
+                << c.name << " reach " << reach << " row " << y << ' ' << z << " from " << span.begin;
+        }
+    }
+  }
+}
+
 TEST(Denoise, SlabHeightAndThreadsChangeNoBit) {
   oracle::Noise noise(2);
   const Volume<float> v = make_volume({41, 18, 13}, [&](auto x, auto, auto) { return (x > 20 ? 6.0 : 0.0) + noise(); });

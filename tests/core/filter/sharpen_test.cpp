@@ -21,9 +21,9 @@ Volume<float> make(Dims dims, const std::function<double(double, double, double)
 
 Volume<float> sharpened(const Volume<float>& volume, float amount, std::int64_t slab) {
   VolumeSource source(volume);
-  SharpenedSource sharp(source, amount);
+  const std::unique_ptr<SlabSource> sharp = make_sharpened(source, amount);
   SilentProgress progress;
-  return read_all(sharp, progress, slab).value();
+  return read_all(*sharp, progress, slab).value();
 }
 
 TEST(Sharpen, ConstantsAndRampsStayAsTheyAre) {

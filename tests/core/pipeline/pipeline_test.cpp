@@ -65,9 +65,10 @@ TEST_F(Pipeline, NothingThatAStageFoundIsMissingInTheReport) {
   std::vector<std::string> stages;
   for (const StageRecord& stage : report.stages) stages.push_back(stage.name);
   if (!report.contact->traced) std::erase(stages, "untangle");  // its patches are looked at when it is traced
-  EXPECT_EQ(stages, (std::vector<std::string>{"estimate_raw", "import", "blur", "estimate", "denoise", "estimate",
-                                              "extract", "mesh", "smooth", "curvature", "settle", "segment",
-                                              "fill_holes", "contact", "occlusion", "check", "write"}));
+  EXPECT_EQ(stages, (std::vector<std::string>{"estimate_raw", "import",   "resample",  "blur",   "estimate",
+                                              "denoise",      "estimate", "sample",    "band",   "extract",
+                                              "mesh",         "smooth",   "curvature", "settle", "segment",
+                                              "fill_holes",   "contact",  "occlusion", "check",  "write"}));
   for (const StageRecord& stage : report.stages) {
     EXPECT_GE(stage.work, stage.name == "fill_holes" || stage.name == "untangle" || stage.name == "blur" ? 0 : 1)
         << stage.name;
@@ -77,7 +78,7 @@ TEST_F(Pipeline, NothingThatAStageFoundIsMissingInTheReport) {
   EXPECT_EQ(json["input"]["dims"], nlohmann::json({96, 64, 96}));
   EXPECT_EQ(json["input"]["grid"], nlohmann::json({96, 64, 96}));
   EXPECT_EQ(json["input"]["nonfinite_voxels"], 0);
-  EXPECT_EQ(json["estimates"]["filters"].size(), 3u);
+  EXPECT_EQ(json["estimates"]["filters"].size(), 5u);
   EXPECT_GT(json["estimates"]["threshold"], 0.0);
   EXPECT_FALSE(json["estimates"]["path"].get<std::string>().empty());
   EXPECT_GT(json["mesh"]["smooth"]["max_displacement_vox"], 0.0);
