@@ -41,12 +41,7 @@ void decode_row(const OffsetNetwork& network, int axis, std::span<const std::uin
     const int x = xs[i];
     OffsetEstimate likely = row.estimates[i];
     OffsetNear near{};
-    if (axis != 0 && before.near(x, row.own[i] != 0, near)) {
-      Units units;
-      load_units(row.sums[i], units);
-      for (std::size_t c = 0; c < 2; ++c) add_pair(network.near[c], near[c].data(), units);
-      likely = estimate(network, units);
-    }
+    if (axis != 0 && before.near(x, row.own[i] != 0, near)) likely = estimate_near(network, row.sums[i], near);
     const OffsetTable::Starts& starts = table.starts(likely);
     const std::uint32_t unit = own.split(), symbol = count_starts(starts, unit, own.code()) - 1;
     own.symbol(starts[symbol], OffsetTable::end(starts, symbol) - starts[symbol]);

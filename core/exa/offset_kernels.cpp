@@ -273,10 +273,7 @@ void begin(const OffsetNetwork& network, int axis, const OffsetPlace& place, std
 }
 
 OffsetEstimate finish(const OffsetNetwork& network, const OffsetNetwork::Sums& sums, const OffsetNear& near) {
-  Units units;
-  load_units(sums, units);
-  for (std::size_t c = 0; c < 2; ++c) add_pair(network.near[c], near[c].data(), units);
-  return estimate(network, units);
+  return estimate_near(network, sums, near);
 }
 
 }  // namespace

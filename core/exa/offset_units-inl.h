@@ -81,6 +81,15 @@ HWY_INLINE OffsetEstimate estimate(const OffsetNetwork& network, const Units& un
           std::clamp(((totals[1] >> 9) + network.out_bias[1]) >> 6, 0, 31)};
 }
 
+/// Of sums without the two columns of the row itself, and those.
+HWY_INLINE OffsetEstimate estimate_near(const OffsetNetwork& network, const OffsetNetwork::Sums& sums,
+                                        const OffsetNear& near) {
+  Units units;
+  load_units(sums, units);
+  for (std::size_t c = 0; c < 2; ++c) add_pair(network.near[c], near[c].data(), units);
+  return estimate(network, units);
+}
+
 }  // namespace
 }  // namespace dubsar::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -13,7 +13,7 @@
 #include "core/exa/exact.h"
 #include "core/exa/offset_fit.h"
 #include "core/extract/extract.h"
-#include "core/relief/normal_filter.h"
+#include "core/relief/face_median.h"
 #include "core/relief/shape_class.h"
 #include "core/relief/smooth.h"
 
@@ -74,11 +74,10 @@ std::uint64_t settled_sum(const SurfaceModel& model) {
 
 Result<std::vector<glm::vec3>> recomputed_normals(const QuadMesh& mesh, Progress& progress) {
   std::vector<glm::vec4> faces = face_normals(mesh);
-  DUBSAR_ASSIGN(const FaceNeighbours neighbours, FaceNeighbours::build(mesh, progress));
   NormalFilterOptions options;
   options.iterations = kNormalIterations;
   options.epsilon = kNormalEpsilon;
-  DUBSAR_TRY(filter_normals(neighbours, options, faces, progress));
+  DUBSAR_TRY(filter_face_normals(mesh, options, faces, progress));
   return vertex_normals(mesh, faces);
 }
 

@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/relief/row_lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace dubsar::HWY_NAMESPACE {
 namespace {
@@ -16,43 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, FaceNeighbours::kLanes>;
 using V = hn::Vec<D>;
 
-struct Lanes4 {
-  V x, y, z, w;
-};
-
-/// Lane l: the four floats at from[l].
-#if HWY_TARGET == HWY_SCALAR
-HWY_INLINE Lanes4 load_transposed(D d, const float* const* from) {
-  return {hn::Set(d, from[0][0]), hn::Set(d, from[0][1]), hn::Set(d, from[0][2]), hn::Set(d, from[0][3])};
-}
-#else
-template <class Tag>
-HWY_INLINE Lanes4 load_transposed(Tag d, const float* const* from) {
-  constexpr std::size_t kWidth = hn::MaxLanes(Tag());
-  static_assert(kWidth == 4 || kWidth == 8 || kWidth == 16);
-  const hn::FixedTag<hn::TFromD<Tag>, 4> d4;
-  const auto row = [&](std::size_t i) HWY_ATTR {  // lanes i, i + 4, ... one per 128-bit block
-    if constexpr (kWidth == 4) {
-      return hn::LoadU(d4, from[i]);
-    } else {
-      const hn::FixedTag<hn::TFromD<Tag>, 8> d8;
-      const auto low = hn::Combine(d8, hn::LoadU(d4, from[i + 4]), hn::LoadU(d4, from[i]));
-      if constexpr (kWidth == 8)
-        return low;
-      else
-        return hn::Combine(d, hn::Combine(d8, hn::LoadU(d4, from[i + 12]), hn::LoadU(d4, from[i + 8])), low);
-    }
-  };
-  const hn::RepartitionToWide<Tag> d2;
-  const V r0 = row(0), r1 = row(1), r2 = row(2), r3 = row(3);
-  const auto xy01 = hn::BitCast(d2, hn::InterleaveLower(d, r0, r1));
-  const auto xy23 = hn::BitCast(d2, hn::InterleaveLower(d, r2, r3));
-  const auto zw01 = hn::BitCast(d2, hn::InterleaveUpper(d, r0, r1));
-  const auto zw23 = hn::BitCast(d2, hn::InterleaveUpper(d, r2, r3));
-  return {hn::BitCast(d, hn::InterleaveLower(d2, xy01, xy23)), hn::BitCast(d, hn::InterleaveUpper(d2, xy01, xy23)),
-          hn::BitCast(d, hn::InterleaveLower(d2, zw01, zw23)), hn::BitCast(d, hn::InterleaveUpper(d2, zw01, zw23))};
-}
-#endif
+using Lanes4 = RowLanes<V>;
 
 /// Products and sums are kept apart (no fused multiply-add), so that all SIMD targets give the same bits.
 HWY_INLINE V dot(const V ax, const V ay, const V az, const V bx, const V by, const V bz) {
@@ -72,15 +38,12 @@ void filter_slice(const FaceNeighbours::Chunk& chunk, std::size_t slice, std::si
   const hn::RebindToUnsigned<D> du;
   const hn::RebindToSigned<D> di;
 
-  const float* own[FaceNeighbours::kLanes];
-  for (std::size_t l = 0; l < width; ++l) own[l] = from + std::size_t{order[l]} * 4;
-  const Lanes4 self = load_transposed(d, own);
+  const Lanes4 self = load_rows(d, [&](std::size_t l) HWY_ATTR { return from + std::size_t{order[l]} * 4; });
 
   const auto load_row = [&](std::uint32_t j) HWY_ATTR {
     const std::uint32_t* row = entries + std::size_t{j} * FaceNeighbours::kLanes;
-    const float* p[FaceNeighbours::kLanes];
-    for (std::size_t l = 0; l < width; ++l) p[l] = from + std::size_t{row[l] & FaceNeighbours::kIndexMask} * 4;
-    Lanes4 n = load_transposed(d, p);
+    Lanes4 n = load_rows(
+        d, [&](std::size_t l) HWY_ATTR { return from + std::size_t{row[l] & FaceNeighbours::kIndexMask} * 4; });
     const auto shared = hn::ShiftRight<FaceNeighbours::kIndexBits>(hn::LoadU(du, row));
     n.w = hn::Mul(n.w, hn::ConvertTo(d, hn::BitCast(di, shared)));
     return n;

@@ -1,24 +1,14 @@
 #include "core/relief/shape_class.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include "core/base/parallel.h"
 #include "core/base/result.h"
+#include "core/relief/shape_lanes.h"
 
 namespace dubsar {
-
-namespace {
-/// Cosine and sine of the angles between the kinds of shape: -123.75 + 22.5 j degrees, j = 0..7.
-constexpr std::array<double, 8> kCosine{-0.555570233019602, -0.195090322016128, 0.19509032201612825,
-                                        0.5555702330196023, 0.8314696123025452, 0.9807852804032304,
-                                        0.9807852804032304, 0.8314696123025452};
-constexpr std::array<double, 8> kSine{-0.8314696123025452, -0.9807852804032304, -0.9807852804032304,
-                                      -0.8314696123025452, -0.5555702330196022, -0.1950903220161282,
-                                      0.1950903220161283,  0.5555702330196022};
-}  // namespace
 
 std::uint8_t shape_class(float k_min, float k_max) noexcept {
   if (!std::isfinite(k_min) || !std::isfinite(k_max)) return 0;
@@ -32,16 +22,17 @@ std::uint8_t shape_class(float k_min, float k_max) noexcept {
   if (part == 0.0 || step < 0) return 0;
   // The kind is round((atan2(low, high) + 135 degrees) / 22.5): how many of the angles between kinds lie below.
   int shape = 0;
-  for (std::size_t j = 0; j < kCosine.size(); ++j) shape += low * kCosine[j] >= high * kSine[j] ? 1 : 0;
+  for (std::size_t j = 0; j < kShapeCosine.size(); ++j) shape += low * kShapeCosine[j] >= high * kShapeSine[j] ? 1 : 0;
   return static_cast<std::uint8_t>(1 + kShapes * std::min(step, 13) + shape);
 }
 
 std::vector<std::uint8_t> shape_classes(std::span<const float> k_min, std::span<const float> k_max) {
   DUBSAR_CHECK(k_min.size() == k_max.size());
   std::vector<std::uint8_t> classes(k_min.size());
-  parallel_for(static_cast<std::int64_t>(k_min.size()), 16384, [&](std::int64_t i) {
-    const auto v = static_cast<std::size_t>(i);
-    classes[v] = shape_class(k_min[v], k_max[v]);
+  parallel_chunks(static_cast<std::int64_t>(k_min.size()), 16384, [&](std::int64_t begin, std::int64_t end) {
+    const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
+    const std::size_t done = shape_class_lanes(k_min.data() + first, k_max.data() + first, count, &classes[first]);
+    for (std::size_t v = first + done; v < first + count; ++v) classes[v] = shape_class(k_min[v], k_max[v]);
   });
   return classes;
 }

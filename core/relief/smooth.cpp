@@ -5,7 +5,8 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/parallel.h"
-#include "core/relief/corner_weights.h"
+#include "core/relief/quad_sums.h"
+#include "core/relief/scatter_blocks.h"
 
 namespace dubsar {
 namespace {
@@ -42,16 +43,6 @@ glm::vec3 area_vector(const QuadMesh& mesh, std::span<const glm::vec3> positions
     previous = here;
   });
   return 0.5f * sum;
-}
-
-std::vector<glm::vec4> normals_of(const QuadMesh& mesh, std::span<const glm::vec3> positions) {
-  std::vector<glm::vec4> faces(mesh.quads.size());
-  parallel_for(mesh.quad_count(), kSmoothGrain, [&](std::int64_t f) {
-    const glm::vec3 a = area_vector(mesh, positions, index(f));
-    const float area = glm::length(a);
-    faces[index(f)] = area > 1e-12f ? glm::vec4(a / area, area) : glm::vec4(0.0f);
-  });
-  return faces;
 }
 
 struct AngleSum {
@@ -139,22 +130,25 @@ Displacement displacement(std::span<const glm::vec3> a, std::span<const glm::vec
 
 }  // namespace
 
-std::vector<glm::vec4> face_normals(const QuadMesh& mesh) { return normals_of(mesh, mesh.positions); }
+std::vector<glm::vec4> face_normals(const QuadMesh& mesh) {
+  std::vector<glm::vec4> faces(mesh.quads.size());
+  parallel_chunks(mesh.quad_count(), kSmoothGrain,
+                  [&](std::int64_t begin, std::int64_t end) { quad_normals(mesh, begin, end, faces.data()); });
+  return faces;
+}
 
 std::vector<glm::vec3> vertex_normals(const QuadMesh& mesh, std::span<const glm::vec4> faces) {
   DUBSAR_CHECK(faces.size() == mesh.quads.size());
   std::vector<glm::vec3> normals(mesh.positions.size());
-  const std::vector<std::array<float, 4>> weights = corner_weights(mesh);
-  parallel_for(mesh.vertex_count(), kSmoothGrain, [&](std::int64_t i) {
-    const auto v = static_cast<std::uint32_t>(i);
-    glm::vec3 sum{0.0f};
-    for (const std::uint32_t q : mesh.quads_of(v)) {
-      const auto& quad = mesh.quads[q];
-      const std::size_t corner = quad[0] == v ? 0 : quad[1] == v ? 1 : quad[2] == v ? 2 : 3;
-      sum += (mesh.has_doubled(q) ? corner_weight(mesh, q, v) : weights[q][corner]) * glm::vec3(faces[q]);
-    }
-    const float length = glm::length(sum);
-    normals[v] = length > 1e-12f ? sum / length : glm::vec3(0.0f, 0.0f, 1.0f);
+  if (faces.empty()) {
+    std::fill(normals.begin(), normals.end(), glm::vec3(0.0f, 0.0f, 1.0f));
+    return normals;
+  }
+  scatter_to_vertices(mesh, kNormalFloats, [&](float* rows, std::int64_t first, std::int64_t size, const auto& groups) {
+    const VertexSums sums{
+        &mesh, &faces.front().x, nullptr, rows, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(size)};
+    for (const std::uint32_t group : groups) add_corner_normals(sums, group);
+    finish_normals(sums, normals.data());
   });
   return normals;
 }

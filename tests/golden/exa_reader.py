@@ -979,6 +979,17 @@ def decode_patches(chunk, positions, mesh, of):
     return patches
 
 
+def decode_patch_evidence(chunk, patches):
+    """Of the vertices that the patches add, one after the other; nothing for a patch of which nothing is known."""
+    decoder, present, models, values = Decoder(chunk), AdaptiveBit(), [Tree(2) for _ in range(16)], []
+    for _, _, extra, _ in patches:
+        before = 0
+        for _ in range(len(extra) if decoder.adaptive(present) else 0):
+            values.append(models[before].get(decoder))
+            before = (before << 2 | values[-1]) & 15
+    return np.array(values, dtype=np.uint8)
+
+
 def loose_patch(decoder, counts, floats, vertices):
     extra, triangles = counts.get(decoder), counts.get(decoder)
     bits = np.array([floats.get(decoder) for _ in range(3 * extra)], dtype=np.uint32)
@@ -1157,6 +1168,7 @@ def read(path):
         result.update(decode_words(blocks, mesh, len(positions)))
     for kind, name, decode, count in (("SHAP", "shape", decode_shape, len(positions)),
                                       ("AMBO", "ao", decode_light, len(positions)),
+                                      ("EVID", "evidence", decode_enum, len(positions)),
                                       ("QPAR", "quad_partition", decode_partition, len(quads))):
         if kind in blocks:
             result[name] = decode(blocks[kind], mesh, count)
@@ -1165,6 +1177,8 @@ def read(path):
         result["patches"] = np.frombuffer(
             b"".join(bytes([part, reverse]) + extra.tobytes() + np.array(triangles, dtype=np.uint32).tobytes()
                      for part, reverse, extra, triangles in patches), dtype=np.uint8)
+        if "FEVI" in blocks:
+            result["patch_evidence"] = decode_patch_evidence(blocks["FEVI"][0], patches)
     if "PNRM" in blocks:
         result["normals"] = octahedral_normals(word_numbers(blocks["PNRM"], len(positions), 2, 16))
     for kind, name, columns in (("NORM", "normals", 3), ("CURV", "curvatures", 2)):
@@ -1178,7 +1192,8 @@ def main():
         found = read(path)
         print(path, len(found["positions"]), "vertices", len(found["quads"]), "x-quads",
               *(f"{name} {zlib.crc32(np.ascontiguousarray(found[name]).tobytes()):08x}"
-                for name in ("positions", "quads", "shape", "ao", "quad_partition", "normals", "curvatures", "patches")
+                for name in ("positions", "quads", "shape", "ao", "quad_partition", "normals", "curvatures", "patches",
+                             "evidence", "patch_evidence")
                 if name in found))
 
 

@@ -60,13 +60,16 @@ TEST(ExaGolden, EveryFileGivesTheSumsThatStandBesideIt) {
       }
       add_sum(found, "curvatures", pairs);
     }
-    std::string patches;
+    std::string patches, patch_evidence;
     for (const FillPatch& patch : model->patches) {
       patches += {static_cast<char>(patch.partition), static_cast<char>(patch.reverse_partition)};
       patches.append(reinterpret_cast<const char*>(patch.extra_positions.data()), patch.extra_positions.size() * 12);
       patches.append(reinterpret_cast<const char*>(patch.triangles.data()), patch.triangles.size() * 12);
+      patch_evidence.append(patch.evidence.begin(), patch.evidence.end());
     }
     if (!patches.empty()) found += fmt::format(" patches {:08x}", crc32_of(patches));
+    add_sum(found, "evidence", model->attributes.evidence);
+    if (!patch_evidence.empty()) found += fmt::format(" patch_evidence {:08x}", crc32_of(patch_evidence));
     EXPECT_EQ(found, line);
   }
 }

@@ -26,6 +26,7 @@ struct Sample {
   int bits;
   bool smoothed, exact;
   unsigned seed;
+  bool evidence = false;
 };
 
 SurfaceModel make(const Sample& sample) {
@@ -75,6 +76,13 @@ SurfaceModel make(const Sample& sample) {
                              {{1.0f / 3.0f, 2.0f, 3.0f}},
                              {{7, 8, static_cast<std::uint32_t>(model.mesh.positions.size())}, {9, 8, 7}}});
   }
+  if (!sample.evidence) return model;
+  for (const glm::vec3& p : model.mesh.positions)
+    a.evidence.push_back(static_cast<std::uint8_t>(p.x < 9.5f ? 0 : p.y < 12.0f ? 1 : p.z + uniform() < 14.0 ? 2 : 3));
+  for (std::size_t i = 0; i < model.patches.size(); ++i)
+    if (i % 3 != 1)
+      for (std::size_t v = 0; v < model.patches[i].extra_positions.size(); ++v)
+        model.patches[i].evidence.push_back(static_cast<std::uint8_t>(2 + (v / 5 + i) % 2));
   return model;
 }
 }  // namespace
@@ -85,7 +93,8 @@ int main(int argc, char** argv) {
     return 64;
   }
   for (const Sample& sample : {Sample{"exa5_smoothed.exa", {37, 33, 29}, .15, true, 4, true, false, 1},
-                               Sample{"exa5_bricks.exa", {133, 131, 4}, .05, false, 4, false, false, 4}}) {
+                               Sample{"exa5_bricks.exa", {133, 131, 4}, .05, false, 4, false, false, 4},
+                               Sample{"exa5_evidence.exa", {31, 29, 33}, .1, true, 4, true, false, 8, true}}) {
     SilentProgress progress;
     const auto stats = write_exa(std::string(argv[1]) + "/" + sample.name, make(sample), progress);
     if (!stats) {
