@@ -11,12 +11,12 @@ constexpr std::int64_t kGroupsAtOnce = 256;
 constexpr auto kScatterBlock32 = static_cast<std::uint32_t>(kScatterBlock);
 
 /// The lowest and highest block that a group touches; lowest > highest: none.
-struct BlockRange {
+struct TouchedBlocks {
   std::uint32_t low = ~std::uint32_t{0}, high = 0;
 };
 
 /// Blocks of the targets `ids`, from lowest to highest.
-BlockRange range_of(std::span<const std::uint32_t> ids) {
+TouchedBlocks range_of(std::span<const std::uint32_t> ids) {
   std::uint32_t low = ~std::uint32_t{0}, high = 0;
   for (const std::uint32_t id : ids) {
     low = std::min(low, id);
@@ -30,13 +30,13 @@ BlockRange range_of(std::span<const std::uint32_t> ids) {
 /// ids_of(group) is looked at one by one.
 template <class IdsOf>
 ScatterBlocks blocks_of(std::int64_t targets, std::int64_t groups, const IdsOf& ids_of) {
-  std::vector<BlockRange> ranges(static_cast<std::size_t>(groups));
+  std::vector<TouchedBlocks> ranges(static_cast<std::size_t>(groups));
   parallel_for(groups, kGroupsAtOnce, [&](std::int64_t g) {
     ranges[static_cast<std::size_t>(g)] = range_of(ids_of(static_cast<std::uint32_t>(g)));
   });
   ScatterBlocks blocks(static_cast<std::size_t>((targets + kScatterBlock - 1) / kScatterBlock));
   for (std::uint32_t g = 0; g < ranges.size(); ++g) {
-    const BlockRange& range = ranges[g];
+    const TouchedBlocks& range = ranges[g];
     if (range.low <= range.high && range.high - range.low <= 1) {
       for (std::uint32_t b = range.low; b <= range.high; ++b) blocks[b].push_back(g);
       continue;
