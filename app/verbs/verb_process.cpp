@@ -113,12 +113,20 @@ void add_resource_options(Arguments command, ProcessRequest& options) {
 /// The stages of a run as Progress names them, with the seconds of one core that they took on the phantom of `--preset
 /// demo`, at the scan's resolution.
 std::vector<PlannedStage> plan_of(const ProcessRequest& options) {
-  std::vector<PlannedStage> plan{{"estimate_raw", 0.37}, {"import", 0.5}, {"estimate", 0.02}};
-  for (int pass = 0; pass < options.pipeline.denoise.iterations; ++pass) {
-    plan.push_back({"denoise", 0.9});
-    plan.push_back({"estimate", 0.02});
+  std::vector<PlannedStage> plan{{"estimate_raw", 0.1}, {"import", 0.25}, {"estimate", 0.02}};
+  const auto add_passes = [&](double seconds) {
+    for (int pass = 0; pass < options.pipeline.denoise.iterations; ++pass) {
+      plan.push_back({"denoise", seconds});
+      plan.push_back({"estimate", 0.02});
+    }
+  };
+  add_passes(0.08);
+  if (options.pipeline.detail != Detail::kHalf) {
+    plan.insert(plan.end(), {{"import", 0.1}, {"estimate", 0.02}});  // of the sample
+    add_passes(0.15);
+    plan.insert(plan.end(), {{"band", 0.05}, {"band", 0.7}});
   }
-  plan.push_back({"extract", 0.22});
+  plan.push_back({"extract", 0.07});
   for (const auto& [name, seconds] : {std::pair{"mesh", 0.11},
                                       {"smooth", 1.33},
                                       {"curvature", 0.23},

@@ -20,12 +20,18 @@ constexpr std::int64_t kGroups = 8, kGroupAfter = 6;
 // (docs/speed.md).
 constexpr double kSurfaceSeconds = 6.0;
 constexpr double kSecondsPerRay = 1.0 / 13e6;
-constexpr double kContactSeconds = 14.0;  ///< at the scan's resolution
-// The rest of memory: the program, its slabs and threads; and, where contact is traced, of each voxel of the grid.
-constexpr double kProgramBytes = 80e6, kContactBytesPerVoxel = 12.6;
+constexpr double kContactSeconds = 17.0;  ///< at the scan's resolution
+// The rest of memory: the program, its slabs and threads; and, for each vertex, all that is there while the contact is
+// traced.
+constexpr double kProgramBytes = 80e6, kContactBytesPerVertex = 500.0;
+// Points of the bricks near the surface, and what filtering one costs: passes see beyond the bricks.
+constexpr double kBandPointsPerVertex = 14.0, kBandEffort = 1.8;
+constexpr std::int64_t kLearnedSlices = 96;  ///< of the scan, that are filtered in whole (refine_stage.cpp)
+/// Of phantoms from 96x64x96 to 1871x999x1723: 7 to 10.
+constexpr double kVerticesPerArea = 10.0;
 // Where the outside is looked for: volumes of signs that are there at a time, and what is known of each vertex.
 constexpr double kSignVolumes = 6.5, kSegmentBytesPerVertex = 125.0;
-constexpr double kProductBytesPerVertex = 0.45, kLightBytesPerVertex = 0.07;
+constexpr double kProductBytesPerVertex = 0.45, kLightBytesPerVertex = 0.07, kContactProductBytesPerVertex = 0.3;
 constexpr double kExtractOfDenoising = 0.3;  ///< what sharpening and extraction take of the time of the filter's passes
 constexpr double kEfficiency = 0.85;         ///< of more than one thread
 
@@ -78,13 +84,18 @@ Dims grid_of(const Dims& scan, bool half) {
   return {halved(scan.x), halved(scan.y), halved(scan.z)};
 }
 
-std::uint64_t bytes_of_run(const Dims& grid, double vertices, GridPlace place, bool contact) {
-  const auto voxels = static_cast<double>(grid.count());
-  const double floats = place == GridPlace::kMemory ? 4.0 * voxels : 0.0, signs = voxels / 8.0;
-  const double volume = signs + floats + 4.0 * vertices;
-  const double surface = signs + vertices * kSurfaceBytesPerVertex;
-  const double outside = kSignVolumes * signs + vertices * kSegmentBytesPerVertex;
-  const double traced = contact ? kContactBytesPerVoxel * voxels : 0.0;
+double usual_vertices(const Dims& scan) {
+  return kVerticesPerArea * std::pow(static_cast<double>(scan.count()), 2.0 / 3.0);
+}
+
+std::uint64_t bytes_of_run(const RunShape& run) {
+  const double signs = static_cast<double>(grid_of(run.scan, run.half).count()) / 8.0;
+  double floats = run.place == GridPlace::kMemory ? 4.0 * static_cast<double>(grid_of(run.scan, true).count()) : 0.0;
+  if (!run.half) floats = std::max(floats, 4.0 * kBandPointsPerVertex * run.vertices);  // one after the other
+  const double volume = signs + floats + 4.0 * run.vertices;
+  const double surface = signs + run.vertices * kSurfaceBytesPerVertex;
+  const double outside = kSignVolumes * signs + run.vertices * kSegmentBytesPerVertex;
+  const double traced = run.contact ? kContactBytesPerVertex * run.vertices : 0.0;
   return static_cast<std::uint64_t>(std::max({surface, volume, outside, traced}));
 }
 
@@ -125,11 +136,16 @@ Result<Forecast> forecast(SlabSource& scan, const ForecastOptions& options, Prog
 
   // What the stages took for these slices, for all.
   const double times = all / static_cast<double>(part.count());
+  const double scan_z = static_cast<double>(scan.dims().z);
+  const double band = std::min(1.0, kBandPointsPerVertex * vertices / all);
+  const double filtered =
+      half ? 1.0  // of the voxels
+           : 1.0 / 8.0 + std::min(1.0, static_cast<double>(kLearnedSlices) / scan_z) + kBandEffort * band;
   for (const StageRecord& stage : clock.records()) {
     if (stage.name == "estimate") continue;  // of a histogram: the same for any size
     result.core_s += stage.cpu_s * times *
-                     (stage.name == "import"    ? reading
-                      : stage.name == "denoise" ? 1.0 + kExtractOfDenoising
+                     (stage.name == "import"    ? (half ? 1.0 : 2.0) * reading
+                      : stage.name == "denoise" ? (1.0 + kExtractOfDenoising) * filtered
                                                 : 1.0);
   }
   const double millions = vertices * 1e-6;
@@ -139,11 +155,14 @@ Result<Forecast> forecast(SlabSource& scan, const ForecastOptions& options, Prog
   const int threads = thread_count();
   result.wall_s = threads > 1 ? result.core_s / (kEfficiency * threads) : result.core_s;
 
-  const GridPlace place = place_for(result.grid, options.budget);
-  result.memory_bytes = static_cast<std::uint64_t>(kProgramBytes) + bytes_of_run(result.grid, vertices, place, contact);
-  result.scratch_bytes = place == GridPlace::kScratch ? static_cast<std::uint64_t>(4.0 * all) : 0;
+  const Dims halved = grid_of(scan.dims(), true);
+  const GridPlace place = place_for(halved, options.budget);
+  result.memory_bytes =
+      static_cast<std::uint64_t>(kProgramBytes) + bytes_of_run({scan.dims(), half, vertices, place, contact});
+  result.scratch_bytes = place == GridPlace::kScratch ? 4 * static_cast<std::uint64_t>(halved.count()) : 0;
   result.product_bytes = static_cast<std::uint64_t>(
-      vertices * (kProductBytesPerVertex + (options.occlusion_rays > 0 ? kLightBytesPerVertex : 0.0)));
+      vertices * (kProductBytesPerVertex + (options.occlusion_rays > 0 ? kLightBytesPerVertex : 0.0) +
+                  (contact ? kContactProductBytesPerVertex : 0.0)));
   return result;
 }
 

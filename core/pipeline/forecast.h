@@ -32,8 +32,20 @@ inline constexpr double kSurfaceBytesPerVertex = 200.0;
 /// The grid on which the surface of a scan is found.
 Dims grid_of(const Dims& scan, bool half);
 
-/// Most that a run takes at any time beside the program itself. `contact`: it is traced.
-std::uint64_t bytes_of_run(const Dims& grid, double vertices, GridPlace place, bool contact);
+/// What decides how much memory a run takes.
+struct RunShape {
+  Dims scan;
+  bool half = true;       ///< the surface is that of the halved grid; else it is refined at the scan's resolution
+  double vertices = 0.0;  ///< of the surface
+  GridPlace place = GridPlace::kMemory;  ///< of the halved grid
+  bool contact = false;                  ///< is traced
+};
+
+/// Most that a run takes at any time beside the program itself.
+std::uint64_t bytes_of_run(const RunShape& run);
+
+/// Vertices of the surface of a tablet in its envelope at the scan's resolution, from the size of the scan alone.
+double usual_vertices(const Dims& scan);
 
 /// Reads about 96 slices of the scan. Within 30 % on phantoms of 10 to 3,000 million voxels (docs/speed.md). Errors:
 /// those of the source; kBadData when no threshold can be given or there is no surface; kCancelled.

@@ -22,8 +22,10 @@ Result<void> check_room(const ImportOptions& scan, Detail wanted, StageRun run) 
   const std::uint64_t left = available_memory_bytes();
   const DetailChoice detail = choose_detail(wanted, volume->dims(), left);
   const Dims grid = grid_of(volume->dims(), detail.resample());
-  const GridPlace place = place_for(grid, scan.budget);
-  const auto bytes_with = [&](double vertices) { return bytes_of_run(grid, vertices, place, false); };
+  const GridPlace place = place_for(grid_of(volume->dims(), true), scan.budget);
+  const auto bytes_with = [&](double vertices) {
+    return bytes_of_run({volume->dims(), detail.resample(), vertices, place, false});
+  };
   const auto refusal = [&](std::uint64_t needed, const std::string& what) {
     return fail(ErrorKind::kTryAgain, "{} needs about {:.1f} GiB of memory at {} resolution, and {:.1f} GiB are left",
                 what, static_cast<double>(needed) / kGib, detail.resample() ? "half the scan's" : "the scan's",

@@ -77,11 +77,17 @@ TEST_F(Room, WhatSurelyFitsIsNotLookedAtTwice) {
 }
 
 TEST_F(Room, AGridWhoseSignsAloneAreTooManyIsRefusedByItsSize) {
-  const Dims grid{60000, 60000, 10};
-  EXPECT_GT(bytes_of_run(grid, 0.0, GridPlace::kScratch, false), static_cast<std::uint64_t>(grid.count()) / 8);
-  EXPECT_GE(bytes_of_run(grid, 0.0, GridPlace::kMemory, false), static_cast<std::uint64_t>(grid.count()) * 4);
-  EXPECT_GE(bytes_of_run(grid, 1e9, GridPlace::kScratch, false),
-            static_cast<std::uint64_t>(1e9 * kSurfaceBytesPerVertex));
+  const Dims scan{60000, 60000, 10};
+  const auto points = static_cast<std::uint64_t>(scan.count());
+  EXPECT_GT(bytes_of_run({scan, false, 0.0, GridPlace::kScratch, false}), points / 8);
+  EXPECT_GT(bytes_of_run({scan, true, 0.0, GridPlace::kScratch, false}), points / 64);
+  for (const bool half : {false, true}) {
+    EXPECT_GE(bytes_of_run({scan, half, 0.0, GridPlace::kMemory, false}), points / 8 * 4) << "of the halved grid";
+    EXPECT_GE(bytes_of_run({scan, half, 1e9, GridPlace::kScratch, false}),
+              static_cast<std::uint64_t>(1e9 * kSurfaceBytesPerVertex));
+  }
+  EXPECT_GT(bytes_of_run({scan, false, 1e9, GridPlace::kScratch, true}),
+            bytes_of_run({scan, false, 1e9, GridPlace::kScratch, false}));
 }
 
 }  // namespace
