@@ -4,8 +4,10 @@
 #include <atomic>
 #include <bit>
 #include <cstdlib>
-#include <cstring>
+#include <span>
 
+#include "core/base/large_pages.h"
+#include "core/exa/known_levels.h"
 #include "core/exa/symbol_coder.h"
 #include "core/exa/vertex_order.h"
 
@@ -51,16 +53,10 @@ class ShapeCode {
 struct LightContext {
   int expected = 48, apart = 9;
 };
-LightContext light_context(const QuadMesh& mesh, const std::uint8_t* values, std::uint32_t v, std::uint32_t first) {
-  int sum = 0, weight = 0, low = 63, high = 0;
-  known_surroundings(mesh, v, first, [&](std::uint32_t w, int share) {
-    sum += share * values[w];
-    weight += share;
-    low = std::min<int>(low, values[w]);
-    high = std::max<int>(high, values[w]);
-  });
-  if (weight == 0) return {};
-  return {(sum + weight / 2) / weight, std::min(8, high - low)};
+LightContext light_context(const LevelsAround& levels, const QuadMesh& mesh, std::uint32_t v) {
+  const KnownLevels known = levels.of(mesh, v);
+  if (known.shares == 0) return {};
+  return {(known.sum + known.shares / 2) / known.shares, std::min(8, known.highest - known.lowest)};
 }
 /// Steps from the expected level to the nearest that can be had.
 int light_steps(int level, int expected, int step) {
@@ -72,29 +68,32 @@ int light_at(int expected, int steps, int step) { return std::clamp(expected + s
 /// The difference from what the neighbours let expect, by how far they are apart.
 class LightCode {
  public:
-  explicit LightCode(int step) : step_(step) {}
+  LightCode(int step, std::uint32_t first, std::uint32_t end) : step_(step), levels_(first, end) {}
   template <class Coder>
-  std::uint8_t code(Coder& coder, const QuadMesh& mesh, const std::uint8_t* values, std::uint32_t v,
-                    std::uint32_t first) {
-    const LightContext context = light_context(mesh, values, v, first);
+  std::uint8_t code(Coder& coder, const QuadMesh& mesh, const std::uint8_t* values, std::uint32_t v, std::uint32_t) {
+    const LightContext context = light_context(levels_, mesh, v);
     const int steps =
         numbers_[static_cast<std::size_t>(context.apart)].code(coder, light_steps(values[v], context.expected, step_));
-    return static_cast<std::uint8_t>(light_at(context.expected, steps, step_));
+    const auto level = static_cast<std::uint8_t>(light_at(context.expected, steps, step_));
+    levels_.set(v, level);
+    return level;
   }
 
  private:
   int step_;
+  LevelsAround levels_;
   std::array<SignedNumber, 10> numbers_;
 };
 
-/// The value with most votes, the lowest of equals. One value with all votes, the usual case, is found without looking.
-std::size_t most_votes(const std::array<std::uint8_t, 8>& votes) {
-  std::uint64_t all;
-  std::memcpy(&all, votes.data(), sizeof all);
-  if (all == 0) return 0;
-  const auto lowest = static_cast<std::size_t>(std::countr_zero(all)) / 8;
-  if (all >> 8 * lowest < 256) return lowest;
-  return static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
+/// Votes for 0..7, a byte each; the value with most, the lowest of equals.
+std::size_t most_votes(std::uint64_t votes) {
+  if (votes == 0) return 0;
+  const auto lowest = static_cast<std::size_t>(std::countr_zero(votes)) / 8;
+  if (votes >> 8 * lowest < 256) return lowest;  // all agree, the usual case
+  std::size_t best = lowest;
+  for (std::size_t value = lowest + 1; value < 8; ++value)
+    if ((votes >> 8 * value & 255) > (votes >> 8 * best & 255)) best = value;
+  return best;
 }
 
 /// The value of the last x-quad of a chunk around each vertex. X-quads and vertices are in the order of their cells, so
@@ -105,11 +104,15 @@ class LastAround {
     if (first == end) return;
     std::uint32_t last = 0;
     low_ = ~std::uint32_t{0};
-    for (std::uint32_t q = first; q < end; ++q)
-      each_vertex(q, [&](std::uint32_t v) {
-        low_ = std::min(low_, v);
-        last = std::max(last, v);
-      });
+    const auto see = [&](std::uint32_t v) {
+      low_ = std::min(low_, v);
+      last = std::max(last, v);
+    };
+    for (const std::uint32_t v : std::span(mesh.quads[first].data(), 4 * std::size_t{end - first})) see(v);
+    for (auto d = std::lower_bound(mesh.doubled.begin(), mesh.doubled.end(), first,
+                                   [](const DoubledCorner&corner, std::uint32_t q) { return corner.quad < q; });
+         d != mesh.doubled.end() && d->quad < end; ++d)
+      see(d->vertex);
     values_.assign(last - low_ + 1, kNone);
   }
   static constexpr std::uint8_t kNone = 255;
@@ -138,16 +141,10 @@ class PartitionCode {
   PartitionCode(const QuadMesh& mesh, std::uint32_t first, std::uint32_t end) : last_(mesh, first, end) {}
   template <class Coder>
   std::uint8_t code(Coder& coder, const QuadMesh& mesh, const std::uint8_t* values, std::uint32_t q, std::uint32_t) {
-    std::array<std::uint8_t, 8> votes{};
-    int all = 0;
-    for (const std::uint32_t v : mesh.quads[q]) {
-      const std::uint8_t before = last_.of(v);
-      if (before == LastAround::kNone) continue;
-      ++votes[before & 7];
-      ++all;
-    }
+    std::uint64_t votes = 0;  // of four corners: their number fits a byte, too
+    for (const std::uint32_t v : mesh.quads[q]) votes += kVotes[last_.of(v)];
     const std::size_t best = most_votes(votes);
-    const auto context = static_cast<std::size_t>(all * 5 + votes[best]);
+    const auto context = static_cast<std::size_t>(5 * (votes * 0x0101010101010101u >> 56) + (votes >> 8 * best & 255));
     auto value = static_cast<std::uint8_t>(best);
     if (!coder.steady_bit(same_[context], values[q] == best))
       value = static_cast<std::uint8_t>(other_[best].code(coder, values[q]));
@@ -156,6 +153,13 @@ class PartitionCode {
   }
 
  private:
+  /// By value; none for LastAround::kNone.
+  static constexpr std::array<std::uint64_t, 256> kVotes = [] {
+    std::array<std::uint64_t, 256> votes{};
+    for (std::size_t value = 0; value < LastAround::kNone; ++value) votes[value] = std::uint64_t{1} << 8 * (value & 7);
+    return votes;
+  }();
+
   LastAround last_;
   std::array<AdaptiveBit, 25> same_;
   std::array<BitTree<3>, 8> other_;
@@ -215,7 +219,7 @@ std::string encode_light_chunk(const QuadMesh& mesh, std::span<const std::uint8_
                                std::uint32_t end, int step) {
   RangeEncoder out;
   BitSink sink{out};
-  LightCode code(step);
+  LightCode code(step, first, end);
   for (std::uint32_t i = first; i < end; ++i)
     if (code.code(sink, mesh, values.data(), i, first) != values[i]) return {};
   return static_cast<char>(step) + out.take();
@@ -251,7 +255,8 @@ bool decode_chunk(ExaLabel label, std::string_view bytes, const QuadMesh& mesh, 
     case ExaLabel::kLight: {
       const int step = bytes.empty() ? 0 : bytes[0];
       return (step == 1 || step == kLightStep) &&
-             decode_chunk(LightCode(step), RangeDecoder(bytes.substr(1)), mesh, first, end, highest, values);
+             decode_chunk(LightCode(step, first, end), RangeDecoder(bytes.substr(1)), mesh, first, end, highest,
+                          values);
     }
   }
   return false;
@@ -264,9 +269,11 @@ void settle_light(const QuadMesh& mesh, std::span<std::uint8_t> light, Progress&
     const auto first = static_cast<std::uint32_t>(c * kItemsPerChunk);
     const auto end = static_cast<std::uint32_t>(
         std::min<std::int64_t>(first + kItemsPerChunk, static_cast<std::int64_t>(light.size())));
+    LevelsAround levels(first, end);
     for (std::uint32_t v = first; v < end; ++v) {
-      const int expected = light_context(mesh, light.data(), v, first).expected;
+      const int expected = light_context(levels, mesh, v).expected;
       light[v] = static_cast<std::uint8_t>(light_at(expected, light_steps(light[v], expected, kLightStep), kLightStep));
+      levels.set(v, light[v]);
     }
   });
 }
@@ -294,7 +301,7 @@ Result<std::vector<std::uint8_t>> decode_labels(ExaLabel label, const QuadMesh& 
   if (static_cast<std::int64_t>(chunks.size()) != item_chunks(items))
     return fail(ErrorKind::kBadData, "exa: {} chunks of an attribute found, {} expected for {} items", chunks.size(),
                 item_chunks(items), items);
-  std::vector<std::uint8_t> values(static_cast<std::size_t>(items));
+  auto values = large_array<std::vector<std::uint8_t>>(static_cast<std::size_t>(items));
   std::atomic<bool> whole{true};
   parallel_for(static_cast<std::int64_t>(chunks.size()), 1, [&](std::int64_t c) {
     if (progress.cancelled()) return;

@@ -7,6 +7,7 @@
 #include "core/base/budget.h"
 #include "core/base/bytes.h"
 #include "core/base/parallel.h"
+#include "core/exa/crc_fold.h"
 
 namespace dubsar {
 namespace {
@@ -22,10 +23,9 @@ constexpr Tables kTables = [] {
     for (std::size_t i = 0; i < 256; ++i) tables[t][i] = tables[t - 1][i] >> 8 ^ tables[0][tables[t - 1][i] & 255];
   return tables;
 }();
-}  // namespace
 
-std::uint32_t crc32_of(std::string_view bytes, std::uint32_t before) noexcept {
-  std::uint32_t crc = ~before;
+/// The register after `bytes`.
+std::uint32_t table_crc(std::string_view bytes, std::uint32_t crc) noexcept {
   std::size_t at = 0;
   for (; at + 16 <= bytes.size(); at += 16) {
     std::array<std::uint64_t, 2> words;
@@ -40,7 +40,18 @@ std::uint32_t crc32_of(std::string_view bytes, std::uint32_t before) noexcept {
     crc = first ^ second;
   }
   for (; at < bytes.size(); ++at) crc = crc >> 8 ^ kTables[0][(crc ^ static_cast<unsigned char>(bytes[at])) & 255];
-  return ~crc;
+  return crc;
+}
+}  // namespace
+
+std::uint32_t crc32_of(std::string_view bytes, std::uint32_t before) noexcept {
+  constexpr std::size_t kFoldStep = 64, kLeastFolded = 256;
+  const std::size_t head = bytes.size() < kLeastFolded ? 0 : bytes.size() / kFoldStep * kFoldStep;
+  FoldedCrc folded;
+  if (head == 0 || !fold_crc(reinterpret_cast<const std::uint8_t*>(bytes.data()), head, ~before, folded))
+    return ~table_crc(bytes, ~before);
+  const std::string_view rest(reinterpret_cast<const char*>(folded.bytes), sizeof folded.bytes);
+  return ~table_crc(bytes.substr(head), table_crc(rest, 0));
 }
 
 std::string join_chunks(std::span<const std::string> chunks) {

@@ -15,7 +15,7 @@
 
 namespace dubsar {
 
-/// CRC-32 of `bytes` after those that gave `before`. Any thread; about 1 GB/s.
+/// CRC-32 of `bytes` after those that gave `before`. Any thread; 10 GB/s, 2 without AVX2.
 std::uint32_t crc32_of(std::string_view bytes, std::uint32_t before = 0) noexcept;
 
 std::string join_chunks(std::span<const std::string> chunks);

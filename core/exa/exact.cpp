@@ -52,14 +52,22 @@ class EscapeCode {
   void tell_neighbours(std::uint32_t v) {
     const std::uint32_t end = first_ + static_cast<std::uint32_t>(near_.size());
     for (const std::uint32_t q : mesh_.quads_of(v)) {
+      if (!mesh_.has_doubled(q)) {
+        const auto& quad = mesh_.quads[q];
+        const std::uint32_t at = quad[0] == v ? 0 : quad[1] == v ? 1 : quad[2] == v ? 2 : 3;
+        tell(v, quad[(at + 3) % 4], end);
+        tell(v, quad[(at + 1) % 4], end);
+        continue;
+      }
       const Polygon polygon = mesh_.polygon(q);
       int at = 0;
       while (polygon.vertex[static_cast<std::size_t>(at)] != v) ++at;
-      for (const int side : {at + polygon.size - 1, at + 1}) {
-        const std::uint32_t w = polygon.vertex[static_cast<std::size_t>(side % polygon.size)];
-        if (w > v && w < end && near_[w - first_] < 7) ++near_[w - first_];
-      }
+      for (const int side : {at + polygon.size - 1, at + 1})
+        tell(v, polygon.vertex[static_cast<std::size_t>(side % polygon.size)], end);
     }
+  }
+  void tell(std::uint32_t v, std::uint32_t w, std::uint32_t end) {
+    if (w > v && w < end && near_[w - first_] < 7) ++near_[w - first_];
   }
 
   const QuadMesh& mesh_;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/budget.h"
+#include "core/base/large_pages.h"
 #include "core/base/parallel.h"
 #include "core/exa/brick_items.h"
 #include "core/exa/offset_choice.h"
@@ -164,7 +165,8 @@ Result<void> decode_samples(std::span<const std::string_view> offsets, std::span
   DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(samples));
   const SampleCounts& counts = index.counts();
   DUBSAR_TRY(check_memory("exa offsets", static_cast<std::uint64_t>(counts.edges * 2 + counts.faces)));
-  samples.offsets.assign(static_cast<std::size_t>(counts.edges), 0);
+  samples.offsets.clear();
+  resize_large(samples.offsets, static_cast<std::size_t>(counts.edges));
   samples.joined.assign(static_cast<std::size_t>(counts.faces), 0);
   const int bits = std::min(samples.offset_bits, kModelledBits), rest = samples.offset_bits - bits;
   std::atomic<bool> broken{false};

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/base/budget.h"
+#include "core/base/large_pages.h"
 #include "core/base/parallel.h"
 #include "core/extract/cell_kernels.h"
 #include "core/extract/extract.h"
@@ -63,11 +64,11 @@ Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, Progress& progre
 
   QuadMesh mesh;
   parallel_for(3, 1, [&](std::int64_t part) {  // page faults are half of the cost of memory
-    if (part == 0) mesh.quads.resize(static_cast<std::size_t>(quads));
-    if (part == 1) mesh.incident.resize(static_cast<std::size_t>(incidences));
+    if (part == 0) resize_large(mesh.quads, static_cast<std::size_t>(quads));
+    if (part == 1) resize_large(mesh.incident, static_cast<std::size_t>(incidences));
     if (part != 2) return;
-    mesh.positions.resize(static_cast<std::size_t>(vertices));
-    mesh.first_incident.resize(static_cast<std::size_t>(vertices) + 1);
+    resize_large(mesh.positions, static_cast<std::size_t>(vertices));
+    resize_large(mesh.first_incident, static_cast<std::size_t>(vertices) + 1);
     mesh.first_incident.back() = static_cast<std::uint32_t>(incidences);
   });
   std::vector<std::uint8_t> in_layer(samples.closed ? 0 : static_cast<std::size_t>(vertices));

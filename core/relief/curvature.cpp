@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "core/base/large_pages.h"
 #include "core/base/parallel.h"
 #include "core/relief/quad_sums.h"
 #include "core/relief/scatter_blocks.h"
@@ -78,8 +79,8 @@ Result<Curvatures> principal_curvatures(const QuadMesh& mesh, std::span<const gl
   DUBSAR_CHECK(normals.size() == mesh.positions.size());
   progress.begin("curvature", mesh.vertex_count(), "vertex");
   Curvatures result;
-  result.k_min.resize(normals.size());
-  result.k_max.resize(normals.size());
+  resize_large(result.k_min, normals.size());
+  resize_large(result.k_max, normals.size());
   if (method == CurvatureMethod::kFit && !normals.empty()) {
     scatter_to_vertices(mesh, kFitFloats, [&](float* rows, std::int64_t first, std::int64_t size, const auto& groups) {
       if (progress.cancelled()) return;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/base/large_pages.h"
 #include "core/base/parallel.h"
 #include "core/relief/scatter_blocks.h"
 
@@ -240,7 +241,7 @@ Result<void> filter_face_normals(const QuadMesh& mesh, const NormalFilterOptions
   const std::vector<VertexGroup> groups = group_vertices(mesh);
   const ScatterBlocks blocks = vertex_groups_of_quads(mesh);
   ScatterMemory memory(4 * static_cast<std::size_t>(kScatterBlock + 1));
-  std::vector<glm::vec4> next(faces.size());
+  auto next = large_array<std::vector<glm::vec4>>(faces.size());
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     parallel_for(static_cast<std::int64_t>(blocks.size()), 1, [&](std::int64_t b) {
       if (progress.cancelled()) return;

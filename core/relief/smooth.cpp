@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "core/base/large_pages.h"
 #include "core/base/parallel.h"
 #include "core/relief/quad_sums.h"
 #include "core/relief/scatter_blocks.h"
@@ -131,7 +132,7 @@ Displacement displacement(std::span<const glm::vec3> a, std::span<const glm::vec
 }  // namespace
 
 std::vector<glm::vec4> face_normals(const QuadMesh& mesh) {
-  std::vector<glm::vec4> faces(mesh.quads.size());
+  auto faces = large_array<std::vector<glm::vec4>>(mesh.quads.size());
   parallel_chunks(mesh.quad_count(), kSmoothGrain,
                   [&](std::int64_t begin, std::int64_t end) { quad_normals(mesh, begin, end, faces.data()); });
   return faces;
@@ -139,7 +140,7 @@ std::vector<glm::vec4> face_normals(const QuadMesh& mesh) {
 
 std::vector<glm::vec3> vertex_normals(const QuadMesh& mesh, std::span<const glm::vec4> faces) {
   DUBSAR_CHECK(faces.size() == mesh.quads.size());
-  std::vector<glm::vec3> normals(mesh.positions.size());
+  auto normals = large_array<std::vector<glm::vec3>>(mesh.positions.size());
   if (faces.empty()) {
     std::fill(normals.begin(), normals.end(), glm::vec3(0.0f, 0.0f, 1.0f));
     return normals;
