@@ -13,7 +13,7 @@
 
 namespace dubsar {
 
-inline constexpr std::int64_t kScatterBlock = 1 << 15;  ///< targets: their sums fit the second cache of a core
+inline constexpr std::int64_t kScatterBlock = 1 << 16;  ///< targets: few groups of sources touch two blocks
 inline constexpr std::uint32_t kQuadGroup = 64, kVertexGroup = 2048;
 
 /// Of block b, targets [b, b + 1) * kScatterBlock: the groups of sources of which at least one touches it, rising.

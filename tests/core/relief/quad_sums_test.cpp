@@ -37,7 +37,7 @@ QuadMesh noise_mesh(Dims dims, unsigned seed, int kind, bool closed) {
 
 /// Three blocks of vertices; more than a hundred doubled corners.
 const QuadMesh& large_mesh() {
-  static const QuadMesh mesh = noise_mesh({47, 45, 40}, 7, 0, true);
+  static const QuadMesh mesh = noise_mesh({62, 58, 55}, 7, 0, true);
   EXPECT_GT(mesh.vertex_count(), 2 * kScatterBlock);
   EXPECT_GT(mesh.doubled.size(), 100u);
   return mesh;
