@@ -44,9 +44,10 @@ class BitTree {
   template <class Coder>
   std::uint32_t code_steady(Coder& coder, std::uint32_t value) {
     std::uint32_t node = 1;
-    for (int b = Bits - 1; b > 0; --b)
+    for (int b = Bits - 1; b > 1; --b)
       node = node << 1 | (coder.steady_bit(models_[node], (value >> b & 1) != 0) ? 1u : 0u);
-    return (node << 1 | (coder.bit(models_[node], (value & 1) != 0) ? 1u : 0u)) - (1u << Bits);
+    for (int b = 1; b >= 0; --b) node = node << 1 | (coder.bit(models_[node], (value >> b & 1) != 0) ? 1u : 0u);
+    return node - (1u << Bits);
   }
 
  private:
