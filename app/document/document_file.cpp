@@ -1,9 +1,11 @@
 #include "app/document/document_file.h"
 
+#include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <utility>
 
 #include "app/document/document_fields.h"
 #include "core/base/atomic_file.h"
@@ -16,6 +18,12 @@ using nlohmann::json;
 constexpr int kVersion = 4, kOldest = 1;
 constexpr std::string_view kFormat = "dubsar document";
 constexpr TimestampNs kEveryNs = 5'000'000'000;  // half of what may be lost: writing takes its time, too
+
+Result<void> save(const std::filesystem::path& file, const Document& document) {
+  std::error_code error;
+  std::filesystem::create_directories(file.parent_path(), error);
+  return save_document(file, document);
+}
 
 /// What ranges alone do not say.
 std::string complaint_about(const Document& d) {
@@ -100,28 +108,34 @@ Result<Document> Autosave::left_behind(const SourceFile& source) const {
 }
 
 Result<void> Autosave::keep(TimestampNs now, const Document& document) {
-  if (file_.empty() || (any_ && (now < next_ || document == written_))) return {};
-  if (!any_) {  // what it begins with is not work yet
-    any_ = true;
-    written_ = document;
-    return {};
+  if (file_.empty()) return {};
+  if (writing_.valid()) {
+    if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
+    DUBSAR_TRY(settle());
   }
-  next_ = now + kEveryNs;
-  std::error_code error;
-  std::filesystem::create_directories(file_.parent_path(), error);
-  DUBSAR_TRY(save_document(file_, document));
+  if (any_ && (now < next_ || document == written_)) return {};
   written_ = document;
+  if (!std::exchange(any_, true)) return {};  // what it begins with is not work yet
+  next_ = now + kEveryNs;
+  writing_ = std::async(std::launch::async, save, file_, written_);
   return {};
+}
+
+Result<void> Autosave::settle() {
+  if (!writing_.valid()) return {};
+  auto done = writing_.get();
+  if (!done) written_ = Document();  // it is tried again
+  return done;
 }
 
 Result<void> Autosave::leave(const Document& document) {
   if (file_.empty()) return {};
-  std::error_code error;
-  std::filesystem::create_directories(file_.parent_path(), error);
-  return save_document(file_, document);
+  static_cast<void>(settle());  // what comes now replaces it
+  return save(file_, document);
 }
 
 void Autosave::discard() {
+  static_cast<void>(settle());
   std::error_code error;
   if (!file_.empty()) std::filesystem::remove(file_, error);
 }

@@ -2,6 +2,7 @@
 // Documents as JSON files: versioned, written whole or not at all, written again by themselves while somebody works.
 
 #include <filesystem>
+#include <future>
 #include <string>
 #include <string_view>
 
@@ -35,8 +36,11 @@ class Autosave {
   Result<Document> left_behind(const SourceFile& source) const;
   bool has_left_behind() const;
 
-  /// Writes when the document differs from what was written and ten seconds have passed since then.
+  /// Writes when the document differs from what was written and five seconds have passed since then, in a thread of
+  /// its own: a disk takes longer than a picture may. What went wrong is told by the next call.
   Result<void> keep(TimestampNs now, const Document& document);
+  /// Waits for what is being written. Errors of save_document().
+  Result<void> settle();
   /// An orderly end of a session with work in it: the next one finds it.
   Result<void> leave(const Document& document);
   /// An orderly end: nothing is left behind.
@@ -47,6 +51,7 @@ class Autosave {
   Document written_;
   TimestampNs next_ = 0;
   bool any_ = false;
+  std::future<Result<void>> writing_;  ///< written_; its file is ours alone until then
 };
 
 }  // namespace dubsar::app

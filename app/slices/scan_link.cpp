@@ -1,11 +1,11 @@
 #include "app/slices/scan_link.h"
 
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "core/base/json_text.h"
 #include "core/volume/import.h"
+#include "core/volume/import_raw.h"
 
 namespace dubsar::app {
 namespace {
@@ -44,13 +44,19 @@ std::optional<RawSpec> raw_volume_of(std::string_view provenance) {
   if (dims.count() <= 0 || !type) return std::nullopt;
   RawSpec raw{{dims.x, dims.y, dims.z}, *type, ByteOrder::kLittle, 0};
   if (const auto order = parse_byte_order(text_at(input, "byte_order"))) raw.order = *order;
-  constexpr std::string_view kBehind = "contiguous behind ";  // as import_raw.cpp says it
-  const std::string layout = text_at(input, "layout");
-  if (layout.starts_with(kBehind)) {
-    const char* const digits = layout.data() + kBehind.size();
-    if (std::from_chars(digits, layout.data() + layout.size(), raw.skip).ec != std::errc()) return std::nullopt;
-  }
+  const auto skip = skip_of_layout(text_at(input, "layout"));
+  if (!skip) return std::nullopt;
+  raw.skip = *skip;
   return raw;
+}
+
+Result<ImportOptions> readable_scan(ImportOptions asked, std::string_view provenance) {
+  const auto opened = open_voxels(asked);
+  if (opened) return asked;
+  if (!asked.raw) asked.raw = raw_volume_of(provenance);
+  if (!asked.raw) return tl::unexpected<Error>(opened.error());
+  DUBSAR_TRY(open_voxels(asked));
+  return asked;
 }
 
 std::optional<ScanLink> scan_of(const TriMesh& mesh, const fs::path& surface,
@@ -69,8 +75,6 @@ std::optional<ScanLink> scan_of(const TriMesh& mesh, const fs::path& surface,
     if (import.dataset.empty() && import.path.string().find(":/") == std::string::npos)  // else it names its own
       import.dataset = out.import.dataset;
     if (!import.axis_order) import.axis_order = out.import.axis_order;
-    // A volume with a header needs nobody to say how it is read.
-    if (!import.raw && !open_voxels(import)) import.raw = out.import.raw;
     out.import = std::move(import);
     out.given = true;
     return out;

@@ -21,9 +21,13 @@ struct ScanLink {
   bool given = false;         ///< by the user, else found
 };
 
+/// What somebody asks for as a scan can be opened: as it was asked for, or, when nobody says how it is read and it does
+/// not say it itself, as the provenance of a surface does. Errors of open_voxels().
+Result<ImportOptions> readable_scan(ImportOptions asked, std::string_view provenance);
+
 /// `surface` is the file of the mesh, whose provenance names its scan and says how that was read. `given` is what the
-/// user says, which goes before that; without it a file of the scan's name beside the surface. None: there is no such
-/// file, or nothing that it could be known by.
+/// user says (readable_scan()), which goes before that; without it a file of the scan's name beside the surface. None:
+/// there is no such file, or nothing that it could be known by.
 std::optional<ScanLink> scan_of(const TriMesh& mesh, const std::filesystem::path& surface,
                                 const std::optional<ImportOptions>& given = {});
 

@@ -86,15 +86,10 @@ Result<std::optional<ImportOptions>> asked_scan(const std::string& scan, const I
       return fail(ErrorKind::kUsage, "view: options on how a scan is read found, expected --scan SCAN with them");
     return std::optional<ImportOptions>();
   }
-  const auto opened = open_voxels(asked);
-  if (!opened) {
-    if (asked.raw || surfaces.empty()) return tl::unexpected<Error>(opened.error());
-    const auto info = read_exa_info(surfaces.front());
-    if (info) asked.raw = raw_volume_of(info->provenance);
-    if (!asked.raw) return tl::unexpected<Error>(opened.error());
-    DUBSAR_TRY(open_voxels(asked));
-  }
-  return std::optional(std::move(asked));
+  const auto info = surfaces.empty() ? Result<ExaInfo>(tl::unexpect, Error{}) : read_exa_info(surfaces.front());
+  DUBSAR_ASSIGN(ImportOptions readable,
+                readable_scan(std::move(asked), info ? std::string_view(info->provenance) : std::string_view()));
+  return std::optional(std::move(readable));
 }
 
 Result<void> check_surface(const std::string& file, const std::vector<std::string>& partitions) {

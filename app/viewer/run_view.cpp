@@ -232,11 +232,12 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
     out_.largest_turn_deg = std::max(out_.largest_turn_deg, turn_between_deg(last_turn, report.view.rotation));
     last_turn = report.view.rotation;
     bool drawn = false;
+    const auto works = simulated() || !presenter_->visible() ? Result<bool>(false) : viewer_->work();
     const bool due =
         simulated() ? steps_ % options_.files.every == 0 : damaged || viewer_->needs_paint() || viewer_->fields() > 1;
     const std::string frame = due && presenter_->visible() ? frame_file() : std::string();
-    if (due && presenter_->visible()) {
-      const auto done = draw(drawn);
+    if (!works || (due && presenter_->visible())) {
+      const auto done = works ? draw(drawn) : Result<void>(tl::unexpect, works.error());
       failures_ = done ? 0 : failures_ + 1;
       if (!done && failures_ == 1) log_warning("{}; the session goes on", done.error().message);
       if (failures_ >= kMostFailures || (!done && !options_.window)) {
@@ -252,7 +253,7 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
     if (simulated()) {
       DUBSAR_TRY(viewer_->flush());
       manual_.advance(step());
-    } else if (!over) {
+    } else if (!over && !works.value_or(false)) {
       presenter_->wait(viewer_->needs_paint() || report.moving || also_->need_paint());
     }
   }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t kBytesPerViewPixel = 4;
 constexpr double kEyeStepMm = 0.05;  // what an eye may move before there is a new picture
-constexpr double kMovingMs = 20.0;   // of 33 for 30 pictures a second: the rest is for panels and the window
+constexpr double kMovingMs = 16.0;   // of 33 for 30 pictures a second: the rest is for panels and the window
 constexpr double kGroundMm = 30.0;   // of nothing, so that there is a scale
 constexpr double kForget = 0.3;      // of the mean time that a view takes
 
@@ -227,6 +227,7 @@ void Stage::show(const Shown& shown, const FollowedEyes& eyes, TimestampNs now) 
   }
   parts_->next.shown = shown;
   parts_->next.now = now;
+  parts_->cost.worked = false;
   parts_->next.viewer = parts_->viewer_at(eyes);
   if (!mesh) return;
   FieldNeeds needs = fields_needed(shown.style, shown.other);
@@ -273,7 +274,7 @@ const Shown& Stage::shown() const noexcept { return parts_->next.shown; }
 
 bool Stage::needs_paint() const noexcept {
   const Parts& p = *parts_;
-  return p.layers.overlay_changed || p.moved() || p.may_refine();
+  return p.layers.overlay_changed || p.moved() || p.cost.refined || (p.may_refine() && !p.cost.worked);
 }
 
 void Stage::Parts::took(double ms, std::size_t count) {
@@ -315,6 +316,7 @@ Result<void> Stage::Parts::paint_moved() {
   painted.of = {next.shown, next.viewer};
   painted.moved_at = next.now;
   cost.coarse = 0;
+  cost.begun_ms = 0.0;
   if (!has_mesh()) return fill_layers();
   if (next.shown.beside) return paint_halves(!object.multi);
   set_scene();
@@ -334,24 +336,37 @@ Result<void> Stage::Parts::paint_moved() {
 }
 
 Result<void> Stage::Parts::refine() {
-  if (next.shown.beside) return paint_halves(true);
+  cost.worked = true;
+  if (next.shown.beside) {
+    cost.refined = true;
+    return paint_halves(true);
+  }
   const TimestampNs start = SteadyClock().now();
   const int before = cost.coarse;
-  do {
-    DUBSAR_ASSIGN(cost.coarse, object.multi->refine(scene(), painted.views, options.samples, *layers.array, 1));
-    glFinish();
-  } while (cost.coarse > 0 && milliseconds_since(start) < options.budget_ms);
-  took(milliseconds_since(start), static_cast<std::size_t>(before - cost.coarse));
+  const auto end = start + static_cast<TimestampNs>(1e6 * options.budget_ms);
+  DUBSAR_ASSIGN(cost.coarse, object.multi->refine_until(end, scene(), painted.views, options.samples, *layers.array));
+  cost.begun_ms += milliseconds_since(start);
+  if (cost.coarse == before) return {};
+  cost.refined = true;
+  took(std::exchange(cost.begun_ms, 0.0), static_cast<std::size_t>(before - cost.coarse));
   return {};
+}
+
+Result<bool> Stage::work() {
+  Parts& p = *parts_;
+  if (p.moved() || !p.may_refine()) return false;
+  DUBSAR_TRY(p.refine());
+  return p.may_refine();
 }
 
 Result<void> Stage::paint(const Surface& target, Field field) {
   Parts& p = *parts_;
   if (p.moved()) {
     DUBSAR_TRY(p.paint_moved());
-  } else if (p.may_refine()) {
+  } else if (p.may_refine() && !p.cost.worked) {
     DUBSAR_TRY(p.refine());
   }
+  p.cost.refined = false;
   Parts::Layers& layers = p.layers;
   if (layers.overlay != nullptr && p.sink->traits().worn) DUBSAR_TRY(p.paint_page());
   layers.overlay_changed = false;

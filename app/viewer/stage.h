@@ -151,8 +151,11 @@ class Stage {
   /// Whether it differs from the last picture: an eye moved by more than 0.05 mm, or anything else.
   bool moved() const noexcept;
   /// True when paint() would make another picture than it did last: moved(), the overlay or the display changed, or
-  /// views are still coarse and things rest.
+  /// views are still coarse and things rest; after work() only where it made one exact.
   bool needs_paint() const noexcept;
+  /// Does a piece of what is to be made exact while things rest, of some milliseconds: true when more is left that is
+  /// not to be seen yet. Between show() and paint(); who does not call it gets the piece from paint().
+  Result<bool> work();
   /// Renders the views and composes them on `target`: the field that is due, where traits() has two.
   Result<void> paint(const Surface& target, Field field = Field::kFirst);
 

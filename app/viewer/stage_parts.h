@@ -70,6 +70,9 @@ struct Stage::Parts {
   struct Cost {
     int coarse = 0;              // views of the last picture
     double exact_view_ms = 0.0;  // what one exact view takes; 0: not known yet
+    double begun_ms = 0.0;       // what the next one has taken so far
+    bool worked = false;         // since show()
+    bool refined = false;        // a view, since it was painted
     TimestampNs prepared_at = 0;
   };
   StageOptions options;

@@ -49,6 +49,7 @@ class Viewer final : public Workplace {
   void tick(TimestampNs now, TimestampNs display_time, const RecentFigures& figures);
   const PictureReport& report() const noexcept { return report_; }
   bool needs_paint() const noexcept { return stage_->needs_paint(); }
+  Result<bool> work() { return stage_->work(); }  ///< as that of the stage
   Result<void> paint(const Surface& target, Field field);
   /// Two: the display shows its eyes in turn, whether or not anything changes.
   int fields() const { return stage_->traits().fields; }

@@ -12,8 +12,9 @@ void keep_large_blocks() noexcept {
 }
 
 void return_large_blocks() noexcept {
-  constexpr int kLargeBytes = 256 * 1024;
+  constexpr int kLargeBytes = 2 << 20, kSpareBytes = 16 << 20;
   mallopt(M_MMAP_THRESHOLD, kLargeBytes);
+  mallopt(M_TRIM_THRESHOLD, kSpareBytes);
 }
 
 }  // namespace dubsar

@@ -1,10 +1,17 @@
 #include "core/volume/import_raw.h"
 
+#include <charconv>
+#include <system_error>
 #include <utility>
 
 #include "core/volume/flat_reader.h"
 
 namespace dubsar {
+namespace {
+
+constexpr std::string_view kContiguous = "contiguous", kBehind = "contiguous behind ";
+
+}  // namespace
 
 Result<OpenedVolume> open_raw(const ImportOptions& options) {
   DUBSAR_CHECK(options.raw.has_value());
@@ -34,13 +41,26 @@ Result<OpenedVolume> open_raw(const ImportOptions& options) {
   info.file_dims = {raw.dims[0], raw.dims[1], raw.dims[2]};
   info.stored.dtype = scalar_name(raw.type);
   info.stored.byte_order = order_name(raw.order);
-  info.stored.layout = raw.skip > 0 ? fmt::format("contiguous behind {} bytes", raw.skip) : "contiguous";
+  info.stored.layout = raw_layout(raw.skip);
   info.stored.storage_bytes = info.stored.logical_bytes = bytes;
   info.stored.may_have_nonfinite = is_float(raw.type);
   std::vector<FlatSegment> segments;
   segments.push_back({std::move(file), raw.skip, bytes});
   DUBSAR_ASSIGN(opened.reader, make_flat_reader({info.file_dims, {raw.type, raw.order, {}}, std::move(segments)}));
   return opened;
+}
+
+std::string raw_layout(std::int64_t skip) {
+  return skip > 0 ? fmt::format("{}{} bytes", kBehind, skip) : std::string(kContiguous);
+}
+
+std::optional<std::int64_t> skip_of_layout(std::string_view layout) {
+  if (layout == kContiguous) return 0;
+  if (!layout.starts_with(kBehind)) return std::nullopt;
+  const char* const digits = layout.data() + kBehind.size();
+  std::int64_t skip = 0;
+  if (std::from_chars(digits, layout.data() + layout.size(), skip).ec != std::errc()) return std::nullopt;
+  return skip;
 }
 
 }  // namespace dubsar

@@ -72,6 +72,13 @@ GlBuffer make_buffer(std::span<const std::byte> bytes) {
   return GlBuffer(name);
 }
 
+GlBuffer make_room(std::size_t bytes) {
+  GLuint name = 0;
+  glCreateBuffers(1, &name);
+  glNamedBufferStorage(name, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
+  return GlBuffer(name);
+}
+
 GlBuffer make_stream_buffer() {
   GLuint name = 0;
   glCreateBuffers(1, &name);

@@ -53,6 +53,8 @@ using GlVertexArray = GlName<VertexArrayKind>;
 using GlProgram = GlName<ProgramKind>;
 
 GlBuffer make_buffer(std::span<const std::byte> bytes);
+/// Without contents; glNamedBufferSubData brings them.
+GlBuffer make_room(std::size_t bytes);
 /// A buffer whose contents change: stream() puts them in, whatever the GPU still reads of the old ones.
 GlBuffer make_stream_buffer();
 void stream(const GlBuffer& buffer, std::span<const std::byte> bytes);

@@ -227,6 +227,14 @@ Result<PackedMesh> pack_mesh(const TriMesh& mesh) {
 }
 
 Result<GpuMesh> GpuMesh::upload(const PackedMesh& mesh) {
+  DUBSAR_ASSIGN(GpuMesh out, reserve(mesh));
+  out.fill(mesh, std::numeric_limits<std::size_t>::max());
+  out.source_ = mesh.source;
+  DUBSAR_TRY(check_gl("uploading the mesh"));
+  return out;
+}
+
+Result<GpuMesh> GpuMesh::reserve(const PackedMesh& mesh) {
   if (mesh.triangles.empty())
     return fail(ErrorKind::kBadData, "render: the mesh has no triangles, so there is nothing to draw");
   GpuMesh out;
@@ -235,9 +243,8 @@ Result<GpuMesh> GpuMesh::upload(const PackedMesh& mesh) {
   static std::atomic<std::uint64_t> uploads{0};
   out.version_ = ++uploads;
   out.chunks_ = mesh.chunks.empty() ? whole_partitions(mesh) : mesh.chunks;
-  out.vertices_ = make_buffer(std::as_bytes(std::span(mesh.vertices)));
-  out.source_ = mesh.source;
-  out.indices_ = make_buffer(std::as_bytes(std::span(mesh.triangles)));
+  out.vertices_ = make_room(std::as_bytes(std::span(mesh.vertices)).size());
+  out.indices_ = make_room(std::as_bytes(std::span(mesh.triangles)).size());
   out.vertex_array_ = make_vertex_array();
   const GLuint vao = out.vertex_array_;
   glVertexArrayElementBuffer(vao, out.indices_);
@@ -250,14 +257,40 @@ Result<GpuMesh> GpuMesh::upload(const PackedMesh& mesh) {
   glVertexArrayAttribIFormat(vao, 1, 1, GL_UNSIGNED_SHORT, offsetof(PackedVertex, attributes));
   glVertexArrayAttribFormat(vao, 2, 2, GL_SHORT, GL_TRUE, offsetof(PackedVertex, normal));
   if (!mesh.colors.empty()) {
-    out.colors_ = make_buffer(std::as_bytes(std::span(mesh.colors)));
+    out.colors_ = make_room(std::as_bytes(std::span(mesh.colors)).size());
     glVertexArrayVertexBuffer(vao, 1, out.colors_, 0, 4);
     glEnableVertexArrayAttrib(vao, 3);
     glVertexArrayAttribBinding(vao, 3, 1);
     glVertexArrayAttribFormat(vao, 3, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0);
   }
-  DUBSAR_TRY(check_gl("uploading the mesh"));
+  DUBSAR_TRY(check_gl("making room for the mesh"));
   return out;
+}
+
+/// True when all of it is there.
+bool GpuMesh::fill(const PackedMesh& mesh, std::size_t bytes) {
+  std::size_t begin = 0;  // of one of them among all bytes
+  const auto put = [&](GLuint buffer, std::span<const std::byte> all) {
+    if (uploaded_ >= begin && uploaded_ < begin + all.size()) {
+      const std::size_t from = uploaded_ - begin, count = std::min(all.size() - from, bytes);
+      if (count > 0)
+        glNamedBufferSubData(buffer, static_cast<GLintptr>(from), static_cast<GLsizeiptr>(count), all.data() + from);
+      uploaded_ += count;
+      bytes -= count;
+    }
+    begin += all.size();
+  };
+  put(vertices_, std::as_bytes(std::span(mesh.vertices)));
+  put(indices_, std::as_bytes(std::span(mesh.triangles)));
+  put(colors_, std::as_bytes(std::span(mesh.colors)));
+  return uploaded_ == begin;
+}
+
+Result<bool> GpuMesh::upload_some(PackedMesh& mesh, std::size_t bytes) {
+  const bool whole = fill(mesh, bytes);
+  if (whole) source_ = std::move(mesh.source);
+  DUBSAR_TRY(check_gl("uploading the mesh"));
+  return whole;
 }
 
 Result<void> GpuMesh::carry(const SurfaceFields& fields) {

@@ -72,6 +72,10 @@ enum class ShownEvidence { kMeasured, kInferred, kBoth };
 class GpuMesh {
  public:
   static Result<GpuMesh> upload(const PackedMesh& mesh);
+  /// Room for the mesh, so that its contents can come piece by piece: upload_some() until it says true. Then the mesh
+  /// may go, which must be the same in all calls; before, nothing of it can be drawn.
+  static Result<GpuMesh> reserve(const PackedMesh& mesh);
+  Result<bool> upload_some(PackedMesh& mesh, std::size_t bytes);
 
   /// Figures of the surface that its vertices carry, by the vertices of the mesh it was made from. kTryAgain.
   Result<void> carry(const SurfaceFields& fields);
@@ -87,6 +91,8 @@ class GpuMesh {
                                 ShownEvidence evidence = ShownEvidence::kBoth) const;
 
  private:
+  bool fill(const PackedMesh& mesh, std::size_t bytes);
+
   GlVertexArray vertex_array_;
   GlBuffer vertices_, colors_, indices_, fields_;
   std::vector<std::uint32_t> source_;
@@ -94,6 +100,7 @@ class GpuMesh {
   std::vector<TriangleChunk> chunks_;  ///< of a mesh without chunks: one a partition and evidence
   bool mirrored_ = false;
   std::uint64_t version_ = 0;
+  std::size_t uploaded_ = 0;  ///< bytes of vertices, triangles, colours, in this order
 };
 
 }  // namespace dubsar

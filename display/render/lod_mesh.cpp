@@ -16,6 +16,7 @@ constexpr double kFinestGrid = 1024, kCoarsestGrid = 63.9, kGridStep = 0.7071067
 constexpr double kWorthwhile = 0.75;              // of the triangles of the finer level
 constexpr double kQuickGrid = 90;                 // some 100 000 triangles for a tablet in its envelope
 constexpr std::size_t kSmallTriangles = 100'000;  // drawn as they are at once
+constexpr std::size_t kUploadBytes = 8u << 20;    // a picture: some milliseconds
 
 double longest_side(const PackedMesh& mesh) {
   const glm::dvec3 size = mesh.box_mm.size();
@@ -98,6 +99,13 @@ class LodMesh::Growth {
   std::jthread thread_;  // goes first
 };
 
+/// A level on its way into graphics memory.
+struct LodMesh::Coming {
+  PackedMesh mesh;
+  GpuMesh gpu;
+  double cell_mm = 0.0;
+};
+
 LodMesh::LodMesh() = default;
 LodMesh::LodMesh(LodMesh&&) noexcept = default;
 LodMesh& LodMesh::operator=(LodMesh&&) noexcept = default;
@@ -112,9 +120,13 @@ void LodMesh::describe(const PackedMesh& mesh) {
 
 Result<void> LodMesh::add(const PackedMesh& level, double cell_mm) {
   DUBSAR_ASSIGN(GpuMesh gpu, GpuMesh::upload(level));
+  return insert(std::move(gpu), cell_mm, level.triangles.size());
+}
+
+Result<void> LodMesh::insert(GpuMesh gpu, double cell_mm, std::size_t triangles) {
   if (fields_) DUBSAR_TRY(gpu.carry(*fields_));
   const auto place = std::find_if(levels_.begin(), levels_.end(), [&](const Level& l) { return l.cell_mm > cell_mm; });
-  levels_.insert(place, {std::move(gpu), cell_mm, static_cast<std::int64_t>(level.triangles.size()), false});
+  levels_.insert(place, {std::move(gpu), cell_mm, static_cast<std::int64_t>(triangles), false});
   return {};
 }
 
@@ -174,17 +186,25 @@ Result<bool> LodMesh::update() {
   growth_->begin();
   if (growth_->out_of_memory())
     return fail(ErrorKind::kTryAgain, "render: no memory for the levels of detail of this mesh");
-  const auto made = growth_->take();
-  if (!made) {
-    if (growth_->over()) growth_.reset();
-    return false;
+  if (!coming_) {
+    auto made = growth_->take();
+    if (!made) {
+      if (growth_->over()) growth_.reset();
+      return false;
+    }
+    DUBSAR_ASSIGN(GpuMesh room, GpuMesh::reserve(made->mesh));
+    coming_ = std::make_unique<Coming>(Coming{std::move(made->mesh), std::move(room), made->cell_mm});
   }
-  const bool finest = made->cell_mm <= levels_.front().cell_mm;
+  DUBSAR_ASSIGN(const bool whole, coming_->gpu.upload_some(coming_->mesh, kUploadBytes));
+  if (!whole) return false;
+  const std::unique_ptr<Coming> came = std::move(coming_);
+  const double cell_mm = came->cell_mm;
+  const bool finest = cell_mm <= levels_.front().cell_mm;
   // A level of the same fineness, made with care, takes the place of the one that came first.
   std::erase_if(levels_, [&](const Level& level) {
-    return level.quick && (level.cell_mm == 0.0 ? made->cell_mm == 0.0 : made->cell_mm >= 0.99 * level.cell_mm);
+    return level.quick && (level.cell_mm == 0.0 ? cell_mm == 0.0 : cell_mm >= 0.99 * level.cell_mm);
   });
-  DUBSAR_TRY(add(made->mesh, made->cell_mm));
+  DUBSAR_TRY(insert(std::move(came->gpu), cell_mm, came->mesh.triangles.size()));
   return finest;
 }
 

@@ -28,7 +28,8 @@ class LodMesh {
   LodMesh& operator=(LodMesh&&) noexcept;
   ~LodMesh();  ///< a thread that still works is stopped and waited for, a level's time at most
 
-  /// Takes in what is ready, a level a call. True when level 0 is another one than before. kTryAgain without memory.
+  /// Takes in what is ready, a few megabytes a call. True when level 0 is another one than before. kTryAgain without
+  /// memory.
   Result<bool> update();
   /// Gives all levels, also those that come later, figures that their vertices carry; replaces others. kTryAgain.
   Result<void> carry(std::shared_ptr<const SurfaceFields> fields);
@@ -59,7 +60,9 @@ class LodMesh {
     bool quick = false;  ///< until a better one is made
   };
   class Growth;
+  struct Coming;
   Result<void> add(const PackedMesh& level, double cell_mm);
+  Result<void> insert(GpuMesh gpu, double cell_mm, std::size_t triangles);
   void describe(const PackedMesh& mesh);
 
   std::vector<Level> levels_;  ///< finest first
@@ -67,6 +70,7 @@ class LodMesh {
   std::uint8_t has_triangles_ = 0;  ///< bit p: partition p
   std::shared_ptr<const SurfaceFields> fields_;
   std::unique_ptr<Growth> growth_;  ///< while levels are missing
+  std::unique_ptr<Coming> coming_;  ///< not yet among them
 };
 
 /// Measures what `needs` names and the levels of detail do not carry yet, `mesh` being what they were made from. Errors

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "display/optics/srgb.h"
+#include "display/render/instalments.h"
 #include "display/render/lod_mesh.h"
 #include "display/render/shadow_map.h"
 #include "display/render/views_binding.h"
@@ -291,14 +292,14 @@ Result<void> MeshPass::draw(const MeshItem& item, const SceneView& scene, const 
                            (bent ? kBent : 0u) | (blended ? kBlended : 0u) | (filled ? kFilled : 0u) |
                            (scene.glow.strength > 0 ? kGlowing : 0u);
   for (std::size_t p = 0; p < item.parts.size(); ++p)
-    if (drawn(item.parts[p])) DUBSAR_TRY(draw_part(level, item, p, views, variant));
+    if (drawn(item.parts[p])) DUBSAR_TRY(draw_part(level, item, p, views, variant, mode.pieces));
   glDisable(GL_CULL_FACE);
   for (GLuint i = 0; i < scene.clips.size(); ++i) glDisable(GL_CLIP_DISTANCE0 + i);
   return check_gl("drawing a surface");
 }
 
 Result<void> MeshPass::draw_part(const GpuMesh& level, const MeshItem& item, std::size_t p, std::span<const View> views,
-                                 unsigned variant) {
+                                 unsigned variant, Instalments* pieces) {
   const PartLook& part = item.parts[p];
   std::vector<View> moved;
   for (const View& view : views) moved.push_back(model_view(view, glm::translate(glm::dmat4(1.0), part.offset_mm)));
@@ -315,7 +316,10 @@ Result<void> MeshPass::draw_part(const GpuMesh& level, const MeshItem& item, std
     const glm::vec3 color = linear_color(part.color), offset(unit_offset(part.offset_mm, item.mesh->box_mm()));
     glUniform4f(kPartColor, color.x, color.y, color.z, static_cast<float>(part.opacity));
     glUniform3f(kPartOffset, offset.x, offset.y, offset.z);
-    draw_ranges(ranges, static_cast<GLsizei>(views.size()));
+    if (pieces != nullptr)
+      pieces->draw(ranges, static_cast<GLsizei>(views.size()));
+    else
+      draw_ranges(ranges, static_cast<GLsizei>(views.size()));
   }
   return {};
 }

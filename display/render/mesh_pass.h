@@ -13,6 +13,7 @@
 
 namespace dubsar {
 
+class Instalments;
 class ShadowMap;
 
 /// What a pass draws into: the current frame buffer, whose viewport and depth test are set.
@@ -30,6 +31,7 @@ struct MeshPassMode {
   /// Transparent parts alone, and of them only what lies before `opaque_depth` and behind `peeled_depth` (2D textures
   /// of the target's size). 0: opaque parts alone.
   GLuint opaque_depth = 0, peeled_depth = 0;
+  Instalments* pieces = nullptr;  ///< null: all at once
 };
 
 class MeshPass {
@@ -50,7 +52,7 @@ class MeshPass {
   GLuint table_of(const Style& style);
   void bind_tables(const MeshItem& item);
   Result<void> draw_part(const GpuMesh& level, const MeshItem& item, std::size_t p, std::span<const View> views,
-                         unsigned variant);
+                         unsigned variant, Instalments* pieces);
 
   bool layered_ = false;
   std::map<unsigned, GlProgram> programs_;  ///< made at their first use

@@ -14,6 +14,12 @@ constexpr double kMostMergedPx = 12;
 constexpr double kRoom = 0.4, kFiner = 0.8409;  // of the budget, before twice the triangles are tried in two steps
 constexpr double kMostShiftPx = 16;             // between drawn views; more leaves wide holes
 
+/// 0, 1, 2, 3 that are done are the middle, one to the right, one to the left, ...
+int next_view(int count, int coarse) {
+  const int done = count - coarse;
+  return (count - 1) / 2 + (done % 2 == 1 ? (done + 1) / 2 : -(done / 2));
+}
+
 }  // namespace
 
 std::vector<int> key_views(int count, int keys) {
@@ -38,6 +44,7 @@ Result<MultiView> MultiView::create(const MultiViewOptions& options) {
 Result<void> MultiView::draw_moving(const SceneView& scene, std::span<const View> views, ViewArray& target) {
   DUBSAR_CHECK(static_cast<int>(views.size()) <= target.layers());
   coarse_ = static_cast<int>(views.size());
+  renderer_.restart_pieces();
   if (views.empty()) return {};
   DUBSAR_TRY(check_scene(scene));
   const TimestampNs start = SteadyClock().now();
@@ -79,9 +86,25 @@ Result<int> MultiView::refine(const SceneView& scene, std::span<const View> view
   const int count = static_cast<int>(views.size());
   DUBSAR_CHECK(coarse_ <= count && count <= target.layers());
   for (; most > 0 && coarse_ > 0; --most, --coarse_) {
-    const int done = count - coarse_;  // 0, 1, 2, 3 are the middle, one to the right, one to the left, ...
-    const int index = (count - 1) / 2 + (done % 2 == 1 ? (done + 1) / 2 : -(done / 2));
+    const int index = next_view(count, coarse_);
     DUBSAR_TRY(renderer_.render(scene, views.subspan(static_cast<std::size_t>(index), 1), samples, target, index));
+  }
+  return coarse_;
+}
+
+Result<int> MultiView::refine_until(TimestampNs end, const SceneView& scene, std::span<const View> views, int samples,
+                                    ViewArray& target) {
+  const int count = static_cast<int>(views.size());
+  DUBSAR_CHECK(coarse_ <= count && count <= target.layers());
+  while (coarse_ > 0) {
+    const int index = next_view(count, coarse_);
+    DUBSAR_ASSIGN(const bool whole,
+                  renderer_.render_some(scene, views[static_cast<std::size_t>(index)], samples, target, index, end));
+    if (whole) {
+      --coarse_;
+      glFinish();
+    }
+    if (!whole || SteadyClock().now() >= end) break;
   }
   return coarse_;
 }

@@ -34,6 +34,11 @@ class MultiView {
   /// many are still coarse. Views, scene and target must be those of the last draw_moving().
   Result<int> refine(const SceneView& scene, std::span<const View> views, int samples, ViewArray& target, int most);
 
+  /// The same in instalments, each until `end` of the steady clock or a little longer: the window answers in between.
+  /// A view whose exact picture is not whole stays coarse.
+  Result<int> refine_until(TimestampNs end, const SceneView& scene, std::span<const View> views, int samples,
+                           ViewArray& target);
+
   /// All layers of `target` exact, as Renderer::render().
   Result<void> draw_exact(const SceneView& scene, std::span<const View> views, int samples, ViewArray& target);
 

@@ -11,7 +11,7 @@ constexpr int kShadowTexels = 4096, kQuickShadowTexels = 1024;
 glm::vec4 opaque_background(const SceneView& scene) { return glm::vec4(linear_color(scene.background.color), 1.0f); }
 
 /// `coded`: the shaders' linear light becomes sRGB bytes.
-void begin_drawing(GLuint framebuffer, int width, int height, const glm::vec4& background, bool coded) {
+void begin_drawing(GLuint framebuffer, int width, int height, bool coded) {
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   glViewport(0, 0, width, height);
   glDisable(GL_BLEND);
@@ -21,6 +21,9 @@ void begin_drawing(GLuint framebuffer, int width, int height, const glm::vec4& b
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthMask(GL_TRUE);
   glEnable(GL_DEPTH_TEST);
+}
+
+void clear_target(GLuint framebuffer, const glm::vec4& background) {
   const float far_depth = 1.0f;
   glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, &background[0]);
   glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &far_depth);
@@ -36,7 +39,9 @@ Result<Renderer> Renderer::create(bool layered) {
   DUBSAR_ASSIGN(out.flat_, FlatPass::create(out.meshes_.layered()));
   DUBSAR_ASSIGN(out.labels_, LabelPass::create(out.meshes_.layered()));
   DUBSAR_ASSIGN(out.peel_, PeelPass::create());
-  DUBSAR_ASSIGN(out.shadows_, ShadowMap::create());
+  for (ShadowMap* const map : {&out.quick_shadows_, &out.whole_.shadows, &out.in_pieces_.shadows}) {
+    DUBSAR_ASSIGN(*map, ShadowMap::create());
+  }
   DUBSAR_ASSIGN(out.resolve_program_, make_program("fullscreen.vert", "resolve.frag"));
   out.no_vertices_ = make_vertex_array();
   out.layer_ = make_framebuffer();
@@ -44,8 +49,8 @@ Result<Renderer> Renderer::create(bool layered) {
   return out;
 }
 
-Result<void> Renderer::use_scratch(int width, int height) {
-  if (scratch_.width == width && scratch_.height == height) return {};
+Result<void> Renderer::use_scratch(Scratch& scratch, int width, int height) {
+  if (scratch.width == width && scratch.height == height) return {};
   GLint max_side = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_side);
   if (width > max_side || height > max_side)
@@ -64,7 +69,7 @@ Result<void> Renderer::use_scratch(int width, int height) {
   DUBSAR_TRY(check_gl("making the frame buffer"));
   if (glCheckNamedFramebufferStatus(made.framebuffer, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
     return fail(ErrorKind::kUnavailable, "render: the driver refuses a frame buffer of half floats");
-  scratch_ = std::move(made);
+  scratch = std::move(made);
   return {};
 }
 
@@ -85,26 +90,30 @@ Result<void> Renderer::use_layer_depth(const ViewArray& target) {
   return {};
 }
 
-Result<const ShadowMap*> Renderer::cast_shadows(const SceneView& scene, std::span<const View> views, int size,
-                                                double coarse_px, int width_px) {
+Result<const ShadowMap*> Renderer::cast_shadows(ShadowMap& map, const SceneView& scene, std::span<const View> views,
+                                                int size, double coarse_px, int width_px, Instalments* pieces) {
   if (!casts_shadows(scene)) return nullptr;
-  DUBSAR_TRY(shadows_.draw(scene, views, size, coarse_px, width_px));
-  return &shadows_;
+  DUBSAR_TRY(map.draw(scene, views, size, coarse_px, width_px, pieces));
+  return &map;
 }
 
 Result<void> Renderer::draw_items(const SceneView& scene, const PassViews& target, const ShadowMap* shadows,
-                                  double pixel, const Into& into) {
+                                  double pixel, const Into& into, Instalments* pieces) {
   for (const DrawItem& item : scene.items)
-    if (const auto* mesh = std::get_if<MeshItem>(&item)) DUBSAR_TRY(meshes_.draw(*mesh, scene, target, {shadows}));
-  for (const DrawItem& item : scene.items)
-    if (const auto* slice = std::get_if<SliceItem>(&item)) DUBSAR_TRY(flat_.draw(*slice, scene, target));
-  for (const DrawItem& item : scene.items)
-    if (const auto* lines = std::get_if<LinesItem>(&item)) DUBSAR_TRY(flat_.draw(*lines, target, pixel));
-  if (has_transparency(scene))
-    DUBSAR_TRY(peel_.draw(meshes_, scene, target, shadows, into.framebuffer, into.depth, into.depth_layer));
-  for (const DrawItem& item : scene.items)
-    if (const auto* label = std::get_if<LabelItem>(&item)) DUBSAR_TRY(labels_.draw(*label, target, pixel));
-  return {};
+    if (const auto* mesh = std::get_if<MeshItem>(&item))
+      DUBSAR_TRY(meshes_.draw(*mesh, scene, target, {.shadows = shadows, .pieces = pieces}));
+  const auto rest = [&]() -> Result<void> {
+    for (const DrawItem& item : scene.items)
+      if (const auto* slice = std::get_if<SliceItem>(&item)) DUBSAR_TRY(flat_.draw(*slice, scene, target));
+    for (const DrawItem& item : scene.items)
+      if (const auto* lines = std::get_if<LinesItem>(&item)) DUBSAR_TRY(flat_.draw(*lines, target, pixel));
+    if (has_transparency(scene))
+      DUBSAR_TRY(peel_.draw(meshes_, scene, target, shadows, into.framebuffer, into.depth, into.depth_layer));
+    for (const DrawItem& item : scene.items)
+      if (const auto* label = std::get_if<LabelItem>(&item)) DUBSAR_TRY(labels_.draw(*label, target, pixel));
+    return {};
+  };
+  return pieces != nullptr ? pieces->once(rest) : rest();
 }
 
 Result<void> Renderer::render_layers(const SceneView& scene, std::span<const View> views, std::span<const int> layers,
@@ -118,17 +127,18 @@ Result<void> Renderer::render_layers(const SceneView& scene, std::span<const Vie
       meshes_.layered() && !has_transparency(scene) && (!casts_shadows(scene) || same_direction(views));
   const ShadowMap* shadows = nullptr;
   if (together) {
-    DUBSAR_ASSIGN(shadows, cast_shadows(scene, views, kQuickShadowTexels, coarse_px, target.width()));
+    DUBSAR_ASSIGN(shadows, cast_shadows(quick_shadows_, scene, views, kQuickShadowTexels, coarse_px, target.width()));
   }
   const GLuint framebuffer = layer_depth_.framebuffer;
   glNamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, target.linear(), 0);
   glNamedFramebufferTexture(framebuffer, GL_DEPTH_ATTACHMENT, layer_depth_.depth, 0);
-  begin_drawing(framebuffer, target.width(), target.height(), opaque_background(scene), true);
+  begin_drawing(framebuffer, target.width(), target.height(), true);
+  clear_target(framebuffer, opaque_background(scene));
   if (together)
     DUBSAR_TRY(draw_items(scene, {views, layers, target.width(), target.height(), coarse_px}, shadows, 1.0, {}));
   for (std::size_t i = 0; i < views.size() && !together; ++i) {
     const auto one = views.subspan(i, 1);
-    DUBSAR_ASSIGN(shadows, cast_shadows(scene, one, kQuickShadowTexels, coarse_px, target.width()));
+    DUBSAR_ASSIGN(shadows, cast_shadows(quick_shadows_, scene, one, kQuickShadowTexels, coarse_px, target.width()));
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, target.width(), target.height());
     glNamedFramebufferTextureLayer(framebuffer, GL_COLOR_ATTACHMENT0, target.linear(), 0, layers[i]);
@@ -150,28 +160,69 @@ Result<void> Renderer::render(const SceneView& scene, std::span<const View> view
   DUBSAR_CHECK(first_layer >= 0 && first_layer + static_cast<std::int64_t>(views.size()) <= target.layers());
   if (views.empty()) return {};
   DUBSAR_TRY(check_scene(scene));
-  DUBSAR_TRY(use_scratch(target.width() * factor, target.height() * factor));
-  const glm::vec4 background = scene.background.transparent ? glm::vec4(0.0f) : opaque_background(scene);
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const auto one = views.subspan(i, 1);
-    DUBSAR_ASSIGN(const ShadowMap* const shadows, cast_shadows(scene, one, kShadowTexels, 0.0, target.width()));
-    begin_drawing(scratch_.framebuffer, scratch_.width, scratch_.height, background, false);
-    DUBSAR_TRY(draw_items(scene, {one, {}, scratch_.width, scratch_.height, 0.0}, shadows, factor,
-                          {scratch_.framebuffer, scratch_.depth, -1}));
-
-    glNamedFramebufferTextureLayer(layer_, GL_COLOR_ATTACHMENT0, target.coded(), 0,
-                                   first_layer + static_cast<GLint>(i));
-    glBindFramebuffer(GL_FRAMEBUFFER, layer_);
-    glViewport(0, 0, target.width(), target.height());
-    glDisable(GL_DEPTH_TEST);
-    glUseProgram(resolve_program_);
-    glUniform1i(kFactorLocation, factor);
-    glBindTextureUnit(0, scratch_.color);
-    glBindVertexArray(no_vertices_);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    const int layer = first_layer + static_cast<int>(i);
+    DUBSAR_TRY(draw_exact(scene, views[i], factor, target, whole_, false));
+    resolve(whole_.samples, factor, target, layer);
   }
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   return check_gl("drawing");
+}
+
+Result<bool> Renderer::render_some(const SceneView& scene, const View& view, int factor, ViewArray& target, int layer,
+                                   TimestampNs end) {
+  DUBSAR_CHECK(factor >= 1 && factor <= 8 && layer >= 0 && layer < target.layers());
+  DUBSAR_TRY(check_scene(scene));
+  shadow_pieces_.begin(end);
+  pieces_.begin(end);
+  DUBSAR_TRY(draw_exact(scene, view, factor, target, in_pieces_, true));
+  const bool done = !shadow_pieces_.paused() && !pieces_.paused();
+  if (done) {
+    resolve(in_pieces_.samples, factor, target, layer);
+    restart_pieces();
+  } else {
+    pieces_.finish();
+  }
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  DUBSAR_TRY(check_gl("drawing a piece"));
+  return done;
+}
+
+void Renderer::restart_pieces() noexcept {
+  shadow_pieces_.restart();
+  pieces_.restart();
+}
+
+Result<void> Renderer::draw_exact(const SceneView& scene, const View& view, int factor, const ViewArray& target,
+                                  Exact& into, bool in_pieces) {
+  Scratch& samples = into.samples;
+  DUBSAR_TRY(use_scratch(samples, target.width() * factor, target.height() * factor));
+  const std::span<const View> one(&view, 1);
+  DUBSAR_ASSIGN(const ShadowMap* const shadows, cast_shadows(into.shadows, scene, one, kShadowTexels, 0.0,
+                                                             target.width(), in_pieces ? &shadow_pieces_ : nullptr));
+  if (in_pieces && shadow_pieces_.paused()) return {};
+  const glm::vec4 background = scene.background.transparent ? glm::vec4(0.0f) : opaque_background(scene);
+  begin_drawing(samples.framebuffer, samples.width, samples.height, false);
+  const auto clear = [&]() -> Result<void> {
+    clear_target(samples.framebuffer, background);
+    return {};
+  };
+  DUBSAR_TRY(in_pieces ? pieces_.once(clear) : clear());
+  return draw_items(scene, {one, {}, samples.width, samples.height, 0.0}, shadows, factor,
+                    {samples.framebuffer, samples.depth, -1}, in_pieces ? &pieces_ : nullptr);
+}
+
+/// The mean of the samples of each pixel.
+void Renderer::resolve(const Scratch& scratch, int factor, ViewArray& target, int layer) {
+  glNamedFramebufferTextureLayer(layer_, GL_COLOR_ATTACHMENT0, target.coded(), 0, layer);
+  glBindFramebuffer(GL_FRAMEBUFFER, layer_);
+  glViewport(0, 0, target.width(), target.height());
+  glDisable(GL_DEPTH_TEST);
+  glUseProgram(resolve_program_);
+  glUniform1i(kFactorLocation, factor);
+  glBindTextureUnit(0, scratch.color);
+  glBindVertexArray(no_vertices_);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 }  // namespace dubsar

@@ -6,6 +6,7 @@
 #include "core/base/result.h"
 #include "display/optics/view.h"
 #include "display/render/flat_pass.h"
+#include "display/render/instalments.h"
 #include "display/render/label_pass.h"
 #include "display/render/mesh_pass.h"
 #include "display/render/peel_pass.h"
@@ -28,6 +29,13 @@ class Renderer {
   Result<void> render(const SceneView& scene, std::span<const View> views, int factor, ViewArray& target,
                       int first_layer = 0);
 
+  /// As render() of one view, in instalments: true when the layer has it, until then the layer stays as it is. Scene,
+  /// view, factor and target must be the same in each; restart_pieces() before the first one of another picture. Other
+  /// pictures may be drawn in between. A transparent scene's layers of transparency are one step.
+  Result<bool> render_some(const SceneView& scene, const View& view, int factor, ViewArray& target, int layer,
+                           TimestampNs end);
+  void restart_pieces() noexcept;
+
   /// Layer layers[i] of `target` gets views[i], with one sample a pixel, in one instanced draw for each item; where the
   /// driver cannot choose layers in vertex shaders (ARB_shader_viewport_layer_array), and for transparent parts, one
   /// view after the other. All other layers become background. Transparent backgrounds are drawn opaque. Meshes in the
@@ -49,26 +57,35 @@ class Renderer {
     GlTexture depth;
     GlFramebuffer framebuffer;
   };
-  Result<void> use_scratch(int width, int height);
+  /// What one of the exact pictures is drawn into.
+  struct Exact {
+    Scratch samples;
+    ShadowMap shadows;
+  };
+  static Result<void> use_scratch(Scratch& scratch, int width, int height);
+  Result<void> draw_exact(const SceneView& scene, const View& view, int factor, const ViewArray& target, Exact& into,
+                          bool in_pieces);
+  void resolve(const Scratch& scratch, int factor, ViewArray& target, int layer);
   Result<void> use_layer_depth(const ViewArray& target);
   struct Into {  ///< for transparent parts
     GLuint framebuffer = 0, depth = 0;
     int depth_layer = -1;
   };
-  Result<const ShadowMap*> cast_shadows(const SceneView& scene, std::span<const View> views, int size, double coarse_px,
-                                        int width_px);
+  static Result<const ShadowMap*> cast_shadows(ShadowMap& map, const SceneView& scene, std::span<const View> views,
+                                               int size, double coarse_px, int width_px, Instalments* pieces = nullptr);
   Result<void> draw_items(const SceneView& scene, const PassViews& target, const ShadowMap* shadows, double pixel,
-                          const Into& into);
+                          const Into& into, Instalments* pieces = nullptr);
 
   MeshPass meshes_;
   FlatPass flat_;
   LabelPass labels_;
   PeelPass peel_;
-  ShadowMap shadows_;
+  ShadowMap quick_shadows_;
   GlProgram resolve_program_;
   GlVertexArray no_vertices_;
   GlFramebuffer layer_;
-  Scratch scratch_;
+  Exact whole_, in_pieces_;
+  Instalments shadow_pieces_, pieces_;
   LayerDepth layer_depth_;
 };
 

@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
+#include "display/render/instalments.h"
 #include "display/render/lod_mesh.h"
 #include "display/render/mesh_pass.h"
 
@@ -30,7 +31,7 @@ glm::dmat4 light_from_world(const glm::dvec3& light) {
   return out;
 }
 
-void grow(Box& box, const glm::dvec3& p) {
+void widen(Box& box, const glm::dvec3& p) {
   box.min = glm::min(box.min, p);
   box.max = glm::max(box.max, p);
 }
@@ -39,13 +40,13 @@ void grow(Box& box, const glm::dvec3& p) {
 Box box_for_light(const glm::dmat4& from_world, const SceneView& scene, std::span<const View> views) {
   Box out{glm::dvec3(kInf), glm::dvec3(-kInf)}, seen = out;
   const Box box = scene_box_mm(scene);
-  for (int corner = 0; corner < 8; ++corner) grow(out, glm::dvec3(from_world * glm::dvec4(box.corner(corner), 1.0)));
+  for (int corner = 0; corner < 8; ++corner) widen(out, glm::dvec3(from_world * glm::dvec4(box.corner(corner), 1.0)));
   const Box clip{glm::dvec3(-1.0), glm::dvec3(1.0)};
   for (const View& view : views) {
     const glm::dmat4 light_from_clip = from_world * glm::inverse(view.clip_from_world());
     for (int corner = 0; corner < 8; ++corner) {
       const glm::dvec4 p = light_from_clip * glm::dvec4(clip.corner(corner), 1.0);
-      grow(seen, glm::dvec3(p) / p.w);
+      widen(seen, glm::dvec3(p) / p.w);
     }
   }
   for (int a = 0; a < 2; ++a) {
@@ -93,7 +94,8 @@ Result<void> ShadowMap::use_texture(int size) {
   return check_gl("making the shadow map");
 }
 
-void ShadowMap::draw_caster(const Caster& caster, std::span<const ClipPlane> clips, const glm::dmat4& clip_from_world) {
+void ShadowMap::draw_caster(const Caster& caster, std::span<const ClipPlane> clips, const glm::dmat4& clip_from_world,
+                            Instalments* pieces) {
   const GpuMesh& level = caster.mesh->level(caster.level);
   const Box& box = caster.mesh->box_mm();
   const glm::dmat4 world_from_unit = caster.world_from_model * model_from_unit(box);
@@ -112,13 +114,17 @@ void ShadowMap::draw_caster(const Caster& caster, std::span<const ClipPlane> cli
     const glm::vec3 offset(unit_offset(part.offset_mm, box));
     glUniform3f(1, offset.x, offset.y, offset.z);
     const View light{caster.world_from_model * glm::translate(glm::dmat4(1.0), part.offset_mm), clip_from_world};
-    draw_ranges(level.visible_ranges(static_cast<std::uint8_t>(1 << p), std::span(&light, 1)), 1);
+    const TriangleRanges ranges = level.visible_ranges(static_cast<std::uint8_t>(1 << p), std::span(&light, 1));
+    if (pieces != nullptr)
+      pieces->draw(ranges, 1);
+    else
+      draw_ranges(ranges, 1);
   }
   for (GLuint i = 0; i < clips.size(); ++i) glDisable(GL_CLIP_DISTANCE0 + i);
 }
 
 Result<void> ShadowMap::draw(const SceneView& scene, std::span<const View> views, int size, double coarse_px,
-                             int width_px) {
+                             int width_px, Instalments* pieces) {
   DUBSAR_CHECK(same_direction(views));
   const glm::dmat4 from_world = light_from_world(light_in_world(scene.light, views[0]));
   const Box box = box_for_light(from_world, scene, views);
@@ -149,12 +155,16 @@ Result<void> ShadowMap::draw(const SceneView& scene, std::span<const View> views
   glDisable(GL_CULL_FACE);
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(kSlopeBias, kUnitBias);
-  const float far_depth = 1.0f;
-  glClearNamedFramebufferfv(framebuffer_, GL_DEPTH, 0, &far_depth);
+  const auto clear = [&]() -> Result<void> {
+    const float far_depth = 1.0f;
+    glClearNamedFramebufferfv(framebuffer_, GL_DEPTH, 0, &far_depth);
+    return {};
+  };
+  DUBSAR_TRY(pieces != nullptr ? pieces->once(clear) : clear());
   glUseProgram(program_);
-  for (const Caster& caster : wanted.casters) draw_caster(caster, wanted.clips, clip_from_world);
+  for (const Caster& caster : wanted.casters) draw_caster(caster, wanted.clips, clip_from_world, pieces);
   glDisable(GL_POLYGON_OFFSET_FILL);
-  drawn_ = std::move(wanted);
+  drawn_ = pieces == nullptr || !pieces->paused() ? std::move(wanted) : Drawn();
   return check_gl("drawing shadows");
 }
 

@@ -13,14 +13,18 @@
 
 namespace dubsar {
 
+class Instalments;
+
 class ShadowMap {
  public:
   static Result<ShadowMap> create();
 
   /// Draws the opaque parts of the scene's meshes as the light sees them, unless that is what was drawn last. All views
   /// must look the same way (same_direction()): the light turns with the picture. The map covers what the views can see
-  /// of the scene, `size` x `size` texels. Changes the current frame buffer and viewport.
-  Result<void> draw(const SceneView& scene, std::span<const View> views, int size, double coarse_px, int width_px);
+  /// of the scene, `size` x `size` texels. Changes the current frame buffer and viewport. `pieces`: as
+  /// much of it as there is time for; while they are paused the map is not complete.
+  Result<void> draw(const SceneView& scene, std::span<const View> views, int size, double coarse_px, int width_px,
+                    Instalments* pieces = nullptr);
 
   /// Depths, for a sampler2DShadow.
   GLuint texture() const noexcept { return depth_; }
@@ -46,7 +50,8 @@ class ShadowMap {
     bool operator==(const Drawn&) const = default;
   };
   Result<void> use_texture(int size);
-  void draw_caster(const Caster& caster, std::span<const ClipPlane> clips, const glm::dmat4& clip_from_world);
+  void draw_caster(const Caster& caster, std::span<const ClipPlane> clips, const glm::dmat4& clip_from_world,
+                   Instalments* pieces);
 
   GlProgram program_;
   GlTexture depth_;

@@ -15,6 +15,7 @@ import numpy as np
 WIDTH, HEIGHT = 1280, 720
 LEFT, TOP, RIGHT, BOTTOM = 200, 200, 700, 560  # what is looked at: beside all panels
 LIKE, SAME = 0.25, 1.5  # share of the object's contrast; grey levels
+MOUSE_S = 0.008  # as mice tell where they are
 POLL_S, QUIET_S, LONGEST_S = 0.02, 3.0, 240.0
 IDLE = 0.1  # of a core: whoever works more is still loading
 
@@ -167,10 +168,11 @@ def wait_for_picture(screen, process):
 def turn(screen, seconds):
     """Different pictures a second while the mouse turns the object."""
     x, y = (LEFT + RIGHT) // 2, (TOP + BOTTOM) // 2
-    screen.say("mousemove", x, y, "mousedown", 1)
+    way = lambda k: (x + int(150 * np.sin(k / 60)), y + int(60 * np.cos(k / 60)))  # it never stands still
+    screen.say("mousemove", *way(0), "mousedown", 1)
     steps = []
-    for k in range(int(seconds / 0.02)):
-        steps += ["mousemove", x + int(150 * np.sin(k / 20)), y + int(60 * np.sin(k / 31)), "sleep", "0.02"]
+    for k in range(int(seconds / MOUSE_S)):
+        steps += ["mousemove", *way(k), "sleep", str(MOUSE_S)]
     mover = subprocess.Popen(["xdotool", *map(str, steps)], env={**os.environ, "DISPLAY": screen.display},
                              stdout=subprocess.DEVNULL)
     times, before = [], screen.look()

@@ -150,6 +150,7 @@ TEST_F(DocumentFile, AKilledSessionLosesAtMostTenSecondsAndAnOrderlyEndLeavesNot
     for (TimestampNs now = 0; now < 100 * kSecond; now += kSecond) {
       document.notes[0].text = fmt::format("second {}", now / kSecond);
       ASSERT_TRUE(autosave.keep(now, document));
+      ASSERT_TRUE(autosave.settle());  // a second is long enough for a disk
     }
   }  // killed: nothing is tidied up
   Autosave next(file);
@@ -168,6 +169,18 @@ TEST_F(DocumentFile, NothingIsWrittenBeforeSomethingChanged) {
   Autosave autosave(folder_ / "a.json");
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(autosave.keep(i * kSecond, rich(9)));
   EXPECT_FALSE(autosave.has_left_behind());
+}
+
+TEST_F(DocumentFile, WhatCouldNotBeWrittenIsToldByTheNextCallAndTriedAgain) {
+  std::ofstream(folder_ / "taken") << "no folder";
+  Autosave autosave(folder_ / "taken" / "a.json");
+  ASSERT_TRUE(autosave.keep(0, rich(9)));
+  ASSERT_TRUE(autosave.keep(6 * kSecond, rich(11))) << "nobody waits for the disk";
+  EXPECT_FALSE(autosave.settle());
+  std::filesystem::remove(folder_ / "taken");
+  ASSERT_TRUE(autosave.keep(12 * kSecond, rich(11)));
+  EXPECT_TRUE(autosave.settle());
+  EXPECT_TRUE(autosave.has_left_behind());
 }
 
 TEST_F(DocumentFile, EveryBrokenByteIsRefusedOrReadAsADocument) {

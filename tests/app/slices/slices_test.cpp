@@ -13,6 +13,7 @@
 #include "core/base/file_fingerprint.h"
 #include "core/phantom/phantom_source.h"
 #include "core/volume/import.h"
+#include "core/volume/import_raw.h"
 #include "core/volume/slab_source.h"
 #include "tests/display/test_meshes.h"
 
@@ -240,7 +241,8 @@ TEST_F(ScanLinks, ARawVolumeIsReadAsItWasWhenTheSurfaceWasMade) {
       read->info.axes.letters(), read->info.fingerprint);
   for (const bool given : {false, true}) {
     const auto link =
-        given ? scan_of(mesh, folder_ / "tablet.exa", named("scan.raw")) : scan_of(mesh, folder_ / "tablet.exa");
+        given ? scan_of(mesh, folder_ / "tablet.exa", readable_scan(named("scan.raw"), mesh.provenance).value())
+              : scan_of(mesh, folder_ / "tablet.exa");
     ASSERT_TRUE(link);
     ASSERT_TRUE(link->import.raw);
     EXPECT_EQ(link->import.raw->skip, 16);
@@ -250,6 +252,10 @@ TEST_F(ScanLinks, ARawVolumeIsReadAsItWasWhenTheSurfaceWasMade) {
     EXPECT_EQ(opened->sampler->dims(), (Dims{6, 5, 4}));
     EXPECT_EQ(opened->note, "");
   }
+  EXPECT_FALSE(readable_scan(named("scan.raw"), "")) << "nobody says how it is read";
+  EXPECT_EQ(skip_of_layout(raw_layout(16)), 16);
+  EXPECT_EQ(skip_of_layout(raw_layout(0)), 0);
+  EXPECT_FALSE(skip_of_layout("chunked"));
   import.raw->skip = 8;  // who says how it is read is believed
   EXPECT_EQ(scan_of(mesh, folder_ / "tablet.exa", import)->import.raw->skip, 8);
   EXPECT_FALSE(raw_volume_of(R"({"input": {"format": "hdf5"}})"));

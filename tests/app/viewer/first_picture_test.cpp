@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <thread>
 
 #include "app/viewer/stage.h"
 #include "core/base/clock.h"
@@ -69,6 +70,49 @@ TEST(FirstPicture, OfAMillionVerticesOnFortyEightViewsIsLittleWork) {
       EXPECT_NE(std::vector(middle, middle + 3), std::vector(picture.at(x + 4, y + 4), picture.at(x + 4, y + 4) + 3))
           << column << ", " << row;
     }
+}
+
+TEST(FirstPicture, TheExactOneComesInPiecesBetweenWhichNothingIsPainted) {
+  const TriMesh mesh = written_pillow();
+  const auto context = EglContext::create();
+  ASSERT_TRUE(context) << context.error().message;
+  StageOptions options;
+  options.screen = {.window_w = 320, .window_h = 180};
+  options.quality = Quality::kAdaptive;
+  options.shading = shading_preset("relief").value();
+  options.budget_ms = 0.0;  // pieces as small as they can be
+  auto stage = Stage::create(mesh, options).value();
+  auto surface = OffscreenSurface::create(stage->traits().output).value();
+  FollowedEyes eyes;
+  eyes.presence = Presence::kOff;
+  Shown shown;
+  shown.style = options.shading.style;
+  shown.parts = options.shading.parts;
+  TimestampNs now = 1;
+  const auto step = [&] {
+    now += 1'000'000'000;
+    stage->show(shown, eyes, now);
+  };
+  step();
+  ASSERT_TRUE(stage->paint(surface.surface()));
+  const Image coarse = surface.read().value();
+  int pieces = 0, paints = 0;
+  while (stage->coarse_views() > 0) {
+    step();
+    if (!stage->work().value()) {  // the mesh is on its way
+      std::this_thread::yield();
+      continue;
+    }
+    ++pieces;
+    paints += stage->needs_paint();
+  }
+  EXPECT_GT(pieces, 100) << "of 2.9 million triangles";
+  EXPECT_EQ(paints, 0) << "half a picture is none";
+  ASSERT_EQ(stage->coarse_views(), 0);
+  EXPECT_TRUE(stage->needs_paint());
+  ASSERT_TRUE(stage->paint(surface.surface()));
+  EXPECT_FALSE(stage->needs_paint());
+  EXPECT_NE(surface.read().value().pixels, coarse.pixels);
 }
 
 }  // namespace

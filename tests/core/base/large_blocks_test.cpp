@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <malloc.h>
+#include <sys/resource.h>
 
 #include <cstdlib>
 #include <memory>
@@ -10,16 +11,16 @@
 namespace dubsar {
 namespace {
 
-constexpr std::size_t kMiB = 1 << 20, kBlocks = 32;
+constexpr std::size_t kMiB = 1 << 20, kLarge = 3 * kMiB, kBlocks = 32;
 
-/// How much of 32 MiB, freed while small blocks between them live on, stays with this process, after an even larger
+/// How much of 96 MiB, freed while small blocks between them live on, stays with this process, after an even larger
 /// block was freed.
 std::size_t held_bytes() {
   std::make_unique<std::vector<char>>(8 * kMiB).reset();
   const std::size_t before = mallinfo2().fordblks;
   std::vector<std::vector<char>> large(kBlocks), small(kBlocks);
   for (std::size_t i = 0; i < kBlocks; ++i) {
-    large[i].resize(kMiB);
+    large[i].resize(kLarge);
     small[i].resize(64 + i);
   }
   large.clear();
@@ -33,7 +34,7 @@ std::size_t held_bytes() {
 TEST(LargeBlocks, GoBackToTheSystemWhenTheyAreFreed) {
   if (mallinfo2().arena == 0) GTEST_SKIP() << "the C library's memory is not used here";
   GTEST_FLAG_SET(death_test_style, "threadsafe");
-  EXPECT_EXIT(exit_with(held_bytes() > kBlocks * kMiB / 2), ::testing::ExitedWithCode(0), "")
+  EXPECT_EXIT(exit_with(held_bytes() > kBlocks * kLarge / 2), ::testing::ExitedWithCode(0), "")
       << "else nothing is shown";
   EXPECT_EXIT(
       {
@@ -41,6 +42,36 @@ TEST(LargeBlocks, GoBackToTheSystemWhenTheyAreFreed) {
         exit_with(held_bytes() < kMiB);
       },
       ::testing::ExitedWithCode(0), "");
+}
+
+/// Pages that the system had to give while blocks of 1 MiB were filled and freed again and again.
+long pages_of_blocks() {
+  const auto faults = [] {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_minflt;
+  };
+  const auto fill = [] {
+    std::vector<char> block(kMiB);
+    volatile char* const bytes = block.data();
+    for (std::size_t i = 0; i < kMiB; i += 4096) bytes[i] = 1;
+  };
+  fill();
+  const long before = faults();
+  for (std::size_t i = 0; i < kBlocks; ++i) fill();
+  return faults() - before;
+}
+
+TEST(LargeBlocks, ThoseOfAPictureAreUsedAgainWithoutNewPages) {
+  if (mallinfo2().arena == 0) GTEST_SKIP() << "the C library's memory is not used here";
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        return_large_blocks();
+        exit_with(pages_of_blocks() < 256);
+      },
+      ::testing::ExitedWithCode(0), "")
+      << "of 8192 that were filled";
 }
 
 TEST(LargeBlocks, StayForTheNextOnesWhereThatIsWanted) {
