@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "core/base/median.h"
 #include "core/base/parallel.h"
-#include "core/contact/median.h"
 
 namespace dubsar {
 namespace {

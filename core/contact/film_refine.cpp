@@ -4,8 +4,9 @@
 #include <array>
 #include <glm/geometric.hpp>
 
+#include "core/base/median.h"
 #include "core/base/parallel.h"
-#include "core/contact/median.h"
+#include "core/contact/ring_average.h"
 
 namespace dubsar {
 namespace {
@@ -39,32 +40,6 @@ float trilinear(const BandDensity& density, const glm::vec3& p) {
                            static_cast<std::int64_t>(f.z) + dz);
   }
   return sum;
-}
-
-void add(float& sum, float v) { sum += v; }
-void add(glm::vec3& sum, const glm::vec3& v) { sum += v; }
-void add(Profile& sum, const Profile& v) {
-  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += v[i];
-}
-void scale(float& v, float by) { v *= by; }
-void scale(glm::vec3& v, float by) { v *= by; }
-void scale(Profile& v, float by) {
-  for (float& x : v) x *= by;
-}
-
-/// Each value becomes the mean of itself and its neighbours', `rings` times.
-template <class T>
-void average(const InterfaceRings& around, int rings, std::vector<T>& values) {
-  std::vector<T> next(values.size());
-  for (int ring = 0; ring < rings; ++ring) {
-    parallel_for(static_cast<std::int64_t>(values.size()), 1024, [&](std::int64_t k) {
-      const auto i = static_cast<std::size_t>(k);
-      next[i] = values[i];
-      for (const std::uint32_t w : around.added[i]) add(next[i], values[w]);
-      scale(next[i], 1.0f / static_cast<float>(around.added[i].size() + 1));
-    });
-    values.swap(next);
-  }
 }
 
 struct Dip {
@@ -119,16 +94,7 @@ class Follower {
     }
   }
 
-  void find_normals() {
-    normal_.assign(mesh_.added.size(), glm::vec3(0.0f));
-    for (const Triangle& t : mesh_.triangles) {
-      const glm::vec3 n = area_vector(t, mesh_.added);
-      for (const std::uint32_t v : t)
-        if (v >= dual_.size()) normal_[v - dual_.size()] += n;
-    }
-    average(rings_, 1, normal_);
-    for (glm::vec3& n : normal_) n = glm::length(n) > 0.0f ? glm::normalize(n) : glm::vec3(0.0f);
-  }
+  void find_normals() { normal_ = unit_normals(mesh_, rings_, dual_, 1); }
 
   /// The depth that a dip has by chance: that of sheets in the clay on both sides.
   void measure_noise() {
@@ -157,8 +123,8 @@ class Follower {
     });
     std::vector<float> weights = trust_;
     const int rings = options_.clays ? kStepRings : kProfileRings;
-    average(rings_, rings, ways);
-    average(rings_, rings, weights);
+    average_rings(rings_, rings, ways);
+    average_rings(rings_, rings, weights);
     each([&](std::size_t i) { ways[i] /= weights[i] + kFloor; });
     return ways;
   }
@@ -191,7 +157,7 @@ class Follower {
       }
       if (squares > 0.0f) ways[i] = -2.0f * (options_.blur_variance + kLowPass) * bend / squares;
     });
-    average(rings_, kBendRings, ways);
+    average_rings(rings_, kBendRings, ways);
     for (float& way : ways) way = std::clamp(way, -kMostHollow, kMostHollow);
     return ways;
   }
@@ -244,7 +210,7 @@ class Follower {
         profiles[i][s] = trilinear(
             density_, mesh_.added[i] + (away + kStep * static_cast<float>(static_cast<int>(s) - kReach)) * normal_[i]);
     });
-    average(rings_, kProfileRings, profiles);
+    average_rings(rings_, kProfileRings, profiles);
     return profiles;
   }
   glm::vec3 position(std::uint32_t v, const std::vector<glm::vec3>& added) const {

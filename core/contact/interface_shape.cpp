@@ -7,10 +7,10 @@
 #include <glm/geometric.hpp>
 #include <map>
 
-#include "core/base/parallel.h"
 #include "core/contact/dents.h"
 #include "core/contact/film_refine.h"
 #include "core/contact/interface_rings.h"
+#include "core/contact/ring_average.h"
 #include "core/mesh/evidence.h"
 
 namespace dubsar {
@@ -38,11 +38,6 @@ constexpr float kTied = 3.0f, kSlack = 4.0f;  ///< steps from a crossing: nothin
 
 constexpr std::uint8_t kFilm = evidence_byte(Evidence::kFilm), kInferred = evidence_byte(Evidence::kInferred);
 
-template <class Work>
-void each(std::size_t count, const Work& work) {
-  parallel_for(static_cast<std::int64_t>(count), 1024, [&](std::int64_t i) { work(static_cast<std::size_t>(i)); });
-}
-
 /// Is a vertex within kRim rings of the surface?
 std::vector<bool> rim_of(const InterfaceRings& rings) {
   std::vector<bool> rim(rings.all.size());
@@ -58,29 +53,14 @@ std::vector<bool> rim_of(const InterfaceRings& rings) {
 
 std::vector<float> mean_strength(const InterfaceMesh& mesh, const InterfaceRings& rings) {
   const std::vector<bool> rim = rim_of(rings);
-  struct Weighed {
-    float sum, weight;
-  };
-  std::vector<Weighed> now(mesh.strength.size()), next(now.size());
-  for (std::size_t i = 0; i < now.size(); ++i) {
+  std::vector<std::array<float, 2>> weighed(mesh.strength.size());  // sum, weight
+  for (std::size_t i = 0; i < weighed.size(); ++i) {
     const float weight = rim[i] ? kRimWeight : 1.0f;
-    now[i] = {weight * std::min(mesh.strength[i], rim[i] ? kRimStrength : kMostStrength), weight};
+    weighed[i] = {weight * std::min(mesh.strength[i], rim[i] ? kRimStrength : kMostStrength), weight};
   }
-  for (int round = 0; round < kEvidenceRounds; ++round) {
-    each(now.size(), [&](std::size_t i) {
-      next[i] = now[i];
-      for (const std::uint32_t w : rings.added[i]) {
-        next[i].sum += now[w].sum;
-        next[i].weight += now[w].weight;
-      }
-      const float share = 1.0f / static_cast<float>(rings.added[i].size() + 1);
-      next[i].sum *= share;
-      next[i].weight *= share;
-    });
-    now.swap(next);
-  }
-  std::vector<float> mean(now.size());
-  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = now[i].sum / std::max(now[i].weight, 1e-6f);
+  average_rings(rings, kEvidenceRounds, weighed);
+  std::vector<float> mean(weighed.size());
+  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = weighed[i][0] / std::max(weighed[i][1], 1e-6f);
   return mean;
 }
 
@@ -88,35 +68,21 @@ std::vector<float> mean_strength(const InterfaceMesh& mesh, const InterfaceRings
 std::vector<float> mean_steps(const InterfaceMesh& mesh, const InterfaceRings& rings,
                               const std::vector<glm::vec3>& dual_positions, const BandDensity& density,
                               const ClayContrast& clays) {
-  const auto dual = static_cast<std::uint32_t>(dual_positions.size());
-  const auto position = [&](std::uint32_t v) { return v < dual ? dual_positions[v] : mesh.added[v - dual]; };
-  std::vector<glm::vec3> normals(mesh.added.size(), glm::vec3(0.0f));
-  for (const Triangle& t : mesh.triangles) {
-    const glm::vec3 a = position(t[0]), n = glm::cross(position(t[1]) - a, position(t[2]) - a);
-    for (const std::uint32_t v : t)
-      if (v >= dual) normals[v - dual] += n;
-  }
+  const std::vector<glm::vec3> normals = area_normals(mesh, dual_positions);
   const float low = std::min(clays.tablet, clays.envelope) - 2.0f * clays.deviation,
               high = std::max(clays.tablet, clays.envelope) + 2.0f * clays.deviation;
-  std::vector<float> now(mesh.added.size()), next(now.size());
-  for (std::size_t i = 0; i < now.size(); ++i) {
+  std::vector<float> steps(mesh.added.size());
+  for (std::size_t i = 0; i < steps.size(); ++i) {
     const float length = glm::length(normals[i]);
     if (!(length > 0.0f)) continue;
-    const auto beside = [&](float steps) {
-      const glm::ivec3 p(glm::round(mesh.added[i] + steps / length * normals[i]));
+    const auto beside = [&](float away) {
+      const glm::ivec3 p(glm::round(mesh.added[i] + away / length * normals[i]));
       return std::clamp(density.get(p.x, p.y, p.z), low, high);
     };
-    now[i] = 0.5f * (beside(2.5f) + beside(4.0f) - beside(-2.5f) - beside(-4.0f)) / clays.step();
+    steps[i] = 0.5f * (beside(2.5f) + beside(4.0f) - beside(-2.5f) - beside(-4.0f)) / clays.step();
   }
-  for (int round = 0; round < kEvidenceRounds; ++round) {
-    each(now.size(), [&](std::size_t i) {
-      next[i] = now[i];
-      for (const std::uint32_t w : rings.added[i]) next[i] += now[w];
-      next[i] /= static_cast<float>(rings.added[i].size() + 1);
-    });
-    now.swap(next);
-  }
-  return now;
+  average_rings(rings, kEvidenceRounds, steps);
+  return steps;
 }
 
 /// Vertices of patches that are a film as a whole, as far as their mean can tell it: nothing was chosen in it, so that
@@ -221,7 +187,7 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
   std::vector<glm::vec3> moved = mesh.added;
   const auto position = [&](std::uint32_t v) { return v < dual ? dual_positions[v] : mesh.added[v - dual]; };
   const auto relax = [&](std::uint8_t which, float share) {
-    each(evidence.size(), [&](std::size_t i) {
+    each_vertex(evidence.size(), [&](std::size_t i) {
       moved[i] = mesh.added[i];
       if (evidence[i] != which || rings.all[i].empty()) return;
       glm::vec3 mean(0.0f);

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <unordered_map>
 
+#include "core/base/median.h"
+
 namespace dubsar {
 namespace {
 
@@ -21,13 +23,6 @@ constexpr double kLeastAngle = 5 * kDegree, kMostAngle = 15 * kDegree, kDeviatio
 constexpr double kLeastShare = 0.02;  // with less on it there is no ground
 
 double biweight(double x) { return std::abs(x) >= 1 ? 0.0 : (1 - x * x) * (1 - x * x); }
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -85,18 +80,14 @@ LevelGround::LevelGround(const Neighbourhood& around, double radius_mm) : radius
   // Noise turns normals: those of what is about level say how much.
   std::vector<double> angles;
   double all = 0.0, on_it = 0.0;
-  const auto angle = [&](const GroundSample& sample) {
-    const glm::dvec2 s = slope(sample.u, sample.v);
-    return std::acos(std::clamp(glm::dot(glm::normalize(glm::dvec3(-s, 1.0)), sample.normal), -1.0, 1.0));
-  };
   for (const GroundSample& sample : around.samples)
-    if (std::abs(depth(sample)) < 2 * roughness_mm_) angles.push_back(angle(sample));
+    if (std::abs(depth(sample)) < 2 * roughness_mm_) angles.push_back(turned(sample));
   const double most = std::clamp(1.5 * median(std::move(angles)), kLeastAngle, kMostAngle);
   for (const auto& [looser, wider] : {std::array{3.0, 2.0}, {1.7, 1.5}, {1.0, 1.0}})
     level(around, looser * most, wider * kDeviations);
   for (const GroundSample& sample : around.samples) {
     all += sample.area;
-    if (std::abs(depth(sample)) < 2 * roughness_mm_ && angle(sample) < most) on_it += sample.area;
+    if (std::abs(depth(sample)) < 2 * roughness_mm_ && turned(sample) < most) on_it += sample.area;
   }
   share_ = all > 0 ? on_it / all : 0.0;
 }
@@ -114,6 +105,12 @@ glm::dvec2 LevelGround::slope(double u, double v) const {
 double LevelGround::depth(const GroundSample& sample) const {
   const glm::dvec2 s = slope(sample.u, sample.v);
   return (height(sample.u, sample.v) - sample.height) / std::sqrt(1.0 + glm::dot(s, s));
+}
+
+/// Between the sample's normal and the ground's, radians.
+double LevelGround::turned(const GroundSample& sample) const {
+  const glm::dvec2 s = slope(sample.u, sample.v);
+  return std::acos(std::clamp(glm::dot(glm::normalize(glm::dvec3(-s, 1.0)), sample.normal), -1.0, 1.0));
 }
 
 /// False, and nothing has changed, where the weights leave no ground.
@@ -160,11 +157,9 @@ void LevelGround::level(const Neighbourhood& around, double most_angle, double m
     std::vector<double> weights;
     double squares = 0.0, sum = 0.0;
     for (const GroundSample& sample : around.samples) {
-      const glm::dvec2 s = slope(sample.u, sample.v);
-      const double cosine = glm::dot(glm::normalize(glm::dvec3(-s, 1.0)), sample.normal);
-      const double below = depth(sample), turned = std::acos(std::clamp(cosine, -1.0, 1.0));
+      const double below = depth(sample);
       const double weight =
-          sample.area * biweight(below / (most_deviations * roughness_mm_)) * biweight(turned / most_angle);
+          sample.area * biweight(below / (most_deviations * roughness_mm_)) * biweight(turned(sample) / most_angle);
       weights.push_back(weight);
       squares += weight * below * below;
       sum += weight;

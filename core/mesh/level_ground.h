@@ -46,6 +46,7 @@ class LevelGround {
  private:
   void envelope(const Neighbourhood& around);
   void level(const Neighbourhood& around, double most_angle, double most_deviations);
+  double turned(const GroundSample& sample) const;
   bool solve(const Neighbourhood& around, const std::vector<double>& weights);
 
   SheetTerms terms_{};

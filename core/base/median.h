@@ -8,8 +8,9 @@
 namespace dubsar {
 
 /// The upper of both middle values of an even number; 0 of none.
-inline float median(std::vector<float> values) {
-  if (values.empty()) return 0.0f;
+template <class T>
+T median(std::vector<T> values) {
+  if (values.empty()) return T{};
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;

@@ -1,0 +1,79 @@
+#pragma once
+// Values of the contact's added vertices, averaged along it.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/contact/interface_mesh.h"
+#include "core/contact/interface_rings.h"
+
+namespace dubsar {
+
+/// work(0) to work(count - 1), on all threads.
+template <class Work>
+void each_vertex(std::size_t count, const Work& work) {
+  parallel_for(static_cast<std::int64_t>(count), 1024, [&](std::int64_t i) { work(static_cast<std::size_t>(i)); });
+}
+
+namespace ring_average {
+template <class T>
+void add(T& sum, const T& v) {
+  sum += v;
+}
+template <std::size_t N>
+void add(std::array<float, N>& sum, const std::array<float, N>& v) {
+  for (std::size_t i = 0; i < N; ++i) sum[i] += v[i];
+}
+template <class T>
+void scale(T& v, float by) {
+  v *= by;
+}
+template <std::size_t N>
+void scale(std::array<float, N>& v, float by) {
+  for (float& x : v) x *= by;
+}
+}  // namespace ring_average
+
+/// Each value becomes the mean of itself and of those of the added vertices beside it, `rounds` times. The same for any
+/// number of threads.
+template <class T>
+void average_rings(const InterfaceRings& around, int rounds, std::vector<T>& values) {
+  std::vector<T> next(values.size());
+  for (int round = 0; round < rounds; ++round) {
+    each_vertex(values.size(), [&](std::size_t i) {
+      next[i] = values[i];
+      for (const std::uint32_t w : around.added[i]) ring_average::add(next[i], values[w]);
+      ring_average::scale(next[i], 1.0f / static_cast<float>(around.added[i].size() + 1));
+    });
+    values.swap(next);
+  }
+}
+
+/// Normals of the added vertices, towards the envelope, as long as twice the area of the triangles around them.
+inline std::vector<glm::vec3> area_normals(const InterfaceMesh& mesh, const std::vector<glm::vec3>& dual_positions) {
+  const auto dual = static_cast<std::uint32_t>(dual_positions.size());
+  const auto position = [&](std::uint32_t v) { return v < dual ? dual_positions[v] : mesh.added[v - dual]; };
+  std::vector<glm::vec3> normals(mesh.added.size(), glm::vec3(0.0f));
+  for (const Triangle& t : mesh.triangles) {
+    const glm::vec3 a = position(t[0]), n = glm::cross(position(t[1]) - a, position(t[2]) - a);
+    for (const std::uint32_t v : t)
+      if (v >= dual) normals[v - dual] += n;
+  }
+  return normals;
+}
+
+/// The same averaged, and of unit length, or 0 where they cancel out.
+inline std::vector<glm::vec3> unit_normals(const InterfaceMesh& mesh, const InterfaceRings& rings,
+                                           const std::vector<glm::vec3>& dual_positions, int rounds) {
+  std::vector<glm::vec3> normals = area_normals(mesh, dual_positions);
+  average_rings(rings, rounds, normals);
+  for (glm::vec3& n : normals) n = glm::length(n) > 0.0f ? glm::normalize(n) : glm::vec3(0.0f);
+  return normals;
+}
+
+}  // namespace dubsar
