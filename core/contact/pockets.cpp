@@ -1,5 +1,6 @@
 #include "core/contact/pockets.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <unordered_map>
@@ -68,12 +69,47 @@ std::vector<BandFace> faces_of_band(const SurfaceModel& model, const EdgeIndex& 
   return faces;
 }
 
+std::vector<ClayCavity> cavities_off_contact(const SurfaceModel& model, const FaceGraph& graph, const ContactBand& band,
+                                             const std::vector<BandFace>& faces) {
+  const RestPieces pieces = rest_pieces(model, graph, faces);
+  struct Extent {
+    float nearest = INFINITY, lowest = INFINITY, highest = -INFINITY;
+  };
+  std::vector<Extent> extents(pieces.quads.size());
+  std::vector<ClayCavity> around(pieces.quads.size());
+  for (const BandFace& face : faces) {
+    const auto piece = pieces.piece_of.find(face.quad);
+    if (piece == pieces.piece_of.end()) continue;
+    const ContactBand::Node& node = band.nodes[face.node];
+    Extent& extent = extents[piece->second];
+    extent.nearest = std::min(extent.nearest, node.distance);
+    extent.lowest = std::min(extent.lowest, node.height);
+    extent.highest = std::max(extent.highest, node.height);
+    around[piece->second].push_back(face.node);
+  }
+  std::vector<ClayCavity> off;
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    // Clay is half a step from the air on average.
+    const float away = extents[i].nearest + 0.5f, across = extents[i].highest - extents[i].lowest - 1.0f;
+    if (pieces.volume[i] >= 0.0 || away <= across) continue;
+    std::sort(around[i].begin(), around[i].end());
+    around[i].erase(std::unique(around[i].begin(), around[i].end()), around[i].end());
+    off.push_back(std::move(around[i]));
+  }
+  return off;
+}
+
 std::vector<SurfaceHint> hints_of_faces(const SurfaceModel& model, const ContactBand& band,
-                                        const std::vector<BandFace>& faces) {
+                                        const std::vector<BandFace>& faces,
+                                        const std::vector<ClayCavity>& off_contact) {
+  std::vector<bool> silent(band.nodes.size(), false);
+  for (const ClayCavity& cavity : off_contact)
+    for (const std::uint32_t n : cavity) silent[n] = true;
   std::vector<SurfaceHint> hints;
   for (const BandFace& face : faces) {
     const PartitionKind kind = model.partitions[model.quad_partition[face.quad]].kind;
     const bool rest = kind == PartitionKind::kPores;
+    if (rest && silent[face.node]) continue;
     const bool tablet = kind == PartitionKind::kTablet;
     const bool envelope = kind == PartitionKind::kEnvelopeInside || kind == PartitionKind::kEnvelopeOutside;
     if (!rest && !tablet && !envelope) continue;

@@ -23,10 +23,16 @@ struct BandFace {
 /// All x-quads whose point of clay is in the band, by node.
 std::vector<BandFace> faces_of_band(const SurfaceModel& model, const EdgeIndex& index, const ContactBand& band);
 
+/// Closed cavities that do not open to the contact: pores of the clay. The mouth of a pocket lies where the clays meet,
+/// and the patches miss that by less than the pocket is deep; a cavity that is farther from every patch than it
+/// reaches across the contact is none.
+std::vector<ClayCavity> cavities_off_contact(const SurfaceModel& model, const FaceGraph& graph, const ContactBand& band,
+                                             const std::vector<BandFace>& faces);
+
 /// Faces of tablet and envelope away from the rim of the patches are certain; those at the rim and those of closed
-/// pockets vote by where they look.
+/// pockets vote by where they look. Those of cavities off the contact say nothing.
 std::vector<SurfaceHint> hints_of_faces(const SurfaceModel& model, const ContactBand& band,
-                                        const std::vector<BandFace>& faces);
+                                        const std::vector<BandFace>& faces, const std::vector<ClayCavity>& off_contact);
 
 /// Gives the faces the sides of their clay, and pockets with faces of both sides to tablet and envelope. Returns the
 /// number of such pockets.

@@ -241,7 +241,9 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
     log_info("contact: the envelope's clay has {:.1f} % of the density of the tablet's",
              100.0f * traced.clays->envelope / traced.clays->tablet);
   }
-  DUBSAR_ASSIGN(traced.side, divide_clay(band, dips, hints_of_faces(model, band, traced.faces), votes, progress));
+  const std::vector<ClayCavity> pores = cavities_off_contact(model, graph, band, traced.faces);
+  DUBSAR_ASSIGN(traced.side,
+                divide_clay(band, dips, hints_of_faces(model, band, traced.faces, pores), votes, pores, progress));
   if (progress.cancelled()) return cancelled_error();
   DUBSAR_TRY(trace_until_closed(model, std::move(traced), options, report, progress));
   progress.end();

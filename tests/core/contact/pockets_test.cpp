@@ -1,0 +1,122 @@
+#include "core/contact/pockets.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <utility>
+
+#include "core/contact/clay_sides.h"
+#include "tests/core/parts/grid_scene.h"
+
+namespace dubsar {
+namespace {
+
+constexpr int kEdge = 64;
+constexpr float kPlane = 32.0f;  ///< height of the patch
+constexpr float kReach = 12.0f;
+
+/// A wedge 8 steps deep and as wide, under the plane: a cone with its tip down.
+float wedge(const glm::vec3& p, const glm::vec3& mouth) {
+  const float below = mouth.z - p.z, aside = glm::length(glm::vec2(p.x - mouth.x, p.y - mouth.y));
+  return std::min({below, 8.0f - below, 0.7f * (0.5f * (8.0f - below) - aside)});
+}
+
+/// A block of clay with cavities, and a flat patch across it.
+struct CavityScene {
+  SurfaceModel model;
+  ContactBand band;
+  FaceGraph graph;
+  std::vector<BandFace> faces;
+
+  explicit CavityScene(const scene::Field& air) : model(make(air)), band(around_patch()), graph(graph_of()) {
+    const EdgeIndex index = EdgeIndex::create(model.samples).value();
+    faces = faces_of_band(model, index, band);
+  }
+
+  /// Lowest and highest point of clay beside the cavity.
+  std::pair<int, int> heights(const ClayCavity& cavity) const {
+    std::pair<int, int> heights{kEdge, 0};
+    for (const std::uint32_t n : cavity) {
+      heights.first = std::min(heights.first, band.point(n).z);
+      heights.second = std::max(heights.second, band.point(n).z);
+    }
+    return heights;
+  }
+
+ private:
+  static SurfaceModel make(const scene::Field& air) {
+    SurfaceModel made = scene::extract_model({kEdge, kEdge, kEdge}, [&](const glm::vec3& p) {
+      return std::min(scene::box(p, glm::vec3(32.0f), glm::vec3(29.0f), 3.0f), -air(p));
+    });
+    made.partitions.add(PartitionKind::kTablet);
+    made.partitions.add(PartitionKind::kEnvelopeInside, "envelope");
+    const PartitionId pores = made.partitions.add(PartitionKind::kPores);
+    for (const auto& quad : made.mesh.quads) {
+      const glm::vec3 off = glm::abs(made.mesh.positions[quad[0]] - glm::vec3(32.0f));
+      made.quad_partition.push_back(std::max({off.x, off.y, off.z}) < 25.0f ? pores : PartitionId{0});
+    }
+    return made;
+  }
+  ContactBand around_patch() const {
+    std::vector<PatchPoint> samples;
+    for (int y = 17; y < kEdge - 16; ++y)
+      for (int x = 17; x < kEdge - 16; ++x) samples.push_back({{x, y, kPlane}, {0.0f, 0.0f, 1.0f}});
+    SilentProgress progress;
+    return ContactBand::make(model.samples.signs, std::move(samples), kReach, progress).value();
+  }
+  FaceGraph graph_of() const {
+    SilentProgress progress;
+    return FaceGraph::build(model.mesh, progress).value();
+  }
+};
+
+float pore(const glm::vec3& p) { return scene::ball(p, {38.3f, 32.2f, kPlane - 7.6f}, 2.2f); }
+
+TEST(CavitiesOffContact, APoreInTheClayIsOneAndAWedgeThatOpensToTheContactIsNot) {
+  const CavityScene scene([](const glm::vec3& p) {
+    return std::max(pore(p), wedge(p, {24.2f, 32.1f, kPlane + 0.3f}));
+  });
+  const auto off = cavities_off_contact(scene.model, scene.graph, scene.band, scene.faces);
+  ASSERT_EQ(off.size(), 1u);
+  const auto [low, high] = scene.heights(off[0]);
+  EXPECT_GE(low, 20);
+  EXPECT_LE(high, 28) << "the pore is between 22.2 and 26.6, the wedge between 24 and 32";
+}
+
+TEST(CavitiesOffContact, APocketOnAPatchThatMissesItsMouthIsNone) {
+  const CavityScene scene([](const glm::vec3& p) { return wedge(p, {32.2f, 32.1f, kPlane - 2.7f}); });
+  EXPECT_TRUE(cavities_off_contact(scene.model, scene.graph, scene.band, scene.faces).empty());
+}
+
+TEST(DivideClay, GoesRoundACavityThatIsWhole) {
+  const CavityScene scene(pore);
+  const auto off = cavities_off_contact(scene.model, scene.graph, scene.band, scene.faces);
+  ASSERT_EQ(off.size(), 1u);
+  // Clay that is dark by chance from the patch down to the pore, as wide as it.
+  Dips dips;
+  dips.strength.assign(scene.band.nodes.size(), 0.0f);
+  for (std::uint32_t n = 0; n < dips.strength.size(); ++n) {
+    const glm::vec3 p(scene.band.point(n));
+    const float aside = glm::length(glm::vec2(p.x - 38.3f, p.y - 32.2f));
+    if (p.z > kPlane - 9.0f && p.z < kPlane && aside < 6.0f && aside > 2.0f) dips.strength[n] = 3.0f;
+  }
+  const auto envelopes = [&](const std::vector<ClayCavity>& whole) {
+    SilentProgress progress;
+    auto hints = hints_of_faces(scene.model, scene.band, scene.faces, whole);
+    for (std::uint32_t n = 0; n < dips.strength.size(); ++n) {  // the contact ends at the patch
+      const glm::vec3 p(scene.band.point(n));
+      if (std::max(std::abs(p.x - 32.0f), std::abs(p.y - 32.0f)) > 15.0f)
+        hints.push_back({n, p.z < kPlane ? ClaySide::kTablet : ClaySide::kEnvelope, kCertain});
+    }
+    const std::vector<ClaySide> side = divide_clay(scene.band, dips, hints, {}, whole, progress).value();
+    return std::count_if(off[0].begin(), off[0].end(), [&](std::uint32_t n) { return side[n] == ClaySide::kEnvelope; });
+  };
+  EXPECT_GT(envelopes({}), 0) << "nothing draws the cut to the pore";
+  EXPECT_EQ(envelopes(off), 0);
+}
+
+}  // namespace
+}  // namespace dubsar
