@@ -47,6 +47,16 @@ Result<SurfaceModel> read_model(const std::string& path, const ReadOptions& opti
     return read_exa_box(path, {options.box_low, options.box_high}, progress);
   return read_exa(path, progress, {options.attributes});
 }
+
+Result<void> fill_from(const SurfaceModel& model, const ReadOptions& options, Surface& surface) {
+  MeshOptions mesh;
+  mesh.fill_holes = options.fill_holes;
+  if (options.partition >= 0) mesh.partition = static_cast<PartitionId>(options.partition);
+  if (!options.body.empty()) mesh.body = options.body;
+  DUBSAR_ASSIGN(TriMesh triangles, make_tri_mesh(model, mesh));
+  fill(std::move(triangles), surface);
+  return {};
+}
 }  // namespace
 
 bool read_info(const std::string& path, Info& info, std::string& error) {
@@ -71,13 +81,19 @@ bool read(const std::string& path, const ReadOptions& options, Surface& surface,
   return guarded(error, [&]() -> Result<void> {
     SilentProgress progress;
     DUBSAR_ASSIGN(const SurfaceModel model, read_model(path, options, progress));
-    MeshOptions mesh;
-    mesh.fill_holes = options.fill_holes;
-    if (options.partition >= 0) mesh.partition = static_cast<PartitionId>(options.partition);
-    if (!options.body.empty()) mesh.body = options.body;
-    DUBSAR_ASSIGN(TriMesh triangles, make_tri_mesh(model, mesh));
-    fill(std::move(triangles), surface);
-    return {};
+    return fill_from(model, options, surface);
+  });
+}
+
+bool read_bytes(const void* bytes, std::size_t size, const ReadOptions& options, Surface& surface, std::string& error) {
+  return guarded(error, [&]() -> Result<void> {
+    if (options.level != 0 || options.box_high != std::array<std::int64_t, 3>{})
+      return fail(ErrorKind::kUsage,
+                  "exa: a level or a box asked for of bytes in memory, expected neither: read a file");
+    SilentProgress progress;
+    DUBSAR_ASSIGN(const SurfaceModel model,
+                  decode_exa({static_cast<const char*>(bytes), size}, progress, {options.attributes}));
+    return fill_from(model, options, surface);
   });
 }
 

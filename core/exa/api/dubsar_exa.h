@@ -9,6 +9,7 @@
 // more memory than its header proves that it needs.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -65,6 +66,9 @@ struct ReadOptions {
 /// False: `error` says in one sentence what was found and expected.
 DUBSAR_EXA_API bool read_info(const std::string& path, Info& info, std::string& error);
 DUBSAR_EXA_API bool read(const std::string& path, const ReadOptions& options, Surface& surface, std::string& error);
+/// The same of a file that is in memory already, whole: fetched, or a part of an archive. No levels, no boxes.
+DUBSAR_EXA_API bool read_bytes(const void* bytes, std::size_t size, const ReadOptions& options, Surface& surface,
+                               std::string& error);
 /// Checks every sum of a file without decoding it.
 DUBSAR_EXA_API bool check_sums(const std::string& path, std::string& error);
 

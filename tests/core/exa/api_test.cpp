@@ -50,6 +50,26 @@ TEST(ExaLibrary, ReadsSurfacesLevelsPartsAndBoxes) {
   EXPECT_TRUE(dubsar_exa::check_sums(kFile, error)) << error;
 }
 
+TEST(ExaLibrary, ReadsBytesInMemoryLikeTheFile) {
+  std::ifstream file(kFile, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  dubsar_exa::Surface from_file, from_bytes;
+  std::string error;
+  dubsar_exa::ReadOptions options;
+  options.body = "tablet";
+  ASSERT_TRUE(dubsar_exa::read(kFile, options, from_file, error)) << error;
+  ASSERT_TRUE(dubsar_exa::read_bytes(bytes.data(), bytes.size(), options, from_bytes, error)) << error;
+  EXPECT_EQ(from_bytes.positions_mm, from_file.positions_mm);
+  EXPECT_EQ(from_bytes.triangles, from_file.triangles);
+  EXPECT_EQ(from_bytes.normals, from_file.normals);
+  EXPECT_EQ(from_bytes.light, from_file.light);
+  EXPECT_FALSE(dubsar_exa::read_bytes(bytes.data(), bytes.size() - 1, options, from_bytes, error));
+  EXPECT_THAT(error, ::testing::HasSubstr("truncated"));
+  options.level = 1;
+  EXPECT_FALSE(dubsar_exa::read_bytes(bytes.data(), bytes.size(), options, from_bytes, error));
+  EXPECT_THAT(error, ::testing::HasSubstr("read a file"));
+}
+
 TEST(ExaLibrary, SaysWhatIsWrong) {
   dubsar_exa::Surface surface;
   std::string error;
