@@ -12,13 +12,13 @@
 namespace dubsar {
 namespace {
 constexpr std::int64_t kEscapeGrain = 1 << 13;
-constexpr double kOutsideHalf = 0.045;  // vertices that may lie further than half the bound
-constexpr double kAlong = 0.4;          // least cosine between normal and axis of a short escape
+constexpr double kOutsideHalf = 0.045;                   // vertices that may lie further than half the bound
+constexpr double kAlong = 0.4;                           // least cosine between normal and axis of a short escape
+constexpr double kMore = 1.0 + 1e-9, kRounding = 1e-20;  // what is left out is further away for certain
 
 /// From a place to a triangle, or `least` where that is nearer. Most triangles of a fan are found to be further away by
 /// the plane or a side that the place lies beyond, before distances to sides have to be known.
 double nearer(double least, const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  constexpr double kMore = 1.0 + 1e-9, kRounding = 1e-20;  // what is left out is further away for certain
   const glm::dvec3 ab = b - a, ac = c - a, n = glm::cross(ab, ac);
   const double area = glm::dot(n, n);
   if (area > 0.0) {
@@ -49,18 +49,76 @@ double nearer(double least, const glm::dvec3& p, const glm::dvec3& a, const glm:
   return std::min({least, side(a, b), side(b, c), side(c, a)});
 }
 
-/// From a place to the x-quads around a vertex, each cut in both ways.
-double distance_to_fan(const QuadMesh& mesh, std::uint32_t v, const glm::dvec3& p) {
-  double least = glm::length(p - glm::dvec3(mesh.positions[v]));
+/// The corners of an x-quad, and on which side of the two edges at one of its vertices a place lies.
+struct QuadAt {
   std::array<glm::dvec3, 8> corner;
-  for (const std::uint32_t q : mesh.quads_of(v)) {
+  int size;
+  glm::dvec3 vertex;
+  std::array<glm::dvec3, 2> away;  ///< in the plane of the two edges, across each of them, out of the corner
+  std::array<double, 2> beyond;    ///< of the place, along `away`: positive where it lies beyond the edge
+};
+
+void look(const QuadMesh& mesh, std::uint32_t v, std::uint32_t q, const glm::dvec3& p, QuadAt& quad) {
+  const auto put = [&](const std::uint32_t* vertex, int size) {
+    int here = 0;
+    for (int i = 0; i < size; ++i) {
+      quad.corner[static_cast<std::size_t>(i)] = glm::dvec3(mesh.positions[vertex[i]]);
+      if (vertex[i] == v) here = i;
+    }
+    quad.size = size;
+    quad.vertex = quad.corner[static_cast<std::size_t>(here)];
+    const glm::dvec3 next = quad.corner[static_cast<std::size_t>(here + 1 < size ? here + 1 : 0)] - quad.vertex,
+                     last = quad.corner[static_cast<std::size_t>(here > 0 ? here - 1 : size - 1)] - quad.vertex;
+    const double both = glm::dot(next, last);
+    quad.away = {next * both - last * glm::dot(next, next), last * both - next * glm::dot(last, last)};
+  };
+  if (mesh.has_doubled(q)) {
     const Polygon polygon = mesh.polygon(q);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(polygon.size); ++i)
-      corner[i] = glm::dvec3(mesh.positions[polygon.vertex[i]]);
-    const auto at = [&](int i) { return corner[static_cast<std::size_t>(i % polygon.size)]; };
-    for (int start = 0; start < 2; ++start)
-      for (int i = 1; i + 1 < polygon.size; ++i) least = nearer(least, p, at(start), at(start + i), at(start + i + 1));
+    put(polygon.vertex.data(), polygon.size);
+  } else {
+    put(mesh.quads[q].data(), 4);
   }
+  for (std::size_t k = 0; k < 2; ++k) quad.beyond[k] = glm::dot(quad.away[k], p - quad.vertex);
+}
+
+/// A plane between the place and all corners is further away than `least`: so is the x-quad.
+bool surely_further(const QuadAt& quad, double least) {
+  const double near = least * least * kMore + kRounding;
+  for (std::size_t k = 0; k < 2; ++k) {
+    double gap = quad.beyond[k];
+    if (!(gap > 0.0 && gap * gap > near * glm::dot(quad.away[k], quad.away[k]))) continue;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(quad.size); ++i)
+      gap = std::min(gap, quad.beyond[k] - glm::dot(quad.away[k], quad.corner[i] - quad.vertex));
+    if (gap > 0.0 && gap * gap > near * glm::dot(quad.away[k], quad.away[k])) return true;
+  }
+  return false;
+}
+
+/// From a place to an x-quad that is cut in both ways, or `least` where that is nearer.
+double nearer(double least, const glm::dvec3& p, const QuadAt& quad) {
+  const auto at = [&](int i) { return quad.corner[static_cast<std::size_t>(i < quad.size ? i : i - quad.size)]; };
+  for (int start = 0; start < 2; ++start)
+    for (int i = 1; i + 1 < quad.size; ++i) least = nearer(least, p, at(start), at(start + i), at(start + i + 1));
+  return least;
+}
+
+/// From a place to the x-quads around a vertex, each cut in both ways. Those in whose corner the place lies come first:
+/// most of the others are then found to be further away without a look at their triangles.
+double distance_to_fan(const QuadMesh& mesh, std::uint32_t v, const glm::dvec3& p) {
+  constexpr std::size_t kLater = 8;
+  double least = glm::length(p - glm::dvec3(mesh.positions[v]));
+  std::array<QuadAt, kLater + 1> quads;
+  std::size_t later = 0;
+  for (const std::uint32_t q : mesh.quads_of(v)) {
+    QuadAt& quad = quads[later];
+    look(mesh, v, q, p, quad);
+    if (later < kLater && (quad.beyond[0] > 0.0 || quad.beyond[1] > 0.0))
+      ++later;
+    else
+      least = nearer(least, p, quad);
+  }
+  for (std::size_t i = 0; i < later; ++i)
+    if (!surely_further(quads[i], least)) least = nearer(least, p, quads[i]);
   return least;
 }
 

@@ -16,9 +16,11 @@ namespace dubsar {
 class OffsetPrices {
  public:
   virtual ~OffsetPrices() = default;
-  /// The offsets to choose from, first and last; an edge whose offset stays has one.
+  /// The offsets to choose from, first and last, within those of samples.offset_bits; an edge whose offset stays has
+  /// one.
   virtual std::pair<int, int> range(std::uint32_t number) const = 0;
-  virtual double price(std::uint32_t number, int offset) const = 0;
+  /// Of the offsets first..last, in order.
+  virtual void prices(std::uint32_t number, int first, int last, double* to) const = 0;
   /// This one was chosen.
   virtual void take(std::uint32_t number, int offset) = 0;
 };

@@ -1,7 +1,6 @@
 #pragma once
 // Crossings of the active edges such that the vertices between them lie on a given surface.
 
-#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
@@ -11,13 +10,6 @@
 #include "core/parts/surface_model.h"
 
 namespace dubsar {
-
-/// An active edge inside the grid and its x-quad.
-struct FitEdge {
-  std::array<std::int32_t, 3> low{};
-  std::int32_t axis = 0;
-  std::uint32_t offset = 0;  ///< its place in samples.offsets
-};
 
 class OffsetFit : public OffsetPrices {
  public:
@@ -32,11 +24,12 @@ class OffsetFit : public OffsetPrices {
   Result<void> store(SurfaceSamples& samples, Progress& progress);
 
   std::pair<int, int> range(std::uint32_t number) const override;
-  double price(std::uint32_t number, int offset) const override;
+  void prices(std::uint32_t number, int first, int last, double* to) const override;
   void take(std::uint32_t number, int offset) override;
 
  private:
-  double cut(std::uint32_t e) const;
+  template <class Visit>
+  void each_corner(std::uint32_t e, const Visit& visit) const;
   glm::vec3 place(std::uint32_t v) const;
   void find_residuals();
   float crossing(int offset) const { return (static_cast<float>(offset) + 0.5f) / static_cast<float>(steps_); }
@@ -45,9 +38,11 @@ class OffsetFit : public OffsetPrices {
   const QuadMesh& mesh_;
   std::span<const glm::vec3> base_, normals_;
   double bound_;
-  std::vector<FitEdge> edges_;
-  std::vector<std::uint32_t> edge_of_;        ///< by place in samples.offsets; kNoEdge: without an x-quad
-  std::vector<float> before_, t_, residual_;  ///< crossings of the edges before and now; of vertices, along the normal
+  std::vector<std::uint8_t> axis_;         ///< of the edges with an x-quad, in the order of those
+  std::vector<std::uint32_t> offset_;      ///< their places in samples.offsets
+  std::vector<std::uint32_t> edge_of_;     ///< by place in samples.offsets; kNoEdge: without an x-quad
+  std::vector<float> before_, t_, moved_;  ///< crossings of the edges before and now, and how far they moved
+  std::vector<float> residual_;            ///< of vertices, along the normal
   int steps_ = 1;
 };
 

@@ -76,23 +76,54 @@ std::string encode_offsets(const SurfaceSamples& samples, const BrickItems& item
   return encode_offsets(samples, items, model, std::numeric_limits<int>::max());
 }
 
+/// What offsets of OffsetTable::kBits bits cost, in bits, by estimate and offset.
+class OffsetCosts {
+ public:
+  static double of(double share) { return -std::log2(share / 65536.0); }
+  static const OffsetCosts& instance() {
+    static const OffsetCosts costs;
+    return costs;
+  }
+  OffsetCosts() : rows_(32 * 256) {
+    for (int spread = 0; spread < 32; ++spread)
+      for (int mean = -128; mean < 128; ++mean) {
+        const OffsetTable::Starts& starts = OffsetTable::instance().starts({mean, spread});
+        for (std::uint32_t k = 0; k < 16; ++k)
+          rows_[row(spread, mean)][k] = of(static_cast<double>(OffsetTable::end(starts, k) - starts[k]));
+      }
+  }
+  const std::array<double, 16>& row_of(const OffsetEstimate& e) const { return rows_[row(e.spread, e.mean)]; }
+
+ private:
+  static std::size_t row(int spread, int mean) {
+    return static_cast<std::size_t>(spread) * 256 + static_cast<std::size_t>(mean + 128);
+  }
+  std::vector<std::array<double, 16>> rows_;
+};
+
 void choose_brick_offsets(SurfaceSamples& samples, const BrickItems& items, OffsetPrices& prices) {
   const std::size_t model = better_model(samples, items);
   if (model == kOffsetModels) return;
   const OffsetModel& network = OffsetModel::instance(model);
+  const OffsetCosts& costs = OffsetCosts::instance();
   OffsetWindow window(items.signs());
   OffsetRows rows(network, window);
   const auto choose = [&](std::uint32_t number, const OffsetEstimate& estimate) {
     const auto [first, last] = prices.range(number);
     if (first >= last) return;
-    const OffsetDistribution likely(estimate, samples.offset_bits);
+    std::array<double, std::size_t{1} << kModelledBits> price;
+    prices.prices(number, first, last, price.data());
+    const auto cost = [&](int offset) {
+      const auto symbol = static_cast<std::uint32_t>(offset);
+      if (samples.offset_bits == OffsetTable::kBits) return costs.row_of(estimate)[symbol];
+      const OffsetDistribution likely(estimate, samples.offset_bits);
+      return OffsetCosts::of(static_cast<double>(likely.start(symbol + 1) - likely.start(symbol)));
+    };
     double least = std::numeric_limits<double>::infinity();
     int best = first;
     for (int offset = first; offset <= last; ++offset) {
-      const auto symbol = static_cast<std::uint32_t>(offset);
-      const double share = static_cast<double>(likely.start(symbol + 1) - likely.start(symbol)) / 65536.0;
-      const double price = prices.price(number, offset) - std::log2(share);
-      if (price < least) best = offset, least = price;
+      const double all = price[static_cast<std::size_t>(offset - first)] + cost(offset);
+      if (all < least) best = offset, least = all;
     }
     prices.take(number, best);
     samples.offsets[number] = static_cast<std::uint16_t>(best);

@@ -32,7 +32,9 @@ SurfaceModel smoothed_model(unsigned seed) {
 struct Every : OffsetPrices {
   explicit Every(double price_of_step, const SurfaceSamples& samples) : step(price_of_step), wanted(samples.offsets) {}
   std::pair<int, int> range(std::uint32_t) const override { return {0, 15}; }
-  double price(std::uint32_t number, int offset) const override { return step * std::abs(offset - wanted[number]); }
+  void prices(std::uint32_t number, int first, int last, double* to) const override {
+    for (int offset = first; offset <= last; ++offset) *to++ = step * std::abs(offset - wanted[number]);
+  }
   void take(std::uint32_t number, int offset) override { taken[number] = offset; }
   double step;
   std::vector<std::uint16_t> wanted;
