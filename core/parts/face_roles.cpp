@@ -37,7 +37,8 @@ std::uint32_t air_in_front(const BitVolume& inside, const BitVolume& exterior, c
 
 /// Two labels on the faces where active[f]. preference > 0: the face wants `true`, in units of area.
 /// Faces that clearly agree and meet without a crease are one node, which leaves a small graph with the same
-/// cut. All but the cut itself, and the numbering of its nodes, runs on all threads.
+/// cut. Faces are cut in blocks, with all threads, before the blocks are: where a node would reach beyond its block it
+/// is several, which nothing separates.
 Result<Flags> cut_faces(const SurfaceModel& model, const FaceScene& scene, const Flags& active,
                         const std::vector<float>& preference, Progress& progress) {
   // Crease weight exp(-(max(0, -k - 0.2) / 0.25)), lambda 2 to 4.
@@ -45,6 +46,8 @@ Result<Flags> cut_faces(const SurfaceModel& model, const FaceScene& scene, const
   constexpr float kClear = 0.3f;    // preference per area
   constexpr double kUnits = 256.0;  // integer capacity per unit of area or length
   constexpr double kMostCost = 1 << 29;
+  constexpr std::int32_t kInseparable = 1 << 29;
+  constexpr int kBlockBits = 19;  // of a face number: layers of the surface
   const FaceGraph& graph = scene.graph;
   const std::uint32_t faces = graph.faces();
   /// The active faces across the sides of one, each pair once.
@@ -57,15 +60,18 @@ Result<Flags> cut_faces(const SurfaceModel& model, const FaceScene& scene, const
   const auto clear_side = [&](std::uint32_t f) {
     return preference[f] > kClear * graph.area[f] ? 1 : preference[f] < -kClear * graph.area[f] ? -1 : 0;
   };
+  const auto as_one = [&](std::uint32_t f, std::uint32_t g) {
+    const int side = clear_side(f);
+    return side != 0 && clear_side(g) == side && graph.curvature(f, g) > -kFlat;
+  };
   std::vector<std::uint32_t> node(faces, FaceGraph::kNone);
   {
     ConcurrentSets sets(faces);
     parallel_for(faces, kRoleGrain, [&](std::int64_t i) {
       const auto f = static_cast<std::uint32_t>(i);
-      const int side = active[f] ? clear_side(f) : 0;
-      if (side == 0) return;
+      if (!active[f] || clear_side(f) == 0) return;
       each_pair(f, [&](std::uint32_t g, std::uint32_t) {
-        if (clear_side(g) == side && graph.curvature(f, g) > -kFlat) sets.join(f, g);
+        if (f >> kBlockBits == g >> kBlockBits && as_one(f, g)) sets.join(f, g);
       });
     });
     if (progress.cancelled()) return cancelled_error();
@@ -74,9 +80,17 @@ Result<Flags> cut_faces(const SurfaceModel& model, const FaceScene& scene, const
       if (active[f]) node[f] = sets.root(f);
     });
   }
-  std::uint32_t nodes = 0;
-  for (std::uint32_t f = 0; f < faces; ++f)  // a root is the first face of its set
-    if (active[f]) node[f] = node[f] == f ? nodes++ : node[node[f]];
+  std::vector<std::uint32_t> block;            // of each node
+  for (std::uint32_t f = 0; f < faces; ++f) {  // a root is the first face of its set
+    if (!active[f]) continue;
+    if (node[f] == f) {
+      node[f] = static_cast<std::uint32_t>(block.size());
+      block.push_back(f >> kBlockBits);
+    } else {
+      node[f] = node[node[f]];
+    }
+  }
+  const auto nodes = static_cast<std::uint32_t>(block.size());
   std::vector<double> wish(nodes, 0.0);
   for (std::uint32_t f = 0; f < faces; ++f)
     if (active[f]) wish[node[f]] += static_cast<double>(preference[f]);
@@ -98,6 +112,10 @@ Result<Flags> cut_faces(const SurfaceModel& model, const FaceScene& scene, const
       if (!active[f]) continue;
       each_pair(f, [&](std::uint32_t g, std::uint32_t side) {
         if (node[g] == node[f]) return;
+        if (f >> kBlockBits != g >> kBlockBits && as_one(f, g)) {
+          here.push_back({node[f], node[g], kInseparable});
+          return;
+        }
         const float crease = std::exp(-std::max(0.0f, -graph.curvature(f, g) - kFlat) / kFall);
         const float length = side_length(model.mesh, f, side);
         here.push_back(
@@ -109,6 +127,7 @@ Result<Flags> cut_faces(const SurfaceModel& model, const FaceScene& scene, const
   for (const Edges& some : edges)
     for (const Edge& e : some) cut.add_edge(e.a, e.b, e.cost);
   edges = {};
+  cut.set_blocks(std::move(block), faces == 0 ? 0 : ((faces - 1) >> kBlockBits) + 1);
   DUBSAR_TRY(cut.solve(progress));
   Flags result(faces, 0);
   parallel_for(faces, kRoleGrain, [&](std::int64_t i) {
