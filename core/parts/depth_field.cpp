@@ -54,30 +54,74 @@ class LineTransform {
   std::vector<double> border_;
 };
 
-/// Mean of 2 * kBlur + 1 values along a line, ends clamped; twice gives a near-Gaussian.
-void box_blur_line(float* line, std::int64_t count, std::int64_t stride, std::vector<float>& copy) {
-  constexpr std::int64_t kBlur = 2;
-  copy.resize(static_cast<std::size_t>(count));
-  for (std::int64_t i = 0; i < count; ++i) copy[static_cast<std::size_t>(i)] = line[i * stride];
+/// The same for a line of 0 and kFar along x: to the nearest 0 on either side.
+void squares_to_nearest(float* line, std::int64_t count) {
+  std::int64_t zero = -1;
   for (std::int64_t i = 0; i < count; ++i) {
-    float sum = 0.0f;
-    for (std::int64_t j = -kBlur; j <= kBlur; ++j)
-      sum += copy[static_cast<std::size_t>(std::clamp<std::int64_t>(i + j, 0, count - 1))];
-    line[i * stride] = sum / (2 * kBlur + 1);
+    if (line[i] == 0.0f)
+      zero = i;
+    else if (zero >= 0)
+      line[i] = static_cast<float>(i - zero) * static_cast<float>(i - zero);
+  }
+  zero = -1;
+  for (std::int64_t i = count - 1; i >= 0; --i) {
+    if (line[i] == 0.0f)
+      zero = i;
+    else if (zero >= 0)
+      line[i] = std::min(line[i], static_cast<float>(zero - i) * static_cast<float>(zero - i));
   }
 }
 
-/// Calls visit(pointer, count, stride) for every line along each axis in turn, all threads.
-template <class MakeVisit>
-void each_line(const Dims& d, float* data, const MakeVisit& make_visit) {
+/// Squared distances to the points that are 0, of a field of 0 and kFar, all threads.
+void squares_to_nearest(const Dims& d, float* data) {
   parallel_for(d.z, 1, [&](std::int64_t z) {
-    auto visit = make_visit();
-    for (std::int64_t y = 0; y < d.y; ++y) visit(data + z * d.slice() + y * d.x, d.x, 1);
-    for (std::int64_t x = 0; x < d.x; ++x) visit(data + z * d.slice() + x, d.y, d.x);
+    LineTransform transform(d.y);
+    float* const slice = data + z * d.slice();
+    for (std::int64_t y = 0; y < d.y; ++y) squares_to_nearest(slice + y * d.x, d.x);
+    for (std::int64_t x = 0; x < d.x; ++x) transform(slice + x, d.y, d.x);
   });
   parallel_for(d.y, 1, [&](std::int64_t y) {
-    auto visit = make_visit();
-    for (std::int64_t x = 0; x < d.x; ++x) visit(data + y * d.x + x, d.z, d.slice());
+    LineTransform transform(d.z);
+    for (std::int64_t x = 0; x < d.x; ++x) transform(data + y * d.x + x, d.z, d.slice());
+  });
+}
+
+constexpr std::int64_t kBlur = 2;
+
+/// Each value is the mean of the five that are `step` apart in `from`, which has room for the first and the last.
+void mean_of_five(const float* from, std::int64_t step, std::int64_t count, float* to) {
+  for (std::int64_t i = 0; i < count; ++i) {
+    float sum = 0.0f;
+    for (std::int64_t k = 0; k <= 2 * kBlur; ++k) sum += from[i + k * step];
+    to[i] = sum / static_cast<float>(2 * kBlur + 1);
+  }
+}
+
+/// The rows of a plane, `pitch` apart, become means along the other axis, ends clamped.
+void blur_across(float* rows, std::int64_t pitch, std::int64_t length, std::int64_t count, std::vector<float>& copy) {
+  copy.resize(static_cast<std::size_t>((count + 2 * kBlur) * length));
+  for (std::int64_t i = 0; i < count + 2 * kBlur; ++i)
+    std::copy_n(rows + std::clamp<std::int64_t>(i - kBlur, 0, count - 1) * pitch, length, copy.data() + i * length);
+  for (std::int64_t i = 0; i < count; ++i) mean_of_five(copy.data() + i * length, length, length, rows + i * pitch);
+}
+
+/// Means of five along each axis in turn, ends clamped; twice gives a near-Gaussian. All threads.
+void box_blur(const Dims& d, float* data) {
+  parallel_for(d.z, 1, [&](std::int64_t z) {
+    std::vector<float> copy(static_cast<std::size_t>(d.x + 2 * kBlur));
+    float* const slice = data + z * d.slice();
+    for (std::int64_t y = 0; y < d.y; ++y) {
+      float* const row = slice + y * d.x;
+      std::copy_n(row, d.x, copy.data() + kBlur);
+      std::fill_n(copy.data(), kBlur, row[0]);
+      std::fill_n(copy.data() + kBlur + d.x, kBlur, row[d.x - 1]);
+      mean_of_five(copy.data(), 1, d.x, row);
+    }
+    blur_across(slice, d.x, d.x, d.y, copy);
+  });
+  parallel_for(d.y, 1, [&](std::int64_t y) {
+    std::vector<float> copy;
+    blur_across(data + y * d.x, d.slice(), d.x, d.z, copy);
   });
 }
 
@@ -113,19 +157,13 @@ Result<DepthField> DepthField::make(const BitVolume& inside, int seal_radius, Pr
         field.depth_[static_cast<std::size_t>(z * d.slice() + y * d.x + x)] = outside ? 0.0f : kFar;
       }
   });
-  const std::int64_t longest = std::max({d.x, d.y, d.z});
-  each_line(d, field.depth_.data(), [&] { return LineTransform(longest); });
+  squares_to_nearest(d, field.depth_.data());
   if (progress.cancelled()) return cancelled_error();
   parallel_for(d.count(), 1 << 16, [&](std::int64_t i) {
     float& v = field.depth_[static_cast<std::size_t>(i)];
     v = v >= kFar ? 0.0f : std::sqrt(v) * static_cast<float>(step);
   });
-  for (int pass = 0; pass < 2; ++pass)
-    each_line(d, field.depth_.data(), [] {
-      return [copy = std::vector<float>()](float* line, std::int64_t count, std::int64_t stride) mutable {
-        box_blur_line(line, count, stride, copy);
-      };
-    });
+  for (int pass = 0; pass < 2; ++pass) box_blur(d, field.depth_.data());
   return field;
 }
 

@@ -53,15 +53,25 @@ Bits blocks_with_surface(const SurfaceBricks& bricks) {
   return out;
 }
 
-/// Row (y, z) of `from` grown by one block on all sides, into `grown`.
-void grow_row(const Bits& from, int y, int z, std::uint64_t* grown, std::uint64_t* both) {
+/// The rows of slice z of `from`, each with those of the slices before and behind it.
+void join_slices(const Bits& from, int z, std::vector<std::uint64_t>& joined) {
+  const auto words = static_cast<std::size_t>(from.row_words * from.size.y);
+  joined.assign(words, 0);
+  for (int k = std::max(z - 1, 0); k <= std::min(z + 1, from.size.z - 1); ++k) {
+    const std::uint64_t* slice = from.row(0, static_cast<std::size_t>(k));
+    for (std::size_t w = 0; w < words; ++w) joined[w] |= slice[w];
+  }
+}
+
+/// Row y of such a slice, grown by one block on all sides, into `grown`.
+void grow_row(const Bits& from, const std::vector<std::uint64_t>& joined, int y, std::uint64_t* grown,
+              std::uint64_t* both) {
   const auto words = static_cast<std::size_t>(from.row_words);
   std::fill_n(both, words, 0);
-  for (int k = std::max(z - 1, 0); k <= std::min(z + 1, from.size.z - 1); ++k)
-    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, from.size.y - 1); ++j) {
-      const std::uint64_t* row = from.row(static_cast<std::size_t>(j), static_cast<std::size_t>(k));
-      for (std::size_t w = 0; w < words; ++w) both[w] |= row[w];
-    }
+  for (int j = std::max(y - 1, 0); j <= std::min(y + 1, from.size.y - 1); ++j) {
+    const std::uint64_t* row = joined.data() + from.row_words * j;
+    for (std::size_t w = 0; w < words; ++w) both[w] |= row[w];
+  }
   for (std::size_t w = 0; w < words; ++w) {
     const std::uint64_t left = w > 0 ? both[w - 1] >> 63 : 0, right = w + 1 < words ? both[w + 1] << 63 : 0;
     grown[w] = both[w] | both[w] << 1 | left | both[w] >> 1 | right;
@@ -87,10 +97,11 @@ Result<void> measure_away(SurfaceBricks& bricks, Progress& progress) {
   Bits next = now;
   for (int k = 0; k < SurfaceBricks::kMostAway; ++k) {
     if (progress.cancelled()) return cancelled_error();
-    parallel_chunks(std::int64_t{now.size.y} * now.size.z, 64, [&](std::int64_t begin, std::int64_t end) {
-      std::vector<std::uint64_t> grown(static_cast<std::size_t>(now.row_words)), both = grown;
-      for (std::int64_t line = begin; line < end; ++line) {
-        const auto y = static_cast<std::size_t>(line % now.size.y), z = static_cast<std::size_t>(line / now.size.y);
+    parallel_for(now.size.z, 1, [&](std::int64_t slice) {
+      const auto z = static_cast<std::size_t>(slice);
+      std::vector<std::uint64_t> grown(static_cast<std::size_t>(now.row_words)), both = grown, joined;
+      if (k > 0) join_slices(now, static_cast<int>(z), joined);
+      for (std::size_t y = 0; y < static_cast<std::size_t>(now.size.y); ++y) {
         const std::uint64_t* old = now.row(y, z);
         std::uint64_t* out = next.row(y, z);
         std::uint8_t* away = bricks.away.data() + (z / kEdge * bricks_y + y / kEdge) * bricks_x * kLine +
@@ -98,7 +109,7 @@ Result<void> measure_away(SurfaceBricks& bricks, Progress& progress) {
         if (k == 0)
           std::copy_n(old, now.row_words, grown.begin());
         else
-          grow_row(now, static_cast<int>(y), static_cast<int>(z), grown.data(), both.data());
+          grow_row(now, joined, static_cast<int>(y), grown.data(), both.data());
         for (std::size_t w = 0; w < grown.size(); ++w) {
           out[w] = grown[w];
           std::uint64_t fresh = k == 0 ? grown[w] : grown[w] & ~old[w];

@@ -165,8 +165,16 @@ void sort_by_place_and_side(std::span<const glm::vec3> positions, std::span<cons
     const auto side = 2 * static_cast<std::uint64_t>(axis) + (n[axis] < 0.0f ? 1 : 0);
     items[static_cast<std::size_t>(i)] = {(morton_code(box) << 3) | side, v};
   });
-  std::sort(items.begin(), items.end(),
-            [](const Item& a, const Item& b) { return a.key != b.key ? a.key < b.key : a.vertex < b.vertex; });
+  const auto before = [](const Item& a, const Item& b) { return a.key != b.key ? a.key < b.key : a.vertex < b.vertex; };
+  constexpr std::int64_t kParts = 8;  // sorted each, then merged in pairs
+  const auto count = static_cast<std::int64_t>(items.size());
+  const auto border = [&](std::int64_t part) { return items.begin() + part * count / kParts; };
+  parallel_for(kParts, 1, [&](std::int64_t part) { std::sort(border(part), border(part + 1), before); });
+  for (std::int64_t width = 1; width < kParts; width *= 2)
+    parallel_for(kParts / (2 * width), 1, [&](std::int64_t pair) {
+      const std::int64_t first = 2 * width * pair;
+      std::inplace_merge(border(first), border(first + width), border(first + 2 * width), before);
+    });
   for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = items[i].vertex;
 }
 

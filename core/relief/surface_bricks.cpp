@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -24,7 +25,7 @@ constexpr float kPiece = 1.3f;        // voxels: longer edges are split
 /// .023).
 constexpr float kFaceOn = 0.7f;
 constexpr int kMargin = 4;  // cells around the surface
-constexpr float kUnknown = std::numeric_limits<float>::max();
+constexpr float kFar = std::numeric_limits<float>::max();
 
 struct Box {
   glm::vec3 low{INFINITY}, high{-INFINITY};
@@ -50,28 +51,31 @@ BlockRange blocks_of(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
 /// face-on.
 class BlockCorners {
  public:
-  void clear() { nearest2_.fill(kUnknown); }
+  void clear() { nearest2_.fill(kFar); }
 
   /// A piece of a triangle about `middle` with unit normal `normal`, relative to the block.
   void add(glm::vec3 middle, glm::vec3 normal) {
     const glm::ivec3 cell(glm::floor(middle));
+    if (cell.x < -2 || cell.x > kCorners) return;
     const glm::ivec3 first = glm::max(cell - 1, glm::ivec3(0)), last = glm::min(cell + 2, glm::ivec3(kCorners - 1));
+    const int x = cell.x - 1;  // four corners at once, of which some may lie in the room beside the row
+    const Float4 dx = Float4{0.0f, 1.0f, 2.0f, 3.0f} + static_cast<float>(x) - middle.x;
     for (int z = first.z; z <= last.z; ++z)
       for (int y = first.y; y <= last.y; ++y) {
         const float dy = static_cast<float>(y) - middle.y, dz = static_cast<float>(z) - middle.z;
         const float square = dy * dy + dz * dz, height = dy * normal.y + dz * normal.z;
-        const std::size_t row = index(0, y, z);
-        for (int x = first.x; x <= last.x; ++x) {
-          const float dx = static_cast<float>(x) - middle.x;
-          const float distance = height + dx * normal.x;
-          const float far2 = square + dx * dx - kFaceOn * distance * distance;
-          const std::size_t i = row + static_cast<std::size_t>(x);
-          // Of pieces as near as each other the smaller distance counts, so that their order does not.
-          if (far2 < nearest2_[i] || (far2 == nearest2_[i] && distance < distance_[i])) {
-            nearest2_[i] = far2;
-            distance_[i] = distance;
-          }
-        }
+        const Float4 distance = height + dx * normal.x;
+        const Float4 far2 = square + dx * dx - kFaceOn * distance * distance;
+        const std::size_t i = index(x, y, z);
+        Float4 nearest2, known;
+        std::memcpy(&nearest2, &nearest2_[i], sizeof nearest2);
+        std::memcpy(&known, &distance_[i], sizeof known);
+        // Of pieces as near as each other the smaller distance counts, so that their order does not.
+        const auto nearer = (far2 < nearest2) | ((far2 == nearest2) & (distance < known));
+        nearest2 = nearer ? far2 : nearest2;
+        known = nearer ? distance : known;
+        std::memcpy(&nearest2_[i], &nearest2, sizeof nearest2);
+        std::memcpy(&distance_[i], &known, sizeof known);
       }
   }
 
@@ -95,19 +99,29 @@ class BlockCorners {
     }
   }
 
-  /// In steps; the corner must be known.
-  bool known(int x, int y, int z) const { return nearest2_[index(x, y, z)] < kUnknown; }
-  std::int8_t steps(int x, int y, int z) const {
-    const float steps = distance_[index(x, y, z)] * SurfaceBricks::kSteps;
-    return static_cast<std::int8_t>(std::lround(std::clamp(steps, -127.0f, 127.0f)));
+  /// Turns what was added into steps.
+  void finish() {
+    for (int z = 0; z < kCorners; ++z)
+      for (int y = 0; y < kCorners; ++y)
+        for (std::size_t i = index(0, y, z), end = i + kCorners; i < end; ++i)
+          steps_[i] = nearest2_[i] < kFar ? static_cast<std::int8_t>(std::lround(
+                                                std::clamp(distance_[i] * SurfaceBricks::kSteps, -127.0f, 127.0f)))
+                                          : kUnknown;
   }
+  static constexpr std::int8_t kUnknown = -128;
+  /// Of corners x and x + 1, once finished; in steps, or kUnknown.
+  const std::int8_t* steps(int x, int y, int z) const { return &steps_[index(x, y, z)]; }
 
  private:
+  typedef float Float4 __attribute__((vector_size(16)));
+  static constexpr int kRoom = 4, kRow = 24;  // numbers before a row, and from row to row
+  static_assert(kRoom >= 3 && kRoom + kCorners + 3 <= kRow);
   static std::size_t index(int x, int y, int z) {
-    return (static_cast<std::size_t>(z) * kCorners + static_cast<std::size_t>(y)) * kCorners +
-           static_cast<std::size_t>(x);
+    return static_cast<std::size_t>((z * kCorners + y) * kRow + x + kRoom);
   }
-  std::array<float, std::size_t{kCorners} * kCorners * kCorners> nearest2_{}, distance_{};
+  static constexpr std::size_t kNumbers = std::size_t{kCorners} * kCorners * kRow;
+  std::array<float, kNumbers> nearest2_{}, distance_{};
+  std::array<std::int8_t, kNumbers> steps_{};
 };
 
 /// What a block gives: its bricks with surface, by place (x first), and their cells.
@@ -119,12 +133,12 @@ struct BlockOut {
 
 /// Empty when the surface does not pass.
 bool corners_of_cell(const BlockCorners& block, int x, int y, int z, SurfaceBricks::Corners& out) {
+  for (int edge = 0; edge < 4; ++edge)
+    std::memcpy(&out[static_cast<std::size_t>(2 * edge)], block.steps(x, y + (edge & 1), z + (edge >> 1)), 2);
   int below = 0;
-  for (int i = 0; i < 8; ++i) {
-    const int cx = x + (i & 1), cy = y + (i >> 1 & 1), cz = z + (i >> 2);
-    if (!block.known(cx, cy, cz)) return false;
-    out[static_cast<std::size_t>(i)] = block.steps(cx, cy, cz);
-    below += out[static_cast<std::size_t>(i)] < 0;
+  for (const std::int8_t steps : out) {
+    if (steps == BlockCorners::kUnknown) return false;
+    below += steps < 0 ? 1 : 0;
   }
   return below != 0 && below != 8;
 }
@@ -264,6 +278,7 @@ class Builder {
           const glm::vec3 p = corner(t, 0) - low, q = corner(t, 1) - low, r = corner(t, 2) - low;
           work->add(p, q, r, glm::normalize(glm::cross(q - p, r - p)));
         }
+        work->finish();
         found.places.clear();
         found.bricks.clear();
         found.corners.clear();

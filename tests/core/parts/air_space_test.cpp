@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <random>
 
@@ -191,6 +193,55 @@ TEST(DepthField, DepthInABallIsTheDistanceToItsSurface) {
         }
         EXPECT_GT(glm::dot(field->inwards(p), -glm::normalize(d)), 0.97f);
       }
+  }
+}
+
+TEST(DepthField, ItIsTheDistanceToTheNearestPointOutsideAsMeansOfFiveLeaveItTwice) {
+  const Dims d{17, 11, 14}, wide{d.x + 2, d.y + 2, d.z + 2};  // one layer of exterior around the grid
+  std::mt19937 random(7);
+  const BitVolume bits = make_bits(d, [&](auto...) { return random_bit(random, 930); });
+  const BitVolume outside = flood_from_border(bits);
+  const auto count = static_cast<std::size_t>(wide.count());
+  const auto place = [&](std::size_t i) {
+    const auto n = static_cast<std::int64_t>(i);
+    return std::array<std::int64_t, 3>{n % wide.x, n / wide.x % wide.y, n / wide.slice()};
+  };
+  std::vector<bool> open(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [x, y, z] = place(i);
+    const bool around = x == 0 || y == 0 || z == 0 || x > d.x || y > d.y || z > d.z;
+    open[i] = around || outside.get(x - 1, y - 1, z - 1);
+  }
+  std::vector<double> expected(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::int64_t least = 1 << 30;
+    for (std::size_t j = 0; j < count; ++j) {
+      if (!open[j]) continue;
+      const auto a = place(i), b = place(j);
+      least = std::min(least,
+                       (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+    }
+    expected[i] = std::sqrt(static_cast<double>(least));
+  }
+  const std::array<std::int64_t, 3> size{wide.x, wide.y, wide.z}, stride{1, wide.x, wide.slice()};
+  for (std::size_t turn = 0; turn < 6; ++turn) {
+    const std::size_t axis = turn % 3;
+    const std::vector<double> before = expected;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::int64_t here = place(i)[axis];
+      expected[i] = 0.0;
+      for (std::int64_t k = -2; k <= 2; ++k)
+        expected[i] += before[i + static_cast<std::size_t>(
+                                      (std::clamp<std::int64_t>(here + k, 0, size[axis] - 1) - here) * stride[axis])] /
+                       5.0;
+    }
+  }
+  SilentProgress progress;
+  const auto field = DepthField::make(bits, 0, progress);
+  ASSERT_TRUE(field.has_value());
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [x, y, z] = place(i);
+    EXPECT_NEAR(field->depth(glm::vec3(x - 1, y - 1, z - 1)), expected[i], 1e-4) << x << " " << y << " " << z;
   }
 }
 
