@@ -38,8 +38,9 @@ class ShapeCode {
     if (step == 0) return 0;
     const int shape_mean = shapes == 0 ? 18 : (2 * shape_sum + shapes / 2) / shapes;  // 0..16
     const int apart = shapes < 2 ? 0 : std::min(3, std::abs(latest - before));
-    const std::uint32_t shape = shapes_[static_cast<std::size_t>(shape_mean * 4 + apart)].code(
-        coder, values[v] == 0 ? 0u : static_cast<std::uint32_t>((values[v] - 1) % 9));
+    const std::uint32_t shape =
+        shapes_[static_cast<std::size_t>(shape_mean) * 4 + static_cast<std::size_t>(apart)].code(
+            coder, values[v] == 0 ? 0u : static_cast<std::uint32_t>((values[v] - 1) % 9));
     return static_cast<std::uint8_t>(1 + 9 * (step - 1) + shape);
   }
 

@@ -37,7 +37,7 @@ class LevelsAround {
       const Four known{at(quad[0]), at(quad[1]), at(quad[2]), at(quad[3])};
       const Four ids{quad[0], quad[1], quad[2], quad[3]};
       // The share of all is 2; the one opposite to v, which itself counts nothing, has 1 too many.
-      const Four opposite = __builtin_shuffle(known, Four{2, 3, 0, 1}) & static_cast<Four>(ids == v);
+      const Four opposite = __builtin_shufflevector(known, known, 2, 3, 0, 1) & static_cast<Four>(ids == v);
       sums += 2 * (known & kSums) - (opposite & kSums);
       const Bytes a = reinterpret_cast<Bytes>(extremes), b = reinterpret_cast<Bytes>(known);
       extremes = reinterpret_cast<Four>(a > b ? a : b);

@@ -141,7 +141,7 @@ void fill_normals(const QuadMesh& mesh, std::int64_t begin, std::int64_t end, fl
     std::memcpy(to, rows, batch.count * 4 * sizeof(float));
     for (std::uint32_t rest = batch.doubled; rest != 0; rest &= rest - 1) {
       const auto l = static_cast<std::uint32_t>(__builtin_ctz(rest));
-      polygon_normal(mesh, batch.first + l, to + 4 * l);
+      polygon_normal(mesh, batch.first + l, to + 4 * std::size_t{l});
     }
   }
 }
