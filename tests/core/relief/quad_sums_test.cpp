@@ -109,7 +109,8 @@ TEST(QuadSums, TheMedianOverVerticesIsTheOneOverListsOfNeighbours) {
 TEST(QuadSums, AFewPassesOverASmoothSurfaceAreTheOnesOverLists) {
   Volume<float> volume({60, 50, 40});
   for (std::int64_t i = 0; i < volume.dims.count(); ++i) {
-    const double x = double(i % 60), y = double(i / 60 % 50), z = double(i / 3000);
+    const std::int64_t row = i / 60, slice = row / 50;
+    const double x = double(i % 60), y = double(row % 50), z = double(slice);
     volume.voxels[i] = static_cast<float>(std::sin(.31 * x) + std::sin(.27 * y + 1.0) + std::sin(.23 * z));
   }
   VolumeSource source(volume);
