@@ -28,12 +28,22 @@ fs::path file_of(const std::string& text) {
   return colon == std::string::npos ? text : text.substr(0, colon);
 }
 
-/// By device and inode where both exist, else by name with links and ".." resolved.
+/// The one name of a file, there or not: whole, without "." and "..", and behind links, also those that lead nowhere
+/// yet.
+fs::path whole_name(fs::path path) {
+  std::error_code error;
+  path = fs::weakly_canonical(fs::absolute(path, error), error);
+  for (int links = 0; links < 40 && fs::is_symlink(path, error); ++links)
+    path = fs::weakly_canonical(path.parent_path() / fs::read_symlink(path, error), error);
+  return path;
+}
+
+/// By device and inode where both exist, else by name.
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error) && !error) return true;
-  const fs::path left = fs::weakly_canonical(a, error), right = fs::weakly_canonical(b, error);
-  return !error && left == right;
+  const fs::path left = whole_name(a);
+  return !left.empty() && left == whole_name(b);
 }
 
 Result<void> check_place(const FileUse& file) {

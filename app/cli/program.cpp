@@ -6,9 +6,11 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <span>
 
 #include "app/cli/console_progress.h"
 #include "app/cli/error_json.h"
+#include "app/cli/file_uses.h"
 #include "core/base/atomic_file.h"
 #include "core/base/json_text.h"
 #include "core/base/parallel.h"
@@ -60,6 +62,8 @@ Result<void> deliver(const VerbResult& result, const CommonOptions& common) {
   if (common.json_path == "-") return print(dump_json_lines(result.json) + "\n");
   DUBSAR_TRY(print(plain_text(result.text, true)));
   if (common.json_path.empty()) return {};
+  const FileUse report{"--json", common.json_path, true, FileFormat::kJson};
+  DUBSAR_TRY(check_file_uses(std::span(&report, 1)));  // once more: the verb may have written just there
   return write_file_atomically(common.json_path, dump_json_lines(result.json) + "\n");
 }
 

@@ -8,9 +8,8 @@
 namespace dubsar::app {
 
 inline constexpr const char* kExitCodes =
-    "Exit codes: 0 done, 64 usage, 65 bad data, 66 no input, 69 device missing, 70 internal, 73 cannot create, 74 I/O "
-    "or "
-    "disk full, 75 try again, 77 permission, 78 bad profile, 130 cancelled.";
+    "Exit codes: 0 done, 64 usage, 65 bad data, 66 no input, 69 device missing, 70 internal, 73 cannot create, "
+    "74 I/O or disk full, 75 try again, 77 permission, 78 bad profile, 130 cancelled.";
 
 /// The program without verbs yet.
 Arguments begin_program();

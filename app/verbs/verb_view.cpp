@@ -130,6 +130,7 @@ Result<ViewOptions> view_options(const ViewRequest& options) {
     DUBSAR_ASSIGN(view.mapping, parse_mapping(text, options.people.mapping));
   }
   DUBSAR_ASSIGN(view.inputs, source_texts(options));
+  DUBSAR_TRY(check_record(options.made.record, view.inputs));
   DUBSAR_TRY(add_panels(options, view));
   if (!options.people.steps.empty()) {
     DUBSAR_ASSIGN(const std::string steps, read_text_file(options.people.steps));

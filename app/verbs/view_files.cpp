@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "app/cli/config_folder.h"
+#include "app/cli/file_uses.h"
 #include "app/cli/mesh_input.h"
 #include "app/document/document_file.h"
 #include "app/document/file_kinds.h"
@@ -14,6 +15,7 @@
 #include "core/exa/exa_file.h"
 #include "core/parts/surface_model.h"
 #include "core/volume/import.h"
+#include "input/source_spec.h"
 
 namespace dubsar::app {
 namespace {
@@ -97,6 +99,20 @@ Result<void> check_surface(const std::string& file, const std::vector<std::strin
   if (!std::ifstream(file).good()) return fail(ErrorKind::kPermission, "{}: it may not be read", file);
   if (lower_suffix(file) == ".exa") DUBSAR_TRY(read_exa_info(file));
   return check_parts(file, partitions);
+}
+
+Result<void> check_record(const std::string& record, const std::vector<std::string>& sources) {
+  if (record.empty()) return {};
+  std::vector<FileUse> files{{"--record", record, true}};
+  for (const std::string& text : sources) {
+    DUBSAR_ASSIGN(const SourceSpec source, parse_source(text));
+    for (const Option& option : source.options) {
+      std::error_code ignored;
+      const std::string& word = option.value ? *option.value : option.key;
+      if (std::filesystem::is_regular_file(word, ignored)) files.push_back({"--input", word});
+    }
+  }
+  return check_file_uses(files);
 }
 
 }  // namespace dubsar::app

@@ -29,4 +29,8 @@ Result<std::optional<ImportOptions>> asked_scan(const std::string& scan, const I
 /// EXA file.
 Result<void> check_surface(const std::string& file, const std::vector<std::string>& partitions);
 
+/// The file of --record (empty: none) is none that these sources read, as replay:FILE does. kUsage; errors of
+/// check_file_uses().
+Result<void> check_record(const std::string& record, const std::vector<std::string>& sources);
+
 }  // namespace dubsar::app

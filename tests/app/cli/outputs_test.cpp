@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/atomic_file.h"
+#include "core/exa/container.h"
 #include "tests/app/cli/run_program.h"
 
 namespace dubsar::test {
@@ -64,6 +65,47 @@ TEST_F(Outputs, TheScanThatIsReadIsNeverWrittenOver) {
 TEST_F(Outputs, OneFileIsNotWrittenTwice) {
   refused({"process", at("scan.h5"), "-o", at("a.exa"), "--json", at("a.exa")}, 64, "scan.h5", "the same file");
   EXPECT_FALSE(fs::exists(at("a.exa")));
+  // Neither is there yet, and each is said in another way.
+  fs::create_symlink("behind.exa", at("before.exa"));
+  fs::create_symlink("before.exa", at("before_that.exa"));
+  RunOptions here;
+  here.folder = folder();
+  for (const auto& [product, report] : {std::pair<std::string, std::string>{"b.exa", "./b.exa"},
+                                        {at("b.exa"), "b.exa"},
+                                        {"b.exa", at("./b.exa")},
+                                        {"before.exa", "behind.exa"},
+                                        {"behind.exa", "before_that.exa"},
+                                        {"before_that.exa", "./before.exa"}}) {
+    const ProgramRun run = run_dubsar({"process", "scan.h5", "-o", product, "--json", report, "--no-ao", "-q"}, here);
+    EXPECT_EQ(run.exit_code, 64) << product << " and " << report << "\n" << run.err;
+    EXPECT_THAT(run.err, HasSubstr("the same file"));
+  }
+  for (const char* name : {"b.exa", "behind.exa"}) EXPECT_FALSE(fs::exists(at(name))) << name;
+}
+
+// A verb may write more than what it is told: the surfaces of a folder of scans.
+TEST_F(Outputs, WhatAVerbMakesBesideIsNotWrittenOverByItsReport) {
+  fs::create_directory(at("scans"));
+  fs::create_directory(at("made"));
+  fs::copy_file(at("scan.h5"), at("scans/one.h5"));
+  const ProgramRun many = run_dubsar(
+      {"process", at("scans"), "-o", at("made"), "--json", at("made/one.exa"), "--detail", "half", "--no-ao", "-q"});
+  EXPECT_EQ(many.exit_code, 73) << many.err;
+  EXPECT_THAT(many.err, HasSubstr("one.exa exists and is a surface file"));
+  EXPECT_TRUE(bytes("made/one.exa").starts_with(kExaMagic));
+}
+
+TEST_F(Outputs, TheRecordingThatIsReplayedIsNotWrittenOver) {
+  const std::string script = at("visit.json"), old = at("old.jsonl");
+  ASSERT_TRUE(write_file_atomically(script, R"({"seed": 1, "duration_s": 1, "visitor": {"yaw_deg": 20}})"));
+  const auto view = [&](const std::string& input, const std::string& record) {
+    return std::vector<std::string>{"view", at("tablet.exa"), "--offscreen", "--size",   "64x48", "--seconds",
+                                    "0.2",  "--input",        input,         "--record", record};
+  };
+  ASSERT_EQ(run_dubsar(view("scripted:" + script, old)).exit_code, 0);
+  refused(view("replay:" + old, old), 64, "old.jsonl", "the file that is read as --input");
+  refused(view("scripted:" + script, script), 64, "visit.json", "the file that is read as --input");
+  refused(view("spacemouse:replay=" + old, old), 64, "old.jsonl", "the file that is read as --input");
 }
 
 TEST_F(Outputs, FilesOfAnotherKindStay) {

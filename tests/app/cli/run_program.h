@@ -20,6 +20,7 @@ struct RunOptions {
   long file_size_limit = -1;  ///< RLIMIT_FSIZE in bytes
   double timeout_s = 120.0;   ///< then the program is killed
   std::string out{};          ///< a file or device for stdout; empty: it is caught
+  std::string folder{};       ///< where it runs; empty: here
 };
 
 /// Runs the program `dubsar` of this build with `arguments`.
