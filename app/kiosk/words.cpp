@@ -67,8 +67,6 @@ constexpr std::array<Sentence, kLineCount> kSentences{{
      "De gauche à droite : la lumière latérale montre chaque coin d'un signe."},
 }};
 
-constexpr std::array<std::string_view, 3> kSpoken{"en", "de", "fr"};
-
 /// Letters, not bytes.
 std::size_t letters(std::string_view text) {
   return static_cast<std::size_t>(
@@ -83,8 +81,6 @@ bool is_language_code(std::string_view code) {
 }  // namespace
 
 std::string_view line_name(Line line) noexcept { return kSentences[static_cast<std::size_t>(line)].name; }
-
-std::span<const std::string_view> spoken_languages() noexcept { return kSpoken; }
 
 Words::Words() {
   for (const Sentence& sentence : kSentences) {

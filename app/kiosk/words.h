@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,9 +45,6 @@ inline constexpr std::size_t kLineCount = 25;
 
 /// Name of a line in files of words: "show_hand".
 std::string_view line_name(Line line) noexcept;
-
-/// Languages that the program speaks itself: en, de, fr.
-std::span<const std::string_view> spoken_languages() noexcept;
 
 /// Any thread once made.
 class Words {

@@ -30,8 +30,7 @@ struct InterfaceRings {
   IdLists added;  ///< those of them that were added, as indices into `mesh.added`
 
   InterfaceRings(const InterfaceMesh& mesh, std::uint32_t dual) {
-    std::vector<std::uint32_t> place(mesh.added.size() + 1,
-                                     0);  // first the corners at each vertex, then where they lie
+    std::vector<std::uint32_t> place(mesh.added.size() + 1);  // first the corners at each vertex, then where they lie
     for (const Triangle& t : mesh.triangles)
       for (const std::uint32_t v : t)
         if (v >= dual) place[v - dual + 1] += 2;

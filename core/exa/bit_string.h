@@ -58,8 +58,6 @@ class BitReader {
     }
     return n;
   }
-  /// To the next byte.
-  void to_byte() { bits(held_ % 8); }
   std::size_t bytes_used() const { return at_ - static_cast<std::size_t>(held_ / 8); }
   bool past_end() const { return bytes_used() > bytes_.size(); }
 

@@ -79,7 +79,6 @@ void ValueCounts::add(std::span<const float> values) {
         highest = std::max(highest, keys[i]);
       }
     }
-    nonfinite_ += bad;
     if (kept == 0) continue;
     min_ = std::min(min_, static_cast<float>(value_of(lowest)));
     max_ = std::max(max_, static_cast<float>(value_of(highest)));
@@ -121,7 +120,6 @@ void ValueCounts::merge(const ValueCounts& other) {
     for (std::size_t k = 0; k < mine.size(); ++k) mine[k] += other.count_at(i, k);
   }
   count_ += other.count_;
-  nonfinite_ += other.nonfinite_;
   min_ = std::min(min_, other.min_);
   max_ = std::max(max_, other.max_);
 }

@@ -20,14 +20,13 @@ namespace dubsar {
 /// a scan.
 class ValueCounts {
  public:
-  /// NaN and infinities are counted apart.
+  /// NaN and infinities are left out.
   void add(std::span<const float> values);
   /// Adds the counts of another one; the order of merging does not matter.
   void merge(const ValueCounts& other);
 
   std::int64_t count() const noexcept { return count_; }  ///< finite values
-  std::int64_t nonfinite() const noexcept { return nonfinite_; }
-  float min() const noexcept { return min_; }  ///< exact; +infinity while count() is 0
+  float min() const noexcept { return min_; }             ///< exact; +infinity while count() is 0
   float max() const noexcept { return max_; }
 
   struct Value {
@@ -47,7 +46,7 @@ class ValueCounts {
   Blocks<std::uint32_t> recent_ = Blocks<std::uint32_t>(1 << 16);  ///< half the size: more of them lie in the caches
   Blocks<std::int64_t> settled_ = Blocks<std::int64_t>(1 << 16);
   std::int64_t recent_count_ = 0;  ///< values in recent_
-  std::int64_t count_ = 0, nonfinite_ = 0;
+  std::int64_t count_ = 0;
   float min_ = std::numeric_limits<float>::infinity(), max_ = -std::numeric_limits<float>::infinity();
 };
 

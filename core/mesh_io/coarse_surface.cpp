@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/base/sort_unique.h"
 #include "core/mesh_io/text_scanner.h"
 
 namespace dubsar {
@@ -59,8 +60,7 @@ class Clusters {
   }
 
   std::optional<TriMesh> take() {
-    std::sort(triangles_.begin(), triangles_.end());
-    triangles_.erase(std::unique(triangles_.begin(), triangles_.end()), triangles_.end());
+    sort_unique(triangles_);
     if (triangles_.empty()) return std::nullopt;
     TriMesh out;
     for (std::size_t i = 0; i < sums_.size(); ++i)

@@ -7,6 +7,7 @@
 
 #include "core/base/disjoint_sets.h"
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 
 namespace dubsar {
 namespace {
@@ -70,8 +71,7 @@ std::vector<double> enclosed_volumes(const SurfaceModel& model, const FaceGraph&
   const std::vector<BorderSide> border = find_border(model, graph);
   std::vector<std::uint32_t> vertices;
   for (const BorderSide& side : border) vertices.push_back(side.from);
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  sort_unique(vertices);
   const auto place = [&](std::uint32_t v) {
     return static_cast<std::uint32_t>(std::lower_bound(vertices.begin(), vertices.end(), v) - vertices.begin());
   };

@@ -7,6 +7,7 @@
 
 #include "core/base/disjoint_sets.h"
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 #include "core/mesh/intersections.h"
 
 namespace dubsar {
@@ -20,11 +21,6 @@ constexpr float kSafe = 2.0f;  ///< of which this is left when it is moved: what
 
 TriangleBox together(const TriangleBox& a, const TriangleBox& b) {
   return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
-}
-
-void make_unique(std::vector<std::uint32_t>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
 }  // namespace
@@ -56,7 +52,7 @@ void PatchMoves::run(const CrossingPairs& pairs, std::span<std::uint8_t> moved, 
   for (const auto& pair : pairs)
     for (const std::uint32_t t : pair) mesh_.add_extras(t, work);
   for (int round = 0; round < kRounds && !work.empty(); ++round) {
-    make_unique(work);
+    sort_unique(work);
     Homes homes;
     const std::vector<Group> groups = far_apart(work, homes);
     std::vector<Outcome> outcomes(groups.size());
@@ -114,7 +110,7 @@ std::vector<PatchMoves::Group> PatchMoves::far_apart(const std::vector<std::uint
       groups.emplace_back();
     }
     number[i] = number[root];
-    groups[number[i]].vertices.push_back(work[i]);
+    groups[number[i]].push_back(work[i]);
   }
   for (auto& [key, owner] : homes) owner = number[owner];
   return groups;
@@ -123,7 +119,7 @@ std::vector<PatchMoves::Group> PatchMoves::far_apart(const std::vector<std::uint
 PatchMoves::Outcome PatchMoves::move_group(const Group& group, std::uint32_t number, const Homes& homes) {
   Outcome outcome;
   Around around;
-  for (const std::uint32_t v : group.vertices) {
+  for (const std::uint32_t v : group) {
     bool home = true;  // else it has come too far from where the group began: next round
     for_each_cube(star_box(v).grown(kSafe), kHomeCube, [&](std::int64_t key) {
       const auto owner = homes.find(key);
@@ -149,7 +145,7 @@ void PatchMoves::look_around(std::uint32_t v, Around& around) const {
   around.added.near(box, added);
   if (!added.empty()) {
     around.near.insert(around.near.end(), added.begin(), added.end());
-    make_unique(around.near);
+    sort_unique(around.near);
   }
   around.star.clear();
   around.boxes.clear();

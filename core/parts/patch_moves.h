@@ -51,10 +51,8 @@ class PatchMoves {
   void run(const CrossingPairs& pairs, std::span<std::uint8_t> moved, std::span<std::uint8_t> changed);
 
  private:
-  /// Vertices whose triangles are nowhere near those of other groups, rising, and the cubes that are theirs.
-  struct Group {
-    std::vector<std::uint32_t> vertices;
-  };
+  using Group =
+      std::vector<std::uint32_t>;  ///< vertices whose triangles are nowhere near those of other groups, rising
   using Homes = std::unordered_map<std::int64_t, std::uint32_t>;  ///< the group of a cube
 
   /// What lies around the star of a vertex, for one thread.

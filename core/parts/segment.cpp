@@ -8,6 +8,7 @@
 
 #include "core/base/log.h"
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 #include "core/parts/enclosure.h"
 #include "core/parts/face_roles.h"
 
@@ -216,8 +217,7 @@ void store_nested(SurfaceModel& model, const FaceScene& scene, const SegmentOpti
     if (core[components.of_face[f]] && scene.air[f] < FaceScene::kExterior &&
         (tablet_air.empty() || tablet_air.back() != scene.air[f]))
       tablet_air.push_back(scene.air[f]);
-  std::sort(tablet_air.begin(), tablet_air.end());
-  tablet_air.erase(std::unique(tablet_air.begin(), tablet_air.end()), tablet_air.end());
+  sort_unique(tablet_air);
   // The inner wall: whatever was cut from the tablet or the outer wall, and walls around the tablet's air. Of the other
   // components nothing is asked.
   std::vector<double> at_tablet_air(infos.size(), 0.0);

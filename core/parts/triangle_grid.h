@@ -1,7 +1,6 @@
 #pragma once
 // Which triangles are near? Boxes of triangles by cubes of the grid.
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <glm/common.hpp>
@@ -9,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/base/sort_unique.h"
 #include "core/mesh/tri_mesh.h"
 
 namespace dubsar {
@@ -108,8 +108,7 @@ class TriangleGrid {
       if (const auto cube = cubes_.find(key); cube != cubes_.end())
         found.insert(found.end(), cube->second.begin(), cube->second.end());
     });
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
+    sort_unique(found);
   }
 
  private:

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/volume/slab_source.h"
 
 namespace dubsar {

@@ -16,7 +16,8 @@ class Gatherer {
 
   /// Appends the entries of `face`, rising by face id, to `out`; returns how many.
   std::uint32_t append(std::uint32_t face, std::vector<std::uint32_t>& out) {
-    if (!mesh_.has_doubled(face) && append_few(face, out)) return static_cast<std::uint32_t>(few_);
+    const std::size_t before = out.size();
+    if (!mesh_.has_doubled(face) && append_few(face, out)) return static_cast<std::uint32_t>(out.size() - before);
     found_.clear();
     const auto visit = [&](std::uint32_t vertex) {
       for (const std::uint32_t other : mesh_.quads_of(vertex))
@@ -25,7 +26,6 @@ class Gatherer {
     const Polygon polygon = mesh_.polygon(face);
     for (int i = 0; i < polygon.size; ++i) visit(polygon.vertex[static_cast<std::size_t>(i)]);
     std::sort(found_.begin(), found_.end());
-    const std::size_t before = out.size();
     for (std::size_t i = 0; i < found_.size();) {
       std::size_t j = i + 1;
       while (j < found_.size() && found_[j] == found_[i]) ++j;
@@ -50,14 +50,12 @@ class Gatherer {
     std::fill(ids.begin() + static_cast<std::ptrdiff_t>(count), ids.end(), ~std::uint32_t{0});
     const std::size_t before = out.size();
     out.resize(before + kMergedIds);
-    few_ = merge_ids(ids.data(), count, out.data() + before);
-    out.resize(before + few_);
+    out.resize(before + merge_ids(ids.data(), count, out.data() + before));
     return true;
   }
 
   const QuadMesh& mesh_;
   std::vector<std::uint32_t> found_;
-  std::size_t few_ = 0;
 };
 
 /// Places by falling degree, equal ones in order.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/base/budget.h"
 #include "core/base/parallel.h"
 
 namespace dubsar {
@@ -16,22 +15,6 @@ Result<void> VolumeSource::read(std::int64_t z_begin, std::int64_t z_end, std::s
     std::copy(from + begin, from + end, out.begin() + begin);
   });
   return {};
-}
-
-Result<Volume<float>> read_all(SlabSource& source, Progress& progress, std::int64_t slab) {
-  const Dims dims = source.dims();
-  DUBSAR_TRY(check_memory("volume", static_cast<std::uint64_t>(dims.count()) * sizeof(float)));
-  Volume<float> volume(dims);
-  const std::int64_t preferred = std::max<std::int64_t>(1, source.preferred_height());
-  if (slab <= 0) slab = std::max<std::int64_t>(1, 32 / preferred) * preferred;
-  for (std::int64_t z = 0; z < dims.z; z += slab) {
-    if (progress.cancelled()) return cancelled_error();
-    const std::int64_t end = std::min(dims.z, z + slab);
-    const std::int64_t count = (end - z) * dims.slice();
-    DUBSAR_TRY(source.read(z, end, std::span(volume.row(0, z), static_cast<std::size_t>(count))));
-    progress.advance(count);
-  }
-  return volume;
 }
 
 }  // namespace dubsar

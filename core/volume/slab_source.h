@@ -6,7 +6,6 @@
 #include <memory>
 #include <span>
 
-#include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/volume/volume.h"
 
@@ -38,10 +37,5 @@ class VolumeSource final : public SlabSource {
   const Volume<float>* volume_;
   GridFrame frame_;
 };
-
-/// Reads everything into memory, in slabs of `slab` slices (0: about 32, a multiple of the source's
-/// preferred height); advances `progress` by voxels. kTryAgain when it does not
-/// fit, kCancelled when stopped.
-Result<Volume<float>> read_all(SlabSource& source, Progress& progress, std::int64_t slab = 0);
 
 }  // namespace dubsar

@@ -30,7 +30,6 @@ class ImuFusion {
     *this = {};
     bias_rad_s_ = bias;
   }
-  const glm::dvec3& bias_rad_s() const noexcept { return bias_rad_s_; }
 
  private:
   void learn_bias(const ImuSample& sample, double dt_s) noexcept;

@@ -64,36 +64,8 @@ double lens_position(const LensSheet& sheet, std::int64_t x, std::int64_t y, int
   return sheet.invert_views ? 1.0 - place : place;
 }
 
-double row_light(const LensSheet& sheet, std::int64_t y) noexcept {
-  const bool dimmed = (y % 2 == 0) == (sheet.fringe > 0.0);
-  return dimmed ? 1.0 - std::abs(sheet.fringe) : 1.0;
-}
-
 int nearest_view(double position, int views) noexcept {
   return std::clamp(static_cast<int>(std::floor(position * views)), 0, views - 1);
-}
-
-std::vector<ViewWeight> view_weights(double position, int views, ViewFilter filter, double sigma) {
-  const double exact = position * views;
-  const int near = nearest_view(position, views);
-  if (filter == ViewFilter::kNearest) return {{near, 1.0}};
-  if (filter == ViewFilter::kLinear) {
-    const int next = std::min(near + 1, views - 1);
-    const double mix = std::clamp(exact - near, 0.0, 1.0);
-    return {{near, 1.0 - mix}, {next, mix}};
-  }
-  const int reach = filter == ViewFilter::kGaussian3 ? 1 : 10;
-  const double width = sigma * views;  // in views
-  std::vector<ViewWeight> weights;
-  double sum = 0.0;
-  for (int view = std::max(0, near - reach); view <= std::min(views - 1, near + reach); ++view) {
-    const double distance = (view - exact) / width;
-    weights.push_back({view, std::exp(-0.5 * distance * distance)});
-    sum += weights.back().weight;
-  }
-  if (sum <= 0.0) return {{near, 1.0}};
-  for (ViewWeight& weight : weights) weight.weight /= sum;
-  return weights;
 }
 
 glm::dvec2 refraction_shift_mm(const LensOptics& lens, const glm::dvec3& eye_mm, const glm::dvec2& point_mm) noexcept {

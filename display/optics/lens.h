@@ -30,7 +30,10 @@ struct SubpixelLayout {
   glm::dvec2 offset_px(std::int64_t x, std::int64_t y, int channel) const noexcept;
 };
 
-/// How a fractional view position becomes a colour (vendor numbering 0..3).
+/// How a fractional view position becomes a colour (vendor numbering 0..3). Linear mixes the views floor(p) and
+/// floor(p)
+/// + 1; the Gaussians mix 3 and 21 views, view v lying at p = v, as the maker has it: half a view from where nearest
+/// has its middle.
 enum class ViewFilter : int { kNearest = 0, kLinear = 1, kGaussian3 = 2, kGaussian10 = 3 };
 
 /// A sheet in the terms of the shader: with u to the right and v up, both 0..1 over the whole panel, a subpixel lies at
@@ -42,7 +45,10 @@ struct LensSheet {
   double centre = 0.0;              ///< phase offset in periods
   bool invert_views = true;         ///< view order reversed across a lens
   SubpixelLayout subpixels;
-  double fringe = 0.0;  ///< row_light()
+  /// Coded colours are multiplied by 1 - |fringe| in every second row: the even ones from the bottom where it is above
+  /// 0, else the odd ones. Some panels of 15.6" and 8K carry such a figure, and the maker's own weave (HoloPlay SDK for
+  /// Unity) dims coded colours by it.
+  double fringe = 0.0;
 };
 
 /// What figures of lens sheets may be; beyond, a calibration is not believed. Known panels have 37 to 110 lenses an
@@ -63,7 +69,7 @@ struct LookingGlassFigures {
   bool flip_subpixels = false;  ///< blue first
   CellPattern pattern = CellPattern::kUniform;
   std::vector<SubpixelCell> cells;  ///< empty: plain RGB stripes
-  double fringe = 0.0;              ///< -1 to 1, row_light()
+  double fringe = 0.0;              ///< -1 to 1, as LensSheet::fringe
 };
 
 /// periods = pitch * width / dpi * cos(atan(1 / slope)); tilt = height / (width * slope); both signs as the vendor's.
@@ -76,26 +82,11 @@ int cell_index(CellPattern pattern, int cells, std::int64_t x, std::int64_t y) n
 /// inverted where the sheet inverts. A view index is floor(position * view_count).
 double lens_position(const LensSheet& sheet, std::int64_t x, std::int64_t y, int channel) noexcept;
 
-/// What the coded colours of a row of pixels are multiplied with, y from the bottom: 1 - |fringe| in even rows where
-/// fringe is above 0, in odd rows where it is below; 1 in the others. Some panels of 15.6" and 8K carry such a figure,
-/// and the maker's own weave (HoloPlay SDK for Unity) dims coded colours by it.
-double row_light(const LensSheet& sheet, std::int64_t y) noexcept;
-
 /// clamp(floor(position * views), 0, views - 1)
 int nearest_view(double position, int views) noexcept;
 
-struct ViewWeight {
-  int view;
-  double weight;
-};
 /// Width of the Gaussians in lens positions, as the maker has it.
 inline constexpr double kViewSigma = 0.01;
-
-/// Views that make up a subpixel and their weights (sum 1). `sigma` is the Gaussian's width in lens position units and
-/// is used by kGaussian3 (3 views) and kGaussian10 (21 views). Linear mixes the views floor(p) and floor(p) + 1 by the
-/// fraction, clamped at the ends; for both Gaussians, too, view v lies at p = v, as the maker has it: half a view from
-/// where kNearest has its middle.
-std::vector<ViewWeight> view_weights(double position, int views, ViewFilter filter, double sigma = kViewSigma);
 
 /// A sheet in the terms of optics, for eyes at known places (millimetres, panel frame: centre, x right, y up, z to
 /// the viewer).

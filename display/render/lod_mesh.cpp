@@ -137,18 +137,6 @@ Result<LodMesh> LodMesh::exact(const PackedMesh& mesh) {
   return out;
 }
 
-Result<LodMesh> LodMesh::with_levels(PackedMesh mesh) {
-  LodMesh out;
-  out.describe(mesh);
-  Result<void> added;
-  make_levels(std::move(mesh), [&](const PackedMesh& level, double cell_mm) {
-    added = out.add(level, cell_mm);
-    return added.has_value();
-  });
-  DUBSAR_TRY(std::move(added));
-  return out;
-}
-
 Result<LodMesh> LodMesh::growing(PackedMesh mesh) {
   LodMesh out;
   out.describe(mesh);

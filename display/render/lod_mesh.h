@@ -15,12 +15,11 @@ class LodMesh {
  public:
   /// The mesh as it is, alone. Errors of GpuMesh::upload.
   static Result<LodMesh> exact(const PackedMesh& mesh);
-  /// The mesh as it is, then by grids of 1/1024 to 1/64 of its longest side in steps of 1.41, each only when it has
-  /// less than 3/4 of the triangles of the one before. Takes the triangles' order from `mesh`.
-  static Result<LodMesh> with_levels(PackedMesh mesh);
-  /// A quick level of 1/90 of its longest side at once (small meshes: as they are); all that with_levels() has is made
-  /// in a thread of its own, which the first update() begins, so that nothing stands in the way of a first picture. It
-  /// comes in by update(), the mesh as it is first. Keeps a copy in memory until then.
+  /// A quick level of 1/90 of its longest side at once (small meshes: as they are). The rest is made in a thread of its
+  /// own, which the first update() begins, so that nothing stands in the way of a first picture, and comes in by
+  /// update(): the mesh as it is, its triangles in another order, then by grids of 1/1024 to 1/64 of its longest side
+  /// in steps of 1.41, each only when it has less than 3/4 of the triangles of the one before. Keeps a copy in memory
+  /// until then.
   static Result<LodMesh> growing(PackedMesh mesh);
 
   LodMesh();

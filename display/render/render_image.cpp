@@ -111,10 +111,4 @@ Result<Picture> render_picture(const TriMesh& mesh, const RenderOptions& options
   return renderer.render(options, progress);
 }
 
-Result<Image> render_image(const TriMesh& mesh, const RenderOptions& options) {
-  SilentProgress progress;
-  DUBSAR_ASSIGN(Picture picture, render_picture(mesh, options, progress));
-  return std::move(picture.image);
-}
-
 }  // namespace dubsar

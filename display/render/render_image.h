@@ -1,5 +1,5 @@
 #pragma once
-// One picture of a mesh, without a window: `dubsar render`, the fat-cross, tests.
+// One picture of a mesh, without a window: `dubsar render`, the fat-cross.
 
 #include <memory>
 #include <optional>
@@ -51,6 +51,5 @@ class PictureRenderer {
 
 /// One picture: makes a context, draws, and takes everything down again.
 Result<Picture> render_picture(const TriMesh& mesh, const RenderOptions& options, Progress& progress);
-Result<Image> render_image(const TriMesh& mesh, const RenderOptions& options);
 
 }  // namespace dubsar

@@ -83,7 +83,7 @@ Result<std::unique_ptr<OutputSink>> make_anaglyph_sink(SinkOptions options) {
   const bool right_first = options.eyes_swapped();
   std::vector<std::string_view> names;
   std::string known;
-  for (const AnaglyphVariant& variant : kVariants) {
+  for (const AnaglyphVariant& variant : anaglyph_variants()) {
     known += (names.empty() ? "one of: " : ", ") + std::string(variant.name);
     names.push_back(variant.name);
   }

@@ -31,7 +31,6 @@ class FieldCadence {
   /// The field for a picture that is handed to the driver at `at`, a turn(): that of the next beat.
   Field next(TimestampNs at) const noexcept;
 
-  std::int64_t beats() const noexcept { return beats_; }
   double period_ns() const noexcept { return period_ns_; }
 
  private:

@@ -12,6 +12,7 @@
 #include "display/render/context_egl.h"
 #include "display/render/lod_mesh.h"
 #include "display/render/multi_view.h"
+#include "tests/display/render/grown_mesh.h"
 
 namespace dubsar {
 namespace {
@@ -81,7 +82,7 @@ double psnr_db(const Image& a, const Image& b) {
 
 void with_options(benchmark::State& state, const MultiViewOptions& options) {
   const auto context = EglContext::create().value();
-  const LodMesh mesh = LodMesh::with_levels(tablet(state.range(1) * 1000)).value();
+  const LodMesh mesh = testing::grown_mesh(tablet(state.range(1) * 1000));
   const MeshScene scene(mesh, Shading());
   auto multi = MultiView::create(options).value();
   const auto views = views_of_panel(static_cast<int>(state.range(0)));
@@ -123,7 +124,7 @@ void DisplayEveryViewInstanced(benchmark::State& state) { with_options(state, {.
 void DisplayMakeLevels(benchmark::State& state) {
   const auto context = EglContext::create().value();
   const PackedMesh& mesh = tablet(state.range(0) * 1000);
-  for (auto _ : state) benchmark::DoNotOptimize(LodMesh::with_levels(mesh).value());
+  for (auto _ : state) benchmark::DoNotOptimize(testing::grown_mesh(mesh));
 }
 
 void sizes(benchmark::internal::Benchmark* bench) {

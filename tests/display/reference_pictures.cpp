@@ -40,6 +40,34 @@ std::uint8_t to_byte(double value) noexcept {
 
 }  // namespace
 
+double row_light(const LensSheet& sheet, std::int64_t y) noexcept {
+  const bool dimmed = (y % 2 == 0) == (sheet.fringe > 0.0);
+  return dimmed ? 1.0 - std::abs(sheet.fringe) : 1.0;
+}
+
+std::vector<ViewWeight> view_weights(double position, int views, ViewFilter filter, double sigma) {
+  const double exact = position * views;
+  const int near = nearest_view(position, views);
+  if (filter == ViewFilter::kNearest) return {{near, 1.0}};
+  if (filter == ViewFilter::kLinear) {
+    const int next = std::min(near + 1, views - 1);
+    const double mix = std::clamp(exact - near, 0.0, 1.0);
+    return {{near, 1.0 - mix}, {next, mix}};
+  }
+  const int reach = filter == ViewFilter::kGaussian3 ? 1 : 10;
+  const double width = sigma * views;  // in views
+  std::vector<ViewWeight> weights;
+  double sum = 0.0;
+  for (int view = std::max(0, near - reach); view <= std::min(views - 1, near + reach); ++view) {
+    const double distance = (view - exact) / width;
+    weights.push_back({view, std::exp(-0.5 * distance * distance)});
+    sum += weights.back().weight;
+  }
+  if (sum <= 0.0) return {{near, 1.0}};
+  for (ViewWeight& weight : weights) weight.weight /= sum;
+  return weights;
+}
+
 int interlace_parity(InterlacePattern pattern, int panel_x, int panel_y, int channel) noexcept {
   switch (pattern) {
     case InterlacePattern::kRows:

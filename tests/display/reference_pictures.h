@@ -2,6 +2,7 @@
 // What the sinks draw, computed pixel by pixel in double precision: slow and exact. Shaders are tested against these.
 
 #include <span>
+#include <vector>
 
 #include "core/image_io/image.h"
 #include "display/optics/weave.h"
@@ -11,6 +12,18 @@
 #include "display/sinks/quilt.h"
 
 namespace dubsar::testing {
+
+/// What the coded colours of a row of pixels are multiplied with, y from the bottom (LensSheet::fringe).
+double row_light(const LensSheet& sheet, std::int64_t y) noexcept;
+
+struct ViewWeight {
+  int view;
+  double weight;
+};
+
+/// Views that make up a subpixel at a place 0..1 across its lens, and their weights (sum 1); at the ends the views
+/// there are. `sigma` is the Gaussians' width in places across the lens.
+std::vector<ViewWeight> view_weights(double position, int views, ViewFilter filter, double sigma = kViewSigma);
 
 struct WeaveOptions {
   ViewFilter filter = ViewFilter::kLinear;

@@ -155,12 +155,6 @@ double sign_bits(const SignSamples& samples, const std::array<SignWeights, 7>& w
   return bits;
 }
 
-std::size_t sign_weight_count(std::size_t units) {
-  std::size_t count = 0;
-  for (const int phase : kSignPhases) count += (sign_taps(phase).size() + 2) * units + 3;
-  return count;
-}
-
 std::string sign_weights_text(const std::array<SignWeights, 7>& weights, std::size_t units, std::string_view name) {
   std::vector<int> numbers;
   for (const SignWeights& w : weights) {

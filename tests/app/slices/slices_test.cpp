@@ -15,6 +15,7 @@
 #include "core/volume/import.h"
 #include "core/volume/import_raw.h"
 #include "core/volume/slab_source.h"
+#include "tests/core/volume/read_all.h"
 #include "tests/display/test_meshes.h"
 
 namespace dubsar::app {
@@ -86,9 +87,8 @@ TEST(Slices, PixelsOfAPhantomAreTheTrilinearSamplesOfItsArray) {
   options.seed = random();
   SCOPED_TRACE(options.seed);
   const std::shared_ptr<const phantom::Phantom> phantom = phantom::Phantom::create(options).value();
-  SilentProgress silent;
   phantom::PhantomSource source(phantom);
-  const Volume<float> scan = read_all(source, silent).value();
+  const Volume<float> scan = testing::read_all(source).value();
   const glm::dvec3 voxel(0.31, 0.31, 0.31);
   const TriMesh nothing = testing::sphere(1.0f, 8, 16);
   SliceReader reader(nothing, [&]() -> Result<OpenedScan> {

@@ -8,6 +8,7 @@
 #include <random>
 #include <sstream>
 
+#include "core/exa/sign_brick.h"
 #include "core/exa/topology.h"
 #include "core/exa/training/sign_trainer.h"
 
@@ -24,6 +25,13 @@ BitVolume bumpy(unsigned seed) {
                   std::sin(.2 * double(x)) + std::sin(.17 * double(y)) + std::sin(.15 * double(z)) >
                       .1 * (double(random() % 1000) / 1000.0 - .5));
   return signs;
+}
+
+/// In a table: of each phase the weights of its taps, biases and out weights for each unit, and three biases.
+std::size_t sign_weight_count(std::size_t units) {
+  std::size_t count = 0;
+  for (const int phase : kSignPhases) count += (sign_taps(phase).size() + 2) * units + 3;
+  return count;
 }
 
 std::size_t numbers_behind(const std::string& text, const std::string& table) {

@@ -12,18 +12,19 @@
 #include "core/base/parallel.h"
 #include "core/filter/resample.h"
 #include "tests/core/filter/filter_oracle.h"
+#include "tests/core/volume/read_all.h"
 
 namespace dubsar {
 namespace {
 
 using oracle::make_volume;
-using oracle::read_in_slabs;
+using testing::read_all;
 
 Volume<float> denoised(const Volume<float>& v, const DenoiseOptions& options, std::int64_t height = 1000) {
   VolumeSource source(v);
   auto filter = make_denoised(source, options);
   EXPECT_TRUE(filter) << filter.error().message;
-  return read_in_slabs(**filter, height);
+  return read_all(**filter, height).value();
 }
 
 struct Case {
@@ -62,7 +63,7 @@ TEST(Denoise, EveryInstructionSetAgreesWithTheDefinitionAndWithTheOthers) {
   const Volume<float> v = make_volume({41, 5, 4}, [&](auto x, auto, auto) { return (x > 11 ? 5.0 : 0.0) + noise(); });
   VolumeSource source(v);
   HalfResolutionSource half(source);
-  const Volume<float> expected_half = read_in_slabs(half, 2);
+  const Volume<float> expected_half = read_all(half, 2).value();
   set_thread_count(1);
   const auto choose = [](std::int64_t targets) {
     hwy::SetSupportedTargetsForTest(targets);
@@ -89,7 +90,7 @@ TEST(Denoise, EveryInstructionSetAgreesWithTheDefinitionAndWithTheOthers) {
   for (std::int64_t left = all; left != 0; left &= left - 1) {
     choose(left & -left);
     HalfResolutionSource again(source);
-    const Volume<float> out = read_in_slabs(again, 2);
+    const Volume<float> out = read_all(again, 2).value();
     EXPECT_EQ(0, std::memcmp(out.voxels.data(), expected_half.voxels.data(), out.voxels.span().size_bytes()))
         << hwy::TargetName(left & -left);
   }
@@ -112,7 +113,7 @@ TEST(Denoise, WhatIsWantedIsTheSameToTheBitAsInTheWhole) {
       VolumeSource source(v);
       const auto filter = make_denoised(source, c.options, {&mask, reach});
       ASSERT_TRUE(filter) << filter.error().message;
-      const Volume<float> part = read_in_slabs(**filter, 4);
+      const Volume<float> part = read_all(**filter, 4).value();
       std::vector<Span> spans;
       for (std::int64_t z = 0; z < dims.z; ++z)
         for (std::int64_t y = 0; y < dims.y; ++y) {
@@ -268,7 +269,7 @@ TEST(Denoise, SignalToNoiseRisesByAtLeastTheFiguresOfThePaper) {
   };
   VolumeSource source(scan);
   HalfResolutionSource half(source);
-  const Volume<float> low_passed = read_in_slabs(half, 16);
+  const Volume<float> low_passed = read_all(half, 16).value();
   const Volume<float> once = denoised(low_passed, {.iterations = 1, .sigma = clay(low_passed).sigma});
   const Volume<float> twice = denoised(once, {.iterations = 1, .sigma = clay(once).sigma});
   // Correlation of the noise at lag 1 per axis is 8/18, at lag 2 it is 1/18: [1 2 1]/4 leaves this much variance.

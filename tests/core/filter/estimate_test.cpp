@@ -10,12 +10,13 @@
 #include "core/filter/mixture.h"
 #include "core/filter/resample.h"
 #include "tests/core/filter/filter_oracle.h"
+#include "tests/core/volume/read_all.h"
 
 namespace dubsar {
 namespace {
 
 using oracle::make_volume;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 struct Normal {
   double share, mean, sigma;
@@ -227,7 +228,7 @@ TEST(Estimate, TheDefaultThresholdLiesOnTheSurface) {
   });
   VolumeSource source(scan);
   HalfResolutionSource half(source);
-  Volume<float> v = oracle::read_in_slabs(half, 16);
+  Volume<float> v = testing::read_all(half, 16).value();
   SilentProgress silent;
   ASSERT_TRUE(denoise_in_place(v, {.sigma = estimates_of(v).sigma}, silent));
   // Mean distance of the isosurface from the wall in voxels of the resampled grid.

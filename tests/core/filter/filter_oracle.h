@@ -144,10 +144,4 @@ inline Moments moments(const Volume<float>& v, std::int64_t x_begin, std::int64_
   return {sum / count, std::sqrt(squares / count - sum / count * (sum / count))};
 }
 
-/// Reads a source in slabs of `height` slices.
-inline Volume<float> read_in_slabs(SlabSource& source, std::int64_t height) {
-  SilentProgress silent;
-  return read_all(source, silent, height).value();
-}
-
 }  // namespace dubsar::oracle

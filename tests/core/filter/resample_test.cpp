@@ -7,17 +7,18 @@
 
 #include "core/base/parallel.h"
 #include "tests/core/filter/filter_oracle.h"
+#include "tests/core/volume/read_all.h"
 
 namespace dubsar {
 namespace {
 
 using oracle::make_volume;
-using oracle::read_in_slabs;
+using testing::read_all;
 
 Volume<float> halved(const Volume<float>& v) {
   VolumeSource source(v);
   HalfResolutionSource half(source);
-  return read_in_slabs(half, half.dims().z);
+  return read_all(half, half.dims().z).value();
 }
 
 TEST(Resample, EveryAxisIsHalvedDownwardsAndTheFrameFollows) {
@@ -46,7 +47,7 @@ TEST(Resample, ALinearRampIsTheSameInInputCoordinates) {
   });
   VolumeSource source(v);
   HalfResolutionSource half(source);
-  const Volume<float> out = read_in_slabs(half, 3);
+  const Volume<float> out = read_all(half, 3).value();
   for (std::int64_t z = 0; z < out.dims.z; ++z)
     for (std::int64_t y = 0; y < out.dims.y; ++y)
       for (std::int64_t x = 0; x < out.dims.x; ++x) {
@@ -100,7 +101,7 @@ TEST(Resample, SlabHeightAndThreadsChangeNoBit) {
     for (const std::int64_t height : {1, 2, 5, 23}) {
       VolumeSource source(v);
       HalfResolutionSource half(source);
-      const Volume<float> out = read_in_slabs(half, height);
+      const Volume<float> out = read_all(half, height).value();
       EXPECT_EQ(0, std::memcmp(out.voxels.data(), expected.voxels.data(), out.voxels.span().size_bytes()))
           << threads << " threads, slabs of " << height;
     }
@@ -139,8 +140,7 @@ class BrokenSource final : public SlabSource {
 TEST(Resample, ErrorsOfTheSourceComeThrough) {
   BrokenSource source;
   HalfResolutionSource half(source);
-  SilentProgress silent;
-  const auto out = read_all(half, silent);
+  const auto out = read_all(half);
   ASSERT_FALSE(out);
   EXPECT_EQ(out.error().message, "broken");
 }

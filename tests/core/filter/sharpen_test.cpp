@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "tests/core/volume/read_all.h"
 
 namespace dubsar {
 namespace {
@@ -22,8 +23,7 @@ Volume<float> make(Dims dims, const std::function<double(double, double, double)
 Volume<float> sharpened(const Volume<float>& volume, float amount, std::int64_t slab) {
   VolumeSource source(volume);
   const std::unique_ptr<SlabSource> sharp = make_sharpened(source, amount);
-  SilentProgress progress;
-  return read_all(*sharp, progress, slab).value();
+  return testing::read_all(*sharp, slab).value();
 }
 
 TEST(Sharpen, ConstantsAndRampsStayAsTheyAre) {

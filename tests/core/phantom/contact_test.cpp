@@ -8,6 +8,7 @@
 
 #include "core/phantom/phantom_source.h"
 #include "core/phantom/write_phantom.h"
+#include "tests/core/volume/read_all.h"
 
 namespace dubsar::phantom {
 namespace {
@@ -26,8 +27,7 @@ std::shared_ptr<const Phantom> make(const PhantomOptions& options) { return Phan
 
 Volume<float> scan(const std::shared_ptr<const Phantom>& phantom) {
   PhantomSource source(phantom);
-  SilentProgress progress;
-  return read_all(source, progress).value();
+  return dubsar::testing::read_all(source).value();
 }
 
 float value(const Volume<float>& volume, const glm::dvec3& p) {

@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/filter/resample.h"
 #include "core/phantom/write_phantom.h"
+#include "tests/core/volume/read_all.h"
 
 namespace dubsar::phantom {
 namespace {
@@ -23,8 +24,7 @@ std::shared_ptr<const Phantom> make(Dims dims, std::uint64_t seed, double snr_db
 
 Volume<float> scan(const std::shared_ptr<const Phantom>& phantom, std::int64_t slab) {
   PhantomSource source(phantom);
-  SilentProgress progress;
-  return read_all(source, progress, slab).value();
+  return dubsar::testing::read_all(source, slab).value();
 }
 
 TEST(PhantomScan, SameBytesForAnyThreadsAndSlabs) {
@@ -80,8 +80,7 @@ TEST(PhantomScan, IsAsNoisyAsAskedForWhateverItsBlur) {
     options.blur_vox = blur;
     const auto phantom = std::shared_ptr<const Phantom>(Phantom::create(options).value());
     PhantomSource source(phantom);
-    SilentProgress progress;
-    const Volume<float> raw = read_all(source, progress).value();
+    const Volume<float> raw = dubsar::testing::read_all(source).value();
     EXPECT_NEAR(measure(raw, *phantom, source.frame(), 2).snr_db, 17.0, 0.3) << blur;
   }
 }
@@ -89,14 +88,13 @@ TEST(PhantomScan, IsAsNoisyAsAskedForWhateverItsBlur) {
 TEST(PhantomScan, ClayAirAndNoiseAreThoseOfThePaper) {
   const auto phantom = make({192, 102, 177}, 1, 17.0);
   PhantomSource source(phantom);
-  SilentProgress progress;
-  const Volume<float> raw = read_all(source, progress).value();
+  const Volume<float> raw = dubsar::testing::read_all(source).value();
   const Statistics before = measure(raw, *phantom, source.frame(), 2);
   EXPECT_NEAR(before.clay_mean, 0.0017, 0.0017 * 0.002);
   EXPECT_NEAR(before.air_mean, 0.0, 0.0017 * 0.002);
   EXPECT_NEAR(before.snr_db, 17.0, 0.3);
   HalfResolutionSource half(source);
-  const Volume<float> resampled = read_all(half, progress).value();
+  const Volume<float> resampled = dubsar::testing::read_all(half).value();
   EXPECT_NEAR(measure(resampled, *phantom, half.frame(), 1).snr_db, 23.0, 0.7);
 }
 

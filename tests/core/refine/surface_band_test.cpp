@@ -9,6 +9,7 @@
 #include "core/extract/extract.h"
 #include "core/filter/resample.h"
 #include "core/phantom/phantom_source.h"
+#include "tests/core/volume/read_all.h"
 
 namespace dubsar {
 namespace {
@@ -21,9 +22,8 @@ Volume<float> scan_of(Dims dims, std::uint64_t seed, double snr_db) {
   wanted.dims = dims;
   wanted.seed = seed;
   wanted.snr_db = snr_db;
-  SilentProgress progress;
   phantom::PhantomSource source(phantom::Phantom::create(wanted).value());
-  return read_all(source, progress).value();
+  return testing::read_all(source).value();
 }
 
 BandFilters filters_for(double snr_db, float sharpen) {
@@ -61,9 +61,8 @@ TEST(SurfaceBand, ItsSurfaceIsThatOfTheWholeScanByteForByte) {
     const Volume<float> scan = scan_of({150, 81, 131}, seed, snr);
     const BandFilters filters = filters_for(snr, sharpen);
     VolumeSource source(scan);
-    SilentProgress progress;
     FilteredScan all = FilteredScan::make(source, filters, {}).value();
-    Volume<float> whole = read_all(all, progress).value();
+    Volume<float> whole = testing::read_all(all).value();
     SurfaceBand band = band_of(scan, filters);
     EXPECT_EQ(band.report.cut, 0);
     EXPECT_LT(band.report.share, 0.8);
@@ -127,9 +126,9 @@ TEST(SurfaceBand, ConstantsStandWhereNothingIsFiltered) {
   const NearSurface surface =
       mark_near_surface(half, scan.dims, {kThreshold, 0.1f * phantom::kClayDensity, 4}, progress).value();
   FilteredScan all = FilteredScan::make(source, filters, {}).value();
-  const Volume<float> whole = read_all(all, progress).value();
+  const Volume<float> whole = testing::read_all(all).value();
   BandSource some = BandSource::make(source, filters, surface, 7, kOutside).value();
-  const Volume<float> part = read_all(some, progress).value();
+  const Volume<float> part = testing::read_all(some).value();
   std::int64_t filtered = 0;
   for (std::int64_t z = 0; z < scan.dims.z; ++z)
     for (std::int64_t y = 0; y < scan.dims.y; ++y) {

@@ -10,6 +10,8 @@
 
 namespace dubsar {
 namespace {
+using testing::row_light;
+using testing::view_weights;
 using testing::weave_views;
 
 LookingGlassFigures go() {

@@ -13,6 +13,7 @@
 #include "display/render/lod.h"
 #include "display/render/lod_mesh.h"
 #include "display/render/multi_view.h"
+#include "tests/display/render/grown_mesh.h"
 #include "tests/display/test_meshes.h"
 
 namespace dubsar {
@@ -29,7 +30,7 @@ class InstalmentsGl : public ::testing::Test {
     context_ = std::move(*made);
     PackedMesh mesh = pack_mesh(testing::sphere(25, 150, 300)).value();
     sort_into_chunks(mesh);
-    mesh_ = std::make_unique<LodMesh>(LodMesh::with_levels(std::move(mesh)).value());
+    mesh_ = std::make_unique<LodMesh>(testing::grown_mesh(std::move(mesh)));
   }
   static View view(double aside_mm) {
     const Screen screen{

@@ -13,6 +13,7 @@
 #include "display/render/lod_mesh.h"
 #include "display/render/render_image.h"
 #include "display/render/renderer.h"
+#include "tests/display/render/grown_mesh.h"
 #include "tests/display/test_meshes.h"
 
 namespace dubsar {
@@ -31,9 +32,10 @@ RenderOptions front(const Shading& shading) {
 }
 
 Image picture(const TriMesh& mesh, const Shading& shading) {
-  const auto made = render_image(mesh, front(shading));
+  SilentProgress silent;
+  const auto made = render_picture(mesh, front(shading), silent);
   EXPECT_TRUE(made) << made.error().message;
-  return made ? *made : Image(1, 1, 3);
+  return made ? made->image : Image(1, 1, 3);
 }
 
 Shading preset(std::string_view name) { return shading_preset(name).value(); }
@@ -70,7 +72,8 @@ TEST(Blend, IsTheMeanOfBothInLinearLight) {
   both.other.share = 1.0;
   EXPECT_EQ(picture(mesh, both).pixels, second.pixels);
   both.other.share = 1.1;
-  EXPECT_EQ(render_image(mesh, front(both)).error().kind, ErrorKind::kUsage);
+  SilentProgress silent;
+  EXPECT_EQ(render_picture(mesh, front(both), silent).error().kind, ErrorKind::kUsage);
 }
 
 /// White clay that only a light from the eye falls on.
@@ -192,7 +195,7 @@ TEST(FigureColours, EndsOfTheScalesAreToldApartByEveryEye) {
 TEST(FigureColours, EveryLevelOfDetailCarriesThem) {
   const auto context = EglContext::create().value();
   const TriMesh mesh = ball();
-  LodMesh levels = LodMesh::with_levels(pack_mesh(mesh).value()).value();
+  LodMesh levels = testing::grown_mesh(pack_mesh(mesh).value());
   SilentProgress progress;
   Shading shading = preset("mean-curvature");
   ASSERT_TRUE(carry_fields(levels, mesh, fields_needed(shading.style), progress));

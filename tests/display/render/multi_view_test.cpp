@@ -13,6 +13,7 @@
 #include "display/render/context_egl.h"
 #include "display/render/lod.h"
 #include "display/render/lod_mesh.h"
+#include "tests/display/render/grown_mesh.h"
 #include "tests/display/test_meshes.h"
 
 namespace dubsar {
@@ -78,7 +79,7 @@ TEST_F(MultiViewGl, CullingNeverChangesThePicture) {
 
 TEST_F(MultiViewGl, CoarseWhileMovingExactWhenStill) {
   const PackedMesh mesh = pack_mesh(testing::sphere(25, 150, 300)).value();
-  const LodMesh levels = LodMesh::with_levels(mesh).value(), whole = LodMesh::exact(mesh).value();
+  const LodMesh levels = testing::grown_mesh(mesh), whole = LodMesh::exact(mesh).value();
   ASSERT_GE(levels.levels(), 2);
   for (int i = 1; i < levels.levels(); ++i) EXPECT_LT(levels.triangles(i), levels.triangles(i - 1));
   EXPECT_EQ(levels.level_for(1e-6), 0) << "details are kept when they can be seen";
@@ -111,7 +112,7 @@ TEST_F(MultiViewGl, CoarseWhileMovingExactWhenStill) {
 }
 
 TEST_F(MultiViewGl, WithABudgetThingsGetCoarserUntilItIsKeptAndNeverBeyond) {
-  const LodMesh levels = LodMesh::with_levels(pack_mesh(testing::sphere(25, 400, 800)).value()).value();
+  const LodMesh levels = testing::grown_mesh(pack_mesh(testing::sphere(25, 400, 800)).value());
   const MeshScene scene(levels, Shading());
   const auto wanted = views(4);
   const auto picture = [&](const MultiViewOptions& options, int pictures) {
@@ -159,7 +160,7 @@ TEST_F(MultiViewGl, AMillionTrianglesFrom48PlacesAreDrawnAtLeastFiveTimesFasterT
     loop = seconds([&] { ASSERT_TRUE(renderer.render(scene, std::span(wanted).first(kSample), 1, array)); }) * kViews /
            kSample;
   }
-  const LodMesh levels = LodMesh::with_levels(std::move(mesh)).value();
+  const LodMesh levels = testing::grown_mesh(std::move(mesh));
   const MeshScene scene(levels, Shading());
   auto multi = MultiView::create().value();
   const double moving = seconds([&] { ASSERT_TRUE(multi.draw_moving(scene, wanted, array)); });

@@ -28,6 +28,8 @@ using testing::anaglyph_views;
 using testing::interlace_views;
 using testing::make_quilt;
 using testing::pack_views;
+using testing::row_light;
+using testing::view_weights;
 using testing::weave_tracked;
 using testing::weave_views;
 
