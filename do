@@ -41,7 +41,8 @@ usage() {
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
 ./do glb FILE...  the Khronos validator over GLB files (fetches it with npm)
 ./do asan     the tests under AddressSanitizer and UndefinedBehaviorSanitizer, windows and pictures too; asan core devices
-              input display app: of these rooms only; and what ctest takes, as asan devices -R Vrpn
+              input display app program: of these only (program: what runs dubsar itself); asan turn: the part that CI
+              takes at this revision; and what ctest takes, as asan devices -R Vrpn
 ./do tsan     devices and inputs under ThreadSanitizer (clang)
 ./do core     build and test the core alone, no graphics, no devices: build/core/app/dubsar has process, info, exa, phantom
 ./do lint     is every source formatted, and clang-tidy over what changed since the last commit (or since REVISION)
@@ -108,17 +109,44 @@ lab() {
   tests/lab/run_in_kernel.sh "$PWD/$build/tests/lab/test_lab" "$@"
 }
 
-# The cases of `test`, less those that need a kernel of their own or most of an hour. asan ROOM...: of these folders of tests/ only; a
-# pattern of names for ctest may follow, as `-R Leap`.
+# What the sanitized suite is made of: folders of tests/, those of app/ that run the program apart, every second case at a time. CI takes
+# one line a revision, as each takes two cores about a quarter of an hour from nothing.
+sanitized_parts=(
+  "core"
+  "devices input"
+  "display"
+  "app"
+  "program -I 1,,2"
+  "program -I 2,,2"
+)
+
+# The part whose turn it is: one revision after the other; by the revision's name where the checkout does not know how many came before.
+part_of_revision() {
+  local count
+  if [ "$(git rev-parse --is-shallow-repository 2>/dev/null)" = false ]; then
+    count=$(git rev-list --count HEAD)
+  else
+    count=$((16#$(git rev-parse --short=7 HEAD 2>/dev/null || echo 0)))
+  fi
+  echo "${sanitized_parts[count % ${#sanitized_parts[@]}]}"
+}
+
+# The cases of `test`, less those that need a kernel of their own, a preloaded library or most of an hour. asan ROOM...: of these parts only,
+# asan turn: of the one whose turn it is; words for ctest may follow, as `-R Leap`.
 asan() {
+  local rooms=() room labels
+  if [ "${1:-}" = turn ]; then
+    room=$(part_of_revision)
+    set -- $room "${@:2}"
+    echo "do asan: the turn of $room" >&2
+  fi
   deps
   preset=asan build=build/asan
-  local rooms=() room
-  while [[ "${1:-}" =~ ^(core|devices|input|display|app)$ ]]; do
+  while [[ "${1:-}" =~ ^(core|devices|input|display|app|program)$ ]]; do
     rooms+=("$1")
     shift
   done
-  [ ${#rooms[@]} -gt 0 ] || rooms=(core devices input display app)
+  [ ${#rooms[@]} -gt 0 ] || rooms=(core devices input display app program)
   local targets=("${rooms[@]/#/dubsar_checked_}")
   targets=("${targets[@]/%/_tests}")
   cmake --preset "$preset" >/dev/null
@@ -127,7 +155,12 @@ asan() {
   export ASAN_OPTIONS="strict_string_checks=1:${ASAN_OPTIONS:-}" UBSAN_OPTIONS="print_stacktrace=1:${UBSAN_OPTIONS:-}"
   export LSAN_OPTIONS="suppressions=$PWD/tests/leaks_of_others.txt:print_suppressions=0:${LSAN_OPTIONS:-}"
   for room in "${rooms[@]}"; do
-    ctest --test-dir "$build/tests/$room" --output-on-failure -j "$jobs" -L '^(unit|app|gl)$' "$@"
+    case "$room" in
+      program) labels='^app$' ;;
+      app) labels='^(unit|gl|replay)$' ;;
+      *) labels='^(unit|gl|replay|app)$' ;;
+    esac
+    ctest --test-dir "$build/tests/${room/#program/app}" --output-on-failure -j "$jobs" -L "$labels" "$@"
   done
 }
 

@@ -90,9 +90,9 @@ function(dubsar_library name)
   endif()
 endfunction()
 
-# What `./do asan ROOM` builds: of each folder of tests/ those of the labels unit, app and gl, which need
-# no preloaded library.
-foreach(room core devices input display app)
+# What `./do asan ROOM` builds: of each folder of tests/ those of the labels unit, gl, replay and app, which need
+# no preloaded library. Those of label app run the program: a room of their own.
+foreach(room core devices input display app program)
   add_custom_target(dubsar_checked_${room}_tests)
 endforeach()
 
@@ -107,15 +107,21 @@ function(dubsar_test name)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
+  if(DUBSAR_SANITIZE)
+    math(EXPR ARG_TIMEOUT "4 * ${ARG_TIMEOUT}")
+  endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE dubsar_options ${ARG_DEPS} GTest::gtest GTest::gmock GTest::gtest_main)
   dubsar_cold(${name})  # a test is compiled more often than its loops are run
   if(DUBSAR_PCH)
     target_precompile_headers(${name} REUSE_FROM dubsar_test_headers)
   endif()
-  if(ARG_LABEL MATCHES "^(unit|app|gl)$")
+  if(ARG_LABEL MATCHES "^(unit|gl|replay|app)$")
     file(RELATIVE_PATH room "${PROJECT_SOURCE_DIR}/tests" "${CMAKE_CURRENT_SOURCE_DIR}")
     string(REGEX REPLACE "/.*" "" room "${room}")
+    if(ARG_LABEL STREQUAL "app")
+      set(room program)
+    endif()
     add_dependencies(dubsar_checked_${room}_tests ${name})
   endif()
   include(GoogleTest)

@@ -25,13 +25,11 @@ inline constexpr int kX = 200, kY = 150, kWidth = 320, kHeight = 240;
 
 class Live : public ::testing::Test {
  protected:
+  /// One server for all suites of a process: GLFW stays connected to the first.
   static void SetUpTestSuite() {
+    if (server_ != nullptr) return;
     server_ = std::make_unique<testing::XvfbServer>();
     if (server_->problem().empty()) person_ = std::make_unique<testing::XPerson>();
-  }
-  static void TearDownTestSuite() {
-    person_.reset();
-    server_.reset();
   }
   void SetUp() override {
     if (!server_->problem().empty()) GTEST_SKIP() << server_->problem();
@@ -51,7 +49,11 @@ class Live : public ::testing::Test {
     options_.fullscreen = false;
     options_.inputs = {"mouse", "keyboard"};  // not what the machine of the test has
     options_.around.notices = false;
+#ifdef __SANITIZE_ADDRESS__
+    options_.time.longest_s = 80;
+#else
     options_.time.longest_s = 20;  // a test that waits for something that never comes
+#endif
   }
 
   /// One thing after another: each step acts, and the next comes when its condition holds in a turn that had
