@@ -341,10 +341,15 @@ strips() {
   local dubsar=$build/app/dubsar work=$build/strips
   mkdir -p "$work"
   [ -f "$work/scan.h5" ] || "$dubsar" phantom "$work/scan.h5" --preset demo
-  [ -f "$work/tablet.exa" ] || "$dubsar" process "$work/scan.h5" -o "$work/tablet.exa"
-  "$dubsar" export "$work/tablet.exa" "$work/tablet.ply" --partition tablet
-  [ "${1:-gallery}" != gallery ] || "$build/tests/app/make_gallery_strips" "$work/tablet.exa" docs/scripts/gallery.json docs
-  [ "${1:-}" = gallery ] || "$build/tests/app/make_strips" "$work/tablet.ply" docs/scripts docs "$@"
+  if [ "${1:-gallery}" = gallery ]; then
+    [ -f "$work/half.exa" ] || "$dubsar" process "$work/scan.h5" -o "$work/half.exa" --detail half
+    "$build/tests/app/make_gallery_strips" "$work/half.exa" docs/scripts/gallery.json docs
+  fi
+  if [ "${1:-}" != gallery ]; then
+    [ -f "$work/tablet.exa" ] || "$dubsar" process "$work/scan.h5" -o "$work/tablet.exa"
+    "$dubsar" export "$work/tablet.exa" "$work/tablet.ply" --partition tablet
+    "$build/tests/app/make_strips" "$work/tablet.ply" docs/scripts docs "$@"
+  fi
 }
 
 verb=${1:-}

@@ -18,10 +18,11 @@ namespace dubsar::app::test {
 namespace {
 
 constexpr double kFps = 20.0, kLongest_s = 31.0;
+constexpr int kEvery = 22;  // steps a picture
 constexpr int kColumns = 4, kRows = 3, kTileWidth = 480, kTileHeight = 360;
-/// Seconds of the script: nobody, a hand is there, it takes hold, it has turned the tablet, rests on the sign, what was
-/// inside is out, everything is as at the beginning.
-constexpr std::array<double, 7> kMoments_s{1.0, 4.4, 6.6, 7.6, 12.2, 15.6, 30.0};
+/// Seconds of the script, each that of a picture: nobody, a hand is there, it takes hold, it has turned the tablet,
+/// rests on the sign, what was inside is out, everything is as at the beginning.
+constexpr std::array<double, 7> kMoments_s{1.1, 4.4, 6.6, 7.7, 12.1, 15.4, 29.7};
 
 Result<std::vector<Image>> visit(const TriMesh& mesh, const std::string& script, const std::string& display, int width,
                                  int height) {
@@ -39,7 +40,7 @@ Result<std::vector<Image>> visit(const TriMesh& mesh, const std::string& script,
   options.work.upright = true;
   options.time.fps = kFps;
   options.time.longest_s = kLongest_s;
-  options.files.every = 4;
+  options.files.every = kEvery;
   KioskParts parts;
   parts.profile.objects = {{.file = "tablet", .title = {{"en", "A sealed contract"}}}};
   parts.profile.pin = "90210735";
