@@ -17,12 +17,12 @@
 namespace dubsar::app::test {
 namespace {
 
-constexpr double kFps = 20.0, kLongest_s = 31.0;
+constexpr double kFps = 20.0, kLongestSeconds = 31.0;
 constexpr int kEvery = 22;  // steps a picture
 constexpr int kColumns = 4, kRows = 3, kTileWidth = 480, kTileHeight = 360;
 /// Seconds of the script, each that of a picture: nobody, a hand is there, it takes hold, it has turned the tablet,
 /// rests on the sign, what was inside is out, everything is as at the beginning.
-constexpr std::array<double, 7> kMoments_s{1.1, 4.4, 6.6, 7.7, 12.1, 15.4, 29.7};
+constexpr std::array<double, 7> kMoments{1.1, 4.4, 6.6, 7.7, 12.1, 15.4, 29.7};
 
 Result<std::vector<Image>> visit(const TriMesh& mesh, const std::string& script, const std::string& display, int width,
                                  int height) {
@@ -39,7 +39,7 @@ Result<std::vector<Image>> visit(const TriMesh& mesh, const std::string& script,
   options.around.notices = false;
   options.work.upright = true;
   options.time.fps = kFps;
-  options.time.longest_s = kLongest_s;
+  options.time.longest_s = kLongestSeconds;
   options.files.every = kEvery;
   KioskParts parts;
   parts.profile.objects = {{.file = "tablet", .title = {{"en", "A sealed contract"}}}};
@@ -55,7 +55,7 @@ Result<std::vector<Image>> visit(const TriMesh& mesh, const std::string& script,
   Result<void> read;
   DUBSAR_TRY(run_view(mesh, options, progress, [&](const ViewMoment& moment) {
     const double at_s = (moment.frames - 1) * options.files.every / kFps;
-    if (!moment.drawn || out.size() == kMoments_s.size() || at_s < kMoments_s[out.size()]) return;
+    if (!moment.drawn || out.size() == kMoments.size() || at_s < kMoments[out.size()]) return;
     auto picture = moment.presenter.picture();
     if (picture)
       out.push_back(*std::move(picture));
