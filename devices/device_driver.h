@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/head_tracker/head_sample.h"
 #include "devices/spacemouse/puck_sample.h"
 #include "devices/transport/transport.h"

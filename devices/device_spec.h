@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/base/clock.h"
-#include "core/base/option_list.h"
+#include "core/base/system/clock.h"
+#include "core/base/text/option_list.h"
 #include "devices/transport/transport.h"
 
 namespace dubsar {

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/device_driver.h"
 #include "devices/transport/reconnector.h"
 

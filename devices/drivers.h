@@ -7,8 +7,8 @@
 #include <span>
 #include <string_view>
 
-#include "core/base/option_reader.h"
-#include "core/base/pose.h"
+#include "core/base/numbers/pose.h"
+#include "core/base/text/option_reader.h"
 #include "devices/device_driver.h"
 #include "devices/device_spec.h"
 #include "devices/simulated_device.h"

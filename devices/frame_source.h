@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/base/clock.h"
 #include "core/base/result.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar {
 

@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/base/clock.h"
-#include "core/base/pose.h"
+#include "core/base/numbers/pose.h"
+#include "core/base/system/clock.h"
 #include "devices/transport/transport.h"
 
 namespace dubsar {

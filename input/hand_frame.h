@@ -8,8 +8,8 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "core/base/clock.h"
-#include "core/base/pose.h"
+#include "core/base/numbers/pose.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar {
 

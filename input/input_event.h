@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar {
 

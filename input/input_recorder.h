@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/base/growing_file.h"
+#include "core/base/files/growing_file.h"
 #include "input/recorded_frame.h"
 
 namespace dubsar {

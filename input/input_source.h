@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/clock.h"
-#include "core/base/option_list.h"
 #include "core/base/result.h"
+#include "core/base/system/clock.h"
+#include "core/base/text/option_list.h"
 #include "devices/device_info.h"
 #include "devices/device_spec.h"
 #include "devices/transport/hotplug_bell.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "input/input_source.h"
 
 namespace dubsar {

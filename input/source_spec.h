@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/option_list.h"
+#include "core/base/text/option_list.h"
 
 namespace dubsar {
 
@@ -19,8 +19,8 @@ struct SourceSpec {
   bool operator==(const SourceSpec&) const = default;
 };
 
-/// "NAME" or "NAME:OPTIONS" (core/base/option_list.h): the first colon ends the name, later ones belong to values, such
-/// as IPv6 addresses and /dev/v4l/by-path. kUsage.
+/// "NAME" or "NAME:OPTIONS" (core/base/text/option_list.h): the first colon ends the name, later ones belong to values,
+/// such as IPv6 addresses and /dev/v4l/by-path. kUsage.
 Result<SourceSpec> parse_source(std::string_view text);
 
 /// Several of them with commas between, as after --input. A word begins a source when it is the first, has a colon

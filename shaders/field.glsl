@@ -1,4 +1,4 @@
-// Figures of the surface that colours tell, from what a vertex carries of them; display/render/surface_field.h has the
+// Figures of the surface that colours tell, from what a vertex carries of them; display/render/mesh/surface_field.h has the
 // same in C++.
 
 const float kMostDistance = 0.5, kMostCurvature = 32.0;  // what 1 stands for

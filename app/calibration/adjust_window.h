@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/commands/command_table.h"
-#include "display/sinks/sink_catalog.h"
+#include "display/sinks/catalog/sink_catalog.h"
 
 namespace dubsar::app {
 

@@ -5,7 +5,7 @@
 
 #include "app/calibration/calibration_search.h"
 #include "display/panels/edid.h"
-#include "display/sinks/sink_catalog.h"
+#include "display/sinks/catalog/sink_catalog.h"
 
 namespace dubsar::app {
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/cli/config_folder.h"
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "devices/device_list.h"
 #include "devices/looking_glass/bridge_client.h"
 #include "devices/looking_glass/calibration_pages.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/transport/transport.h"
 #include "display/panels/panel_set.h"
 

@@ -2,8 +2,8 @@
 
 #include "app/calibration/auto_panel.h"
 #include "app/cli/config_folder.h"
-#include "core/base/log.h"
-#include "display/sinks/plugin_sink.h"
+#include "core/base/system/log.h"
+#include "display/sinks/catalog/plugin_sink.h"
 
 namespace dubsar::app {
 

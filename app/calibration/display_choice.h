@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "display/sinks/sink_catalog.h"
+#include "display/sinks/catalog/sink_catalog.h"
 
 namespace dubsar::app {
 

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <thread>
 
-#include "core/base/quantile.h"
-#include "core/base/second.h"
+#include "core/base/numbers/quantile.h"
+#include "core/base/system/second.h"
 #include "display/optics/optics.h"
 
 namespace dubsar::app {

@@ -6,9 +6,9 @@
 #include <functional>
 #include <string>
 
-#include "core/base/clock.h"
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/base/system/clock.h"
 #include "display/panels/panel_profile.h"
 #include "input/input_source.h"
 

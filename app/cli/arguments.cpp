@@ -9,8 +9,8 @@
 
 #include "app/cli/error_json.h"
 #include "app/cli/help_text.h"
-#include "core/base/near_word.h"
 #include "core/base/result.h"
+#include "core/base/text/near_word.h"
 
 namespace dubsar::app {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "core/base/log.h"
 #include "core/base/progress.h"
+#include "core/base/system/log.h"
 
 namespace dubsar::app {
 

@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli/console.h"
-#include "core/base/clock.h"
-#include "core/base/json_text.h"
+#include "core/base/system/clock.h"
+#include "core/base/text/json_text.h"
 
 namespace dubsar::app {
 namespace {

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "core/base/json_text.h"
 #include "core/base/result.h"
+#include "core/base/text/json_text.h"
 
 namespace dubsar::app {
 

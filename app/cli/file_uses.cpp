@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "core/base/atomic_file.h"
-#include "core/base/file_suffix.h"
-#include "core/base/near_word.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/files/file_suffix.h"
+#include "core/base/text/near_word.h"
 #include "core/exa/container.h"
 #include "core/hdf5/hdf5_file.h"
 

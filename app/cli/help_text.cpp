@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "app/document/file_kinds.h"
-#include "core/base/near_word.h"
+#include "core/base/text/near_word.h"
 
 namespace dubsar::app {
 namespace {

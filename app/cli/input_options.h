@@ -4,7 +4,7 @@
 #include <string>
 
 #include "app/cli/arguments.h"
-#include "core/volume/import_options.h"
+#include "core/volume/formats/import_options.h"
 
 namespace dubsar::app {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <charconv>
 
-#include "core/base/file_suffix.h"
-#include "core/base/near_word.h"
+#include "core/base/files/file_suffix.h"
+#include "core/base/text/near_word.h"
 #include "core/exa/exa_file.h"
 #include "core/mesh/vertex_attributes.h"
 #include "core/mesh_io/mesh_io.h"

@@ -11,10 +11,10 @@
 #include "app/cli/console_progress.h"
 #include "app/cli/error_json.h"
 #include "app/cli/file_uses.h"
-#include "core/base/atomic_file.h"
-#include "core/base/json_text.h"
-#include "core/base/parallel.h"
-#include "core/base/plain_text.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/system/parallel.h"
+#include "core/base/text/json_text.h"
+#include "core/base/text/plain_text.h"
 
 namespace dubsar::app {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/base/near_word.h"
+#include "core/base/text/near_word.h"
 
 namespace dubsar::app {
 namespace {

@@ -6,7 +6,7 @@
 #include "app/commands/command_table.h"
 #include "app/commands/number_argument.h"
 #include "app/commands/sides.h"
-#include "core/base/angle.h"
+#include "core/base/numbers/angle.h"
 #include "input/navigation/square_turn.h"
 
 namespace dubsar::app {

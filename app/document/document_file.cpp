@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "app/document/document_fields.h"
-#include "core/base/atomic_file.h"
-#include "core/base/json_text.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/text/json_text.h"
 
 namespace dubsar::app {
 namespace {

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "app/document/document.h"
-#include "core/base/clock.h"
 #include "core/base/result.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar::app {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <system_error>
 
-#include "core/base/file_suffix.h"
+#include "core/base/files/file_suffix.h"
 
 namespace dubsar::app {
 namespace {

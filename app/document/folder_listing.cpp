@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "app/document/file_kinds.h"
-#include "core/base/lower_text.h"
+#include "core/base/text/lower_text.h"
 
 namespace dubsar::app {
 namespace {

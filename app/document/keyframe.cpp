@@ -6,7 +6,7 @@
 
 #include "app/document/document_fields.h"
 #include "app/document/document_file.h"
-#include "core/base/json_text.h"
+#include "core/base/text/json_text.h"
 #include "input/navigation/view_state.h"
 
 namespace dubsar::app {

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "core/base/atomic_file.h"
-#include "core/base/json_text.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/text/json_text.h"
 
 namespace dubsar::app {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "app/document/document.h"
 #include "app/kiosk/tour.h"
-#include "core/base/angle.h"
+#include "core/base/numbers/angle.h"
 
 namespace dubsar::app {
 namespace {

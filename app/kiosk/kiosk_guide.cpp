@@ -8,7 +8,7 @@
 
 #include "app/document/document.h"
 #include "app/panels/right_to_left.h"
-#include "core/base/log.h"
+#include "core/base/system/log.h"
 
 namespace dubsar::app {
 namespace {

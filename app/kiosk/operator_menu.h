@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar::app {
 

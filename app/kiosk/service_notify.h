@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar::app {
 

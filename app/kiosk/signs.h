@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar::app {
 

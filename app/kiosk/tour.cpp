@@ -5,9 +5,9 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/base/atomic_file.h"
-#include "core/base/json_fields.h"
-#include "core/base/json_text.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/text/json_fields.h"
+#include "core/base/text/json_text.h"
 
 namespace dubsar::app {
 namespace {

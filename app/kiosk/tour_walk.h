@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "app/kiosk/tour.h"
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar::app {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/base/second.h"
+#include "core/base/system/second.h"
 
 namespace dubsar::app {
 namespace {

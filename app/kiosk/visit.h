@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "app/kiosk/words.h"
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "input/people/hand_marks.h"
 
 namespace dubsar::app {

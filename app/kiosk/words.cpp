@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/base/json_text.h"
+#include "core/base/text/json_text.h"
 
 namespace dubsar::app {
 namespace {

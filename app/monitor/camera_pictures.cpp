@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <thread>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/camera/capture.h"
 #include "devices/camera/picture_frames.h"
 #include "devices/camera/webcam.h"

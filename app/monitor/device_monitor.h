@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/device_driver.h"
 #include "devices/device_spec.h"
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "app/panels/panel_kit.h"
-#include "display/render/legend_image.h"
-#include "display/render/surface_field.h"
+#include "display/render/images/legend_image.h"
+#include "display/render/mesh/surface_field.h"
 
 namespace dubsar::app {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "app/panels/panel_kit.h"
-#include "core/base/angle.h"
+#include "core/base/numbers/angle.h"
 #include "display/render/shading.h"
 
 namespace dubsar::app {

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "app/panels/panel_kit.h"
-#include "app/viewer/marks.h"
+#include "app/viewer/stage/marks.h"
 
 namespace dubsar::app {
 namespace {

@@ -11,7 +11,7 @@
 #include "app/cli/overall_progress.h"
 #include "app/document/file_kinds.h"
 #include "app/panels/panel_kit.h"
-#include "core/base/lower_text.h"
+#include "core/base/text/lower_text.h"
 
 namespace dubsar::app {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "app/panels/panel_font.h"
 #include "app/panels/right_to_left.h"
-#include "display/render/gl_objects.h"
+#include "display/render/context/gl_objects.h"
 #include "display/render/view_array.h"
 
 namespace dubsar::app {

@@ -14,7 +14,7 @@
 #include "app/panels/help_page.h"
 #include "app/panels/legend_page.h"
 #include "app/panels/light_ball.h"
-#include "app/viewer/stage.h"
+#include "app/viewer/stage/stage.h"
 
 struct ImGuiContext;
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "app/panels/panel_kit.h"
-#include "core/base/lower_text.h"
+#include "core/base/text/lower_text.h"
 
 namespace dubsar::app {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "display/render/utf8.h"
+#include "display/render/images/utf8.h"
 
 namespace dubsar::app {
 namespace {

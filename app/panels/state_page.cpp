@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/base/quantile.h"
+#include "core/base/numbers/quantile.h"
 
 namespace dubsar::app {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/panels/help_page.h"
-#include "app/viewer/source_set.h"
+#include "app/viewer/steering/source_set.h"
 #include "display/sinks/output_sink.h"
 #include "input/people/presence.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "core/base/budget.h"
-#include "display/render/render_image.h"
+#include "core/base/system/budget.h"
+#include "display/render/images/render_image.h"
 
 namespace dubsar::app {
 namespace {

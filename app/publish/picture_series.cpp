@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "core/base/atomic_file.h"
-#include "core/base/json_text.h"
-#include "core/base/log.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/system/log.h"
+#include "core/base/text/json_text.h"
 
 namespace dubsar::app {
 namespace {

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/publish/page_files.h"
-#include "core/base/json_text.h"
-#include "core/base/markup_text.h"
+#include "core/base/text/json_text.h"
+#include "core/base/text/markup_text.h"
 
 namespace dubsar::app {
 namespace {

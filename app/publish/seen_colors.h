@@ -2,8 +2,8 @@
 // The colours of a surface as a picture shows them, for files that carry one colour a vertex.
 
 #include "core/mesh/tri_mesh.h"
+#include "display/render/mesh/surface_field.h"
 #include "display/render/shading.h"
-#include "display/render/surface_field.h"
 
 namespace dubsar::app {
 

@@ -7,9 +7,9 @@
 #include <cstring>
 #include <vector>
 
-#include "core/base/inch.h"
-#include "display/render/legend_image.h"
-#include "display/render/surface_field.h"
+#include "core/base/numbers/inch.h"
+#include "display/render/images/legend_image.h"
+#include "display/render/mesh/surface_field.h"
 
 namespace dubsar::app {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "core/base/result.h"
 #include "core/image_io/image.h"
-#include "display/render/label_font.h"
+#include "display/render/images/label_font.h"
 #include "display/render/shading.h"
 
 namespace dubsar::app {

@@ -10,7 +10,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/tablet_frame.h"
 

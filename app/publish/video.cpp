@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/atomic_file.h"
-#include "core/base/child_process.h"
-#include "core/base/file_suffix.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/files/file_suffix.h"
+#include "core/base/system/child_process.h"
 
 namespace dubsar::app {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/base/markup_text.h"
+#include "core/base/text/markup_text.h"
 
 namespace dubsar::app {
 namespace {

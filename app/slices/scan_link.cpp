@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "core/base/json_text.h"
-#include "core/volume/import.h"
-#include "core/volume/import_raw.h"
+#include "core/base/text/json_text.h"
+#include "core/volume/formats/import.h"
+#include "core/volume/formats/import_raw.h"
 
 namespace dubsar::app {
 namespace {

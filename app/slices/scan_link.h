@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "core/mesh/tri_mesh.h"
-#include "core/volume/import_options.h"
+#include "core/volume/formats/import_options.h"
 #include "core/volume/plane_sampler.h"
 
 namespace dubsar::app {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "core/mesh/plane_section.h"
 
 namespace dubsar::app {

@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "app/calibration/display_choice.h"
-#include "core/base/inch.h"
-#include "core/base/parse_number.h"
+#include "core/base/numbers/inch.h"
+#include "core/base/text/parse_number.h"
 #include "core/image_io/picture_file.h"
+#include "display/sinks/catalog/sink_catalog.h"
 #include "display/sinks/quilt.h"
-#include "display/sinks/sink_catalog.h"
 
 namespace dubsar::app {
 namespace fs = std::filesystem;

@@ -4,8 +4,8 @@
 #include <charconv>
 
 #include "app/panels/panel_font.h"
-#include "display/render/legend_image.h"
-#include "display/render/surface_field.h"
+#include "display/render/images/legend_image.h"
+#include "display/render/mesh/surface_field.h"
 
 namespace dubsar::app {
 namespace {

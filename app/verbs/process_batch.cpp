@@ -14,11 +14,11 @@
 #include "app/cli/default_output.h"
 #include "app/cli/error_json.h"
 #include "app/document/file_kinds.h"
-#include "core/base/atomic_file.h"
-#include "core/base/child_process.h"
-#include "core/base/file_fingerprint.h"
-#include "core/base/input_file.h"
-#include "core/base/json_text.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/files/file_fingerprint.h"
+#include "core/base/files/input_file.h"
+#include "core/base/system/child_process.h"
+#include "core/base/text/json_text.h"
 
 namespace dubsar::app {
 namespace {

@@ -15,10 +15,10 @@
 #include "app/publish/picture_series.h"
 #include "app/publish/video.h"
 #include "app/verbs/display_picture.h"
-#include "app/viewer/film_painter.h"
-#include "core/base/atomic_file.h"
-#include "core/base/log.h"
-#include "core/base/parse_number.h"
+#include "app/viewer/stage/film_painter.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/system/log.h"
+#include "core/base/text/parse_number.h"
 #include "display/sinks/quilt.h"
 
 namespace dubsar::app {

@@ -13,14 +13,14 @@
 #include "app/cli/config_folder.h"
 #include "app/cli/verb.h"
 #include "app/viewer/run_view.h"
-#include "core/base/log.h"
+#include "core/base/system/log.h"
 #include "devices/looking_glass/bridge_client.h"
 #include "display/panels/crosstalk_curve.h"
 #include "display/panels/edid.h"
 #include "display/panels/panel_adjust.h"
 #include "display/panels/panel_set.h"
-#include "display/render/context_glfw.h"
-#include "display/sinks/plugin_sink.h"
+#include "display/render/context/context_glfw.h"
+#include "display/sinks/catalog/plugin_sink.h"
 
 namespace dubsar::app {
 namespace fs = std::filesystem;

@@ -11,11 +11,11 @@
 
 #include "app/cli/verb.h"
 #include "core/exa/exa_file.h"
-#include "core/exa/paper_profile.h"
-#include "core/exa/settle.h"
+#include "core/exa/offsets/settle.h"
+#include "core/exa/paper/paper_profile.h"
 #include "core/mesh/mesh_check.h"
 #include "core/pipeline/report.h"
-#include "core/volume/import_options.h"
+#include "core/volume/formats/import_options.h"
 
 namespace dubsar::app {
 namespace {

@@ -14,7 +14,7 @@
 #include "app/viewer/surface_tools.h"
 #include "core/image_io/picture_file.h"
 #include "core/image_io/tiff_file.h"
-#include "display/render/surface_field.h"
+#include "display/render/mesh/surface_field.h"
 
 namespace dubsar::app {
 namespace {

@@ -9,13 +9,13 @@
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
 #include "app/publish/surface_facts.h"
-#include "core/base/budget.h"
-#include "core/base/units.h"
+#include "core/base/numbers/units.h"
+#include "core/base/system/budget.h"
 #include "core/exa/exa_file.h"
 #include "core/mesh_io/mesh_io.h"
 #include "core/pipeline/forecast.h"
 #include "core/pipeline/report.h"
-#include "core/volume/import.h"
+#include "core/volume/formats/import.h"
 
 namespace dubsar::app {
 namespace {

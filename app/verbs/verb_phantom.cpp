@@ -6,7 +6,7 @@
 
 #include "app/cli/verb.h"
 #include "core/phantom/write_phantom.h"
-#include "core/volume/import_options.h"
+#include "core/volume/formats/import_options.h"
 
 namespace dubsar::app {
 namespace {

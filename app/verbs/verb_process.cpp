@@ -13,9 +13,9 @@
 #include "app/cli/verb.h"
 #include "app/publish/surface_facts.h"
 #include "app/verbs/process_batch.h"
-#include "core/base/budget.h"
-#include "core/base/large_blocks.h"
-#include "core/base/units.h"
+#include "core/base/numbers/units.h"
+#include "core/base/system/budget.h"
+#include "core/base/system/large_blocks.h"
 #include "core/pipeline/pipeline.h"
 #include "core/pipeline/report.h"
 

@@ -18,9 +18,9 @@
 #include "app/verbs/display_picture.h"
 #include "app/verbs/look_options.h"
 #include "app/viewer/run_view.h"
-#include "core/base/parse_number.h"
+#include "core/base/text/parse_number.h"
 #include "core/image_io/picture_file.h"
-#include "display/render/render_image.h"
+#include "display/render/images/render_image.h"
 #include "display/render/scene.h"
 
 namespace dubsar::app {

@@ -9,7 +9,7 @@
 #include "app/cli/verb.h"
 #include "app/verbs/display_picture.h"
 #include "app/viewer/run_view.h"
-#include "core/base/parse_number.h"
+#include "core/base/text/parse_number.h"
 #include "core/image_io/picture_file.h"
 #include "display/sinks/quilt.h"
 #include "display/sinks/view_pictures.h"

@@ -15,9 +15,9 @@
 #include "app/verbs/view_kiosk.h"
 #include "app/verbs/view_outcome.h"
 #include "app/verbs/view_panels.h"
-#include "core/base/atomic_file.h"
-#include "core/base/log.h"
-#include "core/base/parse_number.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/system/log.h"
+#include "core/base/text/parse_number.h"
 #include "devices/looking_glass/bridge_client.h"
 #include "input/source_spec.h"
 

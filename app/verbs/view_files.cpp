@@ -10,11 +10,11 @@
 #include "app/document/file_kinds.h"
 #include "app/slices/scan_link.h"
 #include "app/viewer/first_document.h"
-#include "core/base/file_suffix.h"
-#include "core/base/log.h"
+#include "core/base/files/file_suffix.h"
+#include "core/base/system/log.h"
 #include "core/exa/exa_file.h"
 #include "core/parts/surface_model.h"
-#include "core/volume/import.h"
+#include "core/volume/formats/import.h"
 #include "input/source_spec.h"
 
 namespace dubsar::app {

@@ -5,9 +5,9 @@
 #include "app/cli/mesh_input.h"
 #include "app/kiosk/kiosk_guide.h"
 #include "app/viewer/first_document.h"
-#include "core/base/atomic_file.h"
-#include "core/base/log.h"
-#include "core/base/parse_number.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/system/log.h"
+#include "core/base/text/parse_number.h"
 
 namespace dubsar::app {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "core/base/angle.h"
-#include "core/base/measurements.h"
+#include "core/base/numbers/angle.h"
+#include "core/base/numbers/measurements.h"
 
 namespace dubsar::app {
 namespace {

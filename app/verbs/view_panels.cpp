@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "app/calibration/display_choice.h"
-#include "core/base/option_list.h"
-#include "core/base/parse_number.h"
+#include "core/base/text/option_list.h"
+#include "core/base/text/parse_number.h"
 
 namespace dubsar::app {
 namespace {

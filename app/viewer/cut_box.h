@@ -7,7 +7,7 @@
 #include "app/commands/box_sides.h"
 #include "app/commands/editor.h"
 #include "app/panels/box_page.h"
-#include "app/viewer/sight.h"
+#include "app/viewer/stage/sight.h"
 
 namespace dubsar::app {
 

@@ -11,9 +11,9 @@
 
 #include "app/document/document.h"
 #include "app/panels/gallery_page.h"
-#include "app/viewer/object_places.h"
-#include "app/viewer/source_set.h"
-#include "app/viewer/steering.h"
+#include "app/viewer/stage/object_places.h"
+#include "app/viewer/steering/source_set.h"
+#include "app/viewer/steering/steering.h"
 #include "display/render/scene.h"
 
 namespace dubsar::app {

@@ -12,9 +12,9 @@
 #include "app/cli/overall_progress.h"
 #include "app/document/file_kinds.h"
 #include "app/document/recent_files.h"
-#include "core/base/clock.h"
-#include "core/base/file_suffix.h"
-#include "core/base/log.h"
+#include "core/base/files/file_suffix.h"
+#include "core/base/system/clock.h"
+#include "core/base/system/log.h"
 
 namespace dubsar::app {
 namespace {

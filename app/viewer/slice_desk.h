@@ -7,7 +7,7 @@
 #include "app/panels/slice_panel.h"
 #include "app/slices/scan_link.h"
 #include "core/image_io/image.h"
-#include "display/render/gl_objects.h"
+#include "display/render/context/gl_objects.h"
 #include "display/render/scene.h"
 
 namespace dubsar::app {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/sides.h"
-#include "core/base/json_text.h"
+#include "core/base/text/json_text.h"
 #include "core/mesh/surface_measure.h"
 #include "core/mesh/tablet_frame.h"
 

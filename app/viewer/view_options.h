@@ -10,11 +10,11 @@
 #include "app/commands/command_table.h"
 #include "app/commands/step_script.h"
 #include "app/document/document.h"
-#include "app/viewer/source_set.h"
-#include "app/viewer/stage.h"
-#include "core/base/measurements.h"
-#include "core/volume/import_options.h"
-#include "display/render/context_glfw.h"
+#include "app/viewer/stage/stage.h"
+#include "app/viewer/steering/source_set.h"
+#include "core/base/numbers/measurements.h"
+#include "core/volume/formats/import_options.h"
+#include "display/render/context/context_glfw.h"
 #include "input/navigation/mapping.h"
 
 namespace dubsar::app {

@@ -5,12 +5,12 @@
 #include "app/commands/sides.h"
 #include "app/panels/panel_font.h"
 #include "app/viewer/first_document.h"
-#include "app/viewer/marks.h"
-#include "app/viewer/window_input.h"
-#include "app/viewer/window_place.h"
-#include "app/viewer/worn_input.h"
-#include "core/base/log.h"
-#include "core/base/second.h"
+#include "app/viewer/presenter/window_input.h"
+#include "app/viewer/presenter/window_place.h"
+#include "app/viewer/stage/marks.h"
+#include "app/viewer/steering/worn_input.h"
+#include "core/base/system/log.h"
+#include "core/base/system/second.h"
 
 namespace dubsar::app {
 namespace {

@@ -5,7 +5,7 @@
 #include "app/document/recent_files.h"
 #include "app/viewer/first_document.h"
 #include "app/viewer/viewer.h"
-#include "core/base/log.h"
+#include "core/base/system/log.h"
 
 namespace dubsar::app {
 namespace {

@@ -4,9 +4,9 @@
 
 #include "app/panels/light_ball.h"
 #include "app/viewer/first_document.h"
-#include "app/viewer/marks.h"
+#include "app/viewer/stage/marks.h"
 #include "app/viewer/viewer.h"
-#include "core/base/log.h"
+#include "core/base/system/log.h"
 
 namespace dubsar::app {
 namespace {

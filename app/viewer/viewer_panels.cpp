@@ -6,9 +6,9 @@
 #include "app/commands/sides.h"
 #include "app/panels/state_page.h"
 #include "app/viewer/first_document.h"
-#include "app/viewer/marks.h"
+#include "app/viewer/stage/marks.h"
 #include "app/viewer/viewer.h"
-#include "core/base/second.h"
+#include "core/base/system/second.h"
 
 namespace dubsar::app {
 namespace {

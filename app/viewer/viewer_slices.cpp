@@ -4,7 +4,7 @@
 
 #include "app/viewer/first_document.h"
 #include "app/viewer/viewer.h"
-#include "core/base/inch.h"
+#include "core/base/numbers/inch.h"
 #include "core/image_io/png_file.h"
 #include "core/image_io/tiff_file.h"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
-#include "core/base/median.h"
-#include "core/base/parallel.h"
+#include "core/base/numbers/median.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {

@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 #include <memory>
 
-#include "core/base/median.h"
-#include "core/base/parallel.h"
+#include "core/base/numbers/median.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {

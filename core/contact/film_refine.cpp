@@ -4,8 +4,8 @@
 #include <array>
 #include <glm/geometric.hpp>
 
-#include "core/base/median.h"
-#include "core/base/parallel.h"
+#include "core/base/numbers/median.h"
+#include "core/base/system/parallel.h"
 #include "core/contact/ring_average.h"
 
 namespace dubsar {

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
-#include "core/base/log.h"
+#include "core/base/system/log.h"
 #include "core/contact/band.h"
 #include "core/contact/clay_sides.h"
 #include "core/contact/clays.h"

@@ -4,10 +4,10 @@
 #include <atomic>
 #include <cstring>
 
-#include "core/base/budget.h"
-#include "core/base/bytes.h"
-#include "core/base/parallel.h"
-#include "core/exa/crc_fold.h"
+#include "core/base/numbers/bytes.h"
+#include "core/base/system/budget.h"
+#include "core/base/system/parallel.h"
+#include "core/exa/coding/crc_fold.h"
 
 namespace dubsar {
 namespace {

@@ -1,6 +1,6 @@
 #include "core/exa/container.h"
 
-#include "core/base/bytes.h"
+#include "core/base/numbers/bytes.h"
 #include "core/exa/chunks.h"
 
 namespace dubsar {

@@ -3,20 +3,20 @@
 #include <algorithm>
 #include <array>
 
-#include "core/base/budget.h"
-#include "core/exa/attributes.h"
+#include "core/base/system/budget.h"
 #include "core/exa/exa_blocks.h"
-#include "core/exa/exact.h"
-#include "core/exa/offsets.h"
-#include "core/exa/paper_profile.h"
-#include "core/exa/paper_signs.h"
-#include "core/exa/patch_evidence.h"
-#include "core/exa/patches.h"
-#include "core/exa/settle.h"
-#include "core/exa/sign_brick.h"
+#include "core/exa/offsets/offsets.h"
+#include "core/exa/offsets/settle.h"
+#include "core/exa/paper/paper_profile.h"
+#include "core/exa/paper/paper_signs.h"
+#include "core/exa/patches/patch_evidence.h"
+#include "core/exa/patches/patches.h"
+#include "core/exa/signs/sign_brick.h"
+#include "core/exa/values/attributes.h"
+#include "core/exa/values/exact.h"
 #include "core/extract/extract.h"
 #include "core/mesh/evidence.h"
-#include "core/relief/shape_class.h"
+#include "core/relief/curvature/shape_class.h"
 
 namespace dubsar {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/exa/exa_file.h"
 #include "core/exa/exa_reader.h"
 #include "core/exa/exa_text.h"
-#include "core/exa/topology.h"
+#include "core/exa/signs/topology.h"
 #include "core/parts/surface_model.h"
 
 namespace dubsar {

@@ -4,12 +4,12 @@
 #include <memory>
 #include <new>
 
-#include "core/base/atomic_file.h"
-#include "core/base/input_file.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/files/input_file.h"
 #include "core/exa/exa_decode.h"
 #include "core/exa/exa_reader.h"
 #include "core/exa/exa_text.h"
-#include "core/exa/sign_brick.h"
+#include "core/exa/signs/sign_brick.h"
 
 namespace dubsar {
 namespace {

@@ -13,7 +13,7 @@
 #include "core/base/result.h"
 #include "core/exa/container.h"
 #include "core/exa/exa_text.h"
-#include "core/exa/topology.h"
+#include "core/exa/signs/topology.h"
 #include "core/parts/surface_model.h"
 
 namespace dubsar {

@@ -2,10 +2,10 @@
 #include <array>
 #include <cmath>
 
-#include "core/base/budget.h"
+#include "core/base/system/budget.h"
 #include "core/exa/exa_blocks.h"
 #include "core/exa/exa_decode.h"
-#include "core/exa/offsets.h"
+#include "core/exa/offsets/offsets.h"
 #include "core/extract/extract.h"
 
 namespace dubsar {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/input_file.h"
+#include "core/base/files/input_file.h"
 #include "core/base/result.h"
 #include "core/exa/container.h"
 #include "core/exa/exa_text.h"

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/base/budget.h"
-#include "core/base/bytes.h"
-#include "core/base/json_text.h"
+#include "core/base/numbers/bytes.h"
+#include "core/base/system/budget.h"
+#include "core/base/text/json_text.h"
 #include "core/exa/chunks.h"
-#include "core/exa/paper_signs.h"
+#include "core/exa/paper/paper_signs.h"
 
 namespace dubsar {
 namespace {

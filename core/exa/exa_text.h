@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/enum_names.h"
 #include "core/base/result.h"
+#include "core/base/text/enum_names.h"
 #include "core/parts/surface_model.h"
-#include "core/relief/curvature.h"
+#include "core/relief/curvature/curvature.h"
 
 namespace dubsar {
 

@@ -4,9 +4,9 @@
 #include <atomic>
 #include <limits>
 
-#include "core/base/budget.h"
-#include "core/base/large_pages.h"
-#include "core/base/parallel.h"
+#include "core/base/system/budget.h"
+#include "core/base/system/large_pages.h"
+#include "core/base/system/parallel.h"
 #include "core/extract/cell_kernels.h"
 #include "core/extract/extract.h"
 #include "core/extract/open_boundary.h"

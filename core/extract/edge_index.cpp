@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/extract/row_kernels.h"
 
 namespace dubsar {

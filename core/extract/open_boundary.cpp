@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/base/parallel.h"
 #include "core/base/result.h"
+#include "core/base/system/parallel.h"
 #include "core/mesh/fans.h"
 
 namespace dubsar {

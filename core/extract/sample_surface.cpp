@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/budget.h"
-#include "core/base/parallel.h"
+#include "core/base/system/budget.h"
+#include "core/base/system/parallel.h"
 #include "core/extract/extract.h"
 #include "core/extract/row_kernels.h"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "core/base/parallel.h"
 #include "core/base/result.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {

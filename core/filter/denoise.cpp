@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/filter/bilateral_kernels.h"
 #include "core/filter/gauss_kernels.h"
 #include "core/filter/sharpen.h"

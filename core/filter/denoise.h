@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/base/enum_names.h"
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/base/text/enum_names.h"
 #include "core/filter/histogram.h"
 #include "core/volume/brick_mask.h"
 #include "core/volume/grid_store.h"

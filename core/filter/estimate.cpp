@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/filter/mixture.h"
 
 namespace dubsar {

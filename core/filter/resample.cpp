@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/filter/gauss_kernels.h"
 
 namespace dubsar {

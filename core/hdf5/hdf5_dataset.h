@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/numbers/scalar_type.h"
 #include "core/base/result.h"
-#include "core/base/scalar_type.h"
 
 namespace dubsar {
 

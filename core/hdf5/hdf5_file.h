@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/input_file.h"
+#include "core/base/files/input_file.h"
 #include "core/base/result.h"
 #include "core/hdf5/hdf5_dataset.h"
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/hdf5/chunk_encoder.h"
 #include "core/hdf5/library.h"
 

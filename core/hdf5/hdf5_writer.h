@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/numbers/scalar_type.h"
 #include "core/base/result.h"
-#include "core/base/scalar_type.h"
 
 namespace dubsar {
 

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/scalar_type.h"
+#include "core/base/numbers/scalar_type.h"
 
 namespace dubsar::hdf5 {
 

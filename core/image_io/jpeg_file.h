@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/base/budget.h"
 #include "core/base/result.h"
+#include "core/base/system/budget.h"
 #include "core/image_io/image.h"
 
 namespace dubsar {

@@ -4,8 +4,8 @@
 #include <array>
 #include <string_view>
 
-#include "core/base/file_suffix.h"
-#include "core/base/input_file.h"
+#include "core/base/files/file_suffix.h"
+#include "core/base/files/input_file.h"
 #include "core/image_io/jpeg_file.h"
 #include "core/image_io/png_file.h"
 #include "core/image_io/tiff_file.h"

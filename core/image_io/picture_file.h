@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "core/base/budget.h"
 #include "core/base/result.h"
+#include "core/base/system/budget.h"
 #include "core/image_io/image.h"
 
 namespace dubsar {

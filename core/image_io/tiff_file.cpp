@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <cstring>
 
-#include "core/base/atomic_file.h"
-#include "core/base/input_file.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/files/input_file.h"
 #include "core/image_io/srgb_profile.h"
 
 namespace dubsar {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "core/base/budget.h"
 #include "core/base/result.h"
+#include "core/base/system/budget.h"
 #include "core/image_io/image.h"
 
 namespace dubsar {

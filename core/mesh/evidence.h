@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/base/enum_names.h"
+#include "core/base/text/enum_names.h"
 
 namespace dubsar {
 

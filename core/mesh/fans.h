@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/disjoint_sets.h"
+#include "core/base/numbers/disjoint_sets.h"
 
 namespace dubsar {
 

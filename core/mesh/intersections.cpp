@@ -5,9 +5,9 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "core/base/morton_code.h"
-#include "core/base/parallel.h"
+#include "core/base/numbers/morton_code.h"
 #include "core/base/result.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <unordered_map>
 
-#include "core/base/median.h"
+#include "core/base/numbers/median.h"
 
 namespace dubsar {
 namespace {

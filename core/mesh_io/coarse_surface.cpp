@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/base/sort_unique.h"
+#include "core/base/numbers/sort_unique.h"
 #include "core/mesh_io/text_scanner.h"
 
 namespace dubsar {

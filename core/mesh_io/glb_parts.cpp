@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/atomic_file.h"
-#include "core/base/json_text.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/text/json_text.h"
 #include "core/mesh_io/glb_words.h"
 #include "core/mesh_io/mesh_io.h"
 #include "core/mesh_io/mesh_text.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/buffered_writer.h"
+#include "core/base/files/buffered_writer.h"
 #include "core/base/result.h"
 #include "core/mesh/tri_mesh.h"
 

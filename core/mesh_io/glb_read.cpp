@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "core/base/bytes.h"
-#include "core/base/json_text.h"
+#include "core/base/numbers/bytes.h"
+#include "core/base/text/json_text.h"
 #include "core/mesh_io/glb_words.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_text.h"

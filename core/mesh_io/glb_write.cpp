@@ -3,8 +3,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/base/buffered_writer.h"
-#include "core/base/json_text.h"
+#include "core/base/files/buffered_writer.h"
+#include "core/base/text/json_text.h"
 #include "core/mesh_io/glb_parts.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_output.h"

@@ -4,8 +4,8 @@
 #include <array>
 #include <limits>
 
-#include "core/base/file_suffix.h"
-#include "core/base/input_file.h"
+#include "core/base/files/file_suffix.h"
+#include "core/base/files/input_file.h"
 #include "core/mesh/vertex_attributes.h"
 #include "core/mesh_io/coarse_surface.h"
 #include "core/mesh_io/mesh_formats.h"

@@ -1,7 +1,7 @@
 #include "core/mesh_io/mesh_output.h"
 
 #include "core/mesh/vertex_attributes.h"
-#include "core/relief/shape_colors.h"
+#include "core/relief/curvature/shape_colors.h"
 
 namespace dubsar {
 

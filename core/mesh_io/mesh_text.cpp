@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/base/json_text.h"
+#include "core/base/text/json_text.h"
 
 namespace dubsar {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/buffered_writer.h"
+#include "core/base/files/buffered_writer.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_output.h"
 #include "core/mesh_io/mesh_text.h"

@@ -4,9 +4,9 @@
 #include <limits>
 #include <optional>
 
-#include "core/base/budget.h"
-#include "core/base/bytes.h"
-#include "core/base/log.h"
+#include "core/base/numbers/bytes.h"
+#include "core/base/system/budget.h"
+#include "core/base/system/log.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/ply_header.h"

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/budget.h"
-#include "core/base/buffered_writer.h"
+#include "core/base/files/buffered_writer.h"
+#include "core/base/system/budget.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_output.h"
 #include "core/mesh_io/progress_step.h"

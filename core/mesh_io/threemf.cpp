@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "core/base/markup_text.h"
+#include "core/base/text/markup_text.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_output.h"
 #include "core/mesh_io/progress_step.h"

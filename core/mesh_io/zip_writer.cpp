@@ -5,7 +5,7 @@
 #include <array>
 #include <limits>
 
-#include "core/base/bytes.h"
+#include "core/base/numbers/bytes.h"
 
 namespace dubsar {
 namespace {

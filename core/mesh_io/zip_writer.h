@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "core/base/result.h"
 
 namespace dubsar {

@@ -5,8 +5,8 @@
 #include <bit>
 #include <utility>
 
-#include "core/base/disjoint_sets.h"
-#include "core/base/parallel.h"
+#include "core/base/numbers/disjoint_sets.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {

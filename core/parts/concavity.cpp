@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/parts/face_roles.h"
 
 namespace dubsar {

@@ -3,7 +3,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/parts/air_space.h"
 
 namespace dubsar {

@@ -5,9 +5,9 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "core/base/disjoint_sets.h"
-#include "core/base/parallel.h"
-#include "core/base/sort_unique.h"
+#include "core/base/numbers/disjoint_sets.h"
+#include "core/base/numbers/sort_unique.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {

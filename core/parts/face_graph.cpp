@@ -2,7 +2,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {

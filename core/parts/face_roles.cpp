@@ -6,8 +6,8 @@
 #include <limits>
 #include <unordered_map>
 
-#include "core/base/disjoint_sets.h"
-#include "core/base/parallel.h"
+#include "core/base/numbers/disjoint_sets.h"
+#include "core/base/system/parallel.h"
 #include "core/parts/min_cut.h"
 
 namespace dubsar {

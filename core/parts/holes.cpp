@@ -6,8 +6,8 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "core/base/log.h"
-#include "core/base/parallel.h"
+#include "core/base/system/log.h"
+#include "core/base/system/parallel.h"
 #include "core/parts/border_loops.h"
 #include "core/parts/face_graph.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 

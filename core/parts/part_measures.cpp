@@ -1,7 +1,7 @@
 #include <array>
 #include <glm/geometric.hpp>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/mesh/mesh_check.h"
 #include "core/parts/surface_model.h"
 

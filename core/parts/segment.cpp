@@ -6,9 +6,9 @@
 #include <glm/vector_relational.hpp>
 #include <map>
 
-#include "core/base/log.h"
-#include "core/base/parallel.h"
-#include "core/base/sort_unique.h"
+#include "core/base/numbers/sort_unique.h"
+#include "core/base/system/log.h"
+#include "core/base/system/parallel.h"
 #include "core/parts/enclosure.h"
 #include "core/parts/face_roles.h"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/base/enum_names.h"
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/base/text/enum_names.h"
 #include "core/parts/face_graph.h"
 #include "core/parts/surface_model.h"
 

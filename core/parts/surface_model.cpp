@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/extract/triangulate.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh/vertex_attributes.h"

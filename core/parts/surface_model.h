@@ -37,8 +37,8 @@ struct SurfaceModel {
   PartitionTable partitions;
   std::vector<FillPatch> patches;
   std::string provenance;  ///< JSON text
-  /// Of positions, normals and curvatures (settled_sum(), core/exa/settle.h) where the last two follow from the first,
-  /// so that nobody has to compute them again to see that; 0: not known.
+  /// Of positions, normals and curvatures (settled_sum(), core/exa/offsets/settle.h) where the last two follow from the
+  /// first, so that nobody has to compute them again to see that; 0: not known.
   std::uint64_t settled_sum = 0;
 };
 

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/base/sort_unique.h"
+#include "core/base/numbers/sort_unique.h"
 #include "core/mesh/tri_mesh.h"
 
 namespace dubsar {

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <type_traits>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/mesh/fans.h"
 #include "core/mesh/vertex_attributes.h"
 

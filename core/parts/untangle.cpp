@@ -7,8 +7,8 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "core/base/log.h"
-#include "core/base/parallel.h"
+#include "core/base/system/log.h"
+#include "core/base/system/parallel.h"
 #include "core/extract/triangulate.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh/intersections.h"

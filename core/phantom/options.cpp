@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/base/budget.h"
+#include "core/base/system/budget.h"
 
 namespace dubsar::phantom {
 namespace {

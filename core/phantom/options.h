@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "core/base/enum_names.h"
 #include "core/base/result.h"
+#include "core/base/text/enum_names.h"
 #include "core/volume/volume.h"
 
 namespace dubsar::phantom {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/phantom/imaging_kernels.h"
 #include "core/phantom/random.h"
 #include "core/phantom/rasterise.h"

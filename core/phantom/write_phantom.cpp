@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/hdf5/hdf5_writer.h"
 #include "core/phantom/phantom_source.h"
 #include "core/phantom/rasterise.h"

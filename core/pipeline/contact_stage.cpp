@@ -1,6 +1,6 @@
 #include "core/pipeline/contact_stage.h"
 
-#include "core/exa/patches.h"
+#include "core/exa/patches/patches.h"
 
 namespace dubsar {
 

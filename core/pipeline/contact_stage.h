@@ -4,7 +4,7 @@
 #include "core/contact/trace.h"
 #include "core/filter/edge_spread.h"
 #include "core/pipeline/stage_clock.h"
-#include "core/volume/import.h"
+#include "core/volume/formats/import.h"
 
 namespace dubsar {
 

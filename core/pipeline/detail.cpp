@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/base/units.h"
+#include "core/base/numbers/units.h"
 #include "core/pipeline/forecast.h"
 
 namespace dubsar {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/base/enum_names.h"
+#include "core/base/text/enum_names.h"
 #include "core/volume/volume.h"
 
 namespace dubsar {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/extract/bit_volume.h"
 #include "core/extract/extract.h"
 #include "core/filter/resample.h"

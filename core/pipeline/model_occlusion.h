@@ -4,7 +4,7 @@
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/parts/surface_model.h"
-#include "core/relief/occlusion.h"
+#include "core/relief/occlusion/occlusion.h"
 
 namespace dubsar {
 

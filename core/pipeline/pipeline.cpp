@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "core/base/budget.h"
-#include "core/base/json_text.h"
+#include "core/base/system/budget.h"
+#include "core/base/text/json_text.h"
 #include "core/exa/exa_file.h"
 #include "core/pipeline/forecast.h"
 #include "core/pipeline/refine_stage.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/log.h"
+#include "core/base/system/log.h"
 #include "core/extract/extract.h"
 #include "core/pipeline/tapped_source.h"
 

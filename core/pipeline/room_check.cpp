@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/base/log.h"
+#include "core/base/system/log.h"
 #include "core/pipeline/forecast.h"
 #include "core/volume/grid_store.h"
 

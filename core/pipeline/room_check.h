@@ -1,10 +1,10 @@
 #pragma once
 // Will a run fit? Said before the scan is read.
 
-#include "core/base/budget.h"
+#include "core/base/system/budget.h"
 #include "core/pipeline/detail.h"
 #include "core/pipeline/stage_clock.h"
-#include "core/volume/import.h"
+#include "core/volume/formats/import.h"
 
 namespace dubsar {
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/clock.h"
 #include "core/base/progress.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar {
 

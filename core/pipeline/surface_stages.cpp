@@ -1,14 +1,14 @@
 #include "core/pipeline/surface_stages.h"
 
-#include "core/base/log.h"
-#include "core/exa/attributes.h"
-#include "core/exa/paper_profile.h"
-#include "core/exa/patch_disk.h"
-#include "core/exa/patches.h"
+#include "core/base/system/log.h"
+#include "core/exa/paper/paper_profile.h"
+#include "core/exa/patches/patch_disk.h"
+#include "core/exa/patches/patches.h"
+#include "core/exa/values/attributes.h"
 #include "core/extract/extract.h"
 #include "core/parts/enclosure.h"
 #include "core/pipeline/model_occlusion.h"
-#include "core/relief/shape_class.h"
+#include "core/relief/curvature/shape_class.h"
 
 namespace dubsar {
 

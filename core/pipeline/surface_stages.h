@@ -5,16 +5,16 @@
 #include <optional>
 
 #include "core/exa/exa_text.h"
-#include "core/exa/settle.h"
+#include "core/exa/offsets/settle.h"
 #include "core/mesh/mesh_check.h"
 #include "core/parts/holes.h"
 #include "core/parts/segment.h"
 #include "core/parts/surface_model.h"
 #include "core/parts/untangle.h"
 #include "core/pipeline/stage_clock.h"
-#include "core/relief/curvature.h"
-#include "core/relief/occlusion.h"
-#include "core/relief/smooth.h"
+#include "core/relief/curvature/curvature.h"
+#include "core/relief/occlusion/occlusion.h"
+#include "core/relief/smoothing/smooth.h"
 
 namespace dubsar {
 

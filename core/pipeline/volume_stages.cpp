@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "core/base/budget.h"
-#include "core/base/log.h"
-#include "core/base/units.h"
+#include "core/base/numbers/units.h"
+#include "core/base/system/budget.h"
+#include "core/base/system/log.h"
 #include "core/extract/extract.h"
 #include "core/filter/resample.h"
 #include "core/filter/sharpen.h"

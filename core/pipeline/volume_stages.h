@@ -13,8 +13,8 @@
 #include "core/filter/estimate.h"
 #include "core/pipeline/detail.h"
 #include "core/pipeline/stage_clock.h"
+#include "core/volume/formats/import.h"
 #include "core/volume/grid_store.h"
-#include "core/volume/import.h"
 
 namespace dubsar {
 

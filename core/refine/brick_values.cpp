@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "core/base/budget.h"
-#include "core/base/parallel.h"
+#include "core/base/system/budget.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {

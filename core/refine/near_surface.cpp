@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/filter/slice_ring.h"
 
 namespace dubsar {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "core/base/log.h"
-#include "core/base/parallel.h"
+#include "core/base/system/log.h"
+#include "core/base/system/parallel.h"
 #include "core/filter/sharpen.h"
 
 namespace dubsar {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {

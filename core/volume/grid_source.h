@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include "core/base/budget.h"
-#include "core/base/scratch_file.h"
+#include "core/base/files/scratch_file.h"
+#include "core/base/system/budget.h"
 #include "core/volume/slab_source.h"
 #include "core/volume/voxel_reader.h"
 

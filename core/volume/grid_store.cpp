@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <system_error>
 
-#include "core/base/parallel.h"
-#include "core/base/units.h"
+#include "core/base/numbers/units.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "core/base/budget.h"
-#include "core/base/scratch_file.h"
+#include "core/base/files/scratch_file.h"
+#include "core/base/system/budget.h"
 #include "core/volume/slab_source.h"
 
 namespace dubsar {

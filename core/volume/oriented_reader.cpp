@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/numbers/scalar_type.h"
 #include "core/base/result.h"
-#include "core/base/scalar_type.h"
 #include "core/volume/axis_order.h"
 #include "core/volume/volume.h"
 

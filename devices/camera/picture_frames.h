@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/frame_source.h"
 
 namespace dubsar {

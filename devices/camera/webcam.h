@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/camera/capture.h"
 #include "devices/device_info.h"
 #include "devices/frame_source.h"

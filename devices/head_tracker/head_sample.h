@@ -4,8 +4,8 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
-#include "core/base/clock.h"
-#include "core/base/pose.h"
+#include "core/base/numbers/pose.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar {
 

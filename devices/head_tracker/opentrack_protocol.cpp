@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/base/angle.h"
+#include "core/base/numbers/angle.h"
 
 namespace dubsar {
 namespace {

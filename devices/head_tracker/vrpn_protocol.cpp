@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "core/base/bytes.h"
+#include "core/base/numbers/bytes.h"
 #include "devices/head_tracker/byte_text.h"
 
 namespace dubsar {

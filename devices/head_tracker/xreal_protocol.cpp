@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/angle.h"
-#include "core/base/bytes.h"
+#include "core/base/numbers/angle.h"
+#include "core/base/numbers/bytes.h"
 #include "devices/head_tracker/byte_text.h"
 
 namespace dubsar {

@@ -3,7 +3,7 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include "core/base/angle.h"
+#include "core/base/numbers/angle.h"
 
 namespace dubsar {
 namespace {

@@ -5,7 +5,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "core/base/pose.h"
+#include "core/base/numbers/pose.h"
 
 namespace dubsar {
 

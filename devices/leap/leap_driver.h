@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "core/base/option_reader.h"
+#include "core/base/text/option_reader.h"
 #include "devices/device_driver.h"
 #include "devices/leap/leap_camera.h"
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar::leapc {
 

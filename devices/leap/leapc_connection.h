@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/base/clock.h"
 #include "core/base/result.h"
+#include "core/base/system/clock.h"
 #include "devices/leap/leapc_protocol.h"
 #include "devices/transport/transport.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/leap/lmc1_calibration.h"
 #include "devices/leap/lmc1_protocol.h"
 #include "devices/leap/stereo_camera.h"

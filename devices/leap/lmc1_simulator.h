@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/leap/hand_renderer.h"
 #include "devices/leap/lmc1_protocol.h"
 #include "devices/leap/uvc_simulator.h"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/frame_source.h"
 #include "devices/leap/lmc1_calibration.h"
 #include "devices/transport/transport.h"

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/transport/transport.h"
 #include "devices/uvc/uvc_descriptors.h"
 

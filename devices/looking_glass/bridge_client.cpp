@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/base/json_text.h"
+#include "core/base/text/json_text.h"
 #include "devices/transport/http_exchange.h"
 #include "devices/transport/socket_transport.h"
 

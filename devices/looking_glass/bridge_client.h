@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/transport/transport.h"
 
 namespace dubsar {

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/transport/transport.h"
 
 namespace dubsar {

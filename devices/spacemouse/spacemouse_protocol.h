@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/spacemouse/puck_sample.h"
 #include "devices/transport/transport.h"
 

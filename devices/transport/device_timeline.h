@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar {
 

@@ -10,7 +10,7 @@
 #include <mutex>
 #include <optional>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/udev_rule.h"
 
 namespace dubsar {

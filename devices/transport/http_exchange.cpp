@@ -4,7 +4,7 @@
 #include <array>
 #include <charconv>
 
-#include "core/base/lower_text.h"
+#include "core/base/text/lower_text.h"
 
 namespace dubsar {
 namespace {

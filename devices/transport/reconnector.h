@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/transport/retry_pause.h"
 #include "devices/transport/transport.h"
 

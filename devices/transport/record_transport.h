@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/base/clock.h"
-#include "core/base/growing_file.h"
+#include "core/base/files/growing_file.h"
+#include "core/base/system/clock.h"
 #include "devices/transport/wire_recording.h"
 
 namespace dubsar {

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/transport/wire_recording.h"
 
 namespace dubsar {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <system_error>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 
 namespace dubsar {
 namespace {

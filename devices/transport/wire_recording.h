@@ -21,8 +21,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/clock.h"
 #include "core/base/result.h"
+#include "core/base/system/clock.h"
 #include "devices/transport/transport.h"
 
 namespace dubsar {

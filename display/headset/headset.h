@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "core/base/clock.h"
-#include "core/base/pose.h"
+#include "core/base/numbers/pose.h"
 #include "core/base/result.h"
-#include "display/render/surface.h"
+#include "core/base/system/clock.h"
+#include "display/render/images/surface.h"
 
 namespace dubsar {
 

@@ -21,7 +21,7 @@
 
 #include <string>
 
-#include "core/base/pose.h"
+#include "core/base/numbers/pose.h"
 #include "core/base/result.h"
 
 namespace dubsar::openxr {

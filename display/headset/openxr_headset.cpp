@@ -1,8 +1,8 @@
 // The door: sessions that come and go behind one headset.
 
-#include "core/base/log.h"
+#include "core/base/system/log.h"
 #include "display/headset/openxr_session.h"
-#include "display/render/gl_objects.h"
+#include "display/render/context/gl_objects.h"
 
 namespace dubsar {
 namespace openxr {

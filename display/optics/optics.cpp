@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "display/optics/srgb.h"
 
 namespace dubsar {

@@ -1,8 +1,8 @@
 #pragma once
 // The figures of a lens sheet in JSON, under the names that profiles and calibrations have for them.
 
-#include "core/base/inch.h"
-#include "core/base/json_fields.h"
+#include "core/base/numbers/inch.h"
+#include "core/base/text/json_fields.h"
 #include "display/optics/lens.h"
 
 namespace dubsar {

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/base/atomic_file.h"
-#include "core/base/json_fields.h"
-#include "core/base/json_text.h"
-#include "core/base/parse_number.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/text/json_fields.h"
+#include "core/base/text/json_text.h"
+#include "core/base/text/parse_number.h"
 
 namespace dubsar {
 namespace fs = std::filesystem;

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "core/base/atomic_file.h"
-#include "core/base/json_fields.h"
-#include "core/base/json_text.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/text/json_fields.h"
+#include "core/base/text/json_text.h"
 #include "display/panels/lens_fields.h"
 #include "display/panels/panel_adjust.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/json_fields.h"
+#include "core/base/text/json_fields.h"
 #include "display/optics/optics.h"
 #include "display/panels/lens_fields.h"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/base/atomic_file.h"
-#include "core/base/json_text.h"
-#include "core/base/near_word.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/text/json_text.h"
+#include "core/base/text/near_word.h"
 #include "display/panels/embedded_profiles.h"
 #include "display/panels/panel_adjust.h"
 

@@ -5,7 +5,7 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar {
 namespace {

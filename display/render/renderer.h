@@ -5,13 +5,13 @@
 
 #include "core/base/result.h"
 #include "display/optics/view.h"
-#include "display/render/flat_pass.h"
-#include "display/render/instalments.h"
-#include "display/render/label_pass.h"
-#include "display/render/mesh_pass.h"
-#include "display/render/peel_pass.h"
+#include "display/render/passes/flat_pass.h"
+#include "display/render/passes/instalments.h"
+#include "display/render/passes/label_pass.h"
+#include "display/render/passes/mesh_pass.h"
+#include "display/render/passes/peel_pass.h"
+#include "display/render/passes/shadow_map.h"
 #include "display/render/scene.h"
-#include "display/render/shadow_map.h"
 #include "display/render/view_array.h"
 
 namespace dubsar {

@@ -10,7 +10,7 @@
 #include "core/base/result.h"
 #include "display/optics/view.h"
 #include "display/render/camera.h"
-#include "display/render/gl_objects.h"
+#include "display/render/context/gl_objects.h"
 #include "display/render/view_array.h"
 
 namespace dubsar {

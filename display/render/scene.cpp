@@ -7,8 +7,8 @@
 #include <glm/vec4.hpp>
 #include <limits>
 
-#include "display/render/lod_mesh.h"
-#include "display/render/slice_image.h"
+#include "display/render/images/slice_image.h"
+#include "display/render/mesh/lod_mesh.h"
 
 namespace dubsar {
 namespace {

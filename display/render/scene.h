@@ -17,9 +17,9 @@
 
 namespace dubsar {
 
-class LodMesh;     // display/render/lod_mesh.h
-class SliceImage;  // display/render/slice_image.h
-class LabelFont;   // display/render/label_font.h
+class LodMesh;     // display/render/mesh/lod_mesh.h
+class SliceImage;  // display/render/images/slice_image.h
+class LabelFont;   // display/render/images/label_font.h
 
 /// A surface in graphics memory. Outlives the pictures of it.
 struct MeshItem {

@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "core/base/near_word.h"
-#include "core/relief/shape_colors.h"
-#include "display/render/surface_field.h"
+#include "core/base/text/near_word.h"
+#include "core/relief/curvature/shape_colors.h"
+#include "display/render/mesh/surface_field.h"
 
 namespace dubsar {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "core/base/result.h"
 #include "core/image_io/image.h"
-#include "display/render/gl_objects.h"
+#include "display/render/context/gl_objects.h"
 
 namespace dubsar {
 

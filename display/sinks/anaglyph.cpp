@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "display/optics/srgb.h"
-#include "display/render/compose_pass.h"
+#include "display/render/passes/compose_pass.h"
 #include "display/render/view_array.h"
 #include "display/sinks/stereo_views.h"
 

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "core/image_io/image.h"
+#include "display/sinks/catalog/sink_options.h"
 #include "display/sinks/output_sink.h"
-#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "display/sinks/output_sink.h"
 
 namespace dubsar {

@@ -1,6 +1,6 @@
 #include "display/sinks/interlaced.h"
 
-#include "display/render/compose_pass.h"
+#include "display/render/passes/compose_pass.h"
 #include "display/render/view_array.h"
 #include "display/sinks/stereo_views.h"
 

@@ -3,8 +3,8 @@
 // a pixel belongs to follows from its place on the panel, not in the window.
 
 #include "core/image_io/image.h"
+#include "display/sinks/catalog/sink_options.h"
 #include "display/sinks/output_sink.h"
-#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 

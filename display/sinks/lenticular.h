@@ -2,8 +2,8 @@
 // Panels with a lens sheet: N views (Looking Glass and generic sheets), or two views woven for tracked eyes. The maths
 // and the CPU references are in display/optics/lens.h and display/optics/weave.h.
 
+#include "display/sinks/catalog/sink_options.h"
 #include "display/sinks/output_sink.h"
-#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 

@@ -1,6 +1,6 @@
 #include "display/sinks/mono.h"
 
-#include "display/render/compose_pass.h"
+#include "display/render/passes/compose_pass.h"
 #include "display/render/view_array.h"
 #include "display/sinks/copy_locations.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 // One view, from the middle between the eyes; and the sink that draws nothing.
 
+#include "display/sinks/catalog/sink_options.h"
 #include "display/sinks/output_sink.h"
-#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 

@@ -6,7 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <thread>
 
-#include "display/render/compose_pass.h"
+#include "display/render/passes/compose_pass.h"
 #include "display/render/view_array.h"
 
 namespace dubsar {

@@ -3,8 +3,8 @@
 // window shows what the left eye sees.
 
 #include "display/headset/headset.h"
+#include "display/sinks/catalog/sink_options.h"
 #include "display/sinks/output_sink.h"
-#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 

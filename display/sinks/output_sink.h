@@ -13,7 +13,7 @@
 #include "display/optics/off_axis.h"
 #include "display/optics/optics.h"
 #include "display/optics/view.h"
-#include "display/render/surface.h"
+#include "display/render/images/surface.h"
 
 namespace dubsar {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "display/render/compose_pass.h"
+#include "display/render/passes/compose_pass.h"
 #include "display/render/view_array.h"
 #include "display/sinks/copy_locations.h"
 #include "display/sinks/stereo_views.h"

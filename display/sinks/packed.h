@@ -4,8 +4,8 @@
 // black gap of 1/24 of a view's height (30 lines at 720, 45 at 1080).
 
 #include "core/image_io/image.h"
+#include "display/sinks/catalog/sink_options.h"
 #include "display/sinks/output_sink.h"
-#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 

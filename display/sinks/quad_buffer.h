@@ -2,8 +2,8 @@
 // Two views into the left and the right buffer of one window: shutter glasses, zSpace, polarised projectors, on drivers
 // with stereo visuals.
 
+#include "display/sinks/catalog/sink_options.h"
 #include "display/sinks/output_sink.h"
-#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 

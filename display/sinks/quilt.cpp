@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "display/render/compose_pass.h"
+#include "display/render/passes/compose_pass.h"
 #include "display/render/view_array.h"
 
 namespace dubsar {

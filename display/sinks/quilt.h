@@ -11,8 +11,8 @@
 
 #include "core/image_io/image.h"
 #include "display/panels/panel_profile.h"
+#include "display/sinks/catalog/sink_options.h"
 #include "display/sinks/output_sink.h"
-#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 

@@ -6,12 +6,12 @@
 #include <memory>
 #include <vector>
 
-#include "core/base/budget.h"
-#include "display/render/compose_pass.h"
-#include "display/render/context_egl.h"
-#include "display/render/lod_mesh.h"
+#include "core/base/system/budget.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/images/test_pattern.h"
+#include "display/render/mesh/lod_mesh.h"
+#include "display/render/passes/compose_pass.h"
 #include "display/render/renderer.h"
-#include "display/render/test_pattern.h"
 #include "display/render/view_array.h"
 
 namespace dubsar {

@@ -14,7 +14,7 @@
 #include "display/optics/optics.h"
 #include "display/render/camera.h"
 #include "display/render/shading.h"
-#include "display/sinks/sink_catalog.h"
+#include "display/sinks/catalog/sink_catalog.h"
 #include "display/sinks/view_pictures.h"
 
 namespace dubsar {
@@ -46,8 +46,8 @@ struct DisplayPicture {
 Result<DisplayPicture> render_display(const TriMesh& mesh, const SinkSpec& display, const DisplayOptions& options,
                                       Progress& progress);
 
-/// The numbered-view test pattern (display/render/test_pattern.h) as the display shows it. Uses the screen, the viewer
-/// and the catalog of `options`. Errors as render_display.
+/// The numbered-view test pattern (display/render/images/test_pattern.h) as the display shows it. Uses the screen, the
+/// viewer and the catalog of `options`. Errors as render_display.
 Result<DisplayPicture> render_pattern(const SinkSpec& display, const DisplayOptions& options);
 
 /// A picture that exists already, as the display shows it. Uses the screen, the viewer and the catalog of `options`.

@@ -2,8 +2,8 @@
 // Two views one after the other, each over the whole window, for shutter glasses in step with the monitor: projectors
 // with DLP Link, televisions and glasses of 100 Hz and more.
 
+#include "display/sinks/catalog/sink_options.h"
 #include "display/sinks/output_sink.h"
-#include "display/sinks/sink_options.h"
 
 namespace dubsar {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/image_io/png_file.h"
-#include "display/render/compose_pass.h"
+#include "display/render/passes/compose_pass.h"
 #include "display/render/view_array.h"
 #include "display/sinks/mono.h"
 

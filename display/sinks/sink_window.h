@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "display/render/context_glfw.h"
-#include "display/sinks/sink_catalog.h"
+#include "display/render/context/context_glfw.h"
+#include "display/sinks/catalog/sink_catalog.h"
 
 namespace dubsar {
 

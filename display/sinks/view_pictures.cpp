@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/lower_text.h"
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
+#include "core/base/text/lower_text.h"
 #include "display/optics/srgb.h"
 #include "display/render/view_array.h"
 #include "display/sinks/quilt.h"

@@ -2,7 +2,7 @@
 // Figures of the gesture recogniser. Defaults are those of shipped systems: grab and swipe of Ultraleap TouchFree,
 // pinch of the Ultraleap Unity plug-in.
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar {
 

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "core/base/json_fields.h"
-#include "core/base/json_text.h"
+#include "core/base/text/json_fields.h"
+#include "core/base/text/json_text.h"
 #include "input/navigation/embedded_mappings.h"
 
 namespace dubsar {

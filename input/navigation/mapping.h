@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/clock.h"
 #include "core/base/result.h"
+#include "core/base/system/clock.h"
 #include "input/gestures/gesture_options.h"
 #include "input/input_event.h"
 

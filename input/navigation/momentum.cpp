@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/angle.h"
+#include "core/base/numbers/angle.h"
 
 namespace dubsar {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/base/angle.h"
+#include "core/base/numbers/angle.h"
 #include "input/navigation/square_turn.h"
 
 namespace dubsar {

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <optional>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar {
 

@@ -6,7 +6,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar {
 

@@ -7,7 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar {
 

@@ -6,8 +6,8 @@
 #include <mutex>
 #include <thread>
 
-#include "core/base/log.h"
-#include "core/base/option_reader.h"
+#include "core/base/system/log.h"
+#include "core/base/text/option_reader.h"
 #include "devices/transport/retry_pause.h"
 #include "input/event_limit.h"
 #include "input/plugins/plugin_frame.h"

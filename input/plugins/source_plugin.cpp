@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "core/base/log.h"
+#include "core/base/system/log.h"
 
 namespace dubsar {
 namespace {

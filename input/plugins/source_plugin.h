@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "core/base/plugin_library.h"
+#include "core/base/system/plugin_library.h"
 #include "input/input_source.h"
 #include "input/plugins/source_plugin_abi.h"
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/base/pose.h"
+#include "core/base/numbers/pose.h"
 #include "input/simulated/script.h"
 
 namespace dubsar {

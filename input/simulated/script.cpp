@@ -6,8 +6,8 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 
-#include "core/base/json_fields.h"
-#include "core/base/json_text.h"
+#include "core/base/text/json_fields.h"
+#include "core/base/text/json_text.h"
 
 namespace dubsar {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/angle.h"
+#include "core/base/numbers/angle.h"
 #include "input/simulated/scripted_source.h"
 
 namespace dubsar {

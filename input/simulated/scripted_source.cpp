@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/input_file.h"
+#include "core/base/files/input_file.h"
 #include "input/simulated/visitor.h"
 #include "input/source_options.h"
 

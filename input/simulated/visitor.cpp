@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/base/angle.h"
+#include "core/base/numbers/angle.h"
 
 namespace dubsar {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <array>
 
-#include "core/base/angle.h"
-#include "core/base/option_reader.h"
-#include "core/base/parse_number.h"
+#include "core/base/numbers/angle.h"
+#include "core/base/text/option_reader.h"
+#include "core/base/text/parse_number.h"
 #include "devices/camera/capture.h"
 #include "devices/camera/picture_frames.h"
 #include "devices/camera/webcam.h"

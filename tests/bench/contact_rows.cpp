@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh/intersections.h"
 #include "core/phantom/write_phantom.h"

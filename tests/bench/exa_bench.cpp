@@ -15,13 +15,13 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "core/base/input_file.h"
-#include "core/base/parallel.h"
+#include "core/base/files/input_file.h"
+#include "core/base/system/parallel.h"
 #include "core/exa/chunks.h"
 #include "core/exa/exa_file.h"
-#include "core/exa/offsets.h"
-#include "core/exa/paper_signs.h"
-#include "core/exa/topology.h"
+#include "core/exa/offsets/offsets.h"
+#include "core/exa/paper/paper_signs.h"
+#include "core/exa/signs/topology.h"
 #include "core/extract/extract.h"
 #include "tests/bench/exa_goals.h"
 #include "tests/bench/exa_peers.h"

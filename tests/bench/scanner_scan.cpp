@@ -13,7 +13,7 @@
 #include <cstring>
 #include <memory>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/hdf5/chunk_encoder.h"
 #include "core/hdf5/hdf5_writer.h"
 #include "core/phantom/phantom_source.h"

@@ -14,20 +14,20 @@
 #include <string>
 #include <vector>
 
-#include "core/base/clock.h"
-#include "core/base/large_blocks.h"
-#include "core/base/parallel.h"
-#include "core/exa/settle.h"
+#include "core/base/system/clock.h"
+#include "core/base/system/large_blocks.h"
+#include "core/base/system/parallel.h"
+#include "core/exa/offsets/settle.h"
 #include "core/extract/extract.h"
 #include "core/extract/triangulate.h"
 #include "core/filter/denoise.h"
 #include "core/filter/resample.h"
 #include "core/mesh_io/mesh_io.h"
 #include "core/parts/segment.h"
-#include "core/relief/curvature.h"
-#include "core/relief/face_neighbours.h"
-#include "core/relief/occlusion.h"
-#include "core/relief/smooth.h"
+#include "core/relief/curvature/curvature.h"
+#include "core/relief/occlusion/occlusion.h"
+#include "core/relief/smoothing/face_neighbours.h"
+#include "core/relief/smoothing/smooth.h"
 
 namespace dubsar {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/filter/denoise.h"
 #include "core/filter/resample.h"
 #include "core/volume/volume.h"

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/log.h"
+#include "core/base/system/log.h"
 #include "tests/bench/contact_rows.h"
 #include "tests/bench/real_volumes.h"
 

@@ -11,7 +11,7 @@
 #include <regex>
 #include <set>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "devices/device_list.h"
 #include "devices/transport/replay_transport.h"
 #include "devices/transport/usb_transport.h"

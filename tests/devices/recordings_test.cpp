@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "devices/driver.h"
 #include "devices/spacemouse/spacemouse_protocol.h"
 #include "devices/transport/record_transport.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "display/optics/srgb.h"
 
 namespace dubsar::testing {

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "display/sinks/sink_spec.h"
+#include "display/sinks/catalog/sink_spec.h"
 
 namespace dubsar::testing {
 

@@ -9,7 +9,7 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 
 namespace dubsar::testing {
 namespace {

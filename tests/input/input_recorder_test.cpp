@@ -14,7 +14,7 @@
 #include <random>
 #include <thread>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "input/mixer.h"
 #include "input/navigation/navigation.h"
 #include "input/people/person_keeper.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/transport/transport.h"
 
 namespace dubsar::lab {

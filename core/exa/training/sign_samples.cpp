@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "core/exa/sign_brick.h"
-#include "core/exa/sign_model.h"
-#include "core/exa/topology.h"
+#include "core/exa/signs/sign_brick.h"
+#include "core/exa/signs/sign_model.h"
+#include "core/exa/signs/topology.h"
 
 namespace dubsar {
 namespace {

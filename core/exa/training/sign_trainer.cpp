@@ -7,9 +7,9 @@
 #include <numeric>
 #include <random>
 
-#include "core/base/parallel.h"
 #include "core/base/result.h"
-#include "core/exa/sign_brick.h"
+#include "core/base/system/parallel.h"
+#include "core/exa/signs/sign_brick.h"
 
 namespace dubsar {
 namespace {

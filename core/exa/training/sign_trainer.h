@@ -1,6 +1,6 @@
 #pragma once
 // Fits the weights of a network of signs by gradient descent (Kingma and Ba 2015) on the bits that the points take, and
-// rounds them to those of a file's version (core/exa/sign_model.h).
+// rounds them to those of a file's version (core/exa/signs/sign_model.h).
 
 #include <array>
 #include <cstdint>
@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/exa/sign_model.h"
+#include "core/exa/signs/sign_model.h"
 #include "core/exa/training/sign_samples.h"
 
 namespace dubsar {

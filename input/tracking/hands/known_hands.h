@@ -7,7 +7,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "input/tracking/hands/hand_search.h"
 
 namespace dubsar {

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "core/base/angle.h"
+#include "core/base/numbers/angle.h"
 
 namespace dubsar {
 namespace {

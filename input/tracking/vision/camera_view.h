@@ -6,7 +6,7 @@
 #include <glm/vec2.hpp>
 #include <numbers>
 
-#include "core/base/pose.h"
+#include "core/base/numbers/pose.h"
 
 namespace dubsar {
 

@@ -5,7 +5,7 @@
 #include <opencv2/core/utility.hpp>
 #include <opencv2/objdetect.hpp>
 
-#include "core/base/input_file.h"
+#include "core/base/files/input_file.h"
 
 namespace dubsar {
 

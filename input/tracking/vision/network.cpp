@@ -7,7 +7,7 @@
 #include <opencv2/dnn.hpp>
 #include <string>
 
-#include "core/base/input_file.h"
+#include "core/base/files/input_file.h"
 #include "input/tracking/vision/tflite_file.h"
 
 namespace dubsar {

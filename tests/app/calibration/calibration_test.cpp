@@ -7,7 +7,7 @@
 
 #include "app/calibration/auto_panel.h"
 #include "app/calibration/display_choice.h"
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "devices/looking_glass/bridge_client.h"
 #include "devices/looking_glass/looking_glass_sim.h"
 #include "tests/devices/fake_bridge.h"

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/publish/video.h"
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "core/image_io/picture_file.h"
 #include "tests/app/cli/run_program.h"
 

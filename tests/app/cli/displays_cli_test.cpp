@@ -16,7 +16,7 @@
 #include <string>
 #include <thread>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "core/image_io/picture_file.h"
 #include "core/image_io/png_file.h"
 #include "tests/app/cli/run_program.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "tests/app/cli/run_program.h"
 #include "tests/display/xvfb_server.h"
 

@@ -13,8 +13,8 @@
 #include <random>
 #include <set>
 
-#include "core/base/atomic_file.h"
-#include "core/base/input_file.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/files/input_file.h"
 #include "tests/app/cli/run_program.h"
 #include "tests/display/xvfb_server.h"
 

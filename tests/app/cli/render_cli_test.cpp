@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "core/image_io/png_file.h"
 #include "tests/app/cli/run_program.h"
 

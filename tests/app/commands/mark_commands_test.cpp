@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/document/mark_file.h"
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "tests/app/commands/bench.h"
 
 namespace dubsar::app {

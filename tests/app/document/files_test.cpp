@@ -5,7 +5,7 @@
 #include "app/document/file_kinds.h"
 #include "app/document/folder_listing.h"
 #include "app/document/recent_files.h"
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "tests/core/volume/temp_folder.h"
 
 namespace dubsar::app {

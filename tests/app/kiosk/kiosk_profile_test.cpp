@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "app/kiosk/words.h"
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 
 namespace dubsar::app {
 namespace {

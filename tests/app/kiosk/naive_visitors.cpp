@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "tests/app/kiosk/gallery_session.h"
 #include "tests/app/kiosk/gallery_visit.h"
 

@@ -11,7 +11,7 @@
 
 #include "app/kiosk/journal.h"
 #include "app/kiosk/service_notify.h"
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 
 namespace dubsar::app {
 namespace {

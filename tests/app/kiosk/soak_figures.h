@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/measurements.h"
+#include "core/base/numbers/measurements.h"
 
 namespace dubsar::app::test {
 

@@ -11,7 +11,7 @@
 
 #include "app/kiosk/words.h"
 #include "app/panels/panel_font.h"
-#include "display/render/utf8.h"
+#include "display/render/images/utf8.h"
 
 namespace dubsar::app {
 namespace {

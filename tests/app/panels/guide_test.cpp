@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "app/commands/key_table.h"
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "display/render/shading.h"
 
 namespace dubsar::app {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "app/panels/panel_font.h"
-#include "display/render/utf8.h"
+#include "display/render/images/utf8.h"
 
 namespace dubsar::app {
 namespace {

@@ -11,7 +11,7 @@
 #include "app/panels/panel_font.h"
 #include "app/publish/xmp.h"
 #include "core/image_io/tiff_file.h"
-#include "display/render/surface_field.h"
+#include "display/render/mesh/surface_field.h"
 
 namespace dubsar::app {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "display/render/context_egl.h"
-#include "display/render/lod_mesh.h"
-#include "display/render/render_image.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/images/render_image.h"
+#include "display/render/mesh/lod_mesh.h"
 #include "display/render/renderer.h"
 #include "display/render/view_array.h"
 

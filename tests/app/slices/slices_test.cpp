@@ -10,10 +10,10 @@
 #include <random>
 
 #include "app/slices/slice_reader.h"
-#include "core/base/file_fingerprint.h"
+#include "core/base/files/file_fingerprint.h"
 #include "core/phantom/phantom_source.h"
-#include "core/volume/import.h"
-#include "core/volume/import_raw.h"
+#include "core/volume/formats/import.h"
+#include "core/volume/formats/import_raw.h"
 #include "core/volume/slab_source.h"
 #include "tests/core/volume/read_all.h"
 #include "tests/display/test_meshes.h"

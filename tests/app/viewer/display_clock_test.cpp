@@ -1,6 +1,6 @@
 // When the light of a picture reaches the eye.
 
-#include "app/viewer/display_clock.h"
+#include "app/viewer/presenter/display_clock.h"
 
 #include <gtest/gtest.h>
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <thread>
 
-#include "app/viewer/stage.h"
-#include "core/base/clock.h"
-#include "display/render/compose_pass.h"
-#include "display/render/context_egl.h"
+#include "app/viewer/stage/stage.h"
+#include "core/base/system/clock.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/passes/compose_pass.h"
 #include "tests/display/spec.h"
 
 namespace dubsar::app {

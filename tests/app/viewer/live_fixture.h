@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "app/viewer/run_view.h"
-#include "display/render/compose_pass.h"
-#include "display/render/context_egl.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/passes/compose_pass.h"
 #include "tests/app/viewer/x_person.h"
 #include "tests/display/spec.h"
 #include "tests/display/test_meshes.h"

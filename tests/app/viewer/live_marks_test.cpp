@@ -5,7 +5,7 @@
 #include <set>
 
 #include "app/commands/sides.h"
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "tests/app/viewer/live_fixture.h"
 
 namespace dubsar::app {

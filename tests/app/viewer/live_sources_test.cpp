@@ -3,7 +3,7 @@
 #include <atomic>
 
 #include "app/calibration/adjust_window.h"
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "tests/app/viewer/live_fixture.h"
 #include "tests/input/recorded_frames.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "core/base/progress.h"
 #include "core/image_io/png_file.h"
 #include "core/mesh_io/mesh_io.h"

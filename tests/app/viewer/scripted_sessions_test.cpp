@@ -9,7 +9,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "input/simulated/script.h"
 #include "tests/display/test_meshes.h"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "app/viewer/run_view.h"
-#include "app/viewer/worn_input.h"
+#include "app/viewer/steering/worn_input.h"
 #include "tests/display/spec.h"
 #include "tests/display/test_meshes.h"
 #include "tests/openxr_runtime/worn_test.h"

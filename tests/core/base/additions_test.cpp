@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 
 namespace dubsar {
 namespace {
@@ -61,7 +61,7 @@ TEST(Additions, TheListsOfThePageNameTheirPlaces) {
   EXPECT_TRUE(files_to_touch("an attribute of vertices").contains("core/mesh/vertex_attributes.h"));
   EXPECT_TRUE(files_to_touch("an action").contains("app/commands"));
   EXPECT_TRUE(files_to_touch("a device").contains("devices/drivers.cpp"));
-  EXPECT_TRUE(files_to_touch("a sink").contains("display/sinks/sink_catalog.cpp"));
+  EXPECT_TRUE(files_to_touch("a sink").contains("display/sinks/catalog/sink_catalog.cpp"));
 }
 
 TEST(Additions, AFrameOfALeapGoesThroughAtMostTwelveFilesEachOfWhichHandsItToTheNext) {
@@ -76,7 +76,7 @@ TEST(Additions, AFrameOfALeapGoesThroughAtMostTwelveFilesEachOfWhichHandsItToThe
   ASSERT_GE(files.size(), 2U) << "docs/leap.md has no list of the way of a frame";
   EXPECT_LE(files.size(), 12U);
   EXPECT_EQ(files.front(), "devices/transport/usb_transport.cpp");
-  EXPECT_EQ(files.back(), "app/viewer/stage.cpp");
+  EXPECT_EQ(files.back(), "app/viewer/stage/stage.cpp");
   for (std::size_t i = 0; i + 1 < files.size(); ++i)
     for (const std::string& side : {files[i], files[i + 1]})
       EXPECT_TRUE(std::regex_search(text_of(side), std::regex("\\b" + calls[i] + "\\b")))

@@ -1,4 +1,4 @@
-#include "core/base/budget.h"
+#include "core/base/system/budget.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <unordered_map>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 
 namespace dubsar {
 namespace {

@@ -1,10 +1,10 @@
-#include "core/base/disjoint_sets.h"
+#include "core/base/numbers/disjoint_sets.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {

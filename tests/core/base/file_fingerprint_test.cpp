@@ -1,6 +1,6 @@
 // Copies are known, other files are told apart.
 
-#include "core/base/file_fingerprint.h"
+#include "core/base/files/file_fingerprint.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "core/base/growing_file.h"
+#include "core/base/files/growing_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -8,7 +8,7 @@
 #include <csignal>
 #include <fstream>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 
 namespace dubsar {
 namespace {

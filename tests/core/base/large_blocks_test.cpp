@@ -1,4 +1,4 @@
-#include "core/base/large_blocks.h"
+#include "core/base/system/large_blocks.h"
 
 #include <gtest/gtest.h>
 #include <malloc.h>

@@ -1,4 +1,4 @@
-#include "core/base/large_pages.h"
+#include "core/base/system/large_pages.h"
 
 #include <gtest/gtest.h>
 

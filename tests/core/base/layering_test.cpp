@@ -92,7 +92,7 @@ std::string text_of(const fs::path& file) {
 // docs.
 TEST(Layering, ASinkIsItsPairARowOfTheTableItsTestAndItsRowInTheDocs) {
   const fs::path root(DUBSAR_SOURCE_DIR);
-  const std::string table = text_of(root / "display/sinks/sink_catalog.cpp");
+  const std::string table = text_of(root / "display/sinks/catalog/sink_catalog.cpp");
   const std::string directions = text_of(root / "tests/display/sinks/directions_test.cpp");
   const std::string docs = text_of(root / "docs/displays.md");
   const std::regex row(R"re(\{"(\w+)",[^}]*?(make_\w+_sink)\})re");
@@ -113,7 +113,7 @@ TEST(Layering, ASinkIsItsPairARowOfTheTableItsTestAndItsRowInTheDocs) {
     EXPECT_TRUE(std::regex_search(docs, std::regex("\n\\|[^|]*\\b" + name + "\\b[^|]*\\|"))) << "no row of " << name;
     std::set<std::string> pairs;
     for (const std::string& user : users[make]) {
-      if (user == "display/sinks/sink_catalog.cpp") continue;
+      if (user == "display/sinks/catalog/sink_catalog.cpp") continue;
       EXPECT_TRUE(starts_with(user, "display/sinks/")) << make << " is known to " << user;
       pairs.insert(user.substr(0, user.rfind('.')));
     }

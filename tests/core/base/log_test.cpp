@@ -1,4 +1,4 @@
-#include "core/base/log.h"
+#include "core/base/system/log.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/base/markup_text.h"
+#include "core/base/text/markup_text.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/base/measurements.h"
+#include "core/base/numbers/measurements.h"
 
 #include <gtest/gtest.h>
 

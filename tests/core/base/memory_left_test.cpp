@@ -1,4 +1,4 @@
-#include "core/base/memory_left.h"
+#include "core/base/system/memory_left.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

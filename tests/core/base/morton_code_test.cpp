@@ -1,4 +1,4 @@
-#include "core/base/morton_code.h"
+#include "core/base/numbers/morton_code.h"
 
 #include <gtest/gtest.h>
 

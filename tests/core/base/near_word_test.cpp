@@ -1,4 +1,4 @@
-#include "core/base/near_word.h"
+#include "core/base/text/near_word.h"
 
 #include <gtest/gtest.h>
 

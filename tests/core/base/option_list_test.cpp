@@ -1,4 +1,4 @@
-#include "core/base/option_list.h"
+#include "core/base/text/option_list.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 
 namespace dubsar {
 namespace {

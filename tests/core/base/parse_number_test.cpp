@@ -1,4 +1,4 @@
-#include "core/base/parse_number.h"
+#include "core/base/text/parse_number.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "core/base/plain_text.h"
+#include "core/base/text/plain_text.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "core/base/json_text.h"
-#include "core/base/log.h"
+#include "core/base/system/log.h"
+#include "core/base/text/json_text.h"
 
 namespace dubsar {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "tests/core/contact/interface_scene.h"
 
 namespace dubsar {

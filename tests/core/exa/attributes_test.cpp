@@ -1,8 +1,8 @@
-#include "core/exa/attributes.h"
+#include "core/exa/values/attributes.h"
 
 #include <cmath>
 
-#include "core/exa/exact.h"
+#include "core/exa/values/exact.h"
 #include "tests/core/exa/exa_test_models.h"
 
 namespace dubsar {

@@ -1,7 +1,7 @@
 #include <ctime>
 
-#include "core/base/atomic_file.h"
-#include "core/exa/settle.h"
+#include "core/base/files/atomic_file.h"
+#include "core/exa/offsets/settle.h"
 #include "tests/core/exa/exa_test_models.h"
 
 namespace dubsar {

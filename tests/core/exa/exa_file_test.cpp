@@ -1,10 +1,10 @@
-#include "core/base/atomic_file.h"
-#include "core/base/bytes.h"
-#include "core/base/input_file.h"
-#include "core/base/parallel.h"
-#include "core/exa/attributes.h"
-#include "core/exa/settle.h"
-#include "core/relief/smooth.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/files/input_file.h"
+#include "core/base/numbers/bytes.h"
+#include "core/base/system/parallel.h"
+#include "core/exa/offsets/settle.h"
+#include "core/exa/values/attributes.h"
+#include "core/relief/smoothing/smooth.h"
 #include "tests/core/exa/exa_test_models.h"
 
 namespace dubsar {

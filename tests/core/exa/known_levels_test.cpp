@@ -1,12 +1,12 @@
 // What is known around a vertex, against the plain walk that the specification describes.
 
-#include "core/exa/known_levels.h"
+#include "core/exa/values/known_levels.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "core/exa/vertex_order.h"
+#include "core/exa/values/vertex_order.h"
 #include "tests/core/exa/exa_test_models.h"
 
 namespace dubsar {

@@ -8,12 +8,12 @@
 #include <random>
 
 #include "core/exa/exa_file.h"
-#include "core/exa/patches.h"
-#include "core/exa/settle.h"
+#include "core/exa/offsets/settle.h"
+#include "core/exa/patches/patches.h"
 #include "core/extract/extract.h"
 #include "core/parts/holes.h"
-#include "core/relief/shape_class.h"
-#include "core/relief/smooth.h"
+#include "core/relief/curvature/shape_class.h"
+#include "core/relief/smoothing/smooth.h"
 
 namespace {
 using namespace dubsar;

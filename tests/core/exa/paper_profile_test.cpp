@@ -1,8 +1,8 @@
-#include "core/exa/paper_profile.h"
+#include "core/exa/paper/paper_profile.h"
 
-#include "core/exa/paper_signs.h"
-#include "core/exa/paper_words.h"
-#include "core/exa/topology.h"
+#include "core/exa/paper/paper_signs.h"
+#include "core/exa/paper/paper_words.h"
+#include "core/exa/signs/topology.h"
 #include "tests/core/exa/exa_test_models.h"
 #include "tests/core/exa/sign_volume.h"
 

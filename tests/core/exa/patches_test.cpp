@@ -1,4 +1,4 @@
-#include "core/exa/patches.h"
+#include "core/exa/patches/patches.h"
 
 #include "core/parts/holes.h"
 #include "tests/core/exa/exa_test_models.h"

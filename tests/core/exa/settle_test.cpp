@@ -1,12 +1,12 @@
-#include "core/exa/settle.h"
+#include "core/exa/offsets/settle.h"
 
-#include "core/base/parallel.h"
-#include "core/exa/escape_choice.h"
-#include "core/exa/exact.h"
-#include "core/exa/offset_choice.h"
-#include "core/exa/offsets.h"
-#include "core/relief/curvature.h"
-#include "core/relief/smooth.h"
+#include "core/base/system/parallel.h"
+#include "core/exa/offsets/escape_choice.h"
+#include "core/exa/offsets/offset_choice.h"
+#include "core/exa/offsets/offsets.h"
+#include "core/exa/values/exact.h"
+#include "core/relief/curvature/curvature.h"
+#include "core/relief/smoothing/smooth.h"
 #include "tests/core/exa/exa_test_models.h"
 
 namespace dubsar {

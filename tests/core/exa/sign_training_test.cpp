@@ -8,8 +8,8 @@
 #include <random>
 #include <sstream>
 
-#include "core/exa/sign_brick.h"
-#include "core/exa/topology.h"
+#include "core/exa/signs/sign_brick.h"
+#include "core/exa/signs/topology.h"
 #include "core/exa/training/sign_trainer.h"
 
 namespace dubsar {

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "core/base/parallel.h"
-#include "core/exa/settle.h"
+#include "core/base/system/parallel.h"
+#include "core/exa/offsets/settle.h"
 #include "tests/core/exa/exa_test_models.h"
 
 namespace dubsar {

@@ -1,4 +1,4 @@
-#include "core/exa/topology.h"
+#include "core/exa/signs/topology.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "tests/core/exa/sign_volume.h"
 
 namespace dubsar {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/extract/extract.h"
 #include "core/extract/triangulate.h"
 #include "core/mesh/mesh_check.h"

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/filter/resample.h"
 #include "tests/core/filter/filter_oracle.h"
 #include "tests/core/volume/read_all.h"

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "tests/core/filter/filter_oracle.h"
 
 namespace dubsar {

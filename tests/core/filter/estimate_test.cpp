@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/filter/mixture.h"
 #include "core/filter/resample.h"
 #include "tests/core/filter/filter_oracle.h"

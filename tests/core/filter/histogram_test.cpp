@@ -6,7 +6,7 @@
 #include <map>
 #include <numeric>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "tests/core/filter/filter_oracle.h"
 
 namespace dubsar {

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "tests/core/filter/filter_oracle.h"
 #include "tests/core/volume/read_all.h"
 

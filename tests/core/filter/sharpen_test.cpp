@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "tests/core/volume/read_all.h"
 
 namespace dubsar {

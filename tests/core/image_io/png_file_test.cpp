@@ -11,7 +11,7 @@
 #include <iterator>
 #include <string>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 
 namespace dubsar {
 namespace {

@@ -4,8 +4,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/base/bytes.h"
-#include "core/base/input_file.h"
+#include "core/base/files/input_file.h"
+#include "core/base/numbers/bytes.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "mesh_samples.h"
 

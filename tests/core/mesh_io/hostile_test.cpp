@@ -3,8 +3,8 @@
 
 #include <random>
 
-#include "core/base/atomic_file.h"
-#include "core/base/input_file.h"
+#include "core/base/files/atomic_file.h"
+#include "core/base/files/input_file.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_output.h"
 #include "mesh_samples.h"

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "core/base/input_file.h"
+#include "core/base/files/input_file.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "mesh_samples.h"
 

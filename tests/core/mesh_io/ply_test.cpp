@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 
-#include "core/base/bytes.h"
-#include "core/base/input_file.h"
+#include "core/base/files/input_file.h"
+#include "core/base/numbers/bytes.h"
 #include "core/mesh_io/mesh_formats.h"
-#include "core/relief/shape_colors.h"
+#include "core/relief/curvature/shape_colors.h"
 #include "mesh_samples.h"
 
 namespace dubsar {

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
-#include "core/base/bytes.h"
-#include "core/base/input_file.h"
+#include "core/base/files/input_file.h"
+#include "core/base/numbers/bytes.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "mesh_samples.h"
 

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "core/base/input_file.h"
+#include "core/base/files/input_file.h"
 #include "core/mesh_io/mesh_io.h"
 #include "tests/core/mesh_io/mesh_samples.h"
 

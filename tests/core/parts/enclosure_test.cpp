@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "tests/core/parts/grid_scene.h"
 
 namespace dubsar {

@@ -8,7 +8,7 @@
 
 #include "core/extract/extract.h"
 #include "core/parts/surface_model.h"
-#include "core/relief/smooth.h"
+#include "core/relief/smoothing/smooth.h"
 
 namespace dubsar::scene {
 

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/mesh/mesh_check.h"
 #include "core/parts/face_roles.h"
 #include "core/parts/holes.h"

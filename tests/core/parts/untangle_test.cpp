@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh/intersections.h"
 #include "core/mesh/mesh_check.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar::phantom {
 

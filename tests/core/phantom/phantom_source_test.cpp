@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/filter/resample.h"
 #include "core/phantom/write_phantom.h"
 #include "tests/core/volume/read_all.h"

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/phantom/random.h"
 #include "core/phantom/write_phantom.h"
 

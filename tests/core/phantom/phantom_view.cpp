@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/phantom/phantom.h"
 
 using namespace dubsar;

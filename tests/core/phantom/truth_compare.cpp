@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/phantom/cell_lists.h"
 
 namespace dubsar::phantom {

@@ -8,7 +8,7 @@
 
 #include <filesystem>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "core/phantom/write_phantom.h"
 #include "core/pipeline/pipeline.h"
 

@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "core/base/input_file.h"
-#include "core/base/parallel.h"
+#include "core/base/files/input_file.h"
+#include "core/base/system/parallel.h"
 #include "core/phantom/write_phantom.h"
 
 namespace dubsar {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/filter/resample.h"
 
 namespace dubsar {

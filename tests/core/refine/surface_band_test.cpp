@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/extract/extract.h"
 #include "core/filter/resample.h"
 #include "core/phantom/phantom_source.h"

@@ -1,4 +1,4 @@
-#include "core/relief/curvature.h"
+#include "core/relief/curvature/curvature.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
-#include "core/base/parallel.h"
-#include "core/relief/shape_class.h"
-#include "core/relief/smooth.h"
+#include "core/base/system/parallel.h"
+#include "core/relief/curvature/shape_class.h"
+#include "core/relief/smoothing/smooth.h"
 #include "tests/core/mesh/shape_meshes.h"
 
 namespace dubsar {

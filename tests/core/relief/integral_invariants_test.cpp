@@ -1,6 +1,6 @@
 // Shares of balls inside of bodies whose volumes are known.
 
-#include "core/relief/integral_invariants.h"
+#include "core/relief/curvature/integral_invariants.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <map>
 #include <numbers>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {

@@ -1,6 +1,6 @@
 // Curvatures of triangle meshes against surfaces whose curvatures are known.
 
-#include "core/relief/mesh_curvature.h"
+#include "core/relief/curvature/mesh_curvature.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/relief/occlusion.h"
+#include "core/relief/occlusion/occlusion.h"
 
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
@@ -10,8 +10,8 @@
 #include <numeric>
 #include <random>
 
-#include "core/base/parallel.h"
-#include "core/relief/smooth.h"
+#include "core/base/system/parallel.h"
+#include "core/relief/smoothing/smooth.h"
 #include "tests/core/mesh/shape_meshes.h"
 
 namespace dubsar {

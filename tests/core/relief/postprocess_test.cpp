@@ -9,10 +9,10 @@
 #include "core/extract/extract.h"
 #include "core/extract/triangulate.h"
 #include "core/mesh/mesh_check.h"
-#include "core/relief/curvature.h"
-#include "core/relief/occlusion.h"
-#include "core/relief/shape_class.h"
-#include "core/relief/smooth.h"
+#include "core/relief/curvature/curvature.h"
+#include "core/relief/curvature/shape_class.h"
+#include "core/relief/occlusion/occlusion.h"
+#include "core/relief/smoothing/smooth.h"
 #include "tests/core/extract/random_volume.h"
 
 namespace dubsar {

@@ -1,7 +1,7 @@
 // Normals and curvatures in vector units, against the same written down plainly in double, on surfaces of noise with
 // every kind of x-quad, in several blocks.
 
-#include "core/relief/quad_sums.h"
+#include "core/relief/smoothing/quad_sums.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -13,13 +13,13 @@
 #include <glm/vec2.hpp>
 #include <map>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "core/extract/extract.h"
-#include "core/relief/corner_weights.h"
-#include "core/relief/curvature.h"
-#include "core/relief/face_median.h"
-#include "core/relief/scatter_blocks.h"
-#include "core/relief/smooth.h"
+#include "core/relief/curvature/curvature.h"
+#include "core/relief/smoothing/corner_weights.h"
+#include "core/relief/smoothing/face_median.h"
+#include "core/relief/smoothing/scatter_blocks.h"
+#include "core/relief/smoothing/smooth.h"
 #include "tests/core/extract/random_volume.h"
 
 namespace dubsar {

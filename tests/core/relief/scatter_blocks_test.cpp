@@ -1,4 +1,4 @@
-#include "core/relief/scatter_blocks.h"
+#include "core/relief/smoothing/scatter_blocks.h"
 
 #include <gtest/gtest.h>
 

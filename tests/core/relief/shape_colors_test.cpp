@@ -1,11 +1,11 @@
-#include "core/relief/shape_colors.h"
+#include "core/relief/curvature/shape_colors.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
-#include "core/relief/shape_class.h"
+#include "core/relief/curvature/shape_class.h"
 
 namespace dubsar {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/relief/shape_lanes.h"
+#include "core/relief/curvature/shape_lanes.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/relief/shape_class.h"
+#include "core/relief/curvature/shape_class.h"
 
 namespace dubsar {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/relief/smooth.h"
+#include "core/relief/smoothing/smooth.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -8,7 +8,7 @@
 #include <map>
 #include <random>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "tests/core/mesh/shape_meshes.h"
 
 namespace dubsar {

@@ -1,4 +1,4 @@
-#include "core/relief/surface_bricks.h"
+#include "core/relief/occlusion/surface_bricks.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <random>
 
-#include "core/base/parallel.h"
+#include "core/base/system/parallel.h"
 #include "tests/core/mesh/shape_meshes.h"
 
 namespace dubsar {

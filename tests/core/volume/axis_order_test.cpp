@@ -10,7 +10,7 @@
 #include <functional>
 #include <random>
 
-#include "core/volume/import.h"
+#include "core/volume/formats/import.h"
 #include "tests/core/volume/hdf5_fixture.h"
 #include "tests/core/volume/temp_folder.h"
 

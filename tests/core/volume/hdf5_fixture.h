@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/scalar_type.h"
+#include "core/base/numbers/scalar_type.h"
 
 namespace dubsar::testing_tools {
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/volume/import.h"
+#include "core/volume/formats/import.h"
 #include "tests/core/image_io/tiff_fixture.h"
 #include "tests/core/volume/temp_folder.h"
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
-#include "core/base/parallel.h"
-#include "core/volume/import.h"
+#include "core/base/system/parallel.h"
+#include "core/volume/formats/import.h"
 #include "tests/core/volume/temp_folder.h"
 #include "tests/core/volume/written_scan.h"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "core/hdf5/hdf5_file.h"
-#include "core/volume/import.h"
+#include "core/volume/formats/import.h"
 #include "tests/core/volume/hdf5_fixture.h"
 #include "tests/core/volume/temp_folder.h"
 

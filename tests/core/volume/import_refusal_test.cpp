@@ -10,7 +10,7 @@
 #include "core/hdf5/hdf5_file.h"
 #include "core/hdf5/hdf5_filters.h"
 #include "core/hdf5/hdf5_writer.h"
-#include "core/volume/import.h"
+#include "core/volume/formats/import.h"
 #include "tests/core/volume/hdf5_fixture.h"
 #include "tests/core/volume/temp_folder.h"
 

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "core/image_io/png_file.h"
 #include "tests/core/image_io/jpeg_picture.h"
 

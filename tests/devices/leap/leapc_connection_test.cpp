@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <thread>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/leap/leapc_library.h"
 #include "fake_hand.h"
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <thread>
 
-#include "core/base/option_reader.h"
+#include "core/base/text/option_reader.h"
 #include "fake_hand.h"
 #include "input/sources/leapc_hands.h"
 

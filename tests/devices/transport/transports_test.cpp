@@ -10,7 +10,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "devices/transport/hotplug_watch.h"
 #include "devices/transport/reconnector.h"
 #include "devices/transport/record_transport.h"

@@ -10,14 +10,14 @@
 #include <filesystem>
 #include <glm/gtc/constants.hpp>
 
-#include "display/render/compose_pass.h"
-#include "display/render/context_egl.h"
-#include "display/render/context_glfw.h"
-#include "display/render/lod_mesh.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/context/context_glfw.h"
+#include "display/render/mesh/lod_mesh.h"
+#include "display/render/passes/compose_pass.h"
 #include "display/render/renderer.h"
 #include "display/render/view_array.h"
+#include "display/sinks/catalog/sink_catalog.h"
 #include "display/sinks/render_display.h"
-#include "display/sinks/sink_catalog.h"
 #include "tests/display/spec.h"
 #include "tests/display/test_meshes.h"
 #include "tests/display/xvfb_server.h"

@@ -7,9 +7,9 @@
 
 #include <filesystem>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "display/panels/panel_calibration.h"
-#include "display/sinks/sink_catalog.h"
+#include "display/sinks/catalog/sink_catalog.h"
 
 namespace dubsar {
 namespace {

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "display/panels/embedded_profiles.h"
 
 namespace dubsar {

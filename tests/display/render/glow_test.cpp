@@ -6,8 +6,8 @@
 #include <array>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "display/render/context_egl.h"
-#include "display/render/lod_mesh.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/mesh/lod_mesh.h"
 #include "display/render/renderer.h"
 #include "tests/display/test_meshes.h"
 

@@ -1,6 +1,6 @@
 // Packing of a mesh for the GPU: precision, order, refusals.
 
-#include "display/render/gpu_mesh.h"
+#include "display/render/mesh/gpu_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <thread>
 #include <utility>
 
-#include "display/render/lod_mesh.h"
+#include "display/render/mesh/lod_mesh.h"
 
 namespace dubsar::testing {
 

@@ -1,6 +1,6 @@
 // Exact pictures that are drawn in pieces, and meshes that come piece by piece: the same bytes as in one go.
 
-#include "display/render/instalments.h"
+#include "display/render/passes/instalments.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <string>
 
 #include "display/optics/off_axis.h"
-#include "display/render/context_egl.h"
-#include "display/render/lod.h"
-#include "display/render/lod_mesh.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/mesh/lod.h"
+#include "display/render/mesh/lod_mesh.h"
 #include "display/render/multi_view.h"
 #include "tests/display/render/grown_mesh.h"
 #include "tests/display/test_meshes.h"

@@ -8,9 +8,9 @@
 #include <iterator>
 #include <memory>
 
-#include "display/render/context_egl.h"
-#include "display/render/label_font.h"
-#include "display/render/lod_mesh.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/images/label_font.h"
+#include "display/render/mesh/lod_mesh.h"
 #include "display/render/renderer.h"
 #include "tests/display/test_meshes.h"
 

@@ -10,10 +10,10 @@
 #include <numbers>
 
 #include "display/optics/srgb.h"
-#include "display/render/context_egl.h"
-#include "display/render/lod.h"
-#include "display/render/lod_mesh.h"
-#include "display/render/render_image.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/images/render_image.h"
+#include "display/render/mesh/lod.h"
+#include "display/render/mesh/lod_mesh.h"
 #include "display/render/renderer.h"
 #include "tests/display/test_meshes.h"
 

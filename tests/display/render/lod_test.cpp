@@ -1,4 +1,4 @@
-#include "display/render/lod.h"
+#include "display/render/mesh/lod.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "display/optics/off_axis.h"
-#include "display/render/mesh_pass.h"
 #include "display/render/multi_view.h"
+#include "display/render/passes/mesh_pass.h"
 #include "tests/display/test_meshes.h"
 
 namespace dubsar {

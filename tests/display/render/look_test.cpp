@@ -4,14 +4,14 @@
 
 #include <cmath>
 
-#include "core/base/atomic_file.h"
-#include "core/relief/integral_invariants.h"
+#include "core/base/files/atomic_file.h"
+#include "core/relief/curvature/integral_invariants.h"
 #include "display/optics/srgb.h"
-#include "display/render/context_egl.h"
-#include "display/render/field_maker.h"
-#include "display/render/legend_image.h"
-#include "display/render/lod_mesh.h"
-#include "display/render/render_image.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/images/legend_image.h"
+#include "display/render/images/render_image.h"
+#include "display/render/mesh/field_maker.h"
+#include "display/render/mesh/lod_mesh.h"
 #include "display/render/renderer.h"
 #include "tests/display/render/grown_mesh.h"
 #include "tests/display/test_meshes.h"

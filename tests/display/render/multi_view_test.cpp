@@ -8,11 +8,11 @@
 #include <memory>
 #include <numbers>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "display/optics/off_axis.h"
-#include "display/render/context_egl.h"
-#include "display/render/lod.h"
-#include "display/render/lod_mesh.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/mesh/lod.h"
+#include "display/render/mesh/lod_mesh.h"
 #include "tests/display/render/grown_mesh.h"
 #include "tests/display/test_meshes.h"
 

@@ -1,6 +1,6 @@
 // A page in the world: where each view sees it, and how much shines through.
 
-#include "display/render/page_pass.h"
+#include "display/render/passes/page_pass.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <array>
 
 #include "display/optics/off_axis.h"
-#include "display/render/context_egl.h"
+#include "display/render/context/context_egl.h"
 
 namespace dubsar {
 namespace {

@@ -8,13 +8,13 @@
 #include <map>
 
 #include "core/exa/exa_file.h"
-#include "core/exa/settle.h"
+#include "core/exa/offsets/settle.h"
 #include "core/mesh/simplify.h"
 #include "core/mesh_io/mesh_io.h"
 #include "core/parts/holes.h"
 #include "core/parts/segment.h"
 #include "core/pipeline/model_occlusion.h"
-#include "display/render/gpu_mesh.h"
+#include "display/render/mesh/gpu_mesh.h"
 #include "tests/core/parts/grid_scene.h"
 
 namespace dubsar {

@@ -1,6 +1,6 @@
 // Whole pictures against geometry: areas, scale, sides, colours.
 
-#include "display/render/render_image.h"
+#include "display/render/images/render_image.h"
 
 #include <gtest/gtest.h>
 

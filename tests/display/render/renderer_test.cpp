@@ -10,9 +10,9 @@
 #include <string_view>
 
 #include "display/render/camera.h"
-#include "display/render/context_egl.h"
-#include "display/render/embedded_shaders.h"
-#include "display/render/lod_mesh.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/context/embedded_shaders.h"
+#include "display/render/mesh/lod_mesh.h"
 #include "tests/display/test_meshes.h"
 
 namespace dubsar {

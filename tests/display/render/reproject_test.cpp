@@ -10,8 +10,8 @@
 #include <numbers>
 
 #include "display/optics/off_axis.h"
-#include "display/render/context_egl.h"
-#include "display/render/lod_mesh.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/mesh/lod_mesh.h"
 #include "display/render/multi_view.h"
 #include "tests/display/test_meshes.h"
 

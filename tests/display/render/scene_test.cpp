@@ -8,10 +8,10 @@
 #include <memory>
 
 #include "display/optics/srgb.h"
-#include "display/render/context_egl.h"
-#include "display/render/lod_mesh.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/images/slice_image.h"
+#include "display/render/mesh/lod_mesh.h"
 #include "display/render/renderer.h"
-#include "display/render/slice_image.h"
 #include "tests/display/test_meshes.h"
 
 namespace dubsar {

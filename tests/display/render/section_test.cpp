@@ -7,8 +7,8 @@
 #include <memory>
 #include <numbers>
 
-#include "display/render/context_egl.h"
-#include "display/render/lod_mesh.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/mesh/lod_mesh.h"
 #include "display/render/renderer.h"
 #include "tests/display/test_meshes.h"
 

@@ -6,7 +6,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "core/relief/shape_colors.h"
+#include "core/relief/curvature/shape_colors.h"
 
 namespace dubsar {
 namespace {

@@ -1,4 +1,4 @@
-#include "display/render/test_pattern.h"
+#include "display/render/images/test_pattern.h"
 
 #include <gtest/gtest.h>
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <memory>
 
-#include "display/render/compose_pass.h"
-#include "display/render/context_egl.h"
-#include "display/render/context_glfw.h"
-#include "display/render/test_pattern.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/context/context_glfw.h"
+#include "display/render/images/test_pattern.h"
+#include "display/render/passes/compose_pass.h"
 #include "display/render/view_array.h"
 #include "display/sinks/sink_window.h"
 #include "tests/display/xvfb_server.h"

@@ -1,5 +1,5 @@
 /* Plug-ins that must be refused: BROKEN says how. */
-#include "display/sinks/plugin_abi.h"
+#include "display/sinks/catalog/plugin_abi.h"
 
 #define WRONG_ABI 1
 #define SMALL_TABLE 2

@@ -13,19 +13,19 @@
 #include <memory>
 #include <numbers>
 
-#include "core/base/atomic_file.h"
+#include "core/base/files/atomic_file.h"
 #include "display/optics/optics.h"
 #include "display/optics/srgb.h"
 #include "display/panels/panel_set.h"
-#include "display/render/compose_pass.h"
-#include "display/render/context_egl.h"
-#include "display/render/test_pattern.h"
+#include "display/render/context/context_egl.h"
+#include "display/render/images/test_pattern.h"
+#include "display/render/passes/compose_pass.h"
 #include "display/render/view_array.h"
+#include "display/sinks/catalog/sink_catalog.h"
 #include "display/sinks/field_cadence.h"
 #include "display/sinks/interlaced.h"
 #include "display/sinks/openxr.h"
 #include "display/sinks/quilt.h"
-#include "display/sinks/sink_catalog.h"
 #include "tests/display/reference_pictures.h"
 
 namespace dubsar {

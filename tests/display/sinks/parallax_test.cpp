@@ -10,7 +10,7 @@
 
 #include "display/optics/comfort.h"
 #include "display/panels/panel_set.h"
-#include "display/sinks/sink_catalog.h"
+#include "display/sinks/catalog/sink_catalog.h"
 
 namespace dubsar {
 namespace {

@@ -5,8 +5,8 @@
 #include <array>
 #include <filesystem>
 
-#include "display/render/test_pattern.h"
-#include "display/sinks/plugin_sink.h"
+#include "display/render/images/test_pattern.h"
+#include "display/sinks/catalog/plugin_sink.h"
 #include "display/sinks/render_display.h"
 #include "display/sinks/sink_window.h"
 #include "tests/display/spec.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <glm/vec4.hpp>
 
-#include "display/render/test_pattern.h"
+#include "display/render/images/test_pattern.h"
 #include "display/sinks/output_sink.h"
 #include "display/sinks/quilt.h"
 #include "tests/display/spec.h"

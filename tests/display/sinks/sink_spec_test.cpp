@@ -1,4 +1,4 @@
-#include "display/sinks/sink_spec.h"
+#include "display/sinks/catalog/sink_spec.h"
 
 #include <gtest/gtest.h>
 

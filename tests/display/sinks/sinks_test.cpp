@@ -6,10 +6,10 @@
 #include <set>
 
 #include "display/sinks/anaglyph.h"
+#include "display/sinks/catalog/sink_catalog.h"
 #include "display/sinks/interlaced.h"
 #include "display/sinks/packed.h"
 #include "display/sinks/quilt.h"
-#include "display/sinks/sink_catalog.h"
 #include "tests/display/reference_pictures.h"
 
 namespace dubsar {

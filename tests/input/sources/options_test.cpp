@@ -1,4 +1,4 @@
-#include "core/base/option_reader.h"
+#include "core/base/text/option_reader.h"
 #include "devices/drivers.h"
 #include "input/source_spec.h"
 #include "tests/input/sources/source_bench.h"

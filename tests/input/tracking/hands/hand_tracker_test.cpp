@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/leap/hand_renderer.h"
 #include "devices/leap/lmc1_simulator.h"
 #include "tests/devices/leap/one_kind.h"

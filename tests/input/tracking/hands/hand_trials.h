@@ -4,7 +4,7 @@
 #include <random>
 #include <span>
 
-#include "core/base/clock.h"
+#include "core/base/system/clock.h"
 #include "devices/frame_source.h"
 #include "devices/leap/hand_renderer.h"
 

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <random>
 
-#include "core/base/input_file.h"
+#include "core/base/files/input_file.h"
 #include "input/tracking/vision/model_files.h"
 #include "input/tracking/vision/tflite_file.h"
 #include "tests/input/tracking/vision/small_nets.h"

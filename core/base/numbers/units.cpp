@@ -1,0 +1,83 @@
+#include "core/base/numbers/units.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/base/text/lower_text.h"
+
+namespace dubsar {
+namespace {
+std::string lower_trimmed(std::string_view text) {
+  std::string out = lower_text(text);
+  std::erase_if(out, [](unsigned char c) { return std::isspace(c) != 0; });
+  return out;
+}
+}  // namespace
+
+std::optional<double> mm_per_unit(std::string_view unit) {
+  static constexpr std::array<std::pair<std::string_view, double>, 34> kUnits{{
+      {"m", 1e3},           {"meter", 1e3},       {"meters", 1e3},       {"metre", 1e3},       {"metres", 1e3},
+      {"cm", 10.0},         {"centimeter", 10.0}, {"centimeters", 10.0}, {"centimetre", 10.0}, {"centimetres", 10.0},
+      {"mm", 1.0},          {"millimeter", 1.0},  {"millimeters", 1.0},  {"millimetre", 1.0},  {"millimetres", 1.0},
+      {"um", 1e-3},         {"\xc2\xb5m", 1e-3},  {"\xce\xbcm", 1e-3},   {"\xb5m", 1e-3},      {"micron", 1e-3},
+      {"microns", 1e-3},    {"micrometer", 1e-3}, {"micrometers", 1e-3}, {"micrometre", 1e-3}, {"micrometres", 1e-3},
+      {"\\u00b5m", 1e-3},   {"nm", 1e-6},         {"nanometer", 1e-6},   {"nanometers", 1e-6}, {"nanometre", 1e-6},
+      {"nanometres", 1e-6}, {"in", 25.4},         {"inch", 25.4},        {"inches", 25.4},
+  }};
+  const std::string key = lower_trimmed(unit);
+  for (const auto& [name, mm] : kUnits)
+    if (key == name) return mm;
+  return std::nullopt;
+}
+
+Result<double> parse_length_mm(std::string_view text) {
+  const std::string compact = lower_trimmed(text);
+  double value = 0.0;
+  const char* const last = compact.data() + compact.size();
+  const auto [end, error] = std::from_chars(compact.data(), last, value);
+  const auto unit = mm_per_unit(std::string_view(end, static_cast<std::size_t>(last - end)));
+  if (error != std::errc() || !unit || !std::isfinite(value))
+    return fail(ErrorKind::kUsage,
+                "length \"{}\" not understood, expected a number with a unit such as 38um or 0.038mm", text);
+  return value * *unit;
+}
+
+Result<std::uint64_t> parse_bytes(std::string_view text) {
+  static constexpr std::array<std::pair<std::string_view, int>, 15> kShifts{{
+      {"", 0},
+      {"b", 0},
+      {"k", 10},
+      {"kb", 10},
+      {"kib", 10},
+      {"m", 20},
+      {"mb", 20},
+      {"mib", 20},
+      {"g", 30},
+      {"gb", 30},
+      {"gib", 30},
+      {"t", 40},
+      {"tb", 40},
+      {"tib", 40},
+      {"bytes", 0},
+  }};
+  constexpr double kMost = 0x1p60;
+  const std::string compact = lower_trimmed(text);
+  double value = 0.0;
+  const char* const last = compact.data() + compact.size();
+  const auto [end, error] = std::from_chars(compact.data(), last, value);
+  const std::string_view unit(end, static_cast<std::size_t>(last - end));
+  const auto* const shift =
+      std::find_if(kShifts.begin(), kShifts.end(), [&](const auto& known) { return known.first == unit; });
+  if (error == std::errc() && shift != kShifts.end()) value = std::ldexp(value, shift->second);
+  if (error != std::errc() || shift == kShifts.end() || !(value >= 1.0 && value <= kMost))
+    return fail(ErrorKind::kUsage, "size \"{}\" not understood, expected a number with a unit such as 6G or 512M",
+                text);
+  return static_cast<std::uint64_t>(value);
+}
+
+}  // namespace dubsar

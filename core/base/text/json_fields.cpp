@@ -1,0 +1,89 @@
+#include "core/base/text/json_fields.h"
+
+#include <cmath>
+
+namespace dubsar {
+using nlohmann::json;
+
+const json* JsonFields::find(const char* name) const {
+  if (!has(name)) return nullptr;
+  const json& value = object_->at(name);
+  return value.is_object() && value.contains("value") ? &value.at("value") : &value;
+}
+
+void JsonFields::complain(std::string sentence) {
+  if (complaint_.empty()) complaint_ = where_ + ": " + std::move(sentence);
+}
+
+double JsonFields::number(const char* name, double low, double high, const double* fallback) {
+  const json* const value = find(name);
+  if (value == nullptr) {
+    if (fallback != nullptr) return *fallback;
+    complain(fmt::format("{} is missing, expected a number of {} to {}", name, low, high));
+    return low;
+  }
+  if (!value->is_number()) {
+    complain(fmt::format("{} is {}, expected a number of {} to {}", name, value->type_name(), low, high));
+    return low;
+  }
+  const double found = value->get<double>();
+  if (!std::isfinite(found) || found < low || found > high) {
+    complain(fmt::format("{} is {}, expected {} to {}", name, found, low, high));
+    return low;
+  }
+  return found;
+}
+
+int JsonFields::integer(const char* name, int low, int high, const int* fallback) {
+  const double as_double = fallback != nullptr ? *fallback : 0.0;
+  const double found = number(name, low, high, fallback != nullptr ? &as_double : nullptr);
+  if (found != std::floor(found)) complain(fmt::format("{} is {}, expected a whole number", name, found));
+  return static_cast<int>(found);
+}
+
+bool JsonFields::flag(const char* name, bool fallback) {
+  const json* const value = find(name);
+  if (value == nullptr) return fallback;
+  if (value->is_boolean()) return value->get<bool>();
+  if (value->is_number()) return value->get<double>() >= 0.5;
+  complain(fmt::format("{} is {}, expected true, false, 0 or 1", name, value->type_name()));
+  return fallback;
+}
+
+std::string JsonFields::text(const char* name, const char* fallback) {
+  const json* const value = find(name);
+  if (value == nullptr) {
+    if (fallback != nullptr) return fallback;
+    complain(fmt::format("{} is missing, expected a text", name));
+    return {};
+  }
+  if (value->is_string()) return value->get<std::string>();
+  if (value->is_number()) return value->dump();
+  complain(fmt::format("{} is {}, expected a text", name, value->type_name()));
+  return {};
+}
+
+const json& JsonFields::list(const char* name, std::size_t most) {
+  static const json kEmpty = json::array();
+  if (!has(name)) return kEmpty;
+  const json& value = object_->at(name);
+  if (value.is_array() && value.size() <= most) return value;
+  complain(fmt::format("{} is not a list of at most {} things", name, most));
+  return kEmpty;
+}
+
+Result<void> check_list(const json& object, const char* name, std::size_t least, std::size_t most,
+                        const std::string& where) {
+  const bool fits = object.is_object() && object.contains(name) && object.at(name).is_array() &&
+                    object.at(name).size() >= least && object.at(name).size() <= most;
+  if (fits) return {};
+  return fail(ErrorKind::kBadData, "{}: \"{}\" is no list of {} {} {}", where, name,
+              least == 0 ? "at most" : fmt::format("{} to", least), most, name);
+}
+
+Result<void> JsonFields::finish() const {
+  if (!complaint_.empty()) return fail(ErrorKind::kConfig, "{}", complaint_);
+  return {};
+}
+
+}  // namespace dubsar

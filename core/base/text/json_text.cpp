@@ -1,0 +1,58 @@
+#include "core/base/text/json_text.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace dubsar {
+namespace {
+int nesting_depth(std::string_view text) {
+  int depth = 0, deepest = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '[' || c == '{') {
+      deepest = std::max(deepest, ++depth);
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+  return deepest;
+}
+}  // namespace
+
+Result<nlohmann::json> parse_json(std::string_view text, std::string_view what) {
+  if (text.size() > kJsonMaxBytes)
+    return fail(ErrorKind::kBadData, "{}: JSON text of {} bytes found, expected at most {}", what, text.size(),
+                kJsonMaxBytes);
+  if (const int depth = nesting_depth(text); depth > kJsonMaxDepth)
+    return fail(ErrorKind::kBadData, "{}: JSON is nested {} deep, expected at most {}", what, depth, kJsonMaxDepth);
+  nlohmann::json parsed = nlohmann::json::parse(text, nullptr, false);
+  if (parsed.is_discarded()) return fail(ErrorKind::kBadData, "{}: the JSON text is broken", what);
+  return parsed;
+}
+
+Result<int> json_version(const nlohmann::json& object, std::string_view format, int oldest, int newest,
+                         std::string_view what) {
+  if (!object.is_object() || !object.contains("format") || object.at("format") != format)
+    return fail(ErrorKind::kBadData, "{}: found other JSON, expected \"format\": \"{}\"", what, format);
+  const nlohmann::json version = object.value("version", nlohmann::json("none"));
+  if (version.is_number_integer() && version >= oldest && version <= newest) return version.get<int>();
+  return fail(ErrorKind::kBadData, "{}: version {} found, expected {}; a newer dubsar may have written it", what,
+              version == "none" ? "none" : dump_json(version),
+              oldest == newest ? fmt::format("{}", newest) : fmt::format("{} to {}", oldest, newest));
+}
+
+std::string dump_json(const nlohmann::json& value) {
+  return value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
+
+std::string dump_json_lines(const nlohmann::json& value) {
+  return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace dubsar

@@ -1,0 +1,304 @@
+#include "core/relief/occlusion/occlusion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "core/base/numbers/morton_code.h"
+#include "core/base/system/parallel.h"
+#include "core/relief/occlusion/march_kernels.h"
+#include "core/relief/occlusion/ray_scene.h"
+#include "core/relief/occlusion/surface_bricks.h"
+
+namespace dubsar {
+namespace {
+
+constexpr std::int64_t kOcclusionGrain = 256;  // vertices: 41 k rays, some 10 ms
+constexpr std::size_t kLanes = kernels::MarchStart::kMost;
+constexpr PartitionId kNoBody = PartitionTable::kNone;
+
+struct RayFrame {
+  glm::vec3 x, y, z;
+};
+
+/// Right-handed frame about a unit vector, without branches (Duff et al. 2017).
+RayFrame frame_about(glm::vec3 n) {
+  const float sign = std::copysign(1.0f, n.z), p = -1.0f / (sign + n.z), q = n.x * n.y * p;
+  return {{1.0f + sign * n.x * n.x * p, sign * q, -sign * n.x}, {q, sign + n.y * n.y * p, -n.y}, n};
+}
+
+bool finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// Up to 16 vertices whose rays are followed together, since neighbours look the same way.
+struct VertexGroup {
+  std::array<std::uint32_t, kLanes> ids{};
+  std::array<glm::vec3, kLanes> origins{};
+  std::array<RayFrame, kLanes> frames{};
+  std::size_t count = 0;
+
+  void add(std::uint32_t vertex, glm::vec3 origin, glm::vec3 normal) {
+    ids[count] = vertex;
+    origins[count] = origin;
+    frames[count] = frame_about(normal);
+    ++count;
+  }
+};
+
+/// What the surface takes from each of a group's vertices, summed over the rays. Any thread.
+class Tracer {
+ public:
+  virtual ~Tracer() = default;
+  virtual std::array<float, kLanes> taken(const VertexGroup& group) const = 0;
+};
+
+/// Exact, by Embree: one direction of the sky for all vertices at a time.
+class TriangleTracer final : public Tracer {
+ public:
+  static Result<std::unique_ptr<Tracer>> create(RayDevice& device, std::span<const Triangle> triangles,
+                                                const SkyRays& sky, float radius_vox, Progress& progress) {
+    auto out = std::make_unique<TriangleTracer>(sky, radius_vox);
+    DUBSAR_ASSIGN(out->scene_, RayScene::build(device, triangles, progress));
+    return out;
+  }
+  TriangleTracer(const SkyRays& sky, float radius_vox) : sky_(sky), radius_vox_(radius_vox) {}
+
+  std::array<float, kLanes> taken(const VertexGroup& group) const override {
+    std::array<float, kLanes> out{};
+    for (std::size_t first = 0; first < group.count; first += RayPacket::kRays) trace(group, first, out);
+    return out;
+  }
+
+ private:
+  void trace(const VertexGroup& group, std::size_t first, std::array<float, kLanes>& out) const {
+    const std::size_t count = std::min<std::size_t>(group.count - first, RayPacket::kRays);
+    RayPacket packet;
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::vec3& origin = group.origins[first + i];
+      packet.origin_x[i] = origin.x;
+      packet.origin_y[i] = origin.y;
+      packet.origin_z[i] = origin.z;
+      packet.active[i] = true;
+    }
+    for (std::size_t ray = 0; ray < sky_.directions.size(); ++ray) {
+      const glm::vec3 local = sky_.directions[ray];
+      for (std::size_t i = 0; i < count; ++i) {
+        const RayFrame& f = group.frames[first + i];
+        packet.direction_x[i] = f.x.x * local.x + f.y.x * local.y + f.z.x * local.z;
+        packet.direction_y[i] = f.x.y * local.x + f.y.y * local.y + f.z.y * local.z;
+        packet.direction_z[i] = f.x.z * local.x + f.y.z * local.y + f.z.z * local.z;
+      }
+      packet.distance.fill(radius_vox_);
+      scene_->intersect(packet);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (!packet.hit[i]) continue;
+        const float near = packet.from_behind[i] ? 1.0f : 1.0f - packet.distance[i] / radius_vox_;
+        out[first + i] += sky_.weights[ray] * std::max(near, 0.0f);
+      }
+    }
+  }
+
+  const SkyRays& sky_;
+  float radius_vox_;
+  std::unique_ptr<RayScene> scene_;
+};
+
+/// Through distances on the voxels, several times as fast.
+class BrickTracer final : public Tracer {
+ public:
+  static Result<std::unique_ptr<Tracer>> create(std::span<const glm::vec3> positions,
+                                                std::span<const Triangle> triangles, const SkyRays& sky,
+                                                float radius_vox, Progress& progress) {
+    auto out = std::make_unique<BrickTracer>(sky, radius_vox);
+    DUBSAR_ASSIGN(out->bricks_, SurfaceBricks::build(positions, triangles, progress));
+    return out;
+  }
+  BrickTracer(const SkyRays& sky, float radius_vox) : radius_vox_(radius_vox), weights_(sky.weights) {
+    for (const glm::vec3& d : sky.directions)
+      for (std::size_t axis = 0; axis < 3; ++axis) directions_[axis].push_back(d[static_cast<int>(axis)]);
+  }
+
+  std::array<float, kLanes> taken(const VertexGroup& group) const override {
+    kernels::MarchStart start;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const std::size_t from = i < group.count ? i : 0;
+      const RayFrame& f = group.frames[from];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int a = static_cast<int>(axis);
+        start.origin[axis][i] = group.origins[from][a];
+        start.frame[axis][i] = f.x[a];
+        start.frame[axis + 3][i] = f.y[a];
+        start.frame[axis + 6][i] = f.z[a];
+      }
+    }
+    std::array<float, kLanes> out{};
+    kernels::march(
+        bricks_,
+        {directions_[0].data(), directions_[1].data(), directions_[2].data(), weights_.data(), weights_.size()},
+        radius_vox_, start, out);
+    return out;
+  }
+
+ private:
+  float radius_vox_;
+  std::span<const float> weights_;
+  std::array<std::vector<float>, 3> directions_;
+  SurfaceBricks bricks_;
+};
+
+/// Vertices `ids` in an order where neighbours lie in the same small box and look to the same side.
+void sort_by_place_and_side(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
+                            std::vector<std::uint32_t>& ids) {
+  constexpr float kBoxEdge = 4.0f;
+  glm::vec3 low(INFINITY);
+  for (const std::uint32_t v : ids) low = glm::min(low, positions[v]);
+  struct Item {
+    std::uint64_t key;
+    std::uint32_t vertex;
+  };
+  std::vector<Item> items(ids.size());
+  parallel_for(static_cast<std::int64_t>(ids.size()), 1 << 14, [&](std::int64_t i) {
+    const std::uint32_t v = ids[static_cast<std::size_t>(i)];
+    const glm::vec3 box = glm::min((positions[v] - low) / kBoxEdge, glm::vec3(1e6f)), n = normals[v];
+    const glm::vec3 size = glm::abs(n);
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const auto side = 2 * static_cast<std::uint64_t>(axis) + (n[axis] < 0.0f ? 1 : 0);
+    items[static_cast<std::size_t>(i)] = {(morton_code(box) << 3) | side, v};
+  });
+  const auto before = [](const Item& a, const Item& b) { return a.key != b.key ? a.key < b.key : a.vertex < b.vertex; };
+  constexpr std::int64_t kParts = 8;  // sorted each, then merged in pairs
+  const auto count = static_cast<std::int64_t>(items.size());
+  const auto border = [&](std::int64_t part) { return items.begin() + part * count / kParts; };
+  parallel_for(kParts, 1, [&](std::int64_t part) { std::sort(border(part), border(part + 1), before); });
+  for (std::int64_t width = 1; width < kParts; width *= 2)
+    parallel_for(kParts / (2 * width), 1, [&](std::int64_t pair) {
+      const std::int64_t first = 2 * width * pair;
+      std::inplace_merge(border(first), border(first + width), border(first + 2 * width), before);
+    });
+  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = items[i].vertex;
+}
+
+Result<void> check_indices(std::span<const Triangle> triangles, std::size_t vertices) {
+  const std::uint32_t largest = parallel_reduce(
+      static_cast<std::int64_t>(triangles.size()), 1 << 16, 0u,
+      [&](std::int64_t begin, std::int64_t end) {
+        std::uint32_t part = 0;
+        for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t)
+          part = std::max({part, triangles[t][0], triangles[t][1], triangles[t][2]});
+        return part;
+      },
+      [](std::uint32_t a, std::uint32_t b) { return std::max(a, b); });
+  if (!triangles.empty() && largest >= vertices)
+    return fail(ErrorKind::kBadData, "occlusion: a triangle names vertex {}, the mesh has {}", largest, vertices);
+  return {};
+}
+
+std::vector<PartitionId> bodies_of_vertices(const LitSurface& surface) {
+  std::vector<PartitionId> bodies(surface.positions.size(), surface.bodies.empty() ? PartitionId{0} : kNoBody);
+  for (std::size_t t = 0; t < surface.bodies.size(); ++t)
+    for (const std::uint32_t v : surface.triangles[t]) bodies[v] = std::min(bodies[v], surface.bodies[t]);
+  std::replace(bodies.begin(), bodies.end(), kNoBody, PartitionId{0});
+  return bodies;
+}
+
+/// The triangles of a body: where they lie together as they are, else copied to `own`.
+std::span<const Triangle> triangles_of(const LitSurface& surface, PartitionId id, std::vector<Triangle>& own) {
+  const auto& bodies = surface.bodies;
+  const auto first = std::find(bodies.begin(), bodies.end(), id);
+  const auto end = std::find_if(first, bodies.end(), [&](PartitionId other) { return other != id; });
+  if (std::find(end, bodies.end(), id) == bodies.end())
+    return surface.triangles.subspan(static_cast<std::size_t>(first - bodies.begin()),
+                                     static_cast<std::size_t>(end - first));
+  own.clear();
+  for (std::size_t t = 0; t < bodies.size(); ++t)
+    if (bodies[t] == id) own.push_back(surface.triangles[t]);
+  return own;
+}
+
+}  // namespace
+
+SkyRays sky_rays(int count) {
+  DUBSAR_CHECK(count >= 1 && count <= 65536);
+  constexpr double kGoldenAngle = 2.39996322972865332;  // pi (3 - sqrt 5)
+  SkyRays sky;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1.0 - (i + 0.5) / count, r = std::sqrt(1.0 - z * z), azimuth = i * kGoldenAngle;
+    sky.directions.emplace_back(r * std::cos(azimuth), r * std::sin(azimuth), z);
+    const double weight = r * std::sqrt(z);
+    sky.weights.push_back(static_cast<float>(weight));
+    sky.weight_sum += weight;
+  }
+  return sky;
+}
+
+Result<std::vector<float>> ambient_light(const LitSurface& surface, const OcclusionOptions& options,
+                                         Progress& progress) {
+  const auto& [positions, normals, triangles, bodies] = surface;
+  DUBSAR_CHECK(normals.size() == positions.size());
+  DUBSAR_CHECK(bodies.empty() || bodies.size() == triangles.size());
+  DUBSAR_CHECK(options.radius_vox > 0.0f);
+  DUBSAR_TRY(check_indices(triangles, positions.size()));
+  const SkyRays sky = sky_rays(options.rays);
+  const auto count = static_cast<std::int64_t>(positions.size());
+  progress.begin("ambient occlusion", count * options.rays, "ray");
+  std::vector<float> light(positions.size(), 1.0f);
+  std::unique_ptr<RayDevice> device;
+  if (options.engine == OcclusionEngine::kTriangles) {
+    DUBSAR_ASSIGN(device, RayDevice::create(positions, thread_count()));
+  }
+
+  const std::vector<PartitionId> body_of = bodies_of_vertices(surface);
+  std::array<bool, 256> used{};
+  for (const PartitionId id : body_of) used[id] = true;
+  std::vector<Triangle> own;
+  std::vector<std::uint32_t> ids;
+  for (std::size_t id = 0; id < used.size(); ++id) {
+    if (!used[id]) continue;
+    std::span<const Triangle> part = triangles;
+    if (!bodies.empty()) part = triangles_of(surface, static_cast<PartitionId>(id), own);
+    DUBSAR_ASSIGN(const auto tracer, device ? TriangleTracer::create(*device, part, sky, options.radius_vox, progress)
+                                            : BrickTracer::create(positions, part, sky, options.radius_vox, progress));
+    ids.clear();
+    std::int64_t skipped = 0;
+    for (std::uint32_t v = 0; v < positions.size(); ++v) {
+      if (body_of[v] != id) continue;
+      if (finite(positions[v]) && finite(normals[v]))
+        ids.push_back(v);
+      else
+        ++skipped;
+    }
+    sort_by_place_and_side(positions, normals, ids);
+    parallel_chunks(static_cast<std::int64_t>(ids.size()), kOcclusionGrain, [&](std::int64_t begin, std::int64_t end) {
+      const auto sum = static_cast<float>(sky.weight_sum);
+      VertexGroup group;
+      for (std::int64_t i = begin; i < end; ++i) {
+        const std::uint32_t v = ids[static_cast<std::size_t>(i)];
+        group.add(v, surface.positions[v] + options.offset_vox * surface.normals[v], surface.normals[v]);
+        if (group.count < kLanes && i + 1 < end) continue;
+        if (progress.cancelled()) return;
+        const auto taken = tracer->taken(group);
+        for (std::size_t k = 0; k < group.count; ++k)
+          light[group.ids[k]] = std::clamp(1.0f - taken[k] / sum, 0.0f, 1.0f);
+        group.count = 0;
+      }
+      progress.advance((end - begin) * options.rays);
+    });
+    progress.advance(skipped * options.rays);
+    if (progress.cancelled()) return cancelled_error();
+  }
+  progress.end();
+  return light;
+}
+
+Result<std::vector<std::uint8_t>> ambient_occlusion(const LitSurface& surface, const OcclusionOptions& options,
+                                                    Progress& progress) {
+  DUBSAR_ASSIGN(const std::vector<float> light, ambient_light(surface, options, progress));
+  std::vector<std::uint8_t> steps(light.size());
+  parallel_for(static_cast<std::int64_t>(light.size()), 1 << 16, [&](std::int64_t i) {
+    const auto v = static_cast<std::size_t>(i);
+    steps[v] = static_cast<std::uint8_t>(std::lround(63.0f * light[v]));
+  });
+  return steps;
+}
+
+}  // namespace dubsar

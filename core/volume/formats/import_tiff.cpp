@@ -1,0 +1,293 @@
+#include "core/volume/formats/import_tiff.h"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "core/base/numbers/units.h"
+#include "core/base/system/parallel.h"
+#include "core/image_io/tiff_file.h"
+#include "core/volume/formats/flat_reader.h"
+
+namespace dubsar {
+namespace {
+namespace fs = std::filesystem;
+
+struct Slice {
+  fs::path file;
+  std::uint64_t page = 0;
+};
+
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+// Runs of digits compare by value, everything else by byte.
+bool natural_less(const std::string& a, const std::string& b) {
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      const auto run = [](const std::string& text, std::size_t& at) {
+        while (at < text.size() && text[at] == '0') ++at;
+        const std::size_t begin = at;
+        while (at < text.size() && is_digit(text[at])) ++at;
+        return text.substr(begin, at - begin);
+      };
+      const std::string m = run(a, i), n = run(b, j);
+      if (m.size() != n.size()) return m.size() < n.size();
+      if (m != n) return m < n;
+    } else if (a[i] != b[j]) {
+      return a[i] < b[j];
+    } else {
+      ++i;
+      ++j;
+    }
+  }
+  if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
+  return a < b;
+}
+
+std::optional<ScalarType> type_of(const TiffPage& page) {
+  const char* const kind = page.sample == TiffPage::Sample::kUnsigned ? "uint"
+                           : page.sample == TiffPage::Sample::kSigned ? "int"
+                                                                      : "float";
+  if (page.sample == TiffPage::Sample::kOther || page.bits % 8 != 0) return std::nullopt;
+  return parse_scalar_type(fmt::format("{}{}", kind, page.bits));
+}
+
+class SliceReader final : public VoxelReader {
+ public:
+  SliceReader(std::vector<Slice> slices, TiffPage like)
+      : slices_(std::move(slices)), like_(std::move(like)), format_{*type_of(like_), kNativeOrder, {}} {}
+
+  Dims dims() const noexcept override { return {like_.width, like_.height, static_cast<std::int64_t>(slices_.size())}; }
+  const NumberFormat& format() const noexcept override { return format_; }
+
+  Result<void> read(const VoxelBox& box, std::span<std::byte> out) override {
+    const Dims size = box.dims();
+    const std::int64_t element = scalar_bytes(format_.type);
+    std::mutex mutex;
+    Result<void> result;
+    const std::int64_t grain = std::max<std::int64_t>(4, (1 << 18) / (like_.width * like_.height));
+    parallel_chunks(size.z, grain, [&](std::int64_t begin, std::int64_t end) {
+      std::optional<TiffFile> file;
+      fs::path open_path;
+      std::vector<std::byte> page(static_cast<std::size_t>(like_.width * like_.height * element));
+      for (std::int64_t k = begin; k < end; ++k) {
+        const Slice& slice = slices_[static_cast<std::size_t>(box.z.at(k))];
+        auto loaded = load(slice, file, open_path, page);
+        if (!loaded) {
+          const std::lock_guard lock(mutex);
+          result = std::move(loaded);
+          return;
+        }
+        for (std::int64_t j = 0; j < size.y; ++j)
+          copy_row(page.data() + (box.y.at(j) * like_.width + box.x.begin) * element, element, box.x,
+                   out.data() + (k * size.y + j) * size.x * element);
+      }
+    });
+    return result;
+  }
+
+ private:
+  Result<void> load(const Slice& slice, std::optional<TiffFile>& file, fs::path& open_path,
+                    std::span<std::byte> page) const {
+    if (!file || open_path != slice.file) {
+      file.reset();
+      DUBSAR_ASSIGN(TiffFile opened, TiffFile::open(slice.file));
+      file.emplace(std::move(opened));
+      open_path = slice.file;
+    }
+    DUBSAR_ASSIGN(const TiffPage found, file->select(slice.page));
+    if (found.width != like_.width || found.height != like_.height || found.bits != like_.bits ||
+        found.channels != like_.channels || found.sample != like_.sample)
+      return fail(ErrorKind::kBadData,
+                  "import_tiff: {} changed since it was opened, expected {} x {} pixels of {} bits",
+                  slice.file.string(), like_.width, like_.height, like_.bits);
+    return file->read_gray(page);
+  }
+
+  std::vector<Slice> slices_;
+  TiffPage like_;
+  NumberFormat format_;
+};
+
+std::map<std::string, std::string> imagej_fields(const std::string& description) {
+  std::map<std::string, std::string> fields;
+  if (description.rfind("ImageJ=", 0) != 0) return fields;
+  for (std::size_t begin = 0; begin < description.size();) {
+    const std::size_t end = std::min(description.find('\n', begin), description.size());
+    const std::string line = description.substr(begin, end - begin);
+    if (const auto equals = line.find('='); equals != std::string::npos)
+      fields[line.substr(0, equals)] = line.substr(equals + 1);
+    begin = end + 1;
+  }
+  return fields;
+}
+
+double number_or(const std::map<std::string, std::string>& fields, const char* key, double otherwise) {
+  const auto found = fields.find(key);
+  if (found == fields.end()) return otherwise;
+  double value = otherwise;
+  std::from_chars(found->second.data(), found->second.data() + found->second.size(), value);
+  return std::isfinite(value) ? value : otherwise;
+}
+
+VoxelSize voxel_size(const TiffPage& page, std::vector<std::string>& warnings) {
+  const auto fields = imagej_fields(page.description);
+  const auto stated = fields.find("unit");
+  const auto unit = stated != fields.end() ? mm_per_unit(stated->second) : std::nullopt;
+  const double unit_mm = unit ? *unit : page.resolution.unit_mm;
+  if (page.resolution.x_per_unit <= 0.0 || page.resolution.y_per_unit <= 0.0 || unit_mm <= 0.0) return {};
+  const glm::dvec3 mm(unit_mm / page.resolution.x_per_unit, unit_mm / page.resolution.y_per_unit, 0.0);
+  if (!std::isfinite(mm.x + mm.y)) return {};
+  if (number_or(fields, "spacing", 0.0) < 0.0)
+    warnings.emplace_back(
+        "the ImageJ spacing is negative: the slices may be stored last first, and the volume then is a mirror image; "
+        "a given axis order states it (-zyx: the slices run backwards)");
+  if (unit)
+    if (const double spacing = number_or(fields, "spacing", 0.0); spacing != 0.0)
+      return {{mm.x, mm.y, std::abs(spacing) * unit_mm}, "TIFF resolution tags and ImageJ spacing"};
+  for (const double default_dpi : {72.0, 96.0, 100.0, 150.0, 300.0, 600.0})
+    if (!unit && std::abs(25.4 / mm.x - default_dpi) < 0.01) {
+      warnings.push_back(
+          fmt::format("the TIFF resolution of {} dpi is a habit of picture programs and is not used as voxel "
+                      "size",
+                      default_dpi));
+      return {};
+    }
+  warnings.emplace_back("the TIFF files state no slice distance, that of the pixels in x is taken");
+  return {{mm.x, mm.y, mm.x}, "TIFF resolution tags (z taken like x)"};
+}
+
+// ImageJ writes stacks above 4 GiB as one page and the rest of the slices behind it.
+std::int64_t imagej_slices_behind(const TiffPage& page) {
+  const auto fields = imagej_fields(page.description);
+  const double images = number_or(fields, "images", 1.0);
+  return images > 1.0 && images <= 65535.0 && page.data_offset >= 0 ? static_cast<std::int64_t>(images) : 1;
+}
+
+Result<std::vector<fs::path>> files_of(const ImportOptions& options) {
+  std::error_code error;
+  const bool folder = fs::is_directory(options.path, error);
+  const fs::path parent = folder ? options.path : options.path.has_parent_path() ? options.path.parent_path() : ".";
+  const std::string pattern = folder ? "*" : options.path.filename().string();
+  std::vector<fs::path> files;
+  fs::directory_iterator entries(parent, error);
+  if (error) return fail_errno(error.value(), fmt::format("cannot list {}", parent.string()));
+  for (const auto& entry : entries) {
+    const std::string name = entry.path().filename().string();
+    std::error_code ignored;
+    if (name.front() != '.' && ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0 && entry.is_regular_file(ignored) &&
+        TiffFile::has_signature(entry.path()))
+      files.push_back(entry.path());
+  }
+  if (files.empty())
+    return fail(folder ? ErrorKind::kBadData : ErrorKind::kNoInput,
+                "import_tiff: {} holds no TIFF files{}, expected the "
+                "slices of a volume",
+                parent.string(), folder ? "" : fmt::format(" called {}", pattern));
+  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+    return natural_less(a.filename().string(), b.filename().string());
+  });
+  return files;
+}
+
+Result<void> check_page(const fs::path& file, const TiffPage& page) {
+  if (page.channels != 1 || page.palette)
+    return fail(ErrorKind::kBadData,
+                "import_tiff: {} is a colour picture ({} channels), expected gray values of one channel", file.string(),
+                page.palette ? 3 : page.channels);
+  if (!type_of(page))
+    return fail(ErrorKind::kBadData,
+                "import_tiff: {} has samples of {} bits, expected whole numbers or floats of 8, 16, 32 or "
+                "64 bits",
+                file.string(), page.bits);
+  return {};
+}
+
+}  // namespace
+
+bool is_slice_pattern(const std::filesystem::path& path) {
+  return path.filename().string().find_first_of("*?") != std::string::npos;
+}
+
+Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
+  std::error_code ignored;
+  std::vector<fs::path> files{options.path};
+  if (!fs::is_regular_file(options.path, ignored)) {
+    DUBSAR_ASSIGN(files, files_of(options));
+  }
+  std::vector<Slice> slices;
+  std::optional<TiffPage> first;
+  for (const fs::path& path : files) {
+    DUBSAR_ASSIGN(TiffFile file, TiffFile::open(path));
+    DUBSAR_ASSIGN(const std::vector<TiffPage> pages, file.pages());
+    for (const TiffPage& page : pages) {
+      if (page.reduced) continue;
+      DUBSAR_TRY(check_page(path, page));
+      if (!first) first = page;
+      if (page.width != first->width || page.height != first->height || type_of(page) != type_of(*first))
+        return fail(
+            ErrorKind::kBadData,
+            "import_tiff: {} has {} x {} pixels of {}, but the slices before it {} x {} of {}: expected slices of one "
+            "size; name them with a pattern such as slice_*.tif",
+            path.string(), page.width, page.height, scalar_name(*type_of(page)), first->width, first->height,
+            scalar_name(*type_of(*first)));
+      slices.push_back({path, page.offset});
+    }
+  }
+  if (!first) return fail(ErrorKind::kBadData, "import_tiff: {} holds thumbnails only", options.path.string());
+  const ScalarType type = *type_of(*first);
+  const auto fields = imagej_fields(first->description);
+  if (number_or(fields, "channels", 1.0) > 1.0 || number_or(fields, "frames", 1.0) > 1.0)
+    return fail(ErrorKind::kBadData, "import_tiff: {} holds several channels or time points, expected one volume",
+                options.path.string());
+  const std::int64_t behind = slices.size() == 1 ? imagej_slices_behind(*first) : 1;
+  const std::int64_t depth = std::max(behind, static_cast<std::int64_t>(slices.size()));
+  if (depth < 2)
+    return fail(ErrorKind::kBadData,
+                "import_tiff: {} is a single picture, expected a stack; give the folder of the slices or "
+                "a pattern such as slice_*.tif",
+                options.path.string());
+  OpenedVolume opened;
+  VolumeInfo& info = opened.info;
+  info.file_dims = {first->width, first->height, depth};
+  const std::array<std::uint64_t, 3> dims{static_cast<std::uint64_t>(depth), static_cast<std::uint64_t>(first->height),
+                                          static_cast<std::uint64_t>(first->width)};
+  DUBSAR_ASSIGN(const std::int64_t count, check_dims("import_tiff: the stack", dims,
+                                                     static_cast<std::uint64_t>(scalar_bytes(type)), options.budget));
+  info.stored.logical_bytes = count * scalar_bytes(type);
+  for (const fs::path& path : files)
+    info.stored.storage_bytes += static_cast<std::int64_t>(fs::file_size(path, ignored));
+  if (info.stored.logical_bytes > (std::int64_t{64} << 20) &&
+      info.stored.logical_bytes / 250 > info.stored.storage_bytes && !options.trust)
+    return fail(ErrorKind::kBadData,
+                "import_tiff: {} unpacks {} bytes to {}, expected at most 250:1; if you know the files, "
+                "say that they are trusted",
+                options.path.string(), info.stored.storage_bytes, info.stored.logical_bytes);
+  info.format = "tiff";
+  info.found_by = files.size() > 1 ? fmt::format("{} files", files.size()) : "pages of one file";
+  info.stored.dtype = scalar_name(type);
+  info.stored.byte_order = order_name(first->big_endian ? ByteOrder::kBig : ByteOrder::kLittle);
+  info.stored.layout = "slices";
+  if (first->compression != "none") info.stored.filters = {first->compression};
+  info.stored.may_have_nonfinite = is_float(type);
+  info.voxel = voxel_size(*first, info.warnings);
+  if (behind > 1) {
+    DUBSAR_ASSIGN(InputFile file, InputFile::open(files.front()));
+    std::vector<FlatSegment> segments;
+    segments.push_back({std::move(file), first->data_offset, info.stored.logical_bytes});
+    const ByteOrder order = first->big_endian ? ByteOrder::kBig : ByteOrder::kLittle;
+    DUBSAR_ASSIGN(opened.reader, make_flat_reader({info.file_dims, {type, order, {}}, std::move(segments)}));
+  } else {
+    opened.reader = std::make_unique<SliceReader>(std::move(slices), *first);
+  }
+  return opened;
+}
+
+}  // namespace dubsar

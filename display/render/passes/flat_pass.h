@@ -1,0 +1,30 @@
+#pragma once
+// The part of the renderer that draws what has no thickness: slices of the scan and lines.
+
+#include <span>
+
+#include "core/base/result.h"
+#include "display/render/context/gl_objects.h"
+#include "display/render/passes/mesh_pass.h"
+#include "display/render/scene.h"
+
+namespace dubsar {
+
+class FlatPass {
+ public:
+  /// `layered` as MeshPass::layered().
+  static Result<FlatPass> create(bool layered);
+
+  Result<void> draw(const SliceItem& item, const SceneView& scene, const PassViews& target);
+  /// `pixel` is how many samples of the target a pixel of the picture has on a side.
+  Result<void> draw(const LinesItem& item, const PassViews& target, double pixel);
+
+ private:
+  void bind_views(const PassViews& target);
+
+  GlProgram slice_, slice_layered_, lines_, lines_layered_;
+  GlVertexArray no_vertices_;
+  GlBuffer views_, points_;
+};
+
+}  // namespace dubsar

@@ -1,0 +1,30 @@
+#pragma once
+// The part of the renderer that draws lines of text.
+
+#include "core/base/result.h"
+#include "display/render/context/gl_objects.h"
+#include "display/render/passes/flat_views.h"
+#include "display/render/passes/mesh_pass.h"
+#include "display/render/scene.h"
+
+namespace dubsar {
+
+class LabelPass {
+ public:
+  /// `layered` as MeshPass::layered().
+  static Result<LabelPass> create(bool layered);
+  /// `pixel` is how many samples of the target a pixel of the picture has on a side.
+  Result<void> draw(const LabelItem& item, const PassViews& target, double pixel);
+
+ private:
+  void use_sheet(const LabelFont& font);
+
+  GlProgram program_, layered_;
+  GlVertexArray no_vertices_;
+  GlBuffer views_, letters_;
+  GlTexture sheet_;
+  const LabelFont* font_ = nullptr;  // whose sheet it is
+  std::uint64_t version_ = 0;
+};
+
+}  // namespace dubsar
