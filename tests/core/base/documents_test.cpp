@@ -55,6 +55,22 @@ TEST(Documents, PathsInCodeStyleExist) {
   EXPECT_GT(paths, 10) << "the pattern finds no paths any more";
 }
 
+// Who looks for a folder finds in docs/architecture.md what is in it.
+TEST(Documents, EveryFolderOfSourcesStandsInTheTableOfRooms) {
+  const std::string page = text_of(kSource / "docs" / "architecture.md");
+  std::set<std::string> folders;
+  for (const char* room : {"core", "devices", "input", "display", "app"})
+    for (const auto& entry : fs::recursive_directory_iterator(kSource / room)) {
+      const auto suffix = entry.path().extension();
+      if (suffix == ".h" || suffix == ".cpp")
+        folders.insert(fs::relative(entry.path().parent_path(), kSource).string());
+    }
+  EXPECT_GT(folders.size(), 50U);
+  for (const std::string& folder : folders)
+    EXPECT_NE(page.find("](../" + folder + ")"), std::string::npos)
+        << "docs/architecture.md does not say what is in " << folder;
+}
+
 TEST(Documents, CommentsNameWorksThatTheMethodLists) {
   const std::string method = text_of(kSource / "docs" / "method.md");
   std::set<std::string> keys;

@@ -1,5 +1,5 @@
 // Nothing of the house grows beyond what one can hold in mind (CONTRIBUTING.md, Code): files of at most 400 lines,
-// classes of at most 15 data members.
+// classes of at most 15 data members, folders of at most 40 sources and headers.
 
 #include <gtest/gtest.h>
 
@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr int kMostMembers = 15;
 constexpr int kMostLines = 400;
+constexpr int kMostFiles = 40;
 
 std::map<std::string, std::string> sources(std::initializer_list<const char*> rooms) {
   std::map<std::string, std::string> texts;
@@ -125,6 +126,17 @@ TEST(Sizes, NoFileHasMoreThanFourHundredLinesButGeneratedTables) {
     EXPECT_LE(std::count(text.begin(), text.end(), '\n'), kMostLines) << file;
   }
   EXPECT_GT(files, 600);
+}
+
+// What counts is what stands in the folder itself: chambers within it count for themselves.
+TEST(Sizes, NoFolderHoldsMoreThanFortySourcesAndHeaders) {
+  std::map<std::string, int> folders;
+  for (const auto& [file, text] : sources({"core", "devices", "input", "display", "app"}))
+    ++folders[fs::path(file).parent_path().string()];
+  for (const auto& [folder, files] : folders)
+    EXPECT_LE(files, kMostFiles) << folder
+                                 << " is more than one idea: make chambers of it, each with a name of its own";
+  EXPECT_GT(folders.size(), 50U) << "the scan does not see the house";
 }
 
 }  // namespace
