@@ -5,7 +5,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <iostream>
+#include <system_error>
+#include <type_traits>
 
 #include "app/cli/error_json.h"
 #include "app/cli/help_text.h"
@@ -67,9 +71,32 @@ CLI::Validator one_word_of(std::vector<std::string> words) {
       "");
 }
 
+/// No option means anything by a number that is none, or without end.
+bool is_finite_or_text(const std::string& text) {
+  double value{};
+  return !CLI::detail::lexical_cast(text, value) || std::isfinite(value);
+}
+
+/// The library takes -1 for the largest number without a sign, and what is too large for the largest one.
+template <class T>
+bool is_whole(const std::string& text) {
+  T value{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && stop == end;
+}
+
 template <class T>
 Argument add(void* to, const std::string& name, T& target, const std::string& help) {
-  return Argument(app(to).add_option(name, target, help));
+  CLI::Option* const made = app(to).add_option(name, target, help);
+  if constexpr (std::is_same_v<T, float> || std::is_same_v<T, double> || std::is_same_v<T, std::optional<float>> ||
+                std::is_same_v<T, std::optional<double>>)
+    made->check(expects("a finite number", is_finite_or_text));
+  if constexpr (std::is_same_v<T, std::uint64_t> || std::is_same_v<T, std::optional<std::uint64_t>>)
+    made->check(expects("a whole number, 0 to 18446744073709551615", is_whole<std::uint64_t>));
+  if constexpr (std::is_same_v<T, std::int64_t>)
+    made->check(expects("a whole number of at most 18 digits", is_whole<std::int64_t>));
+  return Argument(made);
 }
 }  // namespace
 
@@ -92,6 +119,10 @@ Argument& Argument::positive() {
 }
 Argument& Argument::not_negative() {
   option(option_).check(expects("0 or more", number_that<double>([](double v) { return v >= 0.0; })));
+  return *this;
+}
+Argument& Argument::not_empty() {
+  option(option_).check(expects("a name", [](const std::string& text) { return !text.empty(); }));
   return *this;
 }
 Argument& Argument::one_of(std::vector<std::string> words) {
@@ -185,7 +216,7 @@ Argument Arguments::reads(const std::string& name, std::vector<std::string>& tar
 
 Argument Arguments::writes(const std::string& name, std::string& target, FileFormat format, const std::string& help) {
   state_->files.push_back({app_, name, [&target] { return std::vector{target}; }, true, format});
-  return value(name, target, help).called("FILE");
+  return value(name, target, help).called("FILE").not_empty();
 }
 
 bool Arguments::chosen() const { return app(app_).parsed(); }

@@ -26,6 +26,7 @@ class Argument {
   Argument& range(double least, double most);
   Argument& positive();
   Argument& not_negative();
+  Argument& not_empty();  ///< as it is where a shell's variable has no value
   Argument& one_of(std::vector<std::string> words);
   Argument& called(const std::string& type);  ///< what the help calls the value, e.g. "FILE"
   Argument& separated_by(char separator);     ///< a list in one word: "a,b"
@@ -49,6 +50,7 @@ class Arguments {
   void needs_command();
   void footer(const std::string& text);
 
+  /// Numbers are finite, and those without a sign take none.
   Argument value(const std::string& name, std::string& target, const std::string& help);
   Argument value(const std::string& name, int& target, const std::string& help);
   Argument value(const std::string& name, std::int64_t& target, const std::string& help);

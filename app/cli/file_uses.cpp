@@ -145,6 +145,15 @@ Result<void> check_inputs(std::span<const FileUse> files) {
   return {};
 }
 
+Result<void> check_apart(const FileUse& out, std::span<const std::string> made) {
+  if (out.path.empty() || out.path == "-") return {};
+  for (const std::string& file : made)
+    if (same_file(out.path, file))
+      return fail(ErrorKind::kUsage, "{} {} is a file that this run makes, expected another name", out.option,
+                  out.path);
+  return {};
+}
+
 Result<void> check_file_uses(std::span<const FileUse> files) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (!files[i].written) continue;

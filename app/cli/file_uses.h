@@ -24,6 +24,9 @@ struct FileUse {
 /// is no scan, surface or report of another kind. kCannotCreate, kPermission, kUsage (suffix, the same file twice).
 Result<void> check_file_uses(std::span<const FileUse> files);
 
+/// `out` is none of the files that a verb will make besides, which nobody named. kUsage.
+Result<void> check_apart(const FileUse& out, std::span<const std::string> made);
+
 /// Everything that is read exists. kNoInput, with the name beside it that may have been meant.
 Result<void> check_inputs(std::span<const FileUse> files);
 

@@ -13,6 +13,7 @@
 
 #include "app/cli/default_output.h"
 #include "app/cli/error_json.h"
+#include "app/cli/file_uses.h"
 #include "app/document/file_kinds.h"
 #include "core/base/files/atomic_file.h"
 #include "core/base/files/file_fingerprint.h"
@@ -175,6 +176,12 @@ std::vector<std::string> options_for_each(const std::vector<std::string>& words,
     out.push_back(words[i]);
   }
   return out;
+}
+
+Result<void> check_report(const ScanBatch& batch, const std::string& json_path) {
+  std::vector<std::string> made;
+  for (const ScanBatch::Item& item : batch.items) made.insert(made.end(), {item.out, record_of(item.out)});
+  return check_apart({"--json", json_path, true, FileFormat::kJson}, made);
 }
 
 Result<VerbResult> process_batch(const ScanBatch& batch, Progress& progress) {

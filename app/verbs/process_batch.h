@@ -32,6 +32,9 @@ Result<std::vector<ScanBatch::Item>> batch_items(const std::vector<std::string>&
 std::vector<std::string> options_for_each(const std::vector<std::string>& words,
                                           const std::vector<std::string>& inputs);
 
+/// The report of the batch is no surface that it makes, and no record beside one. kUsage.
+Result<void> check_report(const ScanBatch& batch, const std::string& json_path);
+
 /// Runs them one after another; failures are told at the end and the others go on (the exit code is that of the first).
 /// kTryAgain when cancelled, with what is done kept. Progress in percent of a scan.
 Result<VerbResult> process_batch(const ScanBatch& batch, Progress& progress);

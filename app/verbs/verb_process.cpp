@@ -199,7 +199,8 @@ Result<VerbResult> run(ProcessRequest options, const Arguments command, const Co
   return out;
 }
 
-Result<VerbResult> run_many(const ProcessRequest& options, const Arguments command, Progress& progress) {
+Result<VerbResult> run_many(const ProcessRequest& options, const Arguments command, const CommonOptions& common,
+                            Progress& progress) {
   ScanBatch batch;
   batch.resume = options.resume;
   batch.options = options_for_each(command.words(), options.inputs);
@@ -208,6 +209,7 @@ Result<VerbResult> run_many(const ProcessRequest& options, const Arguments comma
   } else {
     DUBSAR_ASSIGN(batch.items, batch_items(options.inputs, options.target));
   }
+  DUBSAR_TRY(check_report(batch, common.json_path));
   return process_batch(batch, progress);
 }
 
@@ -250,7 +252,8 @@ Verb add_process_verb(Arguments program) {
       "  dubsar process scan.h5 -o tablet.exa --json report.json");
   return {command,
           [options, command](const CommonOptions& common, Progress& progress) {
-            return options->many ? run_many(*options, command, progress) : run(*options, command, common, progress);
+            return options->many ? run_many(*options, command, common, progress)
+                                 : run(*options, command, common, progress);
           },
           [options] { settle(*options); }, [options] { return plan_of(*options); }};
 }

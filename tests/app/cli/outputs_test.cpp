@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "core/base/files/atomic_file.h"
 #include "core/exa/container.h"
@@ -83,16 +84,23 @@ TEST_F(Outputs, OneFileIsNotWrittenTwice) {
   for (const char* name : {"b.exa", "behind.exa"}) EXPECT_FALSE(fs::exists(at(name))) << name;
 }
 
-// A verb may write more than what it is told: the surfaces of a folder of scans.
+// A verb may write more than what it is told: the surfaces of a folder of scans, and a record beside each. What would
+// be lost is said before hours of work and not after them.
 TEST_F(Outputs, WhatAVerbMakesBesideIsNotWrittenOverByItsReport) {
   fs::create_directory(at("scans"));
   fs::create_directory(at("made"));
   fs::copy_file(at("scan.h5"), at("scans/one.h5"));
-  const ProgramRun many = run_dubsar(
-      {"process", at("scans"), "-o", at("made"), "--json", at("made/one.exa"), "--detail", "half", "--no-ao", "-q"});
-  EXPECT_EQ(many.exit_code, 73) << many.err;
-  EXPECT_THAT(many.err, HasSubstr("one.exa exists and is a surface file"));
-  EXPECT_TRUE(bytes("made/one.exa").starts_with(kExaMagic));
+  for (const auto& [scans, product, report] :
+       {std::tuple<std::string, std::string, std::string>{"scans", "made", "made/one.exa"},
+        {"scans", "made", "made/one.run.json"},
+        {"scans/one.h5", "made/one.exa", "made/../made/one.exa"}}) {
+    std::vector<std::string> words{"process",  at(scans), "-o",      at(product), "--json",  at(report),
+                                   "--detail", "half",    "--no-ao", "-q",        "--resume"};
+    const ProgramRun many = run_dubsar(words);
+    EXPECT_EQ(many.exit_code, 64) << report << "\n" << many.err;
+    EXPECT_THAT(many.err, HasSubstr("is a file that this run makes"));
+    EXPECT_TRUE(fs::is_empty(at("made"))) << "refused after the work";
+  }
 }
 
 TEST_F(Outputs, TheRecordingThatIsReplayedIsNotWrittenOver) {

@@ -27,6 +27,19 @@ TEST(StrictOptions, LightsSizesAndPlacesAreReadToTheirEnd) {
   expect_refused({"render", "a.exa", "-o", "a.png", "--display", "mono", "--screen-mm", "344x194x"}, "--screen-mm");
 }
 
+TEST(StrictOptions, NumbersThatAreNoneAndNamesWithoutLettersAreRefusedBeforeAnythingIsRead) {
+  for (const char* number : {"nan", "NaN", "-nan", "inf", "-inf", "infinity", "1e999"}) {
+    for (const char* option : {"--threshold", "--sigma", "--concavity", "--max-error", "--ao-radius"})
+      expect_refused({"process", "a.h5", option, number}, std::string(option) + ": " + number + " found");
+    expect_refused({"animate", "film.json", "a.exa", "-o", "pictures", "--fps", number}, "--fps");
+  }
+  for (const char* seed : {"-1", "-18446744073709551615", "1e3", "18446744073709551616"})
+    expect_refused({"phantom", "a.h5", "--seed", seed}, std::string("--seed: ") + seed + " found");
+  expect_refused({"process", "a.h5", "-o", ""}, "--output: nothing found, expected a name");
+  expect_refused({"info", "a.exa", "--json", ""}, "--json: nothing found, expected a name");
+  expect_refused({"phantom", ""}, "OUT");
+}
+
 TEST(StrictOptions, AnEyeBehindThePanelIsRefused) {
   expect_refused({"render", "a.exa", "-o", "a.png", "--display", "anaglyph", "--viewer", "0,0,-600"},
                  "behind the panel");
