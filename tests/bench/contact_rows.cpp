@@ -33,9 +33,8 @@ std::vector<glm::vec3> in_voxels(const TriMesh& mesh) {
 
 phantom::TruthComparison judge_seen(const phantom::Phantom& truth, const SurfaceModel& model, double step) {
   const TriMesh seen = value_or_exit(make_tri_mesh(model, {.fill_holes = false}));
-  std::vector<PartitionId> labels(seen.positions.size());
-  for (std::size_t t = 0; t < seen.triangles.size(); ++t)
-    for (const std::uint32_t v : seen.triangles[t]) labels[v] = seen.partition_of(t);
+  std::vector<PartitionId> labels(seen.triangles.size());
+  for (std::size_t t = 0; t < labels.size(); ++t) labels[t] = seen.partition_of(t);
   return phantom::compare(truth, {in_voxels(seen), seen.triangles, labels, step});
 }
 

@@ -76,22 +76,37 @@ WedgeScore judge_wedges(const Phantom& phantom, const JudgedMesh& mesh) {
   return result;
 }
 
-void judge_parts(const JudgedMesh& mesh, const std::vector<VertexTruth>& truth, TruthComparison& result) {
-  std::array<std::array<std::int64_t, 3>, 256> table{};
-  for (std::size_t i = 0; i < truth.size(); ++i)
-    if (!truth[i].slit && truth[i].part <= Part::kEnvelopeInside)
-      ++table[mesh.partition[i]][static_cast<std::size_t>(truth[i].part)];
+void judge_parts(const Phantom& phantom, const JudgedMesh& mesh, TruthComparison& result) {
+  struct Patch {
+    Part part = Part::kPore;
+    bool slit = false;
+    double area = 0.0;
+  };
+  std::vector<Patch> patches(mesh.triangles.size());
+  parallel_for(static_cast<std::int64_t>(patches.size()), 4096, [&](std::int64_t i) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto& t = mesh.triangles[k];
+    const glm::dvec3 a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]);
+    const glm::dvec3 p = (a + b + c) / 3.0;
+    const Fields f = phantom.fields(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
+    patches[k] = {phantom.nearest_part(p), in_slit(phantom, p, f, mesh.grid_step),
+                  0.5 * glm::length(glm::cross(b - a, c - a))};
+  });
+  std::array<std::array<double, 3>, 256> table{};
+  for (std::size_t i = 0; i < patches.size(); ++i)
+    if (!patches[i].slit && patches[i].part <= Part::kEnvelopeInside)
+      table[mesh.partition[i]][static_cast<std::size_t>(patches[i].part)] += patches[i].area;
   for (const auto& row : table) {
     const auto part = static_cast<std::size_t>(std::max_element(row.begin(), row.end()) - row.begin());
-    const std::int64_t tablet = row[0], envelope = row[1] + row[2], total = tablet + envelope;
-    if (total == 0) continue;
-    for (std::size_t p = 0; p < 3; ++p) result.part[p].true_vertices += row[p];
-    result.part[part].found_vertices += total;
+    const double tablet = row[0], envelope = row[1] + row[2], total = tablet + envelope;
+    if (!(total > 0.0)) continue;
+    for (std::size_t p = 0; p < 3; ++p) result.part[p].of_part += row[p];
+    result.part[part].labelled += total;
     result.part[part].both += row[part];
-    result.owner[0].true_vertices += tablet;
-    result.owner[1].true_vertices += envelope;
+    result.owner[0].of_part += tablet;
+    result.owner[1].of_part += envelope;
     PartScore& owner = result.owner[tablet > envelope ? 0 : 1];
-    owner.found_vertices += total;
+    owner.labelled += total;
     owner.both += std::max(tablet, envelope);
   }
 }
@@ -140,7 +155,7 @@ std::vector<double> wedge_depths(const Phantom& phantom, const JudgedMesh& mesh)
 }
 
 TruthComparison compare(const Phantom& phantom, const JudgedMesh& mesh) {
-  DUBSAR_CHECK(mesh.partition.empty() || mesh.partition.size() == mesh.positions.size());
+  DUBSAR_CHECK(mesh.partition.empty() || mesh.partition.size() == mesh.triangles.size());
   std::vector<VertexTruth> truth(mesh.positions.size());
   parallel_for(static_cast<std::int64_t>(truth.size()), 4096, [&](std::int64_t i) {
     const glm::dvec3 p(mesh.positions[static_cast<std::size_t>(i)]);
@@ -166,7 +181,7 @@ TruthComparison compare(const Phantom& phantom, const JudgedMesh& mesh) {
   result.all = score(all, mesh.grid_step);
   result.resolved = score(resolved, mesh.grid_step);
   result.pores = score(pores, mesh.grid_step);
-  if (!mesh.partition.empty()) judge_parts(mesh, truth, result);
+  if (!mesh.partition.empty()) judge_parts(phantom, mesh, result);
   if (!mesh.triangles.empty()) result.wedges = judge_wedges(phantom, mesh);
   return result;
 }
@@ -181,7 +196,7 @@ std::string TruthComparison::text() const {
   const char* names[] = {"tablet", "envelope", "part tablet", "part envelope outside", "part envelope inside"};
   for (std::size_t i = 0; i < 5; ++i) {
     const PartScore& s = i < 2 ? owner[i] : part[i - 2];
-    text += fmt::format("{}: purity {:.4f}, recall {:.4f} of {}\n", names[i], s.purity(), s.recall(), s.true_vertices);
+    text += fmt::format("{}: purity {:.4f}, recall {:.4f} of {:.0f}\n", names[i], s.purity(), s.recall(), s.of_part);
   }
   return text + fmt::format("wedges: {} of {} within 20 % ({:.3f}), {} missing, mean depth ratio {:.3f}\n", wedges.kept,
                             wedges.wedges, wedges.kept_fraction(), wedges.missing, wedges.mean_ratio);

@@ -19,12 +19,11 @@ struct DistanceScore {
   double rms = 0.0, p95 = 0.0, largest = 0.0;
 };
 
+/// Areas, input voxels squared.
 struct PartScore {
-  std::int64_t true_vertices = 0, found_vertices = 0, both = 0;
-  double purity() const {
-    return found_vertices ? static_cast<double>(both) / static_cast<double>(found_vertices) : 0.0;
-  }
-  double recall() const { return true_vertices ? static_cast<double>(both) / static_cast<double>(true_vertices) : 0.0; }
+  double of_part = 0.0, labelled = 0.0, both = 0.0;
+  double purity() const { return labelled > 0.0 ? both / labelled : 0.0; }
+  double recall() const { return of_part > 0.0 ? both / of_part : 0.0; }
 };
 
 struct WedgeScore {
@@ -46,7 +45,8 @@ struct TruthComparison {
   std::string text() const;  ///< one line a score
 };
 
-/// A mesh in input voxel coordinates; `partition` holds one label per vertex, or is empty (then parts are not judged).
+/// A mesh in input voxel coordinates; `partition` holds one label per triangle, or is empty (then parts are not
+/// judged).
 struct JudgedMesh {
   std::span<const glm::vec3> positions;
   std::span<const std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from the air
@@ -59,13 +59,16 @@ struct JudgedMesh {
 std::vector<double> wedge_depths(const Phantom& phantom, const JudgedMesh& mesh);
 
 /// Rules:
-/// - The true part of a vertex is that of the nearest true surface.
+/// - The true part of a vertex is that of the nearest true surface, that of a triangle the part of its middle. Parts
+/// are
+///   judged by triangles: a vertex where two parts meet belongs to both, and no label of it is right.
 /// - Slits: where the gap is narrower than 1.5 voxels of the processed grid, or closed, no scan resolves both walls;
-///   vertices there (within 2 such voxels of tablet or wall) count in `all`, but not in `resolved`, nor for the parts.
+///   vertices there (within 2 such voxels of tablet or wall) count in `all`, but not in `resolved`, nor triangles for
+///   the parts.
 /// - Straw: the isovalue lies between straw and clay, not half-way, and cracks are thinner than a voxel: as slits.
 /// - Pores count apart: their walls are judged for distance, but belong to no part.
-/// - A label stands for the part that most of its judged vertices have; purity and recall are those of all labels
-///   that stand for a part together.
+/// - A label stands for the part that most of its judged area has; purity and recall are those of all labels that stand
+///   for a part together.
 /// - A wedge's depth is measured along its direction, from its place on the undisturbed surface to the first triangle
 ///   that faces outwards, starting 1.5 voxels (processed grid) above the place. Wedges filled with envelope clay, or
 ///   below a gap narrower than 1.5 voxels of the processed grid, cannot be measured and are left out.

@@ -14,6 +14,21 @@ namespace {
 struct Known {
   std::vector<glm::vec3> positions;
   std::vector<std::uint8_t> partition;
+
+  /// A small triangle in the place of each.
+  std::vector<glm::vec3> corners() const {
+    std::vector<glm::vec3> all;
+    for (const glm::vec3& p : positions)
+      for (const glm::vec3& off :
+           {glm::vec3(0.02f, 0.0f, -0.01f), glm::vec3(-0.01f, 0.02f, 0.0f), glm::vec3(-0.01f, -0.02f, 0.01f)})
+        all.push_back(p + off);
+    return all;
+  }
+  std::vector<std::array<std::uint32_t, 3>> triangles() const {
+    std::vector<std::array<std::uint32_t, 3>> all;
+    for (std::uint32_t i = 0; i < positions.size(); ++i) all.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    return all;
+  }
 };
 
 // Vertices at a known distance off the true surface of known parts.
@@ -58,7 +73,7 @@ TEST(TruthCompare, MeasuresAKnownDistance) {
   const auto phantom = make();
   for (const double offset : {0.0, 0.4}) {
     const Known known = known_vertices(*phantom, offset);
-    const TruthComparison result = compare(*phantom, {known.positions, {}, known.partition});
+    const TruthComparison result = compare(*phantom, {known.positions, {}, {}});
     EXPECT_NEAR(result.all.rms, 0.5 * offset, 0.01);  // processed voxels are 2 input voxels
     EXPECT_NEAR(result.resolved.p95, 0.5 * offset, 0.01);
     EXPECT_EQ(result.all.vertices, 3000);
@@ -68,7 +83,9 @@ TEST(TruthCompare, MeasuresAKnownDistance) {
 TEST(TruthCompare, FindsWrongLabels) {
   const auto phantom = make();
   Known known = known_vertices(*phantom, 0.0);
-  TruthComparison result = compare(*phantom, {known.positions, {}, known.partition});
+  const auto corners = known.corners();
+  const auto triangles = known.triangles();
+  TruthComparison result = compare(*phantom, {corners, triangles, known.partition});
   for (const auto& score : result.part) {
     EXPECT_EQ(score.purity(), 1.0);
     EXPECT_EQ(score.recall(), 1.0);
@@ -76,13 +93,13 @@ TEST(TruthCompare, FindsWrongLabels) {
   int tablet = 0;
   for (std::uint8_t& label : known.partition)
     if (label == 5 && ++tablet % 10 == 0) label = 2;
-  result = compare(*phantom, {known.positions, {}, known.partition});
+  result = compare(*phantom, {corners, triangles, known.partition});
   EXPECT_NEAR(result.owner[0].recall(), 0.9, 0.01);
   EXPECT_EQ(result.owner[0].purity(), 1.0);
   EXPECT_EQ(result.owner[1].recall(), 1.0);
   EXPECT_LT(result.owner[1].purity(), 1.0);
   std::fill(known.partition.begin(), known.partition.end(), std::uint8_t{0});
-  EXPECT_EQ(compare(*phantom, {known.positions, {}, known.partition}).owner[0].recall(), 0.0);
+  EXPECT_EQ(compare(*phantom, {corners, triangles, known.partition}).owner[0].recall(), 0.0);
 }
 
 TEST(TruthCompare, MeasuresWedgeDepthAlongItsDirection) {
