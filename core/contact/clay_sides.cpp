@@ -19,8 +19,6 @@ constexpr float kWall = 0.7f;
 /// Cost of being on the wrong side of the patch, for each step from it: it holds the sheet where nothing is seen.
 constexpr float kPull = 0.006f;
 constexpr std::int32_t kHard = 1 << 28;
-/// Steps from air within which clay is dark: the disks of dips.cpp and the point spread reach as far.
-constexpr int kFringe = 4;
 
 constexpr std::array<glm::ivec3, 3> kAxes{glm::ivec3(1, 0, 0), glm::ivec3(0, 1, 0), glm::ivec3(0, 0, 1)};
 
@@ -76,31 +74,6 @@ bool unpinch(const ContactBand& band, std::vector<ClaySide>& side) {
   return changed;
 }
 
-/// Nodes whose dips may be those of the air of a cavity: within kFringe steps of it.
-std::vector<bool> fringes(const ContactBand& band, const std::vector<ClayCavity>& cavities) {
-  std::vector<bool> fringe(band.nodes.size(), false);
-  std::vector<std::uint32_t> front, next;
-  for (const ClayCavity& cavity : cavities)
-    for (const std::uint32_t n : cavity)
-      if (!fringe[n]) {
-        fringe[n] = true;
-        front.push_back(n);
-      }
-  for (int step = 1; step < kFringe; ++step) {
-    next.clear();
-    for (const std::uint32_t n : front)
-      for (const glm::ivec3& axis : kAxes)
-        for (const int sense : {-1, 1}) {
-          const std::uint32_t m = band.at(band.point(n) + sense * axis);
-          if (m == ContactBand::kNone || fringe[m]) continue;
-          fringe[m] = true;
-          next.push_back(m);
-        }
-    front.swap(next);
-  }
-  return fringe;
-}
-
 /// Nodes over the same piece of the patches: flow runs across the band, and most of it stays in one block.
 void set_blocks(const ContactBand& band, MinCut& cut) {
   constexpr float kBlockSide = 64.0f;
@@ -148,8 +121,6 @@ Result<std::vector<ClaySide>> divide_clay(const ContactBand& band, const Dips& d
       wish[hint.node] += sense * std::lround(kUnit * hint.weight);
     }
   }
-  const std::vector<bool> dark = fringes(band, whole);
-  const auto strength = [&](std::uint32_t n) { return dark[n] ? std::min(dips.strength[n], 0.0f) : dips.strength[n]; };
   for (std::uint32_t n = 0; n < count; ++n) {
     const auto cost = static_cast<std::int32_t>(std::clamp<std::int64_t>(wish[n], -kHard, kHard));
     cut.add_node_cost(n, cost < 0 ? -cost : 0, cost > 0 ? cost : 0);
@@ -159,7 +130,7 @@ Result<std::vector<ClaySide>> divide_clay(const ContactBand& band, const Dips& d
       const auto axis = static_cast<glm::length_t>(a);
       const float along = 0.5f * (std::abs(band.normal(n)[axis]) + std::abs(band.normal(m)[axis]));
       const float face = along + kWall * (1.0f - along);
-      const float cost_here = cost_of(0.5f * (strength(n) + strength(m)));
+      const float cost_here = cost_of(0.5f * (dips.strength[n] + dips.strength[m]));
       cut.add_edge(n, m, 1 + static_cast<std::int32_t>(std::lround(kUnit * face * cost_here)));
     }
   }

@@ -8,6 +8,7 @@
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/contact/band.h"
+#include "core/contact/clay_cavities.h"
 #include "core/contact/dips.h"
 
 namespace dubsar {
@@ -20,13 +21,9 @@ struct SurfaceHint {
 };
 inline constexpr float kCertain = 1e6f;
 
-/// The points of clay beside a closed cavity, nodes of a band, rising.
-using ClayCavity = std::vector<std::uint32_t>;
-
 /// Sides of all nodes of the band. `votes`: of each node, faces of the cut that its density is worth to the tablet
-/// (clays.h), or empty. The cut goes round each of `whole` and is not drawn to the dark fringe of its air. Every node
-/// hangs together with clay at the border of the band through nodes of its side, or is cut off by air and counts as the
-/// tablet's. kCancelled.
+/// (clays.h), or empty. The cut goes round each of `whole`. Every node hangs together with clay at the border of
+/// the band through nodes of its side, or is cut off by air and counts as the tablet's. kCancelled.
 Result<std::vector<ClaySide>> divide_clay(const ContactBand& band, const Dips& dips,
                                           const std::vector<SurfaceHint>& hints, const std::vector<float>& votes,
                                           const std::vector<ClayCavity>& whole, Progress& progress);

@@ -8,6 +8,7 @@
 
 #include "core/base/system/log.h"
 #include "core/contact/band.h"
+#include "core/contact/clay_cavities.h"
 #include "core/contact/clay_sides.h"
 #include "core/contact/clays.h"
 #include "core/contact/dips.h"
@@ -241,7 +242,10 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
     log_info("contact: the envelope's clay has {:.1f} % of the density of the tablet's",
              100.0f * traced.clays->envelope / traced.clays->tablet);
   }
-  const std::vector<ClayCavity> pores = cavities_off_contact(model, graph, band, traced.faces);
+  std::vector<ClayCavity> pores = cavities_off_contact(model, graph, band, traced.faces);
+  for (ClayCavity& unseen : unseen_cavities(band, model.samples.signs, values, model.samples.isovalue))
+    pores.push_back(std::move(unseen));
+  blind_fringes(band, pores, dips);
   DUBSAR_ASSIGN(traced.side,
                 divide_clay(band, dips, hints_of_faces(model, band, traced.faces, pores), votes, pores, progress));
   if (progress.cancelled()) return cancelled_error();

@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 #include <utility>
 
+#include "core/contact/clay_cavities.h"
 #include "core/contact/clay_sides.h"
 #include "tests/core/parts/grid_scene.h"
 
@@ -111,7 +112,9 @@ TEST(DivideClay, GoesRoundACavityThatIsWhole) {
       if (std::max(std::abs(p.x - 32.0f), std::abs(p.y - 32.0f)) > 15.0f)
         hints.push_back({n, p.z < kPlane ? ClaySide::kTablet : ClaySide::kEnvelope, kCertain});
     }
-    const std::vector<ClaySide> side = divide_clay(scene.band, dips, hints, {}, whole, progress).value();
+    Dips blind = dips;
+    blind_fringes(scene.band, whole, blind);
+    const std::vector<ClaySide> side = divide_clay(scene.band, blind, hints, {}, whole, progress).value();
     return std::count_if(off[0].begin(), off[0].end(), [&](std::uint32_t n) { return side[n] == ClaySide::kEnvelope; });
   };
   EXPECT_GT(envelopes({}), 0) << "nothing draws the cut to the pore";

@@ -1,0 +1,88 @@
+#include "core/contact/clay_cavities.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dubsar {
+namespace {
+
+/// Steps from air within which clay is dark: the disks of dips.cpp and the point spread reach as far.
+constexpr int kFringe = 4;
+
+/// The points one step from `p`.
+template <class Visit>
+void each_beside(const glm::ivec3& p, const Visit& visit) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int sense : {-1, 1}) visit(p + sense * unit_step(axis));
+}
+
+/// One piece of dark clay, and where it lies.
+struct DarkPiece {
+  ClayCavity nodes;
+  bool beside_air = false;
+  float nearest = INFINITY, lowest = INFINITY, highest = -INFINITY;
+
+  /// Its air begins half a step before its first point and ends half a step after its last.
+  bool off_contact() const { return !beside_air && nearest - 0.5f > highest - lowest + 1.0f; }
+};
+
+}  // namespace
+
+std::vector<ClayCavity> unseen_cavities(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
+                                        float isovalue) {
+  const auto is_dark = [&](std::uint32_t n) {
+    const glm::ivec3 p = band.point(n);
+    return density.get(p.x, p.y, p.z) < isovalue;
+  };
+  std::vector<bool> seen(band.nodes.size(), false);
+  std::vector<ClayCavity> cavities;
+  for (std::uint32_t first = 0; first < band.nodes.size(); ++first) {
+    if (seen[first] || !is_dark(first)) continue;
+    DarkPiece piece;
+    piece.nodes.push_back(first);
+    seen[first] = true;
+    for (std::size_t i = 0; i < piece.nodes.size(); ++i) {
+      const ContactBand::Node& node = band.nodes[piece.nodes[i]];
+      piece.nearest = std::min(piece.nearest, node.distance);
+      piece.lowest = std::min(piece.lowest, node.height);
+      piece.highest = std::max(piece.highest, node.height);
+      each_beside({node.x, node.y, node.z}, [&](const glm::ivec3& q) {
+        if (!inside.get(q.x, q.y, q.z)) piece.beside_air = true;
+        const std::uint32_t m = band.at(q);
+        if (m == ContactBand::kNone || seen[m] || !is_dark(m)) return;
+        seen[m] = true;
+        piece.nodes.push_back(m);
+      });
+    }
+    if (!piece.off_contact()) continue;
+    std::sort(piece.nodes.begin(), piece.nodes.end());
+    cavities.push_back(std::move(piece.nodes));
+  }
+  return cavities;
+}
+
+void blind_fringes(const ContactBand& band, const std::vector<ClayCavity>& cavities, Dips& dips) {
+  std::vector<bool> fringe(band.nodes.size(), false);
+  std::vector<std::uint32_t> front, next;
+  for (const ClayCavity& cavity : cavities)
+    for (const std::uint32_t n : cavity)
+      if (!fringe[n]) {
+        fringe[n] = true;
+        front.push_back(n);
+      }
+  for (int step = 1; step < kFringe; ++step) {
+    next.clear();
+    for (const std::uint32_t n : front)
+      each_beside(band.point(n), [&](const glm::ivec3& q) {
+        const std::uint32_t m = band.at(q);
+        if (m == ContactBand::kNone || fringe[m]) return;
+        fringe[m] = true;
+        next.push_back(m);
+      });
+    front.swap(next);
+  }
+  for (std::size_t n = 0; n < fringe.size(); ++n)
+    if (fringe[n]) dips.strength[n] = std::min(dips.strength[n], 0.0f);
+}
+
+}  // namespace dubsar
