@@ -2,24 +2,26 @@
 // A file manager on a test's X server that lets files fall on the newest window: the source's side of the XDND
 // protocol, version 5 (freedesktop.org).
 
+#include <poll.h>
 #include <xcb/xcb.h>
 
 #include <array>
 #include <cstdlib>
 #include <cstring>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
 
 namespace dubsar::testing {
 
-/// Lets files fall, in a thread, as the window takes them while its events are taken. The destructor waits until the
-/// window has them.
+/// Lets files fall, in a thread, as the window takes them while its events are taken. The destructor does not wait for
+/// a window that is gone.
 class XDrop {
  public:
   explicit XDrop(const std::vector<std::string>& files) {
     for (const std::string& file : files) list_ += "file://" + file + "\r\n";
-    thread_ = std::jthread([this] { run(); });
+    thread_ = std::jthread([this](const std::stop_token& over) { run(over); });
   }
 
  private:
@@ -53,7 +55,17 @@ class XDrop {
     xcb_send_event(connection_, 0, asked.requestor, 0, reinterpret_cast<const char*>(&event));
     xcb_flush(connection_);
   }
-  void run() {
+  /// Nothing when it is over, or the server is gone.
+  xcb_generic_event_t* next_event(const std::stop_token& over) {
+    constexpr int kLookMs = 20;
+    pollfd socket{xcb_get_file_descriptor(connection_), POLLIN, 0};
+    while (!over.stop_requested() && xcb_connection_has_error(connection_) == 0) {
+      if (xcb_generic_event_t* const event = xcb_poll_for_event(connection_)) return event;
+      ::poll(&socket, 1, kLookMs);
+    }
+    return nullptr;
+  }
+  void run(const std::stop_token& stop) {
     connection_ = xcb_connect(nullptr, nullptr);
     if (xcb_connection_has_error(connection_) == 0) {
       const xcb_window_t root = xcb_setup_roots_iterator(xcb_get_setup(connection_)).data->root;
@@ -69,7 +81,7 @@ class XDrop {
       say("XdndEnter", {source, 5u << 24, atom("text/uri-list"), 0, 0});
       say("XdndPosition", {source, 0, 0, XCB_CURRENT_TIME, atom("XdndActionCopy")});
       for (bool over = false; !over;) {
-        xcb_generic_event_t* const event = xcb_wait_for_event(connection_);
+        xcb_generic_event_t* const event = next_event(stop);
         if (event == nullptr) break;
         const int type = event->response_type & 0x7f;
         if (type == XCB_SELECTION_REQUEST) answer(*reinterpret_cast<xcb_selection_request_event_t*>(event));
