@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "core/base/numbers/morton_code.h"
 #include "core/base/system/parallel.h"
@@ -215,6 +216,57 @@ std::span<const Triangle> triangles_of(const LitSurface& surface, PartitionId id
   return own;
 }
 
+/// A part of a body's box; vertices on its upper faces belong to the next.
+struct LitBox {
+  glm::vec3 low, high;
+  bool holds(glm::vec3 p) const { return glm::all(glm::greaterThanEqual(p, low)) && glm::all(glm::lessThan(p, high)); }
+};
+
+/// Boxes that hold all of `ids`, each of at most `most_cells` with `margin` around it, unless it is as small as that.
+/// They follow from the places alone.
+std::vector<LitBox> lit_boxes(std::span<const glm::vec3> positions, const std::vector<std::uint32_t>& ids, float margin,
+                              double most_cells) {
+  glm::vec3 low(INFINITY), high(-INFINITY);
+  for (const std::uint32_t v : ids) {
+    low = glm::min(low, positions[v]);
+    high = glm::max(high, positions[v]);
+  }
+  low = glm::floor(low);
+  const glm::vec3 size = glm::floor(high) + 1.0f - low;
+  constexpr double kTooLarge = 1e12;  // cells: SurfaceBricks refuses it
+  if (double{size.x} * size.y * size.z > kTooLarge) return {{low, low + size}};
+  glm::ivec3 parts(1);
+  glm::vec3 edge = size;
+  for (const glm::vec3 least(margin);;) {
+    const glm::dvec3 grown = glm::dvec3(edge) + 2.0 * margin;
+    if (grown.x * grown.y * grown.z <= most_cells || glm::all(glm::lessThan(edge, least))) break;
+    const int axis = edge.x >= edge.y && edge.x >= edge.z ? 0 : edge.y >= edge.z ? 1 : 2;
+    ++parts[axis];
+    edge[axis] = std::ceil(size[axis] / static_cast<float>(parts[axis]));
+  }
+  std::vector<LitBox> out;
+  for (int z = 0; z < parts.z; ++z)
+    for (int y = 0; y < parts.y; ++y)
+      for (int x = 0; x < parts.x; ++x) {
+        const glm::vec3 first = low + glm::vec3(x, y, z) * edge;
+        out.push_back({first, first + edge});
+      }
+  return out;
+}
+
+/// The triangles that rays from a box may meet.
+void triangles_near(std::span<const glm::vec3> positions, std::span<const Triangle> triangles, const LitBox& box,
+                    float margin, std::vector<Triangle>& out) {
+  const glm::vec3 low = box.low - margin, high = box.high + margin;
+  out.clear();
+  for (const Triangle& t : triangles) {
+    const glm::vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
+    if (glm::all(glm::lessThanEqual(glm::min(glm::min(a, b), c), high)) &&
+        glm::all(glm::greaterThanEqual(glm::max(glm::max(a, b), c), low)))
+      out.push_back(t);
+  }
+}
+
 }  // namespace
 
 SkyRays sky_rays(int count) {
@@ -250,14 +302,31 @@ Result<std::vector<float>> ambient_light(const LitSurface& surface, const Occlus
   const std::vector<PartitionId> body_of = bodies_of_vertices(surface);
   std::array<bool, 256> used{};
   for (const PartitionId id : body_of) used[id] = true;
-  std::vector<Triangle> own;
-  std::vector<std::uint32_t> ids;
+  std::vector<Triangle> own, near;
+  std::vector<std::uint32_t> ids, inside;
+  const auto trace = [&](const Tracer& tracer, std::vector<std::uint32_t>& which) {
+    sort_by_place_and_side(surface.positions, surface.normals, which);
+    const auto end_of_all = static_cast<std::int64_t>(which.size());
+    parallel_chunks(end_of_all, kOcclusionGrain, [&](std::int64_t begin, std::int64_t end) {
+      const auto sum = static_cast<float>(sky.weight_sum);
+      VertexGroup group;
+      for (std::int64_t i = begin; i < end; ++i) {
+        const std::uint32_t v = which[static_cast<std::size_t>(i)];
+        group.add(v, surface.positions[v] + options.offset_vox * surface.normals[v], surface.normals[v]);
+        if (group.count < kLanes && i + 1 < end) continue;
+        if (progress.cancelled()) return;
+        const auto taken = tracer.taken(group);
+        for (std::size_t k = 0; k < group.count; ++k)
+          light[group.ids[k]] = std::clamp(1.0f - taken[k] / sum, 0.0f, 1.0f);
+        group.count = 0;
+      }
+      progress.advance((end - begin) * options.rays);
+    });
+  };
   for (std::size_t id = 0; id < used.size(); ++id) {
     if (!used[id]) continue;
     std::span<const Triangle> part = triangles;
     if (!bodies.empty()) part = triangles_of(surface, static_cast<PartitionId>(id), own);
-    DUBSAR_ASSIGN(const auto tracer, device ? TriangleTracer::create(*device, part, sky, options.radius_vox, progress)
-                                            : BrickTracer::create(positions, part, sky, options.radius_vox, progress));
     ids.clear();
     std::int64_t skipped = 0;
     for (std::uint32_t v = 0; v < positions.size(); ++v) {
@@ -267,23 +336,28 @@ Result<std::vector<float>> ambient_light(const LitSurface& surface, const Occlus
       else
         ++skipped;
     }
-    sort_by_place_and_side(positions, normals, ids);
-    parallel_chunks(static_cast<std::int64_t>(ids.size()), kOcclusionGrain, [&](std::int64_t begin, std::int64_t end) {
-      const auto sum = static_cast<float>(sky.weight_sum);
-      VertexGroup group;
-      for (std::int64_t i = begin; i < end; ++i) {
-        const std::uint32_t v = ids[static_cast<std::size_t>(i)];
-        group.add(v, surface.positions[v] + options.offset_vox * surface.normals[v], surface.normals[v]);
-        if (group.count < kLanes && i + 1 < end) continue;
-        if (progress.cancelled()) return;
-        const auto taken = tracer->taken(group);
-        for (std::size_t k = 0; k < group.count; ++k)
-          light[group.ids[k]] = std::clamp(1.0f - taken[k] / sum, 0.0f, 1.0f);
-        group.count = 0;
-      }
-      progress.advance((end - begin) * options.rays);
-    });
     progress.advance(skipped * options.rays);
+    if (device) {
+      DUBSAR_ASSIGN(const auto tracer, TriangleTracer::create(*device, part, sky, options.radius_vox, progress));
+      trace(*tracer, ids);
+    } else if (!ids.empty()) {
+      // What is further away than that no ray comes to, nor the distances that it meets.
+      const float margin = options.radius_vox + std::abs(options.offset_vox) + 4.0f;
+      const std::vector<LitBox> boxes = lit_boxes(positions, ids, margin, options.most_cells);
+      for (const LitBox& box : boxes) {
+        if (boxes.size() > 1) {
+          inside.clear();
+          for (const std::uint32_t v : ids)
+            if (box.holds(positions[v])) inside.push_back(v);
+          if (inside.empty()) continue;
+          triangles_near(positions, part, box, margin, near);
+        }
+        DUBSAR_ASSIGN(const auto tracer, BrickTracer::create(positions, boxes.size() > 1 ? near : part, sky,
+                                                             options.radius_vox, progress));
+        trace(*tracer, boxes.size() > 1 ? inside : ids);
+        if (progress.cancelled()) return cancelled_error();
+      }
+    }
     if (progress.cancelled()) return cancelled_error();
   }
   progress.end();

@@ -30,6 +30,7 @@ struct OcclusionOptions {
   /// Rays start this far above the vertex along its normal, so that neither rounding nor the roughness that the 4-bit
   /// offsets leave (0.03 voxel) shades a vertex. Costs at most offset / radius of the value: 0.004.
   float offset_vox = 0.25f;
+  double most_cells = 4e8;  ///< of the grid that is marched through; larger bodies are lit box by box (kBricks)
 };
 
 /// The surface that is lit; the arrays are borrowed. Triangles without a body are all of one. Bodies share no vertices:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <glm/common.hpp>
@@ -10,12 +11,12 @@
 #include <memory>
 
 #include "core/base/system/parallel.h"
-#include "core/relief/occlusion/block_distances.h"
+#include "core/relief/occlusion/ahead_distances.h"
 
 namespace dubsar {
 namespace {
 
-constexpr int kBlock = 16;  // cells: what one thread fills at a time, 4^3 bricks
+constexpr int kBlock = 16;  // cells: what one thread fills at a time
 constexpr int kBlockBricks = kBlock / SurfaceBricks::kEdge;
 constexpr int kCorners = kBlock + 1;  // of a block, each way
 constexpr float kReach = 2.0f;        // voxels from a piece of surface to the furthest corner that it tells
@@ -124,10 +125,13 @@ class BlockCorners {
   std::array<std::int8_t, kNumbers> steps_{};
 };
 
-/// What a block gives: its bricks with surface, by place (x first), and their cells.
+/// What a block gives: of its bricks with surface the places (x first) and cells, and the corners of all.
 struct BlockOut {
-  std::vector<std::uint8_t> places;
-  std::vector<SurfaceBricks::Brick> bricks;
+  struct Found {
+    std::uint16_t place;
+    std::uint8_t cells;  ///< a bit each
+  };
+  std::vector<Found> bricks;
   std::vector<SurfaceBricks::Corners> corners;
 };
 
@@ -147,22 +151,15 @@ void find_bricks(const BlockCorners& block, BlockOut& out) {
   constexpr int kEdge = SurfaceBricks::kEdge;
   SurfaceBricks::Corners corners;
   for (int place = 0; place < kBlockBricks * kBlockBricks * kBlockBricks; ++place) {
-    const glm::ivec3 at(place % kBlockBricks, place / kBlockBricks % kBlockBricks,
-                        place / (kBlockBricks * kBlockBricks));
-    SurfaceBricks::Brick brick{static_cast<std::uint32_t>(out.corners.size()), {}};
-    brick.cells.fill(SurfaceBricks::kNone);
-    std::uint8_t found = 0;
-    for (std::size_t i = 0; i < brick.cells.size(); ++i) {
-      const int n = static_cast<int>(i);
-      if (!corners_of_cell(block, kEdge * at.x + n % kEdge, kEdge * at.y + n / kEdge % kEdge,
-                           kEdge * at.z + n / (kEdge * kEdge), corners))
-        continue;
+    const glm::ivec3 at = kEdge * glm::ivec3(place % kBlockBricks, place / kBlockBricks % kBlockBricks,
+                                             place / (kBlockBricks * kBlockBricks));
+    unsigned cells = 0;
+    for (int i = 0; i < kEdge * kEdge * kEdge; ++i) {
+      if (!corners_of_cell(block, at.x + (i & 1), at.y + (i >> 1 & 1), at.z + (i >> 2), corners)) continue;
       out.corners.push_back(corners);
-      brick.cells[i] = found++;
+      cells |= 1u << i;
     }
-    if (found == 0) continue;
-    out.places.push_back(static_cast<std::uint8_t>(place));
-    out.bricks.push_back(brick);
+    if (cells != 0) out.bricks.push_back({static_cast<std::uint16_t>(place), static_cast<std::uint8_t>(cells)});
   }
 }
 
@@ -184,15 +181,15 @@ class Builder {
     if (!(box.low.x <= box.high.x)) return out;
     out.origin = origin_ = glm::floor(box.low) - float{kMargin};
     const glm::vec3 extent = (glm::floor(box.high) - origin_ + float{kMargin + 1}) / float{kBlock};
-    if (extent.x * extent.y * extent.z > 3e7f)
+    if (extent.x * extent.y * extent.z * float{kBlock * kBlock * kBlock} > 2e9f)
       return fail(ErrorKind::kTryAgain, "occlusion: a surface of {:.0f} x {:.0f} x {:.0f} voxels is too large to march",
                   extent.x * kBlock, extent.y * kBlock, extent.z * kBlock);
     blocks_ = glm::ivec3(glm::ceil(extent));
-    out.size = blocks_ * kBlockBricks;
+    out.tiles = blocks_ * (kBlockBricks / 2);
     std::vector<BlockOut> found = fill_blocks(lists());
     if (progress_.cancelled()) return cancelled_error();
     DUBSAR_TRY(join(found, out));
-    DUBSAR_TRY(measure_away(out, progress_));
+    if (!measure_ahead(out, progress_)) return cancelled_error();
     return out;
   }
 
@@ -279,7 +276,6 @@ class Builder {
           work->add(p, q, r, glm::normalize(glm::cross(q - p, r - p)));
         }
         work->finish();
-        found.places.clear();
         found.bricks.clear();
         found.corners.clear();
         find_bricks(*work, found);
@@ -291,33 +287,27 @@ class Builder {
 
   /// Blocks in their order, each let go when it is copied.
   Result<void> join(std::vector<BlockOut>& found, SurfaceBricks& out) const {
-    std::vector<std::size_t> first_brick(found.size() + 1), first_corners(found.size() + 1);
-    for (std::size_t b = 0; b < found.size(); ++b) {
-      first_brick[b + 1] = first_brick[b] + found[b].bricks.size();
-      first_corners[b + 1] = first_corners[b] + found[b].corners.size();
-    }
+    std::vector<std::size_t> first_corners(found.size() + 1);
+    for (std::size_t b = 0; b < found.size(); ++b) first_corners[b + 1] = first_corners[b] + found[b].corners.size();
     constexpr auto kLargest = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
-    if (first_brick.back() > kLargest / sizeof(SurfaceBricks::Brick) ||
-        first_corners.back() > kLargest / sizeof(SurfaceBricks::Corners))
+    if (first_corners.back() > kLargest / sizeof(SurfaceBricks::Corners))
       return fail(ErrorKind::kTryAgain, "occlusion: a surface through {} cells is too large to march",
                   first_corners.back());
-    out.bricks.resize(first_brick.back());
-    out.corners.resize(first_corners.back());
-    out.table.assign(found.size() * kBlockBricks * kBlockBricks * kBlockBricks, -1);
+    out.corners.resize(first_corners.back() + 1);
+    out.bricks.assign(found.size() * kBlockBricks * kBlockBricks * kBlockBricks, {});
     parallel_for(static_cast<std::int64_t>(found.size()), 64, [&](std::int64_t i) {
       const auto b = static_cast<std::size_t>(i);
       std::copy(found[b].corners.begin(), found[b].corners.end(),
                 out.corners.begin() + static_cast<std::ptrdiff_t>(first_corners[b]));
-      for (std::size_t k = 0; k < found[b].bricks.size(); ++k) {
-        const int place = found[b].places[k];
-        const glm::ivec3 at =
-            place_of(b) * kBlockBricks + glm::ivec3(place % kBlockBricks, place / kBlockBricks % kBlockBricks,
-                                                    place / (kBlockBricks * kBlockBricks));
-        SurfaceBricks::Brick brick = found[b].bricks[k];
-        brick.first_cell += static_cast<std::uint32_t>(first_corners[b]);
-        out.bricks[first_brick[b] + k] = brick;
-        out.table[static_cast<std::size_t>((std::int64_t{at.z} * out.size.y + at.y) * out.size.x + at.x)] =
-            static_cast<std::int32_t>(first_brick[b] + k);
+      const glm::ivec3 low = place_of(b) * kBlockBricks;
+      auto cell = static_cast<std::uint32_t>(first_corners[b]);
+      for (const auto [place, cells] : found[b].bricks) {
+        const glm::ivec3 at = low + glm::ivec3(place % kBlockBricks, place / kBlockBricks % kBlockBricks,
+                                               place / (kBlockBricks * kBlockBricks));
+        const std::uint32_t both = SurfaceBricks::kSurface | std::uint32_t{cells} << SurfaceBricks::kCellBits;
+        constexpr std::uint32_t kLow = (1u << SurfaceBricks::kCellBits) - 1;
+        out.bricks[out.index_of(at)] = {both | (cell & kLow), both | cell >> SurfaceBricks::kCellBits};
+        cell += static_cast<std::uint32_t>(std::popcount(cells));
       }
       found[b] = {};
     });

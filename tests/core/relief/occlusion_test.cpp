@@ -272,6 +272,16 @@ TEST(Occlusion, AllVectorsGiveTheSameBits) {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
+TEST(Occlusion, BoxByBoxItIsTheSame) {
+  const QuadMesh mesh = rough_scene();
+  const auto whole = light(mesh, {.rays = 40, .radius_vox = 9});
+  for (const double cells : {6e4, 2e4}) {
+    const auto parts = light(mesh, {.rays = 40, .radius_vox = 9, .most_cells = cells});
+    ASSERT_EQ(parts.size(), whole.size());
+    for (std::size_t v = 0; v < whole.size(); ++v) ASSERT_NEAR(parts[v], whole[v], 1e-4) << v << ' ' << cells;
+  }
+}
+
 TEST(Occlusion, TurningTheVolumeKeepsTheLight) {
   OcclusionOptions options;
   options.rays = 60;

@@ -28,15 +28,18 @@ struct CellWithSurface {
 
 std::vector<CellWithSurface> cells_with_surface(const SurfaceBricks& bricks) {
   std::vector<CellWithSurface> out;
-  for (int i = 0; i < static_cast<int>(bricks.table.size()); ++i) {
-    const std::int32_t brick = bricks.table[static_cast<std::size_t>(i)];
-    if (brick < 0) continue;
-    const glm::ivec3 at(i % bricks.size.x, i / bricks.size.x % bricks.size.y, i / (bricks.size.x * bricks.size.y));
-    const SurfaceBricks::Brick& found = bricks.bricks[static_cast<std::size_t>(brick)];
-    for (int k = 0; k < 64; ++k)
-      if (const std::uint8_t place = found.cells[static_cast<std::size_t>(k)]; place != SurfaceBricks::kNone)
-        out.push_back({4 * at + glm::ivec3(k % 4, k / 4 % 4, k / 16), bricks.corners[found.first_cell + place]});
-  }
+  const glm::ivec3 size = bricks.size();
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x) {
+        const auto [low, high] = bricks.bricks[bricks.index_of({x, y, z})];
+        if ((low & SurfaceBricks::kSurface) == 0) continue;
+        std::size_t cell =
+            low % (1u << SurfaceBricks::kCellBits) + std::size_t{high & 0xffu} * (1u << SurfaceBricks::kCellBits);
+        for (int k = 0; k < 8; ++k)
+          if (low >> (SurfaceBricks::kCellBits + k) & 1)
+            out.push_back({2 * glm::ivec3(x, y, z) + glm::ivec3(k & 1, k >> 1 & 1, k >> 2), bricks.corners[cell++]});
+      }
   return out;
 }
 
@@ -85,32 +88,43 @@ TEST(SurfaceBricks, EveryCellThatTheSurfacePassesIsThere) {
   EXPECT_GT(expected, 3000u);
 }
 
-TEST(SurfaceBricks, AwayIsTheChessboardDistance) {
+TEST(SurfaceBricks, AheadIsTheLargestEmptyCubeOfEachOctant) {
   QuadMesh mesh = cube_sphere(16, 7, {9, 9, 9});
-  const QuadMesh other = cube_sphere(12, 4, {95, 31, 20});
-  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
-  mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
-  for (auto q : other.quads) mesh.quads.push_back({q[0] + base, q[1] + base, q[2] + base, q[3] + base});
+  // Far enough for slabs of slices, as threads do them.
+  for (const glm::dvec3 middle : {glm::dvec3(95, 31, 20), glm::dvec3(12, 20, 330)}) {
+    const QuadMesh other = cube_sphere(12, 4, middle);
+    const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+    for (auto q : other.quads) mesh.quads.push_back({q[0] + base, q[1] + base, q[2] + base, q[3] + base});
+  }
   const SurfaceBricks bricks = bricks_of(mesh);
-  ASSERT_EQ(bricks.block_bits, 0);
-  const auto cells = cells_with_surface(bricks);
-  const glm::ivec3 size = bricks.size * 4;
-  int far = 0;
+  std::vector<glm::ivec3> passed;
+  for (const auto& cell : cells_with_surface(bricks))
+    if (const glm::ivec3 brick = cell.at / 2; passed.empty() || passed.back() != brick) passed.push_back(brick);
+  const glm::ivec3 size = bricks.size();
+  ASSERT_GT(size.z, 4 * SurfaceBricks::kMostAhead);
+  std::array<int, 8> far{}, near{};
   for (int z = 0; z < size.z; z += 3)
     for (int y = 0; y < size.y; y += 2)
       for (int x = 0; x < size.x; ++x) {
-        int nearest = SurfaceBricks::kMostAway;
-        for (const auto& cell : cells) {
-          const glm::ivec3 d = glm::abs(cell.at - glm::ivec3(x, y, z));
-          nearest = std::min(nearest, std::max({d.x, d.y, d.z}));
+        const SurfaceBricks::Brick& brick = bricks.bricks[bricks.index_of({x, y, z})];
+        if (brick[0] & SurfaceBricks::kSurface) continue;
+        for (unsigned octant = 0; octant < 8; ++octant) {
+          int expected = SurfaceBricks::kMostAhead;
+          const glm::ivec3 way(octant & 1 ? -1 : 1, octant & 2 ? -1 : 1, octant & 4 ? -1 : 1);
+          for (const glm::ivec3& other : passed) {
+            const glm::ivec3 d = way * (other - glm::ivec3(x, y, z));
+            if (std::min({d.x, d.y, d.z}) >= 0) expected = std::min(expected, std::max({d.x, d.y, d.z}));
+          }
+          ASSERT_EQ(brick[octant / 4] >> 8 * (octant % 4) & 0xff, static_cast<unsigned>(expected))
+              << x << ' ' << y << ' ' << z << " octant " << octant;
+          ++(expected == SurfaceBricks::kMostAhead ? far : near)[octant];
         }
-        const glm::ivec3 brick = glm::ivec3(x, y, z) / 4, in = glm::ivec3(x, y, z) % 4;
-        const int index =
-            ((brick.z * bricks.size.y + brick.y) * bricks.size.x + brick.x) * 64 + (in.z * 4 + in.y) * 4 + in.x;
-        ASSERT_EQ(bricks.away[static_cast<std::size_t>(index)], nearest) << x << ' ' << y << ' ' << z;
-        far += nearest == SurfaceBricks::kMostAway;
       }
-  EXPECT_GT(far, 0);
+  for (std::size_t octant = 0; octant < 8; ++octant) {
+    EXPECT_GT(far[octant], 0) << octant;
+    EXPECT_GT(near[octant], 0) << octant;
+  }
 }
 
 TEST(SurfaceBricks, ThreadsOrderAndLargeTrianglesChangeNothing) {
@@ -122,9 +136,8 @@ TEST(SurfaceBricks, ThreadsOrderAndLargeTrianglesChangeNothing) {
   for (const int threads : {1, 2, 7}) {
     set_thread_count(threads);
     const auto again = SurfaceBricks::build(mesh.positions, triangles, progress).value();
-    EXPECT_EQ(again.away, first.away) << threads;
     EXPECT_EQ(again.corners, first.corners) << threads;
-    EXPECT_EQ(again.table, first.table) << threads;
+    EXPECT_EQ(again.bricks, first.bricks) << threads;
   }
   set_thread_count(0);
   // A plane of two triangles has the distances of one of many.
