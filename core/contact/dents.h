@@ -11,7 +11,7 @@
 namespace dubsar {
 
 /// Mean strength of dips along a cut through clay without a film: it seeks what is dark.
-inline constexpr float kClayStrength = 0.9f;
+inline constexpr float kClayStrength = 0.95f;
 /// Deviation of the mean of so many of their neighbours: this over the root of their number (one of .24 for some 80).
 inline constexpr float kStrengthDeviation = 2.15f;
 

@@ -12,7 +12,7 @@
 namespace dubsar {
 
 struct ShapeOptions {
-  float film_strength = 1.3f;   ///< mean of dips from which on a film is believed
+  float film_strength = 1.4f;   ///< mean of dips from which on a film is believed
   float most = 1.5f;            ///< steps that inferred contact is moved
   float blur_variance = 0.42f;  ///< of the scan
   std::optional<ClayContrast> clays = std::nullopt;

@@ -12,6 +12,7 @@
 #include "core/contact/clay_sides.h"
 #include "core/contact/clays.h"
 #include "core/contact/dips.h"
+#include "core/contact/firmness.h"
 #include "core/contact/interface_mesh.h"
 #include "core/contact/interface_rest.h"
 #include "core/contact/interface_shape.h"
@@ -53,10 +54,15 @@ struct Traced {
   const Dips& dips;
   const EdgeIndex& index;
   const FaceGraph& graph;
-  std::vector<BandFace> faces;
-  std::vector<ClaySide> side;
-  std::optional<ClayContrast> clays;
-  std::vector<glm::vec3> crossed;  ///< where moving its vertices made the contact run through something
+  std::vector<BandFace> faces{};
+  std::vector<ClayCavity> pores{};
+  std::vector<SurfaceHint> hints{};
+  std::vector<float> votes{};
+  std::vector<ClaySide> side{};
+  std::vector<ClaySide> cut_side{};           ///< before it was made to step aside
+  std::optional<std::vector<bool>> unfirm{};  ///< nodes where it might as well lie, once there is a film
+  std::optional<ClayContrast> clays{};
+  std::vector<glm::vec3> crossed{};  ///< where moving its vertices made the contact run through something
 };
 
 /// The contact between the sides, as the grid gives it: its vertices have not moved yet.
@@ -128,13 +134,26 @@ Result<Laid> lay_contact(SurfaceModel& model, const Traced& traced, Progress& pr
   return laid;
 }
 
+/// Films are believed where the contact is firm. What follows two clays is no film.
+Result<void> doubt_films(const Laid& laid, Traced& traced, std::vector<std::uint8_t>& evidence, Progress& progress) {
+  const auto film = std::count(evidence.begin(), evidence.end(), evidence_byte(Evidence::kFilm));
+  if (film == 0 || traced.clays) return {};
+  if (!traced.unfirm) {
+    DUBSAR_ASSIGN(traced.unfirm, find_unfirm({traced.band, traced.dips, traced.hints, traced.votes, traced.pores},
+                                             traced.cut_side, progress));
+  }
+  doubt_unfirm(traced.band, *traced.unfirm, laid.mesh.added, evidence);
+  return {};
+}
+
 /// Moves its vertices to where the scan shows it and stores it in the model.
-Result<void> shape_contact(SurfaceModel& model, const Laid& laid, const Traced& traced, const ContactOptions& options,
+Result<void> shape_contact(SurfaceModel& model, const Laid& laid, Traced& traced, const ContactOptions& options,
                            ContactReport& report, Progress& progress) {
   InterfaceMesh mesh = laid.mesh;
   std::vector<std::uint8_t> evidence =
       shape_interface(mesh, model.mesh.positions, traced.density, traced.crossed,
                       {options.film_strength, kMostMove, options.blur_variance, traced.clays, traced.dips.deviation});
+  DUBSAR_TRY(doubt_films(laid, traced, evidence, progress));
   report.traced = true;
   report.pockets = laid.pockets;
   report.film_vertices = std::count(evidence.begin(), evidence.end(), evidence_byte(Evidence::kFilm));
@@ -232,22 +251,23 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   DUBSAR_ASSIGN(Dips dips, find_dips(band, model.samples.signs, values, progress));
   DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(model.samples));
   DUBSAR_ASSIGN(const FaceGraph graph, FaceGraph::build(model.mesh, progress));
-  Traced traced{band, values, dips, index, graph, faces_of_band(model, index, band), {}, {}, {}};
+  Traced traced{.band = band, .density = values, .dips = dips, .index = index, .graph = graph};
+  traced.faces = faces_of_band(model, index, band);
   traced.clays = compare_clays(band, model.samples.signs, values, options.blur_variance);
   report.clays_differ = traced.clays.has_value();
-  std::vector<float> votes;
   if (traced.clays) {
     dips.density.clear();  // it is least in the lighter clay, not between them
-    votes = clay_votes(band, model.samples.signs, values, *traced.clays);
+    traced.votes = clay_votes(band, model.samples.signs, values, *traced.clays);
     log_info("contact: the envelope's clay has {:.1f} % of the density of the tablet's",
              100.0f * traced.clays->envelope / traced.clays->tablet);
   }
-  std::vector<ClayCavity> pores = cavities_off_contact(model, graph, band, traced.faces);
+  traced.pores = cavities_off_contact(model, graph, band, traced.faces);
   for (ClayCavity& unseen : unseen_cavities(band, model.samples.signs, values, model.samples.isovalue))
-    pores.push_back(std::move(unseen));
-  blind_fringes(band, pores, dips);
-  DUBSAR_ASSIGN(traced.side,
-                divide_clay(band, dips, hints_of_faces(model, band, traced.faces, pores), votes, pores, progress));
+    traced.pores.push_back(std::move(unseen));
+  blind_fringes(band, traced.pores, dips);
+  traced.hints = hints_of_faces(model, band, traced.faces, traced.pores);
+  DUBSAR_ASSIGN(traced.side, divide_clay(band, dips, traced.hints, traced.votes, traced.pores, progress));
+  traced.cut_side = traced.side;
   if (progress.cancelled()) return cancelled_error();
   DUBSAR_TRY(trace_until_closed(model, std::move(traced), options, report, progress));
   progress.end();

@@ -16,7 +16,7 @@ namespace dubsar {
 struct ContactOptions {
   float reach = 12.0f;         ///< of the search on both sides of the smooth patch, grid steps: the deepest wedge
   double step = 1.0 / 64.0;    ///< positions are multiples of it, as in files
-  float film_strength = 1.3f;  ///< mean strength of dips around a vertex (dips.h) from which on a film is believed
+  float film_strength = 1.4f;  ///< mean strength of dips around a vertex (dips.h) from which on a film is believed
   /// Variance of the scan's edges, voxels squared (core/filter/edge_spread.h); this is that of a good scan.
   float blur_variance = 0.42f;
 };

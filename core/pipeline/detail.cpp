@@ -10,8 +10,13 @@ namespace {
 
 /// Of the memory that is left: what a run takes is known to a fifth.
 constexpr double kShare = 0.8;
+constexpr const char* kShareText = "four fifths";
 /// Minutes on two cores; a scan of the paper's size takes a quarter of an hour, most of it for contact and light.
 constexpr std::int64_t kMostVoxels = 1'000'000'000;
+
+std::string size_text(double bytes) {
+  return gib_of(bytes) < 1.0 ? fmt::format("{:.0f} MiB", mib_of(bytes)) : fmt::format("{:.1f} GiB", gib_of(bytes));
+}
 
 }  // namespace
 
@@ -25,11 +30,10 @@ DetailChoice choose_detail(Detail wanted, const Dims& scan, std::uint64_t memory
                         "from {:.0f} million",
                         static_cast<double>(scan.count()) * 1e-6, static_cast<double>(kMostVoxels) * 1e-6)};
   if (needed > kShare * static_cast<double>(memory_left))
-    return {Detail::kHalf, fmt::format("the scan's resolution takes {:.1f} GiB, and {:.1f} GiB are left",
-                                       gib_of(needed), gib_of(memory_left))};
-  return {Detail::kScan,
-          fmt::format("{:.{}f} million voxels fit in {:.1f} GiB", static_cast<double>(scan.count()) * 1e-6,
-                      scan.count() < 10'000'000 ? 1 : 0, gib_of(memory_left))};
+    return {Detail::kHalf, fmt::format("the scan's resolution takes about {}, more than {} of the {} that are left",
+                                       size_text(needed), kShareText, size_text(static_cast<double>(memory_left)))};
+  return {Detail::kScan, fmt::format("{:.{}f} million voxels fit in {}", static_cast<double>(scan.count()) * 1e-6,
+                                     scan.count() < 10'000'000 ? 1 : 0, size_text(static_cast<double>(memory_left)))};
 }
 
 }  // namespace dubsar

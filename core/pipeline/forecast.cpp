@@ -23,7 +23,7 @@ constexpr double kSecondsPerRay = 1.0 / 13e6;
 constexpr double kContactSeconds = 17.0;  ///< at the scan's resolution
 // The rest of memory: the program, its slabs and threads; and, for each vertex, all that is there while the contact is
 // traced.
-constexpr double kProgramBytes = 80e6, kContactBytesPerVertex = 500.0;
+constexpr double kProgramBytes = 80e6, kContactBytesPerVertex = 600.0;
 // Points of the bricks near the surface, and what filtering one costs: passes see beyond the bricks.
 constexpr double kBandPointsPerVertex = 14.0, kBandEffort = 1.8;
 constexpr std::int64_t kLearnedSlices = 96;  ///< of the scan, that are filtered in whole (refine_stage.cpp)

@@ -164,6 +164,7 @@ JudgedRow judge_row(const ContactRow& row, const JudgeOptions& how) {
     judged.peak_mib = std::max(judged.peak_mib, stage.peak_rss_mib);
     if (stage.name == "contact") judged.contact_cpu_s = stage.cpu_s;
   }
+  judged.stages = result.report.stages;
   judged.blur = result.report.scan.blur;
   judged.traced = result.report.contact && result.report.contact->traced;
   if (result.report.contact) judged.remark = result.report.contact->why;

@@ -10,6 +10,7 @@
 #include "core/filter/edge_spread.h"
 #include "core/phantom/options.h"
 #include "core/pipeline/detail.h"
+#include "core/pipeline/stage_clock.h"
 #include "tests/core/phantom/contact_score.h"
 
 namespace dubsar {
@@ -37,6 +38,7 @@ struct JudgedRow {
   double step = 1.0;   ///< voxels of the scan in one of the grid
   std::string remark;  ///< why nothing was traced
   double wall_s = 0.0, cpu_s = 0.0, peak_mib = 0.0, contact_cpu_s = 0.0;
+  std::vector<StageRecord> stages;
 };
 
 struct JudgeOptions {

@@ -237,11 +237,16 @@ int print_wanted(const Kinds& kinds) {
   return table.failed();
 }
 
+/// A row of docs/evidence.md: seconds of processors and memory, then of which stages.
 void print_costs(const Dims& dims, Detail detail) {
   const std::vector<ContactRow> rows = contact_rows(dims, 1);
   const JudgedRow j = judge_row(rows[0], {.detail = detail, .light = true, .judge = false});
-  fmt::print("{}x{}x{} --detail {}: {:.0f} s, {:.0f} s of processors, {:.0f} MiB\n", dims.x, dims.y, dims.z,
-             name_in(kDetails, detail), j.wall_s, j.cpu_s, j.peak_mib);
+  std::string stages;
+  for (const StageRecord& stage : j.stages)
+    if (stage.cpu_s >= 0.01 * j.cpu_s)
+      stages += fmt::format("{}{} {:.1f}", stages.empty() ? "" : ", ", stage.name, stage.cpu_s);
+  fmt::print("| {}x{}x{} | {} | {:.0f} s | {:.0f} s | {:.0f} MiB | {} |\n", dims.x, dims.y, dims.z,
+             name_in(kDetails, detail), j.wall_s, j.cpu_s, j.peak_mib, stages);
   std::fflush(stdout);
 }
 
@@ -249,6 +254,8 @@ int run(int argc, char** argv) {
   const Arguments a = parse(argc, argv);
   if (!a.volumes.empty()) return print_real_volumes(a.volumes) > 0 ? 1 : 0;
   if (a.costs || a.large) {
+    fmt::print("| voxels | detail | by the clock | processors | most memory | seconds of processors by stage |\n");
+    fmt::print("|---|---|---|---|---|---|\n");
     for (const Dims& dims : a.large ? std::vector<Dims>{{935, 499, 861}, {1871, 999, 1723}} : std::vector<Dims>{a.dims})
       for (const Detail detail : {Detail::kHalf, a.large ? Detail::kAuto : Detail::kScan}) print_costs(dims, detail);
     return 0;

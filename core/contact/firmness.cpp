@@ -1,0 +1,81 @@
+#include "core/contact/firmness.h"
+
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "core/contact/ring_average.h"
+#include "core/mesh/evidence.h"
+
+namespace dubsar {
+namespace {
+
+constexpr int kOwn = 2;          ///< steps from the contact within which dips are its own
+constexpr float kWeaker = 0.5f;  ///< deviations: twice that of a mean over five rings
+constexpr float kReachOfDoubt = 4.5f;
+
+/// Nodes within kOwn steps along the grid of the contact.
+std::vector<bool> beside_contact(const ContactBand& band, const std::vector<ClaySide>& side) {
+  std::vector<bool> beside(band.nodes.size(), false);
+  std::vector<std::uint32_t> front, next;
+  const auto each_neighbour = [&](std::uint32_t n, const auto& visit) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int sense : {-1, 1})
+        if (const std::uint32_t m = band.at(band.point(n) + sense * unit_step(axis)); m != ContactBand::kNone) visit(m);
+  };
+  for (std::uint32_t n = 0; n < beside.size(); ++n)
+    each_neighbour(n, [&](std::uint32_t m) {
+      if (side[m] == side[n] || beside[n]) return;
+      beside[n] = true;
+      front.push_back(n);
+    });
+  for (int step = 2; step <= kOwn; ++step) {
+    next.clear();
+    for (const std::uint32_t n : front)
+      each_neighbour(n, [&](std::uint32_t m) {
+        if (beside[m]) return;
+        beside[m] = true;
+        next.push_back(m);
+      });
+    front.swap(next);
+  }
+  return beside;
+}
+
+}  // namespace
+
+Result<std::vector<bool>> find_unfirm(const ClayEvidence& evidence, const std::vector<ClaySide>& side,
+                                      Progress& progress) {
+  const std::vector<bool> own = beside_contact(evidence.band, side);
+  Dips weaker = evidence.dips;
+  for (std::size_t n = 0; n < own.size(); ++n)
+    if (own[n]) weaker.strength[n] -= kWeaker;
+  DUBSAR_ASSIGN(const std::vector<ClaySide> again,
+                divide_clay(evidence.band, weaker, evidence.hints, evidence.votes, evidence.whole, progress));
+  std::vector<bool> unfirm(own.size());
+  for (std::size_t n = 0; n < own.size(); ++n) unfirm[n] = !own[n] && again[n] != side[n];
+  return unfirm;
+}
+
+void doubt_unfirm(const ContactBand& band, const std::vector<bool>& unfirm, std::span<const glm::vec3> cut,
+                  std::vector<std::uint8_t>& evidence) {
+  constexpr int kReach = static_cast<int>(kReachOfDoubt) + 1;
+  const auto near_unfirm = [&](const glm::vec3& p) {
+    const glm::ivec3 middle(glm::round(p));
+    for (int z = -kReach; z <= kReach; ++z)
+      for (int y = -kReach; y <= kReach; ++y)
+        for (int x = -kReach; x <= kReach; ++x) {
+          const glm::ivec3 q = middle + glm::ivec3(x, y, z);
+          if (glm::distance(glm::vec3(q), p) >= kReachOfDoubt) continue;
+          const std::uint32_t n = band.at(q);
+          if (n != ContactBand::kNone && unfirm[n]) return true;
+        }
+    return false;
+  };
+  each_vertex(evidence.size(), [&](std::size_t i) {
+    if (evidence[i] == evidence_byte(Evidence::kFilm) && near_unfirm(cut[i]))
+      evidence[i] = evidence_byte(Evidence::kInferred);
+  });
+}
+
+}  // namespace dubsar
