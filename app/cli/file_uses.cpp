@@ -48,9 +48,9 @@ bool same_file(const fs::path& a, const fs::path& b) {
 
 Result<void> check_place(const FileUse& file) {
   std::error_code ignored;
-  const fs::path target = fs::exists(file.path, ignored) ? fs::canonical(file.path, ignored) : fs::path(file.path);
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   DUBSAR_TRY(check_output_kind(file.path));
+  const fs::path given(file.path), target = fs::is_symlink(given, ignored) ? whole_name(given) : given;
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, ignored))
     return fail(ErrorKind::kCannotCreate, "cannot create {}: the folder {} does not exist, make it first", file.path,
                 folder.string());

@@ -45,7 +45,10 @@ Result<void> check_output_kind(const fs::path& target) {
   if (fs::is_fifo(status)) found = "a pipe";
   if (fs::is_socket(status)) found = "a socket";
   if (fs::is_block_file(status) || fs::is_character_file(status)) found = "a device";
-  if (!found) return {};
+  if (!found) {
+    DUBSAR_TRY(behind_links(target));
+    return {};
+  }
   return fail(ErrorKind::kCannotCreate, "cannot create {}: it is {}, expected a file name", target.string(), found);
 }
 

@@ -161,6 +161,17 @@ TEST_F(Outputs, LinksStayLinksAndTheFileBehindThemIsReplaced) {
   EXPECT_TRUE(fs::is_regular_file(at("not_there_yet.json")));
 }
 
+TEST_F(Outputs, LinksThatLeadNowhereAreRefusedBeforeTheWork) {
+  fs::create_symlink("ring_b.exa", at("ring_a.exa"));
+  fs::create_symlink("ring_a.exa", at("ring_b.exa"));
+  fs::create_symlink("no_such_folder/x.exa", at("astray.exa"));
+  for (const char* link : {"ring_a.exa", "astray.exa"}) {
+    refused({"process", "no such scan.h5", "-o", at(link)}, 73, "scan.h5", "cannot create");
+    refused({"process", "no such scan.h5", "-o", at("x.exa"), "--json", at(link)}, 73, "scan.h5", "cannot create");
+    EXPECT_TRUE(fs::is_symlink(at(link)));
+  }
+}
+
 TEST_F(Outputs, PipesAndDevicesAreNoFiles) {
   ASSERT_EQ(::mkfifo(at("pipe.exa").c_str(), 0600), 0);
   const ProgramRun pipe = run_dubsar({"process", at("scan.h5"), "-o", at("pipe.exa")});
