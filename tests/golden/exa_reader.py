@@ -203,7 +203,7 @@ def sign_taps(phase):
 @lru_cache(None)
 def sign_model(which):
     units = 64 if which == 2 else 16
-    values = weight_tables("sign_weights_wide.inc")[0] if which == 2 else weight_tables("sign_weights.inc")[which]
+    values = weight_tables("signs/sign_weights_wide.inc")[0] if which == 2 else weight_tables("signs/sign_weights.inc")[which]
     at, phases = 0, {}
     for phase in PHASES:
         taps = sign_taps(phase)
@@ -217,7 +217,7 @@ def sign_model(which):
 
 @lru_cache(None)
 def offset_model(which):
-    values, at, axes = weight_tables("offset_weights.inc")[which], 0, []
+    values, at, axes = weight_tables("offsets/offset_weights.inc")[which], 0, []
     for _ in range(3):
         axes.append((values[at:at + 1248].reshape(24, 52), values[at + 1248:at + 1272],
                      values[at + 1272:at + 1320].reshape(2, 24), values[at + 1320:at + 1322]))

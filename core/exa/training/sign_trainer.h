@@ -27,7 +27,7 @@ std::array<SignWeights, 7> train_signs(const SignSamples& samples, const SignTra
 /// Bits that the samples take with fixed probabilities of the rounded weights.
 double sign_bits(const SignSamples& samples, const std::array<SignWeights, 7>& weights, std::size_t units);
 
-/// The table as core/exa/sign_weights*.inc hold it.
+/// The table as core/exa/signs/sign_weights*.inc hold it.
 std::string sign_weights_text(const std::array<SignWeights, 7>& weights, std::size_t units, std::string_view name);
 
 }  // namespace dubsar
