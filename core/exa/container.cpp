@@ -48,6 +48,7 @@ std::string exa_head(std::span<const ExaBlock> blocks, std::uint16_t major, std:
 }
 
 Result<std::uint64_t> exa_head_bytes(std::string_view prelude, std::uint64_t file_bytes) {
+  if (file_bytes == 0) return fail(ErrorKind::kBadData, "exa: the file is empty, expected a file that dubsar wrote");
   if (!prelude.starts_with(kExaMagic))
     return fail(ErrorKind::kBadData,
                 "exa: the file does not start with the EXA mark, expected a file that dubsar wrote");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "core/base/system/budget.h"
 #include "core/exa/exa_blocks.h"
@@ -98,9 +99,10 @@ Result<void> decode_attributes(const ExaReader& reader, const ExaHeader& header,
   }
   DUBSAR_TRY(labels("AMBO", ExaLabel::kLight, model.attributes.ao));
   DUBSAR_TRY(labels("EVID", ExaLabel::kEnum, model.attributes.evidence));
-  for (const std::uint8_t evidence : model.attributes.evidence)
-    if (evidence >= kEvidenceCount)
-      return fail(ErrorKind::kBadData, "exa: evidence {} found, expected 0 to {}", evidence, kEvidenceCount - 1);
+  std::uint8_t highest = 0;
+  for (const std::uint8_t evidence : model.attributes.evidence) highest = std::max(highest, evidence);
+  if (highest >= kEvidenceCount)
+    return fail(ErrorKind::kBadData, "exa: evidence {} found, expected 0 to {}", highest, kEvidenceCount - 1);
   DUBSAR_TRY(labels("QPAR", ExaLabel::kPartition, model.quad_partition));
   if (reader.has("PART")) {
     DUBSAR_ASSIGN(const std::string text, reader.text("PART"));
@@ -120,12 +122,12 @@ Result<void> decode_attributes(const ExaReader& reader, const ExaHeader& header,
   return {};
 }
 
-Result<void> decode_offsets(const ExaReader& reader, const ExaHeader& header, SurfaceSamples& samples,
-                            Progress& progress) {
+Result<void> decode_offsets(const ExaReader& reader, const ExaHeader& header, const EdgeIndex& index,
+                            SurfaceSamples& samples, Progress& progress) {
   if (header.profile == ExaProfile::kCompact) {
     DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("OFFS", kCodec));
     DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("FACE", kCodec));
-    return decode_samples(offsets.chunks, faces.chunks, samples, progress);
+    return decode_samples(offsets.chunks, faces.chunks, index, samples, progress);
   }
   DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("POFF", kCodec));
   DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("PFCE", kCodec));
@@ -185,12 +187,16 @@ Result<SurfaceModel> decode_model(const ExaReader& reader, const ExaReadOptions&
   model.samples = empty_samples(header);
   SurfaceSamples& samples = model.samples;
   DUBSAR_ASSIGN(samples.signs, decode_level_signs(reader, header, 0, progress));
-  const SampleCounts counts = count_samples(samples.signs);
+  DUBSAR_TRY(check_signs(samples));
+  std::optional<EdgeIndex> index;  // of both steps that need it, gone when memory is needed for others
+  DUBSAR_ASSIGN(index, EdgeIndex::create(samples));
+  const SampleCounts counts = index->counts();
   if (counts.edges != header.samples.edges || counts.faces != header.samples.faces)
     return fail(ErrorKind::kBadData, "exa: {} active edges and {} ambiguous faces found, the header says {} and {}",
                 counts.edges, counts.faces, header.samples.edges, header.samples.faces);
-  DUBSAR_TRY(decode_offsets(reader, header, samples, progress));
-  DUBSAR_ASSIGN(model.mesh, build_quad_mesh(samples, progress));
+  DUBSAR_TRY(decode_offsets(reader, header, *index, samples, progress));
+  DUBSAR_ASSIGN(model.mesh, build_quad_mesh(samples, *index, progress));
+  index.reset();
   if (model.mesh.vertex_count() != header.vertices || model.mesh.quad_count() != header.quads)
     return fail(ErrorKind::kBadData, "exa: {} vertices and {} x-quads found, the header says {} and {}",
                 model.mesh.vertex_count(), model.mesh.quad_count(), header.vertices, header.quads);

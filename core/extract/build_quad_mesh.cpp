@@ -22,6 +22,10 @@ constexpr std::int64_t kMaxVertices = std::int64_t{std::numeric_limits<std::uint
 Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, Progress& progress) {
   DUBSAR_TRY(check_signs(samples));
   DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(samples));
+  return build_quad_mesh(samples, index, progress);
+}
+
+Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, const EdgeIndex& index, Progress& progress) {
   DUBSAR_TRY(check_samples(samples, index.counts()));
   const Dims& dims = samples.dims;
   const std::int64_t grain = rows_per_chunk(dims.x);

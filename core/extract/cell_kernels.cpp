@@ -10,6 +10,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace dubsar {
 namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
 
 HWY_INLINE std::uint32_t count_bits(std::uint64_t word) {
   return static_cast<std::uint32_t>(__builtin_popcountll(word));
@@ -17,10 +18,15 @@ HWY_INLINE std::uint32_t count_bits(std::uint64_t word) {
 
 // The eight corners of 64 cells: bit i of corner[c] is the sign of corner c of cell i.
 struct CornerWords {
-  std::uint64_t corner[8];
+  HWY_ALIGN std::uint64_t corner[8];
   HWY_INLINE unsigned signs(unsigned i) const {
+    const hn::CappedTag<std::uint64_t, 8> d;
     unsigned signs = 0;
-    for (unsigned c = 0; c < 8; ++c) signs |= static_cast<unsigned>(corner[c] >> i & 1u) << c;
+    for (std::size_t c = 0; c < 8; c += hn::Lanes(d)) {
+      std::uint8_t bits[8] = {};
+      hn::StoreMaskBits(d, hn::TestBit(hn::Load(d, corner + c), hn::Set(d, std::uint64_t{1} << i)), bits);
+      signs |= static_cast<unsigned>(bits[0]) << c;
+    }
     return signs;
   }
 };

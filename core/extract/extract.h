@@ -5,6 +5,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/extract/edge_index.h"
 #include "core/extract/quad_mesh.h"
 #include "core/extract/surface_samples.h"
 #include "core/volume/slab_source.h"
@@ -30,5 +31,7 @@ Result<SurfaceSamples> sample_surface(SlabSource& source, const ExtractOptions& 
 /// -1..). Open: those edges inside the grid that lie in no boundary face of the volume, in canonical order; a vertex
 /// whose remaining x-quads form several fans is doubled, one without any is dropped.
 Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, Progress& progress);
+/// The same for who has the index of these samples.
+Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, const EdgeIndex& index, Progress& progress);
 
 }  // namespace dubsar

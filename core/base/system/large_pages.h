@@ -2,6 +2,7 @@
 // Large arrays on large pages: filling one costs the system a fault for 2 MiB instead of one for 4 KiB.
 
 #include <cstddef>
+#include <memory>
 
 namespace dubsar {
 
@@ -24,5 +25,27 @@ Vector large_array(std::size_t size) {
   resize_large(items, size);
   return items;
 }
+
+/// `size` items on large pages that nobody has written yet: for what is filled by all threads and needs no zeros.
+template <class T>
+class LargeArray {
+ public:
+  LargeArray() = default;
+  explicit LargeArray(std::size_t size) : items_(new T[size]), size_(size) {
+    ask_for_large_pages(items_.get(), size * sizeof(T));
+  }
+  T* data() noexcept { return items_.get(); }
+  const T* data() const noexcept { return items_.get(); }
+  std::size_t size() const noexcept { return size_; }
+  bool empty() const noexcept { return size_ == 0; }
+  T* begin() noexcept { return items_.get(); }
+  T* end() noexcept { return items_.get() + size_; }
+  const T* begin() const noexcept { return items_.get(); }
+  const T* end() const noexcept { return items_.get() + size_; }
+
+ private:
+  std::unique_ptr<T[]> items_;
+  std::size_t size_ = 0;
+};
 
 }  // namespace dubsar

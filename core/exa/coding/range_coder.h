@@ -19,11 +19,11 @@ class AdaptiveBit {
   AdaptiveBit() = default;
   /// Starts at `p` (of 65536) as if `seen` bits had been seen.
   constexpr AdaptiveBit(std::uint32_t p, int seen) noexcept : p_(p << 6), seen_(static_cast<std::uint8_t>(seen)) {}
-  std::uint32_t probability() const noexcept {
+  [[gnu::always_inline]] std::uint32_t probability() const noexcept {
     const std::uint32_t p = p_ >> 6;
     return p < kLeast ? kLeast : p > kProbabilityOne - kLeast ? kProbabilityOne - kLeast : p;
   }
-  void learn(bool bit) noexcept {
+  [[gnu::always_inline]] void learn(bool bit) noexcept {
     const std::int64_t target = bit ? (1 << 22) - 1 : 0;
     p_ = static_cast<std::uint32_t>(p_ + (target - p_) * kRate[seen_] / 65536);
     if (seen_ + 1 < kLimit) ++seen_;
@@ -114,7 +114,7 @@ class RangeDecoder {
   explicit RangeDecoder(std::string_view bytes) noexcept : bytes_(bytes) {
     for (int i = 0; i < 4; ++i) code_ = code_ << 8 | next();
   }
-  bool bit(std::uint32_t p) noexcept {
+  [[gnu::always_inline]] bool bit(std::uint32_t p) noexcept {
     const std::uint32_t bound = (range_ >> 16) * p;
     const bool value = code_ < bound;
     const std::uint32_t above = std::uint32_t{value} - 1;  // all ones for a 0: no branch, it would be guessed wrong
@@ -123,13 +123,13 @@ class RangeDecoder {
     normalise();
     return value;
   }
-  bool bit(AdaptiveBit& model) noexcept {
+  [[gnu::always_inline]] bool bit(AdaptiveBit& model) noexcept {
     const bool value = bit(model.probability());
     model.learn(value);
     return value;
   }
   /// The same for bits that are mostly what was seen before: with a branch, which is then guessed right.
-  bool steady_bit(AdaptiveBit& model) noexcept {
+  [[gnu::always_inline]] bool steady_bit(AdaptiveBit& model) noexcept {
     const std::uint32_t bound = (range_ >> 16) * model.probability();
     const bool value = code_ < bound;
     if (value) {
@@ -161,7 +161,7 @@ class RangeDecoder {
     range_ <<= 8 * bytes;
     used_ += bytes;
   }
-  std::uint32_t raw(int count) noexcept {
+  [[gnu::always_inline]] std::uint32_t raw(int count) noexcept {
     if (count == 0) return 0;
     const std::uint32_t value = place() >> (16 - count);
     symbol(value << (16 - count), 1u << (16 - count));
@@ -169,16 +169,16 @@ class RangeDecoder {
   }
 
  private:
-  void normalise() noexcept {
+  [[gnu::always_inline]] void normalise() noexcept {
     while (range_ < (1u << 24)) {
       range_ <<= 8;
       code_ = code_ << 8 | next();
     }
   }
-  std::uint32_t at(std::size_t i) const noexcept {
+  [[gnu::always_inline]] std::uint32_t at(std::size_t i) const noexcept {
     return i < bytes_.size() ? static_cast<unsigned char>(bytes_[i]) : 0u;
   }
-  std::uint32_t next() noexcept { return at(used_++); }
+  [[gnu::always_inline]] std::uint32_t next() noexcept { return at(used_++); }
   std::uint32_t peek_two() const noexcept {
     if (used_ + 2 > bytes_.size()) return at(used_) << 8;
     return std::uint32_t{static_cast<unsigned char>(bytes_[used_])} << 8 |

@@ -25,9 +25,30 @@ struct BitSink {
 struct BitSource {
   static constexpr bool kWrites = false;
   RangeDecoder& in;
-  bool bit(AdaptiveBit& model, bool) { return in.bit(model); }
-  bool steady_bit(AdaptiveBit& model, bool) { return in.steady_bit(model); }
+  [[gnu::always_inline]] bool bit(AdaptiveBit& model, bool) { return in.bit(model); }
+  [[gnu::always_inline]] bool steady_bit(AdaptiveBit& model, bool) { return in.steady_bit(model); }
   std::uint32_t raw(std::uint32_t, int count) { return in.raw(count); }
+};
+
+/// The coder of a loop that codes much: what a decoder knows stays in registers until the loop ends.
+template <class Coder>
+struct NearCoder {
+  explicit NearCoder(Coder& from) : coder(from) {}
+  Coder& coder;
+};
+template <>
+struct NearCoder<BitSource> {
+  explicit NearCoder(BitSource& from) : home_(from.in), own_(from.in), coder{own_} {}
+  ~NearCoder() { home_ = own_; }
+  NearCoder(const NearCoder&) = delete;
+  NearCoder& operator=(const NearCoder&) = delete;
+
+ private:
+  RangeDecoder& home_;
+  RangeDecoder own_;
+
+ public:
+  BitSource coder;
 };
 
 /// A number of `Bits` bits, highest first, one model for each beginning.
@@ -35,14 +56,14 @@ template <int Bits>
 class BitTree {
  public:
   template <class Coder>
-  std::uint32_t code(Coder& coder, std::uint32_t value) {
+  [[gnu::always_inline]] std::uint32_t code(Coder& coder, std::uint32_t value) {
     std::uint32_t node = 1;
     for (int b = Bits - 1; b >= 0; --b) node = node << 1 | (coder.bit(models_[node], (value >> b & 1) != 0) ? 1u : 0u);
     return node - (1u << Bits);
   }
   /// The same code, faster where all but the last bit are mostly alike.
   template <class Coder>
-  std::uint32_t code_steady(Coder& coder, std::uint32_t value) {
+  [[gnu::always_inline]] std::uint32_t code_steady(Coder& coder, std::uint32_t value) {
     std::uint32_t node = 1;
     for (int b = Bits - 1; b > 1; --b)
       node = node << 1 | (coder.steady_bit(models_[node], (value >> b & 1) != 0) ? 1u : 0u);
@@ -58,7 +79,7 @@ class BitTree {
 class SignedNumber {
  public:
   template <class Coder>
-  std::int32_t code(Coder& coder, std::int32_t value) {
+  [[gnu::always_inline]] std::int32_t code(Coder& coder, std::int32_t value) {
     const std::uint32_t size = static_cast<std::uint32_t>(value < 0 ? -value : value);
     std::uint32_t length = 0;
     while (size >> length != 0) ++length;

@@ -188,12 +188,17 @@ Result<void> choose_offsets(SurfaceSamples& samples, OffsetPrices& prices, Progr
 Result<void> decode_samples(std::span<const std::string_view> offsets, std::span<const std::string_view> faces,
                             SurfaceSamples& samples, Progress& progress) {
   DUBSAR_TRY(check_signs(samples));
+  DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(samples));
+  return decode_samples(offsets, faces, index, samples, progress);
+}
+
+Result<void> decode_samples(std::span<const std::string_view> offsets, std::span<const std::string_view> faces,
+                            const EdgeIndex& index, SurfaceSamples& samples, Progress& progress) {
   const Dims grid = brick_grid(samples.dims);
   for (const std::size_t found : {offsets.size(), faces.size()})
     if (found != static_cast<std::size_t>(grid.count()))
       return fail(ErrorKind::kBadData, "exa: {} chunks of offsets or face decisions found, {} bricks expected", found,
                   grid.count());
-  DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(samples));
   const SampleCounts& counts = index.counts();
   DUBSAR_TRY(check_memory("exa offsets", static_cast<std::uint64_t>(counts.edges * 2 + counts.faces)));
   samples.offsets.clear();

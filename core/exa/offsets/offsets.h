@@ -9,6 +9,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/extract/edge_index.h"
 #include "core/extract/surface_samples.h"
 
 namespace dubsar {
@@ -25,5 +26,8 @@ Result<SampleCode> encode_samples(const SurfaceSamples& samples, Progress& progr
 /// not known; kTryAgain beyond 2^32 - 2 edges or out of memory.
 Result<void> decode_samples(std::span<const std::string_view> offsets, std::span<const std::string_view> faces,
                             SurfaceSamples& samples, Progress& progress);
+/// The same for who has the index of these signs.
+Result<void> decode_samples(std::span<const std::string_view> offsets, std::span<const std::string_view> faces,
+                            const EdgeIndex& index, SurfaceSamples& samples, Progress& progress);
 
 }  // namespace dubsar

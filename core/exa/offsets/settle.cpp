@@ -73,7 +73,8 @@ std::uint64_t settled_sum(const SurfaceModel& model) {
 }
 
 Result<std::vector<glm::vec3>> recomputed_normals(const QuadMesh& mesh, Progress& progress) {
-  std::vector<glm::vec4> faces = face_normals(mesh);
+  LargeArray<glm::vec4> faces(mesh.quads.size());
+  fill_face_normals(mesh, faces);
   NormalFilterOptions options;
   options.iterations = kNormalIterations;
   options.epsilon = kNormalEpsilon;
@@ -114,8 +115,8 @@ Result<SettleStats> settle_for_exa(SurfaceModel& model, const SettleOptions& opt
       [&](std::int64_t begin, std::int64_t end) {
         double sum = 0.0;
         for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v)
-          sum +=
-              std::acos(std::clamp<double>(glm::dot(glm::dvec3(normals[v]), glm::dvec3(attributes.normals[v])), -1, 1));
+          sum += 2.0 * std::asin(std::min(  // 0 where they are the same, however rounded
+                           1.0, 0.5 * glm::length(glm::dvec3(normals[v]) - glm::dvec3(attributes.normals[v]))));
         return sum;
       },
       [](double a, double b) { return a + b; });

@@ -9,6 +9,28 @@ namespace {
 constexpr std::uint64_t kWalkedPerTriangle = 16;
 constexpr int kSweeps = 32;  // more change the bits by less than 2 %
 
+/// The mean of `count` numbers from their sum, rounded down, without a division: sums are below 2^48 once they are made
+/// positive, and the inverse is less than count / 2^64 too large, so the product never reaches the next number.
+class Mean {
+ public:
+  explicit Mean(std::size_t count)
+      : count_(static_cast<std::int64_t>(count)),
+        inverse_(count > 1 && count < 1024 ? ~std::uint64_t{0} / count + 1 : 0),
+        below_(count << kBelow) {}
+  std::int64_t of(std::int64_t sum) const {
+    const std::uint64_t above = static_cast<std::uint64_t>(sum) + below_;
+    if (inverse_ == 0 || above >> 48 != 0) return divided(sum, count_);
+    __extension__ using Wide = unsigned __int128;
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(Wide{above} * inverse_ >> 64)) -
+           (std::int64_t{1} << kBelow);
+  }
+
+ private:
+  static constexpr int kBelow = 36;  ///< sums of numbers from -2^36 on are made positive
+  std::int64_t count_;
+  std::uint64_t inverse_, below_;
+};
+
 std::uint64_t edge_key(std::uint32_t from, std::uint32_t to) { return std::uint64_t{from} << 32 | to; }
 
 /// The edges that only one triangle has, as one loop, the lowest id first; empty when they are not one loop.
@@ -192,14 +214,17 @@ std::vector<std::array<std::int64_t, 3>> relaxed_disk(std::span<const std::array
     for (std::size_t a = 0; a < 3; ++a) p.back()[a] = divided(3 * p[t[0]][a] + 3 * p[t[1]][a] + 2 * centre[a], 8);
   }
   const DiskNeighbours neighbours(first, vertices, triangles);
+  std::vector<Mean> means;
+  means.reserve(vertices);
+  for (std::size_t i = 0; i < vertices; ++i) means.emplace_back(neighbours.of(i).size());
   for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (std::size_t i = 0; i < vertices; ++i) {
-      const auto around = neighbours.of(i);
+      std::array<std::int64_t, 3> sum{0, 0, 0};
+      for (const std::uint32_t w : neighbours.of(i))
+        for (std::size_t a = 0; a < 3; ++a) sum[a] += p[w][a];
       for (std::size_t a = 0; a < 3; ++a) {
-        std::int64_t sum = 0;
-        for (const std::uint32_t w : around) sum += p[w][a];
         std::int64_t& here = p[first + i][a];
-        here += divided(3 * (divided(sum, static_cast<std::int64_t>(around.size())) - here), 2);
+        here += 3 * (means[i].of(sum[a]) - here) >> 1;  // rounded down
       }
     }
   p.erase(p.begin(), p.begin() + static_cast<std::ptrdiff_t>(first));

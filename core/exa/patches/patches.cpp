@@ -253,10 +253,11 @@ class PatchCode {
     const DiskNeighbours neighbours(static_cast<std::uint32_t>(disk.rim.size()), vertices, disk.triangles);
     std::vector<Steps> apart(vertices);
     patch.extra_positions.resize(vertices);
+    NearCoder<Coder> near(coder_);
     for (std::size_t i = 0; i < vertices; ++i) {
       apart[i] = mean_apart(neighbours.of(i), disk.rim.size(), i, apart);
       for (std::size_t a = 0; a < 3; ++a) {
-        apart[i][a] += residuals_[a].code(coder_, Coder::kWrites ? static_cast<std::int32_t>(residuals[i][a]) : 0);
+        apart[i][a] += residuals_[a].code(near.coder, Coder::kWrites ? static_cast<std::int32_t>(residuals[i][a]) : 0);
         patch.extra_positions[i][static_cast<int>(a)] = at_steps(expected[i][a] + apart[i][a]);
       }
     }

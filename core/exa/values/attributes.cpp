@@ -54,10 +54,11 @@ class ShapeCode {
 struct LightContext {
   int expected = 48, apart = 9;
 };
-LightContext light_context(const LevelsAround& levels, const QuadMesh& mesh, std::uint32_t v) {
+[[gnu::always_inline]] inline LightContext light_context(const LevelsAround& levels, const QuadMesh& mesh,
+                                                         std::uint32_t v) {
   const KnownLevels known = levels.of(mesh, v);
   if (known.shares == 0) return {};
-  return {(known.sum + known.shares / 2) / known.shares, std::min(8, known.highest - known.lowest)};
+  return {known.mean(), std::min(8, known.highest - known.lowest)};
 }
 /// Steps from the expected level to the nearest that can be had.
 int light_steps(int level, int expected, int step) {
@@ -71,10 +72,11 @@ class LightCode {
  public:
   LightCode(int step, std::uint32_t first, std::uint32_t end) : step_(step), levels_(first, end) {}
   template <class Coder>
-  std::uint8_t code(Coder& coder, const QuadMesh& mesh, const std::uint8_t* values, std::uint32_t v, std::uint32_t) {
+  [[gnu::always_inline]] std::uint8_t code(Coder& coder, const QuadMesh& mesh, const std::uint8_t* values,
+                                           std::uint32_t v, std::uint32_t) {
     const LightContext context = light_context(levels_, mesh, v);
-    const int steps =
-        numbers_[static_cast<std::size_t>(context.apart)].code(coder, light_steps(values[v], context.expected, step_));
+    const int wanted = Coder::kWrites ? light_steps(values[v], context.expected, step_) : 0;
+    const int steps = numbers_[static_cast<std::size_t>(context.apart)].code(coder, wanted);
     const auto level = static_cast<std::uint8_t>(light_at(context.expected, steps, step_));
     levels_.set(v, level);
     return level;

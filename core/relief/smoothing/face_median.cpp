@@ -1,12 +1,12 @@
 #include "core/relief/smoothing/face_median.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
 #include <vector>
 
-#include "core/base/system/large_pages.h"
 #include "core/base/system/parallel.h"
+#include "core/relief/smoothing/quads_around.h"
 #include "core/relief/smoothing/scatter_blocks.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -20,22 +20,15 @@
 #define DUBSAR_FACE_MEDIAN_JOB
 namespace dubsar {
 namespace {
-constexpr std::size_t kBatch = 16, kMostAround = 8;
+constexpr std::size_t kBatch = AroundGroup::kVertexBatch;
 
-/// The faces around the vertices of a group, sixteen vertices with equally many at a time: of each batch of `around`
-/// faces [face 0 .. around)[vertex], one size after the other from 2 on; the last batch of a size repeats its last.
-struct VertexGroup {
-  std::vector<std::uint32_t> faces;
-  std::array<std::uint16_t, kMostAround + 1> vertices;  ///< by the number of faces
-  std::vector<std::uint32_t> others;                    ///< vertices with more faces
-};
-
-/// The faces [first, first + size) and where their sums lie, four floats each; one more behind them takes all others.
+/// The faces [first, first + size) and where the sums of those that are open lie, four floats each: face i of the block
+/// at i & mask; one more behind them takes what others would get.
 struct MedianBlock {
   const QuadMesh* mesh;
   const float* faces;
   float* sums;
-  std::uint32_t first, size;
+  std::uint32_t first, size, mask;
   float epsilon;
 };
 }  // namespace
@@ -67,7 +60,8 @@ HWY_INLINE void pull_batch(const MedianBlock& block, const std::uint32_t* faces,
   HWY_ALIGN float rows[kAround][kBatch * 4];
   HWY_ALIGN std::uint32_t places[kAround][kBatch];
   const V epsilon = hn::Set(d, block.epsilon), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-  const auto first = hn::Set(du, block.first), size = hn::Set(du, block.size);
+  const auto first = hn::Set(du, block.first), size = hn::Set(du, block.size), mask = hn::Set(du, block.mask),
+             elsewhere = hn::Set(du, block.mask + 1);
   for (std::size_t lane = 0; lane < kBatch; lane += hn::Lanes(d)) {
     RowLanes<V> n[kAround];
     V sx[kAround], sy[kAround], sz[kAround];
@@ -75,7 +69,8 @@ HWY_INLINE void pull_batch(const MedianBlock& block, const std::uint32_t* faces,
     for (std::size_t j = 0; j < kAround; ++j) {
       const std::uint32_t* face = faces + j * kBatch + lane;
       n[j] = load_rows(d, [&](std::size_t l) HWY_ATTR { return from + 4 * std::size_t{face[l]}; });
-      hn::Store(hn::Min(hn::Sub(hn::LoadU(du, face), first), size), du, places[j] + lane);
+      const auto place = hn::Sub(hn::LoadU(du, face), first);
+      hn::Store(hn::IfThenElse(hn::Lt(place, size), hn::And(place, mask), elsewhere), du, places[j] + lane);
       sx[j] = sy[j] = sz[j] = zero;
     }
 #pragma GCC unroll 8
@@ -114,19 +109,20 @@ void pull_many(const MedianBlock& block, std::uint32_t vertex) {
       const float pull = m[3] * (1.0f / (std::sqrt(x * x + y * y + z * z) + block.epsilon));
       for (int a = 0; a < 3; ++a) row[a] += pull * m[a];
     }
-    add_row(block.sums + 4 * std::size_t{std::min(to - block.first, block.size)}, row);
+    const std::uint32_t place = to - block.first;
+    add_row(block.sums + 4 * std::size_t{place < block.size ? place & block.mask : block.mask + 1}, row);
   }
 }
 
 template <std::size_t kAround>
-const std::uint32_t* pull_run(const MedianBlock& block, const VertexGroup& group, const std::uint32_t* faces) {
+const std::uint32_t* pull_run(const MedianBlock& block, const AroundGroup& group, const std::uint32_t* faces) {
   for (std::size_t i = 0; i < group.vertices[kAround]; i += kBatch, faces += kAround * kBatch)
     pull_batch<kAround>(block, faces, std::min<std::size_t>(kBatch, group.vertices[kAround] - i));
   return faces;
 }
 
-void pull_group(const MedianBlock& block, const VertexGroup& group) {
-  const std::uint32_t* faces = group.faces.data();
+void pull_group(const MedianBlock& block, const AroundGroup& group, const std::uint32_t* quads) {
+  const std::uint32_t* faces = quads + group.begin;
   faces = pull_run<2>(block, group, faces);
   faces = pull_run<3>(block, group, faces);
   faces = pull_run<4>(block, group, faces);
@@ -137,48 +133,61 @@ void pull_group(const MedianBlock& block, const VertexGroup& group) {
   for (const std::uint32_t vertex : group.others) pull_many(block, vertex);
 }
 
-/// Each face pulls at itself with twice its area.
-void begin_block(const MedianBlock& block) {
-  const D d;
-  const float* from = block.faces + 4 * std::size_t{block.first};
-  const V scale = hn::Div(hn::Set(d, 2.0f), hn::Set(d, block.epsilon));
-  std::size_t i = 0;
-  for (; i + hn::Lanes(d) <= block.size; i += hn::Lanes(d)) {
-    V x, y, z, w;
-    hn::LoadInterleaved4(d, from + 4 * i, x, y, z, w);
-    const V pull = hn::Mul(w, scale);
-    hn::StoreInterleaved4(hn::Mul(pull, x), hn::Mul(pull, y), hn::Mul(pull, z), hn::Zero(d), d, block.sums + 4 * i);
-  }
-  for (; i < block.size; ++i) {
-    const float pull = from[4 * i + 3] * (2.0f / block.epsilon);
-    for (std::size_t a = 0; a < 3; ++a) block.sums[4 * i + a] = pull * from[4 * i + a];
-    block.sums[4 * i + 3] = 0.0f;
+/// Calls work(i, sums, count) for faces [begin, end) of the block, whose rows of sums follow one another.
+template <class Work>
+HWY_INLINE void for_rows(const MedianBlock& block, std::uint32_t begin, std::uint32_t end, const Work& work) {
+  while (begin < end) {
+    const std::uint32_t row = begin & block.mask, count = std::min(end - begin, block.mask + 1 - row);
+    work(begin, block.sums + 4 * std::size_t{row}, std::size_t{count});
+    begin += count;
   }
 }
 
-/// Normals that cancel leave the face as it is.
-void end_block(const MedianBlock& block, float* to) {
+/// Each face pulls at itself with twice its area.
+void open_faces(const MedianBlock& block, std::uint32_t begin, std::uint32_t end) {
   const D d;
-  const float* from = block.faces + 4 * std::size_t{block.first};
-  to += 4 * std::size_t{block.first};
-  const auto unit_rows = [&](std::size_t i) HWY_ATTR {
-    V x, y, z, w, mx, my, mz, area;
-    hn::LoadInterleaved4(d, block.sums + 4 * i, x, y, z, w);
-    hn::LoadInterleaved4(d, from + 4 * i, mx, my, mz, area);
-    const V length2 = squared(x, y, z);
-    const auto valid = hn::Gt(length2, hn::Set(d, 1e-30f));
-    const V scale = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(length2));
-    hn::StoreInterleaved4(hn::IfThenElse(valid, hn::Mul(x, scale), mx), hn::IfThenElse(valid, hn::Mul(y, scale), my),
-                          hn::IfThenElse(valid, hn::Mul(z, scale), mz), area, d, to + 4 * i);
-  };
-  std::size_t i = 0;
-  for (; i + hn::Lanes(d) <= block.size; i += hn::Lanes(d)) unit_rows(i);
-  for (; i < block.size; ++i) {
-    const float *s = block.sums + 4 * i, *m = from + 4 * i;
-    const float length2 = s[0] * s[0] + s[1] * s[1] + s[2] * s[2], scale = 1.0f / std::sqrt(length2);
-    for (std::size_t a = 0; a < 3; ++a) to[4 * i + a] = length2 > 1e-30f ? s[a] * scale : m[a];
-    to[4 * i + 3] = m[3];
-  }
+  const V scale = hn::Div(hn::Set(d, 2.0f), hn::Set(d, block.epsilon));
+  for_rows(block, begin, end, [&](std::uint32_t face, float* sums, std::size_t count) HWY_ATTR {
+    const float* from = block.faces + 4 * (std::size_t{block.first} + face);
+    std::size_t i = 0;
+    for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
+      V x, y, z, w;
+      hn::LoadInterleaved4(d, from + 4 * i, x, y, z, w);
+      const V pull = hn::Mul(w, scale);
+      hn::StoreInterleaved4(hn::Mul(pull, x), hn::Mul(pull, y), hn::Mul(pull, z), hn::Zero(d), d, sums + 4 * i);
+    }
+    for (; i < count; ++i) {
+      const float pull = from[4 * i + 3] * (2.0f / block.epsilon);
+      for (std::size_t a = 0; a < 3; ++a) sums[4 * i + a] = pull * from[4 * i + a];
+      sums[4 * i + 3] = 0.0f;
+    }
+  });
+}
+
+/// Normals that cancel leave the face as it is.
+void close_faces(const MedianBlock& block, std::uint32_t begin, std::uint32_t end, float* faces) {
+  const D d;
+  for_rows(block, begin, end, [&](std::uint32_t face, const float* sums, std::size_t count) HWY_ATTR {
+    const float* from = block.faces + 4 * (std::size_t{block.first} + face);
+    float* to = faces + 4 * (std::size_t{block.first} + face);
+    std::size_t i = 0;
+    for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
+      V x, y, z, w, mx, my, mz, area;
+      hn::LoadInterleaved4(d, sums + 4 * i, x, y, z, w);
+      hn::LoadInterleaved4(d, from + 4 * i, mx, my, mz, area);
+      const V length2 = squared(x, y, z);
+      const auto valid = hn::Gt(length2, hn::Set(d, 1e-30f));
+      const V scale = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(length2));
+      hn::StoreInterleaved4(hn::IfThenElse(valid, hn::Mul(x, scale), mx), hn::IfThenElse(valid, hn::Mul(y, scale), my),
+                            hn::IfThenElse(valid, hn::Mul(z, scale), mz), area, d, to + 4 * i);
+    }
+    for (; i < count; ++i) {
+      const float *s = sums + 4 * i, *m = from + 4 * i;
+      const float length2 = s[0] * s[0] + s[1] * s[1] + s[2] * s[2], scale = 1.0f / std::sqrt(length2);
+      for (std::size_t a = 0; a < 3; ++a) to[4 * i + a] = length2 > 1e-30f ? s[a] * scale : m[a];
+      to[4 * i + 3] = m[3];
+    }
+  });
 }
 
 }  // namespace
@@ -189,79 +198,86 @@ HWY_AFTER_NAMESPACE();
 namespace dubsar {
 namespace {
 HWY_EXPORT(pull_group);
-HWY_EXPORT(begin_block);
-HWY_EXPORT(end_block);
+HWY_EXPORT(open_faces);
+HWY_EXPORT(close_faces);
+constexpr std::int64_t kLargestBlock = 1 << 18;
 
-std::vector<VertexGroup> group_vertices(const QuadMesh& mesh) {
-  const std::int64_t count = (mesh.vertex_count() + kVertexGroup - 1) / kVertexGroup;
-  std::vector<VertexGroup> groups(static_cast<std::size_t>(count));
-  parallel_for(count, 16, [&](std::int64_t g) {
-    VertexGroup& group = groups[static_cast<std::size_t>(g)];
-    const auto begin = static_cast<std::uint32_t>(g * kVertexGroup);
-    const auto end = static_cast<std::uint32_t>(std::min<std::int64_t>(begin + kVertexGroup, mesh.vertex_count()));
-    const std::uint32_t* first = mesh.first_incident.data();
-    group.vertices.fill(0);
-    for (std::uint32_t v = begin; v < end; ++v) {
-      const std::size_t around = first[v + 1] - first[v];
-      if (around > kMostAround)
-        group.others.push_back(v);
-      else
-        ++group.vertices[around];
-    }
-    std::array<std::size_t, kMostAround + 1> start{};  // of each size
-    std::size_t all = 0;
-    for (std::size_t k = 2; k <= kMostAround; ++k) {
-      start[k] = all;
-      all += (group.vertices[k] + kBatch - 1) / kBatch * kBatch * k;
-    }
-    group.faces.resize(all);
-    std::array<std::size_t, kMostAround + 1> put{};
-    const auto take = [&](std::uint32_t v, std::size_t around, std::size_t number) {
-      std::uint32_t* batch = group.faces.data() + start[around] + number / kBatch * kBatch * around + number % kBatch;
-      for (std::size_t j = 0; j < around; ++j) batch[j * kBatch] = mesh.incident[first[v] + j];
-    };
-    std::array<std::uint32_t, kMostAround + 1> latest{};
-    for (std::uint32_t v = begin; v < end; ++v) {
-      const std::size_t around = first[v + 1] - first[v];
-      if (around < 2 || around > kMostAround) continue;
-      take(v, around, put[around]++);
-      latest[around] = v;
-    }
-    for (std::size_t k = 2; k <= kMostAround; ++k)
-      while (put[k] % kBatch != 0) take(latest[k], k, put[k]++);
-  });
-  return groups;
+/// How the sums of a block are walked through: before group i of the block its faces below open[i] have a sum, after it
+/// those below close[i] get no more.
+struct BlockWalk {
+  std::uint32_t first = 0, size = 0, rows = 1;
+  std::vector<std::uint32_t> groups, open, close;
+};
+
+BlockWalk walk_of(std::vector<std::uint32_t> touching, const QuadsAround& all, std::int64_t first, std::int64_t size) {
+  BlockWalk walk{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(size), 1, std::move(touching), {}, {}};
+  const std::size_t count = walk.groups.size();
+  walk.open.resize(count, walk.size);
+  walk.close.resize(count, walk.size);
+  const auto touched = [&](std::size_t i) -> const IdRange& { return all.groups[walk.groups[i]].touched; };
+  std::uint32_t open = 0, close = walk.size;
+  for (std::size_t i = count; i-- > 1;) {
+    close = std::min(close, std::max(touched(i).low, walk.first) - walk.first);
+    walk.close[i - 1] = close;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    open = walk.open[i] = std::max(open, std::min(touched(i).high - walk.first + 1, walk.size));
+    walk.rows = std::max(walk.rows, open - (i == 0 ? 0 : walk.close[i - 1]));
+  }
+  walk.rows = std::bit_ceil(walk.rows);
+  return walk;
+}
+
+/// Blocks of faces: the larger, the fewer groups touch two; enough for all threads.
+std::vector<BlockWalk> walks_of(const QuadMesh& mesh, const QuadsAround& all) {
+  const std::int64_t size = std::clamp(mesh.quad_count() / (4 * thread_count()), kScatterBlock, kLargestBlock);
+  ScatterBlocks blocks = vertex_groups_of_quads(mesh, size);
+  std::vector<BlockWalk> walks;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const std::int64_t first = static_cast<std::int64_t>(b) * size;
+    walks.push_back(walk_of(std::move(blocks[b]), all, first, std::min(size, mesh.quad_count() - first)));
+  }
+  return walks;
+}
+
+/// One pass over the faces of a block, each of which is near while it is open.
+void walk_block(const BlockWalk& walk, const QuadsAround& all, const MedianBlock& block, float* to) {
+  std::uint32_t opened = 0, closed = 0;
+  for (std::size_t i = 0; i < walk.groups.size(); ++i) {
+    HWY_DYNAMIC_DISPATCH(open_faces)(block, opened, walk.open[i]);
+    opened = walk.open[i];
+    HWY_DYNAMIC_DISPATCH(pull_group)(block, all.groups[walk.groups[i]], all.quads.data());
+    if (i + 1 == walk.groups.size()) break;
+    HWY_DYNAMIC_DISPATCH(close_faces)(block, closed, walk.close[i], to);
+    closed = walk.close[i];
+  }
+  HWY_DYNAMIC_DISPATCH(open_faces)(block, opened, walk.size);
+  HWY_DYNAMIC_DISPATCH(close_faces)(block, closed, walk.size, to);
 }
 }  // namespace
 
-Result<void> filter_face_normals(const QuadMesh& mesh, const NormalFilterOptions& options,
-                                 std::vector<glm::vec4>& faces, Progress& progress) {
+Result<void> filter_face_normals(const QuadMesh& mesh, const NormalFilterOptions& options, LargeArray<glm::vec4>& faces,
+                                 Progress& progress) {
   DUBSAR_CHECK(faces.size() == mesh.quads.size() && options.median_steps == 1);
   if (faces.empty()) return {};
-  const std::vector<VertexGroup> groups = group_vertices(mesh);
-  const ScatterBlocks blocks = vertex_groups_of_quads(mesh);
-  ScatterMemory memory(4 * static_cast<std::size_t>(kScatterBlock + 1));
-  auto next = large_array<std::vector<glm::vec4>>(faces.size());
+  const QuadsAround all(mesh);
+  const std::vector<BlockWalk> walks = walks_of(mesh, all);
+  std::uint32_t rows = 1;
+  for (const BlockWalk& walk : walks) rows = std::max(rows, walk.rows);
+  ScatterMemory memory(4 * (std::size_t{rows} + 1));
+  LargeArray<glm::vec4> next(faces.size());
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
-    parallel_for(static_cast<std::int64_t>(blocks.size()), 1, [&](std::int64_t b) {
+    parallel_for(static_cast<std::int64_t>(walks.size()), 1, [&](std::int64_t b) {
       if (progress.cancelled()) return;
+      const BlockWalk& walk = walks[static_cast<std::size_t>(b)];
       auto sums = memory.take();
-      const std::int64_t first = b * kScatterBlock;
-      const MedianBlock block{&mesh,
-                              &faces.front().x,
-                              sums->data(),
-                              static_cast<std::uint32_t>(first),
-                              static_cast<std::uint32_t>(std::min(kScatterBlock, mesh.quad_count() - first)),
-                              options.epsilon};
-      HWY_DYNAMIC_DISPATCH(begin_block)(block);
-      for (const std::uint32_t group : blocks[static_cast<std::size_t>(b)])
-        HWY_DYNAMIC_DISPATCH(pull_group)(block, groups[group]);
-      HWY_DYNAMIC_DISPATCH(end_block)(block, &next.front().x);
+      const MedianBlock block{&mesh, &faces.data()->x, sums->data(), walk.first, walk.size, rows - 1, options.epsilon};
+      walk_block(walk, all, block, &next.data()->x);
       memory.give_back(std::move(sums));
       progress.advance(block.size);
     });
     if (progress.cancelled()) return cancelled_error();
-    faces.swap(next);
+    std::swap(faces, next);
   }
   return {};
 }

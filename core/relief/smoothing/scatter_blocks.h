@@ -21,8 +21,19 @@ using ScatterBlocks = std::vector<std::vector<std::uint32_t>>;
 
 /// Groups of kQuadGroup x-quads for blocks of vertices. Threads, deterministic.
 ScatterBlocks quad_groups_of_vertices(const QuadMesh& mesh);
-/// Groups of kVertexGroup vertices for blocks of x-quads. Threads, deterministic.
-ScatterBlocks vertex_groups_of_quads(const QuadMesh& mesh);
+/// Groups of kVertexGroup vertices for blocks of `block` x-quads. Threads, deterministic.
+ScatterBlocks vertex_groups_of_quads(const QuadMesh& mesh, std::int64_t block);
+
+/// The lowest and highest id; lowest > highest: none.
+struct IdRange {
+  std::uint32_t low = ~std::uint32_t{0}, high = 0;
+  void add(const IdRange& other) noexcept {
+    low = std::min(low, other.low);
+    high = std::max(high, other.high);
+  }
+};
+/// Of the x-quads around vertices [begin, end).
+IdRange range_around(const QuadMesh& mesh, std::uint32_t begin, std::uint32_t end);
 
 /// Memory for the sums of one block, handed from one thread to the next: fresh pages are slower than the sums.
 class ScatterMemory {

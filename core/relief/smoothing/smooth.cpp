@@ -133,9 +133,14 @@ Displacement displacement(std::span<const glm::vec3> a, std::span<const glm::vec
 
 std::vector<glm::vec4> face_normals(const QuadMesh& mesh) {
   auto faces = large_array<std::vector<glm::vec4>>(mesh.quads.size());
+  fill_face_normals(mesh, faces);
+  return faces;
+}
+
+void fill_face_normals(const QuadMesh& mesh, std::span<glm::vec4> faces) {
+  DUBSAR_CHECK(faces.size() == mesh.quads.size());
   parallel_chunks(mesh.quad_count(), kSmoothGrain,
                   [&](std::int64_t begin, std::int64_t end) { quad_normals(mesh, begin, end, faces.data()); });
-  return faces;
 }
 
 std::vector<glm::vec3> vertex_normals(const QuadMesh& mesh, std::span<const glm::vec4> faces) {

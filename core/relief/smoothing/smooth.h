@@ -32,6 +32,8 @@ struct SmoothStats {
 /// Newell normal and area of each x-quad: xyz unit vector towards the air, 0 where the area vanishes; w area in grid
 /// steps squared (of the projection along the normal).
 std::vector<glm::vec4> face_normals(const QuadMesh& mesh);
+/// The same into `faces`, one for each x-quad.
+void fill_face_normals(const QuadMesh& mesh, std::span<glm::vec4> faces);
 
 /// Unit mean of the normals of the incident x-quads, weighted by sin(angle) / (product of the lengths) of the two edges
 /// that meet at the vertex (Max 1999: exact where the neighbours lie on a sphere). On extracted spheres, cylinders

@@ -29,6 +29,7 @@ TEST_F(ExaFile, EveryTruncationBitFlipAndExtraByteIsRefused) {
   EXPECT_TRUE(refused(minor));
   EXPECT_TRUE(refused(whole + '\0'));
   EXPECT_TRUE(refused("x" + whole));
+  EXPECT_THAT(decode_exa("", progress_).error().message, HasSubstr("the file is empty"));
 }
 
 TEST_F(ExaFile, LaterVersionsAreRefusedOrSkippedAsTheirNumberSays) {

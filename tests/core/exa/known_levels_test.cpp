@@ -44,5 +44,11 @@ TEST(LevelsAround, AreThoseOfTheKnownSurroundings) {
   EXPECT_GT(met, 1000u);
 }
 
+TEST(KnownLevels, TheMeanIsTheRoundedDivision) {
+  for (int shares = 1; shares <= 100; ++shares)
+    for (int sum = 0; sum <= 63 * shares; ++sum)
+      ASSERT_EQ((KnownLevels{sum, shares, 0, 63}.mean()), (sum + shares / 2) / shares) << sum << " of " << shares;
+}
+
 }  // namespace
 }  // namespace dubsar

@@ -141,6 +141,16 @@ SurfaceModel settled_model(unsigned seed) {
   return model;
 }
 
+TEST(ExaSettle, OfWhatIsSettledNothingMoves) {
+  SurfaceModel model = settled_model(7);
+  SilentProgress progress;
+  const auto again = settle_for_exa(model, {}, progress);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->normal_error_deg, 0.0);
+  EXPECT_EQ(again->max_error_vox, 0.0);
+  EXPECT_EQ(again->shape_changed_fraction, 0.0);
+}
+
 TEST(ExaSettle, WhatIsKnownToFollowIsNotComputedAgainAndTheFileIsTheSame) {
   SurfaceModel model = settled_model(5);
   ASSERT_NE(model.settled_sum, 0U);

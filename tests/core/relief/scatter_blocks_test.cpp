@@ -33,7 +33,7 @@ TEST(ScatterBlocks, HoldTheGroupsThatTouchThemAndNoOthers) {
       EXPECT_EQ(found[b], std::vector<std::uint32_t>(expected[b].begin(), expected[b].end())) << b;
   };
   same(quad_groups_of_vertices(mesh), around_vertices);
-  same(vertex_groups_of_quads(mesh), around_quads);
+  same(vertex_groups_of_quads(mesh, kScatterBlock), around_quads);
 }
 
 TEST(ScatterMemory, IsHandedOn) {
