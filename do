@@ -36,6 +36,7 @@ usage() {
               ./do bench killed: kill -9 at 20 random moments, then --resume; exit code 1 where bytes differ
               ./do bench scanner [--size XxYxZ] [--memory 6G]: a scan larger than memory, 3072x3072x1944 by default
               ./do bench wedges [--quick | --size XxYxZ] [--seed N]: what is read of a hidden tablet, beside what is wanted
+              ./do bench light: from the start of a kiosk to its first picture, 1.6 million vertices on 48 views
               ./do bench view: first pictures, pictures a second and memory, beside f3d and MeshLab
 ./do workflow examples/snakemake: a dry run, and three scans for real; workflow core: with the program of a core build
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
@@ -223,6 +224,16 @@ bench() {
     DUBSAR_SOAK=1 "$build/tests/core/exa/test_exa" --gtest_filter='ExaSoak.*:ExaFile.EveryTruncation*:ExaFile.LaterVersions*:ExaFile.HeadersThatLie*:ExaFile.BricksThatCode*'
     [ "$missed" = 0 ] || echo "do: a goal of the surface format is missed, see above" >&2
     return "$missed"
+  fi
+  if [ "${1:-}" = light ]; then
+    deps xvfb xdotool
+    build_target --target dubsar
+    local folder=$build/bench-light app=$build/app/dubsar
+    mkdir -p "$folder"
+    [ -e "$folder/scan.h5" ] || "$app" phantom "$folder/scan.h5" --preset demo -q >/dev/null
+    [ -e "$folder/demo.exa" ] || "$app" process "$folder/scan.h5" -o "$folder/demo.exa" -q >/dev/null
+    /usr/bin/python3 tests/bench/first_light.py "$app" "$folder/demo.exa" --json "$build/first_light.json" "${@:2}"
+    return
   fi
   if [ "${1:-}" = view ]; then
     (deps f3d meshlab xdotool) || echo "do: going on without f3d and MeshLab beside it" >&2

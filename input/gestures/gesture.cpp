@@ -27,7 +27,7 @@ void GestureRecognizer::lose(TimestampNs now) {
   history_.clear();
 }
 
-void GestureRecognizer::update(TimestampNs now, const HandFrame* hand) {
+void GestureRecognizer::update(TimestampNs now, const HandFrame* hand, const HandStanding& standing) {
   events_.clear();
   if (hand != nullptr && hand->time < last_sample_ - kSetBack) {
     lose(now);
@@ -50,12 +50,13 @@ void GestureRecognizer::update(TimestampNs now, const HandFrame* hand) {
   const TimestampNs still_ns = stillness_.still_for(now);
   const bool at_signs =
       position_m_.x >= options_.place.signs_from_x_m && position_m_.y >= options_.place.signs_from_y_m;
-  const bool acts = may_begin && !at_signs && position_m_.z <= options_.place.acts_to_z_m;
+  const bool acts = may_begin && !standing.at_face && !at_signs && position_m_.z <= options_.place.acts_to_z_m;
   const bool within = std::max(std::abs(position_m_.x), std::abs(position_m_.y)) <= options_.swipe.within_m;
-  grip_.update({now, since_ns, glm::length(velocity_mps_), still_ns, acts}, *hand, options_, events_);
-  const bool free = may_begin && !grip_.holds(), known = now - *came_ >= options_.swipe.known_ns;
+  grip_.update({now, since_ns, glm::length(velocity_mps_), still_ns, acts, standing.sure}, *hand, options_, events_);
+  const bool free = may_begin && !grip_.holds();
+  const bool known = now - *came_ >= (standing.sure ? options_.swipe.sure_ns : options_.swipe.known_ns);
   if (const auto swiped = swipe_.update({now, still_ns, history_.newest().position_m, velocity_mps_,
-                                         hand->grab_strength, since_ns, free && acts && within && known},
+                                         hand->grab_strength, since_ns, free && acts && within, known},
                                         options_))
     events_.push_back({now, GestureKind::kSwipe, GesturePhase::kDone, *swiped});
   if (dwell_.update(now, cursor_m_, free, options_)) events_.push_back({now, GestureKind::kDwell, GesturePhase::kDone});

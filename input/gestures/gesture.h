@@ -13,6 +13,7 @@
 #include "input/gestures/stillness.h"
 #include "input/gestures/swipe_detector.h"
 #include "input/hand_frame.h"
+#include "input/hand_standing.h"
 #include "input/people/one_euro.h"
 #include "input/people/pose_history.h"
 
@@ -23,8 +24,9 @@ class GestureRecognizer {
   explicit GestureRecognizer(const GestureOptions& options = {});
 
   /// The hand at `now`, or null when no hand is seen in this slot. A hand with `tracked` false, or whose time does not
-  /// advance, counts as missing. What happened is in events(), until the next call. One thread.
-  void update(TimestampNs now, const HandFrame* hand);
+  /// advance, counts as missing. A hand at its person's face does nothing but dwell. What happened is in events(),
+  /// until the next call. One thread.
+  void update(TimestampNs now, const HandFrame* hand, const HandStanding& standing = {});
 
   const std::vector<GestureEvent>& events() const noexcept { return events_; }
   bool present() const noexcept { return came_.has_value(); }  ///< seen at most hold_ns ago

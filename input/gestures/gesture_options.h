@@ -34,8 +34,9 @@ struct SwipeFigures {
   /// Not 0: a swipe is counted when it comes to its end, by an open hand that was still for so long before.
   TimestampNs still_ns = 0;
   double within_m = 10.0;  ///< nothing is wiped further from the middle than this, to any side
-  /// Nor by a hand that was not seen for so long: it may be of somebody who only reaches in.
-  TimestampNs known_ns = 0;
+  /// Nor by a hand that was not seen for so long when it has wiped: it may be of somebody who only reaches in. The
+  /// latter for hands whose person is sure (HandStanding).
+  TimestampNs known_ns = 0, sure_ns = 0;
 };
 
 struct DwellFigures {

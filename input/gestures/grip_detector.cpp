@@ -28,17 +28,21 @@ void GripDetector::lose(TimestampNs now, std::vector<GestureEvent>& events) {
 }
 
 /// What closed is held for long enough, by a hand that was still when it closed. One that closed on its way, or moves
-/// on before that is sure, must open before it can take hold.
+/// on before that is sure, must open before it can take hold. A hand that drifts is neither: it is waited for until it
+/// is still, and what it began goes on. A hand that may be somebody else's rests until it holds.
 GripDetector::Closing GripDetector::judge(const Moment& moment, const GestureOptions& options, bool closed,
                                           TimestampNs& since) {
   if (!closed) {
     since = -1;
     return Closing::kOpen;
   }
-  if (moment.still_ns < options.grab.still_ns) {
+  const bool still = moment.still_ns >= options.grab.still_ns;
+  const bool rests = options.grab.still_ns == 0 || moment.speed_mps <= options.grab.rest_mps;
+  if (!rests && !(still && moment.sure_person)) {
     since = -1;
     return Closing::kOnItsWay;
   }
+  if (!still && since < 0) return Closing::kPerhaps;
   if (since < 0) since = moment.now;
   return moment.now - since >= options.grab.sure_ns ? Closing::kSure : Closing::kPerhaps;
 }

@@ -16,6 +16,7 @@ class GripDetector {
     double speed_mps = 0.0;             ///< of the palm
     TimestampNs still_ns = 0;           ///< for how long the hand has been held still
     bool may_begin = true;
+    bool sure_person = true;  ///< false: it may be somebody else's, who reaches in
   };
   /// What began and ended is added to `events`. One thread.
   void update(const Moment& moment, const HandFrame& hand, const GestureOptions& options,

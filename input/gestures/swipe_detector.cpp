@@ -42,7 +42,8 @@ std::optional<SwipeDirection> SwipeDetector::at_its_end(const Moment& moment, co
     const double along = std::abs(way[axis]);
     const bool swiped = along >= options.swipe.travel_m && std::abs(way[1 - axis]) <= kSlanted * along &&
                         std::abs(way.z) <= kDeep * along && moment.closing <= kOpen &&
-                        (brisk || *closing_ - most_open_ <= kAsOpen) && moment.now - left_ <= kLongest;
+                        (brisk || *closing_ - most_open_ <= kAsOpen) && moment.now - left_ <= kLongest &&
+                        moment.may_end;
     from_m_.reset();
     if (swiped) return direction_of(axis, way[axis]);
   }
@@ -65,7 +66,7 @@ std::optional<SwipeDirection> SwipeDetector::on_the_way(const Moment& moment, co
     if (std::abs(along) >= options.swipe.opposing_mps) slow_since_ = now;
     if (now - slow_since_ >= kRest) rested_ = true;  // a hand that turns round is slow for a moment only
   }
-  if (!moment.may_begin) {
+  if (!moment.may_begin || !moment.may_end) {
     from_m_.reset();
     return std::nullopt;
   }

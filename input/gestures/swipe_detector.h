@@ -17,6 +17,7 @@ class SwipeDetector {
     double closing = 0.0;                     ///< 0: open, 1: a fist
     TimestampNs since_ns = 0;                 ///< since the sample before
     bool may_begin = true;                    ///< false: the hand holds something, or has just come
+    bool may_end = true;                      ///< false: whose hand it is was not known for long enough
   };
   /// The direction when a swipe happened now. One thread.
   std::optional<SwipeDirection> update(const Moment& moment, const GestureOptions& options);

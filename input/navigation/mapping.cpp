@@ -82,8 +82,11 @@ Result<HandMapping> read_hands(const json& object, const std::string& where) {
   out.fastest_zoom_per_s = f.number("fastest_zoom_per_s", 1.05, 20);
   out.zone_min_mm = read_vector(f, object, "zone_min_mm");
   out.zone_max_mm = read_vector(f, object, "zone_max_mm");
-  for (int i = 0; i < 3; ++i)
+  out.entry_margin_mm = read_vector(f, object, "entry_margin_mm");
+  for (int i = 0; i < 3; ++i) {
+    if (out.entry_margin_mm[i] < 0.0) f.complain("entry_margin_mm is below 0");
     if (out.zone_min_mm[i] >= out.zone_max_mm[i]) f.complain("zone_min_mm is not below zone_max_mm");
+  }
   DUBSAR_TRY(f.finish());
   return out;
 }
@@ -114,6 +117,7 @@ Result<GestureOptions> read_gestures(const json& object, const std::string& wher
   out.swipe.lockout_ns = from_ms(f.number("swipe_lockout_ms", 0, 5000));
   out.swipe.travel_m = 1e-3 * f.number("swipe_travel_mm", 0, 500);
   out.swipe.known_ns = from_ms(f.number("swipe_known_ms", 0, 60000));
+  out.swipe.sure_ns = from_ms(f.number("swipe_sure_ms", 0, 60000));
   out.swipe.still_ns = from_ms(f.number("swipe_still_ms", 0, 2000));
   out.place.signs_from_x_m = 1e-3 * f.number("signs_from_x_mm", -10000, 10000);
   out.place.signs_from_y_m = 1e-3 * f.number("signs_from_y_mm", -10000, 10000);

@@ -39,7 +39,10 @@ struct HandMapping {
   double inertia_s = 0;               ///< decay time of the turn after a throw; 0: none
   double fastest_turn_deg_per_s = 0;  ///< the view never turns faster under a hand, whatever the tracker says
   double fastest_zoom_per_s = 0;      ///< factor per second
-  glm::dvec3 zone_min_mm{0.0}, zone_max_mm{0.0};  ///< where a hand must first show itself, screen frame
+  glm::dvec3 zone_min_mm{0.0}, zone_max_mm{0.0};  ///< where hands act, screen frame
+  glm::dvec3 entry_margin_mm{0.0};                ///< so far outside of it a hand may show itself first
+  glm::dvec3 enter_min_mm() const { return zone_min_mm - entry_margin_mm; }
+  glm::dvec3 enter_max_mm() const { return zone_max_mm + entry_margin_mm; }
 };
 
 struct MouseMapping {

@@ -225,22 +225,23 @@ void Navigator::follow_hands() {
   momentum_.ask_turn({0.0, 0.0, pull.roll_rad});
 }
 
-void Navigator::use_hands(TimestampNs now, const SteeringHands& kept, double dt_s) {
-  for (std::size_t h = 0; h < hands_.size(); ++h) hands_[h].update(now, kept[h]);
+void Navigator::use_hands(TimestampNs now, const SteeringHands& kept, const SteeringStanding& standing, double dt_s) {
+  for (std::size_t h = 0; h < hands_.size(); ++h) hands_[h].update(now, kept[h], standing[h]);
   use_gestures(now);
   begin_or_end_hold(now);
   follow_hands();
   momentum_.spend(dt_s, mapping_.hands, view_);
 }
 
-void Navigator::update(TimestampNs now, const InputFrame& frame, const SteeringHands& hands) {
+void Navigator::update(TimestampNs now, const InputFrame& frame, const SteeringHands& hands,
+                       const SteeringStanding& standing) {
   const double dt_s = last_update_ < 0 ? 0.0 : std::max(0.0, seconds(now - last_update_));
   last_update_ = now;
   selected_m_.reset();
   claims_.advance(now, hold_.mode() != HandMode::kNone || mouse_.dragging);
   use_events(now, frame);
   use_puck(now, frame.puck, std::min(dt_s, 0.1));
-  use_hands(now, hands, dt_s);
+  use_hands(now, hands, standing, dt_s);
   glide_.advance(now, view_);
   view_.zoom = std::clamp(view_.zoom, mapping_.zoom_min, mapping_.zoom_max);
 }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "input/gestures/gesture.h"
+#include "input/hand_standing.h"
 #include "input/input_source.h"
 #include "input/navigation/control_claims.h"
 #include "input/navigation/hand_hold.h"
@@ -29,6 +30,7 @@ struct MouseDrag {
 
 /// The hands of the person who steers (input/people/person_keeper.h), null where one is not seen.
 using SteeringHands = std::array<const HandFrame*, 2>;
+using SteeringStanding = std::array<HandStanding, 2>;
 
 class Navigator {
  public:
@@ -36,7 +38,8 @@ class Navigator {
 
   /// Everything that came since the last update; of the events those of the mouse. Gestures, glides and quarter turns
   /// advance to `now`.
-  void update(TimestampNs now, const InputFrame& frame, const SteeringHands& hands);
+  void update(TimestampNs now, const InputFrame& frame, const SteeringHands& hands,
+              const SteeringStanding& standing = {});
 
   const ViewState& view() const noexcept { return view_; }
   /// Where the view will be when nobody does anything more: the end of a glide.
@@ -70,7 +73,7 @@ class Navigator {
   void turn_by_mouse(const glm::dvec2& px, const std::optional<glm::dvec2>& moved, double gain);
   void zoom_about(const std::optional<glm::dvec2>& at, double factor);
   void use_puck(TimestampNs now, const std::optional<PuckMotion>& puck, double dt_s);
-  void use_hands(TimestampNs now, const SteeringHands& hands, double dt_s);
+  void use_hands(TimestampNs now, const SteeringHands& hands, const SteeringStanding& standing, double dt_s);
   void use_gestures(TimestampNs now);
   void begin_or_end_hold(TimestampNs now);
   void follow_hands();

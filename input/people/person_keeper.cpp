@@ -25,7 +25,12 @@ constexpr double kHalfShouldersM = 0.19;
 constexpr double kBeforeThePanelM = 0.3, kSameBodyM = 0.22, kNearestHeadM = 0.32, kMistakenM = 0.2;
 constexpr TimestampNs kOwns = 500'000'000, kOwnerGone = 4'000'000'000;
 constexpr double kOwnerFollows = 0.02;  // of the way at each sample
-constexpr double kHeadMarginM = 0.03;   // shoulders of two who stand close are as near to one head as to the other
+constexpr TimestampNs kFollowedLong = 2'500'000'000;
+constexpr double kSquarelyM = 0.18, kNobodyNearM = 0.3;  // below and above what bodies are told wrong by, see above
+constexpr double kAtFaceM = 0.22;                        // from between the eyes to the palm that holds the chin
+constexpr double kClearlyAnothersM = 0.1;
+constexpr TimestampNs kDoubted = 300'000'000;
+constexpr double kHeadMarginM = 0.03;  // shoulders of two who stand close are as near to one head as to the other
 constexpr double kPairMinM = 0.06, kPairMaxM = 0.70, kPairDepthM = 0.30;
 
 std::optional<glm::dvec3> place_of(const HeadFrame& head) {
@@ -60,6 +65,15 @@ double body_x_m(const HandFrame& hand) {
 double aside_m(const HandFrame& hand, const glm::dvec3& head_m) {
   const glm::dvec3 back = hand.palm.rotation * glm::dvec3(0, 0, 1), to = head_m - hand.palm.position_m;
   return std::abs(to.x * back.z - to.z * back.x) / std::max(1e-6, std::hypot(back.x, back.z));
+}
+
+/// From a body to the nearest head that is not the kept one, sideways.
+double nearest_other_m(double body_x_m, std::span<const HeadFrame> heads, const glm::dvec3& kept_head_m) {
+  double nearest = std::numeric_limits<double>::max();
+  for (const HeadFrame& head : heads)
+    if (const auto eyes = place_of(head); eyes && glm::length(*eyes - kept_head_m) > kSameHeadM)
+      nearest = std::min(nearest, std::abs(body_x_m - eyes->x));
+  return nearest;
 }
 
 bool inside(const HandZone& zone, const glm::dvec3& p) {
@@ -146,13 +160,41 @@ bool HandKeeper::is_the_owners(const HandFrame& hand, std::span<const HeadFrame>
   if (!kept_head_m)
     return owner_x_m_ ? std::abs(body - *owner_x_m_) <= kSameBodyM + unsure
                       : std::abs(body) <= kBeforeThePanelM + unsure;
-  const double apart = std::abs(body - kept_head_m->x);
-  double nearest = std::numeric_limits<double>::max();  // of the others
-  for (const HeadFrame& head : heads)
-    if (const auto eyes = place_of(head); eyes && glm::length(*eyes - *kept_head_m) > kSameHeadM)
-      nearest = std::min(nearest, std::abs(body - eyes->x));
+  const double apart = std::abs(body - kept_head_m->x), nearest = nearest_other_m(body, heads, *kept_head_m);
   if (apart <= kNearestHeadM + unsure && apart + kHeadMarginM <= nearest) return true;
   return is_mistaken(hand, heads, kept_head_m);
+}
+
+HandStanding HandKeeper::judge(TimestampNs now, const HandFrame& hand, std::span<const HeadFrame> heads,
+                               const std::optional<glm::dvec3>& kept_head_m) const {
+  HandStanding out;
+  const double body = body_x_m(hand);
+  out.sure = owner_x_m_ && std::abs(body - *owner_x_m_) <= kSameBodyM && now - owner_came_ >= kFollowedLong;
+  if (kept_head_m) {
+    const double nearest = nearest_other_m(body, heads, *kept_head_m);
+    out.sure = out.sure || (std::abs(body - kept_head_m->x) <= kSameBodyM && nearest >= kNobodyNearM);
+    out.at_face = glm::length(hand.palm.position_m - *kept_head_m) <= kAtFaceM;
+  } else {
+    out.sure = out.sure || std::abs(body) <= kSquarelyM;
+  }
+  return out;
+}
+
+/// Hands that came in for the kept head's and turn out to be of another one.
+void HandKeeper::let_others_go(TimestampNs now, std::array<const HandFrame*, 2>& kept, std::span<const HeadFrame> heads,
+                               const std::optional<glm::dvec3>& kept_head_m) {
+  for (std::size_t s = 0; s < slots_.size(); ++s) {
+    if (kept[s] == nullptr) continue;
+    const double body = body_x_m(*kept[s]);
+    const bool anothers = kept_head_m && nearest_other_m(body, heads, *kept_head_m) + kClearlyAnothersM <=
+                                             std::abs(body - kept_head_m->x);
+    TimestampNs& since = slots_[s].doubted_since;
+    if (!anothers) since = -1;
+    if (anothers && since < 0) since = now;
+    if (!anothers || now - since < kDoubted) continue;
+    slots_[s] = {};
+    kept[s] = nullptr;
+  }
 }
 
 /// Where no head is seen: who stands before the middle for a while takes the place of one who reaches in from beside.
@@ -177,6 +219,7 @@ void HandKeeper::remember_owner(TimestampNs now, const std::array<const HandFram
   for (std::size_t s = 0; s < slots_.size(); ++s) {
     if (kept[s] == nullptr || now - slots_[s].came < kOwns) continue;
     const double body = body_x_m(*kept[s]);
+    if (!owner_x_m_) owner_came_ = now;
     owner_x_m_ = owner_x_m_ ? std::lerp(*owner_x_m_, body, kOwnerFollows) : body;
     owner_seen_ = now;
   }
@@ -216,10 +259,12 @@ std::array<const HandFrame*, 2> HandKeeper::update(TimestampNs now, std::span<co
                                                    std::span<const HeadFrame> heads,
                                                    std::optional<glm::dvec3> kept_head_m) {
   owner_seen_ = std::min(owner_seen_, now);  // a clock that was set back
+  owner_came_ = std::min(owner_came_, now);
   better_since_ = std::min(better_since_, now);
   for (Slot& slot : slots_) {
     slot.seen = std::min(slot.seen, now);
     slot.came = std::min(slot.came, now);
+    slot.doubted_since = std::min(slot.doubted_since, now);
   }
   if (owner_x_m_ && now - owner_seen_ > kOwnerGone) owner_x_m_.reset();
   std::array<const HandFrame*, 2> kept{};
@@ -236,7 +281,8 @@ std::array<const HandFrame*, 2> HandKeeper::update(TimestampNs now, std::span<co
                     shoulder_of(*left[i]),
                     now,
                     came,
-                    std::move(slots_[slot].strangers)};
+                    std::move(slots_[slot].strangers),
+                    slots_[slot].doubted_since};
     kept[slot] = std::exchange(left[i], nullptr);
   };
   for (std::size_t s = 0; s < slots_.size(); ++s) {
@@ -254,6 +300,7 @@ std::array<const HandFrame*, 2> HandKeeper::update(TimestampNs now, std::span<co
           glm::length(shoulder_of(*left[i]) - slots_[s].shoulder_m) <= kSameShoulderM &&
           (left[i]->chirality == slots_[s].chirality || left[i]->chirality == Chirality::kUnknown))
         take(s, i);
+  let_others_go(now, kept, heads, kept_head_m);
   if (!kept_head_m && make_room(now, {left.data(), count})) kept = {};
   for (std::size_t s = 0; s < slots_.size(); ++s) {
     if (slots_[s].taken) continue;
@@ -271,6 +318,8 @@ std::array<const HandFrame*, 2> HandKeeper::update(TimestampNs now, std::span<co
       if (strangers.size() == kMostStrangers) strangers.erase(strangers.begin());
       strangers.push_back(hands[i].id);
     }
+  for (std::size_t s = 0; s < slots_.size(); ++s)
+    standing_[s] = kept[s] == nullptr ? HandStanding() : judge(now, *kept[s], heads, kept_head_m);
   remember_owner(now, kept);
   return kept;
 }
@@ -282,6 +331,7 @@ KeptPerson PersonKeeper::update(TimestampNs now, const InputFrame& frame) {
   const auto place = head_.place_m();
   if (before && place && glm::length(*place - *before) > kSameHeadM) hands_.let_go();  // somebody else's
   out.hands = hands_.update(now, frame.hands, frame.heads, head_.place_m());
+  out.standing = hands_.standing();
   return out;
 }
 

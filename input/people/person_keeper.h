@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "input/hand_frame.h"
+#include "input/hand_standing.h"
 #include "input/input_source.h"
 
 namespace dubsar {
@@ -44,10 +45,13 @@ class HandKeeper {
   /// behind, and both arms come from shoulders of one body (back along the fingers). A slot is free again when its hand
   /// has been away for 1.5 s. Where no head is seen, the body whose fingers point here must stand before the panel, and
   /// owns it until no hand of it was seen for 4 s, or until the hand of one who stands 200 mm more before the middle
-  /// was seen for 0.5 s. A hand that is called left and comes from the kept head's right shoulder is let in, unless it
-  /// could be the left one of another head; trackers mistake some, for as long as they see them.
+  /// was seen for 0.5 s. A kept hand that is clearly another head's for 0.3 s is let go. A hand that is called left and
+  /// comes from the kept head's right shoulder is let in, unless it could be the left one of another head; trackers
+  /// mistake some, for as long as they see them.
   std::array<const HandFrame*, 2> update(TimestampNs now, std::span<const HandFrame> hands,
                                          std::span<const HeadFrame> heads, std::optional<glm::dvec3> kept_head_m);
+  /// Of the hands that update() gave.
+  const std::array<HandStanding, 2>& standing() const noexcept { return standing_; }
   /// All slots are free.
   void let_go() {
     slots_ = {};
@@ -65,6 +69,7 @@ class HandKeeper {
     glm::dvec3 place_m{0.0}, shoulder_m{0.0};
     TimestampNs seen = 0, came = 0;
     std::vector<std::uint32_t> strangers;  // seen beside this hand, so never it under a new id; the newest 16
+    TimestampNs doubted_since = -1;        // it looks like somebody else's
   };
   bool may_enter(const HandFrame& hand, const Slot& other, std::span<const HeadFrame> heads,
                  const std::optional<glm::dvec3>& kept_head_m) const;
@@ -73,17 +78,24 @@ class HandKeeper {
   static bool is_mistaken(const HandFrame& hand, std::span<const HeadFrame> heads,
                           const std::optional<glm::dvec3>& kept_head_m);
   bool make_room(TimestampNs now, std::span<const HandFrame* const> others);
+  void let_others_go(TimestampNs now, std::array<const HandFrame*, 2>& kept, std::span<const HeadFrame> heads,
+                     const std::optional<glm::dvec3>& kept_head_m);
+  HandStanding judge(TimestampNs now, const HandFrame& hand, std::span<const HeadFrame> heads,
+                     const std::optional<glm::dvec3>& kept_head_m) const;
   void remember_owner(TimestampNs now, const std::array<const HandFrame*, 2>& kept);
   HandZone zone_;
   std::array<Slot, 2> slots_{};
-  std::optional<double> owner_x_m_;                 // where the body stands whose hands were kept last
-  TimestampNs owner_seen_ = 0, better_since_ = -1;  // better: somebody more before the middle is there
+  std::optional<double> owner_x_m_;  // where the body stands whose hands were kept last
+  TimestampNs owner_seen_ = 0, owner_came_ = 0;
+  TimestampNs better_since_ = -1;  // somebody more before the middle is there
+  std::array<HandStanding, 2> standing_{};
 };
 
 /// The person that is kept, as seen now.
 struct KeptPerson {
   std::optional<HeadFrame> head;            ///< none: not in this frame
   std::array<const HandFrame*, 2> hands{};  ///< of the frame; null where a hand is not seen
+  std::array<HandStanding, 2> standing{};   ///< of these hands
 };
 
 /// Keeps one person: head and hands.

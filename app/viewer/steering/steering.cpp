@@ -14,7 +14,7 @@ constexpr std::size_t kMostKeys = 4096;
 }  // namespace
 
 Steering::Steering(const Mapping& mapping, const ViewState& home, const HeadFollowOptions& head)
-    : zone_{1e-3 * mapping.hands.zone_min_mm, 1e-3 * mapping.hands.zone_max_mm},
+    : zone_{1e-3 * mapping.hands.enter_min_mm(), 1e-3 * mapping.hands.enter_max_mm()},
       people_(zone_),
       navigator_(mapping, home),
       head_(head) {
@@ -32,7 +32,7 @@ void Steering::steer(TimestampNs now) {
   const InputFrame& frame = mixer_.poll(steered_);
   if (told_) told_(steered_, frame);
   const KeptPerson person = people_.update(steered_, frame);
-  navigator_.update(steered_, frame, person.hands);
+  navigator_.update(steered_, frame, person.hands, person.standing);
   if (person.head) head_.add(*person.head, steered_);
   if (navigator_.selected_m()) since_.selected_m = navigator_.selected_m();
   since_.hands = hand_marks(frame, person, navigator_.hands(), zone_);

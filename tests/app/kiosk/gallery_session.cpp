@@ -29,10 +29,13 @@ SeenLesson as_seen(const std::optional<Lesson>& lesson) {
 
 Mapping GallerySession::mapping_ = gallery_mapping().value();
 
-GallerySession::GallerySession() : navigator_(mapping_), people_(zone()), guide_(parts()) {
+GallerySession::GallerySession() : navigator_(mapping_), people_(entry_zone()), guide_(parts()) {
   document_.parts = {{"tablet", 1}, {"envelope", 2}};
 }
 
+HandZone GallerySession::entry_zone() {
+  return {1e-3 * mapping_.hands.enter_min_mm(), 1e-3 * mapping_.hands.enter_max_mm()};
+}
 HandZone GallerySession::zone() { return {1e-3 * mapping_.hands.zone_min_mm, 1e-3 * mapping_.hands.zone_max_mm}; }
 
 KioskParts GallerySession::parts() {
@@ -46,11 +49,11 @@ KioskParts GallerySession::parts() {
 
 void GallerySession::go_on(TimestampNs now, const InputFrame& frame) {
   person_ = people_.update(now, frame);
-  navigator_.update(now, frame, person_.hands);
+  navigator_.update(now, frame, person_.hands, person_.standing);
   Steered steered;
   steered.view = navigator_.view();
   steered.control = navigator_.control();
-  steered.hands = hand_marks(frame, person_, navigator_.hands(), zone());
+  steered.hands = hand_marks(frame, person_, navigator_.hands(), entry_zone());
   for (const GestureRecognizer& hand : navigator_.hands())
     for (const GestureEvent& event : hand.events())
       steered.swiped = steered.swiped || event.kind == GestureKind::kSwipe;

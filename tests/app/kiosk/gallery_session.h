@@ -32,6 +32,7 @@ class GallerySession {
   const Guidance& guidance() const { return guidance_; }
 
  private:
+  static HandZone entry_zone();
   static HandZone zone();
   static KioskParts parts();
   static Mapping mapping_;

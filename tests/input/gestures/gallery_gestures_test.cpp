@@ -76,6 +76,7 @@ TEST(GestureInGalleries, WhatATrackerMisreadsForFiveHundredthsOfASecondNeitherTa
 TEST(GestureInGalleries, ASwipeGoesFromRestAndAHandThatComesLeavesOrTalksDoesNotSwipe) {
   Person wipes{gallery()};
   wipes.hand.palm.position_m.x = -0.12;
+  wipes.standing.sure = false;
   wipes.steps(260);
   wipes.move({1.0, 0.0, 0.0}, 20);
   wipes.steps(30);
@@ -96,13 +97,60 @@ TEST(GestureInGalleries, ASwipeGoesFromRestAndAHandThatComesLeavesOrTalksDoesNot
   EXPECT_EQ(talks.count(GestureKind::kSwipe, GesturePhase::kDone), 0);
 }
 
-TEST(GestureInGalleries, OneWhoHasJustReachedInWipesNothing) {
-  Person reaches{gallery()};
-  reaches.hand.palm.position_m.x = -0.12;
-  reaches.steps(200);
-  reaches.move({1.0, 0.0, 0.0}, 20);
-  reaches.steps(30);
-  EXPECT_EQ(reaches.count(GestureKind::kSwipe, GesturePhase::kDone), 0);
+TEST(GestureInGalleries, OneWhoHasJustReachedInWipesNothingUnlessItIsSureWhoseHandThatIs) {
+  for (const bool sure : {false, true}) {
+    Person reaches{gallery()};
+    reaches.standing.sure = sure;
+    reaches.hand.palm.position_m.x = -0.12;
+    reaches.steps(130);
+    reaches.move({1.0, 0.0, 0.0}, 20);
+    reaches.steps(30);
+    EXPECT_EQ(reaches.count(GestureKind::kSwipe, GesturePhase::kDone), sure ? 1 : 0);
+  }
+  Person at_once{gallery()};
+  at_once.hand.palm.position_m.x = -0.12;
+  at_once.steps(60);
+  at_once.move({1.0, 0.0, 0.0}, 20);
+  at_once.steps(30);
+  EXPECT_EQ(at_once.count(GestureKind::kSwipe, GesturePhase::kDone), 0) << "not even a sure one at once";
+}
+
+TEST(GestureInGalleries, AHandThatDriftsAsItClosesTakesHoldWhenItIsStill) {
+  Person p{gallery()};
+  p.steps(60);
+  p.move({0.09, 0.0, 0.0}, 40);  // sinks or comes to rest: 20 mm every quarter of a second
+  p.hand.grab_strength = 1.0;
+  p.move({0.09, 0.0, 0.0}, 10);
+  p.steps(40);
+  EXPECT_EQ(p.count(GestureKind::kGrab, GesturePhase::kBegin), 1);
+}
+
+TEST(GestureInGalleries, AHandThatMayBeSomebodyElsesRestsUntilItHolds) {
+  for (const bool sure : {false, true}) {
+    Person p{gallery()};
+    p.standing.sure = sure;
+    p.steps(60);
+    p.hand.grab_strength = 1.0;
+    p.move({0.0, 0.0, -0.22}, 9);  // within 20 mm, as one lunges
+    p.steps(40);
+    EXPECT_EQ(p.count(GestureKind::kGrab, GesturePhase::kBegin), sure ? 1 : 0);
+  }
+}
+
+TEST(GestureInGalleries, AHandAtTheOwnFaceNeitherTakesHoldNorWipes) {
+  for (const bool at_face : {false, true}) {
+    Person p{gallery()};
+    p.standing.at_face = at_face;
+    p.hand.grab_strength = 0.1;
+    p.hand.palm.position_m.x = -0.12;
+    p.steps(260);
+    p.move({1.0, 0.0, 0.0}, 20);
+    p.steps(60);
+    p.hand.grab_strength = 1.0;
+    p.steps(30);
+    EXPECT_EQ(p.count(GestureKind::kSwipe, GesturePhase::kDone), at_face ? 0 : 1);
+    EXPECT_EQ(p.count(GestureKind::kGrab, GesturePhase::kBegin), at_face ? 0 : 1);
+  }
 }
 
 TEST(GestureInGalleries, ASlowPushOfAnOpenHandIsASwipeAndThatOfAHandThatTalksIsNone) {

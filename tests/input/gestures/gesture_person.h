@@ -21,6 +21,7 @@ inline GestureOptions firm() {
 struct Person {
   GestureRecognizer recognizer;
   HandFrame hand;
+  HandStanding standing{.sure = true};
   TimestampNs now = 0;
   std::vector<GestureEvent> events;
 
@@ -32,7 +33,7 @@ struct Person {
   void step(bool seen = true) {
     now += kStep;
     hand.time = now;
-    recognizer.update(now, seen ? &hand : nullptr);
+    recognizer.update(now, seen ? &hand : nullptr, standing);
     events.insert(events.end(), recognizer.events().begin(), recognizer.events().end());
   }
   void steps(int n, bool seen = true) {

@@ -202,5 +202,50 @@ TEST(HandKeeper, TheOwnerMayLetTheHandSinkForAWhileAndNobodyElseTakesOver) {
   EXPECT_NE(keeper.update(9000 * kMs, other, {}, {})[0], nullptr) << "the owner is gone";
 }
 
+TEST(HandKeeper, AKeptHandThatTurnsOutToBeAnotherHeadsIsLetGoAfterAWhile) {
+  HandKeeper keeper;
+  const std::optional<glm::dvec3> kept_head(glm::dvec3(0.0, 0.0, 0.7));
+  std::vector<HeadFrame> heads{head_at(1, *kept_head)};
+  const std::vector<HandFrame> hands{hand_at(1, Chirality::kRight, {0.3, 0, 0.3})};
+  ASSERT_NE(keeper.update(0, hands, heads, kept_head)[0], nullptr) << "nobody else is seen";
+  heads.push_back(head_at(2, {0.48, 0, 0.7}));  // the body of the hand that comes stands at 0.43 m
+  const std::vector<HandFrame> moved{hand_at(1, Chirality::kRight, {0.62, 0, 0.3})};
+  EXPECT_NE(keeper.update(100 * kMs, moved, heads, kept_head)[0], nullptr) << "it may be noise";
+  EXPECT_NE(keeper.update(300 * kMs, moved, heads, kept_head)[0], nullptr);
+  EXPECT_EQ(keeper.update(420 * kMs, moved, heads, kept_head)[0], nullptr);
+}
+
+TEST(HandKeeper, ItIsSureWhoseHandItIsByHeadsByTheArmOrAfterAWhile) {
+  const std::vector<HandFrame> straight{hand_at(1, Chirality::kRight, {0.19, 0, 0.3})};
+  const std::vector<HandFrame> aslant{hand_at(1, Chirality::kRight, {0.38, 0, 0.3})};
+  HandZone wide;
+  wide.max_m.x = 0.5;
+  HandKeeper alone(wide), beside(wide), watched(wide), crowded(wide);
+  ASSERT_NE(alone.update(0, straight, {}, {})[0], nullptr);
+  EXPECT_TRUE(alone.standing()[0].sure) << "squarely before the middle";
+  ASSERT_NE(beside.update(0, aslant, {}, {})[0], nullptr);
+  EXPECT_FALSE(beside.standing()[0].sure);
+  for (int i = 1; i <= 40; ++i) beside.update(i * 100 * kMs, aslant, {}, {});
+  EXPECT_TRUE(beside.standing()[0].sure) << "followed for four seconds";
+  const glm::dvec3 kept_head(0.1, 0.0, 0.7);
+  std::vector<HeadFrame> heads{head_at(1, kept_head)};
+  ASSERT_NE(watched.update(0, straight, heads, kept_head)[0], nullptr);
+  EXPECT_TRUE(watched.standing()[0].sure) << "nobody else is there";
+  heads.push_back(head_at(2, {-0.22, 0, 0.75}));
+  ASSERT_NE(crowded.update(0, straight, heads, kept_head)[0], nullptr);
+  EXPECT_FALSE(crowded.standing()[0].sure) << "another head is as near to that arm";
+}
+
+TEST(HandKeeper, AHandAtTheChinIsAtTheFace) {
+  const glm::dvec3 kept_head(0.0, 0.1, 0.6);
+  const std::vector<HeadFrame> heads{head_at(1, kept_head)};
+  for (const bool at_chin : {true, false}) {
+    HandKeeper keeper;
+    const std::vector<HandFrame> hands{hand_at(1, Chirality::kRight, {0.1, at_chin ? 0.0 : -0.1, at_chin ? 0.5 : 0.4})};
+    ASSERT_NE(keeper.update(0, hands, heads, kept_head)[0], nullptr);
+    EXPECT_EQ(keeper.standing()[0].at_face, at_chin);
+  }
+}
+
 }  // namespace
 }  // namespace dubsar

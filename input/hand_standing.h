@@ -1,0 +1,13 @@
+#pragma once
+// What is known of a hand beside where it is and what it does.
+
+namespace dubsar {
+
+struct HandStanding {
+  /// It is the hand of who stands before the panel: so say the heads that are seen, or its arm, or that this person's
+  /// hands have been followed for long.
+  bool sure = false;
+  bool at_face = false;  ///< of its own person: it scratches, or holds the chin
+};
+
+}  // namespace dubsar
