@@ -170,7 +170,7 @@ def linear(options):
 
 def killed(options):
     """Many scans in one run, killed -9 at random moments: what --resume makes of it is what one whole run makes."""
-    folder = os.path.join(options.work, "killed")
+    folder = os.path.join(options.work, f"killed_{options.size}")  # scans of one size alone
     for name in ("whole", "resumed"):
         shutil.rmtree(os.path.join(folder, name), ignore_errors=True)
     scans = os.path.join(folder, "scans")
