@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "app/cli/fit_columns.h"
 #include "core/base/progress.h"
 
 namespace dubsar::app {
@@ -40,6 +41,14 @@ int stderr_columns() {
   return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
+std::optional<int> stdout_columns() {
+  winsize size{};
+  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
+  const char* const told = std::getenv("COLUMNS");
+  const int columns = told != nullptr ? std::atoi(told) : 0;
+  return columns > 0 ? std::optional<int>(columns) : std::nullopt;
+}
+
 bool stderr_has_colour() {
   const char* const no_colour = std::getenv("NO_COLOR");
   return stderr_is_terminal() && (no_colour == nullptr || *no_colour == '\0');
@@ -57,8 +66,11 @@ void install_log(const ConsoleOptions& options) {
                                 : level == LogLevel::kError   ? "\x1b[31m"
                                 : level == LogLevel::kWarning ? "\x1b[33m"
                                                               : "";
-    const std::string_view start = stderr_is_terminal() ? "\r\x1b[K" : "";
-    put_on_stderr(fmt::format("{}{}{}{}{}\n", start, on, prefix, on.empty() ? "" : "\x1b[0m", message));
+    const bool terminal = stderr_is_terminal();
+    std::string text = fmt::format("{}{}", prefix, message);
+    if (terminal) text = fit_columns(text, stderr_columns());
+    put_on_stderr(fmt::format("{}{}{}{}{}\n", terminal ? "\r\x1b[K" : "", on, text.substr(0, prefix.size()),
+                              on.empty() ? "" : "\x1b[0m", text.substr(prefix.size())));
   });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // How the program talks: results on stdout, everything else on stderr, and one way to be stopped.
 
+#include <optional>
 #include <string>
 
 #include "core/base/progress.h"
@@ -21,6 +22,8 @@ void put_on_stderr(const std::string& text);  ///< at once
 /// True when stderr is a terminal that understands cursor movement, and NO_COLOR is not set for colours.
 bool stderr_is_terminal();
 int stderr_columns();  ///< of the terminal; 80 where it does not say
+/// Of the terminal that stdout is, or COLUMNS where that is set; none: nobody counts.
+std::optional<int> stdout_columns();
 bool stderr_has_colour();
 
 /// Installs the log handler (stderr, prefix by level, colours where allowed).

@@ -40,7 +40,7 @@ std::string stage_in_words(std::string_view stage) {
   struct Words {
     std::string_view stage, words;
   };
-  constexpr std::array<Words, 23> kWords{{{"estimate_raw", "judging noise"},
+  constexpr std::array<Words, 24> kWords{{{"estimate_raw", "judging noise"},
                                           {"estimate", "judging noise"},
                                           {"import", "reading"},
                                           {"denoise", "denoising"},
@@ -54,6 +54,7 @@ std::string stage_in_words(std::string_view stage) {
                                           {"encode signs", "writing"},
                                           {"encode offsets", "writing"},
                                           {"write exa", "writing"},
+                                          {"untangle", "mending patches"},
                                           {"decode signs", "reading"},
                                           {"decode offsets", "reading"},
                                           {"render", "drawing"},
@@ -70,13 +71,15 @@ std::string stage_in_words(std::string_view stage) {
 
 std::string progress_line(const ProgressLine& line, int columns) {
   const int room = std::max(20, columns - 1);  // the last column would wrap on some terminals
-  std::string tail = fmt::format(" {:3.0f} %  {}", std::floor(100.0 * line.fraction), clock_text(line.elapsed_s));
+  std::string tail = line.fraction
+                         ? fmt::format(" {:3.0f} %  {}", std::floor(100.0 * *line.fraction), clock_text(line.elapsed_s))
+                         : "  " + clock_text(line.elapsed_s);
   if (line.remaining_s) tail += ", " + rough_duration(*line.remaining_s) + " left";
   const int name = std::clamp(columns / 4, 10, 18);
   std::string out = line.doing.substr(0, static_cast<std::size_t>(name));
   const int bar = std::min(kWidestBar, room - name - 3 - static_cast<int>(tail.size()));
-  if (bar >= kNarrowestBar) {
-    const int filled = static_cast<int>(bar * std::clamp(line.fraction, 0.0, 1.0));
+  if (line.fraction && bar >= kNarrowestBar) {
+    const int filled = static_cast<int>(bar * std::clamp(*line.fraction, 0.0, 1.0));
     out.resize(static_cast<std::size_t>(name), ' ');
     out += " [" + std::string(static_cast<std::size_t>(filled), '#') +
            std::string(static_cast<std::size_t>(bar - filled), '.') + "]";
@@ -147,7 +150,9 @@ ProgressLine ConsoleProgress::line(double now) {
   const std::int64_t done = done_.load(std::memory_order_relaxed);
   const double part =
       stage_.total > 0 ? std::min(1.0, static_cast<double>(done) / static_cast<double>(stage_.total)) : 0.0;
-  if (!overall_.planned()) return {stage_in_words(stage_.name), part, now - started_s_, std::nullopt};
+  if (!overall_.planned())
+    return {stage_in_words(stage_.name), stage_.total > 0 ? std::optional<double>(part) : std::nullopt,
+            now - started_s_, std::nullopt};
   overall_.advance(part, now);
   return {stage_in_words(stage_.name), overall_.fraction(), now - started_s_, overall_.remaining_s(now)};
 }
@@ -171,7 +176,7 @@ void ConsoleProgress::print_json(bool finished, double now) {
       {"rss_mib", peak_rss_mib()}};
   object["eta_s"] = eta >= 0.0 ? nlohmann::json(eta) : nlohmann::json(nullptr);
   if (overall_.planned()) {
-    object["overall_percent"] = 100.0 * all.fraction;
+    object["overall_percent"] = 100.0 * all.fraction.value_or(0.0);
     object["overall_elapsed_s"] = all.elapsed_s;
     object["overall_eta_s"] = all.remaining_s ? nlohmann::json(*all.remaining_s) : nlohmann::json(nullptr);
   }

@@ -17,14 +17,14 @@
 namespace dubsar::app {
 
 struct ProgressLine {
-  std::string doing;      ///< "smoothing"
-  double fraction = 0.0;  ///< 0..1
+  std::string doing;               ///< "smoothing"
+  std::optional<double> fraction;  ///< 0..1; none: nobody knows how much there is
   double elapsed_s = 0.0;
   std::optional<double> remaining_s;
 };
 
 /// One line of less than `columns` characters: what is done, a bar where there is room, per cent, the time so far and
-/// how much is left.
+/// how much is left. Of what nobody knows how much it is: what is done and the time so far.
 std::string progress_line(const ProgressLine& line, int columns);
 
 /// "smoothing" for "smooth"; stages without such a word as they are.

@@ -11,6 +11,7 @@
 #include "app/cli/console_progress.h"
 #include "app/cli/error_json.h"
 #include "app/cli/file_uses.h"
+#include "app/cli/fit_columns.h"
 #include "core/base/files/atomic_file.h"
 #include "core/base/system/parallel.h"
 #include "core/base/text/json_text.h"
@@ -60,7 +61,9 @@ Result<VerbResult> run_verb(const Verb& verb, const CommonOptions& common, Progr
 
 Result<void> deliver(const VerbResult& result, const CommonOptions& common) {
   if (common.json_path == "-") return print(dump_json_lines(result.json) + "\n");
-  DUBSAR_TRY(print(plain_text(result.text, true)));
+  const std::string text = plain_text(result.text, true);
+  const std::optional<int> columns = stdout_columns();
+  DUBSAR_TRY(print(columns ? fit_columns(text, *columns) : text));
   if (common.json_path.empty()) return {};
   const FileUse report{"--json", common.json_path, true, FileFormat::kJson};
   DUBSAR_TRY(check_file_uses(std::span(&report, 1)));  // once more: the verb may have written just there

@@ -207,7 +207,7 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
   else
     also_ = std::make_unique<SidePanels>(options_, *presenter_);
   viewer_->on_surface_change([this] { also_->drop_surface(); });
-  progress_.begin("view", 0, "frame");
+  if (!options_.window) progress_.begin("view", 0, "frame");  // a window shows itself how things stand
   const TimestampNs start = clock().now();
   const auto delay = static_cast<TimestampNs>(1e9 * options_.time.display_delay_s);
   glm::dquat last_turn = view_of(viewer_->document()).rotation;
@@ -257,7 +257,7 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
       presenter_->wait(viewer_->needs_paint() || report.moving || also_->need_paint());
     }
   }
-  progress_.end();
+  if (!options_.window) progress_.end();
   out_.seconds = 1e-9 * static_cast<double>(clock().now() - start);
   out_.fps = figures_.fps();
   out_.interval_ms = figures_.intervals_ms();

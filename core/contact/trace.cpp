@@ -128,8 +128,8 @@ Result<Laid> lay_contact(SurfaceModel& model, const Traced& traced, Progress& pr
   beside.measure = false;
   DUBSAR_ASSIGN(const HoleReport holes, fill_holes(model, traced.graph, beside, progress));
   laid.others.assign(model.patches.begin() + 1, model.patches.end());
-  log_info("contact: {} points, {} pockets, {} loops closed, {} holes left", traced.band.nodes.size(), laid.pockets,
-           rest_loops, holes.loops);
+  log_debug("contact: {} points, {} pockets, {} loops closed, {} holes left", traced.band.nodes.size(), laid.pockets,
+            rest_loops, holes.loops);
   DUBSAR_TRY(check_closed(model, laid));
   return laid;
 }
@@ -158,7 +158,7 @@ Result<void> shape_contact(SurfaceModel& model, const Laid& laid, Traced& traced
   report.pockets = laid.pockets;
   report.film_vertices = std::count(evidence.begin(), evidence.end(), evidence_byte(Evidence::kFilm));
   report.inferred_vertices = static_cast<std::int64_t>(evidence.size()) - report.film_vertices;
-  log_info("contact: {} film and {} inferred vertices", report.film_vertices, report.inferred_vertices);
+  log_debug("contact: {} film and {} inferred vertices", report.film_vertices, report.inferred_vertices);
   model.patches = laid.others;
   model.patches.insert(model.patches.begin(), contact_patch(model, std::move(mesh), std::move(evidence)));
   DUBSAR_ASSIGN(report.patches, untangle_patches(model, options.step, progress));

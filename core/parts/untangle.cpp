@@ -254,8 +254,8 @@ Result<UntangleReport> untangle_patches(SurfaceModel& model, double step, Progre
   report.moved = tangle.moved();
   tangle.store();
   if (report.crossings > 0)
-    log_info("patches: {} pairs of triangles crossed, {} do after {} vertices were moved and {} added",
-             report.crossings, report.left.size(), report.moved, report.added);
+    log_debug("patches: {} pairs of triangles crossed, {} do after {} vertices were moved and {} added",
+              report.crossings, report.left.size(), report.moved, report.added);
   progress.end();
   return report;
 }

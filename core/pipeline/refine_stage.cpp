@@ -91,8 +91,8 @@ Result<RefinedSurface> refine(SlabSource& scan, GridStore& half, double half_noi
   DUBSAR_ASSIGN(SurfaceBand band, read_band(scan, std::move(surface), filters, threshold, outside, run.progress));
   refined.band = band.report;
   run.clock.finish(512 * band.report.bricks);
-  log_info("band: {:.1f} % of the scan is near the surface, {:.1f} MiB", 100.0 * band.report.share,
-           static_cast<double>(band.report.bricks) / 512.0);
+  log_debug("band: {:.1f} % of the scan is near the surface, {:.1f} MiB", 100.0 * band.report.share,
+            static_cast<double>(band.report.bricks) / 512.0);
   if (band.report.cut > 0) log_warning("band: the surface ends at the band at {} bricks", band.report.cut);
   DUBSAR_ASSIGN(sampled.samples, extract_surface(band.values, threshold, options.sample, run));
   refined.steps = std::move(learned.steps);

@@ -76,6 +76,9 @@ TEST(ProgressLine, FitsTheTerminalAndLosesTheBarFirst) {
   EXPECT_THAT(progress_line(line, 60), HasSubstr(" 41 %  1:12:01, about 1 h 10 min left"));
   EXPECT_THAT(progress_line(line, 80), HasSubstr("["));
   EXPECT_THAT(progress_line(line, 50), Not(HasSubstr("[")));
+  EXPECT_THAT(progress_line({"reading", std::nullopt, 3.0, std::nullopt}, 60), HasSubstr("reading"));
+  EXPECT_THAT(progress_line({"reading", std::nullopt, 3.0, std::nullopt}, 60), HasSubstr("0:03"));
+  EXPECT_THAT(progress_line({"reading", std::nullopt, 3.0, std::nullopt}, 60), Not(HasSubstr("%")));
   EXPECT_THAT(progress_line({"reading", 0.5, 3.0, std::nullopt}, 60), HasSubstr("0:03"));
   EXPECT_THAT(progress_line({"reading", 0.5, 3.0, std::nullopt}, 60), Not(HasSubstr("left")));
 }

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
@@ -69,6 +70,11 @@ std::vector<std::string> lines_of(const std::string& seen) {
   return lines;
 }
 
+std::size_t letters(const std::string& line) {
+  return static_cast<std::size_t>(
+      std::count_if(line.begin(), line.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
 TEST(Terminal, HelpFitsSixtyColumns) {
   for (const char* verb : {"process", "info", "export", "render", "view", "devices"})
     for (const std::string& line : lines_of(on_terminal(60, {verb, "--help"})))
@@ -91,6 +97,10 @@ TEST(Terminal, ProgressIsOneLineThatFitsAndGoesAway) {
   ASSERT_NE(result, std::string::npos) << seen;
   EXPECT_LT(last, result) << "nothing is drawn over the result";
   EXPECT_NE(seen.find("\r\x1b[K", last), std::string::npos);
+  for (const std::string& line : lines) EXPECT_LE(letters(line), 60u) << "what is said meanwhile: " << line;
+  for (const char* const file : {"s.h5", "s.exa"})
+    for (const std::string& line : lines_of(on_terminal(60, {"info", (folder / file).string()})))
+      EXPECT_LE(letters(line), 60u) << line;
   fs::remove_all(folder);
 }
 
