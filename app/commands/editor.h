@@ -85,6 +85,7 @@ struct Pointing {
   double magnify = 0.0;            ///< of the glass; 0: there is none
   bool cursor = false;             ///< a ring on the surface
   bool cut_box = false;            ///< the box of cuts, with a handle for each side
+  std::size_t notes = 0;           ///< that clicks have placed: each time what is typed next is its text
   std::optional<glm::dvec2> at{};  ///< heights of the window from its middle, x to the right, y up; none: not seen
   friend bool operator==(const Pointing&, const Pointing&) = default;
 };

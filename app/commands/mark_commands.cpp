@@ -120,6 +120,7 @@ Command point() {
     const std::vector<SurfacePin> pins = std::exchange(desk.pending, {});
     if (kind) return add_measure(editor, *kind, pins, {});
     add_note(editor, pins, {});
+    ++desk.pointing.notes;
     return {};
   };
   return out;

@@ -65,6 +65,7 @@ void draw_measures(const Board& desk) {
 
 void draw_notes(const Board& desk) {
   if (desk.state.document.notes.empty()) say_dim("Take the tool Note or Line at the left and click on the surface.");
+  int& answered = *ImGui::GetStateStorage()->GetIntRef(ImGui::GetID("answered"));
   for (std::size_t i = 0; i < desk.state.document.notes.size(); ++i) {
     const Note& note = desk.state.document.notes[i];
     const bool open = desk.state.desk.note == i + 1;
@@ -80,6 +81,10 @@ void draw_notes(const Board& desk) {
       button(desk, "look", fmt::format("go_to_note {}", i + 1), false);
       ImGui::SameLine();
       button(desk, "delete", fmt::format("delete_note {}", i + 1), false);
+      if (const int placed = static_cast<int>(desk.state.desk.pointing.notes); answered != placed) {
+        ImGui::SetKeyboardFocusHere();
+        answered = placed;
+      }
       if (type_in("##text", note.text, typed, kFieldPx))
         desk.commands.push_back(fmt::format("note_text {} {}", i + 1, typed));
       letter_buttons(desk, fmt::format("note_text {} ", i + 1), note.text);
@@ -102,9 +107,7 @@ void draw_cuts(const Board& desk) {
     button(desk, side, fmt::format("cut {} 20", side), false);
   }
   auto percent = static_cast<float>(100.0 * desk.state.document.fog);
-  ImGui::SetNextItemWidth(120.0f);
-  if (ImGui::SliderFloat("far side fades", &percent, 0.0f, 100.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
-    desk.commands.push_back(fmt::format("fog {:.4g}", percent));
+  if (percent_slider("far side fades", percent, 120.0f)) desk.commands.push_back(fmt::format("fog {:.4g}", percent));
   explain(desk, "fog");
 }
 

@@ -283,7 +283,15 @@ bool Overlay::take_key(const InputEvent& event, const glm::dvec2& layout) {
   ImGuiIO& io = ImGui::GetIO();
   const Desk& desk = text_.panels->desk;
   const bool palette = desk.palette || desk.choosing.open;  // what lists things takes the keys
+  const bool placed = std::exchange(notes_answered_, desk.pointing.notes) != desk.pointing.notes;
+  if (palette ? !io.WantTextInput : placed)
+    for (int pass = 0; pass < 3; ++pass) frame(layout, scale_);  // the field that waits for its text takes the keys
   if (!palette && !io.WantTextInput) return false;
+  if (!palette && event.key == "escape") {  // Dear ImGui would take back what was typed
+    InputEvent enter = event;
+    enter.key = "enter";
+    return take_key(enter, layout);
+  }
   const bool control = (event.modifiers & kControl) != 0;
   if (!palette && control && std::string_view("acvxz").find(event.key) == std::string_view::npos) return false;
   if (palette && (event.key == "escape" || (control && (event.key == "k" || event.key == "o"))))

@@ -77,9 +77,10 @@ class Overlay final : public LayerPainter {
   glm::dvec2 scale_{1.0, 1.0};
   double wanted_scale_ = 0.0;
   float px_per_mm_ = 3.0f;
-  std::array<bool, 3> held_{};  ///< buttons that went down on a panel
-  bool object_held_ = false;    ///< one went down beside them
-  bool all_letters_ = false;    ///< those of Hebrew and Arabic are there
+  std::array<bool, 3> held_{};      ///< buttons that went down on a panel
+  bool object_held_ = false;        ///< one went down beside them
+  std::size_t notes_answered_ = 0;  ///< of Pointing::notes
+  bool all_letters_ = false;        ///< those of Hebrew and Arabic are there
 };
 
 }  // namespace dubsar::app

@@ -16,7 +16,6 @@ namespace dubsar::app {
 namespace {
 
 constexpr TimestampNs kSettleNs = kSecondNs;
-constexpr std::uint64_t kKeySteps = std::uint64_t{1} << 63;  // told apart from movements
 constexpr std::uint64_t kGuideSteps = std::uint64_t{1} << 62;
 
 bool same_view(const ViewState& a, const ViewState& b) { return Shown{a} == Shown{b}; }
@@ -182,46 +181,6 @@ void Viewer::say(std::string text) {
   notice_ = {std::move(text), given_.clock.now()};
 }
 
-void Viewer::handle(InputEvent event) {
-  if (given_.options.time.fps > 0) event.time = given_.clock.now();
-  if (event.at) tools_.pointer = *event.at;
-  if (event.kind != EventKind::kWheel) tools_.wheeled.reset();
-  if (given_.options.guide != nullptr && given_.options.guide->takes(event, given_.clock.now())) return;
-  if (overlay_->take(event, layout())) {
-    stage_->set_overlay(overlay_.get());  // what the pointer is on looks different
-    if ((event.kind == EventKind::kButton && event.down) || event.key == "enter") ++at_.presses;
-    for (const std::string& command : overlay_->take_commands()) run(command, kKeySteps + at_.presses);
-    return;
-  }
-  if (event.at && event.kind != EventKind::kKey) editor_->desk().pointing.at = event.at;
-  if (take_light(event) || take_handle(event) || take_click(event)) return;
-  if (event.kind == EventKind::kWheel || (event.kind == EventKind::kButton && event.down)) tell_depth(event);
-  event = without_aside(std::move(event));
-  const auto rows = sources_->rows();
-  const bool keyboard = std::any_of(rows.begin(), rows.end(), [](const SourceRow& row) {
-    return row.spec == "keyboard" && row.health == SourceHealth::kPresent;
-  });
-  if (event.kind == EventKind::kKey && !keyboard) {  // whoever steers, a window can be closed and asked for help
-    const Command* const command =
-        said_.commands->find(split_command(said_.keys->command_for(key_chord(event), *editor_)).first);
-    if (command == nullptr || command->group != kWindowGroup) return;
-    if (recorder_) recorder_->add_event(event);
-    if (event.down) use_key(event);
-    return;
-  }
-  events_.push(event);
-}
-
-void Viewer::use_key(const InputEvent& event) {
-  if (event.key == kClickKey) return event.at ? click(*event.at) : void();
-  const std::string text = said_.keys->command_for(key_chord(event), *editor_);
-  if (text.empty()) return;
-  const Command& command = *said_.commands->find(split_command(text).first);
-  if (event.repeat && !command.repeats) return;
-  if (!event.repeat) ++at_.presses;
-  run(text, kKeySteps + at_.presses);
-}
-
 void Viewer::run(std::string_view text, std::uint64_t merge) {
   const Command* const command = said_.commands->find(split_command(text).first);
   if (command != nullptr && command->steers && !steering_->claim_for_keys(given_.clock.now())) return;
@@ -358,6 +317,7 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
       say("the recording has ended: " + kept.error().message);
     }
   update_overlay(now, figures);
+  type_what_waited(now);
   if (!has_surface()) return;
   if (const auto kept = files_.autosave.keep(now, document()); !kept) log_warning("{}", kept.error().message);
 }

@@ -174,6 +174,9 @@ class Viewer final : public Workplace {
     std::unique_ptr<LabelFont> font;
     EvidenceShares evidence;
     FilmThumbnails thumbnails;
+    std::optional<std::string> coming;    ///< tool of a key that is on its way
+    TimestampNs field_since = -1;         ///< a key or click is on its way that opens a field of text
+    std::vector<InputEvent> typed;        ///< meanwhile: it belongs into that field
     std::optional<InputEvent> press;      ///< with a tool in the hand: it becomes a click, or a drag that turns
     std::optional<InputEvent> light_key;  ///< held: a drag moves the light
     bool light_dragged = false;           ///< since it went down
@@ -198,6 +201,8 @@ class Viewer final : public Workplace {
   void drop(const std::vector<std::string>& files);
   FilesState files_state(TimestampNs now);
   void use_key(const InputEvent& event);
+  void expect(const InputEvent& event);
+  void type_what_waited(TimestampNs now);
   void lead(TimestampNs now, const Steered& steered);
   Result<void> obey(std::string_view command, std::uint64_t merge);
   void say_steps(TimestampNs now);

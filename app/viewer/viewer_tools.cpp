@@ -64,7 +64,7 @@ InputEvent Viewer::without_aside(InputEvent event) const {
 bool Viewer::take_click(const InputEvent& event) {
   std::optional<InputEvent>& press = tools_.press;
   const bool left = event.kind == EventKind::kButton && event.button == MouseButton::kLeft;
-  if (left && event.down && event.at && event.modifiers == 0 && desk().tool != "turn") {
+  if (left && event.down && event.at && event.modifiers == 0 && tools_.coming.value_or(desk().tool) != "turn") {
     press = event;
     return true;
   }
@@ -74,6 +74,7 @@ bool Viewer::take_click(const InputEvent& event) {
     press.reset();
     click.kind = EventKind::kKey;
     click.key = kClickKey;
+    expect(click);
     events_.push(click);
     return true;
   }

@@ -46,17 +46,56 @@ TEST_F(Live, ClicksWithAToolMeasureAndDragsStillTurn) {
        },
        [](const ViewMoment& m) { return m.viewer.document().notes.size() == 1; }},
       {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().tool == "turn"; }},
+      {[] {  // also where all of them come during one picture, and no tool was in the hand before
+         person_->key("d");
+         click(*person_, 100, 120);
+         click(*person_, 160, 120);
+       },
+       measures(2)},
+      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().tool == "turn"; }},
       {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().leaving; }},
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;
-  ASSERT_EQ(done->document.measures.size(), 1u);
+  ASSERT_EQ(done->document.measures.size(), 2u);
   // 120 of 240 pixels of the window's height; the box is 40 mm wide and fits with a margin of 8 % on each side. Its
   // front is nearer to the eye than its middle by 1 %.
   const double mm_per_px = 40.0 / (240 * 0.84);
   EXPECT_NEAR(done->document.measures[0].figures.straight_mm, 0.99 * 120 * mm_per_px, 0.15);
   EXPECT_EQ(done->document.notes[0].label, "o. 1");
   EXPECT_GT(differing_share(before, after), 0.002) << "the measure is seen";
+}
+
+TEST_F(Live, WhatIsTypedAfterANoteWasPinnedIsItsTextAndEscapeKeepsIt) {
+  options_.around.panels = true;
+  options_.window->width = 800;
+  options_.window->height = 600;
+  const auto text = [](std::string words) {
+    return [words](const ViewMoment& m) {
+      return m.viewer.document().notes.size() == 1 && m.viewer.document().notes[0].text == words;
+    };
+  };
+  const auto done = play({
+      {[] { person_->key("n"); }, [](const ViewMoment& m) { return m.viewer.desk().tool == "note"; }},
+      {[] {
+         click(*person_, 400, 300);
+         person_->key("s");  // at once
+       },
+       text("s")},
+      {[] {
+         for (const char* letter : {"i", "d", "e", "space", "3"}) person_->key(letter);
+       },
+       text("side 3")},
+      {[] { person_->key("escape"); }, text("side 3")},
+      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().tool == "turn"; }},
+      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().drawer.empty(); }},
+      {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().leaving; }},
+      end(),
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  ASSERT_EQ(done->document.notes.size(), 1u);
+  EXPECT_EQ(done->document.notes[0].text, "side 3");
+  EXPECT_EQ(done->document.style, Document().style) << "s, i and d were typed, not pressed";
 }
 
 TEST_F(Live, WordsAreTypedIntoThePaletteAndKeysDoNothingElseMeanwhile) {
@@ -68,10 +107,11 @@ TEST_F(Live, WordsAreTypedIntoThePaletteAndKeysDoNothingElseMeanwhile) {
          person_->hold("control");
          person_->key("k");
          person_->let_go("control");
+         person_->key("s");  // at once
        },
        [](const ViewMoment& m) { return m.viewer.desk().palette; }},
       {[] {
-         for (const char* letter : {"s", "i", "d", "e", "space", "r", "e", "v"}) person_->key(letter);
+         for (const char* letter : {"i", "d", "e", "space", "r", "e", "v"}) person_->key(letter);
          person_->key("enter");
        },
        [](const ViewMoment& m) {
@@ -80,7 +120,7 @@ TEST_F(Live, WordsAreTypedIntoThePaletteAndKeysDoNothingElseMeanwhile) {
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;
-  EXPECT_EQ(done->document.style, Document().style) << "s and e were typed, not pressed";
+  EXPECT_EQ(done->document.style, Document().style) << "s, i and d were typed, not pressed";
 }
 
 TEST_F(Live, AScriptSaysEveryCommandThereIs) {
