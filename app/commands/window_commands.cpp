@@ -15,9 +15,9 @@ Command plain(std::string name, std::string words, std::vector<DefaultKey> keys,
   return out;
 }
 
-/// While the help lists the sources, numbers switch them.
+/// While the help lists the devices, numbers switch them.
 Command toggle_source() {
-  Command out{"toggle_source", std::string(kWindowGroup), "source on or off, while this help is shown", {}};
+  Command out{"toggle_source", std::string(kWindowGroup), "device on or off, while this help is shown", {}};
   out.argument = "its number";
   for (char number = '1'; number <= '9'; ++number) {
     out.values.emplace_back(1, number);
@@ -27,7 +27,7 @@ Command toggle_source() {
   out.enabled = [](const Editor& editor) { return editor.desk().help; };
   out.run = [](Editor& editor, const std::string& number) -> Result<void> {
     if (editor.place().toggle_source(static_cast<std::size_t>(number[0] - '1'))) return {};
-    return fail(ErrorKind::kUsage, "toggle_source: there is no source {}", number);
+    return fail(ErrorKind::kUsage, "toggle_source: there is no device {}", number);
   };
   return out;
 }
@@ -164,6 +164,8 @@ Result<void> close(Editor& editor) {
   } else if (desk.tool != "turn") {
     desk.tool = "turn";
     desk.pending.clear();
+  } else if (desk.panels && !desk.drawer.empty()) {
+    desk.drawer.clear();
   } else if (editor.has_work() && !desk.leaving) {
     desk.leaving = true;
     editor.place().say("Esc again: end. What you measured and noted is kept, and here again next time.");
@@ -193,7 +195,7 @@ std::vector<Command> window_commands() {
     return {};
   }));
   out.push_back(drawer());
-  out.push_back(plain("retry_sources", "look for missing sources now", {{"f5"}}, [](Editor& editor) -> Result<void> {
+  out.push_back(plain("retry_sources", "look for missing devices now", {{"f5"}}, [](Editor& editor) -> Result<void> {
     editor.place().retry_sources();
     return {};
   }));

@@ -32,6 +32,17 @@ std::string length_text(double mm) {
   return fmt::format("{:.{}f} mm", mm, digits);
 }
 
+namespace {
+
+/// With two digits of what is uncertain, and as many of the length.
+std::string uncertain_text(double mm, double uncertainty_mm) {
+  const int digits =
+      uncertainty_mm > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(uncertainty_mm))), 0, 4) : 3;
+  return fmt::format("{:.{}f} \u00b1 {:.{}f} mm", mm, digits, uncertainty_mm, digits);
+}
+
+}  // namespace
+
 std::string figures_text(const Measure& measure) {
   const MeasureFigures& f = measure.figures;
   const std::string along = f.surface_mm > 0 ? fmt::format(", {} along the surface", length_text(f.surface_mm)) : "";
@@ -39,9 +50,7 @@ std::string figures_text(const Measure& measure) {
     case MeasureKind::kAngle:
       return fmt::format("{:.2f}\u00b0", f.angle_deg);
     case MeasureKind::kDepth:
-      return f.uncertainty_mm
-                 ? fmt::format("{} deep \u00b1 {}", length_text(f.depth_mm), length_text(*f.uncertainty_mm))
-                 : fmt::format("{} deep", length_text(f.depth_mm));
+      return (f.uncertainty_mm ? uncertain_text(f.depth_mm, *f.uncertainty_mm) : length_text(f.depth_mm)) + " deep";
     case MeasureKind::kProfile:
       return fmt::format("{}{}, {} deep", length_text(f.straight_mm), along, length_text(f.depth_mm));
     case MeasureKind::kDistance:

@@ -82,8 +82,7 @@ void draw_strip(const Board& desk) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("unpack");
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(std::clamp(desk.width - 900.0f, 90.0f, 220.0f));
-    if (ImGui::SliderFloat("##unpack", &percent, 0.0f, 100.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
+    if (percent_slider("##unpack", percent, std::clamp(desk.width - 900.0f, 90.0f, 220.0f)))
       desk.commands.push_back(fmt::format("unpack {:.4g}", percent));
     explain(desk, "unpack_more");
   }

@@ -64,8 +64,9 @@ bool is_row(const std::vector<std::string>& keys) {
 }
 
 /// One line of a command that has keys: "left shift+left", or "1 to 6" where each says something else.
-void add_command(HelpSection& section, const Command& command, const KeyTable& keys) {
+void add_command(HelpSection& section, const Command& command, const KeyTable& keys, const HelpDevices& there) {
   std::vector<std::string> found = keys.keys_for(command.name);
+  if (!there.more) std::erase_if(found, [](const std::string& key) { return key.starts_with("puck"); });
   std::vector<std::string> told;
   for (const DefaultKey& key : command.keys)
     if (!key.argument.empty())
@@ -93,13 +94,16 @@ HelpSection hand_section(const HandMapping& hands) {
 }
 
 /// Commands by their headings, in the order of the table.
-std::vector<HelpSection> command_sections(const KeyTable& keys, bool keyboard_steers) {
+std::vector<HelpSection> command_sections(const KeyTable& keys, bool keyboard_steers, const HelpDevices& there) {
+  const auto idle = [&](const Command& command) {
+    return (!there.two_eyes && command.name == "swap_eyes") || (!there.more && command.name == "recentre");
+  };
   std::vector<HelpSection> out;
   for (const Command& command : keys.commands().all()) {
-    if (command.steers && !keyboard_steers) continue;
+    if ((command.steers && !keyboard_steers) || idle(command)) continue;
     auto at = std::find_if(out.begin(), out.end(), [&](const HelpSection& s) { return s.title == command.group; });
     if (at == out.end()) at = out.insert(out.end(), HelpSection{command.group, {}});
-    add_command(*at, command, keys);
+    add_command(*at, command, keys, there);
   }
   std::rotate(out.begin(), std::min(out.begin() + 1, out.end()), out.end());  // the window's own come last
   return out;
@@ -107,17 +111,19 @@ std::vector<HelpSection> command_sections(const KeyTable& keys, bool keyboard_st
 
 }  // namespace
 
-std::vector<HelpSection> help_page(const Mapping& mapping, const KeyTable& keys) {
+std::vector<HelpSection> help_page(const Mapping& mapping, const KeyTable& keys, const HelpDevices& there) {
   std::vector<HelpSection> out{mouse_section(mapping.mouse),
                                hand_section(mapping.hands),
                                {"Puck", {{"push", "move and zoom"}, {"twist", "turn"}}}};
   const auto listens = [&](Control control) {
     return std::find(mapping.priority.begin(), mapping.priority.end(), control) != mapping.priority.end();
   };
-  for (HelpSection& section : command_sections(keys, listens(Control::kKeyboard))) out.push_back(std::move(section));
+  for (HelpSection& section : command_sections(keys, listens(Control::kKeyboard), there))
+    out.push_back(std::move(section));
   std::erase_if(out, [&](const HelpSection& s) {
     return s.rows.empty() || (s.title == "Mouse" && !listens(Control::kMouse)) ||
-           (s.title == "Hands" && !listens(Control::kHands)) || (s.title == "Puck" && !listens(Control::kPuck));
+           (s.title == "Hands" && !(there.more && listens(Control::kHands))) ||
+           (s.title == "Puck" && !(there.more && listens(Control::kPuck)));
   });
   return out;
 }

@@ -8,12 +8,15 @@
 
 #include "app/panels/light_ball.h"
 #include "app/panels/panel_kit.h"
+#include "display/render/shading.h"
 
 namespace dubsar::app {
 namespace {
 
 constexpr float kBall = 110.0f;
 constexpr ImU32 kHatch = IM_COL32(122, 158, 204, 255), kStripe = IM_COL32(38, 70, 128, 255);  // as the surface has it
+
+std::string style_words(const std::string& name) { return std::string(shading_preset_words(name)); }
 
 /// What the hatch means, and how much of the surface it is.
 void draw_evidence(const Board& desk) {
@@ -46,17 +49,16 @@ void draw_blend(const Board& desk) {
   ImGui::SetNextItemWidth(120.0f);
   if (ImGui::BeginCombo("mixed with", desk.state.document.style.other.empty()
                                           ? "nothing"
-                                          : desk.state.document.style.other.c_str())) {
+                                          : style_words(desk.state.document.style.other).c_str())) {
     for (const std::string& name : style->values)
-      if (ImGui::Selectable(name.c_str(), name == desk.state.document.style.other))
+      if (ImGui::Selectable(style_words(name).c_str(), name == desk.state.document.style.other))
         desk.commands.push_back(fmt::format("blend {} {:.4g}", name, share > 0 ? share : 50.0f));
     ImGui::EndCombo();
   }
   explain(desk, "blend");
   if (desk.state.document.style.other.empty()) return;
   float percent = share;
-  ImGui::SetNextItemWidth(120.0f);
-  if (ImGui::SliderFloat("of it", &percent, 0.0f, 100.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
+  if (percent_slider("of it", percent, 120.0f, 100.0f))
     desk.commands.push_back(fmt::format("blend {} {:.4g}", desk.state.document.style.other, percent));
   explain(desk, "blend");
 }
@@ -64,8 +66,7 @@ void draw_blend(const Board& desk) {
 /// Radiance scaling, and the colours of figures with their legend.
 void draw_shades(const Board& desk) {
   auto percent = static_cast<float>(100.0 * desk.state.document.style.radiance);
-  ImGui::SetNextItemWidth(120.0f);
-  if (ImGui::SliderFloat("ridges", &percent, 0.0f, 200.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
+  if (percent_slider("ridges", percent, 120.0f, 200.0f))
     desk.commands.push_back(fmt::format("radiance {:.4g}", percent));
   explain(desk, "radiance");
   const Command* const colours = desk.keys.commands().find("colours");
@@ -90,10 +91,9 @@ void draw_parts(const Board& desk) {
     if (ImGui::Checkbox(part.name.c_str(), &visible)) desk.commands.push_back(fmt::format("part {}", i + 1));
     explain(desk, fmt::format("part {}", i + 1));
     auto percent = static_cast<float>(100.0 * part.opacity);
-    ImGui::SameLine(120.0f);
-    ImGui::SetNextItemWidth(110.0f);
+    ImGui::SameLine(144.0f);
     ImGui::PushID(static_cast<int>(i));
-    if (ImGui::SliderFloat("##opacity", &percent, 0.0f, 100.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
+    if (percent_slider("##opacity", percent, 70.0f))
       desk.commands.push_back(fmt::format("part_opacity {} {:.4g}", i + 1, percent));
     explain(desk, "part_opacity");
     std::array<float, 3> colour{}, offset{};
@@ -157,15 +157,15 @@ void draw_light(const Board& desk) {
 void draw_styles(const Board& desk) {
   if (const Command* const style = desk.keys.commands().find("style"))
     for (const std::string& name : style->values) {
-      if (ImGui::RadioButton(name.c_str(), name == desk.state.document.style.name))
+      if (ImGui::RadioButton(style_words(name).c_str(), name == desk.state.document.style.name))
         desk.commands.push_back("style " + name);
+      explain(desk, "style " + name);
     }
   bool occlusion = desk.state.document.style.occlusion;
   if (ImGui::Checkbox("dark hollows", &occlusion)) desk.commands.push_back("occlusion");
   explain(desk, "occlusion");
   auto strength = static_cast<float>(100.0 * desk.state.document.style.strength);
-  ImGui::SetNextItemWidth(120.0f);
-  if (ImGui::SliderFloat("strength", &strength, 0.0f, 200.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp))
+  if (percent_slider("strength", strength, 120.0f, 200.0f))
     desk.commands.push_back(fmt::format("strength {:.4g}", strength));
   draw_shades(desk);
   draw_blend(desk);

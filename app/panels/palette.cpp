@@ -72,8 +72,13 @@ std::vector<PaletteRow> palette_rows(const KeyTable& keys, std::string_view type
     if (!bound.empty()) row.key = bound.front();
     (!wanted.empty() && row.text.starts_with(wanted) ? first : out).push_back(std::move(row));
   };
-  for (const Command& command : keys.commands().all()) {
-    if (command.name == "palette") continue;
+  std::vector<const Command*> commands;  // the window's own come last
+  for (const Command& command : keys.commands().all())
+    if (command.name != "palette") commands.push_back(&command);
+  std::stable_partition(commands.begin(), commands.end(),
+                        [](const Command* command) { return command->group != kWindowGroup; });
+  for (const Command* const each : commands) {
+    const Command& command = *each;
     if (command.argument.empty() || command.optional) add(command, {}, true);
     for (const std::string& value : command.values) add(command, value, true);
     if (!command.argument.empty() && !command.closed) add(command, {}, false);

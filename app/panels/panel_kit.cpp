@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <string_view>
 
 namespace dubsar::app {
 
@@ -31,6 +33,21 @@ bool button(const Board& desk, const char* label, const std::string& command, bo
 
 float button_width(const char* label) {
   return ImGui::CalcTextSize(label).x + 2.0f * ImGui::GetStyle().FramePadding.x + ImGui::GetStyle().ItemSpacing.x;
+}
+
+bool percent_slider(const char* label, float& percent, float width, float most) {
+  const std::string id = std::string("##slider") + label;
+  ImGui::BeginGroup();
+  ImGui::SetNextItemWidth(width);
+  const bool moved = ImGui::SliderFloat(id.c_str(), &percent, 0.0f, most, "", ImGuiSliderFlags_AlwaysClamp);
+  if (moved) percent = std::round(percent);
+  const std::string_view words(label);
+  const std::string text = fmt::format("{:.0f} %{}{}", percent, words.starts_with("##") ? "" : " ",
+                                       words.starts_with("##") ? std::string_view() : words);
+  ImGui::SameLine();
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::EndGroup();  // what is said of it is said over all of it
+  return moved;
 }
 
 void say_dim(const char* words) {

@@ -31,6 +31,9 @@ void explain(const Board& desk, const std::string& command);
 bool button(const Board& desk, const char* label, const std::string& command, bool active, bool enabled = true);
 /// A button of text without a frame, as long as its words.
 float button_width(const char* label);
+/// A slider from 0 to `most` per cent, its figure beside it, where the knob does not cover it, then its label (nothing
+/// for one that begins with ##). True when it was moved: `percent` is whole then.
+bool percent_slider(const char* label, float& percent, float width, float most = 100.0f);
 /// Dim words that break where the panel ends.
 void say_dim(const char* words);
 /// A line of text that is kept while it is typed in, and told as it changes: true then. `id` names it in its window.

@@ -102,8 +102,10 @@ void draw_labels(const SlicePane& pane, std::size_t which, const ScanView& scan,
   const auto length = static_cast<float>(mm / mm_per_unit);
   const std::string bar = fmt::format("{:g} mm", mm);
   const ImVec2 end(placed.corner.x + rect.width - 8, placed.corner.y + rect.height - 7);
-  draw->AddLine(ImVec2(end.x - length, end.y), end, kText, 2.0f);
   const ImVec2 size = ImGui::CalcTextSize(bar.c_str());
+  draw->AddRectFilled(ImVec2(end.x - std::max(length, size.x) - 5, end.y - size.y - 4), ImVec2(end.x + 5, end.y + 5),
+                      IM_COL32(0x17, 0x18, 0x1b, 0xb0), 3.0f);  // over clay, too, it is read
+  draw->AddLine(ImVec2(end.x - length, end.y), end, kText, 2.0f);
   draw->AddText(ImVec2(end.x - 0.5f * (length + size.x), end.y - size.y - 2), kText, bar.c_str());
 }
 

@@ -54,16 +54,15 @@ std::vector<HelpSection> state_page(const StateFigures& state) {
                               state.traits.views, state.traits.views == 1 ? "" : "s")});
   now.rows.push_back({"head", fmt::format("{}; eyes at {:.0f}, {:.0f}, {:.0f} mm", presence_words(state.head),
                                           state.eyes_mm.x, state.eyes_mm.y, state.eyes_mm.z)});
-  now.rows.push_back({"frames a second", state.interval_ms.empty()
-                                             ? "nothing moves"
-                                             : fmt::format("{:.0f} while things move",
-                                                           1e3 / std::max(quantile(state.interval_ms, 0.5), 1e-3))});
-  now.rows.push_back(
-      {"device to cameras", state.input_age_ms.empty()
-                                ? "no input yet"
-                                : fmt::format("median {:.1f} ms, 95 % {:.1f} ms", quantile(state.input_age_ms, 0.5),
-                                              quantile(state.input_age_ms, 0.95))});
-  HelpSection sources{"Sources", {}};
+  now.rows.push_back({"pictures a second", state.interval_ms.empty()
+                                               ? "nothing moves"
+                                               : fmt::format("{:.0f} while things move",
+                                                             1e3 / std::max(quantile(state.interval_ms, 0.5), 1e-3))});
+  now.rows.push_back({"delay of input", state.input_age_ms.empty() ? "no input yet"
+                                                                   : fmt::format("median {:.1f} ms, 95 % {:.1f} ms",
+                                                                                 quantile(state.input_age_ms, 0.5),
+                                                                                 quantile(state.input_age_ms, 0.95))});
+  HelpSection sources{"Devices", {}};
   int number = 1;
   for (const SourceRow& row : state.sources)
     sources.rows.push_back({fmt::format("{} {}", number++, row.spec),

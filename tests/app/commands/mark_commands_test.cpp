@@ -49,7 +49,7 @@ TEST(MarkCommands, TheDepthOfAWedgeIsToldWithItsUncertainty) {
   measure.figures.depth_mm = 0.4123;
   EXPECT_EQ(figures_text(measure), "0.412 mm deep") << "of a session of an earlier version";
   measure.figures.uncertainty_mm = 0.0211;
-  EXPECT_EQ(figures_text(measure), "0.412 mm deep \u00b1 0.0211 mm");
+  EXPECT_EQ(figures_text(measure), "0.412 \u00b1 0.021 mm deep");
   Document document;
   document.measures = {measure};
   EXPECT_NE(format_measures(document).find("\"uncertainty_mm\": 0.0211"), std::string::npos);

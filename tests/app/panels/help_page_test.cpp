@@ -11,6 +11,12 @@
 namespace dubsar::app {
 namespace {
 
+/// The heading under which a row's command stands.
+std::string_view find_group(const CommandTable& commands, const std::string& text) {
+  const Command* const command = commands.find(split_command(text).first);
+  return command == nullptr ? std::string_view() : std::string_view(command->group);
+}
+
 TEST(HelpPage, SaysWhatTheMappingSays) {
   const auto find = [](const std::vector<HelpSection>& page, std::string_view title,
                        std::string_view what) -> std::string {
@@ -36,6 +42,12 @@ TEST(HelpPage, SaysWhatTheMappingSays) {
   EXPECT_EQ(find(page, "Hands", "pinch and move"), "move the light");
   EXPECT_EQ(find(page, "Hands", "grab and pull"), "zoom");
   EXPECT_EQ(find(page, "This window", "f1 ?"), "this help");
+  const auto plain = help_page(default_mapping().value(), keys, {.more = false, .two_eyes = false});
+  EXPECT_EQ(find(plain, "Hands", "grab and pull"), "") << "no device follows hands";
+  EXPECT_EQ(find(plain, "Puck", "push"), "");
+  EXPECT_EQ(find(plain, "View", "home"), "back to the first view") << "without the button of a puck";
+  EXPECT_EQ(find(plain, "This window", "x"), "") << "one view has no eyes to exchange";
+  EXPECT_EQ(find(plain, "Mouse", "left drag"), "turn");
   const auto museum =
       help_page(parse_mapping(R"({"hands": {"pinch": "none"}, "mouse": {"alt+left": "light", "wheel": null},
       "priority": ["hands", "mouse"]})",
@@ -64,6 +76,7 @@ TEST(Palette, FindsCommandsByTheirWordsAndSaysTheirKeys) {
   EXPECT_EQ(first("unpack 37").text, "unpack 37");
   EXPECT_TRUE(palette_rows(keys, "xyzzy", 12).empty());
   EXPECT_EQ(palette_rows(keys, "", 12).size(), 12u);
+  EXPECT_NE(find_group(commands, palette_rows(keys, "", 12)[0].text), kWindowGroup) << "what is done to the object";
   std::size_t found = 0;  // nothing is left out
   for (const Command& command : commands.all()) {
     if (command.name == "palette") continue;
