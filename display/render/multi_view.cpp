@@ -41,7 +41,8 @@ Result<MultiView> MultiView::create(const MultiViewOptions& options) {
   return out;
 }
 
-Result<void> MultiView::draw_moving(const SceneView& scene, std::span<const View> views, ViewArray& target) {
+Result<void> MultiView::draw_moving(const SceneView& scene, std::span<const View> views, ViewArray& target,
+                                    int pictures) {
   DUBSAR_CHECK(static_cast<int>(views.size()) <= target.layers());
   coarse_ = static_cast<int>(views.size());
   renderer_.restart_pieces();
@@ -57,7 +58,7 @@ Result<void> MultiView::draw_moving(const SceneView& scene, std::span<const View
     DUBSAR_TRY(reprojector_.fill(target, renderer_.layer_depths(), views, layers, box));
   if (options_.budget_ms > 0) {
     glFinish();
-    took(1e-6 * static_cast<double>(SteadyClock().now() - start));
+    took(1e-6 * pictures * static_cast<double>(SteadyClock().now() - start));
   }
   return {};
 }
@@ -107,6 +108,11 @@ Result<int> MultiView::refine_until(TimestampNs end, const SceneView& scene, std
     if (!whole || SteadyClock().now() >= end) break;
   }
   return coarse_;
+}
+
+void MultiView::begin_refining(int views) {
+  renderer_.restart_pieces();
+  coarse_ = views;
 }
 
 Result<void> MultiView::draw_exact(const SceneView& scene, std::span<const View> views, int samples,

@@ -27,8 +27,8 @@ class MultiView {
   static Result<MultiView> create(const MultiViewOptions& options = {});
 
   /// All layers of `target`, for views that changed: one sample a pixel, level of detail by the views' size, all key
-  /// views in one draw, the others reprojected.
-  Result<void> draw_moving(const SceneView& scene, std::span<const View> views, ViewArray& target);
+  /// views in one draw, the others reprojected. `pictures`: so many of them share the budget.
+  Result<void> draw_moving(const SceneView& scene, std::span<const View> views, ViewArray& target, int pictures = 1);
 
   /// Makes up to `most` layers exact, from the middle of the views outwards, as Renderer::render() does. Returns how
   /// many are still coarse. Views, scene and target must be those of the last draw_moving().
@@ -38,6 +38,9 @@ class MultiView {
   /// A view whose exact picture is not whole stays coarse.
   Result<int> refine_until(TimestampNs end, const SceneView& scene, std::span<const View> views, int samples,
                            ViewArray& target);
+
+  /// The first `views` layers are coarse, as after draw_moving(): what refine() does next is of other views or scenes.
+  void begin_refining(int views);
 
   /// All layers of `target` exact, as Renderer::render().
   Result<void> draw_exact(const SceneView& scene, std::span<const View> views, int samples, ViewArray& target);

@@ -38,7 +38,9 @@ Result<Renderer> Renderer::create(bool layered) {
   DUBSAR_ASSIGN(out.meshes_, MeshPass::create(layered));
   DUBSAR_ASSIGN(out.flat_, FlatPass::create(out.meshes_.layered()));
   DUBSAR_ASSIGN(out.labels_, LabelPass::create(out.meshes_.layered()));
-  DUBSAR_ASSIGN(out.peel_, PeelPass::create());
+  for (PeelPass* const peel : {&out.peel_, &out.peel_in_pieces_}) {
+    DUBSAR_ASSIGN(*peel, PeelPass::create());
+  }
   for (ShadowMap* const map : {&out.quick_shadows_, &out.whole_.shadows, &out.in_pieces_.shadows}) {
     DUBSAR_ASSIGN(*map, ShadowMap::create());
   }
@@ -102,18 +104,23 @@ Result<void> Renderer::draw_items(const SceneView& scene, const PassViews& targe
   for (const DrawItem& item : scene.items)
     if (const auto* mesh = std::get_if<MeshItem>(&item))
       DUBSAR_TRY(meshes_.draw(*mesh, scene, target, {.shadows = shadows, .pieces = pieces}));
-  const auto rest = [&]() -> Result<void> {
+  const auto flat = [&]() -> Result<void> {
     for (const DrawItem& item : scene.items)
       if (const auto* slice = std::get_if<SliceItem>(&item)) DUBSAR_TRY(flat_.draw(*slice, scene, target));
     for (const DrawItem& item : scene.items)
       if (const auto* lines = std::get_if<LinesItem>(&item)) DUBSAR_TRY(flat_.draw(*lines, target, pixel));
-    if (has_transparency(scene))
-      DUBSAR_TRY(peel_.draw(meshes_, scene, target, shadows, into.framebuffer, into.depth, into.depth_layer));
+    return {};
+  };
+  DUBSAR_TRY(once(pieces, flat));
+  if (has_transparency(scene)) {
+    PeelPass& peel = pieces != nullptr ? peel_in_pieces_ : peel_;
+    DUBSAR_TRY(peel.draw(meshes_, scene, target, shadows, into.framebuffer, into.depth, into.depth_layer, pieces));
+  }
+  return once(pieces, [&]() -> Result<void> {
     for (const DrawItem& item : scene.items)
       if (const auto* label = std::get_if<LabelItem>(&item)) DUBSAR_TRY(labels_.draw(*label, target, pixel));
     return {};
-  };
-  return pieces != nullptr ? pieces->once(rest) : rest();
+  });
 }
 
 Result<void> Renderer::render_layers(const SceneView& scene, std::span<const View> views, std::span<const int> layers,
@@ -207,7 +214,7 @@ Result<void> Renderer::draw_exact(const SceneView& scene, const View& view, int 
     clear_target(samples.framebuffer, background);
     return {};
   };
-  DUBSAR_TRY(in_pieces ? pieces_.once(clear) : clear());
+  DUBSAR_TRY(once(in_pieces ? &pieces_ : nullptr, clear));
   return draw_items(scene, {one, {}, samples.width, samples.height, 0.0}, shadows, factor,
                     {samples.framebuffer, samples.depth, -1}, in_pieces ? &pieces_ : nullptr);
 }

@@ -31,7 +31,7 @@ class Renderer {
 
   /// As render() of one view, in instalments: true when the layer has it, until then the layer stays as it is. Scene,
   /// view, factor and target must be the same in each; restart_pieces() before the first one of another picture. Other
-  /// pictures may be drawn in between. A transparent scene's layers of transparency are one step.
+  /// pictures may be drawn in between.
   Result<bool> render_some(const SceneView& scene, const View& view, int factor, ViewArray& target, int layer,
                            TimestampNs end);
   void restart_pieces() noexcept;
@@ -79,7 +79,7 @@ class Renderer {
   MeshPass meshes_;
   FlatPass flat_;
   LabelPass labels_;
-  PeelPass peel_;
+  PeelPass peel_, peel_in_pieces_;
   ShadowMap quick_shadows_;
   GlProgram resolve_program_;
   GlVertexArray no_vertices_;

@@ -318,7 +318,7 @@ Result<void> Stage::Parts::paint_moved() {
   cost.coarse = 0;
   cost.begun_ms = 0.0;
   if (!has_mesh()) return fill_layers();
-  if (next.shown.beside) return paint_halves(!object.multi);
+  if (next.shown.beside) return paint_halves();
   set_scene();
   ViewArray& array = *layers.array;
   if (!object.multi) return object.renderer->render(scene(), painted.views, options.samples, array);
@@ -337,13 +337,10 @@ Result<void> Stage::Parts::paint_moved() {
 
 Result<void> Stage::Parts::refine() {
   cost.worked = true;
-  if (next.shown.beside) {
-    cost.refined = true;
-    return paint_halves(true);
-  }
   const TimestampNs start = SteadyClock().now();
   const int before = cost.coarse;
   const auto end = start + static_cast<TimestampNs>(1e6 * options.budget_ms);
+  if (next.shown.beside) return refine_half(end);
   DUBSAR_ASSIGN(cost.coarse, object.multi->refine_until(end, scene(), painted.views, options.samples, *layers.array));
   cost.begun_ms += milliseconds_since(start);
   if (cost.coarse == before) return {};

@@ -68,7 +68,8 @@ struct Stage::Parts {
     std::optional<ViewArray> pictures, probe;  // of the glass; of one pixel
   };
   struct Cost {
-    int coarse = 0;              // views of the last picture
+    int coarse = 0;              // views of the last picture; with two states those of both
+    std::optional<int> half{};   // of two states: the one that is being made exact
     double exact_view_ms = 0.0;  // what one exact view takes; 0: not known yet
     double begun_ms = 0.0;       // what the next one has taken so far
     bool worked = false;         // since show()
@@ -103,7 +104,10 @@ struct Stage::Parts {
   bool has_mesh() const noexcept { return object.mesh.has_value(); }
   void set_scene() { set_scene(next.shown, 1); }
   void set_scene(const Shown& shown, int half);
-  Result<void> paint_halves(bool exact);
+  std::vector<View> set_half(int half);
+  Result<void> show_half(int half);
+  Result<void> paint_halves();
+  Result<void> refine_half(TimestampNs end);
   Result<void> fill_layers();
   Result<void> paint_moved();
   Result<void> paint_decor(ViewArray& array);

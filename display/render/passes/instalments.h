@@ -58,4 +58,10 @@ class Instalments {
   std::array<GLsync, 2> asked_{};  ///< the one before the last, and the last
 };
 
+/// A step that is not divided: of instalments, or of a picture in one go (null).
+template <class Work>
+Result<void> once(Instalments* pieces, Work&& work) {
+  return pieces != nullptr ? pieces->once(std::forward<Work>(work)) : std::forward<Work>(work)();
+}
+
 }  // namespace dubsar

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "display/render/passes/instalments.h"
+
 namespace dubsar {
 
 Result<PeelPass> PeelPass::create() {
@@ -38,47 +40,74 @@ Result<void> PeelPass::use_size(int width, int height) {
   return check_gl("making the layers of transparent surfaces");
 }
 
+void PeelPass::lay(GLuint into, GLuint texture, GLenum above, GLenum below) {
+  glBindFramebuffer(GL_FRAMEBUFFER, into);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_BLEND);
+  glBlendFunc(above, below);
+  glUseProgram(copy_);
+  glBindTextureUnit(0, texture);
+  glBindVertexArray(no_vertices_);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDisable(GL_BLEND);
+  glEnable(GL_DEPTH_TEST);
+}
+
+/// Whether there was something in it, as far as it is drawn.
+Result<bool> PeelPass::draw_layer(MeshPass& meshes, const SceneView& scene, const PassViews& target,
+                                  const ShadowMap* shadows, std::size_t layer, Instalments* pieces) {
+  const std::size_t now = layer % 2;
+  const auto clear = [&]() -> Result<void> {
+    const std::array<float, 4> nothing{};
+    const float far_depth = 1.0f;
+    glClearNamedFramebufferfv(layer_[now], GL_COLOR, 0, nothing.data());
+    glClearNamedFramebufferfv(layer_[now], GL_DEPTH, 0, &far_depth);
+    seen_[layer] = false;
+    return {};
+  };
+  DUBSAR_TRY(once(pieces, clear));
+  glBindFramebuffer(GL_FRAMEBUFFER, layer_[now]);
+  glBeginQuery(GL_ANY_SAMPLES_PASSED, any_);
+  for (const DrawItem& item : scene.items)
+    if (const auto* mesh = std::get_if<MeshItem>(&item))
+      DUBSAR_TRY(meshes.draw(*mesh, scene, target, {shadows, opaque_, depth_[1 - now], pieces}));
+  glEndQuery(GL_ANY_SAMPLES_PASSED);
+  GLuint any = 0;
+  glGetQueryObjectuiv(any_, GL_QUERY_RESULT, &any);
+  return seen_[layer] = seen_[layer] || any != 0;
+}
+
 Result<void> PeelPass::draw(MeshPass& meshes, const SceneView& scene, const PassViews& target, const ShadowMap* shadows,
-                            GLuint framebuffer, GLuint opaque_depth, int depth_layer) {
+                            GLuint framebuffer, GLuint opaque_depth, int depth_layer, Instalments* pieces) {
   DUBSAR_TRY(use_size(target.width_px, target.height_px));
   const bool coded = glIsEnabled(GL_FRAMEBUFFER_SRGB) == GL_TRUE;
   glDisable(GL_FRAMEBUFFER_SRGB);
-  glCopyImageSubData(opaque_depth, depth_layer < 0 ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY, 0, 0, 0,
-                     std::max(depth_layer, 0), opaque_, GL_TEXTURE_2D, 0, 0, 0, 0, width_, height_, 1);
-  const std::array<float, 4> nothing{};
-  const float near_depth = -1.0f, far_depth = 1.0f;
-  glClearNamedFramebufferfv(sum_framebuffer_, GL_COLOR, 0, nothing.data());
-  glClearNamedFramebufferfv(layer_[1], GL_DEPTH, 0, &near_depth);  // what was peeled before the first layer
-  const auto lay = [&](GLuint into, GLuint texture, GLenum above, GLenum below) {
-    glBindFramebuffer(GL_FRAMEBUFFER, into);
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    glEnable(GL_BLEND);
-    glBlendFunc(above, below);
-    glUseProgram(copy_);
-    glBindTextureUnit(0, texture);
-    glBindVertexArray(no_vertices_);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    glDisable(GL_BLEND);
-    glEnable(GL_DEPTH_TEST);
+  const auto begin = [&]() -> Result<void> {
+    const std::array<float, 4> nothing{};
+    const float near_depth = -1.0f;
+    glCopyImageSubData(opaque_depth, depth_layer < 0 ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY, 0, 0, 0,
+                       std::max(depth_layer, 0), opaque_, GL_TEXTURE_2D, 0, 0, 0, 0, width_, height_, 1);
+    glClearNamedFramebufferfv(sum_framebuffer_, GL_COLOR, 0, nothing.data());
+    glClearNamedFramebufferfv(layer_[1], GL_DEPTH, 0, &near_depth);  // what was peeled before the first layer
+    return {};
   };
-  for (int i = 0; i < kMostLayers; ++i) {
-    const std::size_t now = static_cast<std::size_t>(i % 2);
-    glBindFramebuffer(GL_FRAMEBUFFER, layer_[now]);
-    glClearNamedFramebufferfv(layer_[now], GL_COLOR, 0, nothing.data());
-    glClearNamedFramebufferfv(layer_[now], GL_DEPTH, 0, &far_depth);
-    glBeginQuery(GL_ANY_SAMPLES_PASSED, any_);
-    for (const DrawItem& item : scene.items)
-      if (const auto* mesh = std::get_if<MeshItem>(&item))
-        DUBSAR_TRY(meshes.draw(*mesh, scene, target, {shadows, opaque_, depth_[1 - now]}));
-    glEndQuery(GL_ANY_SAMPLES_PASSED);
-    GLuint seen = 0;
-    glGetQueryObjectuiv(any_, GL_QUERY_RESULT, &seen);
-    if (seen == 0) break;
-    lay(sum_framebuffer_, layer_color_, GL_ONE_MINUS_DST_ALPHA, GL_ONE);
+  DUBSAR_TRY(once(pieces, begin));
+  const auto paused = [&] { return pieces != nullptr && pieces->paused(); };
+  for (std::size_t layer = 0; layer < kMostLayers && !paused(); ++layer) {
+    DUBSAR_ASSIGN(const bool seen, draw_layer(meshes, scene, target, shadows, layer, pieces));
+    if (paused() || !seen) break;
+    DUBSAR_TRY(once(pieces, [&]() -> Result<void> {
+      lay(sum_framebuffer_, layer_color_, GL_ONE_MINUS_DST_ALPHA, GL_ONE);
+      return {};
+    }));
   }
   if (coded) glEnable(GL_FRAMEBUFFER_SRGB);
-  lay(framebuffer, sum_, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  DUBSAR_TRY(once(pieces, [&]() -> Result<void> {
+    lay(framebuffer, sum_, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    return {};
+  }));
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   return check_gl("drawing transparent surfaces");
 }
 

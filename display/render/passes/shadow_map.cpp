@@ -160,7 +160,7 @@ Result<void> ShadowMap::draw(const SceneView& scene, std::span<const View> views
     glClearNamedFramebufferfv(framebuffer_, GL_DEPTH, 0, &far_depth);
     return {};
   };
-  DUBSAR_TRY(pieces != nullptr ? pieces->once(clear) : clear());
+  DUBSAR_TRY(once(pieces, clear));
   glUseProgram(program_);
   for (const Caster& caster : wanted.casters) draw_caster(caster, wanted.clips, clip_from_world, pieces);
   glDisable(GL_POLYGON_OFFSET_FILL);

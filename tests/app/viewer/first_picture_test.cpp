@@ -18,18 +18,18 @@ constexpr int kAround = 1696, kAlong = 848;  // 1.44 million vertices
 constexpr double kMostCpu_s = 3.0;           // 1.2 where it was measured; two threads draw
 
 /// A pillow of 60 x 20 x 62 mm whose surface is as uneven as writing makes it.
-TriMesh written_pillow() {
+TriMesh written_pillow(int around_count = kAround, int along_count = kAlong) {
   TriMesh mesh;
-  for (int j = 0; j <= kAlong; ++j)
-    for (int i = 0; i < kAround; ++i) {
-      const double along = 3.14159265358979 * j / kAlong, around = 2 * 3.14159265358979 * i / kAround;
+  for (int j = 0; j <= along_count; ++j)
+    for (int i = 0; i < around_count; ++i) {
+      const double along = 3.14159265358979 * j / along_count, around = 2 * 3.14159265358979 * i / around_count;
       const double relief = 1.0 + 0.01 * std::sin(40 * along) * std::sin(60 * around);
       mesh.positions.emplace_back(30 * relief * std::sin(along) * std::cos(around), 31 * relief * std::cos(along),
                                   10 * relief * std::sin(along) * std::sin(around));
     }
-  const auto id = [](int i, int j) { return static_cast<std::uint32_t>(j * kAround + i % kAround); };
-  for (int j = 0; j < kAlong; ++j)
-    for (int i = 0; i < kAround; ++i) {
+  const auto id = [=](int i, int j) { return static_cast<std::uint32_t>(j * around_count + i % around_count); };
+  for (int j = 0; j < along_count; ++j)
+    for (int i = 0; i < around_count; ++i) {
       mesh.triangles.push_back({id(i, j), id(i, j + 1), id(i + 1, j)});
       mesh.triangles.push_back({id(i + 1, j), id(i, j + 1), id(i + 1, j + 1)});
     }
@@ -113,6 +113,57 @@ TEST(FirstPicture, TheExactOneComesInPiecesBetweenWhichNothingIsPainted) {
   ASSERT_TRUE(stage->paint(surface.surface()));
   EXPECT_FALSE(stage->needs_paint());
   EXPECT_NE(surface.read().value().pixels, coarse.pixels);
+}
+
+TEST(FirstPicture, TwoStatesBesideEachOtherComeInPiecesAndAreThoseOfOneGo) {
+  const TriMesh mesh = written_pillow(600, 300);
+  const auto context = EglContext::create();
+  ASSERT_TRUE(context) << context.error().message;
+  StageOptions options;
+  options.screen = {.window_w = 320, .window_h = 180};
+  options.shading = shading_preset("relief").value();
+  FollowedEyes eyes;
+  eyes.presence = Presence::kOff;
+  Shown shown;
+  shown.style = options.shading.style;
+  shown.parts = options.shading.parts;
+  auto other = std::make_shared<Shown>(shown);
+  other->style = shading_preset("sky-sun").value().style;
+  shown.parts[0].opacity = 0.5;
+  shown.beside = other;
+  Image whole;
+  {
+    auto stage = Stage::create(mesh, options).value();
+    auto surface = OffscreenSurface::create(stage->traits().output).value();
+    stage->show(shown, eyes, 1);
+    ASSERT_TRUE(stage->paint(surface.surface()));
+    whole = surface.read().value();
+  }
+  options.quality = Quality::kAdaptive;
+  options.budget_ms = 0.0;
+  auto stage = Stage::create(mesh, options).value();
+  auto surface = OffscreenSurface::create(stage->traits().output).value();
+  TimestampNs now = 1;
+  int pieces = 0, seen = 0;
+  stage->show(shown, eyes, now);
+  ASSERT_TRUE(stage->paint(surface.surface()));
+  while (stage->coarse_views() > 0) {
+    now += 1'000'000'000;
+    stage->show(shown, eyes, now);
+    const int before = stage->coarse_views();
+    if (!stage->work().value() && stage->coarse_views() == before) {
+      std::this_thread::yield();
+      continue;
+    }
+    ++pieces;
+    seen += stage->needs_paint() ? 1 : 0;
+    if (stage->needs_paint()) {
+      ASSERT_TRUE(stage->paint(surface.surface()));
+    }
+  }
+  EXPECT_GT(pieces, 80) << "of .36 million triangles, some of them several times";
+  EXPECT_EQ(seen, 2) << "each half is seen when it is whole";
+  EXPECT_EQ(surface.read().value().pixels, whole.pixels);
 }
 
 }  // namespace
