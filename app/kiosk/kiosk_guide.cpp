@@ -65,7 +65,15 @@ void KioskGuide::write(std::string_view what, std::string_view figures) {
 void KioskGuide::begin_object() {
   told_.ended = false;
   motion_ = {};
+  tour_.begin({}, {});
   view_.reset();
+}
+
+void KioskGuide::leave_out(std::size_t object) {
+  std::vector<KioskObject>& objects = parts_.profile.objects;
+  objects.erase(objects.begin() + static_cast<std::ptrdiff_t>(object));
+  if (object < parts_.tours.size()) parts_.tours.erase(parts_.tours.begin() + static_cast<std::ptrdiff_t>(object));
+  object_ = objects.empty() ? 0 : object_ % objects.size();
 }
 
 bool KioskGuide::takes(const InputEvent& event, TimestampNs now) {
@@ -238,7 +246,7 @@ void KioskGuide::move_on(const GuideMoment& moment, const VisitPicture& visit, G
             : Glow(),
       dt);
   motion_.last = moment.now;
-  const bool sways = visit.phase == VisitPhase::kAttract;
+  const bool sways = visit.phase == VisitPhase::kAttract && moment.surface;  // who reads wants the processor
   if (sways && motion_.sway == 0.0) motion_.sway_since = moment.now;
   motion_.sway = towards(motion_.sway, sways ? 1.0 : 0.0, dt / (sways ? kSwayRiseS : kSwayFallS));
   const double eased = motion_.sway * motion_.sway * (3.0 - 2.0 * motion_.sway);
@@ -299,7 +307,7 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
   }
   told_.looked = wall.unix_s;
   for (const OperatorWish wish : std::exchange(asked_.wishes, {})) obey(wish, out);
-  if (!motion_.begun) begin_tour(moment);
+  if (!motion_.begun && moment.surface) begin_tour(moment);
   VisitMoment noticed = notice(moment);
   const auto chosen = choose(moment);
   noticed.chose_open = chosen == Sign::kOpen || chosen == Sign::kClose;

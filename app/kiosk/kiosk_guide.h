@@ -50,6 +50,9 @@ class KioskGuide final : public SessionGuide {
   bool ended() const noexcept { return told_.ended; }
   /// Which object the operator wants next, from 0 on; as many as there are: none, the kiosk is over.
   std::size_t object() const noexcept { return object_; }
+  const std::vector<KioskObject>& objects() const noexcept { return parts_.profile.objects; }
+  /// This object cannot be shown; the next takes its place.
+  void leave_out(std::size_t object);
   const Visit& visit() const noexcept { return visit_; }
   const std::string& language() const { return parts_.profile.languages[language_]; }
 

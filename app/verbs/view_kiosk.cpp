@@ -1,9 +1,12 @@
 #include "app/verbs/view_kiosk.h"
 
 #include <cstdlib>
+#include <optional>
+#include <vector>
 
 #include "app/cli/mesh_input.h"
 #include "app/kiosk/kiosk_guide.h"
+#include "app/verbs/view_files.h"
 #include "app/viewer/first_document.h"
 #include "core/base/files/atomic_file.h"
 #include "core/base/system/log.h"
@@ -23,6 +26,10 @@ Result<Words> words_of(const KioskProfile& profile) {
   return Words::parse(text, profile.words.string());
 }
 
+void log_left_out(const KioskObject& object, const Error& why) {
+  log_warning("view: {} is left out: {}", object.file.string(), why.message);
+}
+
 /// Of each object; empty: it has none of its own.
 Result<std::vector<Tour>> tours_of(const KioskProfile& profile) {
   std::vector<Tour> out;
@@ -34,25 +41,50 @@ Result<std::vector<Tour>> tours_of(const KioskProfile& profile) {
   return out;
 }
 
-Result<std::vector<TriMesh>> load_objects(KioskProfile& profile, Progress& progress) {
-  std::vector<TriMesh> out;
-  std::vector<KioskObject> kept;
-  std::string why;
-  for (const KioskObject& object : profile.objects) {
-    auto mesh = load_mesh({object.file, object.parts, true}, progress);
-    if (!mesh && mesh.error().kind == ErrorKind::kCancelled) return tl::unexpected<Error>(mesh.error());
-    if (!mesh) {
-      why = mesh.error().message;
-      log_warning("view: {} is left out: {}", object.file.string(), why);
-      continue;
-    }
-    out.push_back(*std::move(mesh));
-    kept.push_back(object);
-  }
-  if (out.empty()) return fail(ErrorKind::kBadData, "view: none of the kiosk's objects can be shown: {}", why);
-  profile.objects = std::move(kept);
-  return out;
+/// Leaves out what cannot be shown as far as that is known before it is read.
+Result<void> keep_readable(KioskProfile& profile) {
+  std::optional<Error> why;
+  std::erase_if(profile.objects, [&](const KioskObject& object) {
+    const auto checked = check_surface(object.file.string(), object.parts);
+    if (checked) return false;
+    log_left_out(object, checked.error());
+    why = checked.error();
+    return true;
+  });
+  if (profile.objects.empty()) return tl::unexpected<Error>(*std::move(why));
+  return {};
 }
+
+/// One object after its file was read, or while it is: in real time the window comes first, then a coarse surface.
+struct ObjectSession {
+  const KioskObject& object;
+  const ViewOptions& view;
+  KeptPanels& kept;
+  std::optional<Error> unreadable{};  ///< why its file could not be read; then run() gives that error
+
+  Result<ViewResult> run(Progress& progress) {
+    const ReadSurface read = surface_reader(view, {object.parts, {}, view.work.upright, false});
+    if (view.window && view.time.fps == 0) {
+      Shelf shelf(
+          [&](const std::filesystem::path& file, Progress& reading, const TellCoarse& tell) {
+            auto surface = read(file, reading, tell);
+            if (!surface && surface.error().kind != ErrorKind::kCancelled) unreadable = surface.error();
+            return surface;
+          },
+          {});
+      DUBSAR_TRY(shelf.open({object.file}));
+      return run_view({}, view, progress, {}, &shelf, &kept);
+    }
+    auto surface = read(object.file, progress, {});
+    if (!surface) {
+      if (surface.error().kind != ErrorKind::kCancelled) unreadable = surface.error();
+      return tl::unexpected<Error>(surface.error());
+    }
+    ViewOptions with = view;
+    with.work = surface->work;
+    return run_view(surface->mesh, with, progress, {}, nullptr, &kept);
+  }
+};
 
 }  // namespace
 
@@ -63,7 +95,7 @@ Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) 
     if (!words.has(language))
       return fail(ErrorKind::kConfig, "{}: language \"{}\" found, expected en, de, fr or one of the file of words",
                   session.profile.string(), language);
-  DUBSAR_TRY(tours_of(profile));  // before large files are read
+  DUBSAR_TRY(keep_readable(profile));
   KioskOutcome out;
   out.display = profile.display;
   std::string trouble;
@@ -74,7 +106,6 @@ Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) 
     options = session.options(profile, profile.objects.front(), out.display);
   }
   if (!options) return tl::unexpected<Error>(options.error());
-  DUBSAR_ASSIGN(const std::vector<TriMesh> meshes, load_objects(profile, progress));
   KioskParts parts;
   DUBSAR_ASSIGN(parts.tours, tours_of(profile));
   parts.profile = profile;
@@ -86,15 +117,24 @@ Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) 
   parts.watchdog_us = static_cast<std::int64_t>(parse_number(environment("WATCHDOG_USEC")).value_or(0.0));
   KioskGuide guide(std::move(parts));
   KeptPanels kept;  // no desktop is seen between two objects
-  for (std::size_t at = 0; at < meshes.size(); at = guide.object()) {
-    DUBSAR_ASSIGN(ViewOptions view, session.options(profile, profile.objects[at], out.display));
+  for (std::size_t at = 0; at < guide.objects().size(); at = guide.object()) {
+    const KioskObject object = guide.objects()[at];
+    DUBSAR_ASSIGN(ViewOptions view, session.options(profile, object, out.display));
     view.guide = &guide;
     view.around.notices = view.around.panels = false;
     view.files.autosave.clear();
     view.stage.room.most_parallax_deg = profile.eyes.parallax_deg;
     guide.begin_object();
-    DUBSAR_ASSIGN(out.last, run_view(meshes[at], view, progress, {}, nullptr, &kept));
-    out.triangles = meshes[at].triangles.size();
+    ObjectSession one{object, view, kept};
+    auto seen = one.run(progress);
+    if (!seen && one.unreadable && guide.objects().size() > 1) {
+      log_left_out(object, *one.unreadable);
+      guide.leave_out(at);
+      continue;
+    }
+    if (!seen) return tl::unexpected<Error>(seen.error());
+    out.last = *std::move(seen);
+    out.triangles = out.last.triangles;
     ++out.sessions;
     if (!guide.ended()) break;  // its time or its scripts are over
   }

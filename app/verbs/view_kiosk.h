@@ -26,9 +26,9 @@ struct KioskOutcome {
   std::string display{};
 };
 
-/// Reads all objects before the first picture; those that cannot be read are left out and said. A display that cannot
-/// be had is replaced by a flat picture, which is said on the screen. Errors: the profile's, of the only object, of the
-/// session.
+/// Each object is read when it is its turn; those that cannot be read are left out and said. In real time the window
+/// comes first, then a coarse surface, then all of it. A display that cannot be had is replaced by a flat picture,
+/// which is said on the screen. Errors: the profile's, of the last object that was left, of the session.
 Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress);
 
 /// The tour that a tablet has by itself, as a file to be changed.

@@ -26,6 +26,7 @@ struct GuideMoment {
   glm::dvec2 window_mm{1.0}, middle_mm{0.0};  ///< what the panel shows across, and its middle in the screen frame
   std::span<const ScreenRect> objects{};      ///< where what is shown stands, one or more that stand apart
   std::string_view trouble{};                 ///< a panel of the session that cannot be shown now, in words
+  bool surface = true;                        ///< the document is that of a surface; false: it is being read
 };
 
 /// What is shown in place of the document's own state, such as a step of a tour.

@@ -57,9 +57,9 @@ std::optional<Result<void>> Viewer::put_read() {
   return put(*std::move(*read));
 }
 
-/// What fell on the window.
+/// What fell on the window; who leads a session says what is shown.
 void Viewer::drop(const std::vector<std::string>& files) {
-  if (given_.shelf == nullptr || files.empty()) return;
+  if (given_.shelf == nullptr || given_.options.guide != nullptr || files.empty()) return;
   const auto done = given_.shelf->open({files.begin(), files.end()});
   if (!done) return say(done.error().message);
   editor_->desk().choosing.open = false;

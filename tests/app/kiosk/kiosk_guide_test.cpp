@@ -30,7 +30,7 @@ class Kiosk {
   Guidance go_on(double seconds, Steered steered = {}) {
     Guidance last;
     for (int i = 0; i < static_cast<int>(20 * seconds); ++i, now_ += kStep) {
-      last = guide_->lead({now_, steered, document_, rows_, {600, 340}, {0, 0}});
+      last = guide_->lead({now_, steered, document_, rows_, {600, 340}, {0, 0}, {}, {}, read_});
       steered.selected_m.reset();
       if (last.scene) {
         if (last.scene->camera) {
@@ -64,6 +64,15 @@ class Kiosk {
   KioskGuide& guide() { return *guide_; }
   const Document& document() const { return document_; }
   void set_minute(int minute) { minute_ = minute; }
+  /// The object's file is being read, and what is shown has no parts yet.
+  void reads() {
+    parts_ = std::exchange(document_.parts, {});
+    read_ = false;
+  }
+  void has_read() {
+    document_.parts = parts_;
+    read_ = true;
+  }
   std::vector<std::string> commands;
   double fastest_deg_per_s = 0.0;
 
@@ -71,6 +80,8 @@ class Kiosk {
   std::unique_ptr<KioskGuide> guide_;
   std::vector<SourceRow> rows_{{"leap", SourceHealth::kPresent, ""}};
   Document document_;
+  std::vector<Part> parts_;  // while document_ has none
+  bool read_ = true;
   TimestampNs now_ = 3'000'000'000;
   int minute_;
   glm::dquat turn_{1, 0, 0, 0}, seen_{1, 0, 0, 0};
@@ -175,6 +186,44 @@ TEST(KioskGuide, AHandWalksTheTourLeavesItWhereItIsAndComesBack) {
   kiosk.go_on(30.0);
   EXPECT_EQ(kiosk.document().unpack, 0.0) << "nobody came back";
   EXPECT_TRUE(kiosk.document().parts[1].visible);
+}
+
+TEST(KioskGuide, TheTourOfAnObjectIsThatOfItsFileOnceItIsRead) {
+  KioskProfile profile;
+  profile.objects = {{.file = "a.exa"}};
+  Kiosk kiosk(profile);
+  kiosk.reads();
+  kiosk.go_on(1, with_hand(HandState::kReady));
+  EXPECT_FALSE(kiosk.go_on(2.5, on_the_sign(0.0, Sign::kTour)).scene) << "of what is not there yet";
+  kiosk.has_read();
+  kiosk.go_on(1, with_hand(HandState::kReady));
+  const auto starts = kiosk.go_on(2.5, on_the_sign(0.0, Sign::kTour));
+  ASSERT_TRUE(starts.scene);
+  EXPECT_EQ(starts.picture->steps, 5U) << "with the envelope, which was not known before";
+  kiosk.guide().begin_object();
+  kiosk.reads();
+  EXPECT_FALSE(kiosk.go_on(1.0).scene) << "the tour before does not walk through the next object";
+}
+
+TEST(KioskGuide, AnObjectThatCannotBeReadGivesItsPlaceToTheNext) {
+  KioskProfile profile;
+  profile.objects = {{.file = "a.exa"}, {.file = "b.exa"}, {.file = "c.exa"}};
+  Kiosk kiosk(profile);
+  const auto names = [&] {
+    std::string out;
+    for (const KioskObject& object : kiosk.guide().objects()) out += object.file.stem().string();
+    return out;
+  };
+  kiosk.guide().leave_out(0);
+  EXPECT_EQ(names(), "bc");
+  EXPECT_EQ(kiosk.guide().object(), 0U);
+  kiosk.type("8302");
+  kiosk.press("1");  // on to the last
+  EXPECT_TRUE(kiosk.go_on(0.05).end);
+  EXPECT_EQ(kiosk.guide().object(), 1U);
+  kiosk.guide().leave_out(1);
+  EXPECT_EQ(names(), "b");
+  EXPECT_EQ(kiosk.guide().object(), 0U) << "behind the last comes the first";
 }
 
 TEST(KioskGuide, AFingerOnTheGlassChoosesASignAtOnce) {

@@ -1,7 +1,10 @@
 // The kiosk in a window that covers the screen, among people who try everything.
 
+#include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "app/kiosk/kiosk_guide.h"
 #include "tests/app/viewer/live_fixture.h"
@@ -123,6 +126,43 @@ TEST_F(LiveKiosk, TheNumberOpensTheMenuThatEndsIt) {
   ASSERT_TRUE(out) << out.error().message;
   EXPECT_TRUE(guide_->ended());
   EXPECT_GT(turn, 1);
+}
+
+TEST_F(LiveKiosk, SomethingCoarseIsShownAndLedWhileTheFileIsRead) {
+  const std::filesystem::path file = key_file_.string() + ".ply";
+  std::ofstream(file) << "some surface\n";
+  std::atomic<bool> may_come = false;
+  Shelf shelf(
+      [&](const std::filesystem::path& path, Progress&, const TellCoarse& tell) -> Result<OpenedSurface> {
+        tell(testing::sphere(20.0f, 12, 24));
+        while (!may_come) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        OpenedSurface out;
+        out.mesh = testing::lettered_box();
+        out.title = path.filename().string();
+        return out;
+      },
+      {});
+  ASSERT_TRUE(shelf.open({file}));
+  const std::size_t all = testing::lettered_box().triangles.size();
+  int coarse = 0, whole = 0;
+  SilentProgress progress;
+  const auto out = run_view(
+      TriMesh(), options_, progress,
+      [&](const ViewMoment& moment) {
+        if (moment.viewer.shows_surface() && !moment.viewer.has_surface()) {
+          if (++coarse == 1) person_->type_where_the_pointer_is();
+          if (coarse == 3) type("90210735");  // an operator need not wait
+          may_come = coarse > 5;
+        }
+        if (moment.viewer.mesh().triangles.size() == all && ++whole % 5 == 1) person_->key("9");
+      },
+      &shelf);
+  ASSERT_TRUE(out) << out.error().message;
+  EXPECT_GT(coarse, 5);
+  EXPECT_GT(whole, 0);
+  EXPECT_TRUE(guide_->ended());
+  EXPECT_EQ(out->triangles, all);
+  std::filesystem::remove(file);
 }
 
 }  // namespace
