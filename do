@@ -42,7 +42,7 @@ usage() {
 ./do models   fetch the networks for hands and faces from a webcam (docs/webcam.md)
 ./do glb FILE...  the Khronos validator over GLB files (fetches it with npm)
 ./do asan     the tests under AddressSanitizer and UndefinedBehaviorSanitizer, windows and pictures too; asan core devices
-              input display app program: of these only (program: what runs dubsar itself); asan turn: the part that CI
+              input display app program core/exa: of these only (program: what runs dubsar itself); asan turn: the part that CI
               takes at this revision; and what ctest takes, as asan devices -R Vrpn
 ./do tsan     devices and inputs under ThreadSanitizer (clang)
 ./do core     build and test the core alone, no graphics, no devices: build/core/app/dubsar has process, info, exa, phantom
@@ -110,10 +110,12 @@ lab() {
   tests/lab/run_in_kernel.sh "$PWD/$build/tests/lab/test_lab" "$@"
 }
 
-# What the sanitized suite is made of: folders of tests/, those of app/ that run the program apart, every second case at a time. CI takes
-# one line a revision, as each takes two cores about a quarter of an hour from nothing.
+# What the sanitized suite is made of: folders of tests/ and of tests/core/, those of app/ that run the program apart, every second case at
+# a time. CI takes one line a revision, as each takes two cores about a quarter of an hour from nothing.
 sanitized_parts=(
-  "core"
+  "core/base core/image_io core/hdf5 core/volume core/filter core/phantom core/mesh"
+  "core/extract core/relief core/refine core/parts core/contact"
+  "core/exa core/mesh_io core/pipeline"
   "devices input"
   "display"
   "app"
@@ -143,13 +145,14 @@ asan() {
   fi
   deps
   preset=asan build=build/asan
-  while [[ "${1:-}" =~ ^(core|devices|input|display|app|program)$ ]]; do
+  while [[ "${1:-}" =~ ^(core(/[a-z0-9_]+)?|devices|input|display|app|program)$ ]]; do
     rooms+=("$1")
     shift
   done
   [ ${#rooms[@]} -gt 0 ] || rooms=(core devices input display app program)
   local targets=("${rooms[@]/#/dubsar_checked_}")
   targets=("${targets[@]/%/_tests}")
+  targets=("${targets[@]//\//_}")
   cmake --preset "$preset" >/dev/null
   cmake --build "$build" -j "$jobs" --target "${targets[@]}"
   # No detect_stack_use_after_return: g++ 12 does not align its stand-in frames for the 64-byte registers of AVX-512.
