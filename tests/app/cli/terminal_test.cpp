@@ -93,7 +93,7 @@ TEST(Terminal, ProgressIsOneLineThatFitsAndGoesAway) {
   const std::vector<std::string> lines = lines_of(seen);
   for (const std::string& line : lines)
     EXPECT_TRUE(line.size() < 60 || line.find(" %  0:") == std::string::npos) << line;
-  const std::size_t last = seen.rfind(" %  0:"), result = seen.find("a tablet inside its envelope");
+  const std::size_t last = seen.rfind(" %  0:"), result = seen.find("  tablet  ");  // of its sizes
   ASSERT_NE(result, std::string::npos) << seen;
   EXPECT_LT(last, result) << "nothing is drawn over the result";
   EXPECT_NE(seen.find("\r\x1b[K", last), std::string::npos);
