@@ -24,6 +24,13 @@ void on_signal(int) {
   target->cancel();
 }
 
+/// Of the terminal that it is; none: it is no terminal, or that does not say.
+std::optional<int> columns_of(int stream) {
+  winsize size{};
+  if (::ioctl(stream, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return std::nullopt;
+  return size.ws_col;
+}
+
 }  // namespace
 
 void put_on_stderr(const std::string& text) {
@@ -36,14 +43,10 @@ bool stderr_is_terminal() {
   return ::isatty(STDERR_FILENO) != 0 && (terminal == nullptr || std::strcmp(terminal, "dumb") != 0);
 }
 
-int stderr_columns() {
-  winsize size{};
-  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-}
+int stderr_columns() { return columns_of(STDERR_FILENO).value_or(80); }
 
 std::optional<int> stdout_columns() {
-  winsize size{};
-  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
+  if (const auto columns = columns_of(STDOUT_FILENO)) return columns;
   const char* const told = std::getenv("COLUMNS");
   const int columns = told != nullptr ? std::atoi(told) : 0;
   return columns > 0 ? std::optional<int>(columns) : std::nullopt;

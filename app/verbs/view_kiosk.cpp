@@ -63,26 +63,21 @@ struct ObjectSession {
   std::optional<Error> unreadable{};  ///< why its file could not be read; then run() gives that error
 
   Result<ViewResult> run(Progress& progress) {
-    const ReadSurface read = surface_reader(view, {object.parts, {}, view.work.upright, false});
+    const ReadSurface read = [&, plain = surface_reader(view, {object.parts, {}, view.work.upright, false})](
+                                 const std::filesystem::path& file, Progress& reading, const TellCoarse& tell) {
+      auto surface = plain(file, reading, tell);
+      if (!surface && surface.error().kind != ErrorKind::kCancelled) unreadable = surface.error();
+      return surface;
+    };
     if (view.window && view.time.fps == 0) {
-      Shelf shelf(
-          [&](const std::filesystem::path& file, Progress& reading, const TellCoarse& tell) {
-            auto surface = read(file, reading, tell);
-            if (!surface && surface.error().kind != ErrorKind::kCancelled) unreadable = surface.error();
-            return surface;
-          },
-          {});
+      Shelf shelf(read, {});
       DUBSAR_TRY(shelf.open({object.file}));
       return run_view({}, view, progress, {}, &shelf, &kept);
     }
-    auto surface = read(object.file, progress, {});
-    if (!surface) {
-      if (surface.error().kind != ErrorKind::kCancelled) unreadable = surface.error();
-      return tl::unexpected<Error>(surface.error());
-    }
+    DUBSAR_ASSIGN(const OpenedSurface surface, read(object.file, progress, {}));
     ViewOptions with = view;
-    with.work = surface->work;
-    return run_view(surface->mesh, with, progress, {}, nullptr, &kept);
+    with.work = surface.work;
+    return run_view(surface.mesh, with, progress, {}, nullptr, &kept);
   }
 };
 

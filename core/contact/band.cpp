@@ -107,4 +107,21 @@ Result<ContactBand> ContactBand::make(const BitVolume& inside, std::vector<Patch
   return band;
 }
 
+void grow(const ContactBand& band, int steps, std::vector<bool>& marked) {
+  std::vector<std::uint32_t> front, next;
+  for (std::uint32_t n = 0; n < marked.size(); ++n)
+    if (marked[n]) front.push_back(n);
+  for (int step = 0; step < steps; ++step) {
+    next.clear();
+    for (const std::uint32_t n : front)
+      each_beside(band.point(n), [&](const glm::ivec3& q) {
+        const std::uint32_t m = band.at(q);
+        if (m == ContactBand::kNone || marked[m]) return;
+        marked[m] = true;
+        next.push_back(m);
+      });
+    front.swap(next);
+  }
+}
+
 }  // namespace dubsar

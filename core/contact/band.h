@@ -15,6 +15,13 @@ namespace dubsar {
 
 inline glm::ivec3 unit_step(int axis) { return {axis == 0, axis == 1, axis == 2}; }
 
+/// The six points one step from `p`.
+template <class Visit>
+void each_beside(const glm::ivec3& p, const Visit& visit) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int sense : {-1, 1}) visit(p + sense * unit_step(axis));
+}
+
 /// Which side of the contact a point of clay is on.
 enum class ClaySide : std::uint8_t { kTablet, kEnvelope };
 
@@ -49,5 +56,8 @@ struct ContactBand {
   static Result<ContactBand> make(const BitVolume& inside, std::vector<PatchPoint> samples, float reach,
                                   Progress& progress);
 };
+
+/// Marks the nodes within so many steps along the grid of those that are marked.
+void grow(const ContactBand& band, int steps, std::vector<bool>& marked);
 
 }  // namespace dubsar

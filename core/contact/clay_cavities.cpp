@@ -9,13 +9,6 @@ namespace {
 /// Steps from air within which clay is dark: the disks of dips.cpp and the point spread reach as far.
 constexpr int kFringe = 4;
 
-/// The points one step from `p`.
-template <class Visit>
-void each_beside(const glm::ivec3& p, const Visit& visit) {
-  for (int axis = 0; axis < 3; ++axis)
-    for (const int sense : {-1, 1}) visit(p + sense * unit_step(axis));
-}
-
 /// One piece of dark clay, and where it lies.
 struct DarkPiece {
   ClayCavity nodes;
@@ -63,24 +56,9 @@ std::vector<ClayCavity> unseen_cavities(const ContactBand& band, const BitVolume
 
 void blind_fringes(const ContactBand& band, const std::vector<ClayCavity>& cavities, Dips& dips) {
   std::vector<bool> fringe(band.nodes.size(), false);
-  std::vector<std::uint32_t> front, next;
   for (const ClayCavity& cavity : cavities)
-    for (const std::uint32_t n : cavity)
-      if (!fringe[n]) {
-        fringe[n] = true;
-        front.push_back(n);
-      }
-  for (int step = 1; step < kFringe; ++step) {
-    next.clear();
-    for (const std::uint32_t n : front)
-      each_beside(band.point(n), [&](const glm::ivec3& q) {
-        const std::uint32_t m = band.at(q);
-        if (m == ContactBand::kNone || fringe[m]) return;
-        fringe[m] = true;
-        next.push_back(m);
-      });
-    front.swap(next);
-  }
+    for (const std::uint32_t n : cavity) fringe[n] = true;
+  grow(band, kFringe - 1, fringe);
   for (std::size_t n = 0; n < fringe.size(); ++n)
     if (fringe[n]) dips.strength[n] = std::min(dips.strength[n], 0.0f);
 }

@@ -17,28 +17,12 @@ constexpr float kReachOfDoubt = 4.5f;
 /// Nodes within kOwn steps along the grid of the contact.
 std::vector<bool> beside_contact(const ContactBand& band, const std::vector<ClaySide>& side) {
   std::vector<bool> beside(band.nodes.size(), false);
-  std::vector<std::uint32_t> front, next;
-  const auto each_neighbour = [&](std::uint32_t n, const auto& visit) {
-    for (int axis = 0; axis < 3; ++axis)
-      for (const int sense : {-1, 1})
-        if (const std::uint32_t m = band.at(band.point(n) + sense * unit_step(axis)); m != ContactBand::kNone) visit(m);
-  };
   for (std::uint32_t n = 0; n < beside.size(); ++n)
-    each_neighbour(n, [&](std::uint32_t m) {
-      if (side[m] == side[n] || beside[n]) return;
-      beside[n] = true;
-      front.push_back(n);
+    each_beside(band.point(n), [&](const glm::ivec3& q) {
+      const std::uint32_t m = band.at(q);
+      if (m != ContactBand::kNone && side[m] != side[n]) beside[n] = true;
     });
-  for (int step = 2; step <= kOwn; ++step) {
-    next.clear();
-    for (const std::uint32_t n : front)
-      each_neighbour(n, [&](std::uint32_t m) {
-        if (beside[m]) return;
-        beside[m] = true;
-        next.push_back(m);
-      });
-    front.swap(next);
-  }
+  grow(band, kOwn - 1, beside);
   return beside;
 }
 
