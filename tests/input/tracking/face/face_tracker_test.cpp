@@ -134,7 +134,7 @@ FaceSeen face_at(double x, double y, double size) {
   return face;
 }
 
-class Following : public testing::Test {
+class Following : public ::testing::Test {
  protected:
   Following() : tracker_(std::make_unique<PlayedDetector>(faces_, passes_), {}) {
     frame_.width = kWidth;

@@ -12,6 +12,7 @@
 #include "devices/leap/hand_renderer.h"
 #include "input/tracking/hands/hand_tracker.h"
 #include "tests/input/tracking/hands/hand_trials.h"
+#include "tests/pace.h"
 
 namespace dubsar {
 namespace {
@@ -150,8 +151,8 @@ TEST_F(HandAccuracy, PalmIsWithinTwoMillimetresSidewaysAndFiveInDepth) {
   EXPECT_GE(all.grab_right, 0.99 * all.trials);
   EXPECT_GE(all.side_right, 0.98 * all.trials);
 #ifdef NDEBUG
-  EXPECT_LE(quantile(all.cpu_ms, 0.99),
-            2 * 8.0);  // 8 ms is the aim; twice as much for a machine that does other things
+  // 8 ms is the aim; twice as much for a machine that does other things
+  EXPECT_LE(quantile(all.cpu_ms, 0.99), 2 * 8.0 * testing::slowness());
 #endif
 }
 
