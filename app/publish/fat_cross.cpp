@@ -60,6 +60,23 @@ CrossLayout lay_out_cross(const std::array<PixelExtent, kTabletSides.size()>& si
   return out;
 }
 
+/// What one picture of several says of its progress: nothing, for the whole is one stage, but it stops when that is
+/// stopped.
+class OneOfSeveral final : public Progress {
+ public:
+  explicit OneOfSeveral(const Progress& whole) : whole_(whole) {}
+
+ protected:
+  void on_begin(std::string_view, std::int64_t, std::string_view) override { look(); }
+  void on_advance(std::int64_t) override { look(); }
+
+ private:
+  void look() {
+    if (whole_.cancelled()) cancel();
+  }
+  const Progress& whole_;
+};
+
 Result<FatCross> draw_fat_cross(const TriMesh& mesh, const FatCrossOptions& options, Progress& progress) {
   if (!(options.dpi >= 50 && options.dpi <= 4800))
     return fail(ErrorKind::kUsage, "fatcross: {} dots an inch found, expected 50 to 4800", options.dpi);
@@ -75,15 +92,19 @@ Result<FatCross> draw_fat_cross(const TriMesh& mesh, const FatCrossOptions& opti
   render.camera.width = render.camera.height = 0;
   const auto draw = [&](const ViewDirection& direction) -> Result<Image> {
     render.camera.direction = direction;
-    DUBSAR_ASSIGN(Picture picture, renderer.render(render, progress));
+    OneOfSeveral one(progress);
+    DUBSAR_ASSIGN(Picture picture, renderer.render(render, one));
+    progress.advance(1);
     return std::move(picture.image);
   };
+  progress.begin("draw the sides", static_cast<std::int64_t>(kTabletSides.size()), "side");
   std::array<PixelExtent, kTabletSides.size()> extents;
   for (const TabletSide side : kTabletSides) {
     Image& image = cross.sides[index(side)];
     DUBSAR_ASSIGN(image, draw(kViews[index(side)]));
     extents[index(side)] = {image.width, image.height};
   }
+  progress.end();
   cross.ruler_mm = ruler_length_mm(renderer.box_mm().size().x);
   const Image ruler = draw_ruler(cross.ruler_mm, options.dpi, options.ground);
   cross.ruler_px = ruler.width;

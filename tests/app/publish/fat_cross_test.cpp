@@ -43,6 +43,29 @@ TEST(FatCross, ACubeOfTenMillimetresSpans236PixelsOnEverySide) {
   EXPECT_NEAR(cross->ruler_px, 10.0 / 25.4 * 600.0, 1.0);
 }
 
+TEST(FatCross, ProgressIsOfTheSixSidesAndStopsInTheMidst) {
+  class Third final : public Progress {
+   public:
+    std::vector<std::string> stages;
+    std::vector<std::int64_t> done;
+
+   protected:
+    void on_begin(std::string_view stage, std::int64_t total, std::string_view) override {
+      stages.emplace_back(stage);
+      EXPECT_EQ(total, 6);
+    }
+    void on_advance(std::int64_t now) override {
+      done.push_back(now);
+      if (now == 3) cancel();
+    }
+  } progress;
+  const auto cross = draw_fat_cross(box(10.0, 10.0, 10.0), {}, progress);
+  ASSERT_FALSE(cross);
+  EXPECT_EQ(cross.error().kind, ErrorKind::kCancelled);
+  EXPECT_EQ(progress.stages, std::vector<std::string>{"draw the sides"});
+  EXPECT_EQ(progress.done, (std::vector<std::int64_t>{1, 2, 3}));
+}
+
 TEST(FatCross, SidesOfAPlateHaveItsThreeEdges) {
   SilentProgress progress;
   FatCrossOptions options;
