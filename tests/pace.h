@@ -33,11 +33,11 @@ inline double yardstick_seconds() {
 /// How many times longer than on the machine of the figures (two threads of an EPYC, -O1, as tests are compiled) work
 /// takes at this moment; never below 1: a faster machine makes no bound stricter.
 inline double slowness() {
-  constexpr double kThere_s = 0.0022;
+  constexpr double kThere = 0.0022;
   std::array<double, 9> took{};
   for (double& each : took) each = yardstick_seconds();
   std::sort(took.begin(), took.end());
-  return std::max(1.0, took[took.size() / 2] / kThere_s);
+  return std::max(1.0, took[took.size() / 2] / kThere);
 }
 
 }  // namespace dubsar::testing
