@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "core/base/system/clock.h"
@@ -13,16 +14,15 @@ namespace dubsar::testing {
 /// Processor seconds of one thread for a fixed piece of work like a network's layer: products of matrices of floats
 /// that stay in the nearest cache, and a pass over 8 MiB that do not. It touches no code of dubsar but its clock.
 inline double yardstick_seconds() {
-  constexpr int kSide = 64, kProducts = 15;
+  constexpr std::size_t kSide = 64, kProducts = 15;
   std::vector<float> a(kSide * kSide, 0.5f), b(kSide * kSide, 0.25f), c(kSide * kSide);
   std::vector<float> far(2 << 20, 1.0f);
   const double before = process_cpu_seconds();
-  for (int repeat = 0; repeat < kProducts; ++repeat)
-    for (int i = 0; i < kSide; ++i)
-      for (int k = 0; k < kSide; ++k) {
-        const float factor = a[static_cast<std::size_t>(i * kSide + k)];
-        for (int j = 0; j < kSide; ++j)
-          c[static_cast<std::size_t>(i * kSide + j)] += factor * b[static_cast<std::size_t>(k * kSide + j)];
+  for (std::size_t repeat = 0; repeat < kProducts; ++repeat)
+    for (std::size_t i = 0; i < kSide; ++i)
+      for (std::size_t k = 0; k < kSide; ++k) {
+        const float factor = a[i * kSide + k];
+        for (std::size_t j = 0; j < kSide; ++j) c[i * kSide + j] += factor * b[k * kSide + j];
       }
   for (float& value : far) value = 0.5f * value + c[7];
   const double took = process_cpu_seconds() - before;

@@ -43,7 +43,7 @@ class FacePhotographs : public ::testing::Test {
   /// The photograph, `scale` times as large, with this point of it in the middle of a webcam's picture;
   /// floats, planes.
   std::vector<float> scene(const Image& photo, const glm::dvec2& centre, double scale) {
-    std::vector<float> planes(3 * kWidth * kWidth);
+    std::vector<float> planes(std::size_t{3} * kWidth * kWidth);
     sampler_.sample(view_of(photo), {centre, kWidth / scale, 0.0}, kWidth, 1.0f, 0.0f, planes);
     return planes;
   }
@@ -58,8 +58,9 @@ class FacePhotographs : public ::testing::Test {
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x)
         for (int c = 0; c < 3; ++c) {
-          const float level = planes[static_cast<std::size_t>((c * kWidth + y + (kWidth - kHeight) / 2) * kWidth + x)];
-          frame.pixels[static_cast<std::size_t>((y * kWidth + x) * 3 + c)] =
+          const float level =
+              planes[(std::size_t(c) * kWidth + std::size_t(y) + (kWidth - kHeight) / 2) * kWidth + std::size_t(x)];
+          frame.pixels[(std::size_t(y) * kWidth + std::size_t(x)) * 3 + std::size_t(c)] =
               static_cast<std::uint8_t>(std::clamp(level + noise_sd * noise_[at++ & (kNoise - 1)], 0.0f, 255.0f));
         }
     return frame;
