@@ -110,15 +110,17 @@ lab() {
   tests/lab/run_in_kernel.sh "$PWD/$build/tests/lab/test_lab" "$@"
 }
 
-# What the sanitized suite is made of: folders of tests/ and of tests/core/, those of app/ that run the program apart, every second case at
-# a time. CI takes one line a revision, as each takes two cores about a quarter of an hour from nothing.
+# What the sanitized suite is made of: folders of tests/ and of tests/core/, those of app/ that run the program apart; of app every second
+# case at a time. CI takes one line a revision, as each takes two cores about a quarter of an hour from nothing.
 sanitized_parts=(
-  "core/base core/image_io core/hdf5 core/volume core/filter core/phantom core/mesh"
+  "core/base core/image_io core/hdf5 core/mesh"
+  "core/volume core/filter core/phantom"
   "core/extract core/relief core/refine core/parts core/contact"
   "core/exa core/mesh_io core/pipeline"
   "devices input"
   "display"
-  "app"
+  "app -I 1,,2"
+  "app -I 2,,2"
   "program -I 1,,2"
   "program -I 2,,2"
 )
@@ -181,7 +183,7 @@ lint() {
   local since=${1:-HEAD~1} changed
   git rev-parse -q --verify "$since" >/dev/null || return 0  # a checkout without history
   build=build/lint  # file by file; clang cannot read the precompiled headers of g++
-  cmake --preset ci -B "$build" -DDUBSAR_UNITY=OFF >/dev/null
+  cmake --preset ci -B "$build" -DDUBSAR_UNITY=OFF -DDUBSAR_PCH=OFF >/dev/null
   changed=$(git diff --name-only --diff-filter=AM "$since" -- '*.cpp' | head -n "${LINT_FILES:-12}")
   [ -z "$changed" ] || clang-tidy -p "$build" --quiet --extra-arg=-Wno-unknown-warning-option --warnings-as-errors='*' $changed
 }

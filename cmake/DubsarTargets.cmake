@@ -30,7 +30,7 @@ function(dubsar_cold target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# The headers that most files read, read once for all rooms. Off where the includes of each file are to be proven (ci, core).
+# The headers that most files read, read once for all rooms. Off where the includes of each file are to be proven (core, lint).
 if(DUBSAR_PCH)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/common_headers.cpp CONTENT "")
   add_library(dubsar_common_headers STATIC ${PROJECT_BINARY_DIR}/common_headers.cpp)

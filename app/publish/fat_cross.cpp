@@ -26,6 +26,23 @@ void paste(const Image& part, const CrossPlace& place, Image& whole) {
     std::memcpy(whole.at(place.x, place.y + y), part.at(0, y), static_cast<std::size_t>(part.width) * 3);
 }
 
+/// What one picture of several says of its progress: nothing, for the whole is one stage, but it stops when that is
+/// stopped.
+class OneOfSeveral final : public Progress {
+ public:
+  explicit OneOfSeveral(const Progress& whole) : whole_(whole) {}
+
+ protected:
+  void on_begin(std::string_view, std::int64_t, std::string_view) override { look(); }
+  void on_advance(std::int64_t) override { look(); }
+
+ private:
+  void look() {
+    if (whole_.cancelled()) cancel();
+  }
+  const Progress& whole_;
+};
+
 }  // namespace
 
 CrossLayout lay_out_cross(const std::array<PixelExtent, kTabletSides.size()>& sides, PixelExtent ruler, int gap,
@@ -60,23 +77,6 @@ CrossLayout lay_out_cross(const std::array<PixelExtent, kTabletSides.size()>& si
   return out;
 }
 
-/// What one picture of several says of its progress: nothing, for the whole is one stage, but it stops when that is
-/// stopped.
-class OneOfSeveral final : public Progress {
- public:
-  explicit OneOfSeveral(const Progress& whole) : whole_(whole) {}
-
- protected:
-  void on_begin(std::string_view, std::int64_t, std::string_view) override { look(); }
-  void on_advance(std::int64_t) override { look(); }
-
- private:
-  void look() {
-    if (whole_.cancelled()) cancel();
-  }
-  const Progress& whole_;
-};
-
 Result<FatCross> draw_fat_cross(const TriMesh& mesh, const FatCrossOptions& options, Progress& progress) {
   if (!(options.dpi >= 50 && options.dpi <= 4800))
     return fail(ErrorKind::kUsage, "fatcross: {} dots an inch found, expected 50 to 4800", options.dpi);
@@ -97,6 +97,7 @@ Result<FatCross> draw_fat_cross(const TriMesh& mesh, const FatCrossOptions& opti
     progress.advance(1);
     return std::move(picture.image);
   };
+  DUBSAR_TRY(renderer.prepare(options.shading, progress));
   progress.begin("draw the sides", static_cast<std::int64_t>(kTabletSides.size()), "side");
   std::array<PixelExtent, kTabletSides.size()> extents;
   for (const TabletSide side : kTabletSides) {

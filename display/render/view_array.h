@@ -18,6 +18,9 @@ class ViewArray {
   int width() const noexcept { return width_; }
   int height() const noexcept { return height_; }
   int layers() const noexcept { return layers_; }
+  bool measures(int width, int height, int layers) const noexcept {
+    return width == width_ && height == height_ && layers == layers_;
+  }
   GLuint coded() const noexcept { return coded_; }
   GLuint linear() const noexcept { return linear_; }
 

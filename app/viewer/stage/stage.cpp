@@ -56,12 +56,15 @@ Result<void> Stage::Parts::prepare(OutputSink& with) {
   DUBSAR_TRY(check_memory("display", kBytesPerViewPixel * static_cast<std::uint64_t>(traits.view.width) *
                                          static_cast<std::uint64_t>(traits.view.height) *
                                          static_cast<std::uint64_t>(traits.views)));
-  DUBSAR_ASSIGN(ViewArray made, ViewArray::create(traits.view.width, traits.view.height, traits.views));
+  // On a quilt they are 45 MB, which another surface on the same panel need not ask of the system again.
+  if (!layers.array || !layers.array->measures(traits.view.width, traits.view.height, traits.views)) {
+    DUBSAR_ASSIGN(ViewArray made, ViewArray::create(traits.view.width, traits.view.height, traits.views));
+    if (const auto& before = layers.array)
+      cost.exact_view_ms *= static_cast<double>(made.width()) * made.height() / before->width() / before->height();
+    layers.array = std::move(made);
+    layers.overlaid.reset();
+  }
   layers.chosen.clear();
-  if (const auto& before = layers.array)
-    cost.exact_view_ms *= static_cast<double>(made.width()) * made.height() / before->width() / before->height();
-  layers.array = std::move(made);
-  layers.overlaid.reset();
   painted.of.reset();
   cost.coarse = 0;
   cost.prepared_at = next.now;

@@ -44,8 +44,7 @@ Result<void> Stage::Parts::show_half(int half) {
 Result<void> Stage::Parts::paint_halves() {
   const ViewArray& whole = *layers.array;
   const int width = whole.width() / 2;
-  if (!layers.half || layers.half->width() != width || layers.half->height() != whole.height() ||
-      layers.half->layers() != whole.layers()) {
+  if (!layers.half || !layers.half->measures(width, whole.height(), whole.layers())) {
     DUBSAR_ASSIGN(layers.half, ViewArray::create(width, whole.height(), whole.layers()));
   }
   for (int half = 0; half < 2; ++half) {

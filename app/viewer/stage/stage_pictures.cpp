@@ -13,10 +13,9 @@ namespace dubsar::app {
 Result<void> Stage::Parts::fill_layers() {
   const SinkTraits traits = sink->traits();
   if (!options.pictures && options.subject != Subject::kPattern) {  // the ground alone
-    Image ground(traits.view.width, traits.view.height, 4);
-    for (std::size_t i = 0; i < ground.pixels.size(); ++i) ground.pixels[i] = i % 4 < 3 ? kGroundColor[i % 4] : 0xff;
-    for (int layer = 0; layer < traits.views; ++layer) DUBSAR_TRY(layers.array->write_layer(layer, ground));
-    return {};
+    const std::array<GLubyte, 4> ground{kGroundColor[0], kGroundColor[1], kGroundColor[2], 0xff};
+    glClearTexImage(layers.array->coded(), 0, GL_RGBA, GL_UNSIGNED_BYTE, ground.data());
+    return check_gl("clearing the views");
   }
   layers.chosen.resize(static_cast<std::size_t>(traits.views), -1);
   for (int layer = 0; layer < traits.views; ++layer) {

@@ -63,6 +63,11 @@ Result<PictureRenderer> PictureRenderer::create(const TriMesh& mesh) {
 
 Box PictureRenderer::box_mm(std::uint8_t partitions) const { return parts_->mesh.box_of(partitions); }
 
+Result<void> PictureRenderer::prepare(const Shading& shading, Progress& progress) {
+  DUBSAR_TRY(parts_->context->make_current());
+  return carry_fields(parts_->mesh, *parts_->source, fields_needed(shading.style, shading.other), progress);
+}
+
 Result<Picture> PictureRenderer::render(const RenderOptions& options, Progress& progress) {
   const Shading& shading = options.shading;
   if (!parts_->mesh.has_any(visible_partitions(shading.parts)))
@@ -78,8 +83,7 @@ Result<Picture> PictureRenderer::render(const RenderOptions& options, Progress& 
   DUBSAR_ASSIGN(const Camera camera, fit_camera(box_mm(visible_partitions(shading.parts)), options.camera));
   const int channels = shading.background.transparent ? 4 : 3;
   DUBSAR_TRY(check_memory("render", static_cast<std::uint64_t>(camera.width) * camera.height * channels));
-  DUBSAR_TRY(parts_->context->make_current());
-  DUBSAR_TRY(carry_fields(parts_->mesh, *parts_->source, fields_needed(shading.style, shading.other), progress));
+  DUBSAR_TRY(prepare(shading, progress));
 
   const MeshScene scene(parts_->mesh, shading);
   const int side = kTileSamples / options.samples;

@@ -39,6 +39,10 @@ class PictureRenderer {
   /// Box in mm of the partitions whose bit is set.
   Box box_mm(std::uint8_t partitions = 0xff) const;
 
+  /// Measures what a shading shows of the surface and the mesh does not carry (curvature, MSII): long work, done once;
+  /// render() does it where nobody asked before. Errors: kCancelled, kTryAgain (memory), kUnavailable.
+  Result<void> prepare(const Shading& shading, Progress& progress);
+
   /// The camera frames the partitions that are drawn. Large pictures are drawn in tiles. Errors: kUsage (options,
   /// nothing to draw), kTryAgain (memory), kUnavailable (the driver drew nothing), kCancelled.
   Result<Picture> render(const RenderOptions& options, Progress& progress);

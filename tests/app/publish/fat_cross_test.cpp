@@ -66,6 +66,20 @@ TEST(FatCross, ProgressIsOfTheSixSidesAndStopsInTheMidst) {
   EXPECT_EQ(progress.done, (std::vector<std::int64_t>{1, 2, 3}));
 }
 
+TEST(FatCross, WhatAStyleHasToMeasureIsAStageOfItsOwnBeforeTheSides) {
+  class Stages final : public Progress {
+   public:
+    std::vector<std::string> stages;
+
+   protected:
+    void on_begin(std::string_view stage, std::int64_t, std::string_view) override { stages.emplace_back(stage); }
+  } progress;
+  FatCrossOptions options;
+  options.shading = shading_preset("mean-curvature").value();
+  ASSERT_TRUE(draw_fat_cross(box(10.0, 10.0, 10.0), options, progress));
+  EXPECT_EQ(progress.stages, (std::vector<std::string>{"curvature", "draw the sides"}));
+}
+
 TEST(FatCross, SidesOfAPlateHaveItsThreeEdges) {
   SilentProgress progress;
   FatCrossOptions options;

@@ -58,9 +58,11 @@ class FacePhotographs : public ::testing::Test {
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x)
         for (int c = 0; c < 3; ++c) {
-          const float level =
-              planes[(std::size_t(c) * kWidth + std::size_t(y) + (kWidth - kHeight) / 2) * kWidth + std::size_t(x)];
-          frame.pixels[(std::size_t(y) * kWidth + std::size_t(x)) * 3 + std::size_t(c)] =
+          const std::size_t row =
+              static_cast<std::size_t>(c) * kWidth + static_cast<std::size_t>(y) + (kWidth - kHeight) / 2;
+          const float level = planes[row * kWidth + static_cast<std::size_t>(x)];
+          frame.pixels[(static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)) * 3 +
+                       static_cast<std::size_t>(c)] =
               static_cast<std::uint8_t>(std::clamp(level + noise_sd * noise_[at++ & (kNoise - 1)], 0.0f, 255.0f));
         }
     return frame;
@@ -201,9 +203,9 @@ TEST_F(FacePhotographs, AtSixtyCentimetresTheFilteredDepthIsStillWithinTenMillim
 TEST_F(FacePhotographs, AFrameTakesAtMostTenMillisecondsOfOneCore) {
   const Image photo = photograph("sample6.jpg");
   const std::vector<float> planes = scene(photo, {960, 700}, 0.34);  // all four are in the picture
-  double p95 = 0.0, bound = 0.0;
+  double p99 = 0.0, bound = 0.0;
   // other programs on this machine only ever add: up to six rounds until one is undisturbed
-  for (int round = 0; round < 6 && (round == 0 || p95 > bound); ++round) {
+  for (int round = 0; round < 6 && (round == 0 || p99 > bound); ++round) {
     auto detector = make_network_face_detector(model_folder() / kFaceModel);
     ASSERT_TRUE(detector);
     FaceTracker tracker(*std::move(detector), {});
@@ -219,11 +221,11 @@ TEST_F(FacePhotographs, AFrameTakesAtMostTenMillisecondsOfOneCore) {
     }
     EXPECT_EQ(heads.size(), 4U);
     std::sort(cost.begin(), cost.end());
-    p95 = cost[95];
-    std::printf("CPU of a frame: median %.2f ms, p95 %.2f ms, p99 %.2f ms, of %.2f\n", cost[50], p95, cost[99], bound);
+    p99 = cost[98];
+    std::printf("CPU of a frame: median %.2f ms, p95 %.2f ms, p99 %.2f ms, of %.2f\n", cost[49], cost[94], p99, bound);
   }
 #ifdef NDEBUG
-  EXPECT_LE(p95, bound);
+  EXPECT_LE(p99, bound);
 #endif
 }
 
