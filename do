@@ -183,7 +183,7 @@ lint() {
   local since=${1:-HEAD~1} changed
   git rev-parse -q --verify "$since" >/dev/null || return 0  # a checkout without history
   build=build/lint  # file by file; clang cannot read the precompiled headers of g++
-  cmake --preset ci -B "$build" -DDUBSAR_UNITY=OFF -DDUBSAR_TEST_PCH=OFF >/dev/null
+  cmake --preset ci -B "$build" -DDUBSAR_UNITY=OFF >/dev/null
   changed=$(git diff --name-only --diff-filter=AM "$since" -- '*.cpp' | head -n "${LINT_FILES:-12}")
   [ -z "$changed" ] || clang-tidy -p "$build" --quiet --extra-arg=-Wno-unknown-warning-option --warnings-as-errors='*' $changed
 }
