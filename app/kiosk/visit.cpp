@@ -11,6 +11,7 @@ constexpr double kTurnedDeg = 25.0;               // on purpose: further than a 
 constexpr double kZoomed = 0.15;                  // a sixth larger or smaller
 constexpr TimestampNs kPatience = 2 * kSecondNs;  // before the next thing is shown to somebody who is busy
 constexpr TimestampNs kLessonTime = 9 * kSecondNs, kLessonRest = 6 * kSecondNs;
+constexpr TimestampNs kUnseen = 5 * kSecondNs;     // without a hand, how to take hold makes room for how to be seen
 constexpr TimestampNs kFirstRest = 300'000'000;    // as long as nothing was turned, nobody waits for the next picture
 constexpr TimestampNs kTroubleTime = 700'000'000;  // a hand that passes by is not spoken to
 constexpr TimestampNs kGone = 2 * kSecondNs;       // a lost hand mostly comes back
@@ -72,6 +73,7 @@ std::optional<Lesson> Visit::next(const VisitMoment& moment) const {
   for (std::size_t i = 0; i < kLessonCount; ++i) {
     const auto lesson = static_cast<Lesson>(i);
     const bool holds = moment.hands > 0 && moment.hand == HandState::kHolding;
+    if (lesson == Lesson::kShowHand && course_.shown[index(Lesson::kGrab)] == 0) continue;  // that shows a hand, too
     if (lesson == Lesson::kGrab) {  // taken, moved and let go: until the object was turned so
       if (course_.done[index(Lesson::kTurn)] || holds || course_.shown[i] >= kGrabMostShown) continue;
       return lesson;
@@ -90,7 +92,9 @@ void Visit::teach(TimestampNs now, const VisitMoment& moment) {
     const std::size_t shown = index(*course_.now);
     const bool again = *course_.now == Lesson::kTurn && !holds;  // it let go: back to taking hold
     const bool success = *course_.now == Lesson::kGrab ? holds : course_.done[shown];
-    if (!success && !again && now - course_.since < kLessonTime) return;
+    const bool unseen = *course_.now == Lesson::kGrab && !course_.done[index(Lesson::kShowHand)] &&
+                        course_.shown[index(Lesson::kShowHand)] == 0;
+    if (!success && !again && now - course_.since < (unseen ? kUnseen : kLessonTime)) return;
     course_.now.reset();
     const bool beginner = !course_.done[index(Lesson::kTurn)];
     if (beginner)  // who has just taken hold may know how to go on
@@ -169,6 +173,12 @@ VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
   if (phase_ == VisitPhase::kAttract && moment.tracker) {  // the invitation
     out.lesson = Lesson::kGrab;
     out.lesson_s = 1e-9 * static_cast<double>(last_);
+  }
+  // Where no camera sees heads, somebody may still be there whose hand is too low to be seen.
+  if (phase_ == VisitPhase::kLeaving && moment.tracker && !course_.done[index(Lesson::kTurn)]) {
+    out.lesson = Lesson::kShowHand;
+    out.lesson_s = 1e-9 * static_cast<double>(last_);
+    out.line = Line::kShowHand;
   }
   if (phase_ == VisitPhase::kAttract) out.line = moment.tracker ? Line::kInvite : Line::kNoTracker;
   if (phase_ == VisitPhase::kArrived || phase_ == VisitPhase::kFree) out.line = line(moment);

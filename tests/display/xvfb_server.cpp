@@ -34,7 +34,7 @@ XvfbServer::XvfbServer(int width, int height) {
     const std::string screen = std::to_string(width) + "x" + std::to_string(height) + "x24";
     const std::string descriptor = std::to_string(pipe_ends[1]);
     ::execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", screen.c_str(), "-nolisten", "tcp",
-             "-fbdir", folder_.c_str(), nullptr);
+             "-noreset", "-fbdir", folder_.c_str(), nullptr);
     ::_exit(127);
   }
   ::close(pipe_ends[1]);

@@ -91,6 +91,29 @@ TEST(Visit, ALessonThatDoesNotHelpRestsAndIsGivenUp) {
   EXPECT_EQ(shown, 6);
 }
 
+TEST(Visit, WhoseHandIsNotSeenLearnsHowItIsAfterHowToTakeHold) {
+  Story story;
+  VisitMoment head = nobody();
+  head.head = true;
+  EXPECT_EQ(story.go_on(4, head).lesson, Lesson::kGrab);
+  EXPECT_EQ(story.go_on(2, head).lesson, Lesson::kShowHand);
+  EXPECT_EQ(story.go_on(1, head).line, Line::kShowHand);
+  EXPECT_EQ(story.go_on(1.5, hand(HandState::kReady)).lesson, Lesson::kGrab) << "now that it is";
+}
+
+TEST(Visit, WhereNobodySeesHeadsAHandThatSankIsAskedFor) {
+  Story story;
+  story.go_on(2, nobody());
+  story.go_on(2, hand(HandState::kReady));
+  const auto picture = story.go_on(3, nobody());
+  EXPECT_EQ(picture.phase, VisitPhase::kLeaving);
+  EXPECT_EQ(picture.lesson, Lesson::kShowHand);
+  EXPECT_GT(picture.lesson_s, 0.0);
+  Story able;
+  able.go_on(2, hand(HandState::kHolding, 2.0));
+  EXPECT_FALSE(able.go_on(4, nobody()).lesson) << "who can turn it knows";
+}
+
 TEST(Visit, SaysWhatIsWrongWithAHandButNotWithOneThatPassesBy) {
   Story story;
   story.go_on(1, hand(HandState::kReady));

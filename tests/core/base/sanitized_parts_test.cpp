@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -74,13 +75,22 @@ TEST(SanitizedParts, EachOneHasItsTurnAndContinuousIntegrationTakesIt) {
   ASSERT_TRUE(begin != std::string::npos && end != std::string::npos);
   const fs::path folder = fs::temp_directory_path() / ("dubsar_turns_" + std::to_string(::getpid()));
   fs::create_directories(folder);
+  std::string counts, names;
+  for (std::size_t i = 0; i < parts().size(); ++i) {
+    counts += " " + std::to_string(5 * parts().size() + i);
+    std::ostringstream name;
+    name << std::hex << std::setw(7) << std::setfill('0') << i;
+    names += " " + name.str();
+  }
   // A git of which nothing is asked but how many revisions there are, then one that does not know.
   const std::string commands =
-      script.substr(begin, end + 3 - begin) +
-      "for n in 40 41 42 43 44 45 46 47; do\n"
+      script.substr(begin, end + 3 - begin) + "for n in" + counts +
+      "; do\n"
       "git() { case \"$*\" in *shallow*) echo false ;; *count*) echo $n ;; *) return 1 ;; esac; }\n"
       "part_of_revision\ndone\n"
-      "for n in 0000000 0000001 0000002 0000003 0000004 0000005 0000006 0000007; do\n"
+      "for n in" +
+      names +
+      "; do\n"
       "git() { case \"$*\" in *shallow*) echo true ;; *short*) echo $n ;; *) return 1 ;; esac; }\n"
       "part_of_revision\ndone\n"
       "git() { return 128; }\npart_of_revision\n";
