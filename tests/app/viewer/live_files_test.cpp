@@ -84,6 +84,7 @@ class LiveFiles : public Live {
         },
         &shelf);
     EXPECT_EQ(at, steps.size()) << "the step that never came true";
+    expect_ended(out);
     shown_ = shelf.files();
     return out;
   }
@@ -152,7 +153,8 @@ TEST_F(LiveFiles, ScriptsOpenFilesGoThroughThemAndUndoBelongsToEach) {
                     {0.4, "undo"},
                     {0.5, "drawer light"}};
   const auto done =
-      open_and({file("a.ply")}, {until([](const ViewMoment& m) { return m.viewer.desk().drawer == "light"; }), end()});
+      open_and({file("a.ply")},
+               {until([](const ViewMoment& m) { return m.viewer.desk().drawer == "light"; }), close_drawer(), end()});
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_EQ(shown_, (std::vector<fs::path>{file("a.ply"), file("b.ply")}));
   EXPECT_EQ(done->triangles, all_);

@@ -79,7 +79,14 @@ class Live : public ::testing::Test {
           acted = false;
         });
     EXPECT_EQ(at, steps.size()) << "the step that never came true";
+    expect_ended(out);
     return out;
+  }
+  /// Not by its time.
+  void expect_ended(const Result<ViewResult>& out) const {
+    if (out && options_.time.longest_s == kLongestS) {
+      EXPECT_LT(out->seconds, kLongestS) << "the last step did not end it";
+    }
   }
   Image shot() const { return server_->screen(kX, kY, kWidth, kHeight); }
   Step look(Image& into) {
@@ -91,6 +98,10 @@ class Live : public ::testing::Test {
   }
   Step end() {
     return {[this] { person_->key("escape"); }, [](const ViewMoment&) { return true; }};
+  }
+  /// Escape closes what is open before it ends a session.
+  Step close_drawer() {
+    return {[this] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().drawer.empty(); }};
   }
   Image offscreen(const std::string& display, const ViewState& view) const {
     StageOptions options = options_.stage;

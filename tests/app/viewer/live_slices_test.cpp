@@ -74,6 +74,7 @@ TEST_F(Live, ClicksInASliceMoveThePlaceAndTheKeyLaysThemThroughThePointersPlace)
          const ScanView& scan = m.viewer.document().scan;
          return glm::distance(scan.cursor_mm, scan.centre_mm) < 1e-9 && scan.free_up.z > 0.99;
        }},
+      close_drawer(),
       end(),
   });
   ASSERT_TRUE(done) << done.error().message;
