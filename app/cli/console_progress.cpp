@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <nlohmann/json.hpp>
 
 #include "app/cli/console.h"
@@ -16,7 +17,7 @@
 namespace dubsar::app {
 namespace {
 
-constexpr double kQuietLinesEvery_s = 10.0;
+constexpr double kQuietLinesEveryS = 10.0;
 constexpr int kWidestBar = 30, kNarrowestBar = 5, kPlainColumns = 80;
 
 double now_s() { return 1e-9 * static_cast<double>(SteadyClock().now()); }
@@ -97,10 +98,16 @@ ConsoleProgress::ConsoleProgress(const ConsoleOptions& options, std::vector<Plan
       said_s_(started_s_) {
   if (style_ == ProgressStyle::kAuto && quiet_) style_ = ProgressStyle::kNone;
   if (style_ == ProgressStyle::kAuto && stderr_is_terminal()) style_ = ProgressStyle::kBar;
-  if (style_ != ProgressStyle::kNone) refresher_ = std::jthread([this](std::stop_token stop) { refresh_loop(stop); });
+  if (style_ != ProgressStyle::kNone)
+    refresher_ = std::jthread([this](const std::stop_token& stop) { refresh_loop(stop); });
 }
 
-ConsoleProgress::~ConsoleProgress() { close(); }
+ConsoleProgress::~ConsoleProgress() {
+  try {
+    close();
+  } catch (const std::exception&) {  // a line that stays on the terminal
+  }
+}
 
 void ConsoleProgress::close() {
   if (refresher_.joinable()) {
@@ -137,7 +144,7 @@ void ConsoleProgress::finish_stage() {
   stage_.active = false;
 }
 
-void ConsoleProgress::refresh_loop(std::stop_token stop) {
+void ConsoleProgress::refresh_loop(const std::stop_token& stop) {
   using namespace std::chrono_literals;
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
@@ -202,7 +209,7 @@ void ConsoleProgress::print(bool finished) {
     const auto done = static_cast<double>(stage_.total > 0 ? stage_.total : done_.load(std::memory_order_relaxed));
     put_on_stderr(fmt::format("{:<18} {:8.2f} s  {}{}/s\n", stage_.name, elapsed,
                               with_prefix(elapsed > 0 ? done / elapsed : 0.0), stage_.unit));
-  } else if (now - said_s_ >= kQuietLinesEvery_s) {
+  } else if (now - said_s_ >= kQuietLinesEveryS) {
     put_on_stderr(progress_line(line(now), kPlainColumns) + "\n");
     said_s_ = now;
   }

@@ -47,7 +47,7 @@ class ConsoleProgress final : public Progress {
   void on_end() override;
 
  private:
-  void refresh_loop(std::stop_token stop);
+  void refresh_loop(const std::stop_token& stop);
   void print(bool finished);  ///< with mutex_ held, as all below
   void print_json(bool finished, double now);
   void finish_stage();

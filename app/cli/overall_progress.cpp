@@ -7,7 +7,7 @@
 
 namespace dubsar::app {
 namespace {
-constexpr double kTooEarly_s = 3.0, kTooLittle = 0.02;
+constexpr double kTooEarlyS = 3.0, kTooLittle = 0.02;
 }
 
 void OverallProgress::begin(std::string_view stage, double now_s) {
@@ -51,7 +51,7 @@ double OverallProgress::pace(bool surface, double now_s) const {
 }
 
 std::optional<double> OverallProgress::remaining_s(double now_s) const {
-  if (!planned() || elapsed_s(now_s) < kTooEarly_s) return std::nullopt;
+  if (!planned() || elapsed_s(now_s) < kTooEarlyS) return std::nullopt;
   double seconds = 0.0;
   const auto add = [&](const PlannedStage& planned, double share) {
     const double one = pace(planned.surface, now_s);

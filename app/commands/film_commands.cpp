@@ -76,6 +76,7 @@ Command move_keyframe() {
     DUBSAR_ASSIGN(const std::size_t from, place_argument("move_keyframe", which, keys.size()));
     DUBSAR_ASSIGN(const std::size_t to, place_argument("move_keyframe", where, keys.size()));
     std::vector<double> times;
+    times.reserve(keys.size());
     for (const Keyframe& key : keys) times.push_back(key.time_s);
     const auto at = [&](std::size_t i) { return keys.begin() + static_cast<std::ptrdiff_t>(i); };
     if (from < to) std::rotate(at(from), at(from + 1), at(to + 1));

@@ -40,7 +40,8 @@ Command cut() {
   Command out{"cut", "Cuts", "cut away from a side, in percent of the object", {}, "a side and 0 to 100"};
   out.values = {"front 20", "left 50", "front 0"};
   out.run = [why = out.words](Editor& editor, const std::string& text) -> Result<void> {
-    const auto [side, share] = first_word(text);
+    const auto words = first_word(text);
+    const std::string &side = words.first, &share = words.second;
     const auto* const at =
         std::find_if(kBoxSides.begin(), kBoxSides.end(), [&](const BoxSide& row) { return row.name == side; });
     if (at == kBoxSides.end())

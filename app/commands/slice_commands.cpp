@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kSlicesGroup = "Slices";
 constexpr std::array<std::string_view, 5> kLarge{"all", "x", "y", "z", "free"};
-constexpr double kLeastZoom = 0.2, kMostZoom = 200.0, kNearer = 1.25, kTurnDeg = 5.0, kStepMm = 0.1;
+constexpr double kLeastZoom = 0.2, kMostZoom = 200.0, kNearer = 1.25, kTurnDeg = 5.0;
 
 void change(Editor& editor, const ScanView& scan, std::string_view words) {
   Document next = editor.document();

@@ -83,7 +83,7 @@ Command obverse_here() {
   return out;
 }
 
-Command history(std::string name, bool back, std::vector<DefaultKey> keys) {
+Command history(const std::string& name, bool back, std::vector<DefaultKey> keys) {
   Command out{name, "Back", name, std::move(keys)};
   out.repeats = out.steers = true;
   out.enabled = [back](const Editor& editor) {

@@ -14,7 +14,7 @@ constexpr double kAcross = 0.45;                  // of the panel's width and he
 constexpr double kBefore = 0.12, kBehind = 0.05;  // of its height
 constexpr double kOpenRadius = 0.055, kClosedRadius = 0.026, kRestRadius = 0.072;
 constexpr double kWithin = 0.72;  // of the object's extent: there is object, whatever its shape
-constexpr double kGlowRadius = 0.2, kNear = 0.8, kFar = 0.4, kGlowEase_s = 0.35;
+constexpr double kGlowRadius = 0.2, kNear = 0.8, kFar = 0.4, kGlowEaseS = 0.35;
 constexpr int kSegments = 40;
 constexpr Rgb8 kAmber{217, 164, 65}, kGrey{150, 150, 150};
 
@@ -88,7 +88,7 @@ Glow object_glow(const RingStage& stage, std::span<const HandMark> hands, std::s
 }
 
 const Glow& EasedGlow::update(const Glow& wanted, double dt_s) {
-  const double step = dt_s / kGlowEase_s, left = std::exp(-3.0 * step);
+  const double step = dt_s / kGlowEaseS, left = std::exp(-3.0 * step);
   if (wanted.strength > 0) {
     const bool was = shown_.strength > 0;
     shown_.at_mm = was ? glm::mix(wanted.at_mm, shown_.at_mm, left) : wanted.at_mm;

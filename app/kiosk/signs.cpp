@@ -70,13 +70,11 @@ std::optional<Sign> SignRest::update(TimestampNs now, std::span<const SignHand> 
       if (!hand.free) waits_ = true;
       on = on || far <= radius;
     }
-    if (waits_) {
+    if (waits_ || (!on && rest.since >= 0 && now - rest.seen > kForgives)) {
       rest = {};
     } else if (on) {
       rest.seen = now;
       if (rest.since < 0) rest.since = now;
-    } else if (rest.since >= 0 && now - rest.seen > kForgives) {
-      rest = {};
     }
     if (rest.since < 0) continue;
     rest.filled =

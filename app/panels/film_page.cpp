@@ -27,9 +27,7 @@ void draw_picture(const Board& desk, std::size_t i) {
   explain(desk, go);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(at, end, IM_COL32(0x18, 0x18, 0x1a, 0xff));
-  if (texture != 0)
-    list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), at, end, ImVec2(left, 0.0f),
-                  ImVec2(1.0f - left, 1.0f));
+  if (texture != 0) list.AddImage(texture_id(texture), at, end, ImVec2(left, 0.0f), ImVec2(1.0f - left, 1.0f));
   list.AddRect(at, end, over ? kAccent : kLine);
   if (ImGui::BeginDragDropSource(ImGuiDragDropFlags_SourceNoHoldToOpenOthers)) {
     ImGui::SetDragDropPayload(kDragged, &i, sizeof i);

@@ -111,6 +111,7 @@ Layout arrange(const std::vector<HelpSection>& help, float width, float height) 
       const auto glyphs = static_cast<std::size_t>(column_width / (kGlyphPx * scale));
       if (glyphs < best.second + 24) continue;
       std::vector<std::size_t> lines;
+      lines.reserve(help.size());
       for (const HelpSection& section : help) lines.push_back(lines_of(section, glyphs - 2, best.second));
       if (auto starts = fill(lines, columns, static_cast<std::size_t>((height - 4 * kMargin) / (kLineStepPx * scale))))
         return {scale, column_width, best.second, *std::move(starts)};

@@ -19,10 +19,10 @@ __asm__(
     ".byte 0\n"
     ".previous\n");
 
-extern "C" {
+extern "C" {  // NOLINTBEGIN(readability-identifier-naming): the assembler's names
 extern const unsigned char dubsar_panel_font[];
 extern const unsigned char dubsar_panel_font_end[];
-}
+}  // NOLINTEND(readability-identifier-naming)
 
 namespace dubsar::app {
 

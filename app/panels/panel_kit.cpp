@@ -58,6 +58,10 @@ void say_dim(const char* words) {
   ImGui::PopStyleColor();
 }
 
+ImTextureID texture_id(std::uint32_t texture) {
+  return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture));  // NOLINT(performance-no-int-to-ptr)
+}
+
 bool type_in(const char* id, const std::string& now, std::string& typed, float width) {
   std::array<char, 2048> text{};
   now.copy(text.data(), std::min(now.size(), text.size() - 1));

@@ -3,6 +3,7 @@
 
 #include <imgui.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,8 @@ float button_width(const char* label);
 bool percent_slider(const char* label, float& percent, float width, float most = 100.0f);
 /// Dim words that break where the panel ends.
 void say_dim(const char* words);
+/// What ImGui calls a texture of GL's.
+ImTextureID texture_id(std::uint32_t texture);
 /// A line of text that is kept while it is typed in, and told as it changes: true then. `id` names it in its window.
 bool type_in(const char* id, const std::string& now, std::string& typed, float width);
 

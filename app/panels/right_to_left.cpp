@@ -67,7 +67,9 @@ std::vector<std::string> lines_as_seen(std::string_view text, bool right_to_left
   std::vector<std::string> out;
   std::string line;
   for (const std::string& word : split_words(text)) {
-    const std::string longer = line.empty() ? word : line + " " + word;
+    std::string longer = line;
+    if (!longer.empty()) longer += ' ';
+    longer += word;
     if (!line.empty() && !fits(as_seen(longer, right_to_left))) {
       out.push_back(as_seen(line, right_to_left));
       line = word;

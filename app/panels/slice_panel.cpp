@@ -38,10 +38,8 @@ void draw_picture(const SlicePane& pane, const Placed& placed) {
   if (!pane.picture) return;
   const SlicePicture& picture = *pane.picture;
   const auto here = [&](const glm::dvec2& px) { return placed.at(pane.wanted.px_at(picture.frame.mm_at(px))); };
-  if (pane.texture != 0 && !picture.image.values.empty()) {
-    const void* const id = reinterpret_cast<const void*>(static_cast<std::uintptr_t>(pane.texture));
-    draw->AddImage(const_cast<void*>(id), here({0, 0}), here({picture.frame.width, picture.frame.height}));
-  }
+  if (pane.texture != 0 && !picture.image.values.empty())
+    draw->AddImage(texture_id(pane.texture), here({0, 0}), here({picture.frame.width, picture.frame.height}));
   for (const OutlinePiece& piece : picture.outline)
     draw->AddLine(here(piece.a), here(piece.b), piece.inferred ? kPatch : kSurface,
                   piece.inferred ? kPatchOutline : kOutline);

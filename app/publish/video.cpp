@@ -35,15 +35,15 @@ const std::vector<std::string> kColours{"-colorspace", "bt709",        "-color_p
                                         "-color_trc",  "iec61966-2-1", "-color_range",     "tv"};
 
 const std::vector<Coding>& codings() {
-  static const std::vector<std::string> kH264{"-c:v",    "libx264", "-crf",      "16",
-                                              "-preset", "medium",  "-movflags", "+faststart"};
-  static const std::vector<Coding> kAll{
-      {".mp4", "mp4", kH264},
-      {".mov", "mov", kH264},
+  static const std::vector<std::string> h264{"-c:v",    "libx264", "-crf",      "16",
+                                             "-preset", "medium",  "-movflags", "+faststart"};
+  static const std::vector<Coding> all{
+      {".mp4", "mp4", h264},
+      {".mov", "mov", h264},
       {".webm", "webm", {"-c:v", "libvpx-vp9", "-crf", "20", "-b:v", "0", "-row-mt", "1"}},
       {".mkv", "matroska", {"-c:v", "ffv1", "-level", "3", "-g", "1"}},
   };
-  return kAll;
+  return all;
 }
 
 const Coding* coding_of(const fs::path& path) {

@@ -159,7 +159,7 @@ std::string summary(const std::string& out, const SurfaceFacts& facts, const Det
   return text;
 }
 
-Result<VerbResult> run(ProcessRequest options, const Arguments command, const CommonOptions& common,
+Result<VerbResult> run(ProcessRequest options, const Arguments& command, const CommonOptions& common,
                        Progress& progress) {
   PipelineOptions& p = options.pipeline;
   DUBSAR_ASSIGN(p.import, parse_input_options(options.in, options.input));
@@ -199,7 +199,7 @@ Result<VerbResult> run(ProcessRequest options, const Arguments command, const Co
   return out;
 }
 
-Result<VerbResult> run_many(const ProcessRequest& options, const Arguments command, const CommonOptions& common,
+Result<VerbResult> run_many(const ProcessRequest& options, const Arguments& command, const CommonOptions& common,
                             Progress& progress) {
   ScanBatch batch;
   batch.resume = options.resume;

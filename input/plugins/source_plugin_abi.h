@@ -27,6 +27,7 @@
 extern "C" {
 #endif
 
+/* NOLINTBEGIN(readability-identifier-naming): names of C */
 #define DUBSAR_SOURCE_ABI 1u
 #define DUBSAR_SOURCE_ENTRY "dubsar_source_plugin"
 #define DUBSAR_SOURCE_JOINTS 26 /* in the order of OpenXR's XR_EXT_hand_tracking: palm, wrist, thumb ... little tip */
@@ -119,6 +120,7 @@ typedef struct dubsar_source_table {
 } dubsar_source_table;
 
 typedef const dubsar_source_table* (*dubsar_source_entry)(const dubsar_source_host* host);
+/* NOLINTEND(readability-identifier-naming) */
 
 #ifdef __cplusplus
 }

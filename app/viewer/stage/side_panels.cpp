@@ -202,7 +202,7 @@ Result<void> SidePanels::paint(Panel& panel, const std::string& file) {
 Result<void> SidePanels::follow(Viewer& viewer, TimestampNs now, const std::string& frame) {
   if (panels_.empty()) return {};
   viewer_ = &viewer;
-  const auto done = follow_all(viewer, now, frame);
+  auto done = follow_all(viewer, now, frame);
   DUBSAR_TRY(main_.make_current());
   return done;
 }
@@ -252,7 +252,7 @@ Result<void> SidePanels::follow_all(Viewer& viewer, TimestampNs now, const std::
       continue;
     } else if (!all) {
       if (next == nullptr || panel.painted < next->painted) next = &panel;
-    } else if (const auto done = paint(panel, frame.empty() ? frame : fmt::format("{}-{}", frame, i + 2)); !done) {
+    } else if (auto done = paint(panel, frame.empty() ? frame : fmt::format("{}-{}", frame, i + 2)); !done) {
       if (!frame.empty()) return done;
       fails(panel, done.error(), now);
     }

@@ -25,6 +25,7 @@
 extern "C" {
 #endif
 
+/* NOLINTBEGIN(readability-identifier-naming): names of C */
 #define DUBSAR_SINK_ABI 1u
 #define DUBSAR_SINK_ENTRY "dubsar_sink_plugin"
 
@@ -96,6 +97,7 @@ typedef struct dubsar_sink_table {
 } dubsar_sink_table;
 
 typedef const dubsar_sink_table* (*dubsar_sink_entry)(const dubsar_sink_host* host);
+/* NOLINTEND(readability-identifier-naming) */
 
 #ifdef __cplusplus
 }
