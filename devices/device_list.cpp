@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::uint16_t kGenericDesktop = 1, kMultiAxisController = 8, kVendorPages = 0xFF00;
 
+int can_read(const std::string& path) { return ::access(path.c_str(), R_OK) == 0 ? 0 : errno; }
 int can_open(const std::string& path) { return ::access(path.c_str(), R_OK | W_OK) == 0 ? 0 : errno; }
 
 bool fits(const DeviceId& id, std::uint16_t vendor, std::uint16_t product) {
@@ -42,12 +43,12 @@ DeviceInfo describe(const DriverEntry& driver, const DeviceId& id, std::uint16_t
   return info;
 }
 
-void explain(DeviceInfo& info, int error) {
+void explain(DeviceInfo& info, int error, const std::string& rule) {
   if (error == 0 || info.state != DeviceState::kUsable) return;
   if (error == EACCES || error == EPERM) {
     info.state = DeviceState::kNoPermission;
     info.reason = fmt::format("this user may not open {}", info.path);
-    info.remedy = fmt::format("{}; the rule is: {}", kUdevRemedy, udev_rule("hidraw", info.vendor_id, info.product_id));
+    info.remedy = fmt::format("{}; the rule is: {}", kUdevRemedy, rule);
   } else {
     info.state = DeviceState::kBroken;
     info.reason = fmt::format("{}: {}", info.path, std::strerror(error));
@@ -71,7 +72,8 @@ std::vector<DeviceInfo> known_hid_devices(const std::vector<HidNode>& nodes, int
       if (!node.product.empty()) info.name = node.product;
       info.serial = node.serial;
       info.interface_number = node.interface_number;
-      if (info.state == DeviceState::kUsable) explain(info, permission(node.path));
+      if (info.state == DeviceState::kUsable)
+        explain(info, permission(node.path), udev_rule("hidraw", info.vendor_id, info.product_id));
       // what is left alone is told once, not for each of its interfaces
       const bool told =
           info.state == DeviceState::kIgnored && std::any_of(known.begin(), known.end(), [&](const DeviceInfo& d) {
@@ -100,6 +102,46 @@ std::vector<DeviceInfo> known_usb_devices(const std::vector<UsbDevice>& present,
           fmt::format("{}; the rule is: {}", kUdevRemedy, udev_rule("usb", device.vendor_id, device.product_id));
     }
   return known;
+}
+
+std::vector<DeviceInfo> known_touch_panels(const std::vector<EvdevNode>& nodes, int (*permission)(const std::string&),
+                                           DriverTable drivers) {
+  std::vector<DeviceInfo> known;
+  for (const DriverEntry& driver : drivers)
+    for (const EvdevNode& node : nodes) {
+      if (driver.bus != Bus::kInput || !node.touch_panel) continue;
+      DeviceInfo& info = known.emplace_back();
+      info.driver = driver.name;
+      info.path = node.path;
+      info.name = node.name.empty() ? driver.summary : node.name;
+      info.vendor_id = node.vendor_id;
+      info.product_id = node.product_id;
+      if (node.slots) {
+        explain(info, permission(node.path), std::string(kTouchRule));
+        continue;
+      }
+      info.state = DeviceState::kIgnored;
+      info.reason = "it does not tell its contacts apart (multi-touch type A), which this program does not read";
+      info.remedy = "none: the window system makes a mouse of it";
+    }
+  return known;
+}
+
+Result<std::unique_ptr<Transport>> open_touch_panel(const DriverEntry& driver, const std::string& path) {
+  Error error{ErrorKind::kUnavailable, path.empty() ? fmt::format("{}: no such device is plugged in", driver.name)
+                                                    : fmt::format("{}: {} is no touch panel", driver.name, path)};
+  for (const DeviceInfo& info : known_touch_panels(list_evdev_nodes(), can_read, {&driver, 1})) {
+    if (!path.empty() && info.path != path) continue;
+    if (info.state == DeviceState::kUsable) {
+      auto opened = open_evdev(info.path, {info.vendor_id, info.product_id});
+      if (opened) return opened;
+      error = std::move(opened).error();
+    } else {
+      error = {info.state == DeviceState::kNoPermission ? ErrorKind::kPermission : ErrorKind::kUnavailable,
+               fmt::format("{}: {}; {}", driver.name, info.reason, info.remedy)};
+    }
+  }
+  return tl::unexpected<Error>(std::move(error));
 }
 
 std::vector<DeviceInfo> list_hid_devices(DriverTable drivers) {
@@ -158,6 +200,7 @@ std::vector<DeviceInfo> list_devices(const std::string& spacenav_socket, DriverT
     });
     if (!told) devices.push_back(std::move(info));
   }
+  add(known_touch_panels(list_evdev_nodes(), can_read, drivers));
   for (const DriverEntry& driver : drivers) {
     if (driver.bus == Bus::kUnixSocket)
       add(list_socket(driver, spacenav_socket.empty() ? kSpacenavSocket : spacenav_socket));

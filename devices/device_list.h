@@ -7,6 +7,7 @@
 
 #include "devices/device_info.h"
 #include "devices/drivers.h"
+#include "devices/transport/evdev_transport.h"
 #include "devices/transport/hid_transport.h"
 
 namespace dubsar {
@@ -30,11 +31,21 @@ Result<std::unique_ptr<Transport>> open_hid_device(const DriverEntry& driver, co
 /// The same by its name in the program's table.
 Result<std::unique_ptr<Transport>> open_hid_device(std::string_view driver, const Clock& clock);
 
+/// What input devices are to us: touch panels. `permission`: 0, or the errno that opening it for reading would give.
+std::vector<DeviceInfo> known_touch_panels(const std::vector<EvdevNode>& nodes,
+                                           int (*permission)(const std::string& path),
+                                           DriverTable drivers = driver_table());
+
+/// Opens the first usable touch panel, or the one at `path` when it is not empty, for this program alone. kUnavailable
+/// or kPermission: says what is here and why it cannot be used.
+Result<std::unique_ptr<Transport>> open_touch_panel(const DriverEntry& driver, const std::string& path);
+
 /// A daemon's socket, when it is there.
 std::vector<DeviceInfo> list_socket(const DriverEntry& driver, const std::string& path);
 
-/// All devices here that a driver knows, with the reason for those that cannot be used: HID, USB, cameras, and
-/// spacenavd at `spacenav_socket` (empty: the usual path). Opens none; takes some milliseconds. Any thread.
+/// All devices here that a driver knows, with the reason for those that cannot be used: HID, USB, touch panels,
+/// cameras, and spacenavd at `spacenav_socket` (empty: the usual path). Opens none; takes some milliseconds. Any
+/// thread.
 std::vector<DeviceInfo> list_devices(const std::string& spacenav_socket = {}, DriverTable drivers = driver_table());
 
 /// Drivers that a session without --input takes when these devices are here, in the order of the table.

@@ -17,6 +17,8 @@
 #include "devices/looking_glass/calibration_pages.h"
 #include "devices/spacemouse/simulated_pucks.h"
 #include "devices/spacemouse/spacenav_protocol.h"
+#include "devices/touch/simulated_touch.h"
+#include "devices/touch/touch_protocol.h"
 #include "devices/transport/socket_transport.h"
 #include "devices/transport/usb_transport.h"
 
@@ -141,6 +143,10 @@ Result<OpenTransport> open_leap(const DriverEntry&, OptionReader&, const Clock&)
   return OpenTransport(open_leap_now);
 }
 
+Result<OpenTransport> open_touch(const DriverEntry& self, OptionReader& options, const Clock&) {
+  return OpenTransport([&self, path = options.text("device")] { return open_touch_panel(self, path); });
+}
+
 template <class Protocol>
 std::unique_ptr<DeviceDriver> drive(OpenTransport open, OptionReader&, const Clock* stamps) {
   return std::make_unique<Driver<Protocol>>(std::move(open), Protocol(), stamps);
@@ -175,6 +181,12 @@ std::unique_ptr<DeviceDriver> drive_vrpn(OpenTransport open, OptionReader& optio
   choice.tracker = options.text("tracker");
   choice.sensor = options.integer("sensor", 0, 1000, 0);
   return std::make_unique<Driver<VrpnProtocol>>(std::move(open), VrpnProtocol(std::move(choice)), stamps);
+}
+
+std::unique_ptr<DeviceDriver> drive_touch(OpenTransport open, OptionReader& options, const Clock* stamps) {
+  const int turn_deg = options.integer("turn", 0, 270, 0);
+  if (turn_deg % 90 != 0) options.complain(fmt::format("turn: {} found, expected 0, 90, 180 or 270", turn_deg));
+  return std::make_unique<Driver<TouchProtocol>>(std::move(open), TouchProtocol(turn_deg), stamps);
 }
 
 const Pose kBeforeThePanel{{0.0, 0.0, 0.6}, {1.0, 0.0, 0.0, 0.0}};  ///< where the viewer sits
@@ -253,6 +265,14 @@ std::vector<DriverEntry> make_table() {
        .drive = drive_leap,
        .simulate = simulate_leap,
        .longest_simulation_s = 10.0},  // 70 MB a second
+      {.name = "touch",
+       .summary = "touch panels (kernel multi-touch, type B)",
+       .bus = Bus::kInput,
+       .gives = Gives::kTouches,
+       .input = {.source = "touch", .taken_unasked = true, .whole_screen = true},
+       .open = open_touch,
+       .drive = drive_touch,
+       .simulate = simulate_touch},
       {.name = "leapc",
        .summary = "Leap Motion Controller 2, 3Di",
        .bus = Bus::kService,

@@ -15,7 +15,7 @@
 
 namespace dubsar {
 
-enum class Bus { kHid, kUsb, kVideo, kUnixSocket, kUdp, kTcp, kService };
+enum class Bus { kHid, kUsb, kInput, kVideo, kUnixSocket, kUdp, kTcp, kService };
 
 /// What a device gives, and so which source reads it.
 enum class Gives {
@@ -25,6 +25,7 @@ enum class Gives {
   kStereoPictures,  ///< hands are found in them
   kPictures,        ///< faces are found in them
   kHands,
+  kTouches,
 };
 
 /// One kind of device that a driver knows, by what USB says of it. The first of a row that fits counts.
@@ -44,6 +45,7 @@ struct InputFacts {
   std::string_view source{};      ///< its word after --input; empty: none
   bool taken_unasked = false;     ///< a session without --input takes it where it can be used
   std::string_view instead_of{};  ///< this driver is not taken unasked beside it
+  bool whole_screen = false;      ///< nobody else has it meanwhile: taken unasked only by who covers the screen
   std::string_view lacks{};       ///< a sentence on what its measurements lack
 };
 

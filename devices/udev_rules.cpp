@@ -4,6 +4,8 @@
 
 #include <map>
 
+#include "devices/udev_rule.h"
+
 namespace dubsar {
 
 std::string udev_rules(DriverTable drivers) {
@@ -12,6 +14,7 @@ std::string udev_rules(DriverTable drivers) {
       "# Install: copy to /etc/udev/rules.d (packages: /usr/lib/udev/rules.d), udevadm control --reload, plug in "
       "again.\n";
   for (const DriverEntry& driver : drivers) {
+    if (driver.bus == Bus::kInput) text += fmt::format("\n# {}\n{}\n", driver.summary, kTouchRule);
     if (driver.bus != Bus::kHid && driver.bus != Bus::kUsb) continue;
     std::map<std::uint16_t, std::string> products;
     for (const DeviceId& id : driver.ids) {

@@ -17,6 +17,7 @@
 #include "core/base/text/option_list.h"
 #include "devices/device_info.h"
 #include "devices/device_spec.h"
+#include "devices/touch/touch_sample.h"
 #include "devices/transport/hotplug_bell.h"
 #include "input/hand_frame.h"
 #include "input/input_event.h"
@@ -44,13 +45,17 @@ struct PuckMotion {
   bool operator==(const PuckMotion&) const = default;
 };
 
-/// What a source knows at one moment. Poses are the newest ones; events are all since the last poll, oldest first.
+/// What a source knows at one moment. Poses are the newest ones; events and touches are all since the last poll, oldest
+/// first.
 struct InputFrame {
   TimestampNs time = 0;  ///< device time of the newest thing in here
   std::vector<InputEvent> events;
   std::optional<PuckMotion> puck;
   std::vector<HandFrame> hands;  ///< screen frame, everybody's, at most kMaxHands
   std::vector<HeadFrame> heads;  ///< everybody's
+  /// Fingers on a touch panel, whose events the window makes that knows where it is (gestures/touch_pointer.h). They
+  /// are not recorded, those events are.
+  std::vector<TouchFrame> touches;
 };
 
 enum class Freshness {
@@ -101,10 +106,10 @@ std::vector<std::string_view> input_source_names();
 
 /// Specs for make_input() of what a session takes beside its window's mouse and keyboard when its user names nothing:
 /// of these devices, those that can be used, as "spacemouse", "head:rift" ...; never services, servers, cameras,
-/// simulations.
-std::vector<std::string> present_inputs(const std::vector<DeviceInfo>& present);
+/// simulations. `whole_screen`: the session covers its monitor, and may have for itself what is on it.
+std::vector<std::string> present_inputs(const std::vector<DeviceInfo>& present, bool whole_screen = false);
 /// The same for this machine; takes some milliseconds.
-std::vector<std::string> present_inputs();
+std::vector<std::string> present_inputs(bool whole_screen = false);
 
 /// Makes and starts the source that "NAME[:option,...]" names (source_spec.h): kUsage with the names there are or what
 /// the options are. `base` holds what the text cannot say.

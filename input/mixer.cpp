@@ -25,11 +25,13 @@ void InputMixer::add(std::unique_ptr<InputSource> source, int rank) {
 
 bool InputMixer::remove(const InputSource* source) {
   const std::scoped_lock lock(mutex_);
+  if (touching_ == source) touching_ = nullptr;
   return std::erase_if(sources_, [&](const Entry& entry) { return entry.source.get() == source; }) > 0;
 }
 
 bool InputMixer::remove(std::string_view name) {
   const std::scoped_lock lock(mutex_);
+  if (touching_ != nullptr && touching_->name() == name) touching_ = nullptr;
   return std::erase_if(sources_, [&](const Entry& entry) { return entry.source->name() == name; }) > 0;
 }
 
@@ -38,10 +40,15 @@ const InputFrame& InputMixer::poll(TimestampNs now) {
   merged_ = {};
   for (Entry& entry : sources_) {
     entry.frame.events.clear();
+    entry.frame.touches.clear();
     entry.freshness = entry.source->poll(now, entry.frame);
     const std::size_t room = kMostEvents - std::min(kMostEvents, merged_.events.size());
     const auto count = static_cast<std::ptrdiff_t>(std::min(room, entry.frame.events.size()));
     merged_.events.insert(merged_.events.end(), entry.frame.events.begin(), entry.frame.events.begin() + count);
+    if (!entry.frame.touches.empty() && (touching_ == nullptr || touching_ == entry.source.get())) {
+      merged_.touches = std::move(entry.frame.touches);
+      touching_ = merged_.touches.back().contacts.empty() ? nullptr : entry.source.get();
+    }
     if (entry.freshness == Freshness::kLost) continue;
     merged_.time = std::max(merged_.time, entry.frame.time);
     if (entry.frame.puck && !merged_.puck) merged_.puck = entry.frame.puck;

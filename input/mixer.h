@@ -30,8 +30,9 @@ class InputMixer {
   bool remove(std::string_view name);
 
   /// Polls all sources. A lost source contributes nothing. Hands of two sources are never mixed: the first that has one
-  /// tracked wins, and keeps its right for 300 ms after its last hand. Bounded: at most 4096 events a call. The frame
-  /// stays until the next call.
+  /// tracked wins, and keeps its right for 300 ms after its last hand; of two
+  /// touch panels the one that was touched first, until no finger is on it. Bounded: at most 4096 events a call. The
+  /// frame stays until the next call.
   const InputFrame& poll(TimestampNs now);
 
   /// Makes the present heading "straight on" for all sources whose heading drifts.
@@ -61,6 +62,7 @@ class InputMixer {
   mutable std::mutex mutex_;  // for all below
   std::vector<Entry> sources_;
   Owner hands_, heads_;
+  const InputSource* touching_ = nullptr;  // whose glass has fingers on it
   InputFrame merged_;
 };
 

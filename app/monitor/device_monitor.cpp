@@ -30,6 +30,13 @@ json to_json(const HeadSample& sample) {
 
 json to_json(const StereoSample& sample) { return {{"time_s", 1e-9 * static_cast<double>(sample.time)}}; }
 
+json to_json(const TouchSample& sample) {
+  json out = {{"time_s", 1e-9 * static_cast<double>(sample.time)}, {"touches", json::array()}};
+  for (const TouchContact& contact : sample.frames.back().contacts)
+    out["touches"].push_back({{"id", contact.id}, {"at", {contact.at.x, contact.at.y}}});
+  return out;
+}
+
 json to_json(const InputFrame& frame) {
   json out = {{"time_s", 1e-9 * static_cast<double>(frame.time)}, {"hands", json::array()}};
   for (const HandFrame& hand : frame.hands)

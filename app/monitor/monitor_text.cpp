@@ -67,6 +67,12 @@ std::string monitor_text(const json& sample) {
     for (const json& hand : sample["hands"]) out += hand_line(hand);
     if (sample["hands"].empty()) out += "no hand\n";
   }
+  if (sample.contains("touches")) {
+    for (const json& touch : sample["touches"])
+      out += fmt::format("finger #{:<5} {:5.1f} % to the right, {:5.1f} % down\n", touch.at("id").get<std::uint32_t>(),
+                         100.0 * touch.at("at").at(0).get<double>(), 100.0 * touch.at("at").at(1).get<double>());
+    if (sample["touches"].empty()) out += "no finger\n";
+  }
   if (sample.contains("age_ms")) out += fmt::format("age     {:.2f} ms\n", sample["age_ms"].get<double>());
   return out;
 }

@@ -90,7 +90,8 @@ Result<VerbResult> list(const DevicesRequest& options) {
   }
   if (devices.empty())
     result.text =
-        "no SpaceMouse, headset, Leap or Looking Glass found; opentrack and vrpn trackers are reached by name\n";
+        "no SpaceMouse, headset, Leap, touch panel or Looking Glass found; opentrack and vrpn trackers are reached by "
+        "name\n";
   return result;
 }
 

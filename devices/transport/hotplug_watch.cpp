@@ -27,7 +27,7 @@ Result<HotplugWatch> HotplugWatch::create(std::span<const std::filesystem::path>
 }
 
 std::vector<std::filesystem::path> HotplugWatch::device_folders() {
-  std::vector<std::filesystem::path> out{"/dev"};
+  std::vector<std::filesystem::path> out{"/dev", "/dev/input"};
   std::error_code error;
   for (std::filesystem::directory_iterator bus("/dev/bus/usb", error), end; !error && bus != end; bus.increment(error))
     out.push_back(bus->path());

@@ -16,7 +16,7 @@ class HotplugWatch {
   /// kUnavailable: no inotify instance left, or none of the folders is there; then devices are found by the pauses of
   /// Reconnector.
   static Result<HotplugWatch> create(std::span<const std::filesystem::path> folders);
-  /// Where this machine's device nodes are: /dev, and the folders of USB devices.
+  /// Where this machine's device nodes are: /dev, /dev/input, and the folders of USB devices.
   static std::vector<std::filesystem::path> device_folders();
   HotplugWatch(HotplugWatch&& other) noexcept;
   HotplugWatch& operator=(HotplugWatch&& other) noexcept;

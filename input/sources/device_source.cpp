@@ -23,9 +23,9 @@ class DeviceReader final : public SourceReader {
 
   bool read(TimestampNs now, milliseconds timeout, InputFrame& frame) override {
     const auto sample = driver_->next(now, timeout);
+    const bool used = sample && std::visit([&](const auto& s) { return use(s, frame); }, *sample);
     if (!driver_->connected()) let_go(now, frame);
-    if (!sample) return !frame.events.empty();
-    return std::visit([&](const auto& s) { return use(s, frame); }, *sample);
+    return used || !frame.events.empty() || !frame.touches.empty();
   }
   bool connected() const override { return driver_->connected(); }
   std::string reason() const override { return driver_->reason(); }
@@ -62,6 +62,13 @@ class DeviceReader final : public SourceReader {
     return true;
   }
 
+  bool use(const TouchSample& sample, InputFrame& frame) {
+    frame.time = sample.time;
+    frame.touches = sample.frames;
+    touched_ = !sample.frames.back().contacts.empty();
+    return true;
+  }
+
   void change_buttons(TimestampNs time, std::uint64_t buttons, InputFrame& frame) {
     for (int i = 0; i < kMostButtons; ++i) {
       const bool down = (buttons >> i & 1U) != 0;
@@ -75,9 +82,13 @@ class DeviceReader final : public SourceReader {
     }
     buttons_ = buttons;
   }
-  /// An unplugged puck is at rest and holds no button.
+  /// An unplugged puck is at rest and holds no button; no finger is on a panel that is gone.
   void let_go(TimestampNs now, InputFrame& frame) {
     frame.puck.reset();
+    if (std::exchange(touched_, false)) {
+      frame.time = now;
+      frame.touches.push_back({now, {}, true});
+    }
     if (buttons_ == 0) return;
     frame.time = now;
     change_buttons(now, 0, frame);
@@ -90,6 +101,7 @@ class DeviceReader final : public SourceReader {
   std::optional<lmc1::Calibration> calibration_;
   std::optional<HandTracker> tracker_;  ///< for `calibration_`
   Hands hands_;
+  bool touched_ = false;  ///< fingers are on the glass
 };
 
 }  // namespace
@@ -100,7 +112,8 @@ Result<std::unique_ptr<InputSource>> make_device_source(const DriverEntry& drive
                        fmt::format("input {}", driver.input.source.substr(0, driver.input.source.find(':'))));
   if (driver.input.source.find(':') != std::string_view::npos) static_cast<void>(options.first_word());  // "opentrack"
   HeadPlacement placement;
-  if (driver.gives != Gives::kPuck) placement.screen_from_tracker = options.placement(driver.usual_place);
+  const bool told_at_rest = driver.gives != Gives::kPuck && driver.gives != Gives::kTouches;
+  if (told_at_rest) placement.screen_from_tracker = options.placement(driver.usual_place);
   if (driver.gives == Gives::kHead) {
     placement.eyes_m = 1e-3 * options.triple("eyes", 500.0, glm::dvec3(0.0));
     placement.ipd_m = 1e-3 * options.number("ipd", 40.0, 90.0, 63.0);
@@ -113,7 +126,7 @@ Result<std::unique_ptr<InputSource>> make_device_source(const DriverEntry& drive
   if (!driver.input.lacks.empty()) traits.note = fmt::format("{}: {}", driver.input.source, driver.input.lacks);
   traits.has_end = feed.ended != nullptr;
   traits.before_poll = std::move(feed.before_poll);
-  if (driver.gives != Gives::kPuck) traits.silent_ns = kDeviceSilentNs;  // a puck at rest says nothing
+  if (told_at_rest) traits.silent_ns = kDeviceSilentNs;
   if (driver.bus == Bus::kUdp || driver.bus == Bus::kTcp || driver.bus == Bus::kUnixSocket)
     traits.retry_ns = kServerRetryNs;
   return make_threaded_source(

@@ -65,13 +65,14 @@ std::vector<std::string_view> input_source_names() {
   return names;
 }
 
-std::vector<std::string> present_inputs(const std::vector<DeviceInfo>& present) {
+std::vector<std::string> present_inputs(const std::vector<DeviceInfo>& present, bool whole_screen) {
   std::vector<std::string> out;
-  for (const DriverEntry* const driver : taken_unasked(present)) out.emplace_back(driver->input.source);
+  for (const DriverEntry* const driver : taken_unasked(present))
+    if (whole_screen || !driver->input.whole_screen) out.emplace_back(driver->input.source);
   return out;
 }
 
-std::vector<std::string> present_inputs() { return present_inputs(list_devices()); }
+std::vector<std::string> present_inputs(bool whole_screen) { return present_inputs(list_devices(), whole_screen); }
 
 Result<std::unique_ptr<InputSource>> make_input(std::string_view text, const InputConfig& base) {
   DUBSAR_ASSIGN(SourceSpec spec, parse_source(text));

@@ -8,12 +8,13 @@
 #include <thread>
 #include <utility>
 
+#include "input/event_limit.h"
+
 namespace dubsar {
 namespace {
 
 constexpr milliseconds kReadTimeout{20};  // how long the destructor may have to wait
 constexpr milliseconds kIdle{2};          // between looks at a bell while the device is lost
-constexpr std::size_t kMostEvents = 4096;
 
 /// What a reader has to say besides its measurements.
 struct ReaderState {
@@ -36,6 +37,7 @@ class ReadInput {
     frame_.puck = measured->puck;
     frame_.hands = measured->hands;
     frame_.heads = measured->heads;
+    for (const TouchFrame& touch : measured->touches) add_touch_frame(frame_.touches, touch, kMostTouchFrames);
     const std::size_t room = kMostEvents - std::min(kMostEvents, frame_.events.size());
     const auto count = static_cast<std::ptrdiff_t>(std::min(room, measured->events.size()));
     frame_.events.insert(frame_.events.end(), measured->events.begin(), measured->events.begin() + count);
@@ -51,6 +53,7 @@ class ReadInput {
   /// InputSource::poll().
   Freshness take(TimestampNs now, const ThreadedSourceTraits& traits, InputFrame& newest) {
     newest.events.clear();
+    newest.touches.clear();
     const std::lock_guard lock(mutex_);
     const bool fresh = std::exchange(fresh_, false);
     if (fresh) {
@@ -59,6 +62,7 @@ class ReadInput {
       newest.hands = frame_.hands;
       newest.heads = frame_.heads;
       newest.events.swap(frame_.events);
+      newest.touches.swap(frame_.touches);
     }
     if (now - frame_.time > traits.stale_ns) {
       newest.hands.clear();
@@ -84,7 +88,7 @@ class ReadInput {
 
  private:
   mutable std::mutex mutex_;
-  InputFrame frame_;  // events: since the last take
+  InputFrame frame_;  // events and touches: since the last take
   ReaderState state_;
   bool fresh_ = false, measured_ = false, silent_ = false;
 };
@@ -130,6 +134,7 @@ class ReaderTurns {
     }
     if (recentre_.exchange(false)) reader_->recentre();
     frame_.events.clear();
+    frame_.touches.clear();
     const bool any = reader_->read(now, timeout, frame_);
     const bool connected = reader_->connected();
     read.put({connected, reader_->finished(), connected ? "" : reader_->reason(), reader_->note()},

@@ -15,7 +15,7 @@ class SourceReader {
  public:
   virtual ~SourceReader() = default;
   /// Waits at most `timeout` for the device, opening it when that is due; true when `frame` (poses of the
-  /// last time, no events) got something new. Its times are those of the session's clock.
+  /// last time, no events, no touches) got something new. Its times are those of the session's clock.
   virtual bool read(TimestampNs now, milliseconds timeout, InputFrame& frame) = 0;
   virtual bool connected() const = 0;
   virtual std::string reason() const = 0;          ///< why it is not connected
