@@ -48,16 +48,23 @@ json head_json(const HeadFrame& head) {
   return out;
 }
 
+bool has_down(EventKind kind) {
+  return kind == EventKind::kButton || kind == EventKind::kKey || kind == EventKind::kPinch;
+}
+
 json event_json(const InputEvent& event) {
   json out{{"t", event.time}, {"kind", static_cast<int>(event.kind)}, {"mods", event.modifiers}};
   if (event.kind == EventKind::kMotion || event.kind == EventKind::kWheel) out["by"] = {event.motion.x, event.motion.y};
   if (event.kind == EventKind::kButton) out["button"] = static_cast<int>(event.button);
+  if (event.kind == EventKind::kPinch)
+    out["pinch"] = {event.pinch.by.x, event.pinch.by.y, event.pinch.factor, event.pinch.roll_rad};
+  if (event.touched) out["touched"] = true;
   if (event.kind == EventKind::kKey) out["key"] = event.key;
   if (event.repeat) out["repeat"] = true;
   if (event.at) out["at"] = {event.at->x, event.at->y};
   if (event.lever) out["lever"] = *event.lever;
   if (event.eye) out["eye"] = {event.eye->x, event.eye->y, event.eye->z};
-  if (event.kind == EventKind::kButton || event.kind == EventKind::kKey) out["down"] = event.down;
+  if (has_down(event.kind)) out["down"] = event.down;
   return out;
 }
 
@@ -167,7 +174,7 @@ HeadFrame read_head(LineReader& read, const json& object) {
 InputEvent read_event(LineReader& read, const json& object) {
   InputEvent event;
   event.time = read.time(object);
-  event.kind = static_cast<EventKind>(read.whole(read.get(object, "kind"), "kind", 0, 3));
+  event.kind = static_cast<EventKind>(read.whole(read.get(object, "kind"), "kind", 0, 4));
   event.modifiers = static_cast<std::uint8_t>(read.whole(read.get(object, "mods"), "mods", 0, 7));
   if (event.kind == EventKind::kMotion || event.kind == EventKind::kWheel) {
     const auto by = read.reals<2>(read.get(object, "by"), "by");
@@ -175,7 +182,13 @@ InputEvent read_event(LineReader& read, const json& object) {
   }
   if (event.kind == EventKind::kButton)
     event.button = static_cast<MouseButton>(read.whole(read.get(object, "button"), "button", 0, 2));
-  if (event.kind == EventKind::kButton || event.kind == EventKind::kKey) event.down = read.truth(object, "down");
+  if (event.kind == EventKind::kPinch) {
+    const auto pinch = read.reals<4>(read.get(object, "pinch"), "pinch");
+    event.pinch = {{pinch[0], pinch[1]}, pinch[2], pinch[3]};
+    if (event.pinch.factor <= 0.0) read.complain("pinch has a factor that is not above 0");
+  }
+  if (object.is_object() && object.contains("touched")) event.touched = read.truth(object, "touched");
+  if (has_down(event.kind)) event.down = read.truth(object, "down");
   if (object.is_object() && object.contains("repeat")) event.repeat = read.truth(object, "repeat");
   if (object.is_object() && object.contains("lever")) event.lever = read.real(object.at("lever"), "lever");
   if (object.is_object() && object.contains("eye")) event.eye = read.vector(object, "eye");

@@ -11,7 +11,7 @@ constexpr std::size_t kMost = 4096;
 std::vector<InputEvent>::iterator least_missed(std::vector<InputEvent>& queue) {
   const auto value = [](const InputEvent& e) {
     if (e.kind == EventKind::kMotion) return 0;
-    if (e.kind == EventKind::kWheel || e.repeat) return 1;
+    if (e.kind == EventKind::kWheel || e.repeat || (e.kind == EventKind::kPinch && e.down)) return 1;
     return e.down ? 2 : 3;
   };
   return std::min_element(queue.begin(), queue.end(),

@@ -10,8 +10,8 @@
 namespace dubsar {
 
 /// The one queue between a window and who takes its events, in order. Any thread. At most 4096 are kept of each kind of
-/// source; neighbouring motions are joined. When it is full the oldest motion goes, else the oldest turn of the wheel
-/// or repeat of a key, else the oldest press; releases stay, so that nothing is held for ever.
+/// source; neighbouring motions are joined. When it is full the oldest motion goes, else the oldest turn of the wheel,
+/// step of fingers or repeat of a key, else the oldest press; releases stay, so that nothing is held for ever.
 class WindowEvents {
  public:
   void push(const InputEvent& event);

@@ -12,10 +12,10 @@
 namespace dubsar {
 namespace {
 
-constexpr double kMmPerWindow = 200.0;      // of a hand's way, when it pans by a window's height
-constexpr double kPixelsPerWindow = 900.0;  // the same for the mouse
+constexpr double kMmPerWindow = 200.0;  // of a hand's way, when it pans by a window's height
 constexpr TimestampNs kDoubleClickNs = 400'000'000;
 constexpr double kSamePlace = 0.01;  // heights of the window
+constexpr double kSameTouch = 0.03;  // of a finger: 1 cm of a panel of 27 inches
 constexpr double kFine = 0.25;
 constexpr double kLightLow = 5.0, kLightHigh = 85.0;
 
@@ -53,7 +53,7 @@ void Navigator::go_to(const ViewState& view, TimestampNs now, bool glide) {
 
 void Navigator::let_go_of_mouse() {
   mouse_.buttons = {};
-  mouse_.dragging = false;
+  mouse_.dragging = mouse_.pinching = false;
 }
 
 void Navigator::turn_to_next_side(const glm::dvec3& axis, TimestampNs now) {
@@ -84,7 +84,7 @@ void Navigator::use_button(const InputEvent& event, TimestampNs now) {
   if (mouse_.action == Action::kNone || !claim(Control::kMouse, now)) return;
   ++movement_;
   const bool twice = event.at && mouse_.pressed_at && event.time - mouse_.pressed <= kDoubleClickNs &&
-                     glm::length(*event.at - *mouse_.pressed_at) <= kSamePlace;
+                     glm::length(*event.at - *mouse_.pressed_at) <= (event.touched ? kSameTouch : kSamePlace);
   mouse_.pressed = event.time;
   mouse_.pressed_at = event.at;
   mouse_.held.reset();
@@ -120,8 +120,33 @@ void Navigator::drag_by_mouse(const InputEvent& event) {
   if (mouse_.action == Action::kLight) drag(Action::kLight, glm::dvec2(px.x, -px.y), mouse.light_deg_per_px);
 }
 
+/// The object goes with the fingers, by the plane in which the surface stands that is between them.
+void Navigator::use_pinch(const InputEvent& event, TimestampNs now) {
+  if (!event.down || !event.at) {
+    mouse_.pinching = false;
+    return;
+  }
+  if (!claim(Control::kMouse, now)) return;
+  if (!mouse_.pinching) {
+    ++movement_;
+    glide_.stop();
+  }
+  mouse_.pinching = true;
+  if (glide_.running()) return;
+  InputEvent before = event;
+  *before.at -= event.pinch.by;
+  const glm::dvec2 from = held_at(before), to = held_at(event);
+  view_.pan += to - from;
+  zoom_about(to, event.pinch.factor);
+  const glm::dvec2 arm = view_.pan - to;
+  const double c = std::cos(event.pinch.roll_rad), s = std::sin(event.pinch.roll_rad);
+  view_.pan = to + glm::dvec2(c * arm.x - s * arm.y, s * arm.x + c * arm.y);
+  turn_view(view_, {0.0, 0.0, event.pinch.roll_rad});
+}
+
 void Navigator::use_mouse(const InputEvent& event, TimestampNs now) {
   if (event.kind == EventKind::kButton) return use_button(event, now);
+  if (event.kind == EventKind::kPinch) return use_pinch(event, now);
   if (event.kind == EventKind::kWheel) {
     if (chord_action(mapping_.mouse, event.modifiers, "wheel") != Action::kZoom || !claim(Control::kMouse, now)) return;
     if (claims_.fresh()) ++movement_;
@@ -238,7 +263,7 @@ void Navigator::update(TimestampNs now, const InputFrame& frame, const SteeringH
   const double dt_s = last_update_ < 0 ? 0.0 : std::max(0.0, seconds(now - last_update_));
   last_update_ = now;
   selected_m_.reset();
-  claims_.advance(now, hold_.mode() != HandMode::kNone || mouse_.dragging);
+  claims_.advance(now, hold_.mode() != HandMode::kNone || mouse_.dragging || mouse_.pinching);
   use_events(now, frame);
   use_puck(now, frame.puck, std::min(dt_s, 0.1));
   use_hands(now, hands, standing, dt_s);

@@ -22,7 +22,7 @@ namespace dubsar {
 struct MouseDrag {
   std::array<bool, 3> buttons{};
   Action action = Action::kNone;
-  bool dragging = false;
+  bool dragging = false, pinching = false;
   std::optional<glm::dvec2> at, pressed_at;  ///< heights of the window
   std::optional<HeldPlace> held;             ///< of the surface, under the pointer; none: the drag turns by its length
   TimestampNs pressed = -1;                  ///< the last press, for clicks that come in pairs
@@ -58,7 +58,7 @@ class Navigator {
   /// The view that a command made: at once, or as a glide.
   void go_to(const ViewState& view, TimestampNs now, bool glide);
   void set_home(const ViewState& home) { home_ = home; }
-  /// Whoever held a mouse button is gone without letting go of it.
+  /// Whoever held a mouse button or had fingers on the glass is gone without letting go.
   void let_go_of_mouse();
 
  private:
@@ -70,6 +70,7 @@ class Navigator {
   void use_mouse(const InputEvent& event, TimestampNs now);
   void use_button(const InputEvent& event, TimestampNs now);
   void drag_by_mouse(const InputEvent& event);
+  void use_pinch(const InputEvent& event, TimestampNs now);
   void turn_by_mouse(const glm::dvec2& px, const std::optional<glm::dvec2>& moved, double gain);
   void zoom_about(const std::optional<glm::dvec2>& at, double factor);
   void use_puck(TimestampNs now, const std::optional<PuckMotion>& puck, double dt_s);

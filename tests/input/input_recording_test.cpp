@@ -63,7 +63,10 @@ TEST(Recording, EverythingInAFrameSurvives) {
   frame.frame.events = {{300, EventKind::kWheel, {0.5, -2}, {}, false, kShift | kAlt, {}},
                         {310, EventKind::kButton, {}, MouseButton::kMiddle, true, kControl, {}},
                         {320, EventKind::kKey, {}, {}, true, 0, "page_up", true},
-                        {330, EventKind::kMotion, {3, 4}, {}, false, 0, {}, false, glm::dvec2(-0.25, 0.5)}};
+                        {330, EventKind::kMotion, {3, 4}, {}, false, 0, {}, false, glm::dvec2(-0.25, 0.5)},
+                        {340, EventKind::kPinch, {}, {}, true, 0, {}, false, glm::dvec2(0.1, 0.2)}};
+  frame.frame.events[4].pinch = {{0.01, -0.02}, 1.25, -0.5};
+  frame.frame.events[4].touched = true;
   frame.frame.puck = PuckMotion{399, {0.1, -0.2, 0.3}, {1, 0, -1}};
   HandFrame hand;
   hand.time = 398;
@@ -92,6 +95,11 @@ TEST(Recording, EverythingInAFrameSurvives) {
   EXPECT_EQ(back[0].frame.events[1].button, MouseButton::kMiddle);
   EXPECT_TRUE(back[0].frame.events[2].repeat);
   EXPECT_EQ(back[0].frame.events[3].at, glm::dvec2(-0.25, 0.5));
+  EXPECT_EQ(back[0].frame.events[4].pinch.by, glm::dvec2(0.01, -0.02));
+  EXPECT_EQ(back[0].frame.events[4].pinch.factor, 1.25);
+  EXPECT_EQ(back[0].frame.events[4].pinch.roll_rad, -0.5);
+  EXPECT_TRUE(back[0].frame.events[4].touched && back[0].frame.events[4].down);
+  EXPECT_FALSE(back[0].frame.events[3].touched);
 }
 
 TEST(Recording, ALastLineThatIsNotWholeIsLeftOutAndNothingElseIs) {
