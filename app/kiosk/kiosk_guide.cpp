@@ -30,9 +30,11 @@ double towards(double from, double to, double step) {
   return from < to ? std::min(from + step, to) : std::max(from - step, to);
 }
 
+bool is_touched(const SourceRow& row) { return row.health == SourceHealth::kPresent && is_touch_panel(row); }
+
 bool sees_hands(const SourceRow& row) {
   return row.health == SourceHealth::kPresent && row.spec != "mouse" && row.spec != "keyboard" &&
-         row.spec.rfind("head:", 0) != 0;
+         !is_touch_panel(row) && !row.spec.starts_with("head:");
 }
 
 }  // namespace
@@ -77,8 +79,11 @@ void KioskGuide::leave_out(std::size_t object) {
 }
 
 bool KioskGuide::takes(const InputEvent& event, TimestampNs now) {
-  if (event.kind == EventKind::kButton && event.down && event.at)
-    asked_.press = *event.at * glm::dvec2(1.0 / asked_.aspect, 1.0);
+  if (event.kind == EventKind::kButton && event.down && event.at) {
+    const glm::dvec2 at = *event.at * glm::dvec2(1.0 / asked_.aspect, 1.0);
+    asked_.press = at;
+    if (sign_at(at, signs_, asked_.aspect)) return true;  // two taps on a sign are none on the object
+  }
   if (event.kind != EventKind::kKey) return false;  // a finger or a mouse may turn the object as a hand does
   const bool plain = (event.modifiers & (kControl | kAlt)) == 0;
   if (event.down && !event.repeat && plain)
@@ -90,6 +95,7 @@ VisitMoment KioskGuide::notice(const GuideMoment& moment) {
   const Steered& steered = moment.steered;
   VisitMoment out;
   out.tracker = std::any_of(moment.sources.begin(), moment.sources.end(), sees_hands);
+  out.touch = std::any_of(moment.sources.begin(), moment.sources.end(), is_touched);
   out.asleep = is_quiet(parts_.profile.quiet, parts_.wall().minute_of_day);
   out.head = steered.eyes.presence == Presence::kTracked;
   out.hands = static_cast<int>(steered.hands.size());
@@ -107,7 +113,9 @@ VisitMoment KioskGuide::notice(const GuideMoment& moment) {
     out.hands = std::max(out.hands, 1);
     out.hand = HandState::kHolding;
     if (view_) out.turned_deg = turn_between_deg(view_->rotation, steered.view.rotation);
+    if (view_) out.zoomed = std::abs(std::log(steered.view.zoom / view_->zoom));
   }
+  if (asked_.press) out.hands = std::max(out.hands, 1);  // on a sign
   out.swiped = steered.swiped;
   out.can_open = can_unpack(moment.document);
   out.toured = tour_.walks();

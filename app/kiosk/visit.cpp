@@ -149,7 +149,7 @@ VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
     phase_ = course_.done[index(Lesson::kTurn)] ? VisitPhase::kFree : VisitPhase::kArrived;  // back in time
   if (phase_ == VisitPhase::kArrived || phase_ == VisitPhase::kFree) {
     learn(moment);
-    if (moment.toured)
+    if (moment.toured || (moment.touch && !moment.tracker))  // fingers need no lesson in fists
       course_.now.reset();
     else
       teach(last_, moment);
@@ -180,7 +180,8 @@ VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
     out.lesson_s = 1e-9 * static_cast<double>(last_);
     out.line = Line::kShowHand;
   }
-  if (phase_ == VisitPhase::kAttract) out.line = moment.tracker ? Line::kInvite : Line::kNoTracker;
+  if (phase_ == VisitPhase::kAttract)
+    out.line = moment.tracker ? Line::kInvite : moment.touch ? Line::kTouch : Line::kNoTracker;
   if (phase_ == VisitPhase::kArrived || phase_ == VisitPhase::kFree) out.line = line(moment);
   return out;
 }

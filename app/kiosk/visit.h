@@ -19,6 +19,7 @@ inline constexpr std::size_t kLessonCount = 6;
 /// What is known at one moment.
 struct VisitMoment {
   bool tracker = true;                 ///< there is a hand sensor
+  bool touch = false;                  ///< there is a touch panel
   bool asleep = false;                 ///< quiet hours
   bool head = false;                   ///< somebody is seen, with or without hands
   int hands = 0;                       ///< that are seen

@@ -25,7 +25,8 @@ enum class Line : std::uint8_t {
   kNearer,        ///< the hand is too far from the sensor
   kOpenFirst,     ///< a fist came in, which cannot take hold
   kSomebodyElse,  ///< another person holds the object
-  kNoTracker,     ///< there is no hand sensor
+  kTouch,         ///< nobody is there, and there is a touch panel and no hand sensor
+  kNoTracker,     ///< there is neither
   kNoPanel,       ///< the display is not the one that was set up
   kNoObject,      ///< the object cannot be shown
   kTourSealed,    ///< titles of the tour that any tablet has, and what is said below them
@@ -41,7 +42,7 @@ enum class Line : std::uint8_t {
   kTourLine,
   kTourLineText,
 };
-inline constexpr std::size_t kLineCount = 25;
+inline constexpr std::size_t kLineCount = 26;
 
 /// Name of a line in files of words: "show_hand".
 std::string_view line_name(Line line) noexcept;

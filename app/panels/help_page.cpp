@@ -50,6 +50,15 @@ HelpSection mouse_section(const MouseMapping& mouse) {
   return out;
 }
 
+/// A finger is the left button alone.
+HelpSection touch_section(const MouseMapping& mouse) {
+  HelpSection out{"Touch", {}};
+  add(out, "a finger", drag_words(chord_action(mouse, kNoModifier, "left")));
+  add(out, "two fingers", "zoom, move and roll");
+  add(out, "a tap", "click");
+  return out;
+}
+
 constexpr std::size_t kLongestList = 72;  // letters; what is longer is for the palette
 
 /// "1", "2", "3" ... or "alt+1", "alt+2" ...
@@ -114,7 +123,8 @@ std::vector<HelpSection> command_sections(const KeyTable& keys, bool keyboard_st
 std::vector<HelpSection> help_page(const Mapping& mapping, const KeyTable& keys, const HelpDevices& there) {
   std::vector<HelpSection> out{mouse_section(mapping.mouse),
                                hand_section(mapping.hands),
-                               {"Puck", {{"push", "move and zoom"}, {"twist", "turn"}}}};
+                               {"Puck", {{"push", "move and zoom"}, {"twist", "turn"}}},
+                               touch_section(mapping.mouse)};
   const auto listens = [&](Control control) {
     return std::find(mapping.priority.begin(), mapping.priority.end(), control) != mapping.priority.end();
   };
@@ -122,6 +132,7 @@ std::vector<HelpSection> help_page(const Mapping& mapping, const KeyTable& keys,
     out.push_back(std::move(section));
   std::erase_if(out, [&](const HelpSection& s) {
     return s.rows.empty() || (s.title == "Mouse" && !listens(Control::kMouse)) ||
+           (s.title == "Touch" && !(there.touch && listens(Control::kMouse))) ||
            (s.title == "Hands" && !(there.more && listens(Control::kHands))) ||
            (s.title == "Puck" && !(there.more && listens(Control::kPuck)));
   });

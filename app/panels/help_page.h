@@ -23,6 +23,7 @@ struct HelpSection {
 struct HelpDevices {
   bool more = true;      ///< devices that follow hands or heads, or have a puck
   bool two_eyes = true;  ///< the display has a view for each eye
+  bool touch = false;    ///< a touch panel
 };
 
 /// Sections for the mouse, hands and puck of a mapping, and for all commands that have keys. Sections without a row are

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -318,14 +319,18 @@ bool Overlay::take(const InputEvent& event, const glm::dvec2& layout) {
   const Turn turn(state_);
   if (!text_.panels || !text_.help.empty()) return false;
   if (event.kind == EventKind::kKey) return take_key(event, layout);
-  if (!event.at) return false;
+  if (event.kind == EventKind::kPinch) return false;  // fingers have the object between them
+  const bool dropped = event.kind == EventKind::kButton && !event.down && !event.at;  // without a click
+  if (!event.at && !dropped) return false;
   ImGuiIO& io = ImGui::GetIO();
   io.KeyCtrl = (event.modifiers & kControl) != 0;
   io.KeyShift = (event.modifiers & kShift) != 0;
   const auto button = static_cast<std::size_t>(event.button);
   const bool releases_ours = event.kind == EventKind::kButton && !event.down && held_[button];
-  io.MousePos = ImVec2(static_cast<float>(0.5 * layout.x + event.at->x * layout.y),
-                       static_cast<float>((0.5 - event.at->y) * layout.y));
+  constexpr float kNowhere = -std::numeric_limits<float>::max();
+  io.MousePos = dropped ? ImVec2(kNowhere, kNowhere)
+                        : ImVec2(static_cast<float>(0.5 * layout.x + event.at->x * layout.y),
+                                 static_cast<float>((0.5 - event.at->y) * layout.y));
   frame(layout, scale_);  // what is under the pointer now
   const bool ours = io.WantCaptureMouse && !object_held_;
   if (event.kind == EventKind::kButton && event.down) {

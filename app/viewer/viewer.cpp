@@ -108,7 +108,8 @@ Result<void> Viewer::start_sources() {
     config.hotplug = HotplugBell::of_this_machine();
     if (inputs.empty()) {
       inputs = {"mouse", "keyboard"};
-      for (std::string& spec : present_inputs()) inputs.push_back(std::move(spec));
+      for (std::string& spec : present_inputs(given_.presenter.window()->fullscreen()))
+        inputs.push_back(std::move(spec));
       if (displays_.worn) inputs.emplace_back("openxr");
     }
   }
@@ -171,6 +172,7 @@ Result<void> Viewer::swap_eyes() {
 
 bool Viewer::toggle_source(std::size_t index) {
   if (!sources_->toggle(index)) return false;
+  let_go_of_fingers();
   steering_->let_go_of_mouse();  // it may have been the mouse, with a button down
   at_.help_made = -1;
   return true;
@@ -281,6 +283,7 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
   sources_->tick(now);
   take_surface();
   steering_->steer(now);
+  if (use_fingers(now)) steering_->steer(now);
   for (const InputEvent& event : steering_->take_keys())
     if (given_.options.guide == nullptr || !given_.options.guide->takes(event, now)) use_key(event);
   say_steps(now);

@@ -19,6 +19,7 @@
 #include "app/viewer/steering/steering.h"
 #include "app/viewer/surface_tools.h"
 #include "display/render/images/label_font.h"
+#include "input/gestures/touch_pointer.h"
 #include "input/input_recorder.h"
 #include "input/window_events.h"
 #include "input/worn_feed.h"
@@ -180,11 +181,12 @@ class Viewer final : public Workplace {
     std::optional<InputEvent> press;      ///< with a tool in the hand: it becomes a click, or a drag that turns
     std::optional<InputEvent> light_key;  ///< held: a drag moves the light
     bool light_dragged = false;           ///< since it went down
-    std::optional<InputEvent> wheeled;    ///< the last turn of the wheel, with what was found under it
+    std::optional<InputEvent> wheeled;    ///< the last turn of the wheel or step of fingers, with what was found there
     glm::dvec2 pointer{0.0};              ///< where it was last, as InputEvent::at
     std::unique_ptr<SliceDesk> slices;
     std::optional<ReachedSides> reached;
     std::optional<BoxDrag> held_side;  ///< of the box of cuts
+    TouchPointer fingers;
   };
   Viewer(const TriMesh& mesh, const ViewOptions& options, Presenter& presenter, const Clock& clock, Shelf* shelf)
       : given_{&mesh, options, presenter, clock, shelf, {}} {}
@@ -202,6 +204,9 @@ class Viewer final : public Workplace {
   FilesState files_state(TimestampNs now);
   void use_key(const InputEvent& event);
   void expect(const InputEvent& event);
+  bool use_fingers(TimestampNs now);
+  void let_go_of_fingers();
+  void pass_on(const InputEvent& event);
   void type_what_waited(TimestampNs now);
   void lead(TimestampNs now, const Steered& steered);
   Result<void> obey(std::string_view command, std::uint64_t merge);

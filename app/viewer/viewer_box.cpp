@@ -39,12 +39,12 @@ std::optional<std::size_t> Viewer::touched_handle(const BoxPicture& picture) con
 
 /// A press on a handle takes it: its side is cut as far as the pointer takes it, all of the drag as one step.
 bool Viewer::take_handle(const InputEvent& event) {
-  if (!event.at || event.kind == EventKind::kKey || event.kind == EventKind::kWheel) return false;
   const bool left = event.kind == EventKind::kButton && event.button == MouseButton::kLeft;
   if (tools_.held_side && left && !event.down) {
     tools_.held_side.reset();
     return true;
   }
+  if (!event.at || (event.kind != EventKind::kButton && event.kind != EventKind::kMotion)) return false;
   const auto picture = box_picture();
   if (!picture) {
     tools_.held_side.reset();

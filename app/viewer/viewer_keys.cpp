@@ -16,7 +16,8 @@ constexpr std::uint64_t kKeySteps = std::uint64_t{1} << 63;  // told apart from 
 void Viewer::handle(InputEvent event) {
   if (given_.options.time.fps > 0) event.time = given_.clock.now();
   if (event.at) tools_.pointer = *event.at;
-  if (event.kind != EventKind::kWheel) tools_.wheeled.reset();
+  const bool goes_on = event.kind == EventKind::kWheel || (event.kind == EventKind::kPinch && event.down);
+  if (!goes_on) tools_.wheeled.reset();
   if (given_.options.guide != nullptr && given_.options.guide->takes(event, given_.clock.now())) return;
   if (tools_.field_since >= 0 && event.kind == EventKind::kKey) {
     tools_.typed.push_back(std::move(event));
@@ -30,7 +31,8 @@ void Viewer::handle(InputEvent event) {
   }
   if (event.at && event.kind != EventKind::kKey) editor_->desk().pointing.at = event.at;
   if (take_light(event) || take_handle(event) || take_click(event)) return;
-  if (event.kind == EventKind::kWheel || (event.kind == EventKind::kButton && event.down)) tell_depth(event);
+  const bool pressed = event.down && (event.kind == EventKind::kButton || event.kind == EventKind::kPinch);
+  if (event.kind == EventKind::kWheel || pressed) tell_depth(event);
   event = without_aside(std::move(event));
   const auto rows = sources_->rows();
   const bool keyboard = std::any_of(rows.begin(), rows.end(), [](const SourceRow& row) {
@@ -45,7 +47,7 @@ void Viewer::handle(InputEvent event) {
     return;
   }
   expect(event);
-  events_.push(event);
+  pass_on(event);
 }
 
 /// Keys come in their turn, which may be a picture later; what follows them has to know already what they will do.

@@ -32,7 +32,7 @@ bool Viewer::take_light(const InputEvent& event) {
     key.reset();
     if (tools_.light_dragged) return true;
     down.time = event.time;
-    events_.push(down);
+    pass_on(down);
     return false;
   }
   if (!key || !event.at) return false;

@@ -90,12 +90,11 @@ void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
     state.input_age_ms = figures.input_age_ms;
     state.sources = sources();
     text.help = state_page(state);
-    const HelpDevices there{std::any_of(state.sources.begin(), state.sources.end(),
-                                        [](const SourceRow& row) {
-                                          return row.health == SourceHealth::kPresent && row.spec != "mouse" &&
-                                                 row.spec != "keyboard";
-                                        }),
-                            state.traits.views == 2 || state.traits.fields == 2};
+    HelpDevices there{false, state.traits.views == 2 || state.traits.fields == 2};
+    for (const SourceRow& row : state.sources) {
+      if (row.health != SourceHealth::kPresent || row.spec == "mouse" || row.spec == "keyboard") continue;
+      (is_touch_panel(row) ? there.touch : there.more) = true;
+    }
     for (HelpSection& section : help_page(given_.options.mapping, *said_.keys, there))
       text.help.push_back(std::move(section));
     at_.help_made = now;

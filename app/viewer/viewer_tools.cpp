@@ -34,12 +34,12 @@ std::optional<Picked> Viewer::picked_at(const glm::dvec2& at) const {
 }
 
 /// An event at a place of the window is told where the surface under it stands and where it is seen from. While the
-/// wheel turns at one place that is looked for once.
+/// wheel turns at one place, or the same fingers go on, that is looked for once.
 void Viewer::tell_depth(InputEvent& event) {
   if (!event.at || given_.options.stage.subject == Subject::kPattern || given_.options.stage.pictures) return;
-  const bool wheel = event.kind == EventKind::kWheel;
+  const bool wheel = event.kind == EventKind::kWheel, pinch = event.kind == EventKind::kPinch;
   std::optional<InputEvent>& same = tools_.wheeled;
-  if (wheel && same && same->at == event.at) {
+  if (same && same->kind == event.kind && (pinch || (wheel && same->at == event.at))) {
     event.lever = same->lever;
     event.eye = same->eye;
     return;
@@ -50,7 +50,7 @@ void Viewer::tell_depth(InputEvent& event) {
     event.lever = glm::dvec4(stage_->screen_from_model() * glm::dvec4(picked->at_mm, 1.0)).z / height;
     event.eye = (stage_->camera_mm() - glm::dvec3(stage_->middle_mm(), 0.0)) / height;
   }
-  if (wheel) same = event;
+  if (wheel || pinch) same = event;
 }
 
 /// Who turns and zooms knows nothing of what stands beside the surface.
@@ -68,14 +68,19 @@ bool Viewer::take_click(const InputEvent& event) {
     press = event;
     return true;
   }
-  if (!press || !event.at) return false;
+  if (!press) return false;
+  if (left && !event.down && !event.at) {  // a finger that was none
+    press.reset();
+    return true;
+  }
+  if (!event.at) return false;
   if (left && !event.down) {
     InputEvent click = *press;  // in its turn with the keys before and after it
     press.reset();
     click.kind = EventKind::kKey;
     click.key = kClickKey;
     expect(click);
-    events_.push(click);
+    pass_on(click);
     return true;
   }
   if (event.kind != EventKind::kMotion) return false;
@@ -83,7 +88,7 @@ bool Viewer::take_click(const InputEvent& event) {
   InputEvent begun = *press;
   press.reset();
   tell_depth(begun);
-  events_.push(without_aside(begun));
+  pass_on(without_aside(begun));
   return false;
 }
 

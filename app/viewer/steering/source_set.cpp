@@ -16,6 +16,8 @@ bool is_mistake(ErrorKind kind) noexcept {
          kind == ErrorKind::kBadData;
 }
 
+bool is_touch_panel(const SourceRow& row) { return row.spec == "touch" || row.spec.starts_with("touch:"); }
+
 SourceSet::SourceSet(InputMixer& mixer, const InputConfig& config, MakeInput make)
     : mixer_(mixer), config_(config), make_(std::move(make)) {}
 

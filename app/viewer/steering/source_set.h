@@ -27,6 +27,9 @@ struct SourceRow {
   std::string reason;  ///< of kMissing and kLost; what a present source wants to say
 };
 
+/// Whether it is that of a touch panel.
+bool is_touch_panel(const SourceRow& row);
+
 using MakeInput = std::function<Result<std::unique_ptr<InputSource>>(std::string_view spec, const InputConfig&)>;
 
 /// One thread, except that missing sources are tried again in another one: opening a device may take its

@@ -5,6 +5,8 @@
 #include <condition_variable>
 #include <utility>
 
+#include "input/event_limit.h"
+
 namespace dubsar::app {
 namespace {
 
@@ -29,7 +31,14 @@ void Steering::on_input(std::function<void(TimestampNs, const InputFrame&)> told
 void Steering::steer(TimestampNs now) {
   const std::scoped_lock lock(mutex_);
   steered_ = std::max(steered_, now);  // two threads may have read the clock in the other order
-  const InputFrame& frame = mixer_.poll(steered_);
+  InputFrame frame = mixer_.poll(steered_);
+  for (TouchFrame& touch : std::exchange(frame.touches, {}))
+    add_touch_frame(touches_, std::move(touch), kMostTouchFrames);
+  for (const bool keys : {false, true})
+    for (InputEvent& event : put_.take(keys)) {
+      frame.time = std::max(frame.time, event.time);
+      frame.events.push_back(std::move(event));
+    }
   if (told_) told_(steered_, frame);
   const KeptPerson person = people_.update(steered_, frame);
   navigator_.update(steered_, frame, person.hands, person.standing);
@@ -60,6 +69,11 @@ void Steering::stop() { thread_ = {}; }
 std::vector<InputEvent> Steering::take_keys() {
   const std::scoped_lock lock(mutex_);
   return std::exchange(keys_, {});
+}
+
+std::vector<TouchFrame> Steering::take_touches() {
+  const std::scoped_lock lock(mutex_);
+  return std::exchange(touches_, {});
 }
 
 Steered Steering::look(TimestampNs now, TimestampNs display_time) {

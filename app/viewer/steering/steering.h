@@ -15,6 +15,7 @@
 #include "input/navigation/seen_view.h"
 #include "input/people/hand_marks.h"
 #include "input/people/head_follower.h"
+#include "input/window_events.h"
 
 namespace dubsar::app {
 
@@ -51,6 +52,11 @@ class Steering {
 
   /// Keys of scripts, recordings and pucks that went down since the last call; those of a window do not come this way.
   std::vector<InputEvent> take_keys();
+  /// What fingers on touch panels did since the last call; whoever knows where the window is places them, and puts what
+  /// comes of it back.
+  std::vector<TouchFrame> take_touches();
+  /// With the next steer(), as if a source had told it.
+  void put(const InputEvent& event) { put_.push(event); }
   /// What a picture shall show whose light reaches the eye at `display_time`.
   Steered look(TimestampNs now, TimestampNs display_time);
 
@@ -76,6 +82,8 @@ class Steering {
   TimestampNs steered_ = 0, newest_input_ = 0, used_input_ = 0;
   Steered since_{};  // what happened since the last look()
   std::vector<InputEvent> keys_;
+  std::vector<TouchFrame> touches_;
+  WindowEvents put_;  // has its own mutex
   std::jthread thread_;
 };
 

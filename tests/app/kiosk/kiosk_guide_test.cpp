@@ -63,6 +63,7 @@ class Kiosk {
   }
   KioskGuide& guide() { return *guide_; }
   const Document& document() const { return document_; }
+  void set_sources(std::vector<SourceRow> rows) { rows_ = std::move(rows); }
   void set_minute(int minute) { minute_ = minute; }
   /// The object's file is being read, and what is shown has no parts yet.
   void reads() {
@@ -234,8 +235,44 @@ TEST(KioskGuide, AFingerOnTheGlassChoosesASignAtOnce) {
   event.down = true;
   const auto sign = place_signs(std::array{Sign::kTour}, 600.0 / 340.0).front();
   event.at = sign.at * glm::dvec2(600.0 / 340.0, 1.0);
-  kiosk.guide().takes(event, 0);
+  EXPECT_TRUE(kiosk.guide().takes(event, 0)) << "twice on a sign is not twice on the object";
   EXPECT_TRUE(kiosk.go_on(0.1, with_hand(HandState::kReady)).scene);
+  event.at = glm::dvec2(0.0, 0.0);
+  EXPECT_FALSE(kiosk.guide().takes(event, 0));
+}
+
+TEST(KioskGuide, WithATouchPanelAloneItInvitesFingersAndTeachesNoFists) {
+  Kiosk kiosk;
+  const Words words;
+  EXPECT_EQ(kiosk.go_on(1).picture->line, words.say(Line::kInvite, "en"));
+  kiosk.set_sources({{"mouse", SourceHealth::kPresent, ""}, {"touch:turn=90", SourceHealth::kPresent, ""}});
+  EXPECT_EQ(kiosk.go_on(1).picture->line, words.say(Line::kTouch, "en"));
+  EXPECT_FALSE(kiosk.go_on(1).picture->lesson);
+  Steered touched;
+  touched.control = Control::kMouse;
+  for (int i = 0; i < 40; ++i) {
+    touched.view.rotation = turn_of({0, 0.02 * i, 0});
+    touched.view.zoom = 1.0 + 0.01 * i;
+    EXPECT_FALSE(kiosk.go_on(0.05, touched).picture->lesson);
+  }
+  EXPECT_EQ(kiosk.guide().visit().counts().visits, 1);
+  EXPECT_EQ(kiosk.guide().visit().counts().done[static_cast<std::size_t>(Lesson::kTurn)], 1);
+  EXPECT_EQ(kiosk.guide().visit().counts().done[static_cast<std::size_t>(Lesson::kTwoHands)], 1);
+  EXPECT_FALSE(kiosk.go_on(0.1, Steered()).picture->signs.empty()) << "what a tap can choose is there";
+  kiosk.set_sources({{"mouse", SourceHealth::kPresent, ""}, {"touch", SourceHealth::kLost, "unplugged"}});
+  kiosk.go_on(120);
+  EXPECT_EQ(kiosk.go_on(1).picture->line, words.say(Line::kNoTracker, "en"));
+}
+
+TEST(KioskGuide, ATapOnASignIsSomebodyWhoIsThere) {
+  Kiosk kiosk;
+  InputEvent event;
+  event.kind = EventKind::kButton;
+  event.down = true;
+  event.at = glm::dvec2(0.0, 0.0);
+  kiosk.guide().takes(event, 0);
+  kiosk.go_on(0.1);
+  EXPECT_EQ(kiosk.guide().visit().counts().visits, 1);
 }
 
 TEST(KioskGuide, GoesBackToTheBeginningWhenNobodyComesBack) {

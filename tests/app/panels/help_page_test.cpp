@@ -48,6 +48,10 @@ TEST(HelpPage, SaysWhatTheMappingSays) {
   EXPECT_EQ(find(plain, "View", "home"), "back to the first view") << "without the button of a puck";
   EXPECT_EQ(find(plain, "This window", "x"), "") << "one view has no eyes to exchange";
   EXPECT_EQ(find(plain, "Mouse", "left drag"), "turn");
+  EXPECT_EQ(find(plain, "Touch", "a finger"), "");
+  const auto touch = help_page(default_mapping().value(), keys, {.more = false, .two_eyes = false, .touch = true});
+  EXPECT_EQ(find(touch, "Touch", "a finger"), "turn");
+  EXPECT_EQ(find(touch, "Touch", "two fingers"), "zoom, move and roll");
   const auto museum =
       help_page(parse_mapping(R"({"hands": {"pinch": "none"}, "mouse": {"alt+left": "light", "wheel": null},
       "priority": ["hands", "mouse"]})",

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "app/kiosk/kiosk_guide.h"
+#include "devices/touch/simulated_touch.h"
 #include "tests/app/viewer/live_fixture.h"
 #include "tests/app/viewer/x_desktop.h"
 
@@ -29,7 +30,14 @@ class LiveKiosk : public ::testing::Test {
     options_.stage.shading = shading_preset("relief").value();
     options_.window = WindowOptions();
     options_.fullscreen = true;
-    options_.inputs = {"mouse"};
+    options_.inputs = {"mouse", "touch"};
+    options_.sources.make = [this](std::string_view spec, const InputConfig& config) {
+      InputConfig with = config;
+      with.reach_device = [this](const DeviceSpec&, const Clock&) -> Result<OpenTransport> {
+        return OpenTransport([this] { return panel_.device().open(); });
+      };
+      return make_input(spec, with);
+    };
     options_.around.notices = false;
     options_.time.longest_s = 120;  // a test that waits for something that never comes
     key_file_ = std::filesystem::path(::testing::TempDir()) / fmt::format("operator_{}", ::getpid());
@@ -54,6 +62,25 @@ class LiveKiosk : public ::testing::Test {
       }
     return count;
   }
+  /// One thing at random that fingers do, or somebody to the panel's cable, or noise on it.
+  void anything_touched(std::mt19937& random) {
+    const auto share = [&] { return static_cast<double>(random() % 1001) / 1000; };
+    const auto kind = random() % 64;
+    const auto finger = static_cast<std::uint32_t>(random() % 8);
+    if (kind == 0) panel_.device().unplug();
+    if (kind <= 3) panel_.device().plug();
+    if (kind == 4) fingers_.clear();
+    if (kind == 5) {
+      std::vector<std::byte> noise(24 * (1 + random() % 4));
+      for (std::byte& b : noise) b = static_cast<std::byte>(random());
+      panel_.device().send(noise);
+    } else if (kind < 30) {
+      fingers_.erase(finger);
+    } else {
+      fingers_[finger] = {share(), share()};
+    }
+    panel_.touch(touched_ += 1'000'000, fingers_);
+  }
   void type(std::string_view digits) {
     for (const char digit : digits) person_->key(std::string(1, digit));
     person_->key("enter");
@@ -63,6 +90,9 @@ class LiveKiosk : public ::testing::Test {
   std::unique_ptr<testing::XPerson> person_;
   std::unique_ptr<testing::XDesktop> desktop_;
   std::unique_ptr<KioskGuide> guide_;
+  TouchPanelSim panel_;
+  std::map<std::uint32_t, glm::dvec2> fingers_;
+  TimestampNs touched_ = 1'000'000'000;
   ViewOptions options_;
   std::filesystem::path key_file_;
   std::int64_t seconds_ = 1'790'000'000;
@@ -71,7 +101,7 @@ class LiveKiosk : public ::testing::Test {
 TEST_F(LiveKiosk, TenThousandEventsAtRandomNeitherReachTheDesktopNorEndItAndTheOperatorsFileDoes) {
   EXPECT_GT(seen_of_the_desktop(), 70'000) << "else nothing is shown by its absence";
   std::mt19937 random(60220);
-  int sent = 0, reached = 0, seen = 0, pictures = 0;
+  int sent = 0, reached = 0, by_fingers = 0, seen = 0, pictures = 0;
   bool ready = false, ended_early = true;
   SilentProgress progress;
   const auto out = run_view(testing::lettered_box(), options_, progress, [&](const ViewMoment& moment) {
@@ -82,7 +112,11 @@ TEST_F(LiveKiosk, TenThousandEventsAtRandomNeitherReachTheDesktopNorEndItAndTheO
       ready = true;
     }
     if (sent < kEvents) {
-      for (int i = 0; i < kAtOnce; ++i, ++sent) desktop_->anything(random);
+      for (int i = 0; i < kAtOnce; ++i, ++sent) {
+        desktop_->anything(random);
+        anything_touched(random);
+      }
+      by_fingers += moment.report.control == Control::kMouse;
       desktop_->settle();
       reached += desktop_->reached();
       if (sent % 1000 == 0) {
@@ -103,6 +137,7 @@ TEST_F(LiveKiosk, TenThousandEventsAtRandomNeitherReachTheDesktopNorEndItAndTheO
   EXPECT_FALSE(ended_early) << "after " << sent << " events";
   EXPECT_EQ(sent, kEvents);
   EXPECT_EQ(reached, 0) << "events behind the kiosk";
+  EXPECT_GT(by_fingers, 10) << "else the fingers were not felt";
   EXPECT_EQ(pictures, 10);
   EXPECT_EQ(seen, 0) << "pixels of what is behind the kiosk";
   EXPECT_TRUE(guide_->ended());
