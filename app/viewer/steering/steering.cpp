@@ -33,9 +33,9 @@ void Steering::steer(TimestampNs now) {
   steered_ = std::max(steered_, now);  // two threads may have read the clock in the other order
   InputFrame frame = mixer_.poll(steered_);
   for (TouchFrame& touch : std::exchange(frame.touches, {}))
-    add_touch_frame(touches_, std::move(touch), kMostTouchFrames);
+    add_touch_frame(fingers_.told, std::move(touch), kMostTouchFrames);
   for (const bool keys : {false, true})
-    for (InputEvent& event : put_.take(keys)) {
+    for (InputEvent& event : fingers_.placed.take(keys)) {
       frame.time = std::max(frame.time, event.time);
       frame.events.push_back(std::move(event));
     }
@@ -73,7 +73,7 @@ std::vector<InputEvent> Steering::take_keys() {
 
 std::vector<TouchFrame> Steering::take_touches() {
   const std::scoped_lock lock(mutex_);
-  return std::exchange(touches_, {});
+  return std::exchange(fingers_.told, {});
 }
 
 Steered Steering::look(TimestampNs now, TimestampNs display_time) {

@@ -56,7 +56,7 @@ class Steering {
   /// comes of it back.
   std::vector<TouchFrame> take_touches();
   /// With the next steer(), as if a source had told it.
-  void put(const InputEvent& event) { put_.push(event); }
+  void put(const InputEvent& event) { fingers_.placed.push(event); }
   /// What a picture shall show whose light reaches the eye at `display_time`.
   Steered look(TimestampNs now, TimestampNs display_time);
 
@@ -71,6 +71,10 @@ class Steering {
   void set_rest(const glm::dvec3& rest_m);
 
  private:
+  struct Fingers {
+    std::vector<TouchFrame> told;  // by a source
+    WindowEvents placed;           // by the window; has its own mutex
+  };
   InputMixer mixer_;
   std::shared_ptr<SeenView> seen_ = std::make_shared<SeenView>();
   mutable std::mutex mutex_;  // for all below but the thread
@@ -82,8 +86,7 @@ class Steering {
   TimestampNs steered_ = 0, newest_input_ = 0, used_input_ = 0;
   Steered since_{};  // what happened since the last look()
   std::vector<InputEvent> keys_;
-  std::vector<TouchFrame> touches_;
-  WindowEvents put_;  // has its own mutex
+  Fingers fingers_;
   std::jthread thread_;
 };
 

@@ -80,7 +80,10 @@ TEST_F(TouchSession, WhatOneFingerTakesFollowsIt) {
   EXPECT_LT(worst, 0.004) << "heights of the window: two of the 540 pixels";
 }
 
-TEST_F(TouchSession, WhatTwoFingersTakeStaysBetweenThemAndAFingerThatGoesMovesNothing) {
+class TouchDisplays : public TouchSession, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(TouchDisplays, WhatTwoFingersTakeStaysBetweenThemAndAFingerThatGoesMovesNothing) {
+  options_.stage.display = testing::spec(GetParam());
   std::optional<glm::dvec3> held;
   ViewState before{};
   double apart = 1.0;
@@ -108,6 +111,14 @@ TEST_F(TouchSession, WhatTwoFingersTakeStaysBetweenThemAndAFingerThatGoesMovesNo
   EXPECT_EQ(done->view.pan, before.pan);
 }
 
+INSTANTIATE_TEST_SUITE_P(Touch, TouchDisplays,
+                         ::testing::Values("mono", "anaglyph",
+                                           "quilt:columns=2,rows=1,width=1920,height=540,aspect=1.777,cone=40"),
+                         [](const auto& display) {
+                           const std::string spec = display.param;
+                           return spec.substr(0, spec.find(':'));
+                         });
+
 TEST_F(TouchSession, TheRecordingPlaysWhatTheFingersDidWithoutAPanel) {
   const auto path =
       std::filesystem::temp_directory_path() / ("dubsar_fingers_" + std::to_string(::getpid()) + ".jsonl");
@@ -130,6 +141,26 @@ TEST_F(TouchSession, TheRecordingPlaysWhatTheFingersDidWithoutAPanel) {
   EXPECT_NEAR(again->view.zoom, live->view.zoom, 1e-6);
   EXPECT_LT(glm::distance(again->view.pan, live->view.pan), 1e-6);
   std::filesystem::remove(path);
+}
+
+TEST_F(TouchSession, WithAToolInTheHandATapIsAClickAndWhatTwoFingersOrTheCableEndIsNone) {
+  options_.steps = {{0.0, "tool distance"}};
+  const auto done = play([&](int step, const ViewMoment&) -> std::optional<Fingers> {
+    const auto within = [&](int from, int to) { return step >= from && step < to; };
+    if (step > 200) return std::nullopt;
+    if (within(10, 15)) return Fingers{{1, share({0.05, 0.0})}};                          // a tap
+    if (within(40, 60)) return Fingers{{2, share({0.0, 0.0})}};                           // one finger rests,
+    if (within(60, 80)) return Fingers{{2, share({0.0, 0.0})}, {3, share({0.05, 0.0})}};  // another comes
+    if (within(100, 120)) return Fingers{{4, share({0.0, 0.0})}};                         // and one whose
+    if (step == 120) panel_.device().unplug();                                            // panel goes
+    if (step == 121) panel_.touch(5'000'000'000, {});
+    if (step == 122) panel_.device().plug();
+    if (within(180, 190)) return Fingers{{5, share({-0.05, 0.0})}};  // the second tap
+    return Fingers{};
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  ASSERT_EQ(done->document.measures.size(), 1U) << "two taps; of four clicks there would be two";
+  EXPECT_LT(turn_between_deg(done->view.rotation, {1, 0, 0, 0}), 1e-9);
 }
 
 TEST_F(TouchSession, UnpluggedInTheMiddleNothingIsHeldAndItGoesOnAfterwards) {
