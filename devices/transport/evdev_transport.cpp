@@ -77,7 +77,8 @@ class EvdevTransport final : public Transport {
     static_cast<void>(::ioctl(descriptor_, EVIOCSCLOCKID, &clock));  // else times start elsewhere, which is as good
     input_absinfo slot{};
     if (::ioctl(descriptor_, EVIOCGABS(ABS_MT_SLOT), &slot) < 0) return failed("cannot be asked for its slots", errno);
-    slots_ = static_cast<std::size_t>(std::clamp(slot.maximum, -1, static_cast<int>(kMostSlots) - 1) + 1);
+    const int last = std::clamp(slot.maximum, -1, static_cast<int>(kMostSlots) - 1);
+    slots_ = last < 0 ? 0 : static_cast<std::size_t>(last) + 1;
     return hold_if_free();
   }
 
@@ -175,6 +176,7 @@ std::vector<EvdevNode> list_evdev_nodes() {
   }
   std::sort(numbers.begin(), numbers.end());
   std::vector<EvdevNode> out;
+  out.reserve(numbers.size());
   for (const int number : numbers) out.push_back(describe(number));
   return out;
 }

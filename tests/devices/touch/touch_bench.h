@@ -98,7 +98,7 @@ class KernelPanel {
   }
   int slots_, current_ = 0;
   std::vector<int> id_, x_, y_, tool_;
-  int ms_ = 0;
+  long ms_ = 0;
 };
 
 /// The protocol, opened on a panel.

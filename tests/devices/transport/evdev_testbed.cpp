@@ -28,7 +28,7 @@ std::string EvdevTestbed::node() const { return fmt::format("/dev/input/event{}"
 
 std::string EvdevTestbed::node_in_testbed() const {
   char* const root = umockdev_testbed_get_root_dir(testbed_);
-  const std::string path = root + node();
+  std::string path = root + node();
   g_free(root);
   return path;
 }
