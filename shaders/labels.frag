@@ -7,6 +7,7 @@ layout(location = 5) uniform vec4 border;     // linear, premultiplied
 layout(location = 6) uniform float wide;      // of the border, in the sheet's units
 
 in vec2 sheet_place;
+flat in float opacity;
 layout(location = 0) out vec4 color;  // linear, premultiplied
 
 void main() {
@@ -14,6 +15,6 @@ void main() {
   float soft = max(0.7 * fwidth(inside), 1e-4);
   float letter = smoothstep(-soft, soft, inside);
   float around = smoothstep(-soft, soft, inside + wide);
-  color = mix(border * around, fill, letter);
+  color = mix(border * around, fill, letter) * opacity;
   if (color.a == 0.0) discard;
 }

@@ -1,6 +1,7 @@
 #version 450 core
 // Letters of one line of text: four vertices a letter, all letters of a view after each other. The line begins at a place
-// of the world and has a constant size in the picture.
+// of the world and has a constant size in the picture. Whether it is seen goes by its place alone, so that a line is read
+// as a whole or not at all: half a figure would be another one.
 
 struct FlatView {
   mat4 view_from_world;
@@ -13,12 +14,26 @@ struct Letter {
 };
 layout(std430, binding = 0) readonly buffer Views { FlatView views[]; };
 layout(std430, binding = 1) readonly buffer Letters { Letter letters[]; };
+layout(std430, binding = 2) readonly buffer Seen { uint seen[]; };  // of the squares of label_place.vert
 layout(location = 0) uniform int count;
 layout(location = 1) uniform vec3 measures;  // width and height of the target, lift in mm
 layout(location = 2) uniform vec3 at;        // world
 layout(location = 3) uniform vec3 along;     // world: where the line leads to; none: to the right of the picture
+layout(location = 7) uniform ivec2 which;    // the label, of how many
+layout(location = 8) uniform vec3 places;    // side of a square in pixels, opacity where hidden, 1: before what is nearer
 
 out vec2 sheet_place;
+flat out float opacity;
+
+// How much of the label is seen. Of one whose place is outside of the picture nobody knows: its letters go by their own
+// depth.
+float seen_at(vec2 place, int view) {
+  vec2 low = max(place - 0.5 * places.x, vec2(0.0)), high = min(place + 0.5 * places.x, measures.xy);
+  vec2 size = high - low;
+  if (min(size.x, size.y) < 1.0) return 1.0 - places.z;
+  // Half a square is enough: so much is seen of a place on the outline.
+  return min(1.0, 2.0 * float(seen[view * which.y + which.x]) / (size.x * size.y));
+}
 
 vec4 clip_position(FlatView view, vec3 point) {
   vec3 p = (view.view_from_world * vec4(point, 1.0)).xyz;
@@ -34,7 +49,8 @@ void main() {
   sheet_place = mix(letter.sheet.xy, letter.sheet.zw, corner);
   vec4 here = clip_position(view, at);
   vec2 half_size = 0.5 * measures.xy;
-  if (here.z + here.w < 0.0 || here.w <= 0.0) {
+  opacity = mix(places.y, 1.0, seen_at((here.xy / here.w + 1.0) * half_size, gl_InstanceID / count));
+  if (here.z + here.w < 0.0 || here.w <= 0.0 || opacity <= 0.0) {
     gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
   } else {
     vec2 right = vec2(1.0, 0.0);

@@ -108,6 +108,12 @@ std::vector<DialogueRow> dialogue_rows(const FilesState& files, std::string_view
   return out;
 }
 
+std::string title_words(const std::string& shown, const std::optional<Opening>& opening) {
+  if (!opening) return shown;
+  const std::string reading = opening_words({opening->name, opening->share, {}});
+  return shown.empty() ? reading : shown + ", " + reading;
+}
+
 std::string opening_words(const Opening& opening) {
   std::string out = "reading " + opening.name;
   if (opening.share > 0) out += fmt::format(": {:.0f} %", 100.0 * opening.share);

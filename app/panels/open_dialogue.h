@@ -45,6 +45,10 @@ std::vector<DialogueRow> dialogue_rows(const FilesState& files, std::string_view
 /// "reading tablet.exa: 43 %, about 5 s to go"; without the figures while nobody knows them.
 std::string opening_words(const Opening& opening);
 
+/// The file that is shown and the one that is being read: "tablet.exa", "tablet.exa, reading next.exa: 43 %"; empty
+/// where there is neither.
+std::string title_words(const std::string& shown, const std::optional<Opening>& opening);
+
 /// Draws the dialogue into the current frame while `open`, and appends what was chosen.
 void draw_open_dialogue(bool open, const FilesState& files, float width, float height,
                         std::vector<std::string>& commands);

@@ -282,6 +282,7 @@ void Viewer::presented(TimestampNs now) {
 void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures& figures) {
   sources_->tick(now);
   take_surface();
+  name_window();
   steering_->steer(now);
   if (use_fingers(now)) steering_->steer(now);
   for (const InputEvent& event : steering_->take_keys())

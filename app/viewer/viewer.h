@@ -132,7 +132,8 @@ class Viewer final : public Workplace {
     FolderListing listing;
     std::vector<RecentFile> recent;
     TimestampNs listed = -1;
-    bool first = false;  ///< the session was begun with a file
+    std::string window_name;  ///< that the window was told
+    bool first = false;       ///< the session was begun with a file
   };
   struct Vocabulary {
     std::unique_ptr<CommandTable> commands;
@@ -196,6 +197,8 @@ class Viewer final : public Workplace {
   void find_tools();
   Result<void> put(OpenedSurface surface);
   void take_surface();
+  void name_window();
+  std::string title() const;
   void take_coarse();
   Result<void> take_if_simulated();
   std::optional<Result<void>> put_read();

@@ -106,6 +106,16 @@ void Viewer::take_surface() {
   if (!has_surface() && !given_.shelf->go_on()) editor_->desk().choosing.open = true;
 }
 
+/// The window is called by the file that is shown, and the one that is being read.
+void Viewer::name_window() {
+  GlfwWindow* const window = given_.presenter.window();
+  if (window == nullptr || given_.shelf == nullptr) return;
+  std::string name = title().empty() ? "dubsar" : "dubsar: " + title();
+  if (name == files_.window_name) return;
+  window->set_title(name);
+  files_.window_name = std::move(name);
+}
+
 /// What the next session on this file finds.
 Result<void> Viewer::leave_work(bool orderly) {
   const Document& d = document();
@@ -167,7 +177,6 @@ Result<void> Viewer::put(OpenedSurface surface) {
   steering_->go_to(view_of(this->document()), given_.clock.now(), files_.coarse != nullptr);
   files_.coarse.reset();
   files_.autosave = Autosave(options.files.autosave);
-  if (GlfwWindow* const window = given_.presenter.window()) window->set_title("dubsar: " + options.around.title);
   say(options.work.restored ? "What you measured and noted here last time is here again."
                             : "Drag to turn. 1 to 6: sides. U: lift the envelope. Ctrl+K: everything. F1: help.");
   return {};

@@ -40,10 +40,15 @@ double Viewer::letters_scale() const {
   return std::max(plain, size / kMarkLettersPx);
 }
 
+std::string Viewer::title() const {
+  return title_words(has_surface() ? given_.options.around.title : std::string(),
+                     given_.shelf != nullptr ? given_.shelf->opening() : std::nullopt);
+}
+
 PanelState Viewer::panel_state(TimestampNs now) {
   PanelState out;
   out.line = {
-      has_surface() ? given_.options.around.title : "dubsar", display(),
+      title().empty() ? "dubsar" : title(), display(),
       has_surface()
           ? std::string(
                 kSideNames[static_cast<std::size_t>(facing_side(report_.view.rotation, document().home.rotation))])

@@ -116,11 +116,7 @@ Result<void> Renderer::draw_items(const SceneView& scene, const PassViews& targe
     PeelPass& peel = pieces != nullptr ? peel_in_pieces_ : peel_;
     DUBSAR_TRY(peel.draw(meshes_, scene, target, shadows, into.framebuffer, into.depth, into.depth_layer, pieces));
   }
-  return once(pieces, [&]() -> Result<void> {
-    for (const DrawItem& item : scene.items)
-      if (const auto* label = std::get_if<LabelItem>(&item)) DUBSAR_TRY(labels_.draw(*label, target, pixel));
-    return {};
-  });
+  return once(pieces, [&] { return labels_.draw(scene.items, target, pixel); });
 }
 
 Result<void> Renderer::render_layers(const SceneView& scene, std::span<const View> views, std::span<const int> layers,

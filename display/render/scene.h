@@ -53,7 +53,9 @@ struct LinesItem {
   bool operator==(const LinesItem&) const = default;
 };
 
-/// A line of text at a place of the world, of constant size in the picture.
+/// A line of text at a place of the world, of constant size in the picture. In each view it is seen as a whole, before
+/// everything, where its place is seen, and fades where surfaces hide that; of a place outside of the picture letters
+/// are hidden one by one.
 struct LabelItem {
   LabelFont* font = nullptr;  ///< outlives the pictures of it
   std::string text;           ///< UTF-8, one line
@@ -64,8 +66,8 @@ struct LabelItem {
   double height_px = 16.0;   ///< of the letters, of the picture
   Rgb8 color{232, 228, 220}, border{23, 24, 27};
   double opacity = 1.0;         ///< 0..1
-  double hidden_opacity = 0.0;  ///< as of lines
-  double lift_mm = 3.0;         ///< towards the eye: what is rough around the place does not cut the letters
+  double hidden_opacity = 0.0;  ///< as of lines, of the whole label
+  double lift_mm = 3.0;         ///< towards the eye: what is rough around the place does not hide it
 
   bool operator==(const LabelItem&) const = default;
 };

@@ -11,7 +11,8 @@ namespace {
 // Amber is what was measured, bright what is written; both with a dark border, so that they are read on any clay.
 constexpr Rgb8 kMeasured{0xe8, 0xb4, 0x4c}, kWritten{0xf4, 0xf0, 0xe8};
 constexpr double kDotPx = 7.0, kDotBorderPx = 11.0, kLinePx = 2.2, kLineBorderPx = 5.0;
-constexpr double kHidden = 0.18;  // of what lies behind the surface
+constexpr double kHidden = 0.18;     // of what lies behind the surface
+constexpr double kHiddenOpen = 0.6;  // of the text of the note that is open: it is read wherever it stands
 constexpr std::size_t kMostLetters = 48;
 
 LinesItem lines(const std::vector<glm::dvec3>& pairs, double width_px, const Rgb8& color, double hidden) {
@@ -119,7 +120,7 @@ void mark(Marker& marker, const Measure& measure, std::size_t number) {
   marker.label(fmt::format("{}: {}", name, figures_text(measure)), at, kMeasured);
 }
 
-void mark(Marker& marker, const Note& note) {
+void mark(Marker& marker, const Note& note, bool open) {
   const auto offset = marker.offset(note.part);
   if (!offset) return;
   if (note.line_mm.size() > 1) {
@@ -128,6 +129,7 @@ void mark(Marker& marker, const Note& note) {
     LabelItem& text = marker.label(note.text.empty() ? note.label : beginning(note.text), line.front(), kWritten);
     text.along_mm = line.back() - line.front();
     text.shift_px = {0.0, 6.0};
+    text.hidden_opacity = open ? kHiddenOpen : 0.0;
     if (!note.text.empty() && !note.label.empty()) {
       LabelItem& label = marker.label(note.label, line.front(), kMeasured);
       label.anchor = 1.0;
@@ -137,7 +139,8 @@ void mark(Marker& marker, const Note& note) {
   }
   marker.dot(note.at_mm + *offset, kWritten);
   const std::string between = note.label.empty() || note.text.empty() ? "" : "  ";
-  marker.label(note.label + between + beginning(note.text), note.at_mm + *offset, kWritten);
+  LabelItem& text = marker.label(note.label + between + beginning(note.text), note.at_mm + *offset, kWritten);
+  text.hidden_opacity = open ? kHiddenOpen : 0.0;
 }
 
 }  // namespace
@@ -158,7 +161,7 @@ glm::dvec3 middle_of(const std::vector<glm::dvec3>& path_mm) {
 Marks marks_of(const Document& document, const Desk& desk, const PartLooks& parts, LabelFont& font, double scale) {
   Marker marker(document, parts, font);
   for (std::size_t i = 0; i < document.measures.size(); ++i) mark(marker, document.measures[i], i + 1);
-  for (const Note& note : document.notes) mark(marker, note);
+  for (std::size_t i = 0; i < document.notes.size(); ++i) mark(marker, document.notes[i], i + 1 == desk.note);
   for (const SurfacePin& pin : desk.pending)
     if (const auto offset = marker.offset(pin.part)) marker.dot(pin.at_mm + *offset, kMeasured);
   return marker.take(scale);

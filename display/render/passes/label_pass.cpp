@@ -1,5 +1,8 @@
 #include "display/render/passes/label_pass.h"
 
+#include <cmath>
+#include <vector>
+
 #include "display/render/images/label_font.h"
 #include "display/render/images/utf8.h"
 #include "display/render/passes/views_binding.h"
@@ -7,7 +10,8 @@
 namespace dubsar {
 namespace {
 
-constexpr GLuint kLettersBinding = 1;
+constexpr GLuint kLettersBinding = 1, kSeenBinding = 2;
+constexpr double kPlacePx = 7.0;  // side of what is looked at of a label's place, of the picture
 constexpr double kBorderEm = 0.07;
 
 struct Letter {  // std430, as in shaders/labels.vert
@@ -40,17 +44,21 @@ std::vector<Letter> letters_of(const LabelItem& item, double px, double pixel) {
   return out;
 }
 
+/// In samples of the target: whole ones, so that each square has the same number of them.
+double place_side(double pixel) { return std::round(kPlacePx * pixel); }
+
 }  // namespace
 
 Result<LabelPass> LabelPass::create(bool layered) {
   LabelPass out;
-  DUBSAR_ASSIGN(out.program_, make_program("labels.vert", "labels.frag"));
+  DUBSAR_ASSIGN(out.alone_.letters, make_program("labels.vert", "labels.frag"));
+  DUBSAR_ASSIGN(out.alone_.places, make_program("label_place.vert", "label_place.frag"));
   if (layered) {
-    DUBSAR_ASSIGN(out.layered_, make_program("labels.vert", "labels.frag", kFlatLayered));
+    DUBSAR_ASSIGN(out.layered_.letters, make_program("labels.vert", "labels.frag", kFlatLayered));
+    DUBSAR_ASSIGN(out.layered_.places, make_program("label_place.vert", "label_place.frag", kFlatLayered));
   }
   out.no_vertices_ = make_vertex_array();
-  out.views_ = make_stream_buffer();
-  out.letters_ = make_stream_buffer();
+  for (GlBuffer* const buffer : {&out.views_, &out.letters_, &out.places_, &out.seen_}) *buffer = make_stream_buffer();
   return out;
 }
 
@@ -69,18 +77,30 @@ void LabelPass::use_sheet(const LabelFont& font) {
   version_ = font.version();
 }
 
-Result<void> LabelPass::draw(const LabelItem& item, const PassViews& target, double pixel) {
-  if (item.text.empty() || item.opacity == 0) return {};
+/// Counts in every view how much of a square over each place nothing hides.
+void LabelPass::see_places(std::span<const LabelItem* const> labels, const PassViews& target, double side) {
+  std::vector<glm::vec4> places;
+  for (const LabelItem* const label : labels) places.emplace_back(label->at_mm, label->lift_mm);
+  const std::vector<GLuint> none(labels.size() * target.views.size(), 0);
+  stream(places_, std::as_bytes(std::span(places)));
+  stream(seen_, std::as_bytes(std::span(none)));
+  glUseProgram(target.layers.empty() ? alone_.places : layered_.places);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kLettersBinding, places_);
+  glUniform1i(0, static_cast<GLint>(places.size()));
+  glUniform3f(1, static_cast<float>(target.width_px), static_cast<float>(target.height_px), static_cast<float>(side));
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  glDepthFunc(GL_LEQUAL);
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(none.size()));
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void LabelPass::draw_letters(const LabelItem& item, const PassViews& target, double pixel) {
   const std::vector<Letter> letters = letters_of(item, item.height_px * pixel, pixel);
-  if (letters.empty()) return {};
+  if (letters.empty()) return;
   use_sheet(*item.font);
-  glUseProgram(target.layers.empty() ? program_ : layered_);
-  const std::vector<FlatView> views = flat_views(target);
-  stream(views_, std::as_bytes(std::span(views)));
   stream(letters_, std::as_bytes(std::span(letters)));
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kViewsBinding, views_);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kLettersBinding, letters_);
-  glBindVertexArray(no_vertices_);
   glBindTextureUnit(0, sheet_);
   const auto count = static_cast<GLsizei>(letters.size());
   glUniform1i(0, count);
@@ -89,25 +109,44 @@ Result<void> LabelPass::draw(const LabelItem& item, const PassViews& target, dou
   const glm::vec3 at(item.at_mm), along(item.along_mm);
   glUniform3f(2, at.x, at.y, at.z);
   glUniform3f(3, along.x, along.y, along.z);
+  const glm::vec4 fill = premultiplied(item.color, item.opacity), border = premultiplied(item.border, item.opacity);
+  glUniform4f(4, fill.x, fill.y, fill.z, fill.w);
+  glUniform4f(5, border.x, border.y, border.z, border.w);
   glUniform1f(6, static_cast<float>(kBorderEm * LabelFont::kEmPx * 0.5 / LabelFont::kSpreadPx));
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // premultiplied
+  for (const bool nearer : {true, false}) {
+    glUniform3f(8, static_cast<float>(place_side(pixel)), static_cast<float>(item.hidden_opacity),
+                nearer ? 1.0f : 0.0f);
+    glDepthFunc(nearer ? GL_GREATER : GL_LEQUAL);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count * static_cast<GLsizei>(target.views.size()));
+  }
+}
+
+Result<void> LabelPass::draw(std::span<const DrawItem> items, const PassViews& target, double pixel) {
+  std::vector<const LabelItem*> labels;
+  for (const DrawItem& item : items)
+    if (const auto* label = std::get_if<LabelItem>(&item);
+        label != nullptr && !label->text.empty() && label->opacity > 0)
+      labels.push_back(label);
+  if (labels.empty()) return {};
+  const std::vector<FlatView> views = flat_views(target);
+  stream(views_, std::as_bytes(std::span(views)));
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kViewsBinding, views_);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kSeenBinding, seen_);
+  glBindVertexArray(no_vertices_);
   glDisable(GL_CULL_FACE);
   glDepthMask(GL_FALSE);
-  const auto draw_with = [&](GLenum depth_function, double opacity) {
-    if (opacity == 0) return;
-    const glm::vec4 fill = premultiplied(item.color, opacity), border = premultiplied(item.border, opacity);
-    glUniform4f(4, fill.x, fill.y, fill.z, fill.w);
-    glUniform4f(5, border.x, border.y, border.z, border.w);
-    glDepthFunc(depth_function);
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count * static_cast<GLsizei>(target.views.size()));
-  };
-  draw_with(GL_GREATER, item.opacity * item.hidden_opacity);
-  draw_with(GL_LEQUAL, item.opacity);
+  see_places(labels, target, place_side(pixel));
+  glUseProgram(target.layers.empty() ? alone_.letters : layered_.letters);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // premultiplied
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    glUniform2i(7, static_cast<GLint>(i), static_cast<GLint>(labels.size()));
+    draw_letters(*labels[i], target, pixel);
+  }
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LESS);
   glDisable(GL_BLEND);
-  return check_gl("drawing a label");
+  return check_gl("drawing labels");
 }
 
 }  // namespace dubsar

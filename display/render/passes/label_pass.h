@@ -1,6 +1,8 @@
 #pragma once
 // The part of the renderer that draws lines of text.
 
+#include <span>
+
 #include "core/base/result.h"
 #include "display/render/context/gl_objects.h"
 #include "display/render/passes/flat_views.h"
@@ -13,15 +15,21 @@ class LabelPass {
  public:
   /// `layered` as MeshPass::layered().
   static Result<LabelPass> create(bool layered);
-  /// `pixel` is how many samples of the target a pixel of the picture has on a side.
-  Result<void> draw(const LabelItem& item, const PassViews& target, double pixel);
+  /// The labels of `items`, over what was drawn before. `pixel` is how many samples of the target a pixel of the
+  /// picture has on a side.
+  Result<void> draw(std::span<const DrawItem> items, const PassViews& target, double pixel);
 
  private:
+  struct Programs {
+    GlProgram letters, places;
+  };
   void use_sheet(const LabelFont& font);
+  void see_places(std::span<const LabelItem* const> labels, const PassViews& target, double side);
+  void draw_letters(const LabelItem& item, const PassViews& target, double pixel);
 
-  GlProgram program_, layered_;
+  Programs alone_, layered_;
   GlVertexArray no_vertices_;
-  GlBuffer views_, letters_;
+  GlBuffer views_, letters_, places_, seen_;
   GlTexture sheet_;
   const LabelFont* font_ = nullptr;  // whose sheet it is
   std::uint64_t version_ = 0;

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <mutex>
 #include <optional>
+#include <regex>
 
 #include "app/viewer/first_document.h"
 #include "tests/app/viewer/live_fixture.h"
@@ -134,6 +135,22 @@ TEST_F(LiveFiles, SomethingCoarseStandsThereUntilTheSurfaceIsRead) {
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_EQ(done->triangles, all_);
   ASSERT_TRUE(done->first.surface_s);
+}
+
+TEST_F(LiveFiles, TheWindowIsCalledByTheFileThatIsShownAndTheOneThatIsRead) {
+  options_.window->title = "dubsar";
+  options_.steps = {{0.3, "open " + file("slow.ply").string()}};
+  const auto called = [](const std::string& words) {
+    return [words](const ViewMoment&) { return std::regex_match(person_->title(), std::regex(words)); };
+  };
+  const auto done = open_and({file("a.ply")}, {until(called("dubsar: a\\.ply")),
+                                               until(called("dubsar: a\\.ply, reading slow\\.ply: [1-9][0-9]? %")),
+                                               {[this] { let_come(); }, called("dubsar: slow\\.ply")},
+                                               end()});
+  ASSERT_TRUE(done) << done.error().message;
+  options_.steps.clear();
+  const auto first = open_and({file("slow.ply")}, {until(called("dubsar: slow\\.ply")), end()});
+  ASSERT_TRUE(first) << first.error().message;
 }
 
 TEST_F(LiveFiles, WithoutAFileTheDialogueIsOpenAndEscapeClosesItThenEnds) {

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 #include <thread>
 
@@ -78,6 +79,26 @@ class XPerson {
     const std::array<std::uint32_t, 2> values{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
     xcb_configure_window(connection_, newest(), XCB_CONFIG_WINDOW_WIDTH | XCB_CONFIG_WINDOW_HEIGHT, values.data());
     settle();
+  }
+
+  /// What a window manager writes over the window of the session.
+  std::string title() {
+    const auto atom = [&](const char* name) {
+      xcb_intern_atom_reply_t* const reply = xcb_intern_atom_reply(
+          connection_, xcb_intern_atom(connection_, 0, static_cast<std::uint16_t>(std::strlen(name)), name), nullptr);
+      const xcb_atom_t out = reply->atom;
+      std::free(reply);
+      return out;
+    };
+    constexpr std::uint32_t kMostWords = 64;
+    xcb_get_property_reply_t* const reply = xcb_get_property_reply(
+        connection_,
+        xcb_get_property(connection_, 0, newest(), atom("_NET_WM_NAME"), atom("UTF8_STRING"), 0, kMostWords), nullptr);
+    if (reply == nullptr) return {};
+    std::string out(static_cast<const char*>(xcb_get_property_value(reply)),
+                    static_cast<std::size_t>(xcb_get_property_value_length(reply)));
+    std::free(reply);
+    return out;
   }
 
  private:

@@ -7,6 +7,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <iterator>
 #include <memory>
+#include <set>
+#include <vector>
 
 #include "display/render/context/context_egl.h"
 #include "display/render/images/label_font.h"
@@ -145,6 +147,70 @@ TEST_F(Labels, AreHiddenByWhatStandsBeforeThemAndNotByWhatTheyStandOn) {
   EXPECT_EQ(whites(-2, 0), free) << "in a hollow of it";
   EXPECT_EQ(whites(-10, 0), 0) << "behind it";
   EXPECT_EQ(whites(-10, 1), free);
+}
+
+// A wall over the left half of the picture, and labels that run from one half into the other.
+TEST_F(Labels, AreReadAsAWholeOrNotAtAll) {
+  TriMesh wall;
+  testing::add_rectangle(wall, {-90, -90, 0}, {90, 0, 0}, {0, 180, 0}, 0);
+  const LodMesh mesh = LodMesh::exact(pack_mesh(wall).value()).value();
+  MeshItem plate{&mesh, glm::dmat4(1.0), shading_preset("ao").value().style, {}};
+  plate.parts[0].color = {0, 0, 0};
+  label_.text = "MMMM";
+  label_.height_px = 30;
+  const auto whites = [&](double x, double anchor, double hidden) {
+    label_.at_mm = {x, 0, -20};  // behind the wall
+    label_.anchor = anchor;
+    label_.hidden_opacity = hidden;
+    const std::array<DrawItem, 2> items{plate, label_};
+    return extent(picture(items), white).count;
+  };
+  const int whole = whites(10, 0, 0);
+  EXPECT_GT(whole, 400) << "nothing is before it";
+  EXPECT_EQ(whites(-40, 0, 0), 0) << "its place is hidden, half of its letters would not be";
+  EXPECT_NEAR(whites(40, 1, 0), whole, 0.1 * whole) << "its place is seen, half of its letters would not be";
+  EXPECT_NEAR(whites(-40, 0, 1), whole, 0.1 * whole) << "wanted also where it is hidden";
+  // Its place goes behind the wall by a tenth of a pixel a step: it fades, and nothing jumps.
+  std::vector<int> light;
+  for (int step = 0; step <= 120; ++step) {
+    label_.at_mm = {6.0 - 0.1 * step, 0, -20};
+    label_.anchor = 0.0;
+    label_.hidden_opacity = 0.0;
+    const std::array<DrawItem, 2> items{plate, label_};
+    const Image image = picture(items);
+    int brightest = 0;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) brightest = std::max<int>(brightest, image.at(x, y)[0]);
+    light.push_back(brightest);
+  }
+  EXPECT_GT(light.front(), 240);
+  EXPECT_EQ(light.back(), 0);
+  EXPECT_TRUE(std::is_sorted(light.rbegin(), light.rend()));
+  EXPECT_GE(std::set<int>(light.begin(), light.end()).size(), 4u) << "in steps between";
+}
+
+TEST_F(Labels, EachViewDecidesForItself) {
+  TriMesh wall;
+  testing::add_rectangle(wall, {-90, -90, 0}, {85, 0, 0}, {0, 180, 0}, 0);  // up to x = -5
+  const LodMesh mesh = LodMesh::exact(pack_mesh(wall).value()).value();
+  MeshItem plate{&mesh, glm::dmat4(1.0), shading_preset("ao").value().style, {}};
+  plate.parts[0].color = {0, 0, 0};
+  label_.text = "MM";
+  label_.height_px = 30;
+  label_.at_mm = {-10, 0, -40};
+  const std::array<DrawItem, 2> items{plate, label_};
+  std::array<View, 2> eyes;
+  for (int eye = 0; eye < 2; ++eye) {  // sheared by half a millimetre a millimetre of depth, to either side
+    glm::dmat4 shear(1.0);
+    shear[2][0] = eye == 0 ? 0.5 : -0.5;
+    eyes[eye].clip_from_view = glm::ortho(-100.0, 100.0, -100.0, 100.0, -100.0, 100.0) * shear;
+  }
+  const SceneView scene{items, Light(), {}, Background{{0, 0, 0}, false}};
+  auto array = ViewArray::create(kSide, kSide, 2).value();
+  const std::array<int, 2> where{0, 1};
+  ASSERT_TRUE(renderer_.render_layers(scene, eyes, where, array));
+  EXPECT_EQ(extent(array.read_layer(0).value(), white).count, 0) << "seen 20 mm farther left: behind the wall";
+  EXPECT_GT(extent(array.read_layer(1).value(), white).count, 100) << "20 mm farther right: beside it";
 }
 
 TEST_F(Labels, HaveTheLettersOfTransliterationsAndSurviveAFullSheet) {
