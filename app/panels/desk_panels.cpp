@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kLongestBarPx = 150.0;
 constexpr float kFaint = 0.33f;
-constexpr float kToolsWidth = 82.0f;
+constexpr float kToolsWidth = 82.0f, kScrollBar = 10.0f;
 
 void begin(const char* name, float x, float y, float width, float height) {
   ImGui::SetNextWindowPos(ImVec2(x, y));
@@ -103,7 +103,7 @@ void draw_tools(const Board& desk) {
   begin("tools", 0.0f, kTopLine + kGap, kToolsWidth,
         row * static_cast<float>(kTools.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
   for (const auto& [label, name] : kTools)
-    button(desk, label, std::string("tool ") + name, desk.state.desk.tool == name);
+    row_button(desk, label, std::string("tool ") + name, desk.state.desk.tool == name);
   ImGui::End();
 }
 
@@ -125,7 +125,7 @@ void draw_drawers(const Board& desk) {
   begin("drawers", desk.width - kTab, kTopLine + kGap, kTab,
         row * static_cast<float>(rows.size()) + 2.0f * ImGui::GetStyle().WindowPadding.y);
   for (const Row& each : rows)
-    button(desk, each.label, std::string("drawer ") + each.name, desk.state.desk.drawer == each.name);
+    row_button(desk, each.label, std::string("drawer ") + each.name, desk.state.desk.drawer == each.name);
   ImGui::End();
   for (const Row& each : rows) {
     if (desk.state.desk.drawer != each.name) continue;
@@ -133,9 +133,14 @@ void draw_drawers(const Board& desk) {
       draw_slices(desk);
       continue;
     }
-    ImGui::SetNextWindowPos(ImVec2(desk.width - kTab - kDrawer - 4.0f, kTopLine + kGap));
-    ImGui::SetNextWindowSize(ImVec2(kDrawer, 0.0f));
-    ImGui::Begin(each.name, nullptr, kFixed | ImGuiWindowFlags_AlwaysAutoResize);
+    // What the window has no room for is reached with the wheel, or the bar at its side.
+    const float most = desk.height - kTopLine - kStrip - 2.0f * kGap;
+    ImGui::SetNextWindowPos(ImVec2(desk.width - kTab - 4.0f, kTopLine + kGap), ImGuiCond_Always, ImVec2(1.0f, 0.0f));
+    ImGui::SetNextWindowSizeConstraints(ImVec2(kDrawer, 0.0f), ImVec2(kDrawer + kScrollBar, most));
+    ImGui::Begin(each.name, nullptr, (kFixed & ~ImGuiWindowFlags_NoScrollbar) | ImGuiWindowFlags_AlwaysAutoResize);
+    const ImVec2 corner = ImGui::GetCursorPos();
+    ImGui::Dummy(ImVec2(kDrawer - 2.0f * ImGui::GetStyle().WindowPadding.x, 0.0f));
+    ImGui::SetCursorPos(corner);
     each.draw(desk);
     ImGui::End();
   }
@@ -170,6 +175,7 @@ void draw_panels(const PanelState& state, const KeyTable& keys, float width, flo
   ImGui::PushStyleVar(ImGuiStyleVar_FrameRounding, 3.0f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(16.0f, 16.0f));
+  ImGui::PushStyleVar(ImGuiStyleVar_ScrollbarSize, kScrollBar);
   if (state.desk.panels) {
     draw_line(desk);
     if (state.files.has_surface) {
@@ -183,7 +189,7 @@ void draw_panels(const PanelState& state, const KeyTable& keys, float width, flo
   draw_opening(state.files, width, height, commands);
   draw_palette(state.desk.palette, keys, width, height, commands);
   ImGui::PopStyleVar();
-  ImGui::PopStyleVar(5);
+  ImGui::PopStyleVar(6);
   ImGui::PopStyleColor(12);
 }
 

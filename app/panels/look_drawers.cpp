@@ -91,9 +91,11 @@ void draw_parts(const Board& desk) {
     if (ImGui::Checkbox(part.name.c_str(), &visible)) desk.commands.push_back(fmt::format("part {}", i + 1));
     explain(desk, fmt::format("part {}", i + 1));
     auto percent = static_cast<float>(100.0 * part.opacity);
-    ImGui::SameLine(144.0f);
+    ImGui::SameLine();
+    const float left = std::max(ImGui::GetCursorPosX(), 144.0f), figure = ImGui::CalcTextSize(" 100 %").x;
+    ImGui::SetCursorPosX(left);  // behind long names
     ImGui::PushID(static_cast<int>(i));
-    if (percent_slider("##opacity", percent, 70.0f))
+    if (percent_slider("##opacity", percent, std::max(kDrawer - left - figure - 2.0f * kGap, 24.0f)))
       desk.commands.push_back(fmt::format("part_opacity {} {:.4g}", i + 1, percent));
     explain(desk, "part_opacity");
     std::array<float, 3> colour{}, offset{};

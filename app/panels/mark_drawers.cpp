@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 #include "app/panels/panel_kit.h"
 #include "app/viewer/stage/marks.h"
@@ -30,14 +31,19 @@ void draw_curve(const Measure& measure) {
                    ImVec2(kFieldPx, 60.0f));
 }
 
-/// Letters of transliterations for keyboards that do not have them.
-void letter_buttons(const Board& desk, const std::string& command, const std::string& text) {
+/// Letters of transliterations for keyboards that do not have them. Returns how long the text is with the one that was
+/// pressed; 0: none was.
+std::size_t letter_buttons(const Board& desk, const std::string& command, const std::string& text) {
+  std::size_t length = 0;
   constexpr std::array<const char*, 9> kLetters{"\u0161", "\u1e63", "\u1e6d", "\u1e2b", "\u02be",
                                                 "\u02bf", "\u2082", "\u2083", "\u2093"};
   for (std::size_t i = 0; i < kLetters.size(); ++i) {
     if (i > 0) ImGui::SameLine(0.0f, 2.0f);
-    if (ImGui::SmallButton(kLetters[i])) desk.commands.push_back(command + text + kLetters[i]);
+    if (!ImGui::SmallButton(kLetters[i])) continue;
+    desk.commands.push_back(command + text + kLetters[i]);
+    length = text.size() + std::string_view(kLetters[i]).size();
   }
+  return length;
 }
 
 }  // namespace
@@ -65,7 +71,8 @@ void draw_measures(const Board& desk) {
 
 void draw_notes(const Board& desk) {
   if (desk.state.document.notes.empty()) say_dim("Take the tool Note or Line at the left and click on the surface.");
-  int& answered = *ImGui::GetStateStorage()->GetIntRef(ImGui::GetID("answered"));
+  ImGuiStorage& kept = *ImGui::GetStateStorage();
+  const ImGuiID answered = ImGui::GetID("answered"), lettered = ImGui::GetID("lettered");
   for (std::size_t i = 0; i < desk.state.document.notes.size(); ++i) {
     const Note& note = desk.state.document.notes[i];
     const bool open = desk.state.desk.note == i + 1;
@@ -81,13 +88,16 @@ void draw_notes(const Board& desk) {
       button(desk, "look", fmt::format("go_to_note {}", i + 1), false);
       ImGui::SameLine();
       button(desk, "delete", fmt::format("delete_note {}", i + 1), false);
-      if (const int placed = static_cast<int>(desk.state.desk.pointing.notes); answered != placed) {
-        ImGui::SetKeyboardFocusHere();
-        answered = placed;
-      }
-      if (type_in("##text", note.text, typed, kFieldPx))
+      const int placed = static_cast<int>(desk.state.desk.pointing.notes), length = static_cast<int>(note.text.size());
+      // What is typed after the click that placed a note, or after a letter was pressed, is its text.
+      const bool fresh = kept.GetInt(answered) != placed, goes_on = length > 0 && kept.GetInt(lettered) == length;
+      if (fresh || goes_on) kept.SetInt(lettered, 0);
+      kept.SetInt(answered, placed);
+      if (type_in("##text", note.text, typed, kFieldPx, fresh || goes_on))
         desk.commands.push_back(fmt::format("note_text {} {}", i + 1, typed));
-      letter_buttons(desk, fmt::format("note_text {} ", i + 1), note.text);
+      if (fresh) ImGui::SetScrollHereY();
+      if (const std::size_t with = letter_buttons(desk, fmt::format("note_text {} ", i + 1), note.text); with > 0)
+        kept.SetInt(lettered, static_cast<int>(with));
     }
     ImGui::PopID();
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -27,7 +28,8 @@ constexpr double kLeastHeight = 540.0;        // of the layout; smaller views sh
 constexpr double kLeastScaledHeight = 400.0;  // what panels need where somebody wants them larger
 constexpr double kMostHeight = 900.0;         // larger ones larger
 constexpr float kMargin = 12.0f;
-constexpr float kLegendLeft = 96.0f;  // beside the tools
+constexpr float kLegendLeft = 8.0f, kLegendBeside = 96.0f;  // below the tools; beside them where they reach so far down
+constexpr float kToolsEnd = 270.0f, kLegendTall = 80.0f;
 constexpr float kBallAside = 372.0f;  // beside the drawers
 
 constexpr float kLineStepPx = kLinePx + 4.0f;
@@ -220,29 +222,32 @@ glm::dvec2 Overlay::layout(int view_height, const glm::dvec2& window_mm, double 
   return {height * window_mm.x / window_mm.y, height};
 }
 
+/// With letters as large as those of panels on this monitor.
+void Overlay::draw_in_panel_letters(const std::function<void()>& draw) const {
+  ImFont* const font = ImGui::GetIO().Fonts->Fonts[scale_.y >= kLargeScale ? 0 : 1];
+  const float before = std::exchange(font->Scale, kPanelFontPx / font->FontSize);
+  ImGui::PushFont(font);
+  draw();
+  ImGui::PopFont();
+  font->Scale = before;
+}
+
 void Overlay::draw_all(float width, float height) {
-  if (text_.box && text_.help.empty()) {
-    ImFont* const font = ImGui::GetIO().Fonts->Fonts[scale_.y >= kLargeScale ? 0 : 1];
-    const float before = std::exchange(font->Scale, kPanelFontPx / font->FontSize);
-    ImGui::PushFont(font);
-    draw_box(*text_.box, width, height);
-    ImGui::PopFont();
-    font->Scale = before;
+  const bool around = text_.panels && text_.panels->desk.panels;
+  const auto legend = [&] {
+    const float bottom = height - (around ? 120.0f : 24.0f);
+    draw_legend(*text_.legend, around && bottom - kLegendTall < kToolsEnd ? kLegendBeside : kLegendLeft, bottom);
+  };
+  if (text_.help.empty()) {
+    draw_in_panel_letters([&] {
+      if (text_.box) draw_box(*text_.box, width, height);
+      if (text_.panels) draw_panels(*text_.panels, keys_, width, height, commands_);
+      if (text_.legend && around) legend();
+    });
+    if (text_.legend && !around) legend();
   }
-  if (text_.panels && text_.help.empty()) {
-    ImFont* const font = ImGui::GetIO().Fonts->Fonts[scale_.y >= kLargeScale ? 0 : 1];
-    const float before = font->Scale;
-    font->Scale = kPanelFontPx / font->FontSize;
-    ImGui::PushFont(font);
-    draw_panels(*text_.panels, keys_, width, height, commands_);
-    ImGui::PopFont();
-    font->Scale = before;
-  }
-  if (text_.legend && text_.help.empty())
-    draw_legend(*text_.legend, kLegendLeft, height - (text_.panels && text_.panels->desk.panels ? 120.0f : 24.0f));
   if (text_.light && text_.help.empty())
-    draw_light_ball(*text_.light, width - (text_.panels && text_.panels->desk.panels ? kBallAside : 16.0f),
-                    height - (text_.panels && text_.panels->desk.panels ? 72.0f : 16.0f));
+    draw_light_ball(*text_.light, width - (around ? kBallAside : 16.0f), height - (around ? 72.0f : 16.0f));
   if (!text_.help.empty()) draw_help(text_.help, width, height);
   if (text_.gallery) draw_gallery(*text_.gallery, width, height, px_per_mm_);
   if (!text_.notice.empty()) draw_notice(text_.notice, text_.notice_opacity, width, height - (text_.panels ? 56 : 0));

@@ -3,6 +3,7 @@
 // and a hint line.
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -67,6 +68,7 @@ class Overlay final : public LayerPainter {
   Overlay(const KeyTable& keys, ImGuiContext* state) : keys_(keys), state_(state) {}
   bool take_key(const InputEvent& event, const glm::dvec2& layout);
   void frame(const glm::dvec2& layout, const glm::dvec2& scale);
+  void draw_in_panel_letters(const std::function<void()>& draw) const;
   void draw_all(float width, float height);
   void take_letters();
 

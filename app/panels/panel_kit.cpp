@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 namespace dubsar::app {
 
@@ -20,14 +21,37 @@ void explain(const Board& desk, const std::string& command) {
   ImGui::SetTooltip("%s", text.c_str());
 }
 
-bool button(const Board& desk, const char* label, const std::string& command, bool active, bool enabled) {
-  ImGui::BeginDisabled(!enabled);
+namespace {
+
+bool sized_button(const Board& desk, const char* label, const std::string& command, bool active, float width) {
   if (active) ImGui::PushStyleColor(ImGuiCol_Text, kAccent);
-  const bool pressed = ImGui::Button(label);
+  const bool pressed = ImGui::Button(label, ImVec2(width, 0.0f));
   if (active) ImGui::PopStyleColor();
-  ImGui::EndDisabled();
   explain(desk, command);
   if (pressed) desk.commands.push_back(command);
+  return pressed;
+}
+
+/// Once it has the keys: behind its text, none of which is marked.
+int go_behind(ImGuiInputTextCallbackData* field) {
+  int& wanted = *static_cast<int*>(field->UserData);
+  if (std::exchange(wanted, 0) != 0) field->CursorPos = field->SelectionStart = field->SelectionEnd = field->BufTextLen;
+  return 0;
+}
+
+}  // namespace
+
+bool button(const Board& desk, const char* label, const std::string& command, bool active, bool enabled) {
+  ImGui::BeginDisabled(!enabled);
+  const bool pressed = sized_button(desk, label, command, active, 0.0f);
+  ImGui::EndDisabled();
+  return pressed;
+}
+
+bool row_button(const Board& desk, const char* label, const std::string& command, bool active) {
+  ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.0f, 0.5f));
+  const bool pressed = sized_button(desk, label, command, active, ImGui::GetContentRegionAvail().x);
+  ImGui::PopStyleVar();
   return pressed;
 }
 
@@ -62,11 +86,17 @@ ImTextureID texture_id(std::uint32_t texture) {
   return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture));  // NOLINT(performance-no-int-to-ptr)
 }
 
-bool type_in(const char* id, const std::string& now, std::string& typed, float width) {
+bool type_in(const char* id, const std::string& now, std::string& typed, float width, bool goes_on) {
   std::array<char, 2048> text{};
   now.copy(text.data(), std::min(now.size(), text.size() - 1));
   ImGui::SetNextItemWidth(width);
-  if (!ImGui::InputText(id, text.data(), text.size())) return false;
+  int& behind = *ImGui::GetStateStorage()->GetIntRef(ImGui::GetID(id));
+  if (goes_on) {
+    behind = 1;
+    ImGui::SetKeyboardFocusHere();
+  }
+  if (!ImGui::InputText(id, text.data(), text.size(), ImGuiInputTextFlags_CallbackAlways, go_behind, &behind))
+    return false;
   typed = text.data();
   return typed != now;
 }

@@ -30,6 +30,8 @@ struct Board {
 void explain(const Board& desk, const std::string& command);
 /// Posts the command when it is pressed.
 bool button(const Board& desk, const char* label, const std::string& command, bool active, bool enabled = true);
+/// The same in a column of them: as wide as the column, so that all of the line is pressed.
+bool row_button(const Board& desk, const char* label, const std::string& command, bool active);
 /// A button of text without a frame, as long as its words.
 float button_width(const char* label);
 /// A slider from 0 to `most` per cent, its figure beside it, where the knob does not cover it, then its label (nothing
@@ -40,7 +42,8 @@ void say_dim(const char* words);
 /// What ImGui calls a texture of GL's.
 ImTextureID texture_id(std::uint32_t texture);
 /// A line of text that is kept while it is typed in, and told as it changes: true then. `id` names it in its window.
-bool type_in(const char* id, const std::string& now, std::string& typed, float width);
+/// `goes_on`: it takes the keys from now on, behind what stands there.
+bool type_in(const char* id, const std::string& now, std::string& typed, float width, bool goes_on = false);
 
 // Drawers, one each.
 void draw_parts(const Board& desk);

@@ -109,7 +109,7 @@ void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
   const bool files = desk().choosing.open || (given_.shelf != nullptr && given_.shelf->busy());
   if ((desk().panels || desk().palette || files) && !desk().help) text.panels = panel_state(now);
   if (text.panels && desk().drawer == "film") add_thumbnails(*text.panels);
-  text.legend = desk().legend && has_surface()
+  text.legend = desk().legend && has_surface() && !stage_->measuring()
                     ? legend_of(shown_of(document(), report_.view, given_.options.stage, stage_->box_mm()).style)
                     : std::nullopt;
   text.light.reset();
@@ -125,7 +125,8 @@ void Viewer::update_overlay(TimestampNs now, const RecentFigures& figures) {
     text.notice_opacity = std::clamp(static_cast<double>(kNoticeNs - age) / static_cast<double>(kFadeNs), 0.0, 1.0);
   }
   if (const auto share = stage_->measuring()) {
-    text.notice = fmt::format("measuring the surface: {:.0f} %", 100.0 * *share);
+    const std::string measuring = fmt::format("measuring the surface: {:.0f} %", 100.0 * *share);
+    text.notice = text.notice.empty() ? measuring : fmt::format("{} ({})", text.notice, measuring);
     text.notice_opacity = 1.0;
   }
   overlay_->set_scale(ui_scale());

@@ -254,17 +254,29 @@ void Stage::Parts::measure(const FieldNeeds& needs) {
     if (!made) return;
     object.maker.reset();
     if (*made) {
-      done = mesh.carry(std::make_shared<const SurfaceFields>(std::move(**made)));
+      SurfaceFields all = mesh.fields() == nullptr ? std::move(**made) : joined(std::move(**made), *mesh.fields());
+      done = mesh.carry(std::make_shared<const SurfaceFields>(std::move(all)));
       painted.of.reset();
     } else {
       done = tl::unexpected<Error>(made->error());
     }
-  } else if (needs.any() && (mesh.fields() == nullptr || !mesh.fields()->has.covers(needs))) {
-    const FieldNeeds had = mesh.fields() == nullptr ? FieldNeeds() : mesh.fields()->has;
-    object.maker = std::make_unique<FieldMaker>(
-        *object.source, FieldNeeds{needs.integral || had.integral, needs.curvature || had.curvature});
+  } else if (const FieldNeeds missing = needs.without(measured()); missing.any()) {
+    object.maker = std::make_unique<FieldMaker>(*object.source, missing);
   }
   if (!done) log_warning("view: {}", done.error().message);
+}
+
+FieldNeeds Stage::Parts::measured() const noexcept {
+  const SurfaceFields* const fields = object.mesh->fields();
+  return fields == nullptr ? FieldNeeds() : fields->has;
+}
+
+/// A style that tells figures is plain clay until they are measured: in one colour nobody would see the object.
+Style Stage::Parts::ready(Style style) const {
+  if (!is_field(style.map) || measured().covers(fields_needed(style))) return style;
+  style.map = ColorMap::kPlain;
+  style.lit = true;
+  return style;
 }
 
 std::optional<double> Stage::measuring() const noexcept {
@@ -297,7 +309,9 @@ void Stage::Parts::set_scene(const Shown& shown, int half) {
   painted.glow = shown.glow;
   painted.clips = dubsar::moved(options.shading.clips, world);
   for (const ClipPlane& clip : dubsar::moved(shown.clips, world)) painted.clips.push_back(clip);
-  painted.items = {MeshItem{&*object.mesh, world, shown.style, shown.parts, shown.other}};
+  OtherLook other = shown.other;
+  other.style = ready(other.style);
+  painted.items = {MeshItem{&*object.mesh, world, ready(shown.style), shown.parts, other}};
   for (const LinesItem& lines : shown.before) painted.items.emplace_back(lines);
   for (LinesItem lines : shown.marks.lines) {
     for (glm::dvec3& p : lines.points_mm) place(p);

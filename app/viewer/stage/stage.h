@@ -183,7 +183,8 @@ class Stage {
   Result<std::optional<glm::dvec3>> place_at(const glm::dvec2& at);
 
   /// The object as the next picture shows it, without what lies over it, at `factor` times the pixels of a view, exact;
-  /// seen from the middle of the eyes. kUsage: more than 16384 pixels on a side; kTryAgain.
+  /// seen from the middle of the eyes. kUsage: more than 16384 pixels on a side; kTryAgain: also while figures that its
+  /// colours tell are being measured.
   Result<Image> still(int factor);
 
   /// `shown` as small as a thumbnail, with as many triangles as that needs; what the stage shows stays as it is.

@@ -90,6 +90,8 @@ struct Stage::Parts {
   static Result<Object> make_object(const TriMesh& mesh, const StageOptions& options);
   Result<void> prepare(OutputSink& with);
   void measure(const FieldNeeds& needs);
+  FieldNeeds measured() const noexcept;
+  Style ready(Style style) const;
   Observer viewer_at(const FollowedEyes& eyes) const;
   double depth_factor(const Observer& viewer) const;
   /// The eyes that cameras are made for.

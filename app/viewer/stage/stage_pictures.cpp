@@ -62,6 +62,9 @@ Result<Image> Stage::still(int factor) {
     return fail(ErrorKind::kUsage, "picture: {} times {} x {} pixels asked for, expected at most {} on a side", factor,
                 view.width, view.height, kMostSide);
   if (!p.has_mesh()) return fail(ErrorKind::kUsage, "picture: there is no surface");
+  if (!p.measured().covers(fields_needed(p.next.shown.style, p.next.shown.other)))
+    return fail(ErrorKind::kTryAgain,
+                "picture: the surface is still being measured; ask again when its colours are there");
   if (!p.object.renderer) {
     DUBSAR_ASSIGN(p.object.renderer, Renderer::create());
   }

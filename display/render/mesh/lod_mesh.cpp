@@ -159,13 +159,11 @@ Result<void> LodMesh::carry(std::shared_ptr<const SurfaceFields> fields) {
 }
 
 Result<void> carry_fields(LodMesh& levels, const TriMesh& mesh, const FieldNeeds& needs, Progress& progress) {
-  FieldNeeds all = needs;
-  if (levels.fields() != nullptr) {
-    if (levels.fields()->has.covers(needs)) return {};
-    all = {all.integral || levels.fields()->has.integral, all.curvature || levels.fields()->has.curvature};
-  }
-  if (!all.any()) return {};
-  DUBSAR_ASSIGN(SurfaceFields made, measure_fields(mesh, all, progress));
+  const SurfaceFields* const had = levels.fields();
+  const FieldNeeds missing = had != nullptr ? needs.without(had->has) : needs;
+  if (!missing.any()) return {};
+  DUBSAR_ASSIGN(SurfaceFields made, measure_fields(mesh, missing, progress));
+  if (had != nullptr) made = joined(std::move(made), *had);
   return levels.carry(std::make_shared<const SurfaceFields>(std::move(made)));
 }
 

@@ -49,6 +49,16 @@ Result<SurfaceFields> measure_fields(const TriMesh& mesh, const FieldNeeds& need
   return out;
 }
 
+SurfaceFields joined(SurfaceFields made, const SurfaceFields& had) {
+  const FieldNeeds only = had.has.without(made.has);
+  for (std::size_t v = 0; v < made.values.size(); ++v) {
+    if (only.integral) made.values[v][0] = had.values[v][0];
+    if (only.curvature) std::copy_n(&had.values[v][1], 2, &made.values[v][1]);
+  }
+  made.has = {made.has.integral || only.integral, made.has.curvature || only.curvature};
+  return made;
+}
+
 double field_figure(ColorMap map, const CarriedField& c) {
   const double low = figure(c[1], kMostCurvature), high = figure(c[2], kMostCurvature);
   switch (map) {

@@ -28,6 +28,10 @@ struct FieldNeeds {
   bool covers(const FieldNeeds& other) const noexcept {
     return (integral || !other.integral) && (curvature || !other.curvature);
   }
+  /// What of this the other has not.
+  FieldNeeds without(const FieldNeeds& other) const noexcept {
+    return {integral && !other.integral, curvature && !other.curvature};
+  }
   bool operator==(const FieldNeeds&) const = default;
 };
 FieldNeeds fields_needed(const Style& style);
@@ -41,6 +45,9 @@ struct SurfaceFields {
 
 /// Integral invariants with their default radius, curvatures. Threads. Errors: cancelled.
 Result<SurfaceFields> measure_fields(const TriMesh& mesh, const FieldNeeds& needs, Progress& progress);
+
+/// Both, of the same vertices: what `made` has, and what only `had` has.
+SurfaceFields joined(SurfaceFields made, const SurfaceFields& had);
 
 /// The figure of a map that a vertex carries: integral invariants as distance_from_plane(), curvatures in 1/mm and
 /// 1/mm2, the shape index -1..1.

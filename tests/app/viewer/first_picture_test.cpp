@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
 
@@ -114,6 +115,43 @@ TEST(FirstPicture, TheExactOneComesInPiecesBetweenWhichNothingIsPainted) {
   ASSERT_TRUE(stage->paint(surface.surface()));
   EXPECT_FALSE(stage->needs_paint());
   EXPECT_NE(surface.read().value().pixels, coarse.pixels);
+}
+
+TEST(FirstPicture, OfAStyleThatTellsFiguresIsClayUntilTheyAreMeasured) {
+  const TriMesh mesh = written_pillow(1200, 600);
+  const auto context = EglContext::create();
+  ASSERT_TRUE(context) << context.error().message;
+  StageOptions options;
+  options.screen = {.window_w = 320, .window_h = 180};
+  options.quality = Quality::kAdaptive;
+  options.shading = shading_preset("msii").value();
+  auto stage = Stage::create(mesh, options).value();
+  auto surface = OffscreenSurface::create(stage->traits().output).value();
+  FollowedEyes eyes;
+  eyes.presence = Presence::kOff;
+  Shown shown;
+  shown.style = options.shading.style;
+  shown.parts = options.shading.parts;
+  stage->show(shown, eyes, 1);
+  ASSERT_TRUE(stage->paint(surface.surface()));
+  ASSERT_TRUE(stage->measuring());
+  // A lit body is not of one colour: its middle faces the eye, its rim does not.
+  const Image picture = surface.read().value();
+  int darkest = 255, brightest = 0;
+  for (int y = 60; y < 120; ++y)
+    for (int x = 120; x < 200; ++x) {
+      darkest = std::min<int>(darkest, picture.at(x, y)[0]);
+      brightest = std::max<int>(brightest, picture.at(x, y)[0]);
+    }
+  EXPECT_GT(brightest - darkest, 25);
+  EXPECT_EQ(stage->still(1).error().kind, ErrorKind::kTryAgain) << "it would not be of the style";
+  TimestampNs now = 1;
+  while (stage->measuring()) {
+    stage->show(shown, eyes, now += 1'000'000);
+    std::this_thread::yield();
+  }
+  EXPECT_TRUE(stage->moved()) << "its colours are there now";
+  EXPECT_TRUE(stage->still(1));
 }
 
 TEST(FirstPicture, TwoStatesBesideEachOtherComeInPiecesAndAreThoseOfOneGo) {

@@ -213,6 +213,29 @@ TEST(FigureColours, EveryLevelOfDetailCarriesThem) {
   }
 }
 
+TEST(FigureColours, WhatWasMeasuredOnceIsNotMeasuredAgain) {
+  struct Counting final : Progress {
+    std::int64_t items = 0;
+    void on_begin(std::string_view, std::int64_t total, std::string_view) override { items += total; }
+    void on_advance(std::int64_t) override {}
+  };
+  const auto context = EglContext::create().value();
+  const TriMesh mesh = testing::sphere(2.0f, 60, 120);
+  LodMesh levels = LodMesh::exact(pack_mesh(mesh).value()).value();
+  const auto work = [&](const FieldNeeds& needs) {
+    Counting progress;
+    EXPECT_TRUE(carry_fields(levels, mesh, needs, progress));
+    return progress.items;
+  };
+  const std::int64_t integral = work({true, false}), curvature = work({false, true});
+  EXPECT_EQ(work({true, true}), 0);
+  LodMesh fresh = LodMesh::exact(pack_mesh(mesh).value()).value();
+  std::swap(levels, fresh);
+  EXPECT_EQ(work({true, true}), integral + curvature);
+  EXPECT_EQ(levels.fields()->values, fresh.fields()->values);
+  EXPECT_EQ(fresh.fields()->has, (FieldNeeds{true, true}));
+}
+
 TEST(FieldMaker, MakesWhatIsAskedForBesideAndStopsWhenItGoes) {
   const TriMesh mesh = testing::sphere(2.0f, 60, 120);
   SilentProgress progress;
