@@ -17,6 +17,23 @@ std::string_view page_file(std::string_view name) {
   return {};
 }
 
+/// What many small hollows and crumbs span and hold is nothing that anybody could measure.
+std::string size_cells(const PartFacts& part) {
+  if (part.kind == PartitionKind::kPores) return fmt::format("<td></td><td>{:.0f}</td><td></td>", part.area);
+  return fmt::format("<td>{:.1f} × {:.1f} × {:.1f}</td><td>{:.0f}</td><td>{:.0f}</td>", part.size.x, part.size.y,
+                     part.size.z, part.area, part.volume);
+}
+
+/// As a person writes it: six digits of a number are enough, sizes have their crosses.
+std::string value_text(const nlohmann::json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
+  if (!value.is_array()) return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string out;
+  for (const nlohmann::json& each : value) out += (out.empty() ? "" : " × ") + value_text(each);
+  return out;
+}
+
 std::string parts_table(const SurfaceFacts& facts) {
   const char* const unit = facts.millimetres ? "mm" : "voxels";
   std::string out = fmt::format(
@@ -24,11 +41,9 @@ std::string parts_table(const SurfaceFacts& facts) {
       "<th>not in the scan</th><th></th></tr>\n",
       facts.upright ? fmt::format("width × height × thickness, {}", unit) : fmt::format("size, {}", unit), unit, unit);
   for (const PartFacts& part : facts.parts)
-    out += fmt::format(
-        "<tr><td>{}</td><td>{:.1f} × {:.1f} × {:.1f}</td><td>{:.0f}</td><td>{:.0f}</td><td>{:.0f} {}² ({:.1f} %)</td>"
-        "<td>{}</td></tr>\n",
-        markup_text(part.name), part.size.x, part.size.y, part.size.z, part.area, part.volume, part.inferred_area, unit,
-        100.0 * part.inferred_share(), part.watertight ? "watertight" : "open");
+    out += fmt::format("<tr><td>{}</td>{}<td>{:.0f} {}² ({:.1f} %)</td><td>{}</td></tr>\n", markup_text(part.name),
+                       size_cells(part), part.inferred_area, unit, 100.0 * part.inferred_share(),
+                       part.watertight ? "watertight" : "open");
   return out + "</table></div>\n";
 }
 
@@ -68,12 +83,7 @@ std::string provenance(const ReportContent& content) {
   std::string rows;
   const auto row = [&](const char* name, const nlohmann::json::json_pointer& at) {
     if (!facts.contains(at) || facts.at(at).is_null()) return;
-    const nlohmann::json& value = facts.at(at);
-    const std::string text = value.is_string() ? value.get<std::string>()
-                             : value.is_number_float()
-                                 ? fmt::format("{:.6g}", value.get<double>())
-                                 : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-    rows += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", name, markup_text(text));
+    rows += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", name, markup_text(value_text(facts.at(at))));
   };
   using Pointer = nlohmann::json::json_pointer;
   row("scan", Pointer("/input/path"));
@@ -81,7 +91,7 @@ std::string provenance(const ReportContent& content) {
   row("voxels", Pointer("/input/file_dims"));
   row("voxel size, mm", Pointer("/input/voxel_size_mm"));
   row("voxel size from", Pointer("/input/provenance"));
-  row("noise, dB", Pointer("/estimates/snr_db"));
+  row("signal to noise, dB", Pointer("/estimates/snr_db"));
   row("threshold", Pointer("/estimates/threshold"));
   return "<div class=\"scroll\"><table>" + rows + "</table></div>\n<details><summary>all parameters</summary><pre>" +
          markup_text(dump_json_lines(facts)) + "</pre></details>\n";

@@ -112,12 +112,15 @@ double Stage::Parts::depth_factor(const Observer& viewer) const {
   return easy_depth_factor(eyes_before(sink->views(viewer), apart), front, back, options.room.most_parallax_deg);
 }
 
-Observer Stage::Parts::cameras() const {
+Observer Stage::Parts::cameras(int half) const {
   Observer out = next.viewer;
   const SinkTraits traits = sink->traits();
   if (!next.shown.lens_zoom || traits.views > 1 || traits.worn) return out;
+  // Who compares two states wants to see both from the same side, so that each has an eye before its own middle.
+  const bool each = next.shown.beside && !next.followed;
+  const glm::dvec3 aside(each ? (half == 0 ? -0.25 : 0.25) * plane.window.x : 0.0, 0.0, 0.0);
   for (glm::dvec3* const eye : {&out.left_mm, &out.right_mm, &out.nominal_mm})
-    *eye = plane.aside_mm + next.shown.view.zoom * (*eye - plane.aside_mm);
+    *eye = plane.aside_mm + aside + next.shown.view.zoom * (*eye - plane.aside_mm);
   return out;
 }
 
@@ -232,6 +235,7 @@ void Stage::show(const Shown& shown, const FollowedEyes& eyes, TimestampNs now) 
   parts_->next.now = now;
   parts_->cost.worked = false;
   parts_->next.viewer = parts_->viewer_at(eyes);
+  parts_->next.followed = eyes.presence != Presence::kOff;
   if (!mesh) return;
   FieldNeeds needs = fields_needed(shown.style, shown.other);
   if (shown.beside) {
@@ -239,49 +243,6 @@ void Stage::show(const Shown& shown, const FollowedEyes& eyes, TimestampNs now) 
     needs = {needs.integral || more.integral, needs.curvature || more.curvature};
   }
   parts_->measure(needs);
-}
-
-/// Figures of the surface that a look tells: at once where every picture has to be exact, else beside the pictures,
-/// which show them when they are there.
-void Stage::Parts::measure(const FieldNeeds& needs) {
-  LodMesh& mesh = *object.mesh;
-  Result<void> done;
-  if (options.quality == Quality::kExact) {
-    SilentProgress progress;
-    done = carry_fields(mesh, *object.source, needs, progress);
-  } else if (object.maker) {
-    auto made = object.maker->take();
-    if (!made) return;
-    object.maker.reset();
-    if (*made) {
-      SurfaceFields all = mesh.fields() == nullptr ? std::move(**made) : joined(std::move(**made), *mesh.fields());
-      done = mesh.carry(std::make_shared<const SurfaceFields>(std::move(all)));
-      painted.of.reset();
-    } else {
-      done = tl::unexpected<Error>(made->error());
-    }
-  } else if (const FieldNeeds missing = needs.without(measured()); missing.any()) {
-    object.maker = std::make_unique<FieldMaker>(*object.source, missing);
-  }
-  if (!done) log_warning("view: {}", done.error().message);
-}
-
-FieldNeeds Stage::Parts::measured() const noexcept {
-  const SurfaceFields* const fields = object.mesh->fields();
-  return fields == nullptr ? FieldNeeds() : fields->has;
-}
-
-/// A style that tells figures is plain clay until they are measured: in one colour nobody would see the object.
-Style Stage::Parts::ready(Style style) const {
-  if (!is_field(style.map) || measured().covers(fields_needed(style))) return style;
-  style.map = ColorMap::kPlain;
-  style.lit = true;
-  return style;
-}
-
-std::optional<double> Stage::measuring() const noexcept {
-  if (!parts_->object.maker) return std::nullopt;
-  return parts_->object.maker->share();
 }
 
 bool Stage::moved() const noexcept { return parts_->moved(); }
@@ -295,35 +256,6 @@ bool Stage::needs_paint() const noexcept {
 void Stage::Parts::took(double ms, std::size_t count) {
   const double each = ms / static_cast<double>(std::max<std::size_t>(count, 1));
   cost.exact_view_ms = cost.exact_view_ms == 0.0 ? each : (1.0 - kForget) * cost.exact_view_ms + kForget * each;
-}
-
-/// The scene of the next picture, in mm of the screen.
-void Stage::Parts::set_scene(const Shown& shown, int half) {
-  const glm::dmat4 world = placed(shown, half);
-  const double scale = glm::length(glm::dvec3(world[0]));  // lifts count mm of the object
-  const auto place = [&](glm::dvec3& p) { p = glm::dvec3(world * glm::dvec4(p, 1.0)); };
-  painted.light = shown.light.value_or(options.shading.light);
-  painted.light.azimuth_deg = shown.view.light_azimuth_deg;
-  painted.light.elevation_deg = shown.view.light_elevation_deg;
-  painted.fog = shown.fog.strength > 0 ? shown.fog : options.shading.fog;
-  painted.glow = shown.glow;
-  painted.clips = dubsar::moved(options.shading.clips, world);
-  for (const ClipPlane& clip : dubsar::moved(shown.clips, world)) painted.clips.push_back(clip);
-  OtherLook other = shown.other;
-  other.style = ready(other.style);
-  painted.items = {MeshItem{&*object.mesh, world, ready(shown.style), shown.parts, other}};
-  for (const LinesItem& lines : shown.before) painted.items.emplace_back(lines);
-  for (LinesItem lines : shown.marks.lines) {
-    for (glm::dvec3& p : lines.points_mm) place(p);
-    lines.lift_mm *= scale;
-    painted.items.emplace_back(std::move(lines));
-  }
-  for (LabelItem label : shown.marks.labels) {
-    label.along_mm = glm::dmat3(world) * label.along_mm;
-    place(label.at_mm);
-    label.lift_mm *= scale;
-    painted.items.emplace_back(std::move(label));
-  }
 }
 
 /// New cameras: exact views where there is time for them.

@@ -25,7 +25,7 @@ std::vector<View> Stage::Parts::set_half(int half) {
   const Shown& shown = half == 0 ? *next.shown.beside : next.shown;
   set_scene(shown, half);
   std::vector<View> views;
-  for (const View& view : painted.views)
+  for (const View& view : sink->views(cameras(half)))
     views.push_back(crop_view(view, left, 0, width, whole.height(), whole.width(), whole.height()));
   return views;
 }

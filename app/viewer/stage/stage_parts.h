@@ -49,6 +49,7 @@ struct Stage::Parts {
     Shown shown;
     Observer viewer;
     TimestampNs now = 0;
+    bool followed = false;  // somebody is seen, and the eyes are theirs
   };
   struct Painted {
     std::optional<std::pair<Shown, Observer>> of;
@@ -94,8 +95,8 @@ struct Stage::Parts {
   Style ready(Style style) const;
   Observer viewer_at(const FollowedEyes& eyes) const;
   double depth_factor(const Observer& viewer) const;
-  /// The eyes that cameras are made for.
-  Observer cameras() const;
+  /// The eyes that cameras are made for; of two states beside each other those of a half, 0 left, 1 right.
+  Observer cameras(int half = 1) const;
   /// Where what is shown stands: with another one beside it in the middle of its half, 0 left, 1 right.
   glm::dmat4 placed(const Shown& shown, int half) const;
   glm::dmat4 placed() const { return placed(next.shown, 1); }

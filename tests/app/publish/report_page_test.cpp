@@ -59,5 +59,24 @@ TEST(ReportPage, SaysSizesAndWhatIsNotInTheScan) {
   EXPECT_THAT(page, HasSubstr("88.3 % of the surface is measured, 11.7 % is not in the scan"));
 }
 
+TEST(ReportPage, FiguresAreWrittenAsPeopleWriteThem) {
+  ReportContent some = content();
+  PartFacts pores;
+  pores.name = "pores and crumbs";
+  pores.kind = PartitionKind::kPores;
+  pores.size = {55.8, 58.0, 18.9};
+  pores.area = 221.0;
+  pores.volume = -18.0;
+  some.facts.parts.push_back(pores);
+  some.provenance = R"({"input":{"file_dims":[512,272,472],"voxel_size_mm":[0.13956617647058822,0.14,0.2]},)"
+                    R"("estimates":{"snr_db":25.3471}})";
+  const std::string page = report_page(some);
+  EXPECT_THAT(page, HasSubstr("<td>512 × 272 × 472</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>0.139566 × 0.14 × 0.2</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>pores and crumbs</td><td></td><td>221</td><td></td>"));
+  EXPECT_THAT(page, Not(HasSubstr("<td>-18</td>"))) << "nothing is less than empty";
+  EXPECT_THAT(page, HasSubstr("<td>signal to noise, dB</td>"));
+}
+
 }  // namespace
 }  // namespace dubsar::app

@@ -131,10 +131,25 @@ TEST_F(Seeing, AStateThatIsKeptStandsBesideTheOneThatGoesOn) {
   const Image &first = seen[4].image, &linked = seen[31].image, &apart = seen[36].image, &alone = seen.back().image;
   const int turned = differing(half(first, false), half(linked, false));
   EXPECT_GT(turned, 500) << "both are turned";
-  EXPECT_LT(differing(half(linked, false), half(linked, true)), 20000) << "the same state twice, but for perspective";
+  EXPECT_LT(differing(half(linked, false), half(linked, true)), 100) << "the same state twice, seen from the same side";
   EXPECT_EQ(half(first, false), half(apart, false)) << "the one that is kept is as it was";
   EXPECT_LT(differing(half(linked, true), half(apart, true)), 20) << "the other goes on as it is";
   EXPECT_GT(differing(half(alone, false), half(apart, false)), 5000);
+}
+
+TEST_F(Seeing, MarksGoWithTheSurfaceThatIsCutAway) {
+  const auto seen =
+      run(testing::lettered_box(), {{0.2, "measure_distance -8,0,5 8,0,5"}, {0.8, "cut front 40"}, {1.6, "no_cuts"}});
+  ASSERT_GT(seen.size(), 22u);
+  const auto amber = [](const Image& image) {
+    int count = 0;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) count += image.at(x, y)[0] - image.at(x, y)[2] > 90 ? 1 : 0;
+    return count;
+  };
+  EXPECT_GT(amber(seen[6].image), 100);
+  EXPECT_EQ(amber(seen[14].image), 0);
+  EXPECT_EQ(amber(seen.back().image), amber(seen[6].image));
 }
 
 /// Middle of what is amber in these columns.
