@@ -32,6 +32,7 @@ Result<void> Stage::Parts::paint_decor(ViewArray& array) {
     decor.no_vertices = make_vertex_array();
     decor.framebuffer = make_framebuffer();
   }
+  if (next.shown.beside) set_scene();  // the other state may have been drawn last
   const glm::dmat4 world = placed();
   const auto at = [&](const glm::dvec3& model) { return glm::dvec3(world * glm::dvec4(model, 1.0)); };
   const int side =

@@ -203,6 +203,13 @@ TEST(FirstPicture, TwoStatesBesideEachOtherComeInPiecesAndAreThoseOfOneGo) {
   EXPECT_GT(pieces, 80) << "of .36 million triangles, some of them several times";
   EXPECT_EQ(seen, 2) << "each half is seen when it is whole";
   EXPECT_EQ(surface.read().value().pixels, whole.pixels);
+  // A glass over the middle of the present state shows it, whichever half was drawn last.
+  stage->set_decor({Lens{{0.0, 0.0, 10.0}, 4.0, 0.3}, {}});
+  ASSERT_TRUE(stage->paint(surface.surface()));
+  const Image under = surface.read().value();
+  const auto* const clay = under.at(3 * under.width / 4, under.height / 2);
+  const auto* const ground = under.at(under.width / 2, 4);
+  EXPECT_GT(clay[0] - ground[0], 30);
 }
 
 }  // namespace
