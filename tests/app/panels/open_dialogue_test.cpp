@@ -20,6 +20,7 @@ FilesState some_files() {
 TEST(OpenDialogue, ListsRecentFilesThenTheFolder) {
   const auto rows = dialogue_rows(some_files(), "");
   std::vector<std::string> commands;
+  commands.reserve(rows.size());
   for (const DialogueRow& row : rows) commands.push_back(row.command);
   EXPECT_EQ(commands,
             (std::vector<std::string>{"", "open_recent 1", "", "", "open_folder ..", "open_folder /tablets/joins",

@@ -25,7 +25,7 @@ class LiveDrawers : public Live {
     person_->settle();
   }
   /// A click in each turn, each `step` pixels below the one before, until something has come of it.
-  static Step click_down(int x, int from, int step, std::function<bool(const ViewMoment&)> done) {
+  static Step click_down(int x, int from, int step, const std::function<bool(const ViewMoment&)>& done) {
     auto y = std::make_shared<int>(from);
     return {{}, [=](const ViewMoment& m) {
               if (done(m)) return true;
@@ -33,10 +33,10 @@ class LiveDrawers : public Live {
               return false;
             }};
   }
-  static std::function<bool(const ViewMoment&)> drawer(std::string name) {
+  static std::function<bool(const ViewMoment&)> drawer(const std::string& name) {
     return [name](const ViewMoment& m) { return m.viewer.desk().drawer == name; };
   }
-  static std::function<bool(const ViewMoment&)> text(std::string words) {
+  static std::function<bool(const ViewMoment&)> text(const std::string& words) {
     return [words](const ViewMoment& m) {
       return m.viewer.document().notes.size() == 1 && m.viewer.document().notes[0].text == words;
     };

@@ -106,12 +106,12 @@ class LiveFiles : public Live {
 };
 
 TEST_F(LiveFiles, TheWindowIsThereBeforeTheSurfaceAndAnswersWhileItIsRead) {
-  const auto done = open_and(
-      {file("slow.ply")}, {until([](const ViewMoment& m) { return m.frames > 0 && !m.viewer.has_surface(); }),
-                           {[this] { person_->key("f1"); }, [](const ViewMoment& m) { return m.viewer.desk().help; }},
-                           {[this] { person_->key("f1"); }, [](const ViewMoment& m) { return !m.viewer.desk().help; }},
-                           {[this] { let_come(); }, [this](const ViewMoment& m) { return triangles(m) == all_; }},
-                           end()});
+  const auto done = open_and({file("slow.ply")},
+                             {until([](const ViewMoment& m) { return m.frames > 0 && !m.viewer.has_surface(); }),
+                              {[] { person_->key("f1"); }, [](const ViewMoment& m) { return m.viewer.desk().help; }},
+                              {[] { person_->key("f1"); }, [](const ViewMoment& m) { return !m.viewer.desk().help; }},
+                              {[this] { let_come(); }, [this](const ViewMoment& m) { return triangles(m) == all_; }},
+                              end()});
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_EQ(done->triangles, all_);
   ASSERT_TRUE(done->first.window_s && done->first.surface_s);
@@ -156,7 +156,7 @@ TEST_F(LiveFiles, TheWindowIsCalledByTheFileThatIsShownAndTheOneThatIsRead) {
 TEST_F(LiveFiles, WithoutAFileTheDialogueIsOpenAndEscapeClosesItThenEnds) {
   const auto done = open_and(
       {}, {until([](const ViewMoment& m) { return m.viewer.desk().choosing.open; }),
-           {[this] { person_->key("escape"); }, [](const ViewMoment& m) { return !m.viewer.desk().choosing.open; }},
+           {[] { person_->key("escape"); }, [](const ViewMoment& m) { return !m.viewer.desk().choosing.open; }},
            end()});
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_EQ(done->triangles, 0u);
@@ -184,12 +184,12 @@ TEST_F(LiveFiles, ScriptsOpenFilesGoThroughThemAndUndoBelongsToEach) {
 
 TEST_F(LiveFiles, EscapeLeavesWhatIsReadAndTheSurfaceStays) {
   options_.steps = {{0.0, "open " + file("slow.ply").string()}};
-  const auto done = open_and(
-      {file("a.ply")}, {until([this](const ViewMoment& m) { return triangles(m) == all_; }),
-                        until([](const ViewMoment& m) { return m.viewer.opening(); }),
-                        {[this] { person_->key("escape"); }, [](const ViewMoment& m) { return !m.viewer.opening(); }},
-                        until([this](const ViewMoment&) { return left(); }),
-                        end()});
+  const auto done = open_and({file("a.ply")},
+                             {until([this](const ViewMoment& m) { return triangles(m) == all_; }),
+                              until([](const ViewMoment& m) { return m.viewer.opening(); }),
+                              {[] { person_->key("escape"); }, [](const ViewMoment& m) { return !m.viewer.opening(); }},
+                              until([this](const ViewMoment&) { return left(); }),
+                              end()});
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_EQ(done->triangles, all_);
 }

@@ -97,7 +97,7 @@ class Live : public ::testing::Test {
             }};
   }
   Step end() {
-    return {[this] { person_->key("escape"); }, [](const ViewMoment&) { return true; }};
+    return {[] { person_->key("escape"); }, [](const ViewMoment&) { return true; }};
   }
   /// Escape closes what is open before it ends a session.
   Step close_drawer() {

@@ -46,7 +46,7 @@ class Labels : public ::testing::Test {
     const Image layered = array.read_layer(2).value();
     const auto drawn = renderer_.render(scene, std::span(&view, 1), factor, array);
     EXPECT_TRUE(drawn) << drawn.error().message;
-    const Image out = array.read_layer(0).value();
+    Image out = array.read_layer(0).value();
     int off = 0;
     for (std::size_t i = 0; i < out.pixels.size(); ++i) off += std::abs(out.pixels[i] - layered.pixels[i]) > 2;
     if (factor == 1) {

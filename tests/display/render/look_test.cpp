@@ -19,7 +19,7 @@
 namespace dubsar {
 namespace {
 
-constexpr int kSide = 240;
+constexpr int kSide = 240, kMiddle = kSide / 2, kThird = kSide / 3;
 constexpr double kRadius = 2.0;
 
 RenderOptions front(const Shading& shading) {
@@ -101,8 +101,8 @@ TEST(RadianceScaling, OnABallIsTheFormulaOfThePaper) {
     // Mean curvature 1 / R; the bend is 2.5 tanh of half of it.
     const double bend = strength * 2.5 * std::tanh(0.5 / kRadius);
     for (int x = kSide / 2; x < kSide * 0.97; x += 5) {
-      const double at = (x + 0.5 - kSide / 2) / (kSide / 2), facing = std::sqrt(1 - at * at);
-      EXPECT_NEAR(image.at(x, kSide / 2)[0], srgb_from_linear(scaled(bend, facing)), 2.5) << strength << " " << facing;
+      const double at = (x + 0.5 - kMiddle) / (kMiddle), facing = std::sqrt(1 - at * at);
+      EXPECT_NEAR(image.at(x, kMiddle)[0], srgb_from_linear(scaled(bend, facing)), 2.5) << strength << " " << facing;
     }
   }
   EXPECT_NEAR(scaled(1.7, 0.2), 0.2, 1e-12) << "stays as it is";
@@ -137,7 +137,7 @@ TEST(FigureColours, OnABallAreThoseOfItsCurvatures) {
       const Rgb8 expected = field_color(shading.style, c.figure);
       for (const int x : {kSide / 2, kSide * 2 / 3, kSide / 5})
         for (int channel = 0; channel < 3; ++channel)
-          EXPECT_NEAR(image.at(x, kSide / 2)[channel], expected[channel], 3) << c.style << " " << x;
+          EXPECT_NEAR(image.at(x, kMiddle)[channel], expected[channel], 3) << c.style << " " << x;
     }
 }
 
@@ -149,8 +149,7 @@ TEST(FigureColours, IntegralInvariantsAreThoseOfTheBallsCaps) {
   Shading shading = preset("msii");
   const Image image = picture(mesh, shading);
   const Rgb8 expected = field_color(shading.style, std::sqrt(square));
-  for (int channel = 0; channel < 3; ++channel)
-    EXPECT_NEAR(image.at(kSide / 2, kSide / 2)[channel], expected[channel], 3);
+  for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(image.at(kMiddle, kMiddle)[channel], expected[channel], 3);
   EXPECT_GT(expected[1], shading.style.base_color[1] + 4) << "convex is lighter than level clay";
 }
 
@@ -209,7 +208,7 @@ TEST(FigureColours, EveryLevelOfDetailCarriesThem) {
     ASSERT_TRUE(renderer.render_layers(MeshScene(levels, shading), std::span(&camera.view, 1), std::span(&layer, 1),
                                        array, coarse));
     const Image image = array.read_layer(0).value();
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.at(kSide / 2, kSide / 3)[c], expected[c], 3) << coarse;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.at(kMiddle, kThird)[c], expected[c], 3) << coarse;
   }
 }
 
