@@ -173,7 +173,7 @@ std::unique_ptr<DeviceDriver> drive_opentrack(OpenTransport open, OptionReader& 
   const auto sender = parse_opentrack_sender(options.text("sender"));
   if (!sender) options.complain(sender.error().message);
   OpentrackProtocol protocol(invert.value_or(OpentrackInvert{}), sender.value_or(std::nullopt));
-  return std::make_unique<Driver<OpentrackProtocol>>(std::move(open), std::move(protocol), stamps);
+  return std::make_unique<Driver<OpentrackProtocol>>(std::move(open), protocol, stamps);
 }
 
 std::unique_ptr<DeviceDriver> drive_vrpn(OpenTransport open, OptionReader& options, const Clock* stamps) {
@@ -193,8 +193,8 @@ const Pose kBeforeThePanel{{0.0, 0.0, 0.6}, {1.0, 0.0, 0.0, 0.0}};  ///< where t
 const Pose kOnTheTable{{0.0, -0.2, 0.15}, {1.0, 0.0, 0.0, 0.0}};    ///< facing up
 
 std::vector<DriverEntry> make_table() {
-  static const std::vector<DeviceId> kXrealIds = xreal_ids(), kLeapIds = leap_ids(true),
-                                     kLeapServiceIds = leap_ids(false);
+  static const std::vector<DeviceId> xreal_devices = xreal_ids(), leap_devices = leap_ids(true),
+                                     leap_service_devices = leap_ids(false);
   return {
       {.name = "spacemouse",
        .summary = "3Dconnexion SpaceMouse, all USB models and receivers",
@@ -247,7 +247,7 @@ std::vector<DriverEntry> make_table() {
       {.name = "xreal",
        .summary = "XREAL Air, Air 2, Air 2 Pro, Air 2 Ultra (orientation)",
        .bus = Bus::kHid,
-       .ids = kXrealIds,
+       .ids = xreal_devices,
        .gives = Gives::kHead,
        .input = {.source = "head:xreal", .taken_unasked = true, .lacks = kNeckModel},
        .usual_place = kBeforeThePanel,
@@ -257,7 +257,7 @@ std::vector<DriverEntry> make_table() {
       {.name = "leap",
        .summary = "Leap Motion Controller, Rigel, Stereo IR 170",
        .bus = Bus::kUsb,
-       .ids = kLeapIds,
+       .ids = leap_devices,
        .gives = Gives::kStereoPictures,
        .input = {.source = "leap", .taken_unasked = true},
        .usual_place = kOnTheTable,
@@ -276,7 +276,7 @@ std::vector<DriverEntry> make_table() {
       {.name = "leapc",
        .summary = "Leap Motion Controller 2, 3Di",
        .bus = Bus::kService,
-       .ids = kLeapServiceIds,
+       .ids = leap_service_devices,
        .gives = Gives::kHands,
        .input = {.source = "leapc"},
        .usual_place = kOnTheTable},
@@ -296,8 +296,8 @@ std::vector<DriverEntry> make_table() {
 }  // namespace
 
 DriverTable driver_table() {
-  static const std::vector<DriverEntry> kTable = make_table();
-  return kTable;
+  static const std::vector<DriverEntry> table = make_table();
+  return table;
 }
 
 std::string driver_names(DriverTable drivers, bool (*passes)(const DriverEntry&)) {

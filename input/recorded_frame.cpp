@@ -72,10 +72,10 @@ json event_json(const InputEvent& event) {
 class LineReader {
  public:
   const json& get(const json& object, const char* name) {
-    static const json kNothing;
+    static const json nothing;
     if (object.is_object() && object.contains(name)) return object.at(name);
     complain(std::string(name) + " is missing");
-    return kNothing;
+    return nothing;
   }
   double real(const json& value, const char* name) {
     if (value.is_number() && std::abs(value.get<double>()) <= kLargest) return value.get<double>();
@@ -120,11 +120,11 @@ class LineReader {
     return {1, 0, 0, 0};
   }
   const json& list(const json& object, const char* name, std::size_t most) {
-    static const json kEmpty = json::array();
-    if (!object.contains(name)) return kEmpty;
+    static const json empty = json::array();
+    if (!object.contains(name)) return empty;
     if (object.at(name).is_array() && object.at(name).size() <= most) return object.at(name);
     complain(fmt::format("{} is not a list of at most {} things", name, most));
-    return kEmpty;
+    return empty;
   }
   void complain(std::string sentence) {
     if (complaint_.empty()) complaint_ = std::move(sentence);

@@ -28,7 +28,7 @@ void ImuFusion::update(const ImuSample& sample, double dt_s) noexcept {
   const double rate = glm::length(turn_rad_s);
   if (rate * dt_s > 1e-12) world_from_head_ = world_from_head_ * glm::angleAxis(rate * dt_s, turn_rad_s / rate);
   const double force = glm::length(sample.acceleration_m_s2);
-  if (std::abs(force - kStandardGravity_m_s2) < 0.1 * kStandardGravity_m_s2) {
+  if (std::abs(force - kStandardGravity) < 0.1 * kStandardGravity) {
     const glm::dvec3 up = world_from_head_ * (sample.acceleration_m_s2 / force);
     const double share = levelled_ ? 1.0 - std::exp(-dt_s / kLevelTime_s) : 1.0;
     world_from_head_ = turn_towards(up, {0.0, 1.0, 0.0}, share) * world_from_head_;
@@ -44,7 +44,7 @@ void ImuFusion::learn_bias(const ImuSample& sample, double dt_s) noexcept {
   variance_ += share * (glm::dot(off, off) - variance_);
   const double force = glm::length(sample.acceleration_m_s2);
   const bool still = variance_ < kStill_rad_s * kStill_rad_s && glm::length(mean_rad_s_) < kMostBias_rad_s &&
-                     std::abs(force - kStandardGravity_m_s2) < kStillForce * kStandardGravity_m_s2;
+                     std::abs(force - kStandardGravity) < kStillForce * kStandardGravity;
   still_s_ = still ? still_s_ + dt_s : 0.0;
   if (still_s_ >= kStillTime_s) bias_rad_s_ += (1.0 - std::exp(-dt_s / kBiasTime_s)) * (mean_rad_s_ - bias_rad_s_);
 }

@@ -6,7 +6,7 @@
 
 namespace dubsar {
 
-inline constexpr double kStandardGravity_m_s2 = 9.81;
+inline constexpr double kStandardGravity = 9.81;  // m/s2
 
 /// One reading, in the head's axes: x right, y up, z backwards.
 struct ImuSample {

@@ -93,7 +93,7 @@ std::optional<XrealReport> parse_xreal(std::span<const std::byte> report) noexce
   const auto force_g = scaled_vector(reader, kMaxForce_g);
   if (!force_g) return std::nullopt;
   parsed.sample.turn_rate_rad_s = head_from_sensor(*turn_deg_s) * kRadPerDeg;
-  parsed.sample.acceleration_m_s2 = head_from_sensor(*force_g) * kStandardGravity_m_s2;
+  parsed.sample.acceleration_m_s2 = head_from_sensor(*force_g) * kStandardGravity;
   return parsed;
 }
 
@@ -104,7 +104,7 @@ std::array<std::byte, 64> format_xreal(const XrealReport& report) noexcept {
   put(std::span(bytes), 4, report.time_ns);
   // the swap of axes is its own inverse
   put_vector(bytes, kGyroAt, head_from_sensor(report.sample.turn_rate_rad_s / kRadPerDeg), 2000);
-  put_vector(bytes, kAccelAt, head_from_sensor(report.sample.acceleration_m_s2 / kStandardGravity_m_s2), 16);
+  put_vector(bytes, kAccelAt, head_from_sensor(report.sample.acceleration_m_s2 / kStandardGravity), 16);
   return bytes;
 }
 

@@ -212,8 +212,8 @@ class ThreadedSource final : public InputSource {
 }  // namespace
 
 const Clock& session_clock(const InputConfig& config) {
-  static const SteadyClock kSteady;
-  return config.clock ? *config.clock : kSteady;
+  static const SteadyClock steady;
+  return config.clock ? *config.clock : steady;
 }
 
 std::unique_ptr<InputSource> make_threaded_source(ThreadedSourceTraits traits, std::unique_ptr<SourceReader> reader,

@@ -22,7 +22,7 @@ struct Folder {
 
 /// 64 x 64 x 64 voxels of 1 mm from the origin on, whose value is their x.
 fs::path ramp(const Folder& folder) {
-  const fs::path path = folder.path / "ramp.nrrd";
+  fs::path path = folder.path / "ramp.nrrd";
   std::ofstream out(path, std::ios::binary);
   out << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 64 64 64\nencoding: raw\nspacings: 1 1 1\n"
          "units: \"mm\" \"mm\" \"mm\"\n\n";
