@@ -56,6 +56,12 @@ void explain(DeviceInfo& info, int error, const std::string& rule) {
   }
 }
 
+/// Of a device that is there and cannot be used.
+Error why_not(const DriverEntry& driver, const DeviceInfo& info) {
+  return {info.state == DeviceState::kNoPermission ? ErrorKind::kPermission : ErrorKind::kUnavailable,
+          fmt::format("{}: {}; {}", driver.name, info.reason, info.remedy)};
+}
+
 }  // namespace
 
 std::vector<DeviceInfo> known_hid_devices(const std::vector<HidNode>& nodes, int (*permission)(const std::string&),
@@ -137,8 +143,7 @@ Result<std::unique_ptr<Transport>> open_touch_panel(const DriverEntry& driver, c
       if (opened) return opened;
       error = std::move(opened).error();
     } else {
-      error = {info.state == DeviceState::kNoPermission ? ErrorKind::kPermission : ErrorKind::kUnavailable,
-               fmt::format("{}: {}; {}", driver.name, info.reason, info.remedy)};
+      error = why_not(driver, info);
     }
   }
   return tl::unexpected<Error>(std::move(error));
@@ -161,8 +166,7 @@ Result<std::unique_ptr<Transport>> open_hid_device(const DriverEntry& driver, co
       if (opened) return opened;
       error = std::move(opened).error();
     } else {
-      error = {info.state == DeviceState::kNoPermission ? ErrorKind::kPermission : ErrorKind::kUnavailable,
-               fmt::format("{}: {}; {}", driver.name, info.reason, info.remedy)};
+      error = why_not(driver, info);
     }
   }
   return tl::unexpected<Error>(std::move(error));

@@ -38,6 +38,20 @@ TriMesh written_pillow(int around_count = kAround, int along_count = kAlong) {
   return mesh;
 }
 
+/// As a session with these options begins.
+Shown shown_as(const StageOptions& options) {
+  Shown out;
+  out.style = options.shading.style;
+  out.parts = options.shading.parts;
+  return out;
+}
+
+FollowedEyes nobodys_eyes() {
+  FollowedEyes out;
+  out.presence = Presence::kOff;
+  return out;
+}
+
 TEST(FirstPicture, OfAMillionVerticesOnFortyEightViewsIsLittleWork) {
   const TriMesh mesh = written_pillow();
   const auto context = EglContext::create();
@@ -52,11 +66,8 @@ TEST(FirstPicture, OfAMillionVerticesOnFortyEightViewsIsLittleWork) {
   const SinkTraits traits = stage->traits();
   ASSERT_EQ(traits.views, 48);
   auto surface = OffscreenSurface::create(traits.output).value();
-  FollowedEyes eyes;
-  eyes.presence = Presence::kOff;
-  Shown shown;
-  shown.style = options.shading.style;
-  shown.parts = options.shading.parts;
+  const FollowedEyes eyes = nobodys_eyes();
+  Shown shown = shown_as(options);
   stage->show(shown, eyes, 1);
   ASSERT_TRUE(stage->paint(surface.surface()));
   const Image picture = surface.read().value();
@@ -85,11 +96,8 @@ TEST(FirstPicture, TheExactOneComesInPiecesBetweenWhichNothingIsPainted) {
   options.budget_ms = 0.0;  // pieces as small as they can be
   auto stage = Stage::create(mesh, options).value();
   auto surface = OffscreenSurface::create(stage->traits().output).value();
-  FollowedEyes eyes;
-  eyes.presence = Presence::kOff;
-  Shown shown;
-  shown.style = options.shading.style;
-  shown.parts = options.shading.parts;
+  const FollowedEyes eyes = nobodys_eyes();
+  Shown shown = shown_as(options);
   TimestampNs now = 1;
   const auto step = [&] {
     now += 1'000'000'000;
@@ -127,11 +135,8 @@ TEST(FirstPicture, OfAStyleThatTellsFiguresIsClayUntilTheyAreMeasured) {
   options.shading = shading_preset("msii").value();
   auto stage = Stage::create(mesh, options).value();
   auto surface = OffscreenSurface::create(stage->traits().output).value();
-  FollowedEyes eyes;
-  eyes.presence = Presence::kOff;
-  Shown shown;
-  shown.style = options.shading.style;
-  shown.parts = options.shading.parts;
+  const FollowedEyes eyes = nobodys_eyes();
+  Shown shown = shown_as(options);
   stage->show(shown, eyes, 1);
   ASSERT_TRUE(stage->paint(surface.surface()));
   ASSERT_TRUE(stage->measuring());
@@ -161,11 +166,8 @@ TEST(FirstPicture, TwoStatesBesideEachOtherComeInPiecesAndAreThoseOfOneGo) {
   StageOptions options;
   options.screen = {.window_w = 320, .window_h = 180};
   options.shading = shading_preset("relief").value();
-  FollowedEyes eyes;
-  eyes.presence = Presence::kOff;
-  Shown shown;
-  shown.style = options.shading.style;
-  shown.parts = options.shading.parts;
+  const FollowedEyes eyes = nobodys_eyes();
+  Shown shown = shown_as(options);
   auto other = std::make_shared<Shown>(shown);
   other->style = shading_preset("sky-sun").value().style;
   shown.parts[0].opacity = 0.5;
