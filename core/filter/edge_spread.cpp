@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "core/base/system/parallel.h"
@@ -13,15 +14,16 @@ namespace dubsar {
 namespace {
 
 constexpr int kRadius = 5, kInnerRadius = 3;  ///< of the balls, voxels
-constexpr std::int64_t kMostGroups = 16, kGroupSlices = 2 * kRadius + 2;
+constexpr std::int64_t kMostGroups = 16, kMostCloseSlices = 128, kGroupSlices = 2 * kRadius + 2;
 constexpr double kBin = 0.25;  ///< of the distance from the plane, voxels
 constexpr int kBins = 10;      ///< they end where the sides have their own density
 constexpr double kCylinder = 2.0;
 constexpr double kBeyondBlur = 2.5;  ///< voxels from the plane at which its sides have their own density
 constexpr double kLevelError = 0.15, kMostBend = 0.15, kMostTilt = 0.3;
 constexpr int kFolds = 16;  ///< parts of the places, each of which gives a variance
-constexpr int kLeastPlaces = 200;
-constexpr double kSignificant = 2.0;  ///< uncertainties that a variance is above nothing, or it says nothing
+constexpr int kLeastPlaces = 200, kFewPlaces = 1000;
+/// Uncertainties that a variance is above nothing, and what the extent of a voxel alone makes: below, it says nothing.
+constexpr double kSignificant = 2.0, kLeastVariance = 1.0 / 12.0;
 
 struct Offset {
   int x, y, z;
@@ -184,27 +186,23 @@ std::optional<EdgeSpread> summary(const Folds& folds) {
   const auto count = static_cast<double>(variances.size());
   result.uncertainty = 1.4826 * median(std::move(variances)) / std::sqrt(count);
   result.variance = spread - off * off;
-  if (result.variance <= kSignificant * result.uncertainty) return std::nullopt;
+  if (result.variance <= std::max(kLeastVariance, kSignificant * result.uncertainty)) return std::nullopt;
   return result;
 }
 
-}  // namespace
-
-Result<std::optional<EdgeSpread>> measure_edge_spread(SlabSource& source, double air, double material,
-                                                      Progress& progress) {
+/// Looks at every second voxel of every second row of the slices `middles`, each with the slices around it.
+Result<Folds> look_at(SlabSource& source, std::span<const std::int64_t> middles, double air, double material,
+                      Progress& progress) {
+  constexpr std::int64_t kStride = 2;
   const Dims d = source.dims();
-  if (!(material > air) || std::min({d.x, d.y, d.z}) < 2 * kRadius + 3) return std::optional<EdgeSpread>{};
-  const std::int64_t slices = std::min(kGroupSlices, d.z),
-                     groups = std::clamp<std::int64_t>(d.z / slices, 1, kMostGroups);
-  std::vector<float> voxels(static_cast<std::size_t>(slices * d.slice()));
+  std::vector<float> voxels(static_cast<std::size_t>(kGroupSlices * d.slice()));
+  const std::int64_t rows = (d.y - 2 * kRadius - 2) / kStride, columns = (d.x - 2 * kRadius - 2) / kStride;
   Folds all{};
-  for (std::int64_t g = 0; g < groups; ++g) {
+  for (const std::int64_t middle : middles) {
     if (progress.cancelled()) return cancelled_error();
-    const std::int64_t z0 = groups == 1 ? (d.z - slices) / 2 : g * (d.z - slices) / (groups - 1);
+    const std::int64_t z0 = middle - kRadius, slices = std::min(kGroupSlices, d.z - z0);
     DUBSAR_TRY(source.read(z0, z0 + slices, voxels));
     const Group group(voxels, {d.x, d.y, slices}, air, material);
-    constexpr std::int64_t kStride = 2;
-    const std::int64_t rows = (d.y - 2 * kRadius - 2) / kStride, columns = (d.x - 2 * kRadius - 2) / kStride;
     all = parallel_reduce<Folds>(
         rows, 4, std::move(all),
         [&](std::int64_t begin, std::int64_t end) {
@@ -213,14 +211,44 @@ Result<std::optional<EdgeSpread>> measure_edge_spread(SlabSource& source, double
             for (std::int64_t column = 0; column < columns; ++column) {
               const std::int64_t x = kRadius + kStride * column, y = kRadius + kStride * row, z = kRadius;
               // Neighbouring places share voxels: a fold is a coarse field of them, so that folds do not.
-              const auto fold = static_cast<std::size_t>((x / 16 + 4 * (y / 16) + 5 * g) % kFolds);
+              const auto fold = static_cast<std::size_t>((x / 16 + 4 * (y / 16) + 5 * (z0 / kGroupSlices)) % kFolds);
               if (group.candidate(x, y, z)) group.look(x, y, z, part[fold]);
             }
           return part;
         },
         merge);
   }
-  return summary(all);
+  return all;
+}
+
+/// `most` slices or fewer, evenly through the volume, at least `apart` from each other.
+std::vector<std::int64_t> slices_through(std::int64_t depth, std::int64_t most, std::int64_t apart) {
+  const std::int64_t last = depth - kGroupSlices, count = std::clamp<std::int64_t>(last / apart + 1, 1, most);
+  std::vector<std::int64_t> middles;
+  for (std::int64_t i = 0; i < count; ++i)
+    middles.push_back(kRadius + (count == 1 ? last / 2 : i * last / (count - 1)));
+  return middles;
+}
+
+int places_of(const Folds& folds) {
+  int places = 0;
+  for (const Spread& fold : folds) places += fold.places;
+  return places;
+}
+
+}  // namespace
+
+Result<std::optional<EdgeSpread>> measure_edge_spread(SlabSource& source, double air, double material,
+                                                      Progress& progress) {
+  const Dims d = source.dims();
+  if (!(material > air) || std::min({d.x, d.y, d.z}) < 2 * kRadius + 3) return std::optional<EdgeSpread>{};
+  const std::int64_t depth = std::max(d.z, kGroupSlices);
+  DUBSAR_ASSIGN(Folds folds,
+                look_at(source, slices_through(depth, kMostGroups, kGroupSlices), air, material, progress));
+  if (places_of(folds) < kFewPlaces) {  // a small scan: its slices closer together
+    DUBSAR_ASSIGN(folds, look_at(source, slices_through(depth, kMostCloseSlices, 2), air, material, progress));
+  }
+  return summary(folds);
 }
 
 }  // namespace dubsar

@@ -18,9 +18,10 @@ struct EdgeSpread {
 /// Measures the spread between `air` and `material` (grey values) in balls of 5 voxels around the surface: where a
 /// plane divides a ball, all its voxels are sorted by their distance from that plane (a slanted edge, so that nothing
 /// is interpolated). Places with anything else in them (curves, gaps, pores) do not count. Nothing where fewer than 200
-/// flat places are found, or where the variance is not twice its uncertainty: a scan has a blur, so that what was
-/// measured there is something else (three densities, masks). At most 16 groups of 12 slices are read: memory for one
-/// group. The same for any number of threads. Errors of the source, kCancelled.
+/// flat places are found, or where the variance is not twice its uncertainty and more than a voxel's extent makes: a
+/// scan has a blur, so that what was measured there is something else (three densities, masks). At most 16 groups of 12
+/// slices are read, in small scans, where they show few places, 128 that overlap: memory for one group. The same for
+/// any number of threads. Errors of the source, kCancelled.
 Result<std::optional<EdgeSpread>> measure_edge_spread(SlabSource& source, double air, double material,
                                                       Progress& progress);
 

@@ -112,9 +112,11 @@ TEST_P(WedgeDepth, IsThatOfTheStylusWithinThreePercentInTheMedian) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, WedgeDepth,
-                         ::testing::Values(Size{3, 208, 517272}, Size{5, 256, 978912}, Size{7, 288, 569894},
-                                           Size{10, 352, 912222}),
-                         [](const auto& instance) { return fmt::format("of{:.0f}voxels", instance.param.depth_vox); });
+                         ::testing::Values(Size{3, 176, 410005}, Size{3, 208, 517272}, Size{5, 256, 978912},
+                                           Size{7, 288, 569894}, Size{10, 352, 912222}),
+                         [](const auto& instance) {
+                           return fmt::format("of{:.0f}voxelsIn{}", instance.param.depth_vox, instance.param.width);
+                         });
 
 }  // namespace
 }  // namespace dubsar

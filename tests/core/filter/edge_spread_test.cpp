@@ -12,19 +12,22 @@
 namespace dubsar {
 namespace {
 
-/// A turned brick of half sizes 30, 26 and 34, blurred by a Gauss: a product of error functions.
-Volume<float> brick(double deviation, double noise, std::uint64_t seed) {
+/// A turned brick of half sizes 30, 26 and 34 times `scale` in 96^3 times as many voxels, blurred by a Gauss: a product
+/// of error functions.
+Volume<float> brick(double deviation, double noise, std::uint64_t seed, double scale = 1.0) {
   const glm::dvec3 a = glm::normalize(glm::dvec3(0.82, 0.31, -0.21)),
                    b = glm::normalize(glm::cross(a, glm::dvec3(0.1, 0.2, 1.0))), c = glm::cross(a, b),
-                   middle(48.3, 47.2, 46.9);
+                   middle = scale * glm::dvec3(48.3, 47.2, 46.9);
   const auto across = [&](double half, double at) {
     const double s = std::sqrt(2.0) * deviation;
     return 0.5 * (std::erf((half - at) / s) + std::erf((half + at) / s));
   };
   oracle::Noise random(seed);
-  return oracle::make_volume({96, 96, 96}, [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+  const auto side = static_cast<std::int64_t>(96 * scale);
+  return oracle::make_volume({side, side, side}, [&](std::int64_t x, std::int64_t y, std::int64_t z) {
     const glm::dvec3 p = glm::dvec3(x, y, z) - middle;
-    return 3.0 + 2.0 * (across(30.0, glm::dot(p, a)) * across(26.0, glm::dot(p, b)) * across(34.0, glm::dot(p, c)) +
+    return 3.0 + 2.0 * (across(30.0 * scale, glm::dot(p, a)) * across(26.0 * scale, glm::dot(p, b)) *
+                            across(34.0 * scale, glm::dot(p, c)) +
                         noise * random());
   });
 }
@@ -43,6 +46,16 @@ TEST(EdgeSpread, IsTheVarianceOfAGaussThroughTheNoiseOf17Decibels) {
       EXPECT_NEAR(spread->variance, deviation * deviation, 0.06 * deviation * deviation + 0.04)
           << deviation << " with noise " << noise;
       EXPECT_LT(spread->uncertainty, 0.1);
+    }
+}
+
+TEST(EdgeSpread, OfASmallScanIsMeasuredInMoreOfItsSlices) {
+  for (const double deviation : {0.5, 0.8})
+    for (const double scale : {0.45, 0.6}) {
+      const auto spread = measured(brick(deviation, 0.141, 71, scale));
+      ASSERT_TRUE(spread.has_value()) << deviation << " at " << scale;
+      EXPECT_NEAR(spread->variance, deviation * deviation, 0.1 * deviation * deviation + 0.06)
+          << deviation << " at " << scale;
     }
 }
 
