@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <numeric>
 
 #include "core/base/system/budget.h"
 #include "core/base/system/large_pages.h"
@@ -16,6 +17,23 @@ namespace dubsar {
 namespace {
 
 constexpr std::int64_t kMaxVertices = std::int64_t{std::numeric_limits<std::uint32_t>::max()} - 1;
+
+/// All chunks by (quad, corner): into buckets of 64 x-quads, few in each, which are then sorted.
+std::vector<DoubledCorner> sorted_corners(const std::vector<std::vector<DoubledCorner>>& chunks, std::int64_t quads) {
+  std::vector<std::uint32_t> place(static_cast<std::size_t>(quads / 64 + 2), 0);
+  for (const auto& chunk : chunks)
+    for (const DoubledCorner& d : chunk) ++place[d.quad / 64 + 1];
+  std::partial_sum(place.begin(), place.end(), place.begin());
+  std::vector<DoubledCorner> sorted(place.back());
+  for (const auto& chunk : chunks)
+    for (const DoubledCorner& d : chunk) sorted[place[d.quad / 64]++] = d;
+  const auto before = [](const DoubledCorner& a, const DoubledCorner& b) {
+    return a.quad != b.quad ? a.quad < b.quad : a.corner < b.corner;
+  };
+  for (std::size_t b = 0, begin = 0; b + 1 < place.size(); begin = place[b++])
+    std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin), sorted.begin() + place[b], before);
+  return sorted;
+}
 
 }  // namespace
 
@@ -39,11 +57,13 @@ Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, const EdgeIndex&
     progress.advance(voxels(before + cell_rows) - voxels(before));
   };
 
-  std::vector<CellRowCounts> counts(static_cast<std::size_t>(rows));
+  std::vector<CellRowCounts> counts(static_cast<std::size_t>(rows) + 1);
+  std::vector<CellList> listed(static_cast<std::size_t>((rows + grain - 1) / grain));
   parallel_chunks(rows, grain, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) return;
+    CellList& list = listed[static_cast<std::size_t>(begin / grain)];
     for (std::int64_t r = begin; r < end; ++r) {
-      counts[static_cast<std::size_t>(r)] = count_cells(samples, index, row_of(r));
+      counts[static_cast<std::size_t>(r)] = list_cells(samples, index, row_of(r), list);
     }
     advance(end - begin);
   });
@@ -51,7 +71,7 @@ Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, const EdgeIndex&
   std::int64_t vertices = 0, incidences = 0;
   for (CellRowCounts& row : counts) {
     const CellRowCounts here = row;
-    row = {static_cast<std::uint32_t>(vertices), static_cast<std::uint32_t>(incidences)};
+    row = {here.cells, static_cast<std::uint32_t>(vertices), static_cast<std::uint32_t>(incidences)};
     vertices += here.vertices;
     incidences += here.incidences;
   }
@@ -76,29 +96,32 @@ Result<QuadMesh> build_quad_mesh(const SurfaceSamples& samples, const EdgeIndex&
     mesh.first_incident.back() = static_cast<std::uint32_t>(incidences);
   });
   std::vector<std::uint8_t> in_layer(samples.closed ? 0 : static_cast<std::size_t>(vertices));
-  std::vector<std::vector<DoubledCorner>> doubled(static_cast<std::size_t>((rows + grain - 1) / grain));
+  std::vector<std::vector<DoubledCorner>> doubled(listed.size());
   parallel_chunks(rows, grain, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) return;
+    const CellList list = std::move(listed[static_cast<std::size_t>(begin / grain)]);
+    std::size_t cells = 0;
     CellRowOutput output;
     output.mesh = &mesh;
     output.doubled = &doubled[static_cast<std::size_t>(begin / grain)];
     output.in_layer = samples.closed ? nullptr : &in_layer;
     for (std::int64_t r = begin; r < end; ++r) {
       const CellRowCounts& start = counts[static_cast<std::size_t>(r)];
-      const std::int64_t next = r + 1 < rows ? counts[static_cast<std::size_t>(r + 1)].vertices : vertices;
-      if (next == std::int64_t{start.vertices}) continue;
+      const CellRowCounts& next = counts[static_cast<std::size_t>(r) + 1];
+      if (start.cells == 0) continue;
       output.first_vertex = start.vertices;
       output.first_incidence = start.incidences;
-      write_cells(samples, index, row_of(r), output);
+      output.end_incidence = next.incidences;
+      const ListedRow row{std::span(list.cell).subspan(cells, start.cells),
+                          std::span(list.config).subspan(cells, start.cells)};
+      cells += start.cells;
+      write_cells(samples, index, row_of(r), row, output);
     }
     advance(end - begin);
   });
   if (progress.cancelled()) return cancelled_error();
 
-  for (const auto& chunk : doubled) mesh.doubled.insert(mesh.doubled.end(), chunk.begin(), chunk.end());
-  std::sort(mesh.doubled.begin(), mesh.doubled.end(), [](const DoubledCorner& a, const DoubledCorner& b) {
-    return a.quad != b.quad ? a.quad < b.quad : a.corner < b.corner;
-  });
+  mesh.doubled = sorted_corners(doubled, quads);
   mesh.mark_doubled();
   if (samples.closed) return mesh;
   return open_at_boundary(mesh, in_layer);

@@ -1,273 +1,334 @@
 #include "core/extract/cell_kernels.h"
 
 #include <algorithm>
+#include <limits>
+
+#include "core/extract/piece_lanes.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/extract/cell_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-HWY_BEFORE_NAMESPACE();
+#include "core/extract/mixed_cells-inl.h"
+
+#ifndef DUBSAR_CELL_KERNELS_ROW
+#define DUBSAR_CELL_KERNELS_ROW
 namespace dubsar {
-namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+namespace {
 
-HWY_INLINE std::uint32_t count_bits(std::uint64_t word) {
-  return static_cast<std::uint32_t>(__builtin_popcountll(word));
-}
-
-// The eight corners of 64 cells: bit i of corner[c] is the sign of corner c of cell i.
-struct CornerWords {
-  HWY_ALIGN std::uint64_t corner[8];
-  HWY_INLINE unsigned signs(unsigned i) const {
-    const hn::CappedTag<std::uint64_t, 8> d;
-    unsigned signs = 0;
-    for (std::size_t c = 0; c < 8; c += hn::Lanes(d)) {
-      std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(d, hn::TestBit(hn::Load(d, corner + c), hn::Set(d, std::uint64_t{1} << i)), bits);
-      signs |= static_cast<unsigned>(bits[0]) << c;
-    }
-    return signs;
-  }
-};
-
-// The four rows of points around a row of cells, word by word; rows outside the grid read as 0.
-class PointRows {
+/// Numbers of the ambiguous faces of a row of cells. Faces across x: on both sides of a cell; across y and z: one
+/// stream for each side. Faces that touch the layer are never ambiguous.
+class FaceStreams {
  public:
-  HWY_INLINE PointRows(const SurfaceSamples& samples, const CellRow& cells) : words_(samples.signs.words_per_row()) {
-    for (int r = 0; r < 4; ++r) {
-      const std::int64_t y = cells.j - 1 + r % 2, z = cells.k - 1 + r / 2;
-      const bool inside = y >= 0 && z >= 0 && y < samples.dims.y && z < samples.dims.z;
-      row_[r] = inside ? samples.signs.row(y, z) : nullptr;
-    }
-  }
-  bool all_outside() const {
-    std::uint64_t any = 0;
-    for (const std::uint64_t* row : row_)
-      for (std::int64_t w = 0; row != nullptr && w < words_; ++w) any |= row[w];
-    return any == 0;
-  }
-  // Moves to the next word and returns the cells of mixed sign.
-  HWY_INLINE std::uint64_t next() {
-    ++at_;
-    std::uint64_t any = 0, all = ~std::uint64_t{0};
-    for (int r = 0; r < 4; ++r) {
-      before_[r] = here_[r];
-      here_[r] = row_[r] != nullptr && at_ < words_ ? row_[r][at_] : 0;
-      any |= here_[r];
-      all &= here_[r];
-    }
-    const std::uint64_t mixed = (any | any << 1 | any_before_) & ~(all & (all << 1 | all_before_));
-    any_before_ = any >> 63;
-    all_before_ = all >> 63;
-    return mixed;
-  }
-  HWY_INLINE CornerWords corners() const {
-    CornerWords c;
-    for (int r = 0; r < 4; ++r) {
-      c.corner[2 * r] = here_[r] << 1 | before_[r] >> 63;
-      c.corner[2 * r + 1] = here_[r];
-    }
-    return c;
-  }
-
- private:
-  const std::uint64_t* row_[4];
-  std::int64_t words_, at_ = -1;
-  std::uint64_t here_[4] = {}, before_[4] = {}, any_before_ = 0, all_before_ = 0;
-};
-
-// Numbers of the ambiguous faces of a row of cells. Faces of axis x: on both sides of a cell; of axis y and z: one
-// stream for each side. Faces that touch the layer are never ambiguous.
-struct FaceStreams {
-  static constexpr int kStreams = 5;  // x, y low, y high, z low, z high
-  std::uint32_t next[kStreams] = {};
-  std::uint64_t word[kStreams] = {};
-
-  HWY_INLINE FaceStreams(const SurfaceSamples& samples, const EdgeIndex& index, const CellRow& cells) {
+  FaceStreams(const SurfaceSamples& samples, const EdgeIndex& index, const CellRow& cells)
+      : joined_(samples.joined.data()) {
     const std::int64_t y = cells.j - 1, z = cells.k - 1;
     const auto start = [&](std::int64_t row_y, std::int64_t row_z, std::size_t axis) -> std::uint32_t {
       const bool inside = row_y >= 0 && row_z >= 0 && row_y < samples.dims.y && row_z < samples.dims.z;
       return inside ? index.starts(row_y, row_z).faces[axis] : 0;
     };
-    next[0] = start(y, z, 0);
-    next[1] = start(y, z, 1);
-    next[2] = start(y + 1, z, 1);
-    next[3] = start(y, z, 2);
-    next[4] = start(y, z + 1, 2);
+    next_ = {start(y, z, 0), start(y, z, 1), start(y + 1, z, 1), start(y, z, 2), start(y, z + 1, 2)};
   }
-  HWY_INLINE void load(const CornerWords& p) {
-    const auto ambiguous = [&](int a, int b, int c, int d) HWY_ATTR {
-      return (p.corner[a] ^ p.corner[b]) & (p.corner[a] ^ p.corner[c]) & ~(p.corner[a] ^ p.corner[d]);
-    };
-    word[0] = ambiguous(1, 3, 5, 7);
-    word[1] = ambiguous(0, 1, 4, 5);
-    word[2] = ambiguous(2, 3, 6, 7);
-    word[3] = ambiguous(0, 1, 2, 3);
-    word[4] = ambiguous(4, 5, 6, 7);
-  }
-  HWY_INLINE void advance() {
-    for (int s = 0; s < kStreams; ++s) next[s] += count_bits(word[s]);
-  }
-  // Decisions of the ambiguous faces of cell i, the lowest face first.
-  HWY_INLINE unsigned resolution(unsigned faces, unsigned i, const std::uint8_t* joined) const {
-    const std::uint64_t below = (std::uint64_t{1} << i) - 1;
+  /// Decisions of the ambiguous faces of the next cell that has some, the lowest face first.
+  unsigned take(unsigned ambiguous) {
     unsigned bits = 0, place = 0;
-    for (unsigned f = 0; f < 6; ++f) {
-      if (!(faces >> f & 1u)) continue;
-      const unsigned s = f < 2 ? 0 : f - 1;
-      // Of the stream along x the face below cell i is the last one before place i.
-      const std::uint32_t number = next[s] + count_bits(word[s] & below) - (f == 0 ? 1 : 0);
-      bits |= static_cast<unsigned>(joined[number]) << place++;
+    for (; ambiguous != 0; ambiguous &= ambiguous - 1) {
+      const auto f = static_cast<unsigned>(__builtin_ctz(ambiguous));
+      // The face at the low side across x is the last one that a cell had at its high side.
+      const std::uint32_t number = f == 0 ? next_[0] - 1 : next_[f - 1]++;
+      bits |= static_cast<unsigned>(joined_[number]) << place++;
     }
     return bits;
   }
+
+ private:
+  const std::uint8_t* joined_;
+  std::array<std::uint32_t, 5> next_;  // x, y low, y high, z low, z high
 };
 
-CellRowCounts count_cells(const SurfaceSamples& samples, const EdgeIndex& index, const CellRow& row) {
-  const CellTable& table = CellTable::instance();
-  PointRows points(samples, row);
-  CellRowCounts counts;
-  if (points.all_outside()) return counts;
-  FaceStreams faces(samples, index, row);
-  const std::int64_t words = samples.dims.x / 64 + 1;
-  for (std::int64_t w = 0; w < words; ++w) {
-    std::uint64_t rest = points.next();
-    if (rest == 0) continue;
-    const CornerWords corners = points.corners();
-    faces.load(corners);
-    for (; rest != 0; rest &= rest - 1) {
-      const unsigned i = static_cast<unsigned>(__builtin_ctzll(rest));
-      const unsigned signs = corners.signs(i), ambiguous = table.ambiguous_faces(signs);
-      const unsigned resolution = ambiguous == 0 ? 0 : faces.resolution(ambiguous, i, samples.joined.data());
-      const CellConfig& config = table.config(table.id(signs, resolution));
-      counts.vertices += config.vertices;
-      counts.incidences += config.incidences;
+constexpr unsigned kEdgesAlongX = 0x00F, kEdgesAlongY = 0x0F0, kEdgesAlongZ = 0xF00;
+
+/// The row that write_cells() works on: where its edges begin, which of them are virtual, what was written.
+struct RowWriter {
+  RowWriter(const SurfaceSamples& all, const EdgeIndex& edge_index, const CellRow& cells, const CellRowOutput& to)
+      : samples(all),
+        index(edge_index),
+        row(cells),
+        output(to),
+        inverse(PieceTable::instance().inverse[static_cast<std::size_t>(all.offset_bits)].data()) {
+    const std::int64_t y = row.j - 1, z = row.k - 1, ny = all.dims.y, nz = all.dims.z;
+    inside = y >= 0 && z >= 0 && y + 1 < ny && z + 1 < nz;
+    const std::array<std::int64_t, 2> ys = {y, y + 1}, zs = {z, z + 1};
+    constexpr std::array<std::size_t, 4> kAlongX = {0, 3, 4, 7};
+    for (std::size_t r = 0; r < 4; ++r) first[kAlongX[r]] = index.first_along(0, ys[r % 2], zs[r / 2]);
+    for (std::size_t side = 0; side < 2; ++side) {
+      first[side == 0 ? 1 : 5] = index.first_along(1, y, zs[side]);
+      first[side == 0 ? 2 : 6] = index.first_along(2, ys[side], z);
     }
-    faces.advance();
+    if (y == -1 || y == ny - 1) virtual_edges |= kEdgesAlongY;
+    if (z == -1 || z == nz - 1) virtual_edges |= kEdgesAlongZ;
   }
+  /// One grid step in half quanta.
+  unsigned step() const { return 2u << samples.offset_bits; }
+  /// Cells 0 and nx have virtual edges along x.
+  bool at_end(std::int64_t cell) const { return cell == 0 || cell == samples.dims.x; }
+
+  const SurfaceSamples& samples;
+  const EdgeIndex& index;
+  const CellRow row;
+  const CellRowOutput& output;
+  bool inside = false;         ///< all four rows of points lie in the grid
+  unsigned virtual_edges = 0;  ///< along y and z
+  std::array<std::uint32_t, kEdgeStreams> first{};
+  const double* inverse;  ///< of n: 1 / (n grid steps in half quanta)
+};
+
+/// Any vertex of any cell, edge by edge; returns how many it has. `at`: where the streams stand.
+std::uint32_t write_piece(const RowWriter& to, std::int64_t cell, int id, unsigned number,
+                          const std::array<std::uint32_t, kEdgeStreams>& at, std::uint32_t vertex,
+                          std::uint32_t incidence) {
+  const CellTable& table = CellTable::instance();
+  const CellConfig& config = table.config(id);
+  const CellPiece& piece = config.pieces[number];
+  const unsigned edges = config.piece_edges[number], signs = table.signs(id), step = to.step();
+  const unsigned in_layer = edges & (to.virtual_edges | (to.at_end(cell) ? kEdgesAlongX : 0u));
+  QuadMesh& mesh = *to.output.mesh;
+  unsigned sum[3] = {piece.high[0] * step, piece.high[1] * step, piece.high[2] * step};
+  std::uint32_t* incident = mesh.incident.data() + incidence;
+  const auto write = [&](const PieceEdge& edge, std::uint32_t quad) {
+    *incident++ = quad;
+    if (!edge.is_second)
+      mesh.quads[quad][edge.corner] = vertex;
+    else
+      to.output.doubled->push_back({quad, vertex, edge.corner});
+  };
+  if (in_layer != edges) {
+    for (const PieceEdge& edge : std::span(piece.edges).first(piece.count)) {
+      if (in_layer >> edge.edge & 1u) continue;
+      const std::uint32_t quad = at[kStreamOfEdge[edge.edge]] - kLowInStream[edge.edge];
+      sum[edge.axis] += 2u * to.samples.offsets[quad] + 1u;
+      write(edge, quad);
+    }
+  }
+  if (in_layer != 0) {  // virtual edges have higher numbers; their crossings lie at the point inside
+    for (const PieceEdge& edge : std::span(piece.edges).first(piece.count)) {
+      if (!(in_layer >> edge.edge & 1u)) continue;
+      sum[edge.axis] += signs >> edge_corners(edge.edge)[0] & 1u ? 0u : step;
+      const bool along_x = kEdgesAlongX >> edge.edge & 1u;
+      write(edge, along_x ? to.index.end_of_row(to.row.j - 1 + edge.edge % 2, to.row.k - 1 + edge.edge / 2, cell != 0)
+                          : at[kStreamOfEdge[edge.edge]] - kLowInStream[edge.edge]);
+    }
+  }
+  const double scale = to.inverse[piece.count];
+  mesh.first_incident[vertex] = incidence;
+  mesh.positions[vertex] = {static_cast<float>(static_cast<double>(cell - 1) + sum[0] * scale),
+                            static_cast<float>(static_cast<double>(to.row.j - 1) + sum[1] * scale),
+                            static_cast<float>(static_cast<double>(to.row.k - 1) + sum[2] * scale)};
+  if (to.output.in_layer != nullptr) (*to.output.in_layer)[vertex] = !to.inside || to.at_end(cell);
+  return piece.count;
+}
+
+}  // namespace
+}  // namespace dubsar
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace dubsar {
+namespace HWY_NAMESPACE {
+namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_MAX_BYTES >= 32 && !HWY_HAVE_SCALABLE
+#define DUBSAR_EIGHT_STREAMS 1
+using Streams = hn::FixedTag<std::uint32_t, kEdgeStreams>;
+using Bytes = hn::FixedTag<std::uint8_t, kEdgeStreams>;
+using Four = hn::FixedTag<std::int32_t, 4>;
+
+/// A row of cells inside the grid, whose edges are counted from the first one of its first row of points, so that their
+/// numbers times four stay small.
+class LaneRow {
+ public:
+  /// False where a read of two crossings at once could leave the list, and where numbers are too far apart.
+  static bool fits(const RowWriter& to) {
+    constexpr std::int64_t kLargestSlice = std::int64_t{1} << 26;
+    const SurfaceSamples& samples = to.samples;
+    return to.inside && samples.dims.slice() < kLargestSlice && to.first[0] > 0 &&
+           to.index.starts(to.row.j, to.row.k).edges[1] < samples.offsets.size();
+  }
+
+  explicit LaneRow(const RowWriter& to)
+      : base_(to.first[0]),
+        end_(to.output.end_incidence),
+        step_(static_cast<std::int32_t>(to.step())),
+        crossings_(reinterpret_cast<const std::int32_t*>(to.samples.offsets.data() + base_ - 1)),
+        quads_(to.output.mesh->quads[base_].data()),
+        incident_(to.output.mesh->incident.data()),
+        first_incident_(to.output.mesh->first_incident.data()),
+        positions_(&to.output.mesh->positions.data()->x),
+        inverse_(to.inverse),
+        row_origin_{0.0, static_cast<double>(to.row.j - 1), static_cast<double>(to.row.k - 1), 0.0} {}
+
+  HWY_INLINE hn::Vec<Streams> load(const std::array<std::uint32_t, kEdgeStreams>& numbers) const {
+    const Streams d;
+    return hn::Sub(hn::LoadU(d, numbers.data()), hn::Set(d, base_));
+  }
+  HWY_INLINE void store(const hn::Vec<Streams> at, std::array<std::uint32_t, kEdgeStreams>& numbers) const {
+    const Streams d;
+    hn::StoreU(hn::Add(at, hn::Set(d, base_)), d, numbers.data());
+  }
+  HWY_INLINE hn::Vec<Streams> pairs(const hn::Vec<Streams> at) const {
+    const Streams d;
+    const hn::RebindToSigned<Streams> di;
+    return hn::BitCast(d, hn::GatherOffset(di, crossings_, hn::BitCast(di, hn::ShiftLeft<1>(at))));
+  }
+
+  /// One vertex. `at`: where the streams stand; `pairs`: the crossings there (high half) and before (low half).
+  HWY_INLINE void write(std::int64_t cell, const PieceLanes& piece, const hn::Vec<Streams> at,
+                        const hn::Vec<Streams> pairs, std::uint32_t vertex, std::uint32_t incidence) const {
+    const Streams d;
+    const hn::RebindToSigned<Streams> di;
+    const Bytes d8;
+    const hn::RebindToSigned<Bytes> di8;
+
+    // X-quads, and the corners of them that are this vertex.
+    const auto stream = hn::PromoteTo(d, hn::LoadU(d8, piece.stream.data()));
+    const auto number = hn::TableLookupLanes(at, hn::IndicesFromVec(d, stream));
+    const auto place = hn::PromoteTo(di, hn::LoadU(di8, piece.place.data()));
+    const auto corner = hn::Add(hn::ShiftLeft<2>(number), hn::BitCast(d, place));
+    const auto quad = hn::Add(hn::ShiftRight<2>(corner), hn::Set(d, base_));
+    if (incidence + kEdgeStreams <= end_)
+      hn::StoreU(quad, d, incident_ + incidence);  // what is too much is written again by the next vertex
+    else
+      hn::BlendedStore(quad, hn::FirstN(d, piece.count), d, incident_ + incidence);
+    HWY_ALIGN std::uint32_t corners[kEdgeStreams];
+    hn::Store(corner, d, corners);
+    for (std::size_t n = 0; n < 6; ++n) quads_[corners[n]] = vertex;
+    if (piece.count > 6) {
+      quads_[corners[6]] = vertex;
+      quads_[corners[7]] = vertex;
+    }
+
+    // The mean of its crossings.
+    const Four d4;
+    const hn::FixedTag<std::uint8_t, 4> d4u8;
+    const hn::FixedTag<double, 4> dd;
+    const hn::FixedTag<float, 4> df;
+    const auto used = hn::And(pairs, hn::LoadU(d, piece.crossings.data()));
+    const auto eight = hn::BitCast(di, hn::Add(hn::And(used, hn::Set(d, 0xFFFFu)), hn::ShiftRight<16>(used)));
+    const auto four = hn::Add(hn::LowerHalf(d4, eight), hn::UpperHalf(d4, eight));  // x, y, z, x
+    const auto offsets = hn::Add(four, hn::ShiftRightLanes<3>(d4, four));
+    const auto on_axis = hn::PromoteTo(d4, hn::LoadU(d4u8, piece.on_axis.data()));
+    const auto high_side = hn::PromoteTo(d4, hn::LoadU(d4u8, piece.high_side.data()));
+    const auto sum = hn::Add(hn::Add(hn::ShiftLeft<1>(offsets), on_axis), hn::Mul(high_side, hn::Set(d4, step_)));
+    const auto origin =
+        hn::IfThenElse(hn::FirstN(dd, 1), hn::Set(dd, static_cast<double>(cell - 1)), hn::Load(dd, row_origin_));
+    const auto mean = hn::Mul(hn::PromoteTo(dd, sum), hn::Set(dd, inverse_[piece.count]));
+    const auto position = hn::DemoteTo(df, hn::Add(origin, mean));
+    float* xyz = positions_ + std::size_t{vertex} * 3;
+    const hn::FixedTag<float, 2> df2;
+    hn::StoreU(hn::LowerHalf(df2, position), df2, xyz);
+    xyz[2] = hn::ExtractLane(position, 2);
+    first_incident_[vertex] = incidence;
+  }
+
+ private:
+  std::uint32_t base_, end_;
+  std::int32_t step_;  ///< one grid step in half quanta
+  const std::int32_t* crossings_;
+  std::uint32_t *quads_, *incident_, *first_incident_;
+  float* positions_;
+  const double* inverse_;
+  HWY_ALIGN double row_origin_[4];
+};
+
+void write_lanes(const RowWriter& to, const ListedRow& listed) {
+  const PieceTable& table = PieceTable::instance();
+  const ConfigLanes* configs = table.configs.data();
+  const PieceLanes* pieces = table.pieces.data();
+  const Streams d;
+  HWY_ALIGN constexpr std::uint32_t kAlongYz[kEdgeStreams] = {0, ~0u, ~0u, 0, 0, ~0u, ~0u, 0};
+  const LaneRow lanes(to);
+  auto at = lanes.load(to.first);
+  std::uint32_t vertex = to.output.first_vertex, incidence = to.output.first_incidence;
+  const std::int64_t last = to.samples.dims.x;
+  for (std::size_t i = 0; i < listed.cell.size(); ++i) {
+    const std::int64_t cell = listed.cell[i];
+    const ConfigLanes& config = configs[listed.config[i]];
+    const bool at_end = cell == 0 || cell == last;
+    const auto pairs = lanes.pairs(at);
+    for (unsigned p = 0; p < config.vertices; ++p, ++vertex) {
+      const PieceLanes& piece = pieces[config.first_piece + p];
+      if (piece.count != 0 && !at_end) {
+        lanes.write(cell, piece, at, pairs, vertex, incidence);
+        incidence += piece.count;
+      } else {
+        std::array<std::uint32_t, kEdgeStreams> numbers;
+        lanes.store(at, numbers);
+        incidence += write_piece(to, cell, listed.config[i], p, numbers, vertex, incidence);
+      }
+    }
+    auto steps = hn::PromoteTo(d, hn::LoadU(Bytes(), config.steps.data()));
+    if (at_end) steps = hn::And(steps, hn::Load(d, kAlongYz));
+    at = hn::Add(at, steps);
+  }
+}
+#endif
+
+/// Layers, the ends of the list of crossings, and machines with small vectors.
+void write_plain(const RowWriter& to, const ListedRow& listed) {
+  const PieceTable& table = PieceTable::instance();
+  std::array<std::uint32_t, kEdgeStreams> at = to.first;
+  std::uint32_t vertex = to.output.first_vertex, incidence = to.output.first_incidence;
+  for (std::size_t i = 0; i < listed.cell.size(); ++i) {
+    const std::int64_t cell = listed.cell[i];
+    const ConfigLanes& config = table.configs[listed.config[i]];
+    for (unsigned p = 0; p < config.vertices; ++p, ++vertex)
+      incidence += write_piece(to, cell, listed.config[i], p, at, vertex, incidence);
+    const bool along_x = !to.at_end(cell);
+    for (std::size_t s = 0; s < at.size(); ++s)
+      if (along_x || s % 4 == 1 || s % 4 == 2) at[s] += config.steps[s];
+  }
+}
+
+}  // namespace
+
+CellRowCounts list_cells(const SurfaceSamples& samples, const EdgeIndex& index, const CellRow& row, CellList& list) {
+  const CellTable& table = CellTable::instance();
+  const ConfigLanes* configs = PieceTable::instance().configs.data();
+  CellRowCounts counts;
+  FaceStreams faces(samples, index, row);
+  for_mixed_cells(samples, row,
+                  [&](std::span<const std::uint32_t> bits, std::int64_t first, const auto& signs) HWY_ATTR {
+                    const std::size_t before = list.cell.size();
+                    list.cell.resize(before + bits.size());
+                    list.config.resize(before + bits.size());
+                    std::uint32_t* cell = list.cell.data() + before;
+                    std::uint16_t* config = list.config.data() + before;
+                    std::uint32_t vertices = 0, incidences = 0;
+                    for (std::size_t i = 0; i < bits.size(); ++i) {
+                      const unsigned corners = signs(bits[i]), ambiguous = table.ambiguous_faces(corners);
+                      const int id = table.id(corners, ambiguous == 0 ? 0u : faces.take(ambiguous));
+                      cell[i] = static_cast<std::uint32_t>(first + bits[i]);
+                      config[i] = static_cast<std::uint16_t>(id);
+                      vertices += configs[id].vertices;
+                      incidences += configs[id].incidences;
+                    }
+                    counts.cells += static_cast<std::uint32_t>(bits.size());
+                    counts.vertices += vertices;
+                    counts.incidences += incidences;
+                  });
   return counts;
 }
 
-// Numbers of the real edges of a row of cells inside the grid: streams 0-3 along x at the four rows, 4-5 along y at
-// z low and high, 6-7 along z at y low and high.
-struct EdgeStreams {
-  static constexpr int kStreams = 8;
-  std::uint32_t next[kStreams] = {};
-  std::uint64_t word[kStreams] = {};
-
-  HWY_INLINE EdgeStreams(const EdgeIndex& index, const CellRow& cells, bool inside) {
-    if (!inside) return;
-    const std::int64_t y = cells.j - 1, z = cells.k - 1;
-    for (int r = 0; r < 4; ++r) next[r] = index.starts(y + r % 2, z + r / 2).edges[0];
-    next[4] = index.starts(y, z).edges[1];
-    next[5] = index.starts(y, z + 1).edges[1];
-    next[6] = index.starts(y, z).edges[2];
-    next[7] = index.starts(y + 1, z).edges[2];
-  }
-  // Virtual edges along x are left out: `real` is the mask of the cells between two points.
-  HWY_INLINE void load(const CornerWords& p, std::uint64_t real) {
-    for (int r = 0; r < 4; ++r) word[r] = (p.corner[2 * r] ^ p.corner[2 * r + 1]) & real;
-    word[4] = p.corner[1] ^ p.corner[3];
-    word[5] = p.corner[5] ^ p.corner[7];
-    word[6] = p.corner[1] ^ p.corner[5];
-    word[7] = p.corner[3] ^ p.corner[7];
-  }
-  HWY_INLINE void advance() {
-    for (int s = 0; s < kStreams; ++s) next[s] += count_bits(word[s]);
-  }
-  // Numbers of all twelve edges of cell i; those of inactive edges mean nothing.
-  HWY_INLINE void quads(unsigned i, std::uint32_t (&quad)[12]) const {
-    const std::uint64_t below = (std::uint64_t{1} << i) - 1;
-    for (int s = 0; s < 4; ++s) quad[s] = next[s] + count_bits(word[s] & below);
-    // Edges along y: e = 4 + (z high) + 2 (x high), along z: e = 8 + (x high) + 2 (y high). Of a stream along x the
-    // edge at the low side of cell i, if active, is the last one before place i.
-    constexpr int kHigh[4] = {6, 7, 9, 11}, kLow[4] = {4, 5, 8, 10};
-    for (int s = 4; s < kStreams; ++s) {
-      const std::uint32_t number = next[s] + count_bits(word[s] & below);
-      quad[kHigh[s - 4]] = number;
-      quad[kLow[s - 4]] = number - 1;
-    }
-  }
-};
-
-void write_cells(const SurfaceSamples& samples, const EdgeIndex& index, const CellRow& row,
+void write_cells(const SurfaceSamples& samples, const EdgeIndex& index, const CellRow& row, const ListedRow& cells,
                  const CellRowOutput& output) {
-  const CellTable& table = CellTable::instance();
-  const Dims& dims = samples.dims;
-  PointRows points(samples, row);
-  FaceStreams faces(samples, index, row);
-  const bool inside = row.j >= 1 && row.k >= 1 && row.j < dims.y && row.k < dims.z;
-  EdgeStreams edges(index, row, inside);
-  QuadMesh& mesh = *output.mesh;
-  std::uint32_t vertex = output.first_vertex, incidence = output.first_incidence;
-  const int step = 2 << samples.offset_bits;  // one grid step in half quanta
-  double inverse[13];
-  for (int n = 1; n <= 12; ++n) inverse[n] = 1.0 / (static_cast<double>(n) * step);
-  const std::int64_t words = dims.x / 64 + 1;
-
-  for (std::int64_t w = 0; w < words; ++w) {
-    std::uint64_t rest = points.next();
-    if (rest == 0) continue;
-    const CornerWords corners = points.corners();
-    faces.load(corners);
-    if (inside) {
-      const std::int64_t left = dims.x - 64 * w;  // cells 1 .. nx - 1 lie between two points
-      std::uint64_t real = left >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << left) - 1;
-      if (w == 0) real &= ~std::uint64_t{1};
-      edges.load(corners, real);
-    }
-    for (; rest != 0; rest &= rest - 1) {
-      const unsigned i = static_cast<unsigned>(__builtin_ctzll(rest));
-      const std::int64_t cell = 64 * w + i;
-      const unsigned signs = corners.signs(i), ambiguous = table.ambiguous_faces(signs);
-      const unsigned resolution = ambiguous == 0 ? 0 : faces.resolution(ambiguous, i, samples.joined.data());
-      const CellConfig& config = table.config(table.id(signs, resolution));
-
-      // X-quads of the edges, and crossings along them in half quanta from the low corner of the cell.
-      const bool in_layer = !inside || cell == 0 || cell == dims.x;
-      std::uint32_t quad[12];
-      int pinned[12];  // only of cells in the layer; negative: not pinned
-      if (!in_layer) {
-        edges.quads(i, quad);
-      } else {
-        for (unsigned active = config.active_edges; active != 0; active &= active - 1) {
-          const unsigned e = static_cast<unsigned>(__builtin_ctz(active)), low = edge_corners(e)[0];
-          const int axis = static_cast<int>(e / 4);
-          const std::int64_t x = cell - 1 + (low & 1u), y = row.j - 1 + (low >> 1 & 1u), z = row.k - 1 + (low >> 2);
-          quad[e] = index.quad_of(axis, x, y, z);
-          pinned[e] = !index.is_virtual(axis, x, y, z) ? -1 : signs >> low & 1u ? 0 : step;
-        }
-      }
-
-      for (unsigned p = 0; p < config.vertices; ++p, ++vertex) {
-        const CellPiece& piece = config.pieces[p];
-        int sum[3] = {piece.high[0] * step, piece.high[1] * step, piece.high[2] * step};
-        mesh.first_incident[vertex] = incidence;
-        std::uint32_t* incident = mesh.incident.data() + incidence;
-        for (unsigned n = 0; n < piece.count; ++n) {
-          const PieceEdge& edge = piece.edges[n];
-          const std::uint32_t q = quad[edge.edge];
-          incident[n] = q;
-          sum[edge.axis] += in_layer && pinned[edge.edge] >= 0 ? pinned[edge.edge] : 2 * samples.offsets[q] + 1;
-          if (!edge.is_second) {
-            mesh.quads[q][edge.corner] = vertex;
-          } else {
-            output.doubled->push_back({q, vertex, edge.corner});
-          }
-        }
-        incidence += piece.count;
-        if (in_layer) std::sort(incident, incident + piece.count);
-        const double scale = inverse[piece.count];
-        mesh.positions[vertex] = {static_cast<float>(static_cast<double>(cell - 1) + sum[0] * scale),
-                                  static_cast<float>(static_cast<double>(row.j - 1) + sum[1] * scale),
-                                  static_cast<float>(static_cast<double>(row.k - 1) + sum[2] * scale)};
-        if (output.in_layer != nullptr) (*output.in_layer)[vertex] = in_layer;
-      }
-    }
-    faces.advance();
-    edges.advance();
-  }
+  const RowWriter to(samples, index, row, output);
+#ifdef DUBSAR_EIGHT_STREAMS
+  if (LaneRow::fits(to)) return write_lanes(to, cells);
+#undef DUBSAR_EIGHT_STREAMS
+#endif
+  write_plain(to, cells);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -277,16 +338,16 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace dubsar {
 namespace {
-HWY_EXPORT(count_cells);
+HWY_EXPORT(list_cells);
 HWY_EXPORT(write_cells);
 }  // namespace
 
-CellRowCounts count_cells(const SurfaceSamples& samples, const EdgeIndex& index, const CellRow& row) {
-  return HWY_DYNAMIC_DISPATCH(count_cells)(samples, index, row);
+CellRowCounts list_cells(const SurfaceSamples& samples, const EdgeIndex& index, const CellRow& row, CellList& list) {
+  return HWY_DYNAMIC_DISPATCH(list_cells)(samples, index, row, list);
 }
-void write_cells(const SurfaceSamples& samples, const EdgeIndex& index, const CellRow& row,
+void write_cells(const SurfaceSamples& samples, const EdgeIndex& index, const CellRow& row, const ListedRow& cells,
                  const CellRowOutput& output) {
-  HWY_DYNAMIC_DISPATCH(write_cells)(samples, index, row, output);
+  HWY_DYNAMIC_DISPATCH(write_cells)(samples, index, row, cells, output);
 }
 }  // namespace dubsar
 #endif

@@ -13,8 +13,10 @@ constexpr std::int64_t kMaxItems = std::int64_t{std::numeric_limits<std::uint32_
 }  // namespace
 
 const std::uint64_t* EdgeIndex::virtual_row(int axis, std::int64_t y, std::int64_t z) const noexcept {
-  if (axis == 1 && z >= 0 && (y == -1 || y == dims_.y - 1)) return samples_->signs.row(y == -1 ? 0 : y, z);
-  if (axis == 2 && y >= 0 && (z == -1 || z == dims_.z - 1)) return samples_->signs.row(y, z == -1 ? 0 : z);
+  if (axis == 1 && z >= 0 && z < dims_.z && (y == -1 || y == dims_.y - 1))
+    return samples_->signs.row(y == -1 ? 0 : y, z);
+  if (axis == 2 && y >= 0 && y < dims_.y && (z == -1 || z == dims_.z - 1))
+    return samples_->signs.row(y, z == -1 ? 0 : z);
   return nullptr;
 }
 
@@ -57,14 +59,20 @@ Result<EdgeIndex> EdgeIndex::create(const SurfaceSamples& samples) {
   }
   index.counts_ = {edges, faces};
 
-  std::int64_t virtual_edges = 0;
-  index.virtual_starts_.resize(static_cast<std::size_t>((dims.y + 1) * (dims.z + 1)));
-  for (std::int64_t z = -1; z < dims.z; ++z) {
+  // Rows of the extended grid; most have virtual edges at their ends only.
+  std::vector<std::uint32_t>& virtual_starts = index.virtual_starts_;
+  virtual_starts.resize(static_cast<std::size_t>((dims.y + 1) * (dims.z + 1)));
+  parallel_for(dims.z + 1, 1, [&](std::int64_t layer) {
     for (std::int64_t y = -1; y < dims.y; ++y) {
-      index.virtual_starts_[static_cast<std::size_t>((z + 1) * (dims.y + 1) + y + 1)] =
-          static_cast<std::uint32_t>(edges + virtual_edges);
-      for (const std::uint32_t count : index.count_virtual(y, z)) virtual_edges += count;
+      const auto counts = index.count_virtual(y, layer - 1);
+      virtual_starts[static_cast<std::size_t>(layer * (dims.y + 1) + y + 1)] = counts[0] + counts[1] + counts[2];
     }
+  });
+  std::int64_t virtual_edges = 0;
+  for (std::uint32_t& row : virtual_starts) {
+    const std::uint32_t row_edges = row;
+    row = static_cast<std::uint32_t>(edges + virtual_edges);
+    virtual_edges += row_edges;
   }
   index.virtual_edges_ = virtual_edges;
   if (edges + virtual_edges > kMaxItems || faces > kMaxItems) {
@@ -81,6 +89,20 @@ bool EdgeIndex::is_virtual(int axis, std::int64_t x, std::int64_t y, std::int64_
   return axis == 0 ? x == dims_.x - 1 : axis == 1 ? y == dims_.y - 1 : z == dims_.z - 1;
 }
 
+std::uint32_t EdgeIndex::first_along(int axis, std::int64_t y, std::int64_t z) const noexcept {
+  if (axis == 0) return has_row(y, z) ? starts(y, z).edges[0] : 0;
+  const bool at_layer = axis == 1 ? y == -1 || y == dims_.y - 1 : z == -1 || z == dims_.z - 1;
+  if (!at_layer) return has_row(y, z) ? starts(y, z).edges[static_cast<std::size_t>(axis)] : 0;
+  if (virtual_row(axis, y, z) == nullptr) return 0;
+  const auto counts = count_virtual(y, z);
+  return virtual_start(y, z) + counts[0] + (axis == 2 ? counts[1] : 0);
+}
+
+std::uint32_t EdgeIndex::end_of_row(std::int64_t y, std::int64_t z, bool high) const noexcept {
+  if (!has_row(y, z)) return 0;
+  return virtual_start(y, z) + (high ? std::uint32_t{samples_->signs.get(0, y, z)} : 0u);
+}
+
 std::uint32_t EdgeIndex::quad_of(int axis, std::int64_t x, std::int64_t y, std::int64_t z) const noexcept {
   const BitVolume& signs = samples_->signs;
   if (!is_virtual(axis, x, y, z)) {
@@ -88,12 +110,8 @@ std::uint32_t EdgeIndex::quad_of(int axis, std::int64_t x, std::int64_t y, std::
     if (axis == 0) return start + count_changes(signs.row(y, z), x);
     return start + count_differences(signs.row(y, z), axis == 1 ? signs.row(y + 1, z) : signs.row(y, z + 1), x);
   }
-  std::uint32_t number = virtual_starts_[static_cast<std::size_t>((z + 1) * (dims_.y + 1) + y + 1)];
-  if (axis == 0) return number + (x >= 0 ? std::uint32_t{signs.get(0, y, z)} : 0u);
-  const auto counts = count_virtual(y, z);
-  number += counts[0];
-  if (axis == 2) number += counts[1];
-  return number + count_ones(virtual_row(axis, y, z), x);
+  if (axis == 0) return end_of_row(y, z, x >= 0);
+  return first_along(axis, y, z) + count_ones(virtual_row(axis, y, z), x);
 }
 
 }  // namespace dubsar

@@ -133,25 +133,25 @@ HWY_INLINE bool decide(double a, double b, double c, double d) {
 // The row one voxel further; rows behind the last one do not exist.
 HWY_INLINE const float* beside(const float* row) { return row != nullptr ? row + 1 : nullptr; }
 
-void fill_row(const SignRows& rows, const ValueRows& values, std::int64_t nx, float isovalue, int offset_bits,
-              const RowItems& items, std::uint16_t* offsets, std::uint8_t* joined) {
+void fill_row(const SignRows& rows, const ValueRows& values, std::int64_t nx, float isovalue, const RowItems& items,
+              EdgeEnds* ends, std::uint8_t* joined) {
   const std::int64_t words = (nx + 63) / 64;
   const double level = isovalue;
-  std::uint16_t* edge_out[3] = {offsets, offsets + items.edges[0], offsets + items.edges[0] + items.edges[1]};
+  EdgeEnds* edge_out[3] = {ends, ends + items.edges[0], ends + items.edges[0] + items.edges[1]};
   std::uint8_t* face_out[3] = {joined, joined + items.faces[0], joined + items.faces[0] + items.faces[1]};
   const float* edge_ends[3] = {values.here + 1, values.next_y, values.next_z};
+  const float* corners[3][4] = {{values.here, values.next_y, values.next_z, values.next_yz},
+                                {values.here, values.here + 1, values.next_z, beside(values.next_z)},
+                                {values.here, values.here + 1, values.next_y, beside(values.next_y)}};
   for (std::int64_t w = 0; w < words; ++w) {
     const WordItems word = word_items(rows, w, words, nx);
     for (std::size_t a = 0; a < 3; ++a) {
       for (std::uint64_t rest = word.edges[a]; rest != 0; rest &= rest - 1) {
         const std::int64_t x = 64 * w + __builtin_ctzll(rest);
-        *edge_out[a]++ = quantise(values.here[x] - level, edge_ends[a][x] - level, offset_bits);
+        *edge_out[a]++ = {values.here[x], edge_ends[a][x]};
       }
     }
     if ((word.faces[0] | word.faces[1] | word.faces[2]) == 0) continue;
-    const float* corners[3][4] = {{values.here, values.next_y, values.next_z, values.next_yz},
-                                  {values.here, values.here + 1, values.next_z, beside(values.next_z)},
-                                  {values.here, values.here + 1, values.next_y, beside(values.next_y)}};
     for (std::size_t a = 0; a < 3; ++a) {
       for (std::uint64_t rest = word.faces[a]; rest != 0; rest &= rest - 1) {
         const std::int64_t x = 64 * w + __builtin_ctzll(rest);
@@ -160,6 +160,26 @@ void fill_row(const SignRows& rows, const ValueRows& values, std::int64_t nx, fl
       }
     }
   }
+}
+
+void quantise_crossings(const EdgeEnds* ends, std::size_t count, float isovalue, int bits, std::uint16_t* offsets) {
+  const hn::CappedTag<double, 8> dd;
+  const hn::Rebind<float, decltype(dd)> df;
+  const hn::Rebind<std::int32_t, decltype(dd)> di;
+  const hn::Rebind<std::uint16_t, decltype(dd)> du;
+  const std::size_t lanes = hn::Lanes(dd);
+  const int steps = 1 << bits;
+  const auto level = hn::Set(dd, isovalue), scale = hn::Set(dd, steps), half = hn::Set(dd, 0.5);
+  std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes) {  // quantise(), several at a time
+    hn::Vec<decltype(df)> value0, value1;
+    hn::LoadInterleaved2(df, &ends[i].from, value0, value1);
+    const auto v0 = hn::Sub(hn::PromoteTo(dd, value0), level), v1 = hn::Sub(hn::PromoteTo(dd, value1), level);
+    const auto t = hn::Div(v0, hn::Sub(v0, v1));
+    const auto step = hn::DemoteTo(di, hn::Mul(hn::IfThenElse(hn::IsFinite(t), t, half), scale));
+    hn::StoreU(hn::DemoteTo(du, hn::Min(hn::Max(step, hn::Zero(di)), hn::Set(di, steps - 1))), du, offsets + i);
+  }
+  for (; i < count; ++i) offsets[i] = quantise(ends[i].from - double{isovalue}, ends[i].to - double{isovalue}, bits);
 }
 
 std::uint16_t quantise_crossing(float value0, float value1, float isovalue, int bits) {
@@ -184,6 +204,7 @@ HWY_EXPORT(count_differences);
 HWY_EXPORT(count_changes);
 HWY_EXPORT(count_row);
 HWY_EXPORT(fill_row);
+HWY_EXPORT(quantise_crossings);
 HWY_EXPORT(quantise_crossing);
 HWY_EXPORT(joins_inside);
 }  // namespace
@@ -201,12 +222,12 @@ std::uint32_t count_changes(const std::uint64_t* row, std::int64_t x) noexcept {
   return HWY_DYNAMIC_DISPATCH(count_changes)(row, x);
 }
 RowItems count_row(const SignRows& rows, std::int64_t nx) { return HWY_DYNAMIC_DISPATCH(count_row)(rows, nx); }
-// The row one voxel further; rows behind the last one do not exist.
-HWY_INLINE const float* beside(const float* row) { return row != nullptr ? row + 1 : nullptr; }
-
-void fill_row(const SignRows& rows, const ValueRows& values, std::int64_t nx, float isovalue, int offset_bits,
-              const RowItems& items, std::uint16_t* offsets, std::uint8_t* joined) {
-  HWY_DYNAMIC_DISPATCH(fill_row)(rows, values, nx, isovalue, offset_bits, items, offsets, joined);
+void fill_row(const SignRows& rows, const ValueRows& values, std::int64_t nx, float isovalue, const RowItems& items,
+              EdgeEnds* ends, std::uint8_t* joined) {
+  HWY_DYNAMIC_DISPATCH(fill_row)(rows, values, nx, isovalue, items, ends, joined);
+}
+void quantise_crossings(const EdgeEnds* ends, std::size_t count, float isovalue, int bits, std::uint16_t* offsets) {
+  HWY_DYNAMIC_DISPATCH(quantise_crossings)(ends, count, isovalue, bits, offsets);
 }
 std::uint16_t quantise_crossing(float value0, float value1, float isovalue, int bits) noexcept {
   return HWY_DYNAMIC_DISPATCH(quantise_crossing)(value0, value1, isovalue, bits);

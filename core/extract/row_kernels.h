@@ -43,10 +43,18 @@ std::uint32_t count_changes(const std::uint64_t* row, std::int64_t x) noexcept;
 
 RowItems count_row(const SignRows& rows, std::int64_t nx);
 
-/// Writes the quantised crossings and face decisions of one row in canonical order (surface_samples.h). `items` is
-/// count_row() of the same rows.
-void fill_row(const SignRows& rows, const ValueRows& values, std::int64_t nx, float isovalue, int offset_bits,
-              const RowItems& items, std::uint16_t* offsets, std::uint8_t* joined);
+/// The values at both ends of an active edge.
+struct EdgeEnds {
+  float from, to;
+};
+
+/// Writes the ends of the active edges and the face decisions of one row in canonical order (surface_samples.h).
+/// `items` is count_row() of the same rows.
+void fill_row(const SignRows& rows, const ValueRows& values, std::int64_t nx, float isovalue, const RowItems& items,
+              EdgeEnds* ends, std::uint8_t* joined);
+
+/// offsets[i] = quantise_crossing(ends[i].from, ends[i].to, isovalue, bits).
+void quantise_crossings(const EdgeEnds* ends, std::size_t count, float isovalue, int bits, std::uint16_t* offsets);
 
 /// Place of the crossing between two values of different sign: min(2^bits - 1, floor(t 2^bits)), t = v0 / (v0 - v1)
 /// with v = value - isovalue; t = 0.5 where that is not finite.

@@ -1,6 +1,7 @@
 // The first half of extraction: one pass over the volume, in slabs, two neighbouring slices at a time.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "core/base/system/budget.h"
 #include "core/base/system/parallel.h"
@@ -79,20 +80,26 @@ Result<SurfaceSamples> sample_surface(SlabSource& source, const ExtractOptions& 
       face_start[i] = std::int64_t{items[i].faces[0]} + items[i].faces[1] + items[i].faces[2];
     });
     const std::size_t edges_before = samples.offsets.size(), faces_before = samples.joined.size();
-    samples.offsets.resize(edges_before + static_cast<std::size_t>(exclusive_scan(edge_start)));
+    const std::int64_t edges = exclusive_scan(edge_start);
+    samples.offsets.resize(edges_before + static_cast<std::size_t>(edges));
     samples.joined.resize(faces_before + static_cast<std::size_t>(exclusive_scan(face_start)));
-    parallel_for(rows, rows_per_chunk(dims.x), [&](std::int64_t r) {
-      const auto i = static_cast<std::size_t>(r);
-      const RowItems& row = items[i];
-      if (row.edges[0] + row.edges[1] + row.edges[2] == 0) return;
-      const std::int64_t y = r % dims.y, row_z = first + r / dims.y;
-      const bool has_y = y + 1 < dims.y, has_z = row_z + 1 < dims.z;
-      const ValueRows value_rows{value_row(y, row_z), has_y ? value_row(y + 1, row_z) : nullptr,
-                                 has_z ? value_row(y, row_z + 1) : nullptr,
-                                 has_y && has_z ? value_row(y + 1, row_z + 1) : nullptr};
-      fill_row(sign_rows(y, row_z), value_rows, dims.x, options.isovalue, options.offset_bits, row,
-               samples.offsets.data() + edges_before + edge_start[i],
-               samples.joined.data() + faces_before + face_start[i]);
+    parallel_chunks(rows, rows_per_chunk(dims.x), [&](std::int64_t begin, std::int64_t rows_end) {
+      const auto start_of = [&](std::int64_t r) { return r == rows ? edges : edge_start[static_cast<std::size_t>(r)]; };
+      const std::int64_t first_edge = start_of(begin), chunk_edges = start_of(rows_end) - first_edge;
+      const std::unique_ptr<EdgeEnds[]> ends(new EdgeEnds[static_cast<std::size_t>(chunk_edges)]);
+      for (std::int64_t r = begin; r < rows_end; ++r) {
+        if (start_of(r) == start_of(r + 1)) continue;
+        const auto i = static_cast<std::size_t>(r);
+        const std::int64_t y = r % dims.y, row_z = first + r / dims.y;
+        const bool has_y = y + 1 < dims.y, has_z = row_z + 1 < dims.z;
+        const ValueRows value_rows{value_row(y, row_z), has_y ? value_row(y + 1, row_z) : nullptr,
+                                   has_z ? value_row(y, row_z + 1) : nullptr,
+                                   has_y && has_z ? value_row(y + 1, row_z + 1) : nullptr};
+        fill_row(sign_rows(y, row_z), value_rows, dims.x, options.isovalue, items[i],
+                 ends.get() + (edge_start[i] - first_edge), samples.joined.data() + faces_before + face_start[i]);
+      }
+      quantise_crossings(ends.get(), static_cast<std::size_t>(chunk_edges), options.isovalue, options.offset_bits,
+                         samples.offsets.data() + edges_before + first_edge);
     });
     if (end < dims.z) std::copy_n(value_row(0, end - 1), dims.slice(), values.data());
     progress.advance(slab);

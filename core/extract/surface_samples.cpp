@@ -74,7 +74,9 @@ Result<void> check_samples(const SurfaceSamples& samples, const SampleCounts& co
     return parallel_reduce<int>(
         static_cast<std::int64_t>(values.size()), 1 << 20, 0,
         [&](std::int64_t begin, std::int64_t end) {
-          return static_cast<int>(*std::max_element(values.begin() + begin, values.begin() + end));
+          auto most = values[static_cast<std::size_t>(begin)];
+          for (std::int64_t i = begin; i < end; ++i) most = std::max(most, values[static_cast<std::size_t>(i)]);
+          return static_cast<int>(most);
         },
         [](int a, int b) { return std::max(a, b); });
   };

@@ -97,18 +97,20 @@ TEST(Extract, AnyThreadCountAndSlabHeightGiveTheSameBytes) {
 }
 
 TEST(Extract, EveryInstructionSetGivesTheSameBytes) {
-  const Volume<float> volume = random_volume({203, 11, 12}, 5, 2);
-  const SurfaceSamples expected = sample(volume, 0.0f);
-  const QuadMesh mesh = build(expected);
-  int targets = 0;
-  for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
-    hwy::SetSupportedTargetsForTest(rest & -rest);
-    EXPECT_EQ(sample(volume, 0.0f), expected) << hwy::TargetName(rest & -rest);
-    EXPECT_TRUE(same_bytes(build(expected), mesh)) << hwy::TargetName(rest & -rest);
-    ++targets;
+  for (const int bits : {4, 16}) {
+    const Volume<float> volume = random_volume({203, 11, 12}, 5, 2);
+    const SurfaceSamples expected = sample(volume, 0.0f, true, bits);
+    const QuadMesh mesh = build(expected);
+    int targets = 0;
+    for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+      hwy::SetSupportedTargetsForTest(rest & -rest);
+      EXPECT_EQ(sample(volume, 0.0f, true, bits), expected) << hwy::TargetName(rest & -rest);
+      EXPECT_TRUE(same_bytes(build(expected), mesh)) << hwy::TargetName(rest & -rest);
+      ++targets;
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    EXPECT_GE(targets, 1);
   }
-  hwy::SetSupportedTargetsForTest(0);
-  EXPECT_GE(targets, 1);
 }
 
 TEST(Extract, VertexCountAt1024IsThePapersWithoutAnyVolume) {
