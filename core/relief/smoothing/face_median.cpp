@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "core/base/system/parallel.h"
@@ -207,21 +208,43 @@ constexpr std::int64_t kLargestBlock = 1 << 18;
 struct BlockWalk {
   std::uint32_t first = 0, size = 0, rows = 1;
   std::vector<std::uint32_t> groups, open, close;
+  /// Of groups that touch other blocks, too, what touches this one; else nothing. A surface that is cut by the border
+  /// of the volume has the faces of its caps behind all others: a block of them touches many groups, and little of
+  /// each.
+  std::vector<std::optional<AroundGroup>> parts;
+  std::vector<std::uint32_t> part_quads;
+
+  const AroundGroup& group(const QuadsAround& all, std::size_t i) const {
+    return parts[i] ? *parts[i] : all.groups[groups[i]];
+  }
+  const std::uint32_t* quads(const QuadsAround& all, std::size_t i) const {
+    return parts[i] ? part_quads.data() : all.quads.data();
+  }
 };
 
-BlockWalk walk_of(std::vector<std::uint32_t> touching, const QuadsAround& all, std::int64_t first, std::int64_t size) {
-  BlockWalk walk{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(size), 1, std::move(touching), {}, {}};
+BlockWalk walk_of(const QuadMesh& mesh, std::vector<std::uint32_t> touching, const QuadsAround& all, std::int64_t first,
+                  std::int64_t size) {
+  BlockWalk walk;
+  walk.first = static_cast<std::uint32_t>(first);
+  walk.size = static_cast<std::uint32_t>(size);
+  walk.groups = std::move(touching);
   const std::size_t count = walk.groups.size();
   walk.open.resize(count, walk.size);
   walk.close.resize(count, walk.size);
-  const auto touched = [&](std::size_t i) -> const IdRange& { return all.groups[walk.groups[i]].touched; };
+  walk.parts.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const IdRange& everywhere = all.groups[walk.groups[i]].touched;
+    if (everywhere.low < walk.first || everywhere.high - walk.first >= walk.size)
+      walk.parts[i] = group_within(mesh, walk.groups[i], walk.first, walk.size, walk.part_quads);
+  }
+  const auto touched = [&](std::size_t i) -> const IdRange& { return walk.group(all, i).touched; };
   std::uint32_t open = 0, close = walk.size;
   for (std::size_t i = count; i-- > 1;) {
-    close = std::min(close, std::max(touched(i).low, walk.first) - walk.first);
+    close = std::min(close, touched(i).low - walk.first);
     walk.close[i - 1] = close;
   }
   for (std::size_t i = 0; i < count; ++i) {
-    open = walk.open[i] = std::max(open, std::min(touched(i).high - walk.first + 1, walk.size));
+    open = walk.open[i] = std::max(open, touched(i).high - walk.first + 1);
     walk.rows = std::max(walk.rows, open - (i == 0 ? 0 : walk.close[i - 1]));
   }
   walk.rows = std::bit_ceil(walk.rows);
@@ -232,11 +255,12 @@ BlockWalk walk_of(std::vector<std::uint32_t> touching, const QuadsAround& all, s
 std::vector<BlockWalk> walks_of(const QuadMesh& mesh, const QuadsAround& all) {
   const std::int64_t size = std::clamp(mesh.quad_count() / (4 * thread_count()), kScatterBlock, kLargestBlock);
   ScatterBlocks blocks = vertex_groups_of_quads(mesh, size);
-  std::vector<BlockWalk> walks;
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const std::int64_t first = static_cast<std::int64_t>(b) * size;
-    walks.push_back(walk_of(std::move(blocks[b]), all, first, std::min(size, mesh.quad_count() - first)));
-  }
+  std::vector<BlockWalk> walks(blocks.size());
+  parallel_for(static_cast<std::int64_t>(blocks.size()), 1, [&](std::int64_t b) {
+    const auto block = static_cast<std::size_t>(b);
+    const std::int64_t first = b * size;
+    walks[block] = walk_of(mesh, std::move(blocks[block]), all, first, std::min(size, mesh.quad_count() - first));
+  });
   return walks;
 }
 
@@ -246,7 +270,7 @@ void walk_block(const BlockWalk& walk, const QuadsAround& all, const MedianBlock
   for (std::size_t i = 0; i < walk.groups.size(); ++i) {
     HWY_DYNAMIC_DISPATCH(open_faces)(block, opened, walk.open[i]);
     opened = walk.open[i];
-    HWY_DYNAMIC_DISPATCH(pull_group)(block, all.groups[walk.groups[i]], all.quads.data());
+    HWY_DYNAMIC_DISPATCH(pull_group)(block, walk.group(all, i), walk.quads(all, i));
     if (i + 1 == walk.groups.size()) break;
     HWY_DYNAMIC_DISPATCH(close_faces)(block, closed, walk.close[i], to);
     closed = walk.close[i];
@@ -271,7 +295,8 @@ Result<void> filter_face_normals(const QuadMesh& mesh, const NormalFilterOptions
       if (progress.cancelled()) return;
       const BlockWalk& walk = walks[static_cast<std::size_t>(b)];
       auto sums = memory.take();
-      const MedianBlock block{&mesh, &faces.data()->x, sums->data(), walk.first, walk.size, rows - 1, options.epsilon};
+      const MedianBlock block{&mesh,     &faces.data()->x, sums->data(),   walk.first,
+                              walk.size, walk.rows - 1,    options.epsilon};
       walk_block(walk, all, block, &next.data()->x);
       memory.give_back(std::move(sums));
       progress.advance(block.size);

@@ -21,24 +21,25 @@ VertexRange vertices_of(const QuadMesh& mesh, std::int64_t group) {
 std::size_t batches(std::size_t vertices) { return (vertices + kAtOnce - 1) / kAtOnce; }
 
 /// How many vertices there are of each size; returns how many x-quads the batches hold.
-std::size_t count_vertices(const QuadMesh& mesh, std::int64_t number, AroundGroup& group) {
-  const VertexRange range = vertices_of(mesh, number);
+template <class Keep>
+std::size_t count_vertices(const QuadMesh& mesh, const VertexRange& range, const Keep& keep, AroundGroup& group) {
   const std::uint32_t* first = mesh.first_incident.data();
   for (std::uint32_t v = range.begin; v < range.end; ++v) {
+    if (!keep(v)) continue;
     const std::size_t around = first[v + 1] - first[v];
     if (around > kAroundMost)
       group.others.push_back(v);
     else
       ++group.vertices[around];
   }
-  group.touched = range_around(mesh, range.begin, range.end);
   std::size_t held = 0;
   for (std::size_t k = 2; k <= kAroundMost; ++k) held += batches(group.vertices[k]) * kAtOnce * k;
   return held;
 }
 
-void fill_batches(const QuadMesh& mesh, std::int64_t number, const AroundGroup& group, std::uint32_t* quads) {
-  const VertexRange range = vertices_of(mesh, number);
+template <class Keep>
+void fill_batches(const QuadMesh& mesh, const VertexRange& range, const Keep& keep, const AroundGroup& group,
+                  std::uint32_t* quads) {
   const std::uint32_t* first = mesh.first_incident.data();
   std::array<std::size_t, kAroundMost + 1> start{}, put{};
   std::array<std::uint32_t, kAroundMost + 1> latest{};
@@ -53,13 +54,14 @@ void fill_batches(const QuadMesh& mesh, std::int64_t number, const AroundGroup& 
   };
   for (std::uint32_t v = range.begin; v < range.end; ++v) {
     const std::size_t around = first[v + 1] - first[v];
-    if (around < 2 || around > kAroundMost) continue;
+    if (around < 2 || around > kAroundMost || !keep(v)) continue;
     take(v, around);
     latest[around] = v;
   }
   for (std::size_t k = 2; k <= kAroundMost; ++k)
     while (put[k] % kAtOnce != 0) take(latest[k], k);
 }
+constexpr auto kAllVertices = [](std::uint32_t) { return true; };
 }  // namespace
 
 QuadsAround::QuadsAround(const QuadMesh& mesh)
@@ -67,7 +69,9 @@ QuadsAround::QuadsAround(const QuadMesh& mesh)
   const auto count = static_cast<std::int64_t>(groups.size());
   parallel_for(count, kGroupsTogether, [&](std::int64_t g) {
     AroundGroup& group = groups[static_cast<std::size_t>(g)];
-    group.begin = count_vertices(mesh, g, group);
+    const VertexRange range = vertices_of(mesh, g);
+    group.begin = count_vertices(mesh, range, kAllVertices, group);
+    group.touched = range_around(mesh, range.begin, range.end);
   });
   std::size_t all = 0;
   for (AroundGroup& group : groups) {
@@ -78,8 +82,24 @@ QuadsAround::QuadsAround(const QuadMesh& mesh)
   quads = LargeArray<std::uint32_t>(all);
   parallel_for(count, kGroupsTogether, [&](std::int64_t g) {
     const AroundGroup& group = groups[static_cast<std::size_t>(g)];
-    fill_batches(mesh, g, group, quads.data() + group.begin);
+    fill_batches(mesh, vertices_of(mesh, g), kAllVertices, group, quads.data() + group.begin);
   });
+}
+
+AroundGroup group_within(const QuadMesh& mesh, std::int64_t number, std::uint32_t first, std::uint32_t size,
+                         std::vector<std::uint32_t>& quads) {
+  const auto is_within = [&](std::uint32_t quad) { return quad - first < size; };
+  const auto touches = [&](std::uint32_t v) { return std::ranges::any_of(mesh.quads_of(v), is_within); };
+  AroundGroup group;
+  const VertexRange range = vertices_of(mesh, number);
+  const std::size_t held = count_vertices(mesh, range, touches, group);
+  group.begin = quads.size();
+  quads.resize(quads.size() + held);
+  fill_batches(mesh, range, touches, group, quads.data() + group.begin);
+  for (const std::uint32_t quad : std::span(mesh.incident.data() + mesh.first_incident[range.begin],
+                                            mesh.incident.data() + mesh.first_incident[range.end]))
+    if (is_within(quad)) group.touched.add({quad, quad});
+  return group;
 }
 
 }  // namespace dubsar

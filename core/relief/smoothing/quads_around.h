@@ -23,6 +23,11 @@ struct AroundGroup {
   std::vector<std::uint32_t> others;                      ///< vertices with more x-quads
 };
 
+/// Of a group the vertices with x-quads in [first, first + size), in the same order; `touched`: those x-quads. The
+/// batches are appended to `quads`.
+AroundGroup group_within(const QuadMesh& mesh, std::int64_t number, std::uint32_t first, std::uint32_t size,
+                         std::vector<std::uint32_t>& quads);
+
 /// Group g: vertices [g, g + 1) * kVertexGroup. Threads, deterministic.
 struct QuadsAround {
   explicit QuadsAround(const QuadMesh& mesh);
