@@ -35,20 +35,26 @@ namespace {
 using nlohmann::json;
 
 constexpr float kNoise = 0.06f;
-constexpr float kPeriod = 190.0f;  // voxels: 2.9 million vertices in 512^3
+constexpr float kPeriod = 178.0f;  // voxels: 2.9 million vertices in 512^3
+constexpr float kAir = 9.0f;       // voxels between the ball and the border
 
-/// A gyroid with noise: as a scan of a tablet some per cent of its cells have surface.
+/// A ball of a gyroid with noise: as in a scan of a tablet there is air around it, and some per cent of the cells have
+/// surface.
 Volume<float> make_volume(std::int64_t size) {
   Volume<float> volume({size, size, size});
   constexpr float kStep = 6.2831853f / kPeriod;
+  const float middle = 0.5f * static_cast<float>(size - 1), radius = 0.5f * static_cast<float>(size) - kAir;
   parallel_for(size * size, 64, [&](std::int64_t r) {
     const float y = kStep * static_cast<float>(r % size), z = kStep * static_cast<float>(r / size);
     std::uint32_t noise = static_cast<std::uint32_t>(r) * 2654435761u + 1u;
     for (std::int64_t i = 0; i < size; ++i) {
       const float x = kStep * static_cast<float>(i);
       noise = noise * 1664525u + 1013904223u;
-      volume.voxels[r * size + i] = std::sin(x) * std::cos(y) + std::sin(y) * std::cos(z) + std::sin(z) * std::cos(x) +
-                                    kNoise * (static_cast<float>(noise >> 8) * 0x1p-24f - 0.5f);
+      const float gyroid = std::sin(x) * std::cos(y) + std::sin(y) * std::cos(z) + std::sin(z) * std::cos(x);
+      const float inside = radius - std::hypot(static_cast<float>(i) - middle, static_cast<float>(r % size) - middle,
+                                               static_cast<float>(r / size) - middle);
+      volume.voxels[r * size + i] =
+          std::min(gyroid, kStep * inside) + kNoise * (static_cast<float>(noise >> 8) * 0x1p-24f - 0.5f);
     }
   });
   return volume;
