@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kReach = 5;             ///< samples of a profile, each way
 constexpr float kStep = 0.5f;         ///< between them, grid steps
-constexpr int kRounds = 4;            ///< of search and move
+constexpr int kRounds = 6;            ///< of search and move
 constexpr float kLeap = 0.75f;        ///< most that a round moves a vertex
 constexpr int kProfileRings = 2;      ///< over which profiles are averaged, and moves
 constexpr int kStepRings = 4;         ///< and moves to where one clay becomes the other

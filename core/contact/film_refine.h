@@ -20,14 +20,14 @@ struct Following {
   std::vector<bool> step;    ///< to where one clay becomes the other, not to a dip
 };
 struct FollowOptions {
-  float most = 1.25f;           ///< steps that a vertex is moved to dips; a cut is not farther off
+  float most = 3.0f;            ///< steps that a vertex is moved to dips: cuts stop short of the tips of wedges
   float blur_variance = 0.42f;  ///< of the scan
   std::optional<ClayContrast> clays = std::nullopt;
 };
 
 /// Moves the added vertices. Dips that do not stand out of the noise, as parallel sheets in the clay on both sides show
 /// it, move little, and the contact is smooth there. `dual_positions` are those of the surface beside the contact; they
-/// stay, and so do vertices beside them. No triangle turns over. About 20 us a vertex; the same for any number of
+/// stay, and so do vertices beside them. No triangle turns over. About 35 us a vertex; the same for any number of
 /// threads.
 void follow_dips(InterfaceMesh& mesh, const InterfaceRings& rings, const std::vector<glm::vec3>& dual_positions,
                  const Following& follows, const BandDensity& density, const FollowOptions& options);

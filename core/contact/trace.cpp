@@ -17,6 +17,7 @@
 #include "core/contact/interface_rest.h"
 #include "core/contact/interface_shape.h"
 #include "core/contact/pockets.h"
+#include "core/contact/recentre.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh/mesh_check.h"
 #include "core/parts/holes.h"
@@ -244,6 +245,8 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
     return report;
   }
   progress.begin("contact", 0, "step");
+  DUBSAR_ASSIGN(const float moved, recentre_samples(samples, model.samples.signs, density, progress));
+  log_debug("contact: looked for up to {:.1f} steps from the smooth patch", moved);
   DUBSAR_ASSIGN(const ContactBand band,
                 ContactBand::make(model.samples.signs, std::move(samples), options.reach, progress));
   report.points = static_cast<std::int64_t>(band.nodes.size());

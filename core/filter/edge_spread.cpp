@@ -14,9 +14,10 @@ namespace dubsar {
 namespace {
 
 constexpr int kRadius = 5, kInnerRadius = 3;  ///< of the balls, voxels
-constexpr std::int64_t kMostGroups = 16, kMostCloseSlices = 128, kGroupSlices = 2 * kRadius + 2;
+constexpr std::int64_t kMostGroups = 16, kMostCloseSlices = 128, kGroupSlices = 2 * std::int64_t{kRadius} + 2;
 constexpr double kBin = 0.25;  ///< of the distance from the plane, voxels
 constexpr int kBins = 10;      ///< they end where the sides have their own density
+constexpr std::size_t kTwoSides = 2 * std::size_t{kBins};
 constexpr double kCylinder = 2.0;
 constexpr double kBeyondBlur = 2.5;  ///< voxels from the plane at which its sides have their own density
 constexpr double kLevelError = 0.15, kMostBend = 0.15, kMostTilt = 0.3;
@@ -49,7 +50,7 @@ double plane_at(double share, double voxels) {
 
 /// What the flat places of one fold say, by distance from the plane.
 struct Spread {
-  std::array<double, 2 * kBins> sum{}, count{};
+  std::array<double, kTwoSides> sum{}, count{};
   int places = 0;
   std::vector<double> halves_apart;  ///< of each place: how far apart two halves of it put the plane
 
@@ -79,10 +80,10 @@ class Group {
   }
 
   void look(std::int64_t x, std::int64_t y, std::int64_t z, Spread& spread) const {
-    static const std::vector<Offset> kBall = ball();
+    static const std::vector<Offset> ball_offsets = ball();
     glm::dvec3 slope(0.0);
     double sum = 0.0, inner = 0.0, inner_count = 0.0;
-    for (const Offset& o : kBall) {
+    for (const Offset& o : ball_offsets) {
       const double v = (at(x + o.x, y + o.y, z + o.z) - air_) / contrast_;
       sum += v;
       slope += v * glm::dvec3(o.x, o.y, o.z);
@@ -91,7 +92,7 @@ class Group {
         ++inner_count;
       }
     }
-    const auto all = static_cast<double>(kBall.size());
+    const auto all = static_cast<double>(ball_offsets.size());
     // A half-space through the middle has 3/16 of the radius times the volume.
     if (glm::length(slope) < 0.6 * all * 3.0 / 16.0 * kRadius) return;
     const glm::dvec3 normal = -glm::normalize(slope);  // towards air
@@ -99,7 +100,7 @@ class Group {
     if (std::abs(rough) > 1.0) return;
     // The densities of both sides as they are here.
     std::array<double, 2> level{}, level_count{};
-    for (const Offset& o : kBall) {
+    for (const Offset& o : ball_offsets) {
       const double d = glm::dot(normal, glm::dvec3(o.x, o.y, o.z)) - rough;
       if (std::abs(d) < kBeyondBlur) continue;
       level[d > 0.0] += (at(x + o.x, y + o.y, z + o.z) - air_) / contrast_;
@@ -118,7 +119,7 @@ class Group {
     std::array<double, 2> apart{};
     for (std::size_t w = 0; w < 2; ++w) {
       std::array<double, 2> half{}, count{};
-      for (const Offset& o : kBall) {
+      for (const Offset& o : ball_offsets) {
         const double side = glm::dot(ways[w], glm::dvec3(o.x, o.y, o.z));
         if (std::abs(side) < 1e-9) continue;
         half[side > 0.0] += (at(x + o.x, y + o.y, z + o.z) - air_) / contrast_;
@@ -130,7 +131,7 @@ class Group {
     ++spread.places;
     spread.halves_apart.push_back(apart[0]);
     spread.halves_apart.push_back(apart[1]);
-    for (const Offset& o : kBall) {
+    for (const Offset& o : ball_offsets) {
       const glm::dvec3 q(o.x, o.y, o.z);
       const double across = glm::dot(normal, q), d = across - plane;
       if (o.length2 - across * across > kCylinder * kCylinder) continue;
@@ -196,7 +197,7 @@ Result<Folds> look_at(SlabSource& source, std::span<const std::int64_t> middles,
   constexpr std::int64_t kStride = 2;
   const Dims d = source.dims();
   std::vector<float> voxels(static_cast<std::size_t>(kGroupSlices * d.slice()));
-  const std::int64_t rows = (d.y - 2 * kRadius - 2) / kStride, columns = (d.x - 2 * kRadius - 2) / kStride;
+  const std::int64_t rows = (d.y - kGroupSlices) / kStride, columns = (d.x - kGroupSlices) / kStride;
   Folds all{};
   for (const std::int64_t middle : middles) {
     if (progress.cancelled()) return cancelled_error();

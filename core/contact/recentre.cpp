@@ -1,0 +1,195 @@
+#include "core/contact/recentre.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <map>
+#include <numeric>
+
+#include "core/base/system/parallel.h"
+#include "core/contact/clay_sides.h"
+#include "core/contact/dents.h"
+#include "core/contact/dips.h"
+#include "core/filter/resample.h"
+
+namespace dubsar {
+namespace {
+
+constexpr float kHalfReach = 12.0f;  ///< on both sides of the patch, steps of the halved grid
+constexpr float kCubeSide = 8.0f;    ///< of the places whose heights are taken together: wider than a wedge
+constexpr std::size_t kLeastCrossings = 24;
+constexpr float kAcross = 0.6f;  ///< cosine from which on a face lies along the contact
+/// Quantiles of heights whose mean is the ground: below lie wedges, above what noise lifted.
+constexpr float kGroundFrom = 0.5f, kGroundTo = 0.85f;
+constexpr float kAverage = 10.0f;  ///< deviation of the average over cubes, steps of the halved grid
+/// Mean strength of dips above that of mere clay from which a cube begins to be believed, and is believed in full.
+constexpr float kLeastBelief = 0.8f, kFullBelief = 1.1f;
+constexpr float kUnknownWeight = 0.25f;  ///< weight of cubes that show no film: there the patch is right
+
+glm::vec3 halved(const glm::vec3& p) { return 0.5f * (p - 1.0f); }  // resample.h
+
+BitVolume halved_signs(const BitVolume& inside, const Dims& dims) {
+  BitVolume half(dims);
+  parallel_for(dims.z, 1, [&](std::int64_t z) {
+    for (std::int64_t y = 0; y < dims.y; ++y)
+      for (std::int64_t x = 0; x < dims.x; ++x)
+        if (inside.get(2 * x + 1, 2 * y + 1, 2 * z + 1)) half.set(x, y, z, true);
+  });
+  return half;
+}
+
+/// What divides the clay over a piece of the patches.
+struct Cube {
+  std::vector<float> heights;
+  double strength = 0.0;
+  glm::dvec3 middle{0.0};
+};
+/// The height of the ground over the patch there, and how much of it is believed, 0..1.
+struct Ground {
+  glm::vec3 middle{0.0f};
+  float height = 0.0f, strength = 0.0f, faces = 0.0f, belief = 0.0f;
+};
+
+/// Calls visit(ground, weight) for those within three deviations of a place.
+template <class Visit>
+void each_near(const std::vector<Ground>& grounds, const glm::vec3& p, const Visit& visit) {
+  for (const Ground& ground : grounds) {
+    const glm::vec3 off = ground.middle - p;
+    const float far2 = glm::dot(off, off) / (kAverage * kAverage);
+    if (far2 < 9.0f) visit(ground, ground.faces * std::exp(-0.5f * far2));
+  }
+}
+
+/// Clear films cost the cut nothing in all of their width: of the nodes beside it the one with the strongest dip.
+std::uint32_t darkest_near(const ContactBand& band, const Dips& dips, std::uint32_t node, int axis) {
+  constexpr int kAround = 2;
+  std::uint32_t darkest = node;
+  for (int step = -kAround; step <= 1 + kAround; ++step)
+    if (const std::uint32_t n = band.at(band.point(node) + step * unit_step(axis));
+        n != ContactBand::kNone && dips.strength[n] > dips.strength[darkest])
+      darkest = n;
+  return darkest;
+}
+
+std::vector<Ground> grounds_of(const ContactBand& band, const Dips& dips, const std::vector<ClaySide>& side) {
+  std::map<std::array<int, 3>, Cube> cubes;  // in order: sums do not depend on threads
+  for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::abs(band.normal(n)[axis]) < kAcross) continue;
+      const std::uint32_t m = band.at(band.point(n) + unit_step(axis));
+      if (m == ContactBand::kNone || side[n] == side[m]) continue;
+      const glm::vec3& p = band.samples[band.nodes[n].sample].position;
+      const glm::ivec3 at(glm::floor(p / kCubeSide));
+      Cube& cube = cubes[{at.x, at.y, at.z}];
+      cube.heights.push_back(band.nodes[darkest_near(band, dips, n, axis)].height);
+      cube.strength += 0.5 * static_cast<double>(dips.strength[n] + dips.strength[m]);
+      cube.middle += glm::dvec3(p);
+    }
+  std::vector<Ground> found;
+  for (auto& entry : cubes) {
+    Cube& cube = entry.second;
+    const std::size_t faces = cube.heights.size();
+    if (faces < kLeastCrossings) continue;
+    std::sort(cube.heights.begin(), cube.heights.end());
+    const auto share = [&](float q) {
+      return cube.heights.begin() + static_cast<std::ptrdiff_t>(q * static_cast<float>(faces));
+    };
+    const auto from = share(kGroundFrom), to = share(kGroundTo);
+    const float ground = std::accumulate(from, to, 0.0f) / static_cast<float>(to - from);
+    const auto count = static_cast<double>(faces);
+    found.push_back(
+        {glm::vec3(cube.middle / count), ground, static_cast<float>(cube.strength / count), static_cast<float>(faces)});
+  }
+  for (Ground& ground : found) {
+    float sum = 0.0f, weights = 0.0f;
+    each_near(found, ground.middle, [&](const Ground& other, float weight) {
+      sum += weight * other.strength;
+      weights += weight;
+    });
+    const float above = sum / weights - kClayStrength;
+    ground.belief = std::clamp((above - kLeastBelief) / (kFullBelief - kLeastBelief), 0.0f, 1.0f);
+  }
+  return found;
+}
+
+/// The average of the grounds around a place.
+float height_at(const std::vector<Ground>& grounds, const glm::vec3& p) {
+  float sum = 0.0f, weights = 0.0f;
+  each_near(grounds, p, [&](const Ground& ground, float weight) {
+    sum += weight * ground.belief * ground.height;
+    weights += weight * (ground.belief + kUnknownWeight * (1.0f - ground.belief));
+  });
+  return weights > 0.0f ? sum / weights : 0.0f;
+}
+
+/// height_at() on a lattice around the samples, and between its points.
+class HeightField {
+ public:
+  HeightField(const ContactBand& band, const std::vector<Ground>& grounds)
+      : heights_(coarser(band.node_at.dims()), kNotAsked) {
+    std::vector<glm::ivec3> points;
+    for (const PatchPoint& sample : band.samples)
+      each_corner(sample.position, [&](const glm::ivec3& q, float) {
+        if (heights_.get(q.x, q.y, q.z) != kNotAsked) return;
+        heights_.at(q.x, q.y, q.z) = 0.0f;
+        points.push_back(q);
+      });
+    parallel_for(static_cast<std::int64_t>(points.size()), 64, [&](std::int64_t i) {
+      const glm::ivec3 q = points[static_cast<std::size_t>(i)];
+      heights_.at(q.x, q.y, q.z) = height_at(grounds, kSpacing * glm::vec3(q));
+    });
+  }
+  float at(const glm::vec3& p) const {
+    float sum = 0.0f;
+    each_corner(p, [&](const glm::ivec3& q, float weight) { sum += weight * heights_.get(q.x, q.y, q.z); });
+    return sum;
+  }
+
+ private:
+  static constexpr float kSpacing = 4.0f, kNotAsked = 1e30f;
+  static Dims coarser(const Dims& d) {
+    const auto along = [](std::int64_t n) { return static_cast<std::int64_t>(static_cast<float>(n) / kSpacing) + 2; };
+    return {along(d.x), along(d.y), along(d.z)};
+  }
+  template <class Visit>
+  void each_corner(const glm::vec3& p, const Visit& visit) const {
+    const Dims d = heights_.dims();
+    const glm::vec3 at = glm::clamp(p / kSpacing, glm::vec3(0.0f), glm::vec3(d.x - 2, d.y - 2, d.z - 2));
+    const glm::vec3 low = glm::floor(at), t = at - low;
+    for (int k = 0; k < 8; ++k) {
+      const glm::ivec3 step(k & 1, k >> 1 & 1, k >> 2);
+      const glm::vec3 share = glm::mix(1.0f - t, t, glm::vec3(step));
+      visit(glm::ivec3(low) + step, share.x * share.y * share.z);
+    }
+  }
+  BrickMap<float> heights_;
+};
+
+}  // namespace
+
+Result<float> recentre_samples(std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
+                               Progress& progress) {
+  HalfResolutionSource half(density);
+  const Dims dims = half.dims();
+  const BitVolume signs = halved_signs(inside, dims);
+  std::vector<PatchPoint> at_half = samples;
+  for (PatchPoint& sample : at_half) sample.position = halved(sample.position);
+  DUBSAR_ASSIGN(const ContactBand band, ContactBand::make(signs, std::move(at_half), kHalfReach, progress));
+  DUBSAR_ASSIGN(const BandDensity values, BandDensity::read(band, half, progress));
+  DUBSAR_ASSIGN(const Dips dips, find_dips(band, signs, values, progress));
+  DUBSAR_ASSIGN(const std::vector<ClaySide> side, divide_clay(band, dips, {}, {}, {}, progress));
+  const HeightField heights(band, grounds_of(band, dips, side));
+  std::vector<float> ways(samples.size());
+  parallel_for(static_cast<std::int64_t>(samples.size()), 256, [&](std::int64_t k) {
+    const auto i = static_cast<std::size_t>(k);
+    ways[i] = 2.0f * heights.at(band.samples[i].position);
+    samples[i].position += ways[i] * samples[i].normal;
+  });
+  float longest = 0.0f;
+  for (const float way : ways) longest = std::max(longest, std::abs(way));
+  return longest;
+}
+
+}  // namespace dubsar

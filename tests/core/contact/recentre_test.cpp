@@ -1,0 +1,87 @@
+#include "core/contact/recentre.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace dubsar {
+namespace {
+
+constexpr std::int64_t kEdge = 128;
+constexpr float kPatch = 60.0f;  ///< height of the patch
+
+/// Clay of density 1 with noise, and a film: as dark as `depth` says in the middle of a Gauss across z = `film(x, y)`.
+template <class Film>
+Volume<float> clay(float depth, const Film& film, unsigned seed) {
+  Volume<float> volume(Dims{kEdge, kEdge, kEdge});
+  std::mt19937 random(seed);
+  std::normal_distribution<float> noise(0.0f, 0.14f);  // 17 dB
+  for (std::int64_t z = 0, i = 0; z < kEdge; ++z)
+    for (std::int64_t y = 0; y < kEdge; ++y)
+      for (std::int64_t x = 0; x < kEdge; ++x, ++i) {
+        const float off = (static_cast<float>(z) - film(static_cast<float>(x), static_cast<float>(y))) / 0.75f;
+        volume.voxels[static_cast<std::size_t>(i)] = 1.0f - depth * std::exp(-0.5f * off * off) + noise(random);
+      }
+  return volume;
+}
+
+std::vector<PatchPoint> flat_patch() {
+  std::vector<PatchPoint> samples;
+  for (float y = 16.0f; y < 112.0f; y += 0.7f)
+    for (float x = 16.0f; x < 112.0f; x += 0.7f) samples.push_back({{x, y, kPatch}, {0.0f, 0.0f, 1.0f}});
+  return samples;
+}
+
+struct Moved {
+  float told = 0.0f;
+  std::vector<PatchPoint> samples;
+};
+Moved moved(const Volume<float>& volume) {
+  BitVolume inside(volume.dims);
+  for (std::int64_t z = 0; z < kEdge; ++z)
+    for (std::int64_t y = 0; y < kEdge; ++y)
+      for (std::int64_t x = 0; x < kEdge; ++x) inside.set(x, y, z, true);
+  VolumeSource source(volume);
+  SilentProgress progress;
+  Moved out{0.0f, flat_patch()};
+  out.told = recentre_samples(out.samples, inside, source, progress).value();
+  return out;
+}
+
+/// Away from the rim, where half of the average lies outside.
+bool amid(const PatchPoint& s) {
+  return std::max(std::abs(s.position.x - 64.0f), std::abs(s.position.y - 64.0f)) < 24.0f;
+}
+
+TEST(RecentreSamples, FollowsAFilmFarFromThePatch) {
+  const auto tilted = [](float x, float y) { return kPatch - 11.0f + 0.06f * (x - 64.0f) - 0.04f * (y - 64.0f); };
+  const Moved found = moved(clay(0.13f, tilted, 41));  // the dip of a fifth of a voxel of air
+  for (const PatchPoint& s : found.samples)
+    if (amid(s)) {
+      ASSERT_NEAR(s.position.z, tilted(s.position.x, s.position.y), 1.5f) << s.position.x << " " << s.position.y;
+    }
+  EXPECT_NEAR(found.told, 13.0f, 4.0f);
+}
+
+TEST(RecentreSamples, StaysOnTheGroundWhereWedgesGoDown) {
+  const auto ground = kPatch + 8.0f;
+  const auto written = [&](float x, float y) {  // a third of the area: round pits, 7 deep, 14 wide, 21 apart
+    const float u = std::fmod(x, 21.0f) - 10.0f, v = std::fmod(y, 21.0f) - 10.0f;
+    return ground - std::max(0.0f, 7.0f - std::sqrt(u * u + v * v));
+  };
+  for (const PatchPoint& s : moved(clay(0.3f, written, 42)).samples)
+    if (amid(s)) {
+      ASSERT_NEAR(s.position.z, ground, 1.5f) << s.position.x << " " << s.position.y;
+    }
+}
+
+TEST(RecentreSamples, StaysWhereNothingShows) {
+  const Moved found = moved(clay(
+      0.0f, [](float, float) { return 0.0f; }, 43));
+  EXPECT_LT(found.told, 0.5f);
+}
+
+}  // namespace
+}  // namespace dubsar
