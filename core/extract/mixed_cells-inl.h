@@ -43,7 +43,7 @@ HWY_INLINE void for_mixed_cells(const SurfaceSamples& samples, const CellRow& ce
     row[r] = inside ? samples.signs.row(y, z) : &kOutside;
     within[r] = inside ? -1 : 0;
   }
-  std::uint64_t point[4][kBlock + 1];    // [0]: the word before the block
+  std::uint64_t point[4][kBlock + 2];    // [0]: the word before the block; the last one is room for reads of two bytes
   std::uint32_t found[64 * kBlock + 8];  // from 64 on, in bits of `point`
   for (int r = 0; r < 4; ++r) point[r][0] = 0;
   std::uint64_t any_before = 0, all_before = 0;
