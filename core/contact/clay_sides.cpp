@@ -15,7 +15,7 @@ constexpr float kUnit = 256.0f;  ///< capacity of a unit face through clay that 
 /// Strength of a dip from which the cut costs almost nothing, and what is left then.
 constexpr float kClearDip = 2.4f, kLeastCost = 0.03f, kMostCost = 1.3f;
 /// Walls of the sheet along the contact's normal: cheap enough that it can go down into wedges.
-constexpr float kWall = 0.7f;
+constexpr float kWall = 0.5f;
 /// Cost of being on the wrong side of the patch, for each step from it: it holds the sheet where nothing is seen.
 constexpr float kPull = 0.006f;
 constexpr std::int32_t kHard = 1 << 28;
