@@ -11,9 +11,10 @@ void Editor::change(Document next, std::string_view words, Way way) {
 }
 
 bool Editor::has_work() const {
-  const Document& now = document();
-  return now.measures != opened_.measures || now.notes != opened_.notes || now.keyframes != opened_.keyframes ||
-         now.clips != opened_.clips;
+  const auto holds = [](const Document& d) {
+    return !d.measures.empty() || !d.notes.empty() || !d.keyframes.empty() || !d.clips.empty();
+  };
+  return holds(document()) || holds(opened_);
 }
 
 bool Editor::undo() {

@@ -144,7 +144,7 @@ class Editor {
   bool redo();
   /// As it was when the session began.
   const Document& opened() const noexcept { return opened_; }
-  /// Measures, notes, keyframes or cuts were made, changed or taken away in this session.
+  /// There are measures, notes, keyframes or cuts, or there were when the session began.
   bool has_work() const;
   /// How the view of the last change is gone to.
   Way way() const noexcept { return way_; }

@@ -31,19 +31,20 @@ void draw_curve(const Measure& measure) {
                    ImVec2(kFieldPx, 60.0f));
 }
 
-/// Letters of transliterations for keyboards that do not have them. Returns how long the text is with the one that was
-/// pressed; 0: none was.
-std::size_t letter_buttons(const Board& desk, const std::string& command, const std::string& text) {
-  std::size_t length = 0;
+/// Letters of transliterations for keyboards that do not have them, for the place `at` of the text. Returns the place
+/// behind the one that was pressed.
+std::optional<std::size_t> letter_buttons(const Board& desk, const std::string& command, std::string text,
+                                          std::size_t at) {
+  std::optional<std::size_t> behind;
   constexpr std::array<const char*, 9> kLetters{"\u0161", "\u1e63", "\u1e6d", "\u1e2b", "\u02be",
                                                 "\u02bf", "\u2082", "\u2083", "\u2093"};
   for (std::size_t i = 0; i < kLetters.size(); ++i) {
     if (i > 0) ImGui::SameLine(0.0f, 2.0f);
     if (!ImGui::SmallButton(kLetters[i])) continue;
-    desk.commands.push_back(command + text + kLetters[i]);
-    length = text.size() + std::string_view(kLetters[i]).size();
+    desk.commands.push_back(command + text.insert(at, kLetters[i]));
+    behind = at + std::string_view(kLetters[i]).size();
   }
-  return length;
+  return behind;
 }
 
 }  // namespace
@@ -72,7 +73,8 @@ void draw_measures(const Board& desk) {
 void draw_notes(const Board& desk) {
   if (desk.state.document.notes.empty()) say_dim("Take the tool Note or Line at the left and click on the surface.");
   ImGuiStorage& kept = *ImGui::GetStateStorage();
-  const ImGuiID answered = ImGui::GetID("answered"), lettered = ImGui::GetID("lettered");
+  const ImGuiID answered = ImGui::GetID("answered"), lettered = ImGui::GetID("lettered"),
+                length = ImGui::GetID("length");
   for (std::size_t i = 0; i < desk.state.document.notes.size(); ++i) {
     const Note& note = desk.state.document.notes[i];
     const bool open = desk.state.desk.note == i + 1;
@@ -88,16 +90,24 @@ void draw_notes(const Board& desk) {
       button(desk, "look", fmt::format("go_to_note {}", i + 1), false);
       ImGui::SameLine();
       button(desk, "delete", fmt::format("delete_note {}", i + 1), false);
-      const int placed = static_cast<int>(desk.state.desk.pointing.notes), length = static_cast<int>(note.text.size());
+      const int placed = static_cast<int>(desk.state.desk.pointing.notes);
       // What is typed after the click that placed a note, or after a letter was pressed, is its text.
-      const bool fresh = kept.GetInt(answered) != placed, goes_on = length > 0 && kept.GetInt(lettered) == length;
-      if (fresh || goes_on) kept.SetInt(lettered, 0);
+      const bool fresh = kept.GetInt(answered) != placed;
+      const int behind = kept.GetInt(lettered);  // a letter, once it stands there
+      const bool goes_on = behind > 0 && kept.GetInt(length) == static_cast<int>(note.text.size());
+      std::optional<std::size_t> from;
+      if (fresh) from = note.text.size();
+      if (goes_on) from = static_cast<std::size_t>(behind);
+      if (from) kept.SetInt(lettered, 0);
       kept.SetInt(answered, placed);
-      if (type_in("##text", note.text, typed, kFieldPx, fresh || goes_on))
+      if (type_in("##text", note.text, typed, kFieldPx, from))
         desk.commands.push_back(fmt::format("note_text {} {}", i + 1, typed));
       if (fresh) ImGui::SetScrollHereY();
-      if (const std::size_t with = letter_buttons(desk, fmt::format("note_text {} ", i + 1), note.text); with > 0)
-        kept.SetInt(lettered, static_cast<int>(with));
+      const std::size_t at = from.value_or(caret_in("##text", note.text));
+      if (const auto with = letter_buttons(desk, fmt::format("note_text {} ", i + 1), note.text, at)) {
+        kept.SetInt(lettered, static_cast<int>(*with));
+        kept.SetInt(length, static_cast<int>(note.text.size() + *with - at));
+      }
     }
     ImGui::PopID();
   }

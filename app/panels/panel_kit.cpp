@@ -32,11 +32,25 @@ bool sized_button(const Board& desk, const char* label, const std::string& comma
   return pressed;
 }
 
-/// Once it has the keys: behind its text, none of which is marked.
-int go_behind(ImGuiInputTextCallbackData* field) {
-  int& wanted = *static_cast<int*>(field->UserData);
-  if (std::exchange(wanted, 0) != 0) field->CursorPos = field->SelectionStart = field->SelectionEnd = field->BufTextLen;
+/// Of a field, in the storage of its window, plus one; 0: none.
+struct Caret {
+  int* wanted;  ///< where it is to go, once the field has the keys; nothing is marked then
+  int* last;    ///< where it was while the field had them
+};
+int keep_caret(ImGuiInputTextCallbackData* field) {
+  const Caret& caret = *static_cast<const Caret*>(field->UserData);
+  if (const int wanted = std::exchange(*caret.wanted, 0); wanted != 0)
+    field->CursorPos = field->SelectionStart = field->SelectionEnd = std::min(wanted - 1, field->BufTextLen);
+  *caret.last = field->CursorPos + 1;
   return 0;
+}
+Caret caret_of(const char* id) {
+  ImGuiStorage& kept = *ImGui::GetStateStorage();
+  const ImGuiID wanted = ImGui::GetID(fmt::format("{}.wanted", id).c_str()),
+                last = ImGui::GetID(fmt::format("{}.last", id).c_str());
+  kept.GetIntRef(wanted);  // a new entry moves the others
+  int* const at = kept.GetIntRef(last);
+  return {kept.GetIntRef(wanted), at};
 }
 
 }  // namespace
@@ -86,19 +100,27 @@ ImTextureID texture_id(std::uint32_t texture) {
   return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture));  // NOLINT(performance-no-int-to-ptr)
 }
 
-bool type_in(const char* id, const std::string& now, std::string& typed, float width, bool goes_on) {
+bool type_in(const char* id, const std::string& now, std::string& typed, float width,
+             std::optional<std::size_t> goes_on) {
   std::array<char, 2048> text{};
   now.copy(text.data(), std::min(now.size(), text.size() - 1));
   ImGui::SetNextItemWidth(width);
-  int& behind = *ImGui::GetStateStorage()->GetIntRef(ImGui::GetID(id));
   if (goes_on) {
-    behind = 1;
+    *caret_of(id).wanted = static_cast<int>(*goes_on) + 1;
     ImGui::SetKeyboardFocusHere();
   }
-  if (!ImGui::InputText(id, text.data(), text.size(), ImGuiInputTextFlags_CallbackAlways, go_behind, &behind))
+  Caret caret = caret_of(id);
+  if (!ImGui::InputText(id, text.data(), text.size(), ImGuiInputTextFlags_CallbackAlways, keep_caret, &caret))
     return false;
   typed = text.data();
   return typed != now;
+}
+
+std::size_t caret_in(const char* id, const std::string& text) {
+  const int last = *caret_of(id).last;
+  std::size_t at = last == 0 ? text.size() : std::min(static_cast<std::size_t>(last) - 1, text.size());
+  while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0u) == 0x80u) ++at;  // amid a letter
+  return at;
 }
 
 }  // namespace dubsar::app

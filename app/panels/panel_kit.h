@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,8 +43,11 @@ void say_dim(const char* words);
 /// What ImGui calls a texture of GL's.
 ImTextureID texture_id(std::uint32_t texture);
 /// A line of text that is kept while it is typed in, and told as it changes: true then. `id` names it in its window.
-/// `goes_on`: it takes the keys from now on, behind what stands there.
-bool type_in(const char* id, const std::string& now, std::string& typed, float width, bool goes_on = false);
+/// `goes_on`: it takes the keys from now on, behind so many bytes of what stands there.
+bool type_in(const char* id, const std::string& now, std::string& typed, float width,
+             std::optional<std::size_t> goes_on = std::nullopt);
+/// How many bytes of `text` stand before the place where was typed last in the field of that name; all, where never.
+std::size_t caret_in(const char* id, const std::string& text);
 
 // Drawers, one each.
 void draw_parts(const Board& desk);

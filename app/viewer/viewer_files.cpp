@@ -119,8 +119,7 @@ void Viewer::name_window() {
 /// What the next session on this file finds.
 Result<void> Viewer::leave_work(bool orderly) {
   const Document& d = document();
-  const bool made = !d.measures.empty() || !d.notes.empty() || !d.keyframes.empty() || !d.clips.empty() ||
-                    editor_->has_work() || given_.options.work.restored || d.home != editor_->opened().home;
+  const bool made = editor_->has_work() || given_.options.work.restored || d.home != editor_->opened().home;
   if (orderly && made) DUBSAR_TRY(files_.autosave.leave(d));
   if (orderly && !made) files_.autosave.discard();
   return {};

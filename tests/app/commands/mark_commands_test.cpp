@@ -255,5 +255,18 @@ TEST(MarkCommands, PicturesHaveANameASizeAndSpaces) {
   EXPECT_EQ(bench.place.pictures, (std::vector<std::string>{" x1", "/tmp/a b.png x1", "/tmp/a b.tif x4"}));
 }
 
+TEST(MarkCommands, ASessionThatBeganWithNotesAsksBeforeItEnds) {
+  FakePlace place;
+  Document restored = two_parts();
+  restored.notes.emplace_back();
+  Editor editor(restored, place);
+  const CommandTable commands = CommandTable::standard(kStyles);
+  ASSERT_TRUE(commands.run("close", editor));
+  EXPECT_FALSE(place.ended);
+  EXPECT_TRUE(editor.desk().leaving);
+  ASSERT_TRUE(commands.run("close", editor));
+  EXPECT_TRUE(place.ended);
+}
+
 }  // namespace
 }  // namespace dubsar::app

@@ -26,7 +26,11 @@ class LiveDrawers : public Live {
   }
   /// A click in each turn, each `step` pixels below the one before, until something has come of it.
   static Step click_down(int x, int from, int step, const std::function<bool(const ViewMoment&)>& done) {
-    auto y = std::make_shared<int>(from);
+    return click_down(x, std::make_shared<int>(from), step, done);
+  }
+  /// `y` is the one that comes next.
+  static Step click_down(int x, const std::shared_ptr<int>& y, int step,
+                         const std::function<bool(const ViewMoment&)>& done) {
     return {{}, [=](const ViewMoment& m) {
               if (done(m)) return true;
               if (*y > 0 && *y < kHigh) click(x, std::exchange(*y, *y + step));
@@ -77,7 +81,8 @@ TEST_F(LiveDrawers, WhatALongDrawerHasAtItsEndIsReachedWithItsBar) {
   ASSERT_TRUE(done) << done.error().message;
 }
 
-TEST_F(LiveDrawers, ALetterThatIsPressedIsPartOfWhatIsTyped) {
+TEST_F(LiveDrawers, ALetterThatIsPressedStandsWhereIsTyped) {
+  const auto row = std::make_shared<int>(110);  // of the letters, once it was found
   const auto done = play({
       {[] { person_->key("n"); }, [](const ViewMoment& m) { return m.viewer.desk().tool == "note"; }},
       {[] {
@@ -86,13 +91,20 @@ TEST_F(LiveDrawers, ALetterThatIsPressedIsPartOfWhatIsTyped) {
          person_->key("a");
        },
        text("sa")},
-      click_down(kWide - 345, 110, 4, text("sa\u0161")),
+      click_down(kWide - 345, row, 4, text("sa\u0161")),
       {[] {
          person_->key("d");
          person_->key("e");
        },
        text("sa\u0161de")},
-      {[] { person_->key("escape"); }, text("sa\u0161de")},
+      {[] {
+         for (int i = 0; i < 5; ++i) person_->key("left");
+         person_->key("x");
+       },
+       text("xsa\u0161de")},
+      {[row] { click(kWide - 345, *row - 4); }, text("x\u0161sa\u0161de")},
+      {[] { person_->key("k"); }, text("x\u0161ksa\u0161de")},
+      {[] { person_->key("escape"); }, text("x\u0161ksa\u0161de")},
       {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().tool == "turn"; }},
       {[] { person_->key("escape"); }, drawer("")},
       {[] { person_->key("escape"); }, [](const ViewMoment& m) { return m.viewer.desk().leaving; }},
