@@ -109,8 +109,8 @@ std::vector<int> piece_sizes(const CellCycle& cycle, const std::vector<unsigned>
   for (std::size_t s = 0; s < piece.size(); ++s) {
     edges[piece[s]] |= 1u << cycle.edges[s] | 1u << cycle.edges[(s + 1) % piece.size()];
   }
-  std::vector<int> sizes;
-  for (const unsigned mask : edges) sizes.push_back(std::popcount(mask));
+  std::vector<int> sizes(edges.size());
+  std::transform(edges.begin(), edges.end(), sizes.begin(), [](unsigned mask) { return std::popcount(mask); });
   return sizes;
 }
 

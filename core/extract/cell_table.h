@@ -24,7 +24,8 @@ struct CellCycle {
 /// Splits a curve in two between the crossings of two cell edges, a < b.
 struct CellChord {
   std::uint8_t a = 0, b = 0;
-  friend auto operator<=>(const CellChord&, const CellChord&) = default;
+  friend auto operator<=>(const CellChord&,
+                          const CellChord&) = default;  // NOLINT(modernize-use-nullptr): of clang-tidy 14
 };
 
 /// How the x-quad around one active edge meets this cell.

@@ -253,7 +253,8 @@ BlockWalk walk_of(const QuadMesh& mesh, std::vector<std::uint32_t> touching, con
 
 /// Blocks of faces: the larger, the fewer groups touch two; enough for all threads.
 std::vector<BlockWalk> walks_of(const QuadMesh& mesh, const QuadsAround& all) {
-  const std::int64_t size = std::clamp(mesh.quad_count() / (4 * thread_count()), kScatterBlock, kLargestBlock);
+  const std::int64_t size =
+      std::clamp(mesh.quad_count() / (std::int64_t{4} * thread_count()), kScatterBlock, kLargestBlock);
   ScatterBlocks blocks = vertex_groups_of_quads(mesh, size);
   std::vector<BlockWalk> walks(blocks.size());
   parallel_for(static_cast<std::int64_t>(blocks.size()), 1, [&](std::int64_t b) {

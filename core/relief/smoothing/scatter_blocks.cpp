@@ -106,7 +106,7 @@ ScatterBlocks vertex_groups_of_quads(const QuadMesh& mesh, std::int64_t block) {
       mesh.quad_count(), static_cast<std::uint32_t>(block), groups,
       [&](std::uint32_t g) { return range_around(mesh, g * kVertexGroup, end_of(g)); },
       [&](std::uint32_t g) {
-        const std::uint32_t first = mesh.first_incident[g * kVertexGroup];
+        const std::uint32_t first = mesh.first_incident[std::size_t{g} * kVertexGroup];
         return std::span(mesh.incident).subspan(first, mesh.first_incident[end_of(g)] - first);
       });
 }
