@@ -105,11 +105,11 @@ bool type_in(const char* id, const std::string& now, std::string& typed, float w
   std::array<char, 2048> text{};
   now.copy(text.data(), std::min(now.size(), text.size() - 1));
   ImGui::SetNextItemWidth(width);
+  Caret caret = caret_of(id);
   if (goes_on) {
-    *caret_of(id).wanted = static_cast<int>(*goes_on) + 1;
+    *caret.wanted = static_cast<int>(*goes_on) + 1;
     ImGui::SetKeyboardFocusHere();
   }
-  Caret caret = caret_of(id);
   if (!ImGui::InputText(id, text.data(), text.size(), ImGuiInputTextFlags_CallbackAlways, keep_caret, &caret))
     return false;
   typed = text.data();

@@ -14,7 +14,7 @@ namespace dubsar {
 namespace {
 
 constexpr int kRadius = 5, kInnerRadius = 3;  ///< of the balls, voxels
-constexpr std::int64_t kMostGroups = 16, kMostCloseSlices = 128, kGroupSlices = 2 * std::int64_t{kRadius} + 2;
+constexpr std::int64_t kMostGroups = 16, kMostCloseGroups = 128, kGroupSlices = 2 * std::int64_t{kRadius} + 2;
 constexpr double kBin = 0.25;  ///< of the distance from the plane, voxels
 constexpr int kBins = 10;      ///< they end where the sides have their own density
 constexpr std::size_t kTwoSides = 2 * std::size_t{kBins};
@@ -170,11 +170,17 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+int places_of(const Folds& folds) {
+  int places = 0;
+  for (const Spread& fold : folds) places += fold.places;
+  return places;
+}
+
 std::optional<EdgeSpread> summary(const Folds& folds) {
   EdgeSpread result;
+  result.places = places_of(folds);
   std::vector<double> variances, apart;
   for (const Spread& fold : folds) {
-    result.places += fold.places;
     if (fold.places == 0) continue;
     variances.push_back(fold.variance());
     for (const double way : fold.halves_apart) apart.push_back(std::abs(way));
@@ -191,19 +197,18 @@ std::optional<EdgeSpread> summary(const Folds& folds) {
   return result;
 }
 
-/// Looks at every second voxel of every second row of the slices `middles`, each with the slices around it.
-Result<Folds> look_at(SlabSource& source, std::span<const std::int64_t> middles, double air, double material,
+/// Looks at every second voxel of every second row of the middle slices of the groups that begin at `firsts`.
+Result<Folds> look_at(SlabSource& source, std::span<const std::int64_t> firsts, double air, double material,
                       Progress& progress) {
   constexpr std::int64_t kStride = 2;
   const Dims d = source.dims();
   std::vector<float> voxels(static_cast<std::size_t>(kGroupSlices * d.slice()));
   const std::int64_t rows = (d.y - kGroupSlices) / kStride, columns = (d.x - kGroupSlices) / kStride;
   Folds all{};
-  for (const std::int64_t middle : middles) {
+  for (const std::int64_t z0 : firsts) {
     if (progress.cancelled()) return cancelled_error();
-    const std::int64_t z0 = middle - kRadius, slices = std::min(kGroupSlices, d.z - z0);
-    DUBSAR_TRY(source.read(z0, z0 + slices, voxels));
-    const Group group(voxels, {d.x, d.y, slices}, air, material);
+    DUBSAR_TRY(source.read(z0, z0 + kGroupSlices, voxels));
+    const Group group(voxels, {d.x, d.y, kGroupSlices}, air, material);
     all = parallel_reduce<Folds>(
         rows, 4, std::move(all),
         [&](std::int64_t begin, std::int64_t end) {
@@ -222,19 +227,12 @@ Result<Folds> look_at(SlabSource& source, std::span<const std::int64_t> middles,
   return all;
 }
 
-/// `most` slices or fewer, evenly through the volume, at least `apart` from each other.
-std::vector<std::int64_t> slices_through(std::int64_t depth, std::int64_t most, std::int64_t apart) {
+/// The first slices of `most` groups or fewer, evenly through the volume, at least `apart` from each other.
+std::vector<std::int64_t> groups_through(std::int64_t depth, std::int64_t most, std::int64_t apart) {
   const std::int64_t last = depth - kGroupSlices, count = std::clamp<std::int64_t>(last / apart + 1, 1, most);
-  std::vector<std::int64_t> middles;
-  for (std::int64_t i = 0; i < count; ++i)
-    middles.push_back(kRadius + (count == 1 ? last / 2 : i * last / (count - 1)));
-  return middles;
-}
-
-int places_of(const Folds& folds) {
-  int places = 0;
-  for (const Spread& fold : folds) places += fold.places;
-  return places;
+  std::vector<std::int64_t> firsts;
+  for (std::int64_t i = 0; i < count; ++i) firsts.push_back(count == 1 ? last / 2 : i * last / (count - 1));
+  return firsts;
 }
 
 }  // namespace
@@ -242,12 +240,10 @@ int places_of(const Folds& folds) {
 Result<std::optional<EdgeSpread>> measure_edge_spread(SlabSource& source, double air, double material,
                                                       Progress& progress) {
   const Dims d = source.dims();
-  if (!(material > air) || std::min({d.x, d.y, d.z}) < 2 * kRadius + 3) return std::optional<EdgeSpread>{};
-  const std::int64_t depth = std::max(d.z, kGroupSlices);
-  DUBSAR_ASSIGN(Folds folds,
-                look_at(source, slices_through(depth, kMostGroups, kGroupSlices), air, material, progress));
+  if (!(material > air) || std::min({d.x, d.y, d.z}) <= kGroupSlices) return std::optional<EdgeSpread>{};
+  DUBSAR_ASSIGN(Folds folds, look_at(source, groups_through(d.z, kMostGroups, kGroupSlices), air, material, progress));
   if (places_of(folds) < kFewPlaces) {  // a small scan: its slices closer together
-    DUBSAR_ASSIGN(folds, look_at(source, slices_through(depth, kMostCloseSlices, 2), air, material, progress));
+    DUBSAR_ASSIGN(folds, look_at(source, groups_through(d.z, kMostCloseGroups, 2), air, material, progress));
   }
   return summary(folds);
 }
