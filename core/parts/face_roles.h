@@ -60,10 +60,14 @@ Result<std::vector<FaceRole>> roles_by_cut(const SurfaceModel& model, const Face
 Result<std::vector<FaceRole>> roles_by_concavity(const SurfaceModel& model, const FaceScene& scene,
                                                  const SegmentOptions& options, Progress& progress);
 
-/// The second half: sets quad_partition and partitions of the model from the roles of its faces, and small_pieces and
-/// cut_length of the report. False, and closed bodies as they are, when the core pieces are no hidden body.
+/// Faces of one role that hang together.
+FaceComponents role_components(const SurfaceModel& model, const FaceScene& scene, const std::vector<FaceRole>& roles);
+
+/// The second half: sets quad_partition and partitions of the model from the roles of its faces and their `components`,
+/// and small_pieces and cut_length of the report. False, and closed bodies as they are, when the core pieces are no
+/// hidden body.
 bool partition_by_roles(SurfaceModel& model, const FaceScene& scene, const SegmentOptions& options,
-                        std::vector<FaceRole> roles, SegmentReport& report);
+                        std::vector<FaceRole> roles, FaceComponents components, SegmentReport& report);
 
 /// Length of side i of a face.
 float side_length(const QuadMesh& mesh, std::uint32_t face, std::uint32_t side);

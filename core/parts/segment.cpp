@@ -23,12 +23,6 @@ constexpr std::int64_t kPartGrain = 1 << 14;
 
 using Infos = std::vector<FaceComponents::Info>;
 
-std::vector<std::uint8_t> as_labels(const std::vector<FaceRole>& roles) {
-  std::vector<std::uint8_t> labels(roles.size());
-  std::transform(roles.begin(), roles.end(), labels.begin(), [](FaceRole r) { return static_cast<std::uint8_t>(r); });
-  return labels;
-}
-
 double total_area(const Infos& infos) {
   double sum = 0.0;
   for (const auto& info : infos) sum += info.area;
@@ -64,12 +58,14 @@ std::vector<FaceRole> strongest_neighbours(const SurfaceModel& model, const Face
   return result;
 }
 
-/// Pieces that were cut off but are too small to be parts go to their strongest neighbour.
-void merge_small(const SurfaceModel& model, const FaceScene& scene, const SegmentOptions& options,
-                 std::vector<FaceRole>& roles) {
+/// Pieces that were cut off but are too small to be parts go to their strongest neighbour. Returns what hangs together
+/// then.
+FaceComponents merge_small(const SurfaceModel& model, const FaceScene& scene, const SegmentOptions& options,
+                           std::vector<FaceRole>& roles) {
   constexpr int kRounds = 4;  // a merged piece may free its neighbour to be merged; more rounds never changed anything
-  for (int round = 0; round < kRounds; ++round) {
-    const FaceComponents components = find_components(model, scene, as_labels(roles));
+  for (int round = 0;; ++round) {
+    FaceComponents components = role_components(model, scene, roles);
+    if (round == kRounds) return components;
     const double smallest = options.smallest_area * total_area(components.info);
     std::vector<bool> small(components.info.size());
     bool any = false;
@@ -77,7 +73,7 @@ void merge_small(const SurfaceModel& model, const FaceScene& scene, const Segmen
       small[c] = components.info[c].border > 0.0 && components.info[c].area < smallest;
       any = any || small[c];
     }
-    if (!any) return;
+    if (!any) return components;
     const std::vector<FaceRole> target = strongest_neighbours(model, scene, components, roles, small);
     parallel_for(scene.graph.faces(), kPartGrain, [&](std::int64_t i) {
       const auto f = static_cast<std::size_t>(i);
@@ -188,9 +184,8 @@ struct Nesting {
   std::vector<bool> core;
 };
 
-Nesting find_nesting(const SurfaceModel& model, const FaceScene& scene, const SegmentOptions& options,
-                     const std::vector<FaceRole>& roles) {
-  Nesting nesting{find_components(model, scene, as_labels(roles)), {}, {}};
+Nesting find_nesting(FaceComponents components, const SegmentOptions& options, const std::vector<FaceRole>& roles) {
+  Nesting nesting{std::move(components), {}, {}};
   for (const FaceComponents::Info& info : nesting.components.info) nesting.role.push_back(roles[info.first_face]);
   nesting.core = accept_core(nesting.components.info, nesting.role, options);
   return nesting;
@@ -267,9 +262,15 @@ void store_bodies(SurfaceModel& model, const FaceComponents& whole, const Segmen
 
 }  // namespace
 
+FaceComponents role_components(const SurfaceModel& model, const FaceScene& scene, const std::vector<FaceRole>& roles) {
+  std::vector<std::uint8_t> labels(roles.size());
+  std::transform(roles.begin(), roles.end(), labels.begin(), [](FaceRole r) { return static_cast<std::uint8_t>(r); });
+  return find_components(model, scene, labels);
+}
+
 bool partition_by_roles(SurfaceModel& model, const FaceScene& scene, const SegmentOptions& options,
-                        std::vector<FaceRole> roles, SegmentReport& report) {
-  Nesting nesting = find_nesting(model, scene, options, roles);
+                        std::vector<FaceRole> roles, FaceComponents components, SegmentReport& report) {
+  Nesting nesting = find_nesting(std::move(components), options, roles);
   if (!nesting.core.empty()) {
     // Core pieces that are not the hidden body fall back to the wall around them. The wall may then reach beyond the
     // shell, so that nothing is nested any more.
@@ -282,7 +283,7 @@ bool partition_by_roles(SurfaceModel& model, const FaceScene& scene, const Segme
         const std::uint32_t c = nesting.components.of_face[f];
         if (nesting.role[c] == FaceRole::kCore && !nesting.core[c]) roles[f] = FaceRole::kInside;
       });
-      nesting = find_nesting(model, scene, options, roles);
+      nesting = find_nesting(role_components(model, scene, roles), options, roles);
     }
   }
   if (nesting.core.empty()) {
@@ -328,9 +329,9 @@ Result<SegmentReport> segment(SurfaceModel& model, const FaceGraph& graph, const
                                                  ? roles_by_cut(model, scene, whole, options, progress)
                                                  : roles_by_concavity(model, scene, options, progress));
   progress.advance(1);
-  merge_small(model, scene, options, roles);
+  FaceComponents components = merge_small(model, scene, options, roles);
   if (progress.cancelled()) return cancelled_error();
-  report.nested = partition_by_roles(model, scene, options, std::move(roles), report);
+  report.nested = partition_by_roles(model, scene, options, std::move(roles), std::move(components), report);
   if (report.nested && options.method == SegmentMethod::kNested && !plausible_enclosure(model, scene.graph)) {
     log_info("segment: the inner body does not fill a cavity as an enclosed tablet would; the bodies stay whole");
     report.enclosure_refused = true;

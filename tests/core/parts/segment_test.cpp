@@ -163,9 +163,9 @@ TEST(Segment, AWallThatReachesBeyondTheShellIsNoWallOfACavity) {
     return result;
   };
   SegmentReport report;
-  EXPECT_TRUE(partition_by_roles(model, seen, {}, roles(false), report));
+  EXPECT_TRUE(partition_by_roles(model, seen, {}, roles(false), role_components(model, seen, roles(false)), report));
   EXPECT_EQ(names(model).front(), "tablet");
-  EXPECT_FALSE(partition_by_roles(model, seen, {}, roles(true), report));
+  EXPECT_FALSE(partition_by_roles(model, seen, {}, roles(true), role_components(model, seen, roles(true)), report));
   EXPECT_EQ(names(model).front(), "object");
 }
 
