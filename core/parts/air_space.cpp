@@ -219,7 +219,8 @@ Exterior grow_back(const BitVolume& inside, BitVolume eroded, int r) {
 
 BitVolume pad(const BitVolume& bits, int margin) {
   const Dims d = bits.dims();
-  BitVolume result({d.x + 2 * kPadX, d.y + 2 * margin, d.z + 2 * margin});
+  const std::int64_t more = 2 * std::int64_t{margin};
+  BitVolume result({d.x + 2 * kPadX, d.y + more, d.z + more});
   parallel_for(d.z, slice_grain(bits.words_per_row() * d.y), [&](std::int64_t z) {
     for (std::int64_t y = 0; y < d.y; ++y)
       std::copy_n(bits.row(y, z), bits.words_per_row(), result.row(y + margin, z + margin) + 1);
@@ -229,7 +230,8 @@ BitVolume pad(const BitVolume& bits, int margin) {
 
 BitVolume crop(const BitVolume& bits, int margin) {
   const Dims d = bits.dims();
-  BitVolume result({d.x - 2 * kPadX, d.y - 2 * margin, d.z - 2 * margin});
+  const std::int64_t less = 2 * std::int64_t{margin};
+  BitVolume result({d.x - 2 * kPadX, d.y - less, d.z - less});
   const std::int64_t words = result.words_per_row();
   parallel_for(result.dims().z, slice_grain(words * result.dims().y), [&](std::int64_t z) {
     for (std::int64_t y = 0; y < result.dims().y; ++y) {

@@ -219,11 +219,13 @@ TEST(Segment, HollowBallHasNoTablet) {
 TEST(Segment, SeparatePiecesAreNamedByFallingVolumeAndAtMostEight) {
   const auto pieces = [](const glm::vec3& p) {
     float v = -1.0f;
-    for (int i = 0; i < 10; ++i)
+    for (int i = 0; i < 10; ++i) {
+      const int column = i % 4, row = i / 4;
       v = std::max(
           v,
-          scene::ball(p, {12.0f + 20.0f * static_cast<float>(i % 4), 12.0f + 20.0f * static_cast<float>(i / 4), 12.3f},
+          scene::ball(p, {12.0f + 20.0f * static_cast<float>(column), 12.0f + 20.0f * static_cast<float>(row), 12.3f},
                       9.0f - 0.6f * static_cast<float>((i * 7) % 10)));
+    }
     return v;
   };
   SurfaceModel model = scene::extract_model({88, 64, 25}, pieces);
