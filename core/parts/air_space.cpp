@@ -338,13 +338,14 @@ Result<Exterior> find_exterior(const BitVolume& inside, int largest_radius, Prog
     const double enough = kEnough * static_cast<double>(std::max(chosen.enclosed_faces, widest.enclosed_faces));
     const auto encloses = [&](const Exterior& e) { return static_cast<double>(e.enclosed_faces) >= enough; };
     // From radius 1 on a wider closing encloses all that a narrower one does: every step back from the exterior of r +
-    // 1 begins inside that of r. So the least radius that is enough is found by halving.
+    // 1 begins inside that of r. So the least radius that is enough is found by halving, from the narrow end: most
+    // cracks are narrow, and to close them takes the fewest steps.
     if (!encloses(chosen)) {
       int too_small = 0;
       chosen = std::move(widest);
       while (chosen.crack_radius - too_small > 1) {
         if (progress.cancelled()) return cancelled_error();
-        Exterior middle = close((too_small + chosen.crack_radius) / 2);
+        Exterior middle = close(std::min(std::max(1, 2 * too_small), (too_small + chosen.crack_radius) / 2));
         if (encloses(middle))
           chosen = std::move(middle);
         else
