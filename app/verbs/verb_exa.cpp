@@ -12,6 +12,7 @@
 #include "app/cli/verb.h"
 #include "core/exa/exa_file.h"
 #include "core/exa/offsets/settle.h"
+#include "core/exa/patches/patches.h"
 #include "core/exa/paper/paper_profile.h"
 #include "core/mesh/mesh_check.h"
 #include "core/pipeline/report.h"
@@ -137,6 +138,7 @@ Result<VerbResult> recompress(const ExaRequest& options, Progress& progress) {
   DUBSAR_ASSIGN(const SettleStats stats, options.profile == ExaProfile::kPaper
                                              ? settle_for_paper(model, settle, progress)
                                              : settle_for_exa(model, settle, progress));
+  settle_patches(model.patches, model.mesh.vertex_count());
   DUBSAR_ASSIGN(const ExaStats after, write_exa(options.out, model, progress, options.profile));
   VerbResult result;
   result.text = fmt::format(

@@ -29,7 +29,7 @@ inline constexpr std::string_view kExaMagic(
     "EXA\r\n\x1a\n",
     8);
 inline constexpr std::string_view kExaEnd = "EXA.END\n";
-inline constexpr std::uint16_t kExaMajor = 5, kExaOldest = 3, kExaMinor = 0;
+inline constexpr std::uint16_t kExaMajor = 6, kExaOldest = 3, kExaMinor = 0;
 inline constexpr std::size_t kExaPreludeBytes = 24, kExaRowBytes = 28, kExaMaxBlocks = 256;
 inline constexpr std::uint16_t kExaRequired = 1;
 

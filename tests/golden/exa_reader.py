@@ -35,7 +35,7 @@ def read_blocks(data):
 
     need(data[:8] == b"\x89EXA\r\n\x1a\n", "magic")
     major, _, count, size = struct.unpack_from("<HHIQ", data, 8)
-    need(major in (3, 4, 5) and count <= 256 and size == len(data), "head")
+    need(major in (3, 4, 5, 6) and count <= 256 and size == len(data), "head")
     end = 24 + 28 * count
     need(zlib.crc32(data[:end]) == struct.unpack_from("<I", data, end)[0], "sum of the table")
     blocks, at = {"major": major}, end + 4
@@ -878,12 +878,19 @@ def rim_ways(mesh, partition, of, v):
     return [w for w in before if w not in behind]
 
 
-def walk_disk(rim, choose):
-    """Triangles of numbers: 0..rim-1 the rim, then vertices as they are met."""
-    vertex, alive = list(range(rim)), [True] * rim
-    nxt, prev = [(i + 1) % rim for i in range(rim)], [(i - 1) % rim for i in range(rim)]
-    queue, head, count, at = list(range(rim)), 0, rim, [0] * rim
-    triangles = []
+def walk_disk(rims, choose):
+    """Triangles of numbers: 0.. the rims, then vertices as they are met."""
+    vertex, nxt, prev, triangles = [], [], [], []
+    for size in rims + [3] * rims.count(0):
+        first = len(vertex)
+        vertex += range(first, first + size)
+        nxt += [first + (i + 1) % size for i in range(size)]
+        prev += [first + (i - 1) % size for i in range(size)]
+        if first >= sum(rims) and size:
+            triangles.append((first, first + 1, first + 2))
+            vertex[first:] = [first + 2, first + 1, first]
+    alive, queue, head, count = [True] * len(vertex), list(range(len(vertex))), 0, len(vertex)
+    at = [0] * sum(rims) + [1] * (3 * rims.count(0))
     while head < len(queue):
         i, head = queue[head], head + 1
         if not alive[i]:
@@ -892,7 +899,7 @@ def walk_disk(rim, choose):
         if nxt[j] == i:
             alive[i] = alive[j] = False
             continue
-        step, distance = choose(min(at[vertex[i]], 7), min(at[vertex[j]], 7))
+        step, distance, node = choose(min(at[vertex[i]], 7), min(at[vertex[j]], 7))
         if step == 1:
             k = nxt[j]
             alive[j], nxt[i], prev[k] = False, k, i
@@ -912,7 +919,7 @@ def walk_disk(rim, choose):
                 at.append(0)
                 count += 1
             else:
-                k = j if distance > 0 else i
+                k = node if distance == 0 else j if distance > 0 else i
                 for _ in range(abs(distance)):
                     k = nxt[k] if distance > 0 else prev[k]
                 vertex.append(vertex[k])
@@ -925,7 +932,7 @@ def walk_disk(rim, choose):
         triangles.append((vertex[i], vertex[j], vertex[k]))
         for v in triangles[-1]:
             at[v] += 1
-    return triangles, count - rim
+    return triangles, count - sum(rims)
 
 
 def relaxed_disk(rim, triangles, count):
@@ -943,36 +950,58 @@ def relaxed_disk(rim, triangles, count):
     return p[len(rim):], around
 
 
+def spread_disk(rim, triangles, count):
+    p = [list(r) for r in rim] + [list(rim[0]) if rim else [0, 0, 0] for _ in range(count)]
+    met = len(rim)
+    for a, b, c in triangles:
+        if a == met:
+            met += 3
+        elif c == met:
+            met += 1
+            p[c] = [(p[a][d] + p[b][d]) // 2 for d in range(3)]
+    around = [[] for _ in range(count)]
+    for t in triangles:
+        for c in range(3):
+            if t[c] >= len(rim):
+                around[t[c] - len(rim)].append(t[(c + 1) % 3])
+    return p[len(rim):], around
+
+
 def decode_patches(chunk, positions, mesh, of):
-    decoder, counts, ids, distances, floats = Decoder(chunk), Number(), Number(), Number(), Number()
+    decoder, counts, ids, distances, nodes, floats = Decoder(chunk), Number(), Number(), Number(), Number(), Number()
     way, steps, residuals = Tree(2), [Tree(2) for _ in range(256)], [SignedNumber() for _ in range(3)]
     start, patches = 0, []
     for _ in range(counts.get(decoder)):
-        part, reverse, compact = counts.get(decoder), counts.get(decoder), counts.get(decoder)
-        if not compact:
+        part, reverse, kind_of = counts.get(decoder), counts.get(decoder), counts.get(decoder)
+        if not kind_of:
             patches.append((part, reverse, *loose_patch(decoder, counts, floats, len(positions))))
             continue
-        rim = []
-        for i in range(counts.get(decoder)):
-            kind = way.get(decoder) if i else 3
-            before = rim[-1] if i else start
-            rim.append(rim_ways(mesh, part, of, before)[kind] if kind < 3 else before + ids.signed(decoder))
-        start, last = rim[0], 0
+        rim, rims, last = [], [], 0
+        for _ in range(kind_of):
+            rims.append(counts.get(decoder))
+            for i in range(rims[-1]):
+                kind = way.get(decoder) if i else 3
+                before = rim[-1] if i else start
+                rim.append(rim_ways(mesh, part, of, before)[kind] if kind < 3 else before + ids.signed(decoder))
+                if i == 0:
+                    start = rim[-1]
 
         def choose(at_a, at_b):
             nonlocal last
             last = steps[(last * 8 + at_a) * 8 + at_b].get(decoder)
-            return last, distances.signed(decoder) if last == 3 else 0
+            distance = distances.signed(decoder) if last == 3 else 0
+            return last, distance, nodes.get(decoder) if last == 3 and distance == 0 else 0
 
-        triangles, count = walk_disk(len(rim), choose)
+        triangles, count = walk_disk(rims, choose)
         fine = np.floor(positions[rim].astype(np.float64) * 1024.0 + 0.5).astype(np.int64).tolist()
-        relaxed, around = relaxed_disk(fine, triangles, count)
+        relaxed, around = (relaxed_disk if len(rims) == 1 and rim else spread_disk)(fine, triangles, count)
         extra, apart = np.zeros((count, 3), dtype=np.float32), []
         for i in range(count):
             known = [w - len(rim) for w in around[i] if w < len(rim) + i]
             sums = [sum(apart[w][d] for w in known if w >= 0) for d in range(3)]
             n = len(known)
-            apart.append([((2 * t + n) // (2 * n) if n else 0) + r.get(decoder) for t, r in zip(sums, residuals)])
+            near = [(2 * t + n) // (2 * n) for t in sums] if n else apart[-1] if apart else [0, 0, 0]
+            apart.append([t + r.get(decoder) for t, r in zip(near, residuals)])
             extra[i] = [((relaxed[i][d] + 8) // 16 + apart[i][d]) / 64.0 for d in range(3)]
         named = [[rim[v] if v < len(rim) else v - len(rim) + len(positions) for v in t] for t in triangles]
         patches.append((part, reverse, extra, named))

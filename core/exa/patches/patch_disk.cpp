@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <unordered_map>
+#include <numeric>
 
 namespace dubsar {
 namespace {
@@ -30,44 +30,33 @@ class Mean {
   std::int64_t count_;
   std::uint64_t inverse_, below_;
 };
-
-std::uint64_t edge_key(std::uint32_t from, std::uint32_t to) { return std::uint64_t{from} << 32 | to; }
-
-/// The edges that only one triangle has, as one loop, the lowest id first; empty when they are not one loop.
-std::vector<std::uint32_t> rim_of(const FillPatch& patch,
-                                  const std::unordered_map<std::uint64_t, std::uint32_t>& triangle_of) {
-  std::unordered_map<std::uint32_t, std::uint32_t> next;
-  std::uint32_t start = ~std::uint32_t{0};
-  for (const Triangle& t : patch.triangles)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t from = t[c], to = t[(c + 1) % 3];
-      if (triangle_of.contains(edge_key(to, from))) continue;
-      if (!next.emplace(from, to).second) return {};
-      start = std::min(start, from);
-    }
-  std::vector<std::uint32_t> rim;
-  for (std::uint32_t at = start; rim.size() < next.size();) {
-    rim.push_back(at);
-    const auto found = next.find(at);
-    if (found == next.end()) return {};
-    at = found->second;
-    if (at == start) break;
-  }
-  return rim.size() == next.size() ? rim : std::vector<std::uint32_t>();
-}
 }  // namespace
 
-bool walk_disk(std::uint32_t rim, std::uint64_t most,
+bool walk_disk(std::span<const std::uint32_t> rims, std::uint64_t most,
                const std::function<std::optional<DiskChoice>(const DiskEdge&)>& choose,
                std::vector<Triangle>& triangles) {
-  if (rim < 3) return false;
-  std::vector<DiskNode> border(rim);
-  std::vector<std::uint32_t> queue(rim);
-  std::vector<std::uint8_t> at(rim, 0);
-  for (std::uint32_t i = 0; i < rim; ++i) {
-    border[i] = {i, i + 1 == rim ? 0 : i + 1, i == 0 ? rim - 1 : i - 1, true};
-    queue[i] = i;
+  std::vector<DiskNode> border;
+  const auto add_loop = [&](std::uint32_t count) {
+    const auto first = static_cast<std::uint32_t>(border.size());
+    for (std::uint32_t i = 0; i < count; ++i)
+      border.push_back({first + i, first + (i + 1) % count, first + (i + count - 1) % count, true});
+  };
+  if (rims.empty()) return false;
+  for (const std::uint32_t count : rims) {
+    if (count == 1 || count == 2) return false;
+    add_loop(count);
   }
+  for (auto piece = std::count(rims.begin(), rims.end(), 0u); piece > 0; --piece) {
+    const auto first = static_cast<std::uint32_t>(border.size());
+    triangles.push_back({first, first + 1, first + 2});
+    add_loop(3);
+    std::swap(border[first].vertex, border[first + 2].vertex);  // the other side of its edges
+  }
+  std::vector<std::uint32_t> queue(border.size());
+  std::iota(queue.begin(), queue.end(), 0u);
+  std::vector<std::uint8_t> at(border.size(), 0);
+  for (const Triangle& t : triangles)
+    for (const std::uint32_t v : t) at[v] = 1;
   std::uint64_t walked = 0;
   for (std::size_t head = 0; head < queue.size(); ++head) {
     const std::uint32_t i = queue[head];
@@ -103,13 +92,14 @@ bool walk_disk(std::uint32_t rim, std::uint64_t most,
         queue.push_back(k);
         break;
       case DiskStep::kOther: {
-        k = choice->distance > 0 ? j : i;
+        k = choice->distance == 0 ? choice->node : choice->distance > 0 ? j : i;
+        if (k >= border.size() || !border[k].alive) return false;
         for (std::int64_t step = 0; step < std::abs(std::int64_t{choice->distance}); ++step) {
           k = choice->distance > 0 ? border[k].next : border[k].before;
           if (++walked > kWalkedPerTriangle * most || k == (choice->distance > 0 ? i : j)) return false;
         }
         if (k == i || k == j || k == border[j].next || k == border[i].before) return false;
-        // k goes on before edge i; a copy of it closes the part between.
+        // k goes on before edge i; a copy of it closes the part between, or joins the border that k lies on.
         const auto copy = static_cast<std::uint32_t>(border.size());
         border.push_back({border[k].vertex, j, border[k].before, true});
         border[border[k].before].next = copy;
@@ -126,65 +116,6 @@ bool walk_disk(std::uint32_t rim, std::uint64_t most,
     triangles.push_back(t);
   }
   return true;
-}
-
-std::optional<DiskPatch> disk_of(const FillPatch& patch, std::uint32_t vertex_count) {
-  std::unordered_map<std::uint64_t, std::uint32_t> triangle_of;
-  for (std::uint32_t t = 0; t < patch.triangles.size(); ++t)
-    for (std::size_t c = 0; c < 3; ++c)
-      if (!triangle_of.emplace(edge_key(patch.triangles[t][c], patch.triangles[t][(c + 1) % 3]), t).second)
-        return std::nullopt;
-  DiskPatch disk;
-  disk.rim = rim_of(patch, triangle_of);
-  const auto rim = static_cast<std::uint32_t>(disk.rim.size());
-  if (rim < 3 || *std::max_element(disk.rim.begin(), disk.rim.end()) >= vertex_count) return std::nullopt;
-  std::vector<std::uint32_t> ids = disk.rim;                // by number in the walk
-  std::unordered_map<std::uint32_t, std::uint32_t> number;  // and back
-  for (std::uint32_t i = 0; i < rim; ++i) number.emplace(ids[i], i);
-  std::vector<bool> used(patch.triangles.size(), false);
-  const auto choose = [&](const DiskEdge& edge) -> std::optional<DiskChoice> {
-    const DiskNode& here = edge.border[edge.node];
-    const std::uint32_t to = edge.border[here.next].vertex;
-    const auto found = triangle_of.find(edge_key(ids[here.vertex], ids[to]));
-    if (found == triangle_of.end() || used[found->second]) return std::nullopt;
-    used[found->second] = true;
-    const Triangle& t = patch.triangles[found->second];
-    const std::uint32_t third = t[0] != ids[here.vertex] && t[0] != ids[to]   ? t[0]
-                                : t[1] != ids[here.vertex] && t[1] != ids[to] ? t[1]
-                                                                              : t[2];
-    DiskChoice choice;
-    const auto known = number.find(third);
-    if (known == number.end()) {
-      if (third < vertex_count) return std::nullopt;
-      number.emplace(third, static_cast<std::uint32_t>(ids.size()));
-      ids.push_back(third);
-      disk.order.push_back(third - vertex_count);
-    } else if (edge.border[edge.border[here.next].next].vertex == known->second) {
-      choice.step = DiskStep::kNext;
-    } else if (edge.border[here.before].vertex == known->second) {
-      choice.step = DiskStep::kBefore;
-    } else {
-      choice.step = DiskStep::kOther;
-      std::uint32_t forth = here.next, back = edge.node;
-      for (std::int32_t step = 1; choice.distance == 0; ++step) {
-        forth = edge.border[forth].next;
-        back = edge.border[back].before;
-        if (edge.border[forth].vertex == known->second)
-          choice.distance = step;
-        else if (edge.border[back].vertex == known->second)
-          choice.distance = -step;
-        else if (forth == edge.node)
-          return std::nullopt;
-      }
-    }
-    disk.choices.push_back(choice);
-    return choice;
-  };
-  const std::uint64_t most = patch.triangles.size();
-  if (!walk_disk(rim, most, choose, disk.triangles) || disk.triangles.size() != patch.triangles.size() ||
-      disk.order.size() != patch.extra_positions.size())
-    return std::nullopt;
-  return disk;
 }
 
 DiskNeighbours::DiskNeighbours(std::uint32_t rim, std::size_t vertices, std::span<const Triangle> triangles)
@@ -228,6 +159,21 @@ std::vector<std::array<std::int64_t, 3>> relaxed_disk(std::span<const std::array
       }
     }
   p.erase(p.begin(), p.begin() + static_cast<std::ptrdiff_t>(first));
+  return p;
+}
+
+std::vector<std::array<std::int64_t, 3>> spread_disk(std::span<const std::array<std::int64_t, 3>> rim,
+                                                     std::span<const Triangle> triangles, std::size_t vertices) {
+  std::vector<std::array<std::int64_t, 3>> p(rim.begin(), rim.end());
+  p.resize(rim.size() + vertices, rim.empty() ? std::array<std::int64_t, 3>{0, 0, 0} : rim[0]);
+  auto next = static_cast<std::uint32_t>(rim.size());
+  for (const Triangle& t : triangles) {  // a new vertex is the third corner of its first triangle
+    if (t[0] == next) next += 3;         // or one of the first of a closed piece
+    if (t[2] < next) continue;
+    ++next;
+    for (std::size_t a = 0; a < 3; ++a) p[t[2]][a] = divided(p[t[0]][a] + p[t[1]][a], 2);
+  }
+  p.erase(p.begin(), p.begin() + static_cast<std::ptrdiff_t>(rim.size()));
   return p;
 }
 

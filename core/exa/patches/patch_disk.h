@@ -1,6 +1,6 @@
 #pragma once
-// A fill patch as a disk with a known rim: triangles by a walk from the rim inwards, positions as differences from a
-// relaxed membrane (docs/exa.md, "Fill patches").
+// A fill patch as a surface with known rims (one: a disk): triangles by a walk from the rims inwards, positions as
+// differences from a relaxed membrane (docs/exa.md, "Fill patches").
 
 #include <array>
 #include <cstdint>
@@ -21,11 +21,12 @@ enum class DiskStep : std::uint8_t {
   kNew,     ///< a vertex not met before
   kNext,    ///< the one behind the edge on the border
   kBefore,  ///< the one before it
-  kOther,   ///< `distance` further along the border from the end of the edge, or -distance before its start
+  kOther,   ///< `distance` further along the border from the end of the edge, or -distance before its start; 0: `node`
 };
 struct DiskChoice {
   DiskStep step = DiskStep::kNew;
   std::int32_t distance = 0;
+  std::uint32_t node = 0;
 };
 
 /// An edge of the border of what is not yet covered: vertex -> vertex of the next node.
@@ -41,26 +42,33 @@ struct DiskEdge {
   std::span<const std::uint8_t> triangles_at;  ///< triangles so far at each vertex, at most 7
 };
 
-/// Covers a disk: vertices 0..rim - 1 run around it, further ones are numbered as they are met. `choose` is asked for
-/// each triangle; nothing: it gave up. False: the choices are none of a disk, or there are more than `most` triangles,
-/// or too many steps along the border.
-bool walk_disk(std::uint32_t rim, std::uint64_t most,
+/// Covers a surface with rims of so many vertices each: these are numbered from 0 on, rim by rim, further ones as they
+/// are met. A rim of 0 vertices is a closed piece, of which the first triangle is new; those come first. `choose` is
+/// asked for each triangle; nothing: it gave up. False: the choices are none of a surface, or there are more than
+/// `most` triangles, or too many steps along the border.
+bool walk_disk(std::span<const std::uint32_t> rims, std::uint64_t most,
                const std::function<std::optional<DiskChoice>(const DiskEdge&)>& choose,
                std::vector<Triangle>& triangles);
 
 /// A patch whose triangles stand in the order of the walk.
 struct DiskPatch {
-  std::vector<std::uint32_t> rim;    ///< ids of dual vertices, the lowest first
+  std::vector<std::uint32_t> rims;   ///< vertices of each; 0: a closed piece
+  std::vector<std::uint32_t> rim;    ///< ids of dual vertices, rim by rim; one twice where rims touch
   std::vector<DiskChoice> choices;   ///< one a triangle
   std::vector<Triangle> triangles;   ///< corner < rim.size(): rim, else the vertices of the patch
   std::vector<std::uint32_t> order;  ///< which vertex of the patch each further vertex was
 };
-/// Nothing when the patch is no disk with a rim of dual vertices, each met once.
+/// Nothing when an edge of the patch has three triangles, a dual vertex lies inside, or a vertex of its own on a rim.
 std::optional<DiskPatch> disk_of(const FillPatch& patch, std::uint32_t vertex_count);
 
-/// A surface without tension between rim positions in kPatchStep / 16: the vertices behind the rim.
+/// A surface without tension within one rim of positions in kPatchStep / 16: the vertices behind the rim.
 std::vector<std::array<std::int64_t, 3>> relaxed_disk(std::span<const std::array<std::int64_t, 3>> rim,
                                                       std::span<const Triangle> triangles, std::size_t vertices);
+
+/// The same for any other rims: each vertex in the middle of the edge on which the walk met it, the first of a closed
+/// piece at the first of the rims (0 without any).
+std::vector<std::array<std::int64_t, 3>> spread_disk(std::span<const std::array<std::int64_t, 3>> rim,
+                                                     std::span<const Triangle> triangles, std::size_t vertices);
 
 /// Neighbours of the vertices behind the rim: the corner after the vertex in each of its triangles.
 struct DiskNeighbours {

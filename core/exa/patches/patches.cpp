@@ -138,8 +138,8 @@ class PatchCode {
       patch.reverse_partition = static_cast<std::uint8_t>(counts_.code(coder_, patch.reverse_partition));
       std::optional<DiskPatch> disk;
       if (Coder::kWrites) disk = compact_disk(patch);
-      const bool compact = counts_.code(coder_, disk ? 1u : 0u) != 0;
-      if (compact ? !code_disk(patch, disk ? *disk : DiskPatch()) : !code_loose(patch)) return false;
+      const std::uint32_t rims = counts_.code(coder_, disk ? static_cast<std::uint32_t>(disk->rims.size()) : 0u);
+      if (rims == 0 ? !code_loose(patch) : !code_disk(patch, rims, disk ? *disk : DiskPatch())) return false;
     }
     return true;
   }
@@ -165,7 +165,9 @@ class PatchCode {
   std::vector<Steps> expected_of(const DiskPatch& disk, std::size_t vertices) const {
     std::vector<Steps> rim;
     for (const std::uint32_t v : disk.rim) rim.push_back(fine_steps_of(around_.mesh.positions[v]));
-    std::vector<Steps> expected = relaxed_disk(rim, disk.triangles, vertices);
+    const bool one = disk.rims.size() == 1 && !rim.empty();
+    std::vector<Steps> expected =
+        one ? relaxed_disk(rim, disk.triangles, vertices) : spread_disk(rim, disk.triangles, vertices);
     for (Steps& p : expected)
       for (std::int64_t& v : p) v = divided(v + 8, 16);
     return expected;
@@ -194,15 +196,28 @@ class PatchCode {
       if (w < rim) continue;
       for (std::size_t a = 0; a < 3; ++a) mean[a] += apart[w - rim][a];
     }
+    if (known == 0 && own > 0) return apart[own - 1];  // the first of a closed piece
     if (known > 0)
       for (std::int64_t& v : mean) v = divided(2 * v + known, 2 * known);
     return mean;
   }
 
+  bool code_rims(PartitionId partition, std::uint32_t rims, DiskPatch& disk) {
+    if (!spend(rims)) return false;
+    disk.rims.resize(rims);
+    for (std::uint32_t& count : disk.rims) {
+      std::vector<std::uint32_t> rim;
+      if (Coder::kWrites) rim.assign(disk.rim.begin(), disk.rim.begin() + count);
+      count = counts_.code(coder_, count);
+      if (!spend(count)) return false;
+      rim.resize(count);
+      if (!code_rim(partition, rim)) return false;
+      disk.rim.insert(disk.rim.end(), rim.begin(), rim.end());
+      if (Coder::kWrites) disk.rim.erase(disk.rim.begin(), disk.rim.begin() + count);  // comes round
+    }
+    return true;
+  }
   bool code_rim(PartitionId partition, std::vector<std::uint32_t>& rim) {
-    const std::uint32_t count = counts_.code(coder_, static_cast<std::uint32_t>(rim.size()));
-    if (!spend(count)) return false;
-    rim.resize(count);
     for (std::size_t i = 0; i < rim.size(); ++i) {
       const std::uint32_t before = i == 0 ? first_ : rim[i - 1];
       std::vector<std::uint32_t> next;
@@ -223,8 +238,8 @@ class PatchCode {
     return true;
   }
 
-  bool code_disk(FillPatch& patch, DiskPatch disk) {
-    if (!code_rim(patch.partition, disk.rim)) return false;
+  bool code_disk(FillPatch& patch, std::uint32_t rims, DiskPatch disk) {
+    if (!code_rims(patch.partition, rims, disk)) return false;
     std::size_t done = 0;
     std::uint32_t last = 0;
     const auto choose = [&](const DiskEdge& edge) -> std::optional<DiskChoice> {
@@ -236,12 +251,12 @@ class PatchCode {
       last = steps_[context].code(coder_, static_cast<std::uint32_t>(choice.step));
       choice.step = static_cast<DiskStep>(last);
       if (choice.step == DiskStep::kOther) choice.distance = distances_.code_signed(coder_, choice.distance);
+      if (choice.step == DiskStep::kOther && choice.distance == 0) choice.node = nodes_.code(coder_, choice.node);
       ++done;
       return choice;
     };
     std::vector<Triangle> walked;
-    if (!walk_disk(static_cast<std::uint32_t>(disk.rim.size()), std::max<std::uint64_t>(most_, 1), choose, walked))
-      return false;
+    if (!walk_disk(disk.rims, std::max<std::uint64_t>(most_, 1), choose, walked)) return false;
     disk.triangles = std::move(walked);
     std::size_t vertices = 0;
     for (const Triangle& t : disk.triangles)
@@ -284,7 +299,7 @@ class PatchCode {
   const PatchSurroundings& around_;
   std::uint32_t vertex_count_, first_ = 0;
   std::uint64_t most_;
-  Number counts_, ids_, distances_, floats_;
+  Number counts_, ids_, distances_, nodes_, floats_;
   BitTree<2> way_;
   std::array<BitTree<2>, 256> steps_;  ///< by the step before and the triangles at both ends
   std::array<SignedNumber, 3> residuals_;

@@ -41,9 +41,13 @@ class SignBrick {
   const SignLattice& lattice() const noexcept { return lattice_; }
 
  private:
-  static std::size_t rows(const SignLattice& l) { return static_cast<std::size_t>(l.cells()[1] * l.cells()[2]); }
+  static std::size_t rows(const SignLattice& l) {
+    return static_cast<std::size_t>(l.cells()[1]) * static_cast<std::size_t>(l.cells()[2]);
+  }
   static std::uint64_t low_bits(int n) { return n >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << n) - 1; }
-  std::size_t at(int y, int z) const { return static_cast<std::size_t>(z * lattice_.cells()[1] + y); }
+  std::size_t at(int y, int z) const {
+    return static_cast<std::size_t>(z) * static_cast<std::size_t>(lattice_.cells()[1]) + static_cast<std::size_t>(y);
+  }
 
   std::vector<std::uint64_t> mixed_cells() const {
     std::vector<std::uint64_t> mixed(rows(lattice_));
@@ -73,7 +77,8 @@ class SignBrick {
       for (int y = 0; y < n[1]; ++y) {
         std::uint64_t candidates = low_bits(n[0]);
         if (!parents.empty()) {
-          const std::uint64_t parent = parents[static_cast<std::size_t>((z / 2) * (n[1] / 2) + y / 2)];
+          const std::uint64_t parent = parents[static_cast<std::size_t>(z / 2) * static_cast<std::size_t>(n[1] / 2) +
+                                               static_cast<std::size_t>(y / 2)];
           candidates &= spread_bits(parent) | spread_bits(parent) << 1;
         }
         for (std::uint64_t rest = candidates & ~mixed[at(y, z)]; rest != 0; rest &= rest - 1) {
@@ -141,7 +146,8 @@ class SignBrick {
         for (int pz = (z - 1) >> 1; pz <= z >> 1; ++pz)
           for (int py = (y - 1) >> 1; py <= y >> 1; ++py)
             if (pz >= 0 && py >= 0 && pz < parents_z && py < parents_y)
-              all &= active_[static_cast<std::size_t>(pz * parents_y + py)];
+              all &= active_[static_cast<std::size_t>(pz) * static_cast<std::size_t>(parents_y) +
+                             static_cast<std::size_t>(py)];
         if (all == 0) continue;
         int count = 0;
         if (phase & 1) {

@@ -12,7 +12,6 @@
 
 namespace dubsar {
 namespace {
-std::size_t count_of(const Dims& d) { return static_cast<std::size_t>(d.count()); }
 
 BitVolume every_eighth(const BitVolume& signs) {
   BitVolume coarse(coarse_dims(signs.dims()));

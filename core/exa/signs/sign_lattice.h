@@ -141,7 +141,7 @@ class SignLattice {
   }
   void set_bit(int x, int y, int z) noexcept {
     // A whole word, so that reading the bits next to it does not wait for a store of another width.
-    unsigned char* at = bytes_.data() + offset(y, z) + ((x + 8) >> 6) * 8;
+    unsigned char* at = bytes_.data() + offset(y, z) + static_cast<std::ptrdiff_t>((x + 8) >> 6) * 8;
     const std::uint64_t word = load(at) | std::uint64_t{1} << ((x + 8) & 63);
     std::memcpy(at, &word, sizeof word);
   }

@@ -25,7 +25,7 @@ class BrickTruth {
     std::array<int, 3> n{brick.cells[0] / 2, brick.cells[1] / 2, brick.cells[2] / 2};
     for (std::size_t level = 1; level <= 3; ++level) {
       cells_[level] = n;
-      mixed_[level].assign(static_cast<std::size_t>(n[1] * n[2]), 0);
+      mixed_[level].assign(static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]), 0);
       for (int z = 0; z < n[2]; ++z)
         for (int y = 0; y < n[1]; ++y) mixed_[level][row(level, y, z)] = level == 1 ? pairs(y, z) : halves(level, y, z);
       for (int& c : n) c /= 2;
@@ -43,7 +43,9 @@ class BrickTruth {
   }
 
  private:
-  std::size_t row(std::size_t level, int y, int z) const { return static_cast<std::size_t>(z * cells_[level][1] + y); }
+  std::size_t row(std::size_t level, int y, int z) const {
+    return static_cast<std::size_t>(z) * static_cast<std::size_t>(cells_[level][1]) + static_cast<std::size_t>(y);
+  }
   /// 129 points of a row: the words that it starts with and the last point.
   struct RowBits {
     std::uint64_t low = 0, high = 0;

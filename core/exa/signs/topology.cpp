@@ -14,7 +14,6 @@
 namespace dubsar {
 namespace {
 std::int64_t bricks_along(std::int64_t points) { return (padded_cells(points) + kBrickCells - 1) / kBrickCells; }
-std::size_t count_of(const Dims& d) { return static_cast<std::size_t>(d.count()); }
 
 struct DecodeBrick {
   SignStatistics& statistics;

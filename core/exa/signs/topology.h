@@ -17,6 +17,7 @@ namespace dubsar {
 
 inline constexpr int kBrickCells = 128;
 
+inline std::size_t count_of(const Dims& d) { return static_cast<std::size_t>(d.count()); }
 /// Bricks along each axis of a volume; 1 for a volume of one point.
 Dims brick_grid(const Dims& dims);
 /// The volume of every eighth point, the last slices repeated so that every cell has its corners.

@@ -25,8 +25,9 @@ inline SurfaceModel sample_model(const Dims& dims, Kind kind, unsigned seed, boo
   std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
   Volume<float> volume(dims);
   for (std::int64_t i = 0; i < dims.count(); ++i) {
+    const std::int64_t slice = i / dims.slice();
     const auto x = static_cast<float>(i % dims.x), y = static_cast<float>(i / dims.x % dims.y),
-               z = static_cast<float>(i / dims.slice());
+               z = static_cast<float>(slice);
     const float blob = std::sin(0.4f * x) + std::sin(0.31f * y + 1.0f) + std::sin(0.23f * z) - 0.3f;
     volume.voxels[i] = kind == Kind::kNoise  ? uniform(random)
                        : kind == Kind::kBlob ? blob

@@ -14,6 +14,7 @@
 #include "core/parts/holes.h"
 #include "core/relief/curvature/shape_class.h"
 #include "core/relief/smoothing/smooth.h"
+#include "tests/core/exa/ring_patch.h"
 
 namespace {
 using namespace dubsar;
@@ -27,6 +28,7 @@ struct Sample {
   bool smoothed, exact;
   unsigned seed;
   bool evidence = false;
+  bool rings = false;
 };
 
 SurfaceModel make(const Sample& sample) {
@@ -70,6 +72,8 @@ SurfaceModel make(const Sample& sample) {
   model.partitions.insert({1, "envelope outside", "envelope", 3.5, -4.5, false});
   if (sample.closed) {
     (void)fill_holes(model, HoleOptions{}, progress).value();
+    if (sample.rings)
+      model.patches.push_back(ring_patch(static_cast<std::uint32_t>(model.mesh.vertex_count()), sample.seed));
     settle_patches(model.patches, model.mesh.vertex_count());
     model.patches.push_back({0,
                              255,
@@ -92,9 +96,8 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "make_golden FOLDER\n");
     return 64;
   }
-  for (const Sample& sample : {Sample{"exa5_smoothed.exa", {37, 33, 29}, .15, true, 4, true, false, 1},
-                               Sample{"exa5_bricks.exa", {133, 131, 4}, .05, false, 4, false, false, 4},
-                               Sample{"exa5_evidence.exa", {31, 29, 33}, .1, true, 4, true, false, 8, true}}) {
+  for (const Sample& sample : {Sample{"exa6_bricks.exa", {133, 131, 4}, .05, false, 4, false, false, 5},
+                               Sample{"exa6_rings.exa", {29, 31, 27}, .1, true, 4, true, false, 9, true, true}}) {
     SilentProgress progress;
     const auto stats = write_exa(std::string(argv[1]) + "/" + sample.name, make(sample), progress);
     if (!stats) {

@@ -6,6 +6,7 @@
 #include "core/exa/patches/patch_disk.h"
 #include "core/parts/holes.h"
 #include "tests/core/exa/exa_test_models.h"
+#include "tests/core/exa/ring_patch.h"
 
 namespace dubsar {
 namespace {
@@ -37,30 +38,31 @@ void expect_same(const std::vector<FillPatch>& a, const std::vector<FillPatch>& 
   }
 }
 
+/// Triangles by their corners, rounded, the lowest first.
+std::vector<std::array<std::array<int, 3>, 3>> corners_of(const FillPatch& patch, const QuadMesh& mesh) {
+  const auto vertices = static_cast<std::uint32_t>(mesh.vertex_count());
+  std::vector<std::array<std::array<int, 3>, 3>> all;
+  for (const Triangle& t : patch.triangles) {
+    std::array<std::array<int, 3>, 3> c;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const glm::vec3 at = t[i] < vertices ? mesh.positions[t[i]] : patch.extra_positions[t[i] - vertices];
+      for (int a = 0; a < 3; ++a) c[i][static_cast<std::size_t>(a)] = static_cast<int>(std::lround(at[a] * 64.0f));
+    }
+    std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
+    all.push_back(c);
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
 TEST(ExaPatches, SettledPatchesAreTheSameSurfaceInAnotherOrderAndTakeTenBitsATriangle) {
   const SurfaceModel model = cut_model();
   const PatchSurroundings around{model.mesh, model.quad_partition};
   std::vector<FillPatch> settled = model.patches;
   settle_patches(settled, model.mesh.vertex_count());
-  const auto vertices = static_cast<std::uint32_t>(model.mesh.vertex_count());
   std::size_t triangles = 0;
   for (std::size_t p = 0; p < settled.size(); ++p) {
-    // Triangles by their corners, rounded, the lowest first.
-    const auto corners = [&](const FillPatch& patch) {
-      std::vector<std::array<std::array<int, 3>, 3>> all;
-      for (const Triangle& t : patch.triangles) {
-        std::array<std::array<int, 3>, 3> c;
-        for (std::size_t i = 0; i < 3; ++i) {
-          const glm::vec3 at = t[i] < vertices ? model.mesh.positions[t[i]] : patch.extra_positions[t[i] - vertices];
-          for (int a = 0; a < 3; ++a) c[i][static_cast<std::size_t>(a)] = static_cast<int>(std::lround(at[a] * 64.0f));
-        }
-        std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
-        all.push_back(c);
-      }
-      std::sort(all.begin(), all.end());
-      return all;
-    };
-    EXPECT_EQ(corners(settled[p]), corners(model.patches[p]));
+    EXPECT_EQ(corners_of(settled[p], model.mesh), corners_of(model.patches[p], model.mesh));
     triangles += settled[p].triangles.size();
   }
   const auto chunks = encode_patches(settled, around);
@@ -72,6 +74,35 @@ TEST(ExaPatches, SettledPatchesAreTheSameSurfaceInAnotherOrderAndTakeTenBitsATri
   std::vector<FillPatch> twice = settled;
   settle_patches(twice, model.mesh.vertex_count());
   expect_same(twice, settled);
+}
+
+TEST(ExaPatches, SeveralRimsAndClosedPiecesAreCompact) {
+  const SurfaceModel model = cut_model();
+  const PatchSurroundings around{model.mesh, model.quad_partition};
+  const auto vertices = static_cast<std::uint32_t>(model.mesh.vertex_count());
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const FillPatch patch = ring_patch(vertices, seed);
+    std::vector<FillPatch> settled{patch};
+    settle_patches(settled, vertices);
+    EXPECT_EQ(corners_of(settled[0], model.mesh), corners_of(patch, model.mesh));
+    std::vector<FillPatch> twice = settled;
+    settle_patches(twice, vertices);
+    expect_same(twice, settled);
+    const auto disk = disk_of(settled[0], vertices);
+    ASSERT_TRUE(disk);
+    EXPECT_EQ(disk->rims, (std::vector<std::uint32_t>{12, 12, 9, 9, 0, 0}));
+    EXPECT_EQ(std::count(disk->rim.begin(), disk->rim.end(), 123u), 2);  // where they touch
+    const auto joins = std::count_if(disk->choices.begin(), disk->choices.end(), [](const DiskChoice& choice) {
+      return choice.step == DiskStep::kOther && choice.distance == 0;
+    });
+    EXPECT_EQ(joins, 2);  // one a band: its rims' borders become one
+    const auto chunks = encode_patches(settled, around);
+    const std::vector<std::string_view> views(chunks.begin(), chunks.end());
+    const auto back = decode_patches(views, around);
+    ASSERT_TRUE(back) << back.error().message;
+    expect_same(*back, settled);
+    EXPECT_LT(2 * chunks[0].size(), encode_patches({patch}, around)[0].size());  // in another order: one by one
+  }
 }
 
 TEST(ExaPatches, AnyOtherPatchesAreKeptAsTheyAre) {
@@ -103,6 +134,7 @@ TEST(ExaPatches, DamageGivesPatchesOrAnErrorAndNeverMoreThanTheBytesHold) {
   const SurfaceModel model = cut_model();
   const PatchSurroundings around{model.mesh, model.quad_partition};
   std::vector<FillPatch> settled = model.patches;
+  settled.push_back(ring_patch(static_cast<std::uint32_t>(model.mesh.vertex_count()), 4));
   settle_patches(settled, model.mesh.vertex_count());
   const std::string whole = encode_patches(settled, around)[0];
   std::mt19937 random(8);
