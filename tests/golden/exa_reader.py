@@ -896,6 +896,8 @@ def walk_disk(rims, choose):
         if not alive[i]:
             continue
         j = nxt[i]
+        if j == i:
+            continue
         if nxt[j] == i:
             alive[i] = alive[j] = False
             continue
@@ -910,6 +912,14 @@ def walk_disk(rims, choose):
             queue.append(k)
         else:
             new = len(vertex)
+            if step == 3 and distance == 0 and nxt[node] == node:
+                k = node
+                nxt[k], prev[k], nxt[i], prev[j] = j, i, k, k
+                queue += [i, k]
+                triangles.append((vertex[i], vertex[j], vertex[k]))
+                for v in triangles[-1]:
+                    at[v] += 1
+                continue
             if step == 0:
                 k = new
                 vertex.append(count)

@@ -71,15 +71,27 @@ class Fans {
     return rims;
   }
 
-  /// The first triangle of each piece that has no rim.
-  std::vector<std::uint32_t> closed_pieces() const {
+  /// Corners at vertices below `end` that no rim has, by their vertices.
+  std::vector<std::uint32_t> inside(std::uint32_t end, std::span<const std::uint32_t> on_rims) const {
+    std::vector<bool> known(vertices_.size(), false);
+    for (const std::uint32_t corner : on_rims) known[corner] = true;
+    std::vector<std::uint32_t> corners;
+    for (std::uint32_t corner = 0; corner < vertices_.size(); ++corner)
+      if (vertices_[corner] < end && !known[corner]) corners.push_back(corner);
+    std::ranges::stable_sort(corners, {}, [&](std::uint32_t corner) { return vertices_[corner]; });
+    return corners;
+  }
+  /// Of each piece that has no rim the first triangle without vertices below `end`; kNone where there is none.
+  std::vector<std::uint32_t> closed_pieces(std::uint32_t end) const {
     std::vector<bool> seen(triangles_.size(), false);
     const auto see_piece = [&](std::uint32_t first) {
       std::vector<std::uint32_t> front{first};
       seen[first] = true;
       bool rim = false;
+      std::uint32_t lowest = kNone;
       while (!front.empty()) {
         const Triangle& t = triangles_[front.back()];
+        if (*std::ranges::min_element(t) >= end) lowest = std::min(lowest, front.back());
         front.pop_back();
         for (std::size_t c = 0; c < 3; ++c) {
           const std::uint32_t beyond = triangle(t[(c + 1) % 3], t[c]);
@@ -89,11 +101,15 @@ class Fans {
           front.push_back(beyond);
         }
       }
-      return rim;
+      return std::pair(rim, lowest);
     };
     std::vector<std::uint32_t> pieces;
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-      if (!seen[t] && !see_piece(t)) pieces.push_back(t);
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+      if (seen[t]) continue;
+      const auto [rim, lowest] = see_piece(t);
+      if (!rim) pieces.push_back(lowest);
+    }
+    std::ranges::sort(pieces);
     return pieces;
   }
 
@@ -182,6 +198,7 @@ class Choices {
     for (std::uint32_t node = latest_[number]; node != kNone; node = before_[node]) {
       const DiskNode& n = edge.border[node];
       if (!n.alive) continue;
+      if (n.next == node) return node;  // on no border yet
       const std::uint32_t vertex = vertex_at(n);
       std::uint32_t at = fans_.triangle(vertex, vertex_at(edge.border[n.next]));
       while (at != kNone && !used_[at]) at = fans_.next_around(at, vertex);
@@ -220,14 +237,17 @@ std::optional<DiskPatch> disk_of(const FillPatch& patch, std::uint32_t vertex_co
     disk.rims.push_back(static_cast<std::uint32_t>(rim.size()));
     corners.insert(corners.end(), rim.begin(), rim.end());
   }
+  const std::vector<std::uint32_t> inside = fans.inside(vertex_count, corners);
+  corners.insert(corners.end(), inside.begin(), inside.end());
+  disk.rims.resize(disk.rims.size() + inside.size(), 1);
   for (const std::uint32_t corner : corners) {
     disk.rim.push_back(fans.vertices()[corner]);
     if (disk.rim.back() >= vertex_count) return std::nullopt;
   }
-  const std::vector<std::uint32_t> pieces = fans.closed_pieces();
+  const std::vector<std::uint32_t> pieces = fans.closed_pieces(vertex_count);
+  if (!pieces.empty() && pieces.back() == kNone) return std::nullopt;
   for (const std::uint32_t t : pieces)
     for (std::size_t c = 0; c < 3; ++c) {
-      if (patch.triangles[t][c] < vertex_count) return std::nullopt;
       corners.push_back(fans.corners(t)[c]);
       disk.order.push_back(patch.triangles[t][c] - vertex_count);
     }

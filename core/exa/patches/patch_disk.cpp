@@ -43,7 +43,7 @@ bool walk_disk(std::span<const std::uint32_t> rims, std::uint64_t most,
   };
   if (rims.empty()) return false;
   for (const std::uint32_t count : rims) {
-    if (count == 1 || count == 2) return false;
+    if (count == 2) return false;
     add_loop(count);
   }
   for (auto piece = std::count(rims.begin(), rims.end(), 0u); piece > 0; --piece) {
@@ -62,6 +62,7 @@ bool walk_disk(std::span<const std::uint32_t> rims, std::uint64_t most,
     const std::uint32_t i = queue[head];
     if (!border[i].alive) continue;
     const std::uint32_t j = border[i].next;
+    if (j == i) continue;       // a vertex that no triangle has met
     if (border[j].next == i) {  // both sides of one edge
       border[i].alive = border[j].alive = false;
       continue;
@@ -99,6 +100,13 @@ bool walk_disk(std::span<const std::uint32_t> rims, std::uint64_t most,
           if (++walked > kWalkedPerTriangle * most || k == (choice->distance > 0 ? i : j)) return false;
         }
         if (k == i || k == j || k == border[j].next || k == border[i].before) return false;
+        if (border[k].next == k) {  // as a new vertex
+          border[k].next = j;
+          border[k].before = i;
+          border[i].next = border[j].before = k;
+          queue.insert(queue.end(), {i, k});
+          break;
+        }
         // k goes on before edge i; a copy of it closes the part between, or joins the border that k lies on.
         const auto copy = static_cast<std::uint32_t>(border.size());
         border.push_back({border[k].vertex, j, border[k].before, true});

@@ -43,22 +43,23 @@ struct DiskEdge {
 };
 
 /// Covers a surface with rims of so many vertices each: these are numbered from 0 on, rim by rim, further ones as they
-/// are met. A rim of 0 vertices is a closed piece, of which the first triangle is new; those come first. `choose` is
-/// asked for each triangle; nothing: it gave up. False: the choices are none of a surface, or there are more than
-/// `most` triangles, or too many steps along the border.
+/// are met. A rim of 1 vertex lies inside, one of 0 is a closed piece, of which the first triangle is new; those come
+/// first. `choose` is asked for each triangle; nothing: it gave up. False: the choices are none of a surface, or there
+/// are more than `most` triangles, or too many steps along the border.
 bool walk_disk(std::span<const std::uint32_t> rims, std::uint64_t most,
                const std::function<std::optional<DiskChoice>(const DiskEdge&)>& choose,
                std::vector<Triangle>& triangles);
 
 /// A patch whose triangles stand in the order of the walk.
 struct DiskPatch {
-  std::vector<std::uint32_t> rims;   ///< vertices of each; 0: a closed piece
+  std::vector<std::uint32_t> rims;   ///< vertices of each; 1: one inside, 0: a closed piece
   std::vector<std::uint32_t> rim;    ///< ids of dual vertices, rim by rim; one twice where rims touch
   std::vector<DiskChoice> choices;   ///< one a triangle
   std::vector<Triangle> triangles;   ///< corner < rim.size(): rim, else the vertices of the patch
   std::vector<std::uint32_t> order;  ///< which vertex of the patch each further vertex was
 };
-/// Nothing when an edge of the patch has three triangles, a dual vertex lies inside, or a vertex of its own on a rim.
+/// Nothing when an edge of the patch has three triangles, a vertex of its own lies on a rim, or each triangle of a
+/// closed piece has a dual vertex.
 std::optional<DiskPatch> disk_of(const FillPatch& patch, std::uint32_t vertex_count);
 
 /// A surface without tension within one rim of positions in kPatchStep / 16: the vertices behind the rim.

@@ -90,12 +90,12 @@ TEST(ExaPatches, SeveralRimsAndClosedPiecesAreCompact) {
     expect_same(twice, settled);
     const auto disk = disk_of(settled[0], vertices);
     ASSERT_TRUE(disk);
-    EXPECT_EQ(disk->rims, (std::vector<std::uint32_t>{12, 12, 9, 9, 0, 0}));
+    EXPECT_EQ(disk->rims, (std::vector<std::uint32_t>{12, 12, 9, 9, 1, 1, 0, 0}));
     EXPECT_EQ(std::count(disk->rim.begin(), disk->rim.end(), 123u), 2);  // where they touch
     const auto joins = std::count_if(disk->choices.begin(), disk->choices.end(), [](const DiskChoice& choice) {
       return choice.step == DiskStep::kOther && choice.distance == 0;
     });
-    EXPECT_EQ(joins, 2);  // one a band: its rims' borders become one
+    EXPECT_EQ(joins, 4);  // one a band, whose rims' borders become one, and one a surface vertex inside
     const auto chunks = encode_patches(settled, around);
     const std::vector<std::string_view> views(chunks.begin(), chunks.end());
     const auto back = decode_patches(views, around);

@@ -10,8 +10,9 @@
 namespace dubsar {
 
 /// Two bands of triangles, of 12 and 9 vertices around and 4 and 3 of their own across, each between two rims of
-/// surface vertices (a rim of the first touches one of the second at a vertex), a tetrahedron and an octahedron; all
-/// triangles in random order. Vertices of its own lie on steps of 1 / 64.
+/// surface vertices (a rim of the first touches one of the second at a vertex), a tetrahedron and an octahedron; a
+/// surface vertex lies within the first band, another one is a corner of the octahedron; all triangles in random order.
+/// Vertices of its own lie on steps of 1 / 64.
 inline FillPatch ring_patch(std::uint32_t vertex_count, unsigned seed) {
   std::mt19937 random(seed);
   FillPatch patch{0, 1, {}, {}};
@@ -26,7 +27,9 @@ inline FillPatch ring_patch(std::uint32_t vertex_count, unsigned seed) {
       for (std::uint32_t i = 0; i < around; ++i)
         rings[r].push_back(r == 0            ? first + i
                            : r == across + 1 ? first + around + i
-                                             : own(static_cast<float>(r), static_cast<float>(i), 5.0f));
+                           : around == 12 && r == 2 && i == 4
+                               ? 200
+                               : own(static_cast<float>(r), static_cast<float>(i), 5.0f));
     for (std::size_t r = 0; r + 1 < rings.size(); ++r)
       for (std::size_t i = 0; i < around; ++i) {
         const std::size_t next = (i + 1) % around;
@@ -46,6 +49,9 @@ inline FillPatch ring_patch(std::uint32_t vertex_count, unsigned seed) {
   };
   solid({{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}, 4);
   solid({{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}, {5, 2, 1}, {5, 3, 2}, {5, 4, 3}, {5, 1, 4}}, 6);
+  patch.extra_positions.pop_back();  // the octahedron's last corner is a surface vertex
+  for (Triangle& t : patch.triangles)
+    std::replace(t.begin(), t.end(), vertex_count + static_cast<std::uint32_t>(patch.extra_positions.size()), 201u);
   std::shuffle(patch.triangles.begin(), patch.triangles.end(), random);
   for (Triangle& t : patch.triangles) std::rotate(t.begin(), t.begin() + random() % 3, t.end());
   return patch;
