@@ -99,7 +99,10 @@ VisitMoment KioskGuide::notice(const GuideMoment& moment) {
   out.asleep = is_quiet(parts_.profile.quiet, parts_.wall().minute_of_day);
   out.head = steered.eyes.presence == Presence::kTracked;
   out.hands = static_cast<int>(steered.hands.size());
-  if (!steered.hands.empty()) out.hand = steered.hands.front().state;
+  if (!steered.hands.empty()) {
+    out.hand = steered.hands.front().state;
+    out.hand_y_m = steered.hands.front().place_m.y;
+  }
   out.two_hold = steered.hands.size() > 1 && steered.hands[0].state == HandState::kHolding &&
                  steered.hands[1].state == HandState::kHolding;
   if (view_ && steered.control == Control::kHands) {
@@ -344,6 +347,9 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
   told_.ended = out.end;
   if (visit.phase != VisitPhase::kAsleep)
     out.lines = hand_rings({parts_.zone, moment.window_mm, moment.middle_mm}, moment.steered.hands);
+  out.gestures.signs_above =
+      std::any_of(signs_.begin(), signs_.end(), [](const SignPicture& sign) { return sign.at.y > 0.0; });
+  out.gestures.beginner = visit.phase == VisitPhase::kArrived;
   out.picture = picture(visit);
   return out;
 }

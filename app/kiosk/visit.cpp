@@ -15,6 +15,8 @@ constexpr TimestampNs kUnseen = 5 * kSecondNs;     // without a hand, how to tak
 constexpr TimestampNs kFirstRest = 300'000'000;    // as long as nothing was turned, nobody waits for the next picture
 constexpr TimestampNs kTroubleTime = 700'000'000;  // a hand that passes by is not spoken to
 constexpr TimestampNs kGone = 2 * kSecondNs;       // a lost hand mostly comes back
+constexpr double kLowM = 0.0;                      // below the panel's middle
+constexpr TimestampNs kSunk = 300'000'000, kBack = kSecondNs, kAskedLong = 6 * kSecondNs;
 constexpr int kMostShown = 3, kGrabMostShown = 6;  // nothing else goes without it
 
 constexpr std::size_t index(Lesson lesson) { return static_cast<std::size_t>(lesson); }
@@ -111,12 +113,42 @@ void Visit::teach(TimestampNs now, const VisitMoment& moment) {
   ++course_.shown[index(*course_.now)];
 }
 
+/// As long as nothing was turned: a hand that was low when it was last seen has sunk below what the sensor sees. It is
+/// asked for until it is seen for good.
+bool Visit::asks_for_height(TimestampNs now, const VisitMoment& moment) {
+  Course& c = course_;
+  if (c.done[index(Lesson::kTurn)] || moment.toured || !moment.tracker) {
+    c.asked = -1;
+    return false;
+  }
+  if (moment.hands > 0) {
+    if (c.seen_since < 0) c.seen_since = now;
+    c.lost_since = -1;
+    c.low = moment.hand_y_m < kLowM;
+  } else {
+    if (c.lost_since < 0) c.lost_since = now;
+    c.seen_since = -1;
+  }
+  if (c.asked < 0) {
+    if (moment.hands == 0 && c.low && c.done[index(Lesson::kShowHand)] && now - c.lost_since >= kSunk &&
+        c.sank < kMostShown) {
+      c.asked = now;
+      ++c.sank;
+    }
+  } else if ((c.seen_since >= 0 && now - c.seen_since >= kBack) || now - c.asked >= kAskedLong) {
+    c.asked = -1;
+    c.low = false;
+  }
+  return c.asked >= 0;
+}
+
 std::optional<Line> Visit::line(const VisitMoment& moment) const {
   if (trouble_since_ >= 0 && last_ - trouble_since_ >= kTroubleTime) {
     if (moment.hand == HandState::kTooFar) return Line::kNearer;
     if (moment.hand == HandState::kFist) return Line::kOpenFirst;
     if (moment.hand == HandState::kStranger) return Line::kSomebodyElse;
   }
+  if (course_.asked >= 0) return Line::kShowHand;
   if (course_.now) return line_of(*course_.now);
   return std::nullopt;
 }
@@ -124,6 +156,7 @@ std::optional<Line> Visit::line(const VisitMoment& moment) const {
 VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
   VisitPicture out;
   const bool first = last_ < 0;
+  bool asks = false;
   last_ = first ? now : std::max(now, last_);  // a clock that jumps back holds the visit still
   if (first) last_hand_ = last_somebody_ = last_ - ns(figures_.attract_after_s);
   const bool somebody = moment.head || moment.hands > 0 || moment.toured;
@@ -153,6 +186,7 @@ VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
       course_.now.reset();
     else
       teach(last_, moment);
+    asks = asks_for_height(last_, moment);
     if (!somebody && last_ - last_somebody_ >= kGone) phase_ = VisitPhase::kLeaving;
   }
   if (phase_ == VisitPhase::kLeaving) course_.now.reset();
@@ -179,6 +213,10 @@ VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
     out.lesson = Lesson::kShowHand;
     out.lesson_s = 1e-9 * static_cast<double>(last_);
     out.line = Line::kShowHand;
+  }
+  if (asks && phase_ == VisitPhase::kArrived) {
+    out.lesson = Lesson::kShowHand;
+    out.lesson_s = 1e-9 * static_cast<double>(last_ - course_.asked);
   }
   if (phase_ == VisitPhase::kAttract)
     out.line = moment.tracker ? Line::kInvite : moment.touch ? Line::kTouch : Line::kNoTracker;

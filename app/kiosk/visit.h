@@ -24,6 +24,7 @@ struct VisitMoment {
   bool head = false;                   ///< somebody is seen, with or without hands
   int hands = 0;                       ///< that are seen
   HandState hand = HandState::kReady;  ///< of the leading one; meaningless without hands
+  double hand_y_m = 0.0;               ///< above the panel's middle, of the leading one; meaningless without hands
   bool two_hold = false;               ///< both of a person's hands hold
   double turned_deg = 0.0;             ///< by hands, since the last moment
   double zoomed = 0.0;                 ///< |logarithm| of the zoom by hands, since the last moment
@@ -67,12 +68,17 @@ class Visit {
     std::optional<Lesson> now;
     TimestampNs since = 0, rests_until = 0;
     double turned_deg = 0.0, zoomed = 0.0;
+    // A hand that sank out of the sensor's sight.
+    bool low = false;
+    int sank = 0;                                              ///< how often
+    TimestampNs seen_since = -1, lost_since = -1, asked = -1;  ///< -1: not now
   };
   void begin(TimestampNs now);
   void learn(const VisitMoment& moment);
   void done(Lesson lesson);
   std::optional<Lesson> next(const VisitMoment& moment) const;
   void teach(TimestampNs now, const VisitMoment& moment);
+  bool asks_for_height(TimestampNs now, const VisitMoment& moment);
   std::optional<Line> line(const VisitMoment& moment) const;
 
   VisitFigures figures_;

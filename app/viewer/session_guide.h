@@ -44,6 +44,7 @@ struct Guidance {
   Glow glow{};                              ///< on the object; in the screen frame
   std::optional<GuidedScene> scene{};       ///< none: the document
   std::optional<GalleryPicture> picture{};  ///< over everything else; none: what there always is
+  GestureScene gestures{};                  ///< what hands may do
   bool end = false;                         ///< the session is over
 };
 

@@ -21,7 +21,7 @@ void GestureRecognizer::lose(TimestampNs now) {
   swipe_.lose();
   dwell_.lose();
   stillness_.lose();
-  came_.reset();
+  seen_.came.reset();
   velocity_mps_ = glm::dvec3(0.0);
   filter_.reset();
   history_.clear();
@@ -29,32 +29,35 @@ void GestureRecognizer::lose(TimestampNs now) {
 
 void GestureRecognizer::update(TimestampNs now, const HandFrame* hand, const HandStanding& standing) {
   events_.clear();
-  if (hand != nullptr && hand->time < last_sample_ - kSetBack) {
+  if (hand != nullptr && hand->time < seen_.sample - kSetBack) {
     lose(now);
-    last_sample_ = -1;
+    seen_.sample = -1;
   }
-  seen_now_ = hand != nullptr && hand->valid && hand->tracked && hand->time > last_sample_;
+  seen_.now = hand != nullptr && hand->valid && hand->tracked && hand->time > seen_.sample;
   // A gap of hands that are polled rarely shows only when they are back.
-  if (came_ && now - last_seen_ > options_.hold_ns) lose(now);
-  if (!seen_now_) return;
-  const TimestampNs since_ns = last_sample_ < 0 ? 0 : hand->time - last_sample_;
-  last_sample_ = hand->time;
-  last_seen_ = now;
-  if (!came_) came_ = now;
+  if (seen_.came && now - seen_.last > options_.hold_ns) lose(now);
+  if (!seen_.now) return;
+  const TimestampNs since_ns = seen_.sample < 0 ? 0 : hand->time - seen_.sample;
+  seen_.sample = hand->time;
+  seen_.last = now;
+  if (!seen_.came) seen_.came = now;
+  if (hand->id != seen_.id) swipe_.let_go();  // it was lost and found: what one hand began another one may not end
+  seen_.id = hand->id;
   position_m_ = filter_.filter(hand->time, hand->palm.position_m);
   cursor_m_ = cursor_point_m(*hand);
   history_.add({hand->time, hand->palm.position_m});
   velocity_mps_ = history_.velocity_mps();
-  const bool may_begin = now - *came_ >= options_.cooldown_ns;
+  const bool may_begin = now - *seen_.came >= options_.cooldown_ns;
   stillness_.update(now, position_m_);
   const TimestampNs still_ns = stillness_.still_for(now);
-  const bool at_signs =
-      position_m_.x >= options_.place.signs_from_x_m && position_m_.y >= options_.place.signs_from_y_m;
+  const bool at_signs = scene_.signs_above && position_m_.x >= options_.place.signs_from_x_m &&
+                        position_m_.y >= options_.place.signs_from_y_m;
   const bool acts = may_begin && !standing.at_face && !at_signs && position_m_.z <= options_.place.acts_to_z_m;
   const bool within = std::max(std::abs(position_m_.x), std::abs(position_m_.y)) <= options_.swipe.within_m;
-  grip_.update({now, since_ns, glm::length(velocity_mps_), still_ns, acts, standing.sure}, *hand, options_, events_);
+  grip_.update({now, since_ns, glm::length(velocity_mps_), still_ns, acts, standing.sure, scene_.beginner}, *hand,
+               options_, events_);
   const bool free = may_begin && !grip_.holds();
-  const bool known = now - *came_ >= (standing.sure ? options_.swipe.sure_ns : options_.swipe.known_ns);
+  const bool known = now - *seen_.came >= (standing.sure ? options_.swipe.sure_ns : options_.swipe.known_ns);
   if (const auto swiped = swipe_.update({now, still_ns, history_.newest().position_m, velocity_mps_,
                                          hand->grab_strength, since_ns, free && acts && within, known},
                                         options_))

@@ -28,9 +28,11 @@ class GestureRecognizer {
   /// until the next call. One thread.
   void update(TimestampNs now, const HandFrame* hand, const HandStanding& standing = {});
 
+  void set_scene(const GestureScene& scene) noexcept { scene_ = scene; }
+
   const std::vector<GestureEvent>& events() const noexcept { return events_; }
-  bool present() const noexcept { return came_.has_value(); }  ///< seen at most hold_ns ago
-  bool seen_now() const noexcept { return seen_now_; }         ///< measured since the update before
+  bool present() const noexcept { return seen_.came.has_value(); }  ///< seen at most hold_ns ago
+  bool seen_now() const noexcept { return seen_.now; }              ///< measured since the update before
   bool grabbing() const noexcept { return grip_.grabbing(); }
   bool pinching() const noexcept { return grip_.pinching(); }
   bool may_grab() const noexcept { return grip_.may_grab(); }  ///< it was seen open, so that closing it takes hold
@@ -43,6 +45,13 @@ class GestureRecognizer {
  private:
   void lose(TimestampNs now);
 
+  struct Sight {
+    std::optional<TimestampNs> came;
+    TimestampNs last = 0, sample = -1;
+    bool now = false;
+    std::uint32_t id = 0;
+  };
+
   GestureOptions options_;
   OneEuroVector filter_;
   PositionHistory history_;
@@ -51,9 +60,8 @@ class GestureRecognizer {
   DwellDetector dwell_;
   Stillness stillness_;
   std::vector<GestureEvent> events_;
-  std::optional<TimestampNs> came_;
-  TimestampNs last_seen_ = 0, last_sample_ = -1;
-  bool seen_now_ = false;
+  Sight seen_{};
+  GestureScene scene_;
   glm::dvec3 position_m_{0.0}, velocity_mps_{0.0}, cursor_m_{0.0};
 };
 

@@ -14,6 +14,8 @@ struct GrabFigures {
   /// For places where nobody was told: a hand takes hold only if it was still for so long when it closed, and stays
   /// closed for `sure_ns`; it lets go when it stays open for `open_ns`.
   TimestampNs still_ns = 0, sure_ns = 0, open_ns = 0;
+  /// Fingers of somebody who has not turned anything yet may open again by so much as they close gently.
+  double beginner_slack = 0.0;
 };
 
 struct PinchFigures {
@@ -46,9 +48,15 @@ struct DwellFigures {
 
 /// Where a hand's gestures count, screen frame.
 struct ActingPlace {
-  /// Nothing but dwelling begins in this corner of the zone: there are signs to be chosen. To its right, above it.
+  /// Nothing but dwelling begins in this corner of the zone while there are signs to be chosen. To its right, above it.
   double signs_from_x_m = 10.0, signs_from_y_m = 10.0;
   double acts_to_z_m = 10.0;  ///< nor further from the screen than this: hands at the chin hold nothing
+};
+
+/// What whoever leads the session knows of it.
+struct GestureScene {
+  bool signs_above = true;  ///< there is a sign in the corner that ActingPlace keeps free
+  bool beginner = false;    ///< this person has not turned anything yet
 };
 
 struct GestureOptions {

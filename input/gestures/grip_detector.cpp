@@ -6,7 +6,7 @@
 namespace dubsar {
 namespace {
 
-constexpr double kForgetsOpen_per_s = 0.25;  // of the strength that an open hand had
+constexpr double kForgetsOpenPerS = 0.25;  // of the strength that an open hand had
 
 /// The index finger is stretched: from knuckle to tip it is 0.7 times as long as from wrist to knuckle then. False
 /// where the joints are not known.
@@ -63,12 +63,13 @@ void GripDetector::grab(const Moment& moment, const HandFrame& hand, const Gestu
       events.push_back({moment.now, GestureKind::kGrab, GesturePhase::kEnd});
     }
   } else {
-    const bool gently = grab >= options.grab.gentle && grab - open_grab_ >= options.grab.rise && !points(hand) &&
-                        moment.speed_mps <= options.grab.rest_mps;
+    const double slack = moment.beginner && closed_since_ >= 0 ? options.grab.beginner_slack : 0.0;
+    const bool gently = grab >= options.grab.gentle - slack && grab - open_grab_ >= options.grab.rise - slack &&
+                        !points(hand) && moment.speed_mps <= options.grab.rest_mps;
     const bool closed = moment.may_begin && grab_armed_ && (grab >= options.grab.on || gently);
     const Closing closing = judge(moment, options, closed, closed_since_);
     if (closing == Closing::kOpen)
-      open_grab_ = std::min(grab, open_grab_ + kForgetsOpen_per_s * 1e-9 * static_cast<double>(moment.since_ns));
+      open_grab_ = std::min(grab, open_grab_ + kForgetsOpenPerS * 1e-9 * static_cast<double>(moment.since_ns));
     // What closes while the hand is on its way does not take hold when it has come: hands at the chin are half closed.
     if (closing == Closing::kOpen && moment.still_ns < options.grab.still_ns) open_grab_ = std::max(open_grab_, grab);
     if (closing == Closing::kOnItsWay) {

@@ -17,6 +17,7 @@ class GripDetector {
     TimestampNs still_ns = 0;           ///< for how long the hand has been held still
     bool may_begin = true;
     bool sure_person = true;  ///< false: it may be somebody else's, who reaches in
+    bool beginner = false;    ///< who has not turned anything yet
   };
   /// What began and ended is added to `events`. One thread.
   void update(const Moment& moment, const HandFrame& hand, const GestureOptions& options,

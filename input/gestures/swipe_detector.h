@@ -23,6 +23,8 @@ class SwipeDetector {
   std::optional<SwipeDirection> update(const Moment& moment, const GestureOptions& options);
   /// The hand is gone.
   void lose() { *this = {}; }
+  /// What has begun is none.
+  void let_go() { from_m_.reset(); }
 
  private:
   std::optional<SwipeDirection> on_the_way(const Moment& moment, const GestureOptions& options);

@@ -1,5 +1,7 @@
 #include "input/navigation/mapping.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -54,11 +56,11 @@ Result<void> refuse_unknown(const json& found, const json& known, const std::str
   for (const auto& [name, value] : found.items()) {
     if (!known.contains(name)) {
       std::string names;
-      for (const auto& item : known.items()) names += (names.empty() ? "" : ", ") + item.key();
+      for (const auto& item : known.items()) names.append(names.empty() ? "" : ", ").append(item.key());
       return fail(ErrorKind::kConfig, "{}: \"{}\" is not known, expected one of: {}", where, name, names);
     }
     if (known.at(name).is_object() && name != "keys" && name != "mouse") {
-      DUBSAR_TRY(refuse_unknown(value, known.at(name), where + ": " + name));
+      DUBSAR_TRY(refuse_unknown(value, known.at(name), fmt::format("{}: {}", where, name)));
     } else if (known.at(name).is_object() && !value.is_object()) {
       return fail(ErrorKind::kConfig, "{}: {} is {}, expected an object", where, name, value.type_name());
     }
@@ -119,6 +121,7 @@ Result<GestureOptions> read_gestures(const json& object, const std::string& wher
   out.swipe.known_ns = from_ms(f.number("swipe_known_ms", 0, 60000));
   out.swipe.sure_ns = from_ms(f.number("swipe_sure_ms", 0, 60000));
   out.swipe.still_ns = from_ms(f.number("swipe_still_ms", 0, 2000));
+  out.grab.beginner_slack = f.number("grab_beginner_slack", 0, 0.5);
   out.place.signs_from_x_m = 1e-3 * f.number("signs_from_x_mm", -10000, 10000);
   out.place.signs_from_y_m = 1e-3 * f.number("signs_from_y_mm", -10000, 10000);
   out.place.acts_to_z_m = 1e-3 * f.number("acts_to_z_mm", -10000, 10000);

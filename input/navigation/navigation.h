@@ -58,6 +58,9 @@ class Navigator {
   /// The view that a command made: at once, or as a glide.
   void go_to(const ViewState& view, TimestampNs now, bool glide);
   void set_home(const ViewState& home) { home_ = home; }
+  void set_scene(const GestureScene& scene) {
+    for (GestureRecognizer& hand : hands_) hand.set_scene(scene);
+  }
   /// Whoever held a mouse button or had fingers on the glass is gone without letting go.
   void let_go_of_mouse();
 

@@ -107,6 +107,11 @@ void Steering::go_to(const ViewState& view, TimestampNs now, bool glide) {
   navigator_.go_to(view, now, glide);
 }
 
+void Steering::set_scene(const GestureScene& scene) {
+  const std::scoped_lock lock(mutex_);
+  navigator_.set_scene(scene);
+}
+
 void Steering::set_home(const ViewState& home) {
   const std::scoped_lock lock(mutex_);
   navigator_.set_home(home);

@@ -66,6 +66,8 @@ class Steering {
   bool claim_for_keys(TimestampNs now);
   void go_to(const ViewState& view, TimestampNs now, bool glide);
   void set_home(const ViewState& home);
+  /// What whoever leads the session knows of it.
+  void set_scene(const GestureScene& scene);
   void let_go_of_mouse();
   /// Where the eyes go when nobody is seen.
   void set_rest(const glm::dvec3& rest_m);

@@ -5,7 +5,7 @@
 namespace dubsar::app::test {
 namespace {
 
-constexpr glm::dvec2 kWindow_mm{600.0, 340.0};
+constexpr glm::dvec2 kWindowMm{600.0, 340.0};
 
 SeenLesson as_seen(const std::optional<Lesson>& lesson) {
   if (!lesson) return SeenLesson::kNone;
@@ -58,7 +58,8 @@ void GallerySession::go_on(TimestampNs now, const InputFrame& frame) {
     for (const GestureEvent& event : hand.events())
       steered.swiped = steered.swiped || event.kind == GestureKind::kSwipe;
   if (person_.head) steered.eyes.presence = Presence::kTracked;
-  guidance_ = guide_.lead({now, steered, document_, rows_, kWindow_mm, {0, 0}});
+  guidance_ = guide_.lead({now, steered, document_, rows_, kWindowMm, {0, 0}});
+  navigator_.set_scene(guidance_.gestures);
   for (const std::string& command : guidance_.commands) {
     if (command.rfind("unpack ", 0) == 0) document_.unpack = 0.01 * std::stod(command.substr(7));
     if (command == "reset") navigator_.go_to({}, now, true);
@@ -76,10 +77,10 @@ void GallerySession::go_on(TimestampNs now, const InputFrame& frame) {
   for (std::size_t h = 0; h < 2; ++h)
     if (person_.hands[h] != nullptr && Gallery::is_the_visitors(person_.hands[h]->id) && !screen_.my_mark)
       screen_.my_mark =
-          glm::dvec2(ring_place_mm({zone(), kWindow_mm, {0, 0}}, navigator_.hands()[h].position_m())) / kWindow_mm.y;
+          glm::dvec2(ring_place_mm({zone(), kWindowMm, {0, 0}}, navigator_.hands()[h].position_m())) / kWindowMm.y;
   for (const SignPicture& sign : guidance_.picture->signs)
     if (sign.sign == Sign::kOpen || sign.sign == Sign::kClose) {
-      screen_.sign = sign.at * glm::dvec2(kWindow_mm.x / kWindow_mm.y, 1.0);
+      screen_.sign = sign.at * glm::dvec2(kWindowMm.x / kWindowMm.y, 1.0);
       screen_.sign_radius = sign.radius;
       screen_.sign_filled = sign.filled;
     }

@@ -114,6 +114,27 @@ TEST(Visit, WhereNobodySeesHeadsAHandThatSankIsAskedFor) {
   EXPECT_FALSE(able.go_on(4, nobody()).lesson) << "who can turn it knows";
 }
 
+TEST(Visit, AHandThatSankOutOfSightIsAskedForUntilItStays) {
+  VisitMoment head = nobody(), low = hand(HandState::kReady), high = low;
+  head.head = low.head = high.head = true;
+  low.hand_y_m = -0.1;
+  high.hand_y_m = 0.1;
+  Story story;
+  story.go_on(2, low);
+  EXPECT_EQ(story.go_on(0.2, head).lesson, Lesson::kGrab) << "trackers lose a hand for a moment";
+  EXPECT_EQ(story.go_on(0.4, head).lesson, Lesson::kShowHand);
+  EXPECT_EQ(story.go_on(0.1, head).line, Line::kShowHand);
+  EXPECT_EQ(story.go_on(0.5, low).lesson, Lesson::kShowHand) << "it is at the edge of what is seen";
+  EXPECT_EQ(story.go_on(1.0, high).lesson, Lesson::kGrab);
+  Story above;
+  above.go_on(2, high);
+  EXPECT_EQ(above.go_on(1, head).lesson, Lesson::kGrab);
+  Story able;
+  able.go_on(2, hand(HandState::kHolding, 2.0));
+  able.go_on(2, low);
+  EXPECT_NE(able.go_on(1, head).lesson, Lesson::kShowHand) << "who can turn it knows";
+}
+
 TEST(Visit, SaysWhatIsWrongWithAHandButNotWithOneThatPassesBy) {
   Story story;
   story.go_on(1, hand(HandState::kReady));

@@ -167,12 +167,43 @@ TEST(GestureInGalleries, ASlowPushOfAnOpenHandIsASwipeAndThatOfAHandThatTalksIsN
 }
 
 TEST(GestureInGalleries, NothingButRestingBeginsAtTheSigns) {
-  Person p{gallery()};
-  p.hand.palm.position_m = {0.33, 0.3, 0.3};
-  p.steps(60);
-  p.hand.grab_strength = 1.0;
-  p.steps(30);
-  EXPECT_FALSE(p.recognizer.grabbing());
+  for (const bool signs : {true, false}) {
+    Person p{gallery()};
+    p.recognizer.set_scene({.signs_above = signs});
+    p.hand.palm.position_m = {0.33, 0.3, 0.3};
+    p.steps(60);
+    p.hand.grab_strength = 1.0;
+    p.steps(30);
+    EXPECT_NE(p.recognizer.grabbing(), signs);
+  }
+}
+
+TEST(GestureInGalleries, ABeginnersFingersMayTrembleAsTheyTakeHold) {
+  for (const bool beginner : {true, false}) {
+    Person p{gallery()};
+    p.recognizer.set_scene({.beginner = beginner});
+    p.hand.grab_strength = 0.3;
+    p.steps(100);
+    for (int i = 0; i < 30; ++i) {
+      p.hand.grab_strength = i % 3 == 0 ? 0.61 : 0.55;
+      p.step();
+    }
+    EXPECT_EQ(p.recognizer.grabbing(), beginner);
+  }
+}
+
+TEST(GestureInGalleries, WhatOneHandBeganAnotherOneDoesNotWipe) {
+  for (const bool same : {true, false}) {
+    Person p{gallery()};
+    p.hand.grab_strength = 0.1;
+    p.hand.id = 4;
+    p.steps(300);
+    p.move({0.6, 0.0, 0.0}, 15);
+    if (!same) p.hand.id = 9;
+    p.move({0.6, 0.0, 0.0}, 15);
+    p.steps(40);
+    EXPECT_EQ(p.count(GestureKind::kSwipe, GesturePhase::kDone), same ? 1 : 0);
+  }
 }
 
 }  // namespace
