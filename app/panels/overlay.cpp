@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "app/panels/help_columns.h"
 #include "app/panels/panel_font.h"
 #include "app/panels/right_to_left.h"
 #include "display/render/context/gl_objects.h"
@@ -19,21 +20,16 @@
 namespace dubsar::app {
 namespace {
 
-constexpr float kFontPx = 26.0f;       // of the help and its like, sharp when it is halved
-constexpr float kPanelFontPx = 15.0f;  // of panels on monitors of 96 dpi
-constexpr double kLargeScale = 1.2;    // from here on panels are drawn with the large font
-constexpr float kLinePx = 13.0f;
-constexpr float kGlyphPx = 7.4f;              // its usual width, at kLinePx
+constexpr float kPanelFontPx = 15.0f;         // of panels on monitors of 96 dpi
+constexpr double kLargeScale = 1.2;           // from here on panels are drawn with the large font
 constexpr double kLeastHeight = 540.0;        // of the layout; smaller views show it smaller
 constexpr double kLeastScaledHeight = 400.0;  // what panels need where somebody wants them larger
 constexpr double kMostHeight = 900.0;         // larger ones larger
 constexpr float kMargin = 12.0f;
+constexpr float kLeastScaled = 1.0f, kLeastFitted = 0.45f;  // letters of the help, where somebody said how large or not
 constexpr float kLegendLeft = 8.0f, kLegendBeside = 96.0f;  // below the tools; beside them where they reach so far down
 constexpr float kToolsEnd = 270.0f, kLegendTall = 80.0f;
 constexpr float kBallAside = 372.0f;  // beside the drawers
-
-constexpr float kLineStepPx = kLinePx + 4.0f;
-constexpr float kLargest = 1.6f, kSmallest = 0.45f, kScaleStep = 0.05f;
 
 /// Keys that edit text, by their places in Dear ImGui's table, which are ours to choose.
 constexpr std::array<std::pair<std::string_view, ImGuiKey_>, 18> kEditKeys{{{"left", ImGuiKey_LeftArrow},
@@ -55,12 +51,6 @@ constexpr std::array<std::pair<std::string_view, ImGuiKey_>, 18> kEditKeys{{{"le
                                                                             {"x", ImGuiKey_X},
                                                                             {"z", ImGuiKey_Z}}};
 
-struct Layout {
-  float scale = kSmallest, column_width = 0.0f;
-  std::size_t second = 0;              ///< glyphs before the second word of a row
-  std::vector<std::size_t> starts{0};  ///< first section of each column
-};
-
 void add_font(float size_px, const std::uint16_t* letters) {
   ImFontConfig font;
   font.FontDataOwnedByAtlas = false;
@@ -71,94 +61,13 @@ void add_font(float size_px, const std::uint16_t* letters) {
 }
 
 void add_fonts(const std::uint16_t* letters) {
-  add_font(kFontPx, letters);
+  add_font(kLargeFontPx, letters);
   add_font(kPanelFontPx, letters);
-}
-
-std::size_t lines_of(const HelpSection& section, std::size_t glyphs, std::size_t second) {
-  std::size_t lines = 2;
-  for (const HelpRow& row : section.rows) {
-    const std::size_t start = std::max(second, row.what.size() + 1), room = glyphs > start + 8 ? glyphs - start : 8;
-    lines += row.does.size() <= room ? 1 : row.does.size() / (room - 4) + 1;  // words are not cut
-  }
-  return lines;
-}
-
-/// First sections of at most `columns` columns of `rows` lines; nothing when it
-/// does not fit.
-std::optional<std::vector<std::size_t>> fill(const std::vector<std::size_t>& lines, std::size_t columns,
-                                             std::size_t rows) {
-  std::vector<std::size_t> starts{0};
-  std::size_t used = 0;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (used > 0 && used + lines[i] > rows) {
-      starts.push_back(i);
-      used = 0;
-    }
-    used += lines[i];
-    if (used > rows || starts.size() > columns) return std::nullopt;
-  }
-  return starts;
-}
-
-/// The largest text with which all sections fit.
-Layout arrange(const std::vector<HelpSection>& help, float width, float height) {
-  Layout best;
-  for (const HelpSection& section : help)
-    for (const HelpRow& row : section.rows)
-      best.second = std::max(best.second, std::min<std::size_t>(row.what.size() + 2, 20));
-  best.column_width = width - 4 * kMargin;
-  for (float scale = kLargest; scale >= kSmallest; scale -= kScaleStep)
-    for (std::size_t columns = 1; columns <= 4; ++columns) {
-      const float column_width = (width - 4 * kMargin) / static_cast<float>(columns);
-      const auto glyphs = static_cast<std::size_t>(column_width / (kGlyphPx * scale));
-      if (glyphs < best.second + 24) continue;
-      std::vector<std::size_t> lines;
-      lines.reserve(help.size());
-      for (const HelpSection& section : help) lines.push_back(lines_of(section, glyphs - 2, best.second));
-      if (auto starts = fill(lines, columns, static_cast<std::size_t>((height - 4 * kMargin) / (kLineStepPx * scale))))
-        return {scale, column_width, best.second, *std::move(starts)};
-    }
-  return best;
 }
 
 constexpr ImGuiWindowFlags kPlain = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
                                     ImGuiWindowFlags_NoNav;
-
-void draw_section(const HelpSection& section, float second, float width) {
-  ImGui::TextColored(ImVec4(1.0f, 0.8f, 0.45f, 1.0f), "%s", section.title.c_str());
-  const float left = ImGui::GetCursorPosX(),
-              column = ImGui::GetColumnOffset();  // of the window
-  for (const HelpRow& row : section.rows) {
-    ImGui::TextUnformatted(row.what.c_str());
-    ImGui::SameLine(left - column +
-                    std::max(second, ImGui::CalcTextSize((row.what + " ").c_str()).x));  // counts from the column
-    ImGui::PushTextWrapPos(left + width);
-    ImGui::TextColored(ImVec4(0.85f, 0.88f, 0.9f, 1.0f), "%s", row.does.c_str());
-    ImGui::PopTextWrapPos();
-  }
-  ImGui::Spacing();
-}
-
-void draw_help(const std::vector<HelpSection>& help, float width, float height) {
-  const Layout layout = arrange(help, width, height);
-  const float glyph = kGlyphPx * layout.scale;
-  ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin));
-  ImGui::SetNextWindowSize(ImVec2(width - 2 * kMargin, 0.0f));
-  ImGui::SetNextWindowBgAlpha(0.8f);
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(8.0f, (kLineStepPx - kLinePx) * layout.scale));
-  ImGui::Begin("help", nullptr, kPlain);
-  ImGui::SetWindowFontScale(layout.scale * kLinePx / kFontPx);
-  ImGui::Columns(static_cast<int>(layout.starts.size()), "columns", false);
-  for (std::size_t i = 0; i < help.size(); ++i) {
-    if (i > 0 && std::find(layout.starts.begin(), layout.starts.end(), i) != layout.starts.end()) ImGui::NextColumn();
-    draw_section(help[i], static_cast<float>(layout.second) * glyph, layout.column_width - 2 * glyph);
-  }
-  ImGui::Columns(1);
-  ImGui::End();
-  ImGui::PopStyleVar();
-}
 
 void draw_notice(const std::string& notice, double opacity, float width, float height) {
   const float scale = std::min(1.4f, (width - 4 * kMargin) / (static_cast<float>(notice.size() + 2) * kGlyphPx));
@@ -166,7 +75,7 @@ void draw_notice(const std::string& notice, double opacity, float width, float h
   ImGui::SetNextWindowPos(ImVec2(0.5f * width, height - kMargin), ImGuiCond_Always, ImVec2(0.5f, 1.0f));
   ImGui::SetNextWindowBgAlpha(0.7f);
   ImGui::Begin("notice", nullptr, kPlain | ImGuiWindowFlags_AlwaysAutoResize);
-  ImGui::SetWindowFontScale(std::max(scale, 0.7f) * kLinePx / kFontPx);
+  ImGui::SetWindowFontScale(std::max(scale, 0.7f) * kLinePx / kLargeFontPx);
   ImGui::PushTextWrapPos(width - 4 * kMargin);
   ImGui::TextUnformatted(notice.c_str());
   ImGui::PopTextWrapPos();
@@ -248,7 +157,8 @@ void Overlay::draw_all(float width, float height) {
   }
   if (text_.light && text_.help.empty())
     draw_light_ball(*text_.light, width - (around ? kBallAside : 16.0f), height - (around ? 72.0f : 16.0f));
-  if (!text_.help.empty()) draw_help(text_.help, width, height);
+  if (text_.help.empty()) help_ = {};
+  if (!text_.help.empty()) draw_help(text_.help, width, height, wanted_scale_ > 0 ? kLeastScaled : kLeastFitted, help_);
   if (text_.gallery) draw_gallery(*text_.gallery, width, height, px_per_mm_);
   if (!text_.notice.empty()) draw_notice(text_.notice, text_.notice_opacity, width, height - (text_.panels ? 56 : 0));
 }
@@ -320,9 +230,31 @@ bool Overlay::take_key(const InputEvent& event, const glm::dvec2& layout) {
   return true;
 }
 
+/// Help that does not fit on the page is moved by the wheel and the keys that move pages.
+bool Overlay::scroll_help(const InputEvent& event) {
+  if (help_.most <= 0.0f) return false;
+  constexpr float kLines = 3.0f * kLinePx;
+  if (event.kind == EventKind::kWheel) {
+    help_.by(-kLines * static_cast<float>(event.motion.y));
+    return true;
+  }
+  if (event.kind != EventKind::kKey) return false;
+  const std::array<std::pair<std::string_view, float>, 6> ways{{{"page_down", help_.page},
+                                                                {"page_up", -help_.page},
+                                                                {"down", kLines},
+                                                                {"up", -kLines},
+                                                                {"home", -help_.most},
+                                                                {"end", help_.most}}};
+  const auto way = std::find_if(ways.begin(), ways.end(), [&](const auto& row) { return row.first == event.key; });
+  if (way == ways.end()) return false;
+  if (event.down) help_.by(way->second);
+  return true;
+}
+
 bool Overlay::take(const InputEvent& event, const glm::dvec2& layout) {
   const Turn turn(state_);
-  if (!text_.panels || !text_.help.empty()) return false;
+  if (!text_.help.empty()) return scroll_help(event);
+  if (!text_.panels) return false;
   if (event.kind == EventKind::kKey) return take_key(event, layout);
   if (event.kind == EventKind::kPinch) return false;  // fingers have the object between them
   const bool dropped = event.kind == EventKind::kButton && !event.down && !event.at;  // without a click

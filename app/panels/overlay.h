@@ -12,6 +12,7 @@
 #include "app/panels/box_page.h"
 #include "app/panels/desk_panels.h"
 #include "app/panels/gallery_page.h"
+#include "app/panels/help_columns.h"
 #include "app/panels/help_page.h"
 #include "app/panels/legend_page.h"
 #include "app/panels/light_ball.h"
@@ -67,6 +68,7 @@ class Overlay final : public LayerPainter {
   class Turn;
   Overlay(const KeyTable& keys, ImGuiContext* state) : keys_(keys), state_(state) {}
   bool take_key(const InputEvent& event, const glm::dvec2& layout);
+  bool scroll_help(const InputEvent& event);
   void frame(const glm::dvec2& layout, const glm::dvec2& scale);
   void draw_in_panel_letters(const std::function<void()>& draw) const;
   void draw_all(float width, float height);
@@ -78,6 +80,7 @@ class Overlay final : public LayerPainter {
   std::vector<std::string> commands_;
   glm::dvec2 scale_{1.0, 1.0};
   double wanted_scale_ = 0.0;
+  HelpScroll help_{};
   float px_per_mm_ = 3.0f;
   std::array<bool, 3> held_{};      ///< buttons that went down on a panel
   bool object_held_ = false;        ///< one went down beside them

@@ -19,4 +19,8 @@ const std::uint16_t* panel_letters();
 /// The same and those of Hebrew and Arabic, joined ones too (app/panels/right_to_left.h).
 const std::uint16_t* panel_letters_of_all();
 
+/// Pixels of the layout: the large font, sharp when it is halved; lines of the help and its like, and their usual
+/// glyph.
+inline constexpr float kLargeFontPx = 26.0f, kLinePx = 13.0f, kGlyphPx = 7.4f;
+
 }  // namespace dubsar::app

@@ -71,7 +71,7 @@ class Screen:
         os.close(write)
         self.display = ":" + os.read(read, 16).decode().strip()
         os.close(read)
-        self.fitted = set()
+        self.fitted = collections.Counter()
         self.file = open(os.path.join(folder, "Xvfb_screen0"), "rb")
         self.memory = mmap.mmap(self.file.fileno(), 0, prot=mmap.PROT_READ)
         header, = struct.unpack(">I", self.memory[:4])
@@ -104,9 +104,14 @@ class Screen:
     def fit(self, process):
         found = subprocess.run(["xdotool", "search", "--onlyvisible", "--pid", str(process.pid)], capture_output=True,
                                env={**os.environ, "DISPLAY": self.display}, text=True, check=False)
-        for window in set(found.stdout.split()) - self.fitted:
-            self.fitted.add(window)
-            self.say("windowmove", window, 0, 0, "windowsize", window, WIDTH, HEIGHT)
+        for window in found.stdout.split():
+            if self.fitted[window] >= 3:  # some take their own size again while they start
+                continue
+            self.fitted[window] += 1
+            size = subprocess.run(["xdotool", "getwindowgeometry", "--shell", window], capture_output=True,
+                                  env={**os.environ, "DISPLAY": self.display}, text=True, check=False).stdout
+            if f"X=0\nY=0\nWIDTH={WIDTH}\nHEIGHT={HEIGHT}\n" not in size:
+                self.say("windowmove", window, 0, 0, "windowsize", window, WIDTH, HEIGHT)
 
     def close(self):
         self.server.terminate()
@@ -178,7 +183,7 @@ def turn(screen, seconds):
     times, before = [], screen.look()
     while mover.poll() is None:
         picture = screen.look()
-        if (np.abs(picture - before) > 6).mean() > 0.01:  # the pointer alone is no picture
+        if (np.abs(picture - before) > 1).mean() > 0.005:  # the pointer alone, .3 %, is no picture
             times.append(time.monotonic())
             before = picture
         time.sleep(0.004)

@@ -87,6 +87,34 @@ TEST_F(Live, WheelAndChordsReachTheMapping) {
   EXPECT_EQ(turn_between_deg(done->view.rotation, {1, 0, 0, 0}), 0.0);
 }
 
+TEST_F(Live, HelpInLargeLettersGoesOnBelowThePage) {
+  options_.around.scale = 2.0;
+  Image first, below, end_of_it, again;
+  const auto done = play({
+      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return m.viewer.desk().help; }},
+      look(first),
+      {[&] {
+         for (int i = 0; i < 3; ++i) {
+           person_->press(5);
+           person_->release(5);
+         }
+       },
+       [](const ViewMoment&) { return true; }},
+      look(below),
+      {[&] { person_->key("end"); }, [](const ViewMoment&) { return true; }},
+      look(end_of_it),
+      {[&] { person_->key("home"); }, [](const ViewMoment&) { return true; }},
+      look(again),
+      {[&] { person_->key("f1"); }, [](const ViewMoment& m) { return !m.viewer.desk().help; }},
+      end(),
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_GT(differing_share(first, below), 0.05);
+  EXPECT_GT(differing_share(below, end_of_it), 0.05);
+  EXPECT_LT(differing_share(first, again), 0.02);
+  EXPECT_EQ(done->view.zoom, 1.0) << "the object behind it stays";
+}
+
 TEST_F(Live, HelpIsShownInTheMiddleOfEveryDisplayAndGoesAgain) {
   Image plain, help, question, gone;
   const auto done = play({

@@ -143,6 +143,7 @@ class XPerson {
     if (name == "x") return 53;
     if (name == "tab") return 23;
     if (name == "home") return 110;
+    if (name == "end") return 115;
     return 0;
   }
   void fake(int type, int detail, int x = 0, int y = 0) {
