@@ -115,11 +115,11 @@ void Visit::teach(TimestampNs now, const VisitMoment& moment) {
 
 /// As long as nothing was turned: a hand that was low when it was last seen has sunk below what the sensor sees. It is
 /// asked for until it is seen for good.
-bool Visit::asks_for_height(TimestampNs now, const VisitMoment& moment) {
+void Visit::ask_for_height(TimestampNs now, const VisitMoment& moment) {
   Course& c = course_;
   if (c.done[index(Lesson::kTurn)] || moment.toured || !moment.tracker) {
     c.asked = -1;
-    return false;
+    return;
   }
   if (moment.hands > 0) {
     if (c.seen_since < 0) c.seen_since = now;
@@ -139,7 +139,6 @@ bool Visit::asks_for_height(TimestampNs now, const VisitMoment& moment) {
     c.asked = -1;
     c.low = false;
   }
-  return c.asked >= 0;
 }
 
 std::optional<Line> Visit::line(const VisitMoment& moment) const {
@@ -156,7 +155,6 @@ std::optional<Line> Visit::line(const VisitMoment& moment) const {
 VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
   VisitPicture out;
   const bool first = last_ < 0;
-  bool asks = false;
   last_ = first ? now : std::max(now, last_);  // a clock that jumps back holds the visit still
   if (first) last_hand_ = last_somebody_ = last_ - ns(figures_.attract_after_s);
   const bool somebody = moment.head || moment.hands > 0 || moment.toured;
@@ -186,7 +184,7 @@ VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
       course_.now.reset();
     else
       teach(last_, moment);
-    asks = asks_for_height(last_, moment);
+    ask_for_height(last_, moment);
     if (!somebody && last_ - last_somebody_ >= kGone) phase_ = VisitPhase::kLeaving;
   }
   if (phase_ == VisitPhase::kLeaving) course_.now.reset();
@@ -214,7 +212,7 @@ VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
     out.lesson_s = 1e-9 * static_cast<double>(last_);
     out.line = Line::kShowHand;
   }
-  if (asks && phase_ == VisitPhase::kArrived) {
+  if (course_.asked >= 0 && phase_ == VisitPhase::kArrived) {
     out.lesson = Lesson::kShowHand;
     out.lesson_s = 1e-9 * static_cast<double>(last_ - course_.asked);
   }

@@ -78,7 +78,7 @@ class Visit {
   void done(Lesson lesson);
   std::optional<Lesson> next(const VisitMoment& moment) const;
   void teach(TimestampNs now, const VisitMoment& moment);
-  bool asks_for_height(TimestampNs now, const VisitMoment& moment);
+  void ask_for_height(TimestampNs now, const VisitMoment& moment);
   std::optional<Line> line(const VisitMoment& moment) const;
 
   VisitFigures figures_;

@@ -16,8 +16,9 @@ struct HelpColumns {
   bool fits = false;                   ///< all of it is on the page
 };
 
-/// On a page of so many pixels of the layout: the largest letters with which all fits, but none below `least`. What
-/// does not fit with those goes on below the page, in as many columns as there is width for.
+/// On a page of so many pixels of the layout: the largest letters with which all fits, but none below `least` (0: as
+/// small as can be read). What does not fit with those goes on below the page, in as many columns as there is width
+/// for.
 HelpColumns arrange_help(const std::vector<HelpSection>& help, float width, float height, float least);
 
 /// What of the page is seen. One thread.

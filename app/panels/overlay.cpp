@@ -26,7 +26,7 @@ constexpr double kLeastHeight = 540.0;        // of the layout; smaller views sh
 constexpr double kLeastScaledHeight = 400.0;  // what panels need where somebody wants them larger
 constexpr double kMostHeight = 900.0;         // larger ones larger
 constexpr float kMargin = 12.0f;
-constexpr float kLeastScaled = 1.0f, kLeastFitted = 0.45f;  // letters of the help, where somebody said how large or not
+constexpr float kLeastScaled = 1.0f;                        // letters of the help, where somebody said how large
 constexpr float kLegendLeft = 8.0f, kLegendBeside = 96.0f;  // below the tools; beside them where they reach so far down
 constexpr float kToolsEnd = 270.0f, kLegendTall = 80.0f;
 constexpr float kBallAside = 372.0f;  // beside the drawers
@@ -158,7 +158,7 @@ void Overlay::draw_all(float width, float height) {
   if (text_.light && text_.help.empty())
     draw_light_ball(*text_.light, width - (around ? kBallAside : 16.0f), height - (around ? 72.0f : 16.0f));
   if (text_.help.empty()) help_ = {};
-  if (!text_.help.empty()) draw_help(text_.help, width, height, wanted_scale_ > 0 ? kLeastScaled : kLeastFitted, help_);
+  if (!text_.help.empty()) draw_help(text_.help, width, height, wanted_scale_ > 0 ? kLeastScaled : 0.0f, help_);
   if (text_.gallery) draw_gallery(*text_.gallery, width, height, px_per_mm_);
   if (!text_.notice.empty()) draw_notice(text_.notice, text_.notice_opacity, width, height - (text_.panels ? 56 : 0));
 }

@@ -28,6 +28,7 @@ class GestureRecognizer {
   /// until the next call. One thread.
   void update(TimestampNs now, const HandFrame* hand, const HandStanding& standing = {});
 
+  /// Holds from the next update() on.
   void set_scene(const GestureScene& scene) noexcept { scene_ = scene; }
 
   const std::vector<GestureEvent>& events() const noexcept { return events_; }

@@ -105,6 +105,7 @@ Result<GestureOptions> read_gestures(const json& object, const std::string& wher
   out.grab.still_ns = from_ms(f.number("grab_still_ms", 0, 2000));
   out.grab.sure_ns = from_ms(f.number("grab_sure_ms", 0, 1000));
   out.grab.open_ns = from_ms(f.number("grab_open_ms", 0, 1000));
+  out.grab.beginner_slack = f.number("grab_beginner_slack", 0, 0.5);
   out.held.pull_start_m = 1e-3 * f.number("pull_start_mm", 1, 200);
   out.pinch.on_m = 1e-3 * f.number("pinch_on_mm", 5, 60);
   out.pinch.off_m = 1e-3 * f.number("pinch_off_mm", 5, 100);
@@ -121,7 +122,6 @@ Result<GestureOptions> read_gestures(const json& object, const std::string& wher
   out.swipe.known_ns = from_ms(f.number("swipe_known_ms", 0, 60000));
   out.swipe.sure_ns = from_ms(f.number("swipe_sure_ms", 0, 60000));
   out.swipe.still_ns = from_ms(f.number("swipe_still_ms", 0, 2000));
-  out.grab.beginner_slack = f.number("grab_beginner_slack", 0, 0.5);
   out.place.signs_from_x_m = 1e-3 * f.number("signs_from_x_mm", -10000, 10000);
   out.place.signs_from_y_m = 1e-3 * f.number("signs_from_y_mm", -10000, 10000);
   out.place.acts_to_z_m = 1e-3 * f.number("acts_to_z_mm", -10000, 10000);

@@ -58,6 +58,7 @@ class Navigator {
   /// The view that a command made: at once, or as a glide.
   void go_to(const ViewState& view, TimestampNs now, bool glide);
   void set_home(const ViewState& home) { home_ = home; }
+  /// What whoever leads the session knows of it; for both hands.
   void set_scene(const GestureScene& scene) {
     for (GestureRecognizer& hand : hands_) hand.set_scene(scene);
   }
