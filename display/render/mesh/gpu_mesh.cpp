@@ -94,6 +94,12 @@ bool may_be_seen(const glm::dmat4& clip_from_world, const Box& box) {
   return true;
 }
 
+/// Of a box's middle in a view, -1 to 1; what is not before the eye counts as nearest.
+double depth_of(const glm::dmat4& clip_from_world, const Box& box) {
+  const glm::dvec4 middle = clip_from_world * glm::dvec4(box.centre(), 1.0);
+  return middle.w > 0 ? std::clamp(middle.z / middle.w, -1.0, 1.0) : -1.0;
+}
+
 std::int16_t snorm16(double value) {
   return static_cast<std::int16_t>(std::lround(std::clamp(value, -1.0, 1.0) * 32767));
 }
@@ -310,18 +316,38 @@ TriangleRanges GpuMesh::visible_ranges(std::uint8_t partitions, std::span<const 
                                        ShownEvidence evidence) const {
   std::vector<glm::dmat4> clips;
   for (const View& view : views) clips.push_back(view.clip_from_world());
-  TriangleRanges out;
+  struct Seen {
+    const TriangleChunk* chunk;
+    double depth;
+  };
+  std::vector<Seen> seen;
+  double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
   for (const TriangleChunk& chunk : chunks_) {
     if ((partitions >> chunk.partition & 1) == 0) continue;
     if (evidence != ShownEvidence::kBoth && chunk.inferred != (evidence == ShownEvidence::kInferred)) continue;
     if (std::none_of(clips.begin(), clips.end(),
                      [&](const glm::dmat4& clip) { return may_be_seen(clip, chunk.box_mm); }))
       continue;
-    if (!out.empty() && out.back().first + out.back().second == chunk.first)
-      out.back().second += chunk.count;
-    else
-      out.emplace_back(chunk.first, chunk.count);
+    seen.push_back({&chunk, depth_of(clips.front(), chunk.box_mm)});
+    nearest = std::min(nearest, seen.back().depth);
+    farthest = std::max(farthest, seen.back().depth);
   }
+  // More steps hide more of what lies behind, and are more calls.
+  constexpr int kSteps = 4;
+  const auto step_of = [&](const Seen& one) {
+    const double share = farthest > nearest ? (one.depth - nearest) / (farthest - nearest) : 0.0;
+    return std::min(static_cast<int>(share * kSteps), kSteps - 1);
+  };
+  TriangleRanges out;
+  for (int step = 0; step < kSteps; ++step)
+    for (const Seen& one : seen) {
+      if (step_of(one) != step) continue;
+      const TriangleChunk& chunk = *one.chunk;
+      if (!out.empty() && out.back().first + out.back().second == chunk.first)
+        out.back().second += chunk.count;
+      else
+        out.emplace_back(chunk.first, chunk.count);
+    }
   return out;
 }
 

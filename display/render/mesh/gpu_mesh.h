@@ -86,7 +86,8 @@ class GpuMesh {
   /// Of what was uploaded: no two uploads of a process have the same.
   std::uint64_t version() const noexcept { return version_; }
   /// Index ranges (first triangle, count) to draw for the partitions whose bit is set, neighbours joined, without the
-  /// chunks that none of the views (world: the mesh's) can see.
+  /// chunks that none of the views (world: the mesh's) can see. What is nearer in the first view comes before what is
+  /// farther, in four steps, so that little is drawn that is not seen after all.
   TriangleRanges visible_ranges(std::uint8_t partitions, std::span<const View> views,
                                 ShownEvidence evidence = ShownEvidence::kBoth) const;
 

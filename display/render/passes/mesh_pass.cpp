@@ -127,6 +127,18 @@ StyleData style_data(const MeshItem& item, const SceneView& scene, const View& v
   return out;
 }
 
+/// An envelope before its tablet, so that what it hides is not drawn.
+std::array<std::size_t, kMaxPartitions> outermost_first(const LodMesh& mesh) {
+  std::array<std::size_t, kMaxPartitions> out{};
+  std::array<double, kMaxPartitions> size{};
+  for (std::size_t p = 0; p < out.size(); ++p) {
+    out[p] = p;
+    size[p] = glm::length(mesh.box_of(static_cast<std::uint8_t>(1 << p)).size());
+  }
+  std::stable_sort(out.begin(), out.end(), [&](std::size_t a, std::size_t b) { return size[a] > size[b]; });
+  return out;
+}
+
 void set_state(const MeshItem& item, bool mirrored, std::size_t clips) {
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
@@ -291,7 +303,7 @@ Result<void> MeshPass::draw(const MeshItem& item, const SceneView& scene, const 
                            (scene.fog.strength > 0 ? kFoggy : 0u) | (target.coarse_px > 0 ? kQuick : 0u) |
                            (bent ? kBent : 0u) | (blended ? kBlended : 0u) | (filled ? kFilled : 0u) |
                            (scene.glow.strength > 0 ? kGlowing : 0u);
-  for (std::size_t p = 0; p < item.parts.size(); ++p)
+  for (const std::size_t p : outermost_first(*item.mesh))
     if (drawn(item.parts[p])) DUBSAR_TRY(draw_part(level, item, p, views, variant, mode.pieces));
   glDisable(GL_CULL_FACE);
   for (GLuint i = 0; i < scene.clips.size(); ++i) glDisable(GL_CLIP_DISTANCE0 + i);

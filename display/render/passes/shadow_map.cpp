@@ -99,6 +99,8 @@ void ShadowMap::draw_caster(const Caster& caster, std::span<const ClipPlane> cli
   const GpuMesh& level = caster.mesh->level(caster.level);
   const Box& box = caster.mesh->box_mm();
   const glm::dmat4 world_from_unit = caster.world_from_model * model_from_unit(box);
+  const bool mirrored = glm::determinant(glm::dmat3(caster.world_from_model)) < 0;
+  glFrontFace(level.mirrored() != mirrored ? GL_CW : GL_CCW);
   glUniform1i(2, static_cast<GLint>(clips.size()));
   for (std::size_t i = 0; i < clips.size(); ++i) {
     const glm::vec4 plane(unit_plane(clips[i], world_from_unit));
@@ -138,6 +140,8 @@ Result<void> ShadowMap::draw(const SceneView& scene, std::span<const View> views
   wanted.map_from_world =
       glm::translate(glm::dmat4(1.0), glm::dvec3(0.5)) * glm::scale(glm::dmat4(1.0), glm::dvec3(0.5)) * clip_from_world;
   wanted.clips.assign(scene.clips.begin(), scene.clips.end());
+  // Half of a closed surface; what is cut open lets the light in to the faces behind.
+  wanted.lit_side_only = coarse_px > 0 && scene.clips.empty();
   for (const DrawItem& item : scene.items)
     if (const auto* mesh = std::get_if<MeshItem>(&item)) {
       const int level = level_for_views(*mesh, views, coarse_px, width_px);
@@ -152,7 +156,8 @@ Result<void> ShadowMap::draw(const SceneView& scene, std::span<const View> views
   glDepthFunc(GL_LESS);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
-  glDisable(GL_CULL_FACE);
+  (wanted.lit_side_only ? glEnable : glDisable)(GL_CULL_FACE);
+  glCullFace(GL_BACK);
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(kSlopeBias, kUnitBias);
   const auto clear = [&]() -> Result<void> {
@@ -164,6 +169,7 @@ Result<void> ShadowMap::draw(const SceneView& scene, std::span<const View> views
   glUseProgram(program_);
   for (const Caster& caster : wanted.casters) draw_caster(caster, wanted.clips, clip_from_world, pieces);
   glDisable(GL_POLYGON_OFFSET_FILL);
+  glDisable(GL_CULL_FACE);
   drawn_ = pieces == nullptr || !pieces->paused() ? std::move(wanted) : Drawn();
   return check_gl("drawing shadows");
 }
