@@ -13,6 +13,23 @@ std::string key_chord(const InputEvent& event) {
   return out + key;
 }
 
+std::string key_words(std::string_view chord) {
+  std::string out;
+  for (bool first = true; !chord.empty(); first = false) {
+    const std::size_t plus = chord.size() > 1 ? chord.find('+', 1) : std::string_view::npos;
+    std::string word(chord.substr(0, plus));
+    chord.remove_prefix(plus == std::string_view::npos ? chord.size() : plus + 1);
+    bool begins = true;
+    for (char& c : word) {
+      if (c == '_') c = ' ';
+      if (begins && c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+      begins = c == ' ';
+    }
+    out += (first ? "" : "+") + word;
+  }
+  return out;
+}
+
 Result<KeyTable> KeyTable::create(const CommandTable& commands, const std::map<std::string, std::string>& changes) {
   KeyTable out(commands);
   for (const auto& [key, text] : changes) {

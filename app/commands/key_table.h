@@ -15,6 +15,9 @@ namespace dubsar::app {
 /// not show in what the key types.
 std::string key_chord(const InputEvent& event);
 
+/// A chord as people say it: "Ctrl+Page Up", "Shift+N", "F1" for "ctrl+page_up", "shift+n", "f1".
+std::string key_words(std::string_view chord);
+
 class KeyTable {
  public:
   /// `changes` by key: a command's text, or "none". kConfig, with the key, when a text cannot be said.

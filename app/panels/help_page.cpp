@@ -72,7 +72,13 @@ bool is_row(const std::vector<std::string>& keys) {
   return true;
 }
 
-/// One line of a command that has keys: "left shift+left", or "1 to 6" where each says something else.
+std::vector<std::string> said(const std::vector<std::string>& keys) {
+  std::vector<std::string> out;
+  for (const std::string& key : keys) out.push_back(key_words(key));
+  return out;
+}
+
+/// One line of a command that has keys: "Left  Shift+Left", or "1 to 6" where each says something else.
 void add_command(HelpSection& section, const Command& command, const KeyTable& keys, const HelpDevices& there) {
   std::vector<std::string> found = keys.keys_for(command.name);
   if (!there.more) std::erase_if(found, [](const std::string& key) { return key.starts_with("puck"); });
@@ -82,13 +88,15 @@ void add_command(HelpSection& section, const Command& command, const KeyTable& k
       for (std::string& each : keys.keys_for(command.name + " " + key.argument)) told.push_back(std::move(each));
   std::string words = command.words;
   if (found.empty() && told.size() > 2) {
-    found = is_row(told) ? std::vector<std::string>{told.front() + " to " + told.back()} : told;
+    found =
+        is_row(told) ? std::vector<std::string>{key_words(told.front()) + " to " + key_words(told.back())} : said(told);
     const std::string values = fmt::format("{}", fmt::join(command.values, ", "));
     if (command.closed && values.size() <= kLongestList) words += ": " + values;
   } else {
     found.insert(found.end(), told.begin(), told.end());
+    found = said(found);
   }
-  if (!found.empty()) add(section, fmt::format("{}", fmt::join(found, " ")), std::move(words));
+  if (!found.empty()) add(section, fmt::format("{}", fmt::join(found, "  ")), std::move(words));
 }
 
 HelpSection hand_section(const HandMapping& hands) {

@@ -69,7 +69,7 @@ std::vector<PaletteRow> palette_rows(const KeyTable& keys, std::string_view type
         std::any_of(first.begin(), first.end(), [&](const auto& r) { return r.text == row.text; }))
       return;
     const auto bound = keys.keys_for(row.text);
-    if (!bound.empty()) row.key = bound.front();
+    if (!bound.empty()) row.key = key_words(bound.front());
     (!wanted.empty() && row.text.starts_with(wanted) ? first : out).push_back(std::move(row));
   };
   std::vector<const Command*> commands;  // the window's own come last

@@ -17,7 +17,7 @@ void explain(const Board& desk, const std::string& command) {
   if (known == nullptr) return;
   std::string text = argument.empty() ? known->words : fmt::format("{}: {}", known->words, argument);
   const auto keys = desk.keys.keys_for(command);
-  if (!keys.empty()) text += "    " + keys.front();
+  if (!keys.empty()) text += "    " + key_words(keys.front());
   ImGui::SetTooltip("%s", text.c_str());
 }
 

@@ -17,6 +17,24 @@ std::string_view find_group(const CommandTable& commands, const std::string& tex
   return command == nullptr ? std::string_view() : std::string_view(command->group);
 }
 
+TEST(HelpPage, SaysKeysAsPeopleDo) {
+  const CommandTable commands = CommandTable::standard({"relief"});
+  const KeyTable keys = KeyTable::create(commands).value();
+  int seen = 0;
+  for (const HelpSection& section : help_page(default_mapping().value(), keys))
+    for (const HelpRow& row : section.rows) {
+      EXPECT_EQ(row.what.find('_'), std::string::npos) << row.what;
+      seen += row.what.find("Page Up") != std::string::npos;
+    }
+  EXPECT_GE(seen, 2) << "roll_left, previous_file";
+  EXPECT_EQ(key_words("ctrl+page_up"), "Ctrl+Page Up");
+  EXPECT_EQ(key_words("ctrl++"), "Ctrl++");
+  EXPECT_EQ(key_words("+"), "+");
+  EXPECT_EQ(key_words("shift+n"), "Shift+N");
+  EXPECT_EQ(key_words("f12"), "F12");
+  EXPECT_EQ(key_words("\u0161"), "\u0161");
+}
+
 TEST(HelpPage, SaysWhatTheMappingSays) {
   const auto find = [](const std::vector<HelpSection>& page, std::string_view title,
                        std::string_view what) -> std::string {
@@ -32,21 +50,21 @@ TEST(HelpPage, SaysWhatTheMappingSays) {
   EXPECT_EQ(find(page, "Mouse", "left drag"), "turn");
   EXPECT_EQ(find(page, "Mouse", "shift+left drag"), "move");
   EXPECT_EQ(find(page, "Mouse", "wheel"), "zoom");
-  EXPECT_EQ(find(page, "Back", "backspace ctrl+z"), "undo");
-  EXPECT_EQ(find(page, "This window", "p l t m shift+n c shift+s shift+k"),
+  EXPECT_EQ(find(page, "Back", "Backspace  Ctrl+Z"), "undo");
+  EXPECT_EQ(find(page, "This window", "P  L  T  M  Shift+N  C  Shift+S  Shift+K"),
             "panel: parts, light, style, measures, notes, cuts, slices, film");
-  EXPECT_EQ(find(page, "Light", "alt+1 to alt+8"), "raking light from one of eight directions");
-  EXPECT_EQ(find(page, "Measures", "v d a w f n i j"),
+  EXPECT_EQ(find(page, "Light", "Alt+1 to Alt+8"), "raking light from one of eight directions");
+  EXPECT_EQ(find(page, "Measures", "V  D  A  W  F  N  I  J"),
             "what a click does: turn, distance, angle, depth, profile, note, line, slice");
   EXPECT_EQ(find(page, "Sides", "1 to 6"), "turn to a side: obverse, bottom, reverse, top, left, right");
   EXPECT_EQ(find(page, "Hands", "pinch and move"), "move the light");
   EXPECT_EQ(find(page, "Hands", "grab and pull"), "zoom");
-  EXPECT_EQ(find(page, "This window", "f1 ?"), "this help");
+  EXPECT_EQ(find(page, "This window", "F1  ?"), "this help");
   const auto plain = help_page(default_mapping().value(), keys, {.more = false, .two_eyes = false});
   EXPECT_EQ(find(plain, "Hands", "grab and pull"), "") << "no device follows hands";
   EXPECT_EQ(find(plain, "Puck", "push"), "");
-  EXPECT_EQ(find(plain, "View", "home"), "back to the first view") << "without the button of a puck";
-  EXPECT_EQ(find(plain, "This window", "x"), "") << "one view has no eyes to exchange";
+  EXPECT_EQ(find(plain, "View", "Home"), "back to the first view") << "without the button of a puck";
+  EXPECT_EQ(find(plain, "This window", "X"), "") << "one view has no eyes to exchange";
   EXPECT_EQ(find(plain, "Mouse", "left drag"), "turn");
   EXPECT_EQ(find(plain, "Touch", "a finger"), "");
   const auto touch = help_page(default_mapping().value(), keys, {.more = false, .two_eyes = false, .touch = true});
@@ -61,7 +79,7 @@ TEST(HelpPage, SaysWhatTheMappingSays) {
   EXPECT_EQ(find(museum, "Mouse", "alt+left drag"), "move the light");
   EXPECT_EQ(find(museum, "Mouse", "wheel"), "");
   EXPECT_EQ(find(museum, "Hands", "pinch and move"), "");
-  EXPECT_EQ(find(museum, "Back", "backspace ctrl+z"), "") << "the keyboard does not steer";
+  EXPECT_EQ(find(museum, "Back", "Backspace  Ctrl+Z"), "") << "the keyboard does not steer";
 }
 
 TEST(Palette, FindsCommandsByTheirWordsAndSaysTheirKeys) {
