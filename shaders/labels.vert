@@ -21,14 +21,17 @@ layout(location = 2) uniform vec3 at;        // world
 layout(location = 3) uniform vec3 along;     // world: where the line leads to; none: to the right of the picture
 layout(location = 7) uniform ivec2 which;    // the label, of how many
 layout(location = 8) uniform vec3 places;    // side of a square in pixels, opacity where hidden, 1: before what is nearer
+layout(location = 9) uniform bool judged;    // one view has decided for all: its places were counted
+layout(location = 10) uniform vec3 judge;    // width and height of its picture, side of a square
+layout(location = 11) uniform mat4 clip_of_judge;
 
 out vec2 sheet_place;
 flat out float opacity;
 
 // How much of the label is seen. Of one whose place is outside of the picture nobody knows: its letters go by their own
 // depth.
-float seen_at(vec2 place, int view) {
-  vec2 low = max(place - 0.5 * places.x, vec2(0.0)), high = min(place + 0.5 * places.x, measures.xy);
+float seen_at(vec2 place, vec3 picture, int view) {
+  vec2 low = max(place - 0.5 * picture.z, vec2(0.0)), high = min(place + 0.5 * picture.z, picture.xy);
   vec2 size = high - low;
   if (min(size.x, size.y) < 1.0) return 1.0 - places.z;
   // Half a square is enough: so much is seen of a place on the outline.
@@ -49,7 +52,10 @@ void main() {
   sheet_place = mix(letter.sheet.xy, letter.sheet.zw, corner);
   vec4 here = clip_position(view, at);
   vec2 half_size = 0.5 * measures.xy;
-  opacity = mix(places.y, 1.0, seen_at((here.xy / here.w + 1.0) * half_size, gl_InstanceID / count));
+  vec4 looked = judged ? clip_of_judge * vec4(at, 1.0) : here;
+  vec3 picture = judged ? judge : vec3(measures.xy, places.x);
+  float seen_part = seen_at((looked.xy / looked.w + 1.0) * 0.5 * picture.xy, picture, judged ? 0 : gl_InstanceID / count);
+  opacity = mix(places.y, 1.0, seen_part);
   if (here.z + here.w < 0.0 || here.w <= 0.0 || opacity <= 0.0) {
     gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
   } else {

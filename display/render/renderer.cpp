@@ -1,14 +1,22 @@
 #include "display/render/renderer.h"
 
+#include <algorithm>
 #include <glm/vec4.hpp>
 
 namespace dubsar {
 namespace {
 
-constexpr GLint kFactorLocation = 0;  // shaders/resolve.frag
+constexpr GLint kFactorLocation = 0;    // shaders/resolve.frag
+constexpr int kJudgePx = 1024;          // of the longer side of a picture that tells which labels are seen
+constexpr double kJudgeCoarsePx = 4.0;  // details it may merge
 constexpr int kShadowTexels = 4096, kQuickShadowTexels = 1024;
 
 glm::vec4 opaque_background(const SceneView& scene) { return glm::vec4(linear_color(scene.background.color), 1.0f); }
+
+bool has_labels(const SceneView& scene) {
+  return std::any_of(scene.items.begin(), scene.items.end(),
+                     [](const DrawItem& item) { return std::holds_alternative<LabelItem>(item); });
+}
 
 /// `coded`: the shaders' linear light becomes sRGB bytes.
 void begin_drawing(GLuint framebuffer, int width, int height, bool coded) {
@@ -116,7 +124,33 @@ Result<void> Renderer::draw_items(const SceneView& scene, const PassViews& targe
     PeelPass& peel = pieces != nullptr ? peel_in_pieces_ : peel_;
     DUBSAR_TRY(peel.draw(meshes_, scene, target, shadows, into.framebuffer, into.depth, into.depth_layer, pieces));
   }
-  return once(pieces, [&] { return labels_.draw(scene.items, target, pixel); });
+  return once(pieces, [&]() -> Result<void> {
+    GLint into_framebuffer = 0;
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &into_framebuffer);
+    const bool judged = scene.judge != nullptr && has_labels(scene);
+    if (judged) {
+      DUBSAR_TRY(judge_labels(scene, target.width_px, target.height_px));
+      glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(into_framebuffer));
+      glViewport(0, 0, target.width_px, target.height_px);
+    }
+    return labels_.draw(scene.items, target, pixel, judged);
+  });
+}
+
+/// With few triangles and no colours: labels stand before what is rough around their places.
+Result<void> Renderer::judge_labels(const SceneView& scene, int width, int height) {
+  const double shrunk = std::min(1.0, static_cast<double>(kJudgePx) / std::max(width, height));
+  const int w = std::max(1, static_cast<int>(width * shrunk)), h = std::max(1, static_cast<int>(height * shrunk));
+  DUBSAR_TRY(use_scratch(judged_, w, h));
+  glBindFramebuffer(GL_FRAMEBUFFER, judged_.framebuffer);
+  glViewport(0, 0, w, h);
+  clear_target(judged_.framebuffer, glm::vec4(0.0f));
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  const PassViews target{std::span(scene.judge, 1), {}, w, h, kJudgeCoarsePx};
+  for (const DrawItem& item : scene.items)
+    if (const auto* mesh = std::get_if<MeshItem>(&item)) DUBSAR_TRY(meshes_.draw(*mesh, scene, target, {}));
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  return labels_.judge(scene.items, target, 1.0);
 }
 
 Result<void> Renderer::render_layers(const SceneView& scene, std::span<const View> views, std::span<const int> layers,

@@ -73,6 +73,7 @@ class Renderer {
   };
   static Result<const ShadowMap*> cast_shadows(ShadowMap& map, const SceneView& scene, std::span<const View> views,
                                                int size, double coarse_px, int width_px, Instalments* pieces = nullptr);
+  Result<void> judge_labels(const SceneView& scene, int width, int height);
   Result<void> draw_items(const SceneView& scene, const PassViews& target, const ShadowMap* shadows, double pixel,
                           const Into& into, Instalments* pieces = nullptr);
 
@@ -86,6 +87,7 @@ class Renderer {
   GlFramebuffer layer_;
   Exact whole_, in_pieces_;
   Instalments shadow_pieces_, pieces_;
+  Scratch judged_;
   LayerDepth layer_depth_;
 };
 

@@ -53,9 +53,9 @@ struct LinesItem {
   bool operator==(const LinesItem&) const = default;
 };
 
-/// A line of text at a place of the world, of constant size in the picture. In each view it is seen as a whole, before
-/// everything, where its place is seen, and fades where surfaces hide that; of a place outside of the picture letters
-/// are hidden one by one.
+/// A line of text at a place of the world, of constant size in the picture. In each view, or in all as the scene's
+/// judge sees it, it is seen as a whole, before everything, where its place is seen, and fades where surfaces hide
+/// that; of a place outside of the picture letters are hidden one by one.
 struct LabelItem {
   LabelFont* font = nullptr;  ///< outlives the pictures of it
   std::string text;           ///< UTF-8, one line
@@ -92,6 +92,7 @@ struct SceneView {
   Background background;
   Fog fog{};
   Glow glow{};
+  const View* judge = nullptr;  ///< decides for all views which labels are seen; null: each for itself
 };
 
 /// Planes of a model's frame in the world.
@@ -110,7 +111,7 @@ class MeshScene {
         clips_(moved(shading.clips, world_from_model)),
         background_(shading.background),
         fog_(shading.fog) {}
-  operator SceneView() const { return {std::span(&item_, 1), light_, clips_, background_, fog_, {}}; }
+  operator SceneView() const { return {std::span(&item_, 1), light_, clips_, background_, fog_, {}, nullptr}; }
 
  private:
   DrawItem item_;

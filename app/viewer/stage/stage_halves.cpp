@@ -27,6 +27,7 @@ std::vector<View> Stage::Parts::set_half(int half) {
   std::vector<View> views;
   for (const View& view : sink->views(cameras(half)))
     views.push_back(crop_view(view, left, 0, width, whole.height(), whole.width(), whole.height()));
+  if (painted.judge) painted.judge = middle_view(views);
   return views;
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 // What a stage consists of. Part of this room.
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "app/viewer/stage/label_layout.h"
 #include "app/viewer/stage/stage.h"
 #include "display/render/mesh/field_maker.h"
 #include "display/render/mesh/lod_mesh.h"
@@ -59,6 +61,7 @@ struct Stage::Parts {
     Light light;
     Fog fog;
     Glow glow;
+    std::optional<View> judge;  // of several views: the one from between them
     TimestampNs moved_at = 0;
   };
   struct Over {
@@ -86,6 +89,7 @@ struct Stage::Parts {
   Painted painted;
   Cost cost;
   Over decor;
+  std::array<LabelLayout, 2> layouts;  // of the halves; of one state the second
 
   explicit Parts(const StageOptions& given) : options(given) {}
   static Result<Object> make_object(const TriMesh& mesh, const StageOptions& options);
@@ -102,7 +106,13 @@ struct Stage::Parts {
   glm::dmat4 placed() const { return placed(next.shown, 1); }
   bool moved() const noexcept;
   SceneView scene() const {
-    return {painted.items, painted.light, painted.clips, options.shading.background, painted.fog, painted.glow};
+    return {painted.items,
+            painted.light,
+            painted.clips,
+            options.shading.background,
+            painted.fog,
+            painted.glow,
+            painted.judge ? &*painted.judge : nullptr};
   }
   bool has_mesh() const noexcept { return object.mesh.has_value(); }
   void set_scene() { set_scene(next.shown, 1); }

@@ -73,6 +73,7 @@ Result<Image> Stage::still(int factor) {
   const View middle = views[views.size() / 2];
   Parts::Painted before = p.painted;
   p.set_scene();
+  p.painted.judge.reset();                  // one view decides for itself
   for (DrawItem& item : p.painted.items) {  // as thick as they look in the window
     if (auto* lines = std::get_if<LinesItem>(&item)) lines->width_px *= factor;
     if (auto* label = std::get_if<LabelItem>(&item)) {

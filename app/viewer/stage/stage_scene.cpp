@@ -84,13 +84,22 @@ void Stage::Parts::set_scene(const Shown& shown, int half) {
     lines.lift_mm *= scale;
     painted.items.emplace_back(std::move(lines));
   }
+  painted.judge.reset();
+  if (shown.marks.labels.empty()) return;
+  const std::span<const View> views = sink->views(cameras(half));
+  const View middle = middle_view(views);
+  if (views.size() > 1) painted.judge = middle;
+  std::vector<LabelItem> labels;
   for (LabelItem label : shown.marks.labels) {
     label.along_mm = glm::dmat3(world) * label.along_mm;
     place(label.at_mm);
     if (label.hidden_opacity == 0.0 && cut(label.at_mm)) continue;
     label.lift_mm *= scale;
-    painted.items.emplace_back(std::move(label));
+    labels.push_back(std::move(label));
   }
+  const glm::dvec3 centre(world * glm::dvec4(object.box.centre(), 1.0));
+  layouts[static_cast<std::size_t>(half)].arrange(labels, centre, middle, sink->traits().view);
+  for (LabelItem& label : labels) painted.items.emplace_back(std::move(label));
 }
 
 }  // namespace dubsar::app

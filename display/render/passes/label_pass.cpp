@@ -84,6 +84,7 @@ void LabelPass::see_places(std::span<const LabelItem* const> labels, const PassV
   const std::vector<GLuint> none(labels.size() * target.views.size(), 0);
   stream(places_, std::as_bytes(std::span(places)));
   stream(seen_, std::as_bytes(std::span(none)));
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kSeenBinding, seen_);
   glUseProgram(target.layers.empty() ? alone_.places : layered_.places);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kLettersBinding, places_);
   glUniform1i(0, static_cast<GLint>(places.size()));
@@ -121,22 +122,48 @@ void LabelPass::draw_letters(const LabelItem& item, const PassViews& target, dou
   }
 }
 
-Result<void> LabelPass::draw(std::span<const DrawItem> items, const PassViews& target, double pixel) {
-  std::vector<const LabelItem*> labels;
+namespace {
+std::vector<const LabelItem*> drawn_labels(std::span<const DrawItem> items) {
+  std::vector<const LabelItem*> out;
   for (const DrawItem& item : items)
     if (const auto* label = std::get_if<LabelItem>(&item);
         label != nullptr && !label->text.empty() && label->opacity > 0)
-      labels.push_back(label);
-  if (labels.empty()) return {};
+      out.push_back(label);
+  return out;
+}
+}  // namespace
+
+void LabelPass::begin(const PassViews& target) {
   const std::vector<FlatView> views = flat_views(target);
   stream(views_, std::as_bytes(std::span(views)));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kViewsBinding, views_);
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kSeenBinding, seen_);
   glBindVertexArray(no_vertices_);
   glDisable(GL_CULL_FACE);
   glDepthMask(GL_FALSE);
+}
+
+Result<void> LabelPass::judge(std::span<const DrawItem> items, const PassViews& target, double pixel) {
+  const std::vector<const LabelItem*> labels = drawn_labels(items);
+  if (labels.empty()) return {};
+  begin(target);
   see_places(labels, target, place_side(pixel));
+  judge_clip_ = glm::mat4(target.views[0].clip_from_world());
+  judge_measures_ = glm::vec4(glm::dvec4(target.width_px, target.height_px, place_side(pixel), 0.0));
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LESS);
+  return check_gl("looking at the places of labels");
+}
+
+Result<void> LabelPass::draw(std::span<const DrawItem> items, const PassViews& target, double pixel, bool judged) {
+  const std::vector<const LabelItem*> labels = drawn_labels(items);
+  if (labels.empty()) return {};
+  begin(target);
+  if (!judged) see_places(labels, target, place_side(pixel));
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kSeenBinding, seen_);
   glUseProgram(target.layers.empty() ? alone_.letters : layered_.letters);
+  glUniform1i(9, judged ? 1 : 0);
+  glUniform3f(10, judge_measures_.x, judge_measures_.y, judge_measures_.z);
+  glUniformMatrix4fv(11, 1, GL_FALSE, &judge_clip_[0][0]);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // premultiplied
   for (std::size_t i = 0; i < labels.size(); ++i) {

@@ -213,6 +213,40 @@ TEST_F(Labels, EachViewDecidesForItself) {
   EXPECT_GT(extent(array.read_layer(1).value(), white).count, 100) << "20 mm farther right: beside it";
 }
 
+TEST_F(Labels, OneViewDecidesForAllWhereThereIsAJudge) {
+  TriMesh wall;
+  testing::add_rectangle(wall, {-90, -90, 0}, {85, 0, 0}, {0, 180, 0}, 0);  // up to x = -5
+  const LodMesh mesh = LodMesh::exact(pack_mesh(wall).value()).value();
+  MeshItem plate{&mesh, glm::dmat4(1.0), shading_preset("ao").value().style, {}};
+  plate.parts[0].color = {0, 0, 0};
+  label_.text = "MM";
+  label_.height_px = 30;
+  std::array<View, 3> eyes;  // the last one from between the others
+  for (int eye = 0; eye < 3; ++eye) {
+    glm::dmat4 shear(1.0);
+    shear[2][0] = eye == 0 ? 0.5 : eye == 1 ? -0.5 : 0.0;
+    eyes[eye].clip_from_view = glm::ortho(-100.0, 100.0, -100.0, 100.0, -100.0, 100.0) * shear;
+  }
+  const std::span<const View> both(eyes.data(), 2);
+  auto array = ViewArray::create(kSide, kSide, 2).value();
+  const std::array<int, 2> where{0, 1};
+  const auto counts = [&](double x, bool layered) {
+    label_.at_mm = {x, 0, -40};
+    const std::array<DrawItem, 2> items{plate, label_};
+    SceneView scene{items, Light(), {}, Background{{0, 0, 0}, false}};
+    scene.judge = &eyes[2];
+    EXPECT_TRUE(layered ? renderer_.render_layers(scene, both, where, array) : renderer_.render(scene, both, 1, array));
+    return std::pair(extent(array.read_layer(0).value(), white).count,
+                     extent(array.read_layer(1).value(), white).count);
+  };
+  for (const bool layered : {true, false}) {
+    EXPECT_EQ(counts(-15, layered), std::pair(0, 0)) << "the right eye alone sees it";
+    const auto seen = counts(5, layered);  // the left eye does not
+    EXPECT_GT(seen.first, 100);
+    EXPECT_NEAR(seen.first, seen.second, 10) << "but for where pixels begin";
+  }
+}
+
 TEST_F(Labels, HaveTheLettersOfTransliterationsAndSurviveAFullSheet) {
   EXPECT_GT(font_->width_em("\u0161\u1e63\u1e6d\u1e2b\u02be\u2082"), 2.0);
   for (const unsigned code : {0x161u, 0x1e63u, 0x1e6du, 0x1e2bu, 0x2beu, 0x2082u})
