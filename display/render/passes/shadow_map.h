@@ -21,8 +21,8 @@ class ShadowMap {
 
   /// Draws the opaque parts of the scene's meshes as the light sees them, unless that is what was drawn last. All views
   /// must look the same way (same_direction()): the light turns with the picture. The map covers what the views can see
-  /// of the scene, `size` x `size` texels. Where details may be merged and nothing is cut, faces that turn away from the
-  /// light are left out: of a closed surface they cast what its other side casts anyway. Changes the current frame
+  /// of the scene, `size` x `size` texels. Where details may be merged and nothing is cut, faces that turn away from
+  /// the light are left out: of a closed surface they cast what its other side casts anyway. Changes the current frame
   /// buffer and viewport. `pieces`: as much of it as there is time for; while they are paused the map is not complete.
   Result<void> draw(const SceneView& scene, std::span<const View> views, int size, double coarse_px, int width_px,
                     Instalments* pieces = nullptr);
