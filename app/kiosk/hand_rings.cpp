@@ -15,8 +15,9 @@ constexpr double kBefore = 0.12, kBehind = 0.05;  // of its height
 constexpr double kOpenRadius = 0.055, kClosedRadius = 0.026, kRestRadius = 0.072;
 constexpr double kWithin = 0.72;  // of the object's extent: there is object, whatever its shape
 constexpr double kGlowRadius = 0.2, kNear = 0.8, kFar = 0.4, kGlowEaseS = 0.35;
+constexpr double kArrow = 0.12, kArrowRise = 0.06, kArrowPeriodS = 1.6, kArrowEaseS = 0.4, kRingStays = 0.8;
 constexpr int kSegments = 40;
-constexpr Rgb8 kAmber{217, 164, 65}, kGrey{150, 150, 150};
+constexpr Rgb8 kAmber{217, 164, 65}, kGrey{150, 150, 150}, kPale{235, 230, 215}, kDark{25, 22, 18};
 
 LinesItem arc(const glm::dvec3& centre, double radius, double share, double width_px, Rgb8 color) {
   LinesItem out;
@@ -60,6 +61,28 @@ std::vector<LinesItem> hand_rings(const RingStage& stage, std::span<const HandMa
     if (hand.resting > 0.0) out.push_back(arc(at, height * kRestRadius, std::min(hand.resting, 1.0), 6.0, kAmber));
   }
   return out;
+}
+
+std::vector<LinesItem> higher_sign(const RingStage& stage, const glm::dvec3& place_m, double seconds) {
+  const double height = stage.window_mm.y;
+  const glm::dvec3 at = ring_place_mm(stage, place_m);
+  const double shown = std::clamp(seconds / kArrowEaseS, 0.0, 1.0);
+  LinesItem ring = arc(at, height * kOpenRadius, 1.0, 3.0, kPale);
+  ring.opacity = ring.hidden_opacity = kRingStays * shown;
+  LinesItem arrow;
+  arrow.width_px = 6.0;
+  arrow.color = kAmber;
+  arrow.opacity = arrow.hidden_opacity = 0.95 * shown;  // before clay of nearly its colour, too, hence its edge
+  const double rises = std::fmod(seconds, kArrowPeriodS) / kArrowPeriodS, eased = rises * rises * (3.0 - 2.0 * rises);
+  const glm::dvec3 foot = at + height * glm::dvec3(0.0, kOpenRadius + 0.02 + kArrowRise * eased, 0.0);
+  const glm::dvec3 tip = foot + glm::dvec3(0.0, height * kArrow, 0.0);
+  const double barb = 0.45 * kArrow * height;
+  arrow.points_mm = {foot, tip, tip, tip + glm::dvec3(-barb, -barb, 0.0), tip, tip + glm::dvec3(barb, -barb, 0.0)};
+  LinesItem edge = arrow;
+  edge.width_px = 12.0;
+  edge.color = kDark;
+  edge.opacity = edge.hidden_opacity = 0.6 * shown;
+  return {std::move(ring), std::move(edge), std::move(arrow)};
 }
 
 Glow object_glow(const RingStage& stage, std::span<const HandMark> hands, std::span<const ScreenRect> objects) {

@@ -345,8 +345,13 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
   walk(moment, out);
   move_on(moment, visit, out);
   told_.ended = out.end;
-  if (visit.phase != VisitPhase::kAsleep)
-    out.lines = hand_rings({parts_.zone, moment.window_mm, moment.middle_mm}, moment.steered.hands);
+  const RingStage stage{parts_.zone, moment.window_mm, moment.middle_mm};
+  const std::vector<HandMark>& hands = moment.steered.hands;
+  if (visit.phase != VisitPhase::kAsleep) out.lines = hand_rings(stage, hands);
+  if (!hands.empty() && hands.front().state <= HandState::kFist) motion_.hand_m = hands.front().place_m;
+  motion_.wants_higher = visit.higher_s.has_value();
+  if (visit.higher_s)
+    for (LinesItem& item : higher_sign(stage, motion_.hand_m, *visit.higher_s)) out.lines.push_back(std::move(item));
   out.gestures.signs_above =
       std::any_of(signs_.begin(), signs_.end(), [](const SignPicture& sign) { return sign.at.y > 0.0; });
   out.gestures.beginner = visit.phase == VisitPhase::kArrived;

@@ -53,6 +53,8 @@ class KioskGuide final : public SessionGuide {
   const std::vector<KioskObject>& objects() const noexcept { return parts_.profile.objects; }
   /// This object cannot be shown; the next takes its place.
   void leave_out(std::size_t object);
+  /// Whether an arrow shows that a hand which sank out of sight is wanted higher up.
+  bool wants_higher() const noexcept { return motion_.wants_higher; }
   const Visit& visit() const noexcept { return visit_; }
   const std::string& language() const { return parts_.profile.languages[language_]; }
 
@@ -62,7 +64,9 @@ class KioskGuide final : public SessionGuide {
     TimestampNs last = -1, sway_since = 0;
     EasedGlow glow{};
     bool shown = false;
-    bool begun = false;  ///< the object's tour is known
+    bool begun = false;      ///< the object's tour is known
+    glm::dvec3 hand_m{0.0};  ///< of the visitor, where it was seen last
+    bool wants_higher = false;
   };
   /// What operators and fingers asked for since the last moment.
   struct Asked {

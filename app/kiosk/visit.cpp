@@ -17,6 +17,8 @@ constexpr TimestampNs kTroubleTime = 700'000'000;  // a hand that passes by is n
 constexpr TimestampNs kGone = 2 * kSecondNs;       // a lost hand mostly comes back
 constexpr double kLowM = 0.0;                      // below the panel's middle
 constexpr TimestampNs kSunk = 300'000'000, kBack = kSecondNs, kAskedLong = 6 * kSecondNs;
+constexpr double kPerhapsLowM = 0.08;  // the further from the screen, the higher the sensor's sight ends
+constexpr TimestampNs kVanished = 200'000'000, kWantedLong = 4 * kSecondNs;
 constexpr int kMostShown = 3, kGrabMostShown = 6;  // nothing else goes without it
 
 constexpr std::size_t index(Lesson lesson) { return static_cast<std::size_t>(lesson); }
@@ -141,6 +143,18 @@ void Visit::ask_for_height(TimestampNs now, const VisitMoment& moment) {
   }
 }
 
+/// Likewise, at the place where it was lost, at once: whoever looks at the ring of his hand sees it stay behind.
+std::optional<double> Visit::sunk_s(TimestampNs now, const VisitMoment& moment) {
+  Course& c = course_;
+  if (c.done[index(Lesson::kTurn)] || moment.toured || !moment.tracker) return std::nullopt;
+  if (moment.hands > 0 && moment.hand <= HandState::kFist) {
+    c.followed = moment.hand_y_m < kPerhapsLowM ? now : -1;
+    return std::nullopt;
+  }
+  if (c.followed < 0 || now - c.followed < kVanished || now - c.followed > kVanished + kWantedLong) return std::nullopt;
+  return 1e-9 * static_cast<double>(now - c.followed - kVanished);
+}
+
 std::optional<Line> Visit::line(const VisitMoment& moment) const {
   if (trouble_since_ >= 0 && last_ - trouble_since_ >= kTroubleTime) {
     if (moment.hand == HandState::kTooFar) return Line::kNearer;
@@ -185,6 +199,7 @@ VisitPicture Visit::update(TimestampNs now, const VisitMoment& moment) {
     else
       teach(last_, moment);
     ask_for_height(last_, moment);
+    out.higher_s = sunk_s(last_, moment);
     if (!somebody && last_ - last_somebody_ >= kGone) phase_ = VisitPhase::kLeaving;
   }
   if (phase_ == VisitPhase::kLeaving) course_.now.reset();

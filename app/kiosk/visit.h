@@ -37,11 +37,12 @@ enum class VisitPhase : std::uint8_t { kAsleep, kAttract, kArrived, kFree, kLeav
 
 struct VisitPicture {
   VisitPhase phase = VisitPhase::kAttract;
-  std::optional<Line> line;      ///< said now
-  std::optional<Lesson> lesson;  ///< shown as a moving hand
-  double lesson_s = 0.0;         ///< since it is shown
-  bool reset = false;            ///< now, once: all is to go back to the beginning
-  bool arrived = false;          ///< now, once: a visit began
+  std::optional<Line> line;        ///< said now
+  std::optional<Lesson> lesson;    ///< shown as a moving hand
+  double lesson_s = 0.0;           ///< since it is shown
+  std::optional<double> higher_s;  ///< the hand that sank out of sight is wanted higher up, for so long already
+  bool reset = false;              ///< now, once: all is to go back to the beginning
+  bool arrived = false;            ///< now, once: a visit began
 };
 
 struct VisitFigures {
@@ -68,6 +69,7 @@ class Visit {
     std::optional<Lesson> now;
     TimestampNs since = 0, rests_until = 0;
     double turned_deg = 0.0, zoomed = 0.0;
+    TimestampNs followed = -1;  // a hand of this visitor was seen last; -1: there is none that sank
     // A hand that sank out of the sensor's sight.
     bool low = false;
     int sank = 0;                                              ///< how often
@@ -79,6 +81,7 @@ class Visit {
   std::optional<Lesson> next(const VisitMoment& moment) const;
   void teach(TimestampNs now, const VisitMoment& moment);
   void ask_for_height(TimestampNs now, const VisitMoment& moment);
+  std::optional<double> sunk_s(TimestampNs now, const VisitMoment& moment);
   std::optional<Line> line(const VisitMoment& moment) const;
 
   VisitFigures figures_;

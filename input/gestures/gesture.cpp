@@ -11,6 +11,7 @@ namespace {
 constexpr OneEuroOptions kPalmFilter{2.0, 30.0, 3.0};
 constexpr TimestampNs kVelocityWindow = 60'000'000;
 constexpr TimestampNs kSetBack = 1'000'000'000;  // no sample is so late: its device's clock was set back
+constexpr TimestampNs kReachedIn = 1'200'000'000;
 }  // namespace
 
 GestureRecognizer::GestureRecognizer(const GestureOptions& options)
@@ -54,10 +55,14 @@ void GestureRecognizer::update(TimestampNs now, const HandFrame* hand, const Han
                         position_m_.y >= options_.place.signs_from_y_m;
   const bool acts = may_begin && !standing.at_face && !at_signs && position_m_.z <= options_.place.acts_to_z_m;
   const bool within = std::max(std::abs(position_m_.x), std::abs(position_m_.y)) <= options_.swipe.within_m;
-  grip_.update({now, since_ns, glm::length(velocity_mps_), still_ns, acts, standing.sure, scene_.beginner}, *hand,
+  // What has just reached in and moves on may be somebody else's, whatever its fingers tell; who has turned nothing yet
+  // is not made to wait.
+  const bool sure = standing.sure && (scene_.beginner || !standing.doubtful);
+  const bool known_long = scene_.beginner || now - *seen_.came >= kReachedIn;
+  grip_.update({now, since_ns, glm::length(velocity_mps_), still_ns, acts, sure && known_long, scene_.beginner}, *hand,
                options_, events_);
   const bool free = may_begin && !grip_.holds();
-  const bool known = now - *seen_.came >= (standing.sure ? options_.swipe.sure_ns : options_.swipe.known_ns);
+  const bool known = now - *seen_.came >= (sure ? options_.swipe.sure_ns : options_.swipe.known_ns);
   if (const auto swiped = swipe_.update({now, still_ns, history_.newest().position_m, velocity_mps_,
                                          hand->grab_strength, since_ns, free && acts && within, known},
                                         options_))

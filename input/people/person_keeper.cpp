@@ -168,14 +168,18 @@ bool HandKeeper::is_the_owners(const HandFrame& hand, std::span<const HeadFrame>
 HandStanding HandKeeper::judge(TimestampNs now, const HandFrame& hand, std::span<const HeadFrame> heads,
                                const std::optional<glm::dvec3>& kept_head_m) const {
   HandStanding out;
-  const double body = body_x_m(hand);
+  // Of two who stand side by side the near shoulders are at the same place: the hand of one, mistaken for his other
+  // one, comes from the other body.
+  const double body = body_x_m(hand), mirrored = 2.0 * shoulder_of(hand).x - body;
   out.sure = owner_x_m_ && std::abs(body - *owner_x_m_) <= kSameBodyM && now - owner_came_ >= kFollowedLong;
   if (kept_head_m) {
     const double nearest = nearest_other_m(body, heads, *kept_head_m);
     out.sure = out.sure || (std::abs(body - kept_head_m->x) <= kSameBodyM && nearest >= kNobodyNearM);
     out.at_face = glm::length(hand.palm.position_m - *kept_head_m) <= kAtFaceM;
+    out.sure = out.sure && nearest_other_m(mirrored, heads, *kept_head_m) > kMistakenM;
   } else {
     out.sure = out.sure || std::abs(body) <= kSquarelyM;
+    out.doubtful = others_.near(now, mirrored, kMistakenM);
   }
   return out;
 }
@@ -318,6 +322,9 @@ std::array<const HandFrame*, 2> HandKeeper::update(TimestampNs now, std::span<co
       if (strangers.size() == kMostStrangers) strangers.erase(strangers.begin());
       strangers.push_back(hands[i].id);
     }
+  for (const HandFrame* const hand : left)
+    if (hand != nullptr && hand->chirality != Chirality::kUnknown && !is_the_owners(*hand, heads, kept_head_m))
+      others_.see(now, body_x_m(*hand));
   for (std::size_t s = 0; s < slots_.size(); ++s)
     standing_[s] = kept[s] == nullptr ? HandStanding() : judge(now, *kept[s], heads, kept_head_m);
   remember_owner(now, kept);

@@ -10,6 +10,7 @@
 #include "input/hand_frame.h"
 #include "input/hand_standing.h"
 #include "input/input_source.h"
+#include "input/people/other_bodies.h"
 
 namespace dubsar {
 
@@ -88,6 +89,7 @@ class HandKeeper {
   std::optional<double> owner_x_m_;  // where the body stands whose hands were kept last
   TimestampNs owner_seen_ = 0, owner_came_ = 0;
   TimestampNs better_since_ = -1;  // somebody more before the middle is there
+  OtherBodies others_;
   std::array<HandStanding, 2> standing_{};
 };
 

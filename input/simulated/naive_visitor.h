@@ -44,6 +44,8 @@ class NaiveVisitor {
   void begin(Intention intention, double t_s, const SeenScreen& seen);
   void judge(const SeenScreen& seen);
   void study(SeenLesson lesson);
+  double wit() const noexcept;
+  void follow_arrow();
   Idea choose(const SeenScreen& seen);
   void act(double t_s, const SeenScreen& seen);
   void attempt(Idea idea, double t_s);
@@ -72,12 +74,14 @@ class NaiveVisitor {
     ViewState before{};
     bool opened = false;  ///< before
     bool shown = false;   ///< a mark of the hand was to be seen
+    bool arrow = false;   ///< an arrow upwards, while the hand was up
   } trial_;
   glm::dvec2 sense_{0.0};
   struct Manner {
     double effort = 1.0, hurry = 1.0, stretch = 0.6, wants = 0.6;
     int turned = 0, zoomed = 0, opened = 0;  ///< how often that worked
     bool lost = false;                       ///< no mark showed the hand lately
+    double higher_m = 0.0;                   ///< held above where it would be held by itself
   } manner_;
   struct Aim {                       ///< a mark is to be brought to a sign, by looking at it
     std::optional<glm::dvec2> mark;  ///< where it was before the last step

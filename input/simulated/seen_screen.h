@@ -18,6 +18,7 @@ struct SeenScreen {
   SeenLesson lesson = SeenLesson::kNone;
   bool opened = false;                          ///< what was inside is to be seen
   std::optional<glm::dvec2> my_mark{};          ///< where a mark shows one's own hand
+  bool arrow_up = false;                        ///< an arrow rises where the mark of a hand was
   std::optional<glm::dvec2> sign{};             ///< something that looks as if it could be touched
   double sign_radius = 0.0, sign_filled = 0.0;  ///< 0..1: something goes on there
 };

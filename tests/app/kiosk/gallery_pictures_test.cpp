@@ -194,6 +194,27 @@ TEST_F(GalleryPictures, AHandIsInAPictureATenthOfASecondAfterItCameWithTenPictur
   EXPECT_LE(seen_s, kCame_s + kTracker_s + 0.1 + 1e-6);
 }
 
+TEST_F(GalleryPictures, AnArrowRisesWhereAHandSankBeforeItTurnedAnything) {
+  std::ofstream(file_) << R"({"seed": 3, "duration_s": 9, "rate_hz": 60, "hands": [{"chirality": "right", "keys": [
+    {"t": 1.0, "at_mm": [50, -60, 270]}, {"t": 3.0, "at_mm": [50, -60, 270]}, {"t": 3.4, "at_mm": [50, -140, 270]}]}]})";
+  options_.time.fps = 24.0;
+  options_.time.longest_s = 8.0;
+  Flashes flashes;
+  double from_s = 0.0, to_s = 0.0;
+  const auto done = run_view(mesh_, options_, progress_, [&](const ViewMoment& moment) {
+    if (!moment.drawn) return;
+    const Image picture = moment.presenter.picture().value();
+    flashes.add(moment.frames / 24.0, picture);
+    if (!guide_->wants_higher()) return;
+    if (from_s == 0.0) from_s = moment.frames / 24.0;
+    to_s = moment.frames / 24.0;
+  });
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_NEAR(from_s, 3.7, 0.3);
+  EXPECT_NEAR(to_s - from_s, 1.8, 0.3) << "where nobody sees a head, he has left then";
+  EXPECT_LE(flashes.most_in_a_quarter(), 1);
+}
+
 TEST_F(GalleryPictures, TheObjectGlowsWhereTheHandWouldTakeItBeforeItDoes) {
   options_.time.fps = 20.0;
   options_.time.longest_s = 4.0;

@@ -73,6 +73,7 @@ void GallerySession::go_on(TimestampNs now, const InputFrame& frame) {
     if (scene->camera) screen_.view.rotation = scene->frame.camera.rotation;
     screen_.opened = scene->frame.unpack > 0.05;
   }
+  screen_.arrow_up = guide_.wants_higher();
   screen_.lesson = as_seen(guidance_.picture->lesson);
   for (std::size_t h = 0; h < 2; ++h)
     if (person_.hands[h] != nullptr && Gallery::is_the_visitors(person_.hands[h]->id) && !screen_.my_mark)

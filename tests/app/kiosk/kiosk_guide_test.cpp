@@ -350,6 +350,25 @@ TEST(HandRings, StandWhereTheHandIsWithinThePanelAndAComfortableDepth) {
   EXPECT_TRUE(hand_rings(stage, {}).empty());
 }
 
+TEST(HandRings, TheArrowRisesFromWhereTheHandSankWithinThePanelAndNeverBlinks) {
+  const RingStage stage{{{-0.35, -0.25, -0.2}, {0.35, 0.35, 0.6}}, {600, 340}, {0, 0}};
+  const glm::dvec3 sank{0.1, -0.4, 0.3}, ring = ring_place_mm(stage, sank);
+  double last = 0.0;
+  for (double t = 0.0; t < 6.0; t += 1.0 / 60.0) {
+    const std::vector<LinesItem> sign = higher_sign(stage, sank, t);
+    ASSERT_FALSE(sign.empty());
+    const LinesItem& arrow = sign.back();
+    ASSERT_EQ(arrow.points_mm.size(), 6U);
+    EXPECT_GT(arrow.points_mm[0].y, ring.y);
+    EXPECT_GT(arrow.points_mm[1].y, arrow.points_mm[0].y + 20.0) << "upwards";
+    for (const glm::dvec3& at : arrow.points_mm) EXPECT_LT(std::abs(at.y), 170.0);
+    EXPECT_GE(arrow.opacity, last) << "it comes once, and stays";
+    EXPECT_LT(arrow.opacity - last, 0.06);
+    last = arrow.opacity;
+  }
+  EXPECT_GT(last, 0.9);
+}
+
 TEST(LessonPicture, MovesWithoutJumpsAndNeverFlashes) {
   for (std::size_t i = 0; i < kLessonCount; ++i) {
     const auto lesson = static_cast<Lesson>(i);

@@ -135,6 +135,28 @@ TEST(Visit, AHandThatSankOutOfSightIsAskedForUntilItStays) {
   EXPECT_NE(able.go_on(1, head).lesson, Lesson::kShowHand) << "who can turn it knows";
 }
 
+TEST(Visit, AHandThatSankIsWantedHigherAtOnceAndOnlyForAWhile) {
+  VisitMoment low = hand(HandState::kReady), high = low;
+  low.hand_y_m = -0.1;
+  high.hand_y_m = 0.2;
+  Story story;
+  EXPECT_FALSE(story.go_on(2, low).higher_s);
+  EXPECT_FALSE(story.go_on(0.1, nobody()).higher_s) << "trackers lose a hand for a moment";
+  EXPECT_TRUE(story.go_on(0.3, nobody()).higher_s);
+  EXPECT_TRUE(story.go_on(0.3, hand(HandState::kStranger)).higher_s) << "another hand is not this one";
+  EXPECT_FALSE(story.go_on(0.1, low).higher_s) << "it is there again";
+  VisitMoment head = nobody();
+  head.head = true;
+  EXPECT_TRUE(story.go_on(3, head).higher_s);
+  EXPECT_FALSE(story.go_on(3, head).higher_s);
+  EXPECT_FALSE(story.go_on(3, high).higher_s);
+  EXPECT_FALSE(story.go_on(1, nobody()).higher_s) << "it did not leave downwards";
+  Story able;
+  able.go_on(2, hand(HandState::kHolding, 2.0));
+  able.go_on(2, low);
+  EXPECT_FALSE(able.go_on(1, nobody()).higher_s) << "who can turn it knows";
+}
+
 TEST(Visit, SaysWhatIsWrongWithAHandButNotWithOneThatPassesBy) {
   Story story;
   story.go_on(1, hand(HandState::kReady));

@@ -77,7 +77,7 @@ TEST(GestureInGalleries, ASwipeGoesFromRestAndAHandThatComesLeavesOrTalksDoesNot
   Person wipes{gallery()};
   wipes.hand.palm.position_m.x = -0.12;
   wipes.standing.sure = false;
-  wipes.steps(260);
+  wipes.steps(360);
   wipes.move({1.0, 0.0, 0.0}, 20);
   wipes.steps(30);
   EXPECT_EQ(wipes.count(GestureKind::kSwipe, GesturePhase::kDone), 1);
@@ -107,6 +107,16 @@ TEST(GestureInGalleries, OneWhoHasJustReachedInWipesNothingUnlessItIsSureWhoseHa
     reaches.steps(30);
     EXPECT_EQ(reaches.count(GestureKind::kSwipe, GesturePhase::kDone), sure ? 1 : 0);
   }
+  for (const bool beginner : {false, true}) {
+    Person doubtful{gallery()};
+    doubtful.standing.doubtful = true;
+    doubtful.recognizer.set_scene({.beginner = beginner});
+    doubtful.hand.palm.position_m.x = -0.12;
+    doubtful.steps(130);
+    doubtful.move({1.0, 0.0, 0.0}, 20);
+    doubtful.steps(30);
+    EXPECT_EQ(doubtful.count(GestureKind::kSwipe, GesturePhase::kDone), beginner ? 1 : 0);
+  }
   Person at_once{gallery()};
   at_once.hand.palm.position_m.x = -0.12;
   at_once.steps(60);
@@ -129,12 +139,29 @@ TEST(GestureInGalleries, AHandThatMayBeSomebodyElsesRestsUntilItHolds) {
   for (const bool sure : {false, true}) {
     Person p{gallery()};
     p.standing.sure = sure;
-    p.steps(60);
+    p.steps(150);
     p.hand.grab_strength = 1.0;
     p.move({0.0, 0.0, -0.22}, 9);  // within 20 mm, as one lunges
     p.steps(40);
     EXPECT_EQ(p.count(GestureKind::kGrab, GesturePhase::kBegin), sure ? 1 : 0);
   }
+}
+
+TEST(GestureInGalleries, AHandThatHasJustComeRestsUntilItHoldsUnlessNothingWasTurnedYet) {
+  for (const bool beginner : {false, true}) {
+    Person p{gallery()};
+    p.recognizer.set_scene({.beginner = beginner});
+    p.steps(60);
+    p.hand.grab_strength = 1.0;
+    p.move({0.0, 0.0, -0.22}, 9);
+    p.steps(40);
+    EXPECT_EQ(p.count(GestureKind::kGrab, GesturePhase::kBegin), beginner ? 1 : 0);
+  }
+  Person rests{gallery()};
+  rests.steps(60);
+  rests.hand.grab_strength = 1.0;
+  rests.steps(40);
+  EXPECT_EQ(rests.count(GestureKind::kGrab, GesturePhase::kBegin), 1);
 }
 
 TEST(GestureInGalleries, AHandAtTheOwnFaceNeitherTakesHoldNorWipes) {

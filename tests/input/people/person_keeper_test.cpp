@@ -236,6 +236,34 @@ TEST(HandKeeper, ItIsSureWhoseHandItIsByHeadsByTheArmOrAfterAWhile) {
   EXPECT_FALSE(crowded.standing()[0].sure) << "another head is as near to that arm";
 }
 
+TEST(HandKeeper, ALeftHandThatMayBeTheRightHandOfSomebodyBesideIsNotSure) {
+  const glm::dvec3 kept_head(0.0, 0.0, 0.7);
+  std::vector<HeadFrame> heads{head_at(1, kept_head)};
+  const std::vector<HandFrame> called_left{hand_at(1, Chirality::kLeft, {-0.19, 0.0, 0.3})};
+  HandKeeper alone, beside, far;
+  ASSERT_NE(alone.update(0, called_left, heads, kept_head)[0], nullptr);
+  EXPECT_TRUE(alone.standing()[0].sure);
+  heads.push_back(head_at(2, {-0.4, 0.0, 0.75}));  // whose right shoulder is where the kept head's left one is
+  ASSERT_NE(beside.update(0, called_left, heads, kept_head)[0], nullptr);
+  EXPECT_FALSE(beside.standing()[0].sure);
+  heads[1] = head_at(2, {0.4, 0.0, 0.75});
+  ASSERT_NE(far.update(0, called_left, heads, kept_head)[0], nullptr);
+  EXPECT_TRUE(far.standing()[0].sure) << "neither shoulder of the other one is there";
+}
+
+TEST(HandKeeper, WhereNoHeadIsSeenHandsTellWhoIsBeside) {
+  const HandFrame called_left = hand_at(1, Chirality::kLeft, {-0.19, 0.0, 0.3});
+  const HandFrame beside = hand_at(2, Chirality::kRight, {-0.2, 0.1, 0.3});  // of a body at -0.39
+  HandKeeper alone, crowded;
+  ASSERT_NE(alone.update(0, std::vector{called_left}, {}, {})[0], nullptr);
+  EXPECT_FALSE(alone.standing()[0].doubtful);
+  TimestampNs now = 0;
+  for (; now < 600 * kMs; now += 16 * kMs)
+    ASSERT_EQ(crowded.update(now, std::vector{beside}, {}, {})[0], nullptr) << "he stands beside";
+  ASSERT_NE(crowded.update(now, std::vector{called_left}, {}, {})[0], nullptr);
+  EXPECT_TRUE(crowded.standing()[0].doubtful) << "the same arm, mistaken";
+}
+
 TEST(HandKeeper, AHandAtTheChinIsAtTheFace) {
   const glm::dvec3 kept_head(0.0, 0.1, 0.6);
   const std::vector<HeadFrame> heads{head_at(1, kept_head)};
