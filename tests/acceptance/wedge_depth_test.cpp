@@ -32,6 +32,7 @@ struct Size {
   double depth_vox;
   std::int64_t width;  ///< of the phantom, voxels: the smallest with some sixty wedges
   std::uint64_t seed;  ///< drawn once; nothing was tuned on it
+  double blur_vox = phantom::PhantomOptions().blur_vox;
 };
 
 double median(std::vector<double> values) {
@@ -50,6 +51,7 @@ std::vector<Told> measured(std::uint64_t seed, const Size& size) {
   wanted.seed = seed;
   wanted.snr_db = 20.0;
   wanted.wedge_depth_vox = size.depth_vox;
+  wanted.blur_vox = size.blur_vox;
   PipelineOptions options;
   options.import.path = scan;
   options.occlusion.reset();
@@ -103,10 +105,11 @@ TEST_P(WedgeDepth, IsThatOfTheStylusInTheMedian) {
   ASSERT_GE(all.size(), 60u) << "seed " << seed;
   const auto within = static_cast<double>(std::count_if(doubt.begin(), doubt.end(), [](double d) { return d < 2.0; }));
   fmt::print(
-      "seed {}, usual wedge {} voxels: {} wedges, median ratio {:.3f} (broad sides {:.3f}, curved {:.3f}), median "
+      "seed {}, usual wedge {} voxels, blur {}: {} wedges, median ratio {:.3f} (broad sides {:.3f}, curved {:.3f}), "
+      "median "
       "error {:.3f}, within two deviations {:.2f}\n",
-      seed, GetParam().depth_vox, all.size(), median(ratio), median(broad), median(curved), median(error),
-      within / static_cast<double>(all.size()));
+      seed, GetParam().depth_vox, GetParam().blur_vox, all.size(), median(ratio), median(broad), median(curved),
+      median(error), within / static_cast<double>(all.size()));
   // Small tablets have few flat places, and their blur is told up to a fifth too large.
   EXPECT_NEAR(median(ratio), 1.0, GetParam().width < 256 ? 0.04 : 0.03) << "seed " << seed;
   EXPECT_GT(within, 0.85 * static_cast<double>(all.size())) << "seed " << seed << ": of 95 % that are wanted";
@@ -114,9 +117,11 @@ TEST_P(WedgeDepth, IsThatOfTheStylusInTheMedian) {
 
 INSTANTIATE_TEST_SUITE_P(Sizes, WedgeDepth,
                          ::testing::Values(Size{3, 176, 410005}, Size{3, 208, 517272}, Size{5, 256, 978912},
-                                           Size{7, 288, 569894}, Size{10, 352, 912222}),
+                                           Size{7, 288, 569894}, Size{10, 352, 912222}, Size{7, 288, 640271, 0.8},
+                                           Size{10, 352, 388154, 0.7}),
                          [](const auto& instance) {
-                           return fmt::format("of{:.0f}voxelsIn{}", instance.param.depth_vox, instance.param.width);
+                           return fmt::format("of{:.0f}voxelsIn{}Blurred{:.0f}", instance.param.depth_vox,
+                                              instance.param.width, 100 * instance.param.blur_vox);
                          });
 
 }  // namespace
