@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 #include <utility>
 
-#include "core/parts/min_cut.h"
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {
@@ -75,7 +75,7 @@ bool unpinch(const ContactBand& band, std::vector<ClaySide>& side) {
 }
 
 /// Nodes over the same piece of the patches: flow runs across the band, and most of it stays in one block.
-void set_blocks(const ContactBand& band, MinCut& cut) {
+LatticeCut cut_in_blocks(const ContactBand& band) {
   constexpr float kBlockSide = 64.0f;
   const Dims d = band.node_at.dims();
   const auto along = [](std::int64_t n) { return static_cast<std::uint32_t>(static_cast<float>(n) / kBlockSide) + 1; };
@@ -85,7 +85,28 @@ void set_blocks(const ContactBand& band, MinCut& cut) {
     const glm::uvec3 cube(glm::max(band.samples[band.nodes[n].sample].position, glm::vec3(0.0f)) / kBlockSide);
     block[n] = (std::min(cube.z, z - 1) * y + std::min(cube.y, y - 1)) * x + std::min(cube.x, x - 1);
   }
-  cut.set_blocks(std::move(block), x * y * z);
+  std::vector<float> height(block.size());
+  for (std::size_t n = 0; n < height.size(); ++n) height[n] = band.nodes[n].height;
+  return {block, x * y * z, height};
+}
+
+/// Of the face between two nodes that are neighbours along an axis.
+std::int32_t cost_of_face(const ContactBand& band, std::uint32_t n, std::uint32_t m, std::uint32_t axis,
+                          float strength) {
+  const auto a = static_cast<glm::length_t>(axis);
+  const float along = 0.5f * (std::abs(band.normal(n)[a]) + std::abs(band.normal(m)[a]));
+  const float face = along + kWall * (1.0f - along);
+  return 1 + static_cast<std::int32_t>(std::lround(kUnit * face * cost_of(strength)));
+}
+
+/// visit(node, its upper neighbour, axis) for all that are neighbours in the band.
+template <class Visit>
+void each_face(const ContactBand& band, const Visit& visit) {
+  for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      const std::uint32_t m = band.at(band.point(n) + kAxes[axis]);
+      if (m != ContactBand::kNone) visit(n, m, axis);
+    }
 }
 
 }  // namespace
@@ -96,53 +117,62 @@ void unpinch_sides(const ContactBand& band, std::vector<ClaySide>& side) {
   }
 }
 
-Result<std::vector<ClaySide>> divide_clay(const ContactBand& band, const Dips& dips,
-                                          const std::vector<SurfaceHint>& hints, const std::vector<float>& votes,
-                                          const std::vector<ClayCavity>& whole, Progress& progress) {
-  const auto count = static_cast<std::uint32_t>(band.nodes.size());
-  MinCut cut(count);                         // source side: tablet
+ClayDivision::ClayDivision(const ClayEvidence& evidence)
+    : band_(evidence.band),
+      dips_(evidence.dips),
+      cut_(cut_in_blocks(evidence.band)),  // source side: tablet
+      certain_(evidence.band.nodes.size(), false) {
+  const auto count = static_cast<std::uint32_t>(band_.nodes.size());
   std::vector<std::int64_t> wish(count, 0);  // > 0: tablet
-  std::vector<bool> certain(count, false);
   for (std::uint32_t n = 0; n < count; ++n) {
-    const ContactBand::Node& node = band.nodes[n];
-    if (at_border(band, node)) {
+    const ContactBand::Node& node = band_.nodes[n];
+    if (at_border(band_, node)) {
       wish[n] = node.height < 0.0f ? kHard : -kHard;
-      certain[n] = true;
+      certain_[n] = true;
     } else {
-      wish[n] = std::lround(kUnit * ((votes.empty() ? 0.0f : votes[n]) - kPull * node.height));
+      wish[n] = std::lround(kUnit * ((evidence.votes.empty() ? 0.0f : evidence.votes[n]) - kPull * node.height));
     }
   }
-  for (const SurfaceHint& hint : hints) {
+  for (const SurfaceHint& hint : evidence.hints) {
     const std::int64_t sense = hint.side == ClaySide::kTablet ? 1 : -1;
     if (hint.weight >= kCertain) {
-      if (!certain[hint.node]) wish[hint.node] = sense * kHard;
-      certain[hint.node] = true;
-    } else if (!certain[hint.node]) {
+      if (!certain_[hint.node]) wish[hint.node] = sense * kHard;
+      certain_[hint.node] = true;
+    } else if (!certain_[hint.node]) {
       wish[hint.node] += sense * std::lround(kUnit * hint.weight);
     }
   }
   for (std::uint32_t n = 0; n < count; ++n) {
     const auto cost = static_cast<std::int32_t>(std::clamp<std::int64_t>(wish[n], -kHard, kHard));
-    cut.add_node_cost(n, cost < 0 ? -cost : 0, cost > 0 ? cost : 0);
-    for (std::size_t a = 0; a < 3; ++a) {
-      const std::uint32_t m = band.at(band.point(n) + kAxes[a]);
-      if (m == ContactBand::kNone) continue;
-      const auto axis = static_cast<glm::length_t>(a);
-      const float along = 0.5f * (std::abs(band.normal(n)[axis]) + std::abs(band.normal(m)[axis]));
-      const float face = along + kWall * (1.0f - along);
-      const float cost_here = cost_of(0.5f * (dips.strength[n] + dips.strength[m]));
-      cut.add_edge(n, m, 1 + static_cast<std::int32_t>(std::lround(kUnit * face * cost_here)));
-    }
+    cut_.add_node_cost(n, cost < 0 ? -cost : 0, cost > 0 ? cost : 0);
   }
-  for (const ClayCavity& cavity : whole)
-    for (std::size_t i = 1; i < cavity.size(); ++i) cut.add_edge(cavity[i - 1], cavity[i], kHard);
-  set_blocks(band, cut);
-  DUBSAR_TRY(cut.solve(progress));
-  std::vector<ClaySide> side(count);
-  for (std::uint32_t n = 0; n < count; ++n) side[n] = cut.on_source_side(n) ? ClaySide::kTablet : ClaySide::kEnvelope;
-  adopt_islands(band, side, certain);
-  unpinch_sides(band, side);
+  each_face(band_, [&](std::uint32_t n, std::uint32_t m, std::uint32_t axis) {
+    cut_.add_step_cost(n, m, axis, cost_of_face(band_, n, m, axis, 0.5f * (dips_.strength[n] + dips_.strength[m])));
+  });
+  for (const ClayCavity& cavity : evidence.whole)
+    for (std::size_t i = 1; i < cavity.size(); ++i) cut_.tie(cavity[i - 1], cavity[i], kHard);
+}
+
+Result<std::vector<ClaySide>> ClayDivision::sides(Progress& progress) {
+  DUBSAR_TRY(cut_.solve(progress));
+  std::vector<ClaySide> side(band_.nodes.size());
+  for (std::uint32_t n = 0; n < side.size(); ++n)
+    side[n] = cut_.on_source_side(n) ? ClaySide::kTablet : ClaySide::kEnvelope;
+  adopt_islands(band_, side, certain_);
+  unpinch_sides(band_, side);
   return side;
+}
+
+Result<std::vector<ClaySide>> ClayDivision::sides_if_weaker(const std::vector<bool>& where, float by,
+                                                            Progress& progress) {
+  const auto strength = [&](std::uint32_t n) { return where[n] ? dips_.strength[n] - by : dips_.strength[n]; };
+  each_face(band_, [&](std::uint32_t n, std::uint32_t m, std::uint32_t axis) {
+    if (!where[n] && !where[m]) return;
+    cut_.add_step_cost(n, m, axis,
+                       cost_of_face(band_, n, m, axis, 0.5f * (strength(n) + strength(m))) -
+                           cost_of_face(band_, n, m, axis, 0.5f * (dips_.strength[n] + dips_.strength[m])));
+  });
+  return sides(progress);
 }
 
 }  // namespace dubsar

@@ -10,6 +10,7 @@
 #include "core/contact/band.h"
 #include "core/contact/clay_cavities.h"
 #include "core/contact/dips.h"
+#include "core/contact/lattice_cut.h"
 
 namespace dubsar {
 
@@ -21,12 +22,35 @@ struct SurfaceHint {
 };
 inline constexpr float kCertain = 1e6f;
 
-/// Sides of all nodes of the band. `votes`: of each node, faces of the cut that its density is worth to the tablet
-/// (clays.h), or empty. The cut goes round each of `whole`. Every node hangs together with clay at the border of
-/// the band through nodes of its side, or is cut off by air and counts as the tablet's. kCancelled.
-Result<std::vector<ClaySide>> divide_clay(const ContactBand& band, const Dips& dips,
-                                          const std::vector<SurfaceHint>& hints, const std::vector<float>& votes,
-                                          const std::vector<ClayCavity>& whole, Progress& progress);
+/// What decides on which side the clay is. `votes`: of each node, faces of the cut that its density is worth to the
+/// tablet (clays.h), or empty. The cut goes round each of `whole`.
+struct ClayEvidence {
+  const ContactBand& band;
+  const Dips& dips;
+  const std::vector<SurfaceHint>& hints;
+  const std::vector<float>& votes;
+  const std::vector<ClayCavity>& whole;
+};
+
+/// The cut, kept so that it can be found once more with other dips. Borrows the band and its dips. 70 bytes a node.
+class ClayDivision {
+ public:
+  explicit ClayDivision(const ClayEvidence& evidence);
+
+  /// Sides of all nodes. Every node hangs together with clay at the border of the band through nodes of its side, or is
+  /// cut off by air and counts as the tablet's. kCancelled.
+  Result<std::vector<ClaySide>> sides(Progress& progress);
+
+  /// The same if the strength of the dips of some nodes were less by so much: quick where they are few. May be asked
+  /// for once.
+  Result<std::vector<ClaySide>> sides_if_weaker(const std::vector<bool>& where, float by, Progress& progress);
+
+ private:
+  const ContactBand& band_;
+  const Dips& dips_;
+  LatticeCut cut_;
+  std::vector<bool> certain_;
+};
 
 /// Removes points of a grid face that belong to tablet, envelope, tablet, envelope in turn.
 void unpinch_sides(const ContactBand& band, std::vector<ClaySide>& side);

@@ -1,8 +1,10 @@
 #include "core/contact/firmness.h"
 
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <set>
 
 #include "core/contact/ring_average.h"
 #include "core/mesh/evidence.h"
@@ -13,6 +15,8 @@ namespace {
 constexpr int kOwn = 2;          ///< steps from the contact within which dips are its own
 constexpr float kWeaker = 0.5f;  ///< deviations: twice that of a mean over five rings
 constexpr float kReachOfDoubt = 4.5f;
+/// Steps from what is asked about: a contact that would move is held by what stays around it for some steps only.
+constexpr float kAsked = 32.0f;
 
 /// Nodes within kOwn steps along the grid of the contact.
 std::vector<bool> beside_contact(const ContactBand& band, const std::vector<ClaySide>& side) {
@@ -26,16 +30,31 @@ std::vector<bool> beside_contact(const ContactBand& band, const std::vector<Clay
   return beside;
 }
 
+/// Leaves those that are marked within kAsked steps of a place, and none beyond twice that along an axis.
+void keep_near(const ContactBand& band, std::span<const glm::vec3> places, std::vector<bool>& marked) {
+  const auto cube = [](const glm::vec3& p) { return glm::ivec3(glm::floor(p / kAsked)); };
+  std::set<std::array<int, 3>> cubes;
+  for (const glm::vec3& place : places)
+    for (int k = 0; k < 27; ++k) {
+      const glm::ivec3 c = cube(place);
+      cubes.insert({c.x + k % 3 - 1, c.y + k / 3 % 3 - 1, c.z + k / 9 - 1});
+    }
+  for (std::uint32_t n = 0; n < marked.size(); ++n) {
+    if (!marked[n]) continue;
+    const glm::ivec3 c = cube(glm::vec3(band.point(n)));
+    marked[n] = cubes.count({c.x, c.y, c.z}) != 0;
+  }
+}
+
 }  // namespace
 
-Result<std::vector<bool>> find_unfirm(const ClayEvidence& evidence, const std::vector<ClaySide>& side,
+Result<std::vector<bool>> find_unfirm(const ContactBand& band, ClayDivision& division,
+                                      const std::vector<ClaySide>& side, std::span<const glm::vec3> asked,
                                       Progress& progress) {
-  const std::vector<bool> own = beside_contact(evidence.band, side);
-  Dips weaker = evidence.dips;
-  for (std::size_t n = 0; n < own.size(); ++n)
-    if (own[n]) weaker.strength[n] -= kWeaker;
-  DUBSAR_ASSIGN(const std::vector<ClaySide> again,
-                divide_clay(evidence.band, weaker, evidence.hints, evidence.votes, evidence.whole, progress));
+  const std::vector<bool> own = beside_contact(band, side);
+  std::vector<bool> weaker = own;
+  keep_near(band, asked, weaker);
+  DUBSAR_ASSIGN(const std::vector<ClaySide> again, division.sides_if_weaker(weaker, kWeaker, progress));
   std::vector<bool> unfirm(own.size());
   for (std::size_t n = 0; n < own.size(); ++n) unfirm[n] = !own[n] && again[n] != side[n];
   return unfirm;

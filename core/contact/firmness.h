@@ -15,18 +15,11 @@
 
 namespace dubsar {
 
-/// What decides on which side the clay is (clay_sides.h).
-struct ClayEvidence {
-  const ContactBand& band;
-  const Dips& dips;
-  const std::vector<SurfaceHint>& hints;
-  const std::vector<float>& votes;
-  const std::vector<ClayCavity>& whole;
-};
-
-/// Divides the clay once more, with the dips within 2 steps of the contact weaker by 1/2 deviation. Nodes that change
-/// sides, 3 steps from it and farther. Takes as long as dividing it. kCancelled.
-Result<std::vector<bool>> find_unfirm(const ClayEvidence& evidence, const std::vector<ClaySide>& side,
+/// Divides the clay once more, with the dips within 2 steps of the contact weaker by 1/2 deviation where they are
+/// within 32 steps of one of the places `asked`, and some farther ones. Nodes that change sides, 3 steps from it and
+/// farther. `division`: that found `side`, and was not asked since. kCancelled.
+Result<std::vector<bool>> find_unfirm(const ContactBand& band, ClayDivision& division,
+                                      const std::vector<ClaySide>& side, std::span<const glm::vec3> asked,
                                       Progress& progress);
 
 /// What is a film within 4.5 steps of nodes that are unfirm becomes inferred. `cut`: where the contact was before its

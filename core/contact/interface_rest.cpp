@@ -1,6 +1,7 @@
 #include "core/contact/interface_rest.h"
 
 #include <algorithm>
+#include <array>
 #include <tuple>
 #include <unordered_map>
 #include <unordered_set>
@@ -83,14 +84,11 @@ class Rest {
   }
 
   Result<void> add_fill(const SurfaceModel& model, const std::vector<std::uint32_t>& loop, Progress& progress) {
-    std::unordered_set<std::uint64_t> taken;
-    for (const Triangle& t : mesh_.triangles)
-      for (std::size_t i = 0; i < 3; ++i) taken.insert(key(t[i], t[(i + 1) % 3]));
     Loop rim;
     for (const std::uint32_t v : loop) rim.positions.push_back(position(model, v));
     // The surface may have any edge between two vertices of its own.
     rim.forbidden = [&](std::uint32_t a, std::uint32_t b) {
-      return (loop[a] < dual_ && loop[b] < dual_) || taken.count(key(loop[a], loop[b])) != 0;
+      return (loop[a] < dual_ && loop[b] < dual_) || taken_.count(key(loop[a], loop[b])) != 0;
     };
     DUBSAR_ASSIGN(const LoopFill fill, fill_loop(rim, {}, progress));
     const std::uint32_t first = next_vertex();
@@ -98,14 +96,29 @@ class Rest {
     for (Triangle t : fill.triangles) {
       for (std::uint32_t& v : t) v = v < rims ? loop[v] : first + v - rims;
       mesh_.triangles.push_back(t);
+      take_edges(t);
     }
     for (const glm::vec3& p : fill.added) add_vertex(p);
     return {};
   }
 
+  /// Vertices of loops that will be filled: of edges between any of them it is known from now on whether they are
+  /// there. Stars add none.
+  void watch(std::vector<std::uint32_t> vertices) {
+    std::sort(vertices.begin(), vertices.end());
+    watched_ = std::move(vertices);
+    for (const Triangle& t : mesh_.triangles) take_edges(t);
+  }
+
  private:
   static std::uint64_t key(std::uint32_t a, std::uint32_t b) {
     return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+  }
+  bool watched(std::uint32_t v) const { return std::binary_search(watched_.begin(), watched_.end(), v); }
+  void take_edges(const Triangle& t) {
+    const std::array<bool, 3> in{watched(t[0]), watched(t[1]), watched(t[2])};
+    for (std::size_t i = 0; i < 3; ++i)
+      if (in[i] && in[(i + 1) % 3]) taken_.insert(key(t[i], t[(i + 1) % 3]));
   }
   std::uint32_t next_vertex() const { return static_cast<std::uint32_t>(dual_ + mesh_.added.size()); }
   glm::vec3 position(const SurfaceModel& model, std::uint32_t v) const {
@@ -118,6 +131,8 @@ class Rest {
 
   std::uint32_t dual_;
   InterfaceMesh& mesh_;
+  std::vector<std::uint32_t> watched_;       ///< rising
+  std::unordered_set<std::uint64_t> taken_;  ///< edges between them
 };
 
 }  // namespace
@@ -181,15 +196,19 @@ Result<std::int64_t> close_rest(const SurfaceModel& model, const FaceGraph& grap
                                 Progress& progress) {
   const std::vector<BorderEdge> edges = unpaired(model, mesh, graph);
   const auto loops = join_loops(edges);
+  std::vector<std::vector<std::uint32_t>> rims(loops.size());
+  std::vector<std::uint32_t> filled;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    for (const std::uint32_t e : loops[i]) rims[i].push_back(edges[e].from);
+    if (rims[i].size() > kMostStar) filled.insert(filled.end(), rims[i].begin(), rims[i].end());
+  }
   Rest rest(static_cast<std::uint32_t>(model.mesh.positions.size()), mesh);
-  for (const auto& loop : loops) {
-    std::vector<std::uint32_t> vertices;
-    vertices.reserve(loop.size());
-    for (const std::uint32_t e : loop) vertices.push_back(edges[e].from);
-    if (vertices.size() <= kMostStar)
-      rest.add_star(model, vertices);
+  rest.watch(std::move(filled));
+  for (const auto& rim : rims) {
+    if (rim.size() <= kMostStar)
+      rest.add_star(model, rim);
     else
-      DUBSAR_TRY(rest.add_fill(model, vertices, progress));
+      DUBSAR_TRY(rest.add_fill(model, rim, progress));
   }
   return static_cast<std::int64_t>(loops.size());
 }

@@ -179,7 +179,7 @@ Result<float> recentre_samples(std::vector<PatchPoint>& samples, const BitVolume
   DUBSAR_ASSIGN(const ContactBand band, ContactBand::make(signs, std::move(at_half), kHalfReach, progress));
   DUBSAR_ASSIGN(const BandDensity values, BandDensity::read(band, half, progress));
   DUBSAR_ASSIGN(const Dips dips, find_dips(band, signs, values, progress));
-  DUBSAR_ASSIGN(const std::vector<ClaySide> side, divide_clay(band, dips, {}, {}, {}, progress));
+  DUBSAR_ASSIGN(const std::vector<ClaySide> side, ClayDivision({band, dips, {}, {}, {}}).sides(progress));
   const HeightField heights(band, grounds_of(band, dips, side));
   std::vector<float> ways(samples.size());
   parallel_for(static_cast<std::int64_t>(samples.size()), 256, [&](std::int64_t k) {

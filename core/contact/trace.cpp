@@ -59,6 +59,7 @@ struct Traced {
   std::vector<ClayCavity> pores{};
   std::vector<SurfaceHint> hints{};
   std::vector<float> votes{};
+  std::optional<ClayDivision> division{};
   std::vector<ClaySide> side{};
   std::vector<ClaySide> cut_side{};           ///< before it was made to step aside
   std::optional<std::vector<bool>> unfirm{};  ///< nodes where it might as well lie, once there is a film
@@ -140,8 +141,11 @@ Result<void> doubt_films(const Laid& laid, Traced& traced, std::vector<std::uint
   const auto film = std::count(evidence.begin(), evidence.end(), evidence_byte(Evidence::kFilm));
   if (film == 0 || traced.clays) return {};
   if (!traced.unfirm) {
-    DUBSAR_ASSIGN(traced.unfirm, find_unfirm({traced.band, traced.dips, traced.hints, traced.votes, traced.pores},
-                                             traced.cut_side, progress));
+    std::vector<glm::vec3> films;
+    for (std::size_t i = 0; i < evidence.size(); ++i)
+      if (evidence[i] == evidence_byte(Evidence::kFilm)) films.push_back(laid.mesh.added[i]);
+    DUBSAR_ASSIGN(traced.unfirm, find_unfirm(traced.band, *traced.division, traced.cut_side, films, progress));
+    traced.division.reset();
   }
   doubt_unfirm(traced.band, *traced.unfirm, laid.mesh.added, evidence);
   return {};
@@ -269,7 +273,8 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
     traced.pores.push_back(std::move(unseen));
   blind_fringes(band, traced.pores, dips);
   traced.hints = hints_of_faces(model, band, traced.faces, traced.pores);
-  DUBSAR_ASSIGN(traced.side, divide_clay(band, dips, traced.hints, traced.votes, traced.pores, progress));
+  traced.division.emplace(ClayEvidence{band, dips, traced.hints, traced.votes, traced.pores});
+  DUBSAR_ASSIGN(traced.side, traced.division->sides(progress));
   traced.cut_side = traced.side;
   if (progress.cancelled()) return cancelled_error();
   DUBSAR_TRY(trace_until_closed(model, std::move(traced), options, report, progress));

@@ -89,7 +89,7 @@ TEST(DivideClay, FollowsTheBorderOfTwoClaysAwayFromThePatch) {
   SilentProgress progress;
   const Dips dips = find_dips(scene.band, scene.inside, scene.density, progress).value();
   const auto wrong = [&](const std::vector<float>& votes) {
-    const auto side = divide_clay(scene.band, dips, {}, votes, {}, progress).value();
+    const auto side = ClayDivision({scene.band, dips, {}, votes, {}}).sides(progress).value();
     std::int64_t count = 0;
     for (std::uint32_t n = 0; n < side.size(); ++n) {
       const glm::vec3 p(scene.band.point(n));

@@ -28,7 +28,7 @@ class TwoSheets {
       if (z == kLow || z == kLow - 1) dips_.strength[n] = low;
     }
     SilentProgress progress;
-    side_ = divide_clay(band_, dips_, {}, {}, {}, progress).value();
+    side_ = ClayDivision({band_, dips_, {}, {}, {}}).sides(progress).value();
   }
 
   /// Is all above some height the envelope's, and all below the tablet's, but for the rim of the patch?
@@ -43,9 +43,12 @@ class TwoSheets {
     return true;
   }
 
-  std::vector<glm::vec3> unfirm() const {
+  /// Asked about one place.
+  std::vector<glm::vec3> unfirm(const glm::vec3& asked = {24.0f, 24.0f, 24.0f}) const {
     SilentProgress progress;
-    const std::vector<bool> found = find_unfirm({band_, dips_, {}, {}, {}}, side_, progress).value();
+    ClayDivision division({band_, dips_, {}, {}, {}});
+    EXPECT_EQ(division.sides(progress).value(), side_);
+    const std::vector<bool> found = find_unfirm(band_, division, side_, std::span(&asked, 1), progress).value();
     std::vector<glm::vec3> places;
     for (std::uint32_t n = 0; n < found.size(); ++n)
       if (const glm::vec3 p(band_.point(n)); found[n] && amid(p)) places.push_back(p);
@@ -81,6 +84,10 @@ TEST(FindUnfirm, OneOfTwoSheetsThatAreAboutAsStrongIsChance) {
     EXPECT_GT(p.z, static_cast<float>(kLow) + 1.0f) << "what lies beside the contact says nothing";
     EXPECT_LE(p.z, static_cast<float>(kHigh)) << "the other sheet is there";
   }
+}
+
+TEST(FindUnfirm, NobodyLooksFarFromWhatIsAskedAbout) {
+  EXPECT_TRUE(TwoSheets(1.5f, 1.7f).unfirm(glm::vec3(24.0f, 24.0f, 200.0f)).empty());
 }
 
 TEST(FindUnfirm, AContactThatIsMuchStrongerThanAnyOtherIsFirm) {

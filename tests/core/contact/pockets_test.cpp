@@ -114,7 +114,7 @@ TEST(DivideClay, GoesRoundACavityThatIsWhole) {
     }
     Dips blind = dips;
     blind_fringes(scene.band, whole, blind);
-    const std::vector<ClaySide> side = divide_clay(scene.band, blind, hints, {}, whole, progress).value();
+    const std::vector<ClaySide> side = ClayDivision({scene.band, blind, hints, {}, whole}).sides(progress).value();
     return std::count_if(off[0].begin(), off[0].end(), [&](std::uint32_t n) { return side[n] == ClaySide::kEnvelope; });
   };
   EXPECT_GT(envelopes({}), 0) << "nothing draws the cut to the pore";

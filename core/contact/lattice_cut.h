@@ -1,0 +1,70 @@
+#pragma once
+// Exact minimum s-t cut of a part of a lattice (Boykov and Kolmogorov 2004, as MinCut in core/parts for any graph): a
+// point and the arcs to its six neighbours lie in one line of the cache, and most flow is sent in a wave before ways
+// are looked for. Integer capacities, so that the result is the same everywhere.
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+
+namespace dubsar {
+
+class LatticeCut {
+ public:
+  /// `block` of each node, below `blocks`: flow inside each is found first, by all threads, before that between them
+  /// (Liu and Sun 2010). `height` of each: flow mostly goes from the lowest to the highest, and what can go that way
+  /// from neighbour to neighbour does so first. The cut is the same whatever they are.
+  LatticeCut(const std::vector<std::uint32_t>& block, std::uint32_t blocks, const std::vector<float>& height);
+
+  /// Cost of putting a node on either side; costs of several calls add up. Sums must stay below 2^30.
+  void add_node_cost(std::uint32_t node, std::int32_t cost_if_source, std::int32_t cost_if_sink) {
+    points_[place_[node]].terminal += cost_if_sink - cost_if_source;
+  }
+  /// Cost of separating neighbours, the same in both directions: `upper` is one step up the axis from `lower`. After
+  /// solve() more of it may be added, and solve() finds the new cut from what flowed before.
+  void add_step_cost(std::uint32_t lower, std::uint32_t upper, std::uint32_t axis, std::int32_t cost);
+  /// The same for any two nodes, before the first solve(); meant for few of them.
+  void tie(std::uint32_t a, std::uint32_t b, std::int32_t cost);
+
+  /// Finds the cut. Nodes that fit either side equally well go to the sink side. Deterministic for any thread count.
+  /// 76 bytes a node. kCancelled.
+  Result<void> solve(Progress& progress);
+
+  bool on_source_side(std::uint32_t node) const noexcept { return points_[place_[node]].label > 0; }
+
+ private:
+  static constexpr std::uint32_t kWays = 6;  ///< 2 axis: up it, 2 axis + 1: down
+  static constexpr std::uint32_t kNone = 0xffffffffu, kTerminal = 0xfffffffeu, kOrphan = 0xfffffffdu;
+  struct alignas(64) Point {
+    std::int32_t terminal = 0;     ///< > 0: from the source, < 0: to the sink
+    std::int32_t label = 0;        ///< on a tree: steps from the source, minus those to the sink, at some time; else 0
+    std::uint32_t parent = kNone;  ///< arc to it: a way, or kWays + index of a tie
+    std::uint32_t time : 30 = 0;   ///< when the label was right
+    std::uint32_t active : 1 = 0, tied : 1 = 0;
+    std::array<std::int32_t, kWays> residual{};
+    std::array<std::uint32_t, kWays> beside{kNone, kNone, kNone, kNone, kNone, kNone};
+  };
+  struct Tie {
+    std::uint32_t head, next;  ///< next of the same point; the sister is the other of the pair
+    std::int32_t residual;
+  };
+  class Search;
+
+  void add_tie(std::uint32_t from, std::uint32_t to, std::int32_t cost);
+  template <bool kSource>
+  void wave(std::uint32_t begin, std::uint32_t end);
+
+  std::vector<std::uint32_t> place_;  ///< of each node: points stand block by block
+  std::vector<std::uint32_t> first_;  ///< point of each block, and how many there are
+  std::vector<Point> points_;
+  std::vector<float> height_;          ///< of each point
+  std::vector<std::uint32_t> rising_;  ///< points of each block in the order of their heights
+  std::vector<Tie> ties_;
+  std::unordered_map<std::uint32_t, std::uint32_t> first_tie_;  ///< of the points that have some
+};
+
+}  // namespace dubsar
