@@ -36,4 +36,10 @@ DetailChoice choose_detail(Detail wanted, const Dims& scan, std::uint64_t memory
                                      scan.count() < 10'000'000 ? 1 : 0, size_text(static_cast<double>(memory_left)))};
 }
 
+int sharers_of_rays(Detail detail, std::int64_t vertices) {
+  constexpr std::int64_t kLarge = 1'000'000;
+  constexpr int kSharers = 5;
+  return detail == Detail::kScan && vertices >= kLarge ? kSharers : 1;
+}
+
 }  // namespace dubsar

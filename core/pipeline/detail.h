@@ -28,4 +28,8 @@ struct DetailChoice {
 /// `memory_left` in bytes.
 DetailChoice choose_detail(Detail wanted, const Dims& scan, std::uint64_t memory_left);
 
+/// How many neighbours share the rays of ambient light (occlusion.h): 1 but for large surfaces of the scan's own
+/// resolution, where light would take longer than all else.
+int sharers_of_rays(Detail detail, std::int64_t vertices);
+
 }  // namespace dubsar

@@ -149,7 +149,8 @@ Result<Forecast> forecast(SlabSource& scan, const ForecastOptions& options, Prog
                                                 : 1.0);
   }
   const double millions = vertices * 1e-6;
-  result.core_s += kSurfaceSeconds * millions + kSecondsPerRay * vertices * options.occlusion_rays;
+  result.core_s += kSurfaceSeconds * millions + kSecondsPerRay * vertices * options.occlusion_rays /
+                                                    sharers_of_rays(result.detail.detail, result.vertices);
   const bool contact = options.contact && !half;
   if (contact) result.core_s += kContactSeconds * millions;
   const int threads = thread_count();

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/system/budget.h"
 #include "core/base/text/json_text.h"
 #include "core/exa/exa_file.h"
@@ -102,7 +104,10 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
       separated.holes->triangles += static_cast<std::int64_t>(patch.triangles.size());
   }
   if (options.occlusion) {
-    DUBSAR_ASSIGN(result.model, shade(std::move(result.model), *options.occlusion, run));
+    OcclusionOptions light = *options.occlusion;
+    if (light.engine == OcclusionEngine::kBricks)
+      light.shared_by = std::min(light.rays, sharers_of_rays(imported.detail.detail, result.model.mesh.vertex_count()));
+    DUBSAR_ASSIGN(result.model, shade(std::move(result.model), light, run));
   }
   DUBSAR_ASSIGN(CheckedProduct product, check_product(result.model, run));
   result.mesh = std::move(product.mesh);

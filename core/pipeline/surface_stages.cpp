@@ -92,7 +92,7 @@ Result<SurfaceModel> shade(SurfaceModel model, const OcclusionOptions& options, 
   run.clock.start("occlusion", "ray");
   DUBSAR_TRY(occlusion_of_model(model, options, run.progress));
   settle_light(model.mesh, model.attributes.ao, run.progress);
-  run.clock.finish(model.mesh.vertex_count() * options.rays);
+  run.clock.finish(model.mesh.vertex_count() * rays_of_vertex(options));
   return model;
 }
 

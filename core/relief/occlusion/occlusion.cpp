@@ -46,32 +46,43 @@ struct VertexGroup {
   }
 };
 
+/// A sky, and its directions one axis after the other.
+struct Sky {
+  SkyRays rays;
+  std::array<std::vector<float>, 3> along;
+
+  explicit Sky(SkyRays all) : rays(std::move(all)) {
+    for (const glm::vec3& d : rays.directions)
+      for (std::size_t axis = 0; axis < 3; ++axis) along[axis].push_back(d[static_cast<int>(axis)]);
+  }
+};
+
 /// What the surface takes from each of a group's vertices, summed over the rays. Any thread.
 class Tracer {
  public:
   virtual ~Tracer() = default;
-  virtual std::array<float, kLanes> taken(const VertexGroup& group) const = 0;
+  virtual std::array<float, kLanes> taken(const VertexGroup& group, const Sky& sky) const = 0;
 };
 
 /// Exact, by Embree: one direction of the sky for all vertices at a time.
 class TriangleTracer final : public Tracer {
  public:
   static Result<std::unique_ptr<Tracer>> create(RayDevice& device, std::span<const Triangle> triangles,
-                                                const SkyRays& sky, float radius_vox, Progress& progress) {
-    auto out = std::make_unique<TriangleTracer>(sky, radius_vox);
+                                                float radius_vox, Progress& progress) {
+    auto out = std::make_unique<TriangleTracer>(radius_vox);
     DUBSAR_ASSIGN(out->scene_, RayScene::build(device, triangles, progress));
     return out;
   }
-  TriangleTracer(const SkyRays& sky, float radius_vox) : sky_(sky), radius_vox_(radius_vox) {}
+  explicit TriangleTracer(float radius_vox) : radius_vox_(radius_vox) {}
 
-  std::array<float, kLanes> taken(const VertexGroup& group) const override {
+  std::array<float, kLanes> taken(const VertexGroup& group, const Sky& sky) const override {
     std::array<float, kLanes> out{};
-    for (std::size_t first = 0; first < group.count; first += RayPacket::kRays) trace(group, first, out);
+    for (std::size_t first = 0; first < group.count; first += RayPacket::kRays) trace(group, first, sky.rays, out);
     return out;
   }
 
  private:
-  void trace(const VertexGroup& group, std::size_t first, std::array<float, kLanes>& out) const {
+  void trace(const VertexGroup& group, std::size_t first, const SkyRays& sky, std::array<float, kLanes>& out) const {
     const std::size_t count = std::min<std::size_t>(group.count - first, RayPacket::kRays);
     RayPacket packet;
     for (std::size_t i = 0; i < count; ++i) {
@@ -81,8 +92,8 @@ class TriangleTracer final : public Tracer {
       packet.origin_z[i] = origin.z;
       packet.active[i] = true;
     }
-    for (std::size_t ray = 0; ray < sky_.directions.size(); ++ray) {
-      const glm::vec3 local = sky_.directions[ray];
+    for (std::size_t ray = 0; ray < sky.directions.size(); ++ray) {
+      const glm::vec3 local = sky.directions[ray];
       for (std::size_t i = 0; i < count; ++i) {
         const RayFrame& f = group.frames[first + i];
         packet.direction_x[i] = f.x.x * local.x + f.y.x * local.y + f.z.x * local.z;
@@ -94,12 +105,11 @@ class TriangleTracer final : public Tracer {
       for (std::size_t i = 0; i < count; ++i) {
         if (!packet.hit[i]) continue;
         const float near = packet.from_behind[i] ? 1.0f : 1.0f - packet.distance[i] / radius_vox_;
-        out[first + i] += sky_.weights[ray] * std::max(near, 0.0f);
+        out[first + i] += sky.weights[ray] * std::max(near, 0.0f);
       }
     }
   }
 
-  const SkyRays& sky_;
   float radius_vox_;
   std::unique_ptr<RayScene> scene_;
 };
@@ -108,18 +118,15 @@ class TriangleTracer final : public Tracer {
 class BrickTracer final : public Tracer {
  public:
   static Result<std::unique_ptr<Tracer>> create(std::span<const glm::vec3> positions,
-                                                std::span<const Triangle> triangles, const SkyRays& sky,
-                                                float radius_vox, Progress& progress) {
-    auto out = std::make_unique<BrickTracer>(sky, radius_vox);
+                                                std::span<const Triangle> triangles, float radius_vox,
+                                                Progress& progress) {
+    auto out = std::make_unique<BrickTracer>(radius_vox);
     DUBSAR_ASSIGN(out->bricks_, SurfaceBricks::build(positions, triangles, progress));
     return out;
   }
-  BrickTracer(const SkyRays& sky, float radius_vox) : radius_vox_(radius_vox), weights_(sky.weights) {
-    for (const glm::vec3& d : sky.directions)
-      for (std::size_t axis = 0; axis < 3; ++axis) directions_[axis].push_back(d[static_cast<int>(axis)]);
-  }
+  explicit BrickTracer(float radius_vox) : radius_vox_(radius_vox) {}
 
-  std::array<float, kLanes> taken(const VertexGroup& group) const override {
+  std::array<float, kLanes> taken(const VertexGroup& group, const Sky& sky) const override {
     kernels::MarchStart start;
     for (std::size_t i = 0; i < kLanes; ++i) {
       const std::size_t from = i < group.count ? i : 0;
@@ -133,17 +140,15 @@ class BrickTracer final : public Tracer {
       }
     }
     std::array<float, kLanes> out{};
-    kernels::march(
-        bricks_,
-        {directions_[0].data(), directions_[1].data(), directions_[2].data(), weights_.data(), weights_.size()},
-        radius_vox_, start, out);
+    const std::vector<float>& weights = sky.rays.weights;
+    kernels::march(bricks_,
+                   {sky.along[0].data(), sky.along[1].data(), sky.along[2].data(), weights.data(), weights.size()},
+                   radius_vox_, start, out);
     return out;
   }
 
  private:
   float radius_vox_;
-  std::span<const float> weights_;
-  std::array<std::vector<float>, 3> directions_;
   SurfaceBricks bricks_;
 };
 
@@ -269,20 +274,6 @@ void triangles_near(std::span<const glm::vec3> positions, std::span<const Triang
 
 }  // namespace
 
-SkyRays sky_rays(int count) {
-  DUBSAR_CHECK(count >= 1 && count <= 65536);
-  constexpr double kGoldenAngle = 2.39996322972865332;  // pi (3 - sqrt 5)
-  SkyRays sky;
-  for (int i = 0; i < count; ++i) {
-    const double z = 1.0 - (i + 0.5) / count, r = std::sqrt(1.0 - z * z), azimuth = i * kGoldenAngle;
-    sky.directions.emplace_back(r * std::cos(azimuth), r * std::sin(azimuth), z);
-    const double weight = r * std::sqrt(z);
-    sky.weights.push_back(static_cast<float>(weight));
-    sky.weight_sum += weight;
-  }
-  return sky;
-}
-
 Result<std::vector<float>> ambient_light(const LitSurface& surface, const OcclusionOptions& options,
                                          Progress& progress) {
   const auto& [positions, normals, triangles, bodies] = surface;
@@ -290,9 +281,13 @@ Result<std::vector<float>> ambient_light(const LitSurface& surface, const Occlus
   DUBSAR_CHECK(bodies.empty() || bodies.size() == triangles.size());
   DUBSAR_CHECK(options.radius_vox > 0.0f);
   DUBSAR_TRY(check_indices(triangles, positions.size()));
-  const SkyRays sky = sky_rays(options.rays);
+  DUBSAR_CHECK(options.shared_by >= 1 && options.shared_by <= options.rays);
+  std::vector<Sky> skies;
+  for (int part = 0; part < options.shared_by; ++part)
+    skies.emplace_back(sky_rays_of_part(options.rays, options.shared_by, part));
+  const int rays = rays_of_vertex(options);
   const auto count = static_cast<std::int64_t>(positions.size());
-  progress.begin("ambient occlusion", count * options.rays, "ray");
+  progress.begin("ambient occlusion", count * rays, "ray");
   std::vector<float> light(positions.size(), 1.0f);
   std::unique_ptr<RayDevice> device;
   if (options.engine == OcclusionEngine::kTriangles) {
@@ -303,25 +298,34 @@ Result<std::vector<float>> ambient_light(const LitSurface& surface, const Occlus
   std::array<bool, 256> used{};
   for (const PartitionId id : body_of) used[id] = true;
   std::vector<Triangle> own, near;
-  std::vector<std::uint32_t> ids, inside;
-  const auto trace = [&](const Tracer& tracer, std::vector<std::uint32_t>& which) {
+  std::vector<std::uint32_t> ids, inside, part_of_them;
+  const auto trace_part = [&](const Tracer& tracer, std::vector<std::uint32_t>& which, const Sky& sky) {
     sort_by_place_and_side(surface.positions, surface.normals, which);
     const auto end_of_all = static_cast<std::int64_t>(which.size());
     parallel_chunks(end_of_all, kOcclusionGrain, [&](std::int64_t begin, std::int64_t end) {
-      const auto sum = static_cast<float>(sky.weight_sum);
+      const auto sum = static_cast<float>(sky.rays.weight_sum);
       VertexGroup group;
       for (std::int64_t i = begin; i < end; ++i) {
         const std::uint32_t v = which[static_cast<std::size_t>(i)];
         group.add(v, surface.positions[v] + options.offset_vox * surface.normals[v], surface.normals[v]);
         if (group.count < kLanes && i + 1 < end) continue;
         if (progress.cancelled()) return;
-        const auto taken = tracer.taken(group);
+        const auto taken = tracer.taken(group, sky);
         for (std::size_t k = 0; k < group.count; ++k)
           light[group.ids[k]] = std::clamp(1.0f - taken[k] / sum, 0.0f, 1.0f);
         group.count = 0;
       }
-      progress.advance((end - begin) * options.rays);
+      progress.advance((end - begin) * rays);
     });
+  };
+  const auto trace = [&](const Tracer& tracer, std::vector<std::uint32_t>& which) {
+    if (skies.size() == 1) return trace_part(tracer, which, skies.front());
+    for (int part = 0; part < options.shared_by; ++part) {
+      part_of_them.clear();
+      for (const std::uint32_t v : which)
+        if (sky_part_at(surface.positions[v], options.shared_by) == part) part_of_them.push_back(v);
+      trace_part(tracer, part_of_them, skies[static_cast<std::size_t>(part)]);
+    }
   };
   for (std::size_t id = 0; id < used.size(); ++id) {
     if (!used[id]) continue;
@@ -336,9 +340,9 @@ Result<std::vector<float>> ambient_light(const LitSurface& surface, const Occlus
       else
         ++skipped;
     }
-    progress.advance(skipped * options.rays);
+    progress.advance(skipped * rays);
     if (device) {
-      DUBSAR_ASSIGN(const auto tracer, TriangleTracer::create(*device, part, sky, options.radius_vox, progress));
+      DUBSAR_ASSIGN(const auto tracer, TriangleTracer::create(*device, part, options.radius_vox, progress));
       trace(*tracer, ids);
     } else if (!ids.empty()) {
       // What is further away than that no ray comes to, nor the distances that it meets.
@@ -352,14 +356,15 @@ Result<std::vector<float>> ambient_light(const LitSurface& surface, const Occlus
           if (inside.empty()) continue;
           triangles_near(positions, part, box, margin, near);
         }
-        DUBSAR_ASSIGN(const auto tracer, BrickTracer::create(positions, boxes.size() > 1 ? near : part, sky,
-                                                             options.radius_vox, progress));
+        DUBSAR_ASSIGN(const auto tracer,
+                      BrickTracer::create(positions, boxes.size() > 1 ? near : part, options.radius_vox, progress));
         trace(*tracer, boxes.size() > 1 ? inside : ids);
         if (progress.cancelled()) return cancelled_error();
       }
     }
     if (progress.cancelled()) return cancelled_error();
   }
+  if (options.shared_by > 1) share_light(normals, triangles, light);
   progress.end();
   return light;
 }

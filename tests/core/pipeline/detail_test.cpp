@@ -28,5 +28,11 @@ TEST(Detail, WhatIsAskedForIsDone) {
   EXPECT_EQ(choose_detail(Detail::kHalf, {32, 32, 32}, 512 * kGib).detail, Detail::kHalf);
 }
 
+TEST(Detail, OnlyLargeSurfacesOfTheScansResolutionShareRays) {
+  EXPECT_EQ(sharers_of_rays(Detail::kHalf, 20'000'000), 1);
+  EXPECT_EQ(sharers_of_rays(Detail::kScan, 300'000), 1);
+  EXPECT_GT(sharers_of_rays(Detail::kScan, 5'000'000), 1);
+}
+
 }  // namespace
 }  // namespace dubsar

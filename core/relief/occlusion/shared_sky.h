@@ -1,0 +1,34 @@
+#pragma once
+// The directions in which light is looked for, and how neighbours on a surface share them: each follows some of the
+// rays, spread as evenly over the sky as all, and takes what the others found into account.
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "core/mesh/tri_mesh.h"
+
+namespace dubsar {
+
+/// Directions of the rays about +z and their weights. Fibonacci spiral: z_i = 1 - (i + .5) / n, azimuth i times the
+/// golden angle; weight w1 = sin(phi) sqrt(cos(phi)) with cos(phi) = z.
+struct SkyRays {
+  std::vector<glm::vec3> directions;
+  std::vector<float> weights;
+  double weight_sum = 0.0;
+};
+SkyRays sky_rays(int count);
+
+/// Part `part` of `parts` that share about `count` rays: a spiral of count / parts, rounded up, whose turns lie between
+/// those of the others. One part is sky_rays(count).
+SkyRays sky_rays_of_part(int count, int parts, int part);
+
+/// Which part of the sky is looked at from a place: another one in each neighbouring voxel, for parts of 5 or 7.
+int sky_part_at(const glm::vec3& position, int parts);
+
+/// Each vertex's light becomes an average of its own and that of its neighbours that look the same way and are about as
+/// bright. Where all are equally bright nothing changes. Serial; 8 bytes a vertex.
+void share_light(std::span<const glm::vec3> normals, std::span<const Triangle> triangles, std::vector<float>& light);
+
+}  // namespace dubsar
