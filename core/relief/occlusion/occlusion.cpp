@@ -298,34 +298,34 @@ Result<std::vector<float>> ambient_light(const LitSurface& surface, const Occlus
   std::array<bool, 256> used{};
   for (const PartitionId id : body_of) used[id] = true;
   std::vector<Triangle> own, near;
-  std::vector<std::uint32_t> ids, inside, part_of_them;
-  const auto trace_part = [&](const Tracer& tracer, std::vector<std::uint32_t>& which, const Sky& sky) {
+  std::vector<std::uint32_t> ids, inside;
+  const auto trace = [&](const Tracer& tracer, std::vector<std::uint32_t>& which) {
     sort_by_place_and_side(surface.positions, surface.normals, which);
     const auto end_of_all = static_cast<std::int64_t>(which.size());
-    parallel_chunks(end_of_all, kOcclusionGrain, [&](std::int64_t begin, std::int64_t end) {
-      const auto sum = static_cast<float>(sky.rays.weight_sum);
+    parallel_chunks(end_of_all, kOcclusionGrain * options.shared_by, [&](std::int64_t begin, std::int64_t end) {
       VertexGroup group;
-      for (std::int64_t i = begin; i < end; ++i) {
-        const std::uint32_t v = which[static_cast<std::size_t>(i)];
-        group.add(v, surface.positions[v] + options.offset_vox * surface.normals[v], surface.normals[v]);
-        if (group.count < kLanes && i + 1 < end) continue;
-        if (progress.cancelled()) return;
+      const auto follow = [&](const Sky& sky) {
+        const auto sum = static_cast<float>(sky.rays.weight_sum);
         const auto taken = tracer.taken(group, sky);
         for (std::size_t k = 0; k < group.count; ++k)
           light[group.ids[k]] = std::clamp(1.0f - taken[k] / sum, 0.0f, 1.0f);
         group.count = 0;
+      };
+      for (int part = 0; part < options.shared_by; ++part) {
+        const Sky& sky = skies[static_cast<std::size_t>(part)];
+        for (std::int64_t i = begin; i < end; ++i) {
+          const std::uint32_t v = which[static_cast<std::size_t>(i)];
+          if (options.shared_by > 1 && sky_part_at(surface.positions[v], options.shared_by) != part) continue;
+          group.add(v, surface.positions[v] + options.offset_vox * surface.normals[v], surface.normals[v]);
+          if (group.count < kLanes) continue;
+          if (progress.cancelled()) return;
+          follow(sky);
+        }
+        if (progress.cancelled()) return;
+        if (group.count > 0) follow(sky);
       }
       progress.advance((end - begin) * rays);
     });
-  };
-  const auto trace = [&](const Tracer& tracer, std::vector<std::uint32_t>& which) {
-    if (skies.size() == 1) return trace_part(tracer, which, skies.front());
-    for (int part = 0; part < options.shared_by; ++part) {
-      part_of_them.clear();
-      for (const std::uint32_t v : which)
-        if (sky_part_at(surface.positions[v], options.shared_by) == part) part_of_them.push_back(v);
-      trace_part(tracer, part_of_them, skies[static_cast<std::size_t>(part)]);
-    }
   };
   for (std::size_t id = 0; id < used.size(); ++id) {
     if (!used[id]) continue;
