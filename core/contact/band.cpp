@@ -83,10 +83,12 @@ Result<ContactBand> ContactBand::make(const BitVolume& inside, std::vector<Patch
     for (std::size_t i = 0; i < buckets[b].size(); ++i) {
       const Visit v = buckets[b][i];
       if (nearest.get(v.x, v.y, v.z) != v.sample) continue;
-      for (std::int32_t k = 0; k < 27; ++k) {
-        const std::int32_t dx = k % 3 - 1, dy = k / 3 % 3 - 1, dz = k / 9 - 1;
-        if (std::abs(dx) + std::abs(dy) + std::abs(dz) == 1) offer(v.x + dx, v.y + dy, v.z + dz, v.sample);
-      }
+      offer(v.x, v.y, v.z - 1, v.sample);
+      offer(v.x, v.y - 1, v.z, v.sample);
+      offer(v.x - 1, v.y, v.z, v.sample);
+      offer(v.x + 1, v.y, v.z, v.sample);
+      offer(v.x, v.y + 1, v.z, v.sample);
+      offer(v.x, v.y, v.z + 1, v.sample);
     }
   }
   // Bricks in order, so that the nodes do not depend on how the fronts ran.

@@ -25,7 +25,7 @@ class BrickMap {
   const Dims& bricks() const noexcept { return bricks_; }
 
   T get(std::int64_t x, std::int64_t y, std::int64_t z) const noexcept {
-    if (x < 0 || y < 0 || z < 0 || x >= dims_.x || y >= dims_.y || z >= dims_.z) return none_;
+    if (beyond(x, dims_.x) || beyond(y, dims_.y) || beyond(z, dims_.z)) return none_;
     const std::uint32_t place = place_[brick_of(x, y, z)];
     return place == kNoBrick ? none_ : values_[place + inside(x, y, z)];
   }
@@ -45,11 +45,17 @@ class BrickMap {
 
  private:
   static constexpr std::uint32_t kNoBrick = 0xffffffffu;
+  static bool beyond(std::int64_t at, std::int64_t end) noexcept {
+    return static_cast<std::uint64_t>(at) >= static_cast<std::uint64_t>(end);
+  }
+  // Of points in the grid; without a sign their division is a shift.
   std::size_t brick_of(std::int64_t x, std::int64_t y, std::int64_t z) const noexcept {
-    return static_cast<std::size_t>(((z / kEdge) * bricks_.y + y / kEdge) * bricks_.x + x / kEdge);
+    const auto of = [](std::int64_t at) { return static_cast<std::size_t>(at) / std::size_t{kEdge}; };
+    return (of(z) * static_cast<std::size_t>(bricks_.y) + of(y)) * static_cast<std::size_t>(bricks_.x) + of(x);
   }
   static std::uint32_t inside(std::int64_t x, std::int64_t y, std::int64_t z) noexcept {
-    return static_cast<std::uint32_t>(((z % kEdge) * kEdge + y % kEdge) * kEdge + x % kEdge);
+    const auto in = [](std::int64_t at) { return static_cast<std::uint32_t>(at) % std::uint32_t{kEdge}; };
+    return (in(z)*std::uint32_t{kEdge} + in(y)) * std::uint32_t{kEdge} + in(x);
   }
 
   Dims dims_, bricks_;

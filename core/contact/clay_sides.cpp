@@ -65,9 +65,11 @@ bool unpinch(const ContactBand& band, std::vector<ClaySide>& side) {
   for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
     for (std::size_t a = 0; a < 3; ++a) {
       const glm::ivec3 p = band.point(n), u = kAxes[a], v = kAxes[(a + 1) % 3];
-      const std::uint32_t right = band.at(p + u), across = band.at(p + u + v), up = band.at(p + v);
-      if (right == ContactBand::kNone || across == ContactBand::kNone || up == ContactBand::kNone) continue;
-      if (side[n] != side[across] || side[right] != side[up] || side[n] == side[right]) continue;
+      const std::uint32_t right = band.at(p + u);
+      if (right == ContactBand::kNone || side[n] == side[right]) continue;
+      const std::uint32_t across = band.at(p + u + v), up = band.at(p + v);
+      if (across == ContactBand::kNone || up == ContactBand::kNone) continue;
+      if (side[n] != side[across] || side[right] != side[up]) continue;
       side[side[n] == ClaySide::kEnvelope ? n : right] = ClaySide::kTablet;
       changed = true;
     }

@@ -92,6 +92,7 @@ class Follower {
       const bool second = std::any_of(rings.added[i].begin(), rings.added[i].end(), at_rim);
       share_[i] = second ? 0.5f * follows.share[i] : follows.share[i];
     }
+    find_near();
   }
 
   void find_normals() { normal_ = unit_normals(mesh_, rings_, dual_, 1); }
@@ -123,8 +124,8 @@ class Follower {
     });
     std::vector<float> weights = trust_;
     const int rings = options_.clays ? kStepRings : kProfileRings;
-    average_rings(rings_, rings, ways);
-    average_rings(rings_, rings, weights);
+    average_rings(rings_, rings, near_, ways);
+    average_rings(rings_, rings, near_, weights);
     each([&](std::size_t i) { ways[i] /= weights[i] + kFloor; });
     return ways;
   }
@@ -157,8 +158,8 @@ class Follower {
       }
       if (squares > 0.0f) ways[i] = -2.0f * (options_.blur_variance + kLowPass) * bend / squares;
     });
-    average_rings(rings_, kBendRings, ways);
-    for (float& way : ways) way = std::clamp(way, -kMostHollow, kMostHollow);
+    average_rings(rings_, kBendRings, near_, ways);
+    each([&](std::size_t i) { ways[i] = std::clamp(ways[i], -kMostHollow, kMostHollow); });
     return ways;
   }
 
@@ -202,6 +203,26 @@ class Follower {
   }
 
  private:
+  /// Those that move, and as many rings around them as anything is averaged over.
+  void find_near() {
+    constexpr int kMostRings = std::max({kProfileRings, kStepRings, kBendRings});
+    std::vector<bool> seen(share_.size(), false);
+    for (std::uint32_t i = 0; i < share_.size(); ++i)
+      if (share_[i] > 0.0f) {
+        seen[i] = true;
+        near_.push_back(i);
+      }
+    for (std::size_t ring = 0, begin = 0; ring < kMostRings; ++ring) {
+      const std::size_t end = near_.size();
+      for (; begin < end; ++begin)
+        for (const std::uint32_t w : rings_.added[near_[begin]])
+          if (!seen[w]) {
+            seen[w] = true;
+            near_.push_back(w);
+          }
+    }
+    std::sort(near_.begin(), near_.end());
+  }
   /// Density along lines across the contact, averaged along it; their middles are `away` from it.
   std::vector<Profile> mean_profiles(float away) const {
     std::vector<Profile> profiles(mesh_.added.size());
@@ -210,7 +231,7 @@ class Follower {
         profiles[i][s] = trilinear(
             density_, mesh_.added[i] + (away + kStep * static_cast<float>(static_cast<int>(s) - kReach)) * normal_[i]);
     });
-    average_rings(rings_, kProfileRings, profiles);
+    average_rings(rings_, kProfileRings, near_, profiles);
     return profiles;
   }
   glm::vec3 position(std::uint32_t v, const std::vector<glm::vec3>& added) const {
@@ -222,8 +243,8 @@ class Follower {
   }
   template <class Work>
   void each(const Work& work) const {
-    parallel_for(static_cast<std::int64_t>(mesh_.added.size()), 256,
-                 [&](std::int64_t i) { work(static_cast<std::size_t>(i)); });
+    parallel_for(static_cast<std::int64_t>(near_.size()), 256,
+                 [&](std::int64_t k) { work(std::size_t{near_[static_cast<std::size_t>(k)]}); });
   }
 
   InterfaceMesh& mesh_;
@@ -234,8 +255,9 @@ class Follower {
   std::vector<glm::vec3> start_, normal_;
   std::vector<float> share_;  ///< of every move: less at the rim
   const std::vector<bool>& step_;
-  std::vector<float> trust_;  ///< in the place of each dip, 0..1
-  float noise_ = 0.0f;        ///< of the depth of a dip
+  std::vector<std::uint32_t> near_;  ///< what is looked at
+  std::vector<float> trust_;         ///< in the place of each dip, 0..1
+  float noise_ = 0.0f;               ///< of the depth of a dip
 };
 
 }  // namespace

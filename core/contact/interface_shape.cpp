@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
+#include <unordered_map>
 
 #include "core/contact/dents.h"
 #include "core/contact/film_refine.h"
@@ -158,6 +159,56 @@ std::vector<float> leashes(const std::vector<glm::vec3>& added, const std::vecto
   return leash;
 }
 
+/// Neighbours of the added vertices as places in one array: the added ones, and behind them those of the surface.
+struct Beside {
+  IdLists ids;
+  std::vector<glm::vec3> surface;
+
+  Beside(const InterfaceRings& rings, const std::vector<glm::vec3>& dual_positions) {
+    const auto dual = static_cast<std::uint32_t>(dual_positions.size()),
+               added = static_cast<std::uint32_t>(rings.all.size());
+    std::unordered_map<std::uint32_t, std::uint32_t> place;
+    for (std::size_t i = 0; i < added; ++i) {
+      for (const std::uint32_t w : rings.all[i]) {
+        if (w >= dual) {
+          ids.add(w - dual);
+          continue;
+        }
+        const auto [at, fresh] = place.try_emplace(w, static_cast<std::uint32_t>(added + surface.size()));
+        if (fresh) surface.push_back(dual_positions[w]);
+        ids.add(at->second);
+      }
+      ids.end_list();
+    }
+  }
+};
+
+/// Films by one round, what is inferred until it is a membrane between them and the surface.
+void relax(InterfaceMesh& mesh, const Beside& beside, const std::vector<std::uint8_t>& evidence,
+           const std::vector<float>& leash, float most) {
+  std::vector<glm::vec3> now = mesh.added;
+  now.insert(now.end(), beside.surface.begin(), beside.surface.end());
+  std::vector<glm::vec3> next = now;
+  const auto round = [&](std::uint8_t which, float share) {
+    each_vertex(evidence.size(), [&](std::size_t i) {
+      next[i] = now[i];
+      const std::span<const std::uint32_t> around = beside.ids[i];
+      if (evidence[i] != which || around.empty()) return;
+      glm::vec3 mean(0.0f);
+      for (const std::uint32_t w : around) mean += now[w];
+      mean /= static_cast<float>(around.size());
+      const glm::vec3 step = now[i] + share * (mean - now[i]) - mesh.added[i];
+      const float length = glm::length(step);
+      const float free = leash[i] * most;
+      next[i] = mesh.added[i] + (length > free ? free / length : 1.0f) * step;
+    });
+    now.swap(next);
+  };
+  for (int k = 0; k < kFilmRounds; ++k) round(kFilm, 0.5f);
+  for (int k = 0; k < kMembraneRounds; ++k) round(kInferred, 1.0f);
+  std::copy(now.begin(), now.begin() + static_cast<std::ptrdiff_t>(mesh.added.size()), mesh.added.begin());
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector<glm::vec3>& dual_positions,
@@ -183,25 +234,7 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
   }
 
   const std::vector<float> leash = leashes(mesh.added, crossed);
-  const std::vector<glm::vec3> start = mesh.added;
-  std::vector<glm::vec3> moved = mesh.added;
-  const auto position = [&](std::uint32_t v) { return v < dual ? dual_positions[v] : mesh.added[v - dual]; };
-  const auto relax = [&](std::uint8_t which, float share) {
-    each_vertex(evidence.size(), [&](std::size_t i) {
-      moved[i] = mesh.added[i];
-      if (evidence[i] != which || rings.all[i].empty()) return;
-      glm::vec3 mean(0.0f);
-      for (const std::uint32_t w : rings.all[i]) mean += position(w);
-      mean /= static_cast<float>(rings.all[i].size());
-      const glm::vec3 step = mesh.added[i] + share * (mean - mesh.added[i]) - start[i];
-      const float length = glm::length(step);
-      const float free = leash[i] * options.most;
-      moved[i] = start[i] + (length > free ? free / length : 1.0f) * step;
-    });
-    mesh.added.swap(moved);
-  };
-  for (int round = 0; round < kFilmRounds; ++round) relax(kFilm, 0.5f);
-  for (int round = 0; round < kMembraneRounds; ++round) relax(kInferred, 1.0f);
+  relax(mesh, Beside(rings, dual_positions), evidence, leash, options.most);
   std::vector<float> follows(evidence.size());
   for (std::size_t i = 0; i < follows.size(); ++i) follows[i] = evidence[i] == kFilm ? leash[i] : 0.0f;
   follow_dips(mesh, rings, dual_positions, {follows, clay_step}, density,

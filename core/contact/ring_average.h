@@ -54,6 +54,22 @@ void average_rings(const InterfaceRings& around, int rounds, std::vector<T>& val
   }
 }
 
+/// The same for some of the vertices, `rounds` rings around those that matter; the others stay.
+template <class T>
+void average_rings(const InterfaceRings& around, int rounds, const std::vector<std::uint32_t>& some,
+                   std::vector<T>& values) {
+  std::vector<T> next(some.size());
+  for (int round = 0; round < rounds; ++round) {
+    each_vertex(some.size(), [&](std::size_t k) {
+      const std::uint32_t i = some[k];
+      next[k] = values[i];
+      for (const std::uint32_t w : around.added[i]) ring_average::add(next[k], values[w]);
+      ring_average::scale(next[k], 1.0f / static_cast<float>(around.added[i].size() + 1));
+    });
+    each_vertex(some.size(), [&](std::size_t k) { values[some[k]] = next[k]; });
+  }
+}
+
 /// Normals of the added vertices, towards the envelope, as long as twice the area of the triangles around them.
 inline std::vector<glm::vec3> area_normals(const InterfaceMesh& mesh, const std::vector<glm::vec3>& dual_positions) {
   const auto dual = static_cast<std::uint32_t>(dual_positions.size());
