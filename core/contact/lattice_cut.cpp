@@ -36,10 +36,11 @@ LatticeCut::LatticeCut(const std::vector<std::uint32_t>& block, std::uint32_t bl
 
 void LatticeCut::add_step_cost(std::uint32_t lower, std::uint32_t upper, std::uint32_t axis, std::int32_t cost) {
   Point &a = points_[place_[lower]], &b = points_[place_[upper]];
-  a.beside[2 * axis] = place_[upper];
-  b.beside[2 * axis + 1] = place_[lower];
-  a.residual[2 * axis] += cost;
-  b.residual[2 * axis + 1] += cost;
+  const std::size_t up = 2 * std::size_t{axis}, down = up + 1;
+  a.beside[up] = place_[upper];
+  b.beside[down] = place_[lower];
+  a.residual[up] += cost;
+  b.residual[down] += cost;
 }
 
 void LatticeCut::add_tie(std::uint32_t from, std::uint32_t to, std::int32_t cost) {
