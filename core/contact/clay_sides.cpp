@@ -39,20 +39,27 @@ void adopt_islands(const ContactBand& band, std::vector<ClaySide>& side, const s
       held[n] = true;
       queue.push_back(n);
     }
+  std::vector<std::uint32_t> rim;  // those beside clay of the other side that was not held then
   const auto spread = [&](bool adopt) {
     for (std::size_t i = 0; i < queue.size(); ++i) {
       const std::uint32_t n = queue[i];
-      for (const glm::ivec3& axis : kAxes)
-        for (const int sense : {-1, 1}) {
-          const std::uint32_t m = band.at(band.point(n) + sense * axis);
-          if (m == ContactBand::kNone || held[m] || (!adopt && side[m] != side[n])) continue;
-          side[m] = side[n];
-          held[m] = true;
-          queue.push_back(m);
+      bool other_side = false;
+      each_beside(band.point(n), [&](const glm::ivec3& q) {
+        const std::uint32_t m = band.at(q);
+        if (m == ContactBand::kNone || held[m]) return;
+        if (!adopt && side[m] != side[n]) {
+          other_side = true;
+          return;
         }
+        side[m] = side[n];
+        held[m] = true;
+        queue.push_back(m);
+      });
+      if (other_side) rim.push_back(n);
     }
   };
   spread(false);
+  queue.swap(rim);
   spread(true);
   for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
     if (!held[n]) side[n] = ClaySide::kTablet;

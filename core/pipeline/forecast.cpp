@@ -71,8 +71,9 @@ class Slices final : public SlabSource {
 double decoded_per_read(const SlabSource& scan, std::int64_t slices, std::int64_t group) {
   const std::int64_t layer = std::max<std::int64_t>(1, scan.preferred_height()), all = scan.dims().z;
   if (slices >= all || layer <= 1) return 1.0;
+  const std::int64_t groups = slices / group;
   const double layers =
-      static_cast<double>(slices / group) * std::ceil(static_cast<double>(group) / static_cast<double>(layer));
+      static_cast<double>(groups) * std::ceil(static_cast<double>(group) / static_cast<double>(layer));
   return std::max(
       1.0, std::min(layers * static_cast<double>(layer), static_cast<double>(all)) / static_cast<double>(slices));
 }
