@@ -337,9 +337,8 @@ double NaiveVisitor::wit() const noexcept {
   return kind_ == NaiveKind::kImitates ? 0.85 : kind_ == NaiveKind::kWaves ? 0.5 : 0.4;
 }
 
-/// Who understands it holds the hand of the next attempt higher, by half a hand to a hand's length, no earlier. Of
-/// those who pass by a public display, 56 % do what a picture on it shows (Walter, Bailly and Mueller, CHI 2013); who
-/// is shown where to hold a hand finds the place to 51 to 80 mm within 3.7 s (Freeman, Brewster and Lantz, CHI 2016).
+/// The next attempt is higher, by half a hand to a hand. Of those who pass by a display 56 % do what a picture shows
+/// (Walter, Bailly, Mueller, CHI 2013); a shown place is found to 51 to 80 mm in 3.7 s (Freeman et al., CHI 2016).
 void NaiveVisitor::follow_arrow() {
   if (random_.uniform(0.0, 1.0) > std::min(wit(), kFollowArrows)) return;
   manner_.higher_m = std::min(kHighest_m, manner_.higher_m + body_.size * random_.uniform(0.04, 0.12));

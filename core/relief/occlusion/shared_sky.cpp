@@ -25,8 +25,6 @@ float likeness(const glm::vec3& normal, const glm::vec3& other, float difference
 
 }  // namespace
 
-SkyRays sky_rays(int count) { return sky_rays_of_part(count, 1, 0); }
-
 SkyRays sky_rays_of_part(int count, int parts, int part) {
   DUBSAR_CHECK(count >= 1 && count <= 65536 && parts >= 1 && part >= 0 && part < parts);
   constexpr double kGoldenAngle = 2.39996322972865332;  // pi (3 - sqrt 5)

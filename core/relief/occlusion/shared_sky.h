@@ -18,10 +18,9 @@ struct SkyRays {
   std::vector<float> weights;
   double weight_sum = 0.0;
 };
-SkyRays sky_rays(int count);
 
 /// Part `part` of `parts` that share about `count` rays: a spiral of count / parts, rounded up, whose turns lie between
-/// those of the others. One part is sky_rays(count).
+/// those of the others. One part: the whole spiral.
 SkyRays sky_rays_of_part(int count, int parts, int part);
 
 /// Which part of the sky is looked at from a place: another one in each neighbouring voxel, for parts of 5 or 7.

@@ -77,8 +77,7 @@ Off off(const std::vector<float>& found, const std::vector<float>& wanted) {
   return {std::sqrt(squares / count), sum / count};
 }
 
-TEST(SharedSky, APartOfOneIsAllAndPartsOfFiveCoverTheSkyTogetherAndAlone) {
-  EXPECT_EQ(sky_rays_of_part(160, 1, 0).directions, sky_rays(160).directions);
+TEST(SharedSky, PartsOfFiveCoverTheSkyTogetherAndAlone) {
   std::vector<glm::vec3> all;
   for (int part = 0; part < 5; ++part) {
     const SkyRays sky = sky_rays_of_part(160, 5, part);
