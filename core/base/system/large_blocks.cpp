@@ -12,7 +12,7 @@ void keep_large_blocks() noexcept {
 }
 
 void return_large_blocks() noexcept {
-  constexpr int kLargeBytes = 3 << 19, kSpareBytes = 16 << 20;
+  constexpr int kLargeBytes = 1 << 20, kSpareBytes = 16 << 20;
   mallopt(M_MMAP_THRESHOLD, kLargeBytes);
   mallopt(M_TRIM_THRESHOLD, kSpareBytes);
 }
