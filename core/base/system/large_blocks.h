@@ -9,10 +9,10 @@ namespace dubsar {
 void keep_large_blocks() noexcept;
 
 /// From now on a block of 1 MiB or more (a texture of 960x540 has 2) goes back to the system when it is freed. Without
-/// this the C library raises that size, up to 32 MiB, to that of each such block that is freed; later ones come from its
-/// heap, where small blocks between them keep what is freed from going back. Smaller blocks, which drivers without a
-/// GPU take and free in each picture, are used again: their pages would be cleared each time (a quarter of a picture's
-/// time was that). For the whole process; any thread, any number of times.
+/// this the C library raises that size, up to 32 MiB, to that of each such block that is freed; later ones come from
+/// its heap, where small blocks between them keep what is freed from going back. Smaller blocks, which drivers without
+/// a GPU take and free in each picture, are used again: their pages would be cleared each time (a quarter of a
+/// picture's time was that). For the whole process; any thread, any number of times.
 void return_large_blocks() noexcept;
 
 }  // namespace dubsar
