@@ -5,8 +5,8 @@ namespace dubsar {
 
 struct HandStanding {
   /// It is the hand of who stands before the panel: so say the heads that are seen, or its arm, or that this person's
-  /// hands have been followed for long. Not of one that may be the other hand of somebody
-  /// whose head is seen beside, mistaken.
+  /// hands have been followed for long. Not of one that may be the other hand of somebody whose head is seen beside,
+  /// mistaken.
   bool sure = false;
   /// Likewise of somebody beside of whom nothing but hands was seen.
   bool doubtful = false;

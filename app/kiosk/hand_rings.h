@@ -24,7 +24,7 @@ glm::dvec3 ring_place_mm(const RingStage& stage, const glm::dvec3& place_m) noex
 std::vector<LinesItem> hand_rings(const RingStage& stage, std::span<const HandMark> hands);
 
 /// A ring that stays where a hand sank out of sight, and an arrow that rises from it: `seconds` of it are over. It
-/// comes and goes slowly, and never blinks.
+/// comes slowly, and never blinks.
 std::vector<LinesItem> higher_sign(const RingStage& stage, const glm::dvec3& place_m, double seconds);
 
 /// Where the nearest hand that holds or may take hold would take the object: on it, on the side where the hand is, the
