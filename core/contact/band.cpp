@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+
+#include "core/base/system/parallel.h"
 
 namespace dubsar {
 namespace {
@@ -12,6 +15,117 @@ bool between(const SurfaceModel& model, const FillPatch& patch) {
   const auto is_tablet = [&](PartitionId id) { return model.partitions[id].kind == PartitionKind::kTablet; };
   return is_tablet(patch.partition) != is_tablet(patch.reverse_partition);
 }
+
+/// The nearest sample of points: found by fronts of rising distance for every other point along each axis, and between
+/// those by looking at what they know.
+class NearestSamples {
+ public:
+  static Result<NearestSamples> find(const std::vector<PatchPoint>& samples, const Dims& dims, float reach,
+                                     Progress& progress) {
+    NearestSamples found(samples, dims, reach);
+    if (!found.run_fronts(progress)) return cancelled_error();
+    return found;
+  }
+
+  /// Bricks of the whole grid that may have points of the band, in order.
+  std::vector<glm::ivec3> bricks() const {
+    const Dims coarse = known_.bricks();
+    const auto count = [](std::int64_t points) { return (points + kEdge - 1) / kEdge; };
+    std::vector<glm::ivec3> found;
+    for (std::int64_t z = 0; z < count(dims_.z); ++z)
+      for (std::int64_t y = 0; y < count(dims_.y); ++y)
+        for (std::int64_t x = 0; x < count(dims_.x); ++x)
+          if (x / 2 < coarse.x && y / 2 < coarse.y && z / 2 < coarse.z && known_.has_brick(x / 2, y / 2, z / 2))
+            found.emplace_back(x, y, z);
+    return found;
+  }
+
+  /// visit(node) for the points of a brick that are inside and in reach of their nearest sample.
+  template <class Visit>
+  void each_point(const glm::ivec3& brick, const BitVolume& inside, const Visit& visit) const {
+    const glm::ivec3 from = glm::max(brick * static_cast<int>(kEdge), 1),
+                     to = glm::min((brick + 1) * static_cast<int>(kEdge), glm::ivec3(dims_.x, dims_.y, dims_.z) - 1);
+    for (std::int32_t z = from.z; z < to.z; ++z)
+      for (std::int32_t y = from.y; y < to.y; ++y)
+        for (std::int32_t x = from.x; x < to.x; ++x) {
+          if (!inside.get(x, y, z)) continue;
+          const std::uint32_t s = nearest_of({x, y, z});
+          if (s == ContactBand::kNone) continue;
+          const glm::vec3 off = glm::vec3(x, y, z) - samples_[s].position;
+          const float distance = glm::length(off);
+          if (distance > reach_) continue;
+          visit({x, y, z, s, glm::dot(off, samples_[s].normal), distance});
+        }
+  }
+
+ private:
+  static constexpr std::int64_t kEdge = BrickMap<std::uint32_t>::kEdge;
+  struct Visit {
+    glm::ivec3 at;
+    std::uint32_t sample;
+  };
+  using Buckets = std::vector<std::vector<Visit>>;
+
+  NearestSamples(const std::vector<PatchPoint>& samples, const Dims& dims, float reach)
+      : samples_(samples),
+        dims_(dims),
+        reach_(reach),
+        known_({dims.x / 2 + 1, dims.y / 2 + 1, dims.z / 2 + 1}, ContactBand::kNone) {}
+
+  float distance(const glm::ivec3& coarse, std::uint32_t s) const {
+    return glm::distance(2.0f * glm::vec3(coarse), samples_[s].position);
+  }
+
+  bool run_fronts(Progress& progress) {
+    constexpr float kBucket = 0.5f;
+    const float reach = reach_ + 2.0f;  // whatever lies between known points is in reach of them
+    Buckets buckets(static_cast<std::size_t>(reach / kBucket) + 2);
+    const Dims d = known_.dims();
+    const auto offer = [&](const glm::ivec3& p, std::uint32_t s) {
+      if (p.x < 0 || p.y < 0 || p.z < 0 || p.x >= d.x || p.y >= d.y || p.z >= d.z) return;
+      const std::uint32_t before = known_.get(p.x, p.y, p.z);
+      if (before == s) return;
+      const float far = distance(p, s);
+      if (far > reach || (before != ContactBand::kNone && distance(p, before) <= far)) return;
+      known_.at(p.x, p.y, p.z) = s;
+      buckets[static_cast<std::size_t>(far / kBucket)].push_back({p, s});
+    };
+    for (std::uint32_t s = 0; s < samples_.size(); ++s) offer(glm::ivec3(glm::round(0.5f * samples_[s].position)), s);
+    for (std::size_t b = 0; b < buckets.size(); ++b) {
+      if (progress.cancelled()) return false;
+      for (std::size_t i = 0; i < buckets[b].size(); ++i) {
+        const Visit v = buckets[b][i];
+        if (known_.get(v.at.x, v.at.y, v.at.z) == v.sample)
+          each_beside(v.at, [&](const glm::ivec3& q) { offer(q, v.sample); });
+      }
+    }
+    return true;
+  }
+
+  std::uint32_t nearest_of(const glm::ivec3& p) const {
+    const glm::ivec3 low = p / 2, high = (p + 1) / 2;
+    std::uint32_t nearest = ContactBand::kNone, last = ContactBand::kNone;
+    float least = INFINITY;
+    for (int z = low.z; z <= high.z; ++z)
+      for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x) {
+          const std::uint32_t s = known_.get(x, y, z);
+          if (s == ContactBand::kNone || s == last) continue;
+          last = s;
+          const glm::vec3 off = glm::vec3(p) - samples_[s].position;
+          const float square = glm::dot(off, off);
+          if (square >= least) continue;
+          least = square;
+          nearest = s;
+        }
+    return nearest;
+  }
+
+  const std::vector<PatchPoint>& samples_;
+  Dims dims_;
+  float reach_;
+  BrickMap<std::uint32_t> known_;
+};
 
 }  // namespace
 
@@ -52,60 +166,27 @@ std::vector<PatchPoint> sample_patches(const SurfaceModel& model, float spacing)
 
 Result<ContactBand> ContactBand::make(const BitVolume& inside, std::vector<PatchPoint> samples, float reach,
                                       Progress& progress) {
-  const Dims d = inside.dims();
-  ContactBand band{std::move(samples), {}, BrickMap<std::uint32_t>(d, kNone), reach};
-  // Fronts of rising distance: a point takes the nearest sample that its neighbours know.
-  constexpr float kBucket = 0.25f;
-  struct Visit {
-    std::int32_t x, y, z;
-    std::uint32_t sample;
+  ContactBand band{std::move(samples), {}, BrickMap<std::uint32_t>(inside.dims(), kNone), reach};
+  DUBSAR_ASSIGN(const NearestSamples nearest, NearestSamples::find(band.samples, inside.dims(), reach, progress));
+  const std::vector<glm::ivec3> bricks = nearest.bricks();
+  std::vector<std::int64_t> first(bricks.size());
+  const auto each_brick = [&](const auto& work) {
+    parallel_for(static_cast<std::int64_t>(bricks.size()), 16, [&](std::int64_t b) {
+      if (progress.cancelled()) return;
+      const auto at = static_cast<std::size_t>(b);
+      nearest.each_point(bricks[at], inside, [&](const Node& node) { work(at, node); });
+    });
   };
-  std::vector<std::vector<Visit>> buckets(static_cast<std::size_t>(reach / kBucket) + 2);
-  BrickMap<std::uint32_t> nearest(d, kNone);
-  const auto distance = [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t s) {
-    return glm::distance(glm::vec3(x, y, z), band.samples[s].position);
-  };
-  const auto offer = [&](std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t s) {
-    if (x < 1 || y < 1 || z < 1 || x >= d.x - 1 || y >= d.y - 1 || z >= d.z - 1) return;
-    const std::uint32_t known = nearest.get(x, y, z);
-    if (known == s) return;
-    const float far = distance(x, y, z, s);
-    if (far > reach || (known != kNone && distance(x, y, z, known) <= far)) return;
-    nearest.at(x, y, z) = s;
-    buckets[static_cast<std::size_t>(far / kBucket)].push_back({x, y, z, s});
-  };
-  for (std::uint32_t s = 0; s < band.samples.size(); ++s) {
-    const glm::vec3 p = glm::round(band.samples[s].position);
-    offer(static_cast<std::int32_t>(p.x), static_cast<std::int32_t>(p.y), static_cast<std::int32_t>(p.z), s);
-  }
-  for (std::size_t b = 0; b < buckets.size(); ++b) {
-    if (progress.cancelled()) return cancelled_error();
-    for (std::size_t i = 0; i < buckets[b].size(); ++i) {
-      const Visit v = buckets[b][i];
-      if (nearest.get(v.x, v.y, v.z) != v.sample) continue;
-      offer(v.x, v.y, v.z - 1, v.sample);
-      offer(v.x, v.y - 1, v.z, v.sample);
-      offer(v.x - 1, v.y, v.z, v.sample);
-      offer(v.x + 1, v.y, v.z, v.sample);
-      offer(v.x, v.y + 1, v.z, v.sample);
-      offer(v.x, v.y, v.z + 1, v.sample);
-    }
-  }
-  // Bricks in order, so that the nodes do not depend on how the fronts ran.
-  const Dims bricks = nearest.bricks();
-  for (std::int32_t bz = 0; bz < bricks.z; ++bz)
-    for (std::int32_t by = 0; by < bricks.y; ++by)
-      for (std::int32_t bx = 0; bx < bricks.x; ++bx) {
-        if (!nearest.has_brick(bx, by, bz)) continue;
-        for (std::int32_t k = 0; k < 512; ++k) {
-          const std::int32_t x = 8 * bx + k % 8, y = 8 * by + k / 8 % 8, z = 8 * bz + k / 64;
-          const std::uint32_t s = nearest.get(x, y, z);
-          if (s == kNone || !inside.get(x, y, z)) continue;
-          const glm::vec3 off = glm::vec3(x, y, z) - band.samples[s].position;
-          band.node_at.at(x, y, z) = static_cast<std::uint32_t>(band.nodes.size());
-          band.nodes.push_back({x, y, z, s, glm::dot(off, band.samples[s].normal), glm::length(off)});
-        }
-      }
+  each_brick([&](std::size_t b, const Node&) { ++first[b]; });
+  for (std::size_t b = 0; b < bricks.size(); ++b)
+    if (first[b] > 0) band.node_at.add_brick(bricks[b].x, bricks[b].y, bricks[b].z);
+  band.nodes.resize(static_cast<std::size_t>(exclusive_scan(first)));
+  each_brick([&](std::size_t b, const Node& node) {
+    const std::int64_t n = first[b]++;
+    band.node_at.at(node.x, node.y, node.z) = static_cast<std::uint32_t>(n);
+    band.nodes[static_cast<std::size_t>(n)] = node;
+  });
+  if (progress.cancelled()) return cancelled_error();
   return band;
 }
 

@@ -38,6 +38,8 @@ class BrickMap {
     }
     return values_[place + inside(x, y, z)];
   }
+  /// Makes a brick, so that several threads may write in it. Coordinates as in has_brick().
+  void add_brick(std::int64_t bx, std::int64_t by, std::int64_t bz) { at(kEdge * bx, kEdge * by, kEdge * bz) = none_; }
   /// Is there a brick at these brick coordinates (rising by one from brick to brick)?
   bool has_brick(std::int64_t bx, std::int64_t by, std::int64_t bz) const noexcept {
     return place_[static_cast<std::size_t>((bz * bricks_.y + by) * bricks_.x + bx)] != kNoBrick;
