@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <tuple>
-#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
+#include "core/base/system/parallel.h"
+#include "core/mesh/edge_uses.h"
 #include "core/parts/border_loops.h"
 #include "core/parts/loop_fill.h"
 
@@ -20,33 +21,59 @@ bool is_envelope(PartitionKind kind) {
   return kind == PartitionKind::kEnvelopeInside || kind == PartitionKind::kEnvelopeOutside;
 }
 
+/// How much more often an edge is run along from its lower vertex to the higher than back.
+struct Step {
+  std::uint32_t low, high;
+  int times;
+};
+void add_step(std::uint32_t from, std::uint32_t to, int times, std::vector<Step>& steps) {
+  if (from < to)
+    steps.push_back({from, to, times});
+  else
+    steps.push_back({to, from, -times});
+}
+
 /// Sides that the tablet's faces and the contact run along once more in one direction than in the other, turned round.
 std::vector<BorderEdge> unpaired(const SurfaceModel& model, const InterfaceMesh& mesh, const FaceGraph& graph) {
-  std::unordered_map<std::uint64_t, int> net;  // > 0: from the lower id to the higher
-  const auto count = [&](std::uint32_t from, std::uint32_t to) {
-    if (from < to)
-      ++net[std::uint64_t{from} << 32 | to];
-    else
-      --net[std::uint64_t{to} << 32 | from];
-  };
-  for (std::uint32_t f = 0; f < graph.faces(); ++f) {
-    if (model.partitions[model.quad_partition[f]].kind != PartitionKind::kTablet) continue;
-    for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
-      const std::uint32_t g = graph.neighbour[s];
-      if (g == FaceGraph::kNone || !is_envelope(model.partitions[model.quad_partition[g]].kind)) continue;
-      const Polygon polygon = model.mesh.polygon(f);
-      const auto i = static_cast<std::size_t>(s - graph.first_side[f]);
-      count(polygon.vertex[i], polygon.vertex[(i + 1) % static_cast<std::size_t>(polygon.size)]);
-    }
+  using Steps = std::vector<Step>;
+  Steps steps = parallel_reduce<Steps>(
+      graph.faces(), 1 << 14, {},
+      [&](std::int64_t begin, std::int64_t end) {
+        Steps found;
+        for (auto f = static_cast<std::uint32_t>(begin); f < static_cast<std::uint64_t>(end); ++f) {
+          if (model.partitions[model.quad_partition[f]].kind != PartitionKind::kTablet) continue;
+          for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
+            const std::uint32_t g = graph.neighbour[s];
+            if (g == FaceGraph::kNone || !is_envelope(model.partitions[model.quad_partition[g]].kind)) continue;
+            const Polygon polygon = model.mesh.polygon(f);
+            const auto i = static_cast<std::size_t>(s - graph.first_side[f]);
+            add_step(polygon.vertex[i], polygon.vertex[(i + 1) % static_cast<std::size_t>(polygon.size)], 1, found);
+          }
+        }
+        return found;
+      },
+      [](Steps all, const Steps& part) {
+        all.insert(all.end(), part.begin(), part.end());
+        return all;
+      });
+  const std::vector<EdgeUse> uses = edge_uses(mesh.triangles);
+  for (std::size_t begin = 0, end; begin < uses.size(); begin = end) {
+    end = end_of_edge(uses, begin);
+    int net = 0;
+    for (std::size_t i = begin; i < end; ++i) net += uses[i].rising ? 1 : -1;
+    if (net != 0) add_step(uses[begin].low, uses[begin].high, net, steps);
   }
-  for (const Triangle& t : mesh.triangles)
-    for (std::size_t i = 0; i < 3; ++i) count(t[i], t[(i + 1) % 3]);
+  std::sort(steps.begin(), steps.end(),
+            [](const Step& a, const Step& b) { return std::tie(a.low, a.high) < std::tie(b.low, b.high); });
   std::vector<BorderEdge> edges;
-  for (const auto& [key, times] : net)
-    for (int i = 0; i < std::abs(times); ++i) {
-      const auto low = static_cast<std::uint32_t>(key >> 32), high = static_cast<std::uint32_t>(key);
-      edges.push_back(times > 0 ? BorderEdge{high, low} : BorderEdge{low, high});
-    }
+  for (std::size_t begin = 0, end; begin < steps.size(); begin = end) {
+    const Step& edge = steps[begin];
+    int times = 0;
+    for (end = begin; end < steps.size() && steps[end].low == edge.low && steps[end].high == edge.high; ++end)
+      times += steps[end].times;
+    for (int i = 0; i < std::abs(times); ++i)
+      edges.push_back(times > 0 ? BorderEdge{edge.high, edge.low} : BorderEdge{edge.low, edge.high});
+  }
   std::sort(edges.begin(), edges.end(),
             [](const BorderEdge& a, const BorderEdge& b) { return a.from != b.from ? a.from < b.from : a.to < b.to; });
   return edges;
@@ -139,31 +166,21 @@ class Rest {
 
 void part_shared_edges(const SurfaceModel& model, InterfaceMesh& mesh) {
   const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());
-  struct Side {
-    std::uint32_t low, high, triangle;
-    bool rising;
-  };
-  std::vector<Side> sides;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t a = mesh.triangles[t][i], b = mesh.triangles[t][(i + 1) % 3];
-      sides.push_back({std::min(a, b), std::max(a, b), t, a < b});
-    }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.rising, a.triangle) < std::tie(b.low, b.high, b.rising, b.triangle);
-  });
+  const std::vector<EdgeUse> sides = edge_uses(mesh.triangles);
   struct Cut {
     std::uint32_t a, b, first, second;  ///< edge and its two triangles
   };
   std::vector<Cut> cuts;
   for (std::size_t begin = 0, end; begin < sides.size(); begin = end) {
-    end = begin;
-    while (end < sides.size() && sides[end].low == sides[begin].low && sides[end].high == sides[begin].high) ++end;
+    end = end_of_edge(sides, begin);
     const std::size_t count = end - begin;
     const bool shared =
         count == 2 && sides[begin].high < dual && inside_body(model, sides[begin].low, sides[begin].high);
     if (!shared && count != 4) continue;
-    cuts.push_back({sides[begin].low, sides[begin].high, sides[begin].triangle, sides[end - 1].triangle});
+    std::size_t falling = begin, rising = end - 1;
+    while (falling + 1 < end && sides[falling].rising) ++falling;
+    while (rising > begin && !sides[rising].rising) --rising;
+    cuts.push_back({sides[begin].low, sides[begin].high, sides[falling].side / 3, sides[rising].side / 3});
   }
   const auto position = [&](std::uint32_t v) { return v < dual ? model.mesh.positions[v] : mesh.added[v - dual]; };
   std::vector<bool> touched(mesh.triangles.size(), false);

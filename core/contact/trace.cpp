@@ -18,8 +18,9 @@
 #include "core/contact/interface_shape.h"
 #include "core/contact/pockets.h"
 #include "core/contact/recentre.h"
+#include "core/extract/triangulate.h"
 #include "core/mesh/evidence.h"
-#include "core/mesh/mesh_check.h"
+#include "core/parts/border_check.h"
 #include "core/parts/holes.h"
 #include "core/parts/untangle.h"
 
@@ -55,6 +56,7 @@ struct Traced {
   const Dips& dips;
   const EdgeIndex& index;
   const FaceGraph& graph;
+  const Triangulation& surface;
   std::vector<BandFace> faces{};
   std::vector<ClayCavity> pores{};
   std::vector<SurfaceHint> hints{};
@@ -73,7 +75,6 @@ struct Laid {
   std::vector<FillPatch> others;  ///< patches beside it
   std::int64_t pockets = 0;
   std::vector<glm::vec3> open;  ///< middles of the edges at which tablet or envelope are not closed
-  bool closed = true;
 };
 
 FillPatch contact_patch(const SurfaceModel& model, InterfaceMesh mesh, std::vector<std::uint8_t> evidence) {
@@ -84,36 +85,6 @@ FillPatch contact_patch(const SurfaceModel& model, InterfaceMesh mesh, std::vect
   patch.triangles = std::move(mesh.triangles);
   patch.evidence = std::move(evidence);
   return patch;
-}
-
-/// Are tablet and envelope closed 2-manifolds? Where vertices lie does not matter.
-Result<void> check_closed(const SurfaceModel& model, Laid& laid) {
-  DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model, {.attributes = false}));
-  std::array<PartitionId, std::size_t{PartitionTable::kHighest} + 1> body{};
-  for (const Partition& partition : model.partitions) body[partition.id] = model.partitions.body_of(partition.id);
-  std::vector<PartitionId> bodies(mesh.triangles.size());
-  for (std::size_t t = 0; t < bodies.size(); ++t) bodies[t] = body[mesh.partition_of(t)];
-  const std::vector<bool> watertight = watertight_parts(mesh.positions, mesh.triangles, bodies);
-  for (const PartitionKind kind : {PartitionKind::kTablet, PartitionKind::kEnvelopeInside}) {
-    const PartitionId id = body[model.partitions.find(kind)->id];
-    if (watertight[id]) continue;
-    laid.closed = false;
-    std::vector<std::array<std::uint32_t, 2>> edges;
-    for (std::size_t k = 0; k < bodies.size(); ++k) {
-      if (bodies[k] != id) continue;
-      const Triangle& t = mesh.triangles[k];
-      for (std::size_t i = 0; i < 3; ++i)
-        edges.push_back({std::min(t[i], t[(i + 1) % 3]), std::max(t[i], t[(i + 1) % 3])});
-    }
-    std::sort(edges.begin(), edges.end());
-    for (std::size_t begin = 0, end; begin < edges.size(); begin = end) {
-      end = begin;
-      while (end < edges.size() && edges[end] == edges[begin]) ++end;
-      if (end - begin != 2)
-        laid.open.push_back(0.5f * (mesh.positions[edges[begin][0]] + mesh.positions[edges[begin][1]]));
-    }
-  }
-  return {};
 }
 
 /// Moves the labels of faces beside the contact and puts it between the sides.
@@ -132,7 +103,10 @@ Result<Laid> lay_contact(SurfaceModel& model, const Traced& traced, Progress& pr
   laid.others.assign(model.patches.begin() + 1, model.patches.end());
   log_debug("contact: {} points, {} pockets, {} loops closed, {} holes left", traced.band.nodes.size(), laid.pockets,
             rest_loops, holes.loops);
-  DUBSAR_TRY(check_closed(model, laid));
+  const std::array<PartitionId, 2> bodies{
+      model.partitions.body_of(model.partitions.find(PartitionKind::kTablet)->id),
+      model.partitions.body_of(model.partitions.find(PartitionKind::kEnvelopeInside)->id)};
+  laid.open = open_borders(model, traced.surface, bodies);
   return laid;
 }
 
@@ -166,7 +140,7 @@ Result<void> shape_contact(SurfaceModel& model, const Laid& laid, Traced& traced
   log_debug("contact: {} film and {} inferred vertices", report.film_vertices, report.inferred_vertices);
   model.patches = laid.others;
   model.patches.insert(model.patches.begin(), contact_patch(model, std::move(mesh), std::move(evidence)));
-  DUBSAR_ASSIGN(report.patches, untangle_patches(model, options.step, progress));
+  DUBSAR_ASSIGN(report.patches, untangle_patches(model, options.step, progress, &traced.surface));
   return {};
 }
 
@@ -206,7 +180,7 @@ Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const Contac
       DUBSAR_ASSIGN(laid, lay_contact(model, traced, progress));
     }
     std::vector<glm::vec3> places = laid->open;
-    if (laid->closed) {
+    if (places.empty()) {
       DUBSAR_TRY(shape_contact(model, *laid, traced, options, report, progress));
       places = report.patches.left;
       if (places.empty()) return measure_partitions(model);
@@ -258,7 +232,8 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   DUBSAR_ASSIGN(Dips dips, find_dips(band, model.samples.signs, values, progress));
   DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(model.samples));
   DUBSAR_ASSIGN(const FaceGraph graph, FaceGraph::build(model.mesh, progress));
-  Traced traced{.band = band, .density = values, .dips = dips, .index = index, .graph = graph};
+  const Triangulation surface = triangulate(model.mesh, model.attributes.normals);
+  Traced traced{.band = band, .density = values, .dips = dips, .index = index, .graph = graph, .surface = surface};
   traced.faces = faces_of_band(model, index, band);
   traced.clays = compare_clays(band, model.samples.signs, values, options.blur_variance);
   report.clays_differ = traced.clays.has_value();

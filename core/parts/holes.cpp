@@ -8,6 +8,7 @@
 
 #include "core/base/system/log.h"
 #include "core/base/system/parallel.h"
+#include "core/mesh/edge_uses.h"
 #include "core/parts/border_loops.h"
 #include "core/parts/face_graph.h"
 
@@ -178,13 +179,11 @@ class HoleFiller {
   void add_patch_borders(std::uint8_t id, std::vector<BorderEdge>& edges) const {
     for (const FillPatch& patch : model_.patches) {
       if (patch.partition != id && patch.reverse_partition != id) continue;
-      std::unordered_map<std::uint64_t, int> uses;
-      for (const Triangle& t : patch.triangles)
-        for (std::size_t i = 0; i < 3; ++i) ++uses[key(t[i], t[(i + 1) % 3])];
-      for (const Triangle& t : patch.triangles)
+      const std::vector<bool> alone = sides_alone(patch.triangles);
+      for (std::size_t t = 0; t < patch.triangles.size(); ++t)
         for (std::size_t i = 0; i < 3; ++i) {
-          std::uint32_t from = t[i], to = t[(i + 1) % 3];
-          if (uses[key(from, to)] != 1) continue;
+          if (!alone[3 * t + i]) continue;
+          std::uint32_t from = patch.triangles[t][i], to = patch.triangles[t][(i + 1) % 3];
           if (patch.reverse_partition == id) std::swap(from, to);
           edges.push_back({from, to, kNoFace, id, id});
         }

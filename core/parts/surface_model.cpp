@@ -156,34 +156,6 @@ void add_patches(const SurfaceModel& model, const Selection& selection, Triangle
   }
 }
 
-/// Dual vertices where partitions meet or that a patch uses; only there can a vertex have more than one fan.
-std::vector<std::uint8_t> find_border(const SurfaceModel& model, const Selection& selection) {
-  constexpr std::uint8_t kUnseen = 254;
-  const QuadMesh& mesh = model.mesh;
-  std::vector<std::uint8_t> border(mesh.positions.size(), 0);
-  if (!model.quad_partition.empty()) {
-    // Whoever comes first, what is left is the same: a vertex that two groups have seen.
-    std::vector<std::uint8_t> seen(mesh.positions.size(), kUnseen);
-    const auto visit = [&](std::uint32_t v, std::uint32_t q) {
-      const std::uint8_t group = selection.group[model.quad_partition[q]];
-      const std::atomic_ref of_vertex(seen[v]);
-      std::uint8_t before = of_vertex.load(std::memory_order_relaxed);
-      if (before == kUnseen && of_vertex.compare_exchange_strong(before, group, std::memory_order_relaxed)) return;
-      if (before != group) std::atomic_ref(border[v]).store(1, std::memory_order_relaxed);
-    };
-    parallel_for(mesh.quad_count(), kModelGrain, [&](std::int64_t i) {
-      const auto q = static_cast<std::uint32_t>(i);
-      for (const std::uint32_t v : mesh.quads[q]) visit(v, q);
-    });
-    for (const DoubledCorner& d : mesh.doubled) visit(d.vertex, d.quad);
-  }
-  for (const FillPatch& patch : model.patches)
-    for (const Triangle& t : patch.triangles)
-      for (const std::uint32_t v : t)
-        if (v < border.size()) border[v] = 1;
-  return border;
-}
-
 /// Source of every output vertex, in output order, and the new id of every soup vertex that is used.
 struct Numbering {
   std::vector<std::uint32_t> source;  ///< id in the soup, below dual + added; copies stand for their original
@@ -272,7 +244,7 @@ Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& opti
   if (first_copy > (std::size_t{1} << 31))
     return fail(ErrorKind::kTryAgain, "surface_model: {} vertices found, expected at most 2^31", first_copy);
   const VertexAttributes added = options.attributes ? attributes_of_added(model, soup) : VertexAttributes{};
-  std::vector<std::uint8_t> border = find_border(model, selection);
+  std::vector<std::uint8_t> border = border_vertices(model, selection.group);
   border.resize(soup.first_patch_vertex, 0);
   border.resize(first_copy, 1);  // a patch may touch itself, too
   DUBSAR_ASSIGN(const std::vector<std::uint32_t> copies,

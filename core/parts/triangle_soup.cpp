@@ -1,17 +1,21 @@
 #include "core/parts/triangle_soup.h"
 
 #include <algorithm>
+#include <atomic>
 #include <glm/geometric.hpp>
 #include <span>
 #include <tuple>
 #include <type_traits>
 
+#include "core/base/numbers/counting_sort.h"
 #include "core/base/system/parallel.h"
 #include "core/mesh/fans.h"
 #include "core/mesh/vertex_attributes.h"
 
 namespace dubsar {
 namespace {
+
+constexpr std::int64_t kSoupGrain = 1 << 14;
 
 /// An added vertex and a dual vertex that share a triangle, in the order of the triangles.
 struct Around {
@@ -105,6 +109,33 @@ std::vector<T> values_of_added(const std::vector<T>& values, AddedValue rule, co
 
 }  // namespace
 
+std::vector<std::uint8_t> border_vertices(const SurfaceModel& model, std::span<const std::uint8_t> group) {
+  constexpr std::uint8_t kUnseen = 254;
+  const QuadMesh& mesh = model.mesh;
+  std::vector<std::uint8_t> border(mesh.positions.size(), 0);
+  if (!model.quad_partition.empty()) {
+    // Whoever comes first, what is left is the same: a vertex that two groups have seen.
+    std::vector<std::uint8_t> seen(mesh.positions.size(), kUnseen);
+    const auto visit = [&](std::uint32_t v, std::uint32_t q) {
+      const std::uint8_t own = group[model.quad_partition[q]];
+      const std::atomic_ref of_vertex(seen[v]);
+      std::uint8_t before = of_vertex.load(std::memory_order_relaxed);
+      if (before == kUnseen && of_vertex.compare_exchange_strong(before, own, std::memory_order_relaxed)) return;
+      if (before != own) std::atomic_ref(border[v]).store(1, std::memory_order_relaxed);
+    };
+    parallel_for(mesh.quad_count(), kSoupGrain, [&](std::int64_t i) {
+      const auto q = static_cast<std::uint32_t>(i);
+      for (const std::uint32_t v : mesh.quads[q]) visit(v, q);
+    });
+    for (const DoubledCorner& d : mesh.doubled) visit(d.vertex, d.quad);
+  }
+  for (const FillPatch& patch : model.patches)
+    for (const Triangle& t : patch.triangles)
+      for (const std::uint32_t v : t)
+        if (v < border.size()) border[v] = 1;
+  return border;
+}
+
 VertexAttributes attributes_of_added(const SurfaceModel& model, const TriangleSoup& soup) {
   const std::vector<Around> around = find_around(soup, static_cast<std::uint32_t>(model.mesh.positions.size()));
   VertexAttributes added;
@@ -132,9 +163,13 @@ Result<std::vector<std::uint32_t>> split_fans(TriangleSoup& soup, const std::vec
             {triangle[c], soup.group[t], static_cast<std::uint32_t>(t), triangle[(c + 1) % 3], triangle[(c + 2) % 3]});
   });
   if (cancelled()) return cancelled_error();
-  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
-    return std::tie(a.vertex, a.group, a.triangle) < std::tie(b.vertex, b.group, b.triangle);
-  });
+  counting_sort(corners, border.size(), [](const Corner& corner) { return corner.vertex; });
+  for (auto begin = corners.begin(), end = begin; begin != corners.end(); begin = end) {
+    while (end != corners.end() && end->vertex == begin->vertex) ++end;
+    std::sort(begin, end, [](const Corner& a, const Corner& b) {
+      return std::tie(a.group, a.triangle) < std::tie(b.group, b.triangle);
+    });
+  }
 
   std::vector<std::uint32_t> copies;
   Fans fans;

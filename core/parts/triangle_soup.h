@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "core/parts/surface_model.h"
@@ -21,11 +22,15 @@ struct TriangleSoup {
   std::size_t first_patch_vertex = 0;  ///< an id
 };
 
+/// One for each dual vertex: whether there two partitions meet of different `group` (of each partition id), or a patch
+/// uses it. Only there can a vertex have more than one fan.
+std::vector<std::uint8_t> border_vertices(const SurfaceModel& model, std::span<const std::uint8_t> group);
+
 /// All attributes that the model has, at the added vertices (AddedValue says how). Call it before split_fans().
 VertexAttributes attributes_of_added(const SurfaceModel& model, const TriangleSoup& soup);
 
-/// Gives every fan of triangles of one group around a border vertex its own copy of it. O(n log n), whatever the
-/// triangles are. Copy i gets the id first_copy + i; the result holds the id that each copy stands for. kCancelled.
+/// Gives every fan of triangles of one group around a border vertex its own copy of it. O(n log n) at most, whatever
+/// the triangles are. Copy i gets the id first_copy + i; the result holds the id that each copy stands for. kCancelled.
 Result<std::vector<std::uint32_t>> split_fans(TriangleSoup& soup, const std::vector<std::uint8_t>& border,
                                               std::uint32_t first_copy, const Progress* progress);
 

@@ -9,7 +9,6 @@
 
 #include "core/base/system/log.h"
 #include "core/base/system/parallel.h"
-#include "core/extract/triangulate.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh/intersections.h"
 #include "core/parts/crossing_pairs.h"
@@ -28,8 +27,8 @@ using Pairs = CrossingPairs;
 /// Patches and the surface beside them as one list of triangles.
 class Tangle {
  public:
-  Tangle(SurfaceModel& model, double step) : model_(model), step_(step), dual_(model.mesh.positions.size()) {
-    Triangulation surface = triangulate(model.mesh, model.attributes.normals);
+  Tangle(SurfaceModel& model, const Triangulation& surface, double step)
+      : model_(model), step_(step), dual_(model.mesh.positions.size()) {
     positions_ = model.mesh.positions;
     positions_.insert(positions_.end(), surface.steiner.begin(), surface.steiner.end());
     first_extra_ = static_cast<std::uint32_t>(positions_.size());
@@ -236,11 +235,14 @@ class Tangle {
 
 }  // namespace
 
-Result<UntangleReport> untangle_patches(SurfaceModel& model, double step, Progress& progress) {
+Result<UntangleReport> untangle_patches(SurfaceModel& model, double step, Progress& progress,
+                                        const Triangulation* surface) {
   UntangleReport report;
   if (model.patches.empty()) return report;
   progress.begin("untangle", kMostSplits + 1, "round");
-  Tangle tangle(model, step);
+  Triangulation own;
+  if (surface == nullptr) own = triangulate(model.mesh, model.attributes.normals);
+  Tangle tangle(model, surface != nullptr ? *surface : own, step);
   auto pairs = tangle.crossings();
   report.crossings = static_cast<std::int64_t>(pairs.size());
   for (int round = 0; round <= kMostSplits && !pairs.empty(); ++round) {

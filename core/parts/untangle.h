@@ -7,6 +7,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/extract/triangulate.h"
 #include "core/parts/surface_model.h"
 
 namespace dubsar {
@@ -22,6 +23,8 @@ struct UntangleReport {
 /// that it closes (intersections.h). All positions become multiples of `step`, which is what files hold. Every
 /// body stays as closed as it was. Deterministic for any thread count. kBadData as make_tri_mesh(); kCancelled. About
 /// 3 us a triangle of patches and of the surface beside them.
-Result<UntangleReport> untangle_patches(SurfaceModel& model, double step, Progress& progress);
+/// `surface`: triangulate() of the model's mesh, where somebody has it.
+Result<UntangleReport> untangle_patches(SurfaceModel& model, double step, Progress& progress,
+                                        const Triangulation* surface = nullptr);
 
 }  // namespace dubsar
