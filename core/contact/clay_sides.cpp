@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <glm/common.hpp>
 #include <utility>
 
+#include "core/base/numbers/disjoint_sets.h"
 #include "core/base/system/parallel.h"
 
 namespace dubsar {
@@ -19,6 +21,7 @@ constexpr float kWall = 0.5f;
 /// Cost of being on the wrong side of the patch, for each step from it: it holds the sheet where nothing is seen.
 constexpr float kPull = 0.006f;
 constexpr std::int32_t kHard = 1 << 28;
+constexpr std::int64_t kNodeGrain = 1 << 14;
 
 constexpr std::array<glm::ivec3, 3> kAxes{glm::ivec3(1, 0, 0), glm::ivec3(0, 1, 0), glm::ivec3(0, 0, 1)};
 
@@ -29,58 +32,102 @@ bool at_border(const ContactBand& band, const ContactBand::Node& node) {
   return node.distance > band.reach - 1.0f && std::abs(node.height) > 0.97f * node.distance;
 }
 
+/// visit(node, its upper neighbour, axis) for all that are neighbours in the band.
+template <class Visit>
+void each_face_of(const ContactBand& band, std::uint32_t n, const Visit& visit) {
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    const std::uint32_t m = band.at(band.point(n) + kAxes[axis]);
+    if (m != ContactBand::kNone) visit(n, m, axis);
+  }
+}
+
 /// Islands of one clay in the other do not exist: they take the side of what is around them. Crumbs that air cuts off
 /// from both are the tablet's; nobody asks.
 void adopt_islands(const ContactBand& band, std::vector<ClaySide>& side, const std::vector<bool>& certain) {
-  std::vector<bool> held(band.nodes.size(), false);
-  std::vector<std::uint32_t> queue;
-  for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
-    if (certain[n]) {
-      held[n] = true;
-      queue.push_back(n);
-    }
-  std::vector<std::uint32_t> rim;  // those beside clay of the other side that was not held then
-  const auto spread = [&](bool adopt) {
-    for (std::size_t i = 0; i < queue.size(); ++i) {
-      const std::uint32_t n = queue[i];
-      bool other_side = false;
-      each_beside(band.point(n), [&](const glm::ivec3& q) {
-        const std::uint32_t m = band.at(q);
-        if (m == ContactBand::kNone || held[m]) return;
-        if (!adopt && side[m] != side[n]) {
-          other_side = true;
-          return;
-        }
-        side[m] = side[n];
-        held[m] = true;
-        queue.push_back(m);
-      });
-      if (other_side) rim.push_back(n);
-    }
+  const auto count = static_cast<std::int64_t>(band.nodes.size());
+  const auto each_node = [&](const auto& visit) {
+    parallel_for(count, kNodeGrain, [&](std::int64_t n) { visit(static_cast<std::uint32_t>(n)); });
   };
-  spread(false);
-  queue.swap(rim);
-  spread(true);
-  for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
-    if (!held[n]) side[n] = ClaySide::kTablet;
+  ConcurrentSets pieces(band.nodes.size());  // of one side
+  each_node([&](std::uint32_t node) {
+    each_face_of(band, node, [&](std::uint32_t n, std::uint32_t m, std::uint32_t) {
+      if (side[n] == side[m]) pieces.join(n, m);
+    });
+  });
+  std::vector<std::uint8_t> held(band.nodes.size(), 0);  // first the pieces, by their roots
+  each_node([&](std::uint32_t n) {
+    if (certain[n]) std::atomic_ref(held[pieces.root(n)]).store(1, std::memory_order_relaxed);
+  });
+  using Nodes = std::vector<std::uint32_t>;
+  const Nodes islands = parallel_reduce<Nodes>(
+      count, kNodeGrain, {},
+      [&](std::int64_t begin, std::int64_t end) {
+        Nodes found;
+        for (auto n = static_cast<std::uint32_t>(begin); n < static_cast<std::uint64_t>(end); ++n)
+          if (held[pieces.root(n)] == 0) found.push_back(n);
+        return found;
+      },
+      [](Nodes all, const Nodes& part) {
+        all.insert(all.end(), part.begin(), part.end());
+        return all;
+      });
+  std::fill(held.begin(), held.end(), 1);
+  for (const std::uint32_t n : islands) held[n] = 0;
+  Nodes queue;  // what lies around an island is of the other side, all of it
+  const auto adopt_beside = [&](std::uint32_t n) {
+    each_beside(band.point(n), [&](const glm::ivec3& q) {
+      const std::uint32_t m = band.at(q);
+      if (m == ContactBand::kNone || held[m] != 0) return;
+      side[m] = side[n];
+      held[m] = 1;
+      queue.push_back(m);
+    });
+  };
+  for (const std::uint32_t n : islands) {
+    if (held[n] != 0) continue;
+    each_beside(band.point(n), [&](const glm::ivec3& q) {
+      const std::uint32_t m = band.at(q);
+      if (m != ContactBand::kNone && held[m] != 0) adopt_beside(m);
+    });
+    for (; !queue.empty();) {
+      const std::uint32_t next = queue.back();
+      queue.pop_back();
+      adopt_beside(next);
+    }
+  }
+  for (const std::uint32_t n : islands)
+    if (held[n] == 0) side[n] = ClaySide::kTablet;
 }
 
 /// Four points of a grid face that belong to tablet, envelope, tablet, envelope in turn would pinch the contact: one of
 /// the envelope's goes to the tablet.
 bool unpinch(const ContactBand& band, std::vector<ClaySide>& side) {
-  bool changed = false;
-  for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
-    for (std::size_t a = 0; a < 3; ++a) {
-      const glm::ivec3 p = band.point(n), u = kAxes[a], v = kAxes[(a + 1) % 3];
-      const std::uint32_t right = band.at(p + u);
-      if (right == ContactBand::kNone || side[n] == side[right]) continue;
-      const std::uint32_t across = band.at(p + u + v), up = band.at(p + v);
-      if (across == ContactBand::kNone || up == ContactBand::kNone) continue;
-      if (side[n] != side[across] || side[right] != side[up]) continue;
-      side[side[n] == ClaySide::kEnvelope ? n : right] = ClaySide::kTablet;
-      changed = true;
-    }
-  return changed;
+  constexpr std::uint32_t kNone = ContactBand::kNone;
+  const auto pinch_at = [&](std::uint32_t n, std::size_t a) {  // the point of the envelope that goes
+    const glm::ivec3 p = band.point(n), u = kAxes[a], v = kAxes[(a + 1) % 3];
+    const std::uint32_t right = band.at(p + u);
+    if (right == kNone || side[n] == side[right]) return kNone;
+    const std::uint32_t across = band.at(p + u + v), up = band.at(p + v);
+    if (across == kNone || up == kNone || side[n] != side[across] || side[right] != side[up]) return kNone;
+    return side[n] == ClaySide::kEnvelope ? n : right;
+  };
+  using Nodes = std::vector<std::uint32_t>;
+  const Nodes pinched = parallel_reduce<Nodes>(
+      static_cast<std::int64_t>(band.nodes.size()), kNodeGrain, {},
+      [&](std::int64_t begin, std::int64_t end) {
+        Nodes found;
+        for (auto n = static_cast<std::uint32_t>(begin); n < static_cast<std::uint64_t>(end); ++n)
+          if (pinch_at(n, 0) != kNone || pinch_at(n, 1) != kNone || pinch_at(n, 2) != kNone) found.push_back(n);
+        return found;
+      },
+      [](Nodes all, const Nodes& part) {
+        all.insert(all.end(), part.begin(), part.end());
+        return all;
+      });
+  for (const std::uint32_t n : pinched)
+    for (std::size_t a = 0; a < 3; ++a)
+      if (const std::uint32_t of_envelope = pinch_at(n, a); of_envelope != kNone) side[of_envelope] = ClaySide::kTablet;
+  return !pinched.empty();
 }
 
 /// Nodes over the same piece of the patches: flow runs across the band, and most of it stays in one block.
@@ -106,16 +153,6 @@ std::int32_t cost_of_face(const ContactBand& band, std::uint32_t n, std::uint32_
   const float along = 0.5f * (std::abs(band.normal(n)[a]) + std::abs(band.normal(m)[a]));
   const float face = along + kWall * (1.0f - along);
   return 1 + static_cast<std::int32_t>(std::lround(kUnit * face * cost_of(strength)));
-}
-
-/// visit(node, its upper neighbour, axis) for all that are neighbours in the band.
-template <class Visit>
-void each_face(const ContactBand& band, const Visit& visit) {
-  for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
-    for (std::uint32_t axis = 0; axis < 3; ++axis) {
-      const std::uint32_t m = band.at(band.point(n) + kAxes[axis]);
-      if (m != ContactBand::kNone) visit(n, m, axis);
-    }
 }
 
 }  // namespace
@@ -155,8 +192,10 @@ ClayDivision::ClayDivision(const ClayEvidence& evidence)
     const auto cost = static_cast<std::int32_t>(std::clamp<std::int64_t>(wish[n], -kHard, kHard));
     cut_.add_node_cost(n, cost < 0 ? -cost : 0, cost > 0 ? cost : 0);
   }
-  each_face(band_, [&](std::uint32_t n, std::uint32_t m, std::uint32_t axis) {
-    cut_.add_step_cost(n, m, axis, cost_of_face(band_, n, m, axis, 0.5f * (dips_.strength[n] + dips_.strength[m])));
+  parallel_for(count, kNodeGrain, [&](std::int64_t i) {
+    each_face_of(band_, static_cast<std::uint32_t>(i), [&](std::uint32_t n, std::uint32_t m, std::uint32_t axis) {
+      cut_.add_step_cost(n, m, axis, cost_of_face(band_, n, m, axis, 0.5f * (dips_.strength[n] + dips_.strength[m])));
+    });
   });
   for (const ClayCavity& cavity : evidence.whole)
     for (std::size_t i = 1; i < cavity.size(); ++i) cut_.tie(cavity[i - 1], cavity[i], kHard);
@@ -175,12 +214,13 @@ Result<std::vector<ClaySide>> ClayDivision::sides(Progress& progress) {
 Result<std::vector<ClaySide>> ClayDivision::sides_if_weaker(const std::vector<bool>& where, float by,
                                                             Progress& progress) {
   const auto strength = [&](std::uint32_t n) { return where[n] ? dips_.strength[n] - by : dips_.strength[n]; };
-  each_face(band_, [&](std::uint32_t n, std::uint32_t m, std::uint32_t axis) {
-    if (!where[n] && !where[m]) return;
-    cut_.add_step_cost(n, m, axis,
-                       cost_of_face(band_, n, m, axis, 0.5f * (strength(n) + strength(m))) -
-                           cost_of_face(band_, n, m, axis, 0.5f * (dips_.strength[n] + dips_.strength[m])));
-  });
+  for (std::uint32_t node = 0; node < where.size(); ++node)
+    each_face_of(band_, node, [&](std::uint32_t n, std::uint32_t m, std::uint32_t axis) {
+      if (!where[n] && !where[m]) return;
+      cut_.add_step_cost(n, m, axis,
+                         cost_of_face(band_, n, m, axis, 0.5f * (strength(n) + strength(m))) -
+                             cost_of_face(band_, n, m, axis, 0.5f * (dips_.strength[n] + dips_.strength[m])));
+    });
   return sides(progress);
 }
 

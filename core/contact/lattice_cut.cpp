@@ -41,6 +41,7 @@ void LatticeCut::add_step_cost(std::uint32_t lower, std::uint32_t upper, std::ui
   b.beside[down] = place_[lower];
   a.residual[up] += cost;
   b.residual[down] += cost;
+  if (solved_) touched_.insert(touched_.end(), {place_[lower], place_[upper]});
 }
 
 void LatticeCut::add_tie(std::uint32_t from, std::uint32_t to, std::int32_t cost) {
@@ -82,16 +83,26 @@ void LatticeCut::wave(std::uint32_t begin, std::uint32_t end) {
 /// sent; points whose way is used up take another parent or leave the tree. Of the points of one block, or of all.
 class LatticeCut::Search {
  public:
-  Search(LatticeCut& cut, std::uint32_t begin, std::uint32_t end, Progress& progress)
+  /// Goes on after `time`.
+  Search(LatticeCut& cut, std::uint32_t begin, std::uint32_t end, std::uint32_t time, Progress& progress)
       : points_(cut.points_),
         ties_(cut.ties_),
         first_tie_(cut.first_tie_),
         begin_(begin),
         end_(end),
-        progress_(progress) {}
+        progress_(progress),
+        time_(time) {}
 
+  /// Trees of what is at the terminals, and no more.
+  void plant();
+  /// Points of trees from which more may be reached than when the search ended.
+  void wake(const std::vector<std::uint32_t>& points) {
+    for (const std::uint32_t p : points)
+      if (points_[p].label != 0) activate(points_[p]);
+  }
   /// False: cancelled.
   bool run();
+  std::uint32_t time() const { return time_; }
 
  private:
   struct Meeting {
@@ -164,7 +175,7 @@ class LatticeCut::Search {
   Progress& progress_;
   std::vector<std::uint32_t> queue_, orphans_;
   std::size_t queue_head_ = 0;
-  std::uint32_t time_ = 0;
+  std::uint32_t time_;
 };
 
 LatticeCut::Point* LatticeCut::Search::next_active() {
@@ -180,7 +191,7 @@ LatticeCut::Point* LatticeCut::Search::next_active() {
   return nullptr;
 }
 
-bool LatticeCut::Search::run() {
+void LatticeCut::Search::plant() {
   for (std::uint32_t p = begin_; p < end_; ++p) {
     Point& point = points_[p];
     point.label = point.terminal > 0 ? 1 : point.terminal < 0 ? -1 : 0;
@@ -189,6 +200,9 @@ bool LatticeCut::Search::run() {
     point.active = 0;
     if (point.label != 0) activate(point);
   }
+}
+
+bool LatticeCut::Search::run() {
   Point* point = nullptr;
   for (std::uint64_t step = 0;; ++step) {
     if (step % kBetweenLooks == 0 && progress_.cancelled()) return false;
@@ -320,15 +334,42 @@ void LatticeCut::Search::adopt(Point& orphan) {
   orphan.parent = kNone;
 }
 
-Result<void> LatticeCut::solve(Progress& progress) {
-  const auto blocks = static_cast<std::int64_t>(first_.size()) - 1;
-  parallel_for(blocks, 1, [&](std::int64_t b) {
-    const std::uint32_t begin = first_[static_cast<std::size_t>(b)], end = first_[static_cast<std::size_t>(b) + 1];
+std::uint32_t LatticeCut::solve_blocks(std::vector<std::uint32_t>& borders, Progress& progress) {
+  const std::size_t blocks = first_.size() - 1;
+  std::vector<std::vector<std::uint32_t>> border_of(blocks);
+  std::vector<std::uint32_t> times(blocks, 0);
+  parallel_for(static_cast<std::int64_t>(blocks), 1, [&](std::int64_t i) {
+    const auto b = static_cast<std::size_t>(i);
+    const std::uint32_t begin = first_[b], end = first_[b + 1];
     wave<true>(begin, end);
     wave<false>(begin, end);
-    if (blocks > 1) Search(*this, begin, end, progress).run();
+    Search search(*this, begin, end, 0, progress);
+    search.plant();
+    if (!search.run()) return;
+    times[b] = search.time();
+    for (std::uint32_t p = begin; p < end; ++p) {
+      const auto out = [&](std::uint32_t q) { return q != kNone && q - begin >= end - begin; };
+      if (points_[p].tied || std::any_of(points_[p].beside.begin(), points_[p].beside.end(), out))
+        border_of[b].push_back(p);
+    }
   });
-  if (!Search(*this, 0, static_cast<std::uint32_t>(points_.size()), progress).run()) return cancelled_error();
+  for (const std::vector<std::uint32_t>& border : border_of)
+    borders.insert(borders.end(), border.begin(), border.end());
+  return *std::max_element(times.begin(), times.end());
+}
+
+/// The trees of the blocks go on growing together: inside a block nothing is left to find, so that only what touches
+/// another block is looked at.
+Result<void> LatticeCut::solve(Progress& progress) {
+  if (points_.empty()) return {};
+  if (!solved_) time_ = solve_blocks(touched_, progress);
+  if (progress.cancelled()) return cancelled_error();
+  solved_ = true;
+  Search search(*this, 0, static_cast<std::uint32_t>(points_.size()), time_, progress);
+  search.wake(touched_);
+  touched_.clear();
+  if (!search.run()) return cancelled_error();
+  time_ = search.time();
   return {};
 }
 

@@ -24,8 +24,9 @@ class LatticeCut {
   void add_node_cost(std::uint32_t node, std::int32_t cost_if_source, std::int32_t cost_if_sink) {
     points_[place_[node]].terminal += cost_if_sink - cost_if_source;
   }
-  /// Cost of separating neighbours, the same in both directions: `upper` is one step up the axis from `lower`. After
-  /// solve() more of it may be added, and solve() finds the new cut from what flowed before.
+  /// Cost of separating neighbours, the same in both directions: `upper` is one step up the axis from `lower`; threads
+  /// may add those of different pairs at the same time. After solve() more of it may be added, by one thread, and
+  /// solve() finds the new cut from what flowed before, in a time that goes with what was added.
   void add_step_cost(std::uint32_t lower, std::uint32_t upper, std::uint32_t axis, std::int32_t cost);
   /// The same for any two nodes, before the first solve(); meant for few of them.
   void tie(std::uint32_t a, std::uint32_t b, std::int32_t cost);
@@ -57,6 +58,8 @@ class LatticeCut {
   void add_tie(std::uint32_t from, std::uint32_t to, std::int32_t cost);
   template <bool kSource>
   void wave(std::uint32_t begin, std::uint32_t end);
+  /// The cut inside each block. Returns the latest time of all searches and the points from which the search goes on.
+  std::uint32_t solve_blocks(std::vector<std::uint32_t>& borders, Progress& progress);
 
   std::vector<std::uint32_t> place_;  ///< of each node: points stand block by block
   std::vector<std::uint32_t> first_;  ///< point of each block, and how many there are
@@ -65,6 +68,9 @@ class LatticeCut {
   std::vector<std::uint32_t> rising_;  ///< points of each block in the order of their heights
   std::vector<Tie> ties_;
   std::unordered_map<std::uint32_t, std::uint32_t> first_tie_;  ///< of the points that have some
+  bool solved_ = false;
+  std::uint32_t time_ = 0;              ///< of the search so far
+  std::vector<std::uint32_t> touched_;  ///< points whose arcs became wider since
 };
 
 }  // namespace dubsar
