@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <numeric>
+#include <span>
 
 #include "core/base/system/parallel.h"
 
@@ -10,6 +11,17 @@ namespace dubsar {
 namespace {
 
 constexpr std::uint64_t kBetweenLooks = 4096;  ///< points that grow, for whether somebody has cancelled
+constexpr std::size_t kJoined = 4;             ///< ranges that become one, until there are two at most
+
+/// Starts of ranges, a few of which become one.
+std::vector<std::uint32_t> joined(const std::vector<std::uint32_t>& starts) {
+  const std::size_t ranges = starts.size() - 1, step = std::min(kJoined, (ranges + 1) / 2);
+  std::vector<std::uint32_t> fewer;
+  for (std::size_t i = 0; i < ranges; i += step) fewer.push_back(starts[i]);
+  fewer.push_back(starts.back());
+  return fewer;
+}
+
 constexpr std::uint32_t sister(std::uint32_t arc) { return arc ^ 1; }
 
 }  // namespace
@@ -96,7 +108,7 @@ class LatticeCut::Search {
   /// Trees of what is at the terminals, and no more.
   void plant();
   /// Points of trees from which more may be reached than when the search ended.
-  void wake(const std::vector<std::uint32_t>& points) {
+  void wake(std::span<const std::uint32_t> points) {
     for (const std::uint32_t p : points)
       if (points_[p].label != 0) activate(points_[p]);
   }
@@ -334,35 +346,46 @@ void LatticeCut::Search::adopt(Point& orphan) {
   orphan.parent = kNone;
 }
 
-std::uint32_t LatticeCut::solve_blocks(std::vector<std::uint32_t>& borders, Progress& progress) {
-  const std::size_t blocks = first_.size() - 1;
-  std::vector<std::vector<std::uint32_t>> border_of(blocks);
-  std::vector<std::uint32_t> times(blocks, 0);
-  parallel_for(static_cast<std::int64_t>(blocks), 1, [&](std::int64_t i) {
-    const auto b = static_cast<std::size_t>(i);
-    const std::uint32_t begin = first_[b], end = first_[b + 1];
-    wave<true>(begin, end);
-    wave<false>(begin, end);
-    Search search(*this, begin, end, 0, progress);
-    search.plant();
+void LatticeCut::solve_ranges(const std::vector<std::uint32_t>& starts, bool first, Progress& progress) {
+  const std::size_t ranges = starts.size() - 1;
+  std::vector<std::vector<std::uint32_t>> ends(ranges);
+  std::vector<std::uint32_t> times(ranges, time_);
+  const std::uint32_t time = time_;
+  parallel_for(static_cast<std::int64_t>(ranges), 1, [&](std::int64_t i) {
+    const auto r = static_cast<std::size_t>(i);
+    const std::uint32_t begin = starts[r], end = starts[r + 1];
+    Search search(*this, begin, end, time, progress);
+    if (first) {
+      wave<true>(begin, end);
+      wave<false>(begin, end);
+      search.plant();
+    } else {
+      search.wake(std::span(std::lower_bound(touched_.begin(), touched_.end(), begin),
+                            std::lower_bound(touched_.begin(), touched_.end(), end)));
+    }
     if (!search.run()) return;
-    times[b] = search.time();
+    times[r] = search.time();
     for (std::uint32_t p = begin; p < end; ++p) {
       const auto out = [&](std::uint32_t q) { return q != kNone && q - begin >= end - begin; };
-      if (points_[p].tied || std::any_of(points_[p].beside.begin(), points_[p].beside.end(), out))
-        border_of[b].push_back(p);
+      if (points_[p].tied || std::any_of(points_[p].beside.begin(), points_[p].beside.end(), out)) ends[r].push_back(p);
     }
   });
-  for (const std::vector<std::uint32_t>& border : border_of)
-    borders.insert(borders.end(), border.begin(), border.end());
-  return *std::max_element(times.begin(), times.end());
+  touched_.clear();
+  for (const std::vector<std::uint32_t>& some : ends) touched_.insert(touched_.end(), some.begin(), some.end());
+  time_ = *std::max_element(times.begin(), times.end());
 }
 
 /// The trees of the blocks go on growing together: inside a block nothing is left to find, so that only what touches
 /// another block is looked at.
 Result<void> LatticeCut::solve(Progress& progress) {
   if (points_.empty()) return {};
-  if (!solved_) time_ = solve_blocks(touched_, progress);
+  if (!solved_) {
+    solve_ranges(first_, true, progress);
+    for (std::vector<std::uint32_t> starts = first_; starts.size() > 3 && !progress.cancelled();) {
+      starts = joined(starts);
+      solve_ranges(starts, false, progress);
+    }
+  }
   if (progress.cancelled()) return cancelled_error();
   solved_ = true;
   Search search(*this, 0, static_cast<std::uint32_t>(points_.size()), time_, progress);

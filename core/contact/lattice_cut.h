@@ -58,8 +58,9 @@ class LatticeCut {
   void add_tie(std::uint32_t from, std::uint32_t to, std::int32_t cost);
   template <bool kSource>
   void wave(std::uint32_t begin, std::uint32_t end);
-  /// The cut inside each block. Returns the latest time of all searches and the points from which the search goes on.
-  std::uint32_t solve_blocks(std::vector<std::uint32_t>& borders, Progress& progress);
+  /// The cut inside each range of points [starts[i], starts[i + 1]), by all threads: the first, or going on from
+  /// smaller ranges. Leaves in `touched_` the points with arcs out of their range.
+  void solve_ranges(const std::vector<std::uint32_t>& starts, bool first, Progress& progress);
 
   std::vector<std::uint32_t> place_;  ///< of each node: points stand block by block
   std::vector<std::uint32_t> first_;  ///< point of each block, and how many there are
@@ -70,7 +71,8 @@ class LatticeCut {
   std::unordered_map<std::uint32_t, std::uint32_t> first_tie_;  ///< of the points that have some
   bool solved_ = false;
   std::uint32_t time_ = 0;              ///< of the search so far
-  std::vector<std::uint32_t> touched_;  ///< points whose arcs became wider since
+  std::vector<std::uint32_t> touched_;  ///< points from which more may be reached than when the search ended, rising
+                                        ///< where they are ends of ranges
 };
 
 }  // namespace dubsar
