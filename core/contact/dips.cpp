@@ -7,6 +7,7 @@
 
 #include "core/base/numbers/median.h"
 #include "core/base/system/parallel.h"
+#include "core/contact/row_sums.h"
 
 namespace dubsar {
 namespace {
@@ -18,46 +19,11 @@ constexpr float kDisk = 3.2f, kDiskDeviation = 1.8f;
 constexpr float kLeastDipCosine = 0.45f;  ///< flanks of wedges stand up to 60 degrees from the contact
 constexpr float kNoDip = -1e30f;
 
-struct Direction {
-  glm::vec3 unit;
-  glm::ivec3 arm;
-  std::vector<glm::ivec3> disk;
-  std::vector<float> weight;
-};
-
-std::vector<Direction> directions() {
-  std::vector<Direction> all;
-  for (int k = 0; k < 13; ++k) {  // half of the 26 neighbours
-    const glm::ivec3 step(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-    Direction d;
-    d.unit = glm::normalize(glm::vec3(step));
-    d.arm = step * static_cast<int>(std::lround(kArm / glm::length(glm::vec3(step))));
-    float sum = 0.0f;
-    for (int z = -3; z <= 3; ++z)
-      for (int y = -3; y <= 3; ++y)
-        for (int x = -3; x <= 3; ++x) {
-          const glm::vec3 q(x, y, z);
-          if (glm::length(q) > kDisk || std::abs(glm::dot(q, d.unit)) > 0.45f) continue;
-          d.disk.emplace_back(x, y, z);
-          d.weight.push_back(std::exp(-0.5f * glm::dot(q, q) / (kDiskDeviation * kDiskDeviation)));
-          sum += d.weight.back();
-        }
-    for (float& w : d.weight) w /= sum;
-    all.push_back(std::move(d));
-  }
-  return all;
-}
-
-bool in_clay(const BitVolume& inside, const glm::ivec3& p) {
-  const Dims d = inside.dims();
-  return p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < d.x && p.y < d.y && p.z < d.z && inside.get(p.x, p.y, p.z);
-}
-
 /// A brick and what lies around it, as an array.
 template <int kHalo>
 struct Block {
   static constexpr int kSide = static_cast<int>(kEdge) + 2 * kHalo;
-  std::array<float, static_cast<std::size_t>(kSide) * kSide * kSide> value{};
+  std::array<float, static_cast<std::size_t>(kSide) * kSide * kSide + kRowLength> value{};
 
   static std::size_t place(int x, int y, int z) { return static_cast<std::size_t>((z * kSide + y) * kSide + x); }
   template <class Get>
@@ -73,20 +39,64 @@ constexpr int kArmHalo = 3, kDiskHalo = 3;  ///< of directions(): no arm and no 
 using Around = Block<kArmHalo + kDiskHalo>;
 using Means = Block<kArmHalo>;
 
-/// Of a disk around each point.
-void disk_means(const Around& around, const Direction& d, Means& means) {
-  means.value.fill(0.0f);
-  for (int z = 0; z < Means::kSide; ++z)
-    for (int y = 0; y < Means::kSide; ++y) {
-      float* const out = &means.value[Means::place(0, y, z)];
-      for (std::size_t i = 0; i < d.disk.size(); ++i) {
-        const glm::ivec3 q = d.disk[i] + glm::ivec3(0, y, z) + kDiskHalo;
-        const float* const in = &around.value[Around::place(q.x, q.y, q.z)];
-        const float weight = d.weight[i];
-        for (int x = 0; x < Means::kSide; ++x) out[x] += weight * in[x];
-      }
-    }
+struct Direction {
+  glm::vec3 unit;
+  glm::ivec3 arm;
+  std::vector<RowTap> disk;
+};
+
+std::vector<Direction> directions() {
+  std::vector<Direction> all;
+  for (int k = 0; k < 13; ++k) {  // half of the 26 neighbours
+    const glm::ivec3 step(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+    Direction d;
+    d.unit = glm::normalize(glm::vec3(step));
+    d.arm = step * static_cast<int>(std::lround(kArm / glm::length(glm::vec3(step))));
+    float sum = 0.0f;
+    for (int z = -3; z <= 3; ++z)
+      for (int y = -3; y <= 3; ++y)
+        for (int x = -3; x <= 3; ++x) {
+          const glm::vec3 q(x, y, z);
+          if (glm::length(q) > kDisk || std::abs(glm::dot(q, d.unit)) > 0.45f) continue;
+          d.disk.push_back({static_cast<std::int32_t>((z * Around::kSide + y) * Around::kSide + x),
+                            std::exp(-0.5f * glm::dot(q, q) / (kDiskDeviation * kDiskDeviation))});
+          sum += d.disk.back().weight;
+        }
+    for (RowTap& tap : d.disk) tap.weight /= sum;
+    all.push_back(std::move(d));
+  }
+  return all;
 }
+
+bool in_clay(const BitVolume& inside, const glm::ivec3& p) {
+  const Dims d = inside.dims();
+  return p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < d.x && p.y < d.y && p.z < d.z && inside.get(p.x, p.y, p.z);
+}
+
+static_assert(Means::kSide <= kRowLength);
+
+/// Of a disk around each point of the rows that somebody asks for.
+class DiskMeans {
+ public:
+  void ask_for(const glm::ivec3& p) { asked_[row_of(p)] = true; }
+  void find(const Around& around, const Direction& d) {
+    rows_.clear();
+    for (int z = 0; z < Means::kSide; ++z)
+      for (int y = 0; y < Means::kSide; ++y)
+        if (asked_[row_of({0, y, z})])
+          rows_.push_back({static_cast<std::int32_t>(Around::place(kDiskHalo, y + kDiskHalo, z + kDiskHalo)),
+                           static_cast<std::int32_t>(Means::place(0, y, z))});
+    sum_rows(around.value.data(), d.disk, rows_, means_.value.data());
+    asked_.fill(false);
+  }
+  float at(const glm::ivec3& p) const { return means_.value[Means::place(p.x, p.y, p.z)]; }
+
+ private:
+  static std::size_t row_of(const glm::ivec3& p) { return static_cast<std::size_t>(p.z * Means::kSide + p.y); }
+  std::array<bool, static_cast<std::size_t>(Means::kSide) * Means::kSide> asked_{};
+  std::vector<SummedRow> rows_;
+  Means means_;
+};
 
 /// Nodes [first of a brick, first of the next): they stand brick by brick.
 std::vector<std::uint32_t> brick_starts(const ContactBand& band) {
@@ -175,7 +185,8 @@ Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const B
   parallel_chunks(static_cast<std::int64_t>(starts.size()) - 1, 8, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) return;
     const auto around = std::make_unique<Around>();
-    const auto means = std::make_unique<Means>();
+    const auto means = std::make_unique<DiskMeans>();
+    std::vector<std::uint32_t> across;  // nodes for which a direction is one
     for (std::int64_t brick = begin; brick < end; ++brick) {
       const std::uint32_t first = starts[static_cast<std::size_t>(brick)],
                           last = starts[static_cast<std::size_t>(brick) + 1];
@@ -186,18 +197,18 @@ Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const B
         dips.density[node] = density.get(p.x, p.y, p.z);
       }
       for (const Direction& d : kDirections) {
-        bool filled = false;
+        across.clear();
         for (std::uint32_t node = first; node < last; ++node) {
           if (std::abs(glm::dot(d.unit, band.normal(node))) < kLeastDipCosine) continue;
           const glm::ivec3 p = band.point(node);
           if (!in_clay(inside, p + d.arm) || !in_clay(inside, p - d.arm)) continue;
-          if (!filled) disk_means(*around, d, *means);
-          filled = true;
-          const auto mean = [&](const glm::ivec3& q) {
-            const glm::ivec3 at = q - corner + kArmHalo;
-            return means->value[Means::place(at.x, at.y, at.z)];
-          };
-          const float middle = mean(p), dip = 0.5f * (mean(p + d.arm) + mean(p - d.arm)) - middle;
+          across.push_back(node);
+          for (const int sense : {-1, 0, 1}) means->ask_for(p + sense * d.arm - corner + kArmHalo);
+        }
+        if (!across.empty()) means->find(*around, d);
+        for (const std::uint32_t node : across) {
+          const glm::ivec3 p = band.point(node) - corner + kArmHalo;
+          const float middle = means->at(p), dip = 0.5f * (means->at(p + d.arm) + means->at(p - d.arm)) - middle;
           if (dip > dips.strength[node]) {
             dips.strength[node] = dip;
             dips.density[node] = middle;

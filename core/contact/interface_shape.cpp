@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <map>
 #include <unordered_map>
 
 #include "core/contact/dents.h"
@@ -13,6 +12,7 @@
 #include "core/contact/interface_rings.h"
 #include "core/contact/ring_average.h"
 #include "core/mesh/evidence.h"
+#include "core/parts/leash.h"
 
 namespace dubsar {
 namespace {
@@ -35,7 +35,6 @@ constexpr float kWithin = 1.2f;     ///< strength of a film in such a patch
 constexpr float kLeastStep = 0.5f;  ///< of the difference of the clays
 constexpr int kFilmRounds = 1;
 constexpr int kMembraneRounds = 200;
-constexpr float kTied = 3.0f, kSlack = 4.0f;  ///< steps from a crossing: nothing moves; all moves are free again
 
 constexpr std::uint8_t kFilm = evidence_byte(Evidence::kFilm), kInferred = evidence_byte(Evidence::kInferred);
 
@@ -133,30 +132,6 @@ void drop_small_films(const InterfaceRings& rings, const std::vector<float>& str
     if (film.size() < (in_film_patch[i] ? kLeastPatchFilm : clear ? kLeastClearFilm : kLeastFilm))
       for (const std::uint32_t w : film) evidence[w] = kInferred;
   }
-}
-
-/// How much of its moves each vertex may make, 0..1: in the cut itself every vertex lies in a cell of its own, so that
-/// what crosses after it was moved does not where it stays.
-std::vector<float> leashes(const std::vector<glm::vec3>& added, const std::vector<glm::vec3>& crossed) {
-  std::vector<float> leash(added.size(), 1.0f);
-  if (crossed.empty()) return leash;
-  constexpr float kFree = kTied + kSlack;
-  const auto bin = [](const glm::vec3& p) {
-    const glm::ivec3 b(glm::floor(p / kFree));
-    return std::array<int, 3>{b.x, b.y, b.z};
-  };
-  std::map<std::array<int, 3>, std::vector<glm::vec3>> bins;
-  for (const glm::vec3& place : crossed) bins[bin(place)].push_back(place);
-  for (std::size_t i = 0; i < added.size(); ++i) {
-    const std::array<int, 3> here = bin(added[i]);
-    for (int k = 0; k < 27; ++k) {
-      const auto found = bins.find({here[0] + k % 3 - 1, here[1] + k / 3 % 3 - 1, here[2] + k / 9 - 1});
-      if (found == bins.end()) continue;
-      for (const glm::vec3& place : found->second)
-        leash[i] = std::min(leash[i], std::max(0.0f, (glm::distance(place, added[i]) - kTied) / kSlack));
-    }
-  }
-  return leash;
 }
 
 /// Neighbours of the added vertices as places in one array: the added ones, and behind them those of the surface.

@@ -140,7 +140,8 @@ Result<void> shape_contact(SurfaceModel& model, const Laid& laid, Traced& traced
   log_debug("contact: {} film and {} inferred vertices", report.film_vertices, report.inferred_vertices);
   model.patches = laid.others;
   model.patches.insert(model.patches.begin(), contact_patch(model, std::move(mesh), std::move(evidence)));
-  DUBSAR_ASSIGN(report.patches, untangle_patches(model, options.step, progress, &traced.surface));
+  DUBSAR_ASSIGN(report.patches,
+                untangle_patches(model, options.step, progress, {.surface = &traced.surface, .home = laid.mesh.added}));
   return {};
 }
 
@@ -174,24 +175,19 @@ Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const Contac
   };
   int crossed = 0;
   std::optional<Closed> best;
-  std::optional<Laid> laid;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
-    if (!laid) {
-      DUBSAR_ASSIGN(laid, lay_contact(model, traced, progress));
-    }
-    std::vector<glm::vec3> places = laid->open;
+    DUBSAR_ASSIGN(const Laid laid, lay_contact(model, traced, progress));
+    std::vector<glm::vec3> places = laid.open;
     if (places.empty()) {
-      DUBSAR_TRY(shape_contact(model, *laid, traced, options, report, progress));
+      DUBSAR_TRY(shape_contact(model, laid, traced, options, report, progress));
       places = report.patches.left;
       if (places.empty()) return measure_partitions(model);
       if (!best || best->report.patches.left.size() > places.size()) best = Closed{labels_of(model), report};
       if (++crossed == kMostCrossed) break;
       traced.crossed.insert(traced.crossed.end(), places.begin(), places.end());
-      if (crossed == 1) continue;  // most of them are gone when the cut is not smoothed there
     }
     restore(before, model);
     if (places.empty()) break;
-    laid.reset();
     step_aside(traced.band, places, 2 + attempt / 2, traced.side);
     unpinch_sides(traced.band, traced.side);
   }

@@ -12,6 +12,7 @@
 #include "core/mesh/evidence.h"
 #include "core/mesh/intersections.h"
 #include "core/parts/crossing_pairs.h"
+#include "core/parts/leash.h"
 #include "core/parts/patch_moves.h"
 #include "core/parts/triangle_grid.h"
 
@@ -27,14 +28,15 @@ using Pairs = CrossingPairs;
 /// Patches and the surface beside them as one list of triangles.
 class Tangle {
  public:
-  Tangle(SurfaceModel& model, const Triangulation& surface, double step)
-      : model_(model), step_(step), dual_(model.mesh.positions.size()) {
+  Tangle(SurfaceModel& model, const Triangulation& surface, std::span<const glm::vec3> home, double step)
+      : model_(model), step_(step), dual_(model.mesh.positions.size()), home_(home.begin(), home.end()) {
     positions_ = model.mesh.positions;
     positions_.insert(positions_.end(), surface.steiner.begin(), surface.steiner.end());
     first_extra_ = static_cast<std::uint32_t>(positions_.size());
     for (std::size_t p = 0; p < model.patches.size(); ++p)
       if (!inside_body(model.patches[p])) add_patch(p);
     add_surface(surface);
+    if (!home_.empty()) home_.insert(home_.end(), positions_.begin() + first_extra_ + home.size(), positions_.end());
   }
 
   /// Pairs of crossing triangles that matter, rising.
@@ -70,6 +72,25 @@ class Tangle {
     changed_.resize(triangles_.size(), 0);
     moved_.resize(positions_.size() - first_extra_, 0);
     PatchMoves(mesh_, step_, beside(pairs)).run(pairs, moved_, changed_);
+  }
+
+  bool has_home() const { return !home_.empty(); }
+
+  /// Vertices near the pairs go back to where they have come from.
+  void retreat(const Pairs& pairs) {
+    changed_.resize(triangles_.size(), 0);
+    moved_.resize(positions_.size() - first_extra_, 0);
+    const std::vector<float> free = leashes(std::span(positions_).subspan(first_extra_), places(pairs));
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      glm::vec3& p = positions_[first_extra_ + i];
+      const glm::vec3 back = in_steps(glm::mix(home_[i], p, free[i]), step_);
+      if (back == p) continue;
+      p = back;
+      moved_[i] = 1;
+    }
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+      for (const std::uint32_t v : triangles_[t])
+        if (v >= first_extra_ && free[v - first_extra_] < 1.0f) changed_[t] = 1;
   }
 
   /// Puts a vertex on the longest edge inside a patch of each triangle in a pair. Returns how many.
@@ -183,6 +204,10 @@ class Tangle {
     touched[t] = touched[beyond] = true;
     const auto middle = static_cast<std::uint32_t>(positions_.size());
     positions_.push_back(in_steps(0.5f * (positions_[a] + positions_[b]), step_));
+    if (!home_.empty()) {
+      const auto home = [&](std::uint32_t v) { return v < first_extra_ ? positions_[v] : home_[v - first_extra_]; };
+      home_.push_back(0.5f * (home(a) + home(b)));
+    }
     patch_of_vertex_.push_back(owner_[t].patch);
     changed_.resize(triangles_.size() + 2, 1);
     for (const std::uint32_t side : {t, beyond}) {
@@ -228,6 +253,7 @@ class Tangle {
   std::vector<TangleOwner>& owner_ = mesh_.owner;
   std::uint32_t& first_extra_ = mesh_.first_extra;
   std::vector<std::uint32_t> patch_of_vertex_;  ///< of positions from first_extra_ on
+  std::vector<glm::vec3> home_;                 ///< the same, if there are any
   SideTable sides_;                             ///< see index_sides()
   std::vector<std::uint8_t> moved_;             ///< of positions from first_extra_ on, as far as moves have come
   std::vector<std::uint8_t> changed_;           ///< triangles, see crossings_after()
@@ -236,21 +262,30 @@ class Tangle {
 }  // namespace
 
 Result<UntangleReport> untangle_patches(SurfaceModel& model, double step, Progress& progress,
-                                        const Triangulation* surface) {
+                                        const UntangleHelp& help) {
   UntangleReport report;
   if (model.patches.empty()) return report;
   progress.begin("untangle", kMostSplits + 1, "round");
   Triangulation own;
-  if (surface == nullptr) own = triangulate(model.mesh, model.attributes.normals);
-  Tangle tangle(model, surface != nullptr ? *surface : own, step);
+  if (help.surface == nullptr) own = triangulate(model.mesh, model.attributes.normals);
+  Tangle tangle(model, help.surface != nullptr ? *help.surface : own, help.home, step);
   auto pairs = tangle.crossings();
   report.crossings = static_cast<std::int64_t>(pairs.size());
-  for (int round = 0; round <= kMostSplits && !pairs.empty(); ++round) {
-    if (progress.cancelled()) return cancelled_error();
-    if (round > 0) report.added += tangle.split(pairs);
-    tangle.move(pairs);
+  const auto move_and_split = [&]() -> Result<void> {
+    for (int round = 0; round <= kMostSplits && !pairs.empty(); ++round) {
+      if (progress.cancelled()) return cancelled_error();
+      if (round > 0) report.added += tangle.split(pairs);
+      tangle.move(pairs);
+      pairs = tangle.crossings_after(std::move(pairs));
+      progress.advance(1);
+    }
+    return {};
+  };
+  DUBSAR_TRY(move_and_split());
+  if (!pairs.empty() && tangle.has_home()) {
+    tangle.retreat(pairs);
     pairs = tangle.crossings_after(std::move(pairs));
-    progress.advance(1);
+    DUBSAR_TRY(move_and_split());
   }
   report.left = tangle.places(pairs);
   report.moved = tangle.moved();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -19,12 +20,18 @@ struct UntangleReport {
   std::int64_t added = 0;       ///< vertices that had to be added to have something to move
 };
 
+struct UntangleHelp {
+  const Triangulation* surface = nullptr;  ///< triangulate() of the model's mesh, where somebody has it
+  /// Where the vertices that the first patch added have come from: near what still crosses they go back there
+  /// (leash.h), and are moved from there once more.
+  std::span<const glm::vec3> home{};
+};
+
 /// Moves vertices that patches added, as little as it takes, until no triangle of a patch crosses a triangle of a body
 /// that it closes (intersections.h). All positions become multiples of `step`, which is what files hold. Every
 /// body stays as closed as it was. Deterministic for any thread count. kBadData as make_tri_mesh(); kCancelled. About
 /// 3 us a triangle of patches and of the surface beside them.
-/// `surface`: triangulate() of the model's mesh, where somebody has it.
 Result<UntangleReport> untangle_patches(SurfaceModel& model, double step, Progress& progress,
-                                        const Triangulation* surface = nullptr);
+                                        const UntangleHelp& help = {});
 
 }  // namespace dubsar

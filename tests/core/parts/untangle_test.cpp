@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/geometric.hpp>
 #include <random>
 
 #include "core/base/system/parallel.h"
@@ -69,6 +70,24 @@ TEST(Untangle, PatchesThatRunThroughTheSurfaceAreTakenOut) {
       const TriMesh mesh = make_tri_mesh(model, {.body = body}).value();
       EXPECT_TRUE(check_mesh(mesh.positions, mesh.triangles).watertight()) << body;
     }
+  }
+}
+
+TEST(Untangle, WhatCannotBeTakenOutGoesBackToWhereItCameFrom) {
+  SurfaceModel thrown = glued();
+  const std::vector<glm::vec3> home = thrown.patches[0].extra_positions;
+  std::mt19937 random(21);
+  std::uniform_real_distribution<float> any(-12.0f, 12.0f);
+  for (glm::vec3& p : thrown.patches[0].extra_positions)
+    if (glm::distance(p, home.front()) < 9.0f) p += glm::vec3(any(random), any(random), any(random));
+  SurfaceModel lost = thrown;
+  SilentProgress progress;
+  ASSERT_GT(untangle_patches(lost, kStep, progress).value().left.size(), 10u) << "nothing to do";
+  EXPECT_TRUE(untangle_patches(thrown, kStep, progress, {.home = home}).value().left.empty());
+  EXPECT_EQ(crossings(thrown), 0);
+  for (const char* body : {"tablet", "envelope"}) {
+    const TriMesh mesh = make_tri_mesh(thrown, {.body = body}).value();
+    EXPECT_TRUE(check_mesh(mesh.positions, mesh.triangles).watertight()) << body;
   }
 }
 
