@@ -12,7 +12,6 @@
 #include "core/contact/interface_rings.h"
 #include "core/contact/ring_average.h"
 #include "core/mesh/evidence.h"
-#include "core/parts/leash.h"
 
 namespace dubsar {
 namespace {
@@ -159,8 +158,7 @@ struct Beside {
 };
 
 /// Films by one round, what is inferred until it is a membrane between them and the surface.
-void relax(InterfaceMesh& mesh, const Beside& beside, const std::vector<std::uint8_t>& evidence,
-           const std::vector<float>& leash, float most) {
+void relax(InterfaceMesh& mesh, const Beside& beside, const std::vector<std::uint8_t>& evidence, float most) {
   std::vector<glm::vec3> now = mesh.added;
   now.insert(now.end(), beside.surface.begin(), beside.surface.end());
   std::vector<glm::vec3> next = now;
@@ -174,8 +172,7 @@ void relax(InterfaceMesh& mesh, const Beside& beside, const std::vector<std::uin
       mean /= static_cast<float>(around.size());
       const glm::vec3 step = now[i] + share * (mean - now[i]) - mesh.added[i];
       const float length = glm::length(step);
-      const float free = leash[i] * most;
-      next[i] = mesh.added[i] + (length > free ? free / length : 1.0f) * step;
+      next[i] = mesh.added[i] + (length > most ? most / length : 1.0f) * step;
     });
     now.swap(next);
   };
@@ -187,8 +184,7 @@ void relax(InterfaceMesh& mesh, const Beside& beside, const std::vector<std::uin
 }  // namespace
 
 std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector<glm::vec3>& dual_positions,
-                                          const BandDensity& density, const std::vector<glm::vec3>& crossed,
-                                          const ShapeOptions& options) {
+                                          const BandDensity& density, const ShapeOptions& options) {
   const auto dual = static_cast<std::uint32_t>(dual_positions.size());
   const InterfaceRings rings(mesh, dual);
   const std::vector<float> strength = mean_strength(mesh, rings);
@@ -208,10 +204,9 @@ std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector
     }
   }
 
-  const std::vector<float> leash = leashes(mesh.added, crossed);
-  relax(mesh, Beside(rings, dual_positions), evidence, leash, options.most);
+  relax(mesh, Beside(rings, dual_positions), evidence, options.most);
   std::vector<float> follows(evidence.size());
-  for (std::size_t i = 0; i < follows.size(); ++i) follows[i] = evidence[i] == kFilm ? leash[i] : 0.0f;
+  for (std::size_t i = 0; i < follows.size(); ++i) follows[i] = evidence[i] == kFilm ? 1.0f : 0.0f;
   follow_dips(mesh, rings, dual_positions, {follows, clay_step}, density,
               {.blur_variance = options.blur_variance, .clays = options.clays});
   std::vector<bool> film(evidence.size());

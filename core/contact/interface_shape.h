@@ -22,10 +22,8 @@ struct ShapeOptions {
 /// Evidence of the added vertices (evidence.h): film where the strength of the dip, averaged far along the contact and
 /// without its rim, is at least `film_strength` over a region as large as a wedge, or where the clays differ and their
 /// densities around it say so, else inferred. Films are followed in the density (film_refine.h); what is inferred
-/// becomes a membrane between them and the surface, no farther than `most` steps from where it was. Within 3 steps of
-/// `crossed` nothing moves, and less than elsewhere within 7.
+/// becomes a membrane between them and the surface, no farther than `most` steps from where it was.
 std::vector<std::uint8_t> shape_interface(InterfaceMesh& mesh, const std::vector<glm::vec3>& dual_positions,
-                                          const BandDensity& density, const std::vector<glm::vec3>& crossed,
-                                          const ShapeOptions& options);
+                                          const BandDensity& density, const ShapeOptions& options);
 
 }  // namespace dubsar

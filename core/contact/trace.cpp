@@ -16,6 +16,7 @@
 #include "core/contact/interface_mesh.h"
 #include "core/contact/interface_rest.h"
 #include "core/contact/interface_shape.h"
+#include "core/contact/kept_shape.h"
 #include "core/contact/pockets.h"
 #include "core/contact/recentre.h"
 #include "core/extract/triangulate.h"
@@ -63,10 +64,9 @@ struct Traced {
   std::vector<float> votes{};
   std::optional<ClayDivision> division{};
   std::vector<ClaySide> side{};
-  std::vector<ClaySide> cut_side{};           ///< before it was made to step aside
-  std::optional<std::vector<bool>> unfirm{};  ///< nodes where it might as well lie, once there is a film
+  std::vector<ClaySide> cut_side{};  ///< before it was made to step aside
   std::optional<ClayContrast> clays{};
-  std::vector<glm::vec3> crossed{};  ///< where moving its vertices made the contact run through something
+  std::optional<KeptShape> kept{};  ///< of the attempt before
 };
 
 /// The contact between the sides, as the grid gives it: its vertices have not moved yet.
@@ -114,14 +114,12 @@ Result<Laid> lay_contact(SurfaceModel& model, const Traced& traced, Progress& pr
 Result<void> doubt_films(const Laid& laid, Traced& traced, std::vector<std::uint8_t>& evidence, Progress& progress) {
   const auto film = std::count(evidence.begin(), evidence.end(), evidence_byte(Evidence::kFilm));
   if (film == 0 || traced.clays) return {};
-  if (!traced.unfirm) {
-    std::vector<glm::vec3> films;
-    for (std::size_t i = 0; i < evidence.size(); ++i)
-      if (evidence[i] == evidence_byte(Evidence::kFilm)) films.push_back(laid.mesh.added[i]);
-    DUBSAR_ASSIGN(traced.unfirm, find_unfirm(traced.band, *traced.division, traced.cut_side, films, progress));
-    traced.division.reset();
-  }
-  doubt_unfirm(traced.band, *traced.unfirm, laid.mesh.added, evidence);
+  std::vector<glm::vec3> films;
+  for (std::size_t i = 0; i < evidence.size(); ++i)
+    if (evidence[i] == evidence_byte(Evidence::kFilm)) films.push_back(laid.mesh.added[i]);
+  DUBSAR_ASSIGN(const std::vector<bool> unfirm,
+                find_unfirm(traced.band, *traced.division, traced.cut_side, films, progress));
+  doubt_unfirm(traced.band, unfirm, laid.mesh.added, evidence);
   return {};
 }
 
@@ -129,10 +127,16 @@ Result<void> doubt_films(const Laid& laid, Traced& traced, std::vector<std::uint
 Result<void> shape_contact(SurfaceModel& model, const Laid& laid, Traced& traced, const ContactOptions& options,
                            ContactReport& report, Progress& progress) {
   InterfaceMesh mesh = laid.mesh;
-  std::vector<std::uint8_t> evidence =
-      shape_interface(mesh, model.mesh.positions, traced.density, traced.crossed,
-                      {options.film_strength, kMostMove, options.blur_variance, traced.clays, traced.dips.deviation});
-  DUBSAR_TRY(doubt_films(laid, traced, evidence, progress));
+  std::vector<std::uint8_t> evidence;
+  if (traced.kept) {
+    evidence = traced.kept->shape(mesh);
+  } else {
+    evidence =
+        shape_interface(mesh, model.mesh.positions, traced.density,
+                        {options.film_strength, kMostMove, options.blur_variance, traced.clays, traced.dips.deviation});
+    DUBSAR_TRY(doubt_films(laid, traced, evidence, progress));
+    traced.division.reset();
+  }
   report.traced = true;
   report.pockets = laid.pockets;
   report.film_vertices = std::count(evidence.begin(), evidence.end(), evidence_byte(Evidence::kFilm));
@@ -184,7 +188,8 @@ Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const Contac
       if (places.empty()) return measure_partitions(model);
       if (!best || best->report.patches.left.size() > places.size()) best = Closed{labels_of(model), report};
       if (++crossed == kMostCrossed) break;
-      traced.crossed.insert(traced.crossed.end(), places.begin(), places.end());
+      const FillPatch& contact = model.patches.front();
+      traced.kept.emplace(laid.mesh.added, contact.extra_positions, contact.evidence);
     }
     restore(before, model);
     if (places.empty()) break;

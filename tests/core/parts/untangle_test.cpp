@@ -10,6 +10,7 @@
 #include "core/mesh/intersections.h"
 #include "core/mesh/mesh_check.h"
 #include "core/parts/holes.h"
+#include "core/parts/leash.h"
 #include "core/parts/segment.h"
 #include "tests/core/parts/grid_scene.h"
 
@@ -73,13 +74,21 @@ TEST(Untangle, PatchesThatRunThroughTheSurfaceAreTakenOut) {
   }
 }
 
+TEST(Untangle, VerticesNearACrossingAreTied) {
+  const std::vector<glm::vec3> points{{10, 10, 10}, {12.9f, 10, 10}, {15, 10, 10}, {17.1f, 10, 10}, {-40, 3, 9}};
+  const std::vector<float> free = leashes(points, std::vector<glm::vec3>{{10, 10, 10}, {90, 90, 90}});
+  const std::vector<float> expected{0.0f, 0.0f, 0.5f, 1.0f, 1.0f};
+  EXPECT_EQ(free, expected);
+  EXPECT_EQ(leashes(points, {}), std::vector<float>(points.size(), 1.0f));
+}
+
 TEST(Untangle, WhatCannotBeTakenOutGoesBackToWhereItCameFrom) {
   SurfaceModel thrown = glued();
   const std::vector<glm::vec3> home = thrown.patches[0].extra_positions;
   std::mt19937 random(21);
   std::uniform_real_distribution<float> any(-12.0f, 12.0f);
   for (glm::vec3& p : thrown.patches[0].extra_positions)
-    if (glm::distance(p, home.front()) < 9.0f) p += glm::vec3(any(random), any(random), any(random));
+    if (glm::distance(p, home.front()) < 11.0f) p += glm::vec3(any(random), any(random), any(random));
   SurfaceModel lost = thrown;
   SilentProgress progress;
   ASSERT_GT(untangle_patches(lost, kStep, progress).value().left.size(), 10u) << "nothing to do";
