@@ -26,11 +26,14 @@ std::array<int, 4> face_corners(int face) {
   return {base, base | 1 << u, base | 1 << u | 1 << v, base | 1 << v};
 }
 
+/// By edge and face of a cell: the dual vertex at the face's air.
+using AtAir = std::array<std::array<std::uint32_t, 6>, 12>;
+
 /// How the contact meets one cell.
 struct Cell {
-  std::array<std::array<std::uint32_t, 6>, 12> at_air;  ///< by edge and face: the dual vertex at the face's air
-  std::array<std::uint8_t, 12> root;                    ///< edges whose polygons share a vertex here
-  std::array<std::uint32_t, 12> vertex;                 ///< by root
+  std::array<std::uint8_t, 12> root;     ///< edges whose polygons share a vertex here
+  std::array<std::uint32_t, 12> vertex;  ///< by root
+  std::uint32_t at_air = kNone;          ///< of the few cells that have air
 };
 
 class Maker {
@@ -87,7 +90,7 @@ class Maker {
     return first[0];
   }
 
-  const Cell& cell_at(const glm::ivec3& p) {
+  Cell& cell_at(const glm::ivec3& p) {
     const Dims d = band_.node_at.dims();
     const std::int64_t key = (static_cast<std::int64_t>(p.z) * d.y + p.y) * d.x + p.x;
     const auto [place, fresh] = cells_.try_emplace(key);
@@ -96,7 +99,6 @@ class Maker {
   }
 
   void fill(const glm::ivec3& p, Cell& cell) {
-    for (auto& faces : cell.at_air) faces.fill(kNone);
     for (std::uint8_t e = 0; e < 12; ++e) cell.root[e] = e;
     cell.vertex.fill(kNone);
     std::array<Corner, 8> kinds;
@@ -116,7 +118,11 @@ class Maker {
       int airs = 0;
       for (const int k : c) airs += is(k) == kAir;
       const auto attach = [&](int e, std::uint32_t v) {
-        cell.at_air[static_cast<std::size_t>(e)][static_cast<std::size_t>(face)] = v;
+        if (cell.at_air == kNone) {
+          cell.at_air = static_cast<std::uint32_t>(at_air_.size());
+          for (auto& faces : at_air_.emplace_back()) faces.fill(kNone);
+        }
+        at_air_[cell.at_air][static_cast<std::size_t>(e)][static_cast<std::size_t>(face)] = v;
       };
       for (int i = 0; i < 4; ++i) {
         const int before = corner(i + 3), here = corner(i), next = corner(i + 1), beyond = corner(i + 2);
@@ -140,21 +146,22 @@ class Maker {
           attach(edge_between(here, next), common(p, here, before, next, beyond));
       }
     }
-    for (int e = 0; e < 12; ++e) {
-      cell.root[static_cast<std::size_t>(e)] = static_cast<std::uint8_t>(root(e));
-      for (const std::uint32_t v : cell.at_air[static_cast<std::size_t>(e)]) {
-        std::uint32_t& shared = cell.vertex[cell.root[static_cast<std::size_t>(e)]];
+    for (int e = 0; e < 12; ++e) cell.root[static_cast<std::size_t>(e)] = static_cast<std::uint8_t>(root(e));
+    if (cell.at_air == kNone) return;
+    for (std::size_t e = 0; e < 12; ++e)
+      for (const std::uint32_t v : at_air_[cell.at_air][e]) {
+        std::uint32_t& shared = cell.vertex[cell.root[e]];
         if (v != kNone && shared == kNone) shared = v;
       }
-    }
   }
 
   /// The vertex in a cell of the polygon around edge `e`, where the polygon crosses the cell's `face`.
-  std::uint32_t vertex(const glm::ivec3& p, int e, int face, const glm::vec3& crossing, float strength) {
-    const Cell& cell = cell_at(p);
-    const std::uint32_t at_air = cell.at_air[static_cast<std::size_t>(e)][static_cast<std::size_t>(face)];
-    if (at_air != kNone) return at_air;
-    std::uint32_t& shared = const_cast<Cell&>(cell).vertex[cell.root[static_cast<std::size_t>(e)]];
+  std::uint32_t vertex(Cell& cell, int e, int face, const glm::vec3& crossing, float strength) {
+    if (cell.at_air != kNone) {
+      const std::uint32_t at_air = at_air_[cell.at_air][static_cast<std::size_t>(e)][static_cast<std::size_t>(face)];
+      if (at_air != kNone) return at_air;
+    }
+    std::uint32_t& shared = cell.vertex[cell.root[static_cast<std::size_t>(e)]];
     if (shared == kNone) shared = add_vertex();
     const auto dual = static_cast<std::uint32_t>(model_.mesh.positions.size());
     if (shared >= dual) {
@@ -200,7 +207,7 @@ class Maker {
     std::array<std::uint32_t, 9> polygon{};
     std::size_t size = 0;
     for (const Step& step : steps) {
-      const glm::ivec3 cell = start + step.du * unit_step(u) + step.dv * unit_step(v);
+      Cell& cell = cell_at(start + step.du * unit_step(u) + step.dv * unit_step(v));
       const int e = 4 * axis + (step.du < 0 ? 1 : 0) + (step.dv < 0 ? 2 : 0);
       const std::uint32_t in = vertex(cell, e, step.in, crossing, strength);
       const std::uint32_t out = vertex(cell, e, step.out, crossing, strength);
@@ -235,6 +242,7 @@ class Maker {
   const std::vector<ClaySide>& side_;
   const Dips& dips_;
   std::unordered_map<std::int64_t, Cell> cells_;
+  std::vector<AtAir> at_air_;
   std::vector<float> weight_;
   InterfaceMesh mesh_;
 };
