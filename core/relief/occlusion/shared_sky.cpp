@@ -11,7 +11,7 @@
 namespace dubsar {
 namespace {
 
-/// Light from which neighbours differ too much to be one: three times what a fifth of 160 rays errs by. An edge that
+/// Light from which neighbours differ too much to be one: three times what a seventh of 160 rays errs by. An edge that
 /// throws a shadow differs by more.
 constexpr float kAlike = 0.15f;
 
