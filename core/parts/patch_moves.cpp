@@ -39,15 +39,22 @@ glm::vec3 in_steps(const glm::vec3& place, double step) {
 }
 
 PatchMoves::PatchMoves(TangleMesh& mesh, double step, std::span<const std::uint32_t> beside)
-    : mesh_(mesh), step_(step), star_(mesh.positions.size() - mesh.first_extra) {
+    : mesh_(mesh), step_(step), first_(mesh.positions.size() - mesh.first_extra + 2, 0) {
   for (const std::uint32_t t : beside) grid_.add(t, box_of(mesh.positions, mesh.triangles[t]));
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    for (const std::uint32_t v : mesh.triangles[t])
-      if (v >= mesh.first_extra) star_[v - mesh.first_extra].push_back(t);
+  const auto each_corner = [&](const auto& visit) {
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+      for (const std::uint32_t v : mesh.triangles[t])
+        if (v >= mesh.first_extra) visit(v - mesh.first_extra, t);
+  };
+  each_corner([&](std::uint32_t v, std::uint32_t) { ++first_[v + 2]; });  // one further: where the next one goes
+  for (std::size_t v = 1; v < first_.size(); ++v) first_[v] += first_[v - 1];
+  star_.resize(first_.back());
+  each_corner([&](std::uint32_t v, std::uint32_t t) { star_[first_[v + 1]++] = t; });
+  first_.pop_back();
 }
 
 void PatchMoves::run(const CrossingPairs& pairs, std::span<std::uint8_t> moved, std::span<std::uint8_t> changed) {
-  DUBSAR_CHECK(moved.size() == star_.size() && changed.size() == mesh_.triangles.size());
+  DUBSAR_CHECK(moved.size() + 1 == first_.size() && changed.size() == mesh_.triangles.size());
   std::vector<std::uint32_t> work;
   for (const auto& pair : pairs)
     for (const std::uint32_t t : pair) mesh_.add_extras(t, work);
@@ -138,7 +145,7 @@ PatchMoves::Outcome PatchMoves::move_group(const Group& group, std::uint32_t num
 
 /// Triangles beside the star of a vertex that matter to it, wherever it may be moved, and those of the star among them.
 void PatchMoves::look_around(std::uint32_t v, Around& around) const {
-  const auto& star = star_of(v);
+  const std::span<const std::uint32_t> star = star_of(v);
   const TriangleBox box = star_box(v).grown(1.0f);
   grid_.near(box, around.near);
   std::vector<std::uint32_t> added;

@@ -66,7 +66,10 @@ class PatchMoves {
     std::vector<std::uint32_t> next, moved;
   };
 
-  const std::vector<std::uint32_t>& star_of(std::uint32_t v) const { return star_[v - mesh_.first_extra]; }
+  std::span<const std::uint32_t> star_of(std::uint32_t v) const {
+    const std::uint32_t* const first = first_.data() + (v - mesh_.first_extra);
+    return std::span(star_).subspan(first[0], first[1] - first[0]);
+  }
   TriangleBox star_box(std::uint32_t v) const;
   std::vector<Group> far_apart(const std::vector<std::uint32_t>& work, Homes& homes) const;
   Outcome move_group(const Group& group, std::uint32_t number, const Homes& homes);
@@ -78,7 +81,7 @@ class PatchMoves {
   TangleMesh& mesh_;
   double step_;
   TriangleGrid grid_;
-  std::vector<std::vector<std::uint32_t>> star_;          ///< triangles of each vertex from first_extra on
+  std::vector<std::uint32_t> first_, star_;  ///< triangles of each vertex from first_extra on: star_[first_[v]] and on
   std::unordered_map<std::uint32_t, TriangleBox> reach_;  ///< of triangles that moved: all places where they have been
 };
 
