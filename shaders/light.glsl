@@ -1,6 +1,27 @@
-// How light becomes brightness.
+// How light becomes brightness. What no look of a picture has is left out, since without a GPU both sides of a branch
+// cost time: light (LIT), highlights (GLOSSY), a knee (KNEED), radiance scaling (BENT).
 
 const float kLeastInferredLight = 0.35;
+#ifdef LIT
+const bool kLit = true;
+#else
+const bool kLit = false;
+#endif
+#ifdef GLOSSY
+const bool kGlossy = true;
+#else
+const bool kGlossy = false;
+#endif
+#ifdef KNEED
+const bool kKneed = true;
+#else
+const bool kKneed = false;
+#endif
+#ifdef BENT
+const bool kBent = true;
+#else
+const bool kBent = false;
+#endif
 const float kInvariant = 0.2;  // the reflected light that radiance scaling leaves as it is
 
 /// Linear up to the knee, then towards white without reaching it.
@@ -23,10 +44,11 @@ float radiance_scale(float bend, float reflected) {
 /// says; `hatched` is never dark.
 vec3 lit(Look look, vec3 base, vec3 normal, vec3 to_eye, float bend, float open, bool hatched) {
   float fill = max(dot(normal, to_eye), 0.0);
-  float more = look.gloss.z;
-  if (look.light.w == 0.0) return more > 0.0 ? base * radiance_scale(more * bend, fill) : base;
+  float more = kBent ? look.gloss.z : 0.0;
+  if (!kLit || look.light.w == 0.0) return more > 0.0 ? base * radiance_scale(more * bend, fill) : base;
   float key = max(dot(normal, look.light.xyz), 0.0);
-  float gloss = key > 0.0 ? pow(max(dot(normal, normalize(look.light.xyz + to_eye)), 0.0), look.gloss.x) : 0.0;
+  float gloss = 0.0;
+  if (kGlossy && key > 0.0) gloss = pow(max(dot(normal, normalize(look.light.xyz + to_eye)), 0.0), look.gloss.x);
   if (more > 0.0) {
     key *= radiance_scale(more * bend, key);
     fill *= radiance_scale(more * bend, fill);
@@ -34,5 +56,6 @@ vec3 lit(Look look, vec3 base, vec3 normal, vec3 to_eye, float bend, float open,
   float comes = mix(1.0, open, look.gloss.w);
   float level = look.weights.x + look.weights.y * key * comes + look.weights.z * fill;
   if (hatched) level = max(level, kLeastInferredLight);
-  return bent(base * level + vec3(look.weights.w * gloss * comes), look.gloss.y);
+  vec3 light = base * level + vec3(look.weights.w * gloss * comes);
+  return kKneed ? bent(light, look.gloss.y) : light;
 }

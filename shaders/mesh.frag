@@ -2,7 +2,7 @@
 // Ambient, diffuse and specular light (Blinn-Phong) in linear colours, or the vertex colours as they are, in one look
 // or two. SHADOWED: the key light is cast (QUICK: with harder rims); PEELED: only what lies before the opaque and
 // behind the peeled depths; INFERRED: hatched; FOGGY; BENT: radiance scaling; BLENDED: two looks;
-// GLOWING: warm light around a line of sight.
+// GLOWING: warm light around a line of sight; LIT, GLOSSY, KNEED: light.glsl.
 #include "style.glsl"
 #include "light.glsl"
 
@@ -11,7 +11,10 @@ layout(binding = 1) uniform sampler2DShadow shadow_map;
 layout(binding = 2) uniform sampler2D opaque_depth;
 layout(binding = 3) uniform sampler2D peeled_depth;
 
+#ifdef GLOWING
 flat in int view_of_vertex;
+#endif
+flat in float parallel;
 in vec3 view_position;
 in vec3 view_normal;
 in vec3 albedo;
@@ -65,7 +68,7 @@ vec3 base_color(Look look, vec3 own, bool from_behind) {
 }
 
 vec3 way_from(vec3 position) {
-  return mix(normalize(-position), vec3(0.0, 0.0, 1.0), views[view_of_vertex].view_from_normal[3][3]);
+  return mix(normalize(-position), vec3(0.0, 0.0, 1.0), parallel);
 }
 
 vec3 surface_color() {

@@ -17,7 +17,10 @@ layout(location = 2) uniform vec3 part_offset;  // in the unit cube
 layout(binding = 0) uniform sampler2D color_table;  // linear, x: shape or figure, y: ambient light
 layout(binding = 4) uniform sampler2D other_table;
 
+#ifdef GLOWING
 flat out int view_of_vertex;
+#endif
+flat out float parallel;
 out vec3 view_position;
 out vec3 view_normal;
 out vec3 albedo;  // linear
@@ -63,11 +66,18 @@ vec3 table_color(sampler2D table, Look look) {
 
 void main() {
 #ifdef LAYERED
+  ViewData view = views[gl_InstanceID];
+#else
+  ViewData view = views[view_index];
+#endif
+  parallel = view.view_from_normal[3][3];
+#ifdef GLOWING
+#ifdef LAYERED
   view_of_vertex = gl_InstanceID;
 #else
   view_of_vertex = view_index;
 #endif
-  ViewData view = views[view_of_vertex];
+#endif
   vec4 unit = vec4(unit_position + part_offset, 1.0);
   vec4 position = view.view_from_unit * unit;
   view_position = position.xyz;

@@ -10,12 +10,19 @@ constexpr GLint kFactorLocation = 0;    // shaders/resolve.frag
 constexpr int kJudgePx = 1024;          // of the longer side of a picture that tells which labels are seen
 constexpr double kJudgeCoarsePx = 4.0;  // details it may merge
 constexpr int kShadowTexels = 4096, kQuickShadowTexels = 1024;
+constexpr double kTexelsADetail = 4;  // of the map, for what a coarse picture merges
 
 glm::vec4 opaque_background(const SceneView& scene) { return glm::vec4(linear_color(scene.background.color), 1.0f); }
 
 bool has_labels(const SceneView& scene) {
   return std::any_of(scene.items.begin(), scene.items.end(),
                      [](const DrawItem& item) { return std::holds_alternative<LabelItem>(item); });
+}
+
+/// Of the map of a moving picture: half, where its triangles are so large that more would show nothing.
+int quick_shadow_texels(const ViewArray& target, double coarse_px) {
+  const bool few = kTexelsADetail * std::max(target.width(), target.height()) <= 0.5 * kQuickShadowTexels * coarse_px;
+  return few ? kQuickShadowTexels / 2 : kQuickShadowTexels;
 }
 
 /// `coded`: the shaders' linear light becomes sRGB bytes.
@@ -162,9 +169,10 @@ Result<void> Renderer::render_layers(const SceneView& scene, std::span<const Vie
   DUBSAR_TRY(use_layer_depth(target));
   const bool together =
       meshes_.layered() && !has_transparency(scene) && (!casts_shadows(scene) || same_direction(views));
+  const int shadow_texels = quick_shadow_texels(target, coarse_px);
   const ShadowMap* shadows = nullptr;
   if (together) {
-    DUBSAR_ASSIGN(shadows, cast_shadows(quick_shadows_, scene, views, kQuickShadowTexels, coarse_px, target.width()));
+    DUBSAR_ASSIGN(shadows, cast_shadows(quick_shadows_, scene, views, shadow_texels, coarse_px, target.width()));
   }
   const GLuint framebuffer = layer_depth_.framebuffer;
   glNamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, target.linear(), 0);
@@ -175,7 +183,7 @@ Result<void> Renderer::render_layers(const SceneView& scene, std::span<const Vie
     DUBSAR_TRY(draw_items(scene, {views, layers, target.width(), target.height(), coarse_px}, shadows, 1.0, {}));
   for (std::size_t i = 0; i < views.size() && !together; ++i) {
     const auto one = views.subspan(i, 1);
-    DUBSAR_ASSIGN(shadows, cast_shadows(quick_shadows_, scene, one, kQuickShadowTexels, coarse_px, target.width()));
+    DUBSAR_ASSIGN(shadows, cast_shadows(quick_shadows_, scene, one, shadow_texels, coarse_px, target.width()));
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, target.width(), target.height());
     glNamedFramebufferTextureLayer(framebuffer, GL_COLOR_ATTACHMENT0, target.linear(), 0, layers[i]);

@@ -2,7 +2,6 @@
 
 #include "display/render/passes/compose_pass.h"
 #include "display/render/view_array.h"
-#include "display/sinks/copy_locations.h"
 
 namespace dubsar {
 namespace {
@@ -26,17 +25,14 @@ class MonoSink : public OutputSink {
   }
   Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
     if (!draws_) return {};
-    DUBSAR_TRY(copy_.begin(target, views.coded()));
-    glUniform1i(kLayerLocation, 0);
-    glUniform2i(kOriginLocation, 0, 0);
-    return copy_.draw();
+    return copy_.draw(views, 0, target);
   }
 
  private:
   bool draws_;
   Screen screen_;
   View view_;
-  ComposePass copy_{"copy.frag"};
+  LayerCopy copy_;
 };
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "display/render/view_array.h"
+
 namespace dubsar {
 
 Result<void> ComposePass::begin(const Surface& target, GLuint texture) {
@@ -27,6 +29,25 @@ Result<void> ComposePass::draw() {
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   return check_gl("composing");
+}
+
+Result<void> LayerCopy::draw(const ViewArray& views, int layer, const Surface& target) {
+  if (framebuffer_ == 0) framebuffer_ = make_framebuffer();
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_FRAMEBUFFER_SRGB);
+  glNamedFramebufferTextureLayer(framebuffer_, GL_COLOR_ATTACHMENT0, views.coded(), 0, layer);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer);
+  if (target.width > views.width() || target.height > views.height()) {
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glClearColor(0, 0, 0, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+  }
+  const int width = std::min(target.width, views.width()), height = std::min(target.height, views.height());
+  glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glNamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);  // the views may go before us
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  return check_gl("copying a view");
 }
 
 Result<OffscreenSurface> OffscreenSurface::create(PixelSize size) {

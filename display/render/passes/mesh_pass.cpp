@@ -40,6 +40,9 @@ enum Variant : unsigned {
   kBlended = 256,
   kFilled = 512,
   kGlowing = 1024,
+  kLit = 2048,
+  kGlossy = 4096,
+  kKneed = 8192,
 };
 
 struct ViewData {  // std430, as in shaders/style.glsl
@@ -90,6 +93,12 @@ LookData look_data(const Style& style, const Light& light, const glm::dvec3& dir
     out.field = glm::vec4(glm::dvec4(which, slope, -scale.from * slope, 0.0));
   }
   return out;
+}
+
+/// What the shader works out for this look: without a GPU it costs as much where it comes to nothing.
+unsigned look_variant(const Style& style, const Light& light) {
+  if (!style.lit) return 0;
+  return kLit | (light.specular > 0 ? kGlossy : 0u) | (light.knee < 1.0 ? kKneed : 0u);
 }
 
 StyleData style_data(const MeshItem& item, const SceneView& scene, const View& view, const ShadowMap* shadows) {
@@ -231,6 +240,9 @@ Result<GLuint> MeshPass::program(unsigned variant) {
   define(kBlended, "BLENDED");
   define(kFilled, "FILLED");
   define(kGlowing, "GLOWING");
+  define(kLit, "LIT");
+  define(kGlossy, "GLOSSY");
+  define(kKneed, "KNEED");
   const std::string_view extension =
       (variant & kLayered) != 0 ? "#extension GL_ARB_shader_viewport_layer_array : require\n" : "";
   DUBSAR_ASSIGN(GlProgram made, make_program("mesh.vert", "mesh.frag", std::string(extension) + lines, lines));
@@ -302,7 +314,8 @@ Result<void> MeshPass::draw(const MeshItem& item, const SceneView& scene, const 
                            (shadows == nullptr ? 0u : kShadowed) | (transparent ? kPeeled : 0u) |
                            (scene.fog.strength > 0 ? kFoggy : 0u) | (target.coarse_px > 0 ? kQuick : 0u) |
                            (bent ? kBent : 0u) | (blended ? kBlended : 0u) | (filled ? kFilled : 0u) |
-                           (scene.glow.strength > 0 ? kGlowing : 0u);
+                           (scene.glow.strength > 0 ? kGlowing : 0u) | look_variant(item.style, scene.light) |
+                           (blended ? look_variant(item.other.style, item.other.light) : 0u);
   for (const std::size_t p : outermost_first(*item.mesh))
     if (drawn(item.parts[p])) DUBSAR_TRY(draw_part(level, item, p, views, variant, mode.pieces));
   glDisable(GL_CULL_FACE);

@@ -76,6 +76,27 @@ TEST(Blend, IsTheMeanOfBothInLinearLight) {
   EXPECT_EQ(render_picture(mesh, front(both), silent).error().kind, ErrorKind::kUsage);
 }
 
+TEST(Blend, OfLooksWithAndWithoutLightShadowsAndHighlightsIsTheirMean) {
+  const TriMesh mesh = grooved_ball();
+  for (const auto& [one, two] :
+       {std::pair{"ao", "raking"}, {"raking", "ao"}, {"table", "phong"}, {"raking", "phong"}}) {
+    Shading both = preset(one), other = preset(two);
+    other.light.elevation_deg = both.light.elevation_deg;
+    both.other = {other.style, other.light, 0.5};
+    const Image mixed = picture(mesh, both), second = picture(mesh, other);
+    both.other.share = 0.0;
+    const Image first = picture(mesh, both);
+    int off = 0;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x)
+        for (int c = 0; c < 3; ++c) {
+          const double a = linear_from_srgb(first.at(x, y)[c]), b = linear_from_srgb(second.at(x, y)[c]);
+          off += std::abs(mixed.at(x, y)[c] - srgb_from_linear(0.5 * a + 0.5 * b)) > 1.5;
+        }
+    EXPECT_EQ(off, 0) << one << " and " << two;
+  }
+}
+
 /// White clay that only a light from the eye falls on.
 Shading plain_white() {
   Shading out = preset("phong");

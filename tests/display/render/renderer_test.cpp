@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <memory>
 #include <optional>
 #include <set>
@@ -77,6 +78,51 @@ TEST_F(RendererTest, ShadowsAreThoseOfTheMeshThatIsThereAndNotOfOneThatWasAtItsP
   ASSERT_TRUE(fresh.render(MeshScene(*mesh, shading), std::span(&view, 1), 1, array));
   EXPECT_EQ(second.pixels, array.read_layer(0)->pixels);
   EXPECT_NE(second.pixels, first.pixels);
+}
+
+TEST_F(RendererTest, ShadowsOfMovingThingsFallWhereThoseAtRestDo) {
+  // A post of 6 x 6 mm, 6 mm high: at 30 degrees its shadow is 10.4 mm long.
+  constexpr int kSide = 400;  // pixels, 10 a mm
+  TriMesh mesh;
+  testing::add_rectangle(mesh, {-20, -20, 0}, {40, 0, 0}, {0, 40, 0}, 0);
+  testing::add_rectangle(mesh, {-3, -3, 6}, {6, 0, 0}, {0, 6, 0}, 0);
+  for (const float side : {-1.0f, 1.0f}) {
+    testing::add_rectangle(mesh, {3 * side, -3 * side, 0}, {0, 6 * side, 0}, {0, 0, 6}, 0);
+    testing::add_rectangle(mesh, {-3 * side, -3 * side, 0}, {6 * side, 0, 0}, {0, 0, 6}, 0);
+  }
+  const LodMesh gpu = LodMesh::exact(pack_mesh(mesh).value()).value();
+  View view;
+  view.clip_from_view = glm::ortho(-20.0, 20.0, -20.0, 20.0, -100.0, 100.0);
+  auto renderer = Renderer::create().value();
+  auto array = ViewArray::create(kSide, kSide, 1).value();
+  Shading shading = shading_preset("raking").value();
+  shading.light.elevation_deg = 30;
+  const int layer = 0;
+  for (const double coarse_px : {1.5, 12.0})  // the finest and the coarsest of moving pictures
+    for (const int azimuth : {0, 60, 90, 150, 225, 270}) {
+      shading.light.azimuth_deg = azimuth;
+      const MeshScene scene(gpu, shading);
+      ASSERT_TRUE(renderer.render(scene, std::span(&view, 1), 1, array));
+      const Image rest = array.read_layer(0).value();
+      ASSERT_TRUE(renderer.render_layers(scene, std::span(&view, 1), std::span(&layer, 1), array, coarse_px));
+      const Image moving = array.read_layer(0).value();
+      int dark = 0, other = 0, inside = 0;
+      const auto is_dark = [](const Image& image, int x, int y) { return image.at(x, y)[1] < 60; };
+      for (int y = 3; y < kSide - 3; ++y)
+        for (int x = 3; x < kSide - 3; ++x) {
+          const bool shaded = is_dark(rest, x, y);
+          dark += shaded;
+          if (shaded == is_dark(moving, x, y)) continue;
+          ++other;
+          bool rim = false;  // within 3 pixels, 0.3 mm, of the shadow's edge
+          for (int dy = -3; dy <= 3; ++dy)
+            for (int dx = -3; dx <= 3; ++dx) rim = rim || is_dark(rest, x + dx, y + dy) != shaded;
+          inside += !rim;
+        }
+      EXPECT_GT(dark, 3000) << azimuth;
+      EXPECT_EQ(inside, 0) << azimuth << " merging " << coarse_px;
+      EXPECT_LT(other, dark / 10) << azimuth << " merging " << coarse_px;
+    }
 }
 
 TEST_F(RendererTest, LayersKeepWhatIsWrittenTopRowFirst) {

@@ -78,6 +78,26 @@ TEST_F(SinksGl, MonoCopiesItsViewExactly) {
       for (int c = 0; c < 3; ++c) ASSERT_EQ(out.at(x, y)[c], views[0].at(x, y)[c]);
 }
 
+TEST_F(SinksGl, AViewIsCopiedFromTheLowerLeftCornerAndWhatIsLargerIsBlackBesideIt) {
+  auto sink = SinkCatalog().make("mono").value();
+  ASSERT_TRUE(sink->configure({.window_w = 37, .window_h = 23}));
+  const auto views = noise(sink->traits());
+  auto array = ViewArray::create(37, 23, 2).value();
+  ASSERT_TRUE(array.write_layer(1, views[0]));
+  for (const PixelSize size : {PixelSize{37, 23}, {40, 23}, {37, 30}, {20, 10}}) {
+    LayerCopy copy;
+    auto surface = OffscreenSurface::create(size).value();
+    ASSERT_TRUE(copy.draw(array, 1, surface.surface()));
+    const Image out = surface.read().value();
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x)
+        for (int c = 0; c < 3; ++c) {
+          const int row = y - size.height + 23;  // rows count from above
+          ASSERT_EQ(out.at(x, y)[c], x < 37 && row >= 0 ? views[0].at(x, row)[c] : 0) << x << ", " << y;
+        }
+  }
+}
+
 TEST_F(SinksGl, PackedPicturesEqualTheReference) {
   const struct {
     const char* spec;
