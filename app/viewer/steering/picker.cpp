@@ -1,6 +1,8 @@
 #include "app/viewer/steering/picker.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -15,7 +17,9 @@ double meets(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b, const glm
   const double det = glm::dot(ab, p);
   if (det == 0.0) return kNever;
   const glm::dvec3 to = ray.from - a;
-  const double u = glm::dot(to, p) / det;
+  const double beside = glm::dot(to, p);
+  if (beside * det < 0.0 || std::abs(beside) > std::abs(det)) return kNever;  // most of them, without a division
+  const double u = beside / det;
   if (!(u >= 0.0 && u <= 1.0)) return kNever;
   const glm::dvec3 q = glm::cross(to, ab);
   const double v = glm::dot(ray.direction, q) / det;
@@ -36,10 +40,15 @@ std::optional<Picked> pick(const TriMesh& mesh, const PartLooks& parts, const Ra
   const auto corner = [&](std::uint32_t v, const PartLook& part) {
     return mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[v])) + part.offset_mm;
   };
-  const auto part_of = [&](std::int64_t triangle) -> const PartLook& {
+  const auto part_of = [&](std::int64_t triangle) {
     const std::size_t id = mesh.partition_of(static_cast<std::size_t>(triangle));
-    return parts[id < parts.size() ? id : 0];
+    return id < parts.size() ? id : 0;
   };
+  std::array<Ray, kMaxPartitions> rays;  // in the grid of each part, as far along as in mm
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const glm::dvec3 step = mesh.frame.grid_voxel_mm();
+    rays[p] = {(ray.from - parts[p].offset_mm - mesh.frame.mm_from_grid(glm::dvec3(0.0))) / step, ray.direction / step};
+  }
   double nearest = std::numeric_limits<double>::infinity();
   std::int64_t best = -1;
   const auto count = static_cast<std::int64_t>(mesh.triangles.size());
@@ -50,9 +59,10 @@ std::optional<Picked> pick(const TriMesh& mesh, const PartLooks& parts, const Ra
 #pragma omp for schedule(static) nowait
     for (std::int64_t i = 0; i < count; ++i) {
       const Triangle& t = mesh.triangles[static_cast<std::size_t>(i)];
-      const PartLook& part = part_of(i);
-      if (!part.visible) continue;
-      const double at = meets(ray, corner(t[0], part), corner(t[1], part), corner(t[2], part));
+      const std::size_t part = part_of(i);
+      if (!parts[part].visible) continue;
+      const double at = meets(rays[part], glm::dvec3(mesh.positions[t[0]]), glm::dvec3(mesh.positions[t[1]]),
+                              glm::dvec3(mesh.positions[t[2]]));
       if (at < mine && kept(at)) {
         mine = at;
         found = i;
@@ -66,7 +76,7 @@ std::optional<Picked> pick(const TriMesh& mesh, const PartLooks& parts, const Ra
   }
   if (best < 0) return std::nullopt;
   const Triangle& t = mesh.triangles[static_cast<std::size_t>(best)];
-  const PartLook& part = part_of(best);
+  const PartLook& part = parts[part_of(best)];
   const glm::dvec3 a = corner(t[0], part), b = corner(t[1], part), c = corner(t[2], part);
   return Picked{ray.from + nearest * ray.direction, glm::normalize(glm::cross(b - a, c - a)),
                 static_cast<std::size_t>(best)};

@@ -7,6 +7,7 @@
 
 #include "app/panels/light_ball.h"
 #include "app/viewer/run_view.h"
+#include "app/viewer/steering/picker.h"
 #include "display/render/shading.h"
 #include "tests/display/spec.h"
 #include "tests/display/test_meshes.h"
@@ -165,6 +166,32 @@ glm::dvec2 amber_middle(const Image& image, int from, int to) {
     }
   EXPECT_GT(count, 20);
   return sum / static_cast<double>(std::max(count, 1));
+}
+
+TEST(Picking, FindsTheNearestPlaceInMillimetresWhateverTheGridAndHoweverPartsAreMoved) {
+  TriMesh mesh;  // two sheets of 40 x 40 voxels, at 2 and 6 of them
+  testing::add_rectangle(mesh, {0, 0, 2}, {40, 0, 0}, {0, 40, 0}, 0);
+  testing::add_rectangle(mesh, {0, 0, 6}, {40, 0, 0}, {0, 40, 0}, 1);
+  mesh.frame.scale = {2, 2, 4};
+  mesh.frame.origin_vox = {5, -3, 1};
+  mesh.frame.input_voxel.mm = {0.1, 0.2, -0.05};  // mirrored along z
+  PartLooks parts{};
+  parts[1].offset_mm = {1, 0, -3};
+  const Ray ray{{3, 4, 50}, glm::normalize(glm::dvec3(0.02, -0.01, -1))};
+  const auto place = [&](double z) { return ray.from + (z - ray.from.z) / ray.direction.z * ray.direction; };
+  const double near = -0.05 * (1 + 4 * 2), far = -0.05 * (1 + 4 * 6) - 3;
+  const auto found = pick(mesh, parts, ray);
+  ASSERT_TRUE(found);
+  EXPECT_LT(glm::distance(found->at_mm, place(near)), 1e-9);
+  EXPECT_LT(found->triangle, 2u);
+  EXPECT_LT(glm::distance(found->normal, glm::dvec3(0, 0, 1)), 1e-9);
+  parts[0].visible = false;
+  ASSERT_TRUE(pick(mesh, parts, ray));
+  EXPECT_LT(glm::distance(pick(mesh, parts, ray)->at_mm, place(far)), 1e-9);
+  const Ray beside{{8.7, 4, 50}, {0, 0, -1}};  // the sheets end at 8.5 mm, the moved one at 9.5
+  EXPECT_TRUE(pick(mesh, parts, beside));
+  parts[1].offset_mm.x = 0;
+  EXPECT_FALSE(pick(mesh, parts, beside));
 }
 
 TEST_F(Seeing, TheRingStandsAtTheDepthOfTheSurfaceForBothEyes) {
