@@ -73,7 +73,8 @@ Result<Image> OffscreenSurface::read() const {
                     image.pixels.data());
   DUBSAR_TRY(check_gl("reading the picture back"));
   for (int y = 0; y < size_.height / 2; ++y)
-    std::swap_ranges(image.at(0, y), image.at(0, y) + 3 * size_.width, image.at(0, size_.height - 1 - y));
+    std::swap_ranges(image.at(0, y), image.at(0, y) + std::ptrdiff_t{3} * size_.width,
+                     image.at(0, size_.height - 1 - y));
   return image;
 }
 

@@ -235,7 +235,7 @@ TEST_F(SinksGl, LensWeavesEqualTheReference) {
       for (int i = 0; i < traits.views; ++i) {
         Image image(traits.view.width, traits.view.height, 4);
         for (std::size_t j = 0; j < image.pixels.size(); ++j)
-          image.pixels[j] = static_cast<std::uint8_t>(j % 4 == 3 ? 255 : (i * 89 + 31 * (j % 4)) % 256);
+          image.pixels[j] = static_cast<std::uint8_t>(j % 4 == 3 ? 255 : (std::size_t{89} * i + 31 * (j % 4)) % 256);
         views.push_back(std::move(image));
       }
       const Image out = compose(*sink, views);
