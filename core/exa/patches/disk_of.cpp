@@ -1,150 +1,50 @@
-// How the walk of patch_disk.h covers a patch that is there: its fans, rims and choices.
+// How the walk of patch_disk.h covers a patch that is there: its rims and choices.
 
 #include <algorithm>
 #include <functional>
-#include <unordered_map>
 #include <utility>
 
+#include "core/base/numbers/sort_unique.h"
 #include "core/exa/patches/patch_disk.h"
+#include "core/exa/patches/patch_fans.h"
 
 namespace dubsar {
 namespace {
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
+constexpr std::uint32_t kNone = PatchFans::kNone;
 constexpr std::int32_t kFarthest = 64;  ///< steps along the border; farther, and on other borders, a node is named
 
-/// The triangles of a patch around their vertices. A vertex at which several fans of triangles meet, as where two holes
-/// touch, is as many corners: so each lies on one rim at most, once.
-class Fans {
- public:
-  explicit Fans(std::span<const Triangle> triangles) : triangles_(triangles), corners_(triangles.size()) {
-    edges_.reserve(3 * triangles.size());
-    for (std::uint32_t t = 0; t < triangles.size(); ++t)
-      for (std::size_t c = 0; c < 3; ++c)
-        if (triangles[t][c] == triangles[t][(c + 1) % 3] ||
-            !edges_.emplace(key(triangles[t][c], triangles[t][(c + 1) % 3]), t).second)
-          return;
-    for (Triangle& t : corners_) t.fill(kNone);
-    for (std::uint32_t t = 0; t < triangles.size(); ++t)
-      for (std::size_t c = 0; c < 3; ++c)
-        if (corners_[t][c] == kNone) name_fan(t, triangles[t][c]);
-    manifold_ = true;
-  }
-  /// False: an edge has two triangles on one side.
-  bool manifold() const { return manifold_; }
-  /// Vertices by corner; corners of the triangles.
-  const std::vector<std::uint32_t>& vertices() const { return vertices_; }
-  const Triangle& corners(std::uint32_t triangle) const { return corners_[triangle]; }
-  /// The triangle with this directed edge between vertices, or kNone.
-  std::uint32_t triangle(std::uint32_t from, std::uint32_t to) const {
-    const auto found = edges_.find(key(from, to));
-    return found == edges_.end() ? kNone : found->second;
-  }
-  /// The triangle behind `t` around one of its vertices, or kNone.
-  std::uint32_t next_around(std::uint32_t t, std::uint32_t vertex) const {
-    return triangle(vertex, triangles_[t][(place(t, vertex) + 2) % 3]);
-  }
-  /// Rims as corners: each begins with its lowest edge of vertices, the rim with the lowest of all first. A rim with
-  /// an inner vertex between its edges, or an open one, cannot be.
-  std::vector<std::vector<std::uint32_t>> rims() const {
-    struct Edge {
-      std::uint32_t from, to, from_corner, to_corner;
-    };
-    std::vector<Edge> edges;
-    std::vector<std::uint32_t> next(vertices_.size(), kNone);
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::size_t d = (c + 1) % 3;
-        if (triangle(triangles_[t][d], triangles_[t][c]) != kNone) continue;
-        edges.push_back({triangles_[t][c], triangles_[t][d], corners_[t][c], corners_[t][d]});
-        next[corners_[t][c]] = corners_[t][d];
-      }
-    std::ranges::sort(edges, {}, [](const Edge& e) { return key(e.from, e.to); });
-    std::vector<std::vector<std::uint32_t>> rims;
-    for (const Edge& e : edges) {
-      if (next[e.from_corner] == kNone) continue;  // seen
-      rims.emplace_back();
-      for (std::uint32_t at = e.from_corner; next[at] != kNone;) {
-        rims.back().push_back(at);
-        at = std::exchange(next[at], kNone);
-      }
-    }
-    return rims;
-  }
-
-  /// Corners at vertices below `end` that no rim has, by their vertices.
-  std::vector<std::uint32_t> inside(std::uint32_t end, std::span<const std::uint32_t> on_rims) const {
-    std::vector<bool> known(vertices_.size(), false);
-    for (const std::uint32_t corner : on_rims) known[corner] = true;
-    std::vector<std::uint32_t> corners;
-    for (std::uint32_t corner = 0; corner < vertices_.size(); ++corner)
-      if (vertices_[corner] < end && !known[corner]) corners.push_back(corner);
-    std::ranges::stable_sort(corners, {}, [&](std::uint32_t corner) { return vertices_[corner]; });
-    return corners;
-  }
-  /// Of each piece that has no rim the first triangle without vertices below `end`; kNone where there is none.
-  std::vector<std::uint32_t> closed_pieces(std::uint32_t end) const {
-    std::vector<bool> seen(triangles_.size(), false);
-    const auto see_piece = [&](std::uint32_t first) {
-      std::vector<std::uint32_t> front{first};
-      seen[first] = true;
-      bool rim = false;
-      std::uint32_t lowest = kNone;
-      while (!front.empty()) {
-        const Triangle& t = triangles_[front.back()];
-        if (*std::ranges::min_element(t) >= end) lowest = std::min(lowest, front.back());
-        front.pop_back();
-        for (std::size_t c = 0; c < 3; ++c) {
-          const std::uint32_t beyond = triangle(t[(c + 1) % 3], t[c]);
-          rim = rim || beyond == kNone;
-          if (beyond == kNone || seen[beyond]) continue;
-          seen[beyond] = true;
-          front.push_back(beyond);
-        }
-      }
-      return std::pair(rim, lowest);
-    };
-    std::vector<std::uint32_t> pieces;
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-      if (seen[t]) continue;
-      const auto [rim, lowest] = see_piece(t);
-      if (!rim) pieces.push_back(lowest);
-    }
-    std::ranges::sort(pieces);
-    return pieces;
-  }
-
- private:
-  static std::uint64_t key(std::uint32_t from, std::uint32_t to) { return std::uint64_t{from} << 32 | to; }
-  std::size_t place(std::uint32_t t, std::uint32_t vertex) const {
-    return triangles_[t][0] == vertex ? 0 : triangles_[t][1] == vertex ? 1 : 2;
-  }
-  void name_fan(std::uint32_t first, std::uint32_t vertex) {
-    const auto name = static_cast<std::uint32_t>(vertices_.size());
-    vertices_.push_back(vertex);
-    for (std::uint32_t t = first; t != kNone && corners_[t][place(t, vertex)] == kNone; t = next_around(t, vertex))
-      corners_[t][place(t, vertex)] = name;
-    for (std::uint32_t t = first;;) {  // and the other way round
-      t = triangle(triangles_[t][(place(t, vertex) + 1) % 3], vertex);
-      if (t == kNone || corners_[t][place(t, vertex)] != kNone) break;
-      corners_[t][place(t, vertex)] = name;
-    }
-  }
-
-  std::span<const Triangle> triangles_;
-  std::unordered_map<std::uint64_t, std::uint32_t> edges_;
-  std::vector<Triangle> corners_;
-  std::vector<std::uint32_t> vertices_;
-  bool manifold_ = false;
+/// The triangles of a patch by numbers of its own for their vertices: first those of the surface, rising, then the
+/// patch's. Nothing where a triangle has another vertex.
+struct OwnVertices {
+  std::vector<std::uint32_t> surface;  ///< ids
+  std::vector<Triangle> triangles;
 };
+std::optional<OwnVertices> own_vertices(const FillPatch& patch, std::uint32_t vertex_count) {
+  OwnVertices own;
+  for (const Triangle& t : patch.triangles)
+    for (const std::uint32_t v : t)
+      if (v < vertex_count) own.surface.push_back(v);
+  sort_unique(own.surface);
+  const auto surface = static_cast<std::uint32_t>(own.surface.size());
+  own.triangles = patch.triangles;
+  for (Triangle& t : own.triangles)
+    for (std::uint32_t& v : t) {
+      if (v >= vertex_count && v - vertex_count >= patch.extra_positions.size()) return std::nullopt;
+      v = v < vertex_count ? static_cast<std::uint32_t>(std::ranges::lower_bound(own.surface, v) - own.surface.begin())
+                           : v - vertex_count + surface;
+    }
+  return own;
+}
 
 /// Answers the walk with the triangles of a patch.
 class Choices {
  public:
-  /// `corners`: those of the rims and of the first triangles of closed pieces.
-  Choices(const Fans& fans, std::size_t triangles, std::vector<std::uint32_t> corners, std::uint32_t vertex_count,
+  /// `corners`: those of the rims and of the first triangles of closed pieces. `surface`: vertices below are not the
+  /// patch's.
+  Choices(const PatchFans& fans, std::size_t triangles, std::vector<std::uint32_t> corners, std::uint32_t surface,
           DiskPatch& disk)
       : fans_(fans),
-        vertex_count_(vertex_count),
+        surface_(surface),
         disk_(disk),
         corner_of_(std::move(corners)),
         number_(fans.vertices().size(), kNone),
@@ -168,11 +68,11 @@ class Choices {
     const std::uint32_t known = number_[third];
     if (known == kNone) {
       const std::uint32_t vertex = fans_.vertices()[third];
-      if (vertex < vertex_count_) return std::nullopt;
+      if (vertex < surface_) return std::nullopt;
       number_[third] = static_cast<std::uint32_t>(corner_of_.size());
       corner_of_.push_back(third);
       latest_.push_back(kNone);
-      disk_.order.push_back(vertex - vertex_count_);
+      disk_.order.push_back(vertex - surface_);
     } else if (edge.border[edge.border[here.next].next].vertex == known) {
       choice.step = DiskStep::kNext;
     } else if (edge.border[here.before].vertex == known) {
@@ -218,8 +118,8 @@ class Choices {
     return 0;
   }
 
-  const Fans& fans_;
-  std::uint32_t vertex_count_;
+  const PatchFans& fans_;
+  std::uint32_t surface_;
   DiskPatch& disk_;
   std::vector<std::uint32_t> corner_of_;          ///< by number in the walk
   std::vector<std::uint32_t> number_;             ///< and back
@@ -229,7 +129,10 @@ class Choices {
 }  // namespace
 
 std::optional<DiskPatch> disk_of(const FillPatch& patch, std::uint32_t vertex_count) {
-  const Fans fans(patch.triangles);
+  const std::optional<OwnVertices> own = own_vertices(patch, vertex_count);
+  if (!own) return std::nullopt;
+  const auto surface = static_cast<std::uint32_t>(own->surface.size());
+  const PatchFans fans(own->triangles, surface + static_cast<std::uint32_t>(patch.extra_positions.size()));
   if (!fans.manifold()) return std::nullopt;
   DiskPatch disk;
   std::vector<std::uint32_t> corners;
@@ -237,22 +140,22 @@ std::optional<DiskPatch> disk_of(const FillPatch& patch, std::uint32_t vertex_co
     disk.rims.push_back(static_cast<std::uint32_t>(rim.size()));
     corners.insert(corners.end(), rim.begin(), rim.end());
   }
-  const std::vector<std::uint32_t> inside = fans.inside(vertex_count, corners);
+  const std::vector<std::uint32_t> inside = fans.inside(surface, corners);
   corners.insert(corners.end(), inside.begin(), inside.end());
   disk.rims.resize(disk.rims.size() + inside.size(), 1);
   for (const std::uint32_t corner : corners) {
-    disk.rim.push_back(fans.vertices()[corner]);
-    if (disk.rim.back() >= vertex_count) return std::nullopt;
+    if (fans.vertices()[corner] >= surface) return std::nullopt;
+    disk.rim.push_back(own->surface[fans.vertices()[corner]]);
   }
-  const std::vector<std::uint32_t> pieces = fans.closed_pieces(vertex_count);
+  const std::vector<std::uint32_t> pieces = fans.closed_pieces(surface);
   if (!pieces.empty() && pieces.back() == kNone) return std::nullopt;
   for (const std::uint32_t t : pieces)
     for (std::size_t c = 0; c < 3; ++c) {
       corners.push_back(fans.corners(t)[c]);
-      disk.order.push_back(patch.triangles[t][c] - vertex_count);
+      disk.order.push_back(own->triangles[t][c] - surface);
     }
   disk.rims.resize(disk.rims.size() + pieces.size(), 0);
-  Choices choices(fans, patch.triangles.size(), std::move(corners), vertex_count, disk);
+  Choices choices(fans, patch.triangles.size(), std::move(corners), surface, disk);
   for (const std::uint32_t t : pieces) choices.use(t);
   const bool covered = walk_disk(disk.rims, patch.triangles.size(), std::ref(choices), disk.triangles);
   if (!covered || disk.triangles.size() != patch.triangles.size() || disk.order.size() != patch.extra_positions.size())
