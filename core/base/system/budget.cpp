@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/base/numbers/units.h"
+#include "core/base/system/large_blocks.h"
 #include "core/base/system/memory_left.h"
 
 namespace dubsar {
@@ -28,7 +29,7 @@ std::uint64_t resident_bytes() {
 
 std::uint64_t available_memory_bytes() {
   const std::uint64_t left = memory_left({}), limit = g_limit;
-  if (limit == 0) return left;
+  if (limit == 0) return left + std::min(spare_heap_bytes(), std::numeric_limits<std::uint64_t>::max() - left);
   const std::uint64_t used = resident_bytes();
   return std::min(left, limit - std::min(limit, used));
 }

@@ -24,7 +24,8 @@ struct Budget {
 };
 
 /// Bytes of memory this process may still take: MemAvailable, or the cgroup limit if smaller, or what the limit set
-/// below leaves. Everything that has a budget asks here, so that this is the one accountant.
+/// below leaves; what it has freed and kept counts as left. Everything that has a budget asks here, so that this is the
+/// one accountant.
 std::uint64_t available_memory_bytes();
 
 /// The whole process is to keep below `bytes` from now on; 0: as much as there is. Call before work begins.

@@ -2,14 +2,14 @@
 
 #include <malloc.h>
 
-#include <limits>
-
 namespace dubsar {
 
 void keep_large_blocks() noexcept {
   mallopt(M_MMAP_MAX, 0);
-  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  mallopt(M_TRIM_THRESHOLD, -1);  // never; the largest number would be 2 GiB
 }
+
+std::uint64_t spare_heap_bytes() noexcept { return mallinfo2().keepcost; }
 
 void return_large_blocks() noexcept {
   constexpr int kLargeBytes = 1 << 20, kSpareBytes = 16 << 20;

@@ -8,6 +8,8 @@
 #include <memory>
 #include <vector>
 
+#include "core/base/system/budget.h"
+
 namespace dubsar {
 namespace {
 
@@ -84,6 +86,24 @@ TEST(LargeBlocks, StayForTheNextOnesWhereThatIsWanted) {
         { std::vector<char> large(256 * kMiB); }
         const struct mallinfo2 now = mallinfo2();
         exit_with(now.hblkhd == before && now.fordblks >= 256 * kMiB);
+      },
+      ::testing::ExitedWithCode(0), "");
+}
+
+TEST(LargeBlocks, OfMoreThanTwoGibibytesStayTooAndCountAsLeft) {
+  if (mallinfo2().arena == 0) GTEST_SKIP() << "the C library's memory is not used here";
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        constexpr std::size_t kBytes = 2560 * kMiB;
+        keep_large_blocks();
+        const std::uint64_t before = available_memory_bytes();
+        {
+          const std::unique_ptr<char[]> large(new char[kBytes]);  // nobody writes it: the machine need not have it
+          volatile char* const bytes = large.get();
+          bytes[0] = 1;
+        }
+        exit_with(spare_heap_bytes() >= kBytes && available_memory_bytes() > before + kBytes / 2);
       },
       ::testing::ExitedWithCode(0), "");
 }
