@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/base/result.h"
+#include "core/base/system/large_pages.h"
 #include "core/base/system/parallel.h"
 
 namespace dubsar {
@@ -78,7 +79,7 @@ void cut_between_opposite_corners(const Polygon& polygon, Triangle* out) {
 
 }  // namespace
 
-Triangulation triangulate(const QuadMesh& mesh, std::span<const glm::vec3> vertex_normals) {
+Triangulation triangulate(const QuadMesh& mesh, std::span<const glm::vec3> vertex_normals, std::size_t more) {
   DUBSAR_CHECK(vertex_normals.empty() || vertex_normals.size() == mesh.positions.size());
   Triangulation result;
   const std::int64_t quads = mesh.quad_count();
@@ -103,9 +104,10 @@ Triangulation triangulate(const QuadMesh& mesh, std::span<const glm::vec3> verte
   });
   const std::int64_t triangles = exclusive_scan(triangle_start), steiner = exclusive_scan(steiner_start);
   DUBSAR_CHECK(triangles < std::int64_t{1} << 32 && mesh.vertex_count() + steiner < std::int64_t{1} << 32);
-  result.triangles.resize(static_cast<std::size_t>(triangles));
+  result.triangles.reserve(static_cast<std::size_t>(triangles) + more);
+  resize_large(result.triangles, static_cast<std::size_t>(triangles));
   result.steiner.resize(static_cast<std::size_t>(steiner));
-  result.first_triangle.resize(static_cast<std::size_t>(quads) + 1);
+  resize_large(result.first_triangle, static_cast<std::size_t>(quads) + 1);
   result.first_triangle.back() = static_cast<std::uint32_t>(triangles);
 
   parallel_chunks(quads, kQuadsPerChunk, [&](std::int64_t begin, std::int64_t end) {

@@ -19,7 +19,8 @@ struct Triangulation {
 /// follows the curvature, i.e. the diagonal is taken that lies nearer to the surface estimated from normals and
 /// positions (paper section 3.3). Without: the pair of triangles that deviates least from the mean plane. Either way a
 /// 4-gon that is not convex in its mean plane is cut at its reflex corner; ties: the diagonal with the lowest vertex
-/// id. Deterministic for any thread count. About 60 ns a quad and thread.
-Triangulation triangulate(const QuadMesh& mesh, std::span<const glm::vec3> vertex_normals);
+/// id. Deterministic for any thread count. About 60 ns a quad and thread. Behind the triangles there is room for
+/// `more`.
+Triangulation triangulate(const QuadMesh& mesh, std::span<const glm::vec3> vertex_normals, std::size_t more = 0);
 
 }  // namespace dubsar

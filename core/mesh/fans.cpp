@@ -4,8 +4,33 @@
 
 namespace dubsar {
 
+/// Whether a walk from the first corner, forth and back, comes by all of them, as it does nearly everywhere. False also
+/// where they are many.
+bool Fans::is_one() const {
+  constexpr std::size_t kMost = 12;  // more are sorted faster
+  const std::size_t count = corners_.size();
+  if (count == 0 || count > kMost) return false;
+  std::uint32_t met = 1;
+  const auto walk = [&](auto end, auto begin) {  // from a corner's `end` to the corner that has it as its `begin`
+    for (std::size_t at = 0, next = 0; next < count;) {
+      for (next = 0; next < count; ++next)
+        if ((met >> next & 1) == 0 && corners_[next].*begin == corners_[at].*end) break;
+      if (next == count) return;
+      met |= 1u << next;
+      at = next;
+    }
+  };
+  walk(&Corner::next, &Corner::previous);
+  walk(&Corner::previous, &Corner::next);
+  return met == (1u << count) - 1;
+}
+
 std::uint32_t Fans::find() {
   const auto count = static_cast<std::uint32_t>(corners_.size());
+  if (is_one()) {
+    fan_.assign(count, 0);
+    return 1;
+  }
   sets_.reset(count);
   starts_.clear();
   for (std::uint32_t i = 0; i < count; ++i) starts_.emplace_back(corners_[i].next, i);

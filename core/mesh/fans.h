@@ -28,6 +28,8 @@ class Fans {
   struct Corner {
     std::uint32_t next, previous;
   };
+  bool is_one() const;
+
   std::vector<Corner> corners_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> starts_;  ///< next, corner; sorted
   std::vector<bool> met_;                                        ///< of each start: a corner ends where it starts

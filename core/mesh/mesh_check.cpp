@@ -7,6 +7,7 @@
 
 #include "core/base/numbers/disjoint_sets.h"
 #include "core/base/result.h"
+#include "core/base/system/large_pages.h"
 #include "core/base/system/parallel.h"
 
 namespace dubsar {
@@ -93,14 +94,15 @@ class Link {
 /// Triangles around each vertex, rising, one vertex after another: three times 4 bytes a triangle, no edge is ever
 /// stored. `first`: where those of each begin, and the end. Every thread looks through all triangles for those of its
 /// own range of vertices, so that nobody has to wait and the order is that of one thread.
-std::vector<std::uint32_t> triangles_around(std::size_t vertices, std::span<const Triangle> triangles,
-                                            std::vector<std::uint32_t>& first) {
+LargeArray<std::uint32_t> triangles_around(std::size_t vertices, std::span<const Triangle> triangles,
+                                           std::vector<std::uint32_t>& first) {
   constexpr std::int64_t kLeast = 1 << 16, kMostRanges = 8;
   const auto count = static_cast<std::int64_t>(vertices);
   const std::int64_t ranges =
       std::clamp<std::int64_t>(count / kLeast, 1, std::min<std::int64_t>(thread_count(), kMostRanges));
   const std::int64_t length = (count + ranges - 1) / ranges;
-  first.assign(vertices + 1, 0);
+  first.clear();
+  resize_large(first, vertices + 1);
   parallel_for(ranges, 1, [&](std::int64_t range) {
     const auto low = static_cast<std::uint32_t>(range * length),
                size = static_cast<std::uint32_t>(std::min(length, count - range * length));
@@ -112,14 +114,14 @@ std::vector<std::uint32_t> triangles_around(std::size_t vertices, std::span<cons
   });
   std::uint32_t total = 0;
   for (std::uint32_t& f : first) f = total += f;
-  std::vector<std::uint32_t> around(total);
+  LargeArray<std::uint32_t> around(total);
   parallel_for(ranges, 1, [&](std::int64_t range) {
     const auto low = static_cast<std::uint32_t>(range * length),
                size = static_cast<std::uint32_t>(std::min(length, count - range * length));
     for (std::size_t i = triangles.size(); i-- > 0;) {
       if (is_degenerate(triangles[i])) continue;
       for (const std::uint32_t v : triangles[i])
-        if (v - low < size) around[--first[v]] = static_cast<std::uint32_t>(i);
+        if (v - low < size) around.data()[--first[v]] = static_cast<std::uint32_t>(i);
     }
   });
   return around;
@@ -192,7 +194,7 @@ std::vector<MeshCheck> check_labelled(std::span<const glm::vec3> positions, std:
       },
       add_all);
 
-  const std::vector<std::uint32_t> around = triangles_around(vertices, triangles, first);
+  const LargeArray<std::uint32_t> around = triangles_around(vertices, triangles, first);
   return parallel_reduce<Checks>(
       static_cast<std::int64_t>(vertices), 1 << 14, std::move(sum),
       [&](std::int64_t begin, std::int64_t end) {
@@ -202,11 +204,11 @@ std::vector<MeshCheck> check_labelled(std::span<const glm::vec3> positions, std:
           if (first[v] == first[v + 1]) continue;
           link.clear();
           for (std::uint32_t i = first[v]; i < first[v + 1]; ++i) {
-            const Triangle& t = triangles[around[i]];
+            const Triangle& t = triangles[around.data()[i]];
             const std::size_t k = t[0] == v ? 0 : t[1] == v ? 1 : 2;
             link.add(t[(k + 1) % 3], t[(k + 2) % 3]);
           }
-          link.check(v, part[label_of(around[first[v]])]);
+          link.check(v, part[label_of(around.data()[first[v]])]);
         }
         return part;
       },

@@ -7,10 +7,12 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/system/large_pages.h"
 #include "core/base/system/parallel.h"
 #include "core/extract/triangulate.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh/vertex_attributes.h"
+#include "core/parts/split_fans.h"
 #include "core/parts/triangle_soup.h"
 
 namespace dubsar {
@@ -91,8 +93,10 @@ Result<Selection> select(const SurfaceModel& model, const MeshOptions& options) 
 void add_quads(const SurfaceModel& model, const Selection& selection, Triangulation triangulation, TriangleSoup& soup) {
   const std::size_t quads = model.mesh.quads.size();
   soup.added = std::move(triangulation.steiner);
-  soup.partition.resize(triangulation.triangles.size());
-  soup.group.resize(triangulation.triangles.size());
+  for (auto* const labels : {&soup.partition, &soup.group}) {
+    labels->reserve(triangulation.triangles.capacity());
+    labels->resize(triangulation.triangles.size());
+  }
   soup.triangles = std::move(triangulation.triangles);
   const auto id_of = [&](std::size_t q) {
     return model.quad_partition.empty() ? std::uint8_t{0} : model.quad_partition[q];
@@ -123,6 +127,13 @@ void add_quads(const SurfaceModel& model, const Selection& selection, Triangulat
   soup.triangles.resize(kept);
   soup.partition.resize(kept);
   soup.group.resize(kept);
+}
+
+/// Triangles that add_patches() adds at most.
+std::size_t patch_triangles(const SurfaceModel& model) {
+  std::size_t count = 0;
+  for (const FillPatch& patch : model.patches) count += 2 * patch.triangles.size();
+  return count;
 }
 
 void add_patches(const SurfaceModel& model, const Selection& selection, TriangleSoup& soup) {
@@ -165,7 +176,7 @@ struct Numbering {
 Numbering number_vertices(const TriangleSoup& soup, std::size_t first_copy, const std::vector<std::uint32_t>& copies) {
   Numbering numbering;
   std::vector<std::uint32_t>& id = numbering.new_id;
-  id.assign(first_copy + copies.size(), 0);
+  resize_large(id, first_copy + copies.size());
   const auto vertices = static_cast<std::int64_t>(id.size());
   parallel_for(static_cast<std::int64_t>(soup.triangles.size()), kModelGrain, [&](std::int64_t t) {
     for (const std::uint32_t v : soup.triangles[static_cast<std::size_t>(t)])
@@ -176,7 +187,7 @@ Numbering number_vertices(const TriangleSoup& soup, std::size_t first_copy, cons
   parallel_chunks(vertices, kModelGrain, [&](std::int64_t begin, std::int64_t end) {
     start[chunk_of(begin)] = std::accumulate(id.begin() + begin, id.begin() + end, std::int64_t{0});
   });
-  numbering.source.resize(static_cast<std::size_t>(exclusive_scan(start)));
+  resize_large(numbering.source, static_cast<std::size_t>(exclusive_scan(start)));
   parallel_chunks(vertices, kModelGrain, [&](std::int64_t begin, std::int64_t end) {
     auto next = static_cast<std::uint32_t>(start[chunk_of(begin)]);
     for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
@@ -190,10 +201,10 @@ Numbering number_vertices(const TriangleSoup& soup, std::size_t first_copy, cons
 
 /// Positions and attributes of the output vertices.
 void fill_vertices(const SurfaceModel& model, const TriangleSoup& soup, const Numbering& numbering,
-                   const VertexAttributes& added, bool attributes, TriMesh& out) {
+                   const VertexAttributes& added, const MeshOptions& options, TriMesh& out) {
   const std::size_t dual = model.mesh.positions.size();
   const auto gather = [&](const auto& from, const auto& from_added, auto& to) {
-    to.resize(numbering.source.size());
+    resize_large(to, numbering.source.size());
     parallel_for(static_cast<std::int64_t>(to.size()), kModelGrain, [&](std::int64_t k) {
       const auto i = static_cast<std::size_t>(k);
       const std::uint32_t v = numbering.source[i];
@@ -203,16 +214,18 @@ void fill_vertices(const SurfaceModel& model, const TriangleSoup& soup, const Nu
   gather(model.mesh.positions, soup.added, out.positions);
   for_each_attribute([&](const auto& a) {
     const auto& values = model.attributes.*a.values;
-    if (!values.empty() && attributes) gather(values, added.*a.values, out.*a.values);
+    if (!values.empty() && takes(options, a)) gather(values, added.*a.values, out.*a.values);
   });
 }
 
 /// How each vertex is known, and which triangles are not: those of patches, but for films.
 void fill_evidence(const TriangleSoup& soup, const Numbering& numbering, TriMesh& out) {
   if (out.evidence.empty()) out.evidence.assign(out.positions.size(), evidence_byte(Evidence::kMeasured));
-  for (std::size_t i = 0; i < numbering.source.size(); ++i)
+  parallel_for(static_cast<std::int64_t>(numbering.source.size()), kModelGrain, [&](std::int64_t v) {
+    const auto i = static_cast<std::size_t>(v);
     if (numbering.source[i] >= soup.first_patch_vertex)
       out.evidence[i] = soup.patch_evidence[numbering.source[i] - soup.first_patch_vertex];
+  });
   if (soup.first_patch_triangle >= out.triangles.size()) return;
   out.triangle_inferred.assign(out.triangles.size(), 0);
   for (std::size_t t = soup.first_patch_triangle; t < out.triangles.size(); ++t) {
@@ -235,7 +248,8 @@ Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& opti
   DUBSAR_TRY(check_size(model.mesh));
   DUBSAR_ASSIGN(const Selection selection, select(model, options));
   TriangleSoup soup;
-  add_quads(model, selection, triangulate(model.mesh, model.attributes.normals), soup);
+  const std::size_t more = options.fill_holes ? patch_triangles(model) : 0;
+  add_quads(model, selection, triangulate(model.mesh, model.attributes.normals, more), soup);
   soup.first_patch_triangle = soup.triangles.size();
   soup.first_patch_vertex = model.mesh.positions.size() + soup.added.size();
   if (options.fill_holes) add_patches(model, selection, soup);
@@ -243,7 +257,7 @@ Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& opti
   const std::size_t first_copy = model.mesh.positions.size() + soup.added.size();
   if (first_copy > (std::size_t{1} << 31))
     return fail(ErrorKind::kTryAgain, "surface_model: {} vertices found, expected at most 2^31", first_copy);
-  const VertexAttributes added = options.attributes ? attributes_of_added(model, soup) : VertexAttributes{};
+  const VertexAttributes added = attributes_of_added(model, soup, options);
   std::vector<std::uint8_t> border = border_vertices(model, selection.group);
   border.resize(soup.first_patch_vertex, 0);
   border.resize(first_copy, 1);  // a patch may touch itself, too
@@ -252,7 +266,7 @@ Result<TriMesh> make_tri_mesh(const SurfaceModel& model, const MeshOptions& opti
   const Numbering numbering = number_vertices(soup, first_copy, copies);
 
   TriMesh out;
-  fill_vertices(model, soup, numbering, added, options.attributes, out);
+  fill_vertices(model, soup, numbering, added, options, out);
   parallel_for(static_cast<std::int64_t>(soup.triangles.size()), kModelGrain, [&](std::int64_t t) {
     for (std::uint32_t& v : soup.triangles[static_cast<std::size_t>(t)]) v = numbering.new_id[v];
   });

@@ -48,6 +48,7 @@ struct MeshOptions {
   bool fill_holes = true;                               ///< add the fill patches
   bool separate_partitions = false;                     ///< those of one body do not stay joined
   bool attributes = true;                               ///< of vertices; false: positions only
+  bool only_evidence = false;                           ///< of the attributes that alone
   const Progress* progress = nullptr;                   ///< whose cancellation ends the work
 };
 

@@ -4,12 +4,10 @@
 #include <atomic>
 #include <glm/geometric.hpp>
 #include <span>
-#include <tuple>
 #include <type_traits>
 
 #include "core/base/numbers/counting_sort.h"
 #include "core/base/system/parallel.h"
-#include "core/mesh/fans.h"
 #include "core/mesh/vertex_attributes.h"
 
 namespace dubsar {
@@ -23,31 +21,17 @@ struct Around {
   bool patch;  ///< the triangle is of a fill patch
 };
 
-/// What add(triangle, items) finds of all triangles, in their order.
-template <class Item, class Add>
-std::vector<Item> gather_from(const TriangleSoup& soup, const Add& add) {
-  using Items = std::vector<Item>;
-  return parallel_reduce<Items>(
-      static_cast<std::int64_t>(soup.triangles.size()), 1 << 16, {},
-      [&](std::int64_t begin, std::int64_t end) {
-        Items part;
-        for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) add(t, part);
-        return part;
-      },
-      [](Items all, const Items& part) {
-        all.insert(all.end(), part.begin(), part.end());
-        return all;
-      });
-}
-
 std::vector<Around> find_around(const TriangleSoup& soup, std::uint32_t dual) {
-  return gather_from<Around>(soup, [&](std::size_t i, std::vector<Around>& around) {
+  const auto lists = lists_of_triangles<Around>(soup, [&](std::size_t i, std::vector<Around>& around) {
     for (const std::uint32_t v : soup.triangles[i]) {
       if (v < dual) continue;
       for (const std::uint32_t w : soup.triangles[i])
         if (w < dual) around.push_back({v - dual, w, i >= soup.first_patch_triangle});
     }
   });
+  std::vector<Around> all;
+  for (const std::vector<Around>& list : lists) all.insert(all.end(), list.begin(), list.end());
+  return all;
 }
 
 std::vector<glm::vec3> normals_of_added(const SurfaceModel& model, const TriangleSoup& soup,
@@ -136,66 +120,15 @@ std::vector<std::uint8_t> border_vertices(const SurfaceModel& model, std::span<c
   return border;
 }
 
-VertexAttributes attributes_of_added(const SurfaceModel& model, const TriangleSoup& soup) {
-  const std::vector<Around> around = find_around(soup, static_cast<std::uint32_t>(model.mesh.positions.size()));
+VertexAttributes attributes_of_added(const SurfaceModel& model, const TriangleSoup& soup, const MeshOptions& options) {
   VertexAttributes added;
+  if (!options.attributes) return added;
+  const std::vector<Around> around = find_around(soup, static_cast<std::uint32_t>(model.mesh.positions.size()));
   for_each_attribute([&](const auto& a) {
     const auto& values = model.attributes.*a.values;
-    if (!values.empty()) added.*a.values = values_of_added(values, a.added, model, soup, around);
+    if (!values.empty() && takes(options, a)) added.*a.values = values_of_added(values, a.added, model, soup, around);
   });
   return added;
-}
-
-Result<std::vector<std::uint32_t>> split_fans(TriangleSoup& soup, const std::vector<std::uint8_t>& border,
-                                              std::uint32_t first_copy, const Progress* progress) {
-  const auto cancelled = [&] { return progress != nullptr && progress->cancelled(); };
-  struct Corner {
-    std::uint32_t vertex;
-    std::uint8_t group;
-    std::uint32_t triangle;
-    std::uint32_t next, previous;  ///< the other two vertices, in order
-  };
-  auto corners = gather_from<Corner>(soup, [&](std::size_t t, std::vector<Corner>& found) {
-    const Triangle& triangle = soup.triangles[t];
-    for (std::size_t c = 0; c < 3; ++c)
-      if (triangle[c] < border.size() && border[triangle[c]] != 0)
-        found.push_back(
-            {triangle[c], soup.group[t], static_cast<std::uint32_t>(t), triangle[(c + 1) % 3], triangle[(c + 2) % 3]});
-  });
-  if (cancelled()) return cancelled_error();
-  counting_sort(corners, border.size(), [](const Corner& corner) { return corner.vertex; });
-  for (auto begin = corners.begin(), end = begin; begin != corners.end(); begin = end) {
-    while (end != corners.end() && end->vertex == begin->vertex) ++end;
-    std::sort(begin, end, [](const Corner& a, const Corner& b) {
-      return std::tie(a.group, a.triangle) < std::tie(b.group, b.triangle);
-    });
-  }
-
-  std::vector<std::uint32_t> copies;
-  Fans fans;
-  bool original_taken = false;
-  for (std::size_t begin = 0, end; begin < corners.size(); begin = end) {
-    if (cancelled()) return cancelled_error();
-    const std::uint32_t vertex = corners[begin].vertex;
-    if (begin == 0 || corners[begin - 1].vertex != vertex) original_taken = false;
-    fans.clear();
-    for (end = begin;
-         end < corners.size() && corners[end].vertex == vertex && corners[end].group == corners[begin].group; ++end)
-      fans.add(corners[end].next, corners[end].previous);
-    const std::uint32_t count = fans.find();
-    // The first fan of a vertex keeps it, all others get copies.
-    const std::uint32_t kept = original_taken ? 0 : 1;
-    const std::uint32_t first_new = first_copy + static_cast<std::uint32_t>(copies.size());
-    copies.insert(copies.end(), count - kept, vertex);
-    original_taken = true;
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t fan = fans.of_corner()[i - begin];
-      if (fan < kept) continue;
-      for (std::uint32_t& v : soup.triangles[corners[i].triangle])
-        if (v == vertex) v = first_new + fan - kept;
-    }
-  }
-  return copies;
 }
 
 }  // namespace dubsar

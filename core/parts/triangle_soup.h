@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/system/parallel.h"
 #include "core/parts/surface_model.h"
 
 namespace dubsar {
@@ -26,12 +27,27 @@ struct TriangleSoup {
 /// uses it. Only there can a vertex have more than one fan.
 std::vector<std::uint8_t> border_vertices(const SurfaceModel& model, std::span<const std::uint8_t> group);
 
-/// All attributes that the model has, at the added vertices (AddedValue says how). Call it before split_fans().
-VertexAttributes attributes_of_added(const SurfaceModel& model, const TriangleSoup& soup);
+/// What add(triangle, items) finds of all triangles: a list for each range of them, in their order. All threads.
+template <class Item, class Add>
+std::vector<std::vector<Item>> lists_of_triangles(const TriangleSoup& soup, const Add& add) {
+  constexpr std::int64_t kGrain = 1 << 16;
+  const auto count = static_cast<std::int64_t>(soup.triangles.size());
+  std::vector<std::vector<Item>> lists(static_cast<std::size_t>((count + kGrain - 1) / kGrain));
+  parallel_chunks(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    auto& list = lists[static_cast<std::size_t>(begin / kGrain)];
+    for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) add(t, list);
+  });
+  return lists;
+}
 
-/// Gives every fan of triangles of one group around a border vertex its own copy of it. O(n log n) at most, whatever
-/// the triangles are. Copy i gets the id first_copy + i; the result holds the id that each copy stands for. kCancelled.
-Result<std::vector<std::uint32_t>> split_fans(TriangleSoup& soup, const std::vector<std::uint8_t>& border,
-                                              std::uint32_t first_copy, const Progress* progress);
+/// Does a mesh made with these options have this one of kVertexAttributes?
+template <class Attribute>
+bool takes(const MeshOptions& options, const Attribute& attribute) {
+  return options.attributes && (!options.only_evidence || attribute.name == "evidence");
+}
+
+/// Those attributes of the model that the options ask for, at the added vertices (AddedValue says how). Call it before
+/// split_fans().
+VertexAttributes attributes_of_added(const SurfaceModel& model, const TriangleSoup& soup, const MeshOptions& options);
 
 }  // namespace dubsar

@@ -99,11 +99,7 @@ Result<SurfaceModel> shade(SurfaceModel model, const OcclusionOptions& options, 
 Result<CheckedProduct> check_product(const SurfaceModel& model, StageRun run) {
   run.clock.start("check", "triangle");
   CheckedProduct product;
-  const bool known = !model.attributes.evidence.empty();
-  DUBSAR_ASSIGN(product.mesh, make_tri_mesh(model, {.attributes = known, .progress = &run.progress}));
-  std::vector<std::uint8_t> evidence = std::move(product.mesh.evidence);
-  static_cast<VertexAttributes&>(product.mesh) = {};  // of all that is known no more is wanted
-  product.mesh.evidence = std::move(evidence);
+  DUBSAR_ASSIGN(product.mesh, make_tri_mesh(model, {.only_evidence = true, .progress = &run.progress}));
   product.check = check_mesh(product.mesh.positions, product.mesh.triangles);
   run.clock.finish(product.check.triangles);
   return product;
