@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
@@ -143,12 +144,53 @@ std::optional<glm::ivec3> steps_back(const QuadMesh& wanted, std::uint32_t v, co
   }
   return std::nullopt;
 }
-/// The value at `place` in rising order; moves values about. Linear, where sorting is not.
-float nth(std::vector<float>& values, std::size_t place) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(place);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
+
+/// Numbers that are not negative, by rank; all threads.
+class Ranking {
+ public:
+  explicit Ranking(std::span<const float> values) : values_(values) {
+    counts_ = parallel_reduce<std::vector<std::int64_t>>(
+        static_cast<std::int64_t>(values.size()), kRankGrain, std::vector<std::int64_t>(kBuckets),
+        [&](std::int64_t begin, std::int64_t end) {
+          std::vector<std::int64_t> part(kBuckets);
+          for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+            ++part[bucket(values_[i])];
+          return part;
+        },
+        [](std::vector<std::int64_t> all, const std::vector<std::int64_t>& part) {
+          for (std::size_t k = 0; k < kBuckets; ++k) all[k] += part[k];
+          return all;
+        });
+  }
+  /// The value at `place` in rising order.
+  float at(std::size_t place) const {
+    auto left = static_cast<std::int64_t>(place);
+    std::size_t own = 0;
+    while (left >= counts_[own]) left -= counts_[own++];
+    auto inside = parallel_reduce<std::vector<float>>(
+        static_cast<std::int64_t>(values_.size()), kRankGrain, {},
+        [&](std::int64_t begin, std::int64_t end) {
+          std::vector<float> part;
+          for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+            if (bucket(values_[i]) == own) part.push_back(values_[i]);
+          return part;
+        },
+        [](std::vector<float> all, const std::vector<float>& part) {
+          all.insert(all.end(), part.begin(), part.end());
+          return all;
+        });
+    std::nth_element(inside.begin(), inside.begin() + left, inside.end());
+    return inside[static_cast<std::size_t>(left)];
+  }
+
+ private:
+  static constexpr std::int64_t kRankGrain = 1 << 20;
+  static constexpr int kShift = 18;  // sign, exponent and 5 bits behind the point: 32 buckets between 2^k and 2^(k+1)
+  static constexpr std::size_t kBuckets = std::size_t{1} << (32 - kShift);
+  static std::size_t bucket(float value) { return std::bit_cast<std::uint32_t>(value) >> kShift; }
+  std::span<const float> values_;
+  std::vector<std::int64_t> counts_;
+};
 
 }  // namespace
 
@@ -162,16 +204,14 @@ void let_escape(const QuadMesh& wanted, std::span<const glm::vec3> normals, doub
   });
   const auto kept = static_cast<std::size_t>((1.0 - kOutsideHalf) * static_cast<double>(error.size()));
   double limit = bound;
-  std::vector<float> ranked = error;
-  if (kept < ranked.size() && nth(ranked, kept) > 0.5 * bound) {
+  if (const Ranking ranked(error); kept < error.size() && ranked.at(kept) > 0.5 * bound) {
     // The worst go first: those left between half the bound and the limit are few enough.
     const auto half = static_cast<float>(0.5 * bound);
     const auto within =
         static_cast<std::size_t>(std::count_if(error.begin(), error.end(), [&](float e) { return !(half < e); }));
     const auto spare = static_cast<std::size_t>(kOutsideHalf * static_cast<double>(error.size()));
-    limit = std::min<double>(bound, within + spare < ranked.size() ? nth(ranked, within + spare) : bound);
+    limit = std::min<double>(bound, within + spare < error.size() ? ranked.at(within + spare) : bound);
   }
-  ranked = {};
   std::vector<std::uint8_t> gone(positions.size(), 0);
   parallel_for(static_cast<std::int64_t>(positions.size()), kEscapeGrain, [&](std::int64_t i) {
     const auto v = static_cast<std::size_t>(i);
@@ -188,7 +228,7 @@ void let_escape(const QuadMesh& wanted, std::span<const glm::vec3> normals, doub
   double sum = 0.0;
   for (const float e : error) sum += e;
   stats.mean_error_vox = sum / count;
-  stats.p95_error_vox = nth(error, error.size() * 95 / 100);
+  stats.p95_error_vox = Ranking(error).at(error.size() * 95 / 100);
   stats.max_error_vox = *std::max_element(error.begin(), error.end());
 }
 

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "core/base/system/large_pages.h"
 #include "core/base/system/parallel.h"
 #include "core/exa/offsets/offset_model.h"
 
@@ -21,11 +22,10 @@ constexpr std::uint32_t kNoEdge = std::numeric_limits<std::uint32_t>::max();
 // .0103 to .0114 of a step, the error of the normals from .84 to .85 and from .89 to .92 degrees.
 constexpr double kPrice = 2.0, kPriceOfEscape = 10.0;
 
-/// An active edge inside the grid and its x-quad.
+/// An active edge inside the grid.
 struct FitEdge {
-  std::array<std::int32_t, 3> low{};
-  std::int32_t axis = 0;
-  std::uint32_t offset = 0;  ///< its place in samples.offsets
+  std::array<std::int64_t, 3> low{};
+  int axis = 0;
 };
 
 /// Of the 64 edges along `axis` from word w of the row (y, z) on: those with a crossing. The row beside it is there.
@@ -47,30 +47,48 @@ bool in_boundary(const Dims& d, int axis, const std::array<std::int64_t, 3>& p) 
   return false;
 }
 
-/// One per x-quad of real edges: quad q is that of edge q.
-std::vector<FitEdge> edges_of_quads(const SurfaceSamples& samples) {
+/// Calls visit(active edges, axis, w, y) for the words of 64 edges that start in slice z, in the order of
+/// samples.offsets.
+template <class Visit>
+void each_word(const SurfaceSamples& samples, std::int64_t z, const Visit& visit) {
   const Dims& d = samples.dims;
-  std::vector<FitEdge> edges;
-  edges.reserve(samples.offsets.size());
-  std::uint32_t number = 0;
-  for (std::int64_t z = 0; z < d.z; ++z)
-    for (std::int64_t y = 0; y < d.y; ++y) {
-      for (std::int32_t axis = 0; axis < 3; ++axis) {
-        if ((axis == 1 && y + 1 == d.y) || (axis == 2 && z + 1 == d.z)) continue;
-        for (std::int64_t w = 0; w < samples.signs.words_per_row(); ++w)
-          for (std::uint64_t active = active_edges(samples, axis, w, y, z); active != 0;
-               active &= active - 1, ++number) {
-            const std::int64_t x = 64 * w + std::countr_zero(active);
-            if (samples.closed || !in_boundary(d, axis, {x, y, z}))
-              edges.push_back(
-                  {{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), static_cast<std::int32_t>(z)},
-                   axis,
-                   number});
-          }
-      }
+  for (std::int64_t y = 0; y < d.y; ++y)
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((axis == 1 && y + 1 == d.y) || (axis == 2 && z + 1 == d.z)) continue;
+      for (std::int64_t w = 0; w < samples.signs.words_per_row(); ++w)
+        if (const std::uint64_t active = active_edges(samples, axis, w, y, z); active != 0) visit(active, axis, w, y);
     }
-  return edges;
 }
+
+/// Calls visit(edge, has a quad) for each of them.
+template <class Visit>
+void each_edge(const SurfaceSamples& samples, std::int64_t z, const Visit& visit) {
+  each_word(samples, z, [&](std::uint64_t active, int axis, std::int64_t w, std::int64_t y) {
+    for (; active != 0; active &= active - 1) {
+      const std::int64_t x = 64 * w + std::countr_zero(active);
+      visit(FitEdge{{x, y, z}, axis}, samples.closed || !in_boundary(samples.dims, axis, {x, y, z}));
+    }
+  });
+}
+
+/// Of the slices before each one and, last, of all.
+struct EdgesBefore {
+  std::vector<std::int64_t> edges, quads;
+  explicit EdgesBefore(const SurfaceSamples& samples) {
+    edges.assign(static_cast<std::size_t>(samples.dims.z) + 1, 0);
+    quads = edges;
+    parallel_for(samples.dims.z, 1, [&](std::int64_t z) {
+      std::int64_t edge_count = 0, quad_count = 0;
+      each_word(samples, z,
+                [&](std::uint64_t active, int, std::int64_t, std::int64_t) { edge_count += std::popcount(active); });
+      if (!samples.closed) each_edge(samples, z, [&](const FitEdge&, bool quad) { quad_count += quad ? 1 : 0; });
+      edges[static_cast<std::size_t>(z)] = edge_count;
+      quads[static_cast<std::size_t>(z)] = samples.closed ? edge_count : quad_count;
+    });
+    exclusive_scan(edges);
+    exclusive_scan(quads);
+  }
+};
 
 /// Where the mean plane of an edge's x-quad cuts it.
 double cut(const QuadMesh& mesh, const FitEdge& edge, std::uint32_t e) {
@@ -82,7 +100,8 @@ double cut(const QuadMesh& mesh, const FitEdge& edge, std::uint32_t e) {
   for (int i = 0; i < polygon.size; ++i) centre += at(i);
   centre /= polygon.size;
   for (int i = 0; i < polygon.size; ++i) normal += glm::cross(at(i) - centre, at(i + 1) - centre);
-  const glm::dvec3 from = centre - glm::dvec3(edge.low[0], edge.low[1], edge.low[2]);
+  const glm::dvec3 from = centre - glm::dvec3(static_cast<double>(edge.low[0]), static_cast<double>(edge.low[1]),
+                                              static_cast<double>(edge.low[2]));
   const double length = glm::length(normal), along = normal[edge.axis];
   return std::abs(along) > kSteep * length ? glm::dot(normal, from) / along : from[edge.axis];
 }
@@ -92,24 +111,33 @@ OffsetFit::OffsetFit(const SurfaceModel& model, std::span<const glm::vec3> base,
                      double bound)
     : mesh_(model.mesh), base_(base), normals_(normals), bound_(bound) {
   steps_ = 1 << model.samples.offset_bits;
-  const std::vector<FitEdge> edges = edges_of_quads(model.samples);
-  DUBSAR_CHECK(edges.size() <= model.mesh.quads.size());
-  axis_.resize(edges.size());
-  offset_.resize(edges.size());
-  before_.resize(edges.size());
-  t_.resize(edges.size());
-  moved_.resize(edges.size());
-  edge_of_.assign(model.samples.offsets.size(), kNoEdge);
-  parallel_for(static_cast<std::int64_t>(edges.size()), kFitGrain, [&](std::int64_t i) {
-    const auto e = static_cast<std::size_t>(i);
-    axis_[e] = static_cast<std::uint8_t>(edges[e].axis);
-    offset_[e] = edges[e].offset;
-    edge_of_[edges[e].offset] = static_cast<std::uint32_t>(e);
-    before_[e] = crossing(model.samples.offsets[edges[e].offset]);
-    t_[e] = static_cast<float>(std::clamp(cut(mesh_, edges[e], static_cast<std::uint32_t>(e)), 0.0, 1.0));
-    moved_[e] = t_[e] - before_[e];
+  const EdgesBefore before(model.samples);
+  const auto quads = static_cast<std::size_t>(before.quads.back());
+  DUBSAR_CHECK(quads <= model.mesh.quads.size() &&
+               before.edges.back() == static_cast<std::int64_t>(model.samples.offsets.size()));
+  resize_large(axis_, quads);
+  resize_large(offset_, quads);
+  resize_large(before_, quads);
+  resize_large(t_, quads);
+  resize_large(moved_, quads);
+  resize_large(edge_of_, model.samples.offsets.size());
+  parallel_for(model.samples.dims.z, 1, [&](std::int64_t z) {
+    auto number = static_cast<std::uint32_t>(before.edges[static_cast<std::size_t>(z)]);
+    auto e = static_cast<std::uint32_t>(before.quads[static_cast<std::size_t>(z)]);  // quad e is that of edge e
+    each_edge(model.samples, z, [&](const FitEdge& edge, bool quad) {
+      edge_of_[number] = quad ? e : kNoEdge;
+      if (quad) {
+        axis_[e] = static_cast<std::uint8_t>(edge.axis);
+        offset_[e] = number;
+        before_[e] = crossing(model.samples.offsets[number]);
+        t_[e] = static_cast<float>(std::clamp(cut(mesh_, edge, e), 0.0, 1.0));
+        moved_[e] = t_[e] - before_[e];
+        ++e;
+      }
+      ++number;
+    });
   });
-  residual_.resize(base.size());
+  resize_large(residual_, base.size());
 }
 
 /// The vertices of the x-quad of an edge, in order.
