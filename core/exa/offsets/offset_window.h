@@ -62,7 +62,9 @@ class OffsetWindow {
 
  private:
   static constexpr int kRows = 136;
-  static std::size_t slot(int axis, int z) noexcept { return static_cast<std::size_t>((z & 3) * 3 + axis); }
+  static std::size_t slot(int axis, int z) noexcept {
+    return static_cast<std::size_t>(z & 3) * 3 + static_cast<std::size_t>(axis);
+  }
   /// Of x = 0.
   static std::ptrdiff_t index(int axis, int y, int z) noexcept {
     return ((std::ptrdiff_t{z & 3} * 3 + axis) * kRows + y + 3) * OffsetPlace::kKnownRow + 3;
