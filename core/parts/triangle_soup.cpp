@@ -6,7 +6,6 @@
 #include <span>
 #include <type_traits>
 
-#include "core/base/numbers/counting_sort.h"
 #include "core/base/system/parallel.h"
 #include "core/mesh/vertex_attributes.h"
 
