@@ -20,7 +20,7 @@ constexpr std::int64_t kGroups = 8, kGroupAfter = 6;
 // (docs/speed.md).
 constexpr double kSurfaceSeconds = 6.0;
 constexpr double kSecondsPerRay = 1.0 / 21e6;
-constexpr double kContactSeconds = 11.0;  ///< at the scan's resolution
+constexpr double kContactSeconds = 8.0;  ///< at the scan's resolution
 // The rest of memory: the program, its slabs and threads; and, for each vertex, all that is there while the contact is
 // traced.
 constexpr double kProgramBytes = 80e6, kContactBytesPerVertex = 600.0;
