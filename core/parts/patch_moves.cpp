@@ -13,7 +13,7 @@
 namespace dubsar {
 namespace {
 
-constexpr int kRounds = 6;  ///< of moves between two attempts to add vertices
+constexpr int kMoveRounds = 6;  ///< of moves between two attempts to add vertices
 constexpr int kMostCounted = 1000;
 constexpr float kHomeCube = 8.0f;  ///< steps
 constexpr float kRoom = 4.0f;      ///< around the star of a vertex that is its group's alone
@@ -58,7 +58,7 @@ void PatchMoves::run(const CrossingPairs& pairs, std::span<std::uint8_t> moved, 
   std::vector<std::uint32_t> work;
   for (const auto& pair : pairs)
     for (const std::uint32_t t : pair) mesh_.add_extras(t, work);
-  for (int round = 0; round < kRounds && !work.empty(); ++round) {
+  for (int round = 0; round < kMoveRounds && !work.empty(); ++round) {
     sort_unique(work);
     Homes homes;
     const std::vector<Group> groups = far_apart(work, homes);
