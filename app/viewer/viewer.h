@@ -175,6 +175,7 @@ class Viewer final : public Workplace {
   struct Tools {
     std::unique_ptr<LabelFont> font;
     EvidenceShares evidence;
+    std::optional<Picker> picker;
     FilmThumbnails thumbnails;
     std::optional<std::string> coming;    ///< tool of a key that is on its way
     TimestampNs field_since = -1;         ///< a key or click is on its way that opens a field of text

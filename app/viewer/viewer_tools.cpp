@@ -30,7 +30,7 @@ fs::path next_free(const std::string& name) {
 /// What is under this place of the window, with parts where they stand.
 std::optional<Picked> Viewer::picked_at(const glm::dvec2& at) const {
   const Shown shown = shown_of(document(), report_.view, given_.options.stage, stage_->box_mm());
-  return pick(*given_.mesh, shown.parts, Sight::of(*stage_).ray(at), shown.clips);
+  return tools_.picker->pick(shown.parts, Sight::of(*stage_).ray(at), shown.clips);
 }
 
 /// An event at a place of the window is told where the surface under it stands and where it is seen from. While the

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/mesh/tri_mesh.h"
 #include "display/render/shading.h"
@@ -19,10 +20,24 @@ struct Picked {
   std::size_t triangle = 0;
 };
 
-/// The nearest place where a ray meets the visible parts of the mesh, both in mm of the model; none: it passes by.
-/// What `clips` (of the model's frame) cut away is passed.
-/// Looks at every triangle, in all threads: some 9 ns each on one core, for clicks.
-std::optional<Picked> pick(const TriMesh& mesh, const PartLooks& parts, const Ray& ray,
-                           std::span<const ClipPlane> clips = {});
+/// Knows where runs of triangles lie, as they follow one another in the mesh: on surfaces most rays pass all but a few
+/// runs. Borrows the mesh. Making it takes some 5 ns a triangle and core, 32 bytes for each 128.
+class Picker {
+ public:
+  explicit Picker(const TriMesh& mesh);
+
+  /// The nearest place where a ray meets the visible parts of the mesh, both in mm of the model; none: it passes by.
+  /// What `clips` (of the model's frame) cut away is passed. The same as if every triangle were looked at; of those at
+  /// the same place the first.
+  std::optional<Picked> pick(const PartLooks& parts, const Ray& ray, std::span<const ClipPlane> clips = {}) const;
+
+ private:
+  struct Run {
+    glm::vec3 low{0.0f}, high{0.0f};            ///< grid coordinates
+    PartitionId first_part = 0, last_part = 0;  ///< of its triangles, the lowest and the highest
+  };
+  const TriMesh& mesh_;
+  std::vector<Run> runs_;
+};
 
 }  // namespace dubsar::app

@@ -42,8 +42,8 @@ class Held : public Live {
     const auto done = play({
         {[&] { go(from); },
          [&](const ViewMoment& m) {
-           taken =
-               pick(m.viewer.mesh(), options_.stage.shading.parts, Sight::of(m.viewer.stage()).ray(at_of(pointer())));
+           taken = Picker(m.viewer.mesh())
+                       .pick(options_.stage.shading.parts, Sight::of(m.viewer.stage()).ray(at_of(pointer())));
            const glm::dvec2 middle = px_of(m.report.view.pan);
            wanted = to(middle);
            return true;
@@ -134,8 +134,9 @@ TEST_F(Held, TheWheelZoomsToTheSurfaceUnderThePointerFromTheSmallestToTheLargest
                              go({kWidth * 0.58, kHeight * 0.44});
                            },
                            [&](const ViewMoment& m) {
-                             taken = pick(m.viewer.mesh(), options_.stage.shading.parts,
-                                          Sight::of(m.viewer.stage()).ray(at_of(pointer())));
+                             taken = Picker(m.viewer.mesh())
+                                         .pick(options_.stage.shading.parts,
+                                               Sight::of(m.viewer.stage()).ray(at_of(pointer())));
                              return true;
                            }}};
   for (int notch = 0; notch < 30; ++notch) {

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <map>
+#include <random>
 
 #include "app/panels/light_ball.h"
 #include "app/viewer/run_view.h"
@@ -180,18 +183,76 @@ TEST(Picking, FindsTheNearestPlaceInMillimetresWhateverTheGridAndHoweverPartsAre
   const Ray ray{{3, 4, 50}, glm::normalize(glm::dvec3(0.02, -0.01, -1))};
   const auto place = [&](double z) { return ray.from + (z - ray.from.z) / ray.direction.z * ray.direction; };
   const double near = -0.05 * (1 + 4 * 2), far = -0.05 * (1 + 4 * 6) - 3;
-  const auto found = pick(mesh, parts, ray);
+  const Picker picker(mesh);
+  const auto found = picker.pick(parts, ray);
   ASSERT_TRUE(found);
   EXPECT_LT(glm::distance(found->at_mm, place(near)), 1e-9);
   EXPECT_LT(found->triangle, 2u);
   EXPECT_LT(glm::distance(found->normal, glm::dvec3(0, 0, 1)), 1e-9);
   parts[0].visible = false;
-  ASSERT_TRUE(pick(mesh, parts, ray));
-  EXPECT_LT(glm::distance(pick(mesh, parts, ray)->at_mm, place(far)), 1e-9);
+  ASSERT_TRUE(picker.pick(parts, ray));
+  EXPECT_LT(glm::distance(picker.pick(parts, ray)->at_mm, place(far)), 1e-9);
   const Ray beside{{8.7, 4, 50}, {0, 0, -1}};  // the sheets end at 8.5 mm, the moved one at 9.5
-  EXPECT_TRUE(pick(mesh, parts, beside));
+  EXPECT_TRUE(picker.pick(parts, beside));
   parts[1].offset_mm.x = 0;
-  EXPECT_FALSE(pick(mesh, parts, beside));
+  EXPECT_FALSE(picker.pick(parts, beside));
+}
+
+/// How far along the ray a triangle is met, by its plane and the senses of its corners around the ray; or infinity.
+double met_at(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const auto side = [&](const glm::dvec3& p, const glm::dvec3& q) {
+    return glm::dot(ray.direction, glm::cross(p - ray.from, q - ray.from));
+  };
+  const double ab = side(a, b), bc = side(b, c), ca = side(c, a);
+  if (!((ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0))) return INFINITY;
+  const glm::dvec3 n = glm::cross(b - a, c - a);
+  const double at = glm::dot(n, a - ray.from) / glm::dot(n, ray.direction);
+  return at > 0 ? at : INFINITY;
+}
+
+TEST(Picking, RunsOfTrianglesHideNone) {
+  std::mt19937 random(7719);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  TriMesh mesh;  // crumpled balls, one in the other
+  for (int ball = 0; ball < 2; ++ball)
+    for (int k = 0; k < 4000; ++k) {
+      const glm::dvec3 out = glm::normalize(glm::dvec3(any(random), any(random), any(random)));
+      const glm::dvec3 u = glm::normalize(glm::cross(out, glm::dvec3(any(random), any(random), any(random))));
+      const glm::dvec3 middle = 50.0 + (20.0 + 20.0 * ball + any(random)) * out, v = glm::cross(out, u);
+      testing::add_rectangle(mesh, glm::vec3(middle - 0.5 * (u + v)), glm::vec3(u), glm::vec3(v), ball);
+    }
+  mesh.frame.input_voxel.mm = {0.1, 0.1, 0.2};
+  const Picker picker(mesh);
+  PartLooks parts{};
+  parts[1].offset_mm = {0.3, 1.1, -0.7};
+  int met = 0, passed = 0;
+  for (int k = 0; k < 300; ++k) {
+    parts[1].visible = k % 3 != 0;
+    Ray ray{{5 + 4 * any(random), 5 + 4 * any(random), 25}, {0.2 * any(random), 0.2 * any(random), -1.0}};
+    if (k % 4 == 0) ray.direction = {0, 0, -1};
+    double nearest = INFINITY;
+    std::size_t best = 0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const PartLook& part = parts[mesh.partition_of(t)];
+      if (!part.visible) continue;
+      std::array<glm::dvec3, 3> p;
+      for (std::size_t i = 0; i < 3; ++i)
+        p[i] = mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[mesh.triangles[t][i]])) + part.offset_mm;
+      const double at = met_at(ray, p[0], p[1], p[2]);
+      if (at < nearest) {
+        nearest = at;
+        best = t;
+      }
+    }
+    const auto found = picker.pick(parts, ray);
+    ASSERT_EQ(found.has_value(), std::isfinite(nearest)) << k;
+    ++(found ? met : passed);
+    if (!found) continue;
+    EXPECT_EQ(found->triangle, best) << k;
+    EXPECT_LT(glm::distance(found->at_mm, ray.from + nearest * ray.direction), 1e-9) << k;
+  }
+  EXPECT_GT(met, 50);
+  EXPECT_GT(passed, 20);
 }
 
 TEST_F(Seeing, TheRingStandsAtTheDepthOfTheSurfaceForBothEyes) {

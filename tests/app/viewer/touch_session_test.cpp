@@ -53,7 +53,7 @@ class TouchSession : public ::testing::Test {
   static glm::dvec2 share(const glm::dvec2& at) { return {0.5 + at.x * 540 / 960, 0.5 - at.y}; }
   static std::optional<glm::dvec3> surface_at(const ViewMoment& moment, const glm::dvec2& at) {
     const Viewer& viewer = moment.viewer;
-    const auto picked = pick(viewer.mesh(), PartLooks(), Sight::of(viewer.stage()).ray(at));
+    const auto picked = Picker(viewer.mesh()).pick(PartLooks(), Sight::of(viewer.stage()).ray(at));
     return picked ? std::optional(picked->at_mm) : std::nullopt;
   }
 
