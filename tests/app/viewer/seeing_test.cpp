@@ -214,7 +214,7 @@ TEST(Picking, RunsOfTrianglesHideNone) {
   std::mt19937 random(7719);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
   TriMesh mesh;  // crumpled balls, one in the other
-  for (int ball = 0; ball < 2; ++ball)
+  for (std::uint8_t ball = 0; ball < 2; ++ball)
     for (int k = 0; k < 4000; ++k) {
       const glm::dvec3 out = glm::normalize(glm::dvec3(any(random), any(random), any(random)));
       const glm::dvec3 u = glm::normalize(glm::cross(out, glm::dvec3(any(random), any(random), any(random))));
