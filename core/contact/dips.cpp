@@ -25,7 +25,9 @@ struct Block {
   static constexpr int kSide = static_cast<int>(kEdge) + 2 * kHalo;
   std::array<float, static_cast<std::size_t>(kSide) * kSide * kSide + kRowLength> value{};
 
-  static std::size_t place(int x, int y, int z) { return static_cast<std::size_t>((z * kSide + y) * kSide + x); }
+  static std::size_t place(int x, int y, int z) {
+    return (static_cast<std::size_t>(z) * kSide + static_cast<std::size_t>(y)) * kSide + static_cast<std::size_t>(x);
+  }
   template <class Get>
   void fill(const glm::ivec3& corner, const Get& get) {
     for (int z = 0; z < kSide; ++z)
@@ -92,7 +94,9 @@ class DiskMeans {
   float at(const glm::ivec3& p) const { return means_.value[Means::place(p.x, p.y, p.z)]; }
 
  private:
-  static std::size_t row_of(const glm::ivec3& p) { return static_cast<std::size_t>(p.z * Means::kSide + p.y); }
+  static std::size_t row_of(const glm::ivec3& p) {
+    return static_cast<std::size_t>(p.z) * Means::kSide + static_cast<std::size_t>(p.y);
+  }
   std::array<bool, static_cast<std::size_t>(Means::kSide) * Means::kSide> asked_{};
   std::vector<SummedRow> rows_;
   Means means_;
@@ -177,7 +181,7 @@ Result<BandDensity> BandDensity::read(const ContactBand& band, SlabSource& sourc
 
 Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
                        Progress& progress) {
-  static const std::vector<Direction> kDirections = directions();
+  const std::vector<Direction> all_directions = directions();
   Dips dips;
   dips.strength.assign(band.nodes.size(), kNoDip);
   dips.density.assign(band.nodes.size(), 0.0f);
@@ -196,7 +200,7 @@ Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const B
         const glm::ivec3 p = band.point(node);
         dips.density[node] = density.get(p.x, p.y, p.z);
       }
-      for (const Direction& d : kDirections) {
+      for (const Direction& d : all_directions) {
         across.clear();
         for (std::uint32_t node = first; node < last; ++node) {
           if (std::abs(glm::dot(d.unit, band.normal(node))) < kLeastDipCosine) continue;
