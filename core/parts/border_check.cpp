@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 
 #include "core/base/numbers/counting_sort.h"
 #include "core/base/system/parallel.h"
@@ -129,7 +130,9 @@ class BorderCheck {
     PartitionId body = 0;
     std::uint32_t neighbour = 0;
     bool leaves = false;
-    friend auto operator<=>(const Side&, const Side&) = default;
+    friend bool operator<(const Side& a, const Side& b) {
+      return std::tie(a.body, a.neighbour, a.leaves) < std::tie(b.body, b.neighbour, b.leaves);
+    }
   };
 
   /// Of one vertex: each neighbour in a body once after it and once before it.

@@ -56,6 +56,9 @@ class HoleFiller {
     PartitionId partition = 0, reverse_partition = PartitionTable::kNone;
   };
 
+  /// One more than the highest id of a partition.
+  PartitionId ids() const { return static_cast<PartitionId>(group_.size()); }
+
   /// Sides of faces whose neighbour `differs` from them.
   template <class Differs>
   std::vector<BorderEdge> collect(const Differs& differs) const {
@@ -121,12 +124,12 @@ class HoleFiller {
         collect([&](std::uint8_t left, std::uint8_t right) { return group_[left] != group_[right]; });
     std::unordered_set<std::uint64_t> shared;  // sides whose hole was filled for both
     std::vector<Task> tasks;
-    for (std::uint8_t group = 0; group < group_.size(); ++group) {
+    for (PartitionId group = 0; group < ids(); ++group) {
       std::vector<BorderEdge> edges;
       for (const BorderEdge& e : all)
         if (group_[e.left] == group && shared.count(key(e.from, e.to)) == 0) edges.push_back(e);
       if (options_.keep_patches) {
-        for (std::uint8_t id = 0; id < group_.size(); ++id)
+        for (PartitionId id = 0; id < ids(); ++id)
           if (group_[id] == group) add_patch_borders(id, edges);
         cancel_opposite(edges);
       }
@@ -151,11 +154,11 @@ class HoleFiller {
   /// Where two partitions of one part meet, a membrane closes each of them alone.
   Result<void> fill_inside_groups() {
     std::vector<Task> tasks;
-    for (std::uint8_t id = 0; id < group_.size(); ++id) {
+    for (PartitionId id = 0; id < ids(); ++id) {
       const auto members = std::count(group_.begin(), group_.end(), group_[id]);
       if (members < 2) continue;
       const auto partner = [&] {
-        for (std::uint8_t other = 0; other < group_.size(); ++other)
+        for (PartitionId other = 0; other < ids(); ++other)
           if (other != id && group_[other] == group_[id]) return other;
         return PartitionTable::kNone;
       }();
