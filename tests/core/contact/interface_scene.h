@@ -61,8 +61,10 @@ struct FilmScene {
           scan.at(x, y, z) = 1.0f - depth * std::exp(-0.5f * d * d) + noise * gauss;
         }
     std::vector<PatchPoint> samples;
-    for (int i = 0; i < 400; ++i)
-      samples.push_back({at(static_cast<float>(i % 20 - 10), static_cast<float>(i / 20 - 10), 0.0f), normal});
+    samples.reserve(400);
+    for (int v = -10; v < 10; ++v)
+      for (int u = -10; u < 10; ++u)
+        samples.push_back({at(static_cast<float>(u), static_cast<float>(v), 0.0f), normal});
     SilentProgress progress;
     const ContactBand band = ContactBand::make(inside, std::move(samples), 8.0f, progress).value();
     VolumeSource source(scan);
