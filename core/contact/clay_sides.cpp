@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/base/numbers/disjoint_sets.h"
-#include "core/base/system/parallel.h"
+#include "core/base/system/parallel_gather.h"
 
 namespace dubsar {
 namespace {
@@ -59,17 +59,10 @@ void adopt_islands(const ContactBand& band, std::vector<ClaySide>& side, const s
     if (certain[n]) std::atomic_ref(held[pieces.root(n)]).store(1, std::memory_order_relaxed);
   });
   using Nodes = std::vector<std::uint32_t>;
-  const Nodes islands = parallel_reduce<Nodes>(
-      count, kNodeGrain, {},
-      [&](std::int64_t begin, std::int64_t end) {
-        Nodes found;
+  const Nodes islands =
+      parallel_gather<std::uint32_t>(count, kNodeGrain, [&](std::int64_t begin, std::int64_t end, Nodes& found) {
         for (auto n = static_cast<std::uint32_t>(begin); n < static_cast<std::uint64_t>(end); ++n)
           if (held[pieces.root(n)] == 0) found.push_back(n);
-        return found;
-      },
-      [](Nodes all, const Nodes& part) {
-        all.insert(all.end(), part.begin(), part.end());
-        return all;
       });
   std::fill(held.begin(), held.end(), 1);
   for (const std::uint32_t n : islands) held[n] = 0;
@@ -112,17 +105,11 @@ bool unpinch(const ContactBand& band, std::vector<ClaySide>& side) {
     return side[n] == ClaySide::kEnvelope ? n : right;
   };
   using Nodes = std::vector<std::uint32_t>;
-  const Nodes pinched = parallel_reduce<Nodes>(
-      static_cast<std::int64_t>(band.nodes.size()), kNodeGrain, {},
-      [&](std::int64_t begin, std::int64_t end) {
-        Nodes found;
+  const Nodes pinched = parallel_gather<std::uint32_t>(
+      static_cast<std::int64_t>(band.nodes.size()), kNodeGrain,
+      [&](std::int64_t begin, std::int64_t end, Nodes& found) {
         for (auto n = static_cast<std::uint32_t>(begin); n < static_cast<std::uint64_t>(end); ++n)
           if (pinch_at(n, 0) != kNone || pinch_at(n, 1) != kNone || pinch_at(n, 2) != kNone) found.push_back(n);
-        return found;
-      },
-      [](Nodes all, const Nodes& part) {
-        all.insert(all.end(), part.begin(), part.end());
-        return all;
       });
   for (const std::uint32_t n : pinched)
     for (std::size_t a = 0; a < 3; ++a)

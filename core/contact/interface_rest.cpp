@@ -6,7 +6,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "core/base/system/parallel.h"
+#include "core/base/system/parallel_gather.h"
 #include "core/mesh/edge_uses.h"
 #include "core/parts/border_loops.h"
 #include "core/parts/loop_fill.h"
@@ -36,26 +36,18 @@ void add_step(std::uint32_t from, std::uint32_t to, int times, std::vector<Step>
 /// Sides that the tablet's faces and the contact run along once more in one direction than in the other, turned round.
 std::vector<BorderEdge> unpaired(const SurfaceModel& model, const InterfaceMesh& mesh, const FaceGraph& graph) {
   using Steps = std::vector<Step>;
-  Steps steps = parallel_reduce<Steps>(
-      graph.faces(), 1 << 14, {},
-      [&](std::int64_t begin, std::int64_t end) {
-        Steps found;
-        for (auto f = static_cast<std::uint32_t>(begin); f < static_cast<std::uint64_t>(end); ++f) {
-          if (model.partitions[model.quad_partition[f]].kind != PartitionKind::kTablet) continue;
-          for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
-            const std::uint32_t g = graph.neighbour[s];
-            if (g == FaceGraph::kNone || !is_envelope(model.partitions[model.quad_partition[g]].kind)) continue;
-            const Polygon polygon = model.mesh.polygon(f);
-            const auto i = static_cast<std::size_t>(s - graph.first_side[f]);
-            add_step(polygon.vertex[i], polygon.vertex[(i + 1) % static_cast<std::size_t>(polygon.size)], 1, found);
-          }
-        }
-        return found;
-      },
-      [](Steps all, const Steps& part) {
-        all.insert(all.end(), part.begin(), part.end());
-        return all;
-      });
+  Steps steps = parallel_gather<Step>(graph.faces(), 1 << 14, [&](std::int64_t begin, std::int64_t end, Steps& found) {
+    for (auto f = static_cast<std::uint32_t>(begin); f < static_cast<std::uint64_t>(end); ++f) {
+      if (model.partitions[model.quad_partition[f]].kind != PartitionKind::kTablet) continue;
+      for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
+        const std::uint32_t g = graph.neighbour[s];
+        if (g == FaceGraph::kNone || !is_envelope(model.partitions[model.quad_partition[g]].kind)) continue;
+        const Polygon polygon = model.mesh.polygon(f);
+        const auto i = static_cast<std::size_t>(s - graph.first_side[f]);
+        add_step(polygon.vertex[i], polygon.vertex[(i + 1) % static_cast<std::size_t>(polygon.size)], 1, found);
+      }
+    }
+  });
   const std::vector<EdgeUse> uses = edge_uses(mesh.triangles);
   for (std::size_t begin = 0, end; begin < uses.size(); begin = end) {
     end = end_of_edge(uses, begin);

@@ -34,7 +34,7 @@ struct ContactReport {
 /// Replaces the fill patches between tablet and envelope (fill_holes() must have run) by the traced contact, moves the
 /// labels of faces beside it, and measures the partitions. `density` is the scan on the model's grid, unfiltered. The
 /// model stays as it was where tablet or envelope would not be closed. Deterministic for any thread count. Errors of
-/// `density`, kCancelled. About 7 us a point of the band.
+/// `density`, kCancelled. About 5 us a point of the band.
 Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, const ContactOptions& options,
                                     Progress& progress);
 

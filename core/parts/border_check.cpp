@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "core/base/numbers/counting_sort.h"
-#include "core/base/system/parallel.h"
+#include "core/base/system/parallel_gather.h"
 #include "core/parts/triangle_soup.h"
 
 namespace dubsar {
@@ -108,22 +108,14 @@ class BorderCheck {
   /// Middles of the open edges at each of some vertices, whose corners `collect` finds.
   template <class Collect>
   Places at_each(std::int64_t count, const Collect& collect) const {
-    return parallel_reduce<Places>(
-        count, kBorderGrain, {},
-        [&](std::int64_t begin, std::int64_t end) {
-          Places open;
-          std::vector<Corner> corners;
-          std::vector<Side> sides;
-          for (std::int64_t i = begin; i < end; ++i) {
-            collect(i, corners);
-            look_at(corners, sides, open);
-          }
-          return open;
-        },
-        [](Places all, const Places& part) {
-          all.insert(all.end(), part.begin(), part.end());
-          return all;
-        });
+    return parallel_gather<glm::vec3>(count, kBorderGrain, [&](std::int64_t begin, std::int64_t end, Places& open) {
+      std::vector<Corner> corners;
+      std::vector<Side> sides;
+      for (std::int64_t i = begin; i < end; ++i) {
+        collect(i, corners);
+        look_at(corners, sides, open);
+      }
+    });
   }
 
   struct Side {

@@ -7,7 +7,7 @@
 #include <unordered_set>
 
 #include "core/base/system/log.h"
-#include "core/base/system/parallel.h"
+#include "core/base/system/parallel_gather.h"
 #include "core/mesh/edge_uses.h"
 #include "core/parts/border_loops.h"
 #include "core/parts/face_graph.h"
@@ -62,11 +62,8 @@ class HoleFiller {
   /// Sides of faces whose neighbour `differs` from them.
   template <class Differs>
   std::vector<BorderEdge> collect(const Differs& differs) const {
-    using Edges = std::vector<BorderEdge>;
-    return parallel_reduce<Edges>(
-        graph_.faces(), kHoleGrain, {},
-        [&](std::int64_t begin, std::int64_t end) {
-          Edges edges;
+    return parallel_gather<BorderEdge>(
+        graph_.faces(), kHoleGrain, [&](std::int64_t begin, std::int64_t end, std::vector<BorderEdge>& edges) {
           for (auto f = static_cast<std::uint32_t>(begin); f < static_cast<std::uint64_t>(end); ++f)
             for (std::uint32_t s = graph_.first_side[f]; s < graph_.first_side[f + 1]; ++s) {
               const std::uint32_t g = graph_.neighbour[s];
@@ -78,11 +75,6 @@ class HoleFiller {
               edges.push_back({polygon.vertex[i], polygon.vertex[(i + 1) % static_cast<std::size_t>(polygon.size)], f,
                                left, right});
             }
-          return edges;
-        },
-        [](Edges all, const Edges& part) {
-          all.insert(all.end(), part.begin(), part.end());
-          return all;
         });
   }
 

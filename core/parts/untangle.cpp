@@ -8,7 +8,7 @@
 #include <unordered_map>
 
 #include "core/base/system/log.h"
-#include "core/base/system/parallel.h"
+#include "core/base/system/parallel_gather.h"
 #include "core/mesh/evidence.h"
 #include "core/mesh/intersections.h"
 #include "core/parts/crossing_pairs.h"
@@ -161,18 +161,11 @@ class Tangle {
     std::vector<TriangleBox> boxes;
     for (const Triangle& t : triangles_) boxes.push_back(box_of(positions_, t).grown(1.0f));
     const BrickSet near(boxes);
-    const Pairs found = parallel_reduce<Pairs>(  // a triangle and its x-quad
-        model_.mesh.quad_count(), kTangleGrain, {},
-        [&](std::int64_t begin, std::int64_t end) {
-          Pairs part;
+    const Pairs found = parallel_gather<Pairs::value_type>(  // a triangle and its x-quad
+        model_.mesh.quad_count(), kTangleGrain, [&](std::int64_t begin, std::int64_t end, Pairs& part) {
           for (auto q = static_cast<std::uint32_t>(begin); q < static_cast<std::uint64_t>(end); ++q)
             for (std::uint32_t t = surface.first_triangle[q]; t < surface.first_triangle[q + 1]; ++t)
               if (near.meets(box_of(positions_, surface.triangles[t]))) part.push_back({t, q});
-          return part;
-        },
-        [](Pairs all, const Pairs& part) {
-          all.insert(all.end(), part.begin(), part.end());
-          return all;
         });
     for (const auto& [t, q] : found) {
       triangles_.push_back(surface.triangles[t]);

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
-#include "core/base/system/parallel.h"
+#include "core/base/system/parallel_gather.h"
 #include "core/exa/values/exact.h"
 
 namespace dubsar {
@@ -167,18 +167,12 @@ class Ranking {
     auto left = static_cast<std::int64_t>(place);
     std::size_t own = 0;
     while (left >= counts_[own]) left -= counts_[own++];
-    auto inside = parallel_reduce<std::vector<float>>(
-        static_cast<std::int64_t>(values_.size()), kRankGrain, {},
-        [&](std::int64_t begin, std::int64_t end) {
-          std::vector<float> part;
-          for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-            if (bucket(values_[i]) == own) part.push_back(values_[i]);
-          return part;
-        },
-        [](std::vector<float> all, const std::vector<float>& part) {
-          all.insert(all.end(), part.begin(), part.end());
-          return all;
-        });
+    auto inside =
+        parallel_gather<float>(static_cast<std::int64_t>(values_.size()), kRankGrain,
+                               [&](std::int64_t begin, std::int64_t end, std::vector<float>& part) {
+                                 for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+                                   if (bucket(values_[i]) == own) part.push_back(values_[i]);
+                               });
     std::nth_element(inside.begin(), inside.begin() + left, inside.end());
     return inside[static_cast<std::size_t>(left)];
   }
