@@ -171,20 +171,24 @@ class Viewer final : public Workplace {
     glm::dquat home{1.0, 0.0, 0.0, 0.0};
     std::array<Reach, kBoxSides.size()> reach{};
   };
+  /// The key of the light while it is held: a drag moves the light.
+  struct HeldLight {
+    InputEvent key;        ///< as it went down
+    bool dragged = false;  ///< since then
+  };
   /// What tools need, and what is known of the surface.
   struct Tools {
     std::unique_ptr<LabelFont> font;
     EvidenceShares evidence;
     std::optional<Picker> picker;
     FilmThumbnails thumbnails;
-    std::optional<std::string> coming;    ///< tool of a key that is on its way
-    TimestampNs field_since = -1;         ///< a key or click is on its way that opens a field of text
-    std::vector<InputEvent> typed;        ///< meanwhile: it belongs into that field
-    std::optional<InputEvent> press;      ///< with a tool in the hand: it becomes a click, or a drag that turns
-    std::optional<InputEvent> light_key;  ///< held: a drag moves the light
-    bool light_dragged = false;           ///< since it went down
-    std::optional<InputEvent> wheeled;    ///< the last turn of the wheel or step of fingers, with what was found there
-    glm::dvec2 pointer{0.0};              ///< where it was last, as InputEvent::at
+    std::optional<std::string> coming;  ///< tool of a key that is on its way
+    TimestampNs field_since = -1;       ///< a key or click is on its way that opens a field of text
+    std::vector<InputEvent> typed;      ///< meanwhile: it belongs into that field
+    std::optional<InputEvent> press;    ///< with a tool in the hand: it becomes a click, or a drag that turns
+    std::optional<HeldLight> held_light;
+    std::optional<InputEvent> wheeled;  ///< the last turn of the wheel or step of fingers, with what was found there
+    glm::dvec2 pointer{0.0};            ///< where it was last, as InputEvent::at
     std::unique_ptr<SliceDesk> slices;
     std::optional<ReachedSides> reached;
     std::optional<BoxDrag> held_side;  ///< of the box of cuts

@@ -20,30 +20,30 @@ constexpr double kRoundDeg = 360.0;
 /// While L is held a drag puts the light over the place of the pointer, as if the window were a ball; when nothing was
 /// dragged the key does what it does elsewhere.
 bool Viewer::take_light(const InputEvent& event) {
-  std::optional<InputEvent>& key = tools_.light_key;
-  if (event.kind == EventKind::kKey && event.key == "l" && (event.modifiers == 0 || (key && !event.down))) {
+  std::optional<HeldLight>& held = tools_.held_light;
+  if (event.kind == EventKind::kKey && event.key == "l" && (event.modifiers == 0 || (held && !event.down))) {
     if (event.down) {
-      if (!key) tools_.light_dragged = false;
-      if (!key) key = event;
+      if (!held) held = HeldLight{event};
       return true;
     }
-    if (!key) return false;
-    InputEvent down = *key;
-    key.reset();
-    if (tools_.light_dragged) return true;
+    if (!held) return false;
+    const bool dragged = held->dragged;
+    InputEvent down = held->key;
+    held.reset();
+    if (dragged) return true;
     down.time = event.time;
     pass_on(down);
     return false;
   }
-  if (!key || !event.at) return false;
+  if (!held || !event.at) return false;
   if (event.kind == EventKind::kButton) {
     if (event.button != MouseButton::kLeft) return false;
     if (event.down) {
-      tools_.light_dragged = true;
+      held->dragged = true;
       ++at_.presses;
     }
     tools_.press.reset();
-  } else if (event.kind != EventKind::kMotion || !tools_.light_dragged) {
+  } else if (event.kind != EventKind::kMotion || !held->dragged) {
     return false;
   }
   const LightPlace light = light_over(event.at->x / kBall, event.at->y / kBall);
@@ -64,8 +64,8 @@ void Viewer::move_light(TimestampNs now, ViewState& view) {
     view.light_elevation_deg = sweep->elevation_deg;
   }
   const ViewState& before = report_.view;
-  if (tools_.light_key || (at_.light_known && (before.light_azimuth_deg != view.light_azimuth_deg ||
-                                               before.light_elevation_deg != view.light_elevation_deg)))
+  if (tools_.held_light || (at_.light_known && (before.light_azimuth_deg != view.light_azimuth_deg ||
+                                                before.light_elevation_deg != view.light_elevation_deg)))
     at_.light_moved = now;
   at_.light_known = true;
 }
