@@ -12,6 +12,7 @@ struct BorderEdge {
   std::uint32_t face = 0;  ///< on the left; 0xffffffff for an edge of a fill patch
   std::uint8_t left = 0;   ///< partition ids
   std::uint8_t right = 0;
+  std::uint32_t beyond = 0;  ///< face on the right; as `face`
 };
 
 /// Joins edges end to start into loops that visit no vertex twice, each in the sense of its edges; indices

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::uint32_t kNoFace = 0xffffffffu;
 constexpr std::int64_t kHoleGrain = 1 << 14;
+constexpr float kLeastSum = 0.5f;  ///< shortest sum of two unit normals whose mean says something
 
 std::uint64_t key(std::uint32_t a, std::uint32_t b) {
   return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
@@ -73,7 +74,7 @@ class HoleFiller {
               const Polygon polygon = model_.mesh.polygon(f);
               const auto i = static_cast<std::size_t>(s - graph_.first_side[f]);
               edges.push_back({polygon.vertex[i], polygon.vertex[(i + 1) % static_cast<std::size_t>(polygon.size)], f,
-                               left, right});
+                               left, right, g});
             }
         });
   }
@@ -96,12 +97,24 @@ class HoleFiller {
     return length > 0.0f ? sum / length : glm::vec3(0.0f);
   }
 
+  /// Normal that a patch continues beyond an edge of its rim. Where tablet and envelope meet at the end of a gap, both
+  /// surfaces lean towards each other, and what one of them continues runs into the other: the mean of the tablet's
+  /// normal and the one opposite the envelope's does not lean.
+  glm::vec3 rim_normal(const BorderEdge& edge) const {
+    if (edge.face == kNoFace) return glm::vec3(0.0f);
+    const glm::vec3 near = normal_behind(edge.face);
+    const auto is = [&](PartitionId id, PartitionKind kind) { return model_.partitions.find(id)->kind == kind; };
+    if (!is(edge.left, PartitionKind::kTablet) || !is(edge.right, PartitionKind::kEnvelopeInside)) return near;
+    const glm::vec3 both = near - normal_behind(edge.beyond);
+    return glm::length(both) > kLeastSum ? glm::normalize(both) : near;
+  }
+
   /// A hole is walked against the sense of the part's border, so that the patch continues the surface.
   Task make_task(const std::vector<BorderEdge>& edges, const std::vector<std::uint32_t>& loop) const {
     Task task;
     for (auto e = loop.rbegin(); e != loop.rend(); ++e) {
       task.vertices.push_back(edges[*e].to);
-      task.rim_normals.push_back(edges[*e].face == kNoFace ? glm::vec3(0.0f) : normal_behind(edges[*e].face));
+      task.rim_normals.push_back(rim_normal(edges[*e]));
     }
     for (const glm::vec3& normal : task.rim_normals)
       if (normal == glm::vec3(0.0f)) {
@@ -180,7 +193,7 @@ class HoleFiller {
           if (!alone[3 * t + i]) continue;
           std::uint32_t from = patch.triangles[t][i], to = patch.triangles[t][(i + 1) % 3];
           if (patch.reverse_partition == id) std::swap(from, to);
-          edges.push_back({from, to, kNoFace, id, id});
+          edges.push_back({from, to, kNoFace, id, id, kNoFace});
         }
     }
   }
