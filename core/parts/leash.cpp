@@ -12,7 +12,7 @@ namespace dubsar {
 std::vector<float> leashes(std::span<const glm::vec3> points, std::span<const glm::vec3> places) {
   std::vector<float> leash(points.size(), 1.0f);
   if (places.empty()) return leash;
-  constexpr float kTied = 3.0f, kSlack = 4.0f;  // nothing moves; all moves are free again
+  constexpr float kTied = 1.5f, kSlack = 2.5f;  // nothing moves; all moves are free again
   constexpr float kFree = kTied + kSlack;
   const auto bin = [](const glm::vec3& p) {
     const glm::ivec3 b(glm::floor(p / kFree));

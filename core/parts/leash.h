@@ -7,7 +7,7 @@
 
 namespace dubsar {
 
-/// Of each of `points`: 0 within 3 grid steps of a place, 1 from 7 on.
+/// Of each of `points`: 0 within 1.5 grid steps of a place, 1 from 4 on.
 std::vector<float> leashes(std::span<const glm::vec3> points, std::span<const glm::vec3> places);
 
 }  // namespace dubsar

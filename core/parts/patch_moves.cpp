@@ -15,8 +15,9 @@ namespace {
 
 constexpr int kMoveRounds = 6;  ///< of moves between two attempts to add vertices
 constexpr int kMostCounted = 1000;
-constexpr float kHomeCube = 8.0f;  ///< steps
-constexpr float kRoom = 4.0f;      ///< around the star of a vertex that is its group's alone
+constexpr float kLookRound = 1.0f;  ///< a star, for what its vertex may come to cross; moves are shorter
+constexpr float kHomeCube = 8.0f;   ///< steps
+constexpr float kRoom = 4.0f;       ///< around the star of a vertex that is its group's alone
 constexpr float kSafe = 2.0f;  ///< of which this is left when it is moved: what it reads and where it may come to lie
 
 TriangleBox together(const TriangleBox& a, const TriangleBox& b) {
@@ -39,7 +40,10 @@ glm::vec3 in_steps(const glm::vec3& place, double step) {
 }
 
 PatchMoves::PatchMoves(TangleMesh& mesh, double step, std::span<const std::uint32_t> beside)
-    : mesh_(mesh), step_(step), first_(mesh.positions.size() - mesh.first_extra + 2, 0) {
+    : mesh_(mesh),
+      step_(step),
+      first_(mesh.positions.size() - mesh.first_extra + 2, 0),
+      stuck_(mesh.positions.size() - mesh.first_extra, 0) {
   for (const std::uint32_t t : beside) grid_.add(t, box_of(mesh.positions, mesh.triangles[t]));
   const auto each_corner = [&](const auto& visit) {
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
@@ -83,11 +87,25 @@ void PatchMoves::run(const CrossingPairs& pairs, std::span<std::uint8_t> moved, 
         }
       }
     }
+    note_stuck(outcomes);
     if (!better)  // wider: neighbours make room
       for (const std::uint32_t v : work)
         for (const std::uint32_t t : star_of(v)) mesh_.add_extras(t, next);
     work.swap(next);
   }
+}
+
+/// Who found nothing better need not seek again until something near has moved.
+void PatchMoves::note_stuck(const std::vector<Outcome>& outcomes) {
+  std::vector<TriangleBox> moved;
+  for (const Outcome& outcome : outcomes) {
+    for (const std::uint32_t v : outcome.stuck) stuck_[v - mesh_.first_extra] = 1;
+    for (const TriangleBox& box : outcome.boxes) moved.push_back(box.grown(kLookRound));
+  }
+  if (moved.empty()) return;
+  const BrickSet near(moved);
+  for (std::uint32_t i = 0; i < stuck_.size(); ++i)
+    if (stuck_[i] != 0 && near.meets(star_box(mesh_.first_extra + i))) stuck_[i] = 0;
 }
 
 TriangleBox PatchMoves::star_box(std::uint32_t v) const {
@@ -137,8 +155,18 @@ PatchMoves::Outcome PatchMoves::move_group(const Group& group, std::uint32_t num
       continue;
     }
     look_around(v, around);
-    if (relieve(v, around)) outcome.moved.push_back(v);
-    if (crossings_at(v, mesh_.positions[v], kMostCounted, around, &outcome.next) > 0) outcome.next.push_back(v);
+    const TriangleBox before = star_box(v), near = before.grown(kLookRound);
+    const bool stuck =
+        stuck_[v - mesh_.first_extra] != 0 && std::none_of(outcome.boxes.begin(), outcome.boxes.end(),
+                                                           [&](const TriangleBox& moved) { return moved.meets(near); });
+    const bool better = !stuck && relieve(v, around);
+    if (better) {
+      outcome.moved.push_back(v);
+      outcome.boxes.push_back(together(before, star_box(v)));
+    }
+    if (crossings_at(v, mesh_.positions[v], kMostCounted, around, &outcome.next) == 0) continue;
+    outcome.next.push_back(v);
+    if (!better) outcome.stuck.push_back(v);
   }
   return outcome;
 }
@@ -146,7 +174,7 @@ PatchMoves::Outcome PatchMoves::move_group(const Group& group, std::uint32_t num
 /// Triangles beside the star of a vertex that matter to it, wherever it may be moved, and those of the star among them.
 void PatchMoves::look_around(std::uint32_t v, Around& around) const {
   const std::span<const std::uint32_t> star = star_of(v);
-  const TriangleBox box = star_box(v).grown(1.0f);
+  const TriangleBox box = star_box(v).grown(kLookRound);
   grid_.near(box, around.near);
   std::vector<std::uint32_t> added;
   around.added.near(box, added);

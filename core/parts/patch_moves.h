@@ -63,7 +63,8 @@ class PatchMoves {
     TriangleGrid added;              ///< where triangles have come to lie in this round
   };
   struct Outcome {
-    std::vector<std::uint32_t> next, moved;
+    std::vector<std::uint32_t> next, moved, stuck;
+    std::vector<TriangleBox> boxes;  ///< of the stars that moved, before and after
   };
 
   std::span<const std::uint32_t> star_of(std::uint32_t v) const {
@@ -77,12 +78,14 @@ class PatchMoves {
   int crossings_at(std::uint32_t v, const glm::vec3& place, int most, const Around& around,
                    std::vector<std::uint32_t>* met = nullptr);
   bool relieve(std::uint32_t v, Around& around);
+  void note_stuck(const std::vector<Outcome>& outcomes);
 
   TangleMesh& mesh_;
   double step_;
   TriangleGrid grid_;
   std::vector<std::uint32_t> first_, star_;  ///< triangles of each vertex from first_extra on: star_[first_[v]] and on
   std::unordered_map<std::uint32_t, TriangleBox> reach_;  ///< of triangles that moved: all places where they have been
+  std::vector<std::uint8_t> stuck_;  ///< of vertices from first_extra on: among what is near now there is no better place
 };
 
 }  // namespace dubsar

@@ -264,21 +264,21 @@ Result<UntangleReport> untangle_patches(SurfaceModel& model, double step, Progre
   Tangle tangle(model, help.surface != nullptr ? *help.surface : own, help.home, step);
   auto pairs = tangle.crossings();
   report.crossings = static_cast<std::int64_t>(pairs.size());
-  const auto move_and_split = [&]() -> Result<void> {
-    for (int round = 0; round <= kMostSplits && !pairs.empty(); ++round) {
-      if (progress.cancelled()) return cancelled_error();
-      if (round > 0) report.added += tangle.split(pairs);
-      tangle.move(pairs);
-      pairs = tangle.crossings_after(std::move(pairs));
-      progress.advance(1);
-    }
-    return {};
+  const auto look_again = [&] { pairs = tangle.crossings_after(std::move(pairs)); };
+  const auto move = [&] {
+    tangle.move(pairs);
+    look_again();
+    progress.advance(1);
   };
-  DUBSAR_TRY(move_and_split());
-  if (!pairs.empty() && tangle.has_home()) {
+  for (int round = 0; round <= kMostSplits && !pairs.empty(); ++round) {
+    if (progress.cancelled()) return cancelled_error();
+    if (round > 0) report.added += tangle.split(pairs);
+    move();
+  }
+  if (!pairs.empty() && tangle.has_home()) {  // splits would make more of them now
     tangle.retreat(pairs);
-    pairs = tangle.crossings_after(std::move(pairs));
-    DUBSAR_TRY(move_and_split());
+    look_again();
+    move();
   }
   report.left = tangle.places(pairs);
   report.moved = tangle.moved();

@@ -75,7 +75,7 @@ TEST(Untangle, PatchesThatRunThroughTheSurfaceAreTakenOut) {
 }
 
 TEST(Untangle, VerticesNearACrossingAreTied) {
-  const std::vector<glm::vec3> points{{10, 10, 10}, {12.9f, 10, 10}, {15, 10, 10}, {17.1f, 10, 10}, {-40, 3, 9}};
+  const std::vector<glm::vec3> points{{10, 10, 10}, {11.4f, 10, 10}, {12.75f, 10, 10}, {14.1f, 10, 10}, {-40, 3, 9}};
   const std::vector<float> free = leashes(points, std::vector<glm::vec3>{{10, 10, 10}, {90, 90, 90}});
   const std::vector<float> expected{0.0f, 0.0f, 0.5f, 1.0f, 1.0f};
   EXPECT_EQ(free, expected);
