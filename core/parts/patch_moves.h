@@ -85,7 +85,8 @@ class PatchMoves {
   TriangleGrid grid_;
   std::vector<std::uint32_t> first_, star_;  ///< triangles of each vertex from first_extra on: star_[first_[v]] and on
   std::unordered_map<std::uint32_t, TriangleBox> reach_;  ///< of triangles that moved: all places where they have been
-  std::vector<std::uint8_t> stuck_;  ///< of vertices from first_extra on: among what is near now there is no better place
+  std::vector<std::uint8_t>
+      stuck_;  ///< of vertices from first_extra on: among what is near now there is no better place
 };
 
 }  // namespace dubsar
