@@ -5,7 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <tuple>
-#include <unordered_map>
+#include <unordered_set>
 
 #include "core/base/system/log.h"
 #include "core/base/system/parallel_gather.h"
@@ -146,7 +146,19 @@ class Tangle {
   void add_patch(std::size_t p) {
     const FillPatch& patch = model_.patches[p];
     const auto base = static_cast<std::uint32_t>(positions_.size());
-    for (const glm::vec3& place : patch.extra_positions) positions_.push_back(in_steps(place, step_));
+    std::unordered_set<std::uint64_t> taken;  // rounding, and smoothing of tiny islands, bring vertices together
+    taken.reserve(patch.extra_positions.size());
+    const auto key = [&](const glm::vec3& p) {
+      std::uint64_t bits = 0;
+      for (int axis = 0; axis < 3; ++axis)
+        bits = bits << 21 | (static_cast<std::uint64_t>(std::llround(static_cast<double>(p[axis]) / step_)) & 0x1fffff);
+      return bits;
+    };
+    for (const glm::vec3& place : patch.extra_positions) {
+      glm::vec3 p = in_steps(place, step_);
+      while (!taken.insert(key(p)).second) p.x += static_cast<float>(step_);
+      positions_.push_back(p);
+    }
     patch_of_vertex_.resize(positions_.size() - first_extra_, static_cast<std::uint32_t>(p));
     for (Triangle t : patch.triangles) {
       for (std::uint32_t& v : t)
