@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <glm/common.hpp>
 #include <tuple>
 #include <unordered_set>
 #include <vector>
 
+#include "core/base/numbers/counting_sort.h"
 #include "core/base/system/parallel_gather.h"
 #include "core/mesh/edge_uses.h"
+#include "core/mesh/fans.h"
 #include "core/parts/border_loops.h"
 #include "core/parts/loop_fill.h"
 
@@ -197,6 +200,46 @@ void part_shared_edges(const SurfaceModel& model, InterfaceMesh& mesh) {
       for (std::uint32_t& v : other)
         if (v == cut.b) v = middle;
       mesh.triangles.push_back(other);
+    }
+  }
+}
+
+void part_fans(std::uint32_t first_added, InterfaceMesh& mesh) {
+  constexpr float kApart = 0.25f;  ///< of the way to the middle of what is around
+  struct Corner {
+    std::uint32_t vertex, place;  ///< added vertex; 3 * triangle + 0, 1 or 2
+  };
+  std::vector<Corner> corners;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::uint32_t c = 0; c < 3; ++c)
+      if (const std::uint32_t v = mesh.triangles[t][c]; v >= first_added)
+        corners.push_back({v - first_added, 3 * t + c});
+  counting_sort(corners, mesh.added.size(), [](const Corner& corner) { return corner.vertex; });
+  Fans fans;
+  for (std::size_t begin = 0, end = 0; begin < corners.size(); begin = end) {
+    fans.clear();
+    for (end = begin; end < corners.size() && corners[end].vertex == corners[begin].vertex; ++end) {
+      const Triangle& t = mesh.triangles[corners[end].place / 3];
+      fans.add(t[(corners[end].place + 1) % 3], t[(corners[end].place + 2) % 3]);
+    }
+    const std::uint32_t count = fans.find(), v = corners[begin].vertex;
+    for (std::uint32_t fan = 1; fan < count; ++fan) {
+      const auto copy = static_cast<std::uint32_t>(mesh.added.size());
+      glm::vec3 sum(0.0f);
+      float around = 0.0f;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (fans.of_corner()[i - begin] != fan) continue;
+        Triangle& t = mesh.triangles[corners[i].place / 3];
+        t[corners[i].place % 3] = first_added + copy;
+        for (const std::uint32_t w : t)
+          if (w >= first_added && w != first_added + copy) {
+            sum += mesh.added[w - first_added];
+            around += 1.0f;
+          }
+      }
+      const glm::vec3 here = mesh.added[v];
+      mesh.added.push_back(around > 0.0f ? glm::mix(here, sum / around, kApart) : here);
+      mesh.strength.push_back(mesh.strength[v]);
     }
   }
 }

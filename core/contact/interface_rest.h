@@ -21,4 +21,8 @@ Result<std::int64_t> close_rest(const SurfaceModel& model, const FaceGraph& grap
 /// along an edge of its own, its two triangles get a vertex of their own in the middle, a little apart.
 void part_shared_edges(const SurfaceModel& model, InterfaceMesh& mesh);
 
+/// Where the contact touches itself at an added vertex, every fan but the first gets one of its own, a little apart:
+/// readers of files without numbers of vertices would join them. O(triangles).
+void part_fans(std::uint32_t first_added, InterfaceMesh& mesh);
+
 }  // namespace dubsar

@@ -94,6 +94,7 @@ Result<Laid> lay_contact(SurfaceModel& model, const Traced& traced, Progress& pr
   laid.mesh = make_interface(model, traced.index, traced.band, traced.side, traced.dips);
   DUBSAR_ASSIGN(const std::int64_t rest_loops, close_rest(model, traced.graph, laid.mesh, progress));
   part_shared_edges(model, laid.mesh);
+  part_fans(static_cast<std::uint32_t>(model.mesh.positions.size()), laid.mesh);
   model.patches.clear();
   model.patches.push_back(contact_patch(model, laid.mesh, {}));
   HoleOptions beside;
