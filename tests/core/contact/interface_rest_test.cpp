@@ -48,5 +48,31 @@ TEST(CloseRest, ATinyLoopIsAStar) {
   EXPECT_EQ(around(middle), 4);
 }
 
+TEST(PartFans, TwoBodiesThatTouchAtAVertexComeApartAndAreClosed) {
+  const std::vector<Triangle> tetrahedron{{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
+  constexpr std::uint32_t kFirst = 100;  // vertices of a surface that nothing here uses
+  InterfaceMesh mesh;
+  mesh.added = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}, {-4, 0, 0}, {0, -4, 0}, {0, 0, -4}};
+  mesh.strength.assign(mesh.added.size(), 1.0f);
+  for (const std::array<std::uint32_t, 4>& of : {std::array<std::uint32_t, 4>{0, 1, 2, 3}, {0, 5, 4, 6}})
+    for (const Triangle& t : tetrahedron)
+      mesh.triangles.push_back({kFirst + of[t[0]], kFirst + of[t[1]], kFirst + of[t[2]]});
+  part_fans(kFirst, mesh);
+  ASSERT_EQ(mesh.added.size(), 8u);
+  EXPECT_EQ(mesh.strength.size(), 8u);
+  EXPECT_EQ(mesh.added[0], glm::vec3(0.0f));
+  EXPECT_GT(glm::distance(mesh.added[7], mesh.added[0]), 0.1f);
+  EXPECT_LT(glm::distance(mesh.added[7], mesh.added[0]), 1.5f);
+  std::vector<Triangle> triangles = mesh.triangles;
+  for (Triangle& t : triangles)
+    for (std::uint32_t& v : t) v -= kFirst;
+  const MeshCheck check = check_mesh(mesh.added, triangles);
+  EXPECT_TRUE(check.watertight());
+  EXPECT_EQ(check.nonmanifold_vertices, 0);
+  EXPECT_EQ(self_intersections(mesh.added, triangles).size(), 0u);
+  part_fans(kFirst, mesh);
+  EXPECT_EQ(mesh.added.size(), 8u) << "nothing is left to do";
+}
+
 }  // namespace
 }  // namespace dubsar
