@@ -25,6 +25,26 @@ constexpr std::int64_t kTangleGrain = 1 << 14;
 constexpr float kBeside = 6.0f;  ///< steps that moves reach
 using Pairs = CrossingPairs;
 
+/// The places as multiples of `step`, no two at one: rounding, and smoothing of tiny islands, bring some together.
+std::vector<glm::vec3> apart_in_steps(std::span<const glm::vec3> places, double step) {
+  std::unordered_set<std::uint64_t> taken;
+  taken.reserve(places.size());
+  const auto key = [step](const glm::vec3& place) {
+    std::uint64_t bits = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto steps = std::llround(static_cast<double>(place[axis]) / step);
+      bits = bits << 21 | (static_cast<std::uint64_t>(steps) & 0x1fffff);
+    }
+    return bits;
+  };
+  std::vector<glm::vec3> apart(places.begin(), places.end());
+  for (glm::vec3& place : apart) {
+    place = in_steps(place, step);
+    while (!taken.insert(key(place)).second) place.x += static_cast<float>(step);
+  }
+  return apart;
+}
+
 /// Patches and the surface beside them as one list of triangles.
 class Tangle {
  public:
@@ -146,19 +166,7 @@ class Tangle {
   void add_patch(std::size_t p) {
     const FillPatch& patch = model_.patches[p];
     const auto base = static_cast<std::uint32_t>(positions_.size());
-    std::unordered_set<std::uint64_t> taken;  // rounding, and smoothing of tiny islands, bring vertices together
-    taken.reserve(patch.extra_positions.size());
-    const auto key = [&](const glm::vec3& p) {
-      std::uint64_t bits = 0;
-      for (int axis = 0; axis < 3; ++axis)
-        bits = bits << 21 | (static_cast<std::uint64_t>(std::llround(static_cast<double>(p[axis]) / step_)) & 0x1fffff);
-      return bits;
-    };
-    for (const glm::vec3& place : patch.extra_positions) {
-      glm::vec3 p = in_steps(place, step_);
-      while (!taken.insert(key(p)).second) p.x += static_cast<float>(step_);
-      positions_.push_back(p);
-    }
+    for (const glm::vec3& place : apart_in_steps(patch.extra_positions, step_)) positions_.push_back(place);
     patch_of_vertex_.resize(positions_.size() - first_extra_, static_cast<std::uint32_t>(p));
     for (Triangle t : patch.triangles) {
       for (std::uint32_t& v : t)
