@@ -38,7 +38,7 @@ DetailChoice choose_detail(Detail wanted, const Dims& scan, std::uint64_t memory
 
 int sharers_of_rays(Detail detail, std::int64_t vertices) {
   constexpr std::int64_t kLarge = 1'000'000;
-  constexpr int kSharers = 7;
+  constexpr int kSharers = 19;
   return detail == Detail::kScan && vertices >= kLarge ? kSharers : 1;
 }
 

@@ -184,6 +184,15 @@ void sort_by_place_and_side(std::span<const glm::vec3> positions, std::span<cons
   for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = items[i].vertex;
 }
 
+/// The vertices `ids` by the part of the sky that each looks at, in the order that they had.
+std::vector<std::vector<std::uint32_t>> by_sky_part(std::span<const glm::vec3> positions,
+                                                    std::span<const std::uint32_t> ids, int parts) {
+  std::vector<std::vector<std::uint32_t>> out(static_cast<std::size_t>(parts));
+  for (const std::uint32_t v : ids)
+    out[parts == 1 ? 0 : static_cast<std::size_t>(sky_part_at(positions[v], parts))].push_back(v);
+  return out;
+}
+
 Result<void> check_indices(std::span<const Triangle> triangles, std::size_t vertices) {
   const std::uint32_t largest = parallel_reduce(
       static_cast<std::int64_t>(triangles.size()), 1 << 16, 0u,
@@ -311,11 +320,12 @@ Result<std::vector<float>> ambient_light(const LitSurface& surface, const Occlus
           light[group.ids[k]] = std::clamp(1.0f - taken[k] / sum, 0.0f, 1.0f);
         group.count = 0;
       };
-      for (int part = 0; part < options.shared_by; ++part) {
-        const Sky& sky = skies[static_cast<std::size_t>(part)];
-        for (std::int64_t i = begin; i < end; ++i) {
-          const std::uint32_t v = which[static_cast<std::size_t>(i)];
-          if (options.shared_by > 1 && sky_part_at(surface.positions[v], options.shared_by) != part) continue;
+      const std::vector<std::vector<std::uint32_t>> parts = by_sky_part(
+          positions, std::span(which).subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin)),
+          options.shared_by);
+      for (std::size_t part = 0; part < parts.size(); ++part) {
+        const Sky& sky = skies[part];
+        for (const std::uint32_t v : parts[part]) {
           group.add(v, surface.positions[v] + options.offset_vox * surface.normals[v], surface.normals[v]);
           if (group.count < kLanes) continue;
           if (progress.cancelled()) return;

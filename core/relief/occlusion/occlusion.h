@@ -32,8 +32,8 @@ struct OcclusionOptions {
   /// offsets leave (0.03 voxel) shades a vertex. Costs at most offset / radius of the value: 0.004.
   float offset_vox = 0.25f;
   /// Each vertex follows about rays / shared_by of them, others in each neighbouring voxel, and their light is brought
-  /// together along the surface (shared_sky.h). By 7: .008 to .012 RMS off 160 rays, less than what marching is off
-  /// the triangles. 1..rays.
+  /// together along the surface (shared_sky.h). By 19: .011 to .012 RMS off 160 rays, as much as marching is off the
+  /// triangles. 1..rays.
   int shared_by = 1;
   double most_cells = 4e8;  ///< of the grid that is marched through; larger bodies are lit box by box (kBricks)
 };

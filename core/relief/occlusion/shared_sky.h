@@ -23,11 +23,13 @@ struct SkyRays {
 /// those of the others. One part: the whole spiral.
 SkyRays sky_rays_of_part(int count, int parts, int part);
 
-/// Which part of the sky is looked at from a place: another one in each neighbouring voxel, for parts of 5 or 7.
+/// Which part of the sky is looked at from a place: another one in each neighbouring voxel, for 19 parts, in each of
+/// those in two rings around it.
 int sky_part_at(const glm::vec3& position, int parts);
 
-/// Each vertex's light becomes an average of its own and that of its neighbours that look the same way and are about as
-/// bright. Where all are equally bright nothing changes. Serial; 8 bytes a vertex.
+/// Each vertex's light becomes an average of its own and that of its neighbours in two rings that look the same way and
+/// are about as bright. Where all are equally bright nothing changes. 12 bytes a vertex; each thread reads all
+/// triangles.
 void share_light(std::span<const glm::vec3> normals, std::span<const Triangle> triangles, std::vector<float>& light);
 
 }  // namespace dubsar
