@@ -14,6 +14,10 @@
 namespace dubsar {
 namespace {
 
+/// Of the grid that light marches through at the scan's resolution: fewer boxes, whose borders are done twice. Finding
+/// the parts, before it, holds more memory.
+constexpr double kCellsToShare = 1.2e9;
+
 /// A model before its parts are known.
 SurfaceModel assemble(GridFrame frame, SurfaceSamples samples, QuadMesh mesh, VertexAttributes attributes) {
   SurfaceModel model;
@@ -105,8 +109,10 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   }
   if (options.occlusion) {
     OcclusionOptions light = *options.occlusion;
-    if (light.engine == OcclusionEngine::kBricks)
+    if (light.engine == OcclusionEngine::kBricks) {
       light.shared_by = std::min(light.rays, sharers_of_rays(imported.detail.detail, result.model.mesh.vertex_count()));
+      if (light.shared_by > 1) light.most_cells = kCellsToShare;
+    }
     DUBSAR_ASSIGN(result.model, shade(std::move(result.model), light, run));
   }
   DUBSAR_ASSIGN(CheckedProduct product, check_product(result.model, run));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 
 #include "core/base/system/parallel.h"
 
@@ -12,36 +11,67 @@ namespace {
 constexpr std::uint8_t kMost = SurfaceBricks::kMostAhead;
 constexpr int kSlab = 4 * SurfaceBricks::kMostAhead;  // slices that a thread does, behind kMostAhead others
 
-/// A bit a brick: whether surface passes it. Rows begin with a word.
+/// A byte a brick: all bits where surface passes it.
 class Passed {
  public:
   explicit Passed(const SurfaceBricks& bricks)
       : size_(bricks.size()),
-        words_((static_cast<std::size_t>(size_.x) + 63) / 64),
-        bits_(words_ * static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z)) {
+        bytes_(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) *
+               static_cast<std::size_t>(size_.z)) {
     parallel_for(std::int64_t{size_.y} * size_.z, 64, [&](std::int64_t line) {
       const int y = static_cast<int>(line % size_.y), z = static_cast<int>(line / size_.y);
-      std::uint64_t* bits = bits_.data() + words_ * static_cast<std::size_t>(line);
-      for (int x = 0; x < size_.x; ++x)
-        if (bricks.bricks[bricks.index_of({x, y, z})][0] & SurfaceBricks::kSurface)
-          bits[x / 64] |= std::uint64_t{1} << x % 64;
+      std::uint8_t* bytes = bytes_.data() + static_cast<std::size_t>(line) * static_cast<std::size_t>(size_.x);
+      const SurfaceBricks::Brick* from = bricks.bricks.data() + bricks.index_of({0, y, z});
+      for (std::size_t x = 0; x < static_cast<std::size_t>(size_.x); ++x)
+        bytes[x] = from[8 * (x >> 1) + (x & 1)][0] & SurfaceBricks::kSurface ? 0xff : 0;
     });
   }
-  const std::uint64_t* row(int y, int z) const {
-    return bits_.data() +
-           words_ * (static_cast<std::size_t>(z) * static_cast<std::size_t>(size_.y) + static_cast<std::size_t>(y));
+  const std::uint8_t* row(int y, int z) const {
+    return bytes_.data() +
+           (static_cast<std::size_t>(z) * static_cast<std::size_t>(size_.y) + static_cast<std::size_t>(y)) *
+               static_cast<std::size_t>(size_.x);
   }
 
  private:
   glm::ivec3 size_;
-  std::size_t words_;
-  std::vector<std::uint64_t> bits_;
+  std::vector<std::uint8_t> bytes_;
 };
-bool bit(const std::uint64_t* row, std::size_t x) { return (row[x / 64] >> x % 64 & 1) != 0; }
+
+// Rows of bytes that share none, for vectors.
+
+void least_of(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* c, std::size_t count,
+              std::uint8_t* __restrict to) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t less = a[i] < b[i] ? a[i] : b[i];
+    to[i] = less < c[i] ? less : c[i];
+  }
+}
+
+/// Than the lesser of `from` and what stands `kWay` numbers on in it, at most kMost; 0 where surface passes.
+template <int kWay>
+void one_more(const std::uint8_t* from, const std::uint8_t* passed, std::size_t count, std::uint8_t* __restrict to) {
+  constexpr std::uint8_t kLast = kMost - 1;
+  const std::uint8_t* on = from + kWay;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t less = from[i] < on[i] ? from[i] : on[i], most = less < kLast ? less : kLast;
+    to[i] = static_cast<std::uint8_t>((most + 1) & ~passed[i]);
+  }
+}
+
+/// The lesser of `from`, and what stands `kWay` numbers on in it and that many.
+template <int kWay>
+void look_on(const std::uint8_t* from, std::size_t count, std::uint8_t* __restrict to) {
+  constexpr std::uint8_t kFar = kWay < 0 ? -kWay : kWay;
+  const std::uint8_t* on = from + kWay;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto there = static_cast<std::uint8_t>(on[i] + kFar);
+    to[i] = from[i] < there ? from[i] : there;
+  }
+}
 
 /// The four octants that rise, or fall, with z. The edge of the largest empty cube that begins with a brick is one more
 /// than the least of its seven neighbours that way (as of the largest empty square in a matrix): slices are done from
-/// the far end, and so are rows and bricks.
+/// the far end, and so are rows.
 class Half {
  public:
   Half(SurfaceBricks& bricks, const Passed& passed, bool falling)
@@ -49,11 +79,12 @@ class Half {
         passed_(passed),
         size_(bricks.size()),
         falling_(falling),
-        row_(static_cast<std::size_t>(size_.x) + 1),
-        least_(row_) {
-    // One more row and one more number a row, all kMost, stand for what lies beyond the grid.
+        count_(static_cast<std::size_t>(size_.x)),
+        row_(count_ + 2 * kRoom),
+        least_(row_, kMost),
+        work_(row_, kMost) {
     for (auto* planes : {&now_, &behind_})
-      planes->fill(std::vector<std::uint8_t>(row_ * (static_cast<std::size_t>(size_.y) + 1), kMost));
+      planes->fill(std::vector<std::uint8_t>(row_ * (static_cast<std::size_t>(size_.y) + 2), kMost));
   }
 
   /// Slices [first, last) of the way, the last of which comes first; those from `kept` on are only looked at.
@@ -61,42 +92,50 @@ class Half {
     for (int w = last - 1; w >= first; --w) {
       const int z = falling_ ? size_.z - 1 - w : w;
       std::swap(now_, behind_);
-      for (unsigned octant = 0; octant < 4; ++octant)
-        for (int v = size_.y - 1; v >= 0; --v) fill_row(octant, v, z);
+      for (int v = size_.y - 1; v >= 0; --v) {
+        fill_row<1>(0, v, v + 1, z);
+        fill_row<-1>(1, v, v + 1, z);
+        const int y = size_.y - 1 - v;
+        fill_row<1>(2, y, y - 1, z);
+        fill_row<-1>(3, y, y - 1, z);
+      }
       if (w < kept) keep(z);
     }
   }
 
  private:
-  void fill_row(unsigned octant, int v, int z) {
-    std::uint8_t* now = now_[octant].data() + row_ * static_cast<std::size_t>(v);
-    const std::uint8_t* side = now + row_;
-    const std::uint8_t* below = behind_[octant].data() + row_ * static_cast<std::size_t>(v);
-    const std::uint8_t* corner = below + row_;
-    for (std::size_t i = 0; i < row_; ++i) least_[i] = std::min(std::min(side[i], below[i]), corner[i]);
-    const std::uint64_t* passed = passed_.row(octant & 2 ? size_.y - 1 - v : v, z);
-    const std::size_t count = row_ - 1;
-    std::uint8_t ahead = kMost;
-    for (std::size_t u = count; u-- > 0;) {
-      ahead = std::min({ahead, least_[u + 1], least_[u]});
-      ahead = std::min(static_cast<std::uint8_t>(ahead + 1), kMost);
-      if (bit(passed, octant & 1 ? count - 1 - u : u)) ahead = 0;
-      now[u] = ahead;
-    }
+  /// Numbers beside each row that stand for what lies beyond the grid, all kMost; a row of them lies beside each plane.
+  static constexpr std::size_t kRoom = 16;
+
+  std::size_t place(int y) const { return row_ * static_cast<std::size_t>(y + 1) + kRoom; }
+
+  /// Row `y`, where `before` is the one that lies that way.
+  template <int kWay>
+  void fill_row(std::size_t octant, int y, int before, int z) {
+    static_assert(kMost == 32);
+    std::uint8_t *now = now_[octant].data() + place(y), *least = least_.data() + kRoom, *work = work_.data() + kRoom;
+    least_of(now_[octant].data() + place(before), behind_[octant].data() + place(y),
+             behind_[octant].data() + place(before), count_, least);
+    one_more<kWay>(least, passed_.row(y, z), count_, now);
+    // Bricks of a row depend on the next one that way, too: one more for each step, so that the least over 1, 2, 4, 8
+    // and 16 steps on is that over all up to kMost.
+    look_on<kWay>(now, count_, work);
+    look_on<2 * kWay>(work, count_, now);
+    look_on<4 * kWay>(now, count_, work);
+    look_on<8 * kWay>(work, count_, now);
+    look_on<16 * kWay>(now, count_, work);
+    std::copy(work, work + count_, now);
   }
 
   void keep(int z) {
-    const std::size_t count = row_ - 1;
     for (int y = 0; y < size_.y; ++y) {
-      const std::size_t up = row_ * static_cast<std::size_t>(y),
-                        down = row_ * static_cast<std::size_t>(size_.y - 1 - y);
-      const std::uint64_t* passed = passed_.row(y, z);
+      const std::size_t first = place(y);
+      const std::uint8_t* passed = passed_.row(y, z);
       SurfaceBricks::Brick* line = bricks_.bricks.data() + bricks_.index_of({0, y, z});
-      for (std::size_t x = 0; x < count; ++x) {
-        if (bit(passed, x)) continue;
-        const std::uint32_t word = now_[0][up + x] | std::uint32_t{now_[1][up + count - 1 - x]} << 8 |
-                                   std::uint32_t{now_[2][down + x]} << 16 |
-                                   std::uint32_t{now_[3][down + count - 1 - x]} << 24;
+      for (std::size_t x = 0; x < count_; ++x) {
+        if (passed[x] != 0) continue;
+        const std::uint32_t word = now_[0][first + x] | std::uint32_t{now_[1][first + x]} << 8 |
+                                   std::uint32_t{now_[2][first + x]} << 16 | std::uint32_t{now_[3][first + x]} << 24;
         line[8 * (x >> 1) + (x & 1)][falling_ ? 1 : 0] = word;
       }
     }
@@ -106,9 +145,9 @@ class Half {
   const Passed& passed_;
   glm::ivec3 size_;
   bool falling_;
-  std::size_t row_;
-  std::vector<std::uint8_t> least_;
-  std::array<std::vector<std::uint8_t>, 4> now_, behind_;  ///< rows and numbers in the order of each octant
+  std::size_t count_, row_;
+  std::vector<std::uint8_t> least_, work_;                 ///< a row each
+  std::array<std::vector<std::uint8_t>, 4> now_, behind_;  ///< planes, by octant
 };
 
 }  // namespace

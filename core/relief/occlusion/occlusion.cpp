@@ -4,10 +4,10 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/vector_relational.hpp>
 
 #include "core/base/numbers/morton_code.h"
 #include "core/base/system/parallel.h"
+#include "core/relief/occlusion/lit_boxes.h"
 #include "core/relief/occlusion/march_kernels.h"
 #include "core/relief/occlusion/ray_scene.h"
 #include "core/relief/occlusion/surface_bricks.h"
@@ -230,57 +230,6 @@ std::span<const Triangle> triangles_of(const LitSurface& surface, PartitionId id
   return own;
 }
 
-/// A part of a body's box; vertices on its upper faces belong to the next.
-struct LitBox {
-  glm::vec3 low, high;
-  bool holds(glm::vec3 p) const { return glm::all(glm::greaterThanEqual(p, low)) && glm::all(glm::lessThan(p, high)); }
-};
-
-/// Boxes that hold all of `ids`, each of at most `most_cells` with `margin` around it, unless it is as small as that.
-/// They follow from the places alone.
-std::vector<LitBox> lit_boxes(std::span<const glm::vec3> positions, const std::vector<std::uint32_t>& ids, float margin,
-                              double most_cells) {
-  glm::vec3 low(INFINITY), high(-INFINITY);
-  for (const std::uint32_t v : ids) {
-    low = glm::min(low, positions[v]);
-    high = glm::max(high, positions[v]);
-  }
-  low = glm::floor(low);
-  const glm::vec3 size = glm::floor(high) + 1.0f - low;
-  constexpr double kTooLarge = 1e12;  // cells: SurfaceBricks refuses it
-  if (double{size.x} * size.y * size.z > kTooLarge) return {{low, low + size}};
-  glm::ivec3 parts(1);
-  glm::vec3 edge = size;
-  for (const glm::vec3 least(margin);;) {
-    const glm::dvec3 grown = glm::dvec3(edge) + 2.0 * margin;
-    if (grown.x * grown.y * grown.z <= most_cells || glm::all(glm::lessThan(edge, least))) break;
-    const int axis = edge.x >= edge.y && edge.x >= edge.z ? 0 : edge.y >= edge.z ? 1 : 2;
-    ++parts[axis];
-    edge[axis] = std::ceil(size[axis] / static_cast<float>(parts[axis]));
-  }
-  std::vector<LitBox> out;
-  for (int z = 0; z < parts.z; ++z)
-    for (int y = 0; y < parts.y; ++y)
-      for (int x = 0; x < parts.x; ++x) {
-        const glm::vec3 first = low + glm::vec3(x, y, z) * edge;
-        out.push_back({first, first + edge});
-      }
-  return out;
-}
-
-/// The triangles that rays from a box may meet.
-void triangles_near(std::span<const glm::vec3> positions, std::span<const Triangle> triangles, const LitBox& box,
-                    float margin, std::vector<Triangle>& out) {
-  const glm::vec3 low = box.low - margin, high = box.high + margin;
-  out.clear();
-  for (const Triangle& t : triangles) {
-    const glm::vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
-    if (glm::all(glm::lessThanEqual(glm::min(glm::min(a, b), c), high)) &&
-        glm::all(glm::greaterThanEqual(glm::max(glm::max(a, b), c), low)))
-      out.push_back(t);
-  }
-}
-
 }  // namespace
 
 Result<std::vector<float>> ambient_light(const LitSurface& surface, const OcclusionOptions& options,
@@ -360,11 +309,9 @@ Result<std::vector<float>> ambient_light(const LitSurface& surface, const Occlus
       const std::vector<LitBox> boxes = lit_boxes(positions, ids, margin, options.most_cells);
       for (const LitBox& box : boxes) {
         if (boxes.size() > 1) {
-          inside.clear();
-          for (const std::uint32_t v : ids)
-            if (box.holds(positions[v])) inside.push_back(v);
+          inside = vertices_in(positions, ids, box);
           if (inside.empty()) continue;
-          triangles_near(positions, part, box, margin, near);
+          near = triangles_near(positions, part, box, margin);
         }
         DUBSAR_ASSIGN(const auto tracer,
                       BrickTracer::create(positions, boxes.size() > 1 ? near : part, options.radius_vox, progress));

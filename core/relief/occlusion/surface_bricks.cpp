@@ -153,6 +153,7 @@ void find_bricks(const BlockCorners& block, BlockOut& out) {
   for (int place = 0; place < kBlockBricks * kBlockBricks * kBlockBricks; ++place) {
     const glm::ivec3 at = kEdge * glm::ivec3(place % kBlockBricks, place / kBlockBricks % kBlockBricks,
                                              place / (kBlockBricks * kBlockBricks));
+    if (*block.steps(at.x + 1, at.y + 1, at.z + 1) == BlockCorners::kUnknown) continue;  // a corner of all its cells
     unsigned cells = 0;
     for (int i = 0; i < kEdge * kEdge * kEdge; ++i) {
       if (!corners_of_cell(block, at.x + (i & 1), at.y + (i >> 1 & 1), at.z + (i >> 2), corners)) continue;
