@@ -166,7 +166,7 @@ std::vector<PatchPoint> sample_patches(const SurfaceModel& model, float spacing)
 
 Result<ContactBand> ContactBand::make(const BitVolume& inside, std::vector<PatchPoint> samples, float reach,
                                       Progress& progress) {
-  ContactBand band{std::move(samples), {}, BrickMap<std::uint32_t>(inside.dims(), kNone), reach};
+  ContactBand band{std::move(samples), {}, BrickMap<std::uint32_t>(inside.dims(), kNone), reach, reach};
   DUBSAR_ASSIGN(const NearestSamples nearest, NearestSamples::find(band.samples, inside.dims(), reach, progress));
   const std::vector<glm::ivec3> bricks = nearest.bricks();
   std::vector<std::int64_t> first(bricks.size());
@@ -188,6 +188,13 @@ Result<ContactBand> ContactBand::make(const BitVolume& inside, std::vector<Patch
   });
   if (progress.cancelled()) return cancelled_error();
   return band;
+}
+
+void ContactBand::trim_envelope(float reach) {
+  envelope_reach = reach;
+  std::erase_if(nodes, [&](const Node& node) { return node.distance > reach_at(node.height); });
+  node_at = BrickMap<std::uint32_t>(node_at.dims(), kNone);
+  for (std::uint32_t n = 0; n < nodes.size(); ++n) node_at.at(nodes[n].x, nodes[n].y, nodes[n].z) = n;
 }
 
 void grow(const ContactBand& band, int steps, std::vector<bool>& marked) {

@@ -44,10 +44,11 @@ struct ContactBand {
     float distance = 0.0f;     ///< from the sample
   };
   std::vector<PatchPoint> samples;
-  std::vector<Node> nodes;          ///< brick by brick
-  BrickMap<std::uint32_t> node_at;  ///< kNone: not in the band
-  float reach = 0.0f;
+  std::vector<Node> nodes;                           ///< brick by brick
+  BrickMap<std::uint32_t> node_at;                   ///< kNone: not in the band
+  float tablet_reach = 0.0f, envelope_reach = 0.0f;  ///< from the nearest sample, under the patch and over it
 
+  float reach_at(float height) const noexcept { return height < 0.0f ? tablet_reach : envelope_reach; }
   std::uint32_t at(const glm::ivec3& p) const noexcept { return node_at.get(p.x, p.y, p.z); }
   glm::ivec3 point(std::uint32_t node) const noexcept { return {nodes[node].x, nodes[node].y, nodes[node].z}; }
   const glm::vec3& normal(std::uint32_t node) const noexcept { return samples[nodes[node].sample].normal; }
@@ -55,6 +56,8 @@ struct ContactBand {
   /// About 0.3 us a point of the band; points one step from the border of the grid are left out. kCancelled.
   static Result<ContactBand> make(const BitVolume& inside, std::vector<PatchPoint> samples, float reach,
                                   Progress& progress);
+  /// Drops what lies over the patches and farther from them than that.
+  void trim_envelope(float reach);
 };
 
 /// Marks the nodes within so many steps along the grid of those that are marked.

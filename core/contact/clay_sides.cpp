@@ -29,7 +29,7 @@ float cost_of(float strength) { return std::clamp(1.0f - strength / kClearDip, k
 
 /// Far above or below the patch: surely envelope or tablet. Beside it nobody knows.
 bool at_border(const ContactBand& band, const ContactBand::Node& node) {
-  return node.distance > band.reach - 1.0f && std::abs(node.height) > 0.97f * node.distance;
+  return node.distance > band.reach_at(node.height) - 1.0f && std::abs(node.height) > 0.97f * node.distance;
 }
 
 /// visit(node, its upper neighbour, axis) for all that are neighbours in the band.

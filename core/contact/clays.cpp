@@ -55,7 +55,7 @@ std::optional<ClayContrast> compare_clays(const ContactBand& band, const BitVolu
   std::map<std::array<std::int32_t, 3>, std::array<std::vector<float>, 3>> blocks;
   for (const ContactBand::Node& node : band.nodes) {
     if (std::abs(node.height) < 0.8f * node.distance) continue;
-    const float height = node.height / band.reach;
+    const float height = node.height / band.reach_at(node.height);
     for (std::size_t layer = 0; layer < kLayers.size(); ++layer) {
       if (height < kLayers[layer][0] || height > kLayers[layer][1]) continue;
       if (!air_near(inside, {node.x, node.y, node.z}))

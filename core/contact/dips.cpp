@@ -225,7 +225,8 @@ Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const B
   // What clay shows far from the contact, in a robust measure: pores and grains are few.
   std::vector<float> quiet;
   for (std::size_t i = 0; i < band.nodes.size(); ++i)
-    if (band.nodes[i].distance > 0.8f * band.reach && dips.strength[i] > kNoDip) quiet.push_back(dips.strength[i]);
+    if (band.nodes[i].distance > 0.8f * band.reach_at(band.nodes[i].height) && dips.strength[i] > kNoDip)
+      quiet.push_back(dips.strength[i]);
   const float level = median(quiet);
   for (float& v : quiet) v = std::abs(v - level);
   dips.deviation = std::max(1.4826f * median(std::move(quiet)), 1e-30f);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <map>
 #include <numeric>
 
@@ -114,14 +116,28 @@ std::vector<Ground> grounds_of(const ContactBand& band, const Dips& dips, const 
   return found;
 }
 
-/// The average of the grounds around a place.
+/// Of the plane through the grounds around a place (least squares; they lie in a sheet, so that slopes are held).
 float height_at(const std::vector<Ground>& grounds, const glm::vec3& p) {
-  float sum = 0.0f, weights = 0.0f;
-  each_near(grounds, p, [&](const Ground& ground, float weight) {
-    sum += weight * ground.belief * ground.height;
-    weights += weight * (ground.belief + kUnknownWeight * (1.0f - ground.belief));
+  constexpr float kHeldSlope = 0.03f;  ///< variance of places across the sheet that is made up
+  float weights = 0.0f, heights = 0.0f;
+  glm::vec3 ways(0.0f), rising(0.0f);
+  glm::mat3 squares(0.0f);
+  each_near(grounds, p, [&](const Ground& ground, float near) {
+    const float weight = near * (ground.belief + kUnknownWeight * (1.0f - ground.belief)),
+                height = near * ground.belief * ground.height;
+    const glm::vec3 way = (ground.middle - p) / kAverage;
+    weights += weight;
+    heights += height;
+    ways += weight * way;
+    rising += height * way;
+    squares += glm::outerProduct(weight * way, way);
   });
-  return weights > 0.0f ? sum / weights : 0.0f;
+  if (!(weights > 0.0f)) return 0.0f;
+  const float mean = heights / weights;
+  const glm::vec3 middle = ways / weights;
+  const glm::mat3 spread = squares / weights - glm::outerProduct(middle, middle) + glm::mat3(kHeldSlope);
+  const glm::vec3 slope = glm::inverse(spread) * (rising / weights - mean * middle);
+  return mean - glm::dot(slope, middle);
 }
 
 /// height_at() on a lattice around the samples, and between its points.

@@ -227,17 +227,18 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   progress.begin("contact", 0, "step");
   DUBSAR_ASSIGN(const float moved, recentre_samples(samples, model.samples.signs, density, progress));
   log_debug("contact: looked for up to {:.1f} steps from the smooth patch", moved);
-  DUBSAR_ASSIGN(const ContactBand band,
-                ContactBand::make(model.samples.signs, std::move(samples), options.reach, progress));
-  report.points = static_cast<std::int64_t>(band.nodes.size());
+  DUBSAR_ASSIGN(ContactBand band, ContactBand::make(model.samples.signs, std::move(samples), options.reach, progress));
   DUBSAR_ASSIGN(const BandDensity values, BandDensity::read(band, density, progress));
+  const std::optional<ClayContrast> clays = compare_clays(band, model.samples.signs, values, options.blur_variance);
+  if (!clays) band.trim_envelope(options.out_reach);
+  report.points = static_cast<std::int64_t>(band.nodes.size());
   DUBSAR_ASSIGN(Dips dips, find_dips(band, model.samples.signs, values, progress));
   DUBSAR_ASSIGN(const EdgeIndex index, EdgeIndex::create(model.samples));
   DUBSAR_ASSIGN(const FaceGraph graph, FaceGraph::build(model.mesh, progress));
   const Triangulation surface = triangulate(model.mesh, model.attributes.normals);
   Traced traced{.band = band, .density = values, .dips = dips, .index = index, .graph = graph, .surface = surface};
   traced.faces = faces_of_band(model, index, band);
-  traced.clays = compare_clays(band, model.samples.signs, values, options.blur_variance);
+  traced.clays = clays;
   report.clays_differ = traced.clays.has_value();
   if (traced.clays) {
     dips.density.clear();  // it is least in the lighter clay, not between them

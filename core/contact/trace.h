@@ -14,7 +14,8 @@
 namespace dubsar {
 
 struct ContactOptions {
-  float reach = 12.0f;         ///< of the search on both sides of the smooth patch, grid steps: the deepest wedge
+  float reach = 12.0f;         ///< of the search from the smooth patch, grid steps: the deepest wedge
+  float out_reach = 8.0f;      ///< the same into the envelope, where the two clays are not seen to differ
   double step = 1.0 / 64.0;    ///< positions are multiples of it, as in files
   float film_strength = 1.4f;  ///< mean strength of dips around a vertex (dips.h) from which on a film is believed
   /// Variance of the scan's edges, voxels squared (core/filter/edge_spread.h); this is that of a good scan.

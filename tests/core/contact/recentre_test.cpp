@@ -50,7 +50,7 @@ Moved moved(const Volume<float>& volume) {
   return out;
 }
 
-/// Away from the rim, where half of the average lies outside.
+/// Away from the rim, where half of what is around lies outside.
 bool amid(const PatchPoint& s) {
   return std::max(std::abs(s.position.x - 64.0f), std::abs(s.position.y - 64.0f)) < 24.0f;
 }
@@ -63,6 +63,21 @@ TEST(RecentreSamples, FollowsAFilmFarFromThePatch) {
       ASSERT_NEAR(s.position.z, tilted(s.position.x, s.position.y), 1.5f) << s.position.x << " " << s.position.y;
     }
   EXPECT_NEAR(found.told, 13.0f, 4.0f);
+}
+
+TEST(RecentreSamples, FollowsASlopeToTheRim) {
+  const auto tilted = [](float x, float y) { return kPatch + 0.25f * (x - 64.0f) + 0.05f * (y - 64.0f); };
+  double sum = 0.0, squares = 0.0;
+  const Moved found = moved(clay(0.13f, tilted, 47));
+  for (const PatchPoint& s : found.samples) {
+    const auto off = static_cast<double>(s.position.z - tilted(s.position.x, s.position.y));
+    sum += off;
+    squares += off * off;
+    ASSERT_LT(std::abs(off), 2.2) << s.position.x << " " << s.position.y;
+  }
+  const auto count = static_cast<double>(found.samples.size());
+  EXPECT_LT(std::abs(sum / count), 1.1);
+  EXPECT_LT(std::sqrt(squares / count), 1.3);
 }
 
 TEST(RecentreSamples, StaysOnTheGroundWhereWedgesGoDown) {
