@@ -156,16 +156,16 @@ ClayDivision::ClayDivision(const ClayEvidence& evidence)
       cut_(cut_in_blocks(evidence.band)),  // source side: tablet
       certain_(evidence.band.nodes.size(), false) {
   const auto count = static_cast<std::uint32_t>(band_.nodes.size());
-  std::vector<std::int64_t> wish(count, 0);  // > 0: tablet
-  for (std::uint32_t n = 0; n < count; ++n) {
+  std::vector<std::int64_t> wish(count);  // > 0: tablet
+  parallel_for(count, kNodeGrain, [&](std::int64_t i) {
+    const auto n = static_cast<std::size_t>(i);
     const ContactBand::Node& node = band_.nodes[n];
-    if (at_border(band_, node)) {
+    if (at_border(band_, node))
       wish[n] = node.height < 0.0f ? kHard : -kHard;
-      certain_[n] = true;
-    } else {
+    else
       wish[n] = std::lround(kUnit * ((evidence.votes.empty() ? 0.0f : evidence.votes[n]) - kPull * node.height));
-    }
-  }
+  });
+  for (std::uint32_t n = 0; n < count; ++n) certain_[n] = std::abs(wish[n]) == kHard;
   for (const SurfaceHint& hint : evidence.hints) {
     const std::int64_t sense = hint.side == ClaySide::kTablet ? 1 : -1;
     if (hint.weight >= kCertain) {
@@ -175,10 +175,11 @@ ClayDivision::ClayDivision(const ClayEvidence& evidence)
       wish[hint.node] += sense * std::lround(kUnit * hint.weight);
     }
   }
-  for (std::uint32_t n = 0; n < count; ++n) {
+  parallel_for(count, kNodeGrain, [&](std::int64_t i) {
+    const auto n = static_cast<std::uint32_t>(i);
     const auto cost = static_cast<std::int32_t>(std::clamp<std::int64_t>(wish[n], -kHard, kHard));
     cut_.add_node_cost(n, cost < 0 ? -cost : 0, cost > 0 ? cost : 0);
-  }
+  });
   parallel_for(count, kNodeGrain, [&](std::int64_t i) {
     each_face_of(band_, static_cast<std::uint32_t>(i), [&](std::uint32_t n, std::uint32_t m, std::uint32_t axis) {
       cut_.add_step_cost(n, m, axis, cost_of_face(band_, n, m, axis, 0.5f * (dips_.strength[n] + dips_.strength[m])));

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <glm/geometric.hpp>
-#include <unordered_map>
 
 namespace dubsar {
 namespace {
@@ -40,7 +39,7 @@ class Maker {
  public:
   Maker(const SurfaceModel& model, const EdgeIndex& index, const ContactBand& band, const std::vector<ClaySide>& side,
         const Dips& dips)
-      : model_(model), index_(index), band_(band), side_(side), dips_(dips) {}
+      : model_(model), index_(index), band_(band), side_(side), dips_(dips), cell_place_(band.node_at.dims(), kNone) {}
 
   InterfaceMesh run() {
     for (std::uint32_t n = 0; n < band_.nodes.size(); ++n)
@@ -91,11 +90,12 @@ class Maker {
   }
 
   Cell& cell_at(const glm::ivec3& p) {
-    const Dims d = band_.node_at.dims();
-    const std::int64_t key = (static_cast<std::int64_t>(p.z) * d.y + p.y) * d.x + p.x;
-    const auto [place, fresh] = cells_.try_emplace(key);
-    if (fresh) fill(p, place->second);
-    return place->second;
+    std::uint32_t& place = cell_place_.at(p.x, p.y, p.z);
+    if (place == kNone) {
+      place = static_cast<std::uint32_t>(cells_.size());
+      fill(p, cells_.emplace_back());
+    }
+    return cells_[place];
   }
 
   void fill(const glm::ivec3& p, Cell& cell) {
@@ -241,7 +241,8 @@ class Maker {
   const ContactBand& band_;
   const std::vector<ClaySide>& side_;
   const Dips& dips_;
-  std::unordered_map<std::int64_t, Cell> cells_;
+  BrickMap<std::uint32_t> cell_place_;  ///< kNone: not yet in `cells_`
+  std::vector<Cell> cells_;
   std::vector<AtAir> at_air_;
   std::vector<float> weight_;
   InterfaceMesh mesh_;

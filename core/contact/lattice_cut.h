@@ -21,6 +21,7 @@ class LatticeCut {
   LatticeCut(const std::vector<std::uint32_t>& block, std::uint32_t blocks, const std::vector<float>& height);
 
   /// Cost of putting a node on either side; costs of several calls add up. Sums must stay below 2^30.
+  /// Threads may add those of different nodes at the same time.
   void add_node_cost(std::uint32_t node, std::int32_t cost_if_source, std::int32_t cost_if_sink) {
     points_[place_[node]].terminal += cost_if_sink - cost_if_source;
   }

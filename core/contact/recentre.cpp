@@ -116,16 +116,19 @@ std::vector<Ground> grounds_of(const ContactBand& band, const Dips& dips, const 
   return found;
 }
 
-/// Of the plane through the grounds around a place (least squares; they lie in a sheet, so that slopes are held).
+/// Of the plane through the grounds around a place (least squares; they lie in a sheet, so that slopes are held). It is
+/// level where less than half of them is believed: the slope of a few would lead far away.
 float height_at(const std::vector<Ground>& grounds, const glm::vec3& p) {
   constexpr float kHeldSlope = 0.03f;  ///< variance of places across the sheet that is made up
-  float weights = 0.0f, heights = 0.0f;
+  float weights = 0.0f, heights = 0.0f, believed = 0.0f, all = 0.0f;
   glm::vec3 ways(0.0f), rising(0.0f);
   glm::mat3 squares(0.0f);
   each_near(grounds, p, [&](const Ground& ground, float near) {
     const float weight = near * (ground.belief + kUnknownWeight * (1.0f - ground.belief)),
                 height = near * ground.belief * ground.height;
     const glm::vec3 way = (ground.middle - p) / kAverage;
+    believed += near * ground.belief;
+    all += near;
     weights += weight;
     heights += height;
     ways += weight * way;
@@ -137,7 +140,7 @@ float height_at(const std::vector<Ground>& grounds, const glm::vec3& p) {
   const glm::vec3 middle = ways / weights;
   const glm::mat3 spread = squares / weights - glm::outerProduct(middle, middle) + glm::mat3(kHeldSlope);
   const glm::vec3 slope = glm::inverse(spread) * (rising / weights - mean * middle);
-  return mean - glm::dot(slope, middle);
+  return mean - std::max(2.0f * believed / all - 1.0f, 0.0f) * glm::dot(slope, middle);
 }
 
 /// height_at() on a lattice around the samples, and between its points.
