@@ -11,7 +11,7 @@ namespace {
 /// Of the memory that is left: what a run takes is known to a fifth.
 constexpr double kShare = 0.8;
 constexpr const char* kShareText = "four fifths";
-/// A minute on two cores; a scan of the paper's size takes three and a half, most of it for contact and light.
+/// A minute on two cores; a scan of the paper's size takes three, most of it for contact and the surface.
 constexpr std::int64_t kMostVoxels = 1'000'000'000;
 
 std::string size_text(double bytes) {
