@@ -8,6 +8,7 @@
 
 #include "devices/camera/webcam.h"
 #include "devices/spacemouse/spacenav_protocol.h"
+#include "devices/transport/hid_transport.h"
 #include "devices/transport/usb_transport.h"
 #include "devices/udev_rule.h"
 

@@ -8,7 +8,8 @@
 #include "devices/device_info.h"
 #include "devices/drivers.h"
 #include "devices/transport/evdev_transport.h"
-#include "devices/transport/hid_transport.h"
+#include "devices/transport/hid_listing.h"
+#include "devices/transport/transport.h"
 
 namespace dubsar {
 struct UsbDevice;

@@ -7,6 +7,7 @@
 #include "devices/device_list.h"
 #include "devices/looking_glass/bridge_client.h"
 #include "devices/looking_glass/calibration_pages.h"
+#include "devices/transport/hid_transport.h"
 #include "display/panels/panel_calibration.h"
 
 namespace dubsar::app {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr TimestampNs kSilenceBeforeLookNs = 250'000'000;
 
-/// hidapi's global state: hid_enumerate, hid_open_path and hid_error(NULL) are not safe in several threads at once.
+/// hidapi's global state: hid_open_path and hid_error(NULL) are not safe in several threads at once.
 std::mutex& hidapi_mutex() {
   static std::mutex mutex;
   return mutex;
@@ -116,30 +116,6 @@ class HidTransport final : public Transport {
 };
 
 }  // namespace
-
-std::vector<HidNode> list_hid_nodes() {
-  const std::lock_guard lock(hidapi_mutex());
-  std::vector<HidNode> nodes;
-  hid_device_info* const all = ::hid_enumerate(0, 0);
-  for (const hid_device_info* info = all; info; info = info->next) {
-    if (!info->path) continue;
-    HidNode node{info->path,
-                 info->vendor_id,
-                 info->product_id,
-                 info->usage_page,
-                 info->usage,
-                 info->interface_number,
-                 narrow(info->manufacturer_string),
-                 narrow(info->product_string),
-                 narrow(info->serial_number)};
-    // hidapi lists a node once per usage; the first, top-level one is enough
-    if (std::none_of(nodes.begin(), nodes.end(), [&](const HidNode& n) { return n.path == node.path; }))
-      nodes.push_back(std::move(node));
-  }
-  ::hid_free_enumeration(all);
-  std::sort(nodes.begin(), nodes.end(), [](const HidNode& a, const HidNode& b) { return a.path < b.path; });
-  return nodes;
-}
 
 Result<std::unique_ptr<Transport>> open_hid(const std::string& path, const Clock& clock, UsbId id) {
   const auto identity = identity_of(path);

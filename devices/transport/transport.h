@@ -1,6 +1,6 @@
 #pragma once
 // Transport: bytes to and from one device, whether it is real, recorded, replayed, simulated or faulty. Protocols above
-// it know only bytes; makers below it know only descriptors (hid_transport.h, udp_transport.h, ...).
+// it know only bytes; makers below it know only descriptors (hid_transport.h, socket_transport.h, ...).
 
 #include <chrono>
 #include <cstddef>
