@@ -1,6 +1,7 @@
 #include "core/contact/band.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -149,6 +150,7 @@ std::vector<PatchPoint> sample_patches(const SurfaceModel& model, float spacing)
     }
     for (const Triangle& t : patch.triangles) {
       const glm::vec3 a = position(t[0]), b = position(t[1]), c = position(t[2]);
+      const std::array<bool, 3> rim{t[0] < dual, t[1] < dual, t[2] < dual};
       const float longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
       const int steps = std::max(1, static_cast<int>(std::ceil(longest / spacing)));
       for (int i = 0; i <= steps; ++i)
@@ -157,7 +159,8 @@ std::vector<PatchPoint> sample_patches(const SurfaceModel& model, float spacing)
                       v = static_cast<float>(j) / static_cast<float>(steps), w = 1.0f - u - v;
           const glm::vec3 n = w * normal(t[0]) + u * normal(t[1]) + v * normal(t[2]);
           const float length = glm::length(n);
-          if (length > 0.0f) points.push_back({w * a + u * b + v * c, n / length});
+          const float of_rim = (rim[0] ? w : 0.0f) + (rim[1] ? u : 0.0f) + (rim[2] ? v : 0.0f);
+          if (length > 0.0f) points.push_back({w * a + u * b + v * c, n / length, of_rim > 0.5f});
         }
     }
   }

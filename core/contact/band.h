@@ -29,6 +29,7 @@ enum class ClaySide : std::uint8_t { kTablet, kEnvelope };
 struct PatchPoint {
   glm::vec3 position{0.0f};
   glm::vec3 normal{0.0f};  ///< unit, out of the tablet
+  bool at_rim = false;     ///< nearer to where it begins at the surface than to its next vertex
 };
 
 /// Points of the patches whose `partition` is the tablet's and whose reverse is the envelope's, or the other way round,

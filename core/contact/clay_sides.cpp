@@ -27,6 +27,10 @@ constexpr std::array<glm::ivec3, 3> kAxes{glm::ivec3(1, 0, 0), glm::ivec3(0, 1, 
 
 float cost_of(float strength) { return std::clamp(1.0f - strength / kClearDip, kLeastCost, kMostCost); }
 
+/// Does the height of a node over the patch tell its side? Not beyond the rim: where a gap ends in an upright wall, the
+/// patch begins along that, and the tablet on the other side of the gap is over it, too.
+bool height_tells(const ContactBand& band, const ContactBand::Node& node) { return !band.samples[node.sample].at_rim; }
+
 /// Far above or below the patch: surely envelope or tablet. Beside it nobody knows.
 bool at_border(const ContactBand& band, const ContactBand::Node& node) {
   return node.distance > band.reach_at(node.height) - 1.0f && std::abs(node.height) > 0.97f * node.distance;
@@ -160,10 +164,12 @@ ClayDivision::ClayDivision(const ClayEvidence& evidence)
   parallel_for(count, kNodeGrain, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
     const ContactBand::Node& node = band_.nodes[n];
-    if (at_border(band_, node))
+    const bool known = height_tells(band_, node);
+    if (known && at_border(band_, node))
       wish[n] = node.height < 0.0f ? kHard : -kHard;
     else
-      wish[n] = std::lround(kUnit * ((evidence.votes.empty() ? 0.0f : evidence.votes[n]) - kPull * node.height));
+      wish[n] = std::lround(
+          kUnit * ((evidence.votes.empty() ? 0.0f : evidence.votes[n]) - (known ? kPull * node.height : 0.0f)));
   });
   for (std::uint32_t n = 0; n < count; ++n) certain_[n] = std::abs(wish[n]) == kHard;
   for (const SurfaceHint& hint : evidence.hints) {

@@ -1,6 +1,10 @@
 #include "core/contact/kept_shape.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
+#include <unordered_set>
+#include <utility>
 
 #include "core/base/result.h"
 #include "core/mesh/evidence.h"
@@ -18,19 +22,24 @@ KeptShape::Bits KeptShape::bits_of(const glm::vec3& p) {
 }
 
 KeptShape::KeptShape(std::span<const glm::vec3> cut, std::span<const glm::vec3> places,
-                     std::span<const std::uint8_t> evidence)
-    : vertices_(cut.size()) {
-  DUBSAR_CHECK(places.size() >= cut.size() && evidence.size() >= cut.size());
+                     std::span<const std::uint8_t> evidence, std::uint32_t surface, std::vector<PatchSplit> splits)
+    : vertices_(places.size()), surface_(surface), splits_(std::move(splits)) {
+  DUBSAR_CHECK(places.size() == cut.size() + splits_.size() && evidence.size() == places.size());
   first_.reserve(cut.size());
-  for (std::size_t i = cut.size(); i-- > 0;) {
+  for (std::size_t i = places.size(); i-- > 0;) {
+    vertices_[i] = {places[i], evidence[i], kNone};
+    if (i >= cut.size()) continue;
     const auto [at, fresh] = first_.try_emplace(bits_of(cut[i]), kNone);
-    vertices_[i] = {places[i], evidence[i], at->second};
+    vertices_[i].next = at->second;
     at->second = static_cast<std::uint32_t>(i);
   }
 }
 
-std::vector<std::uint8_t> KeptShape::shape(InterfaceMesh& mesh) const {
-  std::vector<std::uint8_t> evidence(mesh.added.size(), evidence_byte(Evidence::kInferred));
+KeptShape::Known KeptShape::shape(InterfaceMesh& mesh) const {
+  Known known{std::vector<std::uint8_t>(mesh.added.size(), evidence_byte(Evidence::kInferred)),
+              std::vector<std::uint8_t>(mesh.added.size(), 0),
+              {}};
+  std::vector<std::uint32_t> id_now(vertices_.size(), kNone);
   std::unordered_map<std::uint32_t, std::uint32_t> taken;  // of places with several vertices: those come in their order
   for (std::size_t i = 0; i < mesh.added.size(); ++i) {
     const auto found = first_.find(bits_of(mesh.added[i]));
@@ -43,9 +52,57 @@ std::vector<std::uint8_t> KeptShape::shape(InterfaceMesh& mesh) const {
       next->second = vertices_[at].next;
     }
     mesh.added[i] = vertices_[at].place;
-    evidence[i] = vertices_[at].evidence;
+    known.evidence[i] = vertices_[at].evidence;
+    known.settled[i] = 1;
+    id_now[at] = surface_ + static_cast<std::uint32_t>(i);
   }
-  return evidence;
+  split_again(id_now, mesh, known);
+  return known;
+}
+
+void KeptShape::split_again(const std::vector<std::uint32_t>& id_of_cut, InterfaceMesh& mesh, Known& known) const {
+  std::vector<std::uint32_t> id_now = id_of_cut;
+  const auto now = [&](std::uint32_t v) { return v < surface_ ? v : id_now[v - surface_]; };
+  std::unordered_set<std::uint32_t> ends;
+  for (const PatchSplit& split : splits_)
+    for (const std::uint32_t v : {split.a, split.b}) ends.insert(now(v));
+  ends.erase(kNone);
+  std::unordered_map<std::uint64_t, std::uint32_t> sides;  // triangle by where its side comes from and goes to
+  const auto key = [](std::uint32_t from, std::uint32_t to) { return std::uint64_t{from} << 32 | to; };
+  const auto add_sides = [&](std::uint32_t t) {
+    const Triangle& v = mesh.triangles[t];
+    for (std::size_t i = 0; i < 3; ++i) sides[key(v[i], v[(i + 1) % 3])] = t;
+  };
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& v = mesh.triangles[t];
+    if (std::any_of(v.begin(), v.end(), [&](std::uint32_t w) { return ends.count(w) != 0; })) add_sides(t);
+  }
+  const std::size_t of_cut = vertices_.size() - splits_.size();
+  for (std::size_t k = 0; k < splits_.size(); ++k) {
+    const std::uint32_t a = now(splits_[k].a), b = now(splits_[k].b);
+    if (a == kNone || b == kNone) continue;
+    const auto up = sides.find(key(a, b)), down = sides.find(key(b, a));
+    if (up == sides.end() || down == sides.end()) continue;
+    const std::array<std::uint32_t, 2> beside{up->second, down->second};
+    const Vertex& vertex = vertices_[of_cut + k];
+    const auto middle = surface_ + static_cast<std::uint32_t>(mesh.added.size());
+    mesh.added.push_back(vertex.place);
+    mesh.strength.push_back(0.0f);
+    known.evidence.push_back(vertex.evidence);
+    known.settled.push_back(1);
+    known.splits.push_back({a, b});
+    id_now[of_cut + k] = middle;
+    sides.erase(key(a, b));
+    sides.erase(key(b, a));
+    for (const std::uint32_t t : beside) {
+      Triangle other = mesh.triangles[t];
+      std::replace(mesh.triangles[t].begin(), mesh.triangles[t].end(), a, middle);
+      std::replace(other.begin(), other.end(), b, middle);
+      mesh.triangles.push_back(other);
+      add_sides(t);
+      add_sides(static_cast<std::uint32_t>(mesh.triangles.size() - 1));
+    }
+  }
 }
 
 }  // namespace dubsar

@@ -67,6 +67,7 @@ struct Traced {
   std::vector<ClaySide> cut_side{};  ///< before it was made to step aside
   std::optional<ClayContrast> clays{};
   std::optional<KeptShape> kept{};  ///< of the attempt before
+  std::vector<glm::vec3> aside{};   ///< where the sides differ from those that it had
 };
 
 /// The contact between the sides, as the grid gives it: its vertices have not moved yet.
@@ -129,8 +130,10 @@ Result<void> shape_contact(SurfaceModel& model, const Laid& laid, Traced& traced
                            ContactReport& report, Progress& progress) {
   InterfaceMesh mesh = laid.mesh;
   std::vector<std::uint8_t> evidence;
+  KeptShape::Known known;
   if (traced.kept) {
-    evidence = traced.kept->shape(mesh);
+    known = traced.kept->shape(mesh);
+    evidence = known.evidence;
   } else {
     evidence =
         shape_interface(mesh, model.mesh.positions, traced.density,
@@ -145,14 +148,27 @@ Result<void> shape_contact(SurfaceModel& model, const Laid& laid, Traced& traced
   log_debug("contact: {} film and {} inferred vertices", report.film_vertices, report.inferred_vertices);
   model.patches = laid.others;
   model.patches.insert(model.patches.begin(), contact_patch(model, std::move(mesh), std::move(evidence)));
-  DUBSAR_ASSIGN(report.patches,
-                untangle_patches(model, options.step, progress, {.surface = &traced.surface, .home = laid.mesh.added}));
+  DUBSAR_ASSIGN(
+      report.patches,
+      untangle_patches(
+          model, options.step, progress,
+          {.surface = &traced.surface, .home = laid.mesh.added, .settled = known.settled, .aside = traced.aside}));
+  std::vector<PatchSplit>& splits = report.patches.splits;
+  splits.insert(splits.begin(), known.splits.begin(), known.splits.end());
   return {};
 }
 
-/// All clay within some steps of the places gets one side, that of most of it: the contact goes round them.
-void step_aside(const ContactBand& band, const std::vector<glm::vec3>& places, int reach, std::vector<ClaySide>& side) {
+/// All clay within some steps of the places gets one side, that of most of it: the contact goes round them. Round those
+/// that were near places of attempts `before` it goes farther.
+void step_aside(const ContactBand& band, const std::vector<glm::vec3>& places,
+                const std::vector<std::vector<glm::vec3>>& before, std::vector<ClaySide>& side) {
+  constexpr float kAgain = 6.0f;
   for (const glm::vec3& place : places) {
+    const auto was_near = [&](const std::vector<glm::vec3>& earlier) {
+      return std::any_of(earlier.begin(), earlier.end(),
+                         [&](const glm::vec3& p) { return glm::distance(p, place) < kAgain; });
+    };
+    const int reach = 2 + static_cast<int>(std::count_if(before.begin(), before.end(), was_near));
     const glm::ivec3 middle(glm::round(place));
     std::vector<std::uint32_t> near;
     std::int64_t tablet = 0;
@@ -180,6 +196,7 @@ Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const Contac
   };
   int crossed = 0;
   std::optional<Closed> best;
+  std::vector<std::vector<glm::vec3>> tried;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     DUBSAR_ASSIGN(const Laid laid, lay_contact(model, traced, progress));
     std::vector<glm::vec3> places = laid.open;
@@ -190,11 +207,15 @@ Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const Contac
       if (!best || best->report.patches.left.size() > places.size()) best = Closed{labels_of(model), report};
       if (++crossed == kMostCrossed) break;
       const FillPatch& contact = model.patches.front();
-      traced.kept.emplace(laid.mesh.added, contact.extra_positions, contact.evidence);
+      traced.kept.emplace(laid.mesh.added, contact.extra_positions, contact.evidence,
+                          static_cast<std::uint32_t>(model.mesh.positions.size()), report.patches.splits);
+      traced.aside.clear();
     }
     restore(before, model);
     if (places.empty()) break;
-    step_aside(traced.band, places, 2 + attempt / 2, traced.side);
+    traced.aside.insert(traced.aside.end(), places.begin(), places.end());
+    step_aside(traced.band, places, tried, traced.side);
+    tried.push_back(std::move(places));
     unpinch_sides(traced.band, traced.side);
   }
   if (best) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/system/parallel_gather.h"
 #include "core/mesh/intersections.h"
 #include "core/parts/triangle_grid.h"
 
@@ -18,10 +19,12 @@ using CrossingPairs = std::vector<std::array<std::uint32_t, 2>>;
 /// Triangles whose cubes of 8 steps are among some.
 inline std::vector<std::uint32_t> triangles_in(const BrickSet& bricks, std::span<const glm::vec3> positions,
                                                std::span<const Triangle> triangles) {
-  std::vector<std::uint32_t> some;
-  for (std::uint32_t t = 0; t < triangles.size(); ++t)
-    if (bricks.meets(box_of(positions, triangles[t]))) some.push_back(t);
-  return some;
+  return parallel_gather<std::uint32_t>(static_cast<std::int64_t>(triangles.size()), 1 << 16,
+                                        [&](std::int64_t begin, std::int64_t end, std::vector<std::uint32_t>& some) {
+                                          for (auto t = static_cast<std::uint32_t>(begin);
+                                               t < static_cast<std::uint64_t>(end); ++t)
+                                            if (bricks.meets(box_of(positions, triangles[t]))) some.push_back(t);
+                                        });
 }
 
 /// Pairs, rising, of which one is `wanted` (one a triangle) and that matter(a, b).

@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <map>
 
+#include "core/parts/triangle_grid.h"
+
 namespace dubsar {
 
 std::vector<float> leashes(std::span<const glm::vec3> points, std::span<const glm::vec3> places) {
@@ -20,7 +22,11 @@ std::vector<float> leashes(std::span<const glm::vec3> points, std::span<const gl
   };
   std::map<std::array<int, 3>, std::vector<glm::vec3>> bins;
   for (const glm::vec3& place : places) bins[bin(place)].push_back(place);
+  std::vector<TriangleBox> boxes;
+  for (const glm::vec3& place : places) boxes.push_back(TriangleBox{place, place}.grown(kFree));
+  const BrickSet near(boxes);
   for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!near.meets({points[i], points[i]})) continue;
     const std::array<int, 3> here = bin(points[i]);
     for (int k = 0; k < 27; ++k) {
       const auto found = bins.find({here[0] + k % 3 - 1, here[1] + k / 3 % 3 - 1, here[2] + k / 9 - 1});

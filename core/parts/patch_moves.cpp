@@ -164,7 +164,9 @@ PatchMoves::Outcome PatchMoves::move_group(const Group& group, std::uint32_t num
       outcome.moved.push_back(v);
       outcome.boxes.push_back(together(before, star_box(v)));
     }
-    if (crossings_at(v, mesh_.positions[v], kMostCounted, around, &outcome.next) == 0) continue;
+    around.met.clear();
+    if (crossings_at(v, mesh_.positions[v], kMostCounted, around) == 0) continue;
+    for (const auto& pair : around.met) mesh_.add_extras(pair[1], outcome.next);
     outcome.next.push_back(v);
     if (!better) outcome.stuck.push_back(v);
   }
@@ -192,20 +194,19 @@ void PatchMoves::look_around(std::uint32_t v, Around& around) const {
   for (const std::uint32_t t : around.near) around.boxes.push_back(box_of(mesh_.positions, mesh_.triangles[t]));
 }
 
-/// How many of them the star of a vertex at `place` crosses, counted up to `most`; `met`: movable vertices of those.
-int PatchMoves::crossings_at(std::uint32_t v, const glm::vec3& place, int most, const Around& around,
-                             std::vector<std::uint32_t>* met) {
+/// How many of them the star of a vertex at `place` crosses, counted up to `most`, and remembered.
+int PatchMoves::crossings_at(std::uint32_t v, const glm::vec3& place, int most, Around& around) {
   const glm::vec3 before = mesh_.positions[v];
   mesh_.positions[v] = place;
   int count = 0;
   const auto look_at = [&](std::uint32_t t, std::uint32_t other) {
     if (count >= most || !triangles_cross(mesh_.positions, mesh_.triangles[t], mesh_.triangles[other])) return;
     ++count;
-    if (met != nullptr) mesh_.add_extras(other, *met);
+    around.met.push_back({t, other});
   };
   for (const std::uint32_t t : star_of(v)) {
     const TriangleBox box = box_of(mesh_.positions, mesh_.triangles[t]);
-    for (std::size_t i = 0; i < around.near.size(); ++i)
+    for (std::size_t i = 0; i < around.near.size() && count < most; ++i)
       if (box.meets(around.boxes[i])) look_at(t, around.near[i]);
     for (const std::uint32_t other : around.star)
       if (other > t && mesh_.owner[t].matters_to(mesh_.owner[other])) look_at(t, other);
@@ -214,8 +215,22 @@ int PatchMoves::crossings_at(std::uint32_t v, const glm::vec3& place, int most, 
   return count;
 }
 
+/// The same of those alone that it met elsewhere: most places are no better, and this tells it soon.
+int PatchMoves::crossings_met(std::uint32_t v, const glm::vec3& place, int most, const Around& around) {
+  const glm::vec3 before = mesh_.positions[v];
+  mesh_.positions[v] = place;
+  int count = 0;
+  for (std::size_t i = 0; i < around.met.size() && count < most; ++i) {
+    const auto [t, other] = around.met[i];
+    count += triangles_cross(mesh_.positions, mesh_.triangles[t], mesh_.triangles[other]);
+  }
+  mesh_.positions[v] = before;
+  return count;
+}
+
 /// The nearest of some places where the vertex crosses least. True: less than before.
 bool PatchMoves::relieve(std::uint32_t v, Around& around) {
+  around.met.clear();
   int least = crossings_at(v, mesh_.positions[v], kMostCounted, around);
   if (least == 0) return false;
   const glm::vec3 start = mesh_.positions[v];
@@ -229,7 +244,9 @@ bool PatchMoves::relieve(std::uint32_t v, Around& around) {
       }
   mean /= count_around;
   const auto attempt = [&](const glm::vec3& place) {
+    if (crossings_met(v, in_steps(place, step_), least, around) >= least) return;
     const int count = crossings_at(v, in_steps(place, step_), least, around);
+    sort_unique(around.met);
     if (count >= least) return;
     least = count;
     best = in_steps(place, step_);

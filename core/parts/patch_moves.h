@@ -61,6 +61,7 @@ class PatchMoves {
         star;                        ///< triangles beside the star, and those of the star among all that are near
     std::vector<TriangleBox> boxes;  ///< of near
     TriangleGrid added;              ///< where triangles have come to lie in this round
+    CrossingPairs met;               ///< of the star and what lies around it, at one of the places tried or another
   };
   struct Outcome {
     std::vector<std::uint32_t> next, moved, stuck;
@@ -75,8 +76,8 @@ class PatchMoves {
   std::vector<Group> far_apart(const std::vector<std::uint32_t>& work, Homes& homes) const;
   Outcome move_group(const Group& group, std::uint32_t number, const Homes& homes);
   void look_around(std::uint32_t v, Around& around) const;
-  int crossings_at(std::uint32_t v, const glm::vec3& place, int most, const Around& around,
-                   std::vector<std::uint32_t>* met = nullptr);
+  int crossings_at(std::uint32_t v, const glm::vec3& place, int most, Around& around);
+  int crossings_met(std::uint32_t v, const glm::vec3& place, int most, const Around& around);
   bool relieve(std::uint32_t v, Around& around);
   void note_stuck(const std::vector<Outcome>& outcomes);
 

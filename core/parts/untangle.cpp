@@ -23,6 +23,7 @@ constexpr int kMostSplits = 2;
 constexpr std::uint32_t kNone = TangleOwner::kNoPatch;
 constexpr std::int64_t kTangleGrain = 1 << 14;
 constexpr float kBeside = 6.0f;  ///< steps that moves reach
+constexpr float kAside = 8.0f;   ///< around a place where a patch is another one now
 using Pairs = CrossingPairs;
 
 /// The places as multiples of `step`, no two at one: rounding, and smoothing of tiny islands, bring some together.
@@ -64,6 +65,22 @@ class Tangle {
     std::vector<std::uint8_t> of_patch(triangles_.size());
     for (std::size_t t = 0; t < of_patch.size(); ++t) of_patch[t] = owner_[t].patch != kNone;
     return crossing_pairs(positions_, triangles_, of_patch, [this](auto a, auto b) { return matters(a, b); });
+  }
+
+  /// Those among them of which a triangle is not settled (UntangleHelp).
+  Pairs unsettled_crossings(std::span<const std::uint8_t> settled, std::span<const glm::vec3> aside) const {
+    std::vector<TriangleBox> boxes;
+    for (const glm::vec3& place : aside) boxes.push_back(TriangleBox{place, place}.grown(kAside));
+    const BrickSet near(boxes);
+    std::vector<std::uint8_t> loose(triangles_.size());
+    for (std::size_t t = 0; t < loose.size(); ++t) {
+      const auto is_loose = [&](std::uint32_t v) {
+        return v >= first_extra_ && (v - first_extra_ >= settled.size() || settled[v - first_extra_] == 0);
+      };
+      loose[t] = std::any_of(triangles_[t].begin(), triangles_[t].end(), is_loose) ||
+                 near.meets(box_of(positions_, triangles_[t]));
+    }
+    return crossing_pairs_after({}, positions_, triangles_, loose, [this](auto a, auto b) { return matters(a, b); });
   }
 
   /// The same where they were `before` all that has changed since the last call.
@@ -122,6 +139,22 @@ class Tangle {
       for (const std::uint32_t t : pair)
         if (owner_[t].patch != kNone && !touched[t]) splits += split_triangle(t, touched);
     return splits;
+  }
+
+  /// Of the first patch, by ids of the model and of what the patch added.
+  std::vector<PatchSplit> splits() const {
+    std::vector<PatchSplit> out = splits_;
+    std::vector<std::uint32_t> place(patch_of_vertex_.size());
+    std::uint32_t count = 0;
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      place[i] = count;
+      count += patch_of_vertex_[i] == 0;
+    }
+    const auto of_model = [&](std::uint32_t v) {
+      return v < first_extra_ ? v : static_cast<std::uint32_t>(dual_ + place[v - first_extra_]);
+    };
+    for (PatchSplit& split : out) split = {of_model(split.a), of_model(split.b)};
+    return out;
   }
 
   std::int64_t moved() const { return std::count(moved_.begin(), moved_.end(), 1); }
@@ -222,6 +255,7 @@ class Tangle {
       home_.push_back(0.5f * (home(a) + home(b)));
     }
     patch_of_vertex_.push_back(owner_[t].patch);
+    if (owner_[t].patch == 0) splits_.push_back({a, b});
     changed_.resize(triangles_.size() + 2, 1);
     for (const std::uint32_t side : {t, beyond}) {
       changed_[side] = 1;
@@ -268,6 +302,7 @@ class Tangle {
   std::vector<std::uint32_t> patch_of_vertex_;  ///< of positions from first_extra_ on
   std::vector<glm::vec3> home_;                 ///< the same, if there are any
   SideTable sides_;                             ///< see index_sides()
+  std::vector<PatchSplit> splits_;              ///< of the first patch
   std::vector<std::uint8_t> moved_;             ///< of positions from first_extra_ on, as far as moves have come
   std::vector<std::uint8_t> changed_;           ///< triangles, see crossings_after()
 };
@@ -282,7 +317,8 @@ Result<UntangleReport> untangle_patches(SurfaceModel& model, double step, Progre
   Triangulation own;
   if (help.surface == nullptr) own = triangulate(model.mesh, model.attributes.normals);
   Tangle tangle(model, help.surface != nullptr ? *help.surface : own, help.home, step);
-  auto pairs = tangle.crossings();
+  const bool known = !help.settled.empty();
+  auto pairs = known ? tangle.unsettled_crossings(help.settled, help.aside) : tangle.crossings();
   report.crossings = static_cast<std::int64_t>(pairs.size());
   const auto look_again = [&] { pairs = tangle.crossings_after(std::move(pairs)); };
   const auto move = [&] {
@@ -300,7 +336,12 @@ Result<UntangleReport> untangle_patches(SurfaceModel& model, double step, Progre
     look_again();
     move();
   }
+  if (known && pairs.empty()) {
+    pairs = tangle.crossings();
+    if (!pairs.empty()) move();
+  }
   report.left = tangle.places(pairs);
+  report.splits = tangle.splits();
   report.moved = tangle.moved();
   tangle.store();
   if (report.crossings > 0)

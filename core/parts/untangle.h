@@ -13,11 +13,17 @@
 
 namespace dubsar {
 
+/// An edge on which a vertex was put: ids of the model's vertices, then of those that the patch added.
+struct PatchSplit {
+  std::uint32_t a = 0, b = 0;
+};
+
 struct UntangleReport {
-  std::int64_t crossings = 0;   ///< pairs of triangles, one of a patch at least, that crossed
-  std::vector<glm::vec3> left;  ///< where some still do, one for each pair: the surface crosses itself at the rim
-  std::int64_t moved = 0;       ///< vertices that patches added and that were moved
-  std::int64_t added = 0;       ///< vertices that had to be added to have something to move
+  std::int64_t crossings = 0;      ///< pairs of triangles, one of a patch at least, that crossed
+  std::vector<glm::vec3> left;     ///< where some still do, one for each pair: the surface crosses itself at the rim
+  std::int64_t moved = 0;          ///< vertices that patches added and that were moved
+  std::int64_t added = 0;          ///< vertices that had to be added to have something to move
+  std::vector<PatchSplit> splits;  ///< of the first patch: where the vertices that came to its own were put, in order
 };
 
 struct UntangleHelp {
@@ -25,6 +31,10 @@ struct UntangleHelp {
   /// Where the vertices that the first patch added have come from: near what still crosses they go back there
   /// (leash.h), and are moved from there once more.
   std::span<const glm::vec3> home{};
+  /// One of each vertex that the first patch added, where somebody has untangled one that was almost the same: 1 where
+  /// it lies as it did then. What is settled, and not near `aside`, is looked at when all else is untangled.
+  std::span<const std::uint8_t> settled{};
+  std::span<const glm::vec3> aside{};
 };
 
 /// Moves vertices that patches added, as little as it takes, until no triangle of a patch crosses a triangle of a body

@@ -55,6 +55,15 @@ void throw_about(SurfaceModel& model, unsigned seed, float reach) {
       if (random() % 6 == 0) p += glm::vec3(any(random), any(random), any(random));
 }
 
+/// One place of the first patch, so far that moving alone does not mend it.
+void throw_far(SurfaceModel& model) {
+  std::mt19937 random(21);
+  std::uniform_real_distribution<float> any(-12.0f, 12.0f);
+  const glm::vec3 place = model.patches[0].extra_positions.front();
+  for (glm::vec3& p : model.patches[0].extra_positions)
+    if (glm::distance(p, place) < 11.0f) p += glm::vec3(any(random), any(random), any(random));
+}
+
 TEST(Untangle, PatchesThatRunThroughTheSurfaceAreTakenOut) {
   SurfaceModel model = glued();
   ASSERT_GE(model.patches.size(), 2u);
@@ -85,10 +94,7 @@ TEST(Untangle, VerticesNearACrossingAreTied) {
 TEST(Untangle, WhatCannotBeTakenOutGoesBackToWhereItCameFrom) {
   SurfaceModel thrown = glued();
   const std::vector<glm::vec3> home = thrown.patches[0].extra_positions;
-  std::mt19937 random(21);
-  std::uniform_real_distribution<float> any(-12.0f, 12.0f);
-  for (glm::vec3& p : thrown.patches[0].extra_positions)
-    if (glm::distance(p, home.front()) < 11.0f) p += glm::vec3(any(random), any(random), any(random));
+  throw_far(thrown);
   SurfaceModel lost = thrown;
   SilentProgress progress;
   ASSERT_GT(untangle_patches(lost, kStep, progress).value().left.size(), 10u) << "nothing to do";
@@ -98,6 +104,72 @@ TEST(Untangle, WhatCannotBeTakenOutGoesBackToWhereItCameFrom) {
     const TriMesh mesh = make_tri_mesh(thrown, {.body = body}).value();
     EXPECT_TRUE(check_mesh(mesh.positions, mesh.triangles).watertight()) << body;
   }
+}
+
+TEST(Untangle, OnlyWhatIsNotSettledIsLookedAtFirstAndAllOfItInTheEnd) {
+  SurfaceModel model = glued();
+  SilentProgress progress;
+  untangle_patches(model, kStep, progress).value();
+  const std::vector<glm::vec3> before = model.patches[0].extra_positions;
+  std::vector<std::uint8_t> settled(before.size(), 1);
+  const UntangleReport nothing = untangle_patches(model, kStep, progress, {.settled = settled}).value();
+  EXPECT_EQ(nothing.crossings, 0);
+  EXPECT_EQ(model.patches[0].extra_positions, before);
+  for (const bool told : {true, false}) {
+    SurfaceModel thrown = model;
+    std::mt19937 random(4);
+    std::uniform_real_distribution<float> any(-4.0f, 4.0f);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      settled[i] = 1;
+      if (glm::distance(before[i], before[7]) > 6.0f) continue;
+      thrown.patches[0].extra_positions[i] += glm::vec3(any(random), any(random), any(random));
+      settled[i] = told ? 0 : 1;
+    }
+    ASSERT_GT(crossings(thrown), 5);
+    const UntangleReport report = untangle_patches(thrown, kStep, progress, {.settled = settled}).value();
+    EXPECT_GT(report.moved, 0) << told;
+    EXPECT_EQ(report.crossings > 0, told) << "a wrong word is found out in the end";
+    EXPECT_EQ(static_cast<std::int64_t>(report.left.size()), crossings(thrown)) << told;
+    if (told) {
+      EXPECT_TRUE(report.left.empty());
+    }
+  }
+}
+
+TEST(Untangle, SplitsSayWhichEdgesTheAddedVerticesLieOn) {
+  SurfaceModel model = glued();
+  throw_far(model);
+  const FillPatch before = model.patches[0];
+  SilentProgress progress;
+  const UntangleReport report = untangle_patches(model, kStep, progress).value();
+  const FillPatch& after = model.patches[0];
+  ASSERT_GT(report.splits.size(), 0u);
+  ASSERT_EQ(after.extra_positions.size(), before.extra_positions.size() + report.splits.size());
+  const auto dual = static_cast<std::uint32_t>(model.mesh.positions.size());
+  std::vector<Triangle> triangles = before.triangles;  // split in the same way once more
+  for (std::size_t k = 0; k < report.splits.size(); ++k) {
+    const auto [a, b] = report.splits[k];
+    const auto middle = dual + static_cast<std::uint32_t>(before.extra_positions.size() + k);
+    int sides = 0;
+    for (std::size_t t = 0, count = triangles.size(); t < count; ++t) {
+      if (std::count(triangles[t].begin(), triangles[t].end(), a) +
+              std::count(triangles[t].begin(), triangles[t].end(), b) <
+          2)
+        continue;
+      ++sides;
+      Triangle other = triangles[t];
+      std::replace(triangles[t].begin(), triangles[t].end(), a, middle);
+      std::replace(other.begin(), other.end(), b, middle);
+      triangles.push_back(other);
+    }
+    ASSERT_EQ(sides, 2) << k;
+  }
+  const auto sorted = [](std::vector<Triangle> list) {
+    for (Triangle& t : list) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    std::sort(list.begin(), list.end());
+    return list;
+  };
+  EXPECT_EQ(sorted(triangles), sorted(after.triangles));
 }
 
 TEST(Untangle, WhatCrossesNothingStaysWhereItIs) {
