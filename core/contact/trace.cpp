@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
+#include <span>
 
 #include "core/base/system/log.h"
 #include "core/contact/band.h"
@@ -51,6 +52,12 @@ void restore(const Labels& labels, SurfaceModel& model) {
   model.attributes.evidence = labels.evidence;
 }
 
+/// The attempt before.
+struct LastAttempt {
+  KeptShape shape;
+  std::vector<glm::vec3> aside{};  ///< where the sides differ from those that it had
+};
+
 struct Traced {
   const ContactBand& band;
   const BandDensity& density;
@@ -66,8 +73,7 @@ struct Traced {
   std::vector<ClaySide> side{};
   std::vector<ClaySide> cut_side{};  ///< before it was made to step aside
   std::optional<ClayContrast> clays{};
-  std::optional<KeptShape> kept{};  ///< of the attempt before
-  std::vector<glm::vec3> aside{};   ///< where the sides differ from those that it had
+  std::optional<LastAttempt> last{};
 };
 
 /// The contact between the sides, as the grid gives it: its vertices have not moved yet.
@@ -131,8 +137,10 @@ Result<void> shape_contact(SurfaceModel& model, const Laid& laid, Traced& traced
   InterfaceMesh mesh = laid.mesh;
   std::vector<std::uint8_t> evidence;
   KeptShape::Known known;
-  if (traced.kept) {
-    known = traced.kept->shape(mesh);
+  std::span<const glm::vec3> aside;
+  if (traced.last) {
+    known = traced.last->shape.shape(mesh);
+    aside = traced.last->aside;
     evidence = known.evidence;
   } else {
     evidence =
@@ -148,11 +156,10 @@ Result<void> shape_contact(SurfaceModel& model, const Laid& laid, Traced& traced
   log_debug("contact: {} film and {} inferred vertices", report.film_vertices, report.inferred_vertices);
   model.patches = laid.others;
   model.patches.insert(model.patches.begin(), contact_patch(model, std::move(mesh), std::move(evidence)));
-  DUBSAR_ASSIGN(
-      report.patches,
-      untangle_patches(
-          model, options.step, progress,
-          {.surface = &traced.surface, .home = laid.mesh.added, .settled = known.settled, .aside = traced.aside}));
+  DUBSAR_ASSIGN(report.patches,
+                untangle_patches(
+                    model, options.step, progress,
+                    {.surface = &traced.surface, .home = laid.mesh.added, .settled = known.settled, .aside = aside}));
   std::vector<PatchSplit>& splits = report.patches.splits;
   splits.insert(splits.begin(), known.splits.begin(), known.splits.end());
   return {};
@@ -207,13 +214,13 @@ Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const Contac
       if (!best || best->report.patches.left.size() > places.size()) best = Closed{labels_of(model), report};
       if (++crossed == kMostCrossed) break;
       const FillPatch& contact = model.patches.front();
-      traced.kept.emplace(laid.mesh.added, contact.extra_positions, contact.evidence,
-                          static_cast<std::uint32_t>(model.mesh.positions.size()), report.patches.splits);
-      traced.aside.clear();
+      traced.last.emplace(
+          LastAttempt{KeptShape(laid.mesh.added, contact.extra_positions, contact.evidence,
+                                static_cast<std::uint32_t>(model.mesh.positions.size()), report.patches.splits)});
     }
     restore(before, model);
     if (places.empty()) break;
-    traced.aside.insert(traced.aside.end(), places.begin(), places.end());
+    if (traced.last) traced.last->aside.insert(traced.last->aside.end(), places.begin(), places.end());
     step_aside(traced.band, places, tried, traced.side);
     tried.push_back(std::move(places));
     unpinch_sides(traced.band, traced.side);
