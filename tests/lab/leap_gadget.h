@@ -36,7 +36,7 @@ class LeapGadget final : public UsbGadget {
 /// With its connector, and a hand held still over it.
 class PluggedLeap {
  public:
-  static constexpr glm::dvec3 kPalm_m{0.03, 0.3, 0.02};
+  static constexpr glm::dvec3 kPalmM{0.03, 0.3, 0.02};
 
   Result<void> plug() { return port_.plug(); }
   void unplug() {
@@ -49,7 +49,7 @@ class PluggedLeap {
  private:
   static Lmc1SimulatorOptions hand_above() {
     HandPose pose;
-    pose.palm.position_m = kPalm_m;
+    pose.palm.position_m = kPalmM;
     Lmc1SimulatorOptions options;
     options.paced = true;
     options.hands = [hands = std::vector{pose_hand(pose)}](std::uint64_t) { return hands; };

@@ -57,7 +57,7 @@ TEST_F(LabLeap, IsTakenFromTheKernelsCameraDriverAndShowsAHand) {
       ASSERT_TRUE(eventually([&] { return driver->poll(frame); })) << driver->reason();
       ASSERT_TRUE(tracker.track(frame, hands));
       ASSERT_EQ(hands.size(), 1U);
-      const glm::dvec3 off_m = hands[0].palm.position_m - PluggedLeap::kPalm_m;
+      const glm::dvec3 off_m = hands[0].palm.position_m - PluggedLeap::kPalmM;
       EXPECT_LT(std::abs(off_m.x), 0.004);
       EXPECT_LT(std::abs(off_m.y), 0.006);
       EXPECT_LT(std::abs(off_m.z), 0.008);
