@@ -193,14 +193,8 @@ void part_shared_edges(const SurfaceModel& model, InterfaceMesh& mesh) {
     const glm::vec3 beside = 0.5f * (position(opposite(cut.first)) + position(opposite(cut.second)));
     mesh.added.push_back(edge + 0.25f * (beside - edge));
     mesh.strength.push_back(0.0f);
-    for (const std::uint32_t t : {cut.first, cut.second}) {
-      Triangle other = mesh.triangles[t];
-      for (std::uint32_t& v : mesh.triangles[t])
-        if (v == cut.a) v = middle;
-      for (std::uint32_t& v : other)
-        if (v == cut.b) v = middle;
-      mesh.triangles.push_back(other);
-    }
+    for (const std::uint32_t t : {cut.first, cut.second})
+      mesh.triangles.push_back(halve(mesh.triangles[t], cut.a, cut.b, middle));
   }
 }
 

@@ -56,12 +56,11 @@ KeptShape::Known KeptShape::shape(InterfaceMesh& mesh) const {
     known.settled[i] = 1;
     id_now[at] = surface_ + static_cast<std::uint32_t>(i);
   }
-  split_again(id_now, mesh, known);
+  split_again(std::move(id_now), mesh, known);
   return known;
 }
 
-void KeptShape::split_again(const std::vector<std::uint32_t>& id_of_cut, InterfaceMesh& mesh, Known& known) const {
-  std::vector<std::uint32_t> id_now = id_of_cut;
+void KeptShape::split_again(std::vector<std::uint32_t> id_now, InterfaceMesh& mesh, Known& known) const {
   const auto now = [&](std::uint32_t v) { return v < surface_ ? v : id_now[v - surface_]; };
   std::unordered_set<std::uint32_t> ends;
   for (const PatchSplit& split : splits_)
@@ -95,10 +94,7 @@ void KeptShape::split_again(const std::vector<std::uint32_t>& id_of_cut, Interfa
     sides.erase(key(a, b));
     sides.erase(key(b, a));
     for (const std::uint32_t t : beside) {
-      Triangle other = mesh.triangles[t];
-      std::replace(mesh.triangles[t].begin(), mesh.triangles[t].end(), a, middle);
-      std::replace(other.begin(), other.end(), b, middle);
-      mesh.triangles.push_back(other);
+      mesh.triangles.push_back(halve(mesh.triangles[t], a, b, middle));
       add_sides(t);
       add_sides(static_cast<std::uint32_t>(mesh.triangles.size() - 1));
     }

@@ -42,7 +42,7 @@ class KeptShape {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   static Bits bits_of(const glm::vec3& p);
 
-  void split_again(const std::vector<std::uint32_t>& id_now, InterfaceMesh& mesh, Known& known) const;
+  void split_again(std::vector<std::uint32_t> id_now, InterfaceMesh& mesh, Known& known) const;
 
   struct Vertex {
     glm::vec3 place;

@@ -135,27 +135,25 @@ Result<void> doubt_films(const Laid& laid, Traced& traced, std::vector<std::uint
 Result<void> shape_contact(SurfaceModel& model, const Laid& laid, Traced& traced, const ContactOptions& options,
                            ContactReport& report, Progress& progress) {
   InterfaceMesh mesh = laid.mesh;
-  std::vector<std::uint8_t> evidence;
   KeptShape::Known known;
   std::span<const glm::vec3> aside;
   if (traced.last) {
     known = traced.last->shape.shape(mesh);
     aside = traced.last->aside;
-    evidence = known.evidence;
   } else {
-    evidence =
+    known.evidence =
         shape_interface(mesh, model.mesh.positions, traced.density,
                         {options.film_strength, kMostMove, options.blur_variance, traced.clays, traced.dips.deviation});
-    DUBSAR_TRY(doubt_films(laid, traced, evidence, progress));
+    DUBSAR_TRY(doubt_films(laid, traced, known.evidence, progress));
     traced.division.reset();
   }
   report.traced = true;
   report.pockets = laid.pockets;
-  report.film_vertices = std::count(evidence.begin(), evidence.end(), evidence_byte(Evidence::kFilm));
-  report.inferred_vertices = static_cast<std::int64_t>(evidence.size()) - report.film_vertices;
+  report.film_vertices = std::count(known.evidence.begin(), known.evidence.end(), evidence_byte(Evidence::kFilm));
+  report.inferred_vertices = static_cast<std::int64_t>(known.evidence.size()) - report.film_vertices;
   log_debug("contact: {} film and {} inferred vertices", report.film_vertices, report.inferred_vertices);
   model.patches = laid.others;
-  model.patches.insert(model.patches.begin(), contact_patch(model, std::move(mesh), std::move(evidence)));
+  model.patches.insert(model.patches.begin(), contact_patch(model, std::move(mesh), std::move(known.evidence)));
   DUBSAR_ASSIGN(report.patches,
                 untangle_patches(
                     model, options.step, progress,

@@ -144,12 +144,7 @@ class Tangle {
   /// Of the first patch, by ids of the model and of what the patch added.
   std::vector<PatchSplit> splits() const {
     std::vector<PatchSplit> out = splits_;
-    std::vector<std::uint32_t> place(patch_of_vertex_.size());
-    std::uint32_t count = 0;
-    for (std::size_t i = 0; i < place.size(); ++i) {
-      place[i] = count;
-      count += patch_of_vertex_[i] == 0;
-    }
+    const std::vector<std::uint32_t> place = places_in_patches();
     const auto of_model = [&](std::uint32_t v) {
       return v < first_extra_ ? v : static_cast<std::uint32_t>(dual_ + place[v - first_extra_]);
     };
@@ -161,13 +156,10 @@ class Tangle {
 
   /// Back into the model.
   void store() const {
-    std::vector<std::uint32_t> place(patch_of_vertex_.size());  // of an added vertex among those of its patch
+    const std::vector<std::uint32_t> place = places_in_patches();
     std::vector<std::vector<std::uint32_t>> extras(model_.patches.size()), own(model_.patches.size());
-    for (std::size_t i = 0; i < place.size(); ++i) {
-      std::vector<std::uint32_t>& of_patch = extras[patch_of_vertex_[i]];
-      place[i] = static_cast<std::uint32_t>(of_patch.size());
-      of_patch.push_back(first_extra_ + static_cast<std::uint32_t>(i));
-    }
+    for (std::size_t i = 0; i < place.size(); ++i)
+      extras[patch_of_vertex_[i]].push_back(first_extra_ + static_cast<std::uint32_t>(i));
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
       if (owner_[t].patch != kNone) own[owner_[t].patch].push_back(t);
     for (std::size_t p = 0; p < model_.patches.size(); ++p) {
@@ -189,6 +181,13 @@ class Tangle {
  private:
   PartitionId body_of(PartitionId id) const {
     return id == PartitionTable::kNone || model_.partitions.empty() ? id : model_.partitions.body_of(id);
+  }
+
+  /// Of each added vertex among those of its patch.
+  std::vector<std::uint32_t> places_in_patches() const {
+    std::vector<std::uint32_t> place(patch_of_vertex_.size()), count(model_.patches.size(), 0);
+    for (std::size_t i = 0; i < place.size(); ++i) place[i] = count[patch_of_vertex_[i]]++;
+    return place;
   }
 
   /// A membrane across a crack: bodies are shown without it.
@@ -259,10 +258,7 @@ class Tangle {
     changed_.resize(triangles_.size() + 2, 1);
     for (const std::uint32_t side : {t, beyond}) {
       changed_[side] = 1;
-      Triangle other = triangles_[side];
-      std::replace(triangles_[side].begin(), triangles_[side].end(), a, middle);
-      std::replace(other.begin(), other.end(), b, middle);
-      triangles_.push_back(other);
+      triangles_.push_back(halve(triangles_[side], a, b, middle));
       owner_.push_back(owner_[side]);
       touched.push_back(true);
     }

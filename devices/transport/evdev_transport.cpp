@@ -13,10 +13,10 @@
 #include <cstring>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include "devices/touch/evdev_event.h"
+#include "devices/transport/sysfs.h"
 #include "devices/udev_rule.h"
 
 namespace dubsar {
@@ -24,18 +24,10 @@ namespace {
 namespace fs = std::filesystem;
 
 static_assert(sizeof(input_event) == kEvdevEventBytes, "events are those of 64-bit Linux");
-constexpr std::size_t kLongestName = 256;
 constexpr int kWordBits = 64;
 
-std::string first_line(const fs::path& file) {
-  std::ifstream stream(file);
-  std::string text;
-  std::getline(stream, text);
-  return text;
-}
-
 std::uint16_t hex_attribute(const fs::path& file) {
-  return static_cast<std::uint16_t>(std::strtoul(first_line(file).c_str(), nullptr, 16));
+  return static_cast<std::uint16_t>(hex_number(sysfs_line(file)).value_or(0));
 }
 
 /// A bit of a mask as /sys writes it: words in hexadecimal, the lowest one last.
@@ -54,11 +46,10 @@ EvdevNode describe(int number) {
   EvdevNode node;
   node.path = fmt::format("/dev/input/event{}", number);
   const fs::path device = fs::path(fmt::format("/sys/class/input/event{}", number)) / "device";
-  for (const char letter : first_line(device / "name").substr(0, kLongestName))
-    node.name += letter >= 32 && letter < 127 ? letter : '?';
+  node.name = sysfs_line(device / "name");
   node.vendor_id = hex_attribute(device / "id" / "vendor");
   node.product_id = hex_attribute(device / "id" / "product");
-  const std::string axes = first_line(device / "capabilities" / "abs"), properties = first_line(device / "properties");
+  const std::string axes = sysfs_line(device / "capabilities" / "abs"), properties = sysfs_line(device / "properties");
   node.touch_panel =
       has_bit(properties, INPUT_PROP_DIRECT) && has_bit(axes, ABS_MT_POSITION_X) && has_bit(axes, ABS_MT_POSITION_Y);
   node.slots = has_bit(axes, ABS_MT_SLOT) && has_bit(axes, ABS_MT_TRACKING_ID);

@@ -1,46 +1,19 @@
 #include "devices/transport/hid_listing.h"
 
 #include <algorithm>
-#include <charconv>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <string_view>
+
+#include "devices/transport/sysfs.h"
 
 namespace dubsar {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLongestFact = 256;
-constexpr std::size_t kMostBytes = 8192;  // of one file of sysfs: two pages; a descriptor has at most 4096
-
 // Items of a report descriptor, without the two bits that tell their length.
 constexpr unsigned kUsagePage = 0x04, kUsage = 0x08, kCollection = 0xA0;
 constexpr unsigned kLongItem = 0xFE;
-
-/// Empty where the file is not there, or not any more.
-std::string contents(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string out(kMostBytes, '\0');
-  stream.read(out.data(), static_cast<std::streamsize>(out.size()));
-  out.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
-  return out;
-}
-
-std::string printable(std::string_view text) {
-  std::string out(text.substr(0, std::min(text.find_first_of(std::string_view("\n\0", 2)), kLongestFact)));
-  std::replace_if(
-      out.begin(), out.end(), [](char letter) { return letter < 32 || letter >= 127; }, '?');
-  return out;
-}
-
-std::optional<std::uint32_t> hex_number(std::string_view digits) {
-  std::uint32_t value = 0;
-  const char* const end = digits.data() + digits.size();
-  if (const auto read = std::from_chars(digits.data(), end, value, 16); read.ec != std::errc() || read.ptr != end)
-    return std::nullopt;
-  return value;
-}
 
 /// "KEY=value" lines.
 std::map<std::string, std::string, std::less<>> facts_of(std::string_view uevent) {
@@ -72,13 +45,13 @@ std::optional<HidNode> describe(const fs::path& folder) {
   HidNode node;
   node.path = "/dev/" + folder.filename().string();
   const fs::path device = folder / "device";
-  const auto facts = facts_of(contents(device / "uevent"));
+  const auto facts = facts_of(sysfs_bytes(device / "uevent"));
   const auto fact = [&](std::string_view key) {
     const auto found = facts.find(key);
-    return found == facts.end() ? std::string() : printable(found->second);
+    return found == facts.end() ? std::string() : printable_line(found->second);
   };
   if (!read_id(fact("HID_ID"), node)) return std::nullopt;
-  const std::string descriptor = contents(device / "report_descriptor");
+  const std::string descriptor = sysfs_bytes(device / "report_descriptor");
   const HidUsage usage = first_usage(std::as_bytes(std::span(descriptor)));
   node.usage_page = usage.page;
   node.usage = usage.usage;
@@ -86,11 +59,11 @@ std::optional<HidNode> describe(const fs::path& folder) {
   node.serial = fact("HID_UNIQ");
   // on USB the device hangs below its interface, and that below the plugged thing, which tells its names apart
   const fs::path interface = device / "..", plugged = interface / "..";
-  if (const auto number = hex_number(printable(contents(interface / "bInterfaceNumber")))) {
+  if (const auto number = hex_number(sysfs_line(interface / "bInterfaceNumber"))) {
     node.interface_number = static_cast<int>(*number);
-    node.manufacturer = printable(contents(plugged / "manufacturer"));
-    if (std::string name = printable(contents(plugged / "product")); !name.empty()) node.product = std::move(name);
-    if (node.serial.empty()) node.serial = printable(contents(plugged / "serial"));
+    node.manufacturer = sysfs_line(plugged / "manufacturer");
+    if (std::string name = sysfs_line(plugged / "product"); !name.empty()) node.product = std::move(name);
+    if (node.serial.empty()) node.serial = sysfs_line(plugged / "serial");
   }
   return node;
 }
