@@ -51,8 +51,8 @@ void add_filter_options(Arguments command, ProcessRequest& options) {
   Arguments group = command.group("Filters and threshold");
   group.choice<Detail>(
       "--detail", p.detail, choices_of(kDetails),
-      "grid of the surface: scan (all the scan has, and the contact of tablet and envelope is traced), half "
-      "(Gauss 3x3x3 and 2:1, as in the paper), auto (default: scan where time and memory allow)");
+      "grid of the surface: scan (all the scan has), half (Gauss 3x3x3 and 2:1, as in the paper), auto (default: scan "
+      "where time and memory allow)");
   group.flag("--no-resample", options.without.resample, "the same as --detail scan");
   group.choice<DenoiseMethod>("--denoise", p.denoise.method, choices_of(kDenoiseMethods),
                               "denoising filter (default joint)");
@@ -135,7 +135,7 @@ std::vector<PlannedStage> plan_of(const ProcessRequest& options) {
                                       {"segment", 1.27},
                                       {"fill holes", 1.49}})
     plan.push_back({name, seconds, true});
-  if (!options.without.contact && options.pipeline.detail != Detail::kHalf) plan.push_back({"contact", 21.8, true});
+  if (!options.without.contact) plan.push_back({"contact", 21.8, true});
   if (!options.without.ao)
     plan.push_back({"ambient occlusion",
                     (options.ao_engine == OcclusionEngine::kBricks ? 9.5 : 22.5) * options.rays / 160.0, true});

@@ -14,6 +14,9 @@
 namespace dubsar {
 
 struct ContactOptions {
+  /// Whether films are looked for on a grid of half the density's resolution first, twice as far from the smooth patch:
+  /// at the scan's own resolution, where it may be farther from them than the reach.
+  bool halve_first = true;
   float reach = 12.0f;         ///< of the search from the smooth patch, grid steps: the deepest wedge
   float out_reach = 8.0f;      ///< the same into the envelope, where the two clays are not seen to differ
   double step = 1.0 / 64.0;    ///< positions are multiples of it, as in files

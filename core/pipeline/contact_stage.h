@@ -2,9 +2,7 @@
 // The stage that goes back to the scan where tablet and envelope touch (core/contact).
 
 #include "core/contact/trace.h"
-#include "core/filter/edge_spread.h"
-#include "core/pipeline/stage_clock.h"
-#include "core/volume/formats/import.h"
+#include "core/pipeline/volume_stages.h"
 
 namespace dubsar {
 
@@ -13,9 +11,9 @@ struct TracedModel {
   ContactReport contact;
 };
 
-/// Traces the contact of a separated model with filled holes, on the scan's grid, in the scan, which is read again: the
-/// slices around the contact. `blur`: of the scan, where it is known. Errors: those of open_volume() and of its source.
-Result<TracedModel> trace(SurfaceModel model, const ImportOptions& scan, const std::optional<EdgeSpread>& blur,
-                          StageRun run);
+/// Traces the contact of a separated model with filled holes, on its grid. The scan is read again, the slices around
+/// the contact, and halved where the surface is that of the halved grid. `imported`: the detail that was taken, the
+/// blur of its grid; its voxels are not looked at. Errors: those of open_volume() and of its source.
+Result<TracedModel> trace(SurfaceModel model, const ImportOptions& scan, const ImportedGrid& imported, StageRun run);
 
 }  // namespace dubsar

@@ -20,10 +20,10 @@ constexpr std::int64_t kGroups = 8, kGroupAfter = 6;
 // (docs/speed.md).
 constexpr double kSurfaceSeconds = 6.0;
 constexpr double kSecondsPerRay = 1.0 / 21e6;
-constexpr double kContactSeconds = 8.0;  ///< at the scan's resolution
+constexpr double kContactSeconds = 6.0;
 // The rest of memory: the program, its slabs and threads; and, for each vertex, all that is there while the contact is
 // traced.
-constexpr double kProgramBytes = 80e6, kContactBytesPerVertex = 600.0;
+constexpr double kProgramBytes = 80e6, kContactBytesPerVertex = 480.0;
 // Points of the bricks near the surface, and what filtering one costs: passes see beyond the bricks.
 constexpr double kBandPointsPerVertex = 14.0, kBandEffort = 1.8;
 constexpr std::int64_t kLearnedSlices = 96;  ///< of the scan, that are filtered in whole (refine_stage.cpp)
@@ -142,29 +142,29 @@ Result<Forecast> forecast(SlabSource& scan, const ForecastOptions& options, Prog
   const double filtered =
       half ? 1.0  // of the voxels
            : 1.0 / 8.0 + std::min(1.0, static_cast<double>(kLearnedSlices) / scan_z) + kBandEffort * band;
+  const double readings = (half ? 1.0 : 2.0) * (options.contact ? 2.0 : 1.0);  // of the scan
   for (const StageRecord& stage : clock.records()) {
     if (stage.name == "estimate") continue;  // of a histogram: the same for any size
     result.core_s += stage.cpu_s * times *
-                     (stage.name == "import"    ? (half ? 1.0 : 2.0) * reading
+                     (stage.name == "import"    ? readings * reading
                       : stage.name == "denoise" ? (1.0 + kExtractOfDenoising) * filtered
                                                 : 1.0);
   }
   const double millions = vertices * 1e-6;
   result.core_s += kSurfaceSeconds * millions + kSecondsPerRay * vertices * options.occlusion_rays /
                                                     sharers_of_rays(result.detail.detail, result.vertices);
-  const bool contact = options.contact && !half;
-  if (contact) result.core_s += kContactSeconds * millions;
+  if (options.contact) result.core_s += kContactSeconds * millions;
   const int threads = thread_count();
   result.wall_s = threads > 1 ? result.core_s / (kEfficiency * threads) : result.core_s;
 
   const Dims halved = grid_of(scan.dims(), true);
   const GridPlace place = place_for(halved, options.budget);
   result.memory_bytes =
-      static_cast<std::uint64_t>(kProgramBytes) + bytes_of_run({scan.dims(), half, vertices, place, contact});
+      static_cast<std::uint64_t>(kProgramBytes) + bytes_of_run({scan.dims(), half, vertices, place, options.contact});
   result.scratch_bytes = place == GridPlace::kScratch ? 4 * static_cast<std::uint64_t>(halved.count()) : 0;
   result.product_bytes = static_cast<std::uint64_t>(
       vertices * (kProductBytesPerVertex + (options.occlusion_rays > 0 ? kLightBytesPerVertex : 0.0) +
-                  (contact ? kContactProductBytesPerVertex : 0.0)));
+                  (options.contact ? kContactProductBytesPerVertex : 0.0)));
   return result;
 }
 

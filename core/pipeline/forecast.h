@@ -10,7 +10,7 @@ namespace dubsar {
 
 struct ForecastOptions {
   Detail detail = Detail::kAuto;
-  bool contact = true;       ///< is looked for where tablet and envelope touch, at the scan's resolution
+  bool contact = true;       ///< is looked for where tablet and envelope touch
   int occlusion_rays = 160;  ///< per vertex; 0: none
   Budget budget = {};
 };

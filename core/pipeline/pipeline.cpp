@@ -88,9 +88,8 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   DUBSAR_ASSIGN(SeparatedModel separated, separate(std::move(settled.model), options.segment, options.fill_holes, run));
   PipelineResult result{std::move(separated.model), {}, {}};
   std::optional<ContactReport> contact;
-  if (options.fill_holes && options.trace_contact && !imported.detail.resample() && separated.segment.nested &&
-      !separated.segment.enclosure_refused) {
-    DUBSAR_ASSIGN(TracedModel traced, trace(std::move(result.model), options.import, imported.facts.blur, run));
+  if (options.fill_holes && options.trace_contact && separated.segment.nested && !separated.segment.enclosure_refused) {
+    DUBSAR_ASSIGN(TracedModel traced, trace(std::move(result.model), options.import, imported, run));
     result.model = std::move(traced.model);
     contact = traced.contact;
   }

@@ -25,7 +25,7 @@ struct PipelineOptions {
   ExaProfile exa_profile = ExaProfile::kCompact;
   SegmentOptions segment;
   bool fill_holes = true;
-  bool trace_contact = true;                                       ///< on the scan's grid and with filled holes only
+  bool trace_contact = true;                                       ///< with filled holes only
   std::optional<OcclusionOptions> occlusion = OcclusionOptions{};  ///< none: no ambient light
 };
 

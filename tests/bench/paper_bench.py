@@ -102,7 +102,7 @@ def paper(options):
     with open(scan, "rb") as file:  # into the page cache, as in the paper after a first look
         while file.read(1 << 24):
             pass
-    more = ["--detail", "half"] + (["--no-ao"] if options.no_ao else [])
+    more = ["--detail", "half", "--no-contact"] + (["--no-ao"] if options.no_ao else [])
     result = process(options, scan, *more)
     work = {"voxels": math.prod(result["dims"]), "grid": math.prod(result["grid"]), "vertices": result["vertices"]}
     theirs = {"voxels": PAPER_VOXELS, "grid": PAPER_GRID, "vertices": PAPER_VERTICES}

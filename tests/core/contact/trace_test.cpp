@@ -19,7 +19,7 @@
 namespace dubsar {
 namespace {
 
-/// A model of half a scan's size, and the truth about it.
+/// A model of a scan, and the truth about it.
 struct TracedScan {
   PipelineResult result;
   std::unique_ptr<const phantom::Phantom> truth;
@@ -29,14 +29,21 @@ struct TracedScan {
     const TriMesh tablet = body("tablet");
     std::vector<glm::vec3> positions;
     for (const glm::vec3& p : tablet.positions) positions.push_back(glm::vec3(tablet.frame.input_vox_from_grid(p)));
-    return judge_contact(*truth, {positions, tablet.triangles, {}, 1.0}, tablet.evidence);
+    return judge_contact(*truth, {positions, tablet.triangles, {}, result.report.detail.resample() ? 2.0 : 1.0},
+                         tablet.evidence);
   }
 };
 
+struct Grid {
+  Dims scan{224, 128, 208};
+  Detail detail = Detail::kScan;
+};
+constexpr Grid kHalved{{384, 208, 360}, Detail::kHalf};
+
 TracedScan traced_scan(phantom::Contact contact, double film, std::uint64_t seed, bool trace = true,
-                       bool written = true) {
+                       bool written = true, const Grid& grid = {}) {
   phantom::PhantomOptions wanted;
-  wanted.dims = {224, 128, 208};
+  wanted.dims = grid.scan;
   wanted.seed = seed;
   wanted.contact = contact;
   wanted.film_vox = film;
@@ -47,7 +54,7 @@ TracedScan traced_scan(phantom::Contact contact, double film, std::uint64_t seed
   phantom::write_phantom(path, std::nullopt, wanted, progress).value();
   PipelineOptions options;
   options.import.path = path;
-  options.detail = Detail::kScan;
+  options.detail = grid.detail;
   options.occlusion = std::nullopt;
   options.trace_contact = trace;
   TracedScan made{run_pipeline(options, progress).value(), phantom::Phantom::create(wanted).value()};
@@ -172,6 +179,29 @@ TEST(TraceContact, PatchesNeverRunThroughTheSurface) {
   const TracedScan made = traced_scan(phantom::Contact::kFilm, 0.3, 60659);
   ASSERT_TRUE(made.result.report.contact && made.result.report.contact->traced);
   expect_closed_and_mating(made);
+}
+
+TEST(TraceContact, FilmsAreFollowedAtHalfTheResolution) {
+  const TracedScan made = traced_scan(phantom::Contact::kFilm, 0.5, 61126, true, true, kHalved);
+  ASSERT_TRUE(made.result.report.detail.resample());
+  ASSERT_TRUE(made.result.report.contact && made.result.report.contact->traced);
+  expect_closed_and_mating(made);
+  const phantom::ContactScore score = made.score();
+  EXPECT_GE(score.near_fraction(), 0.8);  // a voxel is half a step of this grid
+  const auto film = static_cast<double>(score.evidence[2]), all = static_cast<double>(score.contact_vertices);
+  EXPECT_GE(film, 0.8 * all);
+  EXPECT_EQ(score.false_wedges(), 0);
+  EXPECT_LT(traced_scan(phantom::Contact::kFilm, 0.5, 61126, false, true, kHalved).score().near_fraction(), 0.65)
+      << "smooth patches do as well";
+}
+
+TEST(TraceContact, PocketsBelongToTheTabletAtHalfTheResolution) {
+  const TracedScan made = traced_scan(phantom::Contact::kPockets, 0.5, 61151, true, true, kHalved);
+  ASSERT_TRUE(made.result.report.contact && made.result.report.contact->traced);
+  expect_closed_and_mating(made);
+  const phantom::CaseScore pockets = made.score().cases[static_cast<std::size_t>(phantom::WedgeCase::kPocket)];
+  ASSERT_GT(pockets.wedges, 3);
+  EXPECT_GE(pockets.shown_fraction(), 0.9);
 }
 
 }  // namespace
