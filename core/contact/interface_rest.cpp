@@ -12,7 +12,7 @@
 #include "core/mesh/edge_uses.h"
 #include "core/mesh/fans.h"
 #include "core/parts/border_loops.h"
-#include "core/parts/loop_fill.h"
+#include "core/parts/fill/loop_fill.h"
 
 namespace dubsar {
 namespace {

@@ -19,8 +19,8 @@
 namespace dubsar {
 namespace {
 
-constexpr float kHalfReach = 12.0f;  ///< on both sides of the patch, steps of the halved grid
-constexpr float kCubeSide = 8.0f;    ///< of the places whose heights are taken together: wider than a wedge
+constexpr float kReach = 12.0f;    ///< on both sides of the patch, grid steps
+constexpr float kCubeSide = 8.0f;  ///< of the places whose heights are taken together: wider than a wedge
 constexpr std::size_t kLeastCrossings = 24;
 constexpr float kAcross = 0.6f;  ///< cosine from which on a face lies along the contact
 /// Quantiles of heights whose mean is the ground: below lie wedges, above what noise lifted.
@@ -28,6 +28,7 @@ constexpr float kGroundFrom = 0.5f, kGroundTo = 0.85f;
 constexpr float kAverage = 10.0f;  ///< deviation of the average over cubes, steps of the halved grid
 /// Mean strength of dips above that of mere clay from which a cube begins to be believed, and is believed in full.
 constexpr float kLeastBelief = 0.8f, kFullBelief = 1.1f;
+constexpr float kAirBelief = 2.0f;       ///< the same of air between tablet and envelope
 constexpr float kUnknownWeight = 0.25f;  ///< weight of cubes that show no film: there the patch is right
 
 glm::vec3 halved(const glm::vec3& p) { return 0.5f * (p - 1.0f); }  // resample.h
@@ -75,18 +76,30 @@ std::uint32_t darkest_near(const ContactBand& band, const Dips& dips, std::uint3
   return darkest;
 }
 
-std::vector<Ground> grounds_of(const ContactBand& band, const Dips& dips, const std::vector<ClaySide>& side) {
+/// The next point of clay of the band along an axis, beyond air if there is some.
+std::uint32_t next_clay(const ContactBand& band, const BitVolume& inside, std::uint32_t node, int axis) {
+  constexpr int kMostAir = 12;
+  glm::ivec3 p = band.point(node) + unit_step(axis);
+  for (int step = 0; step < kMostAir && !inside.get(p.x, p.y, p.z); ++step) p += unit_step(axis);
+  return band.at(p);
+}
+
+std::vector<Ground> grounds_of(const ContactBand& band, const BitVolume& inside, const Dips& dips,
+                               const std::vector<ClaySide>& side) {
   std::map<std::array<int, 3>, Cube> cubes;  // in order: sums do not depend on threads
   for (std::uint32_t n = 0; n < band.nodes.size(); ++n)
     for (int axis = 0; axis < 3; ++axis) {
       if (std::abs(band.normal(n)[axis]) < kAcross) continue;
-      const std::uint32_t m = band.at(band.point(n) + unit_step(axis));
+      const std::uint32_t m = next_clay(band, inside, n, axis);
       if (m == ContactBand::kNone || side[n] == side[m]) continue;
       const glm::vec3& p = band.samples[band.nodes[n].sample].position;
       const glm::ivec3 at(glm::floor(p / kCubeSide));
       Cube& cube = cubes[{at.x, at.y, at.z}];
-      cube.heights.push_back(band.nodes[darkest_near(band, dips, n, axis)].height);
-      cube.strength += 0.5 * static_cast<double>(dips.strength[n] + dips.strength[m]);
+      const bool air = m != band.at(band.point(n) + unit_step(axis));
+      cube.heights.push_back(air ? 0.5f * (band.nodes[n].height + band.nodes[m].height)
+                                 : band.nodes[darkest_near(band, dips, n, axis)].height);
+      cube.strength +=
+          static_cast<double>(air ? kClayStrength + kAirBelief : 0.5f * (dips.strength[n] + dips.strength[m]));
       cube.middle += glm::dvec3(p);
     }
   std::vector<Ground> found;
@@ -186,29 +199,56 @@ class HeightField {
   BrickMap<float> heights_;
 };
 
+/// Of each sample, grid steps along its normal.
+Result<std::vector<float>> ways_to_films(std::vector<PatchPoint> samples, const BitVolume& inside, SlabSource& density,
+                                         Progress& progress) {
+  DUBSAR_ASSIGN(const ContactBand band, ContactBand::make(inside, std::move(samples), kReach, progress));
+  DUBSAR_ASSIGN(const BandDensity values, BandDensity::read(band, density, progress));
+  DUBSAR_ASSIGN(const Dips dips, find_dips(band, inside, values, progress));
+  DUBSAR_ASSIGN(const std::vector<ClaySide> side, ClayDivision({band, dips, {}, {}, {}}).sides(progress));
+  const HeightField heights(band, grounds_of(band, inside, dips, side));
+  std::vector<float> ways(band.samples.size());
+  parallel_for(static_cast<std::int64_t>(ways.size()), 256, [&](std::int64_t k) {
+    const auto i = static_cast<std::size_t>(k);
+    ways[i] = heights.at(band.samples[i].position);
+  });
+  return ways;
+}
+
+/// Returns the longest way. Samples at a rim leave others behind, from where they were on: there the surface's parts
+/// meet, wherever the film is.
+float move_along_normals(std::vector<PatchPoint>& samples, const std::vector<float>& ways, float scale) {
+  constexpr float kApart = 4.0f;
+  float longest = 0.0f;
+  std::vector<PatchPoint> left_behind;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const float way = scale * ways[i];
+    longest = std::max(longest, std::abs(way));
+    for (float at = 0.0f; samples[i].at_rim && at + 0.5f * kApart < std::abs(way); at += kApart)
+      left_behind.push_back(
+          {samples[i].position + std::copysign(at, way) * samples[i].normal, samples[i].normal, true});
+    samples[i].position += way * samples[i].normal;
+  }
+  samples.insert(samples.end(), left_behind.begin(), left_behind.end());
+  return longest;
+}
+
 }  // namespace
 
 Result<float> recentre_samples(std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
                                Progress& progress) {
+  DUBSAR_ASSIGN(const std::vector<float> ways, ways_to_films(samples, inside, density, progress));
+  return move_along_normals(samples, ways, 1.0f);
+}
+
+Result<float> recentre_samples_at_half(std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
+                                       Progress& progress) {
   HalfResolutionSource half(density);
-  const Dims dims = half.dims();
-  const BitVolume signs = halved_signs(inside, dims);
   std::vector<PatchPoint> at_half = samples;
   for (PatchPoint& sample : at_half) sample.position = halved(sample.position);
-  DUBSAR_ASSIGN(const ContactBand band, ContactBand::make(signs, std::move(at_half), kHalfReach, progress));
-  DUBSAR_ASSIGN(const BandDensity values, BandDensity::read(band, half, progress));
-  DUBSAR_ASSIGN(const Dips dips, find_dips(band, signs, values, progress));
-  DUBSAR_ASSIGN(const std::vector<ClaySide> side, ClayDivision({band, dips, {}, {}, {}}).sides(progress));
-  const HeightField heights(band, grounds_of(band, dips, side));
-  std::vector<float> ways(samples.size());
-  parallel_for(static_cast<std::int64_t>(samples.size()), 256, [&](std::int64_t k) {
-    const auto i = static_cast<std::size_t>(k);
-    ways[i] = 2.0f * heights.at(band.samples[i].position);
-    samples[i].position += ways[i] * samples[i].normal;
-  });
-  float longest = 0.0f;
-  for (const float way : ways) longest = std::max(longest, std::abs(way));
-  return longest;
+  DUBSAR_ASSIGN(const std::vector<float> ways,
+                ways_to_films(std::move(at_half), halved_signs(inside, half.dims()), half, progress));
+  return move_along_normals(samples, ways, 2.0f);
 }
 
 }  // namespace dubsar

@@ -23,7 +23,7 @@
 #include "core/extract/triangulate.h"
 #include "core/mesh/evidence.h"
 #include "core/parts/border_check.h"
-#include "core/parts/holes.h"
+#include "core/parts/fill/holes.h"
 #include "core/parts/untangle.h"
 
 namespace dubsar {
@@ -251,10 +251,9 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
     return report;
   }
   progress.begin("contact", 0, "step");
-  if (options.halve_first) {
-    DUBSAR_ASSIGN(const float moved, recentre_samples(samples, model.samples.signs, density, progress));
-    log_debug("contact: looked for up to {:.1f} steps from the smooth patch", moved);
-  }
+  const auto recentre = options.halve_first ? recentre_samples_at_half : recentre_samples;
+  DUBSAR_ASSIGN(const float moved, recentre(samples, model.samples.signs, density, progress));
+  log_debug("contact: looked for up to {:.1f} steps from the smooth patch", moved);
   DUBSAR_ASSIGN(ContactBand band, ContactBand::make(model.samples.signs, std::move(samples), options.reach, progress));
   DUBSAR_ASSIGN(const BandDensity values, BandDensity::read(band, density, progress));
   const std::optional<ClayContrast> clays = compare_clays(band, model.samples.signs, values, options.blur_variance);

@@ -14,8 +14,8 @@
 namespace dubsar {
 
 struct ContactOptions {
-  /// Whether films are looked for on a grid of half the density's resolution first, twice as far from the smooth patch:
-  /// at the scan's own resolution, where it may be farther from them than the reach.
+  /// Whether what the smooth patch has missed by more than the reach is looked for at half the density's resolution:
+  /// at the scan's own.
   bool halve_first = true;
   float reach = 12.0f;         ///< of the search from the smooth patch, grid steps: the deepest wedge
   float out_reach = 8.0f;      ///< the same into the envelope, where the two clays are not seen to differ

@@ -7,7 +7,7 @@
 #include "core/exa/exa_text.h"
 #include "core/exa/offsets/settle.h"
 #include "core/mesh/mesh_check.h"
-#include "core/parts/holes.h"
+#include "core/parts/fill/holes.h"
 #include "core/parts/segment.h"
 #include "core/parts/surface_model.h"
 #include "core/parts/untangle.h"

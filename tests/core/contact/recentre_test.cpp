@@ -14,10 +14,10 @@ constexpr float kPatch = 60.0f;  ///< height of the patch
 
 /// Clay of density 1 with noise, and a film: as dark as `depth` says in the middle of a Gauss across z = `film(x, y)`.
 template <class Film>
-Volume<float> clay(float depth, const Film& film, unsigned seed) {
+Volume<float> clay(float depth, const Film& film, unsigned seed, float deviation = 0.14f) {
   Volume<float> volume(Dims{kEdge, kEdge, kEdge});
   std::mt19937 random(seed);
-  std::normal_distribution<float> noise(0.0f, 0.14f);  // 17 dB
+  std::normal_distribution<float> noise(0.0f, deviation);  // 17 dB
   for (std::int64_t z = 0, i = 0; z < kEdge; ++z)
     for (std::int64_t y = 0; y < kEdge; ++y)
       for (std::int64_t x = 0; x < kEdge; ++x, ++i) {
@@ -38,15 +38,17 @@ struct Moved {
   float told = 0.0f;
   std::vector<PatchPoint> samples;
 };
-Moved moved(const Volume<float>& volume) {
+Moved moved(const Volume<float>& volume, decltype(recentre_samples)* recentre = recentre_samples_at_half,
+            std::vector<PatchPoint> samples = flat_patch()) {
   BitVolume inside(volume.dims);
-  for (std::int64_t z = 0; z < kEdge; ++z)
+  for (std::int64_t z = 0, i = 0; z < kEdge; ++z)
     for (std::int64_t y = 0; y < kEdge; ++y)
-      for (std::int64_t x = 0; x < kEdge; ++x) inside.set(x, y, z, true);
+      for (std::int64_t x = 0; x < kEdge; ++x, ++i)
+        inside.set(x, y, z, volume.voxels[static_cast<std::size_t>(i)] > 0.0f);
   VolumeSource source(volume);
   SilentProgress progress;
-  Moved out{0.0f, flat_patch()};
-  out.told = recentre_samples(out.samples, inside, source, progress).value();
+  Moved out{0.0f, std::move(samples)};
+  out.told = recentre(out.samples, inside, source, progress).value();
   return out;
 }
 
@@ -63,6 +65,16 @@ TEST(RecentreSamples, FollowsAFilmFarFromThePatch) {
       ASSERT_NEAR(s.position.z, tilted(s.position.x, s.position.y), 1.5f) << s.position.x << " " << s.position.y;
     }
   EXPECT_NEAR(found.told, 13.0f, 4.0f);
+}
+
+TEST(RecentreSamples, OnAGridThatIsHalvedAlreadyItLooksTwelveStepsFar) {
+  const auto tilted = [](float x, float y) { return kPatch + 7.0f + 0.05f * (x - 64.0f) - 0.03f * (y - 64.0f); };
+  const Moved found = moved(clay(0.13f, tilted, 53, 0.06f), recentre_samples);  // the noise that 2:1 leaves of 17 dB
+  for (const PatchPoint& s : found.samples)
+    if (amid(s)) {
+      ASSERT_NEAR(s.position.z, tilted(s.position.x, s.position.y), 1.5f) << s.position.x << " " << s.position.y;
+    }
+  EXPECT_NEAR(found.told, 10.8f, 2.0f) << "in a corner";
 }
 
 TEST(RecentreSamples, FollowsASlopeToTheRim) {
@@ -90,6 +102,42 @@ TEST(RecentreSamples, StaysOnTheGroundWhereWedgesGoDown) {
     if (amid(s)) {
       ASSERT_NEAR(s.position.z, ground, 1.5f) << s.position.x << " " << s.position.y;
     }
+}
+
+TEST(RecentreSamples, GoesToAGapOfAirThatIsWiderThanThePatch) {
+  constexpr std::int64_t kLow = 62, kHigh = 76;  // all that is seen of where the two touch
+  Volume<float> volume = clay(
+      0.0f, [](float, float) { return 0.0f; }, 44);
+  for (std::int64_t z = kLow; z < kHigh; ++z)
+    for (std::int64_t y = 4; y < 124; ++y)
+      for (std::int64_t x = 30; x < 98; ++x)
+        volume.voxels[static_cast<std::size_t>((z * kEdge + y) * kEdge + x)] = -1.0f;
+  constexpr double kMiddle = 0.5 * static_cast<double>(kLow + kHigh - 1);
+  double sum = 0.0, count = 0.0;
+  for (const PatchPoint& s : moved(volume).samples) {
+    if (!amid(s)) continue;
+    sum += static_cast<double>(s.position.z);
+    count += 1.0;
+  }
+  EXPECT_NEAR(sum / count, kMiddle, 2.5);
+}
+
+TEST(RecentreSamples, LeavesSamplesOnTheWayFromARim) {
+  const auto film = [](float, float) { return kPatch + 11.0f; };
+  std::vector<PatchPoint> samples = flat_patch();
+  for (PatchPoint& s : samples) s.at_rim = s.position.x > 70.0f && s.position.x < 71.0f;
+  const std::size_t before = samples.size();
+  const Moved found = moved(clay(0.3f, film, 45), recentre_samples_at_half, std::move(samples));
+  ASSERT_GT(found.samples.size(), before);
+  float lowest = 1e9f, farthest = 0.0f;
+  for (std::size_t i = before; i < found.samples.size(); ++i) {
+    const PatchPoint& s = found.samples[i];
+    EXPECT_TRUE(s.at_rim);
+    lowest = std::min(lowest, s.position.z);
+    farthest = std::max(farthest, s.position.z);
+  }
+  EXPECT_FLOAT_EQ(lowest, kPatch) << "where the rim is";
+  EXPECT_GT(farthest, kPatch + 7.0f) << "and no gap of more than four steps on the way";
 }
 
 TEST(RecentreSamples, StaysWhereNothingShows) {

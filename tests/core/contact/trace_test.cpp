@@ -37,6 +37,7 @@ struct TracedScan {
 struct Grid {
   Dims scan{224, 128, 208};
   Detail detail = Detail::kScan;
+  double glued = 0.2;  ///< share of the tablet
 };
 constexpr Grid kHalved{{384, 208, 360}, Detail::kHalf};
 
@@ -47,7 +48,7 @@ TracedScan traced_scan(phantom::Contact contact, double film, std::uint64_t seed
   wanted.seed = seed;
   wanted.contact = contact;
   wanted.film_vox = film;
-  wanted.contact_share = 0.2;
+  wanted.contact_share = grid.glued;
   wanted.written = written;
   const auto path = std::filesystem::temp_directory_path() / fmt::format("dubsar_trace_{}_{}.h5", ::getpid(), seed);
   SilentProgress progress;
@@ -202,6 +203,46 @@ TEST(TraceContact, PocketsBelongToTheTabletAtHalfTheResolution) {
   const phantom::CaseScore pockets = made.score().cases[static_cast<std::size_t>(phantom::WedgeCase::kPocket)];
   ASSERT_GT(pockets.wedges, 3);
   EXPECT_GE(pockets.shown_fraction(), 0.9);
+}
+
+/// Distance from a place to the tablet's surface along the axis on which it is nearest, voxels, positive outside. The
+/// truth itself says no more than a few.
+double far_distance(const phantom::Phantom& truth, const glm::dvec3& at) {
+  constexpr double kFarthest = 60.0, kSure = 3.0;
+  const double near = truth.tablet_distance(at);
+  if (std::abs(near) < kSure) return near;
+  double best = kFarthest;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double sense : {-1.0, 1.0})
+      for (double way = kSure; way < best; way += 1.0) {
+        glm::dvec3 there = at;
+        there[axis] += sense * way;
+        if ((truth.tablet_distance(there) > 0.0) != (near > 0.0)) best = way;
+      }
+  return near > 0.0 ? best : -best;
+}
+
+TEST(TraceContact, SmoothPatchesOverAThirdOfATabletStayNearIt) {
+  double sum = 0.0, squares = 0.0;
+  std::int64_t count = 0;
+  for (const std::uint64_t seed : {61211u, 61223u}) {
+    const TracedScan made =
+        traced_scan(phantom::Contact::kPressed, 0.5, seed, false, true, {{448, 256, 416}, Detail::kScan, 0.33});
+    const TriMesh tablet = made.body("tablet");
+    for (std::size_t i = 0; i < tablet.positions.size(); i += 7) {
+      if (tablet.evidence[i] != evidence_byte(Evidence::kInferred)) continue;
+      const double off = far_distance(*made.truth, tablet.frame.input_vox_from_grid(glm::dvec3(tablet.positions[i])));
+      sum += off;
+      squares += off * off;
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 2000);
+  const auto all = static_cast<double>(count);
+  RecordProperty("mean", fmt::format("{:.2f}", sum / all));
+  RecordProperty("rms", fmt::format("{:.2f}", std::sqrt(squares / all)));
+  EXPECT_LT(std::abs(sum / all), 1.5);
+  EXPECT_LT(std::sqrt(squares / all), 4.0);
 }
 
 }  // namespace

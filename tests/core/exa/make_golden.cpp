@@ -11,7 +11,7 @@
 #include "core/exa/offsets/settle.h"
 #include "core/exa/patches/patches.h"
 #include "core/extract/extract.h"
-#include "core/parts/holes.h"
+#include "core/parts/fill/holes.h"
 #include "core/relief/curvature/shape_class.h"
 #include "core/relief/smoothing/smooth.h"
 #include "tests/core/exa/ring_patch.h"

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "core/exa/patches/patch_disk.h"
-#include "core/parts/holes.h"
+#include "core/parts/fill/holes.h"
 #include "tests/core/exa/exa_test_models.h"
 #include "tests/core/exa/ring_patch.h"
 

@@ -1,4 +1,4 @@
-#include "core/parts/loop_fill.h"
+#include "core/parts/fill/loop_fill.h"
 
 #include <gtest/gtest.h>
 

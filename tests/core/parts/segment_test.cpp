@@ -7,7 +7,7 @@
 #include "core/base/system/parallel.h"
 #include "core/mesh/mesh_check.h"
 #include "core/parts/face_roles.h"
-#include "core/parts/holes.h"
+#include "core/parts/fill/holes.h"
 #include "tests/core/parts/grid_scene.h"
 
 namespace dubsar {

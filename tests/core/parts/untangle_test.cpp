@@ -9,7 +9,7 @@
 #include "core/mesh/evidence.h"
 #include "core/mesh/intersections.h"
 #include "core/mesh/mesh_check.h"
-#include "core/parts/holes.h"
+#include "core/parts/fill/holes.h"
 #include "core/parts/leash.h"
 #include "core/parts/segment.h"
 #include "tests/core/parts/grid_scene.h"

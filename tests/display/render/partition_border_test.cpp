@@ -11,7 +11,7 @@
 #include "core/exa/offsets/settle.h"
 #include "core/mesh/simplify.h"
 #include "core/mesh_io/mesh_io.h"
-#include "core/parts/holes.h"
+#include "core/parts/fill/holes.h"
 #include "core/parts/segment.h"
 #include "core/pipeline/model_occlusion.h"
 #include "display/render/mesh/gpu_mesh.h"

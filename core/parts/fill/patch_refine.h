@@ -9,7 +9,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
-#include "core/parts/loop_fill.h"
+#include "core/parts/fill/loop_fill.h"
 
 namespace dubsar {
 

@@ -1,4 +1,4 @@
-#include "core/parts/holes.h"
+#include "core/parts/fill/holes.h"
 
 #include <algorithm>
 #include <array>
@@ -11,13 +11,13 @@
 #include "core/mesh/edge_uses.h"
 #include "core/parts/border_loops.h"
 #include "core/parts/face_graph.h"
+#include "core/parts/fill/rim_normals.h"
 
 namespace dubsar {
 namespace {
 
 constexpr std::uint32_t kNoFace = 0xffffffffu;
 constexpr std::int64_t kHoleGrain = 1 << 14;
-constexpr float kLeastSum = 0.5f;  ///< shortest sum of two unit normals whose mean says something
 
 std::uint64_t key(std::uint32_t a, std::uint32_t b) {
   return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
@@ -79,48 +79,12 @@ class HoleFiller {
         });
   }
 
-  /// Mean normal of the part's faces within some rings of a face: the very rim is rounded.
-  glm::vec3 normal_behind(std::uint32_t face) const {
-    constexpr std::size_t kMostFaces = 60;  // about 4 rings on one side of a border
-    std::vector<std::uint32_t> queue{face};
-    glm::vec3 sum(0.0f);
-    for (std::size_t i = 0; i < queue.size(); ++i) {
-      const std::uint32_t f = queue[i];
-      sum += graph_.area[f] * graph_.normal[f];
-      for (std::uint32_t s = graph_.first_side[f]; s < graph_.first_side[f + 1] && queue.size() < kMostFaces; ++s) {
-        const std::uint32_t g = graph_.neighbour[s];
-        if (g == FaceGraph::kNone || group_[model_.quad_partition[g]] != group_[model_.quad_partition[face]]) continue;
-        if (std::find(queue.begin(), queue.end(), g) == queue.end()) queue.push_back(g);
-      }
-    }
-    const float length = glm::length(sum);
-    return length > 0.0f ? sum / length : glm::vec3(0.0f);
-  }
-
-  /// Normal that a patch continues beyond an edge of its rim. Where tablet and envelope meet at the end of a gap, both
-  /// surfaces lean towards each other, and what one of them continues runs into the other: the mean of the tablet's
-  /// normal and the one opposite the envelope's does not lean.
-  glm::vec3 rim_normal(const BorderEdge& edge) const {
-    if (edge.face == kNoFace) return glm::vec3(0.0f);
-    const glm::vec3 near = normal_behind(edge.face);
-    const auto is = [&](PartitionId id, PartitionKind kind) { return model_.partitions.find(id)->kind == kind; };
-    if (!is(edge.left, PartitionKind::kTablet) || !is(edge.right, PartitionKind::kEnvelopeInside)) return near;
-    const glm::vec3 both = near - normal_behind(edge.beyond);
-    return glm::length(both) > kLeastSum ? glm::normalize(both) : near;
-  }
-
   /// A hole is walked against the sense of the part's border, so that the patch continues the surface.
   Task make_task(const std::vector<BorderEdge>& edges, const std::vector<std::uint32_t>& loop) const {
     Task task;
-    for (auto e = loop.rbegin(); e != loop.rend(); ++e) {
-      task.vertices.push_back(edges[*e].to);
-      task.rim_normals.push_back(rim_normal(edges[*e]));
-    }
-    for (const glm::vec3& normal : task.rim_normals)
-      if (normal == glm::vec3(0.0f)) {
-        task.rim_normals.clear();
-        break;
-      }
+    for (auto e = loop.rbegin(); e != loop.rend(); ++e) task.vertices.push_back(edges[*e].to);
+    task.rim_normals = rim_normals(model_, graph_, group_, edges, loop);
+    std::reverse(task.rim_normals.begin(), task.rim_normals.end());
     return task;
   }
 

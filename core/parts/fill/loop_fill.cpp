@@ -1,11 +1,11 @@
-#include "core/parts/loop_fill.h"
+#include "core/parts/fill/loop_fill.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
 
-#include "core/parts/patch_refine.h"
+#include "core/parts/fill/patch_refine.h"
 
 namespace dubsar {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/parts/patch_refine.h"
+#include "core/parts/fill/patch_refine.h"
 
 #include <algorithm>
 #include <cmath>
