@@ -115,51 +115,69 @@ std::vector<std::uint32_t> brick_starts(const ContactBand& band) {
   return starts;
 }
 
+using BrickPlace = std::array<std::int64_t, 3>;
+
+/// The bricks of a band and `around` more on all sides, layer by layer.
+std::vector<BrickPlace> bricks_around(const ContactBand& band, std::int64_t around) {
+  const Dims bricks = band.node_at.bricks();
+  std::vector<bool> wanted(static_cast<std::size_t>(bricks.count()), false);
+  const auto place = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+    return static_cast<std::size_t>((z * bricks.y + y) * bricks.x + x);
+  };
+  std::vector<BrickPlace> places;
+  const auto each_brick = [&](const auto& visit) {
+    for (std::int64_t z = 0; z < bricks.z; ++z)
+      for (std::int64_t y = 0; y < bricks.y; ++y)
+        for (std::int64_t x = 0; x < bricks.x; ++x) visit(x, y, z);
+  };
+  each_brick([&](std::int64_t bx, std::int64_t by, std::int64_t bz) {
+    if (!band.node_at.has_brick(bx, by, bz)) return;
+    for (std::int64_t z = std::max<std::int64_t>(bz - around, 0); z <= std::min(bz + around, bricks.z - 1); ++z)
+      for (std::int64_t y = std::max<std::int64_t>(by - around, 0); y <= std::min(by + around, bricks.y - 1); ++y)
+        for (std::int64_t x = std::max<std::int64_t>(bx - around, 0); x <= std::min(bx + around, bricks.x - 1); ++x)
+          wanted[place(x, y, z)] = true;
+  });
+  each_brick([&](std::int64_t x, std::int64_t y, std::int64_t z) {
+    if (wanted[place(x, y, z)]) places.push_back({x, y, z});
+  });
+  return places;
+}
+
 }  // namespace
 
-Result<BandDensity> BandDensity::read(const ContactBand& band, SlabSource& source, Progress& progress) {
+bool BandDensity::covers(const ContactBand& band) const {
+  const std::vector<BrickPlace> places = bricks_around(band, 1);
+  return values_.dims() == band.node_at.dims() && std::all_of(places.begin(), places.end(), [&](const BrickPlace& b) {
+           return values_.has_brick(b[0], b[1], b[2]);
+         });
+}
+
+Result<BandDensity> BandDensity::read(const ContactBand& band, SlabSource& source, Progress& progress, int around) {
   const Dims d = source.dims();
   DUBSAR_CHECK(d == band.node_at.dims());
-  const Dims bricks = band.node_at.bricks();
-  const auto wanted = [&](std::int64_t bx, std::int64_t by, std::int64_t bz) {
-    for (std::int64_t k = 0; k < 27; ++k) {
-      const std::int64_t x = bx + k % 3 - 1, y = by + k / 3 % 3 - 1, z = bz + k / 9 - 1;
-      if (x >= 0 && y >= 0 && z >= 0 && x < bricks.x && y < bricks.y && z < bricks.z && band.node_at.has_brick(x, y, z))
-        return true;
-    }
-    return false;
-  };
-  BrickMap<float> raw(d, 0.0f);
-  std::vector<float> slab;
-  progress.begin("contact density", bricks.z, "slab");
-  for (std::int64_t bz = 0; bz < bricks.z; ++bz) {
-    if (progress.cancelled()) return cancelled_error();
-    const std::int64_t z0 = bz * kEdge, z1 = std::min(z0 + kEdge, d.z);
-    bool loaded = false;
-    for (std::int64_t by = 0; by < bricks.y; ++by)
-      for (std::int64_t bx = 0; bx < bricks.x; ++bx) {
-        if (!wanted(bx, by, bz)) continue;
-        if (!loaded) {
-          slab.resize(static_cast<std::size_t>((z1 - z0) * d.slice()));
-          DUBSAR_TRY(source.read(z0, z1, slab));
-          loaded = true;
-        }
-        for (std::int64_t z = z0; z < z1; ++z)
-          for (std::int64_t y = by * kEdge; y < std::min((by + 1) * kEdge, d.y); ++y)
-            for (std::int64_t x = bx * kEdge; x < std::min((bx + 1) * kEdge, d.x); ++x)
-              raw.at(x, y, z) = slab[static_cast<std::size_t>((z - z0) * d.slice() + y * d.x + x)];
-      }
-    progress.advance(1);
+  const std::vector<BrickPlace> places = bricks_around(band, around);
+  BrickMap<float> raw(d, 0.0f), smooth(d, 0.0f);
+  for (const auto& [bx, by, bz] : places) {  // all are there before threads write
+    raw.add_brick(bx, by, bz);
+    smooth.add_brick(bx, by, bz);
   }
-  BrickMap<float> smooth(d, 0.0f);
-  std::vector<std::array<std::int64_t, 3>> places;
-  for (std::int64_t bz = 0; bz < bricks.z; ++bz)
-    for (std::int64_t by = 0; by < bricks.y; ++by)
-      for (std::int64_t bx = 0; bx < bricks.x; ++bx)
-        if (raw.has_brick(bx, by, bz)) {
-          places.push_back({bx, by, bz});
-          smooth.at(bx * kEdge, by * kEdge, bz * kEdge) = 0.0f;  // all bricks are there before the threads write
-        }
+  std::vector<float> slab;
+  progress.begin("contact density", static_cast<std::int64_t>(places.size()), "brick");
+  for (std::size_t first = 0, end = 0; first < places.size(); first = end) {
+    if (progress.cancelled()) return cancelled_error();
+    while (end < places.size() && places[end][2] == places[first][2]) ++end;
+    const std::int64_t z0 = places[first][2] * kEdge, z1 = std::min(z0 + kEdge, d.z);
+    slab.resize(static_cast<std::size_t>((z1 - z0) * d.slice()));
+    DUBSAR_TRY(source.read(z0, z1, slab));
+    parallel_for(static_cast<std::int64_t>(end - first), 16, [&](std::int64_t i) {
+      const auto [bx, by, bz] = places[first + static_cast<std::size_t>(i)];
+      for (std::int64_t z = z0; z < z1; ++z)
+        for (std::int64_t y = by * kEdge; y < std::min((by + 1) * kEdge, d.y); ++y)
+          for (std::int64_t x = bx * kEdge; x < std::min((bx + 1) * kEdge, d.x); ++x)
+            raw.at(x, y, z) = slab[static_cast<std::size_t>((z - z0) * d.slice() + y * d.x + x)];
+    });
+    progress.advance(static_cast<std::int64_t>(end - first));
+  }
   parallel_for(static_cast<std::int64_t>(places.size()), 8, [&](std::int64_t i) {
     const auto [bx, by, bz] = places[static_cast<std::size_t>(i)];
     using Raw = Block<1>;

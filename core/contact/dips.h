@@ -14,9 +14,12 @@ namespace dubsar {
 /// Density at and around the points of a band, low-passed by [1 2 1]/4 per axis.
 class BandDensity {
  public:
-  /// Reads the slices that the band needs and keeps some bricks of them. `source` has the band's grid, unfiltered: the
-  /// less it was smoothed, the more is left of a film. Errors of the source, kCancelled.
-  static Result<BandDensity> read(const ContactBand& band, SlabSource& source, Progress& progress);
+  /// Reads the slices that the band needs and keeps its bricks of 8x8x8 points and `around` more on all sides. `source`
+  /// has the band's grid, unfiltered: the less it was smoothed, the more is left of a film. Errors of the source,
+  /// kCancelled.
+  static Result<BandDensity> read(const ContactBand& band, SlabSource& source, Progress& progress, int around = 1);
+  /// Is all there that read() would have read for that band of the same grid?
+  bool covers(const ContactBand& band) const;
   float get(std::int64_t x, std::int64_t y, std::int64_t z) const noexcept { return values_.get(x, y, z); }
 
  private:

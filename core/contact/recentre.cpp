@@ -199,11 +199,15 @@ class HeightField {
   BrickMap<float> heights_;
 };
 
-/// Of each sample, grid steps along its normal.
-Result<std::vector<float>> ways_to_films(std::vector<PatchPoint> samples, const BitVolume& inside, SlabSource& density,
-                                         Progress& progress) {
+struct Ways {
+  std::vector<float> of_sample;  ///< grid steps along its normal
+  BandDensity density;
+};
+
+Result<Ways> ways_to_films(std::vector<PatchPoint> samples, const BitVolume& inside, SlabSource& density,
+                           int bricks_around, Progress& progress) {
   DUBSAR_ASSIGN(const ContactBand band, ContactBand::make(inside, std::move(samples), kReach, progress));
-  DUBSAR_ASSIGN(const BandDensity values, BandDensity::read(band, density, progress));
+  DUBSAR_ASSIGN(BandDensity values, BandDensity::read(band, density, progress, bricks_around));
   DUBSAR_ASSIGN(const Dips dips, find_dips(band, inside, values, progress));
   DUBSAR_ASSIGN(const std::vector<ClaySide> side, ClayDivision({band, dips, {}, {}, {}}).sides(progress));
   const HeightField heights(band, grounds_of(band, inside, dips, side));
@@ -212,7 +216,7 @@ Result<std::vector<float>> ways_to_films(std::vector<PatchPoint> samples, const 
     const auto i = static_cast<std::size_t>(k);
     ways[i] = heights.at(band.samples[i].position);
   });
-  return ways;
+  return Ways{std::move(ways), std::move(values)};
 }
 
 /// Returns the longest way. Samples at a rim leave others behind, from where they were on: there the surface's parts
@@ -235,20 +239,21 @@ float move_along_normals(std::vector<PatchPoint>& samples, const std::vector<flo
 
 }  // namespace
 
-Result<float> recentre_samples(std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
-                               Progress& progress) {
-  DUBSAR_ASSIGN(const std::vector<float> ways, ways_to_films(samples, inside, density, progress));
-  return move_along_normals(samples, ways, 1.0f);
+Result<Recentred> recentre_samples(std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
+                                   Progress& progress) {
+  constexpr int kRoom = 3;  // bricks: most samples move less than the reach, and are looked around as far then
+  DUBSAR_ASSIGN(Ways ways, ways_to_films(samples, inside, density, kRoom, progress));
+  return Recentred{move_along_normals(samples, ways.of_sample, 1.0f), std::move(ways.density)};
 }
 
-Result<float> recentre_samples_at_half(std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
-                                       Progress& progress) {
+Result<Recentred> recentre_samples_at_half(std::vector<PatchPoint>& samples, const BitVolume& inside,
+                                           SlabSource& density, Progress& progress) {
   HalfResolutionSource half(density);
   std::vector<PatchPoint> at_half = samples;
   for (PatchPoint& sample : at_half) sample.position = halved(sample.position);
-  DUBSAR_ASSIGN(const std::vector<float> ways,
-                ways_to_films(std::move(at_half), halved_signs(inside, half.dims()), half, progress));
-  return move_along_normals(samples, ways, 2.0f);
+  DUBSAR_ASSIGN(const Ways ways,
+                ways_to_films(std::move(at_half), halved_signs(inside, half.dims()), half, 1, progress));
+  return Recentred{move_along_normals(samples, ways.of_sample, 2.0f), std::nullopt};
 }
 
 }  // namespace dubsar

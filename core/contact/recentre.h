@@ -2,27 +2,34 @@
 // The smooth patches over a large contact miss it: fairing knows the rim and nothing of the middle. Where a film shows,
 // the guess moves to it before it is looked at closely.
 
+#include <optional>
 #include <vector>
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/contact/band.h"
+#include "core/contact/dips.h"
 #include "core/extract/bit_volume.h"
 #include "core/volume/slab_source.h"
 
 namespace dubsar {
 
+struct Recentred {
+  float longest = 0.0f;                ///< way of a sample, grid steps
+  std::optional<BandDensity> density;  ///< what was read of the samples' grid: it may be enough for where they are now
+};
+
 /// Moves samples of the patches along their normals to the ground of the contact, from which wedges go down: the clay
 /// within 12 grid steps of them is divided, and the heights of what divides it, of its upper part, are averaged over
 /// some 10 steps. Samples where no film shows move as far as those around them that know better, less with the
-/// distance. Returns the longest way, grid steps. `inside`: the signs of the grid; `density`: the scan on it,
-/// unfiltered. Deterministic for any thread count. Errors of `density`, kCancelled.
-Result<float> recentre_samples(std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
-                               Progress& progress);
+/// distance. `inside`: the signs of the grid; `density`: the scan on it, unfiltered. Deterministic for any thread
+/// count. Errors of `density`, kCancelled.
+Result<Recentred> recentre_samples(std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
+                                   Progress& progress);
 
 /// The same on a grid of half the resolution, for that of the scan: twice as far, an eighth of the points. About a
-/// third of what the contact takes afterwards.
-Result<float> recentre_samples_at_half(std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
-                                       Progress& progress);
+/// third of what the contact takes afterwards. Nothing is kept of what was read.
+Result<Recentred> recentre_samples_at_half(std::vector<PatchPoint>& samples, const BitVolume& inside,
+                                           SlabSource& density, Progress& progress);
 
 }  // namespace dubsar

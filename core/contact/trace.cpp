@@ -235,6 +235,13 @@ Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const Contac
   return {};
 }
 
+/// What is `known` of the density, where that is enough.
+Result<BandDensity> density_of(const ContactBand& band, std::optional<BandDensity> known, SlabSource& density,
+                               Progress& progress) {
+  if (known && known->covers(band)) return std::move(*known);
+  return BandDensity::read(band, density, progress);
+}
+
 }  // namespace
 
 Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, const ContactOptions& options,
@@ -252,10 +259,10 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   }
   progress.begin("contact", 0, "step");
   const auto recentre = options.halve_first ? recentre_samples_at_half : recentre_samples;
-  DUBSAR_ASSIGN(const float moved, recentre(samples, model.samples.signs, density, progress));
-  log_debug("contact: looked for up to {:.1f} steps from the smooth patch", moved);
+  DUBSAR_ASSIGN(Recentred recentred, recentre(samples, model.samples.signs, density, progress));
+  log_debug("contact: looked for up to {:.1f} steps from the smooth patch", recentred.longest);
   DUBSAR_ASSIGN(ContactBand band, ContactBand::make(model.samples.signs, std::move(samples), options.reach, progress));
-  DUBSAR_ASSIGN(const BandDensity values, BandDensity::read(band, density, progress));
+  DUBSAR_ASSIGN(const BandDensity values, density_of(band, std::move(recentred.density), density, progress));
   const std::optional<ClayContrast> clays = compare_clays(band, model.samples.signs, values, options.blur_variance);
   if (!clays) band.trim_envelope(options.out_reach);
   report.points = static_cast<std::int64_t>(band.nodes.size());

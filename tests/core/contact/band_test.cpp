@@ -5,20 +5,22 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "core/contact/dips.h"
+
 namespace dubsar {
 namespace {
 
 constexpr int kEdge = 40;
 constexpr float kPlane = 19.5f;
 
-ContactBand flat_band(float reach) {
+ContactBand flat_band(float reach, float plane = kPlane) {
   BitVolume inside(Dims{kEdge, kEdge, kEdge});
   for (int z = 0; z < kEdge; ++z)
     for (int y = 0; y < kEdge; ++y)
       for (int x = 0; x < kEdge; ++x) inside.set(x, y, z, true);
   std::vector<PatchPoint> samples;
   for (int y = 14; y < 26; ++y)
-    for (int x = 14; x < 26; ++x) samples.push_back({{x, y, kPlane}, {0.0f, 0.0f, 1.0f}});
+    for (int x = 14; x < 26; ++x) samples.push_back({{x, y, plane}, {0.0f, 0.0f, 1.0f}});
   SilentProgress progress;
   return ContactBand::make(inside, std::move(samples), reach, progress).value();
 }
@@ -42,6 +44,25 @@ TEST(ContactBand, TrimmedReachesLessIntoTheEnvelopeAlone) {
   EXPECT_LT(expected, whole.nodes.size());
   EXPECT_EQ(band.reach_at(-1.0f), 10.0f);
   EXPECT_EQ(band.reach_at(1.0f), 6.0f);
+}
+
+TEST(BandDensity, KeptWithRoomIsWhatWouldBeReadForABandThatHasMoved) {
+  Volume<float> volume(Dims{kEdge, kEdge, kEdge});
+  for (std::int64_t i = 0; i < volume.voxels.size(); ++i)
+    volume.voxels[static_cast<std::size_t>(i)] = static_cast<float>(i * 7919 % 1009);
+  VolumeSource source(volume);
+  SilentProgress progress;
+  const ContactBand before = flat_band(3.0f), after = flat_band(3.0f, kPlane + 7.0f);
+  EXPECT_FALSE(BandDensity::read(before, source, progress).value().covers(after));
+  const BandDensity kept = BandDensity::read(before, source, progress, 2).value();
+  ASSERT_TRUE(kept.covers(after));
+  const BandDensity read = BandDensity::read(after, source, progress).value();
+  constexpr int kLooks = 6;  // as far as dips look from a node
+  for (const ContactBand::Node& node : after.nodes)
+    for (int z = node.z - kLooks; z <= node.z + kLooks; z += 3)
+      for (int x = node.x - kLooks; x <= node.x + kLooks; x += 2)
+        ASSERT_EQ(kept.get(x, node.y, z), read.get(x, node.y, z)) << x << ' ' << node.y << ' ' << z;
+  EXPECT_NE(read.get(20, 20, 26), 0.0f);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ TEST(Detail, AutoTakesTheScansResolutionWhereTimeAndMemoryAllowAndSaysWhy) {
   const DetailChoice narrow = choose_detail(Detail::kAuto, {512, 272, 472}, kGib / 10 * 9);
   EXPECT_EQ(narrow.detail, Detail::kHalf);
   EXPECT_EQ(narrow.why,
-            "the scan's resolution takes about 932 MiB, more than four fifths of the 922 MiB that are left");
+            "the scan's resolution takes about 746 MiB, more than four fifths of the 922 MiB that are left");
   const DetailChoice long_run = choose_detail(Detail::kAuto, {1871, 999, 1723}, 512 * kGib);
   EXPECT_EQ(long_run.detail, Detail::kHalf);
   EXPECT_NE(long_run.why.find("3221 million voxels"), std::string::npos) << long_run.why;
