@@ -25,7 +25,7 @@ constexpr std::size_t kLeastCrossings = 24;
 constexpr float kAcross = 0.6f;  ///< cosine from which on a face lies along the contact
 /// Quantiles of heights whose mean is the ground: below lie wedges, above what noise lifted.
 constexpr float kGroundFrom = 0.5f, kGroundTo = 0.85f;
-constexpr float kAverage = 10.0f;  ///< deviation of the average over cubes, steps of the halved grid
+constexpr float kAverage = 10.0f;  ///< deviation of the average over cubes, grid steps
 /// Mean strength of dips above that of mere clay from which a cube begins to be believed, and is believed in full.
 constexpr float kLeastBelief = 0.8f, kFullBelief = 1.1f;
 constexpr float kAirBelief = 2.0f;       ///< the same of air between tablet and envelope

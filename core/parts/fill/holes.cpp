@@ -16,7 +16,6 @@
 namespace dubsar {
 namespace {
 
-constexpr std::uint32_t kNoFace = 0xffffffffu;
 constexpr std::int64_t kHoleGrain = 1 << 14;
 
 std::uint64_t key(std::uint32_t a, std::uint32_t b) {
@@ -157,7 +156,7 @@ class HoleFiller {
           if (!alone[3 * t + i]) continue;
           std::uint32_t from = patch.triangles[t][i], to = patch.triangles[t][(i + 1) % 3];
           if (patch.reverse_partition == id) std::swap(from, to);
-          edges.push_back({from, to, kNoFace, id, id, kNoFace});
+          edges.push_back({from, to, BorderEdge::kNoFace, id, id, BorderEdge::kNoFace});
         }
     }
   }

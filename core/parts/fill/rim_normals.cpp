@@ -10,7 +10,6 @@
 namespace dubsar {
 namespace {
 
-constexpr std::uint32_t kNoFace = 0xffffffffu;
 constexpr double kLeastFaces = 60.0;    ///< about 4 rings on one side of a border
 constexpr double kSurfaceShare = 4e-4;  ///< of all faces: farther from the rim a tablet has bent
 constexpr float kLeastSum = 0.5f;       ///< shortest sum of two unit normals whose mean says something
@@ -30,7 +29,7 @@ class Behind {
       : model_(model), graph_(graph), bodies_(bodies), most_(faces), seen_(graph.faces(), false) {}
 
   glm::vec3 continued(const BorderEdge& edge) {
-    if (edge.face == kNoFace) return glm::vec3(0.0f);
+    if (edge.face == BorderEdge::kNoFace) return glm::vec3(0.0f);
     const glm::vec3 near = mean_normal(edge.face);
     const auto is = [&](PartitionId id, PartitionKind kind) { return model_.partitions.find(id)->kind == kind; };
     if (!is(edge.left, PartitionKind::kTablet) || !is(edge.right, PartitionKind::kEnvelopeInside)) return near;
@@ -74,7 +73,7 @@ class Behind {
 std::vector<glm::vec3> rim_normals(const SurfaceModel& model, const FaceGraph& graph,
                                    std::span<const PartitionId> bodies, std::span<const BorderEdge> edges,
                                    std::span<const std::uint32_t> loop) {
-  constexpr double kSteps = 8.0;  // of a means's radius from one that is found to the next; between, they are mixed
+  constexpr double kSteps = 8.0;  // of a mean's radius from one that is found to the next; between, they are mixed
   constexpr std::int64_t kGrain = 8;
   const std::size_t faces = faces_behind(loop.size(), graph.faces());
   const auto stride = static_cast<std::size_t>(std::max(1.0, std::sqrt(static_cast<double>(faces)) / kSteps));

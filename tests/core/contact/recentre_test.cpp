@@ -104,7 +104,7 @@ TEST(RecentreSamples, StaysOnTheGroundWhereWedgesGoDown) {
     }
 }
 
-TEST(RecentreSamples, GoesToAGapOfAirThatIsWiderThanThePatch) {
+TEST(RecentreSamples, GoesToTheMiddleOfAGapOfAir) {
   constexpr std::int64_t kLow = 62, kHigh = 76;  // all that is seen of where the two touch
   Volume<float> volume = clay(
       0.0f, [](float, float) { return 0.0f; }, 44);

@@ -154,26 +154,35 @@ TEST(TraceContact, PocketsBelongToTheTablet) {
   EXPECT_GE(pockets.shown_fraction(), 0.9);
 }
 
-TEST(TraceContact, SmoothPatchesLeanToNeitherSide) {
+/// Of places from the surface, voxels.
+struct Offsets {
   double sum = 0.0, squares = 0.0;
   std::int64_t count = 0;
+  void add(double off) {
+    sum += off;
+    squares += off * off;
+    ++count;
+  }
+  double mean() const { return sum / static_cast<double>(count); }
+  double rms() const { return std::sqrt(squares / static_cast<double>(count)); }
+};
+
+TEST(TraceContact, SmoothPatchesLeanToNeitherSide) {
+  Offsets offsets;
   for (const std::uint64_t seed : {60703u, 60719u, 60727u}) {
     const TracedScan made = traced_scan(phantom::Contact::kPressed, 0.5, seed, false);
     const TriMesh tablet = made.body("tablet");
     for (std::size_t i = 0; i < tablet.positions.size(); ++i) {
       if (tablet.evidence[i] != evidence_byte(Evidence::kInferred)) continue;
       const double off = made.truth->tablet_distance(tablet.frame.input_vox_from_grid(glm::dvec3(tablet.positions[i])));
-      sum += off;
-      squares += off * off;
-      ++count;
+      offsets.add(off);
     }
   }
-  ASSERT_GT(count, 5000);
-  const auto all = static_cast<double>(count);
-  RecordProperty("mean", fmt::format("{:.2f}", sum / all));
-  RecordProperty("rms", fmt::format("{:.2f}", std::sqrt(squares / all)));
-  EXPECT_LT(std::abs(sum / all), 0.5) << "towards the envelope, voxels";
-  EXPECT_LT(std::sqrt(squares / all), 1.6);
+  ASSERT_GT(offsets.count, 5000);
+  RecordProperty("mean", fmt::format("{:.2f}", offsets.mean()));
+  RecordProperty("rms", fmt::format("{:.2f}", offsets.rms()));
+  EXPECT_LT(std::abs(offsets.mean()), 0.5) << "towards the envelope, voxels";
+  EXPECT_LT(offsets.rms(), 1.6);
 }
 
 TEST(TraceContact, PatchesNeverRunThroughTheSurface) {
@@ -223,8 +232,7 @@ double far_distance(const phantom::Phantom& truth, const glm::dvec3& at) {
 }
 
 TEST(TraceContact, SmoothPatchesOverAThirdOfATabletStayNearIt) {
-  double sum = 0.0, squares = 0.0;
-  std::int64_t count = 0;
+  Offsets offsets;
   for (const std::uint64_t seed : {61211u, 61223u}) {
     const TracedScan made =
         traced_scan(phantom::Contact::kPressed, 0.5, seed, false, true, {{448, 256, 416}, Detail::kScan, 0.33});
@@ -232,17 +240,14 @@ TEST(TraceContact, SmoothPatchesOverAThirdOfATabletStayNearIt) {
     for (std::size_t i = 0; i < tablet.positions.size(); i += 7) {
       if (tablet.evidence[i] != evidence_byte(Evidence::kInferred)) continue;
       const double off = far_distance(*made.truth, tablet.frame.input_vox_from_grid(glm::dvec3(tablet.positions[i])));
-      sum += off;
-      squares += off * off;
-      ++count;
+      offsets.add(off);
     }
   }
-  ASSERT_GT(count, 2000);
-  const auto all = static_cast<double>(count);
-  RecordProperty("mean", fmt::format("{:.2f}", sum / all));
-  RecordProperty("rms", fmt::format("{:.2f}", std::sqrt(squares / all)));
-  EXPECT_LT(std::abs(sum / all), 1.5);
-  EXPECT_LT(std::sqrt(squares / all), 4.0);
+  ASSERT_GT(offsets.count, 2000);
+  RecordProperty("mean", fmt::format("{:.2f}", offsets.mean()));
+  RecordProperty("rms", fmt::format("{:.2f}", offsets.rms()));
+  EXPECT_LT(std::abs(offsets.mean()), 1.5);
+  EXPECT_LT(offsets.rms(), 4.0);
 }
 
 }  // namespace
