@@ -15,9 +15,9 @@ namespace {
 
 constexpr float kUnit = 256.0f;  ///< capacity of a unit face through clay that shows nothing
 /// Strength of a dip from which the cut costs almost nothing, and what is left then.
-constexpr float kClearDip = 2.4f, kLeastCost = 0.03f, kMostCost = 1.3f;
+constexpr float kClearDip = 2.0f, kLeastCost = 0.03f, kMostCost = 1.6f;
 /// Walls of the sheet along the contact's normal: cheap enough that it can go down into wedges.
-constexpr float kWall = 0.5f;
+constexpr float kWall = 0.4f;
 /// Cost of being on the wrong side of the patch, for each step from it: it holds the sheet where nothing is seen.
 constexpr float kPull = 0.006f;
 constexpr std::int32_t kHard = 1 << 28;

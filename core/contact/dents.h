@@ -11,9 +11,9 @@
 namespace dubsar {
 
 /// Mean strength of dips along a cut through clay without a film: it seeks what is dark.
-inline constexpr float kClayStrength = 0.95f;
+inline constexpr float kClayStrength = 1.1f;
 /// Deviation of the mean of so many of their neighbours: this over the root of their number (one of .24 for some 80).
-inline constexpr float kStrengthDeviation = 2.15f;
+inline constexpr float kStrengthDeviation = 2.0f;
 
 /// Added vertices in dents, more than 1.2 steps below a sheet that spans them towards the envelope, whose dips do not
 /// stand out of what chance makes of clay: the mean strength of the nearest 64 vertices of the dent, or of all where it

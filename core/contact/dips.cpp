@@ -1,6 +1,7 @@
 #include "core/contact/dips.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <memory>
@@ -13,8 +14,10 @@ namespace dubsar {
 namespace {
 
 constexpr std::int64_t kEdge = BrickMap<float>::kEdge;
-/// Beyond the reach of the point spread: at two steps the dip of a film is still deep, at three it is over.
-constexpr float kArm = 3.0f;
+/// Steps to the disks in the clay on both sides. At two the dip of a film is still there, at three it is over; but one
+/// disk alone has as much noise as the middle, and one that is far meets the other wall of a wedge. The first must be
+/// in clay, the others count where they are.
+constexpr std::array<float, 3> kArms{3.0f, 2.0f, 4.0f};
 constexpr float kDisk = 3.2f, kDiskDeviation = 1.8f;
 constexpr float kLeastDipCosine = 0.45f;  ///< flanks of wedges stand up to 60 degrees from the contact
 constexpr float kNoDip = -1e30f;
@@ -37,23 +40,27 @@ struct Block {
   }
 };
 
-constexpr int kArmHalo = 3, kDiskHalo = 3;  ///< of directions(): no arm and no disk reaches farther along an axis
+constexpr int kArmHalo = 4, kDiskHalo = 3;  ///< of directions(): no arm and no disk reaches farther along an axis
 using Around = Block<kArmHalo + kDiskHalo>;
 using Means = Block<kArmHalo>;
 
 struct Direction {
   glm::vec3 unit;
-  glm::ivec3 arm;
+  std::array<glm::ivec3, kArms.size()> arms;
   std::vector<RowTap> disk;
 };
 
+/// Half of the ways to points up to two steps away along each axis: some 25 degrees from one to the next, so that a
+/// disk of any wall is less than a step and a half off where it ends.
 std::vector<Direction> directions() {
+  constexpr int kFar = 2, kWide = 2 * kFar + 1;
   std::vector<Direction> all;
-  for (int k = 0; k < 13; ++k) {  // half of the 26 neighbours
-    const glm::ivec3 step(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+  for (int k = 0; k < kWide * kWide * kWide / 2; ++k) {
+    const glm::ivec3 step(k % kWide - kFar, k / kWide % kWide - kFar, k / (kWide * kWide) - kFar);
+    if (step.x % 2 == 0 && step.y % 2 == 0 && step.z % 2 == 0) continue;  // twice another
     Direction d;
     d.unit = glm::normalize(glm::vec3(step));
-    d.arm = step * static_cast<int>(std::lround(kArm / glm::length(glm::vec3(step))));
+    for (std::size_t i = 0; i < kArms.size(); ++i) d.arms[i] = glm::ivec3(glm::round(kArms[i] * d.unit));
     float sum = 0.0f;
     for (int z = -3; z <= 3; ++z)
       for (int y = -3; y <= 3; ++y)
@@ -73,6 +80,10 @@ std::vector<Direction> directions() {
 bool in_clay(const BitVolume& inside, const glm::ivec3& p) {
   const Dims d = inside.dims();
   return p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < d.x && p.y < d.y && p.z < d.z && inside.get(p.x, p.y, p.z);
+}
+
+bool clay_beside(const BitVolume& inside, const glm::ivec3& p, const glm::ivec3& arm) {
+  return in_clay(inside, p + arm) && in_clay(inside, p - arm);
 }
 
 static_assert(Means::kSide <= kRowLength);
@@ -147,8 +158,8 @@ std::vector<BrickPlace> bricks_around(const ContactBand& band, std::int64_t arou
 
 bool BandDensity::covers(const ContactBand& band) const {
   const std::vector<BrickPlace> places = bricks_around(band, 1);
-  return values_.dims() == band.node_at.dims() && std::all_of(places.begin(), places.end(), [&](const BrickPlace& b) {
-           return values_.has_brick(b[0], b[1], b[2]);
+  return raw_.dims() == band.node_at.dims() && std::all_of(places.begin(), places.end(), [&](const BrickPlace& b) {
+           return raw_.has_brick(b[0], b[1], b[2]);
          });
 }
 
@@ -194,7 +205,7 @@ Result<BandDensity> BandDensity::read(const ContactBand& band, SlabSource& sourc
               static_cast<int>(x - bx * kEdge), static_cast<int>(y - by * kEdge), static_cast<int>(z - bz * kEdge))];
   });
   progress.end();
-  return BandDensity(std::move(smooth));
+  return BandDensity(std::move(raw), std::move(smooth));
 }
 
 Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
@@ -213,7 +224,7 @@ Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const B
       const std::uint32_t first = starts[static_cast<std::size_t>(brick)],
                           last = starts[static_cast<std::size_t>(brick) + 1];
       const glm::ivec3 corner = band.point(first) / static_cast<int>(kEdge) * static_cast<int>(kEdge);
-      around->fill(corner, [&](int x, int y, int z) { return density.get(x, y, z); });
+      around->fill(corner, [&](int x, int y, int z) { return density.raw(x, y, z); });
       for (std::uint32_t node = first; node < last; ++node) {
         const glm::ivec3 p = band.point(node);
         dips.density[node] = density.get(p.x, p.y, p.z);
@@ -223,14 +234,22 @@ Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const B
         for (std::uint32_t node = first; node < last; ++node) {
           if (std::abs(glm::dot(d.unit, band.normal(node))) < kLeastDipCosine) continue;
           const glm::ivec3 p = band.point(node);
-          if (!in_clay(inside, p + d.arm) || !in_clay(inside, p - d.arm)) continue;
+          if (!clay_beside(inside, p, d.arms[0])) continue;
           across.push_back(node);
-          for (const int sense : {-1, 0, 1}) means->ask_for(p + sense * d.arm - corner + kArmHalo);
+          means->ask_for(p - corner + kArmHalo);
+          for (const glm::ivec3& arm : d.arms)
+            for (const int sense : {-1, 1}) means->ask_for(p + sense * arm - corner + kArmHalo);
         }
         if (!across.empty()) means->find(*around, d);
         for (const std::uint32_t node : across) {
-          const glm::ivec3 p = band.point(node) - corner + kArmHalo;
-          const float middle = means->at(p), dip = 0.5f * (means->at(p + d.arm) + means->at(p - d.arm)) - middle;
+          const glm::ivec3 p = band.point(node), at = p - corner + kArmHalo;
+          float clay = 0.0f, disks = 0.0f;
+          for (const glm::ivec3& arm : d.arms) {
+            if (arm != d.arms[0] && !clay_beside(inside, p, arm)) continue;
+            clay += means->at(at + arm) + means->at(at - arm);
+            disks += 2.0f;
+          }
+          const float middle = means->at(at), dip = clay / disks - middle;
           if (dip > dips.strength[node]) {
             dips.strength[node] = dip;
             dips.density[node] = middle;

@@ -11,7 +11,7 @@
 
 namespace dubsar {
 
-/// Density at and around the points of a band, low-passed by [1 2 1]/4 per axis.
+/// Density at and around the points of a band.
 class BandDensity {
  public:
   /// Reads the slices that the band needs and keeps its bricks of 8x8x8 points and `around` more on all sides. `source`
@@ -20,11 +20,14 @@ class BandDensity {
   static Result<BandDensity> read(const ContactBand& band, SlabSource& source, Progress& progress, int around = 1);
   /// Is all there that read() would have read for that band of the same grid?
   bool covers(const ContactBand& band) const;
-  float get(std::int64_t x, std::int64_t y, std::int64_t z) const noexcept { return values_.get(x, y, z); }
+  /// Low-passed by [1 2 1]/4 per axis.
+  float get(std::int64_t x, std::int64_t y, std::int64_t z) const noexcept { return smooth_.get(x, y, z); }
+  /// As the source has it.
+  float raw(std::int64_t x, std::int64_t y, std::int64_t z) const noexcept { return raw_.get(x, y, z); }
 
  private:
-  explicit BandDensity(BrickMap<float> values) : values_(std::move(values)) {}
-  BrickMap<float> values_;
+  BandDensity(BrickMap<float> raw, BrickMap<float> smooth) : raw_(std::move(raw)), smooth_(std::move(smooth)) {}
+  BrickMap<float> raw_, smooth_;
 };
 
 struct Dips {
@@ -35,7 +38,8 @@ struct Dips {
   float deviation = 0.0f;      ///< of the noise in `strength`, density
 };
 
-/// Lines of `arm` grid steps each way, disks of `radius`. About 1 us a node and thread. kCancelled.
+/// Disks of three grid steps across 49 directions, beside others two to four steps away. About 2 us a node and thread.
+/// kCancelled.
 Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
                        Progress& progress);
 

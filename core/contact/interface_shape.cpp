@@ -16,8 +16,8 @@
 namespace dubsar {
 namespace {
 
-/// Averages over neighbours: some five rings. A cut seeks what is dark, so that clay without a film has a mean of .9
-/// deviations along it, and 1.45 in one place of a hundred; a film of a fifth of a voxel has 1.6.
+/// Averages over neighbours: some five rings. A cut seeks what is dark, so that clay without a film has a mean of 1.1
+/// deviations along it, and 1.75 in one place of a hundred; a film of a fifth of a voxel has 1.8.
 constexpr int kEvidenceRounds = 25;
 /// Rings beside the surface where the dip may be that of its air. They count where there is nothing else.
 constexpr int kRim = 3;

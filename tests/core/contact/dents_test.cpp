@@ -60,10 +60,10 @@ TEST(DoubtfulDents, ADentWithTheDipsOfClayIsDoubtfulAndOneWithThoseOfAFilmIsNot)
 }
 
 TEST(DoubtfulDents, TheSameDipsProveALargeDentAndNotASmallOne) {
-  // A mean of 1.7 is .8 above clay, which takes 2.15 * 2.5 / .8 squared, 45 vertices.
+  // A mean of 1.8 is .7 above clay, which takes 2 * 2.5 / .7 squared, 51 vertices.
   std::int64_t outside = 0;
-  EXPECT_EQ(doubtful({6.0f, 9.0f, 1.7f}, outside), 0);
-  EXPECT_GT(doubtful({3.0f, 3.5f, 1.7f}, outside), 0);
+  EXPECT_EQ(doubtful({6.0f, 9.0f, 1.8f}, outside), 0);
+  EXPECT_GT(doubtful({3.0f, 3.5f, 1.8f}, outside), 0);
 }
 
 TEST(DoubtfulDents, WhatIsFlatOrStandsOutOrIsNoFilmIsNoDent) {
