@@ -76,12 +76,14 @@ std::uint32_t darkest_near(const ContactBand& band, const Dips& dips, std::uint3
   return darkest;
 }
 
-/// The next point of clay of the band along an axis, beyond air if there is some.
+/// The next point of clay of the band along an axis, beyond air if there is some: kNone where the grid ends first.
 std::uint32_t next_clay(const ContactBand& band, const BitVolume& inside, std::uint32_t node, int axis) {
   constexpr int kMostAir = 12;
+  const Dims d = inside.dims();
+  const glm::ivec3 end(d.x, d.y, d.z);
   glm::ivec3 p = band.point(node) + unit_step(axis);
-  for (int step = 0; step < kMostAir && !inside.get(p.x, p.y, p.z); ++step) p += unit_step(axis);
-  return band.at(p);
+  for (int step = 0; step < kMostAir && p[axis] < end[axis] && !inside.get(p.x, p.y, p.z); ++step) p += unit_step(axis);
+  return p[axis] < end[axis] ? band.at(p) : ContactBand::kNone;
 }
 
 std::vector<Ground> grounds_of(const ContactBand& band, const BitVolume& inside, const Dips& dips,

@@ -146,5 +146,18 @@ TEST(RecentreSamples, StaysWhereNothingShows) {
   EXPECT_LT(found.told, 0.5f);
 }
 
+TEST(RecentreSamples, LooksForNoClayBeyondTheEndOfTheGrid) {
+  constexpr float kTop = 124.0f;  // fewer steps below the end than the air that is looked through
+  Volume<float> volume = clay(
+      0.0f, [](float, float) { return kPatch; }, 61);
+  for (std::int64_t z = std::int64_t{kEdge} - 3; z < kEdge; ++z)
+    for (std::int64_t i = 0; i < kEdge * kEdge; ++i)
+      volume.voxels[static_cast<std::size_t>(z * kEdge * kEdge + i)] = -1.0f;
+  std::vector<PatchPoint> samples = flat_patch();
+  for (PatchPoint& s : samples) s.position.z = kTop;
+  const Moved found = moved(volume, recentre_samples, samples);
+  for (std::size_t i = 0; i < samples.size(); ++i) ASSERT_NEAR(found.samples[i].position.z, kTop, 12.0f);
+}
+
 }  // namespace
 }  // namespace dubsar
