@@ -34,7 +34,7 @@ InterfaceMesh pressed_sheet(const Pressed& one) {
   for (int y = 0; y < kDentsEdge; ++y)
     for (int x = 0; x < kDentsEdge; ++x) {
       const float chance = 0.3f * (static_cast<float>(bits() % 2000) / 1000.0f - 1.0f);
-      mesh.strength[static_cast<std::size_t>(y * kDentsEdge + x)] =
+      mesh.strength[static_cast<std::size_t>(y) * kDentsEdge + static_cast<std::size_t>(x)] =
           (away(x, y) < one.radius ? one.strength : 1.9f) + chance;
     }
   return mesh;
