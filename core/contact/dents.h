@@ -12,7 +12,7 @@ namespace dubsar {
 
 /// Mean strength of dips along a cut through clay without a film: it seeks what is dark.
 inline constexpr float kClayStrength = 1.1f;
-/// Deviation of the mean of so many of their neighbours: this over the root of their number (one of .24 for some 80).
+/// Deviation of the mean of so many of their neighbours: this over the root of their number (one of .22 for some 80).
 inline constexpr float kStrengthDeviation = 2.0f;
 
 /// Added vertices in dents, more than 1.2 steps below a sheet that spans them towards the envelope, whose dips do not

@@ -23,14 +23,15 @@ constexpr float kLeastDipCosine = 0.45f;  ///< flanks of wedges stand up to 60 d
 constexpr float kNoDip = -1e30f;
 
 /// A brick and what lies around it, as an array.
-template <int kHalo>
+template <class T, int kHalo>
 struct Block {
   static constexpr int kSide = static_cast<int>(kEdge) + 2 * kHalo;
-  std::array<float, static_cast<std::size_t>(kSide) * kSide * kSide + kRowLength> value{};
+  std::array<T, static_cast<std::size_t>(kSide) * kSide * kSide + kRowLength> value{};
 
-  static std::size_t place(int x, int y, int z) {
-    return (static_cast<std::size_t>(z) * kSide + static_cast<std::size_t>(y)) * kSide + static_cast<std::size_t>(x);
+  static constexpr std::ptrdiff_t away(const glm::ivec3& step) {
+    return (static_cast<std::ptrdiff_t>(step.z) * kSide + step.y) * kSide + step.x;
   }
+  static constexpr std::size_t place(int x, int y, int z) { return static_cast<std::size_t>(away({x, y, z})); }
   template <class Get>
   void fill(const glm::ivec3& corner, const Get& get) {
     for (int z = 0; z < kSide; ++z)
@@ -41,12 +42,13 @@ struct Block {
 };
 
 constexpr int kArmHalo = 4, kDiskHalo = 3;  ///< of directions(): no arm and no disk reaches farther along an axis
-using Around = Block<kArmHalo + kDiskHalo>;
-using Means = Block<kArmHalo>;
+using Around = Block<float, kArmHalo + kDiskHalo>;
+using Means = Block<float, kArmHalo>;
+using Clay = Block<bool, kArmHalo>;
 
 struct Direction {
   glm::vec3 unit;
-  std::array<glm::ivec3, kArms.size()> arms;
+  std::array<std::ptrdiff_t, kArms.size()> arms;  ///< steps in a block
   std::vector<RowTap> disk;
 };
 
@@ -60,14 +62,14 @@ std::vector<Direction> directions() {
     if (step.x % 2 == 0 && step.y % 2 == 0 && step.z % 2 == 0) continue;  // twice another
     Direction d;
     d.unit = glm::normalize(glm::vec3(step));
-    for (std::size_t i = 0; i < kArms.size(); ++i) d.arms[i] = glm::ivec3(glm::round(kArms[i] * d.unit));
+    for (std::size_t i = 0; i < kArms.size(); ++i) d.arms[i] = Means::away(glm::ivec3(glm::round(kArms[i] * d.unit)));
     float sum = 0.0f;
     for (int z = -3; z <= 3; ++z)
       for (int y = -3; y <= 3; ++y)
         for (int x = -3; x <= 3; ++x) {
           const glm::vec3 q(x, y, z);
           if (glm::length(q) > kDisk || std::abs(glm::dot(q, d.unit)) > 0.45f) continue;
-          d.disk.push_back({static_cast<std::int32_t>((z * Around::kSide + y) * Around::kSide + x),
+          d.disk.push_back({static_cast<std::int32_t>(Around::away({x, y, z})),
                             std::exp(-0.5f * glm::dot(q, q) / (kDiskDeviation * kDiskDeviation))});
           sum += d.disk.back().weight;
         }
@@ -82,8 +84,8 @@ bool in_clay(const BitVolume& inside, const glm::ivec3& p) {
   return p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < d.x && p.y < d.y && p.z < d.z && inside.get(p.x, p.y, p.z);
 }
 
-bool clay_beside(const BitVolume& inside, const glm::ivec3& p, const glm::ivec3& arm) {
-  return in_clay(inside, p + arm) && in_clay(inside, p - arm);
+bool clay_beside(const Clay& clay, std::size_t at, std::ptrdiff_t arm) {
+  return clay.value[at + static_cast<std::size_t>(arm)] && clay.value[at - static_cast<std::size_t>(arm)];
 }
 
 static_assert(Means::kSide <= kRowLength);
@@ -91,26 +93,90 @@ static_assert(Means::kSide <= kRowLength);
 /// Of a disk around each point of the rows that somebody asks for.
 class DiskMeans {
  public:
-  void ask_for(const glm::ivec3& p) { asked_[row_of(p)] = true; }
+  void ask_for(std::size_t at) { asked_[at / Means::kSide] = true; }
   void find(const Around& around, const Direction& d) {
     rows_.clear();
     for (int z = 0; z < Means::kSide; ++z)
       for (int y = 0; y < Means::kSide; ++y)
-        if (asked_[row_of({0, y, z})])
+        if (const std::size_t row = Means::place(0, y, z); asked_[row / Means::kSide])
           rows_.push_back({static_cast<std::int32_t>(Around::place(kDiskHalo, y + kDiskHalo, z + kDiskHalo)),
-                           static_cast<std::int32_t>(Means::place(0, y, z))});
+                           static_cast<std::int32_t>(row)});
     sum_rows(around.value.data(), d.disk, rows_, means_.value.data());
     asked_.fill(false);
   }
-  float at(const glm::ivec3& p) const { return means_.value[Means::place(p.x, p.y, p.z)]; }
+  float at(std::size_t place) const { return means_.value[place]; }
 
  private:
-  static std::size_t row_of(const glm::ivec3& p) {
-    return static_cast<std::size_t>(p.z) * Means::kSide + static_cast<std::size_t>(p.y);
-  }
   std::array<bool, static_cast<std::size_t>(Means::kSide) * Means::kSide> asked_{};
   std::vector<SummedRow> rows_;
   Means means_;
+};
+
+/// The dips of the nodes of a brick.
+class BrickDips {
+ public:
+  BrickDips(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
+            const std::vector<Direction>& directions)
+      : band_(band), inside_(inside), density_(density), directions_(directions) {}
+
+  void find(std::uint32_t first, std::uint32_t last, Dips& dips) {
+    const glm::ivec3 corner = band_.point(first) / static_cast<int>(kEdge) * static_cast<int>(kEdge);
+    around_.fill(corner, [&](int x, int y, int z) { return density_.raw(x, y, z); });
+    clay_.fill(corner, [&](int x, int y, int z) { return in_clay(inside_, {x, y, z}); });
+    nodes_.clear();
+    for (std::uint32_t node = first; node < last; ++node) {
+      const glm::ivec3 p = band_.point(node), at = p - corner + kArmHalo;
+      nodes_.push_back({node, Means::place(at.x, at.y, at.z), band_.normal(node)});
+      dips.density[node] = density_.get(p.x, p.y, p.z);
+    }
+    for (const Direction& d : directions_) find_along(d, dips);
+  }
+
+ private:
+  struct Node {
+    std::uint32_t number;
+    std::size_t place;
+    glm::vec3 normal;
+  };
+
+  void find_along(const Direction& d, Dips& dips) {
+    across_.clear();
+    for (const Node& node : nodes_) {
+      if (std::abs(glm::dot(d.unit, node.normal)) < kLeastDipCosine || !clay_beside(clay_, node.place, d.arms[0]))
+        continue;
+      across_.push_back({node.number, node.place});
+      means_.ask_for(node.place);
+      for (const std::ptrdiff_t arm : d.arms) {
+        means_.ask_for(node.place + static_cast<std::size_t>(arm));
+        means_.ask_for(node.place - static_cast<std::size_t>(arm));
+      }
+    }
+    if (across_.empty()) return;
+    means_.find(around_, d);
+    for (const auto& [node, place] : across_) {
+      float clay = 0.0f, disks = 0.0f;
+      for (const std::ptrdiff_t arm : d.arms) {
+        if (arm != d.arms[0] && !clay_beside(clay_, place, arm)) continue;
+        clay += means_.at(place + static_cast<std::size_t>(arm)) + means_.at(place - static_cast<std::size_t>(arm));
+        disks += 2.0f;
+      }
+      const float middle = means_.at(place), dip = clay / disks - middle;
+      if (dip > dips.strength[node]) {
+        dips.strength[node] = dip;
+        dips.density[node] = middle;
+      }
+    }
+  }
+
+  const ContactBand& band_;
+  const BitVolume& inside_;
+  const BandDensity& density_;
+  const std::vector<Direction>& directions_;
+  std::vector<Node> nodes_;
+  std::vector<std::pair<std::uint32_t, std::size_t>> across_;  ///< nodes for which a direction is one, their places
+  Around around_;
+  Clay clay_;
+  DiskMeans means_;
 };
 
 /// Nodes [first of a brick, first of the next): they stand brick by brick.
@@ -191,7 +257,7 @@ Result<BandDensity> BandDensity::read(const ContactBand& band, SlabSource& sourc
   }
   parallel_for(static_cast<std::int64_t>(places.size()), 8, [&](std::int64_t i) {
     const auto [bx, by, bz] = places[static_cast<std::size_t>(i)];
-    using Raw = Block<1>;
+    using Raw = Block<float, 1>;
     Raw block;
     block.fill({bx * kEdge, by * kEdge, bz * kEdge}, [&](int x, int y, int z) { return raw.get(x, y, z); });
     // In place: what stands before a value was filtered already, and is not needed any more.
@@ -217,46 +283,9 @@ Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const B
   const std::vector<std::uint32_t> starts = brick_starts(band);
   parallel_chunks(static_cast<std::int64_t>(starts.size()) - 1, 8, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) return;
-    const auto around = std::make_unique<Around>();
-    const auto means = std::make_unique<DiskMeans>();
-    std::vector<std::uint32_t> across;  // nodes for which a direction is one
-    for (std::int64_t brick = begin; brick < end; ++brick) {
-      const std::uint32_t first = starts[static_cast<std::size_t>(brick)],
-                          last = starts[static_cast<std::size_t>(brick) + 1];
-      const glm::ivec3 corner = band.point(first) / static_cast<int>(kEdge) * static_cast<int>(kEdge);
-      around->fill(corner, [&](int x, int y, int z) { return density.raw(x, y, z); });
-      for (std::uint32_t node = first; node < last; ++node) {
-        const glm::ivec3 p = band.point(node);
-        dips.density[node] = density.get(p.x, p.y, p.z);
-      }
-      for (const Direction& d : all_directions) {
-        across.clear();
-        for (std::uint32_t node = first; node < last; ++node) {
-          if (std::abs(glm::dot(d.unit, band.normal(node))) < kLeastDipCosine) continue;
-          const glm::ivec3 p = band.point(node);
-          if (!clay_beside(inside, p, d.arms[0])) continue;
-          across.push_back(node);
-          means->ask_for(p - corner + kArmHalo);
-          for (const glm::ivec3& arm : d.arms)
-            for (const int sense : {-1, 1}) means->ask_for(p + sense * arm - corner + kArmHalo);
-        }
-        if (!across.empty()) means->find(*around, d);
-        for (const std::uint32_t node : across) {
-          const glm::ivec3 p = band.point(node), at = p - corner + kArmHalo;
-          float clay = 0.0f, disks = 0.0f;
-          for (const glm::ivec3& arm : d.arms) {
-            if (arm != d.arms[0] && !clay_beside(inside, p, arm)) continue;
-            clay += means->at(at + arm) + means->at(at - arm);
-            disks += 2.0f;
-          }
-          const float middle = means->at(at), dip = clay / disks - middle;
-          if (dip > dips.strength[node]) {
-            dips.strength[node] = dip;
-            dips.density[node] = middle;
-          }
-        }
-      }
-    }
+    const auto of_brick = std::make_unique<BrickDips>(band, inside, density, all_directions);
+    for (auto brick = static_cast<std::size_t>(begin); brick < static_cast<std::size_t>(end); ++brick)
+      of_brick->find(starts[brick], starts[brick + 1], dips);
   });
   if (progress.cancelled()) return cancelled_error();
   // What clay shows far from the contact, in a robust measure: pores and grains are few.

@@ -38,8 +38,8 @@ struct Dips {
   float deviation = 0.0f;      ///< of the noise in `strength`, density
 };
 
-/// Disks of three grid steps across 49 directions, beside others two to four steps away. About 2 us a node and thread.
-/// kCancelled.
+/// Disks of three grid steps across 49 directions, beside others two to four steps away. About 1.5 us a node and thread
+/// with AVX-512. kCancelled.
 Result<Dips> find_dips(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
                        Progress& progress);
 

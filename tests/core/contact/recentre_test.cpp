@@ -156,7 +156,7 @@ TEST(RecentreSamples, LooksForNoClayBeyondTheEndOfTheGrid) {
   std::vector<PatchPoint> samples = flat_patch();
   for (PatchPoint& s : samples) s.position.z = kTop;
   const Moved found = moved(volume, recentre_samples, samples);
-  for (std::size_t i = 0; i < samples.size(); ++i) ASSERT_NEAR(found.samples[i].position.z, kTop, 12.0f);
+  for (std::size_t i = 0; i < samples.size(); ++i) ASSERT_NEAR(found.samples[i].position.z, kTop, 1.0f);
 }
 
 }  // namespace
