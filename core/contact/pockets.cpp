@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <unordered_map>
 
 #include "core/mesh/evidence.h"
@@ -13,6 +14,10 @@ namespace {
 constexpr float kVoteRim = 3.0f;     ///< steps from a patch within which the labels of faces are only a vote
 constexpr float kRimVote = 0.4f;     ///< for the label that a face has
 constexpr float kFacingVote = 0.6f;  ///< for the side that it looks like, times the cosine
+
+/// A hole that could as well be a pore is a pocket where so many others are within so many steps: wedges come in lines.
+constexpr int kCompany = 3;
+constexpr float kCompanyReach = 40.0f;
 
 /// Area vector towards the air.
 glm::vec3 area_vector(const QuadMesh& mesh, std::uint32_t quad) {
@@ -25,10 +30,15 @@ bool is_rest(const SurfaceModel& model, std::uint32_t quad) {
   return model.partitions[model.quad_partition[quad]].kind == PartitionKind::kPores;
 }
 
+struct RestPiece {
+  std::vector<std::uint32_t> quads;
+  double volume = 0.0;  ///< below 0: of air
+  double area = 0.0;
+  glm::vec3 middle{0.0f};
+};
 struct RestPieces {
   std::unordered_map<std::uint32_t, std::uint32_t> piece_of;  ///< by quad
-  std::vector<std::vector<std::uint32_t>> quads;
-  std::vector<double> volume;
+  std::vector<RestPiece> all;
 };
 
 /// The closed pieces that have faces in the band.
@@ -36,23 +46,49 @@ RestPieces rest_pieces(const SurfaceModel& model, const FaceGraph& graph, const 
   RestPieces pieces;
   for (const BandFace& face : faces) {
     if (!is_rest(model, face.quad) || pieces.piece_of.count(face.quad) != 0) continue;
-    const auto piece = static_cast<std::uint32_t>(pieces.quads.size());
+    const auto piece = static_cast<std::uint32_t>(pieces.all.size());
     std::vector<std::uint32_t> queue{face.quad};
     pieces.piece_of.emplace(face.quad, piece);
-    double volume = 0.0;
+    double volume = 0.0, area = 0.0;
+    glm::vec3 sum(0.0f);
     const glm::vec3 origin = graph.centre[face.quad];
     for (std::size_t i = 0; i < queue.size(); ++i) {
       const std::uint32_t f = queue[i];
       volume += static_cast<double>(glm::dot(graph.centre[f] - origin, graph.normal[f]) * graph.area[f]) / 3.0;
+      area += static_cast<double>(graph.area[f]);
+      sum += graph.centre[f] - origin;
       for (std::uint32_t s = graph.first_side[f]; s < graph.first_side[f + 1]; ++s) {
         const std::uint32_t g = graph.neighbour[s];
         if (g != FaceGraph::kNone && pieces.piece_of.emplace(g, piece).second) queue.push_back(g);
       }
     }
-    pieces.quads.push_back(std::move(queue));
-    pieces.volume.push_back(volume);
+    const glm::vec3 middle = origin + sum / static_cast<float>(queue.size());
+    pieces.all.push_back({std::move(queue), volume, area, middle});
   }
   return pieces;
+}
+
+/// Where the clay around a piece lies.
+struct Extent {
+  float nearest = INFINITY, lowest = INFINITY, highest = -INFINITY;
+  void add(const ContactBand::Node& node) {
+    nearest = std::min(nearest, node.distance);
+    lowest = std::min(lowest, node.height);
+    highest = std::max(highest, node.height);
+  }
+  // Clay is half a step from the air on average.
+  float away() const { return nearest + 0.5f; }
+  float across() const { return highest - lowest - 1.0f; }
+};
+
+/// As round as a bubble, or beside the patch and thin as straw or half as far from it as it is wide. The air in wedges
+/// 7 steps deep is not, in wedges of 4 steps half of it is.
+bool like_pore(const RestPiece& piece, const Extent& extent) {
+  constexpr double kRound = 0.85, kThin = 0.45;  // of a ball's volume for its area; steps
+  constexpr float kThrough = 1.0f, kNear = 0.5f;
+  const double ball = std::pow(piece.area, 1.5) / (6.0 * std::sqrt(std::numbers::pi));
+  if (-piece.volume > kRound * ball) return true;
+  return extent.away() > kThrough && (-piece.volume < kThin * piece.area || extent.away() > kNear * extent.across());
 }
 
 }  // namespace
@@ -72,26 +108,27 @@ std::vector<BandFace> faces_of_band(const SurfaceModel& model, const EdgeIndex& 
 std::vector<ClayCavity> cavities_off_contact(const SurfaceModel& model, const FaceGraph& graph, const ContactBand& band,
                                              const std::vector<BandFace>& faces) {
   const RestPieces pieces = rest_pieces(model, graph, faces);
-  struct Extent {
-    float nearest = INFINITY, lowest = INFINITY, highest = -INFINITY;
-  };
-  std::vector<Extent> extents(pieces.quads.size());
-  std::vector<ClayCavity> around(pieces.quads.size());
+  std::vector<Extent> extents(pieces.all.size());
+  std::vector<ClayCavity> around(pieces.all.size());
   for (const BandFace& face : faces) {
     const auto piece = pieces.piece_of.find(face.quad);
     if (piece == pieces.piece_of.end()) continue;
-    const ContactBand::Node& node = band.nodes[face.node];
-    Extent& extent = extents[piece->second];
-    extent.nearest = std::min(extent.nearest, node.distance);
-    extent.lowest = std::min(extent.lowest, node.height);
-    extent.highest = std::max(extent.highest, node.height);
+    extents[piece->second].add(band.nodes[face.node]);
     around[piece->second].push_back(face.node);
   }
+  std::vector<std::size_t> on;
+  for (std::size_t i = 0; i < around.size(); ++i)
+    if (pieces.all[i].volume < 0.0 && extents[i].away() <= extents[i].across()) on.push_back(i);
+  const auto alone = [&](std::size_t i) {
+    return std::count_if(on.begin(), on.end(), [&](std::size_t j) {
+             return glm::distance(pieces.all[i].middle, pieces.all[j].middle) < kCompanyReach;
+           }) <= kCompany;  // itself is one of them
+  };
   std::vector<ClayCavity> off;
   for (std::size_t i = 0; i < around.size(); ++i) {
-    // Clay is half a step from the air on average.
-    const float away = extents[i].nearest + 0.5f, across = extents[i].highest - extents[i].lowest - 1.0f;
-    if (pieces.volume[i] >= 0.0 || away <= across) continue;
+    if (pieces.all[i].volume >= 0.0) continue;
+    const bool beyond = extents[i].away() > extents[i].across();
+    if (!beyond && !(alone(i) && like_pore(pieces.all[i], extents[i]))) continue;
     std::sort(around[i].begin(), around[i].end());
     around[i].erase(std::unique(around[i].begin(), around[i].end()), around[i].end());
     off.push_back(std::move(around[i]));
@@ -134,20 +171,20 @@ std::int64_t relabel_faces(SurfaceModel& model, const FaceGraph& graph, const st
   const PartitionId tablet = model.partitions.find(PartitionKind::kTablet)->id,
                     inside = model.partitions.find(PartitionKind::kEnvelopeInside)->id;
   const RestPieces pieces = rest_pieces(model, graph, faces);
-  std::vector<std::array<std::int64_t, 2>> votes(pieces.quads.size(), {0, 0});
+  std::vector<std::array<std::int64_t, 2>> votes(pieces.all.size(), {0, 0});
   for (const BandFace& face : faces)
     if (const auto piece = pieces.piece_of.find(face.quad); piece != pieces.piece_of.end())
       ++votes[piece->second][static_cast<std::size_t>(side[face.node])];
   const auto joins = [&](std::uint32_t piece) {
-    return pieces.volume[piece] < 0.0 && votes[piece][0] > 0 && votes[piece][1] > 0;
+    return pieces.all[piece].volume < 0.0 && votes[piece][0] > 0 && votes[piece][1] > 0;
   };
-  std::vector<std::vector<std::uint32_t>> queue(pieces.quads.size());
+  std::vector<std::vector<std::uint32_t>> queue(pieces.all.size());
   std::int64_t pockets = 0;
   model.attributes.evidence.resize(model.mesh.positions.size(), evidence_byte(Evidence::kMeasured));
-  for (std::uint32_t piece = 0; piece < pieces.quads.size(); ++piece) {
+  for (std::uint32_t piece = 0; piece < pieces.all.size(); ++piece) {
     if (!joins(piece)) continue;
     ++pockets;
-    for (const std::uint32_t q : pieces.quads[piece]) {
+    for (const std::uint32_t q : pieces.all[piece].quads) {
       const Polygon polygon = model.mesh.polygon(q);
       for (std::size_t i = 0; i < static_cast<std::size_t>(polygon.size); ++i)
         model.attributes.evidence[polygon.vertex[i]] = evidence_byte(Evidence::kPocket);
