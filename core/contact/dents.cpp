@@ -16,10 +16,11 @@ constexpr std::size_t kNearest = 64;
 constexpr float kDentSignificance = 2.5f;
 constexpr float kMostDentStrength = 2.5f;  ///< of one vertex: the fringe of a pore is no film, however dark
 
-/// How far each vertex lies below a sheet that only rises: wherever its neighbours are higher on average, it goes up to
-/// them.
-std::vector<float> depths(const InterfaceMesh& mesh, const InterfaceRings& rings,
-                          const std::vector<glm::vec3>& dual_positions) {
+}  // namespace
+
+// The sheet only rises: wherever its neighbours are higher on average, a vertex goes up to them.
+std::vector<float> dent_depths(const InterfaceMesh& mesh, const InterfaceRings& rings,
+                               const std::vector<glm::vec3>& dual_positions) {
   const auto dual = static_cast<std::uint32_t>(dual_positions.size());
   const std::vector<glm::vec3> up = unit_normals(mesh, rings, dual_positions, kNormalRounds);
   std::vector<glm::vec3> sheet = mesh.added, next = mesh.added;
@@ -39,11 +40,9 @@ std::vector<float> depths(const InterfaceMesh& mesh, const InterfaceRings& rings
   return depth;
 }
 
-}  // namespace
-
 std::vector<bool> doubtful_dents(const InterfaceMesh& mesh, const InterfaceRings& rings,
                                  const std::vector<glm::vec3>& dual_positions, const std::vector<bool>& film) {
-  const std::vector<float> depth = depths(mesh, rings, dual_positions);
+  const std::vector<float> depth = dent_depths(mesh, rings, dual_positions);
   const auto in_dent = [&](std::size_t i) { return film[i] && depth[i] > kDent; };
   std::vector<std::uint8_t> by_chance(depth.size(), 0);
   each_vertex(depth.size(), [&](std::size_t i) {

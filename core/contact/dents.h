@@ -15,6 +15,11 @@ inline constexpr float kClayStrength = 1.1f;
 /// Deviation of the mean of so many of their neighbours: this over the root of their number (one of .22 for some 80).
 inline constexpr float kStrengthDeviation = 2.0f;
 
+/// How many steps each added vertex lies below a sheet that spans dents some 12 steps wide, towards the envelope. The
+/// same for any number of threads.
+std::vector<float> dent_depths(const InterfaceMesh& mesh, const InterfaceRings& rings,
+                               const std::vector<glm::vec3>& dual_positions);
+
 /// Added vertices in dents, more than 1.2 steps below a sheet that spans them towards the envelope, whose dips do not
 /// stand out of what chance makes of clay: the mean strength of the nearest 64 vertices of the dent, or of all where it
 /// has fewer, is not 2.5 deviations above kClayStrength. What touches such vertices is doubtful, too. `film`: of each

@@ -6,6 +6,7 @@
 
 #include "core/base/numbers/median.h"
 #include "core/base/system/parallel.h"
+#include "core/contact/dents.h"
 #include "core/contact/ring_average.h"
 
 namespace dubsar {
@@ -24,9 +25,12 @@ constexpr float kLeastCosine = 0.3f;  ///< between a triangle before and after
 constexpr float kDoubt = 4.0f, kFloor = 0.1f;
 constexpr float kSettle = 0.5f;  ///< of the way to the middle of the neighbours, where nothing is trusted
 constexpr int kSettleRounds = 2;
-constexpr float kMostHollow = 1.0f;  ///< steps out of the hollow
+constexpr float kMostHollow = 1.5f;  ///< steps out of the hollow
 constexpr float kLowPass = 0.5f;     ///< variance of that of BandDensity
-constexpr float kQuiet = 6.0f;       ///< steps from the contact to the sheets in clay that show the noise
+/// In dents deeper than kDeep steps, fully a step deeper: of the disks of the cut and the averages along the contact,
+/// which round their tips, too. Elsewhere what is bent is noise, or follows two clays.
+constexpr float kRounding = 2.0f, kDeep = 2.0f;
+constexpr float kQuiet = 6.0f;  ///< steps from the contact to the sheets in clay that show the noise
 
 using Profile = std::array<float, 2 * kReach + 1>;
 
@@ -95,6 +99,8 @@ class Follower {
     find_near();
   }
 
+  bool nothing_moves() const { return near_.empty(); }
+
   void find_normals() { normal_ = unit_normals(mesh_, rings_, dual_, 1); }
 
   /// The depth that a dip has by chance: that of sheets in the clay on both sides.
@@ -146,9 +152,10 @@ class Follower {
   }
 
   /// A blurred sheet is darkest on the hollow side of where it is, by the variance of the blur times its mean
-  /// curvature.
+  /// curvature; one that was averaged along itself lies there, too.
   std::vector<float> ways_out_of_the_hollow() const {
     std::vector<float> ways(mesh_.added.size(), 0.0f);
+    const std::vector<float> depths = dent_depths(mesh_, rings_, dual_);
     each([&](std::size_t i) {
       float bend = 0.0f, squares = 0.0f;
       for (const std::uint32_t w : rings_.all[i]) {
@@ -156,7 +163,9 @@ class Follower {
         bend += glm::dot(off, normal_[i]);
         squares += glm::dot(off, off);
       }
-      if (squares > 0.0f) ways[i] = -2.0f * (options_.blur_variance + kLowPass) * bend / squares;
+      const float in_dent = options_.clays ? 0.0f : std::clamp(depths[i] - kDeep, 0.0f, 1.0f);
+      const float variance = options_.blur_variance + kLowPass + kRounding * in_dent;
+      if (squares > 0.0f) ways[i] = -2.0f * variance * bend / squares;
     });
     average_rings(rings_, kBendRings, near_, ways);
     each([&](std::size_t i) { ways[i] = std::clamp(ways[i], -kMostHollow, kMostHollow); });
@@ -265,6 +274,7 @@ class Follower {
 void follow_dips(InterfaceMesh& mesh, const InterfaceRings& rings, const std::vector<glm::vec3>& dual_positions,
                  const Following& follows, const BandDensity& density, const FollowOptions& options) {
   Follower follower(mesh, rings, dual_positions, follows, density, options);
+  if (follower.nothing_moves()) return;
   follower.find_normals();
   follower.measure_noise();
   for (int round = 0; round < kRounds; ++round) {
