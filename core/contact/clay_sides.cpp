@@ -18,9 +18,8 @@ constexpr float kUnit = 256.0f;  ///< capacity of a unit face through clay that 
 constexpr float kClearDip = 2.0f, kLeastCost = 0.03f, kMostCost = 1.6f;
 /// Walls of the sheet along the contact's normal: cheap enough that it can go down into wedges.
 constexpr float kWall = 0.4f;
-/// Cost of being on the wrong side of the patch, for each step from it: it holds the sheet where nothing is seen. Below
-/// it half of that, if dips are all there is: wedges go down there.
-constexpr float kPull = 0.006f, kPullBelow = 0.003f;
+/// Cost of being on the wrong side of the patch, for each step from it: it holds the sheet where nothing is seen.
+constexpr float kPull = 0.006f;
 constexpr std::int32_t kHard = 1 << 28;
 constexpr std::int64_t kNodeGrain = 1 << 14;
 
@@ -165,12 +164,12 @@ ClayDivision::ClayDivision(const ClayEvidence& evidence)
   parallel_for(count, kNodeGrain, [&](std::int64_t i) {
     const auto n = static_cast<std::size_t>(i);
     const ContactBand::Node& node = band_.nodes[n];
-    const bool known = height_tells(band_, node), voted = !evidence.votes.empty();
-    const float pull = node.height < 0.0f && !voted ? kPullBelow : kPull;
+    const bool known = height_tells(band_, node);
     if (known && at_border(band_, node))
       wish[n] = node.height < 0.0f ? kHard : -kHard;
     else
-      wish[n] = std::lround(kUnit * ((voted ? evidence.votes[n] : 0.0f) - (known ? pull * node.height : 0.0f)));
+      wish[n] = std::lround(
+          kUnit * ((evidence.votes.empty() ? 0.0f : evidence.votes[n]) - (known ? kPull * node.height : 0.0f)));
   });
   for (std::uint32_t n = 0; n < count; ++n) certain_[n] = std::abs(wish[n]) == kHard;
   for (const SurfaceHint& hint : evidence.hints) {

@@ -27,8 +27,8 @@ constexpr float kSettle = 0.5f;  ///< of the way to the middle of the neighbours
 constexpr int kSettleRounds = 2;
 constexpr float kMostHollow = 1.5f;  ///< steps out of the hollow
 constexpr float kLowPass = 0.5f;     ///< variance of that of BandDensity
-/// In dents deeper than kDeep steps, fully a step deeper: of the disks of the cut and the averages along the contact,
-/// which round their tips, too. Elsewhere what is bent is noise, or follows two clays.
+/// Squared steps more in dents deeper than kDeep steps, all of it a step deeper: the disks of the cut and the averages
+/// along the contact round their tips, too. Elsewhere what is bent is noise, or follows two clays.
 constexpr float kRounding = 2.0f, kDeep = 2.0f;
 constexpr float kQuiet = 6.0f;  ///< steps from the contact to the sheets in clay that show the noise
 
