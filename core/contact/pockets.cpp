@@ -128,7 +128,7 @@ std::vector<ClayCavity> cavities_off_contact(const SurfaceModel& model, const Fa
   for (std::size_t i = 0; i < around.size(); ++i) {
     if (pieces.all[i].volume >= 0.0) continue;
     const bool beyond = extents[i].away() > extents[i].across();
-    if (!beyond && !(alone(i) && like_pore(pieces.all[i], extents[i]))) continue;
+    if (!beyond && !(like_pore(pieces.all[i], extents[i]) && alone(i))) continue;
     std::sort(around[i].begin(), around[i].end());
     around[i].erase(std::unique(around[i].begin(), around[i].end()), around[i].end());
     off.push_back(std::move(around[i]));
