@@ -157,6 +157,7 @@ void unpinch_sides(const ContactBand& band, std::vector<ClaySide>& side) {
 ClayDivision::ClayDivision(const ClayEvidence& evidence)
     : band_(evidence.band),
       dips_(evidence.dips),
+      whole_(evidence.whole),
       cut_(cut_in_blocks(evidence.band)),  // source side: tablet
       certain_(evidence.band.nodes.size(), false) {
   const auto count = static_cast<std::uint32_t>(band_.nodes.size());
@@ -200,8 +201,12 @@ Result<std::vector<ClaySide>> ClayDivision::sides(Progress& progress) {
   std::vector<ClaySide> side(band_.nodes.size());
   for (std::uint32_t n = 0; n < side.size(); ++n)
     side[n] = cut_.on_source_side(n) ? ClaySide::kTablet : ClaySide::kEnvelope;
-  adopt_islands(band_, side, certain_);
-  unpinch_sides(band_, side);
+  constexpr int kMostRounds = 5;  // seldom more than two
+  for (int round = 0; round < kMostRounds; ++round) {
+    adopt_islands(band_, side, certain_);
+    unpinch_sides(band_, side);
+    if (!keep_whole(band_, whole_, side)) break;
+  }
   return side;
 }
 

@@ -48,6 +48,7 @@ class ClayDivision {
  private:
   const ContactBand& band_;
   const Dips& dips_;
+  std::vector<ClayCavity> whole_;
   LatticeCut cut_;
   std::vector<bool> certain_;
 };

@@ -221,6 +221,7 @@ Result<void> trace_until_closed(SurfaceModel& model, Traced traced, const Contac
     if (traced.last) traced.last->aside.insert(traced.last->aside.end(), places.begin(), places.end());
     step_aside(traced.band, places, tried, traced.side);
     tried.push_back(std::move(places));
+    keep_whole(traced.band, traced.pores, traced.side);
     unpinch_sides(traced.band, traced.side);
   }
   if (best) {
