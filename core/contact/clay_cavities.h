@@ -22,8 +22,8 @@ std::vector<ClayCavity> unseen_cavities(const ContactBand& band, const BitVolume
 /// Dips near the cavities may be those of their air, and count as no sign of a film.
 void blind_fringes(const ContactBand& band, const std::vector<ClayCavity>& cavities, Dips& dips);
 
-/// Where a cavity has clay of both sides, the clay at it and that beside takes the side of most of it: the air of a pore
-/// is no way from one side to the other. Has any changed?
+/// Where a cavity has clay of both sides, the clay at it and that beside takes the side of most of it: the air of a
+/// pore is no way from one side to the other. Has any changed?
 bool keep_whole(const ContactBand& band, const std::vector<ClayCavity>& cavities, std::vector<ClaySide>& side);
 
 }  // namespace dubsar

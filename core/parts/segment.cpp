@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 #include <map>
 
@@ -87,10 +89,35 @@ bool contains(const FaceComponents::Info& outer, const FaceComponents::Info& inn
          glm::all(glm::greaterThan(outer.highest, inner.highest));
 }
 
+/// Does a piece of the surface lie as deep as `body` does around it? So does the hidden body's part of a gap that has
+/// contact all round it; the wall of a cavity in the clay does not.
+bool is_level_with(const FaceComponents& components, const FaceScene& scene, std::size_t piece, std::size_t body) {
+  constexpr float kOff = 0.1f;  // of how wide the piece is; of a pore beside the gap it is a quarter
+  const FaceComponents::Info& info = components.info[piece];
+  const glm::vec3 middle = 0.5f * (info.lowest + info.highest), size = info.highest - info.lowest;
+  const glm::vec3 reach(std::max({size.x, size.y, size.z}));
+  std::vector<float> own, around;  // depths
+  for (std::uint32_t f = 0; f < scene.graph.faces(); ++f)
+    if (components.of_face[f] == piece)
+      own.push_back(scene.depth[f]);
+    else if (components.of_face[f] == body && glm::all(glm::lessThan(glm::abs(scene.graph.centre[f] - middle), reach)))
+      around.push_back(scene.depth[f]);
+  if (own.empty() || around.empty()) return false;
+  const auto median = [](std::vector<float>& values) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  return std::abs(median(own) - median(around)) < kOff * static_cast<float>(std::sqrt(info.area));
+}
+
 /// Which core components are the hidden body. Walls of pores that look outwards enclose a negative volume,
 /// loose pieces a small one, and a body whose neighbours merely stand close has no wall around it. Empty
 /// result: nothing is nested.
-std::vector<bool> accept_core(const Infos& infos, const std::vector<FaceRole>& role, const SegmentOptions& options) {
+std::vector<bool> accept_core(const FaceComponents& components, const std::vector<FaceRole>& role,
+                              const FaceScene& scene, const SegmentOptions& options) {
+  constexpr double kSmallestPart = 0.01;  // of the volume of the largest
+  const Infos& infos = components.info;
   constexpr double kSmallestWall =
       0.4;  // share of the core's area that an inner wall has, glued places left out of both
   const double smallest_area = options.smallest_area * total_area(infos);
@@ -113,8 +140,10 @@ std::vector<bool> accept_core(const Infos& infos, const std::vector<FaceRole>& r
     // What the cut separated belongs to the body if it has substance; what touches nothing must be the body
     // itself.
     const bool attached = infos[c].border > 0.0;
-    accepted[c] = c == largest || (role[c] == FaceRole::kCore && attached && infos[c].area >= smallest_area &&
-                                   infos[c].volume >= 0.01 * infos[largest].volume && contains(infos[shell], infos[c]));
+    accepted[c] =
+        c == largest ||
+        (role[c] == FaceRole::kCore && attached && infos[c].area >= smallest_area && contains(infos[shell], infos[c]) &&
+         (infos[c].volume >= kSmallestPart * infos[largest].volume || is_level_with(components, scene, c, largest)));
     if (accepted[c]) core_area += infos[c].area;
   }
   if (wall_area < kSmallestWall * core_area) return {};
@@ -184,10 +213,11 @@ struct Nesting {
   std::vector<bool> core;
 };
 
-Nesting find_nesting(FaceComponents components, const SegmentOptions& options, const std::vector<FaceRole>& roles) {
+Nesting find_nesting(FaceComponents components, const FaceScene& scene, const SegmentOptions& options,
+                     const std::vector<FaceRole>& roles) {
   Nesting nesting{std::move(components), {}, {}};
   for (const FaceComponents::Info& info : nesting.components.info) nesting.role.push_back(roles[info.first_face]);
-  nesting.core = accept_core(nesting.components.info, nesting.role, options);
+  nesting.core = accept_core(nesting.components, nesting.role, scene, options);
   return nesting;
 }
 
@@ -270,7 +300,7 @@ FaceComponents role_components(const SurfaceModel& model, const FaceScene& scene
 
 bool partition_by_roles(SurfaceModel& model, const FaceScene& scene, const SegmentOptions& options,
                         std::vector<FaceRole> roles, FaceComponents components, SegmentReport& report) {
-  Nesting nesting = find_nesting(std::move(components), options, roles);
+  Nesting nesting = find_nesting(std::move(components), scene, options, roles);
   if (!nesting.core.empty()) {
     // Core pieces that are not the hidden body fall back to the wall around them. The wall may then reach beyond the
     // shell, so that nothing is nested any more.
@@ -283,7 +313,7 @@ bool partition_by_roles(SurfaceModel& model, const FaceScene& scene, const Segme
         const std::uint32_t c = nesting.components.of_face[f];
         if (nesting.role[c] == FaceRole::kCore && !nesting.core[c]) roles[f] = FaceRole::kInside;
       });
-      nesting = find_nesting(role_components(model, scene, roles), options, roles);
+      nesting = find_nesting(role_components(model, scene, roles), scene, options, roles);
     }
   }
   if (nesting.core.empty()) {

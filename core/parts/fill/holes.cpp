@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -11,6 +12,8 @@
 #include "core/mesh/edge_uses.h"
 #include "core/parts/border_loops.h"
 #include "core/parts/face_graph.h"
+#include "core/parts/face_roles.h"
+#include "core/parts/fill/bridges.h"
 #include "core/parts/fill/rim_normals.h"
 
 namespace dubsar {
@@ -51,10 +54,16 @@ class HoleFiller {
 
  private:
   struct Task {
-    std::vector<std::uint32_t> vertices;  ///< in the sense of the patch's border
-    std::vector<glm::vec3> rim_normals;
+    HoleRim rim;
+    std::vector<HoleRim> apart{};  ///< its rims, where bridges join several
     PartitionId partition = 0, reverse_partition = PartitionTable::kNone;
   };
+  /// What fills a task, or one of its rims.
+  struct Filled {
+    std::vector<std::uint32_t> vertices{};  ///< of the mesh, by those of the loop
+    LoopFill fill{};
+  };
+  using RimsOf = std::unordered_map<std::uint32_t, int>;  ///< on how many rims a vertex of the mesh lies
 
   /// One more than the highest id of a partition.
   PartitionId ids() const { return static_cast<PartitionId>(group_.size()); }
@@ -81,10 +90,60 @@ class HoleFiller {
   /// A hole is walked against the sense of the part's border, so that the patch continues the surface.
   Task make_task(const std::vector<BorderEdge>& edges, const std::vector<std::uint32_t>& loop) const {
     Task task;
-    for (auto e = loop.rbegin(); e != loop.rend(); ++e) task.vertices.push_back(edges[*e].to);
-    task.rim_normals = rim_normals(model_, graph_, group_, edges, loop);
-    std::reverse(task.rim_normals.begin(), task.rim_normals.end());
+    for (auto e = loop.rbegin(); e != loop.rend(); ++e) task.rim.vertices.push_back(edges[*e].to);
+    task.rim.normals = rim_normals(model_, graph_, group_, edges, loop);
+    std::reverse(task.rim.normals.begin(), task.rim.normals.end());
     return task;
+  }
+
+  /// Holes of the tablet with islands of it in them become one task each. `faces`: one beside each task's rim.
+  std::vector<Task> with_islands(std::vector<Task> tasks, const std::vector<std::uint32_t>& faces) const {
+    constexpr double kThin = 0.01;  // of the volume of the largest piece, when each is closed by itself
+    const FaceComponents pieces = find_components(model_, FaceScene{.graph = graph_}, labels_by_group());
+    std::vector<bool> island(pieces.info.size());
+    double largest = 0.0;
+    for (const std::uint32_t f : faces) largest = std::max(largest, pieces.info[pieces.of_face[f]].volume);
+    std::vector<HoleRim> rims;
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      const std::uint32_t piece = pieces.of_face[faces[i]];
+      island[piece] = pieces.info[piece].volume < kThin * largest;
+      rims.push_back(tasks[i].rim);
+      rims.back().piece = piece;
+    }
+    std::unordered_map<std::uint32_t, int> visits;
+    for (const HoleRim& rim : rims)
+      for (const std::uint32_t v : rim.vertices) ++visits[v];
+    const auto may_bridge = [&](std::uint32_t a, std::uint32_t b) {
+      return visits[a] == 1 && visits[b] == 1 && !share_face(a, b);
+    };
+    std::vector<Task> joined;
+    for (JoinedRims& one : join_islands(std::move(rims), island, model_.mesh.positions, may_bridge)) {
+      joined.push_back({.rim = std::move(one.rim),
+                        .partition = tasks[one.members.front()].partition,
+                        .reverse_partition = tasks[one.members.front()].reverse_partition});
+      if (one.members.size() > 1)
+        for (const std::uint32_t r : one.members) joined.back().apart.push_back(std::move(tasks[r].rim));
+    }
+    return joined;
+  }
+
+  std::vector<std::uint8_t> labels_by_group() const {
+    std::vector<std::uint8_t> labels(graph_.faces());
+    parallel_for(graph_.faces(), kHoleGrain, [&](std::int64_t f) {
+      labels[static_cast<std::size_t>(f)] = group_[model_.quad_partition[static_cast<std::size_t>(f)]];
+    });
+    return labels;
+  }
+
+  PartitionKind kind_of(PartitionId id) const { return model_.partitions.find(id)->kind; }
+
+  bool share_face(std::uint32_t a, std::uint32_t b) const {
+    for (const std::uint32_t q : model_.mesh.quads_of(a)) {
+      const Polygon polygon = model_.mesh.polygon(q);
+      for (std::size_t c = 0; c < static_cast<std::size_t>(polygon.size); ++c)
+        if (polygon.vertex[c] == b) return true;
+    }
+    return false;
   }
 
   Result<void> fill_between_groups() {
@@ -101,6 +160,9 @@ class HoleFiller {
           if (group_[id] == group) add_patch_borders(id, edges);
         cancel_opposite(edges);
       }
+      const bool tablet = !options_.keep_patches && kind_of(group) == PartitionKind::kTablet;
+      std::vector<Task> contacts;
+      std::vector<std::uint32_t> faces;  // one beside each of them
       for (const auto& loop : join_loops(edges)) {
         Task task = make_task(edges, loop);
         task.partition = majority(edges, loop, true);
@@ -111,8 +173,16 @@ class HoleFiller {
         } else {
           ++report_.unshared;
         }
-        tasks.push_back(std::move(task));
+        if (tablet && task.reverse_partition != PartitionTable::kNone &&
+            kind_of(task.reverse_partition) == PartitionKind::kEnvelopeInside) {
+          contacts.push_back(std::move(task));
+          faces.push_back(edges[loop.front()].face);
+        } else {
+          tasks.push_back(std::move(task));
+        }
       }
+      if (contacts.size() > 1) contacts = with_islands(std::move(contacts), faces);
+      std::move(contacts.begin(), contacts.end(), std::back_inserter(tasks));
     }
     report_.loops = static_cast<std::int64_t>(tasks.size());
     DUBSAR_ASSIGN(report_.area, fill(tasks));
@@ -168,23 +238,24 @@ class HoleFiller {
     std::erase_if(edges, [&](const BorderEdge& e) { return uses[key(e.from, e.to)] == 2; });
   }
 
-  /// Fills all loops and appends their patches; returns the area of the patches.
+  /// Fills all holes and appends their patches; returns the area of the patches.
   Result<double> fill(const std::vector<Task>& tasks) {
-    // Pairs of vertices that lie on more than one loop get no inner edge, since the other loop could make it
+    // Pairs of vertices that lie on more than one rim get no inner edge, since the patch of the other one could make it
     // too.
-    std::unordered_map<std::uint32_t, int> loops_of;
+    RimsOf rims_of;
     for (const Task& task : tasks)
-      for (const std::uint32_t v : task.vertices) ++loops_of[v];
-    std::vector<LoopFill> fills(tasks.size());
+      each_rim(task, [&](const HoleRim& rim) {
+        for (const std::uint32_t v : rim.vertices) ++rims_of[v];
+      });
+    std::vector<std::vector<Filled>> filled(tasks.size());
     std::vector<Error> errors(tasks.size());
     parallel_for(static_cast<std::int64_t>(tasks.size()), 1, [&](std::int64_t i) {
       const auto at = static_cast<std::size_t>(i);
-      Result<LoopFill> filled = fill_loop(make_loop(tasks[at], loops_of), options_.fill, progress_);
-      if (filled)
-        fills[at] = std::move(*filled);
+      if (Result<std::vector<Filled>> one = fill_task(tasks[at], rims_of))
+        filled[at] = std::move(*one);
       else
-        errors[at] = filled.error();
-      progress_.advance(static_cast<std::int64_t>(tasks[at].vertices.size()));
+        errors[at] = one.error();
+      progress_.advance(static_cast<std::int64_t>(tasks[at].rim.vertices.size()));
     });
     if (progress_.cancelled()) return cancelled_error();
     for (const Error& error : errors)
@@ -192,32 +263,65 @@ class HoleFiller {
 
     double area = 0.0;
     const auto dual = static_cast<std::uint32_t>(model_.mesh.positions.size());
-    for (std::size_t i = 0; i < tasks.size(); ++i) {
-      const auto n = static_cast<std::uint32_t>(tasks[i].vertices.size());
-      FillPatch patch{tasks[i].partition, tasks[i].reverse_partition, std::move(fills[i].added),
-                      std::move(fills[i].triangles)};
-      for (Triangle& t : patch.triangles)
-        for (std::uint32_t& v : t) v = v < n ? tasks[i].vertices[v] : v - n + dual;
-      model_.patches.push_back(std::move(patch));
-      area += fills[i].area;
-      report_.longest_loop = std::max(report_.longest_loop, static_cast<std::int64_t>(n));
-    }
+    for (std::size_t i = 0; i < tasks.size(); ++i)
+      for (Filled& one : filled[i]) {
+        const auto n = static_cast<std::uint32_t>(one.vertices.size());
+        FillPatch patch{tasks[i].partition, tasks[i].reverse_partition, std::move(one.fill.added),
+                        std::move(one.fill.triangles)};
+        for (Triangle& t : patch.triangles)
+          for (std::uint32_t& v : t) v = v < n ? one.vertices[v] : v - n + dual;
+        model_.patches.push_back(std::move(patch));
+        area += one.fill.area;
+        report_.longest_loop = std::max(report_.longest_loop, static_cast<std::int64_t>(n));
+      }
     return area;
   }
 
-  Loop make_loop(const Task& task, const std::unordered_map<std::uint32_t, int>& loops_of) const {
+  template <class Visit>
+  static void each_rim(const Task& task, const Visit& visit) {
+    if (task.apart.empty()) visit(task.rim);
+    for (const HoleRim& rim : task.apart) visit(rim);
+  }
+
+  /// One patch, or one for each rim where bridges between them gave no surface.
+  Result<std::vector<Filled>> fill_task(const Task& task, const RimsOf& rims_of) const {
+    std::vector<Filled> all;
+    const auto add = [&](const HoleRim& rim) -> Result<void> {
+      Filled one;
+      const Loop loop = make_loop(rim, rims_of, one.vertices);
+      DUBSAR_ASSIGN(one.fill, fill_loop(loop, options_.fill, progress_));
+      if (!one.fill.doubled) all.push_back(std::move(one));
+      return {};
+    };
+    DUBSAR_TRY(add(task.rim));
+    if (all.empty())
+      for (const HoleRim& rim : task.apart) DUBSAR_TRY(add(rim));
+    return all;
+  }
+
+  Loop make_loop(const HoleRim& rim, const RimsOf& rims_of, std::vector<std::uint32_t>& vertices) const {
     Loop loop;
-    loop.rim_normals = task.rim_normals;
+    loop.rim_normals = rim.normals;
     std::unordered_map<std::uint32_t, std::uint32_t> place;
-    for (const std::uint32_t v : task.vertices) {
-      place.emplace(v, static_cast<std::uint32_t>(loop.positions.size()));
-      loop.positions.push_back(model_.mesh.positions[v]);
+    for (const std::uint32_t v : rim.vertices) {
+      const auto [at, is_new] = place.emplace(v, static_cast<std::uint32_t>(vertices.size()));
+      if (is_new) {
+        vertices.push_back(v);
+        loop.positions.push_back(model_.mesh.positions[v]);
+      }
+      loop.walk.push_back(at->second);
     }
     auto taken = std::make_shared<std::unordered_set<std::uint64_t>>();
     auto crossing = std::make_shared<std::vector<bool>>();
-    for (std::uint32_t i = 0; i < task.vertices.size(); ++i) {
-      crossing->push_back(loops_of.at(task.vertices[i]) > 1);
-      for (const std::uint32_t q : model_.mesh.quads_of(task.vertices[i])) {
+    if (vertices.size() == loop.walk.size()) {
+      loop.walk.clear();
+    } else {  // the edges of bridges, too
+      for (std::size_t i = 0; i < loop.walk.size(); ++i)
+        taken->insert(key(loop.walk[i], loop.walk[(i + 1) % loop.walk.size()]));
+    }
+    for (std::uint32_t i = 0; i < vertices.size(); ++i) {
+      crossing->push_back(rims_of.at(vertices[i]) > 1);
+      for (const std::uint32_t q : model_.mesh.quads_of(vertices[i])) {
         const Polygon polygon = model_.mesh.polygon(q);
         for (std::size_t c = 0; c < static_cast<std::size_t>(polygon.size); ++c)
           if (const auto other = place.find(polygon.vertex[c]); other != place.end())

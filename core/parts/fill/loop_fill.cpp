@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
+#include <unordered_map>
 
 #include "core/parts/fill/patch_refine.h"
 
@@ -19,9 +20,11 @@ constexpr float kImpossible = std::numeric_limits<float>::infinity();
 class OptimalTriangulation {
  public:
   OptimalTriangulation(const Loop& loop, std::vector<std::uint32_t> polygon)
-      : loop_(loop), polygon_(std::move(polygon)), n_(polygon_.size()), apex_(n_ * n_, 0), beyond_(n_ * n_) {}
+      : loop_(loop), polygon_(std::move(polygon)), n_(polygon_.size()), apex_(n_ * n_, 0), beyond_(n_ * n_) {
+    for (const std::uint32_t step : polygon_) points_.push_back(loop.positions[loop.vertex(step)]);
+  }
 
-  /// Appends triangles in loop indices; false when every triangulation needs a forbidden edge.
+  /// Appends triangles of steps of the walk; false when every triangulation needs a forbidden edge.
   Result<bool> solve(std::vector<Triangle>& triangles, Progress& progress) {
     constexpr float kStiffness = 1.0f / 16.0f;  // of the loop's length: two fifths of its radius
     for (std::size_t i = 0; i < n_; ++i) stiffness_ += kStiffness * glm::distance(at(i), at((i + 1) % n_));
@@ -49,7 +52,7 @@ class OptimalTriangulation {
   }
 
  private:
-  const glm::vec3& at(std::size_t i) const { return loop_.positions[polygon_[i]]; }
+  const glm::vec3& at(std::size_t i) const { return points_[i]; }
 
   /// What lies beyond an edge or chord i, j of the polygon (i < j): the best triangulation of what it cuts off.
   struct Beyond {
@@ -63,15 +66,15 @@ class OptimalTriangulation {
 
   /// Of the loop between two of its vertices, halfway.
   bool rim_normal(std::uint32_t from, std::uint32_t to, glm::vec3& normal) const {
-    const auto n = static_cast<std::uint32_t>(loop_.positions.size());
+    const auto n = static_cast<std::uint32_t>(loop_.steps());
     if (loop_.rim_normals.empty()) return false;
     normal = loop_.rim_normals[(from + (to + n - from) % n / 2) % n];
-    return true;
+    return normal != glm::vec3(0.0f);
   }
 
   void find_apex(std::size_t i, std::size_t j) {
     const bool closing = i == 0 && j == n_ - 1;
-    if (!closing && loop_.forbidden && loop_.forbidden(polygon_[i], polygon_[j])) return;
+    if (!closing && !loop_.may_join(loop_.vertex(polygon_[i]), loop_.vertex(polygon_[j]))) return;
     const auto bend = [&](const glm::vec3& a, const glm::vec3& b, float length) {
       return stiffness_ * (1.0f - glm::dot(a, b)) * length;
     };
@@ -105,7 +108,8 @@ class OptimalTriangulation {
   }
 
   const Loop& loop_;
-  std::vector<std::uint32_t> polygon_;
+  std::vector<std::uint32_t> polygon_;  ///< steps of its walk
+  std::vector<glm::vec3> points_;
   float stiffness_ = 0.0f;
   std::size_t n_;
   std::vector<std::uint32_t> apex_;
@@ -114,9 +118,9 @@ class OptimalTriangulation {
 
 /// A fan around one new vertex: needs no inner edge between vertices of the loop.
 void add_star(const Loop& loop, const std::vector<std::uint32_t>& polygon, LoopFill& fill) {
-  const auto centre = static_cast<std::uint32_t>(loop.positions.size() + fill.added.size());
+  const auto centre = static_cast<std::uint32_t>(loop.steps() + fill.added.size());
   glm::vec3 middle(0.0f);
-  for (const std::uint32_t v : polygon) middle += loop.positions[v];
+  for (const std::uint32_t step : polygon) middle += loop.positions[loop.vertex(step)];
   fill.added.push_back(middle / static_cast<float>(polygon.size()));
   for (std::size_t i = 0; i < polygon.size(); ++i)
     fill.triangles.push_back({polygon[i], polygon[(i + 1) % polygon.size()], centre});
@@ -140,7 +144,7 @@ Result<void> triangulate_polygon(const Loop& loop, const std::vector<std::uint32
   if (n <= limit) return solve(polygon);
 
   const auto allowed = [&](std::size_t a, std::size_t b) {
-    return b == a + 1 || !loop.forbidden || !loop.forbidden(polygon[a], polygon[b]);
+    return b == a + 1 || loop.may_join(loop.vertex(polygon[a]), loop.vertex(polygon[b]));
   };
   std::vector<std::size_t> cuts{0};
   for (std::size_t piece = 1; piece < limit; ++piece) {
@@ -166,20 +170,40 @@ Result<void> triangulate_polygon(const Loop& loop, const std::vector<std::uint32
   return solve(coarse);
 }
 
+/// Triangles of vertices instead of steps of the walk. Both sides of a bridge become one edge.
+void close_bridges(const Loop& loop, LoopFill& fill) {
+  if (loop.walk.empty()) return;
+  const auto vertices = static_cast<std::uint32_t>(loop.positions.size()),
+             steps = static_cast<std::uint32_t>(loop.walk.size());
+  std::unordered_map<std::uint64_t, int> uses;
+  for (Triangle& t : fill.triangles) {
+    for (std::uint32_t& v : t) v = v < steps ? loop.walk[v] : v - steps + vertices;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = t[i], b = t[(i + 1) % 3];
+      if (a == b || ++uses[std::uint64_t{std::min(a, b)} << 32 | std::max(a, b)] > 2) fill.doubled = true;
+    }
+  }
+}
+
 }  // namespace
 
 Result<LoopFill> fill_loop(const Loop& loop, const LoopFillOptions& options, Progress& progress) {
   const std::size_t n = loop.positions.size();
-  DUBSAR_CHECK(n >= 3 && n < 0x7fffffff);
-  std::vector<std::uint32_t> polygon(n);
+  DUBSAR_CHECK(n >= 3 && loop.steps() < 0x7fffffff);
+  std::vector<std::uint32_t> polygon(loop.steps());
   std::iota(polygon.begin(), polygon.end(), 0u);
   LoopFill fill;
   DUBSAR_TRY(triangulate_polygon(loop, polygon, options, fill, progress));
+  close_bridges(loop, fill);
+  if (fill.doubled) return fill;
   if (options.refine) {
     Patch patch(loop, std::move(fill.triangles), std::move(fill.added));
     DUBSAR_TRY(patch.refine(options.growth, progress));
     DUBSAR_TRY(patch.relax(options.fairing_steps, progress));
-    DUBSAR_TRY(patch.continue_surface(options.fairing_steps, progress));
+    for (int bend = 0; bend < options.bends; ++bend) {
+      if (bend > 0) DUBSAR_TRY(patch.refine(options.growth, progress));
+      DUBSAR_TRY(patch.continue_surface(options.fairing_steps, progress));
+    }
     std::move(patch).release(fill.triangles, fill.added);
   }
   const auto at = [&](std::uint32_t v) { return v < n ? loop.positions[v] : fill.added[v - n]; };

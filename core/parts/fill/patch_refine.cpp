@@ -27,15 +27,7 @@ Patch::Patch(const Loop& loop, std::vector<Triangle> triangles, std::vector<glm:
       positions_(loop.positions),
       triangles_(std::move(triangles)) {
   positions_.insert(positions_.end(), added.begin(), added.end());
-  spacing_.resize(positions_.size());
-  float sum = 0.0f;
-  for (std::uint32_t i = 0; i < rim_; ++i) {
-    const glm::vec3 &before = positions_[(i + rim_ - 1) % rim_], &here = positions_[i],
-                    &after = positions_[(i + 1) % rim_];
-    spacing_[i] = 0.5f * (glm::distance(before, here) + glm::distance(here, after));
-    sum += spacing_[i];
-  }
-  for (std::size_t i = rim_; i < spacing_.size(); ++i) spacing_[i] = sum / static_cast<float>(rim_);
+  find_spacing();
 
   across_.assign(triangles_.size(), {kNone, kNone, kNone});
   std::unordered_map<std::uint64_t, std::pair<std::uint32_t, std::size_t>> open;
@@ -52,13 +44,31 @@ Patch::Patch(const Loop& loop, std::vector<Triangle> triangles, std::vector<glm:
     }
 }
 
+/// Half of both edges of the rim at each of its vertices; of vertices that were added, the mean of these.
+void Patch::find_spacing() {
+  spacing_.assign(positions_.size(), 0.0f);
+  std::unordered_map<std::uint64_t, int> walked;  // bridges to and fro
+  const auto edge = [&](std::size_t i) { return std::pair{loop_.vertex(i), loop_.vertex((i + 1) % loop_.steps())}; };
+  for (std::size_t i = 0; i < loop_.steps(); ++i) ++walked[key(edge(i).first, edge(i).second)];
+  for (std::size_t i = 0; i < loop_.steps(); ++i) {
+    const auto [a, b] = edge(i);
+    if (walked[key(a, b)] > 1) continue;
+    const float half = 0.5f * glm::distance(positions_[a], positions_[b]);
+    spacing_[a] += half;
+    spacing_[b] += half;
+  }
+  float sum = 0.0f;
+  for (std::uint32_t i = 0; i < rim_; ++i) sum += spacing_[i];
+  for (std::size_t i = rim_; i < spacing_.size(); ++i) spacing_[i] = sum / static_cast<float>(rim_);
+}
+
 glm::vec3 Patch::area_vector(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
   return glm::cross(positions_[b] - positions_[a], positions_[c] - positions_[a]);
 }
 
 bool Patch::may_join(std::uint32_t a, std::uint32_t b) const {
   if (edges_.count(key(a, b)) != 0) return false;
-  return a >= rim_ || b >= rim_ || !loop_.forbidden || !loop_.forbidden(a, b);
+  return a >= rim_ || b >= rim_ || loop_.may_join(a, b);
 }
 
 void Patch::replace_neighbour(std::uint32_t triangle, std::uint32_t old_one, std::uint32_t new_one) {
@@ -152,28 +162,32 @@ std::vector<std::vector<std::uint32_t>> Patch::inner_neighbours() const {
 Result<void> Patch::continue_surface(int steps, Progress& progress) {
   constexpr float kOverRelaxation = 1.6f, kRest = 1e-4f;
   const std::size_t inner = positions_.size() - rim_;
-  if (inner == 0 || loop_.rim_normals.size() != rim_) return {};
+  if (inner == 0 || loop_.rim_normals.size() != loop_.steps()) return {};
   const auto neighbours = inner_neighbours();
   std::vector<glm::vec3> normals(positions_.size(), glm::vec3(0.0f));
   glm::vec3 mean_normal(0.0f);
+  for (std::size_t i = 0; i < loop_.steps(); ++i) {
+    normals[loop_.vertex(i)] += loop_.rim_normals[i];
+    normals[loop_.vertex((i + 1) % loop_.steps())] += loop_.rim_normals[i];
+  }
   for (std::uint32_t i = 0; i < rim_; ++i) {
-    normals[i] = unit(loop_.rim_normals[i] + loop_.rim_normals[(i + rim_ - 1) % rim_]);
+    normals[i] = unit(normals[i]);
     mean_normal += normals[i];
   }
-  for (std::size_t i = rim_; i < normals.size(); ++i) normals[i] = mean_normal / static_cast<float>(rim_);
+  for (std::size_t i = rim_; i < normals.size(); ++i) normals[i] = unit(mean_normal);
   for (int step = 0; step < steps; ++step) {
     if (progress.cancelled()) return cancelled_error();
     float largest = 0.0f;
     for (std::size_t i = 0; i < inner; ++i) {
       glm::vec3 mean(0.0f);
       for (const std::uint32_t v : neighbours[i]) mean += normals[v];
-      const glm::vec3 move = kOverRelaxation * (mean / static_cast<float>(neighbours[i].size()) - normals[rim_ + i]);
-      normals[rim_ + i] += move;
-      largest = std::max(largest, glm::length(move));
+      const glm::vec3 before = normals[rim_ + i],
+                      move = kOverRelaxation * (mean / static_cast<float>(neighbours[i].size()) - before);
+      normals[rim_ + i] = unit(before + move);
+      largest = std::max(largest, glm::distance(normals[rim_ + i], before));
     }
     if (largest < kRest) break;
   }
-  for (glm::vec3& n : normals) n = unit(n);
   std::vector<std::vector<glm::vec3>> between(inner);  // the normal half way to each neighbour: they stay as they are
   for (std::size_t i = 0; i < inner; ++i)
     for (const std::uint32_t v : neighbours[i]) between[i].push_back(unit(normals[rim_ + i] + normals[v]));

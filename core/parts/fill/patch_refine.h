@@ -15,7 +15,7 @@ namespace dubsar {
 
 class Patch {
  public:
-  /// `triangles` fill the loop; ids from loop size on are `added`. The loop must outlive the patch.
+  /// `triangles` fill the loop; ids from its number of vertices on are `added`. The loop must outlive the patch.
   Patch(const Loop& loop, std::vector<Triangle> triangles, std::vector<glm::vec3> added);
 
   /// Puts vertices into triangles that are large compared with the spacing of their corners, and flips edges
@@ -26,9 +26,9 @@ class Patch {
   /// Moves added vertices to the mean of their neighbours until they rest (a membrane spanned by the loop).
   Result<void> relax(int steps, Progress& progress);
 
-  /// Bends the membrane so that it continues the surface beyond the rim: normals are interpolated
-  /// harmonically from the rim, then vertices move along them until edges lie across them. Without rim
-  /// normals nothing happens.
+  /// Bends the membrane so that it continues the surface beyond the rim: normals are interpolated from the rim by a
+  /// harmonic map to the unit sphere, as those of a ball are, then vertices move along them until edges lie across
+  /// them. Where it bends far, refine() and once more comes nearer. Without rim normals nothing happens.
   Result<void> continue_surface(int steps, Progress& progress);
 
   void release(std::vector<Triangle>& triangles, std::vector<glm::vec3>& added) &&;
@@ -38,6 +38,7 @@ class Patch {
   static std::uint64_t key(std::uint32_t a, std::uint32_t b) {
     return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
   }
+  void find_spacing();
   std::vector<std::vector<std::uint32_t>> inner_neighbours() const;
   bool split(std::uint32_t triangle, float growth);
   bool flip_if_better(std::uint32_t triangle, std::size_t side);
@@ -46,7 +47,7 @@ class Patch {
   void replace_neighbour(std::uint32_t triangle, std::uint32_t old_one, std::uint32_t new_one);
 
   const Loop& loop_;
-  std::uint32_t rim_;  ///< loop vertices
+  std::uint32_t rim_;  ///< vertices of the loop
   std::vector<glm::vec3> positions_;
   std::vector<float> spacing_;  ///< wanted distance to neighbours
   std::vector<Triangle> triangles_;

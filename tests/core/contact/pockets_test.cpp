@@ -126,6 +126,30 @@ TEST(CavitiesOffContact, AStrawBesideThePatchIsOne) {
   EXPECT_GT(scene.heights(off[0]).second - scene.heights(off[0]).first, 4) << "wider than it is far from the patch";
 }
 
+TEST(KeepWhole, TheClayAtACavityIsOfOneSide) {
+  const CavityScene scene(pore);
+  const std::vector<ClayCavity> off = cavities_off_contact(scene.model, scene.graph, scene.band, scene.faces);
+  ASSERT_EQ(off.size(), 1u);
+  for (const ClaySide most : {ClaySide::kTablet, ClaySide::kEnvelope}) {
+    const ClaySide other = most == ClaySide::kTablet ? ClaySide::kEnvelope : ClaySide::kTablet;
+    std::vector<ClaySide> side(scene.band.nodes.size(), other);  // all clay around it is of the other side
+    for (const std::uint32_t n : off[0]) side[n] = most;
+    side[off[0][3]] = other;
+    EXPECT_TRUE(keep_whole(scene.band, off, side));
+    for (const std::uint32_t n : off[0]) {
+      EXPECT_EQ(side[n], most);
+      each_beside(scene.band.point(n), [&](const glm::ivec3& p) {  // so that they hang together through clay
+        if (const std::uint32_t m = scene.band.at(p); m != ContactBand::kNone) {
+          EXPECT_EQ(side[m], most);
+        }
+      });
+    }
+    const std::vector<ClaySide> before = side;
+    EXPECT_FALSE(keep_whole(scene.band, off, side));
+    EXPECT_EQ(side, before);
+  }
+}
+
 TEST(DivideClay, GoesRoundACavityThatIsWhole) {
   const CavityScene scene(pore);
   const auto off = cavities_off_contact(scene.model, scene.graph, scene.band, scene.faces);

@@ -4,12 +4,15 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <map>
 #include <numbers>
 #include <random>
 #include <set>
 
 #include "core/mesh/mesh_check.h"
 #include "core/parts/border_loops.h"
+#include "core/parts/fill/bridges.h"
 
 namespace dubsar {
 namespace {
@@ -176,6 +179,135 @@ TEST(LoopFill, RandomWigglyLoopsBecomeDisks) {
     options.exact_limit = trial % 3 == 0 ? 40 : 256;
     expect_disk(loop, fill(loop, options));
   }
+}
+
+/// Of a ball around the origin: where a curve on it goes, and its normals there.
+Loop on_ball(float radius, int steps, const std::function<glm::vec3(float)>& direction) {
+  const auto at_step = [&](float i) {
+    return glm::normalize(direction(2.0f * static_cast<float>(kPi) * i / static_cast<float>(steps)));
+  };
+  Loop loop;
+  for (int i = 0; i < steps; ++i) {
+    loop.positions.push_back(radius * at_step(static_cast<float>(i)));
+    loop.rim_normals.push_back(at_step(static_cast<float>(i) + 0.5f));
+  }
+  return loop;
+}
+
+float farthest_from_ball(const LoopFill& filled, float radius) {
+  float worst = 0.0f;
+  for (const glm::vec3& p : filled.added) worst = std::max(worst, std::abs(glm::length(p) - radius));
+  return worst;
+}
+
+TEST(LoopFill, ALargeBentPatchContinuesTheBall) {
+  constexpr float kRadius = 30.0f;
+  struct Band {
+    float half_length, middle, half_width;  // radians along the parallel, from the pole, and across
+    double within;                          // of the radius
+  };
+  for (const Band& band :
+       {Band{1.2f, 0.8f, 0.3f, 0.001}, Band{1.2f, 1.2f, 0.7f, 0.01}, Band{1.6f, 1.6f, 0.5f, 0.002},
+        Band{2.0f, 0.8f, 0.7f, 0.005}, Band{2.0f, 1.2f, 0.5f, 0.025}, Band{2.0f, 1.6f, 0.7f, 0.025}}) {
+    const Loop loop = on_ball(kRadius, 300, [&](float a) {
+      const float along = band.half_length * std::cos(a), across = band.middle + band.half_width * std::sin(a);
+      return glm::vec3(std::cos(along) * std::sin(across), std::sin(along) * std::sin(across), std::cos(across));
+    });
+    const LoopFill filled = fill(loop, {});
+    expect_disk(loop, filled);
+    EXPECT_LT(farthest_from_ball(filled, kRadius), band.within * kRadius) << band.half_length << ' ' << band.middle;
+  }
+}
+
+/// Two rims and a bridge from the first vertex of one to the first of the other.
+Loop with_island(const Loop& rim, const Loop& island) {
+  Loop both = rim;
+  const auto n = static_cast<std::uint32_t>(rim.positions.size()),
+             m = static_cast<std::uint32_t>(island.positions.size());
+  both.positions.insert(both.positions.end(), island.positions.begin(), island.positions.end());
+  both.rim_normals.emplace_back(0.0f);
+  both.rim_normals.insert(both.rim_normals.end(), island.rim_normals.begin(), island.rim_normals.end());
+  both.rim_normals.emplace_back(0.0f);
+  for (std::uint32_t i = 0; i <= n; ++i) both.walk.push_back(i % n);
+  for (std::uint32_t i = 0; i <= m; ++i) both.walk.push_back(n + i % m);
+  both.forbidden = [n](std::uint32_t a, std::uint32_t b) { return std::min(a, b) == 0 && std::max(a, b) == n; };
+  return both;
+}
+
+TEST(LoopFill, AHoleWithAnIslandIsClosedAroundIt) {
+  constexpr float kRadius = 30.0f;
+  const Loop rim = on_ball(kRadius, 200, [](float a) { return glm::vec3(std::cos(a), std::sin(a), 0.3f); });
+  const Loop island =
+      on_ball(kRadius, 70, [](float a) { return glm::vec3(0.3f * std::cos(a) + 0.15f, -0.3f * std::sin(a), 1.0f); });
+  for (const int limit : {40, 256, 512}) {
+    const Loop loop = with_island(rim, island);
+    LoopFillOptions options;
+    options.exact_limit = limit;
+    const LoopFill filled = fill(loop, options);
+    ASSERT_FALSE(filled.doubled);
+    std::vector<glm::vec3> positions = loop.positions;
+    positions.insert(positions.end(), filled.added.begin(), filled.added.end());
+    const MeshCheck check = check_mesh(positions, filled.triangles);
+    EXPECT_TRUE(check.manifold());
+    EXPECT_EQ(check.components, 1);
+    EXPECT_EQ(check.euler, 0);
+    EXPECT_EQ(check.boundary_edges, 270);
+    EXPECT_EQ(check.vertices, static_cast<std::int64_t>(positions.size()));
+    EXPECT_LT(farthest_from_ball(filled, kRadius), 0.03f * kRadius) << limit;
+    for (const Triangle& t : filled.triangles) {  // none lies over the island
+      const glm::vec3 middle = (at(loop, filled, t[0]) + at(loop, filled, t[1]) + at(loop, filled, t[2])) / 3.0f;
+      if (middle.z < 0.0f) continue;
+      EXPECT_GT(glm::length(glm::vec2(middle.x, middle.y) / middle.z - glm::vec2(0.15f, 0.0f)), 0.27f);
+    }
+  }
+}
+
+TEST(JoinIslands, EachIslandHangsByTheNearestRimOfAnotherPiece) {
+  const auto ring = [](std::vector<glm::vec3>& positions, const glm::vec3& middle, float radius, int steps,
+                       std::uint32_t piece) {
+    HoleRim rim;
+    rim.piece = piece;
+    for (int i = 0; i < steps; ++i) {
+      const float a = 2.0f * static_cast<float>(kPi) * static_cast<float>(i) / static_cast<float>(steps);
+      rim.vertices.push_back(static_cast<std::uint32_t>(positions.size()));
+      rim.normals.emplace_back(0.0f, 0.0f, 1.0f);
+      positions.push_back(middle + radius * glm::vec3(std::cos(a), std::sin(a), 0.0f));
+    }
+    return rim;
+  };
+  std::vector<glm::vec3> positions;
+  std::vector<HoleRim> rims;
+  rims.push_back(ring(positions, {0, 0, 0}, 10.0f, 40, 0));
+  rims.push_back(ring(positions, {50, 0, 0}, 10.0f, 40, 0));  // another hole of the same body
+  rims.push_back(ring(positions, {5, 0, 0}, 3.0f, 20, 1));    // 2 from the first
+  rims.push_back(ring(positions, {-2, 0, 0}, 2.0f, 15, 2));   // 2 from the island
+  rims.push_back(ring(positions, {100, 0, 0}, 5.0f, 20, 3));  // another body
+  const auto any = [](std::uint32_t, std::uint32_t) { return true; };
+  const std::vector<bool> island{false, true, true, false};
+  const std::vector<JoinedRims> joined = join_islands(rims, island, positions, any);
+  ASSERT_EQ(joined.size(), 3u);
+  std::vector<std::vector<std::uint32_t>> members;
+  for (const JoinedRims& one : joined) {
+    members.push_back(one.members);
+    std::sort(members.back().begin(), members.back().end());
+    EXPECT_EQ(one.rim.normals.size(), one.rim.vertices.size());
+  }
+  EXPECT_EQ(members, (std::vector<std::vector<std::uint32_t>>{{0, 2, 3}, {1}, {4}}));
+  EXPECT_EQ(joined[0].rim.vertices.size(), 40u + 20 + 15 + 4);
+  EXPECT_EQ(std::count(joined[0].rim.normals.begin(), joined[0].rim.normals.end(), glm::vec3(0.0f)), 4);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> steps;
+  float longest = 0.0f;
+  for (std::size_t i = 0; i < joined[0].rim.vertices.size(); ++i) {
+    const std::uint32_t a = joined[0].rim.vertices[i],
+                        b = joined[0].rim.vertices[(i + 1) % joined[0].rim.vertices.size()];
+    ++steps[{a, b}];
+    longest = std::max(longest, glm::distance(positions[a], positions[b]));
+  }
+  EXPECT_EQ(steps.size(), joined[0].rim.vertices.size()) << "every step once in its sense";
+  EXPECT_LT(longest, 2.1f) << "bridges are the shortest ways";
+
+  const auto none = [](std::uint32_t, std::uint32_t) { return false; };
+  EXPECT_EQ(join_islands(rims, island, positions, none).size(), rims.size());
 }
 
 TEST(LoopFill, LoopOfThirtyThousandVerticesIsCutDownFirst) {

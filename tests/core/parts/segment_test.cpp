@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <set>
 
 #include "core/base/system/parallel.h"
@@ -72,6 +74,14 @@ void expect_all_closed(const SurfaceModel& model) {
   EXPECT_TRUE(check_mesh(all.positions, all.triangles).watertight());
 }
 
+double true_tablet_volume(const Nested& scene) {
+  double volume = 0.0;
+  for (int z = 0; z < scene.dims.z; ++z)
+    for (int y = 0; y < scene.dims.y; ++y)
+      for (int x = 0; x < scene.dims.x; ++x) volume += scene.tablet(glm::vec3(x, y, z)) > 0.0f;
+  return volume;
+}
+
 /// Three bridges of clay across the gap, two of them large.
 bool three_bridges(const glm::vec3& p) {
   return scene::ball(p, {30.0f, 51.0f, 40.0f}, 12.0f) > 0.0f || scene::ball(p, {66.0f, 10.0f, 60.0f}, 9.0f) > 0.0f ||
@@ -95,12 +105,68 @@ TEST(Segment, GluedTabletIsSeparatedAndEveryPartitionIsClosed) {
   EXPECT_TRUE(holes.watertight);
   expect_all_closed(model);
   // The tablet's volume is that of the rounded box without bridges, to a few per cent.
-  double truth = 0.0;
-  for (int z = 0; z < 96; ++z)
-    for (int y = 0; y < 64; ++y)
-      for (int x = 0; x < 96; ++x) truth += scene.tablet(glm::vec3(x, y, z)) > 0.0f;
+  const double truth = true_tablet_volume(scene);
   EXPECT_NEAR(model.partitions[0].volume_mm3, truth, 0.02 * truth);
   EXPECT_LT(model.partitions[2].volume_mm3, 0.0);
+}
+
+TEST(Segment, AGapThatContactSurroundsHasTabletAndEnvelopeToo) {
+  struct Ring {
+    float inner, outer;
+    glm::vec2 middle;  // x and z; in the second the ring runs over the rounded edge
+  };
+  for (const Ring& ring : {Ring{13.0f, 19.0f, {47.0f, 49.0f}}, Ring{12.0f, 17.0f, {68.0f, 51.0f}}}) {
+    Nested scene;
+    scene.glue = [&](const glm::vec3& p) {
+      const float r = glm::distance(glm::vec2(p.x, p.z), ring.middle);
+      return p.y > scene.centre.y - 8.0f && r > ring.inner && r < ring.outer;
+    };
+    SurfaceModel model = scene::extract_model(scene.dims, scene);
+    EXPECT_TRUE(run_segment(model).nested);
+    EXPECT_GE(judge(model, scene).worst(), 0.98);
+    const HoleReport holes = run_fill(model);
+    EXPECT_EQ(holes.loops, 1) << "one patch closes the ring";
+    expect_all_closed(model);
+    const MeshOptions tablet{.partition = model.partitions.find(PartitionKind::kTablet)->id};
+    const TriMesh mesh = make_tri_mesh(model, tablet).value();
+    const MeshCheck check = check_mesh(mesh.positions, mesh.triangles);
+    EXPECT_EQ(check.components, 1);
+    EXPECT_EQ(check.euler, 2);
+    const double truth = true_tablet_volume(scene);
+    EXPECT_NEAR(model.partitions[0].volume_mm3, truth, 0.02 * truth);
+    std::int64_t far = 0, all = 0;
+    for (const FillPatch& patch : model.patches)
+      for (const glm::vec3& p : patch.extra_positions) {
+        ++all;
+        far += scene.tablet(p) > 2.0f || scene.hollow(p) < -2.0f;  // the gap is 3 steps wide
+      }
+    EXPECT_GT(all, 500);
+    EXPECT_EQ(far, 0) << "of " << all;
+  }
+}
+
+TEST(Segment, ALargePoreBesideTheGapIsNoGap) {
+  for (const float height : {56.1f, 80.1f}) {  // of its middle: below and above the gap from 66.6 to 69.6
+    Nested scene;
+    scene.dims = {120, 96, 120};
+    scene.centre = {59.3f, 47.6f, 59.8f};
+    scene.outer = {55.0f, 45.0f, 55.0f};
+    scene.wall = 23.0f;
+    scene.glue = [](const glm::vec3& p) { return scene::ball(p, {40.0f, 68.0f, 40.0f}, 9.0f) > 0.0f; };
+    const glm::vec3 middle(66.3f, height, 63.4f);
+    scene.change = [&](float v, const glm::vec3& p) { return std::min(v, -scene::ball(p, middle, 9.0f)); };
+    SurfaceModel model = scene::extract_model(scene.dims, scene);
+    EXPECT_TRUE(run_segment(model).nested);
+    std::int64_t of_pore = 0, misplaced = 0;
+    for (std::uint32_t q = 0; q < model.mesh.quads.size(); ++q) {
+      const glm::vec3 p = model.mesh.positions[model.mesh.quads[q][0]];
+      if (glm::distance(p, middle) > 10.0f) continue;
+      ++of_pore;
+      misplaced += model.partitions[model.quad_partition[q]].kind != PartitionKind::kPores;
+    }
+    EXPECT_GT(of_pore, 800);
+    EXPECT_EQ(misplaced, 0);
+  }
 }
 
 TEST(Segment, TabletThatTouchesNothingIsSeparatedWithoutHoles) {

@@ -58,7 +58,7 @@ void throw_about(SurfaceModel& model, unsigned seed, float reach) {
 /// One place of the first patch, so far that moving alone does not mend it.
 void throw_far(SurfaceModel& model) {
   std::mt19937 random(21);
-  std::uniform_real_distribution<float> any(-12.0f, 12.0f);
+  std::uniform_real_distribution<float> any(-18.0f, 18.0f);
   const glm::vec3 place = model.patches[0].extra_positions.front();
   for (glm::vec3& p : model.patches[0].extra_positions)
     if (glm::distance(p, place) < 11.0f) p += glm::vec3(any(random), any(random), any(random));
