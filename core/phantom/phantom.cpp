@@ -59,6 +59,17 @@ Dual ClayGap::width(const Point& point) const {
   return film > 0.0f ? max(gap, Dual{film, Float4{}}) : gap;
 }
 
+/// Of the gap over or under a point: it belongs to the place on the tablet before it was written on. If it differed
+/// with the depth, clay of the envelope would lie loose in the wedges.
+Dual Phantom::gap_at(const Point& point, const Dual& base) const {
+  const float slope2 = dot(base.g, base.g);
+  Point foot = point;
+  foot.p -= base.g * (base.v / slope2);
+  Dual width = gap_.width(foot);
+  width.g -= base.g * (dot(width.g, base.g) / slope2);
+  return width;
+}
+
 Fields Phantom::fields(float x, float y, float z, float reach) const {
   const Point point = place_.point(x, y, z);
   const std::int64_t cell = grid_.index(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
@@ -98,7 +109,7 @@ Fields Phantom::fields(float x, float y, float z, float reach) const {
                               ? smooth_max(base, -(hollow + edges_.hint), 2.0f * edges_.rim_rounding)
                           : options_.contact == Contact::kPockets ? base
                                                                   : f.tablet;
-    const Dual width = gap_.width(point);
+    const Dual width = gap_at(point, base);
     f.wall = width - followed;
     // Where both are one, neither's surface exists: the way out leads along the joint to where the gap opens.
     joint = max(width, smooth_abs(base + 0.5f * gap_.overlap, 1.0f) - 2.0f * gap_.overlap);
@@ -195,8 +206,8 @@ bool Phantom::on_tablet_side(const glm::dvec3& p) const {
 }
 
 double Phantom::gap_width(const glm::dvec3& p) const {
-  return static_cast<double>(
-      gap_.width(place_.point(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z))).v);
+  const Point point = place_.point(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
+  return static_cast<double>(gap_at(point, tablet_.body.smooth(point)).v);
 }
 
 Part Phantom::nearest_part(const glm::dvec3& p) const {

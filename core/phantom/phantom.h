@@ -116,6 +116,7 @@ class Phantom {
   /// Union of the impressions in `ids`: large when there are none.
   Dual impressions(const std::vector<Impression>& all, std::span<const std::uint32_t> ids, const Point& point,
                    const Dual& depth) const;
+  Dual gap_at(const Point& point, const Dual& base) const;
   Dual carve(const Dual& body, const Dual& decor, const Dual& hollow) const;
   bool touches(float gap) const noexcept { return gap <= gap_.film; }
   template <class Field>
