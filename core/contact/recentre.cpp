@@ -223,10 +223,10 @@ Result<Ways> ways_to_films(std::vector<PatchPoint> samples, const BitVolume& ins
 
 /// Returns the longest way. Samples at a rim leave others behind, from where they were on: there the surface's parts
 /// meet, wherever the film is.
-float move_along_normals(std::vector<PatchPoint>& samples, const std::vector<float>& ways, float scale) {
+float move_along_normals(std::vector<PatchPoint>& samples, const std::vector<float>& ways, float scale,
+                         std::vector<PatchPoint>& left_behind) {
   constexpr float kApart = 4.0f;
   float longest = 0.0f;
-  std::vector<PatchPoint> left_behind;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const float way = scale * ways[i];
     longest = std::max(longest, std::abs(way));
@@ -235,8 +235,29 @@ float move_along_normals(std::vector<PatchPoint>& samples, const std::vector<flo
           {samples[i].position + std::copysign(at, way) * samples[i].normal, samples[i].normal, true});
     samples[i].position += way * samples[i].normal;
   }
-  samples.insert(samples.end(), left_behind.begin(), left_behind.end());
   return longest;
+}
+
+/// Looks anew from where the samples have come to while some of them came far: a corner of the tablet that a patch cuts
+/// off is farther away than can be seen from it, and its film leads there. `look`: the ways of samples on a grid of
+/// `scale` steps.
+template <class Look>
+Result<Recentred> follow_films(std::vector<PatchPoint>& samples, float scale, const Look& look) {
+  constexpr int kMostLooks = 4;
+  constexpr float kFar = 0.5f * kReach;
+  const std::vector<PatchPoint> before = samples;
+  std::vector<PatchPoint> left_behind;
+  Recentred recentred;
+  for (int k = 0; k < kMostLooks; ++k) {
+    recentred.density.reset();
+    DUBSAR_ASSIGN(Ways ways, look(samples));
+    recentred.density.emplace(std::move(ways.density));
+    if (move_along_normals(samples, ways.of_sample, scale, left_behind) <= scale * kFar) break;
+  }
+  for (std::size_t i = 0; i < before.size(); ++i)
+    recentred.longest = std::max(recentred.longest, glm::distance(before[i].position, samples[i].position));
+  samples.insert(samples.end(), left_behind.begin(), left_behind.end());
+  return recentred;
 }
 
 }  // namespace
@@ -244,18 +265,21 @@ float move_along_normals(std::vector<PatchPoint>& samples, const std::vector<flo
 Result<Recentred> recentre_samples(std::vector<PatchPoint>& samples, const BitVolume& inside, SlabSource& density,
                                    Progress& progress) {
   constexpr int kRoom = 3;  // bricks: most samples move less than the reach, and are looked around as far then
-  DUBSAR_ASSIGN(Ways ways, ways_to_films(samples, inside, density, kRoom, progress));
-  return Recentred{move_along_normals(samples, ways.of_sample, 1.0f), std::move(ways.density)};
+  return follow_films(samples, 1.0f, [&](const std::vector<PatchPoint>& from) {
+    return ways_to_films(from, inside, density, kRoom, progress);
+  });
 }
 
 Result<Recentred> recentre_samples_at_half(std::vector<PatchPoint>& samples, const BitVolume& inside,
                                            SlabSource& density, Progress& progress) {
   HalfResolutionSource half(density);
-  std::vector<PatchPoint> at_half = samples;
-  for (PatchPoint& sample : at_half) sample.position = halved(sample.position);
-  DUBSAR_ASSIGN(const Ways ways,
-                ways_to_films(std::move(at_half), halved_signs(inside, half.dims()), half, 1, progress));
-  return Recentred{move_along_normals(samples, ways.of_sample, 2.0f), std::nullopt};
+  const BitVolume inside_half = halved_signs(inside, half.dims());
+  DUBSAR_ASSIGN(Recentred recentred, follow_films(samples, 2.0f, [&](std::vector<PatchPoint> from) {
+                  for (PatchPoint& sample : from) sample.position = halved(sample.position);
+                  return ways_to_films(std::move(from), inside_half, half, 1, progress);
+                }));
+  recentred.density.reset();  // of another grid
+  return recentred;
 }
 
 }  // namespace dubsar

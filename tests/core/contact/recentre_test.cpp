@@ -67,6 +67,24 @@ TEST(RecentreSamples, FollowsAFilmFarFromThePatch) {
   EXPECT_NEAR(found.told, 13.0f, 4.0f);
 }
 
+TEST(RecentreSamples, FollowsAFilmBeyondItsReach) {
+  // A corner of the tablet that the patch cuts off: 24 steps from it can be seen, the film is 34 from its middle.
+  const auto dome = [](float x, float y) {
+    const float u = (x - 64.0f) / 50.0f, v = (y - 64.0f) / 50.0f;
+    return kPatch + 34.0f * std::max(1.0f - u * u - v * v, 0.0f);
+  };
+  const Moved found = moved(clay(0.3f, dome, 59));  // the dip of half a voxel of air
+  double squares = 0.0, count = 0.0;
+  for (const PatchPoint& s : found.samples) {
+    if (!amid(s)) continue;
+    const auto off = static_cast<double>(s.position.z - dome(s.position.x, s.position.y));
+    squares += off * off;
+    count += 1.0;
+  }
+  EXPECT_LT(std::sqrt(squares / count), 3.0);
+  EXPECT_NEAR(found.told, 34.0f, 5.0f);
+}
+
 TEST(RecentreSamples, OnAGridThatIsHalvedAlreadyItLooksTwelveStepsFar) {
   const auto tilted = [](float x, float y) { return kPatch + 7.0f + 0.05f * (x - 64.0f) - 0.03f * (y - 64.0f); };
   const Moved found = moved(clay(0.13f, tilted, 53, 0.06f), recentre_samples);  // the noise that 2:1 leaves of 17 dB
