@@ -15,6 +15,29 @@ constexpr float kDent = 1.2f;      ///< steps below it
 constexpr std::size_t kNearest = 64;
 constexpr float kDentSignificance = 2.5f;
 constexpr float kMostDentStrength = 2.5f;  ///< of one vertex: the fringe of a pore is no film, however dark
+constexpr float kHole = 2.0f;              ///< steps below the sheet
+constexpr std::size_t kLeastHole = 24;     ///< vertices of a wedge so deep: some five across
+
+/// Vertices in holes narrower than a wedge.
+std::vector<bool> narrow_holes(const InterfaceRings& rings, const std::vector<float>& depth,
+                               const std::vector<bool>& film) {
+  std::vector<bool> narrow(depth.size(), false), seen(depth.size(), false);
+  for (std::uint32_t i = 0; i < depth.size(); ++i) {
+    const auto in_hole = [&](std::uint32_t v) { return !seen[v] && film[v] && depth[v] > kHole; };
+    if (!in_hole(i)) continue;
+    std::vector<std::uint32_t> hole{i};
+    seen[i] = true;
+    for (std::size_t k = 0; k < hole.size(); ++k)
+      for (const std::uint32_t w : rings.added[hole[k]])
+        if (in_hole(w)) {
+          seen[w] = true;
+          hole.push_back(w);
+        }
+    if (hole.size() < kLeastHole)
+      for (const std::uint32_t v : hole) narrow[v] = true;
+  }
+  return narrow;
+}
 
 }  // namespace
 
@@ -58,9 +81,10 @@ std::vector<bool> doubtful_dents(const InterfaceMesh& mesh, const InterfaceRings
     const auto count = static_cast<float>(nearest.size());
     by_chance[i] = sum / count < kClayStrength + kDentSignificance * kStrengthDeviation / std::sqrt(count);
   });
+  const std::vector<bool> narrow = narrow_holes(rings, depth, film);
   std::vector<bool> doubtful(depth.size(), false);
   for (std::size_t i = 0; i < doubtful.size(); ++i) {
-    if (by_chance[i] == 0) continue;
+    if (by_chance[i] == 0 && !narrow[i]) continue;
     doubtful[i] = true;
     for (const std::uint32_t w : rings.added[i]) doubtful[w] = true;
   }

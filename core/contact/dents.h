@@ -22,8 +22,9 @@ std::vector<float> dent_depths(const InterfaceMesh& mesh, const InterfaceRings& 
 
 /// Added vertices in dents, more than 1.2 steps below a sheet that spans them towards the envelope, whose dips do not
 /// stand out of what chance makes of clay: the mean strength of the nearest 64 vertices of the dent, or of all where it
-/// has fewer, is not 2.5 deviations above kClayStrength. What touches such vertices is doubtful, too. `film`: of each
-/// added vertex; others are no part of a dent. The same for any number of threads.
+/// has fewer, is not 2.5 deviations above kClayStrength. Those in dents of fewer than 24 vertices that are 2 steps deep
+/// are doubtful whatever their dips: a stylus leaves no hole that is deeper than it is wide. What touches such vertices
+/// is doubtful, too. `film`: of each added vertex; others are no part of a dent. The same for any number of threads.
 std::vector<bool> doubtful_dents(const InterfaceMesh& mesh, const InterfaceRings& rings,
                                  const std::vector<glm::vec3>& dual_positions, const std::vector<bool>& film);
 

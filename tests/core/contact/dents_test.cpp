@@ -66,6 +66,14 @@ TEST(DoubtfulDents, TheSameDipsProveALargeDentAndNotASmallOne) {
   EXPECT_GT(doubtful({3.0f, 3.5f, 1.8f}, outside), 0);
 }
 
+TEST(DoubtfulDents, AHoleNarrowerThanAWedgeIsDoubtfulWhateverItsDips) {
+  std::int64_t outside = 0;
+  // Two of 5 steps and more deep: .6 of the radius, 15 vertices; 60 where it is twice as wide.
+  EXPECT_GT(doubtful({5.0f, 3.6f, 2.5f}, outside), 10);
+  EXPECT_EQ(outside, 0);
+  EXPECT_EQ(doubtful({5.0f, 7.2f, 2.5f}, outside), 0);
+}
+
 TEST(DoubtfulDents, WhatIsFlatOrStandsOutOrIsNoFilmIsNoDent) {
   std::int64_t outside = 0;
   EXPECT_EQ(doubtful({0.8f, 7.0f, kClayStrength}, outside), 0) << "shallow";
