@@ -21,21 +21,12 @@ constexpr std::size_t kLeastHole = 24;     ///< vertices of a wedge so deep: som
 /// Vertices in holes narrower than a wedge.
 std::vector<bool> narrow_holes(const InterfaceRings& rings, const std::vector<float>& depth,
                                const std::vector<bool>& film) {
-  std::vector<bool> narrow(depth.size(), false), seen(depth.size(), false);
-  for (std::uint32_t i = 0; i < depth.size(); ++i) {
-    const auto in_hole = [&](std::uint32_t v) { return !seen[v] && film[v] && depth[v] > kHole; };
-    if (!in_hole(i)) continue;
-    std::vector<std::uint32_t> hole{i};
-    seen[i] = true;
-    for (std::size_t k = 0; k < hole.size(); ++k)
-      for (const std::uint32_t w : rings.added[hole[k]])
-        if (in_hole(w)) {
-          seen[w] = true;
-          hole.push_back(w);
-        }
-    if (hole.size() < kLeastHole)
-      for (const std::uint32_t v : hole) narrow[v] = true;
-  }
+  std::vector<bool> deep(depth.size()), narrow(depth.size(), false);
+  for (std::size_t i = 0; i < deep.size(); ++i) deep[i] = film[i] && depth[i] > kHole;
+  each_piece(rings, deep, [&](const std::vector<std::uint32_t>& hole) {
+    if (hole.size() >= kLeastHole) return;
+    for (const std::uint32_t v : hole) narrow[v] = true;
+  });
   return narrow;
 }
 

@@ -56,4 +56,23 @@ struct InterfaceRings {
   }
 };
 
+/// visit(piece): the added vertices of `belongs` that hang together, from the first on, ring by ring.
+template <class Visit>
+void each_piece(const InterfaceRings& rings, const std::vector<bool>& belongs, const Visit& visit) {
+  std::vector<bool> left = belongs;
+  std::vector<std::uint32_t> piece;
+  for (std::uint32_t i = 0; i < left.size(); ++i) {
+    if (!left[i]) continue;
+    left[i] = false;
+    piece.assign(1, i);
+    for (std::size_t k = 0; k < piece.size(); ++k)
+      for (const std::uint32_t w : rings.added[piece[k]])
+        if (left[w]) {
+          left[w] = false;
+          piece.push_back(w);
+        }
+    visit(piece);
+  }
+}
+
 }  // namespace dubsar

@@ -88,49 +88,32 @@ std::vector<float> mean_steps(const InterfaceMesh& mesh, const InterfaceRings& r
 /// chance is small even where the patch is.
 std::vector<bool> film_patches(const InterfaceMesh& mesh, const InterfaceRings& rings) {
   const std::vector<bool> rim = rim_of(rings);
-  std::vector<bool> film(rim.size(), false), seen(rim.size(), false);
-  for (std::uint32_t i = 0; i < rim.size(); ++i) {
-    if (seen[i]) continue;
-    std::vector<std::uint32_t> patch{i};
-    seen[i] = true;
+  std::vector<bool> film(rim.size(), false);
+  each_piece(rings, std::vector<bool>(rim.size(), true), [&](const std::vector<std::uint32_t>& patch) {
     float sum = 0.0f, count = 0.0f;
-    for (std::size_t k = 0; k < patch.size(); ++k) {
-      if (!rim[patch[k]]) {
-        sum += std::min(mesh.strength[patch[k]], kMostStrength);
+    for (const std::uint32_t v : patch)
+      if (!rim[v]) {
+        sum += std::min(mesh.strength[v], kMostStrength);
         count += 1.0f;
       }
-      for (const std::uint32_t w : rings.added[patch[k]])
-        if (!seen[w]) {
-          seen[w] = true;
-          patch.push_back(w);
-        }
-    }
     if (count < kLeastPatch || sum < count * (kClayStrength + std::max(kPatchMargin, kPatchSigmas / std::sqrt(count))))
-      continue;
-    for (const std::uint32_t w : patch) film[w] = true;
-  }
+      return;
+    for (const std::uint32_t v : patch) film[v] = true;
+  });
   return film;
 }
 
 void drop_small_films(const InterfaceRings& rings, const std::vector<float>& strength,
                       const std::vector<bool>& in_film_patch, std::vector<std::uint8_t>& evidence) {
-  std::vector<bool> seen(evidence.size(), false);
-  for (std::uint32_t i = 0; i < evidence.size(); ++i) {
-    if (seen[i] || evidence[i] != kFilm) continue;
-    std::vector<std::uint32_t> film{i};
-    seen[i] = true;
-    for (std::size_t k = 0; k < film.size(); ++k)
-      for (const std::uint32_t w : rings.added[film[k]])
-        if (!seen[w] && evidence[w] == kFilm) {
-          seen[w] = true;
-          film.push_back(w);
-        }
+  std::vector<bool> film(evidence.size());
+  for (std::size_t i = 0; i < film.size(); ++i) film[i] = evidence[i] == kFilm;
+  each_piece(rings, film, [&](const std::vector<std::uint32_t>& piece) {
     float sum = 0.0f;
-    for (const std::uint32_t w : film) sum += strength[w];
-    const bool clear = sum >= kClear * static_cast<float>(film.size());
-    if (film.size() < (in_film_patch[i] ? kLeastPatchFilm : clear ? kLeastClearFilm : kLeastFilm))
-      for (const std::uint32_t w : film) evidence[w] = kInferred;
-  }
+    for (const std::uint32_t v : piece) sum += strength[v];
+    const bool clear = sum >= kClear * static_cast<float>(piece.size());
+    if (piece.size() < (in_film_patch[piece.front()] ? kLeastPatchFilm : clear ? kLeastClearFilm : kLeastFilm))
+      for (const std::uint32_t v : piece) evidence[v] = kInferred;
+  });
 }
 
 /// Neighbours of the added vertices as places in one array: the added ones, and behind them those of the surface.
