@@ -24,7 +24,8 @@ lab_packages=(qemu-system-x86 busybox-static cpio kmod)
 usage() {
   cat <<'TEXT'
 ./do demo     install what is needed, build, make a scan, process it, write surfaces and pictures
-./do test     install what is needed, build, run all tests
+./do test     install what is needed, build, run all tests but the long ones
+./do long     those that take a minute each: whole scans of other seeds and sizes; long turn: the quarter that CI takes at this revision
 ./do lab      boot Debian's kernel in qemu and test the drivers on virtual USB, HID and camera devices
 ./do build    build the program (build/release/app/dubsar)
 ./do peers    talk to VRPN, spacenavd, libspnav and opentrack, as far as they are installed, and print a table
@@ -100,7 +101,19 @@ run_tests() {
   (deps "${lab_packages[@]}") || true
   lab_kernel || true
   build_target
-  ctest --test-dir "$build" --output-on-failure -j $((jobs + 1)) "$@"  # some wait, for clocks or for other programs
+  ctest --test-dir "$build" --output-on-failure -j $((jobs + 1)) -LE '^long$' "$@"  # some wait, for clocks or for other programs
+}
+
+# Every case of the label long, or every fourth of them, another quarter at each revision.
+long() {
+  local every=()
+  if [ "${1:-}" = turn ]; then
+    every=(-I "$(($(revision_number) % 4 + 1)),,4")
+    shift
+  fi
+  deps
+  build_target
+  ctest --test-dir "$build" --output-on-failure -j "$jobs" -L '^long$' "${every[@]}" "$@"
 }
 
 lab() {
@@ -125,15 +138,17 @@ sanitized_parts=(
   "program -I 2,,2"
 )
 
-# The part whose turn it is: one revision after the other; by the revision's name where the checkout does not know how many came before.
-part_of_revision() {
-  local count
+# One more at each revision; made of the revision's name where the checkout does not know how many came before.
+revision_number() {
   if [ "$(git rev-parse --is-shallow-repository 2>/dev/null)" = false ]; then
-    count=$(git rev-list --count HEAD)
+    git rev-list --count HEAD
   else
-    count=$((16#$(git rev-parse --short=7 HEAD 2>/dev/null || echo 0)))
+    echo $((16#$(git rev-parse --short=7 HEAD 2>/dev/null || echo 0)))
   fi
-  echo "${sanitized_parts[count % ${#sanitized_parts[@]}]}"
+}
+
+part_of_revision() {
+  echo "${sanitized_parts[$(revision_number) % ${#sanitized_parts[@]}]}"
 }
 
 # The cases of `test`, less those that need a kernel of their own, a preloaded library or most of an hour. asan ROOM...: of these parts only,
@@ -374,6 +389,7 @@ verb=${1:-}
 case "$verb" in
   demo) demo "$@" ;;
   test) run_tests "$@" ;;
+  long) long "$@" ;;
   lab) lab "$@" ;;
   build) deps; build_target --target dubsar "$@" ;;
   bench) bench "$@" ;;

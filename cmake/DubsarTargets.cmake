@@ -97,10 +97,11 @@ foreach(room core devices input display app program)
 endforeach()
 
 # dubsar_test(name SOURCES a_test.cpp ... DEPS rooms [LABEL unit|gl|device|slow] [TIMEOUT seconds]
-#             [ENVIRONMENT NAME=value])
-# One GoogleTest binary per room; every case becomes one ctest test.
+#             [ENVIRONMENT NAME=value] [LONG patterns])
+# One GoogleTest binary per room; every case becomes one ctest test. Cases that match one of the patterns of LONG (as of
+# --gtest_filter, colons between) have the label long instead: `./do test` leaves them to `./do long`.
 function(dubsar_test name)
-  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT;ENVIRONMENT" "SOURCES;DEPS" ${ARGN})
+  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT;ENVIRONMENT;LONG" "SOURCES;DEPS" ${ARGN})
   if(NOT ARG_LABEL)
     set(ARG_LABEL unit)
   endif()
@@ -137,6 +138,12 @@ function(dubsar_test name)
   if(ARG_ENVIRONMENT)
     set(environment ENVIRONMENT ${ARG_ENVIRONMENT})
   endif()
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
+  set(quick)
+  if(ARG_LONG)
+    set(quick TEST_FILTER "-${ARG_LONG}")
+    gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 TEST_FILTER "${ARG_LONG}" TEST_LIST ${name}_LONG_TESTS
+                         PROPERTIES LABELS long TIMEOUT ${ARG_TIMEOUT} ${environment})
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 ${quick}
                        PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT} ${environment})
 endfunction()
