@@ -11,11 +11,34 @@
 namespace dubsar::app {
 namespace {
 struct PhantomRequest {
-  std::string out, size, preset = "demo", truth;
+  std::string out, size, preset = "demo", truth, scanner;
+  bool scanned = false, recipe = false;  ///< a simulated scanner; options of the recipe that it replaces
   std::uint64_t seed = 1;
   phantom::PhantomOptions model;
   bool unwritten = false;
 };
+
+std::string scanner_text(const phantom::ScannerReport& scan) {
+  const phantom::ScanGeometry& g = scan.geometry;
+  return fmt::format(
+      "{} views over {} a turn, {}x{} pixels, {}\nthe longest ray passes {:.0f} mm of clay ({:.3f} a "
+      "millimetre) and keeps {:.2g} % of its light\n",
+      g.views, g.full ? "all of" : "half of", g.columns, g.rows,
+      g.cone() ? fmt::format("source {:.0f} mm from the axis", g.source * g.voxel_mm) : "parallel rays",
+      scan.longest_mm, scan.clay_per_mm, 100.0 * scan.least_light);
+}
+
+nlohmann::json scanner_json(const phantom::ScannerReport& scan) {
+  const phantom::ScanGeometry& g = scan.geometry;
+  return {{"views", g.views},
+          {"full_turn", g.full},
+          {"columns", g.columns},
+          {"rows", g.rows},
+          {"source_mm", g.cone() ? nlohmann::json(g.source * g.voxel_mm) : nlohmann::json()},
+          {"longest_mm", scan.longest_mm},
+          {"least_light", scan.least_light},
+          {"clay_per_mm", scan.clay_per_mm}};
+}
 
 Result<VerbResult> run(const PhantomRequest& options, Progress& progress) {
   DUBSAR_ASSIGN(phantom::PhantomOptions wanted, phantom::parse_preset(options.preset));
@@ -36,17 +59,28 @@ Result<VerbResult> run(const PhantomRequest& options, Progress& progress) {
   wanted.rings = model.rings;
   wanted.blur_vox = model.blur_vox;
   wanted.written = !options.unwritten;
+  if (options.scanned) {
+    if (options.recipe)
+      return fail(ErrorKind::kUsage,
+                  "phantom: --snr, --blur and --rings belong to the recipe without a scanner; with --scanner say "
+                  "photons=, blur= and rings= in its list");
+    DUBSAR_ASSIGN(wanted.scanner, phantom::parse_scanner(options.scanner));
+  }
   std::optional<std::filesystem::path> truth;
   if (!options.truth.empty()) truth = options.truth;
   DUBSAR_ASSIGN(const phantom::PhantomReport report, phantom::write_phantom(options.out, truth, wanted, progress));
   const phantom::PhantomOptions& made = report.options;
   VerbResult result;
-  result.text = fmt::format(
-      "{}: {}x{}x{} voxels of {:.4f} mm, seed {}, SNR {:.1f} dB\n{} wedges on the tablet, {} on the envelope, {} "
+  result.text =
+      fmt::format("{}: {}x{}x{} voxels of {:.4f} mm, seed {}, {}\n", options.out, made.dims.x, made.dims.y, made.dims.z,
+                  made.voxel_mm, made.seed, report.scanner ? "scanned" : fmt::format("SNR {:.1f} dB", made.snr_db));
+  if (report.scanner) result.text += scanner_text(*report.scanner);
+  result.text += fmt::format(
+      "{} wedges on the tablet, {} on the envelope, {} "
       "pores, "
       "glued over {:.1f} % of the tablet{}\n",
-      options.out, made.dims.x, made.dims.y, made.dims.z, made.voxel_mm, made.seed, made.snr_db, report.tablet_wedges,
-      report.envelope_wedges, report.pores, 100.0 * report.glued_fraction, report.cracked ? ", envelope cracked" : "");
+      report.tablet_wedges, report.envelope_wedges, report.pores, 100.0 * report.glued_fraction,
+      report.cracked ? ", envelope cracked" : "");
   const auto& cases = report.wedges_by_case;
   result.text += fmt::format("contact {}: wedges {} free, {} pockets, {} under a film, {} filled\n",
                              name_in(phantom::kContacts, made.contact), cases[0], cases[1], cases[2], cases[3]);
@@ -55,15 +89,19 @@ Result<VerbResult> run(const PhantomRequest& options, Progress& progress) {
                  {"dims", {made.dims.x, made.dims.y, made.dims.z}},
                  {"voxel_size_mm", made.voxel_mm},
                  {"seed", made.seed},
-                 {"snr_db", made.snr_db},
-                 {"blur_vox", made.blur_vox},
-                 {"sigma", report.sigma},
                  {"glued_fraction", report.glued_fraction},
                  {"cracked", report.cracked},
                  {"tablet_wedges", report.tablet_wedges},
                  {"envelope_wedges", report.envelope_wedges},
                  {"contact", name_in(phantom::kContacts, made.contact)},
                  {"pores", report.pores}};
+  if (report.scanner) {
+    result.json["scanner"] = scanner_json(*report.scanner);
+  } else {
+    result.json["snr_db"] = made.snr_db;
+    result.json["blur_vox"] = made.blur_vox;
+    result.json["sigma"] = report.sigma;
+  }
   if (made.contact == phantom::Contact::kFilm) result.json["film_vox"] = made.film_vox;
   for (const auto& state : phantom::kWedgeCases)
     result.json["wedges"][std::string(state.name)] = cases[static_cast<std::size_t>(state.value)];
@@ -101,10 +139,22 @@ Verb add_phantom_verb(Arguments program) {
   contact.flag("--unwritten", options->unwritten, "nobody wrote on the tablet");
   contact.value("--envelope-density", model.envelope_density, "of its clay, relative to the tablet's").range(0.5, 1.5);
   contact.value("--rings", model.rings, "ring artefacts: standard deviation relative to clay").range(0.0, 1.0);
+  command
+      .value("--scanner", options->scanner,
+             "scans it as an X-ray scanner does, instead of the recipe of --snr, --blur and --rings: good (default), "
+             "mild, medium, strong or ideal, then key=value, all with commas between: kv, filter, mono, clay, lime, "
+             "photons, electronic, scatter, spread, glare, rings, bad, blur, turn=half|full, views, cone, axis, start, "
+             "window=none|shepp|cosine|hann, file=float|uint16|hu, pad=none|min|nan|NUMBER, blank (docs/scans.md)")
+      .words(0, 1);
   command.footer(
       "Examples:\n  dubsar phantom scan.h5 --preset demo\n  dubsar phantom scan.h5 --size 512x512x512 --seed 7 --truth "
-      "truth.h5\n  dubsar phantom scan.h5 --contact film --film 0.3 --wedge-depth 10 --truth truth.h5");
-  return {command, [options](const CommonOptions&, Progress& progress) { return run(*options, progress); }};
+      "truth.h5\n  dubsar phantom scan.h5 --contact film --film 0.3 --wedge-depth 10 --truth truth.h5\n  "
+      "dubsar phantom scan.h5 --size 256x160x240 --scanner medium,turn=half,cone=0 --truth truth.h5");
+  return {command, [options, command](const CommonOptions&, Progress& progress) {
+            options->scanned = command.given("--scanner");
+            options->recipe = command.given("--snr") || command.given("--blur") || command.given("--rings");
+            return run(*options, progress);
+          }};
 }
 
 }  // namespace dubsar::app

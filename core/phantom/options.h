@@ -2,10 +2,12 @@
 // What to make: size, seed and noise of a phantom.
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "core/base/result.h"
 #include "core/base/text/enum_names.h"
+#include "core/phantom/scanner/scanner_options.h"
 #include "core/volume/volume.h"
 
 namespace dubsar::phantom {
@@ -41,6 +43,7 @@ struct PhantomOptions {
   double envelope_density = 1.0;  ///< of the envelope's clay, relative to the tablet's
   double rings = 0.0;             ///< standard deviation of ring artefacts, relative to clay
   double blur_vox = kUsualBlur;   ///< standard deviation of the point spread along each axis, 0.3 to 0.8
+  std::optional<ScannerOptions> scanner{};  ///< a simulated scanner instead of snr_db, rings and blur_vox
 };
 
 /// "tiny" 96x64x96, "demo" 512x272x472, "paper" 1871x999x1723 (38 um). kUsage for any other name.

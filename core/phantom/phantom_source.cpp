@@ -3,37 +3,14 @@
 #include <cmath>
 
 #include "core/base/system/parallel.h"
+#include "core/phantom/density.h"
 #include "core/phantom/imaging_kernels.h"
 #include "core/phantom/random.h"
-#include "core/phantom/rasterise.h"
 
 namespace dubsar::phantom {
 namespace {
 
 constexpr std::int64_t kSlicesAtATime = 16;
-
-/// Share of a voxel that lies inside a surface at signed distance d: that of a box across, of the same variance in
-/// every direction.
-float coverage(const Dual& field) {
-  const float slope = std::sqrt(dot(field.g, field.g));
-  return std::clamp(0.5f - field.v / std::max(slope, 0.2f), 0.0f, 1.0f);
-}
-
-/// Share of clay in a voxel, that of the envelope weighted. A film of air thinner than a voxel has both clays in it:
-/// they are summed, where one field of both would know the nearer wall only.
-float clay_of_two(const Fields& f, float envelope_density) {
-  const float tablet = coverage(f.tablet);
-  const float envelope = std::min(coverage(max(max(f.outer, f.wall), -f.crack)), 1.0f - tablet);
-  const float hollow = std::max(coverage(f.pore), coverage(f.organic));
-  return (tablet + envelope_density * envelope) * (1.0f - hollow);
-}
-
-float density(const Fields& f, const PhantomOptions& options) {
-  const float clay =
-      tells_clays_apart(options) ? clay_of_two(f, static_cast<float>(options.envelope_density)) : coverage(f.clay);
-  return kAirDensity + (kClayDensity - kAirDensity) * clay + (kOrganicDensity - kAirDensity) * coverage(f.organic) +
-         (kGrainDensity - kClayDensity) * coverage(f.grain);
-}
 
 /// Rings around the axis of rotation (z, through the middle): gains of detector columns, each a little off.
 std::vector<float> ring_profile(const PhantomOptions& options) {
@@ -54,7 +31,7 @@ std::vector<float> ring_profile(const PhantomOptions& options) {
 
 PhantomSource::PhantomSource(std::shared_ptr<const Phantom> phantom) : phantom_(std::move(phantom)) {
   const PhantomOptions& options = phantom_->options();
-  frame_.input_voxel = {glm::dvec3(options.voxel_mm), "phantom"};
+  frame_ = scan_frame(options);
   if (!std::isinf(options.snr_db))
     sigma_ = static_cast<double>(kClayDensity - kAirDensity) / std::pow(10.0, options.snr_db / 20.0);
   rings_ = ring_profile(options);
@@ -62,33 +39,15 @@ PhantomSource::PhantomSource(std::shared_ptr<const Phantom> phantom) : phantom_(
 
 void PhantomSource::fill_raw(std::int64_t z_begin, std::int64_t z_end) {
   const Dims d = dims();
-  const std::int64_t y_first = brick_of(-1), y_bricks = brick_of(d.y) - y_first + 1;
-  const std::int64_t z_first = brick_of(z_begin), z_bricks = brick_of(z_end - 1) - z_first + 1;
+  rasterise_density(*phantom_, {{-1, -1, z_begin}, {d.x + 1, d.y + 1, z_end}}, raw_row(-1, z_begin));
   const auto white =
       static_cast<float>(sigma_ / kernels::noise_left(kernels::psf_middle(phantom_->options().blur_vox)));
+  if (!(white > 0.0f)) return;
   const std::uint64_t seed_key = hash64(phantom_->options().seed ^ 0x6e6f697365);
-  parallel_for(y_bricks * z_bricks, 1, [&](std::int64_t item) {
-    const std::int64_t y_lo = (y_first + item % y_bricks) * kBrickEdge, z_lo = (z_first + item / y_bricks) * kBrickEdge;
-    const VoxelBounds clip{{-1, std::max<std::int64_t>(y_lo, -1), std::max(z_lo, z_begin)},
-                           {d.x + 1, std::min(y_lo + kBrickEdge, d.y + 1), std::min(z_lo + kBrickEdge, z_end)}};
-    for (std::int64_t bx = brick_of(-1); bx <= brick_of(d.x); ++bx)
-      visit_brick(
-          *phantom_, {1.0f, tells_clays_apart(phantom_->options())}, {bx * kBrickEdge, y_lo, z_lo}, kBrickEdge, clip,
-          [&](const VoxelBounds& box, const Fields& f) {
-            const float value = density(f, phantom_->options());
-            for (std::int64_t z = box.lo[2]; z < box.hi[2]; ++z)
-              for (std::int64_t y = box.lo[1]; y < box.hi[1]; ++y)
-                std::fill(raw_row(y, z) + box.lo[0] + 1, raw_row(y, z) + box.hi[0] + 1, value);
-          },
-          [&](std::int64_t x, std::int64_t y, std::int64_t z, const Fields& f) {
-            raw_row(y, z)[x + 1] = density(f, phantom_->options());
-          });
-    if (white > 0.0f)
-      for (std::int64_t z = clip.lo[2]; z < clip.hi[2]; ++z)
-        for (std::int64_t y = clip.lo[1]; y < clip.hi[1]; ++y) {
-          const auto place = static_cast<std::uint64_t>(z + 1) << 32 | static_cast<std::uint64_t>(y + 1);
-          kernels::add_noise(hash64(seed_key ^ place), -1, white, {raw_row(y, z), static_cast<std::size_t>(d.x + 2)});
-        }
+  parallel_for((z_end - z_begin) * (d.y + 2), 64, [&](std::int64_t item) {
+    const std::int64_t y = item % (d.y + 2) - 1, z = z_begin + item / (d.y + 2);
+    const auto place = static_cast<std::uint64_t>(z + 1) << 32 | static_cast<std::uint64_t>(y + 1);
+    kernels::add_noise(hash64(seed_key ^ place), -1, white, {raw_row(y, z), static_cast<std::size_t>(d.x + 2)});
   });
 }
 

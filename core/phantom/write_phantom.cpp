@@ -8,8 +8,10 @@
 
 #include "core/base/system/parallel.h"
 #include "core/hdf5/hdf5_writer.h"
+#include "core/phantom/density.h"
 #include "core/phantom/phantom_source.h"
 #include "core/phantom/rasterise.h"
+#include "core/phantom/scan_file.h"
 
 namespace dubsar::phantom {
 namespace {
@@ -25,8 +27,10 @@ Result<void> describe(Hdf5Writer& file, const Phantom& phantom, const std::strin
   const PhantomOptions& o = phantom.options();
   DUBSAR_TRY(file.set_attribute("/", "creator", "dubsar phantom"));
   DUBSAR_TRY(file.set_attribute("/", "seed", static_cast<std::int64_t>(o.seed)));
-  DUBSAR_TRY(file.set_attribute("/", "snr_db", o.snr_db));
-  DUBSAR_TRY(file.set_attribute("/", "blur_vox", o.blur_vox));
+  if (!o.scanner) {
+    DUBSAR_TRY(file.set_attribute("/", "snr_db", o.snr_db));
+    DUBSAR_TRY(file.set_attribute("/", "blur_vox", o.blur_vox));
+  }
   DUBSAR_TRY(file.set_attribute("/", "glued_fraction", phantom.glued_fraction()));
   const std::vector<double> element_um(3, o.voxel_mm * 1000.0);
   return file.set_attribute(data, "element_size_um", std::span<const double>(element_um));
@@ -71,6 +75,50 @@ Result<void> write_scan(const std::filesystem::path& path, const std::shared_ptr
   }
   progress.end();
   return file.commit();
+}
+
+template <class T>
+Result<void> write_stored(Hdf5Writer& file, const std::string& data, const ScannedVolume& scan,
+                          const StoredScan& stored, const FileOptions& options, Progress& progress) {
+  const Dims d = scan.per_mm.dims;
+  progress.begin("phantom", d.count(), "voxel");
+  for (std::int64_t z = 0; z < d.z; z += kSlab) {
+    if (progress.cancelled()) return cancelled_error();
+    const std::int64_t slices = std::min(kSlab, d.z - z);
+    DUBSAR_TRY(
+        file.write_slab<T>(data, static_cast<std::uint64_t>(z), store_slices<T>(scan, stored, options, z, z + slices)));
+    progress.advance(slices * d.slice());
+  }
+  progress.end();
+  return {};
+}
+
+Result<ScannerReport> write_scanned(const std::filesystem::path& path, const Phantom& phantom, Progress& progress) {
+  const PhantomOptions& o = phantom.options();
+  DUBSAR_ASSIGN(Hdf5Writer file, Hdf5Writer::create(path));  // before the work: a place that cannot be written says so
+  DensitySource object(phantom);
+  DUBSAR_ASSIGN(const ScannedVolume scan, scan_object(object, o.voxel_mm, *o.scanner, o.seed, progress));
+  const FileOptions& how = o.scanner->file;
+  const StoredScan stored = stored_scan(scan, how);
+  const std::string data = "/entry/data/data";
+  DUBSAR_TRY(file.create_dataset(data, {.type = stored.type, .dims = shape(o.dims), .chunk = {}}));
+  DUBSAR_TRY(describe(file, phantom, data));
+  DUBSAR_TRY(write_axes(file, o));
+  if (how.type == ScanFile::kUint16) {
+    DUBSAR_TRY(file.set_attribute(data, "scale_factor", stored.map.scale));
+    DUBSAR_TRY(file.set_attribute(data, "add_offset", stored.map.offset));
+  }
+  DUBSAR_TRY(file.set_attribute(data, "units", how.type == ScanFile::kHu ? "HU" : "1/mm"));
+  Result<void> written;
+  if (stored.type == ScalarType::kU16)
+    written = write_stored<std::uint16_t>(file, data, scan, stored, how, progress);
+  else if (stored.type == ScalarType::kI16)
+    written = write_stored<std::int16_t>(file, data, scan, stored, how, progress);
+  else
+    written = write_stored<float>(file, data, scan, stored, how, progress);
+  DUBSAR_TRY(written);
+  DUBSAR_TRY(file.commit());
+  return ScannerReport{scan.geometry, scan.longest_mm, scan.least_light, scan.clay_per_mm};
 }
 
 Result<void> write_wedges(Hdf5Writer& file, const Phantom& phantom) {
@@ -176,11 +224,15 @@ Result<PhantomReport> write_phantom(const std::filesystem::path& scan,
                                     const std::optional<std::filesystem::path>& truth, const PhantomOptions& options,
                                     Progress& progress) {
   DUBSAR_ASSIGN(std::shared_ptr<const Phantom> phantom, Phantom::create(options));
-  DUBSAR_TRY(write_scan(scan, phantom, progress));
-  if (truth) DUBSAR_TRY(write_truth(*truth, *phantom, progress));
   PhantomReport report;
+  if (phantom->options().scanner) {
+    DUBSAR_ASSIGN(report.scanner, write_scanned(scan, *phantom, progress));
+  } else {
+    DUBSAR_TRY(write_scan(scan, phantom, progress));
+    report.sigma = PhantomSource(phantom).sigma();
+  }
+  if (truth) DUBSAR_TRY(write_truth(*truth, *phantom, progress));
   report.options = phantom->options();
-  report.sigma = PhantomSource(phantom).sigma();
   report.glued_fraction = phantom->glued_fraction();
   report.cracked = phantom->cracked();
   report.pores = phantom->pore_count();

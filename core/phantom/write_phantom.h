@@ -7,12 +7,22 @@
 
 #include "core/base/progress.h"
 #include "core/phantom/phantom.h"
+#include "core/phantom/scanner/geometry.h"
 
 namespace dubsar::phantom {
 
+/// What a simulated scanner did.
+struct ScannerReport {
+  ScanGeometry geometry;
+  double longest_mm = 0.0;   ///< path through clay
+  double least_light = 1.0;  ///< behind it, of the open beam, without scatter
+  double clay_per_mm = 0.0;  ///< attenuation of the first millimetre
+};
+
 struct PhantomReport {
   PhantomOptions options;  ///< completed
-  double sigma = 0.0;      ///< of the noise in the scan
+  double sigma = 0.0;      ///< of the noise in the scan; of none of a simulated scanner
+  std::optional<ScannerReport> scanner{};
   double glued_fraction = 0.0;
   bool cracked = false;
   int tablet_wedges = 0, envelope_wedges = 0, pores = 0;
@@ -26,9 +36,9 @@ struct PhantomReport {
 ///   where
 ///                                     it touches the envelope
 ///   /truth/wedges      float64 table, one row a wedge; the attribute "columns" names the columns; "case" is WedgeCase
-/// Both files appear only when complete. Streams slabs of 16 slices: memory is some slices. Advances `progress` by
-/// voxels (stages "phantom" and "truth").
-/// Errors: kUsage (options), kCannotCreate, kPermission, kIo, kCancelled.
+/// Both files appear only when complete. Streams slabs of 16 slices: memory is some slices; a simulated scanner needs
+/// what scan_object() says. Advances `progress` by voxels (stages "phantom" and "truth"). Errors: kUsage (options),
+/// kCannotCreate, kPermission, kIo, kTryAgain (memory), kCancelled.
 Result<PhantomReport> write_phantom(const std::filesystem::path& scan,
                                     const std::optional<std::filesystem::path>& truth, const PhantomOptions& options,
                                     Progress& progress);
