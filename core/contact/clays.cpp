@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <map>
 
 #include "core/base/numbers/median.h"
@@ -12,10 +13,13 @@ namespace dubsar {
 namespace {
 
 constexpr int kFromAir = 3;  ///< steps; nearer than that the blur of a surface darkens the clay
-constexpr std::int32_t kBlock = 24;
-constexpr std::size_t kLeastNodes = 150;  ///< of each layer of a block
-constexpr std::size_t kLeastBlocks = 6;
+/// Sides of the pieces that the contact is divided into, steps; smaller ones where there are too few.
+constexpr std::array<float, 3> kPieces{24.0f, 16.0f, 12.0f};
+constexpr std::size_t kLeastNodes = 150;  ///< of each layer over a piece
+constexpr std::size_t kLeastPieces = 6;
 constexpr float kSignificance = 5.0f;
+/// Of the difference, noise that is taken for at least: as of a scan of 8 bits. Without any, votes would have no end.
+constexpr float kLeastNoise = 1.0f / 256.0f;
 /// Layers of clay by their height over the patch, in parts of the band's reach: deep in the tablet, in the tablet, in
 /// the envelope.
 constexpr std::array<std::array<float, 2>, 3> kLayers{{{-0.95f, -0.65f}, {-0.6f, -0.3f}, {0.3f, 0.95f}}};
@@ -48,24 +52,44 @@ Mean mean_of(const std::vector<float>& values) {
   return {static_cast<float>(mean), static_cast<float>(std::sqrt(squares / (n - 1.0) / n))};
 }
 
-}  // namespace
+using Layers = std::array<std::vector<float>, kLayers.size()>;
 
-std::optional<ClayContrast> compare_clays(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
-                                          float blur_variance) {
-  std::map<std::array<std::int32_t, 3>, std::array<std::vector<float>, 3>> blocks;
+/// Densities over and under the pieces of the contact. Pieces are cubes of patch around the middle of its extent, and
+/// what lies over a place of the patch belongs to its piece: they are the same wherever the object lies on the grid.
+std::vector<Layers> layers_of_pieces(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
+                                     float side) {
+  glm::vec3 least(INFINITY), most(-INFINITY);
+  for (const PatchPoint& sample : band.samples) {
+    least = glm::min(least, sample.position);
+    most = glm::max(most, sample.position);
+  }
+  const glm::vec3 middle = 0.5f * (least + most);
+  std::map<std::array<int, 3>, Layers> pieces;
   for (const ContactBand::Node& node : band.nodes) {
     if (std::abs(node.height) < 0.8f * node.distance) continue;
     const float height = node.height / band.reach_at(node.height);
     for (std::size_t layer = 0; layer < kLayers.size(); ++layer) {
       if (height < kLayers[layer][0] || height > kLayers[layer][1]) continue;
-      if (!air_near(inside, {node.x, node.y, node.z}))
-        blocks[{node.x / kBlock, node.y / kBlock, node.z / kBlock}][layer].push_back(
-            density.get(node.x, node.y, node.z));
+      if (air_near(inside, {node.x, node.y, node.z})) continue;
+      const glm::ivec3 piece(glm::floor((band.samples[node.sample].position - middle) / side));
+      pieces[{piece.x, piece.y, piece.z}][layer].push_back(density.get(node.x, node.y, node.z));
     }
   }
+  std::vector<Layers> enough;
+  for (auto& [place, layers] : pieces)
+    if (layers[1].size() >= kLeastNodes && layers[2].size() >= kLeastNodes) enough.push_back(std::move(layers));
+  return enough;
+}
+
+}  // namespace
+
+std::optional<ClayContrast> compare_clays(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
+                                          float blur_variance) {
+  std::vector<Layers> pieces;
+  for (const float side : kPieces)
+    if (pieces.size() < kLeastPieces) pieces = layers_of_pieces(band, inside, density, side);
   std::vector<float> steps, without_gradient, tablet, envelope, deviations;
-  for (auto& [place, layers] : blocks) {
-    if (layers[1].size() < kLeastNodes || layers[2].size() < kLeastNodes) continue;
+  for (Layers& layers : pieces) {
     const float near = median(layers[1]), beyond = median(layers[2]);
     steps.push_back(beyond - near);
     tablet.push_back(near);
@@ -75,10 +99,10 @@ std::optional<ClayContrast> compare_clays(const ContactBand& band, const BitVolu
     for (float& v : layers[1]) v = std::abs(v - near);
     deviations.push_back(1.4826f * median(layers[1]));
   }
-  if (steps.size() < kLeastBlocks || without_gradient.size() < kLeastBlocks) return std::nullopt;
+  if (steps.size() < kLeastPieces || without_gradient.size() < kLeastPieces) return std::nullopt;
   const Mean step = mean_of(steps), own = mean_of(without_gradient);
   ClayContrast contrast;
-  contrast.deviation = median(deviations);
+  contrast.deviation = std::max(median(deviations), kLeastNoise * std::abs(step.value));
   const bool significant = std::abs(step.value) > kSignificance * step.error &&
                            std::abs(own.value) > 0.5f * kSignificance * own.error &&
                            own.value * step.value > 0.5f * step.value * step.value;

@@ -19,8 +19,8 @@ struct ClayContrast {
   float step() const noexcept { return envelope - tablet; }
 };
 
-/// Compares clay on both sides of the patches, block by block, away from air. Nothing where the difference is not
-/// significant (5 standard errors of the blocks' mean), or no more than what a gradient in the tablet's own clay
+/// Compares clay on both sides of the patches, piece by piece of them, away from air. Nothing where the difference is
+/// not significant (5 standard errors of the pieces' mean), or no more than what a gradient in the tablet's own clay
 /// explains, or smaller than the noise of single points. `blur_variance`: of the scan, voxels squared.
 std::optional<ClayContrast> compare_clays(const ContactBand& band, const BitVolume& inside, const BandDensity& density,
                                           float blur_variance);

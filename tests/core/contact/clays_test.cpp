@@ -25,10 +25,11 @@ struct ClayScene {
   ContactBand band;
   BandDensity density;
 
-  explicit ClayScene(const std::function<float(const glm::vec3&)>& clay) : band(make(clay)), density(read()) {}
+  explicit ClayScene(const std::function<float(const glm::vec3&)>& clay, float plane = kPlane, float noise = kNoise)
+      : band(make(clay, plane, noise)), density(read()) {}
 
  private:
-  ContactBand make(const std::function<float(const glm::vec3&)>& clay) {
+  ContactBand make(const std::function<float(const glm::vec3&)>& clay, float plane, float noise) {
     std::mt19937 bits(7);
     const auto uniform = [&] { return (static_cast<double>(bits()) + 0.5) / 4294967296.0; };
     std::vector<PatchPoint> samples;
@@ -37,10 +38,10 @@ struct ClayScene {
         for (int x = 0; x < kEdge; ++x) {
           inside.set(x, y, z, true);
           const double gauss = std::sqrt(-2.0 * std::log(uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
-          scan.at(x, y, z) = clay(glm::vec3(x, y, z)) + kNoise * static_cast<float>(gauss);
+          scan.at(x, y, z) = clay(glm::vec3(x, y, z)) + noise * static_cast<float>(gauss);
         }
     for (int y = 1; y + 1 < kEdge; ++y)
-      for (int x = 1; x + 1 < kEdge; ++x) samples.push_back({{x, y, kPlane}, {0.0f, 0.0f, 1.0f}});
+      for (int x = 1; x + 1 < kEdge; ++x) samples.push_back({{x, y, plane}, {0.0f, 0.0f, 1.0f}});
     SilentProgress progress;
     return ContactBand::make(inside, std::move(samples), kReach, progress).value();
   }
@@ -80,6 +81,32 @@ TEST(CompareClays, OneClayIsNotTwo) {
   // A film of air is no other clay.
   const ClayScene film([](const glm::vec3& p) { return std::abs(p.z - kPlane) < 0.6f ? 0.6f : 1.0f; });
   EXPECT_FALSE(compare_clays(film.band, film.inside, film.density, kPointSpread).has_value());
+}
+
+TEST(CompareClays, TwoClaysAreToldApartWhereverTheyLieOnTheGrid) {
+  for (const float plane : {29.5f, 35.5f, 41.5f, 45.5f, 47.5f, 49.5f, 53.5f}) {
+    const ClayScene scene([&](const glm::vec3& p) { return p.z < plane ? 1.0f : 1.25f; }, plane);
+    const auto contrast = compare_clays(scene.band, scene.inside, scene.density, kPointSpread);
+    ASSERT_TRUE(contrast.has_value()) << plane;
+    EXPECT_NEAR(contrast->step(), 0.25f, 0.01f) << plane;
+  }
+}
+
+TEST(DivideClay, WithoutNoiseVotesAndCostsAreFinite) {
+  const ClayScene scene([](const glm::vec3& p) { return p.z < border(p) ? 1.0f : 1.25f; }, kPlane, 0.0f);
+  const auto contrast = compare_clays(scene.band, scene.inside, scene.density, kPointSpread);
+  ASSERT_TRUE(contrast.has_value());
+  SilentProgress progress;
+  const std::vector<float> votes = clay_votes(scene.band, scene.inside, scene.density, *contrast);
+  const Dips dips = find_dips(scene.band, scene.inside, scene.density, progress).value();
+  const auto side = ClayDivision({scene.band, dips, {}, votes, {}}).sides(progress).value();
+  for (std::uint32_t n = 0; n < side.size(); ++n) {
+    ASSERT_LT(std::abs(votes[n]), 1e5f);
+    ASSERT_LT(std::abs(dips.strength[n]), 1e5f);
+    const glm::vec3 p(scene.band.point(n));
+    if (std::abs(p.z - border(p)) < 1.0f) continue;
+    ASSERT_EQ(side[n] == ClaySide::kTablet, p.z < border(p)) << p.x << " " << p.y << " " << p.z;
+  }
 }
 
 TEST(DivideClay, FollowsTheBorderOfTwoClaysAwayFromThePatch) {
