@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -14,15 +16,17 @@
 namespace dubsar {
 namespace {
 
-// Where the cap stands. A ball in a shell with a gap of 0 to 4 voxels between them, blurred, 17 dB, Gauss and 2:1, two
-// joint bilateral iterations; distance of the isosurface from the true one in voxels (bias of the outer surface, its
-// rms, share of the gap of 0.5 to 1 voxel that is closed):
+// Where the threshold stands. A ball in a shell with a gap of 0 to 4 voxels between them, blurred, 17 dB, Gauss and
+// 2:1, two joint bilateral iterations; distance of the isosurface from the true one in voxels (bias of the outer
+// surface, its rms, share of the gap of 0.5 to 1 voxel that is closed):
 //     threshold of 0..1   0.50             0.55             0.60             0.70             0.85 (valley rule alone)
 //     bias, rms           -0.01, 0.07      -0.09, 0.11      -0.17, 0.19      -0.35, 0.36      -0.67, 0.68
 //     gap closed          88 %             70 %             51 %             20 %             0 %
 // A symmetric blur leaves the half level where the surface is. The valley rule follows the emptying valley up to the
 // foot of the material's peak as the filters take the noise away: it keeps gaps open and eats 0.7 voxel of everything
-// else. Surfaces count more, and glued parts are separated later by shape: the cap is the half level.
+// else. Surfaces count more, and glued parts are separated later by shape: the threshold is the half level. Where the
+// valley is deep and flat its least density is chance, and a rule that begins there moves the surface with the share of
+// air in the scan: cropping a margin moved it by .05 of the contrast.
 
 // Tried on phantoms and on public scans.
 constexpr double kBandwidth = 0.004;       // of the histogram's range: finds peaks
@@ -31,6 +35,9 @@ constexpr double kLeastProminence = 0.05;  // of the lower peak
 constexpr double kLeastShare = 0.005;      // of the voxels, for air and for material
 constexpr double kLeastSeparation = 2.0;   // Ashman's D of two Gaussians
 constexpr double kLargestMisfit = 0.01;    // of a mixture, in parts of the voxels
+constexpr double kLeastSaturated = 0.001;  // of the voxels, at one value
+constexpr double kSpike = 4.0;             // times as many as in the hundredth of the range below it
+constexpr double kLeastNoise = 0.005;      // of the contrast: less is a drawing, whose values are all spikes
 constexpr double kLeastSeparability = 0.7;  // Otsu; a single Gaussian has 0.64
 
 /// The histogram convolved with a Gaussian of `sigma` bins.
@@ -200,13 +207,10 @@ std::pair<double, std::string> between_peaks(const Split& split, const EstimateO
     default:
       break;
   }
-  const double low = split.m_lo + kCapLow * contrast;
-  const double high = std::max(low, std::min(split.m_lo + kCapHigh * contrast, split.m_hi - 3.0 * split.sigma));
-  const char* how = split.threshold_valley > high  ? "capped from above"
-                    : split.threshold_valley < low ? "capped from below"
-                                                   : "as it is";
-  return {std::clamp(split.threshold_valley, low, high),
-          fmt::format("threshold by the valley rule ({:.6g}), {}", split.threshold_valley, how)};
+  const double half = split.m_lo + 0.5 * contrast, clear = split.m_hi - 3.0 * split.sigma;
+  if (clear >= half) return {half, "threshold half way between them"};
+  return {std::max(clear, split.m_lo + kLeastOfContrast * contrast),
+          "threshold three sigmas below the upper peak, or .45 of the way to it"};
 }
 
 /// Two peaks as in the paper.
@@ -303,6 +307,27 @@ std::vector<SplitAttempt> try_ways(const Histogram& h, double laplacian_sigma, c
   return attempts;
 }
 
+/// What lies above the range of its file, all at its largest value, is no material: without that spike, where it is one
+/// and the histogram has two peaks with noise beside it.
+std::optional<Estimates> without_saturated(std::span<const ValueCounts::Value> values, const EstimateOptions& options) {
+  if (values.size() < 3) return std::nullopt;
+  const ValueCounts::Value& top = values.back();
+  const double near = top.centre - 0.01 * (top.centre - values.front().centre);
+  double all = 0.0, beside = 0.0;
+  for (const ValueCounts::Value& v : values) {
+    all += static_cast<double>(v.count);
+    if (v.centre >= near) beside += static_cast<double>(v.count);
+  }
+  const auto saturated = static_cast<double>(top.count);
+  if (saturated < kLeastSaturated * all || saturated < kSpike * (beside - saturated)) return std::nullopt;
+  Estimates e = estimate(make_histogram(values.first(values.size() - 1)), 0.0, options);
+  const SplitAttempt* const way = taken(e);
+  if (way == nullptr || way->way != SplitWay::kPeaks || e.sigma < kLeastNoise * (e.m_hi - e.m_lo)) return std::nullopt;
+  e.path = fmt::format("{:.2f} % of the voxels at the largest value ({:.6g}) left out; {}", 100.0 * saturated / all,
+                       top.centre, e.path);
+  return e;
+}
+
 }  // namespace
 
 Estimates estimate(const Histogram& h, double laplacian_sigma, const EstimateOptions& options) {
@@ -349,10 +374,15 @@ Result<Estimates> estimate(const ValueCounts& counts, SlabSource& source, const 
                            Progress& progress) {
   if (counts.count() == 0)
     return fail(ErrorKind::kBadData, "threshold: the volume has no finite voxel, choose another dataset");
-  const Histogram histogram = make_histogram(counts);
+  std::vector<ValueCounts::Value> values = counts.values();
+  if (options.left_out)
+    std::erase_if(values,
+                  [none = ValueCounts::centre_of(*options.left_out)](const auto& v) { return v.centre == none; });
+  if (auto without = without_saturated(values, options)) return *std::move(without);
+  const Histogram histogram = make_histogram(values);
   Estimates first = estimate(histogram, 0.0, options);
   if (first.sigma > 0.0 || histogram.mass.empty()) return first;
-  DUBSAR_ASSIGN(const double sigma, laplacian_noise(source, progress));
+  DUBSAR_ASSIGN(const double sigma, laplacian_noise(source, progress, options.left_out));
   return estimate(histogram, sigma, options);
 }
 
@@ -361,7 +391,7 @@ Result<double> automatic_threshold(const Estimates& estimates) {
   return estimates.threshold;
 }
 
-Result<double> laplacian_noise(SlabSource& source, Progress& progress) {
+Result<double> laplacian_noise(SlabSource& source, Progress& progress, std::optional<float> left_out) {
   const Dims dims = source.dims();
   if (dims.x < 3 || dims.y < 3) return 0.0;
   ValueCounts residuals;
@@ -376,6 +406,9 @@ Result<double> laplacian_noise(SlabSource& source, Progress& progress) {
       for (std::int64_t x = 1; x + 1 < dims.x; ++x)
         line[static_cast<std::size_t>(x - 1)] =
             std::abs(row[x - 1] + row[x + 1] + row[x - dims.x] + row[x + dims.x] - 4.0F * row[x]);
+      if (left_out)
+        for (std::int64_t x = 1; x + 1 < dims.x; ++x)
+          if (row[x] == *left_out) line[static_cast<std::size_t>(x - 1)] = std::numeric_limits<float>::quiet_NaN();
       residuals.add(line);
     }
   }

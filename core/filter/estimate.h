@@ -14,7 +14,7 @@
 namespace dubsar {
 
 enum class ThresholdMethod {
-  kAuto,     ///< the paper's valley rule, kept within kCapLow..kCapHigh of the way from air to material
+  kAuto,  ///< half way between the peaks; where noise is there, 3 sigma below the upper one, at least kLeastOfContrast
   kValley,   ///< the paper's rule alone: up from the valley to `factor` times its density
   kSigmas,   ///< the paper's alternative: `factor` sigma below the upper peak
   kHalf,     ///< half way between the peaks
@@ -30,7 +30,8 @@ static_assert(names_all(kThresholdMethods, static_cast<std::size_t>(ThresholdMet
 
 struct EstimateOptions {
   ThresholdMethod method = ThresholdMethod::kAuto;
-  double factor = 0.0;  ///< 0: the paper's, 2 for the valley rule and 3 for the sigmas
+  double factor = 0.0;                           ///< 0: the paper's, 2 for the valley rule and 3 for the sigmas
+  std::optional<float> left_out = std::nullopt;  ///< value of voxels that are no measurement (core/volume/unmeasured.h)
 };
 
 /// Ways to tell air from material in a histogram, in the order in which kAuto tries them.
@@ -77,9 +78,8 @@ struct Estimates {
   std::string refusal;                 ///< why no threshold can be given; empty when there is one
 };
 
-/// Cap of the valley rule, in parts of the way from m_lo to m_hi: within 0.1 voxel of the true surface, where the rule
-/// alone is 0.7 voxel off (measured: estimate.cpp).
-inline constexpr double kCapLow = 0.45, kCapHigh = 0.5;
+/// Least automatic threshold, in parts of the way from m_lo to m_hi: within 0.1 voxel of the true surface.
+inline constexpr double kLeastOfContrast = 0.45;
 
 /// The attempt that was taken; nullptr with a refusal.
 const SplitAttempt* taken(const Estimates& estimates) noexcept;
@@ -102,7 +102,8 @@ Result<double> automatic_threshold(const Estimates& estimates);
 
 /// Noise from the median absolute Laplacian of the slices: 1.4826 median |L| / sqrt(20) with the 5-point kernel. Edges
 /// hardly count. Exact for white noise; correlated noise comes out too small. When most residuals are 0 (a masked
-/// background) the others count. At most 65 slices are read, of at least 3x3 voxels; smaller ones give 0.
-Result<double> laplacian_noise(SlabSource& source, Progress& progress);
+/// background) the others count, and so it is around voxels of the value `left_out`. At most 65 slices are read, of at
+/// least 3x3 voxels; smaller ones give 0.
+Result<double> laplacian_noise(SlabSource& source, Progress& progress, std::optional<float> left_out = std::nullopt);
 
 }  // namespace dubsar

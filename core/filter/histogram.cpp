@@ -32,7 +32,7 @@ void spread(Histogram& h, double begin, double end, double mass) {
   }
 }
 
-double quantile(const std::vector<ValueCounts::Value>& values, double rank) {
+double quantile(std::span<const ValueCounts::Value> values, double rank) {
   double below = 0.0;
   for (const auto& value : values) {
     below += static_cast<double>(value.count);
@@ -140,6 +140,12 @@ std::vector<ValueCounts::Value> ValueCounts::values() const {
   return all;
 }
 
+double ValueCounts::centre_of(float value) {
+  ValueCounts alone;
+  alone.add({&value, 1});
+  return alone.values().front().centre;
+}
+
 void ParallelCounts::add(std::int64_t z_begin, std::span<const float> slices) {
   const auto parts = static_cast<std::size_t>(thread_count());
   if (partial_.size() < parts) partial_.resize(parts);
@@ -184,10 +190,9 @@ Result<ValueCounts> count_values(SlabSource& source, Progress& progress) {
   return counts.take();
 }
 
-Histogram make_histogram(const ValueCounts& counts, int bins, double tail) {
+Histogram make_histogram(std::span<const ValueCounts::Value> values, int bins, double tail) {
   Histogram h;
-  h.total = static_cast<double>(counts.count());
-  const std::vector<ValueCounts::Value> values = counts.values();
+  for (const ValueCounts::Value& value : values) h.total += static_cast<double>(value.count);
   if (values.size() < 2) {
     if (!values.empty()) h.low = values.front().centre;
     return h;

@@ -35,6 +35,8 @@ class ValueCounts {
   };
   /// Everything that occurs, rising.
   std::vector<Value> values() const;
+  /// As what values() gives a value that was counted.
+  static double centre_of(float value);
 
  private:
   template <class Count>
@@ -86,6 +88,9 @@ struct Histogram {
 /// Bins over the range that leaves `tail` of the values out on either side, widened by 2 % (`tail` 0.01 %,
 /// 2,048 bins). Values that come in steps (integer scans) are spread over their step, so that no comb of empty bins
 /// remains; a step wider than 1/32 of the range is taken as a gap. A volume with one value has width 0 and no bins.
-Histogram make_histogram(const ValueCounts& counts, int bins = 2048, double tail = 1e-4);
+Histogram make_histogram(std::span<const ValueCounts::Value> values, int bins = 2048, double tail = 1e-4);
+inline Histogram make_histogram(const ValueCounts& counts, int bins = 2048, double tail = 1e-4) {
+  return make_histogram(counts.values(), bins, tail);
+}
 
 }  // namespace dubsar

@@ -121,8 +121,26 @@ TEST(Estimate, ACleanValleyDoesNotDragTheThresholdToTheFootOfThePeak) {
 
 TEST(Estimate, TheThresholdStaysBelowThreeSigmaOfTheMaterial) {
   const Estimates e = estimates_of(mixture_volume({{0.5, 0.0, 0.2}, {0.5, 1.0, 0.2}}, 6));
-  EXPECT_GE(e.threshold, e.m_lo + kCapLow * (e.m_hi - e.m_lo));
-  EXPECT_LE(e.threshold, std::max(e.m_lo + kCapLow * (e.m_hi - e.m_lo), e.m_hi - 3.0 * e.sigma) + 1e-12);
+  EXPECT_GE(e.threshold, e.m_lo + kLeastOfContrast * (e.m_hi - e.m_lo));
+  EXPECT_LE(e.threshold, std::max(e.m_lo + kLeastOfContrast * (e.m_hi - e.m_lo), e.m_hi - 3.0 * e.sigma) + 1e-12);
+}
+
+TEST(Estimate, TheShareOfAirAndScaleOfGreysDoNotMoveTheThreshold) {
+  // A deep and flat valley, as filters leave it: partial volumes are few, where the fewest are is chance.
+  const auto threshold = [](double air, double scale, double offset, std::uint64_t seed) {
+    const double edge = 0.01;
+    Volume<float> v = mixture_volume({{air - edge, 0.0, 0.02}, {1.0 - air, 1.0, 0.02}, {edge, -1.0, 0.0}}, seed, 80);
+    oracle::Noise noise(seed + 7);
+    for (float& value : v.voxels.span()) {
+      if (value == -1.0f) value = static_cast<float>(0.5 + 0.2 * noise());
+      value = static_cast<float>(offset + scale * static_cast<double>(value));
+    }
+    return (estimates_of(v).threshold - offset) / scale;
+  };
+  for (const double air : {0.3, 0.5, 0.7, 0.9})
+    for (const std::uint64_t seed : {20u, 21u}) EXPECT_NEAR(threshold(air, 1.0, 0.0, seed), 0.5, 0.002) << air;
+  for (const auto& [scale, offset] : {std::pair{3e-4, 0.0}, {8000.0, 1000.0}, {0.25, -1.0}, {1.0, 8.0}})
+    EXPECT_NEAR(threshold(0.7, scale, offset, 20), threshold(0.7, 1.0, 0.0, 20), 0.002) << scale;
 }
 
 TEST(Estimate, ThreeModesGiveTheMostProminentPair) {  // a skull: air, tissue, a little bone
@@ -130,6 +148,47 @@ TEST(Estimate, ThreeModesGiveTheMostProminentPair) {  // a skull: air, tissue, a
   EXPECT_NEAR(e.m_lo, -1000, 15);
   EXPECT_NEAR(e.m_hi, 40, 15);
   EXPECT_NEAR(e.sigma, 15, 1.0);
+}
+
+TEST(Estimate, SaturatedVoxelsAreNoPeak) {  // .9 % of metal or glaze, more of a filled border, all at 65535
+  for (const double share : {0.009, 0.3}) {
+    Volume<float> v = mixture_volume(
+        {{0.55 - 0.5 * share, 2000.0, 300.0}, {0.45 - 0.5 * share, 9000.0, 350.0}, {share, 65535.0, 0.0}}, 9);
+    const Estimates e = estimates_of(v);
+    EXPECT_NEAR(e.m_lo, 2000.0, 30.0) << share;
+    EXPECT_NEAR(e.m_hi, 9000.0, 30.0) << share;
+    EXPECT_NEAR(e.threshold, 5500.0, 360.0) << share;
+    EXPECT_THAT(e.path, HasSubstr("at the largest value (65535) left out"));
+  }
+  // Clay itself at the end of the range of 8 bits: it stays the material.
+  Volume<float> clipped = mixture_volume({{0.6, 60.0, 12.0}, {0.4, 254.0, 14.0}}, 10);
+  for (float& value : clipped.voxels.span()) value = std::clamp(std::round(value), 0.0f, 255.0f);
+  const Estimates e = estimates_of(clipped);
+  EXPECT_NEAR(e.m_hi, 252.0, 6.0);
+  EXPECT_NEAR(e.threshold, 155.0, 12.0);
+}
+
+TEST(Estimate, WhatIsNoMeasurementDoesNotCount) {
+  const std::vector<Normal> parts{{0.7, 200.0, 40.0}, {0.3, 900.0, 40.0}};
+  const Volume<float> whole = mixture_volume(parts, 11);
+  const Estimates expected = estimates_of(whole);
+  Volume<float> half = mixture_volume(parts, 11);
+  constexpr float kFill = 203.00390625f;
+  for (std::int64_t i = 0; i < half.voxels.size(); i += 2) half.voxels[i] = kFill;
+  EstimateOptions options;
+  options.left_out = kFill;
+  const Estimates e = estimates_of(half, options);
+  EXPECT_NEAR(e.m_lo, expected.m_lo, 0.5);
+  EXPECT_NEAR(e.m_hi, expected.m_hi, 0.5);
+  EXPECT_NEAR(e.sigma, expected.sigma, 0.5);
+  EXPECT_NEAR(e.threshold, expected.threshold, 4.0);
+  EXPECT_NEAR(e.material_fraction, expected.material_fraction, 0.002);
+  VolumeSource source(half);
+  SilentProgress silent;
+  Volume<float> air = mixture_volume({{1.0, 200.0, 40.0}}, 12, 64);
+  for (std::int64_t i = 0; i < air.voxels.size() / 3; ++i) air.voxels[i] = kFill;
+  VolumeSource partly(air);
+  EXPECT_NEAR(laplacian_noise(partly, silent, kFill).value(), 40.0, 2.0);
 }
 
 TEST(Estimate, IntegerScansHaveNoCombOfPeaks) {
