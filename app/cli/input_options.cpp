@@ -26,6 +26,12 @@ void add_input_options(Arguments command, InputOptionTexts& texts) {
   Arguments taken = group;
   taken.value("--voxel-size", texts.voxel_size, "voxel size, e.g. 38um or 10um,10um,25um (x,y,z)");
   taken.value("--crop", texts.crop, "part of the volume, x0:x1,y0:y1,z0:z1; empty bounds are the borders");
+  taken
+      .value("--ignore", texts.ignore,
+             "grey value that is no measurement, wherever it occurs; may be repeated; none: nothing is but NaN and Inf "
+             "(default: a constant outside the field of view is found)")
+      .one_word_each_time()
+      .called("VALUE");
   taken.value("--stride", texts.stride, "take every N-th voxel: N or NX,NY,NZ");
 }
 
@@ -41,6 +47,7 @@ Result<ImportOptions> parse_input_options(const std::string& path, const InputOp
   if (!texts.crop.empty()) {
     DUBSAR_ASSIGN(options.crop, parse_crop(texts.crop));
   }
+  DUBSAR_ASSIGN(options.ignored, parse_ignored(texts.ignore));
   if (!texts.stride.empty()) {
     DUBSAR_ASSIGN(options.stride, parse_stride(texts.stride));
   }

@@ -2,6 +2,7 @@
 // Options that say how a volume file is read; shared by `process`, `info` and `view`.
 
 #include <string>
+#include <vector>
 
 #include "app/cli/arguments.h"
 #include "core/volume/formats/import_options.h"
@@ -11,6 +12,7 @@ namespace dubsar::app {
 struct InputOptionTexts {
   std::string dataset, axis_order, crop, stride, voxel_size, dims, type, endian = "little", allow_external;
   std::int64_t skip = 0;
+  std::vector<std::string> ignore;
   bool trust = false, allow_sparse = false;
 };
 

@@ -75,7 +75,10 @@ Result<VerbResult> volume_info(const InfoRequest& options, Progress& progress) {
   result.json = volume_json(info);
   result.json["kind"] = "volume";
   result.json["warnings"] = info.warnings;
-  Result<Forecast> expected = forecast(*volume, {.detail = options.detail, .budget = import.budget}, progress);
+  DUBSAR_ASSIGN(const Unmeasured unmeasured, volume->unmeasured());
+  result.json["unmeasured"] = unmeasured_json(unmeasured);
+  Result<Forecast> expected = forecast(
+      *volume, {.detail = options.detail, .budget = import.budget, .left_out = unmeasured.left_out()}, progress);
   if (!expected && expected.error().kind == ErrorKind::kCancelled) return tl::unexpected<Error>(expected.error());
   result.json["process"] = forecast_json(expected);
   std::string& text = result.text;
@@ -92,6 +95,7 @@ Result<VerbResult> volume_info(const InfoRequest& options, Progress& progress) {
   text += fmt::format("  voxel size   {}\n", length_text(info.voxel));
   text += fmt::format("  in the file  {:.1f} MiB of {:.1f} MiB\n", mib_of(info.stored.storage_bytes),
                       mib_of(info.stored.logical_bytes));
+  if (unmeasured.left_out()) text += fmt::format("  outside      about {}\n", describe(unmeasured));
   text += forecast_text(expected);
   for (const VolumeCandidate& other : info.candidates)
     text += fmt::format("  also there   {} ({})\n", other.dataset, other.dtype);

@@ -66,6 +66,9 @@ void add_filter_options(Arguments command, ProcessRequest& options) {
   group.value("--threshold", options.threshold, "isovalue in grey values (default: estimated)");
   group.choice<ThresholdMethod>("--threshold-method", p.estimate.method, choices_of(kThresholdMethods),
                                 "how the isovalue is estimated (default auto)");
+  group.choice<Levels>("--levels", p.sample.levels, choices_of(kLevels),
+                       "of air and clay: local (default), the surface lies half way between those beside it where they "
+                       "vary, or global, one threshold");
   group.value("--threshold-factor", p.estimate.factor, "the paper's f (default 2 for valley, 3 for sigmas)").positive();
 }
 

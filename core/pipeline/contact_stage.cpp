@@ -8,7 +8,9 @@ namespace dubsar {
 Result<TracedModel> trace(SurfaceModel model, const ImportOptions& scan, const ImportedGrid& imported, StageRun run) {
   TracedModel traced{std::move(model), {}};
   run.clock.start("contact", "point");
-  DUBSAR_ASSIGN(const std::unique_ptr<ImportedVolume> volume, open_volume(scan));
+  ImportOptions again = scan;
+  again.unmeasured = imported.facts.unmeasured;
+  DUBSAR_ASSIGN(const std::unique_ptr<ImportedVolume> volume, open_volume(again));
   ContactOptions options;
   if (imported.facts.blur) options.blur_variance = static_cast<float>(imported.facts.blur->variance);
   std::optional<HalfResolutionSource> halved;

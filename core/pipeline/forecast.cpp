@@ -114,7 +114,7 @@ Result<Forecast> forecast(SlabSource& scan, const ForecastOptions& options, Prog
   DUBSAR_ASSIGN(CountedGrid sampled, read_grid(some, half, options.budget, run));
   const double reading = 1.0 / decoded_per_read(scan, some.dims().z, group);
   if (progress.cancelled()) return cancelled_error();
-  DUBSAR_ASSIGN(DenoisedGrid denoised, denoise(std::move(sampled), "sample", {}, {}, run));
+  DUBSAR_ASSIGN(DenoisedGrid denoised, denoise(std::move(sampled), "sample", {}, {.left_out = options.left_out}, run));
   DUBSAR_ASSIGN(const Threshold threshold, choose_threshold(std::nullopt, denoised.steps.back().estimates));
 
   const Dims part = denoised.grid.dims();

@@ -3,6 +3,7 @@
 // much surface there is and how quick this machine is.
 
 #include <cstdint>
+#include <optional>
 
 #include "core/pipeline/volume_stages.h"
 
@@ -13,6 +14,7 @@ struct ForecastOptions {
   bool contact = true;       ///< is looked for where tablet and envelope touch
   int occlusion_rays = 160;  ///< per vertex; 0: none
   Budget budget = {};
+  std::optional<float> left_out = std::nullopt;  ///< value of voxels that are no measurement
 };
 
 struct Forecast {

@@ -46,14 +46,15 @@ Result<FoundSurface> find_surface(const PipelineOptions& options, ImportedGrid& 
   if (imported.detail.resample()) {
     found.frame = half.grid.frame();
     DUBSAR_ASSIGN(found.threshold, choose_threshold(options.threshold, estimates));
-    DUBSAR_ASSIGN(found.sampled, sample(half.grid, found.threshold.value, estimates, options.denoise.iterations > 0,
-                                        options.sample, run));
+    DUBSAR_ASSIGN(found.sampled, sample(half.grid, {found.threshold, estimates, imported.facts.blur, {}},
+                                        options.denoise.iterations > 0, options.sample, run));
     half.grid.release();  // from here on the samples are enough
   } else {
     found.frame = imported.scan->frame();
-    DUBSAR_ASSIGN(RefinedSurface refined, refine(*imported.scan, half.grid, estimates.sigma,
-                                                 {options.denoise, options.estimate, options.threshold, options.sample},
-                                                 options.import.budget, run));
+    DUBSAR_ASSIGN(RefinedSurface refined,
+                  refine(*imported.scan, half.grid, estimates.sigma,
+                         {options.denoise, imported.estimate, options.threshold, options.sample, imported.facts.blur},
+                         options.import.budget, run));
     found.sampled = std::move(refined.sampled);
     found.threshold = std::move(refined.threshold);
     found.band = refined.band;
@@ -71,7 +72,7 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   DUBSAR_TRY(check_room(options.import, options.detail, run));
   DUBSAR_ASSIGN(ImportedGrid imported, import_grid(options.import, options.detail, options.estimate, run));
   DUBSAR_ASSIGN(DenoisedGrid denoised,
-                denoise(std::move(imported.grid), kHalvedGrid, options.denoise, options.estimate, run));
+                denoise(std::move(imported.grid), kHalvedGrid, options.denoise, imported.estimate, run));
   DUBSAR_ASSIGN(FoundSurface found, find_surface(options, imported, denoised, run));
   SampledSurface& sampled = found.sampled;
 

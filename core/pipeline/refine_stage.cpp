@@ -94,7 +94,8 @@ Result<RefinedSurface> refine(SlabSource& scan, GridStore& half, double half_noi
   log_debug("band: {:.1f} % of the scan is near the surface, {:.1f} MiB", 100.0 * band.report.share,
             static_cast<double>(band.report.bricks) / 512.0);
   if (band.report.cut > 0) log_warning("band: the surface ends at the band at {} bricks", band.report.cut);
-  DUBSAR_ASSIGN(sampled.samples, extract_surface(band.values, threshold, options.sample, run));
+  const GridFacts facts{refined.threshold, estimates, options.blur, {outside.below, outside.above}};
+  DUBSAR_TRY(extract_surface(band.values, facts, options.sample, sampled, run));
   refined.steps = std::move(learned.steps);
   return refined;
 }

@@ -12,6 +12,7 @@ struct RefineOptions {
   EstimateOptions estimate;
   std::optional<float> threshold;
   SampleOptions sample;
+  std::optional<EdgeSpread> blur;  ///< of the scan
 };
 
 struct RefinedSurface {

@@ -28,6 +28,7 @@ json parameters_json(const PipelineReport& report, const PipelineOptions& option
       {"sharpen", report.sharpen},
       {"threshold_method", options.threshold ? "given" : name_in(kThresholdMethods, options.estimate.method)},
       {"threshold", report.threshold.value},
+      {"levels", name_in(kLevels, options.sample.levels)},
       {"offset_bits", options.sample.offset_bits},
       {"exa_profile", name_in(kExaProfiles, options.exa_profile)},
       {"boundary", options.sample.closed ? "closed" : "open"},
@@ -45,8 +46,9 @@ json parameters_json(const PipelineReport& report, const PipelineOptions& option
 json input_json(const PipelineReport& report) {
   const ScanFacts& scan = report.scan;
   json input = volume_json(scan.info);
-  input["nonfinite_voxels"] = scan.nonfinite_voxels;
-  if (scan.nonfinite_voxels > 0) input["nonfinite_fill"] = scan.nonfinite_fill;
+  input["unmeasured"] = unmeasured_json(scan.unmeasured);
+  input["unmeasured_voxels"] = scan.unmeasured_voxels.all();
+  input["nonfinite_voxels"] = scan.unmeasured_voxels.nonfinite;
   input["grid"] = dims_json(scan.grid);
   return input;
 }
@@ -57,6 +59,11 @@ json blur_json(const std::optional<EdgeSpread>& blur) {
           {"variance_vox2", blur->variance},
           {"uncertainty_vox2", blur->uncertainty},
           {"places", blur->places}};
+}
+
+json levels_json(const std::optional<LocalLevels>& levels) {
+  if (!levels) return nullptr;
+  return {{"least", levels->least}, {"most", levels->most}, {"followed", !levels->shift.empty()}};
 }
 
 json estimates_json(const PipelineReport& report) {
@@ -78,6 +85,7 @@ json estimates_json(const PipelineReport& report) {
           {"threshold", report.threshold.value},
           {"threshold_valley", last.threshold_valley},
           {"path", report.threshold.path},
+          {"levels", levels_json(report.levels)},
           {"blur", blur_json(report.scan.blur)},
           {"filters", filters}};
 }
@@ -134,6 +142,8 @@ PipelineReport make_report(const StageResults& results, const SurfaceModel& mode
                         .filters = {results.imported.raw},
                         .threshold = results.threshold,
                         .sharpen = results.sampled.sharpen,
+                        .noise = results.sampled.noise,
+                        .levels = results.sampled.levels,
                         .moves = {results.smoothed.stats, results.settled.stats},
                         .segment = results.separated.segment,
                         .holes = results.separated.holes,
@@ -175,6 +185,12 @@ json volume_json(const VolumeInfo& info) {
           {"other_datasets", candidates}};
 }
 
+json unmeasured_json(const Unmeasured& unmeasured) {
+  if (!unmeasured.left_out()) return nullptr;
+  return {{"share", unmeasured.share},    {"outside", unmeasured.outside}, {"ignored", unmeasured.ignored},
+          {"counts_as", unmeasured.fill}, {"at_rim", unmeasured.at_rim},   {"text", describe(unmeasured)}};
+}
+
 json mesh_check_json(const MeshCheck& check) {
   return {{"vertices", check.vertices},
           {"triangles", check.triangles},
@@ -209,6 +225,7 @@ json report_json(const PipelineReport& report, const PipelineOptions& options) {
   mesh["vertices"] = report.surface.vertices;
   mesh["xquads"] = report.surface.xquads;
   mesh["export_vertices"] = report.mesh.vertices;
+  mesh["noise_cavities"] = {{"cavities", report.noise.cavities}, {"points", report.noise.points}};
   mesh["smooth"] = {{"mean_displacement_vox", report.moves.smooth.mean_displacement_vox},
                     {"max_displacement_vox", report.moves.smooth.max_displacement_vox},
                     {"clamped_fraction", report.moves.smooth.clamped_fraction},
@@ -251,10 +268,15 @@ std::string report_text(const PipelineReport& report) {
   if (const auto& blur = report.scan.blur; blur && blur->variance > blur->uncertainty)
     text += fmt::format("blur of edges {:.2f} voxel, measured at {} flat places\n", std::sqrt(blur->variance),
                         blur->places);
+  if (report.scan.unmeasured.left_out()) text += describe(report.scan.unmeasured) + "\n";
   text += fmt::format("detail {}: {}\n", name_in(kDetails, report.detail.detail), report.detail.why);
   if (const auto& band = report.detail.band)
     text += fmt::format("band: {:.1f} % of the scan is near the surface and was filtered\n", 100.0 * band->share);
   text += fmt::format("threshold {:.6g}: {}\n", report.threshold.value, report.threshold.path);
+  if (report.levels) text += "levels: " + describe(*report.levels) + "\n";
+  if (report.noise.cavities > 0)
+    text += fmt::format("{} closed cavities of {} points are smaller or fainter than noise and count as clay\n",
+                        report.noise.cavities, report.noise.points);
   text +=
       fmt::format("mesh: {} vertices, {} x-quads, {} triangles, {} non-manifold edges, {} non-manifold vertices\n\n",
                   report.surface.vertices, report.surface.xquads, report.mesh.triangles, report.mesh.nonmanifold_edges,

@@ -36,7 +36,9 @@ struct PipelineReport {
   ScanFacts scan;
   std::vector<FilterStep> filters;  ///< the raw scan, then before and after each pass; the last ones gave the threshold
   Threshold threshold;
-  float sharpen = 0.0f;  ///< amount that was used
+  float sharpen = 0.0f;               ///< amount that was used
+  NoiseCavities noise;                ///< that became clay
+  std::optional<LocalLevels> levels;  ///< where they were measured
   VertexMoves moves;
   SegmentReport segment;
   std::optional<HoleReport> holes;        ///< when holes were filled
@@ -79,6 +81,8 @@ nlohmann::json provenance_json(const PipelineReport& report, const PipelineOptio
 
 /// Facts of a volume file, also for `dubsar info`.
 nlohmann::json volume_json(const VolumeInfo& info);
+/// null where every voxel is a measurement.
+nlohmann::json unmeasured_json(const Unmeasured& unmeasured);
 nlohmann::json mesh_check_json(const MeshCheck& check);
 
 }  // namespace dubsar

@@ -39,7 +39,9 @@ Result<void> check_room(const ImportOptions& scan, Detail wanted, StageRun run) 
   if (bytes_with(kMostVerticesPerVoxel * static_cast<double>(grid.count())) <= left) return {};
 
   run.clock.start("forecast", "voxel");
-  const Result<Forecast> expected = forecast(*volume, {.detail = detail.detail, .budget = scan.budget}, run.progress);
+  DUBSAR_ASSIGN(const Unmeasured unmeasured, volume->unmeasured());
+  const Result<Forecast> expected = forecast(
+      *volume, {.detail = detail.detail, .budget = scan.budget, .left_out = unmeasured.left_out()}, run.progress);
   run.clock.finish(volume->dims().count());
   if (!expected) {
     const ErrorKind kind = expected.error().kind;

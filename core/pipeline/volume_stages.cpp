@@ -1,6 +1,7 @@
 #include "core/pipeline/volume_stages.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/numbers/units.h"
 #include "core/base/system/budget.h"
@@ -74,6 +75,9 @@ Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, co
   ImportedGrid imported;
   DUBSAR_ASSIGN(imported.scan, open_volume(options));
   ImportedVolume* const scan = imported.scan.get();
+  DUBSAR_ASSIGN(imported.facts.unmeasured, scan->unmeasured());
+  imported.estimate = estimate;
+  imported.estimate.left_out = imported.facts.unmeasured.left_out();
   imported.detail = choose_detail(detail, scan->dims(), available_memory_bytes());
   const bool half = imported.detail.resample();
   if (detail == Detail::kAuto)
@@ -85,7 +89,7 @@ Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, co
   const std::int64_t group = std::clamp(std::min(layer, kRawSampleSlices / 4), kRawSampleGroup, kRawSampleSlices);
   SampledSource some(*scan, kRawSampleSlices, group);
   imported.raw.name = "raw";
-  DUBSAR_ASSIGN(imported.raw.estimates, estimate_source(some, "estimate_raw", estimate, run));
+  DUBSAR_ASSIGN(imported.raw.estimates, estimate_source(some, "estimate_raw", imported.estimate, run));
   DUBSAR_ASSIGN(imported.grid, read_grid(*scan, true, options.budget, run));
   run.clock.start("blur", "place");
   ScanFacts& facts = imported.facts;
@@ -94,11 +98,10 @@ Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, co
                 measure_edge_spread(grid, imported.raw.estimates.m_lo, imported.raw.estimates.m_hi, run.progress));
   run.clock.finish(facts.blur ? facts.blur->places : 0);
   facts.grid = grid.dims();
-  facts.nonfinite_voxels = scan->nonfinite_count();
-  facts.nonfinite_fill = scan->nonfinite_fill();
-  if (facts.nonfinite_voxels > 0) {
-    facts.warnings.push_back(
-        fmt::format("{} voxels were NaN or Inf and count as {:g}", facts.nonfinite_voxels, facts.nonfinite_fill));
+  facts.unmeasured_voxels = scan->unmeasured_counts();
+  if (const std::int64_t voxels = facts.unmeasured_voxels.all(); voxels > 0) {
+    facts.unmeasured.share = static_cast<double>(voxels) / static_cast<double>(scan->dims().count());
+    facts.warnings.push_back(describe(facts.unmeasured));
     log(LogLevel::kWarning, facts.warnings.back());
   }
   return imported;
@@ -137,9 +140,12 @@ Result<DenoisedGrid> denoise(CountedGrid grid, std::string name, const DenoiseOp
 }
 
 Result<Threshold> choose_threshold(std::optional<float> given, const Estimates& estimates) {
-  if (given) return Threshold{*given, "given by the user"};
+  if (given) return Threshold{*given, "given by the user", false};
   DUBSAR_ASSIGN(const double value, automatic_threshold(estimates));
-  Threshold threshold{static_cast<float>(value), estimates.path};
+  const Split& split = *taken(estimates)->split;
+  const bool half_way =
+      taken(estimates)->way == SplitWay::kPeaks && split.threshold == split.m_lo + 0.5 * (split.m_hi - split.m_lo);
+  Threshold threshold{static_cast<float>(value), estimates.path, half_way};
   log_debug("threshold {:g}: {}", threshold.value, threshold.path);
   return threshold;
 }
@@ -150,23 +156,41 @@ float sharpen_amount(double snr_db) {
   return static_cast<float>(std::clamp((snr_db - kSharpenFromDb) / (kAllFromDb - kSharpenFromDb), 0.0, 1.0));
 }
 
-Result<SurfaceSamples> extract_surface(SlabSource& source, float threshold, const SampleOptions& options,
-                                       StageRun run) {
+Result<void> extract_surface(SlabSource& source, const GridFacts& facts, const SampleOptions& options,
+                             SampledSurface& sampled, StageRun run) {
   run.clock.start("extract", "voxel");
   run.progress.begin("extract", source.dims().count(), "voxel");
-  DUBSAR_ASSIGN(SurfaceSamples samples,
-                sample_surface(source, {threshold, options.offset_bits, options.closed}, run.progress));
+  const float threshold = facts.threshold.value;
+  std::optional<LevelledSource> levelled;
+  if (options.levels == Levels::kLocal && facts.threshold.half_way) {
+    DUBSAR_ASSIGN(sampled.levels, measure_levels(source,
+                                                 {threshold, static_cast<float>(facts.estimates.m_lo),
+                                                  static_cast<float>(facts.estimates.m_hi), facts.constants},
+                                                 run.progress));
+    if (!sampled.levels->shift.empty()) {
+      levelled.emplace(source, sampled.levels->shift);
+      log_info("{}", describe(*sampled.levels));
+    }
+  }
+  SlabSource& even = levelled ? static_cast<SlabSource&>(*levelled) : source;
+  DUBSAR_ASSIGN(sampled.samples, sample_surface(even, {threshold, options.offset_bits, options.closed}, run.progress));
+  CavityRule rule;
+  if (facts.blur) rule.blur_vox = std::sqrt(facts.blur->variance);
+  DUBSAR_ASSIGN(sampled.noise, fill_noise_cavities(sampled.samples, even, rule, run.progress));
+  if (sampled.noise.cavities > 0)
+    log_info("extract: {} cavities of {} points are noise and count as clay", sampled.noise.cavities,
+             sampled.noise.points);
   run.clock.finish(source.dims().count());
-  return samples;
+  return {};
 }
 
-Result<SampledSurface> sample(GridStore& grid, float threshold, const Estimates& estimates, bool denoised,
-                              const SampleOptions& options, StageRun run) {
+Result<SampledSurface> sample(GridStore& grid, const GridFacts& facts, bool denoised, const SampleOptions& options,
+                              StageRun run) {
   SampledSurface sampled;
-  sampled.sharpen = options.sharpen.value_or(denoised ? sharpen_amount(estimates.snr_db) : 0.0f);
+  sampled.sharpen = options.sharpen.value_or(denoised ? sharpen_amount(facts.estimates.snr_db) : 0.0f);
   const std::unique_ptr<SlabSource> sharpened = make_sharpened(grid, sampled.sharpen);
   SlabSource& source = sampled.sharpen > 0.0f ? *sharpened : static_cast<SlabSource&>(grid);
-  DUBSAR_ASSIGN(sampled.samples, extract_surface(source, threshold, options, run));
+  DUBSAR_TRY(extract_surface(source, facts, options, sampled, run));
   return sampled;
 }
 

@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "core/extract/noise_cavities.h"
 #include "core/extract/surface_samples.h"
 #include "core/filter/denoise.h"
 #include "core/filter/edge_spread.h"
 #include "core/filter/estimate.h"
+#include "core/filter/levels.h"
 #include "core/pipeline/detail.h"
 #include "core/pipeline/stage_clock.h"
 #include "core/volume/formats/import.h"
@@ -27,8 +29,8 @@ struct FilterStep {
 /// What is known of the scan once all of it was read.
 struct ScanFacts {
   VolumeInfo info;
-  std::int64_t nonfinite_voxels = 0;
-  float nonfinite_fill = 0.0f;        ///< what they count as
+  Unmeasured unmeasured;  ///< what of it is no measurement
+  MeasuredSource::Counts unmeasured_voxels;
   std::vector<std::string> warnings;  ///< of the file and of its voxels
   Dims grid;                          ///< after resampling
   std::optional<EdgeSpread> blur;     ///< of that grid before any filter; nothing where it has no flat surface
@@ -44,6 +46,7 @@ struct ImportedGrid {
   FilterStep raw;  ///< of a sample of the scan
   CountedGrid grid;
   DetailChoice detail;
+  EstimateOptions estimate;              ///< as they were given, without what is no measurement
   std::unique_ptr<ImportedVolume> scan;  ///< to be read again
 };
 
@@ -72,33 +75,47 @@ Result<DenoisedGrid> denoise(CountedGrid grid, std::string name, const DenoiseOp
 
 struct Threshold {
   float value = 0.0f;
-  std::string path;  ///< how it was found, one sentence
+  std::string path;       ///< how it was found, one sentence
+  bool half_way = false;  ///< whether it is meant to lie half way between air and clay
 };
 
 /// The given one, or that of the estimates. kBadData, with their refusal, where they have none.
 Result<Threshold> choose_threshold(std::optional<float> given, const Estimates& estimates);
 
 struct SampleOptions {
-  std::optional<float> sharpen;  ///< amount (sharpen.h); default: what the blur asks for and the noise allows
-  int offset_bits = 4;           ///< N
-  bool closed = true;            ///< at the border of the volume
+  std::optional<float> sharpen;    ///< amount (sharpen.h); default: what the blur asks for and the noise allows
+  int offset_bits = 4;             ///< N
+  Levels levels = Levels::kLocal;  ///< of air and clay; local ones where the threshold is an automatic one
+  bool closed = true;              ///< at the border of the volume
 };
 
 struct SampledSurface {
   SurfaceSamples samples;
-  float sharpen = 0.0f;            ///< amount that was used
-  std::optional<EdgeSpread> blur;  ///< of the grid before it was sharpened, where that was decided by it
+  float sharpen = 0.0f;               ///< amount that was used
+  std::optional<EdgeSpread> blur;     ///< of the grid before it was sharpened, where that was decided by it
+  NoiseCavities noise;                ///< that became clay
+  std::optional<LocalLevels> levels;  ///< where they were measured
 };
 
 /// How much sharpening the noise allows, in dB of what filters left.
 float sharpen_amount(double snr_db);
 
-/// One record, "extract".
-Result<SurfaceSamples> extract_surface(SlabSource& source, float threshold, const SampleOptions& options, StageRun run);
+/// What is known of a grid whose surface is to be found.
+struct GridFacts {
+  const Threshold& threshold;
+  const Estimates& estimates;
+  std::optional<EdgeSpread> blur;
+  std::vector<float> constants;  ///< values that stand where nothing was read
+};
+
+/// Samples the isosurface, half way between the levels beside it, and makes cavities of noise clay. One record,
+/// "extract".
+Result<void> extract_surface(SlabSource& source, const GridFacts& facts, const SampleOptions& options,
+                             SampledSurface& sampled, StageRun run);
 
 /// Sharpens the halved grid, of which is known what 2:1 took, and samples the isosurface. `denoised`: whether a filter
 /// pass was asked for; without one the default is no sharpening.
-Result<SampledSurface> sample(GridStore& grid, float threshold, const Estimates& estimates, bool denoised,
-                              const SampleOptions& options, StageRun run);
+Result<SampledSurface> sample(GridStore& grid, const GridFacts& facts, bool denoised, const SampleOptions& options,
+                              StageRun run);
 
 }  // namespace dubsar

@@ -1,5 +1,5 @@
 #pragma once
-// A slab source without NaN and Inf: they are counted and replaced by air.
+// A slab source whose voxels are all measurements, or count as air.
 
 #include <cstdint>
 #include <memory>
@@ -7,33 +7,47 @@
 #include <vector>
 
 #include "core/volume/slab_source.h"
+#include "core/volume/unmeasured.h"
 
 namespace dubsar {
 
-/// Replaces NaN and Inf. Air is `fill`, or the 5 % quantile of the finite values of nine slices spread evenly over the
-/// volume: it depends on the volume alone, not on the order or the height of the slabs read. (The quantile stands for
-/// air because a scan shows more air than that around the object, and one noisy or dead voxel does not move it.)
-class FiniteSource final : public SlabSource {
+/// Replaces voxels that are no measurement (unmeasured.h) by its fill value, which depends on the volume alone, not on
+/// the order or the height of the slabs read.
+class MeasuredSource final : public SlabSource {
  public:
-  FiniteSource(std::unique_ptr<SlabSource> source, std::optional<float> fill);
+  struct Options {
+    IgnoredValues ignored;
+    std::optional<Unmeasured> known;  ///< of an earlier look at the same volume: it is not looked for again
+    std::optional<float> fill;        ///< instead of the one that is found
+    bool may_have_nonfinite = true;
+  };
+  MeasuredSource(std::unique_ptr<SlabSource> source, Options options);
 
   Dims dims() const noexcept override { return source_->dims(); }
   const GridFrame& frame() const noexcept override { return source_->frame(); }
   std::int64_t preferred_height() const noexcept override { return source_->preferred_height(); }
-  /// kBadData once more than 1 % of all voxels of the volume were found not to be finite.
+  /// kBadData once more than 1 % of all voxels of the volume were found to be NaN or Inf between measurements.
   Result<void> read(std::int64_t z_begin, std::int64_t z_end, std::span<float> out) override;
 
+  /// Looks for it the first time, before anything is read. Errors of find_unmeasured().
+  Result<Unmeasured> unmeasured();
+
   /// Replaced so far; a slice that is read again counts once.
-  std::int64_t count() const noexcept { return count_; }
-  float fill() const noexcept { return fill_.value_or(0.0F); }
+  struct Counts {
+    std::int64_t outside = 0;    ///< of the field of view, or of a value to be ignored
+    std::int64_t nonfinite = 0;  ///< NaN and Inf, wherever they are
+    std::int64_t all() const noexcept { return outside + nonfinite; }
+  };
+  const Counts& counts() const noexcept { return counts_; }
 
  private:
-  Result<float> estimate_air();
+  Counts fill_slice(std::span<float> slice, std::int64_t& between) const;
 
   std::unique_ptr<SlabSource> source_;
-  std::optional<float> fill_;
-  std::vector<std::uint8_t> counted_;  ///< per slice: 1 once its NaN and Inf are in count_
-  std::int64_t count_ = 0;
+  Options options_;
+  std::vector<std::uint8_t> counted_;  ///< per slice: 1 once its voxels are in counts_
+  Counts counts_;
+  std::int64_t between_ = 0;  ///< NaN and Inf with measurements on both sides in their row
 };
 
 }  // namespace dubsar

@@ -150,15 +150,11 @@ Result<std::unique_ptr<ImportedVolume>> open_volume(ImportOptions options) {
   DUBSAR_ASSIGN(info.box, box_of(info.file_dims, options));
   check_voxel_size(info);
   for (const std::string& warning : info.warnings) log_warning("{}: {}", info.path, warning);
-  std::unique_ptr<SlabSource> source =
-      std::make_unique<GridSource>(std::move(opened.reader), info.box, info.voxel, options.budget);
-  FiniteSource* finite = nullptr;
-  if (info.stored.may_have_nonfinite) {
-    auto decorated = std::make_unique<FiniteSource>(std::move(source), options.nonfinite_fill);
-    finite = decorated.get();
-    source = std::move(decorated);
-  }
-  return std::make_unique<ImportedVolume>(std::move(info), std::move(source), finite);
+  auto grid = std::make_unique<GridSource>(std::move(opened.reader), info.box, info.voxel, options.budget);
+  auto measured = std::make_unique<MeasuredSource>(
+      std::move(grid), MeasuredSource::Options{options.ignored, std::move(options.unmeasured), options.unmeasured_fill,
+                                               info.stored.may_have_nonfinite});
+  return std::make_unique<ImportedVolume>(std::move(info), std::move(measured));
 }
 
 }  // namespace dubsar

@@ -3,19 +3,19 @@
 
 #include <memory>
 
-#include "core/volume/finite_source.h"
 #include "core/volume/formats/import_options.h"
+#include "core/volume/measured_source.h"
 #include "core/volume/slab_source.h"
 #include "core/volume/voxel_reader.h"
 
 namespace dubsar {
 
-/// A volume file as a slab source: cropped, decimated, in millimetres where the file or the user says so, without NaN
-/// and Inf. frame() maps the processed grid to the voxels of the file.
+/// A volume file as a slab source: cropped, decimated, in millimetres where the file or the user says so; voxels that
+/// are no measurement count as air (unmeasured.h). frame() maps the processed grid to the voxels of the file.
 class ImportedVolume final : public SlabSource {
  public:
-  ImportedVolume(VolumeInfo info, std::unique_ptr<SlabSource> source, FiniteSource* finite)
-      : info_(std::move(info)), source_(std::move(source)), finite_(finite) {}
+  ImportedVolume(VolumeInfo info, std::unique_ptr<MeasuredSource> source)
+      : info_(std::move(info)), source_(std::move(source)) {}
 
   Dims dims() const noexcept override { return source_->dims(); }
   const GridFrame& frame() const noexcept override { return source_->frame(); }
@@ -25,15 +25,14 @@ class ImportedVolume final : public SlabSource {
   }
 
   const VolumeInfo& info() const noexcept { return info_; }
-  /// NaN and Inf replaced in the slices read so far; each slice counts once.
-  std::int64_t nonfinite_count() const noexcept { return finite_ != nullptr ? finite_->count() : 0; }
-  /// What they were replaced by; 0 while there were none.
-  float nonfinite_fill() const noexcept { return finite_ != nullptr ? finite_->fill() : 0.0F; }
+  /// What of it is no measurement; some slices are read for it the first time. Errors of find_unmeasured().
+  Result<Unmeasured> unmeasured() { return source_->unmeasured(); }
+  /// Such voxels in the slices read so far; each slice counts once.
+  const MeasuredSource::Counts& unmeasured_counts() const noexcept { return source_->counts(); }
 
  private:
   VolumeInfo info_;
-  std::unique_ptr<SlabSource> source_;
-  FiniteSource* finite_;  ///< inside source_; nullptr for integers
+  std::unique_ptr<MeasuredSource> source_;
 };
 
 /// Format by content, never by suffix: HDF5, NRRD, TIFF (a file or a folder of slices); raw when options.raw is set.
@@ -42,7 +41,7 @@ class ImportedVolume final : public SlabSource {
 Result<std::unique_ptr<ImportedVolume>> open_volume(ImportOptions options);
 
 /// The same as a reader of any box, along x, y, z of the object, in numbers as stored; for those who look at parts of a
-/// volume. options.crop, .stride and .nonfinite_fill do nothing here.
+/// volume. options.crop, .stride and what is said about ignored values do nothing here.
 struct OpenedVoxels {
   VolumeInfo info;
   std::unique_ptr<VoxelReader> reader;

@@ -13,6 +13,7 @@
 #include "core/base/result.h"
 #include "core/base/system/budget.h"
 #include "core/volume/axis_order.h"
+#include "core/volume/unmeasured.h"
 
 namespace dubsar {
 
@@ -40,8 +41,10 @@ struct ImportOptions {
   std::optional<RawSpec> raw;                           ///< set: the file is read as raw, whatever it holds
   std::optional<std::filesystem::path> allow_external;  ///< folder in which other files may be opened
   bool trust = false;                                   ///< accept compression ratios above 250
-  bool allow_sparse = false;            ///< accept chunks that were never written (read as the fill value)
-  std::optional<float> nonfinite_fill;  ///< replaces NaN and Inf; default: air, see finite_source.h
+  bool allow_sparse = false;             ///< accept chunks that were never written (read as the fill value)
+  IgnoredValues ignored;                 ///< grey values that are no measurement
+  std::optional<Unmeasured> unmeasured;  ///< what an earlier look at the same part of the file found
+  std::optional<float> unmeasured_fill;  ///< what they count as; default: air, see unmeasured.h
   Budget budget;
 };
 

@@ -102,11 +102,11 @@ TEST_F(ImportGrid, SlabHeightOverlapAndThreadsChangeNothing) {
       ASSERT_TRUE(result) << result.error().message;
       if (reference.empty()) {
         reference = *result;
-        count = (*volume)->nonfinite_count();
+        count = (*volume)->unmeasured_counts().nonfinite;
         EXPECT_EQ(count, std::count_if(all.begin(), all.end(), [](float v) { return !std::isfinite(v); }));
       }
       EXPECT_EQ(*result, reference) << name << " slab " << slab;
-      EXPECT_EQ((*volume)->nonfinite_count(), count) << name << " slab " << slab;
+      EXPECT_EQ((*volume)->unmeasured_counts().nonfinite, count) << name << " slab " << slab;
     }
     set_thread_count(0);
     EXPECT_TRUE(std::all_of(reference.begin(), reference.end(), [](float v) { return std::isfinite(v); }));
@@ -128,22 +128,23 @@ TEST_F(ImportGrid, NonfiniteVoxelsBecomeAir) {
   ASSERT_TRUE(volume);
   const auto result = read(**volume, 4);
   ASSERT_TRUE(result);
-  EXPECT_EQ((*volume)->nonfinite_count(), 2);
-  EXPECT_NEAR((*volume)->nonfinite_fill(), -1008.0F, 3.0F);
-  EXPECT_EQ((*result)[100], (*volume)->nonfinite_fill());
-  EXPECT_EQ((*result)[7000], (*volume)->nonfinite_fill());
+  EXPECT_EQ((*volume)->unmeasured_counts().nonfinite, 2);
+  const float fill = (*volume)->unmeasured().value().fill;
+  EXPECT_NEAR(fill, -1008.0F, 3.0F);
+  EXPECT_EQ((*result)[100], fill);
+  EXPECT_EQ((*result)[7000], fill);
   EXPECT_EQ((*result)[101], all[101]);
-  options.nonfinite_fill = 3.0F;
+  options.unmeasured_fill = 3.0F;
   const auto filled = read(**open_volume(options), 4);
   EXPECT_EQ((*filled)[100], 3.0F);
 }
 
-TEST_F(ImportGrid, MoreThanOnePercentNonfiniteStops) {
+TEST_F(ImportGrid, MoreThanOnePercentNonfiniteBetweenMeasurementsStops) {
   const auto limit = static_cast<std::size_t>(kDims.count() / 100);
-  for (const auto& [bad, good] :
-       {std::pair(limit, true), std::pair(limit + 1, false), std::pair<std::size_t, bool>(kDims.count(), false)}) {
+  for (const auto& [bad, good] : {std::pair(limit, true), std::pair(limit + 1, false)}) {
     auto all = values();
-    std::fill_n(all.begin(), bad, std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t i = 0; i < bad; ++i)  // in the middle of rows, slice after slice
+      all[static_cast<std::size_t>(kDims.x) * i + 11] = std::numeric_limits<float>::quiet_NaN();
     write("a.h5", {}, all);
     ImportOptions options;
     options.path = in("a.h5");
@@ -156,6 +157,15 @@ TEST_F(ImportGrid, MoreThanOnePercentNonfiniteStops) {
       EXPECT_THAT(result.error().message, HasSubstr("expected at most 1 %"));
     }
   }
+  write("a.h5", {}, std::vector<float>(static_cast<std::size_t>(kDims.count()), NAN));
+  ImportOptions options;
+  options.path = in("a.h5");
+  const auto volume = open_volume(options);
+  ASSERT_TRUE(volume);
+  const auto result = read(**volume, 3);
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().kind, ErrorKind::kBadData);
+  EXPECT_THAT(result.error().message, HasSubstr("no voxel of 7 slices is a measurement"));
 }
 
 // Chunks that reach over what may be kept in memory, with their edges beyond the array, through both ways to decode.
