@@ -37,6 +37,7 @@ usage() {
               ./do bench killed: kill -9 at 20 random moments, then --resume; exit code 1 where bytes differ
               ./do bench scanner [--size XxYxZ] [--memory 6G]: a scan larger than memory, 3072x3072x1944 by default
               ./do bench wedges [--quick | --size XxYxZ] [--seed N]: what is read of a hidden tablet, beside what is wanted
+              ./do bench invariance [--seeds N]: the same object cropped, mirrored, with axes exchanged: how far answers lie apart
               ./do bench light: from the start of a kiosk to its first picture, 1.6 million vertices on 48 views
               ./do bench view: first pictures, pictures a second and memory, beside f3d and MeshLab
 ./do workflow examples/snakemake: a dry run, and three scans for real; workflow core: with the program of a core build
@@ -278,6 +279,11 @@ bench() {
         --json "$build/bench_$1.json" --history "$build/bench_history.jsonl" "${@:2}"
       return ;;
   esac
+  if [ "${1:-}" = invariance ]; then
+    build_target --target dubsar
+    /usr/bin/python3 tests/bench/invariance_bench.py "$build/app/dubsar" "$build/bench-invariance" "${@:2}"
+    return
+  fi
   if [ "${1:-}" = wedges ]; then
     build_target --target wedges_bench
     "$build/tests/bench/wedges_bench" "${@:2}"

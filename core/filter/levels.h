@@ -55,7 +55,7 @@ struct LevelOptions {
 struct LocalLevels {
   LevelShift shift;  ///< empty where one threshold does for all of the surface
   double least = 0.0,
-         most = 0.0;  ///< of the shift along the surface, in parts of clay less air, 2 % on either side left out
+         most = 0.0;  ///< of the shift along the surface, in parts of clay less air, a tenth on either side left out
 };
 
 /// For people, without a full stop.
@@ -64,9 +64,9 @@ std::string describe(const LocalLevels& levels);
 /// Profiles across the surface along the axes of the grid: clay from 1 to 4 voxels behind it, air from 1 to 4 before
 /// it; gaps of fewer than three voxels do not count. Their means in cells, averaged by a Gauss of 12 voxels; half way
 /// between them is the level, and the surface is looked for at it again, three times (local adaptive surface
-/// determination, but with averages of some hundred profiles instead of single ones). Where it does not differ by 3 %
-/// of the contrast somewhere the scan is left as it is. Reads the source three times, or once, 20 slices at a time. The
-/// same for any number of threads. Errors of the source, kCancelled.
+/// determination, but with averages of some hundred profiles instead of single ones). Where a tenth of the surface
+/// does not differ by 4 % of the contrast the scan is left as it is. Reads the source three times, or once, 20 slices
+/// at a time. The same for any number of threads. Errors of the source, kCancelled.
 Result<LocalLevels> measure_levels(SlabSource& source, const LevelOptions& options, Progress& progress);
 
 /// A source less a field of its dims. Borrows both.
