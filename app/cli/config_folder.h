@@ -16,7 +16,7 @@ std::filesystem::path panel_folder();
 /// when neither variable is set.
 std::filesystem::path model_folder();
 
-/// Work that sessions have not ended in order: $XDG_STATE_HOME/dubsar/sessions, else
+/// Work on surfaces, by their content: $XDG_STATE_HOME/dubsar/sessions, else
 /// $HOME/.local/state/dubsar/sessions; empty when neither variable is set.
 std::filesystem::path session_folder();
 

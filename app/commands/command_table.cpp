@@ -28,7 +28,7 @@ CommandTable CommandTable::standard(const std::vector<std::string>& styles) {
   for (std::vector<Command>& part :
        std::array{window_commands(), view_commands(), look_commands(styles), shade_commands(styles), light_commands(),
                   back_face_commands(), mark_commands(), section_commands(), slice_commands(), film_commands(),
-                  file_commands()})
+                  file_commands(), work_commands()})
     for (Command& command : part) out.add(std::move(command));
   return out;
 }
@@ -68,7 +68,7 @@ Result<void> CommandTable::run(std::string_view text, Editor& editor) const {
   const Command& command = *find(name);
   if (command.enabled && !command.enabled(editor))
     return fail(ErrorKind::kUsage, "{}: there is nothing to do it to now", name);
-  if (name != "close") editor.desk().leaving = false;
+  if (name != "close") editor.desk().leaving = editor.desk().unkept = false;
   return command.run(editor, argument);
 }
 

@@ -73,6 +73,7 @@ std::vector<Command> section_commands();                                      //
 std::vector<Command> slice_commands();                                        ///< slices of the scan
 std::vector<Command> film_commands();
 std::vector<Command> file_commands();    ///< opening surfaces
+std::vector<Command> work_commands();    ///< copies of the work, and work that was found
 std::vector<Command> window_commands();  ///< help, displays, sources, the window
 
 /// Lays the slices through a place of the surface, the free one upright on it, and opens them.

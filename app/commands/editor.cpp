@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "app/document/join.h"
+
 namespace dubsar::app {
 
 void Editor::change(Document next, std::string_view words, Way way) {
@@ -10,11 +12,17 @@ void Editor::change(Document next, std::string_view words, Way way) {
   history_.change(std::move(next), std::string(words), merge_);
 }
 
+void Editor::join(Document next) {
+  const Document before = document();
+  const Document with = next;
+  history_.change_all(std::move(next), [&](const Document& state) { return app::join_marks(&before, state, with); });
+  opened_ = app::join_marks(&before, opened_, with);
+}
+
 bool Editor::has_work() const {
-  const auto holds = [](const Document& d) {
-    return !d.measures.empty() || !d.notes.empty() || !d.keyframes.empty() || !d.clips.empty();
-  };
-  return holds(document()) || holds(opened_);
+  Document now = document();
+  now.now = opened_.now;
+  return now != opened_;
 }
 
 bool Editor::undo() {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/document/history.h"
+#include "app/document/other_work.h"
 #include "core/base/result.h"
 
 namespace dubsar::app {
@@ -106,6 +107,7 @@ struct Desk {
   double ui_scale = 0.0;              ///< of letters and panels; 0: as the monitor wants it
   bool legend = true;                 ///< of colours that tell figures
   bool leaving = false;               ///< asked whether to end with work in it
+  bool unkept = false;                ///< told that the work cannot be kept, and asked whether to end all the same
   std::string drawer{};               ///< of the panels; empty: none is open
   std::string tool{"turn"};           ///< what a click does
   std::vector<SurfacePin> pending{};  ///< places that the tool was told and still waits with
@@ -128,6 +130,9 @@ class Editor {
  public:
   Editor(Document first, Workplace& place, const StepFigures& steps = {})
       : opened_(first), history_(std::move(first)), place_(&place), steps_(steps) {}
+  /// Goes on with what was done before. `opened`: as it was when the session began.
+  Editor(History history, Document opened, Workplace& place, const StepFigures& steps)
+      : opened_(std::move(opened)), history_(std::move(history)), place_(&place), steps_(steps) {}
 
   const Document& document() const noexcept { return history_.now(); }
   const History& history() const noexcept { return history_; }
@@ -138,14 +143,19 @@ class Editor {
 
   /// A step of the document.
   void change(Document next, std::string_view words, Way way = Way::kJump);
+  /// What another window made of the same surface is here, too; undo leaves it alone. `next`: the document with it.
+  void join(Document next);
   /// Changes in a row under the same number other than 0 are one step: those of a drag, or of a key that is held.
   void merge_with(std::uint64_t merge) noexcept { merge_ = merge; }
   bool undo();
   bool redo();
   /// As it was when the session began.
   const Document& opened() const noexcept { return opened_; }
-  /// There are measures, notes, keyframes or cuts, or there were when the session began.
+  /// The document differs from how it was opened, in anything but where it is looked at from.
   bool has_work() const;
+  /// Work that was found beside that of the surface, whose notes can be taken over.
+  void set_others(std::vector<OtherWork> others) { others_ = std::move(others); }
+  const std::vector<OtherWork>& others() const noexcept { return others_; }
   /// How the view of the last change is gone to.
   Way way() const noexcept { return way_; }
 
@@ -155,6 +165,7 @@ class Editor {
   Workplace* place_;
   StepFigures steps_;
   Desk desk_;
+  std::vector<OtherWork> others_;
   Way way_ = Way::kJump;
   std::uint64_t merge_ = 0;
 };

@@ -4,6 +4,7 @@
 
 #include "app/commands/command_table.h"
 #include "app/commands/number_argument.h"
+#include "app/document/document_file.h"
 #include "app/document/mark_file.h"
 
 namespace dubsar::app {
@@ -39,6 +40,7 @@ Result<void> add_measure(Editor& editor, MeasureKind kind, const std::vector<Sur
   Document next = editor.document();
   const std::string words = figures_text(measure);
   next.measures.push_back(std::move(measure));
+  give_ids(next);
   editor.change(std::move(next), "measure");
   editor.place().say(words);
   return {};
@@ -60,6 +62,7 @@ void add_note(Editor& editor, const std::vector<SurfacePin>& pins, std::string t
   }
   note.camera = next.now;
   next.notes.push_back(std::move(note));
+  give_ids(next);
   editor.change(std::move(next), "note");
   editor.desk().note = editor.document().notes.size();
   editor.desk().drawer = "notes";

@@ -33,7 +33,7 @@ std::pair<std::string, std::string> first_word(const std::string& text) {
 
 Result<std::vector<glm::dvec3>> points_argument(std::string_view command, const std::string& text, std::size_t count,
                                                 std::string& rest) {
-  constexpr double kFarthestMm = 1e6;
+  constexpr double kFarthestMm = 1e11;  // georeferenced places are some 1e9 mm
   std::vector<glm::dvec3> out;
   rest = text;
   for (std::size_t i = 0; i < count; ++i) {

@@ -55,6 +55,7 @@ struct Note {
   glm::dvec3 at_mm{0.0}, normal{0.0, 0.0, 1.0};  ///< where it is pinned to the surface
   std::vector<glm::dvec3> line_mm;  ///< the text stands along these places, a line's transliteration; empty: a pin
   CameraPose camera;                ///< how it was seen
+  std::string id{};                 ///< that it has for life, in all copies of the work
   friend bool operator==(const Note&, const Note&) = default;
 };
 
@@ -72,7 +73,9 @@ struct ScanView {
 
 struct SourceFile {
   std::string path;
-  std::int64_t bytes = 0;  ///< another size: another file under the same name
+  std::int64_t bytes = 0;
+  std::string content{};  ///< file_checksum(): the surface is known by it under any name; empty: not known
+  std::string scan{};     ///< file_fingerprint() of the scan that it was made of; empty: not known
   friend bool operator==(const SourceFile&, const SourceFile&) = default;
 };
 

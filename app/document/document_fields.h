@@ -9,6 +9,8 @@ namespace dubsar::app {
 void fields(auto& f, SourceFile& v) {
   f("path", v.path);
   f("bytes", v.bytes);
+  f("content", v.content);
+  f("scan", v.scan);
 }
 void fields(auto& f, Part& v) {
   f("name", v.name);
@@ -58,6 +60,7 @@ void fields(auto& f, Measure& v) {
   f("part", v.part);
   f("points_mm", v.points_mm);
   f("figures", v.figures);
+  f("id", v.id);
 }
 void fields(auto& f, Note& v) {
   f("part", v.part);
@@ -67,6 +70,7 @@ void fields(auto& f, Note& v) {
   f("normal", v.normal);
   f("line_mm", v.line_mm);
   f("camera", v.camera);
+  f("id", v.id);
 }
 void fields(auto& f, ScanView& v) {
   f("cursor_mm", v.cursor_mm);

@@ -1,29 +1,22 @@
 #include "app/document/document_file.h"
 
-#include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
-#include <system_error>
+#include <set>
 #include <utility>
 
 #include "app/document/document_fields.h"
 #include "core/base/files/atomic_file.h"
+#include "core/base/files/file_fingerprint.h"
 #include "core/base/text/json_text.h"
 
 namespace dubsar::app {
 namespace {
 using nlohmann::json;
 
-constexpr int kVersion = 4, kOldest = 1;
-constexpr std::string_view kFormat = "dubsar document";
-constexpr TimestampNs kEveryNs = 5'000'000'000;  // half of what may be lost: writing takes its time, too
-
-Result<void> save(const std::filesystem::path& file, const Document& document) {
-  std::error_code error;
-  std::filesystem::create_directories(file.parent_path(), error);
-  return save_document(file, document);
-}
+constexpr int kVersion = 5, kOldest = 1;
+constexpr const char* kSaves = "saves";
 
 /// What ranges alone do not say.
 std::string complaint_about(const Document& d) {
@@ -55,89 +48,88 @@ std::string complaint_about(const Document& d) {
   return {};
 }
 
-}  // namespace
+/// Of a session's name: longer ones, and more of them, are nobody's.
+constexpr std::size_t kLongestName = 100, kMostSessions = 10'000;
 
-std::string format_document(const Document& document) {
+/// None: the text does not tell them.
+Result<std::optional<Saves>> saves_of(const json& object, std::string_view source) {
+  const auto at = object.find(kSaves);
+  if (at == object.end() || (at->is_object() && at->empty())) return std::optional<Saves>();
+  const auto wrong = fail(ErrorKind::kBadData, "{}: saves are no list of sessions with their numbers", source);
+  if (!at->is_object() || at->size() > kMostSessions) return wrong;
+  Saves out;
+  for (const auto& [session, count] : at->items()) {
+    if (session.size() > kLongestName || !count.is_number_integer() || count < 1) return wrong;
+    out.counts[session] = count.get<std::int64_t>();
+  }
+  return std::optional(std::move(out));
+}
+
+json json_of(const Document& document) {
   Document copy = document;
+  give_ids(copy);
   stored::Writer writer;
   fields(writer, copy);
   json out = writer.take();
-  out["format"] = kFormat;
+  out["format"] = kDocumentFormat;
   out["version"] = kVersion;
-  return out.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
-}
-
-Result<Document> parse_document(std::string_view text, std::string_view source) {
-  DUBSAR_ASSIGN(const json object, parse_json(text, source));
-  DUBSAR_ASSIGN(const int version, json_version(object, kFormat, kOldest, kVersion, source));
-  Document out;
-  std::string complaint;
-  stored::Reader reader(object, "", complaint, version != kVersion);
-  fields(reader, out);
-  if (complaint.empty()) complaint = complaint_about(out);
-  if (!complaint.empty()) return fail(ErrorKind::kBadData, "{}: {}", source, complaint);
   return out;
 }
 
-Result<void> save_document(const std::filesystem::path& path, const Document& document) {
-  return write_file_atomically(path, format_document(document));
-}
-
-Result<Document> load_document(const std::filesystem::path& path) {
-  DUBSAR_ASSIGN(const std::string text, read_text_file(path));
-  return parse_document(text, path.string());
-}
-
-std::filesystem::path Autosave::file_for(const std::filesystem::path& folder, const SourceFile& source) {
-  std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a: names of any length and alphabet become file names
-  for (const char c : source.path) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  return folder / fmt::format("{:016x}.json", hash);
-}
-
-bool Autosave::has_left_behind() const {
-  std::error_code error;
-  return !file_.empty() && std::filesystem::exists(file_, error);
-}
-
-Result<Document> Autosave::left_behind(const SourceFile& source) const {
-  DUBSAR_ASSIGN(Document found, load_document(file_));
-  if (found.source != source)
-    return fail(ErrorKind::kBadData, "{}: notes on {} of {} bytes found, expected {} of {} bytes", file_.string(),
-                found.source.path, found.source.bytes, source.path, source.bytes);
-  return found;
-}
-
-Result<void> Autosave::keep(TimestampNs now, const Document& document) {
-  if (file_.empty()) return {};
-  if (writing_.valid()) {
-    if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
-    DUBSAR_TRY(settle());
+template <class Thing>
+void give_ids_to(std::vector<Thing>& things) {
+  std::set<std::string> taken;
+  for (Thing& thing : things)
+    if (!thing.id.empty() && !taken.insert(thing.id).second) thing.id.clear();  // somebody copied it by hand
+  for (Thing& thing : things) {
+    if (!thing.id.empty()) continue;
+    stored::Writer writer;
+    fields(writer, thing);
+    const std::string id = bytes_checksum(writer.take().dump(-1, ' ', true, json::error_handler_t::replace));
+    std::string free = id;
+    for (int number = 2; !taken.insert(free).second; ++number) free = fmt::format("{}-{}", id, number);
+    thing.id = std::move(free);
   }
-  if (any_ && (now < next_ || document == written_)) return {};
-  written_ = document;
-  if (!std::exchange(any_, true)) return {};  // what it begins with is not work yet
-  next_ = now + kEveryNs;
-  writing_ = std::async(std::launch::async, save, file_, written_);
-  return {};
 }
 
-Result<void> Autosave::settle() {
-  if (!writing_.valid()) return {};
-  auto done = writing_.get();
-  if (!done) written_ = Document();  // it is tried again
-  return done;
+}  // namespace
+
+void give_ids(Document& document) {
+  give_ids_to(document.notes);
+  give_ids_to(document.measures);
 }
 
-Result<void> Autosave::leave(const Document& document) {
-  if (file_.empty()) return {};
-  static_cast<void>(settle());  // what comes now replaces it
-  return save(file_, document);
+std::string format_work(const Work& work) {
+  json out = json_of(work.document);
+  if (!work.saves.counts.empty()) out[kSaves] = work.saves.counts;
+  return dump_json_rows(out) + "\n";
 }
 
-void Autosave::discard() {
-  static_cast<void>(settle());
-  std::error_code error;
-  if (!file_.empty()) std::filesystem::remove(file_, error);
+std::string format_document(const Document& document) { return format_work({document, {}}); }
+
+Result<Work> parse_work(std::string_view text, std::string_view source) {
+  DUBSAR_ASSIGN(const json object, parse_json(text, source, kLargestDocument));
+  DUBSAR_ASSIGN(const int version, json_version(object, kDocumentFormat, kOldest, kVersion, source));
+  Work out;
+  std::string complaint;
+  stored::Reader reader(object, "", complaint, version != kVersion);
+  fields(reader, out.document);
+  if (complaint.empty()) complaint = complaint_about(out.document);
+  if (!complaint.empty()) return fail(ErrorKind::kBadData, "{}: {}", source, complaint);
+  DUBSAR_ASSIGN(std::optional<Saves> saves, saves_of(object, source));
+  out.saves = saves ? *std::move(saves) : Saves{{{"text " + bytes_checksum(text), 1}}};
+  give_ids(out.document);
+  return out;
+}
+
+Result<Document> parse_document(std::string_view text, std::string_view source) {
+  DUBSAR_ASSIGN(Work work, parse_work(text, source));
+  return std::move(work.document);
+}
+
+Result<Work> load_work(const std::filesystem::path& path) {
+  DUBSAR_ASSIGN(const std::string text, read_text_file(path, static_cast<std::int64_t>(kLargestDocument)));
+  return parse_work(text, path.string());
 }
 
 }  // namespace dubsar::app

@@ -1,57 +1,43 @@
 #pragma once
-// Documents as JSON files: versioned, written whole or not at all, written again by themselves while somebody works.
+// Documents as JSON files: versioned, written whole or not at all.
 
 #include <filesystem>
-#include <future>
 #include <string>
 #include <string_view>
 
 #include "app/document/document.h"
+#include "app/document/saves.h"
 #include "core/base/result.h"
-#include "core/base/system/clock.h"
 
 namespace dubsar::app {
 
-/// Exact: format_document(parse_document(t)) is t for every text t that format_document made.
+inline constexpr std::string_view kDocumentFormat = "dubsar document";
+/// Of a file that is read; nothing larger is written.
+inline constexpr std::size_t kLargestDocument = std::size_t{64} << 20;
+
+/// A document as it is kept.
+struct Work {
+  Document document;
+  Saves saves;
+  friend bool operator==(const Work&, const Work&) = default;
+};
+
+/// Places in mm get three digits, all else is exact: format_work(parse_work(t)) is t for every text t that format_work
+/// made. Notes and measures without an id get one, of what they are made of.
+std::string format_work(const Work& work);
 std::string format_document(const Document& document);
 
 /// kBadData, in one sentence with what was found and expected, for text that is no document of this program, of a newer
-/// version, or out of range.
+/// version, or out of range. A text that does not tell its saves counts as one of its own kind: two of them that differ
+/// do not follow from each other.
+Result<Work> parse_work(std::string_view text, std::string_view source);
 Result<Document> parse_document(std::string_view text, std::string_view source);
 
-/// Errors of write_file_atomically() and read_text_file() besides.
-Result<void> save_document(const std::filesystem::path& path, const Document& document);
-Result<Document> load_document(const std::filesystem::path& path);
+/// Errors of read_text_file() besides.
+Result<Work> load_work(const std::filesystem::path& path);
 
-/// Keeps a copy of the document on the disk, at most ten seconds behind. One thread.
-class Autosave {
- public:
-  /// Where the copies of a surface live: one file in `folder` for each path of a surface.
-  static std::filesystem::path file_for(const std::filesystem::path& folder, const SourceFile& source);
-
-  /// An empty path: nothing is kept.
-  explicit Autosave(std::filesystem::path file) : file_(std::move(file)) {}
-  /// What an earlier session of the same surface left behind when it was killed; or left behind in order.
-  /// kBadData for a file that cannot be read or is of another surface; it is left where it is.
-  Result<Document> left_behind(const SourceFile& source) const;
-  bool has_left_behind() const;
-
-  /// Writes when the document differs from what was written and five seconds have passed since then, in a thread of
-  /// its own: a disk takes longer than a picture may. What went wrong is told by the next call.
-  Result<void> keep(TimestampNs now, const Document& document);
-  /// Waits for what is being written. Errors of save_document().
-  Result<void> settle();
-  /// An orderly end of a session with work in it: the next one finds it.
-  Result<void> leave(const Document& document);
-  /// An orderly end: nothing is left behind.
-  void discard();
-
- private:
-  std::filesystem::path file_;
-  Document written_;
-  TimestampNs next_ = 0;
-  bool any_ = false;
-  std::future<Result<void>> writing_;  ///< written_; its file is ours alone until then
-};
+/// Gives an id to notes and measures that have none, or that of another one: made of what they consist of, with a
+/// number where that is taken.
+void give_ids(Document& document);
 
 }  // namespace dubsar::app

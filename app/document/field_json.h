@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/document/document.h"
@@ -18,23 +19,35 @@
 namespace dubsar::app::stored {
 using nlohmann::json;
 
-inline constexpr double kLargest = 1e6;  // mm, degrees, seconds: nothing of a scan is larger
-inline constexpr std::size_t kMostThings = 10'000, kLongestText = 100'000;
+inline constexpr double kLargest = 1e12;  // mm, degrees, seconds; places of georeferenced surfaces are some 1e9 mm
+
+/// Places are kept to a micrometre.
+inline double rounded_mm(double mm) { return std::abs(mm) < kLargest ? std::round(mm * 1e3) / 1e3 : mm; }
 
 class Writer {
  public:
   template <class T>
   void operator()(const char* name, const T& value) {
-    out_[name] = write(value);
+    out_[name] = std::string_view(name).ends_with("_mm") ? write(in_mm(value)) : write(value);
   }
   /// What has no value is not written.
   template <class T>
   void operator()(const char* name, const std::optional<T>& value) {
-    if (value) out_[name] = write(*value);
+    if (value) operator()(name, *value);
   }
   json take() { return std::move(out_); }
 
  private:
+  template <class T>
+  static const T& in_mm(const T& v) {
+    return v;
+  }
+  static double in_mm(double v) { return rounded_mm(v); }
+  static glm::dvec3 in_mm(const glm::dvec3& v) { return {rounded_mm(v.x), rounded_mm(v.y), rounded_mm(v.z)}; }
+  static std::vector<glm::dvec3> in_mm(std::vector<glm::dvec3> points) {
+    for (glm::dvec3& p : points) p = in_mm(p);
+    return points;
+  }
   static json write(const std::string& text) { return text; }
   static json write(bool value) { return value; }
   static json write(double value) { return value; }
@@ -102,8 +115,7 @@ class Reader {
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = real(value[i], at, -kLargest, kLargest);
   }
   void read(const json& value, const std::string& at, std::string& out) const {
-    if (!value.is_string() || value.get_ref<const std::string&>().size() > kLongestText)
-      return complain(fmt::format("{} is no text of at most {} letters", at, kLongestText));
+    if (!value.is_string()) return complain(at + " is no text");
     out = value.get<std::string>();
   }
   void read(const json& value, const std::string& at, bool& out) const {
@@ -149,8 +161,7 @@ class Reader {
   }
   template <class T>
   void read(const json& value, const std::string& at, std::vector<T>& out) const {
-    if (!value.is_array() || value.size() > kMostThings)
-      return complain(fmt::format("{} is no list of at most {} things", at, kMostThings));
+    if (!value.is_array()) return complain(at + " is no list");
     out.assign(value.size(), T());
     for (std::size_t i = 0; i < value.size() && complaint_.empty(); ++i)
       read(value[i], fmt::format("{}[{}]", at, i), out[i]);

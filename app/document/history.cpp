@@ -19,6 +19,12 @@ void History::change(Document next, std::string words, std::uint64_t merge) {
   if (same_step && past_.back().other == now_) past_.pop_back();  // there and back again
 }
 
+void History::change_all(Document next, const std::function<Document(const Document&)>& with_it) {
+  for (std::vector<Step>* steps : {&past_, &future_})
+    for (Step& step : *steps) step.other = with_it(step.other);
+  now_ = std::move(next);
+}
+
 bool History::undo() {
   if (past_.empty()) return false;
   Step step = std::move(past_.back());

@@ -2,6 +2,7 @@
 // The states of a document, forwards and backwards. What belongs together, such as a drag or a throw, is one step.
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ class History {
   /// One step, named by `words`; none when nothing differs. Changes in a row with the same `merge` other than 0 are one
   /// step. What was undone before can no longer be redone. At most 1000 steps are kept, the newest.
   void change(Document next, std::string words, std::uint64_t merge = 0);
+  /// Somebody else changed the document meanwhile: no step, so that undo and redo leave that alone. `next` is how it is
+  /// now; `with_it` gives each other state what was changed.
+  void change_all(Document next, const std::function<Document(const Document&)>& with_it);
   /// False when there is nothing to undo or redo.
   bool undo();
   bool redo();

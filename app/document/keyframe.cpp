@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFilmVersion = 2, kOldestFilm = 1;
-constexpr std::string_view kFilmFormat = "dubsar film", kDocument = "dubsar document";
+constexpr std::string_view kFilmFormat = "dubsar film";
 
 /// At t (0..1) of a cubic from a to b with the speeds `from` and `to` a second.
 double cubic(double a, double b, double from, double to, double length, double t) {
@@ -249,12 +249,12 @@ std::string format_film(std::span<const Keyframe> keys) {
   json out = writer.take();
   out["format"] = kFilmFormat;
   out["version"] = kFilmVersion;
-  return out.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+  return dump_json_rows(out) + "\n";
 }
 
 Result<std::vector<Keyframe>> parse_film(std::string_view text, std::string_view source) {
-  DUBSAR_ASSIGN(const json object, parse_json(text, source));
-  const bool document = object.is_object() && object.contains("format") && object.at("format") == kDocument;
+  DUBSAR_ASSIGN(const json object, parse_json(text, source, kLargestDocument));
+  const bool document = object.is_object() && object.contains("format") && object.at("format") == kDocumentFormat;
   Film film;
   if (document) {
     DUBSAR_ASSIGN(Document whole, parse_document(text, source));

@@ -2,9 +2,9 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
-#include "core/base/files/atomic_file.h"
+#include "app/document/field_json.h"
+#include "core/base/files/kept_file.h"
 #include "core/base/text/json_text.h"
 
 namespace dubsar::app {
@@ -16,9 +16,12 @@ using nlohmann::ordered_json;
 constexpr std::string_view kAnnotationContext = "http://www.w3.org/ns/anno.jsonld";
 
 ordered_json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+ordered_json place_json(const glm::dvec3& mm) {
+  return {stored::rounded_mm(mm.x), stored::rounded_mm(mm.y), stored::rounded_mm(mm.z)};
+}
 ordered_json path_json(const std::vector<glm::dvec3>& points) {
   ordered_json out = ordered_json::array();
-  for (const glm::dvec3& p : points) out.push_back(vector_json(p));
+  for (const glm::dvec3& p : points) out.push_back(place_json(p));
   return out;
 }
 
@@ -31,7 +34,7 @@ ordered_json camera_json(const CameraPose& camera) {
   return {{"rotation_wxyz", {q.w, q.x, q.y, q.z}}, {"zoom", camera.zoom}, {"pan", {camera.pan.x, camera.pan.y}}};
 }
 
-std::string text_of(const ordered_json& out) { return dump_json_lines(json(out)) + "\n"; }
+std::string text_of(const ordered_json& out) { return dump_json_rows(json(out)) + "\n"; }
 
 /// A path as a file URI (RFC 8089): letters beyond ASCII and signs are coded.
 std::string file_uri(const std::string& path) {
@@ -45,6 +48,20 @@ std::string file_uri(const std::string& path) {
   return out;
 }
 
+/// What a file of this program says it is; empty: it is none. Annotations say what wrote them.
+std::string format_of(std::string_view text) {
+  const auto object = parse_json(text, "", static_cast<std::size_t>(KeptFile::kLargest));
+  if (!object || !object->is_object()) return {};
+  const auto word = [](const json& in, const char* name) {
+    const auto at = in.find(name);
+    return at != in.end() && at->is_string() ? at->get<std::string>() : std::string();
+  };
+  if (const std::string format = word(*object, "format"); format.starts_with("dubsar ")) return format;
+  const auto by = object->find("generator");
+  const bool ours = by != object->end() && by->is_object() && word(*by, "name") == "dubsar";
+  return ours ? word(*object, "type") : std::string();
+}
+
 }  // namespace
 
 std::string format_measures(const Document& document) {
@@ -55,12 +72,13 @@ std::string format_measures(const Document& document) {
     ordered_json row{{"kind", measure_kind_name(measure.kind)}, {"name", measure.name}, {"part", measure.part}};
     row["points_mm"] = path_json(measure.points_mm);
     if (measure.kind == MeasureKind::kDistance || measure.kind == MeasureKind::kProfile) {
-      row["straight_mm"] = f.straight_mm;
-      row["surface_mm"] = f.surface_mm > 0 ? ordered_json(f.surface_mm) : ordered_json(nullptr);
+      row["straight_mm"] = stored::rounded_mm(f.straight_mm);
+      row["surface_mm"] = f.surface_mm > 0 ? ordered_json(stored::rounded_mm(f.surface_mm)) : ordered_json(nullptr);
     }
     if (measure.kind == MeasureKind::kAngle) row["angle_deg"] = f.angle_deg;
-    if (measure.kind == MeasureKind::kDepth || measure.kind == MeasureKind::kProfile) row["depth_mm"] = f.depth_mm;
-    if (f.uncertainty_mm) row["uncertainty_mm"] = *f.uncertainty_mm;
+    if (measure.kind == MeasureKind::kDepth || measure.kind == MeasureKind::kProfile)
+      row["depth_mm"] = stored::rounded_mm(f.depth_mm);
+    if (f.uncertainty_mm) row["uncertainty_mm"] = stored::rounded_mm(*f.uncertainty_mm);
     if (!f.path_mm.empty()) row["path_mm"] = path_json(f.path_mm);
     out["measures"].push_back(std::move(row));
   }
@@ -74,7 +92,7 @@ std::string format_notes(const Document& document) {
     out["notes"].push_back({{"label", note.label},
                             {"text", note.text},
                             {"part", note.part},
-                            {"at_mm", vector_json(note.at_mm)},
+                            {"at_mm", place_json(note.at_mm)},
                             {"normal", vector_json(note.normal)},
                             {"line_mm", path_json(note.line_mm)},
                             {"camera", camera_json(note.camera)}});
@@ -87,7 +105,10 @@ std::string format_annotations(const Document& document) {
   for (std::size_t i = 0; i < document.notes.size(); ++i) {
     const Note& note = document.notes[i];
     const auto point = [&](const glm::dvec3& p) {
-      return ordered_json{{"type", "PointSelector"}, {"x", p.x}, {"y", p.y}, {"z", p.z}};
+      return ordered_json{{"type", "PointSelector"},
+                          {"x", stored::rounded_mm(p.x)},
+                          {"y", stored::rounded_mm(p.y)},
+                          {"z", stored::rounded_mm(p.z)}};
     };
     ordered_json selector = point(note.at_mm);
     if (note.line_mm.size() > 1) {
@@ -126,15 +147,16 @@ Result<void> write_marks(const std::string& path, std::string_view text) {
   const std::string suffix = target.extension().string();
   if (suffix != ".json" && suffix != ".jsonld")
     return fail(ErrorKind::kUsage, "cannot write {}: expected a name that ends in .json or .jsonld", path);
-  std::error_code error;
-  const fs::file_status status = fs::symlink_status(target, error);
-  if (fs::exists(status)) {
-    const auto before = fs::is_regular_file(status) ? read_text_file(target) : Result<std::string>(std::string());
-    constexpr std::size_t kBeginning = 2000;
-    if (!before || before->substr(0, kBeginning).find("dubsar") == std::string::npos)
-      return fail(ErrorKind::kUsage, "cannot write {}: something else is there; give another name", path);
-  }
-  return write_file_atomically(target, text);
+  const auto other = [&] {
+    return fail(ErrorKind::kUsage, "cannot write {}: something else is there; give another name", path);
+  };
+  KeptFile file(target);
+  const auto before = file.read();
+  const std::string format = format_of(text);
+  if (!before || (*before && (format.empty() || format_of(**before) != format))) return other();
+  DUBSAR_ASSIGN(const Kept done, file.write(text));
+  if (done == Kept::kStranger) return other();
+  return {};
 }
 
 }  // namespace dubsar::app

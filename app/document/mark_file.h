@@ -19,8 +19,9 @@ std::string format_notes(const Document& document);
 /// x, y and z in mm of the scan, as drafts for 3D of the IIIF have them.
 std::string format_annotations(const Document& document);
 
-/// Writes `text` where nothing is yet, or another file of this kind. kUsage for a path that ends in something else than
-/// .json or .jsonld, or where something else is; the errors of write_file_atomically().
+/// Writes `text`, one of those above, a film or a document, where nothing is yet, or a file of the same format that
+/// this program wrote. kUsage for a path that ends in something else than .json or .jsonld, or where something else is;
+/// the errors of KeptFile.
 Result<void> write_marks(const std::string& path, std::string_view text);
 
 }  // namespace dubsar::app

@@ -42,6 +42,7 @@ struct Measure {
   std::string part;                   ///< that the first place lies on; empty: none
   std::vector<glm::dvec3> points_mm;  ///< on the surface, in the frame of the scan
   MeasureFigures figures;
+  std::string id{};  ///< that it has for life, in all copies of the work
   friend bool operator==(const Measure&, const Measure&) = default;
 };
 

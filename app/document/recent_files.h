@@ -15,8 +15,8 @@ inline constexpr std::size_t kMostRecent = 10;
 /// or of another program is empty.
 std::vector<std::string> read_recent(const std::filesystem::path& list);
 
-/// Puts a file first; the list is written whole or not at all, its folder is made. Without a name of the list nothing
-/// happens. Errors of write_file_atomically().
+/// Puts a file first; the list is written whole or not at all, its folder is made; a list that cannot be read is set
+/// aside. Without a name of the list nothing happens. Errors of KeptFile.
 Result<void> remember_recent(const std::filesystem::path& list, const std::filesystem::path& file);
 
 }  // namespace dubsar::app

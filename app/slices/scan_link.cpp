@@ -35,6 +35,13 @@ Dims dims_at(const json& object, const char* name) {
 
 }  // namespace
 
+std::string scan_fingerprint_of(std::string_view provenance) {
+  constexpr std::size_t kLongest = 60;  // it becomes part of names of files
+  std::string out = text_at(input_of(provenance), "fingerprint");
+  const bool plain = out.find_first_not_of("0123456789abcdef-") == std::string::npos && out.size() <= kLongest;
+  return plain ? out : std::string();
+}
+
 std::optional<RawSpec> raw_volume_of(std::string_view provenance) {
   const json input = input_of(provenance);
   if (text_at(input, "format") != "raw" || !input.contains("axes") || text_at(input.at("axes"), "order") != "zyx")

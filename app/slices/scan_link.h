@@ -35,6 +35,9 @@ std::optional<ScanLink> scan_of(const TriMesh& mesh, const std::filesystem::path
 /// raw volume, or one whose axes lie in another order than z, y, x.
 std::optional<RawSpec> raw_volume_of(std::string_view provenance);
 
+/// The fingerprint (file_fingerprint.h) of the scan that a surface was made of, as its provenance has it; empty: none.
+std::string scan_fingerprint_of(std::string_view provenance);
+
 struct OpenedScan {
   std::unique_ptr<PlaneSampler> sampler;
   glm::dvec3 voxel_mm{1.0};

@@ -6,10 +6,10 @@
 #include "app/cli/config_folder.h"
 #include "app/cli/file_uses.h"
 #include "app/cli/mesh_input.h"
-#include "app/document/document_file.h"
 #include "app/document/file_kinds.h"
 #include "app/slices/scan_link.h"
 #include "app/viewer/first_document.h"
+#include "core/base/files/file_fingerprint.h"
 #include "core/base/files/file_suffix.h"
 #include "core/base/system/log.h"
 #include "core/exa/exa_file.h"
@@ -20,21 +20,21 @@
 namespace dubsar::app {
 namespace {
 
-/// What a session that was killed left behind, and where this one keeps its own work.
-void keep_work(const std::filesystem::path& file, OpenedSurface& out) {
+/// What is known of the file that a surface was read from.
+Result<SourceFile> source_of(const std::filesystem::path& file, const TriMesh& mesh) {
   std::error_code error;
-  SourceFile source{std::filesystem::absolute(file, error).string(), 0};
-  source.bytes = static_cast<std::int64_t>(std::filesystem::file_size(file, error));
-  if (error) return;
-  out.work.document.source = source;
-  const std::filesystem::path folder = session_folder();
-  if (folder.empty()) return;
-  out.autosave = Autosave::file_for(folder, source);
-  const Autosave autosave(out.autosave);
-  if (!autosave.has_left_behind()) return;
-  auto left = autosave.left_behind(source);
-  if (!left) return log_warning("{}", left.error().message);
-  out.work.document = *std::move(left);
+  SourceFile out{std::filesystem::absolute(file, error).string(), 0};
+  out.bytes = static_cast<std::int64_t>(std::filesystem::file_size(file, error));
+  DUBSAR_ASSIGN(out.content, file_checksum(file));
+  out.scan = scan_fingerprint_of(mesh.provenance);
+  return out;
+}
+
+/// What sessions on this surface left, and where this one keeps its own work.
+void keep_work(SourceFile source, OpenedSurface& out) {
+  out.session = std::make_unique<FileSession>(std::move(source), session_folder());
+  if (!out.session->found()) return;
+  out.work.document = *out.session->found();
   out.work.upright = false;
   out.work.restored = true;
   log_info("view: the work of the last session on this file is here again");
@@ -69,7 +69,8 @@ ReadSurface surface_reader(const ViewOptions& options, const FileReading& readin
     out.work.scan = reading.scan;
     out.work.upright = reading.upright;
     out.title = file.filename().string();
-    if (reading.keeps_work) keep_work(file, out);
+    DUBSAR_ASSIGN(out.work.document.source, source_of(file, out.mesh));
+    if (reading.keeps_work) keep_work(out.work.document.source, out);
     if (progress.cancelled()) return cancelled_error();
     progress.begin("open", 0, "surface");
     with.work = out.work;

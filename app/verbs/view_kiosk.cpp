@@ -117,7 +117,6 @@ Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) 
     DUBSAR_ASSIGN(ViewOptions view, session.options(profile, object, out.display));
     view.guide = &guide;
     view.around.notices = view.around.panels = false;
-    view.files.autosave.clear();
     view.stage.room.most_parallax_deg = profile.eyes.parallax_deg;
     guide.begin_object();
     ObjectSession one{object, view, kept};

@@ -94,6 +94,7 @@ class Loop {
   Result<void> write_picture();
   Result<void> follow(bool due, const std::string& frame);
   bool ends(TimestampNs start);
+  Result<void> turn_until_over(TimestampNs start, const std::function<void(const ViewMoment&)>& look);
 
   ViewOptions options_;
   Progress& progress_;
@@ -178,6 +179,7 @@ bool Loop::ends(TimestampNs start) {
     if (viewer_->led_to_end()) return true;
     if (presenter_->ended()) presenter_->keep_open();
   }
+  if (presenter_->ended() && !viewer_->may_end()) presenter_->keep_open();
   if (presenter_->ended() || viewer_->over(now)) return true;
   if (options_.time.longest_s <= 0) return false;
   if (simulated()) return static_cast<double>(steps_ + 1) >= options_.time.longest_s * options_.time.fps;
@@ -209,23 +211,39 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
   viewer_->on_surface_change([this] { also_->drop_surface(); });
   if (!options_.window) progress_.begin("view", 0, "frame");  // a window shows itself how things stand
   const TimestampNs start = clock().now();
+  if (auto done = turn_until_over(start, look); !done) {  // what a person made is not lost with the session
+    if (const auto left = viewer_->finish(); !left) log_warning("{}", left.error().message);
+    return tl::unexpected<Error>(std::move(done).error());
+  }
+  if (!options_.window) progress_.end();
+  out_.seconds = 1e-9 * static_cast<double>(clock().now() - start);
+  out_.fps = figures_.fps();
+  out_.interval_ms = figures_.intervals_ms();
+  out_.view = viewer_->report().view;
+  out_.display = viewer_->display();
+  out_.rows = viewer_->sources();
+  out_.sources = viewer_->source_states();
+  out_.also = also_->states();
+  out_.document = viewer_->document();
+  out_.triangles = viewer_->mesh().triangles.size();
+  DUBSAR_TRY(viewer_->finish());
+  if (kept != nullptr && options_.window) give(*kept);
+  return std::move(out_);
+}
+
+/// The turns of the loop; its only other way out is an error.
+Result<void> Loop::turn_until_over(TimestampNs start, const std::function<void(const ViewMoment&)>& look) {
   const auto delay = static_cast<TimestampNs>(1e9 * options_.time.display_delay_s);
   glm::dquat last_turn = view_of(viewer_->document()).rotation;
   for (bool over = false; !over; ++steps_) {
-    if (progress_.cancelled()) {
-      DUBSAR_TRY(viewer_->finish(true));  // what a person showed is not lost with the session
-      return cancelled_error();
-    }
+    if (progress_.cancelled()) return cancelled_error();
     presenter_->take_events();
     if (presenter_->take_place_changed())
       if (auto done = viewer_->place_changed(); !done) log_warning("{}", done.error().message);
     const bool damaged = presenter_->take_damaged();
     const TimestampNs at = clock().now();
     viewer_->tick(at, (simulated() ? at : presenter_->light(at)) + delay, figures_.recent());
-    if (viewer_->failed()) {
-      static_cast<void>(viewer_->finish(true));
-      return tl::unexpected<Error>(*viewer_->failed());
-    }
+    if (viewer_->failed()) return tl::unexpected<Error>(*viewer_->failed());
     const PictureReport& report = viewer_->report();
     if (!report.moving) figures_.rested();
     figures_.took_part(out_, report);
@@ -240,10 +258,7 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
       const auto done = works ? draw(drawn) : Result<void>(tl::unexpect, works.error());
       failures_ = done ? 0 : failures_ + 1;
       if (!done && failures_ == 1) log_warning("{}; the session goes on", done.error().message);
-      if (failures_ >= kMostFailures || (!done && !options_.window)) {
-        static_cast<void>(viewer_->finish(false));
-        return tl::unexpected<Error>(done.error());
-      }
+      if (failures_ >= kMostFailures || (!done && !options_.window)) return tl::unexpected<Error>(done.error());
       progress_.advance(1);
     }
     DUBSAR_TRY(follow(due, frame));
@@ -257,20 +272,7 @@ Result<ViewResult> Loop::run(const TriMesh& mesh, const std::function<void(const
       presenter_->wait(viewer_->needs_paint() || report.moving || also_->need_paint());
     }
   }
-  if (!options_.window) progress_.end();
-  out_.seconds = 1e-9 * static_cast<double>(clock().now() - start);
-  out_.fps = figures_.fps();
-  out_.interval_ms = figures_.intervals_ms();
-  out_.view = viewer_->report().view;
-  out_.display = viewer_->display();
-  out_.rows = viewer_->sources();
-  out_.sources = viewer_->source_states();
-  out_.also = also_->states();
-  out_.document = viewer_->document();
-  out_.triangles = viewer_->mesh().triangles.size();
-  DUBSAR_TRY(viewer_->finish(true));
-  if (kept != nullptr && options_.window) give(*kept);
-  return std::move(out_);
+  return {};
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/document/opening.h"
+#include "app/session/file_session.h"
 #include "app/viewer/view_options.h"
 #include "core/base/progress.h"
 #include "core/mesh/tri_mesh.h"
@@ -19,8 +20,8 @@ namespace dubsar::app {
 /// A file that was read, and the work on it.
 struct OpenedSurface {
   TriMesh mesh;
-  SessionWork work;                ///< its document has the mesh's parts
-  std::filesystem::path autosave;  ///< copy of the work; empty: none is kept
+  SessionWork work;                      ///< its document has the mesh's parts
+  std::unique_ptr<FileSession> session;  ///< where the work is kept; null: it is not
   std::string title;
 };
 

@@ -43,8 +43,7 @@ struct SessionFiles {
   std::filesystem::path frames{};  ///< folder for frame-00000.png ..., what is presented
   /// Only each n-th picture becomes a file; in simulated time nothing else is drawn, and pictures count steps.
   int every = 1;
-  std::filesystem::path record{};    ///< recording of the input
-  std::filesystem::path autosave{};  ///< copy of the document while somebody works and after it
+  std::filesystem::path record{};  ///< recording of the input
 };
 
 /// Another panel of the same session (side_panels.h).

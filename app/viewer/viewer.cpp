@@ -75,7 +75,6 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
   editor_->desk().ui_scale = given_.options.around.scale;
   steering_ = std::make_unique<Steering>(mapping, view_of(document()), follow_options(stage));
   steering_->set_home(home_of(document()));
-  files_.autosave = Autosave(given_.options.files.autosave);
   files_.first = given_.shelf != nullptr && given_.shelf->busy();
   editor_->desk().choosing.open = given_.shelf != nullptr && !has_surface() && !files_.first;
   DUBSAR_TRY(start_sources());
@@ -324,7 +323,7 @@ void Viewer::tick(TimestampNs now, TimestampNs display_time, const RecentFigures
   update_overlay(now, figures);
   type_what_waited(now);
   if (!has_surface()) return;
-  if (const auto kept = files_.autosave.keep(now, document()); !kept) log_warning("{}", kept.error().message);
+  keep_work(now);
 }
 
 Result<void> Viewer::paint(const Surface& target, Field field) {
@@ -350,10 +349,13 @@ bool Viewer::over(TimestampNs now) {
   return now - at_.over_since >= kSettleNs;
 }
 
-Result<void> Viewer::finish(bool orderly) {
+Result<void> Viewer::finish() {
   steering_->stop();
-  if (has_surface()) DUBSAR_TRY(leave_work(orderly));
-  return recorder_ ? recorder_->finish() : Result<void>();
+  const auto kept = leave_all_work();
+  for (const std::string& sentence : files_.session ? files_.session->take_told() : std::vector<std::string>())
+    log_warning("{}", sentence);
+  const auto recorded = recorder_ ? recorder_->finish() : Result<void>();
+  return kept ? recorded : kept;
 }
 
 }  // namespace dubsar::app

@@ -2,12 +2,12 @@
 // A session: the document and who may change it. Commands, people and keys change it; the stage shows it.
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "app/commands/key_table.h"
-#include "app/document/document_file.h"
 #include "app/panels/overlay.h"
 #include "app/viewer/cut_box.h"
 #include "app/viewer/presenter/presenter.h"
@@ -75,7 +75,7 @@ class Viewer final : public Workplace {
 
   /// What simulated time waits for; the end of the recording; what an orderly end leaves behind.
   Result<void> flush() { return recorder_ ? recorder_->flush() : Result<void>(); }
-  Result<void> finish(bool orderly);
+  Result<void> finish();
 
   bool shows_surface() const noexcept { return has_surface() || files_.coarse != nullptr; }  ///< or a coarse one
   bool has_surface() const noexcept { return !given_.mesh->triangles.empty(); }
@@ -104,7 +104,9 @@ class Viewer final : public Workplace {
   bool stop_opening() override;
   std::string present_folder() const override;
   void say(std::string words) override;
-  void end() override { given_.presenter.end(); }
+  void end() override;
+  /// False where the work cannot be kept, which is said; the second time it may all the same.
+  bool may_end();
   Result<SurfacePin> pin(const glm::dvec3& at_mm) override;
   Result<MeasureFigures> figures(const Measure& measure) override;
   Reach reach(const glm::dvec3& home_direction) override;
@@ -124,11 +126,19 @@ class Viewer final : public Workplace {
     Shelf* shelf;
     std::function<void()> surface_goes{};
   };
+  /// A file that was left, with its undo and, where that could not be written, its work.
+  struct LeftFile {
+    std::unique_ptr<FileSession> session;
+    Document opened;
+    History history;
+  };
   /// What belongs to the file that is shown, and what the dialogue lists.
   struct Files {
     std::unique_ptr<OpenedSurface> opened;
-    std::unique_ptr<TriMesh> coarse;  ///< what stands for it until it is there
-    Autosave autosave{{}};
+    std::unique_ptr<TriMesh> coarse;       ///< what stands for it until it is there
+    std::unique_ptr<FileSession> session;  ///< keeps the work; null: nothing is kept
+    std::map<std::string, LeftFile> left;  ///< those that were shown before, by their path and content
+    std::string untold;                    ///< what could not be kept, as it was told last
     FolderListing listing;
     std::vector<RecentFile> recent;
     TimestampNs listed = -1;
@@ -207,7 +217,16 @@ class Viewer final : public Workplace {
   void take_coarse();
   Result<void> take_if_simulated();
   std::optional<Result<void>> put_read();
-  Result<void> leave_work(bool orderly);
+  Result<void> leave_work();
+  Result<void> leave_all_work();
+  void leave_file();
+  void keep_work(TimestampNs now);
+  void take_joined(Document joined);
+  void tell_of_files(std::string otherwise);
+  void begin_file(Document found);
+  void say_what_was_found();
+  StepFigures step_figures() const;
+  std::string file_key() const;
   void drop(const std::vector<std::string>& files);
   FilesState files_state(TimestampNs now);
   void use_key(const InputEvent& event);

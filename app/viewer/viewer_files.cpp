@@ -2,6 +2,7 @@
 
 #include <system_error>
 
+#include "app/document/join.h"
 #include "app/document/recent_files.h"
 #include "app/viewer/first_document.h"
 #include "app/viewer/viewer.h"
@@ -117,19 +118,102 @@ void Viewer::name_window() {
 }
 
 /// What the next session on this file finds.
-Result<void> Viewer::leave_work(bool orderly) {
-  const Document& d = document();
-  const bool made = editor_->has_work() || given_.options.work.restored || d.home != editor_->opened().home;
-  if (orderly && made) DUBSAR_TRY(files_.autosave.leave(d));
-  if (orderly && !made) files_.autosave.discard();
+Result<void> Viewer::leave_work() {
+  if (!files_.session) return {};
+  DUBSAR_ASSIGN(Document kept, files_.session->leave(document()));
+  if (kept != document()) editor_->join(std::move(kept));
   return {};
 }
 
-std::unique_ptr<Editor> Viewer::make_editor(Document document) {
+/// That of the others, too, which could not be written when they were left.
+Result<void> Viewer::leave_all_work() {
+  Result<void> out;
+  if (has_surface()) out = leave_work();
+  for (auto& [key, left] : files_.left)
+    if (left.session)
+      if (const auto done = left.session->leave(left.history.now()); !done && out)
+        out = tl::unexpected<Error>(done.error());
+  return out;
+}
+
+/// Another one takes its place; its undo stays, and what could not be written.
+void Viewer::leave_file() {
+  constexpr std::size_t kMostLeft = 8;  // each has up to a thousand states of its document
+  if (const auto done = leave_work(); !done) {
+    log_warning("{}", done.error().message);
+    files_.untold = done.error().message + "; it stays open in memory: go back and save_copy, or make room";
+  }
+  const std::string key = file_key();
+  if (key.empty()) return;
+  files_.left.insert_or_assign(key, LeftFile{std::move(files_.session), editor_->opened(), editor_->history()});
+  for (auto at = files_.left.begin(); files_.left.size() > kMostLeft && at != files_.left.end();) {
+    const LeftFile& left = at->second;
+    const bool can_go = at->first != key && (!left.session || left.session->has_kept(left.history.now()));
+    at = can_go ? files_.left.erase(at) : std::next(at);
+  }
+}
+
+/// By which a file is known again in this window; empty: not at all.
+std::string Viewer::file_key() const {
+  const SourceFile& source = document().source;
+  return source.content.empty() ? std::string() : source.path + "\n" + source.content;
+}
+
+void Viewer::keep_work(TimestampNs now) {
+  if (!files_.session) return;
+  auto kept = files_.session->keep(now, document());
+  const std::string wrong = kept ? std::string() : kept.error().message;
+  if (!wrong.empty() && wrong != files_.untold) {
+    log_warning("{}", wrong);
+    say(wrong + "; save_copy writes a copy elsewhere");
+  }
+  if (!kept || !files_.session->has_kept(document())) {
+    if (!kept) files_.untold = wrong;
+  } else {
+    files_.untold.clear();
+  }
+  if (kept && *kept) take_joined(**std::move(kept));
+  tell_of_files({});
+}
+
+/// What another window kept of the same surface is here, too.
+void Viewer::take_joined(Document joined) {
+  joined.now = document().now;
+  editor_->join(std::move(joined));
+  follow();
+}
+
+/// Says what is to be known of files, or else what there is to say.
+void Viewer::tell_of_files(std::string otherwise) {
+  std::string words;
+  for (const std::string& sentence : files_.session ? files_.session->take_told() : std::vector<std::string>()) {
+    log_warning("{}", sentence);
+    if (words.empty()) words = sentence;
+  }
+  if (words.empty()) words = std::move(otherwise);
+  if (!words.empty()) say(std::move(words));
+}
+
+/// Asks once more where the work could not be kept.
+bool Viewer::may_end() {
+  const auto done = leave_all_work();
+  if (done || std::exchange(editor_->desk().unkept, true)) return true;
+  log_warning("{}", done.error().message);
+  say(done.error().message + "; save_copy FILE.json keeps it elsewhere, Esc again ends without it");
+  return false;
+}
+
+void Viewer::end() {
+  if (may_end()) given_.presenter.end();
+}
+
+StepFigures Viewer::step_figures() const {
   const Mapping& mapping = given_.options.mapping;
-  return std::make_unique<Editor>(
-      std::move(document), *this,
-      StepFigures{mapping.key_step_deg, mapping.key_zoom, mapping.zoom_min, mapping.zoom_max});
+  return {mapping.key_step_deg, mapping.key_zoom, mapping.zoom_min, mapping.zoom_max};
+}
+
+std::unique_ptr<Editor> Viewer::make_editor(Document document) {
+  return std::make_unique<Editor>(std::move(document), *this, step_figures());
 }
 
 /// What tools need to know of the surface.
@@ -140,17 +224,17 @@ void Viewer::find_tools() {
       *given_.mesh, stage_->box_mm(), scan_of(*given_.mesh, given_.options.work.surface, given_.options.work.scan));
 }
 
-/// Another surface takes the place of the present one, whose work is kept.
+/// Another surface takes the place of the present one, whose work is kept. Until it can be shown nothing changes.
 Result<void> Viewer::put(OpenedSurface surface) {
   auto next = std::make_unique<OpenedSurface>(std::move(surface));
-  if (has_surface()) DUBSAR_TRY(leave_work(true));
   DUBSAR_TRY(stage_->set_mesh(next->mesh));
   ViewOptions& options = given_.options;
   const bool first = !has_surface();
+  files_.untold.clear();
+  if (!first) leave_file();
   const StyleChoice style = document().style;
   const LightPlace light = document().light;
   options.work = std::move(next->work);
-  options.files.autosave = std::move(next->autosave);
   options.around.title = std::move(next->title);
   tools_.slices.reset();
   if (given_.surface_goes) given_.surface_goes();
@@ -165,8 +249,8 @@ Result<void> Viewer::put(OpenedSurface surface) {
   desk.pending.clear();
   desk.beside.reset();
   desk.note = 0;
-  desk.leaving = false;
-  editor_ = make_editor(std::move(document));
+  desk.leaving = desk.unkept = false;
+  begin_file(std::move(document));
   editor_->desk() = std::move(desk);
   find_tools();
   tools_.press.reset();
@@ -176,10 +260,36 @@ Result<void> Viewer::put(OpenedSurface surface) {
   // What was coarse stood as it was scanned: it turns to where its writing is upright.
   steering_->go_to(view_of(this->document()), given_.clock.now(), files_.coarse != nullptr);
   files_.coarse.reset();
-  files_.autosave = Autosave(options.files.autosave);
-  say(options.work.restored ? "What you measured and noted here last time is here again."
-                            : "Drag to turn. 1 to 6: sides. U: lift the envelope. Ctrl+K: everything. F1: help.");
+  say_what_was_found();
   return {};
+}
+
+/// The document of the file that is shown from now on: as it was left in this window, or as it was found.
+void Viewer::begin_file(Document found) {
+  editor_ = make_editor(std::move(found));
+  files_.session = std::move(files_.opened->session);
+  if (files_.session) files_.session->begin(document());
+  if (const auto left = files_.left.find(file_key()); left != files_.left.end() && !file_key().empty()) {
+    editor_ = std::make_unique<Editor>(std::move(left->second.history), std::move(left->second.opened), *this,
+                                       step_figures());
+    if (left->second.session) files_.session = std::move(left->second.session);
+    files_.left.erase(left);
+    if (files_.session)
+      if (auto joined = files_.session->look(document())) editor_->join(*std::move(joined));
+  }
+  if (files_.session) editor_->set_others(files_.session->others());
+}
+
+void Viewer::say_what_was_found() {
+  std::string words = given_.options.work.restored
+                          ? "What you measured and noted here last time is here again."
+                          : "Drag to turn. 1 to 6: sides. U: lift the envelope. Ctrl+K: everything. F1: help.";
+  Document all;
+  for (const OtherWork& other : editor_->others()) all = add_marks(all, other.work.document);
+  if (const std::string more = marks_more(document(), add_marks(document(), all)); !more.empty())
+    words = more + " of the surface that was here before are kept. Ctrl+K take_over: bring them here.";
+  if (!files_.untold.empty()) words = files_.untold;
+  tell_of_files(std::move(words));
 }
 
 /// What the panels show of files; folders are looked into while somebody chooses.

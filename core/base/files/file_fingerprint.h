@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "core/base/result.h"
 
@@ -12,5 +13,11 @@ namespace dubsar {
 /// and its last among them: "2147483648-9c1f0d0b52a3e7f4". Copies have the same, whatever their name; a file that was
 /// changed in a few bytes between the pieces has it, too. Errors of InputFile.
 Result<std::string> file_fingerprint(const std::filesystem::path& path);
+
+/// The number of bytes and a hash (64 bits) of all of them: "830742-9c1f0d0b52a3e7f4". It tells files apart that were
+/// not made to be mistaken for each other. Errors of InputFile.
+Result<std::string> file_checksum(const std::filesystem::path& path);
+/// The same of bytes in memory.
+std::string bytes_checksum(std::string_view bytes);
 
 }  // namespace dubsar

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace dubsar {
 namespace {
@@ -23,12 +24,34 @@ int nesting_depth(std::string_view text) {
   }
   return deepest;
 }
+/// What stands in one line is appended to `out` by nlohmann's own dump().
+void dump_rows(const nlohmann::json& value, const std::string& indent, std::string& out) {
+  const bool row = value.is_array() &&
+                   std::all_of(value.begin(), value.end(), [](const nlohmann::json& each) { return each.is_number(); });
+  if (row || !value.is_structured() || value.empty()) {
+    out += value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return;
+  }
+  const std::string inner(indent.size() + 1, ' ');
+  const char* between = "";
+  out += value.is_array() ? '[' : '{';
+  for (const auto& [key, each] : value.items()) {
+    out += std::exchange(between, ",");
+    out.append("\n").append(inner);
+    if (value.is_object())
+      out += nlohmann::json(key).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + ": ";
+    dump_rows(each, inner, out);
+  }
+  out.append("\n").append(indent);
+  out += value.is_array() ? ']' : '}';
+}
+
 }  // namespace
 
-Result<nlohmann::json> parse_json(std::string_view text, std::string_view what) {
-  if (text.size() > kJsonMaxBytes)
+Result<nlohmann::json> parse_json(std::string_view text, std::string_view what, std::size_t max_bytes) {
+  if (text.size() > max_bytes)
     return fail(ErrorKind::kBadData, "{}: JSON text of {} bytes found, expected at most {}", what, text.size(),
-                kJsonMaxBytes);
+                max_bytes);
   if (const int depth = nesting_depth(text); depth > kJsonMaxDepth)
     return fail(ErrorKind::kBadData, "{}: JSON is nested {} deep, expected at most {}", what, depth, kJsonMaxDepth);
   nlohmann::json parsed = nlohmann::json::parse(text, nullptr, false);
@@ -53,6 +76,12 @@ std::string dump_json(const nlohmann::json& value) {
 
 std::string dump_json_lines(const nlohmann::json& value) {
   return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string dump_json_rows(const nlohmann::json& value) {
+  std::string out;
+  dump_rows(value, "", out);
+  return out;
 }
 
 }  // namespace dubsar

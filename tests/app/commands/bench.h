@@ -136,6 +136,8 @@ inline std::vector<std::string> ways_to_say(const CommandTable& commands) {
                                       "keyframe_seconds 1 0.75",
                                       "play 2",
                                       "write_film /nowhere/film.json",
+                                      "save_copy /nowhere/work.json",
+                                      "open_work /nowhere/work.json",
                                       "slice_at 1,2,3",
                                       "slice_centre 3,2,1",
                                       "write_slice /nowhere/slice.png z"};

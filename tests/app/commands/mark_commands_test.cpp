@@ -71,7 +71,7 @@ TEST(MarkCommands, MeasuresAreNamedTakenAwayAndUndone) {
   EXPECT_EQ(bench.refusal("measure_angle 1,2,3 4,5,6"),
             "measure_angle: \"1,2,3 4,5,6\" found, expected 3 places such as 12.5,3,40 (mm)");
   EXPECT_EQ(bench.refusal("measure_depth 1,2,x"),
-            "measure_depth: \"x\" found, expected a number of -1000000 to 1000000");
+            "measure_depth: \"x\" found, expected a number of -100000000000 to 100000000000");
 }
 
 TEST(MarkCommands, NotesAreNumberedAsEditionsCountAndComeBackAsTheyWereSeen) {
@@ -255,12 +255,14 @@ TEST(MarkCommands, PicturesHaveANameASizeAndSpaces) {
   EXPECT_EQ(bench.place.pictures, (std::vector<std::string>{" x1", "/tmp/a b.png x1", "/tmp/a b.tif x4"}));
 }
 
-TEST(MarkCommands, ASessionThatBeganWithNotesAsksBeforeItEnds) {
+TEST(MarkCommands, ASessionThatBeganWithNotesAsksWhenSomethingWasChanged) {
   FakePlace place;
   Document restored = two_parts();
   restored.notes.emplace_back();
   Editor editor(restored, place);
   const CommandTable commands = CommandTable::standard(kStyles);
+  EXPECT_FALSE(editor.has_work()) << "all of it is kept";
+  ASSERT_TRUE(commands.run("style phong", editor));
   ASSERT_TRUE(commands.run("close", editor));
   EXPECT_FALSE(place.ended);
   EXPECT_TRUE(editor.desk().leaving);

@@ -26,6 +26,31 @@ TEST(History, GoesBackAndForthThroughEveryState) {
   EXPECT_FALSE(history.redo());
 }
 
+TEST(History, WhatSomebodyElseChangedIsNoStepAndStaysThroughUndoAndRedo) {
+  const auto noted = [](double zoom, bool theirs) {
+    Document out = zoomed(zoom);
+    if (theirs) out.notes.emplace_back().text = "theirs";
+    return out;
+  };
+  History history(noted(1, false));
+  for (int i = 2; i <= 5; ++i) history.change(noted(i, false), "zoom");
+  history.undo();
+  history.change_all(noted(4, true), [](const Document& state) {
+    Document with = state;
+    with.notes.emplace_back().text = "theirs";
+    return with;
+  });
+  EXPECT_EQ(history.undo_depth(), 3u);
+  for (int i = 4; i >= 2; --i) {
+    EXPECT_EQ(history.now(), noted(i, true));
+    ASSERT_TRUE(history.undo());
+  }
+  EXPECT_EQ(history.now(), noted(1, true));
+  while (history.redo()) {
+  }
+  EXPECT_EQ(history.now(), noted(5, true));
+}
+
 TEST(History, WhatBelongsTogetherIsOneStepAndUndoneAsOne) {
   History history(zoomed(1));
   for (int i = 2; i < 100; ++i) history.change(zoomed(i), "turn", 7);
