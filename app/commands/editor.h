@@ -107,7 +107,6 @@ struct Desk {
   double ui_scale = 0.0;              ///< of letters and panels; 0: as the monitor wants it
   bool legend = true;                 ///< of colours that tell figures
   bool leaving = false;               ///< asked whether to end with work in it
-  bool unkept = false;                ///< told that the work cannot be kept, and asked whether to end all the same
   std::string drawer{};               ///< of the panels; empty: none is open
   std::string tool{"turn"};           ///< what a click does
   std::vector<SurfacePin> pending{};  ///< places that the tool was told and still waits with

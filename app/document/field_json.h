@@ -21,8 +21,9 @@ using nlohmann::json;
 
 inline constexpr double kLargest = 1e12;  // mm, degrees, seconds; places of georeferenced surfaces are some 1e9 mm
 
-/// Places are kept to a micrometre.
+/// Places are kept to a micrometre, figures to a nanometre.
 inline double rounded_mm(double mm) { return std::abs(mm) < kLargest ? std::round(mm * 1e3) / 1e3 : mm; }
+inline double rounded_figure_mm(double mm) { return std::abs(mm) < 1e6 ? std::round(mm * 1e6) / 1e6 : mm; }
 
 class Writer {
  public:
@@ -42,7 +43,7 @@ class Writer {
   static const T& in_mm(const T& v) {
     return v;
   }
-  static double in_mm(double v) { return rounded_mm(v); }
+  static double in_mm(double v) { return rounded_figure_mm(v); }
   static glm::dvec3 in_mm(const glm::dvec3& v) { return {rounded_mm(v.x), rounded_mm(v.y), rounded_mm(v.z)}; }
   static std::vector<glm::dvec3> in_mm(std::vector<glm::dvec3> points) {
     for (glm::dvec3& p : points) p = in_mm(p);

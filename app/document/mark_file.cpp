@@ -72,13 +72,14 @@ std::string format_measures(const Document& document) {
     ordered_json row{{"kind", measure_kind_name(measure.kind)}, {"name", measure.name}, {"part", measure.part}};
     row["points_mm"] = path_json(measure.points_mm);
     if (measure.kind == MeasureKind::kDistance || measure.kind == MeasureKind::kProfile) {
-      row["straight_mm"] = stored::rounded_mm(f.straight_mm);
-      row["surface_mm"] = f.surface_mm > 0 ? ordered_json(stored::rounded_mm(f.surface_mm)) : ordered_json(nullptr);
+      row["straight_mm"] = stored::rounded_figure_mm(f.straight_mm);
+      row["surface_mm"] =
+          f.surface_mm > 0 ? ordered_json(stored::rounded_figure_mm(f.surface_mm)) : ordered_json(nullptr);
     }
     if (measure.kind == MeasureKind::kAngle) row["angle_deg"] = f.angle_deg;
     if (measure.kind == MeasureKind::kDepth || measure.kind == MeasureKind::kProfile)
-      row["depth_mm"] = stored::rounded_mm(f.depth_mm);
-    if (f.uncertainty_mm) row["uncertainty_mm"] = stored::rounded_mm(*f.uncertainty_mm);
+      row["depth_mm"] = stored::rounded_figure_mm(f.depth_mm);
+    if (f.uncertainty_mm) row["uncertainty_mm"] = stored::rounded_figure_mm(*f.uncertainty_mm);
     if (!f.path_mm.empty()) row["path_mm"] = path_json(f.path_mm);
     out["measures"].push_back(std::move(row));
   }

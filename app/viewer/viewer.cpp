@@ -192,6 +192,7 @@ Result<void> Viewer::obey(std::string_view command, std::uint64_t merge) {
   keep_up();
   editor_->merge_with(merge);
   const Command* const known = said_.commands->find(split_command(command).first);
+  files_.asked = files_.asked && known != nullptr && known->name == "close";
   if (known != nullptr && !has_surface() && given_.shelf != nullptr && known->group != kWindowGroup &&
       known->group != kFileGroup)
     return fail(ErrorKind::kUsage, "{}: there is no surface yet; Ctrl+O opens one", known->name);

@@ -139,6 +139,7 @@ class Viewer final : public Workplace {
     std::unique_ptr<FileSession> session;  ///< keeps the work; null: nothing is kept
     std::map<std::string, LeftFile> left;  ///< those that were shown before, by their path and content
     std::string untold;                    ///< what could not be kept, as it was told last
+    bool asked = false;                    ///< whether to end without having kept it
     FolderListing listing;
     std::vector<RecentFile> recent;
     TimestampNs listed = -1;

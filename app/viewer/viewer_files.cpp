@@ -197,7 +197,7 @@ void Viewer::tell_of_files(std::string otherwise) {
 /// Asks once more where the work could not be kept.
 bool Viewer::may_end() {
   const auto done = leave_all_work();
-  if (done || std::exchange(editor_->desk().unkept, true)) return true;
+  if (done || std::exchange(files_.asked, true)) return true;
   log_warning("{}", done.error().message);
   say(done.error().message + "; save_copy FILE.json keeps it elsewhere, Esc again ends without it");
   return false;
@@ -249,7 +249,7 @@ Result<void> Viewer::put(OpenedSurface surface) {
   desk.pending.clear();
   desk.beside.reset();
   desk.note = 0;
-  desk.leaving = desk.unkept = false;
+  desk.leaving = false;
   begin_file(std::move(document));
   editor_->desk() = std::move(desk);
   find_tools();

@@ -61,7 +61,8 @@ class KeptWork : public ::testing::Test {
     Texts out;
     const auto text = read_text_file(file);
     if (!text) return {"nothing was written"};
-    for (const auto& note : nlohmann::json::parse(*text).at("notes")) out.insert(note.at("text").get<std::string>());
+    const auto all = nlohmann::json::parse(*text);
+    for (const auto& note : all.at("notes")) out.insert(note.at("text").get<std::string>());
     return out;
   }
   std::vector<fs::path> kept_files() const {

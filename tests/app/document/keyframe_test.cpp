@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -25,7 +26,7 @@ std::vector<Keyframe> some_film(unsigned seed) {
     key.light = {real(0, 360), real(5, 85)};
     key.unpack = real(0, 1);
     key.style = i % 2 == 0 ? "relief" : "";
-    key.parts = {{"tablet", 1.0, {}}, {"envelope", real(0, 1), {real(-9, 9), 0, 0}}};
+    key.parts = {{"tablet", 1.0, {}}, {"envelope", real(0, 1), {std::round(1e3 * real(-9, 9)) / 1e3, 0, 0}}};
     key.shade = KeyedShade{i < 4 ? "raking" : "msii", real(0.1, 1), real(0, 2), real(0, 2)};
     out.push_back(key);
   }

@@ -96,7 +96,15 @@ class Live : public ::testing::Test {
               return true;
             }};
   }
+  /// The second time for the question that a session with work in it asks.
   Step end() {
+    return {[] {
+              person_->key("escape");
+              person_->key("escape");
+            },
+            [](const ViewMoment&) { return true; }};
+  }
+  Step end_without_work() {
     return {[] { person_->key("escape"); }, [](const ViewMoment&) { return true; }};
   }
   /// Escape closes what is open before it ends a session.

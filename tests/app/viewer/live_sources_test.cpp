@@ -176,7 +176,7 @@ TEST_F(Live, KeysThatTheSessionItselfTakesAreInItsRecording) {
                            [](const ViewMoment& m) {
                              return turn_between_deg(m.report.view.rotation, {1, 0, 0, 0}) > 4.9;
                            }},
-                          end()});
+                          end_without_work()});
   ASSERT_TRUE(done) << done.error().message;
   const auto frames = frames_of(read_text_file(options_.files.record).value(), "recording");
   ASSERT_TRUE(frames) << frames.error().message;
