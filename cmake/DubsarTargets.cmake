@@ -97,11 +97,12 @@ foreach(room core devices input display app program)
 endforeach()
 
 # dubsar_test(name SOURCES a_test.cpp ... DEPS rooms [LABEL unit|gl|device|slow] [TIMEOUT seconds]
-#             [ENVIRONMENT NAME=value] [LONG patterns])
+#             [ENVIRONMENT NAME=value] [LONG patterns] [TOGETHER suites])
 # One GoogleTest binary per room; every case becomes one ctest test. Cases that match one of the patterns of LONG (as of
-# --gtest_filter, colons between) have the label long instead: `./do test` leaves them to `./do long`.
+# --gtest_filter, colons between) have the label long instead: `./do test` leaves them to `./do long`. Suites of TOGETHER
+# share what they make at their beginning, a scan or a surface: each is one ctest test.
 function(dubsar_test name)
-  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT;ENVIRONMENT;LONG" "SOURCES;DEPS" ${ARGN})
+  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT;ENVIRONMENT;LONG" "SOURCES;DEPS;TOGETHER" ${ARGN})
   if(NOT ARG_LABEL)
     set(ARG_LABEL unit)
   endif()
@@ -138,12 +139,21 @@ function(dubsar_test name)
   if(ARG_ENVIRONMENT)
     set(environment ENVIRONMENT ${ARG_ENVIRONMENT})
   endif()
-  set(quick)
+  set(apart ${ARG_LONG})
+  foreach(suite IN LISTS ARG_TOGETHER)
+    list(APPEND apart "${suite}.*")
+    add_test(NAME ${suite} COMMAND ${name} --gtest_filter=${suite}.*)
+    set_tests_properties(${suite} PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT} ${environment})
+  endforeach()
+  set(single)
+  if(apart)
+    list(JOIN apart ":" apart)
+    set(single TEST_FILTER "-${apart}")
+  endif()
   if(ARG_LONG)
-    set(quick TEST_FILTER "-${ARG_LONG}")
     gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 TEST_FILTER "${ARG_LONG}" TEST_LIST ${name}_LONG_TESTS
                          PROPERTIES LABELS long TIMEOUT ${ARG_TIMEOUT} ${environment})
   endif()
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 ${quick}
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 ${single}
                        PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT} ${environment})
 endfunction()

@@ -10,7 +10,7 @@
 #include "display/optics/srgb.h"
 #include "display/render/passes/compose_pass.h"
 #include "display/render/view_array.h"
-#include "display/sinks/stereo_views.h"
+#include "display/sinks/two_view_sink.h"
 
 namespace dubsar {
 namespace {
@@ -43,25 +43,15 @@ const std::array<AnaglyphVariant, 14> kVariants{{
     {"red_blue_mono", rows(kLuminance, kNone, kNone), rows(kNone, kNone, kLuminance)},
 }};
 
-class AnaglyphSink : public OutputSink {
+class AnaglyphSink : public TwoViewSink {
  public:
-  AnaglyphSink(const AnaglyphVariant& variant, bool right_first) : variant_(variant), right_first_(right_first) {}
-
-  SinkTraits traits() const noexcept override {
-    const PixelSize size{screen_.window_w, screen_.window_h};
-    return {.name = "anaglyph", .views = 2, .view = size, .output = size, .tracked = true};
-  }
-  Result<void> configure(const Screen& screen) override {
-    DUBSAR_TRY(check_screen(screen));
-    screen_ = screen;
-    return {};
-  }
-  std::span<const View> views(const Observer& viewer) override { return views_ = stereo_views(screen_, viewer); }
+  AnaglyphSink(const AnaglyphVariant& variant, bool right_first)
+      : TwoViewSink({.name = "anaglyph"}, right_first), variant_(variant) {}
 
   Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
     DUBSAR_TRY(pass_.begin(target, views.coded()));
-    const glm::mat3 left(right_first_ ? variant_.right : variant_.left),
-        right(right_first_ ? variant_.left : variant_.right);
+    const glm::mat3 left(right_first() ? variant_.right : variant_.left),
+        right(right_first() ? variant_.left : variant_.right);
     glUniformMatrix3fv(kLeftLocation, 1, GL_FALSE, glm::value_ptr(left));
     glUniformMatrix3fv(kRightLocation, 1, GL_FALSE, glm::value_ptr(right));
     return pass_.draw();
@@ -69,9 +59,6 @@ class AnaglyphSink : public OutputSink {
 
  private:
   AnaglyphVariant variant_;
-  bool right_first_;
-  Screen screen_;
-  std::array<View, 2> views_;
   ComposePass pass_{"anaglyph.frag"};
 };
 

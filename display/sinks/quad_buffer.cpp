@@ -5,25 +5,15 @@
 #include "display/render/passes/compose_pass.h"
 #include "display/render/view_array.h"
 #include "display/sinks/copy_locations.h"
-#include "display/sinks/stereo_views.h"
+#include "display/sinks/two_view_sink.h"
 
 namespace dubsar {
 namespace {
 
-class QuadBufferSink : public OutputSink {
+class QuadBufferSink : public TwoViewSink {
  public:
-  explicit QuadBufferSink(bool right_first) : right_first_(right_first) {}
-
-  SinkTraits traits() const noexcept override {
-    const PixelSize size{screen_.window_w, screen_.window_h};
-    return {.name = "quad_buffer", .views = 2, .view = size, .output = size, .tracked = true, .stereo_visual = true};
-  }
-  Result<void> configure(const Screen& screen) override {
-    DUBSAR_TRY(check_screen(screen));
-    screen_ = screen;
-    return {};
-  }
-  std::span<const View> views(const Observer& viewer) override { return views_ = stereo_views(screen_, viewer); }
+  explicit QuadBufferSink(bool right_first)
+      : TwoViewSink({.name = "quad_buffer", .stereo_visual = true}, right_first) {}
 
   Result<void> compose(const ViewArray& views, const Surface& target, Field) override {
     if (std::count(target.eye_buffers.begin(), target.eye_buffers.end(), 0u) != 0)
@@ -32,7 +22,7 @@ class QuadBufferSink : public OutputSink {
     for (std::size_t eye = 0; eye < 2; ++eye) {
       DUBSAR_TRY(copy_.begin(target, views.coded()));
       glDrawBuffer(target.eye_buffers[eye]);
-      glUniform1i(kLayerLocation, static_cast<GLint>(right_first_ ? 1 - eye : eye));
+      glUniform1i(kLayerLocation, static_cast<GLint>(right_first() ? 1 - eye : eye));
       glUniform2i(kOriginLocation, 0, 0);
       DUBSAR_TRY(copy_.draw());
     }
@@ -43,9 +33,6 @@ class QuadBufferSink : public OutputSink {
   }
 
  private:
-  bool right_first_;
-  Screen screen_;
-  std::array<View, 2> views_;
   ComposePass copy_{"copy.frag"};
 };
 
