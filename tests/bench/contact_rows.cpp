@@ -64,8 +64,8 @@ void judge_tablet(const phantom::Phantom& truth, const TriMesh& tablet, const st
       [](Sum a, const Sum& b) {
         return Sum{a.squares + b.squares, a.open + b.open, a.stray + b.stray, a.all + b.all};
       });
-  judged.tablet_rms = std::sqrt(sum.squares / std::max<double>(1.0, static_cast<double>(sum.open)));
-  judged.stray = static_cast<double>(sum.stray) / std::max<double>(1.0, static_cast<double>(sum.all));
+  judged.tablet.rms = std::sqrt(sum.squares / std::max<double>(1.0, static_cast<double>(sum.open)));
+  judged.tablet.stray = static_cast<double>(sum.stray) / std::max<double>(1.0, static_cast<double>(sum.all));
 }
 
 void count_crossings(const TriMesh& mesh, JudgedRow& judged) {
@@ -184,6 +184,7 @@ JudgedRow judge_row(const ContactRow& row, const JudgeOptions& how) {
   const auto positions = in_voxels(*tablet);
   judged.contact = phantom::judge_contact(*truth, {positions, tablet->triangles, {}, judged.step}, tablet->evidence);
   judge_tablet(*truth, *tablet, positions, judged);
+  judged.tablet.settled = settle_tablet(*truth, *tablet, positions);
   if (how.places)
     for (const phantom::FalseWedge& wedge : judged.contact.invented)
       fmt::print(

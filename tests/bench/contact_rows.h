@@ -11,6 +11,7 @@
 #include "core/phantom/options.h"
 #include "core/pipeline/detail.h"
 #include "core/pipeline/stage_clock.h"
+#include "tests/bench/settled_tablet.h"
 #include "tests/core/phantom/contact_score.h"
 
 namespace dubsar {
@@ -25,12 +26,17 @@ struct ContactRow {
 /// each other with one of its own.
 std::vector<ContactRow> contact_rows(const Dims& dims, std::uint64_t seed);
 
+/// Of the tablet's vertices that are not inferred.
+struct TabletError {
+  double rms = 0.0;  ///< from the tablet's true surface, voxels, where the gap is at least as wide as seen by the scan
+  double stray = 0.0;  ///< share of all of them farther than three voxels
+  SettledTablet settled;
+};
+
 struct JudgedRow {
   phantom::ContactScore contact;
   phantom::TruthComparison seen;  ///< tablet and envelope, without what is inferred
-  /// Of the tablet's vertices that are not inferred: how far from the tablet's true surface, voxels of the scan, where
-  /// the gap is at least as wide as seen by the scan; and the share of all of them farther than three voxels.
-  double tablet_rms = 0.0, stray = 0.0;
+  TabletError tablet;
   std::int64_t crossings = 0;       ///< pairs of triangles, one of a patch, that cross on tablet or envelope
   std::int64_t self_crossings = 0;  ///< pairs of the surface itself
   bool traced = false;

@@ -15,6 +15,7 @@
 #include "core/base/system/log.h"
 #include "tests/bench/contact_rows.h"
 #include "tests/bench/real_volumes.h"
+#include "tests/bench/scanner_rows.h"
 
 namespace dubsar {
 namespace {
@@ -26,12 +27,12 @@ struct Arguments {
   Detail detail = Detail::kAuto;
   std::string only;     ///< names of rows, with commas
   std::string volumes;  ///< a folder of scans that are not of tablets
-  bool large = false, costs = false, places = false;
+  bool large = false, costs = false, places = false, scanner = false;
 };
 
 constexpr std::string_view kHelp =
     "wedges_bench [--quick | --size XxYxZ] [--seed N] [--seeds COUNT] [--only ROW,ROW] [--detail auto|scan|half]\n"
-    "             [--places] [--costs] [--large] | --volumes FOLDER\n"
+    "             [--places] [--costs] [--large] [--scanner] | --volumes FOLDER\n"
     "  --quick   256x160x240, minutes; else 512x320x480\n"
     "  --seed    phantoms of this seed, --seeds: so many of each kind; none: a fresh one, which is printed\n"
     "  --only    rows: text, pressed, pockets, film 1, film 0.5, film 0.35, film 0.2, filled, unwritten,\n"
@@ -40,6 +41,9 @@ constexpr std::string_view kHelp =
     "  --costs   time and memory of --detail half and scan instead\n"
     "  --large   time and memory at 935x499x861 and at the paper's size, 1871x999x1723 instead (most of an hour, 15 GB "
     "disk)\n"
+    "  --scanner  scans of a simulated scanner instead, a table of docs/scans.md; rows: clean, hardening, scatter 12 "
+    "%,\n"
+    "            axis 1, gains 1.2 %, few photons, few views, good, mild, medium, strong, cone strong and others\n"
     "  --volumes FOLDER  processes the HDF5 files in it; exit code 1 where one fails or has a tablet\n";
 
 [[noreturn]] void usage(int code) {
@@ -61,6 +65,8 @@ Arguments parse(int argc, char** argv) {
       a.large = true;
     } else if (word == "--costs") {
       a.costs = true;
+    } else if (word == "--scanner") {
+      a.scanner = true;
     } else if (word == "--places") {
       a.places = true;
     } else if (i + 1 == argc) {
@@ -131,7 +137,7 @@ void print_row(const ContactRow& row, const JudgedRow& j) {
       "{:<15}{:>7}{:>7.3f}{:>6.3f}{:>6.3f}{:>6.3f}{:>7.3f}{:>7.3f}{:>7.1f}{:>6.1f}{:>8.4f}{:>8.4f}{:>6}{:>6}{:>6}{:>6."
       "2f}"
       "{:>7.1f}{:>7.1f}{:>7.0f}  {}\n",
-      row.name, row.options.seed, c.cases[0].kept_fraction(), j.tablet_rms, c.cases[1].kept_fraction(),
+      row.name, row.options.seed, c.cases[0].kept_fraction(), j.tablet.rms, c.cases[1].kept_fraction(),
       c.cases[1].shown_fraction(), c.cases[2].kept_fraction(), c.near_fraction(), percent(2), percent(3),
       std::min(j.seen.owner[0].purity(), j.seen.owner[1].purity()),
       std::min(j.seen.owner[0].recall(), j.seen.owner[1].recall()), c.false_wedges(), j.crossings, j.self_crossings,
@@ -224,9 +230,9 @@ int print_wanted(const Kinds& kinds) {
     table.at_least("hard scan: wedges within 20 %, of all that have air", 0.75, 0.90,
                    wedges ? static_cast<double>(kept) / wedges : NAN);
     table.at_most("hard scan: surface error RMS, tablet, not inferred, voxels", 0.35, 0.25,
-                  k.largest([](const JudgedRow& r) { return r.tablet_rms; }));
+                  k.largest([](const JudgedRow& r) { return r.tablet.rms; }));
     table.at_most("hard scan: surface beyond 3 voxels, not inferred, share", 0.005, 0.001,
-                  k.largest([](const JudgedRow& r) { return r.stray; }));
+                  k.largest([](const JudgedRow& r) { return r.tablet.stray; }));
     table.at_most("hard scan: false wedges", 0, 0,
                   k.largest([](const JudgedRow& r) { return r.contact.false_wedges(); }));
   });
@@ -253,6 +259,11 @@ void print_costs(const Dims& dims, Detail detail) {
 int run(int argc, char** argv) {
   const Arguments a = parse(argc, argv);
   if (!a.volumes.empty()) return print_real_volumes(a.volumes) > 0 ? 1 : 0;
+  if (a.scanner) {
+    fmt::print("{}x{}x{}, seed {}, no options\n", a.dims.x, a.dims.y, a.dims.z, a.seed);
+    print_scanner_rows(a.dims, a.seed, a.seeds, a.only);
+    return 0;
+  }
   if (a.costs || a.large) {
     fmt::print("| voxels | detail | by the clock | processors | most memory | seconds of processors by stage |\n");
     fmt::print("|---|---|---|---|---|---|\n");

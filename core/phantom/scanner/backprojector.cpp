@@ -53,7 +53,7 @@ Result<Columns> reconstruct(const Columns& projections, const ScanGeometry& g, W
   out.clear();
   const RampFilter ramp(g.columns, g.voxel_mm, window);
   const std::int64_t stride = projections.stride, view_size = ramp.columns_out() * stride;
-  Buffer<float> filtered(kViewsAtATime * view_size);
+  Buffer<float> filtered(kViewsAtATime * view_size + Columns::kGuard);
   const double share = (g.full ? 0.5 : 1.0) * g.turn_rad / static_cast<double>(g.views);
   const double x_middle = 0.5 * static_cast<double>(g.dims.x - 1), y_middle = 0.5 * static_cast<double>(g.dims.y - 1);
   const double z_middle = 0.5 * static_cast<double>(g.dims.z - 1);

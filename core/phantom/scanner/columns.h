@@ -8,9 +8,10 @@
 
 namespace dubsar::phantom {
 
-/// Planes of `columns` columns of `rows` numbers. A column begins at a multiple of 16 floats and is followed by at
-/// least one number more, so that kernels may read whole vectors and one number past the last.
+/// Planes of `columns` columns of `rows` numbers. A column begins at a multiple of 16 floats; behind the last one stand
+/// kGuard zeros, so that kernels may read whole vectors past the end of a column.
 struct Columns {
+  static constexpr std::int64_t kGuard = 64;
   std::int64_t planes = 0, columns = 0, rows = 0, stride = 0;
   Buffer<float> values;
 
@@ -20,7 +21,9 @@ struct Columns {
         columns(column_count),
         rows(row_count),
         stride(padded(row_count)),
-        values(plane_count * column_count * stride) {}
+        values(plane_count * column_count * stride + kGuard) {
+    std::fill_n(values.data() + plane_count * column_count * stride, kGuard, 0.0f);
+  }
   static constexpr std::int64_t padded(std::int64_t row_count) { return (row_count + 1 + 15) / 16 * 16; }
   float* at(std::int64_t plane, std::int64_t column) noexcept {
     return values.data() + (plane * columns + column) * stride;

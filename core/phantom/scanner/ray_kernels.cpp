@@ -51,11 +51,27 @@ void SumStraight(const Tap* taps, std::int64_t count, float* HWY_RESTRICT out, s
   for (; i < n; i += lanes) straight_block<1>(taps, count, i, out);
 }
 
+// What N neighbouring numbers of a sum need of the columns lies within 2 N of them while the steps are short: two loads
+// and permutations instead of N loads.
+HWY_INLINE bool within_two_vectors(float step, std::int64_t lanes) {
+  return static_cast<float>(lanes - 1) * step + 2.0f <= static_cast<float>(2 * lanes - 1);
+}
+
+template <class V, class I>
+HWY_INLINE V pick(const Wide d, V first, V second, I index) {
+  const hn::RebindToSigned<Wide> di;
+  const auto lanes = static_cast<std::int32_t>(hn::Lanes(d));
+  const auto within = hn::IndicesFromVec(d, hn::And(index, hn::Set(di, lanes - 1)));
+  const auto in_second = hn::RebindMask(d, hn::Gt(index, hn::Set(di, lanes - 1)));
+  return hn::IfThenElse(in_second, hn::TableLookupLanes(second, within), hn::TableLookupLanes(first, within));
+}
+
 void SumMagnified(const Tap* taps, std::int64_t count, float last, float* HWY_RESTRICT out, std::int64_t n) {
   const Wide d;
   const hn::RebindToSigned<Wide> di;
   const auto lanes = static_cast<std::int64_t>(hn::Lanes(d));
   const auto zero = hn::Zero(d), end = hn::Set(d, last);
+  const auto one = hn::Set(di, 1);
   for (std::int64_t i = 0; i < n; i += lanes) {
     auto sum = hn::LoadU(d, out + i);
     const auto number = hn::Iota(d, static_cast<float>(i));
@@ -66,10 +82,21 @@ void SumMagnified(const Tap* taps, std::int64_t count, float last, float* HWY_RE
       const auto index = hn::ConvertTo(di, place);
       const auto part = hn::Sub(place, hn::ConvertTo(d, index));
       const auto wa = hn::Set(d, tap.first_weight), wb = hn::Set(d, tap.second_weight);
-      const auto low = hn::Add(hn::Mul(wa, hn::GatherIndex(d, tap.first, index)),
-                               hn::Mul(wb, hn::GatherIndex(d, tap.second, index)));
-      const auto high = hn::Add(hn::Mul(wa, hn::GatherIndex(d, tap.first + 1, index)),
-                                hn::Mul(wb, hn::GatherIndex(d, tap.second + 1, index)));
+      auto low = zero, high = zero;
+      if (within_two_vectors(tap.step, lanes)) {
+        const std::int64_t base = hn::GetLane(index);
+        const float *a = tap.first + base, *b = tap.second + base;
+        const auto near = hn::Add(hn::Mul(wa, hn::LoadU(d, a)), hn::Mul(wb, hn::LoadU(d, b)));
+        const auto far = hn::Add(hn::Mul(wa, hn::LoadU(d, a + lanes)), hn::Mul(wb, hn::LoadU(d, b + lanes)));
+        const auto from_base = hn::Sub(index, hn::Set(di, static_cast<std::int32_t>(base)));
+        low = pick(d, near, far, from_base);
+        high = pick(d, near, far, hn::Add(from_base, one));
+      } else {
+        low = hn::Add(hn::Mul(wa, hn::GatherIndex(d, tap.first, index)),
+                      hn::Mul(wb, hn::GatherIndex(d, tap.second, index)));
+        high = hn::Add(hn::Mul(wa, hn::GatherIndex(d, tap.first + 1, index)),
+                       hn::Mul(wb, hn::GatherIndex(d, tap.second + 1, index)));
+      }
       sum = hn::Add(sum, hn::Add(low, hn::Mul(part, hn::Sub(high, low))));
     }
     hn::StoreU(sum, d, out + i);

@@ -20,7 +20,8 @@ struct Tap {
 /// columns are as long.
 void sum_straight(std::span<const Tap> taps, std::span<float> out);
 
-/// The same at the places start + step * i, cut to [0, last], by linear interpolation; last + 1 must be readable.
+/// The same at the places start + step * i, cut to [0, last], by linear interpolation. Steps are positive; 33 numbers
+/// behind the last must be readable, whatever they are.
 void sum_magnified(std::span<const Tap> taps, float last, std::span<float> out);
 
 /// Rows of one transform: number k of row r stands at [16 k + r].

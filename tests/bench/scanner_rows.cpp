@@ -1,0 +1,113 @@
+#include "tests/bench/scanner_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <glm/geometric.hpp>
+
+namespace dubsar {
+namespace {
+
+struct NamedScanner {
+  const char *name, *scanner;
+};
+
+constexpr const char* kHalf = "turn=half,cone=0";
+constexpr NamedScanner kOfHalfATurn[] = {
+    {"clean", "ideal"},
+    {"hardening", "ideal,mono=0,kv=120,filter=0.5"},
+    {"scatter 3 %", "ideal,scatter=0.03"},
+    {"scatter 6 %", "ideal,scatter=0.06"},
+    {"scatter 12 %", "ideal,scatter=0.12"},
+    {"glare 3 %", "ideal,glare=0.03"},
+    {"axis .25", "ideal,axis=0.25"},
+    {"axis 1", "ideal,axis=1"},
+    {"gains .4 %", "ideal,rings=0.004"},
+    {"gains 1.2 %", "ideal,rings=0.012,bad=0.0005"},
+    {"few photons", "ideal,photons=20000,electronic=20"},
+    {"few views", "ideal"},
+    {"blur .8", "ideal,blur=0.8"},
+    {"good", "good"},
+    {"mild", "mild"},
+    {"medium", "medium"},
+    {"strong", "strong"},
+    {"strong but 180 kV", "strong,kv=180,filter=2"},
+    {"strong but scatter 3 %", "strong,scatter=0.03,glare=0"},
+};
+constexpr NamedScanner kOfAFullTurn[] = {{"cone", "ideal"},
+                                         {"cone 10 degrees", "ideal,cone=10"},
+                                         {"cone axis 1", "ideal,axis=1"},
+                                         {"cone good", "good"},
+                                         {"cone mild", "mild"},
+                                         {"cone medium", "medium"},
+                                         {"cone strong", "strong"}};
+
+/// Mean and half of the range.
+std::string spread(const std::vector<double>& values, int digits) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  const double mean = sum / static_cast<double>(values.size());
+  if (values.size() == 1) return fmt::format("{:.{}f}", mean, digits);
+  return fmt::format("{:.{}f} ± {:.{}f}", mean, digits, 0.5 * (*most - *least), digits);
+}
+
+}  // namespace
+
+std::vector<ContactRow> scanner_rows(const Dims& dims, std::uint64_t seed) {
+  std::vector<ContactRow> rows;
+  const auto add = [&](const char* name, const std::string& scanner) {
+    phantom::PhantomOptions o;
+    o.dims = dims;
+    o.seed = seed;
+    o.wedge_depth_vox = 7.0;
+    o.scanner = phantom::parse_scanner(scanner).value();
+    rows.push_back({name, o});
+  };
+  for (const NamedScanner& row : kOfHalfATurn) add(row.name, fmt::format("{},{}", row.scanner, kHalf));
+  for (ContactRow& row : rows)
+    if (row.name == "few views") row.options.scanner->turn.views_per_voxel = 0.7;
+  for (const NamedScanner& row : kOfAFullTurn) add(row.name, row.scanner);
+  return rows;
+}
+
+void print_scanner_rows(const Dims& dims, std::uint64_t seed, int seeds, const std::string& only) {
+  fmt::print(
+      "| scan | wedges within 20 % | mean depth of true | tablet's error after the best shift, RMS | that shift | "
+      "recall of the "
+      "tablet | vertices of pores that noise made, % | of how many wedges |\n|---|---|---|---|---|---|---|---|\n");
+  const std::size_t count = scanner_rows(dims, seed).size();
+  for (std::size_t row = 0; row < count; ++row) {
+    std::vector<double> kept, ratio, rms, shift, recall, pores;
+    int wedges = 0;
+    std::string name, remarks;
+    for (int i = 0; i < seeds; ++i) {
+      const ContactRow one = scanner_rows(dims, seed + 1000 * static_cast<std::uint64_t>(i))[row];
+      name = one.name;
+      if (!only.empty() && ("," + only + ",").find("," + name + ",") == std::string::npos) break;
+      const JudgedRow judged = judge_row(one, {});
+      wedges += judged.seen.wedges.wedges;
+      if (judged.tablet.settled.rms <= 0.0) {
+        remarks += fmt::format(", seed {}: {}", one.options.seed, judged.remark);
+        continue;
+      }
+      kept.push_back(judged.seen.wedges.kept_fraction());
+      ratio.push_back(judged.seen.wedges.mean_ratio);
+      rms.push_back(judged.tablet.settled.rms);
+      shift.push_back(glm::length(judged.tablet.settled.shift));
+      recall.push_back(judged.seen.owner[0].recall());
+      pores.push_back(100.0 * judged.tablet.settled.noise_pores);
+    }
+    if (kept.empty() && remarks.empty()) continue;
+    if (kept.empty())
+      fmt::print("| {} | 0 | | | | | | {}{} |\n", name, wedges, remarks);
+    else
+      fmt::print("| {} | {} | {} | {} | {} | {} | {} | {}{} |\n", name, spread(kept, 3), spread(ratio, 2),
+                 spread(rms, 3), spread(shift, 2), spread(recall, 3), spread(pores, 2), wedges, remarks);
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace dubsar
