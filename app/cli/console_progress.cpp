@@ -41,7 +41,7 @@ std::string stage_in_words(std::string_view stage) {
   struct Words {
     std::string_view stage, words;
   };
-  constexpr std::array<Words, 24> kWords{{{"estimate_raw", "judging noise"},
+  constexpr std::array<Words, 27> kWords{{{"estimate_raw", "judging noise"},
                                           {"estimate", "judging noise"},
                                           {"import", "reading"},
                                           {"denoise", "denoising"},
@@ -63,6 +63,9 @@ std::string stage_in_words(std::string_view stage) {
                                           {"look", "looking"},
                                           {"video", "making video"},
                                           {"phantom", "making a scan"},
+                                          {"project", "X-raying"},
+                                          {"expose", "reading panel"},
+                                          {"reconstruct", "reconstructing"},
                                           {"truth", "writing truth"},
                                           {"simplify", "simplifying"}}};
   for (const Words& known : kWords)

@@ -20,12 +20,15 @@ struct PhantomRequest {
 
 std::string scanner_text(const phantom::ScannerReport& scan) {
   const phantom::ScanGeometry& g = scan.geometry;
-  return fmt::format(
-      "{} views over {} a turn, {}x{} pixels, {}\nthe longest ray passes {:.0f} mm of clay ({:.3f} a "
-      "millimetre) and keeps {:.2g} % of its light\n",
-      g.views, g.full ? "all of" : "half of", g.columns, g.rows,
-      g.cone() ? fmt::format("source {:.0f} mm from the axis", g.source * g.voxel_mm) : "parallel rays",
-      scan.longest_mm, scan.clay_per_mm, 100.0 * scan.least_light);
+  std::string text =
+      fmt::format("{} views over {} turn, {}x{} pixels, {}\n", g.views, g.full ? "a full" : "half a", g.columns, g.rows,
+                  g.cone() ? fmt::format("source {:.0f} mm from the axis", g.source * g.voxel_mm) : "parallel rays");
+  text += fmt::format("the longest ray passes {:.0f} mm of clay ({:.3f} a millimetre) and keeps {:.2g} % of its light",
+                      scan.longest_mm, scan.clay_per_mm, 100.0 * scan.least_light);
+  if (scan.stray_light > 0.0)
+    text += fmt::format("; scatter adds {:.2g} %, so that a detail has {:.0f} % of its contrast there",
+                        100.0 * scan.stray_light, 100.0 * scan.least_light / (scan.least_light + scan.stray_light));
+  return text + "\n";
 }
 
 nlohmann::json scanner_json(const phantom::ScannerReport& scan) {
@@ -37,6 +40,7 @@ nlohmann::json scanner_json(const phantom::ScannerReport& scan) {
           {"source_mm", g.cone() ? nlohmann::json(g.source * g.voxel_mm) : nlohmann::json()},
           {"longest_mm", scan.longest_mm},
           {"least_light", scan.least_light},
+          {"stray_light", scan.stray_light},
           {"clay_per_mm", scan.clay_per_mm}};
 }
 

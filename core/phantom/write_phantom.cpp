@@ -104,6 +104,7 @@ Result<ScannerReport> write_scanned(const std::filesystem::path& path, const Pha
   DUBSAR_TRY(file.create_dataset(data, {.type = stored.type, .dims = shape(o.dims), .chunk = {}}));
   DUBSAR_TRY(describe(file, phantom, data));
   DUBSAR_TRY(write_axes(file, o));
+  DUBSAR_TRY(file.set_attribute("/", "scanner", o.scanner->text));
   if (how.type == ScanFile::kUint16) {
     DUBSAR_TRY(file.set_attribute(data, "scale_factor", stored.map.scale));
     DUBSAR_TRY(file.set_attribute(data, "add_offset", stored.map.offset));
@@ -118,7 +119,7 @@ Result<ScannerReport> write_scanned(const std::filesystem::path& path, const Pha
     written = write_stored<float>(file, data, scan, stored, how, progress);
   DUBSAR_TRY(written);
   DUBSAR_TRY(file.commit());
-  return ScannerReport{scan.geometry, scan.longest_mm, scan.least_light, scan.clay_per_mm};
+  return ScannerReport{scan.geometry, scan.longest_mm, scan.least_light, scan.stray_light, scan.clay_per_mm};
 }
 
 Result<void> write_wedges(Hdf5Writer& file, const Phantom& phantom) {

@@ -16,6 +16,7 @@ struct ScannerReport {
   ScanGeometry geometry;
   double longest_mm = 0.0;   ///< path through clay
   double least_light = 1.0;  ///< behind it, of the open beam, without scatter
+  double stray_light = 0.0;  ///< scatter there, of the open beam
   double clay_per_mm = 0.0;  ///< attenuation of the first millimetre
 };
 

@@ -21,6 +21,7 @@ constexpr NamedScanner kOfHalfATurn[] = {
     {"scatter 3 %", "ideal,scatter=0.03"},
     {"scatter 6 %", "ideal,scatter=0.06"},
     {"scatter 12 %", "ideal,scatter=0.12"},
+    {"scatter 25 %", "ideal,scatter=0.25"},
     {"glare 3 %", "ideal,glare=0.03"},
     {"axis .25", "ideal,axis=0.25"},
     {"axis 1", "ideal,axis=1"},
@@ -35,6 +36,7 @@ constexpr NamedScanner kOfHalfATurn[] = {
     {"strong", "strong"},
     {"strong but 180 kV", "strong,kv=180,filter=2"},
     {"strong but scatter 3 %", "strong,scatter=0.03,glare=0"},
+    {"strong but scatter 25 %", "strong,scatter=0.25"},
 };
 constexpr NamedScanner kOfAFullTurn[] = {{"cone", "ideal"},
                                          {"cone 10 degrees", "ideal,cone=10"},

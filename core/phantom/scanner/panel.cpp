@@ -153,20 +153,25 @@ void Panel::read(std::int64_t view, std::int64_t stride, const std::vector<float
     }
 }
 
-Result<void> Panel::expose(Columns& views, Progress& progress) const {
+Result<LongestRay> Panel::expose(Columns& views, Progress& progress) const {
   const std::int64_t stride = views.stride, n = geometry_.columns * stride;
   const double px_per_mm = 1.0 / (kMagnification * geometry_.voxel_mm);
   const StrayField scatter(geometry_.columns, geometry_.rows, options_.spread_mm * px_per_mm);
   constexpr double kGlareMm = 10.0;  // on the panel
   const StrayField glare(geometry_.columns, geometry_.rows, kGlareMm * px_per_mm);
-  const double longest = static_cast<double>(parallel_reduce<float>(
-      views.planes, 1, 0.0f,
+  struct Place {
+    float mm = 0.0f;
+    std::int64_t view = 0, column = 0, row = 0;
+  };
+  const Place longest = parallel_reduce<Place>(
+      views.planes, 1, {},
       [&](std::int64_t view, std::int64_t) {
         const float* from = views.at(view, 0);
-        return *std::max_element(from, from + n);
+        const std::int64_t i = std::max_element(from, from + n) - from;
+        return Place{from[i], view, i / stride, i % stride};
       },
-      [](float a, float b) { return std::max(a, b); }));
-  const BeamTable table(beam_, longest);
+      [](const Place& x, const Place& y) { return y.mm > x.mm ? y : x; });
+  const BeamTable table(beam_, static_cast<double>(longest.mm));
   std::vector<std::vector<float>> scattered(static_cast<std::size_t>(views.planes));
   float scale = 0.0f;
   if (options_.scatter > 0.0) {
@@ -215,7 +220,12 @@ Result<void> Panel::expose(Columns& views, Progress& progress) const {
   });
   progress.end();
   if (progress.cancelled()) return cancelled_error();
-  return {};
+  LongestRay ray;
+  ray.clay_mm = static_cast<double>(longest.mm);
+  if (scale > 0.0f)
+    ray.scatter = static_cast<double>(
+        scale * scatter.at(scattered[static_cast<std::size_t>(longest.view)], longest.column, longest.row));
+  return ray;
 }
 
 }  // namespace dubsar::phantom

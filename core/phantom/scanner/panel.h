@@ -24,6 +24,11 @@ class StrayField {
   std::vector<float> weights_;  ///< of the Gauss, from its middle
 };
 
+struct LongestRay {
+  double clay_mm = 0.0;
+  double scatter = 0.0;  ///< that its pixel sees, of the open beam
+};
+
 /// In the order of nature: the curve of the beam, blur of spot and panel, scatter and glare, photons (a compound
 /// Poisson law: counts by the light, each worth the mean of its spectrum), electronic noise, gains. Then -ln(light).
 ///   scatter  its sources are as strong as the light that the object takes on the way (light times -ln light: once
@@ -38,7 +43,7 @@ class Panel {
 
   /// `views`: mm of clay along each ray, replaced by what is measured, -ln(light / open light). All threads.
   /// kCancelled.
-  Result<void> expose(Columns& views, Progress& progress) const;
+  Result<LongestRay> expose(Columns& views, Progress& progress) const;
 
  private:
   void make_gains();

@@ -58,13 +58,13 @@ Result<ScannedVolume> scan_object(SlabSource& object, double voxel_mm, const Sca
     DUBSAR_ASSIGN(const Columns columns, read_columns(object));
     DUBSAR_ASSIGN(views, project(columns, g, progress));
   }
-  scan.longest_mm =
-      static_cast<double>(*std::max_element(views.values.data(), views.values.data() + views.values.size()));
   const Beam beam(options.beam);
-  scan.least_light = beam.transmission(scan.longest_mm);
   scan.clay_per_mm = beam.clay_per_mm();
   scan.water_per_mm = beam.water_per_mm();
-  DUBSAR_TRY(Panel(options.beam, options.panel, g, seed).expose(views, progress));
+  DUBSAR_ASSIGN(const LongestRay longest, Panel(options.beam, options.panel, g, seed).expose(views, progress));
+  scan.longest_mm = longest.clay_mm;
+  scan.least_light = beam.transmission(longest.clay_mm);
+  scan.stray_light = longest.scatter;
   DUBSAR_ASSIGN(const Columns columns, reconstruct(views, g, options.turn.window, progress));
   scan.per_mm = as_volume(columns, g.dims);
   return scan;

@@ -12,6 +12,7 @@ struct ScannedVolume {
   ScanGeometry geometry;
   double longest_mm = 0.0;                       ///< path through clay
   double least_light = 1.0;                      ///< behind it, of the open beam, without scatter
+  double stray_light = 0.0;                      ///< scatter there, of the open beam
   double clay_per_mm = 0.0, water_per_mm = 0.0;  ///< of the first millimetre in this beam
 };
 

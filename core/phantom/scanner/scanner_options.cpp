@@ -113,6 +113,7 @@ Result<ScannerOptions> parse_scanner(std::string_view text) {
   o.file.type = choose(reader, "file", kScanFiles, o.file.type);
   o.file.blank = reader.integer("blank", 0, 1000, o.file.blank);
   read_pad(reader, o.file);
+  o.text = text.empty() ? "good" : text;
   DUBSAR_TRY(reader.finish());
   if (beam.mono_kev > 0.0 && beam.mono_kev < 15.0)
     return fail(ErrorKind::kUsage, "scanner: mono={} keV found, expected 15 to 300, or 0 for the tube's spectrum",

@@ -2,6 +2,7 @@
 // What scans a phantom: the beam, the panel, the turn and the file that the scanner writes.
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "core/base/result.h"
@@ -64,6 +65,7 @@ struct ScannerOptions {
   PanelOptions panel;
   TurnOptions turn;
   FileOptions file;
+  std::string text;  ///< that they were read from
 };
 
 /// "[good|mild|medium|strong|ideal][,key=value...]"; the word stands first, without one it is good.

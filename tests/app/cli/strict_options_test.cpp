@@ -38,6 +38,9 @@ TEST(StrictOptions, NumbersThatAreNoneAndNamesWithoutLettersAreRefusedBeforeAnyt
   expect_refused({"process", "a.h5", "-o", ""}, "--output: nothing found, expected a name");
   expect_refused({"info", "a.exa", "--json", ""}, "--json: nothing found, expected a name");
   expect_refused({"phantom", ""}, "OUT");
+  expect_refused({"phantom", "a.h5", "--scanner", "loud"}, "\"loud\" is unknown, expected good, mild, medium, strong");
+  expect_refused({"phantom", "a.h5", "--scanner", "good,colour=3"}, "colour");
+  expect_refused({"phantom", "a.h5", "--scanner", "--snr", "20"}, "--snr, --blur and --rings");
 }
 
 TEST(StrictOptions, AnEyeBehindThePanelIsRefused) {

@@ -98,7 +98,9 @@ TEST(ScannerPanel, ScatterTakesTheContrastOfADetail) {
   options.scatter = 0.12;
   SilentProgress progress;
   Columns views = wall(g, 60.0f, 0.1f);
-  ASSERT_TRUE(Panel(mono(), options, g, 1).expose(views, progress));
+  const auto longest = Panel(mono(), options, g, 1).expose(views, progress);
+  ASSERT_TRUE(longest);
+  EXPECT_NEAR(longest->clay_mm, 60.0, 1e-5);
   const double primary = std::exp(-60.0 * per_mm);
   const auto at = [&](std::int64_t off) { return static_cast<double>(views.at(0, g.columns / 2 + off)[g.rows / 2]); };
   EXPECT_NEAR(at(1), -std::log(primary + 0.12), 0.002);  // its amount is that of the middle
