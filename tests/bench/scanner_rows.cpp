@@ -36,7 +36,6 @@ constexpr NamedScanner kOfHalfATurn[] = {
     {"strong", "strong"},
     {"strong but 180 kV", "strong,kv=180,filter=2"},
     {"strong but scatter 3 %", "strong,scatter=0.03,glare=0"},
-    {"strong but scatter 25 %", "strong,scatter=0.25"},
 };
 constexpr NamedScanner kOfAFullTurn[] = {{"cone", "ideal"},
                                          {"cone 10 degrees", "ideal,cone=10"},

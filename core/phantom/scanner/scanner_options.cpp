@@ -36,7 +36,7 @@ Result<ScannerOptions> preset(std::string_view word) {
     o.beam.clay_g_cm3 = 2.0;
     o.beam.lime = 0.25;
     o.panel.photons = 5e4;
-    o.panel.scatter = 0.12;
+    o.panel.scatter = 0.2;
     o.panel.glare = 0.01;
     o.panel.rings = 0.01;
     o.panel.bad = 5e-4;
