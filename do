@@ -38,6 +38,7 @@ usage() {
               ./do bench scanner [--size XxYxZ] [--memory 6G]: a scan larger than memory, 3072x3072x1944 by default
               ./do bench wedges [--quick | --size XxYxZ] [--seed N]: what is read of a hidden tablet, beside what is wanted
               ./do bench invariance [--seeds N]: the same object cropped, mirrored, with axes exchanged: how far answers lie apart
+              ./do bench wedges --scanner [--size XxYxZ] [--seed N] [--seeds COUNT]: the same of scans with an X-ray scanner's artefacts
               ./do bench light: from the start of a kiosk to its first picture, 1.6 million vertices on 48 views
               ./do bench view: first pictures, pictures a second and memory, beside f3d and MeshLab
 ./do workflow examples/snakemake: a dry run, and three scans for real; workflow core: with the program of a core build

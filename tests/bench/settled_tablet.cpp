@@ -58,19 +58,25 @@ SettledTablet settle_tablet(const phantom::Phantom& truth, const TriMesh& tablet
   const Surfaces surfaces = surfaces_of(tablet);
   const std::vector<glm::dvec3> normals = outward(tablet, positions);
   SettledTablet settled;
+  const auto measured = [&](std::uint32_t v) {
+    return tablet.evidence.empty() || tablet.evidence[v] == evidence_byte(Evidence::kMeasured);
+  };
   std::vector<std::uint32_t> judged;
-  std::vector<double> apart(positions.size());  // by surface: sum of the distances to any true one
+  std::vector<double> apart(positions.size());  // by surface: mean distance to any true one; 0 where it is contact
+  std::vector<bool> contact(positions.size());
   for (std::uint32_t v = 0; v < positions.size(); ++v) {
     const std::uint32_t surface = surfaces.of[v];
     const glm::dvec3 p(positions[v]);
-    if (surfaces.size[surface] * 20 < positions.size())
+    if (!measured(v))
+      contact[surface] = true;
+    else if (surfaces.size[surface] * 20 < positions.size())
       apart[surface] += std::abs(truth.signed_distance(p)) / static_cast<double>(surfaces.size[surface]);
-    else if ((tablet.evidence.empty() || tablet.evidence[v] != evidence_byte(Evidence::kInferred)) &&
-             truth.gap_width(p) >= kSlit)
+    else if (truth.gap_width(p) >= kSlit)
       judged.push_back(v);
   }
   for (std::uint32_t v = 0; v < positions.size(); ++v)
-    settled.noise_pores += (apart[surfaces.of[v]] > kNearTruth) / static_cast<double>(positions.size());
+    if (!contact[surfaces.of[v]] && apart[surfaces.of[v]] > kNearTruth)
+      settled.noise_pores += 1.0 / static_cast<double>(positions.size());
   for (int round = 0; round < 4; ++round) {
     const Sums sums = parallel_reduce<Sums>(
         static_cast<std::int64_t>(judged.size()), 4096, {},

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/base/system/parallel.h"
+#include "core/phantom/scanner/ray_kernels.h"
 #include "tests/core/phantom/scanner_object.h"
 
 namespace dubsar::phantom {
@@ -54,6 +55,29 @@ TEST(ScannerRays, ChordsOfABallParallelAndInACone) {
     EXPECT_LT(off.largest, 0.018) << cone;
     EXPECT_LT(std::abs(off.mean), 3e-4) << cone;
   }
+}
+
+// Short steps are read by permutations of two vectors, long ones number by number.
+TEST(ScannerRays, ColumnsAreReadBetweenTheirNumbersAtAnyStep) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+  std::vector<float> first(160), second(160);
+  for (std::size_t i = 0; i < first.size(); ++i) first[i] = uniform(random), second[i] = uniform(random);
+  constexpr float kLast = 90.0f;
+  for (const float step : {0.4f, 0.93f, 1.0f, 1.21f, 1.6f, 1.95f, 3.3f})
+    for (const float start : {-7.3f, 0.0f, 20.6f, 120.0f}) {
+      const kernels::Tap tap{first.data(), second.data(), 0.3f, 0.7f, start, step};
+      std::vector<float> sum(96, 1.0f);
+      kernels::sum_magnified({&tap, 1}, kLast, sum);
+      for (std::size_t i = 0; i < sum.size(); ++i) {
+        const float place = std::clamp(start + step * static_cast<float>(i), 0.0f, kLast);
+        const auto below = static_cast<std::size_t>(place);
+        const float part = place - static_cast<float>(below);
+        const auto both = [&](std::size_t k) { return 0.3f * first[k] + 0.7f * second[k]; };
+        ASSERT_NEAR(sum[i], 1.0f + both(below) + part * (both(below + 1) - both(below)), 1e-5f)
+            << step << " from " << start << " at " << i;
+      }
+    }
 }
 
 struct SeenBall {
