@@ -25,7 +25,7 @@ json parameters_json(const PipelineReport& report, const PipelineOptions& option
         {"window", denoise.window},
         {"iterations", denoise.iterations},
         {"sigma", denoise.sigma > 0.0 ? json(denoise.sigma) : json("estimated")}}},
-      {"sharpen", report.sharpen},
+      {"sharpen", report.surface_by.sharpen},
       {"threshold_method", options.threshold ? "given" : name_in(kThresholdMethods, options.estimate.method)},
       {"threshold", report.threshold.value},
       {"levels", name_in(kLevels, options.sample.levels)},
@@ -85,7 +85,7 @@ json estimates_json(const PipelineReport& report) {
           {"threshold", report.threshold.value},
           {"threshold_valley", last.threshold_valley},
           {"path", report.threshold.path},
-          {"levels", levels_json(report.levels)},
+          {"levels", levels_json(report.surface_by.levels)},
           {"blur", blur_json(report.scan.blur)},
           {"filters", filters}};
 }
@@ -141,9 +141,7 @@ PipelineReport make_report(const StageResults& results, const SurfaceModel& mode
   PipelineReport report{.scan = results.imported.facts,
                         .filters = {results.imported.raw},
                         .threshold = results.threshold,
-                        .sharpen = results.sampled.sharpen,
-                        .noise = results.sampled.noise,
-                        .levels = results.sampled.levels,
+                        .surface_by = {results.sampled.sharpen, results.sampled.noise, results.sampled.levels},
                         .moves = {results.smoothed.stats, results.settled.stats},
                         .segment = results.separated.segment,
                         .holes = results.separated.holes,
@@ -225,7 +223,7 @@ json report_json(const PipelineReport& report, const PipelineOptions& options) {
   mesh["vertices"] = report.surface.vertices;
   mesh["xquads"] = report.surface.xquads;
   mesh["export_vertices"] = report.mesh.vertices;
-  mesh["noise_cavities"] = {{"cavities", report.noise.cavities}, {"points", report.noise.points}};
+  mesh["noise_cavities"] = {{"cavities", report.surface_by.noise.cavities}, {"points", report.surface_by.noise.points}};
   mesh["smooth"] = {{"mean_displacement_vox", report.moves.smooth.mean_displacement_vox},
                     {"max_displacement_vox", report.moves.smooth.max_displacement_vox},
                     {"clamped_fraction", report.moves.smooth.clamped_fraction},
@@ -273,10 +271,10 @@ std::string report_text(const PipelineReport& report) {
   if (const auto& band = report.detail.band)
     text += fmt::format("band: {:.1f} % of the scan is near the surface and was filtered\n", 100.0 * band->share);
   text += fmt::format("threshold {:.6g}: {}\n", report.threshold.value, report.threshold.path);
-  if (report.levels) text += "levels: " + describe(*report.levels) + "\n";
-  if (report.noise.cavities > 0)
+  if (report.surface_by.levels) text += "levels: " + describe(*report.surface_by.levels) + "\n";
+  if (report.surface_by.noise.cavities > 0)
     text += fmt::format("{} closed cavities of {} points are smaller or fainter than noise and count as clay\n",
-                        report.noise.cavities, report.noise.points);
+                        report.surface_by.noise.cavities, report.surface_by.noise.points);
   text +=
       fmt::format("mesh: {} vertices, {} x-quads, {} triangles, {} non-manifold edges, {} non-manifold vertices\n\n",
                   report.surface.vertices, report.surface.xquads, report.mesh.triangles, report.mesh.nonmanifold_edges,

@@ -28,6 +28,13 @@ struct VertexMoves {
   SettleStats settle;
 };
 
+/// What was decided where the isosurface was sampled.
+struct SurfaceDecisions {
+  float sharpen = 0.0f;               ///< amount that was used
+  NoiseCavities noise;                ///< that became clay
+  std::optional<LocalLevels> levels;  ///< where they were measured
+};
+
 struct DetailTaken : DetailChoice {
   std::optional<BandReport> band;  ///< at the scan's resolution: how much of it was filtered
 };
@@ -36,9 +43,7 @@ struct PipelineReport {
   ScanFacts scan;
   std::vector<FilterStep> filters;  ///< the raw scan, then before and after each pass; the last ones gave the threshold
   Threshold threshold;
-  float sharpen = 0.0f;               ///< amount that was used
-  NoiseCavities noise;                ///< that became clay
-  std::optional<LocalLevels> levels;  ///< where they were measured
+  SurfaceDecisions surface_by;
   VertexMoves moves;
   SegmentReport segment;
   std::optional<HoleReport> holes;        ///< when holes were filled

@@ -279,13 +279,13 @@ Result<IgnoredValues> parse_ignored(const std::vector<std::string>& texts) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
       return fail(ErrorKind::kUsage,
-                  "--ignore \"{}\" not understood, expected a grey value such as 0 or -1000, or none (NaN and Inf are "
-                  "always ignored)",
+                  "ignored value \"{}\" not understood, expected a grey value such as 0 or -1000, or none (NaN and Inf "
+                  "are always ignored)",
                   text);
     ignored.values.push_back(value);
   }
   if (!ignored.search && !ignored.values.empty())
-    return fail(ErrorKind::kUsage, "--ignore none and --ignore {:g} found, expected one of them", ignored.values[0]);
+    return fail(ErrorKind::kUsage, "ignored values none and {:g} found, expected one or the other", ignored.values[0]);
   return ignored;
 }
 
