@@ -63,9 +63,9 @@ std::int64_t pixels_of_hull(const std::vector<Point>& ends) {  // sorted by y, t
   return (std::abs(twice) + on_border) / 2 + 1;  // Pick's theorem
 }
 
-class Slice {
+class SliceLooks {
  public:
-  Slice(const std::vector<float>& values, std::int64_t width, std::int64_t height)
+  SliceLooks(const std::vector<float>& values, std::int64_t width, std::int64_t height)
       : values_(values), width_(width), height_(height), steps_(values.size()) {}
 
   /// Values that a hundredth of the border has.
@@ -324,7 +324,7 @@ Result<Unmeasured> find_unmeasured(SlabSource& scan, const IgnoredValues& option
   };
   for (const std::int64_t z : slices_to_look_at(scan)) {
     DUBSAR_TRY(scan.read(z, z + 1, values));
-    Slice slice(values, d.x, d.y);
+    SliceLooks slice(values, d.x, d.y);
     bool blank = false;
     for (const float value : slice.border_values()) {
       if (!is_ignored(value) && (!options.search || !options.values.empty())) continue;
