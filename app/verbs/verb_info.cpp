@@ -78,9 +78,14 @@ Result<VerbResult> volume_info(const InfoRequest& options, Progress& progress) {
   DUBSAR_ASSIGN(const Unmeasured unmeasured, volume->unmeasured());
   result.json["unmeasured"] = unmeasured_json(unmeasured);
   Result<Forecast> expected = forecast(
-      *volume, {.detail = options.detail, .budget = import.budget, .left_out = unmeasured.left_out()}, progress);
+      *volume,
+      {.detail = options.detail, .artefacts = true, .budget = import.budget, .left_out = unmeasured.left_out()},
+      progress);
   if (!expected && expected.error().kind == ErrorKind::kCancelled) return tl::unexpected<Error>(expected.error());
   result.json["process"] = forecast_json(expected);
+  if (expected)
+    result.json["artefacts"] = {
+        {"bent_rays", expected->bent_rays ? bent_rays_json(*expected->bent_rays) : json(nullptr)}};
   std::string& text = result.text;
   text = fmt::format("volume ({}{}{})\n", info.format, info.dataset.empty() ? "" : ", ", info.dataset);
   if (!info.found_by.empty()) text += fmt::format("  found by     {}\n", info.found_by);
@@ -96,6 +101,10 @@ Result<VerbResult> volume_info(const InfoRequest& options, Progress& progress) {
   text += fmt::format("  in the file  {:.1f} MiB of {:.1f} MiB\n", mib_of(info.stored.storage_bytes),
                       mib_of(info.stored.logical_bytes));
   if (unmeasured.left_out()) text += fmt::format("  outside      about {}\n", describe(unmeasured));
+  if (expected) {
+    text += fmt::format("  artefacts    {}\n", rays_text({expected->bent_rays, false, {}}, volume->frame()));
+    if (expected->bent_rays) text += fmt::format("               {}\n", kAdviceForBentRays);
+  }
   text += forecast_text(expected);
   for (const VolumeCandidate& other : info.candidates)
     text += fmt::format("  also there   {} ({})\n", other.dataset, other.dtype);

@@ -54,6 +54,9 @@ void add_filter_options(Arguments command, ProcessRequest& options) {
       "grid of the surface: scan (all the scan has), half (Gauss 3x3x3 and 2:1, as in the paper), auto (default: scan "
       "where time and memory allow)");
   group.flag("--no-resample", options.without.resample, "the same as --detail scan");
+  group.choice<Artefacts>("--artefacts", p.artefacts, choices_of(kArtefacts),
+                          "what scatter and hardening took from the scan: auto (default: given back where it is "
+                          "significant), off (the scan as it is)");
   group.choice<DenoiseMethod>("--denoise", p.denoise.method, choices_of(kDenoiseMethods),
                               "denoising filter (default joint)");
   group.choice<RangeWeight>("--range-weight", p.denoise.range, choices_of(kRangeWeights),
@@ -123,6 +126,7 @@ std::vector<PlannedStage> plan_of(const ProcessRequest& options) {
       plan.push_back({"estimate", 0.02});
     }
   };
+  if (options.pipeline.artefacts == Artefacts::kAuto) plan.push_back({"rays", 0.1});
   add_passes(0.08);
   if (options.pipeline.detail != Detail::kHalf) {
     plan.insert(plan.end(), {{"import", 0.1}, {"estimate", 0.02}});  // of the sample
@@ -148,9 +152,12 @@ std::vector<PlannedStage> plan_of(const ProcessRequest& options) {
 }
 
 /// What was found, in words, and what can be done with it.
-std::string summary(const std::string& out, const SurfaceFacts& facts, const DetailChoice& detail) {
+std::string summary(const std::string& out, const SurfaceFacts& facts, const PipelineReport& report) {
+  const DetailChoice& detail = report.detail;
   std::string text = fmt::format("{}: {}\n\n{}", out, what_it_is(facts), facts_text(facts));
   text += fmt::format("\nDetail: {}; {}\n", detail.resample() ? "half of the scan's" : "that of the scan", detail.why);
+  if (report.scan.rays && report.scan.rays->bent)
+    text += fmt::format("\nThe scanner: {}\n{}\n", rays_text(*report.scan.rays, report.scan.frame), kAdviceForBentRays);
   if (!facts.millimetres) text += "\nThe scan does not say how large its voxels are: give --voxel-size.\n";
   text += "\nNext:\n";
 #ifdef DUBSAR_CORE_PROGRAM
@@ -197,8 +204,8 @@ Result<VerbResult> run(ProcessRequest options, const Arguments& command, const C
   out.json = report_json(result.report, p);
   out.json["output"] = options.out;
   out.json["facts"] = facts_json(facts);
-  out.text = (common.console.verbose ? report_text(result.report) + "\n" : "") +
-             summary(options.out, facts, result.report.detail);
+  out.text =
+      (common.console.verbose ? report_text(result.report) + "\n" : "") + summary(options.out, facts, result.report);
   return out;
 }
 

@@ -8,16 +8,20 @@ namespace dubsar {
 Result<TracedModel> trace(SurfaceModel model, const ImportOptions& scan, const ImportedGrid& imported, StageRun run) {
   TracedModel traced{std::move(model), {}};
   run.clock.start("contact", "point");
-  ImportOptions again = scan;
-  again.unmeasured = imported.facts.unmeasured;
-  DUBSAR_ASSIGN(const std::unique_ptr<ImportedVolume> volume, open_volume(again));
+  std::unique_ptr<ImportedVolume> volume;
   ContactOptions options;
   if (imported.facts.blur) options.blur_variance = static_cast<float>(imported.facts.blur->variance);
+  options.halve_first = !imported.detail.resample();
   std::optional<HalfResolutionSource> halved;
-  if (imported.detail.resample()) halved.emplace(*volume);
-  options.halve_first = !halved;
-  SlabSource& density = halved ? static_cast<SlabSource&>(*halved) : *volume;
-  DUBSAR_ASSIGN(traced.contact, trace_contact(traced.model, density, options, run.progress));
+  SlabSource* density = imported.straightened.get();
+  if (density == nullptr) {
+    ImportOptions again = scan;
+    again.unmeasured = imported.facts.unmeasured;
+    DUBSAR_ASSIGN(volume, open_volume(again));
+    density = volume.get();
+    if (imported.detail.resample()) density = &halved.emplace(*volume);
+  }
+  DUBSAR_ASSIGN(traced.contact, trace_contact(traced.model, *density, options, run.progress));
   if (traced.contact.traced) settle_patches(traced.model.patches, traced.model.mesh.vertex_count());
   run.clock.finish(traced.contact.points);
   return traced;

@@ -154,14 +154,22 @@ Result<Forecast> forecast(SlabSource& scan, const ForecastOptions& options, Prog
   result.core_s += kSurfaceSeconds * millions + kSecondsPerRay * vertices * options.occlusion_rays /
                                                     sharers_of_rays(result.detail.detail, result.vertices);
   if (options.contact) result.core_s += kContactSeconds * millions;
+  if (options.artefacts) {
+    DUBSAR_ASSIGN(result.bent_rays, look_for_bent_rays({scan, 1.0}, scan, {clock, progress}));
+  }
+  if (result.bent_rays) result.core_s += seconds_to_straighten(*result.bent_rays, result.grid);
   const int threads = thread_count();
   result.wall_s = threads > 1 ? result.core_s / (kEfficiency * threads) : result.core_s;
 
   const Dims halved = grid_of(scan.dims(), true);
   const GridPlace place = place_for(halved, options.budget);
-  result.memory_bytes =
-      static_cast<std::uint64_t>(kProgramBytes) + bytes_of_run({scan.dims(), half, vertices, place, options.contact});
+  // What was straightened stays until contact is traced, beside the surface.
+  const bool keeps = result.bent_rays && place_for(result.grid, options.budget) == GridPlace::kMemory;
+  result.memory_bytes = static_cast<std::uint64_t>(kProgramBytes) +
+                        (keeps ? 4 * static_cast<std::uint64_t>(result.grid.count()) : 0) +
+                        bytes_of_run({scan.dims(), half, vertices, place, options.contact});
   result.scratch_bytes = place == GridPlace::kScratch ? 4 * static_cast<std::uint64_t>(halved.count()) : 0;
+  if (result.bent_rays && !keeps) result.scratch_bytes += 4 * static_cast<std::uint64_t>(result.grid.count());
   result.product_bytes = static_cast<std::uint64_t>(
       vertices * (kProductBytesPerVertex + (options.occlusion_rays > 0 ? kLightBytesPerVertex : 0.0) +
                   (options.contact ? kContactProductBytesPerVertex : 0.0)));

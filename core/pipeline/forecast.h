@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/pipeline/rays_stage.h"
 #include "core/pipeline/volume_stages.h"
 
 namespace dubsar {
@@ -13,19 +14,21 @@ struct ForecastOptions {
   Detail detail = Detail::kAuto;
   bool contact = true;       ///< is looked for where tablet and envelope touch
   int occlusion_rays = 160;  ///< per vertex; 0: none
+  bool artefacts = false;    ///< are looked for, too: reads the scan where it is small, of a large one a part
   Budget budget = {};
   std::optional<float> left_out = std::nullopt;  ///< value of voxels that are no measurement
 };
 
 struct Forecast {
   DetailChoice detail;
-  Dims grid;                        ///< after resampling
-  std::int64_t vertices = 0;        ///< of the surface, about
-  double core_s = 0.0;              ///< seconds of one core
-  double wall_s = 0.0;              ///< by the clock, with the threads that are set (parallel.h), nobody else at work
-  std::uint64_t memory_bytes = 0;   ///< most at any time
-  std::uint64_t scratch_bytes = 0;  ///< on the disk while it runs
-  std::uint64_t product_bytes = 0;  ///< of the EXA file
+  std::optional<BentRays> bent_rays;  ///< that will be straightened; where artefacts were looked for
+  Dims grid;                          ///< after resampling
+  std::int64_t vertices = 0;          ///< of the surface, about
+  double core_s = 0.0;                ///< seconds of one core
+  double wall_s = 0.0;                ///< by the clock, with the threads that are set (parallel.h), nobody else at work
+  std::uint64_t memory_bytes = 0;     ///< most at any time
+  std::uint64_t scratch_bytes = 0;    ///< on the disk while it runs
+  std::uint64_t product_bytes = 0;    ///< of the EXA file
 };
 
 /// Memory of the stages that work on the surface, for each vertex: measured (docs/speed.md).

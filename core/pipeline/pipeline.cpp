@@ -51,8 +51,9 @@ Result<FoundSurface> find_surface(const PipelineOptions& options, ImportedGrid& 
     half.grid.release();  // from here on the samples are enough
   } else {
     found.frame = imported.scan->frame();
+    SlabSource& scan = imported.straightened ? static_cast<SlabSource&>(*imported.straightened) : *imported.scan;
     DUBSAR_ASSIGN(RefinedSurface refined,
-                  refine(*imported.scan, half.grid, estimates.sigma,
+                  refine(scan, half.grid, estimates.sigma,
                          {options.denoise, imported.estimate, options.threshold, options.sample, imported.facts.blur},
                          options.import.budget, run));
     found.sampled = std::move(refined.sampled);
@@ -71,6 +72,9 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
   const StageRun run{clock, progress};
   DUBSAR_TRY(check_room(options.import, options.detail, run));
   DUBSAR_ASSIGN(ImportedGrid imported, import_grid(options.import, options.detail, options.estimate, run));
+  if (options.artefacts == Artefacts::kAuto) {
+    DUBSAR_ASSIGN(imported.facts.rays, straighten_rays(imported, options.import.budget, run));
+  }
   DUBSAR_ASSIGN(DenoisedGrid denoised,
                 denoise(std::move(imported.grid), kHalvedGrid, options.denoise, imported.estimate, run));
   DUBSAR_ASSIGN(FoundSurface found, find_surface(options, imported, denoised, run));
@@ -94,6 +98,7 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
     result.model = std::move(traced.model);
     contact = traced.contact;
   }
+  imported.straightened.reset();
   std::optional<UntangleReport> patches;
   if (contact && contact->traced) {
     patches = contact->patches;

@@ -6,6 +6,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "core/pipeline/rays_stage.h"
 #include "core/pipeline/report.h"
 #include "core/pipeline/surface_stages.h"
 #include "core/pipeline/volume_stages.h"
@@ -15,6 +16,7 @@ namespace dubsar {
 struct PipelineOptions {
   ImportOptions import;
   Detail detail = Detail::kAuto;
+  Artefacts artefacts = Artefacts::kAuto;
   DenoiseOptions denoise;  ///< sigma 0: estimated anew before each iteration
   EstimateOptions estimate;
   std::optional<float> threshold;  ///< isovalue; overrides the estimate

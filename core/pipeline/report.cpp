@@ -19,6 +19,7 @@ json parameters_json(const PipelineReport& report, const PipelineOptions& option
   return {
       {"detail", name_in(kDetails, report.detail.detail)},
       {"resample", report.detail.resample()},
+      {"artefacts", name_in(kArtefacts, options.artefacts)},
       {"denoise",
        {{"method", name_in(kDenoiseMethods, denoise.method)},
         {"range", name_in(kRangeWeights, denoise.range)},
@@ -88,6 +89,17 @@ json estimates_json(const PipelineReport& report) {
           {"levels", levels_json(report.surface_by.levels)},
           {"blur", blur_json(report.scan.blur)},
           {"filters", filters}};
+}
+
+json artefacts_json(const PipelineReport& report) {
+  if (!report.scan.rays) return nullptr;
+  const RaysReport& rays = *report.scan.rays;
+  json result{{"bent_rays", rays.bent ? bent_rays_json(*rays.bent) : json(nullptr)},
+              {"straightened", rays.straightened},
+              {"text", rays_text(rays, report.scan.frame)}};
+  if (!rays.why_not.empty()) result["why_not"] = rays.why_not;
+  if (rays.bent) result["advice"] = kAdviceForBentRays;
+  return result;
 }
 
 json segment_json(const PipelineReport& report) {
@@ -189,6 +201,16 @@ json unmeasured_json(const Unmeasured& unmeasured) {
           {"counts_as", unmeasured.fill}, {"at_rim", unmeasured.at_rim},   {"text", describe(unmeasured)}};
 }
 
+json bent_rays_json(const BentRays& bent) {
+  return {{"axis", std::string(1, "xyz"[static_cast<int>(bent.axis)])},
+          {"longest_ray_vox", bent.longest_vox},
+          {"contrast_on_longest_ray", bent.contrast},
+          {"curve", {{"coefficients", bent.curve.coefficients}, {"longest_recorded_vox", bent.curve.longest}}},
+          {"uneven_air", {{"before", bent.before.air}, {"after", bent.after.air}}},
+          {"uneven_clay", {{"before", bent.before.clay}, {"after", bent.after.clay}}},
+          {"cut_by_border", bent.cut_by_border}};
+}
+
 json mesh_check_json(const MeshCheck& check) {
   return {{"vertices", check.vertices},
           {"triangles", check.triangles},
@@ -206,6 +228,7 @@ json mesh_check_json(const MeshCheck& check) {
 json provenance_json(const PipelineReport& report, const PipelineOptions& options) {
   return {{"program", "dubsar"},
           {"input", input_json(report)},
+          {"artefacts", artefacts_json(report)},
           {"estimates", estimates_json(report)},
           {"parameters", parameters_json(report, options)}};
 }
@@ -234,6 +257,7 @@ json report_json(const PipelineReport& report, const PipelineOptions& options) {
                     {"escaped_fraction", report.moves.settle.escaped_fraction},
                     {"normal_error_deg", report.moves.settle.normal_error_deg}};
   return {{"input", input_json(report)},
+          {"artefacts", artefacts_json(report)},
           {"estimates", estimates_json(report)},
           {"stages", stages},
           {"mesh", mesh},
@@ -267,6 +291,7 @@ std::string report_text(const PipelineReport& report) {
     text += fmt::format("blur of edges {:.2f} voxel, measured at {} flat places\n", std::sqrt(blur->variance),
                         blur->places);
   if (report.scan.unmeasured.left_out()) text += describe(report.scan.unmeasured) + "\n";
+  if (report.scan.rays) text += rays_text(*report.scan.rays, report.scan.frame) + "\n";
   text += fmt::format("detail {}: {}\n", name_in(kDetails, report.detail.detail), report.detail.why);
   if (const auto& band = report.detail.band)
     text += fmt::format("band: {:.1f} % of the scan is near the surface and was filtered\n", 100.0 * band->share);

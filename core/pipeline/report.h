@@ -75,7 +75,8 @@ struct StageResults {
 /// The one place where a report is made.
 PipelineReport make_report(const StageResults& results, const SurfaceModel& model, const StageClock& clock);
 
-/// Keys: input, estimates, stages, mesh, detail, segment, contact, patches, partitions, exa, parameters, warnings.
+/// Keys: input, artefacts, estimates, stages, mesh, detail, segment, contact, patches, partitions, exa, parameters,
+/// warnings.
 nlohmann::json report_json(const PipelineReport& report, const PipelineOptions& options);
 
 /// The stage table, the estimates and the parts, in lines of at most 110 characters.
@@ -88,6 +89,7 @@ nlohmann::json provenance_json(const PipelineReport& report, const PipelineOptio
 nlohmann::json volume_json(const VolumeInfo& info);
 /// null where every voxel is a measurement.
 nlohmann::json unmeasured_json(const Unmeasured& unmeasured);
+nlohmann::json bent_rays_json(const BentRays& bent);
 nlohmann::json mesh_check_json(const MeshCheck& check);
 
 }  // namespace dubsar

@@ -70,6 +70,17 @@ Result<CountedGrid> read_grid(SlabSource& scan, bool resample, const Budget& bud
   return grid;
 }
 
+Result<void> measure_blur(ImportedGrid& imported, StageRun run) {
+  run.clock.start("blur", "place");
+  SlabSource& grid = imported.straightened        ? static_cast<SlabSource&>(*imported.straightened)
+                     : imported.detail.resample() ? static_cast<SlabSource&>(imported.grid.grid)
+                                                  : *imported.scan;
+  const Estimates& raw = imported.raw.estimates;
+  DUBSAR_ASSIGN(imported.facts.blur, measure_edge_spread(grid, raw.m_lo, raw.m_hi, run.progress));
+  run.clock.finish(imported.facts.blur ? imported.facts.blur->places : 0);
+  return {};
+}
+
 Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, const EstimateOptions& estimate,
                                  StageRun run) {
   ImportedGrid imported;
@@ -83,6 +94,7 @@ Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, co
   if (detail == Detail::kAuto)
     log_info("detail {}: {}", name_in(kDetails, imported.detail.detail), imported.detail.why);
   imported.facts.info = scan->info();
+  imported.facts.frame = scan->frame();
   imported.facts.warnings = scan->info().warnings;
   // Of deep layers of chunks a few are decoded for it, not one for every group.
   const std::int64_t layer = scan->preferred_height();
@@ -91,13 +103,9 @@ Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, co
   imported.raw.name = "raw";
   DUBSAR_ASSIGN(imported.raw.estimates, estimate_source(some, "estimate_raw", imported.estimate, run));
   DUBSAR_ASSIGN(imported.grid, read_grid(*scan, true, options.budget, run));
-  run.clock.start("blur", "place");
+  DUBSAR_TRY(measure_blur(imported, run));
   ScanFacts& facts = imported.facts;
-  SlabSource& grid = half ? static_cast<SlabSource&>(imported.grid.grid) : *scan;
-  DUBSAR_ASSIGN(facts.blur,
-                measure_edge_spread(grid, imported.raw.estimates.m_lo, imported.raw.estimates.m_hi, run.progress));
-  run.clock.finish(facts.blur ? facts.blur->places : 0);
-  facts.grid = grid.dims();
+  facts.grid = half ? imported.grid.grid.dims() : scan->dims();
   facts.unmeasured_voxels = scan->unmeasured_counts();
   if (const std::int64_t voxels = facts.unmeasured_voxels.all(); voxels > 0) {
     facts.unmeasured.share = static_cast<double>(voxels) / static_cast<double>(scan->dims().count());

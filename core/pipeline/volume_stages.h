@@ -15,6 +15,7 @@
 #include "core/filter/levels.h"
 #include "core/pipeline/detail.h"
 #include "core/pipeline/stage_clock.h"
+#include "core/rays/bent_rays.h"
 #include "core/volume/formats/import.h"
 #include "core/volume/grid_store.h"
 
@@ -31,8 +32,10 @@ struct ScanFacts {
   VolumeInfo info;
   Unmeasured unmeasured;  ///< what of it is no measurement
   MeasuredSource::Counts unmeasured_voxels;
+  GridFrame frame;  ///< of the scan as it is read
   std::vector<std::string> warnings;  ///< of the file and of its voxels
   Dims grid;                          ///< after resampling
+  std::optional<RaysReport> rays;     ///< where artefacts were looked for
   std::optional<EdgeSpread> blur;     ///< of that grid before any filter; nothing where it has no flat surface
 };
 
@@ -48,6 +51,9 @@ struct ImportedGrid {
   DetailChoice detail;
   EstimateOptions estimate;              ///< as they were given, without what is no measurement
   std::unique_ptr<ImportedVolume> scan;  ///< to be read again
+  /// Instead of the scan (Detail::kScan) or of its halved grid as it was before any filter: with straight rays
+  /// (rays_stage.h). Nothing where they are as they are.
+  std::unique_ptr<GridStore> straightened;
 };
 
 /// How the grid of import_grid() was made, as a FilterStep is named.
@@ -59,6 +65,9 @@ inline constexpr const char* kHalvedGrid = "gauss 2:1";
 /// those of open_volume() and of its source; kTryAgain when there is no room for the grid.
 Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, const EstimateOptions& estimate,
                                  StageRun run);
+
+/// Measures facts.blur in what the surface is found in. One record, "blur".
+Result<void> measure_blur(ImportedGrid& imported, StageRun run);
 
 /// Reads all of a source and, if wanted, halves it; two records, "import" and "resample", since both run interleaved.
 Result<CountedGrid> read_grid(SlabSource& scan, bool resample, const Budget& budget, StageRun run);

@@ -1,0 +1,123 @@
+#include "core/pipeline/rays_stage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/system/clock.h"
+#include "core/base/system/log.h"
+#include "core/base/system/parallel.h"
+#include "core/filter/histogram.h"
+#include "core/rays/coarse_volume.h"
+#include "core/rays/straighten.h"
+
+namespace dubsar {
+namespace {
+
+/// Cells along the longest axis where rays are looked for, and where they are measured: with 128 cells bends of 4 come
+/// out as 2.5.
+constexpr std::int64_t kQuickWidest = 128, kFineWidest = 320;
+/// How far from the other material clay and air are sure: a part of the longest axis, but a few cells at least.
+constexpr std::int64_t kMarginOfWidth = 43, kLeastMargin = 3;
+/// Slices of a large grid do not stay in the caches as those of the search do.
+constexpr double kLargeFactor = 1.5;
+
+/// What is found has lengths in voxels of the scan.
+Result<CurveSearch> search_in(SlabSource& source, std::int64_t widest, std::optional<TurnAxis> only,
+                              double voxels_a_step, StageRun run) {
+  DUBSAR_ASSIGN(const CoarseVolume coarse, read_coarse_volume(source, widest, run.progress));
+  const Dims d = coarse.volume.dims;
+  const std::int64_t margin = std::max(kLeastMargin, std::max({d.x, d.y, d.z}) / kMarginOfWidth);
+  DUBSAR_ASSIGN(CurveSearch search, search_curve(coarse.volume, margin, only, run.progress));
+  if (search.found) search.found->curve.longest *= static_cast<double>(coarse.cell) * voxels_a_step;
+  return search;
+}
+
+Result<void> straighten_grid(GridStore& grid, const BentRays& bent, double voxels_a_step, StageRun run) {
+  run.clock.start("straighten", "voxel");
+  run.progress.begin("straighten", grid.dims().count(), "voxel");
+  StraightenOptions options{bent.axis, bent.levels, bent.curve};
+  options.curve.longest /= voxels_a_step;
+  DUBSAR_TRY(straighten(grid, options, run.progress));
+  run.clock.finish(grid.dims().count());
+  return {};
+}
+
+Result<GridStore> copy_of(GridStore& grid, const Budget& budget) {
+  const Dims dims = grid.dims();
+  DUBSAR_ASSIGN(GridStore copy, GridStore::create(dims, grid.frame(), place_for(dims, budget), budget));
+  for (std::int64_t z = 0; z < dims.z; ++z) {
+    DUBSAR_TRY(grid.read(z, z + 1, copy.page(z, z + 1)));
+    DUBSAR_TRY(copy.store(z, z + 1));
+  }
+  return copy;
+}
+
+/// Rays of what the surface is found in, and all that was learned from it before.
+Result<void> straighten_imported(ImportedGrid& imported, const BentRays& bent, const Budget& budget, StageRun run) {
+  CountedGrid& half = imported.grid;
+  if (imported.detail.resample()) {
+    DUBSAR_ASSIGN(GridStore done, copy_of(half.grid, budget));
+    DUBSAR_TRY(straighten_grid(done, bent, 2.0, run));
+    DUBSAR_ASSIGN(half.counts, count_values(done, run.progress));
+    DUBSAR_ASSIGN(half.grid, copy_of(done, budget));
+    imported.straightened = std::make_unique<GridStore>(std::move(done));
+  } else {
+    DUBSAR_ASSIGN(CountedGrid scan, read_grid(*imported.scan, false, budget, run));
+    DUBSAR_TRY(straighten_grid(scan.grid, bent, 1.0, run));
+    DUBSAR_ASSIGN(half, read_grid(scan.grid, true, budget, run));
+    imported.straightened = std::make_unique<GridStore>(std::move(scan.grid));
+  }
+  return measure_blur(imported, run);
+}
+
+}  // namespace
+
+Result<std::optional<BentRays>> look_for_bent_rays(Overview overview, SlabSource& scan, StageRun run) {
+  run.clock.start("rays", "voxel");
+  run.progress.begin("rays", 0, "voxel");
+  const double before_s = process_cpu_seconds();
+  DUBSAR_ASSIGN(const CurveSearch quick, search_in(overview.grid, kQuickWidest, {}, overview.voxels_a_step, run));
+  const double search_s = process_cpu_seconds() - before_s;
+  CurveSearch search = quick;
+  if (quick.found) {
+    DUBSAR_ASSIGN(search, search_in(scan, kFineWidest, quick.found->axis, 1.0, run));
+    if (!search.found) search = quick;  // at a finer grid noise can hide what is there
+  }
+  run.clock.finish(std::max<std::int64_t>(1, quick.crossings));
+  if (!search.found) return std::nullopt;
+  const CurveTrial& found = *search.found;
+  BentRays bent;
+  bent.axis = found.axis;
+  bent.curve = found.curve;
+  bent.levels = search.levels;
+  bent.before = found.before;
+  bent.after = found.after;
+  bent.longest_vox = bent.curve.value(bent.curve.longest);
+  bent.contrast = bent.curve.contrast(bent.curve.longest);
+  bent.cut_by_border = search.cut_by_border;
+  bent.crossing_s = kLargeFactor * search_s / static_cast<double>(quick.crossings);
+  return std::optional(bent);
+}
+
+double seconds_to_straighten(const BentRays& bent, const Dims& grid) {
+  return bent.crossing_s * crossings_of(grid, bent.axis);
+}
+
+Result<RaysReport> straighten_rays(ImportedGrid& imported, const Budget& budget, StageRun run) {
+  RaysReport report;
+  DUBSAR_ASSIGN(report.bent, look_for_bent_rays({imported.grid.grid, 2.0}, *imported.scan, run));
+  if (!report.bent) return report;
+  const Dims grid = imported.detail.resample() ? imported.grid.grid.dims() : imported.scan->dims();
+  log_info("rays are straightened, which takes about {:.0f} s of {} threads",
+           std::ceil(seconds_to_straighten(*report.bent, grid) / thread_count()), thread_count());
+  const Result<void> done = straighten_imported(imported, *report.bent, budget, run);
+  if (!done && done.error().kind != ErrorKind::kTryAgain) return tl::unexpected<Error>(done.error());
+  report.straightened = done.has_value();
+  if (!done) report.why_not = done.error().message;
+  const std::string text = rays_text(report, imported.scan->frame());
+  log(report.straightened ? LogLevel::kInfo : LogLevel::kWarning, text);
+  log_info("{}", kAdviceForBentRays);
+  return report;
+}
+
+}  // namespace dubsar

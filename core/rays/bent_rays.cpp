@@ -1,0 +1,23 @@
+#include "core/rays/bent_rays.h"
+
+#include <fmt/format.h>
+
+namespace dubsar {
+
+std::string rays_text(const RaysReport& report, const GridFrame& frame) {
+  if (!report.bent) return "rays: straight, no scatter or hardening that would count";
+  const BentRays& bent = *report.bent;
+  const glm::dvec3 mm = frame.input_voxel.mm * frame.scale;
+  const int axis = static_cast<int>(bent.axis);
+  const double step = 0.5 * (mm[(axis + 1) % 3] + mm[(axis + 2) % 3]);
+  const std::string length = frame.input_voxel.known() ? fmt::format("{:.0f} mm", bent.longest_vox * step)
+                                                       : fmt::format("{:.0f} voxels", bent.longest_vox);
+  std::string text = fmt::format("rays through {} of clay arrive with {:.0f} % of their contrast (scatter, hardening)",
+                                 length, 100.0 * bent.contrast);
+  if (report.straightened) text += fmt::format("; straightened, turned about {}", "xyz"[axis]);
+  if (!report.why_not.empty()) text += "; not straightened: " + report.why_not;
+  if (bent.cut_by_border) text += "; the scan's border cuts the object, so that some lengths are wrong";
+  return text;
+}
+
+}  // namespace dubsar

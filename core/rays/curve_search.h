@@ -1,0 +1,45 @@
+#pragma once
+// Was the scan made of straight rays? Projected again and backprojected in powers, it says so itself (method `rays`).
+
+#include <array>
+#include <optional>
+
+#include "core/base/progress.h"
+#include "core/rays/lane_planes.h"
+#include "core/rays/ray_curve.h"
+
+namespace dubsar {
+
+/// What is left of clay and air that should be even, in parts of the contrast.
+struct Evenness {
+  double clay = 0.0, air = 0.0;  ///< standard deviations, blocks of 2x2 pixels
+};
+
+/// The curve that makes a scan even if it was turned about `axis`.
+struct CurveTrial {
+  TurnAxis axis = TurnAxis::kZ;
+  RayCurve curve;
+  Evenness before, after;
+  /// 1: rays are straight; the largest loss of contrast is its inverse.
+  double bend() const noexcept { return curve.slope(curve.longest) / curve.slope(0.0); }
+  /// Bent by more than a tenth, and the air, which nothing was fitted to alone, becomes more even by a tenth.
+  bool significant() const noexcept;
+};
+
+struct CurveSearch {
+  GreyLevels levels;                ///< of the volume
+  std::optional<CurveTrial> found;  ///< the best that is significant; its lengths in voxels of the volume
+  std::vector<CurveTrial> trials;   ///< of each axis that was tried
+  bool cut_by_border = false;       ///< clay lies at the border beside the axis: rays miss some of it
+  std::int64_t crossings = 0;       ///< of voxels and rays, that the search took: what its time goes by
+};
+
+/// Tries the three axes, or the one that is wanted `only`, on some planes each. Linear least squares with coefficients
+/// >= 0 of the images R^-1 p^k against 1 in clay and 0 in air, each with the same weight (after Kachelriess, Sourbelle,
+/// Kalender: Med. Phys. 33, 2006). For volumes of some hundred voxels a side; cost: about 7 projections of 32 planes an
+/// axis. `margin`: distance of what counts as clay and as air from the other, in voxels. Nothing is found where there
+/// is too little of either. Errors: kCancelled.
+Result<CurveSearch> search_curve(const Volume<float>& volume, std::int64_t margin, std::optional<TurnAxis> only,
+                                 Progress& progress);
+
+}  // namespace dubsar

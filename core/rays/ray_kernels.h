@@ -1,0 +1,43 @@
+#pragma once
+// The inner loops of projection and backprojection, for kLanes slices at once: slices are the lanes of vectors, so that
+// geometry is computed once for all of them and every load is contiguous. Images and sinograms are arrays of groups of
+// kLanes floats.
+
+#include <cstdint>
+
+namespace dubsar::kernels {
+
+inline constexpr std::int64_t kLanes = 16;
+
+/// A band of an image as rays of one direction cross it: along the major axis one step at a time, between two
+/// neighbours along the minor one. One group of zeros lies beside either end of the minor axis.
+struct CrossedBand {
+  const float* image = nullptr;                     ///< group at major 0, minor 0
+  std::int64_t major_stride = 0, minor_stride = 0;  ///< floats
+  std::int64_t begin = 0, end = 0;                  ///< along the major axis
+  std::int64_t minor = 0;                           ///< groups along the minor axis
+  double first = 0.0, per_bin = 0.0,
+         per_major = 0.0;  ///< minor place of a ray: first + per_bin * bin + per_major * major
+  float weight = 1.0f;     ///< length of a step
+};
+
+/// Adds to each of `bins` groups of `row` what its ray meets in the band.
+void project_band(const CrossedBand& band, std::int64_t bins, float* row);
+
+/// Rays of some directions through one row of an image: place on the detector = base + x * step, in bins.
+struct RowRays {
+  const float* const* rows = nullptr;  ///< filtered projections, one a direction
+  const double* base = nullptr;
+  const double* step = nullptr;
+  std::int64_t count = 0;
+};
+
+/// Adds to groups [begin, end) of an image's row the projections there, between two bins each. All places must be in
+/// [0, bins - 1).
+void backproject_row(const RowRays& rays, std::int64_t begin, std::int64_t end, float* row);
+
+/// out = in * (1/4 at 0, odd[k] at +-(2 k + 1), 0 elsewhere): the ramp of Kak and Slaney. `in` and `out` do not
+/// overlap.
+void ramp_row(const float* in, std::int64_t bins, const float* odd, float* out);
+
+}  // namespace dubsar::kernels

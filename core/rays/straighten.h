@@ -1,0 +1,25 @@
+#pragma once
+// A grid whose rays are made straight: f' = f + R^-1 (g(p) / c1 - p), p = R f. Only the difference goes through the
+// projector, so that nothing of the rest is blurred (method `rays`).
+
+#include "core/base/progress.h"
+#include "core/rays/lane_planes.h"
+#include "core/rays/ray_curve.h"
+#include "core/volume/grid_store.h"
+
+namespace dubsar {
+
+struct StraightenOptions {
+  TurnAxis axis = TurnAxis::kZ;
+  GreyLevels levels;
+  RayCurve curve;  ///< lengths in voxels of the grid
+};
+
+/// Crossings of voxels and rays that straightening takes: what its time goes by (CurveSearch::crossings).
+double crossings_of(const Dims& grid, TurnAxis axis) noexcept;
+
+/// In place; advances `progress` by voxels. Memory: some kLanes planes, twice. A grid on the disk can be straightened
+/// about z only. Errors: kTryAgain for the other axes there, those of the grid, kCancelled.
+Result<void> straighten(GridStore& grid, const StraightenOptions& options, Progress& progress);
+
+}  // namespace dubsar
