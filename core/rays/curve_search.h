@@ -12,7 +12,7 @@ namespace dubsar {
 
 /// What is left of clay and air that should be even, in parts of the contrast.
 struct Evenness {
-  double clay = 0.0, air = 0.0;  ///< standard deviations, blocks of 2x2 pixels
+  double clay = 0.0, air = 0.0;  ///< standard deviations without noise
 };
 
 /// The curve that makes a scan even if it was turned about `axis`.
@@ -22,7 +22,12 @@ struct CurveTrial {
   Evenness before, after;
   /// 1: rays are straight; the largest loss of contrast is its inverse.
   double bend() const noexcept { return curve.slope(curve.longest) / curve.slope(0.0); }
-  /// Bent by more than a tenth, and the air, which nothing was fitted to alone, becomes more even by a tenth.
+  /// Share of the variance of clay and air that is left.
+  double left() const noexcept {
+    return (after.clay * after.clay + after.air * after.air) / (before.clay * before.clay + before.air * before.air);
+  }
+  /// Bent by more than a tenth, clay and air together become more even by a fifth of their variance, and air alone does
+  /// not become less even.
   bool significant() const noexcept;
 };
 

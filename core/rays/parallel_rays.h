@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/rays/ray_kernels.h"
+#include "core/rays/lane_kernels.h"
 #include "core/volume/volume.h"
 
 namespace dubsar {

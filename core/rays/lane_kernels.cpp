@@ -1,10 +1,10 @@
-#include "core/rays/ray_kernels.h"
+#include "core/rays/lane_kernels.h"
 
 #include <algorithm>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "core/rays/ray_kernels.cpp"
+#define HWY_TARGET_INCLUDE "core/rays/lane_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
