@@ -40,10 +40,10 @@ struct CurveSearch {
 };
 
 /// Tries the three axes, or the one that is wanted `only`, on some planes each. Linear least squares with coefficients
-/// >= 0 of the images R^-1 p^k against 1 in clay and 0 in air, each with the same weight (after Kachelriess, Sourbelle,
-/// Kalender: Med. Phys. 33, 2006). For volumes of some hundred voxels a side; cost: about 7 projections of 32 planes an
-/// axis. `margin`: distance of what counts as clay and as air from the other, in voxels. Nothing is found where there
-/// is too little of either. Errors: kCancelled.
+/// >= 0 of the images R^-1 p^k against 1 in clay and 0 in air, each with the same weight ([Kachelriess 2006]). For
+/// volumes of some hundred voxels a side; cost: about 7 projections of 32 planes an axis. `margin`: distance of what
+/// counts as clay and as air from the other, in voxels. Nothing is found where there is too little of either. Errors:
+/// kCancelled.
 Result<CurveSearch> search_curve(const Volume<float>& volume, std::int64_t margin, std::optional<TurnAxis> only,
                                  Progress& progress);
 

@@ -60,11 +60,10 @@ class ParallelRays {
   LaneImage image() const { return {width_, height_}; }
   LaneSinogram sinogram() const { return {directions(), bins_}; }
 
-  /// R: line integrals in pixels (Joseph's rule, IEEE Trans. Med. Imaging 1, 1982).
+  /// R: line integrals in pixels ([Joseph 1982]).
   void project(const LaneImage& image, LaneSinogram& out) const;
-  /// Prepares projections for backproject(): the exact ramp of a band-limited detector (Kak, Slaney: Principles of
-  /// Computerized Tomographic Imaging, 1988, eq. 3.61), and what both linear interpolations take of the finest detail
-  /// to second order, given back.
+  /// Prepares projections for backproject(): the exact ramp of a band-limited detector ([Kak 1988]), and what both
+  /// linear interpolations take of the finest detail to second order, given back.
   void filter(LaneSinogram& projections) const;
   /// R^-1 of filtered projections.
   void backproject(const LaneSinogram& filtered, LaneImage& out) const;

@@ -21,7 +21,7 @@ struct RayCurve {
   double contrast(double p) const noexcept { return coefficients[0] / slope(p); }
 };
 
-/// Least squares with x >= 0 (Lawson, Hanson: Solving Least Squares Problems, 1974, ch. 23): minimises
+/// Least squares with x >= 0 ([Lawson 1974]): minimises
 /// x^T gram x - 2 x^T right. `gram` is symmetric and not negative definite.
 std::array<double, RayCurve::kTerms> nonnegative_fit(
     const std::array<std::array<double, RayCurve::kTerms>, RayCurve::kTerms>& gram,
