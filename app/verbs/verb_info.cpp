@@ -102,7 +102,7 @@ Result<VerbResult> volume_info(const InfoRequest& options, Progress& progress) {
                       mib_of(info.stored.logical_bytes));
   if (unmeasured.left_out()) text += fmt::format("  outside      about {}\n", describe(unmeasured));
   if (expected) {
-    text += fmt::format("  artefacts    {}\n", rays_text({expected->bent_rays, false, {}}, volume->frame()));
+    text += fmt::format("  artefacts    {}\n", rays_text({expected->bent_rays, {}, {}}, volume->frame()));
     if (expected->bent_rays) text += fmt::format("               {}\n", kAdviceForBentRays);
   }
   text += forecast_text(expected);

@@ -32,14 +32,15 @@ Result<CurveSearch> search_in(SlabSource& source, std::int64_t widest, std::opti
   return search;
 }
 
-Result<void> straighten_grid(GridStore& grid, const BentRays& bent, double voxels_a_step, StageRun run) {
+Result<Straightened> straighten_grid(GridStore& grid, const BentRays& bent, double voxels_a_step, StageRun run) {
   run.clock.start("straighten", "voxel");
   run.progress.begin("straighten", grid.dims().count(), "voxel");
   StraightenOptions options{bent.axis, bent.levels, bent.curve};
   options.curve.longest /= voxels_a_step;
-  DUBSAR_TRY(straighten(grid, options, run.progress));
+  DUBSAR_ASSIGN(Straightened done, straighten(grid, options, run.progress));
+  done.axis_shift.pixels *= voxels_a_step;
   run.clock.finish(grid.dims().count());
-  return {};
+  return done;
 }
 
 Result<GridStore> copy_of(GridStore& grid, const Budget& budget) {
@@ -53,21 +54,24 @@ Result<GridStore> copy_of(GridStore& grid, const Budget& budget) {
 }
 
 /// Rays of what the surface is found in, and all that was learned from it before.
-Result<void> straighten_imported(ImportedGrid& imported, const BentRays& bent, const Budget& budget, StageRun run) {
+Result<Straightened> straighten_imported(ImportedGrid& imported, const BentRays& bent, const Budget& budget,
+                                         StageRun run) {
   CountedGrid& half = imported.grid;
+  Straightened done;
   if (imported.detail.resample()) {
-    DUBSAR_ASSIGN(GridStore done, copy_of(half.grid, budget));
-    DUBSAR_TRY(straighten_grid(done, bent, 2.0, run));
-    DUBSAR_ASSIGN(half.counts, count_values(done, run.progress));
-    DUBSAR_ASSIGN(half.grid, copy_of(done, budget));
-    imported.straightened = std::make_unique<GridStore>(std::move(done));
+    DUBSAR_ASSIGN(GridStore grid, copy_of(half.grid, budget));
+    DUBSAR_ASSIGN(done, straighten_grid(grid, bent, 2.0, run));
+    DUBSAR_ASSIGN(half.counts, count_values(grid, run.progress));
+    DUBSAR_ASSIGN(half.grid, copy_of(grid, budget));
+    imported.straightened = std::make_unique<GridStore>(std::move(grid));
   } else {
     DUBSAR_ASSIGN(CountedGrid scan, read_grid(*imported.scan, false, budget, run));
-    DUBSAR_TRY(straighten_grid(scan.grid, bent, 1.0, run));
+    DUBSAR_ASSIGN(done, straighten_grid(scan.grid, bent, 1.0, run));
     DUBSAR_ASSIGN(half, read_grid(scan.grid, true, budget, run));
     imported.straightened = std::make_unique<GridStore>(std::move(scan.grid));
   }
-  return measure_blur(imported, run);
+  DUBSAR_TRY(measure_blur(imported, run));
+  return done;
 }
 
 }  // namespace
@@ -110,10 +114,13 @@ Result<RaysReport> straighten_rays(ImportedGrid& imported, const Budget& budget,
   const Dims grid = imported.detail.resample() ? imported.grid.grid.dims() : imported.scan->dims();
   log_info("rays are straightened, which takes about {:.0f} s of {} threads",
            std::ceil(seconds_to_straighten(*report.bent, grid) / thread_count()), thread_count());
-  const Result<void> done = straighten_imported(imported, *report.bent, budget, run);
-  if (!done && done.error().kind != ErrorKind::kTryAgain) return tl::unexpected<Error>(done.error());
-  report.straightened = done.has_value();
-  if (!done) report.why_not = done.error().message;
+  const Result<Straightened> done = straighten_imported(imported, *report.bent, budget, run);
+  if (done)
+    report.straightened = *done;
+  else if (done.error().kind == ErrorKind::kTryAgain)
+    report.why_not = done.error().message;
+  else
+    return tl::unexpected<Error>(done.error());
   const std::string text = rays_text(report, imported.scan->frame());
   log(report.straightened ? LogLevel::kInfo : LogLevel::kWarning, text);
   log_info("{}", kAdviceForBentRays);

@@ -95,7 +95,8 @@ json artefacts_json(const PipelineReport& report) {
   if (!report.scan.rays) return nullptr;
   const RaysReport& rays = *report.scan.rays;
   json result{{"bent_rays", rays.bent ? bent_rays_json(*rays.bent) : json(nullptr)},
-              {"straightened", rays.straightened},
+              {"straightened", rays.straightened.has_value()},
+              {"axis_shift_vox", rays.straightened ? json(rays.straightened->axis_shift.pixels) : json(nullptr)},
               {"text", rays_text(rays, report.scan.frame)}};
   if (!rays.why_not.empty()) result["why_not"] = rays.why_not;
   if (rays.bent) result["advice"] = kAdviceForBentRays;

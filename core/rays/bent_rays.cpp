@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace dubsar {
 
 std::string rays_text(const RaysReport& report, const GridFrame& frame) {
@@ -15,6 +17,9 @@ std::string rays_text(const RaysReport& report, const GridFrame& frame) {
   std::string text = fmt::format("rays through {} of clay arrive with {:.0f} % of their contrast (scatter, hardening)",
                                  length, 100.0 * bent.contrast);
   if (report.straightened) text += fmt::format("; straightened, turned about {}", "xyz"[axis]);
+  if (report.straightened && report.straightened->axis_shift.pixels != 0.0)
+    text += fmt::format("; the axis of rotation was off by {:.2f} voxel, which is undone",
+                        std::abs(report.straightened->axis_shift.pixels));
   if (!report.why_not.empty()) text += "; not straightened: " + report.why_not;
   if (bent.cut_by_border) text += "; the scan's border cuts the object, so that some lengths are wrong";
   return text;

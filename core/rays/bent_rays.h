@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/rays/curve_search.h"
+#include "core/rays/straighten.h"
 
 namespace dubsar {
 
@@ -21,9 +22,9 @@ struct BentRays {
 };
 
 struct RaysReport {
-  std::optional<BentRays> bent;  ///< nothing: none that is significant
-  bool straightened = false;
-  std::string why_not;  ///< one sentence, where rays are bent and stay so
+  std::optional<BentRays> bent;              ///< nothing: none that is significant
+  std::optional<Straightened> straightened;  ///< nothing: rays are as they were; shifts in voxels of the scan
+  std::string why_not;                       ///< one sentence, where rays are bent and stay so
 };
 
 /// "rays through 45 mm of clay arrive with 26 % of their contrast (scatter, hardening); straightened"

@@ -35,6 +35,42 @@ class Difference {
   std::vector<float> table_;
 };
 
+/// Pairs of planes from the middle half of the grid, two apart, so that their noise has nothing in common; none in a
+/// grid that is too thin.
+std::vector<std::int64_t> pairs_of_planes(std::int64_t all) {
+  constexpr std::int64_t kApart = 2;
+  std::vector<std::int64_t> planes;
+  if (all < 2 * kLanes) return planes;
+  for (std::int64_t pair = 0; pair < kLanes / 2; ++pair) {
+    planes.push_back(all / 4 + pair * (all / 2) / (kLanes / 2));
+    planes.push_back(planes.back() + kApart);
+  }
+  return planes;
+}
+
+Result<AxisShift> look_for_shift(GridStore& grid, const PlaneStrides& at, const StraightenOptions& options,
+                                 const ParallelRays& rays, const Difference& difference) {
+  const std::vector<std::int64_t> planes = pairs_of_planes(at.planes);
+  if (planes.empty()) return AxisShift{};
+  LaneImage image = rays.image();
+  if (grid.in_memory()) {
+    load_planes(grid.page(0, grid.dims().z).data(), at, planes, options.levels, image);
+  } else {
+    const std::int64_t slice = grid.dims().slice();
+    Buffer<float> slices(kLanes * slice);
+    std::vector<std::int64_t> here;
+    for (const std::int64_t z : planes) {
+      const auto place = static_cast<std::int64_t>(here.size());
+      DUBSAR_TRY(grid.read(z, z + 1, slices.span().subspan(static_cast<std::size_t>(place * slice))));
+      here.push_back(place);
+    }
+    load_planes(slices.data(), at, here, options.levels, image);
+  }
+  LaneSinogram recorded = rays.sinogram();
+  rays.project(image, recorded);
+  return find_axis_shift(rays, image, recorded, [&](float p) { return p + difference(p); });
+}
+
 /// As many as rays lie side by side.
 std::int64_t directions_for(const PlaneStrides& planes) noexcept { return std::max(planes.width, planes.height); }
 
@@ -44,7 +80,7 @@ double crossings_of(const Dims& grid, TurnAxis axis) noexcept {
   return 2.0 * static_cast<double>(grid.count()) * static_cast<double>(directions_for(planes_across(grid, axis)));
 }
 
-Result<void> straighten(GridStore& grid, const StraightenOptions& options, Progress& progress) {
+Result<Straightened> straighten(GridStore& grid, const StraightenOptions& options, Progress& progress) {
   const Dims dims = grid.dims();
   const PlaneStrides at = planes_across(dims, options.axis);
   if (!grid.in_memory() && options.axis != TurnAxis::kZ)
@@ -54,8 +90,11 @@ Result<void> straighten(GridStore& grid, const StraightenOptions& options, Progr
                 options.axis == TurnAxis::kX ? "x" : "y");
   const ParallelRays rays(at.width, at.height, directions_for(at));
   const Difference difference(options.curve);
+  Straightened done;
+  DUBSAR_ASSIGN(done.axis_shift, look_for_shift(grid, at, options, rays, difference));
+  const bool moves = done.axis_shift.pixels != 0.0;
   LaneImage image = rays.image();
-  LaneSinogram projections = rays.sinogram();
+  LaneSinogram projections = rays.sinogram(), moved(moves ? rays.directions() : 0, rays.bins());
   std::vector<std::int64_t> planes(static_cast<std::size_t>(kLanes));
   Buffer<float> read(grid.in_memory() ? 0 : kLanes * dims.slice());
   for (std::int64_t first = 0; first < at.planes; first += kLanes) {
@@ -76,8 +115,12 @@ Result<void> straighten(GridStore& grid, const StraightenOptions& options, Progr
     image.clear();
     load_planes(voxels, at, planes, options.levels, image);
     rays.project(image, projections);
+    if (moves) shift_rays(projections, done.axis_shift, moved);
     parallel_for(rays.directions(), 4, [&](std::int64_t k) {
-      std::transform(projections.row(k), projections.row(k) + projections.row_floats(), projections.row(k), difference);
+      float* const p = projections.row(k);
+      const float* const at_axis = moves ? moved.row(k) : p;
+      for (std::int64_t i = 0; i < projections.row_floats(); ++i)
+        p[i] = difference(at_axis[i]) + (moves ? at_axis[i] - p[i] : 0.0F);
     });
     rays.filter(projections);
     rays.backproject(projections, image);
@@ -87,7 +130,7 @@ Result<void> straighten(GridStore& grid, const StraightenOptions& options, Progr
     }
     progress.advance((last - first) * at.width * at.height);
   }
-  return {};
+  return done;
 }
 
 }  // namespace dubsar

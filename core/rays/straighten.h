@@ -3,6 +3,7 @@
 // projector, so that nothing of the rest is blurred (method `rays`).
 
 #include "core/base/progress.h"
+#include "core/rays/axis_shift.h"
 #include "core/rays/lane_planes.h"
 #include "core/rays/ray_curve.h"
 #include "core/volume/grid_store.h"
@@ -15,11 +16,17 @@ struct StraightenOptions {
   RayCurve curve;  ///< lengths in voxels of the grid
 };
 
+struct Straightened {
+  AxisShift axis_shift;  ///< that was found, in voxels of the grid, and undone
+};
+
 /// Crossings of voxels and rays that straightening takes: what its time goes by (CurveSearch::crossings).
 double crossings_of(const Dims& grid, TurnAxis axis) noexcept;
 
-/// In place; advances `progress` by voxels. Memory: some kLanes planes, twice. A grid on the disk can be straightened
-/// about z only. Errors: kTryAgain for the other axes there, those of the grid, kCancelled.
-Result<void> straighten(GridStore& grid, const StraightenOptions& options, Progress& progress);
+/// In place. An axis of rotation that is off in a scan of half a turn is found in some planes of the middle, and rays
+/// are moved back before they are straightened. Advances `progress` by voxels. Memory: some kLanes planes, twice. A
+/// grid on the disk can be straightened about z only. Errors: kTryAgain for the other axes there, those of the grid,
+/// kCancelled.
+Result<Straightened> straighten(GridStore& grid, const StraightenOptions& options, Progress& progress);
 
 }  // namespace dubsar

@@ -1,0 +1,144 @@
+#include "core/rays/axis_shift.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/base/system/parallel.h"
+
+namespace dubsar {
+namespace {
+
+using kernels::kLanes;
+
+/// Of the air that is looked at from clay, in pixels: nearer there are edges, farther only noise.
+constexpr std::int64_t kNearest = 4, kFarthest = 14;
+/// Shifts that are made; what lies between is interpolated between their images.
+constexpr double kTried = 0.75, kMost = 1.0, kStep = 1.0 / 64.0;
+constexpr double kLeast = 0.08, kMostLeft = 0.9;
+
+using Energy = std::array<std::array<double, 3>, 3>;
+
+Energy sum_of(Energy a, const Energy& b) {
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) a[i][j] += b[i][j];
+  return a;
+}
+
+/// Pixels of air beside clay, of one pair of lanes.
+std::vector<std::uint8_t> air_beside(const LaneImage& planes, std::int64_t lane) {
+  const std::int64_t w = planes.width(), h = planes.height();
+  std::vector<std::int64_t> clay(static_cast<std::size_t>((w + 1) * (h + 1)));  // sums over the box from (0, 0)
+  const auto sum = [&](std::int64_t x, std::int64_t y) -> std::int64_t& {
+    return clay[static_cast<std::size_t>(y * (w + 1) + x)];
+  };
+  for (std::int64_t y = 0; y < h; ++y)
+    for (std::int64_t x = 0; x < w; ++x) {
+      float mean = 0.0F;  // of 3x3 pixels of both planes, against noise
+      for (std::int64_t k = 0; k < 9; ++k) {
+        const float* at = planes.at(std::min(x + k % 3 - 1, w), std::min(y + k / 3 - 1, h)) + lane;
+        mean += (at[0] + at[1]) / 18.0F;
+      }
+      sum(x + 1, y + 1) = sum(x, y + 1) + sum(x + 1, y) - sum(x, y) + (mean > 0.5F ? 1 : 0);
+    }
+  const auto within = [&](std::int64_t x, std::int64_t y, std::int64_t reach) {
+    const std::int64_t x0 = std::max<std::int64_t>(0, x - reach), x1 = std::min(w, x + reach + 1);
+    const std::int64_t y0 = std::max<std::int64_t>(0, y - reach), y1 = std::min(h, y + reach + 1);
+    return sum(x1, y1) - sum(x0, y1) - sum(x1, y0) + sum(x0, y0) > 0;
+  };
+  std::vector<std::uint8_t> air(static_cast<std::size_t>(w * h));
+  for (std::int64_t y = 0; y < h; ++y)
+    for (std::int64_t x = 0; x < w; ++x)
+      air[static_cast<std::size_t>(y * w + x)] = !within(x, y, kNearest - 1) && within(x, y, kFarthest) ? 1 : 0;
+  return air;
+}
+
+/// Products of three images in the air, of one plane of a pair with the other.
+Energy energy_of(const std::array<const LaneImage*, 3>& images, const std::vector<std::vector<std::uint8_t>>& air) {
+  const std::int64_t w = images[0]->width();
+  return parallel_reduce<Energy>(
+      images[0]->height(), 8, {},
+      [&](std::int64_t begin, std::int64_t end) {
+        Energy part{};
+        for (std::int64_t y = begin; y < end; ++y)
+          for (std::int64_t x = 0; x < w; ++x)
+            for (std::size_t pair = 0; pair < air.size(); ++pair) {
+              if (air[pair][static_cast<std::size_t>(y * w + x)] == 0) continue;
+              for (std::size_t i = 0; i < 3; ++i)
+                for (std::size_t j = 0; j < 3; ++j)
+                  part[i][j] += static_cast<double>(images[i]->at(x, y)[2 * pair]) * images[j]->at(x, y)[2 * pair + 1];
+            }
+        return part;
+      },
+      sum_of);
+}
+
+double energy_at(const Energy& energy, double shift) {
+  const double t = shift / kTried;
+  const std::array<double, 3> weight{0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)};
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) sum += weight[i] * weight[j] * energy[i][j];
+  return sum;
+}
+
+}  // namespace
+
+void shift_rays(const LaneSinogram& in, const AxisShift& shift, LaneSinogram& out) {
+  parallel_for(in.directions(), 4, [&](std::int64_t k) {
+    const double d = shift.flipped && 2 * k < in.directions() ? -shift.pixels : shift.pixels;
+    const double whole = std::floor(d), t = d - whole;
+    const std::array<float, 4> weight{static_cast<float>(-t * (t - 1.0) * (t - 2.0) / 6.0),
+                                      static_cast<float>((t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0),
+                                      static_cast<float>(-(t + 1.0) * t * (t - 2.0) / 2.0),
+                                      static_cast<float>((t + 1.0) * t * (t - 1.0) / 6.0)};
+    float* const row = out.row(k);
+    std::fill(row, row + in.row_floats(), 0.0F);
+    for (std::int64_t tap = 0; tap < 4; ++tap) {
+      const std::int64_t from = (static_cast<std::int64_t>(whole) + tap - 1) * kLanes;
+      const std::int64_t begin = std::max<std::int64_t>(0, -from),
+                         end = std::min(in.row_floats(), in.row_floats() - from);
+      for (std::int64_t i = begin; i < end; ++i) row[i] += weight[static_cast<std::size_t>(tap)] * in.row(k)[i + from];
+    }
+  });
+}
+
+AxisShift find_axis_shift(const ParallelRays& rays, const LaneImage& planes, const LaneSinogram& recorded,
+                          const std::function<float(float)>& straight) {
+  std::vector<std::vector<std::uint8_t>> air;
+  for (std::int64_t lane = 0; lane < kLanes; lane += 2) air.push_back(air_beside(planes, lane));
+  LaneSinogram moved = rays.sinogram();
+  const auto image_with = [&](const AxisShift& shift) {
+    LaneImage image = rays.image();
+    shift_rays(recorded, shift, moved);
+    parallel_for(rays.directions(), 4, [&](std::int64_t k) {
+      for (std::int64_t i = 0; i < moved.row_floats(); ++i)
+        moved.row(k)[i] = straight(moved.row(k)[i]) - recorded.row(k)[i];
+    });
+    rays.filter(moved);
+    rays.backproject(moved, image);
+    parallel_for(image.height(), 8, [&](std::int64_t y) {
+      for (std::int64_t i = 0; i < image.width() * kLanes; ++i) image.at(0, y)[i] += planes.at(0, y)[i];
+    });
+    return image;
+  };
+  const LaneImage unmoved = image_with({});
+  AxisShift best;
+  double least = 0.0;
+  for (const bool flipped : {false, true}) {
+    const LaneImage before = image_with({-kTried, flipped}), after = image_with({kTried, flipped});
+    const Energy energy = energy_of({&before, &unmoved, &after}, air);
+    const double as_it_is = energy_at(energy, 0.0);
+    if (!(as_it_is > 0.0)) continue;
+    for (double shift = -kMost; shift <= kMost; shift += kStep) {
+      const double left = energy_at(energy, shift) / as_it_is;
+      if (std::abs(shift) < kLeast || left > kMostLeft || (best.pixels != 0.0 && left >= least)) continue;
+      best = {shift, flipped};
+      least = left;
+    }
+  }
+  return best;
+}
+
+}  // namespace dubsar

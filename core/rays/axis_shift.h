@@ -1,0 +1,28 @@
+#pragma once
+// An axis of rotation that was not where the reconstruction took it: in scans of half a turn all rays are displaced on
+// the detector, which is found and undone (after [Donath 2006]; here from the volume, by the air).
+
+#include <functional>
+
+#include "core/rays/parallel_rays.h"
+
+namespace dubsar {
+
+struct AxisShift {
+  double pixels = 0.0;  ///< rays are where those `pixels` farther along the detector should be
+  /// The half turn did not begin at direction 0 but at a right angle to it: rays of the first quarter are displaced the
+  /// other way.
+  bool flipped = false;
+};
+
+/// Moves all rays, by cubic interpolation. `in` and `out` have the same shape.
+void shift_rays(const LaneSinogram& in, const AxisShift& shift, LaneSinogram& out);
+
+/// The shift between -1 and 1 pixel that makes the air beside the object most even; none where that is below .08 pixel
+/// or less than a tenth of the unevenness goes, as in scans of a full turn. `planes`: in units of clay, lanes 2 k and
+/// 2 k + 1 are planes of one place whose noise has nothing in common; `recorded` their projections; `straight` takes a
+/// recorded length to a straight one. Cost: 5 backprojections.
+AxisShift find_axis_shift(const ParallelRays& rays, const LaneImage& planes, const LaneSinogram& recorded,
+                          const std::function<float(float)>& straight);
+
+}  // namespace dubsar
