@@ -21,6 +21,13 @@ constexpr double kBarPx = 80.0;
 
 std::string place_text(const glm::dvec3& mm) { return fmt::format("{:.6f},{:.6f},{:.6f}", mm.x, mm.y, mm.z); }
 
+/// What is still to be known of a picture that is not exact.
+std::string slice_state(const SlicePane& pane) {
+  if (!pane.picture || pane.picture->frame != pane.wanted || pane.picture->image.values.empty()) return "reading";
+  if (pane.picture->done) return "coarse: too much to read all of it";
+  return fmt::format("reading, {:.0f} %", 100.0 * pane.picture->image.known);
+}
+
 /// From pixels of a picture to places of the layout.
 struct Placed {
   ImVec2 corner;
@@ -91,7 +98,7 @@ void draw_labels(const SlicePane& pane, std::size_t which, const ScanView& scan,
   ImDrawList* const draw = ImGui::GetWindowDrawList();
   std::string label(kSliceNames[which]);
   if (which < 3) label += fmt::format("  {:.2f} mm", scan.cursor_mm[static_cast<int>(which)]);
-  if (!pane.ready()) label += pane.picture && pane.picture->frame == pane.wanted ? "   coarse" : "   ...";
+  if (!pane.ready()) label += "   " + slice_state(pane);
   const ImVec2 at(placed.corner.x + 6, placed.corner.y + 3);
   draw->AddText(ImVec2(at.x + 1, at.y + 1), kNothing, label.c_str());
   draw->AddText(at, kText, label.c_str());

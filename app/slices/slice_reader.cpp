@@ -108,6 +108,7 @@ void SliceReader::publish(std::size_t which, std::uint64_t question, SlicePictur
     if (slot.question != question) return;
     slot.coarse = true;
     slot.exact = slot.exact || done;
+    picture.done = done;
     slot.picture = std::make_shared<const SlicePicture>(std::move(picture));
   }
   changed_.notify_all();

@@ -29,9 +29,9 @@ struct OutlinePiece {
 /// One state of a picture; it is not changed any more.
 struct SlicePicture {
   SliceFrame frame;
-  PlaneImage image;  ///< without values where there is no scan
+  PlaneImage image;  ///< without values where there is no scan; NaN where it is not read yet
   std::vector<OutlinePiece> outline;
-  bool exact = false;
+  bool exact = false, done = false;  ///< done: nothing more will be read of it
 };
 /// The outline of a surface in a picture, what of it is seen.
 std::vector<OutlinePiece> outline_in(const TriMesh& mesh, const SliceFrame& frame);

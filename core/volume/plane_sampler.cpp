@@ -81,7 +81,7 @@ double PlanePicture::known() const noexcept {
   return inside_ == 0 ? 1.0 : static_cast<double>(done_) / static_cast<double>(inside_);
 }
 
-PlaneImage PlanePicture::image() const {
+PlaneImage PlanePicture::image(bool whole) const {
   PlaneImage out{grid_.width, grid_.height, {}, known()};
   out.values.assign(cells_.size(), std::numeric_limits<float>::quiet_NaN());
   std::vector<std::int32_t> steps(cells_.size(), std::numeric_limits<std::int32_t>::max() - 1);
@@ -91,7 +91,7 @@ PlaneImage PlanePicture::image() const {
     out.values[i] = static_cast<float>(sums_[i]);
     steps[i] = 0;
   }
-  if (!out.exact()) fill_unknown(out.values, steps, out.width, out.height);
+  if (whole && !out.exact()) fill_unknown(out.values, steps, out.width, out.height);
   return out;
 }
 
@@ -232,9 +232,9 @@ Result<PlaneImage> PlaneSampler::sample(const PlaneGrid& grid, const std::functi
     DUBSAR_ASSIGN(const std::vector<float>* const values, values_of(brick));
     const VoxelBox box = box_of(brick);
     for (; i < entries.size() && entries[i].first == brick; ++i) add(picture, entries[i].second, box, *values);
-    if (look && !look(picture)) break;
+    if (look && !look(picture)) return picture.image();
   }
-  return picture.image();
+  return picture.image(true);
 }
 
 }  // namespace dubsar

@@ -24,11 +24,11 @@ struct PlaneGrid {
   friend bool operator==(const PlaneGrid&, const PlaneGrid&) = default;
 };
 
-/// Row after row. NaN: outside the volume, or NaN in the scan.
+/// Row after row. NaN: outside the volume, or NaN in the scan; while it is read what was not read yet, too.
 struct PlaneImage {
   int width = 0, height = 0;
   std::vector<float> values;
-  double known = 0.0;  ///< share of the pixels inside the volume whose voxels were read; others have the nearest one's
+  double known = 0.0;  ///< share of the pixels inside the volume whose voxels were read
   bool exact() const noexcept { return known == 1.0; }
 };
 
@@ -38,7 +38,8 @@ class PlanePicture {
   /// `dims` of the volume.
   PlanePicture(const PlaneGrid& grid, const Dims& dims);
   double known() const noexcept;
-  PlaneImage image() const;
+  /// `whole`: what is not known has the value of the nearest pixel that is; else it is NaN.
+  PlaneImage image(bool whole = false) const;
 
  private:
   friend class PlaneSampler;
@@ -57,7 +58,7 @@ class PlanePicture {
 struct PlaneSamplerOptions {
   std::uint64_t cache_bytes = std::uint64_t{256} << 20;  ///< of floats that are kept
   /// Most that is read for one picture; 0: a quarter of the volume, but 256 MiB at least. Where a plane crosses more,
-  /// as in files that are stored in whole slices, the picture stays coarse.
+  /// as in files that are stored in whole slices, the picture stays coarse: pixels have the nearest known value.
   std::uint64_t picture_bytes = 0;
 };
 
@@ -72,7 +73,7 @@ class PlaneSampler {
   /// Voxels of a brick: what is read at once.
   Dims brick() const noexcept { return brick_; }
   /// Trilinear values at the pixels; those up to half a voxel outside have the value of the border. `look` sees the
-  /// picture after each brick and may give it up by returning false. Errors of the reader.
+  /// picture after each brick and may give it up by returning false; then the rest is NaN. Errors of the reader.
   Result<PlaneImage> sample(const PlaneGrid& grid, const std::function<bool(const PlanePicture&)>& look = {});
   /// Of voxels as stored, asked from the reader so far.
   std::uint64_t read_bytes() const noexcept { return read_bytes_; }

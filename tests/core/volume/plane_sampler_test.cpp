@@ -128,19 +128,23 @@ TEST(PlaneSampler, APlaneThroughALargeFileReadsASmallPartOfItInBoundedMemory) {
       bool first = true;
       double first_known = 0.0;
       std::uint64_t first_bytes = 0;
-      const PlaneImage image = sampler
-                                   ->sample(grid,
-                                            [&](const PlanePicture& so_far) {
-                                              if (first && so_far.known() > 0.01) {
-                                                first = false;
-                                                first_known = so_far.known();
-                                                first_bytes = asked.bytes;
-                                                for (const float v : so_far.image().values) EXPECT_FALSE(std::isnan(v));
-                                              }
-                                              EXPECT_LE(sampler->kept_bytes(), options.cache_bytes + (8u << 20));
-                                              return true;
-                                            })
-                                   .value();
+      const PlaneImage image =
+          sampler
+              ->sample(grid,
+                       [&](const PlanePicture& so_far) {
+                         if (first && so_far.known() > 0.01) {
+                           first = false;
+                           first_known = so_far.known();
+                           first_bytes = asked.bytes;
+                           for (const float v : so_far.image(true).values) EXPECT_FALSE(std::isnan(v));
+                           std::int64_t there = 0;
+                           for (const float v : so_far.image().values) there += !std::isnan(v);
+                           EXPECT_NEAR(static_cast<double>(there) / (256 * 128), so_far.known(), 1e-9);
+                         }
+                         EXPECT_LE(sampler->kept_bytes(), options.cache_bytes + (8u << 20));
+                         return true;
+                       })
+              .value();
       EXPECT_LT(asked.bytes, whole / 4 + (8u << 20)) << chunk.x << " " << chunk.z;
       EXPECT_LT(asked.most_at_once, 8u << 20);
       EXPECT_LT(first_bytes, whole / 50) << "a coarse picture comes first";
@@ -159,7 +163,15 @@ TEST(PlaneSampler, APictureThatIsGivenUpIsCoarseAndTheNextOneKnowsWhatWasRead) {
   const PlaneImage coarse = sampler->sample(grid, [&](const PlanePicture&) { return ++bricks < 5; }).value();
   EXPECT_FALSE(coarse.exact());
   EXPECT_NEAR(coarse.known, 5.0 / 64, 0.01);
-  EXPECT_TRUE(sampler->sample(grid).value().exact());
+  const PlaneImage whole = sampler->sample(grid).value();
+  EXPECT_TRUE(whole.exact());
+  std::int64_t read = 0;
+  for (std::size_t i = 0; i < coarse.values.size(); ++i) {
+    if (std::isnan(coarse.values[i])) continue;  // nothing is made up of what was not read
+    ++read;
+    EXPECT_EQ(coarse.values[i], whole.values[i]);
+  }
+  EXPECT_NEAR(static_cast<double>(read), 5.0 / 64 * 256 * 256, 700);
   EXPECT_EQ(asked.bytes, 64u * 32 * 32 * 32 * 4) << "every brick once";
 }
 
