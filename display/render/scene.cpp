@@ -51,7 +51,7 @@ void grow_by(Box& box, const LabelItem& item) { grow(box, item.at_mm); }
 Result<void> check_item(const LabelItem& item) {
   if (item.font == nullptr) return fail(ErrorKind::kUsage, "scene: a label has no font");
   if (!finite(item.at_mm) || !finite(item.along_mm) || !(item.height_px > 0) || !std::isfinite(item.height_px) ||
-      !fraction(item.opacity) || !fraction(item.hidden_opacity) || !fraction(item.anchor) ||
+      !fraction(item.opacity) || !fraction(item.hidden_opacity) || !fraction(item.anchor) || !fraction(item.plate) ||
       !std::isfinite(item.lift_mm) || !std::isfinite(item.shift_px.x) || !std::isfinite(item.shift_px.y))
     return fail(ErrorKind::kUsage,
                 "scene: a label of {} pixels and opacities {} and {} found, expected more than 0 and 0 to 1",

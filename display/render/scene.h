@@ -65,6 +65,8 @@ struct LabelItem {
   double anchor = 0.0;       ///< what of the text stands at the place: 0 its beginning, 0.5 its middle, 1 its end
   double height_px = 16.0;   ///< of the letters, of the picture
   Rgb8 color{232, 228, 220}, border{23, 24, 27};
+  double plate = 0.0;           ///< 0..1: how much of what lies behind the text its ground covers, in `border`
+  glm::dvec3 normal{0.0};       ///< of the surface that the place lies on; 0: not known, or on none
   double opacity = 1.0;         ///< 0..1
   double hidden_opacity = 0.0;  ///< as of lines, of the whole label
   double lift_mm = 3.0;         ///< towards the eye: what is rough around the place does not hide it

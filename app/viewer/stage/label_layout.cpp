@@ -13,6 +13,8 @@ namespace {
 constexpr double kAboveEm = 0.8, kBelowEm = 0.25;  // of the letters, from their base line
 constexpr double kLineEm = 1.15;                   // from one line of text to the next
 constexpr int kPlaces = 6;
+constexpr double kLeastFacing = 0.12;  // cosine: 7 degrees above the surface
+constexpr double kLeastAcross = 0.6;   // of the length of a line, what is seen of it: 37 degrees from its end
 
 struct Projected {
   glm::dvec2 px{0.0};
@@ -39,6 +41,22 @@ LabelItem placed(const LabelItem& label, int place) {
 }
 
 }  // namespace
+
+bool turn_to_reader(LabelItem& label, const View& view) {
+  const glm::dmat3 turn(view.view_from_world);
+  const glm::dvec3 at(view.view_from_world * glm::dvec4(label.at_mm, 1.0));
+  const glm::dvec3 to_eye = view.orthographic() ? glm::dvec3(0, 0, 1) : -at / std::max(glm::length(at), 1e-9);
+  const glm::dvec3 normal = turn * label.normal, along = turn * label.along_mm;
+  const double size = glm::length(normal), length = glm::length(along);
+  if (size > 0 && glm::dot(normal, to_eye) < kLeastFacing * size) return false;
+  if (!(length > 0)) return true;
+  if (glm::length(glm::cross(along, to_eye)) < kLeastAcross * length) return false;
+  if (along.x < 0) {
+    label.at_mm += label.along_mm;
+    label.along_mm = -label.along_mm;
+  }
+  return true;
+}
 
 std::vector<LabelRect> label_rects(const LabelItem& label, const View& view, const PixelSize& size) {
   const auto at = project(label.at_mm, view, size);

@@ -27,6 +27,11 @@ std::vector<LabelRect> label_rects(const LabelItem& label, const View& view, con
 /// Whether any of some covers any of others.
 bool cover(std::span<const LabelRect> some, std::span<const LabelRect> others);
 
+/// Whether a label is read in this view: its place does not look away, and the line that its text runs along is not
+/// seen from an end, where the text would stick out of the surface. A text that would stand on its head begins at the
+/// other end of its line.
+bool turn_to_reader(LabelItem& label, const View& view);
+
 /// Keeps from picture to picture what it chose, so that letters do not jump while things turn. One thread.
 class LabelLayout {
  public:

@@ -8,19 +8,14 @@
 namespace dubsar::app {
 namespace {
 
-// Amber is what was measured, bright what is written; both with a dark border, so that they are read on any clay.
-constexpr Rgb8 kMeasured{0xe8, 0xb4, 0x4c}, kWritten{0xf4, 0xf0, 0xe8};
 constexpr double kDotPx = 7.0, kDotBorderPx = 11.0, kLinePx = 2.2, kLineBorderPx = 5.0;
-constexpr double kHidden = 0.18;     // of what lies behind the surface
-constexpr double kHiddenOpen = 0.6;  // of the text of the note that is open: it is read wherever it stands
 constexpr std::size_t kMostLetters = 48;
 
-LinesItem lines(const std::vector<glm::dvec3>& pairs, double width_px, const Rgb8& color, double hidden) {
+LinesItem lines(const std::vector<glm::dvec3>& pairs, double width_px, const Rgb8& color) {
   LinesItem out;
   out.points_mm = pairs;
   out.width_px = width_px;
   out.color = color;
-  out.hidden_opacity = hidden;
   return out;
 }
 
@@ -59,17 +54,17 @@ class Marker {
   }
   void path(const std::vector<glm::dvec3>& at, const Rgb8& color) {
     if (at.size() < 2) return;
-    out_.lines.push_back(lines(pairs_of(at), kLineBorderPx, kGroundColor, 0.0));
-    out_.lines.push_back(lines(pairs_of(at), kLinePx, color, kHidden));
+    out_.lines.push_back(lines(pairs_of(at), kLineBorderPx, kGroundColor));
+    out_.lines.push_back(lines(pairs_of(at), kLinePx, color));
   }
   void straight(const glm::dvec3& a, const glm::dvec3& b, const Rgb8& color) {
-    LinesItem line = lines({a, b}, 1.2, color, 0.5);
+    LinesItem line = lines({a, b}, 1.2, color);
     line.opacity = 0.7;
     out_.lines.push_back(std::move(line));
   }
   void dot(const glm::dvec3& at, const Rgb8& color) {
-    out_.lines.push_back(lines({at, at}, kDotBorderPx, kGroundColor, 0.0));
-    out_.lines.push_back(lines({at, at}, kDotPx, color, kHidden));
+    out_.lines.push_back(lines({at, at}, kDotBorderPx, kGroundColor));
+    out_.lines.push_back(lines({at, at}, kDotPx, color));
     out_.lines.back().lift_mm = 0.1;  // before its border
   }
   LabelItem& label(std::string text, const glm::dvec3& at, const Rgb8& color) {
@@ -81,6 +76,7 @@ class Marker {
     label.height_px = kMarkLettersPx;
     label.color = color;
     label.border = kGroundColor;
+    label.plate = kMarkPlate;
     return out_.labels.emplace_back(std::move(label));
   }
   Marks take(double scale) {
@@ -109,38 +105,39 @@ void mark(Marker& marker, const Measure& measure, std::size_t number) {
   if (!offset) return;
   const auto points = moved(measure.points_mm, *offset), way = moved(measure.figures.path_mm, *offset);
   const bool depth = measure.kind == MeasureKind::kDepth, angle = measure.kind == MeasureKind::kAngle;
-  if (angle) marker.path(points, kMeasured);
-  if (!angle) marker.path(way, kMeasured);
-  if (!angle && !depth && points.size() > 1) marker.straight(points[0], points[1], kMeasured);
+  if (angle) marker.path(points, kMeasuredColor);
+  if (!angle) marker.path(way, kMeasuredColor);
+  if (!angle && !depth && points.size() > 1) marker.straight(points[0], points[1], kMeasuredColor);
   if (!depth)
-    for (const glm::dvec3& p : points) marker.dot(p, kMeasured);
-  if (depth && !way.empty()) marker.dot(way.front(), kMeasured);
+    for (const glm::dvec3& p : points) marker.dot(p, kMeasuredColor);
+  if (depth && !way.empty()) marker.dot(way.front(), kMeasuredColor);
   const glm::dvec3 at = angle ? points[1] : way.empty() ? points[0] : depth ? way.front() : middle_of(way);
   const std::string name = measure.name.empty() ? fmt::format("{}", number) : measure.name;
-  marker.label(fmt::format("{}: {}", name, figures_text(measure)), at, kMeasured);
+  marker.label(fmt::format("{}: {}", name, figures_text(measure)), at, kMeasuredColor);
 }
 
-void mark(Marker& marker, const Note& note, bool open) {
+void mark(Marker& marker, const Note& note) {
   const auto offset = marker.offset(note.part);
   if (!offset) return;
   if (note.line_mm.size() > 1) {
     const auto line = moved(note.line_mm, *offset);
-    marker.path(line, kWritten);
-    LabelItem& text = marker.label(note.text.empty() ? note.label : beginning(note.text), line.front(), kWritten);
+    marker.path(line, kWrittenColor);
+    LabelItem& text = marker.label(note.text.empty() ? note.label : beginning(note.text), line.front(), kWrittenColor);
     text.along_mm = line.back() - line.front();
-    text.shift_px = {0.0, 6.0};
-    text.hidden_opacity = open ? kHiddenOpen : 0.0;
+    text.shift_px = {0.0, 8.0};
+    text.normal = note.normal;
     if (!note.text.empty() && !note.label.empty()) {
-      LabelItem& label = marker.label(note.label, line.front(), kMeasured);
+      LabelItem& label = marker.label(note.label, line.front(), kMeasuredColor);
       label.anchor = 1.0;
       label.shift_px = {-8.0, -5.0};
+      label.normal = note.normal;
     }
     return;
   }
-  marker.dot(note.at_mm + *offset, kWritten);
+  marker.dot(note.at_mm + *offset, kWrittenColor);
   const std::string between = note.label.empty() || note.text.empty() ? "" : "  ";
-  LabelItem& text = marker.label(note.label + between + beginning(note.text), note.at_mm + *offset, kWritten);
-  text.hidden_opacity = open ? kHiddenOpen : 0.0;
+  LabelItem& text = marker.label(note.label + between + beginning(note.text), note.at_mm + *offset, kWrittenColor);
+  text.normal = note.normal;
 }
 
 }  // namespace
@@ -161,9 +158,9 @@ glm::dvec3 middle_of(const std::vector<glm::dvec3>& path_mm) {
 Marks marks_of(const Document& document, const Desk& desk, const PartLooks& parts, LabelFont& font, double scale) {
   Marker marker(document, parts, font);
   for (std::size_t i = 0; i < document.measures.size(); ++i) mark(marker, document.measures[i], i + 1);
-  for (std::size_t i = 0; i < document.notes.size(); ++i) mark(marker, document.notes[i], i + 1 == desk.note);
+  for (std::size_t i = 0; i < document.notes.size(); ++i) mark(marker, document.notes[i]);
   for (const SurfacePin& pin : desk.pending)
-    if (const auto offset = marker.offset(pin.part)) marker.dot(pin.at_mm + *offset, kMeasured);
+    if (const auto offset = marker.offset(pin.part)) marker.dot(pin.at_mm + *offset, kMeasuredColor);
   return marker.take(scale);
 }
 

@@ -92,7 +92,9 @@ void Stage::Parts::set_scene(const Shown& shown, int half) {
   std::vector<LabelItem> labels;
   for (LabelItem label : shown.marks.labels) {
     label.along_mm = glm::dmat3(world) * label.along_mm;
+    label.normal = glm::dmat3(world) * label.normal;
     place(label.at_mm);
+    if (!turn_to_reader(label, middle)) continue;
     if (label.hidden_opacity == 0.0 && cut(label.at_mm)) continue;
     label.lift_mm *= scale;
     labels.push_back(std::move(label));

@@ -13,6 +13,8 @@ namespace {
 constexpr GLuint kLettersBinding = 1, kSeenBinding = 2;
 constexpr double kPlacePx = 7.0;  // side of what is looked at of a label's place, of the picture
 constexpr double kBorderEm = 0.07;
+constexpr double kPlateAboveEm = 0.85, kPlateBelowEm = 0.3, kPlateAsideEm = 0.25;  // of the text's ground
+constexpr float kNoSheet = -1.0f;                                                  // shaders/labels.frag
 
 struct Letter {  // std430, as in shaders/labels.vert
   glm::vec4 place, sheet;
@@ -31,6 +33,12 @@ std::vector<Letter> letters_of(const LabelItem& item, double px, double pixel) {
   double pen = pixel * item.shift_px.x - item.anchor * font.width_em(item.text) * px;
   const double base = pixel * item.shift_px.y;
   std::vector<Letter> out;
+  if (item.plate > 0) {
+    const double width = font.width_em(item.text) * px, aside = kPlateAsideEm * px;
+    out.push_back(
+        {glm::vec4(glm::dvec4(pen - aside, base - kPlateBelowEm * px, pen + width + aside, base + kPlateAboveEm * px)),
+         glm::vec4(kNoSheet)});
+  }
   for (const unsigned code : codes) {
     const LabelFont::Glyph& glyph = font.glyph(code);
     if (glyph.width > 0) {
@@ -114,6 +122,7 @@ void LabelPass::draw_letters(const LabelItem& item, const PassViews& target, dou
   glUniform4f(4, fill.x, fill.y, fill.z, fill.w);
   glUniform4f(5, border.x, border.y, border.z, border.w);
   glUniform1f(6, static_cast<float>(kBorderEm * LabelFont::kEmPx * 0.5 / LabelFont::kSpreadPx));
+  glUniform1f(12, static_cast<float>(item.plate));
   for (const bool nearer : {true, false}) {
     glUniform3f(8, static_cast<float>(place_side(pixel)), static_cast<float>(item.hidden_opacity),
                 nearer ? 1.0f : 0.0f);

@@ -104,5 +104,51 @@ TEST_F(LabelLayouts, LettersDoNotJumpToAndFroWhileThingsTurn) {
   EXPECT_LE(changes, 3);
 }
 
+// A line of 60 mm on the front of a tablet that is turned about its upright axis: its text is read from the front, not
+// from behind, and not where it would stick out of the edge.
+TEST_F(LabelLayouts, TextsAlongLinesAreReadFromTheFrontOnly) {
+  for (int degrees = 0; degrees < 360; degrees += 5) {
+    const double angle = degrees * 3.14159265358979 / 180.0;
+    const glm::dmat3 turn(glm::rotate(glm::dmat4(1.0), angle, glm::dvec3(0, 1, 0)));
+    LabelItem text = label("IGI a-na-x", turn * glm::dvec3(-30, 0, 10));
+    text.along_mm = turn * glm::dvec3(60, 0, 0);
+    text.normal = turn * glm::dvec3(0, 0, 1);
+    const bool read = turn_to_reader(text, view_);
+    if (std::cos(angle) > 0.65) {
+      EXPECT_TRUE(read) << degrees;
+    } else if (std::cos(angle) < 0.55) {
+      EXPECT_FALSE(read) << degrees;
+    }
+    LabelItem pin = label("o. 1", turn * glm::dvec3(0, 0, 10));
+    pin.normal = turn * glm::dvec3(0, 0, 1);
+    EXPECT_EQ(turn_to_reader(pin, view_), std::cos(angle) > 0.12) << degrees;
+  }
+}
+
+TEST_F(LabelLayouts, TextsNeverStandOnTheirHeads) {
+  for (int degrees = 0; degrees < 360; degrees += 10) {
+    const double angle = (degrees + 3) * 3.14159265358979 / 180.0;
+    LabelItem text = label("kaspum", {5, 7, 1});
+    text.along_mm = 40.0 * glm::dvec3(std::cos(angle), std::sin(angle), 0.0);
+    const glm::dvec3 a = text.at_mm, b = text.at_mm + text.along_mm;
+    ASSERT_TRUE(turn_to_reader(text, view_));
+    EXPECT_GT(text.along_mm.x, 0.0) << degrees;
+    EXPECT_LT(std::min(glm::distance(text.at_mm, a), glm::distance(text.at_mm, b)), 1e-9) << "it begins at an end";
+    EXPECT_LT(std::min(glm::distance(text.at_mm + text.along_mm, a), glm::distance(text.at_mm + text.along_mm, b)),
+              1e-9);
+  }
+}
+
+TEST_F(LabelLayouts, InPerspectiveThePlaceCounts) {
+  View near;
+  near.clip_from_view = glm::perspective(1.0, 1.0, 10.0, 1000.0);
+  near.view_from_world = glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, -100));
+  LabelItem side = label("l. e. 1", {40, 0, 0});
+  side.normal = {1, 0, 0};  // looks away from an eye in the middle, 100 mm before
+  EXPECT_FALSE(turn_to_reader(side, near));
+  side.at_mm.x = -40;  // the eye is on the side that it looks to
+  EXPECT_TRUE(turn_to_reader(side, near));
+}
+
 }  // namespace
 }  // namespace dubsar::app

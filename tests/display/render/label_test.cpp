@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <glm/gtc/matrix_transform.hpp>
 #include <iterator>
@@ -276,6 +277,43 @@ TEST_F(Labels, WhatIsNoFontOrCannotBeDrawnIsRefused) {
   EXPECT_TRUE(refused([](LabelItem& l) { l.height_px = 0; }));
   EXPECT_TRUE(refused([](LabelItem& l) { l.opacity = 2; }));
   EXPECT_TRUE(refused([](LabelItem& l) { l.at_mm.x = std::nan(""); }));
+}
+
+double luminance(const std::uint8_t* p) {
+  const auto linear = [](double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); };
+  return 0.2126 * linear(p[0] / 255.0) + 0.7152 * linear(p[1] / 255.0) + 0.0722 * linear(p[2] / 255.0);
+}
+
+// Contrast as of WCAG 2.2: (L1 + .05) / (L2 + .05). On clay that is lit, on white and on black.
+TEST_F(Labels, OnTheirGroundAreReadWhateverLiesBehind) {
+  for (const std::array<std::uint8_t, 3> ground : std::vector<std::array<std::uint8_t, 3>>{
+           {190, 180, 166}, {255, 255, 255}, {0, 0, 0}, {244, 240, 232}, {232, 180, 76}})
+    for (const Rgb8 color : {Rgb8{0xe8, 0xb4, 0x4c}, Rgb8{0xf4, 0xf0, 0xe8}}) {
+      label_.text = "IGI";
+      label_.at_mm = {-60, 0, 0};
+      label_.height_px = 30;
+      label_.color = color;
+      label_.border = {23, 24, 27};
+      label_.plate = 0.94;
+      View view;
+      view.clip_from_view = glm::ortho(-100.0, 100.0, -100.0, 100.0, -100.0, 100.0);
+      const std::array<DrawItem, 1> items{label_};
+      const SceneView scene{items, Light(), {}, Background{{ground[0], ground[1], ground[2]}, false}};
+      auto array = ViewArray::create(kSide, kSide, 1).value();
+      ASSERT_TRUE(renderer_.render(scene, std::span(&view, 1), 1, array));
+      const Image image = array.read_layer(0).value();
+      // Of the plate: columns beside the first letter's stem, half an em above the base line.
+      double bright = 0.0, dark = 1.0;
+      for (int y = 100 - 18; y < 100 - 3; ++y)
+        for (int x = 40; x < 75; ++x) {
+          bright = std::max(bright, luminance(image.at(x, y)));
+          dark = std::min(dark, luminance(image.at(x, y)));
+        }
+      const double between = luminance(image.at(40 - 3, 100 - 10));  // the ground's own border, before the letters
+      EXPECT_GE((bright + 0.05) / (between + 0.05), 4.5) << int{ground[0]} << " " << int{color[2]};
+      EXPECT_GE((bright + 0.05) / (dark + 0.05), 4.5);
+      EXPECT_EQ(image.at(150, 100)[0], ground[0]) << "no farther than the text";
+    }
 }
 
 }  // namespace
