@@ -38,6 +38,7 @@ const bool kHatched = false;
 #ifdef FILLED
 in vec3 unit_place;
 in vec3 way_to_eye;
+in vec2 nearer;
 #endif
 layout(location = 0) out vec4 color;  // linear, premultiplied
 
@@ -103,17 +104,23 @@ const vec3 kSection = vec3(0.30, 0.19, 0.12), kSectionLine = vec3(0.10, 0.055, 0
 #endif
 
 void main() {
+  float depth = gl_FragCoord.z;
+#ifdef FILLED
+  // Bodies that touch share their border: the inner side of the one and the outer side of the other lie at one place. A
+  // line of sight leaves the nearer body there and goes on in the next, so that the inner side counts.
+  bool inner = !gl_FrontFacing && (blend.z == 1.0 || dot(view_normal, way_from(view_position)) < 0.0);
+  if (inner) depth = 0.5 * nearer.x / nearer.y + 0.5;
+  gl_FragDepth = depth;
+#endif
 #ifdef PEELED
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  if (gl_FragCoord.z >= texelFetch(opaque_depth, pixel, 0).r || gl_FragCoord.z <= texelFetch(peeled_depth, pixel, 0).r)
-    discard;
+  if (depth >= texelFetch(opaque_depth, pixel, 0).r || depth <= texelFetch(peeled_depth, pixel, 0).r) discard;
 #endif
 #ifdef FILLED
   // What is behind planes that lie behind the body is drawn as well: a closed surface whose inner side comes first says
   // that the line of sight came out of a plane inside of the body; its outer side, or nothing left: that there is none.
   float from, to;
   kept_part(unit_place, way_to_eye, from, to);
-  bool inner = !gl_FrontFacing && dot(view_normal, way_from(view_position)) < 0.0;
   if (from > 0.0 && (!inner || from >= to)) {
 #ifdef PEELED
     discard;

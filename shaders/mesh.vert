@@ -42,6 +42,7 @@ out float gl_ClipDistance[8];
 #ifdef FILLED
 out vec3 unit_place;
 out vec3 way_to_eye;  // in the unit cube; of parallel projections longer than it
+out vec2 nearer;      // z and w of the clip space, a little nearer to the eye
 #endif
 
 vec3 linear_from_srgb(vec3 c) {
@@ -104,6 +105,7 @@ void main() {
   way_to_eye = view.view_from_normal[3][3] == 1.0
                    ? unit_from_view[2].xyz * 4.0 / max(length(unit_from_view[2].xyz), 1e-9)
                    : unit_from_view[3].xyz - unit.xyz;
+  nearer = (view.clip_from_view * (position + vec4(0.0, 0.0, blend.y, 0.0))).zw;
 #endif
 #ifdef CLIPPED
   for (int i = 0; i < 8; ++i) {

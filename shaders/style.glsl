@@ -16,7 +16,8 @@ struct Look {
 };
 layout(std140, binding = 1) uniform Style {
   Look looks[2];
-  vec4 blend;            // x: share of the second look
+  vec4 blend;            // x: share of the second look; y: of sections, how much nearer inner sides count, view's mm;
+                         // z: 1 where no triangle folds over
   vec4 inferred_color;   // linear
   vec4 inferred_stripe;  // linear
   vec4 hatch;            // stripes along the axes of the unit cube

@@ -33,7 +33,7 @@ struct Preset {
   bool ambient_occlusion, lit;
   bool rakes = false;
 };
-constexpr std::array<Preset, 16> kPresets{
+constexpr std::array<Preset, 17> kPresets{
     {{"relief", "clay, hollows darker", ColorMap::kBlackWhite, true, true},
      {"phong", "clay in plain light", ColorMap::kPlain, false, true},
      {"raking", "raking light", ColorMap::kPlain, false, true, true},
@@ -49,7 +49,8 @@ constexpr std::array<Preset, 16> kPresets{
      {"mean-curvature", "mean curvature", ColorMap::kMean, false, false},
      {"gaussian-curvature", "Gaussian curvature", ColorMap::kGaussian, false, false},
      {"shape-index", "shape index", ColorMap::kShapeIndex, false, false},
-     {"curvedness", "curvedness", ColorMap::kCurvedness, false, false}}};
+     {"curvedness", "curvedness", ColorMap::kCurvedness, false, false},
+     {"photograph", "its own colours, of a photograph", ColorMap::kPlain, false, false}}};
 
 /// A lamp beside the tablet in a dark room. Level clay is a middle grey; walls towards the lamp come close to white.
 Light raking_light() {

@@ -51,8 +51,8 @@ struct Style {
   /// Beyond its linear part the map's contrast bends: the bottoms of wedges and the tops of ridges keep their slopes
   /// instead of all becoming black or white.
   bool shoulder = true;
-  bool lit = true;  ///< false: the colours as they are, as in figure 14 a to e
-  Rgb8 base_color{203, 192, 178};
+  bool lit = true;                 ///< false: the colours as they are, as in figure 14 a to e
+  Rgb8 base_color{203, 192, 178};  ///< of clay; lit meshes that carry colours have those in its place
   BackFaces back_faces = BackFaces::kShow;
   Rgb8 back_color{120, 60, 60};
   /// Surface that the scan does not show (fill patches) is hatched in these two colours, never darker than a third of
@@ -152,8 +152,8 @@ struct Shading {
 
 /// Names of presets for the command line: "relief" (default), "phong", "raking" (low light with shadows), "table",
 /// "black-white", "sky-sun", "ao", "sky-sun-ao", "black-white-ao", "table-ao", "msii" (integral invariants),
-/// "radiance", "mean-curvature", "gaussian-curvature", "shape-index", "curvedness". kUsage, with the list, for another
-/// name.
+/// "radiance", "mean-curvature", "gaussian-curvature", "shape-index", "curvedness", "photograph". kUsage, with the
+/// list, for another name.
 Result<Shading> shading_preset(std::string_view name);
 std::vector<std::string_view> shading_preset_names();
 /// What a preset shows, in a few words for people; of another name: itself.

@@ -83,6 +83,7 @@ class GpuMesh {
   GLuint vertex_array() const noexcept { return vertex_array_; }
   const Box& box_mm() const noexcept { return box_mm_; }
   bool mirrored() const noexcept { return mirrored_; }
+  bool has_colors() const noexcept { return colors_ != 0; }
   /// Of what was uploaded: no two uploads of a process have the same.
   std::uint64_t version() const noexcept { return version_; }
   /// Index ranges (first triangle, count) to draw for the partitions whose bit is set, neighbours joined, without the

@@ -41,6 +41,7 @@ class LodMesh {
 
   int levels() const noexcept { return static_cast<int>(levels_.size()); }
   const GpuMesh& level(int i) const { return levels_[static_cast<std::size_t>(i)].mesh; }  ///< 0 the finest
+  double cell_mm(int i) const { return levels_[static_cast<std::size_t>(i)].cell_mm; }     ///< 0: as the mesh is
   std::int64_t triangles(int i) const { return levels_[static_cast<std::size_t>(i)].triangles; }
   /// The coarsest level whose grid is at most `cell_mm`; 0 for 0.
   int level_for(double cell_mm) const noexcept;

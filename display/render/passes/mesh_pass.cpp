@@ -26,6 +26,7 @@ constexpr GLuint kTableUnit = 0, kShadowUnit = 1, kOpaqueUnit = 2, kPeeledUnit =
 constexpr std::size_t kMostTables = 8;
 constexpr double kHatchStripes = 90;         // along the longest side of a mesh
 constexpr double kLeastSineEven = 0.12;      // Light::even: 7 degrees
+constexpr double kSameBorder = 5e-5;         // of the longest side: what is no farther apart lies at one place
 constexpr double kShadowOffsetTexels = 1.5;  // along the normal, before the map is asked
 
 enum Variant : unsigned {
@@ -101,18 +102,24 @@ unsigned look_variant(const Style& style, const Light& light) {
   return kLit | (light.specular > 0 ? kGlossy : 0u) | (light.knee < 1.0 ? kKneed : 0u);
 }
 
-StyleData style_data(const MeshItem& item, const SceneView& scene, const View& view, const ShadowMap* shadows) {
+/// `cell_mm` of the level of detail: borders that bodies share have moved apart by as much.
+StyleData style_data(const MeshItem& item, const SceneView& scene, const View& view, const ShadowMap* shadows,
+                     double cell_mm) {
   const Style& s = item.style;
   const Box& box = item.mesh->box_mm();
   const glm::dmat4 world_from_unit = item.world_from_model * model_from_unit(box);
   const glm::dvec3 direction = light_direction(scene.light);
   StyleData out{};
   out.looks = {look_data(s, scene.light, direction), look_data(item.other.style, item.other.light, direction)};
-  out.blend = glm::vec4(static_cast<float>(item.other.share), 0.0f, 0.0f, 0.0f);
+  const glm::dvec3 size = box.size();
+  const double longest = std::max({size.x, size.y, size.z, 1e-9});
+  const double shown_scale =
+      std::cbrt(std::abs(glm::determinant(glm::dmat3(view.view_from_world * item.world_from_model))));
+  out.blend = glm::vec4(
+      glm::dvec4(item.other.share, shown_scale * (kSameBorder * longest + cell_mm), cell_mm == 0.0 ? 1.0 : 0.0, 0.0));
   out.inferred_color = glm::vec4(linear_color(s.inferred_color), 1.0f);
   out.inferred_stripe = glm::vec4(linear_color(s.inferred_stripe), 1.0f);
-  const glm::dvec3 size = box.size();
-  out.hatch = glm::vec4(glm::vec3(size * (kHatchStripes / std::max({size.x, size.y, size.z, 1e-9}))), 0.0f);
+  out.hatch = glm::vec4(glm::vec3(size * (kHatchStripes / longest)), 0.0f);
   out.background = scene.background.transparent ? glm::vec4(0.0f) : glm::vec4(linear_color(scene.background.color), 1);
   if (scene.fog.strength > 0) {
     const glm::dvec2 depth = fog_depths(scene, view);
@@ -270,9 +277,14 @@ GLuint MeshPass::table_of(const Style& style) {
   return tables_.back().texture;
 }
 
-void MeshPass::bind_tables(const MeshItem& item) {
-  glBindTextureUnit(kTableUnit, table_of(item.style));
-  if (item.other.share > 0) glBindTextureUnit(kOtherTableUnit, table_of(item.other.style));
+/// A surface with colours of its own is not of clay besides.
+void MeshPass::bind_tables(const MeshItem& item, bool colors) {
+  const auto seen = [&](Style style) {
+    if (colors && style.lit) style.base_color = {255, 255, 255};
+    return style;
+  };
+  glBindTextureUnit(kTableUnit, table_of(seen(item.style)));
+  if (item.other.share > 0) glBindTextureUnit(kOtherTableUnit, table_of(seen(item.other.style)));
 }
 
 Result<void> MeshPass::draw(const MeshItem& item, const SceneView& scene, const PassViews& target,
@@ -283,7 +295,8 @@ Result<void> MeshPass::draw(const MeshItem& item, const SceneView& scene, const 
   const auto drawn = [&](const PartLook& p) { return p.visible && p.opacity > 0 && (p.opacity < 1.0) == transparent; };
   if (std::none_of(item.parts.begin(), item.parts.end(), drawn)) return {};
   const Box& box = item.mesh->box_mm();
-  const GpuMesh& level = item.mesh->level(level_for_views(item, target.views, target.coarse_px, target.width_px));
+  const int fineness = level_for_views(item, target.views, target.coarse_px, target.width_px);
+  const GpuMesh& level = item.mesh->level(fineness);
   std::vector<View> views;
   std::vector<ViewData> data;
   for (std::size_t i = 0; i < target.views.size(); ++i) {
@@ -297,13 +310,13 @@ Result<void> MeshPass::draw(const MeshItem& item, const SceneView& scene, const 
   const ShadowMap* const shadows = cast ? mode.shadows : nullptr;
   const bool filled = item.style.section && !scene.clips.empty();
   const bool bent = item.style.radiance > 0 || (blended && item.other.style.radiance > 0);
-  const StyleData style = style_data(item, scene, target.views[0], shadows);
+  const StyleData style = style_data(item, scene, target.views[0], shadows, item.mesh->cell_mm(fineness));
   stream(style_, std::as_bytes(std::span(&style, 1)));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kViewsBinding, views_);
   glBindBufferBase(GL_UNIFORM_BUFFER, kStyleBinding, style_);
   glVertexAttrib4f(kForeignColor, 1, 1, 1, 1);
   glVertexAttrib4f(kCarried, 0, 0, 0, 0);
-  bind_tables(item);
+  bind_tables(item, level.has_colors());
   if (shadows != nullptr) glBindTextureUnit(kShadowUnit, shadows->texture());
   if (transparent) {
     glBindTextureUnit(kOpaqueUnit, mode.opaque_depth);

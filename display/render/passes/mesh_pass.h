@@ -50,7 +50,7 @@ class MeshPass {
   };
   Result<GLuint> program(unsigned variant);
   GLuint table_of(const Style& style);
-  void bind_tables(const MeshItem& item);
+  void bind_tables(const MeshItem& item, bool colors);
   Result<void> draw_part(const GpuMesh& level, const MeshItem& item, std::size_t p, std::span<const View> views,
                          unsigned variant, Instalments* pieces);
 
