@@ -6,8 +6,10 @@
 #include <charconv>
 
 #include "core/base/files/file_suffix.h"
+#include "core/base/numbers/units.h"
 #include "core/base/text/near_word.h"
 #include "core/exa/exa_file.h"
+#include "core/mesh/pores_by_body.h"
 #include "core/mesh/vertex_attributes.h"
 #include "core/mesh_io/mesh_io.h"
 #include "core/parts/surface_model.h"
@@ -81,29 +83,12 @@ Result<TriMesh> load_exa(const MeshRequest& request, Progress& progress) {
   return std::move(*joined);
 }
 
-}  // namespace
-
-bool is_exa_file(const std::filesystem::path& path) {
-  const auto info = read_exa_info(path);
-  return info.has_value() || lower_suffix(path) == ".exa";
-}
-
-Result<void> check_parts(const std::filesystem::path& path, std::span<const std::string> names) {
-  if (names.empty()) return {};
-  const auto info = read_exa_info(path);  // what is wrong with the file, reading it says
-  if (!info) return {};
-  for (const std::string& wanted : names)
-    if (!names_a_part(info->partitions, wanted)) return no_such_partition(wanted, info->partitions);
-  return {};
-}
-
-Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress) { return load_mesh(request, progress, {}); }
-
-Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress,
-                          const std::function<void(TriMesh)>& tell_coarse) {
-  if (is_exa_file(request.path)) return load_exa(request, progress);
-  DUBSAR_ASSIGN(TriMesh mesh, read_mesh(request.path, progress,
-                                        request.partitions.empty() ? tell_coarse : std::function<void(TriMesh)>()));
+Result<TriMesh> load_foreign(const MeshRequest& request, Progress& progress,
+                             const std::function<void(TriMesh)>& tell_coarse) {
+  // A coarse surface is in the file's own unit.
+  const bool coarse = request.partitions.empty() && request.foreign.unit_mm == 0.0;
+  DUBSAR_ASSIGN(TriMesh mesh, read_mesh(request.path, progress, request.foreign,
+                                        coarse ? tell_coarse : std::function<void(TriMesh)>()));
   if (request.partitions.empty()) return mesh;
   std::optional<TriMesh> joined;
   for (const std::string& wanted : request.partitions) {
@@ -119,6 +104,42 @@ Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress,
       joined = std::move(part);
   }
   return std::move(*joined);
+}
+
+}  // namespace
+
+bool is_exa_file(const std::filesystem::path& path) {
+  const auto info = read_exa_info(path);
+  return info.has_value() || lower_suffix(path) == ".exa";
+}
+
+Result<double> mesh_unit_mm(const std::string& unit) {
+  if (unit.empty()) return 0.0;
+  const std::optional<double> mm = mm_per_unit(unit);
+  if (!mm) return fail(ErrorKind::kUsage, "--unit {} found, expected m, cm, mm, um, nm or inch", unit);
+  return *mm;
+}
+
+Result<void> check_parts(const std::filesystem::path& path, std::span<const std::string> names) {
+  if (names.empty()) return {};
+  const auto info = read_exa_info(path);  // what is wrong with the file, reading it says
+  if (!info) return {};
+  for (const std::string& wanted : names)
+    if (!names_a_part(info->partitions, wanted)) return no_such_partition(wanted, info->partitions);
+  return {};
+}
+
+Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress) { return load_mesh(request, progress, {}); }
+
+Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress,
+                          const std::function<void(TriMesh)>& tell_coarse) {
+  const bool exa = is_exa_file(request.path);
+  if (exa && request.foreign.unit_mm > 0)
+    return fail(ErrorKind::kUsage, "--unit found with {}, which says its own unit, expected it with a mesh file only",
+                request.path.string());
+  DUBSAR_ASSIGN(TriMesh mesh, exa ? load_exa(request, progress) : load_foreign(request, progress, tell_coarse));
+  if (request.divide_pores) divide_pores(mesh);
+  return mesh;
 }
 
 }  // namespace dubsar::app

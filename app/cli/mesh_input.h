@@ -10,6 +10,7 @@
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/mesh/tri_mesh.h"
+#include "core/mesh_io/mesh_io.h"
 
 namespace dubsar::app {
 
@@ -17,6 +18,8 @@ struct MeshRequest {
   std::filesystem::path path;
   std::vector<std::string> partitions;  ///< names ("tablet"), parts ("envelope") or ids ("2"); empty: all
   bool fill_holes = true;
+  MeshReadOptions foreign{};  ///< of mesh files
+  bool divide_pores = false;  ///< pores go with the body that they lie in (pores_by_body.h): for who moves parts
 };
 
 /// The mesh of the request; parts are joined into one TriMesh but share no vertices. kUsage, with the names there are,
@@ -25,6 +28,13 @@ Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress);
 /// The same; of a mesh file that takes long to read `tell_coarse` gets a coarse surface first.
 Result<TriMesh> load_mesh(const MeshRequest& request, Progress& progress,
                           const std::function<void(TriMesh)>& tell_coarse);
+
+/// "--unit": what one unit of a mesh file is.
+inline constexpr const char* kUnitHelp =
+    "of a mesh file, what one unit is: m, cm, mm, um, inch; where the file does not say, or means mm and says m as GLB "
+    "does";
+/// mm in it; 0 for an empty text. kUsage for what is no unit.
+Result<double> mesh_unit_mm(const std::string& unit);
 
 /// kUsage when an EXA file has no part of one of these names or ids; quick, so that slips are known before a large file
 /// is read. Other files, and files that cannot be read, are let through.

@@ -29,6 +29,8 @@ std::uint8_t visible_partitions(const Document& document) {
   std::uint8_t out = 0;
   for (const Part& part : document.parts)
     if (part.visible) out = static_cast<std::uint8_t>(out | part.partitions);
+  for (const Part& part : document.parts)
+    if (!part.visible) out = static_cast<std::uint8_t>(out & ~part.pores);
   return out;
 }
 

@@ -140,7 +140,7 @@ Result<VerbResult> run(const AnimateRequest& options, bool sized, Progress& prog
   DUBSAR_TRY(sink->configure(stage.screen));
   DUBSAR_ASSIGN(const Places places, find_places(options, sink->traits()));
 
-  DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.in, {}, true}, progress));
+  DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.in, {}, true, {0.0, true}, true}, progress));
   Document document = film_document(film.base, mesh);
   for (const std::string& name : strange_parts(film.keys, document))
     log_warning("animate: the film moves a part {}, which {} does not have", name, options.in);

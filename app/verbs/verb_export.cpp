@@ -19,7 +19,7 @@
 namespace dubsar::app {
 namespace {
 struct ExportRequest {
-  std::string in, out, style;
+  std::string in, out, style, unit;
   std::vector<std::string> partitions;
   MeshWriteOptions write;
   bool no_holes = false, simplify = false;
@@ -32,7 +32,11 @@ Result<VerbResult> run(const ExportRequest& options, Progress& progress) {
   if (!options.style.empty()) {
     DUBSAR_ASSIGN(look, shading_preset(options.style));
   }
-  DUBSAR_ASSIGN(TriMesh mesh, load_mesh({options.in, options.partitions, !options.no_holes}, progress));
+  DUBSAR_ASSIGN(const double unit_mm, mesh_unit_mm(options.unit));
+  DUBSAR_ASSIGN(TriMesh mesh, load_mesh({options.in, options.partitions, !options.no_holes, {unit_mm}}, progress));
+  if (mesh.triangles.empty() && !mesh.positions.empty())
+    return fail(ErrorKind::kBadData, "{}: a point cloud of {} points without triangles found, expected a surface",
+                options.in, mesh.positions.size());
   if (options.simplify) {
     const SimplifyOptions limits{options.simplify_angle_deg * std::numbers::pi / 180.0, options.simplify_distance_vox};
     DUBSAR_ASSIGN(mesh, simplify(mesh, limits, progress));
@@ -77,6 +81,7 @@ Verb add_export_verb(Arguments program) {
   command.writes("OUT", options->out, FileFormat::kMesh,
                  "file to write, .ply, .stl, .obj, .glb or .3mf; unless given: beside IN, NAME.ply");
   command.value("--partition", options->partitions, "only these parts: names or ids, e.g. tablet").separated_by(',');
+  command.value("--unit", options->unit, kUnitHelp);
   command.choice<MeshUnits>("--units", options->write.units, {{"mm", MeshUnits::kMm}, {"vox", MeshUnits::kVox}},
                             "mm, or vox: coordinates of the input volume; GLB is always in metres, 3MF in mm");
   command.value("--style", options->style,

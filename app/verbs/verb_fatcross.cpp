@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct FatCrossRequest {
-  std::string in, out, part = "auto", style = "phong";
+  std::string in, out, unit, part = "auto", style = "phong";
   std::vector<std::string> layers;
   double dpi = 600.0;
   int samples = 3;
@@ -41,12 +41,15 @@ fs::path with_suffix(const fs::path& path, const std::string& suffix) {
 
 /// The tablet where there is one, else everything.
 Result<TriMesh> load_part(const FatCrossRequest& options, Progress& progress) {
-  if (options.part != "auto" && options.part != "all") return load_mesh({options.in, {options.part}, true}, progress);
+  DUBSAR_ASSIGN(const double unit_mm, mesh_unit_mm(options.unit));
+  const MeshReadOptions foreign{unit_mm, true};
+  if (options.part != "auto" && options.part != "all")
+    return load_mesh({options.in, {options.part}, true, foreign}, progress);
   if (options.part == "auto")
-    if (Result<TriMesh> tablet = load_mesh({options.in, {"tablet"}, true}, progress);
+    if (Result<TriMesh> tablet = load_mesh({options.in, {"tablet"}, true, foreign}, progress);
         tablet || tablet.error().kind != ErrorKind::kUsage)
       return tablet;
-  return load_mesh({options.in, {}, true}, progress);
+  return load_mesh({options.in, {}, true, foreign}, progress);
 }
 
 PictureOptions file_of(const FatCrossRequest& options) {
@@ -101,7 +104,7 @@ class CrossFiles {
   Result<void> find_legend() {
     if (options_.no_legend) return {};
     DUBSAR_ASSIGN(font_, LabelFont::create(panel_font()));
-    const EvidenceShares shares = evidence_shares(upright_);
+    const EvidenceShares shares = SurfaceEvidence(upright_).of(0xff);
     const double all = shares.measured_mm2 + shares.inferred_mm2;
     legend_ = {font_.get(), shares.inferred_mm2, all > 0 ? shares.inferred_mm2 / all : 0.0, false};
     for (const std::string& style : styles_)
@@ -195,6 +198,7 @@ Verb add_fatcross_verb(Arguments program) {
       "-o,--output", options->out, FileFormat::kPicture,
       "TIFF or PNG file to write; the six sides go beside it as NAME_01 (obverse), _02 (reverse), _03 (top), _04 "
       "(bottom), _05 (left), _06 (right). Unless given: beside IN, NAME_fatcross.tif");
+  command.value("--unit", options->unit, kUnitHelp);
   command.value("--part", options->part, "which part: tablet where there is one (auto), all, envelope, ...");
   command.value("--dpi", options->dpi, "dots an inch at life size").range(50.0, 4800.0);
   command.choice<Rgb8>("--ground", options->ground,

@@ -23,7 +23,7 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 struct InfoRequest {
-  std::string in;
+  std::string in, unit;
   InputOptionTexts input;
   Detail detail = Detail::kAuto;
   std::string memory;
@@ -166,11 +166,14 @@ Result<VerbResult> exa_info(const InfoRequest& options, bool verbose, Progress& 
   return result;
 }
 
+constexpr double kFarOff = 8.0;  // extents from the origin on where a surface lies is said
+
 Result<VerbResult> describe_mesh(const InfoRequest& options, Progress& progress) {
-  DUBSAR_ASSIGN(const MeshInfo info, mesh_info(options.in, progress));
+  DUBSAR_ASSIGN(const double unit_mm, mesh_unit_mm(options.unit));
+  DUBSAR_ASSIGN(const MeshInfo info, mesh_info(options.in, progress, {unit_mm}));
   const MeshCheck& check = info.check;
   VerbResult result;
-  result.json = {{"kind", "mesh"},
+  result.json = {{"kind", info.triangles == 0 && info.vertices > 0 ? "points" : "mesh"},
                  {"format", mesh_format_name(info.format)},
                  {"bytes", info.bytes},
                  {"mesh", mesh_check_json(check)},
@@ -181,17 +184,26 @@ Result<VerbResult> describe_mesh(const InfoRequest& options, Progress& progress)
                  {"attributes", info.attributes},
                  {"partitions", partitions_json(info.partitions)}};
   const glm::dvec3 size = info.max_mm - info.min_mm;
+  const double longest = std::max({size.x, size.y, size.z});
+  const int digits = longest > 0 && longest < 1.0 ? 6 : 3;
   std::string& text = result.text;
-  text = fmt::format("mesh ({})\n", mesh_format_name(info.format));
+  const bool cloud = info.triangles == 0 && info.vertices > 0;
+  text = fmt::format("{} ({})\n", cloud ? "point cloud" : "mesh", mesh_format_name(info.format));
   text += fmt::format("  mesh         {} vertices, {} triangles, {} components\n", info.vertices, info.triangles,
                       check.components);
-  text += fmt::format("  box          {:.3f} x {:.3f} x {:.3f} {}\n", size.x, size.y, size.z,
-                      info.unit.known() ? "mm" : "(unit unknown, taken as mm)");
-  text += fmt::format("  surface      {}\n",
-                      check.watertight()
-                          ? "watertight 2-manifold"
-                          : fmt::format("{} boundary edges, {} non-manifold edges, {} non-manifold vertices",
-                                        check.boundary_edges, check.nonmanifold_edges, check.nonmanifold_vertices));
+  text += fmt::format("  box          {:.{}f} x {:.{}f} x {:.{}f} {}\n", size.x, digits, size.y, digits, size.z, digits,
+                      info.unit.known() ? fmt::format("mm ({})", info.unit.provenance) : "(unit unknown, taken as mm)");
+  const glm::dvec3 middle = 0.5 * (info.min_mm + info.max_mm);
+  if (std::max({std::abs(middle.x), std::abs(middle.y), std::abs(middle.z)}) > kFarOff * longest)
+    text += fmt::format("  lies at      {:.3f}, {:.3f}, {:.3f}\n", middle.x, middle.y, middle.z);
+  if (cloud)
+    text += "  surface      none: points without triangles\n";
+  else
+    text += fmt::format("  surface      {}\n",
+                        check.watertight()
+                            ? "watertight 2-manifold"
+                            : fmt::format("{} boundary edges, {} non-manifold edges, {} non-manifold vertices",
+                                          check.boundary_edges, check.nonmanifold_edges, check.nonmanifold_vertices));
   for (const std::string& attribute : info.attributes) text += fmt::format("  attribute    {}\n", attribute);
   add_partitions_text(text, info.partitions);
   return result;
@@ -209,6 +221,7 @@ Verb add_info_verb(Arguments program) {
   auto options = std::make_shared<InfoRequest>();
   Arguments command = program.command("info", "say what is in a volume, surface or mesh file");
   command.reads("FILE", options->in, "volume (HDF5, NRRD, TIFF, raw), EXA, PLY, STL, OBJ or GLB").required();
+  command.value("--unit", options->unit, kUnitHelp);
   command.choice<Detail>("--detail", options->detail, choices_of(kDetails),
                          "for what process will take: grid of the surface, as there (auto, scan, half)");
   command.value("--memory", options->memory, "for the same: most memory that it may take, such as 6G").called("SIZE");

@@ -17,6 +17,7 @@
 #include "app/cli/verb.h"
 #include "app/verbs/display_picture.h"
 #include "app/verbs/look_options.h"
+#include "app/viewer/first_document.h"
 #include "app/viewer/run_view.h"
 #include "core/base/text/parse_number.h"
 #include "core/image_io/picture_file.h"
@@ -34,7 +35,7 @@ struct Look {
 };
 
 struct RenderRequest {
-  std::string in, out, view = "front", size;
+  std::string in, out, view = "front", size, unit;
   std::vector<std::string> partitions, hide;
   double mm_per_pixel = 0.0;
   int samples = 0;  ///< 0: enough for one picture, fewer for the many of a display
@@ -122,17 +123,12 @@ Result<void> dress_parts(const RenderRequest& options, const TriMesh& mesh, Shad
     DUBSAR_ASSIGN(const ClipPlane cut, cut_from_side(box, wanted.first, wanted.second / 100.0));
     shading.clips.push_back(cut);
   }
-  if (options.look.unpack > 0) {
-    const ObjectFrame frame = object_frame(box);
-    const double way = 1.1 * glm::dot(glm::abs(frame.up), box.size()) * options.look.unpack / 100.0;
-    bool found = false;
-    for (const Partition& p : mesh.partitions)
-      if (p.body_name() == "envelope") {
-        shading.parts[static_cast<std::size_t>(p.id)].offset_mm = way * frame.up;
-        found = true;
-      }
-    if (!found) return fail(ErrorKind::kUsage, "--unpack: there is no envelope in the file");
-  }
+  ViewOptions first;
+  first.work.document.unpack = 0.01 * options.look.unpack;
+  const Document document = first_document(first, mesh);
+  if (document.unpack > 0 && !can_unpack(document))
+    return fail(ErrorKind::kUsage, "--unpack: there is no envelope in the file that could be lifted from something");
+  shading.parts = laid_out(document, shading.parts, box);
   shading.fog.strength = options.look.fog / 100.0;
   shading.style.mark_inferred = !options.look.unmarked;
   shading.light.shadows = shading.light.shadows || options.look.shadows;
@@ -172,6 +168,8 @@ Result<VerbResult> show_in_window(const RenderRequest& options, const SinkSpec& 
   view.stage.catalog = shown.catalog;
   view.stage.viewer = shown.viewer;
   view.stage.shading = shown.shading;
+  for (PartLook& part : view.stage.shading.parts) part.offset_mm = {};  // the session's document says it
+  view.work.document.unpack = 0.01 * options.look.unpack;
   view.stage.direction = shown.direction;
   view.stage.room.margin = shown.margin;
   view.stage.magnification = shown.magnification;
@@ -229,6 +227,8 @@ Result<VerbResult> run(const RenderRequest& options, Progress& progress) {
   DUBSAR_TRY(apply(options.shade, render.shading));
   render.camera.perspective = options.perspective;
   render.camera.mm_per_pixel = options.mm_per_pixel;
+  render.camera.whole = true;
+  if (options.size.empty() && options.mm_per_pixel > 0) render.camera.width = render.camera.height = 0;
   if (options.samples > 0) render.samples = options.samples;
   render.shading.background.transparent = options.look.transparent;
   if (options.look.colour_parts) color_partitions(render.shading.parts, distinct_partition_colors());
@@ -242,10 +242,11 @@ Result<VerbResult> run(const RenderRequest& options, Progress& progress) {
     }
     DUBSAR_ASSIGN(display, read_display_options(options.display, shown));
   }
+  DUBSAR_ASSIGN(const double unit_mm, mesh_unit_mm(options.unit));
   TriMesh mesh;
   if (!options.in.empty()) {
     DUBSAR_TRY(check_part_names(options));
-    DUBSAR_ASSIGN(mesh, load_mesh({options.in, options.partitions, true}, progress));
+    DUBSAR_ASSIGN(mesh, load_mesh({options.in, options.partitions, true, {unit_mm, true}, true}, progress));
   }
   DUBSAR_TRY(hide_partitions(options.hide, mesh, render.shading));
   DUBSAR_TRY(dress_parts(options, mesh, render.shading));
@@ -284,8 +285,10 @@ Verb add_render_verb(Arguments program) {
   command.flag("--window", options->window, "show the display's picture in a window instead of writing it");
   command.value("--view", options->view,
                 "front, back, left, right, top, bottom, orbit or orbit:AZIMUTH,ELEVATION[,ROLL]");
+  command.value("--unit", options->unit, kUnitHelp);
   command.value("--size", options->size,
-                "WIDTHxHEIGHT in pixels (1200x1200; of a display 1920x1080, or the panel's own)");
+                "WIDTHxHEIGHT in pixels (1200x1200; with --mm-per-pixel what the object takes; of a display 1920x1080, "
+                "or the panel's own)");
   std::string styles;
   for (const std::string_view name : shading_preset_names()) styles += (styles.empty() ? "" : ", ") + std::string(name);
   command.value("--style", options->look.style, "shading: " + styles);

@@ -26,7 +26,7 @@ namespace {
 
 struct What {
   std::vector<std::string> in;
-  std::string scan, kiosk, view = "front", style = "relief";
+  std::string scan, kiosk, unit, view = "front", style = "relief";
   InputOptionTexts scan_reading;
   std::vector<std::string> partitions;
 };
@@ -233,11 +233,13 @@ Result<VerbResult> run_kiosk_of(const ViewRequest& given, Progress& progress) {
 
 FileReading file_reading(const ViewRequest& options, const std::optional<ImportOptions>& scan) {
   const bool window = !options.panel.offscreen;
-  return {options.what.partitions, scan, window && options.what.view == "front", window && options.time.fps == 0};
+  return {options.what.partitions, mesh_unit_mm(options.what.unit).value_or(0.0), scan,
+          window && options.what.view == "front", window && options.time.fps == 0};
 }
 
 /// What can be wrong with files is known before a large one is read.
 Result<void> check_files(const ViewRequest& options) {
+  if (const auto unit = mesh_unit_mm(options.what.unit); !unit) return tl::unexpected<Error>(unit.error());
   const What& what = options.what;
   if (what.in.empty() && (options.panel.offscreen || options.time.fps > 0 || !options.made.tour.empty()))
     return fail(ErrorKind::kUsage, "view: no file found, expected a surface such as tablet.exa");
@@ -279,7 +281,9 @@ Result<VerbResult> run(const ViewRequest& options, Progress& progress) {
   if (!options.made.tour.empty()) {
     view.work.upright = options.what.view == "front";
     view.work.surface = options.what.in.front();
-    DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.what.in.front(), options.what.partitions, true}, progress));
+    DUBSAR_ASSIGN(const double unit_mm, mesh_unit_mm(options.what.unit));
+    DUBSAR_ASSIGN(const TriMesh mesh,
+                  load_mesh({options.what.in.front(), options.what.partitions, true, {unit_mm, true}, true}, progress));
     return write_tour(options.made.tour, mesh, view);
   }
   Shelf shelf(surface_reader(view, file_reading(options, scan)), live ? recent_list() : std::filesystem::path());
@@ -371,6 +375,7 @@ Verb add_view_verb(Arguments program) {
       .range(0.0, 100.0);
   command.value("--view", options->what.view, "the home view: front, back, left ... or orbit:AZIMUTH,ELEVATION[,ROLL]");
   command.value("--style", options->what.style, "shading, as of render");
+  command.value("--unit", options->what.unit, kUnitHelp);
   command.value("--partition", options->what.partitions, "only these parts: names or ids, e.g. tablet")
       .separated_by(',');
   command.value("--ui-scale", options->panel.ui_scale, "size of letters and panels in percent (as the desktop says)")

@@ -60,7 +60,7 @@ ReadSurface surface_reader(const ViewOptions& options, const FileReading& readin
                             const TellCoarse& tell) -> Result<OpenedSurface> {
     OpenedSurface out;
     if (tell && reading.partitions.empty()) tell_coarse(file, progress, tell);
-    DUBSAR_ASSIGN(out.mesh, load_mesh({file, reading.partitions, true}, progress, tell));
+    DUBSAR_ASSIGN(out.mesh, load_mesh({file, reading.partitions, true, {reading.unit_mm, true}, true}, progress, tell));
     if (out.mesh.triangles.empty())
       return fail(ErrorKind::kBadData, "{}: there is no triangle in it, so there is nothing to show", file.string());
     ViewOptions with = options;

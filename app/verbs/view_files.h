@@ -12,6 +12,7 @@ namespace dubsar::app {
 /// How the files of a session are read.
 struct FileReading {
   std::vector<std::string> partitions;  ///< only these parts; empty: all
+  double unit_mm = 0.0;                 ///< of mesh files; 0: as they say
   std::optional<ImportOptions> scan;    ///< that the surface was made of; none: looked for
   bool upright = false;                 ///< the obverse stands upright, as its writing says
   bool keeps_work = false;              ///< what earlier sessions left is taken up, and this one leaves its own

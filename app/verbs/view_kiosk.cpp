@@ -63,7 +63,7 @@ struct ObjectSession {
   std::optional<Error> unreadable{};  ///< why its file could not be read; then run() gives that error
 
   Result<ViewResult> run(Progress& progress) {
-    const ReadSurface read = [&, plain = surface_reader(view, {object.parts, {}, view.work.upright, false})](
+    const ReadSurface read = [&, plain = surface_reader(view, {object.parts, 0.0, {}, view.work.upright, false})](
                                  const std::filesystem::path& file, Progress& reading, const TellCoarse& tell) {
       auto surface = plain(file, reading, tell);
       if (!surface && surface.error().kind != ErrorKind::kCancelled) unreadable = surface.error();

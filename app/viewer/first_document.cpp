@@ -19,7 +19,38 @@ std::vector<Part> parts_of(const TriMesh& mesh) {
     if (at == out.end()) at = out.insert(out.end(), Part{name});
     at->partitions = static_cast<std::uint8_t>(at->partitions | 1u << partition.id);
   }
+  for (const Partition& partition : mesh.partitions)
+    for (Part& part : out)
+      if (!partition.within.empty() && part.name == partition.within && part.name != partition.body_name())
+        part.pores = static_cast<std::uint8_t>(part.pores | 1u << partition.id);
   return out;
+}
+
+/// What was chosen of parts with the same names.
+std::vector<Part> chosen(std::vector<Part> parts, const std::vector<Part>& choices) {
+  for (Part& part : parts) {
+    const auto same = [&](const Part& other) { return other.name == part.name; };
+    const auto at = std::find_if(choices.begin(), choices.end(), same);
+    if (at == choices.end()) continue;
+    const Part of_mesh = part;
+    part = *at;
+    part.partitions = of_mesh.partitions;
+    part.pores = of_mesh.pores;
+  }
+  return parts;
+}
+
+/// A body with the pores in its clay. Both stand where they are moved to, besides what takes them apart.
+void dress(PartLook& look, const Part& part) {
+  look.visible = look.visible && part.visible;
+  look.opacity *= part.opacity;
+  look.offset_mm += part.offset_mm;
+}
+
+/// How far an envelope goes that is lifted from its tablet, and which way.
+glm::dvec3 lift_mm(const Box& model) {
+  const ObjectFrame frame = object_frame(model);
+  return (1.0 + kPartsGap) * std::abs(glm::dot(model.size(), frame.up)) * frame.up;
 }
 
 /// Of all vertices that triangles use, as the stage has it.
@@ -38,7 +69,7 @@ Box box_of(const TriMesh& mesh) {
 
 Document first_document(const ViewOptions& options, const TriMesh& mesh) {
   Document out = options.work.document;
-  if (out.parts.empty()) out.parts = parts_of(mesh);
+  out.parts = chosen(parts_of(mesh), out.parts);
   const Light& light = options.stage.shading.light;
   if (out.home_light == LightPlace() && out.light == LightPlace())
     out.home_light = out.light = {light.azimuth_deg, light.elevation_deg};
@@ -58,11 +89,30 @@ glm::dmat3 first_turn(const Box& model, const ViewDirection& direction) {
   return glm::transpose(glm::dmat3(frame.right, frame.up, frame.front));
 }
 
+PartLooks laid_out(const Document& document, PartLooks looks, const Box& model) {
+  const double unpack = can_unpack(document) ? document.unpack : 0.0;
+  const glm::dvec3 half_way = 0.5 * unpack * lift_mm(model);
+  const auto envelope = std::find_if(document.parts.begin(), document.parts.end(),
+                                     [](const Part& part) { return part.name == "envelope"; });
+  const int lifted = envelope == document.parts.end() ? 0 : envelope->partitions | envelope->pores;
+  for (int p = 0; p < kMaxPartitions; ++p) {
+    PartLook& look = looks[static_cast<std::size_t>(p)];
+    bool known = false;
+    for (const Part& part : document.parts) {
+      const bool own = (part.partitions >> p & 1) != 0;
+      if (own || (part.pores >> p & 1) != 0) dress(look, part);
+      if (own && part.colour != Part().colour) look.color = part.colour;
+      known = known || own;
+    }
+    if (known) look.offset_mm += (lifted >> p & 1) != 0 ? half_way : -half_way;
+  }
+  return looks;
+}
+
 Shown shown_of(const Document& document, const ViewState& view, const StageOptions& stage, const Box& model) {
   Shown out;
   out.view = view;
   out.style = stage.shading.style;
-  out.parts = stage.shading.parts;
   out.other = stage.shading.other;
   if (document.style.name != stage.style)
     if (const auto preset = shading_preset(document.style.name)) {
@@ -89,19 +139,8 @@ Shown shown_of(const Document& document, const ViewState& view, const StageOptio
   out.fog.strength = document.fog;
   for (const Cut& cut : document.clips)
     if (cut.on) out.clips.push_back({cut.normal * cut.distance_mm / glm::dot(cut.normal, cut.normal), -cut.normal});
-  const double unpack = can_unpack(document) ? document.unpack : 0.0;
-  const ObjectFrame frame = object_frame(model);
-  const double height = (1.0 + kPartsGap) * std::abs(glm::dot(model.size(), frame.up));
-  out.fit = 1.0 / (1.0 + (1.0 + kPartsGap) * unpack);
-  for (const Part& part : document.parts)
-    for (int p = 0; p < kMaxPartitions; ++p) {
-      if ((part.partitions >> p & 1) == 0) continue;
-      PartLook& look = out.parts[static_cast<std::size_t>(p)];
-      look.visible = look.visible && part.visible;
-      look.opacity *= part.opacity;
-      if (part.colour != Part().colour) look.color = part.colour;
-      look.offset_mm = part.offset_mm + 0.5 * (part.name == "envelope" ? unpack : -unpack) * height * frame.up;
-    }
+  out.parts = laid_out(document, stage.shading.parts, model);
+  out.fit = 1.0 / (1.0 + (1.0 + kPartsGap) * (can_unpack(document) ? document.unpack : 0.0));
   return out;
 }
 

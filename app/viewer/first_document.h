@@ -6,12 +6,16 @@
 
 namespace dubsar::app {
 
-/// That of the options; without parts of its own it gets those of the mesh, by their names; upright where the options
-/// say so.
+/// That of the options with the parts of the mesh, which are as it says of parts with their names; upright where the
+/// options say so.
 Document first_document(const ViewOptions& options, const TriMesh& mesh);
 
 /// The turn from the scan to the unturned view of it.
 glm::dmat3 first_turn(const Box& model, const ViewDirection& direction);
+
+/// The parts of the document as they are looked at and where they stand: as far apart as it says, each half of the way,
+/// pores with the body that they lie in. `model` is the box of the mesh in mm.
+PartLooks laid_out(const Document& document, PartLooks looks, const Box& model);
 
 /// What the stage shows for this view of the document: style, parts, and how far the envelope is lifted. `model` is the
 /// box of the mesh in mm.

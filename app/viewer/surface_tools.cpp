@@ -63,19 +63,53 @@ double blur_of(const TriMesh& mesh) {
   return variance * std::pow(voxel.x * voxel.y * voxel.z, 2.0 / 3.0);
 }
 
+/// Where a triangle lies, whichever way it looks.
+using PlaceOfTriangle = std::array<std::array<float, 3>, 3>;
+
+PlaceOfTriangle place_of(const TriMesh& mesh, std::size_t triangle) {
+  PlaceOfTriangle out;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const glm::vec3& p = mesh.positions[mesh.triangles[triangle][c]];
+    out[c] = {p.x, p.y, p.z};
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
 }  // namespace
 
-EvidenceShares evidence_shares(const TriMesh& mesh) {
-  EvidenceShares out;
+SurfaceEvidence::SurfaceEvidence(const TriMesh& mesh) {
+  struct Patch {
+    std::uint8_t partitions = 0;
+    double mm2 = 0.0;
+  };
+  std::map<PlaceOfTriangle, Patch> patches;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const PartitionId id = mesh.partition_of(t);
+    const Partition* const row = mesh.partitions.find(id);
+    if (id >= measured_mm2_.size() || (row != nullptr && row->kind == PartitionKind::kPores)) continue;
     const auto at = [&](std::size_t k) {
       return mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[mesh.triangles[t][k]]));
     };
     const double area = 0.5 * glm::length(glm::cross(at(1) - at(0), at(2) - at(0)));
     if (!std::isfinite(area)) continue;
-    const bool inferred = !mesh.triangle_inferred.empty() && mesh.triangle_inferred[t] != 0;
-    (inferred ? out.inferred_mm2 : out.measured_mm2) += area;
+    if (mesh.triangle_inferred.empty() || mesh.triangle_inferred[t] == 0) {
+      measured_mm2_[id] += area;
+      continue;
+    }
+    Patch& patch = patches[place_of(mesh, t)];
+    patch.partitions = static_cast<std::uint8_t>(patch.partitions | 1u << id);
+    patch.mm2 = area;
   }
+  for (const auto& [place, patch] : patches) inferred_mm2_[patch.partitions] += patch.mm2;
+}
+
+EvidenceShares SurfaceEvidence::of(std::uint8_t partitions) const {
+  EvidenceShares out;
+  for (std::size_t p = 0; p < measured_mm2_.size(); ++p)
+    if ((partitions >> p & 1) != 0) out.measured_mm2 += measured_mm2_[p];
+  for (const auto& [closed, mm2] : inferred_mm2_)
+    if ((closed & partitions) != 0) out.inferred_mm2 += mm2;
   return out;
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 // What tools find on the surface of a session: places, figures, how far it reaches, what of it was measured.
 
+#include <array>
+#include <map>
+
 #include "app/commands/editor.h"
 #include "core/mesh/tri_mesh.h"
 
@@ -11,7 +14,20 @@ struct EvidenceShares {
   double measured_mm2 = 0.0, inferred_mm2 = 0.0;
   friend bool operator==(const EvidenceShares&, const EvidenceShares&) = default;
 };
-EvidenceShares evidence_shares(const TriMesh& mesh);
+
+/// What is known of the bodies of a surface. Pores and crumbs are none of them.
+class SurfaceEvidence {
+ public:
+  SurfaceEvidence() = default;
+  explicit SurfaceEvidence(const TriMesh& mesh);
+  /// Of the partitions whose bit is set: a patch that closes two of them counts once. Of one body these are the figures
+  /// of surface_facts().
+  EvidenceShares of(std::uint8_t partitions) const;
+
+ private:
+  std::array<double, PartitionTable::kMost> measured_mm2_{};
+  std::map<std::uint8_t, double> inferred_mm2_;  ///< by the partitions that a place closes
+};
 
 /// The nearest place of the surface, with the part of `parts` that it lies on; its side is left empty.
 Result<SurfacePin> pin_on(const TriMesh& mesh, const std::vector<Part>& parts, const glm::dvec3& at_mm);

@@ -190,7 +190,7 @@ class Viewer final : public Workplace {
   /// What tools need, and what is known of the surface.
   struct Tools {
     std::unique_ptr<LabelFont> font;
-    EvidenceShares evidence;
+    SurfaceEvidence evidence;
     std::optional<Picker> picker;
     FilmThumbnails thumbnails;
     std::optional<std::string> coming;  ///< tool of a key that is on its way

@@ -218,7 +218,7 @@ std::unique_ptr<Editor> Viewer::make_editor(Document document) {
 
 /// What tools need to know of the surface.
 void Viewer::find_tools() {
-  tools_.evidence = evidence_shares(*given_.mesh);
+  tools_.evidence = SurfaceEvidence(*given_.mesh);
   tools_.picker.emplace(*given_.mesh);
   tools_.slices = std::make_unique<SliceDesk>(
       *given_.mesh, stage_->box_mm(), scan_of(*given_.mesh, given_.options.work.surface, given_.options.work.scan));

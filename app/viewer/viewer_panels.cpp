@@ -58,7 +58,7 @@ PanelState Viewer::panel_state(TimestampNs now) {
   out.desk = desk();
   out.desk.beside.reset();
   out.desk.pointing.at.reset();  // it moves, and nothing here shows it
-  out.evidence = tools_.evidence;
+  out.evidence = tools_.evidence.of(visible_partitions(document()));
   out.files = files_state(now);
   if (shows_slices()) out.slices = tools_.slices->state();
   out.playing = at_.film_since >= 0;

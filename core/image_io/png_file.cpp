@@ -129,8 +129,40 @@ bool decode_rows(Reader* reader, png_bytepp rows) {
   return true;
 }
 
-tl::unexpected<Error> damaged(const std::filesystem::path& path, const Message& message) {
-  return fail(ErrorKind::kBadData, "png: {} is damaged: {}", path.string(), message.text.data());
+tl::unexpected<Error> damaged(std::string_view name, const Message& message) {
+  return fail(ErrorKind::kBadData, "png: {} is damaged: {}", name, message.text.data());
+}
+
+/// `bytes` is how many there are; 0: not known.
+Result<Image> decode(Reader& reader, std::string_view name, std::uint64_t bytes, const Budget& budget) {
+  std::array<png_byte, kSignatureBytes> signature{};
+  if (std::fread(signature.data(), 1, signature.size(), reader.file.get()) != signature.size() ||
+      png_sig_cmp(signature.data(), 0, signature.size()) != 0)
+    return fail(ErrorKind::kBadData, "png: {} does not start like a PNG file", name);
+
+  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader.message, on_error, on_warning);
+  reader.info = reader.png != nullptr ? png_create_info_struct(reader.png) : nullptr;
+  if (reader.info == nullptr) return fail(ErrorKind::kTryAgain, "png: no memory for the decoder");
+  if (!decode_header(&reader, &budget)) return damaged(name, reader.message);
+
+  const std::uint64_t width = png_get_image_width(reader.png, reader.info);
+  const std::uint64_t height = png_get_image_height(reader.png, reader.info);
+  const int channels = png_get_channels(reader.png, reader.info);
+  const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
+  DUBSAR_CHECK((channels == 3 || channels == 4) && row_bytes == width * static_cast<std::uint64_t>(channels));
+  const std::array<std::uint64_t, 2> dims{width, height};
+  DUBSAR_TRY(check_dims("png", dims, static_cast<std::uint64_t>(channels), budget));
+  // The smallest raw form of a pixel is one bit.
+  if (bytes > 0 && width * height / 8 > bytes * kDeflateRatio)
+    return fail(ErrorKind::kBadData, "png: {} announces {} x {} pixels, which its {} bytes cannot hold", name, width,
+                height, bytes);
+  DUBSAR_TRY(check_memory("png", row_bytes * height + height * sizeof(png_bytep), budget));
+
+  Image image(static_cast<int>(width), static_cast<int>(height), channels);
+  std::vector<png_bytep> rows(height);
+  for (std::size_t y = 0; y < height; ++y) rows[y] = image.pixels.data() + y * row_bytes;
+  if (!decode_rows(&reader, rows.data())) return damaged(name, reader.message);
+  return image;
 }
 
 }  // namespace
@@ -160,35 +192,17 @@ Result<Image> read_png(const std::filesystem::path& path, const Budget& budget) 
   Reader reader;
   reader.file.reset(std::fopen(path.c_str(), "rbe"));
   if (reader.file == nullptr) return fail_errno(errno, "png: cannot open " + path.string());
-  std::array<png_byte, kSignatureBytes> signature{};
-  if (std::fread(signature.data(), 1, signature.size(), reader.file.get()) != signature.size() ||
-      png_sig_cmp(signature.data(), 0, signature.size()) != 0)
-    return fail(ErrorKind::kBadData, "png: {} does not start like a PNG file", path.string());
+  const std::uint64_t bytes = std::filesystem::file_size(path, ignored);
+  return decode(reader, path.string(), ignored ? 0 : bytes, budget);
+}
 
-  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader.message, on_error, on_warning);
-  reader.info = reader.png != nullptr ? png_create_info_struct(reader.png) : nullptr;
-  if (reader.info == nullptr) return fail(ErrorKind::kTryAgain, "png: no memory for the decoder");
-  if (!decode_header(&reader, &budget)) return damaged(path, reader.message);
-
-  const std::uint64_t width = png_get_image_width(reader.png, reader.info);
-  const std::uint64_t height = png_get_image_height(reader.png, reader.info);
-  const int channels = png_get_channels(reader.png, reader.info);
-  const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
-  DUBSAR_CHECK((channels == 3 || channels == 4) && row_bytes == width * static_cast<std::uint64_t>(channels));
-  const std::array<std::uint64_t, 2> dims{width, height};
-  DUBSAR_TRY(check_dims("png", dims, static_cast<std::uint64_t>(channels), budget));
-  // The smallest raw form of a pixel is one bit.
-  const std::uint64_t file_bytes = std::filesystem::file_size(path, ignored);
-  if (!ignored && width * height / 8 > file_bytes * kDeflateRatio)
-    return fail(ErrorKind::kBadData, "png: {} announces {} x {} pixels, which its {} bytes cannot hold", path.string(),
-                width, height, file_bytes);
-  DUBSAR_TRY(check_memory("png", row_bytes * height + height * sizeof(png_bytep), budget));
-
-  Image image(static_cast<int>(width), static_cast<int>(height), channels);
-  std::vector<png_bytep> rows(height);
-  for (std::size_t y = 0; y < height; ++y) rows[y] = image.pixels.data() + y * row_bytes;
-  if (!decode_rows(&reader, rows.data())) return damaged(path, reader.message);
-  return image;
+Result<Image> decode_png(std::span<const std::byte> bytes, std::string_view source, const Budget& budget) {
+  Reader reader;
+  std::string copy(bytes.size(), '\0');
+  std::transform(bytes.begin(), bytes.end(), copy.begin(), [](std::byte b) { return static_cast<char>(b); });
+  if (!copy.empty()) reader.file.reset(::fmemopen(copy.data(), copy.size(), "rb"));
+  if (reader.file == nullptr) return fail(ErrorKind::kBadData, "png: {} has no bytes", source);
+  return decode(reader, source, bytes.size(), budget);
 }
 
 }  // namespace dubsar

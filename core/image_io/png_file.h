@@ -1,8 +1,11 @@
 #pragma once
 // PNG files, by libpng.
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "core/base/result.h"
 #include "core/base/system/budget.h"
@@ -24,5 +27,7 @@ Result<void> write_png(const std::filesystem::path& path, const Image& image, co
 /// file is not trusted: sizes are checked against `budget` and against what the file's bytes can hold before memory is
 /// taken. Errors: kNoInput, kPermission, kBadData (not a PNG, damaged, cut off), kTryAgain (memory), kIo.
 Result<Image> read_png(const std::filesystem::path& path, const Budget& budget = {});
+/// The same from bytes; `source` names them in the error text.
+Result<Image> decode_png(std::span<const std::byte> bytes, std::string_view source, const Budget& budget = {});
 
 }  // namespace dubsar

@@ -73,6 +73,12 @@ void PartitionTable::measured(PartitionId id, double area_mm2, double volume_mm3
   row->watertight = watertight;
 }
 
+void PartitionTable::lies_within(PartitionId id, std::string_view body) {
+  const auto row = std::find_if(rows_.begin(), rows_.end(), [&](const Partition& p) { return p.id == id; });
+  DUBSAR_CHECK(row != rows_.end());
+  row->within = body;
+}
+
 const Partition* PartitionTable::find(PartitionId id) const noexcept {
   const auto row = std::find_if(rows_.begin(), rows_.end(), [&](const Partition& p) { return p.id == id; });
   return row == rows_.end() ? nullptr : &*row;

@@ -43,6 +43,8 @@ struct Partition {
   double volume_mm3 = 0.0;  ///< signed volume enclosed; meaningful when watertight
   bool watertight = false;
   PartitionKind kind = PartitionKind::kOther;  ///< a table finds out by the name where this is kOther
+  /// Of pores and crumbs whose place was looked at (pores_by_body.h): the body that they go with. No file has it.
+  std::string within{};
 
   /// The body's name, also where the partition has one of its own.
   const std::string& body_name() const noexcept { return body.empty() ? name : body; }
@@ -69,6 +71,8 @@ class PartitionTable {
   PartitionId add(PartitionKind kind, std::string_view body = {}, std::string name = {});
   /// Stores what was measured.
   void measured(PartitionId id, double area_mm2, double volume_mm3, bool watertight);
+  /// Stores which body a partition goes with.
+  void lies_within(PartitionId id, std::string_view body);
   void clear() noexcept { rows_.clear(); }
 
   std::size_t size() const noexcept { return rows_.size(); }

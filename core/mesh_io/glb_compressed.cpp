@@ -14,6 +14,7 @@ namespace {
 using Json = nlohmann::json;
 constexpr const char* kExtension = "EXT_meshopt_compression";
 constexpr double kStepsPerVoxel = 16.0, kMostSteps = 65535.0;
+constexpr double kLeastSteps = 512.0;  // across a surface that is counted in voxels: 32 of them
 
 /// Compressed bytes (buffer 0) of views into what they stand for (buffer 1, which no file holds).
 class Views {
@@ -80,12 +81,15 @@ Grid grid_of(const TriMesh& mesh, const OutputSpace& space) {
   if (mesh.positions.empty()) return {};
   glm::dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
   for (const glm::vec3& p : mesh.positions) {
-    low = glm::min(low, glm::dvec3(space.position(p)));
-    high = glm::max(high, glm::dvec3(space.position(p)));
+    low = glm::min(low, space.exact_position(p));
+    high = glm::max(high, space.exact_position(p));
   }
   const glm::dvec3 voxel = mesh.frame.grid_voxel_mm(), size = high - low;
-  return {low, std::max(std::min({voxel.x, voxel.y, voxel.z}) / kStepsPerVoxel,
-                        std::max({size.x, size.y, size.z}) / kMostSteps)};
+  const double finest = std::max({size.x, size.y, size.z}) / kMostSteps;
+  const double wanted = std::min({voxel.x, voxel.y, voxel.z}) / kStepsPerVoxel;
+  // A surface of other units than voxels is as fine as 16 bits are.
+  const bool voxels = wanted >= finest && wanted * kLeastSteps <= kMostSteps * finest;
+  return {low, voxels ? wanted : finest > 0 ? finest : 1.0};
 }
 
 template <class T>
@@ -115,7 +119,7 @@ Json attributes_of(const TriMesh& mesh, const GlbPart& part, const OutputSpace& 
   std::vector<unsigned char> bytes;
   std::array<int, 3> low{65535, 65535, 65535}, high{0, 0, 0};
   for (const std::uint32_t v : part.vertices) {
-    const glm::dvec3 place = (glm::dvec3(space.position(mesh.positions[v])) - grid.origin) / grid.step;
+    const glm::dvec3 place = (space.exact_position(mesh.positions[v]) - grid.origin) / grid.step;
     for (int a = 0; a < 3; ++a) {
       const auto i = static_cast<std::size_t>(a);
       const int steps = static_cast<int>(std::clamp(std::round(place[a]), 0.0, kMostSteps));

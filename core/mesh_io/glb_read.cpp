@@ -8,37 +8,23 @@
 #include <optional>
 
 #include "core/base/numbers/bytes.h"
+#include "core/base/system/budget.h"
+#include "core/base/system/log.h"
 #include "core/base/text/json_text.h"
+#include "core/mesh_io/glb_data.h"
 #include "core/mesh_io/glb_words.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_text.h"
+#include "core/mesh_io/painted_mesh.h"
+#include "core/mesh_io/vertex_places.h"
 
 namespace dubsar {
 namespace {
 using Json = nlohmann::json;
-constexpr std::uint64_t kMost = std::uint64_t{1} << 40;  // larger offsets and counts cannot be meant
-constexpr double kMmPerM = 1000.0;
-
-const Json* member(const Json& object, const char* key) {
-  if (!object.is_object()) return nullptr;
-  const auto found = object.find(key);
-  return found == object.end() ? nullptr : &*found;
-}
-
-/// The number under `key`; `otherwise` when it is absent; nothing when it is not an integer 0..2^40.
-std::optional<std::uint64_t> number(const Json& object, const char* key, std::optional<std::uint64_t> otherwise) {
-  const Json* value = member(object, key);
-  if (!value) return otherwise;
-  if (!value->is_number_unsigned() || value->get<std::uint64_t>() > kMost) return std::nullopt;
-  return value->get<std::uint64_t>();
-}
-
-/// Element number `index` of the array under `key`.
-const Json* element(const Json& root, const char* key, std::optional<std::uint64_t> index) {
-  const Json* array = member(root, key);
-  if (!array || !array->is_array() || !index || *index >= array->size()) return nullptr;
-  return &(*array)[*index];
-}
+constexpr std::size_t kMostRefined = 3'000'000;  // triangles
+constexpr std::uint64_t kMostRepeats = 16;       // vertices for each byte of the file: a few bytes name a mesh again
+constexpr std::uint64_t kBytesAVertex = 160;     // of memory, while it is read
+constexpr int kPoints = 0, kTriangles = 4, kStrip = 5, kFan = 6;
 
 bool read_numbers(const Json* array, double* out, std::size_t count) {
   if (!array || !array->is_array() || array->size() != count) return false;
@@ -49,162 +35,194 @@ bool read_numbers(const Json* array, double* out, std::size_t count) {
   return true;
 }
 
-std::uint8_t srgb_u8(double linear) {
-  const double c = std::clamp(linear, 0.0, 1.0);
-  return static_cast<std::uint8_t>(
-      std::lround(255.0 * (c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055)));
+glm::dmat4 moved_by(const double* t, const double* r, const double* s) {
+  glm::dmat4 result = glm::mat4_cast(glm::dquat(r[3], r[0], r[1], r[2]));
+  for (int c = 0; c < 3; ++c) result[c] *= s[c];
+  result[3] = glm::dvec4(t[0], t[1], t[2], 1.0);
+  return result;
 }
 
-struct Accessor {
-  std::string_view bytes;
-  std::uint64_t count = 0, stride = 0, parts = 0;
-  int component = 0;
-
-  double at(std::uint64_t item, std::uint64_t part) const {
-    const auto read = [&]<class T>(T) {
-      T value;
-      std::memcpy(&value, bytes.data() + item * stride + part * sizeof(T), sizeof(T));
-      return static_cast<double>(value);
-    };
-    switch (component) {
-      case 5121:
-        return read(std::uint8_t{});
-      case 5123:
-        return read(std::uint16_t{});
-      case 5125:
-        return read(std::uint32_t{});
-      default:
-        return read(float{});
-    }
-  }
-  double scale() const { return component == 5121 ? 1.0 / 255.0 : component == 5123 ? 1.0 / 65535.0 : 1.0; }
-};
-
-tl::unexpected<Error> broken(std::string_view what) { return fail(ErrorKind::kBadData, "glb: {}", what); }
-
 struct Parser {
-  Json root;
-  std::string_view bin;
+  GlbData data;
+  GlbPhotos photos;
   Progress& progress;
   std::uint64_t file_bytes = 0;
-  TriMesh mesh;
-  bool ours = false, all_normals = true, all_colors = true;
-  std::uint64_t corners = 0;
+  PaintedMesh mesh{};
+  std::vector<glm::dvec3> cloud{};  ///< of points that no triangle joins
+  bool ours = false, all_normals = true, any_color = false;
+  std::uint64_t corners = 0, lines = 0;
 
-  Result<Accessor> accessor(const Json* index) {
-    if (!index || !index->is_number_unsigned()) return broken("a primitive has no usable accessor number");
-    const Json* json = element(root, "accessors", index->get<std::uint64_t>());
-    if (!json) return broken("an accessor is missing");
-    if (member(*json, "sparse")) return broken("sparse accessors found, expected plain ones; convert the file");
-    const Json* view = element(root, "bufferViews", number(*json, "bufferView", std::nullopt));
-    if (!view) return broken("an accessor has no buffer view");
-    Accessor result;
-    const auto component = number(*json, "componentType", std::nullopt);
-    const Json* type = member(*json, "type");
-    const auto count = number(*json, "count", std::nullopt);
-    if (!component || !count || !type || !type->is_string()) return broken("an accessor is broken");
-    result.component = static_cast<int>(*component);
-    result.count = *count;
-    const std::string name = type->get<std::string>();
-    result.parts = name == "SCALAR" ? 1 : name == "VEC3" ? 3 : name == "VEC4" ? 4 : 0;
-    const std::uint64_t part_bytes = *component == 5121                         ? 1
-                                     : *component == 5123                       ? 2
-                                     : *component == 5125 || *component == 5126 ? 4
-                                                                                : 0;
-    const std::uint64_t item_bytes = part_bytes * result.parts;
-    if (item_bytes == 0) return broken("an accessor has a type that is not supported");
-    const auto view_offset = number(*view, "byteOffset", 0), view_length = number(*view, "byteLength", std::nullopt);
-    const auto offset = number(*json, "byteOffset", 0), stride = number(*view, "byteStride", item_bytes);
-    if (number(*view, "buffer", std::nullopt) != 0) return broken("data outside the file, expected buffer 0");
-    if (!view_offset || !view_length || !offset || !stride || *stride < item_bytes || *stride > 4096)
-      return broken("a buffer view is broken");
-    if (*view_offset > bin.size() || *view_length > bin.size() - *view_offset)
-      return broken("a buffer view lies outside the data");
-    result.stride = *stride;
-    if (result.count == 0 || result.count > kMost / 4096 ||
-        *offset + (result.count - 1) * *stride + item_bytes > *view_length)
-      return broken("an accessor lies outside its buffer view");
-    result.bytes = bin.substr(*view_offset, *view_length).substr(*offset);
-    return result;
-  }
+  explicit Parser(Json root, std::string_view bin, Progress& told, std::uint64_t bytes)
+      : data(std::move(root), bin), photos(data), progress(told), file_bytes(bytes) {}
 
-  Result<void> primitive(const Json& json, const glm::dmat4& transform, PartitionId partition) {
-    if (number(json, "mode", 4) != 4) return broken("points, lines or strips found, expected triangles");
-    const Json* attributes = member(json, "attributes");
-    if (!attributes) return broken("a primitive has no attributes");
-    DUBSAR_ASSIGN(const Accessor positions, accessor(member(*attributes, "POSITION")));
-    if (positions.component != 5126 || positions.parts != 3) return broken("positions are not float vectors");
-    const std::size_t base = mesh.positions.size();
+  Result<std::vector<glm::dvec3>> places(const GlbAccessor& positions, const glm::dmat4& transform) {
+    if (positions.parts != 3 || positions.component == 5125)
+      return broken_glb("positions are not vectors of 3 numbers");
     // Nodes may share a mesh; a small file must not become an endless one.
-    if (base + positions.count > file_bytes) return broken("the node tree repeats meshes too often");
-    const glm::dmat3 turn = glm::transpose(glm::inverse(glm::dmat3(transform)));
+    const std::uint64_t all = mesh.places.size() + cloud.size() + positions.count;
+    if (all > kMostRepeats * file_bytes) return broken_glb("the node tree repeats meshes too often");
+    DUBSAR_TRY(check_memory("glb", kBytesAVertex * all));
+    std::vector<glm::dvec3> out;
     for (std::uint64_t v = 0; v < positions.count; ++v) {
       const glm::dvec4 p(positions.at(v, 0), positions.at(v, 1), positions.at(v, 2), 1.0);
-      const glm::vec3 moved(ours ? glm::dvec3(p) : glm::dvec3(transform * p) * kMmPerM);
-      if (!std::isfinite(moved.x) || !std::isfinite(moved.y) || !std::isfinite(moved.z))
-        return broken("a position is not finite");
-      mesh.positions.push_back(moved);
+      const glm::dvec3 moved = glm::dvec3(transform * p) * (ours ? 1.0 : kMmPerGltfUnit);
+      const glm::vec3 held(moved);
+      if (!std::isfinite(held.x) || !std::isfinite(held.y) || !std::isfinite(held.z))
+        return broken_glb("a position is not finite");
+      out.push_back(moved);
     }
-    if (const Json* index = member(*attributes, "NORMAL")) {
-      DUBSAR_ASSIGN(const Accessor normals, accessor(index));
-      if (normals.count != positions.count || normals.component != 5126 || normals.parts != 3)
-        return broken("normals are not one float vector per vertex");
-      for (std::uint64_t v = 0; v < normals.count; ++v) {
-        glm::dvec3 n(normals.at(v, 0), normals.at(v, 1), normals.at(v, 2));
-        if (!ours) n = turn * n;
-        const double length = ours ? 1.0 : glm::length(n);
-        mesh.normals.push_back(length > 0.0 && std::isfinite(length) ? glm::vec3(n / length) : glm::vec3(0.0f));
-      }
-    } else {
+    return out;
+  }
+
+  Result<void> normals(const Json* index, std::uint64_t count, const glm::dmat4& transform) {
+    mesh.normals.resize(mesh.places.size(), glm::dvec3(0.0));
+    if (!index) {
       all_normals = false;
+      return {};
     }
-    if (const Json* index = member(*attributes, "COLOR_0")) {
-      DUBSAR_ASSIGN(const Accessor colors, accessor(index));
-      if (colors.count != positions.count || colors.parts < 3) return broken("colours are not one per vertex");
-      for (std::uint64_t v = 0; v < colors.count; ++v)
-        mesh.colors.push_back({srgb_u8(colors.at(v, 0) * colors.scale()), srgb_u8(colors.at(v, 1) * colors.scale()),
-                               srgb_u8(colors.at(v, 2) * colors.scale())});
-    } else {
-      all_colors = false;
-    }
-    std::optional<Accessor> indices;
-    if (const Json* index = member(json, "indices")) {
-      DUBSAR_ASSIGN(indices, accessor(index));
-      if (indices->parts != 1 || indices->component == 5126) return broken("indices are not integers");
-    }
-    const std::uint64_t count = indices ? indices->count : positions.count;
-    corners += count;
-    if (count % 3 != 0) return broken("the number of corners is not a multiple of 3");
-    if (corners > 4 * file_bytes) return broken("the node tree repeats meshes too often");
-    for (std::uint64_t c = 0; c < count; c += 3) {
-      Triangle triangle;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto v = indices ? static_cast<std::uint64_t>(indices->at(c + k, 0)) : c + k;
-        if (v >= positions.count) return broken("a triangle names a vertex that does not exist");
-        triangle[k] = static_cast<std::uint32_t>(base + v);
-      }
-      mesh.triangles.push_back(triangle);
-      mesh.triangle_partition.push_back(partition);
+    DUBSAR_ASSIGN(const GlbAccessor read, data.accessor(index));
+    if (read.count != count || read.parts != 3 || (!read.floats() && !read.normalized))
+      return broken_glb("normals are not one vector per vertex");
+    const glm::dmat3 turn = glm::transpose(glm::inverse(glm::dmat3(transform)));
+    for (std::uint64_t v = 0; v < count; ++v) {
+      const glm::dvec3 n(read.at(v, 0), read.at(v, 1), read.at(v, 2)), turned = ours ? n : turn * n;
+      const double length = ours && read.floats() ? 1.0 : glm::length(turned);
+      if (length > 0.0 && std::isfinite(length)) mesh.normals[mesh.places.size() - count + v] = turned / length;
     }
     return {};
   }
 
+  /// Colours of the vertices, and where they lie on the photograph of their material.
+  Result<void> paint(const Json& json, const Json& attributes, std::uint64_t count) {
+    GlbPaint paint = photos.paint(glb_number(json, "material", std::nullopt));
+    const std::string name = fmt::format("TEXCOORD_{}", paint.coordinates);
+    const Json* const uv = paint.photo ? glb_member(attributes, name.c_str()) : nullptr;
+    if (!uv) paint.photo = nullptr;
+    mesh.uv.resize(mesh.places.size(), glm::dvec2(0.0));
+    mesh.own.resize(mesh.places.size(), glm::dvec4(1.0));
+    mesh.paint.resize(mesh.places.size(), static_cast<std::uint32_t>(mesh.paints.size()));
+    const std::size_t base = mesh.places.size() - count;
+    if (uv) {
+      DUBSAR_ASSIGN(const GlbAccessor read, data.accessor(uv));
+      if (read.count != count || read.parts != 2) return broken_glb("places on the photograph are not one per vertex");
+      for (std::uint64_t v = 0; v < count; ++v) mesh.uv[base + v] = {read.at(v, 0), read.at(v, 1)};
+    }
+    if (const Json* const index = glb_member(attributes, "COLOR_0")) {
+      DUBSAR_ASSIGN(const GlbAccessor read, data.accessor(index));
+      if (read.count != count || read.parts < 3) return broken_glb("colours are not one per vertex");
+      for (std::uint64_t v = 0; v < count; ++v)
+        mesh.own[base + v] = {read.share(v, 0), read.share(v, 1), read.share(v, 2), 1.0};
+      any_color = true;
+    }
+    any_color =
+        any_color || paint.photo != nullptr || (!mesh.paints.empty() && mesh.paints.front().factor != paint.factor);
+    mesh.paints.push_back(paint);
+    return {};
+  }
+
+  Result<void> triangles(const Json& json, std::uint64_t count, int mode, bool mirrored, PartitionId partition) {
+    std::optional<GlbAccessor> indices;
+    if (const Json* const index = glb_member(json, "indices")) {
+      DUBSAR_ASSIGN(indices, data.accessor(index));
+      if (indices->parts != 1 || indices->floats()) return broken_glb("indices are not integers");
+    }
+    const std::uint64_t all = indices ? indices->count : count;
+    const std::size_t base = mesh.places.size() - count;
+    corners += all;
+    if (corners > 4 * kMostRepeats * file_bytes) return broken_glb("the node tree repeats meshes too often");
+    if (mode == kTriangles && all % 3 != 0) return broken_glb("the number of corners is not a multiple of 3");
+    DUBSAR_TRY(check_memory("glb", 24 * (mesh.triangles.size() + all)));
+    const std::uint64_t made = mode == kTriangles ? all / 3 : all < 3 ? 0 : all - 2;
+    for (std::uint64_t t = 0; t < made; ++t) {
+      std::array<std::uint64_t, 3> at{t, t + 1 + t % 2, t + 2 - t % 2};
+      if (mode == kTriangles) at = {3 * t, 3 * t + 1, 3 * t + 2};
+      if (mode == kFan) at = {t + 1, t + 2, 0};
+      Triangle triangle;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint64_t v = indices ? static_cast<std::uint64_t>(indices->raw(at[k], 0)) : at[k];
+        if (v >= count) return broken_glb("a triangle names a vertex that does not exist");
+        triangle[k] = static_cast<std::uint32_t>(base + v);
+      }
+      // Strips go on over places that are named twice.
+      if (mode != kTriangles &&
+          (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]))
+        continue;
+      if (mirrored) std::swap(triangle[1], triangle[2]);
+      mesh.triangles.push_back(triangle);
+      mesh.partitions.push_back(partition);
+    }
+    return {};
+  }
+
+  Result<void> primitive(const Json& json, const glm::dmat4& transform, PartitionId partition) {
+    const auto mode = glb_number(json, "mode", kTriangles);
+    if (!mode || *mode > kFan) return broken_glb("a primitive of no known kind found, expected triangles");
+    const Json* const attributes = glb_member(json, "attributes");
+    if (!attributes) return broken_glb("a primitive has no attributes");
+    const int kind = static_cast<int>(*mode);
+    if (kind > kPoints && kind < kTriangles) {
+      ++lines;
+      return {};
+    }
+    if (const Json* const packed = glb_extension(json, "KHR_draco_mesh_compression");
+        packed && !glb_member(*attributes, "POSITION"))
+      return broken_glb("KHR_draco_mesh_compression found, expected data without; convert it");
+    DUBSAR_ASSIGN(const GlbAccessor positions, data.accessor(glb_member(*attributes, "POSITION")));
+    DUBSAR_ASSIGN(const std::vector<glm::dvec3> moved, places(positions, transform));
+    if (kind == kPoints) {
+      cloud.insert(cloud.end(), moved.begin(), moved.end());
+      return {};
+    }
+    mesh.places.insert(mesh.places.end(), moved.begin(), moved.end());
+    DUBSAR_TRY(normals(glb_member(*attributes, "NORMAL"), positions.count, transform));
+    DUBSAR_TRY(paint(json, *attributes, positions.count));
+    // A node that mirrors turns what was counter-clockwise.
+    const bool mirrored = glm::determinant(glm::dmat3(transform)) < 0.0;
+    return triangles(json, positions.count, kind, mirrored, partition);
+  }
+
   Result<glm::dmat4> node_matrix(const Json& node) {
     double m[16], t[3] = {0, 0, 0}, r[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
-    if (const Json* matrix = member(node, "matrix")) {
-      if (!read_numbers(matrix, m, 16)) return broken("a node matrix is broken");
+    if (const Json* matrix = glb_member(node, "matrix")) {
+      if (!read_numbers(matrix, m, 16)) return broken_glb("a node matrix is broken");
       glm::dmat4 result;
       for (int c = 0; c < 16; ++c) result[c / 4][c % 4] = m[c];
       return result;
     }
-    if ((member(node, "translation") && !read_numbers(member(node, "translation"), t, 3)) ||
-        (member(node, "rotation") && !read_numbers(member(node, "rotation"), r, 4)) ||
-        (member(node, "scale") && !read_numbers(member(node, "scale"), s, 3)))
-      return broken("a node transform is broken");
-    glm::dmat4 result = glm::mat4_cast(glm::dquat(r[3], r[0], r[1], r[2]));
-    for (int c = 0; c < 3; ++c) result[c] *= s[c];
-    result[3] = glm::dvec4(t[0], t[1], t[2], 1.0);
-    return result;
+    const auto broken = [&](const char* key, double* out, std::size_t count) {
+      const Json* const value = glb_member(node, key);
+      return value && !read_numbers(value, out, count);
+    };
+    if (broken("translation", t, 3) || broken("rotation", r, 4) || broken("scale", s, 3))
+      return broken_glb("a node transform is broken");
+    return moved_by(t, r, s);
+  }
+
+  /// Where a node's mesh stands: once, or as often as EXT_mesh_gpu_instancing says.
+  Result<std::vector<glm::dmat4>> instances(const Json& node, const glm::dmat4& transform) {
+    const Json* const many = glb_extension(node, "EXT_mesh_gpu_instancing");
+    const Json* const attributes = many ? glb_member(*many, "attributes") : nullptr;
+    if (!attributes) return std::vector<glm::dmat4>{transform};
+    std::array<std::optional<GlbAccessor>, 3> read;
+    constexpr std::array kNames{"TRANSLATION", "ROTATION", "SCALE"};
+    constexpr std::array<std::uint64_t, 3> kParts{3, 4, 3};
+    std::optional<std::uint64_t> count;
+    for (std::size_t a = 0; a < read.size(); ++a) {
+      const Json* const index = glb_member(*attributes, kNames[a]);
+      if (!index) continue;
+      DUBSAR_ASSIGN(read[a], data.accessor(index));
+      if (read[a]->parts != kParts[a] || (count && *count != read[a]->count))
+        return broken_glb("instances have not one place each");
+      count = read[a]->count;
+    }
+    std::vector<glm::dmat4> out;
+    for (std::uint64_t i = 0; i < count.value_or(0); ++i) {
+      std::array<std::array<double, 4>, 3> v{{{0, 0, 0, 0}, {0, 0, 0, 1}, {1, 1, 1, 0}}};
+      for (std::size_t a = 0; a < read.size(); ++a)
+        for (std::uint64_t k = 0; read[a] && k < kParts[a]; ++k) v[a][k] = read[a]->at(i, k);
+      out.push_back(transform * moved_by(v[0].data(), v[1].data(), v[2].data()));
+    }
+    return out;
   }
 
   /// Depth first, children in order; every node once.
@@ -212,14 +230,16 @@ struct Parser {
     struct Visit {
       std::uint64_t node;
       glm::dmat4 parent;
+      bool root;
     };
-    const Json* scene = element(root, "scenes", number(root, "scene", 0));
-    const Json* all = member(root, "nodes");
-    if (!scene || !all || !all->is_array()) return broken("no scene with nodes");
+    const Json& root = data.root();
+    const Json* scene = glb_element(root, "scenes", glb_number(root, "scene", 0));
+    const Json* all = glb_member(root, "nodes");
+    if (!scene || !all || !all->is_array()) return broken_glb("no scene with nodes");
     std::vector<Visit> stack;
     std::vector<bool> seen(all->size());
-    const auto push = [&](const Json& holder, const char* key, const glm::dmat4& parent) {
-      const Json* list = member(holder, key);
+    const auto push = [&](const Json& holder, const char* key, const glm::dmat4& parent, bool top) {
+      const Json* list = glb_member(holder, key);
       if (!list) return true;
       if (!list->is_array()) return false;
       for (auto it = list->rbegin(); it != list->rend(); ++it) {
@@ -227,74 +247,101 @@ struct Parser {
         const auto id = static_cast<std::size_t>(it->get<std::uint64_t>());
         if (seen[id]) return false;
         seen[id] = true;
-        stack.push_back({id, parent});
+        stack.push_back({id, parent, top});
       }
       return true;
     };
-    if (!push(*scene, "nodes", glm::dmat4(1.0))) return broken("the scene names nodes that do not exist");
+    if (!push(*scene, "nodes", glm::dmat4(1.0), true)) return broken_glb("the scene names nodes that do not exist");
     while (!stack.empty()) {
       const Visit visit = stack.back();
       stack.pop_back();
       if (progress.cancelled()) return cancelled_error();
       const Json& node = (*all)[visit.node];
       DUBSAR_ASSIGN(const glm::dmat4 local, node_matrix(node));
-      const glm::dmat4 transform = visit.parent * local;
-      if (!push(node, "children", transform)) return broken("the node tree is not a tree");
-      if (!member(node, "mesh")) continue;
-      const Json* shape = element(root, "meshes", number(node, "mesh", std::nullopt));
-      const Json* primitives = shape ? member(*shape, "primitives") : nullptr;
-      if (!primitives || !primitives->is_array()) return broken("a node names a mesh that does not exist");
-      const Json* extras = member(node, "extras");
-      const std::uint64_t id = ours && extras ? number(*extras, "partition", 0).value_or(0) : 0;
+      // The root of our own files turns millimetres into metres; what is below keeps millimetres.
+      const glm::dmat4 transform = ours && visit.root ? glm::dmat4(1.0) : visit.parent * local;
+      if (!push(node, "children", transform, false)) return broken_glb("the node tree is not a tree");
+      if (!glb_member(node, "mesh")) continue;
+      const Json* shape = glb_element(root, "meshes", glb_number(node, "mesh", std::nullopt));
+      const Json* primitives = shape ? glb_member(*shape, "primitives") : nullptr;
+      if (!primitives || !primitives->is_array()) return broken_glb("a node names a mesh that does not exist");
+      const Json* extras = glb_member(node, "extras");
+      const std::uint64_t id = ours && extras ? glb_number(*extras, "partition", 0).value_or(0) : 0;
       const auto partition = static_cast<PartitionId>(id <= PartitionTable::kHighest ? id : 0);
-      for (const Json& json : *primitives) DUBSAR_TRY(primitive(json, transform, partition));
+      DUBSAR_ASSIGN(const std::vector<glm::dmat4> where, instances(node, transform));
+      for (const glm::dmat4& at : where)
+        for (const Json& json : *primitives) DUBSAR_TRY(primitive(json, at, partition));
     }
     return {};
   }
 };
+
+/// What a reader of surfaces need not know, or what is read here.
+bool is_known(const std::string& extension) {
+  static constexpr std::array kNames{"KHR_mesh_quantization",   "EXT_meshopt_compression", "KHR_meshopt_compression",
+                                     "EXT_mesh_gpu_instancing", "KHR_texture_transform",   "EXT_texture_webp",
+                                     "KHR_texture_basisu"};
+  return extension.starts_with("KHR_materials_") || extension.starts_with("KHR_lights") ||
+         std::find(kNames.begin(), kNames.end(), extension) != kNames.end();
+}
+
+Result<void> check_extensions(const Json& root) {
+  const Json* const required = glb_member(root, "extensionsRequired");
+  if (!required || !required->is_array()) return {};
+  for (const Json& name : *required)
+    if (!name.is_string() || !is_known(name.get<std::string>()))
+      return fail(ErrorKind::kBadData, "glb: extension {} is required, expected a file without; convert it",
+                  dump_json(name).substr(0, 80));
+  return {};
+}
 }  // namespace
 
-Result<TriMesh> parse_glb(std::string_view bytes, Progress& progress) {
+Result<TriMesh> parse_glb(std::string_view bytes, Progress& progress, const MeshReadOptions& options) {
   ByteReader reader(bytes);
   const auto magic = reader.little<std::uint32_t>(), version = reader.little<std::uint32_t>(),
              length = reader.little<std::uint32_t>();
-  if (!reader.ok() || magic != kGlbMagic) return broken("the file does not start with \"glTF\"");
+  if (!reader.ok() || magic != kGlbMagic) return broken_glb("the file does not start with \"glTF\"");
   if (version != 2) return fail(ErrorKind::kBadData, "glb: version {} found, expected 2", version);
   if (length != bytes.size())
     return fail(ErrorKind::kBadData, "glb: {} bytes announced, {} found", length, bytes.size());
   const auto json_bytes = reader.little<std::uint32_t>(), json_type = reader.little<std::uint32_t>();
   const std::string_view text = reader.take(json_bytes);
-  if (!reader.ok() || json_type != kGlbJsonChunk) return broken("the first chunk is not a whole JSON chunk");
+  if (!reader.ok() || json_type != kGlbJsonChunk) return broken_glb("the first chunk is not a whole JSON chunk");
   std::string_view bin;
   if (reader.left() > 0) {
     const auto bin_bytes = reader.little<std::uint32_t>(), bin_type = reader.little<std::uint32_t>();
     bin = reader.take(bin_bytes);
-    if (!reader.ok() || bin_type != kGlbBinChunk) return broken("the second chunk is not a whole BIN chunk");
+    if (!reader.ok() || bin_type != kGlbBinChunk) return broken_glb("the second chunk is not a whole BIN chunk");
   }
   DUBSAR_ASSIGN(Json root, parse_json(text, "glb"));
-  if (const Json* required = member(root, "extensionsRequired"); required && !required->empty())
-    return fail(ErrorKind::kBadData, "glb: extension {} is required, expected a file without; convert it",
-                dump_json((*required)).substr(0, 80));
-  Parser parser{std::move(root), bin, progress, bytes.size(), {}};
+  DUBSAR_TRY(check_extensions(root));
+  Parser parser(std::move(root), bin, progress, bytes.size());
   MeshTextReader lines;
-  const Json* asset = member(parser.root, "asset");
-  const Json* extras = asset ? member(*asset, "extras") : nullptr;
-  if (const Json* ours = extras ? member(*extras, "dubsar") : nullptr; ours && ours->is_array())
+  const Json* asset = glb_member(parser.data.root(), "asset");
+  const Json* extras = asset ? glb_member(*asset, "extras") : nullptr;
+  if (const Json* ours = extras ? glb_member(*extras, "dubsar") : nullptr; ours && ours->is_array())
     for (const Json& line : *ours)
       if (line.is_string()) lines.line(line.get_ref<const std::string&>());
   parser.ours = lines.ours();
   progress.begin("read glb", 0, "part");
   DUBSAR_TRY(parser.nodes());
-  progress.end();
-  TriMesh& mesh = parser.mesh;
-  if (!parser.all_normals) mesh.normals.clear();
-  if (!parser.all_colors || lines.colors_derived()) mesh.colors.clear();
+  if (parser.lines > 0) log_warning("glb: {} sets of lines left out, expected triangles", parser.lines);
+  PaintedMesh& painted = parser.mesh;
+  if (options.photo_detail) refine_to_photo(painted, kMostRefined);
+  TriMesh mesh;
+  if (parser.any_color && !lines.colors_derived()) mesh.colors = painted_colors(painted);
+  if (parser.all_normals) mesh.normals.assign(painted.normals.begin(), painted.normals.end());
   if (parser.ours)
     DUBSAR_TRY(lines.apply(mesh));
   else
-    mesh.frame.input_voxel.provenance = "glTF is in metres";
-  if (mesh.partitions.empty()) mesh.triangle_partition.clear();
-  return std::move(mesh);
+    mesh.frame.input_voxel.provenance = kGltfMetres;
+  mesh.triangles = std::move(painted.triangles);
+  if (!mesh.partitions.empty()) mesh.triangle_partition = std::move(painted.partitions);
+  set_places(mesh, mesh.triangles.empty() && !parser.cloud.empty() ? parser.cloud : painted.places);
+  if (mesh.triangles.empty()) mesh.normals.clear(), mesh.colors.clear();
+  if (!parser.ours) join_equal_places(mesh);
+  progress.end();
+  return mesh;
 }
 
 }  // namespace dubsar

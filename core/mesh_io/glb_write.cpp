@@ -50,6 +50,8 @@ Result<void> write_glb(const std::filesystem::path& path, const TriMesh& mesh, c
   if (options.compress) return write_compressed_glb(path, mesh, options, progress);
   DUBSAR_TRY(check_tri_mesh(mesh));
   const OutputSpace space(mesh.frame, MeshUnits::kMm);
+  const glm::dvec3 origin = space.far_origin(mesh);
+  const auto place = [&](std::uint32_t v) { return glm::vec3(space.exact_position(mesh.positions[v]) - origin); };
   const VertexColors colors = output_colors(mesh);
   const std::vector<GlbPart> parts = glb_parts(mesh);
 
@@ -61,7 +63,7 @@ Result<void> write_glb(const std::filesystem::path& path, const TriMesh& mesh, c
     attributes["POSITION"] = layout.add(part.vertices.size(), 12, kGlFloat, "VEC3", kGlArrayBuffer);
     glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
     for (const std::uint32_t v : part.vertices) {
-      const glm::vec3 position = space.position(mesh.positions[v]);
+      const glm::vec3 position = place(v);
       low = glm::min(low, position);
       high = glm::max(high, position);
     }
@@ -76,6 +78,7 @@ Result<void> write_glb(const std::filesystem::path& path, const TriMesh& mesh, c
     json["meshes"].push_back(
         {{"name", name}, {"primitives", {{{"attributes", attributes}, {"indices", indices}, {"material", 0}}}}});
     json["nodes"].push_back({{"name", name}, {"mesh", p}, {"extras", {{"partition", part.id}}}});
+    if (origin != glm::dvec3(0.0)) json["nodes"].back()["translation"] = {origin.x, origin.y, origin.z};
     json["nodes"][0]["children"].push_back(p + 1);
   }
   if (parts.empty())
@@ -86,7 +89,7 @@ Result<void> write_glb(const std::filesystem::path& path, const TriMesh& mesh, c
   return write_glb_file(path, json, parts.empty() ? 0 : layout.bytes, [&](BufferedWriter& out) -> Result<void> {
     progress.begin("write glb", static_cast<std::int64_t>(parts.size()), "part");
     for (const GlbPart& part : parts) {
-      for (const std::uint32_t v : part.vertices) append(out, space.position(mesh.positions[v]));
+      for (const std::uint32_t v : part.vertices) append(out, place(v));
       if (progress.cancelled()) return cancelled_error();
       if (!mesh.normals.empty())
         for (const std::uint32_t v : part.vertices) append(out, space.normal(mesh.normals[v]));

@@ -10,21 +10,27 @@
 #include "core/mesh_io/coarse_surface.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_output.h"
+#include "core/mesh_io/text_encoding.h"
 
 namespace dubsar {
 namespace {
 struct Format {
   MeshFormat format;
   std::string_view name, suffix;
-  Result<TriMesh> (*parse)(std::string_view, Progress&);
+  Result<TriMesh> (*parse)(std::string_view, Progress&, const MeshReadOptions&);
   Result<void> (*write)(const std::filesystem::path&, const TriMesh&, const MeshWriteOptions&, Progress&);
 };
 
-constexpr std::array<Format, 5> kFormats{{{MeshFormat::kPly, "ply", ".ply", parse_ply, write_ply},
-                                          {MeshFormat::kStl, "stl", ".stl", parse_stl, write_stl},
-                                          {MeshFormat::kObj, "obj", ".obj", parse_obj, write_obj},
+template <Result<TriMesh> (*kParse)(std::string_view, Progress&)>
+Result<TriMesh> parse_plain(std::string_view bytes, Progress& progress, const MeshReadOptions&) {
+  return kParse(bytes, progress);
+}
+
+constexpr std::array<Format, 5> kFormats{{{MeshFormat::kPly, "ply", ".ply", parse_plain<parse_ply>, write_ply},
+                                          {MeshFormat::kStl, "stl", ".stl", parse_plain<parse_stl>, write_stl},
+                                          {MeshFormat::kObj, "obj", ".obj", parse_plain<parse_obj>, write_obj},
                                           {MeshFormat::kGlb, "glb", ".glb", parse_glb, write_glb},
-                                          {MeshFormat::k3mf, "3mf", ".3mf", parse_3mf, write_3mf}}};
+                                          {MeshFormat::k3mf, "3mf", ".3mf", parse_plain<parse_3mf>, write_3mf}}};
 
 const Format& row(MeshFormat format) { return kFormats[static_cast<std::size_t>(format)]; }
 
@@ -33,10 +39,13 @@ Result<MeshFormat> recognise(const std::filesystem::path& path, std::string_view
   if (bytes.empty()) return fail(ErrorKind::kBadData, "{}: the file is empty", path.string());
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return MeshFormat::kPly;
   if (bytes.starts_with("glTF")) return MeshFormat::kGlb;
+  if (is_web_page(bytes))
+    return fail(ErrorKind::kBadData,
+                "{}: a web page or another XML document found, expected a mesh; fetch the file itself", path.string());
   if (bytes.starts_with("\x89HDF"))
     return fail(ErrorKind::kBadData, "{}: this is an HDF5 volume, expected a mesh; use dubsar process", path.string());
   if (const auto by_suffix = mesh_format_from_path(path)) return *by_suffix;
-  if (bytes.starts_with("solid")) return MeshFormat::kStl;
+  if (starts_like_stl(bytes)) return MeshFormat::kStl;
   return fail(ErrorKind::kBadData, "{}: neither content nor suffix is that of a PLY, STL, OBJ or GLB file",
               path.string());
 }
@@ -47,14 +56,29 @@ struct Loaded {
   TriMesh mesh;
 };
 
-Result<Loaded> load(const std::filesystem::path& path, Progress& progress,
+/// A person says what one unit is.
+Result<void> set_unit(TriMesh& mesh, double unit_mm) {
+  VoxelSize& voxel = mesh.frame.input_voxel;
+  const bool metres = voxel.provenance == kGltfMetres;
+  if (voxel.known() && !metres)
+    return fail(ErrorKind::kUsage, "a unit of {} mm was given, but the file says its own ({}), expected none", unit_mm,
+                voxel.provenance);
+  voxel.mm *= metres ? unit_mm / kMmPerGltfUnit : unit_mm;
+  voxel.provenance = "unit that was given";
+  return {};
+}
+
+Result<Loaded> load(const std::filesystem::path& path, Progress& progress, const MeshReadOptions& options,
                     const std::function<void(TriMesh)>& tell_coarse = {}) {
-  DUBSAR_ASSIGN(const std::string bytes, read_file_bytes(path));
+  DUBSAR_ASSIGN(std::string bytes, read_file_bytes(path));
+  bytes = utf8_bytes(std::move(bytes));
   DUBSAR_ASSIGN(const MeshFormat format, recognise(path, bytes));
   try {
     if (tell_coarse)
       if (auto coarse = coarse_surface(format, bytes)) tell_coarse(*std::move(coarse));
-    auto mesh = row(format).parse(bytes, progress);
+    auto mesh = row(format).parse(bytes, progress, options);
+    if (mesh && options.unit_mm > 0)
+      if (const auto set = set_unit(*mesh, options.unit_mm); !set) return tl::unexpected<Error>(set.error());
     if (!mesh) {
       Error error = std::move(mesh).error();
       if (error.kind == ErrorKind::kBadData) error.message = path.string() + ": " + error.message;
@@ -87,18 +111,18 @@ Result<void> write_mesh(const std::filesystem::path& path, const TriMesh& mesh, 
 }
 
 Result<TriMesh> read_mesh(const std::filesystem::path& path, Progress& progress) {
-  DUBSAR_ASSIGN(Loaded loaded, load(path, progress));
+  DUBSAR_ASSIGN(Loaded loaded, load(path, progress, {}));
   return std::move(loaded.mesh);
 }
 
-Result<TriMesh> read_mesh(const std::filesystem::path& path, Progress& progress,
+Result<TriMesh> read_mesh(const std::filesystem::path& path, Progress& progress, const MeshReadOptions& options,
                           const std::function<void(TriMesh)>& tell_coarse) {
-  DUBSAR_ASSIGN(Loaded loaded, load(path, progress, tell_coarse));
+  DUBSAR_ASSIGN(Loaded loaded, load(path, progress, options, tell_coarse));
   return std::move(loaded.mesh);
 }
 
-Result<MeshInfo> mesh_info(const std::filesystem::path& path, Progress& progress) {
-  DUBSAR_ASSIGN(const Loaded loaded, load(path, progress));
+Result<MeshInfo> mesh_info(const std::filesystem::path& path, Progress& progress, const MeshReadOptions& options) {
+  DUBSAR_ASSIGN(const Loaded loaded, load(path, progress, options));
   const TriMesh& mesh = loaded.mesh;
   MeshInfo info;
   info.format = loaded.format;
@@ -109,16 +133,19 @@ Result<MeshInfo> mesh_info(const std::filesystem::path& path, Progress& progress
   info.unit = mesh.frame.input_voxel;
   info.partitions = mesh.partitions;
   info.provenance = mesh.provenance;
-  if (!mesh.triangles.empty()) {
+  if (!mesh.positions.empty()) {
     info.min_mm = glm::dvec3(std::numeric_limits<double>::max());
     info.max_mm = glm::dvec3(std::numeric_limits<double>::lowest());
   }
+  const auto add = [&](std::uint32_t v) {
+    const glm::dvec3 p = mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[v]));
+    info.min_mm = glm::min(info.min_mm, p);
+    info.max_mm = glm::max(info.max_mm, p);
+  };
   for (const Triangle& t : mesh.triangles)
-    for (const std::uint32_t v : t) {
-      const glm::dvec3 p = mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[v]));
-      info.min_mm = glm::min(info.min_mm, p);
-      info.max_mm = glm::max(info.max_mm, p);
-    }
+    for (const std::uint32_t v : t) add(v);
+  if (mesh.triangles.empty())
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) add(v);
   for_each_attribute([&](const auto& attribute) {
     if (!(mesh.*attribute.values).empty()) info.attributes.emplace_back(attribute.name);
   });

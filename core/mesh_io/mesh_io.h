@@ -28,10 +28,16 @@ struct MeshWriteOptions {
   bool compress = false;        ///< GLB only: quantised to 1/16 grid step, EXT_meshopt_compression; kUsage for others
 };
 
+/// What a person knows of a foreign file, and what it is read for.
+struct MeshReadOptions {
+  double unit_mm = 0.0;       ///< mm of one unit of the file; 0: as the format or the file says. kUsage for our own
+  bool photo_detail = false;  ///< triangles are divided until their vertices hold what a photograph on them shows
+};
+
 struct MeshInfo {
   MeshFormat format = MeshFormat::kPly;
   std::int64_t bytes = 0, vertices = 0, triangles = 0;
-  glm::dvec3 min_mm{0.0}, max_mm{0.0};  ///< box of the vertices used by triangles
+  glm::dvec3 min_mm{0.0}, max_mm{0.0};  ///< box of the vertices used by triangles; of a point cloud of all
   MeshCheck check;                      ///< is it a 2-manifold?
   VoxelSize unit;                       ///< one file unit; unknown() when the file does not say
   std::vector<std::string> attributes;  ///< "normals", "colors", "k_min", ... that the file carries
@@ -52,15 +58,17 @@ Result<void> write_mesh(const std::filesystem::path& path, const TriMesh& mesh, 
                         Progress& progress);
 
 /// Recognises the format by content, by the suffix where content does not tell. Positions keep the file's numbers;
-/// the frame says what one unit is. Equal STL corners become one vertex; polygons become triangles.
+/// the frame says what one unit is, and where they are counted from when they lie far off. Equal places become one
+/// vertex in STL, and in other foreign files that are more closed then; polygons and strips become triangles; the
+/// photographs of a GLB file become colours of its vertices.
 /// Errors: kNoInput, kPermission, kIo, kBadData (damaged or hostile; positions that are not finite), kTryAgain.
 Result<TriMesh> read_mesh(const std::filesystem::path& path, Progress& progress);
 /// The same, told a coarse surface (coarse_surface.h) before the whole is read, where there is one.
-Result<TriMesh> read_mesh(const std::filesystem::path& path, Progress& progress,
-                          const std::function<void(TriMesh)>& tell_coarse);
+Result<TriMesh> read_mesh(const std::filesystem::path& path, Progress& progress, const MeshReadOptions& options,
+                          const std::function<void(TriMesh)>& tell_coarse = {});
 
 /// Reads the file and describes it.
-Result<MeshInfo> mesh_info(const std::filesystem::path& path, Progress& progress);
+Result<MeshInfo> mesh_info(const std::filesystem::path& path, Progress& progress, const MeshReadOptions& options = {});
 
 /// The triangles of one partition and the vertices they use, in the old order.
 TriMesh select_partition(const TriMesh& mesh, PartitionId partition);

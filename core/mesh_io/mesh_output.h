@@ -20,10 +20,16 @@ class OutputSpace {
     step_ = mm_ ? frame.grid_voxel_mm() : frame.scale;
     curvature_ = static_cast<float>(1.0 / std::cbrt(step_.x * step_.y * step_.z));
   }
-  glm::vec3 position(const glm::vec3& grid) const {
+  glm::vec3 position(const glm::vec3& grid) const { return glm::vec3(exact_position(grid)); }
+  glm::dvec3 exact_position(const glm::vec3& grid) const {
     const glm::dvec3 p(grid);
-    return glm::vec3(mm_ ? frame_.mm_from_grid(p) : frame_.input_vox_from_grid(p));
+    return mm_ ? frame_.mm_from_grid(p) : frame_.input_vox_from_grid(p);
   }
+  /// Where the mesh lies when it is so far from the origin that float would lose its shape (survey coordinates), in
+  /// file units; 0: it is not.
+  glm::dvec3 far_origin(const TriMesh& mesh) const;
+  /// The same for formats that can only keep what lies near, which is said.
+  glm::dvec3 told_origin(const TriMesh& mesh, std::string_view format) const;
   /// Normals turn with the inverse transpose of a stretched grid.
   glm::vec3 normal(const glm::vec3& n) const {
     if (step_.x == step_.y && step_.y == step_.z) return n;

@@ -3,19 +3,33 @@
 #include <limits>
 
 #include "core/base/files/buffered_writer.h"
+#include "core/base/system/log.h"
 #include "core/mesh_io/mesh_formats.h"
 #include "core/mesh_io/mesh_output.h"
 #include "core/mesh_io/mesh_text.h"
 #include "core/mesh_io/polygon_soup.h"
 #include "core/mesh_io/progress_step.h"
 #include "core/mesh_io/text_scanner.h"
+#include "core/mesh_io/vertex_places.h"
 
 namespace dubsar {
 namespace {
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr double kNoShare = 16.0;  // colours of 0 to 1 may be a little too bright, not so much
 constexpr std::size_t kMaxLine = std::size_t{1} << 20;
 
 bool finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+/// Words that begin a line, of the format's description (Wavefront 1995) and of later versions.
+bool is_obj_word(std::string_view word) {
+  static constexpr std::array kWords{
+      "v",     "vt",    "vn",   "vp",     "f",        "fo",       "l",      "p",          "g",
+      "s",     "o",     "mg",   "usemtl", "mtllib",   "usemap",   "maplib", "cstype",     "deg",
+      "bmat",  "step",  "curv", "curv2",  "surf",     "parm",     "trim",   "hole",       "scrv",
+      "sp",    "end",   "con",  "bevel",  "c_interp", "d_interp", "lod",    "shadow_obj", "trace_obj",
+      "ctech", "stech", "call", "csh",    "bsp",      "bzp",      "cdc",    "cdp",        "res"};
+  return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
+}
 
 struct ObjParser {
   std::string_view bytes;
@@ -25,9 +39,11 @@ struct ObjParser {
   MeshTextReader text;
   std::vector<glm::vec3> normals;
   std::vector<std::uint32_t> corner_normals;
+  std::vector<glm::dvec3> places{};
+  std::vector<glm::dvec3> colors{};  ///< as the file has them
   bool corners_without_normal = false, vertices_without_color = false;
   PartitionId partition = 0;
-  std::size_t line_number = 0;
+  std::size_t line_number = 0, strange_lines = 0, first_strange = 0;
 
   tl::unexpected<Error> broken(std::string_view line, std::string_view expected) const {
     return fail(ErrorKind::kBadData, "obj: line {}: \"{}\" found, expected {}", line_number, line.substr(0, 60),
@@ -40,18 +56,13 @@ struct ObjParser {
     for (std::string_view word = words.word(); !word.empty() && count < 8; word = words.word())
       if (!TextScanner::parse(word, value[count++])) return broken(line, "numbers");
     if (count < 3) return broken(line, "at least 3 coordinates");
-    const glm::vec3 p(static_cast<float>(value[0]), static_cast<float>(value[1]), static_cast<float>(value[2]));
-    if (!finite(p)) return broken(line, "finite coordinates");
-    mesh.positions.push_back(p);
-    if (count == 6) {
-      std::array<std::uint8_t, 3> rgb{};
-      for (std::size_t c = 0; c < 3; ++c)
-        rgb[c] = static_cast<std::uint8_t>(
-            std::lround(std::clamp(std::isfinite(value[3 + c]) ? value[3 + c] : 0.0, 0.0, 1.0) * 255.0));
-      mesh.colors.push_back(rgb);
-    } else {
+    const glm::dvec3 p(value[0], value[1], value[2]);
+    if (!finite(glm::vec3(p))) return broken(line, "finite coordinates");
+    places.push_back(p);
+    if (count < 6)
       vertices_without_color = true;
-    }
+    else
+      colors.emplace_back(value[3], value[4], value[5]);
     return {};
   }
 
@@ -67,7 +78,7 @@ struct ObjParser {
     std::uint32_t size = 0;
     for (std::string_view word = words.word(); !word.empty(); word = words.word(), ++size) {
       const std::size_t slash = word.find('/');
-      const std::uint32_t v = resolved(word.substr(0, slash), mesh.positions.size());
+      const std::uint32_t v = resolved(word.substr(0, slash), places.size());
       if (v == kNone) return broken(line, "vertex numbers that exist");
       std::uint32_t n = kNone;
       if (slash != std::string_view::npos) {
@@ -102,6 +113,9 @@ struct ObjParser {
       partition = digit > 0 && digit <= PartitionTable::kHighest ? static_cast<PartitionId>(digit) : PartitionId{0};
     } else if (line.starts_with("# ")) {
       text.line(line.substr(2));
+    } else if (!key.empty() && !key.starts_with('#') && !is_obj_word(key)) {
+      if (places.empty()) return broken(line, "a line of an OBJ file, such as \"v 1 2 3\" or \"f 1 2 3\"");
+      if (strange_lines++ == 0) first_strange = line_number;
     }
     return {};
   }
@@ -137,23 +151,46 @@ struct ObjParser {
   }
 
   Result<void> finish() {
-    const std::size_t count = mesh.positions.size();
+    const std::size_t count = places.size();
+    if (count == 0 && !text.ours())
+      return fail(ErrorKind::kBadData, "obj: {} lines without a vertex found, expected lines such as \"v 1 2 3\"",
+                  line_number);
     if (count >= kNone) return fail(ErrorKind::kBadData, "obj: {} vertices, expected fewer than 2^32 - 1", count);
     for (const std::uint32_t v : soup.corners)
       if (v >= count) return fail(ErrorKind::kBadData, "obj: a face names vertex {}, but there are {}", v + 1, count);
     if (!soup.corners.empty() && !corners_without_normal) DUBSAR_TRY(vertex_normals());
-    if (vertices_without_color) mesh.colors.clear();
+    if (!vertices_without_color) vertex_colors();
+    if (strange_lines > 0)
+      log_warning("obj: {} lines left out that begin with no word of the format, the first one is line {}",
+                  strange_lines, first_strange);
     DUBSAR_TRY(text.apply(mesh));
+    set_places(mesh, places);
     if (text.ours() && !mesh.partitions.empty()) mesh.triangle_partition = triangle_partitions(soup);
     DUBSAR_ASSIGN(mesh.triangles, triangulate_soup(mesh.positions, soup, "obj"));
+    if (!text.ours()) join_equal_places(mesh);
     return {};
+  }
+
+  /// Most programs write 0 to 1, some 0 to 255.
+  void vertex_colors() {
+    double most = 0.0;
+    bool whole = true;
+    for (const glm::dvec3& color : colors)
+      for (int c = 0; c < 3; ++c)
+        if (std::isfinite(color[c])) most = std::max(most, color[c]), whole = whole && color[c] == std::round(color[c]);
+    const double scale = most > kNoShare || (most > 1.0 && whole) ? 1.0 : 255.0;
+    mesh.colors.resize(colors.size());
+    for (std::size_t v = 0; v < colors.size(); ++v)
+      for (int c = 0; c < 3; ++c)
+        mesh.colors[v][static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(
+            std::lround(std::isfinite(colors[v][c]) ? std::clamp(scale * colors[v][c], 0.0, 255.0) : 0.0));
   }
 
   /// One normal per vertex: its only one, or the mean direction of several.
   Result<void> vertex_normals() {
-    mesh.normals.assign(mesh.positions.size(), glm::vec3(0.0f));
-    std::vector<std::uint32_t> last(mesh.positions.size(), kNone);
-    std::vector<bool> several(mesh.positions.size());
+    mesh.normals.assign(places.size(), glm::vec3(0.0f));
+    std::vector<std::uint32_t> last(places.size(), kNone);
+    std::vector<bool> several(places.size());
     for (std::size_t c = 0; c < soup.corners.size(); ++c) {
       const std::uint32_t v = soup.corners[c], n = corner_normals[c];
       if (n >= normals.size())
@@ -186,7 +223,7 @@ Result<void> write_obj(const std::filesystem::path& path, const TriMesh& mesh, c
   for (const std::string& line : mesh_text_lines(mesh, options, colors.derived || options.colors_derived))
     out.text("# " + line + "\n");
   const OutputSpace space(mesh.frame, options.units);
-  const bool normals = !mesh.normals.empty();
+  const bool normals = !mesh.normals.empty(), far = space.far_origin(mesh) != glm::dvec3(0.0);
   progress.begin("write obj", static_cast<std::int64_t>(mesh.positions.size() + mesh.triangles.size()), "item");
   std::int64_t items = 0;
   const auto stopped = [&]() {  // after every item
@@ -198,9 +235,11 @@ Result<void> write_obj(const std::filesystem::path& path, const TriMesh& mesh, c
   fmt::memory_buffer row;
   const auto emit = [&]() { out.text(std::string_view(row.data(), row.size())); };
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const glm::vec3 p = space.position(mesh.positions[v]);
     row.clear();
-    fmt::format_to(std::back_inserter(row), "v {} {} {}", p.x, p.y, p.z);
+    if (const glm::dvec3 p = space.exact_position(mesh.positions[v]); far)
+      fmt::format_to(std::back_inserter(row), "v {:.6f} {:.6f} {:.6f}", p.x, p.y, p.z);
+    else if (const glm::vec3 near(p); true)
+      fmt::format_to(std::back_inserter(row), "v {} {} {}", near.x, near.y, near.z);
     if (!colors.rgb.empty())
       for (const std::uint8_t c : colors.rgb[v]) fmt::format_to(std::back_inserter(row), " {:.4g}", c / 255.0);
     row.push_back('\n');

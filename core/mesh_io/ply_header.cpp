@@ -63,6 +63,8 @@ std::size_t ply_scalar_bytes(PlyScalar type) noexcept {
 }
 
 Result<PlyHeader> parse_ply_header(std::string_view bytes) {
+  // Where lines end in CR alone, an LF behind the last one is the first byte of the data.
+  const bool cr_alone = bytes.size() > 4 && bytes[3] == '\r' && bytes[4] != '\n';
   TextScanner lines(bytes.substr(0, kMaxHeaderBytes));
   if (lines.line() != "ply") return fail(ErrorKind::kBadData, "ply: the file does not start with \"ply\"");
   PlyHeader header;
@@ -74,7 +76,8 @@ Result<PlyHeader> parse_ply_header(std::string_view bytes) {
     const std::string_view key = words.word();
     if (key == "end_header") {
       if (!has_format) return fail(ErrorKind::kBadData, "ply: no format line in the header");
-      header.body = static_cast<std::size_t>(lines.rest().data() - bytes.data());
+      header.body = static_cast<std::size_t>(line.data() - bytes.data()) + line.size() + 1;
+      if (!cr_alone) header.body = static_cast<std::size_t>(lines.rest().data() - bytes.data());
       return header;
     }
     if (key == "format") {

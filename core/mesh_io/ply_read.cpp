@@ -13,6 +13,7 @@
 #include "core/mesh_io/polygon_soup.h"
 #include "core/mesh_io/progress_step.h"
 #include "core/mesh_io/text_scanner.h"
+#include "core/mesh_io/vertex_places.h"
 
 namespace dubsar {
 namespace {
@@ -117,6 +118,7 @@ struct PlyParser {
   std::uint64_t vertex_count = 0;
   std::int64_t skipped = 0;
   std::vector<PartitionId> labels{};  ///< of the vertices, from files without labels of the faces
+  std::vector<glm::dvec3> places{};
 
   template <class Values>
   Result<void> vertices(const PlyElement& element, Values& values) {
@@ -136,8 +138,8 @@ struct PlyParser {
     const bool colors = has[kRed] && has[kGreen] && has[kBlue] && !header.text.colors_derived();
     const bool curvatures = has[kKMin] && has[kKMax];
     const auto count = static_cast<std::size_t>(element.count);
-    DUBSAR_TRY(check_memory("ply", element.count * 48));
-    mesh.positions.resize(count);
+    DUBSAR_TRY(check_memory("ply", element.count * 72));
+    places.resize(count);
     if (normals) mesh.normals.resize(count);
     if (colors) mesh.colors.resize(count);
     if (curvatures) mesh.k_min.resize(count), mesh.k_max.resize(count);
@@ -162,10 +164,10 @@ struct PlyParser {
       }
       if (!values.ok())
         return fail(ErrorKind::kBadData, "ply: the file ends or has a broken number in vertex {} of {}", v, count);
-      const glm::vec3 position = point(kX);
+      places[v] = {row[kX], row[kY], row[kZ]};
+      const glm::vec3 position = point(kX);  // what float does not hold is refused, too
       if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z))
         return fail(ErrorKind::kBadData, "ply: the position of vertex {} is not finite", v);
-      mesh.positions[v] = position;
       if (normals) mesh.normals[v] = point(kNx);
       if (colors)
         for (int c = 0; c < 3; ++c)
@@ -259,6 +261,51 @@ struct PlyParser {
     return {};
   }
 
+  /// Each vertex makes a triangle with the two before it, every other one turned; a negative one begins anew.
+  template <class Values>
+  Result<void> strips(const PlyElement& element, Values& values) {
+    if (element.properties.empty() && element.count > 0)
+      return fail(ErrorKind::kBadData, "ply: {} strips without properties found, expected a list vertex_indices",
+                  element.count);
+    for (std::uint64_t s = 0; s < element.count; ++s) {
+      for (const PlyProperty& property : element.properties) {
+        if (!property.list) {
+          values.next(property.type);
+          continue;
+        }
+        if (property.name != "vertex_indices" && property.name != "vertex_index") {
+          DUBSAR_TRY(skip_list(property, values));
+          continue;
+        }
+        DUBSAR_ASSIGN(const std::uint64_t count, list_length(property, values));
+        std::vector<std::uint32_t> strip;
+        for (std::uint64_t c = 0; c < count; ++c) {
+          const double id = values.next(property.type);
+          if (!(id < static_cast<double>(vertex_count)) || id != std::floor(id))
+            return fail(ErrorKind::kBadData, "ply: a strip names vertex {}, but there are {} vertices", id,
+                        vertex_count);
+          if (id < 0) {
+            strip.clear();
+            continue;
+          }
+          strip.push_back(static_cast<std::uint32_t>(id));
+          const std::size_t n = strip.size();
+          if (n < 3 || strip[n - 1] == strip[n - 2] || strip[n - 2] == strip[n - 3] || strip[n - 1] == strip[n - 3])
+            continue;
+          const bool turned = n % 2 == 0;
+          soup.corners.insert(soup.corners.end(),
+                              {strip[turned ? n - 2 : n - 3], strip[turned ? n - 3 : n - 2], strip[n - 1]});
+          soup.sizes.push_back(3);
+        }
+        if (progress.cancelled()) return cancelled_error();
+      }
+      if (!values.ok())
+        return fail(ErrorKind::kBadData, "ply: the file ends or has a broken number in strip {} of {}", s,
+                    element.count);
+    }
+    return {};
+  }
+
   template <class Values>
   Result<void> other(const PlyElement& element, Values& values) {
     for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
@@ -293,10 +340,12 @@ struct PlyParser {
       DUBSAR_TRY(check_count("ply: " + element.name.substr(0, 40), element.count, least, values.left()));
       progress.begin("read ply " + element.name.substr(0, 40), static_cast<std::int64_t>(element.count), "item");
       if (element.name == "vertex") {
-        if (!mesh.positions.empty()) return fail(ErrorKind::kBadData, "ply: two vertex elements, expected one");
+        if (!places.empty()) return fail(ErrorKind::kBadData, "ply: two vertex elements, expected one");
         DUBSAR_TRY(vertices(element, values));
       } else if (element.name == "face") {
         DUBSAR_TRY(faces(element, values));
+      } else if (element.name == "tristrips") {
+        DUBSAR_TRY(strips(element, values));
       } else {
         DUBSAR_TRY(other(element, values));
       }
@@ -312,8 +361,6 @@ Result<TriMesh> parse_ply(std::string_view bytes, Progress& progress) {
   PlyParser parser{header, progress, {}, {}};
   bool has_vertices = false;
   for (const PlyElement& element : header.elements) {
-    if (element.name == "tristrips")
-      return fail(ErrorKind::kBadData, "ply: triangle strips found, expected faces; convert the file");
     if (element.name != "vertex") continue;
     has_vertices = true;
     parser.vertex_count = element.count;
@@ -334,9 +381,11 @@ Result<TriMesh> parse_ply(std::string_view bytes, Progress& progress) {
       break;
   }
   if (parser.skipped > 0) log_warning("ply: {} faces with fewer than 3 corners left out", parser.skipped);
+  DUBSAR_TRY(header.text.apply(parser.mesh));
+  set_places(parser.mesh, parser.places);
   DUBSAR_ASSIGN(parser.mesh.triangles, triangulate_soup(parser.mesh.positions, parser.soup, "ply"));
   parser.mesh.triangle_partition = parser.triangle_labels();
-  DUBSAR_TRY(header.text.apply(parser.mesh));
+  if (!header.text.ours()) join_equal_places(parser.mesh);
   return std::move(parser.mesh);
 }
 

@@ -46,7 +46,9 @@ Result<void> write_ply(const std::filesystem::path& path, const TriMesh& mesh, c
     vertex_bytes += bytes * names.size();
   };
   header += fmt::format("element vertex {}\n", mesh.positions.size());
-  declare(true, "float", 4, {"x", "y", "z"});
+  const OutputSpace space(mesh.frame, options.units);
+  const bool far = space.far_origin(mesh) != glm::dvec3(0.0);
+  declare(true, far ? "double" : "float", far ? 8 : 4, {"x", "y", "z"});
   declare(normals, "float", 4, {"nx", "ny", "nz"});
   declare(!colors.rgb.empty(), "uchar", 1, {"red", "green", "blue"});
   declare(!mesh.triangle_partition.empty(), "uchar", 1, {"partition"});
@@ -65,13 +67,15 @@ Result<void> write_ply(const std::filesystem::path& path, const TriMesh& mesh, c
   DUBSAR_ASSIGN(AtomicFile file, AtomicFile::create(path, static_cast<std::int64_t>(bytes)));
   BufferedWriter out(file);
   out.text(header);
-  const OutputSpace space(mesh.frame, options.units);
   const std::vector<PartitionId> labels = vertex_labels(mesh);
   progress.begin("write ply", static_cast<std::int64_t>(mesh.positions.size() + mesh.triangles.size()), "item");
   std::string row;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     row.clear();
-    append(row, space.position(mesh.positions[v]));
+    if (const glm::dvec3 p = space.exact_position(mesh.positions[v]); far)
+      for (int axis = 0; axis < 3; ++axis) append_little(row, p[axis]);
+    else
+      append(row, glm::vec3(p));
     if (normals) append(row, space.normal(mesh.normals[v]));
     if (!colors.rgb.empty())
       for (const std::uint8_t c : colors.rgb[v]) append_little(row, c);

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "core/base/files/buffered_writer.h"
 #include "core/base/system/budget.h"
@@ -8,6 +10,7 @@
 #include "core/mesh_io/mesh_output.h"
 #include "core/mesh_io/progress_step.h"
 #include "core/mesh_io/text_scanner.h"
+#include "core/mesh_io/vertex_places.h"
 #include "core/mesh_io/weld.h"
 
 namespace dubsar {
@@ -53,62 +56,91 @@ Result<TriMesh> parse_binary(std::string_view bytes, Progress& progress) {
   return mesh;
 }
 
+/// Words of a text file in small letters, "end solid", "end loop" and "end facet" as one word.
+class StlWords {
+ public:
+  explicit StlWords(std::string_view bytes) : scanner_(bytes) {}
+  std::string_view next() {
+    word_ = scanner_.word();
+    std::transform(word_.begin(), word_.end(), word_.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (word_ == "end") word_ += next_raw();
+    return word_;
+  }
+  /// As it stands in the file.
+  std::string_view raw() { return scanner_.word(); }
+  void line() { scanner_.line(); }
+
+ private:
+  std::string next_raw() {
+    std::string word(scanner_.word());
+    std::transform(word.begin(), word.end(), word.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return word;
+  }
+  TextScanner scanner_;
+  std::string word_;
+};
+
 Result<TriMesh> parse_ascii(std::string_view bytes, Progress& progress) {
-  TriMesh mesh;
-  PointWelder welder;
-  TextScanner scanner(bytes);
+  std::vector<glm::dvec3> corners;
+  StlWords words(bytes);
   const auto broken = [&](std::string_view found, std::string_view expected) {
     return fail(ErrorKind::kBadData, "stl: \"{}\" found in triangle {}, expected {}",
-                found.empty() ? std::string_view("end of file") : found.substr(0, 40), mesh.triangles.size(), expected);
+                found.empty() ? std::string_view("end of file") : found.substr(0, 40), corners.size() / 3, expected);
   };
   progress.begin("read stl", 0, "triangle");
-  if (scanner.word() != "solid") return fail(ErrorKind::kBadData, "stl: the file does not start with \"solid\"");
-  scanner.line();
+  if (words.next() != "solid") return fail(ErrorKind::kBadData, "stl: the file does not start with \"solid\"");
+  words.line();
   bool open = true;
   while (true) {
-    std::string_view word = scanner.word();
+    std::string_view word = words.next();
     if (!open) {
       if (word.empty()) break;
       if (word != "solid") return broken(word, "\"solid\" or the end of the file");
-      scanner.line();
+      words.line();
       open = true;
       continue;
     }
     if (word == "endsolid") {
-      scanner.line();
+      words.line();
       open = false;
       continue;
     }
     if (word != "facet") return broken(word, "\"facet\" or \"endsolid\"");
-    if (word = scanner.word(); word != "normal") return broken(word, "\"normal\"");
-    for (int i = 0; i < 3; ++i) scanner.word();  // often wrong, sometimes "nan": never used
-    if (word = scanner.word(); word != "outer") return broken(word, "\"outer loop\"");
-    if (word = scanner.word(); word != "loop") return broken(word, "\"outer loop\"");
-    Triangle triangle;
-    for (std::uint32_t& id : triangle) {
-      if (word = scanner.word(); word != "vertex") return broken(word, "\"vertex\"");
-      glm::vec3 p;
-      for (int axis = 0; axis < 3; ++axis) {
-        double value = 0.0;
-        if (word = scanner.word(); !TextScanner::parse(word, value)) return broken(word, "a number");
-        p[axis] = static_cast<float>(value);
-      }
-      if (!finite(p)) return broken("not finite", "a finite coordinate");
-      id = welder.id(p);
+    if (word = words.next(); word != "normal") return broken(word, "\"normal\"");
+    for (int i = 0; i < 3; ++i) words.next();  // often wrong, sometimes "nan": never used
+    if (word = words.next(); word != "outer") return broken(word, "\"outer loop\"");
+    if (word = words.next(); word != "loop") return broken(word, "\"outer loop\"");
+    for (int corner = 0; corner < 3; ++corner) {
+      if (word = words.next(); word != "vertex") return broken(word, "\"vertex\"");
+      glm::dvec3 p(0.0);
+      for (int axis = 0; axis < 3; ++axis)
+        if (word = words.raw(); !TextScanner::parse(word, p[axis])) return broken(word, "a number");
+      if (!finite(glm::vec3(p))) return broken("not finite", "a finite coordinate");
+      corners.push_back(p);
     }
-    if (word = scanner.word(); word != "endloop") return broken(word, "\"endloop\"");
-    if (word = scanner.word(); word != "endfacet") return broken(word, "\"endfacet\"");
-    mesh.triangles.push_back(triangle);
-    if (mesh.triangles.size() % kProgressStep == 0) {
+    if (word = words.next(); word != "endloop") return broken(word, "\"endloop\"");
+    if (word = words.next(); word != "endfacet") return broken(word, "\"endfacet\"");
+    if (corners.size() / 3 % kProgressStep == 0) {
       progress.advance(kProgressStep);
       if (progress.cancelled()) return cancelled_error();
     }
+  }
+  TriMesh mesh;
+  set_places(mesh, corners);
+  PointWelder welder;
+  for (std::size_t c = 0; c < corners.size(); c += 3) {
+    const std::uint32_t first = welder.id(mesh.positions[c]), second = welder.id(mesh.positions[c + 1]);
+    mesh.triangles.push_back({first, second, welder.id(mesh.positions[c + 2])});
   }
   mesh.positions = std::move(welder.points());
   progress.end();
   return mesh;
 }
 }  // namespace
+
+bool starts_like_stl(std::string_view bytes) { return StlWords(bytes.substr(0, 256)).next() == "solid"; }
 
 Result<TriMesh> parse_stl(std::string_view bytes, Progress& progress) {
   // Many binary files start with "solid" too: the announced count decides first.
@@ -117,9 +149,7 @@ Result<TriMesh> parse_stl(std::string_view bytes, Progress& progress) {
     if (bytes.size() == kHeaderBytes + 4 + std::size_t{count.little<std::uint32_t>()} * kFacetBytes)
       return parse_binary(bytes, progress);
   }
-  const std::size_t first = bytes.find_first_not_of(" \t\r\n");
-  if (first != std::string_view::npos && bytes.substr(first).starts_with("solid") &&
-      bytes.substr(0, 256).find('\0') == std::string_view::npos)
+  if (starts_like_stl(bytes) && bytes.substr(0, 256).find('\0') == std::string_view::npos)
     return parse_ascii(bytes, progress);
   return parse_binary(bytes, progress);
 }
@@ -152,11 +182,13 @@ Result<void> write_stl(const std::filesystem::path& path, const TriMesh& mesh, c
   out.text(header);
   out.little(static_cast<std::uint32_t>(mesh.triangles.size()));
   const OutputSpace space(mesh.frame, options.units);
+  const glm::dvec3 told = space.told_origin(mesh, "stl");
   progress.begin("write stl", static_cast<std::int64_t>(mesh.triangles.size()), "triangle");
   std::string facet;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     std::array<glm::vec3, 4> rows;  // the normal, then the corners
-    for (std::size_t c = 0; c < 3; ++c) rows[c + 1] = space.position(mesh.positions[mesh.triangles[t][c]]);
+    for (std::size_t c = 0; c < 3; ++c)
+      rows[c + 1] = glm::vec3(space.exact_position(mesh.positions[mesh.triangles[t][c]]) - told);
     const glm::dvec3 origin(rows[1]);
     const glm::dvec3 normal = glm::cross(glm::dvec3(rows[2]) - origin, glm::dvec3(rows[3]) - origin);
     const double length = glm::length(normal);

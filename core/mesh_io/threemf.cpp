@@ -36,7 +36,12 @@ constexpr std::string_view kModelHead =
 class ModelWriter {
  public:
   ModelWriter(ZipWriter& zip, const TriMesh& mesh, Progress& progress)
-      : zip_(zip), mesh_(mesh), progress_(progress), space_(mesh.frame, MeshUnits::kMm), colors_(output_colors(mesh)) {}
+      : zip_(zip),
+        mesh_(mesh),
+        progress_(progress),
+        space_(mesh.frame, MeshUnits::kMm),
+        origin_(space_.told_origin(mesh, "3mf")),
+        colors_(output_colors(mesh)) {}
 
   Result<void> write() {
     DUBSAR_TRY(zip_.begin("3D/3dmodel.model"));
@@ -96,7 +101,7 @@ class ModelWriter {
       for (const std::uint32_t v : mesh_.triangles[t]) {
         if (local[v] != kNone) continue;
         local[v] = count++;
-        const glm::vec3 p = space_.position(mesh_.positions[v]);
+        const glm::vec3 p(space_.exact_position(mesh_.positions[v]) - origin_);
         least_ = glm::min(least_, p);
         fmt::format_to(std::back_inserter(text_), "<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n", p.x, p.y, p.z);
       }
@@ -123,6 +128,7 @@ class ModelWriter {
   const TriMesh& mesh_;
   Progress& progress_;
   OutputSpace space_;
+  glm::dvec3 origin_;
   VertexColors colors_;
   std::vector<std::uint32_t> color_of_;  ///< of each vertex: its place in the colour group
   glm::vec3 least_{std::numeric_limits<float>::max()};

@@ -50,6 +50,7 @@ struct CameraOptions {
   double margin = 0.05;             ///< free border, as a fraction of the picture side, 0..0.45
   double mm_per_pixel = 0.0;        ///< orthographic: exact scale; 0: fit the object to the picture
   int width = 1200, height = 1200;  ///< pixels; both 0 with mm_per_pixel: as large as the object needs
+  bool whole = false;               ///< kUsage where the scale does not leave room for all of the object
 };
 
 struct Camera {

@@ -108,7 +108,8 @@ Result<DisplayPicture> render_display(const TriMesh& mesh, const SinkSpec& displ
   DUBSAR_ASSIGN(const Stage stage, open_stage(display, options));
   const SinkTraits traits = stage.sink->traits();
 
-  const Box box = packed.box_of(visible_partitions(options.shading.parts));
+  DUBSAR_ASSIGN(LodMesh gpu, LodMesh::exact(packed));
+  const Box box = scene_box_mm(MeshScene(gpu, options.shading));
   const glm::dvec3 extents = picture_extents(box, options.direction);
   double magnification = options.magnification;
   if (magnification == 0) {
@@ -121,7 +122,6 @@ Result<DisplayPicture> render_display(const TriMesh& mesh, const SinkSpec& displ
   viewer.back_mm = options.place_mm.z - half_depth;
   const glm::dmat4 screen_from_model = place_object(box, options.direction, options.place_mm, magnification);
 
-  DUBSAR_ASSIGN(LodMesh gpu, LodMesh::exact(packed));
   DUBSAR_TRY(carry_fields(gpu, mesh, fields_needed(options.shading.style, options.shading.other), progress));
   const MeshScene scene(gpu, options.shading, screen_from_model);
   DUBSAR_ASSIGN(Renderer renderer, Renderer::create());

@@ -24,17 +24,7 @@ Result<void> check_traits(const SinkTraits& traits) {
 Document film_document(const Document& base, const TriMesh& mesh) {
   ViewOptions options;
   options.work.document = base;
-  options.work.document.parts.clear();
-  Document out = first_document(options, mesh);
-  for (Part& part : out.parts) {
-    const auto same = [&](const Part& given) { return given.name == part.name; };
-    const auto at = std::find_if(base.parts.begin(), base.parts.end(), same);
-    if (at == base.parts.end()) continue;
-    const std::uint8_t partitions = part.partitions;
-    part = *at;
-    part.partitions = partitions;
-  }
-  return out;
+  return first_document(options, mesh);
 }
 
 std::vector<std::string> strange_parts(std::span<const Keyframe> film, const Document& document) {

@@ -1,7 +1,10 @@
 #include "display/render/images/render_image.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <glm/common.hpp>
+#include <glm/vec4.hpp>
 
 #include "core/base/system/budget.h"
 #include "core/base/system/log.h"
@@ -28,6 +31,27 @@ bool only_background(const Image& image, const Shading& shading) {
     if (image.channels == 4 ? pixel[3] != 0 : !std::equal(pixel, pixel + 3, background.data())) return false;
   }
   return true;
+}
+
+/// An orthographic camera shows all that is visible.
+Result<void> check_room(const TriMesh& mesh, const PartLooks& parts, const Camera& camera) {
+  const glm::dmat4 clip = camera.view.clip_from_world();
+  glm::dvec2 reach(0.0);  // from the middle of the picture, of half of it
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const PartLook& look = parts[mesh.partition_of(t) % parts.size()];
+    if (!look.visible) continue;
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      const glm::dvec3 p = mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[v])) + look.offset_mm;
+      if (std::isfinite(p.x + p.y + p.z)) reach = glm::max(reach, glm::abs(glm::dvec2(clip * glm::dvec4(p, 1.0))));
+    }
+  }
+  const glm::dvec2 needed = glm::ceil(reach * glm::dvec2(camera.width, camera.height) - 1e-6);
+  if (needed.x <= camera.width && needed.y <= camera.height) return {};
+  return fail(
+      ErrorKind::kUsage,
+      "render: a picture of {} x {} pixels found, expected at least {:.0f} x {:.0f} for the object at {:.4g} mm a "
+      "pixel; without a size the picture is as large as the object needs",
+      camera.width, camera.height, needed.x, needed.y, camera.mm_per_pixel);
 }
 
 }  // namespace
@@ -80,12 +104,14 @@ Result<Picture> PictureRenderer::render(const RenderOptions& options, Progress& 
     log_info("render: the mesh carries no shape classes, so it is drawn without curvature colouring");
   if (shading.style.ambient_occlusion && !parts_->has_ao)
     log_info("render: the mesh carries no ambient occlusion, so it is drawn without");
-  DUBSAR_ASSIGN(const Camera camera, fit_camera(box_mm(visible_partitions(shading.parts)), options.camera));
+  const MeshScene scene(parts_->mesh, shading);
+  DUBSAR_ASSIGN(const Camera camera, fit_camera(scene_box_mm(scene), options.camera));
+  if (options.camera.whole && options.camera.mm_per_pixel > 0)
+    DUBSAR_TRY(check_room(*parts_->source, shading.parts, camera));
   const int channels = shading.background.transparent ? 4 : 3;
   DUBSAR_TRY(check_memory("render", static_cast<std::uint64_t>(camera.width) * camera.height * channels));
   DUBSAR_TRY(prepare(shading, progress));
 
-  const MeshScene scene(parts_->mesh, shading);
   const int side = kTileSamples / options.samples;
   Picture picture{Image(camera.width, camera.height, channels), camera.mm_per_pixel};
   progress.begin("render", static_cast<std::int64_t>(camera.width) * camera.height, "pixel");

@@ -171,7 +171,7 @@ TEST_F(Glb, LiesAreRefusedWithASentence) {
   EXPECT_THAT(says("/nodes/0/children", Json{7}), HasSubstr("not a tree"));
   EXPECT_THAT(says("/nodes/1/mesh", 3), HasSubstr("mesh that does not exist"));
   EXPECT_THAT(says("/nodes/0/translation", Json{1, 2}), HasSubstr("transform"));
-  EXPECT_THAT(says("/meshes/0/primitives/0/mode", 5), HasSubstr("expected triangles"));
+  EXPECT_THAT(says("/meshes/0/primitives/0/mode", 7), HasSubstr("expected triangles"));
   EXPECT_THAT(says("/extensionsRequired", Json{"KHR_draco_mesh_compression"}), HasSubstr("KHR_draco"));
   EXPECT_THAT(says("/accessors/0/sparse", Json::object()), HasSubstr("sparse"));
   std::string bin = foreign_bin();

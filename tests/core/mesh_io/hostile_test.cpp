@@ -26,7 +26,7 @@ class HostileMesh : public FileTest, public ::testing::WithParamInterface<const 
     const std::string name = GetParam();
     if (name == "stl") parse = parse_stl;
     if (name == "obj") parse = parse_obj;
-    if (name == "glb") parse = parse_glb;
+    if (name == "glb") parse = [](std::string_view all, Progress& told) { return parse_glb(all, told); };
     const auto mesh = parse(bytes, progress);
     if (mesh) {
       EXPECT_TRUE(check_tri_mesh(*mesh)) << check_tri_mesh(*mesh).error().message;
