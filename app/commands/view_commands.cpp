@@ -83,6 +83,30 @@ Command obverse_here() {
   return out;
 }
 
+/// For where the writing misled the program. The home view turns with it, so that all sides count anew.
+Command upright() {
+  Command out{"upright",
+              "Sides",
+              "stand it upright: turn it half, left, right, or over to the other side",
+              {{"shift+home", "half"}, {"ctrl+shift+home", "over"}}};
+  out.argument = "which way";
+  out.values = {"half", "left", "right", "over"};
+  out.closed = true;
+  out.run = [why = out.words](Editor& editor, const std::string& way) -> Result<void> {
+    const double s = std::sqrt(0.5);  // of quarters about the viewer's axis, counterclockwise; over: about the lines
+    const glm::dquat turn = way == "half"    ? glm::dquat(0, 0, 0, 1)
+                            : way == "left"  ? glm::dquat(s, 0, 0, s)
+                            : way == "right" ? glm::dquat(s, 0, 0, -s)
+                                             : glm::dquat(0, 1, 0, 0);
+    Document next = editor.document();
+    next.home.rotation = glm::normalize(turn * next.home.rotation);
+    next.now.rotation = next.home.rotation;
+    editor.change(std::move(next), why, Way::kGlide);
+    return {};
+  };
+  return out;
+}
+
 Command history(const std::string& name, bool back, std::vector<DefaultKey> keys) {
   Command out{name, "Back", name, std::move(keys)};
   out.repeats = out.steers = true;
@@ -102,6 +126,7 @@ std::vector<Command> view_commands() {
   std::vector<Command> out;
   out.push_back(side());
   out.push_back(obverse_here());
+  out.push_back(upright());
   out.push_back(go("next_side", "Sides", "quarter turn to the next side", {{"space"}, {"puck1"}},
                    [](const Document& document, const std::string&) {
                      CameraPose camera = document.now;

@@ -39,7 +39,8 @@ std::string parts_table(const SurfaceFacts& facts) {
   std::string out = fmt::format(
       "<div class=\"scroll\"><table><tr><th>part</th><th>{}</th><th>surface, {}²</th><th>volume, {}³</th>"
       "<th>not in the scan</th><th></th></tr>\n",
-      facts.upright ? fmt::format("width × height × thickness, {}", unit) : fmt::format("size, {}", unit), unit, unit);
+      facts.upright() ? fmt::format("width × height × thickness, {}", unit) : fmt::format("size, {}", unit), unit,
+      unit);
   for (const PartFacts& part : facts.parts)
     out += fmt::format("<tr><td>{}</td>{}<td>{:.0f} {}² ({:.1f} %)</td><td>{}</td></tr>\n", markup_text(part.name),
                        size_cells(part), part.inferred_area, unit, 100.0 * part.inferred_share(),

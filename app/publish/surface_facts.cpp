@@ -12,13 +12,11 @@
 
 #include "core/base/system/parallel.h"
 #include "core/mesh/mesh_check.h"
-#include "core/mesh/tablet_frame.h"
 
 namespace dubsar::app {
 namespace {
 
 constexpr std::int64_t kFactGrain = 1 << 16;
-constexpr double kUnsure = 0.05;  // share of the evidence below which the way up is a guess
 
 struct Box {
   glm::dvec3 least{std::numeric_limits<double>::infinity()}, most{-std::numeric_limits<double>::infinity()};
@@ -50,21 +48,6 @@ struct Sums {
   std::array<BodySum, PartitionTable::kMost> bodies;
   Box all;
 };
-
-/// What the writing is on: the tablet where there is one, else everything.
-TriMesh written_part(const TriMesh& mesh) {
-  const Partition* const tablet = mesh.partitions.find(PartitionKind::kTablet);
-  if (tablet == nullptr || mesh.triangle_partition.empty()) return mesh;
-  TriMesh part;
-  part.frame = mesh.frame;
-  part.positions = mesh.positions;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (mesh.triangle_partition[t] != tablet->id) continue;
-    part.triangles.push_back(mesh.triangles[t]);
-    if (!mesh.triangle_inferred.empty()) part.triangle_inferred.push_back(mesh.triangle_inferred[t]);
-  }
-  return part.triangles.empty() ? mesh : part;
-}
 
 /// How a triangle is known: as the least certain of its corners, but what is not inferred as a whole is at worst a
 /// film.
@@ -171,10 +154,9 @@ std::string volume_text(double volume, bool mm) {
 Result<SurfaceFacts> surface_facts(const TriMesh& mesh, bool closed) {
   SurfaceFacts facts;
   facts.millimetres = mesh.frame.input_voxel.known();
-  DUBSAR_ASSIGN(const TabletFrame frame, find_tablet_frame(written_part(mesh)));
-  facts.upright = frame.up_share >= kUnsure;
+  DUBSAR_ASSIGN(facts.way, find_tablet_frame(mesh));
   const std::vector<PartitionId> bodies = bodies_of(mesh);
-  const Sums sums = sum_bodies(mesh, bodies, frame.tablet_from_model());
+  const Sums sums = sum_bodies(mesh, bodies, facts.way.tablet_from_model());
   const std::vector<bool> watertight = watertight_bodies(mesh, bodies, closed);
   facts.box = sums.all.size();
   for (std::size_t id = 0; id < sums.bodies.size(); ++id) {
@@ -230,7 +212,10 @@ nlohmann::json facts_json(const SurfaceFacts& facts) {
   }
   const auto [measured, pocket, film, inferred] = all;
   return {{"unit", facts.millimetres ? "mm" : "voxel"},
-          {"upright", facts.upright},
+          {"upright", facts.upright()},
+          {"up_probability", facts.way.up_probability},
+          {"obverse_probability", facts.way.obverse_probability},
+          {"mirrored_probability", facts.way.mirrored_probability},
           {"box", vector(facts.box)},
           {"parts", std::move(parts)},
           {"evidence",
@@ -258,7 +243,8 @@ std::string facts_text(const SurfaceFacts& facts) {
     if (!crumbs(part))
       text += fmt::format("  {:<{}}  {}, {}{}\n", part.name, longest, size_text(part.size, mm),
                           volume_text(part.volume, mm), part.watertight ? "" : ", open");
-  if (facts.upright) text += fmt::format("  {:<{}}  (width x height x thickness)\n", "", longest);
+  if (facts.upright()) text += fmt::format("  {:<{}}  (width x height x thickness)\n", "", longest);
+  if (!facts.way.sure()) text += "  " + facts.way.doubt() + "\n";
   for (const PartFacts& part : facts.parts)
     if (crumbs(part)) text += fmt::format("  and {}: {}\n", part.name, area_text(part.area, mm));
   std::string inferred;

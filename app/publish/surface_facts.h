@@ -10,11 +10,12 @@
 
 #include "core/base/result.h"
 #include "core/mesh/evidence.h"
+#include "core/mesh/tablet_frame.h"
 #include "core/mesh/tri_mesh.h"
 
 namespace dubsar::app {
 
-/// Sides of a body as the reader holds the tablet; the obverse is a guess where SurfaceFacts::upright is false.
+/// Sides of a body as the reader holds the tablet; a guess where SurfaceFacts::upright() is false.
 inline constexpr std::array<const char*, 6> kEvidenceSides{"obverse",    "reverse",   "upper edge",
                                                            "lower edge", "left edge", "right edge"};
 using EvidenceAreas = std::array<double, kEvidenceCount>;  ///< by Evidence
@@ -35,9 +36,11 @@ struct PartFacts {
 
 struct SurfaceFacts {
   bool millimetres = true;
-  bool upright = false;          ///< the writing says which way is up, so that sizes are width, height, thickness
+  TabletFrame way;               ///< how the body lies, by its writing; what probabilities are worth: tablet_frame.h
   glm::dvec3 box{0.0};           ///< of all of it, along the axes of the scan
   std::vector<PartFacts> parts;  ///< large ones first; "pores and crumbs" last
+  /// The writing says which way is up, so that sizes are width, height, thickness.
+  bool upright() const { return way.up_probability >= kSureOfTheWay; }
 };
 
 /// Facts of a whole surface: all of its parts, each closed by its patches. A mesh without parts is one, "object".
@@ -45,13 +48,14 @@ struct SurfaceFacts {
 /// are, too. kBadData: no triangles. Cost: about .2 s a million triangles.
 Result<SurfaceFacts> surface_facts(const TriMesh& mesh, bool closed = false);
 
-/// {"unit": "mm", "box": [..], "parts": [{"name", "size", "area", "volume", "watertight", "inferred_area",
-/// "inferred_share", "evidence": {"measured", "pocket", "film", "inferred"}, "sides": {"obverse": the same, ...}}],
-/// "evidence": {"area", "measured_area", "pocket_area", "film_area", "inferred_area", "inferred_share"}}. Areas.
+/// {"unit": "mm", "upright", "up_probability", "obverse_probability", "mirrored_probability", "box": [..], "parts":
+/// [{"name", "size", "area", "volume", "watertight", "inferred_area", "inferred_share", "evidence": {"measured",
+/// "pocket", "film", "inferred"}, "sides": {"obverse": the same, ...}}], "evidence": {"area", "measured_area",
+/// "pocket_area", "film_area", "inferred_area", "inferred_share"}}. Areas.
 nlohmann::json facts_json(const SurfaceFacts& facts);
 
-/// Lines of at most 60 characters: the parts with their sizes, what of them is inferred, and how each side of the
-/// written body is known.
+/// Lines of at most 60 characters: the parts with their sizes, whether their sides are sure, what of them is inferred,
+/// and how each side of the written body is known.
 std::string facts_text(const SurfaceFacts& facts);
 
 /// "a tablet inside its envelope", "one object", ...

@@ -32,8 +32,6 @@ struct FatCrossRequest {
 };
 
 constexpr std::array<const char*, kTabletSides.size()> kSideSuffix{"_01", "_02", "_03", "_04", "_05", "_06"};
-constexpr double kUnsure = 0.05;    // share of the evidence below which the way up is called a guess
-constexpr double kDoubtful = 0.05;  // and which side is the obverse
 
 fs::path with_suffix(const fs::path& path, const std::string& suffix) {
   return path.parent_path() / (path.stem().string() + suffix + path.extension().string());
@@ -166,7 +164,6 @@ Result<VerbResult> run(const FatCrossRequest& options, Progress& progress) {
         "--voxel-size, e.g. 38um",
         options.in, options.dpi);
   DUBSAR_ASSIGN(TabletFrame frame, find_tablet_frame(mesh));
-  const bool unsure = frame.up_share < kUnsure, either_side = frame.obverse_share < kDoubtful;
   frame = turned(frame, options.turn);
   if (options.over) frame = turned(frame, FrameTurn::kOver);
   const TriMesh upright = in_tablet_frame(mesh, frame);
@@ -174,15 +171,16 @@ Result<VerbResult> run(const FatCrossRequest& options, Progress& progress) {
   VerbResult result;
   DUBSAR_TRY(CrossFiles(options, styles, upright, progress).write(result));
   result.json["dpi"] = options.dpi;
-  result.json["up_share"] = frame.up_share;
-  result.json["obverse_share"] = frame.obverse_share;
+  result.json["up_probability"] = frame.up_probability;
+  result.json["obverse_probability"] = frame.obverse_probability;
+  result.json["mirrored_probability"] = frame.mirrored_probability;
   const auto rows = frame.tablet_from_model();
   for (int r = 0; r < 3; ++r) result.json["tablet_from_model"].push_back({rows[0][r], rows[1][r], rows[2][r]});
-  if (unsure)
-    result.text +=
-        "the writing does not say which way is up; if the text stands on its head, give --turn half, left or right\n";
-  if (!unsure && either_side)
-    result.text += "the edges do not say which broad side is the obverse; if it is the other one, give --over\n";
+  const bool told = options.turn != FrameTurn::kNone || options.over;  // somebody has looked
+  if (!told && !frame.sure())
+    result.text += frame.doubt() + (frame.up_probability < kSureOfTheWay
+                                        ? "; if the text does not stand upright, give --turn half, left or right\n"
+                                        : "; if it is the other one, give --over\n");
   return result;
 }
 

@@ -21,6 +21,7 @@
 #include "app/viewer/run_view.h"
 #include "core/base/text/parse_number.h"
 #include "core/image_io/picture_file.h"
+#include "core/mesh/tablet_frame.h"
 #include "display/render/images/render_image.h"
 #include "display/render/scene.h"
 
@@ -248,6 +249,16 @@ Result<VerbResult> run(const RenderRequest& options, Progress& progress) {
     DUBSAR_TRY(check_part_names(options));
     DUBSAR_ASSIGN(mesh, load_mesh({options.in, options.partitions, true, {unit_mm, true}, true}, progress));
   }
+  // In its own axes the obverse is the front of the box (object_frame()), for cuts and displays, too.
+  TabletFrame way;
+  if (!mesh.triangles.empty()) {
+    DUBSAR_ASSIGN(way, find_tablet_frame(mesh));
+  }
+  const bool upright = way.up_probability >= kSureOfTheWay;
+  if (upright) {
+    mesh = in_tablet_frame(std::move(mesh), way);
+    render.camera.object = ObjectFrame{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  }
   DUBSAR_TRY(hide_partitions(options.hide, mesh, render.shading));
   DUBSAR_TRY(dress_parts(options, mesh, render.shading));
   if (on_display) {
@@ -269,9 +280,13 @@ Result<VerbResult> run(const RenderRequest& options, Progress& progress) {
                  {"mm_per_pixel", picture.mm_per_pixel},
                  {"triangles", mesh.triangles.size()},
                  {"view", options.view},
+                 {"upright", upright},
+                 {"up_probability", way.up_probability},
+                 {"obverse_probability", way.obverse_probability},
                  {"style", options.look.style}};
   result.text = fmt::format("{}: {}x{} pixels, {:.4g} mm a pixel\n", options.out, picture.image.width,
                             picture.image.height, picture.mm_per_pixel);
+  if (upright && !way.sure()) result.text += way.doubt() + "; if it is the other one, give --view orbit:180,0,180\n";
   return result;
 }
 }  // namespace

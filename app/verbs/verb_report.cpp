@@ -82,10 +82,9 @@ Result<VerbResult> run(const ReportRequest& options, Progress& progress) {
   if (mesh.partitions.find(PartitionKind::kTablet) != nullptr) {
     DUBSAR_ASSIGN(written, load_mesh({options.in, {"tablet"}, true}, progress));
   }
-  DUBSAR_ASSIGN(const TabletFrame frame, find_tablet_frame(written));
-  DUBSAR_ASSIGN(content.pictures, pictures_of(options, in_tablet_frame(written, frame), look, progress));
-  written = TriMesh();
-  TriMesh shown = in_tablet_frame(mesh, frame);
+  const TabletFrame& way = content.facts.way;
+  DUBSAR_ASSIGN(content.pictures, pictures_of(options, in_tablet_frame(std::move(written), way), look, progress));
+  TriMesh shown = in_tablet_frame(std::move(mesh), way);
   const auto most = static_cast<std::size_t>(options.triangles);
   // Coarser until it fits; the last step is taken as it comes, because borders of parts always stay.
   for (double distance_mm = 0.02; shown.triangles.size() > most && distance_mm < 0.2; distance_mm *= 2.5) {
@@ -104,6 +103,7 @@ Result<VerbResult> run(const ReportRequest& options, Progress& progress) {
                  {"facts", facts_json(content.facts)}};
   result.text = fmt::format("{}: {:.1f} MB, opens in any browser, needs no network\n", options.out,
                             1e-6 * static_cast<double>(page.size()));
+  if (!way.sure()) result.text += way.doubt() + ": look at the sides\n";
   return result;
 }
 

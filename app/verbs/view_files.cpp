@@ -74,7 +74,9 @@ ReadSurface surface_reader(const ViewOptions& options, const FileReading& readin
     if (progress.cancelled()) return cancelled_error();
     progress.begin("open", 0, "surface");
     with.work = out.work;
-    out.work.document = first_document(with, out.mesh);
+    FirstDocument first = first_document(with, out.mesh);
+    out.work.document = std::move(first.document);
+    out.work.doubt = std::move(first.doubt);
     out.work.upright = false;
     progress.end();
     return out;

@@ -137,7 +137,7 @@ Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) 
 }
 
 Result<VerbResult> write_tour(const std::filesystem::path& path, const TriMesh& mesh, const ViewOptions& view) {
-  const Tour tour = default_tour(first_document(view, mesh), Words());
+  const Tour tour = default_tour(first_document(view, mesh).document, Words());
   DUBSAR_TRY(write_file_atomically(path, format_tour(tour)));
   VerbResult out;
   out.json = {{"output", path.string()}, {"steps", tour.steps.size()}};

@@ -1,5 +1,7 @@
 #include "app/viewer/first_document.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -67,8 +69,9 @@ Box box_of(const TriMesh& mesh) {
 
 }  // namespace
 
-Document first_document(const ViewOptions& options, const TriMesh& mesh) {
-  Document out = options.work.document;
+FirstDocument first_document(const ViewOptions& options, const TriMesh& mesh) {
+  FirstDocument first{options.work.document, options.work.doubt};
+  Document& out = first.document;
   out.parts = chosen(parts_of(mesh), out.parts);
   const Light& light = options.stage.shading.light;
   if (out.home_light == LightPlace() && out.light == LightPlace())
@@ -78,10 +81,20 @@ Document first_document(const ViewOptions& options, const TriMesh& mesh) {
     out.scan.cursor_mm = out.scan.centre_mm = 0.5 * (box.min + box.max);
   }
   if (options.work.upright && !mesh.triangles.empty()) {
-    if (const auto turn = upright_turn(mesh, first_turn(box_of(mesh), options.stage.direction)))
-      out.home.rotation = out.now.rotation = *turn;
+    if (auto upright = upright_turn(mesh, first_turn(box_of(mesh), options.stage.direction))) {
+      out.home.rotation = out.now.rotation = upright->turn;
+      first.doubt = std::move(upright->doubt);
+    }
   }
-  return out;
+  return first;
+}
+
+std::string first_words(const SessionWork& work) {
+  if (work.restored) return "What you measured and noted here last time is here again.";
+  if (!work.doubt.empty())
+    return fmt::format("{}. Shift+Home: half a turn. Ctrl+Shift+Home: the other side. Ctrl+Home: this is the obverse.",
+                       work.doubt);
+  return "Drag to turn. 1 to 6: sides. U: lift the envelope. Ctrl+K: everything. F1: help.";
 }
 
 glm::dmat3 first_turn(const Box& model, const ViewDirection& direction) {

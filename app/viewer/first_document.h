@@ -7,8 +7,16 @@
 namespace dubsar::app {
 
 /// That of the options with the parts of the mesh, which are as it says of parts with their names; upright where the
-/// options say so.
-Document first_document(const ViewOptions& options, const TriMesh& mesh);
+/// options say so, with what is not sure of it.
+struct FirstDocument {
+  Document document;
+  std::string doubt;
+};
+FirstDocument first_document(const ViewOptions& options, const TriMesh& mesh);
+
+/// What is said over a surface that was opened: what is there again, else how it is turned where its way up is not
+/// sure, else how one begins.
+std::string first_words(const SessionWork& work);
 
 /// The turn from the scan to the unturned view of it.
 glm::dmat3 first_turn(const Box& model, const ViewDirection& direction);

@@ -23,17 +23,6 @@ void thin_out(std::vector<glm::dvec3>& path) {
   path = std::move(out);
 }
 
-TriMesh tablet_of(const TriMesh& mesh) {
-  TriMesh out;
-  out.positions = mesh.positions;
-  out.frame = mesh.frame;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Partition* const row = mesh.partitions.find(mesh.partition_of(t));
-    if (row != nullptr && row->body_name() == "tablet") out.triangles.push_back(mesh.triangles[t]);
-  }
-  return out;
-}
-
 double number_at(const nlohmann::json& object, const char* name, double otherwise) {
   return object.is_object() && object.contains(name) && object.at(name).is_number() ? object.at(name).get<double>()
                                                                                     : otherwise;
@@ -164,10 +153,9 @@ Workplace::Reach reach_along(const TriMesh& mesh, const glm::dvec3& direction) {
   return out;
 }
 
-Result<glm::dquat> upright_turn(const TriMesh& mesh, const glm::dmat3& first) {
-  const TriMesh tablet = tablet_of(mesh);
-  DUBSAR_ASSIGN(const TabletFrame frame, find_tablet_frame(tablet.triangles.empty() ? mesh : tablet));
-  return glm::normalize(glm::quat_cast(frame.tablet_from_model() * glm::transpose(first)));
+Result<UprightTurn> upright_turn(const TriMesh& mesh, const glm::dmat3& first) {
+  DUBSAR_ASSIGN(const TabletFrame frame, find_tablet_frame(mesh));
+  return UprightTurn{glm::normalize(glm::quat_cast(frame.tablet_from_model() * glm::transpose(first))), frame.doubt()};
 }
 
 std::string side_of(const glm::dvec3& normal, const glm::dmat3& home) {

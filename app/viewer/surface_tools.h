@@ -39,9 +39,13 @@ Result<MeasureFigures> figures_of(const TriMesh& mesh, const Measure& measure);
 /// From where to where the surface reaches along a direction (unit), mm from the scan's origin.
 Workplace::Reach reach_along(const TriMesh& mesh, const glm::dvec3& direction);
 
-/// The turn that shows the tablet's obverse upright, found from its writing: of the part "tablet" where there is one,
-/// else of everything. `first` turns the scan as an unturned view shows it.
-Result<glm::dquat> upright_turn(const TriMesh& mesh, const glm::dmat3& first);
+/// The turn that shows the tablet's obverse upright, found from its writing: of the tablet where there is one, else of
+/// everything; and what of it is not sure (TabletFrame::doubt()). `first` turns the scan as an unturned view shows it.
+struct UprightTurn {
+  glm::dquat turn{1.0, 0.0, 0.0, 0.0};
+  std::string doubt{};
+};
+Result<UprightTurn> upright_turn(const TriMesh& mesh, const glm::dmat3& first);
 
 /// Which of the six sides looks the way of a normal; `home` turns the scan to its obverse.
 std::string side_of(const glm::dvec3& normal, const glm::dmat3& home);

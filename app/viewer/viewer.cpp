@@ -59,7 +59,9 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
   DUBSAR_ASSIGN(KeyTable keys, KeyTable::create(*said_.commands, given_.options.mapping.keys));
   said_.keys = std::make_unique<KeyTable>(std::move(keys));
   const Mapping& mapping = given_.options.mapping;
-  editor_ = make_editor(first_document(given_.options, *given_.mesh));
+  FirstDocument first = first_document(given_.options, *given_.mesh);
+  given_.options.work.doubt = std::move(first.doubt);
+  editor_ = make_editor(std::move(first.document));
   if (given_.shelf != nullptr) given_.options.stage.subject = Subject::kLater;
   DUBSAR_ASSIGN(stage_, Stage::create(*given_.mesh, stage, std::move(sink)));
   DUBSAR_ASSIGN(tools_.font, LabelFont::create(panel_font()));
@@ -87,7 +89,7 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
     log_warning("{}", note);
     say(note);
   } else if (has_surface()) {
-    say("Drag to turn. 1 to 6: sides. U: lift the envelope. Ctrl+K: everything. F1: help.");
+    say(first_words(given_.options.work));
   }
   if (given_.options.time.fps == 0) steering_->run(given_.clock);
   return {};

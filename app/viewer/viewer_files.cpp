@@ -240,7 +240,7 @@ Result<void> Viewer::put(OpenedSurface surface) {
   if (given_.surface_goes) given_.surface_goes();
   files_.opened = std::move(next);
   given_.mesh = &files_.opened->mesh;
-  Document document = first_document(options, *given_.mesh);
+  Document document = first_document(options, *given_.mesh).document;
   if (!first && !options.work.restored) {  // who compares tablets wants the same light on both
     document.style = style;
     document.light = light;
@@ -281,9 +281,7 @@ void Viewer::begin_file(Document found) {
 }
 
 void Viewer::say_what_was_found() {
-  std::string words = given_.options.work.restored
-                          ? "What you measured and noted here last time is here again."
-                          : "Drag to turn. 1 to 6: sides. U: lift the envelope. Ctrl+K: everything. F1: help.";
+  std::string words = first_words(given_.options.work);
   Document all;
   for (const OtherWork& other : editor_->others()) all = add_marks(all, other.work.document);
   if (const std::string more = marks_more(document(), add_marks(document(), all)); !more.empty())

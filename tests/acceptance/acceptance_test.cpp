@@ -67,7 +67,7 @@ TEST_P(EnclosedTablet, IsSeparatedAccuratelyAndReadably) {
   const auto lies = find_tablet_frame(*tablet);
   ASSERT_TRUE(lies);
   const double within = std::cos(10.0 * std::numbers::pi / 180.0);
-  fmt::print("way up by {:.2f}, obverse by {:.2f} of the evidence\n", lies->up_share, lies->obverse_share);
+  fmt::print("way up {:.4f}, obverse {:.3f}\n", lies->up_probability, lies->obverse_probability);
   EXPECT_GT(lies->right.x, within);
   EXPECT_GT(std::abs(lies->up.z), within) << "a broad side stands on its head";
   EXPECT_LT(lies->front.y * lies->up.z, -within * within) << "obverse and reverse are not each upright";

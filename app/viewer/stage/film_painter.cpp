@@ -24,7 +24,7 @@ Result<void> check_traits(const SinkTraits& traits) {
 Document film_document(const Document& base, const TriMesh& mesh) {
   ViewOptions options;
   options.work.document = base;
-  return first_document(options, mesh);
+  return first_document(options, mesh).document;
 }
 
 std::vector<std::string> strange_parts(std::span<const Keyframe> film, const Document& document) {

@@ -68,6 +68,36 @@ TEST(Commands, SidesAreThoseOfATabletThatIsTurnedAsScribesDo) {
   }
 }
 
+// Of a tablet that stands on its head, on its side, or with its reverse before the viewer: each puts it right in one
+// step that can be undone, and the sides count from there.
+TEST(Commands, ATabletIsStoodUprightWhereTheWritingMisled) {
+  struct Row {
+    const char* way;
+    glm::dvec3 up, front;  // of the home view as it was, that are seen up and towards the viewer then
+  };
+  const std::array<Row, 4> rows{{{"half", {0, -1, 0}, {0, 0, 1}},
+                                 {"left", {1, 0, 0}, {0, 0, 1}},
+                                 {"right", {-1, 0, 0}, {0, 0, 1}},
+                                 {"over", {0, -1, 0}, {0, 0, -1}}}};
+  for (const Row& row : rows) {
+    Bench bench;
+    const glm::dquat home = bench.now().home.rotation;
+    bench.run("side left");
+    bench.run(std::string("upright ") + row.way);
+    for (const glm::dquat& seen : {bench.now().home.rotation, bench.now().now.rotation}) {
+      const glm::dquat turn = seen * glm::conjugate(home);
+      EXPECT_NEAR(glm::length(turn * row.up - glm::dvec3(0, 1, 0)), 0, 1e-12) << row.way;
+      EXPECT_NEAR(glm::length(turn * row.front - glm::dvec3(0, 0, 1)), 0, 1e-12) << row.way;
+    }
+    bench.run("side reverse");
+    bench.run("undo");
+    bench.run("undo");
+    EXPECT_LT(apart_deg(bench.now().home.rotation, home), 1e-9) << row.way;
+  }
+  EXPECT_EQ(Bench().refusal("upright sideways"),
+            "upright: \"sideways\" found, expected one of: half, left, right, over");
+}
+
 TEST(Commands, WhatFacesTheViewerBecomesTheObverse) {
   Bench bench;
   bench.run("side reverse");

@@ -52,7 +52,7 @@ class LiveFiles : public Live {
     out.work.surface = path;
     ViewOptions with = options_;
     with.work = out.work;
-    out.work.document = first_document(with, out.mesh);
+    out.work.document = first_document(with, out.mesh).document;
     return out;
   }
   void let_come() {

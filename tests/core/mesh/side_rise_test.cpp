@@ -1,6 +1,6 @@
-// What a side is beside its writing: curved or flat, and how far down it is written on.
+// How much a side bulges beside its writing.
 
-#include "core/mesh/side_relief.h"
+#include "core/mesh/writing/side_rise.h"
 
 #include <gtest/gtest.h>
 
@@ -41,13 +41,6 @@ TEST(SideRise, IsThatOfTheSheetWithoutItsImpressions) {
   HeightMap nothing = sheet(1.0, 0.0);
   nothing.mm.assign(nothing.mm.size(), std::numeric_limits<float>::quiet_NaN());
   EXPECT_EQ(side_rise_mm(nothing), 0.0);
-}
-
-TEST(WrittenBelow, IsTheShareOfTheLowerQuarter) {
-  EXPECT_NEAR(written_below(sheet(1.0, 1.0)), 1.0, 0.1);
-  EXPECT_LT(written_below(sheet(1.0, 0.7)), 0.05);
-  EXPECT_NEAR(written_below(sheet(1.0, 0.825)), 0.5, 0.2);
-  EXPECT_EQ(written_below(sheet(1.0, 0.0)), 1.0) << "nothing written at all says nothing";
 }
 
 }  // namespace
