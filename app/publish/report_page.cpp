@@ -129,6 +129,8 @@ std::string report_page(const ReportContent& content) {
         "<p class=\"dim\">Here the surface has fewer triangles where it is flat; the pictures below show all of "
         "it.</p>\n";
   out += "<h2>Parts</h2>\n" + parts_table(content.facts);
+  if (!content.facts.way.sure())
+    out += fmt::format("<p>Of the sides below: {}.</p>\n", markup_text(content.facts.way.doubt()));
   out += "<h2>Evidence</h2>\n" + evidence(content.facts);
   out += "<h2>Six sides</h2>\n<div class=\"sides\">\n";
   for (const ReportPicture& picture : content.pictures)

@@ -183,6 +183,11 @@ Result<VerbResult> describe_mesh(const InfoRequest& options, Progress& progress)
                  {"unit_known", info.unit.known()},
                  {"attributes", info.attributes},
                  {"partitions", partitions_json(info.partitions)}};
+  if (info.way) {
+    result.json["up_probability"] = info.way->up_probability;
+    result.json["obverse_probability"] = info.way->obverse_probability;
+    result.json["mirrored_probability"] = info.way->mirrored_probability;
+  }
   const glm::dvec3 size = info.max_mm - info.min_mm;
   const double longest = std::max({size.x, size.y, size.z});
   const int digits = longest > 0 && longest < 1.0 ? 6 : 3;
@@ -204,6 +209,11 @@ Result<VerbResult> describe_mesh(const InfoRequest& options, Progress& progress)
                             ? "watertight 2-manifold"
                             : fmt::format("{} boundary edges, {} non-manifold edges, {} non-manifold vertices",
                                           check.boundary_edges, check.nonmanifold_edges, check.nonmanifold_vertices));
+  if (info.way)
+    text += fmt::format("  way up       {}\n",
+                        info.way->sure() ? fmt::format("known (probability {:.2f}), and the obverse ({:.2f})",
+                                                       info.way->up_probability, info.way->obverse_probability)
+                                         : info.way->doubt());
   for (const std::string& attribute : info.attributes) text += fmt::format("  attribute    {}\n", attribute);
   add_partitions_text(text, info.partitions);
   return result;

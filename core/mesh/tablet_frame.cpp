@@ -83,12 +83,14 @@ class Writing {
  public:
   Writing(std::span<const glm::dvec3> points, std::span<const Triangle> triangles, const BodyAxes& body) : body_(body) {
     const double root = std::sqrt(body.extent[1] * body.extent[2]), edge = mean_edge(points, triangles);
+    const double longest = std::max({body.extent[0], body.extent[1], body.extent[2]});
+    const double step = std::max(root, 0.25 * longest) / kSteps;  // a spike makes no map of a million steps
     parallel_for(6, 1, [&](std::int64_t side) {
       const SideId id{static_cast<std::size_t>(side / 2), static_cast<std::size_t>(side % 2)};
       const SideAxes seen = axes_of(id);
       SideFinds& finds = sides_[id.axis][id.sign];
-      HeightMap map = height_map(points, triangles, seen, root / kSteps);
-      if (id.axis == 0) finds.rise = side_rise_mm(map) / root;
+      HeightMap map = height_map(points, triangles, seen, step);
+      if (id.axis == 0 && root > 0.0) finds.rise = side_rise_mm(map) / root;
       for (std::size_t size = 0; size < kSizes; ++size) {
         if (size > 0) map = halved(map);
         if (map.step_mm * kStepsPerWedge < kFewestEdges * edge) continue;

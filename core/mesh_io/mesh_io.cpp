@@ -150,6 +150,7 @@ Result<MeshInfo> mesh_info(const std::filesystem::path& path, Progress& progress
     if (!(mesh.*attribute.values).empty()) info.attributes.emplace_back(attribute.name);
   });
   if (!mesh.triangle_partition.empty()) info.attributes.emplace_back("partition");
+  if (const auto way = find_tablet_frame(mesh)) info.way = *way;
   return info;
 }
 

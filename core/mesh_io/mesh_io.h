@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "core/base/progress.h"
 #include "core/base/result.h"
 #include "core/mesh/mesh_check.h"
+#include "core/mesh/tablet_frame.h"
 #include "core/mesh/tri_mesh.h"
 
 namespace dubsar {
@@ -42,7 +44,8 @@ struct MeshInfo {
   VoxelSize unit;                       ///< one file unit; unknown() when the file does not say
   std::vector<std::string> attributes;  ///< "normals", "colors", "k_min", ... that the file carries
   PartitionTable partitions;
-  std::string provenance;  ///< JSON text, empty for foreign files
+  std::string provenance;          ///< JSON text, empty for foreign files
+  std::optional<TabletFrame> way;  ///< how it lies, by its writing; none without triangles
 };
 
 std::string_view mesh_format_name(MeshFormat format) noexcept;

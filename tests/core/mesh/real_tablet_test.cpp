@@ -19,11 +19,13 @@ namespace fs = std::filesystem;
 
 class RealTablet : public ::testing::Test {
  protected:
+  static fs::path file() {
+    return fs::path(DUBSAR_SOURCE_DIR).parent_path() / "shared/data/real/s264_smith_college_cc-by.glb";
+  }
   void SetUp() override {
-    const fs::path file = fs::path(DUBSAR_SOURCE_DIR).parent_path() / "shared/data/real/s264_smith_college_cc-by.glb";
-    if (!fs::exists(file)) GTEST_SKIP() << "the scan of S264 lies only beside the project: " << file;
+    if (!fs::exists(file())) GTEST_SKIP() << "the scan of S264 lies only beside the project: " << file();
     Progress progress;
-    const auto read = read_mesh(file, progress);
+    const auto read = read_mesh(file(), progress);
     ASSERT_TRUE(read) << read.error().message;
     mesh_ = *read;
   }
@@ -54,6 +56,14 @@ class RealTablet : public ::testing::Test {
 };
 
 TEST_F(RealTablet, StandsUprightHoweverItLay) { stands_upright(mesh_, 1, kSureOfTheWay); }
+
+TEST_F(RealTablet, ItsFileIsToldWithTheProbability) {
+  Progress progress;
+  const auto info = mesh_info(file(), progress);
+  ASSERT_TRUE(info && info->way);
+  EXPECT_GT(info->way->up_probability, 0.99);
+  EXPECT_EQ(info->way->doubt(), "");
+}
 
 TEST_F(RealTablet, StandsUprightWithHalfOfItsTriangles) {
   TriMesh joined = mesh_;  // its seams are of the photograph, not of the clay

@@ -239,6 +239,23 @@ TEST(TabletFrame, AMirrorImageIsNotCalledUpright) {
   }
 }
 
+// Of broken files: a vertex that lies a thousand kilometres away, a single triangle.
+TEST(TabletFrame, SpikesAndNeedlesAreAGuessLikeAnyOther) {
+  TriMesh spike;
+  spike.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1e9f, 0, 0.001f}};
+  spike.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 4, 3}};
+  const auto found = find_tablet_frame(spike);
+  ASSERT_TRUE(found);
+  EXPECT_FALSE(found->sure());
+  TriMesh one;
+  one.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  one.triangles = {{0, 1, 2}};
+  const auto alone = find_tablet_frame(one);
+  ASSERT_TRUE(alone);
+  EXPECT_NEAR(alone->up_probability, 0.25, 0.01);
+  EXPECT_NEAR(std::abs(alone->front.z), 1.0, 1e-9);
+}
+
 TEST(TabletFrame, TurnsAreRotationsThatComeBack) {
   const TabletFrame frame;
   for (const FrameTurn turn : {FrameTurn::kHalf, FrameTurn::kLeft, FrameTurn::kRight, FrameTurn::kOver}) {
