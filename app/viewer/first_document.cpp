@@ -1,7 +1,5 @@
 #include "app/viewer/first_document.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -91,9 +89,11 @@ FirstDocument first_document(const ViewOptions& options, const TriMesh& mesh) {
 
 std::string first_words(const SessionWork& work) {
   if (work.restored) return "What you measured and noted here last time is here again.";
-  if (!work.doubt.empty())
-    return fmt::format("{}. Shift+Home: half a turn. Ctrl+Shift+Home: the other side. Ctrl+Home: this is the obverse.",
-                       work.doubt);
+  if (!work.doubt.empty()) {
+    std::string doubt = work.doubt;
+    if (doubt[0] >= 'a' && doubt[0] <= 'z') doubt[0] = static_cast<char>(doubt[0] - 'a' + 'A');
+    return doubt + ". Shift+Home: half a turn. Ctrl+Shift+Home: the other side. Ctrl+Home: this is the obverse.";
+  }
   return "Drag to turn. 1 to 6: sides. U: lift the envelope. Ctrl+K: everything. F1: help.";
 }
 

@@ -30,7 +30,7 @@ const Box kBox{{0, 0, 0}, {20, 12, 40}};
 PartLooks looks_of(const Document& document) { return laid_out(document, PartLooks{}, kBox); }
 
 TEST(LaidOut, PoresGoWithTheClayThatTheyLieIn) {
-  Document document = first_document({}, divided());
+  Document document = first_document({}, divided()).document;
   ASSERT_EQ(document.parts.size(), 3u);
   document.unpack = 1.0;
   const PartLooks looks = looks_of(document);
@@ -43,7 +43,7 @@ TEST(LaidOut, PoresGoWithTheClayThatTheyLieIn) {
 }
 
 TEST(LaidOut, PoresAreMovedHiddenAndSeenThroughWithTheirBody) {
-  Document document = first_document({}, divided());
+  Document document = first_document({}, divided()).document;
   const auto part = [&](const char* name) -> Part& {
     return *std::find_if(document.parts.begin(), document.parts.end(), [&](const Part& p) { return p.name == name; });
   };
@@ -68,7 +68,7 @@ TEST(FirstDocument, WhatWasChosenOfPartsHoldsForPartsOfThatNameInAnotherSurface)
                 Part{.name = "fragment 1", .partitions = 2}};
   ViewOptions options;
   options.work.document = kept;
-  const Document document = first_document(options, divided());
+  const Document document = first_document(options, divided()).document;
   ASSERT_EQ(document.parts.size(), 3u);
   EXPECT_EQ(document.parts[1].name, "envelope");
   EXPECT_EQ(document.parts[1].partitions, 1 << kOutside | 1 << kInside);
