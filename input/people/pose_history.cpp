@@ -3,6 +3,10 @@
 #include <algorithm>
 
 namespace dubsar {
+namespace {
+constexpr std::size_t kSteps = 7;
+constexpr TimestampNs kLongestWindow = 300'000'000;
+}  // namespace
 
 bool PositionHistory::add(const PositionSample& sample) noexcept {
   if (count_ > 0 && sample.time <= newest().time) {
@@ -15,14 +19,24 @@ bool PositionHistory::add(const PositionSample& sample) noexcept {
   return true;
 }
 
+/// As long as it was asked for, longer where samples come slowly.
+TimestampNs PositionHistory::window() const noexcept {
+  std::array<TimestampNs, kSteps> steps{};
+  const std::size_t count = std::min(count_ - 1, kSteps);
+  for (std::size_t i = 0; i < count; ++i) steps[i] = ago(i).time - ago(i + 1).time;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(steps.begin(), middle, steps.begin() + static_cast<std::ptrdiff_t>(count));
+  return std::max(window_ns_, std::min(kLongestWindow, *middle * 7 / 2));
+}
+
 std::optional<PositionHistory::Line> PositionHistory::fit() const noexcept {
   if (count_ < 3) return std::nullopt;
-  const TimestampNs end = newest().time;
+  const TimestampNs end = newest().time, longest = window();
   double n = 0.0, sum_t = 0.0, sum_tt = 0.0, oldest = 0.0;
   glm::dvec3 sum_p(0.0), sum_tp(0.0);
   for (std::size_t i = 0; i < count_; ++i) {
-    const PositionSample& s = samples_[(next_ + kCapacity - 1 - i) % kCapacity];
-    if (end - s.time > window_ns_) break;
+    const PositionSample& s = ago(i);
+    if (end - s.time > longest) break;
     const double t = 1e-9 * static_cast<double>(s.time - end);
     oldest = t;
     n += 1.0;

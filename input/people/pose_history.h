@@ -16,7 +16,9 @@ struct PositionSample {
 };
 
 /// Keeps the last 64 samples. Velocity is the slope of a least-squares line over `window_ns`, which is best for slow
-/// and medium head speeds (Bailer et al. 2015). One thread.
+/// and medium head speeds (Bailer et al. 2015). Of slow trackers the window is longer: 3.5 times the median of the last
+/// seven steps between samples, so that four samples lie in it, and three where one was lost, at most 300 ms: a tracker
+/// of 30 Hz has two in 60 ms, which is no line. One thread.
 class PositionHistory {
  public:
   explicit PositionHistory(TimestampNs window_ns = 100'000'000) : window_ns_(window_ns) {}
@@ -40,6 +42,10 @@ class PositionHistory {
     glm::dvec3 at_newest_m, velocity_mps;
   };
   std::optional<Line> fit() const noexcept;
+  const PositionSample& ago(std::size_t i) const noexcept {
+    return samples_[(next_ + 2 * kCapacity - 1 - i) % kCapacity];
+  }
+  TimestampNs window() const noexcept;
 
   TimestampNs window_ns_;
   std::array<PositionSample, kCapacity> samples_{};
