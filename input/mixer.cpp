@@ -24,15 +24,15 @@ void InputMixer::add(std::unique_ptr<InputSource> source, int rank) {
 }
 
 bool InputMixer::remove(const InputSource* source) {
+  std::unique_ptr<InputSource> gone;  // ends outside the lock: its thread may be in a read that takes a second
   const std::scoped_lock lock(mutex_);
   if (touching_ == source) touching_ = nullptr;
-  return std::erase_if(sources_, [&](const Entry& entry) { return entry.source.get() == source; }) > 0;
-}
-
-bool InputMixer::remove(std::string_view name) {
-  const std::scoped_lock lock(mutex_);
-  if (touching_ != nullptr && touching_->name() == name) touching_ = nullptr;
-  return std::erase_if(sources_, [&](const Entry& entry) { return entry.source->name() == name; }) > 0;
+  const auto at =
+      std::find_if(sources_.begin(), sources_.end(), [&](const Entry& entry) { return entry.source.get() == source; });
+  if (at == sources_.end()) return false;
+  gone = std::move(at->source);
+  sources_.erase(at);
+  return true;
 }
 
 const InputFrame& InputMixer::poll(TimestampNs now) {

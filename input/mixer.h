@@ -24,10 +24,8 @@ class InputMixer {
   /// Adds a started source. Lower ranks, and earlier ones of the same rank, have priority for hands, heads and puck;
   /// events of all are merged in time.
   void add(std::unique_ptr<InputSource> source, int rank = 0);
-  /// Takes this source out; false when it is not there.
+  /// Takes this source out and ends it; false when it is not there. Nobody who polls waits for its end.
   bool remove(const InputSource* source);
-  /// Takes the sources of this name out; false when there is none.
-  bool remove(std::string_view name);
 
   /// Polls all sources. A lost source contributes nothing. Hands of two sources are never mixed: the first that has one
   /// tracked wins, and keeps its right for 300 ms after its last hand; of two

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/system/clock.h"
+#include "core/base/system/guarded.h"
 #include "core/mesh/plane_section.h"
 
 namespace dubsar::app {
@@ -26,7 +27,16 @@ std::vector<OutlinePiece> outline_in(const TriMesh& mesh, const SliceFrame& fram
 }
 
 SliceReader::SliceReader(const TriMesh& mesh, OpenScan open) : mesh_(mesh) {
-  thread_ = std::jthread([this, open = std::move(open)](const std::stop_token& stop) { run(stop, open); });
+  thread_ = std::jthread([this, open = std::move(open)](const std::stop_token& stop) {
+    const auto ended = guarded("the slices", [&] { run(stop, open); });
+    if (ended) return;
+    {
+      const std::scoped_lock lock(mutex_);
+      note_ = ended.error().message;
+      over_ = true;
+    }
+    changed_.notify_all();
+  });
 }
 
 SliceReader::~SliceReader() {
@@ -63,7 +73,7 @@ bool SliceReader::has_scan() const {
 
 void SliceReader::wait() const {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return opened_ && next().first == Left::kNothing; });
+  changed_.wait(lock, [this] { return over_ || (opened_ && next().first == Left::kNothing); });
 }
 
 /// What is to be done now: coarse pictures go first.

@@ -77,8 +77,8 @@ class SliceReader {
   mutable std::condition_variable_any changed_;
   std::array<Slot, kSlices> slots_;
   std::string note_;
-  bool opened_ = false, has_scan_ = false;
-  std::jthread thread_;  // ends first
+  bool opened_ = false, has_scan_ = false, over_ = false;  // over: a mistake has ended the thread, note_ says which
+  std::jthread thread_;                                    // ends first
 };
 
 }  // namespace dubsar::app

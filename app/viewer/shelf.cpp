@@ -4,7 +4,6 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
-#include <new>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "app/document/recent_files.h"
 #include "core/base/files/file_suffix.h"
 #include "core/base/system/clock.h"
+#include "core/base/system/guarded.h"
 #include "core/base/system/log.h"
 
 namespace dubsar::app {
@@ -45,12 +45,8 @@ class Shelf::Reading final : public Progress {
   void start(const ReadSurface& read) {
     if (!thread_.joinable())
       thread_ = std::jthread([this, read] {
-        Result<OpenedSurface> made =
-            fail(ErrorKind::kTryAgain, "{}: there is not enough memory for it", file_.string());
-        try {
-          made = read(file_, *this, [this](TriMesh mesh) { show_first(std::move(mesh)); });
-        } catch (const std::bad_alloc&) {  // said above
-        }
+        auto made = guarded(file_.string(),
+                            [&] { return read(file_, *this, [this](TriMesh mesh) { show_first(std::move(mesh)); }); });
         const std::scoped_lock lock(mutex_);
         made_ = std::move(made);
         done_ = true;

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <future>
+#include <memory>
 #include <thread>
 
 #include "input/window_events.h"
@@ -90,9 +93,39 @@ TEST(Mixer, SourcesCanBeTakenOutWhileItRuns) {
   t.first->frame.hands = {hand(10)};
   t.second->frame.hands = {hand(20)};
   (void)t.mixer.poll(0);
-  EXPECT_TRUE(t.mixer.remove("leap"));
-  EXPECT_FALSE(t.mixer.remove("leap"));
+  const Told* const leap = t.first;
+  EXPECT_TRUE(t.mixer.remove(leap));
+  EXPECT_FALSE(t.mixer.remove(leap));
   EXPECT_EQ(t.mixer.poll(10 * kMs).hands[0].id, 20u);
+}
+
+/// Ends only after somebody else has polled.
+struct Slow final : InputSource {
+  InputMixer& mixer;
+  bool& polled;
+  Slow(InputMixer& of, bool& meanwhile) : mixer(of), polled(meanwhile) {}
+  ~Slow() override {
+    auto other = std::make_shared<std::promise<void>>();
+    std::future<void> done = other->get_future();
+    std::thread([this, other] {
+      (void)mixer.poll(20 * kMs);
+      other->set_value();
+    }).detach();
+    polled = done.wait_for(std::chrono::seconds(5)) == std::future_status::ready;
+  }
+  std::string_view name() const noexcept override { return "slow"; }
+  Result<void> start() override { return {}; }
+  Freshness poll(TimestampNs, InputFrame&) noexcept override { return Freshness::kNew; }
+};
+
+TEST(Mixer, NobodyWaitsForASourceThatEndsSlowly) {
+  static InputMixer mixer;  // of the thread, if it is late
+  bool polled = false;
+  auto slow = std::make_unique<Slow>(mixer, polled);
+  const InputSource* const source = slow.get();
+  mixer.add(std::move(slow));
+  EXPECT_TRUE(mixer.remove(source));
+  EXPECT_TRUE(polled) << "poll() stood still until the source had ended";
 }
 
 TEST(WindowEvents, MotionsAreJoinedAndNothingElseIsLost) {

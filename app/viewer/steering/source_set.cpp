@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "core/base/system/guarded.h"
 #include "core/base/system/log.h"
 
 namespace dubsar::app {
@@ -70,9 +71,10 @@ void SourceSet::tick(TimestampNs now) {
   for (; next_index_ < entries_.size(); ++next_index_) {
     const Entry& entry = entries_[next_index_];
     if (entry.source != nullptr || entry.off) continue;
-    attempt_ = Attempt{next_index_++,
-                       std::async(std::launch::async,
-                                  [make = make_, spec = entry.spec, config = config_] { return make(spec, config); })};
+    attempt_ =
+        Attempt{next_index_++, std::async(std::launch::async, [make = make_, spec = entry.spec, config = config_] {
+                  return guarded("input " + spec, [&] { return make(spec, config); });
+                })};
     return;
   }
   next_index_ = 0;

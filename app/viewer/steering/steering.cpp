@@ -5,6 +5,8 @@
 #include <condition_variable>
 #include <utility>
 
+#include "core/base/system/guarded.h"
+#include "core/base/system/log.h"
 #include "input/event_limit.h"
 
 namespace dubsar::app {
@@ -57,10 +59,13 @@ void Steering::run(const Clock& clock) {
     std::mutex mutex;
     std::condition_variable_any waiting;
     std::unique_lock lock(mutex);
-    while (!stop.stop_requested()) {
-      steer(clock.now());
-      waiting.wait_for(lock, stop, kEvery, [] { return false; });
-    }
+    const auto ended = guarded("the thread that steers", [&] {
+      while (!stop.stop_requested()) {
+        steer(clock.now());
+        waiting.wait_for(lock, stop, kEvery, [] { return false; });
+      }
+    });
+    if (!ended) log_warning("{}; whoever draws steers", ended.error().message);
   });
 }
 

@@ -46,7 +46,8 @@ class Steering {
 
   /// Polls the input at `now` and moves the view on. Cheap.
   void steer(TimestampNs now);
-  /// steer() each 8 ms by this clock, which outlives it, in a thread until stop().
+  /// steer() each 8 ms by this clock, which outlives it, in a thread until stop(), or until that throws, which is
+  /// logged.
   void run(const Clock& clock);
   void stop();
 

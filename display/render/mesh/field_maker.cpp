@@ -1,17 +1,14 @@
 #include "display/render/mesh/field_maker.h"
 
-#include <new>
 #include <utility>
+
+#include "core/base/system/guarded.h"
 
 namespace dubsar {
 
 FieldMaker::FieldMaker(const TriMesh& mesh, const FieldNeeds& needs)
     : needs_(needs), thread_([this, &mesh] {
-        Result<SurfaceFields> made = fail(ErrorKind::kTryAgain, "no memory to measure the surface");
-        try {
-          made = measure_fields(mesh, needs_, count_);
-        } catch (const std::bad_alloc&) {  // said above
-        }
+        auto made = guarded("the surface's measures", [&] { return measure_fields(mesh, needs_, count_); });
         const std::scoped_lock lock(mutex_);
         made_ = std::move(made);
       }) {}

@@ -262,5 +262,15 @@ TEST_F(ScanLinks, ARawVolumeIsReadAsItWasWhenTheSurfaceWasMade) {
   EXPECT_FALSE(raw_volume_of("not JSON"));
 }
 
+TEST(Slices, AMistakeInItsThreadIsANoteAndNoEndOfTheProgram) {
+  const TriMesh nothing;
+  SliceReader reader(nothing, []() -> Result<OpenedScan> { throw std::bad_alloc(); });
+  reader.wait();
+  EXPECT_FALSE(reader.has_scan());
+  EXPECT_EQ(reader.note(), "the slices: there is not enough memory for it");
+  reader.ask(0, SliceFrame());
+  reader.wait();
+}
+
 }  // namespace
 }  // namespace dubsar::app

@@ -4,12 +4,17 @@
 #include <malloc.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <mutex>
 #include <numbers>
+#include <stdexcept>
+#include <thread>
 
 #include "app/viewer/run_view.h"
+#include "core/base/system/log.h"
 #include "devices/head_tracker/vrpn_protocol.h"
 #include "devices/transport/sim_transport.h"
 #include "display/render/context/context_egl.h"
@@ -234,6 +239,27 @@ TEST_F(SessionTest, HandsSteerThoughAPictureTakesAQuarterOfASecond) {
   const ViewState seen = steering.look(clock.now(), clock.now()).view;
   EXPECT_LE(turn_between_deg(seen.rotation, turn_of({15 * kRad, 0, 0}) * turn_of({0, 40 * kRad, 0})), 5.0);
   EXPECT_NEAR(seen.zoom, 1.3, 0.065);
+}
+
+TEST_F(SessionTest, AMistakeInTheThreadThatSteersIsSaidAndTheProgramGoesOn) {
+  std::mutex mutex;
+  std::string said;
+  set_log_handler([&](LogLevel, std::string_view text) {
+    const std::scoped_lock lock(mutex);
+    said = text;
+  });
+  Steering steering(options_.mapping, {}, {});
+  steering.on_input([](TimestampNs, const InputFrame&) { throw std::runtime_error("no such hand"); });
+  const SteadyClock clock;
+  steering.run(clock);
+  for (int i = 0; i < 400; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    const std::scoped_lock lock(mutex);
+    if (!said.empty()) break;
+  }
+  steering.stop();
+  set_log_handler({});
+  EXPECT_EQ(said, "the thread that steers: stopped by a mistake of this program: no such hand; whoever draws steers");
 }
 
 TEST_F(SessionTest, TheAgeOfTheInputIsTheTimeFromItsMeasurementToTheCameras) {
