@@ -68,7 +68,10 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
   find_tools();
   DUBSAR_ASSIGN(overlay_, Overlay::create(*said_.keys));
   if (given_.options.displays.empty()) {
-    displays_.specs = displays_for_window(stage.display, stage.screen, stage.stereo_window, stage.catalog->panels());
+    const GlfwWindow* const window = given_.presenter.window();
+    displays_.specs =
+        displays_for_window(stage.display, *stage.catalog,
+                            {stage.screen, window != nullptr ? window->refresh_hz() : 0.0, stage.stereo_window});
   } else {
     displays_.specs = given_.options.displays;
     displays_.specs.insert(displays_.specs.begin(), stage.display);

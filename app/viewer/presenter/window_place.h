@@ -15,9 +15,16 @@ namespace dubsar::app {
 /// list_monitors().
 Result<void> choose_place(const SinkTraits& display, std::optional<bool> fullscreen, WindowOptions& window);
 
-/// Displays that a window on this screen can show: `first`, those for any monitor, panels of exactly this size, and
-/// quad_buffer in a stereo window.
-std::vector<SinkSpec> displays_for_window(const SinkSpec& first, const Screen& screen, bool stereo,
-                                          const PanelSet& panels);
+/// A window as far as displays differ in it.
+struct WindowKind {
+  Screen screen{};          ///< of its monitor
+  double refresh_hz = 0.0;  ///< 0: the monitor does not say
+  bool stereo = false;      ///< it has a buffer for each eye
+};
+
+/// Displays that such a window can show: `first`, then of all that the catalog offers, plug-ins too, those whose traits
+/// say so: any pixels or just the screen's, no headset, a stereo window where they need one, 100 Hz where eyes take
+/// turns.
+std::vector<SinkSpec> displays_for_window(const SinkSpec& first, const SinkCatalog& catalog, const WindowKind& window);
 
 }  // namespace dubsar::app

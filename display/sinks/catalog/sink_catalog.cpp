@@ -44,13 +44,13 @@ constexpr std::array<SinkBackend, 12> kSinks{{
      "(default), right_first",
      make_shutter_sink},
     {"openxr", "head-mounted displays through OpenXR, life size on a table before the wearer: distance=, height=",
-     make_openxr_sink},
+     make_openxr_sink, false},
     {"quilt",
      "all views of a Looking Glass panel as tiles: PROFILE or columns=,rows=,width=,height=,aspect=,cone=,"
      "focus=,zoom=",
      make_quilt_sink},
-    {"image", "one view into files: path=FILE.png, or path=NAME-%.png for numbered ones", make_image_sink},
-    {"null", "draws nothing, for measuring", make_null_sink},
+    {"image", "one view into files: path=FILE.png, or path=NAME-%.png for numbered ones", make_image_sink, false},
+    {"null", "draws nothing, for measuring", make_null_sink, false},
 }};
 
 }  // namespace
@@ -74,6 +74,16 @@ Result<std::unique_ptr<OutputSink>> SinkCatalog::make(const SinkSpec& spec) cons
   }
   return fail(ErrorKind::kUsage, "no display is called \"{}\", expected one of: {}{}", spec.name, names,
               did_you_mean(spec.name, names));
+}
+
+std::vector<SinkSpec> SinkCatalog::offered() const {
+  std::vector<SinkSpec> out;
+  for (const SinkBackend& sink : kSinks)
+    if (sink.offered) out.push_back({std::string(sink.name)});
+  for (const PanelProfile& panel : panels_.profiles)
+    if (panel.sheet || panel.optics) out.push_back({"lenticular", {{panel.name}}});
+  for (const auto& plugin : plugins_) out.push_back({std::string(plugin->name())});
+  return out;
 }
 
 Result<std::unique_ptr<OutputSink>> SinkCatalog::make(std::string_view text) const {

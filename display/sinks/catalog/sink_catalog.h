@@ -20,6 +20,7 @@ struct SinkBackend {
   std::string_view name;
   std::string_view summary;  ///< one line with the options
   Result<std::unique_ptr<OutputSink>> (*make)(SinkOptions options);
+  bool offered = true;  ///< a key may go there; false: it takes over a headset, writes files or shows nothing
 };
 
 /// The built-in displays, in the order in which they are offered.
@@ -37,6 +38,10 @@ class SinkCatalog {
   Result<std::unique_ptr<OutputSink>> make(const SinkSpec& spec) const;
   /// The same for a text, as parse_sink_spec() reads it.
   Result<std::unique_ptr<OutputSink>> make(std::string_view text) const;
+
+  /// What somebody may go through who named none: the built-in displays as they are without options, each panel with
+  /// lenses, the plug-ins'. Whether a window fits them their traits say.
+  std::vector<SinkSpec> offered() const;
 
   const PanelSet& panels() const noexcept { return panels_; }
   /// Figures that did not come from a file: a calibration that a device told, lenses that somebody adjusts by eye.
