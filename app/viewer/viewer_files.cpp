@@ -19,6 +19,16 @@ Result<Shelf*> shelf_of(Shelf* shelf) {
   return shelf;
 }
 
+/// What was done to an object that stood at `home` done to one that stands at `next`; the light stays the next one's.
+ViewState carried_over(const ViewState& home, const ViewState& seen, const ViewState& next) {
+  ViewState out = next;
+  if (seen.rotation != home.rotation)
+    out.rotation = glm::normalize(seen.rotation * glm::conjugate(home.rotation) * next.rotation);
+  out.zoom = next.zoom * seen.zoom / home.zoom;
+  out.pan = next.pan + seen.pan - home.pan;
+  return out;
+}
+
 }  // namespace
 
 Result<void> Viewer::open_file(const std::string& path) {
@@ -240,7 +250,9 @@ Result<void> Viewer::put(OpenedSurface surface) {
   if (given_.surface_goes) given_.surface_goes();
   files_.opened = std::move(next);
   given_.mesh = &files_.opened->mesh;
+  const ViewState was_home = home_of(this->document()), was = steering_->goal().first;
   Document document = first_document(options, *given_.mesh).document;
+  if (files_.coarse && !options.work.restored) set_view(document, carried_over(was_home, was, view_of(document)));
   if (!first && !options.work.restored) {  // who compares tablets wants the same light on both
     document.style = style;
     document.light = light;

@@ -65,6 +65,13 @@ Result<void> compile(const Shader& shader, std::string_view file, std::string_vi
 
 }  // namespace
 
+void ProgramKind::destroy(GLuint name) {
+  GLint used = 0;
+  glGetIntegerv(GL_CURRENT_PROGRAM, &used);
+  if (static_cast<GLuint>(used) == name) glUseProgram(0);
+  glDeleteProgram(name);
+}
+
 GlBuffer make_buffer(std::span<const std::byte> bytes) {
   GLuint name = 0;
   glCreateBuffers(1, &name);

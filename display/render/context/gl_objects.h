@@ -44,7 +44,8 @@ struct VertexArrayKind {
   static void destroy(GLuint name) { glDeleteVertexArrays(1, &name); }
 };
 struct ProgramKind {
-  static void destroy(GLuint name) { glDeleteProgram(name); }
+  /// One that is in use would live on until another is used, and whoever restores it then names what is gone.
+  static void destroy(GLuint name);
 };
 using GlBuffer = GlName<BufferKind>;
 using GlTexture = GlName<TextureKind>;
