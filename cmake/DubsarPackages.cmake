@@ -21,6 +21,7 @@ pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial)
 
 if(DUBSAR_APP)
   find_package(glfw3 3.3 REQUIRED)
+  pkg_check_modules(xcb REQUIRED IMPORTED_TARGET xcb)
   pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
   pkg_check_modules(egl REQUIRED IMPORTED_TARGET egl)
   pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)

@@ -5,6 +5,9 @@
 
 #include <cerrno>
 #include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "core/base/text/json_text.h"
 
 namespace dubsar::app {
 namespace {
@@ -24,6 +27,10 @@ std::string stamp(std::int64_t unix_s) {
 }
 
 }  // namespace
+
+std::string Journal::words(std::string_view name, std::string_view words) {
+  return fmt::format("\"{}\": {}", name, dump_json(nlohmann::json(std::string(words))));
+}
 
 std::filesystem::path Journal::file(std::int64_t unix_s) const {
   const std::tm t = local_time(unix_s);

@@ -20,6 +20,9 @@ class Journal {
   /// `unix_s` is the time of the wall, seconds since 1970.
   Result<void> add(std::int64_t unix_s, std::string_view what, std::string_view figures = {});
 
+  /// One of the figures, with a text of any letters: "\"NAME\": \"WORDS\"".
+  static std::string words(std::string_view name, std::string_view words);
+
   /// The file of a day, by the local calendar.
   std::filesystem::path file(std::int64_t unix_s) const;
 

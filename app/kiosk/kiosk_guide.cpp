@@ -47,10 +47,27 @@ KioskGuide::KioskGuide(KioskParts parts)
       notify_(parts_.notify_socket, parts_.watchdog_us) {
   if (!parts_.wall) parts_.wall = this_machine;
   write("start");
-  if (!parts_.trouble.empty()) {
-    log_warning("{}", parts_.trouble);
-    write("trouble");
-  }
+  set_trouble(std::exchange(parts_.trouble, {}), parts_.flat);
+}
+
+void KioskGuide::set_trouble(std::string trouble, bool flat) {
+  parts_.flat = flat;
+  if (trouble == parts_.trouble) return;
+  parts_.trouble = std::move(trouble);
+  if (parts_.trouble.empty()) return;
+  log_warning("{}", parts_.trouble);
+  write("trouble", Journal::words("says", parts_.trouble));
+}
+
+/// Of those that the profile names; what is new is written down.
+void KioskGuide::look_at_devices(std::span<const SourceRow> sources) {
+  std::string missing;
+  for (const SourceRow& row : sources)
+    if (row.health == SourceHealth::kMissing)
+      missing += fmt::format("{}{}: {}", missing.empty() ? "" : "; ", row.spec, row.reason);
+  if (missing == told_.missing) return;
+  told_.missing = std::move(missing);
+  if (!told_.missing.empty()) write("trouble", Journal::words("says", told_.missing));
 }
 
 KioskGuide::~KioskGuide() {
@@ -71,7 +88,8 @@ void KioskGuide::begin_object() {
   view_.reset();
 }
 
-void KioskGuide::leave_out(std::size_t object) {
+void KioskGuide::leave_out(std::size_t object, std::string_view why) {
+  write("trouble", Journal::words("says", why));
   std::vector<KioskObject>& objects = parts_.profile.objects;
   objects.erase(objects.begin() + static_cast<std::ptrdiff_t>(object));
   if (object < parts_.tours.size()) parts_.tours.erase(parts_.tours.begin() + static_cast<std::ptrdiff_t>(object));
@@ -154,7 +172,10 @@ void KioskGuide::obey(OperatorWish wish, Guidance& out) {
       out.end = true;
       break;
   }
-  write("operator", fmt::format("\"wish\": {}", static_cast<int>(wish)));
+  for (const OperatorRow& row : OperatorMenu::rows())
+    if (row.wish == wish)
+      write("operator",
+            Journal::words("key", std::string_view(&row.key, 1)) + ", " + Journal::words("does", row.words));
 }
 
 /// Signs that hands may rest on, and what they chose.
@@ -286,7 +307,7 @@ GalleryPicture KioskGuide::picture(const VisitPicture& visit) const {
   GalleryPicture out;
   const std::string& spoken = language();
   if (visit.line) out.line = parts_.words.say(*visit.line, spoken);
-  if (visit.phase == VisitPhase::kAttract && (!parts_.trouble.empty() || !told_.panel.empty()))
+  if (visit.phase == VisitPhase::kAttract && (parts_.flat || !told_.panel.empty()))
     out.line = parts_.words.say(Line::kNoPanel, spoken);
   out.right_to_left = Words::right_to_left(spoken);
   out.lesson = visit.lesson;
@@ -310,6 +331,7 @@ GalleryPicture KioskGuide::picture(const VisitPicture& visit) const {
 
 Guidance KioskGuide::lead(const GuideMoment& moment) {
   Guidance out;
+  if (told_.ready && moment.on_screen) notify_.alive(moment.now);  // dark or at rest it draws nothing, and lives
   menu_.tick(moment.now);
   const WallTime wall = parts_.wall();
   if (!parts_.profile.key_file.empty() && wall.unix_s != told_.looked) {  // once a second
@@ -317,6 +339,7 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
     menu_.file_present(std::filesystem::exists(parts_.profile.key_file, error), moment.now);
   }
   told_.looked = wall.unix_s;
+  look_at_devices(moment.sources);
   for (const OperatorWish wish : std::exchange(asked_.wishes, {})) obey(wish, out);
   if (!motion_.begun && moment.surface) begin_tour(moment);
   VisitMoment noticed = notice(moment);
@@ -328,7 +351,7 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
   if (visit.reset) write("reset");
   if (moment.trouble != told_.panel) {
     told_.panel = moment.trouble;
-    if (!told_.panel.empty()) write("trouble");
+    if (!told_.panel.empty()) write("trouble", Journal::words("says", told_.panel));
   }
   if (const std::int64_t hour = wall.unix_s / 3600; hour != told_.hour) {
     if (told_.hour >= 0) {
@@ -359,10 +382,9 @@ Guidance KioskGuide::lead(const GuideMoment& moment) {
   return out;
 }
 
-void KioskGuide::presented(TimestampNs now) {
+void KioskGuide::presented(TimestampNs) {
   if (!told_.ready) notify_.ready();
   told_.ready = true;
-  notify_.alive(now);
 }
 
 }  // namespace dubsar::app

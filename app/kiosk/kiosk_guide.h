@@ -29,7 +29,8 @@ struct KioskParts {
   Words words{};
   std::vector<Tour> tours{};  ///< of the profile's objects, in their order; missing or empty: what any tablet has
   HandZone zone{};
-  std::string trouble{};             ///< said at the beginning, e.g. of a display that is not there
+  std::string trouble{};             ///< said at the beginning, as set_trouble()
+  bool flat = false;                 ///< what is shown is flat in place of the profile's display
   std::function<WallTime()> wall{};  ///< none: that of this machine
   std::string notify_socket{};       ///< of a service manager
   std::int64_t watchdog_us = 0;
@@ -51,8 +52,12 @@ class KioskGuide final : public SessionGuide {
   /// Which object the operator wants next, from 0 on; as many as there are: none, the kiosk is over.
   std::size_t object() const noexcept { return object_; }
   const std::vector<KioskObject>& objects() const noexcept { return parts_.profile.objects; }
-  /// This object cannot be shown; the next takes its place.
-  void leave_out(std::size_t object);
+  /// This object cannot be shown, as `why` says; the next takes its place.
+  void leave_out(std::size_t object, std::string_view why);
+  /// What of the profile cannot be had now, such as its monitor; empty: all can. What is new is logged and written
+  /// down.
+  /// `flat`: the display is another one than the profile's, which visitors are told.
+  void set_trouble(std::string trouble, bool flat);
   /// Whether an arrow shows that a hand which sank out of sight is wanted higher up.
   bool wants_higher() const noexcept { return motion_.wants_higher; }
   const Visit& visit() const noexcept { return visit_; }
@@ -78,6 +83,7 @@ class KioskGuide final : public SessionGuide {
   struct Told {
     std::string trouble;  ///< of the journal
     std::string panel;    ///< that cannot be shown
+    std::string missing;  ///< devices that are not there
     std::int64_t hour = -1, looked = -1, tours = 0;
     bool ended = false, ready = false;  ///< ready: to the service manager
   };
@@ -90,6 +96,7 @@ class KioskGuide final : public SessionGuide {
   void move_on(const GuideMoment& moment, const VisitPicture& visit, Guidance& out);
   GalleryPicture picture(const VisitPicture& visit) const;
   void write(std::string_view what, std::string_view figures = {});
+  void look_at_devices(std::span<const SourceRow> sources);
 
   KioskParts parts_;
   Visit visit_;

@@ -1,5 +1,5 @@
 #pragma once
-// Tells the service manager that the kiosk draws: the datagrams of sd_notify(3).
+// Tells the service manager that the kiosk lives: the datagrams of sd_notify(3).
 
 #include <string>
 #include <string_view>
@@ -8,7 +8,8 @@
 
 namespace dubsar::app {
 
-/// One thread: that which draws, so that a picture that hangs is noticed. Without a manager it does nothing.
+/// One thread: that of the session's loop, which draws, so that a loop that hangs is noticed. Without a manager it does
+/// nothing.
 class ServiceNotify {
  public:
   /// `socket` as in NOTIFY_SOCKET ("@" first: an abstract one), `watchdog_us` as in WATCHDOG_USEC; empty and 0: none.
@@ -19,7 +20,7 @@ class ServiceNotify {
 
   /// The first picture was shown.
   void ready() { send("READY=1"); }
-  /// A picture was shown; said at most as often as a third of the watchdog's time.
+  /// The loop turned while its window was on the screen; said at most as often as a third of the watchdog's time.
   void alive(TimestampNs now);
   void status(std::string_view words);
   void stopping() { send("STOPPING=1"); }

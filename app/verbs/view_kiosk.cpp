@@ -6,6 +6,7 @@
 
 #include "app/cli/mesh_input.h"
 #include "app/kiosk/kiosk_guide.h"
+#include "app/kiosk/wanted_panel.h"
 #include "app/verbs/view_files.h"
 #include "app/viewer/first_document.h"
 #include "core/base/files/atomic_file.h"
@@ -81,6 +82,46 @@ struct ObjectSession {
   }
 };
 
+/// What is shown on, of what the profile names.
+struct PanelNow {
+  std::string display, monitor, trouble;
+  bool flat = false;  ///< in place of the profile's display
+};
+
+KioskProfile with_monitor(KioskProfile profile, const PanelNow& panel) {
+  profile.monitor = panel.monitor;
+  return profile;
+}
+
+/// A display or monitor that cannot be had is replaced, in words.
+Result<PanelNow> choose_now(const KioskSession& session, const KioskProfile& profile, MonitorWatch& monitors) {
+  constexpr std::string_view kFlat = "mono", kGoesOn = "; the kiosk goes on with a flat picture";
+  PanelNow out{profile.display, {}, {}, false};
+  KioskProfile any = profile;
+  any.monitor.clear();
+  auto options = session.options(any, profile.objects.front(), out.display);
+  if (!options && out.display != kFlat) {
+    out.trouble = options.error().message + std::string(kGoesOn);
+    out.display = kFlat;
+    out.flat = true;
+    options = session.options(any, profile.objects.front(), out.display);
+  }
+  if (!options) return tl::unexpected<Error>(options.error());
+  if (!options->window) return out;
+  if (!options->window->monitor.empty()) return out;  // of the command line, which is as it is
+  const StageOptions& stage = options->stage;
+  DUBSAR_ASSIGN(const auto sink, stage.catalog->make(stage.display));
+  DUBSAR_ASSIGN(const auto there, monitors.look());
+  const PanelChoice choice =
+      choose_panel(there, profile.monitor, options->fullscreen.value_or(true) ? sink->traits() : SinkTraits());
+  out.monitor = choice.monitor;
+  if (choice.trouble.empty()) return out;
+  out.flat = out.flat || choice.flat;
+  if (choice.flat) out.display = kFlat;
+  out.trouble += (out.trouble.empty() ? "" : "; ") + choice.trouble;
+  return out;
+}
+
 }  // namespace
 
 Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) {
@@ -92,46 +133,53 @@ Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) 
                   session.profile.string(), language);
   DUBSAR_TRY(keep_readable(profile));
   KioskOutcome out;
-  out.display = profile.display;
-  std::string trouble;
-  auto options = session.options(profile, profile.objects.front(), out.display);
-  if (!options && out.display != "mono") {
-    trouble = options.error().message + "; the kiosk goes on with a flat picture";
-    out.display = "mono";
-    options = session.options(profile, profile.objects.front(), out.display);
-  }
-  if (!options) return tl::unexpected<Error>(options.error());
+  MonitorWatch monitors(profile.monitor);
+  DUBSAR_ASSIGN(PanelNow panel, choose_now(session, profile, monitors));
+  DUBSAR_ASSIGN(const ViewOptions options,
+                session.options(with_monitor(profile, panel), profile.objects.front(), panel.display));
   KioskParts parts;
   DUBSAR_ASSIGN(parts.tours, tours_of(profile));
   parts.profile = profile;
   parts.words = words;
-  const HandMapping& hands = options->mapping.hands;
+  const HandMapping& hands = options.mapping.hands;
   parts.zone = {1e-3 * hands.zone_min_mm, 1e-3 * hands.zone_max_mm};
-  parts.trouble = trouble;
+  parts.trouble = panel.trouble;
+  parts.flat = panel.flat;
   parts.notify_socket = environment("NOTIFY_SOCKET");
   parts.watchdog_us = static_cast<std::int64_t>(parse_number(environment("WATCHDOG_USEC")).value_or(0.0));
   KioskGuide guide(std::move(parts));
-  KeptPanels kept;  // no desktop is seen between two objects
+  std::optional<KeptPanels> kept(std::in_place);  // no desktop is seen between two objects
   for (std::size_t at = 0; at < guide.objects().size(); at = guide.object()) {
     const KioskObject object = guide.objects()[at];
-    DUBSAR_ASSIGN(ViewOptions view, session.options(profile, object, out.display));
+    DUBSAR_ASSIGN(ViewOptions view, session.options(with_monitor(profile, panel), object, panel.display));
     view.guide = &guide;
     view.around.notices = view.around.panels = false;
     view.stage.room.most_parallax_deg = profile.eyes.parallax_deg;
+    bool elsewhere = false;
+    if (view.window) view.time.outdated = [&] { return elsewhere = monitors.changed(SteadyClock().now()); };
     guide.begin_object();
-    ObjectSession one{object, view, kept};
+    ObjectSession one{object, view, *kept};
     auto seen = one.run(progress);
     if (!seen && one.unreadable && guide.objects().size() > 1) {
       log_left_out(object, *one.unreadable);
-      guide.leave_out(at);
+      guide.leave_out(at, one.unreadable->message);
       continue;
     }
+    out.stopped = !seen && seen.error().kind == ErrorKind::kCancelled;
+    if (out.stopped) break;
     if (!seen) return tl::unexpected<Error>(seen.error());
     out.last = *std::move(seen);
     out.triangles = out.last.triangles;
     ++out.sessions;
+    if (elsewhere) {  // its windows are made anew, on what there is now
+      kept.emplace();
+      DUBSAR_ASSIGN(panel, choose_now(session, profile, monitors));
+      guide.set_trouble(panel.trouble, panel.flat);
+      continue;
+    }
     if (!guide.ended()) break;  // its time or its scripts are over
   }
+  out.display = panel.display;
   out.counts = guide.visit().counts();
   return out;
 }

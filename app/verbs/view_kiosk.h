@@ -24,11 +24,14 @@ struct KioskOutcome {
   int sessions = 0;
   std::size_t triangles = 0;
   std::string display{};
+  bool stopped = false;  ///< by a signal; `last` is of the session before, or of none
 };
 
 /// Each object is read when it is its turn; those that cannot be read are left out and said. In real time the window
-/// comes first, then a coarse surface, then all of it. A display that cannot be had is replaced by a flat picture,
-/// which is said on the screen. Errors: the profile's, of the last object that was left, of the session.
+/// comes first, then a coarse surface, then all of it. A display that cannot be had, or whose pixels are not those of
+/// the monitor, is replaced by a flat picture, which is said on the screen; a monitor that is not there by another one,
+/// until it is. A signal that ends it is no error. Errors: the profile's, of the last object that was left, of the
+/// session.
 Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress);
 
 /// The tour that a tablet has by itself, as a file to be changed.

@@ -93,6 +93,7 @@ class Loop {
   void give(KeptPanels& kept);
   Result<void> write_picture();
   Result<void> follow(bool due, const std::string& frame);
+  void stay_in_front();
   bool ends(TimestampNs start);
   Result<void> turn_until_over(TimestampNs start, const std::function<void(const ViewMoment&)>& look);
 
@@ -173,6 +174,13 @@ Result<void> Loop::follow(bool due, const std::string& frame) {
   return {};
 }
 
+/// Whoever leads the session does so where nobody could bring a hidden window back.
+void Loop::stay_in_front() {
+  if (options_.guide == nullptr || simulated()) return;
+  presenter_->look_after(!also_->focused());
+  also_->look_after();
+}
+
 bool Loop::ends(TimestampNs start) {
   const TimestampNs now = clock().now();
   if (options_.guide != nullptr) {
@@ -181,6 +189,7 @@ bool Loop::ends(TimestampNs start) {
   }
   if (presenter_->ended() && !viewer_->may_end()) presenter_->keep_open();
   if (presenter_->ended() || viewer_->over(now)) return true;
+  if (!simulated() && options_.time.outdated && options_.time.outdated()) return true;
   if (options_.time.longest_s <= 0) return false;
   if (simulated()) return static_cast<double>(steps_ + 1) >= options_.time.longest_s * options_.time.fps;
   return now - start >= static_cast<TimestampNs>(1e9 * options_.time.longest_s);
@@ -238,6 +247,7 @@ Result<void> Loop::turn_until_over(TimestampNs start, const std::function<void(c
   for (bool over = false; !over; ++steps_) {
     if (progress_.cancelled()) return cancelled_error();
     presenter_->take_events();
+    stay_in_front();
     if (presenter_->take_place_changed())
       if (auto done = viewer_->place_changed(); !done) log_warning("{}", done.error().message);
     const bool damaged = presenter_->take_damaged();

@@ -27,6 +27,7 @@ struct GuideMoment {
   std::span<const ScreenRect> objects{};      ///< where what is shown stands, one or more that stand apart
   std::string_view trouble{};                 ///< a panel of the session that cannot be shown now, in words
   bool surface = true;                        ///< the document is that of a surface; false: it is being read
+  bool on_screen = true;                      ///< the panel's window is on the screen; false: something has hidden it
 };
 
 /// What is shown in place of the document's own state, such as a step of a tour.

@@ -37,6 +37,8 @@ struct SessionTime {
   double fps = 0.0;
   double longest_s = 0.0;        ///< 0: until somebody ends it, or its scripts and recordings are over (plus 1 s)
   double display_delay_s = 0.0;  ///< from the presentation of a picture to its light, beyond the monitor's scan
+  /// Asked at each turn in real time: what the session was begun with is so no longer, such as its monitor; it ends.
+  std::function<bool()> outdated{};
 };
 
 /// What a session writes; none where it is empty.

@@ -249,7 +249,7 @@ void Viewer::lead(TimestampNs now, const Steered& steered) {
   if (guide == nullptr) return;
   const std::vector<SourceRow> rows = sources_->rows();
   at_.guidance = guide->lead({now, steered, document(), rows, stage_->window_mm(), stage_->middle_mm(),
-                              displays_.objects, displays_.trouble, has_surface()});
+                              displays_.objects, displays_.trouble, has_surface(), given_.presenter.on_screen()});
   steering_->set_scene(at_.guidance.gestures);
   for (const std::string& command : at_.guidance.commands) run(command, kGuideSteps);
   if (!at_.guidance.scene || !at_.guidance.scene->keep) return;

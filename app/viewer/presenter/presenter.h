@@ -22,6 +22,13 @@ class Presenter {
   virtual Surface surface() = 0;
   /// False while there is nothing to draw on, such as a window that is minimised.
   virtual bool visible() const { return true; }
+  /// What is presented can be seen: its window is mapped. As it was at the last look_after().
+  virtual bool on_screen() const { return true; }
+  /// Keys come to it. As on_screen().
+  virtual bool focused() const { return true; }
+  /// For places where nobody is who could bring a hidden window back: one that covers a monitor and was hidden,
+  /// uncovered, or, where `keyboard`, lost the keys, is asked back. Looks twice a second, in real time.
+  virtual void look_after(bool /*keyboard*/) {}
   /// RGB, of what was drawn into surface() and is not presented yet, as it will be.
   virtual Result<Image> picture() = 0;
   virtual Result<void> present() = 0;

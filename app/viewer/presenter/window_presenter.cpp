@@ -5,14 +5,17 @@
 #include <algorithm>
 #include <chrono>
 #include <thread>
+#include <utility>
 
 #include "app/viewer/presenter/window_place.h"
+#include "core/base/system/second.h"
 #include "display/sinks/sink_window.h"
 
 namespace dubsar::app {
 namespace {
 constexpr double kIdleS = 0.008;  // how long input may wait while nothing moves
-}
+constexpr TimestampNs kLookEveryNs = kSecondNs / 2;
+}  // namespace
 
 Result<std::unique_ptr<WindowPresenter>> WindowPresenter::create(ViewOptions& options,
                                                                  std::unique_ptr<OutputSink>& sink, std::string& note) {
@@ -46,6 +49,16 @@ Result<void> WindowPresenter::fit(const SinkTraits& traits) {
 bool WindowPresenter::visible() const {
   const PixelSize size = window_->size();
   return worn_ || (size.width > 0 && size.height > 0);  // a headset goes on when its window is minimised
+}
+
+void WindowPresenter::look_after(bool keyboard) {
+  const TimestampNs now = SteadyClock().now();
+  if (worn_ || (seen_.at >= 0 && now - seen_.at < kLookEveryNs)) return;
+  const bool first = std::exchange(seen_.at, now) < 0;
+  seen_.on_screen = window_->on_screen();
+  seen_.focused = window_->focused();
+  const bool away = !seen_.on_screen || !window_->covers_monitor() || (keyboard && !seen_.focused);
+  if (window_->fullscreen() && (away || first)) window_->come_back(keyboard);  // at first: onto all desktops
 }
 
 Field WindowPresenter::turn() {

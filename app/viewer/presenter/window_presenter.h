@@ -19,6 +19,9 @@ class WindowPresenter final : public Presenter {
   Result<void> fit(const SinkTraits& traits) override;
   Surface surface() override;
   bool visible() const override;
+  bool on_screen() const override { return seen_.on_screen; }
+  bool focused() const override { return seen_.focused; }
+  void look_after(bool keyboard) override;
   Result<Image> picture() override;
   Result<void> present() override;
   Field turn() override;
@@ -43,6 +46,10 @@ class WindowPresenter final : public Presenter {
   int fields_ = 1;
   TimestampNs begun_ = 0;
   bool composed_ = false, worn_ = false;
+  struct Seen {  ///< when it was looked after last
+    bool on_screen = true, focused = false;
+    TimestampNs at = -1;
+  } seen_;
 };
 
 }  // namespace dubsar::app

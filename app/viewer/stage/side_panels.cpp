@@ -274,6 +274,17 @@ void SidePanels::drop_surface() {
   if (!panels_.empty()) static_cast<void>(main_.make_current());
 }
 
+void SidePanels::look_after() {
+  for (const auto& panel : panels_)
+    if (panel->presenter) panel->presenter->look_after(false);
+}
+
+bool SidePanels::focused() const {
+  return std::any_of(panels_.begin(), panels_.end(), [](const auto& panel) {
+    return panel->options.window && panel->presenter && panel->presenter->focused();
+  });
+}
+
 bool SidePanels::need_paint() const {
   return std::any_of(panels_.begin(), panels_.end(), [](const auto& panel) {
     return panel->stage && (panel->damaged || panel->stage->needs_paint()) && panel->presenter->visible();

@@ -45,6 +45,9 @@ class SidePanels {
   void begin(const ViewOptions& session);
   /// The surface of the session, or the session, is about to go: what was made of it goes first.
   void drop_surface();
+  /// As those of the presenter; none of them takes the keys from another window of the session.
+  void look_after();
+  bool focused() const;
   /// One of them has something to paint.
   bool need_paint() const;
   bool empty() const noexcept { return panels_.empty(); }

@@ -9,7 +9,11 @@
 #include <utility>
 
 #include "core/base/system/log.h"
+#include "display/render/context/window_recall.h"
 #include "display/render/images/utf8.h"
+
+/// Of glfw3native.h, which wants the headers of RandR besides; null in a library for Wayland alone.
+extern "C" [[gnu::weak]] unsigned long glfwGetX11Window(GLFWwindow* window);
 
 namespace dubsar {
 namespace {
@@ -328,6 +332,28 @@ bool GlfwWindow::take_place_changed() { return std::exchange(place_changed_, fal
 bool GlfwWindow::take_damaged() { return std::exchange(damaged_, false); }
 void GlfwWindow::close() { glfwSetWindowShouldClose(as_window(window_), GLFW_TRUE); }
 bool GlfwWindow::fullscreen() const { return glfwGetWindowMonitor(as_window(window_)) != nullptr; }
+
+bool GlfwWindow::on_screen() const {
+  return glfwGetWindowAttrib(as_window(window_), GLFW_VISIBLE) == GLFW_TRUE &&
+         glfwGetWindowAttrib(as_window(window_), GLFW_ICONIFIED) == GLFW_FALSE;
+}
+
+bool GlfwWindow::focused() const { return glfwGetWindowAttrib(as_window(window_), GLFW_FOCUSED) == GLFW_TRUE; }
+
+void GlfwWindow::come_back(bool keyboard) {
+  if (glfwGetX11Window == nullptr) return glfwRestoreWindow(as_window(window_));
+  recall_window(static_cast<std::uint32_t>(glfwGetX11Window(as_window(window_))), fullscreen(), keyboard);
+}
+
+bool GlfwWindow::covers_monitor() const {
+  GLFWmonitor* const monitor = glfwGetWindowMonitor(as_window(window_));
+  if (monitor == nullptr) return false;
+  const Monitor on = describe(monitor);
+  int x = 0, y = 0, width = 0, height = 0;
+  glfwGetWindowPos(as_window(window_), &x, &y);
+  glfwGetWindowSize(as_window(window_), &width, &height);
+  return x == on.x && y == on.y && width == on.width_px && height == on.height_px;
+}
 
 double GlfwWindow::content_scale() const {
   float x = 1.0f, y = 1.0f;

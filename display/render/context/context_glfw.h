@@ -84,6 +84,13 @@ class GlfwWindow final : public GlContext {
   /// True when a part of what was shown is lost since the last call: another window stood before it, or it was
   /// minimised. Whoever draws presents the picture again.
   bool take_damaged();
+  /// True while it is mapped: neither minimised nor hidden by whoever manages windows. Asks the window system.
+  bool on_screen() const;
+  bool focused() const;  ///< keys come to it. Asks the window system
+  /// Mapped again, over all others and on all desktops, covering its monitor if it did, with the keyboard if
+  /// `keyboard`: as far as whoever manages windows grants that (X11; elsewhere only what the window system lets a
+  /// program ask for).
+  void come_back(bool keyboard);
   bool should_close() const;
   void keep_open();  ///< should_close() is false again
   void close();      ///< as if the user had closed it
@@ -93,6 +100,8 @@ class GlfwWindow final : public GlContext {
   Result<void> set_fullscreen(const std::string& monitor = {});
   void set_windowed();
   bool fullscreen() const;
+  /// It is fullscreen() and as large as its monitor, and where that is. False where a window manager made it smaller.
+  bool covers_monitor() const;
   /// How many times larger than on a plain monitor things shall be here, as the desktop says: 1, 1.5, 2 ...
   double content_scale() const;
   double refresh_hz() const;  ///< of the monitor the window is on; 0 when it does not say

@@ -2,21 +2,24 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/image_io/png_file.h"
 #include "tests/app/cli/run_program.h"
+#include "tests/app/kiosk/service_manager.h"
+#include "tests/display/xvfb_server.h"
 
 namespace dubsar::test {
 namespace {
 using nlohmann::json;
 
-class Kiosk : public testing::Test {
+class Kiosk : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) / fmt::format("kiosk_{}", ::getpid());
+    folder_ = std::filesystem::path(::testing::TempDir()) / fmt::format("kiosk_{}", ::getpid());
     std::filesystem::create_directories(folder_);
     write(
         "block.obj",
@@ -24,6 +27,14 @@ class Kiosk : public testing::Test {
         "f 1 3 2\nf 1 4 3\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n");
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string journal() const {
+    std::string out;
+    for (const auto& day : std::filesystem::directory_iterator(folder_ / "journal")) {
+      std::ifstream in(day.path());
+      out.append(std::istreambuf_iterator<char>(in), {});
+    }
+    return out;
+  }
   std::string file(const std::string& name) const { return (folder_ / name).string(); }
   void write(const std::string& name, const std::string& text) const { std::ofstream(file(name)) << text; }
   json profile() const {
@@ -73,13 +84,9 @@ TEST_F(Kiosk, AVisitIsSeenTaughtAndForgotten) {
   // As at the beginning, but for the 12 degrees that it sways by itself; the hand turned it further.
   EXPECT_LT(figures.at("view").at("turned_deg").get<double>(), 12.1);
   EXPECT_GT(figures.at("largest_turn_in_a_frame_deg").get<double>(), 1.5);
-  std::string journal;
-  for (const auto& day : std::filesystem::directory_iterator(folder_ / "journal")) {
-    std::ifstream in(day.path());
-    journal.assign(std::istreambuf_iterator<char>(in), {});
-  }
+  const std::string told = journal();
   for (const char* what : {"start", "visit", "reset", "end"})
-    EXPECT_NE(journal.find(fmt::format("\"what\": \"{}\"", what)), std::string::npos) << journal;
+    EXPECT_NE(told.find(fmt::format("\"what\": \"{}\"", what)), std::string::npos) << told;
   // Nobody is there, somebody is taught: the pictures differ at the side, where the moving hand is.
   const auto before = read_png(file("pictures/frame-00020.png")), taught = read_png(file("pictures/frame-00045.png"));
   ASSERT_TRUE(before && taught);
@@ -168,6 +175,85 @@ TEST_F(Kiosk, AnObjectThatCannotBeReadIsLeftOut) {
   EXPECT_EQ(
       run_dubsar({"view", "--kiosk", file("kiosk.json"), "--offscreen", "--script", file("visitor.json")}).exit_code,
       65);
+}
+
+/// The kiosk in a window, as a service whose manager wants a sign of life every `kWatchdogS`.
+class KioskService : public Kiosk {
+ protected:
+  static constexpr double kWatchdogS = 1.5, kRunS = 4.0;
+  void SetUp() override {
+    Kiosk::SetUp();
+    if (!server_.problem().empty()) GTEST_SKIP() << server_.problem();
+    ASSERT_TRUE(manager_.bound());
+    ::setenv("NOTIFY_SOCKET", manager_.path().c_str(), 1);
+    ::setenv("WATCHDOG_USEC", fmt::format("{:.0f}", 1e6 * kWatchdogS).c_str(), 1);
+  }
+  void TearDown() override {
+    ::unsetenv("NOTIFY_SOCKET");
+    ::unsetenv("WATCHDOG_USEC");
+    Kiosk::TearDown();
+  }
+  /// `signal` is sent as soon as it is ready; 0: none.
+  ProgramRun run(const std::string& script, double seconds = kRunS, int signal = 0) {
+    write("kiosk.json", profile_.dump());
+    write("visitor.json", script);
+    RunOptions options;
+    const auto begun = std::chrono::steady_clock::now();
+    options.watch = [&](const std::string&) {
+      manager_.watch(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count(), kWatchdogS);
+      return manager_.heard().empty() ? 0 : signal;
+    };
+    options.timeout_s = 60;
+    return run_dubsar({"view", "--kiosk", file("kiosk.json"), "--script", file("visitor.json"), "--seconds",
+                       fmt::format("{}", seconds), "--json", "-"},
+                      options);
+  }
+  const testing::XvfbServer server_{320, 240};
+  app::test::ServiceManager manager_;
+  json profile_ = profile();
+};
+
+TEST_F(KioskService, IsNotRestartedInQuietHoursThoughNothingIsDrawn) {
+  profile_["quiet"] = {"00:00-12:00", "12:00-00:00"};
+  const ProgramRun done = run(R"({"seed": 3, "duration_s": 20, "hands": []})");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_LT(json::parse(done.out).at("frames").get<int>(), 60) << "else it was not quiet";
+  EXPECT_EQ(manager_.restarts(), 0) << manager_.longest_silence_s() << " s";
+  EXPECT_EQ(manager_.heard().front(), "READY=1");
+  EXPECT_EQ(manager_.heard().back(), "STOPPING=1");
+}
+
+TEST_F(KioskService, IsNotRestartedAfterAVisitThoughNothingMoves) {
+  profile_["attract_after_s"] = 60;
+  profile_["idle_reset_s"] = 120;
+  const ProgramRun done = run(
+      R"({"seed": 3, "duration_s": 20, "hands": [{"keys": [{"t": 0.1, "at_mm": [0, 0, 250]}, {"t": 1.0, "at_mm": [0, 0, 250]}]}]})");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(json::parse(done.out).at("visits"), 1);
+  EXPECT_EQ(manager_.restarts(), 0) << manager_.longest_silence_s() << " s";
+}
+
+TEST_F(KioskService, WhoseMonitorAndPanelAreNotThereShowsAFlatPictureAndSaysSo) {
+  profile_["monitor"] = "HDMI-1";
+  profile_["display"] = "lenticular:looking-glass-go";
+  const ProgramRun done = run(R"({"seed": 3, "duration_s": 20, "hands": []})", 1.5);
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const json said = json::parse(done.out);
+  EXPECT_EQ(said.at("display"), "mono");
+  EXPECT_GT(said.at("frames").get<int>(), 1);
+  EXPECT_NE(done.err.find("no monitor's name contains \"HDMI-1\""), std::string::npos) << done.err;
+  const std::string told = journal();
+  EXPECT_NE(told.find("no monitor's name contains \\\"HDMI-1\\\""), std::string::npos) << told;
+  EXPECT_NE(told.find("this one is flat"), std::string::npos) << told;
+}
+
+TEST_F(KioskService, ThatIsStoppedSaysSoAndEndsWell) {
+  const ProgramRun done = run(R"({"seed": 3, "duration_s": 20, "hands": []})", 20.0, SIGTERM);
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(done.err.find("error"), std::string::npos) << done.err;
+  EXPECT_EQ(json::parse(done.out).at("stopped"), true);
+  EXPECT_NE(journal().find("\"what\": \"end\""), std::string::npos);
+  EXPECT_EQ(manager_.heard().back(), "STOPPING=1");
 }
 
 }  // namespace

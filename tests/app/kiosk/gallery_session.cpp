@@ -29,7 +29,9 @@ SeenLesson as_seen(const std::optional<Lesson>& lesson) {
 
 Mapping GallerySession::mapping_ = gallery_mapping().value();
 
-GallerySession::GallerySession() : navigator_(mapping_), people_(entry_zone()), guide_(parts()) {
+GallerySession::GallerySession(const std::string& notify_socket, std::int64_t watchdog_us)
+    : navigator_(mapping_), people_(entry_zone()), guide_(parts(notify_socket, watchdog_us)) {
+  guide_.presented(0);
   document_.parts = {{"tablet", 1}, {"envelope", 2}};
 }
 
@@ -38,8 +40,10 @@ HandZone GallerySession::entry_zone() {
 }
 HandZone GallerySession::zone() { return {1e-3 * mapping_.hands.zone_min_mm, 1e-3 * mapping_.hands.zone_max_mm}; }
 
-KioskParts GallerySession::parts() {
+KioskParts GallerySession::parts(const std::string& notify_socket, std::int64_t watchdog_us) {
   KioskParts out;
+  out.notify_socket = notify_socket;
+  out.watchdog_us = watchdog_us;
   out.profile.objects = {{.file = "a.exa"}};
   out.profile.pin = "8302";
   out.zone = zone();

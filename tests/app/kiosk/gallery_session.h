@@ -16,7 +16,8 @@ namespace dubsar::app::test {
 /// One thread.
 class GallerySession {
  public:
-  GallerySession();
+  /// As those of KioskParts.
+  explicit GallerySession(const std::string& notify_socket = {}, std::int64_t watchdog_us = 0);
   /// In place of the gallery's own, for all that are made afterwards.
   static void set_mapping(const Mapping& mapping) { mapping_ = mapping; }
   void go_on(TimestampNs now, const InputFrame& frame);
@@ -34,7 +35,7 @@ class GallerySession {
  private:
   static HandZone entry_zone();
   static HandZone zone();
-  static KioskParts parts();
+  static KioskParts parts(const std::string& notify_socket, std::int64_t watchdog_us);
   static Mapping mapping_;
   Navigator navigator_;
   PersonKeeper people_;

@@ -1,55 +1,25 @@
 #include <gtest/gtest.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "app/kiosk/journal.h"
 #include "app/kiosk/service_notify.h"
 #include "core/base/files/atomic_file.h"
+#include "tests/app/kiosk/service_manager.h"
 
 namespace dubsar::app {
 namespace {
 
-/// The manager's side of sd_notify(3).
-class Manager {
- public:
-  Manager() : path_(testing::TempDir() + fmt::format("notify_{}", ::getpid())) {
-    descriptor_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0);
-    sockaddr_un at{};
-    at.sun_family = AF_UNIX;
-    std::strncpy(at.sun_path, path_.c_str(), sizeof at.sun_path - 1);
-    ::unlink(path_.c_str());
-    EXPECT_EQ(::bind(descriptor_, reinterpret_cast<const sockaddr*>(&at), sizeof at), 0);
-  }
-  ~Manager() {
-    ::close(descriptor_);
-    ::unlink(path_.c_str());
-  }
-  /// All so far; the kernel keeps ten that were not read.
-  const std::vector<std::string>& heard() {
-    char text[512];
-    for (ssize_t n; (n = ::recv(descriptor_, text, sizeof text, 0)) >= 0;) heard_.emplace_back(text, text + n);
-    return heard_;
-  }
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-  std::vector<std::string> heard_;
-  int descriptor_ = -1;
-};
-
 TEST(ServiceNotify, SaysReadyAndAliveAsOftenAsTheWatchdogNeeds) {
-  Manager manager;
+  test::ServiceManager manager;
+  ASSERT_TRUE(manager.bound());
   ServiceNotify notify(manager.path(), 3'000'000);  // 3 s
   notify.ready();
-  for (int i = 0; i <= 100; ++i) {  // 10 s of pictures
+  for (int i = 0; i <= 100; ++i) {  // 10 s of turns of the loop
     notify.alive(i * TimestampNs{100'000'000});
     manager.heard();
   }
@@ -104,8 +74,9 @@ TEST(ServiceUnit, IsOneThatSystemdUnderstandsAndThatMayDoLittle) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / fmt::format("unit_{}", ::getpid());
   std::filesystem::create_directories(folder / "run");
   std::string unit = read_text_file(DUBSAR_UNIT).value();
-  for (const char* line : {"Type=notify", "WatchdogSec=", "Restart=always", "NoNewPrivileges=yes",
-                           "SystemCallFilter=", "RestrictNamespaces=yes", "RestrictAddressFamilies="})
+  for (const char* line :
+       {"Type=notify", "WatchdogSec=", "Restart=on-failure", "RestartPreventExitStatus=64 78", "NoNewPrivileges=yes",
+        "SystemCallFilter=", "RestrictNamespaces=yes", "RestrictAddressFamilies="})
     EXPECT_NE(unit.find(std::string("\n") + line), std::string::npos) << line;
   const std::string program = "/usr/local/bin/dubsar";
   ASSERT_NE(unit.find(program), std::string::npos);

@@ -18,6 +18,7 @@
 #include "core/mesh_io/mesh_io.h"
 #include "tests/app/kiosk/gallery_session.h"
 #include "tests/app/kiosk/gallery_visit.h"
+#include "tests/app/kiosk/service_manager.h"
 #include "tests/app/kiosk/soak_figures.h"
 #include "tests/display/test_meshes.h"
 #include "tests/display/xvfb_server.h"
@@ -27,6 +28,8 @@ namespace {
 
 constexpr TimestampNs kSecond = 1'000'000'000;
 constexpr double kFaultEveryS = 60.0, kFaultAtS = 20.0, kFaultS = 5.0;
+constexpr double kWatchdogS = 20.0;  // of the unit
+constexpr auto kWatchdogUs = static_cast<std::int64_t>(1e6 * kWatchdogS);
 enum class Fault { kUnplugged, kServiceDies, kMonitorLost, kClockJumps, kSuspended };
 constexpr std::array<std::string_view, 5> kFaultNames{"tracker unplugged", "service dies", "monitor lost",
                                                       "clock jumps", "suspended"};
@@ -59,7 +62,8 @@ class People {
 /// Simulated time, no pictures: memory, and how soon a hand that is seen after a fault has its ring.
 SoakFigures simulate(double hours) {
   SoakFigures out;
-  GallerySession session;
+  ServiceManager manager;
+  GallerySession session(manager.path(), kWatchdogUs);
   People people;
   InputFrame frame;
   constexpr double kStepS = 1.0 / 60.0;
@@ -87,6 +91,7 @@ SoakFigures simulate(double hours) {
     for (HandFrame& hand : seen.hands) hand.time += shift;
     if (blind) seen = {};
     session.go_on(static_cast<TimestampNs>(1e9 * (t + away_s)), seen);
+    manager.watch(t, kWatchdogS);
     if (in_minute >= kFaultAtS + kFaultS && in_minute - kStepS < kFaultAtS + kFaultS) fault_end = t;
     if (fault_end >= 0.0 && hand_since < 0.0 && !seen.hands.empty()) hand_since = t;  // nobody may be there
     if (hand_since < 0.0) continue;
@@ -95,6 +100,8 @@ SoakFigures simulate(double hours) {
     fault_end = hand_since = -1.0;
   }
   out.visits = session.visit().counts().visits;
+  out.restarts = manager.restarts();
+  out.silence_s = manager.longest_silence_s();
   return out;
 }
 
@@ -215,7 +222,10 @@ Result<SoakFigures> draw(double minutes, const TriMesh& mesh) {
   options.around.notices = false;
   options.time.longest_s = 60.0 * minutes;
   std::int64_t wall_jump = 0;
+  ServiceManager manager;
   KioskParts parts;
+  parts.notify_socket = manager.path();
+  parts.watchdog_us = kWatchdogUs;
   parts.profile.objects = {{.file = "surface"}};
   parts.profile.pin = "90210735";
   parts.zone = {1e-3 * options.mapping.hands.zone_min_mm, 1e-3 * options.mapping.hands.zone_max_mm};
@@ -230,6 +240,7 @@ Result<SoakFigures> draw(double minutes, const TriMesh& mesh) {
     const TimestampNs now = clock.now();
     while (glGetError() != GL_NO_ERROR) ++out.gl_errors;
     const double t = 1e-9 * static_cast<double>(now - began), in_minute = std::fmod(t, kFaultEveryS);
+    manager.watch(t, kWatchdogS);
     if (now - sampled >= 10 * kSecond) {
       out.memory.push_back({t / 3600.0, resident_mib()});
       sampled = now;
@@ -270,6 +281,8 @@ Result<SoakFigures> draw(double minutes, const TriMesh& mesh) {
   SilentProgress progress;
   DUBSAR_TRY(run_view(mesh, options, progress, look));
   out.visits = guide.visit().counts().visits;
+  out.restarts = manager.restarts();
+  out.silence_s = manager.longest_silence_s();
   return out;
 }
 

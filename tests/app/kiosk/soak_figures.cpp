@@ -45,7 +45,7 @@ bool holds(const SoakFigures& figures, bool drawn, const Limits& limits) {
   const bool pictures =
       !drawn || (figures.pictures > 0 && figures.gl_errors == 0 && figures.longest_ms <= limits.picture_ms &&
                  figures.hand_ms.quantile(0.95) <= limits.hand_ms);
-  return memory && back && pictures;
+  return memory && back && pictures && figures.restarts == 0;
 }
 
 std::string describe(const SoakFigures& figures, bool drawn, const Limits& limits) {
@@ -57,6 +57,8 @@ std::string describe(const SoakFigures& figures, bool drawn, const Limits& limit
     out += fmt::format("{}: {} times, back after {:.2f} s at the latest (limit {:.0f})\n", kind, times.size(),
                        *std::max_element(times.begin(), times.end()), limits.recovery_s);
   out += fmt::format("never back: {}; visits: {}\n", figures.never_back, figures.visits);
+  out += fmt::format("signs of life: {:.1f} s apart at most; restarts by a watchdog: {}\n", figures.silence_s,
+                     figures.restarts);
   if (drawn)
     out += fmt::format("pictures: {}, longest {:.0f} ms after the first (limit {:.0f}), GL errors: {}\n",
                        figures.pictures, figures.longest_ms, limits.picture_ms, figures.gl_errors);

@@ -29,6 +29,8 @@ struct SoakFigures {
   std::vector<MemoryAt> memory;
   std::map<std::string, std::vector<double>> recovery_s;  ///< by the kind of fault, each from its end
   int never_back = 0;                                     ///< faults after which nothing came back before the next one
+  int restarts = 0;                                       ///< by a service manager that heard nothing for too long
+  double silence_s = 0.0;                                 ///< the longest time in which it heard nothing
   std::int64_t pictures = 0, gl_errors = 0, visits = 0;
   Measurements hand_ms{};   ///< from a hand's first measurement to the presentation of the picture with its ring
   double longest_ms = 0.0;  ///< of a picture after the first, from its beginning to its presentation

@@ -38,6 +38,9 @@ TEST(SoakFigures, EachLimitAloneBreaksIt) {
   bad.never_back = 1;
   EXPECT_FALSE(holds(bad, true));
   bad = good;
+  bad.restarts = 1;
+  EXPECT_FALSE(holds(bad, false));
+  bad = good;
   bad.longest_ms = 251.0;
   EXPECT_FALSE(holds(bad, true));
   EXPECT_TRUE(holds(bad, false)) << "nothing was drawn";

@@ -7,9 +7,11 @@
 #include <thread>
 
 #include "app/kiosk/kiosk_guide.h"
+#include "core/base/system/log.h"
 #include "devices/touch/simulated_touch.h"
 #include "tests/app/viewer/live_fixture.h"
 #include "tests/app/viewer/x_desktop.h"
+#include "tests/app/viewer/x_manager.h"
 
 namespace dubsar::app {
 namespace {
@@ -18,8 +20,9 @@ constexpr int kEvents = 10'000, kAtOnce = 100;
 
 class LiveKiosk : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() { server_ = std::make_unique<testing::XvfbServer>(320, 240); }
-  static void TearDownTestSuite() { server_.reset(); }
+  static void SetUpTestSuite() {
+    if (server_ == nullptr) server_ = std::make_unique<testing::XvfbServer>(320, 240);
+  }
   void SetUp() override {
     if (!server_->problem().empty()) GTEST_SKIP() << server_->problem();
     person_ = std::make_unique<testing::XPerson>();
@@ -86,7 +89,7 @@ class LiveKiosk : public ::testing::Test {
     person_->key("enter");
   }
 
-  inline static std::unique_ptr<testing::XvfbServer> server_;  // one for all: windows keep their connection
+  inline static std::unique_ptr<testing::XvfbServer> server_;  // one for all suites: GLFW stays connected to it
   std::unique_ptr<testing::XPerson> person_;
   std::unique_ptr<testing::XDesktop> desktop_;
   std::unique_ptr<KioskGuide> guide_;
@@ -198,6 +201,162 @@ TEST_F(LiveKiosk, SomethingCoarseIsShownAndLedWhileTheFileIsRead) {
   EXPECT_TRUE(guide_->ended());
   EXPECT_EQ(out->triangles, all);
   std::filesystem::remove(file);
+}
+
+TEST_F(LiveKiosk, WhatAVisitorTurnedWhileTheSurfaceWasCoarseStaysTurned) {
+  const std::filesystem::path file = key_file_.string() + ".ply";
+  std::ofstream(file) << "some surface\n";
+  std::atomic<bool> may_come = false;
+  Shelf shelf(
+      [&](const std::filesystem::path&, Progress&, const TellCoarse& tell) -> Result<OpenedSurface> {
+        tell(testing::sphere(20.0f, 12, 24));
+        while (!may_come) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        OpenedSurface out;
+        out.mesh = testing::lettered_box();
+        return out;
+      },
+      {});
+  ASSERT_TRUE(shelf.open({file}));
+  int coarse = 0;
+  TimestampNs came = -1;
+  double before_deg = 0.0, after_deg = 0.0, pan = 0.0;
+  const auto turned_deg = [](const Viewer& viewer) {
+    return turn_between_deg(view_of(viewer.document()).rotation, home_of(viewer.document()).rotation);
+  };
+  SilentProgress progress;
+  const SteadyClock clock;
+  const auto out = run_view(
+      TriMesh(), options_, progress,
+      [&](const ViewMoment& moment) {
+        if (!moment.viewer.has_surface()) {
+          if (!moment.viewer.shows_surface()) return;
+          ++coarse;
+          if (coarse == 3) person_->press(1);
+          if (coarse > 3 && coarse <= 13) person_->point(160 + 4 * (coarse - 3), 120);
+          if (coarse == 14) person_->release(1);
+          if (coarse < 40) return;
+          before_deg = turned_deg(moment.viewer);
+          may_come = true;
+          return;
+        }
+        if (came < 0) came = clock.now();
+        if (clock.now() - came < 1'500'000'000) return;  // any glide is over
+        after_deg = turned_deg(moment.viewer);
+        pan = glm::length(view_of(moment.viewer.document()).pan);
+        moment.presenter.end();
+        if (!std::filesystem::exists(key_file_)) std::ofstream(key_file_) << "here\n";
+        person_->key("9");
+      },
+      &shelf);
+  ASSERT_TRUE(out) << out.error().message;
+  EXPECT_GT(before_deg, 5.0) << "else nothing was turned";
+  EXPECT_NEAR(after_deg, before_deg, 1.0);
+  EXPECT_EQ(pan, 0.0);
+  std::filesystem::remove(file);
+}
+
+TEST_F(LiveKiosk, AnotherObjectInTheSameWindowIsDrawnWithoutAnErrorOfGl) {
+  std::vector<std::string> said;
+  set_log_handler([&](LogLevel level, std::string_view text) {
+    if (level >= LogLevel::kWarning) said.emplace_back(text);
+  });
+  KeptPanels kept;
+  SilentProgress progress;
+  for (int object = 0; object < 3; ++object) {
+    guide_->begin_object();
+    options_.time.longest_s = 0.5;
+    const auto out = run_view(testing::lettered_box(), options_, progress, {}, nullptr, &kept);
+    ASSERT_TRUE(out) << out.error().message;
+    EXPECT_GT(out->frames, 1);
+  }
+  set_log_handler({});
+  for (const std::string& text : said) EXPECT_EQ(text.find("gl"), std::string::npos) << text;
+}
+
+/// Under a window manager with the keys that its distribution gives it.
+class ManagedKiosk : public LiveKiosk {
+ protected:
+  void SetUp() override {
+    LiveKiosk::SetUp();
+    if (IsSkipped()) return;
+    desktop_.reset();
+    manager_ = std::make_unique<testing::XManager>();
+    if (!manager_->problem().empty()) GTEST_SKIP() << manager_->problem();
+  }
+  void TearDown() override {
+    manager_.reset();
+    LiveKiosk::TearDown();
+  }
+  void chord(std::initializer_list<const char*> modifiers, const char* key) {
+    for (const char* modifier : modifiers) person_->hold(modifier);
+    person_->key(key);
+    for (const char* modifier : modifiers) person_->let_go(modifier);
+    person_->settle();
+  }
+  struct Seen {
+    bool hidden = false;   ///< not on the screen, not over all of it, or without the keys, at some time
+    double back_s = -1.0;  ///< from the deed until nothing of that was so any longer; -1: never
+  };
+  /// What becomes of a kiosk that somebody does `deed` to, watched for `kWatchedS`, and whether an operator can end it
+  /// then.
+  Seen after(const std::function<void(xcb_window_t)>& deed) {
+    constexpr double kWatchedS = 2.2, kUntilHiddenS = 1.0;
+    const SteadyClock clock;
+    Seen out;
+    TimestampNs done = -1, asked = -1;
+    SilentProgress progress;
+    const auto ended = run_view(testing::lettered_box(), options_, progress, [&](const ViewMoment& moment) {
+      const GlfwWindow& window = *moment.presenter.window();
+      const bool whole = window.on_screen() && window.focused() && window.covers_monitor();
+      const TimestampNs now = clock.now();
+      if (moment.frames < 2) return;
+      if (done < 0) {
+        if (!whole) return;
+        if (asked < 0) asked = now;
+        if (now - asked < 700'000'000) return;  // it has found its place
+        done = now;
+        return deed(manager_->active());
+      }
+      const double since_s = 1e-9 * static_cast<double>(now - done);
+      out.hidden = out.hidden || !whole;
+      if (!whole) out.back_s = -1.0;
+      if (whole && out.hidden && out.back_s < 0.0) out.back_s = since_s;
+      if (since_s < (out.hidden ? kWatchedS : kUntilHiddenS)) return;
+      if (!typed_) type("90210735");
+      if (typed_) person_->key("9");
+      typed_ = true;
+    });
+    EXPECT_TRUE(ended) << ended.error().message;
+    EXPECT_TRUE(guide_->ended()) << "the operator's number was not heard";
+    return out;
+  }
+  static void expect_back(const Seen& seen) {
+    EXPECT_TRUE(seen.hidden) << "what was done did nothing: nothing is shown by its return";
+    EXPECT_GE(seen.back_s, 0.0) << "it never came back";
+    EXPECT_LT(seen.back_s, 2.0);
+  }
+  std::unique_ptr<testing::XManager> manager_;
+  bool typed_ = false;
+};
+
+TEST_F(ManagedKiosk, IsBackWhenAKeyShowsTheDesktop) {
+  expect_back(after([&](xcb_window_t) { chord({"super"}, "d"); }));
+}
+
+TEST_F(ManagedKiosk, IsOnEveryDesktopThatAKeyGoesTo) {
+  const Seen seen = after([&](xcb_window_t) { chord({"control", "alt"}, "right"); });
+  if (seen.hidden) expect_back(seen);  // it need not be
+}
+
+TEST_F(ManagedKiosk, IsBackWhenItIsMinimised) {
+  expect_back(after([&](xcb_window_t window) { manager_->minimise(window); }));
+}
+
+TEST_F(ManagedKiosk, IsBackWhenItIsSentToAnotherDesktop) {
+  expect_back(after([&](xcb_window_t window) {
+    manager_->send_to_desktop(window, 1);
+    chord({"control", "alt"}, "left");
+  }));
 }
 
 }  // namespace

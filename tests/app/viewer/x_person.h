@@ -134,6 +134,7 @@ class XPerson {
     if (name == "alt") return 64;
     if (name == "shift") return 50;
     if (name == "control") return 37;
+    if (name == "super") return 133;
     if (name == "f1") return 67;
     if (name == "f2") return 68;
     if (name == "f11") return 95;
