@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "core/base/text/json_fault.h"
+
 namespace dubsar {
 namespace {
 int nesting_depth(std::string_view text) {
@@ -46,6 +48,10 @@ void dump_rows(const nlohmann::json& value, const std::string& indent, std::stri
   out += value.is_array() ? ']' : '}';
 }
 
+tl::unexpected<Error> broken(std::string_view text, std::string_view what, std::size_t refused_at) {
+  const std::string fault = json_fault(text, refused_at);
+  return fail(ErrorKind::kBadData, "{}{}{}", what, fault.starts_with("line ") ? ", " : ": ", fault);
+}
 }  // namespace
 
 Result<nlohmann::json> parse_json(std::string_view text, std::string_view what, std::size_t max_bytes) {
@@ -54,9 +60,13 @@ Result<nlohmann::json> parse_json(std::string_view text, std::string_view what, 
                 max_bytes);
   if (const int depth = nesting_depth(text); depth > kJsonMaxDepth)
     return fail(ErrorKind::kBadData, "{}: JSON is nested {} deep, expected at most {}", what, depth, kJsonMaxDepth);
-  nlohmann::json parsed = nlohmann::json::parse(text, nullptr, false);
-  if (parsed.is_discarded()) return fail(ErrorKind::kBadData, "{}: the JSON text is broken", what);
-  return parsed;
+  try {
+    return nlohmann::json::parse(text);
+  } catch (const nlohmann::json::parse_error& error) {
+    return broken(text, what, error.byte);
+  } catch (const nlohmann::json::out_of_range&) {
+    return broken(text, what, 0);  // a number that no double holds
+  }
 }
 
 Result<int> json_version(const nlohmann::json& object, std::string_view format, int oldest, int newest,

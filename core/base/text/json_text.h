@@ -13,7 +13,8 @@ namespace dubsar {
 inline constexpr std::size_t kJsonMaxBytes = std::size_t{8} << 20;
 inline constexpr int kJsonMaxDepth = 32;
 
-/// Parses one JSON text (UTF-8, no comments). `what` names it in the error text. kBadData: too long, too deep, broken.
+/// Parses one JSON text (UTF-8, no comments). `what` names it in the error text. kBadData: too long, too deep, broken:
+/// "WHAT, line 6, column 3: a comma is missing before "objects"" (json_fault.h).
 Result<nlohmann::json> parse_json(std::string_view text, std::string_view what, std::size_t max_bytes = kJsonMaxBytes);
 
 /// The version that a file of ours says it has: {"format": FORMAT, "version": N, ...}. kBadData: another format, or a

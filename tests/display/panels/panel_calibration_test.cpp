@@ -82,10 +82,10 @@ TEST(Calibration, BadFiguresAreRefusedByNameAndRange) {
            Case{R"({"pitch": "fast", "slope": 5, "DPI": 300, "screenW": 10, "screenH": 100})", "pitch is string"},
            Case{R"({"pitch": 50, "slope": 5, "screenW": 10, "screenH": 100})", "DPI is missing"},
            Case{R"({"pitch": 1e999, "slope": 5, "DPI": 300, "screenW": 10, "screenH": 100})",
-                "the JSON text is broken"},
+                "line 1, column 11: the number 1e999 is too large"},
            Case{R"([1, 2])", "array found, expected an object"},
-           Case{R"({"pitch": )", "the JSON text is broken"},
-           Case{"", "the JSON text is broken"},
+           Case{R"({"pitch": )", "line 1, column 11: the text ends here, expected a value"},
+           Case{"", "the file is empty, expected JSON"},
            Case{R"({"pitch": 50, "slope": 5, "DPI": 300, "screenW": 10, "screenH": 100, "CellPatternMode": 7})",
                 "CellPatternMode is 7, expected 0 to 4"},
        }) {
