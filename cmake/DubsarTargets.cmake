@@ -30,6 +30,14 @@ function(dubsar_cold target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
+# dubsar_shipped(target): a program or library that people get. It looks for libraries in the system's folders alone: a RUNPATH
+# of the build has an empty element, which is the folder that somebody happens to be in. All symbols are bound at the start,
+# and the table of them cannot be written any more.
+function(dubsar_shipped target)
+  set_target_properties(${target} PROPERTIES SKIP_BUILD_RPATH ON)
+  target_link_options(${target} PRIVATE -Wl,-z,relro,-z,now -Wl,-z,noexecstack)
+endfunction()
+
 # The headers that most files read, read once for all rooms. Off where the includes of each file are to be proven (ci, core).
 if(DUBSAR_PCH)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/common_headers.cpp CONTENT "")

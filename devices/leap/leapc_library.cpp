@@ -10,12 +10,14 @@ namespace dubsar::leapc {
 namespace {
 
 // Where the vendor's Linux packages, its SDK for ARM boards and hand-made installations put the library.
-constexpr std::array<std::string_view, 6> kFolders{"/usr/lib/ultraleap-hand-tracking-service",
+constexpr std::array<std::string_view, 8> kFolders{"/usr/lib/ultraleap-hand-tracking-service",
                                                    "/opt/ultraleap/LeapSDK/lib/x64",
                                                    "/opt/ultraleap/LeapSDK/lib",
                                                    "/opt/ultraleap/LeapSDK",
                                                    "/usr/local/lib",
-                                                   "/usr/lib"};
+                                                   "/usr/lib",
+                                                   "/usr/lib/x86_64-linux-gnu",
+                                                   "/usr/lib/aarch64-linux-gnu"};
 constexpr std::array<std::string_view, 3> kNames{"libLeapC.so.6", "libLeapC.so.5", "libLeapC.so"};
 
 void* open_library(const std::string& path) { return ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE); }
@@ -32,7 +34,6 @@ std::vector<std::string> search_paths() {
   std::vector<std::string> paths;
   for (const auto folder : kFolders)
     for (const auto name : kNames) paths.push_back(fmt::format("{}/{}", folder, name));
-  for (const auto name : kNames) paths.emplace_back(name);  // the loader's own folders
   return paths;
 }
 

@@ -39,7 +39,7 @@ class Library {
   std::string path_;
 };
 
-/// Files of the vendor's packages, newest version first.
+/// Files of the vendor's packages, newest version first; whole paths, so that no folder a user happens to be in counts.
 std::vector<std::string> search_paths();
 
 }  // namespace dubsar::leapc

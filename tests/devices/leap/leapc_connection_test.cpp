@@ -76,6 +76,7 @@ TEST_F(LeapcConnection, DeliversTheNewestFrameWithItsHandsAndItsTimeOnOurClock) 
 TEST_F(LeapcConnection, AMissingLibrarySaysWhereItWasLookedFor) {
   EXPECT_THAT(search_paths(), testing::Contains("/usr/lib/ultraleap-hand-tracking-service/libLeapC.so.5"));
   EXPECT_THAT(search_paths(), testing::Contains("/opt/ultraleap/LeapSDK/lib/libLeapC.so.6"));
+  for (const std::string& path : search_paths()) EXPECT_TRUE(path.starts_with('/')) << path;
   options.library = "/nowhere/libLeapC.so.5";
   auto named = make_connection(options, clock)->start();
   ASSERT_FALSE(named);
