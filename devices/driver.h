@@ -46,6 +46,7 @@ class Driver final : public DeviceDriver {
     if (!transport) return std::nullopt;
     if (reconnector_.times_opened() != opened_before) {
       refused_in_a_row_ = 0;
+      dropped_ = 0;
       if (auto started = protocol_.start(*transport, now); !started) return lose(started.error(), now);
     }
     if (auto kept = protocol_.keep_up(*transport, now); !kept && kept.error().kind == ErrorKind::kUnavailable)
@@ -66,6 +67,11 @@ class Driver final : public DeviceDriver {
       if (++refused_in_a_row_ < kMaxRefusedInARow) continue;
       lose({ErrorKind::kUnavailable, "the device has sent 1000 invalid reports in a row and is opened again"}, now);
       break;
+    }
+    if (const Transport* const open = reconnector_.open_transport()) {
+      const DroppedInput dropped = open->dropped();
+      counts_.refused += dropped.count - std::exchange(dropped_, dropped.count);
+      if constexpr (requires(Protocol & p) { p.hear_of_dropped(dropped); }) protocol_.hear_of_dropped(dropped);
     }
     return protocol_.newest();
   }
@@ -101,6 +107,7 @@ class Driver final : public DeviceDriver {
   std::array<std::byte, kBufferBytes> buffer_{};
   DriverCounts counts_;
   int refused_in_a_row_ = 0;
+  std::uint64_t dropped_ = 0;  ///< by the transport, as far as counted
 };
 
 }  // namespace dubsar

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "core/base/files/file_identity.h"
 #include "core/base/files/file_suffix.h"
 #include "core/base/numbers/units.h"
 #include "core/base/text/near_word.h"
@@ -65,7 +66,8 @@ void append(TriMesh& to, const TriMesh& from) {
 
 Result<TriMesh> load_exa(const MeshRequest& request, Progress& progress) {
   DUBSAR_TRY(check_parts(request.path, request.partitions));
-  DUBSAR_ASSIGN(const SurfaceModel model, read_exa(request.path, progress));
+  DUBSAR_ASSIGN(const SurfaceModel model,
+                while_unchanged(request.path, [&] { return read_exa(request.path, progress); }));
   MeshOptions all;
   all.fill_holes = request.fill_holes;
   all.progress = &progress;
@@ -87,8 +89,10 @@ Result<TriMesh> load_foreign(const MeshRequest& request, Progress& progress,
                              const std::function<void(TriMesh)>& tell_coarse) {
   // A coarse surface is in the file's own unit.
   const bool coarse = request.partitions.empty() && request.foreign.unit_mm == 0.0;
-  DUBSAR_ASSIGN(TriMesh mesh, read_mesh(request.path, progress, request.foreign,
-                                        coarse ? tell_coarse : std::function<void(TriMesh)>()));
+  DUBSAR_ASSIGN(TriMesh mesh, while_unchanged(request.path, [&] {
+                  return read_mesh(request.path, progress, request.foreign,
+                                   coarse ? tell_coarse : std::function<void(TriMesh)>());
+                }));
   if (request.partitions.empty()) return mesh;
   std::optional<TriMesh> joined;
   for (const std::string& wanted : request.partitions) {

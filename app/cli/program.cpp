@@ -61,13 +61,17 @@ Result<VerbResult> run_verb(const Verb& verb, const CommonOptions& common, Progr
 
 Result<void> deliver(const VerbResult& result, const CommonOptions& common) {
   if (common.json_path == "-") return print(dump_json_lines(result.json) + "\n");
-  const std::string text = plain_text(result.text, true);
-  const std::optional<int> columns = stdout_columns();
-  DUBSAR_TRY(print(columns ? fit_columns(text, *columns) : text));
+  if (!common.console.quiet) {
+    const std::string text = plain_text(result.text, true);
+    const std::optional<int> columns = stdout_columns();
+    DUBSAR_TRY(print(columns ? fit_columns(text, *columns) : text));
+  }
   if (common.json_path.empty()) return {};
   const FileUse report{"--json", common.json_path, true, FileFormat::kJson};
   DUBSAR_TRY(check_file_uses(std::span(&report, 1)));  // once more: the verb may have written just there
-  return write_file_atomically(common.json_path, dump_json_lines(result.json) + "\n");
+  nlohmann::json signed_result = result.json;
+  if (signed_result.is_object()) signed_result["made_by"] = "dubsar " DUBSAR_VERSION;  // by which it may be written over
+  return write_file_atomically(common.json_path, dump_json_lines(signed_result) + "\n");
 }
 
 int run(const Verb& verb, const CommonOptions& common) {
@@ -86,7 +90,9 @@ int run(const Verb& verb, const CommonOptions& common) {
     log(LogLevel::kError, ok.error().message);
     return exit_code(ok.error().kind);
   }
-  return result->failed ? exit_code(result->failure) : 0;
+  if (!result->failure) return 0;
+  log(LogLevel::kError, result->failure->message);
+  return exit_code(result->failure->kind);
 }
 
 }  // namespace

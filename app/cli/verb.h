@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "app/cli/arguments.h"
@@ -22,8 +23,7 @@ struct CommonOptions {
 struct VerbResult {
   std::string text;     ///< for people, on stdout
   nlohmann::json json;  ///< for programs, where --json says
-  ErrorKind failure = ErrorKind::kInternal;
-  bool failed = false;  ///< the verb did its work and its finding is bad (exit code `failure`), e.g. doctor
+  std::optional<Error> failure;  ///< the verb did its work and its finding is bad, e.g. doctor: said, and the exit code
 };
 
 struct Verb {

@@ -41,9 +41,8 @@ Result<VerbResult> watch_camera(const std::string& folder, double seconds, Progr
   result.text = fmt::format("{} pictures of {} x {}, {:.1f} a second\n", pictures, frame.width, frame.height, rate);
   if (recorder.written() > 0) result.text += fmt::format("{} in {}\n", recorder.written(), folder);
   if (pictures == 0) {
-    result.failed = true;
-    result.failure = ErrorKind::kUnavailable;
-    result.text += camera->reason().empty() ? "the camera is open and sends nothing\n" : camera->reason() + "\n";
+    result.failure = Error{ErrorKind::kUnavailable,
+                           camera->reason().empty() ? "the camera is open and sends nothing" : camera->reason()};
   }
   return result;
 }

@@ -104,7 +104,8 @@ Result<json> process_one(const ScanBatch& batch, const ScanBatch::Item& item, Pr
   json report = json::parse(said[0], nullptr, false);
   if (!report.is_object()) return fail(ErrorKind::kInternal, "{}: the run gave no report", item.scan);
   DUBSAR_ASSIGN(json state, state_of(batch, item));
-  const json record{{"state", std::move(state)}, {"report", report}};
+  const json record{{"made_by", "dubsar " DUBSAR_VERSION}, {"state", std::move(state)}, {"report", report}};
+  DUBSAR_TRY(check_made("-o", record_of(item.out), FileFormat::kJson));
   DUBSAR_TRY(write_file_atomically(record_of(item.out), dump_json_lines(record) + "\n"));
   return report;
 }
@@ -207,8 +208,7 @@ Result<VerbResult> process_batch(const ScanBatch& batch, Progress& progress) {
                   "stopped after {} of {} scans; the same command with --resume goes on with the rest", made + same,
                   batch.items.size());
     } else {
-      if (!out.failed) out.failure = report.error().kind;
-      out.failed = true;
+      if (!out.failure) out.failure = report.error();
       row["error"] = error_object(report.error());
       line = "failed: " + report.error().message;
     }
@@ -221,6 +221,9 @@ Result<VerbResult> process_batch(const ScanBatch& batch, Progress& progress) {
   out.json["kept"] = same;
   out.json["failed"] = failed;
   out.text += fmt::format("\n{} made, {} kept, {} failed\n", made, same, failed);
+  if (out.failure)
+    out.failure->message =
+        fmt::format("{} of {} scans failed, the first of them: {}", failed, batch.items.size(), out.failure->message);
   return out;
 }
 

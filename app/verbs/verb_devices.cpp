@@ -128,12 +128,9 @@ Result<VerbResult> watch(DeviceMonitor& device, const Clock& clock, Progress& pr
   result.json["note"] = note;
   if (!note.empty()) result.text += note + "\n";
   if (samples == 0 && (counts.accepted == 0 || !note.empty())) {
-    result.failed = true;
-    result.failure = ErrorKind::kUnavailable;
-    if (!device.connected())
-      result.text += device.reason() + "\n";
-    else if (note.empty())
-      result.text += "the device is open and silent\n";
+    result.failure = Error{ErrorKind::kUnavailable, !device.connected() ? device.reason()
+                                                    : note.empty()      ? "the device is open and silent"
+                                                                        : note};
   }
   return result;
 }
@@ -217,6 +214,8 @@ Result<VerbResult> run_live(const DevicesRequest& options, bool print, Progress&
   return result;
 }
 
+constexpr TimestampNs kReopenNs = 100'000'000;  ///< of recorded time, for each look at a device that is not open
+
 Result<VerbResult> run_replay(const DevicesRequest& options, bool print, Progress& progress) {
   const SteadyClock clock;
   DUBSAR_ASSIGN(Recording recording, read_recording(options.file));
@@ -224,11 +223,17 @@ Result<VerbResult> run_replay(const DevicesRequest& options, bool print, Progres
   ReplaySession session(std::move(recording), clock, options.speed);
   DUBSAR_ASSIGN(const auto device, monitor_device(
                                        spec, [&] { return session.open(); }, session.recorded_clock(), false));
-  const auto over = [&] { return session.finished(); };
+  const auto over = [&] {
+    if (!device->connected()) session.pass(kReopenNs);
+    return session.finished();
+  };
   SamplePrinter printer(clock);
-  return watch(*device, session.recorded_clock(), progress, over, [&](const json& sample) {
-    if (print) printer(sample);
-  });
+  DUBSAR_ASSIGN(VerbResult result, watch(*device, session.recorded_clock(), progress, over, [&](const json& sample) {
+                  if (print) printer(sample);
+                }));
+  if (const auto dry = session.ran_dry(); !dry && !result.failure)
+    result.failure = Error{ErrorKind::kBadData, fmt::format("{}: {}", options.file, dry.error().message)};
+  return result;
 }
 
 /// A script, or somebody; where the device stands is where its source expects it.

@@ -95,7 +95,8 @@ Result<void> add_calibrations(const DisplaysRequest& options, const PanelSet& pa
   const CalibrationReport report = find_calibrations(search, panels, clock);
   for (const FoundCalibration& found : report.found) {
     // One that somebody named is expected to be good; others are told.
-    if (found.route == "file" && !found.panel) result.failed = true, result.failure = ErrorKind::kConfig;
+    if (found.route == "file" && !found.panel)
+      result.failure = Error{ErrorKind::kConfig, fmt::format("--calibration {}: {}", found.place, found.problem)};
     nlohmann::json entry{{"route", found.route}, {"place", found.place}};
     if (!found.serial.empty()) entry["serial"] = found.serial;
     if (found.panel)

@@ -117,14 +117,13 @@ Result<VerbResult> run() {
   findings.push_back(check_headset());
   VerbResult result;
   result.json["findings"] = nlohmann::json::array();
+  std::string missing;
   for (const Finding& f : findings) {
     result.json["findings"].push_back({{"name", f.name}, {"state", f.state}, {"detail", f.detail}, {"fix", f.fix}});
     result.text += fmt::format("{:<8} {:<16} {}{}{}\n", f.state, f.name, f.detail, f.fix.empty() ? "" : "; ", f.fix);
-    if (f.state == "missing") {
-      result.failed = true;
-      result.failure = ErrorKind::kUnavailable;
-    }
+    if (f.state == "missing") missing += (missing.empty() ? "" : ", ") + f.name;
   }
+  if (!missing.empty()) result.failure = Error{ErrorKind::kUnavailable, "doctor: missing here: " + missing};
   return result;
 }
 }  // namespace

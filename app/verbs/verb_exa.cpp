@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/cli/verb.h"
+#include "core/base/files/file_identity.h"
 #include "core/exa/exa_file.h"
 #include "core/exa/offsets/settle.h"
 #include "core/exa/paper/paper_profile.h"
@@ -114,7 +115,7 @@ Result<VerbResult> stat(const ExaRequest& options) {
 
 Result<VerbResult> verify(const ExaRequest& options, Progress& progress) {
   DUBSAR_TRY(check_exa_sums(options.in));
-  DUBSAR_ASSIGN(const SurfaceModel model, read_exa(options.in, progress));
+  DUBSAR_ASSIGN(const SurfaceModel model, while_unchanged(options.in, [&] { return read_exa(options.in, progress); }));
   DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model));
   const MeshCheck check = check_mesh(mesh.positions, mesh.triangles);
   VerbResult result;
@@ -124,14 +125,13 @@ Result<VerbResult> verify(const ExaRequest& options, Progress& progress) {
                   check.watertight() ? "watertight"
                   : check.manifold() ? "open, a 2-manifold"
                                      : "not a 2-manifold");
-  result.failed = !check.manifold();
-  result.failure = ErrorKind::kBadData;
+  if (!check.manifold()) result.failure = Error{ErrorKind::kBadData, options.in + " is not a 2-manifold"};
   return result;
 }
 
 Result<VerbResult> recompress(const ExaRequest& options, Progress& progress) {
   DUBSAR_ASSIGN(const ExaInfo before, read_exa_info(options.in));
-  DUBSAR_ASSIGN(SurfaceModel model, read_exa(options.in, progress));
+  DUBSAR_ASSIGN(SurfaceModel model, while_unchanged(options.in, [&] { return read_exa(options.in, progress); }));
   SettleOptions settle;
   settle.max_error = options.max_error;
   settle.curvature = before.header.curvature;

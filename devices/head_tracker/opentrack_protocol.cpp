@@ -80,6 +80,16 @@ bool OpentrackProtocol::accept(std::span<const std::byte> datagram, TimestampNs 
 }
 
 std::string OpentrackProtocol::note() const {
+  if (dropped_.count > 0) {
+    const std::string what = dropped_.last_bytes < kOpentrackBytes
+                                 ? fmt::format(
+                                       "{} bytes came, {} expected (six doubles, as opentrack's \"UDP over "
+                                       "network\" sends them)",
+                                       dropped_.last_bytes, kOpentrackBytes)
+                                 : "places or angles came that no head can have";
+    return fmt::format("opentrack: {}; {} such datagram{} left out", what, dropped_.count,
+                       dropped_.count == 1 ? " was" : "s were");
+  }
   if (!heard_xrlinux_) return {};
   return "opentrack: datagrams of 52 bytes are XRLinuxDriver's: x counts to the right and yaw to the left "
          "(sender=opentrack: as opentrack does)";

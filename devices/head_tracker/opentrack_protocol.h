@@ -58,18 +58,23 @@ class OpentrackProtocol {
   Result<void> start(Transport&, TimestampNs) {
     gate_.reset();
     heard_xrlinux_ = false;
+    dropped_ = {};
     return {};
   }
   Result<void> keep_up(Transport&, TimestampNs) { return {}; }
   bool accept(std::span<const std::byte> datagram, TimestampNs now);
   std::optional<Sample> newest() { return std::exchange(newest_, std::nullopt); }
-  /// One sentence when the sender was recognised as XRLinuxDriver without having been named.
+  /// Datagrams that the transport refused (parse_opentrack()).
+  void hear_of_dropped(const DroppedInput& dropped) noexcept { dropped_ = dropped; }
+  /// One sentence when datagrams came that are none of opentrack's, or when the sender was recognised as XRLinuxDriver
+  /// without having been named.
   std::string note() const;
 
  private:
   OpentrackInvert invert_;
   std::optional<OpentrackSender> sender_;
   bool heard_xrlinux_ = false;
+  DroppedInput dropped_;
   HeadGate gate_;
   std::optional<Sample> newest_;
 };

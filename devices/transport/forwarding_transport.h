@@ -24,6 +24,7 @@ class ForwardingTransport : public Transport {
     return below_->control(request, data, timeout);
   }
   UsbId usb_id() const noexcept override { return below_->usb_id(); }
+  DroppedInput dropped() const noexcept override { return below_->dropped(); }
   bool is_hardware() const noexcept override { return below_->is_hardware(); }
 
  protected:

@@ -25,6 +25,8 @@ class Reconnector {
   /// Makes the next call of transport() try at once, and the pauses short again.
   void wake() noexcept { retry_.wake(); }
 
+  /// Of now; null while the device is lost.
+  const Transport* open_transport() const noexcept { return transport_.get(); }
   bool connected() const noexcept { return transport_ != nullptr; }
   /// Why there is no device now; empty while there is one.
   const std::string& reason() const noexcept { return reason_; }

@@ -21,7 +21,7 @@ class ReplayTransport final : public Transport {
       }
       if (!due(event.time, timeout)) return std::size_t{0};
       ++session_->next_;
-      session_->last_time_ = event.time;
+      session_->last_time_ = std::max(session_->last_time_, event.time);
       if (event.kind == WireEventKind::kLost) {
         lost_ = true;
         break;
@@ -116,7 +116,19 @@ TimestampNs ReplaySession::recorded_now() const noexcept {
 
 void ReplaySession::skip_to(TimestampNs time) noexcept { skipped_ += std::max<TimestampNs>(time - recorded_now(), 0); }
 
+Result<void> ReplaySession::ran_dry() const {
+  if (!dry_ || next_ >= recording_.events.size()) return {};
+  return fail(ErrorKind::kUnavailable,
+              "replay: the recording has no more answers for its driver, and {} of its {} events were not reached; "
+              "record the device again",
+              recording_.events.size() - next_, recording_.events.size());
+}
+
 Result<std::unique_ptr<Transport>> ReplaySession::open() {
+  const std::size_t given = next_ + next_feature_ + next_control_;
+  dry_ = dry_ || given == given_at_open_;
+  given_at_open_ = given;
+  DUBSAR_TRY(ran_dry());
   if (finished()) return fail(ErrorKind::kUnavailable, "replay: the recording is at its end");
   UsbId id;
   for (std::size_t i = next_; i < recording_.events.size(); ++i) {

@@ -17,16 +17,22 @@ class ReplaySession {
   static constexpr TimestampNs kLongestPauseNs = 5'000'000'000;
   ReplaySession(Recording recording, const Clock& clock, double factor = 1.0);
 
-  /// Goes on behind the last loss. kUnavailable at the end of the recording.
+  /// Goes on behind the last loss. kUnavailable at the end of the recording, and where the driver was opened since and
+  /// got nothing from it any more: its answers have run out, and asking again would never end.
   Result<std::unique_ptr<Transport>> open();
 
   /// Recorded time: of the last report with factor 0, and that of the playback otherwise. Gives drivers the same
   /// timestamps in every replay with factor 0.
   const Clock& recorded_clock() const noexcept { return recorded_clock_; }
-  bool finished() const noexcept { return next_ >= recording_.events.size(); }
+  /// kUnavailable once answers have run out before the end (see open()).
+  Result<void> ran_dry() const;
+  /// So much of the recorded time passes at once: a driver waits before it opens its device again.
+  void pass(TimestampNs time) noexcept { factor_ == 0.0 ? last_time_ += time : skipped_ += time; }
+  bool finished() const noexcept { return dry_ || next_ >= recording_.events.size(); }
   const Recording& recording() const noexcept { return recording_; }
 
  private:
+  static constexpr std::size_t kNotOpened = static_cast<std::size_t>(-1);
   friend class ReplayTransport;
   class RecordedClock final : public Clock {
    public:
@@ -46,8 +52,10 @@ class ReplaySession {
   std::size_t next_ = 0;          ///< event that read() looks at next
   std::size_t next_feature_ = 0;  ///< events before it have been given as feature answers
   std::size_t next_control_ = 0;
-  TimestampNs skipped_ = 0;    ///< of recorded time, in pauses
-  TimestampNs last_time_ = 0;  ///< recorded time of the last event that was given
+  std::size_t given_at_open_ = kNotOpened;  ///< events that were given when it was opened last
+  bool dry_ = false;                        ///< the driver asks for answers that the recording does not have
+  TimestampNs skipped_ = 0;                 ///< of recorded time, in pauses
+  TimestampNs last_time_ = 0;               ///< recorded time of the last event that was given
   RecordedClock recorded_clock_{*this};
 };
 

@@ -34,6 +34,7 @@ class UdpListener final : public UdpTransport {
       if (!whole || length == 0 ||
           (options_.accept && !options_.accept(report.first(static_cast<std::size_t>(length))))) {
         ++counts_.refused;
+        refused_bytes_ = static_cast<std::size_t>(length);
         continue;
       }
       if (peer_ && now - heard_ < options_.lock_ns && *peer_ != sender) {
@@ -61,8 +62,10 @@ class UdpListener final : public UdpTransport {
 
   std::uint16_t port() const noexcept override { return port_; }
   UdpCounts counts() const noexcept override { return counts_; }
+  DroppedInput dropped() const noexcept override { return {counts_.refused, refused_bytes_}; }
 
  private:
+  std::size_t refused_bytes_ = 0;                   ///< of the last datagram that was refused
   static constexpr int kMaxDatagramsPerRead = 256;  ///< a flood of rubbish cannot hold the reader
   static constexpr double kBurst = 50.0;
 

@@ -34,6 +34,12 @@ struct UsbId {
   bool operator==(const UsbId&) const = default;
 };
 
+/// What came and was not handed on, because it is nothing that the protocol above could read.
+struct DroppedInput {
+  std::uint64_t count = 0;
+  std::size_t last_bytes = 0;  ///< length of the last one
+};
+
 /// One open device, used by one thread at a time.
 ///
 /// Errors of every call: kUnavailable means that the device is lost (unplugged, the peer has closed, the recording is
@@ -62,6 +68,8 @@ class Transport {
 
   /// For protocols whose bytes mean different things on different models.
   virtual UsbId usb_id() const noexcept { return {}; }
+  /// Since it was opened.
+  virtual DroppedInput dropped() const noexcept { return {}; }
   /// Hardware at the other end, which needs the pauses that hardware needs.
   virtual bool is_hardware() const noexcept { return false; }
 

@@ -2,12 +2,17 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "tests/app/cli/run_program.h"
 
@@ -53,8 +58,31 @@ TEST(DevicesCommand, AVrpnTrackerThatIsNotThereEndsWith69AndTheNamesThatAre) {
   const ProgramRun wrong =
       run_dubsar({"devices", "monitor", "vrpn", "--port", port, "--tracker", "Nobody0", "--seconds", "4"});
   EXPECT_EQ(wrong.exit_code, 69) << wrong.out;
-  EXPECT_NE(wrong.out.find("Tracker0"), std::string::npos) << wrong.out;
+  EXPECT_NE(wrong.err.find("Tracker0"), std::string::npos) << wrong.err;
   server.join();
+}
+
+TEST(DevicesCommand, DatagramsOfAnotherLengthAreCountedAndTold) {
+  const int port = 41000 + ::getpid() % 900;
+  std::thread sender([&] {
+    const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(static_cast<std::uint16_t>(port));
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const std::array<char, 24> floats{};  // six floats: what telephone programs send by mistake
+    for (int i = 0; i < 20; ++i) {
+      ::sendto(socket, floats.data(), floats.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+      std::this_thread::sleep_for(std::chrono::milliseconds(60));
+    }
+    ::close(socket);
+  });
+  const ProgramRun run = run_dubsar(
+      {"devices", "monitor", "opentrack", "--port", std::to_string(port), "--seconds", "1.2", "--json", "-"});
+  sender.join();
+  EXPECT_EQ(run.exit_code, 69);
+  EXPECT_NE(run.err.find("error: opentrack: 24 bytes came, 48 expected"), std::string::npos) << run.err;
+  EXPECT_GE(json::parse(run.out)["refused"].get<int>(), 3) << run.out;
 }
 
 TEST(DevicesCommand, SaysWhatIsMissing) {
@@ -63,7 +91,7 @@ TEST(DevicesCommand, SaysWhatIsMissing) {
   EXPECT_TRUE(json::parse(list.out)["devices"].is_array());
   const ProgramRun vrpn = run_dubsar({"devices", "monitor", "vrpn", "--port", "1", "--seconds", "0.1"});
   EXPECT_EQ(vrpn.exit_code, 69);
-  EXPECT_NE(vrpn.out.find("127.0.0.1 port 1: cannot connect"), std::string::npos) << vrpn.out;
+  EXPECT_NE(vrpn.err.find("error: 127.0.0.1 port 1: cannot connect"), std::string::npos) << vrpn.err;
   const ProgramRun leapc = run_dubsar({"devices", "probe", "leapc", "--library", "/no/such/libLeapC.so"});
   EXPECT_EQ(leapc.exit_code, 69);
   EXPECT_NE(leapc.err.find("/no/such/libLeapC.so"), std::string::npos) << leapc.err;
@@ -76,6 +104,31 @@ TEST(DevicesCommand, SaysWhatIsMissing) {
   EXPECT_EQ(run_dubsar({"devices", "monitor", "opentrack", "--invert", "up"}).exit_code, 64);
   EXPECT_EQ(run_dubsar({"devices", "replay", "/no/such/file"}).exit_code, 66);
   EXPECT_EQ(run_dubsar({"devices", "monitor", "opentrack", "--address", "0.0.0.0", "--seconds", "0.1"}).exit_code, 64);
+}
+
+TEST(DevicesCommand, ARecordingWhoseAnswersRunOutEndsWithASentence) {
+  const fs::path whole = fs::temp_directory_path() / fmt::format("dubsar_whole_{}", ::getpid()),
+                 dry = fs::temp_directory_path() / fmt::format("dubsar_dry_{}", ::getpid());
+  ASSERT_EQ(run_dubsar({"devices", "simulate", "leap", whole.string(), "--seconds", "0.1"}).exit_code, 0);
+  RunOptions soon;
+  soon.timeout_s = 20;
+  for (const int kept : {3, 40}) {  // control transfers of those that the recording has before its first report
+    std::istringstream lines(file_text(whole));
+    std::ofstream out(dry);
+    int controls = 0;
+    for (std::string line; std::getline(lines, line);)
+      if (line.find(" c ") == std::string::npos || ++controls <= kept) out << line << '\n';
+    out.close();
+    for (const char* speed : {"0.05", "10"}) {
+      const ProgramRun run = run_dubsar({"devices", "replay", dry.string(), "--speed", speed, "-q"}, soon);
+      EXPECT_TRUE(run.exit_code == 69 || run.exit_code == 65) << kept << " " << speed << ": " << run.exit_code;
+      EXPECT_NE(run.err.find("error: "), std::string::npos) << run.err;
+      EXPECT_NE(run.err.find("has no more answers"), std::string::npos) << run.err;
+      EXPECT_EQ(run.out, "");
+    }
+  }
+  fs::remove(whole);
+  fs::remove(dry);
 }
 
 TEST(DevicesCommand, HandsOfARecordedLeapAreShown) {

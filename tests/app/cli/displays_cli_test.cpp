@@ -119,7 +119,10 @@ TEST_F(DisplaysCommand, CalibrationFilesAreReadAndProblemsNamed) {
   EXPECT_NE(bad["problem"].get<std::string>().find("slope is 0"), std::string::npos) << bad;
   for (const char* text : {"{\"pitch\": ", "", "[]", "\x89PNG", "{\"pitch\": {\"value\": \"52\"}}"}) {
     ASSERT_TRUE(write_file_atomically(file("bad.json"), text));
-    EXPECT_EQ(run_dubsar({"displays", "--calibration", file("bad.json")}).exit_code, 78) << text;
+    const ProgramRun told = run_dubsar({"displays", "--calibration", file("bad.json"), "-q"});
+    EXPECT_EQ(told.exit_code, 78) << text;
+    EXPECT_TRUE(told.err.starts_with("error: --calibration ")) << told.err;
+    EXPECT_EQ(told.out, "");
     EXPECT_EQ(run_dubsar({"render", "--pattern", "-o", file("p.png"), "--display",
                           "lenticular:calibration=" + file("bad.json")})
                   .exit_code,
