@@ -30,9 +30,11 @@ std::string fingerprint(const TriMesh& mesh);
 
 class PictureSeries {
  public:
-  /// Makes the folder where there is none, and writes `facts` into it (film_pictures.json). `again`: pictures of other
-  /// facts, and those of nobody knows what, are given up; else kUsage, which says what differs. What a killed run left
-  /// half written is removed. kCannotCreate: `folder` is something else.
+  /// Makes the folder where there is none, and writes `facts` into it (film_pictures.json). With `again` all pictures
+  /// are made anew, also in place of those of other facts; else those are kUsage, which says what differs. Only
+  /// pictures that film_pictures.made lists and that are as they were written are ever removed or written over; what a
+  /// killed run left half written is removed, but nothing of one that lives. kCannotCreate: `folder` is something else,
+  /// or somebody's file has the name of a picture.
   static Result<PictureSeries> open(const std::filesystem::path& folder, const std::string& suffix,
                                     const SeriesFacts& facts, bool again);
 
@@ -42,9 +44,13 @@ class PictureSeries {
   std::string pattern() const;
   int count() const noexcept { return facts_.pictures; }
   /// Numbers of pictures that are not there, are damaged, or have another size, rising. Reads them all: about 50 a
-  /// second for 1920 x 1080. kCancelled.
+  /// second for 1920 x 1080. kCancelled; kCannotCreate: a picture of another size that was not written here.
   Result<std::vector<int>> missing(Progress& progress) const;
-  /// Removes the pictures and the list, and the folder when nothing else is in it.
+  /// A picture was written: it is the program's own from now on. Any thread, one at a time. kIo.
+  Result<void> wrote(int number) const;
+  /// All are there: film_pictures.made in the order of the pictures, the same after any number of stops.
+  Result<void> settle() const;
+  /// Removes the pictures that are as they were written and the lists, and the folder when nothing else is in it.
   void remove() const;
 
  private:

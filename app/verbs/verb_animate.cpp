@@ -121,8 +121,10 @@ Result<void> make_pictures(const AnimateRequest& options, FilmPainter& painter, 
     DUBSAR_ASSIGN(const DisplayPicture picture, painter.picture(keys.front().time_s + number / options.fps));
     DUBSAR_ASSIGN(Image image, seen_picture(options.display, picture));
     DUBSAR_TRY(written());
-    writing = std::async(std::launch::async,
-                         [path = series.path(number), image = std::move(image)] { return write_picture(path, image); });
+    writing = std::async(std::launch::async, [&series, number, image = std::move(image)]() -> Result<void> {
+      DUBSAR_TRY(write_picture(series.path(number), image));
+      return series.wrote(number);
+    });
   }
   DUBSAR_TRY(written());
   progress.end();
@@ -177,6 +179,7 @@ Result<VerbResult> run(const AnimateRequest& options, bool sized, Progress& prog
                 count, places.folder.string());
   };
   if (progress.cancelled()) return stopped();
+  DUBSAR_TRY(series.settle());
   if (!places.video.empty()) {
     if (const auto made =
             make_video({places.ffmpeg, places.folder, series.pattern(), count, options.fps, places.video}, progress);
@@ -220,7 +223,7 @@ Verb add_animate_verb(Arguments program) {
   command.value("--pictures", options->pictures, "kind of the pictures").one_of({"png", "tif", "jpg"});
   command.value("--style", options->style, "one shading for all of it, in place of those of the keyframes");
   command.value("--samples", options->samples, "samples per pixel side").range(1, 8);
-  command.flag("--again", options->again, "make all pictures anew, also where there are others");
+  command.flag("--again", options->again, "make all pictures anew, also where there are others that it made");
   command.flag("--keep", options->keep, "keep the pictures beside the video, in VIDEO_pictures");
   add_display_options(command, options->display, false);
   command.footer(

@@ -199,11 +199,42 @@ TEST_F(Animate, NeverMixesTwoFilmsInAFolder) {
   std::ofstream(in("film.json")) << film(1.0);
   EXPECT_EQ(run_dubsar(words("pictures", {"4"})).exit_code, 64) << "as many pictures, another film";
   EXPECT_EQ(run_dubsar(words("pictures", {"4", "--again"})).exit_code, 0);
-  EXPECT_EQ(files("pictures").size(), 6u);
-  fs::create_directories(in("mine"));
-  std::ofstream(in("mine/picture_of_my_cat.png")) << "a cat";
-  EXPECT_EQ(run_dubsar(words("mine")).exit_code, 64);
-  EXPECT_EQ(files("mine").size(), 1u) << "nothing is touched";
+  EXPECT_EQ(files("pictures").size(), 7u) << "five pictures, what they show, and which of them it made";
+}
+
+TEST_F(Animate, TakesAwayOnlyPicturesThatItMadeAndThatNobodyChanged) {
+  const std::map<std::string, std::string> mine{{"picture_of_my_cat.png", "a cat"}, {"picture_00003.xcf", "layers"},
+                                                {"picture_1.png", "one"},           {"picture_00099.png", "another"},
+                                                {".picture_00004.png.tmp-x", "x"},  {"picture_00001.png.bak", "old"}};
+  fs::create_directories(in("pictures"));
+  const auto put = [&](const std::string& name, const std::string& text) {
+    std::ofstream(in("pictures/" + name)) << text;
+  };
+  for (const auto& [name, text] : mine) put(name, text);
+  const std::string living = fmt::format(".picture_00002.png.tmp-{}-0badf00d", ::getpid());
+  put(living, "half");
+  const auto left = [&] {
+    auto all = files("pictures");
+    for (const auto& [name, text] : mine) EXPECT_EQ(all[name], text) << name;
+    EXPECT_EQ(all[living], "half") << "its writer lives";
+    return all;
+  };
+  ASSERT_EQ(run_dubsar(words("pictures", {"4"})).exit_code, 0);
+  const auto first = left();
+  ASSERT_EQ(run_dubsar(words("pictures", {"2", "--again"})).exit_code, 0);
+  EXPECT_EQ(left().size(), first.size() - 4) << "five pictures instead of nine";
+  // Painted over by somebody: neither removed nor written over, and nothing else is lost for it.
+  put("picture_00002.png", "retouched");
+  const auto before = left();
+  const ProgramRun again = run_dubsar(words("pictures", {"2", "--again"}));
+  EXPECT_EQ(again.exit_code, 73) << again.err;
+  EXPECT_NE(again.err.find("picture_00002.png is not as this program made it"), std::string::npos) << again.err;
+  EXPECT_EQ(left(), before);
+  fs::create_directories(in("foreign"));
+  std::ofstream(in("foreign/picture_00005.png")) << "mine";
+  for (const auto& more : {std::vector<std::string>{"4"}, {"4", "--again"}})
+    EXPECT_EQ(run_dubsar(words("foreign", more)).exit_code, 73);
+  EXPECT_EQ(files("foreign").size(), 1u) << "nothing is touched";
 }
 
 TEST_F(Animate, RefusesInOneSentenceBeforeItReadsTheSurface) {
@@ -265,7 +296,7 @@ TEST_F(Animate, AsksFfmpegForAVideoAndKeepsPicturesOnlyWhenItFails) {
   EXPECT_EQ(failed.exit_code, 74);
   EXPECT_NE(failed.err.find("broken pipe dream"), std::string::npos) << failed.err;
   EXPECT_FALSE(fs::exists(in("other.webm")));
-  EXPECT_EQ(files("other.webm_pictures").size(), 10u) << "the work is not lost";
+  EXPECT_EQ(files("other.webm_pictures").size(), 11u) << "the work is not lost";
 }
 
 TEST_F(Animate, AnExactVideoHasThePicturesToTheLastBit) {
