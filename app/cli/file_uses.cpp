@@ -4,17 +4,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "core/base/files/atomic_file.h"
 #include "core/base/files/file_suffix.h"
 #include "core/base/text/near_word.h"
-#include "core/exa/container.h"
-#include "core/hdf5/hdf5_file.h"
 
 namespace dubsar::app {
 namespace fs = std::filesystem;
@@ -73,41 +69,11 @@ Result<void> check_not_read(const FileUse& out, const FileUse& in) {
   return {};
 }
 
-/// What a file is by its first bytes: only those kinds that people cannot make again at will.
-std::string_view treasure(const std::string& path, const std::array<char, 16>& head, std::size_t count) {
-  const std::string_view bytes(head.data(), count);
-  if (bytes.starts_with(kExaMagic)) return "a surface file (EXA)";
-  if (Hdf5File::has_signature(path)) return "an HDF5 file";
-  if (bytes.starts_with("NRRD")) return "a volume (NRRD)";
-  return {};
-}
-
-bool is_phantom(const std::string& path) {
-  const auto file = Hdf5File::open(path);
-  if (!file) return false;
-  for (const char* object : {"/", "/truth/label"})
-    if (file->string(object, "creator") == "dubsar phantom") return true;
-  return false;
-}
-
 Result<void> check_replaced(const FileUse& out) {
-  std::ifstream file(out.path, std::ios::binary);
-  std::array<char, 16> head{};
-  file.read(head.data(), head.size());
-  const auto count = static_cast<std::size_t>(file.gcount());
-  if (count == 0) return {};
-  const std::string_view bytes(head.data(), count);
-  const std::string_view found = treasure(out.path, head, count);
-  const bool json = bytes.find_first_not_of(" \t\r\n") != std::string_view::npos &&
-                    std::string_view("{[").find(bytes[bytes.find_first_not_of(" \t\r\n")]) != std::string_view::npos;
-  if (out.format == FileFormat::kJson && !json)
-    return fail(ErrorKind::kCannotCreate, "{} {} exists and is {}, expected a new name or an older JSON file",
-                out.option, out.path, found.empty() ? "no JSON" : found);
-  if (found.empty()) return {};
-  if (out.format == FileFormat::kExa && bytes.starts_with(kExaMagic)) return {};
-  if (out.format == FileFormat::kPhantom && is_phantom(out.path)) return {};
+  const std::string lost = what_would_be_lost(out.path, out.format);
+  if (lost.empty()) return {};
   return fail(ErrorKind::kCannotCreate, "{} {} exists and is {}, which would be lost; expected another name",
-              out.option, out.path, out.format == FileFormat::kPhantom ? "an HDF5 file that no phantom made" : found);
+              out.option, out.path, lost);
 }
 
 /// A name beside the one that is missing that differs by a slip.
@@ -152,6 +118,12 @@ Result<void> check_apart(const FileUse& out, std::span<const std::string> made) 
       return fail(ErrorKind::kUsage, "{} {} is a file that this run makes, expected another name", out.option,
                   out.path);
   return {};
+}
+
+Result<void> check_made(const std::string& option, const std::string& path, FileFormat format) {
+  const FileUse file{option, path, true, format};
+  DUBSAR_TRY(check_place(file));
+  return check_replaced(file);
 }
 
 Result<void> check_file_uses(std::span<const FileUse> files) {

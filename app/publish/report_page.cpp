@@ -116,7 +116,7 @@ std::string base64(const std::string& bytes) {
 std::string report_page(const ReportContent& content) {
   std::string out = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, "
+      "<meta name=\"generator\" content=\"dubsar\">\n<meta name=\"viewport\" content=\"width=device-width, "
       "initial-scale=1\">\n<title>{0}</title>\n<style>\n{1}</style>\n"
       "</head>\n<body>\n<h1>{0}</h1>\n<p class=\"dim\">{2}{3}</p>\n",
       markup_text(content.title), page_file("page.css"), markup_text(what_it_is(content.facts)),

@@ -146,6 +146,7 @@ Result<VerbResult> write_display_picture(const DisplayRequest& request, const Si
     DUBSAR_TRY(add_sight(picture, eye, image, result));
   }
   const fs::path path = request.see_from.empty() ? name_with_suffix(out, picture.file_suffix) : out;
+  DUBSAR_TRY(check_made("-o", path, FileFormat::kPicture));
   DUBSAR_TRY(write_picture(path, image, {.dpi = dots_an_inch(picture, options.screen)}));
   result.json.update({{"output", path.string()},
                       {"width", image.width},
@@ -162,6 +163,9 @@ Result<VerbResult> render_to_display(const DisplayRequest& request, const SinkSp
                                      const DisplayOptions& options, const TriMesh& mesh, const fs::path& out,
                                      Progress& progress) {
   if (!request.see_from.empty()) DUBSAR_TRY(parse_place(request.see_from, "--see-from"));  // before the work
+  DUBSAR_ASSIGN(const auto sink, options.catalog->make(display));
+  if (const std::string suffix = sink->traits().file_suffix; !suffix.empty() && request.see_from.empty())
+    DUBSAR_TRY(check_made("-o", name_with_suffix(out, suffix), FileFormat::kPicture));
   DisplayPicture picture;
   if (request.pattern) {
     DUBSAR_ASSIGN(picture, render_pattern(display, options));

@@ -65,6 +65,19 @@ Result<void> write_sides(const FatCrossRequest& options, const FatCross& cross, 
   return {};
 }
 
+fs::path styled(const FatCrossRequest& options, const std::string& style) {
+  return with_suffix(options.out, "_" + style);
+}
+
+/// The files that nobody named, before any work.
+Result<void> check_besides(const FatCrossRequest& options, const std::vector<std::string>& styles) {
+  for (const char* side : kSideSuffix)
+    if (!options.no_sides) DUBSAR_TRY(check_made("-o", with_suffix(options.out, side), FileFormat::kPicture));
+  for (const std::string& style : styles)
+    if (options.apart && styles.size() > 1) DUBSAR_TRY(check_made("-o", styled(options, style), FileFormat::kPicture));
+  return {};
+}
+
 /// Draws the cross in each of the styles: as one file with a page for each, or a file for each.
 class CrossFiles {
  public:
@@ -89,8 +102,7 @@ class CrossFiles {
       return {};
     }
     for (int k = 0; k < count; ++k) {
-      const fs::path out =
-          count == 1 ? fs::path(options_.out) : with_suffix(options_.out, "_" + styles_[static_cast<std::size_t>(k)]);
+      const fs::path out = count == 1 ? fs::path(options_.out) : styled(options_, styles_[static_cast<std::size_t>(k)]);
       DUBSAR_ASSIGN(const FatCross cross, draw(k));
       DUBSAR_TRY(write_picture(out, cross.whole, file_of(options_)));
       tell(out, result);
@@ -154,6 +166,7 @@ Result<VerbResult> run(const FatCrossRequest& options, Progress& progress) {
   std::vector<std::string> styles = options.layers;
   if (styles.empty()) styles = {options.style};
   for (const std::string& style : styles) DUBSAR_TRY(shading_preset(style));
+  DUBSAR_TRY(check_besides(options, styles));
   DUBSAR_ASSIGN(const TriMesh mesh, load_part(options, progress));
   if (!mesh.frame.input_voxel.known() && !is_exa_file(options.in))
     log(LogLevel::kWarning, fmt::format("{} does not state its units; taken as millimetres", options.in));

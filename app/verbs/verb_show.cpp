@@ -2,14 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <span>
 #include <system_error>
+#include <utility>
 
 #include "app/cli/verb.h"
 #include "app/verbs/display_picture.h"
 #include "app/viewer/run_view.h"
+#include "core/base/files/input_file.h"
+#include "core/base/system/log.h"
 #include "core/base/text/parse_number.h"
+#include "core/image_io/jpeg_markers.h"
 #include "core/image_io/picture_file.h"
 #include "display/sinks/quilt.h"
 #include "display/sinks/view_pictures.h"
@@ -34,6 +41,8 @@ std::string layout_words(const PictureLayout& layout) {
       return fmt::format("side by side{}{}", layout.half ? ", half" : "", layout.right_first ? ", right first" : "");
     case PictureLayout::Kind::kTopBottom:
       return fmt::format("top and bottom{}{}", layout.half ? ", half" : "", layout.right_first ? ", right first" : "");
+    case PictureLayout::Kind::kSeparate:
+      return fmt::format("{} pictures of one file", layout.columns);
     case PictureLayout::Kind::kQuilt:
       return fmt::format("quilt of {} x {}", layout.columns, layout.rows);
   }
@@ -54,9 +63,41 @@ Result<void> check(const ShowRequest& options) {
   return {};
 }
 
+/// The views of a file that holds each as a picture (MPO); none: it is one picture.
+Result<std::optional<ViewPictures>> read_separate_views(const ShowRequest& options, PictureLayout& layout) {
+  int others = 0;
+  DUBSAR_ASSIGN(std::vector<Image> views, read_jpeg_views(options.in, others));
+  if (others > 0)
+    log_warning("{} holds {} more picture{} that {} not shown", options.in, others, others == 1 ? "" : "s",
+                others == 1 ? "is" : "are");
+  if (views.empty()) return std::optional<ViewPictures>();
+  layout.kind = PictureLayout::Kind::kSeparate;
+  layout.columns = static_cast<int>(views.size());
+  if (options.swap) std::reverse(views.begin(), views.end());
+  ViewPictures out;
+  out.aspect = static_cast<double>(views[0].width) / views[0].height;
+  out.cone_deg = options.cone_deg;
+  out.views = std::move(views);
+  return std::optional(std::move(out));
+}
+
+/// What the file says of itself, or its name.
+PictureLayout layout_of_file(const std::string& path) {
+  const auto bytes = read_file_bytes(path);
+  const auto pair =
+      bytes ? read_jpeg_markers(std::as_bytes(std::span(bytes->data(), bytes->size()))).pair : std::nullopt;
+  if (!pair) return layout_of_name(path);
+  return {pair->top_bottom ? PictureLayout::Kind::kTopBottom : PictureLayout::Kind::kSideBySide, pair->half,
+          pair->right_first};
+}
+
 Result<ViewPictures> read_views(const ShowRequest& options, PictureLayout& layout) {
+  if (options.layout.empty()) {
+    DUBSAR_ASSIGN(auto separate, read_separate_views(options, layout));
+    if (separate) return *std::move(separate);
+  }
   DUBSAR_ASSIGN(const Image picture, read_picture(options.in));
-  layout = layout_of_name(options.in);
+  layout = layout_of_file(options.in);
   if (!options.layout.empty()) {
     DUBSAR_ASSIGN(layout, parse_picture_layout(options.layout));
   }

@@ -141,6 +141,7 @@ Result<ViewOptions> view_options(const ViewRequest& options) {
   view.time.longest_s = options.time.seconds;
   view.time.display_delay_s = 1e-3 * options.time.display_delay_ms;
   view.files.frames = options.made.frames;
+  DUBSAR_TRY(check_frames(options.made.frames));
   view.files.every = options.made.every;
   view.files.record = options.made.record;
   return view;

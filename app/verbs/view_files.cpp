@@ -1,5 +1,6 @@
 #include "app/verbs/view_files.h"
 
+#include <filesystem>
 #include <fstream>
 #include <system_error>
 
@@ -116,6 +117,15 @@ Result<void> check_record(const std::string& record, const std::vector<std::stri
     }
   }
   return check_file_uses(files);
+}
+
+Result<void> check_frames(const std::string& folder) {
+  std::error_code error;
+  if (folder.empty() || !std::filesystem::is_directory(folder, error)) return {};
+  for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+    if (const std::string name = at->path().filename().string(); name.starts_with("frame-") && name.ends_with(".png"))
+      DUBSAR_TRY(check_made("--frames", at->path(), FileFormat::kPicture));
+  return {};
 }
 
 }  // namespace dubsar::app

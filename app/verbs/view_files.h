@@ -34,4 +34,7 @@ Result<void> check_surface(const std::string& file, const std::vector<std::strin
 /// check_file_uses().
 Result<void> check_record(const std::string& record, const std::vector<std::string>& sources);
 
+/// Frames of an earlier run in `folder` may be written over, nobody's else. kCannotCreate.
+Result<void> check_frames(const std::string& folder);
+
 }  // namespace dubsar::app

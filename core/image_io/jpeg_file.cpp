@@ -9,9 +9,12 @@
 #include <cstdio>  // jpeglib.h needs it
 #include <cstdlib>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "core/base/files/atomic_file.h"
 #include "core/base/files/input_file.h"
+#include "core/image_io/jpeg_markers.h"
 #include "core/image_io/srgb_profile.h"
 
 namespace dubsar {
@@ -100,6 +103,10 @@ bool encode(Encoder* encoder, const Image* image, const JpegOptions* options, co
     jpeg.X_density = jpeg.Y_density = static_cast<UINT16>(std::clamp(std::lround(options->dpi), 1l, 65535l));
   }
   jpeg_start_compress(&jpeg, TRUE);
+  static constexpr std::string_view kMaker =
+      "made by dubsar";  // by which the program knows a file that it may write over
+  jpeg_write_marker(&jpeg, JPEG_COM, reinterpret_cast<const JOCTET*>(kMaker.data()),
+                    static_cast<unsigned>(kMaker.size()));
   if (!xmp->empty())
     jpeg_write_marker(&jpeg, JPEG_APP0 + 1, reinterpret_cast<const JOCTET*>(xmp->data()),
                       static_cast<unsigned>(xmp->size()));
@@ -144,7 +151,9 @@ Result<Image> decode_jpeg(std::span<const std::byte> bytes, std::string_view sou
 
 Result<Image> read_jpeg(const std::filesystem::path& path, const Budget& budget) {
   DUBSAR_ASSIGN(const std::string bytes, read_file_bytes(path));
-  return decode_jpeg(std::as_bytes(std::span(bytes.data(), bytes.size())), path.string(), budget);
+  const auto all = std::as_bytes(std::span(bytes.data(), bytes.size()));
+  DUBSAR_ASSIGN(Image image, decode_jpeg(all, path.string(), budget));
+  return upright(std::move(image), read_jpeg_markers(all).orientation);
 }
 
 Result<std::string> encode_jpeg(const Image& image, const JpegOptions& options) {

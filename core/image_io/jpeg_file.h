@@ -19,7 +19,7 @@ namespace dubsar {
 /// thread, about 100 MB/s of pixels.
 Result<Image> decode_jpeg(std::span<const std::byte> bytes, std::string_view source, const Budget& budget = {});
 
-/// The same from a file; also kNoInput, kPermission, kIo.
+/// The same from a file, upright as its EXIF orientation says; also kNoInput, kPermission, kIo.
 Result<Image> read_jpeg(const std::filesystem::path& path, const Budget& budget = {});
 
 struct JpegOptions {

@@ -60,7 +60,7 @@ void on_flush(png_structp) {}
 
 bool encode(Writer* writer, const Image* image, const PngOptions* options) {
   png_structp png = writer->png;
-  char keyword[] = "XML:com.adobe.xmp", language[] = "";
+  char keyword[] = "XML:com.adobe.xmp", language[] = "", software[] = "Software", maker[] = "dubsar";
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_write_fn(png, writer, on_write, on_flush);
   png_set_compression_level(png, options->compression);
@@ -72,6 +72,12 @@ bool encode(Writer* writer, const Image* image, const PngOptions* options) {
     const auto per_metre = static_cast<png_uint_32>(std::lround(options->dpi / kMetresPerInch));
     png_set_pHYs(png, writer->info, per_metre, per_metre, PNG_RESOLUTION_METER);
   }
+  png_text made_by{};  // by which the program knows a file that it may write over
+  made_by.compression = PNG_TEXT_COMPRESSION_NONE;
+  made_by.key = software;
+  made_by.text = maker;
+  made_by.text_length = std::strlen(maker);
+  png_set_text(png, writer->info, &made_by, 1);
   if (!options->xmp.empty()) {
     png_text packet{};
     packet.compression = PNG_ITXT_COMPRESSION_NONE;

@@ -10,6 +10,7 @@
 
 #include "core/base/files/atomic_file.h"
 #include "core/base/files/input_file.h"
+#include "core/image_io/jpeg_markers.h"
 #include "core/image_io/srgb_profile.h"
 
 namespace dubsar {
@@ -75,6 +76,20 @@ struct TiffExtras {
     return extras;
   }
 };
+
+/// Where the strips of a page begin when each follows the one before; -1: they do not. The library cuts a single strip
+/// of a file into several.
+std::int64_t in_one_piece(TIFF* tiff) {
+  const std::uint32_t strips = TIFFNumberOfStrips(tiff);
+  if (strips == 0) return -1;
+  const std::uint64_t begin = TIFFGetStrileOffset(tiff, 0);
+  std::uint64_t next = begin;
+  for (std::uint32_t strip = 0; strip < strips; ++strip) {
+    if (TIFFGetStrileOffset(tiff, strip) != next) return -1;
+    next += TIFFGetStrileByteCount(tiff, strip);
+  }
+  return begin > 0 && begin < static_cast<std::uint64_t>(INT64_MAX) ? static_cast<std::int64_t>(begin) : -1;
+}
 
 void invert(std::span<std::byte> bytes) {
   for (std::byte& byte : bytes) byte = ~byte;  // max - value, for any width
@@ -145,12 +160,16 @@ Result<TiffPage> TiffFile::describe() {
   page.resolution.unit_mm = unit == RESUNIT_INCH ? 25.4 : unit == RESUNIT_CENTIMETER ? 10.0 : 0.0;
   const char* text = nullptr;
   if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text) == 1 && text != nullptr)
-    page.description = std::string(text).substr(0, 65536);
+    page.texts.description = std::string(text).substr(0, 65536);
   if (TIFFGetField(tiff, TIFFTAG_PAGENAME, &text) == 1 && text != nullptr)
-    page.name = std::string(text).substr(0, 65536);
+    page.texts.name = std::string(text).substr(0, 65536);
+  if (TIFFGetField(tiff, TIFFTAG_SOFTWARE, &text) == 1 && text != nullptr)
+    page.texts.software = std::string(text).substr(0, 65536);
+  page.orientation = field<std::uint16_t>(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
   page.big_endian = TIFFIsBigEndian(tiff) != 0;
-  if (scheme == COMPRESSION_NONE && TIFFIsTiled(tiff) == 0 && TIFFNumberOfStrips(tiff) == 1)
-    page.data_offset = static_cast<std::int64_t>(TIFFGetStrileOffset(tiff, 0));
+  page.white_is_zero =
+      field<std::uint16_t>(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_MINISWHITE;
+  if (scheme == COMPRESSION_NONE && TIFFIsTiled(tiff) == 0) page.data_offset = in_one_piece(tiff);
   return page;
 }
 
@@ -249,7 +268,7 @@ Result<Image> TiffFile::read_picture(const Budget& budget) {
     return damaged(fmt::format("no picture that can be shown: {}", why.data()));
   std::vector<std::uint32_t> raster(width * height);
   if (TIFFReadRGBAImageOriented(tiff, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
-                                raster.data(), ORIENTATION_TOPLEFT, 1) != 1)
+                                raster.data(), page.orientation, 1) != 1)
     return damaged("the picture cannot be decoded, the file is damaged or truncated");
   Image image(static_cast<int>(width), static_cast<int>(height), extras.alpha ? 4 : 3);
   std::uint8_t* out = image.pixels.data();
@@ -261,7 +280,7 @@ Result<Image> TiffFile::read_picture(const Budget& budget) {
           !extras.alpha || alpha == 0 ? value : std::min<std::uint32_t>(255, (255 * value + alpha / 2) / alpha));
     if (extras.alpha) *out++ = static_cast<std::uint8_t>(alpha);
   }
-  return image;
+  return upright(std::move(image), page.orientation);
 }
 
 Result<Image> read_tiff_picture(const std::filesystem::path& path, const Budget& budget) {

@@ -22,6 +22,11 @@ struct TiffResolution {
   double unit_mm = 0.0;                       ///< length of that unit; 0: not stated
 };
 
+/// Tags 270, 285 and 305; empty: not stated.
+struct TiffTexts {
+  std::string description, name, software;
+};
+
 /// Facts about one page.
 struct TiffPage {
   enum class Sample { kUnsigned, kSigned, kFloat, kOther };
@@ -34,8 +39,10 @@ struct TiffPage {
   bool reduced = false;     ///< a thumbnail or a coarser level of another page
   std::string compression;  ///< "none", "LZW", ...
   TiffResolution resolution;
-  std::string description, name;  ///< tags 270 and 285; empty: not stated
-  std::int64_t data_offset = -1;  ///< of uncompressed pixels that lie in one piece; -1: they do not
+  TiffTexts texts;
+  int orientation = 1;            ///< tag 274, 1 to 8: where the first row and column of the pixels lie
+  std::int64_t data_offset = -1;  ///< of uncompressed pixels whose strips lie one behind the other; -1: they do not
+  bool white_is_zero = false;     ///< as stored; read_gray() turns it
   bool big_endian = false;        ///< byte order of the file
 };
 

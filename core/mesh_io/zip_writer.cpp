@@ -4,11 +4,14 @@
 
 #include <array>
 #include <limits>
+#include <string_view>
 
 #include "core/base/numbers/bytes.h"
 
 namespace dubsar {
 namespace {
+
+constexpr std::string_view kArchiveMaker = "made by dubsar";  // by which the program knows a file that it may write over
 
 constexpr std::uint32_t kLocal = 0x04034b50, kDescriptor = 0x08074b50, kCentral = 0x02014b50, kEnd = 0x06054b50;
 constexpr std::uint16_t kVersion = 20, kDeflated = 8, kFlags = 1 << 11 | 1 << 3;  // names are UTF-8, sizes follow
@@ -122,7 +125,8 @@ Result<void> ZipWriter::finish() {
   for (const std::uint16_t field : {std::uint16_t{0}, std::uint16_t{0}, count, count}) append_little(out, field);
   append_little(out, size);
   append_little(out, at);
-  append_little(out, std::uint16_t{0});
+  append_little(out, static_cast<std::uint16_t>(kArchiveMaker.size()));  // the comment
+  out += kArchiveMaker;
   return file_.write(out);
 }
 

@@ -11,6 +11,8 @@ namespace dubsar {
 namespace fs = std::filesystem;
 
 namespace {
+constexpr long kTemporaryBytes = 22;  // ".NAME.tmp-PID-RANDOM" with a process number of 7 digits
+
 Result<void> write_all(int descriptor, std::span<const std::byte> bytes, std::int64_t offset, const fs::path& name) {
   while (!bytes.empty()) {
     const ssize_t written = ::pwrite(descriptor, bytes.data(), bytes.size(), offset);
@@ -46,7 +48,12 @@ Result<void> check_output_kind(const fs::path& target) {
   if (fs::is_socket(status)) found = "a socket";
   if (fs::is_block_file(status) || fs::is_character_file(status)) found = "a device";
   if (!found) {
-    DUBSAR_TRY(behind_links(target));
+    DUBSAR_ASSIGN(const fs::path file, behind_links(target));
+    const long most = ::pathconf(file.has_parent_path() ? file.parent_path().c_str() : ".", _PC_NAME_MAX);
+    const auto bytes = static_cast<long>(file.filename().string().size());
+    if (most > 0 && bytes + kTemporaryBytes > most)
+      return fail(ErrorKind::kCannotCreate, "cannot create {}: its name has {} bytes, expected at most {}",
+                  target.string(), bytes, most - kTemporaryBytes);
     return {};
   }
   return fail(ErrorKind::kCannotCreate, "cannot create {}: it is {}, expected a file name", target.string(), found);

@@ -12,7 +12,8 @@
 namespace dubsar {
 
 /// kCannotCreate when `target` is something that a file must not take the place of: a folder, a named pipe, a socket or
-/// a device, or a link that leads back to itself. Links are followed. A file, or nothing, is fine.
+/// a device, or a link that leads back to itself, or when its name is too long for the temporary file beside it (more
+/// than 233 bytes on most disks). Links are followed. A file, or nothing, is fine.
 Result<void> check_output_kind(const std::filesystem::path& target);
 
 /// Writes go to a temporary file beside the target (O_EXCL; beside what a link points to, so that the link stays), with

@@ -102,13 +102,19 @@ TEST(CommandLine, AnOutputThatCannotBeCreatedExitsWith73BeforeTheWork) {
   EXPECT_EQ(run_dubsar({"process", scan(), "-o", folder().string()}).exit_code, 73);
 }
 
+// Outputs of earlier runs, by how they begin; what dubsar did not write is never replaced.
+const std::string kOldSurface =
+    "\x89"
+    "EXA\r\n\x1a\n the old output";
+const std::string kOldMesh = "ply\ncomment made by dubsar\nthe old output";
+
 TEST(CommandLine, DamagedInputExitsWith65AndLeavesTheOldOutput) {
   const std::string bad = in_folder("bad.h5"), old = in_folder("old.exa");
   ASSERT_TRUE(write_file_atomically(bad, "\x89HDF\r\n\x1a\n and then nothing that makes sense"));
-  ASSERT_TRUE(write_file_atomically(old, "the old output"));
+  ASSERT_TRUE(write_file_atomically(old, kOldSurface));
   const ProgramRun run = run_dubsar({"process", bad, "-o", old});
   EXPECT_EQ(run.exit_code, 65) << run.err;
-  EXPECT_EQ(*read_text_file(old), "the old output");
+  EXPECT_EQ(*read_text_file(old), kOldSurface);
   EXPECT_EQ(temporaries(), 0);
 }
 
@@ -203,7 +209,7 @@ TEST(CommandLine, OneThreadAndSevenGiveTheSameBytes) {
 
 TEST(CommandLine, InterruptEndsWith130InTwoSecondsAndLeavesTheOldOutput) {
   const std::string out = in_folder("kept.exa");
-  ASSERT_TRUE(write_file_atomically(out, "the old output"));
+  ASSERT_TRUE(write_file_atomically(out, kOldSurface));
   for (const char* stage : {"\"denoise\"", "\"smooth\"", "\"occlusion\""}) {
     RunOptions options;
     std::chrono::steady_clock::time_point sent;
@@ -216,19 +222,19 @@ TEST(CommandLine, InterruptEndsWith130InTwoSecondsAndLeavesTheOldOutput) {
     if (run.exit_code == 0) continue;  // the stage was over before the signal came
     EXPECT_EQ(run.exit_code, 130) << run.err;
     EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - sent).count(), 2.0) << stage;
-    EXPECT_EQ(*read_text_file(out), "the old output");
+    EXPECT_EQ(*read_text_file(out), kOldSurface);
     EXPECT_EQ(temporaries(), 0);
   }
 }
 
 TEST(CommandLine, AFullDiskExitsWith74AndLeavesTheOldOutput) {
   const std::string out = in_folder("full.ply");
-  ASSERT_TRUE(write_file_atomically(out, "the old output"));
+  ASSERT_TRUE(write_file_atomically(out, kOldMesh));
   RunOptions options;
   options.file_size_limit = 4096;
   const ProgramRun run = run_dubsar({"export", tablet(), out}, options);
   EXPECT_EQ(run.exit_code, 74) << run.err;
-  EXPECT_EQ(*read_text_file(out), "the old output");
+  EXPECT_EQ(*read_text_file(out), kOldMesh);
   EXPECT_EQ(temporaries(), 0);
 }
 

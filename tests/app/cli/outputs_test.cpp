@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
@@ -112,7 +113,7 @@ TEST_F(Outputs, TheRecordingThatIsReplayedIsNotWrittenOver) {
   };
   ASSERT_EQ(run_dubsar(view("scripted:" + script, old)).exit_code, 0);
   refused(view("replay:" + old, old), 64, "old.jsonl", "the file that is read as --input");
-  refused(view("scripted:" + script, script), 64, "visit.json", "the file that is read as --input");
+  refused(view("scripted:" + script, script), 73, "visit.json", "which would be lost");
   refused(view("spacemouse:replay=" + old, old), 64, "old.jsonl", "the file that is read as --input");
 }
 
@@ -126,6 +127,100 @@ TEST_F(Outputs, FilesOfAnotherKindStay) {
   refused({"export", at("tablet.exa"), at("older.exa")}, 73, "older.exa", "a surface file");
   refused({"process", at("scan.h5"), "-o", at("x.png")}, 64, "scan.h5", "ends in .exa");
   EXPECT_FALSE(fs::exists(at("x.png")));
+}
+
+// Whatever dubsar itself did not write stays, also under names that nobody typed.
+TEST_F(Outputs, FilesOfOthersStayWhateverTheyAre) {
+  // A gray slice of 2 x 1 pixels, as of a scan; PNG and JPEG of somebody, meshes of other programs, a raw volume,
+  // texts.
+  const std::string slice(
+      "II*\0\x0a\0\0\0\x05\x06"
+      "\x07\0"
+      "\0\x01\x04\0\x01\0\0\0\x02\0\0\0"
+      "\x01\x01\x04\0\x01\0\0\0\x01\0\0\0"
+      "\x02\x01\x03\0\x01\0\0\0\x08\0\0\0"
+      "\x06\x01\x03\0\x01\0\0\0\x01\0\0\0"
+      "\x11\x01\x04\0\x01\0\0\0\x08\0\0\0"
+      "\x16\x01\x04\0\x01\0\0\0\x01\0\0\0"
+      "\x17\x01\x04\0\x01\0\0\0\x02\0\0\0"
+      "\0\0\0\0",
+      10 + 2 + 7 * 12 + 4);
+  const std::map<std::string, std::string> mine{
+      {"volume.tif", slice},
+      {"photo.png", "\x89PNG\r\n\x1a\n a picture of somebody"},
+      {"photo.jpg", "\xff\xd8\xff\xe0 a photograph"},
+      {"bust.ply", "ply\nformat ascii 1.0\ncomment made by MeshLab\n"},
+      {"bust.stl", "solid bust\nendsolid\n"},
+      {"bust.obj", "v 0 0 0\n"},
+      {"bust.glb", "glTF\x02 another program's"},
+      {"bust.3mf", "PK\x03\x04 an archive"},
+      {"page.html", "<!DOCTYPE html><html>my page</html>"},
+      {"notes.json", R"({"format": "dubsar notes", "version": 1, "notes": []})"},
+      {"package.json", R"({"name": "mine"})"},
+      {"scan.raw", "\1\2\3\4"},
+  };
+  for (const auto& [name, bytes] : mine) ASSERT_TRUE(write_file_atomically(at(name), bytes));
+  for (const char* name : {"volume.tif", "photo.png", "photo.jpg"}) {
+    refused({"render", at("tablet.exa"), "-o", at(name), "--size", "32x32"}, 73, name, "would be lost");
+    refused({"show", at("photo.png"), "-o", at("volume.tif")}, 73, "volume.tif", "would be lost");
+  }
+  for (const char* name : {"bust.ply", "bust.stl", "bust.obj", "bust.glb", "bust.3mf"})
+    refused({"export", at("tablet.exa"), at(name)}, 73, name, "did not write, which would be lost");
+  refused({"report", at("tablet.exa"), "-o", at("page.html")}, 73, "page.html", "would be lost");
+  for (const char* name : {"notes.json", "package.json", "scan.raw"})
+    refused({"info", at("tablet.exa"), "--json", at(name)}, 73, name, "would be lost");
+  refused({"view", at("tablet.exa"), "--offscreen", "--seconds", "0.1", "--record", at("notes.json")}, 73, "notes.json",
+          "would be lost");
+  refused({"devices", "simulate", "xreal", at("scan.raw"), "--seconds", "0.1"}, 73, "scan.raw", "would be lost");
+  // Names that follow from the one that was typed.
+  for (const char* name : {"cross_03.tif", "cross_raking.tif", "shown_qs4x2a0.75.png"})
+    fs::copy_file(at("volume.tif"), at(name));
+  refused({"fatcross", at("tablet.exa"), "-o", at("cross.tif"), "--dpi", "60"}, 73, "cross_03.tif",
+          "cross_03.tif exists and is a gray TIFF picture, as the slices of a scan are, which would be lost");
+  refused({"fatcross", at("tablet.exa"), "-o", at("cross.tif"), "--dpi", "60", "--no-sides", "--apart", "--layers",
+           "phong,raking"},
+          73, "cross_raking.tif", "cross_raking.tif exists");
+  EXPECT_FALSE(fs::exists(at("cross.tif")) || fs::exists(at("cross_01.tif"))) << "said before the work";
+  refused({"render", "--pattern", "-o", at("shown.png"), "--display",
+           "quilt:columns=4,rows=2,width=512,height=256,aspect=0.75", "--bridge-port", "0"},
+          73, "shown_qs4x2a0.75.png", "which would be lost");
+  fs::create_directory(at("frames"));
+  fs::copy_file(at("photo.png"), at("frames/frame-00001.png"));
+  refused({"view", at("tablet.exa"), "--offscreen", "--seconds", "0.1", "--frames", at("frames")}, 73,
+          "frames/frame-00001.png", "which would be lost");
+}
+
+TEST_F(Outputs, FilesThatDubsarWroteAreReplaced) {
+  ASSERT_TRUE(write_file_atomically(at("person.json"), R"({"seed": 1, "duration_s": 1, "visitor": {"yaw_deg": 20}})"));
+  const std::vector<std::vector<std::string>> runs{
+      {"render", at("tablet.exa"), "-o", at("p.png"), "--size", "32x32"},
+      {"render", at("tablet.exa"), "-o", at("p.tif"), "--size", "32x32"},
+      {"render", at("tablet.exa"), "-o", at("p.jpg"), "--size", "32x32"},
+      {"export", at("tablet.exa"), at("m.ply")},
+      {"export", at("tablet.exa"), at("m.stl")},
+      {"export", at("tablet.exa"), at("m.obj")},
+      {"export", at("tablet.exa"), at("m.glb")},
+      {"export", at("tablet.exa"), at("m.3mf")},
+      {"info", at("tablet.exa"), "--json", at("i.json")},
+      {"view", at("tablet.exa"), "--offscreen", "--size", "32x32", "--seconds", "0.2", "--script", at("person.json"),
+       "--record", at("r.jsonl"), "--frames", at("f")},
+      {"devices", "simulate", "xreal", at("x.txt"), "--seconds", "0.1"}};
+  for (const auto& words : runs)
+    for (int i = 0; i < 2; ++i) {
+      const ProgramRun run = run_dubsar(words);
+      EXPECT_EQ(run.exit_code, 0) << words[0] << " " << words.back() << ", run " << i << ": " << run.err;
+    }
+}
+
+TEST_F(Outputs, NamesThatAreTooLongAreRefusedBeforeTheWork) {
+  for (const std::size_t bytes : {234, 240, 255}) {
+    const std::string name = std::string(bytes - 4, 'a') + ".exa";
+    const ProgramRun run = run_dubsar({"process", at("scan.h5"), "-o", at(name), "--progress", "json"});
+    EXPECT_EQ(run.exit_code, 73) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("its name has"));
+    EXPECT_EQ(run.err.find("\"stage\""), std::string::npos) << "refused after the work began";
+  }
+  EXPECT_EQ(run_dubsar({"export", at("tablet.exa"), at(std::string(229, 'b') + ".ply")}).exit_code, 0);
 }
 
 TEST_F(Outputs, APhantomReplacesOnlyPhantoms) {

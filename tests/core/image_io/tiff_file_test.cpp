@@ -32,7 +32,7 @@ TEST_F(TiffFiles, GrayPagesOfBothByteOrdersAndBigTiffAreRead) {
       EXPECT_EQ(page.bits, 16);
       EXPECT_EQ(page.resolution.x_per_unit, 500.0);
       EXPECT_EQ(page.resolution.unit_mm, 10.0);
-      EXPECT_EQ(page.description, "a long description");
+      EXPECT_EQ(page.texts.description, "a long description");
       EXPECT_EQ(page.big_endian, big_endian);
       std::vector<std::uint16_t> out(6);
       ASSERT_TRUE(file->select(page.offset));
@@ -136,12 +136,12 @@ TEST_F(TiffFiles, LayersArePagesWithNamesAndTheFirstIsThePicture) {
   ASSERT_EQ(pages->size(), 3u);
   for (int k = 0; k < 3; ++k) {
     const TiffPage& page = (*pages)[static_cast<std::size_t>(k)];
-    EXPECT_EQ(page.name, names[static_cast<std::size_t>(k)]);
+    EXPECT_EQ(page.texts.name, names[static_cast<std::size_t>(k)]);
     EXPECT_EQ(page.resolution.x_per_unit, 600.0);
     ASSERT_TRUE(file->select(page.offset));
     EXPECT_EQ(file->read_picture({}).value().pixels, colour(k).pixels) << k;
   }
-  EXPECT_EQ(pages->front().description, "AO 8295");
+  EXPECT_EQ(pages->front().texts.description, "AO 8295");
   EXPECT_EQ(read_tiff_picture(in("layers.tif")).value().pixels, colour(0).pixels);
   const auto fails = [](int k) -> Result<TiffLayer> {
     if (k == 1) return fail(ErrorKind::kCancelled, "stopped");
