@@ -132,6 +132,7 @@ void layout_facts(hid_t dataset, hid_t creation, bool open_sources, Hdf5DatasetI
   }
   H5D_fill_value_t fill = H5D_FILL_VALUE_UNDEFINED;
   if (info.scalar && H5Pfill_value_defined(creation, &fill) >= 0 && fill == H5D_FILL_VALUE_USER_DEFINED) {
+    info.fill.defined = true;
     H5Pget_fill_value(creation, H5T_NATIVE_DOUBLE, &info.fill.value);
     const Handle type(H5Dget_type(dataset), H5Tclose);
     if (info.plain_scalar) H5Pget_fill_value(creation, type.get(), info.fill.stored.data());

@@ -1,6 +1,7 @@
 // Attributes, and small datasets that serve as attributes.
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <numeric>
@@ -79,6 +80,53 @@ std::optional<std::vector<double>> Hdf5File::numbers(const std::string& object, 
   std::vector<double> values(static_cast<std::size_t>(count));
   if (H5Aread(id.get(), H5T_NATIVE_DOUBLE, values.data()) < 0) return std::nullopt;
   return values;
+}
+
+bool Hdf5File::is_float(const std::string& object, const std::string& attribute) const {
+  const Library library;
+  const Handle id = open_attribute(id_, object, attribute);
+  if (!id.ok()) return false;
+  const Handle type(H5Aget_type(id.get()), H5Tclose);
+  return H5Tget_class(type.get()) == H5T_FLOAT;
+}
+
+// REFERENCE_LIST of the scale: pairs of a reference to a dataset and the number of its axis (HDF5 dimension scales
+// specification).
+std::vector<Hdf5File::ScaledAxis> Hdf5File::scaled_axes(const std::string& scale) const {
+  const Library library;
+  const Handle id = open_attribute(id_, scale, "REFERENCE_LIST");
+  if (!id.ok()) return {};
+  const Handle type(H5Aget_type(id.get()), H5Tclose);
+  const Handle space(H5Aget_space(id.get()), H5Sclose);
+  const hssize_t count = H5Sget_simple_extent_npoints(space.get());
+  if (H5Tget_class(type.get()) != H5T_COMPOUND || H5Tget_nmembers(type.get()) != 2 || count < 1 ||
+      count > kMaxAttributeElements)
+    return {};
+  struct Entry {
+    hobj_ref_t object;
+    int axis;
+  };
+  const Handle memory(H5Tcreate(H5T_COMPOUND, sizeof(Entry)), H5Tclose);
+  for (unsigned int member = 0; member < 2; ++member) {
+    const bool reference = H5Tget_member_class(type.get(), member) == H5T_REFERENCE;
+    if (!reference && H5Tget_member_class(type.get(), member) != H5T_INTEGER) return {};
+    const Handle kind(H5Tget_member_type(type.get(), member), H5Tclose);
+    if (reference && H5Tequal(kind.get(), H5T_STD_REF_OBJ) <= 0) return {};
+    char* const name = H5Tget_member_name(type.get(), member);
+    if (name == nullptr) return {};
+    H5Tinsert(memory.get(), name, reference ? offsetof(Entry, object) : offsetof(Entry, axis),
+              reference ? H5T_STD_REF_OBJ : H5T_NATIVE_INT);
+    H5free_memory(name);
+  }
+  std::vector<Entry> entries(static_cast<std::size_t>(count));
+  if (H5Aread(id.get(), memory.get(), entries.data()) < 0) return {};
+  std::vector<ScaledAxis> axes;
+  for (const Entry& entry : entries) {
+    const Handle object(H5Rdereference2(id_, H5P_DEFAULT, H5R_OBJECT, &entry.object), H5Oclose);
+    H5O_info_t info;
+    if (object.ok() && H5Oget_info2(object.get(), &info, H5O_INFO_BASIC) >= 0) axes.push_back({info.addr, entry.axis});
+  }
+  return axes;
 }
 
 std::optional<std::vector<std::string>> Hdf5File::strings(const std::string& object,

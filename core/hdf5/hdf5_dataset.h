@@ -34,6 +34,7 @@ struct Hdf5ExternalPart {
 
 /// What stands where nothing was written.
 struct Hdf5Fill {
+  bool defined = false;  ///< by whoever made the dataset
   double value = 0.0;
   std::array<std::byte, 8> stored{};  ///< the same as a stored number (plain_scalar)
 };

@@ -1,7 +1,12 @@
 #include "core/hdf5/hdf5_file.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <exception>
 #include <functional>
 #include <set>
@@ -47,6 +52,15 @@ void read_link_value(hid_t file, const std::string& path, const H5L_info_t& info
   }
 }
 
+/// Whether another program holds the lock that the library takes for writing.
+bool is_locked(const std::filesystem::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return false;
+  const bool locked = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(descriptor);  // and with it our own lock
+  return locked;
+}
+
 }  // namespace
 
 bool Hdf5File::has_signature(const std::filesystem::path& path) {
@@ -74,6 +88,16 @@ Result<Hdf5File> Hdf5File::open(const std::filesystem::path& path) {
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
   H5Pset_elink_file_cache_size(access.get(), 0);
   Handle id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
+  if (!id.ok() && is_locked(path))
+    return fail(ErrorKind::kTryAgain,
+                "{} is locked: another program has it open for writing; wait until it is finished, or close it there",
+                path.string());
+  if (const std::string why = reason(); !id.ok() && why.find("already open for") != std::string::npos)
+    return fail(
+        ErrorKind::kTryAgain,
+        "{} is marked as open for writing: wait until its writer is finished; if that has crashed, h5clear -s {} "
+        "takes the mark away",
+        path.string(), path.string());
   if (!id.ok())
     return fail(ErrorKind::kBadData, "{} ({} bytes) is damaged, truncated or still being written ({}); copy it again",
                 path.string(), probe.size(), reason());

@@ -59,6 +59,14 @@ class Hdf5File {
   /// fixed or variable length), longer than 4096 elements, or texts of more than 64 KiB each or 1 MiB together.
   std::optional<std::vector<double>> numbers(const std::string& object, const std::string& attribute) const;
   std::optional<std::vector<std::string>> strings(const std::string& object, const std::string& attribute) const;
+  /// Whether an attribute has floats.
+  bool is_float(const std::string& object, const std::string& attribute) const;
+  /// A dimension scale: which axes of which objects (Hdf5DatasetInfo::address) it belongs to; at most 4096.
+  struct ScaledAxis {
+    std::uint64_t address = 0;
+    int axis = 0;
+  };
+  std::vector<ScaledAxis> scaled_axes(const std::string& scale) const;
   /// The first string, or nullopt.
   std::optional<std::string> string(const std::string& object, const std::string& attribute) const;
 

@@ -65,9 +65,7 @@ Result<FoundSurface> find_surface(const PipelineOptions& options, ImportedGrid& 
   return found;
 }
 
-}  // namespace
-
-Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& progress) {
+Result<PipelineResult> run_stages(const PipelineOptions& options, Progress& progress) {
   StageClock clock;
   const StageRun run{clock, progress};
   DUBSAR_TRY(check_room(options.import, options.detail, run));
@@ -126,6 +124,17 @@ Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& pr
                                separated, contact, patches, product.check},
                               result.model, clock);
   result.model.provenance = dump_json(provenance_json(result.report, options));
+  return result;
+}
+
+}  // namespace
+
+Result<PipelineResult> run_pipeline(const PipelineOptions& options, Progress& progress) {
+  PipelineOptions watched = options;
+  watched.import.same_files = std::make_shared<std::vector<FileIdentity>>();
+  Result<PipelineResult> result = run_stages(watched, progress);
+  // What a scan that changes is found to be, also damaged, is no finding about it.
+  if (result || result.error().kind != ErrorKind::kCancelled) DUBSAR_TRY(check_unchanged(*watched.import.same_files));
   return result;
 }
 

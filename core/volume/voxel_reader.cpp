@@ -9,7 +9,7 @@ namespace dubsar {
 bool can_be_nonfinite(ScalarType type, const ScalarMap& map) noexcept {
   const double largest =
       std::ldexp(std::abs(map.scale), static_cast<int>(8 * scalar_bytes(type))) + std::abs(map.offset);
-  return is_float(type) || !(largest < static_cast<double>(std::numeric_limits<float>::max()));
+  return is_float(type) || map.none.any() || !(largest < static_cast<double>(std::numeric_limits<float>::max()));
 }
 
 void copy_row(const std::byte* from, std::int64_t number_bytes, const AxisRange& x, std::byte* to) {

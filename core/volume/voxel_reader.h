@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -94,11 +95,13 @@ struct VolumeInfo {
 /// too. open_volume() turns them to x, y, z by info.axes.
 struct OpenedVolume {
   VolumeInfo info;
+  std::vector<std::filesystem::path> files;  ///< that hold it, besides the one that was asked for
   bool voxel_by_name = false;  ///< the voxel size was stated for x, y and z by name: it is not turned
   std::unique_ptr<VoxelReader> reader;
 };
 
-/// Whether numbers of this kind can be NaN or Inf as floats: floats, and integers whose map leads beyond 3.4e38.
+/// Whether numbers of this kind can be NaN or Inf as floats: floats, integers some of which are no measurement, and
+/// those whose map leads beyond 3.4e38.
 bool can_be_nonfinite(ScalarType type, const ScalarMap& map) noexcept;
 
 /// Copies one row of a box: x.count() numbers of 1, 2, 4 or 8 bytes; `from` points at the one at x.begin.

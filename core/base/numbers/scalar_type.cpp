@@ -56,9 +56,14 @@ void convert(const std::byte* from, const ScalarMap& map, std::span<float> out) 
   };
   if (map.identity())
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<float>(number(i));
-  else
+  else if (!map.none.any())
     for (std::size_t i = 0; i < out.size(); ++i)
       out[i] = static_cast<float>(static_cast<double>(number(i)) * map.scale + map.offset);
+  else
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const auto stored = static_cast<double>(number(i));
+      out[i] = map.none.is(stored) ? NAN : static_cast<float>(stored * map.scale + map.offset);
+    }
 }
 
 template <class T>

@@ -1,10 +1,13 @@
 #pragma once
 // The number types that volume files store, and their conversion to float.
 
+#include <array>
 #include <bit>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -42,11 +45,28 @@ constexpr ScalarType scalar_type_of() {
   if constexpr (std::same_as<T, double>) return ScalarType::kF64;
 }
 
-/// Stored value -> meaning: value * scale + offset (scale_factor, add_offset of the file).
+/// Stored numbers that are no measurement (_FillValue, missing_value, valid_range of a file).
+struct NoMeasurement {
+  static constexpr int kMost = 8;
+  std::array<double, kMost> values{};  ///< each of the first `count`
+  int count = 0;
+  double least = -std::numeric_limits<double>::infinity();  ///< and everything below
+  double most = std::numeric_limits<double>::infinity();    ///< and everything above
+  bool any() const noexcept { return count > 0 || least > -HUGE_VAL || most < HUGE_VAL; }
+  bool is(double stored) const noexcept {
+    bool found = stored < least || stored > most;
+    for (int i = 0; i < count; ++i) found = found || stored == values[static_cast<std::size_t>(i)];
+    return found;
+  }
+};
+
+/// Stored value -> meaning: value * scale + offset (scale_factor, add_offset of the file), NaN for what is no
+/// measurement.
 struct ScalarMap {
   double scale = 1.0;
   double offset = 0.0;
-  bool identity() const noexcept { return scale == 1.0 && offset == 0.0; }
+  NoMeasurement none{};
+  bool identity() const noexcept { return scale == 1.0 && offset == 0.0 && !none.any(); }
 };
 
 /// Converts out.size() stored numbers at `from` (any alignment) to float, rounding to nearest. The map is applied in

@@ -17,21 +17,85 @@ std::string lower_trimmed(std::string_view text) {
   std::erase_if(out, [](unsigned char c) { return std::isspace(c) != 0; });
   return out;
 }
+
+/// The number in front of a unit, as of "1e-6 m", "10^-6 m" and "0.5*um"; 1 where there is none.
+double take_factor(std::string_view& unit) {
+  double value = 1.0;
+  const auto number = [&](double& out) {
+    const auto [end, error] = std::from_chars(unit.data(), unit.data() + unit.size(), out);
+    if (error != std::errc() || !std::isfinite(out)) return false;
+    unit.remove_prefix(static_cast<std::size_t>(end - unit.data()));
+    return true;
+  };
+  if (unit.empty() || (!std::isdigit(static_cast<unsigned char>(unit.front())) && unit.front() != '.')) return 1.0;
+  const std::string_view before = unit;
+  if (!number(value)) return 1.0;
+  for (const std::string_view power : {"^", "**"})
+    if (double exponent = 0.0; unit.starts_with(power)) {
+      unit.remove_prefix(power.size());
+      if (number(exponent)) value = std::pow(value, exponent);
+    }
+  if (unit.starts_with('*')) unit.remove_prefix(1);
+  if (value > 0.0 && std::isfinite(value)) return value;
+  unit = before;
+  return 1.0;
+}
 }  // namespace
 
 std::optional<double> mm_per_unit(std::string_view unit) {
-  static constexpr std::array<std::pair<std::string_view, double>, 34> kUnits{{
-      {"m", 1e3},           {"meter", 1e3},       {"meters", 1e3},       {"metre", 1e3},       {"metres", 1e3},
-      {"cm", 10.0},         {"centimeter", 10.0}, {"centimeters", 10.0}, {"centimetre", 10.0}, {"centimetres", 10.0},
-      {"mm", 1.0},          {"millimeter", 1.0},  {"millimeters", 1.0},  {"millimetre", 1.0},  {"millimetres", 1.0},
-      {"um", 1e-3},         {"\xc2\xb5m", 1e-3},  {"\xce\xbcm", 1e-3},   {"\xb5m", 1e-3},      {"micron", 1e-3},
-      {"microns", 1e-3},    {"micrometer", 1e-3}, {"micrometers", 1e-3}, {"micrometre", 1e-3}, {"micrometres", 1e-3},
-      {"\\u00b5m", 1e-3},   {"nm", 1e-6},         {"nanometer", 1e-6},   {"nanometers", 1e-6}, {"nanometre", 1e-6},
-      {"nanometres", 1e-6}, {"in", 25.4},         {"inch", 25.4},        {"inches", 25.4},
+  static constexpr std::array<std::pair<std::string_view, double>, 46> kUnits{{
+      {"m", 1e3},
+      {"meter", 1e3},
+      {"meters", 1e3},
+      {"metre", 1e3},
+      {"metres", 1e3},
+      {"cm", 10.0},
+      {"centimeter", 10.0},
+      {"centimeters", 10.0},
+      {"centimetre", 10.0},
+      {"centimetres", 10.0},
+      {"mm", 1.0},
+      {"millimeter", 1.0},
+      {"millimeters", 1.0},
+      {"millimetre", 1.0},
+      {"millimetres", 1.0},
+      {"um", 1e-3},
+      {"\xc2\xb5m", 1e-3},
+      {"\xce\xbcm", 1e-3},
+      {"\xb5m", 1e-3},
+      {"micron", 1e-3},
+      {"microns", 1e-3},
+      {"micrometer", 1e-3},
+      {"micrometers", 1e-3},
+      {"micrometre", 1e-3},
+      {"micrometres", 1e-3},
+      {"\\u00b5m", 1e-3},
+      {"nm", 1e-6},
+      {"nanometer", 1e-6},
+      {"nanometers", 1e-6},
+      {"nanometre", 1e-6},
+      {"nanometres", 1e-6},
+      {"in", 25.4},
+      {"inch", 25.4},
+      {"inches", 25.4},
+      {"dm", 100.0},
+      {"km", 1e6},
+      {"pm", 1e-9},
+      {"angstrom", 1e-7},
+      {"angstroms", 1e-7},
+      {"\xc3\x85", 1e-7},
+      {"\xc3\xa5", 1e-7},
+      {"\xe2\x84\xab", 1e-7},
+      {"\xc3\x85ngstr\xc3\xb6m", 1e-7},
+      {"\xc3\xa5ngstr\xc3\xb6m", 1e-7},
+      {"\xc3\x82\xb5m", 1e-3},
+      {"mikrometer", 1e-3},
   }};
-  const std::string key = lower_trimmed(unit);
+  const std::string all = lower_trimmed(unit);
+  std::string_view key = all;
+  const double factor = take_factor(key);
   for (const auto& [name, mm] : kUnits)
-    if (key == name) return mm;
+    if (key == name) return factor * mm;
   return std::nullopt;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/base/text/json_text.h"
 #include "core/volume/formats/hdf5_path.h"
+#include "core/volume/formats/hdf5_scales.h"
 
 namespace dubsar {
 namespace {
@@ -42,6 +43,7 @@ class Reader {
     by_axes(file, path);
     by_emd(file, path);
     by_vtk(file, path);
+    if (&file == volume_.file.get()) by_scales(file);
     for (std::string at = path; at != "/";) {
       at = hdf5_parent(at);
       by_order_names(file, at);
@@ -121,6 +123,20 @@ class Reader {
     for (std::size_t axis = 0; axis < volume_.info.dims.size(); ++axis)
       labels.push_back(file.string(hdf5_child(group, fmt::format("dim{}", axis + 1)), "name").value_or(""));
     offer(labels, group + "/dim1@name ...", false);
+  }
+
+  /// Names of the coordinates of the axes, "-" before those that fall.
+  void by_scales(const Hdf5File& file) {
+    const auto scales = hdf5_scales(file, volume_.info);
+    if (!scales) return;
+    std::vector<std::string> labels(volume_.info.dims.size());
+    for (std::size_t i = 0; i < 3 && used_.size() == 3; ++i) {
+      const std::string& scale = (*scales)[i];
+      const auto values = scale.empty() ? std::nullopt : file.number_dataset(scale);
+      const bool falls = values && values->size() > 1 && values->back() < values->front();
+      labels[used_[i]] = fmt::format("{}{}", falls ? "-" : "", scale.substr(scale.rfind('/') + 1));
+    }
+    offer(labels, "dimension scales", false);
   }
 
   void by_vtk(const Hdf5File& file, const std::string& path) {

@@ -9,6 +9,7 @@
 
 #include "core/base/text/lower_text.h"
 #include "core/volume/formats/external_access.h"
+#include "core/volume/formats/hdf5_imaris.h"
 #include "core/volume/formats/hdf5_path.h"
 
 namespace dubsar {
@@ -43,7 +44,7 @@ class Search {
     static constexpr Convention kConventions[] = {
         {"NeXus default", &Search::nexus_default}, {"NeXus NXtomoproc", &Search::nexus_tomoproc},
         {"nabu reconstruction", &Search::nabu},    {"Data Exchange", &Search::data_exchange},
-        {"VTKHDF ImageData", &Search::vtkhdf},
+        {"VTKHDF ImageData", &Search::vtkhdf},     {"Imaris", &Search::imaris},
     };
     for (const Convention& convention : kConventions) {
       DUBSAR_ASSIGN(const std::vector<std::string> paths, (this->*convention.paths)());
@@ -256,6 +257,17 @@ class Search {
         for (const Hdf5Link& link : *links)
           if (link.kind == Hdf5Link::Kind::kDataset) paths.push_back(link.path);
     }
+    return paths;
+  }
+
+  // All levels, channels and time points: the finest is taken, several of it are told.
+  Result<std::vector<std::string>> imaris() {
+    std::vector<std::string> paths;
+    const auto target = file_->resolve(kImarisFinest);
+    if (!target || target->kind != Kind::kGroup) return paths;
+    DUBSAR_ASSIGN(const auto links, file_->list(hdf5_parent(target->path)));
+    for (const Hdf5Link& link : links)
+      if (link.kind == Hdf5Link::Kind::kDataset && name_of(link.path) == "Data") paths.push_back(link.path);
     return paths;
   }
 

@@ -6,7 +6,9 @@
 #include <optional>
 
 #include "core/base/numbers/units.h"
+#include "core/volume/formats/hdf5_imaris.h"
 #include "core/volume/formats/hdf5_path.h"
+#include "core/volume/formats/hdf5_scales.h"
 
 namespace dubsar {
 namespace {
@@ -44,6 +46,8 @@ class Finder {
     };
     if (volume_.named_file != volume_.file && search(*volume_.named_file, volume_.named)) return {size, by_name_};
     if (search(*volume_.file, volume_.info.path)) return {size, by_name_};
+    if (from_scales(size)) return {size, by_name_};
+    if (const auto imaris = imaris_voxel_size(volume_)) return {*imaris, true};
     return {};
   }
 
@@ -90,6 +94,24 @@ class Finder {
     if (!positive(mm)) return false;
     size = {mm,
             fmt::format("{} axes {}, {}, {}", group, (*names)[(*axes)[0]], (*names)[(*axes)[1]], (*names)[(*axes)[2]])};
+    return true;
+  }
+
+  bool from_scales(VoxelSize& size) {
+    const auto scales = hdf5_scales(*volume_.file, volume_.info);
+    const auto axes = volume_axes(volume_.info.dims);
+    if (!scales || !axes) return false;
+    glm::dvec3 mm(0.0);
+    for (int i = 0; i < 3; ++i) {
+      const std::string& scale = (*scales)[static_cast<std::size_t>(i)];
+      const auto spacing =
+          scale.empty() ? std::nullopt
+                        : axis_spacing(*volume_.file, scale, volume_.info.dims[(*axes)[static_cast<std::size_t>(i)]]);
+      if (!spacing) return false;
+      mm[2 - i] = *spacing;
+    }
+    if (!positive(mm)) return false;
+    size = {mm, fmt::format("dimension scales {}, {}, {}", (*scales)[0], (*scales)[1], (*scales)[2])};
     return true;
   }
 

@@ -135,8 +135,14 @@ void check_voxel_size(VolumeInfo& info) {
 
 Result<OpenedVoxels> open_voxels(ImportOptions options) {
   split_dataset(options);
+  if (options.same_files && !options.same_files->empty()) DUBSAR_TRY(check_unchanged(*options.same_files));
   DUBSAR_ASSIGN(OpenedVolume opened, open_by_content(options));
   VolumeInfo& info = opened.info;
+  if (options.same_files && options.same_files->empty()) {
+    std::error_code ignored;
+    if (fs::is_regular_file(options.path, ignored)) opened.files.push_back(options.path);
+    DUBSAR_ASSIGN(*options.same_files, identify_files(opened.files));
+  }
   info.path = options.path.string();
   if (const auto found = file_fingerprint(options.path)) info.fingerprint = *found;  // of a folder there is none
   turn(opened, options);

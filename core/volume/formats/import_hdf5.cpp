@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "core/hdf5/chunk_filters.h"
 #include "core/hdf5/hdf5_filters.h"
 #include "core/volume/formats/external_access.h"
 #include "core/volume/formats/flat_reader.h"
+#include "core/volume/formats/front_reader.h"
 #include "core/volume/formats/hdf5_axis_order.h"
+#include "core/volume/formats/hdf5_imaris.h"
+#include "core/volume/formats/hdf5_no_measurement.h"
 #include "core/volume/formats/hdf5_search.h"
 #include "core/volume/formats/hdf5_voxel_reader.h"
 #include "core/volume/formats/hdf5_voxel_size.h"
@@ -167,6 +171,7 @@ Result<ScalarMap> scalar_map(const Hdf5Volume& volume) {
                 "import_hdf5: dataset \"{}\" has the scale factor {} and offset {}, expected finite "
                 "numbers and a factor other than 0",
                 volume.info.path, map.scale, map.offset);
+  map.none = hdf5_no_measurement(volume, map);
   return map;
 }
 
@@ -190,6 +195,19 @@ Result<std::vector<FlatSegment>> segments_of(const Hdf5Volume& volume, const Imp
     logical -= std::min(bytes, logical);
   }
   return segments;
+}
+
+/// Files besides the one that was asked for: behind a link, of a virtual dataset, or with its numbers.
+std::vector<std::filesystem::path> other_files(const Hdf5Volume& volume, const ImportOptions& options,
+                                               std::span<const FlatSegment> segments) {
+  std::vector<std::filesystem::path> files;
+  if (volume.file->path() != options.path) files.push_back(volume.file->path());
+  for (const FlatSegment& segment : segments)
+    if (segment.file.path() != volume.file->path()) files.push_back(segment.file.path());
+  for (const std::string& name : volume.info.virtual_files)
+    if (const auto part = allowed_file("", volume.file->path(), name, options.allow_external); part && name != ".")
+      files.push_back(*part);
+  return files;
 }
 
 std::string layout_text(const Hdf5DatasetInfo& info, const std::array<std::size_t, 3>& axes) {
@@ -228,6 +246,7 @@ Result<OpenedVolume> open_hdf5(const ImportOptions& options) {
     DUBSAR_ASSIGN(segments, segments_of(volume, options, logical));
   }
   DUBSAR_TRY(check_storage(volume, options, static_cast<std::uint64_t>(logical)));
+  opened.files = other_files(volume, options, segments);
   DUBSAR_ASSIGN(opened.info.map, scalar_map(volume));
   if (flat) {
     DUBSAR_ASSIGN(
@@ -235,6 +254,10 @@ Result<OpenedVolume> open_hdf5(const ImportOptions& options) {
         make_flat_reader({opened.info.file_dims, {*info.scalar, info.order, opened.info.map}, std::move(segments)}));
   } else {
     DUBSAR_ASSIGN(opened.reader, make_hdf5_reader(volume.file, info, axes, opened.info.map));
+  }
+  if (const auto front = imaris_dims(volume, opened.info.file_dims)) {
+    opened.reader = make_front_reader(std::move(opened.reader), *front);
+    opened.info.file_dims = *front;
   }
   opened.info.format = "hdf5";
   opened.info.dataset = volume.named;

@@ -293,6 +293,7 @@ Result<OpenedVolume> open_nrrd(const ImportOptions& options) {
   const ByteOrder order = endian == "big" ? ByteOrder::kBig : ByteOrder::kLittle;
 
   DUBSAR_ASSIGN(Data data, find_data(options, std::move(header_file), header));
+  if (data.file.path() != options.path) opened.files.push_back(data.file.path());
   const std::string encoding = lower_text(header.text("encoding"));
   const double skip = to_number(header.text("byte skip", "byteskip")).value_or(0.0);
   const double lines = to_number(header.text("line skip", "lineskip")).value_or(0.0);

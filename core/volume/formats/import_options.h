@@ -5,10 +5,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "core/base/files/file_identity.h"
 #include "core/base/numbers/scalar_type.h"
 #include "core/base/result.h"
 #include "core/base/system/budget.h"
@@ -46,6 +49,9 @@ struct ImportOptions {
   std::optional<Unmeasured> unmeasured;  ///< what an earlier look at the same part of the file found
   std::optional<float> unmeasured_fill;  ///< what they count as; default: air, see unmeasured.h
   Budget budget;
+  /// Where a scan is opened several times: what its files were the first time, filled in then; kTryAgain when they are
+  /// not the same any more. nullptr: nobody asks.
+  std::shared_ptr<std::vector<FileIdentity>> same_files;
 };
 
 /// "x0:x1,y0:y1,z0:z1"; an empty bound is the border: "100:400,:,:800". kUsage.

@@ -3,17 +3,15 @@
 #include <fnmatch.h>
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
-#include <map>
 #include <mutex>
 #include <utility>
 
-#include "core/base/numbers/units.h"
 #include "core/base/system/parallel.h"
 #include "core/image_io/tiff_file.h"
 #include "core/volume/formats/flat_reader.h"
+#include "core/volume/formats/slice_names.h"
+#include "core/volume/formats/tiff_description.h"
 
 namespace dubsar {
 namespace {
@@ -23,33 +21,6 @@ struct Slice {
   fs::path file;
   std::uint64_t page = 0;
 };
-
-bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
-
-// Runs of digits compare by value, everything else by byte.
-bool natural_less(const std::string& a, const std::string& b) {
-  std::size_t i = 0, j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (is_digit(a[i]) && is_digit(b[j])) {
-      const auto run = [](const std::string& text, std::size_t& at) {
-        while (at < text.size() && text[at] == '0') ++at;
-        const std::size_t begin = at;
-        while (at < text.size() && is_digit(text[at])) ++at;
-        return text.substr(begin, at - begin);
-      };
-      const std::string m = run(a, i), n = run(b, j);
-      if (m.size() != n.size()) return m.size() < n.size();
-      if (m != n) return m < n;
-    } else if (a[i] != b[j]) {
-      return a[i] < b[j];
-    } else {
-      ++i;
-      ++j;
-    }
-  }
-  if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
-  return a < b;
-}
 
 std::optional<ScalarType> type_of(const TiffPage& page) {
   const char* const kind = page.sample == TiffPage::Sample::kUnsigned ? "uint"
@@ -116,44 +87,33 @@ class SliceReader final : public VoxelReader {
   NumberFormat format_;
 };
 
-std::map<std::string, std::string> imagej_fields(const std::string& description) {
-  std::map<std::string, std::string> fields;
-  if (description.rfind("ImageJ=", 0) != 0) return fields;
-  for (std::size_t begin = 0; begin < description.size();) {
-    const std::size_t end = std::min(description.find('\n', begin), description.size());
-    const std::string line = description.substr(begin, end - begin);
-    if (const auto equals = line.find('='); equals != std::string::npos)
-      fields[line.substr(0, equals)] = line.substr(equals + 1);
-    begin = end + 1;
+VoxelSize voxel_size(const TiffPage& page, const TiffDescription& said, std::vector<std::string>& warnings) {
+  if (said.spacing < 0.0)
+    warnings.push_back(fmt::format(
+        "the {} spacing is negative: the slices may be stored last first, and the volume then is a mirror image; "
+        "a given axis order states it (-zyx: the slices run backwards)",
+        said.said_by));
+  if (said.voxel_mm.x > 0.0 && said.voxel_mm.y > 0.0) {
+    VoxelSize size{said.voxel_mm, said.said_by + " PhysicalSize"};
+    if (!(size.mm.z > 0.0)) {
+      size.mm.z = size.mm.x;
+      warnings.push_back(fmt::format("the {} states no PhysicalSizeZ, that of the pixels in x is taken", said.said_by));
+    }
+    return size;
   }
-  return fields;
-}
-
-double number_or(const std::map<std::string, std::string>& fields, const char* key, double otherwise) {
-  const auto found = fields.find(key);
-  if (found == fields.end()) return otherwise;
-  double value = otherwise;
-  std::from_chars(found->second.data(), found->second.data() + found->second.size(), value);
-  return std::isfinite(value) ? value : otherwise;
-}
-
-VoxelSize voxel_size(const TiffPage& page, std::vector<std::string>& warnings) {
-  const auto fields = imagej_fields(page.description);
-  const auto stated = fields.find("unit");
-  const auto unit = stated != fields.end() ? mm_per_unit(stated->second) : std::nullopt;
-  const double unit_mm = unit ? *unit : page.resolution.unit_mm;
-  if (page.resolution.x_per_unit <= 0.0 || page.resolution.y_per_unit <= 0.0 || unit_mm <= 0.0) return {};
+  const double unit_mm = said.unit_mm ? *said.unit_mm : page.resolution.unit_mm;
+  const double between = said.unit_mm ? std::abs(said.spacing) * unit_mm : 0.0;
+  if (page.resolution.x_per_unit <= 0.0 || page.resolution.y_per_unit <= 0.0 || unit_mm <= 0.0) {
+    if (between <= 0.0) return {};
+    warnings.push_back(fmt::format(
+        "the {} description states the distance of the slices only, pixels are taken as wide", said.said_by));
+    return {glm::dvec3(between), fmt::format("{} spacing (x and y taken like z)", said.said_by)};
+  }
   const glm::dvec3 mm(unit_mm / page.resolution.x_per_unit, unit_mm / page.resolution.y_per_unit, 0.0);
   if (!std::isfinite(mm.x + mm.y)) return {};
-  if (number_or(fields, "spacing", 0.0) < 0.0)
-    warnings.emplace_back(
-        "the ImageJ spacing is negative: the slices may be stored last first, and the volume then is a mirror image; "
-        "a given axis order states it (-zyx: the slices run backwards)");
-  if (unit)
-    if (const double spacing = number_or(fields, "spacing", 0.0); spacing != 0.0)
-      return {{mm.x, mm.y, std::abs(spacing) * unit_mm}, "TIFF resolution tags and ImageJ spacing"};
+  if (between > 0.0) return {{mm.x, mm.y, between}, fmt::format("TIFF resolution tags and {} spacing", said.said_by)};
   for (const double default_dpi : {72.0, 96.0, 100.0, 150.0, 300.0, 600.0})
-    if (!unit && std::abs(25.4 / mm.x - default_dpi) < 0.01) {
+    if (!said.unit_mm && std::abs(25.4 / mm.x - default_dpi) < 0.01) {
       warnings.push_back(
           fmt::format("the TIFF resolution of {} dpi is a habit of picture programs and is not used as voxel "
                       "size",
@@ -164,14 +124,20 @@ VoxelSize voxel_size(const TiffPage& page, std::vector<std::string>& warnings) {
   return {{mm.x, mm.y, mm.x}, "TIFF resolution tags (z taken like x)"};
 }
 
-// ImageJ writes stacks above 4 GiB as one page and the rest of the slices behind it.
-std::int64_t imagej_slices_behind(const TiffPage& page) {
-  const auto fields = imagej_fields(page.description);
-  const double images = number_or(fields, "images", 1.0);
-  return images > 1.0 && images <= 65535.0 && page.data_offset >= 0 ? static_cast<std::int64_t>(images) : 1;
+/// Where rows and columns of the pixels begin (tag 274), as an order of axes.
+AxisOrder axes_of(int orientation) {
+  AxisOrder axes;
+  if (orientation <= 1 || orientation > 8) return axes;
+  const bool turned = orientation >= 5;  // rows of pixels are columns of the picture
+  if (turned) axes.stored = {1, 0, 2};
+  const bool right = orientation == 2 || orientation == 3 || orientation == 6 || orientation == 7;
+  const bool bottom = orientation == 3 || orientation == 4 || orientation == 7 || orientation == 8;
+  axes.backwards = {right, bottom, false};
+  axes.provenance = fmt::format("TIFF orientation {}", orientation);
+  return axes;
 }
 
-Result<std::vector<fs::path>> files_of(const ImportOptions& options) {
+Result<SliceSeries> files_of(const ImportOptions& options) {
   std::error_code error;
   const bool folder = fs::is_directory(options.path, error);
   const fs::path parent = folder ? options.path : options.path.has_parent_path() ? options.path.parent_path() : ".";
@@ -191,10 +157,7 @@ Result<std::vector<fs::path>> files_of(const ImportOptions& options) {
                 "import_tiff: {} holds no TIFF files{}, expected the "
                 "slices of a volume",
                 parent.string(), folder ? "" : fmt::format(" called {}", pattern));
-  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-    return natural_less(a.filename().string(), b.filename().string());
-  });
-  return files;
+  return order_slices(std::move(files), options.path.string());
 }
 
 Result<void> check_page(const fs::path& file, const TiffPage& page) {
@@ -218,19 +181,38 @@ bool is_slice_pattern(const std::filesystem::path& path) {
 
 Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
   std::error_code ignored;
-  std::vector<fs::path> files{options.path};
+  SliceSeries series{{options.path}, {}};
   if (!fs::is_regular_file(options.path, ignored)) {
-    DUBSAR_ASSIGN(files, files_of(options));
+    DUBSAR_ASSIGN(series, files_of(options));
   }
+  const std::vector<fs::path>& files = series.files;
   std::vector<Slice> slices;
   std::optional<TiffPage> first;
+  TiffDescription said;
   for (const fs::path& path : files) {
     DUBSAR_ASSIGN(TiffFile file, TiffFile::open(path));
     DUBSAR_ASSIGN(const std::vector<TiffPage> pages, file.pages());
     for (const TiffPage& page : pages) {
       if (page.reduced) continue;
       DUBSAR_TRY(check_page(path, page));
-      if (!first) first = page;
+      if (!first) {
+        first = page;
+        said = parse_tiff_description(page.texts.description);
+        if (said.several)
+          return fail(
+              ErrorKind::kBadData,
+              "import_tiff: {} holds several channels or time points ({}), expected one volume; save the one that "
+              "is wanted as a file of its own",
+              options.path.string(), said.several_of);
+      }
+      if (&page != &pages.front() && page.texts.description.starts_with("{\"shape\"") &&
+          parse_tiff_description(page.texts.description).images > 1)
+        return fail(ErrorKind::kBadData, "import_tiff: {} holds several series of pictures, expected one volume",
+                    path.string());
+      if (page.orientation != first->orientation)
+        return fail(ErrorKind::kBadData,
+                    "import_tiff: {} has the orientation {} (tag 274), but the slices before it {}; expected one",
+                    path.string(), page.orientation, first->orientation);
       if (page.width != first->width || page.height != first->height || type_of(page) != type_of(*first))
         return fail(
             ErrorKind::kBadData,
@@ -243,11 +225,8 @@ Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
   }
   if (!first) return fail(ErrorKind::kBadData, "import_tiff: {} holds thumbnails only", options.path.string());
   const ScalarType type = *type_of(*first);
-  const auto fields = imagej_fields(first->description);
-  if (number_or(fields, "channels", 1.0) > 1.0 || number_or(fields, "frames", 1.0) > 1.0)
-    return fail(ErrorKind::kBadData, "import_tiff: {} holds several channels or time points, expected one volume",
-                options.path.string());
-  const std::int64_t behind = slices.size() == 1 ? imagej_slices_behind(*first) : 1;
+  // ImageJ above 4 GiB and tifffile where it was told to write one page and the rest of the slices behind it.
+  const std::int64_t behind = slices.size() == 1 && first->data_offset >= 0 ? said.images : 1;
   const std::int64_t depth = std::max(behind, static_cast<std::int64_t>(slices.size()));
   if (depth < 2)
     return fail(ErrorKind::kBadData,
@@ -270,6 +249,7 @@ Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
                 "import_tiff: {} unpacks {} bytes to {}, expected at most 250:1; if you know the files, "
                 "say that they are trusted",
                 options.path.string(), info.stored.storage_bytes, info.stored.logical_bytes);
+  if (files.size() > 1 || files.front() != options.path) opened.files = files;
   info.format = "tiff";
   info.found_by = files.size() > 1 ? fmt::format("{} files", files.size()) : "pages of one file";
   info.stored.dtype = scalar_name(type);
@@ -277,13 +257,21 @@ Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
   info.stored.layout = "slices";
   if (first->compression != "none") info.stored.filters = {first->compression};
   info.stored.may_have_nonfinite = is_float(type);
-  info.voxel = voxel_size(*first, info.warnings);
+  info.warnings = std::move(series.warnings);
+  if (said.slices > 1 && said.slices != depth)
+    info.warnings.push_back(
+        fmt::format("the {} description says {} slices, {} are here", said.said_by, said.slices, depth));
+  info.voxel = voxel_size(*first, said, info.warnings);
+  info.axes = axes_of(first->orientation);
   if (behind > 1) {
     DUBSAR_ASSIGN(InputFile file, InputFile::open(files.front()));
     std::vector<FlatSegment> segments;
     segments.push_back({std::move(file), first->data_offset, info.stored.logical_bytes});
     const ByteOrder order = first->big_endian ? ByteOrder::kBig : ByteOrder::kLittle;
-    DUBSAR_ASSIGN(opened.reader, make_flat_reader({info.file_dims, {type, order, {}}, std::move(segments)}));
+    ScalarMap map;  // as read_gray() does
+    if (first->white_is_zero && first->sample == TiffPage::Sample::kUnsigned)
+      map = {-1.0, std::ldexp(1.0, first->bits) - 1.0, {}};
+    DUBSAR_ASSIGN(opened.reader, make_flat_reader({info.file_dims, {type, order, map}, std::move(segments)}));
   } else {
     opened.reader = std::make_unique<SliceReader>(std::move(slices), *first);
   }

@@ -2,6 +2,7 @@
 
 #include <hdf5.h>
 
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
@@ -261,6 +262,48 @@ void Hdf5Fixture::attribute(const std::string& object, const std::string& name, 
   H5Tclose(type);
   H5Sclose(space);
   H5Oclose(parent);
+}
+
+void Hdf5Fixture::integers(const std::string& object, const std::string& name, const std::vector<int>& values) {
+  const hid_t parent = good(H5Oopen(id_, object.c_str(), H5P_DEFAULT)), space = space_of({values.size()});
+  const hid_t id = good(H5Acreate2(parent, name.c_str(), H5T_STD_I32LE, space, H5P_DEFAULT, H5P_DEFAULT));
+  good(H5Awrite(id, H5T_NATIVE_INT, values.data()));
+  H5Aclose(id);
+  H5Sclose(space);
+  H5Oclose(parent);
+}
+
+void Hdf5Fixture::characters(const std::string& object, const std::string& name, const std::string& text) {
+  const hsize_t count = text.size();
+  const hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate_simple(1, &count, nullptr);
+  const hid_t parent = H5Oopen(id_, object.c_str(), H5P_DEFAULT);
+  const hid_t attribute = H5Acreate2(parent, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(attribute, type, text.data());
+  H5Aclose(attribute);
+  H5Oclose(parent);
+  H5Sclose(space);
+  H5Tclose(type);
+}
+
+void Hdf5Fixture::dimension_scale(const std::string& scale, const std::string& dataset, int axis) {
+  attribute(scale, "CLASS", std::string("DIMENSION_SCALE"));
+  struct Entry {
+    hobj_ref_t object;
+    int axis;
+  } entry{};
+  H5Rcreate(&entry.object, id_, dataset.c_str(), H5R_OBJECT, -1);
+  entry.axis = axis;
+  const hsize_t one = 1;
+  const hid_t type = H5Tcreate(H5T_COMPOUND, sizeof(Entry)), space = H5Screate_simple(1, &one, nullptr);
+  H5Tinsert(type, "dataset", offsetof(Entry, object), H5T_STD_REF_OBJ);
+  H5Tinsert(type, "dimension", offsetof(Entry, axis), H5T_NATIVE_INT);
+  const hid_t parent = H5Oopen(id_, scale.c_str(), H5P_DEFAULT);
+  const hid_t list = H5Acreate2(parent, "REFERENCE_LIST", type, space, H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(list, type, &entry);
+  H5Aclose(list);
+  H5Oclose(parent);
+  H5Sclose(space);
+  H5Tclose(type);
 }
 
 }  // namespace dubsar::testing_tools

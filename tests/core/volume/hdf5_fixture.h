@@ -55,6 +55,12 @@ class Hdf5Fixture {
   /// Variable-length strings, as h5py writes them.
   void attribute(const std::string& object, const std::string& name, const std::vector<std::string>& texts);
 
+  void integers(const std::string& object, const std::string& name, const std::vector<int>& values);
+  /// A text as an array of single characters, as Imaris writes them.
+  void characters(const std::string& object, const std::string& name, const std::string& text);
+  /// Makes `scale` the coordinates of one axis of a dataset (CLASS, NAME and REFERENCE_LIST).
+  void dimension_scale(const std::string& scale, const std::string& dataset, int axis);
+
  private:
   std::int64_t id_ = -1;
   std::vector<int> filters_;

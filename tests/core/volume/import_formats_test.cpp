@@ -218,6 +218,8 @@ TEST_F(ImportFormats, TiffPagesFoldersAndPatternsAreStacks) {
   write_bytes(in("slices/._s8.tif"), fixture.bytes({pages[0]}));
   expect_ramp(open("slices"), 0, "folder");
   write_bytes(in("slices/preview.tif"), TiffFixture{.width = 2, .height = 2, .bits = 8}.bytes({{1, 2, 3, 4}}));
+  expect_refused("slices", {"several series of names: preview.tif (1 file) and s*.tif (4 files)", "pattern"});
+  std::filesystem::rename(in("slices/preview.tif"), in("slices/s12.tif"));
   expect_refused("slices", {"expected slices of one size", "pattern"});
   expect_ramp(open("slices/s*.tif"), 0, "pattern");
   EXPECT_EQ(open("slices/t*.tif").error().kind, ErrorKind::kNoInput);
