@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/files/atomic_file.h"
+#include "core/base/system/log.h"
 #include "core/base/text/json_fields.h"
 #include "core/base/text/json_text.h"
 #include "display/panels/lens_fields.h"
@@ -54,6 +55,8 @@ Result<PanelCalibration> parse_calibration(std::string_view json_text, std::stri
   sheet.screen_width = fields.integer("screenW", 1, kMostPanelPx);
   sheet.screen_height = fields.integer("screenH", 1, kMostPanelPx);
   sheet.flip_image_x = fields.flag("flipImageX", false);
+  if (fields.flag("flipImageY", false))
+    log_warning("calibration {}: flipImageY is 1, which is not followed: the picture may stand on its head", source);
   sheet.flip_subpixels = fields.flag("flipSubp", false);
   const double forty = 40.0;
   calibration.view_cone_deg = fields.number("viewCone", 1.0, 170.0, &forty);

@@ -87,8 +87,12 @@ PictureLayout layout_of_name(std::string_view file_name) {
   const auto slash = file_name.find_last_of('/');
   std::string name = lower_text(slash == std::string_view::npos ? file_name : file_name.substr(slash + 1));
   if (const auto quilt = parse_quilt_name(name)) return quilt_layout(*quilt);
-  if (const auto dot = name.rfind('.'); dot != std::string::npos) name.erase(dot);
   PictureLayout layout;
+  if (name.ends_with(".jps") || name.ends_with(".pns")) {
+    layout.kind = Kind::kSideBySide;
+    layout.right_first = true;
+  }
+  if (const auto dot = name.rfind('.'); dot != std::string::npos) name.erase(dot);
   std::size_t at = 0;
   for (bool first = true; at <= name.size(); first = false) {
     const std::size_t end = std::min(name.find_first_of("_-. ", at), name.size());

@@ -15,20 +15,23 @@ namespace dubsar {
 class ViewArray;
 
 struct PictureLayout {
-  enum class Kind { kPlain, kSideBySide, kTopBottom, kQuilt };
+  enum class Kind { kPlain, kSideBySide, kTopBottom, kQuilt, kSeparate };
   Kind kind = Kind::kPlain;
   bool half = false;          ///< pairs: each view is squeezed to half, so that both fill one picture of their shape
   bool right_first = false;   ///< pairs: the right eye's view is at the left or on top
-  int columns = 1, rows = 1;  ///< kQuilt
+  int columns = 1, rows = 1;  ///< kQuilt; kSeparate: columns pictures of one file, leftmost first
   std::optional<double> aspect{};  ///< kQuilt: of what is seen, width / height; none: that of a tile
   friend bool operator==(const PictureLayout&, const PictureLayout&) = default;
 
-  int views() const noexcept { return kind == Kind::kQuilt ? columns * rows : kind == Kind::kPlain ? 1 : 2; }
+  int views() const noexcept {
+    return kind == Kind::kPlain ? 1 : kind == Kind::kSideBySide || kind == Kind::kTopBottom ? 2 : columns * rows;
+  }
 };
 
 /// What a file's name says before its extension, in any case and order, with '_', '-', '.' or blanks between:
 /// qs8x6a0.75 (a quilt), sbs or lr, rl (right first), tb or ou, bt (right first), half; hsbs, htb, hou are halves.
-/// kPlain when it says nothing.
+/// Files called .jps or .pns are pairs side by side, right first (cross-eyed), as that format has them. kPlain when it
+/// says nothing.
 PictureLayout layout_of_name(std::string_view file_name);
 
 /// The same from an option's text: "plain", or the words above with ',' between, such as "sbs,half" or "qs8x6a0.75".

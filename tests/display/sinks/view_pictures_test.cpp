@@ -32,6 +32,9 @@ TEST(PictureLayout, IsWhatTheNameSays) {
       {"tablet_tb.tiff", {.kind = Kind::kTopBottom}},
       {"tablet_hou_old.png", {.kind = Kind::kTopBottom, .half = true}},
       {"tablet_half.png", {}},
+      {"tablet.jps", {.kind = Kind::kSideBySide, .right_first = true}},  // cross-eyed
+      {"a_b.PNS", {.kind = Kind::kSideBySide, .right_first = true}},
+      {"tablet_lr.jps", {.kind = Kind::kSideBySide}},
       {"tablet_qs8x6a0.75.png", {.kind = Kind::kQuilt, .columns = 8, .rows = 6, .aspect = 0.75}},
       {"tablet_QS5x9.png", {.kind = Kind::kQuilt, .columns = 5, .rows = 9}},
   };
