@@ -126,7 +126,7 @@ Result<void> dress_parts(const RenderRequest& options, const TriMesh& mesh, Shad
   }
   ViewOptions first;
   first.work.document.unpack = 0.01 * options.look.unpack;
-  const Document document = first_document(first, mesh);
+  const Document document = first_document(first, mesh).document;
   if (document.unpack > 0 && !can_unpack(document))
     return fail(ErrorKind::kUsage, "--unpack: there is no envelope in the file that could be lifted from something");
   shading.parts = laid_out(document, shading.parts, box);

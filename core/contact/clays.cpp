@@ -19,7 +19,7 @@ constexpr std::size_t kLeastNodes = 150;  ///< of each layer over a piece
 constexpr std::size_t kLeastPieces = 6;
 constexpr float kSignificance = 5.0f;
 /// Of the difference, noise that is taken for at least: as of a scan of 8 bits. Without any, votes would have no end.
-constexpr float kLeastNoise = 1.0f / 256.0f;
+constexpr float kLeastClayNoise = 1.0f / 256.0f;
 /// Layers of clay by their height over the patch, in parts of the band's reach: deep in the tablet, in the tablet, in
 /// the envelope.
 constexpr std::array<std::array<float, 2>, 3> kLayers{{{-0.95f, -0.65f}, {-0.6f, -0.3f}, {0.3f, 0.95f}}};
@@ -102,7 +102,7 @@ std::optional<ClayContrast> compare_clays(const ContactBand& band, const BitVolu
   if (steps.size() < kLeastPieces || without_gradient.size() < kLeastPieces) return std::nullopt;
   const Mean step = mean_of(steps), own = mean_of(without_gradient);
   ClayContrast contrast;
-  contrast.deviation = std::max(median(deviations), kLeastNoise * std::abs(step.value));
+  contrast.deviation = std::max(median(deviations), kLeastClayNoise * std::abs(step.value));
   const bool significant = std::abs(step.value) > kSignificance * step.error &&
                            std::abs(own.value) > 0.5f * kSignificance * own.error &&
                            own.value * step.value > 0.5f * step.value * step.value;

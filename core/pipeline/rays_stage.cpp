@@ -17,7 +17,7 @@ namespace {
 /// out as 2.5.
 constexpr std::int64_t kQuickWidest = 128, kFineWidest = 320;
 /// How far from the other material clay and air are sure: a part of the longest axis, but a few cells at least.
-constexpr std::int64_t kMarginOfWidth = 43, kLeastMargin = 3;
+constexpr std::int64_t kMarginOfWidth = 43, kLeastRaysMargin = 3;
 /// Slices of a large grid do not stay in the caches as those of the search do.
 constexpr double kLargeFactor = 1.5;
 
@@ -26,7 +26,7 @@ Result<CurveSearch> search_in(SlabSource& source, std::int64_t widest, std::opti
                               double voxels_a_step, StageRun run) {
   DUBSAR_ASSIGN(const CoarseVolume coarse, read_coarse_volume(source, widest, run.progress));
   const Dims d = coarse.volume.dims;
-  const std::int64_t margin = std::max(kLeastMargin, std::max({d.x, d.y, d.z}) / kMarginOfWidth);
+  const std::int64_t margin = std::max(kLeastRaysMargin, std::max({d.x, d.y, d.z}) / kMarginOfWidth);
   DUBSAR_ASSIGN(CurveSearch search, search_curve(coarse.volume, margin, only, run.progress));
   if (search.found) search.found->curve.longest *= static_cast<double>(coarse.cell) * voxels_a_step;
   return search;

@@ -11,9 +11,8 @@ namespace dubsar {
 namespace {
 
 using kernels::kLanes;
-constexpr std::size_t kTerms = RayCurve::kTerms;
-using Vector = std::array<double, kTerms>;
-using Matrix = std::array<Vector, kTerms>;
+using Vector = std::array<double, RayCurve::kTerms>;
+using Matrix = std::array<Vector, RayCurve::kTerms>;
 
 /// Groups of kLanes planes, spread over the object.
 constexpr std::int64_t kGroups = 2;
@@ -35,29 +34,29 @@ struct Moments {
   double count = 0.0;
 
   void add(const Vector& v, const Vector& w) {
-    for (std::size_t i = 0; i < kTerms; ++i) {
+    for (std::size_t i = 0; i < RayCurve::kTerms; ++i) {
       sums[i] += 0.5 * (v[i] + w[i]);
-      for (std::size_t j = i; j < kTerms; ++j) products[i][j] += 0.5 * (v[i] * w[j] + v[j] * w[i]);
+      for (std::size_t j = i; j < RayCurve::kTerms; ++j) products[i][j] += 0.5 * (v[i] * w[j] + v[j] * w[i]);
     }
     count += 1.0;
   }
   void add(const Moments& other) {
-    for (std::size_t i = 0; i < kTerms; ++i) {
+    for (std::size_t i = 0; i < RayCurve::kTerms; ++i) {
       sums[i] += other.sums[i];
-      for (std::size_t j = i; j < kTerms; ++j) products[i][j] += other.products[i][j];
+      for (std::size_t j = i; j < RayCurve::kTerms; ++j) products[i][j] += other.products[i][j];
     }
     count += other.count;
   }
   double product(std::size_t i, std::size_t j) const { return products[std::min(i, j)][std::max(i, j)] / count; }
   double mean(const Vector& c) const {
     double sum = 0.0;
-    for (std::size_t i = 0; i < kTerms; ++i) sum += c[i] * sums[i];
+    for (std::size_t i = 0; i < RayCurve::kTerms; ++i) sum += c[i] * sums[i];
     return sum / count;
   }
   double deviation(const Vector& c) const {
     double sum = 0.0;
-    for (std::size_t i = 0; i < kTerms; ++i)
-      for (std::size_t j = 0; j < kTerms; ++j) sum += c[i] * c[j] * product(i, j);
+    for (std::size_t i = 0; i < RayCurve::kTerms; ++i)
+      for (std::size_t j = 0; j < RayCurve::kTerms; ++j) sum += c[i] * c[j] * product(i, j);
     const double m = mean(c);
     return std::sqrt(std::max(0.0, sum - m * m));
   }
@@ -98,7 +97,7 @@ std::vector<std::int64_t> planes_to_look_at(const SureMaterials& sure, const Pla
 /// The images at a pixel.
 Vector values_at(const std::vector<LaneImage>& images, std::int64_t x, std::int64_t y, std::size_t lane) {
   Vector v{};
-  for (std::size_t k = 0; k < kTerms; ++k) v[k] = images[k].at(x, y)[lane];
+  for (std::size_t k = 0; k < RayCurve::kTerms; ++k) v[k] = images[k].at(x, y)[lane];
   return v;
 }
 
@@ -137,9 +136,10 @@ Evenness evenness(const Evidence& evidence, const Vector& c) {
 Vector fit(const Evidence& evidence) {
   Matrix gram{};
   Vector right{};
-  for (std::size_t i = 0; i < kTerms; ++i) {
+  for (std::size_t i = 0; i < RayCurve::kTerms; ++i) {
     right[i] = evidence.clay.sums[i] / evidence.clay.count;
-    for (std::size_t j = 0; j < kTerms; ++j) gram[i][j] = evidence.clay.product(i, j) + evidence.air.product(i, j);
+    for (std::size_t j = 0; j < RayCurve::kTerms; ++j)
+      gram[i][j] = evidence.clay.product(i, j) + evidence.air.product(i, j);
     gram[i][i] += kRidge;
   }
   return nonnegative_fit(gram, right);
@@ -152,12 +152,12 @@ Result<std::optional<CurveTrial>> try_axis(const Volume<float>& volume, const Su
   const std::vector<std::int64_t> planes = planes_to_look_at(sure, at);
   const ParallelRays rays(at.width, at.height, std::max(at.width, at.height));
   const auto groups = (static_cast<std::int64_t>(planes.size()) + kLanes - 1) / kLanes;
-  crossings += groups * kLanes * at.width * at.height * rays.directions() * static_cast<std::int64_t>(kTerms);
+  crossings += groups * kLanes * at.width * at.height * rays.directions() * static_cast<std::int64_t>(RayCurve::kTerms);
   const auto part = [&](std::size_t first) {
     return std::span(planes).subspan(first, std::min<std::size_t>(kLanes, planes.size() - first));
   };
   std::vector<LaneImage> images;
-  for (std::size_t term = 0; term < kTerms; ++term) images.push_back(rays.image());
+  for (std::size_t term = 0; term < RayCurve::kTerms; ++term) images.push_back(rays.image());
   std::vector<LaneSinogram> recorded;
   float longest = 0.0F;
   for (std::size_t first = 0; first < planes.size(); first += kLanes) {
@@ -175,7 +175,7 @@ Result<std::optional<CurveTrial>> try_axis(const Volume<float>& volume, const Su
   for (std::size_t first = 0; first < planes.size(); first += kLanes) {
     load_planes(volume.voxels.data(), at, part(first), sure.levels, images[0]);
     const LaneSinogram& p = recorded[first / kLanes];
-    for (std::size_t term = 1; term < kTerms; ++term) {
+    for (std::size_t term = 1; term < RayCurve::kTerms; ++term) {
       if (progress.cancelled()) return cancelled_error();
       parallel_for(rays.directions(), 4, [&](std::int64_t k) {
         for (std::int64_t i = 0; i < p.row_floats(); ++i) {

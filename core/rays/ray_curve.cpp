@@ -6,38 +6,37 @@
 namespace dubsar {
 namespace {
 
-constexpr std::size_t kTerms = RayCurve::kTerms;
-using Vector = std::array<double, kTerms>;
-using Matrix = std::array<Vector, kTerms>;
-using Chosen = std::array<bool, kTerms>;
+using Vector = std::array<double, RayCurve::kTerms>;
+using Matrix = std::array<Vector, RayCurve::kTerms>;
+using Chosen = std::array<bool, RayCurve::kTerms>;
 
 /// The unknowns that are `chosen`, by Gauss' elimination with the largest pivot; the others are 0.
 Vector solve(const Matrix& gram, const Vector& right, const Chosen& chosen) {
   Matrix a{};
   Vector b{};
-  for (std::size_t i = 0; i < kTerms; ++i) {
+  for (std::size_t i = 0; i < RayCurve::kTerms; ++i) {
     a[i][i] = 1.0;
     if (!chosen[i]) continue;
     b[i] = right[i];
-    for (std::size_t j = 0; j < kTerms; ++j) a[i][j] = chosen[j] ? gram[i][j] : 0.0;
+    for (std::size_t j = 0; j < RayCurve::kTerms; ++j) a[i][j] = chosen[j] ? gram[i][j] : 0.0;
   }
-  for (std::size_t k = 0; k < kTerms; ++k) {
+  for (std::size_t k = 0; k < RayCurve::kTerms; ++k) {
     std::size_t pivot = k;
-    for (std::size_t i = k + 1; i < kTerms; ++i)
+    for (std::size_t i = k + 1; i < RayCurve::kTerms; ++i)
       if (std::abs(a[i][k]) > std::abs(a[pivot][k])) pivot = i;
     std::swap(a[k], a[pivot]);
     std::swap(b[k], b[pivot]);
     if (a[k][k] == 0.0) continue;
-    for (std::size_t i = k + 1; i < kTerms; ++i) {
+    for (std::size_t i = k + 1; i < RayCurve::kTerms; ++i) {
       const double factor = a[i][k] / a[k][k];
-      for (std::size_t j = k; j < kTerms; ++j) a[i][j] -= factor * a[k][j];
+      for (std::size_t j = k; j < RayCurve::kTerms; ++j) a[i][j] -= factor * a[k][j];
       b[i] -= factor * b[k];
     }
   }
   Vector x{};
-  for (std::size_t k = kTerms; k-- > 0;) {
+  for (std::size_t k = RayCurve::kTerms; k-- > 0;) {
     double sum = b[k];
-    for (std::size_t j = k + 1; j < kTerms; ++j) sum -= a[k][j] * x[j];
+    for (std::size_t j = k + 1; j < RayCurve::kTerms; ++j) sum -= a[k][j] * x[j];
     x[k] = a[k][k] != 0.0 ? sum / a[k][k] : 0.0;
   }
   return x;
@@ -49,7 +48,7 @@ double RayCurve::value(double p) const noexcept {
   if (p <= 0.0) return coefficients[0] * p;
   const double t = std::min(p / longest, 1.0);
   double sum = 0.0;
-  for (std::size_t k = kTerms; k-- > 0;) sum = sum * t + coefficients[k];
+  for (std::size_t k = RayCurve::kTerms; k-- > 0;) sum = sum * t + coefficients[k];
   const double inside = sum * t * longest;
   return p > longest ? inside + (p - longest) * slope(longest) : inside;
 }
@@ -57,7 +56,7 @@ double RayCurve::value(double p) const noexcept {
 double RayCurve::slope(double p) const noexcept {
   const double t = std::clamp(p / longest, 0.0, 1.0);
   double sum = 0.0;
-  for (std::size_t k = kTerms; k-- > 0;) sum = sum * t + static_cast<double>(k + 1) * coefficients[k];
+  for (std::size_t k = RayCurve::kTerms; k-- > 0;) sum = sum * t + static_cast<double>(k + 1) * coefficients[k];
   return sum;
 }
 
@@ -67,27 +66,27 @@ Vector nonnegative_fit(const Matrix& gram, const Vector& right) {
   double largest = 0.0;
   for (const double r : right) largest = std::max(largest, std::abs(r));
   // Each round takes in one unknown for good or drops one; thrice as many rounds as unknowns are known to be enough.
-  for (std::size_t round = 0; round < 3 * kTerms; ++round) {
-    std::size_t best = kTerms;
+  for (std::size_t round = 0; round < 3 * RayCurve::kTerms; ++round) {
+    std::size_t best = RayCurve::kTerms;
     double steepest = 1e-12 * largest;
-    for (std::size_t i = 0; i < kTerms; ++i) {
+    for (std::size_t i = 0; i < RayCurve::kTerms; ++i) {
       if (chosen[i]) continue;
       double down = right[i];
-      for (std::size_t j = 0; j < kTerms; ++j) down -= gram[i][j] * x[j];
+      for (std::size_t j = 0; j < RayCurve::kTerms; ++j) down -= gram[i][j] * x[j];
       if (down > steepest) steepest = down, best = i;
     }
-    if (best == kTerms) break;
+    if (best == RayCurve::kTerms) break;
     chosen[best] = true;
     for (;;) {
       const Vector wanted = solve(gram, right, chosen);
       double part = 1.0;  // of the way to `wanted` before an unknown becomes negative
-      for (std::size_t i = 0; i < kTerms; ++i)
+      for (std::size_t i = 0; i < RayCurve::kTerms; ++i)
         if (chosen[i] && wanted[i] <= 0.0) part = std::min(part, x[i] / (x[i] - wanted[i]));
       if (!(part < 1.0)) {
         x = wanted;
         break;
       }
-      for (std::size_t i = 0; i < kTerms; ++i) {
+      for (std::size_t i = 0; i < RayCurve::kTerms; ++i) {
         if (!chosen[i]) continue;
         x[i] += part * (wanted[i] - x[i]);
         if (wanted[i] <= 0.0 && x[i] <= 1e-14) x[i] = 0.0, chosen[i] = false;
