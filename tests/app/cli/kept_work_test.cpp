@@ -43,7 +43,7 @@ class KeptWork : public ::testing::Test {
     std::ofstream(steps) << says << "+0.1 close\n+0.1 close\n+0.1 close\n+0.1 close\n";
     std::vector<std::string> arguments{"view"};
     for (const fs::path& file : files) arguments.push_back(file.string());
-    for (const char* each : {"--windowed", "--size", "160x120", "--seconds", "30", "--bridge-port", "0", "--steps"})
+    for (const char* each : {"--windowed", "--size", "160x120", "--seconds", "100", "--bridge-port", "0", "--steps"})
       arguments.emplace_back(each);
     arguments.push_back(steps.string());
     return run_dubsar(arguments, options);
@@ -136,7 +136,7 @@ TEST_F(KeptWork, OfTwoWindowsAtOnce) {
       std::ofstream(folder_ / name) << fmt::format("0.1 add_note 3,3,0 {}\n+{} close\n+0.1 close\n+0.1 close\n", text,
                                                    wait_s);
       std::vector<std::string> arguments = view;
-      arguments.insert(arguments.end(), {"--seconds", "30", "--steps", (folder_ / name).string()});
+      arguments.insert(arguments.end(), {"--seconds", "100", "--steps", (folder_ / name).string()});
       return run_dubsar(arguments).exit_code;
     };
     auto other = std::async(std::launch::async, window, b, 2.5, "b.txt");
