@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
@@ -79,6 +80,7 @@ json json_of(const Document& document) {
 template <class Thing>
 void give_ids_to(std::vector<Thing>& things) {
   std::set<std::string> taken;
+  std::map<std::string, int> numbers;
   for (Thing& thing : things)
     if (!thing.id.empty() && !taken.insert(thing.id).second) thing.id.clear();  // somebody copied it by hand
   for (Thing& thing : things) {
@@ -87,7 +89,8 @@ void give_ids_to(std::vector<Thing>& things) {
     fields(writer, thing);
     const std::string id = bytes_checksum(writer.take().dump(-1, ' ', true, json::error_handler_t::replace));
     std::string free = id;
-    for (int number = 2; !taken.insert(free).second; ++number) free = fmt::format("{}-{}", id, number);
+    int& number = numbers[id];  // of many that are alike none begins to count anew
+    while (!taken.insert(free).second) free = fmt::format("{}-{}", id, ++number + 1);
     thing.id = std::move(free);
   }
 }
