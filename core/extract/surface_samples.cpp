@@ -32,6 +32,21 @@ SampleCounts count_samples(const BitVolume& signs) {
       });
 }
 
+double share_inside_at_border(const BitVolume& signs) {
+  const Dims d = signs.dims();
+  std::int64_t inside = 0, all = 0;
+  for (std::int64_t z = 0; z < d.z; ++z)
+    for (std::int64_t y = 0; y < d.y; ++y) {
+      const bool whole_row = z == 0 || y == 0 || z + 1 == d.z || y + 1 == d.y;
+      const std::int64_t step = whole_row ? 1 : std::max<std::int64_t>(1, d.x - 1);
+      for (std::int64_t x = 0; x < d.x; x += step) {
+        inside += signs.get(x, y, z) ? 1 : 0;
+        ++all;
+      }
+    }
+  return all == 0 ? 0.0 : static_cast<double>(inside) / static_cast<double>(all);
+}
+
 Result<void> check_signs(const SurfaceSamples& samples) {
   const Dims& dims = samples.dims;
   if (dims.x < 1 || dims.y < 1 || dims.z < 1 || samples.signs.dims() != dims) {

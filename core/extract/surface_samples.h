@@ -37,6 +37,9 @@ struct SampleCounts {
 /// Cost: one pass over the bits, all threads.
 SampleCounts count_samples(const BitVolume& signs);
 
+/// Share of the points on the six faces of the grid that are inside.
+double share_inside_at_border(const BitVolume& signs);
+
 /// kBadData when the samples contradict each other: sizes, counts, values out of range, padding bits set. `counts` are
 /// those of samples.signs.
 Result<void> check_samples(const SurfaceSamples& samples, const SampleCounts& counts);

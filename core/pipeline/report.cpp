@@ -166,6 +166,7 @@ PipelineReport make_report(const StageResults& results, const SurfaceModel& mode
                         .partitions = model.partitions,
                         .exa = {},
                         .stages = clock.records()};
+  if (!results.sampled.warning.empty()) report.scan.warnings.push_back(results.sampled.warning);
   report.filters.insert(report.filters.end(), results.filters.begin(), results.filters.end());
   return report;
 }

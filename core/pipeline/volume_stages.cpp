@@ -1,5 +1,7 @@
 #include "core/pipeline/volume_stages.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -48,6 +50,9 @@ Result<CountedGrid> fill_grid(SlabSource& source, const Budget& budget) {
   }
   return CountedGrid{std::move(grid), counts.take()};
 }
+
+/// Share of the border that is material where an object is cut by the volume on some sides.
+constexpr double kMostBorder = 0.6;
 
 /// Sharpening by 1 may double the noise: from here on it leaves at least what a raw scan of the paper has (17 dB).
 constexpr double kSharpenFromDb = 23.0, kAllFromDb = 27.0;
@@ -182,6 +187,13 @@ Result<void> extract_surface(SlabSource& source, const GridFacts& facts, const S
   }
   SlabSource& even = levelled ? static_cast<SlabSource&>(*levelled) : source;
   DUBSAR_ASSIGN(sampled.samples, sample_surface(even, {threshold, options.offset_bits, options.closed}, run.progress));
+  if (const double border = share_inside_at_border(sampled.samples.signs); border > kMostBorder) {
+    sampled.warning = fmt::format(
+        "{:.0f} % of the border of the volume count as material: either it was cropped inside the object, or air is "
+        "brighter than clay in this scan, whose grey values have to be inverted first",
+        100.0 * border);
+    log_warning("{}", sampled.warning);
+  }
   CavityRule rule;
   if (facts.blur) rule.blur_vox = std::sqrt(facts.blur->variance);
   DUBSAR_ASSIGN(sampled.noise, fill_noise_cavities(sampled.samples, even, rule, run.progress));

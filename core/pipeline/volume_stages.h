@@ -104,6 +104,7 @@ struct SampledSurface {
   std::optional<EdgeSpread> blur;     ///< of the grid before it was sharpened, where that was decided by it
   NoiseCavities noise;                ///< that became clay
   std::optional<LocalLevels> levels;  ///< where they were measured
+  std::string warning;                ///< for people; empty: none
 };
 
 /// How much sharpening the noise allows, in dB of what filters left.

@@ -38,7 +38,7 @@ struct Scan {
 struct Answer {
   std::map<std::string, double> volumes, areas;  ///< by part
   double threshold = 0.0, unmeasured = 0.0;
-  std::string text;  ///< of the report
+  std::string text, warnings;  ///< of the report
 };
 
 class Invariance : public ::testing::Test {
@@ -89,6 +89,7 @@ class Invariance : public ::testing::Test {
     found.threshold = static_cast<double>(result->report.threshold.value);
     found.unmeasured = result->report.scan.unmeasured.share;
     found.text = report_text(result->report);
+    for (const std::string& warning : result->report.scan.warnings) found.warnings += warning + "\n";
     return found;
   }
 
@@ -152,6 +153,13 @@ TEST_F(Invariance, GreyValuesMayHaveAnyScaleAndOffset) {
     expect_same(found, 5e-3, what);
     EXPECT_NEAR((found.threshold - double(b)) / double(a), plain_.threshold, 8.0) << what;
   }
+}
+
+TEST_F(Invariance, InvertedGreysAreToldInOneSentence) {
+  Scan inverted = scan_;
+  for (float& v : inverted.values) v = 20000.0f - v;
+  EXPECT_NE(answer(inverted).warnings.find("air is brighter than clay in this scan"), std::string::npos);
+  EXPECT_EQ(plain_.warnings.find("brighter"), std::string::npos);
 }
 
 TEST_F(Invariance, ChunksAndNumberTypesChangeNothing) {
