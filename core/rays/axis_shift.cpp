@@ -16,7 +16,7 @@ using kernels::kLanes;
 constexpr std::int64_t kNearest = 4, kFarthest = 14;
 /// Shifts that are made; what lies between is interpolated between their images.
 constexpr double kTried = 0.75, kMost = 1.0, kStep = 1.0 / 64.0;
-constexpr double kLeast = 0.08, kMostLeft = 0.9;
+constexpr double kLeast = 0.08, kMostAirShare = 0.9;
 
 using Energy = std::array<std::array<double, 3>, 3>;
 
@@ -133,7 +133,7 @@ AxisShift find_axis_shift(const ParallelRays& rays, const LaneImage& planes, con
     if (!(as_it_is > 0.0)) continue;
     for (double shift = -kMost; shift <= kMost; shift += kStep) {
       const double left = energy_at(energy, shift) / as_it_is;
-      if (std::abs(shift) < kLeast || left > kMostLeft || (best.pixels != 0.0 && left >= least)) continue;
+      if (std::abs(shift) < kLeast || left > kMostAirShare || (best.pixels != 0.0 && left >= least)) continue;
       best = {shift, flipped};
       least = left;
     }

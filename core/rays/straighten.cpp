@@ -38,12 +38,12 @@ class Difference {
 /// Pairs of planes from the middle half of the grid, two apart, so that their noise has nothing in common; none in a
 /// grid that is too thin.
 std::vector<std::int64_t> pairs_of_planes(std::int64_t all) {
-  constexpr std::int64_t kApart = 2;
+  constexpr std::int64_t kPlanesApart = 2;
   std::vector<std::int64_t> planes;
   if (all < 2 * kLanes) return planes;
   for (std::int64_t pair = 0; pair < kLanes / 2; ++pair) {
     planes.push_back(all / 4 + pair * (all / 2) / (kLanes / 2));
-    planes.push_back(planes.back() + kApart);
+    planes.push_back(planes.back() + kPlanesApart);
   }
   return planes;
 }
