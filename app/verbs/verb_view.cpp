@@ -222,12 +222,7 @@ Result<VerbResult> run_kiosk_of(const ViewRequest& given, Progress& progress) {
     return view;
   };
   DUBSAR_ASSIGN(const KioskOutcome done, run_kiosk({given.what.kiosk, options}, progress));
-  if (done.stopped) {
-    VerbResult out;
-    out.json = {{"stopped", true}, {"visits", done.counts.visits}, {"resets", done.counts.resets}};
-    out.text = fmt::format("the kiosk was ended from outside; {} visits\n", done.counts.visits);
-    return out;
-  }
+  if (done.stopped) return describe_stopped(done);
   VerbResult out =
       describe_session(done.display, done.last, done.triangles, given.panel.offscreen || given.time.fps > 0);
   out.json["visits"] = done.counts.visits;

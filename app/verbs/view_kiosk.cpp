@@ -184,6 +184,13 @@ Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress) 
   return out;
 }
 
+VerbResult describe_stopped(const KioskOutcome& done) {
+  VerbResult out;
+  out.json = {{"stopped", true}, {"visits", done.counts.visits}, {"resets", done.counts.resets}};
+  out.text = fmt::format("the kiosk was ended from outside; {} visits\n", done.counts.visits);
+  return out;
+}
+
 Result<VerbResult> write_tour(const std::filesystem::path& path, const TriMesh& mesh, const ViewOptions& view) {
   const Tour tour = default_tour(first_document(view, mesh).document, Words());
   DUBSAR_TRY(write_file_atomically(path, format_tour(tour)));

@@ -34,6 +34,9 @@ struct KioskOutcome {
 /// session.
 Result<KioskOutcome> run_kiosk(const KioskSession& session, Progress& progress);
 
+/// What a kiosk says that was ended from outside.
+VerbResult describe_stopped(const KioskOutcome& done);
+
 /// The tour that a tablet has by itself, as a file to be changed.
 Result<VerbResult> write_tour(const std::filesystem::path& path, const TriMesh& mesh, const ViewOptions& view);
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "core/base/system/log.h"
@@ -288,8 +289,6 @@ Result<void> GlfwWindow::make_current() {
   return fail(ErrorKind::kUnavailable, "window: its context cannot be made current ({})", last_error());
 }
 
-void GlfwWindow::wait_for_monitor(bool waits) { glfwSwapInterval(waits ? 1 : 0); }
-
 PixelSize GlfwWindow::size() const {
   PixelSize out;
   glfwGetFramebufferSize(as_window(window_), &out.width, &out.height);
@@ -310,14 +309,8 @@ Screen GlfwWindow::screen(const Screen& fallback) const {
   GLFWmonitor* const monitor = monitor_of(as_window(window_));
   const Monitor on = monitor != nullptr ? describe(monitor) : Monitor();
   Screen out = fallback;
-  if (on.width_px > 0 && on.height_px > 0) {
-    out.width_px = on.width_px;
-    out.height_px = on.height_px;
-  }
-  if (on.width_mm > 0 && on.height_mm > 0) {
-    out.width_mm = on.width_mm;
-    out.height_mm = on.height_mm;
-  }
+  if (on.width_px > 0 && on.height_px > 0) std::tie(out.width_px, out.height_px) = std::tie(on.width_px, on.height_px);
+  if (on.width_mm > 0 && on.height_mm > 0) std::tie(out.width_mm, out.height_mm) = std::tie(on.width_mm, on.height_mm);
   out.window_x = x - on.x;
   out.window_y = y - on.y;
   out.window_w = pixels.width;
@@ -327,6 +320,11 @@ Screen GlfwWindow::screen(const Screen& fallback) const {
 
 void GlfwWindow::present() { glfwSwapBuffers(as_window(window_)); }
 void GlfwWindow::poll_events() { glfwPollEvents(); }
+void GlfwWindow::set_title(const std::string& title) { glfwSetWindowTitle(as_window(window_), title.c_str()); }
+void GlfwWindow::keep_open() { glfwSetWindowShouldClose(as_window(window_), GLFW_FALSE); }
+bool GlfwWindow::should_close() const { return glfwWindowShouldClose(as_window(window_)) == GLFW_TRUE; }
+bool GlfwWindow::focused() const { return glfwGetWindowAttrib(as_window(window_), GLFW_FOCUSED) == GLFW_TRUE; }
+void GlfwWindow::wait_for_monitor(bool waits) { glfwSwapInterval(waits ? 1 : 0); }
 void GlfwWindow::wait_events(double timeout_s) { glfwWaitEventsTimeout(std::max(timeout_s, 1e-4)); }
 bool GlfwWindow::take_place_changed() { return std::exchange(place_changed_, false); }
 bool GlfwWindow::take_damaged() { return std::exchange(damaged_, false); }
@@ -338,21 +336,15 @@ bool GlfwWindow::on_screen() const {
          glfwGetWindowAttrib(as_window(window_), GLFW_ICONIFIED) == GLFW_FALSE;
 }
 
-bool GlfwWindow::focused() const { return glfwGetWindowAttrib(as_window(window_), GLFW_FOCUSED) == GLFW_TRUE; }
-
 void GlfwWindow::come_back(bool keyboard) {
   if (glfwGetX11Window == nullptr) return glfwRestoreWindow(as_window(window_));
   recall_window(static_cast<std::uint32_t>(glfwGetX11Window(as_window(window_))), fullscreen(), keyboard);
 }
 
 bool GlfwWindow::covers_monitor() const {
-  GLFWmonitor* const monitor = glfwGetWindowMonitor(as_window(window_));
-  if (monitor == nullptr) return false;
-  const Monitor on = describe(monitor);
-  int x = 0, y = 0, width = 0, height = 0;
-  glfwGetWindowPos(as_window(window_), &x, &y);
-  glfwGetWindowSize(as_window(window_), &width, &height);
-  return x == on.x && y == on.y && width == on.width_px && height == on.height_px;
+  const Screen at = screen();
+  return fullscreen() && at.window_x == 0 && at.window_y == 0 && at.window_w == at.width_px &&
+         at.window_h == at.height_px;
 }
 
 double GlfwWindow::content_scale() const {
@@ -388,12 +380,6 @@ void GlfwWindow::set_windowed() {
                        GLFW_DONT_CARE);
   place_changed_ = true;
 }
-
-void GlfwWindow::set_title(const std::string& title) { glfwSetWindowTitle(as_window(window_), title.c_str()); }
-
-void GlfwWindow::keep_open() { glfwSetWindowShouldClose(as_window(window_), GLFW_FALSE); }
-
-bool GlfwWindow::should_close() const { return glfwWindowShouldClose(as_window(window_)) == GLFW_TRUE; }
 
 Result<Image> GlfwWindow::read(int eye) const {
   DUBSAR_CHECK(eye == 0 || (eye == 1 && stereo_));

@@ -1,111 +1,17 @@
 #include "app/kiosk/kiosk_guide.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "app/document/document.h"
 #include "app/kiosk/hand_rings.h"
 #include "app/panels/lesson_picture.h"
-#include "tests/app/kiosk/service_manager.h"
+#include "tests/app/kiosk/led_kiosk.h"
 
 namespace dubsar::app {
 namespace {
-
-constexpr TimestampNs kStep = 50'000'000;
-
-/// A kiosk without a window: what it is told and what it wants.
-class Kiosk {
- public:
-  explicit Kiosk(KioskProfile profile = {}, int minute = 12 * 60, const std::string& notify_socket = {},
-                 std::int64_t watchdog_us = 0)
-      : minute_(minute) {
-    if (profile.objects.empty())
-      profile.objects = {{.file = "a.exa", .title = {{"en", "A"}, {"de", "B"}}}, {.file = "b.exa"}};
-    profile.pin = "8302";
-    KioskParts parts;
-    parts.profile = profile;
-    parts.notify_socket = notify_socket;
-    parts.watchdog_us = watchdog_us;
-    parts.wall = [this] { return WallTime{1'790'000'000 + now_ / 1'000'000'000, minute_}; };
-    guide_ = std::make_unique<KioskGuide>(std::move(parts));
-    document_.parts = {{"tablet", 1}, {"envelope", 2}};
-  }
-  Guidance go_on(double seconds, Steered steered = {}) {
-    Guidance last;
-    for (int i = 0; i < static_cast<int>(20 * seconds); ++i, now_ += kStep) {
-      last = guide_->lead({now_, steered, document_, rows_, {600, 340}, {0, 0}, {}, {}, read_, on_screen_});
-      steered.selected_m.reset();
-      if (last.scene) {
-        if (last.scene->camera) {
-          fastest_deg_per_s =
-              std::max(fastest_deg_per_s, turn_between_deg(last.scene->frame.camera.rotation, seen_) / 0.05);
-        }
-        seen_ = last.scene->frame.camera.rotation;
-        if (last.scene->keep) show_keyframe(document_, last.scene->frame);
-      }
-      for (const std::string& command : last.commands) {
-        commands.push_back(command);
-        if (command.rfind("unpack ", 0) == 0) document_.unpack = 0.01 * std::stod(command.substr(7));
-      }
-      const double turned = turn_between_deg(last.turn, turn_);
-      fastest_deg_per_s = std::max(fastest_deg_per_s, turned / 0.05);
-      turn_ = last.turn;
-    }
-    return last;
-  }
-  void type(std::string_view keys) {
-    for (const char c : keys) press(std::string(1, c));
-    press("enter");
-  }
-  void press(const std::string& key) {
-    InputEvent event;
-    event.kind = EventKind::kKey;
-    event.key = key;
-    event.down = true;
-    EXPECT_TRUE(guide_->takes(event, now_));
-  }
-  KioskGuide& guide() { return *guide_; }
-  const Document& document() const { return document_; }
-  void set_sources(std::vector<SourceRow> rows) { rows_ = std::move(rows); }
-  void set_minute(int minute) { minute_ = minute; }
-  void set_on_screen(bool on_screen) { on_screen_ = on_screen; }
-  double now_s() const { return 1e-9 * static_cast<double>(now_); }
-  /// The object's file is being read, and what is shown has no parts yet.
-  void reads() {
-    parts_ = std::exchange(document_.parts, {});
-    read_ = false;
-  }
-  void has_read() {
-    document_.parts = parts_;
-    read_ = true;
-  }
-  std::vector<std::string> commands;
-  double fastest_deg_per_s = 0.0;
-
- private:
-  std::unique_ptr<KioskGuide> guide_;
-  std::vector<SourceRow> rows_{{"leap", SourceHealth::kPresent, ""}};
-  Document document_;
-  std::vector<Part> parts_;  // while document_ has none
-  bool read_ = true, on_screen_ = true;
-  TimestampNs now_ = 3'000'000'000;
-  int minute_;
-  glm::dquat turn_{1, 0, 0, 0}, seen_{1, 0, 0, 0};
-};
-
-Steered with_hand(HandState state, Control control = Control::kNone, double turned_deg = 0.0) {
-  Steered out;
-  out.hands = {{{0.1, 0.0, 0.2}, state == HandState::kHolding ? 1.0 : 0.0, 0.0, state}};
-  out.control = control;
-  out.view.rotation = turn_of({0, turned_deg * 0.0174532925, 0});
-  return out;
-}
 
 TEST(KioskGuide, AnObjectNobodyHoldsMovesSlowlyAndStopsWithoutAJump) {
   Kiosk kiosk;
@@ -402,87 +308,6 @@ TEST(LessonPicture, MovesWithoutJumpsAndNeverFlashes) {
 TEST(GalleryPage, LettersGrowWithTheDistance) {
   EXPECT_NEAR(letter_height_mm(1.5), 8.7, 0.1);
   EXPECT_NEAR(letter_height_mm(3.0), 2 * letter_height_mm(1.5), 1e-9);
-}
-
-TEST(KioskGuide, TheJournalSaysWhatTheTroubleIsAndWhatTheOperatorDid) {
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / fmt::format("guide_journal_{}", ::getpid());
-  KioskProfile profile;
-  profile.objects = {{.file = "a.exa"}, {.file = "b.exa"}};
-  profile.journal = folder;
-  {
-    Kiosk kiosk(profile);
-    kiosk.guide().set_trouble("no monitor's name contains \"HDMI-1\"", false);
-    kiosk.guide().set_trouble("no monitor's name contains \"HDMI-1\"", false);  // said once
-    kiosk.set_sources({{"leap", SourceHealth::kMissing, "no Leap is plugged in"}});
-    kiosk.go_on(1);
-    kiosk.type("8302");
-    kiosk.press("2");
-    kiosk.go_on(0.1);
-    kiosk.guide().leave_out(1, "b.exa: damaged");
-  }
-  std::vector<std::string> said;
-  for (const auto& day : std::filesystem::directory_iterator(folder)) {
-    std::ifstream in(day.path());
-    for (std::string line; std::getline(in, line);) {
-      const auto entry = nlohmann::json::parse(line);
-      std::string text = entry.at("what");
-      for (const char* name : {"says", "key", "does"})
-        if (entry.contains(name)) text += ": " + entry.at(name).get<std::string>();
-      said.push_back(text);
-    }
-  }
-  std::filesystem::remove_all(folder);
-  EXPECT_EQ(said, (std::vector<std::string>{"start", "trouble: no monitor's name contains \"HDMI-1\"",
-                                            "trouble: leap: no Leap is plugged in", "operator: 2: next language",
-                                            "trouble: b.exa: damaged", "end"}));
-}
-
-/// A session of which the manager starts the watchdog's time again at each sign of life; what is drawn is not asked.
-struct Watched {
-  explicit Watched(KioskProfile profile = {}) : kiosk(std::move(profile), 12 * 60, manager.path(), 20'000'000) {
-    kiosk.go_on(0.1);
-    kiosk.guide().presented(0);
-  }
-  void go_on(double seconds, const Steered& steered = {}) {
-    for (double t = 0.0; t < seconds; t += 1.0) {
-      kiosk.go_on(1.0, steered);
-      manager.watch(kiosk.now_s(), 20.0);
-    }
-  }
-  test::ServiceManager manager;
-  Kiosk kiosk;
-};
-
-TEST(KioskGuide, AServiceManagerHasNoReasonToRestartItInEightHoursOfQuietAndOfVisits) {
-  KioskProfile profile;
-  profile.quiet = {{22 * 60, 6 * 60}};
-  Watched night(profile);
-  night.kiosk.set_minute(23 * 60);
-  night.go_on(4 * 3600.0);
-  EXPECT_EQ(night.manager.restarts(), 0) << "in quiet hours nothing is drawn";
-  EXPECT_GT(night.manager.longest_silence_s(), 0.0);
-  EXPECT_LT(night.manager.longest_silence_s(), 10.0) << "half of what is granted: a slow machine";
-  Watched day;
-  for (int visit = 0; visit < 24; ++visit) {
-    day.go_on(60, with_hand(HandState::kReady));
-    day.go_on(30, with_hand(HandState::kHolding, Control::kHands, 2.0 * visit));
-    day.go_on(510);
-  }
-  EXPECT_EQ(day.manager.restarts(), 0) << "after a visit nothing moves";
-  EXPECT_LT(day.manager.longest_silence_s(), 10.0);
-}
-
-TEST(KioskGuide, WhatNobodyCanSeeIsNoSignOfLife) {
-  Watched hidden;
-  hidden.go_on(60);
-  EXPECT_EQ(hidden.manager.restarts(), 0);
-  hidden.kiosk.set_on_screen(false);
-  hidden.go_on(50);
-  EXPECT_EQ(hidden.manager.restarts(), 2) << "each 20 s";
-  hidden.kiosk.set_on_screen(true);
-  hidden.go_on(60);
-  EXPECT_EQ(hidden.manager.restarts(), 2);
 }
 
 }  // namespace
