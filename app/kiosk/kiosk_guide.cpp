@@ -59,15 +59,15 @@ void KioskGuide::set_trouble(std::string trouble, bool flat) {
   write("trouble", Journal::words("says", parts_.trouble));
 }
 
-/// Of those that the profile names; what is new is written down.
+/// Of those that the profile names; what is new is written down, not that the same one is away again.
 void KioskGuide::look_at_devices(std::span<const SourceRow> sources) {
   std::string missing;
   for (const SourceRow& row : sources)
-    if (row.health == SourceHealth::kMissing)
+    if (row.health == SourceHealth::kMissing || row.health == SourceHealth::kLost)
       missing += fmt::format("{}{}: {}", missing.empty() ? "" : "; ", row.spec, row.reason);
-  if (missing == told_.missing) return;
+  if (missing.empty() || missing == told_.missing) return;
   told_.missing = std::move(missing);
-  if (!told_.missing.empty()) write("trouble", Journal::words("says", told_.missing));
+  write("trouble", Journal::words("says", told_.missing));
 }
 
 KioskGuide::~KioskGuide() {

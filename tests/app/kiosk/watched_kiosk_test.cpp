@@ -23,8 +23,13 @@ TEST(WatchedKiosk, TheJournalSaysWhatTheTroubleIsAndWhatTheOperatorDid) {
     Kiosk kiosk(profile);
     kiosk.guide().set_trouble("no monitor's name contains \"HDMI-1\"", false);
     kiosk.guide().set_trouble("no monitor's name contains \"HDMI-1\"", false);  // said once
-    kiosk.set_sources({{"leap", SourceHealth::kMissing, "no Leap is plugged in"}});
-    kiosk.go_on(1);
+    const std::vector<SourceRow> present{{"leap", SourceHealth::kPresent, ""}};
+    for (int i = 0; i < 3; ++i) {  // a plug with a loose contact
+      kiosk.set_sources({{"leap", SourceHealth::kLost, "no Leap is plugged in"}});
+      kiosk.go_on(1);
+      kiosk.set_sources(present);
+      kiosk.go_on(1);
+    }
     kiosk.type("8302");
     kiosk.press("2");
     kiosk.go_on(0.1);
