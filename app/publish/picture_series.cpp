@@ -89,7 +89,8 @@ bool is_running(int process) { return ::kill(process, 0) == 0 || errno != ESRCH;
 
 /// Halves of pictures under the names that AtomicFile gives, of programs that have ended.
 void remove_halves(const fs::path& folder) {
-  static const std::regex half("\\.picture_[0-9]{5,}[^/]*\\.tmp-([0-9]{1,9})-[0-9a-f]{8}");
+  static const std::regex half(
+      "\\.(?:picture_[0-9]{5,}[^/]*|film_pictures\\.(?:made|json))\\.tmp-([0-9]{1,9})-[0-9a-f]{8}");
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
     const std::string name = entry.path().filename().string();

@@ -165,7 +165,8 @@ Result<TiffPage> TiffFile::describe() {
     page.texts.name = std::string(text).substr(0, 65536);
   if (TIFFGetField(tiff, TIFFTAG_SOFTWARE, &text) == 1 && text != nullptr)
     page.texts.software = std::string(text).substr(0, 65536);
-  page.orientation = field<std::uint16_t>(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
+  if (std::uint16_t orientation = 0; TIFFGetField(tiff, TIFFTAG_ORIENTATION, &orientation) == 1)
+    page.orientation = orientation;
   page.big_endian = TIFFIsBigEndian(tiff) != 0;
   page.white_is_zero =
       field<std::uint16_t>(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_MINISWHITE;
@@ -268,7 +269,7 @@ Result<Image> TiffFile::read_picture(const Budget& budget) {
     return damaged(fmt::format("no picture that can be shown: {}", why.data()));
   std::vector<std::uint32_t> raster(width * height);
   if (TIFFReadRGBAImageOriented(tiff, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
-                                raster.data(), page.orientation, 1) != 1)
+                                raster.data(), std::max(1, page.orientation), 1) != 1)
     return damaged("the picture cannot be decoded, the file is damaged or truncated");
   Image image(static_cast<int>(width), static_cast<int>(height), extras.alpha ? 4 : 3);
   std::uint8_t* out = image.pixels.data();

@@ -40,7 +40,7 @@ struct TiffPage {
   std::string compression;  ///< "none", "LZW", ...
   TiffResolution resolution;
   TiffTexts texts;
-  int orientation = 1;            ///< tag 274, 1 to 8: where the first row and column of the pixels lie
+  int orientation = 0;  ///< tag 274, 1 to 8: where the first row and column of the pixels lie; 0: not stated, as 1
   std::int64_t data_offset = -1;  ///< of uncompressed pixels whose strips lie one behind the other; -1: they do not
   bool white_is_zero = false;     ///< as stored; read_gray() turns it
   bool big_endian = false;        ///< byte order of the file

@@ -209,10 +209,12 @@ Result<OpenedVolume> open_tiff_stack(const ImportOptions& options) {
           parse_tiff_description(page.texts.description).images > 1)
         return fail(ErrorKind::kBadData, "import_tiff: {} holds several series of pictures, expected one volume",
                     path.string());
-      if (page.orientation != first->orientation)
+      // Some programs state it in the first page alone.
+      const int oriented = page.orientation > 0 ? page.orientation : std::max(1, pages.front().orientation);
+      if (oriented != std::max(1, first->orientation))
         return fail(ErrorKind::kBadData,
                     "import_tiff: {} has the orientation {} (tag 274), but the slices before it {}; expected one",
-                    path.string(), page.orientation, first->orientation);
+                    path.string(), oriented, std::max(1, first->orientation));
       if (page.width != first->width || page.height != first->height || type_of(page) != type_of(*first))
         return fail(
             ErrorKind::kBadData,

@@ -16,8 +16,9 @@ struct TiffFixture {
   bool big_endian = false, big_tiff = false;
   std::uint32_t x_pixels = 0, unit = 2;  ///< resolution x_pixels / 1 per inch (2), centimetre (3), nothing (1)
   std::string description = {};
-  int orientation = 0;        ///< tag 274; 0: not there
-  std::string trailing = {};  ///< bytes right behind the pixels of the first page
+  int orientation = 0;         ///< tag 274; 0: not there
+  bool oriented_once = false;  ///< in the first page only
+  std::string trailing = {};   ///< bytes right behind the pixels of the first page
 
   /// `pages`: samples of each page, row by row, as bit patterns.
   std::string bytes(const std::vector<std::vector<std::uint64_t>>& pages) const {
@@ -48,7 +49,8 @@ struct TiffFixture {
                                  {262, 3, 1, static_cast<std::uint64_t>(photometric)}};
       if (description.size() > 8) entries.push_back({270, 2, description.size() + 1, text});
       entries.push_back({273, 4, 1, data});
-      if (orientation > 0) entries.push_back({274, 3, 1, static_cast<std::uint64_t>(orientation)});
+      if (orientation > 0 && (!oriented_once || &page == &pages.front()))
+        entries.push_back({274, 3, 1, static_cast<std::uint64_t>(orientation)});
       entries.push_back({277, 3, 1, static_cast<std::uint64_t>(channels)});
       entries.push_back({278, 4, 1, static_cast<std::uint64_t>(height)});
       entries.push_back({279, 4, 1, data_bytes});
