@@ -158,13 +158,11 @@ Result<TiffPage> TiffFile::describe() {
   if (TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &y) == 1) page.resolution.y_per_unit = static_cast<double>(y);
   const auto unit = field<std::uint16_t>(tiff, TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);
   page.resolution.unit_mm = unit == RESUNIT_INCH ? 25.4 : unit == RESUNIT_CENTIMETER ? 10.0 : 0.0;
-  const char* text = nullptr;
-  if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text) == 1 && text != nullptr)
-    page.texts.description = std::string(text).substr(0, 65536);
-  if (TIFFGetField(tiff, TIFFTAG_PAGENAME, &text) == 1 && text != nullptr)
-    page.texts.name = std::string(text).substr(0, 65536);
-  if (TIFFGetField(tiff, TIFFTAG_SOFTWARE, &text) == 1 && text != nullptr)
-    page.texts.software = std::string(text).substr(0, 65536);
+  const auto text_of = [&](std::uint32_t tag) {
+    const char* text = nullptr;
+    return TIFFGetField(tiff, tag, &text) == 1 && text != nullptr ? std::string(text).substr(0, 65536) : std::string();
+  };
+  page.texts = {text_of(TIFFTAG_IMAGEDESCRIPTION), text_of(TIFFTAG_PAGENAME), text_of(TIFFTAG_SOFTWARE)};
   if (std::uint16_t orientation = 0; TIFFGetField(tiff, TIFFTAG_ORIENTATION, &orientation) == 1)
     page.orientation = orientation;
   page.big_endian = TIFFIsBigEndian(tiff) != 0;
