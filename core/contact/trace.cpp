@@ -264,7 +264,8 @@ Result<ContactReport> trace_contact(SurfaceModel& model, SlabSource& density, co
   log_debug("contact: looked for up to {:.1f} steps from the smooth patch", recentred.longest);
   DUBSAR_ASSIGN(ContactBand band, ContactBand::make(model.samples.signs, std::move(samples), options.reach, progress));
   DUBSAR_ASSIGN(const BandDensity values, density_of(band, std::move(recentred.density), density, progress));
-  const std::optional<ClayContrast> clays = compare_clays(band, model.samples.signs, values, options.blur_variance);
+  std::optional<ClayContrast> clays = compare_clays(band, model.samples.signs, values, options.blur_variance);
+  if (clays && std::abs(clays->step()) < options.least_clay_step) clays.reset();
   if (!clays) band.trim_envelope(options.out_reach);
   report.points = static_cast<std::int64_t>(band.nodes.size());
   DUBSAR_ASSIGN(Dips dips, find_dips(band, model.samples.signs, values, progress));

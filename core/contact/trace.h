@@ -23,6 +23,9 @@ struct ContactOptions {
   float film_strength = 1.4f;  ///< mean strength of dips around a vertex (dips.h) from which on a film is believed
   /// Variance of the scan's edges, voxels squared (core/filter/edge_spread.h); this is that of a good scan.
   float blur_variance = 0.42f;
+  /// Smaller differences of the two clays, grey values, say nothing: so uneven is what should be one density where rays
+  /// were straightened.
+  float least_clay_step = 0.0f;
 };
 
 struct ContactReport {

@@ -4,6 +4,12 @@
 #include "core/filter/resample.h"
 
 namespace dubsar {
+namespace {
+
+/// Standard deviations of clay that straightening leaves: less is no difference of two clays.
+constexpr double kUnevenClay = 2.0;
+
+}  // namespace
 
 Result<TracedModel> trace(SurfaceModel model, const ImportOptions& scan, const ImportedGrid& imported, StageRun run) {
   TracedModel traced{std::move(model), {}};
@@ -12,6 +18,8 @@ Result<TracedModel> trace(SurfaceModel model, const ImportOptions& scan, const I
   ContactOptions options;
   if (imported.facts.blur) options.blur_variance = static_cast<float>(imported.facts.blur->variance);
   options.halve_first = !imported.detail.resample();
+  if (const auto& rays = imported.facts.rays; rays && rays->straightened)
+    options.least_clay_step = static_cast<float>(kUnevenClay * rays->bent->after.clay * rays->bent->levels.contrast());
   std::optional<HalfResolutionSource> halved;
   SlabSource* density = imported.straightened.get();
   if (density == nullptr) {
