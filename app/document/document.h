@@ -19,11 +19,11 @@ namespace dubsar::app {
 struct Part {
   std::string name;
   std::uint8_t partitions = 0;  ///< bit p: partition p of the mesh belongs to it
-  std::uint8_t pores = 0;       ///< bit p: partition p, of another part, lies within its clay and goes with it
   bool visible = true;
   std::array<std::uint8_t, 3> colour{255, 255, 255};  ///< sRGB; white: as the style wants
   double opacity = 1.0;                               ///< 0..1
   glm::dvec3 offset_mm{0.0};                          ///< from its place in the scan
+  std::uint8_t pores = 0;  ///< bit p: partition p, of another part, lies within its clay and goes with it
   friend bool operator==(const Part&, const Part&) = default;
 };
 

@@ -239,7 +239,7 @@ TEST(FatCross, FilesSayTheirScaleAndWhoseTheyAre) {
   ASSERT_TRUE(page);
   EXPECT_EQ(page->resolution.x_per_unit, 600.0);
   EXPECT_EQ(page->resolution.unit_mm, 25.4);
-  EXPECT_EQ(page->description, "AO 8295");
+  EXPECT_EQ(page->texts.description, "AO 8295");
   fs::remove(file);
 }
 
