@@ -70,7 +70,8 @@ Result<void> deliver(const VerbResult& result, const CommonOptions& common) {
   const FileUse report{"--json", common.json_path, true, FileFormat::kJson};
   DUBSAR_TRY(check_file_uses(std::span(&report, 1)));  // once more: the verb may have written just there
   nlohmann::json signed_result = result.json;
-  if (signed_result.is_object()) signed_result["made_by"] = "dubsar " DUBSAR_VERSION;  // by which it may be written over
+  if (signed_result.is_object())
+    signed_result["made_by"] = "dubsar " DUBSAR_VERSION;  // by which it may be written over
   return write_file_atomically(common.json_path, dump_json_lines(signed_result) + "\n");
 }
 

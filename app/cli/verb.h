@@ -21,8 +21,8 @@ struct CommonOptions {
 };
 
 struct VerbResult {
-  std::string text;     ///< for people, on stdout
-  nlohmann::json json;  ///< for programs, where --json says
+  std::string text;              ///< for people, on stdout
+  nlohmann::json json;           ///< for programs, where --json says
   std::optional<Error> failure;  ///< the verb did its work and its finding is bad, e.g. doctor: said, and the exit code
 };
 

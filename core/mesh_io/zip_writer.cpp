@@ -11,7 +11,8 @@
 namespace dubsar {
 namespace {
 
-constexpr std::string_view kArchiveMaker = "made by dubsar";  // by which the program knows a file that it may write over
+constexpr std::string_view kArchiveMaker =
+    "made by dubsar";  // by which the program knows a file that it may write over
 
 constexpr std::uint32_t kLocal = 0x04034b50, kDescriptor = 0x08074b50, kCentral = 0x02014b50, kEnd = 0x06054b50;
 constexpr std::uint16_t kVersion = 20, kDeflated = 8, kFlags = 1 << 11 | 1 << 3;  // names are UTF-8, sizes follow

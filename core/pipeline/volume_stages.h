@@ -32,7 +32,7 @@ struct ScanFacts {
   VolumeInfo info;
   Unmeasured unmeasured;  ///< what of it is no measurement
   MeasuredSource::Counts unmeasured_voxels;
-  GridFrame frame;  ///< of the scan as it is read
+  GridFrame frame;                    ///< of the scan as it is read
   std::vector<std::string> warnings;  ///< of the file and of its voxels
   Dims grid;                          ///< after resampling
   std::optional<RaysReport> rays;     ///< where artefacts were looked for

@@ -96,7 +96,7 @@ struct VolumeInfo {
 struct OpenedVolume {
   VolumeInfo info;
   std::vector<std::filesystem::path> files;  ///< that hold it, besides the one that was asked for
-  bool voxel_by_name = false;  ///< the voxel size was stated for x, y and z by name: it is not turned
+  bool voxel_by_name = false;                ///< the voxel size was stated for x, y and z by name: it is not turned
   std::unique_ptr<VoxelReader> reader;
 };
 

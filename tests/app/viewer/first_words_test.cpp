@@ -1,10 +1,9 @@
 // What stands on the desk when a surface is opened: how it is turned, and what is said of it.
 
-#include "app/viewer/first_document.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/viewer/first_document.h"
 #include "app/viewer/view_options.h"
 
 namespace dubsar::app {

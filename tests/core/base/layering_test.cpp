@@ -38,10 +38,9 @@ bool starts_with(const std::string& text, const char* prefix) { return text.rfin
 
 TEST(Layering, RoomsIncludeOnlyWhatIsBelowThem) {
   // Rooms of core from the bottom up; each includes only itself and what stands before it.
-  const std::vector<std::string> floors{"base",    "image_io", "hdf5",   "volume",  "filter",
-                                        "phantom", "mesh",     "refine", "rays",    "extract",
-                                        "relief",  "parts",    "contact", "exa",    "mesh_io",
-                                        "pipeline"};
+  const std::vector<std::string> floors{"base",    "image_io", "hdf5",    "volume",  "filter", "phantom",
+                                        "mesh",    "refine",   "rays",    "extract", "relief", "parts",
+                                        "contact", "exa",      "mesh_io", "pipeline"};
   std::map<std::string, std::vector<std::string>> forbidden{
       {"core/", {"devices/", "input/", "display/", "app/", "epoxy/", "GLFW/", "EGL/"}},
       {"core/hdf5/", {"core/image_io/"}},
