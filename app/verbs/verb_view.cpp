@@ -225,8 +225,7 @@ Result<VerbResult> run_kiosk_of(const ViewRequest& given, Progress& progress) {
   if (done.stopped) return describe_stopped(done);
   VerbResult out =
       describe_session(done.display, done.last, done.triangles, given.panel.offscreen || given.time.fps > 0);
-  out.json["visits"] = done.counts.visits;
-  out.json["resets"] = done.counts.resets;
+  out.json.update({{"visits", done.counts.visits}, {"resets", done.counts.resets}});
   out.text += fmt::format("{} visits, {} times back to the beginning\n", done.counts.visits, done.counts.resets);
   add_sources(done.last.rows, out);
   add_panel_states(done.last, out);
@@ -279,13 +278,12 @@ Result<VerbResult> run(const ViewRequest& options, Progress& progress) {
   DUBSAR_ASSIGN(const std::optional<ImportOptions> scan,
                 asked_scan(options.what.scan, options.what.scan_reading, options.what.in));
   const bool live = !options.panel.offscreen && options.time.fps == 0;
-  DUBSAR_ASSIGN(const std::vector<std::filesystem::path> files, good_files(options, live && options.made.tour.empty()));
+  DUBSAR_ASSIGN(const auto files, good_files(options, live && options.made.tour.empty()));
   if (!options.made.tour.empty()) {
     view.work.upright = options.what.view == "front";
     view.work.surface = options.what.in.front();
-    DUBSAR_ASSIGN(const double unit_mm, mesh_unit_mm(options.what.unit));
-    DUBSAR_ASSIGN(const TriMesh mesh,
-                  load_mesh({options.what.in.front(), options.what.partitions, true, {unit_mm, true}, true}, progress));
+    const MeshRequest asked{files.front(), options.what.partitions, true, {*mesh_unit_mm(options.what.unit)}, true};
+    DUBSAR_ASSIGN(const TriMesh mesh, load_mesh(asked, progress));
     return write_tour(options.made.tour, mesh, view);
   }
   Shelf shelf(surface_reader(view, file_reading(options, scan)), live ? recent_list() : std::filesystem::path());

@@ -13,8 +13,8 @@
 
 #include "core/base/system/parallel.h"
 #include "core/mesh/writing/body_axes.h"
-#include "core/mesh/writing/script.h"
 #include "core/mesh/writing/side_rise.h"
+#include "core/mesh/writing/tail_directions.h"
 
 namespace dubsar {
 namespace {
@@ -42,7 +42,7 @@ struct SideId {
 /// One side as it is seen with the next axis of the body to the right; of each size of wedges.
 struct SideFinds {
   std::array<TextTurns, kSizes> turns;
-  std::array<std::vector<Impression>, kSizes> impressions;
+  std::array<std::vector<FoundWedge>, kSizes> impressions;
   double rise = 0.0;  // of the root of a broad side's area
 };
 
@@ -176,7 +176,7 @@ class Writing {
     const SideId id = nearest(front);
     const int right_at = quarters(id, glm::cross(up, front));
     double count = 0.0;
-    for (const Impression& i : sides_[id.axis][id.sign].impressions[size]) {
+    for (const FoundWedge& i : sides_[id.axis][id.sign].impressions[size]) {
       const std::array<float, 4> height{i.y, 1.f - i.x, 1.f - i.y, i.x};  // along the up of text that is turned so far
       const auto h = static_cast<double>(height[static_cast<std::size_t>(right_at)]);
       count += h >= from && h <= to ? 1.0 : 0.0;

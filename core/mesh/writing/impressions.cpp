@@ -201,7 +201,7 @@ int tail_direction(const Lattice& depth, int at_x, int at_y, const Templates& te
 
 }  // namespace
 
-std::vector<Impression> find_impressions(const HeightMap& map) {
+std::vector<FoundWedge> find_impressions(const HeightMap& map) {
   if (std::min(map.width, map.height) <= kStepsPerWedge) return {};
   static const Templates templates;
   const Lattice depth = blurred(depths(map));
@@ -213,7 +213,7 @@ std::vector<Impression> find_impressions(const HeightMap& map) {
     tails[static_cast<std::size_t>(k)] =
         tail_direction(depth, static_cast<int>(i % width), static_cast<int>(i / width), templates);
   });
-  std::vector<Impression> out;
+  std::vector<FoundWedge> out;
   for (std::size_t k = 0; k < places.size(); ++k)
     if (tails[k] >= 0)
       out.push_back({tails[k], static_cast<float>(places[k] % width) / static_cast<float>(map.width - 1),

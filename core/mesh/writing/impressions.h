@@ -15,7 +15,7 @@ inline constexpr int kTailDirections = 24;
 /// Steps of a height map over the width of a wedge's head, for which it is searched.
 inline constexpr int kStepsPerWedge = 8;
 
-struct Impression {
+struct FoundWedge {
   int tail = 0;            ///< of kTailDirections, counterclockwise from the right of the map
   float x = 0.f, y = 0.f;  ///< place on the map, 0 to 1 each way
 };
@@ -24,6 +24,6 @@ struct Impression {
 /// touches from outside, each with the direction of the wedge of unit depth (three widths, three lengths) that fits it
 /// best; what is deeper than that wedge counts half, as its neighbours only dig deeper. Places that look more to
 /// another side are left out, and so are rims. At most 1500, the deepest. Deterministic. Cost: about .1 ms each.
-std::vector<Impression> find_impressions(const HeightMap& map);
+std::vector<FoundWedge> find_impressions(const HeightMap& map);
 
 }  // namespace dubsar

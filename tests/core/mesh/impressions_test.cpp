@@ -10,7 +10,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/mesh/writing/script.h"
+#include "core/mesh/writing/tail_directions.h"
 
 namespace dubsar {
 namespace {
@@ -71,7 +71,7 @@ TEST(Impressions, TailsPointWhereTheyWerePressedTo) {
   int right = 0;
   for (const Wedge& w : wedges) {
     double least = 1e9, off = 180.0;
-    for (const Impression& i : find_impressions(map)) {
+    for (const FoundWedge& i : find_impressions(map)) {
       const glm::dvec2 at(i.x * 399.f, i.y * 399.f);
       if (const double d = glm::distance(at, w.head); d < least) {
         least = d;
@@ -94,21 +94,21 @@ TEST(Impressions, LevelAndCurvedClayAndRulingsAreNone) {
   EXPECT_TRUE(find_impressions(HeightMap{}).empty());
 }
 
-std::vector<Impression> tails(int horizontals, int verticals, int any) {
-  std::vector<Impression> out;
+std::vector<FoundWedge> tails(int horizontals, int verticals, int any) {
+  std::vector<FoundWedge> out;
   for (int i = 0; i < horizontals; ++i) out.push_back({0});
   for (int i = 0; i < verticals; ++i) out.push_back({3 * kTailDirections / 4});
   for (int i = 0; i < any; ++i) out.push_back({i % kTailDirections});
   return out;
 }
 
-std::vector<Impression> turned(std::vector<Impression> all, int quarters) {
-  for (Impression& i : all) i.tail = (i.tail + quarters * kTailDirections / 4) % kTailDirections;
+std::vector<FoundWedge> turned(std::vector<FoundWedge> all, int quarters) {
+  for (FoundWedge& i : all) i.tail = (i.tail + quarters * kTailDirections / 4) % kTailDirections;
   return all;
 }
 
-std::vector<Impression> mirrored(std::vector<Impression> all) {
-  for (Impression& i : all) i.tail = (kTailDirections / 2 - i.tail + kTailDirections) % kTailDirections;
+std::vector<FoundWedge> mirrored(std::vector<FoundWedge> all) {
+  for (FoundWedge& i : all) i.tail = (kTailDirections / 2 - i.tail + kTailDirections) % kTailDirections;
   return all;
 }
 

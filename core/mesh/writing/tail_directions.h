@@ -18,6 +18,6 @@ struct TextTurns {
 
 /// Of the impressions of one side. The share of marks that are no wedges of the text is not known: it is averaged over.
 /// No impressions: zeros.
-TextTurns text_turns(std::span<const Impression> impressions);
+TextTurns text_turns(std::span<const FoundWedge> impressions);
 
 }  // namespace dubsar

@@ -1,4 +1,4 @@
-#include "core/mesh/writing/script.h"
+#include "core/mesh/writing/tail_directions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,10 +65,10 @@ double log_ratio(const std::array<double, kTailDirections>& counts, const Law& l
 
 }  // namespace
 
-TextTurns text_turns(std::span<const Impression> impressions) {
+TextTurns text_turns(std::span<const FoundWedge> impressions) {
   static const Law law = law_of_tails();
   std::array<double, kTailDirections> counts{};
-  for (const Impression& i : impressions) counts[around(i.tail)] += 1.0;
+  for (const FoundWedge& i : impressions) counts[around(i.tail)] += 1.0;
   TextTurns out;
   for (int turn = 0; turn < 4; ++turn) {
     Law written{}, mirrored{};
