@@ -60,6 +60,7 @@ class Live : public ::testing::Test {
   struct Step {
     std::function<void()> act;
     std::function<bool(const ViewMoment&)> done;
+    bool ends = false;  ///< the session, maybe before another turn comes
   };
   Result<ViewResult> play(std::vector<Step> steps, Progress* progress = nullptr) {
     SilentProgress silent;
@@ -78,6 +79,7 @@ class Live : public ::testing::Test {
           ++at;
           acted = false;
         });
+    if (acted && steps[at].ends) ++at;
     EXPECT_EQ(at, steps.size()) << "the step that never came true";
     expect_ended(out);
     return out;
@@ -102,10 +104,10 @@ class Live : public ::testing::Test {
               person_->key("escape");
               person_->key("escape");
             },
-            [](const ViewMoment&) { return true; }};
+            [](const ViewMoment&) { return true; }, true};
   }
   Step end_without_work() {
-    return {[] { person_->key("escape"); }, [](const ViewMoment&) { return true; }};
+    return {[] { person_->key("escape"); }, [](const ViewMoment&) { return true; }, true};
   }
   /// Escape closes what is open before it ends a session.
   Step close_drawer() {
