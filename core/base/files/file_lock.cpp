@@ -41,7 +41,10 @@ std::optional<Owner> parse_owner(const std::string& text) {
   return out;
 }
 
-bool left_alone(const fs::path& lock, const std::optional<Owner>& owner) {
+/// A lock that nobody holds any more: its process is gone, or it is old. What is no lock is not ours to take away; an
+/// empty one is of a process that ended before it wrote its name.
+bool left_alone(const fs::path& lock, const std::string& text, const std::optional<Owner>& owner) {
+  if (!owner && !text.empty()) return false;
   if (owner && owner->host == host_name() && ::kill(static_cast<pid_t>(owner->pid), 0) != 0 && errno == ESRCH)
     return true;
   struct stat info {};
@@ -83,7 +86,7 @@ Result<FileLock> FileLock::take(const fs::path& file) {
     }
     if (const auto text = read_text_file(lock)) {
       owner = parse_owner(*text);
-      if (left_alone(lock, owner)) {
+      if (left_alone(lock, *text, owner)) {
         break_lock(lock, *text);
         continue;
       }

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <fstream>
 #include <set>
 
@@ -103,6 +104,18 @@ TEST_F(KeptFiles, TwoProcessesThatCountInOneFileLoseNoCount) {
     }
   for (int child = 0; child < 2; ++child) ::wait(nullptr);
   EXPECT_EQ(there(), std::to_string(2 * kEach));
+}
+
+TEST_F(KeptFiles, AFileThatIsNoLockIsLeftHoweverOldItIs) {
+  const fs::path strange = folder_ / ".a.json.lock";
+  std::ofstream(strange) << "what somebody else keeps here\n";
+  fs::last_write_time(strange, fs::file_time_type::clock::now() - std::chrono::hours(1));
+  KeptFile kept(file());
+  const auto refused = kept.write("ours");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kTryAgain);
+  EXPECT_EQ(read_text_file(strange).value(), "what somebody else keeps here\n");
+  EXPECT_FALSE(fs::exists(file()));
 }
 
 TEST_F(KeptFiles, ALockOfAProcessThatIsGoneIsBrokenAndThatOfALivingOneIsNamed) {
