@@ -15,6 +15,7 @@
 #include "app/publish/picture_series.h"
 #include "app/publish/video.h"
 #include "app/verbs/display_picture.h"
+#include "app/verbs/told_session.h"
 #include "app/viewer/stage/film_painter.h"
 #include "core/base/files/atomic_file.h"
 #include "core/base/system/log.h"
@@ -31,6 +32,7 @@ constexpr std::string_view kKeep = "_pictures";
 
 struct AnimateRequest {
   std::string film, in, out, size = "1920x1080", style, pictures = "png";
+  std::vector<std::string> told;
   double fps = 25.0;
   int samples = 3;
   bool again = false, keep = false;
@@ -132,6 +134,7 @@ Result<void> make_pictures(const AnimateRequest& options, FilmPainter& painter, 
 }
 
 Result<VerbResult> run(const AnimateRequest& options, bool sized, Progress& progress) {
+  DUBSAR_TRY(check_told(options.told));
   DUBSAR_ASSIGN(const FilmFile film, read_film(options));
   DUBSAR_ASSIGN(const int count, pictures_of(film.keys, options.fps));
   std::string style = film.keys.front().style.empty() ? film.base.style.name : film.keys.front().style;
@@ -144,6 +147,13 @@ Result<VerbResult> run(const AnimateRequest& options, bool sized, Progress& prog
 
   DUBSAR_ASSIGN(const TriMesh mesh, load_mesh({options.in, {}, true, {0.0, true}, true}, progress));
   Document document = film_document(film.base, mesh);
+  if (!options.told.empty()) {
+    ViewOptions view;
+    view.stage = stage;
+    view.work.document = document;
+    DUBSAR_ASSIGN(ToldSession told, tell_session(mesh, view, options.told, Wanted::kDocument, progress));
+    document = std::move(told.document);
+  }
   for (const std::string& name : strange_parts(film.keys, document))
     log_warning("animate: the film moves a part {}, which {} does not have", name, options.in);
   DUBSAR_ASSIGN(FilmPainter painter, FilmPainter::create(mesh, stage, document, film.keys));
@@ -222,6 +232,7 @@ Verb add_animate_verb(Arguments program) {
   command.value("--size", options->size, "WIDTHxHEIGHT in pixels (1920x1080, or the panel's own)");
   command.value("--pictures", options->pictures, "kind of the pictures").one_of({"png", "tif", "jpg"});
   command.value("--style", options->style, "one shading for all of it, in place of those of the keyframes");
+  add_do_option(command, options->told);
   command.value("--samples", options->samples, "samples per pixel side").range(1, 8);
   command.flag("--again", options->again, "make all pictures anew, also where there are others that it made");
   command.flag("--keep", options->keep, "keep the pictures beside the video, in VIDEO_pictures");

@@ -11,6 +11,7 @@
 #include "app/panels/panel_font.h"
 #include "app/publish/fat_cross.h"
 #include "app/publish/xmp.h"
+#include "app/verbs/told_session.h"
 #include "app/viewer/surface_tools.h"
 #include "core/image_io/picture_file.h"
 #include "core/image_io/tiff_file.h"
@@ -22,7 +23,7 @@ namespace fs = std::filesystem;
 
 struct FatCrossRequest {
   std::string in, out, unit, part = "auto", style = "phong";
-  std::vector<std::string> layers;
+  std::vector<std::string> layers, told;
   double dpi = 600.0;
   int samples = 3;
   Rgb8 ground{0, 0, 0};
@@ -129,7 +130,9 @@ class CrossFiles {
     draw.ground = options_.ground;
     draw.samples = options_.samples;
     draw.legend = legend_;
-    DUBSAR_ASSIGN(draw.shading, shading_preset(styles_[static_cast<std::size_t>(k)]));
+    const std::string& style = styles_[static_cast<std::size_t>(k)];
+    DUBSAR_ASSIGN(draw.shading, shading_preset(style));
+    DUBSAR_TRY(dress_as_told(upright_, style, options_.told, draw.shading, progress_));
     DUBSAR_ASSIGN(FatCross cross, draw_fat_cross(upright_, draw, progress_));
     if (k == 0) DUBSAR_TRY(write_sides(options_, cross, options_.out));
     size_ = {cross.whole.width, cross.whole.height};
@@ -166,6 +169,7 @@ Result<VerbResult> run(const FatCrossRequest& options, Progress& progress) {
   std::vector<std::string> styles = options.layers;
   if (styles.empty()) styles = {options.style};
   for (const std::string& style : styles) DUBSAR_TRY(shading_preset(style));
+  DUBSAR_TRY(check_told(options.told));
   DUBSAR_TRY(check_besides(options, styles));
   DUBSAR_ASSIGN(const TriMesh mesh, load_part(options, progress));
   if (!mesh.frame.input_voxel.known() && !is_exa_file(options.in))
@@ -223,6 +227,7 @@ Verb add_fatcross_verb(Arguments program) {
                             "turn the found orientation in the picture, where the text does not stand upright");
   command.flag("--over", options->over, "the found obverse is the reverse");
   command.value("--style", options->style, "shading, as of render (phong)");
+  add_do_option(command, options->told);
   command.value("--layers", options->layers, "several shadings of the same picture, as named pages of one TIFF")
       .separated_by(',');
   command.flag("--apart", options->apart, "each of --layers in a file of its own, NAME_style.tif");

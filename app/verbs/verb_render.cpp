@@ -7,9 +7,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-#include <limits>
 #include <memory>
 
 #include "app/cli/default_output.h"
@@ -17,6 +14,7 @@
 #include "app/cli/verb.h"
 #include "app/verbs/display_picture.h"
 #include "app/verbs/look_options.h"
+#include "app/verbs/told_session.h"
 #include "app/viewer/first_document.h"
 #include "app/viewer/run_view.h"
 #include "core/base/text/parse_number.h"
@@ -37,7 +35,7 @@ struct Look {
 
 struct RenderRequest {
   std::string in, out, view = "front", size, unit;
-  std::vector<std::string> partitions, hide;
+  std::vector<std::string> partitions, hide, told;
   double mm_per_pixel = 0.0;
   int samples = 0;  ///< 0: enough for one picture, fewer for the many of a display
   DisplayRequest display;
@@ -92,21 +90,9 @@ Result<std::pair<std::string, double>> named_number(const std::string& option, c
   return fail(ErrorKind::kUsage, "{} \"{}\" not understood, expected NAME{}NUMBER", option, text, between);
 }
 
-Box box_of(const TriMesh& mesh) {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  Box box{glm::dvec3(kInf), glm::dvec3(-kInf)};
-  for (const glm::vec3& position : mesh.positions) {
-    const glm::dvec3 p = mesh.frame.mm_from_grid(position);
-    if (!std::isfinite(p.x + p.y + p.z)) continue;
-    box.min = glm::min(box.min, p);
-    box.max = glm::max(box.max, p);
-  }
-  return box;
-}
-
 /// What the options say about the parts of this surface.
 Result<void> dress_parts(const RenderRequest& options, const TriMesh& mesh, Shading& shading) {
-  const Box box = box_of(mesh);
+  const Box box = surface_box(mesh);
   for (const std::string& text : options.look.opacity) {
     DUBSAR_ASSIGN(const auto wanted, named_number("--opacity", text, '='));
     bool found = false;
@@ -158,24 +144,44 @@ Result<void> check_display_options(const RenderRequest& options) {
   return {};
 }
 
+/// What a session begins with that shows the display as the options want it.
+ViewOptions session_of(const RenderRequest& options, const SinkSpec& display, const DisplayOptions& shown) {
+  ViewOptions view;
+  view.stage.display = display;
+  view.stage.catalog = shown.catalog;
+  view.stage.screen = shown.screen;
+  view.stage.viewer = shown.viewer;
+  view.stage.shading = shown.shading;
+  for (PartLook& part : view.stage.shading.parts) part.offset_mm = {};  // the session's document says it
+  view.work.document.style.name = view.stage.style = options.look.style;
+  view.work.document.unpack = 0.01 * options.look.unpack;
+  view.stage.direction = shown.direction;
+  view.stage.magnification = shown.magnification;
+  view.stage.samples = shown.samples;
+  if (options.display.pattern) view.stage.subject = Subject::kPattern;
+  return view;
+}
+
+/// Options that say what a window does not.
+Result<void> check_told_picture(const RenderRequest& options) {
+  if (options.told.empty()) return {};
+  if (options.perspective || options.mm_per_pixel > 0 || options.look.transparent || options.shade.legend ||
+      options.display.pattern || !options.look.cut.empty())
+    return fail(ErrorKind::kUsage,
+                "--do draws what a window shows, expected none of --perspective, --mm-per-pixel, --transparent, "
+                "--legend, --cut (there is a command) and --pattern with it");
+  return check_told(options.told);
+}
+
 /// The display's picture in a window, until it is closed; mouse and keyboard turn it.
 Result<VerbResult> show_in_window(const RenderRequest& options, const SinkSpec& display, const DisplayOptions& shown,
                                   const TriMesh& mesh, Progress& progress) {
   const DisplayRequest& request = options.display;
   if (!request.see_from.empty()) return fail(ErrorKind::kUsage, "--see-from makes a file, expected no --window");
-  ViewOptions view;
-  view.window = WindowOptions();
-  view.stage.display = display;
-  view.stage.catalog = shown.catalog;
-  view.stage.viewer = shown.viewer;
-  view.stage.shading = shown.shading;
-  for (PartLook& part : view.stage.shading.parts) part.offset_mm = {};  // the session's document says it
-  view.work.document.unpack = 0.01 * options.look.unpack;
-  view.stage.direction = shown.direction;
+  ViewOptions view = session_of(options, display, shown);
   view.stage.room.margin = shown.margin;
-  view.stage.magnification = shown.magnification;
-  view.stage.samples = shown.samples;
-  if (request.pattern) view.stage.subject = Subject::kPattern;
+  view.window = WindowOptions();
+  view.steps = steps_of(options.told);
   DUBSAR_ASSIGN(view.mapping, default_mapping());
   view.inputs = {"mouse", "keyboard"};
   view.window->title = "dubsar: " + (request.pattern ? request.display : options.in);
@@ -189,6 +195,15 @@ Result<VerbResult> show_in_window(const RenderRequest& options, const SinkSpec& 
   result.json = {{"display", done.display}, {"frames", done.frames}, {"pattern", request.pattern}};
   result.text = fmt::format("{}: shown in a window, {} frames\n", done.display, done.frames);
   return result;
+}
+
+/// What a window shows after its commands were said, as a picture.
+Result<VerbResult> write_told(const RenderRequest& options, const SinkSpec& display, const DisplayOptions& shown,
+                              const TriMesh& mesh, Progress& progress) {
+  ViewOptions view = session_of(options, display, shown);
+  view.work.upright = options.view == "front";
+  DUBSAR_ASSIGN(const ToldSession told, tell_session(mesh, view, options.told, Wanted::kPicture, progress));
+  return write_display_picture(options.display, display, shown, told.seen, options.out);
 }
 
 /// Beside the surface, named after what is seen: tablet_front.png.
@@ -220,6 +235,7 @@ Result<void> check_output(const RenderRequest& options) {
 Result<VerbResult> run(const RenderRequest& options, Progress& progress) {
   DUBSAR_TRY(check_output(options));
   DUBSAR_TRY(check_display_options(options));
+  DUBSAR_TRY(check_told_picture(options));
   RenderOptions render;
   DUBSAR_ASSIGN(render.shading, shading_preset(options.look.style));
   DUBSAR_ASSIGN(render.camera.direction, parse_view_direction(options.view == "orbit" ? "orbit:35,25" : options.view));
@@ -235,8 +251,11 @@ Result<VerbResult> run(const RenderRequest& options, Progress& progress) {
   if (options.look.colour_parts) color_partitions(render.shading.parts, distinct_partition_colors());
   const bool on_display = !options.display.display.empty();
   DisplayOptions shown;
-  SinkSpec display;
-  if (on_display) {
+  SinkSpec display("mono");
+  if (!on_display) {  // for --do: as large as the picture would be, and as sharp
+    shown.screen = screen_of(render.camera.width, render.camera.height);
+    shown.samples = render.samples;
+  } else {
     if (!options.size.empty()) {
       shown.screen.width_px = render.camera.width;
       shown.screen.height_px = render.camera.height;
@@ -255,17 +274,18 @@ Result<VerbResult> run(const RenderRequest& options, Progress& progress) {
     DUBSAR_ASSIGN(way, find_tablet_frame(mesh));
   }
   const bool upright = way.up_probability >= kSureOfTheWay;
-  if (upright) {
+  if (upright && (options.told.empty() || options.window)) {
     mesh = in_tablet_frame(std::move(mesh), way);
     render.camera.object = ObjectFrame{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   }
   DUBSAR_TRY(hide_partitions(options.hide, mesh, render.shading));
   DUBSAR_TRY(dress_parts(options, mesh, render.shading));
-  if (on_display) {
+  if (on_display || !options.told.empty()) {
     shown.direction = render.camera.direction;
     shown.shading = render.shading;
     if (options.samples > 0) shown.samples = options.samples;
     if (options.window) return show_in_window(options, display, shown, mesh, progress);
+    if (!options.told.empty()) return write_told(options, display, shown, mesh, progress);
     return render_to_display(options.display, display, shown, mesh, options.out, progress);
   }
   DUBSAR_ASSIGN(Picture picture, render_picture(mesh, render, progress));
@@ -328,6 +348,7 @@ Verb add_render_verb(Arguments program) {
   command.flag("--perspective", options->perspective, "perspective instead of orthographic");
   command.flag("--transparent", options->look.transparent, "no background");
   command.value("--samples", options->samples, "samples per pixel side (3; of displays 2)").range(1, 8);
+  add_do_option(command, options->told);
   add_display_options(command, options->display);
   command.footer(
       "Examples:\n"
@@ -335,6 +356,7 @@ Verb add_render_verb(Arguments program) {
       "  dubsar render tablet.exa -o back.tif --view back --light 315,15 --mm-per-pixel 0.0423\n"
       "  dubsar render tablet.exa -o lines.png --style raking --light 315,15\n"
       "  dubsar render tablet.exa -o both.png --opacity envelope=0.3\n"
+      "  dubsar render tablet.exa -o lifted.png --do \"unpack 100\" --do \"side reverse\"\n"
       "  dubsar render bust.obj -o bust.png --style ao --view orbit:30,10\n"
       "  dubsar render tablet.exa -o anaglyph.png --display anaglyph --size 1280x800\n"
       "  dubsar render tablet.exa -o go.png --display lenticular:looking-glass-go\n"

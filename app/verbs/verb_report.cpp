@@ -12,6 +12,7 @@
 #include "app/publish/fat_cross.h"
 #include "app/publish/report_page.h"
 #include "app/publish/seen_colors.h"
+#include "app/verbs/told_session.h"
 #include "core/base/files/atomic_file.h"
 #include "core/base/files/input_file.h"
 #include "core/image_io/jpeg_file.h"
@@ -25,6 +26,7 @@ namespace fs = std::filesystem;
 
 struct ReportRequest {
   std::string in, out, title, style = "raking", institution, rights;
+  std::vector<std::string> told;
   double dpi = 150.0;
   std::int64_t triangles = 300000;
 };
@@ -57,6 +59,7 @@ Result<std::vector<ReportPicture>> pictures_of(const ReportRequest& options, con
   FatCrossOptions draw;
   draw.dpi = options.dpi;
   draw.shading = look;
+  DUBSAR_TRY(dress_as_told(upright, options.style, options.told, draw.shading, progress));
   draw.ground = {16, 17, 19};
   DUBSAR_ASSIGN(const FatCross cross, draw_fat_cross(upright, draw, progress));
   std::vector<ReportPicture> pictures;
@@ -69,6 +72,7 @@ Result<std::vector<ReportPicture>> pictures_of(const ReportRequest& options, con
 
 Result<VerbResult> run(const ReportRequest& options, Progress& progress) {
   DUBSAR_ASSIGN(const Shading look, shading_preset(options.style));
+  DUBSAR_TRY(check_told(options.told));
   DUBSAR_ASSIGN(const Shading relief, shading_preset("relief"));
   DUBSAR_ASSIGN(TriMesh mesh, load_mesh({options.in, {}, true}, progress));
   ReportContent content;
@@ -120,6 +124,7 @@ Verb add_report_verb(Arguments program) {
   command.value("--institution", options->institution, "where the tablet is");
   command.value("--rights", options->rights, "who may do what with the page");
   command.value("--style", options->style, "shading of the six sides, as of render (raking)");
+  add_do_option(command, options->told);
   command.value("--dpi", options->dpi, "dots an inch of the six sides (150)").range(50.0, 1200.0);
   command.value("--triangles", options->triangles, "most triangles of the surface in the page (300000), about");
   command.footer(

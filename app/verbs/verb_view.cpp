@@ -11,6 +11,7 @@
 #include "app/cli/input_options.h"
 #include "app/cli/mesh_input.h"
 #include "app/cli/verb.h"
+#include "app/verbs/told_session.h"
 #include "app/verbs/view_files.h"
 #include "app/verbs/view_kiosk.h"
 #include "app/verbs/view_outcome.h"
@@ -78,11 +79,7 @@ Result<Screen> parse_screen(const std::string& text) {
   if (width < 16 || height < 16 || width > 16384 || height > 16384)
     return fail(ErrorKind::kUsage,
                 "--size \"{}\" not understood, expected WIDTHxHEIGHT of 16 to 16384 pixels such as 960x540", text);
-  Screen screen;
-  screen.width_px = screen.window_w = width;
-  screen.height_px = screen.window_h = height;
-  screen.height_mm = screen.width_mm * height / width;
-  return screen;
+  return screen_of(width, height);
 }
 
 Result<void> add_panels(const ViewRequest& options, ViewOptions& view) {
@@ -216,7 +213,7 @@ Result<VerbResult> run_kiosk_of(const ViewRequest& given, Progress& progress) {
     }
     DUBSAR_TRY(one.panel.offscreen ? without_window(one, view) : with_window(one, view));
     add_panels(one, profile, view);
-    view.work.upright = !one.panel.offscreen && one.what.view == "front";
+    view.work.upright = one.what.view == "front";
     view.work.surface = object.file;
     view.around.title = object.file.filename().string();
     return view;
@@ -234,8 +231,8 @@ Result<VerbResult> run_kiosk_of(const ViewRequest& given, Progress& progress) {
 
 FileReading file_reading(const ViewRequest& options, const std::optional<ImportOptions>& scan) {
   const bool window = !options.panel.offscreen;
-  return {options.what.partitions, mesh_unit_mm(options.what.unit).value_or(0.0), scan,
-          window && options.what.view == "front", window && options.time.fps == 0};
+  return {options.what.partitions, mesh_unit_mm(options.what.unit).value_or(0.0), scan, options.what.view == "front",
+          window && options.time.fps == 0};
 }
 
 /// What can be wrong with files is known before a large one is read.

@@ -1,8 +1,10 @@
 #include "app/viewer/first_document.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "app/viewer/surface_tools.h"
 
@@ -53,19 +55,20 @@ glm::dvec3 lift_mm(const Box& model) {
   return (1.0 + kPartsGap) * std::abs(glm::dot(model.size(), frame.up)) * frame.up;
 }
 
-/// Of all vertices that triangles use, as the stage has it.
-Box box_of(const TriMesh& mesh) {
-  const auto at = [&](std::uint32_t v) { return mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[v])); };
-  Box out{at(mesh.triangles[0][0]), at(mesh.triangles[0][0])};
+}  // namespace
+
+Box surface_box(const TriMesh& mesh) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  Box out{glm::dvec3(kInf), glm::dvec3(-kInf)};
   for (const Triangle& t : mesh.triangles)
     for (const std::uint32_t v : t) {
-      out.min = glm::min(out.min, at(v));
-      out.max = glm::max(out.max, at(v));
+      const glm::dvec3 at = mesh.frame.mm_from_grid(glm::dvec3(mesh.positions[v]));
+      if (!std::isfinite(at.x + at.y + at.z)) continue;
+      out.min = glm::min(out.min, at);
+      out.max = glm::max(out.max, at);
     }
   return out;
 }
-
-}  // namespace
 
 FirstDocument first_document(const ViewOptions& options, const TriMesh& mesh) {
   FirstDocument first{options.work.document, options.work.doubt};
@@ -75,11 +78,11 @@ FirstDocument first_document(const ViewOptions& options, const TriMesh& mesh) {
   if (out.home_light == LightPlace() && out.light == LightPlace())
     out.home_light = out.light = {light.azimuth_deg, light.elevation_deg};
   if (out.scan == ScanView() && !mesh.triangles.empty()) {
-    const Box box = box_of(mesh);
+    const Box box = surface_box(mesh);
     out.scan.cursor_mm = out.scan.centre_mm = 0.5 * (box.min + box.max);
   }
   if (options.work.upright && !mesh.triangles.empty()) {
-    if (auto upright = upright_turn(mesh, first_turn(box_of(mesh), options.stage.direction))) {
+    if (auto upright = upright_turn(mesh, first_turn(surface_box(mesh), options.stage.direction))) {
       out.home.rotation = out.now.rotation = upright->turn;
       first.doubt = std::move(upright->doubt);
     }

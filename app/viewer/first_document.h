@@ -18,6 +18,9 @@ FirstDocument first_document(const ViewOptions& options, const TriMesh& mesh);
 /// sure, else how one begins.
 std::string first_words(const SessionWork& work);
 
+/// Of all vertices that triangles use and whose places are numbers, mm of the scan; min > max where there are none.
+Box surface_box(const TriMesh& mesh);
+
 /// The turn from the scan to the unturned view of it.
 glm::dmat3 first_turn(const Box& model, const ViewDirection& direction);
 
