@@ -94,8 +94,15 @@ Result<void> Viewer::open(std::unique_ptr<OutputSink> sink, const std::string& n
   } else if (has_surface()) {
     say(first_words(given_.options.work));
   }
+  if (has_surface()) show_document();
   if (given_.options.time.fps == 0) steering_->run(given_.clock);
   return {};
+}
+
+/// For a picture that is asked for before the turn of the loop that shows the surface has come to it.
+void Viewer::show_document() {
+  const ViewState view = view_of(document());
+  stage_->show(shown_of(document(), view, given_.options.stage, stage_->box_mm()), FollowedEyes(), given_.clock.now());
 }
 
 Result<void> Viewer::start_sources() {

@@ -238,6 +238,7 @@ class Viewer final : public Workplace {
   void type_what_waited(TimestampNs now);
   void lead(TimestampNs now, const Steered& steered);
   Result<void> obey(std::string_view command, std::uint64_t merge);
+  void show_document();
   void say_steps(TimestampNs now);
   PanelState panel_state(TimestampNs now);
   void add_thumbnails(PanelState& panels);

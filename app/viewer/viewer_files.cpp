@@ -271,6 +271,7 @@ Result<void> Viewer::put(OpenedSurface surface) {
   steering_->set_home(home_of(this->document()));
   // What was coarse stood as it was scanned: it turns to where its writing is upright.
   steering_->go_to(view_of(this->document()), given_.clock.now(), files_.coarse != nullptr);
+  if (!files_.coarse) show_document();
   files_.coarse.reset();
   say_what_was_found();
   return {};

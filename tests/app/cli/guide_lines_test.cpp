@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <sstream>
 
 #include "core/base/files/atomic_file.h"
@@ -36,14 +37,14 @@ TEST(GuideLines, EachCommandLineRuns) {
     ++lines;
     std::vector<std::string> arguments;
     std::istringstream words(line.substr(7));
-    for (std::string word; words >> word;) arguments.push_back(word);
+    for (std::string word; words >> std::quoted(word);) arguments.push_back(word);
     const bool window = arguments[0] == "view" && line.find("--offscreen") == std::string::npos;
     if (window && !server.problem().empty()) continue;
     if (window) arguments.insert(arguments.end(), {"--seconds", "0.5", "--windowed"});
     const ProgramRun run = run_dubsar(arguments);
     EXPECT_EQ(run.exit_code, 0) << line << "\n" << run.err;
   }
-  EXPECT_EQ(lines, 16);
+  EXPECT_EQ(lines, 17);
   EXPECT_TRUE(fs::exists("pictures"));
   EXPECT_TRUE(fs::exists("reverse.png"));
   EXPECT_TRUE(fs::exists("film/picture_00009.png"));
