@@ -52,7 +52,7 @@ Screen screen_of(int width_px, int height_px) {
 }
 
 Result<ToldSession> tell_session(const TriMesh& mesh, ViewOptions view, const std::vector<std::string>& commands,
-                                 Wanted wanted, Progress& progress) {
+                                 ToldPart wanted, Progress& progress) {
   view.window.reset();
   view.inputs.clear();
   view.steps = steps_of(commands);
@@ -65,7 +65,7 @@ Result<ToldSession> tell_session(const TriMesh& mesh, ViewOptions view, const st
   ToldSession out;
   Result<void> read;
   const auto look = [&](const ViewMoment& moment) {
-    if (wanted != Wanted::kPicture || !moment.drawn || !read) return;
+    if (wanted != ToldPart::kPicture || !moment.drawn || !read) return;
     auto image = moment.presenter.picture();
     if (!image) {
       read = tl::unexpected<Error>(std::move(image).error());
@@ -89,7 +89,7 @@ Result<void> dress_as_told(const TriMesh& mesh, const std::string& style, const 
   view.stage.screen = screen_of(64, 64);
   view.stage.shading = shading;
   view.work.document.style.name = view.stage.style = style;
-  DUBSAR_ASSIGN(const ToldSession told, tell_session(mesh, view, commands, Wanted::kDocument, progress));
+  DUBSAR_ASSIGN(const ToldSession told, tell_session(mesh, view, commands, ToldPart::kDocument, progress));
   const Shown shown = shown_of(told.document, view_of(told.document), view.stage, surface_box(mesh));
   shading.style = shown.style;
   shading.other = shown.other;

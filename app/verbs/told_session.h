@@ -23,7 +23,7 @@ std::vector<TimedCommand> steps_of(const std::vector<std::string>& commands);
 /// A screen that is all picture; pixels are square.
 Screen screen_of(int width_px, int height_px);
 
-enum class Wanted { kDocument, kPicture };
+enum class ToldPart { kDocument, kPicture };
 
 struct ToldSession {
   Document document;
@@ -34,7 +34,7 @@ struct ToldSession {
 /// `view` says display, pixels, samples and the first look, as for a window; its time, inputs and steps are not looked
 /// at. Makes a GL context for the time of the call; main thread. Errors of run_view(), of the command that fails.
 Result<ToldSession> tell_session(const TriMesh& mesh, ViewOptions view, const std::vector<std::string>& commands,
-                                 Wanted wanted, Progress& progress);
+                                 ToldPart wanted, Progress& progress);
 
 /// The same for pictures that are made without a stage: the looks of the document that a session has when it was told
 /// `commands`. Style, mixture, light, parts, cuts and fog take the place of those of `shading`, which is that of

@@ -151,7 +151,7 @@ Result<VerbResult> run(const AnimateRequest& options, bool sized, Progress& prog
     ViewOptions view;
     view.stage = stage;
     view.work.document = document;
-    DUBSAR_ASSIGN(ToldSession told, tell_session(mesh, view, options.told, Wanted::kDocument, progress));
+    DUBSAR_ASSIGN(ToldSession told, tell_session(mesh, view, options.told, ToldPart::kDocument, progress));
     document = std::move(told.document);
   }
   for (const std::string& name : strange_parts(film.keys, document))

@@ -21,9 +21,15 @@ namespace dubsar::app {
 namespace {
 namespace fs = std::filesystem;
 
-struct FatCrossRequest {
-  std::string in, out, unit, part = "auto", style = "phong";
+/// How the sides look: one style or one for each layer, and what was done to it with --do.
+struct SheetLook {
+  std::string style = "phong";
   std::vector<std::string> layers, told;
+};
+
+struct FatCrossRequest {
+  std::string in, out, unit, part = "auto";
+  SheetLook look;
   double dpi = 600.0;
   int samples = 3;
   Rgb8 ground{0, 0, 0};
@@ -132,7 +138,7 @@ class CrossFiles {
     draw.legend = legend_;
     const std::string& style = styles_[static_cast<std::size_t>(k)];
     DUBSAR_ASSIGN(draw.shading, shading_preset(style));
-    DUBSAR_TRY(dress_as_told(upright_, style, options_.told, draw.shading, progress_));
+    DUBSAR_TRY(dress_as_told(upright_, style, options_.look.told, draw.shading, progress_));
     DUBSAR_ASSIGN(FatCross cross, draw_fat_cross(upright_, draw, progress_));
     if (k == 0) DUBSAR_TRY(write_sides(options_, cross, options_.out));
     size_ = {cross.whole.width, cross.whole.height};
@@ -163,13 +169,13 @@ Result<VerbResult> run(const FatCrossRequest& options, Progress& progress) {
   const bool tiff = suffix == ".tif" || suffix == ".tiff";
   if (!tiff && suffix != ".png")
     return fail(ErrorKind::kUsage, "cannot write {}: expected a name that ends in .tif, .tiff or .png", options.out);
-  if (!tiff && options.layers.size() > 1 && !options.apart)
+  if (!tiff && options.look.layers.size() > 1 && !options.apart)
     return fail(ErrorKind::kUsage, "--layers are pages of one TIFF, and {} is none; expected .tif, or --apart",
                 options.out);
-  std::vector<std::string> styles = options.layers;
-  if (styles.empty()) styles = {options.style};
+  std::vector<std::string> styles = options.look.layers;
+  if (styles.empty()) styles = {options.look.style};
   for (const std::string& style : styles) DUBSAR_TRY(shading_preset(style));
-  DUBSAR_TRY(check_told(options.told));
+  DUBSAR_TRY(check_told(options.look.told));
   DUBSAR_TRY(check_besides(options, styles));
   DUBSAR_ASSIGN(const TriMesh mesh, load_part(options, progress));
   if (!mesh.frame.input_voxel.known() && !is_exa_file(options.in))
@@ -226,9 +232,9 @@ Verb add_fatcross_verb(Arguments program) {
                              {"right", FrameTurn::kRight}},
                             "turn the found orientation in the picture, where the text does not stand upright");
   command.flag("--over", options->over, "the found obverse is the reverse");
-  command.value("--style", options->style, "shading, as of render (phong)");
-  add_do_option(command, options->told);
-  command.value("--layers", options->layers, "several shadings of the same picture, as named pages of one TIFF")
+  command.value("--style", options->look.style, "shading, as of render (phong)");
+  add_do_option(command, options->look.told);
+  command.value("--layers", options->look.layers, "several shadings of the same picture, as named pages of one TIFF")
       .separated_by(',');
   command.flag("--apart", options->apart, "each of --layers in a file of its own, NAME_style.tif");
   command.value("--samples", options->samples, "samples per pixel side").range(1, 8);

@@ -202,7 +202,7 @@ Result<VerbResult> write_told(const RenderRequest& options, const SinkSpec& disp
                               const TriMesh& mesh, Progress& progress) {
   ViewOptions view = session_of(options, display, shown);
   view.work.upright = options.view == "front";
-  DUBSAR_ASSIGN(const ToldSession told, tell_session(mesh, view, options.told, Wanted::kPicture, progress));
+  DUBSAR_ASSIGN(const ToldSession told, tell_session(mesh, view, options.told, ToldPart::kPicture, progress));
   return write_display_picture(options.display, display, shown, told.seen, options.out);
 }
 

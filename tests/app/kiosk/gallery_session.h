@@ -9,7 +9,7 @@
 #include "app/kiosk/hand_rings.h"
 #include "app/kiosk/kiosk_guide.h"
 #include "input/navigation/navigation.h"
-#include "input/simulated/gallery.h"
+#include "tests/people/gallery.h"
 
 namespace dubsar::app::test {
 

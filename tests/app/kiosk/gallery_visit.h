@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "input/simulated/gallery.h"
+#include "tests/people/gallery.h"
 
 namespace dubsar::app::test {
 

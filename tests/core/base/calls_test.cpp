@@ -88,7 +88,6 @@ TEST(Calls, WhatAHeaderOffersIsUsedByTheHouse) {
       "in_contact",               // truth of a phantom
       "nearest_part",             // the same
       "on_tablet_side",           // the same
-      "is_the_visitors",          // whose hand a simulated one is
       "light_is_on",              // what a simulated device shows
       "line_name",                // for files of words
       "make_webcam_source_over",  // pictures in place of a camera

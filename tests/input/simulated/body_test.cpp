@@ -1,6 +1,6 @@
 // The motor model of simulated people against what is known of people.
 
-#include "input/simulated/body.h"
+#include "tests/people/body.h"
 
 #include <gtest/gtest.h>
 

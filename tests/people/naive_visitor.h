@@ -7,8 +7,8 @@
 #include <optional>
 #include <string_view>
 
-#include "input/simulated/body.h"
 #include "input/simulated/seen_screen.h"
+#include "tests/people/body.h"
 
 namespace dubsar {
 

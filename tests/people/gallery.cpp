@@ -1,4 +1,4 @@
-#include "input/simulated/gallery.h"
+#include "tests/people/gallery.h"
 
 #include <algorithm>
 #include <cmath>

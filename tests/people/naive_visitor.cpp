@@ -1,4 +1,4 @@
-#include "input/simulated/naive_visitor.h"
+#include "tests/people/naive_visitor.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "input/input_source.h"
-#include "input/simulated/naive_visitor.h"
+#include "tests/people/naive_visitor.h"
 
 namespace dubsar {
 

@@ -1,4 +1,4 @@
-#include "input/simulated/body.h"
+#include "tests/people/body.h"
 
 #include <algorithm>
 #include <cmath>
