@@ -259,8 +259,9 @@ TEST(LabelledCellTable, ACrossingHasOneChordAndTwoPiecesShareOne) {
       ASSERT_TRUE(between.insert(std::minmax<unsigned>(corner.first, corner.second)).second) << id;
     }
     for (unsigned e = 0; e < 12; ++e)
-      if ((config.active_edges >> e & 1u) && !(ends >> e & 1u))
+      if ((config.active_edges >> e & 1u) && !(ends >> e & 1u)) {
         ASSERT_EQ(config.corners[e].first, config.corners[e].second) << id;
+      }
   }
 }
 

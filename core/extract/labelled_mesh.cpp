@@ -1,0 +1,309 @@
+#include "core/extract/labelled_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+
+#include "core/base/system/parallel.h"
+#include "core/extract/extract.h"
+#include "core/extract/row_kernels.h"
+
+namespace dubsar {
+namespace {
+
+constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
+constexpr std::int64_t kMixedGrain = 1 << 12;
+
+/// Cells with clay of both, in order.
+std::vector<MixedCell> list_mixed_cells(const PointLabels& labels) {
+  const Dims& dims = labels.inside().dims();
+  const std::int64_t rows_y = dims.y + 1, rows = rows_y * (dims.z + 1), grain = rows_per_chunk(dims.x);
+  std::vector<std::vector<MixedCell>> chunks(static_cast<std::size_t>((rows + grain - 1) / grain));
+  parallel_chunks(rows, grain, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<MixedCell>& found = chunks[static_cast<std::size_t>(begin / grain)];
+    for (std::int64_t r = begin; r < end; ++r) {
+      const std::int64_t y = r % rows_y - 1, z = r / rows_y - 1;
+      std::uint64_t tablet_before = 0, envelope_before = 0;
+      for (std::int64_t w = 0; w <= dims.x / 64; ++w) {
+        std::uint64_t tablet = 0, envelope = 0;
+        for (const std::int64_t dz : {0, 1})
+          for (const std::int64_t dy : {0, 1}) {
+            tablet |= labels.tablet_word(w, y + dy, z + dz);
+            envelope |= labels.envelope_word(w, y + dy, z + dz);
+          }
+        std::uint64_t mixed =
+            (tablet | tablet << 1 | tablet_before >> 63) & (envelope | envelope << 1 | envelope_before >> 63);
+        tablet_before = tablet;
+        envelope_before = envelope;
+        for (; mixed != 0; mixed &= mixed - 1)
+          found.push_back({static_cast<std::int32_t>(64 * w + std::countr_zero(mixed)) - 1,
+                           static_cast<std::int32_t>(y), static_cast<std::int32_t>(z), 0, 0});
+      }
+    }
+  });
+  std::vector<MixedCell> all;
+  for (const auto& chunk : chunks) all.insert(all.end(), chunk.begin(), chunk.end());
+  return all;
+}
+
+/// Decisions of faces that clay and air share in turn, by their place.
+class JoinedFaces {
+ public:
+  JoinedFaces(const SurfaceSamples& samples, const EdgeIndex& index) : samples_(samples), index_(index) {}
+
+  /// Of an ambiguous face that starts at a point of the grid.
+  bool joined(unsigned axis, std::int64_t x, std::int64_t y, std::int64_t z) const {
+    const BitVolume& signs = samples_.signs;
+    const std::uint64_t* here = signs.row(y, z);
+    std::uint32_t number = index_.starts(y, z).faces[axis];
+    const std::uint64_t* u = axis == 0 ? signs.row(y + 1, z) : axis == 1 ? signs.row(y, z + 1) : signs.row(y + 1, z);
+    const std::uint64_t* v = axis == 0 ? signs.row(y, z + 1) : nullptr;
+    const std::uint64_t* uv = axis == 0 ? signs.row(y + 1, z + 1) : nullptr;
+    for (std::int64_t w = 0; w <= x >> 6; ++w) {
+      std::uint64_t ambiguous;
+      if (axis == 0) {
+        ambiguous = (here[w] ^ u[w]) & (here[w] ^ v[w]) & ~(here[w] ^ uv[w]);
+      } else {
+        const auto next = [&](const std::uint64_t* row) {
+          return row[w] >> 1 | (w + 1 < signs.words_per_row() ? row[w + 1] << 63 : 0);
+        };
+        ambiguous = (here[w] ^ u[w]) & (here[w] ^ next(here)) & ~(here[w] ^ next(u));
+      }
+      if (w == x >> 6) ambiguous &= (std::uint64_t{1} << (x & 63)) - 1;
+      number += static_cast<std::uint32_t>(std::popcount(ambiguous));
+    }
+    return samples_.joined[number] != 0;
+  }
+
+ private:
+  const SurfaceSamples& samples_;
+  const EdgeIndex& index_;
+};
+
+class MixedCells {
+ public:
+  MixedCells(const SurfaceSamples& samples, const EdgeIndex& index, const PointLabels& labels,
+             const ContactEdges& edges, const std::vector<std::uint16_t>& contact)
+      : samples_(samples), index_(index), labels_(labels), edges_(edges), contact_(contact), faces_(samples, index) {}
+
+  CornerLabels corners(const MixedCell& cell) const {
+    CornerLabels corners{};
+    for (unsigned c = 0; c < 8; ++c) {
+      const auto [x, y, z] = corner(cell, c);
+      corners[c] = static_cast<std::uint8_t>(labels_.get(x, y, z));
+    }
+    return corners;
+  }
+
+  std::uint16_t config(const MixedCell& cell) const {
+    const CornerLabels at = corners(cell);
+    const int labelling = LabelledCellTable::labelling(at);
+    unsigned bits = 0, place = 0;
+    for (unsigned faces = table_.ambiguous_faces(labelling); faces != 0; faces &= faces - 1, ++place) {
+      const auto f = static_cast<unsigned>(std::countr_zero(faces));
+      const unsigned axis = f / 2, first = (f & 1u) << axis, second = first | 1u << ((axis + 1) % 3);
+      if (at[first] != 0 && at[second] != 0) continue;  // the tablet is joined
+      const auto [x, y, z] = corner(cell, first);
+      bits |= unsigned{faces_.joined(axis, x, y, z)} << place;
+    }
+    return static_cast<std::uint16_t>(table_.id(labelling, bits));
+  }
+
+  struct Crossing {
+    std::uint32_t quad = 0;
+    unsigned along = 0;  ///< from the start of the edge, half quanta
+  };
+  Crossing crossing(const MixedCell& cell, unsigned edge) const {
+    const auto [low, high] = edge_corners(edge);
+    const unsigned axis = edge / 4;
+    const auto [x, y, z] = corner(cell, low);
+    const bool from_clay = labels_.get(x, y, z) != PointLabel::kAir;
+    const bool to_clay = labels_.get(x + (axis == 0), y + (axis == 1), z + (axis == 2)) != PointLabel::kAir;
+    if (from_clay && to_clay) {
+      const std::uint32_t number = edges_.number(axis, x, y, z);
+      return {first_contact() + number, contact_.empty() ? step() / 2 : 2u * contact_[number] + 1u};
+    }
+    const std::uint32_t quad = index_.quad_of(static_cast<int>(axis), x, y, z);
+    if (index_.is_virtual(static_cast<int>(axis), x, y, z)) return {quad, from_clay ? 0 : step()};
+    return {quad, 2u * samples_.offsets[quad] + 1u};
+  }
+  bool is_contact(const Crossing& crossing) const { return crossing.quad >= first_contact(); }
+  std::uint32_t first_contact() const {
+    return static_cast<std::uint32_t>(index_.counts().edges + index_.virtual_edges());
+  }
+
+  /// The mean of the crossings of a piece, as build_quad_mesh() has it.
+  glm::vec3 place(const MixedCell& cell, std::uint16_t edges) const {
+    std::array<unsigned, 3> sum{};
+    unsigned count = 0;
+    for (unsigned e = 0; e < 12; ++e) {
+      if (!(edges >> e & 1u)) continue;
+      ++count;
+      const unsigned axis = e / 4;
+      sum[axis] += crossing(cell, e).along;
+      if (e & 1u) sum[(axis + 1) % 3] += step();
+      if (e & 2u) sum[(axis + 2) % 3] += step();
+    }
+    const double scale = 1.0 / (static_cast<double>(count) * step());
+    return {static_cast<float>(cell.x + sum[0] * scale), static_cast<float>(cell.y + sum[1] * scale),
+            static_cast<float>(cell.z + sum[2] * scale)};
+  }
+
+ private:
+  static std::array<std::int64_t, 3> corner(const MixedCell& cell, unsigned c) {
+    return {cell.x + std::int64_t{c & 1u}, cell.y + std::int64_t{c >> 1 & 1u}, cell.z + std::int64_t{c >> 2}};
+  }
+  unsigned step() const { return 2u << samples_.offset_bits; }
+
+  const LabelledCellTable& table_ = LabelledCellTable::instance();
+  const SurfaceSamples& samples_;
+  const EdgeIndex& index_;
+  const PointLabels& labels_;
+  const ContactEdges& edges_;
+  const std::vector<std::uint16_t>& contact_;
+  JoinedFaces faces_;
+};
+
+/// Labels of the x-quads between clay and air, and of the contact behind them.
+std::vector<std::uint8_t> pairs_of_quads(const SurfaceSamples& samples, const EdgeIndex& index,
+                                         const PointLabels& labels, std::size_t contact) {
+  using enum PointLabel;
+  const Dims& dims = samples.dims;
+  const auto airs = static_cast<std::size_t>(index.counts().edges + index.virtual_edges());
+  std::vector<std::uint8_t> pairs(airs + contact, LabelledMesh::label_pair(kAir, kTablet));
+  std::fill(pairs.begin() + static_cast<std::ptrdiff_t>(airs), pairs.end(),
+            LabelledMesh::label_pair(kTablet, kEnvelope));
+  const std::uint8_t envelope = LabelledMesh::label_pair(kAir, kEnvelope);
+  const std::int64_t words = samples.signs.words_per_row();
+  parallel_for(dims.y * dims.z, rows_per_chunk(dims.x), [&](std::int64_t r) {
+    const std::int64_t y = r % dims.y, z = r / dims.y;
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((axis == 1 && y + 1 == dims.y) || (axis == 2 && z + 1 == dims.z)) continue;
+      std::uint32_t quad = index.starts(y, z).edges[static_cast<std::size_t>(axis)];
+      const std::int64_t ny = y + (axis == 1), nz = z + (axis == 2);
+      const std::uint64_t *here = samples.signs.row(y, z), *there = samples.signs.row(ny, nz);
+      for (std::int64_t w = 0; w < words; ++w) {
+        std::uint64_t next = there[w], theirs = labels.envelope_word(w, ny, nz);
+        if (axis == 0) {
+          next = here[w] >> 1 | (w + 1 < words ? here[w + 1] << 63 : 0);
+          theirs = labels.envelope_word(w, y, z) >> 1 | labels.envelope_word(w + 1, y, z) << 63;
+        }
+        std::uint64_t active = here[w] ^ next;
+        if (axis == 0 && w + 1 == words) active &= ~(std::uint64_t{1} << ((dims.x - 1) & 63));
+        const std::uint64_t of_envelope = labels.envelope_word(w, y, z) | theirs;
+        for (; active != 0; active &= active - 1, ++quad)
+          if (of_envelope >> std::countr_zero(active) & 1u) pairs[quad] = envelope;
+      }
+    }
+  });
+  const auto at_border = [&](int axis, std::int64_t x, std::int64_t y, std::int64_t z) {
+    const std::array<std::int64_t, 3> step{axis == 0, axis == 1, axis == 2};
+    if (labels.get(x, y, z) == kEnvelope) {
+      if ((axis == 0 ? x : axis == 1 ? y : z) == 0)
+        pairs[index.quad_of(axis, x - step[0], y - step[1], z - step[2])] = envelope;
+      if (index.is_virtual(axis, x, y, z)) pairs[index.quad_of(axis, x, y, z)] = envelope;
+    }
+  };
+  for (std::int64_t z = 0; z < dims.z; ++z)
+    for (std::int64_t y = 0; y < dims.y; ++y) {
+      const bool all_x = y == 0 || z == 0 || y + 1 == dims.y || z + 1 == dims.z;
+      for (std::int64_t x = 0; x < dims.x; x += all_x ? 1 : std::max<std::int64_t>(dims.x - 1, 1))
+        for (int axis = 0; axis < 3; ++axis) at_border(axis, x, y, z);
+    }
+  return pairs;
+}
+
+}  // namespace
+
+Result<LabelledMesh> build_labelled_mesh(const SurfaceSamples& samples, const EdgeIndex& index,
+                                         const PointLabels& labels, const ContactEdges& edges,
+                                         const std::vector<std::uint16_t>& contact, Progress& progress) {
+  if (!samples.closed)
+    return fail(ErrorKind::kUsage, "extract: an open surface found, labels need one that is closed at the border");
+  if (!contact.empty() && contact.size() != edges.all().size())
+    return fail(ErrorKind::kBadData, "extract: {} crossings of the contact found, {} expected", contact.size(),
+                edges.all().size());
+  LabelledMesh result;
+  DUBSAR_ASSIGN(result.mesh, build_quad_mesh(samples, index, progress));
+  result.pairs = pairs_of_quads(samples, index, labels, edges.all().size());
+  result.first_contact = static_cast<std::uint32_t>(result.mesh.quads.size());
+  result.cells = list_mixed_cells(labels);
+  QuadMesh& mesh = result.mesh;
+  const std::size_t before = mesh.positions.size();
+  const MixedCells mixed(samples, index, labels, edges, contact);
+  const LabelledCellTable& table = LabelledCellTable::instance();
+  const auto each_cell = [&](const auto& visit) {
+    parallel_for(static_cast<std::int64_t>(result.cells.size()), kMixedGrain,
+                 [&](std::int64_t i) { visit(static_cast<std::size_t>(i)); });
+  };
+
+  // The vertices that these cells had without labels go.
+  std::vector<std::uint8_t> dropped(before, 0);
+  each_cell([&](std::size_t i) {
+    MixedCell& cell = result.cells[i];
+    cell.config = mixed.config(cell);
+    const LabelledConfig& config = table.config(cell.config);
+    for (unsigned e = 0; e < 12; ++e) {
+      if (!(config.active_edges >> e & 1u)) continue;
+      const auto crossing = mixed.crossing(cell, e);
+      if (mixed.is_contact(crossing)) continue;
+      const Polygon polygon = mesh.polygon(crossing.quad);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(polygon.size); ++k)
+        if (polygon.corner[k] == config.corners[e].corner) dropped[polygon.vertex[k]] = 1;
+    }
+  });
+  std::vector<std::uint32_t> new_number(before, kNoVertex);
+  for (std::size_t v = 0; v < before; ++v) {
+    if (dropped[v]) continue;
+    new_number[v] = static_cast<std::uint32_t>(result.unlabelled.size());
+    mesh.positions[result.unlabelled.size()] = mesh.positions[v];
+    result.unlabelled.push_back(static_cast<std::uint32_t>(v));
+  }
+  result.first_mixed = static_cast<std::uint32_t>(result.unlabelled.size());
+  std::uint64_t vertices = result.first_mixed;
+  for (MixedCell& cell : result.cells) {
+    cell.first_vertex = static_cast<std::uint32_t>(vertices);
+    vertices += table.config(cell.config).vertices;
+  }
+  if (vertices >= kNoVertex || mesh.quads.size() + edges.all().size() >= kNoVertex)
+    return fail(ErrorKind::kTryAgain, "extract: the labelled surface has {} vertices, at most {} can be numbered",
+                vertices, kNoVertex - 1);
+  if (result.cells.empty()) return result;
+
+  mesh.positions.resize(vertices);
+  result.triple.resize(vertices - result.first_mixed);
+  mesh.quads.resize(mesh.quads.size() + edges.all().size());
+  parallel_for(result.first_contact, 1 << 14, [&](std::int64_t q) {
+    for (std::uint32_t& v : mesh.quads[static_cast<std::size_t>(q)]) v = new_number[v];
+  });
+  std::vector<DoubledCorner> doubled;
+  for (const DoubledCorner& d : mesh.doubled)
+    if (new_number[d.vertex] != kNoVertex) doubled.push_back({d.quad, new_number[d.vertex], d.corner});
+  std::vector<std::vector<DoubledCorner>> more(result.cells.size() / kMixedGrain + 1);
+  each_cell([&](std::size_t i) {
+    const MixedCell& cell = result.cells[i];
+    const LabelledConfig& config = table.config(cell.config);
+    for (unsigned p = 0; p < config.vertices; ++p) {
+      mesh.positions[cell.first_vertex + p] = mixed.place(cell, config.piece_edges[p]);
+      result.triple[cell.first_vertex + p - result.first_mixed] = config.triple >> p & 1u;
+    }
+    for (unsigned e = 0; e < 12; ++e) {
+      if (!(config.active_edges >> e & 1u)) continue;
+      const std::uint32_t quad = mixed.crossing(cell, e).quad;
+      const CellCorner& corner = config.corners[e];
+      mesh.quads[quad][corner.corner] = cell.first_vertex + corner.first;
+      if (corner.second != corner.first)
+        more[i / kMixedGrain].push_back({quad, cell.first_vertex + corner.second, corner.corner});
+    }
+  });
+  for (const auto& chunk : more) doubled.insert(doubled.end(), chunk.begin(), chunk.end());
+  std::sort(doubled.begin(), doubled.end(), [](const DoubledCorner& a, const DoubledCorner& b) {
+    return a.quad != b.quad ? a.quad < b.quad : a.corner < b.corner;
+  });
+  mesh.doubled = std::move(doubled);
+  mesh.build_incidence();
+  return result;
+}
+
+}  // namespace dubsar
