@@ -12,10 +12,10 @@ namespace dubsar {
 ContactEdges::ContactEdges(const PointLabels& labels) : dims_(labels.inside().dims()) {
   const std::int64_t rows = dims_.y * dims_.z, grain = rows_per_chunk(dims_.x);
   const std::int64_t words = labels.inside().words_per_row();
-  std::vector<std::vector<ContactEdge>> chunks(static_cast<std::size_t>((rows + grain - 1) / grain));
+  std::vector<std::vector<GridEdge>> chunks(static_cast<std::size_t>((rows + grain - 1) / grain));
   starts_.assign(static_cast<std::size_t>(rows) + 1, 0);
   parallel_chunks(rows, grain, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<ContactEdge>& found = chunks[static_cast<std::size_t>(begin / grain)];
+    std::vector<GridEdge>& found = chunks[static_cast<std::size_t>(begin / grain)];
     for (std::int64_t r = begin; r < end; ++r) {
       const std::int64_t y = r % dims_.y, z = r / dims_.y;
       const std::size_t before = found.size();
@@ -52,7 +52,7 @@ ContactEdges::ContactEdges(const PointLabels& labels) : dims_(labels.inside().di
 std::uint32_t ContactEdges::number(std::int64_t axis, std::int64_t x, std::int64_t y, std::int64_t z) const noexcept {
   const auto row = static_cast<std::size_t>(z * dims_.y + y);
   const auto begin = edges_.begin() + starts_[row], end = edges_.begin() + starts_[row + 1];
-  const auto found = std::lower_bound(begin, end, std::tuple(axis, x), [](const ContactEdge& e, const auto& wanted) {
+  const auto found = std::lower_bound(begin, end, std::tuple(axis, x), [](const GridEdge& e, const auto& wanted) {
     return std::tuple<std::int64_t, std::int64_t>(e.axis, e.x) < wanted;
   });
   DUBSAR_CHECK(found != end && found->axis == axis && found->x == x);

@@ -7,6 +7,7 @@
 
 #include "core/base/system/parallel.h"
 #include "core/extract/extract.h"
+#include "core/extract/quad_edges.h"
 #include "core/extract/row_kernels.h"
 
 namespace dubsar {
@@ -165,52 +166,14 @@ class MixedCells {
   JoinedFaces faces_;
 };
 
-/// Labels of the x-quads between clay and air, and of the contact behind them.
-std::vector<std::uint8_t> pairs_of_quads(const SurfaceSamples& samples, const EdgeIndex& index,
-                                         const PointLabels& labels, std::size_t contact) {
-  using enum PointLabel;
-  const Dims& dims = samples.dims;
-  const auto airs = static_cast<std::size_t>(index.counts().edges + index.virtual_edges());
-  std::vector<std::uint8_t> pairs(airs + contact, LabelledMesh::label_pair(kAir, kTablet));
-  std::fill(pairs.begin() + static_cast<std::ptrdiff_t>(airs), pairs.end(),
-            LabelledMesh::label_pair(kTablet, kEnvelope));
-  const std::uint8_t envelope = LabelledMesh::label_pair(kAir, kEnvelope);
-  const std::int64_t words = samples.signs.words_per_row();
-  parallel_for(dims.y * dims.z, rows_per_chunk(dims.x), [&](std::int64_t r) {
-    const std::int64_t y = r % dims.y, z = r / dims.y;
-    for (int axis = 0; axis < 3; ++axis) {
-      if ((axis == 1 && y + 1 == dims.y) || (axis == 2 && z + 1 == dims.z)) continue;
-      std::uint32_t quad = index.starts(y, z).edges[static_cast<std::size_t>(axis)];
-      const std::int64_t ny = y + (axis == 1), nz = z + (axis == 2);
-      const std::uint64_t *here = samples.signs.row(y, z), *there = samples.signs.row(ny, nz);
-      for (std::int64_t w = 0; w < words; ++w) {
-        std::uint64_t next = there[w], theirs = labels.envelope_word(w, ny, nz);
-        if (axis == 0) {
-          next = here[w] >> 1 | (w + 1 < words ? here[w + 1] << 63 : 0);
-          theirs = labels.envelope_word(w, y, z) >> 1 | labels.envelope_word(w + 1, y, z) << 63;
-        }
-        std::uint64_t active = here[w] ^ next;
-        if (axis == 0 && w + 1 == words) active &= ~(std::uint64_t{1} << ((dims.x - 1) & 63));
-        const std::uint64_t of_envelope = labels.envelope_word(w, y, z) | theirs;
-        for (; active != 0; active &= active - 1, ++quad)
-          if (of_envelope >> std::countr_zero(active) & 1u) pairs[quad] = envelope;
-      }
-    }
+std::vector<std::uint8_t> pairs_of_edges(const PointLabels& labels, const std::vector<GridEdge>& edges) {
+  std::vector<std::uint8_t> pairs(edges.size());
+  parallel_for(static_cast<std::int64_t>(edges.size()), 1 << 14, [&](std::int64_t q) {
+    const GridEdge& e = edges[static_cast<std::size_t>(q)];
+    const PointLabel from = labels.get(e.x, e.y, e.z),
+                     to = labels.get(e.x + (e.axis == 0), e.y + (e.axis == 1), e.z + (e.axis == 2));
+    pairs[static_cast<std::size_t>(q)] = LabelledMesh::label_pair(std::min(from, to), std::max(from, to));
   });
-  const auto at_border = [&](int axis, std::int64_t x, std::int64_t y, std::int64_t z) {
-    const std::array<std::int64_t, 3> step{axis == 0, axis == 1, axis == 2};
-    if (labels.get(x, y, z) == kEnvelope) {
-      if ((axis == 0 ? x : axis == 1 ? y : z) == 0)
-        pairs[index.quad_of(axis, x - step[0], y - step[1], z - step[2])] = envelope;
-      if (index.is_virtual(axis, x, y, z)) pairs[index.quad_of(axis, x, y, z)] = envelope;
-    }
-  };
-  for (std::int64_t z = 0; z < dims.z; ++z)
-    for (std::int64_t y = 0; y < dims.y; ++y) {
-      const bool all_x = y == 0 || z == 0 || y + 1 == dims.y || z + 1 == dims.z;
-      for (std::int64_t x = 0; x < dims.x; x += all_x ? 1 : std::max<std::int64_t>(dims.x - 1, 1))
-        for (int axis = 0; axis < 3; ++axis) at_border(axis, x, y, z);
-    }
   return pairs;
 }
 
@@ -226,7 +189,9 @@ Result<LabelledMesh> build_labelled_mesh(const SurfaceSamples& samples, const Ed
                 edges.all().size());
   LabelledMesh result;
   DUBSAR_ASSIGN(result.mesh, build_quad_mesh(samples, index, progress));
-  result.pairs = pairs_of_quads(samples, index, labels, edges.all().size());
+  result.edges = edges_of_quads(samples.signs, index);
+  result.edges.insert(result.edges.end(), edges.all().begin(), edges.all().end());
+  result.pairs = pairs_of_edges(labels, result.edges);
   result.first_contact = static_cast<std::uint32_t>(result.mesh.quads.size());
   result.cells = list_mixed_cells(labels);
   QuadMesh& mesh = result.mesh;
@@ -269,7 +234,18 @@ Result<LabelledMesh> build_labelled_mesh(const SurfaceSamples& samples, const Ed
   if (vertices >= kNoVertex || mesh.quads.size() + edges.all().size() >= kNoVertex)
     return fail(ErrorKind::kTryAgain, "extract: the labelled surface has {} vertices, at most {} can be numbered",
                 vertices, kNoVertex - 1);
-  if (result.cells.empty()) return result;
+  const auto find_cells = [&] {
+    std::vector<bool> reversed(result.edges.size());
+    for (std::size_t q = 0; q < reversed.size(); ++q) {
+      const GridEdge& e = result.edges[q];
+      reversed[q] = labels.get(e.x, e.y, e.z) == PointLabel(result.pairs[q] & 3u);
+    }
+    result.vertex_cells = cells_of_vertices(mesh, result.edges, reversed);
+  };
+  if (result.cells.empty()) {
+    find_cells();
+    return result;
+  }
 
   mesh.positions.resize(vertices);
   result.triple.resize(vertices - result.first_mixed);
@@ -303,6 +279,7 @@ Result<LabelledMesh> build_labelled_mesh(const SurfaceSamples& samples, const Ed
   });
   mesh.doubled = std::move(doubled);
   mesh.build_incidence();
+  find_cells();
   return result;
 }
 

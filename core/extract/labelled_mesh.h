@@ -4,6 +4,7 @@
 // that touch share vertices and x-quads.
 
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -33,6 +34,8 @@ struct LabelledMesh {
   std::vector<std::uint8_t> triple;       ///< of each vertex from first_mixed on: 1 where three labels meet at it
   std::vector<std::uint32_t> unlabelled;  ///< of each vertex below first_mixed: its number without labels
   std::vector<std::uint8_t> pairs;        ///< of each x-quad: label_pair()
+  std::vector<GridEdge> edges;            ///< of each x-quad
+  std::vector<glm::ivec3> vertex_cells;   ///< of each vertex (quad_edges.h)
 
   static constexpr std::uint8_t label_pair(PointLabel low, PointLabel high) noexcept {
     return static_cast<std::uint8_t>(static_cast<unsigned>(low) | static_cast<unsigned>(high) << 2);

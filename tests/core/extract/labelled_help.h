@@ -120,6 +120,32 @@ inline Labels random_labels(Dims dims, unsigned seed, std::array<unsigned, 3> we
   return volume;
 }
 
+/// A volume of drawn labels in which every labelling of a cell stands once, with a layer of drawn points around it.
+inline Labels all_labellings(unsigned seed) {
+  constexpr std::int64_t kBlocks = 19, kEvery = 4;  // 19^3 >= 3^8
+  constexpr std::int64_t n = kBlocks * kEvery + 1;
+  Labels volume = random_labels({n, n, n}, seed);
+  int labelling = 0;
+  for (std::int64_t z = 0; z < kBlocks; ++z)
+    for (std::int64_t y = 0; y < kBlocks; ++y)
+      for (std::int64_t x = 0; x < kBlocks && labelling < LabelledCellTable::kLabellings; ++x, ++labelling) {
+        const CornerLabels labels = LabelledCellTable::labels_of(labelling);
+        for (unsigned c = 0; c < 8; ++c)
+          volume.at(kEvery * x + 1 + (c & 1u), kEvery * y + 1 + (c >> 1 & 1u), kEvery * z + 1 + (c >> 2)) = labels[c];
+      }
+  return volume;
+}
+
+/// The volume within a layer of air.
+inline Labels in_air(const Labels& volume, const glm::ivec3& low = glm::ivec3(1),
+                     const glm::ivec3& high = glm::ivec3(1)) {
+  Labels wider(Dims{volume.dims.x + low.x + high.x, volume.dims.y + low.y + high.y, volume.dims.z + low.z + high.z});
+  std::fill(wider.voxels.begin(), wider.voxels.end(), std::uint8_t{0});
+  LabelledScene::each(volume.dims,
+                      [&](auto x, auto y, auto z) { wider.at(x + low.x, y + low.y, z + low.z) = volume.at(x, y, z); });
+  return wider;
+}
+
 /// Three smooth fields; the greatest gives the label.
 inline Labels smooth_labels(Dims dims, unsigned seed, double wave = 9.0) {
   std::mt19937 random(seed);

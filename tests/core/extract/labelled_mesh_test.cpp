@@ -43,22 +43,6 @@ TEST(LabelledMesh, IsTodaysMeshWhereNoTwoClaysAre) {
   }
 }
 
-/// A volume of drawn labels in which every labelling of a cell stands once, with a layer of drawn points around it.
-Labels all_labellings(unsigned seed) {
-  constexpr std::int64_t kBlocks = 19, kEvery = 4;  // 19^3 >= 3^8
-  constexpr std::int64_t n = kBlocks * kEvery + 1;
-  Labels volume = random_labels({n, n, n}, seed);
-  int labelling = 0;
-  for (std::int64_t z = 0; z < kBlocks; ++z)
-    for (std::int64_t y = 0; y < kBlocks; ++y)
-      for (std::int64_t x = 0; x < kBlocks && labelling < LabelledCellTable::kLabellings; ++x, ++labelling) {
-        const CornerLabels labels = LabelledCellTable::labels_of(labelling);
-        for (unsigned c = 0; c < 8; ++c)
-          volume.at(kEvery * x + 1 + (c & 1u), kEvery * y + 1 + (c >> 1 & 1u), kEvery * z + 1 + (c >> 2)) = labels[c];
-      }
-  return volume;
-}
-
 TEST(LabelledMesh, EveryLabellingOfACellGivesClosedManifoldsOfAllLabels) {
   expect_manifolds(LabelledScene(all_labellings(11)).draw(12));
 }
@@ -163,18 +147,9 @@ void draw_by_place(LabelledScene& scene, const std::function<glm::ivec4(glm::ive
     }
   });
   for (std::size_t i = 0; i < scene.contact.size(); ++i) {
-    const ContactEdge& e = scene.edges->all()[i];
+    const GridEdge& e = scene.edges->all()[i];
     scene.contact[i] = drawn(e.x, e.y, e.z, e.axis);
   }
-}
-
-/// The volume within a layer of air.
-Labels in_air(const Labels& volume, const glm::ivec3& low, const glm::ivec3& high) {
-  Labels wider(Dims{volume.dims.x + low.x + high.x, volume.dims.y + low.y + high.y, volume.dims.z + low.z + high.z});
-  std::fill(wider.voxels.begin(), wider.voxels.end(), std::uint8_t{0});
-  LabelledScene::each(volume.dims,
-                      [&](auto x, auto y, auto z) { wider.at(x + low.x, y + low.y, z + low.z) = volume.at(x, y, z); });
-  return wider;
 }
 
 const auto kSame = [](glm::dvec3 p) { return p; };
