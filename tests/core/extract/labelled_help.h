@@ -120,19 +120,21 @@ inline Labels random_labels(Dims dims, unsigned seed, std::array<unsigned, 3> we
   return volume;
 }
 
-/// A volume of drawn labels in which every labelling of a cell stands once, with a layer of drawn points around it.
-inline Labels all_labellings(unsigned seed) {
-  constexpr std::int64_t kBlocks = 19, kEvery = 4;  // 19^3 >= 3^8
-  constexpr std::int64_t n = kBlocks * kEvery + 1;
+/// A volume of drawn labels in which every labelling of a cell, of each `parts` the one with number `part`, stands
+/// once, with drawn points around it.
+inline Labels all_labellings(unsigned seed, int part = 0, int parts = 1) {
+  constexpr std::int64_t kEvery = 4;
+  std::int64_t blocks = 1;
+  while (blocks * blocks * blocks * parts < LabelledCellTable::kLabellings) ++blocks;
+  const std::int64_t n = blocks * kEvery + 1;
   Labels volume = random_labels({n, n, n}, seed);
-  int labelling = 0;
-  for (std::int64_t z = 0; z < kBlocks; ++z)
-    for (std::int64_t y = 0; y < kBlocks; ++y)
-      for (std::int64_t x = 0; x < kBlocks && labelling < LabelledCellTable::kLabellings; ++x, ++labelling) {
-        const CornerLabels labels = LabelledCellTable::labels_of(labelling);
-        for (unsigned c = 0; c < 8; ++c)
-          volume.at(kEvery * x + 1 + (c & 1u), kEvery * y + 1 + (c >> 1 & 1u), kEvery * z + 1 + (c >> 2)) = labels[c];
-      }
+  LabelledScene::each({blocks, blocks, blocks}, [&](auto x, auto y, auto z) {
+    const auto labelling = static_cast<int>((z * blocks + y) * blocks + x) * parts + part;
+    if (labelling >= LabelledCellTable::kLabellings) return;
+    const CornerLabels labels = LabelledCellTable::labels_of(labelling);
+    for (unsigned c = 0; c < 8; ++c)
+      volume.at(kEvery * x + 1 + (c & 1u), kEvery * y + 1 + (c >> 1 & 1u), kEvery * z + 1 + (c >> 2)) = labels[c];
+  });
   return volume;
 }
 

@@ -1,11 +1,10 @@
-#include "core/extract/safe_drawing.h"
-
 #include <gtest/gtest.h>
 
 #include <glm/vec4.hpp>
 #include <string>
 
 #include "core/extract/quad_envelope.h"
+#include "core/extract/taking_back.h"
 #include "core/mesh/exact_crossings.h"
 #include "tests/core/extract/labelled_help.h"
 
@@ -63,24 +62,79 @@ DrawnCounts expect_safe(const LabelledScene& scene, const std::string& what, int
 }
 
 TEST(SafeDrawing, NoTriangleTouchesAnotherWhateverTheLabels) {
-  for (const int rounds : {0, 10}) {
-    for (unsigned seed = 0; seed < 3; ++seed) {
-      const DrawnCounts c =
-          expect_safe(LabelledScene(in_air(random_labels({30, 30, 30}, seed))).draw(seed + 100), "random", rounds);
-      printf("random %u rounds %d: %ld triangles hard %ld last %ld f %ld x %ld fans4 %ld\n", seed, rounds, c.triangles,
-             c.hard, c.last, c.faces, c.edges, c.fans);
+  for (const int rounds : {0, 10})
+    for (unsigned seed = 0; seed < 2; ++seed)
+      expect_safe(LabelledScene(in_air(random_labels({16, 14, 18}, seed))).draw(seed + 100), "random", rounds);
+  expect_safe(LabelledScene(nested_labels(32, 1.0, 5)).draw(6), "nested", 10);
+  expect_safe(LabelledScene(in_air(smooth_labels({30, 30, 30}, 3))).draw(4), "smooth", 10);
+}
+
+TEST(SafeDrawing, NoTriangleTouchesAnotherInLabellingsOfACell) {
+  expect_safe(LabelledScene(in_air(all_labellings(21, 3, 20))).draw(22), "every 20th labelling");
+}
+
+/// With crossings in the middle of their edges, where the last resort puts them, there is a place for all vertices.
+TEST(SafeDrawing, LabellingsHaveAPlaceWithCrossingsInTheMiddle) {
+  const LabelledScene scene(in_air(all_labellings(31, 7, 20)));
+  const LabelledMesh labelled = scene.build();
+  std::vector<glm::vec3> middles = crossings_of(labelled, *scene.samples, {});
+  for (std::size_t q = 0; q < middles.size(); ++q)
+    middles[q][labelled.edges[q].axis] = std::floor(middles[q][labelled.edges[q].axis]) + 0.5f;
+  const SafeDrawing drawing = draw_safely(labelled, labelled.mesh.positions, middles, triangulate(labelled.mesh, {}));
+  EXPECT_EQ(drawing.crossing_pairs, 0);
+  EXPECT_EQ(drawing.last_resorts, 0);
+}
+
+TEST(SafeDrawing, WhatIsSmoothedAsOneLikesIsTakenBackUntilNothingTouches) {
+  for (unsigned seed = 0; seed < 3; ++seed) {
+    const Labels volume = seed == 0   ? in_air(random_labels({16, 16, 16}, 9))
+                          : seed == 1 ? nested_labels(40, 1.0, 10)
+                                      : in_air(smooth_labels({32, 32, 32}, 11, 6.0));
+    const LabelledScene scene = std::move(LabelledScene(volume).draw(seed));
+    const LabelledMesh labelled = scene.build();
+    const SafeDrawing drawing =
+        draw_safely(labelled, labelled.mesh.positions, crossings_of(labelled, *scene.samples, scene.contact),
+                    triangulate(labelled.mesh, {}));
+    std::vector<ExactPlace> places = follow_vertices(drawing, exact_places(relaxed(labelled.mesh, 10)));
+    EXPECT_GT(touching_pairs(places, drawing.triangles).size(), 0u) << "free smoothing crosses";
+    const std::vector<ExactPlace> wanted = places;
+    const TakenBack back = take_back(drawing, places);
+    EXPECT_EQ(back.left, 0);
+    EXPECT_TRUE(touching_pairs(places, drawing.triangles).empty());
+    EXPECT_LE(back.rounds, 12);
+    std::size_t moved = 0, free = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      moved += places[i] == wanted[i];
+      free += places[i] != wanted[i];
+      EXPECT_TRUE(places[i] == wanted[i] || places[i] == drawing.places[i]);
     }
-    expect_safe(LabelledScene(nested_labels(40, 1.0, 5)).draw(6), "nested", rounds);
-    const DrawnCounts c = expect_safe(LabelledScene(in_air(smooth_labels({48, 48, 48}, 3))).draw(4), "smooth", rounds);
-    printf("smooth: %ld triangles hard %ld last %ld f %ld x %ld fans4 %ld\n", c.triangles, c.hard, c.last, c.faces,
-           c.edges, c.fans);
+    EXPECT_TRUE(seed == 0 || moved > 4 * free);
+    RecordProperty(std::to_string(seed), std::to_string(back.rounds) + " rounds, " + std::to_string(free) + " points");
   }
 }
 
-TEST(SafeDrawing, NoTriangleTouchesAnotherInAnyLabellingOfACell) {
-  const DrawnCounts c = expect_safe(LabelledScene(in_air(all_labellings(21))).draw(22), "all labellings");
-  printf("all: %ld triangles hard %ld last %ld f %ld x %ld fans4 %ld\n", c.triangles, c.hard, c.last, c.faces, c.edges,
-         c.fans);
+// --- The whole of it: half an hour of pairs of labels and surroundings in a minute (label long).
+
+TEST(SafeDrawingWhole, EveryLabellingOfACellIsManifoldAndTouchesNothing) {
+  for (unsigned part = 0; part < 6; ++part)
+    expect_safe(LabelledScene(in_air(all_labellings(41, part, 6))).draw(42 + part), "every labelling");
+}
+
+TEST(SafeDrawingWhole, DrawnSmoothAndNestedVolumesTouchNothing) {
+  for (const int rounds : {0, 10}) {
+    const DrawnCounts random =
+        expect_safe(LabelledScene(in_air(random_labels({30, 30, 30}, 1))).draw(101), "random", rounds);
+    const DrawnCounts airy =
+        expect_safe(LabelledScene(in_air(random_labels({46, 46, 46}, 2, {2, 1, 1}))).draw(102), "half air", rounds);
+    const DrawnCounts smooth =
+        expect_safe(LabelledScene(in_air(smooth_labels({62, 62, 62}, 3))).draw(103), "smooth", rounds);
+    const DrawnCounts nested = expect_safe(LabelledScene(nested_labels(96, 0.3, 4)).draw(104), "nested .3", rounds);
+    const DrawnCounts rough = expect_safe(LabelledScene(nested_labels(128, 1.0, 5)).draw(105), "nested 1", rounds);
+    for (const DrawnCounts& c : {random, airy, smooth, nested, rough})
+      printf("%lld triangles, %lld cells moved, %lld last resorts, %lld face and %lld edge points, %lld fans of four\n",
+             static_cast<long long>(c.triangles), static_cast<long long>(c.hard), static_cast<long long>(c.last),
+             static_cast<long long>(c.faces), static_cast<long long>(c.edges), static_cast<long long>(c.fans));
+  }
 }
 
 }  // namespace
