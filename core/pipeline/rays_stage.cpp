@@ -22,21 +22,30 @@ constexpr std::int64_t kMarginOfWidth = 43, kLeastRaysMargin = 3;
 constexpr double kLargeFactor = 1.5;
 
 /// What is found has lengths in voxels of the scan.
-Result<CurveSearch> search_in(SlabSource& source, std::int64_t widest, std::optional<TurnAxis> only,
-                              double voxels_a_step, StageRun run) {
+Result<CurveSearch> search_in(SlabSource& source, std::int64_t widest, const CurveTrial* known, double voxels_a_step,
+                              StageRun run) {
   DUBSAR_ASSIGN(const CoarseVolume coarse, read_coarse_volume(source, widest, run.progress));
   const Dims d = coarse.volume.dims;
   const std::int64_t margin = std::max(kLeastRaysMargin, std::max({d.x, d.y, d.z}) / kMarginOfWidth);
-  DUBSAR_ASSIGN(CurveSearch search, search_curve(coarse.volume, margin, only, run.progress));
-  if (search.found) search.found->curve.longest *= static_cast<double>(coarse.cell) * voxels_a_step;
+  const double step = static_cast<double>(coarse.cell) * voxels_a_step;
+  const auto in_steps = [](const std::shared_ptr<const StrayField>& stray, double voxels) {
+    return stray ? std::make_shared<const StrayField>(stray->in_steps_of(voxels)) : nullptr;
+  };
+  const std::optional<TurnAxis> only = known ? std::optional(known->axis) : std::nullopt;
+  DUBSAR_ASSIGN(CurveSearch search, search_curve(coarse.volume, margin, only,
+                                                 known ? in_steps(known->stray, step) : nullptr, run.progress));
+  if (search.found) {
+    search.found->curve = search.found->curve.in_steps_of(1.0 / step);
+    search.found->stray = in_steps(search.found->stray, 1.0 / step);
+  }
   return search;
 }
 
 Result<Straightened> straighten_grid(GridStore& grid, const BentRays& bent, double voxels_a_step, StageRun run) {
   run.clock.start("straighten", "voxel");
   run.progress.begin("straighten", grid.dims().count(), "voxel");
-  StraightenOptions options{bent.axis, bent.levels, bent.curve};
-  options.curve.longest /= voxels_a_step;
+  StraightenOptions options{bent.axis, bent.levels, bent.curve.in_steps_of(voxels_a_step)};
+  if (bent.stray) options.stray = std::make_shared<const StrayField>(bent.stray->in_steps_of(voxels_a_step));
   DUBSAR_ASSIGN(Straightened done, straighten(grid, options, run.progress));
   done.axis_shift.pixels *= voxels_a_step;
   run.clock.finish(grid.dims().count());
@@ -80,11 +89,11 @@ Result<std::optional<BentRays>> look_for_bent_rays(Overview overview, SlabSource
   run.clock.start("rays", "voxel");
   run.progress.begin("rays", 0, "voxel");
   const double before_s = process_cpu_seconds();
-  DUBSAR_ASSIGN(const CurveSearch quick, search_in(overview.grid, kQuickWidest, {}, overview.voxels_a_step, run));
+  DUBSAR_ASSIGN(const CurveSearch quick, search_in(overview.grid, kQuickWidest, nullptr, overview.voxels_a_step, run));
   const double search_s = process_cpu_seconds() - before_s;
   CurveSearch search = quick;
   if (quick.found) {
-    DUBSAR_ASSIGN(search, search_in(scan, kFineWidest, quick.found->axis, 1.0, run));
+    DUBSAR_ASSIGN(search, search_in(scan, kFineWidest, &*quick.found, 1.0, run));
     if (!search.found) search = quick;  // at a finer grid noise can hide what is there
   }
   run.clock.finish(std::max<std::int64_t>(1, quick.crossings));
@@ -96,8 +105,9 @@ Result<std::optional<BentRays>> look_for_bent_rays(Overview overview, SlabSource
   bent.levels = search.levels;
   bent.before = found.before;
   bent.after = found.after;
-  bent.longest_vox = bent.curve.value(bent.curve.longest);
-  bent.contrast = bent.curve.contrast(bent.curve.longest);
+  bent.stray = found.stray;
+  bent.longest_vox = bent.curve.value(bent.curve.longest, bent.curve.longest_stray);
+  bent.contrast = bent.curve.contrast();
   bent.cut_by_border = search.cut_by_border;
   bent.crossing_s = kLargeFactor * search_s / static_cast<double>(quick.crossings);
   return std::optional(bent);

@@ -88,33 +88,27 @@ double energy_at(const Energy& energy, double shift) {
 void shift_rays(const LaneSinogram& in, const AxisShift& shift, LaneSinogram& out) {
   parallel_for(in.directions(), 4, [&](std::int64_t k) {
     const double d = shift.flipped && 2 * k < in.directions() ? -shift.pixels : shift.pixels;
-    const double whole = std::floor(d), t = d - whole;
-    const std::array<float, 4> weight{static_cast<float>(-t * (t - 1.0) * (t - 2.0) / 6.0),
-                                      static_cast<float>((t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0),
-                                      static_cast<float>(-(t + 1.0) * t * (t - 2.0) / 2.0),
-                                      static_cast<float>((t + 1.0) * t * (t - 1.0) / 6.0)};
     float* const row = out.row(k);
     std::fill(row, row + in.row_floats(), 0.0F);
-    for (std::int64_t tap = 0; tap < 4; ++tap) {
-      const std::int64_t from = (static_cast<std::int64_t>(whole) + tap - 1) * kLanes;
-      const std::int64_t begin = std::max<std::int64_t>(0, -from),
-                         end = std::min(in.row_floats(), in.row_floats() - from);
-      for (std::int64_t i = begin; i < end; ++i) row[i] += weight[static_cast<std::size_t>(tap)] * in.row(k)[i + from];
-    }
+    kernels::add_interpolated(in.row(k), in.bins(), d, in.bins(), row);
   });
 }
 
 AxisShift find_axis_shift(const ParallelRays& rays, const LaneImage& planes, const LaneSinogram& recorded,
-                          const std::function<float(float)>& straight) {
+                          const BendOfRow& bend) {
   std::vector<std::vector<std::uint8_t>> air;
   for (std::int64_t lane = 0; lane < kLanes; lane += 2) air.push_back(air_beside(planes, lane));
   LaneSinogram moved = rays.sinogram();
   const auto image_with = [&](const AxisShift& shift) {
     LaneImage image = rays.image();
     shift_rays(recorded, shift, moved);
-    parallel_for(rays.directions(), 4, [&](std::int64_t k) {
-      for (std::int64_t i = 0; i < moved.row_floats(); ++i)
-        moved.row(k)[i] = straight(moved.row(k)[i]) - recorded.row(k)[i];
+    parallel_chunks(rays.directions(), 4, [&](std::int64_t begin, std::int64_t end) {
+      std::vector<float> bent(static_cast<std::size_t>(moved.row_floats()));
+      for (std::int64_t k = begin; k < end; ++k) {
+        bend(k, moved.row(k), bent.data());
+        for (std::int64_t i = 0; i < moved.row_floats(); ++i)
+          moved.row(k)[i] += bent[static_cast<std::size_t>(i)] - recorded.row(k)[i];
+      }
     });
     rays.filter(moved);
     rays.backproject(moved, image);

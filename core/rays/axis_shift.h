@@ -15,14 +15,17 @@ struct AxisShift {
   bool flipped = false;
 };
 
+/// What a row of recorded lengths is shorter than straight ones: (direction, recorded, bend).
+using BendOfRow = std::function<void(std::int64_t, const float*, float*)>;
+
 /// Moves all rays, by cubic interpolation. `in` and `out` have the same shape.
 void shift_rays(const LaneSinogram& in, const AxisShift& shift, LaneSinogram& out);
 
 /// The shift between -1 and 1 pixel that makes the air beside the object most even; none where that is below .08 pixel
 /// or less than a tenth of the unevenness goes, as in scans of a full turn. `planes`: in units of clay, lanes 2 k and
-/// 2 k + 1 are planes of one place whose noise has nothing in common; `recorded` their projections; `straight` takes a
-/// recorded length to a straight one. Cost: 5 backprojections.
+/// 2 k + 1 are planes of one place whose noise has nothing in common; `recorded` their projections; `bend`: of lengths
+/// recorded along a direction, thread-safe. Cost: 5 backprojections.
 AxisShift find_axis_shift(const ParallelRays& rays, const LaneImage& planes, const LaneSinogram& recorded,
-                          const std::function<float(float)>& straight);
+                          const BendOfRow& bend);
 
 }  // namespace dubsar

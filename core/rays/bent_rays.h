@@ -11,8 +11,9 @@ namespace dubsar {
 
 /// Rays that arrive weaker than straight ones: scatter and hardening.
 struct BentRays {
-  TurnAxis axis = TurnAxis::kZ;  ///< of the scan, about which the scanner turned
-  RayCurve curve;                ///< lengths in voxels of the scan
+  TurnAxis axis = TurnAxis::kZ;                  ///< of the scan, about which the scanner turned
+  RayCurve curve;                                ///< lengths in voxels of the scan
+  std::shared_ptr<const StrayField> stray = {};  ///< in voxels of the scan, where scatter varies over the detector
   GreyLevels levels;
   Evenness before, after;
   double longest_vox = 0.0;  ///< straight length of the longest ray in clay, voxels of the scan

@@ -5,14 +5,13 @@
 
 #include "core/base/system/log.h"
 #include "core/base/system/parallel.h"
+#include "core/rays/curve_evidence.h"
 #include "core/rays/sure_materials.h"
 
 namespace dubsar {
 namespace {
 
 using kernels::kLanes;
-using Vector = std::array<double, RayCurve::kTerms>;
-using Matrix = std::array<Vector, RayCurve::kTerms>;
 
 /// Groups of kLanes planes, spread over the object.
 constexpr std::int64_t kGroups = 2;
@@ -20,55 +19,12 @@ constexpr std::int64_t kGroups = 2;
 constexpr std::int64_t kApart = 2;
 /// Pixels of clay and of air, for six unknowns: fewer say nothing of a curve.
 constexpr std::int64_t kLeastSure = 500;
-/// Products of two planes may be a little less than 0 by chance, squares are not: parts of the contrast, squared.
-constexpr double kRidge = 1e-5;
 /// Wrong axes and real differences of clay may even clay out, but not air: up to 13 % of the variance was seen to go,
 /// while that of air rose by 30 to 90 %.
 constexpr double kLeastBend = 1.1, kMostLeft = 0.8, kMostAirLeft = 1.1;
-
-/// Sums over pixels of one kind, each seen in two planes close to each other. Products are those of one plane with the
-/// other: their noise has nothing in common, what scatter and hardening do has.
-struct Moments {
-  Matrix products{};
-  Vector sums{};
-  double count = 0.0;
-
-  void add(const Vector& v, const Vector& w) {
-    for (std::size_t i = 0; i < RayCurve::kTerms; ++i) {
-      sums[i] += 0.5 * (v[i] + w[i]);
-      for (std::size_t j = i; j < RayCurve::kTerms; ++j) products[i][j] += 0.5 * (v[i] * w[j] + v[j] * w[i]);
-    }
-    count += 1.0;
-  }
-  void add(const Moments& other) {
-    for (std::size_t i = 0; i < RayCurve::kTerms; ++i) {
-      sums[i] += other.sums[i];
-      for (std::size_t j = i; j < RayCurve::kTerms; ++j) products[i][j] += other.products[i][j];
-    }
-    count += other.count;
-  }
-  double product(std::size_t i, std::size_t j) const { return products[std::min(i, j)][std::max(i, j)] / count; }
-  double mean(const Vector& c) const {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < RayCurve::kTerms; ++i) sum += c[i] * sums[i];
-    return sum / count;
-  }
-  double deviation(const Vector& c) const {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < RayCurve::kTerms; ++i)
-      for (std::size_t j = 0; j < RayCurve::kTerms; ++j) sum += c[i] * c[j] * product(i, j);
-    const double m = mean(c);
-    return std::sqrt(std::max(0.0, sum - m * m));
-  }
-};
-
-struct Evidence {
-  Moments clay, air;
-  void add(const Evidence& other) {
-    clay.add(other.clay);
-    air.add(other.air);
-  }
-};
+/// Scatter that varies over the detector leaves much of its unevenness to a curve of lengths alone (.6 to .7 of the
+/// variance, and air less even); with its field .03 to .1 are left.
+constexpr double kLeftToLookFarther = 0.9, kLeftByStray = 0.8;
 
 /// Pairs of planes, kApart from each other, that show clay, spread evenly, at most kGroups * kLanes planes.
 std::vector<std::int64_t> planes_to_look_at(const SureMaterials& sure, const PlaneStrides& at) {
@@ -94,110 +50,174 @@ std::vector<std::int64_t> planes_to_look_at(const SureMaterials& sure, const Pla
   return some;
 }
 
-/// The images at a pixel.
-Vector values_at(const std::vector<LaneImage>& images, std::int64_t x, std::int64_t y, std::size_t lane) {
-  Vector v{};
-  for (std::size_t k = 0; k < RayCurve::kTerms; ++k) v[k] = images[k].at(x, y)[lane];
-  return v;
-}
-
-Evidence gather(const std::vector<LaneImage>& images, const SureMaterials& sure, const PlaneStrides& at,
-                std::span<const std::int64_t> planes) {
-  const auto material = [&](std::int64_t x, std::int64_t y, std::size_t lane) {
-    return sure
-        .of_voxel[static_cast<std::size_t>(planes[lane] * at.to_next + y * at.along_height + x * at.along_width)];
-  };
-  return parallel_reduce<Evidence>(
-      at.height, 8, {},
-      [&](std::int64_t begin, std::int64_t end) {
-        Evidence part;
-        for (std::int64_t y = begin; y < end; ++y)
-          for (std::int64_t x = 0; x < at.width; ++x)
-            for (std::size_t lane = 0; lane + 1 < planes.size(); lane += 2) {
-              const Material here = material(x, y, lane);
-              if (here == Material::kUnsure || here != material(x, y, lane + 1)) continue;
-              (here == Material::kClay ? part.clay : part.air)
-                  .add(values_at(images, x, y, lane), values_at(images, x, y, lane + 1));
-            }
-        return part;
-      },
-      [](Evidence all, const Evidence& part) {
-        all.add(part);
-        return all;
-      });
-}
-
-Evenness evenness(const Evidence& evidence, const Vector& c) {
-  const double contrast = evidence.clay.mean(c) - evidence.air.mean(c);
-  return {evidence.clay.deviation(c) / contrast, evidence.air.deviation(c) / contrast};
-}
-
-/// c that brings the images nearest to 1 in clay and 0 in air.
-Vector fit(const Evidence& evidence) {
-  Matrix gram{};
-  Vector right{};
-  for (std::size_t i = 0; i < RayCurve::kTerms; ++i) {
-    right[i] = evidence.clay.sums[i] / evidence.clay.count;
-    for (std::size_t j = 0; j < RayCurve::kTerms; ++j)
-      gram[i][j] = evidence.clay.product(i, j) + evidence.air.product(i, j);
-    gram[i][i] += kRidge;
-  }
-  return nonnegative_fit(gram, right);
-}
-
-/// Nothing where too few pixels are sure or rays of no length arrive.
-Result<std::optional<CurveTrial>> try_axis(const Volume<float>& volume, const SureMaterials& sure, TurnAxis axis,
-                                           std::int64_t& crossings, Progress& progress) {
-  const PlaneStrides at = planes_across(volume.dims, axis);
-  const std::vector<std::int64_t> planes = planes_to_look_at(sure, at);
-  const ParallelRays rays(at.width, at.height, std::max(at.width, at.height));
-  const auto groups = (static_cast<std::int64_t>(planes.size()) + kLanes - 1) / kLanes;
-  crossings += groups * kLanes * at.width * at.height * rays.directions() * static_cast<std::int64_t>(RayCurve::kTerms);
-  const auto part = [&](std::size_t first) {
+/// Planes across an axis, projected.
+struct AxisView {
+  AxisView(const Volume<float>& volume, const SureMaterials& sure, TurnAxis turned)
+      : axis(turned),
+        at(planes_across(volume.dims, turned)),
+        planes(planes_to_look_at(sure, at)),
+        rays(at.width, at.height, std::max(at.width, at.height)) {}
+  std::size_t groups() const { return recorded.size(); }
+  std::span<const std::int64_t> planes_of(std::size_t group) const {
+    const std::size_t first = group * kLanes;
     return std::span(planes).subspan(first, std::min<std::size_t>(kLanes, planes.size() - first));
-  };
-  std::vector<LaneImage> images;
-  for (std::size_t term = 0; term < RayCurve::kTerms; ++term) images.push_back(rays.image());
-  std::vector<LaneSinogram> recorded;
-  float longest = 0.0F;
-  for (std::size_t first = 0; first < planes.size(); first += kLanes) {
-    if (progress.cancelled()) return cancelled_error();
-    load_planes(volume.voxels.data(), at, part(first), sure.levels, images[0]);
-    recorded.push_back(rays.sinogram());
-    rays.project(images[0], recorded.back());
-    for (std::int64_t k = 0; k < rays.directions(); ++k)
-      longest = std::max(
-          longest, *std::max_element(recorded.back().row(k), recorded.back().row(k) + recorded.back().row_floats()));
   }
-  if (!(longest > 1.0F)) return std::nullopt;
+
+  TurnAxis axis;
+  PlaneStrides at;
+  std::vector<std::int64_t> planes;
+  ParallelRays rays;
+  std::vector<LaneSinogram> recorded;          ///< of each group of planes
+  std::vector<std::vector<LaneImage>> images;  ///< of each group, for each term
+  float longest = 0.0F;
+};
+
+std::optional<CurveTrial> trial_by(const Evidence& evidence, const AxisView& view) {
+  if (evidence.clay.count < kLeastSure || evidence.air.count < kLeastSure) return std::nullopt;
+  CurveTrial trial;
+  trial.axis = view.axis;
+  trial.curve.longest = view.longest;
+  trial.before = evenness(evidence, {1.0});
+  const TermVector c = fit(evidence);
+  trial.after = evenness(evidence, c);
+  trial.curve.coefficients = c;
+  return trial;
+}
+
+/// By the powers of recorded lengths. Nothing where too few pixels are sure or rays of no length arrive.
+Result<std::optional<CurveTrial>> try_axis(const Volume<float>& volume, const SureMaterials& sure, AxisView& view,
+                                           std::int64_t& crossings, Progress& progress) {
+  const ParallelRays& rays = view.rays;
+  const std::size_t groups = (view.planes.size() + kLanes - 1) / kLanes;
+  crossings += static_cast<std::int64_t>(groups) * kLanes * view.at.width * view.at.height * rays.directions() *
+               static_cast<std::int64_t>(RayCurve::kTerms);
+  for (std::size_t group = 0; group < groups; ++group) {
+    if (progress.cancelled()) return cancelled_error();
+    view.recorded.push_back(rays.sinogram());
+    std::vector<LaneImage>& images = view.images.emplace_back();
+    for (std::size_t term = 0; term < RayCurve::kTerms; ++term) images.push_back(rays.image());
+    load_planes(volume.voxels.data(), view.at, view.planes_of(group), sure.levels, images[0]);
+    LaneSinogram& p = view.recorded.back();
+    rays.project(images[0], p);
+    for (std::int64_t k = 0; k < rays.directions(); ++k)
+      view.longest = std::max(view.longest, *std::max_element(p.row(k), p.row(k) + p.row_floats()));
+  }
+  if (!(view.longest > 1.0F)) return std::nullopt;
   Evidence evidence;
   LaneSinogram power = rays.sinogram();
-  for (std::size_t first = 0; first < planes.size(); first += kLanes) {
-    load_planes(volume.voxels.data(), at, part(first), sure.levels, images[0]);
-    const LaneSinogram& p = recorded[first / kLanes];
+  for (std::size_t group = 0; group < groups; ++group) {
+    const LaneSinogram& p = view.recorded[group];
     for (std::size_t term = 1; term < RayCurve::kTerms; ++term) {
       if (progress.cancelled()) return cancelled_error();
       parallel_for(rays.directions(), 4, [&](std::int64_t k) {
         for (std::int64_t i = 0; i < p.row_floats(); ++i) {
-          const float t = std::max(p.row(k)[i], 0.0F) / longest;
+          const float t = std::max(p.row(k)[i], 0.0F) / view.longest;
           float value = t;
           for (std::size_t n = 0; n < term; ++n) value *= t;
-          power.row(k)[i] = longest * value;
+          power.row(k)[i] = view.longest * value;
         }
       });
       rays.filter(power);
-      rays.backproject(power, images[term]);
+      rays.backproject(power, view.images[group][term]);
     }
-    evidence.add(gather(images, sure, at, part(first)));
+    evidence.add(gather(view.images[group], sure, view.at, view.planes_of(group)));
   }
-  if (evidence.clay.count < kLeastSure || evidence.air.count < kLeastSure) return std::nullopt;
-  const Vector as_it_is{1.0};
-  CurveTrial trial;
-  trial.axis = axis;
-  trial.curve = {fit(evidence), longest};
-  trial.before = evenness(evidence, as_it_is);
-  trial.after = evenness(evidence, trial.curve.coefficients);
-  return std::optional(trial);
+  return trial_by(evidence, view);
+}
+
+/// By the first powers and those of what scatter adds. The images of the last terms are those of the field then.
+Result<std::optional<CurveTrial>> try_stray(const SureMaterials& sure, AxisView& view,
+                                            std::shared_ptr<const StrayField> field, Progress& progress) {
+  const ParallelRays& rays = view.rays;
+  std::vector<LaneSinogram> x;
+  struct Largest {
+    float x = 0.0F, p = 0.0F, stray = 0.0F;
+  };
+  Largest largest;
+  for (std::size_t group = 0; group < view.groups(); ++group) {
+    if (progress.cancelled()) return cancelled_error();
+    x.push_back(rays.sinogram());
+    const LaneSinogram& p = view.recorded[group];
+    const Largest here = parallel_reduce<Largest>(
+        rays.directions(), 1, {},
+        [&](std::int64_t k, std::int64_t) {
+          Largest part;
+          float* const row = x.back().row(k);
+          field->row(k, rays.directions(), view.planes_of(group), rays.bins(), row);
+          for (std::int64_t i = 0; i < p.row_floats(); ++i) {
+            if (p.row(k)[i] > part.p) part.p = p.row(k)[i], part.stray = row[i];
+            row[i] = std::max(0.0F, row[i]) * std::exp(static_cast<float>(field->absorbed()) * p.row(k)[i]);
+            part.x = std::max(part.x, row[i]);
+          }
+          return part;
+        },
+        [](Largest all, const Largest& part) {
+          all.x = std::max(all.x, part.x);
+          return part.p > all.p ? Largest{all.x, part.p, part.stray} : all;
+        });
+    largest.x = std::max(largest.x, here.x);
+    if (here.p > largest.p) largest.p = here.p, largest.stray = here.stray;
+  }
+  if (!(largest.x > 0.0F)) return std::nullopt;
+  Evidence evidence;
+  LaneSinogram power = rays.sinogram();
+  for (std::size_t group = 0; group < view.groups(); ++group) {
+    for (std::size_t term = 0; term < RayCurve::kStrayTerms; ++term) {
+      if (progress.cancelled()) return cancelled_error();
+      parallel_for(rays.directions(), 4, [&](std::int64_t k) {
+        for (std::int64_t i = 0; i < power.row_floats(); ++i) {
+          const float t = x[group].row(k)[i] / largest.x;
+          power.row(k)[i] = view.longest * (term == 0 ? t : term == 1 ? t * t : t * t * t * t);
+        }
+      });
+      rays.filter(power);
+      rays.backproject(power, view.images[group][RayCurve::kPlainTerms + term]);
+    }
+    evidence.add(gather(view.images[group], sure, view.at, view.planes_of(group)));
+  }
+  std::optional<CurveTrial> trial = trial_by(evidence, view);
+  if (!trial) return trial;
+  RayCurve& curve = trial->curve;
+  for (std::size_t term = 0; term < RayCurve::kStrayTerms; ++term)
+    std::swap(curve.stray[term], curve.coefficients[RayCurve::kPlainTerms + term]);
+  curve.absorbed = field->absorbed();
+  curve.stray_unit = static_cast<double>(largest.x);
+  curve.longest_stray = static_cast<double>(largest.stray);
+  trial->stray = std::move(field);
+  return trial;
+}
+
+/// The field that makes clay and air most even: its spread first, then how much light clay absorbs, then both finer.
+Result<std::optional<CurveTrial>> search_stray(const Volume<float>& volume, const SureMaterials& sure, AxisView& view,
+                                               Progress& progress) {
+  const CoarseRays coarse = look_coarsely(volume, view.axis, sure.levels);
+  std::optional<CurveTrial> best;
+  double best_spread = 0.0, best_absorbed = 1.5;  // of the width; of the longest ray
+  const auto look = [&](double spread, double absorbed) -> Result<void> {
+    DUBSAR_ASSIGN(std::optional<CurveTrial> trial,
+                  try_stray(sure, view,
+                            std::make_shared<StrayField>(coarse, absorbed / static_cast<double>(view.longest),
+                                                         spread * coarse.width),
+                            progress));
+    if (trial && (!best || trial->after.sum() < best->after.sum())) {
+      best = std::move(trial);
+      best_spread = spread;
+      best_absorbed = absorbed;
+    }
+    return {};
+  };
+  for (const double spread : {0.08, 0.16, 0.32}) DUBSAR_TRY(look(spread, best_absorbed));
+  for (const double absorbed : {1.0, 2.25, 3.5})
+    if (best) DUBSAR_TRY(look(best_spread, absorbed));
+  const double middle = best_spread;
+  for (const double factor : {0.75, 1.33})
+    if (best) DUBSAR_TRY(look(middle * factor, best_absorbed));
+  if (best)
+    log_debug(
+        "scatter spread by {:.2f} of the width, clay absorbs {:.2f} along the longest ray: air {:.4f} -> {:.4f}, "
+        "clay {:.4f} -> {:.4f}",
+        best_spread, best_absorbed, best->before.air, best->after.air, best->before.clay, best->after.clay);
+  return best;
 }
 
 /// Whether clay lies at the border of a plane.
@@ -224,20 +244,38 @@ bool CurveTrial::significant() const noexcept {
 }
 
 Result<CurveSearch> search_curve(const Volume<float>& volume, std::int64_t margin, std::optional<TurnAxis> only,
-                                 Progress& progress) {
+                                 std::shared_ptr<const StrayField> known, Progress& progress) {
   CurveSearch search;
   const Result<SureMaterials> sure = find_sure_materials(volume, margin);
   if (!sure || sure->air < kLeastSure || sure->clay < kLeastSure || !(sure->levels.contrast() > 0.0)) return search;
   search.levels = sure->levels;
+  std::optional<AxisView> most_bent;
+  double least_left = kLeftToLookFarther;
   for (const TurnAxis axis : {TurnAxis::kZ, TurnAxis::kY, TurnAxis::kX}) {
     if (only && axis != *only) continue;
-    DUBSAR_ASSIGN(const std::optional<CurveTrial> trial, try_axis(volume, *sure, axis, search.crossings, progress));
+    AxisView view(volume, *sure, axis);
+    DUBSAR_ASSIGN(const std::optional<CurveTrial> trial, try_axis(volume, *sure, view, search.crossings, progress));
     if (!trial) continue;
     search.trials.push_back(*trial);
     const char name = "xyz"[static_cast<int>(axis)];
     log_debug("rays about {}: bent by {:.2f}, air {:.4f} -> {:.4f}, clay {:.4f} -> {:.4f} of the contrast", name,
               trial->bend(), trial->before.air, trial->after.air, trial->before.clay, trial->after.clay);
     if (trial->significant() && (!search.found || trial->left() < search.found->left())) search.found = *trial;
+    if (known || (trial->bend() > kLeastBend && trial->left() < least_left)) {
+      least_left = trial->left();
+      most_bent.emplace(std::move(view));
+    }
+  }
+  if (most_bent) {
+    std::optional<CurveTrial> stray;
+    if (known) {
+      DUBSAR_ASSIGN(stray, try_stray(*sure, *most_bent, known, progress));
+    } else {
+      DUBSAR_ASSIGN(stray, search_stray(volume, *sure, *most_bent, progress));
+    }
+    if (stray && stray->significant() &&
+        (!search.found || stray->after.sum() < kLeftByStray * search.found->after.sum()))
+      search.found = std::move(stray);
   }
   if (search.found) search.cut_by_border = touches_border(*sure, planes_across(volume.dims, search.found->axis));
   return search;

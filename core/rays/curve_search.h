@@ -2,30 +2,32 @@
 // Was the scan made of straight rays? Projected again and backprojected in powers, it says so itself (method `rays`).
 
 #include <array>
+#include <memory>
 #include <optional>
 
 #include "core/base/progress.h"
 #include "core/rays/lane_planes.h"
 #include "core/rays/ray_curve.h"
+#include "core/rays/stray_field.h"
 
 namespace dubsar {
 
 /// What is left of clay and air that should be even, in parts of the contrast.
 struct Evenness {
-  double clay = 0.0, air = 0.0;  ///< standard deviations without noise
+  double clay = 0.0, air = 0.0;                                    ///< standard deviations without noise
+  double sum() const noexcept { return clay * clay + air * air; }  ///< of variances
 };
 
 /// The curve that makes a scan even if it was turned about `axis`.
 struct CurveTrial {
   TurnAxis axis = TurnAxis::kZ;
   RayCurve curve;
+  std::shared_ptr<const StrayField> stray = {};  ///< where the curve has a part by scatter
   Evenness before, after;
   /// 1: rays are straight; the largest loss of contrast is its inverse.
-  double bend() const noexcept { return curve.slope(curve.longest) / curve.slope(0.0); }
+  double bend() const noexcept { return 1.0 / curve.contrast(); }
   /// Share of the variance of clay and air that is left.
-  double left() const noexcept {
-    return (after.clay * after.clay + after.air * after.air) / (before.clay * before.clay + before.air * before.air);
-  }
+  double left() const noexcept { return after.sum() / before.sum(); }
   /// Bent by more than a tenth, clay and air together become more even by a fifth of their variance, and air alone does
   /// not become less even.
   bool significant() const noexcept;
@@ -42,9 +44,11 @@ struct CurveSearch {
 /// Tries the three axes, or the one that is wanted `only`, on some planes each. Linear least squares with coefficients
 /// >= 0 of the images R^-1 p^k against 1 in clay and 0 in air, each with the same weight ([Kachelriess 2006]). For
 /// volumes of some hundred voxels a side; cost: about 7 projections of 32 planes an axis. `margin`: distance of what
-/// counts as clay and as air from the other, in voxels. Nothing is found where there is too little of either. Errors:
+/// counts as clay and as air from the other, in voxels. Where that leaves much, scatter is taken for a field over the
+/// detector (StrayField), whose spread and absorption are searched for about the axis that leaves least, or as they are
+/// `known`, in voxels of the volume. Nothing is found where there is too little of either. Errors:
 /// kCancelled.
 Result<CurveSearch> search_curve(const Volume<float>& volume, std::int64_t margin, std::optional<TurnAxis> only,
-                                 Progress& progress);
+                                 std::shared_ptr<const StrayField> known, Progress& progress);
 
 }  // namespace dubsar

@@ -3,6 +3,7 @@
 // geometry is computed once for all of them and every load is contiguous. Images and sinograms are arrays of groups of
 // kLanes floats.
 
+#include <array>
 #include <cstdint>
 
 namespace dubsar::kernels {
@@ -10,7 +11,7 @@ namespace dubsar::kernels {
 inline constexpr std::int64_t kLanes = 16;
 
 /// A band of an image as rays of one direction cross it: along the major axis one step at a time, between two
-/// neighbours along the minor one. One group of zeros lies beside either end of the minor axis.
+/// neighbours along the minor one. Beside either end of the minor axis there is nothing.
 struct CrossedBand {
   const float* image = nullptr;                     ///< group at major 0, minor 0
   std::int64_t major_stride = 0, minor_stride = 0;  ///< floats
@@ -36,8 +37,37 @@ struct RowRays {
 /// [0, bins - 1).
 void backproject_row(const RowRays& rays, std::int64_t begin, std::int64_t end, float* row);
 
-/// out = in * (1/4 at 0, odd[k] at +-(2 k + 1), 0 elsewhere): the ramp of Kak and Slaney. `in` and `out` do not
-/// overlap.
-void ramp_row(const float* in, std::int64_t bins, const float* odd, float* out);
+/// Weights of four neighbours for a place `part` beyond the second, 0 to 1 (Lagrange).
+struct CubicWeights {
+  explicit CubicWeights(double part) noexcept
+      : of{static_cast<float>(-part * (part - 1.0) * (part - 2.0) / 6.0),
+           static_cast<float>((part + 1.0) * (part - 1.0) * (part - 2.0) / 2.0),
+           static_cast<float>(-(part + 1.0) * part * (part - 2.0) / 2.0),
+           static_cast<float>((part + 1.0) * part * (part - 1.0) / 6.0)} {}
+  std::array<float, 4> of;
+};
+
+/// Adds to `count` groups of `out`, the first of which lies at `start` of `in`, what cubic interpolation between the
+/// `groups` of `in` gives there; beyond its ends are zeros.
+void add_interpolated(const float* in, std::int64_t groups, double start, std::int64_t count, float* out);
+
+/// Groups side by side.
+struct LaneRow {
+  const float* groups = nullptr;
+  std::int64_t count = 0;
+};
+
+/// Adds to each of `bins` groups of `out` `weight` times what cubic interpolation gives at first + bin * step of `in`;
+/// beyond its ends are zeros.
+void add_sampled(const LaneRow& in, double first, double step, float weight, std::int64_t bins, float* out);
+
+/// out = in * (1/4 at 0, odd[k] at +-(2 k + 1) up to `reach`, an odd number, 0 elsewhere). `odd` has weights for 6 bins
+/// more than the reach. `in` and `out` do not overlap.
+void ramp_row(const float* in, std::int64_t bins, const float* odd, std::int64_t reach, float* out);
+
+/// out[k] = sum over cells c of in[c] far[|first + k - c|]. `out` and `far` have kFarOutputs groups (numbers) more than
+/// are needed.
+inline constexpr std::int64_t kFarOutputs = 4;
+void far_row(const float* in, std::int64_t cells, const float* far, std::int64_t first, std::int64_t count, float* out);
 
 }  // namespace dubsar::kernels

@@ -44,20 +44,42 @@ Vector solve(const Matrix& gram, const Vector& right, const Chosen& chosen) {
 
 }  // namespace
 
-double RayCurve::value(double p) const noexcept {
-  if (p <= 0.0) return coefficients[0] * p;
-  const double t = std::min(p / longest, 1.0);
+double RayCurve::value(double p, double s) const noexcept {
   double sum = 0.0;
-  for (std::size_t k = RayCurve::kTerms; k-- > 0;) sum = sum * t + coefficients[k];
-  const double inside = sum * t * longest;
-  return p > longest ? inside + (p - longest) * slope(longest) : inside;
+  if (s > 0.0) {
+    const double x = s * std::exp(absorbed * std::min(p, longest)) / stray_unit;
+    sum = longest * x * (stray[0] + x * (stray[1] + x * x * stray[2]));
+  }
+  if (p <= 0.0) return sum + coefficients[0] * p;
+  const double t = std::min(p / longest, 1.0);
+  double plain = 0.0;
+  for (std::size_t k = RayCurve::kTerms; k-- > 0;) plain = plain * t + coefficients[k];
+  sum += plain * t * longest;
+  return p > longest ? sum + (p - longest) * slope(longest, s) : sum;
 }
 
-double RayCurve::slope(double p) const noexcept {
+double RayCurve::slope(double p, double s) const noexcept {
   const double t = std::clamp(p / longest, 0.0, 1.0);
   double sum = 0.0;
   for (std::size_t k = RayCurve::kTerms; k-- > 0;) sum = sum * t + static_cast<double>(k + 1) * coefficients[k];
+  if (s > 0.0) {
+    const double x = s * std::exp(absorbed * std::min(p, longest)) / stray_unit;
+    sum += longest * absorbed * x * (stray[0] + x * (2.0 * stray[1] + 4.0 * x * x * stray[2]));
+  }
   return sum;
+}
+
+bool RayCurve::bends() const noexcept {
+  const auto positive = [](double c) { return c > 0.0; };
+  return std::any_of(coefficients.begin() + 1, coefficients.end(), positive) ||
+         std::any_of(stray.begin(), stray.end(), positive);
+}
+
+RayCurve RayCurve::in_steps_of(double voxels) const noexcept {
+  RayCurve other = *this;
+  other.longest /= voxels;
+  other.absorbed *= voxels;
+  return other;
 }
 
 Vector nonnegative_fit(const Matrix& gram, const Vector& right) {

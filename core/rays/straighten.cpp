@@ -5,35 +5,12 @@
 #include <vector>
 
 #include "core/base/system/parallel.h"
+#include "core/rays/row_curve.h"
 
 namespace dubsar {
 namespace {
 
 using kernels::kLanes;
-
-/// p -> g(p) / c1 - p, as a table with linear interpolation: its error is below 1e-6 of the longest ray.
-class Difference {
- public:
-  explicit Difference(const RayCurve& curve) : curve_(curve), step_(curve.longest / kSteps) {
-    for (int i = 0; i <= kSteps + 1; ++i) table_.push_back(static_cast<float>(exact(i * step_)));
-  }
-  float operator()(float p) const noexcept {
-    if (p <= 0.0F) return 0.0F;
-    const float place = p * static_cast<float>(1.0 / step_);
-    if (place >= static_cast<float>(kSteps)) return static_cast<float>(exact(p));
-    const auto cell = static_cast<std::size_t>(place);
-    const float part = place - static_cast<float>(cell);
-    return table_[cell] + part * (table_[cell + 1] - table_[cell]);
-  }
-
- private:
-  static constexpr int kSteps = 2048;
-  double exact(double p) const noexcept { return curve_.value(p) / curve_.coefficients[0] - p; }
-
-  RayCurve curve_;
-  double step_;
-  std::vector<float> table_;
-};
 
 /// Pairs of planes from the middle half of the grid, two apart, so that their noise has nothing in common; none in a
 /// grid that is too thin.
@@ -49,7 +26,7 @@ std::vector<std::int64_t> pairs_of_planes(std::int64_t all) {
 }
 
 Result<AxisShift> look_for_shift(GridStore& grid, const PlaneStrides& at, const StraightenOptions& options,
-                                 const ParallelRays& rays, const Difference& difference) {
+                                 const ParallelRays& rays, const RowCurve& curve) {
   const std::vector<std::int64_t> planes = pairs_of_planes(at.planes);
   if (planes.empty()) return AxisShift{};
   LaneImage image = rays.image();
@@ -68,7 +45,9 @@ Result<AxisShift> look_for_shift(GridStore& grid, const PlaneStrides& at, const 
   }
   LaneSinogram recorded = rays.sinogram();
   rays.project(image, recorded);
-  return find_axis_shift(rays, image, recorded, [&](float p) { return p + difference(p); });
+  return find_axis_shift(rays, image, recorded, [&](std::int64_t direction, const float* p, float* bend) {
+    curve.bend(direction, planes, p, bend);
+  });
 }
 
 /// As many as rays lie side by side.
@@ -77,7 +56,9 @@ std::int64_t directions_for(const PlaneStrides& planes) noexcept { return std::m
 }  // namespace
 
 double crossings_of(const Dims& grid, TurnAxis axis) noexcept {
-  return 2.0 * static_cast<double>(grid.count()) * static_cast<double>(directions_for(planes_across(grid, axis)));
+  const std::int64_t directions = directions_for(planes_across(grid, axis));
+  const std::int64_t together = ParallelRays::directions_together(directions);
+  return 2.0 * static_cast<double>(grid.count()) * static_cast<double>(directions) / static_cast<double>(together);
 }
 
 Result<Straightened> straighten(GridStore& grid, const StraightenOptions& options, Progress& progress) {
@@ -89,18 +70,21 @@ Result<Straightened> straighten(GridStore& grid, const StraightenOptions& option
                 "store it with that axis as z, or allow more memory",
                 options.axis == TurnAxis::kX ? "x" : "y");
   const ParallelRays rays(at.width, at.height, directions_for(at));
-  const Difference difference(options.curve);
+  const RowCurve curve(options.curve, options.stray.get(), rays.directions(), rays.bins());
   Straightened done;
-  DUBSAR_ASSIGN(done.axis_shift, look_for_shift(grid, at, options, rays, difference));
+  DUBSAR_ASSIGN(done.axis_shift, look_for_shift(grid, at, options, rays, curve));
   const bool moves = done.axis_shift.pixels != 0.0;
+  if (!moves && !options.curve.bends()) return done;
   LaneImage image = rays.image();
   LaneSinogram projections = rays.sinogram(), moved(moves ? rays.directions() : 0, rays.bins());
-  std::vector<std::int64_t> planes(static_cast<std::size_t>(kLanes));
+  std::vector<std::int64_t> planes(static_cast<std::size_t>(kLanes)), of_grid(planes);
   Buffer<float> read(grid.in_memory() ? 0 : kLanes * dims.slice());
   for (std::int64_t first = 0; first < at.planes; first += kLanes) {
     if (progress.cancelled()) return cancelled_error();
     const std::int64_t last = std::min(at.planes, first + kLanes);
     planes.resize(static_cast<std::size_t>(last - first));
+    of_grid.resize(planes.size());
+    std::iota(of_grid.begin(), of_grid.end(), first);
     float* voxels = nullptr;
     if (grid.in_memory()) {
       voxels = grid.page(0, dims.z).data();
@@ -116,11 +100,15 @@ Result<Straightened> straighten(GridStore& grid, const StraightenOptions& option
     load_planes(voxels, at, planes, options.levels, image);
     rays.project(image, projections);
     if (moves) shift_rays(projections, done.axis_shift, moved);
-    parallel_for(rays.directions(), 4, [&](std::int64_t k) {
-      float* const p = projections.row(k);
-      const float* const at_axis = moves ? moved.row(k) : p;
-      for (std::int64_t i = 0; i < projections.row_floats(); ++i)
-        p[i] = difference(at_axis[i]) + (moves ? at_axis[i] - p[i] : 0.0F);
+    parallel_chunks(rays.directions(), 4, [&](std::int64_t begin, std::int64_t end) {
+      std::vector<float> bend(static_cast<std::size_t>(projections.row_floats()));
+      for (std::int64_t k = begin; k < end; ++k) {
+        float* const p = projections.row(k);
+        const float* const at_axis = moves ? moved.row(k) : p;
+        curve.bend(k, of_grid, at_axis, bend.data());
+        for (std::int64_t i = 0; i < projections.row_floats(); ++i)
+          p[i] = bend[static_cast<std::size_t>(i)] + (moves ? at_axis[i] - p[i] : 0.0F);
+      }
     });
     rays.filter(projections);
     rays.backproject(projections, image);

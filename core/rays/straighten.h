@@ -2,10 +2,13 @@
 // A grid whose rays are made straight: f' = f + R^-1 (g(p) / c1 - p), p = R f. Only the difference goes through the
 // projector, so that nothing of the rest is blurred (method `rays`).
 
+#include <memory>
+
 #include "core/base/progress.h"
 #include "core/rays/axis_shift.h"
 #include "core/rays/lane_planes.h"
 #include "core/rays/ray_curve.h"
+#include "core/rays/stray_field.h"
 #include "core/volume/grid_store.h"
 
 namespace dubsar {
@@ -13,7 +16,8 @@ namespace dubsar {
 struct StraightenOptions {
   TurnAxis axis = TurnAxis::kZ;
   GreyLevels levels;
-  RayCurve curve;  ///< lengths in voxels of the grid
+  RayCurve curve;                                ///< lengths in voxels of the grid
+  std::shared_ptr<const StrayField> stray = {};  ///< in voxels of the grid, where the curve has a part by scatter
 };
 
 struct Straightened {

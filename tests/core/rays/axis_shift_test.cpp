@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -32,7 +33,9 @@ Found find(test::Scanner scanner) {
   load_planes(off.voxels.data(), planes_across(kDims, TurnAxis::kZ), planes, {0.0, 1.0}, image);
   LaneSinogram recorded = rays.sinogram(), moved = rays.sinogram();
   rays.project(image, recorded);
-  Found found{find_axis_shift(rays, image, recorded, [](float p) { return p; })};
+  Found found{find_axis_shift(rays, image, recorded, [&](std::int64_t, const float*, float* bend) {
+    std::fill(bend, bend + recorded.row_floats(), 0.0F);
+  })};
   shift_rays(recorded, found.shift, moved);
   for (std::int64_t k = 0; k < rays.directions(); ++k)
     for (std::int64_t i = 0; i < moved.row_floats(); ++i) moved.row(k)[i] -= recorded.row(k)[i];

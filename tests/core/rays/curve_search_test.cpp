@@ -19,7 +19,7 @@ test::Scanner scanner_with(double scatter) {
 
 CurveSearch search(const Volume<float>& volume) {
   SilentProgress progress;
-  return *search_curve(volume, 3, {}, progress);
+  return *search_curve(volume, 3, {}, {}, progress);
 }
 
 TEST(CurveSearch, FindsTheCurveOfScatterWithoutGeometry) {

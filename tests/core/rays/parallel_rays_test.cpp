@@ -93,8 +93,42 @@ TEST(ParallelRays, BackprojectionGivesSmoothImagesBack) {
   }
 }
 
-TEST(ParallelRays, ThreadsDoNotChangeABit) {
-  const ParallelRays rays(50, 41, 37);
+// With many directions, some are taken together: a bell far from the middle, and one beside the border of a tile.
+TEST(ParallelRays, DirectionsTakenTogetherAreAsExact) {
+  ASSERT_GT(ParallelRays::directions_together(700), 1);
+  const ParallelRays rays(150, 97, 700);
+  for (const auto& [spread, error] : {std::pair{1.5, 0.055}, {2.0, 0.022}, {3.0, 0.008}}) {
+    const LaneImage image = image_of_bells(rays, spread);
+    LaneSinogram projections = rays.sinogram();
+    rays.project(image, projections);
+    const double peak = spread * std::sqrt(2 * std::numbers::pi);
+    for (std::int64_t k = 0; k < rays.directions(); k += 9)
+      for (std::int64_t u = 0; u < rays.bins(); ++u)
+        for (const std::int64_t lane : {0, 15}) {
+          const Bell bell = bell_of(lane, spread);
+          const double angle = std::numbers::pi * double(k) / 700.0;
+          const double at = double(u) - rays.middle() - bell.x * std::cos(angle) - bell.y * std::sin(angle);
+          ASSERT_NEAR(projections.row(k)[u * kLanes + lane], peak * std::exp(-at * at / (2 * spread * spread)),
+                      (0.15 / spread + 0.15) / spread * peak)  // Joseph takes a 12th of spread^-2, rays are off by .25
+              << spread << " " << k << " " << u;
+        }
+    rays.filter(projections);
+    LaneImage back = rays.image();
+    rays.backproject(projections, back);
+    double worst = 0.0;
+    for (std::int64_t y = 0; y < 97; ++y)
+      for (std::int64_t x = 0; x < 150; ++x)
+        for (std::int64_t lane = 0; lane < kLanes; ++lane)
+          worst = std::max<double>(worst, std::abs(back.at(x, y)[lane] - image.at(x, y)[lane]));
+    EXPECT_LT(worst, error) << spread;
+  }
+}
+
+class ParallelRaysThreads : public testing::TestWithParam<std::int64_t> {};
+INSTANTIATE_TEST_SUITE_P(FewAndManyDirections, ParallelRaysThreads, testing::Values(37, 450));
+
+TEST_P(ParallelRaysThreads, DoNotChangeABit) {
+  const ParallelRays rays(90, 41, GetParam());
   const LaneImage image = image_of_bells(rays, 3.0);
   std::vector<float> results[2];
   for (const int threads : {1, 3}) {

@@ -16,7 +16,7 @@ TEST(RayCurve, SlopeIsTheDerivativeAndGoesOnStraight) {
     EXPECT_NEAR((curve.value(p + 1e-4) - curve.value(p - 1e-4)) / 2e-4, curve.slope(p), 2e-4) << p;
   EXPECT_DOUBLE_EQ(curve.value(120.0), 120.0 * (1.02 + 0.67 + 0.1 + 0.36));
   EXPECT_DOUBLE_EQ(curve.slope(200.0), curve.slope(120.0));
-  EXPECT_DOUBLE_EQ(curve.contrast(120.0), 1.02 / (1.02 + 2 * 0.67 + 4 * 0.1 + 6 * 0.36));
+  EXPECT_DOUBLE_EQ(curve.contrast(), 1.02 / (1.02 + 2 * 0.67 + 4 * 0.1 + 6 * 0.36));
 }
 
 // Karush, Kuhn, Tucker: x is the minimum if and only if the gradient is 0 where x > 0 and not negative where x = 0.

@@ -49,9 +49,9 @@ double difference(const Volume<float>& a, const Volume<float>& b) {
 
 StraightenOptions options_for(const Volume<float>& volume) {
   SilentProgress progress;
-  const CurveSearch search = *search_curve(volume, 3, {}, progress);
+  const CurveSearch search = *search_curve(volume, 3, {}, {}, progress);
   EXPECT_TRUE(search.found);
-  return {search.found->axis, search.levels, search.found->curve};
+  return {search.found->axis, search.levels, search.found->curve, search.found->stray};
 }
 
 TEST(Straighten, GivesBackWhatScatterTook) {
