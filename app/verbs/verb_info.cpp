@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -38,28 +39,30 @@ std::string length_text(const VoxelSize& voxel) {
 std::string forecast_text(const Result<Forecast>& forecast) {
   if (!forecast) return fmt::format("  process      cannot be foretold: {}\n", forecast.error().message);
   const Forecast& f = *forecast;
-  const double minutes = f.wall_s / 60.0;
+  const double minutes = f.cost.wall_s / 60.0;
   std::string text = fmt::format(
       "  process      about {}, {:.1f} GiB of memory, {:.1f} MiB for the surface{}\n",
-      minutes < 2.0 ? fmt::format("{:.0f} s", f.wall_s) : fmt::format("{:.0f} minutes", minutes),
-      gib_of(f.memory_bytes), mib_of(f.product_bytes),
-      f.scratch_bytes == 0 ? std::string() : fmt::format(" and {:.1f} GiB of disk meanwhile", gib_of(f.scratch_bytes)));
+      minutes < 2.0 ? fmt::format("{:.0f} s", f.cost.wall_s) : fmt::format("{:.0f} minutes", minutes),
+      gib_of(f.memory_bytes()), mib_of(product_bytes(f.run)),
+      f.cost.scratch_bytes == 0.0 ? std::string()
+                                  : fmt::format(" and {:.1f} GiB of disk meanwhile", gib_of(f.cost.scratch_bytes)));
   return text + fmt::format("               {} resolution, about {:.1f} million vertices, nobody else at work\n",
-                            f.detail.resample() ? "half the scan's" : "the scan's",
-                            static_cast<double>(f.vertices) * 1e-6);
+                            f.detail.resample() ? "half the scan's" : "the scan's", f.run.vertices * 1e-6);
 }
 
 json forecast_json(const Result<Forecast>& forecast) {
   if (!forecast) return {{"refusal", forecast.error().message}};
   const Forecast& f = *forecast;
+  const Dims grid = grid_of(f.run.scan, f.run.half);
   return {{"detail", name_in(kDetails, f.detail.detail)},
-          {"grid", {f.grid.x, f.grid.y, f.grid.z}},
-          {"vertices", f.vertices},
-          {"core_s", f.core_s},
-          {"wall_s", f.wall_s},
-          {"memory_bytes", f.memory_bytes},
-          {"scratch_bytes", f.scratch_bytes},
-          {"product_bytes", f.product_bytes}};
+          {"grid", {grid.x, grid.y, grid.z}},
+          {"vertices", std::llround(f.run.vertices)},
+          {"core_s", f.cost.core_s},
+          {"wall_s", f.cost.wall_s},
+          {"memory_bytes", std::llround(f.memory_bytes())},
+          {"most_memory", f.cost.when},
+          {"scratch_bytes", std::llround(f.cost.scratch_bytes)},
+          {"product_bytes", std::llround(product_bytes(f.run))}};
 }
 
 Result<VerbResult> volume_info(const InfoRequest& options, Progress& progress) {
@@ -77,10 +80,8 @@ Result<VerbResult> volume_info(const InfoRequest& options, Progress& progress) {
   result.json["warnings"] = info.warnings;
   DUBSAR_ASSIGN(const Unmeasured unmeasured, volume->unmeasured());
   result.json["unmeasured"] = unmeasured_json(unmeasured);
-  Result<Forecast> expected = forecast(
-      *volume,
-      {.detail = options.detail, .artefacts = true, .budget = import.budget, .left_out = unmeasured.left_out()},
-      progress);
+  Result<Forecast> expected =
+      forecast(*volume, {}, options.detail, import.budget, unmeasured.left_out(), /*look_for_rays=*/true, progress);
   if (!expected && expected.error().kind == ErrorKind::kCancelled) return tl::unexpected<Error>(expected.error());
   result.json["process"] = forecast_json(expected);
   if (expected)

@@ -116,38 +116,22 @@ void add_resource_options(Arguments command, ProcessRequest& options) {
   group.value("--scratch", options.room.scratch, "folder on a disk for that (default /var/tmp)").called("FOLDER");
 }
 
-/// The stages of a run as Progress names them, with the seconds of one core that they took on the phantom of `--preset
-/// demo`, at the scan's resolution.
+/// The phases of the run's plan, with their shares for a scan of the size of `--preset demo`.
 std::vector<PlannedStage> plan_of(const ProcessRequest& options) {
-  std::vector<PlannedStage> plan{{"estimate_raw", 0.1}, {"import", 0.25}, {"estimate", 0.02}};
-  const auto add_passes = [&](double seconds) {
-    for (int pass = 0; pass < options.pipeline.denoise.iterations; ++pass) {
-      plan.push_back({"denoise", seconds});
-      plan.push_back({"estimate", 0.02});
-    }
-  };
-  if (options.pipeline.artefacts == Artefacts::kAuto) plan.push_back({"rays", 0.1});
-  add_passes(0.08);
-  if (options.pipeline.detail != Detail::kHalf) {
-    plan.insert(plan.end(), {{"import", 0.1}, {"estimate", 0.02}});  // of the sample
-    add_passes(0.15);
-    plan.insert(plan.end(), {{"band", 0.05}, {"band", 0.7}});
-  }
-  plan.push_back({"extract", 0.07});
-  for (const auto& [name, seconds] : {std::pair{"mesh", 0.11},
-                                      {"smooth", 1.33},
-                                      {"curvature", 0.23},
-                                      {"settle", 2.26},
-                                      {"curvature", 0.2},
-                                      {"segment", 1.27},
-                                      {"fill holes", 1.49}})
-    plan.push_back({name, seconds, true});
-  if (!options.without.contact) plan.push_back({"contact", 21.8, true});
-  if (!options.without.ao)
-    plan.push_back({"ambient occlusion",
-                    (options.ao_engine == OcclusionEngine::kBricks ? 9.5 : 22.5) * options.rays / 160.0, true});
-  for (const auto& [name, seconds] : {std::pair{"curvature", 0.4}, {"encode signs", 0.8}, {"encode offsets", 0.7}})
-    plan.push_back({name, seconds, true});
+  RunShape run;
+  run.scan = {512, 272, 472};
+  run.half = options.pipeline.detail == Detail::kHalf;
+  run.vertices = usual_vertices(grid_of(run.scan, run.half));
+  run.artefacts = options.pipeline.artefacts == Artefacts::kAuto;
+  run.fill_holes = !options.without.holes;
+  run.contact = !options.without.contact;
+  run.passes = options.pipeline.denoise.iterations;
+  run.rays = options.without.ao ? 0.0 : options.rays * (options.ao_engine == OcclusionEngine::kBricks ? 1.0 : 2.4);
+  std::vector<PlannedStage> plan;
+  for (const StagePlan& stage : kRunPlan)
+    for (const StagePhase& phase : stage.phases)
+      if (phase.name != nullptr && stage.wanted(run))
+        plan.push_back({phase.name, phase.share * stage.core_s(run), stage.surface});
   return plan;
 }
 
@@ -178,6 +162,7 @@ Result<VerbResult> run(ProcessRequest options, const Arguments& command, const C
   } else {
     DUBSAR_ASSIGN(const std::uint64_t bytes, parse_bytes(options.room.memory));
     set_memory_limit(bytes);
+    return_large_blocks();
   }
   if (!options.room.scratch.empty()) p.import.budget.scratch_folder = options.room.scratch;
   if (options.without.resample) p.detail = Detail::kScan;

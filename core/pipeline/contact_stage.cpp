@@ -11,25 +11,19 @@ constexpr double kUnevenClay = 2.0;
 
 }  // namespace
 
-Result<TracedModel> trace(SurfaceModel model, const ImportOptions& scan, const ImportedGrid& imported, StageRun run) {
+Result<TracedModel> trace(SurfaceModel model, const ImportedGrid& imported, StageRun run) {
   TracedModel traced{std::move(model), {}};
   run.clock.start("contact", "point");
-  std::unique_ptr<ImportedVolume> volume;
   ContactOptions options;
   if (imported.facts.blur) options.blur_variance = static_cast<float>(imported.facts.blur->variance);
   options.halve_first = !imported.detail.resample();
   if (const auto& rays = imported.facts.rays; rays && rays->straightened)
     options.least_clay_step = static_cast<float>(kUnevenClay * rays->bent->after.clay * rays->bent->levels.contrast());
-  std::optional<HalfResolutionSource> halved;
-  SlabSource* density = imported.straightened.get();
-  if (density == nullptr) {
-    ImportOptions again = scan;
-    again.unmeasured = imported.facts.unmeasured;
-    DUBSAR_ASSIGN(volume, open_volume(again));
-    density = volume.get();
-    if (imported.detail.resample()) density = &halved.emplace(*volume);
-  }
-  DUBSAR_ASSIGN(traced.contact, trace_contact(traced.model, *density, options, run.progress));
+  HalfResolutionSource halved(*imported.scan);
+  SlabSource& density = imported.straightened        ? static_cast<SlabSource&>(*imported.straightened)
+                        : imported.detail.resample() ? static_cast<SlabSource&>(halved)
+                                                     : *imported.scan;
+  DUBSAR_ASSIGN(traced.contact, trace_contact(traced.model, density, options, run.progress));
   if (traced.contact.traced) settle_patches(traced.model.patches, traced.model.mesh.vertex_count());
   run.clock.finish(traced.contact.points);
   return traced;

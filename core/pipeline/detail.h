@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/base/text/enum_names.h"
-#include "core/volume/volume.h"
+#include "core/pipeline/plan.h"
 
 namespace dubsar {
 
@@ -25,11 +25,9 @@ struct DetailChoice {
   bool resample() const noexcept { return detail == Detail::kHalf; }
 };
 
-/// `memory_left` in bytes.
-DetailChoice choose_detail(Detail wanted, const Dims& scan, std::uint64_t memory_left);
-
-/// How many neighbours share the rays of ambient light (occlusion.h): 1 but for large surfaces of the scan's own
-/// resolution, where light would take longer than all else.
-int sharers_of_rays(Detail detail, std::int64_t vertices);
+/// kAuto: the scan's resolution where the plan's cost is at most five minutes with so many threads and its memory fits
+/// `room` bytes. `run.half` does not matter; `run.vertices` are those at the scan's resolution. The same scan, threads
+/// and room give the same choice: nothing is measured for it.
+DetailChoice choose_detail(Detail wanted, RunShape run, std::uint64_t room, int threads);
 
 }  // namespace dubsar

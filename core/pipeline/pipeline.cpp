@@ -5,9 +5,10 @@
 #include <algorithm>
 
 #include "core/base/system/budget.h"
+#include "core/base/system/large_blocks.h"
+#include "core/base/system/log.h"
 #include "core/base/text/json_text.h"
 #include "core/exa/exa_file.h"
-#include "core/pipeline/forecast.h"
 #include "core/pipeline/refine_stage.h"
 #include "core/pipeline/room_check.h"
 
@@ -61,67 +62,162 @@ Result<FoundSurface> find_surface(const PipelineOptions& options, ImportedGrid& 
     found.band = refined.band;
     found.steps.insert(found.steps.end(), refined.steps.begin(), refined.steps.end());
   }
-  imported.scan.reset();
   return found;
 }
 
-Result<PipelineResult> run_stages(const PipelineOptions& options, Progress& progress) {
-  StageClock clock;
-  const StageRun run{clock, progress};
-  DUBSAR_TRY(check_room(options.import, options.detail, run));
-  DUBSAR_ASSIGN(ImportedGrid imported, import_grid(options.import, options.detail, options.estimate, run));
-  if (options.artefacts == Artefacts::kAuto) {
-    DUBSAR_ASSIGN(imported.facts.rays, straighten_rays(imported, options.import.budget, run));
-  }
-  DUBSAR_ASSIGN(DenoisedGrid denoised,
-                denoise(std::move(imported.grid), kHalvedGrid, options.denoise, imported.estimate, run));
-  DUBSAR_ASSIGN(FoundSurface found, find_surface(options, imported, denoised, run));
-  SampledSurface& sampled = found.sampled;
+RunShape wanted_shape(const PipelineOptions& options) {
+  RunShape shape;
+  shape.artefacts = options.artefacts == Artefacts::kAuto;
+  shape.fill_holes = options.fill_holes;
+  shape.contact = options.trace_contact;
+  shape.passes = options.denoise.iterations;
+  shape.rays = options.occlusion ? options.occlusion->rays : 0.0;
+  return shape;
+}
 
-  DUBSAR_TRY(check_memory(
-      fmt::format("the surface of {:.1f} million vertices", static_cast<double>(sampled.samples.offsets.size()) * 1e-6),
-      static_cast<std::uint64_t>(kSurfaceBytesPerVertex * static_cast<double>(sampled.samples.offsets.size()))));
-  DUBSAR_ASSIGN(QuadMesh mesh, mesh_of_samples(sampled.samples, found.threshold.value, run));
-  DUBSAR_ASSIGN(SmoothedMesh smoothed, smooth_and_measure(std::move(mesh), options.smooth, options.curvature, run));
-  SettleOptions settling = options.settle;
-  settling.curvature = options.curvature;
-  DUBSAR_ASSIGN(SettledModel settled, settle(assemble(std::move(found.frame), std::move(sampled.samples),
-                                                      std::move(smoothed.mesh), std::move(smoothed.attributes)),
-                                             settling, options.exa_profile, run));
-  DUBSAR_ASSIGN(SeparatedModel separated, separate(std::move(settled.model), options.segment, options.fill_holes, run));
-  PipelineResult result{std::move(separated.model), {}, {}};
+std::int64_t patch_triangles(const SurfaceModel& model) {
+  std::int64_t triangles = 0;
+  for (const FillPatch& patch : model.patches) triangles += static_cast<std::int64_t>(patch.triangles.size());
+  return triangles;
+}
+
+/// A run on its way: the stages of the plan, one after the other, and what they have made so far.
+struct Run {
+  const PipelineOptions& options;
+  StageRun run;
+  FittingRun plan;
+  ImportedGrid imported;
+  DenoisedGrid half;
+  FoundSurface found;
+  SmoothedMesh smoothed;
+  SettledModel settled;
+  SeparatedModel separated;  ///< its model is the one that later stages change
   std::optional<ContactReport> contact;
-  if (options.fill_holes && options.trace_contact && separated.segment.nested && !separated.segment.enclosure_refused) {
-    DUBSAR_ASSIGN(TracedModel traced, trace(std::move(result.model), options.import, imported, run));
-    result.model = std::move(traced.model);
-    contact = traced.contact;
-  }
-  imported.straightened.reset();
   std::optional<UntangleReport> patches;
-  if (contact && contact->traced) {
-    patches = contact->patches;
-  } else if (options.fill_holes) {
-    DUBSAR_ASSIGN(UntangledModel untangled, untangle(std::move(result.model), run));
-    result.model = std::move(untangled.model);
-    patches = untangled.patches;
+  CheckedProduct product;
+
+  Result<void> import(std::unique_ptr<ImportedVolume> scan) {
+    DUBSAR_ASSIGN(imported, import_grid(std::move(scan), plan.detail, plan.run.half_place, options.import.budget,
+                                        options.estimate, run));
+    return {};
   }
-  if (separated.holes) {
-    separated.holes->triangles = 0;
-    for (const FillPatch& patch : result.model.patches)
-      separated.holes->triangles += static_cast<std::int64_t>(patch.triangles.size());
+
+  void close_scan() {
+    imported.straightened.reset();
+    imported.scan.reset();
   }
-  if (options.occlusion) {
+
+  Result<void> find() {
+    DUBSAR_ASSIGN(found, find_surface(options, imported, half, run));
+    plan.run.vertices = static_cast<double>(found.sampled.samples.offsets.size());
+    return check_fits(plan.run, plan.room, RunStage::kMesh);
+  }
+
+  Result<void> settle_model() {
+    SettleOptions settling = options.settle;
+    settling.curvature = options.curvature;
+    SurfaceModel model = assemble(std::move(found.frame), std::move(found.sampled.samples), std::move(smoothed.mesh),
+                                  std::move(smoothed.attributes));
+    DUBSAR_ASSIGN(settled, settle(std::move(model), settling, options.exa_profile, run));
+    return {};
+  }
+
+  /// How much of the surface is contact is known now. Where there is no room to trace it, smooth patches stay.
+  Result<void> trace_or_untangle() {
+    SurfaceModel& model = separated.model;
+    if (options.trace_contact && separated.segment.nested && !separated.segment.enclosure_refused) {
+      plan.run.patches = static_cast<double>(patch_triangles(model));
+      const Result<void> fits = check_fits(plan.run, plan.room, RunStage::kContact);
+      if (fits) {
+        DUBSAR_ASSIGN(TracedModel traced, trace(std::move(model), imported, run));
+        model = std::move(traced.model);
+        contact = std::move(traced.contact);
+      } else {
+        contact.emplace().why = fits.error().message;
+        log_warning("contact: smooth patches stay, since {}", contact->why);
+      }
+    }
+    if (contact && contact->traced) {
+      patches = contact->patches;
+    } else {
+      DUBSAR_ASSIGN(UntangledModel untangled, untangle(std::move(model), run));
+      model = std::move(untangled.model);
+      patches = std::move(untangled.patches);
+    }
+    separated.holes->triangles = patch_triangles(model);
+    return {};
+  }
+
+  Result<void> light() {
     OcclusionOptions light = *options.occlusion;
     if (light.engine == OcclusionEngine::kBricks) {
-      light.shared_by = std::min(light.rays, sharers_of_rays(imported.detail.detail, result.model.mesh.vertex_count()));
+      light.shared_by = std::min(light.rays, sharers_of_rays(plan.run.half, plan.run.vertices));
       if (light.shared_by > 1) light.most_cells = kCellsToShare;
     }
-    DUBSAR_ASSIGN(result.model, shade(std::move(result.model), light, run));
+    DUBSAR_ASSIGN(separated.model, shade(std::move(separated.model), light, run));
+    return {};
   }
-  DUBSAR_ASSIGN(CheckedProduct product, check_product(result.model, run));
-  result.mesh = std::move(product.mesh);
-  result.report = make_report({imported, found.steps, found.threshold, sampled, found.band, smoothed, settled,
-                               separated, contact, patches, product.check},
+
+  Result<void> perform(RunStage stage) {
+    switch (stage) {
+      case RunStage::kImport:
+        break;  // import()
+      case RunStage::kRays: {
+        DUBSAR_ASSIGN(imported.facts.rays, straighten_rays(imported, plan.run, plan.room, options.import.budget, run));
+        break;
+      }
+      case RunStage::kDenoise: {
+        DUBSAR_ASSIGN(half, denoise(std::move(imported.grid), kHalvedGrid, options.denoise, imported.estimate, run));
+        break;
+      }
+      case RunStage::kSurface:
+        return find();
+      case RunStage::kMesh: {
+        DUBSAR_ASSIGN(smoothed.mesh, mesh_of_samples(found.sampled.samples, found.threshold.value, run));
+        break;
+      }
+      case RunStage::kSmooth: {
+        DUBSAR_ASSIGN(smoothed, smooth_and_measure(std::move(smoothed.mesh), options.smooth, options.curvature, run));
+        break;
+      }
+      case RunStage::kSettle:
+        return settle_model();
+      case RunStage::kParts: {
+        DUBSAR_ASSIGN(separated, separate(std::move(settled.model), options.segment, options.fill_holes, run));
+        break;
+      }
+      case RunStage::kContact:
+        return trace_or_untangle();
+      case RunStage::kLight:
+        return light();
+      case RunStage::kCheck: {
+        DUBSAR_ASSIGN(product, check_product(separated.model, run));
+        break;
+      }
+      case RunStage::kWrite:
+        break;  // write_product()
+    }
+    return {};
+  }
+};
+
+Result<PipelineResult> run_stages(const PipelineOptions& options, Progress& progress) {
+  StageClock clock;
+  DUBSAR_ASSIGN(std::unique_ptr<ImportedVolume> scan, open_volume(options.import));
+  Run run{options, {clock, progress}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  DUBSAR_ASSIGN(run.plan, fit_run(*scan, wanted_shape(options), options.detail, options.import.budget, run.run));
+  if (options.detail == Detail::kAuto)
+    log_info("detail {}: {}", name_in(kDetails, run.plan.detail.detail), run.plan.detail.why);
+  DUBSAR_TRY(run.import(std::move(scan)));
+  for (const StagePlan& stage : kRunPlan) {
+    if (!stage.wanted(run.plan.run)) continue;
+    if (stage.stage > RunStage::kContact) run.close_scan();
+    if (memory_limit() > 0) return_free_memory();
+    DUBSAR_TRY(run.perform(stage.stage));
+  }
+  PipelineResult result{std::move(run.separated.model), {}, std::move(run.product.mesh)};
+  result.report = make_report({run.imported, run.found.steps, run.found.threshold, run.found.sampled, run.found.band,
+                               run.smoothed, run.settled, run.separated, run.contact, run.patches, run.product.check},
                               result.model, clock);
   result.model.provenance = dump_json(provenance_json(result.report, options));
   return result;

@@ -52,9 +52,9 @@ Result<Straightened> straighten_grid(GridStore& grid, const BentRays& bent, doub
   return done;
 }
 
-Result<GridStore> copy_of(GridStore& grid, const Budget& budget) {
+Result<GridStore> copy_of(GridStore& grid, GridPlace place, const Budget& budget) {
   const Dims dims = grid.dims();
-  DUBSAR_ASSIGN(GridStore copy, GridStore::create(dims, grid.frame(), place_for(dims, budget), budget));
+  DUBSAR_ASSIGN(GridStore copy, GridStore::create(dims, grid.frame(), place, budget));
   for (std::int64_t z = 0; z < dims.z; ++z) {
     DUBSAR_TRY(grid.read(z, z + 1, copy.page(z, z + 1)));
     DUBSAR_TRY(copy.store(z, z + 1));
@@ -63,20 +63,20 @@ Result<GridStore> copy_of(GridStore& grid, const Budget& budget) {
 }
 
 /// Rays of what the surface is found in, and all that was learned from it before.
-Result<Straightened> straighten_imported(ImportedGrid& imported, const BentRays& bent, const Budget& budget,
-                                         StageRun run) {
+Result<Straightened> straighten_imported(ImportedGrid& imported, const BentRays& bent, GridPlace place,
+                                         const Budget& budget, StageRun run) {
   CountedGrid& half = imported.grid;
   Straightened done;
   if (imported.detail.resample()) {
-    DUBSAR_ASSIGN(GridStore grid, copy_of(half.grid, budget));
+    DUBSAR_ASSIGN(GridStore grid, copy_of(half.grid, place, budget));
     DUBSAR_ASSIGN(done, straighten_grid(grid, bent, 2.0, run));
     DUBSAR_ASSIGN(half.counts, count_values(grid, run.progress));
-    DUBSAR_ASSIGN(half.grid, copy_of(grid, budget));
+    DUBSAR_ASSIGN(half.grid, copy_of(grid, place_for(grid.dims(), budget), budget));
     imported.straightened = std::make_unique<GridStore>(std::move(grid));
   } else {
-    DUBSAR_ASSIGN(CountedGrid scan, read_grid(*imported.scan, false, budget, run));
+    DUBSAR_ASSIGN(CountedGrid scan, read_grid(*imported.scan, false, place, budget, run));
     DUBSAR_ASSIGN(done, straighten_grid(scan.grid, bent, 1.0, run));
-    DUBSAR_ASSIGN(half, read_grid(scan.grid, true, budget, run));
+    DUBSAR_ASSIGN(half, read_grid(scan.grid, true, place_for(half.grid.dims(), budget), budget, run));
     imported.straightened = std::make_unique<GridStore>(std::move(scan.grid));
   }
   DUBSAR_TRY(measure_blur(imported, run));
@@ -113,22 +113,26 @@ Result<std::optional<BentRays>> look_for_bent_rays(Overview overview, SlabSource
   return std::optional(bent);
 }
 
-double seconds_to_straighten(const BentRays& bent, const Dims& grid) {
-  return bent.crossing_s * crossings_of(grid, bent.axis);
+void plan_straightening(RunShape& run, const BentRays& bent, std::uint64_t room) {
+  run.straight =
+      StraightPlan{GridPlace::kMemory, bent.crossing_s * crossings_of(grid_of(run.scan, run.half), bent.axis)};
+  if (cost_of(run, 1).bytes > static_cast<double>(room)) run.straight->place = GridPlace::kScratch;
 }
 
-Result<RaysReport> straighten_rays(ImportedGrid& imported, const Budget& budget, StageRun run) {
+Result<RaysReport> straighten_rays(ImportedGrid& imported, RunShape& shape, std::uint64_t room, const Budget& budget,
+                                   StageRun run) {
   RaysReport report;
   DUBSAR_ASSIGN(report.bent, look_for_bent_rays({imported.grid.grid, 2.0}, *imported.scan, run));
   if (!report.bent) return report;
-  const Dims grid = imported.detail.resample() ? imported.grid.grid.dims() : imported.scan->dims();
+  const RunShape before = shape;
+  plan_straightening(shape, *report.bent, room);
   log_info("rays are straightened, which takes about {:.0f} s of {} threads",
-           std::ceil(seconds_to_straighten(*report.bent, grid) / thread_count()), thread_count());
-  const Result<Straightened> done = straighten_imported(imported, *report.bent, budget, run);
+           std::ceil(shape.straight->core_s / thread_count()), thread_count());
+  const Result<Straightened> done = straighten_imported(imported, *report.bent, shape.straight->place, budget, run);
   if (done)
     report.straightened = *done;
   else if (done.error().kind == ErrorKind::kTryAgain)
-    report.why_not = done.error().message;
+    report.why_not = done.error().message, shape = before;
   else
     return tl::unexpected<Error>(done.error());
   const std::string text = rays_text(report, imported.scan->frame());

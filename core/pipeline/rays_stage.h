@@ -27,13 +27,14 @@ struct Overview {
 /// every cell of voxels some are read. One record, "rays". Errors: those of the sources, kCancelled.
 Result<std::optional<BentRays>> look_for_bent_rays(Overview overview, SlabSource& scan, StageRun run);
 
-/// Seconds of one core to straighten a grid of these dims.
-double seconds_to_straighten(const BentRays& bent, const Dims& grid);
+/// The run straightens rays: time, and where the straightened grid lies, in memory if all of the run still fits `room`.
+void plan_straightening(RunShape& run, const BentRays& bent, std::uint64_t room);
 
 /// Looks in the halved grid, and straightens what the surface is found in: that grid, or the scan, which is read once
 /// more for it; `imported.straightened` is there then, and grid and blur are those of what was straightened. Nothing
 /// changes where no ray is bent. Records "rays", "straighten". A scan for which there is no room stays as it is, and
-/// the report says why. Errors: those of the scan, kCancelled.
-Result<RaysReport> straighten_rays(ImportedGrid& imported, const Budget& budget, StageRun run);
+/// the report says why. `shape` says so afterwards. Errors: those of the scan, kCancelled.
+Result<RaysReport> straighten_rays(ImportedGrid& imported, RunShape& shape, std::uint64_t room, const Budget& budget,
+                                   StageRun run);
 
 }  // namespace dubsar

@@ -39,7 +39,7 @@ Result<Learned> learn(SlabSource& scan, const RefineOptions& options, const Budg
   StageClock apart;
   const StageRun inner{apart, run.progress};
   run.clock.start("sample", "voxel");
-  DUBSAR_ASSIGN(CountedGrid sampled, read_grid(some, false, budget, inner));
+  DUBSAR_ASSIGN(CountedGrid sampled, read_grid(some, false, place_for(some.dims(), budget), budget, inner));
   DUBSAR_ASSIGN(DenoisedGrid denoised, denoise(std::move(sampled), "sample", options.denoise, options.estimate, inner));
   run.clock.finish(some.dims().count());
   Learned learned{std::move(denoised.steps), {}};

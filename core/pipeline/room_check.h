@@ -1,17 +1,23 @@
 #pragma once
-// Will a run fit? Said before the scan is read.
+// Will a run fit? Decided, with the grid on which it runs, before the scan is read.
 
-#include "core/base/system/budget.h"
 #include "core/pipeline/detail.h"
 #include "core/pipeline/stage_clock.h"
 #include "core/volume/formats/import.h"
 
 namespace dubsar {
 
-/// Looks at the size of the scan alone, and where that leaves doubts at some slices of it (forecast.h; one more stage,
-/// "forecast"). kTryAgain with what is needed and what is left when it is clear that the run would not fit: it could be
-/// off by a quarter. The stage that traces contact is left out: it takes what the contact is large. Errors of
-/// open_volume(); kCancelled. A scan of which nothing can be foretold passes.
-Result<void> check_room(const ImportOptions& scan, Detail wanted, StageRun run);
+struct FittingRun {
+  DetailChoice detail;
+  RunShape run;
+  std::uint64_t room = 0;  ///< bytes that it may take beside the program as it is now
+};
+
+/// `wanted`: what the run is to do; scan, grid, vertices and places are filled in. The size of the scan decides, and
+/// where that leaves doubts some slices of it (forecast.h; one more record, "forecast"). kTryAgain with what is needed
+/// and what is left: where a limit is set (set_memory_limit) by the plan, else only where it is clear, as the plan errs
+/// on the side of too much. kCancelled. Errors of the scan.
+Result<FittingRun> fit_run(ImportedVolume& scan, const RunShape& wanted, Detail detail, const Budget& budget,
+                           StageRun run);
 
 }  // namespace dubsar

@@ -29,10 +29,10 @@ Result<Estimates> estimate_source(SlabSource& source, std::string_view stage, co
 }
 
 /// The whole source, slab by slab, into a store.
-Result<CountedGrid> fill_grid(SlabSource& source, const Budget& budget) {
+Result<CountedGrid> fill_grid(SlabSource& source, GridPlace place, const Budget& budget) {
   constexpr std::int64_t kSlabBytes = 16 << 20;  // in the caches, as far as possible, until its values are counted
   const Dims dims = source.dims();
-  DUBSAR_ASSIGN(GridStore grid, GridStore::create(dims, source.frame(), place_for(dims, budget), budget));
+  DUBSAR_ASSIGN(GridStore grid, GridStore::create(dims, source.frame(), place, budget));
   if (!grid.in_memory())
     log_info("the grid of {:.1f} GiB goes to the disk, in {}", gib_of(grid.scratch_bytes()),
              budget.scratch_folder.string());
@@ -59,17 +59,17 @@ constexpr double kSharpenFromDb = 23.0, kAllFromDb = 27.0;
 
 }  // namespace
 
-Result<CountedGrid> read_grid(SlabSource& scan, bool resample, const Budget& budget, StageRun run) {
+Result<CountedGrid> read_grid(SlabSource& scan, bool resample, GridPlace place, const Budget& budget, StageRun run) {
   run.clock.start(resample ? "resample" : "import", "voxel");
   run.progress.begin("import", scan.dims().count(), "voxel");
   TappedSource tap(scan, run.progress);
   if (!resample) {
-    DUBSAR_ASSIGN(CountedGrid grid, fill_grid(tap, budget));
+    DUBSAR_ASSIGN(CountedGrid grid, fill_grid(tap, place, budget));
     run.clock.finish(scan.dims().count());
     return grid;
   }
   HalfResolutionSource half(tap);
-  DUBSAR_ASSIGN(CountedGrid grid, fill_grid(half, budget));
+  DUBSAR_ASSIGN(CountedGrid grid, fill_grid(half, place, budget));
   run.clock.finish(scan.dims().count());
   run.clock.split_before_last("import", tap.wall_s(), tap.cpu_s(), scan.dims().count(), "voxel");
   return grid;
@@ -86,18 +86,16 @@ Result<void> measure_blur(ImportedGrid& imported, StageRun run) {
   return {};
 }
 
-Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, const EstimateOptions& estimate,
-                                 StageRun run) {
+Result<ImportedGrid> import_grid(std::unique_ptr<ImportedVolume> opened, const DetailChoice& detail, GridPlace place,
+                                 const Budget& budget, const EstimateOptions& estimate, StageRun run) {
   ImportedGrid imported;
-  DUBSAR_ASSIGN(imported.scan, open_volume(options));
+  imported.scan = std::move(opened);
   ImportedVolume* const scan = imported.scan.get();
   DUBSAR_ASSIGN(imported.facts.unmeasured, scan->unmeasured());
   imported.estimate = estimate;
   imported.estimate.left_out = imported.facts.unmeasured.left_out();
-  imported.detail = choose_detail(detail, scan->dims(), available_memory_bytes());
-  const bool half = imported.detail.resample();
-  if (detail == Detail::kAuto)
-    log_info("detail {}: {}", name_in(kDetails, imported.detail.detail), imported.detail.why);
+  imported.detail = detail;
+  const bool half = detail.resample();
   imported.facts.info = scan->info();
   imported.facts.frame = scan->frame();
   imported.facts.warnings = scan->info().warnings;
@@ -107,7 +105,7 @@ Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, co
   SampledSource some(*scan, kRawSampleSlices, group);
   imported.raw.name = "raw";
   DUBSAR_ASSIGN(imported.raw.estimates, estimate_source(some, "estimate_raw", imported.estimate, run));
-  DUBSAR_ASSIGN(imported.grid, read_grid(*scan, true, options.budget, run));
+  DUBSAR_ASSIGN(imported.grid, read_grid(*scan, true, place, budget, run));
   DUBSAR_TRY(measure_blur(imported, run));
   ScanFacts& facts = imported.facts;
   facts.grid = half ? imported.grid.grid.dims() : scan->dims();

@@ -50,7 +50,7 @@ struct ImportedGrid {
   CountedGrid grid;
   DetailChoice detail;
   EstimateOptions estimate;              ///< as they were given, without what is no measurement
-  std::unique_ptr<ImportedVolume> scan;  ///< to be read again
+  std::unique_ptr<ImportedVolume> scan;  ///< to be read again: the run opens it once
   /// Instead of the scan (Detail::kScan) or of its halved grid as it was before any filter: with straight rays
   /// (rays_stage.h). Nothing where they are as they are.
   std::unique_ptr<GridStore> straightened;
@@ -59,18 +59,17 @@ struct ImportedGrid {
 /// How the grid of import_grid() was made, as a FilterStep is named.
 inline constexpr const char* kHalvedGrid = "gauss 2:1";
 
-/// Opens the scan, estimates its noise from a sample, reads it, and halves it along each axis (Gauss 3x3x3 and 2:1):
-/// the surface is found there. Where `detail` is that of the scan, facts are those of the scan itself, and the surface
-/// is refined afterwards (refine_stage.h). A grid that does not fit into memory lies on the disk (place_for). Errors:
-/// those of open_volume() and of its source; kTryAgain when there is no room for the grid.
-Result<ImportedGrid> import_grid(const ImportOptions& options, Detail detail, const EstimateOptions& estimate,
-                                 StageRun run);
+/// Estimates the scan's noise from a sample, reads it, and halves it along each axis (Gauss 3x3x3 and 2:1): the surface
+/// is found there. Where `detail` is that of the scan, facts are those of the scan itself, and the surface is refined
+/// afterwards (refine_stage.h). Errors: those of the source; kTryAgain when there is no room for the grid.
+Result<ImportedGrid> import_grid(std::unique_ptr<ImportedVolume> scan, const DetailChoice& detail, GridPlace place,
+                                 const Budget& budget, const EstimateOptions& estimate, StageRun run);
 
 /// Measures facts.blur in what the surface is found in. One record, "blur".
 Result<void> measure_blur(ImportedGrid& imported, StageRun run);
 
 /// Reads all of a source and, if wanted, halves it; two records, "import" and "resample", since both run interleaved.
-Result<CountedGrid> read_grid(SlabSource& scan, bool resample, const Budget& budget, StageRun run);
+Result<CountedGrid> read_grid(SlabSource& scan, bool resample, GridPlace place, const Budget& budget, StageRun run);
 
 struct DenoisedGrid {
   GridStore grid;

@@ -1,5 +1,7 @@
 #include "core/base/numbers/units.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -142,6 +144,10 @@ Result<std::uint64_t> parse_bytes(std::string_view text) {
     return fail(ErrorKind::kUsage, "size \"{}\" not understood, expected a number with a unit such as 6G or 512M",
                 text);
   return static_cast<std::uint64_t>(value);
+}
+
+std::string memory_text(double bytes) {
+  return gib_of(bytes) < 1.0 ? fmt::format("{:.0f} MiB", mib_of(bytes)) : fmt::format("{:.1f} GiB", gib_of(bytes));
 }
 
 }  // namespace dubsar

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "core/base/result.h"
@@ -28,5 +29,8 @@ template <class Count>
 constexpr double mib_of(Count bytes) noexcept {
   return static_cast<double>(bytes) / 1048576.0;
 }
+
+/// "746 MiB", "1.5 GiB".
+std::string memory_text(double bytes);
 
 }  // namespace dubsar

@@ -36,6 +36,8 @@ std::uint64_t available_memory_bytes() {
 
 void set_memory_limit(std::uint64_t bytes) noexcept { g_limit = bytes; }
 
+std::uint64_t memory_limit() noexcept { return g_limit; }
+
 std::uint64_t Budget::limit_bytes() const {
   return memory_bytes > 0 ? memory_bytes : available_memory_bytes() / 10 * 8;
 }

@@ -30,6 +30,8 @@ std::uint64_t available_memory_bytes();
 
 /// The whole process is to keep below `bytes` from now on; 0: as much as there is. Call before work begins.
 void set_memory_limit(std::uint64_t bytes) noexcept;
+/// What was set; 0: nothing.
+std::uint64_t memory_limit() noexcept;
 
 /// Checks that `dims` are 1..max_dimension each and their product times `element_bytes` fits the voxel count limit.
 /// Returns the number of elements. `what` names the object in the error text.

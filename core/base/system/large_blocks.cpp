@@ -11,6 +11,8 @@ void keep_large_blocks() noexcept {
 
 std::uint64_t spare_heap_bytes() noexcept { return mallinfo2().keepcost; }
 
+void return_free_memory() noexcept { malloc_trim(0); }
+
 void return_large_blocks() noexcept {
   constexpr int kLargeBytes = 1 << 20, kSpareBytes = 16 << 20;
   mallopt(M_MMAP_THRESHOLD, kLargeBytes);

@@ -14,6 +14,9 @@ void keep_large_blocks() noexcept;
 /// is asked for more. Any thread; walks the C library's lists of free blocks.
 std::uint64_t spare_heap_bytes() noexcept;
 
+/// Gives what is free back to the system, between stages of a program that is to stay small. Milliseconds; any thread.
+void return_free_memory() noexcept;
+
 /// From now on a block of 1 MiB or more (a texture of 960x540 has 2) goes back to the system when it is freed. Without
 /// this the C library raises that size, up to 32 MiB, to that of each such block that is freed; later ones come from
 /// its heap, where small blocks between them keep what is freed from going back. Smaller blocks, which drivers without

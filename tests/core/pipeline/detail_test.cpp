@@ -1,3 +1,5 @@
+// Which grid is taken follows from the plan's time and memory: a function of the scan, the threads and the room.
+
 #include "core/pipeline/detail.h"
 
 #include <gtest/gtest.h>
@@ -7,31 +9,46 @@ namespace {
 
 constexpr std::uint64_t kGib = 1024ull * 1024ull * 1024ull;
 
-TEST(Detail, AutoTakesTheScansResolutionWhereTimeAndMemoryAllowAndSaysWhy) {
-  const DetailChoice fits = choose_detail(Detail::kAuto, {512, 272, 472}, 8 * kGib);
-  EXPECT_EQ(fits.detail, Detail::kScan);
-  EXPECT_FALSE(fits.resample());
-  EXPECT_EQ(fits.why, "66 million voxels fit in 8.0 GiB");
-  const DetailChoice narrow = choose_detail(Detail::kAuto, {512, 272, 472}, kGib / 10 * 9);
+RunShape usual(const Dims& scan) {
+  RunShape run;
+  run.scan = scan;
+  run.vertices = usual_vertices(scan);
+  return run;
+}
+
+TEST(Detail, ThePapersScanKeepsItsResolutionOnTwoThreadsAndOnSixteen) {
+  const RunShape paper = usual({1871, 999, 1723});
+  for (const int threads : {2, 16}) {
+    const DetailChoice choice = choose_detail(Detail::kAuto, paper, 32 * kGib, threads);
+    EXPECT_EQ(choice.detail, Detail::kScan) << choice.why;
+    EXPECT_NE(choice.why.find(std::to_string(threads) + " threads"), std::string::npos) << choice.why;
+  }
+}
+
+TEST(Detail, TheScannersFullVolumeKeepsItOnSixteenThreadsOnly) {
+  const RunShape full = usual({3072, 3072, 1944});
+  const DetailChoice two = choose_detail(Detail::kAuto, full, 256 * kGib, 2);
+  EXPECT_EQ(two.detail, Detail::kHalf);
+  EXPECT_NE(two.why.find("minutes"), std::string::npos) << two.why;
+  EXPECT_EQ(choose_detail(Detail::kAuto, full, 256 * kGib, 16).detail, Detail::kScan);
+}
+
+TEST(Detail, WhatDoesNotFitIsHalvedAndTheReasonNamesBothSizes) {
+  const DetailChoice narrow = choose_detail(Detail::kAuto, usual({512, 272, 472}), kGib / 4, 2);
   EXPECT_EQ(narrow.detail, Detail::kHalf);
-  EXPECT_EQ(narrow.why,
-            "the scan's resolution takes about 746 MiB, more than four fifths of the 922 MiB that are left");
-  const DetailChoice long_run = choose_detail(Detail::kAuto, {1871, 999, 1723}, 512 * kGib);
-  EXPECT_EQ(long_run.detail, Detail::kHalf);
-  EXPECT_NE(long_run.why.find("3221 million voxels"), std::string::npos) << long_run.why;
-  EXPECT_EQ(choose_detail(Detail::kAuto, {935, 499, 861}, 4 * kGib).detail, Detail::kScan);
-  EXPECT_EQ(choose_detail(Detail::kAuto, {1250, 667, 1150}, 20 * kGib).detail, Detail::kScan);
+  EXPECT_NE(narrow.why.find("MiB of the 256 MiB of memory"), std::string::npos) << narrow.why;
+  EXPECT_EQ(choose_detail(Detail::kAuto, usual({512, 272, 472}), 8 * kGib, 2).detail, Detail::kScan);
 }
 
 TEST(Detail, WhatIsAskedForIsDone) {
-  EXPECT_EQ(choose_detail(Detail::kScan, {1871, 999, 1723}, kGib).detail, Detail::kScan);
-  EXPECT_EQ(choose_detail(Detail::kHalf, {32, 32, 32}, 512 * kGib).detail, Detail::kHalf);
+  EXPECT_EQ(choose_detail(Detail::kScan, usual({3072, 3072, 1944}), kGib, 1).detail, Detail::kScan);
+  EXPECT_EQ(choose_detail(Detail::kHalf, usual({32, 32, 32}), 512 * kGib, 16).detail, Detail::kHalf);
 }
 
 TEST(Detail, OnlyLargeSurfacesOfTheScansResolutionShareRays) {
-  EXPECT_EQ(sharers_of_rays(Detail::kHalf, 20'000'000), 1);
-  EXPECT_EQ(sharers_of_rays(Detail::kScan, 300'000), 1);
-  EXPECT_GT(sharers_of_rays(Detail::kScan, 5'000'000), 1);
+  EXPECT_EQ(sharers_of_rays(true, 20e6), 1);
+  EXPECT_EQ(sharers_of_rays(false, 0.3e6), 1);
+  EXPECT_GT(sharers_of_rays(false, 5e6), 1);
 }
 
 }  // namespace

@@ -28,19 +28,22 @@ class ForecastOfPhantoms : public ::testing::Test {
     ASSERT_TRUE(phantom::write_phantom(folder_ / "scan.h5", std::nullopt, wanted, progress));
   }
   static void TearDownTestSuite() { fs::remove_all(folder_); }
-  static Result<Forecast> foretell(const ForecastOptions& options) {
+  static Result<Forecast> foretell(Detail detail, const Budget& budget = {}) {
     SilentProgress progress;
     ImportOptions import;
     import.path = folder_ / "scan.h5";
     DUBSAR_ASSIGN(const std::unique_ptr<ImportedVolume> scan, open_volume(import));
-    return forecast(*scan, options, progress);
+    RunShape run;
+    run.contact = false;
+    run.rays = 0.0;
+    return forecast(*scan, run, detail, budget, std::nullopt, false, progress);
   }
   static inline fs::path folder_;
 };
 
 TEST_F(ForecastOfPhantoms, TheSurfaceAndItsFileAreThoseOfTheRun) {
   for (const Detail detail : {Detail::kScan, Detail::kHalf}) {
-    const auto expected = foretell({.detail = detail, .contact = false, .occlusion_rays = 0});
+    const auto expected = foretell(detail);
     ASSERT_TRUE(expected) << expected.error().message;
     PipelineOptions options;
     options.import.path = folder_ / "scan.h5";
@@ -52,15 +55,15 @@ TEST_F(ForecastOfPhantoms, TheSurfaceAndItsFileAreThoseOfTheRun) {
     ASSERT_TRUE(made) << made.error().message;
     ASSERT_TRUE(write_product(folder_ / "a.exa", *made, options.exa_profile, progress));
     const auto vertices = static_cast<double>(made->report.surface.vertices);
-    EXPECT_NEAR(static_cast<double>(expected->vertices), vertices, 0.3 * vertices);
+    EXPECT_NEAR(expected->run.vertices, vertices, 0.3 * vertices);
     const auto bytes = static_cast<double>(fs::file_size(folder_ / "a.exa"));
-    EXPECT_NEAR(static_cast<double>(expected->product_bytes), bytes, 0.3 * bytes);
-    EXPECT_EQ(expected->grid, made->report.scan.grid);
-    EXPECT_EQ(expected->scratch_bytes, 0U);
+    EXPECT_NEAR(product_bytes(expected->run), bytes, 0.3 * bytes);
+    EXPECT_EQ(grid_of(expected->run.scan, expected->run.half), made->report.scan.grid);
+    EXPECT_EQ(expected->cost.scratch_bytes, 0.0);
     double core_s = 0.0;
     for (const StageRecord& stage : made->report.stages) core_s += stage.cpu_s;
-    EXPECT_GT(expected->core_s, 0.1 * core_s);
-    EXPECT_LT(expected->core_s, 10.0 * core_s);
+    EXPECT_GT(expected->cost.core_s, 0.1 * core_s);
+    EXPECT_LT(expected->cost.core_s, 10.0 * core_s);
   }
 }
 
@@ -68,13 +71,13 @@ TEST_F(ForecastOfPhantoms, WhatDoesNotFitIntoMemoryIsCountedOnTheDisk) {
   Budget budget;
   budget.memory_bytes = 1 << 20;
   budget.scratch_folder = folder_;
-  const auto expected = foretell({.detail = Detail::kHalf, .occlusion_rays = 0, .budget = budget});
+  const auto expected = foretell(Detail::kHalf, budget);
   ASSERT_TRUE(expected) << expected.error().message;
-  EXPECT_EQ(expected->scratch_bytes, static_cast<std::uint64_t>(expected->grid.count()) * 4);
-  const auto in_memory = foretell({.detail = Detail::kHalf, .occlusion_rays = 0});
+  EXPECT_EQ(expected->cost.scratch_bytes, 4.0 * static_cast<double>(grid_of(expected->run.scan, true).count()));
+  const auto in_memory = foretell(Detail::kHalf);
   ASSERT_TRUE(in_memory);
-  EXPECT_GE(in_memory->memory_bytes, expected->memory_bytes);
-  EXPECT_EQ(in_memory->vertices, expected->vertices);
+  EXPECT_GE(in_memory->cost.bytes, expected->cost.bytes);
+  EXPECT_EQ(in_memory->run.vertices, expected->run.vertices);
 }
 
 }  // namespace

@@ -9,6 +9,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/base/system/clock.h"
+#include "core/base/system/large_blocks.h"
+#include "core/base/system/log.h"
 #include "core/phantom/write_phantom.h"
 #include "core/pipeline/forecast.h"
 #include "core/pipeline/pipeline.h"
@@ -76,18 +79,79 @@ TEST_F(Room, WhatSurelyFitsIsNotLookedAtTwice) {
   EXPECT_TRUE(stages.has("import"));
 }
 
-TEST_F(Room, AGridWhoseSignsAloneAreTooManyIsRefusedByItsSize) {
-  const Dims scan{60000, 60000, 10};
-  const auto points = static_cast<std::uint64_t>(scan.count());
-  EXPECT_GT(bytes_of_run({scan, false, 0.0, GridPlace::kScratch, false}), points / 8);
-  EXPECT_GT(bytes_of_run({scan, true, 0.0, GridPlace::kScratch, false}), points / 64);
-  for (const bool half : {false, true}) {
-    EXPECT_GE(bytes_of_run({scan, half, 0.0, GridPlace::kMemory, false}), points / 8 * 4) << "of the halved grid";
-    EXPECT_GE(bytes_of_run({scan, half, 1e9, GridPlace::kScratch, false}),
-              static_cast<std::uint64_t>(1e9 * kSurfaceBytesPerVertex));
+TEST_F(Room, TheScanIsOpenedOnce) {
+  PipelineOptions wanted = options();
+  wanted.trace_contact = true;
+  wanted.import.voxel_size_mm = glm::dvec3(5.0);  // every opening warns of that
+  SilentProgress progress;
+  int warnings = 0;
+  set_log_handler([&](LogLevel, std::string_view text) { warnings += text.find("5 x 5 x 5 mm") != text.npos ? 1 : 0; });
+  const auto made = run_pipeline(wanted, progress);
+  set_log_handler({});
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_TRUE(made->report.contact) << "the contact was not looked at";
+  EXPECT_EQ(warnings, 1);
+}
+
+/// Of one budget: nothing that was refused had begun, nothing that was made took more.
+void expect_kept_or_refused(const PipelineOptions& options, std::uint64_t limit, const fs::path& out, int& made) {
+  return_free_memory();
+  set_memory_limit(limit);
+  reset_peak_rss();
+  Stages stages;
+  auto result = run_pipeline(options, stages);
+  if (!result) {
+    EXPECT_EQ(result.error().kind, ErrorKind::kTryAgain) << result.error().message;
+    EXPECT_NE(result.error().message.find("of memory"), std::string::npos) << result.error().message;
+    EXPECT_FALSE(stages.has("rays")) << "the scan was read, then: " << result.error().message;
+  } else {
+    const auto written = write_product(out, *result, options.exa_profile, stages);
+    EXPECT_TRUE(written) << written.error().message;
+    ++made;
+    std::string table;
+    for (const StageRecord& stage : result->report.stages)
+      table += fmt::format("{} {:.0f}, ", stage.name, stage.peak_rss_mib);
+    for (const StageRecord& stage : result->report.stages)
+      EXPECT_LE(stage.peak_rss_mib * 1048576.0, static_cast<double>(limit)) << stage.name << " of " << table;
+    fs::remove(out);
   }
-  EXPECT_GT(bytes_of_run({scan, false, 1e9, GridPlace::kScratch, true}),
-            bytes_of_run({scan, false, 1e9, GridPlace::kScratch, false}));
+  set_memory_limit(0);
+}
+
+phantom::PhantomOptions glued(phantom::Contact kind, double share, std::uint64_t seed) {
+  phantom::PhantomOptions wanted;
+  wanted.dims = {256, 160, 240};
+  wanted.seed = seed;
+  wanted.contact = kind;
+  wanted.film_vox = 0.3;
+  wanted.contact_share = share;
+  return wanted;
+}
+
+TEST_F(Room, ADozenBudgetsAreKeptOrRefusedBeforeTheScanIsRead) {
+  SilentProgress progress;
+  return_large_blocks();
+  PipelineOptions run = options();
+  run.import.path = folder_ / "scan256.h5";
+  run.import.budget.scratch_folder = folder_;
+  run.trace_contact = true;
+  const auto try_budgets = [&](Detail detail, const std::vector<std::uint64_t>& mib) {
+    run.detail = detail;
+    int made = 0;
+    for (const std::uint64_t m : mib)
+      expect_kept_or_refused(run, resident_bytes() + (m << 20), folder_ / "k.exa", made);
+    return made;
+  };
+  ASSERT_TRUE(
+      phantom::write_phantom(run.import.path, std::nullopt, glued(phantom::Contact::kFilled, 0.1, 901), progress));
+  const int made = try_budgets(Detail::kScan, {10, 30, 50, 65, 80, 100, 120, 150, 180, 220, 260, 400});
+  EXPECT_GE(made, 3) << "more is refused than need be";
+  EXPECT_LE(made, 6) << "a budget that cannot be kept was accepted";
+  EXPECT_GE(try_budgets(Detail::kAuto, {30, 100, 120, 150}), 2) << "half of the scan's resolution fits";
+  // Of this one twice as much is contact as the plan takes for granted.
+  ASSERT_TRUE(
+      phantom::write_phantom(run.import.path, std::nullopt, glued(phantom::Contact::kFilm, 0.3, 902), progress));
+  EXPECT_GE(try_budgets(Detail::kScan, {160, 190, 220, 260}), 1);
 }
 
 }  // namespace
