@@ -12,6 +12,8 @@
 #include "app/cli/verb.h"
 #include "core/base/files/file_identity.h"
 #include "core/exa/exa_file.h"
+#include "core/exa/exa_plausible.h"
+#include "core/exa/exa_salvage.h"
 #include "core/exa/offsets/settle.h"
 #include "core/exa/paper/paper_profile.h"
 #include "core/exa/patches/patches.h"
@@ -115,7 +117,10 @@ Result<VerbResult> stat(const ExaRequest& options) {
 
 Result<VerbResult> verify(const ExaRequest& options, Progress& progress) {
   DUBSAR_TRY(check_exa_sums(options.in));
+  DUBSAR_ASSIGN(const ExaInfo info, read_exa_info(options.in));
   DUBSAR_ASSIGN(const SurfaceModel model, while_unchanged(options.in, [&] { return read_exa(options.in, progress); }));
+  if (const Result<void> plausible = check_plausible(model, info.header, progress); !plausible)
+    return fail(plausible.error().kind, "{}: {}", options.in, plausible.error().message);
   DUBSAR_ASSIGN(const TriMesh mesh, make_tri_mesh(model));
   const MeshCheck check = check_mesh(mesh.positions, mesh.triangles);
   VerbResult result;
@@ -135,6 +140,7 @@ Result<VerbResult> recompress(const ExaRequest& options, Progress& progress) {
   SettleOptions settle;
   settle.max_error = options.max_error;
   settle.curvature = before.header.curvature;
+  settle.exact_normals = before.header.normals == ExaNormals::kExact;  // somebody asked for them
   DUBSAR_ASSIGN(const SettleStats stats, options.profile == ExaProfile::kPaper
                                              ? settle_for_paper(model, settle, progress)
                                              : settle_for_exa(model, settle, progress));
@@ -152,6 +158,20 @@ Result<VerbResult> recompress(const ExaRequest& options, Progress& progress) {
   result.json["p95_error_vox"] = stats.p95_error_vox;
   result.json["normal_error_deg"] = stats.normal_error_deg;
   result.json["shape_changed_fraction"] = stats.shape_changed_fraction;
+  return result;
+}
+
+Result<VerbResult> salvage(const ExaRequest& options, Progress& progress) {
+  DUBSAR_ASSIGN(const SalvagedExa salvaged,
+                while_unchanged(options.in, [&] { return salvage_exa(options.in, progress); }));
+  DUBSAR_ASSIGN(const ExaStats stats, write_exa(options.out, salvaged.model, progress));
+  VerbResult result;
+  result.text = salvaged.lost.empty() ? fmt::format("{}: nothing is damaged\n", options.in)
+                                      : fmt::format("{}: damaged, and left out:\n", options.in);
+  for (const std::string& lost : salvaged.lost) result.text += "  " + lost + "\n";
+  result.text += fmt::format("{}: {} vertices, {} bytes\n", options.out, stats.vertices, stats.bytes);
+  result.json = stats_json(stats);
+  result.json["left_out"] = salvaged.lost;
   return result;
 }
 
@@ -199,6 +219,10 @@ Verb add_exa_verb(Arguments program) {
       .positive();
   recompress_command.choice<ExaProfile>("--exa-profile", options->profile, choices_of(kExaProfiles),
                                         "compact (default), or as in the paper, to compare");
+  Arguments salvage_command = command.subcommand(
+      "salvage", "what is whole of a damaged file: what is left out is named, lost bricks are marked as inferred");
+  salvage_command.reads("IN", options->in, "EXA file").required();
+  salvage_command.writes("-o,--output", options->out, FileFormat::kExa, "EXA file to write").required();
   Arguments part_command = command.subcommand("part", "a coarser level or a box, without reading the rest");
   part_command.reads("IN", options->in, "EXA file").required();
   part_command.writes("-o,--output", options->out, FileFormat::kExa, "EXA file to write").required();
@@ -210,11 +234,14 @@ Verb add_exa_verb(Arguments program) {
       "  dubsar exa stat tablet.exa\n"
       "  dubsar exa verify tablet.exa\n"
       "  dubsar exa recompress old.exa -o new.exa\n"
+      "  dubsar exa salvage damaged.exa -o rest.exa\n"
       "  dubsar exa recompress tablet.exa --exa-profile paper -o paper.exa\n"
       "  dubsar exa part tablet.exa --level 2 -o preview.exa");
-  return {command, [options, stat_command, verify_command, part_command](const CommonOptions&, Progress& progress) {
+  return {command, [options, stat_command, verify_command, salvage_command, part_command](const CommonOptions&,
+                                                                                          Progress& progress) {
             if (stat_command.chosen()) return stat(*options);
             if (verify_command.chosen()) return verify(*options, progress);
+            if (salvage_command.chosen()) return salvage(*options, progress);
             if (part_command.chosen()) return part(*options, progress);
             return recompress(*options, progress);
           }};

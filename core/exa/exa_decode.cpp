@@ -21,6 +21,12 @@
 
 namespace dubsar {
 namespace {
+/// For ExaReader::chunks(): those that are not lost; all of them where nothing is.
+std::function<bool(std::size_t)> all_but(const std::vector<std::uint8_t>& lost) {
+  if (lost.empty()) return {};
+  return [&lost](std::size_t i) { return i >= lost.size() || lost[i] == 0; };
+}
+
 std::span<float> floats_of(std::vector<glm::vec3>& items) {
   return {reinterpret_cast<float*>(items.data()), items.size() * 3};
 }
@@ -122,12 +128,28 @@ Result<void> decode_attributes(const ExaReader& reader, const ExaHeader& header,
   return {};
 }
 
+/// Of a surface whose vertices are not those that were written: what follows from the surface alone.
+Result<SurfaceModel> bare(SurfaceModel model, const ExaHeader& header, Progress& progress) {
+  if (header.normals == ExaNormals::kNone) return model;
+  VertexAttributes& a = model.attributes;
+  DUBSAR_ASSIGN(a.normals, recomputed_normals(model.mesh, progress));
+  DUBSAR_ASSIGN(Curvatures k, principal_curvatures(model.mesh, a.normals, header.curvature, progress));
+  a.shape = shape_classes(k.k_min, k.k_max);
+  a.k_min = std::move(k.k_min);
+  a.k_max = std::move(k.k_max);
+  return model;
+}
+
 Result<void> decode_offsets(const ExaReader& reader, const ExaHeader& header, const EdgeIndex& index,
-                            SurfaceSamples& samples, Progress& progress) {
+                            SurfaceSamples& samples, Progress& progress, const ExaDamage& damage) {
   if (header.profile == ExaProfile::kCompact) {
-    DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("OFFS", kCodec));
-    DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("FACE", kCodec));
-    return decode_samples(offsets.chunks, faces.chunks, index, samples, progress);
+    const std::vector<std::uint8_t>& lost = damage.offsets;
+    DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("OFFS", kCodec, all_but(lost)));
+    DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("FACE", kCodec, all_but(damage.faces)));
+    DUBSAR_TRY(decode_samples(offsets.chunks, faces.chunks, index, samples, progress));
+    for (std::size_t i = 0; i < lost.size(); ++i)
+      if (lost[i] != 0) put_crossings_half_way(samples, index, i);
+    return {};
   }
   DUBSAR_ASSIGN(const ExaChunks offsets, reader.chunks("POFF", kCodec));
   DUBSAR_ASSIGN(const ExaChunks faces, reader.chunks("PFCE", kCodec));
@@ -155,7 +177,8 @@ Result<LoadedSigns> load_signs(const ExaReader& reader, int level, const std::fu
   return loaded;
 }
 
-Result<BitVolume> decode_level_signs(const ExaReader& reader, const ExaHeader& header, int level, Progress& progress) {
+Result<BitVolume> decode_level_signs(const ExaReader& reader, const ExaHeader& header, int level, Progress& progress,
+                                     const std::vector<std::uint8_t>& lost) {
   if (header.profile == ExaProfile::kPaper) {
     const auto finest = static_cast<std::size_t>(std::max(0, paper_levels(header.dims) - level));
     DUBSAR_ASSIGN(const ExaChunks octets,
@@ -164,7 +187,8 @@ Result<BitVolume> decode_level_signs(const ExaReader& reader, const ExaHeader& h
                       level == 0 ? std::function<bool(std::size_t)>() : [=](std::size_t i) { return i <= finest; }));
     return decode_signs_as_paper(octets.chunks, header.dims, level);
   }
-  DUBSAR_ASSIGN(const LoadedSigns loaded, load_signs(reader, level, {}));
+  DUBSAR_ASSIGN(LoadedSigns loaded, load_signs(reader, level, all_but(lost)));
+  loaded.chunks.lost = lost;
   return decode_signs(loaded.chunks, header.dims, level, std::nullopt,
                       most_coded_signs(static_cast<std::uint64_t>(header.samples.edges)), progress);
 }
@@ -178,34 +202,40 @@ SurfaceSamples empty_samples(const ExaHeader& header) {
   return samples;
 }
 
-Result<SurfaceModel> decode_model(const ExaReader& reader, const ExaReadOptions& options, Progress& progress) {
-  DUBSAR_TRY(reader.check_sums());  // before anything is decoded: a damaged file costs next to nothing
+Result<SurfaceModel> decode_model(const ExaReader& reader, const ExaReadOptions& options, Progress& progress,
+                                  const ExaDamage* damage) {
+  if (damage == nullptr) DUBSAR_TRY(reader.check_sums());  // before anything is decoded: damage costs next to nothing
   DUBSAR_ASSIGN(const ExaHeader header, reader.header());
   DUBSAR_TRY(check_memory("exa", exa_memory_bound(header)));
   SurfaceModel model;
   model.frame = header.frame;
   model.samples = empty_samples(header);
   SurfaceSamples& samples = model.samples;
-  DUBSAR_ASSIGN(samples.signs, decode_level_signs(reader, header, 0, progress));
+  DUBSAR_ASSIGN(samples.signs,
+                decode_level_signs(reader, header, 0, progress, damage ? damage->signs : std::vector<std::uint8_t>()));
   DUBSAR_TRY(check_signs(samples));
   std::optional<EdgeIndex> index;  // of both steps that need it, gone when memory is needed for others
   DUBSAR_ASSIGN(index, EdgeIndex::create(samples));
   const SampleCounts counts = index->counts();
-  if (counts.edges != header.samples.edges || counts.faces != header.samples.faces)
+  if (damage == nullptr && (counts.edges != header.samples.edges || counts.faces != header.samples.faces))
     return fail(ErrorKind::kBadData, "exa: {} active edges and {} ambiguous faces found, the header says {} and {}",
                 counts.edges, counts.faces, header.samples.edges, header.samples.faces);
-  DUBSAR_TRY(decode_offsets(reader, header, *index, samples, progress));
+  DUBSAR_TRY(decode_offsets(reader, header, *index, samples, progress, damage ? *damage : ExaDamage()));
   DUBSAR_ASSIGN(model.mesh, build_quad_mesh(samples, *index, progress));
   index.reset();
-  if (model.mesh.vertex_count() != header.vertices || model.mesh.quad_count() != header.quads)
+  if (model.mesh.vertex_count() != header.vertices || model.mesh.quad_count() != header.quads) {
+    if (damage != nullptr) return bare(std::move(model), header, progress);
     return fail(ErrorKind::kBadData, "exa: {} vertices and {} x-quads found, the header says {} and {}",
                 model.mesh.vertex_count(), model.mesh.quad_count(), header.vertices, header.quads);
+  }
   DUBSAR_TRY(decode_positions(reader, model, progress));
-  if (position_sum_of(model) != header.sums.positions || quad_sum_of(model.mesh) != header.sums.quads)
+  if (damage == nullptr &&
+      (position_sum_of(model) != header.sums.positions || quad_sum_of(model.mesh) != header.sums.quads))
     return fail(ErrorKind::kBadData, "exa: the mesh built from this file is not the one that was written");
   if (options.recompute || header.normals != ExaNormals::kRecomputed)
     DUBSAR_TRY(decode_normals(reader, header, model, progress));
   DUBSAR_TRY(decode_attributes(reader, header, model, progress));
+  DUBSAR_ASSIGN(model.foreign, reader.foreign());
   return model;
 }
 

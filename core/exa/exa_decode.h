@@ -14,8 +14,16 @@
 
 namespace dubsar {
 
-/// As read_exa(), read_exa_level() and read_exa_box() (exa_file.h).
-Result<SurfaceModel> decode_model(const ExaReader& reader, const ExaReadOptions& options, Progress& progress);
+/// What of a file is known to be damaged, so that it is read without (exa_salvage.h).
+struct ExaDamage {
+  std::vector<std::uint8_t> signs, offsets, faces;  ///< 1 for each brick that has lost these; empty: none has
+};
+
+/// As read_exa(), read_exa_level() and read_exa_box() (exa_file.h). With `damage`, signs of a lost brick are those of
+/// the nearest of every eighth point, and crossings lie half way; where that gives other vertices than were written,
+/// all that is stored in their order is left out. Then sums are not compared.
+Result<SurfaceModel> decode_model(const ExaReader& reader, const ExaReadOptions& options, Progress& progress,
+                                  const ExaDamage* damage = nullptr);
 Result<SurfaceModel> decode_level(const ExaReader& reader, int level, Progress& progress);
 Result<SurfaceModel> decode_box(const ExaReader& reader, const GridBox& box, Progress& progress);
 
@@ -28,7 +36,8 @@ struct LoadedSigns {
 Result<LoadedSigns> load_signs(const ExaReader& reader, int level, const std::function<bool(std::size_t)>& wanted);
 
 /// All points of spacing 2^level.
-Result<BitVolume> decode_level_signs(const ExaReader& reader, const ExaHeader& header, int level, Progress& progress);
+Result<BitVolume> decode_level_signs(const ExaReader& reader, const ExaHeader& header, int level, Progress& progress,
+                                     const std::vector<std::uint8_t>& lost = {});
 
 /// What the header says of the samples; signs, offsets and face decisions are empty.
 SurfaceSamples empty_samples(const ExaHeader& header);

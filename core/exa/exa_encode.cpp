@@ -214,8 +214,11 @@ Result<std::vector<ExaBlock>> encode_exa(const SurfaceModel& model, Progress& pr
   if (!model.patches.empty())
     blocks.add("FILL", false, encode_patches(model.patches, {model.mesh, model.quad_partition}));
   if (has_patch_evidence(model.patches)) blocks.add("FEVI", false, encode_patch_evidence(model.patches));
+  std::vector<ExaBlock> all = blocks.take();
+  for (const ForeignBlock& block : model.foreign)
+    all.push_back({block.type, block.codec, block.flags, block.chunks, block.bytes});
   if (progress.cancelled()) return cancelled_error();
-  return blocks.take();
+  return all;
 }
 
 }  // namespace dubsar

@@ -8,6 +8,7 @@
 #include "core/base/files/input_file.h"
 #include "core/exa/exa_decode.h"
 #include "core/exa/exa_reader.h"
+#include "core/exa/exa_salvage.h"
 #include "core/exa/exa_text.h"
 #include "core/exa/signs/sign_brick.h"
 
@@ -105,6 +106,10 @@ Result<SurfaceModel> read_exa_level(const std::filesystem::path& path, int level
 
 Result<SurfaceModel> read_exa_box(const std::filesystem::path& path, const GridBox& box, Progress& progress) {
   return with_file<SurfaceModel>(path, [&](const ExaReader& reader) { return decode_box(reader, box, progress); });
+}
+
+Result<SalvagedExa> salvage_exa(const std::filesystem::path& path, Progress& progress) {
+  return with_file<SalvagedExa>(path, [&](const ExaReader& reader) { return decode_salvaged(reader, progress); });
 }
 
 Result<void> check_exa_sums(const std::filesystem::path& path) {

@@ -47,6 +47,10 @@ struct ExaInfo {
 Result<ExaStats> write_exa(const std::filesystem::path& path, const SurfaceModel& model, Progress& progress,
                            ExaProfile profile = ExaProfile::kCompact);
 
+/// As decode_salvaged() (exa_salvage.h). Errors as read_exa().
+struct SalvagedExa;
+Result<SalvagedExa> salvage_exa(const std::filesystem::path& path, Progress& progress);
+
 struct ExaReadOptions {
   bool recompute = true;  ///< normals, curvatures and shape classes that the file leaves to the reader; else empty
 };

@@ -122,6 +122,31 @@ Result<ExaHeader> ExaReader::header() const {
   return parse_exa_header(json, bytes_);
 }
 
+Result<std::vector<ForeignBlock>> ExaReader::foreign() const {
+  std::vector<ForeignBlock> blocks;
+  for (const ExaRow& row : table_.rows) {
+    if (exa_block_known(row.type)) continue;
+    DUBSAR_ASSIGN(std::string bytes, read(row.offset, row.length));
+    blocks.push_back({row.type, row.codec, row.flags, row.chunks, std::move(bytes)});
+  }
+  return blocks;
+}
+
+Result<std::vector<std::uint8_t>> ExaReader::damaged_chunks(const ExaRow& row) const {
+  DUBSAR_ASSIGN(const std::string block, read(row.offset, row.length));
+  DUBSAR_ASSIGN(const ChunkIndex index, ChunkIndex::parse(block, row.length, row.chunks, exa_block_name(row.type)));
+  std::vector<std::uint8_t> damaged(index.size());
+  for (std::size_t i = 0; i < index.size(); ++i)
+    damaged[i] = index.check(i, std::string_view(block).substr(index.offset(i), index.length(i))) ? 0 : 1;
+  return damaged;
+}
+
+ExaReader ExaReader::without(const std::set<std::string>& types) const {
+  ExaReader rest = *this;
+  std::erase_if(rest.table_.rows, [&](const ExaRow& row) { return types.contains(row.type); });
+  return rest;
+}
+
 Result<void> ExaReader::check_sums() const {
   for (const ExaRow& row : table_.rows) {
     DUBSAR_ASSIGN(const ExaChunks loaded, chunks_of(row, {}));

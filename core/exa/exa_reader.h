@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,15 @@ class ExaReader {
   /// The one chunk of a text block.
   Result<std::string> text(std::string_view type) const;
   Result<ExaHeader> header() const;
+
+  /// Blocks that are not known, whole.
+  Result<std::vector<ForeignBlock>> foreign() const;
+
+  /// What of a block is damaged: 1 for each chunk whose sum is wrong. kBadData where the index is damaged, so that all
+  /// is.
+  Result<std::vector<std::uint8_t>> damaged_chunks(const ExaRow& row) const;
+  /// The same file as if these blocks were not there.
+  ExaReader without(const std::set<std::string>& types) const;
 
   /// Checks every sum, of unknown blocks, too.
   Result<void> check_sums() const;

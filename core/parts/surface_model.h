@@ -28,6 +28,15 @@ struct FillPatch {
   std::vector<std::uint8_t> evidence{};  ///< of the extra vertices (evidence.h); empty: all inferred
 };
 
+/// A block of the model's file that this program does not know: a later one added it, and it goes into every file that
+/// is written of the model, as it is.
+struct ForeignBlock {
+  std::string type;  ///< four characters
+  std::uint16_t codec = 0, flags = 0;
+  std::uint32_t chunks = 0;
+  std::string bytes;
+};
+
 struct SurfaceModel {
   GridFrame frame;
   SurfaceSamples samples;
@@ -37,6 +46,7 @@ struct SurfaceModel {
   PartitionTable partitions;
   std::vector<FillPatch> patches;
   std::string provenance;  ///< JSON text
+  std::vector<ForeignBlock> foreign;
   /// Of positions, normals and curvatures (settled_sum(), core/exa/offsets/settle.h) where the last two follow from the
   /// first, so that nobody has to compute them again to see that; 0: not known.
   std::uint64_t settled_sum = 0;

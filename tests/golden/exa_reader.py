@@ -3,7 +3,6 @@ and fails when they are not those of the header. Needs numpy. Slow: for tests, n
 
 import itertools
 import json
-import re
 import struct
 import sys
 import zlib
@@ -181,11 +180,18 @@ class Refiner:
 # Weights -------------------------------------------------------------------------------------------------------------
 
 
-def weight_tables(name):
-    text = (Path(__file__).resolve().parents[2] / "core" / "exa" / name).read_text()
-    text = re.sub(r"//.*", "", text)
-    return [np.array([int(v) for v in body.replace("\n", "").split(",") if v.strip()], dtype=np.int64)
-            for body in re.findall(r"\{([^}]*)\}", text)]
+@lru_cache(None)
+def constants():
+    """{name: numbers} of docs/exa_constants.txt."""
+    lines = (Path(__file__).resolve().parents[2] / "docs" / "exa_constants.txt").read_text().splitlines()
+    tables, numbers = {}, None
+    for line in lines[1:]:
+        name, _, count = line.rpartition(" ")
+        if "model" in name:
+            numbers = tables.setdefault(name, [])
+        else:
+            numbers.extend(int(v) for v in line.split())
+    return {name: np.array(values, dtype=np.int64) for name, values in tables.items()}
 
 
 def sign_taps(phase):
@@ -203,7 +209,7 @@ def sign_taps(phase):
 @lru_cache(None)
 def sign_model(which):
     units = 64 if which == 2 else 16
-    values = weight_tables("signs/sign_weights_wide.inc")[0] if which == 2 else weight_tables("signs/sign_weights.inc")[which]
+    values = constants()[f"sign model {which}"]
     at, phases = 0, {}
     for phase in PHASES:
         taps = sign_taps(phase)
@@ -217,7 +223,7 @@ def sign_model(which):
 
 @lru_cache(None)
 def offset_model(which):
-    values, at, axes = weight_tables("offsets/offset_weights.inc")[which], 0, []
+    values, at, axes = constants()[f"offset model {which}"], 0, []
     for _ in range(3):
         axes.append((values[at:at + 1248].reshape(24, 52), values[at + 1248:at + 1272],
                      values[at + 1272:at + 1320].reshape(2, 24), values[at + 1320:at + 1322]))

@@ -249,4 +249,13 @@ Result<void> decode_samples(std::span<const std::string_view> offsets, std::span
   return {};
 }
 
+void put_crossings_half_way(SurfaceSamples& samples, const EdgeIndex& index, std::size_t brick) {
+  const BrickItems items(samples, index, brick_low(brick_grid(samples.dims), static_cast<std::int64_t>(brick)));
+  const auto half = static_cast<std::uint16_t>(1U << (samples.offset_bits - 1));
+  items.edges([](int) {},
+              [&](int, int, int, std::span<const std::uint8_t> xs, std::uint32_t number) {
+                std::fill_n(samples.offsets.begin() + number, xs.size(), half);
+              });
+}
+
 }  // namespace dubsar

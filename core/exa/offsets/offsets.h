@@ -30,4 +30,7 @@ Result<void> decode_samples(std::span<const std::string_view> offsets, std::span
 Result<void> decode_samples(std::span<const std::string_view> offsets, std::span<const std::string_view> faces,
                             const EdgeIndex& index, SurfaceSamples& samples, Progress& progress);
 
+/// Offsets half way of all edges of a brick whose chunk is lost.
+void put_crossings_half_way(SurfaceSamples& samples, const EdgeIndex& index, std::size_t brick);
+
 }  // namespace dubsar

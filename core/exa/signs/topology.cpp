@@ -82,6 +82,7 @@ struct BrickOrder {
   int level = 0;
   const std::optional<GridBox>& box;
   std::uint64_t most_points = 0;
+  std::vector<std::uint8_t> lost = {};
 };
 
 /// Decodes bricks one by one; any number of threads.
@@ -93,7 +94,8 @@ class BrickDecoder {
   void decode(std::int64_t index) {
     const auto i = static_cast<std::size_t>(index);
     const Brick at = brick_at(order_.dims, index);
-    Owned owned = owned_by(at, order_.level, out_.dims(), order_.box.has_value() || !order_.apart);
+    Owned owned =
+        owned_by(at, order_.level, out_.dims(), order_.box.has_value() || !order_.apart || !order_.lost.empty());
     owned.shared = order_.apart;
     SignLattice top = top_lattice(order_.coarse, at);
     if (order_.chunks[2][i].empty()) {
@@ -154,7 +156,8 @@ Result<void> decode_bricks(const BrickOrder& order, BitVolume& out, Progress& pr
       order.box ? bricks_of_box(order.dims, *order.box, order.apart) : std::vector<std::uint8_t>();
   std::array<std::vector<std::int64_t>, 2> turns;  // those that the others know first
   for (std::int64_t i = 0; i < bricks; ++i)
-    if (!order.box || needed[static_cast<std::size_t>(i)] != 0)
+    if ((!order.box || needed[static_cast<std::size_t>(i)] != 0) &&
+        (order.lost.empty() || order.lost[static_cast<std::size_t>(i)] == 0))
       turns[!order.apart && brick_at(order.dims, i).late ? 1 : 0].push_back(i);
   BrickDecoder decoder(order, out);
   for (const std::vector<std::int64_t>& turn : turns)
@@ -166,7 +169,49 @@ Result<void> decode_bricks(const BrickOrder& order, BitVolume& out, Progress& pr
   if (progress.cancelled()) return cancelled_error();
   return decoder.result();
 }
+/// Points that only lost bricks have get the sign of the nearest of every eighth.
+void fill_lost(const BitVolume& eighth, const Dims& dims, int level, const std::vector<std::uint8_t>& lost,
+               BitVolume& out) {
+  const Dims grid = brick_grid(dims), points = out.dims();
+  // The bricks along an axis that have a point: one, or two on a side.
+  const auto bricks_of = [&](std::int64_t at, std::int64_t count) {
+    const std::int64_t last = std::min(at / kBrickCells, count - 1);
+    return std::array<std::int64_t, 2>{at % kBrickCells == 0 && at > 0 ? std::min(at / kBrickCells - 1, last) : last,
+                                       last};
+  };
+  parallel_for(points.z, 1, [&](std::int64_t z) {
+    const auto bz = bricks_of(z << level, grid.z);
+    for (std::int64_t y = 0; y < points.y; ++y) {
+      const auto by = bricks_of(y << level, grid.y);
+      for (std::int64_t x = 0; x < points.x; ++x) {
+        const auto bx = bricks_of(x << level, grid.x);
+        bool known = false;
+        for (const std::int64_t k : bz)
+          for (const std::int64_t j : by)
+            for (const std::int64_t i : bx) known |= lost[static_cast<std::size_t>((k * grid.y + j) * grid.x + i)] == 0;
+        if (!known)
+          out.set(x, y, z, eighth.get(((x << level) + 4) / 8, ((y << level) + 4) / 8, ((z << level) + 4) / 8));
+      }
+    }
+  });
+}
 }  // namespace
+
+std::vector<std::uint8_t> lost_with(const Dims& dims, std::vector<std::uint8_t> lost, bool apart) {
+  if (lost.empty() || apart) return lost;
+  const Dims grid = brick_grid(dims);
+  const std::array<std::int64_t, 3> along{grid.x, grid.y, grid.z}, step{1, grid.x, grid.slice()};
+  const std::vector<std::uint8_t> damaged = lost;
+  for (std::int64_t i = 0; i < grid.count(); ++i) {
+    const Brick brick = brick_at(dims, i);
+    if (damaged[static_cast<std::size_t>(i)] == 0 || brick.late) continue;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (brick.low[a] > 0) lost[static_cast<std::size_t>(i - step[a])] = 1;
+      if (brick.low[a] / kBrickCells + 1 < along[a]) lost[static_cast<std::size_t>(i + step[a])] = 1;
+    }
+  }
+  return lost;
+}
 
 Dims brick_grid(const Dims& dims) { return {bricks_along(dims.x), bricks_along(dims.y), bricks_along(dims.z)}; }
 
@@ -231,8 +276,10 @@ Result<BitVolume> decode_signs(const SignChunks& chunks, const Dims& dims, int l
       for (std::int64_t y = 0; y < points.y; ++y)
         for (std::int64_t x = 0; x < points.x; ++x) signs.set(x, y, z, eighth.get(x, y, z));
   } else {
-    DUBSAR_TRY(
-        decode_bricks({chunks.bricks, dims, eighth, false, chunks.apart, level, box, most_points}, signs, progress));
+    const std::vector<std::uint8_t> lost = lost_with(dims, chunks.lost, chunks.apart);
+    DUBSAR_TRY(decode_bricks({chunks.bricks, dims, eighth, false, chunks.apart, level, box, most_points, lost}, signs,
+                             progress));
+    if (!lost.empty()) fill_lost(eighth, dims, level, lost, signs);
   }
   progress.end();
   return signs;

@@ -34,7 +34,12 @@ struct SignChunks {
   bool apart = false;  ///< as before version 5: bricks do not know of each other
   std::vector<std::string_view> coarse;
   std::array<std::vector<std::string_view>, 3> bricks;
+  /// 1 for each brick whose chunks are damaged; empty: none. Bricks that know its points are lost with it.
+  std::vector<std::uint8_t> lost;
 };
+
+/// The bricks that are lost with those: late ones (sign_surroundings.h) beside them, unless bricks are `apart`.
+std::vector<std::uint8_t> lost_with(const Dims& dims, std::vector<std::uint8_t> lost, bool apart);
 
 /// How many chunks a volume has.
 std::size_t coarse_chunk_count(const Dims& dims);
