@@ -12,6 +12,7 @@
 #include "app/publish/surface_facts.h"
 #include "core/base/numbers/units.h"
 #include "core/base/system/budget.h"
+#include "core/base/text/plain_text.h"
 #include "core/exa/exa_file.h"
 #include "core/mesh_io/mesh_io.h"
 #include "core/pipeline/forecast.h"
@@ -32,7 +33,7 @@ struct InfoRequest {
 
 std::string length_text(const VoxelSize& voxel) {
   if (!voxel.known()) return "unknown";
-  return fmt::format("{:g} x {:g} x {:g} mm ({})", voxel.mm.x, voxel.mm.y, voxel.mm.z, voxel.provenance);
+  return fmt::format("{:g} x {:g} x {:g} mm ({})", voxel.mm.x, voxel.mm.y, voxel.mm.z, plain_text(voxel.provenance));
 }
 
 /// What `process` will take, in one line; why not, where that cannot be said.

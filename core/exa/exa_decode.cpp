@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "core/base/system/budget.h"
@@ -43,6 +44,10 @@ Result<void> decode_positions(const ExaReader& reader, SurfaceModel& model, Prog
   if (reader.has("POSN")) {
     DUBSAR_ASSIGN(const ExaChunks exact, reader.chunks("POSN", kCodec));
     DUBSAR_TRY(decode_floats(exact.chunks, 3, "positions", floats_of(model.mesh.positions), progress));
+    for (const glm::vec3& p : model.mesh.positions)
+      if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kFarthestPlace))
+        return fail(ErrorKind::kBadData, "exa: a vertex at {:g} {:g} {:g} found, expected at most {:g} grid steps", p.x,
+                    p.y, p.z, kFarthestPlace);
   }
   return {};
 }

@@ -43,6 +43,10 @@ Result<void> check_model(const SurfaceModel& model, const QuadMesh& rebuilt) {
       !std::all_of(a.k_min.begin(), a.k_min.end(), finite) || !std::all_of(a.k_max.begin(), a.k_max.end(), finite))
     return fail(ErrorKind::kBadData,
                 "exa: a position, normal or curvature is not finite, so the surface is not stored");
+  for (const glm::vec3& p : model.mesh.positions)
+    if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > kFarthestPlace)
+      return fail(ErrorKind::kBadData, "exa: a vertex lies at {:g} {:g} {:g}, beyond all grids, so it is not stored",
+                  p.x, p.y, p.z);
   const auto largest = [](const std::vector<std::uint8_t>& v) {
     return v.empty() ? 0 : int{*std::max_element(v.begin(), v.end())};
   };

@@ -81,6 +81,14 @@ std::int64_t patch_triangles(const SurfaceModel& model) {
   return triangles;
 }
 
+/// Hands on what a stage has made.
+template <class T, class Made>
+Result<void> keep(T& to, Result<Made> made) {
+  if (!made) return tl::unexpected<Error>(made.error());
+  to = std::move(*made);
+  return {};
+}
+
 /// A run on its way: the stages of the plan, one after the other, and what they have made so far.
 struct Run {
   const PipelineOptions& options;
@@ -97,9 +105,8 @@ struct Run {
   CheckedProduct product;
 
   Result<void> import(std::unique_ptr<ImportedVolume> scan) {
-    DUBSAR_ASSIGN(imported, import_grid(std::move(scan), plan.detail, plan.run.half_place, options.import.budget,
-                                        options.estimate, run));
-    return {};
+    return keep(imported, import_grid(std::move(scan), plan.detail, plan.run.half_place, options.import.budget,
+                                      options.estimate, run));
   }
 
   void close_scan() {
@@ -118,8 +125,7 @@ struct Run {
     settling.curvature = options.curvature;
     SurfaceModel model = assemble(std::move(found.frame), std::move(found.sampled.samples), std::move(smoothed.mesh),
                                   std::move(smoothed.attributes));
-    DUBSAR_ASSIGN(settled, settle(std::move(model), settling, options.exa_profile, run));
-    return {};
+    return keep(settled, settle(std::move(model), settling, options.exa_profile, run));
   }
 
   /// How much of the surface is contact is known now. Where there is no room to trace it, smooth patches stay.
@@ -154,49 +160,29 @@ struct Run {
       light.shared_by = std::min(light.rays, sharers_of_rays(plan.run.half, plan.run.vertices));
       if (light.shared_by > 1) light.most_cells = kCellsToShare;
     }
-    DUBSAR_ASSIGN(separated.model, shade(std::move(separated.model), light, run));
-    return {};
+    return keep(separated.model, shade(std::move(separated.model), light, run));
   }
 
   Result<void> perform(RunStage stage) {
-    switch (stage) {
-      case RunStage::kImport:
-        break;  // import()
-      case RunStage::kRays: {
-        DUBSAR_ASSIGN(imported.facts.rays, straighten_rays(imported, plan.run, plan.room, options.import.budget, run));
-        break;
-      }
-      case RunStage::kDenoise: {
-        DUBSAR_ASSIGN(half, denoise(std::move(imported.grid), kHalvedGrid, options.denoise, imported.estimate, run));
-        break;
-      }
-      case RunStage::kSurface:
-        return find();
-      case RunStage::kMesh: {
-        DUBSAR_ASSIGN(smoothed.mesh, mesh_of_samples(found.sampled.samples, found.threshold.value, run));
-        break;
-      }
-      case RunStage::kSmooth: {
-        DUBSAR_ASSIGN(smoothed, smooth_and_measure(std::move(smoothed.mesh), options.smooth, options.curvature, run));
-        break;
-      }
-      case RunStage::kSettle:
-        return settle_model();
-      case RunStage::kParts: {
-        DUBSAR_ASSIGN(separated, separate(std::move(settled.model), options.segment, options.fill_holes, run));
-        break;
-      }
-      case RunStage::kContact:
-        return trace_or_untangle();
-      case RunStage::kLight:
-        return light();
-      case RunStage::kCheck: {
-        DUBSAR_ASSIGN(product, check_product(separated.model, run));
-        break;
-      }
-      case RunStage::kWrite:
-        break;  // write_product()
-    }
+    const Budget& budget = options.import.budget;
+    switch (stage) {  // clang-format off
+      case RunStage::kImport: return {};  // import()
+      case RunStage::kRays: return keep(imported.facts.rays, straighten_rays(imported, plan.run, plan.room, budget, run));
+      case RunStage::kDenoise:
+        return keep(half, denoise(std::move(imported.grid), kHalvedGrid, options.denoise, imported.estimate, run));
+      case RunStage::kSurface: return find();
+      case RunStage::kMesh:
+        return keep(smoothed.mesh, mesh_of_samples(found.sampled.samples, found.threshold.value, run));
+      case RunStage::kSmooth:
+        return keep(smoothed, smooth_and_measure(std::move(smoothed.mesh), options.smooth, options.curvature, run));
+      case RunStage::kSettle: return settle_model();
+      case RunStage::kParts:
+        return keep(separated, separate(std::move(settled.model), options.segment, options.fill_holes, run));
+      case RunStage::kContact: return trace_or_untangle();
+      case RunStage::kLight: return light();
+      case RunStage::kCheck: return keep(product, check_product(separated.model, run));
+      case RunStage::kWrite: return {};  // write_product()
+    }  // clang-format on
     return {};
   }
 };

@@ -76,7 +76,7 @@ double bytes_to_separate(const RunShape& r) { return 5.5 * signs(r) + 165.0 * r.
 
 /// Along the patches, as deep as wedges are: on the halved grid a patch triangle stands for more of it.
 double bytes_to_trace(const RunShape& r) {
-  return 50.0 * r.vertices + (!r.contact ? 0.0 : r.half ? 10500.0 : 6100.0) * patches(r);
+  return 115.0 * r.vertices + (!r.contact ? 0.0 : r.half ? 7700.0 : 4400.0) * patches(r);
 }
 double seconds_to_trace(const RunShape& r) { return (r.contact ? 4.4e-6 : 0.4e-6) * r.vertices; }
 
@@ -88,160 +88,58 @@ double nothing(const RunShape&) { return 0.0; }
 
 }  // namespace
 
-// clang-format off: a row for people to read
+// A row for people to read: stage, when; reads, writes; surface, serial, wanted; bytes, seconds; phases.
+// clang-format off
 constexpr std::array<StagePlan, kStages> kRunPlan = {{
-    {RunStage::kImport,
-     "while the scan is read",
-     kNothing | Value::kScan,
-     kNothing | Value::kHalf,
-     false,
-     0.1,
-     always,
-     nothing,
-     [](const RunShape& r) { return scan_points(r) * (r.read_s + 2.4e-9); },
+    {RunStage::kImport, "while the scan is read", kNothing | Value::kScan, kNothing | Value::kHalf, false, 0.1, always,
+     nothing, [](const RunShape& r) { return scan_points(r) * (r.read_s + 2.4e-9); },
      {{{"estimate_raw", 0.2}, {"import", 0.8}}}},
-    {RunStage::kRays,
-     "while rays are straightened",
-     kNothing | Value::kScan | Value::kHalf,
-     kNothing | Value::kStraight,
-     false,
-     0.1,
-     [](const RunShape& r) { return r.artefacts; },
-     bytes_to_straighten,
-     [](const RunShape& r) { return 0.2 + (r.straight ? r.straight->core_s : 0.0); },
+    {RunStage::kRays, "while rays are straightened", kNothing | Value::kScan | Value::kHalf,
+     kNothing | Value::kStraight, false, 0.1, [](const RunShape& r) { return r.artefacts; },
+     bytes_to_straighten, [](const RunShape& r) { return 0.2 + (r.straight ? r.straight->core_s : 0.0); },
      {{{"rays", 0.3}, {"straighten", 0.7}}}},
-    {RunStage::kDenoise,
-     "while noise is filtered",
-     kNothing | Value::kHalf,
-     kNothing | Value::kHalf,
-     false,
-     0.1,
-     always,
-     nothing,
-     [](const RunShape& r) { return 4e-9 * r.passes * half_points(r); },
+    {RunStage::kDenoise, "while noise is filtered", kNothing | Value::kHalf, kNothing | Value::kHalf, false, 0.1, always,
+     nothing, [](const RunShape& r) { return 4e-9 * r.passes * half_points(r); },
      {{{"estimate", 0.1}, {"denoise", 0.35}, {"estimate", 0.1}, {"denoise", 0.35}, {"estimate", 0.1}}}},
-    {RunStage::kSurface,
-     "while the surface is found",
-     kNothing | Value::kScan | Value::kHalf | Value::kStraight,
-     kNothing | Value::kSamples,
-     false,
-     0.1,
-     always,
-     bytes_to_find,
-     seconds_to_find,
-     {{{"import", 0.1},
-       {"estimate", 0.03},
-       {"denoise", 0.1},
-       {"estimate", 0.03},
-       {"denoise", 0.1},
-       {"estimate", 0.03},
-       {"band", 0.05},
-       {"band", 0.46},
-       {"extract", 0.1}}}},
-    {RunStage::kMesh,
-     "while the surface is meshed",
-     kNothing | Value::kSamples,
-     kNothing | Value::kMesh,
-     true,
-     0.1,
-     always,
-     bytes_a_vertex<15>,
-     a_vertex<150>,
-     {{{"mesh", 1.0}}}},
-    {RunStage::kSmooth,
-     "while the surface is smoothed",
-     kNothing | Value::kMesh,
-     kNothing | Value::kMesh | Value::kAttributes,
-     true,
-     0.1,
-     always,
-     bytes_a_vertex<70>,
-     a_vertex<800>,
+    {RunStage::kSurface, "while the surface is found", kNothing | Value::kScan | Value::kHalf | Value::kStraight,
+     kNothing | Value::kSamples, false, 0.1, always, bytes_to_find, seconds_to_find,
+     {{{"import", 0.1}, {"estimate", 0.03}, {"denoise", 0.1}, {"estimate", 0.03}, {"denoise", 0.1}, {"estimate", 0.03},
+       {"band", 0.05}, {"band", 0.46}, {"extract", 0.1}}}},
+    {RunStage::kMesh, "while the surface is meshed", kNothing | Value::kSamples, kNothing | Value::kMesh, true, 0.1,
+     always, bytes_a_vertex<15>, a_vertex<150>, {{{"mesh", 1.0}}}},
+    {RunStage::kSmooth, "while the surface is smoothed", kNothing | Value::kMesh,
+     kNothing | Value::kMesh | Value::kAttributes, true, 0.1, always, bytes_a_vertex<70>, a_vertex<800>,
      {{{"smooth", 0.85}, {"curvature", 0.15}}}},
-    {RunStage::kSettle,
-     "while vertices are quantised",
-     kSurfaceSoFar,
-     kSurfaceSoFar,
-     true,
-     0.1,
-     always,
-     bytes_a_vertex<115>,
-     a_vertex<1200>,
-     {{{"settle", 0.9}, {"curvature", 0.1}}}},
-    {RunStage::kParts,
-     "while parts are separated",
-     kSurfaceSoFar,
-     kNothing | Value::kParts,
-     true,
-     0.15,
-     always,
-     bytes_to_separate,
-     a_vertex<2000>,
-     {{{"segment", 0.5}, {"fill holes", 0.5}}}},
-    {RunStage::kContact,
-     "while the contact is traced",
-     kModel | Value::kScan | Value::kStraight,
-     kNothing | Value::kParts,
-     true,
-     0.24,
-     [](const RunShape& r) { return r.fill_holes; },
-     bytes_to_trace,
-     seconds_to_trace,
-     {{{"contact", 1.0}}}},
-    {RunStage::kLight,
-     "while light is worked out",
-     kModel,
-     kNothing | Value::kAttributes,
-     true,
-     0.05,
-     [](const RunShape& r) { return r.rays > 0.0; },
-     bytes_a_vertex<130>,
-     seconds_to_light,
+    {RunStage::kSettle, "while vertices are quantised", kSurfaceSoFar, kSurfaceSoFar, true, 0.1, always,
+     bytes_a_vertex<115>, a_vertex<1200>, {{{"settle", 0.9}, {"curvature", 0.1}}}},
+    {RunStage::kParts, "while parts are separated", kSurfaceSoFar, kNothing | Value::kParts, true, 0.15, always,
+     bytes_to_separate, a_vertex<2000>, {{{"segment", 0.5}, {"fill holes", 0.5}}}},
+    {RunStage::kContact, "while the contact is traced", kModel | Value::kScan | Value::kStraight,
+     kNothing | Value::kParts, true, 0.24, [](const RunShape& r) { return r.fill_holes; },
+     bytes_to_trace, seconds_to_trace, {{{"contact", 1.0}}}},
+    {RunStage::kLight, "while light is worked out", kModel, kNothing | Value::kAttributes, true, 0.05,
+     [](const RunShape& r) { return r.rays > 0.0; }, bytes_a_vertex<130>, seconds_to_light,
      {{{"ambient occlusion", 1.0}}}},
-    {RunStage::kCheck,
-     "while the surface is checked",
-     kModel,
-     kNothing | Value::kChecked,
-     true,
-     0.2,
-     always,
-     bytes_a_vertex<55>,
-     a_vertex<300>,
-     {}},
-    {RunStage::kWrite,
-     "while the surface is written",
-     kModel | Value::kChecked,
-     kNothing,
-     true,
-     0.2,
-     always,
-     bytes_a_vertex<70>,
-     a_vertex<500>,
-     {{{"curvature", 0.2}, {"encode signs", 0.4}, {"encode offsets", 0.4}}}},
+    {RunStage::kCheck, "while the surface is checked", kModel, kNothing | Value::kChecked, true, 0.2, always,
+     bytes_a_vertex<55>, a_vertex<300>, {}},
+    {RunStage::kWrite, "while the surface is written", kModel | Value::kChecked, kNothing, true, 0.2, always,
+     bytes_a_vertex<70>, a_vertex<500>, {{{"encode signs", 0.5}, {"encode offsets", 0.5}}}},
 }};
-// clang-format on
 
 double bytes_of(Value value, const RunShape& run) {
   switch (value) {
-    case Value::kScan:
-      return run.layer_bytes;
-    case Value::kHalf:
-      return stored(half_points(run), run.half_place);
-    case Value::kStraight:
-      return run.straight ? stored(grid_points(run), run.straight->place) : 0.0;
-    case Value::kSamples:
-      return 1.1 * signs(run) + 4.0 * run.vertices;
-    case Value::kMesh:
-      return 44.0 * run.vertices;
-    case Value::kAttributes:
-      return 24.0 * run.vertices;
-    case Value::kParts:
-      return 6.0 * run.vertices + 200.0 * patches(run);
-    case Value::kChecked:
-      return 41.0 * run.vertices;
+    case Value::kScan: return run.layer_bytes;
+    case Value::kHalf: return stored(half_points(run), run.half_place);
+    case Value::kStraight: return run.straight ? stored(grid_points(run), run.straight->place) : 0.0;
+    case Value::kSamples: return 1.1 * signs(run) + 4.0 * run.vertices;
+    case Value::kMesh: return 44.0 * run.vertices;
+    case Value::kAttributes: return 24.0 * run.vertices;
+    case Value::kParts: return 6.0 * run.vertices + 200.0 * patches(run);
+    case Value::kChecked: return 41.0 * run.vertices;
   }
   return 0.0;
 }
+// clang-format on
 
 double bytes_while(const StagePlan& stage, const RunShape& run) {
   double bytes = (stage.surface ? kForSurfaces : kForVoxels) + stage.work_bytes(run);

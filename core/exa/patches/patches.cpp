@@ -134,8 +134,8 @@ class PatchCode {
     if (count > most_ / kMostPerByte) return false;
     patches.resize(count);
     for (FillPatch& patch : patches) {
-      patch.partition = static_cast<std::uint8_t>(counts_.code(coder_, patch.partition));
-      patch.reverse_partition = static_cast<std::uint8_t>(counts_.code(coder_, patch.reverse_partition));
+      patch.partition = label(patch.partition);
+      patch.reverse_partition = label(patch.reverse_partition);
       std::optional<DiskPatch> disk;
       if (Coder::kWrites) disk = compact_disk(patch);
       const std::uint32_t rims = counts_.code(coder_, disk ? static_cast<std::uint32_t>(disk->rims.size()) : 0u);
@@ -145,6 +145,13 @@ class PatchCode {
   }
 
  private:
+  /// A number that is no byte is nobody's, and refused by check_patches().
+  PartitionId label(PartitionId own) {
+    constexpr std::uint32_t kByte = 255, kNobodys = 254;
+    const std::uint32_t number = counts_.code(coder_, own);
+    return static_cast<PartitionId>(number > kByte ? kNobodys : number);
+  }
+
   bool spend(std::uint64_t items) {
     most_ -= std::min(most_, items);
     return most_ > 0;

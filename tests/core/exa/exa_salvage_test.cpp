@@ -179,5 +179,13 @@ TEST_F(ExaFile, NothingIsToldOfGoldenFiles) {
   }
 }
 
+TEST_F(ExaFile, PlacesBeyondAllGridsAreNeitherStoredNorRead) {
+  SurfaceModel model = sample_model({12, 9, 10}, Kind::kBlob, 6);
+  model.mesh.positions[3].y = 3e38F;
+  EXPECT_EQ(encode_exa(model, progress_).error().kind, ErrorKind::kBadData);
+  model.mesh.positions[3].y = 9.9e5F;
+  EXPECT_TRUE(decode_exa(file_of(encoded(model)), progress_)) << "far, but within what a file may say";
+}
+
 }  // namespace
 }  // namespace dubsar

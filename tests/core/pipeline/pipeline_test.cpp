@@ -102,6 +102,36 @@ TEST_F(Pipeline, NothingThatAStageFoundIsMissingInTheReport) {
   EXPECT_NE(report_text(report).find("surfaces, "), std::string::npos);
 }
 
+/// The stages that began.
+class Begun final : public Progress {
+ public:
+  std::vector<std::string> names;
+
+ private:
+  void on_begin(std::string_view stage, std::int64_t, std::string_view) override { names.emplace_back(stage); }
+};
+
+TEST_F(Pipeline, ThePlansPhasesAreThoseThatProgressIsToldOf) {
+  Begun progress;
+  const auto made = process(folder_ / "p.exa", progress);
+  ASSERT_TRUE(made) << made.error().message;
+  RunShape run;
+  run.half = false;
+  auto at = progress.names.begin();
+  int passes = 0;
+  for (const StagePlan& stage : kRunPlan)
+    for (const StagePhase& phase : stage.phases) {
+      const std::string name = phase.name == nullptr ? "" : phase.name;
+      passes = name == "denoise" ? passes + 1 : passes;
+      // One pass of two was asked for, and no ray is bent.
+      if (name.empty() || name == "straighten" || (name == "denoise" && passes % 2 == 0)) continue;
+      const auto found = std::find(at, progress.names.end(), name);
+      EXPECT_NE(found, progress.names.end()) << name << ", " << stage.when;
+      if (found != progress.names.end() && name != "estimate") at = found + 1;
+    }
+  fs::remove(folder_ / "p.exa");
+}
+
 TEST_F(Pipeline, OneTwoAndSevenThreadsGiveTheSameBytes) {
   std::vector<std::string> bytes;
   for (const int threads : {1, 2, 7}) {
